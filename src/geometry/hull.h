@@ -1,0 +1,45 @@
+// A convex polyhedron as columns, laid out for wide search: vertices as three padded float arrays, faces as planes with
+// loops of vertex indices, and each edge once with its two faces.
+#pragma once
+
+#include <gyre/math.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace gyre {
+
+struct HullPlane {
+  Vec3 normal;   // unit, outward
+  float offset;  // dot(normal, p) = offset on the face
+};
+
+struct HullEdge {
+  std::uint8_t from, to;        // vertices, in the loop order of face `left`
+  std::uint8_t left, right;     // the two faces
+};
+
+// At most 255 vertices, 255 faces and 510 edges (all indices but edge indices fit in a byte).
+struct Hull {
+  // x, y and z of all vertices, each padded with copies of the last vertex to a multiple of kPad.
+  static constexpr int kPad = 8;
+  std::vector<float> x, y, z;
+  std::vector<Vec3> vertices;  // the same, vertex after vertex, unpadded
+  std::vector<HullPlane> planes;
+  std::vector<std::uint32_t> face_offsets;   // faces + 1, into face_vertices
+  std::vector<std::uint8_t> face_vertices;   // loops, counter-clockwise seen from outside
+  std::vector<HullEdge> edges;
+  Aabb box;
+  Vec3 centroid;         // of the volume
+  float inner_radius = 0.0f;  // smallest distance from the centroid to a face plane
+
+  int vertex_count() const { return int(vertices.size()); }
+  int face_count() const { return int(planes.size()); }
+};
+
+// The vertex farthest along `direction` (lowest index among equals).
+int support_vertex(const Hull& hull, Vec3 direction);
+// The face whose outward normal is nearest to `direction` (lowest index among equals).
+int support_face(const Hull& hull, Vec3 direction);
+
+}  // namespace gyre

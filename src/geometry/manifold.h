@@ -1,0 +1,55 @@
+// Contact manifolds: what collision writes and solvers read. A manifold is a question about two shapes, so it lives with
+// the other questions about shapes and knows neither bodies nor solvers.
+#pragma once
+
+#include "geometry/shape.h"
+
+namespace gyre {
+
+constexpr int kMaxManifoldPoints = 4;
+constexpr int kMaxMeshManifolds = 8;  // of one convex against a mesh or height field
+
+struct ManifoldPoint {
+  Vec3 position;         // midway between the two surfaces, in the frame of shape A
+  float separation = 0;  // distance of the surfaces along the normal; negative when they overlap
+  std::uint32_t feature = 0;  // names the pair of features that meet, to match points from step to step
+};
+
+// Up to four points that share a normal.
+struct LocalManifold {
+  Vec3 normal;  // unit, from A to B, in the frame of shape A
+  int count = 0;
+  std::uint32_t triangle = 0;  // mesh and height field: which triangle (the deepest one if several share the manifold)
+  ManifoldPoint points[kMaxManifoldPoints];
+};
+
+// What a pair remembers from its last look, so that the next one starts well: a separating axis or a simplex.
+// Part of the world's state: it may decide between features that are equally good.
+struct PairCache {
+  std::uint32_t words[4] = {};
+};
+
+// Manifold of two convex shapes. `a_from_b` places B in A's frame. Points farther apart than `max_separation` are left
+// out; count 0 when there are none. Points are in no particular order but a deterministic one.
+// Symmetric in what it accepts: any two convex kinds in any order.
+void collide_convex(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation, PairCache& cache,
+                    LocalManifold& out);
+
+// Manifold of a plane (A) and a convex shape (B).
+void collide_plane(const Shape& plane, const Shape& b, const Transform& a_from_b, float max_separation,
+                   LocalManifold& out);
+
+// Manifolds of a mesh or height field (A) and a convex shape (B), at most kMaxMeshManifolds, grouped by normal. Inner
+// edges never push sideways: a contact whose normal lies outside the Voronoi region of the triangle's feature is turned
+// to the face's normal or dropped. Returns how many were written.
+int collide_mesh(const Shape& mesh, const Shape& b, const Transform& a_from_b, float max_separation, LocalManifold* out);
+
+// Manifolds of any two shapes of which at most one is not convex, for any order of kinds (the result is always from A to
+// B). Two non-convex shapes never touch: 0. Returns the number of manifolds written to `out` (room for kMaxMeshManifolds).
+int collide_shapes(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation, PairCache& cache,
+                   LocalManifold* out);
+
+// Keeps at most four of `count` candidate points (at most 64): the deepest, and those that span the largest area.
+int reduce_points(ManifoldPoint* points, int count, Vec3 normal);
+
+}  // namespace gyre
