@@ -1,0 +1,171 @@
+// Definitions: plain structs in which every field has a default; write only what differs (designated initialisers).
+// SI units throughout: m, kg, s, rad, N, N m.
+#pragma once
+
+#include <gyre/geometry.h>
+#include <gyre/ids.h>
+#include <gyre/math.h>
+
+#include <cstdint>
+#include <optional>
+
+namespace gyre {
+
+// ------------------------------------------------------------------------------------------------------------ world
+
+enum class IntegratorKind : std::uint8_t { semi_implicit_euler };
+enum class BroadPhaseKind : std::uint8_t { bvh, brute_force };
+enum class SolverKind : std::uint8_t { soft_step };
+
+// How two materials make one number: of the two values, or table entries where MaterialPair says so.
+enum class CombineRule : std::uint8_t { geometric_mean, average, minimum, maximum, product };
+
+struct Stepping {
+  int substeps = 4;  // 1 to 64 equal sub-steps a step
+  IntegratorKind integrator = IntegratorKind::semi_implicit_euler;
+  SolverKind solver = SolverKind::soft_step;
+  BroadPhaseKind broad_phase = BroadPhaseKind::bvh;
+};
+
+// The door for the host application's own threads. `run` executes task(context, i) for every i in [0, count), possibly
+// at the same time, and returns when all are done.
+struct HostTasks {
+  void (*run)(void* user, int count, void (*task)(void* context, int index), void* context) = nullptr;
+  int worker_count = 1;
+  void* user = nullptr;
+};
+
+struct WorldDef {
+  Vec3 gravity{0, -9.81f, 0};  // m/s^2
+  int threads = 1;             // workers, this thread included; 0 = as many as the machine has; never changes a bit of the result
+  int simd_width = 0;          // lanes of the solver's kernels: 1, 4, 8 or 16; 0 = the best of this machine; never changes a bit
+  Stepping stepping;
+  bool sleeping = true;        // resting islands sleep until something touches them
+  CombineRule friction_rule = CombineRule::geometric_mean;
+  CombineRule restitution_rule = CombineRule::maximum;
+  HostTasks host_tasks;        // used instead of own threads when `run` is set
+};
+
+// ---------------------------------------------------------------------------------------------------------- materials
+
+// Surface of a shape. Coulomb friction: no sliding up to static_friction times the normal force, dynamic_friction times
+// the normal force while sliding. Rolling and spinning friction are lengths: torque = length times normal force.
+struct Material {
+  float static_friction = 0.6f;
+  float dynamic_friction = 0.6f;
+  float restitution = 0.0f;        // speed after over speed before an impact, 0 to 1
+  float rolling_friction = 0.0f;   // m
+  float spinning_friction = 0.0f;  // m, added to what the contact's patch gives by itself
+  std::uint16_t id = 0;            // names the material in the pair table; 0 = not in it
+};
+
+// What holds for two materials together, instead of the combine rules.
+struct MaterialPair {
+  std::uint16_t a = 0, b = 0;  // Material::id, both not 0; the order does not matter
+  float static_friction = 0.6f;
+  float dynamic_friction = 0.6f;
+  float restitution = 0.0f;
+};
+
+// Who may touch whom: two shapes may when each one's layer is among the other's collides_with. Two equal non-zero groups
+// overrule that: always if positive, never if negative.
+struct Filter {
+  std::uint32_t layer = 1;
+  std::uint32_t collides_with = 0xffffffffu;
+  std::int32_t group = 0;
+
+  constexpr bool operator==(const Filter&) const = default;
+};
+
+struct ShapeDef {
+  AnyShape geometry = Sphere{};
+  Transform local;          // body_from_shape
+  float density = 1000.0f;  // kg/m^3; 0 = adds no mass
+  Material material;
+  Filter filter;
+  bool sensor = false;      // reports what overlaps it and touches nothing
+  std::uint64_t user_data = 0;
+};
+
+// ------------------------------------------------------------------------------------------------------------ bodies
+
+enum class BodyType : std::uint8_t {
+  fixed,      // never moves
+  kinematic,  // moves with the velocity it is given; nothing pushes it
+  dynamic,    // moved by forces
+};
+
+struct LockedAxes {
+  bool linear[3] = {false, false, false};   // world axes
+  bool angular[3] = {false, false, false};  // world axes
+
+  constexpr bool operator==(const LockedAxes&) const = default;
+};
+
+struct BodyDef {
+  BodyType type = BodyType::dynamic;
+  Pose pose;                         // world_from_body, of the body's origin
+  Vec3 linear_velocity;              // m/s, of the centre of mass, world frame
+  Vec3 angular_velocity;             // rad/s, world frame
+  float linear_damping = 0.0f;       // 1/s: dv/dt = -damping * v, integrated exactly
+  float angular_damping = 0.0f;      // 1/s
+  float gravity_scale = 1.0f;
+  bool continuous = false;           // also swept against moving bodies (it always is against fixed ones)
+  bool can_sleep = true;
+  LockedAxes locked;
+  std::optional<float> mass;             // kg; scales the shapes' mass and inertia unless inertia is given too
+  std::optional<Vec3> center_of_mass;    // m, body frame
+  std::optional<Sym3> inertia;           // kg m^2, about the centre of mass, body axes
+  std::uint64_t user_data = 0;
+};
+
+// ------------------------------------------------------------------------------------------------------------- joints
+
+enum class JointKind : std::uint8_t {
+  ball,      // one common point
+  hinge,     // one common point and axis
+  slider,    // b slides along an axis of a and does not turn against it
+  fixed,     // b keeps its pose in a
+  distance,  // rod, rope or spring between a point of a and a point of b
+};
+const char* to_string(JointKind kind);
+
+struct Limits {
+  float low = 0.0f;   // rad (hinge) or m (slider)
+  float high = 0.0f;
+};
+
+// Drives a hinge (rad, N m) or slider (m, N). With target_position it is a spring to that position (frequency,
+// damping_ratio), otherwise it drives to target_velocity; either way with at most max_force.
+struct Motor {
+  float target_velocity = 0.0f;
+  std::optional<float> target_position;
+  float max_force = 0.0f;      // 0 = no motor
+  float frequency = 0.0f;      // Hz, of the position spring; 0 = as stiff as the step allows
+  float damping_ratio = 1.0f;
+};
+
+// A joint between two bodies; a null id is the world. Anchors and axes are given in the world frame as the bodies stand
+// when the joint is added; they are stored in the bodies' frames.
+struct JointDef {
+  JointKind kind = JointKind::ball;
+  BodyId a;
+  BodyId b;
+  DVec3 anchor;                        // the common point; distance: the point on a
+  Vec3 axis{1, 0, 0};                  // hinge and slider
+  std::optional<DVec3> anchor_b;       // distance: the point on b; none = b's origin
+  std::optional<Limits> limits;        // hinge and slider; zero is the pose when added
+  Motor motor;                         // hinge and slider
+  // Distance: with none of these a rod of the present length. min and max make a rope (a gap within which nothing acts);
+  // stiffness makes a Hooke spring of rest length `length`.
+  std::optional<float> length;         // m
+  std::optional<float> min_length;     // m
+  std::optional<float> max_length;     // m
+  std::optional<float> stiffness;      // N/m
+  std::optional<float> damping;        // N s/m
+  std::optional<float> break_force;    // N: the joint breaks above it
+  std::optional<float> break_torque;   // N m
+  bool collide_connected = false;      // whether the two bodies still collide with each other
+};
+
+}  // namespace gyre

@@ -1,0 +1,10 @@
+// The one header most users include.
+#pragma once
+
+#include <gyre/defs.h>
+#include <gyre/events.h>
+#include <gyre/geometry.h>
+#include <gyre/ids.h>
+#include <gyre/math.h>
+#include <gyre/result.h>
+#include <gyre/world.h>

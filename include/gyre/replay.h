@@ -1,0 +1,100 @@
+// Snapshots, rollback, recordings and their replay. Free functions on a World, so that the world knows none of them.
+#pragma once
+
+#include <gyre/result.h>
+#include <gyre/world.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace gyre {
+
+// The whole state as bytes: named, versioned columns, little-endian; loads in any build, at any SIMD width.
+std::vector<std::byte> save_snapshot(const World& world);
+// Threads and SIMD width come from `def` (never part of the state); everything else from the snapshot.
+Result<World> load_snapshot(std::span<const std::byte> bytes, const WorldDef& def = {});
+// Puts `world` back to the snapshot; the world is unchanged if the bytes are refused (the error says why).
+Error restore_snapshot(World& world, std::span<const std::byte> bytes);
+
+// A ring of the last `capacity` in-memory snapshots, for rollback netcode.
+class Rollback {
+ public:
+  explicit Rollback(int capacity);
+  ~Rollback();
+  Rollback(Rollback&&) noexcept;
+  // Keeps the world's present state under its step count.
+  void save(const World& world);
+  // Puts the world back to the state saved at `step`; false if that is no longer (or not yet) kept.
+  bool restore(World& world, std::uint64_t step) const;
+  std::uint64_t oldest() const;
+  std::uint64_t newest() const;
+
+ private:
+  struct Ring;
+  std::unique_ptr<Ring> ring_;
+};
+
+// Where a recording's bytes go. Return false to stop (a full disk); the recording then ends at the last whole chunk.
+class ByteSink {
+ public:
+  virtual ~ByteSink() = default;
+  virtual bool write(std::span<const std::byte> bytes) = 0;
+};
+
+// Records `world` until destroyed or finished: a snapshot now, then every command, then a state hash after each step.
+class Recorder {
+ public:
+  Recorder(World& world, ByteSink& sink);
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+  bool finish();    // writes the closing chunk; true if every byte went through
+  bool failed() const;
+
+ private:
+  struct Log;
+  std::unique_ptr<Log> log_;
+};
+
+// The first place where a replay differs from its recording.
+struct Difference {
+  std::uint64_t step = 0;
+  char stage[48] = {};   // name of the first stage after which the states differ
+  char column[48] = {};  // name of the state column
+  std::uint64_t row = 0;
+};
+
+// Plays a recording back.
+class Replay {
+ public:
+  static Result<Replay> open(std::vector<std::byte> bytes, const WorldDef& def = {});
+  ~Replay();
+  Replay(Replay&&) noexcept;
+  Replay& operator=(Replay&&) noexcept;
+  World& world();
+  std::uint64_t step_count() const;   // whole steps in the recording
+  std::uint64_t position() const;     // steps played
+  bool truncated() const;             // the file ended without its closing chunk
+  // Plays one step; false at the end. `matches` tells whether the hash is the recorded one.
+  bool step(bool* matches = nullptr);
+  // Goes to the state after `step` steps, forward or back (by keyframes kept while playing).
+  Error seek(std::uint64_t step);
+
+ private:
+  struct Player;
+  explicit Replay(std::unique_ptr<Player> player);
+  std::unique_ptr<Player> player_;
+};
+
+// Runs two worlds in lockstep from the same snapshot under two defs (thread counts, SIMD widths) for `steps` steps of
+// `seconds`, hashing every column after every stage; the first difference, or step = UINT64_MAX if there is none.
+Result<Difference> first_difference(std::span<const std::byte> snapshot, const WorldDef& a, const WorldDef& b, int steps,
+                                    float seconds);
+// The same for a recording: replays it and compares with the recorded hashes; when a step differs, it is played again
+// beside a single-threaded, width-1 world to name stage, column and row.
+Result<Difference> first_difference(std::span<const std::byte> recording, const WorldDef& def);
+
+}  // namespace gyre

@@ -1,0 +1,163 @@
+// class World: add, remove, change, step, read in bulk. One thread at a time may change or step a world; any number may
+// read it while nobody does. Everything read as a span is valid until the next change or step.
+//
+// A wrong call (stale id, not finite, out of range) changes nothing, returns a null id or false, and is one entry in
+// problems(). Every change is one command inside, so a recording cannot miss one.
+#pragma once
+
+#include <gyre/defs.h>
+#include <gyre/events.h>
+#include <gyre/ids.h>
+#include <gyre/math.h>
+#include <gyre/result.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+namespace gyre {
+
+struct WorldState;  // src/world
+
+// All bodies of one kind of set as parallel arrays; element i of each belongs to ids[i]. In order of id index.
+struct BodyColumns {
+  std::span<const BodyId> ids;
+  std::span<const Pose> poses;              // world_from_body, of the origins
+  std::span<const Vec3> linear_velocities;  // of the centres of mass
+  std::span<const Vec3> angular_velocities;
+};
+
+// One contact point, for reading (positions in the world, impulses of the last step).
+struct ContactPoint {
+  ShapeId shape_a, shape_b;
+  BodyId body_a, body_b;
+  DVec3 position;
+  Vec3 normal;             // unit, from a to b
+  Vec3 tangent_1, tangent_2;  // unit: with the normal, the contact basis
+  float separation = 0;    // m; negative: overlap
+  float normal_impulse = 0;  // N s, summed over the step
+  Vec3 friction_impulse;   // N s on b, summed over the step; of the whole manifold, at its first point (zero at the others)
+  Vec3 relative_velocity;  // m/s, of b against a at the point, rotation included
+};
+
+struct JointReading {
+  Vec3 force;   // N on b, world frame, mean over the last step
+  Vec3 torque;  // N m on b about the anchor, world frame
+  float position = 0;  // hinge: rad (continuous beyond +-pi), slider: m, distance: m
+  float velocity = 0;
+};
+
+struct WorldCounts {
+  int bodies = 0, awake_bodies = 0, shapes = 0, joints = 0;
+  int pairs = 0;           // of overlapping fat boxes
+  int touching = 0;        // pairs with a contact point that bears load or overlaps
+  int contact_points = 0;
+  int colors = 0;
+};
+
+struct Energy {
+  double kinetic = 0;    // J
+  double potential = 0;  // J, in gravity, zero at the world's origin
+  double elastic = 0;    // J, in spring joints
+};
+
+struct Momentum {
+  DVec3 linear;   // kg m/s
+  DVec3 angular;  // kg m^2/s, about the world's origin
+};
+
+class World {
+ public:
+  // Refuses a def out of range with the field's name.
+  static Result<World> create(const WorldDef& def = {});
+  ~World();
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+
+  // ------------------------------------------------------------------------------------------------ add and remove
+  BodyId add_body(const BodyDef& body, const ShapeDef& shape);
+  BodyId add_body(const BodyDef& body, std::span<const ShapeDef> shapes = {});
+  bool remove_body(BodyId body);  // its shapes and joints too
+  ShapeId add_shape(BodyId body, const ShapeDef& shape);  // mass is found anew unless the def overrode it
+  bool remove_shape(ShapeId shape);
+  JointId add_joint(const JointDef& joint);
+  bool remove_joint(JointId joint);
+
+  // --------------------------------------------------------------------------------------------------------- change
+  bool set_pose(BodyId body, const Pose& pose);  // teleports: velocity is kept, contacts are found anew
+  bool set_velocity(BodyId body, Vec3 linear, Vec3 angular);
+  // The kinematic body reaches `pose` at the end of a step of `seconds`, and pushes what is in its way.
+  bool move_kinematic(BodyId body, const Pose& pose, float seconds);
+  bool set_type(BodyId body, BodyType type);
+  bool set_gravity(Vec3 gravity);
+  bool set_gravity_scale(BodyId body, float scale);
+  bool set_damping(BodyId body, float linear, float angular);
+  bool set_material(ShapeId shape, const Material& material);
+  bool set_material_pair(const MaterialPair& pair);
+  bool set_filter(ShapeId shape, const Filter& filter);
+  bool set_motor(JointId joint, const Motor& motor);
+  bool set_sleeping(bool enabled);
+  bool set_awake(BodyId body, bool awake);  // false puts the body's whole island to sleep
+  bool set_substeps(int substeps);
+
+  // Forces act during the next step and add up (D'Alembert); torques t = (p - COM) x f too. World frame.
+  bool add_force(BodyId body, Vec3 force);                    // N, at the centre of mass
+  bool add_force_at(BodyId body, Vec3 force, DVec3 point);    // N, at a world point
+  bool add_torque(BodyId body, Vec3 torque);                  // N m
+  // Impulses change the velocity at once.
+  bool add_impulse(BodyId body, Vec3 impulse);                // N s, at the centre of mass
+  bool add_impulse_at(BodyId body, Vec3 impulse, DVec3 point);
+  bool add_angular_impulse(BodyId body, Vec3 impulse);        // N m s
+
+  // Moves the world on. `seconds` above 0 and at most 1; false and a problem otherwise.
+  bool step(float seconds);
+
+  // ----------------------------------------------------------------------------------------------------------- read
+  bool exists(BodyId body) const;
+  bool exists(ShapeId shape) const;
+  bool exists(JointId joint) const;
+  // Of a stale id: the zero value.
+  Pose pose(BodyId body) const;
+  DVec3 center_of_mass(BodyId body) const;  // world
+  Vec3 linear_velocity(BodyId body) const;
+  Vec3 angular_velocity(BodyId body) const;
+  Vec3 velocity_at(BodyId body, DVec3 point) const;  // of the body's material at a world point
+  BodyType type(BodyId body) const;
+  bool is_awake(BodyId body) const;
+  std::uint64_t user_data(BodyId body) const;
+  MassProperties mass_properties(BodyId body) const;  // body frame; mass 0 unless dynamic
+  std::span<const ShapeId> shapes(BodyId body) const;
+  BodyId body_of(ShapeId shape) const;
+  const AnyShape* geometry(ShapeId shape) const;
+  Transform local_transform(ShapeId shape) const;
+  Material material(ShapeId shape) const;
+  JointReading joint_reading(JointId joint) const;
+
+  BodyColumns bodies() const;        // every body
+  BodyColumns awake_bodies() const;  // those that moved or could have
+  // Copies up to out.size() contact points in a fixed order; returns how many there are.
+  std::size_t contacts(std::span<ContactPoint> out) const;
+
+  const Events& events() const;  // of the last step
+  std::span<const Problem> problems() const;  // since the last step began, the step included
+  WorldCounts counts() const;
+  double time() const;           // s
+  std::uint64_t step_count() const;
+  Vec3 gravity() const;
+  int substeps() const;
+  Energy energy() const;
+  Momentum momentum() const;
+  float max_penetration() const;  // m, deepest contact point of the last step; 0 if none overlaps
+  // 64-bit hash of the whole simulation state: the same for every thread count, SIMD width, compiler and platform.
+  std::uint64_t hash() const;
+
+  // The world's inside, for src/io and src/debug.
+  WorldState& state() { return *state_; }
+  const WorldState& state() const { return *state_; }
+  explicit World(std::unique_ptr<WorldState> state);
+
+ private:
+  std::unique_ptr<WorldState> state_;
+};
+
+}  // namespace gyre
