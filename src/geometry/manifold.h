@@ -23,6 +23,31 @@ struct LocalManifold {
   ManifoldPoint points[kMaxManifoldPoints];
 };
 
+// A manifold as it lives in the contact store from step to step: in world axes, anchored at both bodies' centres of mass,
+// with the impulses that the solver left there. `count` 0 means that nothing is near enough to matter.
+struct ContactPointState {
+  Vec3 from_a;                 // m, world axes: from A's centre of mass to the point, as the step began
+  float separation = 0.0f;     // m, as the step began
+  Vec3 from_b;
+  float normal_impulse = 0.0f;  // N s, of the last sub-step: the warm start
+  float total_impulse = 0.0f;   // N s, over the whole last step
+  float approach_speed = 0.0f;  // m/s, before the step's first impulse; positive when closing
+  std::uint32_t feature = 0;
+  std::uint32_t age = 0;        // steps for which this feature has been in contact
+};
+
+struct Manifold {
+  Vec3 normal{0, 1, 0};  // unit, world axes, from A to B
+  std::int32_t count = 0;
+  ContactPointState points[kMaxManifoldPoints];
+  Vec3 friction_impulse;      // N s on B, in the tangent plane, world axes
+  float twist_impulse = 0.0f;   // N m s on B about the normal
+  Vec3 rolling_impulse;       // N m s on B, world axes
+  std::uint32_t triangle = 0;
+  Vec3 total_friction;        // N s on B over the whole last step
+  std::uint32_t sliding = 0;  // 1 when friction was at its limit at the end of the last step
+};
+
 // What a pair remembers from its last look, so that the next one starts well: a separating axis or a simplex.
 // Part of the world's state: it may decide between features that are equally good.
 struct PairCache {

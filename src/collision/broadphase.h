@@ -1,0 +1,38 @@
+// The broad phase: which fat boxes overlap. Every implementation returns exactly the same pairs, so the choice never
+// changes a bit of the simulation; only speed differs. Virtual per batch, never per pair.
+#pragma once
+
+#include "base/array.h"
+#include "collision/proxy.h"
+#include "task/task_system.h"
+
+#include <gyre/defs.h>
+
+#include <memory>
+#include <span>
+
+namespace gyre {
+
+class Broadphase {
+ public:
+  virtual ~Broadphase() = default;
+
+  // Forgets everything and takes in all proxies that are in use.
+  virtual void rebuild(std::span<const Proxy> proxies) = 0;
+
+  // Some proxies have come, gone (motion none), moved their fat box or changed between fixed and moving. `changed`:
+  // ascending, without repeats.
+  virtual void update(std::span<const Proxy> proxies, std::span<const std::uint32_t> changed) = 0;
+
+  // Appends pair_key of every pair whose fat boxes overlap, that may_pair, and of which at least one is in `moved`
+  // (ascending, without repeats); sorted, without repeats. Parallel over `moved`.
+  virtual void find_pairs(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved, TaskSystem& tasks,
+                          Array<std::uint64_t>& pairs) = 0;
+
+  // Appends the index of every proxy in use whose fat box overlaps `box`; ascending.
+  virtual void query(std::span<const Proxy> proxies, const Aabb& box, Array<std::uint32_t>& found) const = 0;
+};
+
+std::unique_ptr<Broadphase> make_broadphase(BroadPhaseKind kind);
+
+}  // namespace gyre

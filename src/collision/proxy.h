@@ -1,0 +1,41 @@
+// A proxy is the only thing a broad phase sees of a shape: a fat box, who it may meet, and whether it moves. Proxies are
+// indexed like shapes; a broad phase never learns what a body is.
+#pragma once
+
+#include <gyre/defs.h>
+#include <gyre/math.h>
+
+#include <cstdint>
+
+namespace gyre {
+
+enum class ProxyMotion : std::uint8_t {
+  none,    // the slot is empty
+  fixed,   // never moves by itself: two such proxies never pair
+  moving,  // kinematic or dynamic
+};
+
+struct Proxy {
+  Aabb fat_box;  // world frame, rounded outward, larger than the shape by a margin so that it changes rarely
+  Filter filter;
+  std::uint32_t body = 0;  // proxies of one body never pair
+  ProxyMotion motion = ProxyMotion::none;
+  bool sensor = false;
+  bool pushes = true;      // dynamic: at least one of a pair must be, unless one is a sensor
+};
+
+// Whether the two may meet at all, boxes aside.
+constexpr bool may_pair(const Proxy& a, const Proxy& b) {
+  if (a.motion == ProxyMotion::none || b.motion == ProxyMotion::none || a.body == b.body) return false;
+  if (a.sensor && b.sensor) return false;
+  if (!a.sensor && !b.sensor && !a.pushes && !b.pushes) return false;
+  if (a.filter.group != 0 && a.filter.group == b.filter.group) return a.filter.group > 0;
+  return (a.filter.layer & b.filter.collides_with) != 0 && (b.filter.layer & a.filter.collides_with) != 0;
+}
+
+// The key of an unordered pair of proxies: lower index in the high half, so that sorted keys go by the lower one.
+constexpr std::uint64_t pair_key(std::uint32_t a, std::uint32_t b) {
+  return a < b ? (std::uint64_t(a) << 32 | b) : (std::uint64_t(b) << 32 | a);
+}
+
+}  // namespace gyre
