@@ -30,7 +30,10 @@ struct Shape {
 // The inner form of a checked shape.
 Shape make_shape(const AnyShape& shape);
 // Why `shape` cannot be used (radius not positive, not finite, zero normal, empty Geometry ...); code none if it can.
+// Lengths that must not be zero lie within kSmallestLength .. kLargestLength.
 Error check_shape(const AnyShape& shape);
+constexpr float kSmallestLength = 1.0e-9f;
+constexpr float kLargestLength = 1.0e9f;
 
 // Whether the kind is convex and bounded: everything but plane, mesh and height field.
 constexpr bool is_convex(ShapeKind kind) { return kind <= ShapeKind::hull; }
@@ -40,8 +43,11 @@ constexpr bool is_convex(ShapeKind kind) { return kind <= ShapeKind::hull; }
 Aabb bounds(const Shape& shape, const Transform& t);
 constexpr float kUnbounded = 1.0e18f;
 
-// Radius of the largest ball around the bounds' centre that lies inside (a measure of how far the body may move before it
-// can pass through something), and the largest distance of any point of the shape from `center`. 0 and kUnbounded for planes.
+// Radius of the largest ball around the shape's middle (the origin; a hull's centroid) that lies inside, a measure of how
+// far the body may move before it can pass through something: 0 for meshes and height fields, which have no inside, and
+// kUnbounded for planes.
+// The largest distance of any point of the shape from `center`: kUnbounded for planes; for meshes and height fields that of
+// a corner of their box, which is not smaller.
 float inner_radius(const Shape& shape);
 float outer_radius(const Shape& shape, Vec3 center);
 
