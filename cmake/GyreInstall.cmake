@@ -1,0 +1,41 @@
+# Install rules: headers, library, CMake package, pkg-config file, the gyre program and the scenes.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+install(TARGETS gyre EXPORT gyreTargets
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
+  INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/gyre
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+  FILES_MATCHING PATTERN "*.h")
+
+set(gyre_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/gyre)
+install(EXPORT gyreTargets NAMESPACE gyre:: DESTINATION ${gyre_package_dir})
+configure_package_config_file(
+  ${PROJECT_SOURCE_DIR}/cmake/gyreConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/package/gyreConfig.cmake
+  INSTALL_DESTINATION ${gyre_package_dir})
+write_basic_package_version_file(
+  ${PROJECT_BINARY_DIR}/package/gyreConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES
+  ${PROJECT_BINARY_DIR}/package/gyreConfig.cmake
+  ${PROJECT_BINARY_DIR}/package/gyreConfigVersion.cmake
+  DESTINATION ${gyre_package_dir})
+
+# The prefix is found from the place of the file, so that an installed tree can be moved.
+file(RELATIVE_PATH gyre_prefix_from_pc
+  /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
+string(REGEX REPLACE "/$" "" gyre_prefix_from_pc "${gyre_prefix_from_pc}")
+string(REPLACE ";" " " gyre_pc_float_options "${gyre_float_options}")
+configure_file(${PROJECT_SOURCE_DIR}/cmake/gyre.pc.in ${PROJECT_BINARY_DIR}/package/gyre.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/package/gyre.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+if(TARGET gyre_cli)
+  install(TARGETS gyre_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+if(EXISTS ${PROJECT_SOURCE_DIR}/scenes)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/gyre)
+endif()

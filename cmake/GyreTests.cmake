@@ -1,0 +1,63 @@
+# Test programs.
+#
+#   gyre_add_gtest(name source...)  one GoogleTest program; every test in it becomes a ctest test
+#   gyre_add_folder_tests(folder prefix)  one program for each sub-folder that holds *_test.cpp
+#
+# A suite whose name begins with Long carries the label `long`: `ctest -LE long` leaves it out.
+
+find_package(GTest REQUIRED)
+include(GoogleTest)
+
+set(GYRE_TEST_TIMEOUT 120 CACHE STRING "Seconds that a quick test may take")
+set(GYRE_LONG_TEST_TIMEOUT 1800 CACHE STRING "Seconds that a long test may take")
+
+function(gyre_add_gtest name)
+  add_executable(${name} ${ARGN})
+  gyre_target_defaults(${name})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/tests)
+  target_compile_definitions(${name} PRIVATE
+    GYRE_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+    GYRE_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    # GoogleTest's own macros end in an empty variadic argument.
+    target_compile_options(${name} PRIVATE -Wno-gnu-zero-variadic-macro-arguments)
+  endif()
+  target_link_libraries(${name} PRIVATE gyre::gyre gyre_scene GTest::gtest GTest::gtest_main)
+  if(TARGET gyre_cli)
+    # Tests of the command line start the program; they find it here.
+    target_compile_definitions(${name} PRIVATE GYRE_CLI="$<TARGET_FILE:gyre_cli>")
+    add_dependencies(${name} gyre_cli)
+  endif()
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin/tests)
+  gtest_discover_tests(${name}
+    DISCOVERY_MODE PRE_TEST
+    DISCOVERY_TIMEOUT 60
+    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
+    TEST_FILTER "-Long*:*/Long*"
+    PROPERTIES TIMEOUT ${GYRE_TEST_TIMEOUT})
+  gtest_discover_tests(${name}
+    DISCOVERY_MODE PRE_TEST
+    DISCOVERY_TIMEOUT 60
+    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
+    TEST_FILTER "Long*:*/Long*"
+    PROPERTIES TIMEOUT ${GYRE_LONG_TEST_TIMEOUT} LABELS long)
+endfunction()
+
+function(gyre_add_folder_tests folder prefix)
+  file(GLOB_RECURSE files CONFIGURE_DEPENDS ${folder}/*_test.cpp)
+  set(names)
+  foreach(file IN LISTS files)
+    file(RELATIVE_PATH relative ${folder} ${file})
+    # Tests right inside the folder belong to a program named after the prefix alone.
+    set(name ${prefix})
+    if(relative MATCHES "^([^/]+)/")
+      set(name ${prefix}_${CMAKE_MATCH_1})
+    endif()
+    list(APPEND names ${name})
+    list(APPEND sources_${name} ${file})
+  endforeach()
+  list(REMOVE_DUPLICATES names)
+  foreach(name IN LISTS names)
+    gyre_add_gtest(${name} ${sources_${name}})
+  endforeach()
+endfunction()
