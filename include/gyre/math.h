@@ -282,13 +282,13 @@ struct EulerAngles {
 Quat from_euler(EulerAngles angles);
 // The Euler angles of `q`: second within [-pi/2, pi/2]; at gimbal lock third is 0.
 EulerAngles to_euler(Quat q, EulerOrder order = EulerOrder::xyz);
-// A sine and cosine of `radians`, within 2 units in the last place for |radians| below 10^4; the same bits everywhere.
+// The sine and cosine of `radians`, within 0.501 units in the last place for every finite angle; the same bits everywhere.
 struct SinCos {
   float sin;
   float cos;
 };
 SinCos sin_cos(float radians);
-// Angle of the point (x, y) in rad, in (-pi, pi]; 0 for (0, 0).
+// The angle of the point (x, y) in rad, in [-pi, pi]; a zero y counts as +0, and (0, 0) gives 0.
 float atan2(float y, float x);
 // The angle in [0, pi] whose cosine is `x` (clamped to [-1, 1]).
 float acos(float x);

@@ -1,0 +1,21 @@
+// Fills the words of an Error. printf's own formatting, cut to the size of the message, so that reporting a failure
+// never allocates and never fails itself.
+#include <gyre/result.h>
+
+#include <cstdarg>
+#include <cstdio>
+
+namespace gyre {
+
+Error make_error(ErrorCode code, const char* format, ...) {
+  Error error;
+  error.code = code;
+  std::va_list arguments;
+  va_start(arguments, format);
+  // A format that cannot be converted leaves an unspecified buffer: end it so that the message is always text.
+  if (std::vsnprintf(error.message, sizeof error.message, format, arguments) < 0) error.message[0] = '\0';
+  va_end(arguments);
+  return error;
+}
+
+}  // namespace gyre
