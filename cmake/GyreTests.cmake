@@ -29,16 +29,20 @@ function(gyre_add_gtest name)
     add_dependencies(${name} gyre_cli)
   endif()
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin/tests)
+  # Tests are listed as folder.Suite.Test, so that `ctest -R '^geometry'` picks a folder and no two share a name.
+  string(REGEX REPLACE "^tests?_" "" folder ${name})
   gtest_discover_tests(${name}
     DISCOVERY_MODE PRE_TEST
     DISCOVERY_TIMEOUT 60
     WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
+    TEST_PREFIX ${folder}.
     TEST_FILTER "-Long*:*/Long*"
     PROPERTIES TIMEOUT ${GYRE_TEST_TIMEOUT})
   gtest_discover_tests(${name}
     DISCOVERY_MODE PRE_TEST
     DISCOVERY_TIMEOUT 60
     WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
+    TEST_PREFIX ${folder}.
     TEST_FILTER "Long*:*/Long*"
     PROPERTIES TIMEOUT ${GYRE_LONG_TEST_TIMEOUT} LABELS long)
 endfunction()

@@ -1,0 +1,38 @@
+# Builds and runs the consumer in this folder. Run with cmake -P and
+#   -DWAY=install | find_package | add_subdirectory | fetch_content | pkg_config
+#   -DGYRE_SOURCE=, -DGYRE_BUILD=, -DWORK= (a scratch folder), -DCXX=, -DGENERATOR=, -DLAUNCHER=, -DWERROR=
+
+set(prefix ${WORK}/prefix)
+set(folder ${WORK}/${WAY})
+file(REMOVE_RECURSE ${folder})
+file(MAKE_DIRECTORY ${folder})
+
+function(must)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  message("${output}")
+  if(NOT code EQUAL 0)
+    string(REPLACE ";" " " command "${ARGN}")
+    message(FATAL_ERROR "This failed (${code}): ${command}")
+  endif()
+endfunction()
+
+if(WAY STREQUAL "install")
+  file(REMOVE_RECURSE ${prefix} ${WORK}/moved)
+  must(${CMAKE_COMMAND} --install ${GYRE_BUILD} --prefix ${prefix})
+  # An installed tree must not know where it was built or first put.
+  file(RENAME ${prefix} ${WORK}/moved)
+elseif(WAY STREQUAL "pkg_config")
+  file(GLOB_RECURSE pc ${WORK}/moved/gyre.pc)
+  get_filename_component(pc_folder "${pc}" DIRECTORY)
+  set(ENV{PKG_CONFIG_PATH} ${pc_folder})
+  execute_process(COMMAND pkg-config --cflags --libs gyre OUTPUT_VARIABLE flags COMMAND_ERROR_IS_FATAL ANY)
+  separate_arguments(flags UNIX_COMMAND "${flags}")
+  must(${CXX} -std=c++20 -O1 ${CMAKE_CURRENT_LIST_DIR}/main.cpp -o ${folder}/consumer ${flags})
+  must(${folder}/consumer)
+else()
+  must(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${folder} -G ${GENERATOR} -DWAY=${WAY}
+    -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}
+    -DCMAKE_PREFIX_PATH=${WORK}/moved -DGYRE_SOURCE=${GYRE_SOURCE} -DGYRE_WERROR=${WERROR})
+  must(${CMAKE_COMMAND} --build ${folder} --parallel)
+  must(${folder}/consumer)
+endif()

@@ -1,0 +1,111 @@
+#!/usr/bin/env python3
+"""Shows that each of the checks can fail: a small tree with one fault each, and the same tree without it."""
+
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+TOOLS = Path(__file__).resolve().parent.parent.parent / "tools"
+
+
+class Tree(unittest.TestCase):
+    def setUp(self):
+        self.root = Path(tempfile.mkdtemp(prefix="gyre-check-"))
+        self.addCleanup(shutil.rmtree, self.root)
+        shutil.copytree(TOOLS, self.root / "tools", ignore=shutil.ignore_patterns("__pycache__"))
+        self.write("include/gyre/math.h", "#pragma once\n#include <cmath>\n")
+        self.write("include/gyre/world.h", "#pragma once\n#include <gyre/math.h>\n")
+        self.write("src/geometry/gjk.h", "#pragma once\n#include <gyre/math.h>\n")
+        self.write("src/solver/row.cpp", '#include "geometry/gjk.h"\n')
+        self.write("src/world/world.cpp", '#include <gyre/world.h>\n#include "geometry/gjk.h"\n')
+
+    def write(self, name, text):
+        path = self.root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+
+    def run_check(self, name):
+        done = subprocess.run([sys.executable, str(self.root / "tools" / f"check_{name}.py")], capture_output=True,
+                              text=True, check=False)
+        return done.returncode, done.stdout + done.stderr
+
+    def assert_fails(self, name, expected):
+        code, output = self.run_check(name)
+        self.assertEqual(code, 1, output)
+        self.assertIn(expected, output)
+
+    def test_clean_tree_passes(self):
+        for name in ("layers", "words", "size"):
+            code, output = self.run_check(name)
+            self.assertEqual(code, 0, output)
+
+    def test_upward_include(self):
+        self.write("src/geometry/gjk.cpp", '#include "solver/row.h"\n')
+        self.write("src/solver/row.h", "#pragma once\n")
+        self.assert_fails("layers", "'geometry' must not know 'solver'")
+
+    def test_siblings_do_not_meet(self):
+        self.write("src/collision/proxy.cpp", '#include "solver/row.h"\n')
+        self.write("src/solver/row.h", "#pragma once\n")
+        self.assert_fails("layers", "'collision' must not know 'solver'")
+
+    def test_world_header_below_world(self):
+        self.write("src/solver/row.cpp", "#include <gyre/world.h>\n")
+        self.assert_fails("layers", "may include this public header")
+
+    def test_public_header_includes_internal(self):
+        self.write("include/gyre/world.h", '#include "../../src/geometry/gjk.h"\n')
+        self.assert_fails("layers", "public headers include nothing but")
+
+    def test_heavy_standard_header(self):
+        self.write("src/geometry/gjk.h", "#pragma once\n#include <functional>\n")
+        self.assert_fails("layers", "too heavy")
+
+    def test_example_reaches_inside(self):
+        self.write("examples/hello.cpp", '#include "geometry/gjk.h"\n')
+        self.assert_fails("layers", "'examples' must not include 'src'")
+
+    def test_cycle_in_one_folder(self):
+        self.write("src/geometry/gjk.h", '#pragma once\n#include "geometry/clip.h"\n')
+        self.write("src/geometry/clip.h", '#pragma once\n#include "geometry/gjk.h"\n')
+        self.assert_fails("layers", "include cycle")
+
+    def test_unknown_folder(self):
+        self.write("src/misc/thing.cpp", "\n")
+        self.assert_fails("layers", "not in the table")
+
+    def test_words(self):
+        for code in ("float f(float x) { return std::sin(x); }", "float f(float x) { return sinf(x); }",
+                     "void f() { std::sort(a, b); }", "std::unordered_map<int, int> m;", "int x = rand();",
+                     "auto y = _mm256_fmadd_ps(a, b, c);", "auto y = _mm_rsqrt_ps(a);", "float z = __builtin_fmaf(a, b, c);",
+                     "auto y = vfmaq_f32(a, b, c);", "std::atomic<float> sum;", "// TODO: finish", "int x;  // FIXME"):
+            with self.subTest(code=code):
+                self.write("src/solver/row.cpp", code + "\n")
+                self.assert_fails("words", "row.cpp:1")
+
+    def test_words_that_are_fine(self):
+        for code in ("float f(float x) { return std::sqrt(x); }", "// std::sort would not do here",
+                     'const char* s = "std::sin(x)";', "float f(float x) { return gyre::sin(x) + trig.exp(x); }",
+                     "int x = operand();", "std::sort(a, b);  // word-ok: all keys differ",
+                     "// word-ok: the keys are all different\nstd::sort(a, b);"):
+            with self.subTest(code=code):
+                self.write("src/solver/row.cpp", code + "\n")
+                code_out, output = self.run_check("words")
+                self.assertEqual(code_out, 0, output)
+
+    def test_size(self):
+        self.write("src/solver/row.cpp", "\n" * 601)
+        self.assert_fails("size", "601 lines")
+
+    def test_long_function_is_named(self):
+        self.write("src/solver/row.cpp", "void f(int a,\n       int b) {\n" + "  g();\n" * 90 + "}\n")
+        code, output = self.run_check("size")
+        self.assertEqual(code, 0, output)
+        self.assertIn("row.cpp:1: a function of 93 lines", output)
+
+
+if __name__ == "__main__":
+    unittest.main()

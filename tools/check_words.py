@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""Looks in src/ and include/ for words that would break a promise: the same bits everywhere, no unfinished code.
+
+An exception is a comment on the same line or the line above, with a reason:   // word-ok: <reason>
+Comments and strings are not searched for code words. Tests are not searched at all.
+"""
+
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+
+CODE_WORDS = [
+    (r"\bstd::(sort|nth_element|partial_sort|partial_sort_copy|make_heap|push_heap|pop_heap|sort_heap|priority_queue)\b",
+     "the order of equal elements differs between standard libraries; use base/sort"),
+    (r"\bstd::(sin|cos|tan|asin|acos|atan|atan2|sinh|cosh|tanh|asinh|acosh|atanh|exp|exp2|expm1|pow|log|log2|log10|log1p|cbrt"
+     r"|hypot|erf|erfc|tgamma|lgamma)f?\s*\(",
+     "the last bit differs between C libraries; use math/trig"),
+    (r"(?<![\w.:>])(::\s*)?(sinf|cosf|tanf|asinf|acosf|atanf|atan2f|expf|exp2f|powf|logf|log2f|log10f|cbrtf|hypotf)\s*\(",
+     "the last bit differs between C libraries; use math/trig"),
+    (r"(?<![\w>)\]])::\s*(sin|cos|tan|asin|acos|atan|atan2|exp|pow|log|hypot)\s*\(",
+     "the last bit differs between C libraries; use math/trig"),
+    (r"\bunordered_(map|set|multimap|multiset)\b", "its order differs between standard libraries; use base/flat_map"),
+    (r"\bstd::hash\b", "differs between standard libraries; use base/hash"),
+    (r"(?<![\w.:>])(std::)?s?rand\s*\(", "hidden global state"),
+    (r"\bstd::(random_device|mt19937(_64)?|default_random_engine|uniform_\w+_distribution|normal_distribution|shuffle)\b",
+     "differs between runs or standard libraries"),
+    (r"\bstd::fmaf?\b|(?<![\w.:>])fmaf?\s*\(|__builtin_fmaf?\b", "a fused operation rounds once; the promise needs two roundings"),
+    (r"\b_mm\d*_(mask_|maskz_|mask3_)?fn?m(add|sub|addsub|subadd)_\w+", "a fused operation rounds once"),
+    (r"\bv(fma|fms|mla|mls)q?_(n_|lane_|laneq_)?f(16|32|64)\b", "a fused operation rounds once (and vmla may)"),
+    (r"\b_mm\d*_(mask_|maskz_)?(rcp|rsqrt)\w*", "an estimate; its bits differ between processors"),
+    (r"\bv(recpe|rsqrte|recps|rsqrts)q?_f(16|32|64)\b", "an estimate; its bits differ between processors"),
+    (r"relaxed_(madd|nmadd|min|max|trunc)\w*", "relaxed operations differ between machines"),
+    (r"ffast-math|fp:fast|#\s*pragma\s+(STDC\s+FP_CONTRACT|float_control|fp_contract|clang\s+fp)|fast-math",
+     "changes floating-point results"),
+    (r"\bstd::atomic\s*<\s*(float|double)\s*>", "float sums depend on the order of threads"),
+    (r"\blong\s+double\b", "another size on every platform"),
+    (r"\bstd::(execution|reduce|transform_reduce)\b|#\s*pragma\s+omp", "leaves the order of sums open"),
+    (r"__DATE__|__TIME__", "the build would differ from day to day"),
+    (r"\bstd::(bit_cast|jthread|stop_token|source_location|format|atomic_ref|pmr|ranges|assume_aligned)\b",
+     "not in every supported standard library"),
+]
+ANY_WORDS = [
+    (r"\b(TODO|FIXME|XXX|HACK|TBD)\b", "unfinished work does not go in"),
+]
+ALLOW = re.compile(r"//\s*word-ok:\s*\S.{5,}")
+
+
+def strip(text):
+    """The text with comments and string contents blanked out, lines kept."""
+    pattern = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', re.S)
+
+    def blank(match):
+        return re.sub(r"[^\n]", " ", match.group(0))
+
+    return pattern.sub(blank, text)
+
+
+def main():
+    code_words = [(re.compile(pattern), why) for pattern, why in CODE_WORDS]
+    any_words = [(re.compile(pattern), why) for pattern, why in ANY_WORDS]
+    problems = 0
+    count = 0
+    for top in ("include", "src"):
+        for path in sorted((ROOT / top).rglob("*")):
+            if path.suffix not in (".h", ".cpp") or path.name.endswith("_test.cpp"):
+                continue
+            count += 1
+            text = path.read_text(encoding="utf-8", errors="replace")
+            lines = text.split("\n")
+            stripped = strip(text).split("\n")
+            for i, line in enumerate(lines):
+                found = [(p.search(stripped[i]), why) for p, why in code_words]
+                found += [(p.search(line), why) for p, why in any_words]
+                for match, why in found:
+                    if not match or ALLOW.search(line) or (i > 0 and ALLOW.search(lines[i - 1])):
+                        continue
+                    print(f"{path.relative_to(ROOT)}:{i + 1}: '{match.group(0).strip()}': {why}")
+                    problems += 1
+    print(f"check_words: {count} files, {problems} problems")
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
