@@ -1,0 +1,69 @@
+// Loops in blocks. A block is a fixed number of items, never a share of a thread count, so what a block computes does not
+// depend on how many workers there are; and a block writes only its own results, so neither does their order. Blocks are
+// claimed one by one from a shared counter. Once warm, nothing here allocates.
+#pragma once
+
+#include "base/check.h"
+#include "base/float_mode.h"
+#include "task/task_system.h"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <type_traits>
+
+namespace gyre {
+
+constexpr int block_count(int count, int block_size) {
+  return count / block_size + (count % block_size != 0 ? 1 : 0);
+}
+
+// Calls fn(int begin, int end, int worker) for every block of [0, count). Serial with one worker or one block, and then
+// in ascending order.
+template <class Fn>
+void for_blocks(TaskSystem& tasks, int count, int block_size, Fn&& fn) {
+  GYRE_ASSERT(count >= 0 && block_size > 0, "blocks have a positive size");
+  const int blocks = block_count(count, block_size);
+  const auto run_block = [&](int block, int worker) {
+    const int begin = block * block_size;
+    fn(begin, count - begin < block_size ? count : begin + block_size, worker);
+  };
+  if (blocks == 0) return;
+  if (blocks == 1 || tasks.worker_count() == 1) {
+    const FloatMode mode;
+    for (int block = 0; block < blocks; ++block) run_block(block, 0);
+    return;
+  }
+  // On a line of its own. Unsigned, since each worker overshoots the end once.
+  alignas(64) std::atomic<std::uint32_t> next{0};
+  tasks.run_claiming([&](int worker) {
+    for (;;) {
+      const std::uint32_t block = next.fetch_add(1, std::memory_order_relaxed);
+      if (block >= static_cast<std::uint32_t>(blocks)) return;
+      run_block(static_cast<int>(block), worker);
+    }
+  });
+}
+
+// Combines map(int begin, int end, int worker) of every block into one value: combine(...combine(init, first)..., last),
+// in block order whatever the workers did, so that sums of floats have the same bits. T is plain data.
+template <class T, class Map, class Combine>
+T reduce_blocks(TaskSystem& tasks, int count, int block_size, T init, Map&& map, Combine&& combine) {
+  static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= kMemoryAlign, "partial results are plain data");
+  const int blocks = block_count(count, block_size);
+  if (blocks <= 1 || tasks.worker_count() == 1) {
+    for_blocks(tasks, count, block_size, [&](int begin, int end, int worker) {
+      init = combine(init, static_cast<T>(map(begin, end, worker)));
+    });
+    return init;
+  }
+  T* const partial = reinterpret_cast<T*>(tasks.scratch(static_cast<std::size_t>(blocks) * sizeof(T)));
+  for_blocks(tasks, count, block_size, [&](int begin, int end, int worker) {
+    new (partial + begin / block_size) T(map(begin, end, worker));
+  });
+  for (int block = 0; block < blocks; ++block) init = combine(init, partial[block]);
+  return init;
+}
+
+}  // namespace gyre

@@ -1,0 +1,62 @@
+// TaskSystem: the workers of a world. Either an own pool of threads, which sleep between steps, or the host
+// application's pool through its HostTasks; with one worker everything is a plain call. With an own pool the calling
+// thread is worker 0. What runs where never shows in a result: see parallel.h and program.h.
+//
+// Each worker computes in FloatMode while it runs something. Where the platform has no threads there is one worker.
+#pragma once
+
+#include "base/array.h"
+#include "base/function_ref.h"
+
+#include <gyre/defs.h>
+
+#include <cstddef>
+#include <memory>
+
+namespace gyre {
+
+class TaskSystem {
+ public:
+  // Anything that is kept for each worker needs at most this many.
+  static constexpr int kMaxWorkers = 64;
+
+  // `threads` workers, the caller included, up to kMaxWorkers; 0 = as many as the machine has cores.
+  explicit TaskSystem(int threads = 1);
+  // The host's pool; one worker if it has no `run`.
+  explicit TaskSystem(const HostTasks& host);
+  ~TaskSystem();
+  TaskSystem(const TaskSystem&) = delete;
+  TaskSystem& operator=(const TaskSystem&) = delete;
+
+  int worker_count() const { return worker_count_; }
+
+  // Pauses a waiting worker makes before it offers its core to others: few when workers outnumber cores.
+  int spin_patience() const { return spin_patience_; }
+
+  // Calls fn(worker) once for each worker in [0, worker_count()) and returns when all are done. They may run at the same
+  // time or one after the other (a host's pool may have fewer threads), so none may wait for another.
+  void run_workers(FunctionRef<void(int worker)> fn);
+
+  // For an fn that takes work from a shared list until none is left: calls it as worker 0, and as other workers for as
+  // long as that call lasts. A worker that wakes too late is not waited for. Returns when all calls are done.
+  void run_claiming(FunctionRef<void(int worker)> fn);
+
+  // Memory for what blocks hand to the end of a loop: at least `bytes`, aligned to 64, kept until the next call. For
+  // the thread that starts work, outside of it.
+  std::byte* scratch(std::size_t bytes);
+
+ private:
+  struct Pool;
+
+  void run(FunctionRef<void(int worker)> fn, bool all);
+  void run_on_host(FunctionRef<void(int worker)> fn);
+
+  int worker_count_ = 1;
+  int spin_patience_ = 0;
+  bool running_ = false;
+  HostTasks host_;
+  std::unique_ptr<Pool> pool_;  // none with one worker or a host
+  Array<std::byte> scratch_;
+};
+
+}  // namespace gyre
