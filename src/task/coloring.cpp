@@ -10,7 +10,7 @@ namespace gyre {
 namespace {
 
 bool moves(std::uint32_t body, std::span<const std::uint64_t> is_static) {
-  if (body == kNoBody) return false;
+  if (body == ColoringPair::kNone) return false;
   return body / 64 >= is_static.size() || (is_static[body / 64] >> body % 64 & 1) == 0;
 }
 

@@ -14,14 +14,14 @@
 
 namespace gyre {
 
-// What a constraint acts on: two bodies (or particles, or whatever must not be written twice). kNoBody, or one that is
+// What a constraint acts on: two bodies (or particles, or whatever must not be written twice). kNone, or one that is
 // static, is only read and never conflicts.
 struct ColoringPair {
+  static constexpr std::uint32_t kNone = 0xffffffff;
+
   std::uint32_t a = 0;
   std::uint32_t b = 0;
 };
-
-constexpr std::uint32_t kNoBody = 0xffffffff;
 
 struct ColoringOptions {
   static constexpr int kMostColors = 64;
@@ -47,8 +47,8 @@ struct Coloring {
   }
 };
 
-// `is_static`: bits by body, 64 to a word (Bitset::words()); bodies beyond its end move. Every body that is not kNoBody
-// is below body_count.
+// `is_static`: bits by body, 64 to a word (Bitset::words()); bodies beyond its end move. Every body that is not kNone is
+// below body_count.
 void color_constraints(std::span<const ColoringPair> pairs, std::uint32_t body_count,
                        std::span<const std::uint64_t> is_static, const ColoringOptions& options, Coloring& out);
 

@@ -15,7 +15,7 @@
 
 namespace gyre {
 
-constexpr int block_count(int count, int block_size) {
+constexpr int count_blocks(int count, int block_size) {
   return count / block_size + (count % block_size != 0 ? 1 : 0);
 }
 
@@ -24,7 +24,7 @@ constexpr int block_count(int count, int block_size) {
 template <class Fn>
 void for_blocks(TaskSystem& tasks, int count, int block_size, Fn&& fn) {
   GYRE_ASSERT(count >= 0 && block_size > 0, "blocks have a positive size");
-  const int blocks = block_count(count, block_size);
+  const int blocks = count_blocks(count, block_size);
   const auto run_block = [&](int block, int worker) {
     const int begin = block * block_size;
     fn(begin, count - begin < block_size ? count : begin + block_size, worker);
@@ -51,7 +51,7 @@ void for_blocks(TaskSystem& tasks, int count, int block_size, Fn&& fn) {
 template <class T, class Map, class Combine>
 T reduce_blocks(TaskSystem& tasks, int count, int block_size, T init, Map&& map, Combine&& combine) {
   static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= kMemoryAlign, "partial results are plain data");
-  const int blocks = block_count(count, block_size);
+  const int blocks = count_blocks(count, block_size);
   if (blocks <= 1 || tasks.worker_count() == 1) {
     for_blocks(tasks, count, block_size, [&](int begin, int end, int worker) {
       init = combine(init, static_cast<T>(map(begin, end, worker)));
