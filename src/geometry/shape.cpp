@@ -227,7 +227,7 @@ Aabb bounds(const Shape& shape, const Transform& t) {
     case ShapeKind::cone: return cone_bounds(shape, t);
     case ShapeKind::hull: return hull_bounds(*shape.hull, t);
     case ShapeKind::plane: return plane_bounds(shape, t);
-    case ShapeKind::mesh: return rotated_box(center(shape.mesh->box), half_size(shape.mesh->box), t);
+    case ShapeKind::mesh: return rotated_box(center(shape.mesh->tree.box), half_size(shape.mesh->tree.box), t);
     case ShapeKind::height_field: return rotated_box(center(shape.field->box), half_size(shape.field->box), t);
   }
   return {};
@@ -270,7 +270,7 @@ float outer_radius(const Shape& shape, Vec3 center) {
       return std::sqrt(farthest);
     }
     case ShapeKind::plane: return kUnbounded;
-    case ShapeKind::mesh: return farthest_corner(shape.mesh->box, center);
+    case ShapeKind::mesh: return farthest_corner(shape.mesh->tree.box, center);
     case ShapeKind::height_field: return farthest_corner(shape.field->box, center);
   }
   return 0.0f;
