@@ -1,0 +1,182 @@
+// GJK in double. See gjk.h.
+#include "geometry/gjk.h"
+
+#include "geometry/closest.h"
+#include "geometry/hull.h"
+
+namespace gyre {
+namespace {
+
+constexpr int kMaxIterations = 64;
+// Relative gap of the squared distance at which the search ends: the direction is then within about 4e-5 rad on curved
+// shapes far apart, better on near ones, and exact on polyhedra.
+constexpr double kGap = 1.0e-9;
+// Cores nearer than this part of their size touch.
+constexpr double kTouch = 1.0e-10;
+
+// Farthest point of a core along a direction, in the shape's frame. The same mapping as geometry/support.h, in double:
+// curved cores need a support point that is exact to the direction, or the normal of near shapes drowns in rounding.
+DVec3 core_support(const Shape& shape, DVec3 d) {
+  const double h = double(shape.extents.y);
+  switch (shape.kind) {
+    case ShapeKind::box: {
+      const DVec3 e{shape.extents};
+      return {d.x < 0.0 ? -e.x : e.x, d.y < 0.0 ? -e.y : e.y, d.z < 0.0 ? -e.z : e.z};
+    }
+    case ShapeKind::capsule:
+      return {0.0, d.y < 0.0 ? -h : h, 0.0};
+    case ShapeKind::cylinder:
+    case ShapeKind::cone: {
+      const double radius = double(shape.radius);
+      const double radial = std::sqrt(d.x * d.x + d.z * d.z);
+      const double s = radial > 1.0e-150 ? radius / radial : 0.0;
+      const DVec3 rim{radial > 1.0e-150 ? s * d.x : radius, -h, s * d.z};
+      if (shape.kind == ShapeKind::cylinder) return {rim.x, d.y < 0.0 ? -h : h, rim.z};
+      return 2.0 * h * d.y > radius * radial ? DVec3{0.0, h, 0.0} : rim;
+    }
+    case ShapeKind::hull:
+      return DVec3(shape.hull->vertices[std::size_t(support_vertex(*shape.hull, to_float(d)))]);
+    default:
+      return {};
+  }
+}
+
+double core_size(const Shape& shape) {
+  switch (shape.kind) {
+    case ShapeKind::box:
+      return double(largest(shape.extents));
+    case ShapeKind::capsule:
+      return double(shape.extents.y);
+    case ShapeKind::cylinder:
+    case ShapeKind::cone:
+      return double(max(shape.radius, shape.extents.y));
+    case ShapeKind::hull:
+      return double(max(largest(absolute(shape.hull->box.low)), largest(absolute(shape.hull->box.high))));
+    default:
+      return 0.0;
+  }
+}
+
+bool same(DVec3 a, DVec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+
+// The simplex nearest to the origin that `near` uses, compacted.
+void keep_corners(DifferencePoint* simplex, int& count, SimplexPoint& near) {
+  int kept = 0;
+  for (int i = 0; i < count; ++i) {
+    if (!(near.corners & (1u << i))) continue;
+    simplex[kept] = simplex[i];
+    near.weights[kept] = near.weights[i];
+    ++kept;
+  }
+  count = kept;
+}
+
+SimplexPoint nearest_to_origin(const DifferencePoint* s, int count) {
+  const DVec3 origin;
+  switch (count) {
+    case 1: {
+      SimplexPoint out;
+      out.point = s[0].way;
+      out.weights[0] = 1.0;
+      out.corners = 1;
+      return out;
+    }
+    case 2: {
+      const SegmentPoint near = closest_on_segment(origin, s[0].way, s[1].way);
+      SimplexPoint out;
+      out.point = near.point;
+      out.weights[0] = 1.0 - near.t;
+      out.weights[1] = near.t;
+      out.corners = near.t <= 0.0 ? 1u : near.t >= 1.0 ? 2u : 3u;
+      return out;
+    }
+    case 3:
+      return closest_on_triangle(origin, s[0].way, s[1].way, s[2].way);
+    default:
+      return closest_on_tetrahedron(origin, s[0].way, s[1].way, s[2].way, s[3].way);
+  }
+}
+
+}  // namespace
+
+CorePair::CorePair(const Shape& a, const Shape& b, const Transform& a_from_b)
+    : a_(&a), b_(&b), position_(a_from_b.position) {
+  // In double, from a quaternion brought to length 1: B stays the rigid body that the float quaternion means.
+  const Quat q = a_from_b.orientation;
+  const double x = double(q.x), y = double(q.y), z = double(q.z), w = double(q.w);
+  const double s = 2.0 / (x * x + y * y + z * z + w * w);
+  x_ = {1.0 - s * (y * y + z * z), s * (x * y + w * z), s * (x * z - w * y)};
+  y_ = {s * (x * y - w * z), 1.0 - s * (x * x + z * z), s * (y * z + w * x)};
+  z_ = {s * (x * z + w * y), s * (y * z - w * x), 1.0 - s * (x * x + y * y)};
+  size_ = max(max(core_size(a), core_size(b)), double(largest(absolute(a_from_b.position))));
+}
+
+DVec3 CorePair::to_b(DVec3 d) const { return {dot(x_, d), dot(y_, d), dot(z_, d)}; }
+DVec3 CorePair::from_b(DVec3 d) const { return d.x * x_ + d.y * y_ + d.z * z_; }
+
+DifferencePoint CorePair::support(DVec3 direction) const {
+  DifferencePoint out;
+  out.on_a = core_support(*a_, -direction);
+  out.on_b = from_b(core_support(*b_, to_b(direction))) + position_;
+  out.way = out.on_b - out.on_a;
+  return out;
+}
+
+double CorePair::separation(DVec3 direction) const { return dot(support(-direction).way, direction); }
+
+CoreDistance core_distance(const CorePair& pair, double max_distance, Vec3 guess) {
+  CoreDistance out;
+  DVec3 n{guess};
+  if (!(length_squared(n) > 0.0)) n = pair.center_of_b();
+  double n_length = length(n);
+  n = n_length > 0.0 ? n / n_length : DVec3{0, 1, 0};
+
+  DifferencePoint* simplex = out.simplex;
+  SimplexPoint near;  // of the simplex to the origin
+  double squared = 0.0;
+  int count = 0;
+  for (out.iterations = 1; out.iterations <= kMaxIterations; ++out.iterations) {
+    const DifferencePoint w = pair.support(-n);
+    const double bound = dot(w.way, n);
+    if (bound > max_distance) {
+      out.beyond = true;
+      out.distance = bound;
+      break;
+    }
+    if (count > 0) {
+      const double reached = std::sqrt(squared);
+      if (reached - bound <= kGap * reached) break;
+      bool known = false;
+      for (int i = 0; i < count; ++i) known = known || same(simplex[i].way, w.way);
+      if (known) break;
+    }
+    DifferencePoint next[4] = {simplex[0], simplex[1], simplex[2], simplex[3]};
+    next[count] = w;
+    int next_count = count + 1;
+    SimplexPoint next_near = nearest_to_origin(next, next_count);
+    const double next_squared = length_squared(next_near.point);
+    // Rounding has the last word: what does not come nearer is as near as it gets.
+    if (count > 0 && next_near.corners != 15 && next_squared >= squared) break;
+    keep_corners(next, next_count, next_near);
+    for (int i = 0; i < next_count; ++i) simplex[i] = next[i];
+    count = next_count;
+    near = next_near;
+    squared = next_squared;
+    const double touch = kTouch * pair.size();
+    if (count == 4 || squared <= touch * touch) {
+      out.overlap = true;
+      break;
+    }
+    n = near.point / std::sqrt(squared);
+  }
+  out.simplex_count = count;
+  out.normal = n;
+  if (!out.beyond && !out.overlap) out.distance = std::sqrt(squared);
+  for (int i = 0; i < count; ++i) {
+    out.on_a += near.weights[i] * simplex[i].on_a;
+    out.on_b += near.weights[i] * simplex[i].on_b;
+  }
+  return out;
+}
+
+}  // namespace gyre

@@ -1,0 +1,25 @@
+// Manifolds of any two convex shapes, and of a plane and a convex shape: which method serves which pair of kinds.
+//
+// Sharp boxes and hulls take an axis search and clip faces; spheres and pairs of capsules have closed forms; everything
+// else finds the normal by GJK (cores apart) or EPA (cores overlapping) and clips the features that face each other along
+// it. The functions themselves are declared in geometry/manifold.h.
+//
+// Source: the support-face construction after D. Gregorius, "Robust Contact Creation for Physics Simulations", GDC 2015.
+#pragma once
+
+#include "geometry/manifold.h"
+
+namespace gyre {
+
+enum class ConvexMethod : std::uint8_t {
+  round,      // closed form (manifold_round)
+  boxes,      // two boxes (manifold_box)
+  polyhedra,  // box or hull against hull (separating_axis)
+  cores,      // GJK, EPA and support faces
+};
+const char* to_string(ConvexMethod method);
+
+// What serves two convex kinds. Boxes with rounding take `cores` instead of boxes or polyhedra.
+ConvexMethod convex_method(ShapeKind a, ShapeKind b);
+
+}  // namespace gyre

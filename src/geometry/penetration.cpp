@@ -1,0 +1,285 @@
+// The expanding polytope algorithm in double. See penetration.h.
+#include "geometry/penetration.h"
+
+#include "geometry/closest.h"
+
+#include <cstdint>
+
+namespace gyre {
+namespace {
+
+constexpr int kMaxVertices = 100;
+constexpr int kMaxFaces = 2 * kMaxVertices;
+// The search ends when the best face moves out by less than this part of the shapes' size: on curved shapes the normal is
+// then within about 5e-5 rad.
+constexpr double kGap = 1.0e-9;
+// What is thinner than this part of the size counts as flat.
+constexpr double kFlat = 1.0e-9;
+
+struct Face {
+  std::uint8_t v[3];         // counter-clockwise seen from outside
+  std::uint8_t neighbor[3];  // across the edge from v[i] to v[i + 1]
+  bool alive;
+  bool visible;
+  DVec3 normal;     // outward, unit
+  double distance;  // of the plane from the origin; negative when the origin lies outside
+};
+static_assert(kMaxFaces <= 256 && kMaxVertices <= 256);
+
+// A face without area: it closes the surface but says nothing about the distance.
+constexpr double kNever = 1.0e300;
+
+class Polytope {
+ public:
+  explicit Polytope(const CorePair& pair) : pair_(pair) {}
+
+  // A tetrahedron from the points of `start` and of the shapes' extreme points. False if B - A is flat; then `flat_normal`
+  // is a direction across it.
+  bool start(const CoreDistance& start, DVec3& flat_normal);
+  // The live face nearest to the origin.
+  int nearest() const;
+  // Adds a point outside `face`. False when the surface cannot take it (memory, or rounding broke the horizon).
+  bool add(const DifferencePoint& point, int face);
+
+  const Face& face(int i) const { return faces_[i]; }
+  const DifferencePoint& vertex(int i) const { return vertices_[i]; }
+
+ private:
+  int new_face(int a, int b, int c);
+  bool extend(int known, DVec3& flat_normal);
+  bool take_farther(DVec3 direction, int count, double threshold);
+
+  const CorePair& pair_;
+  DifferencePoint vertices_[kMaxVertices];
+  Face faces_[kMaxFaces];
+  int vertex_count_ = 0;
+  int face_count_ = 0;
+  int free_[kMaxFaces];
+  int free_count_ = 0;
+};
+
+int Polytope::new_face(int a, int b, int c) {
+  const int i = free_count_ > 0 ? free_[--free_count_] : face_count_++;
+  Face& face = faces_[i];
+  face.v[0] = std::uint8_t(a), face.v[1] = std::uint8_t(b), face.v[2] = std::uint8_t(c);
+  face.alive = true;
+  face.visible = false;
+  const DVec3 p = vertices_[a].way, u = vertices_[b].way - p, v = vertices_[c].way - p;
+  const DVec3 n = cross(u, v);
+  const double area = length(n), longest = max(dot(u, u), max(dot(v, v), length_squared(v - u)));
+  if (area > 1.0e-13 * longest) {
+    face.normal = n / area;
+    // From the corner nearest to the origin: the least rounding.
+    DVec3 corner = p;
+    if (length_squared(vertices_[b].way) < length_squared(corner)) corner = vertices_[b].way;
+    if (length_squared(vertices_[c].way) < length_squared(corner)) corner = vertices_[c].way;
+    face.distance = dot(face.normal, corner);
+  } else {
+    face.normal = {};
+    face.distance = kNever;
+  }
+  return i;
+}
+
+// Puts the extreme point along +-direction behind the first `count` ones if it is farther than `threshold` from vertex 0
+// along it.
+bool Polytope::take_farther(DVec3 direction, int count, double threshold) {
+  const DVec3 origin = vertices_[0].way;
+  const DifferencePoint up = pair_.support(direction), down = pair_.support(-direction);
+  const double far_up = dot(up.way - origin, direction), far_down = dot(origin - down.way, direction);
+  if (!(max(far_up, far_down) > threshold)) return false;
+  vertices_[count] = far_up >= far_down ? up : down;
+  return true;
+}
+
+// From `known` points that span a point, line or plane to four that span a volume.
+bool Polytope::extend(int known, DVec3& flat_normal) {
+  const double thin = kFlat * pair_.size();
+  const DVec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  if (known < 2) {
+    int i = 0;
+    while (i < 3 && !take_farther(axes[i], 1, thin)) ++i;
+    flat_normal = {0, 1, 0};
+    if (i == 3) return false;
+  }
+  const DVec3 along = vertices_[1].way - vertices_[0].way;
+  if (known < 3) {
+    const DVec3 size{absolute(along.x), absolute(along.y), absolute(along.z)};
+    const DVec3 least = size.x <= size.y && size.x <= size.z ? axes[0] : size.y <= size.z ? axes[1] : axes[2];
+    DVec3 u = cross(along, least);
+    u = u / length(u);
+    DVec3 v = cross(along, u);
+    v = v / length(v);
+    flat_normal = u;
+    if (!take_farther(u, 2, thin) && !take_farther(v, 2, thin)) return false;
+  }
+  DVec3 normal = cross(along, vertices_[2].way - vertices_[0].way);
+  normal = normal / length(normal);
+  flat_normal = normal;
+  return take_farther(normal, 3, thin);
+}
+
+bool Polytope::start(const CoreDistance& start, DVec3& flat_normal) {
+  // Take over the corners of GJK's simplex that are well apart.
+  const double thin = 1.0e-6 * pair_.size();
+  int known = 0;
+  for (int i = 0; i < start.simplex_count; ++i) {
+    const DVec3 p = start.simplex[i].way;
+    bool far = true;
+    if (known == 1) far = length(p - vertices_[0].way) > thin;
+    if (known >= 2) {
+      const DVec3 along = vertices_[1].way - vertices_[0].way;
+      const DVec3 across = cross(along, p - vertices_[0].way);
+      far = length(across) > thin * length(along);
+      if (far && known == 3) {
+        const DVec3 normal = cross(along, vertices_[2].way - vertices_[0].way);
+        far = absolute(dot(normal, p - vertices_[0].way)) > thin * length(normal);
+      }
+    }
+    if (far) vertices_[known++] = start.simplex[i];
+  }
+  if (known == 0) {
+    vertices_[0] = pair_.support({0, 1, 0});
+    known = 1;
+  }
+  if (known < 4 && !extend(known, flat_normal)) return false;
+  vertex_count_ = 4;
+  const DVec3 o = vertices_[0].way;
+  if (dot(cross(vertices_[1].way - o, vertices_[2].way - o), vertices_[3].way - o) > 0.0) {
+    const DifferencePoint swap = vertices_[1];
+    vertices_[1] = vertices_[2];
+    vertices_[2] = swap;
+  }
+  // Corner 3 lies below the face 0 1 2.
+  constexpr int kFaces[4][3] = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
+  constexpr std::uint8_t kNeighbors[4][3] = {{1, 2, 3}, {3, 2, 0}, {1, 3, 0}, {2, 1, 0}};
+  for (int f = 0; f < 4; ++f) {
+    new_face(kFaces[f][0], kFaces[f][1], kFaces[f][2]);
+    for (int e = 0; e < 3; ++e) faces_[f].neighbor[e] = kNeighbors[f][e];
+  }
+  return true;
+}
+
+int Polytope::nearest() const {
+  int best = -1;
+  for (int i = 0; i < face_count_; ++i) {
+    if (!faces_[i].alive) continue;
+    if (best < 0 || faces_[i].distance < faces_[best].distance) best = i;
+  }
+  return best;
+}
+
+bool Polytope::add(const DifferencePoint& point, int first) {
+  if (vertex_count_ == kMaxVertices) return false;
+  const int apex = vertex_count_;
+  vertices_[vertex_count_++] = point;
+  // Flood over the faces that the point lies above; what they border on is the horizon.
+  std::uint8_t seen[kMaxFaces];
+  int seen_count = 0;
+  struct Edge {
+    std::uint8_t from, to, outside;
+  };
+  Edge horizon[kMaxFaces];
+  int horizon_count = 0;
+  faces_[first].visible = true;
+  seen[seen_count++] = std::uint8_t(first);
+  for (int k = 0; k < seen_count; ++k) {
+    for (int e = 0; e < 3; ++e) {
+      const int beyond = faces_[seen[k]].neighbor[e];
+      Face& other = faces_[beyond];
+      if (other.visible) continue;
+      // A face without area goes with whatever surrounds it.
+      if (other.distance == kNever || dot(other.normal, point.way) > other.distance) {
+        other.visible = true;
+        seen[seen_count++] = std::uint8_t(beyond);
+      }
+    }
+  }
+  for (int k = 0; k < seen_count; ++k) {
+    const Face& face = faces_[seen[k]];
+    for (int e = 0; e < 3; ++e) {
+      if (faces_[face.neighbor[e]].visible) continue;
+      horizon[horizon_count++] = {face.v[e], face.v[e == 2 ? 0 : e + 1], face.neighbor[e]};
+    }
+  }
+  const auto refuse = [&] {
+    for (int k = 0; k < seen_count; ++k) faces_[seen[k]].visible = false;
+    --vertex_count_;
+    return false;
+  };
+  // Each corner of the horizon must be left once and reached once, or the surface would fold.
+  std::int16_t leaves[kMaxVertices], reaches[kMaxVertices];
+  for (int i = 0; i < vertex_count_; ++i) leaves[i] = reaches[i] = -1;
+  for (int k = 0; k < horizon_count; ++k) {
+    if (leaves[horizon[k].from] >= 0 || reaches[horizon[k].to] >= 0) return refuse();
+    leaves[horizon[k].from] = std::int16_t(k);
+    reaches[horizon[k].to] = std::int16_t(k);
+  }
+  if (horizon_count < 3 || face_count_ + horizon_count - free_count_ > kMaxFaces) return refuse();
+  for (int k = 0; k < seen_count; ++k) {
+    faces_[seen[k]].alive = false;
+    free_[free_count_++] = seen[k];
+  }
+  std::uint8_t made[kMaxFaces];
+  for (int k = 0; k < horizon_count; ++k)
+    made[k] = std::uint8_t(new_face(horizon[k].from, horizon[k].to, apex));
+  for (int k = 0; k < horizon_count; ++k) {
+    Face& face = faces_[made[k]];
+    face.neighbor[0] = horizon[k].outside;
+    face.neighbor[1] = made[leaves[horizon[k].to]];
+    face.neighbor[2] = made[reaches[horizon[k].from]];
+    Face& outside = faces_[horizon[k].outside];
+    for (int e = 0; e < 3; ++e) {
+      if (outside.v[e] == horizon[k].to && outside.v[e == 2 ? 0 : e + 1] == horizon[k].from)
+        outside.neighbor[e] = made[k];
+    }
+  }
+  return true;
+}
+
+// Flat differences (two segments, a point and a square ...) overlap without depth: the way out is across.
+CorePenetration across(const CorePair& pair, const CoreDistance& start, DVec3 normal) {
+  CorePenetration out;
+  // The side on which the two points of the support lie nearer, towards B's centre when equal.
+  if (dot(pair.center_of_b(), normal) < 0.0) normal = -normal;
+  const double forward = pair.separation(normal), backward = pair.separation(-normal);
+  out.normal = forward >= backward ? normal : -normal;
+  out.depth = -max(forward, backward);
+  out.on_a = start.on_a;
+  out.on_b = start.on_a - out.depth * out.normal;
+  return out;
+}
+
+}  // namespace
+
+CorePenetration core_penetration(const CorePair& pair, const CoreDistance& start) {
+  Polytope polytope(pair);
+  DVec3 flat_normal;
+  if (!polytope.start(start, flat_normal)) return across(pair, start, flat_normal);
+  CorePenetration best;
+  best.depth = kNever;
+  const double gap = kGap * pair.size();
+  while (true) {
+    ++best.iterations;
+    const int i = polytope.nearest();
+    if (i < 0) break;
+    const Face face = polytope.face(i);
+    if (face.distance == kNever) break;
+    const DifferencePoint w = pair.support(face.normal);
+    const double reach = dot(w.way, face.normal);
+    // `reach` is the depth along this normal whatever else the polytope looks like.
+    if (reach < best.depth) {
+      best.depth = reach;
+      best.normal = -face.normal;
+      const DifferencePoint &a = polytope.vertex(face.v[0]), &b = polytope.vertex(face.v[1]),
+                            &c = polytope.vertex(face.v[2]);
+      const SimplexPoint near = closest_on_triangle({}, a.way, b.way, c.way);
+      best.on_a = near.weights[0] * a.on_a + near.weights[1] * b.on_a + near.weights[2] * c.on_a;
+      best.on_b = near.weights[0] * a.on_b + near.weights[1] * b.on_b + near.weights[2] * c.on_b;
+    }
+    if (reach - face.distance <= gap || !polytope.add(w, i)) break;
+  }
+  return best;
+}
+
+}  // namespace gyre
