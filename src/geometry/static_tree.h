@@ -1,0 +1,142 @@
+// An immutable 8-wide tree of boxes: for the triangles of a mesh, or anything else that never moves against its owner.
+//
+// In: one box per item. Out: the items in an order in which every node owns one unbroken run ("position" is an item's place
+// in that order), and walks over the boxes that overlap a box or a ray. A node holds the boxes of its eight children side by
+// side, so that one loop tests them all. Walks visit positions in ascending order and need no heap memory.
+//
+// Sources: I. Wald, S. Boulos, P. Shirley, "Ray Tracing Deformable Scenes using Dynamic Bounding Volume Hierarchies",
+// 2007 (binned surface area heuristic); H. Dammertz, J. Hanika, A. Keller, "Shallow Bounding Volume Hierarchies", 2008.
+#pragma once
+
+#include <gyre/math.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace gyre {
+
+struct StaticTree {
+  static constexpr int kWidth = 8;
+  static constexpr std::uint32_t kMaxLeaf = 4;
+  static constexpr std::uint32_t kMaxItems = 1u << 28;
+  // Nodes above this depth split where the heuristic says, those below by halves: the depth is bounded for any input.
+  static constexpr int kHeuristicDepth = 20;
+  static constexpr int kMaxDepth = kHeuristicDepth + 12;
+  static constexpr int kStackSize = kMaxDepth * (kWidth - 1) + kWidth;
+
+  // A child is a node's index, or a leaf: kLeafBit, then its number of items less one (3 bits), then its first position.
+  // Unused lanes have a box that nothing overlaps.
+  static constexpr std::uint32_t kLeafBit = 1u << 31;
+  static constexpr std::uint32_t kNoChild = 0xffffffffu;
+
+  struct Node {
+    float low[3][kWidth];
+    float high[3][kWidth];
+    std::uint32_t child[kWidth];
+  };
+
+  std::vector<Node> nodes;           // the root is the first
+  std::vector<std::uint32_t> items;  // by position: the item's index in the input
+  Aabb box;
+};
+
+constexpr bool is_leaf(std::uint32_t child) { return (child & StaticTree::kLeafBit) != 0; }
+constexpr std::uint32_t leaf_first(std::uint32_t child) { return child & (StaticTree::kMaxItems - 1); }
+constexpr std::uint32_t leaf_count(std::uint32_t child) { return ((child >> 28) & 7u) + 1; }
+constexpr Aabb child_box(const StaticTree::Node& node, int lane) {
+  return {{node.low[0][lane], node.low[1][lane], node.low[2][lane]},
+          {node.high[0][lane], node.high[1][lane], node.high[2][lane]}};
+}
+
+// Builds the tree over at least one and at most kMaxItems boxes with finite corners. The same input gives the same tree.
+void build_static_tree(std::span<const Aabb> boxes, StaticTree& tree);
+
+// Which children's boxes overlap `box`: bit i for lane i.
+inline unsigned overlap_mask(const StaticTree::Node& node, const Aabb& box) {
+  std::uint8_t hit[StaticTree::kWidth];
+  for (int i = 0; i < StaticTree::kWidth; ++i) {
+    hit[i] = std::uint8_t((node.low[0][i] <= box.high.x) & (box.low.x <= node.high[0][i]) &
+                          (node.low[1][i] <= box.high.y) & (box.low.y <= node.high[1][i]) &
+                          (node.low[2][i] <= box.high.z) & (box.low.z <= node.high[2][i]));
+  }
+  unsigned mask = 0;
+  for (int i = 0; i < StaticTree::kWidth; ++i) mask |= unsigned(hit[i]) << i;
+  return mask;
+}
+
+// Calls visit(first position, count) for each leaf whose box overlaps `box`, in ascending order. Before anything below a
+// lane is looked at, enter(node index, lane) is asked; where it says false, all of that child is left out.
+template <class Enter, class Visit>
+void walk_overlaps(const StaticTree& tree, const Aabb& box, Enter&& enter, Visit&& visit) {
+  if (tree.nodes.empty()) return;
+  std::uint32_t stack[StaticTree::kStackSize];
+  int depth = 0;
+  stack[depth++] = 0;
+  while (depth > 0) {
+    const std::uint32_t child = stack[--depth];
+    if (is_leaf(child)) {
+      visit(leaf_first(child), leaf_count(child));
+      continue;
+    }
+    const StaticTree::Node& node = tree.nodes[child];
+    const unsigned mask = overlap_mask(node, box);
+    // The last lane goes to the bottom, so the first comes off first.
+    for (int lane = StaticTree::kWidth - 1; lane >= 0; --lane) {
+      if ((mask >> lane & 1u) != 0 && enter(child, lane)) stack[depth++] = node.child[lane];
+    }
+  }
+}
+
+// The positions of all leaves whose boxes overlap `box` (the items' own boxes may not), ascending. Writes at most
+// `out.size()` of them and returns how many there are.
+std::uint32_t find_overlaps(const StaticTree& tree, const Aabb& box, std::span<std::uint32_t> out);
+
+// Calls visit(first position, count, reach) for each leaf whose box meets the ray origin + t * direction for a t from 0
+// to `reach`, roughly from near to far. visit returns the new reach: the t of the nearest hit so far.
+// A. Williams et al., "An Efficient and Robust Ray-Box Intersection Algorithm", 2005.
+template <class Visit>
+void walk_ray(const StaticTree& tree, Vec3 origin, Vec3 direction, float reach, Visit&& visit) {
+  if (tree.nodes.empty()) return;
+  struct Entry {
+    std::uint32_t child;
+    float t;
+  };
+  Entry stack[StaticTree::kStackSize];
+  int depth = 0;
+  stack[depth++] = {0, 0.0f};
+  const float o[3] = {origin.x, origin.y, origin.z};
+  const float d[3] = {direction.x, direction.y, direction.z};
+  while (depth > 0) {
+    const Entry entry = stack[--depth];
+    if (!(entry.t <= reach)) continue;
+    if (is_leaf(entry.child)) {
+      reach = visit(leaf_first(entry.child), leaf_count(entry.child), reach);
+      continue;
+    }
+    const StaticTree::Node& node = tree.nodes[entry.child];
+    const int bottom = depth;
+    for (int lane = 0; lane < StaticTree::kWidth; ++lane) {
+      float enter = 0.0f, leave = reach;
+      bool meets = node.child[lane] != StaticTree::kNoChild;
+      for (int axis = 0; axis < 3 && meets; ++axis) {
+        if (d[axis] == 0.0f) {
+          meets = node.low[axis][lane] <= o[axis] && o[axis] <= node.high[axis][lane];
+          continue;
+        }
+        const float to_low = (node.low[axis][lane] - o[axis]) / d[axis];
+        const float to_high = (node.high[axis][lane] - o[axis]) / d[axis];
+        enter = max(enter, min(to_low, to_high));
+        leave = min(leave, max(to_low, to_high));
+      }
+      // A little slack, so that rounding opens no seam between boxes that touch.
+      if (!meets || enter > leave + 1.0e-6f * absolute(leave)) continue;
+      // Nearest on top; lanes that start together keep their order.
+      int place = depth++;
+      for (; place > bottom && stack[place - 1].t <= enter; --place) stack[place] = stack[place - 1];
+      stack[place] = {node.child[lane], enter};
+    }
+  }
+}
+
+}  // namespace gyre
