@@ -1,0 +1,26 @@
+// Joins the triangles of a convex hull to polygons where they are flat within a tolerance.
+//
+// In: a closed, convex, triangulated surface. Out: convex polygons of the same vertices, still closed: every join keeps
+// at least three faces at each vertex and every corner convex, or it is not made.
+#pragma once
+
+#include <gyre/math.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace gyre {
+
+// A loop of vertices, counter-clockwise seen from outside.
+using FaceLoop = std::vector<std::uint8_t>;
+
+// The face loops for at most 255 vertices; `triangles` holds three indices each. Corners of one face lie within
+// `tolerance` of its plane.
+std::vector<FaceLoop> join_flat_faces(std::span<const DVec3> vertices, std::span<const FaceLoop> triangles,
+                                      double tolerance);
+
+// Twice the area of the loop along its normal (M. E. Newell's method).
+DVec3 loop_normal(std::span<const DVec3> vertices, std::span<const std::uint8_t> loop);
+
+}  // namespace gyre
