@@ -13,10 +13,13 @@ constexpr float kEqualSpan = 1.0e-3f;
 // A corner while a polygon is cut, and the edge that leaves it: an edge of the incident face (below kSide), or one that
 // runs along a side of the reference face.
 struct Corner {
-  Vec3 point;
-  float distance = 0.0f;  // outside the side being cut
-  std::uint32_t feature = 0;
-  int edge = 0;
+  float x, y, z;   // plain numbers: a Vec3 would fill both buffers with zeros in every call
+  float distance;  // outside the side being cut
+  std::uint32_t feature;
+  int edge;
+
+  Vec3 point() const { return {x, y, z}; }
+  void place(Vec3 p) { x = p.x, y = p.y, z = p.z; }
 };
 constexpr int kSide = 256;
 
@@ -80,7 +83,8 @@ Corner cut(const Clipper& clipper, const Corner& from, const Corner& to, int sid
   const Corner& inner = inward ? to : from;
   const Corner& outer = inward ? from : to;
   const float t = inner.distance / (inner.distance - outer.distance);
-  out.point = lerp(inner.point, outer.point, t);
+  out.place(lerp(inner.point(), outer.point(), t));
+  out.distance = 0.0f;
   out.feature = clipper.crossing(from.edge, side);
   out.edge = inward ? from.edge : kSide + side;
   return out;
@@ -92,7 +96,8 @@ int clip_polygon(const Clipper& clipper, ManifoldPoint* out) {
   Corner* next = buffers[1];
   int count = clipper.incident.count;
   for (int i = 0; i < count; ++i) {
-    polygon[i].point = clipper.incident.vertices[i];
+    polygon[i].place(clipper.incident.vertices[i]);
+    polygon[i].distance = 0.0f;
     polygon[i].feature = clipper.incident_vertex(clipper.incident.ids[i]);
     polygon[i].edge = i;
   }
@@ -100,7 +105,7 @@ int clip_polygon(const Clipper& clipper, ManifoldPoint* out) {
     const Vec3 outward = clipper.side_normal(side), corner = clipper.reference.vertices[side];
     bool any_outside = false;
     for (int i = 0; i < count; ++i) {
-      polygon[i].distance = dot(polygon[i].point - corner, outward);
+      polygon[i].distance = dot(polygon[i].point() - corner, outward);
       any_outside = any_outside || polygon[i].distance > 0.0f;
     }
     if (!any_outside) continue;
@@ -120,7 +125,7 @@ int clip_polygon(const Clipper& clipper, ManifoldPoint* out) {
   }
   int points = 0;
   for (int i = 0; i < count; ++i) {
-    if (clipper.emit(polygon[i].point, polygon[i].feature, out[points])) ++points;
+    if (clipper.emit(polygon[i].point(), polygon[i].feature, out[points])) ++points;
   }
   return points;
 }

@@ -3,6 +3,7 @@
 
 #include "geometry/closest.h"
 #include "geometry/hull.h"
+#include "math/rotation.h"
 
 namespace gyre {
 namespace {
@@ -102,12 +103,10 @@ SimplexPoint nearest_to_origin(const DifferencePoint* s, int count) {
 CorePair::CorePair(const Shape& a, const Shape& b, const Transform& a_from_b)
     : a_(&a), b_(&b), position_(a_from_b.position) {
   // In double, from a quaternion brought to length 1: B stays the rigid body that the float quaternion means.
-  const Quat q = a_from_b.orientation;
-  const double x = double(q.x), y = double(q.y), z = double(q.z), w = double(q.w);
-  const double s = 2.0 / (x * x + y * y + z * z + w * w);
-  x_ = {1.0 - s * (y * y + z * z), s * (x * y + w * z), s * (x * z - w * y)};
-  y_ = {s * (x * y - w * z), 1.0 - s * (x * x + z * z), s * (y * z + w * x)};
-  z_ = {s * (x * z + w * y), s * (y * z - w * x), 1.0 - s * (x * x + y * y)};
+  const DQuat q = normalized(to_double(a_from_b.orientation));
+  x_ = rotate(q, DVec3{1, 0, 0});
+  y_ = rotate(q, DVec3{0, 1, 0});
+  z_ = rotate(q, DVec3{0, 0, 1});
   size_ = max(max(core_size(a), core_size(b)), double(largest(absolute(a_from_b.position))));
 }
 

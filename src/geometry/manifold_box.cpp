@@ -2,6 +2,7 @@
 #include "geometry/manifold_box.h"
 
 #include "geometry/clip.h"
+#include "math/rotation.h"
 
 namespace gyre {
 namespace {
@@ -61,13 +62,8 @@ inline float edge_length_squared(const Boxes& x, int i, int j) {
 
 // Separation along the cross product of two nearly parallel edges, free of cancellation.
 float shallow_edge(const Boxes& x, const Transform& a_from_b, int i, int j) {
-  const Quat q = a_from_b.orientation;
-  const double qx = double(q.x), qy = double(q.y), qz = double(q.z), qw = double(q.w);
-  const double s = 2.0 / (qx * qx + qy * qy + qz * qz + qw * qw);
-  const DVec3 columns[3] = {
-      {1.0 - s * (qy * qy + qz * qz), s * (qx * qy + qw * qz), s * (qx * qz - qw * qy)},
-      {s * (qx * qy - qw * qz), 1.0 - s * (qx * qx + qz * qz), s * (qy * qz + qw * qx)},
-      {s * (qx * qz + qw * qy), s * (qy * qz - qw * qx), 1.0 - s * (qx * qx + qy * qy)}};
+  const DQuat q = normalized(to_double(a_from_b.orientation));
+  const DVec3 columns[3] = {rotate(q, DVec3{1, 0, 0}), rotate(q, DVec3{0, 1, 0}), rotate(q, DVec3{0, 0, 1})};
   const DVec3 edge_a{i == 0 ? 1.0 : 0.0, i == 1 ? 1.0 : 0.0, i == 2 ? 1.0 : 0.0};
   const DVec3 axis = cross(edge_a, columns[j]);
   double reach = 0.0;

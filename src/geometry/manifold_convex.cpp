@@ -4,6 +4,7 @@
 #include "geometry/clip.h"
 #include "geometry/gjk.h"
 #include "geometry/manifold_box.h"
+#include "geometry/manifold_hull.h"
 #include "geometry/manifold_round.h"
 #include "geometry/penetration.h"
 #include "geometry/support.h"

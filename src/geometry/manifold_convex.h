@@ -14,7 +14,7 @@ namespace gyre {
 enum class ConvexMethod : std::uint8_t {
   round,      // closed form (manifold_round)
   boxes,      // two boxes (manifold_box)
-  polyhedra,  // box or hull against hull (separating_axis)
+  polyhedra,  // box or hull against hull (manifold_hull)
   cores,      // GJK, EPA and support faces
 };
 const char* to_string(ConvexMethod method);

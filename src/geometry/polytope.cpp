@@ -1,0 +1,101 @@
+// Boxes and hulls as polytopes, and searches over their columns. See polytope.h.
+#include "geometry/polytope.h"
+
+namespace gyre {
+namespace {
+
+constexpr int kLanes = Hull::kPad;
+static_assert(kLanes == 8, "a box fills the columns exactly");
+
+constexpr std::uint32_t kBoxOffsets[7] = {0, 4, 8, 12, 16, 20, 24};
+// Faces -x +x -y +y -z +z, counter-clockwise seen from outside.
+constexpr std::uint8_t kBoxFaces[24] = {0, 4, 6, 2, 1, 3, 7, 5, 0, 1, 5, 4,
+                                        2, 6, 7, 3, 0, 2, 3, 1, 4, 5, 7, 6};
+// Each edge in the loop order of its left face.
+constexpr HullEdge kBoxEdges[12] = {{0, 1, 2, 4}, {2, 3, 4, 3}, {6, 7, 3, 5}, {5, 4, 2, 5},
+                                    {0, 2, 4, 0}, {3, 1, 4, 1}, {7, 5, 1, 5}, {4, 6, 0, 5},
+                                    {0, 4, 0, 2}, {1, 5, 2, 1}, {3, 7, 1, 3}, {6, 2, 0, 3}};
+
+}  // namespace
+
+Polytope make_polytope(const Hull& hull) {
+  return {hull.x.data(),
+          hull.y.data(),
+          hull.z.data(),
+          int(hull.x.size()),
+          hull.vertex_count(),
+          hull.vertices.data(),
+          hull.planes.data(),
+          hull.face_count(),
+          hull.face_offsets.data(),
+          hull.face_vertices.data(),
+          hull.edges.data(),
+          int(hull.edges.size()),
+          hull.centroid,
+          hull.inner_radius};
+}
+
+BoxPolytope::BoxPolytope(Vec3 h) : inner_radius_(smallest(h)) {
+  for (int i = 0; i < 8; ++i) {
+    vertices_[i] = {(i & 1) ? h.x : -h.x, (i & 2) ? h.y : -h.y, (i & 4) ? h.z : -h.z};
+    x_[i] = vertices_[i].x;
+    y_[i] = vertices_[i].y;
+    z_[i] = vertices_[i].z;
+  }
+  planes_[0] = {{-1, 0, 0}, h.x};
+  planes_[1] = {{1, 0, 0}, h.x};
+  planes_[2] = {{0, -1, 0}, h.y};
+  planes_[3] = {{0, 1, 0}, h.y};
+  planes_[4] = {{0, 0, -1}, h.z};
+  planes_[5] = {{0, 0, 1}, h.z};
+}
+
+Polytope BoxPolytope::view() const {
+  return {x_, y_, z_, 8, 8, vertices_, planes_, 6, kBoxOffsets, kBoxFaces, kBoxEdges, 12, {}, inner_radius_};
+}
+
+void face_polygon(const Polytope& polytope, int face, FacePolygon& out) {
+  const std::uint32_t begin = polytope.face_offsets[face];
+  const std::uint32_t count = polytope.face_offsets[face + 1] - begin;
+  out.feature = std::uint32_t(face);
+  out.normal = polytope.planes[face].normal;
+  out.count = int(min(count, std::uint32_t(kMaxFaceVertices)));
+  for (int i = 0; i < out.count; ++i) {
+    const std::uint8_t vertex =
+        polytope.face_vertices[begin + std::uint32_t(i) * count / std::uint32_t(out.count)];
+    out.ids[i] = vertex;
+    out.vertices[i] = polytope.vertices[vertex];
+  }
+}
+
+float lowest_along(const Polytope& p, Vec3 d) {
+  float best[kLanes];
+  for (int lane = 0; lane < kLanes; ++lane) best[lane] = p.x[lane] * d.x + p.y[lane] * d.y + p.z[lane] * d.z;
+  for (int i = kLanes; i < p.padded_count; i += kLanes) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const float value = p.x[i + lane] * d.x + p.y[i + lane] * d.y + p.z[i + lane] * d.z;
+      best[lane] = min(value, best[lane]);
+    }
+  }
+  for (int step = kLanes / 2; step > 0; step /= 2) {
+    for (int lane = 0; lane < step; ++lane) best[lane] = min(best[lane + step], best[lane]);
+  }
+  return best[0];
+}
+
+float highest_along(const Polytope& p, Vec3 d) { return -lowest_along(p, -d); }
+
+int lowest_vertex(const Polytope& p, Vec3 d) {
+  int winner = 0;
+  float best = dot(p.vertices[0], d);
+  for (int i = 1; i < p.vertex_count; ++i) {
+    const float value = dot(p.vertices[i], d);
+    if (value < best) {
+      best = value;
+      winner = i;
+    }
+  }
+  return winner;
+}
+
+}  // namespace gyre

@@ -1,0 +1,53 @@
+// One view of sharp convex polyhedra for the axis search: a hull as it is cooked, or a box written out as one.
+#pragma once
+
+#include "geometry/hull.h"
+#include "geometry/support.h"
+
+namespace gyre {
+
+struct Polytope {
+  const float* x;  // columns, padded to a multiple of Hull::kPad
+  const float* y;
+  const float* z;
+  int padded_count;
+  int vertex_count;
+  const Vec3* vertices;
+  const HullPlane* planes;
+  int face_count;
+  const std::uint32_t* face_offsets;
+  const std::uint8_t* face_vertices;
+  const HullEdge* edges;
+  int edge_count;
+  Vec3 centroid;
+  float inner_radius;  // of a ball around the centroid
+};
+
+Polytope make_polytope(const Hull& hull);
+
+// A box of rounding 0 as a polytope; keeps the columns, so it must outlive the view. Corners are numbered by the signs of
+// their coordinates (bit 0: x positive ...), faces 2 * axis + (positive ? 1 : 0), as support_face names them.
+class BoxPolytope {
+ public:
+  explicit BoxPolytope(Vec3 half_extents);
+  BoxPolytope(const BoxPolytope&) = delete;
+  BoxPolytope& operator=(const BoxPolytope&) = delete;
+  Polytope view() const;
+
+ private:
+  float x_[8], y_[8], z_[8];
+  Vec3 vertices_[8];
+  HullPlane planes_[6];
+  float inner_radius_;
+};
+
+// The face as a polygon in the polytope's frame; one with more than kMaxFaceVertices corners is thinned evenly.
+void face_polygon(const Polytope& polytope, int face, FacePolygon& out);
+
+// Smallest and largest dot(direction, vertex).
+float lowest_along(const Polytope& polytope, Vec3 direction);
+float highest_along(const Polytope& polytope, Vec3 direction);
+// The vertex of smallest dot(direction, vertex); the lowest index among equals.
+int lowest_vertex(const Polytope& polytope, Vec3 direction);
+
+}  // namespace gyre

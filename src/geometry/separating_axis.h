@@ -1,0 +1,40 @@
+// The axis along which two convex polyhedra are farthest apart, or overlap least: every face normal of both, and the cross
+// products of those pairs of edges that make a face of the Minkowski difference.
+//
+// In: two polytopes, where B is in A's frame, and the axis that decided last time. Out: the axis, or the first one along
+// which they are farther apart than asked. Exact on overlapping polyhedra; on separated ones never more than the distance.
+//
+// Edges are looked at only where they can still win: the two points in which a winning pair of edges meets are no farther
+// apart than the best face's depth, so both edges must come that near to the face's plane. Two normals' arcs that do not
+// cross on the Gauss map make no face of the difference.
+//
+// Sources: D. Gregorius, "The Separating Axis Test between Convex Polyhedra", GDC 2013; D. Eberly, "Dynamic Collision
+// Detection using Oriented Bounding Boxes", for what the axes of a pair are.
+#pragma once
+
+#include "geometry/polytope.h"
+
+namespace gyre {
+
+enum class AxisKind : std::uint8_t { none, face_a, face_b, edges };
+
+struct PolytopeAxis {
+  AxisKind kind = AxisKind::none;
+  int index_a = 0;  // face or edge of A
+  int index_b = 0;  // face or edge of B
+  Vec3 normal;      // unit, from A to B, in A's frame
+  float separation = -kUnbounded;
+};
+
+// A 32-bit name of the axis for PairCache, and back. 0 is none; names that fit no feature of the two come back as none.
+std::uint32_t axis_name(const PolytopeAxis& axis);
+PolytopeAxis axis_of_name(std::uint32_t name, const Polytope& a, const Polytope& b);
+
+// How far the two are apart along a named axis (its `normal` is filled too). Exact along the axis.
+float separation_along(const Polytope& a, const Polytope& b, const Transform& a_from_b, PolytopeAxis& axis);
+
+// Faces win over edges, and `favoured` over others, when nearly equal.
+PolytopeAxis separating_axis(const Polytope& a, const Polytope& b, const Transform& a_from_b,
+                             float max_separation, const PolytopeAxis& favoured);
+
+}  // namespace gyre
