@@ -52,10 +52,10 @@ class Arena {
   void add_block(std::size_t capacity);
   void free_blocks();
 
-  Block* current_ = nullptr;      // the newest; older ones hang behind it and are full
-  std::size_t used_ = 0;          // of the current block
-  std::size_t used_before_ = 0;   // of all older blocks
-  std::size_t held_ = 0;          // capacity of all blocks
+  Block* current_ = nullptr;     // the newest; older ones hang behind it and are full
+  std::size_t used_ = 0;         // of the current block
+  std::size_t used_before_ = 0;  // of all older blocks
+  std::size_t held_ = 0;         // capacity of all blocks
   std::size_t high_water_ = 0;
 };
 

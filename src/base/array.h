@@ -67,13 +67,12 @@ class Array {
 
   // Any integer type may index; a negative one is out of range like any other.
   template <class Index>
-    requires std::is_integral_v<Index>
-  T& operator[](Index i) {
+  requires std::is_integral_v<Index> T& operator[](Index i) {
     GYRE_ASSERT(static_cast<std::size_t>(i) < size_, "index is inside the array");
     return data_[static_cast<std::size_t>(i)];
   }
   template <class Index>
-    requires std::is_integral_v<Index>
+  requires std::is_integral_v<Index>
   const T& operator[](Index i) const {
     GYRE_ASSERT(static_cast<std::size_t>(i) < size_, "index is inside the array");
     return data_[static_cast<std::size_t>(i)];

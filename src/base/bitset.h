@@ -87,7 +87,9 @@ class Bitset {
   std::span<const std::uint64_t> words() const { return words_; }
   std::size_t bytes() const { return words_.bytes(); }
 
-  friend bool operator==(const Bitset& a, const Bitset& b) { return a.size_ == b.size_ && a.words_ == b.words_; }
+  friend bool operator==(const Bitset& a, const Bitset& b) {
+    return a.size_ == b.size_ && a.words_ == b.words_;
+  }
 
  private:
   Array<std::uint64_t> words_;

@@ -15,10 +15,9 @@ template <class R, class... Args>
 class FunctionRef<R(Args...)> {
  public:
   template <class Fn>
-    requires(!std::is_same_v<std::remove_cvref_t<Fn>, FunctionRef> &&
-             !std::is_function_v<std::remove_pointer_t<std::remove_cvref_t<Fn>>> &&
-             std::is_invocable_r_v<R, Fn&, Args...>)
-  FunctionRef(Fn&& fn) {
+  requires(!std::is_same_v<std::remove_cvref_t<Fn>, FunctionRef> &&
+           !std::is_function_v<std::remove_pointer_t<std::remove_cvref_t<Fn>>> &&
+           std::is_invocable_r_v<R, Fn&, Args...>) FunctionRef(Fn&& fn) {
     using Object = std::remove_reference_t<Fn>;
     target_.object = const_cast<void*>(static_cast<const void*>(std::addressof(fn)));
     call_ = [](Target target, Args... args) -> R {

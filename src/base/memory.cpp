@@ -12,11 +12,11 @@ namespace gyre {
 namespace {
 
 void* default_allocate(std::size_t bytes, std::size_t align, void*) {
-  return ::operator new(bytes, std::align_val_t{align}, std::nothrow);
+  return ::operator new (bytes, std::align_val_t{align}, std::nothrow);
 }
 
 void default_deallocate(void* memory, std::size_t, void*) {
-  ::operator delete(memory, std::align_val_t{kMemoryAlign});
+  ::operator delete (memory, std::align_val_t{kMemoryAlign});
 }
 
 AllocatorHooks hooks{default_allocate, default_deallocate, nullptr};

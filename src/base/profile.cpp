@@ -9,14 +9,16 @@ namespace {
 
 std::uint64_t now_nanoseconds() {
   const auto since_start = std::chrono::steady_clock::now().time_since_epoch();
-  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(since_start).count());
+  return static_cast<std::uint64_t>(
+      std::chrono::duration_cast<std::chrono::nanoseconds>(since_start).count());
 }
 
 constexpr double kSecondsPerNanosecond = 1e-9;
 
 }  // namespace
 
-StageProfile::StageProfile(std::span<const char* const> stage_names, std::span<const char* const> counter_names) {
+StageProfile::StageProfile(std::span<const char* const> stage_names,
+                           std::span<const char* const> counter_names) {
   for (const char* const name : stage_names) stages_.push_back(Stage{.name = name});
   for (const char* const name : counter_names) counters_.push_back(Counter{.name = name});
   times_.resize(stages_.size());

@@ -26,7 +26,8 @@ class StageProfile {
  public:
   StageProfile() = default;
   // The names must outlive the profile (they are literals).
-  explicit StageProfile(std::span<const char* const> stage_names, std::span<const char* const> counter_names = {});
+  explicit StageProfile(std::span<const char* const> stage_names,
+                        std::span<const char* const> counter_names = {});
 
   // Off at first. Zones that are open when this changes are dropped.
   void set_enabled(bool enabled);

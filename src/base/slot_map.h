@@ -53,7 +53,9 @@ class IdPool {
     return index < generations_.size() && generations_[index] == generation && (generation & 1) != 0;
   }
   // Whether the slot has an owner at all.
-  bool live(std::uint32_t index) const { return index < generations_.size() && (generations_[index] & 1) != 0; }
+  bool live(std::uint32_t index) const {
+    return index < generations_.size() && (generations_[index] & 1) != 0;
+  }
   std::uint32_t generation(std::uint32_t index) const { return generations_[index]; }
 
   // Slots in use; slots that ever were (indices are below this).

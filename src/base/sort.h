@@ -93,7 +93,8 @@ inline void radix_sort_pairs(std::span<std::uint64_t> keys, std::span<std::uint3
   using namespace sort_detail;
   const std::size_t count = keys.size();
   GYRE_ASSERT(values.size() == count && count <= UINT32_MAX, "each key has one value");
-  GYRE_ASSERT(scratch_keys.size() >= count && scratch_values.size() >= count, "scratch has room for all pairs");
+  GYRE_ASSERT(scratch_keys.size() >= count && scratch_values.size() >= count,
+              "scratch has room for all pairs");
   if (count < 2) return;
   ByteCounts counts(keys);
   std::uint64_t* from = keys.data();

@@ -58,7 +58,8 @@ void group_by_color(int group_count, Coloring& out) {
 }  // namespace
 
 void color_constraints(std::span<const ColoringPair> pairs, std::uint32_t body_count,
-                       std::span<const std::uint64_t> is_static, const ColoringOptions& options, Coloring& out) {
+                       std::span<const std::uint64_t> is_static, const ColoringOptions& options,
+                       Coloring& out) {
   GYRE_ASSERT(options.max_colors >= 1 && options.max_colors <= ColoringOptions::kMostColors,
               "a body's used colours fit in 64 bits");
   out.masks.assign(body_count, std::uint64_t{0});

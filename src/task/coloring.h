@@ -50,7 +50,8 @@ struct Coloring {
 // `is_static`: bits by body, 64 to a word (Bitset::words()); bodies beyond its end move. Every body that is not kNone is
 // below body_count.
 void color_constraints(std::span<const ColoringPair> pairs, std::uint32_t body_count,
-                       std::span<const std::uint64_t> is_static, const ColoringOptions& options, Coloring& out);
+                       std::span<const std::uint64_t> is_static, const ColoringOptions& options,
+                       Coloring& out);
 
 // Whether each constraint is in one group, groups are ascending, and no colour has a moving body twice.
 bool validate_coloring(std::span<const ColoringPair> pairs, std::uint32_t body_count,

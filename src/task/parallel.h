@@ -50,7 +50,8 @@ void for_blocks(TaskSystem& tasks, int count, int block_size, Fn&& fn) {
 // in block order whatever the workers did, so that sums of floats have the same bits. T is plain data.
 template <class T, class Map, class Combine>
 T reduce_blocks(TaskSystem& tasks, int count, int block_size, T init, Map&& map, Combine&& combine) {
-  static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= kMemoryAlign, "partial results are plain data");
+  static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= kMemoryAlign,
+                "partial results are plain data");
   const int blocks = count_blocks(count, block_size);
   if (blocks <= 1 || tasks.worker_count() == 1) {
     for_blocks(tasks, count, block_size, [&](int begin, int end, int worker) {

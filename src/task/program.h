@@ -16,7 +16,8 @@ struct Stage {
   void (*kernel)(void* context, int block_begin, int block_end, int worker) = nullptr;
   void* context = nullptr;
   int block_count = 0;
-  int blocks_per_claim = 1;  // taken at once; what is not more than one claim runs on one worker without waking others
+  int blocks_per_claim =
+      1;  // taken at once; what is not more than one claim runs on one worker without waking others
 };
 
 // Each worker starts with its own share of a stage's blocks and then takes from the others'. With one worker this is a

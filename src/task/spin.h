@@ -3,7 +3,8 @@
 #pragma once
 
 // Whether the platform has threads at all.
-#if (defined(__EMSCRIPTEN__) && !defined(__EMSCRIPTEN_PTHREADS__)) || (defined(__wasi__) && !defined(_REENTRANT))
+#if (defined(__EMSCRIPTEN__) && !defined(__EMSCRIPTEN_PTHREADS__)) || \
+    (defined(__wasi__) && !defined(_REENTRANT))
 #define GYRE_HAS_THREADS 0
 #else
 #define GYRE_HAS_THREADS 1

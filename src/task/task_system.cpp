@@ -133,7 +133,8 @@ struct TaskSystem::Pool {
   bool enter(std::uint64_t number) {
     std::uint64_t now = gate.load(std::memory_order_relaxed);
     while (job_of(now) == number && (now & kOpen) != 0) {
-      if (gate.compare_exchange_weak(now, now + 1, std::memory_order_acquire, std::memory_order_relaxed)) return true;
+      if (gate.compare_exchange_weak(now, now + 1, std::memory_order_acquire, std::memory_order_relaxed))
+        return true;
     }
     return false;
   }

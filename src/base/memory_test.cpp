@@ -1,0 +1,93 @@
+// Blocks are aligned and counted, hooks see every block with its size, and are not changed while blocks are out.
+#include "base/memory.h"
+
+#include "base/array.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <cstring>
+
+namespace gyre {
+namespace {
+
+TEST(Memory, AlignedAndCounted) {
+  const std::uint64_t bytes_before = total_bytes();
+  const std::uint64_t count_before = allocation_count();
+  for (const std::size_t bytes : {1u, 63u, 64u, 65u, 4096u, 1000003u}) {
+    void* const memory = allocate(bytes);
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(memory) % kMemoryAlign, 0u);
+    std::memset(memory, 0x5a, bytes);
+    EXPECT_EQ(total_bytes(), bytes_before + bytes);
+    deallocate(memory, bytes);
+  }
+  EXPECT_EQ(total_bytes(), bytes_before);
+  EXPECT_EQ(allocation_count(), count_before + 6);
+}
+
+TEST(Memory, NothingForNothing) {
+  const std::uint64_t count_before = allocation_count();
+  EXPECT_EQ(allocate(0), nullptr);
+  deallocate(nullptr, 0);
+  EXPECT_EQ(allocation_count(), count_before);
+}
+
+struct Meter {
+  std::size_t out = 0;
+  int taken = 0;
+  int returned = 0;
+};
+
+AllocatorHooks metered(Meter& meter) {
+  return {.allocate =
+              [](std::size_t bytes, std::size_t align, void* user) {
+                Meter& m = *static_cast<Meter*>(user);
+                m.out += bytes;
+                ++m.taken;
+                void* memory = nullptr;
+                return posix_memalign(&memory, align, bytes) == 0 ? memory : nullptr;
+              },
+          .deallocate =
+              [](void* memory, std::size_t bytes, void* user) {
+                Meter& m = *static_cast<Meter*>(user);
+                m.out -= bytes;
+                ++m.returned;
+                std::free(memory);
+              },
+          .user = &meter};
+}
+
+TEST(Memory, HooksSeeEveryBlock) {
+  Meter meter;
+  ASSERT_EQ(total_bytes(), 0u) << "a test before this one leaked";
+  ASSERT_TRUE(set_allocator(metered(meter)));
+  {
+    Array<int> numbers;
+    for (int i = 0; i < 1000; ++i) numbers.push_back(i);
+    EXPECT_EQ(meter.out, numbers.bytes());
+    EXPECT_FALSE(set_allocator({})) << "blocks must go back where they came from";
+    numbers.push_back(1);
+  }
+  EXPECT_EQ(meter.out, 0u);
+  EXPECT_GT(meter.taken, 3);
+  EXPECT_EQ(meter.taken, meter.returned);
+  ASSERT_TRUE(set_allocator({}));
+  const int taken = meter.taken;
+  Array<int> more{1, 2, 3};
+  EXPECT_EQ(meter.taken, taken) << "the default heap is back";
+}
+
+TEST(MemoryDeath, RunningOutEndsTheProgram) {
+  testing::GTEST_FLAG(death_test_style) = "threadsafe";
+  EXPECT_DEATH(
+      {
+        set_allocator({.allocate = [](std::size_t, std::size_t, void*) -> void* { return nullptr; },
+                       .deallocate = [](void*, std::size_t, void*) {}});
+        Array<int> numbers;
+        numbers.push_back(1);
+      },
+      "there is memory");
+}
+
+}  // namespace
+}  // namespace gyre
