@@ -1,8 +1,6 @@
 // Reading a cooked mesh. See mesh.h.
 #include "geometry/mesh.h"
 
-#include "geometry/cooked.h"
-
 namespace gyre {
 
 TriangleView view_triangle(const Mesh& mesh, std::uint32_t triangle) {
@@ -52,12 +50,6 @@ bool in_normal_cone(const Mesh& mesh, std::uint32_t triangle, int corner, Vec3 d
     if (climbs(mesh.indices[base + (k + 1) % 3]) || climbs(mesh.indices[base + (k + 2) % 3])) return false;
   }
   return true;
-}
-
-MeshView view_mesh(const Geometry& geometry) {
-  const CookedGeometry* data = geometry.data();
-  if (data == nullptr || data->mesh == nullptr) return {};
-  return {data->mesh->vertices, data->mesh->indices};
 }
 
 }  // namespace gyre
