@@ -1,0 +1,402 @@
+// Wide<W>: W floats that move as one, W = 1, 4, 8 or 16, with one interface for every CPU. Kernels are templates over W.
+//
+// The promise: lane i of any operation has exactly the bits that Wide<1> has for the same input (the payload of NaNs
+// aside), on every compiler and CPU. So there is nothing here that IEEE 754 does not fix: no fused multiply-add, no
+// reciprocal estimates, and min/max are `a < b ? a : b` (what the x86 instructions do, NaN and zeros included).
+//
+// Built on the vector extensions that GCC and Clang share; instructions by name only where those have no operator (square
+// root, mask to bits). Wider than the CPU's registers works too, only slower.
+//
+// A file with kernels for one CPU kind is compiled with its own instruction flags and defines GYRE_TARGET_NAMESPACE before
+// it includes this: all names here then live in an inline namespace of that name, so the linker cannot take one kind's
+// copy of a function for another's. Such a file includes nothing but this, wide_vec.h and headers of its own kind.
+#pragma once
+
+#include <cstdint>
+
+#if defined(__AVX__)
+#include <immintrin.h>
+#elif defined(__SSE2__)
+#include <emmintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
+#elif defined(__wasm_simd128__)
+#include <wasm_simd128.h>
+#endif
+
+// Functions must be inlined even in debug builds: a call would pass vectors through memory, and an emitted copy is what
+// the namespace above guards against.
+#define GYRE_INLINE inline __attribute__((always_inline))
+
+#ifndef GYRE_TARGET_NAMESPACE
+#define GYRE_TARGET_NAMESPACE w_default
+#endif
+
+// Compilers note that vectors wider than the CPU's registers have no stable calling convention; here nothing is called.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+// Before a short loop over lanes or columns whose arrays must become registers.
+#if defined(__clang__)
+#define GYRE_UNROLL _Pragma("clang loop unroll(full)")
+#else
+#define GYRE_UNROLL _Pragma("GCC unroll 16")
+#endif
+
+namespace gyre {
+inline namespace GYRE_TARGET_NAMESPACE {
+
+// The compiler's vector types for W lanes; plain numbers for one lane. The loose ones may lie anywhere in memory.
+template <int W>
+struct Lanes {
+  static_assert(W == 4 || W == 8 || W == 16);
+  typedef float Float __attribute__((vector_size(4 * W)));
+  typedef std::int32_t Int __attribute__((vector_size(4 * W)));
+  typedef std::uint32_t Unsigned __attribute__((vector_size(4 * W)));
+  typedef float AnyFloat __attribute__((vector_size(4 * W), may_alias));
+  typedef float LooseFloat __attribute__((vector_size(4 * W), aligned(4), may_alias));
+  typedef std::int32_t AnyInt __attribute__((vector_size(4 * W), may_alias));
+  typedef std::int32_t LooseInt __attribute__((vector_size(4 * W), aligned(4), may_alias));
+};
+template <>
+struct Lanes<1> {
+  using Float = float;
+  using Int = std::int32_t;
+  using Unsigned = std::uint32_t;
+  using AnyFloat = float;
+  using LooseFloat = float;
+  using AnyInt = std::int32_t;
+  using LooseInt = std::int32_t;
+};
+
+// --------------------------------------------------------------------------------------------------------------- masks
+
+// A truth value for each lane: all bits set or none.
+template <int W>
+struct Mask {
+  using Int = typename Lanes<W>::Int;
+  Int v;
+
+  static GYRE_INLINE Mask of(Int lanes) {
+    Mask mask;
+    mask.v = lanes;
+    return mask;
+  }
+  static GYRE_INLINE Mask splat(bool value) { return of((value ? -1 : 0) - Int{}); }
+  // Of the result of a comparison: a vector of 0 and -1, or a bool.
+  template <class T>
+  static GYRE_INLINE Mask from(T compared) {
+    if constexpr (W == 1) {
+      return of(compared ? -1 : 0);
+    } else {
+      return of((Int)compared);
+    }
+  }
+
+  GYRE_INLINE bool operator[](int lane) const {
+    if constexpr (W == 1) {
+      return (void)lane, v != 0;
+    } else {
+      return v[lane] != 0;
+    }
+  }
+
+  friend GYRE_INLINE Mask operator&(Mask a, Mask b) { return of(a.v & b.v); }
+  friend GYRE_INLINE Mask operator|(Mask a, Mask b) { return of(a.v | b.v); }
+  friend GYRE_INLINE Mask operator^(Mask a, Mask b) { return of(a.v ^ b.v); }
+  friend GYRE_INLINE Mask operator~(Mask a) { return of(~a.v); }
+  // a and not b
+  friend GYRE_INLINE Mask and_not(Mask a, Mask b) { return of(a.v & ~b.v); }
+
+  // One bit for each lane, lane 0 the lowest.
+  friend GYRE_INLINE std::uint32_t to_bits(Mask mask) {
+    if constexpr (W == 1) {
+      return mask.v != 0 ? 1u : 0u;
+    } else {
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+      if constexpr (W == 16) return std::uint32_t(_mm512_movepi32_mask((__m512i)mask.v));
+#endif
+#if defined(__AVX__)
+      if constexpr (W == 8) return std::uint32_t(_mm256_movemask_ps((__m256)mask.v));
+#endif
+#if defined(__SSE2__)
+      if constexpr (W == 4) return std::uint32_t(_mm_movemask_ps((__m128)mask.v));
+#elif defined(__wasm_simd128__)
+      if constexpr (W == 4) return std::uint32_t(wasm_i32x4_bitmask((v128_t)mask.v));
+#endif
+      std::uint32_t bits = 0;
+      for (int i = 0; i < W; ++i) bits |= mask.v[i] != 0 ? 1u << i : 0u;
+      return bits;
+    }
+  }
+  friend GYRE_INLINE bool any(Mask mask) {
+#if defined(__aarch64__)
+    if constexpr (W == 4) return vmaxvq_u32((uint32x4_t)mask.v) != 0;
+#endif
+    return to_bits(mask) != 0u;
+  }
+  friend GYRE_INLINE bool all(Mask mask) {
+#if defined(__aarch64__)
+    if constexpr (W == 4) return vminvq_u32((uint32x4_t)mask.v) != 0;
+#endif
+    return to_bits(mask) == (1u << W) - 1u;
+  }
+  friend GYRE_INLINE bool none(Mask mask) { return !any(mask); }
+};
+
+// `mask ? a : b` on the lanes of either type.
+template <int W, class Vector>
+GYRE_INLINE Vector select_lanes(typename Lanes<W>::Int mask, Vector a, Vector b) {
+  if constexpr (W == 1) {
+    return mask != 0 ? a : b;
+  } else {
+    return mask ? a : b;
+  }
+}
+
+// -------------------------------------------------------------------------------------------------------------- floats
+
+template <int W>
+struct Wide {
+  using Float = typename Lanes<W>::Float;
+  using Int = typename Lanes<W>::Int;
+  Float v;
+
+  Wide() = default;
+  // The same number in every lane. `- Float{}` because x - 0 is x, also for the negative zero.
+  GYRE_INLINE Wide(float value) : v(value - Float{}) {}
+  static GYRE_INLINE Wide of(Float lanes) {
+    Wide wide;
+    wide.v = lanes;
+    return wide;
+  }
+
+  // From and to W floats in a row; `load` and `store` want them aligned to 4 W bytes.
+  static GYRE_INLINE Wide load(const float* from) {
+    return of(*reinterpret_cast<const typename Lanes<W>::AnyFloat*>(from));
+  }
+  static GYRE_INLINE Wide load_unaligned(const float* from) {
+    return of(*reinterpret_cast<const typename Lanes<W>::LooseFloat*>(from));
+  }
+  GYRE_INLINE void store(float* to) const { *reinterpret_cast<typename Lanes<W>::AnyFloat*>(to) = v; }
+  GYRE_INLINE void store_unaligned(float* to) const {
+    *reinterpret_cast<typename Lanes<W>::LooseFloat*>(to) = v;
+  }
+  // One lane; for set-up and tests, not for kernels.
+  GYRE_INLINE float operator[](int lane) const {
+    if constexpr (W == 1) {
+      return (void)lane, v;
+    } else {
+      return v[lane];
+    }
+  }
+  GYRE_INLINE void set(int lane, float value) {
+    if constexpr (W == 1) {
+      (void)lane, v = value;
+    } else {
+      v[lane] = value;
+    }
+  }
+
+  friend GYRE_INLINE Wide operator+(Wide a, Wide b) { return of(a.v + b.v); }
+  friend GYRE_INLINE Wide operator-(Wide a, Wide b) { return of(a.v - b.v); }
+  friend GYRE_INLINE Wide operator*(Wide a, Wide b) { return of(a.v * b.v); }
+  friend GYRE_INLINE Wide operator/(Wide a, Wide b) { return of(a.v / b.v); }
+  friend GYRE_INLINE Wide operator-(Wide a) { return of(-a.v); }
+  friend GYRE_INLINE Wide& operator+=(Wide& a, Wide b) { return a = a + b; }
+  friend GYRE_INLINE Wide& operator-=(Wide& a, Wide b) { return a = a - b; }
+  friend GYRE_INLINE Wide& operator*=(Wide& a, Wide b) { return a = a * b; }
+
+  friend GYRE_INLINE Mask<W> operator<(Wide a, Wide b) { return Mask<W>::from(a.v < b.v); }
+  friend GYRE_INLINE Mask<W> operator<=(Wide a, Wide b) { return Mask<W>::from(a.v <= b.v); }
+  friend GYRE_INLINE Mask<W> operator>(Wide a, Wide b) { return Mask<W>::from(a.v > b.v); }
+  friend GYRE_INLINE Mask<W> operator>=(Wide a, Wide b) { return Mask<W>::from(a.v >= b.v); }
+  friend GYRE_INLINE Mask<W> operator==(Wide a, Wide b) { return Mask<W>::from(a.v == b.v); }
+  friend GYRE_INLINE Mask<W> operator!=(Wide a, Wide b) { return Mask<W>::from(a.v != b.v); }
+
+  friend GYRE_INLINE Wide select(Mask<W> mask, Wide a, Wide b) {
+    return of(select_lanes<W>(mask.v, a.v, b.v));
+  }
+  // a < b ? a : b and a > b ? a : b; where an instruction does exactly that, it is named, since GCC does not find it when
+  // one side is zero.
+  friend GYRE_INLINE Wide min(Wide a, Wide b) {
+#if defined(__AVX__)
+    if constexpr (W == 8) return of((Float)_mm256_min_ps((__m256)a.v, (__m256)b.v));
+#endif
+#if defined(__SSE2__)
+    if constexpr (W == 4) return of((Float)_mm_min_ps((__m128)a.v, (__m128)b.v));
+#endif
+    return select(a < b, a, b);
+  }
+  friend GYRE_INLINE Wide max(Wide a, Wide b) {
+#if defined(__AVX__)
+    if constexpr (W == 8) return of((Float)_mm256_max_ps((__m256)a.v, (__m256)b.v));
+#endif
+#if defined(__SSE2__)
+    if constexpr (W == 4) return of((Float)_mm_max_ps((__m128)a.v, (__m128)b.v));
+#endif
+    return select(a > b, a, b);
+  }
+  friend GYRE_INLINE Wide clamp(Wide value, Wide low, Wide high) { return min(max(value, low), high); }
+  // `a` where the mask is set, +0 elsewhere: one operation less than select.
+  friend GYRE_INLINE Wide keep(Mask<W> mask, Wide a) { return from_bits(bits_of(a) & mask.v); }
+  // Without its sign: also -0 and NaN lose it.
+  friend GYRE_INLINE Wide absolute(Wide a) { return from_bits(bits_of(a) & (0x7fffffff - Int{})); }
+  // `magnitude` with the sign of `sign`.
+  friend GYRE_INLINE Wide copy_sign(Wide magnitude, Wide sign) {
+    const Int sign_bit = INT32_MIN - Int{};
+    return from_bits((bits_of(magnitude) & ~sign_bit) | (bits_of(sign) & sign_bit));
+  }
+  friend GYRE_INLINE Wide square(Wide a) { return a * a; }
+
+  // Correctly rounded; NaN below zero.
+  friend GYRE_INLINE Wide sqrt(Wide a) {
+    if constexpr (W == 1) {
+      return of(__builtin_sqrtf(a.v));
+    } else {
+#if defined(__AVX512F__)
+      // With a mask that takes all: GCC's plain form warns of its own uninitialised operand.
+      if constexpr (W == 16) return of((Float)_mm512_maskz_sqrt_ps(__mmask16(0xffff), (__m512)a.v));
+#endif
+#if defined(__AVX__)
+      if constexpr (W == 8) return of((Float)_mm256_sqrt_ps((__m256)a.v));
+#endif
+#if defined(__SSE2__)
+      if constexpr (W == 4) return of((Float)_mm_sqrt_ps((__m128)a.v));
+#elif defined(__aarch64__)
+      if constexpr (W == 4) return of((Float)vsqrtq_f32((float32x4_t)a.v));
+#elif defined(__wasm_simd128__)
+      if constexpr (W == 4) return of((Float)wasm_f32x4_sqrt((v128_t)a.v));
+#endif
+      Wide result = a;
+      for (int i = 0; i < W; ++i) result.v[i] = __builtin_sqrtf(a.v[i]);
+      return result;
+    }
+  }
+
+  static GYRE_INLINE Int bits_of(Wide a) {
+    if constexpr (W == 1) {
+      return __builtin_bit_cast(std::int32_t, a.v);
+    } else {
+      return (Int)a.v;
+    }
+  }
+  static GYRE_INLINE Wide from_bits(Int bits) {
+    if constexpr (W == 1) {
+      return of(__builtin_bit_cast(float, bits));
+    } else {
+      return of((Float)bits);
+    }
+  }
+};
+
+// ------------------------------------------------------------------------------------------------------------ integers
+
+// W 32-bit integers: indices, flags, the bits of floats. Sums and products wrap.
+template <int W>
+struct WideInt {
+  using Int = typename Lanes<W>::Int;
+  using Unsigned = typename Lanes<W>::Unsigned;
+  Int v;
+
+  WideInt() = default;
+  GYRE_INLINE WideInt(std::int32_t value) : v(value - Int{}) {}
+  static GYRE_INLINE WideInt of(Int lanes) {
+    WideInt wide;
+    wide.v = lanes;
+    return wide;
+  }
+
+  static GYRE_INLINE WideInt load(const std::int32_t* from) {
+    return of(*reinterpret_cast<const typename Lanes<W>::AnyInt*>(from));
+  }
+  static GYRE_INLINE WideInt load_unaligned(const std::int32_t* from) {
+    return of(*reinterpret_cast<const typename Lanes<W>::LooseInt*>(from));
+  }
+  GYRE_INLINE void store(std::int32_t* to) const { *reinterpret_cast<typename Lanes<W>::AnyInt*>(to) = v; }
+  GYRE_INLINE void store_unaligned(std::int32_t* to) const {
+    *reinterpret_cast<typename Lanes<W>::LooseInt*>(to) = v;
+  }
+  GYRE_INLINE std::int32_t operator[](int lane) const {
+    if constexpr (W == 1) {
+      return (void)lane, v;
+    } else {
+      return v[lane];
+    }
+  }
+  GYRE_INLINE void set(int lane, std::int32_t value) {
+    if constexpr (W == 1) {
+      (void)lane, v = value;
+    } else {
+      v[lane] = value;
+    }
+  }
+
+  friend GYRE_INLINE WideInt operator+(WideInt a, WideInt b) {
+    return of((Int)((Unsigned)a.v + (Unsigned)b.v));
+  }
+  friend GYRE_INLINE WideInt operator-(WideInt a, WideInt b) {
+    return of((Int)((Unsigned)a.v - (Unsigned)b.v));
+  }
+  friend GYRE_INLINE WideInt operator*(WideInt a, WideInt b) {
+    return of((Int)((Unsigned)a.v * (Unsigned)b.v));
+  }
+  friend GYRE_INLINE WideInt operator&(WideInt a, WideInt b) { return of(a.v & b.v); }
+  friend GYRE_INLINE WideInt operator|(WideInt a, WideInt b) { return of(a.v | b.v); }
+  friend GYRE_INLINE WideInt operator^(WideInt a, WideInt b) { return of(a.v ^ b.v); }
+  friend GYRE_INLINE WideInt operator~(WideInt a) { return of(~a.v); }
+  // By 0 to 31 bits; to the right the sign bit moves in.
+  friend GYRE_INLINE WideInt operator<<(WideInt a, int count) { return of((Int)((Unsigned)a.v << count)); }
+  friend GYRE_INLINE WideInt operator>>(WideInt a, int count) { return of(a.v >> count); }
+  // To the right with zeros moving in.
+  friend GYRE_INLINE WideInt shift_right_logical(WideInt a, int count) {
+    return of((Int)((Unsigned)a.v >> count));
+  }
+
+  friend GYRE_INLINE Mask<W> operator<(WideInt a, WideInt b) { return Mask<W>::from(a.v < b.v); }
+  friend GYRE_INLINE Mask<W> operator<=(WideInt a, WideInt b) { return Mask<W>::from(a.v <= b.v); }
+  friend GYRE_INLINE Mask<W> operator>(WideInt a, WideInt b) { return Mask<W>::from(a.v > b.v); }
+  friend GYRE_INLINE Mask<W> operator>=(WideInt a, WideInt b) { return Mask<W>::from(a.v >= b.v); }
+  friend GYRE_INLINE Mask<W> operator==(WideInt a, WideInt b) { return Mask<W>::from(a.v == b.v); }
+  friend GYRE_INLINE Mask<W> operator!=(WideInt a, WideInt b) { return Mask<W>::from(a.v != b.v); }
+
+  friend GYRE_INLINE WideInt select(Mask<W> mask, WideInt a, WideInt b) {
+    return of(select_lanes<W>(mask.v, a.v, b.v));
+  }
+  friend GYRE_INLINE WideInt min(WideInt a, WideInt b) { return select(a < b, a, b); }
+  friend GYRE_INLINE WideInt max(WideInt a, WideInt b) { return select(a > b, a, b); }
+
+  // The nearest float, and the integer part of a float (which must lie within the range of an int32).
+  friend GYRE_INLINE Wide<W> to_float(WideInt a) {
+    if constexpr (W == 1) {
+      return Wide<W>::of(float(a.v));
+    } else {
+      return Wide<W>::of(__builtin_convertvector(a.v, typename Lanes<W>::Float));
+    }
+  }
+};
+
+template <int W>
+GYRE_INLINE WideInt<W> truncate(Wide<W> a) {
+  if constexpr (W == 1) {
+    return WideInt<W>::of(std::int32_t(a.v));
+  } else {
+    return WideInt<W>::of(__builtin_convertvector(a.v, typename Lanes<W>::Int));
+  }
+}
+// The bits of floats as integers, and back.
+template <int W>
+GYRE_INLINE WideInt<W> bit_pattern(Wide<W> a) {
+  return WideInt<W>::of(Wide<W>::bits_of(a));
+}
+template <int W>
+GYRE_INLINE Wide<W> from_bit_pattern(WideInt<W> a) {
+  return Wide<W>::from_bits(a.v);
+}
+// A mask as integers 0 and -1, and the lanes of integers that are not zero.
+template <int W>
+GYRE_INLINE WideInt<W> to_int(Mask<W> mask) {
+  return WideInt<W>::of(mask.v);
+}
+
+}  // namespace GYRE_TARGET_NAMESPACE
+}  // namespace gyre
