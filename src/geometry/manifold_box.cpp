@@ -2,6 +2,7 @@
 #include "geometry/manifold_box.h"
 
 #include "geometry/clip.h"
+#include "geometry/manifold_core.h"
 #include "math/rotation.h"
 
 namespace gyre {
@@ -292,6 +293,7 @@ Corner deepest_corner(const Roles& roles, int axis, float facing) {
           kFeatureNearest, 0};
 }
 
+// Leaves out.count at 0 when no face of boxes that are apart lies over the other's.
 void collide_face(const Boxes& x, const Transform& a_from_b, const Axis& found, float max_separation,
                   LocalManifold& out) {
   const bool reference_is_a = found.number < kFirstB;
@@ -344,6 +346,7 @@ void collide_face(const Boxes& x, const Transform& a_from_b, const Axis& found, 
   for (int i = 0; i < count; ++i) out.points[i] = points[i];
 }
 
+// Leaves out.count at 0 when the boxes are apart and the edges pass beside each other.
 void collide_edges(const Boxes& x, const Transform& a_from_b, const Axis& found, LocalManifold& out) {
   const int i = (found.number - kFirstEdge) / 3, j = (found.number - kFirstEdge) % 3;
   const Vec3 edge_a{i == 0 ? 1.0f : 0.0f, i == 1 ? 1.0f : 0.0f, i == 2 ? 1.0f : 0.0f};
@@ -369,11 +372,13 @@ void collide_edges(const Boxes& x, const Transform& a_from_b, const Axis& found,
   const Vec3 d = pb - pa;
   const float c = dot(edge_a, edge_b), da = dot(d, edge_a), db = dot(d, edge_b);
   const float det = edge_length_squared(x, i, j);
-  const float along_a = clamp((da - c * db) / det, -x.a[i], x.a[i]);
-  const float along_b = clamp((c * da - db) / det, -x.b[j], x.b[j]);
+  const float along_a = (da - c * db) / det, along_b = (c * da - db) / det;
+  const float end_a = clamp(along_a, -x.a[i], x.a[i]), end_b = clamp(along_b, -x.b[j], x.b[j]);
+  // Apart, and not across each other: an end is nearest.
+  if (found.separation > 0.0f && (end_a != along_a || end_b != along_b)) return;
   out.normal = normal;
   out.count = 1;
-  out.points[0].position = 0.5f * ((pa + along_a * edge_a) + (pb + along_b * edge_b));
+  out.points[0].position = 0.5f * ((pa + end_a * edge_a) + (pb + end_b * edge_b));
   out.points[0].separation = found.separation;
   out.points[0].feature = feature_edges(edge_number(i, corner_a), edge_number(j, corner_b));
 }
@@ -396,6 +401,8 @@ void collide_boxes(const Shape& a, const Shape& b, const Transform& a_from_b, fl
   } else {
     collide_face(x, a_from_b, found, max_separation, out);
   }
+  // Corners and edges that pass beside each other's faces, but near.
+  if (out.count == 0) collide_nearest(a, b, a_from_b, max_separation, out);
 }
 
 }  // namespace gyre

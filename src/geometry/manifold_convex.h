@@ -1,10 +1,7 @@
-// Manifolds of any two convex shapes, and of a plane and a convex shape: which method serves which pair of kinds.
+// Which method makes the manifolds of which two convex kinds: the table behind collide_convex (geometry/manifold.h).
 //
 // Sharp boxes and hulls take an axis search and clip faces; spheres and pairs of capsules have closed forms; everything
-// else finds the normal by GJK (cores apart) or EPA (cores overlapping) and clips the features that face each other along
-// it. The functions themselves are declared in geometry/manifold.h.
-//
-// Source: the support-face construction after D. Gregorius, "Robust Contact Creation for Physics Simulations", GDC 2015.
+// else finds the normal by GJK (cores apart) or EPA (cores overlapping) and clips the features that face each other.
 #pragma once
 
 #include "geometry/manifold.h"
@@ -19,7 +16,7 @@ enum class ConvexMethod : std::uint8_t {
 };
 const char* to_string(ConvexMethod method);
 
-// What serves two convex kinds. Boxes with rounding take `cores` instead of boxes or polyhedra.
+// What serves two convex kinds. Boxes with rounding take `cores` instead of `boxes` and `polyhedra`.
 ConvexMethod convex_method(ShapeKind a, ShapeKind b);
 
 }  // namespace gyre

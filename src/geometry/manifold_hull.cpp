@@ -3,6 +3,7 @@
 
 #include "geometry/clip.h"
 #include "geometry/closest.h"
+#include "geometry/manifold_core.h"
 #include "geometry/separating_axis.h"
 
 namespace gyre {
@@ -86,6 +87,7 @@ int face_points(const Roles& roles, int face, float separation, float max_separa
   return 1;
 }
 
+// None when the polytopes are apart and the edges pass beside each other.
 void edge_point(const Polytope& a, const Polytope& b, const Transform& a_from_b, const PolytopeAxis& axis,
                 LocalManifold& out) {
   const HullEdge &ea = a.edges[axis.index_a], &eb = b.edges[axis.index_b];
@@ -98,15 +100,20 @@ void edge_point(const Polytope& a, const Polytope& b, const Transform& a_from_b,
   out.points[0].feature = feature_edges(std::uint32_t(axis.index_a), std::uint32_t(axis.index_b));
 }
 
-void collide_polytopes(const Polytope& a, const Polytope& b, const Transform& a_from_b, float max_separation,
+// False when they are farther apart than allowed along some axis.
+bool collide_polytopes(const Polytope& a, const Polytope& b, const Transform& a_from_b, float max_separation,
                        PairCache& cache, LocalManifold& out) {
   PolytopeAxis favoured = axis_of_name(cache.words[0], a, b);
-  if (favoured.kind != AxisKind::none && separation_along(a, b, a_from_b, favoured) > max_separation) return;
+  if (favoured.kind != AxisKind::none && separation_along(a, b, a_from_b, favoured) > max_separation)
+    return false;
   const PolytopeAxis axis = separating_axis(a, b, a_from_b, max_separation, favoured);
   cache.words[0] = axis_name(axis);
-  if (axis.separation > max_separation) return;
+  if (axis.separation > max_separation) return false;
   out.normal = axis.normal;
-  if (axis.kind == AxisKind::edges) return edge_point(a, b, a_from_b, axis, out);
+  if (axis.kind == AxisKind::edges) {
+    edge_point(a, b, a_from_b, axis, out);
+    return true;
+  }
   const bool is_a = axis.kind == AxisKind::face_a;
   ManifoldPoint points[kMaxClipPoints];
   const Roles roles{is_a ? a : b, is_a ? b : a, is_a ? a_from_b : inverse(a_from_b), is_a};
@@ -118,6 +125,7 @@ void collide_polytopes(const Polytope& a, const Polytope& b, const Transform& a_
     out.points[i] = points[i];
     if (!is_a) out.points[i].position = a_from_b * points[i].position;
   }
+  return true;
 }
 
 }  // namespace
@@ -125,14 +133,18 @@ void collide_polytopes(const Polytope& a, const Polytope& b, const Transform& a_
 void collide_polyhedra(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
                        PairCache& cache, LocalManifold& out) {
   out.count = 0;
+  bool near = false;
   if (a.kind == ShapeKind::hull && b.kind == ShapeKind::hull) {
-    return collide_polytopes(make_polytope(*a.hull), make_polytope(*b.hull), a_from_b, max_separation, cache,
+    near = collide_polytopes(make_polytope(*a.hull), make_polytope(*b.hull), a_from_b, max_separation, cache,
                              out);
+  } else {
+    const BoxPolytope box(a.kind == ShapeKind::box ? a.extents : b.extents);
+    const Polytope view_a = a.kind == ShapeKind::box ? box.view() : make_polytope(*a.hull);
+    const Polytope view_b = a.kind == ShapeKind::box ? make_polytope(*b.hull) : box.view();
+    near = collide_polytopes(view_a, view_b, a_from_b, max_separation, cache, out);
   }
-  const BoxPolytope box(a.kind == ShapeKind::box ? a.extents : b.extents);
-  const Polytope view_a = a.kind == ShapeKind::box ? box.view() : make_polytope(*a.hull);
-  const Polytope view_b = a.kind == ShapeKind::box ? make_polytope(*b.hull) : box.view();
-  collide_polytopes(view_a, view_b, a_from_b, max_separation, cache, out);
+  // Corners and edges that pass beside each other's faces, but near.
+  if (near && out.count == 0) collide_nearest(a, b, a_from_b, max_separation, out);
 }
 
 }  // namespace gyre

@@ -1,0 +1,131 @@
+// Support features and GJK or EPA normals to contact points. See manifold_core.h.
+#include "geometry/manifold_core.h"
+
+#include "geometry/clip.h"
+#include "geometry/gjk.h"
+#include "geometry/penetration.h"
+#include "geometry/support.h"
+
+namespace gyre {
+namespace {
+
+// A face takes part if the contact normal leans less than this cosine (10 degrees) from its own: its points keep their
+// exact distance along the contact normal, so nothing jumps when a face comes in or drops out.
+constexpr float kFacing = 0.985f;
+// Segments that lean less than this sine (6 degrees) against each other touch in two points.
+constexpr float kSideBySide = 0.1f;
+// B's face becomes the reference only if it faces the normal better than A's by this much: no flipping.
+constexpr float kPreferA = 1.0e-3f;
+// If the clipped points miss the nearest pair of points by this part of the shapes' size, that pair is added.
+constexpr float kMissed = 1.0e-3f;
+
+// Where two cores are nearest or deepest.
+struct CoreContact {
+  Vec3 normal;       // unit, from A to B
+  Vec3 on_a, on_b;   // of the cores, A's frame
+  float separation;  // of the cores
+  float size;
+};
+
+void put_in_a(const Transform& a_from_b, FacePolygon& face) {
+  for (int i = 0; i < face.count; ++i) face.vertices[i] = a_from_b * face.vertices[i];
+  face.normal = rotate(a_from_b.orientation, face.normal);
+}
+
+bool side_by_side(const FacePolygon& a, const FacePolygon& b) {
+  const Vec3 da = a.vertices[1] - a.vertices[0], db = b.vertices[1] - b.vertices[0];
+  return length_squared(cross(da, db)) <= square(kSideBySide) * length_squared(da) * length_squared(db);
+}
+
+// The candidate points of the features of both cores that face each other. At most kMaxClipPoints.
+int facing_points(const Shape& a, const Shape& b, const Transform& a_from_b, const CoreContact& contact,
+                  float max_separation, ManifoldPoint* points) {
+  FacePolygon fa, fb;
+  support_face(a, contact.normal, fa);
+  if (fa.count == 1) return 0;
+  support_face(b, rotate_inverse(a_from_b.orientation, -contact.normal), fb);
+  if (fb.count == 1) return 0;
+  put_in_a(a_from_b, fb);
+  const FacePair pair{&fa, &fb, contact.normal, core_radius(a), core_radius(b), max_separation};
+  const float facing_a = fa.count > 2 ? dot(fa.normal, contact.normal) : -1.0f;
+  const float facing_b = fb.count > 2 ? -dot(fb.normal, contact.normal) : -1.0f;
+  if (facing_a >= kFacing && facing_a >= facing_b - kPreferA) return clip_faces(pair, true, points);
+  if (facing_b >= kFacing) return clip_faces(pair, false, points);
+  if (fa.count == 2 && fb.count == 2 && side_by_side(fa, fb)) return clip_segments(pair, points);
+  return 0;
+}
+
+ManifoldPoint nearest_point(const Shape& a, const Shape& b, const CoreContact& contact) {
+  const float radius_a = core_radius(a), radius_b = core_radius(b);
+  ManifoldPoint point;
+  point.position =
+      0.5f * ((contact.on_a + radius_a * contact.normal) + (contact.on_b - radius_b * contact.normal));
+  point.separation = contact.separation - radius_a - radius_b;
+  point.feature = kFeatureNearest;
+  return point;
+}
+
+void fill(const Shape& a, const Shape& b, const Transform& a_from_b, const CoreContact& contact,
+          float max_separation, LocalManifold& out) {
+  ManifoldPoint points[kMaxClipPoints + 1];
+  int count = facing_points(a, b, a_from_b, contact, max_separation, points);
+  float deepest = kUnbounded;
+  for (int i = 0; i < count; ++i) deepest = min(deepest, points[i].separation);
+  const ManifoldPoint nearest = nearest_point(a, b, contact);
+  if (count == 0 || nearest.separation < deepest - kMissed * contact.size) points[count++] = nearest;
+  out.normal = contact.normal;
+  out.count = reduce_points(points, count, contact.normal);
+  for (int i = 0; i < out.count; ++i) out.points[i] = points[i];
+}
+
+Vec3 remembered(const PairCache& cache) {
+  const Vec3 guess{__builtin_bit_cast(float, cache.words[1]), __builtin_bit_cast(float, cache.words[2]),
+                   __builtin_bit_cast(float, cache.words[3])};
+  return is_finite(guess) ? guess : Vec3{};
+}
+
+void remember(PairCache& cache, Vec3 direction) {
+  cache.words[1] = __builtin_bit_cast(std::uint32_t, direction.x);
+  cache.words[2] = __builtin_bit_cast(std::uint32_t, direction.y);
+  cache.words[3] = __builtin_bit_cast(std::uint32_t, direction.z);
+}
+
+}  // namespace
+
+void collide_cores(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
+                   PairCache& cache, LocalManifold& out) {
+  const CorePair pair(a, b, a_from_b);
+  const double reach = double(core_radius(a)) + double(core_radius(b)) + double(max_separation);
+  const CoreDistance distance = core_distance(pair, reach, remembered(cache));
+  remember(cache, to_float(distance.normal));
+  if (distance.beyond || (!distance.overlap && distance.distance > reach)) return;
+  CoreContact contact;
+  contact.size = float(pair.size());
+  if (distance.overlap) {
+    const CorePenetration deep = core_penetration(pair, distance);
+    contact.normal = to_float(deep.normal);
+    contact.on_a = to_float(deep.on_a);
+    contact.on_b = to_float(deep.on_b);
+    contact.separation = float(-deep.depth);
+  } else {
+    contact.normal = to_float(distance.normal);
+    contact.on_a = to_float(distance.on_a);
+    contact.on_b = to_float(distance.on_b);
+    contact.separation = float(distance.distance);
+  }
+  fill(a, b, a_from_b, contact, max_separation, out);
+}
+
+void collide_nearest(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
+                     LocalManifold& out) {
+  out.count = 0;
+  const double reach = double(core_radius(a)) + double(core_radius(b)) + double(max_separation);
+  const CoreDistance distance = core_distance(CorePair(a, b, a_from_b), reach, a_from_b.position);
+  if (distance.beyond || distance.overlap || distance.distance > reach) return;
+  out.normal = to_float(distance.normal);
+  out.count = 1;
+  out.points[0] = nearest_point(
+      a, b, {out.normal, to_float(distance.on_a), to_float(distance.on_b), float(distance.distance), 0.0f});
+}
+
+}  // namespace gyre
