@@ -17,7 +17,7 @@ struct HeightField;
 
 struct CookedGeometry {
   ShapeKind kind = ShapeKind::hull;  // hull, mesh or height_field
-  std::uint64_t content_hash = 0;    // of everything that was cooked; equal data, equal hash, on every platform
+  std::uint64_t content_hash = 0;  // of everything that was cooked; equal data, equal hash, on every platform
   std::unique_ptr<Hull> hull;
   std::unique_ptr<Mesh> mesh;
   std::unique_ptr<HeightField> field;

@@ -27,7 +27,8 @@ int support_vertex(const Hull& hull, Vec3 direction) {
   }
   int winner = 0;
   for (int lane = 1; lane < kLanes; ++lane) {
-    const bool better = best[lane] > best[winner] || (best[lane] == best[winner] && index[lane] < index[winner]);
+    const bool better =
+        best[lane] > best[winner] || (best[lane] == best[winner] && index[lane] < index[winner]);
     if (better) winner = lane;
   }
   // The padding repeats the last vertex, behind it.

@@ -15,8 +15,8 @@ struct HullPlane {
 };
 
 struct HullEdge {
-  std::uint8_t from, to;        // vertices, in the loop order of face `left`
-  std::uint8_t left, right;     // the two faces
+  std::uint8_t from, to;     // vertices, in the loop order of face `left`
+  std::uint8_t left, right;  // the two faces
 };
 
 // At most 255 vertices, 255 faces and 510 edges (all indices but edge indices fit in a byte).
@@ -26,11 +26,11 @@ struct Hull {
   std::vector<float> x, y, z;
   std::vector<Vec3> vertices;  // the same, vertex after vertex, unpadded
   std::vector<HullPlane> planes;
-  std::vector<std::uint32_t> face_offsets;   // faces + 1, into face_vertices
-  std::vector<std::uint8_t> face_vertices;   // loops, counter-clockwise seen from outside
+  std::vector<std::uint32_t> face_offsets;  // faces + 1, into face_vertices
+  std::vector<std::uint8_t> face_vertices;  // loops, counter-clockwise seen from outside
   std::vector<HullEdge> edges;
   Aabb box;
-  Vec3 centroid;         // of the volume
+  Vec3 centroid;              // of the volume
   float inner_radius = 0.0f;  // smallest distance from the centroid to a face plane
 
   int vertex_count() const { return int(vertices.size()); }

@@ -14,8 +14,8 @@ namespace {
 
 // The points on the grid that spans their longest extent, and what the tolerances are there.
 struct Grid {
-  DVec3 origin;        // m, the grid's (0, 0, 0)
-  double step = 1.0;   // m
+  DVec3 origin;            // m, the grid's (0, 0, 0)
+  double step = 1.0;       // m
   double tolerance = 1.0;  // in steps
   std::vector<GridPoint> points;
 };
@@ -29,8 +29,8 @@ Error check_points(std::span<const Vec3> points) {
                       double(p.x), double(p.y), double(p.z), double(kLargestLength), double(kLargestLength));
   }
   if (points.size() >= 4) return {};
-  return make_error(ErrorCode::invalid_geometry, "hull: %zu points; allowed are at least 4 that span a volume",
-                    points.size());
+  return make_error(ErrorCode::invalid_geometry,
+                    "hull: %zu points; allowed are at least 4 that span a volume", points.size());
 }
 
 Grid make_grid(std::span<const Vec3> points) {
@@ -60,8 +60,9 @@ Grid make_grid(std::span<const Vec3> points) {
 
 Error span_error(GridSpan span, std::size_t count, double within) {
   const char* const shapes[] = {"span a volume", "coincide", "lie on one line", "lie in one plane"};
-  return make_error(ErrorCode::invalid_geometry, "hull: all %zu points %s (within %g m); allowed are points that span a volume",
-                    count, shapes[int(span)], within);
+  return make_error(ErrorCode::invalid_geometry,
+                    "hull: all %zu points %s (within %g m); allowed are points that span a volume", count,
+                    shapes[int(span)], within);
 }
 
 // ------------------------------------------------------------------------------------------------------- thinning
@@ -140,7 +141,8 @@ double stick_out(std::span<const GridPoint> all, const Candidate& body, int vert
   double nearest = 1.0e300;
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = i + 1; j < count; ++j) {
-      for (std::size_t k = j + 1; k < count; ++k) nearest = min(nearest, distance_to_triangle(p, at(i), at(j), at(k)));
+      for (std::size_t k = j + 1; k < count; ++k)
+        nearest = min(nearest, distance_to_triangle(p, at(i), at(j), at(k)));
     }
   }
   return nearest;
@@ -236,7 +238,8 @@ void fill_edges(Hull& hull) {
   std::vector<int> face_of(256 * 256, -1);
   for (int pass = 0; pass < 2; ++pass) {
     for (int f = 0; f < hull.face_count(); ++f) {
-      const std::uint32_t begin = hull.face_offsets[std::size_t(f)], end = hull.face_offsets[std::size_t(f) + 1];
+      const std::uint32_t begin = hull.face_offsets[std::size_t(f)],
+                          end = hull.face_offsets[std::size_t(f) + 1];
       for (std::uint32_t i = begin; i < end; ++i) {
         const std::uint8_t from = hull.face_vertices[i];
         const std::uint8_t to = hull.face_vertices[i + 1 < end ? i + 1 : begin];
@@ -265,7 +268,8 @@ Vec3 volume_center(const Grid& grid, const Candidate& body) {
   return to_float(grid.origin + grid.step * (apex + moment / volume));
 }
 
-Hull make_hull(std::span<const Vec3> points, const Grid& grid, const Candidate& body, const Polygons& polygons) {
+Hull make_hull(std::span<const Vec3> points, const Grid& grid, const Candidate& body,
+               const Polygons& polygons) {
   Hull hull;
   for (const int point : polygons.points) hull.vertices.push_back(points[std::size_t(point)]);
   const std::size_t count = hull.vertices.size();

@@ -163,7 +163,8 @@ void expect_counts(const Hull& hull, int vertices, int faces, int corners_each) 
 TEST(HullBuilder, CubeHasSixSquaresHoweverItIsTurned) {
   Random random;
   for (int round = 0; round < 50; ++round) {
-    const Points points = turned(cube_points(0.5f), random.turn(), round % 2 ? 3.0f * random.in_cube() : Vec3{});
+    const Points points =
+        turned(cube_points(0.5f), random.turn(), round % 2 ? 3.0f * random.in_cube() : Vec3{});
     const Hull hull = must_build(points);
     expect_valid(points, hull);
     expect_counts(hull, 8, 6, 4);
@@ -174,8 +175,8 @@ TEST(HullBuilder, CubeHasSixSquaresHoweverItIsTurned) {
 TEST(HullBuilder, PlatonicSolids) {
   const float g = 1.6180340f, i = 0.6180340f;
   const Points octahedron = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-  const Points icosahedron = {{0, 1, g}, {0, 1, -g}, {0, -1, g}, {0, -1, -g}, {1, g, 0}, {1, -g, 0},
-                              {-1, g, 0}, {-1, -g, 0}, {g, 0, 1}, {g, 0, -1}, {-g, 0, 1}, {-g, 0, -1}};
+  const Points icosahedron = {{0, 1, g},  {0, 1, -g},  {0, -1, g}, {0, -1, -g}, {1, g, 0},  {1, -g, 0},
+                              {-1, g, 0}, {-1, -g, 0}, {g, 0, 1},  {g, 0, -1},  {-g, 0, 1}, {-g, 0, -1}};
   Points dodecahedron = cube_points(1.0f);
   for (int a = 0; a < 4; ++a) {
     const float s = (a & 1) ? i : -i, t = (a & 2) ? g : -g;
@@ -199,7 +200,8 @@ TEST(HullBuilder, PointsInsideOnFacesAndEdgesDoNotMatter) {
     // A grid over the whole surface and inside, corners last.
     for (int x = 0; x <= 10; ++x) {
       for (int y = 0; y <= 10; ++y) {
-        for (int z = 0; z <= 10; ++z) points.push_back({0.2f * float(x) - 1, 0.2f * float(y) - 1, 0.2f * float(z) - 1});
+        for (int z = 0; z <= 10; ++z)
+          points.push_back({0.2f * float(x) - 1, 0.2f * float(y) - 1, 0.2f * float(z) - 1});
       }
     }
     std::shuffle(points.begin(), points.end(), random.engine);
@@ -266,7 +268,8 @@ TEST(HullBuilder, RandomClouds) {
     Points points;
     const int count = 4 + int(random.engine() % 60);
     const Vec3 stretch{1.0f, random(0.01f, 1.0f), random(0.01f, 1.0f)};
-    for (int i = 0; i < count; ++i) points.push_back(multiply_each(stretch, round % 2 ? random.in_cube() : random.on_sphere()));
+    for (int i = 0; i < count; ++i)
+      points.push_back(multiply_each(stretch, round % 2 ? random.in_cube() : random.on_sphere()));
     const Hull hull = must_build(points);
     expect_valid(points, hull);
   }
@@ -327,7 +330,8 @@ TEST(HullBuilder, AllSizesAlike) {
 
 TEST(HullBuilder, FarFromTheOrigin) {
   // A float at 1 km is 6e-5 m coarse.
-  const Points points = turned(cube_points(0.5f), normalized(Quat{0.1f, 0.4f, 0.2f, 1.0f}), {1000, 500, -700});
+  const Points points =
+      turned(cube_points(0.5f), normalized(Quat{0.1f, 0.4f, 0.2f, 1.0f}), {1000, 500, -700});
   const Hull hull = must_build(points);
   expect_valid(points, hull);
   expect_counts(hull, 8, 6, 4);

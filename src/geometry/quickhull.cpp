@@ -415,7 +415,8 @@ double distance_to_triangle(DVec3 p, DVec3 a, DVec3 b, DVec3 c) {
   return absolute(dot(n, ap)) / size;
 }
 
-GridHull quickhull(std::span<const GridPoint> points, std::span<const int> first, const QuickhullLimits& limits) {
+GridHull quickhull(std::span<const GridPoint> points, std::span<const int> first,
+                   const QuickhullLimits& limits) {
   Builder builder(points, limits);
   const GridSpan span = builder.start(first);
   if (span != GridSpan::volume) return builder.result(span, false);

@@ -41,19 +41,21 @@ struct GridHull {
 };
 
 struct QuickhullLimits {
-  double tolerance = 0.0;     // how far outside a point may stay, in grid steps
-  double flat = 1.0;          // points that lie within this of a point, line or plane span no volume
-  int vertices = 255;         // at most, and at least four
+  double tolerance = 0.0;  // how far outside a point may stay, in grid steps
+  double flat = 1.0;       // points that lie within this of a point, line or plane span no volume
+  int vertices = 255;      // at most, and at least four
 };
 
 // The hull of all points. If `first` is not empty its points go in first, in their order, and all of them that lie
 // outside of those before become vertices.
-GridHull quickhull(std::span<const GridPoint> points, std::span<const int> first, const QuickhullLimits& limits);
+GridHull quickhull(std::span<const GridPoint> points, std::span<const int> first,
+                   const QuickhullLimits& limits);
 
 // Distance of `p` from the triangle (a, b, c), which may be a line or point.
 double distance_to_triangle(DVec3 p, DVec3 a, DVec3 b, DVec3 c);
 
 // How far `p` lies outside the hull's triangles, in grid steps; 0 inside.
-double distance_outside(std::span<const GridPoint> points, std::span<const GridTriangle> triangles, const GridPoint& p);
+double distance_outside(std::span<const GridPoint> points, std::span<const GridTriangle> triangles,
+                        const GridPoint& p);
 
 }  // namespace gyre

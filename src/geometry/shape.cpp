@@ -31,8 +31,12 @@ Shape with_height(ShapeKind kind, float radius, float half_height) {
   out.extents = {0.0f, half_height, 0.0f};
   return out;
 }
-Shape inner(const Capsule& capsule) { return with_height(ShapeKind::capsule, capsule.radius, capsule.half_height); }
-Shape inner(const Cylinder& cylinder) { return with_height(ShapeKind::cylinder, cylinder.radius, cylinder.half_height); }
+Shape inner(const Capsule& capsule) {
+  return with_height(ShapeKind::capsule, capsule.radius, capsule.half_height);
+}
+Shape inner(const Cylinder& cylinder) {
+  return with_height(ShapeKind::cylinder, cylinder.radius, cylinder.half_height);
+}
 Shape inner(const Cone& cone) { return with_height(ShapeKind::cone, cone.radius, cone.half_height); }
 
 Shape inner(const Plane& plane) {
@@ -63,8 +67,8 @@ Shape inner(const Geometry& geometry) {
 // "box: rounding is 3; allowed is 0 to 0.5 (m)".
 Error check_range(const char* shape, const char* field, float value, float low, float high) {
   if (value >= low && value <= high) return {};
-  return make_error(ErrorCode::invalid_argument, "%s: %s is %g m; allowed is %g to %g m", shape, field, double(value),
-                    double(low), double(high));
+  return make_error(ErrorCode::invalid_argument, "%s: %s is %g m; allowed is %g to %g m", shape, field,
+                    double(value), double(low), double(high));
 }
 Error check_length(const char* shape, const char* field, float value) {
   return check_range(shape, field, value, kSmallestLength, kLargestLength);
@@ -89,7 +93,8 @@ Error check(const Capsule& capsule) {
 
 Error check(const Cylinder& cylinder) {
   const Error error = check_length("cylinder", "radius", cylinder.radius);
-  return error.code != ErrorCode::none ? error : check_length("cylinder", "half_height", cylinder.half_height);
+  return error.code != ErrorCode::none ? error
+                                       : check_length("cylinder", "half_height", cylinder.half_height);
 }
 
 Error check(const Cone& cone) {
@@ -107,8 +112,9 @@ Error check(const Plane& plane) {
   }
   const double distance = double(plane.offset) / length(DVec3(n));
   if (absolute(distance) <= double(kLargestLength)) return {};
-  return make_error(ErrorCode::invalid_argument, "plane: offset is %g, %g m from the origin; allowed is -%g to %g m",
-                    double(plane.offset), distance, double(kLargestLength), double(kLargestLength));
+  return make_error(ErrorCode::invalid_argument,
+                    "plane: offset is %g, %g m from the origin; allowed is -%g to %g m", double(plane.offset),
+                    distance, double(kLargestLength), double(kLargestLength));
 }
 
 Error check(const Geometry& geometry) {
@@ -169,15 +175,24 @@ float farthest_corner(const Aabb& box, Vec3 from) {
 
 const char* to_string(ShapeKind kind) {
   switch (kind) {
-    case ShapeKind::sphere: return "sphere";
-    case ShapeKind::box: return "box";
-    case ShapeKind::capsule: return "capsule";
-    case ShapeKind::cylinder: return "cylinder";
-    case ShapeKind::cone: return "cone";
-    case ShapeKind::hull: return "hull";
-    case ShapeKind::plane: return "plane";
-    case ShapeKind::mesh: return "mesh";
-    case ShapeKind::height_field: return "height_field";
+    case ShapeKind::sphere:
+      return "sphere";
+    case ShapeKind::box:
+      return "box";
+    case ShapeKind::capsule:
+      return "capsule";
+    case ShapeKind::cylinder:
+      return "cylinder";
+    case ShapeKind::cone:
+      return "cone";
+    case ShapeKind::hull:
+      return "hull";
+    case ShapeKind::plane:
+      return "plane";
+    case ShapeKind::mesh:
+      return "mesh";
+    case ShapeKind::height_field:
+      return "height_field";
   }
   return "unknown";
 }
@@ -213,7 +228,8 @@ Error check_shape(const AnyShape& shape) {
 Aabb bounds(const Shape& shape, const Transform& t) {
   const Vec3 radius{shape.radius, shape.radius, shape.radius};
   switch (shape.kind) {
-    case ShapeKind::sphere: return {t.position - radius, t.position + radius};
+    case ShapeKind::sphere:
+      return {t.position - radius, t.position + radius};
     case ShapeKind::box:
     case ShapeKind::capsule: {
       const Aabb core = rotated_box({}, shape.extents, t);
@@ -224,11 +240,16 @@ Aabb bounds(const Shape& shape, const Transform& t) {
       const Vec3 e = shape.extents.y * absolute(axis) + shape.radius * disc_extent(axis);
       return {t.position - e, t.position + e};
     }
-    case ShapeKind::cone: return cone_bounds(shape, t);
-    case ShapeKind::hull: return hull_bounds(*shape.hull, t);
-    case ShapeKind::plane: return plane_bounds(shape, t);
-    case ShapeKind::mesh: return rotated_box(center(shape.mesh->tree.box), half_size(shape.mesh->tree.box), t);
-    case ShapeKind::height_field: return rotated_box(center(shape.field->box), half_size(shape.field->box), t);
+    case ShapeKind::cone:
+      return cone_bounds(shape, t);
+    case ShapeKind::hull:
+      return hull_bounds(*shape.hull, t);
+    case ShapeKind::plane:
+      return plane_bounds(shape, t);
+    case ShapeKind::mesh:
+      return rotated_box(center(shape.mesh->tree.box), half_size(shape.mesh->tree.box), t);
+    case ShapeKind::height_field:
+      return rotated_box(center(shape.field->box), half_size(shape.field->box), t);
   }
   return {};
 }
@@ -237,17 +258,23 @@ float inner_radius(const Shape& shape) {
   const float h = shape.extents.y;
   switch (shape.kind) {
     case ShapeKind::sphere:
-    case ShapeKind::capsule: return shape.radius;
-    case ShapeKind::box: return smallest(shape.extents) + shape.radius;
-    case ShapeKind::cylinder: return min(shape.radius, h);
+    case ShapeKind::capsule:
+      return shape.radius;
+    case ShapeKind::box:
+      return smallest(shape.extents) + shape.radius;
+    case ShapeKind::cylinder:
+      return min(shape.radius, h);
     case ShapeKind::cone: {
       // The mantle's plane through the apex (0, h) and the rim (r, -h) lies h r / slant from the origin, below h.
       return h * (shape.radius / std::sqrt(shape.radius * shape.radius + 4.0f * h * h));
     }
-    case ShapeKind::hull: return shape.hull->inner_radius;
-    case ShapeKind::plane: return kUnbounded;
+    case ShapeKind::hull:
+      return shape.hull->inner_radius;
+    case ShapeKind::plane:
+      return kUnbounded;
     case ShapeKind::mesh:
-    case ShapeKind::height_field: return 0.0f;
+    case ShapeKind::height_field:
+      return 0.0f;
   }
   return 0.0f;
 }
@@ -255,23 +282,31 @@ float inner_radius(const Shape& shape) {
 float outer_radius(const Shape& shape, Vec3 center) {
   const Vec3 away = absolute(center);
   const float h = shape.extents.y;
-  const float rim = std::sqrt(center.x * center.x + center.z * center.z) + shape.radius;  // to the far side of a disc
+  const float rim =
+      std::sqrt(center.x * center.x + center.z * center.z) + shape.radius;  // to the far side of a disc
   switch (shape.kind) {
-    case ShapeKind::sphere: return length(center) + shape.radius;
+    case ShapeKind::sphere:
+      return length(center) + shape.radius;
     case ShapeKind::box:
-    case ShapeKind::capsule: return length(away + shape.extents) + shape.radius;
-    case ShapeKind::cylinder: return length(Vec3{rim, away.y + h, 0.0f});
+    case ShapeKind::capsule:
+      return length(away + shape.extents) + shape.radius;
+    case ShapeKind::cylinder:
+      return length(Vec3{rim, away.y + h, 0.0f});
     case ShapeKind::cone: {
       return max(length(Vec3{center.x, center.y - h, center.z}), length(Vec3{rim, center.y + h, 0.0f}));
     }
     case ShapeKind::hull: {
       float farthest = 0.0f;
-      for (const Vec3& vertex : shape.hull->vertices) farthest = max(farthest, length_squared(vertex - center));
+      for (const Vec3& vertex : shape.hull->vertices)
+        farthest = max(farthest, length_squared(vertex - center));
       return std::sqrt(farthest);
     }
-    case ShapeKind::plane: return kUnbounded;
-    case ShapeKind::mesh: return farthest_corner(shape.mesh->tree.box, center);
-    case ShapeKind::height_field: return farthest_corner(shape.field->box, center);
+    case ShapeKind::plane:
+      return kUnbounded;
+    case ShapeKind::mesh:
+      return farthest_corner(shape.mesh->tree.box, center);
+    case ShapeKind::height_field:
+      return farthest_corner(shape.field->box, center);
   }
   return 0.0f;
 }

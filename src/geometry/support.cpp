@@ -171,7 +171,8 @@ void cone_face(const Shape& shape, Vec3 d, FacePolygon& out) {
   const Radial r = radial_part(d);
   const float h = shape.extents.y;
   const float slant = std::sqrt(shape.radius * shape.radius + 4.0f * h * h);
-  const float n_r = 2.0f * h / slant, n_y = shape.radius / slant;  // the mantle's normal: outward part, upward part
+  const float n_r = 2.0f * h / slant,
+              n_y = shape.radius / slant;  // the mantle's normal: outward part, upward part
   const float along_mantle = n_r * r.length + n_y * d.y;
   if (-d.y >= along_mantle) {
     out.feature = 0;
@@ -184,7 +185,8 @@ void cone_face(const Shape& shape, Vec3 d, FacePolygon& out) {
     return set_point(out, {0.0f, h, 0.0f}, 32, d);
   }
   out.feature = 1;
-  set_segment(out, {shape.radius * r.x, -h, shape.radius * r.z}, 33, {0.0f, h, 0.0f}, 32, {n_r * r.x, n_y, n_r * r.z});
+  set_segment(out, {shape.radius * r.x, -h, shape.radius * r.z}, 33, {0.0f, h, 0.0f}, 32,
+              {n_r * r.x, n_y, n_r * r.z});
 }
 
 void hull_face(const Hull& hull, Vec3 d, FacePolygon& out) {
@@ -213,22 +215,38 @@ float core_radius(const Shape& shape) {
 
 Vec3 support(const Shape& shape, Vec3 direction) {
   switch (shape.kind) {
-    case ShapeKind::box: return support_box(shape, direction);
-    case ShapeKind::capsule: return {0.0f, direction.y < 0.0f ? -shape.extents.y : shape.extents.y, 0.0f};
-    case ShapeKind::cylinder: return support_cylinder(shape, direction);
-    case ShapeKind::cone: return support_cone(shape, direction);
-    case ShapeKind::hull: return shape.hull->vertices[std::size_t(support_vertex(*shape.hull, direction))];
-    default: return {};
+    case ShapeKind::box:
+      return support_box(shape, direction);
+    case ShapeKind::capsule:
+      return {0.0f, direction.y < 0.0f ? -shape.extents.y : shape.extents.y, 0.0f};
+    case ShapeKind::cylinder:
+      return support_cylinder(shape, direction);
+    case ShapeKind::cone:
+      return support_cone(shape, direction);
+    case ShapeKind::hull:
+      return shape.hull->vertices[std::size_t(support_vertex(*shape.hull, direction))];
+    default:
+      return {};
   }
 }
 
 int support_face(const Shape& shape, Vec3 direction, FacePolygon& out) {
   switch (shape.kind) {
-    case ShapeKind::box: box_face(shape, direction, out); break;
-    case ShapeKind::capsule: capsule_face(shape, direction, out); break;
-    case ShapeKind::cylinder: cylinder_face(shape, direction, out); break;
-    case ShapeKind::cone: cone_face(shape, direction, out); break;
-    case ShapeKind::hull: hull_face(*shape.hull, direction, out); break;
+    case ShapeKind::box:
+      box_face(shape, direction, out);
+      break;
+    case ShapeKind::capsule:
+      capsule_face(shape, direction, out);
+      break;
+    case ShapeKind::cylinder:
+      cylinder_face(shape, direction, out);
+      break;
+    case ShapeKind::cone:
+      cone_face(shape, direction, out);
+      break;
+    case ShapeKind::hull:
+      hull_face(*shape.hull, direction, out);
+      break;
     default:
       out.feature = 0;
       set_point(out, {}, 0, direction);
