@@ -26,8 +26,8 @@ class Broadphase {
 
   // Appends pair_key of every pair whose fat boxes overlap, that may_pair, and of which at least one is in `moved`
   // (ascending, without repeats); sorted, without repeats. Parallel over `moved`.
-  virtual void find_pairs(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved, TaskSystem& tasks,
-                          Array<std::uint64_t>& pairs) = 0;
+  virtual void find_pairs(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved,
+                          TaskSystem& tasks, Array<std::uint64_t>& pairs) = 0;
 
   // Appends the index of every proxy in use whose fat box overlaps `box`; ascending.
   virtual void query(std::span<const Proxy> proxies, const Aabb& box, Array<std::uint32_t>& found) const = 0;

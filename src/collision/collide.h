@@ -1,5 +1,8 @@
 // The narrow-phase stage: every contact that has an awake body is looked at, its manifolds are written in world axes and
 // matched with those of the step before. Blocks of contacts run in parallel; each writes only its own slots.
+//
+// Distances at which contacts are looked for, and all other tolerances, are relative to the smaller shape of a pair: the
+// same scene ten times larger or smaller gives the same contacts.
 #pragma once
 
 #include "base/bitset.h"
@@ -16,7 +19,9 @@ struct ColliderShape {
   Shape shape;
   Transform body_from_shape;
   std::uint32_t body = 0;
-  float size = 0.0f;  // inner_radius of the shape, or of its thinnest part: the scale of tolerances
+  // inner_radius of the shape, or of its thinnest part: the scale of tolerances. 0 (meshes, height fields) and kUnbounded
+  // (planes) leave that to the shape they meet.
+  float size = 0.0f;
 };
 
 // One body, as the stage needs it.
@@ -34,15 +39,19 @@ struct CollideInput {
   std::span<const ColliderBody> bodies;
   std::span<const Proxy> proxies;
   float seconds = 0.0f;  // length of the step: how far things may come
+  bool recycle = true;   // false: looks at every pair anew (tests compare with that)
 };
 
-// Bits by contact slot, united over workers: what changed in this step.
+// Bits by contact slot: what changed in this step.
 struct TouchChanges {
   Bitset began;  // not touching before, touching now (sensors too)
   Bitset ended;  // the other way round
   Bitset gone;   // fat boxes no longer overlap: remove the contact (`ended` is set too if it was touching)
 };
 
+// Brings all contacts up to date. A contact with no awake body is left exactly as it is, unless it is gone.
+// In manifolds of contacts that were looked at, what solvers report over a step (total_impulse, total_friction,
+// approach_speed) is zero again; impulses to start from are carried over.
 void collide(ContactStore& store, const CollideInput& input, TaskSystem& tasks, TouchChanges& changes);
 
 }  // namespace gyre

@@ -21,12 +21,13 @@ struct Proxy {
   std::uint32_t body = 0;  // proxies of one body never pair
   ProxyMotion motion = ProxyMotion::none;
   bool sensor = false;
-  bool pushes = true;      // dynamic: at least one of a pair must be, unless one is a sensor
+  bool pushes = true;  // dynamic: at least one of a pair must be, unless one is a sensor
 };
 
 // Whether the two may meet at all, boxes aside.
 constexpr bool may_pair(const Proxy& a, const Proxy& b) {
   if (a.motion == ProxyMotion::none || b.motion == ProxyMotion::none || a.body == b.body) return false;
+  if (a.motion == ProxyMotion::fixed && b.motion == ProxyMotion::fixed) return false;
   if (a.sensor && b.sensor) return false;
   if (!a.sensor && !b.sensor && !a.pushes && !b.pushes) return false;
   if (a.filter.group != 0 && a.filter.group == b.filter.group) return a.filter.group > 0;

@@ -36,6 +36,13 @@ struct ContactPointState {
   std::uint32_t age = 0;        // steps for which this feature has been in contact
 };
 
+// A contact point as the last full look found it, in the body frame of A: from it the point of a pair that hardly moved
+// against each other is found again without asking the shapes.
+struct PointAnchor {
+  Vec3 position;  // m, midway between the surfaces
+  float separation = 0.0f;
+};
+
 struct Manifold {
   Vec3 normal{0, 1, 0};  // unit, world axes, from A to B
   std::int32_t count = 0;
@@ -46,6 +53,9 @@ struct Manifold {
   std::uint32_t triangle = 0;
   Vec3 total_friction;        // N s on B over the whole last step
   std::uint32_t sliding = 0;  // 1 when friction was at its limit at the end of the last step
+  // What the solver never reads: the manifold as the last full look saw it.
+  Vec3 seen_normal{0, 1, 0};  // in the body frame of A
+  PointAnchor anchors[kMaxManifoldPoints];
 };
 
 // What a pair remembers from its last look, so that the next one starts well: a separating axis or a simplex.

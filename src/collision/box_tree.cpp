@@ -1,0 +1,394 @@
+// Building, changing and keeping up the wide tree. See box_tree.h.
+#include "collision/box_tree.h"
+
+#include <limits>
+
+namespace gyre {
+namespace {
+
+// Children of a node when it is built: room is left for those that come later.
+constexpr std::size_t kFill = 6;
+
+// Items below a node of this level, when it is built.
+std::size_t room_of(int level) {
+  std::size_t room = kFill;
+  for (int i = 0; i < level; ++i) room *= kFill;
+  return room;
+}
+
+template <class Entry>
+int longest_axis(std::span<const Entry> entries) {
+  Vec3 low = entries[0].box.low + entries[0].box.high;
+  Vec3 high = low;
+  for (const Entry& entry : entries) {
+    const Vec3 middle = entry.box.low + entry.box.high;
+    low = min(low, middle);
+    high = max(high, middle);
+  }
+  const Vec3 d = high - low;
+  return d.x >= d.y && d.x >= d.z ? 0 : d.y >= d.z ? 1 : 2;
+}
+
+}  // namespace
+
+Aabb BoxTree::lane_box(const Node& node, int lane) {
+  return {{node.low[0][lane], node.low[1][lane], node.low[2][lane]},
+          {node.high[0][lane], node.high[1][lane], node.high[2][lane]}};
+}
+
+void BoxTree::set_lane_box(Node& node, int lane, const Aabb& box) {
+  for (int axis = 0; axis < 3; ++axis) {
+    node.low[axis][lane] = box.low[axis];
+    node.high[axis][lane] = box.high[axis];
+  }
+}
+
+Aabb BoxTree::bounds_of(const Node& node) {
+  Aabb box = lane_box(node, 0);
+  for (int lane = 1; lane < node.count; ++lane) box = merge(box, lane_box(node, lane));
+  return box;
+}
+
+std::uint32_t BoxTree::make_node(int level) {
+  std::uint32_t index = std::uint32_t(nodes_.size());
+  if (free_.empty()) {
+    nodes_.emplace_back();
+  } else {
+    index = free_.back();
+    free_.pop_back();
+  }
+  Node& node = nodes_[index];
+  constexpr float kNever = std::numeric_limits<float>::infinity();
+  for (int lane = 0; lane < kWidth; ++lane) {
+    set_lane_box(node, lane, {{kNever, kNever, kNever}, {-kNever, -kNever, -kNever}});
+    node.child[lane] = kNowhere;
+  }
+  node.parent = kNowhere;
+  node.lane = 0;
+  node.count = 0;
+  node.level = std::uint8_t(level);
+  node.used = 1;
+  return index;
+}
+
+void BoxTree::free_node(std::uint32_t index) {
+  nodes_[index].used = 0;
+  free_.push_back(index);
+}
+
+void BoxTree::clear() {
+  nodes_.clear();
+  free_.clear();
+  for (std::uint32_t& place : places_) place = kNowhere;
+  root_ = kNowhere;
+  next_improved_ = 0;
+  size_ = 0;
+}
+
+void BoxTree::set_child(std::uint32_t node, int lane, const Entry& entry) {
+  Node& n = nodes_[node];
+  set_lane_box(n, lane, entry.box);
+  n.child[lane] = entry.child;
+  if (n.level == 0) {
+    places_[entry.child] = node * kWidth + std::uint32_t(lane);
+  } else {
+    nodes_[entry.child].parent = node;
+    nodes_[entry.child].lane = std::uint8_t(lane);
+  }
+}
+
+void BoxTree::append_child(std::uint32_t node, const Entry& entry) {
+  const int lane = nodes_[node].count++;
+  set_child(node, lane, entry);
+}
+
+void BoxTree::remove_lane(std::uint32_t node, int lane) {
+  Node& n = nodes_[node];
+  const int last = --n.count;
+  if (lane != last) set_child(node, lane, {lane_box(n, last), n.child[last]});
+  constexpr float kNever = std::numeric_limits<float>::infinity();
+  set_lane_box(n, last, {{kNever, kNever, kNever}, {-kNever, -kNever, -kNever}});
+  n.child[last] = kNowhere;
+}
+
+// Makes the boxes that ancestors keep of `node` exact again, as far up as they change.
+void BoxTree::refit_up(std::uint32_t node) {
+  while (nodes_[node].parent != kNowhere) {
+    const Aabb box = bounds_of(nodes_[node]);
+    Node& parent = nodes_[nodes_[node].parent];
+    const int lane = nodes_[node].lane;
+    if (lane_box(parent, lane) == box) return;
+    set_lane_box(parent, lane, box);
+    node = nodes_[node].parent;
+  }
+}
+
+void BoxTree::shorten_root() {
+  while (nodes_[root_].level > 0 && nodes_[root_].count == 1) {
+    const std::uint32_t old = root_;
+    root_ = nodes_[old].child[0];
+    nodes_[root_].parent = kNowhere;
+    free_node(old);
+  }
+}
+
+// ------------------------------------------------------------------------------------------------ one at a time
+
+void BoxTree::insert(std::uint32_t item, const Aabb& box) {
+  if (places_.size() <= item) places_.resize(std::size_t(item) + 1, kNowhere);
+  GYRE_ASSERT(places_[item] == kNowhere, "the item is not in the tree yet");
+  insert_entry({box, item});
+  ++size_;
+}
+
+void BoxTree::insert_entry(const Entry& entry) {
+  if (root_ == kNowhere) root_ = make_node(0);
+  std::uint32_t index = root_;
+  while (nodes_[index].level > 0) {
+    Node& node = nodes_[index];
+    // The child that grows least in surface; among equals the smallest.
+    int best = 0;
+    float least_growth = std::numeric_limits<float>::infinity(), least_area = least_growth;
+    for (int lane = 0; lane < node.count; ++lane) {
+      const Aabb box = lane_box(node, lane);
+      const float area = half_area(box);
+      const float growth = half_area(merge(box, entry.box)) - area;
+      if (growth < least_growth || (growth == least_growth && area < least_area)) {
+        best = lane;
+        least_growth = growth;
+        least_area = area;
+      }
+    }
+    set_lane_box(node, best, merge(lane_box(node, best), entry.box));
+    index = node.child[best];
+  }
+  add_or_split(index, entry);
+}
+
+void BoxTree::add_or_split(std::uint32_t node, Entry entry) {
+  for (;;) {
+    if (nodes_[node].count < kWidth) {
+      append_child(node, entry);
+      return;
+    }
+    const std::uint32_t sibling = split(node, entry);
+    const std::uint32_t parent = nodes_[node].parent;
+    entry = {bounds_of(nodes_[sibling]), sibling};
+    if (parent == kNowhere) {
+      root_ = make_node(nodes_[node].level + 1);
+      append_child(root_, {bounds_of(nodes_[node]), node});
+      append_child(root_, entry);
+      return;
+    }
+    set_lane_box(nodes_[parent], nodes_[node].lane, bounds_of(nodes_[node]));
+    node = parent;
+  }
+}
+
+// Shares the children of a full node and one more between it and a new sibling, which is returned.
+std::uint32_t BoxTree::split(std::uint32_t node, const Entry& extra) {
+  constexpr int kCount = kWidth + 1;
+  Entry by_axis[3][kCount];
+  float least = std::numeric_limits<float>::infinity();
+  int best_axis = 0, best_left = kCount / 2;
+  for (int axis = 0; axis < 3; ++axis) {
+    Entry* const sorted = by_axis[axis];
+    for (int i = 0; i < kCount; ++i) {
+      const Entry entry = i < kWidth ? Entry{lane_box(nodes_[node], i), nodes_[node].child[i]} : extra;
+      const float key = entry.box.low[axis] + entry.box.high[axis];
+      int place = i;
+      for (; place > 0 && key < sorted[place - 1].box.low[axis] + sorted[place - 1].box.high[axis]; --place) {
+        sorted[place] = sorted[place - 1];
+      }
+      sorted[place] = entry;
+    }
+    float right_area[kCount];
+    Aabb right = sorted[kCount - 1].box;
+    for (int i = kCount - 1; i > 0; --i) {
+      right = merge(right, sorted[i].box);
+      right_area[i] = half_area(right);
+    }
+    Aabb left = sorted[0].box;
+    for (int count = 1; count < kCount; ++count) {
+      left = merge(left, sorted[count - 1].box);
+      if (count < kLeastInHalf || kCount - count < kLeastInHalf) continue;
+      const float cost = float(count) * half_area(left) + float(kCount - count) * right_area[count];
+      if (cost < least) {
+        least = cost;
+        best_axis = axis;
+        best_left = count;
+      }
+    }
+  }
+  const std::uint32_t sibling = make_node(nodes_[node].level);
+  while (nodes_[node].count > 0) remove_lane(node, nodes_[node].count - 1);
+  for (int i = 0; i < kCount; ++i) append_child(i < best_left ? node : sibling, by_axis[best_axis][i]);
+  return sibling;
+}
+
+void BoxTree::remove(std::uint32_t item) {
+  GYRE_ASSERT(contains(item), "the item is in the tree");
+  std::uint32_t node = places_[item] / kWidth;
+  int lane = int(places_[item] % kWidth);
+  places_[item] = kNowhere;
+  --size_;
+  for (;;) {
+    remove_lane(node, lane);
+    if (nodes_[node].count > 0) break;
+    const std::uint32_t parent = nodes_[node].parent;
+    lane = nodes_[node].lane;
+    free_node(node);
+    if (parent == kNowhere) {
+      root_ = kNowhere;
+      return;
+    }
+    node = parent;
+  }
+  refit_up(node);
+  shorten_root();
+}
+
+void BoxTree::move(std::uint32_t item, const Aabb& box) {
+  GYRE_ASSERT(contains(item), "the item is in the tree");
+  const std::uint32_t index = places_[item] / kWidth;
+  Node& node = nodes_[index];
+  bool stays = node.parent == kNowhere;
+  if (!stays) {
+    const Aabb home = lane_box(nodes_[node.parent], node.lane);
+    const Vec3 middle = center(box);
+    stays = gyre::contains(home, {middle, middle});
+  }
+  if (stays) {
+    set_lane_box(node, int(places_[item] % kWidth), box);
+    refit_up(index);
+  } else {
+    remove(item);
+    insert(item, box);
+  }
+}
+
+// -------------------------------------------------------------------------------------------------- many at once
+
+void BoxTree::build(std::span<const std::uint32_t> items, std::span<const Aabb> boxes) {
+  clear();
+  if (items.empty()) return;
+  std::uint32_t highest = 0;
+  entries_.clear();
+  entries_.reserve(items.size());
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    entries_.push_back({boxes[i], items[i]});
+    highest = max(highest, items[i]);
+  }
+  if (places_.size() <= highest) places_.resize(std::size_t(highest) + 1, kNowhere);
+  size_ = items.size();
+  int level = 0;
+  while (items.size() > room_of(level)) ++level;
+  root_ = build_node(entries_, level, 0);
+}
+
+// `lowest`: the level of the nodes that take the entries themselves as children.
+std::uint32_t BoxTree::build_node(std::span<Entry> entries, int level, int lowest) {
+  const std::uint32_t node = make_node(level);
+  if (level == lowest) {
+    for (const Entry& entry : entries) append_child(node, entry);
+  } else {
+    const std::size_t room = room_of(level - 1);
+    add_groups(node, entries, int((entries.size() + room - 1) / room), level, lowest);
+  }
+  return node;
+}
+
+void BoxTree::add_groups(std::uint32_t parent, std::span<Entry> entries, int groups, int level, int lowest) {
+  if (groups == 1) {
+    const std::uint32_t child = build_node(entries, level - 1, lowest);
+    append_child(parent, {bounds_of(nodes_[child]), child});
+    return;
+  }
+  const int left = groups / 2;
+  const std::size_t middle = entries.size() * std::size_t(left) / std::size_t(groups);
+  partition_by_center(entries, middle, longest_axis<Entry>(entries));
+  add_groups(parent, entries.first(middle), left, level, lowest);
+  add_groups(parent, entries.subspan(middle), groups - left, level, lowest);
+}
+
+void BoxTree::improve(int nodes) {
+  if (root_ == kNowhere) return;
+  // Most nodes lie on level 0 and have nothing to regroup: they are passed by, a bounded number of them.
+  for (int passed = 0; nodes > 0 && passed < 16 * nodes + 64; ++passed) {
+    if (next_improved_ >= nodes_.size()) next_improved_ = 0;
+    const std::uint32_t index = next_improved_++;
+    if (nodes_[index].used == 0 || nodes_[index].level == 0) continue;
+    regroup(index);
+    --nodes;
+  }
+}
+
+void BoxTree::regroup(std::uint32_t index) {
+  Entry entries[kWidth * kWidth];
+  std::size_t count = 0;
+  const int level = nodes_[index].level;
+  while (nodes_[index].count > 0) {
+    const int lane = nodes_[index].count - 1;
+    const std::uint32_t child = nodes_[index].child[lane];
+    for (int i = 0; i < nodes_[child].count; ++i) {
+      entries[count++] = {lane_box(nodes_[child], i), nodes_[child].child[i]};
+    }
+    free_node(child);
+    remove_lane(index, lane);
+  }
+  const std::size_t groups = min((count + kFill - 1) / kFill, std::size_t(kWidth));
+  add_groups(index, {entries, count}, int(groups), level, level - 1);
+  refit_up(index);
+  shorten_root();
+}
+
+// ---------------------------------------------------------------------------------------------------------- checks
+
+double BoxTree::cost() const {
+  if (root_ == kNowhere) return 0.0;
+  double sum = 0.0;
+  for (const Node& node : nodes_) {
+    if (node.used != 0) sum += double(half_area(bounds_of(node)));
+  }
+  return sum / double(half_area(bounds_of(nodes_[root_])));
+}
+
+const char* BoxTree::find_fault() const {
+  std::size_t items = 0;
+  if (root_ != kNowhere) {
+    if (nodes_[root_].parent != kNowhere) return "the root has a parent";
+    if (const char* const fault = find_fault(root_, items)) return fault;
+  }
+  if (items != size_) return "the number of items is wrong";
+  std::size_t used = 0;
+  for (const Node& node : nodes_) used += node.used;
+  if (used + free_.size() != nodes_.size()) return "a node is neither in use nor free";
+  return nullptr;
+}
+
+const char* BoxTree::find_fault(std::uint32_t index, std::size_t& items) const {
+  const Node& node = nodes_[index];
+  if (node.used == 0) return "a node in the tree is on the free list";
+  if (node.count == 0 || node.count > kWidth) return "a node is empty";
+  for (int lane = 0; lane < kWidth; ++lane) {
+    if (lane >= node.count) {
+      if (!(node.low[0][lane] > node.high[0][lane])) return "an empty lane has a box";
+      continue;
+    }
+    if (node.level == 0) {
+      ++items;
+      if (places_[node.child[lane]] != index * kWidth + std::uint32_t(lane))
+        return "an item's place is wrong";
+      continue;
+    }
+    const Node& child = nodes_[node.child[lane]];
+    if (child.level + 1 != node.level) return "leaves lie at different depths";
+    if (child.parent != index || child.lane != lane) return "a node does not know its parent";
+    if (!gyre::contains(lane_box(node, lane), bounds_of(child)))
+      return "a node's box does not contain a child's";
+    if (const char* const fault = find_fault(node.child[lane], items)) return fault;
+  }
+  return nullptr;
+}
+
+}  // namespace gyre

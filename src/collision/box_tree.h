@@ -1,0 +1,160 @@
+// A wide tree of moving boxes: eight boxes a node, side by side, so that one loop tests them all. All leaves lie at the
+// same depth, as in a B-tree, so the tree cannot degenerate whatever is inserted and removed.
+//
+// In: items (small indices) with boxes. Out: walks over the items whose boxes overlap a box. A box that stays inside its
+// node's is changed in place; others are taken out and put in again. Nodes that overflow are split where the two halves'
+// surfaces are smallest. Each improve() regroups the grandchildren of a few nodes, in turn, so quality is kept up by
+// bounded work a step. Many items at once are built from the top by halving along the longest side.
+//
+// Which items a walk finds never depends on the tree's shape, only their order does.
+//
+// Sources: A. Guttman, "R-Trees", 1984; N. Beckmann et al., "The R*-Tree", 1990 (choice of split by surface);
+// I. Wald et al., "Getting Rid of Packets: Efficient SIMD Single-Ray Traversal using Multi-branching BVHs", 2008.
+#pragma once
+
+#include "base/array.h"
+
+#include <gyre/math.h>
+
+#include <bit>
+#include <cstdint>
+#include <span>
+
+namespace gyre {
+
+class BoxTree {
+ public:
+  static constexpr int kWidth = 8;
+
+  std::size_t size() const { return size_; }
+  bool contains(std::uint32_t item) const { return item < places_.size() && places_[item] != kNowhere; }
+
+  void clear();
+  // Forgets everything and builds anew: items[i] has boxes[i].
+  void build(std::span<const std::uint32_t> items, std::span<const Aabb> boxes);
+  void insert(std::uint32_t item, const Aabb& box);
+  void remove(std::uint32_t item);
+  // Gives an item that is in the tree another box.
+  void move(std::uint32_t item, const Aabb& box);
+  // Regroups the children of up to `nodes` inner nodes, going round the tree from call to call.
+  void improve(int nodes);
+
+  // Calls visit(item) for each item whose box overlaps `box`.
+  template <class Visit>
+  void for_each_overlap(const Aabb& box, Visit&& visit) const {
+    if (size_ == 0) return;
+    std::uint32_t stack[kMaxLevels * kWidth];
+    int depth = 0;
+    stack[depth++] = root_;
+    while (depth > 0) {
+      const Node& node = nodes_[stack[--depth]];
+      const unsigned mask = overlap_mask(node, box);
+      if (node.level == 0) {
+        for (unsigned rest = mask; rest != 0; rest &= rest - 1) visit(node.child[std::countr_zero(rest)]);
+      } else {
+        for (unsigned rest = mask; rest != 0; rest &= rest - 1)
+          stack[depth++] = node.child[std::countr_zero(rest)];
+      }
+    }
+  }
+
+  // Null if all nodes hold what they should, otherwise what is wrong. Walks everything: for tests and debug builds.
+  const char* find_fault() const;
+  // Sum over inner nodes of their boxes' surface over the root's: how many nodes a walk meets, roughly.
+  double cost() const;
+  std::size_t bytes() const { return nodes_.bytes() + places_.bytes() + free_.bytes(); }
+
+ private:
+  static constexpr std::uint32_t kNowhere = 0xffffffffu;
+  static constexpr int kMaxLevels =
+      24;  // nodes hold three or more children when they are made, so 3^24 items at least
+  static constexpr int kLeastInHalf = 3;
+
+  // Lanes from `count` on have a box that nothing overlaps.
+  struct alignas(64) Node {
+    float low[3][kWidth];
+    float high[3][kWidth];
+    std::uint32_t child[kWidth];  // nodes; on level 0, items
+    std::uint32_t parent;
+    std::uint8_t lane;  // in the parent
+    std::uint8_t count;
+    std::uint8_t level;  // 0: the children are items
+    std::uint8_t used;   // 0: the node is on the free list
+  };
+
+  // A child on its way from node to node.
+  struct Entry {
+    Aabb box;
+    std::uint32_t child;
+  };
+
+  static unsigned overlap_mask(const Node& node, const Aabb& box) {
+    std::uint8_t hit[kWidth];
+    for (int i = 0; i < kWidth; ++i) {
+      hit[i] = std::uint8_t((node.low[0][i] <= box.high.x) & (box.low.x <= node.high[0][i]) &
+                            (node.low[1][i] <= box.high.y) & (box.low.y <= node.high[1][i]) &
+                            (node.low[2][i] <= box.high.z) & (box.low.z <= node.high[2][i]));
+    }
+    unsigned mask = 0;
+    for (int i = 0; i < kWidth; ++i) mask |= unsigned(hit[i]) << i;
+    return mask;
+  }
+  static Aabb lane_box(const Node& node, int lane);
+  static void set_lane_box(Node& node, int lane, const Aabb& box);
+  static Aabb bounds_of(const Node& node);
+
+  std::uint32_t make_node(int level);
+  void free_node(std::uint32_t index);
+  void set_child(std::uint32_t node, int lane, const Entry& entry);
+  void append_child(std::uint32_t node, const Entry& entry);
+  void remove_lane(std::uint32_t node, int lane);
+  void refit_up(std::uint32_t node);
+  void insert_entry(const Entry& entry);
+  void add_or_split(std::uint32_t node, Entry entry);
+  std::uint32_t split(std::uint32_t node, const Entry& extra);
+  void shorten_root();
+  void regroup(std::uint32_t node);
+  // Parts the entries into `groups` and adds a child to `parent`, of level `level`, for each. Nodes of level `lowest` get
+  // the entries themselves as children.
+  void add_groups(std::uint32_t parent, std::span<Entry> entries, int groups, int level, int lowest);
+  std::uint32_t build_node(std::span<Entry> entries, int level, int lowest);
+  const char* find_fault(std::uint32_t node, std::size_t& items) const;
+
+  Array<Node> nodes_;
+  Array<std::uint32_t> free_;
+  Array<std::uint32_t> places_;  // by item: kWidth * node + lane, or kNowhere
+  Array<Entry> entries_;         // scratch of build
+  std::uint32_t root_ = kNowhere;
+  std::uint32_t next_improved_ = 0;
+  std::size_t size_ = 0;
+};
+
+// Puts the entries that belong into the lower `middle` places there, by their boxes' centres along `axis`: quickselect,
+// median of three. The result is a function of the input alone.
+template <class Entry>
+void partition_by_center(std::span<Entry> entries, std::size_t middle, int axis) {
+  const auto key = [axis](const Entry& entry) { return entry.box.low[axis] + entry.box.high[axis]; };
+  std::size_t low = 0, high = entries.size();
+  while (high - low > 1) {
+    const float a = key(entries[low]), b = key(entries[low + (high - low) / 2]), c = key(entries[high - 1]);
+    const float pivot = a < b ? (b < c ? b : (a < c ? c : a)) : (a < c ? a : (b < c ? c : b));
+    std::size_t i = low, k = high - 1;
+    for (;;) {
+      while (key(entries[i]) < pivot) ++i;
+      while (pivot < key(entries[k])) --k;
+      if (i >= k) break;
+      const Entry swapped = entries[i];
+      entries[i++] = entries[k];
+      entries[k--] = swapped;
+    }
+    // [low, i) is not above the pivot, [i, high) not below it; between them may stand one equal to it.
+    const std::size_t cut = i == low ? low + 1 : i;
+    if (middle < cut) {
+      high = cut;
+    } else {
+      low = cut;
+    }
+  }
+}
+
+}  // namespace gyre

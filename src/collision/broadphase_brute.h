@@ -1,0 +1,21 @@
+// All pairs, one by one: the oracle that every other broad phase must equal.
+#pragma once
+
+#include "collision/broadphase.h"
+#include "collision/pair_collector.h"
+
+namespace gyre {
+
+class BroadphaseBrute final : public Broadphase {
+ public:
+  void rebuild(std::span<const Proxy> proxies) override;
+  void update(std::span<const Proxy> proxies, std::span<const std::uint32_t> changed) override;
+  void find_pairs(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved, TaskSystem& tasks,
+                  Array<std::uint64_t>& pairs) override;
+  void query(std::span<const Proxy> proxies, const Aabb& box, Array<std::uint32_t>& found) const override;
+
+ private:
+  PairCollector collector_;
+};
+
+}  // namespace gyre

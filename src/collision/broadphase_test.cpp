@@ -1,0 +1,299 @@
+// Every broad phase against plain loops: exactly the pairs that overlap, may meet and of which one moved, in random,
+// clustered and degenerate worlds that change from frame to frame, for any number of threads.
+#include "collision/broadphase.h"
+
+#include "base/memory.h"
+#include "collision/broadphase_bvh.h"
+#include "collision/fat_box.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace gyre {
+namespace {
+
+struct Random {
+  std::uint64_t state = 88172645463325252ull;
+  std::uint32_t next(std::uint32_t below) {
+    state ^= state << 13;
+    state ^= state >> 7;
+    state ^= state << 17;
+    return std::uint32_t((state >> 11) % below);
+  }
+  float real(float low, float high) { return low + (high - low) * float(next(1u << 20)) / float(1u << 20); }
+  Vec3 vector(float low, float high) {
+    const float x = real(low, high), y = real(low, high);
+    return {x, y, real(low, high)};
+  }
+};
+
+enum class Layout { spread, clustered, one_place, mixed_sizes, flat, line };
+
+struct World {
+  Random random;
+  Layout layout;
+  std::vector<Proxy> proxies;
+
+  World(Layout with_layout, int count) : layout(with_layout) {
+    for (int i = 0; i < count; ++i) proxies.push_back(make(std::uint32_t(i)));
+  }
+
+  Aabb box() {
+    Vec3 middle = random.vector(-20, 20), half = random.vector(0.2f, 1.0f);
+    switch (layout) {
+      case Layout::spread:
+        break;
+      case Layout::clustered:
+        middle = random.vector(-2, 2) + float(random.next(6)) * Vec3{10, 3, -7};
+        break;
+      case Layout::one_place:
+        middle = {5, 5, 5};
+        half = {0.5f, 0.5f, 0.5f};
+        break;
+      case Layout::mixed_sizes: {
+        const float scale = random.next(40) == 0 ? 1000.0f : random.next(10) == 0 ? 30.0f : 0.05f;
+        half = half * scale;
+        break;
+      }
+      case Layout::flat:
+        middle.y = 0.0f;
+        half.y = 0.0f;
+        break;
+      case Layout::line:
+        middle = {random.real(-500, 500), 0, 0};
+        break;
+    }
+    Aabb made{middle - half, middle + half};
+    if (random.next(150) == 0)
+      made = {{-kUnbounded, -kUnbounded, -kUnbounded}, {kUnbounded, middle.y, kUnbounded}};
+    return made;
+  }
+
+  Proxy make(std::uint32_t index) {
+    Proxy proxy;
+    proxy.fat_box = box();
+    proxy.body = random.next(3) == 0 ? index / 2 : index;
+    proxy.motion = random.next(3) == 0 ? ProxyMotion::fixed : ProxyMotion::moving;
+    proxy.pushes = proxy.motion == ProxyMotion::moving && random.next(8) != 0;
+    proxy.sensor = random.next(12) == 0;
+    proxy.filter.layer = 1u << random.next(3);
+    proxy.filter.collides_with = random.next(4) == 0 ? 3u : 0xffffffffu;
+    proxy.filter.group = random.next(10) == 0 ? int(random.next(5)) - 2 : 0;
+    return proxy;
+  }
+
+  // Moves, adds, removes and turns some; returns which, ascending.
+  std::vector<std::uint32_t> change(std::uint32_t share) {
+    std::vector<std::uint32_t> changed;
+    for (std::uint32_t i = 0; i < proxies.size(); ++i) {
+      if (random.next(share) != 0) continue;
+      changed.push_back(i);
+      Proxy& proxy = proxies[i];
+      switch (random.next(12)) {
+        case 0:
+          proxy.motion = ProxyMotion::none;
+          break;
+        case 1:
+          proxy = make(i);
+          break;
+        case 2:
+          proxy.motion = ProxyMotion::fixed;
+          break;
+        case 3:
+          proxy.motion = ProxyMotion::moving;
+          break;
+        default: {
+          const Vec3 by = random.vector(-0.3f, 0.3f);
+          proxy.fat_box = {proxy.fat_box.low + by, proxy.fat_box.high + by};
+        }
+      }
+    }
+    for (std::uint32_t n = random.next(4); n > 0; --n) {
+      changed.push_back(std::uint32_t(proxies.size()));
+      proxies.push_back(make(std::uint32_t(proxies.size())));
+    }
+    return changed;
+  }
+
+  std::vector<std::uint64_t> expected(const std::vector<std::uint32_t>& moved) const {
+    std::vector<std::uint64_t> keys;
+    for (const std::uint32_t i : moved) {
+      for (std::uint32_t k = 0; k < proxies.size(); ++k) {
+        if (k == i || !overlap(proxies[i].fat_box, proxies[k].fat_box) || !may_pair(proxies[i], proxies[k]))
+          continue;
+        keys.push_back(pair_key(i, k));
+      }
+    }
+    std::sort(keys.begin(), keys.end());
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    return keys;
+  }
+};
+
+std::vector<std::uint64_t> to_vector(const Array<std::uint64_t>& keys) { return {keys.begin(), keys.end()}; }
+
+class BroadphaseOracle : public testing::TestWithParam<Layout> {};
+
+TEST_P(BroadphaseOracle, EqualsPlainLoopsInAChangingWorld) {
+  World world(GetParam(), 400);
+  const auto brute = make_broadphase(BroadPhaseKind::brute_force);
+  BroadphaseBvh bvh;
+  TaskSystem one(1), three(3);
+  std::size_t found = 0;
+  for (int frame = 0; frame < 110; ++frame) {
+    // The first frame brings all at once; some frames change nearly everything, some next to nothing.
+    std::vector<std::uint32_t> changed = world.change(frame == 0        ? 1
+                                                      : frame % 20 == 0 ? 2
+                                                      : frame % 3 == 0  ? 60
+                                                                        : 12);
+    bvh.update(world.proxies, changed);
+    brute->update(world.proxies, changed);
+    ASSERT_STREQ(bvh.find_fault(world.proxies), nullptr) << frame;
+    const std::vector<std::uint64_t> expected = world.expected(changed);
+    Array<std::uint64_t> by_brute, by_bvh, by_threads;
+    brute->find_pairs(world.proxies, changed, one, by_brute);
+    bvh.find_pairs(world.proxies, changed, one, by_bvh);
+    bvh.find_pairs(world.proxies, changed, three, by_threads);
+    ASSERT_EQ(to_vector(by_brute), expected) << frame;
+    ASSERT_EQ(to_vector(by_bvh), expected) << frame;
+    ASSERT_EQ(to_vector(by_threads), expected) << frame;
+    found += expected.size();
+    if (frame % 10 == 5) {
+      const Aabb box = world.box();
+      Array<std::uint32_t> a{7u}, b{7u};
+      brute->query(world.proxies, box, a);
+      bvh.query(world.proxies, box, b);
+      ASSERT_EQ(a, b);
+    }
+  }
+  EXPECT_GT(found, 500u) << "the world is too empty to test anything";
+}
+
+INSTANTIATE_TEST_SUITE_P(Layouts, BroadphaseOracle,
+                         testing::Values(Layout::spread, Layout::clustered, Layout::one_place,
+                                         Layout::mixed_sizes, Layout::flat, Layout::line));
+
+TEST(Broadphase, EveryThreadCountFindsTheSame) {
+  World world(Layout::spread, 3000);
+  std::vector<std::uint32_t> all(world.proxies.size());
+  for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+  const std::vector<std::uint64_t> expected = world.expected(all);
+  for (int threads = 1; threads <= 4; ++threads) {
+    TaskSystem tasks(threads);
+    for (const BroadPhaseKind kind : {BroadPhaseKind::bvh, BroadPhaseKind::brute_force}) {
+      const auto broadphase = make_broadphase(kind);
+      broadphase->rebuild(world.proxies);
+      Array<std::uint64_t> pairs;
+      broadphase->find_pairs(world.proxies, all, tasks, pairs);
+      ASSERT_EQ(to_vector(pairs), expected) << threads;
+    }
+  }
+}
+
+TEST(Broadphase, RebuildForgetsWhatWas) {
+  World world(Layout::spread, 300);
+  BroadphaseBvh bvh;
+  bvh.rebuild(world.proxies);
+  World other(Layout::clustered, 120);
+  bvh.rebuild(other.proxies);
+  EXPECT_STREQ(bvh.find_fault(other.proxies), nullptr);
+}
+
+TEST(Broadphase, NothingAtAll) {
+  BroadphaseBvh bvh;
+  TaskSystem tasks(1);
+  Array<std::uint64_t> pairs;
+  Array<std::uint32_t> found;
+  bvh.rebuild({});
+  bvh.update({}, {});
+  bvh.find_pairs({}, {}, tasks, pairs);
+  bvh.query({}, {{-1, -1, -1}, {1, 1, 1}}, found);
+  EXPECT_TRUE(pairs.empty());
+  EXPECT_TRUE(found.empty());
+}
+
+TEST(Broadphase, FixedProxiesNeverPair) {
+  World world(Layout::one_place, 50);
+  for (Proxy& proxy : world.proxies) proxy.motion = ProxyMotion::fixed;
+  std::vector<std::uint32_t> all(world.proxies.size());
+  for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+  EXPECT_TRUE(world.expected(all).empty());
+}
+
+TEST(Broadphase, AllocatesNothingOnceWarm) {
+  World world(Layout::spread, 2000);
+  BroadphaseBvh bvh;
+  TaskSystem tasks(2);
+  Array<std::uint64_t> pairs;
+  std::vector<std::uint32_t> changed;
+  for (std::uint32_t i = 0; i < world.proxies.size(); i += 3) changed.push_back(i);
+  bvh.rebuild(world.proxies);
+  std::uint64_t allocations = 0;
+  for (int frame = 0; frame < 60; ++frame) {
+    if (frame == 30) allocations = allocation_count();
+    const Vec3 by = frame % 2 == 0 ? Vec3{0.7f, 0, 0} : Vec3{-0.7f, 0, 0};
+    for (const std::uint32_t i : changed) {
+      Aabb& box = world.proxies[i].fat_box;
+      box = {box.low + by, box.high + by};
+    }
+    bvh.update(world.proxies, changed);
+    pairs.clear();
+    bvh.find_pairs(world.proxies, changed, tasks, pairs);
+  }
+  EXPECT_EQ(allocation_count(), allocations);
+}
+
+// The trees must stay good while things wander for a long time: hardly worse than when built anew.
+TEST(BoxTree, KeepsItsQuality) {
+  Random random;
+  BoxTree tree;
+  std::vector<Aabb> boxes;
+  for (std::uint32_t i = 0; i < 2000; ++i) {
+    const Vec3 middle = random.vector(-20, 20);
+    boxes.push_back({middle - Vec3{0.5f, 0.5f, 0.5f}, middle + Vec3{0.5f, 0.5f, 0.5f}});
+    tree.insert(i, boxes.back());
+  }
+  ASSERT_STREQ(tree.find_fault(), nullptr);
+  for (int frame = 0; frame < 300; ++frame) {
+    for (int n = 0; n < 100; ++n) {
+      const std::uint32_t i = random.next(2000);
+      const Vec3 by = random.vector(-2, 2);
+      boxes[i] = {boxes[i].low + by, boxes[i].high + by};
+      tree.move(i, boxes[i]);
+    }
+    tree.improve(5);
+  }
+  ASSERT_STREQ(tree.find_fault(), nullptr);
+  std::vector<std::uint32_t> items(boxes.size());
+  for (std::uint32_t i = 0; i < items.size(); ++i) items[i] = i;
+  BoxTree fresh;
+  fresh.build(items, boxes);
+  ASSERT_STREQ(fresh.find_fault(), nullptr);
+  EXPECT_LT(tree.cost(), 1.3 * fresh.cost());
+}
+
+TEST(BoxTree, PartitionPutsTheLowerOnesFirst) {
+  Random random;
+  struct Entry {
+    Aabb box;
+    std::uint32_t child;
+  };
+  for (int round = 0; round < 300; ++round) {
+    const std::size_t count = 1 + random.next(60);
+    std::vector<Entry> entries(count);
+    for (Entry& entry : entries) {
+      const float x = float(random.next(round % 2 == 0 ? 4 : 1000));
+      entry.box = {{x, x, x}, {x, x, x}};
+    }
+    const std::size_t middle = random.next(std::uint32_t(count) + 1);
+    partition_by_center(std::span<Entry>(entries), middle, round % 3);
+    float highest = -1.0f;
+    for (std::size_t i = 0; i < middle; ++i) highest = std::max(highest, entries[i].box.low.x);
+    for (std::size_t i = middle; i < count; ++i) ASSERT_LE(highest, entries[i].box.low.x);
+  }
+}
+
+}  // namespace
+}  // namespace gyre

@@ -1,0 +1,365 @@
+// Full looks, recycling, and the matching of new points with old ones. See contact_update.h.
+#include "collision/contact_update.h"
+
+#include "collision/fat_box.h"
+
+namespace gyre {
+namespace {
+
+// All lengths in sizes of the pair (the smaller shape's inner radius).
+constexpr float kLargestApproach =
+    0.5f;  // what comes faster than this in a step is left to the sweep (continuous.h)
+// A full look reaches farther than asked, so that the contact may be recycled while the pair moves a little. Where nothing
+// touches, and the pair is slow, it reaches far: it is cheaper to have looked once than to look in every step.
+constexpr float kNearSlack = 0.01f;
+constexpr float kFarSlack = 0.25f;
+constexpr float kSlow = 0.02f;  // a step
+// How far points may go against each other before the pair is looked at anew: along flat features, and where one of the
+// two is round (a rolling contact must not lag behind).
+constexpr float kFlatSlide = 1.0e-3f;
+constexpr float kRoundSlide = 1.0e-5f;
+constexpr float kLargestTilt = 1.0e-3f;  // rad, likewise
+// Where a float's rounding of the distance between the bodies is more than this, a recycled separation would rattle.
+constexpr float kRattle = 1.0e-4f;
+constexpr float kTouch = 0.005f;  // surfaces nearer than this touch
+constexpr float kMatch =
+    0.1f;  // a new point takes over from an old one this near, whatever its feature is called
+constexpr float kSameSide = 0.8f;  // cosine between normals whose points may take over from each other
+
+// How a pair stands and moves, as far as every look needs it.
+struct View {
+  Transform a_from_b;  // body frames
+  Vec3 com_b_from_a;   // m, world axes, between the centres of mass
+  float size;
+  float way;          // m, the most that surfaces can come towards each other in the step
+  float speculative;  // m, how far contacts matter
+};
+
+DVec3 center_of_mass(const ColliderBody& body) { return body.pose * body.center; }
+
+View make_view(const ContactPair& pair, float size) {
+  const ColliderBody& a = *pair.body_a;
+  const ColliderBody& b = *pair.body_b;
+  View view;
+  view.a_from_b = inverse_times(a.pose, b.pose);
+  view.com_b_from_a = difference(center_of_mass(b), center_of_mass(a));
+  view.size = size;
+  // A body that is long beyond the other one turns no faster there.
+  const float apart = length(view.com_b_from_a);
+  const float turning = length(a.angular_velocity) * min(a.reach, apart + b.reach) +
+                        length(b.angular_velocity) * min(b.reach, apart + a.reach);
+  view.way = (length(b.linear_velocity - a.linear_velocity) + turning) * pair.seconds;
+  view.speculative = kSpeculativeShare * size + min(view.way, kLargestApproach * size);
+  return view;
+}
+
+// ------------------------------------------------------------------------------------------------------- recycling
+
+// The motion of B in A's body frame from `seen` to `now`, small or not.
+struct Motion {
+  Vec3 shift;   // of B's origin
+  Vec3 origin;  // B's origin as seen
+  Vec3 v;       // vector part of the turn's quaternion: half the rotation vector while it is small
+  float w;
+  float sine;  // of half the angle
+
+  Motion(const Transform& seen, const Transform& now) {
+    const Quat turn = now.orientation * conjugate(seen.orientation);
+    shift = now.position - seen.position;
+    origin = seen.position;
+    v = {turn.x, turn.y, turn.z};
+    w = turn.w;
+    sine = length(v);
+  }
+
+  // How far a point of B goes that was at `p`; worked out as a difference, so that small motions keep their digits.
+  Vec3 of(Vec3 p) const {
+    const Vec3 t = 2.0f * cross(v, p - origin);
+    return shift + w * t + cross(v, t);
+  }
+
+  // The most that any surface of the one comes towards the other: seen from either, whichever bound is better. A rigid
+  // motion moves A's centre as far as its inverse does.
+  float bound(const ContactPair& pair, const Transform& seen) const {
+    const float by_b = length(of(seen * pair.body_b->center)) + 2.0f * sine * pair.body_b->reach;
+    const float by_a = length(of(pair.body_a->center)) + 2.0f * sine * pair.body_a->reach;
+    return min(by_a, by_b);
+  }
+};
+
+bool is_flat(const Shape& shape) {
+  return shape.kind >= ShapeKind::hull || (shape.kind == ShapeKind::box && shape.radius == 0.0f);
+}
+
+// Whether the anchors are still good, and how far each point of B has gone (way[manifold][point]).
+bool anchors_hold(std::span<const Manifold> manifolds, const ContactPair& pair, const View& view,
+                  const Motion& motion, Vec3 (*way)[kMaxManifoldPoints]) {
+  if (2.0f * motion.sine > kLargestTilt) return false;
+  if (largest(absolute(view.a_from_b.position)) * 1.2e-7f > kRattle * view.size) return false;
+  const bool flat_shapes = is_flat(pair.shape_a->shape) && is_flat(pair.shape_b->shape);
+  for (std::size_t m = 0; m < manifolds.size(); ++m) {
+    const bool flat = flat_shapes || manifolds[m].count >= 3;
+    const float most = (flat ? kFlatSlide : kRoundSlide) * view.size;
+    for (int i = 0; i < manifolds[m].count; ++i) {
+      way[m][i] = motion.of(manifolds[m].anchors[i].position);
+      if (length_squared(way[m][i]) > square(most)) return false;
+    }
+  }
+  return true;
+}
+
+// What a manifold keeps from step to step, turned into the new tangent plane.
+void carry_friction(const Manifold& from, Manifold& to) {
+  to.friction_impulse = from.friction_impulse - dot(from.friction_impulse, to.normal) * to.normal;
+  to.rolling_impulse = from.rolling_impulse - dot(from.rolling_impulse, to.normal) * to.normal;
+  to.twist_impulse = from.twist_impulse;
+  to.sliding = from.sliding;
+}
+
+void move_manifold(Manifold& manifold, const ContactPair& pair, const View& view, const Vec3* way) {
+  const ColliderBody& a = *pair.body_a;
+  manifold.normal = rotate(a.pose.orientation, manifold.seen_normal);
+  for (int i = 0; i < manifold.count; ++i) {
+    const PointAnchor& anchor = manifold.anchors[i];
+    ContactPointState& point = manifold.points[i];
+    point.from_a = rotate(a.pose.orientation, anchor.position + 0.5f * way[i] - a.center);
+    point.from_b = point.from_a - view.com_b_from_a;
+    point.separation = anchor.separation + dot(way[i], manifold.seen_normal);
+    point.total_impulse = 0.0f;
+    point.approach_speed = 0.0f;
+    ++point.age;
+  }
+  carry_friction(manifold, manifold);
+  manifold.total_friction = {};
+}
+
+bool recycle(ContactStore& store, const Contact& contact, const ContactPair& pair, const View& view) {
+  const Motion motion(contact.seen_a_from_b, view.a_from_b);
+  if (!(view.speculative + motion.bound(pair, contact.seen_a_from_b) <= contact.looked)) return false;
+  Vec3 way[kMaxMeshManifolds][kMaxManifoldPoints];
+  const std::span<Manifold> manifolds = manifolds_of(store, contact);
+  if (!anchors_hold(manifolds, pair, view, motion, way)) return false;
+  for (std::size_t m = 0; m < manifolds.size(); ++m) move_manifold(manifolds[m], pair, view, way[m]);
+  return true;
+}
+
+// ------------------------------------------------------------------------------------------------------- full looks
+
+// A plane has no middle: its frame may lie where the other shape is, so that floats stay small and exact.
+void center_plane(Shape& shape, Pose& frame, DVec3 other) {
+  if (shape.kind != ShapeKind::plane) return;
+  const DVec3 normal(rotate(frame.orientation, shape.extents));
+  const double height = dot(normal, other - frame.position) - double(shape.offset);
+  frame.position = other - height * normal;
+  shape.offset = 0.0f;
+}
+
+struct Found {
+  LocalManifold manifolds[kMaxMeshManifolds];
+  int count = 0;
+  Pose frame;  // world_from_a: of the manifolds
+};
+
+void ask_shapes(const ContactPair& pair, float reach, PairCache& cache, Found& found) {
+  Shape a = pair.shape_a->shape;
+  Shape b = pair.shape_b->shape;
+  found.frame = pair.body_a->pose * pair.shape_a->body_from_shape;
+  Pose frame_b = pair.body_b->pose * pair.shape_b->body_from_shape;
+  center_plane(a, found.frame, frame_b.position);
+  center_plane(b, frame_b, found.frame.position);
+  found.count = collide_shapes(a, b, inverse_times(found.frame, frame_b), reach, cache, found.manifolds);
+}
+
+// Leaves out what is farther apart than `reach`. Returns the smallest separation there was.
+float keep_near(Found& found, float reach) {
+  float nearest = kUnbounded;
+  int kept_manifolds = 0;
+  for (int m = 0; m < found.count; ++m) {
+    LocalManifold& manifold = found.manifolds[m];
+    int kept = 0;
+    for (int i = 0; i < manifold.count; ++i) {
+      nearest = min(nearest, manifold.points[i].separation);
+      if (manifold.points[i].separation <= reach) manifold.points[kept++] = manifold.points[i];
+    }
+    manifold.count = kept;
+    if (kept > 0) found.manifolds[kept_manifolds++] = manifold;
+  }
+  found.count = kept_manifolds;
+  return nearest;
+}
+
+// The manifolds before this look, and which of their points have found a heir.
+struct Former {
+  Manifold manifolds[kMaxMeshManifolds];
+  int count = 0;
+  bool taken[kMaxMeshManifolds] = {};
+  bool point_taken[kMaxMeshManifolds][kMaxManifoldPoints] = {};
+};
+
+// The former manifold that goes on in the new one; -1 if none does. A single manifold always goes on.
+int find_former(const Former& former, const Manifold& manifold, bool single) {
+  if (single) return former.count == 1 ? 0 : -1;
+  int best = -1;
+  float best_score = kSameSide;
+  for (int m = 0; m < former.count; ++m) {
+    if (former.taken[m]) continue;
+    const float same_triangle = former.manifolds[m].triangle == manifold.triangle ? 0.5f : 0.0f;
+    const float score = dot(former.manifolds[m].normal, manifold.normal) + same_triangle;
+    if (score > best_score) {
+      best = m;
+      best_score = score;
+    }
+  }
+  return best;
+}
+
+void take_over(Former& former, int m, int i, ContactPointState& point) {
+  const ContactPointState& old = former.manifolds[m].points[i];
+  former.point_taken[m][i] = true;
+  point.normal_impulse = old.normal_impulse;
+  point.age = old.age + 1;
+}
+
+// By name within the former manifold; bit i of the result is set for each point that found its own.
+unsigned match_by_feature(Former& former, int m, Manifold& manifold) {
+  unsigned matched = 0;
+  for (int i = 0; i < manifold.count; ++i) {
+    for (int k = 0; k < former.manifolds[m].count; ++k) {
+      if (former.point_taken[m][k] || former.manifolds[m].points[k].feature != manifold.points[i].feature)
+        continue;
+      take_over(former, m, k, manifold.points[i]);
+      matched |= 1u << i;
+      break;
+    }
+  }
+  return matched;
+}
+
+// By place, among all points that are left on the same side: features get new names when another edge comes first, but
+// the load stays where it was.
+void match_by_place(Former& former, Manifold& manifold, unsigned matched, float radius) {
+  for (int i = 0; i < manifold.count; ++i) {
+    if ((matched >> i & 1u) != 0) continue;
+    int best_m = -1, best_k = -1;
+    float nearest = square(radius);
+    for (int m = 0; m < former.count; ++m) {
+      if (dot(former.manifolds[m].normal, manifold.normal) < kSameSide) continue;
+      for (int k = 0; k < former.manifolds[m].count; ++k) {
+        if (former.point_taken[m][k]) continue;
+        const float d =
+            length_squared(former.manifolds[m].anchors[k].position - manifold.anchors[i].position);
+        if (d < nearest) {
+          nearest = d;
+          best_m = m;
+          best_k = k;
+        }
+      }
+    }
+    if (best_m >= 0) take_over(former, best_m, best_k, manifold.points[i]);
+  }
+}
+
+// From the frame of shape A into world axes, and into the body frame for anchors. Impulses are zero.
+Manifold to_world(const LocalManifold& local, const Found& found, const ContactPair& pair, const View& view) {
+  const ColliderBody& a = *pair.body_a;
+  const Vec3 frame_from_com = difference(found.frame.position, center_of_mass(a));
+  Manifold out;
+  out.normal = rotate(found.frame.orientation, local.normal);
+  out.count = local.count;
+  out.triangle = local.triangle;
+  out.seen_normal = rotate_inverse(a.pose.orientation, out.normal);
+  for (int i = 0; i < local.count; ++i) {
+    ContactPointState& point = out.points[i];
+    point.from_a = rotate(found.frame.orientation, local.points[i].position) + frame_from_com;
+    point.from_b = point.from_a - view.com_b_from_a;
+    point.separation = local.points[i].separation;
+    point.feature = local.points[i].feature;
+    out.anchors[i].position = rotate_inverse(a.pose.orientation, point.from_a) + a.center;
+    out.anchors[i].separation = point.separation;
+  }
+  return out;
+}
+
+void write_manifolds(ContactStore& store, Contact& contact, const Found& found, const ContactPair& pair,
+                     const View& view) {
+  Former former;
+  former.count = contact.manifold_count;
+  for (int m = 0; m < former.count; ++m)
+    former.manifolds[m] = store.manifolds[contact.first_manifold + std::uint32_t(m)];
+  const bool single = contact.manifold_room == 1;
+  const int count = min(found.count, int(contact.manifold_room));
+  Manifold* const out = store.manifolds.data() + contact.first_manifold;
+  unsigned matched[kMaxMeshManifolds] = {};
+  for (int m = 0; m < count; ++m) {
+    out[m] = to_world(found.manifolds[m], found, pair, view);
+    const int old = find_former(former, out[m], single);
+    if (old < 0) continue;
+    former.taken[old] = true;
+    carry_friction(former.manifolds[old], out[m]);
+    matched[m] = match_by_feature(former, old, out[m]);
+  }
+  for (int m = 0; m < count; ++m) match_by_place(former, out[m], matched[m], kMatch * view.size);
+  // Nothing of the past stays behind in what is not in use.
+  for (int m = count; m < former.count; ++m) out[m] = Manifold{};
+  contact.manifold_count = std::uint16_t(count);
+}
+
+void look_anew(ContactStore& store, Contact& contact, const ContactPair& pair, const View& view) {
+  const float near_reach = view.speculative + kNearSlack * view.size;
+  const bool far = contact.manifold_room == 1 && view.way < kSlow * view.size;
+  const float reach = far ? view.speculative + kFarSlack * view.size : near_reach;
+  Found found;
+  ask_shapes(pair, reach, contact.cache, found);
+  const bool any = found.count > 0;
+  const float nearest = keep_near(found, near_reach);
+  write_manifolds(store, contact, found, pair, view);
+  // Points measure separation along one normal, which is not always that of the nearest features: hence only a part.
+  contact.looked = found.count > 0 ? near_reach : any ? near_reach + 0.75f * (nearest - near_reach) : reach;
+  contact.size = view.size;
+  contact.seen_a_from_b = view.a_from_b;
+}
+
+bool carried_load(std::span<const Manifold> manifolds) {
+  for (const Manifold& manifold : manifolds) {
+    for (int i = 0; i < manifold.count; ++i) {
+      if (manifold.points[i].total_impulse > 0.0f) return true;
+    }
+  }
+  return false;
+}
+
+bool is_near(std::span<const Manifold> manifolds, float distance) {
+  for (const Manifold& manifold : manifolds) {
+    for (int i = 0; i < manifold.count; ++i) {
+      if (manifold.points[i].separation <= distance) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+float smaller_size(float a, float b) {
+  const bool has_a = a > 0.0f && a < kUnboundedSide;
+  const bool has_b = b > 0.0f && b < kUnboundedSide;
+  return has_a && has_b ? min(a, b) : has_a ? a : has_b ? b : 0.0f;
+}
+
+bool look_at_sensor(Contact& contact, const ContactPair& pair) {
+  Found found;
+  ask_shapes(pair, 0.0f, contact.cache, found);
+  keep_near(found, 0.0f);
+  return found.count > 0;
+}
+
+bool update_contact(ContactStore& store, Contact& contact, const ContactPair& pair, bool may_recycle) {
+  const bool loaded = carried_load(manifolds_of(store, contact));
+  const bool looked = contact.looked >= 0.0f;
+  const View view =
+      make_view(pair, looked ? contact.size : smaller_size(pair.shape_a->size, pair.shape_b->size));
+  contact.recycled = may_recycle && looked && recycle(store, contact, pair, view) ? 1 : 0;
+  if (contact.recycled == 0) look_anew(store, contact, pair, view);
+  return is_near(manifolds_of(store, contact), kTouch * view.size) || (loaded && contact.manifold_count > 0);
+}
+
+}  // namespace gyre

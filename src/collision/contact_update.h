@@ -1,0 +1,36 @@
+// One contact brought up to date: a full look through the narrow phase, or, where the two bodies have hardly moved against
+// each other since then, the old points found again from their anchors (recycling).
+//
+// In: the contact, its two shapes and bodies, how far to look. Out: the contact's manifolds, in world axes, with the
+// impulses of the points that were there before.
+//
+// Recycling. Let T be the rigid motion of B in A's body frame since the last full look. The point of B at an anchor moves
+// by d = T(p) - p, so the separation there changes by dot(d, n) and the point midway by d / 2. With the features that meet
+// unchanged this leaves out only products of the slide and the tilt, and of the tilt and the separation. Motion is always
+// measured from the last FULL look, so errors do not add up.
+#pragma once
+
+#include "collision/collide.h"
+#include "collision/contact_store.h"
+
+namespace gyre {
+
+// The two sides of a contact, and how far its shapes can come towards each other.
+struct ContactPair {
+  const ColliderShape* shape_a;
+  const ColliderShape* shape_b;
+  const ColliderBody* body_a;
+  const ColliderBody* body_b;
+  float seconds;
+};
+
+// The smaller of two sizes, of those that are sizes at all (see ColliderShape::size).
+float smaller_size(float a, float b);
+
+// Full look of a sensor's contact: whether the two shapes overlap. Keeps no manifold.
+bool look_at_sensor(Contact& contact, const ContactPair& pair);
+
+// Brings the manifolds of a contact up to date; returns whether its shapes touch.
+bool update_contact(ContactStore& store, Contact& contact, const ContactPair& pair, bool may_recycle);
+
+}  // namespace gyre

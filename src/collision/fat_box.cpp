@@ -1,0 +1,88 @@
+// Boxes of shapes in the world. See fat_box.h.
+#include "collision/fat_box.h"
+
+#include <cstdint>
+
+namespace gyre {
+namespace {
+
+// A fat box reaches ahead by the way of one more step, but never by more than this many sizes.
+constexpr float kLargestReach = 2.0f;
+// Larger than any fat box that fat_box() makes: 2 * kFatShare + kLargestReach, in sizes.
+constexpr double kTooLarge = 3.0;
+constexpr float kSmallestNormal = 1.17549435e-38f;
+
+float next_up(float a) {
+  if (absolute(a) < kSmallestNormal) return kSmallestNormal;
+  const auto bits = __builtin_bit_cast(std::uint32_t, a);
+  return __builtin_bit_cast(float, a > 0.0f ? bits + 1 : bits - 1);
+}
+float round_up(double a) {
+  const float rounded = float(a);
+  return double(rounded) < a ? next_up(rounded) : rounded;
+}
+float round_down(double a) { return -round_up(-a); }
+
+// Planes and meshes have no size of their own; what they meet decides.
+double margin_size(const BoxMotion& motion) {
+  return motion.size < kUnboundedSide ? double(motion.size) : 0.0;
+}
+
+// The largest coordinate of a box, leaving out the sides of planes that have no end.
+float largest_coordinate(const Aabb& box) {
+  float scale = 0.0f;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float value : {absolute(box.low[axis]), absolute(box.high[axis])}) {
+      if (value < kUnboundedSide) scale = max(scale, value);
+    }
+  }
+  return scale;
+}
+
+}  // namespace
+
+WorldBox world_box(const Shape& shape, const Pose& world_from_shape) {
+  const Aabb box = bounds(shape, {{}, world_from_shape.orientation});
+  // bounds() works in float: a few roundings of numbers no larger than the box's coordinates.
+  const double rounding = 2.0e-6 * double(largest_coordinate(box));
+  const DVec3 slack{rounding, rounding, rounding};
+  return {world_from_shape.position + box.low - slack, world_from_shape.position + box.high + slack};
+}
+
+WorldBox needed_box(const WorldBox& tight, const BoxMotion& motion) {
+  const double margin = double(kSpeculativeShare) * margin_size(motion) + double(motion.turn);
+  const DVec3 all{margin, margin, margin};
+  return {tight.low - all + min(motion.way, Vec3{}), tight.high + all + max(motion.way, Vec3{})};
+}
+
+Aabb fat_box(const WorldBox& needed, const BoxMotion& motion) {
+  const double size = margin_size(motion);
+  const double margin = double(kFatShare) * size;
+  const DVec3 all{margin, margin, margin};
+  const float reach = kLargestReach * float(size);
+  const Vec3 ahead = max(min(motion.way, Vec3{reach, reach, reach}), Vec3{-reach, -reach, -reach});
+  return round_outward({needed.low - all + min(ahead, Vec3{}), needed.high + all + max(ahead, Vec3{})});
+}
+
+bool needs_refit(const Aabb& fat, const WorldBox& needed, const BoxMotion& motion) {
+  const DVec3 low(fat.low);
+  const DVec3 high(fat.high);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (low[axis] > needed.low[axis] || high[axis] < needed.high[axis]) return true;
+  }
+  // Far from the origin, rounding alone makes a small shape's box large.
+  const double size = margin_size(motion);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double rounding = 4.0e-7 * (absolute(low[axis]) + absolute(high[axis]));
+    const double excess = (high[axis] - low[axis]) - (needed.high[axis] - needed.low[axis]);
+    if (excess > kTooLarge * size + rounding) return true;
+  }
+  return false;
+}
+
+Aabb round_outward(const WorldBox& box) {
+  return {{round_down(box.low.x), round_down(box.low.y), round_down(box.low.z)},
+          {round_up(box.high.x), round_up(box.high.y), round_up(box.high.z)}};
+}
+
+}  // namespace gyre

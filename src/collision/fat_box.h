@@ -1,0 +1,51 @@
+// Fat boxes: what a proxy shows of its shape. A fat box is larger than the shape needs, so that it changes rarely.
+//
+// Promise to the narrow phase (collide.h): two shapes whose surfaces may come within the speculative distance in the
+// coming step have fat boxes that overlap as it begins. Each box holds its shape, kSpeculativeShare of its size, and the
+// way that it can go in the step; the speculative distance is never more than what two boxes have together.
+//
+// Boxes are worked out in double and rounded outward, so all of this holds however far from the origin.
+#pragma once
+
+#include "geometry/shape.h"
+
+namespace gyre {
+
+// Contacts are looked for up to this share of the smaller shape's size (and the way that the two can come in a step).
+constexpr float kSpeculativeShare = 0.04f;
+// A fat box is larger than needed by this share of its shape's size.
+constexpr float kFatShare = 0.1f;
+
+struct WorldBox {
+  DVec3 low;
+  DVec3 high;
+};
+
+// Contains every point of the shape.
+WorldBox world_box(const Shape& shape, const Pose& world_from_shape);
+
+// How a shape moves: what its fat box must hold.
+struct BoxMotion {
+  float size = 0.0f;  // ColliderShape::size
+  Vec3 way;           // m, how far its body goes in a step at its present velocity
+  float turn =
+      0.0f;  // m, how far its points go because the body turns (angle times distance from the centre of mass)
+};
+
+// The box that the coming step needs.
+WorldBox needed_box(const WorldBox& tight, const BoxMotion& motion);
+
+// The box to be given to the broad phase: the needed one with a margin, longer in the direction of motion.
+Aabb fat_box(const WorldBox& needed, const BoxMotion& motion);
+
+// Whether a fat box must be made anew: it no longer holds what is needed, or is much too large.
+bool needs_refit(const Aabb& fat, const WorldBox& needed, const BoxMotion& motion);
+
+// The smallest float box around `box`.
+Aabb round_outward(const WorldBox& box);
+
+// A box with a side this long belongs to a plane or the like; trees keep such boxes apart.
+constexpr float kUnboundedSide = 1.0e17f;
+constexpr bool is_unbounded(const Aabb& box) { return !(largest(box.high - box.low) < kUnboundedSide); }
+
+}  // namespace gyre

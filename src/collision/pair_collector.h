@@ -1,0 +1,67 @@
+// What every broad phase's find_pairs shares: blocks of moved proxies run in parallel, each worker keeps the keys that it
+// finds, and one sort at the end makes the result the same whoever found what.
+#pragma once
+
+#include "base/array.h"
+#include "base/bitset.h"
+#include "base/sort.h"
+#include "collision/proxy.h"
+#include "task/parallel.h"
+
+#include <cstdint>
+#include <span>
+
+namespace gyre {
+
+class PairCollector {
+ public:
+  // Calls search(index of the moved proxy, visit); it must call visit(other) for at least every other proxy whose fat box
+  // overlaps, each once. Appends the keys of the pairs among them that may meet, sorted.
+  template <class Search>
+  void collect(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved, TaskSystem& tasks,
+               Array<std::uint64_t>& pairs, const Search& search) {
+    if (is_moved_.size() < proxies.size()) is_moved_.resize(proxies.size());
+    for (const std::uint32_t index : moved) is_moved_.set(index);
+    found_.resize(std::size_t(tasks.worker_count()));
+    for (Array<std::uint64_t>& keys : found_) keys.reserve(most_);
+    for_blocks(tasks, int(moved.size()), kBlock, [&](int begin, int end, int worker) {
+      Array<std::uint64_t>& keys = found_[worker];
+      for (int i = begin; i < end; ++i) {
+        const std::uint32_t self = moved[std::size_t(i)];
+        const Proxy& a = proxies[self];
+        if (a.motion == ProxyMotion::none) continue;
+        search(self, [&](std::uint32_t other) {
+          // A pair of two moved proxies is found from the lower one only.
+          if (other == self || (other < self && is_moved_.test(other))) return;
+          const Proxy& b = proxies[other];
+          if (overlap(a.fat_box, b.fat_box) && may_pair(a, b)) keys.push_back(pair_key(self, other));
+        });
+      }
+    });
+    for (const std::uint32_t index : moved) is_moved_.clear(index);
+    append_sorted(pairs);
+  }
+
+ private:
+  static constexpr int kBlock = 32;
+
+  void append_sorted(Array<std::uint64_t>& pairs) {
+    const std::size_t before = pairs.size();
+    for (Array<std::uint64_t>& keys : found_) {
+      pairs.append(keys);
+      keys.clear();
+    }
+    const std::size_t count = pairs.size() - before;
+    // Which worker finds how many changes from run to run: each gets room for all, so that none grows once warm.
+    if (count > most_) most_ = count + count / 2;
+    if (scratch_.size() < count) scratch_.resize_uninitialized(most_);
+    radix_sort_u64({pairs.data() + before, count}, scratch_);
+  }
+
+  Bitset is_moved_;
+  Array<Array<std::uint64_t>> found_;  // by worker
+  Array<std::uint64_t> scratch_;
+  std::size_t most_ = 0;
+};
+
+}  // namespace gyre

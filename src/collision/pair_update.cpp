@@ -1,0 +1,42 @@
+// Adding and removing contacts in a fixed order. See pair_update.h.
+#include "collision/pair_update.h"
+
+#include "base/sort.h"
+
+namespace gyre {
+
+void add_pairs(ContactStore& store, std::span<const std::uint64_t> keys, const BlockedBodies& blocked,
+               FunctionRef<PairShapes(std::uint64_t key)> describe, Array<std::uint32_t>* added) {
+  for (const std::uint64_t key : keys) {
+    if (store.slot_of_pair.contains(key)) continue;
+    const PairShapes shapes = describe(key);
+    if (!blocked.empty() && blocked.contains(pair_key(shapes.body_a, shapes.body_b))) continue;
+    const std::uint32_t slot = add_contact(store, key, shapes);
+    if (added != nullptr) added->push_back(slot);
+  }
+}
+
+void remove_gone(ContactStore& store, const Bitset& gone, BeforeRemoval before_removal) {
+  gone.for_each_set([&](std::size_t bit) {
+    const auto slot = std::uint32_t(bit);
+    before_removal(slot, store.contacts[slot]);
+    remove_contact(store, slot);
+  });
+}
+
+void remove_contacts_of_shape(ContactStore& store, std::uint32_t shape, BeforeRemoval before_removal,
+                              Array<std::uint32_t>& scratch) {
+  scratch.clear();
+  for_each_contact_of_shape(store, shape, [&](std::uint32_t slot) { scratch.push_back(slot); });
+  // The list's order depends on history that a snapshot does not keep.
+  const std::size_t count = scratch.size();
+  scratch.resize_uninitialized(2 * count);
+  const std::span<std::uint32_t> slots = scratch.view().first(count);
+  merge_sort(slots, scratch.view().last(count), [](std::uint32_t a, std::uint32_t b) { return a < b; });
+  for (const std::uint32_t slot : slots) {
+    before_removal(slot, store.contacts[slot]);
+    remove_contact(store, slot);
+  }
+}
+
+}  // namespace gyre

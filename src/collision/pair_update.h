@@ -1,0 +1,37 @@
+// The set of contacts from step to step: pairs that come, pairs that go.
+//
+// In: sorted keys from the broad phase, or contacts marked as gone by collide(). Out: the contact store with contacts added
+// in key order, or removed in slot order; both orders are functions of the state alone.
+#pragma once
+
+#include "base/array.h"
+#include "base/bitset.h"
+#include "base/flat_map.h"
+#include "base/function_ref.h"
+#include "collision/contact_store.h"
+
+#include <cstdint>
+#include <span>
+
+namespace gyre {
+
+// Pairs of bodies that must not touch, with the number of reasons (joints) for each: keyed by pair_key of the bodies.
+using BlockedBodies = FlatMap<std::uint32_t>;
+
+// Adds a contact for each key that has none yet, unless its two bodies are blocked. `keys` ascending, without repeats;
+// describe(key) tells what there is to know about the pair. Appends the slots of the new contacts, in key order, to `added`
+// if that is given.
+void add_pairs(ContactStore& store, std::span<const std::uint64_t> keys, const BlockedBodies& blocked,
+               FunctionRef<PairShapes(std::uint64_t key)> describe, Array<std::uint32_t>* added = nullptr);
+
+// Called before a contact is removed, with all that it still holds.
+using BeforeRemoval = FunctionRef<void(std::uint32_t slot, const Contact& contact)>;
+
+// Removes the contacts whose bit is set, in slot order.
+void remove_gone(ContactStore& store, const Bitset& gone, BeforeRemoval before_removal);
+
+// Removes all contacts of a shape, in slot order. `scratch` is emptied and used.
+void remove_contacts_of_shape(ContactStore& store, std::uint32_t shape, BeforeRemoval before_removal,
+                              Array<std::uint32_t>& scratch);
+
+}  // namespace gyre
