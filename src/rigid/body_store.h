@@ -1,0 +1,102 @@
+// Rigid bodies as columns, indexed by the id's slot. Hot: the 64-byte motion record. Warm: places, masses, what acts on
+// the body. Cold: lists, overrides, user data.
+//
+// The state of a body is the place of its centre of mass (double), its orientation and its two velocities; the pose of
+// its origin is derived. Slots never move, so everything may keep a body's index; sleeping bodies are left out of `awake`.
+#pragma once
+
+#include "base/array.h"
+#include "base/slot_map.h"
+#include "solver/body_motion.h"
+
+#include <gyre/defs.h>
+
+#include <vector>
+
+namespace gyre {
+
+// Where a body is: its centre of mass and how it is turned.
+struct BodyPlace {
+  DVec3 center;
+  Quat orientation;  // world_from_body
+};
+
+// Mass and inertia, in the body's frame, about the centre of mass. Zero for bodies that nothing moves.
+struct BodyMass {
+  float mass = 0.0f;
+  float inverse_mass = 0.0f;
+  Vec3 center;              // body frame
+  Sym3 inertia;             // kg m^2
+  Sym3 inverse_inertia;     // locked axes are taken off in the world frame, not here
+  float reach = 0.0f;       // m, farthest point of any shape from the centre of mass
+  float size = 0.0f;        // m, inner radius of its thinnest shape: the scale of tolerances
+  std::uint32_t isotropic = 0;  // 1 when all principal moments are equal: no gyroscopic effect
+};
+
+// What acts on a body.
+struct BodyForces {
+  Vec3 force;   // N, summed for the next step
+  Vec3 torque;  // N m
+  float linear_damping = 0.0f;
+  float angular_damping = 0.0f;
+  float gravity_scale = 1.0f;
+};
+
+struct BodyFlags {
+  BodyType type = BodyType::fixed;
+  std::uint8_t awake = 0;
+  std::uint8_t can_sleep = 1;
+  std::uint8_t continuous = 0;
+  std::uint8_t frozen = 0;        // quarantined: its state stopped being finite
+  std::uint8_t locked_linear = 0;   // bits 0 to 2: world x, y, z
+  std::uint8_t locked_angular = 0;
+  std::uint8_t touched = 0;       // a constraint row acted on it in the last step
+};
+
+constexpr std::uint32_t kNoGroup = 0xffffffffu;
+
+struct BodySleep {
+  float still_time = 0.0f;             // s, for which it has hardly moved
+  std::uint32_t group = kNoGroup;      // lowest body of the sleeping island; kNoGroup: awake or fixed
+  std::uint32_t next_in_group = 0;     // the group as a ring
+};
+
+// Mass properties given by the user instead of by the shapes.
+struct BodyOverrides {
+  std::uint8_t has_mass = 0, has_center = 0, has_inertia = 0;
+  float mass = 0.0f;
+  Vec3 center;
+  Sym3 inertia;
+};
+
+struct BodyStore {
+  IdPool ids;
+  Array<BodyMotion> motion;
+  Array<BodyInertia> inertia;       // world axes, of the present orientation; can be rebuilt
+  Array<BodyPlace> places;
+  Array<Quat> orientations;         // beside `places` for the solver's gathers; equal to places[i].orientation between steps
+  Array<BodyMass> masses;
+  Array<BodyForces> forces;
+  Array<BodyFlags> flags;
+  Array<BodySleep> sleep;
+  Array<BodyOverrides> overrides;
+  Array<std::uint64_t> user_data;
+  Array<Pose> poses;                // of the origins; derived
+  std::vector<std::vector<ShapeId>> shapes;         // by body, ascending index; derived
+  std::vector<std::vector<std::uint32_t>> joints;   // by body, ascending index; derived
+  Array<std::uint32_t> awake;       // dynamic bodies that are awake and kinematic ones, ascending; derived
+  bool awake_stale = false;         // `awake` must be rebuilt before use
+};
+
+// Makes room for a body in a fresh slot and returns the slot.
+IdPool::Slot add_body_slot(BodyStore& store);
+void remove_body_slot(BodyStore& store, std::uint32_t body);
+// Recomputes the world-frame inverse inertia of one body from its orientation and locked axes.
+BodyInertia world_inertia(const BodyMass& mass, const BodyFlags& flags, Quat orientation);
+void refresh_inertia(BodyStore& store, std::uint32_t body);
+// The pose of the body's origin, from the place of its centre of mass.
+Pose origin_pose(const BodyPlace& place, const BodyMass& mass);
+void refresh_awake(BodyStore& store);
+inline bool is_movable(const BodyFlags& flags) { return flags.type == BodyType::dynamic && flags.frozen == 0; }
+
+}  // namespace gyre

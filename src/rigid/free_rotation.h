@@ -1,0 +1,23 @@
+// Torque-free rotation of a rigid body: the exact drift between two kicks.
+//
+// The angular momentum L in the world frame is constant, so the only unknown is the orientation: q' = 1/2 w q with
+// w = R I^-1 R^T L. L is kept exactly (to rounding) by construction and the energy to the order of the scheme, for any
+// inertia tensor and any speed; bodies that spin about a principal axis turn by the exponential map, which is exact.
+//
+// Method: Runge-Kutta 4 on the orientation with L fixed, in inner steps of at most kInnerAngle; one midpoint step (error
+// of order angle^3) where the angle is so small that it is exact in float. Source of the idea: E. Hairer, C. Lubich,
+// G. Wanner, "Geometric Numerical Integration", VII.5; L as the variable: J. C. Simo, K. K. Wong, 1991.
+#pragma once
+
+#include <gyre/math.h>
+
+namespace gyre {
+
+// Moves the orientation and angular velocity (world frame, rad/s) on by `seconds`. `inertia` and `inverse_inertia` are in
+// the body's frame. Returns the rotation vector by which the body turned (world frame, rad).
+Vec3 rotate_freely(Quat& orientation, Vec3& angular_velocity, const Sym3& inertia, const Sym3& inverse_inertia, float seconds);
+
+// The same at constant angular velocity: bodies with equal principal moments, kinematic bodies.
+Vec3 rotate_steadily(Quat& orientation, Vec3 angular_velocity, float seconds);
+
+}  // namespace gyre

@@ -1,0 +1,24 @@
+// Moving bodies between constraints: `predict` gives them the velocity that forces alone would, `advance` moves them by
+// the velocity that the solver left. Both work on blocks of the list of awake bodies.
+//
+// Semi-implicit Euler (symplectic: E. Hairer, C. Lubich, G. Wanner, "Geometric Numerical Integration", I.1): a kick by
+// forces and constraints at the present place, then the exact drift of a free body: x += h v, and torque-free rotation
+// for the orientation. The kick changes momentum, the drift keeps it.
+#pragma once
+
+#include "rigid/body_store.h"
+
+#include <span>
+
+namespace gyre {
+
+// Beyond these nothing is simulated faithfully; speeds are clamped to them and the clamping is reported.
+constexpr float kMaxSpeed = 1.0e7f;   // m/s
+constexpr float kMaxSpin = 2.0e4f;    // rad/s
+
+// Velocities from forces, torques, gravity and damping over h.
+void predict(BodyStore& bodies, int begin, int end, float h, Vec3 gravity);
+// Displacement from velocities over h, orientation by free rotation, world inertia of the new orientation.
+void advance(BodyStore& bodies, int begin, int end, float h);
+
+}  // namespace gyre

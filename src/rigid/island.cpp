@@ -1,0 +1,186 @@
+#include "rigid/island.h"
+
+#include "collision/pair_update.h"
+
+namespace gyre {
+
+namespace {
+
+bool is_dynamic(const RigidWorld& w, std::uint32_t body) { return is_movable(w.bodies.flags[body]); }
+
+bool is_asleep(const RigidWorld& w, std::uint32_t body) {
+  return is_dynamic(w, body) && w.bodies.flags[body].awake == 0;
+}
+
+// Whether the body can disturb a sleeping one: it is awake and dynamic, or kinematic and moving.
+bool disturbs(const RigidWorld& w, std::uint32_t body) {
+  const BodyFlags& flags = w.bodies.flags[body];
+  if (flags.frozen != 0 || flags.awake == 0) return false;
+  if (flags.type == BodyType::dynamic) return true;
+  const BodyMotion& motion = w.bodies.motion[body];
+  return flags.type == BodyType::kinematic &&
+         (motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{});
+}
+
+// Calls fn(body_a, body_b) for every contact and joint that binds; b may be a fixed body.
+template <class Fn>
+void for_each_link(const RigidWorld& w, Fn&& fn) {
+  for (const Contact& contact : w.contacts.contacts) {
+    if (contact.manifold_room == 0 || contact.manifold_count == 0 || contact.sensor != 0) continue;
+    fn(contact.body_a, contact.body_b);
+  }
+  w.joints.ids.for_each_live([&](std::uint32_t slot) {
+    const JointRecord& joint = w.joints.records[slot];
+    if (joint.body_a != kNoBody && joint.body_b != kNoBody) fn(std::uint32_t(joint.body_a), std::uint32_t(joint.body_b));
+  });
+}
+
+// Union-find over bodies; the root of an island is its lowest body.
+class Islands {
+ public:
+  Islands(RigidWorld& w, Arena& arena) : parent_(arena.make<std::uint32_t>(w.bodies.motion.size())) {
+    for (std::uint32_t i = 0; i < parent_.size(); ++i) parent_[i] = i;
+    for_each_link(w, [&](std::uint32_t a, std::uint32_t b) {
+      if (is_dynamic(w, a) && is_dynamic(w, b)) unite(a, b);
+    });
+  }
+  std::uint32_t root(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+
+ private:
+  void unite(std::uint32_t a, std::uint32_t b) {
+    a = root(a);
+    b = root(b);
+    if (a < b) {
+      parent_[b] = a;
+    } else {
+      parent_[a] = b;
+    }
+  }
+
+  std::span<std::uint32_t> parent_;
+};
+
+// Appends `body` to the ring of its group, whose lowest body is `root`.
+void fall_asleep(RigidWorld& w, std::uint32_t body, std::uint32_t root) {
+  BodySleep& sleep = w.bodies.sleep[body];
+  sleep.group = root;
+  if (body == root) {
+    sleep.next_in_group = body;
+  } else {
+    sleep.next_in_group = w.bodies.sleep[root].next_in_group;
+    w.bodies.sleep[root].next_in_group = body;
+  }
+  w.bodies.flags[body].awake = 0;
+  BodyMotion& motion = w.bodies.motion[body];
+  motion.linear_velocity = {};
+  motion.angular_velocity = {};
+  w.bodies.awake_stale = true;
+  w.events.sleep_changes.push_back({body_id(w, body), true});
+}
+
+void update_rest_timers(RigidWorld& w, float seconds, bool& somebody) {
+  const float pull = length(w.settings.gravity);
+  for (const std::uint32_t i : w.bodies.awake) {
+    const BodyFlags& flags = w.bodies.flags[i];
+    if (flags.type != BodyType::dynamic) continue;
+    const BodyMotion& motion = w.bodies.motion[i];
+    const BodyMass& mass = w.bodies.masses[i];
+    const bool moves = motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{};
+    // Nothing holds a free body up: as long as it moves at all it goes on for ever.
+    const bool may_rest = flags.can_sleep != 0 && (flags.touched != 0 || !moves) && w.bodies.forces[i].force == Vec3{} &&
+                          w.bodies.forces[i].torque == Vec3{} &&
+                          (flags.touched != 0 || pull * absolute(w.bodies.forces[i].gravity_scale) == 0.0f);
+    const float speed = length(motion.linear_velocity) + mass.reach * length(motion.angular_velocity);
+    const float rest = kRestShare * std::sqrt((pull > 0.0f ? pull : 9.81f) * mass.reach);
+    float& still = w.bodies.sleep[i].still_time;
+    still = may_rest && speed <= rest ? still + seconds : 0.0f;
+    if (still >= kTimeToSleep) somebody = true;
+  }
+}
+
+}  // namespace
+
+void wake(RigidWorld& w, std::uint32_t body) {
+  if (!is_asleep(w, body)) {
+    w.bodies.sleep[body].still_time = 0.0f;
+    return;
+  }
+  const std::uint32_t first = w.bodies.sleep[body].group == kNoGroup ? body : w.bodies.sleep[body].group;
+  std::uint32_t i = first;
+  do {
+    BodySleep& sleep = w.bodies.sleep[i];
+    const std::uint32_t next = sleep.group == kNoGroup ? first : sleep.next_in_group;
+    sleep = {};
+    w.bodies.flags[i].awake = 1;
+    w.events.sleep_changes.push_back({body_id(w, i), false});
+    i = next;
+  } while (i != first);
+  w.bodies.awake_stale = true;
+}
+
+void wake_all(RigidWorld& w) {
+  w.bodies.ids.for_each_live([&](std::uint32_t body) {
+    if (is_dynamic(w, body)) wake(w, body);
+  });
+}
+
+void wake_neighbours(RigidWorld& w, std::uint32_t body) {
+  for (const ShapeId id : w.bodies.shapes[body]) {
+    for_each_contact_of_shape(w.contacts, id.index, [&](std::uint32_t slot) {
+      const Contact& contact = w.contacts.contacts[slot];
+      const std::uint32_t other = contact.body_a == body ? contact.body_b : contact.body_a;
+      if (contact.manifold_count > 0 && is_dynamic(w, other)) wake(w, other);
+    });
+  }
+  for (const std::uint32_t slot : w.bodies.joints[body]) {
+    const JointRecord& joint = w.joints.records[slot];
+    for (const std::int32_t end : {joint.body_a, joint.body_b}) {
+      if (end != kNoBody && std::uint32_t(end) != body && is_dynamic(w, std::uint32_t(end))) wake(w, std::uint32_t(end));
+    }
+  }
+}
+
+void wake_touched(RigidWorld& w) {
+  for_each_link(w, [&](std::uint32_t a, std::uint32_t b) {
+    if (is_asleep(w, a) && disturbs(w, b)) wake(w, a);
+    if (is_asleep(w, b) && disturbs(w, a)) wake(w, b);
+  });
+}
+
+void put_to_sleep(RigidWorld& w, Arena& arena, float seconds) {
+  if (w.settings.sleeping == 0) return;
+  bool somebody = false;
+  update_rest_timers(w, seconds, somebody);
+  if (!somebody) return;
+  Islands islands(w, arena);
+  const std::span<std::uint8_t> restless = arena.make<std::uint8_t>(w.bodies.motion.size());
+  for (std::uint8_t& r : restless) r = 0;
+  for (const std::uint32_t i : w.bodies.awake) {
+    if (is_dynamic(w, i) && w.bodies.sleep[i].still_time < kTimeToSleep) restless[islands.root(i)] = 1;
+  }
+  for_each_link(w, [&](std::uint32_t a, std::uint32_t b) {
+    // Who lies on something that moves does not rest.
+    if (is_dynamic(w, a) && !is_dynamic(w, b) && disturbs(w, b)) restless[islands.root(a)] = 1;
+    if (is_dynamic(w, b) && !is_dynamic(w, a) && disturbs(w, a)) restless[islands.root(b)] = 1;
+  });
+  for (const std::uint32_t i : w.bodies.awake) {
+    if (!is_dynamic(w, i)) continue;
+    const std::uint32_t root = islands.root(i);
+    if (restless[root] == 0) fall_asleep(w, i, root);
+  }
+}
+
+void force_sleep(RigidWorld& w, Arena& arena, std::uint32_t body) {
+  if (!is_dynamic(w, body) || is_asleep(w, body)) return;
+  refresh_awake(w.bodies);
+  Islands islands(w, arena);
+  const std::uint32_t root = islands.root(body);
+  for (const std::uint32_t i : w.bodies.awake) {
+    if (is_dynamic(w, i) && islands.root(i) == root) fall_asleep(w, i, root);
+  }
+}
+
+}  // namespace gyre

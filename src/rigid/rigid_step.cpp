@@ -1,0 +1,246 @@
+#include "rigid/rigid_step.h"
+
+#include "base/sort.h"
+#include "collision/fat_box.h"
+#include "collision/pair_update.h"
+#include "rigid/island.h"
+#include "task/parallel.h"
+
+namespace gyre {
+
+namespace {
+
+constexpr int kBodiesPerBlock = 64;
+// A contact is reported as a hit when it closes faster than this share of sqrt(gravity * size).
+constexpr float kHitShare = 0.3f;
+
+// The list of changed proxies, ascending and without repeats.
+void sort_changed(Array<std::uint32_t>& changed, Array<std::uint64_t>& keys, Array<std::uint64_t>& scratch) {
+  keys.clear();
+  for (const std::uint32_t shape : changed) keys.push_back(shape);
+  scratch.resize_uninitialized(keys.size());
+  radix_sort_u64(keys, scratch);
+  changed.clear();
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (i == 0 || keys[i] != keys[i - 1]) changed.push_back(std::uint32_t(keys[i]));
+  }
+}
+
+BoxMotion box_motion(const RigidWorld& w, std::uint32_t shape, float seconds) {
+  const std::uint32_t body = w.shapes.colliders[shape].body;
+  const BodyMotion& motion = w.bodies.motion[body];
+  return {w.shapes.colliders[shape].size, seconds * motion.linear_velocity,
+          seconds * w.bodies.masses[body].reach * length(motion.angular_velocity)};
+}
+
+WorldBox needed_box_of(const RigidWorld& w, std::uint32_t shape, const BoxMotion& motion) {
+  const ColliderShape& collider = w.shapes.colliders[shape];
+  const Pose world_from_shape = w.bodies.poses[collider.body] * collider.body_from_shape;
+  return needed_box(world_box(collider.shape, world_from_shape), motion);
+}
+
+PairShapes describe_pair(const RigidWorld& w, std::uint64_t key) {
+  const std::uint32_t a = std::uint32_t(key >> 32), b = std::uint32_t(key);
+  PairShapes pair;
+  pair.body_a = w.shapes.colliders[a].body;
+  pair.body_b = w.shapes.colliders[b].body;
+  const auto is_mesh = [&](std::uint32_t shape) {
+    const ShapeKind kind = w.shapes.colliders[shape].shape.kind;
+    return kind == ShapeKind::mesh || kind == ShapeKind::height_field;
+  };
+  pair.against_mesh = is_mesh(a) || is_mesh(b);
+  pair.sensor = w.shapes.proxies[a].sensor || w.shapes.proxies[b].sensor;
+  pair.surface = combine_materials(w, w.shapes.materials[a], w.shapes.materials[b]);
+  return pair;
+}
+
+Vec3 point_velocity(const RigidWorld& w, std::uint32_t body, Vec3 from_center) {
+  const BodyMotion& motion = w.bodies.motion[body];
+  return motion.linear_velocity + cross(motion.angular_velocity, from_center);
+}
+
+// The event of a hard meeting: the point that closes fastest, before the solver has touched it.
+void report_hit(RigidWorld& w, const Contact& contact) {
+  float fastest = kHitShare * std::sqrt(9.81f * contact.size);
+  ContactHit hit;
+  bool found = false;
+  for (const Manifold& manifold : manifolds_of(w.contacts, contact)) {
+    for (int k = 0; k < manifold.count; ++k) {
+      const ContactPointState& point = manifold.points[k];
+      const float speed = dot(manifold.normal, point_velocity(w, contact.body_a, point.from_a) -
+                                                   point_velocity(w, contact.body_b, point.from_b));
+      if (!(speed > fastest)) continue;
+      fastest = speed;
+      found = true;
+      hit.point = w.bodies.places[contact.body_a].center + point.from_a;
+      hit.normal = manifold.normal;
+      hit.speed = speed;
+    }
+  }
+  if (!found) return;
+  hit.shape_a = shape_id(w, contact.shape_a);
+  hit.shape_b = shape_id(w, contact.shape_b);
+  hit.body_a = body_id(w, contact.body_a);
+  hit.body_b = body_id(w, contact.body_b);
+  w.events.hits.push_back(hit);
+}
+
+void report_begin(RigidWorld& w, const Contact& contact) {
+  if (contact.sensor != 0) {
+    const bool a_senses = w.shapes.proxies[contact.shape_a].sensor;
+    const std::uint32_t sensor = a_senses ? contact.shape_a : contact.shape_b;
+    const std::uint32_t visitor = a_senses ? contact.shape_b : contact.shape_a;
+    w.events.sensors.push_back({shape_id(w, sensor), shape_id(w, visitor), true});
+    return;
+  }
+  w.events.begins.push_back({shape_id(w, contact.shape_a), shape_id(w, contact.shape_b), body_id(w, contact.body_a),
+                             body_id(w, contact.body_b)});
+  report_hit(w, contact);
+}
+
+bool finite_state(const BodyMotion& motion, Quat orientation) {
+  return is_finite(motion.linear_velocity) && is_finite(motion.angular_velocity) && is_finite(motion.moved) &&
+         is_finite(orientation);
+}
+
+// Takes a body whose state went wrong back to where it last was and keeps it there.
+void freeze(RigidWorld& w, std::uint32_t body) {
+  w.bodies.motion[body] = {};
+  w.bodies.orientations[body] = w.bodies.places[body].orientation;
+  w.bodies.flags[body].frozen = 1;
+  w.bodies.inertia[body] = {};
+  w.bodies.awake_stale = true;
+  for (const ShapeId id : w.bodies.shapes[body]) {
+    for_each_contact_of_shape(w.contacts, id.index, [&](std::uint32_t slot) {
+      Contact& contact = w.contacts.contacts[slot];
+      for (Manifold& manifold : manifolds_of(w.contacts, contact)) manifold = {};
+      contact.manifold_count = 0;
+      forget_look(contact);
+    });
+  }
+}
+
+}  // namespace
+
+void refit_shape(RigidWorld& w, std::uint32_t shape, float seconds) {
+  const BoxMotion motion = box_motion(w, shape, seconds);
+  w.shapes.proxies[shape].fat_box = fat_box(needed_box_of(w, shape, motion), motion);
+  w.shapes.changed.push_back(shape);
+}
+
+void report_end(RigidWorld& w, const Contact& contact) {
+  if (contact.touching == 0) return;
+  if (contact.sensor != 0) {
+    const bool a_senses = w.shapes.proxies[contact.shape_a].sensor;
+    const std::uint32_t sensor = a_senses ? contact.shape_a : contact.shape_b;
+    const std::uint32_t visitor = a_senses ? contact.shape_b : contact.shape_a;
+    w.events.sensors.push_back({shape_id(w, sensor), shape_id(w, visitor), false});
+    return;
+  }
+  w.events.ends.push_back({shape_id(w, contact.shape_a), shape_id(w, contact.shape_b)});
+}
+
+void refit(RigidWorld& w) {
+  sort_changed(w.shapes.changed, w.new_pairs, w.sort_scratch);
+  if (w.broadphase_stale) {
+    w.broadphase->rebuild(w.shapes.proxies);
+    w.broadphase_stale = false;
+  } else if (!w.shapes.changed.empty()) {
+    w.broadphase->update(w.shapes.proxies, w.shapes.changed);
+  }
+}
+
+void find_pairs(RigidWorld& w, TaskSystem& tasks) {
+  w.new_pairs.clear();
+  if (!w.shapes.changed.empty()) {
+    w.broadphase->find_pairs(w.shapes.proxies, w.shapes.changed, tasks, w.new_pairs);
+  }
+  w.shapes.changed.clear();
+  add_pairs(w.contacts, w.new_pairs, w.joints.blocked, [&](std::uint64_t key) { return describe_pair(w, key); });
+}
+
+void collide_pairs(RigidWorld& w, TaskSystem& tasks, float seconds) {
+  const std::size_t count = w.bodies.motion.size();
+  w.collider_bodies.resize(count);
+  const auto fill = [&](std::uint32_t i) {
+    const BodyMotion& motion = w.bodies.motion[i];
+    const BodyFlags& flags = w.bodies.flags[i];
+    ColliderBody& body = w.collider_bodies[i];
+    body.pose = w.bodies.poses[i];
+    body.center = w.bodies.masses[i].center;
+    body.linear_velocity = motion.linear_velocity;
+    body.angular_velocity = motion.angular_velocity;
+    body.reach = w.bodies.masses[i].reach;
+    const bool moves = motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{};
+    body.awake = flags.awake != 0 && flags.frozen == 0 &&
+                 (flags.type == BodyType::dynamic || (flags.type == BodyType::kinematic && moves));
+  };
+  for_blocks(tasks, int(count), 4 * kBodiesPerBlock, [&](int begin, int end, int) {
+    for (int i = begin; i < end; ++i) fill(std::uint32_t(i));
+  });
+  const CollideInput input{w.shapes.colliders, w.collider_bodies, w.shapes.proxies, seconds};
+  collide(w.contacts, input, tasks, w.touches);
+}
+
+void link_islands(RigidWorld& w) {
+  w.touches.ended.for_each_set([&](std::size_t slot) {
+    // `touching` already tells the new state: what ended was touching before.
+    Contact ended = w.contacts.contacts[slot];
+    ended.touching = 1;
+    report_end(w, ended);
+  });
+  w.touches.began.for_each_set([&](std::size_t slot) { report_begin(w, w.contacts.contacts[slot]); });
+  remove_gone(w.contacts, w.touches.gone, [](std::uint32_t, const Contact&) {});
+  wake_touched(w);
+  refresh_awake(w.bodies);
+}
+
+void finish_bodies(RigidWorld& w, TaskSystem& tasks, float seconds, Array<std::uint32_t>& frozen) {
+  BodyStore& bodies = w.bodies;
+  for (const std::uint32_t i : bodies.awake) {
+    if (!finite_state(bodies.motion[i], bodies.orientations[i])) frozen.push_back(i);
+  }
+  for (const std::uint32_t i : frozen) freeze(w, i);
+  refresh_awake(bodies);
+  w.refit_marks.resize(w.shapes.colliders.size(), 0);
+  for_blocks(tasks, int(bodies.awake.size()), kBodiesPerBlock, [&](int begin, int end, int) {
+    for (int n = begin; n < end; ++n) {
+      const std::uint32_t i = bodies.awake[n];
+      bodies.places[i].center += bodies.motion[i].moved;
+      bodies.places[i].orientation = bodies.orientations[i];
+      bodies.poses[i] = origin_pose(bodies.places[i], bodies.masses[i]);
+      bodies.forces[i].force = {};
+      bodies.forces[i].torque = {};
+      for (const ShapeId id : bodies.shapes[i]) {
+        const BoxMotion motion = box_motion(w, id.index, seconds);
+        const WorldBox needed = needed_box_of(w, id.index, motion);
+        Proxy& proxy = w.shapes.proxies[id.index];
+        if (!needs_refit(proxy.fat_box, needed, motion)) continue;
+        proxy.fat_box = fat_box(needed, motion);
+        w.refit_marks[id.index] = 1;
+      }
+    }
+  });
+  for (const std::uint32_t i : bodies.awake) {
+    for (const ShapeId id : bodies.shapes[i]) {
+      if (w.refit_marks[id.index] == 0) continue;
+      w.refit_marks[id.index] = 0;
+      w.shapes.changed.push_back(id.index);
+    }
+  }
+}
+
+void break_joints(RigidWorld& w, float seconds) {
+  w.joints.ids.for_each_live([&](std::uint32_t slot) {
+    const JointRecord& joint = w.joints.records[slot];
+    if (joint.break_force <= 0.0f && joint.break_torque <= 0.0f) return;
+    const float force = length(joint.total_linear) / seconds;
+    const float torque = length(joint.total_angular) / seconds;
+    if ((joint.break_force > 0.0f && force > joint.break_force) ||
+        (joint.break_torque > 0.0f && torque > joint.break_torque)) {
+      w.events.broken.push_back({joint_id(w, slot), force, torque});
+    }
+  });
+}
+
+}  // namespace gyre

@@ -1,0 +1,32 @@
+// The rigid half of a step, as stages that world/step.cpp lists. Each is a function from arrays to arrays.
+#pragma once
+
+#include "base/arena.h"
+#include "rigid/rigid_world.h"
+#include "task/task_system.h"
+
+namespace gyre {
+
+// Tells the broad phase what came, went or moved its fat box since the last step.
+void refit(RigidWorld& w);
+// New pairs of fat boxes become contacts, in key order.
+void find_pairs(RigidWorld& w, TaskSystem& tasks);
+// Looks at every contact that could have changed: manifolds in, touch changes out.
+void collide_pairs(RigidWorld& w, TaskSystem& tasks, float seconds);
+// Events of touches; removes pairs that came apart; wakes what was touched.
+void link_islands(RigidWorld& w);
+// New places, poses, inertia and fat boxes of awake bodies; freezes bodies whose state is not finite. Returns how many
+// were frozen (their slots are appended to `frozen`).
+void finish_bodies(RigidWorld& w, TaskSystem& tasks, float seconds, Array<std::uint32_t>& frozen);
+// Joints that bore more than they can break.
+void break_joints(RigidWorld& w, float seconds);
+
+// Sweeps bodies that moved far against what is in their way and takes them back to the first impact.
+void clamp_fast_bodies(RigidWorld& w, TaskSystem& tasks, float seconds);
+
+// Fits a new fat box around one shape and lists it as changed.
+void refit_shape(RigidWorld& w, std::uint32_t shape, float seconds);
+// Removes one contact's traces: its end-of-touch event.
+void report_end(RigidWorld& w, const Contact& contact);
+
+}  // namespace gyre

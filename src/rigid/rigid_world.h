@@ -1,0 +1,79 @@
+// Everything rigid: bodies, shapes, joints, contacts, and the settings that act on them.
+#pragma once
+
+#include "base/arena.h"
+#include "base/flat_map.h"
+#include "collision/broadphase.h"
+#include "collision/collide.h"
+#include "collision/contact_store.h"
+#include "rigid/body_store.h"
+#include "rigid/shape_store.h"
+#include "solver/joint.h"
+
+#include <gyre/events.h>
+
+#include <memory>
+
+namespace gyre {
+
+struct JointStore {
+  IdPool ids;
+  Array<JointRecord> records;
+  FlatMap<std::uint32_t> blocked;  // body pair key -> number of joints that keep the two from colliding; derived
+};
+
+struct RigidSettings {
+  Vec3 gravity{0, -9.81f, 0};
+  std::int32_t substeps = 4;
+  std::uint8_t sleeping = 1;
+  CombineRule friction_rule = CombineRule::geometric_mean;
+  CombineRule restitution_rule = CombineRule::maximum;
+  std::uint8_t spare = 0;
+  float last_substep = 0.0f;  // s: the warm start is scaled by the change of it
+};
+
+// What happened in a step, before it is made public.
+struct RigidEvents {
+  Array<ContactBegin> begins;
+  Array<ContactEnd> ends;
+  Array<ContactHit> hits;
+  Array<SensorTouch> sensors;
+  Array<JointBroken> broken;
+  Array<SleepChange> sleep_changes;
+};
+
+struct RigidWorld {
+  BodyStore bodies;
+  ShapeStore shapes;
+  JointStore joints;
+  ContactStore contacts;
+  Array<MaterialPair> material_pairs;  // sorted by (a, b), a <= b
+  RigidSettings settings;
+
+  // Not state: can be rebuilt or lives for one step.
+  std::unique_ptr<Broadphase> broadphase;
+  bool broadphase_stale = true;        // must be rebuilt from all proxies
+  TouchChanges touches;
+  Array<std::uint64_t> new_pairs;
+  Array<std::uint64_t> sort_scratch;
+  Array<std::uint32_t> unwanted;       // contacts about to be removed
+  Array<std::uint8_t> refit_marks;     // by shape: got a new fat box in this step
+  Array<ColliderBody> collider_bodies;
+  RigidEvents events;
+  std::uint16_t world_number = 0;      // for ids in events
+};
+
+inline BodyId body_id(const RigidWorld& w, std::uint32_t body) {
+  return {body, std::uint16_t(w.bodies.ids.generation(body)), w.world_number};
+}
+inline ShapeId shape_id(const RigidWorld& w, std::uint32_t shape) {
+  return {shape, std::uint16_t(w.shapes.ids.generation(shape)), w.world_number};
+}
+inline JointId joint_id(const RigidWorld& w, std::uint32_t joint) {
+  return {joint, std::uint16_t(w.joints.ids.generation(joint)), w.world_number};
+}
+
+// Surface of a pair of shapes: the table's entry, or the combine rules.
+ContactSurface combine_materials(const RigidWorld& w, const Material& a, const Material& b);
+
+}  // namespace gyre

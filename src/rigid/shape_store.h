@@ -1,0 +1,37 @@
+// Shapes on bodies: what collision needs as columns indexed by the shape's slot, and what only the user asks for.
+#pragma once
+
+#include "base/array.h"
+#include "base/slot_map.h"
+#include "collision/collide.h"
+#include "collision/proxy.h"
+
+#include <gyre/defs.h>
+
+#include <vector>
+
+namespace gyre {
+
+struct ShapeStore {
+  IdPool ids;
+  Array<std::uint32_t> bodies;      // owner of each shape
+  Array<Transform> places;          // body_from_shape
+  Array<ColliderShape> colliders;   // inner form of all that; borrows from `geometry`; derived
+  Array<Proxy> proxies;             // fat boxes are state: they decide when pairs begin
+  Array<Material> materials;
+  std::vector<AnyShape> geometry;   // keeps cooked data alive
+  Array<float> density;
+  Array<std::uint64_t> user_data;
+  Array<std::uint32_t> changed;     // proxies that the broad phase has not seen yet, in no order; derived
+};
+
+IdPool::Slot add_shape_slot(ShapeStore& store);
+void remove_shape_slot(ShapeStore& store, std::uint32_t shape);
+
+// The inner form of a shape, from the columns that are state.
+void refresh_collider(ShapeStore& store, std::uint32_t shape);
+
+// Mass properties of a set of shapes in the body's frame; kind planes, meshes and fields add none.
+MassProperties shapes_mass(const ShapeStore& store, std::span<const ShapeId> shapes);
+
+}  // namespace gyre

@@ -1,0 +1,335 @@
+#include "rigid/solve_step.h"
+
+#include "rigid/integrators.h"
+#include "task/parallel.h"
+#include "task/program.h"
+
+namespace gyre {
+
+namespace {
+
+// Contacts take overlap back with this frequency (Hz) unless the sub-step is too long for it; heavily damped.
+constexpr float kContactFrequency = 30.0f;
+constexpr float kContactDamping = 10.0f;
+constexpr float kJointFrequency = 60.0f;
+constexpr float kJointDamping = 5.0f;
+// The fastest that overlap is taken back, as a share of sqrt(gravity * size): falling its own size is a body's natural
+// scale of speed, so the rule holds from millimetres to kilometres.
+constexpr float kPushShare = 0.3f;
+// Nothing bounces that closes slower than this many times the speed that gravity gives in a sub-step.
+constexpr float kBounceShare = 2.0f;
+
+constexpr int kBodiesPerBlock = 64;
+constexpr int kJointsPerBlock = 8;
+constexpr int kBlocksPerClaim = 4;
+
+// What every stage of the program reads.
+struct Solve {
+  RigidWorld& w;
+  SolveScratch& scratch;
+  const ContactKernels& kernels;
+  void* blocks = nullptr;
+  float h = 0.0f;
+  ContactSettings contact_settings{};
+  JointSettings joint_settings{};
+  ImpactSettings impact_settings{};
+  ContactBodies contact_bodies{};
+  JointBodies joint_bodies{};
+  std::span<JointWork> joint_work{};
+  std::span<JointPlaces> joint_places{};
+};
+
+// A run of blocks of one colour.
+struct Group {
+  Solve* solve = nullptr;
+  std::uint32_t first = 0;  // first block of contacts, or first place in the joint order
+  std::uint32_t count = 0;  // blocks or joints
+};
+
+// ------------------------------------------------------------------------------------------------- gathering, colours
+
+// A body as constraints know it: kNoBody if it never moves (its record is then never read).
+std::int32_t solver_body(const RigidWorld& w, std::uint32_t body) {
+  const BodyFlags& flags = w.bodies.flags[body];
+  return flags.type == BodyType::fixed || flags.frozen != 0 ? kNoBody : std::int32_t(body);
+}
+
+bool is_active(const RigidWorld& w, std::uint32_t body) {
+  const BodyFlags& flags = w.bodies.flags[body];
+  return flags.awake != 0 && is_movable(flags);
+}
+
+void gather_contacts(RigidWorld& w, SolveScratch& s) {
+  s.constraints.clear();
+  s.constraint_contact.clear();
+  s.impacts.clear();
+  s.pairs.clear();
+  const float fall = std::sqrt(length(w.settings.gravity));
+  for (std::uint32_t slot = 0; slot < w.contacts.contacts.size(); ++slot) {
+    const Contact& contact = w.contacts.contacts[slot];
+    if (contact.manifold_room == 0 || contact.manifold_count == 0 || contact.sensor != 0) continue;
+    const bool active_a = is_active(w, contact.body_a), active_b = is_active(w, contact.body_b);
+    if (!active_a && !active_b) continue;
+    w.bodies.flags[contact.body_a].touched = 1;
+    w.bodies.flags[contact.body_b].touched = 1;
+    ContactConstraint constraint;
+    constraint.body_a = solver_body(w, contact.body_a);
+    constraint.body_b = solver_body(w, contact.body_b);
+    constraint.static_friction = contact.surface.static_friction;
+    constraint.dynamic_friction = contact.surface.dynamic_friction;
+    constraint.rolling_friction = contact.surface.rolling_friction;
+    constraint.spinning_friction = contact.surface.spinning_friction;
+    constraint.restitution = contact.surface.restitution;
+    constraint.push_speed = kPushShare * (fall > 0.0f ? fall : 3.132f) * std::sqrt(contact.size);
+    for (Manifold& manifold : manifolds_of(w.contacts, contact)) {
+      if (manifold.count == 0) continue;
+      constraint.manifold = &manifold;
+      s.constraints.push_back(constraint);
+      s.constraint_contact.push_back(slot);
+      s.pairs.push_back({active_a ? contact.body_a : ColoringPair::kNone, active_b ? contact.body_b : ColoringPair::kNone});
+      if (constraint.restitution > 0.0f) s.impacts.push_back(make_impact(constraint));
+    }
+  }
+}
+
+void gather_joints(RigidWorld& w, SolveScratch& s) {
+  s.joints.clear();
+  s.joint_pairs.clear();
+  w.joints.ids.for_each_live([&](std::uint32_t slot) {
+    const JointRecord& joint = w.joints.records[slot];
+    const bool active_a = joint.body_a != kNoBody && is_active(w, std::uint32_t(joint.body_a));
+    const bool active_b = joint.body_b != kNoBody && is_active(w, std::uint32_t(joint.body_b));
+    if (!active_a && !active_b) return;
+    if (joint.body_a != kNoBody) w.bodies.flags[joint.body_a].touched = 1;
+    if (joint.body_b != kNoBody) w.bodies.flags[joint.body_b].touched = 1;
+    s.joints.push_back(slot);
+    s.joint_pairs.push_back({active_a ? std::uint32_t(joint.body_a) : ColoringPair::kNone,
+                             active_b ? std::uint32_t(joint.body_b) : ColoringPair::kNone});
+  });
+}
+
+// Lays the coloured constraints out in blocks of W lanes. A group starts a new block; constraints of the overflow group
+// get a block each, so that they are solved one after the other at every width.
+std::span<Group> lay_out_contacts(Solve& solve, Arena& arena) {
+  SolveScratch& s = solve.scratch;
+  const Coloring& colors = s.contact_colors;
+  const std::uint32_t width = std::uint32_t(solve.kernels.width);
+  const std::span<Group> groups = arena.make<Group>(std::size_t(colors.group_count()));
+  s.order.clear();
+  std::size_t used = 0;
+  std::uint32_t block = 0;
+  for (int g = 0; g < colors.group_count(); ++g) {
+    const std::span<const std::uint32_t> members = colors.group(g);
+    if (members.empty()) continue;
+    const std::uint32_t lanes = g == colors.overflow_group() ? 1 : width;
+    const std::uint32_t first = block;
+    for (std::size_t i = 0; i < members.size(); i += lanes, ++block) {
+      for (std::uint32_t lane = 0; lane < width; ++lane) {
+        s.order.push_back(lane < lanes && i + lane < members.size() ? members[i + lane] : 0xffffffffu);
+      }
+    }
+    groups[used++] = {&solve, first, block - first};
+  }
+  s.colors = int(used);
+  solve.blocks = arena.make<std::byte>(std::size_t(block) * solve.kernels.block_bytes).data();
+  return groups.first(used);
+}
+
+std::span<Group> lay_out_joints(Solve& solve, Arena& arena) {
+  const Coloring& colors = solve.scratch.joint_colors;
+  const std::span<Group> groups = arena.make<Group>(std::size_t(colors.group_count()));
+  std::size_t used = 0;
+  for (int g = 0; g < colors.group_count(); ++g) {
+    const std::uint32_t count = colors.offsets[g + 1] - colors.offsets[g];
+    if (count > 0) groups[used++] = {&solve, colors.offsets[g], count};
+  }
+  return groups.first(used);
+}
+
+// --------------------------------------------------------------------------------------------------- stages' kernels
+
+void predict_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  const int count = int(s.w.bodies.awake.size());
+  predict(s.w.bodies, begin * kBodiesPerBlock, min(end * kBodiesPerBlock, count), s.h, s.w.settings.gravity);
+}
+void advance_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  const int count = int(s.w.bodies.awake.size());
+  advance(s.w.bodies, begin * kBodiesPerBlock, min(end * kBodiesPerBlock, count), s.h);
+}
+void watch_stage(void* context, int, int, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  watch_impacts(s.scratch.impacts, s.contact_bodies);
+}
+void strike_stage(void* context, int, int, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  strike_impacts(s.scratch.impacts, s.contact_bodies, s.impact_settings);
+}
+void release_stage(void* context, int, int, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  release_impacts(s.scratch.impacts, s.contact_bodies, s.impact_settings);
+}
+
+void prepare_contacts_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  s.kernels.prepare(s.blocks, begin, end, s.scratch.constraints.data(), s.scratch.order.data(), s.contact_bodies,
+                    s.contact_settings);
+}
+void finish_contacts_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  s.kernels.finish(s.blocks, begin, end, s.scratch.constraints.data(), s.scratch.order.data());
+}
+void warm_contacts_stage(void* context, int begin, int end, int) {
+  const Group& g = *static_cast<Group*>(context);
+  g.solve->kernels.warm_start(g.solve->blocks, int(g.first) + begin, int(g.first) + end, g.solve->contact_bodies.motion);
+}
+void solve_contacts_stage(void* context, int begin, int end, int) {
+  const Group& g = *static_cast<Group*>(context);
+  g.solve->kernels.solve(g.solve->blocks, int(g.first) + begin, int(g.first) + end, g.solve->contact_bodies.motion,
+                         g.solve->h);
+}
+void relax_contacts_stage(void* context, int begin, int end, int) {
+  const Group& g = *static_cast<Group*>(context);
+  g.solve->kernels.relax(g.solve->blocks, int(g.first) + begin, int(g.first) + end, g.solve->contact_bodies.motion,
+                         g.solve->h);
+}
+
+// Calls fn(record, work, places) for the joints of some blocks of a group.
+template <class Fn>
+void for_joints(const Group& g, int begin, int end, Fn&& fn) {
+  Solve& s = *g.solve;
+  const std::uint32_t last = min(std::uint32_t(end * kJointsPerBlock), g.count);
+  for (std::uint32_t n = std::uint32_t(begin * kJointsPerBlock); n < last; ++n) {
+    const std::uint32_t i = s.scratch.joint_colors.order[g.first + n];
+    fn(s.w.joints.records[s.scratch.joints[i]], s.joint_work[i], s.joint_places[i]);
+  }
+}
+void prepare_joints_stage(void* context, int begin, int end, int) {
+  const Group& g = *static_cast<Group*>(context);
+  for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces& places) {
+    prepare_joint(joint, work, places, g.solve->joint_bodies, g.solve->joint_settings);
+  });
+}
+void warm_joints_stage(void* context, int begin, int end, int) {
+  const Group& g = *static_cast<Group*>(context);
+  for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
+    warm_start_joint(joint, work, g.solve->joint_bodies);
+  });
+}
+void solve_joints_stage(void* context, int begin, int end, int) {
+  const Group& g = *static_cast<Group*>(context);
+  for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
+    solve_joint(joint, work, g.solve->joint_bodies, g.solve->joint_settings, true);
+  });
+}
+void relax_joints_stage(void* context, int begin, int end, int) {
+  const Group& g = *static_cast<Group*>(context);
+  for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
+    solve_joint(joint, work, g.solve->joint_bodies, g.solve->joint_settings, false);
+    sum_joint(joint, work);
+  });
+}
+
+// ---------------------------------------------------------------------------------------------------------- program
+
+// The table of stages, written into memory that is large enough for it.
+class ProgramWriter {
+ public:
+  explicit ProgramWriter(std::span<Stage> room) : room_(room) {}
+
+  void add(void (*kernel)(void*, int, int, int), void* context, int blocks, int per_claim = 1) {
+    if (blocks > 0) room_[used_++] = {kernel, context, blocks, per_claim};
+  }
+  void add_groups(void (*kernel)(void*, int, int, int), std::span<Group> groups, std::uint32_t items_per_block, int per_claim) {
+    for (Group& group : groups) {
+      add(kernel, &group, int((group.count + items_per_block - 1) / items_per_block), per_claim);
+    }
+  }
+  std::span<const Stage> stages() const { return room_.first(used_); }
+
+ private:
+  std::span<Stage> room_;
+  std::size_t used_ = 0;
+};
+
+void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> joints, Arena& arena, TaskSystem& tasks) {
+  const int substeps = solve.w.settings.substeps;
+  const std::size_t per_substep = 5 + 4 * joints.size() + 3 * contacts.size();
+  ProgramWriter program(arena.make<Stage>(2 + std::size_t(substeps) * per_substep));
+  std::uint32_t blocks = 0;
+  for (const Group& group : contacts) blocks += group.count;
+  const int body_blocks = count_blocks(int(solve.w.bodies.awake.size()), kBodiesPerBlock);
+  const int impact_blocks = solve.scratch.impacts.empty() ? 0 : 1;
+  program.add(prepare_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
+  for (int i = 0; i < substeps; ++i) {
+    program.add(watch_stage, &solve, impact_blocks);
+    program.add(predict_stage, &solve, body_blocks);
+    program.add(strike_stage, &solve, impact_blocks);
+    program.add_groups(prepare_joints_stage, joints, kJointsPerBlock, 1);
+    program.add_groups(warm_joints_stage, joints, kJointsPerBlock, 1);
+    program.add_groups(warm_contacts_stage, contacts, 1, kBlocksPerClaim);
+    program.add_groups(solve_joints_stage, joints, kJointsPerBlock, 1);
+    program.add_groups(solve_contacts_stage, contacts, 1, kBlocksPerClaim);
+    program.add(advance_stage, &solve, body_blocks);
+    program.add(release_stage, &solve, impact_blocks);
+    program.add_groups(relax_joints_stage, joints, kJointsPerBlock, 1);
+    program.add_groups(relax_contacts_stage, contacts, 1, kBlocksPerClaim);
+  }
+  program.add(finish_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
+  run_program(tasks, program.stages());
+}
+
+DVec3 joint_place(const BodyStore& bodies, std::int32_t body, DVec3 world_anchor) {
+  return body == kNoBody ? world_anchor : bodies.places[body].center;
+}
+
+void begin_joint_work(Solve& solve, Arena& arena, float warm_scale) {
+  RigidWorld& w = solve.w;
+  const std::size_t count = solve.scratch.joints.size();
+  solve.joint_work = arena.make<JointWork>(count);
+  solve.joint_places = arena.make<JointPlaces>(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    JointRecord& joint = w.joints.records[solve.scratch.joints[i]];
+    begin_joint(joint, solve.joint_work[i], warm_scale);
+    solve.joint_places[i].offset = difference(joint_place(w.bodies, joint.body_b, joint.world_anchor_b),
+                                              joint_place(w.bodies, joint.body_a, joint.world_anchor_a));
+  }
+}
+
+}  // namespace
+
+void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& tasks, const ContactKernels& kernels,
+                float seconds) {
+  const float h = seconds / float(w.settings.substeps);
+  const float warm_scale = w.settings.last_substep > 0.0f ? h / w.settings.last_substep : 0.0f;
+  w.settings.last_substep = h;
+  for (const std::uint32_t body : w.bodies.awake) {
+    w.bodies.flags[body].touched = 0;
+    w.bodies.motion[body].moved = {};
+    w.bodies.motion[body].turned = {};
+  }
+  gather_contacts(w, scratch);
+  gather_joints(w, scratch);
+  const std::uint32_t body_count = std::uint32_t(w.bodies.motion.size());
+  color_constraints(scratch.pairs, body_count, {}, {.max_colors = 32, .statics_last = true}, scratch.contact_colors);
+  color_constraints(scratch.joint_pairs, body_count, {}, {.max_colors = 32, .statics_last = true}, scratch.joint_colors);
+
+  Solve solve{w, scratch, kernels};
+  solve.h = h;
+  const float frequency = min(kContactFrequency, 0.25f / h);
+  const Softness moving = make_softness(frequency, kContactDamping, h);
+  const Softness fixed = make_softness(2.0f * frequency, kContactDamping, h);
+  solve.contact_settings = {h, moving.bias_rate, moving.mass_scale, moving.impulse_scale,
+                            fixed.bias_rate, fixed.mass_scale, fixed.impulse_scale, warm_scale};
+  solve.joint_settings = {h, make_softness(min(kJointFrequency, 0.25f / h), kJointDamping, h)};
+  solve.impact_settings = {h, kBounceShare * h * length(w.settings.gravity)};
+  solve.contact_bodies = {w.bodies.motion.data(), w.bodies.inertia.data()};
+  solve.joint_bodies = {w.bodies.motion.data(), w.bodies.inertia.data(), w.bodies.orientations.data()};
+  begin_joint_work(solve, arena, warm_scale);
+  const std::span<Group> contacts = lay_out_contacts(solve, arena);
+  const std::span<Group> joints = lay_out_joints(solve, arena);
+  run_substeps(solve, contacts, joints, arena, tasks);
+}
+
+}  // namespace gyre

@@ -1,0 +1,39 @@
+// The 64-byte record of a body that every solver reads and writes: one cache line, sixteen floats, so that wide kernels
+// gather it with plain transposes. The solver does not know who owns the records.
+#pragma once
+
+#include <gyre/math.h>
+
+#include <cstdint>
+
+namespace gyre {
+
+struct alignas(64) BodyMotion {
+  Vec3 linear_velocity;   // m/s, of the centre of mass, world frame
+  Vec3 angular_velocity;  // rad/s, world frame
+  float inverse_mass = 0.0f;  // 1/kg; 0 for fixed and kinematic bodies
+  float spare_1 = 0.0f;
+  Vec3 moved;   // m, of the centre of mass since the step began
+  Vec3 turned;  // rad, rotation vector since the step began (sum of the sub-steps')
+  float spare_2 = 0.0f;
+  float spare_3 = 0.0f;
+};
+static_assert(sizeof(BodyMotion) == 64);
+
+// Columns of the record, as wide kernels see them.
+constexpr int kMotionFloats = 16;
+constexpr int kMotionLinear = 0;
+constexpr int kMotionAngular = 3;
+constexpr int kMotionMoved = 8;
+constexpr int kMotionTurned = 11;
+
+// World-frame inverse inertia, kept beside the record because only preparation reads it.
+struct BodyInertia {
+  Sym3 inverse;                 // 1/(kg m^2), world axes
+  float inverse_mass = 0.0f;
+};
+
+// "No body": the fixed world, which has no record.
+constexpr std::int32_t kNoBody = -1;
+
+}  // namespace gyre

@@ -1,0 +1,61 @@
+// Contacts as the kernels solve them: W manifolds side by side, none of which shares a moving body with another of its
+// colour. Blocks are built at the start of each step in the step's arena and read back at its end; nothing that depends
+// on W outlives the step.
+//
+// In: ContactConstraint (a manifold, its two bodies and its surface). Out: impulses in the manifolds.
+#pragma once
+
+#include "geometry/manifold.h"
+#include "solver/body_motion.h"
+
+#include <cstdint>
+#include <span>
+
+namespace gyre {
+
+// One manifold to be solved. Plain data: the same for every width.
+struct ContactConstraint {
+  Manifold* manifold = nullptr;
+  std::int32_t body_a = kNoBody;  // index of the motion record; kNoBody for fixed bodies
+  std::int32_t body_b = kNoBody;
+  float static_friction = 0.0f;
+  float dynamic_friction = 0.0f;
+  float rolling_friction = 0.0f;   // m
+  float spinning_friction = 0.0f;  // m
+  float restitution = 0.0f;
+  float push_speed = 0.0f;         // m/s: the fastest that overlap is taken back
+  Vec3 surface_velocity;           // m/s, of b's surface against a's, in the tangent plane
+};
+
+// What is the same for all contacts of a step.
+struct ContactSettings {
+  float substep = 0.0f;  // s
+  // Softness of contacts between two moving bodies, and of those against the fixed world (stiffer: it cannot give way).
+  float moving_bias_rate = 0.0f, moving_mass_scale = 1.0f, moving_impulse_scale = 0.0f;
+  float fixed_bias_rate = 0.0f, fixed_mass_scale = 1.0f, fixed_impulse_scale = 0.0f;
+  float warm_scale = 1.0f;  // present sub-step over the last step's: impulses are kept per sub-step
+};
+
+// The body arrays that the kernels work on.
+struct ContactBodies {
+  BodyMotion* motion = nullptr;
+  const BodyInertia* inertia = nullptr;
+};
+
+// The kernels of one CPU target: every function works on blocks [begin, end) of the array at `blocks`. `order` lists
+// constraint indices block by block, W a block; 0xffffffff marks an empty lane.
+struct ContactKernels {
+  int width;
+  std::size_t block_bytes;
+  void (*prepare)(void* blocks, int begin, int end, const ContactConstraint* constraints, const std::uint32_t* order,
+                  ContactBodies bodies, const ContactSettings& settings);
+  void (*warm_start)(void* blocks, int begin, int end, BodyMotion* motion);
+  void (*solve)(void* blocks, int begin, int end, BodyMotion* motion, float substep);
+  void (*relax)(void* blocks, int begin, int end, BodyMotion* motion, float substep);
+  void (*finish)(void* blocks, int begin, int end, const ContactConstraint* constraints, const std::uint32_t* order);
+};
+
+// The widest kernels that this machine runs well and that have at most `width` lanes (0: any). Same bits whichever.
+const ContactKernels& select_contact_kernels(int width);
+
+}  // namespace gyre

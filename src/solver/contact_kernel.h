@@ -1,0 +1,275 @@
+// The contact kernels: prepare, warm start, solve, relax and finish, one template for every width. Lane i of a block
+// computes exactly what a block of width 1 would, so the width never changes a bit.
+//
+// A manifold has up to four normal rows and one friction row triple at the centre of pressure: two tangents and the twist
+// about the normal, limited together by an ellipsoid (S. Goyal, A. Ruina, J. Papadopoulos, "Planar sliding with dry
+// friction", 1991; R. Howe, M. Cutkosky, 1996), which couples sliding with spinning as a patch of uniform pressure does.
+// Normal rows are soft while overlap is taken back and rigid while velocities relax (E. Catto, "Soft Step", 2024).
+// What the softness gives way to is only the change of the impulse since the step began: the impulse that earlier steps
+// found is held like a multiplier (augmented Lagrangian; Hestenes, Powell 1969), so a resting load leaves no overlap.
+//
+// Error of a point: s = separation + n . (moved_b - moved_a + turned_b x r_b - turned_a x r_a), first order on purpose: a
+// rolling ball's contact does not rise with the material that was there.
+#pragma once
+
+#include "math/wide_vec.h"
+#include "solver/contact_block.h"
+
+namespace gyre {
+inline namespace GYRE_TARGET_NAMESPACE {
+
+template <int W>
+struct PointBlock {
+  Vec3W<W> from_a, from_b;
+  Wide<W> separation;     // as the step began
+  Wide<W> mass;           // rigid effective mass; 0 in lanes without this point
+  Wide<W> impulse;        // accumulated in this sub-step
+  Wide<W> held;           // what the step began with
+  Wide<W> total;          // summed over the step
+};
+
+template <int W>
+struct ContactBlock {
+  std::int32_t read_a[W], read_b[W];    // motion records, or kNoBody
+  std::int32_t write_a[W], write_b[W];  // the same, kNoBody for bodies that nothing pushes
+  std::int32_t point_count = 0;         // the most of any lane
+  std::int32_t rolls = 0;               // any lane has rolling friction
+  Vec3W<W> normal, tangent_1, tangent_2;
+  Wide<W> inverse_mass_a, inverse_mass_b;
+  Sym3W<W> inverse_inertia_a, inverse_inertia_b;
+  Wide<W> bias_rate, mass_scale, impulse_scale, push_speed;
+  // Friction at the centre of pressure.
+  Vec3W<W> friction_from_a, friction_from_b;
+  Wide<W> static_friction, dynamic_friction;
+  Wide<W> twist_per_normal_static, twist_per_normal_dynamic;  // m: torque limit over normal impulse
+  Wide<W> inverse_k11, inverse_k12, inverse_k13, inverse_k22, inverse_k23, inverse_k33;  // of (tangent_1, tangent_2, twist)
+  Wide<W> slide_mass;     // scalar step for sliding, so that friction opposes the slip in every direction alike
+  Wide<W> twist_radius;   // m: scale of the twist row beside the tangents
+  Wide<W> surface_1, surface_2;
+  Wide<W> friction_1, friction_2, twist;
+  Wide<W> sliding;        // 1 where friction was at its limit
+  Wide<W> total_1, total_2;
+  // Rolling friction.
+  Wide<W> rolling_friction, rolling_mass;
+  Vec3W<W> rolling;
+  PointBlock<W> points[kMaxManifoldPoints];
+};
+
+// Velocities of the two bodies of each lane.
+template <int W>
+struct PairMotion {
+  Vec3W<W> linear_a, angular_a, linear_b, angular_b;
+};
+
+template <int W>
+GYRE_INLINE void load_pair(const ContactBlock<W>& block, const BodyMotion* motion, Wide<W>* a, Wide<W>* b) {
+  gather16<W>(&motion->linear_velocity.x, block.read_a, a);
+  gather16<W>(&motion->linear_velocity.x, block.read_b, b);
+}
+
+template <int W>
+GYRE_INLINE PairMotion<W> velocities(const Wide<W>* a, const Wide<W>* b) {
+  return {{a[0], a[1], a[2]}, {a[3], a[4], a[5]}, {b[0], b[1], b[2]}, {b[3], b[4], b[5]}};
+}
+
+template <int W>
+GYRE_INLINE void store_pair(const ContactBlock<W>& block, BodyMotion* motion, const PairMotion<W>& pair, Wide<W>* a,
+                            Wide<W>* b) {
+  // Adding zero keeps -0 out of the state: lanes that have fewer points than their block add zeros of either sign.
+  const Wide<W> zero(0.0f);
+  a[0] = pair.linear_a.x + zero, a[1] = pair.linear_a.y + zero, a[2] = pair.linear_a.z + zero;
+  a[3] = pair.angular_a.x + zero, a[4] = pair.angular_a.y + zero, a[5] = pair.angular_a.z + zero;
+  b[0] = pair.linear_b.x + zero, b[1] = pair.linear_b.y + zero, b[2] = pair.linear_b.z + zero;
+  b[3] = pair.angular_b.x + zero, b[4] = pair.angular_b.y + zero, b[5] = pair.angular_b.z + zero;
+  scatter<8, W>(&motion->linear_velocity.x, block.write_a, a);
+  scatter<8, W>(&motion->linear_velocity.x, block.write_b, b);
+}
+
+// Adds the impulse `p` on B at `from_b` (and -p on A at `from_a`).
+template <int W>
+GYRE_INLINE void push(const ContactBlock<W>& block, PairMotion<W>& pair, Vec3W<W> p, Vec3W<W> from_a, Vec3W<W> from_b) {
+  pair.linear_a = pair.linear_a - block.inverse_mass_a * p;
+  pair.angular_a = pair.angular_a - block.inverse_inertia_a * cross(from_a, p);
+  pair.linear_b = pair.linear_b + block.inverse_mass_b * p;
+  pair.angular_b = pair.angular_b + block.inverse_inertia_b * cross(from_b, p);
+}
+
+// Adds the angular impulse `t` on B (and -t on A).
+template <int W>
+GYRE_INLINE void turn(const ContactBlock<W>& block, PairMotion<W>& pair, Vec3W<W> t) {
+  pair.angular_a = pair.angular_a - block.inverse_inertia_a * t;
+  pair.angular_b = pair.angular_b + block.inverse_inertia_b * t;
+}
+
+// Velocity of B's material against A's at a point.
+template <int W>
+GYRE_INLINE Vec3W<W> relative_velocity(const PairMotion<W>& pair, Vec3W<W> from_a, Vec3W<W> from_b) {
+  return (pair.linear_b + cross(pair.angular_b, from_b)) - (pair.linear_a + cross(pair.angular_a, from_a));
+}
+
+template <int W>
+void warm_start_blocks(void* memory, int begin, int end, BodyMotion* motion) {
+  auto* blocks = static_cast<ContactBlock<W>*>(memory);
+  for (int i = begin; i < end; ++i) {
+    ContactBlock<W>& block = blocks[i];
+    Wide<W> a[kMotionFloats], b[kMotionFloats];
+    load_pair<W>(block, motion, a, b);
+    PairMotion<W> pair = velocities<W>(a, b);
+    for (int k = 0; k < block.point_count; ++k) {
+      const PointBlock<W>& point = block.points[k];
+      push<W>(block, pair, point.impulse * block.normal, point.from_a, point.from_b);
+    }
+    push<W>(block, pair, block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2, block.friction_from_a,
+            block.friction_from_b);
+    turn<W>(block, pair, block.twist * block.normal);
+    if (block.rolls != 0) turn<W>(block, pair, block.rolling);
+    store_pair<W>(block, motion, pair, a, b);
+  }
+}
+
+// Sum of the normal impulses of a manifold.
+template <int W>
+GYRE_INLINE Wide<W> normal_load(const ContactBlock<W>& block) {
+  Wide<W> load = block.points[0].impulse;
+  for (int k = 1; k < block.point_count; ++k) load = load + block.points[k].impulse;
+  return load;
+}
+
+// Friction: the impulse that would stop the slip, pulled back into the ellipsoid of what the load allows.
+template <int W>
+GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W>& pair) {
+  const Wide<W> zero = Wide<W>(0.0f);
+  const Wide<W> one = Wide<W>(1.0f);
+  const Wide<W> load = normal_load<W>(block);
+  const Vec3W<W> slip = relative_velocity<W>(pair, block.friction_from_a, block.friction_from_b);
+  const Wide<W> v1 = dot(slip, block.tangent_1) - block.surface_1;
+  const Wide<W> v2 = dot(slip, block.tangent_2) - block.surface_2;
+  const Wide<W> v3 = dot(pair.angular_b - pair.angular_a, block.normal);
+
+  // Sticking: all three rows at once.
+  Wide<W> f1 = block.friction_1 - (block.inverse_k11 * v1 + block.inverse_k12 * v2 + block.inverse_k13 * v3);
+  Wide<W> f2 = block.friction_2 - (block.inverse_k12 * v1 + block.inverse_k22 * v2 + block.inverse_k23 * v3);
+  Wide<W> f3 = block.twist - (block.inverse_k13 * v1 + block.inverse_k23 * v2 + block.inverse_k33 * v3);
+
+  const auto was_sliding = block.sliding > zero;
+  const Wide<W> slide_limit = block.dynamic_friction * load;
+  const Wide<W> slide_twist = block.twist_per_normal_dynamic * load;
+  const Wide<W> limit = select(was_sliding, slide_limit, block.static_friction * load);
+  const Wide<W> twist_limit = select(was_sliding, slide_twist, block.twist_per_normal_static * load);
+  const Wide<W> inverse_limit = select(limit > zero, one / limit, zero);
+  const Wide<W> inverse_twist = select(twist_limit > zero, one / twist_limit, zero);
+  const Wide<W> use = (f1 * f1 + f2 * f2) * (inverse_limit * inverse_limit) + (f3 * f3) * (inverse_twist * inverse_twist);
+  const auto sticks = use <= one;
+
+  // Sliding: a step along the slip, alike in every direction, then onto the ellipsoid.
+  const Wide<W> g1 = block.friction_1 - block.slide_mass * v1;
+  const Wide<W> g2 = block.friction_2 - block.slide_mass * v2;
+  const Wide<W> g3 = block.twist - block.slide_mass * (block.twist_radius * block.twist_radius) * v3;
+  const Wide<W> inverse_slide = select(slide_limit > zero, one / slide_limit, zero);
+  const Wide<W> inverse_slide_twist = select(slide_twist > zero, one / slide_twist, zero);
+  const Wide<W> reach = (g1 * g1 + g2 * g2) * (inverse_slide * inverse_slide) +
+                        (g3 * g3) * (inverse_slide_twist * inverse_slide_twist);
+  const Wide<W> scale = select(reach > one, one / sqrt(reach), one);
+  f1 = select(sticks, f1, g1 * scale);
+  f2 = select(sticks, f2, g2 * scale);
+  f3 = select(sticks, f3, g3 * scale);
+  block.sliding = select(sticks, zero, one);
+
+  // No load, no friction.
+  f1 = select(limit > zero, f1, zero);
+  f2 = select(limit > zero, f2, zero);
+  f3 = select(twist_limit > zero, f3, zero);
+
+  const Wide<W> d1 = f1 - block.friction_1;
+  const Wide<W> d2 = f2 - block.friction_2;
+  const Wide<W> d3 = f3 - block.twist;
+  block.friction_1 = f1;
+  block.friction_2 = f2;
+  block.twist = f3;
+  push<W>(block, pair, d1 * block.tangent_1 + d2 * block.tangent_2, block.friction_from_a, block.friction_from_b);
+  turn<W>(block, pair, d3 * block.normal);
+}
+
+// Rolling friction: a torque against the relative turning, at most rolling_friction times the load.
+template <int W>
+GYRE_INLINE void solve_rolling(ContactBlock<W>& block, PairMotion<W>& pair) {
+  const Wide<W> zero = Wide<W>(0.0f);
+  const Wide<W> one = Wide<W>(1.0f);
+  const Vec3W<W> spin = pair.angular_b - pair.angular_a;
+  const Vec3W<W> roll = spin - dot(spin, block.normal) * block.normal;
+  const Vec3W<W> wanted = block.rolling - block.rolling_mass * roll;
+  const Wide<W> limit = block.rolling_friction * normal_load<W>(block);
+  const Wide<W> size = sqrt(dot(wanted, wanted));
+  const Wide<W> scale = select(size > limit, limit / select(size > zero, size, one), one);
+  const Vec3W<W> next = scale * wanted;
+  turn<W>(block, pair, next - block.rolling);
+  block.rolling = next;
+}
+
+// One sweep over the normal rows. Soft: overlap is taken back at bias_rate, at most push_speed. Rigid: only approach stops.
+template <int W, bool kSoft>
+GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W>& pair, const Wide<W>* a, const Wide<W>* b,
+                               float substep) {
+  const Wide<W> zero = Wide<W>(0.0f);
+  const Wide<W> one = Wide<W>(1.0f);
+  const Wide<W> rate = Wide<W>(1.0f / substep);
+  const Vec3W<W> moved = Vec3W<W>{b[8], b[9], b[10]} - Vec3W<W>{a[8], a[9], a[10]};
+  const Vec3W<W> turned_a{a[11], a[12], a[13]};
+  const Vec3W<W> turned_b{b[11], b[12], b[13]};
+  for (int k = 0; k < block.point_count; ++k) {
+    PointBlock<W>& point = block.points[k];
+    const Vec3W<W> drift = moved + cross(turned_b, point.from_b) - cross(turned_a, point.from_a);
+    const Wide<W> separation = point.separation + dot(drift, block.normal);
+    const Wide<W> speed = dot(relative_velocity<W>(pair, point.from_a, point.from_b), block.normal);
+    const auto apart = separation > zero;
+    Wide<W> wanted;
+    if constexpr (kSoft) {
+      const Wide<W> bias = select(apart, separation * rate, max(separation * block.bias_rate, zero - block.push_speed));
+      const Wide<W> mass_scale = select(apart, one, block.mass_scale);
+      const Wide<W> impulse_scale = select(apart, zero, block.impulse_scale);
+      wanted = point.impulse - point.mass * (mass_scale * (speed + bias)) - impulse_scale * (point.impulse - point.held);
+    } else {
+      const Wide<W> bias = select(apart, separation * rate, zero);
+      wanted = point.impulse - point.mass * (speed + bias);
+    }
+    const Wide<W> next = max(wanted, zero);
+    push<W>(block, pair, (next - point.impulse) * block.normal, point.from_a, point.from_b);
+    point.impulse = next;
+  }
+}
+
+template <int W>
+void solve_blocks(void* memory, int begin, int end, BodyMotion* motion, float substep) {
+  auto* blocks = static_cast<ContactBlock<W>*>(memory);
+  for (int i = begin; i < end; ++i) {
+    ContactBlock<W>& block = blocks[i];
+    Wide<W> a[kMotionFloats], b[kMotionFloats];
+    load_pair<W>(block, motion, a, b);
+    PairMotion<W> pair = velocities<W>(a, b);
+    if (block.rolls != 0) solve_rolling<W>(block, pair);
+    solve_friction<W>(block, pair);
+    solve_normals<W, true>(block, pair, a, b, substep);
+    store_pair<W>(block, motion, pair, a, b);
+  }
+}
+
+template <int W>
+void relax_blocks(void* memory, int begin, int end, BodyMotion* motion, float substep) {
+  auto* blocks = static_cast<ContactBlock<W>*>(memory);
+  for (int i = begin; i < end; ++i) {
+    ContactBlock<W>& block = blocks[i];
+    Wide<W> a[kMotionFloats], b[kMotionFloats];
+    load_pair<W>(block, motion, a, b);
+    PairMotion<W> pair = velocities<W>(a, b);
+    if (block.rolls != 0) solve_rolling<W>(block, pair);
+    solve_friction<W>(block, pair);
+    solve_normals<W, false>(block, pair, a, b, substep);
+    for (int k = 0; k < block.point_count; ++k) block.points[k].total = block.points[k].total + block.points[k].impulse;
+    block.total_1 = block.total_1 + block.friction_1;
+    block.total_2 = block.total_2 + block.friction_2;
+    store_pair<W>(block, motion, pair, a, b);
+  }
+}
+
+}  // namespace GYRE_TARGET_NAMESPACE
+}  // namespace gyre

@@ -1,0 +1,10 @@
+// The contact kernels for one kind of CPU, in a namespace of its own so that the linker can never mix them with others'.
+#define GYRE_TARGET_NAMESPACE target_sse2
+#include "solver/contact_prepare.h"
+
+namespace gyre {
+
+extern const ContactKernels kContactKernels_sse2;
+const ContactKernels kContactKernels_sse2 = contact_kernels<4>();
+
+}  // namespace gyre

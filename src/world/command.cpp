@@ -1,0 +1,523 @@
+// How every command is carried out. Checks are in command_check.cpp; here everything holds.
+#include "world/command.h"
+
+#include "collision/pair_update.h"
+#include "math/rotation.h"
+#include "rigid/island.h"
+#include "rigid/rigid_step.h"
+#include "world/world_state.h"
+
+namespace gyre {
+
+namespace {
+
+// A body that a user pushes is awake.
+void stir(RigidWorld& w, std::uint32_t body) {
+  if (is_movable(w.bodies.flags[body])) wake(w, body);
+}
+
+template <class Fn>
+void for_each_contact_of_body(RigidWorld& w, std::uint32_t body, Fn&& fn) {
+  for (const ShapeId id : w.bodies.shapes[body]) {
+    for_each_contact_of_shape(w.contacts, id.index, [&](std::uint32_t slot) { fn(w.contacts.contacts[slot]); });
+  }
+}
+
+// Takes all contacts of a shape away, with end events.
+void drop_contacts(RigidWorld& w, std::uint32_t shape) {
+  Array<std::uint32_t> scratch;
+  remove_contacts_of_shape(w.contacts, shape, [&](std::uint32_t, const Contact& contact) { report_end(w, contact); }, scratch);
+}
+
+// The proxy's part that follows from the body.
+void refresh_proxy(RigidWorld& w, std::uint32_t shape) {
+  Proxy& proxy = w.shapes.proxies[shape];
+  const BodyFlags& flags = w.bodies.flags[w.shapes.bodies[shape]];
+  proxy.motion = flags.type == BodyType::fixed ? ProxyMotion::fixed : ProxyMotion::moving;
+  proxy.pushes = flags.type == BodyType::dynamic;
+}
+
+// Mass, centre and inertia from shapes and overrides; the origin stays where it is.
+void refresh_mass(RigidWorld& w, std::uint32_t body) {
+  BodyStore& bodies = w.bodies;
+  const Pose origin = bodies.poses[body];
+  const Vec3 old_center = bodies.masses[body].center;
+  const BodyOverrides& given = bodies.overrides[body];
+  BodyMass mass;
+  mass.size = kUnbounded;
+  for (const ShapeId id : bodies.shapes[body]) {
+    const float size = w.shapes.colliders[id.index].size;
+    if (size > 0.0f) mass.size = min(mass.size, size);
+  }
+  if (bodies.flags[body].type == BodyType::dynamic) {
+    MassProperties own = shapes_mass(w.shapes, bodies.shapes[body]);
+    if (given.has_mass != 0) {
+      const float scale = own.mass > 0.0f ? given.mass / own.mass : 0.0f;
+      own.inertia = scale * own.inertia;
+      own.mass = given.mass;
+    }
+    if (given.has_center != 0) {
+      // Kept about the new centre unless it is given too (Huygens-Steiner).
+      own.inertia = own.inertia + point_inertia(own.mass, given.center - own.center);
+      own.center = given.center;
+    }
+    if (given.has_inertia != 0) own.inertia = given.inertia;
+    if (!(own.mass > 0.0f)) own.mass = 1.0f;  // a dynamic body without mass would be moved by nothing
+    mass.mass = own.mass;
+    mass.inverse_mass = 1.0f / own.mass;
+    mass.center = own.center;
+    mass.inertia = own.inertia;
+    mass.inverse_inertia = inverse(own.inertia);
+    const float spread = max(absolute(own.inertia.xx - own.inertia.yy), absolute(own.inertia.yy - own.inertia.zz)) +
+                         absolute(own.inertia.xy) + absolute(own.inertia.xz) + absolute(own.inertia.yz);
+    mass.isotropic = spread <= 1.0e-6f * own.inertia.xx ? 1u : 0u;
+  } else if (given.has_center != 0) {
+    mass.center = given.center;
+  }
+  for (const ShapeId id : bodies.shapes[body]) {
+    const Transform& place = w.shapes.places[id.index];
+    const float reach = outer_radius(w.shapes.colliders[id.index].shape, inverse_times(place, mass.center));
+    mass.reach = max(mass.reach, reach);
+  }
+  bodies.masses[body] = mass;
+  // The velocity belongs to the centre of mass: where that moves in the body, so does it.
+  BodyMotion& motion = bodies.motion[body];
+  motion.linear_velocity += cross(motion.angular_velocity, rotate(origin.orientation, mass.center - old_center));
+  bodies.places[body] = {origin * mass.center, origin.orientation};
+  bodies.orientations[body] = origin.orientation;
+  refresh_inertia(bodies, body);
+  for_each_contact_of_body(w, body, [](Contact& contact) { forget_look(contact); });
+}
+
+void insert_sorted(std::vector<ShapeId>& list, ShapeId id) {
+  auto at = list.begin();
+  while (at != list.end() && at->index < id.index) ++at;
+  list.insert(at, id);
+}
+
+ShapeId attach_shape(RigidWorld& w, std::uint32_t body, const ShapeDef& def) {
+  const std::uint32_t shape = add_shape_slot(w.shapes).index;
+  w.shapes.bodies[shape] = body;
+  w.shapes.places[shape] = {def.local.position, normalized(def.local.orientation)};
+  w.shapes.geometry[shape] = def.geometry;
+  w.shapes.density[shape] = def.density;
+  w.shapes.materials[shape] = def.material;
+  w.shapes.user_data[shape] = def.user_data;
+  Proxy& proxy = w.shapes.proxies[shape];
+  proxy.body = body;
+  proxy.filter = def.filter;
+  proxy.sensor = def.sensor;
+  refresh_proxy(w, shape);
+  refresh_collider(w.shapes, shape);
+  const ShapeId id = shape_id(w, shape);
+  insert_sorted(w.bodies.shapes[body], id);
+  return id;
+}
+
+void refit_body(RigidWorld& w, std::uint32_t body) {
+  for (const ShapeId id : w.bodies.shapes[body]) refit_shape(w, id.index, 0.0f);
+}
+
+std::uint8_t bits(const bool (&axes)[3]) {
+  return std::uint8_t((axes[0] ? 1 : 0) | (axes[1] ? 2 : 0) | (axes[2] ? 4 : 0));
+}
+
+Submitted carry_out(WorldState& s, const AddBody& c) {
+  RigidWorld& w = s.rigid;
+  const BodyDef& def = c.def;
+  const std::uint32_t body = add_body_slot(w.bodies).index;
+  BodyFlags& flags = w.bodies.flags[body];
+  flags.type = def.type;
+  flags.awake = 1;
+  flags.can_sleep = def.can_sleep ? 1 : 0;
+  flags.continuous = def.continuous ? 1 : 0;
+  flags.locked_linear = bits(def.locked.linear);
+  flags.locked_angular = bits(def.locked.angular);
+  BodyForces& forces = w.bodies.forces[body];
+  forces.linear_damping = def.linear_damping;
+  forces.angular_damping = def.angular_damping;
+  forces.gravity_scale = def.gravity_scale;
+  BodyOverrides& given = w.bodies.overrides[body];
+  if (def.mass) given.has_mass = 1, given.mass = *def.mass;
+  if (def.center_of_mass) given.has_center = 1, given.center = *def.center_of_mass;
+  if (def.inertia) given.has_inertia = 1, given.inertia = *def.inertia;
+  w.bodies.user_data[body] = def.user_data;
+  w.bodies.poses[body] = {def.pose.position, normalized(def.pose.orientation)};
+  for (const ShapeDef& shape : c.shapes) attach_shape(w, body, shape);
+  refresh_mass(w, body);
+  if (def.type != BodyType::fixed) {
+    w.bodies.motion[body].linear_velocity = def.linear_velocity + Vec3{};
+    w.bodies.motion[body].angular_velocity = def.angular_velocity + Vec3{};
+  }
+  refit_body(w, body);
+  return {true, body_id(w, body), {}, {}};
+}
+
+// The two bodies of joints that keep them from colliding.
+std::uint64_t block_key(const JointRecord& joint) {
+  return pair_key(std::uint32_t(joint.body_a), std::uint32_t(joint.body_b));
+}
+bool blocks(const JointRecord& joint) {
+  return !joint.collide_connected && joint.body_a != kNoBody && joint.body_b != kNoBody;
+}
+
+void erase_value(std::vector<std::uint32_t>& list, std::uint32_t value) {
+  for (auto at = list.begin(); at != list.end(); ++at) {
+    if (*at == value) {
+      list.erase(at);
+      return;
+    }
+  }
+}
+
+// Contacts between two bodies that may now collide again (or no more) are found anew by touching their boxes.
+void recheck_pairs(RigidWorld& w, const JointRecord& joint) {
+  for (const std::int32_t body : {joint.body_a, joint.body_b}) {
+    if (body == kNoBody) continue;
+    for (const ShapeId id : w.bodies.shapes[body]) w.shapes.changed.push_back(id.index);
+  }
+}
+
+void detach_joint(RigidWorld& w, std::uint32_t slot) {
+  const JointRecord joint = w.joints.records[slot];
+  for (const std::int32_t body : {joint.body_a, joint.body_b}) {
+    if (body == kNoBody) continue;
+    stir(w, std::uint32_t(body));
+    erase_value(w.bodies.joints[body], slot);
+  }
+  if (blocks(joint)) {
+    std::uint32_t* count = w.joints.blocked.find(block_key(joint));
+    if (count != nullptr && --*count == 0) w.joints.blocked.erase(block_key(joint));
+    recheck_pairs(w, joint);
+  }
+  w.joints.ids.release(slot);
+  w.joints.records[slot] = {};
+}
+
+Submitted carry_out(WorldState& s, const RemoveBody& c) {
+  RigidWorld& w = s.rigid;
+  const std::uint32_t body = c.body.index;
+  stir(w, body);
+  wake_neighbours(w, body);
+  while (!w.bodies.joints[body].empty()) detach_joint(w, w.bodies.joints[body].front());
+  for (const ShapeId id : w.bodies.shapes[body]) {
+    drop_contacts(w, id.index);
+    remove_shape_slot(w.shapes, id.index);
+  }
+  remove_body_slot(w.bodies, body);
+  return {true, {}, {}, {}};
+}
+
+Submitted carry_out(WorldState& s, const AddShape& c) {
+  RigidWorld& w = s.rigid;
+  stir(w, c.body.index);
+  const ShapeId id = attach_shape(w, c.body.index, c.def);
+  refresh_mass(w, c.body.index);
+  refit_body(w, c.body.index);
+  return {true, {}, id, {}};
+}
+
+Submitted carry_out(WorldState& s, const RemoveShape& c) {
+  RigidWorld& w = s.rigid;
+  const std::uint32_t shape = c.shape.index;
+  const std::uint32_t body = w.shapes.bodies[shape];
+  stir(w, body);
+  wake_neighbours(w, body);
+  drop_contacts(w, shape);
+  std::vector<ShapeId>& list = w.bodies.shapes[body];
+  for (auto at = list.begin(); at != list.end(); ++at) {
+    if (at->index == shape) {
+      list.erase(at);
+      break;
+    }
+  }
+  remove_shape_slot(w.shapes, shape);
+  refresh_mass(w, body);
+  return {true, {}, {}, {}};
+}
+
+// A point and a frame of the world in the frame of one end of a joint.
+struct JointEnd {
+  Vec3 anchor;
+  Quat frame;
+  DVec3 world_anchor;
+};
+JointEnd joint_end(const RigidWorld& w, std::int32_t body, DVec3 anchor, Quat world_from_joint) {
+  if (body == kNoBody) return {{}, world_from_joint, anchor};
+  const BodyPlace& place = w.bodies.places[body];
+  return {rotate_inverse(place.orientation, difference(anchor, place.center)),
+          normalized(conjugate(place.orientation) * world_from_joint), anchor};
+}
+
+DVec3 default_anchor_b(const RigidWorld& w, const JointRecord& joint, const JointDef& def) {
+  if (def.kind != JointKind::distance) return def.anchor;
+  if (def.anchor_b) return *def.anchor_b;
+  return joint.body_b == kNoBody ? DVec3{} : w.bodies.poses[joint.body_b].position;
+}
+
+void set_distance(JointRecord& joint, const JointDef& def, float present) {
+  const float length = def.length ? *def.length : present;
+  joint.rest_length = length;
+  joint.is_spring = def.stiffness.has_value() || def.damping.has_value();
+  joint.stiffness = def.stiffness ? *def.stiffness : 0.0f;
+  joint.damping = def.damping ? *def.damping : 0.0f;
+  const bool free = joint.is_spring || def.min_length || def.max_length;
+  joint.min_length = def.min_length ? *def.min_length : (free ? 0.0f : length);
+  joint.max_length = def.max_length ? *def.max_length : (free ? kUnlimitedLength : length);
+  joint.position = present;
+}
+
+void set_motor(JointRecord& joint, const Motor& motor) {
+  joint.motor_velocity = motor.target_velocity;
+  joint.has_motor_target = motor.target_position.has_value();
+  joint.motor_position = motor.target_position ? *motor.target_position : 0.0f;
+  joint.motor_force = motor.max_force;
+  joint.motor_frequency = motor.frequency;
+  joint.motor_damping = motor.damping_ratio;
+}
+
+Submitted carry_out(WorldState& s, const AddJoint& c) {
+  RigidWorld& w = s.rigid;
+  const JointDef& def = c.def;
+  const std::uint32_t slot = w.joints.ids.acquire().index;
+  if (slot >= w.joints.records.size()) w.joints.records.resize(slot + 1);
+  JointRecord joint;
+  joint.kind = def.kind;
+  joint.body_a = def.a ? std::int32_t(def.a.index) : kNoBody;
+  joint.body_b = def.b ? std::int32_t(def.b.index) : kNoBody;
+  joint.collide_connected = def.collide_connected;
+  const DVec3 anchor_b = default_anchor_b(w, joint, def);
+  const Quat frame = from_directions({1, 0, 0}, normalized(def.axis));
+  const JointEnd a = joint_end(w, joint.body_a, def.anchor, frame);
+  const JointEnd b = joint_end(w, joint.body_b, anchor_b, frame);
+  joint.local_anchor_a = a.anchor, joint.local_frame_a = a.frame, joint.world_anchor_a = a.world_anchor;
+  joint.local_anchor_b = b.anchor, joint.local_frame_b = b.frame, joint.world_anchor_b = b.world_anchor;
+  if (def.limits) joint.has_limits = true, joint.limits = *def.limits;
+  set_motor(joint, def.motor);
+  joint.break_force = def.break_force ? *def.break_force : 0.0f;
+  joint.break_torque = def.break_torque ? *def.break_torque : 0.0f;
+  if (def.kind == JointKind::distance) set_distance(joint, def, length(difference(anchor_b, def.anchor)));
+  w.joints.records[slot] = joint;
+  for (const std::int32_t body : {joint.body_a, joint.body_b}) {
+    if (body == kNoBody) continue;
+    stir(w, std::uint32_t(body));
+    std::vector<std::uint32_t>& list = w.bodies.joints[body];
+    auto at = list.begin();
+    while (at != list.end() && *at < slot) ++at;
+    list.insert(at, slot);
+  }
+  if (blocks(joint)) {
+    w.joints.blocked.find_or_insert(block_key(joint), 0u)++;
+    // Contacts that the two bodies have by now go away.
+    for (const ShapeId id : w.bodies.shapes[joint.body_a]) {
+      for_each_contact_of_shape(w.contacts, id.index, [&](std::uint32_t contact) {
+        const Contact& pair = w.contacts.contacts[contact];
+        if (pair_key(pair.body_a, pair.body_b) == block_key(joint)) w.unwanted.push_back(contact);
+      });
+    }
+    for (const std::uint32_t contact : w.unwanted) {
+      report_end(w, w.contacts.contacts[contact]);
+      remove_contact(w.contacts, contact);
+    }
+    w.unwanted.clear();
+  }
+  return {true, {}, {}, joint_id(w, slot)};
+}
+
+Submitted carry_out(WorldState& s, const RemoveJoint& c) {
+  detach_joint(s.rigid, c.joint.index);
+  return {true, {}, {}, {}};
+}
+
+Submitted carry_out(WorldState& s, const SetPose& c) {
+  RigidWorld& w = s.rigid;
+  const std::uint32_t body = c.body.index;
+  stir(w, body);
+  wake_neighbours(w, body);
+  const Pose pose{c.pose.position, normalized(c.pose.orientation)};
+  w.bodies.poses[body] = pose;
+  w.bodies.places[body] = {pose * w.bodies.masses[body].center, pose.orientation};
+  w.bodies.orientations[body] = pose.orientation;
+  refresh_inertia(w.bodies, body);
+  for (const ShapeId id : w.bodies.shapes[body]) drop_contacts(w, id.index);
+  refit_body(w, body);
+  return {true, {}, {}, {}};
+}
+
+Submitted carry_out(WorldState& s, const SetVelocity& c) {
+  RigidWorld& w = s.rigid;
+  if (w.bodies.flags[c.body.index].type == BodyType::fixed) return {true, {}, {}, {}};
+  stir(w, c.body.index);
+  w.bodies.motion[c.body.index].linear_velocity = c.linear + Vec3{};
+  w.bodies.motion[c.body.index].angular_velocity = c.angular + Vec3{};
+  return {true, {}, {}, {}};
+}
+
+Submitted carry_out(WorldState& s, const MoveKinematic& c) {
+  RigidWorld& w = s.rigid;
+  const std::uint32_t body = c.body.index;
+  const Quat orientation = normalized(c.pose.orientation);
+  const Pose pose{c.pose.position, orientation};
+  const DVec3 center = pose * w.bodies.masses[body].center;
+  BodyMotion& motion = w.bodies.motion[body];
+  motion.linear_velocity = (1.0f / c.seconds) * difference(center, w.bodies.places[body].center) + Vec3{};
+  motion.angular_velocity = (1.0f / c.seconds) * rotation_between(w.bodies.places[body].orientation, orientation) + Vec3{};
+  return {true, {}, {}, {}};
+}
+
+Submitted carry_out(WorldState& s, const SetType& c) {
+  RigidWorld& w = s.rigid;
+  const std::uint32_t body = c.body.index;
+  if (w.bodies.flags[body].type == c.type) return {true, {}, {}, {}};
+  stir(w, body);
+  wake_neighbours(w, body);
+  for (const ShapeId id : w.bodies.shapes[body]) drop_contacts(w, id.index);
+  w.bodies.flags[body].type = c.type;
+  w.bodies.flags[body].awake = 1;
+  w.bodies.flags[body].frozen = 0;
+  w.bodies.sleep[body] = {};
+  if (c.type == BodyType::fixed) {
+    w.bodies.motion[body].linear_velocity = {};
+    w.bodies.motion[body].angular_velocity = {};
+  }
+  w.bodies.awake_stale = true;
+  refresh_mass(w, body);
+  for (const ShapeId id : w.bodies.shapes[body]) refresh_proxy(w, id.index);
+  refit_body(w, body);
+  return {true, {}, {}, {}};
+}
+
+Submitted carry_out(WorldState& s, const SetGravity& c) {
+  if (s.rigid.settings.gravity != c.gravity) wake_all(s.rigid);
+  s.rigid.settings.gravity = c.gravity;
+  return {true, {}, {}, {}};
+}
+Submitted carry_out(WorldState& s, const SetGravityScale& c) {
+  stir(s.rigid, c.body.index);
+  s.rigid.bodies.forces[c.body.index].gravity_scale = c.scale;
+  return {true, {}, {}, {}};
+}
+Submitted carry_out(WorldState& s, const SetDamping& c) {
+  s.rigid.bodies.forces[c.body.index].linear_damping = c.linear;
+  s.rigid.bodies.forces[c.body.index].angular_damping = c.angular;
+  return {true, {}, {}, {}};
+}
+
+// The surface of every contact of a shape, mixed anew.
+void remix(RigidWorld& w, std::uint32_t shape) {
+  for_each_contact_of_shape(w.contacts, shape, [&](std::uint32_t slot) {
+    Contact& contact = w.contacts.contacts[slot];
+    contact.surface = combine_materials(w, w.shapes.materials[contact.shape_a], w.shapes.materials[contact.shape_b]);
+  });
+}
+Submitted carry_out(WorldState& s, const SetMaterial& c) {
+  RigidWorld& w = s.rigid;
+  w.shapes.materials[c.shape.index] = c.material;
+  remix(w, c.shape.index);
+  stir(w, w.shapes.bodies[c.shape.index]);
+  wake_neighbours(w, w.shapes.bodies[c.shape.index]);
+  return {true, {}, {}, {}};
+}
+Submitted carry_out(WorldState& s, const SetMaterialPair& c) {
+  RigidWorld& w = s.rigid;
+  MaterialPair pair = c.pair;
+  if (pair.a > pair.b) {
+    pair.a = c.pair.b;
+    pair.b = c.pair.a;
+  }
+  std::size_t at = 0;
+  while (at < w.material_pairs.size() &&
+         (w.material_pairs[at].a < pair.a || (w.material_pairs[at].a == pair.a && w.material_pairs[at].b < pair.b))) {
+    ++at;
+  }
+  if (at < w.material_pairs.size() && w.material_pairs[at].a == pair.a && w.material_pairs[at].b == pair.b) {
+    w.material_pairs[at] = pair;
+  } else {
+    w.material_pairs.insert_at(at, pair);
+  }
+  w.shapes.ids.for_each_live([&](std::uint32_t shape) { remix(w, shape); });
+  wake_all(w);
+  return {true, {}, {}, {}};
+}
+Submitted carry_out(WorldState& s, const SetFilter& c) {
+  RigidWorld& w = s.rigid;
+  const std::uint32_t shape = c.shape.index;
+  stir(w, w.shapes.bodies[shape]);
+  wake_neighbours(w, w.shapes.bodies[shape]);
+  drop_contacts(w, shape);
+  w.shapes.proxies[shape].filter = c.filter;
+  refit_shape(w, shape, 0.0f);
+  return {true, {}, {}, {}};
+}
+Submitted carry_out(WorldState& s, const SetMotor& c) {
+  JointRecord& joint = s.rigid.joints.records[c.joint.index];
+  set_motor(joint, c.motor);
+  for (const std::int32_t body : {joint.body_a, joint.body_b}) {
+    if (body != kNoBody) stir(s.rigid, std::uint32_t(body));
+  }
+  return {true, {}, {}, {}};
+}
+Submitted carry_out(WorldState& s, const SetSleeping& c) {
+  if (!c.enabled) wake_all(s.rigid);
+  s.rigid.settings.sleeping = c.enabled ? 1 : 0;
+  return {true, {}, {}, {}};
+}
+Submitted carry_out(WorldState& s, const SetAwake& c) {
+  if (c.awake) {
+    stir(s.rigid, c.body.index);
+  } else {
+    force_sleep(s.rigid, s.arena, c.body.index);
+  }
+  return {true, {}, {}, {}};
+}
+Submitted carry_out(WorldState& s, const SetSubsteps& c) {
+  s.rigid.settings.substeps = c.substeps;
+  return {true, {}, {}, {}};
+}
+
+// Sums that leave a float's range are held at its ends.
+Vec3 bounded(Vec3 v) {
+  constexpr float kMost = 3.0e38f;
+  return {clamp(v.x, -kMost, kMost), clamp(v.y, -kMost, kMost), clamp(v.z, -kMost, kMost)};
+}
+Submitted carry_out(WorldState& s, const AddForce& c) {
+  const std::uint32_t body = c.body.index;
+  if (!is_movable(s.rigid.bodies.flags[body])) return {true, {}, {}, {}};
+  if (c.force != Vec3{} || c.torque != Vec3{}) stir(s.rigid, body);
+  BodyForces& forces = s.rigid.bodies.forces[body];
+  forces.force = bounded(forces.force + c.force);
+  forces.torque = bounded(forces.torque + c.torque);
+  return {true, {}, {}, {}};
+}
+Submitted carry_out(WorldState& s, const AddImpulse& c) {
+  const std::uint32_t body = c.body.index;
+  if (!is_movable(s.rigid.bodies.flags[body])) return {true, {}, {}, {}};
+  stir(s.rigid, body);
+  BodyMotion& motion = s.rigid.bodies.motion[body];
+  const BodyInertia& inertia = s.rigid.bodies.inertia[body];
+  motion.linear_velocity = bounded(motion.linear_velocity + inertia.inverse_mass * c.impulse) + Vec3{};
+  motion.angular_velocity = bounded(motion.angular_velocity + inertia.inverse * c.angular) + Vec3{};
+  return {true, {}, {}, {}};
+}
+Submitted carry_out(WorldState& s, const Step& c) {
+  step_world(s, c.seconds);
+  return {true, {}, {}, {}};
+}
+
+}  // namespace
+
+void remove_joint_now(WorldState& state, std::uint32_t joint) { detach_joint(state.rigid, joint); }
+
+Submitted submit(WorldState& state, const Command& command) {
+  const Error why = check_command(state, command);
+  if (why.code != ErrorCode::none) {
+    report_problem(state, why.code, {}, "%s", why.message);
+    return {};
+  }
+  if (state.log != nullptr) state.log->on_command(command);
+  const Submitted result = std::visit([&](const auto& c) { return carry_out(state, c); }, command);
+  if (state.log != nullptr && std::holds_alternative<Step>(command)) state.log->on_step_done(state);
+  return result;
+}
+
+}  // namespace gyre

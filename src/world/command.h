@@ -1,0 +1,121 @@
+// Every change of a world as one small struct, and the one door that they all go through: check it, show it to the log,
+// do it. A recording is a list of these, so it cannot miss one.
+#pragma once
+
+#include <gyre/defs.h>
+#include <gyre/result.h>
+
+#include <variant>
+#include <vector>
+
+namespace gyre {
+
+struct WorldState;
+
+struct AddBody {
+  BodyDef def;
+  std::vector<ShapeDef> shapes;
+};
+struct RemoveBody {
+  BodyId body;
+};
+struct AddShape {
+  BodyId body;
+  ShapeDef def;
+};
+struct RemoveShape {
+  ShapeId shape;
+};
+struct AddJoint {
+  JointDef def;
+};
+struct RemoveJoint {
+  JointId joint;
+};
+struct SetPose {
+  BodyId body;
+  Pose pose;
+};
+struct SetVelocity {
+  BodyId body;
+  Vec3 linear, angular;
+};
+struct MoveKinematic {
+  BodyId body;
+  Pose pose;
+  float seconds = 0;
+};
+struct SetType {
+  BodyId body;
+  BodyType type = BodyType::dynamic;
+};
+struct SetGravity {
+  Vec3 gravity;
+};
+struct SetGravityScale {
+  BodyId body;
+  float scale = 1;
+};
+struct SetDamping {
+  BodyId body;
+  float linear = 0, angular = 0;
+};
+struct SetMaterial {
+  ShapeId shape;
+  Material material;
+};
+struct SetMaterialPair {
+  MaterialPair pair;
+};
+struct SetFilter {
+  ShapeId shape;
+  Filter filter;
+};
+struct SetMotor {
+  JointId joint;
+  Motor motor;
+};
+struct SetSleeping {
+  bool enabled = true;
+};
+struct SetAwake {
+  BodyId body;
+  bool awake = true;
+};
+struct SetSubsteps {
+  int substeps = 4;
+};
+struct AddForce {
+  BodyId body;
+  Vec3 force, torque;
+};
+struct AddImpulse {
+  BodyId body;
+  Vec3 impulse, angular;
+};
+struct Step {
+  float seconds = 0;
+};
+
+using Command = std::variant<AddBody, RemoveBody, AddShape, RemoveShape, AddJoint, RemoveJoint, SetPose, SetVelocity,
+                             MoveKinematic, SetType, SetGravity, SetGravityScale, SetDamping, SetMaterial, SetMaterialPair,
+                             SetFilter, SetMotor, SetSleeping, SetAwake, SetSubsteps, AddForce, AddImpulse, Step>;
+
+// What a command gave back: whether it was done, and the id of what it made.
+struct Submitted {
+  bool done = false;
+  BodyId body;
+  ShapeId shape;
+  JointId joint;
+};
+
+// Checks the command, shows it to the log, does it. A command that is refused changes nothing and is one problem.
+Submitted submit(WorldState& state, const Command& command);
+
+// Takes a joint away as part of a step (it broke), not as a command of the user's.
+void remove_joint_now(WorldState& state, std::uint32_t joint);
+
+// Why a command would be refused: command_check.cpp. Code none if it would not.
+Error check_command(const WorldState& state, const Command& command);
+
+}  // namespace gyre

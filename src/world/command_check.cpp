@@ -1,0 +1,289 @@
+// What every command must hold before it is carried out. The message names object, field, value and allowed range.
+#include "world/world_state.h"
+
+#include <cstdio>
+
+namespace gyre {
+
+namespace {
+
+constexpr float kMostPlace = 1.0e12f;  // m: positions beyond this are refused
+
+Error ok() { return {}; }
+
+template <class... Args>
+Error refuse(const char* format, Args... args) {
+  return make_error(ErrorCode::invalid_argument, format, args...);
+}
+
+Error check_body(const WorldState& s, BodyId id, const char* what) {
+  const IdPool& ids = s.rigid.bodies.ids;
+  if (id && id.world == s.number && ids.live(id.index) && std::uint16_t(ids.generation(id.index)) == id.generation) return ok();
+  return make_error(ErrorCode::stale_id, "%s: body %u (generation %u) does not exist in this world", what, id.index,
+                    unsigned(id.generation));
+}
+Error check_shape_id(const WorldState& s, ShapeId id, const char* what) {
+  const IdPool& ids = s.rigid.shapes.ids;
+  if (id && id.world == s.number && ids.live(id.index) && std::uint16_t(ids.generation(id.index)) == id.generation) return ok();
+  return make_error(ErrorCode::stale_id, "%s: shape %u (generation %u) does not exist in this world", what, id.index,
+                    unsigned(id.generation));
+}
+Error check_joint_id(const WorldState& s, JointId id, const char* what) {
+  const IdPool& ids = s.rigid.joints.ids;
+  if (id && id.world == s.number && ids.live(id.index) && std::uint16_t(ids.generation(id.index)) == id.generation) return ok();
+  return make_error(ErrorCode::stale_id, "%s: joint %u (generation %u) does not exist in this world", what, id.index,
+                    unsigned(id.generation));
+}
+
+Error check_finite(const char* field, Vec3 v) {
+  if (is_finite(v)) return ok();
+  return refuse("%s is (%g, %g, %g); every component must be finite", field, double(v.x), double(v.y), double(v.z));
+}
+Error check_range(const char* field, float value, float low, float high) {
+  if (is_finite(value) && value >= low && value <= high) return ok();
+  return refuse("%s is %g; it must lie within %g and %g", field, double(value), double(low), double(high));
+}
+Error check_pose(const char* field, const Pose& pose) {
+  const DVec3 p = pose.position;
+  if (!is_finite(p) || absolute(p.x) > double(kMostPlace) || absolute(p.y) > double(kMostPlace) ||
+      absolute(p.z) > double(kMostPlace)) {
+    return refuse("%s.position is (%g, %g, %g); every component must be finite and within 1e12 m", field, p.x, p.y, p.z);
+  }
+  const Quat q = pose.orientation;
+  const float size = dot(q, q);
+  if (!is_finite(q) || !(size > 1.0e-12f) || !is_finite(size)) {
+    return refuse("%s.orientation is (%g, %g, %g, %g); it must be a finite quaternion that is not zero", field, double(q.x),
+                  double(q.y), double(q.z), double(q.w));
+  }
+  return ok();
+}
+
+Error check_material(const char* field, const Material& m) {
+  char name[64];
+  const auto part = [&](const char* what) {
+    std::snprintf(name, sizeof name, "%s.%s", field, what);
+    return name;
+  };
+  Error e = check_range(part("static_friction"), m.static_friction, 0.0f, 1.0e6f);
+  if (e.code == ErrorCode::none) e = check_range(part("dynamic_friction"), m.dynamic_friction, 0.0f, 1.0e6f);
+  if (e.code == ErrorCode::none) e = check_range(part("restitution"), m.restitution, 0.0f, 1.0f);
+  if (e.code == ErrorCode::none) e = check_range(part("rolling_friction"), m.rolling_friction, 0.0f, 1.0e6f);
+  if (e.code == ErrorCode::none) e = check_range(part("spinning_friction"), m.spinning_friction, 0.0f, 1.0e6f);
+  return e;
+}
+
+Error check_shape_def(const ShapeDef& def, BodyType type) {
+  Error e = check_shape(def.geometry);
+  if (e.code != ErrorCode::none) return e;
+  e = check_pose("shape.local", {DVec3(def.local.position), def.local.orientation});
+  if (e.code == ErrorCode::none) e = check_range("shape.density", def.density, 0.0f, 1.0e20f);
+  if (e.code == ErrorCode::none) e = check_material("shape.material", def.material);
+  if (e.code != ErrorCode::none) return e;
+  if (type == BodyType::dynamic && !is_convex(make_shape(def.geometry).kind)) {
+    return make_error(ErrorCode::invalid_geometry,
+                      "shape.geometry is a %s; dynamic bodies need convex shapes (decompose it, or make the body fixed)",
+                      to_string(make_shape(def.geometry).kind));
+  }
+  return ok();
+}
+
+Error check_mass_overrides(const BodyDef& def) {
+  if (def.mass && !(is_finite(*def.mass) && *def.mass > 0.0f)) {
+    return refuse("body.mass is %g; it must be finite and above 0", double(*def.mass));
+  }
+  if (def.center_of_mass) {
+    const Error e = check_finite("body.center_of_mass", *def.center_of_mass);
+    if (e.code != ErrorCode::none) return e;
+  }
+  if (def.inertia) return check_inertia(*def.inertia);
+  return ok();
+}
+
+Error check(const WorldState&, const AddBody& c) {
+  const BodyDef& d = c.def;
+  Error e = check_pose("body.pose", d.pose);
+  if (e.code == ErrorCode::none) e = check_finite("body.linear_velocity", d.linear_velocity);
+  if (e.code == ErrorCode::none) e = check_finite("body.angular_velocity", d.angular_velocity);
+  if (e.code == ErrorCode::none) e = check_range("body.linear_damping", d.linear_damping, 0.0f, 1.0e6f);
+  if (e.code == ErrorCode::none) e = check_range("body.angular_damping", d.angular_damping, 0.0f, 1.0e6f);
+  if (e.code == ErrorCode::none) e = check_range("body.gravity_scale", d.gravity_scale, -1.0e6f, 1.0e6f);
+  if (e.code == ErrorCode::none) e = check_mass_overrides(d);
+  for (const ShapeDef& shape : c.shapes) {
+    if (e.code == ErrorCode::none) e = check_shape_def(shape, d.type);
+  }
+  return e;
+}
+Error check(const WorldState& s, const RemoveBody& c) { return check_body(s, c.body, "remove_body"); }
+Error check(const WorldState& s, const AddShape& c) {
+  const Error e = check_body(s, c.body, "add_shape");
+  return e.code != ErrorCode::none ? e : check_shape_def(c.def, s.rigid.bodies.flags[c.body.index].type);
+}
+Error check(const WorldState& s, const RemoveShape& c) { return check_shape_id(s, c.shape, "remove_shape"); }
+
+Error check_motor(const Motor& m) {
+  Error e = check_range("motor.target_velocity", m.target_velocity, -1.0e6f, 1.0e6f);
+  if (e.code == ErrorCode::none && m.target_position) {
+    e = check_range("motor.target_position", *m.target_position, -1.0e9f, 1.0e9f);
+  }
+  if (e.code == ErrorCode::none) e = check_range("motor.max_force", m.max_force, 0.0f, 1.0e30f);
+  if (e.code == ErrorCode::none) e = check_range("motor.frequency", m.frequency, 0.0f, 1.0e6f);
+  if (e.code == ErrorCode::none) e = check_range("motor.damping_ratio", m.damping_ratio, 0.0f, 1.0e6f);
+  return e;
+}
+
+Error check_optional(const char* field, const std::optional<float>& value, float low) {
+  return value ? check_range(field, *value, low, 1.0e30f) : ok();
+}
+
+Error check_distance(const JointDef& d) {
+  Error e = check_optional("joint.length", d.length, 0.0f);
+  if (e.code == ErrorCode::none) e = check_optional("joint.min_length", d.min_length, 0.0f);
+  if (e.code == ErrorCode::none) e = check_optional("joint.max_length", d.max_length, 0.0f);
+  if (e.code == ErrorCode::none) e = check_optional("joint.stiffness", d.stiffness, 0.0f);
+  if (e.code == ErrorCode::none) e = check_optional("joint.damping", d.damping, 0.0f);
+  if (e.code != ErrorCode::none) return e;
+  if (d.min_length && d.max_length && *d.min_length > *d.max_length) {
+    return refuse("joint.min_length is %g, above joint.max_length %g", double(*d.min_length), double(*d.max_length));
+  }
+  return ok();
+}
+
+Error check(const WorldState& s, const AddJoint& c) {
+  const JointDef& d = c.def;
+  Error e = ok();
+  if (d.a) e = check_body(s, d.a, "add_joint");
+  if (e.code == ErrorCode::none && d.b) e = check_body(s, d.b, "add_joint");
+  if (e.code != ErrorCode::none) return e;
+  if (!d.a && !d.b) return refuse("joint.a and joint.b are both the world; one must be a body");
+  if (d.a == d.b) return refuse("joint.a and joint.b are the same body (%u)", d.a.index);
+  if (d.kind > JointKind::distance) return refuse("joint.kind is %d; there is no such kind", int(d.kind));
+  e = check_pose("joint.anchor", {d.anchor, {}});
+  if (e.code == ErrorCode::none && d.anchor_b) e = check_pose("joint.anchor_b", {*d.anchor_b, {}});
+  if (e.code == ErrorCode::none) e = check_finite("joint.axis", d.axis);
+  if (e.code != ErrorCode::none) return e;
+  if (!(largest(absolute(d.axis)) > 0.0f)) return refuse("joint.axis is zero; it must have a direction");
+  if (d.limits) {
+    e = check_range("joint.limits.low", d.limits->low, -1.0e9f, 1.0e9f);
+    if (e.code == ErrorCode::none) e = check_range("joint.limits.high", d.limits->high, d.limits->low, 1.0e9f);
+  }
+  if (e.code == ErrorCode::none) e = check_motor(d.motor);
+  if (e.code == ErrorCode::none) e = check_optional("joint.break_force", d.break_force, 0.0f);
+  if (e.code == ErrorCode::none) e = check_optional("joint.break_torque", d.break_torque, 0.0f);
+  if (e.code == ErrorCode::none && d.kind == JointKind::distance) e = check_distance(d);
+  return e;
+}
+Error check(const WorldState& s, const RemoveJoint& c) { return check_joint_id(s, c.joint, "remove_joint"); }
+Error check(const WorldState& s, const SetPose& c) {
+  const Error e = check_body(s, c.body, "set_pose");
+  return e.code != ErrorCode::none ? e : check_pose("pose", c.pose);
+}
+Error check(const WorldState& s, const SetVelocity& c) {
+  Error e = check_body(s, c.body, "set_velocity");
+  if (e.code == ErrorCode::none) e = check_finite("linear velocity", c.linear);
+  if (e.code == ErrorCode::none) e = check_finite("angular velocity", c.angular);
+  return e;
+}
+Error check(const WorldState& s, const MoveKinematic& c) {
+  Error e = check_body(s, c.body, "move_kinematic");
+  if (e.code != ErrorCode::none) return e;
+  if (s.rigid.bodies.flags[c.body.index].type != BodyType::kinematic) {
+    return refuse("move_kinematic: body %u is not kinematic", c.body.index);
+  }
+  e = check_pose("pose", c.pose);
+  return e.code != ErrorCode::none ? e : check_range("seconds", c.seconds, 1.0e-9f, 1.0f);
+}
+Error check(const WorldState& s, const SetType& c) {
+  const Error e = check_body(s, c.body, "set_type");
+  if (e.code != ErrorCode::none) return e;
+  if (c.type > BodyType::dynamic) return refuse("set_type: there is no body type %d", int(c.type));
+  if (c.type != BodyType::dynamic) return ok();
+  for (const ShapeId id : s.rigid.bodies.shapes[c.body.index]) {
+    const ShapeKind kind = s.rigid.shapes.colliders[id.index].shape.kind;
+    if (!is_convex(kind)) {
+      return make_error(ErrorCode::invalid_geometry, "set_type: body %u has a %s; dynamic bodies need convex shapes",
+                        c.body.index, to_string(kind));
+    }
+  }
+  return ok();
+}
+Error check(const WorldState&, const SetGravity& c) {
+  const Error e = check_finite("gravity", c.gravity);
+  return e.code != ErrorCode::none ? e : check_range("gravity", length(c.gravity), 0.0f, 1.0e9f);
+}
+Error check(const WorldState& s, const SetGravityScale& c) {
+  const Error e = check_body(s, c.body, "set_gravity_scale");
+  return e.code != ErrorCode::none ? e : check_range("gravity scale", c.scale, -1.0e6f, 1.0e6f);
+}
+Error check(const WorldState& s, const SetDamping& c) {
+  Error e = check_body(s, c.body, "set_damping");
+  if (e.code == ErrorCode::none) e = check_range("linear damping", c.linear, 0.0f, 1.0e6f);
+  if (e.code == ErrorCode::none) e = check_range("angular damping", c.angular, 0.0f, 1.0e6f);
+  return e;
+}
+Error check(const WorldState& s, const SetMaterial& c) {
+  const Error e = check_shape_id(s, c.shape, "set_material");
+  return e.code != ErrorCode::none ? e : check_material("material", c.material);
+}
+Error check(const WorldState&, const SetMaterialPair& c) {
+  if (c.pair.a == 0 || c.pair.b == 0) {
+    return refuse("material pair (%d, %d): both ids must be above 0", int(c.pair.a), int(c.pair.b));
+  }
+  return check_material("material pair",
+                        {c.pair.static_friction, c.pair.dynamic_friction, c.pair.restitution, 0.0f, 0.0f, 0});
+}
+Error check(const WorldState& s, const SetFilter& c) { return check_shape_id(s, c.shape, "set_filter"); }
+Error check(const WorldState& s, const SetMotor& c) {
+  const Error e = check_joint_id(s, c.joint, "set_motor");
+  return e.code != ErrorCode::none ? e : check_motor(c.motor);
+}
+Error check(const WorldState&, const SetSleeping&) { return ok(); }
+Error check(const WorldState& s, const SetAwake& c) { return check_body(s, c.body, "set_awake"); }
+Error check(const WorldState&, const SetSubsteps& c) {
+  if (c.substeps >= 1 && c.substeps <= 64) return ok();
+  return refuse("substeps is %d; it must lie within 1 and 64", c.substeps);
+}
+Error check(const WorldState& s, const AddForce& c) {
+  Error e = check_body(s, c.body, "add_force");
+  if (e.code == ErrorCode::none) e = check_finite("force", c.force);
+  if (e.code == ErrorCode::none) e = check_finite("torque", c.torque);
+  return e;
+}
+Error check(const WorldState& s, const AddImpulse& c) {
+  Error e = check_body(s, c.body, "add_impulse");
+  if (e.code == ErrorCode::none) e = check_finite("impulse", c.impulse);
+  if (e.code == ErrorCode::none) e = check_finite("angular impulse", c.angular);
+  return e;
+}
+Error check(const WorldState&, const Step& c) {
+  if (is_finite(c.seconds) && c.seconds > 0.0f && c.seconds <= 1.0f) return ok();
+  return refuse("step: seconds is %g; it must be above 0 and at most 1", double(c.seconds));
+}
+
+}  // namespace
+
+Error check_command(const WorldState& state, const Command& command) {
+  if (state.stepping) return make_error(ErrorCode::busy, "the world is in the middle of a step");
+  return std::visit([&](const auto& c) { return check(state, c); }, command);
+}
+
+Error check_world_def(const WorldDef& def) {
+  Error e = check_finite("gravity", def.gravity);
+  if (e.code == ErrorCode::none) e = check_range("gravity", length(def.gravity), 0.0f, 1.0e9f);
+  if (e.code != ErrorCode::none) return e;
+  if (def.threads < 0 || def.threads > TaskSystem::kMaxWorkers) {
+    return refuse("threads is %d; it must lie within 0 and %d", def.threads, TaskSystem::kMaxWorkers);
+  }
+  if (def.simd_width != 0 && def.simd_width != 1 && def.simd_width != 4 && def.simd_width != 8 && def.simd_width != 16) {
+    return refuse("simd_width is %d; it must be 0, 1, 4, 8 or 16", def.simd_width);
+  }
+  if (def.stepping.substeps < 1 || def.stepping.substeps > 64) {
+    return refuse("stepping.substeps is %d; it must lie within 1 and 64", def.stepping.substeps);
+  }
+  if (def.stepping.broad_phase > BroadPhaseKind::brute_force) return refuse("stepping.broad_phase: there is no such kind");
+  if (def.host_tasks.run != nullptr && def.host_tasks.worker_count < 1) {
+    return refuse("host_tasks.worker_count is %d; it must be at least 1", def.host_tasks.worker_count);
+  }
+  return ok();
+}
+
+}  // namespace gyre

@@ -1,0 +1,138 @@
+// The fields of every record that is simulation state, one function a record: what is saved, loaded, hashed and compared
+// is exactly what stands here, without padding and in this order. f is called with one scalar, vector or enum at a time;
+// FieldWriter and its like (io/snapshot) take these apart.
+#pragma once
+
+#include "collision/contact_store.h"
+#include "collision/proxy.h"
+#include "rigid/rigid_world.h"
+
+namespace gyre {
+
+// Scalars are their own single field.
+template <class T, class F>
+  requires(std::is_arithmetic_v<std::remove_const_t<T>> || std::is_enum_v<std::remove_const_t<T>>)
+void for_each_field(T& value, F&& f) {
+  f(value);
+}
+
+template <class T, class Of>
+concept Is = std::is_same_v<std::remove_const_t<T>, Of>;
+
+template <Is<Vec3> T, class F>
+void for_each_field(T& v, F&& f) {
+  f(v.x), f(v.y), f(v.z);
+}
+template <Is<DVec3> T, class F>
+void for_each_field(T& v, F&& f) {
+  f(v.x), f(v.y), f(v.z);
+}
+template <Is<Quat> T, class F>
+void for_each_field(T& q, F&& f) {
+  f(q.x), f(q.y), f(q.z), f(q.w);
+}
+template <Is<Sym3> T, class F>
+void for_each_field(T& m, F&& f) {
+  f(m.xx), f(m.yy), f(m.zz), f(m.xy), f(m.xz), f(m.yz);
+}
+template <Is<Transform> T, class F>
+void for_each_field(T& t, F&& f) {
+  for_each_field(t.position, f), for_each_field(t.orientation, f);
+}
+template <Is<Aabb> T, class F>
+void for_each_field(T& box, F&& f) {
+  for_each_field(box.low, f), for_each_field(box.high, f);
+}
+template <Is<Filter> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.layer), f(r.collides_with), f(r.group);
+}
+template <Is<Material> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.static_friction), f(r.dynamic_friction), f(r.restitution), f(r.rolling_friction), f(r.spinning_friction), f(r.id);
+}
+template <Is<MaterialPair> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.a), f(r.b), f(r.static_friction), f(r.dynamic_friction), f(r.restitution);
+}
+template <Is<BodyMotion> T, class F>
+void for_each_field(T& r, F&& f) {
+  // `moved` and `turned` live for a step only; the inverse mass follows from the mass.
+  for_each_field(r.linear_velocity, f), for_each_field(r.angular_velocity, f);
+}
+template <Is<BodyPlace> T, class F>
+void for_each_field(T& r, F&& f) {
+  for_each_field(r.center, f), for_each_field(r.orientation, f);
+}
+template <Is<BodyMass> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.mass), f(r.inverse_mass), for_each_field(r.center, f), for_each_field(r.inertia, f);
+  for_each_field(r.inverse_inertia, f), f(r.reach), f(r.size), f(r.isotropic);
+}
+template <Is<BodyForces> T, class F>
+void for_each_field(T& r, F&& f) {
+  for_each_field(r.force, f), for_each_field(r.torque, f);
+  f(r.linear_damping), f(r.angular_damping), f(r.gravity_scale);
+}
+template <Is<BodyFlags> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.type), f(r.awake), f(r.can_sleep), f(r.continuous), f(r.frozen), f(r.locked_linear), f(r.locked_angular), f(r.touched);
+}
+template <Is<BodySleep> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.still_time), f(r.group), f(r.next_in_group);
+}
+template <Is<BodyOverrides> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.has_mass), f(r.has_center), f(r.has_inertia), f(r.mass), for_each_field(r.center, f), for_each_field(r.inertia, f);
+}
+template <Is<Proxy> T, class F>
+void for_each_field(T& r, F&& f) {
+  for_each_field(r.fat_box, f), for_each_field(r.filter, f), f(r.body), f(r.motion), f(r.sensor), f(r.pushes);
+}
+template <Is<ContactSurface> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.static_friction), f(r.dynamic_friction), f(r.restitution), f(r.rolling_friction), f(r.spinning_friction);
+}
+template <Is<PairCache> T, class F>
+void for_each_field(T& r, F&& f) {
+  for (auto& word : r.words) f(word);
+}
+template <Is<Contact> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.shape_a), f(r.shape_b), f(r.body_a), f(r.body_b), f(r.first_manifold), f(r.manifold_room), f(r.manifold_count);
+  f(r.sensor), f(r.touching), f(r.recycled), f(r.ended), f(r.looked), f(r.size);
+  for_each_field(r.surface, f), for_each_field(r.cache, f), for_each_field(r.seen_a_from_b, f);
+}
+template <Is<ContactPointState> T, class F>
+void for_each_field(T& r, F&& f) {
+  for_each_field(r.from_a, f), f(r.separation), for_each_field(r.from_b, f), f(r.normal_impulse), f(r.total_impulse);
+  f(r.approach_speed), f(r.feature), f(r.age);
+}
+template <Is<Manifold> T, class F>
+void for_each_field(T& r, F&& f) {
+  for_each_field(r.normal, f), f(r.count);
+  for (auto& point : r.points) for_each_field(point, f);
+  for_each_field(r.friction_impulse, f), f(r.twist_impulse), for_each_field(r.rolling_impulse, f), f(r.triangle);
+  for_each_field(r.total_friction, f), f(r.sliding), for_each_field(r.seen_normal, f);
+  for (auto& anchor : r.anchors) for_each_field(anchor.position, f), f(anchor.separation);
+}
+template <Is<JointRecord> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.kind), f(r.has_limits), f(r.is_spring), f(r.collide_connected), f(r.has_motor_target), f(r.body_a), f(r.body_b);
+  for_each_field(r.local_anchor_a, f), for_each_field(r.local_anchor_b, f);
+  for_each_field(r.local_frame_a, f), for_each_field(r.local_frame_b, f);
+  for_each_field(r.world_anchor_a, f), for_each_field(r.world_anchor_b, f);
+  f(r.limits.low), f(r.limits.high);
+  f(r.motor_velocity), f(r.motor_position), f(r.motor_force), f(r.motor_frequency), f(r.motor_damping);
+  f(r.rest_length), f(r.min_length), f(r.max_length), f(r.stiffness), f(r.damping), f(r.break_force), f(r.break_torque);
+  for_each_field(r.linear_impulse, f), for_each_field(r.angular_impulse, f);
+  f(r.low_impulse), f(r.high_impulse), f(r.motor_impulse), f(r.spring_impulse), f(r.position);
+  for_each_field(r.total_linear, f), for_each_field(r.total_angular, f);
+}
+template <Is<RigidSettings> T, class F>
+void for_each_field(T& r, F&& f) {
+  for_each_field(r.gravity, f), f(r.substeps), f(r.sleeping), f(r.friction_rule), f(r.restitution_rule), f(r.last_substep);
+}
+
+}  // namespace gyre

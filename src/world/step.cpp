@@ -1,0 +1,73 @@
+// One step of the world, as the list of its stages. Each is a function from arrays to arrays in the folders below.
+#include "rigid/island.h"
+#include "rigid/rigid_step.h"
+#include "world/stages.h"
+#include "world/world_state.h"
+
+namespace gyre {
+
+namespace {
+
+// Times a stage and lets tools look at the state after it.
+template <class Fn>
+void run_stage(WorldState& s, StageName stage, Fn&& fn) {
+  {
+    const StageZone zone(s.profile, int(stage));
+    fn();
+  }
+  if (s.stage_hook.call != nullptr) s.stage_hook.call(s.stage_hook.context, kStageNames[int(stage)]);
+}
+
+void begin_step(WorldState& s) {
+  s.stepping = true;
+  s.arena.reset();
+  s.frozen.clear();
+  s.problems.clear();
+  s.profile.begin_step();
+  refresh_awake(s.rigid.bodies);
+}
+
+// Joints that broke go after the step's own reading of them.
+void remove_broken_joints(WorldState& s) {
+  for (const JointBroken& broken : s.shown.broken) remove_joint_now(s, broken.joint.index);
+}
+
+void report_frozen(WorldState& s) {
+  for (const std::uint32_t body : s.frozen) {
+    report_problem(s, ErrorCode::invalid_data, body_id(s.rigid, body),
+                   "body %u is no longer finite; it was frozen at its last good pose", body);
+  }
+}
+
+void end_step(WorldState& s, float seconds) {
+  s.time += double(seconds);
+  ++s.step_count;
+  // What commands add from now on belongs to the next step.
+  std::swap(s.shown, s.rigid.events);
+  RigidEvents& next = s.rigid.events;
+  next.begins.clear(), next.ends.clear(), next.hits.clear();
+  next.sensors.clear(), next.broken.clear(), next.sleep_changes.clear();
+  const RigidEvents& e = s.shown;
+  s.events = {e.begins, e.ends, e.hits, e.sensors, e.broken, e.sleep_changes};
+  s.stepping = false;
+}
+
+}  // namespace
+
+void step_world(WorldState& s, float seconds) {
+  RigidWorld& w = s.rigid;
+  begin_step(s);
+  run_stage(s, StageName::refit, [&] { refit(w); });
+  run_stage(s, StageName::find_pairs, [&] { find_pairs(w, *s.tasks); });
+  run_stage(s, StageName::collide, [&] { collide_pairs(w, *s.tasks, seconds); });
+  run_stage(s, StageName::link_islands, [&] { link_islands(w); });
+  run_stage(s, StageName::solve, [&] { solve_step(w, s.solve, s.arena, *s.tasks, *s.kernels, seconds); });
+  run_stage(s, StageName::finish_bodies, [&] { finish_bodies(w, *s.tasks, seconds, s.frozen); });
+  run_stage(s, StageName::break_joints, [&] { break_joints(w, seconds); });
+  run_stage(s, StageName::put_to_sleep, [&] { put_to_sleep(w, s.arena, seconds); });
+  end_step(s, seconds);
+  report_frozen(s);
+  remove_broken_joints(s);
+}
+
+}  // namespace gyre

@@ -1,0 +1,67 @@
+// The public World: turns calls into commands.
+#include <gyre/world.h>
+
+#include "world/command.h"
+#include "world/world_state.h"
+
+namespace gyre {
+
+Result<World> World::create(const WorldDef& def) {
+  const Error why = check_world_def(def);
+  if (why.code != ErrorCode::none) return why;
+  return World(make_world_state(def));
+}
+
+World::World(std::unique_ptr<WorldState> state) : state_(std::move(state)) {}
+World::~World() = default;
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+
+BodyId World::add_body(const BodyDef& body, const ShapeDef& shape) {
+  return submit(*state_, AddBody{body, {shape}}).body;
+}
+BodyId World::add_body(const BodyDef& body, std::span<const ShapeDef> shapes) {
+  return submit(*state_, AddBody{body, {shapes.begin(), shapes.end()}}).body;
+}
+bool World::remove_body(BodyId body) { return submit(*state_, RemoveBody{body}).done; }
+ShapeId World::add_shape(BodyId body, const ShapeDef& shape) { return submit(*state_, AddShape{body, shape}).shape; }
+bool World::remove_shape(ShapeId shape) { return submit(*state_, RemoveShape{shape}).done; }
+JointId World::add_joint(const JointDef& joint) { return submit(*state_, AddJoint{joint}).joint; }
+bool World::remove_joint(JointId joint) { return submit(*state_, RemoveJoint{joint}).done; }
+
+bool World::set_pose(BodyId body, const Pose& pose) { return submit(*state_, SetPose{body, pose}).done; }
+bool World::set_velocity(BodyId body, Vec3 linear, Vec3 angular) {
+  return submit(*state_, SetVelocity{body, linear, angular}).done;
+}
+bool World::move_kinematic(BodyId body, const Pose& pose, float seconds) {
+  return submit(*state_, MoveKinematic{body, pose, seconds}).done;
+}
+bool World::set_type(BodyId body, BodyType type) { return submit(*state_, SetType{body, type}).done; }
+bool World::set_gravity(Vec3 gravity) { return submit(*state_, SetGravity{gravity}).done; }
+bool World::set_gravity_scale(BodyId body, float scale) { return submit(*state_, SetGravityScale{body, scale}).done; }
+bool World::set_damping(BodyId body, float linear, float angular) {
+  return submit(*state_, SetDamping{body, linear, angular}).done;
+}
+bool World::set_material(ShapeId shape, const Material& material) { return submit(*state_, SetMaterial{shape, material}).done; }
+bool World::set_material_pair(const MaterialPair& pair) { return submit(*state_, SetMaterialPair{pair}).done; }
+bool World::set_filter(ShapeId shape, const Filter& filter) { return submit(*state_, SetFilter{shape, filter}).done; }
+bool World::set_motor(JointId joint, const Motor& motor) { return submit(*state_, SetMotor{joint, motor}).done; }
+bool World::set_sleeping(bool enabled) { return submit(*state_, SetSleeping{enabled}).done; }
+bool World::set_awake(BodyId body, bool awake) { return submit(*state_, SetAwake{body, awake}).done; }
+bool World::set_substeps(int substeps) { return submit(*state_, SetSubsteps{substeps}).done; }
+
+bool World::add_force(BodyId body, Vec3 force) { return submit(*state_, AddForce{body, force, {}}).done; }
+bool World::add_force_at(BodyId body, Vec3 force, DVec3 point) {
+  // t = (p - COM) x f. A stale body's centre is zero: the command is refused all the same.
+  return submit(*state_, AddForce{body, force, cross(difference(point, center_of_mass(body)), force)}).done;
+}
+bool World::add_torque(BodyId body, Vec3 torque) { return submit(*state_, AddForce{body, {}, torque}).done; }
+bool World::add_impulse(BodyId body, Vec3 impulse) { return submit(*state_, AddImpulse{body, impulse, {}}).done; }
+bool World::add_impulse_at(BodyId body, Vec3 impulse, DVec3 point) {
+  return submit(*state_, AddImpulse{body, impulse, cross(difference(point, center_of_mass(body)), impulse)}).done;
+}
+bool World::add_angular_impulse(BodyId body, Vec3 impulse) { return submit(*state_, AddImpulse{body, {}, impulse}).done; }
+
+bool World::step(float seconds) { return submit(*state_, Step{seconds}).done; }
+
+}  // namespace gyre

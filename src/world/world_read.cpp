@@ -1,0 +1,262 @@
+// The public World's reading side: single getters, bulk columns, sums over the world.
+#include <gyre/world.h>
+
+#include "world/world_state.h"
+
+namespace gyre {
+
+namespace {
+
+template <class Tag>
+bool lives(const WorldState& s, const IdPool& ids, Id<Tag> id) {
+  return id && id.world == s.number && ids.live(id.index) && std::uint16_t(ids.generation(id.index)) == id.generation;
+}
+bool lives(const WorldState& s, BodyId id) { return lives(s, s.rigid.bodies.ids, id); }
+bool lives(const WorldState& s, ShapeId id) { return lives(s, s.rigid.shapes.ids, id); }
+bool lives(const WorldState& s, JointId id) { return lives(s, s.rigid.joints.ids, id); }
+
+void read_body(const WorldState& s, std::uint32_t body) {
+  const BodyStore& bodies = s.rigid.bodies;
+  s.read_ids.push_back(body_id(s.rigid, body));
+  s.read_poses.push_back(bodies.poses[body]);
+  s.read_linear.push_back(bodies.motion[body].linear_velocity);
+  s.read_angular.push_back(bodies.motion[body].angular_velocity);
+}
+void clear_read(const WorldState& s) {
+  s.read_ids.clear();
+  s.read_poses.clear();
+  s.read_linear.clear();
+  s.read_angular.clear();
+}
+
+// The places of a joint's two anchors.
+void joint_anchors(const RigidWorld& w, const JointRecord& joint, DVec3& a, DVec3& b) {
+  const auto place = [&](std::int32_t body, Vec3 local, DVec3 world) {
+    if (body == kNoBody) return world;
+    return w.bodies.places[body].center + rotate(w.bodies.places[body].orientation, local);
+  };
+  a = place(joint.body_a, joint.local_anchor_a, joint.world_anchor_a);
+  b = place(joint.body_b, joint.local_anchor_b, joint.world_anchor_b);
+}
+
+double spring_energy(const RigidWorld& w, const JointRecord& joint) {
+  if (!joint.is_spring) return 0.0;
+  DVec3 a, b;
+  joint_anchors(w, joint, a, b);
+  const double stretch = length(b - a) - double(joint.rest_length);
+  return 0.5 * double(joint.stiffness) * stretch * stretch;
+}
+
+// Angular momentum about the centre of mass, world frame, in double.
+DVec3 spin_momentum(const BodyStore& bodies, std::uint32_t i) {
+  const Quat q = bodies.places[i].orientation;
+  return DVec3(rotate(q, bodies.masses[i].inertia * rotate_inverse(q, bodies.motion[i].angular_velocity)));
+}
+
+}  // namespace
+
+bool World::exists(BodyId body) const { return lives(*state_, body); }
+bool World::exists(ShapeId shape) const { return lives(*state_, shape); }
+bool World::exists(JointId joint) const { return lives(*state_, joint); }
+
+Pose World::pose(BodyId body) const { return exists(body) ? state_->rigid.bodies.poses[body.index] : Pose{}; }
+DVec3 World::center_of_mass(BodyId body) const {
+  return exists(body) ? state_->rigid.bodies.places[body.index].center : DVec3{};
+}
+Vec3 World::linear_velocity(BodyId body) const {
+  return exists(body) ? state_->rigid.bodies.motion[body.index].linear_velocity : Vec3{};
+}
+Vec3 World::angular_velocity(BodyId body) const {
+  return exists(body) ? state_->rigid.bodies.motion[body.index].angular_velocity : Vec3{};
+}
+Vec3 World::velocity_at(BodyId body, DVec3 point) const {
+  if (!exists(body)) return {};
+  return linear_velocity(body) + cross(angular_velocity(body), difference(point, center_of_mass(body)));
+}
+BodyType World::type(BodyId body) const { return exists(body) ? state_->rigid.bodies.flags[body.index].type : BodyType::fixed; }
+bool World::is_awake(BodyId body) const {
+  if (!exists(body)) return false;
+  const BodyFlags& flags = state_->rigid.bodies.flags[body.index];
+  return flags.awake != 0 && flags.type != BodyType::fixed && flags.frozen == 0;
+}
+std::uint64_t World::user_data(BodyId body) const { return exists(body) ? state_->rigid.bodies.user_data[body.index] : 0; }
+MassProperties World::mass_properties(BodyId body) const {
+  if (!exists(body)) return {};
+  const BodyMass& mass = state_->rigid.bodies.masses[body.index];
+  return {mass.mass, mass.center, mass.inertia};
+}
+std::span<const ShapeId> World::shapes(BodyId body) const {
+  if (!exists(body)) return {};
+  return state_->rigid.bodies.shapes[body.index];
+}
+BodyId World::body_of(ShapeId shape) const {
+  return exists(shape) ? body_id(state_->rigid, state_->rigid.shapes.bodies[shape.index]) : BodyId{};
+}
+const AnyShape* World::geometry(ShapeId shape) const {
+  return exists(shape) ? &state_->rigid.shapes.geometry[shape.index] : nullptr;
+}
+Transform World::local_transform(ShapeId shape) const {
+  return exists(shape) ? state_->rigid.shapes.places[shape.index] : Transform{};
+}
+Material World::material(ShapeId shape) const {
+  return exists(shape) ? state_->rigid.shapes.materials[shape.index] : Material{};
+}
+
+JointReading World::joint_reading(JointId id) const {
+  if (!exists(id)) return {};
+  const RigidWorld& w = state_->rigid;
+  const JointRecord& joint = w.joints.records[id.index];
+  JointReading reading;
+  const float seconds = w.settings.last_substep * float(w.settings.substeps);
+  if (seconds > 0.0f) {
+    reading.force = (1.0f / seconds) * joint.total_linear;
+    reading.torque = (1.0f / seconds) * joint.total_angular;
+  }
+  reading.position = joint.position;
+  const auto motion = [&](std::int32_t body) { return body == kNoBody ? BodyMotion{} : w.bodies.motion[body]; };
+  const auto orientation = [&](std::int32_t body) { return body == kNoBody ? Quat{} : w.bodies.places[body].orientation; };
+  const BodyMotion a = motion(joint.body_a), b = motion(joint.body_b);
+  const Vec3 axis = rotate(orientation(joint.body_a) * joint.local_frame_a, {1, 0, 0});
+  const Vec3 arm_a = rotate(orientation(joint.body_a), joint.local_anchor_a);
+  const Vec3 arm_b = rotate(orientation(joint.body_b), joint.local_anchor_b);
+  const Vec3 speed = b.linear_velocity + cross(b.angular_velocity, arm_b) - a.linear_velocity - cross(a.angular_velocity, arm_a);
+  switch (joint.kind) {
+    case JointKind::hinge: reading.velocity = dot(b.angular_velocity - a.angular_velocity, axis); break;
+    case JointKind::slider: reading.velocity = dot(speed, axis); break;
+    case JointKind::distance: {
+      DVec3 from, to;
+      joint_anchors(w, joint, from, to);
+      reading.velocity = dot(speed, normalized(difference(to, from)));
+      break;
+    }
+    case JointKind::ball:
+    case JointKind::fixed: break;
+  }
+  return reading;
+}
+
+BodyColumns World::bodies() const {
+  clear_read(*state_);
+  state_->rigid.bodies.ids.for_each_live([&](std::uint32_t body) { read_body(*state_, body); });
+  return {state_->read_ids, state_->read_poses, state_->read_linear, state_->read_angular};
+}
+BodyColumns World::awake_bodies() const {
+  clear_read(*state_);
+  state_->rigid.bodies.ids.for_each_live([&](std::uint32_t body) {
+    if (is_awake(body_id(state_->rigid, body))) read_body(*state_, body);
+  });
+  return {state_->read_ids, state_->read_poses, state_->read_linear, state_->read_angular};
+}
+
+std::size_t World::contacts(std::span<ContactPoint> out) const {
+  const RigidWorld& w = state_->rigid;
+  std::size_t count = 0;
+  for (const Contact& contact : w.contacts.contacts) {
+    if (contact.manifold_room == 0) continue;
+    for (const Manifold& manifold : manifolds_of(w.contacts, contact)) {
+      for (int k = 0; k < manifold.count; ++k, ++count) {
+        if (count >= out.size()) continue;
+        const ContactPointState& from = manifold.points[k];
+        ContactPoint& point = out[count];
+        point.shape_a = shape_id(w, contact.shape_a);
+        point.shape_b = shape_id(w, contact.shape_b);
+        point.body_a = body_id(w, contact.body_a);
+        point.body_b = body_id(w, contact.body_b);
+        point.position = w.bodies.places[contact.body_a].center + from.from_a;
+        point.normal = manifold.normal;
+        point.tangent_1 = any_perpendicular(manifold.normal);
+        point.tangent_2 = cross(manifold.normal, point.tangent_1);
+        point.separation = from.separation;
+        point.normal_impulse = from.total_impulse;
+        point.friction_impulse = k == 0 ? manifold.total_friction : Vec3{};
+        const BodyMotion& a = w.bodies.motion[contact.body_a];
+        const BodyMotion& b = w.bodies.motion[contact.body_b];
+        point.relative_velocity = b.linear_velocity + cross(b.angular_velocity, from.from_b) - a.linear_velocity -
+                                  cross(a.angular_velocity, from.from_a);
+      }
+    }
+  }
+  return count;
+}
+
+const Events& World::events() const { return state_->events; }
+std::span<const Problem> World::problems() const { return state_->problems; }
+
+WorldCounts World::counts() const {
+  const RigidWorld& w = state_->rigid;
+  WorldCounts counts;
+  counts.bodies = int(w.bodies.ids.size());
+  counts.shapes = int(w.shapes.ids.size());
+  counts.joints = int(w.joints.ids.size());
+  counts.colors = state_->solve.colors;
+  w.bodies.ids.for_each_live([&](std::uint32_t body) {
+    if (is_awake(body_id(w, body))) ++counts.awake_bodies;
+  });
+  for (const Contact& contact : w.contacts.contacts) {
+    if (contact.manifold_room == 0) continue;
+    ++counts.pairs;
+    if (contact.touching != 0) ++counts.touching;
+    for (const Manifold& manifold : manifolds_of(w.contacts, contact)) counts.contact_points += manifold.count;
+  }
+  return counts;
+}
+
+double World::time() const { return state_->time; }
+std::uint64_t World::step_count() const { return state_->step_count; }
+Vec3 World::gravity() const { return state_->rigid.settings.gravity; }
+int World::substeps() const { return state_->rigid.settings.substeps; }
+
+Energy World::energy() const {
+  const RigidWorld& w = state_->rigid;
+  const DVec3 gravity(w.settings.gravity);
+  Energy energy;
+  w.bodies.ids.for_each_live([&](std::uint32_t i) {
+    if (!is_movable(w.bodies.flags[i])) return;
+    const double mass = double(w.bodies.masses[i].mass);
+    const BodyMotion& motion = w.bodies.motion[i];
+    energy.kinetic += 0.5 * mass * length_squared(DVec3(motion.linear_velocity)) +
+                      0.5 * dot(spin_momentum(w.bodies, i), DVec3(motion.angular_velocity));
+    energy.potential -= mass * double(w.bodies.forces[i].gravity_scale) * dot(gravity, w.bodies.places[i].center);
+  });
+  w.joints.ids.for_each_live([&](std::uint32_t slot) { energy.elastic += spring_energy(w, w.joints.records[slot]); });
+  return energy;
+}
+
+Momentum World::momentum() const {
+  const RigidWorld& w = state_->rigid;
+  Momentum momentum;
+  w.bodies.ids.for_each_live([&](std::uint32_t i) {
+    if (!is_movable(w.bodies.flags[i])) return;
+    const DVec3 p = double(w.bodies.masses[i].mass) * DVec3(w.bodies.motion[i].linear_velocity);
+    momentum.linear += p;
+    momentum.angular += cross(w.bodies.places[i].center, p) + spin_momentum(w.bodies, i);
+  });
+  return momentum;
+}
+
+float World::max_penetration() const {
+  const RigidWorld& w = state_->rigid;
+  float deepest = 0.0f;
+  for (const Contact& contact : w.contacts.contacts) {
+    if (contact.manifold_room == 0) continue;
+    for (const Manifold& manifold : manifolds_of(w.contacts, contact)) {
+      for (int k = 0; k < manifold.count; ++k) deepest = max(deepest, -manifold.points[k].separation);
+    }
+  }
+  return deepest;
+}
+
+std::uint64_t World::hash() const { return hash_state(*state_); }
+
+const char* to_string(JointKind kind) {
+  switch (kind) {
+    case JointKind::ball: return "ball";
+    case JointKind::hinge: return "hinge";
+    case JointKind::slider: return "slider";
+    case JointKind::fixed: return "fixed";
+    case JointKind::distance: return "distance";
+  }
+  return "unknown";
+}
+
+}  // namespace gyre

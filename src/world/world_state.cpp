@@ -1,0 +1,245 @@
+#include "world/world_state.h"
+
+#include "base/hash.h"
+#include "world/stages.h"
+
+#include <atomic>
+#include <cstdarg>
+#include <cstdio>
+
+namespace gyre {
+
+namespace {
+
+std::uint16_t next_world_number() {
+  static std::atomic<std::uint32_t> count{0};
+  // Never 0: a null id is of no world.
+  return std::uint16_t(1 + count.fetch_add(1, std::memory_order_relaxed) % 65535);
+}
+
+// Adds every field of every record to a hash, as little-endian words, so that padding and byte order never show.
+class HashVisitor {
+ public:
+  template <class T>
+    requires(std::is_arithmetic_v<T> || std::is_enum_v<T>)
+  void operator()(const char*, const T& value) {
+    add(value);
+  }
+  void operator()(const char*, const RigidSettings& settings) { add_record(settings); }
+  template <class T>
+  void operator()(const char*, const Array<T>& column) {
+    hasher_.add(std::uint64_t(column.size()));
+    for (const T& record : column) add_record(record);
+  }
+  void operator()(const char*, const IdPool& ids) {
+    for (const std::uint32_t generation : ids.generations()) hasher_.add(std::uint64_t(generation));
+  }
+  void operator()(const char*, const std::vector<AnyShape>& geometry) {
+    for (const AnyShape& shape : geometry) hasher_.add(hash_shape(shape));
+  }
+  std::uint64_t value() {
+    flush();
+    return hasher_.value();
+  }
+
+ private:
+  template <class T>
+  void add_record(const T& record) {
+    for_each_field(record, [this](const auto& value) { add(value); });
+  }
+  template <class T>
+  void add(const T& value) {
+    std::uint64_t word = 0;
+    if constexpr (std::is_same_v<T, double>) {
+      word = __builtin_bit_cast(std::uint64_t, value);
+    } else if constexpr (std::is_same_v<T, float>) {
+      word = __builtin_bit_cast(std::uint32_t, value);
+    } else {
+      word = std::uint64_t(value);
+    }
+    words_[used_++] = word;
+    if (used_ == kWords) flush();
+  }
+  void flush() {
+    for (int i = 0; i < used_; ++i) hasher_.add(words_[i]);
+    used_ = 0;
+  }
+
+  static std::uint64_t hash_shape(const AnyShape& shape);
+
+  static constexpr int kWords = 64;
+  std::uint64_t words_[kWords];
+  int used_ = 0;
+  Hasher hasher_;
+};
+
+std::uint64_t HashVisitor::hash_shape(const AnyShape& shape) {
+  Hasher hasher;
+  hasher.add(std::uint64_t(shape.index()));
+  if (const Geometry* cooked = std::get_if<Geometry>(&shape)) {
+    hasher.add(cooked->content_hash());
+    return hasher.value();
+  }
+  const Shape inner = make_shape(shape);
+  for (const float value : {inner.radius, inner.extents.x, inner.extents.y, inner.extents.z, inner.offset}) {
+    hasher.add(std::uint64_t(__builtin_bit_cast(std::uint32_t, value)));
+  }
+  return hasher.value();
+}
+
+Error inconsistent(const char* what) {
+  return make_error(ErrorCode::invalid_data, "the state does not hang together: %s", what);
+}
+
+Error check_sizes(const RigidWorld& w) {
+  const std::size_t bodies = w.bodies.ids.capacity();
+  if (w.bodies.motion.size() != bodies || w.bodies.places.size() != bodies || w.bodies.masses.size() != bodies ||
+      w.bodies.forces.size() != bodies || w.bodies.flags.size() != bodies || w.bodies.sleep.size() != bodies ||
+      w.bodies.overrides.size() != bodies || w.bodies.user_data.size() != bodies) {
+    return inconsistent("the body columns differ in length");
+  }
+  const std::size_t shapes = w.shapes.ids.capacity();
+  if (w.shapes.bodies.size() != shapes || w.shapes.places.size() != shapes || w.shapes.proxies.size() != shapes ||
+      w.shapes.materials.size() != shapes || w.shapes.geometry.size() != shapes || w.shapes.density.size() != shapes ||
+      w.shapes.user_data.size() != shapes) {
+    return inconsistent("the shape columns differ in length");
+  }
+  if (w.joints.records.size() != w.joints.ids.capacity()) return inconsistent("the joint columns differ in length");
+  return {};
+}
+
+Error check_bodies(const RigidWorld& w) {
+  for (std::uint32_t i = 0; i < w.bodies.ids.capacity(); ++i) {
+    const BodyFlags& flags = w.bodies.flags[i];
+    const BodySleep& sleep = w.bodies.sleep[i];
+    if (flags.type > BodyType::dynamic) return inconsistent("a body of unknown type");
+    if (sleep.group != kNoGroup &&
+        (sleep.group >= w.bodies.sleep.size() || sleep.next_in_group >= w.bodies.sleep.size() ||
+         w.bodies.sleep[sleep.next_in_group].group != sleep.group)) {
+      return inconsistent("a sleeping group that is no ring");
+    }
+    if (!w.bodies.ids.live(i)) continue;
+    const BodyPlace& place = w.bodies.places[i];
+    if (!is_finite(place.center) || !is_finite(place.orientation) || !is_finite(w.bodies.motion[i].linear_velocity) ||
+        !is_finite(w.bodies.motion[i].angular_velocity)) {
+      return inconsistent("a body whose state is not finite");
+    }
+  }
+  return {};
+}
+
+Error check_links(const RigidWorld& w) {
+  for (std::uint32_t i = 0; i < w.shapes.ids.capacity(); ++i) {
+    if (w.shapes.ids.live(i) && !w.bodies.ids.live(w.shapes.bodies[i])) return inconsistent("a shape without a body");
+    if (w.shapes.proxies[i].motion > ProxyMotion::moving) return inconsistent("a proxy of unknown motion");
+    if ((w.shapes.proxies[i].motion != ProxyMotion::none) != w.shapes.ids.live(i)) return inconsistent("a proxy without a shape");
+    if (check_shape(w.shapes.geometry[i]).code != ErrorCode::none) return inconsistent("a shape that cannot be");
+  }
+  for (std::uint32_t i = 0; i < w.joints.ids.capacity(); ++i) {
+    if (!w.joints.ids.live(i)) continue;
+    const JointRecord& joint = w.joints.records[i];
+    for (const std::int32_t body : {joint.body_a, joint.body_b}) {
+      if (body != kNoBody && (body < 0 || !w.bodies.ids.live(std::uint32_t(body)))) return inconsistent("a joint without a body");
+    }
+    if (joint.kind > JointKind::distance) return inconsistent("a joint of unknown kind");
+  }
+  for (const Contact& contact : w.contacts.contacts) {
+    if (contact.manifold_room == 0) continue;
+    if (contact.manifold_room != 1 && contact.manifold_room != kMaxMeshManifolds) return inconsistent("a contact's manifold room");
+    if (!w.shapes.ids.live(contact.shape_a) || !w.shapes.ids.live(contact.shape_b) ||
+        w.shapes.bodies[contact.shape_a] != contact.body_a || w.shapes.bodies[contact.shape_b] != contact.body_b) {
+      return inconsistent("a contact without its shapes");
+    }
+    if (contact.manifold_count > contact.manifold_room ||
+        std::size_t(contact.first_manifold) + contact.manifold_room > w.contacts.manifolds.size()) {
+      return inconsistent("a contact without its manifolds");
+    }
+  }
+  for (const Manifold& manifold : w.contacts.manifolds) {
+    if (manifold.count < 0 || manifold.count > kMaxManifoldPoints) return inconsistent("a manifold with too many points");
+  }
+  return {};
+}
+
+}  // namespace
+
+std::unique_ptr<WorldState> make_world_state(const WorldDef& def) {
+  auto state = std::make_unique<WorldState>();
+  state->def = def;
+  state->number = next_world_number();
+  state->tasks = def.host_tasks.run != nullptr ? std::make_unique<TaskSystem>(def.host_tasks)
+                                               : std::make_unique<TaskSystem>(def.threads);
+  state->kernels = &select_contact_kernels(def.simd_width);
+  state->profile = StageProfile(std::span<const char* const>(kStageNames, kStageCount));
+  RigidWorld& w = state->rigid;
+  w.world_number = state->number;
+  w.settings.gravity = def.gravity;
+  w.settings.substeps = def.stepping.substeps;
+  w.settings.sleeping = def.sleeping ? 1 : 0;
+  w.settings.friction_rule = def.friction_rule;
+  w.settings.restitution_rule = def.restitution_rule;
+  w.broadphase = make_broadphase(def.stepping.broad_phase);
+  return state;
+}
+
+Error rebuild_derived(WorldState& state) {
+  RigidWorld& w = state.rigid;
+  Error e = check_sizes(w);
+  if (e.code == ErrorCode::none) e = check_bodies(w);
+  if (e.code == ErrorCode::none) e = check_links(w);
+  if (e.code != ErrorCode::none) return e;
+  BodyStore& bodies = w.bodies;
+  const std::size_t count = bodies.motion.size();
+  bodies.inertia.resize(count);
+  bodies.orientations.resize(count);
+  bodies.poses.resize(count);
+  bodies.shapes.assign(count, {});
+  bodies.joints.assign(count, {});
+  for (std::uint32_t i = 0; i < count; ++i) {
+    bodies.orientations[i] = bodies.places[i].orientation;
+    bodies.poses[i] = origin_pose(bodies.places[i], bodies.masses[i]);
+    refresh_inertia(bodies, i);
+  }
+  bodies.awake_stale = true;
+  refresh_awake(bodies);
+  w.shapes.colliders.resize(w.shapes.ids.capacity());
+  w.shapes.changed.clear();
+  w.shapes.ids.for_each_live([&](std::uint32_t shape) {
+    refresh_collider(w.shapes, shape);
+    bodies.shapes[w.shapes.bodies[shape]].push_back(shape_id(w, shape));
+  });
+  w.joints.blocked.clear();
+  w.joints.ids.for_each_live([&](std::uint32_t slot) {
+    const JointRecord& joint = w.joints.records[slot];
+    if (joint.body_a != kNoBody) bodies.joints[joint.body_a].push_back(slot);
+    if (joint.body_b != kNoBody) bodies.joints[joint.body_b].push_back(slot);
+    if (!joint.collide_connected && joint.body_a != kNoBody && joint.body_b != kNoBody) {
+      w.joints.blocked.find_or_insert(pair_key(std::uint32_t(joint.body_a), std::uint32_t(joint.body_b)), 0u)++;
+    }
+  });
+  rebuild_index(w.contacts);
+  if (find_fault(w.contacts) != nullptr) return inconsistent(find_fault(w.contacts));
+  w.broadphase_stale = true;
+  return {};
+}
+
+std::uint64_t hash_state(const WorldState& state) {
+  HashVisitor visitor;
+  for_each_column(state, visitor);
+  return visitor.value();
+}
+
+void report_problem(WorldState& state, ErrorCode code, BodyId body, const char* format, ...) {
+  constexpr std::size_t kMostProblems = 256;  // a host that never looks must not fill the memory
+  if (state.problems.size() >= kMostProblems) return;
+  Problem problem;
+  problem.code = code;
+  problem.body = body;
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(problem.message, sizeof problem.message, format, arguments);
+  va_end(arguments);
+  state.problems.push_back(problem);
+}
+
+}  // namespace gyre

@@ -1,0 +1,114 @@
+// Everything a world owns. What is simulation state is named once, in for_each_column: saving, loading, hashing and
+// comparing are visitors of that one list, so a new array cannot be forgotten in one of them.
+#pragma once
+
+#include "base/arena.h"
+#include "base/profile.h"
+#include "rigid/rigid_world.h"
+#include "rigid/solve_step.h"
+#include "solver/contact_block.h"
+#include "task/task_system.h"
+#include "world/command.h"
+#include "world/state_fields.h"
+
+#include <gyre/world.h>
+
+#include <memory>
+#include <vector>
+
+namespace gyre {
+
+// Sees every command just before it is carried out, and every step when it is done. The recorder is one.
+class CommandLog {
+ public:
+  virtual ~CommandLog() = default;
+  virtual void on_command(const Command& command) = 0;
+  virtual void on_step_done(WorldState& state) = 0;
+};
+
+// Called after every stage of a step with the stage's name: tools compare two worlds with it.
+struct StageHook {
+  void (*call)(void* context, const char* stage) = nullptr;
+  void* context = nullptr;
+};
+
+struct WorldState {
+  // Simulation state.
+  RigidWorld rigid;
+  double time = 0.0;             // s
+  std::uint64_t step_count = 0;
+
+  // Everything below can be rebuilt, or is about this process and not about the simulated world.
+  WorldDef def;
+  std::unique_ptr<TaskSystem> tasks;
+  const ContactKernels* kernels = nullptr;
+  Arena arena;
+  SolveScratch solve;
+  StageProfile profile;
+  StageHook stage_hook;
+  CommandLog* log = nullptr;
+  Array<Problem> problems;
+  Array<std::uint32_t> frozen;
+  RigidEvents shown;              // events of the last step; rigid.events collects those of the next
+  Events events;                  // spans into `shown`
+  bool stepping = false;
+  std::uint16_t number = 0;       // of this world, in its ids
+  // Copies that bulk reading hands out; refreshed on demand.
+  mutable std::vector<BodyId> read_ids;
+  mutable std::vector<Pose> read_poses;
+  mutable std::vector<Vec3> read_linear, read_angular;
+};
+
+// Calls visit(name, column) for every column that is simulation state, in a fixed order. A column is an Array of records
+// that state_fields.h knows, an IdPool, the vector of geometry, or a single record.
+template <class State, class Visitor>
+void for_each_column(State& s, Visitor&& visit) {
+  visit("time", s.time);
+  visit("step_count", s.step_count);
+  visit("settings", s.rigid.settings);
+  visit("material_pairs", s.rigid.material_pairs);
+  visit("body_ids", s.rigid.bodies.ids);
+  visit("body_motion", s.rigid.bodies.motion);
+  visit("body_places", s.rigid.bodies.places);
+  visit("body_masses", s.rigid.bodies.masses);
+  visit("body_forces", s.rigid.bodies.forces);
+  visit("body_flags", s.rigid.bodies.flags);
+  visit("body_sleep", s.rigid.bodies.sleep);
+  visit("body_overrides", s.rigid.bodies.overrides);
+  visit("body_user_data", s.rigid.bodies.user_data);
+  visit("shape_ids", s.rigid.shapes.ids);
+  visit("shape_bodies", s.rigid.shapes.bodies);
+  visit("shape_places", s.rigid.shapes.places);
+  visit("shape_proxies", s.rigid.shapes.proxies);
+  visit("shape_materials", s.rigid.shapes.materials);
+  visit("shape_geometry", s.rigid.shapes.geometry);
+  visit("shape_density", s.rigid.shapes.density);
+  visit("shape_user_data", s.rigid.shapes.user_data);
+  visit("joint_ids", s.rigid.joints.ids);
+  visit("joints", s.rigid.joints.records);
+  visit("contacts", s.rigid.contacts.contacts);
+  visit("manifolds", s.rigid.contacts.manifolds);
+}
+
+// A world with default state: no bodies; threads and kernels by the def.
+std::unique_ptr<WorldState> make_world_state(const WorldDef& def);
+// Why a def cannot be used; code none if it can.
+Error check_world_def(const WorldDef& def);
+
+// Derives everything that is not state from the columns (after loading). Returns what is inconsistent, code none if
+// nothing is: indices out of range, sets that disagree.
+Error rebuild_derived(WorldState& state);
+
+// 64-bit hash of all columns.
+std::uint64_t hash_state(const WorldState& state);
+
+// Lists a problem for the user.
+#if defined(__GNUC__)
+__attribute__((format(printf, 4, 5)))
+#endif
+void report_problem(WorldState& state, ErrorCode code, BodyId body, const char* format, ...);
+
+// One step: world/step.cpp.
+void step_world(WorldState& state, float seconds);
+
+}  // namespace gyre
