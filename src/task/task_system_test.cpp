@@ -99,10 +99,11 @@ bool rounds_to_nearest() {
 }
 
 TEST(TaskSystem, WorkersComputeInFloatMode) {
-  TaskSystem tasks(4);
   ASSERT_TRUE(rounds_to_nearest());
   if (std::fesetround(FE_DOWNWARD) != 0) GTEST_SKIP() << "one rounding only";
   const bool before = rounds_to_nearest();
+  // Made now, so that its threads inherit the wrong mode.
+  TaskSystem tasks(4);
   int wrong = 0;
   std::atomic<int> wrong_workers{0};
   tasks.run_workers([&](int) { wrong_workers += rounds_to_nearest() ? 0 : 1; });
