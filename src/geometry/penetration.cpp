@@ -26,6 +26,11 @@ struct Face {
 };
 static_assert(kMaxFaces <= 256 && kMaxVertices <= 256);
 
+// Cosine to the found normal of faces that may hold the witness points.
+constexpr double kSameSide = 0.999;
+// Cosine to the best normal of faces that are still worked on when memory runs short.
+constexpr double kNearBest = 0.9;
+
 // A face without area: it closes the surface but says nothing about the distance.
 constexpr double kNever = 1.0e300;
 
@@ -36,13 +41,15 @@ class Polytope {
   // A tetrahedron from the points of `start` and of the shapes' extreme points. False if B - A is flat; then `flat_normal`
   // is a direction across it.
   bool start(const CoreDistance& start, DVec3& flat_normal);
-  // The live face nearest to the origin.
-  int nearest() const;
+  // The live face nearest to the origin, of those that look along `outward` within the cosine; -1 if there is none.
+  int nearest(DVec3 outward, double cosine) const;
+  int vertex_count() const { return vertex_count_; }
   // Adds a point outside `face`. False when the surface cannot take it (memory, or rounding broke the horizon).
   bool add(const DifferencePoint& point, int face);
 
   const Face& face(int i) const { return faces_[i]; }
-  const DifferencePoint& vertex(int i) const { return vertices_[i]; }
+  // The pair of points behind the surface's point nearest to `target`, among faces that look that way.
+  void witness(DVec3 target, DVec3 outward, DVec3& on_a, DVec3& on_b) const;
 
  private:
   int new_face(int a, int b, int c);
@@ -160,10 +167,10 @@ bool Polytope::start(const CoreDistance& start, DVec3& flat_normal) {
   return true;
 }
 
-int Polytope::nearest() const {
+int Polytope::nearest(DVec3 outward, double cosine) const {
   int best = -1;
   for (int i = 0; i < face_count_; ++i) {
-    if (!faces_[i].alive) continue;
+    if (!faces_[i].alive || dot(faces_[i].normal, outward) < cosine) continue;
     if (best < 0 || faces_[i].distance < faces_[best].distance) best = i;
   }
   return best;
@@ -237,6 +244,22 @@ bool Polytope::add(const DifferencePoint& point, int first) {
   return true;
 }
 
+void Polytope::witness(DVec3 target, DVec3 outward, DVec3& on_a, DVec3& on_b) const {
+  double least = kNever;
+  for (int i = 0; i < face_count_; ++i) {
+    const Face& face = faces_[i];
+    // A flat side of the difference is many triangles: the one under which the target lies holds the pair.
+    if (!face.alive || !(dot(face.normal, outward) > kSameSide)) continue;
+    const DifferencePoint &a = vertices_[face.v[0]], &b = vertices_[face.v[1]], &c = vertices_[face.v[2]];
+    const SimplexPoint near = closest_on_triangle(target, a.way, b.way, c.way);
+    const double squared = length_squared(near.point - target);
+    if (!(squared < least)) continue;
+    least = squared;
+    on_a = near.weights[0] * a.on_a + near.weights[1] * b.on_a + near.weights[2] * c.on_a;
+    on_b = near.weights[0] * a.on_b + near.weights[1] * b.on_b + near.weights[2] * c.on_b;
+  }
+}
+
 // Flat differences (two segments, a point and a square ...) overlap without depth: the way out is across.
 CorePenetration across(const CorePair& pair, const CoreDistance& start, DVec3 normal) {
   CorePenetration out;
@@ -261,7 +284,10 @@ CorePenetration core_penetration(const CorePair& pair, const CoreDistance& start
   const double gap = kGap * pair.size();
   while (true) {
     ++best.iterations;
-    const int i = polytope.nearest();
+    // Where a whole ring of directions is equally good (a capsule inside a cone, on one axis) the search would spread over
+    // all of it. Past half of the memory it stays near the best direction found.
+    const bool everywhere = polytope.vertex_count() < kMaxVertices / 2;
+    const int i = polytope.nearest(-best.normal, everywhere ? -2.0 : kNearBest);
     if (i < 0) break;
     const Face face = polytope.face(i);
     if (face.distance == kNever) break;
@@ -271,14 +297,10 @@ CorePenetration core_penetration(const CorePair& pair, const CoreDistance& start
     if (reach < best.depth) {
       best.depth = reach;
       best.normal = -face.normal;
-      const DifferencePoint &a = polytope.vertex(face.v[0]), &b = polytope.vertex(face.v[1]),
-                            &c = polytope.vertex(face.v[2]);
-      const SimplexPoint near = closest_on_triangle({}, a.way, b.way, c.way);
-      best.on_a = near.weights[0] * a.on_a + near.weights[1] * b.on_a + near.weights[2] * c.on_a;
-      best.on_b = near.weights[0] * a.on_b + near.weights[1] * b.on_b + near.weights[2] * c.on_b;
     }
     if (reach - face.distance <= gap || !polytope.add(w, i)) break;
   }
+  polytope.witness(-best.depth * best.normal, -best.normal, best.on_a, best.on_b);
   return best;
 }
 
