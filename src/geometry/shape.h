@@ -17,9 +17,9 @@ struct HeightField;
 struct Shape {
   ShapeKind kind = ShapeKind::sphere;
   float radius = 0.0f;  // sphere, capsule, cylinder, cone: the radius; box: the rounding
-  Vec3
-      extents;  // box: half extents of the INNER box (rounding taken off); capsule, cylinder, cone: y = half height;
-                // plane: the unit normal
+  // box: half extents of the INNER box (rounding taken off); capsule, cylinder, cone: y = half height; plane: the unit
+  // normal
+  Vec3 extents;
   float offset = 0.0f;  // plane: dot(normal, p) = offset on its surface
   union {
     const Hull* hull = nullptr;
