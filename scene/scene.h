@@ -1,0 +1,103 @@
+// A scene as plain data: what a scene file says, checked and with names resolved, before any world exists. scene_reader makes
+// one from JSON, scene_writer makes JSON from one, scene_runner makes a world from one.
+//
+// Materials, meshes and bodies are referred to by their index in the scene.
+#pragma once
+
+#include <gyre/defs.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace gyre {
+
+struct SceneWorld {
+  Vec3 gravity{0, -9.81f, 0};
+  double time_step = 0.016666667;  // s
+  int substeps = 4;
+  IntegratorKind integrator = IntegratorKind::semi_implicit_euler;
+  SolverKind solver = SolverKind::soft_step;
+  BroadPhaseKind broad_phase = BroadPhaseKind::bvh;
+  bool sleeping = true;
+};
+
+struct SceneMaterial {
+  std::string name;
+  float density = 1000.0f;  // kg/m^3
+  Material surface;         // `id` stays 0: it is given when a world is made
+};
+
+// What is not given follows from the two materials by the world's combine rules.
+struct SceneMaterialPair {
+  int a = 0, b = 0;
+  std::optional<float> static_friction, dynamic_friction, restitution;
+};
+
+struct SceneMesh {
+  std::string name;
+  std::string file;  // relative to the scene's folder; empty: the mesh stands in the scene itself
+  std::vector<Vec3> vertices;
+  std::vector<std::uint32_t> indices;  // three a triangle
+};
+
+struct SceneHull {
+  std::vector<Vec3> points;
+  int mesh = -1;  // the hull of this mesh's vertices instead
+};
+struct SceneTriangles {
+  int mesh = 0;
+};
+struct SceneHeightField {
+  std::uint32_t columns = 2, rows = 2;
+  float spacing = 1.0f;
+  std::vector<float> heights;  // NaN: a hole
+};
+using SceneGeometry = std::variant<Sphere, Box, Capsule, Cylinder, Cone, Plane, SceneHull, SceneTriangles, SceneHeightField>;
+
+struct SceneShape {
+  SceneGeometry geometry = Sphere{};
+  Transform local;
+  int material = -1;  // none: the default material
+  // Given in place; each wins over the material's.
+  std::optional<float> density, static_friction, dynamic_friction, restitution, rolling_friction, spinning_friction;
+};
+
+// Acts in every step that begins in [start, end).
+struct SceneForce {
+  Vec3 force;                // N
+  Vec3 torque;               // N m
+  std::optional<DVec3> at;   // none: the centre of mass
+  bool in_body_frame = false;  // force, torque and `at` are in the body's frame and turn with it
+  double start = 0.0;        // s
+  double end = 1.0e9;        // s
+};
+
+struct SceneBody {
+  std::string name;
+  BodyDef def;
+  Filter filter;  // of all its shapes
+  bool sensor = false;
+  std::vector<SceneShape> shapes;
+  std::vector<SceneForce> forces;
+};
+
+struct SceneJoint {
+  std::string name;  // may be empty
+  JointDef def;      // `a` and `b` stay null
+  int a = -1, b = -1;  // bodies; -1 is the world
+};
+
+struct Scene {
+  std::string name;
+  SceneWorld world;
+  std::vector<SceneMaterial> materials;
+  std::vector<SceneMaterialPair> material_pairs;
+  std::vector<SceneMesh> meshes;
+  std::vector<SceneBody> bodies;
+  std::vector<SceneJoint> joints;
+};
+
+}  // namespace gyre

@@ -1,0 +1,37 @@
+// Parts of the scene reader: each reads one section. Refusals are thrown as SceneError.
+#pragma once
+
+#include "scene/scene.h"
+#include "scene/scene_fields.h"
+#include "scene/scene_reader.h"
+
+#include <map>
+#include <string>
+
+namespace gyre {
+
+// Names to indices, of one kind of thing.
+using NameTable = std::map<std::string, int, std::less<>>;
+
+struct SceneReading {
+  const ReadOptions& options;
+  Scene scene;
+  NameTable materials, meshes, bodies, joints;
+  std::size_t shape_count = 0;
+};
+
+// The index behind a name; `what` names the kind: "a material".
+int find_name(const NameTable& table, const Field& field, const char* what);
+
+void read_mesh(SceneReading& reading, const Field& field, const std::string& name);
+void read_shape(SceneReading& reading, const Field& field, SceneBody& body);
+void read_body(SceneReading& reading, const Field& field);
+void read_joint(SceneReading& reading, const Field& field);
+
+// The surface values that stand both in a material and in place on a shape.
+struct SurfaceFields {
+  std::optional<float> density, static_friction, dynamic_friction, restitution, rolling_friction, spinning_friction;
+};
+SurfaceFields read_surface(Members& members);
+
+}  // namespace gyre

@@ -1,0 +1,156 @@
+// Runs a scene. See scene_runner.h.
+#include "scene/scene_runner.h"
+
+#include "scene/world_builder.h"
+
+namespace gyre {
+
+SceneRunner::SceneRunner(Scene scene, World world) : scene_(std::move(scene)), world_(std::move(world)) {}
+
+SceneResult<SceneRunner> SceneRunner::create(Scene scene, const std::string& file, int threads) {
+  const SceneWorld& settings = scene.world;
+  WorldDef def;
+  def.gravity = settings.gravity;
+  def.threads = threads;
+  def.stepping = {settings.substeps, settings.integrator, settings.solver, settings.broad_phase};
+  def.sleeping = settings.sleeping;
+  Result<World> world = World::create(def);
+  if (!world) return SceneError{file, 0, 0, "/world", world.error().message};
+
+  SceneRunner runner(std::move(scene), *std::move(world));
+  WorldBuilder builder(runner.scene_, runner.world_, file);
+  if (!builder.build()) return builder.error();
+  runner.bodies_ = builder.take_bodies();
+  runner.joints_ = builder.take_joints();
+  for (std::size_t i = 0; i < runner.scene_.bodies.size(); ++i) {
+    const SceneBody& body = runner.scene_.bodies[i];
+    if (!body.forces.empty() && body.def.type == BodyType::dynamic) runner.forced_.push_back(i);
+  }
+  for (const SceneJoint& joint : runner.scene_.joints) runner.lengths_.push_back(runner.present_length(joint));
+  return runner;
+}
+
+double SceneRunner::present_length(const SceneJoint& joint) const {
+  DVec3 point_b;
+  if (joint.def.anchor_b) {
+    point_b = *joint.def.anchor_b;
+  } else if (joint.b >= 0) {
+    point_b = scene_.bodies[std::size_t(joint.b)].def.pose.position;
+  }
+  return length(point_b - joint.def.anchor);
+}
+
+const SceneBody* SceneRunner::body_of(BodyId id) const {
+  if (!world_.exists(id)) return nullptr;
+  const std::uint64_t index = world_.user_data(id);
+  return index < bodies_.size() && bodies_[index] == id ? &scene_.bodies[index] : nullptr;
+}
+
+bool SceneRunner::step() {
+  problem_.clear();
+  apply_forces();
+  const bool done = world_.step(float(scene_.world.time_step));
+  if (done) ++steps_;
+  return !find_problem() && done;
+}
+
+void SceneRunner::apply_forces() {
+  // The step begins at a multiple of the time step; what is left of rounding must not move a window by a step.
+  const double slack = 1.0e-4 * scene_.world.time_step;
+  const double now = time() + slack;
+  for (const std::size_t i : forced_) {
+    const BodyId id = bodies_[i];
+    for (const SceneForce& force : scene_.bodies[i].forces) {
+      if (!(now >= force.start && now < force.end)) continue;
+      const Pose pose = world_.pose(id);
+      Vec3 push = force.force, turn = force.torque;
+      DVec3 at = force.at ? *force.at : DVec3{};
+      if (force.in_body_frame) {
+        push = rotate(pose.orientation, push);
+        turn = rotate(pose.orientation, turn);
+        if (force.at) at = pose * to_float(*force.at);
+      }
+      if (!(push == Vec3{})) {
+        if (force.at) {
+          world_.add_force_at(id, push, at);
+        } else {
+          world_.add_force(id, push);
+        }
+      }
+      if (!(turn == Vec3{})) world_.add_torque(id, turn);
+    }
+  }
+}
+
+bool SceneRunner::find_problem() {
+  for (const Problem& problem : world_.problems()) {
+    const SceneBody* body = body_of(problem.body);
+    problem_ = (body ? "body \"" + body->name + "\": " : std::string()) + problem.message;
+    return true;
+  }
+  const BodyColumns awake = world_.awake_bodies();
+  for (std::size_t i = 0; i < awake.ids.size(); ++i) {
+    if (is_finite(awake.poses[i]) && is_finite(awake.linear_velocities[i]) && is_finite(awake.angular_velocities[i])) {
+      continue;
+    }
+    const SceneBody* body = body_of(awake.ids[i]);
+    problem_ = "body \"" + (body ? body->name : std::string("?")) + "\": its place or velocity is not finite";
+    return true;
+  }
+  return false;
+}
+
+SceneJoint SceneRunner::final_joint(std::size_t index) const {
+  SceneJoint joint = scene_.joints[index];
+  JointDef& def = joint.def;
+  // A place of a body at the start, carried along to where the body stands now.
+  const auto carried = [&](int body, DVec3 place) {
+    if (body < 0) return place;
+    const Pose& start = scene_.bodies[std::size_t(body)].def.pose;
+    return world_.pose(bodies_[std::size_t(body)]) * inverse_times(start, place);
+  };
+  def.anchor = carried(joint.a, def.anchor);
+  if (def.anchor_b) def.anchor_b = carried(joint.b, *def.anchor_b);
+  if (joint.a >= 0) {
+    const Quat start = scene_.bodies[std::size_t(joint.a)].def.pose.orientation;
+    const Quat now = world_.pose(bodies_[std::size_t(joint.a)]).orientation;
+    def.axis = rotate(now, rotate_inverse(start, def.axis));
+  }
+  // Zero of a hinge or slider is the pose in which it is made: the travel so far is taken off what refers to it.
+  const float travelled = world_.joint_reading(joints_[index]).position;
+  if (def.kind == JointKind::hinge || def.kind == JointKind::slider) {
+    if (def.limits) def.limits = Limits{def.limits->low - travelled, def.limits->high - travelled};
+    if (def.motor.target_position) *def.motor.target_position -= travelled;
+  }
+  // A rod keeps the length it had, and a spring its rest length.
+  if (def.kind == JointKind::distance && !def.length && (def.stiffness || (!def.min_length && !def.max_length))) {
+    def.length = float(lengths_[index]);
+  }
+  return joint;
+}
+
+Scene SceneRunner::final_scene() const {
+  Scene out = scene_;
+  for (std::size_t i = 0; i < out.bodies.size(); ++i) {
+    SceneBody& body = out.bodies[i];
+    const BodyId id = bodies_[i];
+    body.def.pose = world_.pose(id);
+    body.def.linear_velocity = world_.linear_velocity(id);
+    body.def.angular_velocity = world_.angular_velocity(id);
+    std::vector<SceneForce> left;
+    for (SceneForce force : body.forces) {
+      force.start = max(force.start - time(), min(force.start, 0.0));
+      force.end -= time();
+      if (force.end > 0.0) left.push_back(force);
+    }
+    body.forces = std::move(left);
+  }
+  out.joints.clear();
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    if (world_.exists(joints_[i])) out.joints.push_back(final_joint(i));
+  }
+  for (SceneMesh& mesh : out.meshes) mesh.file.clear();
+  return out;
+}
+
+}  // namespace gyre

@@ -1,0 +1,59 @@
+// Runs a scene: makes a world of it, applies its timed forces, knows the names behind the ids, and can write the present
+// state down as a scene again.
+#pragma once
+
+#include "scene/scene.h"
+#include "scene/scene_error.h"
+
+#include <gyre/world.h>
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gyre {
+
+class SceneRunner {
+ public:
+  // `file` is named in errors. Whatever the engine refuses is an error that names the place in the scene.
+  static SceneResult<SceneRunner> create(Scene scene, const std::string& file, int threads = 1);
+
+  // Applies the forces of this moment and moves the world on by the scene's time step. False when the state is no longer
+  // finite: then problem() says what happened, and to whom.
+  bool step();
+  const std::string& problem() const { return problem_; }
+
+  World& world() { return world_; }
+  const World& world() const { return world_; }
+  const Scene& scene() const { return scene_; }
+  std::uint64_t steps() const { return steps_; }
+  double time() const { return double(steps_) * scene_.world.time_step; }  // s
+
+  // In the order of the scene.
+  std::span<const BodyId> bodies() const { return bodies_; }
+  std::span<const JointId> joints() const { return joints_; }
+  // Null for the world or a body that is not of this scene.
+  const SceneBody* body_of(BodyId id) const;
+
+  // The scene as it stands now, to be simulated on: poses, velocities, what is left of the forces and of the joints.
+  // Meshes stand in it, so that it can lie in another folder.
+  Scene final_scene() const;
+
+ private:
+  SceneRunner(Scene scene, World world);
+  void apply_forces();
+  bool find_problem();
+  double present_length(const SceneJoint& joint) const;
+  SceneJoint final_joint(std::size_t index) const;
+
+  Scene scene_;
+  World world_;
+  std::vector<BodyId> bodies_;
+  std::vector<JointId> joints_;
+  std::vector<std::size_t> forced_;  // bodies with forces
+  std::vector<double> lengths_;      // of distance joints at the start
+  std::uint64_t steps_ = 0;
+  std::string problem_;
+};
+
+}  // namespace gyre

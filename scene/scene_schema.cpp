@@ -1,0 +1,513 @@
+// The JSON Schema (draft 2020-12) of a scene: the whole format, what this version of Gyre does not have yet included.
+// scenes/scene.schema.json is the same text; a test compares them.
+#include "scene/scene_schema.h"
+
+namespace gyre {
+namespace {
+
+// In parts, as some compilers limit the length of one literal.
+constexpr char kPart0[] = R"json({
+  "$schema": "https://json-schema.org/draft/2020-12/schema",
+  "title": "Gyre scene",
+  "description": "A scene of the physics engine Gyre. SI units (m, kg, s, rad, N, Pa); right-handed frame, y up; quaternions are [x, y, z, w].",
+  "type": "object",
+  "required": ["gyre_scene"],
+  "additionalProperties": false,
+  "properties": {
+    "gyre_scene": { "const": 1, "description": "version of the format" },
+    "name": { "type": "string" },
+    "world": { "$ref": "#/$defs/world" },
+    "materials": { "type": "object", "propertyNames": { "$ref": "#/$defs/name" }, "additionalProperties": { "$ref": "#/$defs/material" } },
+    "material_pairs": { "type": "array", "items": { "$ref": "#/$defs/material_pair" } },
+    "meshes": { "type": "object", "propertyNames": { "$ref": "#/$defs/name" }, "additionalProperties": { "$ref": "#/$defs/mesh" } },
+    "bodies": { "type": "array", "items": { "$ref": "#/$defs/body" } },
+    "joints": { "type": "array", "items": { "$ref": "#/$defs/joint" } },
+    "cloths": { "type": "array", "items": { "$ref": "#/$defs/cloth" } },
+    "ropes": { "type": "array", "items": { "$ref": "#/$defs/rope" } },
+    "soft_bodies": { "type": "array", "items": { "$ref": "#/$defs/soft_body" } },
+    "gases": { "type": "array", "items": { "$ref": "#/$defs/gas" } },
+    "liquids": { "type": "array", "items": { "$ref": "#/$defs/liquid" } },
+    "force_fields": { "type": "array", "items": { "$ref": "#/$defs/force_field" } }
+  },
+  "$defs": {
+    "name": { "type": "string", "minLength": 1, "maxLength": 1024 },
+    "positive": { "type": "number", "exclusiveMinimum": 0 },
+    "not_negative": { "type": "number", "minimum": 0 },
+    "factor": { "type": "number", "minimum": 0, "maximum": 1e6 },
+    "positive_or_null": { "type": ["number", "null"], "exclusiveMinimum": 0 },
+    "not_negative_or_null": { "type": ["number", "null"], "minimum": 0 },
+    "vector": { "type": "array", "items": { "type": "number" }, "minItems": 3, "maxItems": 3 },
+    "vector_or_null": { "type": ["array", "null"], "items": { "type": "number" }, "minItems": 3, "maxItems": 3 },
+    "box": { "type": "array", "items": { "$ref": "#/$defs/vector" }, "minItems": 2, "maxItems": 2, "description": "[lowest corner, highest corner]" },
+    "truth_values": { "type": "array", "items": { "type": "boolean" }, "minItems": 3, "maxItems": 3 },
+    "cells": { "type": "array", "items": { "type": "integer", "minimum": 1 }, "minItems": 3, "maxItems": 3 },
+    "index": { "type": "integer", "minimum": 0 },
+    "orientation": {
+      "anyOf": [
+        { "type": "array", "items": { "type": "number" }, "minItems": 4, "maxItems": 4, "description": "quaternion [x, y, z, w]" },
+        {
+          "type": "object",
+          "required": ["axis", "angle"],
+          "additionalProperties": false,
+          "properties": { "axis": { "$ref": "#/$defs/vector" }, "angle": { "type": "number", "description": "rad" } }
+        },
+        {
+          "type": "object",
+          "required": ["euler_xyz"],
+          "additionalProperties": false,
+          "properties": { "euler_xyz": { "$ref": "#/$defs/vector", "description": "intrinsic rotations about x, y and z, rad" } }
+        }
+      ]
+    },
+    "world": {
+      "type": "object",
+      "additionalProperties": false,
+      "properties": {
+        "gravity": { "$ref": "#/$defs/vector", "default": [0, -9.81, 0], "description": "m/s^2" },
+        "time_step": { "type": "number", "exclusiveMinimum": 0, "maximum": 1, "default": 0.016666667, "description": "s, one step" },
+        "substeps": { "type": "integer", "minimum": 1, "maximum": 64, "default": 4 },
+        "integrator": { "enum": ["explicit_euler", "semi_implicit_euler", "rk4", "verlet"], "default": "semi_implicit_euler" },
+        "solver": { "enum": ["soft_step", "sequential_impulses", "lcp"], "default": "soft_step" },
+        "broad_phase": {
+          "enum": ["bvh", "grid", "octree", "quadtree", "kd_tree", "bsp_tree", "sweep_and_prune", "brute_force"],
+          "default": "bvh"
+        },
+        "stepping": { "enum": ["fixed", "adaptive"], "default": "fixed", "description": "adaptive: advance to the times of impact" },
+        "sleeping": { "type": "boolean", "default": true }
+      }
+    },
+    "material": {
+      "type": "object",
+      "additionalProperties": false,
+      "description": "One friction given alone stands for both.",
+      "properties": {
+        "density": { "$ref": "#/$defs/not_negative_or_null", "default": 1000, "description": "kg/m^3" },
+        "static_friction": { "$ref": "#/$defs/not_negative_or_null", "default": 0.6 },
+        "dynamic_friction": { "$ref": "#/$defs/not_negative_or_null", "default": 0.6 },
+        "restitution": { "type": ["number", "null"], "minimum": 0, "maximum": 1, "default": 0 },
+        "rolling_friction": { "$ref": "#/$defs/not_negative_or_null", "default": 0, "description": "m" },
+        "spinning_friction": { "$ref": "#/$defs/not_negative_or_null", "default": 0, "description": "m" }
+      }
+    },
+    "material_pair": {
+      "type": "object",
+      "required": ["materials"],
+      "additionalProperties": false,
+      "description": "Overrides the combine rule for two materials; what is not given follows from the rule.",
+      "properties": {
+        "materials": { "type": "array", "items": { "type": "string" }, "minItems": 2, "maxItems": 2 },
+        "static_friction": { "$ref": "#/$defs/not_negative_or_null" },
+        "dynamic_friction": { "$ref": "#/$defs/not_negative_or_null" },
+        "restitution": { "type": ["number", "null"], "minimum": 0, "maximum": 1 }
+      }
+    },
+    "mesh": {
+      "anyOf": [
+        {
+          "type": "object",
+          "required": ["file"],
+          "additionalProperties": false,
+          "properties": {
+            "file": {
+              "type": "string",
+              "maxLength": 1024,
+              "description": "Wavefront OBJ, relative to the scene file and within its folder"
+            },
+            "vertices": { "type": "null" },
+            "triangles": { "type": "null" }
+          }
+        },
+        {
+          "type": "object",
+          "required": ["vertices", "triangles"],
+          "additionalProperties": false,
+          "properties": {
+            "vertices": { "type": "array", "items": { "$ref": "#/$defs/vector" }, "minItems": 3 },
+            "triangles": {
+              "type": "array",
+              "minItems": 1,
+              "items": { "type": "array", "items": { "$ref": "#/$defs/index" }, "minItems": 3, "maxItems": 3 },
+              "description": "counter-clockwise seen from outside"
+            }
+          }
+        }
+      ]
+    },
+    "body": {
+      "type": "object",
+      "required": ["name"],
+      "additionalProperties": false,
+      "properties": {
+        "name": { "$ref": "#/$defs/name", "description": "unique" },
+        "type": { "enum": ["static", "kinematic", "dynamic"], "default": "dynamic" },
+        "position": { "$ref": "#/$defs/vector", "default": [0, 0, 0], "description": "of the body's origin" },
+        "orientation": { "$ref": "#/$defs/orientation", "default": [0, 0, 0, 1] },
+        "linear_velocity": { "$ref": "#/$defs/vector", "default": [0, 0, 0], "description": "of the centre of mass" },
+        "angular_velocity": { "$ref": "#/$defs/vector", "default": [0, 0, 0], "description": "world frame" },
+        "linear_damping": { "$ref": "#/$defs/factor", "default": 0, "description": "1/s" },
+        "angular_damping": { "$ref": "#/$defs/factor", "default": 0, "description": "1/s" },
+        "gravity_scale": { "type": "number", "minimum": -1e6, "maximum": 1e6, "default": 1 },
+        "continuous": { "type": "boolean", "default": false, "description": "swept against moving bodies too" },
+        "can_sleep": { "type": "boolean", "default": true },
+        "locked": {
+          "type": "object",
+          "additionalProperties": false,
+          "properties": { "linear": { "$ref": "#/$defs/truth_values" }, "angular": { "$ref": "#/$defs/truth_values" } },
+          "description": "world axes along and about which the body does not move"
+        },
+        "mass": { "$ref": "#/$defs/positive_or_null", "default": null, "description": "overrides what the shapes give" },
+        "center_of_mass": { "$ref": "#/$defs/vector_or_null", "default": null, "description": "body frame" },
+        "inertia": {
+          "type": ["array", "null"],
+          "items": { "type": "number" },
+          "minItems": 6,
+          "maxItems": 6,
+          "default": null,
+          "description": "[xx, yy, zz, xy, xz, yz] about the centre of mass, body axes"
+        },
+        "filter": {
+          "type": "object",
+          "additionalProperties": false,
+          "properties": {
+            "layer": { "type": "integer", "minimum": 0, "maximum": 4294967295, "default": 1 },
+            "collides_with": { "type": "integer", "minimum": 0, "maximum": 4294967295, "default": 4294967295 },
+)json";
+
+constexpr char kPart1[] = R"json(            "group": { "type": "integer", "minimum": -2147483648, "maximum": 2147483647, "default": 0 }
+          }
+        },
+        "sensor": { "type": "boolean", "default": false, "description": "reports what overlaps it and touches nothing" },
+        "shapes": { "type": "array", "items": { "$ref": "#/$defs/shape" } },
+        "forces": { "type": "array", "items": { "$ref": "#/$defs/force" } }
+      }
+    },
+    "shape_common": {
+      "properties": {
+        "position": { "$ref": "#/$defs/vector", "default": [0, 0, 0], "description": "of the shape in the body" },
+        "orientation": { "$ref": "#/$defs/orientation", "default": [0, 0, 0, 1] },
+        "material": { "type": ["string", "null"], "description": "a name; values given in place win over the material's" },
+        "density": { "$ref": "#/$defs/not_negative_or_null" },
+        "static_friction": { "$ref": "#/$defs/not_negative_or_null" },
+        "dynamic_friction": { "$ref": "#/$defs/not_negative_or_null" },
+        "restitution": { "type": ["number", "null"], "minimum": 0, "maximum": 1 },
+        "rolling_friction": { "$ref": "#/$defs/not_negative_or_null" },
+        "spinning_friction": { "$ref": "#/$defs/not_negative_or_null" }
+      }
+    },
+    "round": {
+      "required": ["radius", "half_height"],
+      "properties": { "radius": { "$ref": "#/$defs/positive" }, "half_height": { "$ref": "#/$defs/positive" } }
+    },
+    "shape": {
+      "type": "object",
+      "required": ["type"],
+      "allOf": [{ "$ref": "#/$defs/shape_common" }],
+      "unevaluatedProperties": false,
+      "oneOf": [
+        {
+          "properties": { "type": { "const": "sphere" }, "radius": { "$ref": "#/$defs/positive" } },
+          "required": ["radius"]
+        },
+        {
+          "properties": {
+            "type": { "const": "box" },
+            "half_extents": { "type": "array", "items": { "$ref": "#/$defs/positive" }, "minItems": 3, "maxItems": 3 },
+            "rounding": { "$ref": "#/$defs/not_negative", "default": 0, "description": "at most the smallest half extent" }
+          },
+          "required": ["half_extents"]
+        },
+        {
+          "properties": {
+            "type": { "const": "capsule" },
+            "radius": { "$ref": "#/$defs/positive" },
+            "half_height": { "$ref": "#/$defs/not_negative", "description": "without the caps" }
+          },
+          "required": ["radius", "half_height"]
+        },
+        { "properties": { "type": { "const": "cylinder" } }, "$ref": "#/$defs/round" },
+        { "properties": { "type": { "const": "cone" } }, "$ref": "#/$defs/round" },
+        {
+          "properties": {
+            "type": { "const": "convex_hull" },
+            "points": { "type": "array", "items": { "$ref": "#/$defs/vector" }, "minItems": 4 },
+            "mesh": { "type": "null" }
+          },
+          "required": ["points"]
+        },
+        {
+          "properties": { "type": { "const": "convex_hull" }, "mesh": { "type": "string" }, "points": { "type": "null" } },
+          "required": ["mesh"]
+        },
+        {
+          "properties": { "type": { "const": "mesh" }, "mesh": { "type": "string" } },
+          "required": ["mesh"],
+          "description": "static and kinematic bodies"
+        },
+        {
+          "properties": {
+            "type": { "const": "convex_decomposition" },
+            "mesh": { "type": "string" },
+            "max_hulls": { "type": "integer", "minimum": 1, "default": 32 },
+            "concavity": { "$ref": "#/$defs/positive", "default": 0.02 }
+          },
+          "required": ["mesh"]
+        },
+        {
+          "properties": {
+            "type": { "const": "height_field" },
+            "size": {
+              "type": "array",
+              "items": { "type": "integer", "minimum": 2, "maximum": 65536 },
+              "minItems": 2,
+              "maxItems": 2,
+              "description": "samples along x and along z, centred on the shape's origin"
+            },
+            "spacing": { "$ref": "#/$defs/positive", "default": 1, "description": "m between samples" },
+            "heights": {
+              "type": "array",
+              "items": { "type": ["number", "null"] },
+              "minItems": 4,
+              "description": "row after row along x, rows along z; null makes a hole"
+            }
+          },
+          "required": ["size", "heights"],
+          "description": "static and kinematic bodies"
+        },
+        {
+          "properties": {
+            "type": { "const": "plane" },
+            "normal": { "$ref": "#/$defs/vector", "default": [0, 1, 0] },
+            "offset": { "type": "number", "default": 0 }
+          },
+          "description": "static and kinematic bodies"
+        }
+      ]
+    },
+    "force": {
+      "type": "object",
+      "additionalProperties": false,
+      "description": "Acts in every step that begins in [start, end).",
+      "properties": {
+        "force": { "$ref": "#/$defs/vector", "default": [0, 0, 0], "description": "N" },
+        "torque": { "$ref": "#/$defs/vector", "default": [0, 0, 0], "description": "N m" },
+        "at": { "$ref": "#/$defs/vector_or_null", "default": null, "description": "null: the centre of mass" },
+        "frame": { "enum": ["world", "body"], "default": "world", "description": "of force, torque and at" },
+        "start": { "type": "number", "default": 0, "description": "s" },
+        "end": { "type": "number", "default": 1e9, "description": "s" }
+      }
+    },
+    "motor": {
+      "type": ["object", "null"],
+      "additionalProperties": false,
+      "properties": {
+        "target_velocity": { "type": "number", "minimum": -1e6, "maximum": 1e6, "default": 0, "description": "rad/s or m/s" },
+        "target_position": { "type": ["number", "null"], "default": null, "description": "rad or m; makes it a spring to there" },
+        "max_force": { "$ref": "#/$defs/not_negative", "default": 0, "description": "N m or N" },
+        "frequency": { "$ref": "#/$defs/factor", "default": 0, "description": "Hz, of the spring" },
+        "damping_ratio": { "$ref": "#/$defs/factor", "default": 1 }
+      }
+    },
+    "joint": {
+      "type": "object",
+      "required": ["type", "a", "b"],
+      "additionalProperties": false,
+      "properties": {
+        "type": {
+          "enum": ["ball", "hinge", "slider", "fixed", "distance", "cone", "universal", "six_dof", "gear", "pulley", "wheel"]
+        },
+        "name": { "type": ["string", "null"], "minLength": 1, "maxLength": 1024 },
+        "a": { "type": "string", "description": "a body, or world" },
+        "b": { "type": "string", "description": "a body, or world" },
+        "anchor": { "$ref": "#/$defs/vector_or_null", "description": "world frame, at the start; distance: the point on a" },
+        "axis": { "$ref": "#/$defs/vector_or_null", "description": "world frame, at the start" },
+        "anchor_b": { "$ref": "#/$defs/vector_or_null", "description": "distance and pulley: the point on b; null: b's origin" },
+        "limits": {
+          "type": ["array", "null"],
+          "items": { "type": "number", "minimum": -1e9, "maximum": 1e9 },
+          "minItems": 2,
+          "maxItems": 2
+        },
+        "motor": { "$ref": "#/$defs/motor" },
+        "length": { "$ref": "#/$defs/not_negative_or_null", "description": "distance: of the rod, or the spring at rest" },
+        "min_length": { "$ref": "#/$defs/not_negative_or_null" },
+        "max_length": { "$ref": "#/$defs/not_negative_or_null" },
+        "stiffness": { "$ref": "#/$defs/not_negative_or_null", "description": "distance: N/m" },
+        "damping": { "$ref": "#/$defs/not_negative_or_null", "description": "distance: N s/m" },
+        "break_force": { "$ref": "#/$defs/positive_or_null", "description": "N" },
+        "break_torque": { "$ref": "#/$defs/positive_or_null", "description": "N m" },
+        "collide_connected": { "type": "boolean", "default": false }
+      },
+      "allOf": [
+        { "if": { "properties": { "type": { "enum": ["ball", "hinge"] } } }, "then": { "required": ["anchor"] } },
+        { "if": { "properties": { "type": { "enum": ["hinge", "slider"] } } }, "then": { "required": ["axis"] } }
+      ]
+    },
+    "cloth": {
+      "type": "object",
+      "required": ["name"],
+      "additionalProperties": false,
+      "properties": {
+        "name": { "$ref": "#/$defs/name" },
+        "mesh": { "type": "string" },
+        "grid": {
+          "type": "object",
+          "required": ["size", "cells"],
+          "additionalProperties": false,
+          "properties": {
+            "size": { "type": "array", "items": { "$ref": "#/$defs/positive" }, "minItems": 2, "maxItems": 2 },
+            "cells": { "type": "array", "items": { "type": "integer", "minimum": 1 }, "minItems": 2, "maxItems": 2 }
+          }
+        },
+        "position": { "$ref": "#/$defs/vector" },
+        "orientation": { "$ref": "#/$defs/orientation" },
+        "links": { "enum": ["springs", "rods", "membrane"] },
+)json";
+
+constexpr char kPart2[] = R"json(        "area_density": { "$ref": "#/$defs/positive" },
+        "stretch_stiffness": { "$ref": "#/$defs/not_negative" },
+        "shear_stiffness": { "$ref": "#/$defs/not_negative" },
+        "bend_stiffness": { "$ref": "#/$defs/not_negative" },
+        "damping": { "$ref": "#/$defs/not_negative" },
+        "thickness": { "$ref": "#/$defs/positive" },
+        "static_friction": { "$ref": "#/$defs/not_negative" },
+        "self_collision": { "type": "boolean" },
+        "pinned": { "type": "array", "items": { "$ref": "#/$defs/index" } },
+        "pinned_to": {
+          "type": "array",
+          "items": {
+            "type": "object",
+            "required": ["vertex", "body"],
+            "additionalProperties": false,
+            "properties": { "vertex": { "$ref": "#/$defs/index" }, "body": { "type": "string" } }
+          }
+        }
+      }
+    },
+    "rope": {
+      "type": "object",
+      "required": ["name", "points"],
+      "additionalProperties": false,
+      "properties": {
+        "name": { "$ref": "#/$defs/name" },
+        "points": { "type": "array", "items": { "$ref": "#/$defs/vector" }, "minItems": 2 },
+        "segments": { "type": "integer", "minimum": 1 },
+        "radius": { "$ref": "#/$defs/positive" },
+        "linear_density": { "$ref": "#/$defs/positive" },
+        "links": { "enum": ["springs", "rods"] },
+        "stretch_stiffness": { "$ref": "#/$defs/not_negative" },
+        "bend_stiffness": { "$ref": "#/$defs/not_negative" },
+        "attach": {
+          "type": "array",
+          "items": {
+            "type": "object",
+            "required": ["end", "body"],
+            "additionalProperties": false,
+            "properties": { "end": { "enum": [0, 1] }, "body": { "type": "string" } }
+          }
+        }
+      }
+    },
+    "soft_body": {
+      "type": "object",
+      "required": ["name"],
+      "additionalProperties": false,
+      "properties": {
+        "name": { "$ref": "#/$defs/name" },
+        "mesh": { "type": "string" },
+        "resolution": { "type": "integer", "minimum": 1 },
+        "vertices": { "type": "array", "items": { "$ref": "#/$defs/vector" } },
+        "tetrahedra": {
+          "type": "array",
+          "items": { "type": "array", "items": { "$ref": "#/$defs/index" }, "minItems": 4, "maxItems": 4 }
+        },
+        "box": {
+          "type": "object",
+          "required": ["half_extents", "cells"],
+          "additionalProperties": false,
+          "properties": { "half_extents": { "$ref": "#/$defs/vector" }, "cells": { "$ref": "#/$defs/cells" } }
+        },
+        "density": { "$ref": "#/$defs/positive" },
+        "young_modulus": { "$ref": "#/$defs/positive" },
+        "poisson_ratio": { "type": "number", "exclusiveMinimum": -1, "exclusiveMaximum": 0.5 },
+        "model": { "enum": ["linear", "corotated", "neo_hookean"] },
+        "damping": { "$ref": "#/$defs/not_negative" },
+        "position": { "$ref": "#/$defs/vector" },
+        "orientation": { "$ref": "#/$defs/orientation" },
+        "pinned_region": { "anyOf": [{ "type": "null" }, { "$ref": "#/$defs/box" }] }
+      }
+    },
+    "gas": {
+      "type": "object",
+      "required": ["name", "bounds", "cells"],
+      "additionalProperties": false,
+      "properties": {
+        "name": { "$ref": "#/$defs/name" },
+        "bounds": { "$ref": "#/$defs/box" },
+        "cells": { "$ref": "#/$defs/cells" },
+        "buoyancy": { "type": "number" },
+        "vorticity": { "$ref": "#/$defs/not_negative" },
+        "viscosity": { "$ref": "#/$defs/not_negative" },
+        "boundary": { "enum": ["open", "closed"] },
+        "emitters": {
+          "type": "array",
+          "items": {
+            "type": "object",
+            "required": ["position", "radius"],
+            "additionalProperties": false,
+            "properties": {
+              "position": { "$ref": "#/$defs/vector" },
+              "radius": { "$ref": "#/$defs/positive" },
+              "density": { "$ref": "#/$defs/not_negative" },
+              "temperature": { "$ref": "#/$defs/not_negative" },
+              "velocity": { "$ref": "#/$defs/vector" }
+            }
+          }
+        }
+      }
+    },
+    "liquid": {
+      "type": "object",
+      "required": ["name", "bounds", "cell_size"],
+      "additionalProperties": false,
+      "properties": {
+        "name": { "$ref": "#/$defs/name" },
+        "bounds": { "$ref": "#/$defs/box" },
+        "cell_size": { "$ref": "#/$defs/positive" },
+        "density": { "$ref": "#/$defs/positive" },
+        "viscosity": { "$ref": "#/$defs/not_negative" },
+        "surface_tension": { "$ref": "#/$defs/not_negative" },
+        "fill": {
+          "type": "array",
+          "items": {
+            "type": "object",
+            "required": ["box"],
+            "additionalProperties": false,
+            "properties": { "box": { "$ref": "#/$defs/box" } }
+          }
+        }
+      }
+    },
+    "force_field": {
+      "type": "object",
+      "required": ["type"],
+      "additionalProperties": false,
+      "properties": {
+        "type": { "enum": ["wind", "radial", "vortex", "drag"] },
+        "velocity": { "$ref": "#/$defs/vector" },
+        "turbulence": { "$ref": "#/$defs/not_negative" },
+        "bounds": { "anyOf": [{ "type": "null" }, { "$ref": "#/$defs/box" }] }
+      }
+    }
+  }
+}
+)json";
+
+}  // namespace
+
+std::string scene_schema() {
+  std::string out;
+  for (const char* part : {kPart0, kPart1, kPart2}) out += part;
+  return out;
+}
+
+}  // namespace gyre

@@ -1,0 +1,10 @@
+// The JSON Schema of a scene file.
+#pragma once
+
+#include <string>
+
+namespace gyre {
+
+std::string scene_schema();
+
+}  // namespace gyre

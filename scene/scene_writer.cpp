@@ -1,0 +1,304 @@
+// Scenes to scene files. See scene_writer.h.
+#include "scene/scene_writer.h"
+
+#include "scene/json_writer.h"
+
+namespace gyre {
+namespace {
+
+constexpr JsonLayout kOneLine = JsonLayout::one_line;
+
+// Writes the member only if it differs from what its absence means.
+template <class T>
+void unless_default(JsonWriter& json, const char* key, const T& value, const T& otherwise) {
+  if (!(value == otherwise)) json.field(key, value);
+}
+
+template <class T>
+void if_given(JsonWriter& json, const char* key, const std::optional<T>& value) {
+  if (value) json.field(key, *value);
+}
+
+void write_world(JsonWriter& json, const SceneWorld& world) {
+  json.key("world").begin_object();
+  json.field("gravity", world.gravity);
+  json.field("time_step", world.time_step);
+  json.field("substeps", world.substeps);
+  if (world.broad_phase == BroadPhaseKind::brute_force) json.field("broad_phase", "brute_force");
+  unless_default(json, "sleeping", world.sleeping, true);
+  json.end_object();
+}
+
+void write_material(JsonWriter& json, const SceneMaterial& material) {
+  json.key(material.name).begin_object(kOneLine);
+  json.field("density", material.density);
+  json.field("static_friction", material.surface.static_friction);
+  json.field("dynamic_friction", material.surface.dynamic_friction);
+  json.field("restitution", material.surface.restitution);
+  unless_default(json, "rolling_friction", material.surface.rolling_friction, 0.0f);
+  unless_default(json, "spinning_friction", material.surface.spinning_friction, 0.0f);
+  json.end_object();
+}
+
+void write_material_pair(JsonWriter& json, const Scene& scene, const SceneMaterialPair& pair) {
+  json.begin_object(kOneLine);
+  json.key("materials").begin_array(kOneLine);
+  json.value(scene.materials[std::size_t(pair.a)].name);
+  json.value(scene.materials[std::size_t(pair.b)].name);
+  json.end_array();
+  if_given(json, "static_friction", pair.static_friction);
+  if_given(json, "dynamic_friction", pair.dynamic_friction);
+  if_given(json, "restitution", pair.restitution);
+  json.end_object();
+}
+
+void write_points(JsonWriter& json, const char* key, const std::vector<Vec3>& points) {
+  json.key(key).begin_array();
+  for (const Vec3& point : points) json.value(point);
+  json.end_array();
+}
+
+void write_mesh(JsonWriter& json, const SceneMesh& mesh, const WriteOptions& options) {
+  json.key(mesh.name);
+  if (!mesh.file.empty() && !options.inline_meshes) {
+    json.begin_object(kOneLine);
+    json.field("file", mesh.file);
+    json.end_object();
+    return;
+  }
+  json.begin_object();
+  write_points(json, "vertices", mesh.vertices);
+  json.key("triangles").begin_array();
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    json.begin_array(kOneLine);
+    for (std::size_t k = 0; k < 3; ++k) json.value(std::int64_t(mesh.indices[i + k]));
+    json.end_array();
+  }
+  json.end_array();
+  json.end_object();
+}
+
+struct GeometryWriter {
+  JsonWriter& json;
+  const Scene& scene;
+
+  void operator()(const Sphere& s) const {
+    json.field("type", "sphere");
+    json.field("radius", s.radius);
+  }
+  void operator()(const Box& s) const {
+    json.field("type", "box");
+    json.field("half_extents", s.half_extents);
+    unless_default(json, "rounding", s.rounding, 0.0f);
+  }
+  void operator()(const Capsule& s) const { round("capsule", s.radius, s.half_height); }
+  void operator()(const Cylinder& s) const { round("cylinder", s.radius, s.half_height); }
+  void operator()(const Cone& s) const { round("cone", s.radius, s.half_height); }
+  void operator()(const Plane& s) const {
+    json.field("type", "plane");
+    json.field("normal", s.normal);
+    json.field("offset", s.offset);
+  }
+  void operator()(const SceneHull& s) const {
+    json.field("type", "convex_hull");
+    if (s.mesh >= 0) {
+      json.field("mesh", scene.meshes[std::size_t(s.mesh)].name);
+      return;
+    }
+    json.key("points").begin_array(kOneLine);
+    for (const Vec3& point : s.points) json.value(point);
+    json.end_array();
+  }
+  void operator()(const SceneTriangles& s) const {
+    json.field("type", "mesh");
+    json.field("mesh", scene.meshes[std::size_t(s.mesh)].name);
+  }
+  void operator()(const SceneHeightField& s) const {
+    json.field("type", "height_field");
+    json.key("size").begin_array(kOneLine);
+    json.value(std::int64_t(s.columns));
+    json.value(std::int64_t(s.rows));
+    json.end_array();
+    json.field("spacing", s.spacing);
+    json.key("heights").begin_array(kOneLine);
+    for (const float height : s.heights) json.value(height);  // NaN, a hole, becomes null
+    json.end_array();
+  }
+  void round(const char* type, float radius, float half_height) const {
+    json.field("type", type);
+    json.field("radius", radius);
+    json.field("half_height", half_height);
+  }
+};
+
+void write_shape(JsonWriter& json, const Scene& scene, const SceneShape& shape) {
+  json.begin_object(kOneLine);
+  std::visit(GeometryWriter{json, scene}, shape.geometry);
+  unless_default(json, "position", shape.local.position, Vec3{});
+  unless_default(json, "orientation", shape.local.orientation, Quat{});
+  if (shape.material >= 0) json.field("material", scene.materials[std::size_t(shape.material)].name);
+  if_given(json, "density", shape.density);
+  if_given(json, "static_friction", shape.static_friction);
+  if_given(json, "dynamic_friction", shape.dynamic_friction);
+  if_given(json, "restitution", shape.restitution);
+  if_given(json, "rolling_friction", shape.rolling_friction);
+  if_given(json, "spinning_friction", shape.spinning_friction);
+  json.end_object();
+}
+
+void write_force(JsonWriter& json, const SceneForce& force) {
+  json.begin_object(kOneLine);
+  unless_default(json, "force", force.force, Vec3{});
+  unless_default(json, "torque", force.torque, Vec3{});
+  if_given(json, "at", force.at);
+  if (force.in_body_frame) json.field("frame", "body");
+  unless_default(json, "start", force.start, 0.0);
+  unless_default(json, "end", force.end, 1.0e9);
+  json.end_object();
+}
+
+void write_axes(JsonWriter& json, const char* key, const bool (&axes)[3]) {
+  json.key(key).begin_array(kOneLine);
+  for (const bool axis : axes) json.value(axis);
+  json.end_array();
+}
+
+void write_motion(JsonWriter& json, const BodyDef& def) {
+  json.field("position", def.pose.position);
+  unless_default(json, "orientation", def.pose.orientation, Quat{});
+  unless_default(json, "linear_velocity", def.linear_velocity, Vec3{});
+  unless_default(json, "angular_velocity", def.angular_velocity, Vec3{});
+  unless_default(json, "linear_damping", def.linear_damping, 0.0f);
+  unless_default(json, "angular_damping", def.angular_damping, 0.0f);
+  unless_default(json, "gravity_scale", def.gravity_scale, 1.0f);
+  unless_default(json, "continuous", def.continuous, false);
+  unless_default(json, "can_sleep", def.can_sleep, true);
+  if (!(def.locked == LockedAxes{})) {
+    json.key("locked").begin_object(kOneLine);
+    write_axes(json, "linear", def.locked.linear);
+    write_axes(json, "angular", def.locked.angular);
+    json.end_object();
+  }
+  if_given(json, "mass", def.mass);
+  if_given(json, "center_of_mass", def.center_of_mass);
+  if_given(json, "inertia", def.inertia);
+}
+
+void write_body(JsonWriter& json, const Scene& scene, const SceneBody& body) {
+  json.begin_object();
+  json.field("name", body.name);
+  if (body.def.type != BodyType::dynamic) {
+    json.field("type", body.def.type == BodyType::fixed ? "static" : "kinematic");
+  }
+  write_motion(json, body.def);
+  if (!(body.filter == Filter{})) {
+    json.key("filter").begin_object(kOneLine);
+    json.field("layer", std::int64_t(body.filter.layer));
+    json.field("collides_with", std::int64_t(body.filter.collides_with));
+    json.field("group", std::int64_t(body.filter.group));
+    json.end_object();
+  }
+  unless_default(json, "sensor", body.sensor, false);
+  json.key("shapes").begin_array();
+  for (const SceneShape& shape : body.shapes) write_shape(json, scene, shape);
+  json.end_array();
+  if (!body.forces.empty()) {
+    json.key("forces").begin_array();
+    for (const SceneForce& force : body.forces) write_force(json, force);
+    json.end_array();
+  }
+  json.end_object();
+}
+
+const char* joint_word(JointKind kind) {
+  switch (kind) {
+    case JointKind::ball: return "ball";
+    case JointKind::hinge: return "hinge";
+    case JointKind::slider: return "slider";
+    case JointKind::fixed: return "fixed";
+    case JointKind::distance: return "distance";
+  }
+  return "ball";
+}
+
+void write_travel(JsonWriter& json, const JointDef& def) {
+  if (def.limits) {
+    json.key("limits").begin_array(kOneLine);
+    json.value(def.limits->low);
+    json.value(def.limits->high);
+    json.end_array();
+  }
+  const Motor& motor = def.motor;
+  const Motor none;
+  if (motor.target_velocity == none.target_velocity && !motor.target_position && motor.max_force == none.max_force &&
+      motor.frequency == none.frequency && motor.damping_ratio == none.damping_ratio) {
+    return;
+  }
+  json.key("motor").begin_object(kOneLine);
+  unless_default(json, "target_velocity", motor.target_velocity, none.target_velocity);
+  if_given(json, "target_position", motor.target_position);
+  json.field("max_force", motor.max_force);
+  unless_default(json, "frequency", motor.frequency, none.frequency);
+  unless_default(json, "damping_ratio", motor.damping_ratio, none.damping_ratio);
+  json.end_object();
+}
+
+void write_joint(JsonWriter& json, const Scene& scene, const SceneJoint& joint) {
+  const JointDef& def = joint.def;
+  const auto end = [&](int body) { return body < 0 ? std::string("world") : scene.bodies[std::size_t(body)].name; };
+  json.begin_object();
+  json.field("type", joint_word(def.kind));
+  if (!joint.name.empty()) json.field("name", joint.name);
+  json.field("a", end(joint.a));
+  json.field("b", end(joint.b));
+  json.field("anchor", def.anchor);
+  if (def.kind == JointKind::hinge || def.kind == JointKind::slider) json.field("axis", def.axis);
+  if_given(json, "anchor_b", def.anchor_b);
+  write_travel(json, def);
+  if_given(json, "length", def.length);
+  if_given(json, "min_length", def.min_length);
+  if_given(json, "max_length", def.max_length);
+  if_given(json, "stiffness", def.stiffness);
+  if_given(json, "damping", def.damping);
+  if_given(json, "break_force", def.break_force);
+  if_given(json, "break_torque", def.break_torque);
+  unless_default(json, "collide_connected", def.collide_connected, false);
+  json.end_object();
+}
+
+}  // namespace
+
+std::string write_scene(const Scene& scene, const WriteOptions& options) {
+  JsonWriter json;
+  json.begin_object();
+  json.field("gyre_scene", 1);
+  if (!scene.name.empty()) json.field("name", scene.name);
+  write_world(json, scene.world);
+  if (!scene.materials.empty()) {
+    json.key("materials").begin_object();
+    for (const SceneMaterial& material : scene.materials) write_material(json, material);
+    json.end_object();
+  }
+  if (!scene.material_pairs.empty()) {
+    json.key("material_pairs").begin_array();
+    for (const SceneMaterialPair& pair : scene.material_pairs) write_material_pair(json, scene, pair);
+    json.end_array();
+  }
+  if (!scene.meshes.empty()) {
+    json.key("meshes").begin_object();
+    for (const SceneMesh& mesh : scene.meshes) write_mesh(json, mesh, options);
+    json.end_object();
+  }
+  json.key("bodies").begin_array();
+  for (const SceneBody& body : scene.bodies) write_body(json, scene, body);
+  json.end_array();
+  if (!scene.joints.empty()) {
+    json.key("joints").begin_array();
+    for (const SceneJoint& joint : scene.joints) write_joint(json, scene, joint);
+    json.end_array();
+  }
+  json.end_object();
+  return json.take();
+}
+
+}  // namespace gyre

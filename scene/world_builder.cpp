@@ -1,0 +1,194 @@
+// Fills a world with what a scene describes. See world_builder.h.
+#include "scene/world_builder.h"
+
+#include <cmath>
+
+namespace gyre {
+namespace {
+
+std::string pointer_to(const char* section, std::size_t index) {
+  return std::string("/") + section + "/" + std::to_string(index);
+}
+std::string shape_pointer(std::size_t body, std::size_t shape) {
+  return pointer_to("bodies", body) + "/shapes/" + std::to_string(shape);
+}
+
+template <class... Ts>
+struct Overloaded : Ts... {
+  using Ts::operator()...;
+};
+template <class... Ts>
+Overloaded(Ts...) -> Overloaded<Ts...>;
+
+}  // namespace
+
+bool WorldBuilder::build() {
+  mesh_cache_.resize(scene_.meshes.size());
+  hull_cache_.resize(scene_.meshes.size());
+  return add_pairs() && add_bodies() && add_joints();
+}
+
+bool WorldBuilder::fail(std::string pointer, std::string message) {
+  error_ = SceneError{file_, 0, 0, std::move(pointer), std::move(message)};
+  return false;
+}
+
+std::string WorldBuilder::last_refusal() const {
+  const std::span<const Problem> problems = world_.problems();
+  return problems.empty() ? "the engine refuses it" : problems.back().message;
+}
+
+bool WorldBuilder::add_pairs() {
+  for (std::size_t i = 0; i < scene_.material_pairs.size(); ++i) {
+    const SceneMaterialPair& pair = scene_.material_pairs[i];
+    const Material& a = scene_.materials[std::size_t(pair.a)].surface;
+    const Material& b = scene_.materials[std::size_t(pair.b)].surface;
+    // What the pair does not say follows from the two materials as it would without the pair.
+    const MaterialPair made{std::uint16_t(pair.a + 1), std::uint16_t(pair.b + 1),
+                            pair.static_friction.value_or(std::sqrt(a.static_friction * b.static_friction)),
+                            pair.dynamic_friction.value_or(std::sqrt(a.dynamic_friction * b.dynamic_friction)),
+                            pair.restitution.value_or(max(a.restitution, b.restitution))};
+    if (!world_.set_material_pair(made)) return fail(pointer_to("material_pairs", i), last_refusal());
+  }
+  return true;
+}
+
+Material WorldBuilder::surface_of(const SceneShape& shape) const {
+  Material out;
+  if (shape.material >= 0) {
+    out = scene_.materials[std::size_t(shape.material)].surface;
+    out.id = std::uint16_t(shape.material + 1);
+  }
+  // One friction alone stands for both, unless the material already says what the other is.
+  const bool alone = shape.material < 0;
+  if (shape.static_friction) {
+    out.static_friction = *shape.static_friction;
+    out.dynamic_friction = alone ? *shape.static_friction : min(out.dynamic_friction, *shape.static_friction);
+  }
+  if (shape.dynamic_friction) {
+    out.dynamic_friction = *shape.dynamic_friction;
+    if (!shape.static_friction) {
+      out.static_friction = alone ? *shape.dynamic_friction : max(out.static_friction, *shape.dynamic_friction);
+    }
+  }
+  if (shape.restitution) out.restitution = *shape.restitution;
+  if (shape.rolling_friction) out.rolling_friction = *shape.rolling_friction;
+  if (shape.spinning_friction) out.spinning_friction = *shape.spinning_friction;
+  return out;
+}
+
+bool WorldBuilder::cook(const SceneHull& hull, const std::string& pointer, Geometry& out) {
+  if (hull.mesh >= 0 && hull_cache_[std::size_t(hull.mesh)]) {
+    out = hull_cache_[std::size_t(hull.mesh)];
+    return true;
+  }
+  const std::vector<Vec3>& points = hull.mesh >= 0 ? scene_.meshes[std::size_t(hull.mesh)].vertices : hull.points;
+  Result<Geometry> made = cook_hull(points);
+  if (!made) return fail(pointer + (hull.mesh >= 0 ? "/mesh" : "/points"), made.error().message);
+  out = *made;
+  if (hull.mesh >= 0) hull_cache_[std::size_t(hull.mesh)] = out;
+  return true;
+}
+
+bool WorldBuilder::cook(const SceneTriangles& mesh, const std::string& pointer, Geometry& out) {
+  Geometry& cached = mesh_cache_[std::size_t(mesh.mesh)];
+  if (!cached) {
+    const SceneMesh& data = scene_.meshes[std::size_t(mesh.mesh)];
+    MeshDef def;
+    def.vertices = data.vertices;
+    def.indices = data.indices;
+    Result<Geometry> made = cook_mesh(def);
+    if (!made) return fail(pointer + "/mesh", made.error().message);
+    cached = *made;
+  }
+  out = cached;
+  return true;
+}
+
+bool WorldBuilder::cook(const SceneHeightField& field, const std::string& pointer, Geometry& out) {
+  HeightFieldDef def;
+  def.heights = field.heights;
+  def.columns = field.columns;
+  def.rows = field.rows;
+  def.spacing = field.spacing;
+  Result<Geometry> made = cook_height_field(def);
+  if (!made) return fail(pointer + "/heights", made.error().message);
+  out = *made;
+  return true;
+}
+
+bool WorldBuilder::make_shape(std::size_t body, std::size_t index, ShapeDef& out) {
+  const SceneShape& shape = scene_.bodies[body].shapes[index];
+  const std::string pointer = shape_pointer(body, index);
+  const auto cooked = [&](const auto& source) {
+    Geometry geometry;
+    if (!cook(source, pointer, geometry)) return false;
+    out.geometry = geometry;
+    return true;
+  };
+  const bool made = std::visit(Overloaded{
+                                   [&](const SceneHull& hull) { return cooked(hull); },
+                                   [&](const SceneTriangles& mesh) { return cooked(mesh); },
+                                   [&](const SceneHeightField& field) { return cooked(field); },
+                                   [&](const auto& simple) {
+                                     out.geometry = simple;
+                                     return true;
+                                   },
+                               },
+                               shape.geometry);
+  if (!made) return false;
+  out.local = shape.local;
+  out.density = shape.material >= 0 ? scene_.materials[std::size_t(shape.material)].density : 1000.0f;
+  if (shape.density) out.density = *shape.density;
+  out.material = surface_of(shape);
+  out.filter = scene_.bodies[body].filter;
+  out.sensor = scene_.bodies[body].sensor;
+  return true;
+}
+
+// Finds out which part of a refused body the engine does not take, by trying the parts alone in an empty world.
+bool WorldBuilder::blame(std::size_t body, const BodyDef& def, const std::vector<ShapeDef>& shapes) {
+  const std::string why = last_refusal();
+  const std::string pointer = pointer_to("bodies", body);
+  Result<World> scratch = World::create();
+  if (!scratch) return fail(pointer, why);
+  BodyDef bare;
+  bare.type = def.type;
+  const BodyId carrier = scratch->add_body(bare);
+  for (std::size_t i = 0; carrier && i < shapes.size(); ++i) {
+    if (!scratch->add_shape(carrier, shapes[i])) return fail(shape_pointer(body, i), why);
+  }
+  return fail(pointer, why);
+}
+
+bool WorldBuilder::add_bodies() {
+  std::vector<ShapeDef> shapes;
+  for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+    const SceneBody& body = scene_.bodies[i];
+    shapes.assign(body.shapes.size(), {});
+    for (std::size_t k = 0; k < shapes.size(); ++k) {
+      if (!make_shape(i, k, shapes[k])) return false;
+    }
+    BodyDef def = body.def;
+    def.user_data = i;
+    const BodyId id = world_.add_body(def, shapes);
+    if (!id) return blame(i, def, shapes);
+    bodies_.push_back(id);
+  }
+  return true;
+}
+
+bool WorldBuilder::add_joints() {
+  for (std::size_t i = 0; i < scene_.joints.size(); ++i) {
+    const SceneJoint& joint = scene_.joints[i];
+    JointDef def = joint.def;
+    if (joint.a >= 0) def.a = bodies_[std::size_t(joint.a)];
+    if (joint.b >= 0) def.b = bodies_[std::size_t(joint.b)];
+    const JointId id = world_.add_joint(def);
+    if (!id) return fail(pointer_to("joints", i), last_refusal());
+    joints_.push_back(id);
+  }
+  return true;
+}
+
+}  // namespace gyre

@@ -1,0 +1,45 @@
+// Fills a world with what a scene describes. What the engine refuses becomes an error that names the place in the scene.
+#pragma once
+
+#include "scene/scene.h"
+#include "scene/scene_error.h"
+
+#include <gyre/world.h>
+
+#include <string>
+#include <vector>
+
+namespace gyre {
+
+class WorldBuilder {
+ public:
+  WorldBuilder(const Scene& scene, World& world, const std::string& file) : scene_(scene), world_(world), file_(file) {}
+
+  bool build();
+  const SceneError& error() const { return error_; }
+  std::vector<BodyId> take_bodies() { return std::move(bodies_); }
+  std::vector<JointId> take_joints() { return std::move(joints_); }
+
+ private:
+  bool fail(std::string pointer, std::string message);
+  std::string last_refusal() const;
+  bool add_pairs();
+  bool add_bodies();
+  bool add_joints();
+  bool make_shape(std::size_t body, std::size_t shape, ShapeDef& out);
+  bool cook(const SceneHull& hull, const std::string& pointer, Geometry& out);
+  bool cook(const SceneTriangles& mesh, const std::string& pointer, Geometry& out);
+  bool cook(const SceneHeightField& field, const std::string& pointer, Geometry& out);
+  Material surface_of(const SceneShape& shape) const;
+  bool blame(std::size_t body, const BodyDef& def, const std::vector<ShapeDef>& shapes);
+
+  const Scene& scene_;
+  World& world_;
+  const std::string& file_;
+  SceneError error_;
+  std::vector<BodyId> bodies_;
+  std::vector<JointId> joints_;
+  std::vector<Geometry> mesh_cache_, hull_cache_;  // by mesh
+};
+
+}  // namespace gyre
