@@ -32,12 +32,14 @@ Vec3 cell_normal(const HeightField& field, std::uint32_t column, std::uint32_t r
 }  // namespace
 
 bool is_solid_cell(const HeightField& field, std::int64_t column, std::int64_t row) {
-  if (column < 0 || row < 0 || column >= std::int64_t(field.cell_columns()) || row >= std::int64_t(field.cell_rows())) {
+  if (column < 0 || row < 0 || column >= std::int64_t(field.cell_columns()) ||
+      row >= std::int64_t(field.cell_rows())) {
     return false;
   }
   const std::uint32_t c = std::uint32_t(column), r = std::uint32_t(row);
   // A NaN in any of the four makes the sum one; infinite heights are refused when cooking.
-  return is_finite(field.height(c, r) + field.height(c + 1, r) + field.height(c, r + 1) + field.height(c + 1, r + 1));
+  return is_finite(field.height(c, r) + field.height(c + 1, r) + field.height(c, r + 1) +
+                   field.height(c + 1, r + 1));
 }
 
 TriangleView view_triangle(const HeightField& field, std::uint32_t triangle) {
@@ -58,18 +60,20 @@ TriangleView view_triangle(const HeightField& field, std::uint32_t triangle) {
                       kEdgeDirection[half][i];
   }
   for (int i = 0; i < 3; ++i) {
-    const std::int64_t c = std::int64_t(column) + kBeyondColumn[half][i], r = std::int64_t(row) + kBeyondRow[half][i];
+    const std::int64_t c = std::int64_t(column) + kBeyondColumn[half][i],
+                       r = std::int64_t(row) + kBeyondRow[half][i];
     view.neighbor_normal[i] = view.normal;
     view.edge[i] = EdgeKind::open;
     if (!is_solid_cell(field, c, r)) continue;
     view.neighbor_normal[i] = cell_normal(field, std::uint32_t(c), std::uint32_t(r), 1 - half);
-    view.edge[i] =
-        classify_edge(view.normal, view.neighbor_normal[i], view.v[next_corner(i)] - view.v[i], field.flat_angle);
+    view.edge[i] = classify_edge(view.normal, view.neighbor_normal[i], view.v[next_corner(i)] - view.v[i],
+                                 field.flat_angle);
   }
   return view;
 }
 
-bool in_normal_cone(const HeightField& field, std::uint32_t triangle, int corner, Vec3 direction, float tolerance) {
+bool in_normal_cone(const HeightField& field, std::uint32_t triangle, int corner, Vec3 direction,
+                    float tolerance) {
   const std::uint32_t cell = triangle / 2;
   const int half = int(triangle & 1);
   const std::uint32_t column = cell % field.cell_columns() + kCornerColumn[half][corner];
@@ -84,7 +88,9 @@ bool in_normal_cone(const HeightField& field, std::uint32_t triangle, int corner
   }
   for (int k = 0; k < 6; ++k) {
     if (!solid[k] && !solid[(k + 5) % 6]) continue;
-    const Vec3 along = field.sample(std::uint32_t(int(column) + kAround[k][0]), std::uint32_t(int(row) + kAround[k][1])) - apex;
+    const Vec3 along =
+        field.sample(std::uint32_t(int(column) + kAround[k][0]), std::uint32_t(int(row) + kAround[k][1])) -
+        apex;
     if (dot(direction, along) > tolerance * length(along)) return false;
   }
   return true;
@@ -95,7 +101,8 @@ Aabb block_box(const HeightField& field, HeightBlock block) {
   float low = 0.0f, high = 0.0f;
   if (block.level < 0) {
     const float a = field.height(block.column, block.row), b = field.height(block.column + 1, block.row);
-    const float c = field.height(block.column, block.row + 1), d = field.height(block.column + 1, block.row + 1);
+    const float c = field.height(block.column, block.row + 1),
+                d = field.height(block.column + 1, block.row + 1);
     low = min(min(a, b), min(c, d));
     high = max(max(a, b), max(c, d));
   } else {
@@ -109,7 +116,8 @@ Aabb block_box(const HeightField& field, HeightBlock block) {
   const std::uint32_t end_column = min(column + (1u << shift), field.cell_columns());
   const std::uint32_t end_row = min(row + (1u << shift), field.cell_rows());
   return {{field.origin.x + float(column) * field.spacing, low, field.origin.z + float(row) * field.spacing},
-          {field.origin.x + float(end_column) * field.spacing, high, field.origin.z + float(end_row) * field.spacing}};
+          {field.origin.x + float(end_column) * field.spacing, high,
+           field.origin.z + float(end_row) * field.spacing}};
 }
 
 std::uint32_t first_triangle(const HeightField& field, HeightBlock block) {
@@ -131,8 +139,10 @@ CellRange cells_under(const HeightField& field, const Aabb& box) {
   const auto cell = [&](float value, float origin, double slack) {
     return (double(value) - double(origin)) / double(field.spacing) + slack;
   };
-  const double low_column = cell(box.low.x, field.origin.x, -kSlack), high_column = cell(box.high.x, field.origin.x, kSlack);
-  const double low_row = cell(box.low.z, field.origin.z, -kSlack), high_row = cell(box.high.z, field.origin.z, kSlack);
+  const double low_column = cell(box.low.x, field.origin.x, -kSlack),
+               high_column = cell(box.high.x, field.origin.x, kSlack);
+  const double low_row = cell(box.low.z, field.origin.z, -kSlack),
+               high_row = cell(box.high.z, field.origin.z, kSlack);
   const double columns = double(field.cell_columns()), rows = double(field.cell_rows());
   if (!(high_column >= 0.0 && low_column <= columns && high_row >= 0.0 && low_row <= rows)) return {};
   CellRange range;

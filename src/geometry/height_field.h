@@ -34,15 +34,17 @@ struct HeightField {
   std::uint32_t columns = 0;   // samples
   std::uint32_t rows = 0;
   float spacing = 1.0f;
-  Vec3 origin;                 // of sample (0, 0), at height 0
-  float flat_angle = 0.0f;     // rad: what rounding of the heights can make of one plane
+  Vec3 origin;                             // of sample (0, 0), at height 0
+  float flat_angle = 0.0f;                 // rad: what rounding of the heights can make of one plane
   std::vector<std::uint8_t> flat_samples;  // one bit a sample: six triangles around it, all in one plane
   Aabb box;
-  std::vector<Level> levels;   // from fine to coarse; the last has one block
+  std::vector<Level> levels;  // from fine to coarse; the last has one block
 
   std::uint32_t cell_columns() const { return columns - 1; }
   std::uint32_t cell_rows() const { return rows - 1; }
-  float height(std::uint32_t column, std::uint32_t row) const { return heights[std::size_t(row) * columns + column]; }
+  float height(std::uint32_t column, std::uint32_t row) const {
+    return heights[std::size_t(row) * columns + column];
+  }
   Vec3 sample(std::uint32_t column, std::uint32_t row) const {
     return {origin.x + float(column) * spacing, height(column, row), origin.z + float(row) * spacing};
   }
@@ -54,7 +56,8 @@ bool is_solid_cell(const HeightField& field, std::int64_t column, std::int64_t r
 TriangleView view_triangle(const HeightField& field, std::uint32_t triangle);
 // As for a mesh: whether no edge around this corner of the triangle climbs along `direction` (unit) by more than the sine
 // `tolerance`.
-bool in_normal_cone(const HeightField& field, std::uint32_t triangle, int corner, Vec3 direction, float tolerance);
+bool in_normal_cone(const HeightField& field, std::uint32_t triangle, int corner, Vec3 direction,
+                    float tolerance);
 
 // A block of cells: of level -1 it is one cell.
 struct HeightBlock {
@@ -103,13 +106,15 @@ void walk_cells(const HeightField& field, const Aabb& box, Enter&& enter, Visit&
     if (!(heights.low <= box.high.y && box.low.y <= heights.high) || !enter(block)) continue;
     if (block.level == 0) {
       for (std::uint32_t r = max(row, range.low_row); r <= min(last_row, range.high_row); ++r) {
-        for (std::uint32_t c = max(column, range.low_column); c <= min(last_column, range.high_column); ++c) visit(c, r);
+        for (std::uint32_t c = max(column, range.low_column); c <= min(last_column, range.high_column); ++c)
+          visit(c, r);
       }
       continue;
     }
     const HeightField::Level& finer = field.levels[std::size_t(block.level) - 1];
     for (int k = 3; k >= 0; --k) {
-      const HeightBlock child{block.level - 1, 2 * block.column + std::uint32_t(k & 1), 2 * block.row + std::uint32_t(k >> 1)};
+      const HeightBlock child{block.level - 1, 2 * block.column + std::uint32_t(k & 1),
+                              2 * block.row + std::uint32_t(k >> 1)};
       if (child.column < finer.columns && child.row < finer.rows) stack[depth++] = child;
     }
   }

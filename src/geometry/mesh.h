@@ -15,14 +15,15 @@ namespace gyre {
 struct Mesh {
   static constexpr std::uint32_t kNoTwin = 0xffffffffu;
 
-  std::vector<Vec3> vertices;          // welded; every one is used
-  std::vector<std::uint32_t> indices;  // three a triangle, in the order of the tree: a leaf owns one run of triangles
-  std::vector<Vec3> normals;           // one a triangle; the same bits all over a flat patch
+  std::vector<Vec3> vertices;  // welded; every one is used
+  std::vector<std::uint32_t>
+      indices;                // three a triangle, in the order of the tree: a leaf owns one run of triangles
+  std::vector<Vec3> normals;  // one a triangle; the same bits all over a flat patch
   // By half-edge 3 * triangle + edge: the half-edge that runs back along it in the neighbour, or kNoTwin.
   std::vector<std::uint32_t> twins;
-  std::vector<std::uint16_t> flags;    // one a triangle, see below
-  std::vector<std::uint32_t> source;   // one a triangle: which triangle of the MeshDef it was
-  StaticTree tree;                     // its `items` are not kept: position and triangle are the same
+  std::vector<std::uint16_t> flags;   // one a triangle, see below
+  std::vector<std::uint32_t> source;  // one a triangle: which triangle of the MeshDef it was
+  StaticTree tree;                    // its `items` are not kept: position and triangle are the same
   // By node, bit i for lane i: all triangles below lie inside one flat patch, so nothing but their plane can be touched.
   std::vector<std::uint8_t> flat_lanes;
   bool double_sided = false;

@@ -17,8 +17,8 @@ constexpr float kMaxCoordinate = 1.0e9f;
 
 Error check_mesh(const MeshDef& def) {
   if (def.indices.size() % 3 != 0) {
-    return make_error(ErrorCode::invalid_geometry, "mesh: %zu indices do not make whole triangles (three each)",
-                      def.indices.size());
+    return make_error(ErrorCode::invalid_geometry,
+                      "mesh: %zu indices do not make whole triangles (three each)", def.indices.size());
   }
   const std::size_t triangles = def.indices.size() / 3;
   if (triangles > StaticTree::kMaxItems) {
@@ -28,18 +28,20 @@ Error check_mesh(const MeshDef& def) {
   for (std::size_t i = 0; i < def.vertices.size(); ++i) {
     const Vec3 v = def.vertices[i];
     if (!is_finite(v)) {
-      return make_error(ErrorCode::invalid_geometry, "mesh: vertex %zu is not finite (%g, %g, %g)", i, double(v.x),
-                        double(v.y), double(v.z));
+      return make_error(ErrorCode::invalid_geometry, "mesh: vertex %zu is not finite (%g, %g, %g)", i,
+                        double(v.x), double(v.y), double(v.z));
     }
     if (largest(absolute(v)) > kMaxCoordinate) {
-      return make_error(ErrorCode::invalid_geometry, "mesh: vertex %zu (%g, %g, %g) is farther than %g m from the origin",
-                        i, double(v.x), double(v.y), double(v.z), double(kMaxCoordinate));
+      return make_error(ErrorCode::invalid_geometry,
+                        "mesh: vertex %zu (%g, %g, %g) is farther than %g m from the origin", i, double(v.x),
+                        double(v.y), double(v.z), double(kMaxCoordinate));
     }
   }
   for (std::size_t i = 0; i < def.indices.size(); ++i) {
     if (def.indices[i] >= def.vertices.size()) {
-      return make_error(ErrorCode::invalid_geometry, "mesh: triangle %zu uses vertex %u, but there are only %zu vertices",
-                        i / 3, def.indices[i], def.vertices.size());
+      return make_error(ErrorCode::invalid_geometry,
+                        "mesh: triangle %zu uses vertex %u, but there are only %zu vertices", i / 3,
+                        def.indices[i], def.vertices.size());
     }
   }
   return {};
@@ -146,7 +148,8 @@ Result<Geometry> cook_mesh(const MeshDef& def) {
   if (!def.vertices.empty()) triangles = keep_proper(def);
   drop_doubles(triangles);
   if (triangles.source.empty()) {
-    return make_error(ErrorCode::invalid_geometry, "mesh: none of its %zu triangles has an area", def.indices.size() / 3);
+    return make_error(ErrorCode::invalid_geometry, "mesh: none of its %zu triangles has an area",
+                      def.indices.size() / 3);
   }
   auto mesh = std::make_unique<Mesh>();
   mesh->double_sided = def.double_sided;

@@ -35,7 +35,8 @@ void pair_shared(Mesh& mesh, const std::uint32_t* half_edges, std::size_t count)
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t k = i + 1; k < count; ++k) {
         const std::uint32_t a = half_edges[i], b = half_edges[k];
-        if (mesh.twins[a] != Mesh::kNoTwin || mesh.twins[b] != Mesh::kNoTwin || !can_pair(mesh, a, b)) continue;
+        if (mesh.twins[a] != Mesh::kNoTwin || mesh.twins[b] != Mesh::kNoTwin || !can_pair(mesh, a, b))
+          continue;
         const float flatness = dot(mesh.normals[a / 3], mesh.normals[b / 3]);
         if (flatness > best) {
           best = flatness;

@@ -163,7 +163,8 @@ bool mark_collapsed(std::span<const std::uint32_t> indices, const std::vector<st
 
 }  // namespace
 
-std::vector<std::uint32_t> weld_vertices(std::span<const Vec3> vertices, std::span<const std::uint32_t> indices) {
+std::vector<std::uint32_t> weld_vertices(std::span<const Vec3> vertices,
+                                         std::span<const std::uint32_t> indices) {
   if (vertices.empty()) return {};
   const std::vector<std::uint32_t> equal = weld_equal(vertices);
   NearWelder welder(vertices, equal);

@@ -13,6 +13,7 @@
 
 namespace gyre {
 
-std::vector<std::uint32_t> weld_vertices(std::span<const Vec3> vertices, std::span<const std::uint32_t> indices);
+std::vector<std::uint32_t> weld_vertices(std::span<const Vec3> vertices,
+                                         std::span<const std::uint32_t> indices);
 
 }  // namespace gyre

@@ -185,7 +185,8 @@ void build_static_tree(std::span<const Aabb> boxes, StaticTree& tree) {
     const Task task = tasks.back();
     tasks.pop_back();
     Range children[StaticTree::kWidth];
-    const int count = split_children(builder, task.range, task.depth >= StaticTree::kHeuristicDepth, children);
+    const int count =
+        split_children(builder, task.range, task.depth >= StaticTree::kHeuristicDepth, children);
     for (int lane = 0; lane < StaticTree::kWidth; ++lane) {
       if (lane >= count) {
         set_lane(tree.nodes[task.node], lane, kNoBox, StaticTree::kNoChild);

@@ -13,7 +13,8 @@ TriangleView seen_from_behind(const TriangleView& triangle) {
     const int corner = kCorner[i], edge = 2 - i;
     back.v[i] = triangle.v[corner];
     back.corner_id[i] = triangle.corner_id[corner];
-    if ((triangle.flat_corners >> corner & 1) != 0) back.flat_corners = std::uint8_t(back.flat_corners | 1 << i);
+    if ((triangle.flat_corners >> corner & 1) != 0)
+      back.flat_corners = std::uint8_t(back.flat_corners | 1 << i);
     back.neighbor_normal[i] = -triangle.neighbor_normal[edge];
     back.edge_id[i] = triangle.edge_id[edge];
     const EdgeKind kind = triangle.edge[edge];

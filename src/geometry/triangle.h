@@ -23,7 +23,8 @@ struct TriangleView {
   Vec3 normal;              // unit
   Vec3 neighbor_normal[3];  // of the triangle beyond each edge; this one's own where the edge is open
   EdgeKind edge[3] = {};
-  std::uint8_t flat_corners = 0;  // bit i: all around v[i] the surface is one plane, so that it is no corner at all
+  std::uint8_t flat_corners =
+      0;  // bit i: all around v[i] the surface is one plane, so that it is no corner at all
   std::uint32_t id = 0;
   std::uint32_t corner_id[3] = {};  // names the vertex within the surface
   std::uint32_t edge_id[3] = {};    // names the edge, the same from both sides

@@ -1,0 +1,247 @@
+// A convex shape against a mesh or height field, without ghost collisions. See collide_mesh in manifold.h.
+//
+// Each triangle near the shape is asked for its best direction (mesh_axis.h). If that is a normal of the surface, the
+// contact stands. If it is not, it would push across a flat or concave edge, or the shape's middle is already behind the
+// triangle; then the answer waits until all others are known:
+//   - if a contact that stands has the triangle's own normal, the triangle belongs to the same stretch of ground and adds
+//     its points to it;
+//   - if moving the shape out of a contact that stands also frees it from this triangle, the triangle has no say (a box
+//     that sank into the top of a wall must not be pushed out of the wall's side);
+//   - else the shape leaves through the triangle's front, the least deep first.
+// A contact at a sharp or open edge that lies buried under another face, level with it, is dropped: floors are often laid
+// of pieces that are not joined.
+//
+// Sources: the Voronoi regions of edges and corners after C. Ericson, "Real-Time Collision Detection", 2005, chapter 5; the
+// aim, no collisions with inner edges, is described in P. Terdiman, "Contact generation for meshes", 2006.
+#include "geometry/manifold_mesh.h"
+
+#include "base/sort.h"
+#include "geometry/mesh_candidates.h"
+
+namespace gyre {
+namespace {
+
+// Relative to the size of the shape: by how much a direction must be better to be preferred to the face's normal; a
+// rounded shape, whose nearest points are exact, needs no such favour.
+constexpr float kFaceBias = 5.0e-4f;
+constexpr float kRoundBias = 1.0e-6f;
+// ... and how much deeper than a contact a triangle may lie and still be covered by it.
+constexpr float kCoverSlack = 1.0e-3f;
+// Cosines: contacts of one stretch of ground; normals that oppose each other; sharp edges.
+constexpr float kSameNormal = 0.9994f;
+constexpr float kOpposed = -0.1f;
+constexpr float kSharp = 0.7f;
+
+struct Standing {
+  Vec3 normal;
+  float separation;
+  float lowest;  // of the core along the normal
+};
+
+struct Waiting {
+  std::uint32_t id;
+  float face_separation;
+  bool behind;
+};
+
+class MeshCollider {
+ public:
+  MeshCollider(const Shape& mesh, const Shape& b, const Transform& a_from_b, float max_separation)
+      : surface_(mesh),
+        convex_(b, a_from_b.orientation),
+        position_(a_from_b.position),
+        max_separation_(max_separation),
+        bias_((convex_.radius() > 0.0f ? kRoundBias : kFaceBias) * convex_.size()) {}
+
+  int run(LocalManifold* out) {
+    find_candidates(surface_, convex_, position_, max_separation_, candidates_);
+    for (int i = 0; i < candidates_.count; ++i) look_at(candidates_.ids[i]);
+    settle_waiting();
+    return groups_.finish(position_, out);
+  }
+
+ private:
+  void look_at(std::uint32_t id);
+  void settle_waiting();
+  void settle(const Waiting& waiting);
+
+  NearTriangle triangle(std::uint32_t id) const { return near_triangle(surface_, id, position_, convex_); }
+  void know_side(Vec3 normal);
+  void know_face();
+  float face_separation(const NearTriangle& t) const {
+    return side_.lowest - dot(t.normal, t.v[0]) - convex_.radius();
+  }
+
+  bool stands_already(Vec3 normal) const;
+  void stand(Vec3 normal, float separation);
+  void add_face(const NearTriangle& t);
+  void add_feature(const NearTriangle& t, const FeatureAxis& axis);
+  bool is_buried(const NearTriangle& t, Vec3 direction) const;
+  bool covers(const NearTriangle& other, const NearTriangle& t, Vec3 direction) const;
+
+  Surface surface_;
+  PlacedConvex convex_;
+  Vec3 position_;
+  float max_separation_;
+  float bias_;
+
+  bool side_known_ = false;
+  PlaneSide side_;
+  int standing_count_ = 0;
+  static constexpr int kStandingRoom = 32;
+  Standing standing_[kStandingRoom];
+  int waiting_count_ = 0;
+  Waiting waiting_[MeshCandidates::kRoom];
+  MeshCandidates candidates_;
+  MeshPoints points_;
+  ManifoldGroups groups_;
+};
+
+void MeshCollider::know_side(Vec3 normal) {
+  if (side_known_ && side_.normal == normal) return;
+  side_.normal = normal;
+  side_.lowest = convex_.lowest(normal);
+  side_.highest = convex_.highest(normal);
+  side_.has_face = false;
+  side_known_ = true;
+}
+
+void MeshCollider::know_face() {
+  if (side_.has_face) return;
+  convex_.face_towards(-side_.normal, side_.face);
+  side_.has_face = true;
+}
+
+bool MeshCollider::stands_already(Vec3 normal) const {
+  for (int i = 0; i < standing_count_; ++i) {
+    if (standing_[i].normal == normal) return true;
+  }
+  return false;
+}
+
+void MeshCollider::stand(Vec3 normal, float separation) {
+  for (int i = 0; i < standing_count_; ++i) {
+    if (dot(standing_[i].normal, normal) <= kSameNormal) continue;
+    standing_[i].separation = min(standing_[i].separation, separation);
+    return;
+  }
+  if (standing_count_ == kStandingRoom) return;
+  standing_[standing_count_++] = {normal, separation, convex_.lowest(normal)};
+}
+
+void MeshCollider::add_face(const NearTriangle& t) {
+  know_side(t.normal);
+  know_face();
+  points_.count = 0;
+  face_points(t, convex_, side_, max_separation_, points_);
+  if (is_buried(t, t.normal)) return;
+  groups_.add(t.normal, t.id, points_);
+}
+
+void MeshCollider::add_feature(const NearTriangle& t, const FeatureAxis& axis) {
+  points_.count = 0;
+  feature_points(t, convex_, axis, max_separation_, points_);
+  if (is_buried(t, axis.direction)) return;
+  groups_.add(axis.direction, t.id, points_);
+}
+
+// Whether the face `other` goes on, level, where the contact of `t` would stop the shape: `t` lies nowhere above it, the
+// contact points lie on it, and going against the contact's direction one stays above it.
+bool MeshCollider::covers(const NearTriangle& other, const NearTriangle& t, Vec3 direction) const {
+  const float slack = kCoverSlack * convex_.size();
+  if (dot(other.normal, direction) > 0.99f || dot(other.normal, convex_.center() - other.v[0]) < 0.0f)
+    return false;
+  for (int i = 0; i < 3; ++i) {
+    if (dot(other.normal, t.v[i] - other.v[0]) > slack) return false;
+  }
+  for (int k = 0; k < points_.count; ++k) {
+    // From the middle of the two surfaces down to the triangle's, then a step along the direction.
+    const ManifoldPoint& point = points_.points[k];
+    const Vec3 p = point.position - 0.5f * point.separation * direction;
+    if (absolute(dot(other.normal, p - other.v[0])) > slack) return false;
+    const Vec3 ahead = p + slack * direction;
+    for (int i = 0; i < 3; ++i) {
+      if (dot(other.outward[i], ahead - other.v[i]) > 0.0f) return false;
+    }
+  }
+  return true;
+}
+
+bool MeshCollider::is_buried(const NearTriangle& t, Vec3 direction) const {
+  if (points_.count == 0) return false;
+  bool sharp = false;
+  for (int i = 0; i < 3; ++i) {
+    sharp = sharp || t.edge[i] == EdgeKind::open ||
+            (t.edge[i] == EdgeKind::convex && dot(t.normal, t.neighbor_normal[i]) < kSharp);
+  }
+  if (!sharp) return false;
+  for (int i = 0; i < candidates_.count; ++i) {
+    if (candidates_.ids[i] != t.id && covers(triangle(candidates_.ids[i]), t, direction)) return true;
+  }
+  return false;
+}
+
+void MeshCollider::look_at(std::uint32_t id) {
+  const NearTriangle t = triangle(id);
+  know_side(t.normal);
+  const float height = dot(t.normal, t.v[0]);
+  const float face = face_separation(t);
+  if (face > max_separation_ || side_.highest - height + convex_.radius() <= 0.0f) return;
+  const bool inside_patch = t.flat_corners == 7 && t.edge[0] == EdgeKind::flat &&
+                            t.edge[1] == EdgeKind::flat && t.edge[2] == EdgeKind::flat;
+  // Ground that is known to carry the shape: no other direction can come of a triangle without real edges.
+  if (inside_patch && stands_already(t.normal)) return add_face(t);
+  const AxisSearch axes = search_axes(surface_, t, convex_, face, max_separation_);
+  if (axes.best > max_separation_) return;
+  const bool behind = dot(t.normal, convex_.center()) < height;
+  const float allowed = max(face, axes.feature.separation);
+  if (behind || allowed < axes.best - kFaceBias * convex_.size()) {
+    waiting_[waiting_count_++] = {id, face, behind};
+    return;
+  }
+  if (face >= axes.feature.separation - bias_) {
+    add_face(t);
+    // Beside an edge the face alone may have no point.
+    const bool empty = points_.count == 0;
+    if (!empty || axes.feature.separation < axes.best - kFaceBias * convex_.size())
+      return stand(t.normal, face);
+  }
+  stand(axes.feature.direction, axes.feature.separation);
+  add_feature(t, axes.feature);
+}
+
+void MeshCollider::settle(const Waiting& waiting) {
+  const NearTriangle t = triangle(waiting.id);
+  for (int i = 0; i < standing_count_; ++i) {
+    if (dot(standing_[i].normal, t.normal) > kSameNormal) return add_face(t);
+  }
+  const float slack = kCoverSlack * convex_.size();
+  for (int i = 0; i < standing_count_; ++i) {
+    const Standing& standing = standing_[i];
+    if (waiting.behind && dot(standing.normal, t.normal) < kOpposed) return;
+    const float highest =
+        max(dot(standing.normal, t.v[0]), max(dot(standing.normal, t.v[1]), dot(standing.normal, t.v[2])));
+    const float separation = standing.lowest - highest - convex_.radius();
+    if (separation >= standing.separation - slack) return;
+  }
+  add_face(t);
+  if (points_.count > 0) stand(t.normal, waiting.face_separation);
+}
+
+void MeshCollider::settle_waiting() {
+  Waiting scratch[MeshCandidates::kRoom];
+  // The least deep first; candidates came in the order of their numbers, and the sort keeps that.
+  merge_sort(std::span<Waiting>(waiting_, std::size_t(waiting_count_)), std::span<Waiting>(scratch),
+             [](const Waiting& a, const Waiting& b) { return a.face_separation > b.face_separation; });
+  for (int i = 0; i < waiting_count_; ++i) settle(waiting_[i]);
+}
+
+}  // namespace
+
+int collide_mesh(const Shape& mesh, const Shape& b, const Transform& a_from_b, float max_separation,
+                 LocalManifold* out) {
+  if (!is_convex(b.kind)) return 0;
+  return MeshCollider(mesh, b, a_from_b, max_separation).run(out);
+}
+
+}  // namespace gyre

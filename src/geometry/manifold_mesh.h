@@ -1,0 +1,41 @@
+// The steps of collide_mesh (declared in manifold.h) that are worth testing alone: collecting contacts by normal.
+//
+// In: points of one triangle after the other, each set with its normal. Out: at most kMaxMeshManifolds manifolds of at most
+// four points. Points with the same name meet in one; contacts whose normals differ by less than two degrees share a
+// manifold, with the normal of the deepest.
+#pragma once
+
+#include "geometry/mesh_points.h"
+
+namespace gyre {
+
+class ManifoldGroups {
+ public:
+  static constexpr int kRoom = 16;
+  static constexpr int kPointRoom = 56;
+
+  void add(Vec3 normal, std::uint32_t triangle, const MeshPoints& points);
+  // Writes the manifolds, positions moved by `position`; in the order in which their first contact came. Returns how many.
+  int finish(Vec3 position, LocalManifold* out);
+
+ private:
+  struct Group {
+    Vec3 normal;
+    float deepest;
+    std::uint32_t triangle;
+    int count;
+    // Not cleared: only the counted ones are ever read.
+    union {
+      ManifoldPoint points[kPointRoom];
+    };
+    Group() {}
+  };
+
+  static void add_point(Group& group, const ManifoldPoint& point);
+  void merge_nearest();
+
+  int count_ = 0;
+  Group groups_[kRoom];
+};
+
+}  // namespace gyre

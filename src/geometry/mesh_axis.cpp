@@ -1,0 +1,342 @@
+// Directions between a convex shape and a triangle. See mesh_axis.h.
+#include "geometry/mesh_axis.h"
+
+#include "geometry/closest.h"
+
+namespace gyre {
+namespace {
+
+// Sines: directions this near to the face's normal are the face's; how far a direction may lie outside an arc or a cone; how
+// much an edge or corner may lie lower than another and still belong to the supporting feature.
+constexpr float kFaceAngle = 1.0e-3f;
+constexpr float kArcSlack = 1.0e-3f;
+constexpr float kLevelSlack = 1.0e-3f;
+// Steps of the golden section search along an arc: a part in 5,000 of it is left, where the separation is flat.
+constexpr int kArcSteps = 18;
+constexpr float kGolden = 0.61803399f;
+
+class Search {
+ public:
+  Search(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,
+         float face_separation, float max_separation)
+      : surface_(surface), t_(triangle), convex_(convex), max_separation_(max_separation) {
+    found_.best = face_separation;
+    core_best_ = max(face_separation + convex.radius(),
+                     dot(triangle.normal, triangle.v[0]) - convex.highest(triangle.normal));
+  }
+
+  AxisSearch run() {
+    if (convex_.has_vertices()) {
+      polyhedron();
+    } else {
+      curved();
+    }
+    return found_;
+  }
+
+ private:
+  bool apart() const { return found_.best > max_separation_; }
+  float highest_corner(Vec3 d) const { return max(dot(d, t_.v[0]), max(dot(d, t_.v[1]), dot(d, t_.v[2]))); }
+
+  // Straight through the triangle from behind: never a way out.
+  bool is_backwards(Vec3 d) const { return dot(d, t_.normal) < -0.99f; }
+  bool is_face(Vec3 d) const { return length_squared(d - t_.normal) < kFaceAngle * kFaceAngle; }
+
+  bool edge_allows(int edge, Vec3 d) const {
+    if (t_.edge[edge] != EdgeKind::convex && t_.edge[edge] != EdgeKind::open) return false;
+    if (dot(d, t_.outward[edge]) < -kArcSlack) return false;
+    const float front = dot(d, t_.normal);
+    if (t_.edge[edge] == EdgeKind::open) return front >= -kArcSlack;
+    const Vec3 other = t_.neighbor_normal[edge];
+    return dot(d, cross(other, t_.along[edge])) >= -kArcSlack &&
+           (front >= -kArcSlack || dot(d, other) >= -kArcSlack);
+  }
+
+  bool corner_allows(int corner, Vec3 d) const {
+    if ((t_.flat_corners >> corner & 1) != 0 || dot(d, t_.normal) < -kArcSlack) return false;
+    const int own = t_.turned && corner != 0 ? 3 - corner : corner;
+    return surface_.mesh != nullptr ? in_normal_cone(*surface_.mesh, t_.id, own, d, kArcSlack)
+                                    : in_normal_cone(*surface_.field, t_.id, own, d, kArcSlack);
+  }
+
+  bool allows(unsigned corners, Vec3 d) const {
+    switch (corners) {
+      case 1:
+        return corner_allows(0, d);
+      case 2:
+        return corner_allows(1, d);
+      case 4:
+        return corner_allows(2, d);
+      case 3:
+        return edge_allows(0, d);
+      case 6:
+        return edge_allows(1, d);
+      case 5:
+        return edge_allows(2, d);
+      default:
+        return false;
+    }
+  }
+
+  // The corners that are highest along `d`: one, the two of an edge, or all three.
+  unsigned supporting_corners(Vec3 d) const {
+    float height[3];
+    for (int i = 0; i < 3; ++i) height[i] = dot(d, t_.v[i]);
+    int top = 0;
+    for (int i = 1; i < 3; ++i) {
+      if (height[i] > height[top]) top = i;
+    }
+    const int after = next_corner(top), before = next_corner(after);
+    unsigned corners = 1u << top;
+    if (height[top] - height[after] <= kLevelSlack * t_.length[top]) corners |= 1u << after;
+    if (height[top] - height[before] <= kLevelSlack * t_.length[before]) corners |= 1u << before;
+    return corners;
+  }
+
+  void offer(Vec3 d, float separation, unsigned corners) {
+    core_best_ = max(core_best_, separation + convex_.radius());
+    if (is_backwards(d)) {
+      // As a separating direction it still counts.
+      if (separation > max_separation_) found_.best = separation;
+      return;
+    }
+    found_.best = max(found_.best, separation);
+    if (!(separation > found_.feature.separation) || is_face(d)) return;
+    if (allows(corners, d)) found_.feature = {separation, d, corners};
+  }
+
+  // `d` unit; everything measured.
+  void measure(Vec3 d) {
+    const float separation = convex_.lowest(d) - highest_corner(d) - convex_.radius();
+    offer(d, separation, supporting_corners(d));
+  }
+
+  void polyhedron();
+  void face_axes();
+  void edge_axes();
+  void segment_axes();
+  void nearest_pair();
+  void nearest_of_vertices(double& best, SimplexPoint& on_triangle, DVec3& on_convex) const;
+  void curved();
+  void search_arc(int edge);
+
+  const Surface& surface_;
+  const NearTriangle& t_;
+  const PlacedConvex& convex_;
+  float max_separation_;
+  float core_best_;  // the largest separation of core and triangle along any direction, also backwards
+  AxisSearch found_;
+};
+
+void Search::face_axes() {
+  for (int i = 0; i < convex_.face_count() && !apart(); ++i) {
+    const Vec3 n = convex_.face_normal(i);
+    const float low = min(dot(n, t_.v[0]), min(dot(n, t_.v[1]), dot(n, t_.v[2])));
+    const float separation = low - convex_.face_offset(i) - convex_.radius();
+    if (separation > found_.best || separation > found_.feature.separation) {
+      offer(-n, separation, supporting_corners(-n));
+    }
+  }
+}
+
+// An edge of the triangle and one of the polyhedron make a face of their Minkowski difference where their arcs on the
+// sphere of normals cross: the triangle's runs from its normal through `outward` to the other side.
+void Search::edge_axes() {
+  for (const HullEdge& edge : convex_.edges()) {
+    const Vec3 left = convex_.face_normal(edge.left), right = convex_.face_normal(edge.right);
+    const Vec3 point = convex_.vertex(edge.from);
+    for (int i = 0; i < 3; ++i) {
+      const float l = dot(left, t_.along[i]), r = dot(right, t_.along[i]);
+      if (!(l * r < 0.0f)) continue;
+      const Vec3 crossing = absolute(r) * left + absolute(l) * right;
+      if (!(dot(crossing, t_.outward[i]) < 0.0f)) continue;
+      // Nearly along a face's normal (short and long edges, tiny angles) the face's own axis serves.
+      const float size = length(crossing);
+      if (!(size > 1.0e-4f)) continue;
+      const Vec3 d = crossing / -size;
+      const float separation = dot(d, point - t_.v[i]) - convex_.radius();
+      if (separation > found_.best || separation > found_.feature.separation) {
+        offer(d, separation, 1u << i | 1u << next_corner(i));
+        if (apart()) return;
+      }
+    }
+  }
+}
+
+// The one edge of a capsule has normals all around it.
+void Search::segment_axes() {
+  const Vec3 axis = convex_.vertex(1) - convex_.vertex(0);
+  const float length_of_axis = length(axis);
+  for (int i = 0; i < 3; ++i) {
+    Vec3 d = cross(axis, t_.along[i]);
+    const float size = length(d);
+    if (!(size > 1.0e-4f * length_of_axis) || size == 0.0f) continue;
+    d = d / size;
+    if (dot(d, t_.outward[i]) < 0.0f) d = -d;
+    const float separation = dot(d, convex_.vertex(0) - t_.v[i]) - convex_.radius();
+    offer(d, separation, 1u << i | 1u << next_corner(i));
+  }
+}
+
+void Search::nearest_of_vertices(double& best, SimplexPoint& on_triangle, DVec3& on_convex) const {
+  const DVec3 a(t_.v[0]), b(t_.v[1]), c(t_.v[2]);
+  for (int i = 0; i < convex_.vertex_count(); ++i) {
+    const DVec3 p(convex_.vertex(i));
+    const SimplexPoint found = closest_on_triangle(p, a, b, c);
+    const double distance = length_squared(p - found.point);
+    if (distance >= best) continue;
+    best = distance;
+    on_triangle = found;
+    on_convex = p;
+  }
+}
+
+// A rounded core that does not overlap the triangle: the true direction is that between the nearest points.
+void Search::nearest_pair() {
+  double best = __builtin_huge_val();
+  SimplexPoint on_triangle;
+  DVec3 on_convex;
+  nearest_of_vertices(best, on_triangle, on_convex);
+  const auto try_edge = [&](Vec3 from, Vec3 to) {
+    for (int i = 0; i < 3; ++i) {
+      const int k = next_corner(i);
+      const SegmentPair pair = closest_of_segments(DVec3(t_.v[i]), DVec3(t_.v[k]), DVec3(from), DVec3(to));
+      const double distance = length_squared(pair.on_b - pair.on_a);
+      // Ends were looked at with the vertices and win ties.
+      if (!(distance < best * (1.0 - 1.0e-9)) || pair.s <= 0.0 || pair.s >= 1.0) continue;
+      best = distance;
+      on_triangle.point = pair.on_a;
+      on_triangle.corners = 1u << i | 1u << k;
+      on_convex = pair.on_b;
+    }
+  };
+  if (convex_.face_count() == 0 && convex_.vertex_count() == 2)
+    try_edge(convex_.vertex(0), convex_.vertex(1));
+  for (const HullEdge& edge : convex_.edges()) try_edge(convex_.vertex(edge.from), convex_.vertex(edge.to));
+  // Corners of the triangle over faces of the box, or over the capsule's segment.
+  const Vec3 inset{convex_.radius(), convex_.radius(), convex_.radius()};
+  const Aabb core{convex_.local_box().low + inset, convex_.local_box().high - inset};
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 nearest = convex_.from_local(max(core.low, min(convex_.to_local(t_.v[i]), core.high)));
+    const double distance = length_squared(DVec3(nearest) - DVec3(t_.v[i]));
+    if (!(distance < best * (1.0 - 1.0e-6))) continue;
+    best = distance;
+    on_triangle.point = DVec3(t_.v[i]);
+    on_triangle.corners = 1u << i;
+    on_convex = DVec3(nearest);
+  }
+  const double distance = std::sqrt(best);
+  if (!(distance > 1.0e-6 * double(convex_.size()))) return;
+  const Vec3 d = to_float((on_convex - on_triangle.point) / distance);
+  offer(d, float(distance) - convex_.radius(), on_triangle.corners);
+}
+
+void Search::polyhedron() {
+  face_axes();
+  if (apart()) return;
+  if (convex_.face_count() > 0) {
+    edge_axes();
+  } else if (convex_.vertex_count() == 2) {
+    segment_axes();
+  }
+  if (convex_.radius() == 0.0f || apart()) return;
+  // The features of overlapping cores have distances too, but those mean nothing.
+  const bool overlap = convex_.vertex_count() > 1 && !(core_best_ > 1.0e-6f * convex_.size());
+  if (!overlap) nearest_pair();
+}
+
+// Along an edge's arc of allowed directions, from this face's normal to the neighbour's (or to straight outward).
+void Search::search_arc(int edge) {
+  if (t_.edge[edge] != EdgeKind::convex && t_.edge[edge] != EdgeKind::open) return;
+  const Vec3 from = t_.normal;
+  const Vec3 to = t_.edge[edge] == EdgeKind::open ? t_.outward[edge] : t_.neighbor_normal[edge];
+  const Vec3 middle = normalized(from + to, t_.outward[edge]);
+  const auto direction = [&](float s) {
+    return s < 1.0f ? normalized(lerp(from, middle, s)) : normalized(lerp(middle, to, s - 1.0f));
+  };
+  const unsigned corners = 1u << edge | 1u << next_corner(edge);
+  const auto separation = [&](Vec3 d) { return convex_.lowest(d) - dot(d, t_.v[edge]); };
+  float low = 0.0f, high = 2.0f;
+  float left = high - kGolden * (high - low), right = low + kGolden * (high - low);
+  float at_left = separation(direction(left)), at_right = separation(direction(right));
+  for (int step = 0; step < kArcSteps; ++step) {
+    if (at_left < at_right) {
+      low = left;
+      left = right;
+      at_left = at_right;
+      right = low + kGolden * (high - low);
+      at_right = separation(direction(right));
+    } else {
+      high = right;
+      right = left;
+      at_right = at_left;
+      left = high - kGolden * (high - low);
+      at_left = separation(direction(left));
+    }
+  }
+  const Vec3 d = direction(0.5f * (low + high));
+  // The search stops short of the exact directions (along an axis, a cap or a mantle line): those win near ties.
+  const float value = separation(d) - 1.0e-5f * convex_.size();
+  if (value > found_.feature.separation || value > found_.best)
+    offer(d, value + 1.0e-5f * convex_.size(), corners);
+}
+
+// Cylinders and cones: cap normals, mantle lines against edges, mantle normals at corners, and the arcs of active edges.
+void Search::curved() {
+  const Vec3 axis = convex_.axis();
+  measure(axis);
+  if (convex_.shape().kind == ShapeKind::cylinder) measure(-axis);
+  const float slope = convex_.mantle_slope();
+  for (int i = 0; i < 3 && !apart(); ++i) {
+    const Vec3 crossing = cross(t_.along[i], axis);
+    if (length_squared(crossing) > 1.0e-6f) {
+      // For a cone the direction also leans: a tangent plane of the mantle that holds the edge's direction.
+      const Vec3 d = normalized(crossing);
+      measure(d);
+      measure(-d);
+    }
+    const Vec3 to_corner = t_.v[i] - dot(t_.v[i], axis) * axis;
+    if (length_squared(to_corner) > square(1.0e-6f * convex_.size())) {
+      measure(-normalized(normalized(to_corner) + slope * axis));
+    }
+    measure(t_.outward[i]);
+  }
+  for (int i = 0; i < 3 && !apart(); ++i) search_arc(i);
+}
+
+}  // namespace
+
+Surface::Surface(const Shape& shape) {
+  if (shape.kind == ShapeKind::mesh) mesh = shape.mesh;
+  if (shape.kind == ShapeKind::height_field) field = shape.field;
+}
+
+NearTriangle near_triangle(const Surface& surface, std::uint32_t id, Vec3 position,
+                           const PlacedConvex& convex) {
+  NearTriangle t;
+  static_cast<TriangleView&>(t) = surface.triangle(id);
+  if (surface.double_sided() && dot(t.normal, convex.center() + position - t.v[0]) < 0.0f) {
+    static_cast<TriangleView&>(t) = seen_from_behind(t);
+    t.turned = true;
+  }
+  float reach = largest(absolute(position));
+  for (int i = 0; i < 3; ++i) {
+    reach = max(reach, largest(absolute(t.v[i])));
+    t.v[i] = t.v[i] - position;
+  }
+  t.slack = 1.2e-7f * reach + 1.0e-6f * convex.size();
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 edge = t.v[next_corner(i)] - t.v[i];
+    t.length[i] = length(edge);
+    t.along[i] = normalized(edge);
+    t.outward[i] = cross(t.along[i], t.normal);
+  }
+  return t;
+}
+
+AxisSearch search_axes(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,
+                       float face_separation, float max_separation) {
+  return Search(surface, triangle, convex, face_separation, max_separation).run();
+}
+
+}  // namespace gyre

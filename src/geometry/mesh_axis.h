@@ -1,0 +1,60 @@
+// Along which direction a convex shape and one triangle of a surface touch, and whether the surface allows that direction.
+//
+// A direction is allowed if it is a normal of the SURFACE, not only of the triangle: the face's own normal; at a convex or
+// open edge the arc between the two faces' normals; at a corner the cone that all edges around it leave free. A triangle
+// alone would also offer directions across its flat and concave edges: those are the ghost collisions, and whether the
+// contact then turns to the face or belongs to a neighbour is for manifold_mesh to decide, who sees all triangles.
+//
+// Sources: C. Ericson, "Real-Time Collision Detection", 2005, chapter 5 (separating axes); D. Gregorius, "The Separating Axis
+// Test between Convex Polyhedra", GDC 2013 (edge pairs by arcs on the Gauss map).
+#pragma once
+
+#include "geometry/height_field.h"
+#include "geometry/mesh.h"
+#include "geometry/placed_convex.h"
+
+namespace gyre {
+
+// The mesh or the height field, one of the two.
+struct Surface {
+  const Mesh* mesh = nullptr;
+  const HeightField* field = nullptr;
+
+  explicit Surface(const Shape& shape);
+  bool double_sided() const { return mesh != nullptr && mesh->double_sided; }
+  TriangleView triangle(std::uint32_t id) const {
+    return mesh != nullptr ? view_triangle(*mesh, id) : view_triangle(*field, id);
+  }
+};
+
+// A triangle moved to the origin of the convex shape, with its edges measured.
+struct NearTriangle : TriangleView {
+  Vec3 along[3];  // unit, from v[i] to the next corner
+  float length[3] = {};
+  Vec3 outward[3];      // unit, in the plane, away from the triangle
+  float slack = 0.0f;   // m: what rounding can do to the places of its corners
+  bool turned = false;  // seen from behind: corners 1 and 2 have changed places against the surface's own
+};
+
+// `position` is that of the convex shape. A double-sided surface shows the side on which `center` (seen from the shape) lies.
+NearTriangle near_triangle(const Surface& surface, std::uint32_t id, Vec3 position,
+                           const PlacedConvex& convex);
+
+// A corner or edge of the triangle where shape and surface may touch, and the direction.
+struct FeatureAxis {
+  float separation = -__builtin_huge_valf();  // of the surfaces; -infinity: there is none
+  Vec3 direction;                             // unit, from the triangle to the convex shape
+  unsigned corners = 0;  // bits of the triangle's corners: one for a corner, two for an edge
+};
+
+struct AxisSearch {
+  float best = -__builtin_huge_valf();  // the largest separation along any direction, allowed or not
+  FeatureAxis feature;                  // the best allowed direction besides the face's normal
+};
+
+// Looks at all directions but the face's normal, for which the caller knows the separation of the surfaces. Ends early once
+// one separation is above `max_separation`.
+AxisSearch search_axes(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,
+                       float face_separation, float max_separation);
+
+}  // namespace gyre

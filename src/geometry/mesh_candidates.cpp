@@ -1,0 +1,190 @@
+// Gathering triangles near a convex shape. See mesh_candidates.h.
+#include "geometry/mesh_candidates.h"
+
+#include "base/sort.h"
+
+namespace gyre {
+namespace {
+
+// Cells each way around a body that has too many triangles near it, and the triangles that each keeps.
+constexpr int kCells = 8;
+constexpr int kKept = 2;
+static_assert(kCells * kCells * kCells * kKept <= MeshCandidates::kRoom);
+
+class Gatherer {
+ public:
+  Gatherer(const Surface& surface, const PlacedConvex& convex, Vec3 position, float max_separation,
+           MeshCandidates& out)
+      : surface_(surface), convex_(convex), position_(position), max_separation_(max_separation), out_(out) {
+    constexpr Vec3 kX{1, 0, 0}, kY{0, 1, 0}, kZ{0, 0, 1};
+    const Aabb core{{convex.lowest(kX), convex.lowest(kY), convex.lowest(kZ)},
+                    {convex.highest(kX), convex.highest(kY), convex.highest(kZ)}};
+    const float rounding = 1.2e-7f * largest(absolute(position));
+    box_ = grow(core, convex.radius() + max_separation + rounding);
+    box_ = {box_.low + position, box_.high + position};
+  }
+
+  void run() {
+    walk([&](std::uint32_t id) {
+      if (out_.count < MeshCandidates::kRoom) out_.ids[out_.count] = id;
+      ++out_.count;
+    });
+    if (out_.count > MeshCandidates::kRoom) keep_deepest();
+    sort();
+  }
+
+ private:
+  // Calls add(id) for all triangles that may touch, without those that others stand for.
+  template <class Add>
+  void walk(Add&& add) {
+    if (surface_.mesh != nullptr) return walk_mesh(*surface_.mesh, add);
+    walk_field(*surface_.field, add);
+  }
+
+  template <class Add>
+  void walk_mesh(const Mesh& mesh, Add&& add) {
+    const auto enter = [&](std::uint32_t index, int lane) {
+      const StaticTree::Node& node = mesh.tree.nodes[index];
+      const Aabb box = child_box(node, lane);
+      if (!near(box)) return false;
+      if ((mesh.flat_lanes[index] >> lane & 1) == 0) return true;
+      std::uint32_t child = node.child[lane];
+      while (!is_leaf(child)) child = mesh.tree.nodes[child].child[0];
+      const std::uint32_t first = leaf_first(child);
+      return look_at_patch(mesh.normals[first], mesh.vertices[mesh.indices[3 * std::size_t(first)]], box,
+                           first, add);
+    };
+    const auto visit = [&](std::uint32_t first, std::uint32_t count) {
+      for (std::uint32_t id = first; id < first + count; ++id) {
+        const Aabb box = triangle_box(mesh, id);
+        if (overlap(box, box_) && near(box)) add(id);
+      }
+    };
+    walk_overlaps(mesh.tree, box_, enter, visit);
+  }
+
+  template <class Add>
+  void walk_field(const HeightField& field, Add&& add) {
+    const auto enter = [&](HeightBlock block) {
+      const Aabb box = block_box(field, block);
+      if (!near(box)) return false;
+      if (!is_flat(field, block)) return true;
+      const std::uint32_t first = first_triangle(field, block);
+      const TriangleView triangle = view_triangle(field, first);
+      return look_at_patch(triangle.normal, triangle.v[0], box, first, add);
+    };
+    const auto visit = [&](std::uint32_t column, std::uint32_t row) {
+      if (!is_solid_cell(field, column, row)) return;
+      const Aabb box = block_box(field, {-1, column, row});
+      if (!overlap(box, box_) || !near(box)) return;
+      const std::uint32_t id = 2 * (row * field.cell_columns() + column);
+      add(id);
+      add(id + 1);
+    };
+    walk_cells(field, box_, enter, visit);
+  }
+
+  bool near(const Aabb& box) const {
+    return convex_.may_touch({box.low - position_, box.high - position_}, max_separation_);
+  }
+
+  // A part that lies inside one flat patch. True if it must be entered: a corner of the shape's face may lie above it.
+  template <class Add>
+  bool look_at_patch(Vec3 normal, Vec3 point, const Aabb& box, std::uint32_t first, Add&& add) {
+    if (surface_.double_sided() && dot(normal, convex_.center() + position_ - point) < 0.0f) normal = -normal;
+    if (!side_known_ || !(side_.normal == normal)) {
+      side_.normal = normal;
+      side_.lowest = convex_.lowest(normal);
+      side_.highest = convex_.highest(normal);
+      convex_.face_towards(-normal, side_.face);
+      side_known_ = true;
+    }
+    const float height = dot(normal, point - position_);
+    if (side_.lowest - height - convex_.radius() > max_separation_) return false;
+    if (side_.highest - height + convex_.radius() < 0.0f) return false;
+    const Aabb near_box = grow({box.low - position_, box.high - position_}, 1.0e-3f * convex_.size());
+    const auto above = [&](Vec3 corner) {
+      const Vec3 foot = corner - (dot(normal, corner) - height) * normal;
+      return overlap(near_box, {foot, foot});
+    };
+    for (int i = 0; i < side_.face.count; ++i) {
+      if (above(side_.face.vertices[i])) return true;
+    }
+    if (convex_.has_vertices() && above(convex_.vertex(convex_.lowest_vertex(normal)))) return true;
+    add(first);
+    return false;
+  }
+
+  // How far the triangle reaches out of the shape's local box (negative: into it), and in which cell its middle lies.
+  struct Place {
+    float distance;
+    int cell;
+  };
+  Place place_of(std::uint32_t id) const {
+    const TriangleView t = surface_.triangle(id);
+    const Vec3 a = t.v[0] - position_, b = t.v[1] - position_, c = t.v[2] - position_;
+    const Vec3 middle = (a + b + c) / 3.0f;
+    float distance = convex_.box_distance(middle);
+    distance =
+        min(distance, min(convex_.box_distance(a), min(convex_.box_distance(b), convex_.box_distance(c))));
+    // Of a large triangle neither corners nor middle need be near.
+    const Vec3 extent = max(a, max(b, c)) - min(a, min(b, c));
+    if (largest(extent) > 0.25f * convex_.size())
+      distance = convex_.lowest(t.normal) - dot(t.normal, a) - convex_.radius();
+    const Aabb& local = convex_.local_box();
+    const Vec3 inside = convex_.to_local(middle) - local.low, size = local.high - local.low;
+    const auto cell = [](float place, float width) {
+      return int(clamp(float(kCells) * place / max(width, 1.0e-30f), 0.0f, float(kCells - 1)));
+    };
+    return {distance,
+            (cell(inside.x, size.x) * kCells + cell(inside.y, size.y)) * kCells + cell(inside.z, size.z)};
+  }
+
+  void keep_deepest() {
+    constexpr float kEmpty = __builtin_huge_valf();
+    float distance[kCells * kCells * kCells * kKept];
+    for (float& d : distance) d = kEmpty;
+    walk([&](std::uint32_t id) {
+      const Place place = place_of(id);
+      int slot = kKept * place.cell, end = slot + kKept;
+      while (slot < end && distance[slot] <= place.distance) ++slot;
+      if (slot == end) return;
+      for (int i = end - 1; i > slot; --i) {
+        distance[i] = distance[i - 1];
+        out_.ids[i] = out_.ids[i - 1];
+      }
+      distance[slot] = place.distance;
+      out_.ids[slot] = id;
+    });
+    out_.count = 0;
+    for (int i = 0; i < kCells * kCells * kCells * kKept; ++i) {
+      if (distance[i] < kEmpty) out_.ids[out_.count++] = out_.ids[i];
+    }
+  }
+
+  void sort() {
+    const auto less = [](std::uint32_t a, std::uint32_t b) { return a < b; };
+    std::uint32_t scratch[MeshCandidates::kRoom];
+    merge_sort(std::span<std::uint32_t>(out_.ids, std::size_t(out_.count)), std::span<std::uint32_t>(scratch),
+               less);
+  }
+
+  const Surface& surface_;
+  const PlacedConvex& convex_;
+  Vec3 position_;
+  float max_separation_;
+  MeshCandidates& out_;
+  Aabb box_;
+  bool side_known_ = false;
+  PlaneSide side_;
+};
+
+}  // namespace
+
+void find_candidates(const Surface& surface, const PlacedConvex& convex, Vec3 position, float max_separation,
+                     MeshCandidates& out) {
+  out.count = 0;
+  Gatherer(surface, convex, position, max_separation, out).run();
+}
+
+}  // namespace gyre

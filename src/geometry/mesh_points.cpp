@@ -1,0 +1,276 @@
+// Points on one triangle. See mesh_points.h.
+#include "geometry/mesh_points.h"
+
+#include "base/hash.h"
+#include "geometry/closest.h"
+
+namespace gyre {
+namespace {
+
+// A face of the shape leans less than this (cosine) against the contact's direction, or it does not lie on the edge.
+constexpr float kFlush = 0.985f;
+// Sine between two edges that run side by side and touch in two points.
+constexpr float kParallel = 0.05f;
+
+// The kinds in the order in which a reduction prefers equally good points: corners of the shape keep a manifold steadiest.
+enum class PointKind : std::uint32_t { shape_corner, surface_corner, edges, nearest };
+
+std::uint32_t point_name(PointKind kind, std::uint32_t on_surface, std::uint32_t on_shape) {
+  const std::uint64_t mixed = mix_bits(std::uint64_t(on_surface) << 32 | on_shape);
+  return std::uint32_t(kind) << 30 | std::uint32_t(mixed & 0x3fffffffu);
+}
+
+// The normal to within a few degrees, counted from a corner of the cube around the sphere of normals: axis-aligned
+// surfaces, and all that lean a little against them, are far from the seams.
+std::uint32_t normal_name(Vec3 n) {
+  const auto step = [](float x) { return std::uint32_t((x + 1.0f) * 8.0f + 0.5f); };
+  return step(n.x) << 10 | step(n.y) << 5 | step(n.z);
+}
+
+// Edges of the facing feature are named by the corners they join, so that the name does not depend on the face.
+std::uint32_t edge_name(const FacePolygon& face, int k) {
+  const std::uint32_t a = face.ids[k], b = face.ids[k + 1 == face.count ? 0 : k + 1];
+  return 0x10000u | min(a, b) << 8 | max(a, b);
+}
+
+struct Emitter {
+  Vec3 direction;
+  Vec3 anchor;  // a point of the surface: separations are measured from it along the direction
+  float radius;
+  float max_separation;
+  MeshPoints& out;
+
+  // A point of the core whose separation is to the plane through the anchor.
+  void core_point(Vec3 p, std::uint32_t name) const { pair(p, dot(direction, p - anchor) - radius, name); }
+  void pair(Vec3 on_core, float separation, std::uint32_t name) const {
+    if (separation <= max_separation)
+      out.add(on_core - (radius + 0.5f * separation) * direction, separation, name);
+  }
+};
+
+// Is `p` inside the polygon, seen along its normal?
+bool inside_polygon(const FacePolygon& face, Vec3 p, float slack) {
+  for (int k = 0; k < face.count; ++k) {
+    const Vec3 a = face.vertices[k], edge = face.vertices[k + 1 == face.count ? 0 : k + 1] - a;
+    const Vec3 inward = cross(face.normal, edge);
+    if (dot(inward, p - a) < -slack * length(edge)) return false;
+  }
+  return true;
+}
+
+// The vertex of a hull that is lowest may belong to a face that leans more than the facing one.
+void add_lowest_vertex(const NearTriangle& t, const PlacedConvex& convex, const PlaneSide& side,
+                       const Emitter& emit) {
+  if (convex.shape().kind != ShapeKind::hull) return;
+  const int lowest = convex.lowest_vertex(t.normal);
+  for (int k = 0; k < side.face.count; ++k) {
+    if (side.face.ids[k] == lowest) return;
+  }
+  const Vec3 p = convex.vertex(lowest);
+  for (int i = 0; i < 3; ++i) {
+    if (dot(t.outward[i], p - t.v[i]) > t.slack) return;
+  }
+  emit.core_point(p, point_name(PointKind::shape_corner, normal_name(t.normal), std::uint32_t(lowest)));
+}
+
+void corners_under_face(const NearTriangle& t, const FacePolygon& face, const Emitter& emit) {
+  const float facing = dot(face.normal, t.normal);
+  if (face.count < 3 || facing > -0.1f) return;
+  for (int i = 0; i < 3; ++i) {
+    if ((t.flat_corners >> i & 1) != 0) continue;
+    // Up along the triangle's normal to the face's plane.
+    const float height = dot(face.normal, face.vertices[0] - t.v[i]) / facing;
+    const Vec3 p = t.v[i] + height * t.normal;
+    if (!inside_polygon(face, p, t.slack)) continue;
+    emit.pair(p, height - emit.radius, point_name(PointKind::surface_corner, t.corner_id[i], face.feature));
+  }
+}
+
+}  // namespace
+
+void face_points(const NearTriangle& t, const PlacedConvex& convex, const PlaneSide& side,
+                 float max_separation, MeshPoints& out) {
+  const FacePolygon& face = side.face;
+  const Emitter emit{t.normal, t.v[0], convex.radius(), max_separation, out};
+  // How far each corner of the face lies outside of each of the triangle's sides.
+  float outside[3][kMaxFaceVertices];
+  bool beyond[3] = {true, true, true};
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < face.count; ++k) {
+      outside[i][k] = dot(t.outward[i], face.vertices[k] - t.v[i]);
+      beyond[i] = beyond[i] && outside[i][k] > t.slack;
+    }
+    if (beyond[i]) return;
+  }
+  const std::uint32_t normal = normal_name(t.normal);
+  for (int k = 0; k < face.count; ++k) {
+    if (outside[0][k] > t.slack || outside[1][k] > t.slack || outside[2][k] > t.slack) continue;
+    emit.core_point(face.vertices[k], point_name(PointKind::shape_corner, normal, face.ids[k]));
+  }
+  add_lowest_vertex(t, convex, side, emit);
+  const int edges = face.count == 2 ? 1 : (face.count < 2 ? 0 : face.count);
+  for (int i = 0; i < 3; ++i) {
+    if (t.edge[i] == EdgeKind::flat) continue;
+    const int j = next_corner(i), l = next_corner(j);
+    for (int k = 0; k < edges; ++k) {
+      const int next = k + 1 == face.count ? 0 : k + 1;
+      const float from = outside[i][k], to = outside[i][next];
+      if ((from > t.slack) == (to > t.slack)) continue;
+      const Vec3 p = lerp(face.vertices[k], face.vertices[next], clamp(from / (from - to), 0.0f, 1.0f));
+      if (dot(t.outward[j], p - t.v[j]) > t.slack || dot(t.outward[l], p - t.v[l]) > t.slack) continue;
+      emit.core_point(p, point_name(PointKind::edges, t.edge_id[i], edge_name(face, k)));
+    }
+  }
+  corners_under_face(t, face, emit);
+}
+
+namespace {
+
+// One edge of the triangle, and what of the shape faces it.
+struct EdgeContact {
+  const NearTriangle& t;
+  int edge;
+  const FacePolygon& face;
+  Vec3 direction;
+  const Emitter& emit;
+
+  Vec3 start() const { return t.v[edge]; }
+  Vec3 end() const { return t.v[next_corner(edge)]; }
+  Vec3 at(float s) const { return lerp(start(), end(), s); }
+
+  // A point of the edge, and the core's surface above it at `height` along the direction.
+  void add(float s, float height, std::uint32_t name) const {
+    const Vec3 p = at(s);
+    emit.pair(p + height * direction, height - emit.radius, name);
+  }
+
+  void under_polygon() const;
+  void beside_segment() const;
+  void nearest() const;
+};
+
+// The stretch of the edge that lies under the polygon: its two ends.
+void EdgeContact::under_polygon() const {
+  const float facing = dot(face.normal, direction);
+  float low = 0.0f, high = 1.0f;
+  std::uint32_t low_name = point_name(PointKind::surface_corner, t.corner_id[edge], face.feature);
+  std::uint32_t high_name =
+      point_name(PointKind::surface_corner, t.corner_id[next_corner(edge)], face.feature);
+  for (int k = 0; k < face.count; ++k) {
+    const Vec3 a = face.vertices[k], side = face.vertices[k + 1 == face.count ? 0 : k + 1] - a;
+    const Vec3 inward = cross(side, direction);  // the direction runs into the face: against its normal
+    const float from = dot(inward, start() - a), to = dot(inward, end() - a);
+    const float slack = t.slack * length(side);
+    if (from < -slack && to < -slack) return;
+    const std::uint32_t name = point_name(PointKind::edges, t.edge_id[edge], edge_name(face, k));
+    if (from < 0.0f && to > 0.0f && from / (from - to) > low) {
+      low = from / (from - to);
+      low_name = name;
+    } else if (from > 0.0f && to < 0.0f && from / (from - to) < high) {
+      high = from / (from - to);
+      high_name = name;
+    }
+  }
+  if (low > high) return;
+  const auto height = [&](float s) { return dot(face.normal, face.vertices[0] - at(s)) / facing; };
+  add(low, height(low), low_name);
+  if (low < high) add(high, height(high), high_name);
+}
+
+// Two edges side by side: the ends of the stretch that both share.
+void EdgeContact::beside_segment() const {
+  const Vec3 a = face.vertices[0], b = face.vertices[1], along = end() - start();
+  const float scale = 1.0f / length_squared(along);
+  const float s_a = dot(a - start(), along) * scale, s_b = dot(b - start(), along) * scale;
+  const float low = max(0.0f, min(s_a, s_b)), high = min(1.0f, max(s_a, s_b));
+  if (low > high || s_a == s_b) return;
+  const auto height = [&](float s) { return dot(direction, lerp(a, b, (s - s_a) / (s_b - s_a)) - at(s)); };
+  const auto name = [&](float s, int corner) {
+    if (s == s_a || s == s_b)
+      return point_name(PointKind::edges, t.edge_id[edge], face.ids[s == s_a ? 0 : 1]);
+    return point_name(PointKind::surface_corner, t.corner_id[corner], edge_name(face, 0));
+  };
+  add(low, height(low), name(low, edge));
+  if (low < high) add(high, height(high), name(high, next_corner(edge)));
+}
+
+// Two edges that cross, or an edge and a point.
+void EdgeContact::nearest() const {
+  const Vec3 last = face.vertices[face.count - 1];
+  const SegmentPair pair =
+      closest_of_segments(DVec3(start()), DVec3(end()), DVec3(face.vertices[0]), DVec3(last));
+  const Vec3 p = to_float(pair.on_a), q = to_float(pair.on_b);
+  const std::uint32_t name = face.count == 1 ? face.ids[0] : edge_name(face, 0);
+  emit.pair(q, dot(direction, q - p) - emit.radius, point_name(PointKind::edges, t.edge_id[edge], name));
+}
+
+// The edge of a polygon that is lowest along `direction`, or its lowest corner.
+void lowest_edge(const FacePolygon& face, Vec3 direction, FacePolygon& out) {
+  int lowest = 0;
+  for (int k = 1; k < face.count; ++k) {
+    if (dot(direction, face.vertices[k]) < dot(direction, face.vertices[lowest])) lowest = k;
+  }
+  const int after = lowest + 1 == face.count ? 0 : lowest + 1,
+            before = lowest == 0 ? face.count - 1 : lowest - 1;
+  // The flatter of the two edges that meet there.
+  const auto rise = [&](int k) {
+    const Vec3 edge = face.vertices[k] - face.vertices[lowest];
+    return dot(direction, edge) / max(length(edge), 1.0e-30f);
+  };
+  const int other = rise(after) <= rise(before) ? after : before;
+  out.count = 2;
+  out.normal = -direction;
+  out.feature = face.feature;
+  out.vertices[0] = face.vertices[lowest];
+  out.ids[0] = face.ids[lowest];
+  out.vertices[1] = face.vertices[other];
+  out.ids[1] = face.ids[other];
+}
+
+void corner_points(const NearTriangle& t, int corner, const PlacedConvex& convex, const FacePolygon& face,
+                   const Emitter& emit) {
+  const Vec3 v = t.v[corner];
+  const std::uint32_t name = point_name(PointKind::surface_corner, t.corner_id[corner], face.feature);
+  const float facing = dot(face.normal, emit.direction);
+  if (face.count >= 3 && facing < -kFlush) {
+    const float height = dot(face.normal, face.vertices[0] - v) / facing;
+    return emit.pair(v + height * emit.direction, height - emit.radius, name);
+  }
+  const float height = convex.lowest(emit.direction) - dot(emit.direction, v);
+  emit.pair(v + height * emit.direction, height - emit.radius, name);
+}
+
+}  // namespace
+
+void feature_points(const NearTriangle& t, const PlacedConvex& convex, const FeatureAxis& axis,
+                    float max_separation, MeshPoints& out) {
+  const Vec3 d = axis.direction;
+  FacePolygon face;
+  convex.face_towards(-d, face);
+  const Emitter emit{d, t.v[0], convex.radius(), max_separation, out};
+  for (int i = 0; i < 3; ++i) {
+    if (axis.corners == 1u << i) return corner_points(t, i, convex, face, emit);
+  }
+  const int edge = axis.corners == 3 ? 0 : (axis.corners == 6 ? 1 : 2);
+  if (face.count >= 3 && dot(face.normal, d) < -kFlush) {
+    EdgeContact{t, edge, face, d, emit}.under_polygon();
+    if (out.count > 0) return;
+  }
+  FacePolygon narrow;
+  const FacePolygon* facing = &face;
+  if (face.count >= 3) {
+    lowest_edge(face, d, narrow);
+    facing = &narrow;
+  }
+  const EdgeContact contact{t, edge, *facing, d, emit};
+  if (facing->count == 2) {
+    const Vec3 segment = facing->vertices[1] - facing->vertices[0];
+    if (length(cross(segment, t.along[edge])) <= kParallel * length(segment)) {
+      contact.beside_segment();
+      if (out.count > 0) return;
+    }
+  }
+  contact.nearest();
+}
+
+}  // namespace gyre
