@@ -131,12 +131,16 @@ struct Mask {
   friend GYRE_INLINE bool any(Mask mask) {
 #if defined(__aarch64__)
     if constexpr (W == 4) return vmaxvq_u32((uint32x4_t)mask.v) != 0;
+#elif defined(__wasm_simd128__)
+    if constexpr (W == 4) return wasm_v128_any_true((v128_t)mask.v);
 #endif
     return to_bits(mask) != 0u;
   }
   friend GYRE_INLINE bool all(Mask mask) {
 #if defined(__aarch64__)
     if constexpr (W == 4) return vminvq_u32((uint32x4_t)mask.v) != 0;
+#elif defined(__wasm_simd128__)
+    if constexpr (W == 4) return wasm_i32x4_all_true((v128_t)mask.v);
 #endif
     return to_bits(mask) == (1u << W) - 1u;
   }
@@ -224,6 +228,8 @@ struct Wide {
 #endif
 #if defined(__SSE2__)
     if constexpr (W == 4) return of((Float)_mm_min_ps((__m128)a.v, (__m128)b.v));
+#elif defined(__wasm_simd128__)
+    if constexpr (W == 4) return of((Float)wasm_f32x4_pmin((v128_t)b.v, (v128_t)a.v));
 #endif
     return select(a < b, a, b);
   }
@@ -233,6 +239,8 @@ struct Wide {
 #endif
 #if defined(__SSE2__)
     if constexpr (W == 4) return of((Float)_mm_max_ps((__m128)a.v, (__m128)b.v));
+#elif defined(__wasm_simd128__)
+    if constexpr (W == 4) return of((Float)wasm_f32x4_pmax((v128_t)b.v, (v128_t)a.v));
 #endif
     return select(a > b, a, b);
   }

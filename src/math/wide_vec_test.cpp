@@ -38,10 +38,10 @@ TEST(WideVec, LanesHaveTheBitsOfTheScalarOperations) {
     Sym3 t[4];
     Quat q[4];
     float s[4];
-    Vec3W<4> uw, vw;
-    QuatW<4> qw;
-    Sym3W<4> tw;
-    Wide<4> sw;
+    Vec3W<4> uw{}, vw{};
+    QuatW<4> qw{};
+    Sym3W<4> tw{};
+    Wide<4> sw{};
     for (int i = 0; i < 4; ++i) {
       u[i] = random.vector();
       v[i] = random.vector();
@@ -97,7 +97,7 @@ TEST(WideVec, LanesHaveTheBitsOfTheScalarOperations) {
 TEST(WideVec, SinCosWithinItsError) {
   double worst = 0.0, worst_far = 0.0;
   for (int i = -400000; i <= 400000; i += 4) {
-    Wide<4> x;
+    Wide<4> x{};
     for (int k = 0; k < 4; ++k) x.set(k, float(i + k) * 0.0200017f);
     const SinCosW<4> found = sin_cos(x);
     for (int k = 0; k < 4; ++k) {
@@ -184,7 +184,7 @@ void expect_scatter() {
     std::vector<float> memory = records(), expected = memory;
     std::int32_t indices[W];
     fill_indices(round, indices);
-    Wide<W> in[Columns];
+    Wide<W> in[Columns]{};
     for (int c = 0; c < Columns; ++c) {
       for (int i = 0; i < W; ++i) {
         in[c].set(i, float(-1000 * c - i));
