@@ -14,11 +14,11 @@ constexpr float kLargestApproach =
 constexpr float kNearSlack = 0.01f;
 constexpr float kFarSlack = 0.25f;
 constexpr float kSlow = 0.02f;  // a step
-// How far points may go against each other before the pair is looked at anew: along flat features, and where one of the
-// two is round (a rolling contact must not lag behind).
-constexpr float kFlatSlide = 1.0e-3f;
-constexpr float kRoundSlide = 1.0e-5f;
-constexpr float kLargestTilt = 1.0e-3f;  // rad, likewise
+// How far points may go against each other, and how far the pair may tilt (rad), before it is looked at anew: where flat
+// features meet, and where one of the two is round. There the contact goes on while the bodies' points do not (rolling),
+// and what lags behind would brake.
+constexpr float kFlatSlide = 1.0e-3f, kFlatTilt = 1.0e-3f;
+constexpr float kRoundSlide = 1.0e-5f, kRoundTilt = 1.0e-5f;
 // Where a float's rounding of the distance between the bodies is more than this, a recycled separation would rattle.
 constexpr float kRattle = 1.0e-4f;
 constexpr float kTouch = 0.005f;  // surfaces nearer than this touch
@@ -94,11 +94,11 @@ bool is_flat(const Shape& shape) {
 // Whether the anchors are still good, and how far each point of B has gone (way[manifold][point]).
 bool anchors_hold(std::span<const Manifold> manifolds, const ContactPair& pair, const View& view,
                   const Motion& motion, Vec3 (*way)[kMaxManifoldPoints]) {
-  if (2.0f * motion.sine > kLargestTilt) return false;
   if (largest(absolute(view.a_from_b.position)) * 1.2e-7f > kRattle * view.size) return false;
   const bool flat_shapes = is_flat(pair.shape_a->shape) && is_flat(pair.shape_b->shape);
   for (std::size_t m = 0; m < manifolds.size(); ++m) {
     const bool flat = flat_shapes || manifolds[m].count >= 3;
+    if (2.0f * motion.sine > (flat ? kFlatTilt : kRoundTilt)) return false;
     const float most = (flat ? kFlatSlide : kRoundSlide) * view.size;
     for (int i = 0; i < manifolds[m].count; ++i) {
       way[m][i] = motion.of(manifolds[m].anchors[i].position);
@@ -260,9 +260,11 @@ void match_by_place(Former& former, Manifold& manifold, unsigned matched, float 
 }
 
 // From the frame of shape A into world axes, and into the body frame for anchors. Impulses are zero.
-Manifold to_world(const LocalManifold& local, const Found& found, const ContactPair& pair, const View& view) {
+Manifold to_world(const LocalManifold& local, const Found& found, const ContactPair& pair) {
   const ColliderBody& a = *pair.body_a;
-  const Vec3 frame_from_com = difference(found.frame.position, center_of_mass(a));
+  // Each side by itself: one of the two may be far away (a plane's body), and floats with it.
+  const Vec3 frame_from_a = difference(found.frame.position, center_of_mass(a));
+  const Vec3 frame_from_b = difference(found.frame.position, center_of_mass(*pair.body_b));
   Manifold out;
   out.normal = rotate(found.frame.orientation, local.normal);
   out.count = local.count;
@@ -270,8 +272,9 @@ Manifold to_world(const LocalManifold& local, const Found& found, const ContactP
   out.seen_normal = rotate_inverse(a.pose.orientation, out.normal);
   for (int i = 0; i < local.count; ++i) {
     ContactPointState& point = out.points[i];
-    point.from_a = rotate(found.frame.orientation, local.points[i].position) + frame_from_com;
-    point.from_b = point.from_a - view.com_b_from_a;
+    const Vec3 place = rotate(found.frame.orientation, local.points[i].position);
+    point.from_a = place + frame_from_a;
+    point.from_b = place + frame_from_b;
     point.separation = local.points[i].separation;
     point.feature = local.points[i].feature;
     out.anchors[i].position = rotate_inverse(a.pose.orientation, point.from_a) + a.center;
@@ -291,7 +294,7 @@ void write_manifolds(ContactStore& store, Contact& contact, const Found& found, 
   Manifold* const out = store.manifolds.data() + contact.first_manifold;
   unsigned matched[kMaxMeshManifolds] = {};
   for (int m = 0; m < count; ++m) {
-    out[m] = to_world(found.manifolds[m], found, pair, view);
+    out[m] = to_world(found.manifolds[m], found, pair);
     const int old = find_former(former, out[m], single);
     if (old < 0) continue;
     former.taken[old] = true;
