@@ -2,6 +2,7 @@
 #
 #   gyre_add_gtest(name source...)  one GoogleTest program; every test in it becomes a ctest test
 #   gyre_add_folder_tests(folder prefix)  one program for each sub-folder that holds *_test.cpp
+#     (tests of kernels may add files named <unit>_test_kernels_<target>.cpp, compiled for that target)
 #
 # A suite whose name begins with Long carries the label `long`: `ctest -LE long` leaves it out.
 
@@ -52,7 +53,8 @@ function(gyre_add_gtest name)
 endfunction()
 
 function(gyre_add_folder_tests folder prefix)
-  file(GLOB_RECURSE files CONFIGURE_DEPENDS ${folder}/*_test.cpp)
+  file(GLOB_RECURSE files CONFIGURE_DEPENDS ${folder}/*_test.cpp ${folder}/*_test_kernels_*.cpp)
+  gyre_kernel_flags(files)
   set(names)
   foreach(file IN LISTS files)
     file(RELATIVE_PATH relative ${folder} ${file})

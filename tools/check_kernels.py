@@ -3,7 +3,7 @@
 
 An inline function that the compiler did not inline is emitted in every object that uses it, and the linker keeps one copy
 for all. If that copy came from an AVX2 file, an older processor would run into it outside the kernels. So whatever such an object
-defines weakly must live in the namespace of its target (GYRE_TARGET_NAMESPACE, target_<name>).
+defines weakly must live in the namespace of its target (GYRE_TARGET_NAMESPACE, which ends in the target's name).
 """
 
 import re
@@ -23,7 +23,7 @@ def main():
         done = subprocess.run(["nm", "-C", "--defined-only", str(path)], capture_output=True, text=True, check=True)
         for line in done.stdout.splitlines():
             match = re.match(r"^[0-9a-f]+ ([A-Za-z]) (.*)$", line)
-            if match and match.group(1) in "WVu" and f"target_{target}::" not in match.group(2):
+            if match and match.group(1) in "WVu" and not re.search(rf"\b\w+_{target}::", match.group(2)):
                 print(f"{path.name}: shares '{match.group(2)}', compiled for {target}")
                 problems += 1
             if match and "_GLOBAL__sub_I" in line:
