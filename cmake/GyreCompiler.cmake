@@ -17,10 +17,18 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64|ARM64)$" AND NOT EMSCRIPTEN)
   set(gyre_arm64 ON)
 endif()
 
-# Contraction is public: the inline functions of <gyre/math.h> are compiled into the user's objects too, and the linker may
-# keep the user's copy for the library. With a fused multiply-add in it, the library's results would change.
+# What keeps results the same everywhere. Public: the inline functions of <gyre/math.h> are compiled into the user's objects too,
+# and the linker may keep the user's copy for the library.
+#
+# - No contraction: a fused multiply-add rounds once where two operations round twice.
+# - GCC 12 drops the rounding of neighbouring doubles to float and back when it vectorises straight-line code on x86, at -O2
+#   already and at strict settings: {float(a), float(b)} stored as doubles are a and b. A test in src/math watches for it.
+set(gyre_float_options)
 if(gyre_gnu_like)
   set(gyre_float_options -ffp-contract=off)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    list(APPEND gyre_float_options -fno-tree-slp-vectorize)
+  endif()
 elseif(MSVC)
   set(gyre_float_options /fp:precise)
 endif()
@@ -70,7 +78,8 @@ endfunction()
 function(gyre_core_flags target)
   if(gyre_gnu_like)
     target_compile_options(${target} INTERFACE
-      $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang>:${gyre_float_options}>)
+      $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang>:-ffp-contract=off>
+      $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fno-tree-slp-vectorize>)
     target_compile_options(${target} PRIVATE -fno-exceptions -fno-rtti)
   elseif(MSVC)
     target_compile_options(${target} PRIVATE /GR- /EHs-c- /D_HAS_EXCEPTIONS=0)
