@@ -29,6 +29,52 @@ int longest_axis(std::span<const Entry> entries) {
   return d.x >= d.y && d.x >= d.z ? 0 : d.y >= d.z ? 1 : 2;
 }
 
+template <class Entry>
+float area_of(std::span<const Entry> entries) {
+  Aabb box = entries[0].box;
+  for (const Entry& entry : entries) box = merge(box, entry.box);
+  return half_area(box);
+}
+
+template <class Entry>
+float cost_of_groups(std::span<const Entry> entries, std::span<const std::size_t> sizes) {
+  float cost = 0.0f;
+  for (const std::size_t size : sizes) {
+    cost += area_of(entries.first(size));
+    entries = entries.subspan(size);
+  }
+  return cost;
+}
+
+// Few entries are parted along the axis that leaves the smallest surfaces, many along the longest.
+constexpr std::size_t kFew = 64;
+
+// Orders the entries so that each group is one run, all of nearly the same size. At most eight groups.
+template <class Entry>
+void part_into_groups(std::span<Entry> entries, int groups, std::size_t* sizes) {
+  if (groups == 1) {
+    *sizes = entries.size();
+    return;
+  }
+  const int left = groups / 2;
+  const std::size_t middle = entries.size() * std::size_t(left) / std::size_t(groups);
+  int best_axis = longest_axis<Entry>(entries);
+  if (entries.size() <= kFew) {
+    float least = std::numeric_limits<float>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+      partition_by_center(entries, middle, axis);
+      const float cost = area_of<Entry>(entries.first(middle)) + area_of<Entry>(entries.subspan(middle));
+      if (cost < least) {
+        least = cost;
+        best_axis = axis;
+      }
+    }
+  }
+  partition_by_center(entries, middle, best_axis);
+  part_into_groups(entries.first(middle), left, sizes);
+  part_into_groups(entries.subspan(middle), groups - left, sizes + left);
+}
+
 }  // namespace
 
 Aabb BoxTree::lane_box(const Node& node, int lane) {
@@ -291,24 +337,18 @@ std::uint32_t BoxTree::build_node(std::span<Entry> entries, int level, int lowes
   const std::uint32_t node = make_node(level);
   if (level == lowest) {
     for (const Entry& entry : entries) append_child(node, entry);
-  } else {
-    const std::size_t room = room_of(level - 1);
-    add_groups(node, entries, int((entries.size() + room - 1) / room), level, lowest);
+    return node;
+  }
+  const std::size_t room = room_of(level - 1);
+  std::size_t sizes[kWidth];
+  const int groups = int((entries.size() + room - 1) / room);
+  part_into_groups<Entry>(entries, groups, sizes);
+  for (int i = 0; i < groups; ++i) {
+    const std::uint32_t child = build_node(entries.first(sizes[i]), level - 1, lowest);
+    append_child(node, {bounds_of(nodes_[child]), child});
+    entries = entries.subspan(sizes[i]);
   }
   return node;
-}
-
-void BoxTree::add_groups(std::uint32_t parent, std::span<Entry> entries, int groups, int level, int lowest) {
-  if (groups == 1) {
-    const std::uint32_t child = build_node(entries, level - 1, lowest);
-    append_child(parent, {bounds_of(nodes_[child]), child});
-    return;
-  }
-  const int left = groups / 2;
-  const std::size_t middle = entries.size() * std::size_t(left) / std::size_t(groups);
-  partition_by_center(entries, middle, longest_axis<Entry>(entries));
-  add_groups(parent, entries.first(middle), left, level, lowest);
-  add_groups(parent, entries.subspan(middle), groups - left, level, lowest);
 }
 
 void BoxTree::improve(int nodes) {
@@ -326,18 +366,31 @@ void BoxTree::improve(int nodes) {
 void BoxTree::regroup(std::uint32_t index) {
   Entry entries[kWidth * kWidth];
   std::size_t count = 0;
+  float cost_before = 0.0f;
   const int level = nodes_[index].level;
+  const int groups_before = nodes_[index].count;
+  for (int lane = 0; lane < groups_before; ++lane) {
+    const Node& child = nodes_[nodes_[index].child[lane]];
+    for (int i = 0; i < child.count; ++i) entries[count++] = {lane_box(child, i), child.child[i]};
+    cost_before += half_area(lane_box(nodes_[index], lane));
+  }
+  const int groups = int(min((count + kFill - 1) / kFill, std::size_t(kWidth)));
+  std::size_t sizes[kWidth];
+  part_into_groups<Entry>({entries, count}, groups, sizes);
+  const float cost = cost_of_groups(std::span<const Entry>(entries, count), {sizes, std::size_t(groups)});
+  // Fewer groups are taken at any price: empty places cost walks, too.
+  if (groups >= groups_before && cost >= cost_before) return;
   while (nodes_[index].count > 0) {
     const int lane = nodes_[index].count - 1;
-    const std::uint32_t child = nodes_[index].child[lane];
-    for (int i = 0; i < nodes_[child].count; ++i) {
-      entries[count++] = {lane_box(nodes_[child], i), nodes_[child].child[i]};
-    }
-    free_node(child);
+    free_node(nodes_[index].child[lane]);
     remove_lane(index, lane);
   }
-  const std::size_t groups = min((count + kFill - 1) / kFill, std::size_t(kWidth));
-  add_groups(index, {entries, count}, int(groups), level, level - 1);
+  std::span<Entry> rest(entries, count);
+  for (int i = 0; i < groups; ++i) {
+    const std::uint32_t child = build_node(rest.first(sizes[i]), level - 1, level - 1);
+    append_child(index, {bounds_of(nodes_[child]), child});
+    rest = rest.subspan(sizes[i]);
+  }
   refit_up(index);
   shorten_root();
 }

@@ -13,6 +13,7 @@
 #pragma once
 
 #include "base/array.h"
+#include "math/wide.h"
 
 #include <gyre/math.h>
 
@@ -88,16 +89,17 @@ class BoxTree {
     std::uint32_t child;
   };
 
+  // Bit i: lane i's box overlaps `box`.
   static unsigned overlap_mask(const Node& node, const Aabb& box) {
-    std::uint8_t hit[kWidth];
-    for (int i = 0; i < kWidth; ++i) {
-      hit[i] = std::uint8_t((node.low[0][i] <= box.high.x) & (box.low.x <= node.high[0][i]) &
-                            (node.low[1][i] <= box.high.y) & (box.low.y <= node.high[1][i]) &
-                            (node.low[2][i] <= box.high.z) & (box.low.z <= node.high[2][i]));
-    }
-    unsigned mask = 0;
-    for (int i = 0; i < kWidth; ++i) mask |= unsigned(hit[i]) << i;
-    return mask;
+    using Half = Wide<4>;
+    const auto half = [&](int first) {
+      const auto load = [first](const float* lanes) { return Half::load(lanes + first); };
+      const Mask<4> x = (load(node.low[0]) <= Half(box.high.x)) & (load(node.high[0]) >= Half(box.low.x));
+      const Mask<4> y = (load(node.low[1]) <= Half(box.high.y)) & (load(node.high[1]) >= Half(box.low.y));
+      const Mask<4> z = (load(node.low[2]) <= Half(box.high.z)) & (load(node.high[2]) >= Half(box.low.z));
+      return to_bits(x & y & z);
+    };
+    return half(0) | half(4) << 4;
   }
   static Aabb lane_box(const Node& node, int lane);
   static void set_lane_box(Node& node, int lane, const Aabb& box);
@@ -114,9 +116,6 @@ class BoxTree {
   std::uint32_t split(std::uint32_t node, const Entry& extra);
   void shorten_root();
   void regroup(std::uint32_t node);
-  // Parts the entries into `groups` and adds a child to `parent`, of level `level`, for each. Nodes of level `lowest` get
-  // the entries themselves as children.
-  void add_groups(std::uint32_t parent, std::span<Entry> entries, int groups, int level, int lowest);
   std::uint32_t build_node(std::span<Entry> entries, int level, int lowest);
   const char* find_fault(std::uint32_t node, std::size_t& items) const;
 

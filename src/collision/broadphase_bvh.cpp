@@ -11,8 +11,8 @@ namespace {
 constexpr std::size_t kManyChanges = 64;
 constexpr std::size_t kRebuildShare = 4;  // a quarter
 // Inner nodes regrouped in each update, and one more for so many changes.
-constexpr std::size_t kImproved = 2;
-constexpr std::size_t kChangesPerImproved = 32;
+constexpr std::size_t kImproved = 1;
+constexpr std::size_t kChangesPerImproved = 128;
 
 void insert_sorted(Array<std::uint32_t>& list, std::uint32_t index) {
   std::size_t place = 0;
