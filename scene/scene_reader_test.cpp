@@ -53,7 +53,7 @@ TEST(SceneReader, RefusesWhatIsWrongInTheDocument) {
       {R"({"gyre_scene": 2})", "/gyre_scene", {"found 2, expected 1"}},
       {R"({"gyre_scene": "1"})", "/gyre_scene", {"found \"1\", expected 1"}},
       {R"({"gyre_scene": 1, "gyre_scene": 1})", "/gyre_scene", {"twice"}},
-      {R"({"gyre_scene": 1} x)", "", {"not valid JSON", "bad.gyre.json:1:18"}},
+      {R"({"gyre_scene": 1} x)", "", {"not valid JSON", "bad.gyre.json:1:19"}},
       {R"({"gyre_scene": 1,})", "", {"not valid JSON"}},
       {"// comment\n{\"gyre_scene\": 1}", "", {"not valid JSON"}},
       {"{\n  \"gyre_scene\": 1,\n  \"name\": nope\n}", "/name", {"bad.gyre.json:3:", "not valid JSON"}},

@@ -1,0 +1,183 @@
+// gyre info: what a scene holds, and the mass properties of each body as the engine found them.
+#include "commands.h"
+#include "exit_code.h"
+#include "scene/json_writer.h"
+#include "scene/number_text.h"
+#include "scene/scene_reader.h"
+#include "scene/scene_runner.h"
+
+#include <CLI/CLI.hpp>
+
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+namespace gyre {
+namespace {
+
+struct Counts {
+  std::array<int, 3> bodies{};  // by BodyType
+  std::array<int, std::variant_size_v<SceneGeometry>> shapes{};
+  std::array<int, 5> joints{};  // by JointKind
+};
+
+constexpr const char* kBodyWords[] = {"static", "kinematic", "dynamic"};
+constexpr const char* kShapeWords[] = {"sphere", "box", "capsule", "cylinder", "cone", "plane", "convex_hull", "mesh", "height_field"};
+constexpr const char* kJointWords[] = {"ball", "hinge", "slider", "fixed", "distance"};
+
+Counts count(const Scene& scene) {
+  Counts out;
+  for (const SceneBody& body : scene.bodies) {
+    ++out.bodies[std::size_t(body.def.type)];
+    for (const SceneShape& shape : body.shapes) ++out.shapes[shape.geometry.index()];
+  }
+  for (const SceneJoint& joint : scene.joints) ++out.joints[std::size_t(joint.def.kind)];
+  return out;
+}
+
+std::string number(double value) {
+  std::string out;
+  append_rounded(out, value, 6);
+  return out;
+}
+template <class V>
+std::string vector(const V& v) {
+  return "(" + number(double(v[0])) + ", " + number(double(v[1])) + ", " + number(double(v[2])) + ")";
+}
+
+// "12: 3 box, 9 sphere".
+template <std::size_t N>
+std::string listed(const std::array<int, N>& counts, const char* const* words) {
+  int total = 0;
+  std::string parts;
+  for (std::size_t i = 0; i < N; ++i) {
+    total += counts[i];
+    if (counts[i] > 0) parts += (parts.empty() ? ": " : ", ") + std::to_string(counts[i]) + " " + words[i];
+  }
+  return std::to_string(total) + parts;
+}
+
+void print_text(const SceneRunner& runner) {
+  const Scene& scene = runner.scene();
+  const Counts counts = count(scene);
+  std::string out;
+  if (!scene.name.empty()) out += scene.name + "\n";
+  out += "bodies  " + listed(counts.bodies, kBodyWords) + "\n";
+  out += "shapes  " + listed(counts.shapes, kShapeWords) + "\n";
+  out += "joints  " + listed(counts.joints, kJointWords) + "\n";
+  out += "step    " + number(scene.world.time_step) + " s in " + std::to_string(scene.world.substeps) + " sub-steps, gravity " +
+         vector(scene.world.gravity) + " m/s^2\n";
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const SceneBody& body = scene.bodies[i];
+    out += "\nbody \"" + body.name + "\", " + kBodyWords[std::size_t(body.def.type)] + ", " +
+           std::to_string(body.shapes.size()) + (body.shapes.size() == 1 ? " shape\n" : " shapes\n");
+    if (body.def.type != BodyType::dynamic) continue;
+    const MassProperties mass = runner.world().mass_properties(runner.bodies()[i]);
+    const PrincipalAxes principal = principal_axes(mass.inertia);
+    const Mat3 axes = to_matrix(principal.orientation);
+    out += "  mass             " + number(double(mass.mass)) + " kg\n";
+    out += "  centre of mass   " + vector(mass.center) + " m in the body, " +
+           vector(runner.world().center_of_mass(runner.bodies()[i])) + " m in the world\n";
+    out += "  inertia          xx " + number(double(mass.inertia.xx)) + ", yy " + number(double(mass.inertia.yy)) + ", zz " +
+           number(double(mass.inertia.zz)) + ", xy " + number(double(mass.inertia.xy)) + ", xz " +
+           number(double(mass.inertia.xz)) + ", yz " + number(double(mass.inertia.yz)) + " kg m^2\n";
+    out += "  principal        " + vector(principal.moments) + " kg m^2 about " + vector(axes.x) + ", " + vector(axes.y) + ", " +
+           vector(axes.z) + "\n";
+  }
+  std::fwrite(out.data(), 1, out.size(), stdout);
+}
+
+template <std::size_t N>
+void write_counts(JsonWriter& json, const char* key, const std::array<int, N>& counts, const char* const* words) {
+  json.key(key).begin_object(JsonLayout::one_line);
+  for (std::size_t i = 0; i < N; ++i) {
+    if (counts[i] > 0) json.field(words[i], counts[i]);
+  }
+  json.end_object();
+}
+
+// A body that forces cannot move has no finite mass: its figures are null.
+void write_body(JsonWriter& json, const SceneRunner& runner, std::size_t index) {
+  const SceneBody& body = runner.scene().bodies[index];
+  json.begin_object();
+  json.field("name", body.name);
+  json.field("type", kBodyWords[std::size_t(body.def.type)]);
+  json.field("shapes", std::int64_t(body.shapes.size()));
+  if (body.def.type != BodyType::dynamic) {
+    for (const char* key : {"mass", "center_of_mass", "inertia", "principal_moments", "principal_axes"}) json.key(key).null();
+  } else {
+    const MassProperties mass = runner.world().mass_properties(runner.bodies()[index]);
+    const PrincipalAxes principal = principal_axes(mass.inertia);
+    const Mat3 axes = to_matrix(principal.orientation);
+    json.field("mass", mass.mass);
+    json.field("center_of_mass", mass.center);
+    json.field("inertia", mass.inertia);
+    json.field("principal_moments", principal.moments);
+    json.key("principal_axes").begin_array(JsonLayout::one_line);
+    for (const Vec3& axis : {axes.x, axes.y, axes.z}) json.value(axis);
+    json.end_array();
+  }
+  json.end_object();
+}
+
+void print_json(const SceneRunner& runner) {
+  const Scene& scene = runner.scene();
+  const Counts counts = count(scene);
+  std::size_t shapes = 0;
+  for (const SceneBody& body : scene.bodies) shapes += body.shapes.size();
+  JsonWriter json;
+  json.begin_object();
+  json.field("name", scene.name);
+  json.key("counts").begin_object();
+  json.field("bodies", std::int64_t(scene.bodies.size()));
+  write_counts(json, "bodies_by_type", counts.bodies, kBodyWords);
+  json.field("shapes", std::int64_t(shapes));
+  write_counts(json, "shapes_by_type", counts.shapes, kShapeWords);
+  json.field("joints", std::int64_t(scene.joints.size()));
+  write_counts(json, "joints_by_type", counts.joints, kJointWords);
+  json.field("materials", std::int64_t(scene.materials.size()));
+  json.field("meshes", std::int64_t(scene.meshes.size()));
+  json.end_object();
+  json.key("bodies").begin_array();
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) write_body(json, runner, i);
+  json.end_array();
+  json.end_object();
+  const std::string text = json.take();
+  std::fwrite(text.data(), 1, text.size(), stdout);
+}
+
+int show_info(const std::string& path, bool as_json) {
+  SceneResult<Scene> scene = load_scene(path);
+  if (!scene) {
+    std::fprintf(stderr, "gyre: %s\n", scene.error().text().c_str());
+    return kExitInvalid;
+  }
+  const SceneResult<SceneRunner> runner = SceneRunner::create(*std::move(scene), path);
+  if (!runner) {
+    std::fprintf(stderr, "gyre: %s\n", runner.error().text().c_str());
+    return kExitInvalid;
+  }
+  if (as_json) {
+    print_json(*runner);
+  } else {
+    print_text(*runner);
+  }
+  return kExitGood;
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, int& exit_code) {
+  struct Options {
+    std::string scene;
+    bool json = false;
+  };
+  CLI::App* command = app.add_subcommand("info", "Show what a scene holds, and the mass properties of its bodies");
+  const auto options = std::make_shared<Options>();
+  command->add_option("SCENE", options->scene, "The scene file (*.gyre.json)")->required()->type_name("");
+  command->add_flag("--json", options->json, "Print it as JSON");
+  command->callback([options, &exit_code] { exit_code = show_info(options->scene, options->json); });
+}
+
+}  // namespace gyre

@@ -1,0 +1,217 @@
+// gyre simulate: runs a scene and writes down what was asked for. All inputs are read and all outputs opened before the first
+// step, so that a mistake shows at once and leaves nothing behind. See simulate.h.
+#include "simulate.h"
+
+#include "exit_code.h"
+#include "interrupt.h"
+#include "progress.h"
+#include "scene/scene_reader.h"
+#include "scene/scene_writer.h"
+#include "summary.h"
+
+#include <gyre/replay.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+
+namespace gyre {
+namespace {
+
+void say(const std::string& message) { std::fprintf(stderr, "gyre: %s\n", message.c_str()); }
+
+class FileSink : public ByteSink {
+ public:
+  explicit FileSink(OutputFile& file) : file_(file) {}
+  bool write(std::span<const std::byte> bytes) override {
+    return file_.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  }
+
+ private:
+  OutputFile& file_;
+};
+
+// Two outputs in one file, or one in the place of the scene, would destroy each other. Only the final scene may take the
+// place of the scene that it goes on from.
+std::string find_clash(const SimulateOptions& options) {
+  const std::pair<const char*, const std::string*> outputs[] = {
+      {"--record", &options.record}, {"--trace", &options.trace}, {"--stats", &options.stats}, {"--final", &options.final}};
+  const auto place = [](const std::string& path) {
+    std::error_code error;
+    const std::filesystem::path resolved = std::filesystem::weakly_canonical(path, error);
+    return error ? path : resolved.string();
+  };
+  const auto is_device = [](const std::string& path) {
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
+  };
+  for (const auto& [option, path] : outputs) {
+    if (path->empty() || is_device(*path)) continue;
+    if (path != &options.final && place(*path) == place(options.scene)) {
+      return std::string(option) + " would overwrite the scene";
+    }
+    for (const auto& [other_option, other] : outputs) {
+      if (other == path) break;
+      if (!other->empty() && place(*other) == place(*path)) {
+        return std::string(option) + " and " + other_option + " name the same file";
+      }
+    }
+  }
+  return {};
+}
+
+// One run: the scene, its outputs, and how it ended.
+class Simulation {
+ public:
+  Simulation(const SimulateOptions& options, SceneRunner runner) : options_(options), runner_(std::move(runner)) {}
+
+  bool open_outputs();
+  int run();
+
+ private:
+  int run_steps(std::uint64_t steps);
+  bool record_step(double step_ms);
+  bool finish_outputs(int ended);
+  void print_result() const;
+  int fail(const OutputFile& file) {
+    say(file.message());
+    return kExitInvalid;
+  }
+
+  const SimulateOptions& options_;
+  SceneRunner runner_;
+  TraceTable trace_;
+  StatsTable stats_;
+  OutputFile record_, final_;
+  FileSink sink_{record_};
+  std::unique_ptr<Recorder> recorder_;
+  RunFigures figures_;
+};
+
+bool Simulation::open_outputs() {
+  const auto check = [](bool opened, const OutputFile& file) {
+    if (!opened) say(file.message());
+    return opened;
+  };
+  if (!options_.trace.empty() && !check(trace_.open(options_.trace), trace_.file())) return false;
+  if (!options_.stats.empty() && !check(stats_.open(options_.stats), stats_.file())) return false;
+  if (!options_.final.empty() && !check(final_.open(options_.final), final_)) return false;
+  if (!options_.record.empty()) {
+    if (!check(record_.open(options_.record), record_)) return false;
+    recorder_ = std::make_unique<Recorder>(runner_.world(), sink_);
+  }
+  return true;
+}
+
+bool Simulation::record_step(double step_ms) {
+  if (trace_.file().is_open() && runner_.steps() % options_.trace_every == 0 && !trace_.add_rows(runner_)) {
+    return fail(trace_.file()) == kExitGood;
+  }
+  if (stats_.file().is_open() && runner_.steps() > 0 && !stats_.add_row(runner_, step_ms)) {
+    return fail(stats_.file()) == kExitGood;
+  }
+  if (recorder_ && recorder_->failed()) {
+    say(record_.message().empty() ? options_.record + ": cannot be written" : record_.message());
+    return false;
+  }
+  return true;
+}
+
+int Simulation::run_steps(std::uint64_t steps) {
+  using Clock = std::chrono::steady_clock;
+  Progress progress(!options_.quiet, steps);
+  if (!record_step(0)) return kExitInvalid;
+  for (std::uint64_t i = 0; i < steps; ++i) {
+    const Clock::time_point begin = Clock::now();
+    const bool finite = runner_.step();
+    const double step_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+    figures_.step_ms.push_back(float(step_ms));
+    if (!finite) {
+      progress.clear();
+      say("the simulation is no longer finite in step " + std::to_string(i + 1) + ": " + runner_.problem() +
+          "; what was recorded up to there is kept");
+      return kExitNotFinite;
+    }
+    if (!record_step(step_ms)) return kExitInvalid;
+    progress.show(i + 1);
+    if (interrupted()) {
+      progress.clear();
+      say("interrupted after step " + std::to_string(i + 1) + "; what was recorded up to there is kept");
+      return kExitInterrupted;
+    }
+  }
+  return kExitGood;
+}
+
+bool Simulation::finish_outputs(int ended) {
+  if (recorder_) {
+    const bool whole = recorder_->finish();
+    recorder_.reset();
+    if (!whole || !record_.commit()) {
+      say(record_.message().empty() ? options_.record + ": cannot be written" : record_.message());
+      return false;
+    }
+  }
+  for (OutputFile* file : {&trace_.file(), &stats_.file()}) {
+    if (file->is_open() && !file->commit()) return fail(*file) == kExitGood;
+  }
+  // A state that is not finite is not a scene.
+  if (final_.is_open() && ended != kExitNotFinite) {
+    if (!final_.write(write_scene(runner_.final_scene())) || !final_.commit()) return fail(final_) == kExitGood;
+  }
+  return true;
+}
+
+void Simulation::print_result() const {
+  std::string out;
+  if (options_.json) {
+    out = summary_json(runner_, figures_);
+  } else {
+    if (!options_.quiet) out = summary_text(runner_, figures_);
+    if (options_.hash) out += hash_text(runner_.world()) + "\n";
+  }
+  std::fwrite(out.data(), 1, out.size(), stdout);
+}
+
+int Simulation::run() {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point begin = Clock::now();
+  const int ended = run_steps(step_count(options_, runner_.scene().world.time_step));
+  figures_.wall_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+  if (ended == kExitInvalid) return ended;
+  if (!finish_outputs(ended)) return kExitInvalid;
+  print_result();
+  return ended;
+}
+
+}  // namespace
+
+int simulate(const SimulateOptions& options) {
+  const std::string clash = find_clash(options);
+  if (!clash.empty()) {
+    say(clash);
+    return kExitUsage;
+  }
+  SceneResult<Scene> scene = load_scene(options.scene);
+  if (!scene) {
+    say(scene.error().text());
+    return kExitInvalid;
+  }
+  const std::string refusal = apply_overrides(options, scene->world);
+  if (!refusal.empty()) {
+    say(refusal);
+    return kExitUsage;
+  }
+  watch_interrupt();
+  SceneResult<SceneRunner> runner = SceneRunner::create(*std::move(scene), options.scene, options.threads);
+  if (!runner) {
+    say(runner.error().text());
+    return kExitInvalid;
+  }
+  Simulation simulation(options, *std::move(runner));
+  if (!simulation.open_outputs()) return kExitInvalid;
+  return simulation.run();
+}
+
+}  // namespace gyre

@@ -1,0 +1,40 @@
+// gyre simulate: its options, and one run of it.
+#pragma once
+
+#include "output_file.h"
+#include "scene/scene.h"
+#include "scene/scene_runner.h"
+#include "tables.h"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace gyre {
+
+struct SimulateOptions {
+  std::string scene;
+  std::optional<double> duration;  // s
+  std::optional<std::uint64_t> steps;
+  std::optional<double> time_step;
+  std::optional<int> substeps;
+  int threads = 1;
+  std::string solver, integrator, broad_phase, stepping;  // empty: what the scene says
+  bool no_sleeping = false;
+  std::string record, trace, stats, final;
+  std::uint64_t trace_every = 1;
+  bool hash = false, json = false, quiet = false;
+};
+
+// What the options say instead of the scene. Returns the reason if this version does not have it.
+std::string apply_overrides(const SimulateOptions& options, SceneWorld& world);
+
+// How many steps make the wanted duration.
+std::uint64_t step_count(const SimulateOptions& options, double time_step);
+
+// Runs the scene as the options say; the exit status.
+int simulate(const SimulateOptions& options);
+
+}  // namespace gyre

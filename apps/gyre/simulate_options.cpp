@@ -1,0 +1,130 @@
+// gyre simulate: its options, and what they change in a scene. See simulate.h.
+#include "commands.h"
+#include "exit_code.h"
+#include "simulate.h"
+
+#include <CLI/CLI.hpp>
+
+#include <cmath>
+#include <memory>
+
+namespace gyre {
+namespace {
+
+CLI::Validator number_between(double low, bool open_low, double high, const std::string& expected) {
+  return CLI::Validator(
+      [=](std::string& text) {
+        double value = 0;
+        if (CLI::detail::lexical_cast(text, value) && (open_low ? value > low : value >= low) && value <= high) {
+          return std::string();
+        }
+        return "found " + text + ", expected " + expected;
+      },
+      "", "");
+}
+
+void add_time_options(CLI::App& command, SimulateOptions& options) {
+  CLI::Option* duration = command.add_option("--duration", options.duration, "Simulated time in s; 10 if --steps is not given either")
+                              ->type_name("S")
+                              ->check(number_between(0, false, 1e12, "a number from 0 to 1e12"));
+  command.add_option("--steps", options.steps, "Number of steps, instead of a duration")
+      ->type_name("N")
+      ->check(number_between(0, false, 1e12, "an integer from 0 to 1e12"))
+      ->excludes(duration);
+  command.add_option("--step", options.time_step, "Length of a step in s")
+      ->type_name("S")
+      ->check(number_between(0, true, 1, "a number above 0 and at most 1"));
+  command.add_option("--substeps", options.substeps, "Sub-steps in a step, 1 to 64")
+      ->type_name("N")
+      ->check(number_between(1, false, 64, "an integer from 1 to 64"));
+  command.add_option("--threads", options.threads, "Worker threads, 0 for all of the machine; never changes a result")
+      ->type_name("N")
+      ->check(number_between(0, false, 1024, "an integer from 0 to 1024"));
+}
+
+void add_method_options(CLI::App& command, SimulateOptions& options) {
+  const auto words = [](std::vector<std::string> list) {
+    return CLI::Validator(
+        [list](std::string& text) {
+          std::string expected;
+          for (const std::string& word : list) {
+            if (word == text) return std::string();
+            expected += (expected.empty() ? "" : ", ") + word;
+          }
+          return "found " + text + ", expected one of " + expected;
+        },
+        "", "");
+  };
+  command.add_option("--solver", options.solver, "Contact solver: soft_step")
+      ->type_name("NAME")
+      ->check(words({"soft_step", "sequential_impulses", "lcp"}));
+  command.add_option("--integrator", options.integrator, "Integrator: semi_implicit_euler")
+      ->type_name("NAME")
+      ->check(words({"explicit_euler", "semi_implicit_euler", "rk4", "verlet"}));
+  command.add_option("--broad-phase", options.broad_phase, "Broad phase: bvh or brute_force; never changes a result")
+      ->type_name("NAME")
+      ->check(words({"bvh", "grid", "octree", "quadtree", "kd_tree", "bsp_tree", "sweep_and_prune", "brute_force"}));
+  command.add_option("--stepping", options.stepping, "Time plan: fixed")
+      ->type_name("NAME")
+      ->check(words({"fixed", "adaptive"}));
+  command.add_flag("--no-sleeping", options.no_sleeping, "Resting bodies stay awake");
+}
+
+void add_output_options(CLI::App& command, SimulateOptions& options) {
+  command.add_option("--record", options.record, "Write a recording that can be replayed bit by bit")->type_name("FILE.gyrec");
+  CLI::Option* trace =
+      command.add_option("--trace", options.trace, "Write a table of the motion of every body")->type_name("FILE.csv");
+  command.add_option("--trace-every", options.trace_every, "Trace only every Nth step")
+      ->type_name("N")
+      ->check(number_between(1, false, 1e12, "an integer from 1 to 1e12"))
+      ->needs(trace);
+  command.add_option("--stats", options.stats, "Write a table of figures of each step")->type_name("FILE.csv");
+  command.add_option("--final", options.final, "Write the final state as a scene")->type_name("FILE.json");
+  command.add_flag("--hash", options.hash, "Print a hash of the final state, the same on every machine");
+  command.add_flag("--json", options.json, "Print the summary as JSON");
+  command.add_flag("--quiet", options.quiet, "Print no summary and show no progress");
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("simulate", "Run a scene");
+  const auto options = std::make_shared<SimulateOptions>();
+  command->add_option("SCENE", options->scene, "The scene file (*.gyre.json)")->required()->type_name("");
+  add_time_options(*command, *options);
+  add_method_options(*command, *options);
+  add_output_options(*command, *options);
+  command->callback([options, &exit_code] { exit_code = simulate(*options); });
+}
+
+std::string apply_overrides(const SimulateOptions& options, SceneWorld& world) {
+  const auto missing = [](const char* option, const std::string& word) {
+    return std::string(option) + " " + word + " is not supported by this version of Gyre";
+  };
+  if (!options.solver.empty() && options.solver != "soft_step") return missing("--solver", options.solver);
+  if (!options.integrator.empty() && options.integrator != "semi_implicit_euler") {
+    return missing("--integrator", options.integrator);
+  }
+  if (!options.stepping.empty() && options.stepping != "fixed") return missing("--stepping", options.stepping);
+  if (options.broad_phase == "bvh") {
+    world.broad_phase = BroadPhaseKind::bvh;
+  } else if (options.broad_phase == "brute_force") {
+    world.broad_phase = BroadPhaseKind::brute_force;
+  } else if (!options.broad_phase.empty()) {
+    return missing("--broad-phase", options.broad_phase);
+  }
+  if (options.time_step) world.time_step = *options.time_step;
+  if (options.substeps) world.substeps = *options.substeps;
+  if (options.no_sleeping) world.sleeping = false;
+  if (float(world.time_step) == 0.0f) return "--step is too small, expected at least 1e-45";
+  return {};
+}
+
+std::uint64_t step_count(const SimulateOptions& options, double time_step) {
+  if (options.steps) return *options.steps;
+  // Enough steps to reach the duration; a time step that was rounded to a few digits must not cost one more.
+  const double steps = options.duration.value_or(10.0) / time_step;
+  return std::uint64_t(std::ceil(steps - 1.0e-6 * max(steps, 1.0e-3)));
+}
+
+}  // namespace gyre

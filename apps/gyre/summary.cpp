@@ -1,0 +1,104 @@
+// What gyre simulate prints at the end. See summary.h.
+#include "summary.h"
+
+#include "scene/json_writer.h"
+#include "scene/number_text.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace gyre {
+namespace {
+
+struct StepTimes {
+  double median = 0, mean = 0, p99 = 0, max = 0;  // ms
+};
+
+StepTimes step_times(std::vector<float> times) {
+  if (times.empty()) return {};
+  std::sort(times.begin(), times.end());
+  double sum = 0;
+  for (const float time : times) sum += double(time);
+  const std::size_t n = times.size();
+  // The smallest time that at least 99 % of the steps keep.
+  const std::size_t rank = (99 * n + 99) / 100 - 1;
+  return {0.5 * (double(times[(n - 1) / 2]) + double(times[n / 2])), sum / double(n), double(times[rank]),
+          double(times.back())};
+}
+
+std::string rounded(double value, int digits = 4) {
+  std::string out;
+  append_rounded(out, value, digits);
+  return out;
+}
+
+std::string counted(long long count, const char* one, const char* many) {
+  return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+}  // namespace
+
+std::string hash_text(const World& world) {
+  char text[20];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(world.hash()));
+  return text;
+}
+
+std::string summary_text(const SceneRunner& runner, const RunFigures& figures) {
+  const World& world = runner.world();
+  const WorldCounts counts = world.counts();
+  const Energy energy = world.energy();
+  const StepTimes times = step_times(figures.step_ms);
+  std::string out;
+  if (!runner.scene().name.empty()) out += runner.scene().name + ": ";
+  out += counted(counts.bodies, "body", "bodies") + ", " + counted(counts.joints, "joint", "joints") + "\n";
+  out += counted(static_cast<long long>(runner.steps()), "step", "steps") + ", " + rounded(runner.time()) + " s simulated in " +
+         rounded(figures.wall_seconds, 3) + " s";
+  if (figures.wall_seconds > 0 && runner.steps() > 0) {
+    out += " (" + rounded(runner.time() / figures.wall_seconds, 3) + " times real time)";
+  }
+  out += "\n";
+  if (runner.steps() > 0) {
+    out += "step: median " + rounded(times.median, 3) + " ms, mean " + rounded(times.mean, 3) + " ms, 99 % within " +
+           rounded(times.p99, 3) + " ms, longest " + rounded(times.max, 3) + " ms\n";
+  }
+  out += "end: " + counted(counts.awake_bodies, "body", "bodies") + " awake, " +
+         counted(counts.contact_points, "contact point", "contact points") + ", deepest overlap " +
+         rounded(1.0e3 * double(world.max_penetration()), 3) + " mm\n";
+  out += "energy: " + rounded(energy.kinetic + energy.potential + energy.elastic) + " J (kinetic " + rounded(energy.kinetic) +
+         ", potential " + rounded(energy.potential) + ", elastic " + rounded(energy.elastic) + ")\n";
+  return out;
+}
+
+std::string summary_json(const SceneRunner& runner, const RunFigures& figures) {
+  const World& world = runner.world();
+  const WorldCounts counts = world.counts();
+  const Energy energy = world.energy();
+  const StepTimes times = step_times(figures.step_ms);
+  JsonWriter json;
+  json.begin_object();
+  json.field("scene", runner.scene().name);
+  json.field("steps", std::int64_t(runner.steps()));
+  json.field("time", runner.time());
+  json.field("bodies", counts.bodies);
+  json.field("awake", counts.awake_bodies);
+  json.field("joints", counts.joints);
+  json.field("pairs", counts.pairs);
+  json.field("contacts", counts.contact_points);
+  json.field("max_penetration", world.max_penetration());
+  json.key("step_ms").begin_object(JsonLayout::one_line);
+  json.field("median", times.median);
+  json.field("mean", times.mean);
+  json.field("p99", times.p99);
+  json.field("max", times.max);
+  json.end_object();
+  json.field("energy", energy.kinetic + energy.potential + energy.elastic);
+  json.field("kinetic_energy", energy.kinetic);
+  json.field("potential_energy", energy.potential);
+  json.field("elastic_energy", energy.elastic);
+  json.field("hash", hash_text(world));
+  json.end_object();
+  return json.take();
+}
+
+}  // namespace gyre

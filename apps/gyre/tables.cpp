@@ -1,0 +1,92 @@
+// The two tables that a simulation writes. See tables.h.
+#include "tables.h"
+
+#include "scene/number_text.h"
+
+namespace gyre {
+namespace {
+
+constexpr int kDigits = 9;  // enough for a float to read back the same
+
+void add_number(std::string& row, double value) {
+  row += ',';
+  append_rounded(row, value, kDigits);
+}
+void add_count(std::string& row, long long count) {
+  row += ',';
+  row += std::to_string(count);
+}
+template <class V>
+void add_vector(std::string& row, const V& v) {
+  for (int axis = 0; axis < 3; ++axis) add_number(row, double(v[axis]));
+}
+
+// A name as one cell (RFC 4180).
+void add_text(std::string& row, const std::string& text) {
+  row += ',';
+  if (text.find_first_of(",\"") == std::string::npos) {
+    row += text;
+    return;
+  }
+  row += '"';
+  for (const char c : text) {
+    if (c == '"') row += '"';
+    row += c;
+  }
+  row += '"';
+}
+
+}  // namespace
+
+bool TraceTable::open(const std::string& path) {
+  return file_.open(path) && file_.write("step,time,body,px,py,pz,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz,awake\n");
+}
+
+bool TraceTable::add_rows(const SceneRunner& runner) {
+  const World& world = runner.world();
+  std::string begin = std::to_string(runner.steps());
+  add_number(begin, runner.time());
+  for (std::size_t i = 0; i < runner.bodies().size(); ++i) {
+    const BodyId id = runner.bodies()[i];
+    const Quat q = world.pose(id).orientation;
+    row_ = begin;
+    add_text(row_, runner.scene().bodies[i].name);
+    add_vector(row_, world.center_of_mass(id));
+    for (const float part : {q.x, q.y, q.z, q.w}) add_number(row_, double(part));
+    add_vector(row_, world.linear_velocity(id));
+    add_vector(row_, world.angular_velocity(id));
+    row_ += world.is_awake(id) ? ",1\n" : ",0\n";
+    if (!file_.write(row_)) return false;
+  }
+  return true;
+}
+
+bool StatsTable::open(const std::string& path) {
+  return file_.open(path) &&
+         file_.write("step,time,step_ms,bodies,awake,pairs,contacts,max_penetration,kinetic_energy,potential_energy,"
+                     "elastic_energy,px,py,pz,lx,ly,lz\n");
+}
+
+bool StatsTable::add_row(const SceneRunner& runner, double step_ms) {
+  const World& world = runner.world();
+  const WorldCounts counts = world.counts();
+  const Energy energy = world.energy();
+  const Momentum momentum = world.momentum();
+  row_ = std::to_string(runner.steps());
+  add_number(row_, runner.time());
+  add_number(row_, step_ms);
+  add_count(row_, counts.bodies);
+  add_count(row_, counts.awake_bodies);
+  add_count(row_, counts.pairs);
+  add_count(row_, counts.contact_points);
+  add_number(row_, double(world.max_penetration()));
+  add_number(row_, energy.kinetic);
+  add_number(row_, energy.potential);
+  add_number(row_, energy.elastic);
+  add_vector(row_, momentum.linear);
+  add_vector(row_, momentum.angular);
+  row_ += '\n';
+  return file_.write(row_);
+}
+
+}  // namespace gyre
