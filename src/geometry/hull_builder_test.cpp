@@ -118,6 +118,16 @@ void expect_valid(const Points& points, const Hull& hull, double loss = 1.5e-6) 
       below = std::min(below, height(hull.vertices[hull.face_vertices[i]]));
     }
     inner = std::min(inner, -height(hull.centroid));
+    // Every corner turns left.
+    const std::uint32_t first = hull.face_offsets[f], corners = hull.face_offsets[f + 1] - first;
+    const auto corner = [&](std::uint32_t i) {
+      return DVec3(hull.vertices[hull.face_vertices[first + i % corners]]);
+    };
+    for (std::uint32_t i = 0; i < corners; ++i) {
+      const DVec3 along = corner(i + 2) - corner(i);
+      const DVec3 left = cross(DVec3(plane.normal), along) / length(along);
+      EXPECT_LT(dot(left, corner(i + 1) - corner(i)), rounding) << "face not convex";
+    }
   }
   EXPECT_LE(outside, loss * extent + rounding);
   EXPECT_LE(above, rounding) << "not convex";
@@ -311,6 +321,77 @@ TEST(HullBuilder, Slivers) {
       EXPECT_NEAR(kept, farthest, 1e-5);
     }
   }
+}
+
+// As exporters write them: a slab whose corners come twice, a little apart, with cut edges; and a sheet folded by less than
+// a float can tell.
+TEST(HullBuilder, NearlyEqualCornersAndFoldedSheets) {
+  Random random;
+  for (int round = 0; round < 200; ++round) {
+    const float apart = std::pow(10.0f, random(-8.0f, -2.0f));
+    Points slab;
+    for (const Vec3& corner : cube_points(1.0f)) {
+      const Vec3 p = multiply_each({2.0f, 5.0f, 7.0f}, corner);
+      slab.push_back(p);
+      slab.push_back(p + apart * random.in_cube());
+      if (p.x > 0) slab.push_back({p.x - 1.0f, p.y, p.z + (p.z > 0 ? apart : -apart)});
+    }
+    slab = turned(slab, random.turn(), 10.0f * random.in_cube());
+    expect_valid(slab, must_build(slab));
+    Points sheet = {{0, 0, 0}, {0, 1, 0}, {0.7f, 0, apart}, {0.7f, 1, 0}, {0.8f, 0.5f, 0}};
+    sheet = turned(sheet, random.turn());
+    const Result<Hull> folded = build_hull(sheet);
+    EXPECT_EQ(bool(folded), apart > 1.5e-5f || (folded && apart > 2.0e-6f)) << apart;
+    if (folded) expect_valid(sheet, *folded);
+  }
+}
+
+TEST(HullBuilder, ABladeKeepsWhatSticksOutOfItsEdge) {
+  // The point is 2e-7 above both planes of the blade, but 2e-4 beyond its edge.
+  const Points blade = {{0, 1e-3f, 0}, {0, -1e-3f, 0}, {0, 1e-3f, 1},     {0, -1e-3f, 1},
+                        {1, 0, 0},     {1, 0, 1},      {1.0002f, 0, 0.4f}};
+  const Hull hull = must_build(blade);
+  expect_valid(blade, hull);
+  EXPECT_EQ(hull.vertex_count(), 7);
+  EXPECT_EQ(hull.box.high.x, 1.0002f);
+  // Along no axis, so that no extreme point saves it.
+  Random random;
+  for (int round = 0; round < 20; ++round) {
+    EXPECT_EQ(must_build(turned(blade, random.turn())).vertex_count(), 7);
+  }
+}
+
+TEST(HullBuilder, AnyMixtureOfDegenerateParts) {
+  Random random;
+  int built = 0;
+  for (int round = 0; round < 3000; ++round) {
+    Points points;
+    const float noise = round % 4 == 0 ? 0.0f : std::pow(10.0f, random(-9.0f, -3.0f));
+    const int parts = 1 + int(random.engine() % 5);
+    for (int part = 0; part < parts; ++part) {
+      const Vec3 middle = round % 3 == 0 ? Vec3{float(random.engine() % 3), float(random.engine() % 3),
+                                                float(random.engine() % 3)}
+                                         : random.in_cube();
+      const Vec3 u = random.in_cube(), v = random.in_cube();
+      const int kind = int(random.engine() % 5), count = 1 + int(random.engine() % 40);
+      for (int i = 0; i < count; ++i) {
+        Vec3 p = middle;
+        if (kind == 1) p += random() * u;                                         // a line
+        if (kind == 2) p += random() * u + random() * v;                          // a plane
+        if (kind == 3) p += 0.5f * random.on_sphere();                            // a ball
+        if (kind == 4) p += 0.25f * float(i % 5) * u + 0.25f * float(i / 5) * v;  // a grid
+        points.push_back(p + noise * random.in_cube());                           // or all in one place
+      }
+    }
+    const float size = std::pow(10.0f, float(round % 7) - 3.0f);
+    for (Vec3& p : points) p *= size;
+    const Result<Hull> hull = build_hull(points);
+    if (!hull) continue;
+    ++built;
+    expect_valid(points, *hull, hull->vertex_count() < 120 ? 1.5e-6 : 1.0e-3);
+    if (HasFailure()) FAIL() << "round " << round;
+  }
+  EXPECT_GT(built, 1500);
 }
 
 TEST(HullBuilder, AllSizesAlike) {
