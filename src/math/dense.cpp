@@ -1,10 +1,11 @@
 // Jacobi eigenvectors, the 3x3 inverse and the run-time sized L D L^T; what and why in dense.h.
 #include "math/dense.h"
 
-#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+
+#include "base/check.h"
 
 namespace gyre {
 namespace {
@@ -112,7 +113,7 @@ bool invert_3x3(const double m[9], double inverse[9]) {
 
 int factor_ldlt(std::span<double> a, int size, double tolerance) {
   const std::size_t n = std::size_t(size);
-  assert(size >= 0 && a.size() >= n * n);
+  GYRE_ASSERT(size >= 0 && a.size() >= n * n, "the matrix holds size * size numbers");
   int rank = 0;
   // Row by row, so that both rows of each inner product are contiguous. Row i is first L D, then L.
   for (std::size_t i = 0; i < n; ++i) {
@@ -139,7 +140,8 @@ int factor_ldlt(std::span<double> a, int size, double tolerance) {
 
 void solve_ldlt(std::span<const double> factors, int size, std::span<double> x) {
   const std::size_t n = std::size_t(size);
-  assert(size >= 0 && factors.size() >= n * n && x.size() >= n);
+  GYRE_ASSERT(size >= 0 && factors.size() >= n * n && x.size() >= n,
+              "factors and vector hold the whole system");
   for (std::size_t i = 1; i < n; ++i) {
     const double* row = factors.data() + i * n;
     double sum = x[i];
