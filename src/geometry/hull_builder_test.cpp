@@ -53,7 +53,7 @@ double extent_of(const Points& points) {
 double hull_volume(const Hull& hull) {
   double volume = 0.0;
   const DVec3 origin(hull.vertices[0]);
-  for (int f = 0; f < hull.face_count(); ++f) {
+  for (std::size_t f = 0; f < hull.planes.size(); ++f) {
     const std::uint32_t begin = hull.face_offsets[f], end = hull.face_offsets[f + 1];
     const DVec3 a = DVec3(hull.vertices[hull.face_vertices[begin]]) - origin;
     for (std::uint32_t i = begin + 1; i + 1 < end; ++i) {
@@ -75,13 +75,13 @@ void expect_closed(const Hull& hull) {
   ASSERT_EQ(hull.face_offsets.back(), hull.face_vertices.size());
   std::map<std::pair<int, int>, int> face_of;
   std::map<int, int> faces_at;
-  for (int f = 0; f < faces; ++f) {
+  for (std::size_t f = 0; f < hull.planes.size(); ++f) {
     const std::uint32_t begin = hull.face_offsets[f], end = hull.face_offsets[f + 1];
     ASSERT_GE(end, begin + 3);
     for (std::uint32_t i = begin; i < end; ++i) {
       const int from = hull.face_vertices[i], to = hull.face_vertices[i + 1 < end ? i + 1 : begin];
       ASSERT_LT(from, hull.vertex_count());
-      ASSERT_TRUE(face_of.insert({{from, to}, f}).second) << "edge twice";
+      ASSERT_TRUE(face_of.insert({{from, to}, int(f)}).second) << "edge twice";
       ++faces_at[from];
     }
   }
@@ -108,7 +108,7 @@ void expect_valid(const Points& points, const Hull& hull, double loss = 1.5e-6) 
   for (const Vec3& p : points) given.insert({p.x, p.y, p.z});
   for (const Vec3& v : hull.vertices) EXPECT_TRUE(given.count({v.x, v.y, v.z})) << "vertex that is no point";
   double outside = -1.0, above = -1.0, below = 0.0, inner = 1e300;
-  for (int f = 0; f < hull.face_count(); ++f) {
+  for (std::size_t f = 0; f < hull.planes.size(); ++f) {
     const HullPlane& plane = hull.planes[f];
     EXPECT_NEAR(length(plane.normal), 1.0f, 1e-6f);
     const auto height = [&](Vec3 p) { return dot(DVec3(plane.normal), DVec3(p)) - double(plane.offset); };
@@ -135,8 +135,8 @@ void expect_valid(const Points& points, const Hull& hull, double loss = 1.5e-6) 
   EXPECT_GT(hull_volume(hull), 0.0);
   EXPECT_GE(inner, -rounding);
   EXPECT_NEAR(double(hull.inner_radius), std::max(inner, 0.0), rounding);
-  for (int i = 0; i < int(hull.x.size()); ++i) {
-    const Vec3 v = hull.vertices[std::min(i, hull.vertex_count() - 1)];
+  for (std::size_t i = 0; i < hull.x.size(); ++i) {
+    const Vec3 v = hull.vertices[std::min(i, hull.vertices.size() - 1)];
     EXPECT_EQ((Vec3{hull.x[i], hull.y[i], hull.z[i]}), v);
   }
   EXPECT_EQ(hull.x.size() % Hull::kPad, 0u);
@@ -165,7 +165,7 @@ Points turned(Points points, Quat q, Vec3 shift = {}) {
 void expect_counts(const Hull& hull, int vertices, int faces, int corners_each) {
   EXPECT_EQ(hull.vertex_count(), vertices);
   EXPECT_EQ(hull.face_count(), faces);
-  for (int f = 0; f < hull.face_count(); ++f) {
+  for (std::size_t f = 0; f < hull.planes.size(); ++f) {
     EXPECT_EQ(int(hull.face_offsets[f + 1] - hull.face_offsets[f]), corners_each);
   }
 }
@@ -490,16 +490,16 @@ TEST(Hull, SupportIsThatOfAPlainSearch) {
     const Hull hull = must_build(points);
     for (int i = 0; i < 50; ++i) {
       const Vec3 d = random.in_cube();
-      int best = 0;
-      for (int v = 1; v < hull.vertex_count(); ++v) {
+      std::size_t best = 0;
+      for (std::size_t v = 1; v < hull.vertices.size(); ++v) {
         if (dot(hull.vertices[v], d) > dot(hull.vertices[best], d)) best = v;
       }
-      EXPECT_EQ(support_vertex(hull, d), best);
+      EXPECT_EQ(support_vertex(hull, d), int(best));
     }
     EXPECT_EQ(support_vertex(hull, {}), 0);
-    for (int f = 0; f < hull.face_count(); ++f) {
+    for (std::size_t f = 0; f < hull.planes.size(); ++f) {
       const Vec3 n = hull.planes[f].normal;
-      EXPECT_GT(dot(hull.planes[support_face(hull, n)].normal, n), 1.0f - 1.0e-6f);
+      EXPECT_GT(dot(hull.planes[std::size_t(support_face(hull, n))].normal, n), 1.0f - 1.0e-6f);
     }
   }
 }

@@ -134,7 +134,7 @@ TEST(Shape, MeshesAndFieldsAreBoundedByTheirTurnedBox) {
     if (shape.kind == ShapeKind::height_field) {
       points.clear();
       for (int i = 0; i < 6; ++i)
-        points.push_back({float(i % 3 - 1) * 2.0f, heights[i], (float(i / 3) - 0.5f) * 2.0f});
+        points.push_back({float(i % 3 - 1) * 2.0f, heights[std::size_t(i)], (float(i / 3) - 0.5f) * 2.0f});
     }
     const Aabb still = bounds(shape, {});
     Aabb wanted{points[0], points[0]};
