@@ -125,8 +125,11 @@ int clip_polygon(const Clipper& clipper, ManifoldPoint* out) {
   }
   int points = 0;
   for (int i = 0; i < count; ++i) {
+    // Rounding may cut a corner into two of one name.
+    if (points > 0 && out[points - 1].feature == polygon[i].feature) continue;
     if (clipper.emit(polygon[i].point(), polygon[i].feature, out[points])) ++points;
   }
+  if (points > 1 && out[points - 1].feature == out[0].feature) --points;
   return points;
 }
 
@@ -185,6 +188,7 @@ int clip_segments(const FacePair& pair, ManifoldPoint* out) {
     const Vec3 on_b = lerp(b.vertices[0], b.vertices[1], u);
     ManifoldPoint& point = out[points];
     const float gap = dot(on_b - on_a, pair.normal);
+    if (length_squared(on_b - on_a) > square(gap) + square(pair.sideways)) return 0;
     point.separation = gap - (pair.radius_a + pair.radius_b);
     if (!(point.separation <= pair.max_separation)) continue;
     point.position = 0.5f * ((on_a + pair.radius_a * pair.normal) + (on_b - pair.radius_b * pair.normal));
@@ -244,7 +248,7 @@ int reduce_points(ManifoldPoint* points, int count, Vec3 normal) {
         return max(max(out01, out12), turn * area_of(p0, p2, p, normal));
       };
       const float added = largest_of(outside);
-      if (choose(3, added, 1.0e-4f * widest, kEqualSpan * widest, outside)) ++kept;
+      if (choose(3, added, 1.0e-4f * widest, kEqualSpan * added, outside)) ++kept;
     }
   }
   // In the order they came, so that the order does not depend on the choice.

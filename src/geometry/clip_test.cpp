@@ -241,6 +241,23 @@ TEST(ReducePoints, NoiseDoesNotChangeTheChoice) {
   }
 }
 
+TEST(ReducePoints, NoPointIsTakenTwice) {
+  Random random(34);
+  for (int i = 0; i < 20000; ++i) {
+    ManifoldPoint points[9];
+    const int count = 5 + random.below(5);
+    const float flat = random.below(2) == 0 ? 1.0f : 1.0e-3f;
+    for (int k = 0; k < count; ++k) {
+      points[k] = {{random(-1, 1), 0.0f, flat * random(-1, 1)}, random(-0.1f, 0.0f), std::uint32_t(k)};
+      if (k > 2 && random.below(3) == 0) points[k].position = points[0].position;
+    }
+    const int left = reduce_points(points, count, {0, 1, 0});
+    std::set<std::uint32_t> names;
+    for (int k = 0; k < left; ++k) names.insert(points[k].feature);
+    EXPECT_EQ(int(names.size()), left) << i;
+  }
+}
+
 TEST(ReducePoints, FewCoincidentAndCollinearPoints) {
   ManifoldPoint points[10];
   for (int k = 0; k < 10; ++k) points[k] = {{1, 2, 3}, -0.1f, std::uint32_t(k)};

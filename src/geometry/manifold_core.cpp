@@ -14,6 +14,8 @@ namespace {
 constexpr float kFacing = 0.985f;
 // Segments that lean less than this sine (6 degrees) against each other touch in two points.
 constexpr float kSideBySide = 0.1f;
+// ... while they lie over each other within this part of the smaller radius; of cones, which taper, within less.
+constexpr float kSideways = 0.1f, kSidewaysCone = 0.01f;
 // B's face becomes the reference only if it faces the normal better than A's by this much: no flipping.
 constexpr float kPreferA = 1.0e-3f;
 // If the clipped points miss the nearest pair of points by this part of the shapes' size, that pair is added.
@@ -46,7 +48,9 @@ int facing_points(const Shape& a, const Shape& b, const Transform& a_from_b, con
   support_face(b, rotate_inverse(a_from_b.orientation, -contact.normal), fb);
   if (fb.count == 1) return 0;
   put_in_a(a_from_b, fb);
-  const FacePair pair{&fa, &fb, contact.normal, core_radius(a), core_radius(b), max_separation};
+  const bool tapers = a.kind == ShapeKind::cone || b.kind == ShapeKind::cone;
+  const float sideways = (tapers ? kSidewaysCone : kSideways) * min(a.radius, b.radius);
+  const FacePair pair{&fa, &fb, contact.normal, core_radius(a), core_radius(b), max_separation, sideways};
   const float facing_a = fa.count > 2 ? dot(fa.normal, contact.normal) : -1.0f;
   const float facing_b = fb.count > 2 ? -dot(fb.normal, contact.normal) : -1.0f;
   if (facing_a >= kFacing && facing_a >= facing_b - kPreferA) return clip_faces(pair, true, points);

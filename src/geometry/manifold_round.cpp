@@ -11,6 +11,8 @@ namespace {
 
 // Capsules that lean less than this sine against each other (6 degrees) touch in two points.
 constexpr float kSideBySide = 0.1f;
+// ... while they lie over each other within this part of the smaller radius: the separation is then within 0.5 % of it.
+constexpr float kSideways = 0.1f;
 
 // A point near a shape's surface: where, which way is out, and how far out the asked point lies (negative inside).
 struct SurfacePoint {
@@ -168,7 +170,8 @@ void collide_capsules(const Shape& a, const Shape& b, const Transform& a_from_b,
     out.normal = normalized(cross(up, up_b), sideways);
     if (dot(out.normal, t) < 0.0f) out.normal = -out.normal;
   }
-  const FacePair pair{&fa, &fb, out.normal, a.radius, b.radius, max_separation};
+  const FacePair pair{
+      &fa, &fb, out.normal, a.radius, b.radius, max_separation, kSideways * min(a.radius, b.radius)};
   const float sine_squared = length_squared(cross(up, up_b));
   if (sine_squared <= square(kSideBySide * a.extents.y * b.extents.y))
     out.count = clip_segments(pair, out.points);
