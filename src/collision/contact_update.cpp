@@ -217,6 +217,7 @@ void take_over(Former& former, int m, int i, ContactPointState& point) {
   const ContactPointState& old = former.manifolds[m].points[i];
   former.point_taken[m][i] = true;
   point.normal_impulse = old.normal_impulse;
+  point.earlier_impulse = old.earlier_impulse;
   point.age = old.age + 1;
 }
 

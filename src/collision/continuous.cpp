@@ -1,0 +1,109 @@
+// The stage that clamps fast bodies. See continuous.h.
+#include "collision/continuous.h"
+
+#include "collision/fat_box.h"
+#include "collision/swept_surface.h"
+#include "task/parallel.h"
+
+namespace gyre {
+namespace {
+
+constexpr int kBlock = 4;  // bodies: each is work enough
+constexpr float kCoreShare = 0.5f;
+// In inner radii of the moving shape. What is left must lie within what collide() looks for, and so near that it counts as
+// touching there.
+constexpr double kTarget = 0.0025;
+constexpr double kTouching = 0.01;
+constexpr double kCoreTarget = 0.05;  // of the core's radius
+
+// A box around the whole way of a shape, turning included: around both ends, and the bulge between.
+Aabb swept_box(const SweptShape& shape) {
+  const WorldBox start = world_box(*shape.shape, shape.sweep->pose * shape.body_from_shape);
+  const WorldBox end = world_box(*shape.shape, pose_at(*shape.sweep, 1.0) * shape.body_from_shape);
+  const double radius = double(shape.radius);
+  const double bulge = min(0.125 * radius * double(length_squared(shape.sweep->turned)), 2.0 * radius);
+  const DVec3 all{bulge, bulge, bulge};
+  const auto lower = [](DVec3 a, DVec3 b) { return DVec3{min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)}; };
+  const auto upper = [](DVec3 a, DVec3 b) { return DVec3{max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)}; };
+  return round_outward({lower(start.low, end.low) - all, upper(start.high, end.high) + all});
+}
+
+bool is_obstacle(const Proxy& self, const Proxy& other, bool continuous) {
+  if (self.sensor || other.sensor || !may_pair(self, other)) return false;
+  return continuous || !other.pushes;
+}
+
+// The shape of a fast body on its way.
+struct Mover {
+  SweptShape whole;
+  Core core;
+  SweptShape core_swept;
+  ImpactScale scale;
+
+  Mover(const ColliderShape& shape, const Sweep& sweep)
+      : whole(make_swept_shape(shape.shape, shape.body_from_shape, sweep)),
+        core(make_core(shape.shape, shape.body_from_shape, kCoreShare)),
+        core_swept(make_swept_shape(core.ball, core.body_from_ball, sweep)) {
+    const auto size = double(inner_radius(shape.shape));
+    scale = {kTarget * size, kTouching * size, kCoreTarget * double(core.ball.radius)};
+  }
+  Mover(const Mover&) = delete;
+  Mover& operator=(const Mover&) = delete;
+
+  // First time before `end` at which the shape must stop in front of `other`; `end` if it need not.
+  double impact_with(const SweptShape& other, double end, TriangleHull& triangle) const {
+    if (!is_convex(other.shape->kind) && other.shape->kind != ShapeKind::plane) {
+      return impact_with_surface(whole, core_swept, other, end, scale, triangle);
+    }
+    const bool touching = find_gap(whole, other, 0.0, scale.touching).distance <= scale.touching;
+    if (!touching) {
+      const Impact impact = time_of_impact(whole, other, 0.0, end, scale.target);
+      return impact.hit ? impact.time : end;
+    }
+    if (find_gap(core_swept, other, 0.0, scale.core_target).distance <= scale.core_target) return end;
+    const Impact impact = time_of_impact(core_swept, other, 0.0, end, scale.core_target);
+    return impact.hit ? impact.time : end;
+  }
+};
+
+// `found` is scratch.
+double first_impact(const ContinuousInput& input, const FastBody& fast, Array<std::uint32_t>& found,
+                    TriangleHull& triangle) {
+  const Sweep sweep = input.sweep_of(fast.body);
+  double end = 1.0;
+  for (const std::uint32_t index : input.shapes_of(fast.body)) {
+    const ColliderShape& shape = input.shapes[index];
+    if (!is_convex(shape.shape.kind)) continue;
+    const Mover mover(shape, sweep);
+    found.clear();
+    input.broadphase.query(input.proxies, swept_box(mover.whole), found);
+    for (const std::uint32_t other : found) {
+      if (!is_obstacle(input.proxies[index], input.proxies[other], fast.continuous)) continue;
+      const ColliderShape& obstacle = input.shapes[other];
+      if (!input.blocked.empty() && input.blocked.contains(pair_key(fast.body, obstacle.body))) continue;
+      const Sweep other_sweep = input.sweep_of(obstacle.body);
+      const SweptShape swept = make_swept_shape(obstacle.shape, obstacle.body_from_shape, other_sweep);
+      end = min(end, mover.impact_with(swept, end, triangle));
+    }
+  }
+  return end;
+}
+
+}  // namespace
+
+void ContinuousCollision::clamp_fast_bodies(const ContinuousInput& input, std::span<const FastBody> fast,
+                                            TaskSystem& tasks, std::span<float> fractions) {
+  if (fast.empty()) return;
+  workers_.resize(std::size_t(tasks.worker_count()));
+  for_blocks(tasks, int(fast.size()), kBlock, [&](int begin, int end, int worker) {
+    Worker& own = workers_[worker];
+    for (int i = begin; i < end; ++i) {
+      const double time = first_impact(input, fast[std::size_t(i)], own.found, *own.triangle);
+      // Rounded down: the fraction must not pass the impact.
+      const auto fraction = float(time);
+      fractions[std::size_t(i)] = double(fraction) > time ? fraction * (1.0f - 1.2e-7f) : fraction;
+    }
+  });
+}
+
+}  // namespace gyre

@@ -1,0 +1,61 @@
+// Continuous collision: bodies that move so far in one step that they could pass through something are taken back to
+// where they first meet it.
+//
+// In: bodies as the step began and how far the solver moved them; the broad phase as it was then. Out: for each fast body
+// the fraction of its motion to keep (pose_at(sweep, fraction) is where it ends). It is left a small part of its size short
+// of touching, where the next step's contacts find it; its velocity stays, and they answer to it.
+//
+// What a shape touches as the step begins must not hold it: a body that slides would freeze at every step. The solver
+// answers for such pairs; only the core, a ball half as large as the inner one, is swept against them, so that nothing
+// passes all the way. In a mesh or height field this holds for each plane of its triangles by itself.
+#pragma once
+
+#include "base/function_ref.h"
+#include "collision/broadphase.h"
+#include "collision/collide.h"
+#include "collision/pair_update.h"
+#include "collision/swept_surface.h"
+
+#include <memory>
+#include <span>
+
+namespace gyre {
+
+// A body that may have gone too far.
+struct FastBody {
+  std::uint32_t body = 0;
+  bool continuous = false;  // also against dynamic bodies (always against fixed and kinematic ones)
+};
+
+// Whether a motion is far enough to look at: more than this share of the inner radius of the body's thinnest shape.
+constexpr float kFastShare = 0.5f;
+inline bool is_fast(Vec3 moved, Vec3 turned, float reach, float inner) {
+  return length(moved) + length(turned) * reach > kFastShare * inner;
+}
+
+struct ContinuousInput {
+  std::span<const ColliderShape> shapes;
+  std::span<const Proxy> proxies;  // as the broad phase last saw them
+  const Broadphase& broadphase;
+  const BlockedBodies& blocked;
+  // The motion of any body in this step (no motion for those that rest), and the shapes of a fast one. Called from any
+  // worker.
+  FunctionRef<Sweep(std::uint32_t body)> sweep_of;
+  FunctionRef<std::span<const std::uint32_t>(std::uint32_t body)> shapes_of;
+};
+
+class ContinuousCollision {
+ public:
+  // fractions[i] of the motion of fast[i] is to be kept: 1 where nothing is in the way. Parallel over bodies.
+  void clamp_fast_bodies(const ContinuousInput& input, std::span<const FastBody> fast, TaskSystem& tasks,
+                         std::span<float> fractions);
+
+ private:
+  struct Worker {
+    Array<std::uint32_t> found;
+    std::unique_ptr<TriangleHull> triangle = std::make_unique<TriangleHull>();
+  };
+  Array<Worker> workers_;
+};
+
+}  // namespace gyre
