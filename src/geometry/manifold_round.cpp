@@ -107,7 +107,7 @@ SurfacePoint nearest_on_hull(const Shape& shape, Vec3 p, float reach) {
     over = dot(cross(to - from, plane.normal), p - from) <= 0.0f;
   }
   if (over) return over_face;
-  const Shape point;
+  const Shape point{};
   const CorePair pair(shape, point, {p, {}});
   const CoreDistance found = core_distance(pair, double(reach), plane.normal);
   if (found.beyond) return {p - best * plane.normal, plane.normal, kUnbounded};
