@@ -223,7 +223,6 @@ float separation_along(const Polytope& a, const Polytope& b, const Transform& a_
 
 PolytopeAxis separating_axis(const Polytope& a, const Polytope& b, const Transform& a_from_b,
                              float max_separation, const PolytopeAxis& favoured) {
-  PolytopeAxis out;
   const FaceQuery qa =
       best_face(a, b, a_from_b, max_separation, favoured.kind == AxisKind::face_a ? favoured.index_a : -1);
   PolytopeAxis face_a{AxisKind::face_a, qa.face, 0, a.planes[qa.face].normal, qa.separation};
