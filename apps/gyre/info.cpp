@@ -16,6 +16,11 @@
 namespace gyre {
 namespace {
 
+// Without the sign of a zero, which says nothing about a mass.
+Vec3 plain(Vec3 v) { return v + Vec3{}; }
+Sym3 plain(const Sym3& m) { return m + Sym3{}; }
+MassProperties plain(const MassProperties& mass) { return {mass.mass, plain(mass.center), plain(mass.inertia)}; }
+
 struct Counts {
   std::array<int, 3> bodies{};  // by BodyType
   std::array<int, std::variant_size_v<SceneGeometry>> shapes{};
@@ -73,7 +78,7 @@ void print_text(const SceneRunner& runner) {
     out += "\nbody \"" + body.name + "\", " + kBodyWords[std::size_t(body.def.type)] + ", " +
            std::to_string(body.shapes.size()) + (body.shapes.size() == 1 ? " shape\n" : " shapes\n");
     if (body.def.type != BodyType::dynamic) continue;
-    const MassProperties mass = runner.world().mass_properties(runner.bodies()[i]);
+    const MassProperties mass = plain(runner.world().mass_properties(runner.bodies()[i]));
     const PrincipalAxes principal = principal_axes(mass.inertia);
     const Mat3 axes = to_matrix(principal.orientation);
     out += "  mass             " + number(double(mass.mass)) + " kg\n";
@@ -107,7 +112,7 @@ void write_body(JsonWriter& json, const SceneRunner& runner, std::size_t index) 
   if (body.def.type != BodyType::dynamic) {
     for (const char* key : {"mass", "center_of_mass", "inertia", "principal_moments", "principal_axes"}) json.key(key).null();
   } else {
-    const MassProperties mass = runner.world().mass_properties(runner.bodies()[index]);
+    const MassProperties mass = plain(runner.world().mass_properties(runner.bodies()[index]));
     const PrincipalAxes principal = principal_axes(mass.inertia);
     const Mat3 axes = to_matrix(principal.orientation);
     json.field("mass", mass.mass);
@@ -115,7 +120,7 @@ void write_body(JsonWriter& json, const SceneRunner& runner, std::size_t index) 
     json.field("inertia", mass.inertia);
     json.field("principal_moments", principal.moments);
     json.key("principal_axes").begin_array(JsonLayout::one_line);
-    for (const Vec3& axis : {axes.x, axes.y, axes.z}) json.value(axis);
+    for (const Vec3& axis : {axes.x, axes.y, axes.z}) json.value(plain(axis));
     json.end_array();
   }
   json.end_object();

@@ -72,12 +72,10 @@ void add_method_options(CLI::App& command, SimulateOptions& options) {
 
 void add_output_options(CLI::App& command, SimulateOptions& options) {
   command.add_option("--record", options.record, "Write a recording that can be replayed bit by bit")->type_name("FILE.gyrec");
-  CLI::Option* trace =
-      command.add_option("--trace", options.trace, "Write a table of the motion of every body")->type_name("FILE.csv");
+  command.add_option("--trace", options.trace, "Write a table of the motion of every body")->type_name("FILE.csv");
   command.add_option("--trace-every", options.trace_every, "Trace only every Nth step")
       ->type_name("N")
-      ->check(number_between(1, false, 1e12, "an integer from 1 to 1e12"))
-      ->needs(trace);
+      ->check(number_between(1, false, 1e12, "an integer from 1 to 1e12"));
   command.add_option("--stats", options.stats, "Write a table of figures of each step")->type_name("FILE.csv");
   command.add_option("--final", options.final, "Write the final state as a scene")->type_name("FILE.json");
   command.add_flag("--hash", options.hash, "Print a hash of the final state, the same on every machine");

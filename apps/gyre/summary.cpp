@@ -87,10 +87,10 @@ std::string summary_json(const SceneRunner& runner, const RunFigures& figures) {
   json.field("contacts", counts.contact_points);
   json.field("max_penetration", world.max_penetration());
   json.key("step_ms").begin_object(JsonLayout::one_line);
-  json.field("median", times.median);
-  json.field("mean", times.mean);
-  json.field("p99", times.p99);
-  json.field("max", times.max);
+  json.field("median", float(times.median));
+  json.field("mean", float(times.mean));
+  json.field("p99", float(times.p99));
+  json.field("max", float(times.max));
   json.end_object();
   json.field("energy", energy.kinetic + energy.potential + energy.elastic);
   json.field("kinetic_energy", energy.kinetic);
