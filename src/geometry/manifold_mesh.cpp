@@ -27,6 +27,8 @@ constexpr float kFaceBias = 5.0e-4f;
 constexpr float kRoundBias = 1.0e-6f;
 // ... and how much deeper than a contact a triangle may lie and still be covered by it.
 constexpr float kCoverSlack = 1.0e-3f;
+// Sine between directions that are one.
+constexpr float kParallel = 1.0e-3f;
 // Cosines: contacts of one stretch of ground; normals that oppose each other; sharp edges.
 constexpr float kSameNormal = 0.9994f;
 constexpr float kOpposed = -0.1f;
@@ -42,6 +44,7 @@ struct Waiting {
   std::uint32_t id;
   float face_separation;
   bool behind;
+  bool overlaps;
 };
 
 class MeshCollider {
@@ -57,13 +60,16 @@ class MeshCollider {
     find_candidates(surface_, convex_, position_, max_separation_, candidates_);
     for (int i = 0; i < candidates_.count; ++i) look_at(candidates_.ids[i]);
     settle_waiting();
+    settle_deep_patches();
     return groups_.finish(position_, out);
   }
 
  private:
   void look_at(std::uint32_t id);
   void settle_waiting();
+  void settle_deep_patches();
   void settle(const Waiting& waiting);
+  bool is_ruled_out(const NearTriangle& t, bool behind) const;
 
   NearTriangle triangle(std::uint32_t id) const { return near_triangle(surface_, id, position_, convex_); }
   void know_side(Vec3 normal);
@@ -73,8 +79,9 @@ class MeshCollider {
   }
 
   bool stands_already(Vec3 normal) const;
-  void stand(Vec3 normal, float separation);
+  bool stand(Vec3 normal, float separation);
   void add_face(const NearTriangle& t);
+  bool add_deep_corners(const NearTriangle& t);
   void add_feature(const NearTriangle& t, const FeatureAxis& axis);
   bool is_buried(const NearTriangle& t, Vec3 direction) const;
   bool covers(const NearTriangle& other, const NearTriangle& t, Vec3 direction) const;
@@ -119,14 +126,16 @@ bool MeshCollider::stands_already(Vec3 normal) const {
   return false;
 }
 
-void MeshCollider::stand(Vec3 normal, float separation) {
+// Returns whether it is the first with this normal.
+bool MeshCollider::stand(Vec3 normal, float separation) {
   for (int i = 0; i < standing_count_; ++i) {
     if (dot(standing_[i].normal, normal) <= kSameNormal) continue;
     standing_[i].separation = min(standing_[i].separation, separation);
-    return;
+    return false;
   }
-  if (standing_count_ == kStandingRoom) return;
+  if (standing_count_ == kStandingRoom) return false;
   standing_[standing_count_++] = {normal, separation, convex_.lowest(normal)};
+  return true;
 }
 
 void MeshCollider::add_face(const NearTriangle& t) {
@@ -134,14 +143,41 @@ void MeshCollider::add_face(const NearTriangle& t) {
   know_face();
   points_.count = 0;
   face_points(t, convex_, side_, max_separation_, points_);
-  if (is_buried(t, t.normal)) return;
+  if (is_buried(t, t.normal)) points_.count = 0;
   groups_.add(t.normal, t.id, points_);
+}
+
+// The lowest corners of a shape that leans and has sunk deep lie under triangles that the shape itself does not touch: the
+// ground goes on there in the same plane. Returns whether any point was added.
+bool MeshCollider::add_deep_corners(const NearTriangle& t) {
+  know_side(t.normal);
+  know_face();
+  const FacePolygon face = side_.face;
+  const float reach = kCoverSlack * convex_.size(), height = dot(t.normal, t.v[0]);
+  const Vec3 lowest = convex_.support(-t.normal);
+  bool added = false;
+  for (int k = -1; k < face.count; ++k) {
+    const Vec3 corner = k < 0 ? lowest : face.vertices[k];
+    const float above = dot(t.normal, corner) - height;
+    // Triangles under less deep corners have all been looked at.
+    if (above - convex_.radius() > -0.9f * max_separation_) continue;
+    const Vec3 foot = corner - above * t.normal + position_;
+    std::uint32_t ids[16];
+    const int count = find_triangles(surface_, grow({foot, foot}, reach), ids);
+    for (int i = 0; i < count; ++i) {
+      const NearTriangle under = triangle(ids[i]);
+      if (dot(under.normal, t.normal) <= kSameNormal) continue;
+      add_face(under);
+      added = added || points_.count > 0;
+    }
+  }
+  return added;
 }
 
 void MeshCollider::add_feature(const NearTriangle& t, const FeatureAxis& axis) {
   points_.count = 0;
   feature_points(t, convex_, axis, max_separation_, points_);
-  if (is_buried(t, axis.direction)) return;
+  if (is_buried(t, axis.direction)) points_.count = 0;
   groups_.add(axis.direction, t.id, points_);
 }
 
@@ -149,17 +185,20 @@ void MeshCollider::add_feature(const NearTriangle& t, const FeatureAxis& axis) {
 // contact points lie on it, and going against the contact's direction one stays above it.
 bool MeshCollider::covers(const NearTriangle& other, const NearTriangle& t, Vec3 direction) const {
   const float slack = kCoverSlack * convex_.size();
-  if (dot(other.normal, direction) > 0.99f || dot(other.normal, convex_.center() - other.v[0]) < 0.0f)
+  const Vec3 sideways = direction - dot(direction, other.normal) * other.normal;
+  if (length_squared(sideways) < kParallel * kParallel ||
+      dot(other.normal, convex_.center() - other.v[0]) < 0.0f)
     return false;
   for (int i = 0; i < 3; ++i) {
     if (dot(other.normal, t.v[i] - other.v[0]) > slack) return false;
   }
+  const Vec3 step = normalized(sideways);
   for (int k = 0; k < points_.count; ++k) {
-    // From the middle of the two surfaces down to the triangle's, then a step along the direction.
+    // From the middle of the two surfaces down to the triangle's, then a step to where the contact would push.
     const ManifoldPoint& point = points_.points[k];
     const Vec3 p = point.position - 0.5f * point.separation * direction;
     if (absolute(dot(other.normal, p - other.v[0])) > slack) return false;
-    const Vec3 ahead = p + slack * direction;
+    const Vec3 ahead = p + slack * step;
     for (int i = 0; i < 3; ++i) {
       if (dot(other.outward[i], ahead - other.v[i]) > 0.0f) return false;
     }
@@ -196,15 +235,17 @@ void MeshCollider::look_at(std::uint32_t id) {
   const bool behind = dot(t.normal, convex_.center()) < height;
   const float allowed = max(face, axes.feature.separation);
   if (behind || allowed < axes.best - kFaceBias * convex_.size()) {
-    waiting_[waiting_count_++] = {id, face, behind};
+    waiting_[waiting_count_++] = {id, face, behind, axes.best <= 0.0f};
     return;
   }
   if (face >= axes.feature.separation - bias_) {
     add_face(t);
     // Beside an edge the face alone may have no point.
     const bool empty = points_.count == 0;
-    if (!empty || axes.feature.separation < axes.best - kFaceBias * convex_.size())
-      return stand(t.normal, face);
+    if (!empty || axes.feature.separation < axes.best - kFaceBias * convex_.size()) {
+      if (stand(t.normal, face)) add_deep_corners(t);
+      return;
+    }
   }
   stand(axes.feature.direction, axes.feature.separation);
   add_feature(t, axes.feature);
@@ -215,17 +256,25 @@ void MeshCollider::settle(const Waiting& waiting) {
   for (int i = 0; i < standing_count_; ++i) {
     if (dot(standing_[i].normal, t.normal) > kSameNormal) return add_face(t);
   }
+  if (is_ruled_out(t, waiting.behind)) return;
+  add_face(t);
+  bool added = points_.count > 0;
+  if ((added || waiting.overlaps) && add_deep_corners(t)) added = true;
+  if (added) stand(t.normal, waiting.face_separation);
+}
+
+// Whether a contact that stands says better what to do about the triangle.
+bool MeshCollider::is_ruled_out(const NearTriangle& t, bool behind) const {
   const float slack = kCoverSlack * convex_.size();
   for (int i = 0; i < standing_count_; ++i) {
     const Standing& standing = standing_[i];
-    if (waiting.behind && dot(standing.normal, t.normal) < kOpposed) return;
+    if (behind && dot(standing.normal, t.normal) < kOpposed) return true;
     const float highest =
         max(dot(standing.normal, t.v[0]), max(dot(standing.normal, t.v[1]), dot(standing.normal, t.v[2])));
     const float separation = standing.lowest - highest - convex_.radius();
-    if (separation >= standing.separation - slack) return;
+    if (separation >= standing.separation - slack) return true;
   }
-  add_face(t);
-  if (points_.count > 0) stand(t.normal, waiting.face_separation);
+  return false;
 }
 
 void MeshCollider::settle_waiting() {
@@ -234,6 +283,16 @@ void MeshCollider::settle_waiting() {
   merge_sort(std::span<Waiting>(waiting_, std::size_t(waiting_count_)), std::span<Waiting>(scratch),
              [](const Waiting& a, const Waiting& b) { return a.face_separation > b.face_separation; });
   for (int i = 0; i < waiting_count_; ++i) settle(waiting_[i]);
+}
+
+// A shape that leans and pierces a large flat patch may have neither a corner above nor a triangle in question below.
+void MeshCollider::settle_deep_patches() {
+  for (int i = 0; i < candidates_.deep_patch_count; ++i) {
+    const NearTriangle t = triangle(candidates_.deep_patches[i]);
+    know_side(t.normal);
+    if (is_ruled_out(t, dot(t.normal, convex_.center() - t.v[0]) < 0.0f)) continue;
+    if (add_deep_corners(t)) stand(t.normal, face_separation(t));
+  }
 }
 
 }  // namespace

@@ -93,22 +93,27 @@ class Search {
     return corners;
   }
 
-  void offer(Vec3 d, float separation, unsigned corners) {
+  // Returns whether the direction is the best allowed one so far.
+  bool offer(Vec3 d, float separation, unsigned corners, AxisSource source) {
     core_best_ = max(core_best_, separation + convex_.radius());
     if (is_backwards(d)) {
       // As a separating direction it still counts.
       if (separation > max_separation_) found_.best = separation;
-      return;
+      return false;
     }
     found_.best = max(found_.best, separation);
-    if (!(separation > found_.feature.separation) || is_face(d)) return;
-    if (allows(corners, d)) found_.feature = {separation, d, corners};
+    if (!(separation > found_.feature.separation) || is_face(d) || !allows(corners, d)) return false;
+    found_.feature.separation = separation;
+    found_.feature.direction = d;
+    found_.feature.corners = corners;
+    found_.feature.source = source;
+    return true;
   }
 
   // `d` unit; everything measured.
   void measure(Vec3 d) {
     const float separation = convex_.lowest(d) - highest_corner(d) - convex_.radius();
-    offer(d, separation, supporting_corners(d));
+    offer(d, separation, supporting_corners(d), AxisSource::curved);
   }
 
   void polyhedron();
@@ -134,7 +139,7 @@ void Search::face_axes() {
     const float low = min(dot(n, t_.v[0]), min(dot(n, t_.v[1]), dot(n, t_.v[2])));
     const float separation = low - convex_.face_offset(i) - convex_.radius();
     if (separation > found_.best || separation > found_.feature.separation) {
-      offer(-n, separation, supporting_corners(-n));
+      offer(-n, separation, supporting_corners(-n), AxisSource::shape_face);
     }
   }
 }
@@ -156,7 +161,10 @@ void Search::edge_axes() {
       const Vec3 d = crossing / -size;
       const float separation = dot(d, point - t_.v[i]) - convex_.radius();
       if (separation > found_.best || separation > found_.feature.separation) {
-        offer(d, separation, 1u << i | 1u << next_corner(i));
+        if (offer(d, separation, 1u << i | 1u << next_corner(i), AxisSource::shape_edge)) {
+          found_.feature.from = edge.from;
+          found_.feature.to = edge.to;
+        }
         if (apart()) return;
       }
     }
@@ -174,7 +182,10 @@ void Search::segment_axes() {
     d = d / size;
     if (dot(d, t_.outward[i]) < 0.0f) d = -d;
     const float separation = dot(d, convex_.vertex(0) - t_.v[i]) - convex_.radius();
-    offer(d, separation, 1u << i | 1u << next_corner(i));
+    if (offer(d, separation, 1u << i | 1u << next_corner(i), AxisSource::shape_edge)) {
+      found_.feature.from = 0;
+      found_.feature.to = 1;
+    }
   }
 }
 
@@ -228,7 +239,9 @@ void Search::nearest_pair() {
   const double distance = std::sqrt(best);
   if (!(distance > 1.0e-6 * double(convex_.size()))) return;
   const Vec3 d = to_float((on_convex - on_triangle.point) / distance);
-  offer(d, float(distance) - convex_.radius(), on_triangle.corners);
+  if (offer(d, float(distance) - convex_.radius(), on_triangle.corners, AxisSource::nearest_pair)) {
+    found_.feature.on_core = to_float(on_convex);
+  }
 }
 
 void Search::polyhedron() {
@@ -277,8 +290,9 @@ void Search::search_arc(int edge) {
   const Vec3 d = direction(0.5f * (low + high));
   // The search stops short of the exact directions (along an axis, a cap or a mantle line): those win near ties.
   const float value = separation(d) - 1.0e-5f * convex_.size();
-  if (value > found_.feature.separation || value > found_.best)
-    offer(d, value + 1.0e-5f * convex_.size(), corners);
+  if (value > found_.feature.separation || value > found_.best) {
+    offer(d, value + 1.0e-5f * convex_.size(), corners, AxisSource::curved);
+  }
 }
 
 // Cylinders and cones: cap normals, mantle lines against edges, mantle normals at corners, and the arcs of active edges.

@@ -41,10 +41,20 @@ NearTriangle near_triangle(const Surface& surface, std::uint32_t id, Vec3 positi
                            const PlacedConvex& convex);
 
 // A corner or edge of the triangle where shape and surface may touch, and the direction.
+enum class AxisSource : std::uint8_t {
+  shape_face,    // the normal of a face of the shape
+  shape_edge,    // an edge of the shape across an edge of the triangle
+  nearest_pair,  // between the nearest points of triangle and core
+  curved,        // of a cylinder or cone
+};
+
 struct FeatureAxis {
   float separation = -__builtin_huge_valf();  // of the surfaces; -infinity: there is none
   Vec3 direction;                             // unit, from the triangle to the convex shape
   unsigned corners = 0;  // bits of the triangle's corners: one for a corner, two for an edge
+  AxisSource source = AxisSource::shape_face;
+  int from = 0, to = 0;  // shape_edge: vertices of the shape
+  Vec3 on_core;          // nearest_pair: the core's point
 };
 
 struct AxisSearch {

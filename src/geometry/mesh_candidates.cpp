@@ -112,7 +112,23 @@ class Gatherer {
     }
     if (convex_.has_vertices() && above(convex_.vertex(convex_.lowest_vertex(normal)))) return true;
     add(first);
+    if (side_.lowest - height - convex_.radius() < -0.9f * max_separation_ && near_patch(box))
+      note_deep(first, normal);
     return false;
+  }
+
+  bool near_patch(const Aabb& box) const {
+    return convex_.may_touch({box.low - position_, box.high - position_}, 0.0f);
+  }
+
+  void note_deep(std::uint32_t id, Vec3 normal) {
+    const float height = dot(normal, surface_.triangle(id).v[0] - position_);
+    for (int i = 0; i < out_.deep_patch_count; ++i) {
+      const TriangleView other = surface_.triangle(out_.deep_patches[i]);
+      const float apart = absolute(dot(normal, other.v[0] - position_) - height);
+      if (absolute(dot(other.normal, normal)) > 0.9999f && apart < 1.0e-3f * convex_.size()) return;
+    }
+    if (out_.deep_patch_count < MeshCandidates::kPatchRoom) out_.deep_patches[out_.deep_patch_count++] = id;
   }
 
   // How far the triangle reaches out of the shape's local box (negative: into it), and in which cell its middle lies.
@@ -184,7 +200,35 @@ class Gatherer {
 void find_candidates(const Surface& surface, const PlacedConvex& convex, Vec3 position, float max_separation,
                      MeshCandidates& out) {
   out.count = 0;
+  out.deep_patch_count = 0;
   Gatherer(surface, convex, position, max_separation, out).run();
+}
+
+int find_triangles(const Surface& surface, const Aabb& box, std::span<std::uint32_t> out) {
+  std::size_t count = 0;
+  const auto add = [&](std::uint32_t id) {
+    if (count < out.size()) out[count++] = id;
+  };
+  if (surface.mesh != nullptr) {
+    const Mesh& mesh = *surface.mesh;
+    walk_overlaps(
+        mesh.tree, box, [](std::uint32_t, int) { return true; },
+        [&](std::uint32_t first, std::uint32_t leaf) {
+          for (std::uint32_t id = first; id < first + leaf; ++id) {
+            if (overlap(triangle_box(mesh, id), box)) add(id);
+          }
+        });
+    return int(count);
+  }
+  const HeightField& field = *surface.field;
+  walk_cells(
+      field, box, [](HeightBlock) { return true; },
+      [&](std::uint32_t column, std::uint32_t row) {
+        if (!is_solid_cell(field, column, row) || !overlap(block_box(field, {-1, column, row}), box)) return;
+        add(2 * (row * field.cell_columns() + column));
+        add(2 * (row * field.cell_columns() + column) + 1);
+      });
+  return int(count);
 }
 
 }  // namespace gyre

@@ -14,10 +14,18 @@ struct MeshCandidates {
   static constexpr int kRoom = 1024;
   int count = 0;
   std::uint32_t ids[kRoom];  // ascending
+  // Flat patches through which the shape reaches deeper than the margin, one triangle for each plane.
+  static constexpr int kPatchRoom = 16;
+  int deep_patch_count = 0;
+  std::uint32_t deep_patches[kPatchRoom];
 };
 
 // `position` is the place of the convex shape's origin in the surface's frame.
 void find_candidates(const Surface& surface, const PlacedConvex& convex, Vec3 position, float max_separation,
                      MeshCandidates& out);
+
+// The triangles whose boxes overlap a box in the surface's frame, ascending by their place in the tree or pyramid; those
+// that do not fit into `out` are left out. Returns how many were written.
+int find_triangles(const Surface& surface, const Aabb& box, std::span<std::uint32_t> out);
 
 }  // namespace gyre

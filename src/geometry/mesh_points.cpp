@@ -92,6 +92,7 @@ void face_points(const NearTriangle& t, const PlacedConvex& convex, const PlaneS
                  float max_separation, MeshPoints& out) {
   const FacePolygon& face = side.face;
   const Emitter emit{t.normal, t.v[0], convex.radius(), max_separation, out};
+  add_lowest_vertex(t, convex, side, emit);
   // How far each corner of the face lies outside of each of the triangle's sides.
   float outside[3][kMaxFaceVertices];
   bool beyond[3] = {true, true, true};
@@ -107,7 +108,6 @@ void face_points(const NearTriangle& t, const PlacedConvex& convex, const PlaneS
     if (outside[0][k] > t.slack || outside[1][k] > t.slack || outside[2][k] > t.slack) continue;
     emit.core_point(face.vertices[k], point_name(PointKind::shape_corner, normal, face.ids[k]));
   }
-  add_lowest_vertex(t, convex, side, emit);
   const int edges = face.count == 2 ? 1 : (face.count < 2 ? 0 : face.count);
   for (int i = 0; i < 3; ++i) {
     if (t.edge[i] == EdgeKind::flat) continue;
@@ -227,17 +227,40 @@ void lowest_edge(const FacePolygon& face, Vec3 direction, FacePolygon& out) {
   out.ids[1] = face.ids[other];
 }
 
-void corner_points(const NearTriangle& t, int corner, const PlacedConvex& convex, const FacePolygon& face,
-                   const Emitter& emit) {
+// Roundings of the curved shapes' corners and of the searches for their directions, relative to their size.
+constexpr float kCurvedSlack = 2.0e-3f;
+
+void corner_points(const NearTriangle& t, int corner, const PlacedConvex& convex, const FeatureAxis& axis,
+                   const FacePolygon& face, const Emitter& emit) {
   const Vec3 v = t.v[corner];
-  const std::uint32_t name = point_name(PointKind::surface_corner, t.corner_id[corner], face.feature);
-  const float facing = dot(face.normal, emit.direction);
-  if (face.count >= 3 && facing < -kFlush) {
-    const float height = dot(face.normal, face.vertices[0] - v) / facing;
-    return emit.pair(v + height * emit.direction, height - emit.radius, name);
+  const std::uint32_t on_shape = face.count == 2 ? edge_name(face, 0) : face.feature;
+  const std::uint32_t name = point_name(PointKind::surface_corner, t.corner_id[corner], on_shape);
+  float height = dot(emit.direction, axis.on_core - v);
+  if (axis.source != AxisSource::nearest_pair) {
+    const float facing = dot(face.normal, emit.direction);
+    const bool flush = face.count >= 3 && facing < -kFlush;
+    height = flush ? dot(face.normal, face.vertices[0] - v) / facing
+                   : convex.lowest(emit.direction) - dot(emit.direction, v);
   }
-  const float height = convex.lowest(emit.direction) - dot(emit.direction, v);
-  emit.pair(v + height * emit.direction, height - emit.radius, name);
+  const Vec3 q = v + height * emit.direction;
+  if (convex.holds(q, kCurvedSlack * convex.size())) emit.pair(q, height - emit.radius, name);
+}
+
+// What of the shape lies along an edge of the triangle when it is no face: an edge or a point.
+void narrow_feature(const PlacedConvex& convex, const FeatureAxis& axis, const FacePolygon& face,
+                    FacePolygon& out) {
+  if (axis.source == AxisSource::shape_edge) {
+    out.count = 2;
+    out.normal = -axis.direction;
+    out.vertices[0] = convex.vertex(axis.from);
+    out.vertices[1] = convex.vertex(axis.to);
+    out.ids[0] = std::uint8_t(axis.from);
+    out.ids[1] = std::uint8_t(axis.to);
+  } else if (face.count >= 3) {
+    lowest_edge(face, axis.direction, out);
+  } else {
+    out = face;
+  }
 }
 
 }  // namespace
@@ -249,22 +272,18 @@ void feature_points(const NearTriangle& t, const PlacedConvex& convex, const Fea
   convex.face_towards(-d, face);
   const Emitter emit{d, t.v[0], convex.radius(), max_separation, out};
   for (int i = 0; i < 3; ++i) {
-    if (axis.corners == 1u << i) return corner_points(t, i, convex, face, emit);
+    if (axis.corners == 1u << i) return corner_points(t, i, convex, axis, face, emit);
   }
   const int edge = axis.corners == 3 ? 0 : (axis.corners == 6 ? 1 : 2);
-  if (face.count >= 3 && dot(face.normal, d) < -kFlush) {
+  if (axis.source != AxisSource::shape_edge && face.count >= 3 && dot(face.normal, d) < -kFlush) {
     EdgeContact{t, edge, face, d, emit}.under_polygon();
     if (out.count > 0) return;
   }
   FacePolygon narrow;
-  const FacePolygon* facing = &face;
-  if (face.count >= 3) {
-    lowest_edge(face, d, narrow);
-    facing = &narrow;
-  }
-  const EdgeContact contact{t, edge, *facing, d, emit};
-  if (facing->count == 2) {
-    const Vec3 segment = facing->vertices[1] - facing->vertices[0];
+  narrow_feature(convex, axis, face, narrow);
+  const EdgeContact contact{t, edge, narrow, d, emit};
+  if (narrow.count == 2) {
+    const Vec3 segment = narrow.vertices[1] - narrow.vertices[0];
     if (length(cross(segment, t.along[edge])) <= kParallel * length(segment)) {
       contact.beside_segment();
       if (out.count > 0) return;

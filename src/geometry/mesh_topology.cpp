@@ -13,6 +13,7 @@ constexpr float kPatchAngle = 2.0e-3f;
 constexpr double kPatchTolerance = 4.0e-7;
 // Beyond this the two sides of a fold are back to back, and each has its own border.
 constexpr float kFolded = -0.9999f;
+constexpr std::uint32_t kNoPatch = 0xffffffffu;
 // Edges with more triangles than this stay open.
 constexpr std::size_t kMaxShared = 32;
 
@@ -70,47 +71,71 @@ void pair_half_edges(Mesh& mesh) {
   }
 }
 
-DVec3 area_vector(const Mesh& mesh, std::uint32_t triangle) {
-  const std::uint32_t* corner = mesh.indices.data() + 3 * std::size_t(triangle);
-  const DVec3 a(mesh.vertices[corner[0]]);
-  return cross(DVec3(mesh.vertices[corner[1]]) - a, DVec3(mesh.vertices[corner[2]]) - a);
+// The plane of a patch: through the middle of its triangles, at a right angle to the sum of their areas. Both are refined while
+// the patch grows, since a single small triangle knows its plane only to within the rounding of its corners.
+struct PatchPlane {
+  DVec3 area;    // sum of area vectors
+  DVec3 moment;  // sum of middles times areas
+  double weight = 0.0;
+  DVec3 normal, middle;
+
+  void add(const Mesh& mesh, std::uint32_t triangle) {
+    const std::uint32_t* corner = mesh.indices.data() + 3 * std::size_t(triangle);
+    const DVec3 a(mesh.vertices[corner[0]]), b(mesh.vertices[corner[1]]), c(mesh.vertices[corner[2]]);
+    const DVec3 vector = cross(b - a, c - a);
+    const double size = length(vector);
+    area += vector;
+    moment += (size / 3.0) * (a + b + c);
+    weight += size;
+  }
+  void refine() {
+    normal = area / length(area);
+    middle = moment / weight;
+  }
+  double distance(Vec3 point) const { return absolute(dot(normal, DVec3(point) - middle)); }
+};
+
+// The patch around one triangle: gives it all triangles that lie in one plane with it and hang together, and one normal.
+void grow_patch(Mesh& mesh, std::uint32_t seed, double tolerance, std::vector<std::uint32_t>& patch,
+                std::vector<std::uint32_t>& members) {
+  PatchPlane plane;
+  plane.add(mesh, seed);
+  plane.refine();
+  members.assign(1, seed);
+  patch[seed] = seed;
+  std::size_t refined = 1;
+  for (std::size_t next = 0; next < members.size(); ++next) {
+    if (members.size() >= 2 * refined) {
+      plane.refine();
+      refined = members.size();
+    }
+    for (std::uint32_t edge = 0; edge < 3; ++edge) {
+      const std::uint32_t twin = mesh.twins[3 * std::size_t(members[next]) + edge];
+      if (twin == Mesh::kNoTwin || patch[twin / 3] != kNoPatch) continue;
+      const std::uint32_t other = twin / 3;
+      if (length_squared(mesh.normals[other] - to_float(plane.normal)) > kPatchAngle * kPatchAngle) continue;
+      // The two corners on the shared edge were looked at with the triangle on this side.
+      const std::uint32_t apex = mesh.indices[3 * std::size_t(other) + (twin + 2) % 3];
+      if (plane.distance(mesh.vertices[apex]) > tolerance) continue;
+      patch[other] = seed;
+      members.push_back(other);
+      plane.add(mesh, other);
+    }
+  }
+  if (members.size() == 1) return;
+  plane.refine();
+  for (const std::uint32_t member : members) mesh.normals[member] = to_float(plane.normal);
 }
 
-// Grows flat patches from the lowest triangle on. Returns each triangle's patch, named by its first triangle, and gives all
-// of a patch one normal.
+// Returns each triangle's patch, named by its first triangle.
 std::vector<std::uint32_t> grow_patches(Mesh& mesh) {
   const std::uint32_t count = mesh.triangle_count();
   const Vec3 reach = max(absolute(mesh.tree.box.low), absolute(mesh.tree.box.high));
   const double tolerance = kPatchTolerance * double(largest(reach));
-  constexpr std::uint32_t kNone = 0xffffffffu;
-  std::vector<std::uint32_t> patch(count, kNone);
+  std::vector<std::uint32_t> patch(count, kNoPatch);
   std::vector<std::uint32_t> members;
   for (std::uint32_t seed = 0; seed < count; ++seed) {
-    if (patch[seed] != kNone) continue;
-    const Vec3 normal = mesh.normals[seed];
-    const DVec3 origin(mesh.vertices[mesh.indices[3 * std::size_t(seed)]]);
-    const DVec3 seed_area = area_vector(mesh, seed);
-    const DVec3 seed_normal = seed_area / length(seed_area);
-    members.assign(1, seed);
-    patch[seed] = seed;
-    for (std::size_t next = 0; next < members.size(); ++next) {
-      for (std::uint32_t edge = 0; edge < 3; ++edge) {
-        const std::uint32_t twin = mesh.twins[3 * std::size_t(members[next]) + edge];
-        if (twin == Mesh::kNoTwin || patch[twin / 3] != kNone) continue;
-        const std::uint32_t other = twin / 3;
-        if (length_squared(mesh.normals[other] - normal) > kPatchAngle * kPatchAngle) continue;
-        // The two corners on the shared edge were looked at with the triangle on this side.
-        const std::uint32_t apex = mesh.indices[3 * std::size_t(other) + (twin + 2) % 3];
-        if (absolute(dot(seed_normal, DVec3(mesh.vertices[apex]) - origin)) > tolerance) continue;
-        patch[other] = seed;
-        members.push_back(other);
-      }
-    }
-    if (members.size() == 1) continue;
-    DVec3 sum;
-    for (const std::uint32_t member : members) sum += area_vector(mesh, member);
-    const Vec3 mean = to_float(sum / length(sum));
-    for (const std::uint32_t member : members) mesh.normals[member] = mean;
+    if (patch[seed] == kNoPatch) grow_patch(mesh, seed, tolerance, patch, members);
   }
   return patch;
 }

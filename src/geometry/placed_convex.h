@@ -53,6 +53,8 @@ class PlacedConvex {
 
   // Whether anything within `reach` of the surface may lie in the box: false only if certainly nothing does.
   bool may_touch(const Aabb& box, float reach) const;
+  // Cylinders and cones: whether the point lies inside, to within `slack`. True for all other kinds.
+  bool holds(Vec3 point, float slack) const;
   // How far a point lies outside the shape's local box; negative inside. And the local box itself.
   float box_distance(Vec3 point) const;
   Vec3 to_local(Vec3 v) const { return transpose_times(rotation_, v); }

@@ -1,0 +1,326 @@
+// Where surfaces have real edges: ridges, valleys, walls, steps, borders, and pieces that are laid side by side.
+#include "geometry/closest.h"
+#include "geometry/cooked.h"
+#include "geometry/manifold_mesh.h"
+#include "geometry/mesh_contact_test.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace gyre {
+namespace {
+
+using namespace test;
+
+struct Nearest {
+  double distance = 1.0e9;
+  DVec3 point;
+  std::uint32_t triangle = 0;
+};
+
+Nearest nearest_by_brute_force(const Mesh& mesh, Vec3 center) {
+  Nearest best;
+  for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
+    const TriangleView view = view_triangle(mesh, t);
+    const DVec3 p =
+        closest_on_triangle(DVec3(center), DVec3(view.v[0]), DVec3(view.v[1]), DVec3(view.v[2])).point;
+    const double d = length(DVec3(center) - p);
+    if (d < best.distance) best = {d, p, t};
+  }
+  return best;
+}
+
+TEST(CollideMeshEdges, SphereEqualsBruteForceOnRoughGround) {
+  Random random{71};
+  int touching = 0;
+  for (int round = 0; round < 6; ++round) {
+    const Geometry ground =
+        grid(3.0f, 0.4f, [&](float, float) { return random.between(0.0f, round < 3 ? 0.1f : 0.5f); }).cook();
+    const Mesh& mesh = *ground.data()->mesh;
+    for (int i = 0; i < 500; ++i) {
+      SCOPED_TRACE(testing::Message() << "round " << round << ", sphere " << i);
+      const float radius = i % 2 == 0 ? 0.5f : 0.1f;
+      const Vec3 center{random.between(-2, 2), 0.0f, random.between(-2, 2)};
+      // Down until the sphere just touches, a little more or less.
+      float y = 2.0f;
+      for (int k = 0; k < 40; ++k) {
+        const float d = float(nearest_by_brute_force(mesh, {center.x, y, center.z}).distance) - radius;
+        y -= d;
+        if (d < 1.0e-6f) break;
+      }
+      y += random.between(-0.02f, 0.015f);
+      const Vec3 place{center.x, y, center.z};
+      const Nearest want = nearest_by_brute_force(mesh, place);
+      const float separation = float(want.distance) - radius;
+      const Manifolds found = collide(ground, Sphere{radius}, {place, random.rotation()});
+      if (separation > kMargin) {
+        EXPECT_EQ(found.count, 0);
+        continue;
+      }
+      ++touching;
+      ASSERT_GE(found.count, 1);
+      EXPECT_NEAR(found.deepest(), separation, 2.0e-5f);
+      const Vec3 normal = to_float((DVec3(place) - want.point) / want.distance);
+      EXPECT_NE(found.along(normal, 0.03f), nullptr);
+      // Every contact touches the sphere along its normal: none pushes from where there is no surface.
+      for (int m = 0; m < found.count; ++m) {
+        const LocalManifold& manifold = found.all[m];
+        const ManifoldPoint& p = manifold.points[0];
+        const Vec3 on_surface = p.position - 0.5f * p.separation * manifold.normal;
+        EXPECT_LT(nearest_by_brute_force(mesh, on_surface).distance, 2.0e-3);
+      }
+    }
+  }
+  EXPECT_GT(touching, 2500);
+}
+
+TEST(CollideMeshEdges, ARollingSphereTurnsOverARidge) {
+  for (const float slope : {0.05f, 0.5f, 2.0f}) {
+    const Geometry roof = grid(4.0f, 0.5f, [&](float x, float) { return -slope * std::fabs(x); }).cook();
+    const float radius = 0.5f;
+    const Vec3 left = normalized(Vec3{-slope, 1, 0}), right = normalized(Vec3{slope, 1, 0});
+    for (int i = -50; i <= 50; ++i) {
+      // Over the ridge in an arc, at a height where it just touches.
+      const float angle = 0.03f * float(i);
+      Vec3 normal{sin_cos(angle).sin, sin_cos(angle).cos, 0.0f};
+      Vec3 touch{0, 0, 0.13f};
+      if (normal.x > right.x) normal = right, touch = {0.1f, -0.1f * slope, 0.13f};
+      if (normal.x < left.x) normal = left, touch = {-0.1f, -0.1f * slope, 0.13f};
+      const Manifolds found = collide(roof, Sphere{radius}, {touch + (radius - 1.0e-4f) * normal, {}});
+      ASSERT_EQ(found.count, 1) << "slope " << slope << ", angle " << angle;
+      EXPECT_LT(length(found.all[0].normal - normal), 2.0e-3f) << "slope " << slope << ", angle " << angle;
+      EXPECT_NEAR(found.deepest(), -1.0e-4f, 1.0e-5f);
+    }
+  }
+}
+
+TEST(CollideMeshEdges, ABoxInAValleyTouchesBothSides) {
+  const Geometry valley = grid(4.0f, 0.5f, [](float x, float) { return std::fabs(x); }).cook();
+  const Vec3 left = normalized(Vec3{1, 1, 0}), right = normalized(Vec3{-1, 1, 0});
+  const Quat turned = from_axis_angle({0, 0, 1}, 0.25f * kPi);
+  for (const AnyShape& shape :
+       {AnyShape(Box{{0.5f, 0.5f, 0.5f}}), AnyShape(Box{{0.5f, 0.5f, 0.5f}, 0.05f})}) {
+    const float lift = std::sqrt(0.5f) - 1.0e-3f;
+    const Manifolds found = collide(valley, shape, {{0, lift, 0.2f}, turned});
+    ASSERT_EQ(found.count, 2);
+    for (const Vec3 side : {left, right}) {
+      const LocalManifold* manifold = found.along(side, 1.0e-4f);
+      ASSERT_NE(manifold, nullptr);
+      EXPECT_EQ(manifold->count, 4);
+      for (int k = 0; k < 4; ++k)
+        EXPECT_NEAR(manifold->points[k].separation, -1.0e-3f * std::sqrt(0.5f), 1.0e-5f);
+    }
+  }
+  const Manifolds ball = collide(valley, Sphere{0.5f}, {{0, 0.5f * std::sqrt(2.0f) - 1.0e-3f, 0.2f}, {}});
+  ASSERT_EQ(ball.count, 2);
+  EXPECT_NE(ball.along(left, 1.0e-4f), nullptr);
+  EXPECT_NE(ball.along(right, 1.0e-4f), nullptr);
+}
+
+TEST(CollideMeshEdges, ABoxInACornerTouchesFloorAndWall) {
+  // A floor, and a wall at x = 2 that faces -x, both in cells of 0.25 m.
+  Triangles room = flat_grid(2.0f, 0.25f);
+  Triangles wall = flat_grid(2.0f, 0.25f);
+  const std::uint32_t base = std::uint32_t(room.vertices.size());
+  for (const Vec3 v : wall.vertices) room.vertex({2.0f, v.x + 2.0f, v.z});
+  for (std::size_t i = 0; i < wall.indices.size(); i += 3) {
+    room.triangle(base + wall.indices[i], base + wall.indices[i + 1], base + wall.indices[i + 2]);
+  }
+  const Geometry ground = room.cook();
+  for (const float depth : {1.0e-4f, 1.0e-3f, 5.0e-3f, -5.0e-3f}) {
+    SCOPED_TRACE(depth);
+    for (float z = -1.0f; z < 1.0f; z += 0.11f) {
+      const Manifolds found = collide(ground, Box{{0.3f, 0.3f, 0.3f}}, {{1.7f + depth, 0.3f - depth, z}, {}});
+      ASSERT_EQ(found.count, 2);
+      const LocalManifold *up = found.along(kUp, 1.0e-6f), *side = found.along({-1, 0, 0}, 1.0e-6f);
+      ASSERT_NE(up, nullptr);
+      ASSERT_NE(side, nullptr);
+      EXPECT_EQ(up->count, 4);
+      EXPECT_EQ(side->count, 4);
+      EXPECT_NEAR(up->points[0].separation, -depth, 1.0e-6f);
+      EXPECT_NEAR(side->points[0].separation, -depth, 1.0e-6f);
+    }
+  }
+}
+
+// A wall 0.2 m thick and 2 m high, its top along z, in cells of `cell`.
+Triangles thin_wall(float cell) {
+  Triangles out;
+  const auto sheet = [&](Vec3 origin, Vec3 u, Vec3 v) {
+    const int nu = max(1, int(length(u) / cell + 0.5f)), nv = max(1, int(length(v) / cell + 0.5f));
+    for (int i = 0; i < nu; ++i) {
+      for (int k = 0; k < nv; ++k) {
+        const auto at = [&](int a, int b) {
+          return origin + (float(a) / float(nu)) * u + (float(b) / float(nv)) * v;
+        };
+        out.quad(at(i, k), at(i + 1, k), at(i + 1, k + 1), at(i, k + 1));
+      }
+    }
+  };
+  sheet({0.1f, -2, 2}, {0, 0, -4}, {0, 2, 0});
+  sheet({-0.1f, -2, -2}, {0, 0, 4}, {0, 2, 0});
+  sheet({-0.1f, 0, 2}, {0.2f, 0, 0}, {0, 0, -4});
+  return out;
+}
+
+TEST(CollideMeshEdges, ABodySunkIntoTheTopOfAWallIsNotPushedSideways) {
+  Random random{73};
+  for (const float cell : {4.0f, 0.5f, 0.05f}) {
+    const Geometry wall = thin_wall(cell).cook();
+    for (const AnyShape& shape : {AnyShape(Box{{0.5f, 0.5f, 0.5f}}), AnyShape(Cylinder{0.5f, 0.5f}),
+                                  AnyShape(Box{{0.5f, 0.5f, 0.5f}, 0.1f})}) {
+      for (int i = 0; i < 40; ++i) {
+        const float depth = random.between(-0.01f, 0.06f);
+        SCOPED_TRACE(testing::Message() << "cell " << cell << ", depth " << depth);
+        const Transform pose{{random.between(-0.1f, 0.1f), 0.5f - depth, random.between(-1, 1)},
+                             from_axis_angle(kUp, random.between(-3, 3))};
+        const Manifolds found = collide(wall, shape, pose);
+        ASSERT_EQ(found.count, 1);
+        EXPECT_LT(length(found.all[0].normal - kUp), 1.0e-6f);
+        EXPECT_NEAR(found.deepest(), -depth, 1.0e-5f);
+        EXPECT_GE(found.points(), 3);
+      }
+    }
+  }
+}
+
+TEST(CollideMeshEdges, ABoxBeforeAStepIsStopped) {
+  // Steps of 0.2 m.
+  Triangles stairs;
+  for (int i = 0; i < 5; ++i) {
+    const float x = float(i), y = 0.2f * float(i);
+    stairs.quad({x, y, 2}, {x + 1, y, 2}, {x + 1, y, -2}, {x, y, -2});
+    stairs.quad({x + 1, y, 2}, {x + 1, y + 0.2f, 2}, {x + 1, y + 0.2f, -2}, {x + 1, y, -2});
+  }
+  const Geometry ground = stairs.cook();
+  // Pressed 1 mm into the riser, 0.1 mm into the tread.
+  const Manifolds found = collide(ground, Box{{0.3f, 0.3f, 0.3f}}, {{2.701f, 0.6999f, 0.1f}, {}});
+  ASSERT_NE(found.along({-1, 0, 0}, 1.0e-5f), nullptr);
+  ASSERT_NE(found.along(kUp, 1.0e-5f), nullptr);
+  EXPECT_NEAR(found.along({-1, 0, 0}, 1.0e-5f)->points[0].separation, -1.0e-3f, 1.0e-5f);
+  // A little over the edge of a step, and 1 mm into its top: up, not back.
+  const Manifolds over = collide(ground, Box{{0.3f, 0.3f, 0.3f}}, {{2.8f, 0.899f, 0.1f}, {}});
+  ASSERT_EQ(over.count, 1);
+  EXPECT_LT(length(over.all[0].normal - kUp), 1.0e-5f);
+}
+
+TEST(CollideMeshEdges, PlatesAndCapsulesTouchTheBorderOfASheet) {
+  const Geometry sheet = flat_grid(1.0f, 0.25f).cook();
+  // Beside the border at its height: pushed straight away from it.
+  for (const AnyShape& shape :
+       {AnyShape(Box{{0.3f, 0.3f, 0.3f}}), AnyShape(Sphere{0.3f}), AnyShape(Capsule{0.3f, 0.4f}),
+        AnyShape(Cylinder{0.3f, 0.3f}), AnyShape(Box{{0.3f, 0.3f, 0.3f}, 0.1f})}) {
+    const Manifolds found = collide(sheet, shape, {{1.299f, 0.01f, 0.1f}, {}});
+    ASSERT_EQ(found.count, 1);
+    EXPECT_LT(length(found.all[0].normal - Vec3{1, 0, 0}), 0.05f);
+    EXPECT_NEAR(found.deepest(), -1.0e-3f, 2.0e-4f);
+  }
+  // Half over it: still up.
+  const Manifolds half = collide(sheet, Box{{0.3f, 0.3f, 0.3f}}, {{1.1f, 0.299f, 0.1f}, {}});
+  ASSERT_EQ(half.count, 1);
+  EXPECT_LT(length(half.all[0].normal - kUp), 1.0e-6f);
+  EXPECT_EQ(half.all[0].count, 4);
+  for (int k = 0; k < 4; ++k) EXPECT_LE(half.all[0].points[k].position.x, 1.0f + 1.0e-5f);
+}
+
+TEST(CollideMeshEdges, PointyHillsTouchTheMiddleOfABox) {
+  // One peak under the middle of a box, and a ridge under a plate.
+  const Geometry peak =
+      grid(2.0f, 0.5f, [](float x, float z) { return x == 0 && z == 0 ? 0.5f : 0.0f; }).cook();
+  const Manifolds box = collide(peak, Box{{0.4f, 0.4f, 0.4f}}, {{0.1f, 0.895f, 0.05f}, {}});
+  ASSERT_EQ(box.count, 1);
+  EXPECT_LT(length(box.all[0].normal - kUp), 1.0e-5f);
+  ASSERT_EQ(box.points(), 1);
+  EXPECT_NEAR(box.all[0].points[0].separation, -5.0e-3f, 1.0e-5f);
+  EXPECT_LT(length(box.all[0].points[0].position - Vec3{0, 0.4975f, 0}), 1.0e-4f);
+  const Geometry ridge = grid(2.0f, 0.5f, [](float x, float) { return -0.7f * std::fabs(x); }).cook();
+  for (const AnyShape& shape : {AnyShape(Box{{0.4f, 0.1f, 0.4f}}), AnyShape(Box{{0.4f, 0.1f, 0.4f}, 0.05f}),
+                                AnyShape(Cylinder{0.4f, 0.1f})}) {
+    const Manifolds plate = collide(ridge, shape, {{0.1f, 0.099f, 0.05f}, {}});
+    ASSERT_EQ(plate.count, 1);
+    EXPECT_LT(length(plate.all[0].normal - kUp), 1.0e-3f);
+    // The two ends of the stretch of the ridge under the plate, and perhaps a vertex of the ridge between them.
+    EXPECT_LE(plate.points(), 3);
+    const float reach = plate.all[0].points[1].position.z - plate.all[0].points[0].position.z;
+    EXPECT_GT(std::fabs(reach), 0.25f);
+    for (int k = 0; k < plate.points(); ++k) {
+      EXPECT_NEAR(plate.all[0].points[k].position.x, 0.0f, 1.0e-4f);
+      EXPECT_LT(std::fabs(plate.all[0].points[k].position.z - 0.05f), 0.4f + 1.0e-4f);
+      EXPECT_NEAR(plate.all[0].points[k].separation, -1.0e-3f, 2.0e-5f);
+    }
+  }
+  // A capsule along the ridge, and one across it.
+  const Quat along = from_axis_angle({1, 0, 0}, 0.5f * kPi), across = from_axis_angle({0, 0, 1}, 0.5f * kPi);
+  const Manifolds lying = collide(ridge, Capsule{0.2f, 0.4f}, {{0, 0.199f, 0.05f}, along});
+  ASSERT_EQ(lying.count, 1);
+  EXPECT_LT(length(lying.all[0].normal - kUp), 1.0e-4f);
+  EXPECT_LE(lying.points(), 3);
+  EXPECT_GE(lying.points(), 2);
+  const Manifolds crossing = collide(ridge, Capsule{0.2f, 0.4f}, {{0.05f, 0.199f, 0.05f}, across});
+  ASSERT_EQ(crossing.count, 1);
+  EXPECT_LT(length(crossing.all[0].normal - kUp), 1.0e-4f);
+  EXPECT_EQ(crossing.points(), 1);
+}
+
+// ------------------------------------------------------------------------------------- pieces that are not joined
+
+void expect_no_ghosts(const Geometry& ground, float from, float to) {
+  const Quat on_side = from_axis_angle({0, 0, 1}, 0.5f * kPi);
+  const struct {
+    AnyShape shape;
+    Quat lying;
+    float height;
+  } sliders[] = {{Box{{0.3f, 0.3f, 0.3f}}, {}, 0.3f},
+                 {Sphere{0.3f}, {}, 0.3f},
+                 {Capsule{0.2f, 0.3f}, on_side, 0.2f},
+                 {Box{{0.3f, 0.05f, 0.3f}}, {}, 0.05f},
+                 {Cylinder{0.3f, 0.3f}, {}, 0.3f}};
+  Random random{79};
+  for (const auto& slider : sliders) {
+    for (float x = from; x < to; x += 0.013f) {
+      const float gap = random.between(-3.0e-4f, 1.0e-4f);
+      const Transform pose{{x, slider.height + gap, 0.2f * x}, from_axis_angle(kUp, 0.2f) * slider.lying};
+      const Manifolds found = collide(ground, slider.shape, pose);
+      for (int i = 0; i < found.count; ++i) {
+        ASSERT_LT(length(found.all[i].normal - kUp), 1.0e-6f) << "x " << x << ", height " << slider.height;
+      }
+      ASSERT_EQ(found.count, 1);
+      EXPECT_NEAR(found.deepest(), gap, 1.0e-5f);
+    }
+  }
+}
+
+TEST(CollideMeshEdges, TJunctionsAreNoEdges) {
+  // Left of x = 0 large cells, right of it cells that do not match.
+  Triangles floor;
+  for (int i = -2; i < 2; ++i)
+    floor.quad({-3, 0, 3.0f * float(i)}, {-3, 0, 3.0f * float(i + 1)}, {0, 0, 3.0f * float(i + 1)},
+               {0, 0, 3.0f * float(i)});
+  for (int i = -10; i < 10; ++i)
+    floor.quad({0, 0, 0.7f * float(i)}, {0, 0, 0.7f * float(i + 1)}, {3, 0, 0.7f * float(i + 1)},
+               {3, 0, 0.7f * float(i)});
+  expect_no_ghosts(floor.cook(), -2.0f, 2.0f);
+}
+
+TEST(CollideMeshEdges, BlocksSideBySideAreNoEdges) {
+  // Closed boxes laid side by side, sharing corners or a tenth of a millimetre apart.
+  for (const float gap : {0.0f, 1.0e-4f}) {
+    Triangles floor;
+    for (int i = -2; i < 2; ++i) {
+      add_box(floor, {1.5f * float(i), -1, -2}, {1.5f * float(i + 1) - gap, 0, 2});
+    }
+    expect_no_ghosts(floor.cook(), -2.0f, 2.0f);
+  }
+}
+
+TEST(CollideMeshEdges, DoublesFromBehindAreNoEdges) {
+  // Every triangle twice, once from each side: how some tools write surfaces with two sides.
+  Triangles sheet = flat_grid(3.0f, 0.5f);
+  const std::vector<std::uint32_t> front = sheet.indices;
+  for (std::size_t i = 0; i < front.size(); i += 3) sheet.triangle(front[i], front[i + 2], front[i + 1]);
+  expect_no_ghosts(sheet.cook(), -2.0f, 2.0f);
+}
+
+}  // namespace
+}  // namespace gyre
