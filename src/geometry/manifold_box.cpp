@@ -279,21 +279,7 @@ int clip_rectangle(const Roles& roles, int axis, float facing, int k, float max_
   return kept;
 }
 
-// Of boxes that overlap although no face of one lies under the face of the other: the incident's deepest corner, moved to
-// the nearest place over the reference face.
-Corner deepest_corner(const Roles& roles, int axis, float facing) {
-  const int iu = kNext[axis], iv = kAfter[axis];
-  float p[3] = {roles.c[0], roles.c[1], roles.c[2]};
-  for (int k = 0; k < 3; ++k) {
-    const float h = facing * roles.m[axis][k] > 0.0f ? -roles.incident[k] : roles.incident[k];
-    for (int i = 0; i < 3; ++i) p[i] += h * roles.m[i][k];
-  }
-  const float hu = roles.reference[iu], hv = roles.reference[iv];
-  return {clamp(p[iu], -hu, hu), clamp(p[iv], -hv, hv), facing * p[axis] - roles.reference[axis],
-          kFeatureNearest, 0};
-}
-
-// Leaves out.count at 0 when no face of boxes that are apart lies over the other's.
+// Leaves out.count at 0 when no face of one lies over the other's.
 void collide_face(const Boxes& x, const Transform& a_from_b, const Axis& found, float max_separation,
                   LocalManifold& out) {
   const bool reference_is_a = found.number < kFirstB;
@@ -312,11 +298,7 @@ void collide_face(const Boxes& x, const Transform& a_from_b, const Axis& found, 
   for (int i = 0; i < 3 && count == 0; ++i) {
     count = clip_rectangle(roles, axis, facing, order[i], max_separation, corners);
   }
-  if (count == 0) {
-    if (found.separation > 0.0f) return;
-    corners[0] = deepest_corner(roles, axis, facing);
-    count = 1;
-  }
+  if (count == 0) return;
   ManifoldPoint points[8];
   const int iu = kNext[axis], iv = kAfter[axis];
   const float top = facing * roles.reference[axis];
@@ -401,8 +383,8 @@ void collide_boxes(const Shape& a, const Shape& b, const Transform& a_from_b, fl
   } else {
     collide_face(x, a_from_b, found, max_separation, out);
   }
-  // Corners and edges that pass beside each other's faces, but near.
-  if (out.count == 0) collide_nearest(a, b, a_from_b, max_separation, out);
+  // Near, or even overlapping, but beside each other's faces.
+  if (out.count == 0) collide_cores(a, b, a_from_b, max_separation, cache, out);
 }
 
 }  // namespace gyre

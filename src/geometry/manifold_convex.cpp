@@ -50,6 +50,8 @@ void collide_convex(const Shape& a, const Shape& b, const Transform& a_from_b, f
       return collide_round(a, b, a_from_b, max_separation, cache, out);
     case ConvexMethod::boxes:
       return collide_boxes(a, b, a_from_b, max_separation, cache, out);
+    case ConvexMethod::polyhedra:
+      return collide_polyhedra(a, b, a_from_b, max_separation, cache, out);
     default:
       return collide_cores(a, b, a_from_b, max_separation, cache, out);
   }

@@ -34,6 +34,10 @@ float deepest_of(const LocalManifold& m) {
   return deepest;
 }
 
+bool core_face_is_segment(ShapeKind kind) {
+  return kind == ShapeKind::capsule || kind == ShapeKind::cylinder || kind == ShapeKind::cone;
+}
+
 // What holds for any manifold of any two shapes.
 void expect_sane(const Shape& a, const Shape& b, const Transform& t, float reach, const LocalManifold& m,
                  const std::string& what) {
@@ -51,6 +55,10 @@ void expect_sane(const Shape& a, const Shape& b, const Transform& t, float reach
     ASSERT_GT(m.count, 0) << what;
   }
   if (m.count == 0) return;
+  // Segments that touch twice may lie beside each other by a part of their radii.
+  const auto is_slim = [](const Shape& shape) { return core_face_is_segment(shape.kind); };
+  const double beside =
+      is_slim(a) && is_slim(b) ? 0.06 * double(min(a.radius, b.radius)) + 1.0e-3 * size : 0.0;
   ASSERT_NEAR(length(m.normal), 1.0f, 1.0e-5f) << what;
   for (int i = 0; i < m.count; ++i) {
     const ManifoldPoint& point = m.points[i];
@@ -63,9 +71,9 @@ void expect_sane(const Shape& a, const Shape& b, const Transform& t, float reach
     // cut a little inside.
     const Vec3 on_a = point.position - (0.5f * point.separation) * m.normal;
     const Vec3 on_b = point.position + (0.5f * point.separation) * m.normal;
-    EXPECT_LT(outside(a, on_a), 1.0e-4 * size + 0.1 * max(-distance, 0.0)) << what << " point " << i;
-    EXPECT_LT(outside(b, inverse_times(t, on_b)), 1.0e-4 * size + 0.1 * max(-distance, 0.0))
-        << what << " point " << i;
+    const double slack = 1.0e-4 * size + 0.1 * max(-distance, 0.0) + beside;
+    EXPECT_LT(outside(a, on_a), slack) << what << " point " << i;
+    EXPECT_LT(outside(b, inverse_times(t, on_b)), slack) << what << " point " << i;
     // Two points of the surfaces are never nearer than the surfaces.
     if (distance > 0.0) {
       EXPECT_GT(double(point.separation), distance - 1.0e-5 * size) << what;
@@ -106,7 +114,7 @@ void run_pairs(int rounds, unsigned seed) {
 }
 
 TEST(ManifoldConvex, EveryPairOfKindsIsSane) { run_pairs(400, 51); }
-TEST(LongManifoldConvex, EveryPairOfKindsIsSane) { run_pairs(50000, 52); }
+TEST(LongManifoldConvex, EveryPairOfKindsIsSane) { run_pairs(100000, 52); }
 
 TEST(ManifoldConvex, SwappingTheShapesTurnsTheNormal) {
   Random random(53);

@@ -120,16 +120,4 @@ void collide_cores(const Shape& a, const Shape& b, const Transform& a_from_b, fl
   fill(a, b, a_from_b, contact, max_separation, out);
 }
 
-void collide_nearest(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
-                     LocalManifold& out) {
-  out.count = 0;
-  const double reach = double(core_radius(a)) + double(core_radius(b)) + double(max_separation);
-  const CoreDistance distance = core_distance(CorePair(a, b, a_from_b), reach, a_from_b.position);
-  if (distance.beyond || distance.overlap || distance.distance > reach) return;
-  out.normal = to_float(distance.normal);
-  out.count = 1;
-  out.points[0] = nearest_point(
-      a, b, {out.normal, to_float(distance.on_a), to_float(distance.on_b), float(distance.distance), 0.0f});
-}
-
 }  // namespace gyre

@@ -12,8 +12,4 @@ namespace gyre {
 void collide_cores(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
                    PairCache& cache, LocalManifold& out);
 
-// The one nearest pair of points of two shapes whose cores are apart; nothing if they overlap or are too far.
-void collide_nearest(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
-                     LocalManifold& out);
-
 }  // namespace gyre

@@ -80,11 +80,7 @@ int face_points(const Roles& roles, int face, float separation, float max_separa
     count = clip_with(other);
     if (count > 0) return count;
   }
-  const Vec3 corner = roles.reference_from_incident * roles.incident.vertices[deepest];
-  points[0].position = corner - (0.5f * separation) * outward;
-  points[0].separation = separation;
-  points[0].feature = kFeatureNearest;
-  return 1;
+  return 0;
 }
 
 // None when the polytopes are apart and the edges pass beside each other.
@@ -94,6 +90,8 @@ void edge_point(const Polytope& a, const Polytope& b, const Transform& a_from_b,
   const SegmentPair near =
       closest_of_segments(DVec3(a.vertices[ea.from]), DVec3(a.vertices[ea.to]),
                           DVec3(a_from_b * b.vertices[eb.from]), DVec3(a_from_b * b.vertices[eb.to]));
+  const bool at_end = near.s <= 0.0 || near.s >= 1.0 || near.t <= 0.0 || near.t >= 1.0;
+  if (axis.separation > 0.0f && at_end) return;
   out.count = 1;
   out.points[0].position = to_float(0.5 * (near.on_a + near.on_b));
   out.points[0].separation = axis.separation;
@@ -143,8 +141,8 @@ void collide_polyhedra(const Shape& a, const Shape& b, const Transform& a_from_b
     const Polytope view_b = a.kind == ShapeKind::box ? make_polytope(*b.hull) : box.view();
     near = collide_polytopes(view_a, view_b, a_from_b, max_separation, cache, out);
   }
-  // Corners and edges that pass beside each other's faces, but near.
-  if (near && out.count == 0) collide_nearest(a, b, a_from_b, max_separation, out);
+  // Near, or even overlapping, but beside each other's faces.
+  if (near && out.count == 0) collide_cores(a, b, a_from_b, max_separation, cache, out);
 }
 
 }  // namespace gyre
