@@ -5,6 +5,7 @@
 #include <gyre/math.h>
 
 #include <clocale>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
@@ -55,6 +56,10 @@ bool is_decimal(std::string_view token) {
 }  // namespace
 
 void append_number(std::string& out, double value) {
+  if (value == 0.0 && std::signbit(value)) {
+    out += "-0.0";  // readers take -0 for an integer, which has no sign of zero
+    return;
+  }
   char text[40];
   int size = 0;
   for (int digits = 15; digits <= 17; ++digits) {
@@ -65,6 +70,7 @@ void append_number(std::string& out, double value) {
 }
 
 void append_number(std::string& out, float value) {
+  if (value == 0.0f) return append_number(out, double(value));
   char text[40];
   int size = 0;
   for (int digits = 6; digits <= 9; ++digits) {

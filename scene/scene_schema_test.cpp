@@ -1,0 +1,139 @@
+// The schema, the reader and the scenes of the repository agree.
+#include "scene/scene_schema.h"
+
+#include "scene/json_schema_check.h"
+#include "scene/scene_reader.h"
+#include "scene/scene_writer.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace gyre {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string file_text(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+Json parse(const std::string& text) { return parse_document(text, "schema", SceneLimits{}); }
+
+const fs::path kScenes = fs::path(GYRE_SOURCE_DIR) / "scenes";
+
+TEST(SceneSchema, TheFileIsWhatTheProgramPrints) { EXPECT_EQ(file_text(kScenes / "scene.schema.json"), scene_schema()); }
+
+TEST(SceneSchema, AcceptsEverySceneOfTheRepositoryAndSoDoesTheReader) {
+  const Json schema = parse(scene_schema());
+  SchemaCheck check(schema);
+  int scenes = 0;
+  for (const auto& entry : fs::directory_iterator(kScenes)) {
+    const std::string name = entry.path().filename().string();
+    if (name.size() < 10 || name.substr(name.size() - 10) != ".gyre.json") continue;
+    ++scenes;
+    EXPECT_EQ(check.check(parse(file_text(entry.path()))), "") << name;
+    const SceneResult<Scene> scene = load_scene(entry.path().string());
+    ASSERT_TRUE(scene) << scene.error().text();
+    EXPECT_FALSE(scene->name.empty()) << name;
+    EXPECT_EQ(check.check(parse(write_scene(*scene, {.inline_meshes = true}))), "") << name;
+    EXPECT_LT(fs::file_size(entry.path()), 300'000u) << name;
+  }
+  EXPECT_GE(scenes, 14);
+}
+
+// A scene in which `members` stand in the named definition.
+std::string wrapped(const std::string& definition, const std::string& members) {
+  const std::string start = R"({"gyre_scene": 1, )";
+  if (definition == "world") return start + R"("world": {)" + members + "}}";
+  if (definition == "material") return start + R"("materials": {"m": {)" + members + "}}}";
+  if (definition == "material_pair") {
+    return start + R"("materials": {"m": {}}, "material_pairs": [{"materials": ["m", "m"], )" + members + "}]}";
+  }
+  if (definition == "body") return start + R"("bodies": [{"name": "b", )" + members + "}]}";
+  if (definition == "shape_common") {
+    return start + R"("bodies": [{"name": "b", "shapes": [{"type": "sphere", "radius": 1, )" + members + "}]}]}";
+  }
+  if (definition == "force") return start + R"("bodies": [{"name": "b", "forces": [{)" + members + "}]}]}";
+  const std::string joint = start + R"("bodies": [{"name": "p"}, {"name": "q"}], "joints": [{"type": "slider", "a": "p", "b": "q", )"
+                            R"("axis": [0, 1, 0], )";
+  if (definition == "motor") return joint + R"("motor": {)" + members + "}}]}";
+  return joint + members + "}]}";
+}
+
+TEST(SceneSchema, TheReaderKnowsEveryMember) {
+  const Json schema = parse(scene_schema());
+  int members = 0;
+  for (const char* definition : {"world", "material", "material_pair", "body", "shape_common", "force", "motor", "joint"}) {
+    for (const auto& [member, rule] : schema["$defs"][definition]["properties"].items()) {
+      if (wrapped(definition, "").find("\"" + member + "\"") != std::string::npos) continue;  // there already
+      // A value that no member takes: the refusal must be about the value.
+      const SceneResult<Scene> scene = read_scene(wrapped(definition, "\"" + member + R"(": [[[]]])"));
+      ASSERT_FALSE(scene) << definition << " " << member;
+      EXPECT_EQ(scene.error().message.find("unknown field"), std::string::npos) << definition << ": " << scene.error().text();
+      ++members;
+    }
+  }
+  EXPECT_GT(members, 50);
+}
+
+TEST(SceneSchema, BothRefuseTheSame) {
+  const Json schema = parse(scene_schema());
+  SchemaCheck check(schema);
+  const std::vector<std::pair<std::string, std::string>> bad = {
+      {"world", R"("gravity": [0, 1])"},        {"world", R"("time_step": 0)"},
+      {"world", R"("substeps": 65)"},           {"world", R"("solver": "magic")"},
+      {"world", R"("nothing": 1)"},             {"material", R"("restitution": 2)"},
+      {"material", R"("density": -1)"},         {"material", R"("colour": "red")"},
+      {"material_pair", R"("density": 1)"},     {"body", R"("type": "fixed")"},
+      {"body", R"("mass": 0)"},                 {"body", R"("mass": "1")"},
+      {"body", R"("orientation": [0, 0, 1])"},  {"body", R"("orientation": {"axis": [0, 1, 0]})"},
+      {"body", R"("locked": {"linear": [1]})"}, {"body", R"("filter": {"layer": -1})"},
+      {"body", R"("inertia": [1, 2])"},         {"body", R"("speed": 1)"},
+      {"shape_common", R"("height": 1)"},       {"shape_common", R"("position": 1)"},
+      {"shape_common", R"("half_height": 1)"},  {"force", R"("frame": "local")"},
+      {"force", R"("at": [1])"},                {"motor", R"("max_force": -1)"},
+      {"motor", R"("speed": 1)"},               {"joint", R"("limits": [1])"},
+      {"joint", R"("break_force": -1)"},        {"joint", R"("spring": 1)"},
+  };
+  for (const auto& [definition, members] : bad) {
+    const std::string text = wrapped(definition, members);
+    EXPECT_FALSE(read_scene(text)) << text;
+    EXPECT_NE(check.check(parse(text)), "") << text;
+  }
+}
+
+TEST(SceneSchema, KnowsTheMatterThatIsStillToCome) {
+  const Json schema = parse(scene_schema());
+  SchemaCheck check(schema);
+  EXPECT_EQ(check.check(parse(R"({"gyre_scene": 1,
+    "cloths": [{"name": "flag", "mesh": "sheet", "grid": {"size": [2,1], "cells": [40,20]}, "position": [0,3,0],
+                "orientation": [0,0,0,1], "links": "springs", "area_density": 0.2, "stretch_stiffness": 1000,
+                "shear_stiffness": 200, "bend_stiffness": 1e-4, "damping": 0.01, "thickness": 0.005, "static_friction": 0.4,
+                "self_collision": true, "pinned": [0, 40], "pinned_to": [{"vertex": 3, "body": "pole"}]}],
+    "ropes": [{"name": "rope", "points": [[0,5,0],[0,0,0]], "segments": 50, "radius": 0.02, "linear_density": 0.1,
+               "links": "rods", "stretch_stiffness": 1e4, "bend_stiffness": 0.01, "attach": [{"end": 0, "body": "hook"}]}],
+    "soft_bodies": [{"name": "jelly", "mesh": "bunny", "resolution": 16, "tetrahedra": [[0,1,2,3]],
+                     "box": {"half_extents": [0.5,0.5,0.5], "cells": [8,8,8]}, "density": 1000, "young_modulus": 1e5,
+                     "poisson_ratio": 0.45, "model": "neo_hookean", "damping": 0.01, "position": [0,2,0],
+                     "pinned_region": null}],
+    "gases": [{"name": "smoke", "bounds": [[-2,0,-2],[2,4,2]], "cells": [64,64,64], "buoyancy": 1.0, "vorticity": 0.2,
+               "viscosity": 0, "boundary": "open", "emitters": [{"position": [0,0.2,0], "radius": 0.3, "density": 1,
+               "temperature": 300, "velocity": [0,1,0]}]}],
+    "liquids": [{"name": "water", "bounds": [[0,0,0],[4,2,1]], "cell_size": 0.05, "density": 1000, "viscosity": 0,
+                 "surface_tension": 0, "fill": [{"box": [[0,0,0],[1,2,1]]}]}],
+    "force_fields": [{"type": "wind", "velocity": [5,0,0], "turbulence": 0.2, "bounds": null}]})")),
+            "");
+  EXPECT_NE(check.check(parse(R"({"gyre_scene": 1, "cloths": [{"nam": "flag"}]})")), "");
+  EXPECT_NE(check.check(parse(R"({"gyre_scene": 1, "gasses": []})")), "");
+}
+
+}  // namespace
+}  // namespace gyre

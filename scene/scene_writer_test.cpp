@@ -1,0 +1,183 @@
+// Reading what was written gives the same scene: same text, and the same bits in every number.
+#include "scene/scene_writer.h"
+
+#include "scene/scene_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+namespace gyre {
+namespace {
+
+const std::string kEverything = R"({
+  "gyre_scene": 1,
+  "name": "every member, \"quoted\" and \u00e4",
+  "world": {"gravity": [0.1, -9.81, 1e-7], "time_step": 0.00833333333, "substeps": 8, "integrator": "semi_implicit_euler",
+            "solver": "soft_step", "broad_phase": "brute_force", "stepping": "fixed", "sleeping": false},
+  "materials": {
+    "ice": {"density": 917, "static_friction": 0.1, "dynamic_friction": 0.03, "restitution": 0.05,
+            "rolling_friction": 0.001, "spinning_friction": 0.002},
+    "a, b": {"dynamic_friction": 0.3}
+  },
+  "material_pairs": [
+    {"materials": ["ice", "ice"], "static_friction": 0.03, "dynamic_friction": 0.02, "restitution": 0.3},
+    {"materials": ["ice", "a, b"], "static_friction": 0.5}
+  ],
+  "meshes": {"tetra": {"vertices": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]], "triangles": [[0,2,1],[0,1,3],[0,3,2],[1,2,3]]}},
+  "bodies": [
+    {"name": "ground", "type": "static", "shapes": [
+      {"type": "plane", "normal": [0, 2, 0], "offset": -1},
+      {"type": "mesh", "mesh": "tetra"},
+      {"type": "height_field", "size": [3, 2], "spacing": 0.5, "heights": [0, 0.1, null, 0.2, 0.3, -1]}]},
+    {"name": "mover", "type": "kinematic", "linear_velocity": [1, 0, 0], "shapes": [{"type": "box", "half_extents": [1, 2, 3]}]},
+    {"name": "box", "type": "dynamic", "position": [123456789.123456789, 1, -0.1],
+     "orientation": {"euler_xyz": [0.1, 0.2, 0.3]},
+     "linear_velocity": [1, 2, 3], "angular_velocity": [0.1, 0.2, 0.3], "linear_damping": 0.1, "angular_damping": 0.2,
+     "gravity_scale": 0.5, "continuous": true, "can_sleep": false,
+     "locked": {"linear": [true, false, false], "angular": [false, true, false]},
+     "mass": 3.3, "center_of_mass": [0.1, 0, 0], "inertia": [1, 2, 2.5, 0.1, 0, 0.01],
+     "filter": {"layer": 4, "collides_with": 4294967294, "group": -3}, "sensor": true,
+     "shapes": [
+       {"type": "sphere", "radius": 0.333333333, "position": [0.1, 0.2, 0.3], "orientation": [0, 0, 0.6, 0.8], "material": "ice"},
+       {"type": "box", "half_extents": [0.5, 0.4, 0.3], "rounding": 0.1, "material": "a, b", "density": 5},
+       {"type": "capsule", "radius": 0.3, "half_height": 0, "static_friction": 0.2},
+       {"type": "cylinder", "radius": 0.3, "half_height": 0.5, "dynamic_friction": 0.1},
+       {"type": "cone", "radius": 0.3, "half_height": 0.5, "restitution": 0.9},
+       {"type": "convex_hull", "points": [[0,0,0],[1,0,0],[0,1,0],[0,0,1],[0.1,0.1,0.1]], "rolling_friction": 0.01},
+       {"type": "convex_hull", "mesh": "tetra", "spinning_friction": 0.01, "material": null}],
+     "forces": [
+       {"force": [1, 2, 3], "torque": [4, 5, 6], "at": [7, 8, 9], "frame": "body", "start": 0.5, "end": 1.5},
+       {"torque": [0, 1, 0], "at": null}]},
+    {"name": "other"}
+  ],
+  "joints": [
+    {"type": "ball", "name": "j1", "a": "box", "b": "world", "anchor": [0, 1, 0], "break_force": 100, "break_torque": 50},
+    {"type": "hinge", "a": "box", "b": "other", "anchor": [0, 1, 0], "axis": [1, 0, 0], "limits": [-0.5, 1.2],
+     "motor": {"target_velocity": 1, "target_position": 0.5, "max_force": 10, "frequency": 2, "damping_ratio": 0.7}},
+    {"type": "slider", "a": "world", "b": "other", "axis": [0, 2, 0], "limits": null, "motor": null},
+    {"type": "fixed", "a": "box", "b": "other", "collide_connected": true, "length": null},
+    {"type": "distance", "a": "box", "b": "other", "anchor": [0, 1, 0], "anchor_b": [0, 2, 0], "length": 1,
+     "min_length": 0.5, "max_length": 2, "stiffness": 100, "damping": 3},
+    {"type": "distance", "a": "box", "b": "other"}
+  ],
+  "cloths": [], "ropes": [], "soft_bodies": [], "gases": [], "liquids": [], "force_fields": []
+})";
+
+TEST(SceneWriter, WritingWhatWasReadIsStable) {
+  const SceneResult<Scene> first = read_scene(kEverything);
+  ASSERT_TRUE(first) << first.error().text();
+  const std::string text = write_scene(*first);
+  const SceneResult<Scene> second = read_scene(text);
+  ASSERT_TRUE(second) << second.error().text() << "\n" << text;
+  EXPECT_EQ(write_scene(*second), text);
+}
+
+TEST(SceneWriter, EveryNumberKeepsItsBits) {
+  const SceneResult<Scene> first = read_scene(kEverything);
+  ASSERT_TRUE(first);
+  const SceneResult<Scene> second = read_scene(write_scene(*first));
+  ASSERT_TRUE(second);
+  EXPECT_EQ(first->name, second->name);
+  EXPECT_EQ(first->world.time_step, second->world.time_step);
+  EXPECT_EQ(first->world.gravity, second->world.gravity);
+  EXPECT_EQ(first->world.substeps, 8);
+  EXPECT_EQ(second->world.broad_phase, BroadPhaseKind::brute_force);
+  EXPECT_FALSE(second->world.sleeping);
+  ASSERT_EQ(first->bodies.size(), second->bodies.size());
+  for (std::size_t i = 0; i < first->bodies.size(); ++i) {
+    const SceneBody &a = first->bodies[i], &b = second->bodies[i];
+    EXPECT_EQ(a.name, b.name);
+    EXPECT_EQ(a.def.type, b.def.type);
+    EXPECT_EQ(a.def.pose, b.def.pose);
+    EXPECT_EQ(a.def.linear_velocity, b.def.linear_velocity);
+    EXPECT_EQ(a.def.angular_velocity, b.def.angular_velocity);
+    EXPECT_EQ(a.def.mass, b.def.mass);
+    EXPECT_EQ(a.def.center_of_mass, b.def.center_of_mass);
+    EXPECT_EQ(a.def.inertia, b.def.inertia);
+    EXPECT_EQ(a.def.locked, b.def.locked);
+    EXPECT_EQ(a.filter, b.filter);
+    EXPECT_EQ(a.sensor, b.sensor);
+    ASSERT_EQ(a.shapes.size(), b.shapes.size());
+    for (std::size_t k = 0; k < a.shapes.size(); ++k) {
+      EXPECT_EQ(a.shapes[k].geometry.index(), b.shapes[k].geometry.index());
+      EXPECT_EQ(a.shapes[k].local, b.shapes[k].local);
+      EXPECT_EQ(a.shapes[k].material, b.shapes[k].material);
+      EXPECT_EQ(a.shapes[k].density, b.shapes[k].density);
+    }
+    ASSERT_EQ(a.forces.size(), b.forces.size());
+    for (std::size_t k = 0; k < a.forces.size(); ++k) {
+      EXPECT_EQ(a.forces[k].force, b.forces[k].force);
+      EXPECT_EQ(a.forces[k].torque, b.forces[k].torque);
+      EXPECT_EQ(a.forces[k].at, b.forces[k].at);
+      EXPECT_EQ(a.forces[k].in_body_frame, b.forces[k].in_body_frame);
+      EXPECT_EQ(a.forces[k].start, b.forces[k].start);
+      EXPECT_EQ(a.forces[k].end, b.forces[k].end);
+    }
+  }
+  ASSERT_EQ(first->joints.size(), second->joints.size());
+  for (std::size_t i = 0; i < first->joints.size(); ++i) {
+    EXPECT_EQ(first->joints[i].def.kind, second->joints[i].def.kind);
+    EXPECT_EQ(first->joints[i].a, second->joints[i].a);
+    EXPECT_EQ(first->joints[i].b, second->joints[i].b);
+    EXPECT_EQ(first->joints[i].def.anchor, second->joints[i].def.anchor);
+    EXPECT_EQ(first->joints[i].def.anchor_b, second->joints[i].def.anchor_b);
+    EXPECT_EQ(first->joints[i].def.stiffness, second->joints[i].def.stiffness);
+  }
+}
+
+TEST(SceneWriter, ReadsWhatTheFormatMeans) {
+  const SceneResult<Scene> scene = read_scene(kEverything);
+  ASSERT_TRUE(scene);
+  // One friction alone stands for both.
+  EXPECT_EQ(scene->materials[1].surface.static_friction, 0.3f);
+  EXPECT_EQ(scene->materials[1].surface.dynamic_friction, 0.3f);
+  EXPECT_EQ(scene->materials[1].density, 1000.0f);
+  const auto& field = std::get<SceneHeightField>(scene->bodies[0].shapes[2].geometry);
+  EXPECT_EQ(field.columns, 3u);
+  EXPECT_EQ(field.rows, 2u);
+  EXPECT_TRUE(std::isnan(field.heights[2]));
+  EXPECT_EQ(field.heights[5], -1.0f);
+  // Intrinsic x-y-z: R = Rx(0.1) Ry(0.2) Rz(0.3).
+  const Quat expected = from_axis_angle({1, 0, 0}, 0.1f) * from_axis_angle({0, 1, 0}, 0.2f) * from_axis_angle({0, 0, 1}, 0.3f);
+  EXPECT_NEAR(std::abs(dot(scene->bodies[2].def.pose.orientation, expected)), 1.0f, 1e-6f);
+  // What a joint leaves open: a slider's anchor is at b's origin, a distance joint's at a's.
+  EXPECT_EQ(scene->joints[2].def.anchor, scene->bodies[3].def.pose.position);
+  EXPECT_EQ(scene->joints[5].def.anchor, scene->bodies[2].def.pose.position);
+  EXPECT_FALSE(scene->joints[5].def.anchor_b);
+  EXPECT_EQ(scene->joints[0].b, -1);
+}
+
+TEST(SceneWriter, DefaultsAreThoseOfTheFormat) {
+  const SceneResult<Scene> scene = read_scene(R"({"gyre_scene": 1, "bodies": [{"name": "b"}]})");
+  ASSERT_TRUE(scene) << scene.error().text();
+  EXPECT_EQ(scene->world.gravity, (Vec3{0, -9.81f, 0}));
+  EXPECT_EQ(scene->world.time_step, 0.016666667);
+  EXPECT_EQ(scene->world.substeps, 4);
+  EXPECT_TRUE(scene->world.sleeping);
+  const SceneBody& body = scene->bodies[0];
+  EXPECT_EQ(body.def.type, BodyType::dynamic);
+  EXPECT_EQ(body.filter, Filter{});
+  EXPECT_EQ(body.def.gravity_scale, 1.0f);
+  EXPECT_TRUE(body.def.can_sleep);
+  EXPECT_FALSE(body.def.mass);
+}
+
+TEST(SceneWriter, MeshesCanStandInTheScene) {
+  Scene scene;
+  SceneMesh mesh;
+  mesh.name = "m";
+  mesh.file = "m.obj";
+  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.indices = {0, 1, 2};
+  scene.meshes.push_back(mesh);
+  EXPECT_NE(write_scene(scene).find("\"file\": \"m.obj\""), std::string::npos);
+  const SceneResult<Scene> read = read_scene(write_scene(scene, {.inline_meshes = true}));
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_EQ(read->meshes[0].indices, mesh.indices);
+  EXPECT_TRUE(read->meshes[0].file.empty());
+}
+
+}  // namespace
+}  // namespace gyre

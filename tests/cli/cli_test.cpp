@@ -1,0 +1,282 @@
+// The command line as scripts see it: exit statuses, headers, files, and that a mistake leaves nothing behind.
+#include "run_program.h"
+#include "scene/scene_schema.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace gyre {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kScene = R"({"gyre_scene": 1, "name": "small", "world": {"time_step": 0.01}, "bodies": [
+  {"name": "ground", "type": "static", "shapes": [{"type": "plane"}]},
+  {"name": "box, \"left\"", "position": [0, 2, 0], "shapes": [{"type": "box", "half_extents": [0.5, 0.5, 0.5]}]},
+  {"name": "ball", "position": [2, 3, 0], "linear_velocity": [1, 0, 0], "shapes": [{"type": "sphere", "radius": 0.5}]}]})";
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+class CommandLine : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("gyre_cli_" + std::to_string(getpid()) + "_" +
+                                           ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    write("s.gyre.json", kScene);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name, std::ios::binary) << text; }
+  std::string read(const std::string& name) const { return file_text(folder_ / name); }
+  Finished gyre(const std::vector<std::string>& arguments) const { return run_program(arguments, folder_); }
+  std::vector<std::string> files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_)) names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+  void expect_usage(const std::vector<std::string>& arguments, const std::string& word) const {
+    const Finished done = gyre(arguments);
+    EXPECT_EQ(done.code, 2) << word;
+    EXPECT_EQ(done.out, "");
+    EXPECT_EQ(lines_of(done.err).size(), 1u) << done.err;
+    EXPECT_NE(done.err.find(word), std::string::npos) << done.err;
+    EXPECT_EQ(files(), std::vector<std::string>{"s.gyre.json"}) << done.err;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(CommandLine, NoCommandPrintsHelpAndIsWrongUsage) {
+  const Finished done = gyre({});
+  EXPECT_EQ(done.code, 2);
+  EXPECT_NE(done.err.find("simulate"), std::string::npos);
+  const Finished help = gyre({"--help"});
+  EXPECT_EQ(help.code, 0);
+  EXPECT_NE(help.out.find("simulate"), std::string::npos);
+  EXPECT_EQ(gyre({"simulate", "--help"}).code, 0);
+  const Finished version = gyre({"--version"});
+  EXPECT_EQ(version.code, 0);
+  EXPECT_EQ(version.out.rfind("gyre ", 0), 0u);
+}
+
+TEST_F(CommandLine, WrongUsageIsStatusTwoAndOneLine) {
+  expect_usage({"dance"}, "dance");
+  expect_usage({"simulate"}, "SCENE");
+  expect_usage({"simulate", "s.gyre.json", "--fast"}, "--fast");
+  expect_usage({"simulate", "s.gyre.json", "--steps", "many"}, "found many");
+  expect_usage({"simulate", "s.gyre.json", "--steps", "-1"}, "found -1");
+  expect_usage({"simulate", "s.gyre.json", "--steps", "1.5"}, "steps");
+  expect_usage({"simulate", "s.gyre.json", "--steps", "1", "--duration", "1"}, "--steps");
+  expect_usage({"simulate", "s.gyre.json", "--duration", "-2"}, "found -2");
+  expect_usage({"simulate", "s.gyre.json", "--duration", "nan"}, "found nan");
+  expect_usage({"simulate", "s.gyre.json", "--step", "0"}, "above 0");
+  expect_usage({"simulate", "s.gyre.json", "--step", "2"}, "at most 1");
+  expect_usage({"simulate", "s.gyre.json", "--substeps", "65"}, "1 to 64");
+  expect_usage({"simulate", "s.gyre.json", "--threads", "-1"}, "0 to 1024");
+  expect_usage({"simulate", "s.gyre.json", "--solver", "magic"}, "found magic, expected one of soft_step");
+  expect_usage({"simulate", "s.gyre.json", "--solver", "lcp"}, "not supported");
+  expect_usage({"simulate", "s.gyre.json", "--integrator", "rk4"}, "not supported");
+  expect_usage({"simulate", "s.gyre.json", "--broad-phase", "octree"}, "not supported");
+  expect_usage({"simulate", "s.gyre.json", "--stepping", "adaptive"}, "not supported");
+  expect_usage({"simulate", "s.gyre.json", "--trace-every", "0", "--trace", "t.csv"}, "1 to");
+  expect_usage({"simulate", "s.gyre.json", "--trace", "t.csv", "--stats", "t.csv"}, "same file");
+  expect_usage({"simulate", "s.gyre.json", "--trace", "./s.gyre.json"}, "overwrite the scene");
+  expect_usage({"info"}, "SCENE");
+  expect_usage({"schema", "more"}, "more");
+}
+
+TEST_F(CommandLine, AnInvalidSceneIsStatusThreeAndNothingIsWritten) {
+  write("bad.gyre.json", R"({"gyre_scene": 1, "bodies": [{"name": "b", "shapes": [{"type": "sphere", "radius": -1}]}]})");
+  const std::vector<std::string> before = files();
+  for (const char* command : {"simulate", "info"}) {
+    const Finished done = gyre({command, "bad.gyre.json"});
+    EXPECT_EQ(done.code, 3);
+    EXPECT_EQ(done.out, "");
+    EXPECT_EQ(done.err, "gyre: bad.gyre.json: /bodies/0/shapes/0/radius: found -1, expected a number above 0\n");
+    EXPECT_EQ(gyre({command, "none.gyre.json"}).code, 3);
+    EXPECT_EQ(gyre({command, "."}).code, 3);
+  }
+  const Finished done = gyre({"simulate", "bad.gyre.json", "--trace", "t.csv", "--stats", "u.csv", "--final", "f.json", "--record", "r.gyrec"});
+  EXPECT_EQ(done.code, 3);
+  EXPECT_EQ(files(), before);
+}
+
+TEST_F(CommandLine, WhatTheEngineRefusesIsStatusThreeToo) {
+  write("flat.gyre.json", R"({"gyre_scene": 1, "bodies": [{"name": "b", "shapes": [
+      {"type": "convex_hull", "points": [[0,0,0],[1,0,0],[0,0,1],[1,0,1]]}]}]})");
+  const Finished done = gyre({"simulate", "flat.gyre.json", "--trace", "t.csv"});
+  EXPECT_EQ(done.code, 3);
+  EXPECT_NE(done.err.find("/bodies/0/shapes/0/points"), std::string::npos) << done.err;
+  EXPECT_FALSE(fs::exists(folder_ / "t.csv"));
+}
+
+TEST_F(CommandLine, AnOutputThatCannotBeWrittenIsStatusThreeAndLeavesNothing) {
+  const Finished done = gyre({"simulate", "s.gyre.json", "--steps", "3", "--trace", "t.csv", "--stats", "none/u.csv"});
+  EXPECT_EQ(done.code, 3);
+  EXPECT_NE(done.err.find("none/u.csv"), std::string::npos) << done.err;
+  EXPECT_EQ(files(), std::vector<std::string>{"s.gyre.json"});
+  EXPECT_EQ(gyre({"simulate", "s.gyre.json", "--final", "."}).code, 3);
+  if (fs::exists("/dev/full")) {
+    EXPECT_EQ(gyre({"simulate", "s.gyre.json", "--steps", "3", "--trace", "/dev/full", "--stats", "u.csv"}).code, 3);
+    EXPECT_EQ(files(), std::vector<std::string>{"s.gyre.json"});
+  }
+}
+
+TEST_F(CommandLine, TraceHasARowPerBodyAndTracedStep) {
+  ASSERT_EQ(gyre({"simulate", "s.gyre.json", "--steps", "10", "--trace", "t.csv", "--trace-every", "5"}).code, 0);
+  const std::vector<std::string> lines = lines_of(read("t.csv"));
+  ASSERT_EQ(lines.size(), 1u + 3u * 3u);
+  EXPECT_EQ(lines[0], "step,time,body,px,py,pz,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz,awake");
+  EXPECT_EQ(lines[1], "0,0,ground,0,0,0,0,0,0,1,0,0,0,0,0,0,0");
+  EXPECT_EQ(lines[2], "0,0,\"box, \"\"left\"\"\",0,2,0,0,0,0,1,0,0,0,0,0,0,1");
+  EXPECT_EQ(lines[3], "0,0,ball,2,3,0,0,0,0,1,1,0,0,0,0,0,1");
+  EXPECT_EQ(lines[4].rfind("5,0.05,ground,", 0), 0u) << lines[4];
+  EXPECT_EQ(lines[9].rfind("10,0.1,ball,2.1", 0), 0u) << lines[9];
+}
+
+TEST_F(CommandLine, StatsHaveARowAStep) {
+  ASSERT_EQ(gyre({"simulate", "s.gyre.json", "--steps", "7", "--stats", "u.csv"}).code, 0);
+  const std::vector<std::string> lines = lines_of(read("u.csv"));
+  ASSERT_EQ(lines.size(), 8u);
+  EXPECT_EQ(lines[0],
+            "step,time,step_ms,bodies,awake,pairs,contacts,max_penetration,kinetic_energy,potential_energy,elastic_energy,px,py,pz,"
+            "lx,ly,lz");
+  EXPECT_EQ(lines[1].rfind("1,0.01,", 0), 0u);
+  EXPECT_EQ(lines[7].rfind("7,0.07,", 0), 0u);
+  EXPECT_EQ(std::count(lines[7].begin(), lines[7].end(), ','), 16);
+}
+
+TEST_F(CommandLine, TheHashIsOneLineAndTheSameForAnyThreads) {
+  const Finished one = gyre({"simulate", "s.gyre.json", "--steps", "100", "--hash", "--quiet", "--threads", "1"});
+  ASSERT_EQ(one.code, 0);
+  ASSERT_EQ(one.out.size(), 17u) << one.out;
+  EXPECT_EQ(one.out.find_first_not_of("0123456789abcdef"), 16u);
+  for (const char* threads : {"0", "2", "4"}) {
+    EXPECT_EQ(gyre({"simulate", "s.gyre.json", "--steps", "100", "--hash", "--quiet", "--threads", threads}).out, one.out);
+  }
+  EXPECT_EQ(gyre({"simulate", "s.gyre.json", "--steps", "100", "--hash", "--quiet", "--broad-phase", "brute_force"}).out, one.out);
+  EXPECT_NE(gyre({"simulate", "s.gyre.json", "--steps", "101", "--hash", "--quiet"}).out, one.out);
+  EXPECT_NE(gyre({"simulate", "s.gyre.json", "--steps", "100", "--hash", "--quiet", "--substeps", "8"}).out, one.out);
+}
+
+TEST_F(CommandLine, DurationAndStepsMeanTheSame) {
+  const auto steps_of = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"simulate", "s.gyre.json", "--json"});
+    const Finished done = gyre(arguments);
+    EXPECT_EQ(done.code, 0);
+    const std::size_t at = done.out.find("\"steps\": ");
+    return at == std::string::npos ? -1 : std::atoi(done.out.c_str() + at + 9);
+  };
+  EXPECT_EQ(steps_of({}), 1000);  // 10 s
+  EXPECT_EQ(steps_of({"--duration", "0.5"}), 50);
+  EXPECT_EQ(steps_of({"--duration", "1", "--step", "0.016666667"}), 60);
+  EXPECT_EQ(steps_of({"--duration", "1", "--step", "0.3"}), 4);
+  EXPECT_EQ(steps_of({"--steps", "3"}), 3);
+  EXPECT_EQ(steps_of({"--steps", "0"}), 0);
+  EXPECT_EQ(steps_of({"--duration", "0"}), 0);
+}
+
+TEST_F(CommandLine, JsonSummaryHasWhatWasPromised) {
+  const Finished done = gyre({"simulate", "s.gyre.json", "--steps", "60", "--json", "--hash", "--quiet"});
+  ASSERT_EQ(done.code, 0);
+  EXPECT_EQ(done.err, "");
+  EXPECT_EQ(done.out.front(), '{');
+  EXPECT_EQ(done.out.substr(done.out.size() - 2), "}\n");
+  for (const char* key : {"\"steps\": 60", "\"time\": 0.6", "\"bodies\": 3", "\"contacts\": ", "\"step_ms\": {\"median\": ",
+                          "\"mean\": ", "\"p99\": ", "\"max\": ", "\"energy\": ", "\"hash\": \""}) {
+    EXPECT_NE(done.out.find(key), std::string::npos) << key << "\n" << done.out;
+  }
+}
+
+TEST_F(CommandLine, QuietSaysNothing) {
+  const Finished done = gyre({"simulate", "s.gyre.json", "--steps", "5", "--quiet"});
+  EXPECT_EQ(done.code, 0);
+  EXPECT_EQ(done.out, "");
+  EXPECT_EQ(done.err, "");
+  EXPECT_NE(gyre({"simulate", "s.gyre.json", "--steps", "5"}).out.find("5 steps"), std::string::npos);
+}
+
+TEST_F(CommandLine, TheFinalSceneCanBeSimulatedOn) {
+  ASSERT_EQ(gyre({"simulate", "s.gyre.json", "--steps", "20", "--final", "f.gyre.json"}).code, 0);
+  ASSERT_EQ(gyre({"simulate", "f.gyre.json", "--steps", "10", "--trace", "rest.csv"}).code, 0);
+  ASSERT_EQ(gyre({"simulate", "s.gyre.json", "--steps", "30", "--trace", "whole.csv"}).code, 0);
+  const std::vector<std::string> rest = lines_of(read("rest.csv")), whole = lines_of(read("whole.csv"));
+  // Still in the air, where nothing but rounding distinguishes the two: compare the place of the ball.
+  const auto height = [](const std::string& line) {
+    std::istringstream cells(line);
+    std::string cell;
+    for (int i = 0; i < 5; ++i) std::getline(cells, cell, ',');
+    return std::atof(cell.c_str());
+  };
+  EXPECT_NEAR(height(rest.back()), height(whole.back()), 1e-6);
+  EXPECT_LT(height(whole.back()), 2.7);
+  // In place: the final scene may take the place of the one it goes on from.
+  EXPECT_EQ(gyre({"simulate", "f.gyre.json", "--steps", "1", "--final", "f.gyre.json"}).code, 0);
+}
+
+TEST_F(CommandLine, AStateThatIsNotFiniteIsStatusFourAndKeepsWhatWasRecorded) {
+  write("wild.gyre.json", R"({"gyre_scene": 1, "bodies": [{"name": "wild", "mass": 1e-30,
+      "shapes": [{"type": "sphere", "radius": 0.5}], "forces": [{"force": [3e38, 0, 0], "start": 0.1}]}]})");
+  const Finished done = gyre({"simulate", "wild.gyre.json", "--trace", "t.csv", "--stats", "u.csv", "--final", "f.json"});
+  EXPECT_EQ(done.code, 4) << done.err;
+  EXPECT_NE(done.err.find("no longer finite"), std::string::npos) << done.err;
+  EXPECT_NE(done.err.find("\"wild\""), std::string::npos) << done.err;
+  EXPECT_NE(done.err.find("kept"), std::string::npos) << done.err;
+  EXPECT_GT(lines_of(read("t.csv")).size(), 5u);
+  EXPECT_GT(lines_of(read("u.csv")).size(), 5u);
+  EXPECT_EQ(read("t.csv").find("nan"), std::string::npos);
+  EXPECT_FALSE(fs::exists(folder_ / "f.json"));
+}
+
+TEST_F(CommandLine, CtrlCIsStatus130AndKeepsWhatWasRecorded) {
+  const Finished done = run_program({"simulate", "s.gyre.json", "--duration", "1e9", "--trace", "t.csv", "--trace-every", "100"}, folder_, "t.csv");
+  EXPECT_EQ(done.code, 130) << done.err;
+  EXPECT_NE(done.err.find("interrupted"), std::string::npos) << done.err;
+  EXPECT_EQ(lines_of(read("t.csv"))[0].rfind("step,time,body", 0), 0u);
+  EXPECT_EQ(read("t.csv").back(), '\n');
+  EXPECT_EQ(files(), (std::vector<std::string>{"s.gyre.json", "t.csv"}));
+}
+
+TEST_F(CommandLine, InfoShowsMassProperties) {
+  const Finished text = gyre({"info", "s.gyre.json"});
+  EXPECT_EQ(text.code, 0);
+  EXPECT_NE(text.out.find("box, \"left\""), std::string::npos);
+  EXPECT_NE(text.out.find("1000 kg"), std::string::npos) << text.out;
+  const Finished json = gyre({"info", "s.gyre.json", "--json"});
+  EXPECT_EQ(json.code, 0);
+  for (const char* key : {"\"bodies\": 3", "\"mass\": 1000", "\"mass\": null", "\"center_of_mass\": [0, 0, 0]", "\"inertia\": [166.66",
+                          "\"principal_moments\": [166.66", "\"principal_axes\": [[", "\"shapes_by_type\": {\"sphere\": 1"}) {
+    EXPECT_NE(json.out.find(key), std::string::npos) << key << "\n" << json.out;
+  }
+}
+
+TEST_F(CommandLine, SchemaIsPrinted) {
+  const Finished done = gyre({"schema"});
+  EXPECT_EQ(done.code, 0);
+  EXPECT_EQ(done.out, scene_schema());
+}
+
+TEST_F(CommandLine, OutputsReplaceFilesOnlyWhenWhole) {
+  write("t.csv", "old");
+  EXPECT_EQ(gyre({"simulate", "none.gyre.json", "--trace", "t.csv"}).code, 3);
+  EXPECT_EQ(read("t.csv"), "old");
+  EXPECT_EQ(gyre({"simulate", "s.gyre.json", "--steps", "1", "--trace", "t.csv"}).code, 0);
+  EXPECT_EQ(read("t.csv").rfind("step,", 0), 0u);
+  EXPECT_EQ(gyre({"simulate", "s.gyre.json", "--steps", "1", "--trace", "/dev/null"}).code, 0);
+}
+
+}  // namespace
+}  // namespace gyre
