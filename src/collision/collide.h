@@ -42,11 +42,22 @@ struct CollideInput {
   bool recycle = true;   // false: looks at every pair anew (tests compare with that)
 };
 
+// What contacts that have not changed need to know of a body, in one cache line. Made at the start of the stage.
+struct alignas(64) BodyLook {
+  DVec3 position;  // of the origin
+  Quat orientation;
+  Vec3 way;             // m, how far the centre of mass goes in the step
+  float spin = -1.0f;   // rad, how far the body turns in the step; below zero: not awake
+  float reach = 0.0f;   // m, farthest point from the centre of mass
+  float extent = 0.0f;  // m, a bound of the farthest point from the origin
+};
+
 // Bits by contact slot: what changed in this step.
 struct TouchChanges {
   Bitset began;  // not touching before, touching now (sensors too)
   Bitset ended;  // the other way round
   Bitset gone;   // fat boxes no longer overlap: remove the contact (`ended` is set too if it was touching)
+  Array<BodyLook> looks;  // memory of the stage, by body
 };
 
 // Brings all contacts up to date. A contact with no awake body is left exactly as it is, unless it is gone.

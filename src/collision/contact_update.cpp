@@ -7,13 +7,12 @@ namespace gyre {
 namespace {
 
 // All lengths in sizes of the pair (the smaller shape's inner radius).
-constexpr float kLargestApproach =
-    0.5f;  // what comes faster than this in a step is left to the sweep (continuous.h)
+// What comes faster than this in a step is left to the sweep (continuous.h).
+constexpr float kLargestApproach = 0.5f;
 // A full look reaches farther than asked, so that the contact may be recycled while the pair moves a little. Where nothing
-// touches, and the pair is slow, it reaches far: it is cheaper to have looked once than to look in every step.
-constexpr float kNearSlack = 0.01f;
-constexpr float kFarSlack = 0.25f;
-constexpr float kSlow = 0.02f;  // a step
+// touches, and the pair goes less than kSlow in a step, it reaches far: it is cheaper to have looked once than to look in
+// every step.
+constexpr float kNearSlack = 0.01f, kFarSlack = 0.25f, kSlow = 0.02f;
 // How far points may go against each other, and how far the pair may tilt (rad), before it is looked at anew: where flat
 // features meet, and where one of the two is round. There the contact goes on while the bodies' points do not (rolling),
 // and what lags behind would brake.
@@ -21,37 +20,40 @@ constexpr float kFlatSlide = 1.0e-3f, kFlatTilt = 1.0e-3f;
 constexpr float kRoundSlide = 1.0e-5f, kRoundTilt = 1.0e-5f;
 // Where a float's rounding of the distance between the bodies is more than this, a recycled separation would rattle.
 constexpr float kRattle = 1.0e-4f;
-constexpr float kTouch = 0.005f;  // surfaces nearer than this touch
-constexpr float kMatch =
-    0.1f;  // a new point takes over from an old one this near, whatever its feature is called
-constexpr float kSameSide = 0.8f;  // cosine between normals whose points may take over from each other
+// Surfaces nearer than this touch.
+constexpr float kTouch = 0.005f;
+// A new point takes over from an old one this near, whatever its feature is called, if the cosine between their normals is
+// at least kSameSide.
+constexpr float kMatch = 0.1f, kSameSide = 0.8f;
 
 // How a pair stands and moves, as far as every look needs it.
 struct View {
   Transform a_from_b;  // body frames
-  Vec3 com_b_from_a;   // m, world axes, between the centres of mass
   float size;
   float way;          // m, the most that surfaces can come towards each other in the step
   float speculative;  // m, how far contacts matter
 };
 
-DVec3 center_of_mass(const ColliderBody& body) { return body.pose * body.center; }
-
 View make_view(const ContactPair& pair, float size) {
-  const ColliderBody& a = *pair.body_a;
-  const ColliderBody& b = *pair.body_b;
+  const BodyLook& a = *pair.look_a;
+  const BodyLook& b = *pair.look_b;
   View view;
-  view.a_from_b = inverse_times(a.pose, b.pose);
-  view.com_b_from_a = difference(center_of_mass(b), center_of_mass(a));
+  view.a_from_b = {rotate_inverse(a.orientation, difference(b.position, a.position)),
+                   conjugate(a.orientation) * b.orientation};
   view.size = size;
-  // A body that is long beyond the other one turns no faster there.
-  const float apart = length(view.com_b_from_a);
-  const float turning = length(a.angular_velocity) * min(a.reach, apart + b.reach) +
-                        length(b.angular_velocity) * min(b.reach, apart + a.reach);
-  view.way = (length(b.linear_velocity - a.linear_velocity) + turning) * pair.seconds;
+  float lever_a = a.reach, lever_b = b.reach;
+  if (lever_a != lever_b) {
+    // A body that is long beyond the other one turns no faster there.
+    const float apart = length(view.a_from_b.position) + (a.extent - a.reach) + (b.extent - b.reach);
+    lever_a = min(a.reach, apart + b.reach);
+    lever_b = min(b.reach, apart + a.reach);
+  }
+  view.way = length(b.way - a.way) + max(a.spin, 0.0f) * lever_a + max(b.spin, 0.0f) * lever_b;
   view.speculative = kSpeculativeShare * size + min(view.way, kLargestApproach * size);
   return view;
 }
+
+DVec3 center_of_mass(const ColliderBody& body) { return body.pose * body.center; }
 
 // ------------------------------------------------------------------------------------------------------- recycling
 
@@ -78,32 +80,45 @@ struct Motion {
     return shift + w * t + cross(v, t);
   }
 
-  // The most that any surface of the one comes towards the other: seen from either, whichever bound is better. A rigid
-  // motion moves A's centre as far as its inverse does.
-  float bound(const ContactPair& pair, const Transform& seen) const {
-    const float by_b = length(of(seen * pair.body_b->center)) + 2.0f * sine * pair.body_b->reach;
-    const float by_a = length(of(pair.body_a->center)) + 2.0f * sine * pair.body_a->reach;
-    return min(by_a, by_b);
+  // A bound on how far surfaces of the one come towards the other: the way of one body's origin, and what its farthest
+  // point adds when it turns. Of the smaller body: its motion seen from the other is the smaller one. (A rigid motion
+  // moves A's origin as far as its inverse does.)
+  float bound(const BodyLook& a, const BodyLook& b) const {
+    return b.extent <= a.extent ? length(shift) + 2.0f * sine * b.extent
+                                : length(of({})) + 2.0f * sine * a.extent;
   }
+};
+
+// The same as a matrix, for many points.
+class PointMotion {
+ public:
+  explicit PointMotion(const Motion& motion) : shift_(motion.shift), origin_(motion.origin) {
+    // Columns of R - 1.
+    const auto column = [&](Vec3 axis) {
+      const Vec3 t = 2.0f * cross(motion.v, axis);
+      return motion.w * t + cross(motion.v, t);
+    };
+    less_one_ = {column({1, 0, 0}), column({0, 1, 0}), column({0, 0, 1})};
+  }
+  Vec3 of(Vec3 p) const { return shift_ + less_one_ * (p - origin_); }
+
+ private:
+  Vec3 shift_, origin_;
+  Mat3 less_one_;
 };
 
 bool is_flat(const Shape& shape) {
   return shape.kind >= ShapeKind::hull || (shape.kind == ShapeKind::box && shape.radius == 0.0f);
 }
 
-// Whether the anchors are still good, and how far each point of B has gone (way[manifold][point]).
-bool anchors_hold(std::span<const Manifold> manifolds, const ContactPair& pair, const View& view,
-                  const Motion& motion, Vec3 (*way)[kMaxManifoldPoints]) {
-  if (largest(absolute(view.a_from_b.position)) * 1.2e-7f > kRattle * view.size) return false;
-  const bool flat_shapes = is_flat(pair.shape_a->shape) && is_flat(pair.shape_b->shape);
-  for (std::size_t m = 0; m < manifolds.size(); ++m) {
-    const bool flat = flat_shapes || manifolds[m].count >= 3;
-    if (2.0f * motion.sine > (flat ? kFlatTilt : kRoundTilt)) return false;
-    const float most = (flat ? kFlatSlide : kRoundSlide) * view.size;
-    for (int i = 0; i < manifolds[m].count; ++i) {
-      way[m][i] = motion.of(manifolds[m].anchors[i].position);
-      if (length_squared(way[m][i]) > square(most)) return false;
-    }
+// Whether the anchors of one manifold are still good.
+bool anchors_hold(const Manifold& manifold, bool flat_shapes, float size, float sine,
+                  const PointMotion& motion) {
+  const bool flat = flat_shapes || manifold.count >= 3;
+  if (2.0f * sine > (flat ? kFlatTilt : kRoundTilt)) return false;
+  const float most = square((flat ? kFlatSlide : kRoundSlide) * size);
+  for (int i = 0; i < manifold.count; ++i) {
+    if (length_squared(motion.of(manifold.anchors[i].position)) > most) return false;
   }
   return true;
 }
@@ -116,15 +131,16 @@ void carry_friction(const Manifold& from, Manifold& to) {
   to.sliding = from.sliding;
 }
 
-void move_manifold(Manifold& manifold, const ContactPair& pair, const View& view, const Vec3* way) {
-  const ColliderBody& a = *pair.body_a;
-  manifold.normal = rotate(a.pose.orientation, manifold.seen_normal);
+void move_manifold(Manifold& manifold, const Mat3& world_from_a, Vec3 center_of_a, Vec3 com_b_from_a,
+                   const PointMotion& motion) {
+  manifold.normal = world_from_a * manifold.seen_normal;
   for (int i = 0; i < manifold.count; ++i) {
     const PointAnchor& anchor = manifold.anchors[i];
+    const Vec3 way = motion.of(anchor.position);
     ContactPointState& point = manifold.points[i];
-    point.from_a = rotate(a.pose.orientation, anchor.position + 0.5f * way[i] - a.center);
-    point.from_b = point.from_a - view.com_b_from_a;
-    point.separation = anchor.separation + dot(way[i], manifold.seen_normal);
+    point.from_a = world_from_a * (anchor.position + 0.5f * way - center_of_a);
+    point.from_b = point.from_a - com_b_from_a;
+    point.separation = anchor.separation + dot(way, manifold.seen_normal);
     point.total_impulse = 0.0f;
     point.approach_speed = 0.0f;
     ++point.age;
@@ -135,11 +151,20 @@ void move_manifold(Manifold& manifold, const ContactPair& pair, const View& view
 
 bool recycle(ContactStore& store, const Contact& contact, const ContactPair& pair, const View& view) {
   const Motion motion(contact.seen_a_from_b, view.a_from_b);
-  if (!(view.speculative + motion.bound(pair, contact.seen_a_from_b) <= contact.looked)) return false;
-  Vec3 way[kMaxMeshManifolds][kMaxManifoldPoints];
+  if (!(view.speculative + motion.bound(*pair.look_a, *pair.look_b) <= contact.looked)) return false;
+  if (contact.manifold_count == 0) return true;
+  if (largest(absolute(view.a_from_b.position)) * 1.2e-7f > kRattle * view.size) return false;
   const std::span<Manifold> manifolds = manifolds_of(store, contact);
-  if (!anchors_hold(manifolds, pair, view, motion, way)) return false;
-  for (std::size_t m = 0; m < manifolds.size(); ++m) move_manifold(manifolds[m], pair, view, way[m]);
+  const bool flat = is_flat(pair.shape_a->shape) && is_flat(pair.shape_b->shape);
+  const PointMotion points(motion);
+  for (const Manifold& manifold : manifolds) {
+    if (!anchors_hold(manifold, flat, view.size, motion.sine, points)) return false;
+  }
+  const Mat3 world_from_a = to_matrix(pair.look_a->orientation);
+  const Vec3 com_b_from_a = difference(center_of_mass(*pair.body_b), center_of_mass(*pair.body_a));
+  for (Manifold& manifold : manifolds) {
+    move_manifold(manifold, world_from_a, pair.body_a->center, com_b_from_a, points);
+  }
   return true;
 }
 
@@ -154,13 +179,15 @@ void center_plane(Shape& shape, Pose& frame, DVec3 other) {
   shape.offset = 0.0f;
 }
 
+template <int kRoom>
 struct Found {
-  LocalManifold manifolds[kMaxMeshManifolds];
+  LocalManifold manifolds[kRoom];
   int count = 0;
   Pose frame;  // world_from_a: of the manifolds
 };
 
-void ask_shapes(const ContactPair& pair, float reach, PairCache& cache, Found& found) {
+template <int kRoom>
+void ask_shapes(const ContactPair& pair, float reach, PairCache& cache, Found<kRoom>& found) {
   Shape a = pair.shape_a->shape;
   Shape b = pair.shape_b->shape;
   found.frame = pair.body_a->pose * pair.shape_a->body_from_shape;
@@ -171,7 +198,8 @@ void ask_shapes(const ContactPair& pair, float reach, PairCache& cache, Found& f
 }
 
 // Leaves out what is farther apart than `reach`. Returns the smallest separation there was.
-float keep_near(Found& found, float reach) {
+template <int kRoom>
+float keep_near(Found<kRoom>& found, float reach) {
   float nearest = kUnbounded;
   int kept_manifolds = 0;
   for (int m = 0; m < found.count; ++m) {
@@ -189,16 +217,18 @@ float keep_near(Found& found, float reach) {
 }
 
 // The manifolds before this look, and which of their points have found a heir.
+template <int kRoom>
 struct Former {
-  Manifold manifolds[kMaxMeshManifolds];
+  Manifold manifolds[kRoom];
   int count = 0;
-  bool taken[kMaxMeshManifolds] = {};
-  bool point_taken[kMaxMeshManifolds][kMaxManifoldPoints] = {};
+  bool taken[kRoom] = {};
+  bool point_taken[kRoom][kMaxManifoldPoints] = {};
 };
 
 // The former manifold that goes on in the new one; -1 if none does. A single manifold always goes on.
-int find_former(const Former& former, const Manifold& manifold, bool single) {
-  if (single) return former.count == 1 ? 0 : -1;
+template <int kRoom>
+int find_former(const Former<kRoom>& former, const Manifold& manifold) {
+  if constexpr (kRoom == 1) return former.count == 1 ? 0 : -1;
   int best = -1;
   float best_score = kSameSide;
   for (int m = 0; m < former.count; ++m) {
@@ -213,16 +243,17 @@ int find_former(const Former& former, const Manifold& manifold, bool single) {
   return best;
 }
 
-void take_over(Former& former, int m, int i, ContactPointState& point) {
+template <int kRoom>
+void take_over(Former<kRoom>& former, int m, int i, ContactPointState& point) {
   const ContactPointState& old = former.manifolds[m].points[i];
   former.point_taken[m][i] = true;
   point.normal_impulse = old.normal_impulse;
-  point.earlier_impulse = old.earlier_impulse;
   point.age = old.age + 1;
 }
 
 // By name within the former manifold; bit i of the result is set for each point that found its own.
-unsigned match_by_feature(Former& former, int m, Manifold& manifold) {
+template <int kRoom>
+unsigned match_by_feature(Former<kRoom>& former, int m, Manifold& manifold) {
   unsigned matched = 0;
   for (int i = 0; i < manifold.count; ++i) {
     for (int k = 0; k < former.manifolds[m].count; ++k) {
@@ -238,7 +269,8 @@ unsigned match_by_feature(Former& former, int m, Manifold& manifold) {
 
 // By place, among all points that are left on the same side: features get new names when another edge comes first, but
 // the load stays where it was.
-void match_by_place(Former& former, Manifold& manifold, unsigned matched, float radius) {
+template <int kRoom>
+void match_by_place(Former<kRoom>& former, Manifold& manifold, unsigned matched, float radius) {
   for (int i = 0; i < manifold.count; ++i) {
     if ((matched >> i & 1u) != 0) continue;
     int best_m = -1, best_k = -1;
@@ -261,19 +293,19 @@ void match_by_place(Former& former, Manifold& manifold, unsigned matched, float 
 }
 
 // From the frame of shape A into world axes, and into the body frame for anchors. Impulses are zero.
-Manifold to_world(const LocalManifold& local, const Found& found, const ContactPair& pair) {
+Manifold to_world(const LocalManifold& local, const Pose& frame, const ContactPair& pair) {
   const ColliderBody& a = *pair.body_a;
   // Each side by itself: one of the two may be far away (a plane's body), and floats with it.
-  const Vec3 frame_from_a = difference(found.frame.position, center_of_mass(a));
-  const Vec3 frame_from_b = difference(found.frame.position, center_of_mass(*pair.body_b));
+  const Vec3 frame_from_a = difference(frame.position, center_of_mass(a));
+  const Vec3 frame_from_b = difference(frame.position, center_of_mass(*pair.body_b));
   Manifold out;
-  out.normal = rotate(found.frame.orientation, local.normal);
+  out.normal = rotate(frame.orientation, local.normal);
   out.count = local.count;
   out.triangle = local.triangle;
   out.seen_normal = rotate_inverse(a.pose.orientation, out.normal);
   for (int i = 0; i < local.count; ++i) {
     ContactPointState& point = out.points[i];
-    const Vec3 place = rotate(found.frame.orientation, local.points[i].position);
+    const Vec3 place = rotate(frame.orientation, local.points[i].position);
     point.from_a = place + frame_from_a;
     point.from_b = place + frame_from_b;
     point.separation = local.points[i].separation;
@@ -284,39 +316,39 @@ Manifold to_world(const LocalManifold& local, const Found& found, const ContactP
   return out;
 }
 
-void write_manifolds(ContactStore& store, Contact& contact, const Found& found, const ContactPair& pair,
-                     const View& view) {
-  Former former;
-  former.count = contact.manifold_count;
-  for (int m = 0; m < former.count; ++m)
-    former.manifolds[m] = store.manifolds[contact.first_manifold + std::uint32_t(m)];
-  const bool single = contact.manifold_room == 1;
-  const int count = min(found.count, int(contact.manifold_room));
+template <int kRoom>
+void write_manifolds(ContactStore& store, Contact& contact, const Found<kRoom>& found,
+                     const ContactPair& pair, float size) {
   Manifold* const out = store.manifolds.data() + contact.first_manifold;
-  unsigned matched[kMaxMeshManifolds] = {};
-  for (int m = 0; m < count; ++m) {
-    out[m] = to_world(found.manifolds[m], found, pair);
-    const int old = find_former(former, out[m], single);
+  Former<kRoom> former;
+  former.count = contact.manifold_count;
+  for (int m = 0; m < former.count; ++m) former.manifolds[m] = out[m];
+  unsigned matched[kRoom] = {};
+  for (int m = 0; m < found.count; ++m) {
+    out[m] = to_world(found.manifolds[m], found.frame, pair);
+    const int old = find_former(former, out[m]);
     if (old < 0) continue;
     former.taken[old] = true;
     carry_friction(former.manifolds[old], out[m]);
     matched[m] = match_by_feature(former, old, out[m]);
   }
-  for (int m = 0; m < count; ++m) match_by_place(former, out[m], matched[m], kMatch * view.size);
+  for (int m = 0; m < found.count; ++m) match_by_place(former, out[m], matched[m], kMatch * size);
   // Nothing of the past stays behind in what is not in use.
-  for (int m = count; m < former.count; ++m) out[m] = Manifold{};
-  contact.manifold_count = std::uint16_t(count);
+  for (int m = found.count; m < former.count; ++m) out[m] = Manifold{};
+  contact.manifold_count = std::uint16_t(found.count);
 }
 
+// kRoom is the contact's manifold_room.
+template <int kRoom>
 void look_anew(ContactStore& store, Contact& contact, const ContactPair& pair, const View& view) {
   const float near_reach = view.speculative + kNearSlack * view.size;
-  const bool far = contact.manifold_room == 1 && view.way < kSlow * view.size;
+  const bool far = kRoom == 1 && view.way < kSlow * view.size;
   const float reach = far ? view.speculative + kFarSlack * view.size : near_reach;
-  Found found;
+  Found<kRoom> found;
   ask_shapes(pair, reach, contact.cache, found);
   const bool any = found.count > 0;
-  const float nearest = keep_near(found, near_reach);
-  write_manifolds(store, contact, found, pair, view);
+  const float nearest = any ? keep_near(found, near_reach) : 0.0f;
+  if (found.count > 0 || contact.manifold_count > 0) write_manifolds(store, contact, found, pair, view.size);
   // Points measure separation along one normal, which is not always that of the nearest features: hence only a part.
   contact.looked = found.count > 0 ? near_reach : any ? near_reach + 0.75f * (nearest - near_reach) : reach;
   contact.size = view.size;
@@ -350,20 +382,38 @@ float smaller_size(float a, float b) {
 }
 
 bool look_at_sensor(Contact& contact, const ContactPair& pair) {
-  Found found;
+  Found<kMaxMeshManifolds> found;
   ask_shapes(pair, 0.0f, contact.cache, found);
   keep_near(found, 0.0f);
   return found.count > 0;
 }
 
+BodyLook make_body_look(const ColliderBody& body, float seconds) {
+  BodyLook look;
+  look.position = body.pose.position;
+  look.orientation = body.pose.orientation;
+  look.way = seconds * body.linear_velocity;
+  look.spin = body.awake ? seconds * length(body.angular_velocity) : -1.0f;
+  look.reach = body.reach;
+  look.extent = body.reach + length(body.center);
+  return look;
+}
+
 bool update_contact(ContactStore& store, Contact& contact, const ContactPair& pair, bool may_recycle) {
-  const bool loaded = carried_load(manifolds_of(store, contact));
   const bool looked = contact.looked >= 0.0f;
   const View view =
       make_view(pair, looked ? contact.size : smaller_size(pair.shape_a->size, pair.shape_b->size));
+  const bool loaded = carried_load(manifolds_of(store, contact));
   contact.recycled = may_recycle && looked && recycle(store, contact, pair, view) ? 1 : 0;
-  if (contact.recycled == 0) look_anew(store, contact, pair, view);
-  return is_near(manifolds_of(store, contact), kTouch * view.size) || (loaded && contact.manifold_count > 0);
+  if (contact.recycled == 0) {
+    if (contact.manifold_room == 1) {
+      look_anew<1>(store, contact, pair, view);
+    } else {
+      look_anew<kMaxMeshManifolds>(store, contact, pair, view);
+    }
+  }
+  if (contact.manifold_count == 0) return false;
+  return loaded || is_near(manifolds_of(store, contact), kTouch * view.size);
 }
 
 }  // namespace gyre

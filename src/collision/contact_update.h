@@ -15,14 +15,17 @@
 
 namespace gyre {
 
-// The two sides of a contact, and how far its shapes can come towards each other.
+// The two sides of a contact. What most contacts need of a body lies in its BodyLook alone.
 struct ContactPair {
   const ColliderShape* shape_a;
   const ColliderShape* shape_b;
   const ColliderBody* body_a;
   const ColliderBody* body_b;
-  float seconds;
+  const BodyLook* look_a;
+  const BodyLook* look_b;
 };
+
+BodyLook make_body_look(const ColliderBody& body, float seconds);
 
 // The smaller of two sizes, of those that are sizes at all (see ColliderShape::size).
 float smaller_size(float a, float b);
