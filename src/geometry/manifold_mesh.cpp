@@ -101,6 +101,7 @@ class MeshCollider {
   Waiting waiting_[MeshCandidates::kRoom];
   MeshCandidates candidates_;
   MeshPoints points_;
+  AxisScratch scratch_;
   ManifoldGroups groups_;
 };
 
@@ -214,8 +215,11 @@ bool MeshCollider::is_buried(const NearTriangle& t, Vec3 direction) const {
             (t.edge[i] == EdgeKind::convex && dot(t.normal, t.neighbor_normal[i]) < kSharp);
   }
   if (!sharp) return false;
+  const Vec3 p = points_.points[0].position - 0.5f * points_.points[0].separation * direction + position_;
+  const Aabb near = grow({p, p}, kCoverSlack * convex_.size());
   for (int i = 0; i < candidates_.count; ++i) {
-    if (candidates_.ids[i] != t.id && covers(triangle(candidates_.ids[i]), t, direction)) return true;
+    const std::uint32_t id = candidates_.ids[i];
+    if (id != t.id && overlap(surface_.box(id), near) && covers(triangle(id), t, direction)) return true;
   }
   return false;
 }
@@ -230,7 +234,7 @@ void MeshCollider::look_at(std::uint32_t id) {
                             t.edge[1] == EdgeKind::flat && t.edge[2] == EdgeKind::flat;
   // Ground that is known to carry the shape: no other direction can come of a triangle without real edges.
   if (inside_patch && stands_already(t.normal)) return add_face(t);
-  const AxisSearch axes = search_axes(surface_, t, convex_, face, max_separation_);
+  const AxisSearch axes = search_axes(surface_, t, convex_, face, max_separation_, scratch_);
   if (axes.best > max_separation_) return;
   const bool behind = dot(t.normal, convex_.center()) < height;
   const float allowed = max(face, axes.feature.separation);

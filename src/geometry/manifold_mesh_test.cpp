@@ -10,18 +10,6 @@ namespace {
 
 using namespace test;
 
-std::vector<AnyShape> all_kinds(Random& random) {
-  return {Sphere{0.5f},
-          Box{{0.5f, 0.4f, 0.3f}},
-          Box{{0.5f, 0.5f, 0.5f}, 0.1f},
-          Box{{0.5f, 0.05f, 0.5f}},
-          Capsule{0.3f, 0.5f},
-          Cylinder{0.4f, 0.5f},
-          Cone{0.5f, 0.5f},
-          random_hull(random, 8, {0.5f, 0.5f, 0.5f}),
-          random_hull(random, 60, {0.6f, 0.3f, 0.5f})};
-}
-
 // ------------------------------------------------------------------------------------------------------- flat ground
 
 struct Slider {

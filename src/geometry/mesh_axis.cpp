@@ -2,6 +2,7 @@
 #include "geometry/mesh_axis.h"
 
 #include "geometry/closest.h"
+#include "geometry/gjk.h"
 
 namespace gyre {
 namespace {
@@ -11,15 +12,15 @@ namespace {
 constexpr float kFaceAngle = 1.0e-3f;
 constexpr float kArcSlack = 1.0e-3f;
 constexpr float kLevelSlack = 1.0e-3f;
-// Steps of the golden section search along an arc: a part in 5,000 of it is left, where the separation is flat.
-constexpr int kArcSteps = 18;
+// Steps of the golden section search along an arc: a part in 10^5 of it is left.
+constexpr int kArcSteps = 24;
 constexpr float kGolden = 0.61803399f;
 
 class Search {
  public:
   Search(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,
-         float face_separation, float max_separation)
-      : surface_(surface), t_(triangle), convex_(convex), max_separation_(max_separation) {
+         float face_separation, float max_separation, AxisScratch& scratch)
+      : surface_(surface), t_(triangle), convex_(convex), max_separation_(max_separation), scratch_(scratch) {
     found_.best = face_separation;
     core_best_ = max(face_separation + convex.radius(),
                      dot(triangle.normal, triangle.v[0]) - convex.highest(triangle.normal));
@@ -123,12 +124,14 @@ class Search {
   void nearest_pair();
   void nearest_of_vertices(double& best, SimplexPoint& on_triangle, DVec3& on_convex) const;
   void curved();
+  bool curved_apart();
   void search_arc(int edge);
 
   const Surface& surface_;
   const NearTriangle& t_;
   const PlacedConvex& convex_;
   float max_separation_;
+  AxisScratch& scratch_;
   float core_best_;  // the largest separation of core and triangle along any direction, also backwards
   AxisSearch found_;
 };
@@ -295,8 +298,40 @@ void Search::search_arc(int edge) {
   }
 }
 
+// Whether the triangle and a cylinder or cone are apart: then GJK knows the direction, and nothing else is to be asked.
+bool Search::curved_apart() {
+  Hull& hull = scratch_.triangle;
+  hull.vertices.assign(t_.v, t_.v + 3);
+  hull.x.resize(Hull::kPad);
+  hull.y.resize(Hull::kPad);
+  hull.z.resize(Hull::kPad);
+  for (int i = 0; i < Hull::kPad; ++i) {
+    const Vec3 v = t_.v[min(i, 2)];
+    hull.x[std::size_t(i)] = v.x;
+    hull.y[std::size_t(i)] = v.y;
+    hull.z[std::size_t(i)] = v.z;
+  }
+  hull.box = bounds(t_);
+  Shape flat;
+  flat.kind = ShapeKind::hull;
+  flat.hull = &hull;
+  const CorePair pair(flat, convex_.shape(), {{0, 0, 0}, convex_.orientation()});
+  const CoreDistance found = core_distance(pair, double(max_separation_), t_.normal);
+  if (found.beyond) {
+    found_.best = __builtin_huge_valf();
+    return true;
+  }
+  if (found.overlap || !(found.distance > 1.0e-6 * double(convex_.size()))) return false;
+  const SimplexPoint near = closest_on_triangle(found.on_b, DVec3(t_.v[0]), DVec3(t_.v[1]), DVec3(t_.v[2]));
+  if (offer(to_float(found.normal), float(found.distance), near.corners, AxisSource::nearest_pair)) {
+    found_.feature.on_core = to_float(found.on_b);
+  }
+  return true;
+}
+
 // Cylinders and cones: cap normals, mantle lines against edges, mantle normals at corners, and the arcs of active edges.
 void Search::curved() {
+  if (curved_apart()) return;
   const Vec3 axis = convex_.axis();
   measure(axis);
   if (convex_.shape().kind == ShapeKind::cylinder) measure(-axis);
@@ -349,8 +384,8 @@ NearTriangle near_triangle(const Surface& surface, std::uint32_t id, Vec3 positi
 }
 
 AxisSearch search_axes(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,
-                       float face_separation, float max_separation) {
-  return Search(surface, triangle, convex, face_separation, max_separation).run();
+                       float face_separation, float max_separation, AxisScratch& scratch) {
+  return Search(surface, triangle, convex, face_separation, max_separation, scratch).run();
 }
 
 }  // namespace gyre

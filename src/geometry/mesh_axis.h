@@ -21,6 +21,12 @@ struct Surface {
   const HeightField* field = nullptr;
 
   explicit Surface(const Shape& shape);
+  // A box around the triangle, quick to get.
+  Aabb box(std::uint32_t id) const {
+    if (mesh != nullptr) return triangle_box(*mesh, id);
+    const std::uint32_t cell = id / 2;
+    return block_box(*field, {-1, cell % field->cell_columns(), cell / field->cell_columns()});
+  }
   bool double_sided() const { return mesh != nullptr && mesh->double_sided; }
   TriangleView triangle(std::uint32_t id) const {
     return mesh != nullptr ? view_triangle(*mesh, id) : view_triangle(*field, id);
@@ -62,9 +68,14 @@ struct AxisSearch {
   FeatureAxis feature;                  // the best allowed direction besides the face's normal
 };
 
+// Room for the triangle in the form that GJK takes, kept between triangles so that it is made once. Curved shapes only.
+struct AxisScratch {
+  Hull triangle;
+};
+
 // Looks at all directions but the face's normal, for which the caller knows the separation of the surfaces. Ends early once
 // one separation is above `max_separation`.
 AxisSearch search_axes(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,
-                       float face_separation, float max_separation);
+                       float face_separation, float max_separation, AxisScratch& scratch);
 
 }  // namespace gyre

@@ -9,7 +9,12 @@ namespace {
 // Cells each way around a body that has too many triangles near it, and the triangles that each keeps.
 constexpr int kCells = 8;
 constexpr int kKept = 2;
-static_assert(kCells * kCells * kCells * kKept <= MeshCandidates::kRoom);
+constexpr int kKeptSlots = kCells * kCells * kCells * kKept;
+// Of flat ground, those under corners of the shape in any case.
+constexpr int kCornerSlots = MeshCandidates::kRoom - kKeptSlots;
+static_assert(kCornerSlots >= 64);
+// So many parts of one flat patch stand for all of it.
+constexpr int kStandIns = 64;
 
 class Gatherer {
  public:
@@ -57,7 +62,13 @@ class Gatherer {
     const auto visit = [&](std::uint32_t first, std::uint32_t count) {
       for (std::uint32_t id = first; id < first + count; ++id) {
         const Aabb box = triangle_box(mesh, id);
-        if (overlap(box, box_) && near(box)) add(id);
+        if (!overlap(box, box_) || !near(box)) continue;
+        if ((mesh.flags[id] & kInsidePatch) != 0 &&
+            !look_at_patch(mesh.normals[id], mesh.vertices[mesh.indices[3 * std::size_t(id)]], box, id,
+                           add)) {
+          continue;
+        }
+        add(id);
       }
     };
     walk_overlaps(mesh.tree, box_, enter, visit);
@@ -78,10 +89,23 @@ class Gatherer {
       const Aabb box = block_box(field, {-1, column, row});
       if (!overlap(box, box_) || !near(box)) return;
       const std::uint32_t id = 2 * (row * field.cell_columns() + column);
+      if (is_flat_cell(field, column, row)) {
+        const TriangleView triangle = view_triangle(field, id);
+        if (!look_at_patch(triangle.normal, triangle.v[0], box, id, add)) return;
+      }
       add(id);
       add(id + 1);
     };
     walk_cells(field, box_, enter, visit);
+  }
+
+  // Flat corners all around: nothing of the cell but its plane can be touched.
+  static bool is_flat_cell(const HeightField& field, std::uint32_t column, std::uint32_t row) {
+    const auto flat = [&](std::uint32_t c, std::uint32_t r) {
+      const std::size_t sample = std::size_t(r) * field.columns + c;
+      return (field.flat_samples[sample / 8] >> (sample % 8) & 1) != 0;
+    };
+    return flat(column, row) && flat(column + 1, row) && flat(column, row + 1) && flat(column + 1, row + 1);
   }
 
   bool near(const Aabb& box) const {
@@ -98,23 +122,29 @@ class Gatherer {
       side_.highest = convex_.highest(normal);
       convex_.face_towards(-normal, side_.face);
       side_known_ = true;
+      stand_ins_ = 0;
     }
     const float height = dot(normal, point - position_);
     if (side_.lowest - height - convex_.radius() > max_separation_) return false;
     if (side_.highest - height + convex_.radius() < 0.0f) return false;
+    if (corner_above(box, height)) return true;
+    if (++stand_ins_ <= kStandIns) add(first);
+    if (side_.lowest - height - convex_.radius() < -0.9f * max_separation_ && near_patch(box))
+      note_deep(first, normal);
+    return false;
+  }
+
+  // Whether a corner of the face that faces the plane in side_ has its foot on the plane inside the box.
+  bool corner_above(const Aabb& box, float height) const {
     const Aabb near_box = grow({box.low - position_, box.high - position_}, 1.0e-3f * convex_.size());
     const auto above = [&](Vec3 corner) {
-      const Vec3 foot = corner - (dot(normal, corner) - height) * normal;
+      const Vec3 foot = corner - (dot(side_.normal, corner) - height) * side_.normal;
       return overlap(near_box, {foot, foot});
     };
     for (int i = 0; i < side_.face.count; ++i) {
       if (above(side_.face.vertices[i])) return true;
     }
-    if (convex_.has_vertices() && above(convex_.vertex(convex_.lowest_vertex(normal)))) return true;
-    add(first);
-    if (side_.lowest - height - convex_.radius() < -0.9f * max_separation_ && near_patch(box))
-      note_deep(first, normal);
-    return false;
+    return convex_.has_vertices() && above(convex_.vertex(convex_.lowest_vertex(side_.normal)));
   }
 
   bool near_patch(const Aabb& box) const {
@@ -156,11 +186,23 @@ class Gatherer {
             (cell(inside.x, size.x) * kCells + cell(inside.y, size.y)) * kCells + cell(inside.z, size.z)};
   }
 
+  // Only of flat ground, for which the shape's face was looked at already.
+  bool is_under_corner(std::uint32_t id) const {
+    if (!side_known_) return false;
+    const TriangleView t = surface_.triangle(id);
+    return t.normal == side_.normal && corner_above(bounds(t), dot(t.normal, t.v[0] - position_));
+  }
+
   void keep_deepest() {
     constexpr float kEmpty = __builtin_huge_valf();
-    float distance[kCells * kCells * kCells * kKept];
+    float distance[kKeptSlots];
     for (float& d : distance) d = kEmpty;
+    int corners = 0;
     walk([&](std::uint32_t id) {
+      if (corners < kCornerSlots && is_under_corner(id)) {
+        out_.ids[kKeptSlots + corners++] = id;
+        return;
+      }
       const Place place = place_of(id);
       int slot = kKept * place.cell, end = slot + kKept;
       while (slot < end && distance[slot] <= place.distance) ++slot;
@@ -173,9 +215,10 @@ class Gatherer {
       out_.ids[slot] = id;
     });
     out_.count = 0;
-    for (int i = 0; i < kCells * kCells * kCells * kKept; ++i) {
+    for (int i = 0; i < kKeptSlots; ++i) {
       if (distance[i] < kEmpty) out_.ids[out_.count++] = out_.ids[i];
     }
+    for (int i = 0; i < corners; ++i) out_.ids[out_.count++] = out_.ids[kKeptSlots + i];
   }
 
   void sort() {
@@ -193,6 +236,7 @@ class Gatherer {
   Aabb box_;
   bool side_known_ = false;
   PlaneSide side_;
+  int stand_ins_ = 0;  // for the plane in side_
 };
 
 }  // namespace

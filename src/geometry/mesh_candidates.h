@@ -11,7 +11,7 @@
 namespace gyre {
 
 struct MeshCandidates {
-  static constexpr int kRoom = 1024;
+  static constexpr int kRoom = 1152;
   int count = 0;
   std::uint32_t ids[kRoom];  // ascending
   // Flat patches through which the shape reaches deeper than the margin, one triangle for each plane.

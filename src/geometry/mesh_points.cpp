@@ -289,7 +289,12 @@ void feature_points(const NearTriangle& t, const PlacedConvex& convex, const Fea
       if (out.count > 0) return;
     }
   }
-  contact.nearest();
+  if (axis.source == AxisSource::shape_edge || axis.source == AxisSource::shape_face)
+    return contact.nearest();
+  // One point, known exactly: of the nearest pair, or the farthest point of a curved shape.
+  const Vec3 q = axis.source == AxisSource::curved ? convex.support(-d) : axis.on_core;
+  const std::uint32_t on_shape = narrow.count == 1 ? narrow.ids[0] : edge_name(narrow, 0);
+  emit.pair(q, axis.separation, point_name(PointKind::edges, t.edge_id[edge], on_shape));
 }
 
 }  // namespace gyre

@@ -15,7 +15,10 @@ constexpr HullEdge kBoxEdges[12] = {
 }  // namespace
 
 PlacedConvex::PlacedConvex(const Shape& shape, Quat orientation)
-    : shape_(&shape), rotation_(to_matrix(orientation)), radius_(core_radius(shape)) {
+    : shape_(&shape),
+      orientation_(orientation),
+      rotation_(to_matrix(orientation)),
+      radius_(core_radius(shape)) {
   const Vec3 e = shape.extents;
   switch (shape.kind) {
     case ShapeKind::sphere:

@@ -20,6 +20,7 @@ class PlacedConvex {
   PlacedConvex(const Shape& shape, Quat orientation);
 
   const Shape& shape() const { return *shape_; }
+  Quat orientation() const { return orientation_; }
   float radius() const { return radius_; }
   // Largest distance of a surface point from the origin of the shape: what tolerances are relative to.
   float size() const { return size_; }
@@ -66,6 +67,7 @@ class PlacedConvex {
   void add_face(Vec3 local_normal, float offset);
 
   const Shape* shape_;
+  Quat orientation_;
   Mat3 rotation_;
   float radius_ = 0.0f, size_ = 0.0f;
   Vec3 center_;
