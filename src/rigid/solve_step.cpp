@@ -1,5 +1,6 @@
 #include "rigid/solve_step.h"
 
+#include "rigid/contact_forest.h"
 #include "rigid/integrators.h"
 #include "task/parallel.h"
 #include "task/program.h"
@@ -8,11 +9,15 @@ namespace gyre {
 
 namespace {
 
-// Contacts take overlap back with this frequency (Hz) unless the sub-step is too long for it; heavily damped.
-constexpr float kContactFrequency = 30.0f;
+// Contacts take overlap back with this frequency (Hz) unless the sub-step is too long for it; heavily damped. Stiffer is
+// not better: sweeps lag behind, and with two sweeps a sub-step the softness must give way faster than half the rate at
+// which overlap is taken back, or piles shake (docs/decisions/contact-softness.md).
+constexpr float kContactFrequency = 45.0f;
 constexpr float kContactDamping = 10.0f;
-constexpr float kJointFrequency = 60.0f;
-constexpr float kJointDamping = 5.0f;
+// Joints: errors are taken back at this rate (1/s), and impulses give way at this one, a little more than half of it, as
+// sweeps that lag behind need (the same page). Neither depends on the sub-step.
+constexpr float kJointRate = 40.0f;
+constexpr float kJointLeak = 22.0f;
 // The fastest that overlap is taken back, as a share of sqrt(gravity * size): falling its own size is a body's natural
 // scale of speed, so the rule holds from millimetres to kilometres.
 constexpr float kPushShare = 0.3f;
@@ -22,6 +27,7 @@ constexpr float kBounceShare = 2.0f;
 constexpr int kBodiesPerBlock = 64;
 constexpr int kJointsPerBlock = 8;
 constexpr int kBlocksPerClaim = 4;
+constexpr int kTreesPerClaim = 8;
 
 // What every stage of the program reads.
 struct Solve {
@@ -37,6 +43,8 @@ struct Solve {
   JointBodies joint_bodies{};
   std::span<JointWork> joint_work{};
   std::span<JointPlaces> joint_places{};
+  ContactForest forest{};
+  TreeSolve tree_solve{};
 };
 
 // A run of blocks of one colour.
@@ -171,6 +179,15 @@ void release_stage(void* context, int, int, int) {
   release_impacts(s.scratch.impacts, s.contact_bodies, s.impact_settings);
 }
 
+void solve_trees_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  for (int i = begin; i < end; ++i) solve_tree(s.forest.trees[std::size_t(i)], s.tree_solve);
+}
+void settle_trees_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  for (int i = begin; i < end; ++i) settle_tree(s.forest.trees[std::size_t(i)], s.tree_solve);
+}
+
 void prepare_contacts_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
   s.kernels.prepare(s.blocks, begin, end, s.scratch.constraints.data(), s.scratch.order.data(), s.contact_bodies,
@@ -255,7 +272,7 @@ class ProgramWriter {
 
 void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> joints, Arena& arena, TaskSystem& tasks) {
   const int substeps = solve.w.settings.substeps;
-  const std::size_t per_substep = 5 + 4 * joints.size() + 3 * contacts.size();
+  const std::size_t per_substep = 7 + 5 * joints.size() + 3 * contacts.size();
   ProgramWriter program(arena.make<Stage>(2 + std::size_t(substeps) * per_substep));
   std::uint32_t blocks = 0;
   for (const Group& group : contacts) blocks += group.count;
@@ -271,8 +288,11 @@ void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> join
     program.add_groups(warm_contacts_stage, contacts, 1, kBlocksPerClaim);
     program.add_groups(solve_joints_stage, joints, kJointsPerBlock, 1);
     program.add_groups(solve_contacts_stage, contacts, 1, kBlocksPerClaim);
+    program.add(solve_trees_stage, &solve, int(solve.forest.trees.size()), kTreesPerClaim);
     program.add(advance_stage, &solve, body_blocks);
+    program.add(settle_trees_stage, &solve, int(solve.forest.trees.size()), kTreesPerClaim);
     program.add(release_stage, &solve, impact_blocks);
+    program.add_groups(prepare_joints_stage, joints, kJointsPerBlock, 1);
     program.add_groups(relax_joints_stage, joints, kJointsPerBlock, 1);
     program.add_groups(relax_contacts_stage, contacts, 1, kBlocksPerClaim);
   }
@@ -322,12 +342,16 @@ void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& 
   const Softness fixed = make_softness(2.0f * frequency, kContactDamping, h);
   solve.contact_settings = {h, moving.bias_rate, moving.mass_scale, moving.impulse_scale,
                             fixed.bias_rate, fixed.mass_scale, fixed.impulse_scale, warm_scale};
-  solve.joint_settings = {h, make_softness(min(kJointFrequency, 0.25f / h), kJointDamping, h)};
+  solve.joint_settings = {h, {kJointRate, 1.0f, kJointLeak * h}};
   solve.impact_settings = {h, kBounceShare * h * length(w.settings.gravity)};
   solve.contact_bodies = {w.bodies.motion.data(), w.bodies.inertia.data()};
   solve.joint_bodies = {w.bodies.motion.data(), w.bodies.inertia.data(), w.bodies.orientations.data()};
   begin_joint_work(solve, arena, warm_scale);
+  solve.forest = find_contact_trees(w, scratch.constraints, scratch.joints, arena);
   const std::span<Group> contacts = lay_out_contacts(solve, arena);
+  place_tree_nodes(solve.forest, scratch.order, kernels.width, scratch.constraints.size(), arena);
+  solve.tree_solve = {solve.forest.nodes, solve.forest.work,  scratch.constraints, w.bodies.motion.data(),
+                      &kernels,           solve.blocks, h};
   const std::span<Group> joints = lay_out_joints(solve, arena);
   run_substeps(solve, contacts, joints, arena, tasks);
 }

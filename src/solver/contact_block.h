@@ -23,6 +23,7 @@ struct ContactConstraint {
   float rolling_friction = 0.0f;   // m
   float spinning_friction = 0.0f;  // m
   float restitution = 0.0f;
+  bool rigid = false;              // no softness: part of a tree that is solved directly
   float push_speed = 0.0f;         // m/s: the fastest that overlap is taken back
   Vec3 surface_velocity;           // m/s, of b's surface against a's, in the tangent plane
 };
@@ -42,6 +43,16 @@ struct ContactBodies {
   const BodyInertia* inertia = nullptr;
 };
 
+// The impulses of one manifold in a sub-step, for solvers that look at single contacts.
+struct ContactImpulse {
+  float normal[kMaxManifoldPoints] = {};
+  Vec3 friction;          // on B, in the tangent plane
+  float twist = 0.0f;
+  Vec3 rolling;
+  Vec3 friction_from_b;   // where the friction acts (read only)
+  float twist_per_normal = 0.0f;  // m, limit of the twist (read only)
+};
+
 // The kernels of one CPU target: every function works on blocks [begin, end) of the array at `blocks`. `order` lists
 // constraint indices block by block, W a block; 0xffffffff marks an empty lane.
 struct ContactKernels {
@@ -52,6 +63,8 @@ struct ContactKernels {
   void (*warm_start)(void* blocks, int begin, int end, BodyMotion* motion);
   void (*solve)(void* blocks, int begin, int end, BodyMotion* motion, float substep);
   void (*relax)(void* blocks, int begin, int end, BodyMotion* motion, float substep);
+  void (*read_impulse)(const void* blocks, int block, int lane, ContactImpulse& impulse);
+  void (*write_impulse)(void* blocks, int block, int lane, const ContactImpulse& impulse);
   void (*finish)(void* blocks, int begin, int end, const ContactConstraint* constraints, const std::uint32_t* order);
 };
 

@@ -5,8 +5,7 @@
 // about the normal, limited together by an ellipsoid (S. Goyal, A. Ruina, J. Papadopoulos, "Planar sliding with dry
 // friction", 1991; R. Howe, M. Cutkosky, 1996), which couples sliding with spinning as a patch of uniform pressure does.
 // Normal rows are soft while overlap is taken back and rigid while velocities relax (E. Catto, "Soft Step", 2024).
-// What the softness gives way to is only the change of the impulse since the step began: the impulse that earlier steps
-// found is held like a multiplier (augmented Lagrangian; Hestenes, Powell 1969), so a resting load leaves no overlap.
+// The normal rows of a manifold are solved together: taken one after the other they would set every box rocking.
 //
 // Error of a point: s = separation + n . (moved_b - moved_a + turned_b x r_b - turned_a x r_a), first order on purpose: a
 // rolling ball's contact does not rise with the material that was there.
@@ -18,13 +17,14 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
+// Projected sweeps over the points of a manifold in which some would pull.
+constexpr int kPullSweeps = 4;
+
 template <int W>
 struct PointBlock {
   Vec3W<W> from_a, from_b;
   Wide<W> separation;     // as the step began
-  Wide<W> mass;           // rigid effective mass; 0 in lanes without this point
   Wide<W> impulse;        // accumulated in this sub-step
-  Wide<W> held;           // what the step began with
   Wide<W> total;          // summed over the step
 };
 
@@ -52,8 +52,18 @@ struct ContactBlock {
   // Rolling friction.
   Wide<W> rolling_friction, rolling_mass;
   Vec3W<W> rolling;
+  // K = J M^-1 J^T of the normal rows, upper triangle by rows (00 01 02 03 11 12 13 22 23 33), and its regularised inverse;
+  // `inverse_k[..]` and `relief` are 0 in rows of points that a lane does not have.
+  Wide<W> k[10], inverse_k[10];
+  Wide<W> relief[kMaxManifoldPoints];  // 1 / K_ii
   PointBlock<W> points[kMaxManifoldPoints];
 };
+
+// Place of row i, column j (either order) in a packed upper triangle.
+constexpr int packed(int i, int j) {
+  constexpr int kStart[4] = {0, 3, 5, 6};
+  return i <= j ? kStart[i] + j : kStart[j] + i;
+}
 
 // Velocities of the two bodies of each lane.
 template <int W>
@@ -206,36 +216,76 @@ GYRE_INLINE void solve_rolling(ContactBlock<W>& block, PairMotion<W>& pair) {
   block.rolling = next;
 }
 
-// One sweep over the normal rows. Soft: overlap is taken back at bias_rate, at most push_speed. Rigid: only approach stops.
+// The normal rows of a manifold, solved together as a small complementarity problem: first as if all points pushed (which
+// treats them alike: no order, no rocking), then, where some would pull, by projected sweeps in the space of impulses.
+// Soft: overlap is taken back at bias_rate, at most push_speed. Rigid: only approach stops.
 template <int W, bool kSoft>
 GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W>& pair, const Wide<W>* a, const Wide<W>* b,
                                float substep) {
-  const Wide<W> zero = Wide<W>(0.0f);
-  const Wide<W> one = Wide<W>(1.0f);
-  const Wide<W> rate = Wide<W>(1.0f / substep);
+  const Wide<W> zero(0.0f);
+  const Wide<W> one(1.0f);
+  const Wide<W> rate(1.0f / substep);
   const Vec3W<W> moved = Vec3W<W>{b[8], b[9], b[10]} - Vec3W<W>{a[8], a[9], a[10]};
   const Vec3W<W> turned_a{a[11], a[12], a[13]};
   const Vec3W<W> turned_b{b[11], b[12], b[13]};
-  for (int k = 0; k < block.point_count; ++k) {
-    PointBlock<W>& point = block.points[k];
+  const int count = block.point_count;
+  Wide<W> residual[kMaxManifoldPoints];  // speed that the row wants to lose, softness included
+  Wide<W> leak[kMaxManifoldPoints];
+  Wide<W> next[kMaxManifoldPoints];
+  auto pulls = one < zero;
+  [[maybe_unused]] decltype(pulls) idle[kMaxManifoldPoints];
+  for (int i = 0; i < count; ++i) {
+    const PointBlock<W>& point = block.points[i];
     const Vec3W<W> drift = moved + cross(turned_b, point.from_b) - cross(turned_a, point.from_a);
     const Wide<W> separation = point.separation + dot(drift, block.normal);
     const Wide<W> speed = dot(relative_velocity<W>(pair, point.from_a, point.from_b), block.normal);
     const auto apart = separation > zero;
-    Wide<W> wanted;
     if constexpr (kSoft) {
       const Wide<W> bias = select(apart, separation * rate, max(separation * block.bias_rate, zero - block.push_speed));
-      const Wide<W> mass_scale = select(apart, one, block.mass_scale);
-      const Wide<W> impulse_scale = select(apart, zero, block.impulse_scale);
-      wanted = point.impulse - point.mass * (mass_scale * (speed + bias)) - impulse_scale * (point.impulse - point.held);
+      residual[i] = select(apart, one, block.mass_scale) * (speed + bias);
+      leak[i] = select(apart, zero, block.impulse_scale) * point.impulse;
     } else {
-      const Wide<W> bias = select(apart, separation * rate, zero);
-      wanted = point.impulse - point.mass * (speed + bias);
+      // A point that is apart and was not needed to stop anything is none of this sub-step's business: what it may do in the
+      // next one is for the next solve to say. Holding it back here would brake whatever is about to land.
+      idle[i] = apart & (point.impulse <= zero);
+      pulls = pulls | idle[i];
+      residual[i] = select(idle[i], zero, speed + select(apart, separation * rate, zero));
+      leak[i] = zero;
     }
-    const Wide<W> next = max(wanted, zero);
-    push<W>(block, pair, (next - point.impulse) * block.normal, point.from_a, point.from_b);
-    point.impulse = next;
   }
+  for (int i = 0; i < count; ++i) {
+    Wide<W> change = zero;
+    for (int j = 0; j < count; ++j) change = change + block.inverse_k[packed(i, j)] * residual[j];
+    const Wide<W> wanted = block.points[i].impulse - change - leak[i];
+    pulls = pulls | (wanted < zero);
+    next[i] = max(wanted, zero);
+    if constexpr (!kSoft) next[i] = select(idle[i], zero, next[i]);
+  }
+  if (any(pulls)) {
+    for (int sweep = 0; sweep < kPullSweeps; ++sweep) {
+      for (int i = 0; i < count; ++i) {
+        Wide<W> speed = residual[i];
+        for (int j = 0; j < count; ++j) speed = speed + block.k[packed(i, j)] * (next[j] - block.points[j].impulse + leak[j]);
+        Wide<W> wanted = max(next[i] - block.relief[i] * speed, zero);
+        if constexpr (!kSoft) wanted = select(idle[i], zero, wanted);
+        next[i] = select(pulls, wanted, next[i]);
+      }
+    }
+  }
+  Wide<W> total = zero;
+  Vec3W<W> arm_a{zero, zero, zero}, arm_b{zero, zero, zero};
+  for (int i = 0; i < count; ++i) {
+    PointBlock<W>& point = block.points[i];
+    const Wide<W> change = next[i] - point.impulse;
+    point.impulse = next[i];
+    total = total + change;
+    arm_a = arm_a + change * point.from_a;
+    arm_b = arm_b + change * point.from_b;
+  }
+  pair.linear_a = pair.linear_a - (block.inverse_mass_a * total) * block.normal;
+  pair.angular_a = pair.angular_a - block.inverse_inertia_a * cross(arm_a, block.normal);
+  pair.linear_b = pair.linear_b + (block.inverse_mass_b * total) * block.normal;
+  pair.angular_b = pair.angular_b + block.inverse_inertia_b * cross(arm_b, block.normal);
 }
 
 template <int W>

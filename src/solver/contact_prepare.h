@@ -124,6 +124,53 @@ void prepare_friction(ContactBlock<W>& block, int lane, const ContactConstraint&
   set_lane(block.surface_2, lane, dot(constraint.surface_velocity, t2));
 }
 
+// K of the normal rows and its inverse. Four points of a plane give rank 3 at most, so the inverse is of K with its
+// diagonal raised by a share: the impulses that no motion can tell apart then change least.
+template <int W>
+void prepare_normals(ContactBlock<W>& block, int lane, const Manifold& manifold, const BodyInertia& a, const BodyInertia& b) {
+  constexpr float kRegular = 0.02f;
+  const int count = manifold.count;
+  Vec3 ja[kMaxManifoldPoints], jb[kMaxManifoldPoints];
+  float l[4][4] = {};  // Cholesky factor of the regularised K
+  float k[4][4] = {};
+  for (int i = 0; i < count; ++i) {
+    ja[i] = cross(manifold.points[i].from_a, manifold.normal);
+    jb[i] = cross(manifold.points[i].from_b, manifold.normal);
+    const Vec3 ia = a.inverse * ja[i], ib = b.inverse * jb[i];
+    for (int j = 0; j <= i; ++j) k[i][j] = k[j][i] = a.inverse_mass + b.inverse_mass + dot(ja[j], ia) + dot(jb[j], ib);
+  }
+  for (int i = 0; i < count; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      float sum = i == j ? k[i][i] * (1.0f + kRegular) : k[i][j];
+      for (int m = 0; m < j; ++m) sum -= l[i][m] * l[j][m];
+      if (i == j) {
+        l[i][i] = sum > 0.0f ? std::sqrt(sum) : 1.0f;
+      } else {
+        l[i][j] = sum / l[j][j];
+      }
+    }
+  }
+  // Columns of the inverse, by forward and back substitution.
+  for (int column = 0; column < count; ++column) {
+    float x[4] = {};
+    for (int i = 0; i < count; ++i) {
+      float sum = i == column ? 1.0f : 0.0f;
+      for (int m = 0; m < i; ++m) sum -= l[i][m] * x[m];
+      x[i] = sum / l[i][i];
+    }
+    for (int i = count - 1; i >= 0; --i) {
+      float sum = x[i];
+      for (int m = i + 1; m < count; ++m) sum -= l[m][i] * x[m];
+      x[i] = sum / l[i][i];
+    }
+    for (int i = 0; i <= column; ++i) {
+      set_lane(block.k[packed(i, column)], lane, k[i][column]);
+      set_lane(block.inverse_k[packed(i, column)], lane, x[i]);
+    }
+    set_lane(block.relief[column], lane, k[column][column] > 0.0f ? 1.0f / k[column][column] : 0.0f);
+  }
+}
+
 template <int W>
 void prepare_lane(ContactBlock<W>& block, int lane, const ContactConstraint& constraint, ContactBodies bodies,
                   const ContactSettings& settings) {
@@ -147,8 +194,10 @@ void prepare_lane(ContactBlock<W>& block, int lane, const ContactConstraint& con
   set_lane(block.inverse_inertia_b, lane, b.inverse);
   const bool fixed = block.write_a[lane] == kNoBody || block.write_b[lane] == kNoBody;
   set_lane(block.bias_rate, lane, fixed ? settings.fixed_bias_rate : settings.moving_bias_rate);
-  set_lane(block.mass_scale, lane, fixed ? settings.fixed_mass_scale : settings.moving_mass_scale);
-  set_lane(block.impulse_scale, lane, fixed ? settings.fixed_impulse_scale : settings.moving_impulse_scale);
+  const float mass_scale = fixed ? settings.fixed_mass_scale : settings.moving_mass_scale;
+  const float impulse_scale = fixed ? settings.fixed_impulse_scale : settings.moving_impulse_scale;
+  set_lane(block.mass_scale, lane, constraint.rigid ? 1.0f : mass_scale);
+  set_lane(block.impulse_scale, lane, constraint.rigid ? 0.0f : impulse_scale);
   set_lane(block.push_speed, lane, constraint.push_speed);
   prepare_friction<W>(block, lane, constraint, a, b, normal, t1, t2);
   const Vec3 friction = settings.warm_scale * manifold.friction_impulse;
@@ -161,18 +210,15 @@ void prepare_lane(ContactBlock<W>& block, int lane, const ContactConstraint& con
   set_lane(block.rolling_mass, lane, turning > 0.0f ? 1.0f / turning : 0.0f);
   set_lane(block.rolling, lane, settings.warm_scale * manifold.rolling_impulse);
   if (constraint.rolling_friction > 0.0f) block.rolls = 1;
+  prepare_normals<W>(block, lane, manifold, a, b);
   if (manifold.count > block.point_count) block.point_count = manifold.count;
   for (int k = 0; k < manifold.count; ++k) {
     const ContactPointState& from = manifold.points[k];
     PointBlock<W>& point = block.points[k];
-    const Vec3 an = cross(from.from_a, normal), bn = cross(from.from_b, normal);
-    const float inverse_mass = a.inverse_mass + b.inverse_mass + dot(an, a.inverse * an) + dot(bn, b.inverse * bn);
     set_lane(point.from_a, lane, from.from_a);
     set_lane(point.from_b, lane, from.from_b);
     set_lane(point.separation, lane, from.separation);
-    set_lane(point.mass, lane, inverse_mass > 0.0f ? 1.0f / inverse_mass : 0.0f);
     set_lane(point.impulse, lane, settings.warm_scale * from.normal_impulse);
-    set_lane(point.held, lane, settings.warm_scale * from.normal_impulse);
   }
 }
 
@@ -214,6 +260,29 @@ void finish_blocks(void* memory, int begin, int end, const ContactConstraint* co
   }
 }
 
+template <int W>
+void read_block_impulse(const void* memory, int index, int lane, ContactImpulse& impulse) {
+  const ContactBlock<W>& block = static_cast<const ContactBlock<W>*>(memory)[index];
+  for (int k = 0; k < kMaxManifoldPoints; ++k) impulse.normal[k] = get_lane(block.points[k].impulse, lane);
+  impulse.friction = get_lane(block.friction_1, lane) * get_lane(block.tangent_1, lane) +
+                     get_lane(block.friction_2, lane) * get_lane(block.tangent_2, lane);
+  impulse.twist = get_lane(block.twist, lane);
+  impulse.rolling = get_lane(block.rolling, lane);
+  impulse.friction_from_b = get_lane(block.friction_from_b, lane);
+  impulse.twist_per_normal = get_lane(block.twist_per_normal_static, lane);
+}
+
+template <int W>
+void write_block_impulse(void* memory, int index, int lane, const ContactImpulse& impulse) {
+  ContactBlock<W>& block = static_cast<ContactBlock<W>*>(memory)[index];
+  for (int k = 0; k < kMaxManifoldPoints; ++k) set_lane(block.points[k].impulse, lane, impulse.normal[k]);
+  set_lane(block.friction_1, lane, dot(impulse.friction, get_lane(block.tangent_1, lane)));
+  set_lane(block.friction_2, lane, dot(impulse.friction, get_lane(block.tangent_2, lane)));
+  set_lane(block.twist, lane, impulse.twist);
+  set_lane(block.rolling, lane, impulse.rolling);
+  set_lane(block.sliding, lane, 0.0f);
+}
+
 // The table that a kernel file exports.
 template <int W>
 constexpr ContactKernels contact_kernels() {
@@ -223,6 +292,8 @@ constexpr ContactKernels contact_kernels() {
           warm_start_blocks<W>,
           solve_blocks<W>,
           relax_blocks<W>,
+          read_block_impulse<W>,
+          write_block_impulse<W>,
           finish_blocks<W>};
 }
 

@@ -11,6 +11,17 @@ Quat orientation_of(std::int32_t body, const JointBodies& bodies) {
   return body == kNoBody ? Quat{} : bodies.orientation[body];
 }
 
+// How far the anchors part in h by the turning of their arms and of the slide, over h: what the rows, being linear, do not
+// see. Asking the rows for the opposite makes the end of the sub-step, not its beginning, meet the joint, as in SHAKE
+// (J.-P. Ryckaert, G. Ciccotti, H. Berendsen, 1977); with the rows taken anew before velocities relax (RATTLE: H. Andersen,
+// 1983) a swinging pendulum keeps its energy.
+Vec3 bend_of(const JointPair& pair, const JointWork& work, bool slides, float h) {
+  Vec3 bend = cross(pair.angular_b, cross(pair.angular_b, work.from_b)) -
+              cross(pair.angular_a, cross(pair.angular_a, work.from_a));
+  if (slides) bend -= 2.0f * cross(pair.angular_a, pair.point_velocity(work.from_a, work.from_b));
+  return 0.5f * h * bend;
+}
+
 // Coefficients of a spring row for one sub-step.
 //
 // As long as the sub-step resolves the spring (omega h <= 1) the explicit kick gets the stiffness and damping with which
@@ -66,7 +77,7 @@ void prepare_hinge(JointRecord& joint, const JointPair& pair, JointWork& work, Q
   work.position = joint.position = angle + 2.0f * kPi * std::floor(turns + 0.5f);
 }
 
-void prepare_slider(JointRecord& joint, const JointPair& pair, JointWork& work, Quat frame_a, Quat frame_b) {
+void prepare_slider(JointRecord& joint, const JointPair& pair, JointWork& work, Quat frame_a, Quat frame_b, float h) {
   const Mat3 axes_a = to_matrix(frame_a);
   work.axis = axes_a.x;
   work.perpendicular_1 = axes_a.y;
@@ -75,6 +86,7 @@ void prepare_slider(JointRecord& joint, const JointPair& pair, JointWork& work, 
   // The rows act at b's anchor: the arm of a reaches to where b's anchor is now.
   work.from_a += work.error;
   work.error -= work.position * work.axis;
+  work.bend = bend_of(pair, work, true, h);
   work.linear_mass = inverse_in_plane(point_matrix(pair, work.from_a, work.from_b), work.perpendicular_1, work.perpendicular_2);
   work.angular_error = to_rotation_vector(frame_b * conjugate(frame_a));
   work.angular_mass = to_matrix(inverse(pair.inverse_inertia_a() + pair.inverse_inertia_b()));
@@ -92,6 +104,10 @@ void prepare_distance(JointRecord& joint, const JointPair& pair, JointWork& work
   work.axis = normalized(work.error, rotate({}, {0, 1, 0}));
   work.position = joint.position = distance;
   work.axis_mass = inverse_or_zero(axis_matrix(pair, work.axis, work.from_a, work.from_b));
+  const Vec3 speed = pair.point_velocity(work.from_a, work.from_b);
+  const Vec3 across = speed - dot(speed, work.axis) * work.axis;
+  work.axis_bend = dot(work.bend, work.axis) +
+                   (distance > 0.0f ? 0.5f * settings.substep * length_squared(across) / distance : 0.0f);
   if (joint.is_spring) prepare_spring(joint, work, distance - joint.rest_length, settings);
 }
 
@@ -126,19 +142,19 @@ void solve_axis(JointRecord& joint, const JointWork& work, JointPair& pair, cons
     joint.motor_impulse = next;
   }
   if (joint.has_limits) {
-    const float low = stop_change(work.axis_mass, speed(), work.position - joint.limits.low, joint.low_impulse, work.held_low,
-                                  settings, soft);
+    const float low = stop_change(work.axis_mass, speed(), work.position - joint.limits.low, joint.low_impulse, settings, soft);
     apply(low);
     joint.low_impulse += low;
     const float high = stop_change(work.axis_mass, -speed(), joint.limits.high - work.position, joint.high_impulse,
-                                   work.held_high, settings, soft);
+                                   settings, soft);
     apply(-high);
     joint.high_impulse += high;
   }
 }
 
 void solve_distance(JointRecord& joint, const JointWork& work, JointPair& pair, const JointSettings& settings, bool soft) {
-  const auto speed = [&] { return dot(pair.point_velocity(work.from_a, work.from_b), work.axis); };
+  const float bend = soft ? work.axis_bend : 0.0f;
+  const auto speed = [&] { return dot(pair.point_velocity(work.from_a, work.from_b), work.axis) + bend; };
   const auto apply = [&](float impulse) { pair.push(impulse * work.axis, work.from_a, work.from_b); };
   if (joint.is_spring && soft) {
     float next = 0.0f;
@@ -160,19 +176,18 @@ void solve_distance(JointRecord& joint, const JointWork& work, JointPair& pair, 
     if (soft) {
       const Softness& s = settings.softness;
       change = -s.mass_scale * work.axis_mass * (speed() + s.bias_rate * error) -
-               s.impulse_scale * (joint.low_impulse - work.held_low);
+               s.impulse_scale * joint.low_impulse;
     }
     apply(change);
     joint.low_impulse += change;
     return;
   }
-  const float low = stop_change(work.axis_mass, speed(), work.position - joint.min_length, joint.low_impulse, work.held_low,
-                                settings, soft);
+  const float low = stop_change(work.axis_mass, speed(), work.position - joint.min_length, joint.low_impulse, settings, soft);
   apply(low);
   joint.low_impulse += low;
   if (joint.max_length < kUnlimitedLength) {
     const float high = stop_change(work.axis_mass, -speed(), joint.max_length - work.position, joint.high_impulse,
-                                   work.held_high, settings, soft);
+                                   settings, soft);
     apply(-high);
     joint.high_impulse += high;
   }
@@ -180,14 +195,14 @@ void solve_distance(JointRecord& joint, const JointWork& work, JointPair& pair, 
 
 void solve_turn_rows(JointRecord& joint, const JointWork& work, JointPair& pair, const JointSettings& settings, bool soft) {
   const Vec3 change = row_change(work.angular_mass, pair.turning(), work.angular_error, joint.angular_impulse,
-                                 work.held_angular, settings.softness, soft);
+                                 settings.softness, soft);
   pair.turn(change);
   joint.angular_impulse += change;
 }
 
 void solve_point_rows(JointRecord& joint, const JointWork& work, JointPair& pair, const JointSettings& settings, bool soft) {
-  const Vec3 change = row_change(work.linear_mass, pair.point_velocity(work.from_a, work.from_b), work.error,
-                                 joint.linear_impulse, work.held_linear, settings.softness, soft);
+  const Vec3 speed = pair.point_velocity(work.from_a, work.from_b) + (soft ? work.bend : Vec3{});
+  const Vec3 change = row_change(work.linear_mass, speed, work.error, joint.linear_impulse, settings.softness, soft);
   pair.push(change, work.from_a, work.from_b);
   joint.linear_impulse += change;
 }
@@ -209,10 +224,6 @@ void begin_joint(JointRecord& joint, JointWork& work, float warm_scale) {
   joint.total_linear = {};
   joint.total_angular = {};
   work = {};
-  work.held_linear = joint.linear_impulse;
-  work.held_angular = joint.angular_impulse;
-  work.held_low = joint.low_impulse;
-  work.held_high = joint.high_impulse;
 }
 
 void prepare_joint(JointRecord& joint, JointWork& work, const JointPlaces& places, const JointBodies& bodies,
@@ -225,10 +236,11 @@ void prepare_joint(JointRecord& joint, JointWork& work, const JointPlaces& place
   work.error = places.offset + pair.moved() + work.from_b - work.from_a;
   const Quat frame_a = orientation_a * joint.local_frame_a;
   const Quat frame_b = orientation_b * joint.local_frame_b;
+  work.bend = bend_of(pair, work, false, settings.substep);
   switch (joint.kind) {
     case JointKind::ball: prepare_ball(pair, work); break;
     case JointKind::hinge: prepare_hinge(joint, pair, work, frame_a, frame_b); break;
-    case JointKind::slider: prepare_slider(joint, pair, work, frame_a, frame_b); break;
+    case JointKind::slider: prepare_slider(joint, pair, work, frame_a, frame_b, settings.substep); break;
     case JointKind::fixed: prepare_fixed(pair, work, frame_a, frame_b); break;
     case JointKind::distance: prepare_distance(joint, pair, work, settings); break;
   }

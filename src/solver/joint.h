@@ -3,7 +3,7 @@
 //
 // Frames: a joint has a frame on each body (origin at the anchor, x along the axis). The error of a joint is measured with
 // the orientations of the sub-step, its rows are solved softly (position errors are taken back) and then rigidly (only
-// velocities), as contacts are. As there, softness acts on the change of the impulse since the step began.
+// velocities), as contacts are.
 #pragma once
 
 #include "solver/body_motion.h"
@@ -81,19 +81,19 @@ struct JointSettings {
 struct JointWork {
   Vec3 from_a, from_b;       // anchors from the centres of mass, world axes
   Vec3 error;                // anchor b minus anchor a
+  Vec3 bend;                 // m/s: how far b's anchor leaves a's by turning in the sub-step, beyond what the rows see
   Vec3 axis;                 // hinge and slider: of a; distance: unit from a to b
   Vec3 perpendicular_1, perpendicular_2;
   Vec3 angular_error;        // rotation vector that turns a's frame onto b's
   Mat3 linear_mass;          // inverse of K
   Mat3 angular_mass;
+  float axis_bend = 0.0f;    // m/s: the same for the distance
   float axis_mass = 0.0f;    // effective mass of the motion along or about the axis
   float position = 0.0f;
   float spring_position = 0.0f;  // speed asked for by the spring's displacement
   float spring_damping = 0.0f;   // share of the relative speed taken away
   Softness spring;               // stiff springs: implicit
   bool spring_is_stiff = false;
-  Vec3 held_linear, held_angular;
-  float held_low = 0.0f, held_high = 0.0f;
 };
 
 // Scales the kept impulses to a new sub-step length and clears the sums; once a step.

@@ -110,20 +110,19 @@ inline Mat3 inverse_in_plane(const Mat3& k, Vec3 u, Vec3 v) {
 }
 
 // The change of an accumulated impulse that meets `speed` = 0 (plus bias), soft or rigid.
-inline Vec3 row_change(const Mat3& mass, Vec3 speed, Vec3 error, Vec3 impulse, Vec3 held, const Softness& soft, bool is_soft) {
+inline Vec3 row_change(const Mat3& mass, Vec3 speed, Vec3 error, Vec3 impulse, const Softness& soft, bool is_soft) {
   if (!is_soft) return -(mass * speed);
-  return -soft.mass_scale * (mass * (speed + soft.bias_rate * error)) - soft.impulse_scale * (impulse - held);
+  return -soft.mass_scale * (mass * (speed + soft.bias_rate * error)) - soft.impulse_scale * impulse;
 }
 
 // A one-sided row: distance `gap` left before the stop, closing speed -speed. Returns the change of `impulse` (>= 0).
-inline float stop_change(float mass, float speed, float gap, float impulse, float held, const JointSettings& settings,
-                         bool is_soft) {
+inline float stop_change(float mass, float speed, float gap, float impulse, const JointSettings& settings, bool is_soft) {
   float wanted = 0.0f;
   if (gap > 0.0f) {
     wanted = impulse - mass * (speed + gap / settings.substep);
   } else if (is_soft) {
     const Softness& soft = settings.softness;
-    wanted = impulse - mass * soft.mass_scale * (speed + soft.bias_rate * gap) - soft.impulse_scale * (impulse - held);
+    wanted = impulse - mass * soft.mass_scale * (speed + soft.bias_rate * gap) - soft.impulse_scale * impulse;
   } else {
     wanted = impulse - mass * speed;
   }

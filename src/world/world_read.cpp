@@ -240,7 +240,7 @@ float World::max_penetration() const {
   for (const Contact& contact : w.contacts.contacts) {
     if (contact.manifold_room == 0) continue;
     for (const Manifold& manifold : manifolds_of(w.contacts, contact)) {
-      for (int k = 0; k < manifold.count; ++k) deepest = max(deepest, -manifold.points[k].separation);
+      for (int k = 0; k < manifold.count; ++k) deepest = max(deepest, 0.0f - manifold.points[k].separation);
     }
   }
   return deepest;
