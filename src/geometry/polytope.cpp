@@ -4,8 +4,7 @@
 namespace gyre {
 namespace {
 
-constexpr int kLanes = Hull::kPad;
-static_assert(kLanes == 8, "a box fills the columns exactly");
+static_assert(Hull::kPad == 8, "a box fills the columns exactly");
 
 constexpr std::uint32_t kBoxOffsets[7] = {0, 4, 8, 12, 16, 20, 24};
 // Faces -x +x -y +y -z +z, counter-clockwise seen from outside.
@@ -66,21 +65,6 @@ void face_polygon(const Polytope& polytope, int face, FacePolygon& out) {
     out.ids[i] = vertex;
     out.vertices[i] = polytope.vertices[vertex];
   }
-}
-
-float lowest_along(const Polytope& p, Vec3 d) {
-  float best[kLanes];
-  for (int lane = 0; lane < kLanes; ++lane) best[lane] = p.x[lane] * d.x + p.y[lane] * d.y + p.z[lane] * d.z;
-  for (int i = kLanes; i < p.padded_count; i += kLanes) {
-    for (int lane = 0; lane < kLanes; ++lane) {
-      const float value = p.x[i + lane] * d.x + p.y[i + lane] * d.y + p.z[i + lane] * d.z;
-      best[lane] = min(value, best[lane]);
-    }
-  }
-  for (int step = kLanes / 2; step > 0; step /= 2) {
-    for (int lane = 0; lane < step; ++lane) best[lane] = min(best[lane + step], best[lane]);
-  }
-  return best[0];
 }
 
 float highest_along(const Polytope& p, Vec3 d) { return -lowest_along(p, -d); }

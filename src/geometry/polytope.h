@@ -44,8 +44,22 @@ class BoxPolytope {
 // The face as a polygon in the polytope's frame; one with more than kMaxFaceVertices corners is thinned evenly.
 void face_polygon(const Polytope& polytope, int face, FacePolygon& out);
 
-// Smallest and largest dot(direction, vertex).
-float lowest_along(const Polytope& polytope, Vec3 direction);
+// Smallest and largest dot(direction, vertex). Here, because the axis search calls it for every face.
+inline float lowest_along(const Polytope& p, Vec3 d) {
+  constexpr int kLanes = Hull::kPad;
+  float best[kLanes];
+  for (int lane = 0; lane < kLanes; ++lane) best[lane] = p.x[lane] * d.x + p.y[lane] * d.y + p.z[lane] * d.z;
+  for (int i = kLanes; i < p.padded_count; i += kLanes) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const float value = p.x[i + lane] * d.x + p.y[i + lane] * d.y + p.z[i + lane] * d.z;
+      best[lane] = min(value, best[lane]);
+    }
+  }
+  for (int step = kLanes / 2; step > 0; step /= 2) {
+    for (int lane = 0; lane < step; ++lane) best[lane] = min(best[lane + step], best[lane]);
+  }
+  return best[0];
+}
 float highest_along(const Polytope& polytope, Vec3 direction);
 // The vertex of smallest dot(direction, vertex); the lowest index among equals.
 int lowest_vertex(const Polytope& polytope, Vec3 direction);

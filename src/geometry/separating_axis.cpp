@@ -10,9 +10,11 @@ namespace {
 constexpr float kDepthBias = 0.05f, kSizeBias = 1.0e-3f;
 // Squared sine between two edges below which they have no axis of their own.
 constexpr double kParallel = 1.0e-8;
+// Squared sine below which float rounding would show in their axis.
+constexpr float kShallow = 1.0e-2f;
 // Tie margin of the edges' distance test, relative to the shapes' size.
 constexpr float kReachMargin = 1.0e-4f;
-constexpr int kMaxVertices = 255, kMaxEdges = 510;
+constexpr int kMaxVertices = 255, kMaxFaces = 255, kMaxEdges = 510;
 
 // Separation of `other` above a plane of the reference polytope, the plane given in other's frame.
 float above(const Polytope& other, Vec3 normal, float offset) { return lowest_along(other, normal) - offset; }
@@ -23,37 +25,61 @@ struct FaceQuery {
   float separation = -kUnbounded;
 };
 FaceQuery best_face(const Polytope& reference, const Polytope& other, const Transform& reference_from_other,
-                    float max_separation, int first) {
+                    float max_separation, int favoured) {
   FaceQuery best;
   const Mat3 turn = to_matrix(reference_from_other.orientation);
   const Vec3 shift = reference_from_other.position;
   const Vec3 center = turn * other.centroid + shift;
-  const auto look = [&](int f) {
+  // The other's inner ball bounds what a face can reach, so a good first face spares most of the rest.
+  float bound[kMaxFaces];
+  float largest_bound = -kUnbounded;
+  for (int f = 0; f < reference.face_count; ++f) {
     const HullPlane& plane = reference.planes[f];
-    // The other's inner ball bounds what this face can reach.
-    if (dot(plane.normal, center) - plane.offset - other.inner_radius <= best.separation) return;
+    bound[f] = dot(plane.normal, center) - plane.offset - other.inner_radius;
+    largest_bound = max(bound[f], largest_bound);
+  }
+  int first = favoured;
+  if (first < 0) {
+    first = 0;
+    while (first + 1 < reference.face_count && bound[first] != largest_bound) ++first;
+  }
+  const auto look = [&](int f) {
+    if (bound[f] <= best.separation) return;
+    const HullPlane& plane = reference.planes[f];
     const float separation =
         above(other, transpose_times(turn, plane.normal), plane.offset - dot(plane.normal, shift));
     if (separation > best.separation) best = {f, separation};
   };
-  if (first >= 0) look(first);
+  look(first);
   for (int f = 0; f < reference.face_count && best.separation <= max_separation; ++f) look(f);
   return best;
 }
 
-// Vec3 without its zeros: of these columns most entries are never written.
-struct Plain3 {
-  float x, y, z;
+// Edges with the normals of their two faces, in A's frame, as columns. Plain arrays: most of them is never written.
+struct EdgeColumns {
+  static constexpr int kLanes = 8;
+  static constexpr int kRoom = 512;
+  int count = 0;
+  std::uint16_t index[kRoom];
+  float x[kRoom], y[kRoom], z[kRoom];  // direction
+  float left_x[kRoom], left_y[kRoom], left_z[kRoom];
+  float right_x[kRoom], right_y[kRoom], right_z[kRoom];
 
-  void operator=(Vec3 v) { x = v.x, y = v.y, z = v.z; }
-  operator Vec3() const { return {x, y, z}; }
+  void set(int i, Vec3 direction, Vec3 left, Vec3 right) {
+    x[i] = direction.x, y[i] = direction.y, z[i] = direction.z;
+    left_x[i] = left.x, left_y[i] = left.y, left_z[i] = left.z;
+    right_x[i] = right.x, right_y[i] = right.y, right_z[i] = right.z;
+  }
+  Vec3 direction(int i) const { return {x[i], y[i], z[i]}; }
+  Vec3 left(int i) const { return {left_x[i], left_y[i], left_z[i]}; }
+  Vec3 right(int i) const { return {right_x[i], right_y[i], right_z[i]}; }
+  // Edges without length behind the last: no arc crosses theirs.
+  void pad() {
+    for (int i = count; i % kLanes != 0; ++i) set(i, {}, {}, {});
+  }
 };
-
-// One edge with the normals of its two faces, in A's frame.
-struct EdgeArc {
-  Plain3 direction, left, right;
-  int index;
-};
+static_assert(EdgeColumns::kRoom >=
+              kMaxEdges + EdgeColumns::kLanes - 1 - (kMaxEdges - 1) % EdgeColumns::kLanes);
 
 struct EdgePair {
   int a = -1, b = -1;
@@ -61,12 +87,18 @@ struct EdgePair {
   float separation = -kUnbounded;
 };
 
-// Whether the arc of edge a crosses the mirrored arc of edge b on the unit sphere.
-bool arcs_cross(const EdgeArc& a, const EdgeArc& b) {
-  const Vec3 along_a = a.direction, along_b = b.direction;
-  const float left_b = -dot(b.left, along_a), right_b = -dot(b.right, along_a);
-  const float left_a = dot(a.left, along_b), right_a = dot(a.right, along_b);
-  return left_b * right_b < 0.0f && left_a * right_a < 0.0f && left_b * right_a > 0.0f;
+// For eight edges of b: negative where the mirrored arc of the edge on the unit sphere crosses the arc of edge i of a.
+void arcs_cross(const EdgeColumns& a, int i, const EdgeColumns& b, int first, float* out) {
+  const Vec3 d = a.direction(i), l = a.left(i), r = a.right(i);
+  for (int lane = 0; lane < EdgeColumns::kLanes; ++lane) {
+    const int k = first + lane;
+    const float left_b = b.left_x[k] * d.x + b.left_y[k] * d.y + b.left_z[k] * d.z;
+    const float right_b = b.right_x[k] * d.x + b.right_y[k] * d.y + b.right_z[k] * d.z;
+    const float left_a = b.x[k] * l.x + b.y[k] * l.y + b.z[k] * l.z;
+    const float right_a = b.x[k] * r.x + b.y[k] * r.y + b.z[k] * r.z;
+    // The ends of each arc lie on different sides of the other, and not on the far side of the sphere.
+    out[lane] = max(max(left_b * right_b, left_a * right_a), left_b * right_a);
+  }
 }
 
 class EdgeSearch {
@@ -96,21 +128,14 @@ class EdgeSearch {
   DVec3 shift_;
 };
 
-// Edges whose nearer end lies within `limit` of the plane through `offset`; `side` is 1 for below, -1 for above.
-template <class Vertices>
-int near_edges(const Polytope& p, const Vertices& vertices, const float* heights, float side, float limit,
-               const Mat3* turn, EdgeArc* out) {
+// Edges of which one end lies no higher than `limit`.
+void near_edges(const Polytope& p, const float* heights, float limit, EdgeColumns& out) {
   int count = 0;
   for (int e = 0; e < p.edge_count; ++e) {
-    const HullEdge& edge = p.edges[e];
-    if (min(side * heights[edge.from], side * heights[edge.to]) > limit) continue;
-    EdgeArc& arc = out[count++];
-    arc.direction = Vec3(vertices[edge.to]) - Vec3(vertices[edge.from]);
-    arc.left = turn != nullptr ? *turn * p.planes[edge.left].normal : p.planes[edge.left].normal;
-    arc.right = turn != nullptr ? *turn * p.planes[edge.right].normal : p.planes[edge.right].normal;
-    arc.index = e;
+    out.index[count] = std::uint16_t(e);
+    count += min(heights[p.edges[e].from], heights[p.edges[e].to]) <= limit ? 1 : 0;
   }
-  return count;
+  out.count = count;
 }
 
 struct BestFace {
@@ -120,38 +145,90 @@ struct BestFace {
   float separation;
 };
 
+// Both polytopes' edges that can still beat the best face.
+class EdgeCandidates {
+ public:
+  EdgeCandidates(const Polytope& a, const Polytope& b, const Transform& a_from_b) : a_(a), b_(b) {
+    turn_ = to_matrix(a_from_b.orientation);
+    shift_ = a_from_b.position;
+  }
+
+  void collect(const BestFace& face, float max_separation) {
+    float heights_a[kMaxVertices + 1], heights_b[kMaxVertices + 1];
+    // A's vertices upside down, so that low means near for both.
+    const Vec3 down_b = transpose_times(turn_, face.normal);
+    const float shift = dot(face.normal, shift_);
+    float top_a = -kUnbounded, bottom_b = kUnbounded;
+    for (int i = 0; i < a_.vertex_count; ++i) {
+      const float height = dot(face.normal, a_.vertices[i]);
+      heights_a[i] = -height;
+      top_a = max(top_a, height);
+    }
+    for (int i = 0; i < b_.vertex_count; ++i) {
+      heights_b[i] = dot(down_b, b_.vertices[i]) + shift;
+      bottom_b = min(bottom_b, heights_b[i]);
+    }
+    // An edge of B must come within reach of A, so not higher than A's top by more than that; A's edges likewise.
+    const float margin = kReachMargin * (a_.inner_radius + b_.inner_radius);
+    const float reach = max(-face.separation, max_separation) + margin;
+    near_edges(a_, heights_a, reach - bottom_b, arcs_a);
+    near_edges(b_, heights_b, reach + top_a, arcs_b);
+    for (int i = 0; i < arcs_a.count; ++i) {
+      const HullEdge& edge = a_.edges[arcs_a.index[i]];
+      arcs_a.set(i, a_.vertices[edge.to] - a_.vertices[edge.from], a_.planes[edge.left].normal,
+                 a_.planes[edge.right].normal);
+    }
+    for (int i = 0; i < arcs_b.count; ++i) {
+      const HullEdge& edge = b_.edges[arcs_b.index[i]];
+      arcs_b.set(i, turn_ * (b_.vertices[edge.to] - b_.vertices[edge.from]),
+                 turn_ * b_.planes[edge.left].normal, turn_ * b_.planes[edge.right].normal);
+    }
+    arcs_b.pad();
+  }
+
+  // Whether the separation along the cross product of two edges can be above `floor`: in float, without the root, and
+  // undecided (true) where the edges are nearly parallel.
+  bool may_exceed(int i, int k, float floor) const {
+    const Vec3 da = arcs_a.direction(i), db = arcs_b.direction(k), axis = cross(da, db);
+    const float squared = dot(axis, axis);
+    if (squared < kShallow * dot(da, da) * dot(db, db)) return true;
+    const Vec3 pa = a_.vertices[a_.edges[arcs_a.index[i]].from];
+    const Vec3 pb = turn_ * b_.vertices[b_.edges[arcs_b.index[k]].from] + shift_;
+    const float along = dot(axis, pb - pa);
+    const float product = dot(axis, arcs_a.left(i) + arcs_a.right(i)) < 0.0f ? -along : along;
+    const float bound = floor * absolute(floor) * squared;
+    return product * absolute(product) > bound;
+  }
+
+  EdgeColumns arcs_a, arcs_b;
+
+ private:
+  const Polytope& a_;
+  const Polytope& b_;
+  Mat3 turn_;
+  Vec3 shift_;
+};
+
+// The pair of edges of largest separation, if that is above `floor`; a = -1 if none is.
 EdgePair best_edges(const Polytope& a, const Polytope& b, const Transform& a_from_b, const BestFace& face,
-                    float max_separation) {
-  const Mat3 turn = to_matrix(a_from_b.orientation);
-  Plain3 vertices_b[kMaxVertices];
-  float heights_a[kMaxVertices], heights_b[kMaxVertices];
-  // Heights over A's highest and B's lowest point along the face's normal.
-  float top_a = -kUnbounded, bottom_b = kUnbounded;
-  for (int i = 0; i < a.vertex_count; ++i) {
-    heights_a[i] = dot(face.normal, a.vertices[i]);
-    top_a = max(top_a, heights_a[i]);
-  }
-  for (int i = 0; i < b.vertex_count; ++i) {
-    vertices_b[i] = turn * b.vertices[i] + a_from_b.position;
-    heights_b[i] = dot(face.normal, Vec3(vertices_b[i]));
-    bottom_b = min(bottom_b, heights_b[i]);
-  }
-  // An edge of B must come within reach of A, so not higher than A's top by more than that; A's edges likewise.
-  const float reach =
-      max(-face.separation, max_separation) + kReachMargin * (a.inner_radius + b.inner_radius);
-  EdgeArc arcs_a[kMaxEdges], arcs_b[kMaxEdges];
-  const int count_a = near_edges(a, a.vertices, heights_a, -1.0f, reach - bottom_b, nullptr, arcs_a);
-  const int count_b = near_edges(b, vertices_b, heights_b, 1.0f, reach + top_a, &turn, arcs_b);
+                    float max_separation, float floor) {
+  EdgeCandidates near(a, b, a_from_b);
+  near.collect(face, max_separation);
   const EdgeSearch search(a, b, a_from_b);
   EdgePair best;
-  for (int i = 0; i < count_a; ++i) {
-    for (int k = 0; k < count_b; ++k) {
-      if (!arcs_cross(arcs_a[i], arcs_b[k])) continue;
-      EdgePair pair;
-      if (!search.evaluate(arcs_a[i].index, arcs_b[k].index, Vec3(arcs_a[i].left) + Vec3(arcs_a[i].right),
-                           pair))
-        continue;
-      if (pair.separation > best.separation) best = pair;
+  best.separation = floor;
+  for (int i = 0; i < near.arcs_a.count; ++i) {
+    for (int first = 0; first < near.arcs_b.count; first += EdgeColumns::kLanes) {
+      float crossing[EdgeColumns::kLanes];
+      arcs_cross(near.arcs_a, i, near.arcs_b, first, crossing);
+      for (int lane = 0; lane < EdgeColumns::kLanes; ++lane) {
+        const int k = first + lane;
+        if (!(crossing[lane] < 0.0f) || !near.may_exceed(i, k, best.separation)) continue;
+        EdgePair pair;
+        const Vec3 outward = near.arcs_a.left(i) + near.arcs_a.right(i);
+        if (!search.evaluate(near.arcs_a.index[i], near.arcs_b.index[k], outward, pair)) continue;
+        if (pair.separation > best.separation) best = pair;
+      }
     }
   }
   return best;
@@ -238,8 +315,9 @@ PolytopeAxis separating_axis(const Polytope& a, const Polytope& b, const Transfo
   const PolytopeAxis& deciding = qb.separation > qa.separation ? face_b : face_a;
   const BestFace plane{deciding.kind, deciding.kind == AxisKind::face_a ? qa.face : qb.face, deciding.normal,
                        deciding.separation};
-  const EdgePair pair = best_edges(a, b, a_from_b, plane, max_separation);
-  const PolytopeAxis edges{AxisKind::edges, max(pair.a, 0), max(pair.b, 0), pair.normal, pair.separation};
+  const EdgePair pair = best_edges(a, b, a_from_b, plane, max_separation, best + 0.5f * bias);
+  const PolytopeAxis edges{AxisKind::edges, max(pair.a, 0), max(pair.b, 0), pair.normal,
+                           pair.a < 0 ? -kUnbounded : pair.separation};
   if (edges.separation > max_separation) return edges;
 
   // Among nearly equal ones: the favoured, then A's face, then B's, then edges.

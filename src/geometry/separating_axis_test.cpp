@@ -54,6 +54,10 @@ TEST(SeparatingAxis, EqualsBruteForceOverAllAxes) {
     EXPECT_NEAR(separation(a, b, pair, DVec3(axis.normal)), double(axis.separation), 1.0e-5 * double(scale))
         << i;
     if (best > 0.0) continue;
+    // Overlapping: the same axis when only near edges are looked at.
+    const PolytopeAxis pruned = separating_axis(pa, pb, t, 0.0f, {});
+    EXPECT_EQ(pruned.kind, axis.kind) << i;
+    EXPECT_EQ(pruned.separation, axis.separation) << i;
     ++overlapping;
     if (axis.kind == AxisKind::edges) ++by_edges;
     EXPECT_GE(double(axis.separation), best - bias) << i;
