@@ -2,10 +2,18 @@
 #pragma once
 
 #include "base/arena.h"
+#include "collision/continuous.h"
 #include "rigid/rigid_world.h"
 #include "task/task_system.h"
 
 namespace gyre {
+
+// Kept from step to step only for its memory.
+struct ContinuousScratch {
+  Array<FastBody> fast;
+  Array<float> fractions;
+  ContinuousCollision collision;
+};
 
 // Tells the broad phase what came, went or moved its fat box since the last step.
 void refit(RigidWorld& w);
@@ -22,7 +30,7 @@ void finish_bodies(RigidWorld& w, TaskSystem& tasks, float seconds, Array<std::u
 void break_joints(RigidWorld& w, float seconds);
 
 // Sweeps bodies that moved far against what is in their way and takes them back to the first impact.
-void clamp_fast_bodies(RigidWorld& w, TaskSystem& tasks, float seconds);
+void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, TaskSystem& tasks);
 
 // Fits a new fat box around one shape and lists it as changed.
 void refit_shape(RigidWorld& w, std::uint32_t shape, float seconds);

@@ -62,6 +62,7 @@ void step_world(WorldState& s, float seconds) {
   run_stage(s, StageName::collide, [&] { collide_pairs(w, *s.tasks, seconds); });
   run_stage(s, StageName::link_islands, [&] { link_islands(w); });
   run_stage(s, StageName::solve, [&] { solve_step(w, s.solve, s.arena, *s.tasks, *s.kernels, seconds); });
+  run_stage(s, StageName::clamp_fast_bodies, [&] { clamp_fast_bodies(w, s.continuous, s.arena, *s.tasks); });
   run_stage(s, StageName::finish_bodies, [&] { finish_bodies(w, *s.tasks, seconds, s.frozen); });
   run_stage(s, StageName::break_joints, [&] { break_joints(w, seconds); });
   run_stage(s, StageName::put_to_sleep, [&] { put_to_sleep(w, s.arena, seconds); });

@@ -4,6 +4,7 @@
 
 #include "base/arena.h"
 #include "base/profile.h"
+#include "rigid/rigid_step.h"
 #include "rigid/rigid_world.h"
 #include "rigid/solve_step.h"
 #include "solver/contact_block.h"
@@ -24,6 +25,8 @@ class CommandLog {
   virtual ~CommandLog() = default;
   virtual void on_command(const Command& command) = 0;
   virtual void on_step_done(WorldState& state) = 0;
+  // The state was replaced as a whole, by that of a snapshot.
+  virtual void on_restored(WorldState& state) = 0;
 };
 
 // Called after every stage of a step with the stage's name: tools compare two worlds with it.
@@ -44,6 +47,7 @@ struct WorldState {
   const ContactKernels* kernels = nullptr;
   Arena arena;
   SolveScratch solve;
+  ContinuousScratch continuous;
   StageProfile profile;
   StageHook stage_hook;
   CommandLog* log = nullptr;
@@ -95,9 +99,12 @@ std::unique_ptr<WorldState> make_world_state(const WorldDef& def);
 // Why a def cannot be used; code none if it can.
 Error check_world_def(const WorldDef& def);
 
-// Derives everything that is not state from the columns (after loading). Returns what is inconsistent, code none if
-// nothing is: indices out of range, sets that disagree.
-Error rebuild_derived(WorldState& state);
+// Why columns that came from outside cannot be a state: indices out of range, sets that disagree. Code none if they can.
+Error check_columns(const RigidWorld& w);
+// Derives everything that is not state from columns that hang together.
+void derive_state(RigidWorld& w);
+// Both in one: what loading ends with.
+Error rebuild_derived(RigidWorld& w);
 
 // 64-bit hash of all columns.
 std::uint64_t hash_state(const WorldState& state);

@@ -1,0 +1,54 @@
+// The stage that keeps fast bodies from passing through things: lists those that moved far against their size, lets
+// collision/continuous sweep them, and takes back what motion they may not keep.
+#include "collision/continuous.h"
+#include "rigid/rigid_step.h"
+
+namespace gyre {
+
+namespace {
+
+Sweep sweep_of_body(const RigidWorld& w, std::uint32_t body) {
+  const BodyMotion& motion = w.bodies.motion[body];
+  const BodyFlags& flags = w.bodies.flags[body];
+  const bool moves = flags.type != BodyType::fixed && flags.awake != 0 && flags.frozen == 0;
+  return {w.bodies.poses[body], w.bodies.masses[body].center, moves ? motion.moved : Vec3{}, moves ? motion.turned : Vec3{}};
+}
+
+}  // namespace
+
+void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, TaskSystem& tasks) {
+  scratch.fast.clear();
+  for (const std::uint32_t i : w.bodies.awake) {
+    if (!is_movable(w.bodies.flags[i]) || w.bodies.shapes[i].empty()) continue;
+    const BodyMotion& motion = w.bodies.motion[i];
+    const BodyMass& mass = w.bodies.masses[i];
+    if (is_fast(motion.moved, motion.turned, mass.reach, mass.size)) {
+      scratch.fast.push_back({i, w.bodies.flags[i].continuous != 0});
+    }
+  }
+  if (scratch.fast.empty()) return;
+  // The shapes of each fast body as plain indices, in a place that is found by body.
+  const std::span<std::span<const std::uint32_t>> shapes = arena.make<std::span<const std::uint32_t>>(w.bodies.motion.size());
+  for (const FastBody& fast : scratch.fast) {
+    const std::vector<ShapeId>& ids = w.bodies.shapes[fast.body];
+    const std::span<std::uint32_t> list = arena.make<std::uint32_t>(ids.size());
+    for (std::size_t k = 0; k < ids.size(); ++k) list[k] = ids[k].index;
+    shapes[fast.body] = list;
+  }
+  const auto sweep_of = [&](std::uint32_t body) { return sweep_of_body(w, body); };
+  const auto shapes_of = [&](std::uint32_t body) { return shapes[body]; };
+  const ContinuousInput input{w.shapes.colliders, w.shapes.proxies, *w.broadphase, w.joints.blocked, sweep_of, shapes_of};
+  scratch.fractions.resize(scratch.fast.size());
+  scratch.collision.clamp_fast_bodies(input, scratch.fast, tasks, scratch.fractions);
+  for (std::size_t k = 0; k < scratch.fast.size(); ++k) {
+    const float fraction = scratch.fractions[k];
+    if (!(fraction < 1.0f)) continue;
+    const std::uint32_t i = scratch.fast[k].body;
+    w.bodies.orientations[i] = pose_at(sweep_of_body(w, i), double(fraction)).orientation;
+    w.bodies.motion[i].moved *= fraction;
+    w.bodies.motion[i].turned *= fraction;
+    w.bodies.inertia[i] = world_inertia(w.bodies.masses[i], w.bodies.flags[i], w.bodies.orientations[i]);
+  }
+}
+
+}  // namespace gyre
