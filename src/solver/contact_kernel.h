@@ -18,7 +18,7 @@ namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
 // Projected sweeps over the points of a manifold in which some would pull.
-constexpr int kPullSweeps = 4;
+constexpr int kPullSweeps = 6;
 
 template <int W>
 struct PointBlock {
@@ -262,6 +262,12 @@ GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W>& pair, cons
     if constexpr (!kSoft) next[i] = select(idle[i], zero, next[i]);
   }
   if (any(pulls)) {
+    // From the impulses that stand, not from the block's answer with its pulls cut off: that is too strong, and piles shake.
+    for (int i = 0; i < count; ++i) {
+      Wide<W> start = max(block.points[i].impulse - leak[i], zero);
+      if constexpr (!kSoft) start = select(idle[i], zero, start);
+      next[i] = select(pulls, start, next[i]);
+    }
     for (int sweep = 0; sweep < kPullSweeps; ++sweep) {
       for (int i = 0; i < count; ++i) {
         Wide<W> speed = residual[i];
