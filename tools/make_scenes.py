@@ -197,19 +197,19 @@ def dominoes():
     bodies = [ground(material="wood")]
     angle, count = 0.0, 100
     for i in range(count):
-        radius = 1.6 + 0.42 * angle
+        radius = 1.0 + 0.25 * angle
         x, z = radius * math.cos(angle), radius * math.sin(angle)
         # The way on: the tangent of the spiral.
-        dx = 0.42 * math.cos(angle) - radius * math.sin(angle)
-        dz = 0.42 * math.sin(angle) + radius * math.cos(angle)
+        dx = 0.25 * math.cos(angle) - radius * math.sin(angle)
+        dz = 0.25 * math.sin(angle) + radius * math.cos(angle)
         more = {"orientation": about((0, 1, 0), math.atan2(-dz, dx))}
         if i == 0:
             size = math.hypot(dx, dz)
             speed = 2.5  # falls forward: about up x forward
             more["angular_velocity"] = [speed * dz / size, 0, -speed * dx / size]
-            more["linear_velocity"] = [0.25 * speed * dx / size, 0, 0.25 * speed * dz / size]
-        bodies.append(body(f"domino {i + 1}", (x, 0.25, z), box(0.03, 0.25, 0.125, material="wood"), **more))
-        angle += 0.25 / math.hypot(radius, 0.42)
+            more["linear_velocity"] = [0.15 * speed * dx / size, 0, 0.15 * speed * dz / size]
+        bodies.append(body(f"domino {i + 1}", (x, 0.15, z), box(0.02, 0.15, 0.075, material="wood"), **more))
+        angle += 0.15 / math.hypot(radius, 0.25)
     return scene("a spiral of a hundred dominoes", bodies, materials=["wood"])
 
 
@@ -321,7 +321,8 @@ def bowling():
     materials = {"maple": {"density": 700, "static_friction": 0.35, "dynamic_friction": 0.3, "restitution": 0.6},
                  "lane": {"density": 700, "static_friction": 0.15, "dynamic_friction": 0.1, "restitution": 0.2},
                  "ball": {"density": 1360, "static_friction": 0.2, "dynamic_friction": 0.15, "restitution": 0.4}}
-    bodies = [fixed("lane", (-5, -0.1, 0), box(7, 0.1, 0.9, material="lane")),
+    bodies = [fixed("floor", (0, -0.25, 0), {"type": "plane"}),
+              fixed("lane", (-5, -0.1, 0), box(7, 0.1, 0.9, material="lane")),
               fixed("backstop", (2.2, 0.4, 0), box(0.1, 0.5, 0.9, restitution=0)),
               body("ball", (-8, 0.1085, -0.35), ball(0.1085, material="ball"), linear_velocity=[8.5, 0, 0.25],
                    angular_velocity=[14, 0, -20], continuous=True)]
@@ -352,7 +353,8 @@ def newtons_cradle():
 
 def mesh_terrain():
     rng = random.Random(11)
-    bodies = [fixed("terrain", (0, 0, 0), {"type": "mesh", "mesh": "hills", "material": "stone"})]
+    bodies = [fixed("terrain", (0, 0, 0), {"type": "mesh", "mesh": "hills", "material": "stone"}),
+              fixed("valley", (0, -3, 0), {"type": "plane", "material": "stone"})]
     for i in range(120):
         x, z = (i % 12 - 5.5) * 1.1, (i // 12 - 4.5) * 1.1
         bodies.append(body(f"piece {i + 1}", (x, hill(x, z) + 1.5 + rng.uniform(0, 1), z), mixed_shape(rng, i, 0.25),
@@ -416,7 +418,7 @@ def bouncing():
 def rolling():
     angle = math.radians(12)
     slope = about((0, 0, 1), angle)
-    bodies = [ground(), fixed("ramp", (-3, 1.2, 0), box(3, 0.1, 3), orientation=slope)]
+    bodies = [ground(), fixed("ramp", (-3, 1.2, 0), box(3, 0.1, 3), orientation=slope), fixed("stop", (-14, 0.4, 0), box(0.2, 0.4, 4))]
     side = about((1, 0, 0), math.pi / 2)
     racers = (("ball", ball(0.25)), ("cylinder", round_shape("cylinder", 0.25, 0.3, orientation=side)),
               ("capsule", round_shape("capsule", 0.25, 0.2, orientation=side)),
@@ -472,6 +474,9 @@ def machines():
          "shapes": [box(1.2, 0.15, 0.08), box(0.08, 0.15, 1.2)]},
         body("weight", (5.5, 1.5, -2), box(0.2, 0.2, 0.2)),
     ]
+    for wall in pit(1.5, 0.3, 0.1):
+        wall["position"][2] -= 4
+        bodies.append(wall)
     for i in range(12):
         angle = 2 * math.pi * i / 12
         bodies.append(body(f"ball {i + 1}", (1.0 * math.cos(angle), 0.8, -4 + 1.0 * math.sin(angle)), ball(0.15)))
@@ -496,7 +501,7 @@ def showcase():
     for row in range(8):
         for column in range(10):
             bodies.append(body(f"brick {10 * row + column + 1}",
-                               ((column - 4.5) * 0.82 + 0.41 * (row % 2), 0.2 + 0.4 * row, -6),
+                               ((column - 4.5) * 0.82 + 0.41 * (row % 2), 0.2 + 0.4 * row, -2.3),
                                box(0.4, 0.2, 0.2, material="stone")))
     for i in range(10):
         bodies.append(body(f"tower {i + 1}", (7, 0.4 + 0.8 * i, -5), box(0.4, 0.4, 0.4, material="wood")))
@@ -522,15 +527,15 @@ def showcase():
         x, z = (i % 10 - 4.5) * 0.9, (i // 10 - 2.5) * 1.2
         bodies.append(body(f"stone {i + 1}", (-7 + x, hill(x, z) + 1.4, 8 + z), mixed_shape(rng, i, 0.24)))
     # A chain with a heavy ball that swings into the wall.
-    previous = "world"
-    for i in range(10):
+    previous, hook, links = "world", 7.4, 14
+    for i in range(links):
         name = f"link {i + 1}"
-        bodies.append(body(name, (0, 7, 0.2 + 0.4 * i), round_shape("capsule", 0.06, 0.14, material="steel",
-                                                                  orientation=about((1, 0, 0), math.pi / 2))))
-        joints.append({"type": "ball", "a": previous, "b": name, "anchor": [0, 7, 0.4 * i]})
+        bodies.append(body(name, (0, hook, 0.2 + 0.4 * i), round_shape("capsule", 0.06, 0.14, material="steel",
+                                                                     orientation=about((1, 0, 0), math.pi / 2))))
+        joints.append({"type": "ball", "a": previous, "b": name, "anchor": [0, hook, 0.4 * i]})
         previous = name
-    bodies.append(body("wrecking ball", (0, 7, 4.5), ball(0.5, material="steel"), continuous=True))
-    joints.append({"type": "ball", "a": previous, "b": "wrecking ball", "anchor": [0, 7, 4]})
+    bodies.append(body("wrecking ball", (0, hook, 0.4 * links + 0.5), ball(0.5, material="steel"), continuous=True))
+    joints.append({"type": "ball", "a": previous, "b": "wrecking ball", "anchor": [0, hook, 0.4 * links]})
     return scene("showcase", bodies, joints, materials=["stone", "wood", "steel"], meshes={"hills": {"file": "meshes/small_hills.obj"}})
 
 
