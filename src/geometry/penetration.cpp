@@ -246,10 +246,17 @@ bool Polytope::add(const DifferencePoint& point, int first) {
 
 void Polytope::witness(DVec3 target, DVec3 outward, DVec3& on_a, DVec3& on_b) const {
   double least = kNever;
+  // A flat side of the difference is many triangles: the one under which the target lies holds the pair. A face that looks
+  // the other way may be as near (the way out is as long on both sides) but holds other points; it serves only when the
+  // face that gave the direction has been worked on since.
+  double side = -2.0;
+  for (int i = 0; i < face_count_; ++i) {
+    if (faces_[i].alive && faces_[i].distance < kNever) side = max(side, dot(faces_[i].normal, outward));
+  }
+  side = min(side, kSameSide);
   for (int i = 0; i < face_count_; ++i) {
     const Face& face = faces_[i];
-    // A flat side of the difference is many triangles: the one under which the target lies holds the pair.
-    if (!face.alive || !(dot(face.normal, outward) > kSameSide)) continue;
+    if (!face.alive || face.distance == kNever || dot(face.normal, outward) < side) continue;
     const DifferencePoint &a = vertices_[face.v[0]], &b = vertices_[face.v[1]], &c = vertices_[face.v[2]];
     const SimplexPoint near = closest_on_triangle(target, a.way, b.way, c.way);
     const double squared = length_squared(near.point - target);
