@@ -158,7 +158,7 @@ void mark_flat_samples(HeightField& field) {
 }
 
 std::uint64_t hash_field(const HeightField& field) {
-  Hasher hasher(std::uint64_t(ShapeKind::height_field));
+  Hasher hasher{std::uint64_t(ShapeKind::height_field)};
   hasher.add(std::uint64_t(field.columns) << 32 | field.rows);
   hasher.add(std::as_bytes(std::span<const float>(&field.spacing, 1)));
   hasher.add(std::as_bytes(std::span<const float>(field.heights)));

@@ -21,9 +21,8 @@
 namespace gyre {
 namespace {
 
-// Relative to the size of the shape: by how much a direction must be better to be preferred to the face's normal; a
-// rounded shape, whose nearest points are exact, needs no such favour.
-constexpr float kFaceBias = 5.0e-4f;
+// Relative to the size of the shape: a direction must be better than the face's normal by kAxisBias to be preferred to it; a
+// rounded shape, whose nearest points are exact, needs less favour.
 constexpr float kRoundBias = 1.0e-6f;
 // ... and how much deeper than a contact a triangle may lie and still be covered by it.
 constexpr float kCoverSlack = 1.0e-3f;
@@ -54,7 +53,7 @@ class MeshCollider {
         convex_(b, a_from_b.orientation),
         position_(a_from_b.position),
         max_separation_(max_separation),
-        bias_((convex_.radius() > 0.0f ? kRoundBias : kFaceBias) * convex_.size()) {}
+        bias_((convex_.radius() > 0.0f ? kRoundBias : kAxisBias) * convex_.size()) {}
 
   int run(LocalManifold* out) {
     find_candidates(surface_, convex_, position_, max_separation_, candidates_);
@@ -74,6 +73,7 @@ class MeshCollider {
   NearTriangle triangle(std::uint32_t id) const { return near_triangle(surface_, id, position_, convex_); }
   void know_side(Vec3 normal);
   void know_face();
+  bool rests_inside(const NearTriangle& t, float face_separation);
   float face_separation(const NearTriangle& t) const {
     return side_.lowest - dot(t.normal, t.v[0]) - convex_.radius();
   }
@@ -224,21 +224,42 @@ bool MeshCollider::is_buried(const NearTriangle& t, Vec3 direction) const {
   return false;
 }
 
+// Whether a lowest corner of the shape lies so far inside the triangle's sides that no direction but the face's normal can be
+// better: a disc around its foot, as wide as the corner is deep, belongs to the triangle.
+bool MeshCollider::rests_inside(const NearTriangle& t, float face_separation) {
+  know_face();
+  const float room = max(-face_separation - convex_.radius(), 0.0f) + t.slack;
+  for (int k = 0; k < side_.face.count; ++k) {
+    const Vec3 corner = side_.face.vertices[k];
+    if (dot(t.normal, corner) > side_.lowest + bias_) continue;
+    bool inside = true;
+    for (int i = 0; i < 3; ++i) inside = inside && dot(t.outward[i], corner - t.v[i]) < -room;
+    if (inside) return true;
+  }
+  return false;
+}
+
 void MeshCollider::look_at(std::uint32_t id) {
-  const NearTriangle t = triangle(id);
+  NearTriangle t = place_triangle(surface_, id, position_, convex_);
   know_side(t.normal);
   const float height = dot(t.normal, t.v[0]);
   const float face = face_separation(t);
   if (face > max_separation_ || side_.highest - height + convex_.radius() <= 0.0f) return;
+  measure_edges(t);
   const bool inside_patch = t.flat_corners == 7 && t.edge[0] == EdgeKind::flat &&
                             t.edge[1] == EdgeKind::flat && t.edge[2] == EdgeKind::flat;
   // Ground that is known to carry the shape: no other direction can come of a triangle without real edges.
   if (inside_patch && stands_already(t.normal)) return add_face(t);
+  const bool behind = dot(t.normal, convex_.center()) < height;
+  if (!behind && rests_inside(t, face)) {
+    add_face(t);
+    if (stand(t.normal, face)) add_deep_corners(t);
+    return;
+  }
   const AxisSearch axes = search_axes(surface_, t, convex_, face, max_separation_, scratch_);
   if (axes.best > max_separation_) return;
-  const bool behind = dot(t.normal, convex_.center()) < height;
   const float allowed = max(face, axes.feature.separation);
-  if (behind || allowed < axes.best - kFaceBias * convex_.size()) {
+  if (behind || allowed < axes.best - kAxisBias * convex_.size()) {
     waiting_[waiting_count_++] = {id, face, behind, axes.best <= 0.0f};
     return;
   }
@@ -246,7 +267,7 @@ void MeshCollider::look_at(std::uint32_t id) {
     add_face(t);
     // Beside an edge the face alone may have no point.
     const bool empty = points_.count == 0;
-    if (!empty || axes.feature.separation < axes.best - kFaceBias * convex_.size()) {
+    if (!empty || axes.feature.separation < axes.best - kAxisBias * convex_.size()) {
       if (stand(t.normal, face)) add_deep_corners(t);
       return;
     }

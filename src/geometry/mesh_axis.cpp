@@ -94,6 +94,9 @@ class Search {
     return corners;
   }
 
+  // An allowed direction must be better than this to matter.
+  float useful() const { return max(found_.feature.separation, found_.best - kAxisBias * convex_.size()); }
+
   // Returns whether the direction is the best allowed one so far.
   bool offer(Vec3 d, float separation, unsigned corners, AxisSource source) {
     core_best_ = max(core_best_, separation + convex_.radius());
@@ -103,7 +106,7 @@ class Search {
       return false;
     }
     found_.best = max(found_.best, separation);
-    if (!(separation > found_.feature.separation) || is_face(d) || !allows(corners, d)) return false;
+    if (!(separation > useful()) || is_face(d) || !allows(corners, d)) return false;
     found_.feature.separation = separation;
     found_.feature.direction = d;
     found_.feature.corners = corners;
@@ -120,6 +123,7 @@ class Search {
   void polyhedron();
   void face_axes();
   void edge_axes();
+  void edge_axis(const HullEdge& edge, int i, float left_part, float right_part);
   void segment_axes();
   void nearest_pair();
   void nearest_of_vertices(double& best, SimplexPoint& on_triangle, DVec3& on_convex) const;
@@ -137,40 +141,49 @@ class Search {
 };
 
 void Search::face_axes() {
+  float separations[PlacedConvex::kMaxVertices];
+  convex_.face_separations(t_.v, separations);
   for (int i = 0; i < convex_.face_count() && !apart(); ++i) {
-    const Vec3 n = convex_.face_normal(i);
-    const float low = min(dot(n, t_.v[0]), min(dot(n, t_.v[1]), dot(n, t_.v[2])));
-    const float separation = low - convex_.face_offset(i) - convex_.radius();
-    if (separation > found_.best || separation > found_.feature.separation) {
-      offer(-n, separation, supporting_corners(-n), AxisSource::shape_face);
-    }
+    const float separation = separations[i] - convex_.radius();
+    if (separation <= useful()) continue;
+    const Vec3 d = -convex_.face_normal(i);
+    offer(d, separation, supporting_corners(d), AxisSource::shape_face);
   }
 }
 
 // An edge of the triangle and one of the polyhedron make a face of their Minkowski difference where their arcs on the
 // sphere of normals cross: the triangle's runs from its normal through `outward` to the other side.
 void Search::edge_axes() {
+  // What each face's normal has along the triangle's edges: it serves all edges of the face.
+  float component[3][PlacedConvex::kMaxVertices];
+  for (int i = 0; i < 3; ++i) convex_.face_components(t_.along[i], component[i]);
   for (const HullEdge& edge : convex_.edges()) {
-    const Vec3 left = convex_.face_normal(edge.left), right = convex_.face_normal(edge.right);
-    const Vec3 point = convex_.vertex(edge.from);
     for (int i = 0; i < 3; ++i) {
-      const float l = dot(left, t_.along[i]), r = dot(right, t_.along[i]);
-      if (!(l * r < 0.0f)) continue;
-      const Vec3 crossing = absolute(r) * left + absolute(l) * right;
-      if (!(dot(crossing, t_.outward[i]) < 0.0f)) continue;
-      // Nearly along a face's normal (short and long edges, tiny angles) the face's own axis serves.
-      const float size = length(crossing);
-      if (!(size > 1.0e-4f)) continue;
-      const Vec3 d = crossing / -size;
-      const float separation = dot(d, point - t_.v[i]) - convex_.radius();
-      if (separation > found_.best || separation > found_.feature.separation) {
-        if (offer(d, separation, 1u << i | 1u << next_corner(i), AxisSource::shape_edge)) {
-          found_.feature.from = edge.from;
-          found_.feature.to = edge.to;
-        }
-        if (apart()) return;
-      }
+      const float l = component[i][edge.left], r = component[i][edge.right];
+      if (l * r < 0.0f) edge_axis(edge, i, absolute(l), absolute(r));
     }
+    if (apart()) return;
+  }
+}
+
+void Search::edge_axis(const HullEdge& edge, int i, float left_part, float right_part) {
+  const Vec3 crossing =
+      right_part * convex_.face_normal(edge.left) + left_part * convex_.face_normal(edge.right);
+  if (!(dot(crossing, t_.outward[i]) < 0.0f)) return;
+  const float scaled = dot(crossing, t_.v[i] - convex_.vertex(edge.from));
+  const bool active = t_.edge[i] == EdgeKind::convex || t_.edge[i] == EdgeKind::open;
+  const float needed = active ? min(found_.best, useful()) : found_.best;
+  // `crossing` is at most as long as the two parts together: most overlapping pairs are known to be no better without a root.
+  const float longest = left_part + right_part;
+  if (scaled < 0.0f && scaled - convex_.radius() * longest < needed * longest) return;
+  // Nearly along a face's normal (short and long edges, tiny angles) the face's own axis serves.
+  const float size = length(crossing);
+  if (!(size > 1.0e-4f)) return;
+  const float separation = scaled / size - convex_.radius();
+  if (separation <= needed) return;
+  if (offer(crossing / -size, separation, 1u << i | 1u << next_corner(i), AxisSource::shape_edge)) {
+    found_.feature.from = edge.from;
+    found_.feature.to = edge.to;
   }
 }
 
@@ -293,7 +306,7 @@ void Search::search_arc(int edge) {
   const Vec3 d = direction(0.5f * (low + high));
   // The search stops short of the exact directions (along an axis, a cap or a mantle line): those win near ties.
   const float value = separation(d) - 1.0e-5f * convex_.size();
-  if (value > found_.feature.separation || value > found_.best) {
+  if (value > useful()) {
     offer(d, value + 1.0e-5f * convex_.size(), corners, AxisSource::curved);
   }
 }
@@ -360,8 +373,8 @@ Surface::Surface(const Shape& shape) {
   if (shape.kind == ShapeKind::height_field) field = shape.field;
 }
 
-NearTriangle near_triangle(const Surface& surface, std::uint32_t id, Vec3 position,
-                           const PlacedConvex& convex) {
+NearTriangle place_triangle(const Surface& surface, std::uint32_t id, Vec3 position,
+                            const PlacedConvex& convex) {
   NearTriangle t;
   static_cast<TriangleView&>(t) = surface.triangle(id);
   if (surface.double_sided() && dot(t.normal, convex.center() + position - t.v[0]) < 0.0f) {
@@ -374,13 +387,16 @@ NearTriangle near_triangle(const Surface& surface, std::uint32_t id, Vec3 positi
     t.v[i] = t.v[i] - position;
   }
   t.slack = 1.2e-7f * reach + 1.0e-6f * convex.size();
+  return t;
+}
+
+void measure_edges(NearTriangle& t) {
   for (int i = 0; i < 3; ++i) {
     const Vec3 edge = t.v[next_corner(i)] - t.v[i];
-    t.length[i] = length(edge);
-    t.along[i] = normalized(edge);
+    t.length[i] = max(length(edge), 1.0e-30f);
+    t.along[i] = edge / t.length[i];
     t.outward[i] = cross(t.along[i], t.normal);
   }
-  return t;
 }
 
 AxisSearch search_axes(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,

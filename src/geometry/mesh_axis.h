@@ -42,11 +42,22 @@ struct NearTriangle : TriangleView {
   bool turned = false;  // seen from behind: corners 1 and 2 have changed places against the surface's own
 };
 
-// `position` is that of the convex shape. A double-sided surface shows the side on which `center` (seen from the shape) lies.
-NearTriangle near_triangle(const Surface& surface, std::uint32_t id, Vec3 position,
-                           const PlacedConvex& convex);
+// The triangle without its edges' measures. `position` is that of the convex shape. A double-sided surface shows the side on
+// which the shape's middle lies.
+NearTriangle place_triangle(const Surface& surface, std::uint32_t id, Vec3 position,
+                            const PlacedConvex& convex);
+void measure_edges(NearTriangle& triangle);
+inline NearTriangle near_triangle(const Surface& surface, std::uint32_t id, Vec3 position,
+                                  const PlacedConvex& convex) {
+  NearTriangle triangle = place_triangle(surface, id, position, convex);
+  measure_edges(triangle);
+  return triangle;
+}
 
-// A corner or edge of the triangle where shape and surface may touch, and the direction.
+// Relative to the size of the shape: directions whose separations differ by less are equally good. A corner or an edge that is
+// worse than the best direction by more is of no use and not reported.
+constexpr float kAxisBias = 5.0e-4f;
+
 enum class AxisSource : std::uint8_t {
   shape_face,    // the normal of a face of the shape
   shape_edge,    // an edge of the shape across an edge of the triangle
@@ -54,6 +65,7 @@ enum class AxisSource : std::uint8_t {
   curved,        // of a cylinder or cone
 };
 
+// A corner or edge of the triangle where shape and surface may touch, and the direction.
 struct FeatureAxis {
   float separation = -__builtin_huge_valf();  // of the surfaces; -infinity: there is none
   Vec3 direction;                             // unit, from the triangle to the convex shape

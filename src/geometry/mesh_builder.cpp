@@ -132,7 +132,7 @@ void arrange(std::span<const Vec3> vertices, const Triangles& triangles, Mesh& m
 }
 
 std::uint64_t hash_mesh(const Mesh& mesh) {
-  Hasher hasher(std::uint64_t(ShapeKind::mesh));
+  Hasher hasher{std::uint64_t(ShapeKind::mesh)};
   hasher.add(std::uint64_t(mesh.double_sided ? 1 : 0));
   hasher.add(std::uint64_t(mesh.vertices.size()));
   hasher.add(std::as_bytes(std::span<const Vec3>(mesh.vertices)));

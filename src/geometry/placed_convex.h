@@ -34,6 +34,21 @@ class PlacedConvex {
   int face_count() const { return face_count_; }
   Vec3 face_normal(int i) const { return {nx_[i], ny_[i], nz_[i]}; }
   float face_offset(int i) const { return offset_[i]; }  // dot(normal, p) = offset on the face
+  // The component of every face's normal along `direction`, into face_count() floats.
+  void face_components(Vec3 direction, float* out) const {
+    for (int i = 0; i < face_count_; ++i)
+      out[i] = nx_[i] * direction.x + ny_[i] * direction.y + nz_[i] * direction.z;
+  }
+  // How far a triangle's lowest corner lies before each face, into face_count() floats.
+  void face_separations(const Vec3* corners, float* out) const {
+    const Vec3 a = corners[0], b = corners[1], c = corners[2];
+    for (int i = 0; i < face_count_; ++i) {
+      const float at_a = nx_[i] * a.x + ny_[i] * a.y + nz_[i] * a.z;
+      const float at_b = nx_[i] * b.x + ny_[i] * b.y + nz_[i] * b.z;
+      const float at_c = nx_[i] * c.x + ny_[i] * c.y + nz_[i] * c.z;
+      out[i] = min(at_a, min(at_b, at_c)) - offset_[i];
+    }
+  }
   // Edges between two faces; empty for capsules, whose one edge has no faces (vertex 0 to vertex 1).
   std::span<const HullEdge> edges() const { return edges_; }
 
