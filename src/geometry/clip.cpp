@@ -1,6 +1,8 @@
 // Clipping of faces and reduction of contact points. See clip.h.
 #include "geometry/clip.h"
 
+#include <utility>
+
 namespace gyre {
 namespace {
 
@@ -158,8 +160,6 @@ int clip_segment(const Clipper& clipper, ManifoldPoint* out) {
   return points;
 }
 
-float area_of(Vec3 a, Vec3 b, Vec3 c, Vec3 normal) { return dot(cross(b - a, c - a), normal); }
-
 }  // namespace
 
 int clip_faces(const FacePair& pair, bool reference_is_a, ManifoldPoint* out) {
@@ -203,62 +203,60 @@ int clip_segments(const FacePair& pair, ManifoldPoint* out) {
 
 int reduce_points(ManifoldPoint* points, int count, Vec3 normal) {
   if (count <= kMaxManifoldPoints) return count;
-  // First: the deepest, by name among equally deep ones.
-  float width_squared = 0.0f, deepest = points[0].separation;
-  for (int i = 1; i < count; ++i) {
-    width_squared = max(width_squared, length_squared(points[i].position - points[0].position));
-    deepest = min(deepest, points[i].separation);
-  }
-  const float slop = kEqualDepth * std::sqrt(width_squared);
+  float value[kMaxClipPoints + 1];
   int chosen[kMaxManifoldPoints] = {-1, -1, -1, -1};
-  // Takes the candidate of the largest measure, by name among nearly equal ones. Returns whether any measures above `floor`.
-  const auto choose = [&](int slot, float best, float floor, float tolerance, const auto& measure) {
+  // The candidate of the largest value, by name among nearly equal ones; left alone if none is above `floor`.
+  const auto choose = [&](int slot, float best, float floor, float tolerance) {
     if (!(best > floor)) return false;
     for (int i = 0; i < count; ++i) {
-      if (!(measure(i) >= best - tolerance)) continue;
+      if (!(value[i] >= best - tolerance)) continue;
       if (chosen[slot] < 0 || points[i].feature < points[chosen[slot]].feature) chosen[slot] = i;
     }
     return true;
   };
-  const auto largest_of = [&](const auto& measure) {
-    float best = measure(0);
-    for (int i = 1; i < count; ++i) best = max(best, measure(i));
-    return best;
-  };
-  choose(0, 1.0f, 0.0f, 1.0f, [&](int i) { return points[i].separation <= deepest + slop ? 1.0f : -1.0f; });
+
+  // First: the deepest, by name among equally deep ones.
+  float width_squared = 0.0f, deepest = points[0].separation;
+  for (int i = 0; i < count; ++i) {
+    width_squared = max(width_squared, length_squared(points[i].position - points[0].position));
+    deepest = min(deepest, points[i].separation);
+    value[i] = -points[i].separation;
+  }
+  choose(0, -deepest, -kUnbounded, kEqualDepth * std::sqrt(width_squared));
   const Vec3 p0 = points[chosen[0]].position;
   int kept = 1;
 
   // Second: the farthest from it. Third: the largest triangle with both. Fourth: the largest addition to that.
-  const auto away = [&](int i) { return length_squared(points[i].position - p0); };
-  const float farthest = largest_of(away);
-  const float floor = 1.0e-12f * width_squared;
-  if (choose(1, farthest, floor, kEqualSpan * farthest, away)) {
+  float farthest = 0.0f, widest = 0.0f, added = 0.0f;
+  for (int i = 0; i < count; ++i) {
+    value[i] = length_squared(points[i].position - p0);
+    farthest = max(farthest, value[i]);
+  }
+  if (choose(1, farthest, 1.0e-12f * width_squared, kEqualSpan * farthest)) {
     ++kept;
-    const Vec3 p1 = points[chosen[1]].position;
-    const auto beside = [&](int i) { return absolute(area_of(p0, p1, points[i].position, normal)); };
-    const float widest = largest_of(beside);
-    if (choose(2, widest, 1.0e-6f * farthest, kEqualSpan * widest, beside)) {
+    const Vec3 p1 = points[chosen[1]].position, beside = cross(normal, p1 - p0);
+    for (int i = 0; i < count; ++i) {
+      value[i] = absolute(dot(beside, points[i].position - p0));
+      widest = max(widest, value[i]);
+    }
+    if (choose(2, widest, 1.0e-6f * farthest, kEqualSpan * widest)) {
       ++kept;
       const Vec3 p2 = points[chosen[2]].position;
-      const float turn = area_of(p0, p1, p2, normal) > 0.0f ? 1.0f : -1.0f;
-      const auto outside = [&](int i) {
+      const float turn = dot(beside, p2 - p0) > 0.0f ? -1.0f : 1.0f;
+      const Vec3 out01 = turn * beside, out12 = turn * cross(normal, p2 - p1),
+                 out20 = turn * cross(normal, p0 - p2);
+      for (int i = 0; i < count; ++i) {
         const Vec3 p = points[i].position;
-        const float out01 = turn * area_of(p1, p0, p, normal), out12 = turn * area_of(p2, p1, p, normal);
-        return max(max(out01, out12), turn * area_of(p0, p2, p, normal));
-      };
-      const float added = largest_of(outside);
-      if (choose(3, added, 1.0e-4f * widest, kEqualSpan * added, outside)) ++kept;
+        value[i] = max(max(dot(out01, p - p0), dot(out12, p - p1)), dot(out20, p - p2));
+        added = max(added, value[i]);
+      }
+      if (choose(3, added, 1.0e-4f * widest, kEqualSpan * added)) ++kept;
     }
   }
   // In the order they came, so that the order does not depend on the choice.
   for (int i = 0; i < kept; ++i) {
     for (int k = i + 1; k < kept; ++k) {
-      if (chosen[k] < chosen[i]) {
-        const int swap = chosen[i];
-        chosen[i] = chosen[k];
-        chosen[k] = swap;
-      }
+      if (chosen[k] < chosen[i]) std::swap(chosen[i], chosen[k]);
     }
   }
   for (int i = 0; i < kept; ++i) points[i] = points[chosen[i]];

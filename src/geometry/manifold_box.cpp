@@ -17,6 +17,8 @@ constexpr float kDepthBias = 0.05f, kSizeBias = 1.0e-3f;
 // Squared sine between two edges below which they have no axis of their own (the faces' axes serve), and below which
 // float rounding would show, so that the axis is worked out again in double.
 constexpr float kParallel = 1.0e-8f, kShallow = 1.0e-2f;
+// Error of a separation times a cross product's length, relative to the sum of all lengths in it.
+constexpr float kRounding = 4.0e-7f;
 
 // Both boxes in A's frame: r[i][j] is the component along A's axis i of B's axis j; c the same without signs.
 struct Boxes {
@@ -109,15 +111,22 @@ Axis search(const Boxes& x, const Transform& a_from_b, float max_separation, int
   // Edges are worth a look only when they beat the face by more than half of the bias.
   Axis edge;
   const float floor = face.separation + 0.5f * bias;
+  float extent = 0.0f;
+  for (int i = 0; i < 3; ++i) extent += x.a[i] + x.b[i] + absolute(x.t[i]);
+  const float rounding = kRounding * extent;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       const float squared = edge_length_squared(x, i, j);
       const float product = edge_product(x, i, j);
-      // Without the root: product / length > floor, from above by a hair so that rounding does not hide a shallow axis.
-      if (squared <= kParallel || (squared >= kShallow && product <= floor * (floor > 0.0f ? 0.0f : 1.0f)))
-        continue;
-      const float separation =
-          squared < kShallow ? shallow_edge(x, a_from_b, i, j) : product / std::sqrt(squared);
+      float separation;
+      if (squared >= kShallow) {
+        // Without the root: a length is at most 1, so a product below a negative floor, or below 0, cannot win.
+        if (product <= min(floor, 0.0f)) continue;
+        separation = product / std::sqrt(squared);
+      } else {
+        if (squared <= kParallel || product + rounding <= floor * std::sqrt(squared)) continue;
+        separation = shallow_edge(x, a_from_b, i, j);
+      }
       if (separation > edge.separation) edge = {kFirstEdge + 3 * i + j, separation};
     }
   }
