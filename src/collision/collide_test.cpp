@@ -307,10 +307,10 @@ TEST(CollideRecycling, NothingIsMissedThatComesSlowly) {
       each->add(kinds.b, {{0.1, kinds.height + 0.3, 0.2}, from_axis_angle({1, 0, 0.3f}, 0.01f)});
     }
     int skipped = 0;
-    for (int step = 0; step < 400; ++step) {
+    for (int step = 0; step < 1600; ++step) {
       for (CollideScene* const each : {&scene, &fresh}) {
-        each->bodies[1].pose.position.y -= 1.0e-3;
-        each->bodies[1].linear_velocity = {0, -0.06f, 0};
+        each->bodies[1].pose.position.y -= 2.5e-4;
+        each->bodies[1].linear_velocity = {0, -0.015f, 0};
         each->step();
       }
       const Manifold full = fresh.manifold(0, 1);

@@ -9,14 +9,14 @@ namespace {
 // All lengths in sizes of the pair (the smaller shape's inner radius).
 // What comes faster than this in a step is left to the sweep (continuous.h).
 constexpr float kLargestApproach = 0.5f;
-// A full look reaches farther than asked, so that the contact may be recycled while the pair moves a little. Where nothing
-// touches, and the pair goes less than kSlow in a step, it reaches far: it is cheaper to have looked once than to look in
-// every step.
-constexpr float kNearSlack = 0.01f, kFarSlack = 0.25f, kSlow = 0.02f;
+// A full look reaches farther than needed, so that the contact may be recycled while the pair moves a little. Points farther
+// apart than kKept beyond the speculative distance are not kept, only how near they were. Where nothing touches, and the
+// pair goes less than kSlow in a step, the look reaches far: it is cheaper to look once than to look in every step.
+constexpr float kKept = 0.005f, kNearSlack = 0.03f, kFarSlack = 0.25f, kSlow = 0.02f;
 // How far points may go against each other, and how far the pair may tilt (rad), before it is looked at anew: where flat
 // features meet, and where one of the two is round. There the contact goes on while the bodies' points do not (rolling),
 // and what lags behind would brake.
-constexpr float kFlatSlide = 1.0e-3f, kFlatTilt = 1.0e-3f;
+constexpr float kFlatSlide = 3.0e-3f, kFlatTilt = 3.0e-3f;
 constexpr float kRoundSlide = 1.0e-5f, kRoundTilt = 1.0e-5f;
 // Where a float's rounding of the distance between the bodies is more than this, a recycled separation would rattle.
 constexpr float kRattle = 1.0e-4f;
@@ -197,23 +197,37 @@ void ask_shapes(const ContactPair& pair, float reach, PairCache& cache, Found<kR
   found.count = collide_shapes(a, b, inverse_times(found.frame, frame_b), reach, cache, found.manifolds);
 }
 
-// Leaves out what is farther apart than `reach`. Returns the smallest separation there was.
+// Leaves out what is farther apart than `reach`. Returns the smallest separation of what was left out.
 template <int kRoom>
 float keep_near(Found<kRoom>& found, float reach) {
-  float nearest = kUnbounded;
+  float left_out = kUnbounded;
   int kept_manifolds = 0;
   for (int m = 0; m < found.count; ++m) {
     LocalManifold& manifold = found.manifolds[m];
     int kept = 0;
     for (int i = 0; i < manifold.count; ++i) {
-      nearest = min(nearest, manifold.points[i].separation);
-      if (manifold.points[i].separation <= reach) manifold.points[kept++] = manifold.points[i];
+      if (manifold.points[i].separation <= reach) {
+        manifold.points[kept++] = manifold.points[i];
+      } else {
+        left_out = min(left_out, manifold.points[i].separation);
+      }
     }
     manifold.count = kept;
     if (kept > 0) found.manifolds[kept_manifolds++] = manifold;
   }
   found.count = kept_manifolds;
-  return nearest;
+  return left_out;
+}
+
+// Whether no point is as near as `reach`.
+template <int kRoom>
+bool is_beyond(const Found<kRoom>& found, float reach) {
+  for (int m = 0; m < found.count; ++m) {
+    for (int i = 0; i < found.manifolds[m].count; ++i) {
+      if (found.manifolds[m].points[i].separation <= reach) return false;
+    }
+  }
+  return true;
 }
 
 // The manifolds before this look, and which of their points have found a heir.
@@ -341,16 +355,22 @@ void write_manifolds(ContactStore& store, Contact& contact, const Found<kRoom>& 
 // kRoom is the contact's manifold_room.
 template <int kRoom>
 void look_anew(ContactStore& store, Contact& contact, const ContactPair& pair, const View& view) {
-  const float near_reach = view.speculative + kNearSlack * view.size;
-  const bool far = kRoom == 1 && view.way < kSlow * view.size;
-  const float reach = far ? view.speculative + kFarSlack * view.size : near_reach;
+  const float kept = view.speculative + kKept * view.size;
+  float reach = view.speculative + kNearSlack * view.size;
   Found<kRoom> found;
-  ask_shapes(pair, reach, contact.cache, found);
-  const bool any = found.count > 0;
-  const float nearest = any ? keep_near(found, near_reach) : 0.0f;
+  bool clear = false;
+  if (kRoom == 1 && contact.manifold_count == 0 && view.way < kSlow * view.size) {
+    const float far_reach = view.speculative + kFarSlack * view.size;
+    ask_shapes(pair, far_reach, contact.cache, found);
+    // Far points may have taken the places of near ones in the manifold: then it is no good.
+    clear = is_beyond(found, kept);
+    if (clear) reach = far_reach;
+  }
+  if (!clear) ask_shapes(pair, reach, contact.cache, found);
+  const float left_out = min(keep_near(found, kept), reach);
   if (found.count > 0 || contact.manifold_count > 0) write_manifolds(store, contact, found, pair, view.size);
   // Points measure separation along one normal, which is not always that of the nearest features: hence only a part.
-  contact.looked = found.count > 0 ? near_reach : any ? near_reach + 0.75f * (nearest - near_reach) : reach;
+  contact.looked = left_out < reach ? kept + 0.75f * (left_out - kept) : reach;
   contact.size = view.size;
   contact.seen_a_from_b = view.a_from_b;
 }

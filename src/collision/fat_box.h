@@ -14,7 +14,7 @@ namespace gyre {
 // Contacts are looked for up to this share of the smaller shape's size (and the way that the two can come in a step).
 constexpr float kSpeculativeShare = 0.04f;
 // A fat box is larger than needed by this share of its shape's size.
-constexpr float kFatShare = 0.1f;
+constexpr float kFatShare = 0.05f;
 
 struct WorldBox {
   DVec3 low;
