@@ -24,7 +24,8 @@ void read_filter(const Field& field, Filter& filter) {
   constexpr std::int64_t kAllBits = 4294967295;
   Members members(field, "a filter");
   if (const auto layer = members.find("layer")) filter.layer = std::uint32_t(layer->integer(0, kAllBits));
-  if (const auto mask = members.find("collides_with")) filter.collides_with = std::uint32_t(mask->integer(0, kAllBits));
+  if (const auto mask = members.find("collides_with"))
+    filter.collides_with = std::uint32_t(mask->integer(0, kAllBits));
   if (const auto group = members.find("group")) {
     filter.group = std::int32_t(
         group->integer(std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::max()));

@@ -45,10 +45,16 @@ void read_anchor(const SceneReading& reading, Members& members, SceneJoint& join
   }
   switch (joint.def.kind) {
     case JointKind::ball:
-    case JointKind::hinge: members.need("anchor").place(); return;
-    case JointKind::distance: joint.def.anchor = origin_of(reading, joint.a); return;
+    case JointKind::hinge:
+      members.need("anchor").place();
+      return;
+    case JointKind::distance:
+      joint.def.anchor = origin_of(reading, joint.a);
+      return;
     case JointKind::slider:
-    case JointKind::fixed: joint.def.anchor = origin_of(reading, joint.b >= 0 ? joint.b : joint.a); return;
+    case JointKind::fixed:
+      joint.def.anchor = origin_of(reading, joint.b >= 0 ? joint.b : joint.a);
+      return;
   }
 }
 
@@ -118,7 +124,8 @@ void read_joint(SceneReading& reading, const Field& field) {
   joint.a = read_end(reading, members.need("a"));
   const Field b = members.need("b");
   joint.b = read_end(reading, b);
-  if (joint.a == joint.b) b.expected(joint.a < 0 ? "a body, as \"a\" is the world" : "another body than \"a\"");
+  if (joint.a == joint.b)
+    b.expected(joint.a < 0 ? "a body, as \"a\" is the world" : "another body than \"a\"");
   read_anchor(reading, members, joint);
   read_axis(members, def);
   read_travel(members, def);

@@ -45,7 +45,8 @@ class DocumentBuilder : public nlohmann::json_sax<Json> {
     return true;
   }
 
-  bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception& why) override {
+  bool parse_error(std::size_t position, const std::string&,
+                   const nlohmann::detail::exception& why) override {
     SceneError error = error_here("not valid JSON: " + plain_words(why.what()));
     // The parser counts bytes from 1; the byte that did not fit is the last one read.
     const std::size_t at = std::min(position > 0 ? position - 1 : 0, text_.size());

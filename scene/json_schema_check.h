@@ -67,9 +67,10 @@ class SchemaCheck {
     return {};
   }
 
-  std::string check_rule(const Json& schema, const std::string& key, const Json& rule, const Json& v, const std::string& at,
-                         Seen& seen) {
-    if (key == "$schema" || key == "$defs" || key == "title" || key == "description" || key == "default") return {};
+  std::string check_rule(const Json& schema, const std::string& key, const Json& rule, const Json& v,
+                         const std::string& at, Seen& seen) {
+    if (key == "$schema" || key == "$defs" || key == "title" || key == "description" || key == "default")
+      return {};
     if (key == "$ref") return check(definition(rule.get<std::string>()), v, at, seen);
     if (key == "type") return has_any_type(rule, v) ? "" : at + ": wrong type";
     if (key == "const") return v == rule ? "" : at + ": not the constant";
@@ -88,16 +89,20 @@ class SchemaCheck {
     if (key == "required" || key == "properties" || key == "propertyNames") {
       return v.is_object() ? check_members(key, rule, v, at, seen) : "";
     }
-    if (key == "items" || key == "minItems" || key == "maxItems") return v.is_array() ? check_items(key, rule, v, at) : "";
+    if (key == "items" || key == "minItems" || key == "maxItems")
+      return v.is_array() ? check_items(key, rule, v, at) : "";
     if (key == "minLength" || key == "maxLength") {
       if (!v.is_string()) return {};
       const std::size_t size = v.get<std::string>().size();
-      return (key == "minLength" ? size >= rule.get<std::size_t>() : size <= rule.get<std::size_t>()) ? "" : at + ": length";
+      return (key == "minLength" ? size >= rule.get<std::size_t>() : size <= rule.get<std::size_t>())
+                 ? ""
+                 : at + ": length";
     }
     return check_number(key, rule, v, at);
   }
 
-  std::string check_several(const std::string& key, const Json& rules, const Json& v, const std::string& at, Seen& seen) {
+  std::string check_several(const std::string& key, const Json& rules, const Json& v, const std::string& at,
+                            Seen& seen) {
     std::size_t good = 0;
     std::string last;
     for (const Json& rule : rules) {
@@ -115,7 +120,8 @@ class SchemaCheck {
     return good > 0 ? "" : at + ": no alternative fits; the last: " + last;
   }
 
-  std::string check_members(const std::string& key, const Json& rule, const Json& v, const std::string& at, Seen& seen) {
+  std::string check_members(const std::string& key, const Json& rule, const Json& v, const std::string& at,
+                            Seen& seen) {
     if (key == "required") {
       for (const Json& name : rule) {
         if (!v.contains(name.get<std::string>())) return at + "/" + name.get<std::string>() + ": missing";
@@ -147,8 +153,10 @@ class SchemaCheck {
     return {};
   }
 
-  static std::string check_number(const std::string& key, const Json& rule, const Json& v, const std::string& at) {
-    const bool known = key == "minimum" || key == "maximum" || key == "exclusiveMinimum" || key == "exclusiveMaximum";
+  static std::string check_number(const std::string& key, const Json& rule, const Json& v,
+                                  const std::string& at) {
+    const bool known =
+        key == "minimum" || key == "maximum" || key == "exclusiveMinimum" || key == "exclusiveMaximum";
     if (!known) return at + ": the checker does not know the keyword " + key;
     if (!v.is_number()) return {};
     const double value = v.get<double>(), bound = rule.get<double>();

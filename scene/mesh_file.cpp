@@ -83,7 +83,8 @@ class ObjParser {
     for (double& part : parts) {
       const std::string_view word = next_word(line);
       if (!parse_number(word, part) || absolute(part) > double(std::numeric_limits<float>::max())) {
-        return fail("found " + (word.empty() ? "the end of the line" : shown(word)) + ", expected a coordinate");
+        return fail("found " + (word.empty() ? "the end of the line" : shown(word)) +
+                    ", expected a coordinate");
       }
     }
     if (mesh_.vertices.size() >= limits_.vertices) {
@@ -109,7 +110,8 @@ class ObjParser {
       last = corner;
       ++corners;
     }
-    if (corners < 3) return fail("found a face of " + std::to_string(corners) + ", expected at least 3 corners");
+    if (corners < 3)
+      return fail("found a face of " + std::to_string(corners) + ", expected at least 3 corners");
     return true;
   }
 
@@ -157,7 +159,8 @@ std::string refuse_mesh_path(std::string_view path) {
   if (path.size() > 1024) return "expected a path of at most 1024 bytes";
   if (path[0] == '/') return "expected a path relative to the scene file";
   for (const char c : path) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) return "expected a path without control characters";
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+      return "expected a path without control characters";
     if (c == '\\') return "expected a path with forward slashes";
     if (c == ':') return "expected a path without a drive or an address";
   }
@@ -197,7 +200,8 @@ std::string read_whole_file(const std::string& path, const SceneLimits& limits, 
   return {};
 }
 
-SceneResult<MeshData> load_mesh_file(const std::string& folder, const std::string& path, const SceneLimits& limits) {
+SceneResult<MeshData> load_mesh_file(const std::string& folder, const std::string& path,
+                                     const SceneLimits& limits) {
   const std::string refusal = refuse_mesh_path(path);
   if (!refusal.empty()) return SceneError{path, 0, 0, "", refusal};
   std::error_code error;

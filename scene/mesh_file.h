@@ -26,7 +26,8 @@ std::string refuse_mesh_path(std::string_view path);
 std::string read_whole_file(const std::string& path, const SceneLimits& limits, std::string& bytes);
 
 // Reads a mesh file below `folder` (also through symbolic links it must stay there). `file` of an error is the mesh's path.
-SceneResult<MeshData> load_mesh_file(const std::string& folder, const std::string& path, const SceneLimits& limits);
+SceneResult<MeshData> load_mesh_file(const std::string& folder, const std::string& path,
+                                     const SceneLimits& limits);
 
 // Wavefront OBJ: v, f (polygons as fans; negative indices count from the end); normals, texture coordinates, groups and
 // materials are passed over. Anything else, an index out of range or a number that is none is refused with its line.

@@ -15,7 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kSquare = "# a square\nv 0 0 0\nv 1 0 0\nv 1 1 0 1.0\nv 0 1 0\nvn 0 0 1\nvt 0 0\ng side\nf 1/1/1 2//1 3/1 4\n";
+const std::string kSquare =
+    "# a square\nv 0 0 0\nv 1 0 0\nv 1 1 0 1.0\nv 0 1 0\nvn 0 0 1\nvt 0 0\ng side\nf 1/1/1 2//1 3/1 4\n";
 
 SceneResult<MeshData> parse(const std::string& text) { return parse_obj(text, "m.obj", SceneLimits{}); }
 
@@ -98,8 +99,9 @@ TEST(ObjFile, StopsAtItsLimits) {
 class SceneFolder : public ::testing::Test {
  protected:
   void SetUp() override {
-    root_ = fs::temp_directory_path() / ("gyre_mesh_" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()) + "_" +
-                                         ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    root_ = fs::temp_directory_path() /
+            ("gyre_mesh_" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()) + "_" +
+             ::testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::remove_all(root_);
     fs::create_directories(root_ / "scene" / "meshes");
     write("secret.obj", kSquare);
@@ -107,7 +109,9 @@ class SceneFolder : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(root_); }
 
-  void write(const std::string& path, const std::string& text) { std::ofstream(root_ / path, std::ios::binary) << text; }
+  void write(const std::string& path, const std::string& text) {
+    std::ofstream(root_ / path, std::ios::binary) << text;
+  }
   std::string in_root(const std::string& path) const { return (root_ / path).string(); }
   SceneResult<Scene> load_with_mesh(const std::string& path) {
     write("scene/s.gyre.json", R"({"gyre_scene": 1, "meshes": {"m": {"file": ")" + path + R"("}}})");
@@ -125,8 +129,9 @@ TEST_F(SceneFolder, FindsMeshesBesideTheScene) {
 }
 
 TEST_F(SceneFolder, NeverLeavesTheFolder) {
-  for (const std::string& path : {std::string("../secret.obj"), std::string("meshes/../../secret.obj"), in_root("secret.obj"),
-                                  std::string("file:secret.obj"), std::string("meshes/../meshes/square.obj")}) {
+  for (const std::string& path :
+       {std::string("../secret.obj"), std::string("meshes/../../secret.obj"), in_root("secret.obj"),
+        std::string("file:secret.obj"), std::string("meshes/../meshes/square.obj")}) {
     const SceneResult<Scene> scene = load_with_mesh(path);
     ASSERT_FALSE(scene) << path;
     EXPECT_EQ(scene.error().pointer, "/meshes/m/file");
@@ -156,7 +161,8 @@ TEST_F(SceneFolder, FilesAboveTheLimitAreNotRead) {
   SceneLimits limits;
   limits.file_bytes = 100;
   write("scene/big.gyre.json", std::string(101, ' '));
-  EXPECT_NE(load_scene(in_root("scene/big.gyre.json"), limits).error().message.find("larger than 100"), std::string::npos);
+  EXPECT_NE(load_scene(in_root("scene/big.gyre.json"), limits).error().message.find("larger than 100"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -13,7 +13,8 @@ void read_vertices(const Field& field, const SceneLimits& limits, std::vector<Ve
   for (std::size_t i = 0; i < count; ++i) out.push_back(field.element(i).vec3());
 }
 
-void read_triangles(const Field& field, const SceneLimits& limits, std::size_t vertices, std::vector<std::uint32_t>& out) {
+void read_triangles(const Field& field, const SceneLimits& limits, std::size_t vertices,
+                    std::vector<std::uint32_t>& out) {
   const std::size_t count = field.array("an array of triangles");
   if (count < 1) field.expected("at least 1 triangle");
   if (count > limits.triangles) field.expected("at most " + std::to_string(limits.triangles) + " triangles");

@@ -74,7 +74,8 @@ TEST(NumberText, ParsesDecimalsOnly) {
     EXPECT_TRUE(parse_number(good, value)) << good;
     EXPECT_EQ(value, std::strtod(good, nullptr)) << good;
   }
-  for (const char* bad : {"", "-", ".", "e3", "1e", "1e+", "0x10", "nan", "inf", "infinity", "1,5", "1 ", " 1", "1e999", "--1", "1f"}) {
+  for (const char* bad : {"", "-", ".", "e3", "1e", "1e+", "0x10", "nan", "inf", "infinity", "1,5", "1 ",
+                          " 1", "1e999", "--1", "1f"}) {
     EXPECT_FALSE(parse_number(bad, value)) << bad;
   }
   EXPECT_FALSE(parse_number(std::string(500, '1'), value));
@@ -100,7 +101,8 @@ TEST(JsonWriter, QuotesAndLayout) {
   json.end_array();
   json.end_object();
   EXPECT_EQ(json.take(),
-            "{\n  \"text\": \"a\\\"b\\\\c\\n\\u0009\\u0001\",\n  \"number\": null,\n  \"list\": [1, [1, 2, 3], {}],\n"
+            "{\n  \"text\": \"a\\\"b\\\\c\\n\\u0009\\u0001\",\n  \"number\": null,\n  \"list\": [1, [1, 2, "
+            "3], {}],\n"
             "  \"empty\": [],\n  \"lines\": [\n    true,\n    null\n  ]\n}\n");
 }
 

@@ -55,24 +55,26 @@ struct SceneHeightField {
   float spacing = 1.0f;
   std::vector<float> heights;  // NaN: a hole
 };
-using SceneGeometry = std::variant<Sphere, Box, Capsule, Cylinder, Cone, Plane, SceneHull, SceneTriangles, SceneHeightField>;
+using SceneGeometry =
+    std::variant<Sphere, Box, Capsule, Cylinder, Cone, Plane, SceneHull, SceneTriangles, SceneHeightField>;
 
 struct SceneShape {
   SceneGeometry geometry = Sphere{};
   Transform local;
   int material = -1;  // none: the default material
   // Given in place; each wins over the material's.
-  std::optional<float> density, static_friction, dynamic_friction, restitution, rolling_friction, spinning_friction;
+  std::optional<float> density, static_friction, dynamic_friction, restitution, rolling_friction,
+      spinning_friction;
 };
 
 // Acts in every step that begins in [start, end).
 struct SceneForce {
-  Vec3 force;                // N
-  Vec3 torque;               // N m
-  std::optional<DVec3> at;   // none: the centre of mass
+  Vec3 force;                  // N
+  Vec3 torque;                 // N m
+  std::optional<DVec3> at;     // none: the centre of mass
   bool in_body_frame = false;  // force, torque and `at` are in the body's frame and turn with it
-  double start = 0.0;        // s
-  double end = 1.0e9;        // s
+  double start = 0.0;          // s
+  double end = 1.0e9;          // s
 };
 
 struct SceneBody {
@@ -85,8 +87,8 @@ struct SceneBody {
 };
 
 struct SceneJoint {
-  std::string name;  // may be empty
-  JointDef def;      // `a` and `b` stay null
+  std::string name;    // may be empty
+  JointDef def;        // `a` and `b` stay null
   int a = -1, b = -1;  // bodies; -1 is the world
 };
 

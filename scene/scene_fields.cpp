@@ -75,7 +75,9 @@ std::string Field::found() const {
 
 void Field::fail(std::string message) const { throw SceneError{*file_, 0, 0, pointer(), std::move(message)}; }
 void Field::expected(const std::string& what) const { fail("found " + found() + ", expected " + what); }
-void Field::not_supported(const std::string& what) const { fail(what + " is not supported by this version of Gyre"); }
+void Field::not_supported(const std::string& what) const {
+  fail(what + " is not supported by this version of Gyre");
+}
 
 // ------------------------------------------------------------------------------------------------------------- values
 
@@ -96,7 +98,8 @@ float Field::real(Range range) const {
   if (absolute(value) > double(std::numeric_limits<float>::max())) expected("a number of at most 3.4e38");
   const float rounded = float(value);
   // A number so small that it rounds to a zero that is not allowed.
-  if (!range.contains(double(rounded)) && value != 0.0 && rounded == 0.0f) expected("a number of at least 1e-45");
+  if (!range.contains(double(rounded)) && value != 0.0 && rounded == 0.0f)
+    expected("a number of at least 1e-45");
   return rounded;
 }
 
@@ -169,9 +172,11 @@ Quat Field::orientation() const {
     return from_axis_angle(normalized(direction), angle);
   }
   array("a quaternion [x, y, z, w], {\"axis\", \"angle\"} or {\"euler_xyz\"}", 4);
-  const double x = element(0).number(), y = element(1).number(), z = element(2).number(), w = element(3).number();
+  const double x = element(0).number(), y = element(1).number(), z = element(2).number(),
+               w = element(3).number();
   const double largest_part = max(max(absolute(x), absolute(y)), max(absolute(z), absolute(w)));
-  if (!(largest_part > 1.0e-30 && largest_part < 1.0e30)) fail("found a quaternion of length 0, expected length 1");
+  if (!(largest_part > 1.0e-30 && largest_part < 1.0e30))
+    fail("found a quaternion of length 0, expected length 1");
   const double size = std::sqrt(x * x + y * y + z * z + w * w);
   // One of length 1, as far as floats can tell, stays as it is, bit by bit: what was written can be read back.
   const double scale = absolute(size - 1.0) < 1.0e-6 ? 1.0 : 1.0 / size;
@@ -207,7 +212,8 @@ Field Members::need(const char* key) {
   if (!value) {
     // The place named is that of the missing member.
     static const Json kNothing;
-    Field(kNothing, *field_, key).fail("found nothing, expected \"" + std::string(key) + "\": " + what_ + " needs it");
+    Field(kNothing, *field_, key)
+        .fail("found nothing, expected \"" + std::string(key) + "\": " + what_ + " needs it");
   }
   return Field(*value, *field_, key);
 }

@@ -29,7 +29,7 @@ struct Range {
   std::string text() const;
 };
 
-constexpr double kFarthest = 1.0e12;   // m: how far from the origin the engine lets anything be
+constexpr double kFarthest = 1.0e12;    // m: how far from the origin the engine lets anything be
 constexpr double kMostSurface = 1.0e6;  // friction, damping and other factors
 constexpr double kMostDensity = 1.0e20;
 
@@ -57,7 +57,7 @@ class Field {
   std::string found() const;
 
   [[noreturn]] void fail(std::string message) const;
-  [[noreturn]] void expected(const std::string& what) const;      // found X, expected `what`
+  [[noreturn]] void expected(const std::string& what) const;       // found X, expected `what`
   [[noreturn]] void not_supported(const std::string& what) const;  // `what` is not supported by this version
 
   bool is_null() const { return value_->is_null(); }
@@ -68,7 +68,7 @@ class Field {
   const std::string& text() const;
   std::string name(std::size_t longest) const;  // not empty, no control characters
   Vec3 vec3(Range range = Range::any()) const;
-  DVec3 place() const;  // a point in the world, within the engine's reach
+  DVec3 place() const;       // a point in the world, within the engine's reach
   Quat orientation() const;  // [x, y, z, w], {"axis", "angle"} or {"euler_xyz"}
 
   // An array, of `size` elements if that is not negative.

@@ -10,10 +10,10 @@ struct SceneLimits {
   std::size_t values = 40'000'000;                  // JSON values in the scene
   int depth = 64;                                   // of arrays and objects within each other
   std::size_t bodies = 1'000'000;
-  std::size_t shapes = 4'000'000;                   // all bodies together
+  std::size_t shapes = 4'000'000;  // all bodies together
   std::size_t joints = 1'000'000;
-  std::size_t triangles = 20'000'000;               // of one mesh
-  std::size_t vertices = 20'000'000;                // of one mesh
+  std::size_t triangles = 20'000'000;  // of one mesh
+  std::size_t vertices = 20'000'000;   // of one mesh
   std::size_t name_bytes = 1024;
 };
 

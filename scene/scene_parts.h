@@ -30,7 +30,8 @@ void read_joint(SceneReading& reading, const Field& field);
 
 // The surface values that stand both in a material and in place on a shape.
 struct SurfaceFields {
-  std::optional<float> density, static_friction, dynamic_friction, restitution, rolling_friction, spinning_friction;
+  std::optional<float> density, static_friction, dynamic_friction, restitution, rolling_friction,
+      spinning_friction;
 };
 SurfaceFields read_surface(Members& members);
 

@@ -32,7 +32,8 @@ SurfaceFields read_surface(Members& members) {
 namespace {
 
 void read_version(const Field& field) {
-  if (!field.json().is_number_integer() || field.json() != 1) field.expected("1, the format version of this Gyre");
+  if (!field.json().is_number_integer() || field.json() != 1)
+    field.expected("1, the format version of this Gyre");
 }
 
 void read_world(const Field& field, SceneWorld& world) {
@@ -44,10 +45,11 @@ void read_world(const Field& field, SceneWorld& world) {
   if (float(world.time_step) == 0.0f) members.need("time_step").expected("a number of at least 1e-45");
   if (const auto substeps = members.find("substeps")) world.substeps = int(substeps->integer(1, 64));
   if (const auto integrator = members.find("integrator")) {
-    world.integrator = integrator->choice<IntegratorKind>({{"explicit_euler", {}},
-                                                           {"semi_implicit_euler", IntegratorKind::semi_implicit_euler},
-                                                           {"rk4", {}},
-                                                           {"verlet", {}}});
+    world.integrator =
+        integrator->choice<IntegratorKind>({{"explicit_euler", {}},
+                                            {"semi_implicit_euler", IntegratorKind::semi_implicit_euler},
+                                            {"rk4", {}},
+                                            {"verlet", {}}});
   }
   if (const auto solver = members.find("solver")) {
     world.solver = solver->choice<SolverKind>(
@@ -63,7 +65,8 @@ void read_world(const Field& field, SceneWorld& world) {
                                                              {"sweep_and_prune", {}},
                                                              {"brute_force", BroadPhaseKind::brute_force}});
   }
-  if (const auto stepping = members.find("stepping")) stepping->choice<bool>({{"fixed", true}, {"adaptive", {}}});
+  if (const auto stepping = members.find("stepping"))
+    stepping->choice<bool>({{"fixed", true}, {"adaptive", {}}});
   members.read("sleeping", world.sleeping);
   members.finish();
 }
@@ -144,7 +147,8 @@ void check_world_name(const SceneReading& reading, const Field& joints) {
     for (const char* end : {"a", "b"}) {
       const auto at = joint.json().find(end);
       if (at != joint.json().end() && *at == "world") {
-        Field(*at, joint, end).fail("\"world\" is both the fixed world and a body here; expected another name for the body");
+        Field(*at, joint, end)
+            .fail("\"world\" is both the fixed world and a body here; expected another name for the body");
       }
     }
   }

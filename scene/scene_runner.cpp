@@ -26,7 +26,8 @@ SceneResult<SceneRunner> SceneRunner::create(Scene scene, const std::string& fil
     const SceneBody& body = runner.scene_.bodies[i];
     if (!body.forces.empty() && body.def.type == BodyType::dynamic) runner.forced_.push_back(i);
   }
-  for (const SceneJoint& joint : runner.scene_.joints) runner.lengths_.push_back(runner.present_length(joint));
+  for (const SceneJoint& joint : runner.scene_.joints)
+    runner.lengths_.push_back(runner.present_length(joint));
   return runner;
 }
 
@@ -90,7 +91,8 @@ bool SceneRunner::find_problem() {
   }
   const BodyColumns awake = world_.awake_bodies();
   for (std::size_t i = 0; i < awake.ids.size(); ++i) {
-    if (is_finite(awake.poses[i]) && is_finite(awake.linear_velocities[i]) && is_finite(awake.angular_velocities[i])) {
+    if (is_finite(awake.poses[i]) && is_finite(awake.linear_velocities[i]) &&
+        is_finite(awake.angular_velocities[i])) {
       continue;
     }
     const SceneBody* body = body_of(awake.ids[i]);
@@ -123,7 +125,8 @@ SceneJoint SceneRunner::final_joint(std::size_t index) const {
     if (def.motor.target_position) *def.motor.target_position -= travelled;
   }
   // A rod keeps the length it had, and a spring its rest length.
-  if (def.kind == JointKind::distance && !def.length && (def.stiffness || (!def.min_length && !def.max_length))) {
+  if (def.kind == JointKind::distance && !def.length &&
+      (def.stiffness || (!def.min_length && !def.max_length))) {
     def.length = float(lengths_[index]);
   }
   return joint;

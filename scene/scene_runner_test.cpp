@@ -32,12 +32,15 @@ SceneError refusal(const std::string& text) {
 // A ball of 2 kg in free space, with a force on it.
 std::string pushed(const std::string& force, const std::string& more = "") {
   return R"({"gyre_scene": 1, "world": {"gravity": [0, 0, 0], "time_step": 0.01},
-             "bodies": [{"name": "ball", "mass": 2, "can_sleep": false, )" + more + R"("shapes": [{"type": "sphere", "radius": 0.5}],
-                         "forces": [)" + force + "]}]}";
+             "bodies": [{"name": "ball", "mass": 2, "can_sleep": false, )" +
+         more + R"("shapes": [{"type": "sphere", "radius": 0.5}],
+                         "forces": [)" +
+         force + "]}]}";
 }
 
 TEST(SceneRunner, NamesAndBodies) {
-  const SceneRunner runner = run(R"({"gyre_scene": 1, "bodies": [{"name": "one", "shapes": [{"type": "sphere", "radius": 1}]},
+  const SceneRunner runner =
+      run(R"({"gyre_scene": 1, "bodies": [{"name": "one", "shapes": [{"type": "sphere", "radius": 1}]},
                                      {"name": "two", "type": "static", "shapes": [{"type": "plane"}]}]})");
   ASSERT_EQ(runner.bodies().size(), 2u);
   EXPECT_EQ(runner.body_of(runner.bodies()[0])->name, "one");
@@ -51,7 +54,10 @@ TEST(SceneRunner, AForceActsInEveryStepThatBeginsInItsWindow) {
   const SceneRunner runner = run(pushed(R"({"force": [4, 0, 0], "start": 0.05, "end": 0.15})"), 50);
   EXPECT_NEAR(runner.world().linear_velocity(runner.bodies()[0]).x, 2.0f * 0.1f, 1e-5f);
   // Up to a step before the window nothing moves; within it, each step counts once.
-  EXPECT_EQ(run(pushed(R"({"force": [4, 0, 0], "start": 0.05, "end": 0.15})"), 5).world().linear_velocity(runner.bodies()[0]), Vec3{});
+  EXPECT_EQ(run(pushed(R"({"force": [4, 0, 0], "start": 0.05, "end": 0.15})"), 5)
+                .world()
+                .linear_velocity(runner.bodies()[0]),
+            Vec3{});
   SceneRunner one = run(pushed(R"({"force": [4, 0, 0], "start": 0.05, "end": 0.06})"), 30);
   EXPECT_NEAR(one.world().linear_velocity(one.bodies()[0]).x, 2.0f * 0.01f, 1e-6f);
   SceneRunner never = run(pushed(R"({"force": [4, 0, 0], "start": 0.051, "end": 0.059})"), 30);
@@ -75,13 +81,16 @@ TEST(SceneRunner, ABodyFrameForceTurnsWithTheBody) {
   EXPECT_NEAR(v.x, 0.0f, 1e-6f);
   EXPECT_NEAR(v.y, 0.02f, 1e-6f);
   // And so does the point: (0, 0.5, 0) in the body is (-0.5, 0, 0) in the world; torque (-0.5, 0, 0) x (0, 4, 0).
-  const SceneRunner off = run(pushed(R"({"force": [4, 0, 0], "at": [0, 0.5, 0], "frame": "body", "end": 0.01})", turned), 1);
+  const SceneRunner off =
+      run(pushed(R"({"force": [4, 0, 0], "at": [0, 0.5, 0], "frame": "body", "end": 0.01})", turned), 1);
   EXPECT_NEAR(off.world().angular_velocity(off.bodies()[0]).z, -2.0f / 0.2f * 0.01f, 1e-4f);
 }
 
 TEST(SceneRunner, ForcesOnUnmovingBodiesDoNothing) {
-  const SceneRunner runner = run(R"({"gyre_scene": 1, "bodies": [{"name": "b", "type": "static", "forces": [{"force": [1, 0, 0]}],
-                                     "shapes": [{"type": "sphere", "radius": 1}]}]})", 3);
+  const SceneRunner runner =
+      run(R"({"gyre_scene": 1, "bodies": [{"name": "b", "type": "static", "forces": [{"force": [1, 0, 0]}],
+                                     "shapes": [{"type": "sphere", "radius": 1}]}]})",
+          3);
   EXPECT_EQ(runner.world().pose(runner.bodies()[0]).position, DVec3{});
 }
 
@@ -109,27 +118,36 @@ TEST(SceneRunner, MaterialsAndTheirPairs) {
 // A box on a tilted floor slides or stays as the pair table says, whatever the materials alone would do.
 TEST(SceneRunner, APairOverridesTheMaterials) {
   const auto slide = [](const std::string& pairs) {
-    const SceneRunner runner = run(R"({"gyre_scene": 1, "materials": {"m": {"static_friction": 1}, "n": {"static_friction": 1}},)" + pairs +
-        R"("bodies": [{"name": "floor", "type": "static", "orientation": {"axis": [0, 0, 1], "angle": 0.3},
+    const SceneRunner runner = run(
+        R"({"gyre_scene": 1, "materials": {"m": {"static_friction": 1}, "n": {"static_friction": 1}},)" +
+            pairs +
+            R"("bodies": [{"name": "floor", "type": "static", "orientation": {"axis": [0, 0, 1], "angle": 0.3},
                        "shapes": [{"type": "box", "half_extents": [5, 0.5, 5], "material": "m"}]},
                       {"name": "box", "position": [-0.29552, 0.95534, 0], "orientation": {"axis": [0, 0, 1], "angle": 0.3},
-                       "shapes": [{"type": "box", "half_extents": [0.5, 0.5, 0.5], "material": "n"}]}]})", 60);
+                       "shapes": [{"type": "box", "half_extents": [0.5, 0.5, 0.5], "material": "n"}]}]})",
+        60);
     return std::abs(runner.world().pose(runner.bodies()[1]).position.x + 0.29552);
   };
   EXPECT_LT(slide(""), 0.05);
-  EXPECT_GT(slide(R"("material_pairs": [{"materials": ["n", "m"], "static_friction": 0.01, "dynamic_friction": 0.01}],)"), 0.3);
+  EXPECT_GT(
+      slide(
+          R"("material_pairs": [{"materials": ["n", "m"], "static_friction": 0.01, "dynamic_friction": 0.01}],)"),
+      0.3);
 }
 
 TEST(SceneRunner, RefusalsOfTheEngineNameThePlace) {
   const auto with_shape = [](const std::string& shape) {
-    return R"({"gyre_scene": 1, "bodies": [{"name": "a", "type": "static", "shapes": [{"type": "sphere", "radius": 1}, )" + shape +
-           "]}]}";
+    return R"({"gyre_scene": 1, "bodies": [{"name": "a", "type": "static", "shapes": [{"type": "sphere", "radius": 1}, )" +
+           shape + "]}]}";
   };
   EXPECT_EQ(refusal(with_shape(R"({"type": "sphere", "radius": 1e20})")).pointer, "/bodies/0/shapes/1");
-  EXPECT_EQ(refusal(with_shape(R"({"type": "convex_hull", "points": [[0,0,0],[1,0,0],[0,1,0],[1,1,0]]})")).pointer,
-            "/bodies/0/shapes/1/points");
-  EXPECT_EQ(refusal(with_shape(R"({"type": "plane", "normal": [1e-30, 0, 0]})")).pointer, "/bodies/0/shapes/1");
-  const std::string flat = R"({"gyre_scene": 1, "meshes": {"line": {"vertices": [[0,0,0],[1,0,0],[2,0,0]], "triangles": [[0,1,2]]}},
+  EXPECT_EQ(
+      refusal(with_shape(R"({"type": "convex_hull", "points": [[0,0,0],[1,0,0],[0,1,0],[1,1,0]]})")).pointer,
+      "/bodies/0/shapes/1/points");
+  EXPECT_EQ(refusal(with_shape(R"({"type": "plane", "normal": [1e-30, 0, 0]})")).pointer,
+            "/bodies/0/shapes/1");
+  const std::string flat =
+      R"({"gyre_scene": 1, "meshes": {"line": {"vertices": [[0,0,0],[1,0,0],[2,0,0]], "triangles": [[0,1,2]]}},
       "bodies": [{"name": "a", "type": "static", "shapes": [{"type": "mesh", "mesh": "line"}]}]})";
   EXPECT_EQ(refusal(flat).pointer, "/bodies/0/shapes/0/mesh");
   EXPECT_EQ(refusal(flat).file, "test");
@@ -138,8 +156,9 @@ TEST(SceneRunner, RefusalsOfTheEngineNameThePlace) {
 TEST(SceneRunner, ThreadsDoNotChangeTheHash) {
   std::string bodies = R"({"name": "floor", "type": "static", "shapes": [{"type": "plane"}]})";
   for (int i = 0; i < 40; ++i) {
-    bodies += R"(, {"name": "b)" + std::to_string(i) + R"(", "position": [)" + std::to_string(0.3 * (i % 3)) + ", " +
-              std::to_string(0.6 + 1.1 * i) + R"(, 0.1], "shapes": [{"type": "box", "half_extents": [0.5, 0.5, 0.5]}]})";
+    bodies += R"(, {"name": "b)" + std::to_string(i) + R"(", "position": [)" + std::to_string(0.3 * (i % 3)) +
+              ", " + std::to_string(0.6 + 1.1 * i) +
+              R"(, 0.1], "shapes": [{"type": "box", "half_extents": [0.5, 0.5, 0.5]}]})";
   }
   const std::string scene = R"({"gyre_scene": 1, "bodies": [)" + bodies + "]}";
   EXPECT_EQ(run(scene, 120, 1).world().hash(), run(scene, 120, 4).world().hash());
@@ -161,7 +180,8 @@ TEST(SceneRunner, AFinalSceneGoesOnWhereTheFirstStopped) {
   EXPECT_NEAR(a.position.y, b.position.y, 1e-5);
   EXPECT_NEAR(a.position.z, b.position.z, 1e-5);
   EXPECT_NEAR(std::abs(dot(a.orientation, b.orientation)), 1.0f, 1e-5f);
-  const Vec3 va = whole.world().linear_velocity(whole.bodies()[0]), vb = rest.world().linear_velocity(rest.bodies()[0]);
+  const Vec3 va = whole.world().linear_velocity(whole.bodies()[0]),
+             vb = rest.world().linear_velocity(rest.bodies()[0]);
   EXPECT_NEAR(length(va - vb), 0.0f, 1e-4f);
 }
 

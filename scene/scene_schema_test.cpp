@@ -29,7 +29,9 @@ Json parse(const std::string& text) { return parse_document(text, "schema", Scen
 
 const fs::path kScenes = fs::path(GYRE_SOURCE_DIR) / "scenes";
 
-TEST(SceneSchema, TheFileIsWhatTheProgramPrints) { EXPECT_EQ(file_text(kScenes / "scene.schema.json"), scene_schema()); }
+TEST(SceneSchema, TheFileIsWhatTheProgramPrints) {
+  EXPECT_EQ(file_text(kScenes / "scene.schema.json"), scene_schema());
+}
 
 TEST(SceneSchema, AcceptsEverySceneOfTheRepositoryAndSoDoesTheReader) {
   const Json schema = parse(scene_schema());
@@ -55,15 +57,19 @@ std::string wrapped(const std::string& definition, const std::string& members) {
   if (definition == "world") return start + R"("world": {)" + members + "}}";
   if (definition == "material") return start + R"("materials": {"m": {)" + members + "}}}";
   if (definition == "material_pair") {
-    return start + R"("materials": {"m": {}}, "material_pairs": [{"materials": ["m", "m"], )" + members + "}]}";
+    return start + R"("materials": {"m": {}}, "material_pairs": [{"materials": ["m", "m"], )" + members +
+           "}]}";
   }
   if (definition == "body") return start + R"("bodies": [{"name": "b", )" + members + "}]}";
   if (definition == "shape_common") {
-    return start + R"("bodies": [{"name": "b", "shapes": [{"type": "sphere", "radius": 1, )" + members + "}]}]}";
+    return start + R"("bodies": [{"name": "b", "shapes": [{"type": "sphere", "radius": 1, )" + members +
+           "}]}]}";
   }
   if (definition == "force") return start + R"("bodies": [{"name": "b", "forces": [{)" + members + "}]}]}";
-  const std::string joint = start + R"("bodies": [{"name": "p"}, {"name": "q"}], "joints": [{"type": "slider", "a": "p", "b": "q", )"
-                            R"("axis": [0, 1, 0], )";
+  const std::string joint =
+      start +
+      R"("bodies": [{"name": "p"}, {"name": "q"}], "joints": [{"type": "slider", "a": "p", "b": "q", )"
+      R"("axis": [0, 1, 0], )";
   if (definition == "motor") return joint + R"("motor": {)" + members + "}}]}";
   return joint + members + "}]}";
 }
@@ -71,13 +77,15 @@ std::string wrapped(const std::string& definition, const std::string& members) {
 TEST(SceneSchema, TheReaderKnowsEveryMember) {
   const Json schema = parse(scene_schema());
   int members = 0;
-  for (const char* definition : {"world", "material", "material_pair", "body", "shape_common", "force", "motor", "joint"}) {
+  for (const char* definition :
+       {"world", "material", "material_pair", "body", "shape_common", "force", "motor", "joint"}) {
     for (const auto& [member, rule] : schema["$defs"][definition]["properties"].items()) {
       if (wrapped(definition, "").find("\"" + member + "\"") != std::string::npos) continue;  // there already
       // A value that no member takes: the refusal must be about the value.
       const SceneResult<Scene> scene = read_scene(wrapped(definition, "\"" + member + R"(": [[[]]])"));
       ASSERT_FALSE(scene) << definition << " " << member;
-      EXPECT_EQ(scene.error().message.find("unknown field"), std::string::npos) << definition << ": " << scene.error().text();
+      EXPECT_EQ(scene.error().message.find("unknown field"), std::string::npos)
+          << definition << ": " << scene.error().text();
       ++members;
     }
   }
@@ -88,20 +96,34 @@ TEST(SceneSchema, BothRefuseTheSame) {
   const Json schema = parse(scene_schema());
   SchemaCheck check(schema);
   const std::vector<std::pair<std::string, std::string>> bad = {
-      {"world", R"("gravity": [0, 1])"},        {"world", R"("time_step": 0)"},
-      {"world", R"("substeps": 65)"},           {"world", R"("solver": "magic")"},
-      {"world", R"("nothing": 1)"},             {"material", R"("restitution": 2)"},
-      {"material", R"("density": -1)"},         {"material", R"("colour": "red")"},
-      {"material_pair", R"("density": 1)"},     {"body", R"("type": "fixed")"},
-      {"body", R"("mass": 0)"},                 {"body", R"("mass": "1")"},
-      {"body", R"("orientation": [0, 0, 1])"},  {"body", R"("orientation": {"axis": [0, 1, 0]})"},
-      {"body", R"("locked": {"linear": [1]})"}, {"body", R"("filter": {"layer": -1})"},
-      {"body", R"("inertia": [1, 2])"},         {"body", R"("speed": 1)"},
-      {"shape_common", R"("height": 1)"},       {"shape_common", R"("position": 1)"},
-      {"shape_common", R"("half_height": 1)"},  {"force", R"("frame": "local")"},
-      {"force", R"("at": [1])"},                {"motor", R"("max_force": -1)"},
-      {"motor", R"("speed": 1)"},               {"joint", R"("limits": [1])"},
-      {"joint", R"("break_force": -1)"},        {"joint", R"("spring": 1)"},
+      {"world", R"("gravity": [0, 1])"},
+      {"world", R"("time_step": 0)"},
+      {"world", R"("substeps": 65)"},
+      {"world", R"("solver": "magic")"},
+      {"world", R"("nothing": 1)"},
+      {"material", R"("restitution": 2)"},
+      {"material", R"("density": -1)"},
+      {"material", R"("colour": "red")"},
+      {"material_pair", R"("density": 1)"},
+      {"body", R"("type": "fixed")"},
+      {"body", R"("mass": 0)"},
+      {"body", R"("mass": "1")"},
+      {"body", R"("orientation": [0, 0, 1])"},
+      {"body", R"("orientation": {"axis": [0, 1, 0]})"},
+      {"body", R"("locked": {"linear": [1]})"},
+      {"body", R"("filter": {"layer": -1})"},
+      {"body", R"("inertia": [1, 2])"},
+      {"body", R"("speed": 1)"},
+      {"shape_common", R"("height": 1)"},
+      {"shape_common", R"("position": 1)"},
+      {"shape_common", R"("half_height": 1)"},
+      {"force", R"("frame": "local")"},
+      {"force", R"("at": [1])"},
+      {"motor", R"("max_force": -1)"},
+      {"motor", R"("speed": 1)"},
+      {"joint", R"("limits": [1])"},
+      {"joint", R"("break_force": -1)"},
+      {"joint", R"("spring": 1)"},
   };
   for (const auto& [definition, members] : bad) {
     const std::string text = wrapped(definition, members);

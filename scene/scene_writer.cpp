@@ -212,11 +212,16 @@ void write_body(JsonWriter& json, const Scene& scene, const SceneBody& body) {
 
 const char* joint_word(JointKind kind) {
   switch (kind) {
-    case JointKind::ball: return "ball";
-    case JointKind::hinge: return "hinge";
-    case JointKind::slider: return "slider";
-    case JointKind::fixed: return "fixed";
-    case JointKind::distance: return "distance";
+    case JointKind::ball:
+      return "ball";
+    case JointKind::hinge:
+      return "hinge";
+    case JointKind::slider:
+      return "slider";
+    case JointKind::fixed:
+      return "fixed";
+    case JointKind::distance:
+      return "distance";
   }
   return "ball";
 }
@@ -230,8 +235,9 @@ void write_travel(JsonWriter& json, const JointDef& def) {
   }
   const Motor& motor = def.motor;
   const Motor none;
-  if (motor.target_velocity == none.target_velocity && !motor.target_position && motor.max_force == none.max_force &&
-      motor.frequency == none.frequency && motor.damping_ratio == none.damping_ratio) {
+  if (motor.target_velocity == none.target_velocity && !motor.target_position &&
+      motor.max_force == none.max_force && motor.frequency == none.frequency &&
+      motor.damping_ratio == none.damping_ratio) {
     return;
   }
   json.key("motor").begin_object(kOneLine);
@@ -245,7 +251,9 @@ void write_travel(JsonWriter& json, const JointDef& def) {
 
 void write_joint(JsonWriter& json, const Scene& scene, const SceneJoint& joint) {
   const JointDef& def = joint.def;
-  const auto end = [&](int body) { return body < 0 ? std::string("world") : scene.bodies[std::size_t(body)].name; };
+  const auto end = [&](int body) {
+    return body < 0 ? std::string("world") : scene.bodies[std::size_t(body)].name;
+  };
   json.begin_object();
   json.field("type", joint_word(def.kind));
   if (!joint.name.empty()) json.field("name", joint.name);

@@ -140,7 +140,8 @@ TEST(SceneWriter, ReadsWhatTheFormatMeans) {
   EXPECT_TRUE(std::isnan(field.heights[2]));
   EXPECT_EQ(field.heights[5], -1.0f);
   // Intrinsic x-y-z: R = Rx(0.1) Ry(0.2) Rz(0.3).
-  const Quat expected = from_axis_angle({1, 0, 0}, 0.1f) * from_axis_angle({0, 1, 0}, 0.2f) * from_axis_angle({0, 0, 1}, 0.3f);
+  const Quat expected =
+      from_axis_angle({1, 0, 0}, 0.1f) * from_axis_angle({0, 1, 0}, 0.2f) * from_axis_angle({0, 0, 1}, 0.3f);
   EXPECT_NEAR(std::abs(dot(scene->bodies[2].def.pose.orientation, expected)), 1.0f, 1e-6f);
   // What a joint leaves open: a slider's anchor is at b's origin, a distance joint's at a's.
   EXPECT_EQ(scene->joints[2].def.anchor, scene->bodies[3].def.pose.position);

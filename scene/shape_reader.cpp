@@ -17,7 +17,8 @@ Box read_box(Members& members) {
   Box box;
   const Field half_extents = members.need("half_extents");
   half_extents.array("an array of 3 numbers above 0", 3);
-  box.half_extents = {half_extents.element(0).real(Range::above(0)), half_extents.element(1).real(Range::above(0)),
+  box.half_extents = {half_extents.element(0).real(Range::above(0)),
+                      half_extents.element(1).real(Range::above(0)),
                       half_extents.element(2).real(Range::above(0))};
   members.read("rounding", box.rounding, Range::between(0, double(smallest(box.half_extents))));
   return box;
@@ -51,8 +52,9 @@ SceneHeightField read_height_field(Members& members) {
   members.read("spacing", out.spacing, Range::above(0));
   const Field heights = members.need("heights");
   const std::size_t count = std::size_t(out.columns) * out.rows;
-  heights.array((std::to_string(count) + " numbers (" + std::to_string(out.columns) + " times " + std::to_string(out.rows) +
-                 ")").c_str(),
+  heights.array((std::to_string(count) + " numbers (" + std::to_string(out.columns) + " times " +
+                 std::to_string(out.rows) + ")")
+                    .c_str(),
                 std::int64_t(count));
   out.heights.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -74,15 +76,24 @@ Plane read_plane(Members& members) {
 
 const char* words_for(ShapeWord word) {
   switch (word) {
-    case ShapeWord::sphere: return "a sphere";
-    case ShapeWord::box: return "a box";
-    case ShapeWord::capsule: return "a capsule";
-    case ShapeWord::cylinder: return "a cylinder";
-    case ShapeWord::cone: return "a cone";
-    case ShapeWord::convex_hull: return "a convex hull";
-    case ShapeWord::mesh: return "a mesh";
-    case ShapeWord::height_field: return "a height field";
-    case ShapeWord::plane: return "a plane";
+    case ShapeWord::sphere:
+      return "a sphere";
+    case ShapeWord::box:
+      return "a box";
+    case ShapeWord::capsule:
+      return "a capsule";
+    case ShapeWord::cylinder:
+      return "a cylinder";
+    case ShapeWord::cone:
+      return "a cone";
+    case ShapeWord::convex_hull:
+      return "a convex hull";
+    case ShapeWord::mesh:
+      return "a mesh";
+    case ShapeWord::height_field:
+      return "a height field";
+    case ShapeWord::plane:
+      return "a plane";
   }
   return "a shape";
 }
@@ -90,17 +101,24 @@ const char* words_for(ShapeWord word) {
 SceneGeometry read_geometry(const SceneReading& reading, Members& members, ShapeWord word) {
   const auto length = [&](const char* key, Range range) { return members.need(key).real(range); };
   switch (word) {
-    case ShapeWord::sphere: return Sphere{length("radius", Range::above(0))};
-    case ShapeWord::box: return read_box(members);
+    case ShapeWord::sphere:
+      return Sphere{length("radius", Range::above(0))};
+    case ShapeWord::box:
+      return read_box(members);
     case ShapeWord::capsule:
       return Capsule{length("radius", Range::above(0)), length("half_height", Range::at_least(0))};
     case ShapeWord::cylinder:
       return Cylinder{length("radius", Range::above(0)), length("half_height", Range::above(0))};
-    case ShapeWord::cone: return Cone{length("radius", Range::above(0)), length("half_height", Range::above(0))};
-    case ShapeWord::convex_hull: return read_hull(reading, members);
-    case ShapeWord::mesh: return SceneTriangles{find_name(reading.meshes, members.need("mesh"), "a mesh")};
-    case ShapeWord::height_field: return read_height_field(members);
-    case ShapeWord::plane: return read_plane(members);
+    case ShapeWord::cone:
+      return Cone{length("radius", Range::above(0)), length("half_height", Range::above(0))};
+    case ShapeWord::convex_hull:
+      return read_hull(reading, members);
+    case ShapeWord::mesh:
+      return SceneTriangles{find_name(reading.meshes, members.need("mesh"), "a mesh")};
+    case ShapeWord::height_field:
+      return read_height_field(members);
+    case ShapeWord::plane:
+      return read_plane(members);
   }
   return Sphere{};
 }
@@ -124,7 +142,8 @@ void read_shape(SceneReading& reading, const Field& field, SceneBody& body) {
                                                  {"convex_decomposition", {}},
                                                  {"height_field", ShapeWord::height_field},
                                                  {"plane", ShapeWord::plane}});
-  const bool unmoving = word == ShapeWord::mesh || word == ShapeWord::height_field || word == ShapeWord::plane;
+  const bool unmoving =
+      word == ShapeWord::mesh || word == ShapeWord::height_field || word == ShapeWord::plane;
   if (unmoving) need_unmoving(type, body, words_for(word));
 
   Members members(field, words_for(word));

@@ -44,10 +44,11 @@ bool WorldBuilder::add_pairs() {
     const Material& a = scene_.materials[std::size_t(pair.a)].surface;
     const Material& b = scene_.materials[std::size_t(pair.b)].surface;
     // What the pair does not say follows from the two materials as it would without the pair.
-    const MaterialPair made{std::uint16_t(pair.a + 1), std::uint16_t(pair.b + 1),
-                            pair.static_friction.value_or(std::sqrt(a.static_friction * b.static_friction)),
-                            pair.dynamic_friction.value_or(std::sqrt(a.dynamic_friction * b.dynamic_friction)),
-                            pair.restitution.value_or(max(a.restitution, b.restitution))};
+    const MaterialPair made{
+        std::uint16_t(pair.a + 1), std::uint16_t(pair.b + 1),
+        pair.static_friction.value_or(std::sqrt(a.static_friction * b.static_friction)),
+        pair.dynamic_friction.value_or(std::sqrt(a.dynamic_friction * b.dynamic_friction)),
+        pair.restitution.value_or(max(a.restitution, b.restitution))};
     if (!world_.set_material_pair(made)) return fail(pointer_to("material_pairs", i), last_refusal());
   }
   return true;
@@ -68,7 +69,8 @@ Material WorldBuilder::surface_of(const SceneShape& shape) const {
   if (shape.dynamic_friction) {
     out.dynamic_friction = *shape.dynamic_friction;
     if (!shape.static_friction) {
-      out.static_friction = alone ? *shape.dynamic_friction : max(out.static_friction, *shape.dynamic_friction);
+      out.static_friction =
+          alone ? *shape.dynamic_friction : max(out.static_friction, *shape.dynamic_friction);
     }
   }
   if (shape.restitution) out.restitution = *shape.restitution;
@@ -82,7 +84,8 @@ bool WorldBuilder::cook(const SceneHull& hull, const std::string& pointer, Geome
     out = hull_cache_[std::size_t(hull.mesh)];
     return true;
   }
-  const std::vector<Vec3>& points = hull.mesh >= 0 ? scene_.meshes[std::size_t(hull.mesh)].vertices : hull.points;
+  const std::vector<Vec3>& points =
+      hull.mesh >= 0 ? scene_.meshes[std::size_t(hull.mesh)].vertices : hull.points;
   Result<Geometry> made = cook_hull(points);
   if (!made) return fail(pointer + (hull.mesh >= 0 ? "/mesh" : "/points"), made.error().message);
   out = *made;

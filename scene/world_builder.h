@@ -13,7 +13,8 @@ namespace gyre {
 
 class WorldBuilder {
  public:
-  WorldBuilder(const Scene& scene, World& world, const std::string& file) : scene_(scene), world_(world), file_(file) {}
+  WorldBuilder(const Scene& scene, World& world, const std::string& file)
+      : scene_(scene), world_(world), file_(file) {}
 
   bool build();
   const SceneError& error() const { return error_; }

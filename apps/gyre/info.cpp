@@ -19,7 +19,9 @@ namespace {
 // Without the sign of a zero, which says nothing about a mass.
 Vec3 plain(Vec3 v) { return v + Vec3{}; }
 Sym3 plain(const Sym3& m) { return m + Sym3{}; }
-MassProperties plain(const MassProperties& mass) { return {mass.mass, plain(mass.center), plain(mass.inertia)}; }
+MassProperties plain(const MassProperties& mass) {
+  return {mass.mass, plain(mass.center), plain(mass.inertia)};
+}
 
 struct Counts {
   std::array<int, 3> bodies{};  // by BodyType
@@ -28,7 +30,8 @@ struct Counts {
 };
 
 constexpr const char* kBodyWords[] = {"static", "kinematic", "dynamic"};
-constexpr const char* kShapeWords[] = {"sphere", "box", "capsule", "cylinder", "cone", "plane", "convex_hull", "mesh", "height_field"};
+constexpr const char* kShapeWords[] = {"sphere", "box",         "capsule", "cylinder",    "cone",
+                                       "plane",  "convex_hull", "mesh",    "height_field"};
 constexpr const char* kJointWords[] = {"ball", "hinge", "slider", "fixed", "distance"};
 
 Counts count(const Scene& scene) {
@@ -71,8 +74,8 @@ void print_text(const SceneRunner& runner) {
   out += "bodies  " + listed(counts.bodies, kBodyWords) + "\n";
   out += "shapes  " + listed(counts.shapes, kShapeWords) + "\n";
   out += "joints  " + listed(counts.joints, kJointWords) + "\n";
-  out += "step    " + number(scene.world.time_step) + " s in " + std::to_string(scene.world.substeps) + " sub-steps, gravity " +
-         vector(scene.world.gravity) + " m/s^2\n";
+  out += "step    " + number(scene.world.time_step) + " s in " + std::to_string(scene.world.substeps) +
+         " sub-steps, gravity " + vector(scene.world.gravity) + " m/s^2\n";
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const SceneBody& body = scene.bodies[i];
     out += "\nbody \"" + body.name + "\", " + kBodyWords[std::size_t(body.def.type)] + ", " +
@@ -84,17 +87,19 @@ void print_text(const SceneRunner& runner) {
     out += "  mass             " + number(double(mass.mass)) + " kg\n";
     out += "  centre of mass   " + vector(mass.center) + " m in the body, " +
            vector(runner.world().center_of_mass(runner.bodies()[i])) + " m in the world\n";
-    out += "  inertia          xx " + number(double(mass.inertia.xx)) + ", yy " + number(double(mass.inertia.yy)) + ", zz " +
-           number(double(mass.inertia.zz)) + ", xy " + number(double(mass.inertia.xy)) + ", xz " +
-           number(double(mass.inertia.xz)) + ", yz " + number(double(mass.inertia.yz)) + " kg m^2\n";
-    out += "  principal        " + vector(principal.moments) + " kg m^2 about " + vector(axes.x) + ", " + vector(axes.y) + ", " +
-           vector(axes.z) + "\n";
+    out += "  inertia          xx " + number(double(mass.inertia.xx)) + ", yy " +
+           number(double(mass.inertia.yy)) + ", zz " + number(double(mass.inertia.zz)) + ", xy " +
+           number(double(mass.inertia.xy)) + ", xz " + number(double(mass.inertia.xz)) + ", yz " +
+           number(double(mass.inertia.yz)) + " kg m^2\n";
+    out += "  principal        " + vector(principal.moments) + " kg m^2 about " + vector(axes.x) + ", " +
+           vector(axes.y) + ", " + vector(axes.z) + "\n";
   }
   std::fwrite(out.data(), 1, out.size(), stdout);
 }
 
 template <std::size_t N>
-void write_counts(JsonWriter& json, const char* key, const std::array<int, N>& counts, const char* const* words) {
+void write_counts(JsonWriter& json, const char* key, const std::array<int, N>& counts,
+                  const char* const* words) {
   json.key(key).begin_object(JsonLayout::one_line);
   for (std::size_t i = 0; i < N; ++i) {
     if (counts[i] > 0) json.field(words[i], counts[i]);
@@ -110,7 +115,8 @@ void write_body(JsonWriter& json, const SceneRunner& runner, std::size_t index) 
   json.field("type", kBodyWords[std::size_t(body.def.type)]);
   json.field("shapes", std::int64_t(body.shapes.size()));
   if (body.def.type != BodyType::dynamic) {
-    for (const char* key : {"mass", "center_of_mass", "inertia", "principal_moments", "principal_axes"}) json.key(key).null();
+    for (const char* key : {"mass", "center_of_mass", "inertia", "principal_moments", "principal_axes"})
+      json.key(key).null();
   } else {
     const MassProperties mass = plain(runner.world().mass_properties(runner.bodies()[index]));
     const PrincipalAxes principal = principal_axes(mass.inertia);
@@ -178,7 +184,8 @@ void add_info(CLI::App& app, int& exit_code) {
     std::string scene;
     bool json = false;
   };
-  CLI::App* command = app.add_subcommand("info", "Show what a scene holds, and the mass properties of its bodies");
+  CLI::App* command =
+      app.add_subcommand("info", "Show what a scene holds, and the mass properties of its bodies");
   const auto options = std::make_shared<Options>();
   command->add_option("SCENE", options->scene, "The scene file (*.gyre.json)")->required()->type_name("");
   command->add_flag("--json", options->json, "Print it as JSON");

@@ -18,12 +18,15 @@ int report_usage(const CLI::App& app, const CLI::ParseError& error) {
   for (char& c : message) {
     if (c == '\n' || c == '\r') c = ' ';
   }
-  std::fprintf(stderr, "%s: %s (%s --help shows what there is)\n", command.c_str(), message.c_str(), command.c_str());
+  std::fprintf(stderr, "%s: %s (%s --help shows what there is)\n", command.c_str(), message.c_str(),
+               command.c_str());
   return gyre::kExitUsage;
 }
 
 int run(int argc, char** argv) {
-  CLI::App app("Gyre simulates scenes of bodies: reads a scene, moves it on in time, writes down what happened.", "gyre");
+  CLI::App app(
+      "Gyre simulates scenes of bodies: reads a scene, moves it on in time, writes down what happened.",
+      "gyre");
   app.set_version_flag("--version", "gyre " GYRE_VERSION_STRING, "Print the version and exit");
   app.require_subcommand(0, 1);
   int exit_code = gyre::kExitGood;

@@ -79,7 +79,8 @@ bool OutputFile::write(std::string_view bytes) {
 
 bool OutputFile::commit() {
   if (!file_) return false;
-  const bool written = buffer_.empty() || std::fwrite(buffer_.data(), 1, buffer_.size(), file_) == buffer_.size();
+  const bool written =
+      buffer_.empty() || std::fwrite(buffer_.data(), 1, buffer_.size(), file_) == buffer_.size();
   const bool closed = std::fclose(file_) == 0;
   file_ = nullptr;
   if (!written || !closed) return fail(std::string("cannot be written: ") + std::strerror(errno));

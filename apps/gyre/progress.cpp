@@ -22,7 +22,8 @@ bool stderr_is_terminal() {
 
 }  // namespace
 
-Progress::Progress(bool wanted, std::uint64_t steps) : active_(wanted && steps > 0 && stderr_is_terminal()), steps_(steps) {
+Progress::Progress(bool wanted, std::uint64_t steps)
+    : active_(wanted && steps > 0 && stderr_is_terminal()), steps_(steps) {
   // A run that is over at once needs no bar.
   next_ = start_ + std::chrono::milliseconds(300);
 }

@@ -34,8 +34,10 @@ class FileSink : public ByteSink {
 // Two outputs in one file, or one in the place of the scene, would destroy each other. Only the final scene may take the
 // place of the scene that it goes on from.
 std::string find_clash(const SimulateOptions& options) {
-  const std::pair<const char*, const std::string*> outputs[] = {
-      {"--record", &options.record}, {"--trace", &options.trace}, {"--stats", &options.stats}, {"--final", &options.final}};
+  const std::pair<const char*, const std::string*> outputs[] = {{"--record", &options.record},
+                                                                {"--trace", &options.trace},
+                                                                {"--stats", &options.stats},
+                                                                {"--final", &options.final}};
   const auto place = [](const std::string& path) {
     std::error_code error;
     const std::filesystem::path resolved = std::filesystem::weakly_canonical(path, error);
@@ -64,7 +66,8 @@ std::string find_clash(const SimulateOptions& options) {
 // One run: the scene, its outputs, and how it ended.
 class Simulation {
  public:
-  Simulation(const SimulateOptions& options, SceneRunner runner) : options_(options), runner_(std::move(runner)) {}
+  Simulation(const SimulateOptions& options, SceneRunner runner)
+      : options_(options), runner_(std::move(runner)) {}
 
   bool open_outputs();
   int run();
@@ -158,7 +161,8 @@ bool Simulation::finish_outputs(int ended) {
   }
   // A state that is not finite is not a scene.
   if (final_.is_open() && ended != kExitNotFinite) {
-    if (!final_.write(write_scene(runner_.final_scene())) || !final_.commit()) return fail(final_) == kExitGood;
+    if (!final_.write(write_scene(runner_.final_scene())) || !final_.commit())
+      return fail(final_) == kExitGood;
   }
   return true;
 }

@@ -15,7 +15,8 @@ CLI::Validator number_between(double low, bool open_low, double high, const std:
   return CLI::Validator(
       [=](std::string& text) {
         double value = 0;
-        if (CLI::detail::lexical_cast(text, value) && (open_low ? value > low : value >= low) && value <= high) {
+        if (CLI::detail::lexical_cast(text, value) && (open_low ? value > low : value >= low) &&
+            value <= high) {
           return std::string();
         }
         return "found " + text + ", expected " + expected;
@@ -24,7 +25,9 @@ CLI::Validator number_between(double low, bool open_low, double high, const std:
 }
 
 void add_time_options(CLI::App& command, SimulateOptions& options) {
-  CLI::Option* duration = command.add_option("--duration", options.duration, "Simulated time in s; 10 if --steps is not given either")
+  CLI::Option* duration = command
+                              .add_option("--duration", options.duration,
+                                          "Simulated time in s; 10 if --steps is not given either")
                               ->type_name("S")
                               ->check(number_between(0, false, 1e12, "a number from 0 to 1e12"));
   command.add_option("--steps", options.steps, "Number of steps, instead of a duration")
@@ -37,7 +40,9 @@ void add_time_options(CLI::App& command, SimulateOptions& options) {
   command.add_option("--substeps", options.substeps, "Sub-steps in a step, 1 to 64")
       ->type_name("N")
       ->check(number_between(1, false, 64, "an integer from 1 to 64"));
-  command.add_option("--threads", options.threads, "Worker threads, 0 for all of the machine; never changes a result")
+  command
+      .add_option("--threads", options.threads,
+                  "Worker threads, 0 for all of the machine; never changes a result")
       ->type_name("N")
       ->check(number_between(0, false, 1024, "an integer from 0 to 1024"));
 }
@@ -61,9 +66,12 @@ void add_method_options(CLI::App& command, SimulateOptions& options) {
   command.add_option("--integrator", options.integrator, "Integrator: semi_implicit_euler")
       ->type_name("NAME")
       ->check(words({"explicit_euler", "semi_implicit_euler", "rk4", "verlet"}));
-  command.add_option("--broad-phase", options.broad_phase, "Broad phase: bvh or brute_force; never changes a result")
+  command
+      .add_option("--broad-phase", options.broad_phase,
+                  "Broad phase: bvh or brute_force; never changes a result")
       ->type_name("NAME")
-      ->check(words({"bvh", "grid", "octree", "quadtree", "kd_tree", "bsp_tree", "sweep_and_prune", "brute_force"}));
+      ->check(words(
+          {"bvh", "grid", "octree", "quadtree", "kd_tree", "bsp_tree", "sweep_and_prune", "brute_force"}));
   command.add_option("--stepping", options.stepping, "Time plan: fixed")
       ->type_name("NAME")
       ->check(words({"fixed", "adaptive"}));
@@ -71,12 +79,15 @@ void add_method_options(CLI::App& command, SimulateOptions& options) {
 }
 
 void add_output_options(CLI::App& command, SimulateOptions& options) {
-  command.add_option("--record", options.record, "Write a recording that can be replayed bit by bit")->type_name("FILE.gyrec");
-  command.add_option("--trace", options.trace, "Write a table of the motion of every body")->type_name("FILE.csv");
+  command.add_option("--record", options.record, "Write a recording that can be replayed bit by bit")
+      ->type_name("FILE.gyrec");
+  command.add_option("--trace", options.trace, "Write a table of the motion of every body")
+      ->type_name("FILE.csv");
   command.add_option("--trace-every", options.trace_every, "Trace only every Nth step")
       ->type_name("N")
       ->check(number_between(1, false, 1e12, "an integer from 1 to 1e12"));
-  command.add_option("--stats", options.stats, "Write a table of figures of each step")->type_name("FILE.csv");
+  command.add_option("--stats", options.stats, "Write a table of figures of each step")
+      ->type_name("FILE.csv");
   command.add_option("--final", options.final, "Write the final state as a scene")->type_name("FILE.json");
   command.add_flag("--hash", options.hash, "Print a hash of the final state, the same on every machine");
   command.add_flag("--json", options.json, "Print the summary as JSON");
@@ -103,7 +114,8 @@ std::string apply_overrides(const SimulateOptions& options, SceneWorld& world) {
   if (!options.integrator.empty() && options.integrator != "semi_implicit_euler") {
     return missing("--integrator", options.integrator);
   }
-  if (!options.stepping.empty() && options.stepping != "fixed") return missing("--stepping", options.stepping);
+  if (!options.stepping.empty() && options.stepping != "fixed")
+    return missing("--stepping", options.stepping);
   if (options.broad_phase == "bvh") {
     world.broad_phase = BroadPhaseKind::bvh;
   } else if (options.broad_phase == "brute_force") {

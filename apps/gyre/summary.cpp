@@ -52,21 +52,22 @@ std::string summary_text(const SceneRunner& runner, const RunFigures& figures) {
   std::string out;
   if (!runner.scene().name.empty()) out += runner.scene().name + ": ";
   out += counted(counts.bodies, "body", "bodies") + ", " + counted(counts.joints, "joint", "joints") + "\n";
-  out += counted(static_cast<long long>(runner.steps()), "step", "steps") + ", " + rounded(runner.time()) + " s simulated in " +
-         rounded(figures.wall_seconds, 3) + " s";
+  out += counted(static_cast<long long>(runner.steps()), "step", "steps") + ", " + rounded(runner.time()) +
+         " s simulated in " + rounded(figures.wall_seconds, 3) + " s";
   if (figures.wall_seconds > 0 && runner.steps() > 0) {
     out += " (" + rounded(runner.time() / figures.wall_seconds, 3) + " times real time)";
   }
   out += "\n";
   if (runner.steps() > 0) {
-    out += "step: median " + rounded(times.median, 3) + " ms, mean " + rounded(times.mean, 3) + " ms, 99 % within " +
-           rounded(times.p99, 3) + " ms, longest " + rounded(times.max, 3) + " ms\n";
+    out += "step: median " + rounded(times.median, 3) + " ms, mean " + rounded(times.mean, 3) +
+           " ms, 99 % within " + rounded(times.p99, 3) + " ms, longest " + rounded(times.max, 3) + " ms\n";
   }
   out += "end: " + counted(counts.awake_bodies, "body", "bodies") + " awake, " +
          counted(counts.contact_points, "contact point", "contact points") + ", deepest overlap " +
          rounded(1.0e3 * double(world.max_penetration()), 3) + " mm\n";
-  out += "energy: " + rounded(energy.kinetic + energy.potential + energy.elastic) + " J (kinetic " + rounded(energy.kinetic) +
-         ", potential " + rounded(energy.potential) + ", elastic " + rounded(energy.elastic) + ")\n";
+  out += "energy: " + rounded(energy.kinetic + energy.potential + energy.elastic) + " J (kinetic " +
+         rounded(energy.kinetic) + ", potential " + rounded(energy.potential) + ", elastic " +
+         rounded(energy.elastic) + ")\n";
   return out;
 }
 

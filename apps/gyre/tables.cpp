@@ -63,8 +63,9 @@ bool TraceTable::add_rows(const SceneRunner& runner) {
 
 bool StatsTable::open(const std::string& path) {
   return file_.open(path) &&
-         file_.write("step,time,step_ms,bodies,awake,pairs,contacts,max_penetration,kinetic_energy,potential_energy,"
-                     "elastic_energy,px,py,pz,lx,ly,lz\n");
+         file_.write(
+             "step,time,step_ms,bodies,awake,pairs,contacts,max_penetration,kinetic_energy,potential_energy,"
+             "elastic_energy,px,py,pz,lx,ly,lz\n");
 }
 
 bool StatsTable::add_row(const SceneRunner& runner, double step_ms) {

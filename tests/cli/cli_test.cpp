@@ -2,6 +2,8 @@
 #include "run_program.h"
 #include "scene/scene_schema.h"
 
+#include <gyre/replay.h>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,14 +40,22 @@ class CommandLine : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name, std::ios::binary) << text; }
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
   std::string read(const std::string& name) const { return file_text(folder_ / name); }
   Finished gyre(const std::vector<std::string>& arguments) const { return run_program(arguments, folder_); }
   std::vector<std::string> files() const {
     std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder_)) names.push_back(entry.path().filename().string());
+    for (const auto& entry : fs::directory_iterator(folder_))
+      names.push_back(entry.path().filename().string());
     std::sort(names.begin(), names.end());
     return names;
+  }
+  Result<Replay> open_recording(const std::string& name) const {
+    const std::string text = read(name);
+    const std::byte* bytes = reinterpret_cast<const std::byte*>(text.data());
+    return Replay::open(std::vector<std::byte>(bytes, bytes + text.size()));
   }
   void expect_usage(const std::vector<std::string>& arguments, const std::string& word) const {
     const Finished done = gyre(arguments);
@@ -99,17 +109,20 @@ TEST_F(CommandLine, WrongUsageIsStatusTwoAndOneLine) {
 }
 
 TEST_F(CommandLine, AnInvalidSceneIsStatusThreeAndNothingIsWritten) {
-  write("bad.gyre.json", R"({"gyre_scene": 1, "bodies": [{"name": "b", "shapes": [{"type": "sphere", "radius": -1}]}]})");
+  write("bad.gyre.json",
+        R"({"gyre_scene": 1, "bodies": [{"name": "b", "shapes": [{"type": "sphere", "radius": -1}]}]})");
   const std::vector<std::string> before = files();
   for (const char* command : {"simulate", "info"}) {
     const Finished done = gyre({command, "bad.gyre.json"});
     EXPECT_EQ(done.code, 3);
     EXPECT_EQ(done.out, "");
-    EXPECT_EQ(done.err, "gyre: bad.gyre.json: /bodies/0/shapes/0/radius: found -1, expected a number above 0\n");
+    EXPECT_EQ(done.err,
+              "gyre: bad.gyre.json: /bodies/0/shapes/0/radius: found -1, expected a number above 0\n");
     EXPECT_EQ(gyre({command, "none.gyre.json"}).code, 3);
     EXPECT_EQ(gyre({command, "."}).code, 3);
   }
-  const Finished done = gyre({"simulate", "bad.gyre.json", "--trace", "t.csv", "--stats", "u.csv", "--final", "f.json", "--record", "r.gyrec"});
+  const Finished done = gyre({"simulate", "bad.gyre.json", "--trace", "t.csv", "--stats", "u.csv", "--final",
+                              "f.json", "--record", "r.gyrec"});
   EXPECT_EQ(done.code, 3);
   EXPECT_EQ(files(), before);
 }
@@ -124,19 +137,23 @@ TEST_F(CommandLine, WhatTheEngineRefusesIsStatusThreeToo) {
 }
 
 TEST_F(CommandLine, AnOutputThatCannotBeWrittenIsStatusThreeAndLeavesNothing) {
-  const Finished done = gyre({"simulate", "s.gyre.json", "--steps", "3", "--trace", "t.csv", "--stats", "none/u.csv"});
+  const Finished done =
+      gyre({"simulate", "s.gyre.json", "--steps", "3", "--trace", "t.csv", "--stats", "none/u.csv"});
   EXPECT_EQ(done.code, 3);
   EXPECT_NE(done.err.find("none/u.csv"), std::string::npos) << done.err;
   EXPECT_EQ(files(), std::vector<std::string>{"s.gyre.json"});
   EXPECT_EQ(gyre({"simulate", "s.gyre.json", "--final", "."}).code, 3);
   if (fs::exists("/dev/full")) {
-    EXPECT_EQ(gyre({"simulate", "s.gyre.json", "--steps", "3", "--trace", "/dev/full", "--stats", "u.csv"}).code, 3);
+    EXPECT_EQ(
+        gyre({"simulate", "s.gyre.json", "--steps", "3", "--trace", "/dev/full", "--stats", "u.csv"}).code,
+        3);
     EXPECT_EQ(files(), std::vector<std::string>{"s.gyre.json"});
   }
 }
 
 TEST_F(CommandLine, TraceHasARowPerBodyAndTracedStep) {
-  ASSERT_EQ(gyre({"simulate", "s.gyre.json", "--steps", "10", "--trace", "t.csv", "--trace-every", "5"}).code, 0);
+  ASSERT_EQ(gyre({"simulate", "s.gyre.json", "--steps", "10", "--trace", "t.csv", "--trace-every", "5"}).code,
+            0);
   const std::vector<std::string> lines = lines_of(read("t.csv"));
   ASSERT_EQ(lines.size(), 1u + 3u * 3u);
   EXPECT_EQ(lines[0], "step,time,body,px,py,pz,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz,awake");
@@ -152,7 +169,8 @@ TEST_F(CommandLine, StatsHaveARowAStep) {
   const std::vector<std::string> lines = lines_of(read("u.csv"));
   ASSERT_EQ(lines.size(), 8u);
   EXPECT_EQ(lines[0],
-            "step,time,step_ms,bodies,awake,pairs,contacts,max_penetration,kinetic_energy,potential_energy,elastic_energy,px,py,pz,"
+            "step,time,step_ms,bodies,awake,pairs,contacts,max_penetration,kinetic_energy,potential_energy,"
+            "elastic_energy,px,py,pz,"
             "lx,ly,lz");
   EXPECT_EQ(lines[1].rfind("1,0.01,", 0), 0u);
   EXPECT_EQ(lines[7].rfind("7,0.07,", 0), 0u);
@@ -160,16 +178,23 @@ TEST_F(CommandLine, StatsHaveARowAStep) {
 }
 
 TEST_F(CommandLine, TheHashIsOneLineAndTheSameForAnyThreads) {
-  const Finished one = gyre({"simulate", "s.gyre.json", "--steps", "100", "--hash", "--quiet", "--threads", "1"});
+  const Finished one =
+      gyre({"simulate", "s.gyre.json", "--steps", "100", "--hash", "--quiet", "--threads", "1"});
   ASSERT_EQ(one.code, 0);
   ASSERT_EQ(one.out.size(), 17u) << one.out;
   EXPECT_EQ(one.out.find_first_not_of("0123456789abcdef"), 16u);
   for (const char* threads : {"0", "2", "4"}) {
-    EXPECT_EQ(gyre({"simulate", "s.gyre.json", "--steps", "100", "--hash", "--quiet", "--threads", threads}).out, one.out);
+    EXPECT_EQ(
+        gyre({"simulate", "s.gyre.json", "--steps", "100", "--hash", "--quiet", "--threads", threads}).out,
+        one.out);
   }
-  EXPECT_EQ(gyre({"simulate", "s.gyre.json", "--steps", "100", "--hash", "--quiet", "--broad-phase", "brute_force"}).out, one.out);
+  EXPECT_EQ(
+      gyre({"simulate", "s.gyre.json", "--steps", "100", "--hash", "--quiet", "--broad-phase", "brute_force"})
+          .out,
+      one.out);
   EXPECT_NE(gyre({"simulate", "s.gyre.json", "--steps", "101", "--hash", "--quiet"}).out, one.out);
-  EXPECT_NE(gyre({"simulate", "s.gyre.json", "--steps", "100", "--hash", "--quiet", "--substeps", "8"}).out, one.out);
+  EXPECT_NE(gyre({"simulate", "s.gyre.json", "--steps", "100", "--hash", "--quiet", "--substeps", "8"}).out,
+            one.out);
 }
 
 TEST_F(CommandLine, DurationAndStepsMeanTheSame) {
@@ -195,8 +220,9 @@ TEST_F(CommandLine, JsonSummaryHasWhatWasPromised) {
   EXPECT_EQ(done.err, "");
   EXPECT_EQ(done.out.front(), '{');
   EXPECT_EQ(done.out.substr(done.out.size() - 2), "}\n");
-  for (const char* key : {"\"steps\": 60", "\"time\": 0.6", "\"bodies\": 3", "\"contacts\": ", "\"step_ms\": {\"median\": ",
-                          "\"mean\": ", "\"p99\": ", "\"max\": ", "\"energy\": ", "\"hash\": \""}) {
+  for (const char* key :
+       {"\"steps\": 60", "\"time\": 0.6", "\"bodies\": 3", "\"contacts\": ", "\"step_ms\": {\"median\": ",
+        "\"mean\": ", "\"p99\": ", "\"max\": ", "\"energy\": ", "\"hash\": \""}) {
     EXPECT_NE(done.out.find(key), std::string::npos) << key << "\n" << done.out;
   }
 }
@@ -230,7 +256,8 @@ TEST_F(CommandLine, TheFinalSceneCanBeSimulatedOn) {
 TEST_F(CommandLine, AStateThatIsNotFiniteIsStatusFourAndKeepsWhatWasRecorded) {
   write("wild.gyre.json", R"({"gyre_scene": 1, "bodies": [{"name": "wild", "mass": 1e-30,
       "shapes": [{"type": "sphere", "radius": 0.5}], "forces": [{"force": [3e38, 0, 0], "start": 0.1}]}]})");
-  const Finished done = gyre({"simulate", "wild.gyre.json", "--trace", "t.csv", "--stats", "u.csv", "--final", "f.json"});
+  const Finished done =
+      gyre({"simulate", "wild.gyre.json", "--trace", "t.csv", "--stats", "u.csv", "--final", "f.json"});
   EXPECT_EQ(done.code, 4) << done.err;
   EXPECT_NE(done.err.find("no longer finite"), std::string::npos) << done.err;
   EXPECT_NE(done.err.find("\"wild\""), std::string::npos) << done.err;
@@ -242,12 +269,40 @@ TEST_F(CommandLine, AStateThatIsNotFiniteIsStatusFourAndKeepsWhatWasRecorded) {
 }
 
 TEST_F(CommandLine, CtrlCIsStatus130AndKeepsWhatWasRecorded) {
-  const Finished done = run_program({"simulate", "s.gyre.json", "--duration", "1e9", "--trace", "t.csv", "--trace-every", "100"}, folder_, "t.csv");
+  const Finished done = run_program(
+      {"simulate", "s.gyre.json", "--duration", "1e9", "--trace", "t.csv", "--trace-every", "100"}, folder_,
+      "t.csv");
   EXPECT_EQ(done.code, 130) << done.err;
   EXPECT_NE(done.err.find("interrupted"), std::string::npos) << done.err;
   EXPECT_EQ(lines_of(read("t.csv"))[0].rfind("step,time,body", 0), 0u);
   EXPECT_EQ(read("t.csv").back(), '\n');
   EXPECT_EQ(files(), (std::vector<std::string>{"s.gyre.json", "t.csv"}));
+}
+
+TEST_F(CommandLine, ARecordingReplaysToTheSameHash) {
+  const Finished done = gyre({"simulate", "s.gyre.json", "--steps", "50", "--record", "r.gyrec", "--hash", "--quiet"});
+  ASSERT_EQ(done.code, 0) << done.err;
+  Result<Replay> replay = open_recording("r.gyrec");
+  ASSERT_TRUE(replay) << replay.error().message;
+  EXPECT_FALSE(replay->truncated());
+  EXPECT_EQ(replay->step_count(), 50u);
+  bool matches = true;
+  int steps = 0;
+  for (; replay->step(&matches); ++steps) ASSERT_TRUE(matches) << steps;
+  EXPECT_EQ(steps, 50);
+  char hash[20];
+  std::snprintf(hash, sizeof hash, "%016llx\n", static_cast<unsigned long long>(replay->world().hash()));
+  EXPECT_EQ(hash, done.out);
+}
+
+TEST_F(CommandLine, ARecordingThatWasStoppedIsWhole) {
+  const Finished done =
+      run_program({"simulate", "s.gyre.json", "--duration", "1e9", "--record", "r.gyrec"}, folder_, "r.gyrec");
+  EXPECT_EQ(done.code, 130) << done.err;
+  Result<Replay> replay = open_recording("r.gyrec");
+  ASSERT_TRUE(replay) << replay.error().message;
+  EXPECT_FALSE(replay->truncated());
+  EXPECT_GT(replay->step_count(), 0u);
 }
 
 TEST_F(CommandLine, InfoShowsMassProperties) {
@@ -257,8 +312,10 @@ TEST_F(CommandLine, InfoShowsMassProperties) {
   EXPECT_NE(text.out.find("1000 kg"), std::string::npos) << text.out;
   const Finished json = gyre({"info", "s.gyre.json", "--json"});
   EXPECT_EQ(json.code, 0);
-  for (const char* key : {"\"bodies\": 3", "\"mass\": 1000", "\"mass\": null", "\"center_of_mass\": [0, 0, 0]", "\"inertia\": [166.66",
-                          "\"principal_moments\": [166.66", "\"principal_axes\": [[", "\"shapes_by_type\": {\"sphere\": 1"}) {
+  for (const char* key :
+       {"\"bodies\": 3", "\"mass\": 1000", "\"mass\": null", "\"center_of_mass\": [0, 0, 0]",
+        "\"inertia\": [166.66", "\"principal_moments\": [166.66", "\"principal_axes\": [[",
+        "\"shapes_by_type\": {\"sphere\": 1"}) {
     EXPECT_NE(json.out.find(key), std::string::npos) << key << "\n" << json.out;
   }
 }

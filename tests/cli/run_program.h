@@ -66,7 +66,9 @@ inline Finished run_program(const std::vector<std::string>& arguments, const std
       for (const auto& entry : std::filesystem::directory_iterator(folder)) {
         const std::string name = entry.path().filename().string();
         std::error_code error;
-        if (name.rfind(interrupt_when_matching, 0) == 0 && std::filesystem::file_size(entry.path(), error) > 0) running = true;
+        if (name.rfind(interrupt_when_matching, 0) == 0 &&
+            std::filesystem::file_size(entry.path(), error) > 0)
+          running = true;
       }
       if (waitpid(child, nullptr, WNOHANG) != 0) return {};
     }
