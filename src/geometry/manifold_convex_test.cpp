@@ -56,9 +56,8 @@ void expect_sane(const Shape& a, const Shape& b, const Transform& t, float reach
   }
   if (m.count == 0) return;
   // Segments that touch twice may lie beside each other by a part of their radii.
-  const auto is_slim = [](const Shape& shape) { return core_face_is_segment(shape.kind); };
-  const double beside =
-      is_slim(a) && is_slim(b) ? 0.06 * double(min(a.radius, b.radius)) + 1.0e-3 * size : 0.0;
+  const bool beside = core_face_is_segment(a.kind) || core_face_is_segment(b.kind);
+  const double sideways = beside ? 0.06 * double(max(a.radius, b.radius)) + 1.0e-3 * size : 0.0;
   ASSERT_NEAR(length(m.normal), 1.0f, 1.0e-5f) << what;
   for (int i = 0; i < m.count; ++i) {
     const ManifoldPoint& point = m.points[i];
@@ -71,7 +70,7 @@ void expect_sane(const Shape& a, const Shape& b, const Transform& t, float reach
     // cut a little inside.
     const Vec3 on_a = point.position - (0.5f * point.separation) * m.normal;
     const Vec3 on_b = point.position + (0.5f * point.separation) * m.normal;
-    const double slack = 1.0e-4 * size + 0.1 * max(-distance, 0.0) + beside;
+    const double slack = 1.0e-4 * size + 0.1 * max(-distance, 0.0) + sideways;
     EXPECT_LT(outside(a, on_a), slack) << what << " point " << i;
     EXPECT_LT(outside(b, inverse_times(t, on_b)), slack) << what << " point " << i;
     // Two points of the surfaces are never nearer than the surfaces.
@@ -284,6 +283,28 @@ TEST(ManifoldConvex, ACapsuleLiesOnABoxWithTwoPoints) {
       const float x = m.points[i].position.x - 0.1f;
       EXPECT_NEAR(absolute(x), 0.5f, 1.0e-3f);
       EXPECT_NEAR(m.points[i].separation, x * tilt, 1.0e-4f);
+    }
+  }
+}
+
+TEST(ManifoldConvex, ACapsuleOrCylinderAlongAnEdgeTouchesTwice) {
+  // A box on its edge; what lies over the edge rests on two points even while it leans a little.
+  const Shape box = make_box({0.5f, 0.5f, 2}), capsule = make_along_y(ShapeKind::capsule, 0.25f, 0.5f);
+  const Shape cylinder = make_along_y(ShapeKind::cylinder, 0.25f, 0.5f);
+  const Quat a = from_axis_angle({0, 0, 1}, 0.25f * kPi);
+  for (const Shape& round : {capsule, cylinder}) {
+    for (float lean : {0.0f, 0.01f}) {
+      const Quat b = from_axis_angle({1, 0, 0}, 0.5f * kPi + lean);
+      const Pose world_from_a{{}, a}, world_from_b{{0, double(std::sqrt(0.5f)) + 0.25, 0.3}, b};
+      const LocalManifold m = collide(box, round, inverse_times(world_from_a, world_from_b), 0.02f);
+      ASSERT_EQ(m.count, 2);
+      EXPECT_LT(length(rotate(a, m.normal) - Vec3{0, 1, 0}), 0.011f);
+      for (int i = 0; i < 2; ++i) {
+        const DVec3 p = world_from_a * m.points[i].position;
+        EXPECT_NEAR(absolute(p.z - 0.3), 0.5, 5.0e-3);
+        EXPECT_NEAR(double(m.points[i].separation), -double(lean) * (p.z - 0.3), 5.0e-4);
+      }
+      EXPECT_NE(m.points[0].feature, m.points[1].feature);
     }
   }
 }

@@ -39,6 +39,34 @@ bool side_by_side(const FacePolygon& a, const FacePolygon& b) {
   return length_squared(cross(da, db)) <= square(kSideBySide) * length_squared(da) * length_squared(db);
 }
 
+// Of a polygon only its edge that is farthest along `direction`.
+void keep_leading_edge(FacePolygon& face, Vec3 direction) {
+  int best = 0;
+  float highest = -kUnbounded;
+  for (int i = 0; i < face.count; ++i) {
+    const int next = i + 1 == face.count ? 0 : i + 1;
+    const float height = dot(face.vertices[i] + face.vertices[next], direction);
+    if (height > highest) {
+      highest = height;
+      best = i;
+    }
+  }
+  const int next = best + 1 == face.count ? 0 : best + 1;
+  const Vec3 from = face.vertices[best], to = face.vertices[next];
+  const std::uint8_t id_from = face.ids[best], id_to = face.ids[next];
+  face.count = 2;
+  face.vertices[0] = from, face.vertices[1] = to;
+  face.ids[0] = id_from, face.ids[1] = id_to;
+}
+
+// How far two segments may lie beside each other.
+float sideways(const Shape& a, const Shape& b) {
+  const bool tapers = a.kind == ShapeKind::cone || b.kind == ShapeKind::cone;
+  // A sharp edge has no radius; the other shape's decides.
+  const float radius = a.radius > 0.0f && b.radius > 0.0f ? min(a.radius, b.radius) : max(a.radius, b.radius);
+  return (tapers ? kSidewaysCone : kSideways) * radius;
+}
+
 // The candidate points of the features of both cores that face each other. At most kMaxClipPoints.
 int facing_points(const Shape& a, const Shape& b, const Transform& a_from_b, const CoreContact& contact,
                   float max_separation, ManifoldPoint* points) {
@@ -48,13 +76,15 @@ int facing_points(const Shape& a, const Shape& b, const Transform& a_from_b, con
   support_face(b, rotate_inverse(a_from_b.orientation, -contact.normal), fb);
   if (fb.count == 1) return 0;
   put_in_a(a_from_b, fb);
-  const bool tapers = a.kind == ShapeKind::cone || b.kind == ShapeKind::cone;
-  const float sideways = (tapers ? kSidewaysCone : kSideways) * min(a.radius, b.radius);
-  const FacePair pair{&fa, &fb, contact.normal, core_radius(a), core_radius(b), max_separation, sideways};
+  const FacePair pair{&fa,           &fb, contact.normal, core_radius(a), core_radius(b), max_separation,
+                      sideways(a, b)};
   const float facing_a = fa.count > 2 ? dot(fa.normal, contact.normal) : -1.0f;
   const float facing_b = fb.count > 2 ? -dot(fb.normal, contact.normal) : -1.0f;
   if (facing_a >= kFacing && facing_a >= facing_b - kPreferA) return clip_faces(pair, true, points);
   if (facing_b >= kFacing) return clip_faces(pair, false, points);
+  // A segment along an edge: a capsule or cylinder that lies in a groove.
+  if (fa.count > 2 && fb.count == 2) keep_leading_edge(fa, contact.normal);
+  if (fb.count > 2 && fa.count == 2) keep_leading_edge(fb, -contact.normal);
   if (fa.count == 2 && fb.count == 2 && side_by_side(fa, fb)) return clip_segments(pair, points);
   return 0;
 }
