@@ -241,9 +241,12 @@ GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W>& pair, cons
     const Wide<W> speed = dot(relative_velocity<W>(pair, point.from_a, point.from_b), block.normal);
     const auto apart = separation > zero;
     if constexpr (kSoft) {
-      const Wide<W> bias = select(apart, separation * rate, max(separation * block.bias_rate, zero - block.push_speed));
+      const Wide<W> asked = separation * block.bias_rate;
+      const Wide<W> bias = select(apart, separation * rate, max(asked, zero - block.push_speed));
       residual[i] = select(apart, one, block.mass_scale) * (speed + bias);
-      leak[i] = select(apart, zero, block.impulse_scale) * point.impulse;
+      // Where the speed is capped the impulse gives way less by the same share: the spring still bears its load.
+      const Wide<W> capped = select(asked < zero - block.push_speed, (zero - block.push_speed) / select(apart, zero - one, asked), one);
+      leak[i] = select(apart, zero, block.impulse_scale * capped) * point.impulse;
     } else {
       // A point that is apart and was not needed to stop anything is none of this sub-step's business: what it may do in the
       // next one is for the next solve to say. Holding it back here would brake whatever is about to land.
