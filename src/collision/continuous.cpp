@@ -66,10 +66,16 @@ struct Mover {
   }
 };
 
+// What is not finite is for others to deal with.
+bool is_sound(const Sweep& sweep) {
+  return is_finite(sweep.pose) && is_finite(sweep.moved) && is_finite(sweep.turned);
+}
+
 // `found` is scratch.
 double first_impact(const ContinuousInput& input, const FastBody& fast, Array<std::uint32_t>& found,
                     TriangleHull& triangle) {
   const Sweep sweep = input.sweep_of(fast.body);
+  if (!is_sound(sweep)) return 1.0;
   double end = 1.0;
   for (const std::uint32_t index : input.shapes_of(fast.body)) {
     const ColliderShape& shape = input.shapes[index];
@@ -82,6 +88,7 @@ double first_impact(const ContinuousInput& input, const FastBody& fast, Array<st
       const ColliderShape& obstacle = input.shapes[other];
       if (!input.blocked.empty() && input.blocked.contains(pair_key(fast.body, obstacle.body))) continue;
       const Sweep other_sweep = input.sweep_of(obstacle.body);
+      if (!is_sound(other_sweep)) continue;
       const SweptShape swept = make_swept_shape(obstacle.shape, obstacle.body_from_shape, other_sweep);
       end = min(end, mover.impact_with(swept, end, triangle));
     }

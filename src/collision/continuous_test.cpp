@@ -120,6 +120,12 @@ class Scene {
           needed_box(world_box(shapes[i].shape, sweeps[i].pose * shapes[i].body_from_shape), motion), motion);
     }
     broadphase_->rebuild(proxies);
+    return clamp_as_is(fast);
+  }
+  float clamp(std::uint32_t body, bool continuous = false) { return clamp({{body, continuous}})[0]; }
+
+  // With the boxes of the last clamp().
+  std::vector<float> clamp_as_is(const std::vector<FastBody>& fast) {
     std::vector<float> fractions(fast.size(), -1.0f);
     const auto sweep_of = [&](std::uint32_t body) { return sweeps[body]; };
     const auto shapes_of = [&](std::uint32_t body) {
@@ -129,7 +135,7 @@ class Scene {
                              fractions);
     return fractions;
   }
-  float clamp(std::uint32_t body, bool continuous = false) { return clamp({{body, continuous}})[0]; }
+  float clamp_as_is(std::uint32_t body) { return clamp_as_is({{body, false}})[0]; }
 
   Gap gap(std::uint32_t a, std::uint32_t b, double time) const {
     return find_gap(make_swept_shape(shapes[a].shape, {}, sweeps[a]),
@@ -332,6 +338,21 @@ TEST(Continuous, WhoIsInTheWay) {
     scene.proxies[0].filter.layer = 2;
     scene.proxies[ball].filter.collides_with = 1;
     EXPECT_EQ(scene.clamp(ball, false), 1.0f) << "filters hold here too";
+  }
+}
+
+TEST(Continuous, WhatIsNotFiniteIsLeftAlone) {
+  constexpr float kNan = __builtin_nanf(""), kInfinity = __builtin_inff();
+  for (const float bad : {kNan, kInfinity}) {
+    Scene scene;
+    scene.add_fixed(Box{{0.01f, 1, 1}}, {{0, 0, 0}, {}});
+    const auto body = scene.add_mover(Sphere{0.1f}, {{-5, 0, 0}, {}}, {10, 0, 0});
+    scene.clamp(body);
+    scene.sweeps[body].moved.x = bad;
+    EXPECT_EQ(scene.clamp_as_is(body), 1.0f);
+    scene.sweeps[body].moved.x = 10;
+    scene.sweeps[body].turned.y = bad;
+    EXPECT_EQ(scene.clamp_as_is(body), 1.0f);
   }
 }
 
