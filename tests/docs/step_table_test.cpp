@@ -1,0 +1,79 @@
+// docs/step.md shows the stages of a step as a table; this holds it to the list that the engine runs.
+#include "world/stages.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+namespace gyre {
+namespace {
+
+std::string source_path(const std::string& path) { return std::string(GYRE_SOURCE_DIR) + "/" + path; }
+
+// The words in backticks in the column `column` (from 0) of the rows that begin with a number.
+std::vector<std::string> numbered_cells(const std::string& path, int column) {
+  std::ifstream file(source_path(path));
+  std::vector<std::string> cells;
+  for (std::string line; std::getline(file, line);) {
+    if (line.size() < 3 || line[0] != '|' || line[2] < '0' || line[2] > '9') continue;
+    std::size_t begin = 1;
+    for (int i = 0; i < column; ++i) begin = line.find('|', begin) + 1;
+    cells.push_back(line.substr(begin, line.find('|', begin) - begin));
+  }
+  return cells;
+}
+
+std::vector<std::string> words_in_backticks(const std::string& cell) {
+  std::vector<std::string> words;
+  for (std::size_t at = cell.find('`'); at != std::string::npos; at = cell.find('`', at)) {
+    const std::size_t end = cell.find('`', at + 1);
+    if (end == std::string::npos) break;
+    words.push_back(cell.substr(at + 1, end - at - 1));
+    at = end + 1;
+  }
+  return words;
+}
+
+TEST(StepTable, NamesTheStagesInTheOrderOfTheStep) {
+  const std::vector<std::string> cells = numbered_cells("docs/step.md", 1);
+  ASSERT_EQ(cells.size(), std::size_t(kStageCount));
+  for (int i = 0; i < kStageCount; ++i) {
+    const std::vector<std::string> names = words_in_backticks(cells[std::size_t(i)]);
+    ASSERT_EQ(names.size(), 1u) << cells[std::size_t(i)];
+    EXPECT_EQ(names[0], kStageNames[i]);
+  }
+}
+
+TEST(StepTable, NamesUnitsThatExist) {
+  for (const std::string& cell : numbered_cells("docs/step.md", 2)) {
+    for (const std::string& unit : words_in_backticks(cell)) {
+      EXPECT_TRUE(std::filesystem::exists(source_path("src/" + unit + ".cpp"))) << unit;
+    }
+  }
+}
+
+// Every `[text](path)` of the documents leads to a file of the tree.
+TEST(Documents, HaveNoDeadLinks) {
+  std::vector<std::filesystem::path> documents;
+  for (const char* name : {"README.md", "CONTRIBUTING.md", "CHANGELOG.md"}) documents.push_back(source_path(name));
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(source_path("docs"))) {
+    if (entry.path().extension() == ".md") documents.push_back(entry.path());
+  }
+  for (const std::filesystem::path& document : documents) {
+    std::ifstream file(document);
+    const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    for (std::size_t at = text.find("]("); at != std::string::npos; at = text.find("](", at + 2)) {
+      std::string target = text.substr(at + 2, text.find(')', at) - at - 2);
+      if (target.empty() || target.find("://") != std::string::npos || target[0] == '#') continue;
+      target = target.substr(0, target.find('#'));
+      EXPECT_TRUE(std::filesystem::exists(document.parent_path() / target)) << document << " links to " << target;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gyre
