@@ -12,7 +12,7 @@ namespace {
 // Contacts take overlap back with this frequency (Hz) unless the sub-step is too long for it; heavily damped. Stiffer is
 // not better: sweeps lag behind, and with two sweeps a sub-step the softness must give way faster than half the rate at
 // which overlap is taken back, or piles shake (docs/decisions/contact-softness.md).
-constexpr float kContactFrequency = 45.0f;
+constexpr float kContactFrequency = 40.0f;
 constexpr float kContactDamping = 10.0f;
 // Joints: errors are taken back at this rate (1/s), and impulses give way at this one, a little more than half of it, as
 // sweeps that lag behind need (the same page). Neither depends on the sub-step.
@@ -20,7 +20,7 @@ constexpr float kJointRate = 40.0f;
 constexpr float kJointLeak = 22.0f;
 // The fastest that overlap is taken back, as a share of sqrt(gravity * size): falling its own size is a body's natural
 // scale of speed, so the rule holds from millimetres to kilometres.
-constexpr float kPushShare = 0.3f;
+constexpr float kPushShare = 0.4f;
 // Nothing bounces that closes slower than this many times the speed that gravity gives in a sub-step.
 constexpr float kBounceShare = 2.0f;
 
