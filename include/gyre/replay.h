@@ -12,11 +12,14 @@
 
 namespace gyre {
 
-// The whole state as bytes: named, versioned columns, little-endian; loads in any build, at any SIMD width.
+// The whole state as bytes: named, versioned columns, little-endian; loads in any build, at any SIMD width. Events that wait
+// for the next step to be shown are no part of it.
 std::vector<std::byte> save_snapshot(const World& world);
-// Threads and SIMD width come from `def` (never part of the state); everything else from the snapshot.
+// Threads, SIMD width and broad phase come from `def` (never part of the state); everything else from the snapshot. The
+// world is a new one: bodies() gives the ids under which it knows its bodies.
 Result<World> load_snapshot(std::span<const std::byte> bytes, const WorldDef& def = {});
-// Puts `world` back to the snapshot; the world is unchanged if the bytes are refused (the error says why).
+// Puts `world` back to the snapshot; the world is unchanged if the bytes are refused (the error says why). Ids that it had
+// given out when the snapshot was saved are valid again. A recording of the world goes on.
 Error restore_snapshot(World& world, std::span<const std::byte> bytes);
 
 // A ring of the last `capacity` in-memory snapshots, for rollback netcode.
@@ -29,6 +32,7 @@ class Rollback {
   void save(const World& world);
   // Puts the world back to the state saved at `step`; false if that is no longer (or not yet) kept.
   bool restore(World& world, std::uint64_t step) const;
+  // Step counts of the states that are kept; UINT64_MAX when there are none.
   std::uint64_t oldest() const;
   std::uint64_t newest() const;
 
@@ -44,7 +48,8 @@ class ByteSink {
   virtual bool write(std::span<const std::byte> bytes) = 0;
 };
 
-// Records `world` until destroyed or finished: a snapshot now, then every command, then a state hash after each step.
+// Records `world` until destroyed or finished: a snapshot now, then every command, then a state hash after each step. The
+// world must still be there then. A second recorder of the same world fails at once.
 class Recorder {
  public:
   Recorder(World& world, ByteSink& sink);
@@ -59,10 +64,10 @@ class Recorder {
   std::unique_ptr<Log> log_;
 };
 
-// The first place where a replay differs from its recording.
+// The first place where two runs differ.
 struct Difference {
-  std::uint64_t step = 0;
-  char stage[48] = {};   // name of the first stage after which the states differ
+  std::uint64_t step = 0;  // steps that were equal: the number of the first that is not, from 0
+  char stage[48] = {};     // name of the first stage after which the states differ, or "before the step"
   char column[48] = {};  // name of the state column
   std::uint64_t row = 0;
 };
@@ -94,7 +99,7 @@ class Replay {
 Result<Difference> first_difference(std::span<const std::byte> snapshot, const WorldDef& a, const WorldDef& b, int steps,
                                     float seconds);
 // The same for a recording: replays it and compares with the recorded hashes; when a step differs, it is played again
-// beside a single-threaded, width-1 world to name stage, column and row.
+// beside a single-threaded, width-1 world to name stage, column and row (no column if these two agree with each other).
 Result<Difference> first_difference(std::span<const std::byte> recording, const WorldDef& def);
 
 }  // namespace gyre

@@ -37,6 +37,12 @@ void refresh_proxy(RigidWorld& w, std::uint32_t shape) {
   proxy.pushes = flags.type == BodyType::dynamic;
 }
 
+// The pose is derived from the centre of mass at once, not taken as given: rounding makes the two differ, and a world that
+// is loaded here must go on with the same bits.
+void refresh_pose(BodyStore& bodies, std::uint32_t body) {
+  bodies.poses[body] = origin_pose(bodies.places[body], bodies.masses[body]);
+}
+
 // Mass, centre and inertia from shapes and overrides; the origin stays where it is.
 void refresh_mass(RigidWorld& w, std::uint32_t body) {
   BodyStore& bodies = w.bodies;
@@ -85,6 +91,7 @@ void refresh_mass(RigidWorld& w, std::uint32_t body) {
   motion.linear_velocity += cross(motion.angular_velocity, rotate(origin.orientation, mass.center - old_center));
   bodies.places[body] = {origin * mass.center, origin.orientation};
   bodies.orientations[body] = origin.orientation;
+  refresh_pose(bodies, body);
   refresh_inertia(bodies, body);
   for_each_contact_of_body(w, body, [](Contact& contact) { forget_look(contact); });
 }
@@ -335,9 +342,9 @@ Submitted carry_out(WorldState& s, const SetPose& c) {
   stir(w, body);
   wake_neighbours(w, body);
   const Pose pose{c.pose.position, normalized(c.pose.orientation)};
-  w.bodies.poses[body] = pose;
   w.bodies.places[body] = {pose * w.bodies.masses[body].center, pose.orientation};
   w.bodies.orientations[body] = pose.orientation;
+  refresh_pose(w.bodies, body);
   refresh_inertia(w.bodies, body);
   for (const ShapeId id : w.bodies.shapes[body]) drop_contacts(w, id.index);
   refit_body(w, body);

@@ -1,0 +1,103 @@
+// Reading and writing the chunks of a recording. See chunks.h.
+#include "io/chunks.h"
+
+#include "base/hash.h"
+#include "io/snapshot.h"
+
+#include <cstring>
+
+namespace gyre {
+
+namespace {
+
+constexpr char kMagic[9] = "GYREPLAY";
+constexpr std::size_t kHeaderBytes = 8 + 4 + 4 + 8;
+constexpr std::size_t kChunkHeaderBytes = 4 + 4 + 8 + 8;
+constexpr std::size_t kLengthPlace = 8;
+constexpr std::size_t kChecksumPlace = 16;
+
+// Of the chunk's head up to the checksum, and the payload.
+std::uint64_t checksum_of(const std::byte* chunk, std::size_t payload_bytes) {
+  Hasher hasher;
+  hasher.add(std::span<const std::byte>(chunk, kChecksumPlace));
+  hasher.add(std::span<const std::byte>(chunk + kChunkHeaderBytes, payload_bytes));
+  return hasher.value();
+}
+
+}  // namespace
+
+void write_recording_header(ByteWriter& out) {
+  out.put_bytes(std::as_bytes(std::span<const char>(kMagic, sizeof kMagic - 1)));
+  out.put(kRecordingVersion);
+  out.put(std::uint32_t(0));
+  out.put(state_layout());
+}
+
+void write_chunk(ByteWriter& out, ChunkKind kind, std::uint32_t number, std::span<const std::byte> payload) {
+  const std::size_t start = out.size();
+  out.put(std::uint32_t(kind));
+  out.put(number);
+  out.put(std::uint64_t(payload.size()));
+  out.put(std::uint64_t(0));
+  out.put_bytes(payload);
+  out.patch(start + kChecksumPlace, checksum_of(out.view().data() + start, payload.size()));
+}
+
+Error ChunkReader::read_header() {
+  ByteReader in(bytes_);
+  const std::span<const std::byte> magic = in.get_bytes(sizeof kMagic - 1);
+  if (in.failed() || std::memcmp(magic.data(), kMagic, magic.size()) != 0) {
+    return make_error(ErrorCode::invalid_data, "recording: these bytes are none");
+  }
+  const auto version = in.get<std::uint32_t>();
+  in.get<std::uint32_t>();
+  const auto layout = in.get<std::uint64_t>();
+  if (in.failed()) return make_error(ErrorCode::invalid_data, "recording: it ends within its header");
+  if (version != kRecordingVersion) {
+    return make_error(ErrorCode::unsupported, "recording: it is of format %u; this version reads format %u", version,
+                      kRecordingVersion);
+  }
+  if (layout != state_layout()) {
+    return make_error(ErrorCode::unsupported, "recording: it was made by a version whose worlds have another state");
+  }
+  place_ = kHeaderBytes;
+  return {};
+}
+
+bool ChunkReader::next(Chunk& chunk) {
+  const std::size_t left = bytes_.size() - place_;
+  if (left < kChunkHeaderBytes) return false;
+  const std::byte* const start = bytes_.data() + place_;
+  ByteReader in(bytes_.subspan(place_));
+  const auto kind = in.get<std::uint32_t>();
+  const auto number = in.get<std::uint32_t>();
+  const auto length = in.get<std::uint64_t>();
+  const auto checksum = in.get<std::uint64_t>();
+  if (length > left - kChunkHeaderBytes || number != number_) return false;
+  if (checksum != checksum_of(start, std::size_t(length))) return false;
+  if (kind < std::uint32_t(ChunkKind::snapshot) || kind > std::uint32_t(ChunkKind::end)) return false;
+  chunk.kind = ChunkKind(kind);
+  chunk.payload = in.get_bytes(length);
+  place_ += kChunkHeaderBytes + std::size_t(length);
+  ++number_;
+  return true;
+}
+
+void reseal_recording(std::span<std::byte> bytes) {
+  std::size_t place = kHeaderBytes;
+  for (std::uint32_t number = 0; place + kChunkHeaderBytes <= bytes.size(); ++number) {
+    std::byte* const start = bytes.data() + place;
+    const std::size_t left = bytes.size() - place - kChunkHeaderBytes;
+    auto length = load_little<std::uint64_t>(start + kLengthPlace);
+    if (length > left) length = left;
+    const std::span<std::byte> payload(start + kChunkHeaderBytes, std::size_t(length));
+    const std::uint32_t kind = load_little<std::uint32_t>(start);
+    if (kind == std::uint32_t(ChunkKind::snapshot)) reseal_snapshot(payload);
+    store_little(start + 4, number);
+    store_little(start + kLengthPlace, length);
+    store_little(start + kChecksumPlace, checksum_of(start, payload.size()));
+    place += kChunkHeaderBytes + payload.size();
+  }
+}
+
+}  // namespace gyre

@@ -1,0 +1,56 @@
+// The container of a recording: a header, then chunks with length, sequence number and checksum, so that a file that was cut
+// off or damaged can be read up to the last whole chunk.
+//
+//   header: magic (8 bytes), format version (u32), spare (u32), layout of the state (u64)
+//   chunk: kind (u32), number of the chunk (u32), length (u64), checksum of all that and the payload (u64), payload
+//
+// A recording begins with a snapshot. Then, for each step: geometry that is new, commands of which the last is the step
+// itself, and the hash of the state after it. An end chunk closes the file. Another snapshot may stand where the world was
+// put back to one.
+#pragma once
+
+#include "io/bytes.h"
+
+#include <gyre/result.h>
+
+namespace gyre {
+
+constexpr std::uint32_t kRecordingVersion = 1;
+
+enum class ChunkKind : std::uint32_t {
+  snapshot = 1,
+  geometry = 2,   // one cooked geometry
+  commands = 3,   // command after command
+  step_hash = 4,  // step count of the world (u64), hash of its state (u64)
+  end = 5,        // number of steps (u64)
+};
+
+struct Chunk {
+  ChunkKind kind = ChunkKind::end;
+  std::span<const std::byte> payload;
+};
+
+void write_recording_header(ByteWriter& out);
+// Appends a whole chunk.
+void write_chunk(ByteWriter& out, ChunkKind kind, std::uint32_t number, std::span<const std::byte> payload);
+
+// Walks the chunks of a recording.
+class ChunkReader {
+ public:
+  explicit ChunkReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+  // Why this is not a recording that can be read; code none if it is. To be called first.
+  Error read_header();
+  // The next chunk. False at the end of the bytes, or where they are damaged: from there on nothing can be trusted.
+  bool next(Chunk& chunk);
+
+ private:
+  std::span<const std::byte> bytes_;
+  std::size_t place_ = 0;
+  std::uint32_t number_ = 0;
+};
+
+// Makes numbers, lengths and checksums right again in a recording that was changed, as far as its chunks can still be told
+// apart. For tests that damage what lies behind them.
+void reseal_recording(std::span<std::byte> bytes);
+
+}  // namespace gyre

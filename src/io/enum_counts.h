@@ -1,0 +1,22 @@
+// How many values each stored enum has, so that none comes in from outside that does not exist.
+#pragma once
+
+#include "collision/proxy.h"
+#include "io/bytes.h"
+
+#include <gyre/defs.h>
+
+namespace gyre {
+
+template <>
+inline constexpr int kEnumCount<ShapeKind> = kShapeKindCount;
+template <>
+inline constexpr int kEnumCount<BodyType> = int(BodyType::dynamic) + 1;
+template <>
+inline constexpr int kEnumCount<JointKind> = int(JointKind::distance) + 1;
+template <>
+inline constexpr int kEnumCount<CombineRule> = int(CombineRule::product) + 1;
+template <>
+inline constexpr int kEnumCount<ProxyMotion> = int(ProxyMotion::moving) + 1;
+
+}  // namespace gyre

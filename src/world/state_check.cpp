@@ -1,0 +1,150 @@
+// Whether columns that came from outside hang together: every index leads somewhere, every ring closes, every count has
+// its room. A state that passes can be stepped without harm, however strange its numbers are.
+#include "world/world_state.h"
+
+namespace gyre {
+
+namespace {
+
+Error inconsistent(const char* what) {
+  return make_error(ErrorCode::invalid_data, "the state does not hang together: %s", what);
+}
+
+const char* fault_in_settings(const RigidSettings& settings) {
+  if (settings.substeps < 1 || settings.substeps > 64) return "substeps beyond 1 to 64";
+  if (!is_finite(settings.gravity)) return "gravity is not finite";
+  if (!is_finite(settings.last_substep) || settings.last_substep < 0.0f) return "the last sub-step has no length";
+  return nullptr;
+}
+
+const char* fault_in_sizes(const RigidWorld& w) {
+  const BodyStore& b = w.bodies;
+  const std::size_t bodies = b.ids.capacity();
+  if (b.motion.size() != bodies || b.places.size() != bodies || b.masses.size() != bodies ||
+      b.forces.size() != bodies || b.flags.size() != bodies || b.sleep.size() != bodies ||
+      b.overrides.size() != bodies || b.user_data.size() != bodies) {
+    return "the body columns differ in length";
+  }
+  const ShapeStore& s = w.shapes;
+  const std::size_t shapes = s.ids.capacity();
+  if (s.bodies.size() != shapes || s.places.size() != shapes || s.proxies.size() != shapes ||
+      s.materials.size() != shapes || s.geometry.size() != shapes || s.density.size() != shapes ||
+      s.user_data.size() != shapes) {
+    return "the shape columns differ in length";
+  }
+  if (w.joints.records.size() != w.joints.ids.capacity()) return "the joint columns differ in length";
+  if (w.contacts.manifolds.size() % kMaxMeshManifolds != 0) return "manifolds do not fill chunks";
+  return nullptr;
+}
+
+const char* fault_in_body(const BodyStore& bodies, std::uint32_t i) {
+  const BodyFlags& flags = bodies.flags[i];
+  if (flags.type > BodyType::dynamic) return "a body of unknown type";
+  const BodyPlace& place = bodies.places[i];
+  if (!is_finite(place.center) || !is_finite(place.orientation)) return "a body whose place is not finite";
+  if (!is_finite(bodies.motion[i].linear_velocity) || !is_finite(bodies.motion[i].angular_velocity)) {
+    return "a body whose velocity is not finite";
+  }
+  const bool asleep = bodies.ids.live(i) && is_movable(flags) && flags.awake == 0;
+  if (asleep != (bodies.sleep[i].group != kNoGroup)) return "a body that sleeps outside a group, or wakes in one";
+  return nullptr;
+}
+
+// Each group must be one ring that starts at its lowest body: who wakes one member walks the ring to its end.
+const char* fault_in_groups(const BodyStore& bodies) {
+  const std::uint32_t count = std::uint32_t(bodies.sleep.size());
+  std::uint32_t members = 0, walked = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const BodySleep& sleep = bodies.sleep[i];
+    if (sleep.group == kNoGroup) continue;
+    ++members;
+    if (sleep.group > i || bodies.sleep[sleep.group].group != sleep.group) return "a sleeping group without its first body";
+    if (sleep.group != i) continue;
+    std::uint32_t at = i;
+    do {
+      at = bodies.sleep[at].next_in_group;
+      if (at >= count || bodies.sleep[at].group != i || ++walked > count) return "a sleeping group that is no ring";
+    } while (at != i);
+  }
+  return members == walked ? nullptr : "a sleeping body outside its group's ring";
+}
+
+const char* fault_in_shape(const RigidWorld& w, std::uint32_t i) {
+  const Proxy& proxy = w.shapes.proxies[i];
+  const bool live = w.shapes.ids.live(i);
+  if (proxy.motion > ProxyMotion::moving) return "a proxy of unknown motion";
+  if ((proxy.motion != ProxyMotion::none) != live) return "a proxy without a shape";
+  if (check_shape(w.shapes.geometry[i]).code != ErrorCode::none) return "a shape that cannot be";
+  if (!live) return nullptr;
+  const std::uint32_t body = w.shapes.bodies[i];
+  if (!w.bodies.ids.live(body)) return "a shape without a body";
+  if (proxy.body != body) return "a proxy of another body than its shape";
+  const Transform& place = w.shapes.places[i];
+  if (!is_finite(place.position) || !is_finite(place.orientation)) return "a shape whose place is not finite";
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(proxy.fat_box.low[axis] <= proxy.fat_box.high[axis])) return "a fat box without an inside";
+  }
+  return nullptr;
+}
+
+const char* fault_in_joint(const RigidWorld& w, const JointRecord& joint) {
+  if (joint.kind > JointKind::distance) return "a joint of unknown kind";
+  for (const std::int32_t body : {joint.body_a, joint.body_b}) {
+    if (body != kNoBody && (body < 0 || !w.bodies.ids.live(std::uint32_t(body)))) return "a joint without a body";
+  }
+  if (joint.body_a == joint.body_b) return "a joint between one thing and itself";
+  return nullptr;
+}
+
+const char* fault_in_contact(const RigidWorld& w, const Contact& contact) {
+  if (contact.manifold_room == 0) return nullptr;
+  if (contact.manifold_room != 1 && contact.manifold_room != kMaxMeshManifolds) return "a contact's manifold room";
+  if (contact.shape_a >= contact.shape_b) return "a contact whose first shape is not the lower one";
+  if (!w.shapes.ids.live(contact.shape_a) || !w.shapes.ids.live(contact.shape_b) ||
+      w.shapes.bodies[contact.shape_a] != contact.body_a || w.shapes.bodies[contact.shape_b] != contact.body_b ||
+      contact.body_a == contact.body_b) {
+    return "a contact without its shapes";
+  }
+  if (contact.manifold_count > contact.manifold_room || contact.first_manifold % contact.manifold_room != 0 ||
+      std::size_t(contact.first_manifold) + contact.manifold_room > w.contacts.manifolds.size()) {
+    return "a contact without its manifolds";
+  }
+  return nullptr;
+}
+
+const char* fault_in(const RigidWorld& w) {
+  const char* fault = fault_in_settings(w.settings);
+  if (fault == nullptr) fault = fault_in_sizes(w);
+  if (fault != nullptr) return fault;
+  for (std::uint32_t i = 0; fault == nullptr && i < w.bodies.ids.capacity(); ++i) fault = fault_in_body(w.bodies, i);
+  if (fault == nullptr) fault = fault_in_groups(w.bodies);
+  for (std::uint32_t i = 0; fault == nullptr && i < w.shapes.ids.capacity(); ++i) fault = fault_in_shape(w, i);
+  for (std::uint32_t i = 0; fault == nullptr && i < w.joints.ids.capacity(); ++i) {
+    if (w.joints.ids.live(i)) fault = fault_in_joint(w, w.joints.records[i]);
+  }
+  for (std::size_t i = 0; fault == nullptr && i < w.contacts.contacts.size(); ++i) {
+    fault = fault_in_contact(w, w.contacts.contacts[i]);
+  }
+  for (std::size_t i = 0; fault == nullptr && i < w.contacts.manifolds.size(); ++i) {
+    const std::int32_t count = w.contacts.manifolds[i].count;
+    if (count < 0 || count > kMaxManifoldPoints) fault = "a manifold with too many points";
+  }
+  return fault;
+}
+
+}  // namespace
+
+Error check_columns(const RigidWorld& w) {
+  const char* const fault = fault_in(w);
+  return fault != nullptr ? inconsistent(fault) : Error{};
+}
+
+Error rebuild_derived(RigidWorld& w) {
+  const Error e = check_columns(w);
+  if (e.code != ErrorCode::none) return e;
+  derive_state(w);
+  const char* const fault = find_fault(w.contacts);
+  return fault != nullptr ? inconsistent(fault) : Error{};
+}
+
+}  // namespace gyre
