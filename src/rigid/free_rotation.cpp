@@ -8,6 +8,8 @@ namespace {
 
 // Angle of one inner Runge-Kutta step, rad: its energy error is of order angle^5 / 120, 3e-11 here.
 constexpr double kInnerAngle = 0.02;
+// A spin beyond all sense costs accuracy, not time without end: momentum is kept whatever the steps.
+constexpr double kMostInnerSteps = 4096.0;
 // Below this angle a sub-step of the midpoint rule is as exact as float can hold.
 constexpr float kTinyAngle = 2.0e-3f;
 // An angular velocity this near to parallel with the momentum (relative) spins about a principal axis.
@@ -73,7 +75,7 @@ Vec3 rotate_freely(Quat& orientation, Vec3& angular_velocity, const Sym3& inerti
   }
   const DQuat start = normalized(to_double(orientation));
   const DVec3 world_momentum = rotate(start, times(inertia, rotate_inverse(start, DVec3(angular_velocity))));
-  const int steps = 1 + int(double(angle) / kInnerAngle);
+  const int steps = 1 + int(min(double(angle) / kInnerAngle, kMostInnerSteps));
   const double h = double(seconds) / double(steps);
   DQuat q = start;
   for (int i = 0; i < steps; ++i) q = runge_kutta_4(q, world_momentum, inverse_inertia, h);
