@@ -250,7 +250,8 @@ GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W>& pair, cons
     } else {
       // A point that is apart and was not needed to stop anything is none of this sub-step's business: what it may do in the
       // next one is for the next solve to say. Holding it back here would brake whatever is about to land.
-      idle[i] = apart & (point.impulse <= zero);
+      // (A lane's missing points are not idle: the lane must go the same way as it would in a block of its own.)
+      idle[i] = apart & (point.impulse <= zero) & (block.relief[i] > zero);
       pulls = pulls | idle[i];
       residual[i] = select(idle[i], zero, speed + select(apart, separation * rate, zero));
       leak[i] = zero;
