@@ -60,6 +60,7 @@ class MeshCollider {
     for (int i = 0; i < candidates_.count; ++i) look_at(candidates_.ids[i]);
     settle_waiting();
     settle_deep_patches();
+    if (groups_.empty() && convex_.vertex_count() > 2) look_for_corners();
     return groups_.finish(position_, out);
   }
 
@@ -67,6 +68,7 @@ class MeshCollider {
   void look_at(std::uint32_t id);
   void settle_waiting();
   void settle_deep_patches();
+  void look_for_corners();
   void settle(const Waiting& waiting);
   bool is_ruled_out(const NearTriangle& t, bool behind) const;
 
@@ -317,6 +319,21 @@ void MeshCollider::settle_deep_patches() {
     know_side(t.normal);
     if (is_ruled_out(t, dot(t.normal, convex_.center() - t.v[0]) < 0.0f)) continue;
     if (add_deep_corners(t)) stand(t.normal, face_separation(t));
+  }
+}
+
+// A polyhedron that comes near with a corner beside an edge: axis searches know faces and pairs of edges only.
+void MeshCollider::look_for_corners() {
+  for (int i = 0; i < candidates_.count; ++i) {
+    NearTriangle t = place_triangle(surface_, candidates_.ids[i], position_, convex_);
+    know_side(t.normal);
+    const float face = face_separation(t);
+    const bool behind = dot(t.normal, convex_.center() - t.v[0]) < 0.0f;
+    if (behind || face > max_separation_) continue;
+    measure_edges(t);
+    const AxisSearch axes = search_nearest(surface_, t, convex_, face, max_separation_, scratch_);
+    if (axes.best > max_separation_ || axes.feature.separation < axes.best) continue;
+    add_feature(t, axes.feature);
   }
 }
 

@@ -15,6 +15,7 @@ class ManifoldGroups {
   static constexpr int kPointRoom = 56;
 
   void add(Vec3 normal, std::uint32_t triangle, const MeshPoints& points);
+  bool empty() const { return count_ == 0; }
   // Writes the manifolds, positions moved by `position`; in the order in which their first contact came. Returns how many.
   int finish(Vec3 position, LocalManifold* out);
 

@@ -26,6 +26,11 @@ class Search {
                      dot(triangle.normal, triangle.v[0]) - convex.highest(triangle.normal));
   }
 
+  AxisSearch run_nearest() {
+    nearest_by_gjk();
+    return found_;
+  }
+
   AxisSearch run() {
     if (convex_.has_vertices()) {
       polyhedron();
@@ -128,7 +133,7 @@ class Search {
   void nearest_pair();
   void nearest_of_vertices(double& best, SimplexPoint& on_triangle, DVec3& on_convex) const;
   void curved();
-  bool curved_apart();
+  bool nearest_by_gjk();
   void search_arc(int edge);
 
   const Surface& surface_;
@@ -218,7 +223,7 @@ void Search::nearest_of_vertices(double& best, SimplexPoint& on_triangle, DVec3&
   }
 }
 
-// A rounded core that does not overlap the triangle: the true direction is that between the nearest points.
+// A point or segment that does not cross the triangle: the true direction is that between the nearest points.
 void Search::nearest_pair() {
   double best = __builtin_huge_val();
   SimplexPoint on_triangle;
@@ -237,10 +242,8 @@ void Search::nearest_pair() {
       on_convex = pair.on_b;
     }
   };
-  if (convex_.face_count() == 0 && convex_.vertex_count() == 2)
-    try_edge(convex_.vertex(0), convex_.vertex(1));
-  for (const HullEdge& edge : convex_.edges()) try_edge(convex_.vertex(edge.from), convex_.vertex(edge.to));
-  // Corners of the triangle over faces of the box, or over the capsule's segment.
+  if (convex_.vertex_count() == 2) try_edge(convex_.vertex(0), convex_.vertex(1));
+  // Corners of the triangle beside the segment.
   const Vec3 inset{convex_.radius(), convex_.radius(), convex_.radius()};
   const Aabb core{convex_.local_box().low + inset, convex_.local_box().high - inset};
   for (int i = 0; i < 3; ++i) {
@@ -271,7 +274,12 @@ void Search::polyhedron() {
   if (convex_.radius() == 0.0f || apart()) return;
   // The features of overlapping cores have distances too, but those mean nothing.
   const bool overlap = convex_.vertex_count() > 1 && !(core_best_ > 1.0e-6f * convex_.size());
-  if (!overlap) nearest_pair();
+  if (overlap) return;
+  if (convex_.vertex_count() <= 2) {
+    nearest_pair();
+  } else {
+    nearest_by_gjk();
+  }
 }
 
 // Along an edge's arc of allowed directions, from this face's normal to the neighbour's (or to straight outward).
@@ -311,8 +319,8 @@ void Search::search_arc(int edge) {
   }
 }
 
-// Whether the triangle and a cylinder or cone are apart: then GJK knows the direction, and nothing else is to be asked.
-bool Search::curved_apart() {
+// Whether triangle and core are apart: then GJK knows the direction.
+bool Search::nearest_by_gjk() {
   Hull& hull = scratch_.triangle;
   hull.vertices.assign(t_.v, t_.v + 3);
   hull.x.resize(Hull::kPad);
@@ -329,14 +337,15 @@ bool Search::curved_apart() {
   flat.kind = ShapeKind::hull;
   flat.hull = &hull;
   const CorePair pair(flat, convex_.shape(), {{0, 0, 0}, convex_.orientation()});
-  const CoreDistance found = core_distance(pair, double(max_separation_), t_.normal);
+  const CoreDistance found = core_distance(pair, double(max_separation_ + convex_.radius()), t_.normal);
   if (found.beyond) {
     found_.best = __builtin_huge_valf();
     return true;
   }
   if (found.overlap || !(found.distance > 1.0e-6 * double(convex_.size()))) return false;
   const SimplexPoint near = closest_on_triangle(found.on_b, DVec3(t_.v[0]), DVec3(t_.v[1]), DVec3(t_.v[2]));
-  if (offer(to_float(found.normal), float(found.distance), near.corners, AxisSource::nearest_pair)) {
+  const float separation = float(found.distance) - convex_.radius();
+  if (offer(to_float(found.normal), separation, near.corners, AxisSource::nearest_pair)) {
     found_.feature.on_core = to_float(found.on_b);
   }
   return true;
@@ -344,7 +353,7 @@ bool Search::curved_apart() {
 
 // Cylinders and cones: cap normals, mantle lines against edges, mantle normals at corners, and the arcs of active edges.
 void Search::curved() {
-  if (curved_apart()) return;
+  if (nearest_by_gjk()) return;
   const Vec3 axis = convex_.axis();
   measure(axis);
   if (convex_.shape().kind == ShapeKind::cylinder) measure(-axis);
@@ -402,6 +411,11 @@ void measure_edges(NearTriangle& t) {
 AxisSearch search_axes(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,
                        float face_separation, float max_separation, AxisScratch& scratch) {
   return Search(surface, triangle, convex, face_separation, max_separation, scratch).run();
+}
+
+AxisSearch search_nearest(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,
+                          float face_separation, float max_separation, AxisScratch& scratch) {
+  return Search(surface, triangle, convex, face_separation, max_separation, scratch).run_nearest();
 }
 
 }  // namespace gyre

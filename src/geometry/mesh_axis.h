@@ -80,7 +80,7 @@ struct AxisSearch {
   FeatureAxis feature;                  // the best allowed direction besides the face's normal
 };
 
-// Room for the triangle in the form that GJK takes, kept between triangles so that it is made once. Curved shapes only.
+// Room for the triangle in the form that GJK takes, kept between triangles so that it is made once.
 struct AxisScratch {
   Hull triangle;
 };
@@ -89,5 +89,10 @@ struct AxisScratch {
 // one separation is above `max_separation`.
 AxisSearch search_axes(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,
                        float face_separation, float max_separation, AxisScratch& scratch);
+
+// The same from the nearest points alone, for shapes that are apart: also the directions between a corner and an edge or a
+// corner, which an axis search over polyhedra does not know.
+AxisSearch search_nearest(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,
+                          float face_separation, float max_separation, AxisScratch& scratch);
 
 }  // namespace gyre
