@@ -2,6 +2,7 @@
 #include "collision/contact_update.h"
 
 #include "collision/fat_box.h"
+#include "geometry/support.h"
 
 namespace gyre {
 namespace {
@@ -14,10 +15,10 @@ constexpr float kLargestApproach = 0.5f;
 // pair goes less than kSlow in a step, the look reaches far: it is cheaper to look once than to look in every step.
 constexpr float kKept = 0.005f, kNearSlack = 0.03f, kFarSlack = 0.25f, kSlow = 0.02f;
 // How far points may go against each other, and how far the pair may tilt (rad), before it is looked at anew: where flat
-// features meet, and where one of the two is round. There the contact goes on while the bodies' points do not (rolling),
-// and what lags behind would brake.
+// features meet, or a core swept by a ball and a flat feature; and where something else is round. There the contact goes on
+// while the bodies' points do not, and what lags behind would brake what rolls.
 constexpr float kFlatSlide = 3.0e-3f, kFlatTilt = 3.0e-3f;
-constexpr float kRoundSlide = 1.0e-5f, kRoundTilt = 1.0e-5f;
+constexpr float kCurvedSlide = 1.0e-4f, kCurvedTilt = 1.0e-4f;
 // Where a float's rounding of the distance between the bodies is more than this, a recycled separation would rattle.
 constexpr float kRattle = 1.0e-4f;
 // Surfaces nearer than this touch.
@@ -111,14 +112,47 @@ bool is_flat(const Shape& shape) {
   return shape.kind >= ShapeKind::hull || (shape.kind == ShapeKind::box && shape.radius == 0.0f);
 }
 
+// How a manifold follows the bodies. Its anchors lie in the frame of one of them, and the other one's points move there.
+// Where that one is a core swept by a ball on something flat, the points of its core are what counts: however it rolls,
+// it touches below them.
+struct Follow {
+  bool frame_is_b = false;  // else A's
+  bool flat = false;        // flat features on both sides
+  bool round = false;       // a swept core on something flat
+  float radius = 0.0f;      // of the swept core
+  float side = 1.0f;        // of the moving body along the normal: 1 for B, -1 for A
+};
+
+Follow follow_of(const Shape& a, const Shape& b) {
+  Follow follow;
+  const bool flat_a = is_flat(a), flat_b = is_flat(b);
+  follow.flat = flat_a && flat_b;
+  if (flat_a && core_radius(b) > 0.0f) {
+    follow.round = true;
+    follow.radius = core_radius(b);
+  } else if (flat_b && core_radius(a) > 0.0f) {
+    follow.round = true;
+    follow.radius = core_radius(a);
+    follow.frame_is_b = true;
+    follow.side = -1.0f;
+  }
+  return follow;
+}
+
+// The way of the moving body's point at an anchor.
+Vec3 way_of(const PointAnchor& anchor, Vec3 seen_normal, const Follow& follow, const PointMotion& motion) {
+  return motion.of(anchor.position + follow.side * (0.5f * anchor.separation + follow.radius) * seen_normal);
+}
+
 // Whether the anchors of one manifold are still good.
-bool anchors_hold(const Manifold& manifold, bool flat_shapes, float size, float sine,
+bool anchors_hold(const Manifold& manifold, const Follow& follow, float size, float sine,
                   const PointMotion& motion) {
-  const bool flat = flat_shapes || manifold.count >= 3;
-  if (2.0f * sine > (flat ? kFlatTilt : kRoundTilt)) return false;
-  const float most = square((flat ? kFlatSlide : kRoundSlide) * size);
+  const bool curved = !follow.flat && !follow.round && manifold.count < 3;
+  if (2.0f * sine > (curved ? kCurvedTilt : kFlatTilt)) return false;
+  const float most = square((curved ? kCurvedSlide : kFlatSlide) * size);
   for (int i = 0; i < manifold.count; ++i) {
-    if (length_squared(motion.of(manifold.anchors[i].position)) > most) return false;
+    if (length_squared(way_of(manifold.anchors[i], manifold.seen_normal, follow, motion)) > most)
+      return false;
   }
   return true;
 }
@@ -131,16 +165,18 @@ void carry_friction(const Manifold& from, Manifold& to) {
   to.sliding = from.sliding;
 }
 
-void move_manifold(Manifold& manifold, const Mat3& world_from_a, Vec3 center_of_a, Vec3 com_b_from_a,
-                   const PointMotion& motion) {
-  manifold.normal = world_from_a * manifold.seen_normal;
+void move_manifold(Manifold& manifold, const Follow& follow, const Mat3& world_from_frame,
+                   Vec3 center_of_frame, Vec3 com_b_from_a, const PointMotion& motion) {
+  manifold.normal = world_from_frame * manifold.seen_normal;
+  const float share = follow.round ? 1.0f : 0.5f;
   for (int i = 0; i < manifold.count; ++i) {
     const PointAnchor& anchor = manifold.anchors[i];
-    const Vec3 way = motion.of(anchor.position);
+    const Vec3 way = way_of(anchor, manifold.seen_normal, follow, motion);
+    const Vec3 from_frame = world_from_frame * (anchor.position + share * way - center_of_frame);
     ContactPointState& point = manifold.points[i];
-    point.from_a = world_from_a * (anchor.position + 0.5f * way - center_of_a);
-    point.from_b = point.from_a - com_b_from_a;
-    point.separation = anchor.separation + dot(way, manifold.seen_normal);
+    point.from_a = follow.frame_is_b ? from_frame + com_b_from_a : from_frame;
+    point.from_b = follow.frame_is_b ? from_frame : from_frame - com_b_from_a;
+    point.separation = anchor.separation + follow.side * dot(way, manifold.seen_normal);
     point.total_impulse = 0.0f;
     point.approach_speed = 0.0f;
     ++point.age;
@@ -155,15 +191,17 @@ bool recycle(ContactStore& store, const Contact& contact, const ContactPair& pai
   if (contact.manifold_count == 0) return true;
   if (largest(absolute(view.a_from_b.position)) * 1.2e-7f > kRattle * view.size) return false;
   const std::span<Manifold> manifolds = manifolds_of(store, contact);
-  const bool flat = is_flat(pair.shape_a->shape) && is_flat(pair.shape_b->shape);
-  const PointMotion points(motion);
+  const Follow follow = follow_of(pair.shape_a->shape, pair.shape_b->shape);
+  const PointMotion points(follow.frame_is_b ? Motion(inverse(contact.seen_a_from_b), inverse(view.a_from_b))
+                                             : motion);
   for (const Manifold& manifold : manifolds) {
-    if (!anchors_hold(manifold, flat, view.size, motion.sine, points)) return false;
+    if (!anchors_hold(manifold, follow, view.size, motion.sine, points)) return false;
   }
-  const Mat3 world_from_a = to_matrix(pair.look_a->orientation);
+  const ColliderBody& frame = follow.frame_is_b ? *pair.body_b : *pair.body_a;
+  const Mat3 world_from_frame = to_matrix(frame.pose.orientation);
   const Vec3 com_b_from_a = difference(center_of_mass(*pair.body_b), center_of_mass(*pair.body_a));
   for (Manifold& manifold : manifolds) {
-    move_manifold(manifold, world_from_a, pair.body_a->center, com_b_from_a, points);
+    move_manifold(manifold, follow, world_from_frame, frame.center, com_b_from_a, points);
   }
   return true;
 }
@@ -308,15 +346,16 @@ void match_by_place(Former<kRoom>& former, Manifold& manifold, unsigned matched,
 
 // From the frame of shape A into world axes, and into the body frame for anchors. Impulses are zero.
 Manifold to_world(const LocalManifold& local, const Pose& frame, const ContactPair& pair) {
-  const ColliderBody& a = *pair.body_a;
+  const bool frame_is_b = follow_of(pair.shape_a->shape, pair.shape_b->shape).frame_is_b;
+  const ColliderBody& frame_body = frame_is_b ? *pair.body_b : *pair.body_a;
   // Each side by itself: one of the two may be far away (a plane's body), and floats with it.
-  const Vec3 frame_from_a = difference(frame.position, center_of_mass(a));
+  const Vec3 frame_from_a = difference(frame.position, center_of_mass(*pair.body_a));
   const Vec3 frame_from_b = difference(frame.position, center_of_mass(*pair.body_b));
   Manifold out;
   out.normal = rotate(frame.orientation, local.normal);
   out.count = local.count;
   out.triangle = local.triangle;
-  out.seen_normal = rotate_inverse(a.pose.orientation, out.normal);
+  out.seen_normal = rotate_inverse(frame_body.pose.orientation, out.normal);
   for (int i = 0; i < local.count; ++i) {
     ContactPointState& point = out.points[i];
     const Vec3 place = rotate(frame.orientation, local.points[i].position);
@@ -324,7 +363,9 @@ Manifold to_world(const LocalManifold& local, const Pose& frame, const ContactPa
     point.from_b = place + frame_from_b;
     point.separation = local.points[i].separation;
     point.feature = local.points[i].feature;
-    out.anchors[i].position = rotate_inverse(a.pose.orientation, point.from_a) + a.center;
+    out.anchors[i].position =
+        rotate_inverse(frame_body.pose.orientation, frame_is_b ? point.from_b : point.from_a) +
+        frame_body.center;
     out.anchors[i].separation = point.separation;
   }
   return out;

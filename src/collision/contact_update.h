@@ -6,8 +6,10 @@
 //
 // Recycling. Let T be the rigid motion of B in A's body frame since the last full look. The point of B at an anchor moves
 // by d = T(p) - p, so the separation there changes by dot(d, n) and the point midway by d / 2. With the features that meet
-// unchanged this leaves out only products of the slide and the tilt, and of the tilt and the separation. Motion is always
-// measured from the last FULL look, so errors do not add up.
+// unchanged this leaves out only products of the slide and the tilt. Where B is a core swept by a ball on something flat
+// (a ball, a capsule), p is the core's point above the contact, the contact goes with it by the whole of d, and so follows
+// what rolls exactly; where that is A, the two change places. Motion is always measured from the last FULL look, so errors
+// do not add up.
 #pragma once
 
 #include "collision/collide.h"

@@ -36,8 +36,8 @@ struct ContactPointState {
   std::uint32_t age = 0;        // steps for which this feature has been in contact
 };
 
-// A contact point as the last full look found it, in the body frame of A: from it the point of a pair that hardly moved
-// against each other is found again without asking the shapes.
+// A contact point as the last full look found it, in the body frame of A, or of B where only A is a core swept by a ball:
+// from it the point of a pair that hardly moved against each other is found again without asking the shapes.
 struct PointAnchor {
   Vec3 position;  // m, midway between the surfaces
   float separation = 0.0f;
@@ -54,7 +54,7 @@ struct Manifold {
   Vec3 total_friction;        // N s on B over the whole last step
   std::uint32_t sliding = 0;  // 1 when friction was at its limit at the end of the last step
   // What the solver never reads: the manifold as the last full look saw it.
-  Vec3 seen_normal{0, 1, 0};  // in the body frame of A
+  Vec3 seen_normal{0, 1, 0};  // in the frame of the anchors
   PointAnchor anchors[kMaxManifoldPoints];
 };
 
