@@ -212,7 +212,7 @@ int reduce_points(ManifoldPoint* points, int count, Vec3 normal) {
       if (!(value[i] >= best - tolerance)) continue;
       if (chosen[slot] < 0 || points[i].feature < points[chosen[slot]].feature) chosen[slot] = i;
     }
-    return true;
+    return chosen[slot] >= 0;
   };
 
   // First: the deepest, by name among equally deep ones.
@@ -222,7 +222,8 @@ int reduce_points(ManifoldPoint* points, int count, Vec3 normal) {
     deepest = min(deepest, points[i].separation);
     value[i] = -points[i].separation;
   }
-  choose(0, -deepest, -kUnbounded, kEqualDepth * std::sqrt(width_squared));
+  // Positions that are not finite (bodies that are about to be taken out of the world) leave the first as it is.
+  if (!choose(0, -deepest, -kUnbounded, kEqualDepth * std::sqrt(width_squared))) chosen[0] = 0;
   const Vec3 p0 = points[chosen[0]].position;
   int kept = 1;
 

@@ -140,7 +140,7 @@ Axis search(const Boxes& x, const Transform& a_from_b, float max_separation, int
              edge.separation <= face.separation + bias) {
     return {favoured, s[favoured]};
   }
-  if (edge.separation > face.separation + bias) return edge;
+  if (edge.number != kNoAxis && edge.separation > face.separation + bias) return edge;
   for (int k = 0; k < kFirstEdge; ++k) {
     if (s[k] >= face.separation - 0.5f * bias) return {k, s[k]};
   }

@@ -43,6 +43,8 @@ ConvexMethod convex_method(ShapeKind a, ShapeKind b) { return kMethods[int(a)][i
 void collide_convex(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
                     PairCache& cache, LocalManifold& out) {
   out.count = 0;
+  // Bodies that are about to be taken out of the world.
+  if (!is_finite(a_from_b)) return;
   ConvexMethod method = convex_method(a.kind, b.kind);
   if ((method == B || method == P) && (is_rounded(a) || is_rounded(b))) method = C;
   switch (method) {

@@ -11,7 +11,7 @@ namespace {
 
 // The face around `vertex` that opposes `direction` most.
 int opposing_face(const Polytope& polytope, int vertex, Vec3 direction) {
-  int best = -1;
+  int best = 0;
   float least = 2.0f;
   const auto look = [&](int face) {
     const float slope = dot(polytope.planes[face].normal, direction);

@@ -21,7 +21,7 @@ float above(const Polytope& other, Vec3 normal, float offset) { return lowest_al
 
 // The best face of `reference` against `other`, both in reference's frame except that other's columns stay its own.
 struct FaceQuery {
-  int face = -1;
+  int face = 0;
   float separation = -kUnbounded;
 };
 FaceQuery best_face(const Polytope& reference, const Polytope& other, const Transform& reference_from_other,
