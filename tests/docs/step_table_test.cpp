@@ -59,7 +59,8 @@ TEST(StepTable, NamesUnitsThatExist) {
 // Every `[text](path)` of the documents leads to a file of the tree.
 TEST(Documents, HaveNoDeadLinks) {
   std::vector<std::filesystem::path> documents;
-  for (const char* name : {"README.md", "CONTRIBUTING.md", "CHANGELOG.md"}) documents.push_back(source_path(name));
+  for (const char* name : {"README.md", "CONTRIBUTING.md", "CHANGELOG.md"})
+    documents.push_back(source_path(name));
   for (const auto& entry : std::filesystem::recursive_directory_iterator(source_path("docs"))) {
     if (entry.path().extension() == ".md") documents.push_back(entry.path());
   }
@@ -70,7 +71,8 @@ TEST(Documents, HaveNoDeadLinks) {
       std::string target = text.substr(at + 2, text.find(')', at) - at - 2);
       if (target.empty() || target.find("://") != std::string::npos || target[0] == '#') continue;
       target = target.substr(0, target.find('#'));
-      EXPECT_TRUE(std::filesystem::exists(document.parent_path() / target)) << document << " links to " << target;
+      EXPECT_TRUE(std::filesystem::exists(document.parent_path() / target))
+          << document << " links to " << target;
     }
   }
 }
