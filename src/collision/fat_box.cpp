@@ -11,13 +11,17 @@ constexpr float kLargestReach = 2.0f;
 // Larger than any fat box that fat_box() makes: 2 * kFatShare + kLargestReach, in sizes.
 constexpr double kTooLarge = 3.0;
 constexpr float kSmallestNormal = 1.17549435e-38f;
+constexpr float kLargestFloat = 3.402823466e38f;
 
 float next_up(float a) {
   if (absolute(a) < kSmallestNormal) return kSmallestNormal;
   const auto bits = __builtin_bit_cast(std::uint32_t, a);
   return __builtin_bit_cast(float, a > 0.0f ? bits + 1 : bits - 1);
 }
+// Sides beyond the range of floats, or not numbers at all, end where floats end: trees rely on finite boxes.
 float round_up(double a) {
+  if (!(a <= double(kLargestFloat))) return kLargestFloat;
+  if (a < -double(kLargestFloat)) return -kLargestFloat;
   const float rounded = float(a);
   return double(rounded) < a ? next_up(rounded) : rounded;
 }
@@ -43,8 +47,11 @@ float largest_coordinate(const Aabb& box) {
 
 WorldBox world_box(const Shape& shape, const Pose& world_from_shape) {
   const Aabb box = bounds(shape, {{}, world_from_shape.orientation});
-  // bounds() works in float: a few roundings of numbers no larger than the box's coordinates.
-  const double rounding = 2.0e-6 * double(largest_coordinate(box));
+  // bounds() works in float: a few roundings of numbers no larger than the box's coordinates. A disc seen from the side
+  // loses half of its digits: sqrt(1 - a^2) with a near 1.
+  const bool has_disc = shape.kind == ShapeKind::cylinder || shape.kind == ShapeKind::cone;
+  const double rounding =
+      2.0e-6 * double(largest_coordinate(box)) + (has_disc ? 6.0e-4 * double(shape.radius) : 0.0);
   const DVec3 slack{rounding, rounding, rounding};
   return {world_from_shape.position + box.low - slack, world_from_shape.position + box.high + slack};
 }
