@@ -18,15 +18,16 @@ constexpr float kSideBySide = 0.1f;
 constexpr float kSideways = 0.1f, kSidewaysCone = 0.01f;
 // B's face becomes the reference only if it faces the normal better than A's by this much: no flipping.
 constexpr float kPreferA = 1.0e-3f;
-// If the clipped points miss the nearest pair of points by this part of the shapes' size, that pair is added.
+// If the clipped points miss the nearest pair of points by this part of the smaller shape's inner radius, that pair is
+// added.
 constexpr float kMissed = 1.0e-3f;
 
 // Where two cores are nearest or deepest.
 struct CoreContact {
-  Vec3 normal;       // unit, from A to B
-  Vec3 on_a, on_b;   // of the cores, A's frame
-  float separation;  // of the cores
-  float size;
+  Vec3 normal;        // unit, from A to B
+  Vec3 on_a, on_b;    // of the cores, A's frame
+  float separation;   // of the cores
+  float size = 0.0f;  // of the smaller shape
 };
 
 void put_in_a(const Transform& a_from_b, FacePolygon& face) {
@@ -134,7 +135,7 @@ void collide_cores(const Shape& a, const Shape& b, const Transform& a_from_b, fl
   remember(cache, to_float(distance.normal));
   if (distance.beyond || (!distance.overlap && distance.distance > reach)) return;
   CoreContact contact;
-  contact.size = float(pair.size());
+  contact.size = min(inner_radius(a), inner_radius(b));
   if (distance.overlap) {
     const CorePenetration deep = core_penetration(pair, distance);
     contact.normal = to_float(deep.normal);
