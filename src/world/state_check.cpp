@@ -81,8 +81,10 @@ const char* fault_in_shape(const RigidWorld& w, std::uint32_t i) {
   if (proxy.body != body) return "a proxy of another body than its shape";
   const Transform& place = w.shapes.places[i];
   if (!is_finite(place.position) || !is_finite(place.orientation)) return "a shape whose place is not finite";
+  const Aabb& box = proxy.fat_box;
+  if (!is_finite(box.low) || !is_finite(box.high)) return "a fat box that is not finite";
   for (int axis = 0; axis < 3; ++axis) {
-    if (!(proxy.fat_box.low[axis] <= proxy.fat_box.high[axis])) return "a fat box without an inside";
+    if (box.low[axis] > box.high[axis]) return "a fat box without an inside";
   }
   return nullptr;
 }
