@@ -1,0 +1,218 @@
+// Events, filters, materials in pairs, sensors, sleep and what wakes, readings of contacts, energy and momentum.
+#include "laws/kit.h"
+
+namespace gyre::laws {
+namespace {
+
+TEST(Events, RemovingABodyEndsItsContacts) {
+  World world = make_world();
+  add_ground(world);
+  const BodyId box = world.add_body({.pose = {.position = {0, 0.5, 0}}}, {.geometry = Box{}});
+  run(world, 0.5);
+  world.remove_body(box);
+  world.step(kStep);
+  EXPECT_EQ(world.events().ends.size(), 1u);
+}
+
+TEST(Sensor, ReportsWhatPassesAndTouchesNothing) {
+  World world = make_world({.gravity = {0, 0, 0}});
+  const BodyId gate =
+      world.add_body({.type = BodyType::fixed}, {.geometry = Box{{0.5f, 5, 5}}, .sensor = true});
+  const BodyId ball = world.add_body({.pose = {.position = {-3, 0, 0}}, .linear_velocity = {5, 0, 0}},
+                                     {.geometry = Sphere{}});
+  int in = 0, out = 0;
+  for (int i = 0; i < 90; ++i) {
+    world.step(kStep);
+    for (const SensorTouch& t : world.events().sensors) {
+      EXPECT_EQ(t.sensor, world.shapes(gate)[0]);
+      EXPECT_EQ(t.visitor, world.shapes(ball)[0]);
+      (t.begins ? in : out) += 1;
+    }
+  }
+  EXPECT_EQ(in, 1);
+  EXPECT_EQ(out, 1);
+  EXPECT_EQ(world.linear_velocity(ball), (Vec3{5, 0, 0}));
+  EXPECT_TRUE(world.events().begins.empty());
+}
+
+TEST(Joints, BreakAboveTheirForceAndSaySo) {
+  World world = make_world();
+  const BodyId weight = world.add_body({.mass = 10.0f}, {.geometry = Box{}});
+  const JointId strong =
+      world.add_joint({.kind = JointKind::ball, .b = weight, .anchor = {0, 0.5, 0}, .break_force = 150.0f});
+  run(world, 2.0);
+  EXPECT_TRUE(world.exists(strong)) << "98.1 N of 150";
+  world.add_force(weight, {0, -100, 0});
+  world.step(kStep);
+  ASSERT_EQ(world.events().broken.size(), 1u);
+  EXPECT_EQ(world.events().broken[0].joint, strong);
+  EXPECT_NEAR(double(world.events().broken[0].force), 198.1, 5.0);
+  EXPECT_FALSE(world.exists(strong));
+  run(world, 1.0);
+  EXPECT_LT(world.pose(weight).position.y, -4.0);
+}
+
+bool collide(const Filter& fa, const Filter& fb) {
+  World world = make_world({.gravity = {0, 0, 0}});
+  world.add_body({.type = BodyType::fixed}, {.geometry = Box{}, .filter = fa});
+  const BodyId b = world.add_body({.pose = {.position = {-2, 0, 0}}, .linear_velocity = {4, 0, 0}},
+                                  {.geometry = Box{}, .filter = fb});
+  run(world, 1.0);
+  return world.pose(b).position.x < 0.0;
+}
+TEST(Filter, LayersAndGroups) {
+  EXPECT_TRUE(collide({}, {}));
+  EXPECT_FALSE(collide({.layer = 1, .collides_with = 1}, {.layer = 2, .collides_with = 0xffffffffu}));
+  EXPECT_FALSE(collide({.layer = 1, .collides_with = 0xffffffffu}, {.layer = 2, .collides_with = 2}));
+  EXPECT_TRUE(collide({.layer = 1, .collides_with = 2}, {.layer = 2, .collides_with = 1}));
+  EXPECT_FALSE(collide({.group = -3}, {.group = -3}));
+  EXPECT_TRUE(collide({.group = -3}, {.group = -4}));
+  EXPECT_TRUE(
+      collide({.layer = 1, .collides_with = 0, .group = 5}, {.layer = 1, .collides_with = 0, .group = 5}));
+  EXPECT_FALSE(
+      collide({.layer = 1, .collides_with = 0, .group = 5}, {.layer = 1, .collides_with = 0, .group = 6}));
+}
+TEST(Filter, ChangedWhileTouchingTakesEffect) {
+  World world = make_world();
+  add_ground(world);
+  const BodyId box = world.add_body({.pose = {.position = {0, 0.5, 0}}}, {.geometry = Box{}});
+  run(world, 3.0);
+  EXPECT_FALSE(world.is_awake(box));
+  EXPECT_TRUE(world.set_filter(world.shapes(box)[0], {.layer = 2, .collides_with = 0}));
+  run(world, 1.0);
+  EXPECT_LT(world.pose(box).position.y, -2.0);
+}
+
+TEST(Restitution, CombinesByRuleAndByPair) {
+  const auto bounce = [](CombineRule rule, bool pair) {
+    World world = make_world({.gravity = {0, 0, 0}, .restitution_rule = rule});
+    Material a = surface(0, 0.9f), b = surface(0, 0.4f);
+    a.id = 3, b.id = 4;
+    if (pair) world.set_material_pair({.a = 3, .b = 4, .restitution = 0.25f});
+    world.add_body({.type = BodyType::fixed}, {.geometry = Box{}, .material = a});
+    const BodyId ball = world.add_body({.pose = {.position = {-2, 0, 0}}, .linear_velocity = {10, 0, 0}},
+                                       {.geometry = Sphere{}, .material = b});
+    run(world, 0.5);
+    return -double(world.linear_velocity(ball).x) / 10.0;
+  };
+  EXPECT_NEAR(bounce(CombineRule::maximum, false), 0.9, 1e-4);
+  EXPECT_NEAR(bounce(CombineRule::minimum, false), 0.4, 1e-4);
+  EXPECT_NEAR(bounce(CombineRule::average, false), 0.65, 1e-4);
+  EXPECT_NEAR(bounce(CombineRule::geometric_mean, false), 0.6, 1e-4);
+  EXPECT_NEAR(bounce(CombineRule::product, false), 0.36, 1e-4);
+  EXPECT_NEAR(bounce(CombineRule::product, true), 0.25, 1e-4);
+}
+
+// A tower of three, asleep; whatever changes under or about it wakes what it concerns.
+struct Sleepers {
+  World world;
+  std::vector<BodyId> boxes;
+};
+Sleepers sleepers() {
+  Sleepers s{make_world(), {}};
+  add_ground(s.world);
+  for (int i = 0; i < 3; ++i)
+    s.boxes.push_back(s.world.add_body({.pose = {.position = {0, 0.5 + i, 0}}}, {.geometry = Box{}}));
+  int asleep_events = 0;
+  for (int i = 0; i < 300; ++i) {
+    s.world.step(kStep);
+    for (const SleepChange& c : s.world.events().sleep_changes) asleep_events += int(c.asleep);
+  }
+  EXPECT_EQ(asleep_events, 3);
+  EXPECT_EQ(s.world.counts().awake_bodies, 0);
+  return s;
+}
+TEST(Sleep, EndsForTheTowerWhenItsFootIsRemoved) {
+  Sleepers s = sleepers();
+  s.world.remove_body(s.boxes[0]);
+  run(s.world, 2.0);
+  EXPECT_NEAR(s.world.pose(s.boxes[1]).position.y, 0.5, 0.02) << "A-121";
+  EXPECT_NEAR(s.world.pose(s.boxes[2]).position.y, 1.5, 0.02) << "A-121";
+}
+TEST(Sleep, EndsWhenSomethingKinematicComesUnder) {
+  Sleepers s = sleepers();
+  const BodyId ram = s.world.add_body(
+      {.type = BodyType::kinematic, .pose = {.position = {-3, 0.5, 0}}, .linear_velocity = {2, 0, 0}},
+      {.geometry = Box{}});
+  run(s.world, 2.0);
+  EXPECT_GT(s.world.pose(s.boxes[0]).position.x, 1.0) << "A-121";
+  static_cast<void>(ram);
+}
+TEST(Sleep, EndsWithGravityForceVelocityPoseAndType) {
+  for (int k = 0; k < 6; ++k) {
+    Sleepers s = sleepers();
+    if (k == 0) s.world.set_gravity({0, 5, 0});
+    if (k == 1) s.world.add_force(s.boxes[1], {0, 0, 3e4f});
+    if (k == 2) s.world.set_velocity(s.boxes[2], {0, 5, 0}, {});
+    if (k == 3) s.world.set_pose(s.boxes[0], {.position = {0, 10, 0}});
+    if (k == 4) s.world.add_impulse(s.boxes[2], {0, 5000, 0});
+    if (k == 5) s.world.set_gravity_scale(s.boxes[2], -1.0f);
+    s.world.step(kStep);
+    EXPECT_GT(s.world.counts().awake_bodies, 0) << k;
+    run(s.world, 0.5);
+    double moved = 0.0;
+    for (int i = 0; i < 3; ++i)
+      moved = std::max(moved, length(s.world.pose(s.boxes[std::size_t(i)]).position - DVec3{0, 0.5 + i, 0}));
+    EXPECT_GT(moved, k == 1 ? 1e-4 : 0.05) << k;
+  }
+}
+TEST(Sleep, EndsForBodiesHangingFromAChangedJoint) {
+  World world = make_world();
+  const BodyId lamp = world.add_body({}, {.geometry = Box{}});
+  const JointId cord = world.add_joint({.kind = JointKind::ball, .b = lamp, .anchor = {0, 1, 0}});
+  run(world, 5.0);
+  EXPECT_FALSE(world.is_awake(lamp));
+  world.remove_joint(cord);
+  run(world, 1.0);
+  EXPECT_LT(world.pose(lamp).position.y, -4.0) << "A-121";
+}
+TEST(Sleep, MotorsTurnSleepersAgain) {
+  World world = make_world({.gravity = {0, 0, 0}});
+  const BodyId wheel = world.add_body({}, {.geometry = Box{}});
+  const JointId axle =
+      world.add_joint({.kind = JointKind::hinge, .b = wheel, .anchor = {0, 0, 0}, .axis = {0, 1, 0}});
+  run(world, 3.0);
+  EXPECT_FALSE(world.is_awake(wheel));
+  EXPECT_TRUE(world.set_motor(axle, {.target_velocity = 3.0f, .max_force = 1e6f}));
+  run(world, 1.0);
+  EXPECT_NEAR(double(world.angular_velocity(wheel).y), 3.0, 0.01) << "A-121";
+}
+
+TEST(Readings, ContactsOfABoxAtRest) {
+  World world = make_world({.sleeping = false});
+  const BodyId ground = add_ground(world);
+  const BodyId box = world.add_body({.pose = {.position = {0, 0.5, 0}}, .mass = 3.0f}, {.geometry = Box{}});
+  run(world, 2.0);
+  std::vector<ContactPoint> points(world.contacts({}));
+  ASSERT_EQ(points.size(), 4u);
+  EXPECT_EQ(world.contacts(points), 4u);
+  double weight = 0.0;
+  for (const ContactPoint& p : points) {
+    weight += double(p.normal_impulse);
+    EXPECT_TRUE((p.body_a == ground && p.body_b == box) || (p.body_a == box && p.body_b == ground));
+    EXPECT_NEAR(double(p.normal.y), p.body_b == box ? 1.0 : -1.0, 1e-5) << "from a to b";
+    EXPECT_NEAR(double(std::fabs(dot(p.normal, p.tangent_1))), 0.0, 1e-5);
+    EXPECT_NEAR(std::fabs(p.position.x), 0.5, 1e-3);
+    EXPECT_NEAR(p.position.y, 0.0, 1e-2);
+  }
+  EXPECT_NEAR(weight, 3.0 * kGravity / 60.0, 1e-3 * weight);
+}
+
+TEST(Readings, EnergyAndMomentumOfFreeBodies) {
+  World world = make_world();
+  world.add_body({.pose = {.position = {1, 2, 3}},
+                  .linear_velocity = {1, 0, 0},
+                  .angular_velocity = {0, 2, 0},
+                  .mass = 6.0f},
+                 {.geometry = Box{}});
+  const Energy e = world.energy();
+  EXPECT_NEAR(e.kinetic, 3.0 + 0.5 * 1.0 * 4.0, 1e-5);
+  EXPECT_NEAR(e.potential, 6.0 * kGravity * 2.0, 1e-4);
+  const Momentum m = world.momentum();
+  EXPECT_NEAR(m.linear.x, 6.0, 1e-6);
+  EXPECT_NEAR(m.angular.y, 3.0 * 6.0 + 2.0, 1e-5);
+  EXPECT_NEAR(m.angular.z, -2.0 * 6.0, 1e-5);
+}
+
+}  // namespace
+}  // namespace gyre::laws

@@ -1,0 +1,181 @@
+// Fast bodies and thin ones, and sliding over meshes and over boxes laid flush: nothing passes through, nothing bumps.
+#include "laws/kit.h"
+
+namespace gyre::laws {
+namespace {
+
+int through_wall(const AnyShape& bullet, float speed, float thickness, BodyType wall_type, bool continuous) {
+  int through = 0;
+  for (int k = 0; k < 20; ++k) {
+    World world = make_world({.gravity = {0, 0, 0}, .sleeping = false});
+    world.add_body({.type = wall_type, .mass = 1e6f}, {.geometry = Box{{0.5f * thickness, 2, 2}}});
+    const double start = -2.0 - double(speed) / 60.0 * double(k) / 20.0;
+    const BodyId b = world.add_body({.pose = {.position = {start, 0.1, 0.2}},
+                                     .linear_velocity = {speed, 0, 0},
+                                     .continuous = continuous,
+                                     .mass = 0.01f},
+                                    {.geometry = bullet});
+    for (int i = 0; i < 60; ++i) world.step(kStep);
+    through += int(world.pose(b).position.x > 0.0);
+  }
+  return through;
+}
+
+TEST(Bullet, NeverPassesAThinWall) {
+  for (const float speed : {50.0f, 100.0f, 300.0f, 1000.0f, 3000.0f}) {
+    const int n = through_wall(Sphere{0.02f}, speed, 0.01f, BodyType::fixed, false);
+    EXPECT_TRUE(limit_row("A-150 spheres of 20 through a fixed wall", n, 0, 0)) << speed;
+    EXPECT_EQ(through_wall(Box{{0.02f, 0.02f, 0.02f}}, speed, 0.01f, BodyType::fixed, false), 0) << speed;
+  }
+}
+TEST(Bullet, NeverPassesAThinDynamicWallWhenContinuous) {
+  for (const float speed : {50.0f, 300.0f, 3000.0f}) {
+    const int n = through_wall(Sphere{0.02f}, speed, 0.01f, BodyType::dynamic, true);
+    EXPECT_TRUE(limit_row("gap 7: spheres of 20 through a dynamic wall", n, 0, 0)) << speed;
+  }
+}
+
+TEST(Blade, StrikesAPostAtAnySpin) {
+  for (const float rate : {10.0f, 40.0f, 160.0f, 600.0f}) {
+    for (int phase = 0; phase < 8; ++phase) {
+      World world = make_world({.gravity = {0, 0, 0}, .sleeping = false});
+      const BodyId post = world.add_body({.type = BodyType::fixed, .pose = {.position = {0.8, 0, 0}}},
+                                         {.geometry = Box{{0.02f, 0.5f, 0.02f}}});
+      const float angle = 0.4f + 0.3f * float(phase);
+      const BodyId blade = world.add_body(
+          {.pose = {.orientation = from_axis_angle({0, 1, 0}, angle)}, .angular_velocity = {0, rate, 0}},
+          {.geometry = Box{{1.0f, 0.05f, 0.01f}}});
+      world.add_joint({.kind = JointKind::hinge, .b = blade, .anchor = {0, 0, 0}, .axis = {0, 1, 0}});
+      bool hit = false;
+      Unwrapped turned_by;
+      for (int i = 0; i < 60; ++i) {
+        world.step(kStep);
+        for (const ContactBegin& c : world.events().begins) hit |= c.body_a == post || c.body_b == post;
+      }
+      EXPECT_TRUE(hit) << "A-153 at " << rate << " rad/s, phase " << phase;
+      EXPECT_LT(std::fabs(world.angular_velocity(blade).y), 0.5f * rate)
+          << "A-153 at " << rate << " rad/s, phase " << phase;
+    }
+  }
+}
+
+TEST(Continuous, DoesNotStallFlight) {
+  World world = make_world({.gravity = {0, 0, 0}, .sleeping = false});
+  world.add_body({.type = BodyType::fixed, .pose = {.position = {50, 0, 0}}},
+                 {.geometry = Box{{0.5f, 5, 5}}});
+  const BodyId ball = world.add_body({.linear_velocity = {20, 0, 0}}, {.geometry = Sphere{0.5f}});
+  double last = 0.0;
+  for (int i = 0; i < 20; ++i) {
+    world.step(0.25f);
+    const double x = world.pose(ball).position.x;
+    if (last < 43.0) {
+      EXPECT_GE(x - last, 0.2 * 5.0) << "A-155 step " << i;
+    }
+    last = x;
+  }
+  EXPECT_NEAR(last, 49.0, 0.05) << "A-155 rests at the wall";
+}
+
+Geometry floor_mesh(float cell, int n) {
+  std::vector<Vec3> v;
+  std::vector<std::uint32_t> t;
+  for (int z = 0; z <= n; ++z) {
+    for (int x = 0; x <= n; ++x)
+      v.push_back({cell * (float(x) - 0.5f * float(n)), 0, cell * (float(z) - 0.5f * float(n))});
+  }
+  for (int z = 0; z < n; ++z) {
+    for (int x = 0; x < n; ++x) {
+      const std::uint32_t a = std::uint32_t(z * (n + 1) + x), b = a + 1, c = b + std::uint32_t(n) + 1,
+                          d = c - 1;
+      for (const std::uint32_t i : {a, c, b, a, d, c}) t.push_back(i);
+    }
+  }
+  return *cook_mesh({.vertices = v, .indices = t});
+}
+
+TEST(ThinSlab, NeverSinksIntoAMesh) {
+  for (const float half : {0.03f, 0.015f}) {
+    for (const float tilt : {0.0f, 0.1f, 0.5f, 1.2f}) {
+      World world = make_world({.sleeping = false});
+      world.add_body({.type = BodyType::fixed}, {.geometry = floor_mesh(1.0f, 20)});
+      const BodyId slab = world.add_body(
+          {.pose = {.position = {0.13, 5, 0.21}, .orientation = from_axis_angle({1, 0, 0.3f}, tilt)}},
+          {.geometry = Box{{1, half, 1}}});
+      double lowest = 10.0;
+      for (int i = 0; i < 300; ++i) {
+        world.step(kStep);
+        lowest = std::min(lowest, world.pose(slab).position.y);
+      }
+      EXPECT_TRUE(limit_row("A-156 slab below the surface (m)", -lowest, 0.0, -0.9 * double(half))) << tilt;
+    }
+  }
+}
+
+struct Slide {
+  double bump, speed_loss, heading;
+};
+// What a body does that slides at (8, 1.7) m/s on a frictionless floor for a second and a half.
+Slide slide(World world, const AnyShape& shape, double rest_height) {
+  const BodyId b =
+      world.add_body({.pose = {.position = {-6.03, rest_height, -1.27}}, .linear_velocity = {8, 0, 1.7f}},
+                     {.geometry = shape, .material = surface(0.0f)});
+  Slide s{0, 0, 0};
+  for (int i = 0; i < 90; ++i) {
+    world.step(kStep);
+    s.bump = std::max(s.bump, std::fabs(world.pose(b).position.y - rest_height));
+  }
+  const DVec3 v = wide(world.linear_velocity(b));
+  const double speed = std::sqrt(64.0 + 1.7 * 1.7);
+  s.speed_loss = std::fabs(length(v) - speed) / speed;
+  s.heading = std::fabs(std::atan2(v.z, v.x) - std::atan2(1.7, 8.0));
+  return s;
+}
+void expect_smooth(const char* name, const Slide& s) {
+  std::printf("[row] %s\n", name);
+  EXPECT_TRUE(limit_row("  bump (m)", s.bump, 3e-4, 2e-5)) << name;
+  EXPECT_TRUE(limit_row("  loss of speed (relative)", s.speed_loss, 1e-3, 1e-5)) << name;
+  EXPECT_TRUE(limit_row("  change of heading (rad)", s.heading, 1e-3, 1e-5)) << name;
+}
+
+struct Slider {
+  const char* name;
+  AnyShape shape;
+  double height;
+};
+std::vector<Slider> sliders() {
+  return {{"box", Box{{0.4f, 0.3f, 0.4f}}, 0.3},
+          {"sphere", Sphere{0.3f}, 0.3},
+          {"plate", Box{{0.4f, 0.05f, 0.4f}}, 0.05}};
+}
+
+TEST(Sliding, OverAMeshHasNoBumps) {
+  for (const float cell : {1.0f, 0.25f, 0.37f}) {
+    for (const Slider& s : sliders()) {
+      World world = make_world({.sleeping = false});
+      world.add_body({.type = BodyType::fixed},
+                     {.geometry = floor_mesh(cell, int(24.0f / cell)), .material = surface(0.0f)});
+      std::printf("[row] A-160 cell %g\n", double(cell));
+      expect_smooth(s.name, slide(std::move(world), s.shape, s.height));
+    }
+  }
+}
+
+TEST(Rest, OnTwoTrianglesEndsInSleep) {
+  World world = make_world();
+  world.add_body({.type = BodyType::fixed}, {.geometry = floor_mesh(20.0f, 1)});
+  Material rough = surface(0.6f);
+  rough.rolling_friction = 1e-3f;
+  const BodyId ball =
+      world.add_body({.pose = {.position = {0.1, 0.5, 0}}, .linear_velocity = {0.05f, 0, 0.02f}},
+                     {.geometry = Sphere{0.5f}, .material = rough});
+  double fastest = 0.0;
+  for (int i = 0; i < 600; ++i) {
+    world.step(kStep);
+    fastest = std::max(fastest, double(length(world.linear_velocity(ball))));
+  }
+  EXPECT_FALSE(world.is_awake(ball)) << "A-165";
+  EXPECT_LT(fastest, 0.056) << "A-165: it never gains speed";
+}
+
+}  // namespace
+}  // namespace gyre::laws

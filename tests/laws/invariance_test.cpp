@@ -1,0 +1,130 @@
+// What may not matter: where the world is, how it is turned, how fast it moves, which way is left, and the unit of mass.
+// And what must improve: the error with the step.
+#include "laws/kit.h"
+
+namespace gyre::laws {
+namespace {
+
+// How a scene is placed; the same scene in every frame must show the same motion in that frame.
+struct Frame {
+  DVec3 origin;
+  Quat turn;
+  Vec3 velocity;
+  float mass_scale = 1.0f;
+  bool mirror = false;  // z to -z
+  float size = 1.0f;    // lengths times this, times times its square root
+};
+
+struct Record {
+  std::vector<DVec3> places;  // in the frame, over size
+};
+
+// A small heap: a box thrown onto a floor beside a stack of two, a rolling ball, and a pendulum.
+Record play(const Frame& f, double seconds, float step = kStep) {
+  const float m = f.mirror ? -1.0f : 1.0f, size = f.size, fast = std::sqrt(size);
+  World world = make_world({.gravity = rotate(f.turn, {0, -9.81f, 0}), .sleeping = false});
+  const auto place = [&](double x, double y, double z) {
+    return f.origin + turned(f.turn, double(size) * DVec3{x, y, z * double(m)});
+  };
+  const auto direction = [&](Vec3 v) { return rotate(f.turn, {v.x, v.y, v.z * m}); };
+  const auto axial = [&](Vec3 v) { return rotate(f.turn, {v.x * m, v.y * m, v.z}); };
+  const auto add = [&](DVec3 p, Vec3 v, Vec3 w, Vec3 tilt, const AnyShape& shape, float density) {
+    BodyDef def;
+    def.pose = {p, f.turn * from_rotation_vector({tilt.x * m, tilt.y * m, tilt.z})};
+    def.linear_velocity = fast * direction(v) + f.velocity;
+    def.angular_velocity = 1.0f / fast * axial(w);
+    return world.add_body(def, {.geometry = shape, .density = density * f.mass_scale});
+  };
+  const Quat q = f.turn;
+  world.add_body({.type = BodyType::kinematic, .pose = {place(0, -1, 0), q}, .linear_velocity = f.velocity},
+                 {.geometry = Box{size * Vec3{20, 1, 20}}});
+  std::vector<BodyId> bodies;
+  bodies.push_back(add(place(0, 0.5, 0), {}, {}, {}, Box{size * Vec3{0.5f, 0.5f, 0.5f}}, 1000));
+  bodies.push_back(add(place(0.1, 1.5, 0.05), {}, {}, {}, Box{size * Vec3{0.5f, 0.5f, 0.5f}}, 500));
+  bodies.push_back(add(place(-3, 1.1, 0.3), {4, 1, 0.25f}, {0.5f, 1, -1}, {0.1f, 0.2f, 0.3f},
+                       Box{size * Vec3{0.4f, 0.3f, 0.2f}}, 1000));
+  bodies.push_back(add(place(3, 0.5, -2), {-1, 0, 1}, {2, 0, 2}, {}, Sphere{size * 0.5f}, 1000));
+  const BodyId bob = add(place(6, 3, 1), {}, {}, {}, Sphere{size * 0.2f}, 1000);
+  bodies.push_back(bob);
+  if (f.velocity == Vec3{}) world.add_joint({.kind = JointKind::ball, .b = bob, .anchor = place(6, 4, 0)});
+  const float dt = step * fast;
+  Record record;
+  const int steps = int(std::lround(seconds / double(step)));
+  for (int i = 0; i < steps; ++i) world.step(dt);
+  for (const BodyId b : bodies) {
+    const DVec3 moved = f.origin + world.time() * wide(f.velocity);
+    DVec3 p = turned_back(f.turn, world.pose(b).position - moved) / double(size);
+    p.z *= double(m);
+    record.places.push_back(p);
+  }
+  return record;
+}
+
+double largest_difference(const Record& a, const Record& b, std::size_t count = 5) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < count; ++i) most = std::max(most, length(a.places[i] - b.places[i]));
+  return most;
+}
+
+TEST(Invariance, OfTheUnitOfMass) {
+  const Record one = play({}, 1.0);
+  for (const float scale : {1.0f / 1024.0f, 1024.0f}) {
+    EXPECT_TRUE(limit_row("A-171 masses times a power of two",
+                          largest_difference(one, play({.mass_scale = scale}, 1.0)), 1e-5, 0.0));
+  }
+  for (const float scale : {1e-3f, 0.7f, 1e3f}) {
+    EXPECT_TRUE(limit_row("A-171 masses times anything",
+                          largest_difference(one, play({.mass_scale = scale}, 1.0)), 1e-5, 1e-6));
+  }
+}
+
+TEST(Invariance, OfThePlace) {
+  const Record here = play({}, 1.0);
+  for (const double far : {1e3, 1e6}) {
+    EXPECT_TRUE(limit_row("B-17 moved far away, after 1 s (m)",
+                          largest_difference(here, play({.origin = {far, -far, 2.0 * far}}, 1.0)), 1e-3,
+                          1e-6));
+  }
+}
+
+// A stack of five at sizes from a millimetre to a kilometre, all at the same 60 Hz.
+TEST(Stack, OfFiveIsAsHighAtEverySize) {
+  for (const double edge : {1.0, 0.1, 0.02, 0.01, 0.001, 10.0, 100.0, 1000.0}) {
+    World world = make_world();
+    add_ground(world);
+    BodyId top;
+    const float half = float(0.5 * edge);
+    for (int i = 0; i < 5; ++i) {
+      top = world.add_body({.pose = {.position = {0, edge * (i + 0.5), 0}}},
+                           {.geometry = Box{{half, half, half}}});
+    }
+    run(world, 10.0);
+    const DVec3 p = world.pose(top).position;
+    std::printf("[row] edge %g m\n", edge);
+    EXPECT_TRUE(relative_row(edge < 2.0 ? "A-176 height over edge" : "A-177 height over edge", p.y / edge,
+                             4.5, edge < 2.0 ? 2e-2 : 1e-3, edge < 2.0 ? 5e-3 : 1e-4));
+    EXPECT_LT(std::fabs(p.x) + std::fabs(p.z), 0.05 * edge);
+  }
+}
+
+TEST(Reversal, OfAFrictionlessElasticGasReturns) {
+  World world = make_world({.gravity = {0, 0, 0}, .sleeping = false});
+  std::vector<BodyId> balls;
+  std::vector<DVec3> start;
+  for (int i = 0; i < 8; ++i) {
+    start.push_back({double(i % 2) * 2.5, double(i / 2 % 2) * 2.5, double(i / 4) * 2.5});
+    const Vec3 v{0.6f - 1.2f * float(i % 2), 0.7f - 1.4f * float(i / 2 % 2), 0.05f * float(i)};
+    balls.push_back(world.add_body({.pose = {.position = start.back()}, .linear_velocity = v},
+                                   {.geometry = Sphere{0.5f}, .material = surface(0, 1)}));
+  }
+  run(world, 1.0);
+  for (const BodyId b : balls) world.set_velocity(b, -world.linear_velocity(b), -world.angular_velocity(b));
+  run(world, 1.0);
+  double error = 0.0;
+  for (std::size_t i = 0; i < balls.size(); ++i)
+    error = std::max(error, length(world.pose(balls[i]).position - start[i]));
+  EXPECT_TRUE(limit_row("A-175 distance from the start (m)", error, 1e-2, 1e-4));
+}
+
+}  // namespace
+}  // namespace gyre::laws

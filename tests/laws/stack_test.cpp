@@ -1,0 +1,182 @@
+// Stacks, structures, heavy upon light, dominoes, overhangs, overlap.
+// Sources: statics; the similarity of dominoes: C. McLachlan et al., "Falling dominoes", 1983.
+#include "laws/kit.h"
+
+namespace gyre::laws {
+namespace {
+
+std::vector<BodyId> tower(World& world, int n, float edge = 1.0f, DVec3 foot = {}) {
+  std::vector<BodyId> boxes;
+  const double e = double(edge);
+  for (int i = 0; i < n; ++i) {
+    boxes.push_back(world.add_body({.pose = {.position = foot + DVec3{0, e * (i + 0.5), 0}}},
+                                   {.geometry = Box{{0.5f * edge, 0.5f * edge, 0.5f * edge}}}));
+  }
+  return boxes;
+}
+
+struct TowerResult {
+  double sink, drift;
+  bool asleep;
+};
+TowerResult stand(int n, double seconds, bool sleeping) {
+  World world = make_world({.sleeping = sleeping});
+  add_ground(world);
+  const std::vector<BodyId> boxes = tower(world, n);
+  run(world, seconds);
+  TowerResult r{double(n) - 0.5 - world.pose(boxes.back()).position.y, 0.0, world.counts().awake_bodies == 0};
+  for (const BodyId b : boxes) {
+    const DVec3 p = world.pose(b).position;
+    r.drift = std::max(r.drift, std::sqrt(p.x * p.x + p.z * p.z));
+  }
+  return r;
+}
+
+TEST(Tower, StandsAndSleeps) {
+  const int sizes[] = {10, 20, 40};
+  const double sinks[] = {0.03, 0.11, 0.45};
+  for (int k = 0; k < 3; ++k) {
+    const TowerResult r = stand(sizes[k], 30.0, true);
+    std::printf("[row] A-110 %d boxes\n", sizes[k]);
+    EXPECT_TRUE(limit_row("A-110 sink (m)", std::fabs(r.sink), sinks[k], 1e-2));
+    EXPECT_TRUE(limit_row("A-110 drift (m)", r.drift, 3e-2, 1e-3));
+    EXPECT_TRUE(r.asleep);
+  }
+}
+
+TEST(Tower, OfFortyStandsAMinuteAwake) {
+  const TowerResult r = stand(40, 60.0, false);
+  EXPECT_TRUE(limit_row("40 boxes for 60 s: drift (m)", r.drift, 1e-2, 1e-3));
+  EXPECT_TRUE(limit_row("40 boxes for 60 s: sink (m)", std::fabs(r.sink), 0.45, 1e-2));
+}
+
+TEST(Tower, ReadsItsOwnWeight) {
+  for (const bool sleeping : {false, true}) {
+    World world = make_world({.sleeping = sleeping});
+    add_ground(world);
+    const std::vector<BodyId> boxes = tower(world, 5);
+    run(world, sleeping ? 0.4 : 3.0);
+    std::vector<ContactPoint> points(64);
+    points.resize(std::min(points.size(), world.contacts(points)));
+    double bottom = 0.0;
+    for (const ContactPoint& p : points) {
+      if (p.body_a == boxes[0] || p.body_b == boxes[0]) {
+        if (p.body_a != boxes[1] && p.body_b != boxes[1]) bottom += double(p.normal_impulse);
+      }
+    }
+    EXPECT_TRUE(
+        relative_row("A-40 weight on the ground", bottom / double(kStep), 5000.0 * kGravity, 1e-2, 5e-4));
+  }
+}
+
+TEST(Tower, HeavyOnLight) {
+  World world = make_world({.sleeping = false});
+  add_ground(world);
+  const std::vector<BodyId> light = tower(world, 5);
+  const BodyId heavy =
+      world.add_body({.pose = {.position = {0, 5.5, 0}}}, {.geometry = Box{}, .density = 1e5f});
+  run(world, 20.0);
+  EXPECT_TRUE(limit_row("A-112 sink under 100 times the mass (m)",
+                        std::fabs(5.5 - world.pose(heavy).position.y), 0.1, 1e-2));
+  EXPECT_LT(std::fabs(world.pose(heavy).position.x), 0.03);
+}
+
+TEST(Tower, AThousandToOne) {
+  World world = make_world({.sleeping = false});
+  add_ground(world);
+  world.add_body({.pose = {.position = {0, 0.5, 0}}}, {.geometry = Box{}});
+  const BodyId heavy =
+      world.add_body({.pose = {.position = {0, 1.5, 0}}}, {.geometry = Box{}, .density = 1e6f});
+  run(world, 20.0);
+  EXPECT_TRUE(limit_row("gap 6: sink under 1000 times the mass (m)",
+                        std::fabs(1.5 - world.pose(heavy).position.y), 1.5e-2, 1.5e-3));
+}
+
+void pyramid(int base, float edge, double seconds, double good, const char* name) {
+  World world = make_world({.sleeping = false});
+  add_ground(world);
+  std::vector<BodyId> boxes;
+  std::vector<DVec3> places;
+  const double e = double(edge);
+  for (int row_ = 0; row_ < base; ++row_) {
+    for (int i = 0; i < base - row_; ++i) {
+      const DVec3 p{(double(i) - 0.5 * double(base - row_ - 1)) * 1.05 * e, (double(row_) + 0.5) * e, 0};
+      boxes.push_back(world.add_body({.pose = {.position = p}},
+                                     {.geometry = Box{{0.5f * edge, 0.5f * edge, 0.5f * edge}}}));
+      places.push_back(p);
+    }
+  }
+  run(world, seconds);
+  double drift = 0.0, sink = 0.0;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const DVec3 d = world.pose(boxes[i]).position - places[i];
+    drift = std::max(drift, std::sqrt(d.x * d.x + d.z * d.z));
+    sink = std::max(sink, std::fabs(d.y));
+  }
+  std::printf("[row] %s: sink of the worst box %g m\n", name, sink);
+  EXPECT_TRUE(limit_row(name, drift, good, 0.1 * good));
+  EXPECT_LT(sink, 10.0 * good);
+}
+TEST(LongPyramid, OfSixtyStands) { pyramid(60, 1.0f, 10.0, 5e-2, "pyramid of 60: drift (m)"); }
+
+TEST(Overhang, HarmonicStackStandsUpToItsLimit) {
+  for (const double reach : {0.95, 0.98, 1.02, 1.05}) {
+    World world = make_world({.sleeping = false});
+    // A table that ends at x = 0, and four blocks of length 2: overhangs 1/4, 1/3, 1/2, 1 of half the length, scaled.
+    world.add_body({.type = BodyType::fixed, .pose = {.position = {-5, -0.5, 0}}},
+                   {.geometry = Box{{5, 0.5f, 2}}});
+    double x = 0.0;
+    BodyId last;
+    for (int i = 0; i < 4; ++i) {
+      x += reach / double(4 - i);
+      last = world.add_body({.pose = {.position = {x - 1.0, 0.1 + 0.2 * i, 0}}},
+                            {.geometry = Box{{1, 0.1f, 0.5f}}});
+    }
+    run(world, 20.0);
+    const double y = world.pose(last).position.y;
+    std::printf("[row] A-119 reach %g of the limit: top at %g\n", reach, y);
+    EXPECT_EQ(y > 0.65, reach < 1.0) << "A-119 " << reach;
+  }
+}
+
+TEST(InclinedStack, DoesNotCreep) {
+  World world = make_world({.sleeping = false});
+  const double angle = 0.9 * std::atan(0.6);
+  const DVec3 normal{std::sin(angle), std::cos(angle), 0};
+  world.add_body({.type = BodyType::fixed}, {.geometry = Plane{.normal = to_float(normal)}});
+  // Flat tiles: ten cubes would tip at this angle.
+  std::vector<BodyId> boxes;
+  std::vector<DVec3> places;
+  for (int i = 0; i < 10; ++i) {
+    places.push_back((0.05 + 0.1 * i) * normal);
+    boxes.push_back(world.add_body(
+        {.pose = {.position = places.back(), .orientation = from_axis_angle({0, 0, 1}, float(-angle))}},
+        {.geometry = Box{{1, 0.05f, 1}}}));
+  }
+  run(world, 10.0);
+  std::vector<DVec3> settled;
+  for (const BodyId b : boxes) settled.push_back(world.pose(b).position);
+  run(world, 50.0);
+  double creep = 0.0;
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    creep = std::max(creep, length(world.pose(boxes[i]).position - settled[i]));
+  EXPECT_TRUE(limit_row("A-122 creep in 50 s (m)", creep, 1e-3, 5e-5));
+}
+
+TEST(Overlap, OfAQuarterComesApartGently) {
+  World world = make_world({.sleeping = false});
+  add_ground(world);
+  std::vector<BodyId> boxes;
+  for (int i = 0; i < 4; ++i)
+    boxes.push_back(world.add_body({.pose = {.position = {0, 0.5 + 0.75 * i, 0}}}, {.geometry = Box{}}));
+  double fastest = 0.0;
+  for (int i = 0; i < 300; ++i) {
+    world.step(kStep);
+    for (const BodyId b : boxes) fastest = std::max(fastest, double(length(world.linear_velocity(b))));
+  }
+  EXPECT_TRUE(limit_row("A-120 speed of boxes 25 % overlapped (m/s)", fastest, 5.0, 1.0));
+  EXPECT_NEAR(world.pose(boxes.back()).position.y, 3.5, 0.05);
+}
+
+}  // namespace
+}  // namespace gyre::laws
