@@ -55,11 +55,11 @@ TEST(Ellipsoid, SpinningOnASlopeDoesNotSpeedUp) {
   const BodyId body = world.add_body({.pose = {.position = {0, 0.1, 0}}, .angular_velocity = {0, 30, 0}},
                                      {.geometry = *hull});
   double fastest = 0.0;
-  for (int i = 0; i < 500; ++i) {
+  for (int i = 0; i < 5000; ++i) {
     world.step(0.002f);
     fastest = std::max(fastest, double(length(world.angular_velocity(body))));
   }
-  EXPECT_TRUE(limit_row("A-18 spin over start, first second", fastest / 30.0, 2.0, 1.0));
+  EXPECT_TRUE(limit_row("A-18 spin over start", fastest / 30.0, 2.0, 1.0));
 }
 
 }  // namespace
