@@ -39,11 +39,11 @@ struct WorldDef {
   Vec3 gravity{0, -9.81f, 0};  // m/s^2
   int threads = 1;             // workers, this thread included; 0 = as many as the machine has; never changes a bit of the result
   int simd_width = 0;          // lanes of the solver's kernels: 1, 4, 8 or 16; 0 = the best of this machine; never changes a bit
-  Stepping stepping;
+  Stepping stepping{};
   bool sleeping = true;        // resting islands sleep until something touches them
   CombineRule friction_rule = CombineRule::geometric_mean;
   CombineRule restitution_rule = CombineRule::maximum;
-  HostTasks host_tasks;        // used instead of own threads when `run` is set
+  HostTasks host_tasks{};        // used instead of own threads when `run` is set
 };
 
 // ---------------------------------------------------------------------------------------------------------- materials
@@ -79,10 +79,10 @@ struct Filter {
 
 struct ShapeDef {
   AnyShape geometry = Sphere{};
-  Transform local;          // body_from_shape
+  Transform local{};          // body_from_shape
   float density = 1000.0f;  // kg/m^3; 0 = adds no mass
-  Material material;
-  Filter filter;
+  Material material{};
+  Filter filter{};
   bool sensor = false;      // reports what overlaps it and touches nothing
   std::uint64_t user_data = 0;
 };
@@ -104,18 +104,18 @@ struct LockedAxes {
 
 struct BodyDef {
   BodyType type = BodyType::dynamic;
-  Pose pose;                         // world_from_body, of the body's origin
-  Vec3 linear_velocity;              // m/s, of the centre of mass, world frame
-  Vec3 angular_velocity;             // rad/s, world frame
+  Pose pose{};                         // world_from_body, of the body's origin
+  Vec3 linear_velocity{};              // m/s, of the centre of mass, world frame
+  Vec3 angular_velocity{};             // rad/s, world frame
   float linear_damping = 0.0f;       // 1/s: dv/dt = -damping * v, integrated exactly
   float angular_damping = 0.0f;      // 1/s
   float gravity_scale = 1.0f;
   bool continuous = false;           // also swept against moving bodies (it always is against fixed ones)
   bool can_sleep = true;
-  LockedAxes locked;
-  std::optional<float> mass;             // kg; scales the shapes' mass and inertia unless inertia is given too
-  std::optional<Vec3> center_of_mass;    // m, body frame
-  std::optional<Sym3> inertia;           // kg m^2, about the centre of mass, body axes
+  LockedAxes locked{};
+  std::optional<float> mass{};             // kg; scales the shapes' mass and inertia unless inertia is given too
+  std::optional<Vec3> center_of_mass{};    // m, body frame
+  std::optional<Sym3> inertia{};           // kg m^2, about the centre of mass, body axes
   std::uint64_t user_data = 0;
 };
 
@@ -139,7 +139,7 @@ struct Limits {
 // damping_ratio), otherwise it drives to target_velocity; either way with at most max_force.
 struct Motor {
   float target_velocity = 0.0f;
-  std::optional<float> target_position;
+  std::optional<float> target_position{};
   float max_force = 0.0f;      // 0 = no motor
   float frequency = 0.0f;      // Hz, of the position spring; 0 = as stiff as the step allows
   float damping_ratio = 1.0f;
@@ -149,22 +149,22 @@ struct Motor {
 // when the joint is added; they are stored in the bodies' frames.
 struct JointDef {
   JointKind kind = JointKind::ball;
-  BodyId a;
-  BodyId b;
-  DVec3 anchor;                        // the common point; distance: the point on a
+  BodyId a{};
+  BodyId b{};
+  DVec3 anchor{};                        // the common point; distance: the point on a
   Vec3 axis{1, 0, 0};                  // hinge and slider
-  std::optional<DVec3> anchor_b;       // distance: the point on b; none = b's origin
-  std::optional<Limits> limits;        // hinge and slider; zero is the pose when added
-  Motor motor;                         // hinge and slider
+  std::optional<DVec3> anchor_b{};       // distance: the point on b; none = b's origin
+  std::optional<Limits> limits{};        // hinge and slider; zero is the pose when added
+  Motor motor{};                         // hinge and slider
   // Distance: with none of these a rod of the present length. min and max make a rope (a gap within which nothing acts);
   // stiffness makes a Hooke spring of rest length `length`.
-  std::optional<float> length;         // m
-  std::optional<float> min_length;     // m
-  std::optional<float> max_length;     // m
-  std::optional<float> stiffness;      // N/m
-  std::optional<float> damping;        // N s/m
-  std::optional<float> break_force;    // N: the joint breaks above it
-  std::optional<float> break_torque;   // N m
+  std::optional<float> length{};         // m
+  std::optional<float> min_length{};     // m
+  std::optional<float> max_length{};     // m
+  std::optional<float> stiffness{};      // N/m
+  std::optional<float> damping{};        // N s/m
+  std::optional<float> break_force{};    // N: the joint breaks above it
+  std::optional<float> break_torque{};   // N m
   bool collide_connected = false;      // whether the two bodies still collide with each other
 };
 

@@ -11,50 +11,50 @@ namespace gyre {
 
 // Two shapes began to touch. Sorted by shape index.
 struct ContactBegin {
-  ShapeId shape_a, shape_b;
-  BodyId body_a, body_b;
+  ShapeId shape_a{}, shape_b{};
+  BodyId body_a{}, body_b{};
 };
 // Two shapes ceased to touch, or one of them was removed.
 struct ContactEnd {
-  ShapeId shape_a, shape_b;
+  ShapeId shape_a{}, shape_b{};
 };
 // Two shapes met with speed.
 struct ContactHit {
-  ShapeId shape_a, shape_b;
-  BodyId body_a, body_b;
-  DVec3 point;
-  Vec3 normal;      // from a to b
+  ShapeId shape_a{}, shape_b{};
+  BodyId body_a{}, body_b{};
+  DVec3 point{};
+  Vec3 normal{};      // from a to b
   float speed = 0;  // m/s, of approach along the normal
 };
 // Something entered or left a sensor.
 struct SensorTouch {
-  ShapeId sensor, visitor;
+  ShapeId sensor{}, visitor{};
   bool begins = true;
 };
 struct JointBroken {
-  JointId joint;
+  JointId joint{};
   float force = 0;   // N
   float torque = 0;  // N m
 };
 // A body fell asleep or woke.
 struct SleepChange {
-  BodyId body;
+  BodyId body{};
   bool asleep = false;
 };
 
 struct Events {
-  std::span<const ContactBegin> begins;
-  std::span<const ContactEnd> ends;
-  std::span<const ContactHit> hits;
-  std::span<const SensorTouch> sensors;
-  std::span<const JointBroken> broken;
-  std::span<const SleepChange> sleep_changes;
+  std::span<const ContactBegin> begins{};
+  std::span<const ContactEnd> ends{};
+  std::span<const ContactHit> hits{};
+  std::span<const SensorTouch> sensors{};
+  std::span<const JointBroken> broken{};
+  std::span<const SleepChange> sleep_changes{};
 };
 
 // Something that was refused or had to be contained. `message` names object, field, value and allowed range.
 struct Problem {
   ErrorCode code = ErrorCode::none;
-  BodyId body;  // null if it is not about a body
+  BodyId body{};  // null if it is not about a body
   char message[232] = {};
 };
 

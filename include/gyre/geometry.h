@@ -80,15 +80,15 @@ Result<Geometry> cook_hull(std::span<const Vec3> points);
 // The vertices and faces of a cooked hull: faces are loops of vertex indices, counter-clockwise seen from outside;
 // face i uses face_indices[face_offsets[i]] up to face_indices[face_offsets[i + 1]] (exclusive).
 struct HullView {
-  std::span<const Vec3> vertices;
-  std::span<const std::uint32_t> face_offsets;  // number of faces + 1
-  std::span<const std::uint8_t> face_indices;
+  std::span<const Vec3> vertices{};
+  std::span<const std::uint32_t> face_offsets{};  // number of faces + 1
+  std::span<const std::uint8_t> face_indices{};
 };
 HullView view_hull(const Geometry& hull);
 
 struct MeshDef {
-  std::span<const Vec3> vertices;
-  std::span<const std::uint32_t> indices;  // three a triangle, counter-clockwise seen from the solid side's outside
+  std::span<const Vec3> vertices{};
+  std::span<const std::uint32_t> indices{};  // three a triangle, counter-clockwise seen from the solid side's outside
   bool double_sided = false;               // also collide with the back of the triangles
 };
 // A triangle mesh for static and kinematic bodies. Triangles without area are left out; indices out of range and
@@ -96,15 +96,15 @@ struct MeshDef {
 // region are marked, so that nothing bumps into them.
 Result<Geometry> cook_mesh(const MeshDef& def);
 struct MeshView {
-  std::span<const Vec3> vertices;
-  std::span<const std::uint32_t> indices;
+  std::span<const Vec3> vertices{};
+  std::span<const std::uint32_t> indices{};
 };
 MeshView view_mesh(const Geometry& mesh);
 
 struct HeightFieldDef {
   // heights[row * columns + column], in metres along y; a NaN makes a hole: every cell that uses it is open.
   // The sample (column, row) lies at x = (column - (columns - 1) / 2) * spacing, z = (row - (rows - 1) / 2) * spacing.
-  std::span<const float> heights;
+  std::span<const float> heights{};
   std::uint32_t columns = 0;  // samples along x, at least 2
   std::uint32_t rows = 0;     // samples along z, at least 2
   float spacing = 1.0f;       // m
@@ -112,7 +112,7 @@ struct HeightFieldDef {
 // A grid of heights for static and kinematic bodies; each cell is two triangles, solid below. Infinite heights are refused.
 Result<Geometry> cook_height_field(const HeightFieldDef& def);
 struct HeightFieldView {
-  std::span<const float> heights;
+  std::span<const float> heights{};
   std::uint32_t columns = 0;
   std::uint32_t rows = 0;
   float spacing = 0.0f;
@@ -124,8 +124,8 @@ HeightFieldView view_height_field(const Geometry& field);
 // Mass (kg), centre of mass (m) and inertia tensor about the centre of mass (kg m^2), in the frame of what was measured.
 struct MassProperties {
   float mass = 0.0f;
-  Vec3 center;
-  Sym3 inertia;
+  Vec3 center{};
+  Sym3 inertia{};
 };
 
 // Mass properties of a solid of uniform density (kg/m^3), closed forms; hulls and closed meshes by exact integrals
@@ -149,8 +149,8 @@ MassProperties combined(std::span<const MassProperties> parts);
 
 // Principal moments (kg m^2, ascending) and the orientation of the principal axes: inertia = R diag(moments) R^T.
 struct PrincipalAxes {
-  Vec3 moments;
-  Quat orientation;
+  Vec3 moments{};
+  Quat orientation{};
 };
 PrincipalAxes principal_axes(const Sym3& inertia);
 // Whether a body can have this inertia tensor: positive, and no principal moment above the sum of the other two

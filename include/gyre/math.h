@@ -297,8 +297,8 @@ float acos(float x);
 
 // A rigid transform between two frames near each other (float): p -> rotate(orientation, p) + position.
 struct Transform {
-  Vec3 position;
-  Quat orientation;
+  Vec3 position{};
+  Quat orientation{};
 
   constexpr bool operator==(const Transform&) const = default;
 };
@@ -319,8 +319,8 @@ constexpr Transform inverse_times(const Transform& a, const Transform& b) {
 
 // A place and an orientation in the world: world_from_body.
 struct Pose {
-  DVec3 position;
-  Quat orientation;
+  DVec3 position{};
+  Quat orientation{};
 
   constexpr bool operator==(const Pose&) const = default;
 };
@@ -352,8 +352,8 @@ Mat4 model_matrix(const Pose& pose, DVec3 origin = {}, Vec3 scale = {1.0f, 1.0f,
 
 // An axis-aligned box from corner `low` to corner `high`, in whatever frame its owner says.
 struct Aabb {
-  Vec3 low;
-  Vec3 high;
+  Vec3 low{};
+  Vec3 high{};
 
   constexpr bool operator==(const Aabb&) const = default;
 };

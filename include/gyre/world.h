@@ -21,28 +21,28 @@ struct WorldState;  // src/world
 
 // All bodies of one kind of set as parallel arrays; element i of each belongs to ids[i]. In order of id index.
 struct BodyColumns {
-  std::span<const BodyId> ids;
-  std::span<const Pose> poses;              // world_from_body, of the origins
-  std::span<const Vec3> linear_velocities;  // of the centres of mass
-  std::span<const Vec3> angular_velocities;
+  std::span<const BodyId> ids{};
+  std::span<const Pose> poses{};              // world_from_body, of the origins
+  std::span<const Vec3> linear_velocities{};  // of the centres of mass
+  std::span<const Vec3> angular_velocities{};
 };
 
 // One contact point, for reading (positions in the world, impulses of the last step).
 struct ContactPoint {
-  ShapeId shape_a, shape_b;
-  BodyId body_a, body_b;
-  DVec3 position;
-  Vec3 normal;             // unit, from a to b
-  Vec3 tangent_1, tangent_2;  // unit: with the normal, the contact basis
+  ShapeId shape_a{}, shape_b{};
+  BodyId body_a{}, body_b{};
+  DVec3 position{};
+  Vec3 normal{};             // unit, from a to b
+  Vec3 tangent_1{}, tangent_2{};  // unit: with the normal, the contact basis
   float separation = 0;    // m; negative: overlap
   float normal_impulse = 0;  // N s, summed over the step
-  Vec3 friction_impulse;   // N s on b, summed over the step; of the whole manifold, at its first point (zero at the others)
-  Vec3 relative_velocity;  // m/s, of b against a at the point, rotation included
+  Vec3 friction_impulse{};   // N s on b, summed over the step; of the whole manifold, at its first point (zero at the others)
+  Vec3 relative_velocity{};  // m/s, of b against a at the point, rotation included
 };
 
 struct JointReading {
-  Vec3 force;   // N on b, world frame, mean over the last step
-  Vec3 torque;  // N m on b about the anchor, world frame
+  Vec3 force{};   // N on b, world frame, mean over the last step
+  Vec3 torque{};  // N m on b about the anchor, world frame
   float position = 0;  // hinge: rad (continuous beyond +-pi), slider: m, distance: m
   float velocity = 0;
 };
@@ -62,8 +62,8 @@ struct Energy {
 };
 
 struct Momentum {
-  DVec3 linear;   // kg m/s
-  DVec3 angular;  // kg m^2/s, about the world's origin
+  DVec3 linear{};   // kg m/s
+  DVec3 angular{};  // kg m^2/s, about the world's origin
 };
 
 class World {
