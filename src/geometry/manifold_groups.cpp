@@ -21,8 +21,7 @@ void ManifoldGroups::add_point(Group& group, const ManifoldPoint& point) {
 
 void ManifoldGroups::add(Vec3 normal, std::uint32_t triangle, const MeshPoints& points) {
   if (points.count == 0) return;
-  float deepest = points.points[0].separation;
-  for (int i = 1; i < points.count; ++i) deepest = min(deepest, points.points[i].separation);
+  const float deepest = points.deepest();
   int best = -1;
   float nearest = kSameNormal;
   for (int i = 0; i < count_; ++i) {

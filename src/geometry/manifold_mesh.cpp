@@ -60,6 +60,7 @@ class MeshCollider {
     for (int i = 0; i < candidates_.count; ++i) look_at(candidates_.ids[i]);
     settle_waiting();
     settle_deep_patches();
+    push_out();
     if (groups_.empty() && convex_.vertex_count() > 2) look_for_corners();
     return groups_.finish(position_, out);
   }
@@ -68,6 +69,8 @@ class MeshCollider {
   void look_at(std::uint32_t id);
   void settle_waiting();
   void settle_deep_patches();
+  void note_overlap(const Waiting& found, float best);
+  void push_out();
   void look_for_corners();
   void settle(const Waiting& waiting);
   bool is_ruled_out(const NearTriangle& t, bool behind) const;
@@ -101,6 +104,11 @@ class MeshCollider {
   Standing standing_[kStandingRoom];
   int waiting_count_ = 0;
   Waiting waiting_[MeshCandidates::kRoom];
+  // Of the triangles that the shape certainly overlaps, the one through whose front it leaves first; those with the
+  // shape's middle before them first of all.
+  Waiting exit_{0, -__builtin_huge_valf(), true, false};
+  // How deep the shape sits in the triangle that holds it most, by its best direction out, allowed or not.
+  float overlap_ = 0.0f;
   MeshCandidates candidates_;
   MeshPoints points_;
   AxisScratch scratch_;
@@ -260,16 +268,18 @@ void MeshCollider::look_at(std::uint32_t id) {
   }
   const AxisSearch axes = search_axes(surface_, t, convex_, face, max_separation_, scratch_);
   if (axes.best > max_separation_) return;
+  const Waiting found{id, face, behind, axes.best <= 0.0f};
+  note_overlap(found, axes.best);
   const float allowed = max(face, axes.feature.separation);
   if (behind || allowed < axes.best - kAxisBias * convex_.size()) {
-    waiting_[waiting_count_++] = {id, face, behind, axes.best <= 0.0f};
+    waiting_[waiting_count_++] = found;
     return;
   }
   if (face >= axes.feature.separation - bias_) {
     add_face(t);
-    // Beside an edge the face alone may have no point.
-    const bool empty = points_.count == 0;
-    if (!empty || axes.feature.separation < axes.best - kAxisBias * convex_.size()) {
+    // Beside an edge the face alone may have no point, or none that is deep enough.
+    const float wanted = axes.feature.separation + 0.1f * kAxisBias * convex_.size();
+    if (axes.feature.separation < axes.best - kAxisBias * convex_.size() || points_.deepest() <= wanted) {
       if (stand(t.normal, face)) add_deep_corners(t);
       return;
     }
@@ -320,6 +330,28 @@ void MeshCollider::settle_deep_patches() {
     if (is_ruled_out(t, dot(t.normal, convex_.center() - t.v[0]) < 0.0f)) continue;
     if (add_deep_corners(t)) stand(t.normal, face_separation(t));
   }
+}
+
+void MeshCollider::note_overlap(const Waiting& found, float best) {
+  if (!found.overlaps) return;
+  if (!found.behind) overlap_ = min(overlap_, best);
+  const bool better =
+      exit_.behind == found.behind ? found.face_separation > exit_.face_separation : exit_.behind;
+  if (better) exit_ = found;
+}
+
+// The shape overlaps triangles, but none of them lies under one of its corners, as when a blunt hull has sunk across a small
+// hill: it leaves through the front of one, pushed at its lowest point.
+void MeshCollider::push_out() {
+  const bool in_question =
+      overlap_ < -2.0f * kAxisBias * convex_.size() && groups_.deepest() > 0.1f * overlap_;
+  if (!exit_.overlaps || !(in_question || groups_.empty())) return;
+  const NearTriangle t = triangle(exit_.id);
+  const Vec3 lowest = convex_.support(-t.normal);
+  const float separation = dot(t.normal, lowest - t.v[0]) - convex_.radius();
+  points_.count = 0;
+  points_.add(lowest - (convex_.radius() + 0.5f * separation) * t.normal, separation, t.id);
+  groups_.add(t.normal, t.id, points_);
 }
 
 // A polyhedron that comes near with a corner beside an edge: axis searches know faces and pairs of edges only.

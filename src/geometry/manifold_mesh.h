@@ -15,6 +15,12 @@ class ManifoldGroups {
   static constexpr int kPointRoom = 56;
 
   void add(Vec3 normal, std::uint32_t triangle, const MeshPoints& points);
+  // The least separation; infinity if there are no contacts.
+  float deepest() const {
+    float least = __builtin_huge_valf();
+    for (int i = 0; i < count_; ++i) least = min(least, groups_[i].deepest);
+    return least;
+  }
   bool empty() const { return count_ == 0; }
   // Writes the manifolds, positions moved by `position`; in the order in which their first contact came. Returns how many.
   int finish(Vec3 position, LocalManifold* out);

@@ -3,6 +3,7 @@
 
 #include "geometry/closest.h"
 #include "geometry/gjk.h"
+#include "geometry/penetration.h"
 
 namespace gyre {
 namespace {
@@ -12,9 +13,6 @@ namespace {
 constexpr float kFaceAngle = 1.0e-3f;
 constexpr float kArcSlack = 1.0e-3f;
 constexpr float kLevelSlack = 1.0e-3f;
-// Steps of the golden section search along an arc: a part in 10^5 of it is left.
-constexpr int kArcSteps = 24;
-constexpr float kGolden = 0.61803399f;
 
 class Search {
  public:
@@ -35,14 +33,13 @@ class Search {
     if (convex_.has_vertices()) {
       polyhedron();
     } else {
-      curved();
+      nearest_by_gjk();
     }
     return found_;
   }
 
  private:
   bool apart() const { return found_.best > max_separation_; }
-  float highest_corner(Vec3 d) const { return max(dot(d, t_.v[0]), max(dot(d, t_.v[1]), dot(d, t_.v[2]))); }
 
   // Straight through the triangle from behind: never a way out.
   bool is_backwards(Vec3 d) const { return dot(d, t_.normal) < -0.99f; }
@@ -119,12 +116,6 @@ class Search {
     return true;
   }
 
-  // `d` unit; everything measured.
-  void measure(Vec3 d) {
-    const float separation = convex_.lowest(d) - highest_corner(d) - convex_.radius();
-    offer(d, separation, supporting_corners(d), AxisSource::curved);
-  }
-
   void polyhedron();
   void face_axes();
   void edge_axes();
@@ -132,9 +123,8 @@ class Search {
   void segment_axes();
   void nearest_pair();
   void nearest_of_vertices(double& best, SimplexPoint& on_triangle, DVec3& on_convex) const;
-  void curved();
   bool nearest_by_gjk();
-  void search_arc(int edge);
+  void deepest_way_out(const CorePair& pair, const CoreDistance& found);
 
   const Surface& surface_;
   const NearTriangle& t_;
@@ -282,40 +272,12 @@ void Search::polyhedron() {
   }
 }
 
-// Along an edge's arc of allowed directions, from this face's normal to the neighbour's (or to straight outward).
-void Search::search_arc(int edge) {
-  if (t_.edge[edge] != EdgeKind::convex && t_.edge[edge] != EdgeKind::open) return;
-  const Vec3 from = t_.normal;
-  const Vec3 to = t_.edge[edge] == EdgeKind::open ? t_.outward[edge] : t_.neighbor_normal[edge];
-  const Vec3 middle = normalized(from + to, t_.outward[edge]);
-  const auto direction = [&](float s) {
-    return s < 1.0f ? normalized(lerp(from, middle, s)) : normalized(lerp(middle, to, s - 1.0f));
-  };
-  const unsigned corners = 1u << edge | 1u << next_corner(edge);
-  const auto separation = [&](Vec3 d) { return convex_.lowest(d) - dot(d, t_.v[edge]); };
-  float low = 0.0f, high = 2.0f;
-  float left = high - kGolden * (high - low), right = low + kGolden * (high - low);
-  float at_left = separation(direction(left)), at_right = separation(direction(right));
-  for (int step = 0; step < kArcSteps; ++step) {
-    if (at_left < at_right) {
-      low = left;
-      left = right;
-      at_left = at_right;
-      right = low + kGolden * (high - low);
-      at_right = separation(direction(right));
-    } else {
-      high = right;
-      right = left;
-      at_right = at_left;
-      left = high - kGolden * (high - low);
-      at_left = separation(direction(left));
-    }
-  }
-  const Vec3 d = direction(0.5f * (low + high));
-  // The search stops short of the exact directions (along an axis, a cap or a mantle line): those win near ties.
-  const float value = separation(d) - 1.0e-5f * convex_.size();
-  if (value > useful()) {
-    offer(d, value + 1.0e-5f * convex_.size(), corners, AxisSource::curved);
+// Out of an overlap with a curved shape, by EPA.
+void Search::deepest_way_out(const CorePair& pair, const CoreDistance& found) {
+  const CorePenetration out = core_penetration(pair, found);
+  const Vec3 d = to_float(out.normal);
+  if (offer(d, float(-out.depth), supporting_corners(d), AxisSource::nearest_pair)) {
+    found_.feature.on_core = to_float(out.on_b);
   }
 }
 
@@ -342,7 +304,10 @@ bool Search::nearest_by_gjk() {
     found_.best = __builtin_huge_valf();
     return true;
   }
-  if (found.overlap || !(found.distance > 1.0e-6 * double(convex_.size()))) return false;
+  if (found.overlap || !(found.distance > 1.0e-6 * double(convex_.size()))) {
+    if (!convex_.has_vertices()) deepest_way_out(pair, found);
+    return false;
+  }
   const SimplexPoint near = closest_on_triangle(found.on_b, DVec3(t_.v[0]), DVec3(t_.v[1]), DVec3(t_.v[2]));
   const float separation = float(found.distance) - convex_.radius();
   if (offer(to_float(found.normal), separation, near.corners, AxisSource::nearest_pair)) {
@@ -352,29 +317,6 @@ bool Search::nearest_by_gjk() {
 }
 
 // Cylinders and cones: cap normals, mantle lines against edges, mantle normals at corners, and the arcs of active edges.
-void Search::curved() {
-  if (nearest_by_gjk()) return;
-  const Vec3 axis = convex_.axis();
-  measure(axis);
-  if (convex_.shape().kind == ShapeKind::cylinder) measure(-axis);
-  const float slope = convex_.mantle_slope();
-  for (int i = 0; i < 3 && !apart(); ++i) {
-    const Vec3 crossing = cross(t_.along[i], axis);
-    if (length_squared(crossing) > 1.0e-6f) {
-      // For a cone the direction also leans: a tangent plane of the mantle that holds the edge's direction.
-      const Vec3 d = normalized(crossing);
-      measure(d);
-      measure(-d);
-    }
-    const Vec3 to_corner = t_.v[i] - dot(t_.v[i], axis) * axis;
-    if (length_squared(to_corner) > square(1.0e-6f * convex_.size())) {
-      measure(-normalized(normalized(to_corner) + slope * axis));
-    }
-    measure(t_.outward[i]);
-  }
-  for (int i = 0; i < 3 && !apart(); ++i) search_arc(i);
-}
-
 }  // namespace
 
 Surface::Surface(const Shape& shape) {

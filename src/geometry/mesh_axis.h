@@ -59,10 +59,9 @@ inline NearTriangle near_triangle(const Surface& surface, std::uint32_t id, Vec3
 constexpr float kAxisBias = 5.0e-4f;
 
 enum class AxisSource : std::uint8_t {
-  shape_face,    // the normal of a face of the shape
-  shape_edge,    // an edge of the shape across an edge of the triangle
-  nearest_pair,  // between the nearest points of triangle and core
-  curved,        // of a cylinder or cone
+  shape_face,  // the normal of a face of the shape
+  shape_edge,  // an edge of the shape across an edge of the triangle
+  nearest_pair,  // between the nearest points of triangle and core, or the deepest of an overlap with a curved one
 };
 
 // A corner or edge of the triangle where shape and surface may touch, and the direction.

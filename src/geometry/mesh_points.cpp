@@ -227,9 +227,6 @@ void lowest_edge(const FacePolygon& face, Vec3 direction, FacePolygon& out) {
   out.ids[1] = face.ids[other];
 }
 
-// Roundings of the curved shapes' corners and of the searches for their directions, relative to their size.
-constexpr float kCurvedSlack = 2.0e-3f;
-
 void corner_points(const NearTriangle& t, int corner, const PlacedConvex& convex, const FeatureAxis& axis,
                    const FacePolygon& face, const Emitter& emit) {
   const Vec3 v = t.v[corner];
@@ -243,7 +240,7 @@ void corner_points(const NearTriangle& t, int corner, const PlacedConvex& convex
                    : convex.lowest(emit.direction) - dot(emit.direction, v);
   }
   const Vec3 q = v + height * emit.direction;
-  if (convex.holds(q, kCurvedSlack * convex.size())) emit.pair(q, height - emit.radius, name);
+  emit.pair(q, height - emit.radius, name);
 }
 
 // What of the shape lies along an edge of the triangle when it is no face: an edge or a point.
@@ -289,12 +286,9 @@ void feature_points(const NearTriangle& t, const PlacedConvex& convex, const Fea
       if (out.count > 0) return;
     }
   }
-  if (axis.source == AxisSource::shape_edge || axis.source == AxisSource::shape_face)
-    return contact.nearest();
-  // One point, known exactly: of the nearest pair, or the farthest point of a curved shape.
-  const Vec3 q = axis.source == AxisSource::curved ? convex.support(-d) : axis.on_core;
+  if (axis.source != AxisSource::nearest_pair) return contact.nearest();
   const std::uint32_t on_shape = narrow.count == 1 ? narrow.ids[0] : edge_name(narrow, 0);
-  emit.pair(q, axis.separation, point_name(PointKind::edges, t.edge_id[edge], on_shape));
+  emit.pair(axis.on_core, axis.separation, point_name(PointKind::edges, t.edge_id[edge], on_shape));
 }
 
 }  // namespace gyre

@@ -23,6 +23,12 @@ struct MeshPoints {
   };
 
   MeshPoints() {}
+  // The least separation; infinity if there are no points.
+  float deepest() const {
+    float least = __builtin_huge_valf();
+    for (int i = 0; i < count; ++i) least = min(least, points[i].separation);
+    return least;
+  }
   void add(Vec3 position, float separation, std::uint32_t feature) {
     if (count < kRoom) points[count++] = {position, separation, feature};
   }

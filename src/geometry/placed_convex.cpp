@@ -115,16 +115,6 @@ bool PlacedConvex::may_touch(const Aabb& box, float reach) const {
   return true;
 }
 
-bool PlacedConvex::holds(Vec3 point, float slack) const {
-  if (has_vertices()) return true;
-  const Vec3 local = to_local(point);
-  const float h = shape_->extents.y;
-  float width = shape_->radius;
-  if (shape_->kind == ShapeKind::cone) width *= 0.5f * (h - local.y) / h;
-  return absolute(local.y) <= h + slack &&
-         square(local.x) + square(local.z) <= square(max(width, 0.0f) + slack);
-}
-
 float PlacedConvex::box_distance(Vec3 point) const {
   const Vec3 local = to_local(point);
   return largest(max(local - local_box_.high, local_box_.low - local));

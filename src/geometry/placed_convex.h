@@ -61,16 +61,8 @@ class PlacedConvex {
   // The vertex of the core farthest against `direction`; only if has_vertices().
   int lowest_vertex(Vec3 direction) const;
 
-  // Cylinders and cones: the axis (local y), and how much the mantle's normal leans along it, as a tangent.
-  Vec3 axis() const { return rotation_.y; }
-  float mantle_slope() const {
-    return shape_->kind == ShapeKind::cone ? 0.5f * shape_->radius / shape_->extents.y : 0.0f;
-  }
-
   // Whether anything within `reach` of the surface may lie in the box: false only if certainly nothing does.
   bool may_touch(const Aabb& box, float reach) const;
-  // Cylinders and cones: whether the point lies inside, to within `slack`. True for all other kinds.
-  bool holds(Vec3 point, float slack) const;
   // How far a point lies outside the shape's local box; negative inside. And the local box itself.
   float box_distance(Vec3 point) const;
   Vec3 to_local(Vec3 v) const { return transpose_times(rotation_, v); }
