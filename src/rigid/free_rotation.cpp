@@ -10,23 +10,42 @@ namespace {
 constexpr double kInnerAngle = 0.02;
 // A spin beyond all sense costs accuracy, not time without end: momentum is kept whatever the steps.
 constexpr double kMostInnerSteps = 4096.0;
+// Below this angle nothing but the steady part of the turn reaches a float.
+constexpr float kNoAngle = 1.0e-6f;
 // Below this angle a sub-step of the midpoint rule is as exact as float can hold.
 constexpr float kTinyAngle = 2.0e-3f;
 // An angular velocity this near to parallel with the momentum (relative) spins about a principal axis.
 constexpr float kSteady = 1.0e-7f;
 
-DVec3 times(const Sym3& m, DVec3 v) {
-  return {double(m.xx) * v.x + double(m.xy) * v.y + double(m.xz) * v.z,
-          double(m.xy) * v.x + double(m.yy) * v.y + double(m.yz) * v.z,
-          double(m.xz) * v.x + double(m.yz) * v.y + double(m.zz) * v.z};
+// A symmetric tensor in double. The inverse is found here from the float inertia: the float inverse is not quite its
+// inverse, and that error, the same in every sub-step, would add up over minutes.
+struct Tensor {
+  double xx, yy, zz, xy, xz, yz;
+};
+
+Tensor to_double(const Sym3& m) {
+  return {double(m.xx), double(m.yy), double(m.zz), double(m.xy), double(m.xz), double(m.yz)};
+}
+
+Tensor inverse(const Tensor& m) {
+  const double cxx = m.yy * m.zz - m.yz * m.yz;
+  const double cxy = m.xz * m.yz - m.xy * m.zz;
+  const double cxz = m.xy * m.yz - m.xz * m.yy;
+  const double s = 1.0 / (m.xx * cxx + m.xy * cxy + m.xz * cxz);
+  return {s * cxx, s * (m.xx * m.zz - m.xz * m.xz), s * (m.xx * m.yy - m.xy * m.xy),
+          s * cxy, s * cxz, s * (m.xy * m.xz - m.xx * m.yz)};
+}
+
+DVec3 times(const Tensor& m, DVec3 v) {
+  return {m.xx * v.x + m.xy * v.y + m.xz * v.z, m.xy * v.x + m.yy * v.y + m.yz * v.z, m.xz * v.x + m.yz * v.y + m.zz * v.z};
 }
 
 // Angular velocity in the body's frame of a body with world momentum `momentum`.
-DVec3 body_velocity(const DQuat& q, DVec3 momentum, const Sym3& inverse_inertia) {
+DVec3 body_velocity(const DQuat& q, DVec3 momentum, const Tensor& inverse_inertia) {
   return times(inverse_inertia, rotate_inverse(q, momentum));
 }
 
-DQuat derivative(const DQuat& q, DVec3 momentum, const Sym3& inverse_inertia) {
+DQuat derivative(const DQuat& q, DVec3 momentum, const Tensor& inverse_inertia) {
   const DVec3 w = body_velocity(q, momentum, inverse_inertia);
   const DQuat p = q * DQuat{w.x, w.y, w.z, 0.0};
   return {0.5 * p.x, 0.5 * p.y, 0.5 * p.z, 0.5 * p.w};
@@ -38,7 +57,7 @@ DQuat along(const DQuat& q, const DQuat& d, double h) {
 
 // One Runge-Kutta step of the orientation with the momentum held fixed. Intermediate quaternions drift from length 1 by
 // the order of the step only; the result is scaled back.
-DQuat runge_kutta_4(const DQuat& q, DVec3 momentum, const Sym3& inverse_inertia, double h) {
+DQuat runge_kutta_4(const DQuat& q, DVec3 momentum, const Tensor& inverse_inertia, double h) {
   const DQuat k1 = derivative(q, momentum, inverse_inertia);
   const DQuat k2 = derivative(normalized(along(q, k1, 0.5 * h)), momentum, inverse_inertia);
   const DQuat k3 = derivative(normalized(along(q, k2, 0.5 * h)), momentum, inverse_inertia);
@@ -57,29 +76,31 @@ Vec3 rotate_steadily(Quat& orientation, Vec3 angular_velocity, float seconds) {
   return turn;
 }
 
-Vec3 rotate_freely(Quat& orientation, Vec3& angular_velocity, const Sym3& inertia, const Sym3& inverse_inertia, float seconds) {
+Vec3 rotate_freely(Quat& orientation, Vec3& angular_velocity, const Sym3& inertia, float seconds) {
   const Vec3 w = rotate_inverse(orientation, angular_velocity);  // body frame
   const Vec3 momentum = inertia * w;                             // body frame
   const Vec3 torque = cross(momentum, w);
-  if (length_squared(torque) <= square(kSteady) * length_squared(momentum) * length_squared(w)) {
+  const float angle = seconds * length(angular_velocity);
+  if (angle < kNoAngle || length_squared(torque) <= square(kSteady) * length_squared(momentum) * length_squared(w)) {
     return rotate_steadily(orientation, angular_velocity, seconds);
   }
-  const float angle = seconds * length(angular_velocity);
-  if (angle < kTinyAngle) {
-    const Vec3 world_momentum = rotate(orientation, momentum);
-    const Vec3 middle = w + 0.5f * seconds * (inverse_inertia * torque);
-    const Vec3 turn = seconds * rotate(orientation, middle);
-    orientation = integrate_rotation(orientation, turn);
-    angular_velocity = rotate(orientation, inverse_inertia * rotate_inverse(orientation, world_momentum));
-    return turn;
-  }
+  const Tensor tensor = to_double(inertia);
+  const Tensor inverse_tensor = inverse(tensor);
   const DQuat start = normalized(to_double(orientation));
-  const DVec3 world_momentum = rotate(start, times(inertia, rotate_inverse(start, DVec3(angular_velocity))));
-  const int steps = 1 + int(min(double(angle) / kInnerAngle, kMostInnerSteps));
-  const double h = double(seconds) / double(steps);
+  const DVec3 start_velocity = rotate_inverse(start, DVec3(angular_velocity));
+  const DVec3 start_momentum = times(tensor, start_velocity);
+  const DVec3 world_momentum = rotate(start, start_momentum);
   DQuat q = start;
-  for (int i = 0; i < steps; ++i) q = runge_kutta_4(q, world_momentum, inverse_inertia, h);
-  angular_velocity = to_float(rotate(q, body_velocity(q, world_momentum, inverse_inertia)));
+  if (angle < kTinyAngle) {
+    const DVec3 middle =
+        start_velocity + 0.5 * double(seconds) * times(inverse_tensor, cross(start_momentum, start_velocity));
+    q = normalized(start * exponential_map(double(seconds) * middle));
+  } else {
+    const int steps = 1 + int(min(double(angle) / kInnerAngle, kMostInnerSteps));
+    const double h = double(seconds) / double(steps);
+    for (int i = 0; i < steps; ++i) q = runge_kutta_4(q, world_momentum, inverse_tensor, h);
+  }
+  angular_velocity = to_float(rotate(q, body_velocity(q, world_momentum, inverse_tensor)));
   orientation = to_float(q);
   return to_float(logarithm_map(q * conjugate(start)));
 }

@@ -13,9 +13,9 @@
 
 namespace gyre {
 
-// Moves the orientation and angular velocity (world frame, rad/s) on by `seconds`. `inertia` and `inverse_inertia` are in
-// the body's frame. Returns the rotation vector by which the body turned (world frame, rad).
-Vec3 rotate_freely(Quat& orientation, Vec3& angular_velocity, const Sym3& inertia, const Sym3& inverse_inertia, float seconds);
+// Moves the orientation and angular velocity (world frame, rad/s) on by `seconds`. `inertia` is in the
+// body's frame and can be inverted. Returns the rotation vector by which the body turned (world frame, rad).
+Vec3 rotate_freely(Quat& orientation, Vec3& angular_velocity, const Sym3& inertia, float seconds);
 
 // The same at constant angular velocity: bodies with equal principal moments, kinematic bodies.
 Vec3 rotate_steadily(Quat& orientation, Vec3 angular_velocity, float seconds);

@@ -69,7 +69,7 @@ void advance(BodyStore& bodies, int begin, int end, float h) {
         bodies.inertia[i] = world_inertia(mass, flags, orientation);
       }
     } else {
-      motion.turned += rotate_freely(orientation, motion.angular_velocity, mass.inertia, mass.inverse_inertia, h);
+      motion.turned += rotate_freely(orientation, motion.angular_velocity, mass.inertia, h);
       bodies.inertia[i] = world_inertia(mass, flags, orientation);
     }
     motion.angular_velocity += Vec3{};

@@ -93,8 +93,11 @@ void update_rest_timers(RigidWorld& w, float seconds, bool& somebody) {
     const bool may_rest = flags.can_sleep != 0 && (flags.touched != 0 || !moves) && w.bodies.forces[i].force == Vec3{} &&
                           w.bodies.forces[i].torque == Vec3{} &&
                           (flags.touched != 0 || pull * absolute(w.bodies.forces[i].gravity_scale) == 0.0f);
-    const float speed = length(motion.linear_velocity) + mass.reach * length(motion.angular_velocity);
-    const float rest = kRestShare * std::sqrt((pull > 0.0f ? pull : 9.81f) * mass.reach);
+    // A body without shapes still has the extent of its inertia: turning is motion.
+    const float spread = mass.inertia.xx + mass.inertia.yy + mass.inertia.zz;
+    const float reach = max(mass.reach, mass.mass > 0.0f ? std::sqrt(spread / mass.mass) : 0.0f);
+    const float speed = length(motion.linear_velocity) + reach * length(motion.angular_velocity);
+    const float rest = kRestShare * std::sqrt((pull > 0.0f ? pull : 9.81f) * reach);
     float& still = w.bodies.sleep[i].still_time;
     still = may_rest && speed <= rest ? still + seconds : 0.0f;
     if (still >= kTimeToSleep) somebody = true;

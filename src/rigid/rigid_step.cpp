@@ -11,8 +11,6 @@ namespace gyre {
 namespace {
 
 constexpr int kBodiesPerBlock = 64;
-// A contact is reported as a hit when it closes faster than this share of sqrt(gravity * size).
-constexpr float kHitShare = 0.3f;
 
 // The list of changed proxies, ascending and without repeats.
 void sort_changed(Array<std::uint32_t>& changed, Array<std::uint64_t>& keys, Array<std::uint64_t>& scratch) {
@@ -54,37 +52,6 @@ PairShapes describe_pair(const RigidWorld& w, std::uint64_t key) {
   return pair;
 }
 
-Vec3 point_velocity(const RigidWorld& w, std::uint32_t body, Vec3 from_center) {
-  const BodyMotion& motion = w.bodies.motion[body];
-  return motion.linear_velocity + cross(motion.angular_velocity, from_center);
-}
-
-// The event of a hard meeting: the point that closes fastest, before the solver has touched it.
-void report_hit(RigidWorld& w, const Contact& contact) {
-  float fastest = kHitShare * std::sqrt(9.81f * contact.size);
-  ContactHit hit;
-  bool found = false;
-  for (const Manifold& manifold : manifolds_of(w.contacts, contact)) {
-    for (int k = 0; k < manifold.count; ++k) {
-      const ContactPointState& point = manifold.points[k];
-      const float speed = dot(manifold.normal, point_velocity(w, contact.body_a, point.from_a) -
-                                                   point_velocity(w, contact.body_b, point.from_b));
-      if (!(speed > fastest)) continue;
-      fastest = speed;
-      found = true;
-      hit.point = w.bodies.places[contact.body_a].center + point.from_a;
-      hit.normal = manifold.normal;
-      hit.speed = speed;
-    }
-  }
-  if (!found) return;
-  hit.shape_a = shape_id(w, contact.shape_a);
-  hit.shape_b = shape_id(w, contact.shape_b);
-  hit.body_a = body_id(w, contact.body_a);
-  hit.body_b = body_id(w, contact.body_b);
-  w.events.hits.push_back(hit);
-}
-
 void report_begin(RigidWorld& w, const Contact& contact) {
   if (contact.sensor != 0) {
     const bool a_senses = w.shapes.proxies[contact.shape_a].sensor;
@@ -95,7 +62,6 @@ void report_begin(RigidWorld& w, const Contact& contact) {
   }
   w.events.begins.push_back({shape_id(w, contact.shape_a), shape_id(w, contact.shape_b), body_id(w, contact.body_a),
                              body_id(w, contact.body_b)});
-  report_hit(w, contact);
 }
 
 bool finite_state(const BodyMotion& motion, Quat orientation) {

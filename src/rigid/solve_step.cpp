@@ -24,6 +24,9 @@ constexpr float kPushShare = 0.4f;
 // Nothing bounces that closes slower than this many times the speed that gravity gives in a sub-step.
 constexpr float kBounceShare = 2.0f;
 
+// A contact is reported as a hit when it closes faster than this share of sqrt(9.81 m/s^2 * size).
+constexpr float kHitShare = 0.3f;
+
 constexpr int kBodiesPerBlock = 64;
 constexpr int kJointsPerBlock = 8;
 constexpr int kBlocksPerClaim = 4;
@@ -67,6 +70,42 @@ bool is_active(const RigidWorld& w, std::uint32_t body) {
   return flags.awake != 0 && is_movable(flags);
 }
 
+Vec3 point_velocity(const RigidWorld& w, std::uint32_t body, Vec3 from_center) {
+  const BodyMotion& motion = w.bodies.motion[body];
+  return motion.linear_velocity + cross(motion.angular_velocity, from_center);
+}
+
+// How fast points that bore nothing yet are closing as the step begins: should they meet in it, that is the hit.
+void note_approach(const RigidWorld& w, const Contact& contact, Manifold& manifold) {
+  for (int k = 0; k < manifold.count; ++k) {
+    ContactPointState& point = manifold.points[k];
+    point.approach_speed = 0.0f;
+    if (point.normal_impulse > 0.0f) continue;
+    point.approach_speed = dot(manifold.normal, point_velocity(w, contact.body_a, point.from_a) -
+                                                    point_velocity(w, contact.body_b, point.from_b));
+  }
+}
+
+// The events of contacts that were struck hard in this step, in contact order.
+void report_hits(RigidWorld& w, const SolveScratch& s) {
+  for (std::size_t i = 0; i < s.constraints.size(); ++i) {
+    const Contact& contact = w.contacts.contacts[s.constraint_contact[i]];
+    const Manifold& manifold = *s.constraints[i].manifold;
+    float fastest = kHitShare * std::sqrt(9.81f * contact.size);
+    const ContactPointState* struck = nullptr;
+    for (int k = 0; k < manifold.count; ++k) {
+      const ContactPointState& point = manifold.points[k];
+      if (!(point.total_impulse > 0.0f) || !(point.approach_speed > fastest)) continue;
+      fastest = point.approach_speed;
+      struck = &point;
+    }
+    if (struck == nullptr) continue;
+    w.events.hits.push_back({shape_id(w, contact.shape_a), shape_id(w, contact.shape_b), body_id(w, contact.body_a),
+                             body_id(w, contact.body_b), w.bodies.places[contact.body_a].center + struck->from_a,
+                             manifold.normal, fastest});
+  }
+}
+
 void gather_contacts(RigidWorld& w, SolveScratch& s) {
   s.constraints.clear();
   s.constraint_contact.clear();
@@ -91,6 +130,7 @@ void gather_contacts(RigidWorld& w, SolveScratch& s) {
     constraint.push_speed = kPushShare * (fall > 0.0f ? fall : 3.132f) * std::sqrt(contact.size);
     for (Manifold& manifold : manifolds_of(w.contacts, contact)) {
       if (manifold.count == 0) continue;
+      note_approach(w, contact, manifold);
       constraint.manifold = &manifold;
       s.constraints.push_back(constraint);
       s.constraint_contact.push_back(slot);
@@ -354,6 +394,7 @@ void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& 
                       &kernels,           solve.blocks, h};
   const std::span<Group> joints = lay_out_joints(solve, arena);
   run_substeps(solve, contacts, joints, arena, tasks);
+  report_hits(w, scratch);
 }
 
 }  // namespace gyre

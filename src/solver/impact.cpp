@@ -101,7 +101,8 @@ void rub(ImpactContact& contact, Bodies& bodies) {
 bool strike_point(ImpactPoint& point, const ImpactContact& contact, const Bodies& bodies, const ImpactSettings& settings) {
   const float closing = -dot(bodies.velocity(point.from_a, point.from_b), contact.normal);
   if (!(closing > settings.threshold)) return false;
-  const float separation = max(point.separation + dot(bodies.drift(point.from_a, point.from_b), contact.normal), 0.0f);
+  // Below the surface (a contact that was seen too late) the way back up counts like the way down.
+  const float separation = point.separation + dot(bodies.drift(point.from_a, point.from_b), contact.normal);
   if (closing * settings.substep < separation) return false;
   const float start = closing - point.kick;  // u: before this sub-step's forces
   const float half_kick = 0.5f * point.kick;

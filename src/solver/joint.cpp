@@ -182,9 +182,11 @@ void solve_distance(JointRecord& joint, const JointWork& work, JointPair& pair, 
     joint.low_impulse += change;
     return;
   }
-  const float low = stop_change(work.axis_mass, speed(), work.position - joint.min_length, joint.low_impulse, settings, soft);
-  apply(low);
-  joint.low_impulse += low;
+  if (joint.min_length > 0.0f) {
+    const float low = stop_change(work.axis_mass, speed(), work.position - joint.min_length, joint.low_impulse, settings, soft);
+    apply(low);
+    joint.low_impulse += low;
+  }
   if (joint.max_length < kUnlimitedLength) {
     const float high = stop_change(work.axis_mass, -speed(), joint.max_length - work.position, joint.high_impulse,
                                    settings, soft);
