@@ -382,7 +382,9 @@ void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& 
   const Softness fixed = make_softness(2.0f * frequency, kContactDamping, h);
   solve.contact_settings = {h, moving.bias_rate, moving.mass_scale, moving.impulse_scale,
                             fixed.bias_rate, fixed.mass_scale, fixed.impulse_scale, warm_scale};
-  solve.joint_settings = {h, {kJointRate, 1.0f, kJointLeak * h}};
+  // Long sub-steps take back no more than the whole error and give way by less than the whole impulse.
+  const float give = kJointLeak * h / (1.0f + kJointLeak * h);
+  solve.joint_settings = {h, {min(kJointRate, 0.8f / h), 1.0f - give, give}};
   solve.impact_settings = {h, kBounceShare * h * length(w.settings.gravity)};
   solve.contact_bodies = {w.bodies.motion.data(), w.bodies.inertia.data()};
   solve.joint_bodies = {w.bodies.motion.data(), w.bodies.inertia.data(), w.bodies.orientations.data()};
