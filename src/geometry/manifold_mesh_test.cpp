@@ -212,5 +212,64 @@ TEST(CollideMesh, DoubleSidedGroundPushesTowardsTheSideOfTheMiddle) {
   }
 }
 
+TEST(CollideMesh, HugeFloorsAndTinyBodies) {
+  Triangles floor;
+  floor.quad({-1e6f, 0, -1e6f}, {-1e6f, 0, 1e6f}, {1e6f, 0, 1e6f}, {1e6f, 0, -1e6f});
+  const Geometry huge = floor.cook(), wide = flat_grid(500.0f, 10.0f).cook();
+  Random random{67};
+  for (int i = 0; i < 40; ++i) {
+    SCOPED_TRACE(i);
+    // Half of them right over the diagonal.
+    const float reach = i % 4 < 2 ? 1.0e5f : 3.0f, x = random.between(-reach, reach);
+    const float z = i % 2 == 0 ? x : random.between(-reach, reach);
+    const Quat turn = from_axis_angle(kUp, random.between(-3, 3));
+    const Manifolds box = collide(huge, Box{{0.5f, 0.5f, 0.5f}}, {{x, 0.4999f, z}, turn});
+    ASSERT_EQ(box.count, 1);
+    EXPECT_EQ(box.all[0].normal, kUp);
+    EXPECT_EQ(box.points(), 4);
+    EXPECT_NEAR(box.deepest(), -1.0e-4f, 1.0e-6f);
+    const float size = i % 2 == 0 ? 1.0e-3f : 1.0e-2f;
+    const Manifolds tiny =
+        collide(wide, Box{{size, size, size}},
+                {{random.between(-499, 499), 0.999f * size, random.between(-499, 499)}, turn}, 0.02f * size);
+    ASSERT_EQ(tiny.count, 1);
+    EXPECT_EQ(tiny.points(), 4);
+    EXPECT_NEAR(tiny.deepest(), -1.0e-3f * size, 1.0e-5f * size);
+  }
+}
+
+TEST(CollideMesh, PosesThatAreNotFiniteTouchNothing) {
+  const Geometry ground = flat_grid(5.0f, 1.0f).cook();
+  Random random{69};
+  for (const AnyShape& shape : all_kinds(random)) {
+    for (const float bad : {__builtin_nanf(""), __builtin_huge_valf(), 1.0e30f}) {
+      EXPECT_EQ(collide(ground, shape, {{bad, 0, 0}, {}}).count, 0);
+      EXPECT_EQ(collide(ground, shape, {{0, bad, 0}, {}}).count, 0);
+      EXPECT_EQ(collide(ground, shape, {{bad, bad, bad}, {}}).count, 0);
+    }
+  }
+}
+
+TEST(CollideMesh, TheSameQuestionHasTheSameAnswer) {
+  Random random{70};
+  const Geometry ground = grid(3.0f, 0.3f, [&](float, float) { return random.between(0.0f, 0.2f); }).cook();
+  for (const AnyShape& shape : all_kinds(random)) {
+    for (int i = 0; i < 20; ++i) {
+      Transform pose{{random.between(-2, 2), 0.0f, random.between(-2, 2)}, random.rotation()};
+      pose.position.y = 0.1f - lowest_point(shape, pose);
+      const Manifolds a = collide(ground, shape, pose), b = collide(ground, shape, pose);
+      ASSERT_EQ(a.count, b.count);
+      for (int m = 0; m < a.count; ++m) {
+        EXPECT_EQ(a.all[m].normal, b.all[m].normal);
+        ASSERT_EQ(a.all[m].count, b.all[m].count);
+        for (int k = 0; k < a.all[m].count; ++k) {
+          EXPECT_EQ(a.all[m].points[k].position, b.all[m].points[k].position);
+          EXPECT_EQ(a.all[m].points[k].feature, b.all[m].points[k].feature);
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace gyre
