@@ -181,7 +181,7 @@ void erase_value(std::vector<std::uint32_t>& list, std::uint32_t value) {
 void recheck_pairs(RigidWorld& w, const JointRecord& joint) {
   for (const std::int32_t body : {joint.body_a, joint.body_b}) {
     if (body == kNoBody) continue;
-    for (const ShapeId id : w.bodies.shapes[body]) w.shapes.changed.push_back(id.index);
+    for (const ShapeId id : w.bodies.shapes[std::size_t(body)]) w.shapes.changed.push_back(id.index);
   }
 }
 
@@ -190,7 +190,7 @@ void detach_joint(RigidWorld& w, std::uint32_t slot) {
   for (const std::int32_t body : {joint.body_a, joint.body_b}) {
     if (body == kNoBody) continue;
     stir(w, std::uint32_t(body));
-    erase_value(w.bodies.joints[body], slot);
+    erase_value(w.bodies.joints[std::size_t(body)], slot);
   }
   if (blocks(joint)) {
     std::uint32_t* count = w.joints.blocked.find(block_key(joint));
@@ -308,7 +308,7 @@ Submitted carry_out(WorldState& s, const AddJoint& c) {
   for (const std::int32_t body : {joint.body_a, joint.body_b}) {
     if (body == kNoBody) continue;
     stir(w, std::uint32_t(body));
-    std::vector<std::uint32_t>& list = w.bodies.joints[body];
+    std::vector<std::uint32_t>& list = w.bodies.joints[std::size_t(body)];
     auto at = list.begin();
     while (at != list.end() && *at < slot) ++at;
     list.insert(at, slot);
@@ -316,7 +316,7 @@ Submitted carry_out(WorldState& s, const AddJoint& c) {
   if (blocks(joint)) {
     w.joints.blocked.find_or_insert(block_key(joint), 0u)++;
     // Contacts that the two bodies have by now go away.
-    for (const ShapeId id : w.bodies.shapes[joint.body_a]) {
+    for (const ShapeId id : w.bodies.shapes[std::size_t(joint.body_a)]) {
       for_each_contact_of_shape(w.contacts, id.index, [&](std::uint32_t contact) {
         const Contact& pair = w.contacts.contacts[contact];
         if (pair_key(pair.body_a, pair.body_b) == block_key(joint)) w.unwanted.push_back(contact);

@@ -11,6 +11,7 @@ constexpr float kMostPlace = 1.0e12f;  // m: positions beyond this are refused
 
 Error ok() { return {}; }
 
+Error refuse(const char* words) { return make_error(ErrorCode::invalid_argument, "%s", words); }
 template <class... Args>
 Error refuse(const char* format, Args... args) {
   return make_error(ErrorCode::invalid_argument, format, args...);

@@ -45,7 +45,7 @@ class HashVisitor {
  private:
   template <class T>
   void add_record(const T& record) {
-    for_each_field(record, [this](const auto& value) { add(value); });
+    for_each_field(record, [this](const auto& value) { this->add(value); });
   }
   template <class T>
   void add(const T& value) {
@@ -137,8 +137,8 @@ void derive_state(RigidWorld& w) {
   w.joints.blocked.clear();
   w.joints.ids.for_each_live([&](std::uint32_t slot) {
     const JointRecord& joint = w.joints.records[slot];
-    if (joint.body_a != kNoBody) bodies.joints[joint.body_a].push_back(slot);
-    if (joint.body_b != kNoBody) bodies.joints[joint.body_b].push_back(slot);
+    if (joint.body_a != kNoBody) bodies.joints[std::size_t(joint.body_a)].push_back(slot);
+    if (joint.body_b != kNoBody) bodies.joints[std::size_t(joint.body_b)].push_back(slot);
     if (!joint.collide_connected && joint.body_a != kNoBody && joint.body_b != kNoBody) {
       w.joints.blocked.find_or_insert(pair_key(std::uint32_t(joint.body_a), std::uint32_t(joint.body_b)), 0u)++;
     }
