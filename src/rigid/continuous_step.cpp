@@ -7,6 +7,9 @@ namespace gyre {
 
 namespace {
 
+// The part of its way that a body in contact keeps whatever the sweep says.
+constexpr float kLeastProgress = 0.2f;
+
 Sweep sweep_of_body(const RigidWorld& w, std::uint32_t body) {
   const BodyMotion& motion = w.bodies.motion[body];
   const BodyFlags& flags = w.bodies.flags[body];
@@ -41,9 +44,11 @@ void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, 
   scratch.fractions.resize(scratch.fast.size());
   scratch.collision.clamp_fast_bodies(input, scratch.fast, tasks, scratch.fractions);
   for (std::size_t k = 0; k < scratch.fast.size(); ++k) {
-    const float fraction = scratch.fractions[k];
-    if (!(fraction < 1.0f)) continue;
     const std::uint32_t i = scratch.fast[k].body;
+    // What contacts already act on must not be held in the air by a sweep: it keeps a part of its way, and they answer.
+    const float least = w.bodies.flags[i].touched != 0 ? kLeastProgress : 0.0f;
+    const float fraction = max(scratch.fractions[k], least);
+    if (!(fraction < 1.0f)) continue;
     w.bodies.orientations[i] = pose_at(sweep_of_body(w, i), double(fraction)).orientation;
     w.bodies.motion[i].moved *= fraction;
     w.bodies.motion[i].turned *= fraction;
