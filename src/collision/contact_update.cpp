@@ -9,7 +9,7 @@ namespace {
 
 // All lengths in sizes of the pair (the smaller shape's inner radius).
 // What comes faster than this in a step is left to the sweep (continuous.h).
-constexpr float kLargestApproach = 2.0f;
+constexpr float kLargestApproach = 1.0f;
 // A full look reaches farther than needed, so that the contact may be recycled while the pair moves a little. Points farther
 // apart than kKept beyond the speculative distance are not kept, only how near they were. Where nothing touches, and the
 // pair goes less than kSlow in a step, the look reaches far: it is cheaper to look once than to look in every step.

@@ -321,9 +321,10 @@ void relax_blocks(void* memory, int begin, int end, BodyMotion* motion, float su
     Wide<W> a[kMotionFloats], b[kMotionFloats];
     load_pair<W>(block, motion, a, b);
     PairMotion<W> pair = velocities<W>(a, b);
+    // Friction last: its limit is then that of the load which stands.
+    solve_normals<W, false>(block, pair, a, b, substep);
     if (block.rolls != 0) solve_rolling<W>(block, pair);
     solve_friction<W>(block, pair);
-    solve_normals<W, false>(block, pair, a, b, substep);
     for (int k = 0; k < block.point_count; ++k) block.points[k].total = block.points[k].total + block.points[k].impulse;
     block.total_1 = block.total_1 + block.friction_1;
     block.total_2 = block.total_2 + block.friction_2;
