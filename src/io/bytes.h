@@ -67,8 +67,7 @@ bool from_bits(BitsOf<T> bits, T& value) {
 class ByteWriter {
  public:
   template <class T>
-    requires(std::is_arithmetic_v<T> || std::is_enum_v<T>)
-  void put(T value) {
+  requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) void put(T value) {
     store_little(grow(sizeof(BitsOf<T>)), to_bits(value));
   }
   void put_bytes(std::span<const std::byte> bytes) {
@@ -110,8 +109,7 @@ class ByteReader {
   explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
 
   template <class T>
-    requires(std::is_arithmetic_v<T> || std::is_enum_v<T>)
-  T get() {
+  requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) T get() {
     T value{};
     const std::byte* const from = take(sizeof(BitsOf<T>));
     if (from != nullptr && !from_bits(load_little<BitsOf<T>>(from), value)) fail();

@@ -54,11 +54,12 @@ Error ChunkReader::read_header() {
   const auto layout = in.get<std::uint64_t>();
   if (in.failed()) return make_error(ErrorCode::invalid_data, "recording: it ends within its header");
   if (version != kRecordingVersion) {
-    return make_error(ErrorCode::unsupported, "recording: it is of format %u; this version reads format %u", version,
-                      kRecordingVersion);
+    return make_error(ErrorCode::unsupported, "recording: it is of format %u; this version reads format %u",
+                      version, kRecordingVersion);
   }
   if (layout != state_layout()) {
-    return make_error(ErrorCode::unsupported, "recording: it was made by a version whose worlds have another state");
+    return make_error(ErrorCode::unsupported,
+                      "recording: it was made by a version whose worlds have another state");
   }
   place_ = kHeaderBytes;
   return {};

@@ -51,8 +51,8 @@ void forget_reports(WorldState& state) {
 }
 
 bool equal(const Proxy& a, const Proxy& b) {
-  return a.fat_box.low == b.fat_box.low && a.fat_box.high == b.fat_box.high && a.filter == b.filter && a.body == b.body &&
-         a.motion == b.motion && a.sensor == b.sensor && a.pushes == b.pushes;
+  return a.fat_box.low == b.fat_box.low && a.fat_box.high == b.fat_box.high && a.filter == b.filter &&
+         a.body == b.body && a.motion == b.motion && a.sensor == b.sensor && a.pushes == b.pushes;
 }
 
 // The proxies that differ, so that the broad phase need not be built anew. False if it must be.
@@ -72,7 +72,9 @@ struct ByteCounter {
     bytes += column.bytes();
   }
   void operator()(const char*, const IdPool& ids) { bytes += ids.bytes(); }
-  void operator()(const char*, const std::vector<AnyShape>& shapes) { bytes += shapes.capacity() * sizeof(AnyShape); }
+  void operator()(const char*, const std::vector<AnyShape>& shapes) {
+    bytes += shapes.capacity() * sizeof(AnyShape);
+  }
   template <class T>
   void operator()(const char*, const T&) {
     bytes += sizeof(T);
@@ -101,7 +103,8 @@ void KeptState::keep(const WorldState& state) {
 void KeptState::put_back(WorldState& state) const {
   RigidWorld& w = state.rigid;
   Array<std::uint32_t> changed = std::move(w.shapes.changed);
-  const bool same_proxies = !w.broadphase_stale && list_differing(w.shapes.proxies, columns_.rigid.shapes.proxies, changed);
+  const bool same_proxies =
+      !w.broadphase_stale && list_differing(w.shapes.proxies, columns_.rigid.shapes.proxies, changed);
   copy_columns(columns_, state);
   derive_state(w);
   if (same_proxies) {

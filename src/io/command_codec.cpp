@@ -18,10 +18,7 @@ class FieldWriter {
  public:
   explicit FieldWriter(ByteWriter& out) : out_(out) {}
   template <class T>
-    requires(std::is_arithmetic_v<T> || std::is_enum_v<T>)
-  void number(const T& value) {
-    out_.put(value);
-  }
+  requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) void number(const T& value) { out_.put(value); }
   template <class Tag>
   void id(const Id<Tag>& value) {
     out_.put(value.index), out_.put(value.generation);
@@ -43,10 +40,7 @@ class FieldReader {
   FieldReader(ByteReader& in, const GeometryTable& geometry, std::uint16_t world)
       : in_(in), geometry_(geometry), world_(world) {}
   template <class T>
-    requires(std::is_arithmetic_v<T> || std::is_enum_v<T>)
-  void number(T& value) {
-    value = in_.get<T>();
-  }
+  requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) void number(T& value) { value = in_.get<T>(); }
   template <class Tag>
   void id(Id<Tag>& value) {
     value.index = in_.get<std::uint32_t>();
@@ -74,8 +68,8 @@ class FieldReader {
 // ------------------------------------------------------------------------------------------------------------- values
 
 template <class C, class T>
-  requires(std::is_arithmetic_v<std::remove_const_t<T>> || std::is_enum_v<std::remove_const_t<T>>)
-void fields(C& c, T& value) {
+requires(std::is_arithmetic_v<std::remove_const_t<T>> ||
+         std::is_enum_v<std::remove_const_t<T>>) void fields(C& c, T& value) {
   c.number(value);
 }
 template <class C, class Tag>
@@ -111,10 +105,7 @@ void fields(C& c, T& m) {
   all(c, m.xx, m.yy, m.zz, m.xy, m.xz, m.yz);
 }
 template <class C, class T>
-  requires(Is<T, Transform> || Is<T, Pose>)
-void fields(C& c, T& t) {
-  all(c, t.position, t.orientation);
-}
+requires(Is<T, Transform> || Is<T, Pose>) void fields(C& c, T& t) { all(c, t.position, t.orientation); }
 template <class C, Is<bool[3]> T>
 void fields(C& c, T& flags) {
   all(c, flags[0], flags[1], flags[2]);
@@ -157,10 +148,10 @@ void fields(C& c, T& v) {
 }
 template <class C, Is<BodyDef> T>
 void fields(C& c, T& v) {
-  auto& [type, pose, linear, angular, linear_damping, angular_damping, gravity_scale, continuous, can_sleep, locked, mass,
-         center, inertia, user_data] = v;
-  all(c, type, pose, linear, angular, linear_damping, angular_damping, gravity_scale, continuous, can_sleep, locked, mass,
-      center, inertia, user_data);
+  auto& [type, pose, linear, angular, linear_damping, angular_damping, gravity_scale, continuous, can_sleep,
+         locked, mass, center, inertia, user_data] = v;
+  all(c, type, pose, linear, angular, linear_damping, angular_damping, gravity_scale, continuous, can_sleep,
+      locked, mass, center, inertia, user_data);
 }
 template <class C, Is<Limits> T>
 void fields(C& c, T& v) {
@@ -174,10 +165,10 @@ void fields(C& c, T& v) {
 }
 template <class C, Is<JointDef> T>
 void fields(C& c, T& v) {
-  auto& [kind, a, b, anchor, axis, anchor_b, limits, motor, length, min_length, max_length, stiffness, damping, break_force,
-         break_torque, collide_connected] = v;
-  all(c, kind, a, b, anchor, axis, anchor_b, limits, motor, length, min_length, max_length, stiffness, damping, break_force,
-      break_torque, collide_connected);
+  auto& [kind, a, b, anchor, axis, anchor_b, limits, motor, length, min_length, max_length, stiffness,
+         damping, break_force, break_torque, collide_connected] = v;
+  all(c, kind, a, b, anchor, axis, anchor_b, limits, motor, length, min_length, max_length, stiffness,
+      damping, break_force, break_torque, collide_connected);
 }
 template <class C, Is<std::vector<ShapeDef>> T>
 void fields(C& c, T& list) {
@@ -191,19 +182,21 @@ template <class T, class... Of>
 concept IsOneOf = (Is<T, Of> || ...);
 
 template <class C, class T>
-  requires IsOneOf<T, RemoveBody, RemoveShape, AddJoint, RemoveJoint, SetGravity, SetMaterialPair, SetSleeping, SetSubsteps, Step>
+requires IsOneOf<T, RemoveBody, RemoveShape, AddJoint, RemoveJoint, SetGravity, SetMaterialPair, SetSleeping,
+                 SetSubsteps, Step>
 void fields(C& c, T& v) {
   auto& [only] = v;
   all(c, only);
 }
 template <class C, class T>
-  requires IsOneOf<T, AddBody, AddShape, SetPose, SetType, SetGravityScale, SetMaterial, SetFilter, SetMotor, SetAwake>
+requires IsOneOf<T, AddBody, AddShape, SetPose, SetType, SetGravityScale, SetMaterial, SetFilter, SetMotor,
+                 SetAwake>
 void fields(C& c, T& v) {
   auto& [first, second] = v;
   all(c, first, second);
 }
 template <class C, class T>
-  requires IsOneOf<T, SetVelocity, MoveKinematic, SetDamping, AddForce, AddImpulse>
+requires IsOneOf<T, SetVelocity, MoveKinematic, SetDamping, AddForce, AddImpulse>
 void fields(C& c, T& v) {
   auto& [first, second, third] = v;
   all(c, first, second, third);

@@ -42,8 +42,10 @@ std::vector<Command> all_commands() {
   body_def.user_data = 99;
   JointDef joint_def{.kind = JointKind::distance, .a = body, .b = {}, .anchor = {1, 2, 3}, .axis = {0, 0, 1}};
   joint_def.anchor_b = DVec3{4, 5, 6}, joint_def.limits = Limits{-1, 2};
-  joint_def.motor = {.target_velocity = 1, .target_position = 2.0f, .max_force = 3, .frequency = 4, .damping_ratio = 5};
-  joint_def.length = 1.0f, joint_def.min_length = 2.0f, joint_def.max_length = 3.0f, joint_def.stiffness = 4.0f;
+  joint_def.motor = {
+      .target_velocity = 1, .target_position = 2.0f, .max_force = 3, .frequency = 4, .damping_ratio = 5};
+  joint_def.length = 1.0f, joint_def.min_length = 2.0f, joint_def.max_length = 3.0f,
+  joint_def.stiffness = 4.0f;
   joint_def.damping = 5.0f, joint_def.break_force = 6.0f, joint_def.break_torque = 7.0f;
   joint_def.collide_connected = true;
   return {AddBody{body_def, {shape_def, ShapeDef{}}},

@@ -82,7 +82,9 @@ bool compare(const StateTrace& a, const StateTrace& b, Difference& out) {
 // Hangs on a world's stage hook and puts back what was there.
 class HookGuard {
  public:
-  HookGuard(WorldState& state, StageHook hook) : state_(state), before_(state.stage_hook) { state.stage_hook = hook; }
+  HookGuard(WorldState& state, StageHook hook) : state_(state), before_(state.stage_hook) {
+    state.stage_hook = hook;
+  }
   ~HookGuard() { state_.stage_hook = before_; }
   HookGuard(const HookGuard&) = delete;
   HookGuard& operator=(const HookGuard&) = delete;
@@ -114,7 +116,8 @@ std::vector<StateTrace> step_with_traces(WorldState& state, float seconds) {
   return std::move(context.traces);
 }
 
-bool step_against_traces(WorldState& state, float seconds, const std::vector<StateTrace>& traces, Difference& out) {
+bool step_against_traces(WorldState& state, float seconds, const std::vector<StateTrace>& traces,
+                         Difference& out) {
   struct Context {
     WorldState& state;
     const std::vector<StateTrace>& traces;
@@ -142,7 +145,8 @@ Difference no_difference() {
 }
 
 // A step of a recording whose hash differed, played beside the simplest world there is.
-Difference explain_step(const Recording& recording, std::uint64_t position, WorldState& suspect, WorldState& plain) {
+Difference explain_step(const Recording& recording, std::uint64_t position, WorldState& suspect,
+                        WorldState& plain) {
   Difference found;
   found.step = position;
   const RecordedStep& step = recording.steps[std::size_t(position)];
@@ -167,8 +171,8 @@ bool step_and_compare(WorldState& a, WorldState& b, float seconds, Difference& d
   return step_against_traces(b, seconds, traces, difference);
 }
 
-Result<Difference> first_difference(std::span<const std::byte> snapshot, const WorldDef& a, const WorldDef& b, int steps,
-                                    float seconds) {
+Result<Difference> first_difference(std::span<const std::byte> snapshot, const WorldDef& a, const WorldDef& b,
+                                    int steps, float seconds) {
   Result<World> first = load_snapshot(snapshot, a);
   if (!first) return first.error();
   Result<World> second = load_snapshot(snapshot, b);

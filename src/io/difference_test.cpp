@@ -24,12 +24,15 @@ struct Pair {
   }
 };
 
-void flip_lowest_bit(float& value) { value = __builtin_bit_cast(float, __builtin_bit_cast(std::uint32_t, value) ^ 1u); }
+void flip_lowest_bit(float& value) {
+  value = __builtin_bit_cast(float, __builtin_bit_cast(std::uint32_t, value) ^ 1u);
+}
 
 TEST(Difference, NoneBetweenEqualWorlds) {
   Pair worlds(kScenes[1], 30);
   Difference found;
-  for (int i = 0; i < 10; ++i) EXPECT_FALSE(step_and_compare(worlds.a.state(), worlds.b.state(), 0.01f, found));
+  for (int i = 0; i < 10; ++i)
+    EXPECT_FALSE(step_and_compare(worlds.a.state(), worlds.b.state(), 0.01f, found));
 }
 
 TEST(Difference, OfAVelocityBitBetweenSteps) {

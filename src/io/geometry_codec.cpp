@@ -31,7 +31,8 @@ std::vector<Vec3> get_vectors(ByteReader& in) {
   const std::vector<float> numbers = in.get_all<float>();
   if (numbers.size() % 3 != 0) in.fail();
   std::vector<Vec3> vectors(numbers.size() / 3);
-  for (std::size_t i = 0; i < vectors.size(); ++i) vectors[i] = {numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
+  for (std::size_t i = 0; i < vectors.size(); ++i)
+    vectors[i] = {numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
   return vectors;
 }
 
@@ -50,7 +51,8 @@ void write_hull(ByteWriter& out, const Hull& hull) {
   out.put_all(std::span<const std::uint8_t>(hull.face_vertices));
   for (const HullPlane& plane : hull.planes) put_vector(out, plane.normal), out.put(plane.offset);
   out.put(std::uint64_t(hull.edges.size()));
-  for (const HullEdge& edge : hull.edges) out.put(edge.from), out.put(edge.to), out.put(edge.left), out.put(edge.right);
+  for (const HullEdge& edge : hull.edges)
+    out.put(edge.from), out.put(edge.to), out.put(edge.left), out.put(edge.right);
   put_vector(out, hull.centroid);
   out.put(hull.inner_radius);
 }
@@ -132,8 +134,10 @@ Error read_hull(ByteReader& in, CookedGeometry& cooked) {
   hull->inner_radius = in.get<float>();
   if (in.failed() || !faces_fit(*hull) || !edges_fit(*hull)) return bad("a hull whose faces do not close");
   for (const HullPlane& plane : hull->planes) {
-    if (!is_finite(plane.normal) || !is_finite(plane.offset)) return bad("a hull with a plane that is not finite");
-    if (absolute(length_squared(plane.normal) - 1.0f) > 1.0e-3f) return bad("a hull with a normal that is not a unit");
+    if (!is_finite(plane.normal) || !is_finite(plane.offset))
+      return bad("a hull with a plane that is not finite");
+    if (absolute(length_squared(plane.normal) - 1.0f) > 1.0e-3f)
+      return bad("a hull with a normal that is not a unit");
   }
   if (!all_finite(hull->vertices) || !is_finite(hull->centroid) || !(hull->inner_radius >= 0.0f) ||
       !is_finite(hull->inner_radius)) {
@@ -188,18 +192,21 @@ Error read_mesh(ByteReader& in, CookedGeometry& cooked) {
   mesh->indices = in.get_all<std::uint32_t>();
   mesh->source = in.get_all<std::uint32_t>();
   const std::size_t triangles = mesh->source.size();
-  if (in.failed() || triangles == 0 || triangles > StaticTree::kMaxItems || mesh->indices.size() != 3 * triangles) {
+  if (in.failed() || triangles == 0 || triangles > StaticTree::kMaxItems ||
+      mesh->indices.size() != 3 * triangles) {
     return bad("a mesh of an impossible size");
   }
   for (const Vec3& v : mesh->vertices) {
-    if (!is_finite(v) || largest(absolute(v)) > kMaxCoordinate) return bad("a mesh with a vertex out of range");
+    if (!is_finite(v) || largest(absolute(v)) > kMaxCoordinate)
+      return bad("a mesh with a vertex out of range");
   }
   for (const std::uint32_t index : mesh->indices) {
     if (index >= mesh->vertices.size()) return bad("a mesh with an index out of range");
   }
   for (std::size_t i = 0; i < mesh->indices.size(); i += 3) {
     const std::uint32_t* corner = mesh->indices.data() + i;
-    if (triangle_normal(mesh->vertices[corner[0]], mesh->vertices[corner[1]], mesh->vertices[corner[2]]) == Vec3{}) {
+    if (triangle_normal(mesh->vertices[corner[0]], mesh->vertices[corner[1]], mesh->vertices[corner[2]]) ==
+        Vec3{}) {
       return bad("a mesh with a triangle without area");
     }
   }
@@ -269,10 +276,12 @@ Result<Geometry> read_geometry(ByteReader& in, const GeometryTable& known) {
   const auto hash = in.get<std::uint64_t>();
   ByteReader body(in.get_bytes(in.get<std::uint64_t>()));
   if (in.failed()) return bad("it ends too soon");
-  if (const Geometry* const found = known.find(hash); found != nullptr && found->kind() == kind) return *found;
+  if (const Geometry* const found = known.find(hash); found != nullptr && found->kind() == kind)
+    return *found;
   if (kind == ShapeKind::height_field) {
     const Result<Geometry> field = read_field(body);
-    if (field && (!body.finished() || field->content_hash() != hash)) return bad("a height field that is not what it says");
+    if (field && (!body.finished() || field->content_hash() != hash))
+      return bad("a height field that is not what it says");
     return field;
   }
   auto cooked = std::make_shared<CookedGeometry>();
@@ -306,11 +315,14 @@ void write_shape(ByteWriter& out, const AnyShape& shape) {
   out.put(std::uint8_t(shape.index()));
   if (const auto* sphere = std::get_if<Sphere>(&shape)) out.put(sphere->radius);
   if (const auto* box = std::get_if<Box>(&shape)) put_vector(out, box->half_extents), out.put(box->rounding);
-  if (const auto* capsule = std::get_if<Capsule>(&shape)) out.put(capsule->radius), out.put(capsule->half_height);
-  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) out.put(cylinder->radius), out.put(cylinder->half_height);
+  if (const auto* capsule = std::get_if<Capsule>(&shape))
+    out.put(capsule->radius), out.put(capsule->half_height);
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape))
+    out.put(cylinder->radius), out.put(cylinder->half_height);
   if (const auto* cone = std::get_if<Cone>(&shape)) out.put(cone->radius), out.put(cone->half_height);
   if (const auto* plane = std::get_if<Plane>(&shape)) put_vector(out, plane->normal), out.put(plane->offset);
-  if (const auto* cooked = std::get_if<Geometry>(&shape)) out.put(*cooked ? cooked->content_hash() : std::uint64_t(0));
+  if (const auto* cooked = std::get_if<Geometry>(&shape))
+    out.put(*cooked ? cooked->content_hash() : std::uint64_t(0));
 }
 
 namespace {
@@ -328,16 +340,20 @@ Round read_round(ByteReader& in) {
 
 AnyShape read_shape(ByteReader& in, const GeometryTable& table) {
   switch (in.get<std::uint8_t>()) {
-    case 0: return Sphere{in.get<float>()};
+    case 0:
+      return Sphere{in.get<float>()};
     case 1: {
       Box box;
       box.half_extents = get_vector(in);
       box.rounding = in.get<float>();
       return box;
     }
-    case 2: return read_round<Capsule>(in);
-    case 3: return read_round<Cylinder>(in);
-    case 4: return read_round<Cone>(in);
+    case 2:
+      return read_round<Capsule>(in);
+    case 3:
+      return read_round<Cylinder>(in);
+    case 4:
+      return read_round<Cone>(in);
     case 5: {
       Plane plane;
       plane.normal = get_vector(in);
@@ -347,7 +363,8 @@ AnyShape read_shape(ByteReader& in, const GeometryTable& table) {
     case 6:
       if (const Geometry* const found = table.find(in.get<std::uint64_t>())) return *found;
       break;
-    default: break;
+    default:
+      break;
   }
   in.fail();
   return Sphere{};

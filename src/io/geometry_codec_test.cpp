@@ -32,7 +32,8 @@ Geometry rough_mesh(bool double_sided) {
   }
   for (std::uint32_t i = 0; i < 11 * 11; ++i) {
     const std::uint32_t at = 2 * (12 * (i / 11) + i % 11) + i % 2;
-    for (const std::uint32_t corner : {at, at + 24, at + 2, at + 2, at + 24, at + 26}) indices.push_back(corner % 288);
+    for (const std::uint32_t corner : {at, at + 24, at + 2, at + 2, at + 24, at + 26})
+      indices.push_back(corner % 288);
     if (i % 5 == 0) indices.insert(indices.end(), {at, at, at + 2});
     if (i % 7 == 0) indices.insert(indices.end(), {at, at + 24, at + 2});
   }
@@ -41,7 +42,8 @@ Geometry rough_mesh(bool double_sided) {
 
 Geometry holed_field() {
   std::vector<float> heights;
-  for (int i = 0; i < 9 * 6; ++i) heights.push_back(i % 11 == 3 ? __builtin_nanf("") : 0.25f * float(i * i % 13));
+  for (int i = 0; i < 9 * 6; ++i)
+    heights.push_back(i % 11 == 3 ? __builtin_nanf("") : 0.25f * float(i * i % 13));
   return *cook_height_field({heights, 9, 6, 0.5f});
 }
 
@@ -119,7 +121,7 @@ TEST(GeometryCodec, EveryShapeComesBack) {
   const Geometry hull = random_hull(2, 12);
   GeometryTable table;
   table.add(hull);
-  const AnyShape shapes[] = {Sphere{0.25f},        Box{{1, 2, 3}, 0.5f}, Capsule{0.5f, 2},          Cylinder{0.75f, 3},
+  const AnyShape shapes[] = {Sphere{0.25f},       Box{{1, 2, 3}, 0.5f}, Capsule{0.5f, 2}, Cylinder{0.75f, 3},
                              Cone{0.125f, 0.25f}, Plane{{1, 0, 0}, 7},  AnyShape(hull)};
   for (const AnyShape& shape : shapes) {
     ByteWriter out;
@@ -146,7 +148,7 @@ TEST(GeometryCodec, DamageIsRefusedOrHarmless) {
     ByteWriter out;
     write_geometry(out, geometry);
     const std::vector<std::byte> good(out.view().begin(), out.view().end());
-    for (std::size_t place = 0; place < good.size(); place += good.size() > 2000 ? 17 : 1) {
+    for (std::size_t place = 0; place<good.size(); place += good.size()> 2000 ? 17 : 1) {
       for (const unsigned flip : {0x01u, 0x80u, 0xffu}) {
         std::vector<std::byte> bytes = good;
         bytes[place] ^= std::byte(flip);

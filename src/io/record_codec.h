@@ -17,16 +17,20 @@ constexpr char type_letter() {
   if constexpr (std::is_same_v<T, double>) return 'd';
   constexpr bool is_signed = std::is_signed_v<T>;
   switch (sizeof(T)) {
-    case 1: return is_signed ? 'b' : 'B';
-    case 2: return is_signed ? 'h' : 'H';
-    case 4: return is_signed ? 'i' : 'I';
-    default: return is_signed ? 'q' : 'Q';
+    case 1:
+      return is_signed ? 'b' : 'B';
+    case 2:
+      return is_signed ? 'h' : 'H';
+    case 4:
+      return is_signed ? 'i' : 'I';
+    default:
+      return is_signed ? 'q' : 'Q';
   }
 }
 
 struct RecordLayout {
-  std::size_t bytes = 0;    // of one record
-  std::uint64_t hash = 0;   // of the letters of its fields
+  std::size_t bytes = 0;   // of one record
+  std::uint64_t hash = 0;  // of the letters of its fields
 };
 
 template <class Record>

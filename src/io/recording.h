@@ -14,7 +14,7 @@ namespace gyre {
 struct RecordedStep {
   std::size_t first_chunk = 0;  // into Recording::chunks
   std::size_t chunk_count = 0;
-  std::uint64_t hash = 0;       // of the state after it
+  std::uint64_t hash = 0;  // of the state after it
 };
 
 struct Recording {

@@ -7,7 +7,8 @@ namespace {
 
 // Walks all commands of a chunk; fn(command) for each. False if a command cannot be read.
 template <class Fn>
-bool for_each_command(const Chunk& chunk, const GeometryTable& geometry, std::uint16_t world_number, Fn&& fn) {
+bool for_each_command(const Chunk& chunk, const GeometryTable& geometry, std::uint16_t world_number,
+                      Fn&& fn) {
   ByteReader in(chunk.payload);
   while (in.left() > 0) {
     const Command command = read_command(in, geometry, world_number);
@@ -26,11 +27,17 @@ class Opener {
   bool take(const Chunk& chunk) {
     if (recording_.closed) return false;
     switch (chunk.kind) {
-      case ChunkKind::snapshot: return take_snapshot(chunk);
-      case ChunkKind::geometry: return take_geometry(chunk);
-      case ChunkKind::commands: return take_commands(chunk);
-      case ChunkKind::step_hash: return take_hash(chunk);
-      case ChunkKind::end: recording_.closed = true; return true;
+      case ChunkKind::snapshot:
+        return take_snapshot(chunk);
+      case ChunkKind::geometry:
+        return take_geometry(chunk);
+      case ChunkKind::commands:
+        return take_commands(chunk);
+      case ChunkKind::step_hash:
+        return take_hash(chunk);
+      case ChunkKind::end:
+        recording_.closed = true;
+        return true;
     }
     return false;
   }

@@ -175,7 +175,8 @@ TEST(DamagedRecording, CutAnywherePlaysUpToTheLastWholeStep) {
   const Recorded recorded = record(kScenes[6], 40);
   std::uint64_t most = 0;
   for (std::size_t length = 0; length < recorded.bytes.size(); length += 97) {
-    Result<Replay> replay = Replay::open({recorded.bytes.begin(), recorded.bytes.begin() + std::ptrdiff_t(length)});
+    Result<Replay> replay =
+        Replay::open({recorded.bytes.begin(), recorded.bytes.begin() + std::ptrdiff_t(length)});
     if (!replay) {
       EXPECT_EQ(most, 0u);
       continue;

@@ -8,7 +8,7 @@ namespace {
 // Keyframes of a recording, thinned out as they become many: then every second one goes and the next are twice as far apart.
 class Keyframes {
  public:
-  static constexpr std::uint64_t kFirstInterval = 16;        // steps
+  static constexpr std::uint64_t kFirstInterval = 16;  // steps
   static constexpr std::size_t kMostFrames = 128;
   static constexpr std::size_t kMostBytes = std::size_t(512) << 20;
 

@@ -50,18 +50,15 @@ TEST(Rollback, EventsOfTheAbandonedFutureAreGone) {
   EXPECT_TRUE(world.events().ends.empty());
 }
 
-// B-22: every frame goes back eight steps and plays them again, first with other input, then with the real one.
-class RollbackSoak : public testing::TestWithParam<Scene> {};
-
-TEST_P(RollbackSoak, ReplayedStepsEqualTheStraightRun) {
+// Every frame goes back eight steps and plays them again, first with other input, then with the real one.
+void soak(const Scene& scene, int steps) {
   constexpr int kBack = 8;
-  const Scene& scene = GetParam();
   World straight = *World::create();
   World world = *World::create();
   scene.build(straight);
   scene.build(world);
   Rollback ring(kBack + 1);
-  for (int step = 0; step < 160; ++step) {
+  for (int step = 0; step < steps; ++step) {
     step_scene(scene, straight, step);
     const int from = step < kBack ? 0 : step - kBack;
     ring.save(world);
@@ -80,7 +77,19 @@ TEST_P(RollbackSoak, ReplayedStepsEqualTheStraightRun) {
   }
 }
 
+class RollbackSoak : public testing::TestWithParam<Scene> {};
+
+TEST_P(RollbackSoak, ReplayedStepsEqualTheStraightRun) { soak(GetParam(), 120); }
+
 INSTANTIATE_TEST_SUITE_P(Scenes, RollbackSoak, testing::ValuesIn(kScenes),
+                         [](const auto& tested) { return std::string(tested.param.name); });
+
+// Ten seconds of play.
+class LongRollbackSoak : public testing::TestWithParam<Scene> {};
+
+TEST_P(LongRollbackSoak, ReplayedStepsEqualTheStraightRun) { soak(GetParam(), 600); }
+
+INSTANTIATE_TEST_SUITE_P(LongScenes, LongRollbackSoak, testing::ValuesIn(kScenes),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace

@@ -114,7 +114,8 @@ Error list_columns(ByteReader& in, std::vector<StoredColumn>& columns) {
 
 class ColumnReader {
  public:
-  ColumnReader(std::vector<StoredColumn>& stored, const GeometryTable& geometry) : stored_(stored), geometry_(geometry) {}
+  ColumnReader(std::vector<StoredColumn>& stored, const GeometryTable& geometry)
+      : stored_(stored), geometry_(geometry) {}
 
   template <class Column>
   void operator()(const char* name, Column& column) {
@@ -125,7 +126,8 @@ class ColumnReader {
     } else if (found->used) {
       error_ = make_error(ErrorCode::invalid_data, "snapshot: column '%s' is there twice", name);
     } else if (found->layout != ColumnLayout<Column>::get().hash) {
-      error_ = make_error(ErrorCode::unsupported, "snapshot: column '%s' has other fields than this version knows", name);
+      error_ = make_error(ErrorCode::unsupported,
+                          "snapshot: column '%s' has other fields than this version knows", name);
     } else if (!read(*found, column)) {
       error_ = make_error(ErrorCode::invalid_data, "snapshot: column '%s' holds what it cannot", name);
     }
@@ -179,7 +181,8 @@ class ColumnReader {
   }
   template <class Record>
   bool read(const StoredColumn& stored, Record& record) {
-    return stored.count == 1 && size_fits<Record>(stored) && read_records(stored, std::span<Record>(&record, 1));
+    return stored.count == 1 && size_fits<Record>(stored) &&
+           read_records(stored, std::span<Record>(&record, 1));
   }
 
   std::vector<StoredColumn>& stored_;
@@ -211,8 +214,8 @@ Error read_header(ByteReader& in, std::span<const std::byte>& body) {
   const auto checksum = in.get<std::uint64_t>();
   if (in.failed()) return bad("it ends within its header");
   if (version != kSnapshotVersion) {
-    return make_error(ErrorCode::unsupported, "snapshot: it is of format %u; this version reads format %u", version,
-                      kSnapshotVersion);
+    return make_error(ErrorCode::unsupported, "snapshot: it is of format %u; this version reads format %u",
+                      version, kSnapshotVersion);
   }
   if (length != in.left()) return bad("it is not as long as it says");
   body = in.get_bytes(length);

@@ -45,7 +45,8 @@ TEST_P(SnapshotOfScene, GoesOnBitForBit) {
     for (int i = 0; i < 25; ++i, ++step) {
       step_scene(GetParam(), straight, step);
       step_scene(GetParam(), *loaded, step);
-      ASSERT_EQ(loaded->hash(), straight.hash()) << "saved after " << moment << " steps, " << i + 1 << " later";
+      ASSERT_EQ(loaded->hash(), straight.hash())
+          << "saved after " << moment << " steps, " << i + 1 << " later";
     }
     EXPECT_EQ(loaded->time(), straight.time());
     EXPECT_EQ(loaded->step_count(), straight.step_count());
@@ -150,7 +151,8 @@ TEST(Snapshot, LoadsAtAnyThreadsAndWidth) {
 
 class DamagedSnapshot : public testing::Test {
  protected:
-  DamagedSnapshot() : world_(make_scene(scene_named("joints"), 20)), good_(save_snapshot(world_)), hash_(world_.hash()) {}
+  DamagedSnapshot()
+      : world_(make_scene(scene_named("joints"), 20)), good_(save_snapshot(world_)), hash_(world_.hash()) {}
 
   void expect_refused(std::span<const std::byte> bytes, ErrorCode code, const char* what) {
     const Error e = restore_snapshot(world_, bytes);
@@ -256,7 +258,8 @@ TEST(SnapshotCheck, RingsThatNeverCloseAreRefused) {
   const Error e = reload(119, "pusher", [](RigidWorld& w) {
     // A member that leads back to itself: walking on from the first would never end.
     for (std::uint32_t i = 0; i < w.bodies.sleep.size(); ++i) {
-      if (w.bodies.sleep[i].group != kNoGroup && w.bodies.sleep[i].group != i) w.bodies.sleep[i].next_in_group = i;
+      if (w.bodies.sleep[i].group != kNoGroup && w.bodies.sleep[i].group != i)
+        w.bodies.sleep[i].next_in_group = i;
     }
   });
   EXPECT_EQ(e.code, ErrorCode::invalid_data) << e.message;
@@ -270,7 +273,9 @@ Contact& live_contact(RigidWorld& w) {
 }
 
 TEST(SnapshotCheck, EveryLinkIsChecked) {
-  const auto refused = [](auto change) { return reload(60, "joints", change).code == ErrorCode::invalid_data; };
+  const auto refused = [](auto change) {
+    return reload(60, "joints", change).code == ErrorCode::invalid_data;
+  };
   EXPECT_FALSE(refused([](RigidWorld&) {}));
   EXPECT_TRUE(refused([](RigidWorld& w) { w.settings.substeps = 0; }));
   EXPECT_TRUE(refused([](RigidWorld& w) { w.settings.last_substep = __builtin_nanf(""); }));

@@ -13,7 +13,8 @@ Error inconsistent(const char* what) {
 const char* fault_in_settings(const RigidSettings& settings) {
   if (settings.substeps < 1 || settings.substeps > 64) return "substeps beyond 1 to 64";
   if (!is_finite(settings.gravity)) return "gravity is not finite";
-  if (!is_finite(settings.last_substep) || settings.last_substep < 0.0f) return "the last sub-step has no length";
+  if (!is_finite(settings.last_substep) || settings.last_substep < 0.0f)
+    return "the last sub-step has no length";
   return nullptr;
 }
 
@@ -46,7 +47,8 @@ const char* fault_in_body(const BodyStore& bodies, std::uint32_t i) {
     return "a body whose velocity is not finite";
   }
   const bool asleep = bodies.ids.live(i) && is_movable(flags) && flags.awake == 0;
-  if (asleep != (bodies.sleep[i].group != kNoGroup)) return "a body that sleeps outside a group, or wakes in one";
+  if (asleep != (bodies.sleep[i].group != kNoGroup))
+    return "a body that sleeps outside a group, or wakes in one";
   return nullptr;
 }
 
@@ -58,12 +60,14 @@ const char* fault_in_groups(const BodyStore& bodies) {
     const BodySleep& sleep = bodies.sleep[i];
     if (sleep.group == kNoGroup) continue;
     ++members;
-    if (sleep.group > i || bodies.sleep[sleep.group].group != sleep.group) return "a sleeping group without its first body";
+    if (sleep.group > i || bodies.sleep[sleep.group].group != sleep.group)
+      return "a sleeping group without its first body";
     if (sleep.group != i) continue;
     std::uint32_t at = i;
     do {
       at = bodies.sleep[at].next_in_group;
-      if (at >= count || bodies.sleep[at].group != i || ++walked > count) return "a sleeping group that is no ring";
+      if (at >= count || bodies.sleep[at].group != i || ++walked > count)
+        return "a sleeping group that is no ring";
     } while (at != i);
   }
   return members == walked ? nullptr : "a sleeping body outside its group's ring";
@@ -92,7 +96,8 @@ const char* fault_in_shape(const RigidWorld& w, std::uint32_t i) {
 const char* fault_in_joint(const RigidWorld& w, const JointRecord& joint) {
   if (joint.kind > JointKind::distance) return "a joint of unknown kind";
   for (const std::int32_t body : {joint.body_a, joint.body_b}) {
-    if (body != kNoBody && (body < 0 || !w.bodies.ids.live(std::uint32_t(body)))) return "a joint without a body";
+    if (body != kNoBody && (body < 0 || !w.bodies.ids.live(std::uint32_t(body))))
+      return "a joint without a body";
   }
   if (joint.body_a == joint.body_b) return "a joint between one thing and itself";
   return nullptr;
@@ -100,11 +105,12 @@ const char* fault_in_joint(const RigidWorld& w, const JointRecord& joint) {
 
 const char* fault_in_contact(const RigidWorld& w, const Contact& contact) {
   if (contact.manifold_room == 0) return nullptr;
-  if (contact.manifold_room != 1 && contact.manifold_room != kMaxMeshManifolds) return "a contact's manifold room";
+  if (contact.manifold_room != 1 && contact.manifold_room != kMaxMeshManifolds)
+    return "a contact's manifold room";
   if (contact.shape_a >= contact.shape_b) return "a contact whose first shape is not the lower one";
   if (!w.shapes.ids.live(contact.shape_a) || !w.shapes.ids.live(contact.shape_b) ||
-      w.shapes.bodies[contact.shape_a] != contact.body_a || w.shapes.bodies[contact.shape_b] != contact.body_b ||
-      contact.body_a == contact.body_b) {
+      w.shapes.bodies[contact.shape_a] != contact.body_a ||
+      w.shapes.bodies[contact.shape_b] != contact.body_b || contact.body_a == contact.body_b) {
     return "a contact without its shapes";
   }
   if (contact.manifold_count > contact.manifold_room || contact.first_manifold % contact.manifold_room != 0 ||
@@ -118,9 +124,11 @@ const char* fault_in(const RigidWorld& w) {
   const char* fault = fault_in_settings(w.settings);
   if (fault == nullptr) fault = fault_in_sizes(w);
   if (fault != nullptr) return fault;
-  for (std::uint32_t i = 0; fault == nullptr && i < w.bodies.ids.capacity(); ++i) fault = fault_in_body(w.bodies, i);
+  for (std::uint32_t i = 0; fault == nullptr && i < w.bodies.ids.capacity(); ++i)
+    fault = fault_in_body(w.bodies, i);
   if (fault == nullptr) fault = fault_in_groups(w.bodies);
-  for (std::uint32_t i = 0; fault == nullptr && i < w.shapes.ids.capacity(); ++i) fault = fault_in_shape(w, i);
+  for (std::uint32_t i = 0; fault == nullptr && i < w.shapes.ids.capacity(); ++i)
+    fault = fault_in_shape(w, i);
   for (std::uint32_t i = 0; fault == nullptr && i < w.joints.ids.capacity(); ++i) {
     if (w.joints.ids.live(i)) fault = fault_in_joint(w, w.joints.records[i]);
   }

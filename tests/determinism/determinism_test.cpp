@@ -50,8 +50,10 @@ testing::AssertionResult follows_golden(const Scene& scene, World& world, int be
     step_scene(scene, world, step);
     if ((step + 1) % kHashEvery != 0) continue;
     const auto expected = golden(scene).find(step + 1);
-    if (expected == golden(scene).end()) return testing::AssertionFailure() << "no golden hash of step " << step + 1;
-    if (world.hash() != expected->second) return testing::AssertionFailure() << "another hash after step " << step + 1;
+    if (expected == golden(scene).end())
+      return testing::AssertionFailure() << "no golden hash of step " << step + 1;
+    if (world.hash() != expected->second)
+      return testing::AssertionFailure() << "another hash after step " << step + 1;
   }
   return testing::AssertionSuccess();
 }
@@ -60,7 +62,8 @@ testing::AssertionResult runs_golden(const Scene& scene, const WorldDef& def) {
   World world = make_world(def);
   scene.build(world);
   testing::AssertionResult result = follows_golden(scene, world, 0, kSteps);
-  if (result && world.step_count() != std::uint64_t(kSteps)) return testing::AssertionFailure() << "a step was refused";
+  if (result && world.step_count() != std::uint64_t(kSteps))
+    return testing::AssertionFailure() << "a step was refused";
   return result;
 }
 

@@ -45,7 +45,8 @@ class Random {
 
 inline BodyId body_number(const World& world, std::size_t number) { return world.bodies().ids[number]; }
 
-inline BodyId add(World& world, BodyType type, DVec3 place, const AnyShape& geometry, const Material& material = {}) {
+inline BodyId add(World& world, BodyType type, DVec3 place, const AnyShape& geometry,
+                  const Material& material = {}) {
   BodyDef body;
   body.type = type;
   body.pose.position = place;
@@ -63,8 +64,8 @@ inline BodyId add_moving(World& world, DVec3 place, const AnyShape& geometry, co
 
 // A solid of eleven corners, none of them symmetric to another.
 inline AnyShape pebble(float size) {
-  const Vec3 corners[] = {{1, 0, 0},          {-0.9f, 0.1f, 0.1f}, {0, 0.8f, 0.1f},     {0.1f, -0.9f, 0},
-                          {0.1f, 0.2f, 1},    {0, -0.1f, -0.9f},   {0.6f, 0.6f, 0.4f},  {-0.6f, 0.5f, -0.5f},
+  const Vec3 corners[] = {{1, 0, 0},           {-0.9f, 0.1f, 0.1f},  {0, 0.8f, 0.1f},    {0.1f, -0.9f, 0},
+                          {0.1f, 0.2f, 1},     {0, -0.1f, -0.9f},    {0.6f, 0.6f, 0.4f}, {-0.6f, 0.5f, -0.5f},
                           {0.5f, -0.6f, 0.5f}, {-0.5f, -0.6f, 0.4f}, {0.5f, 0.4f, -0.6f}};
   std::vector<Vec3> scaled;
   for (const Vec3& corner : corners) scaled.push_back(size * corner);
@@ -75,13 +76,20 @@ inline AnyShape pebble(float size) {
 // The convex kinds, one after the other.
 inline AnyShape convex(int number, float size) {
   switch (number % 7) {
-    case 0: return Sphere{size};
-    case 1: return Box{{size, 0.75f * size, 1.25f * size}};
-    case 2: return Capsule{0.5f * size, 0.75f * size};
-    case 3: return Cylinder{0.75f * size, 0.75f * size};
-    case 4: return Cone{0.875f * size, size};
-    case 5: return pebble(size);
-    default: return Box{{size, size, 0.5f * size}, 0.125f * size};
+    case 0:
+      return Sphere{size};
+    case 1:
+      return Box{{size, 0.75f * size, 1.25f * size}};
+    case 2:
+      return Capsule{0.5f * size, 0.75f * size};
+    case 3:
+      return Cylinder{0.75f * size, 0.75f * size};
+    case 4:
+      return Cone{0.875f * size, size};
+    case 5:
+      return pebble(size);
+    default:
+      return Box{{size, size, 0.5f * size}, 0.125f * size};
   }
 }
 
@@ -92,7 +100,8 @@ inline void build_stacks(World& world) {
   for (int i = 0; i < 8; ++i) add_moving(world, {-4, 0.5 + i, 0}, Box{});
   constexpr int kBase = 6;
   for (int row = 0; row < kBase; ++row) {
-    for (int i = 0; i < kBase - row; ++i) add_moving(world, {1.0 + 1.0625 * i + 0.53125 * row, 0.5 + row, 0}, Box{});
+    for (int i = 0; i < kBase - row; ++i)
+      add_moving(world, {1.0 + 1.0625 * i + 0.53125 * row, 0.5 + row, 0}, Box{});
   }
   // Comes in from the side and strikes the pyramid when it has settled.
   const BodyId ball = add_moving(world, {-16, 0.5, 0}, Sphere{0.5f}, {.rolling_friction = 0.001f});
@@ -138,7 +147,8 @@ inline void add_doll(World& world, DVec3 place) {
     JointDef limb;
     limb.axis = {0, 0, 1};
     limb.limits = Limits{-1.5f, 0.75f};
-    const BodyId upper = add_moving(world, place + DVec3{0.375 * side, 0.25, 0}, Box{{0.15625f, 0.0625f, 0.0625f}});
+    const BodyId upper =
+        add_moving(world, place + DVec3{0.375 * side, 0.25, 0}, Box{{0.15625f, 0.0625f, 0.0625f}});
     limb.kind = JointKind::hinge;
     limb.a = torso, limb.b = upper, limb.anchor = place + DVec3{0.21875 * side, 0.25, 0};
     world.add_joint(limb);
@@ -199,7 +209,8 @@ inline void build_terrain(World& world) {
   constexpr std::uint32_t kSamples = 17;
   std::vector<float> heights;
   for (std::uint32_t row = 0; row < kSamples; ++row) {
-    for (std::uint32_t column = 0; column < kSamples; ++column) heights.push_back(hill(int(column), int(row)));
+    for (std::uint32_t column = 0; column < kSamples; ++column)
+      heights.push_back(hill(int(column), int(row)));
   }
   heights[5 * kSamples + 6] = __builtin_nanf("");
   const Result<Geometry> field = cook_height_field({heights, kSamples, kSamples, 0.75f});
@@ -208,12 +219,14 @@ inline void build_terrain(World& world) {
   std::vector<Vec3> vertices;
   std::vector<std::uint32_t> indices;
   for (int row = 0; row < 9; ++row) {
-    for (int column = 0; column < 9; ++column) vertices.push_back({0.75f * float(column), hill(row, column), 0.75f * float(row)});
+    for (int column = 0; column < 9; ++column)
+      vertices.push_back({0.75f * float(column), hill(row, column), 0.75f * float(row)});
   }
   for (std::uint32_t row = 0; row < 8; ++row) {
     for (std::uint32_t column = 0; column < 8; ++column) {
       const std::uint32_t at = 9 * row + column;
-      for (const std::uint32_t corner : {at, at + 9, at + 1, at + 1, at + 9, at + 10}) indices.push_back(corner);
+      for (const std::uint32_t corner : {at, at + 9, at + 1, at + 1, at + 9, at + 10})
+        indices.push_back(corner);
     }
   }
   const Result<Geometry> mesh = cook_mesh({vertices, indices, false});
@@ -222,7 +235,8 @@ inline void build_terrain(World& world) {
   Random random(2);
   for (int i = 0; i < 42; ++i) {
     BodyDef body;
-    body.pose.position = {-4.5 + 2.25 * (i % 7), 2.5 + 0.5 * (i % 3) + 1.25 * (i / 14), -2.0 + 2.0 * (i / 7 % 3)};
+    body.pose.position = {-4.5 + 2.25 * (i % 7), 2.5 + 0.5 * (i % 3) + 1.25 * (i / 14),
+                          -2.0 + 2.0 * (i / 7 % 3)};
     body.pose.orientation = random.next_rotation();
     body.linear_velocity = random.next_vector(1);
     ShapeDef shape;
@@ -275,14 +289,16 @@ inline void build_pusher(World& world) {
     if (i % 2 != 0) round = Cylinder{0.25f, 0.25f};
     add_moving(world, {-7, 2.5, -2.25 + 1.5 * i}, round, {.rolling_friction = 0.002f});
   }
-  for (int i = 0; i < 15; ++i) add_moving(world, {5.0 + 1.0625 * (i % 3), 0.5 + i / 6, -2.5 + 1.25 * (i / 3 % 2)}, Box{});
+  for (int i = 0; i < 15; ++i)
+    add_moving(world, {5.0 + 1.0625 * (i % 3), 0.5 + i / 6, -2.5 + 1.25 * (i / 3 % 2)}, Box{});
   add_moving(world, {7, 0.5, 3}, Sphere{0.5f}, {.rolling_friction = 0.01f, .spinning_friction = 0.01f});
 }
 
 // The pusher waits until all is asleep, goes in, and comes back.
 inline void drive_pusher(World& world, int step) {
   const BodyId pusher = body_number(world, 2);
-  if (step >= 120 && step < 200) world.move_kinematic(pusher, {{12 - 0.0625 * (step - 119), 0.5, 0}, {}}, kStepSeconds);
+  if (step >= 120 && step < 200)
+    world.move_kinematic(pusher, {{12 - 0.0625 * (step - 119), 0.5, 0}, {}}, kStepSeconds);
   if (step == 200) world.set_velocity(pusher, {3, 0, 0}, {});
   if (step == 240) world.set_velocity(pusher, {}, {});
 }
@@ -296,7 +312,8 @@ inline void build_changes(World& world) {
   sensor.geometry = Box{{2, 0.5f, 2}};
   sensor.sensor = true;
   world.add_body(gate, sensor);
-  world.set_material_pair({.a = 1, .b = 2, .static_friction = 0.25f, .dynamic_friction = 0.125f, .restitution = 0.25f});
+  world.set_material_pair(
+      {.a = 1, .b = 2, .static_friction = 0.25f, .dynamic_friction = 0.125f, .restitution = 0.25f});
 }
 
 // No body stays kinematic for long: one that joints pull one way and the floor another has nowhere to go.
@@ -326,33 +343,64 @@ inline void drive_changes(World& world, int step) {
   const std::size_t number = 2 + std::size_t(step * 7) % (count - 2);
   const BodyId one = body_number(world, number);
   switch (step % 23) {
-    case 1: world.remove_body(count > 24 ? one : BodyId{}); break;
-    case 3: world.set_pose(one, {{0, 5, 0.25 * (step % 8)}, {0, 0.5f, 0, 1}}); break;
-    case 5: world.add_impulse(one, {200, 300, -100}); break;
-    case 7: world.set_type(one, BodyType::kinematic), world.set_velocity(one, {0.25f, 0, 0}, {0, 0.5f, 0}); break;
-    case 14: make_dynamic(world); break;
-    case 9: world.add_shape(one, {.geometry = Box{{0.125f, 0.5f, 0.125f}}, .density = 500}); break;
-    case 11: world.set_filter(world.shapes(one)[0], {.layer = 2, .collides_with = 1, .group = 0}); break;
-    case 12: world.set_awake(one, false); break;
-    case 13: join(world, JointKind::ball, {}, one, world.center_of_mass(one) + DVec3{0, 0.5, 0}); break;
-    case 15: world.set_material(world.shapes(one)[0], {.static_friction = 0.125f, .dynamic_friction = 0.125f, .id = 2}); break;
-    case 16: world.add_force_at(one, {0, 5000, 0}, world.center_of_mass(one) + DVec3{0.25, 0, 0}); break;
-    case 17: world.set_damping(one, 0.5f, 0.25f); break;
-    case 18: world.set_gravity_scale(one, 0.5f); break;
-    case 19: world.set_substeps(2 + step % 4); break;
-    case 20: world.set_gravity({0.25f, -9.81f, 0}); break;
-    case 21: world.add_torque(one, {0, 400, 50}); break;
-    default: break;
+    case 1:
+      world.remove_body(count > 24 ? one : BodyId{});
+      break;
+    case 3:
+      world.set_pose(one, {{0, 5, 0.25 * (step % 8)}, {0, 0.5f, 0, 1}});
+      break;
+    case 5:
+      world.add_impulse(one, {200, 300, -100});
+      break;
+    case 7:
+      world.set_type(one, BodyType::kinematic), world.set_velocity(one, {0.25f, 0, 0}, {0, 0.5f, 0});
+      break;
+    case 14:
+      make_dynamic(world);
+      break;
+    case 9:
+      world.add_shape(one, {.geometry = Box{{0.125f, 0.5f, 0.125f}}, .density = 500});
+      break;
+    case 11:
+      world.set_filter(world.shapes(one)[0], {.layer = 2, .collides_with = 1, .group = 0});
+      break;
+    case 12:
+      world.set_awake(one, false);
+      break;
+    case 13:
+      join(world, JointKind::ball, {}, one, world.center_of_mass(one) + DVec3{0, 0.5, 0});
+      break;
+    case 15:
+      world.set_material(world.shapes(one)[0],
+                         {.static_friction = 0.125f, .dynamic_friction = 0.125f, .id = 2});
+      break;
+    case 16:
+      world.add_force_at(one, {0, 5000, 0}, world.center_of_mass(one) + DVec3{0.25, 0, 0});
+      break;
+    case 17:
+      world.set_damping(one, 0.5f, 0.25f);
+      break;
+    case 18:
+      world.set_gravity_scale(one, 0.5f);
+      break;
+    case 19:
+      world.set_substeps(2 + step % 4);
+      break;
+    case 20:
+      world.set_gravity({0.25f, -9.81f, 0});
+      break;
+    case 21:
+      world.add_torque(one, {0, 400, 50});
+      break;
+    default:
+      break;
   }
 }
 
 inline constexpr Scene kScenes[] = {
-    {"stacks", build_stacks, nullptr},
-    {"pile", build_pile, nullptr},
-    {"joints", build_joints, nullptr},
-    {"terrain", build_terrain, nullptr},
-    {"cloud", build_cloud, nullptr},
-    {"pusher", build_pusher, drive_pusher},
+    {"stacks", build_stacks, nullptr},         {"pile", build_pile, nullptr},
+    {"joints", build_joints, nullptr},         {"terrain", build_terrain, nullptr},
+    {"cloud", build_cloud, nullptr},           {"pusher", build_pusher, drive_pusher},
     {"changes", build_changes, drive_changes},
 };
 

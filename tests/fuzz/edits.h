@@ -38,19 +38,30 @@ inline std::vector<std::byte> edited(std::span<const std::byte> good, Input& inp
     const std::size_t place = input.below(bytes.size());
     switch (kind % 8) {
       case 0:
-      case 1: bytes[place] = std::byte(input.byte()); break;
-      case 2: bytes[place] ^= std::byte(1 << kind / 8 % 8); break;
+      case 1:
+        bytes[place] = std::byte(input.byte());
+        break;
+      case 2:
+        bytes[place] ^= std::byte(1 << kind / 8 % 8);
+        break;
       case 3: {  // a number of four bytes
         const std::uint32_t value = input.word();
-        for (std::size_t i = 0; i < 4 && place + i < bytes.size(); ++i) bytes[place + i] = std::byte(value >> 8 * i & 0xff);
+        for (std::size_t i = 0; i < 4 && place + i < bytes.size(); ++i)
+          bytes[place + i] = std::byte(value >> 8 * i & 0xff);
         break;
       }
       case 4: {  // all ones, as far as the kind says
-        for (std::size_t i = 0; i < std::size_t(kind / 8 + 1) && place + i < bytes.size(); ++i) bytes[place + i] = std::byte(0xff);
+        for (std::size_t i = 0; i < std::size_t(kind / 8 + 1) && place + i < bytes.size(); ++i)
+          bytes[place + i] = std::byte(0xff);
         break;
       }
-      case 5: bytes.resize(place); break;
-      case 6: bytes.insert(bytes.begin() + std::ptrdiff_t(place), std::size_t(kind / 8 + 1), std::byte(input.byte())); break;
+      case 5:
+        bytes.resize(place);
+        break;
+      case 6:
+        bytes.insert(bytes.begin() + std::ptrdiff_t(place), std::size_t(kind / 8 + 1),
+                     std::byte(input.byte()));
+        break;
       default: {
         const std::size_t count = input.below(64) < bytes.size() - place ? 1 : bytes.size() - place;
         bytes.erase(bytes.begin() + std::ptrdiff_t(place), bytes.begin() + std::ptrdiff_t(place + count));

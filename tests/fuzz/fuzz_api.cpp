@@ -23,18 +23,30 @@ struct MemorySink final : ByteSink {
 float number(Input& in) {
   const std::uint8_t kind = in.byte();
   switch (kind % 16) {
-    case 0: return 0.0f;
-    case 1: return -0.0f;
-    case 2: return __builtin_inff();
-    case 3: return -__builtin_inff();
-    case 4: return __builtin_nanf("");
-    case 5: return 3.0e38f;
-    case 6: return -1.0e-38f;
-    case 7: return 1.0e-9f;
-    case 8: return __builtin_bit_cast(float, in.word());
-    case 9: return -1.0f;
-    case 10: return 1.0e6f;
-    default: return float(in.byte()) * (1.0f / 64.0f) - (kind & 16 ? 2.0f : 0.0f);
+    case 0:
+      return 0.0f;
+    case 1:
+      return -0.0f;
+    case 2:
+      return __builtin_inff();
+    case 3:
+      return -__builtin_inff();
+    case 4:
+      return __builtin_nanf("");
+    case 5:
+      return 3.0e38f;
+    case 6:
+      return -1.0e-38f;
+    case 7:
+      return 1.0e-9f;
+    case 8:
+      return __builtin_bit_cast(float, in.word());
+    case 9:
+      return -1.0f;
+    case 10:
+      return 1.0e6f;
+    default:
+      return float(in.byte()) * (1.0f / 64.0f) - (kind & 16 ? 2.0f : 0.0f);
   }
 }
 Vec3 vector(Input& in) {
@@ -55,11 +67,16 @@ bool flag(Input& in) { return in.byte() % 2 != 0; }
 AnyShape shape(Input& in) {
   const std::uint8_t kind = in.byte();
   switch (kind % 8) {
-    case 0: return Sphere{number(in)};
-    case 1: return Box{vector(in), number(in)};
-    case 2: return Capsule{number(in), number(in)};
-    case 3: return Plane{vector(in), number(in)};
-    case 4: return Geometry{};
+    case 0:
+      return Sphere{number(in)};
+    case 1:
+      return Box{vector(in), number(in)};
+    case 2:
+      return Capsule{number(in), number(in)};
+    case 3:
+      return Plane{vector(in), number(in)};
+    case 4:
+      return Geometry{};
     case 5: {
       std::vector<Vec3> points;
       for (int i = 0; i < 4 + kind / 16; ++i) points.push_back(vector(in));
@@ -72,7 +89,8 @@ AnyShape shape(Input& in) {
       const Result<Geometry> mesh = cook_mesh({corners, indices, flag(in)});
       return mesh ? AnyShape(*mesh) : AnyShape(Cylinder{number(in), number(in)});
     }
-    default: return scenes::convex(kind / 8, 0.5f);
+    default:
+      return scenes::convex(kind / 8, 0.5f);
   }
 }
 
@@ -114,7 +132,8 @@ struct Ids {
 
   template <class Id>
   static Id pick(const std::vector<Id>& list, Input& in) {
-    if (list.empty() || in.byte() % 16 == 0) return {in.word() % 64, std::uint16_t(in.byte()), std::uint16_t(in.byte())};
+    if (list.empty() || in.byte() % 16 == 0)
+      return {in.word() % 64, std::uint16_t(in.byte()), std::uint16_t(in.byte())};
     return list[in.byte() % list.size()];
   }
 };
@@ -139,30 +158,77 @@ void call(World& world, Ids& ids, Input& in) {
   switch (in.byte() % 24) {
     case 0:
     case 1:
-      if (world.bodies().ids.size() < kMostBodies) ids.bodies.push_back(world.add_body(body_def(in), shape_def(in)));
+      if (world.bodies().ids.size() < kMostBodies)
+        ids.bodies.push_back(world.add_body(body_def(in), shape_def(in)));
       break;
-    case 2: world.remove_body(body); break;
-    case 3: ids.shapes.push_back(world.add_shape(body, shape_def(in))); break;
-    case 4: world.remove_shape(Ids::pick(ids.shapes, in)); break;
-    case 5: add_joint(world, ids, in); break;
-    case 6: world.remove_joint(Ids::pick(ids.joints, in)); break;
-    case 7: world.set_pose(body, pose(in)); break;
-    case 8: world.set_velocity(body, vector(in), vector(in)); break;
-    case 9: world.move_kinematic(body, pose(in), number(in)); break;
-    case 10: world.set_type(body, BodyType(in.byte() % 4)); break;
-    case 11: world.set_gravity(vector(in)); break;
-    case 12: world.set_material(Ids::pick(ids.shapes, in), material(in)); break;
-    case 13: world.set_material_pair({std::uint16_t(in.byte() % 4), std::uint16_t(in.byte() % 4), number(in), number(in), number(in)}); break;
-    case 14: world.set_filter(Ids::pick(ids.shapes, in), {in.word(), in.word(), std::int32_t(in.byte()) - 128}); break;
-    case 15: world.set_motor(Ids::pick(ids.joints, in), {number(in), number(in), number(in), number(in), number(in)}); break;
-    case 16: world.set_awake(body, flag(in)); break;
-    case 17: world.set_substeps(int(in.byte() % 8) - 1); break;
-    case 18: world.add_force_at(body, vector(in), DVec3(vector(in))); break;
-    case 19: world.add_impulse_at(body, vector(in), DVec3(vector(in))); break;
-    case 20: world.set_damping(body, number(in), number(in)); break;
-    case 21: world.set_gravity_scale(body, number(in)); break;
-    case 22: world.set_sleeping(flag(in)); break;
-    default: world.step(number(in)); break;
+    case 2:
+      world.remove_body(body);
+      break;
+    case 3:
+      ids.shapes.push_back(world.add_shape(body, shape_def(in)));
+      break;
+    case 4:
+      world.remove_shape(Ids::pick(ids.shapes, in));
+      break;
+    case 5:
+      add_joint(world, ids, in);
+      break;
+    case 6:
+      world.remove_joint(Ids::pick(ids.joints, in));
+      break;
+    case 7:
+      world.set_pose(body, pose(in));
+      break;
+    case 8:
+      world.set_velocity(body, vector(in), vector(in));
+      break;
+    case 9:
+      world.move_kinematic(body, pose(in), number(in));
+      break;
+    case 10:
+      world.set_type(body, BodyType(in.byte() % 4));
+      break;
+    case 11:
+      world.set_gravity(vector(in));
+      break;
+    case 12:
+      world.set_material(Ids::pick(ids.shapes, in), material(in));
+      break;
+    case 13:
+      world.set_material_pair(
+          {std::uint16_t(in.byte() % 4), std::uint16_t(in.byte() % 4), number(in), number(in), number(in)});
+      break;
+    case 14:
+      world.set_filter(Ids::pick(ids.shapes, in), {in.word(), in.word(), std::int32_t(in.byte()) - 128});
+      break;
+    case 15:
+      world.set_motor(Ids::pick(ids.joints, in),
+                      {number(in), number(in), number(in), number(in), number(in)});
+      break;
+    case 16:
+      world.set_awake(body, flag(in));
+      break;
+    case 17:
+      world.set_substeps(int(in.byte() % 8) - 1);
+      break;
+    case 18:
+      world.add_force_at(body, vector(in), DVec3(vector(in)));
+      break;
+    case 19:
+      world.add_impulse_at(body, vector(in), DVec3(vector(in)));
+      break;
+    case 20:
+      world.set_damping(body, number(in), number(in));
+      break;
+    case 21:
+      world.set_gravity_scale(body, number(in));
+      break;
+    case 22:
+      world.set_sleeping(flag(in));
+      break;
+    default:
+      world.step(number(in));
+      break;
   }
 }
 

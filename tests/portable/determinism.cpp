@@ -21,7 +21,8 @@ bool print_scene(const scenes::Scene& scene, const WorldDef& def) {
   scene.build(world);
   for (int step = 0; step < scenes::kSteps; ++step) {
     scenes::step_scene(scene, world, step);
-    if ((step + 1) % scenes::kHashEvery == 0) std::printf("%s %d %016" PRIx64 "\n", scene.name, step + 1, world.hash());
+    if ((step + 1) % scenes::kHashEvery == 0)
+      std::printf("%s %d %016" PRIx64 "\n", scene.name, step + 1, world.hash());
   }
   return true;
 }
