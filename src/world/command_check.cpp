@@ -93,7 +93,9 @@ Error check_mass_overrides(const BodyDef& def) {
     return refuse("body.mass is %g; it must be finite and above 0", double(*def.mass));
   }
   if (def.center_of_mass) {
-    const Error e = check_finite("body.center_of_mass", *def.center_of_mass);
+    Error e = check_finite("body.center_of_mass", *def.center_of_mass);
+    const float farthest = largest(absolute(*def.center_of_mass));
+    if (e.code == ErrorCode::none) e = check_range("body.center_of_mass", farthest, 0.0f, kMostPlace);
     if (e.code != ErrorCode::none) return e;
   }
   if (def.inertia) return check_inertia(*def.inertia);
