@@ -91,6 +91,7 @@ void read_body(SceneReading& reading, const Field& field) {
   read_motion(members, body.def);
   if (const auto filter = members.find("filter")) read_filter(*filter, body.filter);
   members.read("sensor", body.sensor);
+  members.read("color", body.color);
   if (const auto shapes = members.find("shapes")) {
     const std::size_t count = shapes->array("an array of shapes");
     for (std::size_t i = 0; i < count; ++i) read_shape(reading, shapes->element(i), body);

@@ -98,6 +98,13 @@ class SchemaCheck {
                  ? ""
                  : at + ": length";
     }
+    if (key == "pattern" && rule == "^#[0-9a-fA-F]{6}$") {  // the one pattern of the schema
+      if (!v.is_string()) return {};
+      const std::string& text = v.get_ref<const std::string&>();
+      const bool good = text.size() == 7 && text[0] == '#' &&
+                        text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
+      return good ? "" : at + ": not a color";
+    }
     return check_number(key, rule, v, at);
   }
 

@@ -24,9 +24,23 @@ struct SceneWorld {
   bool sleeping = true;
 };
 
+// How something looks in pictures: sRGB, 0 to 255 each.
+struct SceneColor {
+  std::uint8_t red = 0, green = 0, blue = 0;
+
+  constexpr bool operator==(const SceneColor&) const = default;
+};
+
+// Where a good picture of the scene is taken from.
+struct SceneView {
+  DVec3 eye, target;
+  float field_of_view = 0.7f;  // rad, from bottom to top of the picture
+};
+
 struct SceneMaterial {
   std::string name;
   float density = 1000.0f;  // kg/m^3
+  std::optional<SceneColor> color;
   Material surface;         // `id` stays 0: it is given when a world is made
 };
 
@@ -62,6 +76,7 @@ struct SceneShape {
   SceneGeometry geometry = Sphere{};
   Transform local;
   int material = -1;  // none: the default material
+  std::optional<SceneColor> color;
   // Given in place; each wins over the material's.
   std::optional<float> density, static_friction, dynamic_friction, restitution, rolling_friction,
       spinning_friction;
@@ -82,6 +97,7 @@ struct SceneBody {
   BodyDef def;
   Filter filter;  // of all its shapes
   bool sensor = false;
+  std::optional<SceneColor> color;
   std::vector<SceneShape> shapes;
   std::vector<SceneForce> forces;
 };
@@ -95,6 +111,7 @@ struct SceneJoint {
 struct Scene {
   std::string name;
   SceneWorld world;
+  std::optional<SceneView> view;
   std::vector<SceneMaterial> materials;
   std::vector<SceneMaterialPair> material_pairs;
   std::vector<SceneMesh> meshes;

@@ -156,6 +156,25 @@ DVec3 Field::place() const {
   return {element(0).number(reach), element(1).number(reach), element(2).number(reach)};
 }
 
+SceneColor Field::color() const {
+  constexpr const char* kExpected = "a color as \"#rrggbb\" in hexadecimal digits";
+  if (!value_->is_string()) expected(kExpected);
+  const std::string& text = value_->get_ref<const std::string&>();
+  if (text.size() != 7 || text[0] != '#') expected(kExpected);
+  std::uint8_t parts[3] = {};
+  for (std::size_t i = 1; i < 7; ++i) {
+    const char c = text[i];
+    const int digit = c >= '0' && c <= '9'   ? c - '0'
+                      : c >= 'a' && c <= 'f' ? c - 'a' + 10
+                      : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                             : -1;
+    if (digit < 0) expected(kExpected);
+    std::uint8_t& part = parts[(i - 1) / 2];
+    part = std::uint8_t(16 * part + digit);
+  }
+  return {parts[0], parts[1], parts[2]};
+}
+
 Quat Field::orientation() const {
   if (value_->is_object()) {
     Members members(*this, "an orientation");
@@ -266,6 +285,10 @@ void Members::read(const char* key, Quat& out) {
 }
 void Members::read(const char* key, std::optional<float>& out, Range range) {
   if (const std::optional<Field> field = find_value(key)) out = field->real(range);
+}
+
+void Members::read(const char* key, std::optional<SceneColor>& out) {
+  if (const std::optional<Field> field = find_value(key)) out = field->color();
 }
 
 }  // namespace gyre

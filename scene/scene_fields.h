@@ -3,6 +3,7 @@
 #pragma once
 
 #include "scene/json_document.h"
+#include "scene/scene.h"
 
 #include <gyre/math.h>
 
@@ -70,6 +71,7 @@ class Field {
   Vec3 vec3(Range range = Range::any()) const;
   DVec3 place() const;       // a point in the world, within the engine's reach
   Quat orientation() const;  // [x, y, z, w], {"axis", "angle"} or {"euler_xyz"}
+  SceneColor color() const;  // "#rrggbb"
 
   // An array, of `size` elements if that is not negative.
   std::size_t array(const char* what, std::int64_t size = -1) const;
@@ -118,6 +120,7 @@ class Members {
   void read(const char* key, Quat& out);
   // Null and absent mean none.
   void read(const char* key, std::optional<float>& out, Range range = Range::any());
+  void read(const char* key, std::optional<SceneColor>& out);
 
  private:
   const Json* lookup(const char* key);

@@ -71,6 +71,18 @@ void read_world(const Field& field, SceneWorld& world) {
   members.finish();
 }
 
+SceneView read_view(const Field& field) {
+  Members members(field, "a view");
+  SceneView view;
+  view.eye = members.need("eye").place();
+  const Field target = members.need("target");
+  view.target = target.place();
+  if (view.eye == view.target) target.fail("found the place of the eye, expected another one");
+  members.read("field_of_view", view.field_of_view, Range::between(0.01, 3));
+  members.finish();
+  return view;
+}
+
 // Calls read(name, field) for each member of an object of named things.
 template <class Read>
 void for_each_named(const SceneReading& reading, const Field& field, const char* what, Read read) {
@@ -99,6 +111,7 @@ void read_material(SceneReading& reading, const std::string& name, const Field& 
   SceneMaterial material;
   material.name = name;
   const SurfaceFields given = read_surface(members);
+  members.read("color", material.color);
   members.finish();
   if (given.density) material.density = *given.density;
   complete_friction(given, material.surface);
@@ -160,6 +173,7 @@ void read_scene_object(SceneReading& reading, const Field& root) {
   read_version(members.need("gyre_scene"));
   if (const auto name = members.find("name")) reading.scene.name = name->text();
   if (const auto world = members.find("world")) read_world(*world, reading.scene.world);
+  if (const auto view = members.find_value("view")) reading.scene.view = read_view(*view);
   if (const auto materials = members.find("materials")) {
     for_each_named(reading, *materials, "an object of materials by name",
                    [&](const std::string& name, const Field& field) { read_material(reading, name, field); });

@@ -17,6 +17,7 @@ constexpr char kPart0[] = R"json({
     "gyre_scene": { "const": 1, "description": "version of the format" },
     "name": { "type": "string" },
     "world": { "$ref": "#/$defs/world" },
+    "view": { "$ref": "#/$defs/view" },
     "materials": { "type": "object", "propertyNames": { "$ref": "#/$defs/name" }, "additionalProperties": { "$ref": "#/$defs/material" } },
     "material_pairs": { "type": "array", "items": { "$ref": "#/$defs/material_pair" } },
     "meshes": { "type": "object", "propertyNames": { "$ref": "#/$defs/name" }, "additionalProperties": { "$ref": "#/$defs/mesh" } },
@@ -42,6 +43,7 @@ constexpr char kPart0[] = R"json({
     "truth_values": { "type": "array", "items": { "type": "boolean" }, "minItems": 3, "maxItems": 3 },
     "cells": { "type": "array", "items": { "type": "integer", "minimum": 1 }, "minItems": 3, "maxItems": 3 },
     "index": { "type": "integer", "minimum": 0 },
+    "color": { "type": ["string", "null"], "pattern": "^#[0-9a-fA-F]{6}$", "description": "sRGB, #rrggbb, for pictures only" },
     "orientation": {
       "anyOf": [
         { "type": "array", "items": { "type": "number" }, "minItems": 4, "maxItems": 4, "description": "quaternion [x, y, z, w]" },
@@ -76,6 +78,17 @@ constexpr char kPart0[] = R"json({
         "sleeping": { "type": "boolean", "default": true }
       }
     },
+    "view": {
+      "type": ["object", "null"],
+      "required": ["eye", "target"],
+      "additionalProperties": false,
+      "description": "Where a good picture is taken from.",
+      "properties": {
+        "eye": { "$ref": "#/$defs/vector" },
+        "target": { "$ref": "#/$defs/vector", "description": "another place than the eye" },
+        "field_of_view": { "type": "number", "minimum": 0.01, "maximum": 3, "default": 0.7, "description": "rad, from bottom to top" }
+      }
+    },
     "material": {
       "type": "object",
       "additionalProperties": false,
@@ -86,7 +99,8 @@ constexpr char kPart0[] = R"json({
         "dynamic_friction": { "$ref": "#/$defs/not_negative_or_null", "default": 0.6 },
         "restitution": { "type": ["number", "null"], "minimum": 0, "maximum": 1, "default": 0 },
         "rolling_friction": { "$ref": "#/$defs/not_negative_or_null", "default": 0, "description": "m" },
-        "spinning_friction": { "$ref": "#/$defs/not_negative_or_null", "default": 0, "description": "m" }
+        "spinning_friction": { "$ref": "#/$defs/not_negative_or_null", "default": 0, "description": "m" },
+        "color": { "$ref": "#/$defs/color" }
       }
     },
     "material_pair": {
@@ -177,6 +191,7 @@ constexpr char kPart1[] = R"json(            "group": { "type": "integer", "mini
           }
         },
         "sensor": { "type": "boolean", "default": false, "description": "reports what overlaps it and touches nothing" },
+        "color": { "$ref": "#/$defs/color", "description": "of shapes that have none of their own; wins over their material's" },
         "shapes": { "type": "array", "items": { "$ref": "#/$defs/shape" } },
         "forces": { "type": "array", "items": { "$ref": "#/$defs/force" } }
       }
@@ -191,7 +206,8 @@ constexpr char kPart1[] = R"json(            "group": { "type": "integer", "mini
         "dynamic_friction": { "$ref": "#/$defs/not_negative_or_null" },
         "restitution": { "type": ["number", "null"], "minimum": 0, "maximum": 1 },
         "rolling_friction": { "$ref": "#/$defs/not_negative_or_null" },
-        "spinning_friction": { "$ref": "#/$defs/not_negative_or_null" }
+        "spinning_friction": { "$ref": "#/$defs/not_negative_or_null" },
+        "color": { "$ref": "#/$defs/color" }
       }
     },
     "round": {

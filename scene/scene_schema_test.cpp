@@ -55,6 +55,13 @@ TEST(SceneSchema, AcceptsEverySceneOfTheRepositoryAndSoDoesTheReader) {
 std::string wrapped(const std::string& definition, const std::string& members) {
   const std::string start = R"({"gyre_scene": 1, )";
   if (definition == "world") return start + R"("world": {)" + members + "}}";
+  if (definition == "view") {
+    // A member that is under test may be one of the two that must be there.
+    const bool eye = members.find("\"eye\"") != std::string::npos;
+    const bool target = members.find("\"target\"") != std::string::npos;
+    return start + R"("view": {)" + (eye ? "" : R"("eye": [1, 2, 3], )") +
+           (target ? "" : R"("target": [0, 0, 0], )") + members + "}}";
+  }
   if (definition == "material") return start + R"("materials": {"m": {)" + members + "}}}";
   if (definition == "material_pair") {
     return start + R"("materials": {"m": {}}, "material_pairs": [{"materials": ["m", "m"], )" + members +
@@ -78,7 +85,7 @@ TEST(SceneSchema, TheReaderKnowsEveryMember) {
   const Json schema = parse(scene_schema());
   int members = 0;
   for (const char* definition :
-       {"world", "material", "material_pair", "body", "shape_common", "force", "motor", "joint"}) {
+       {"world", "view", "material", "material_pair", "body", "shape_common", "force", "motor", "joint"}) {
     for (const auto& [member, rule] : schema["$defs"][definition]["properties"].items()) {
       if (wrapped(definition, "").find("\"" + member + "\"") != std::string::npos) continue;  // there already
       // A value that no member takes: the refusal must be about the value.
@@ -104,6 +111,14 @@ TEST(SceneSchema, BothRefuseTheSame) {
       {"material", R"("restitution": 2)"},
       {"material", R"("density": -1)"},
       {"material", R"("colour": "red")"},
+      {"material", R"("color": "red")"},
+      {"material", R"("color": [1, 0, 0])"},
+      {"body", R"("color": "#12345")"},
+      {"body", R"("color": "#12345g")"},
+      {"shape_common", R"("color": "1234567")"},
+      {"view", R"("eye": [1, 2])"},
+      {"view", R"("field_of_view": 0)"},
+      {"view", R"("up": [0, 1, 0])"},
       {"material_pair", R"("density": 1)"},
       {"body", R"("type": "fixed")"},
       {"body", R"("mass": 0)"},

@@ -2,6 +2,7 @@
 #include "scene/scene_writer.h"
 
 #include "scene/json_writer.h"
+#include "scene/scene_color.h"
 
 namespace gyre {
 namespace {
@@ -17,6 +18,18 @@ void unless_default(JsonWriter& json, const char* key, const T& value, const T& 
 template <class T>
 void if_given(JsonWriter& json, const char* key, const std::optional<T>& value) {
   if (value) json.field(key, *value);
+}
+
+void write_color(JsonWriter& json, const std::optional<SceneColor>& color) {
+  if (color) json.field("color", color_text(*color));
+}
+
+void write_view(JsonWriter& json, const SceneView& view) {
+  json.key("view").begin_object(kOneLine);
+  json.field("eye", view.eye);
+  json.field("target", view.target);
+  json.field("field_of_view", view.field_of_view);
+  json.end_object();
 }
 
 void write_world(JsonWriter& json, const SceneWorld& world) {
@@ -37,6 +50,7 @@ void write_material(JsonWriter& json, const SceneMaterial& material) {
   json.field("restitution", material.surface.restitution);
   unless_default(json, "rolling_friction", material.surface.rolling_friction, 0.0f);
   unless_default(json, "spinning_friction", material.surface.spinning_friction, 0.0f);
+  write_color(json, material.color);
   json.end_object();
 }
 
@@ -143,6 +157,7 @@ void write_shape(JsonWriter& json, const Scene& scene, const SceneShape& shape) 
   if_given(json, "restitution", shape.restitution);
   if_given(json, "rolling_friction", shape.rolling_friction);
   if_given(json, "spinning_friction", shape.spinning_friction);
+  write_color(json, shape.color);
   json.end_object();
 }
 
@@ -199,6 +214,7 @@ void write_body(JsonWriter& json, const Scene& scene, const SceneBody& body) {
     json.end_object();
   }
   unless_default(json, "sensor", body.sensor, false);
+  write_color(json, body.color);
   json.key("shapes").begin_array();
   for (const SceneShape& shape : body.shapes) write_shape(json, scene, shape);
   json.end_array();
@@ -282,6 +298,7 @@ std::string write_scene(const Scene& scene, const WriteOptions& options) {
   json.field("gyre_scene", 1);
   if (!scene.name.empty()) json.field("name", scene.name);
   write_world(json, scene.world);
+  if (scene.view) write_view(json, *scene.view);
   if (!scene.materials.empty()) {
     json.key("materials").begin_object();
     for (const SceneMaterial& material : scene.materials) write_material(json, material);

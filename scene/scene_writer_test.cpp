@@ -16,8 +16,9 @@ const std::string kEverything = R"({
   "name": "every member, \"quoted\" and \u00e4",
   "world": {"gravity": [0.1, -9.81, 1e-7], "time_step": 0.00833333333, "substeps": 8, "integrator": "semi_implicit_euler",
             "solver": "soft_step", "broad_phase": "brute_force", "stepping": "fixed", "sleeping": false},
+  "view": {"eye": [1, 2.5, 1e6], "target": [0, 1, 0], "field_of_view": 0.9},
   "materials": {
-    "ice": {"density": 917, "static_friction": 0.1, "dynamic_friction": 0.03, "restitution": 0.05,
+    "ice": {"color": "#a0C0ff", "density": 917, "static_friction": 0.1, "dynamic_friction": 0.03, "restitution": 0.05,
             "rolling_friction": 0.001, "spinning_friction": 0.002},
     "a, b": {"dynamic_friction": 0.3}
   },
@@ -38,11 +39,11 @@ const std::string kEverything = R"({
      "gravity_scale": 0.5, "continuous": true, "can_sleep": false,
      "locked": {"linear": [true, false, false], "angular": [false, true, false]},
      "mass": 3.3, "center_of_mass": [0.1, 0, 0], "inertia": [1, 2, 2.5, 0.1, 0, 0.01],
-     "filter": {"layer": 4, "collides_with": 4294967294, "group": -3}, "sensor": true,
+     "filter": {"layer": 4, "collides_with": 4294967294, "group": -3}, "sensor": true, "color": "#000001",
      "shapes": [
        {"type": "sphere", "radius": 0.333333333, "position": [0.1, 0.2, 0.3], "orientation": [0, 0, 0.6, 0.8], "material": "ice"},
        {"type": "box", "half_extents": [0.5, 0.4, 0.3], "rounding": 0.1, "material": "a, b", "density": 5},
-       {"type": "capsule", "radius": 0.3, "half_height": 0, "static_friction": 0.2},
+       {"type": "capsule", "radius": 0.3, "half_height": 0, "static_friction": 0.2, "color": "#123abc"},
        {"type": "cylinder", "radius": 0.3, "half_height": 0.5, "dynamic_friction": 0.1},
        {"type": "cone", "radius": 0.3, "half_height": 0.5, "restitution": 0.9},
        {"type": "convex_hull", "points": [[0,0,0],[1,0,0],[0,1,0],[0,0,1],[0.1,0.1,0.1]], "rolling_friction": 0.01},

@@ -155,6 +155,7 @@ void read_shape(SceneReading& reading, const Field& field, SceneBody& body) {
   if (const auto material = members.find_value("material")) {
     shape.material = find_name(reading.materials, *material, "a material");
   }
+  members.read("color", shape.color);
   const SurfaceFields given = read_surface(members);
   shape.density = given.density;
   shape.static_friction = given.static_friction;
