@@ -41,8 +41,8 @@ OUTER = {
 }
 
 PUBLIC_STANDARD = {
-    "cmath", "compare", "cstddef", "cstdint", "limits", "memory", "optional", "span", "type_traits", "utility", "variant",
-    "vector",
+    "cmath", "compare", "cstddef", "cstdint", "limits", "memory", "optional", "span", "string_view", "type_traits", "utility",
+    "variant", "vector",
 }
 BANNED_IN_HEADERS = {"iostream", "functional", "regex"}
 
