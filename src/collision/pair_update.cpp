@@ -24,16 +24,20 @@ void remove_gone(ContactStore& store, const Bitset& gone, BeforeRemoval before_r
   });
 }
 
-void remove_contacts_of_shape(ContactStore& store, std::uint32_t shape, BeforeRemoval before_removal,
-                              Array<std::uint32_t>& scratch) {
+std::span<const std::uint32_t> list_contacts_of_shape(const ContactStore& store, std::uint32_t shape,
+                                                      Array<std::uint32_t>& scratch) {
   scratch.clear();
   for_each_contact_of_shape(store, shape, [&](std::uint32_t slot) { scratch.push_back(slot); });
-  // The list's order depends on history that a snapshot does not keep.
   const std::size_t count = scratch.size();
   scratch.resize_uninitialized(2 * count);
   const std::span<std::uint32_t> slots = scratch.view().first(count);
   merge_sort(slots, scratch.view().last(count), [](std::uint32_t a, std::uint32_t b) { return a < b; });
-  for (const std::uint32_t slot : slots) {
+  return slots;
+}
+
+void remove_contacts_of_shape(ContactStore& store, std::uint32_t shape, BeforeRemoval before_removal,
+                              Array<std::uint32_t>& scratch) {
+  for (const std::uint32_t slot : list_contacts_of_shape(store, shape, scratch)) {
     before_removal(slot, store.contacts[slot]);
     remove_contact(store, slot);
   }

@@ -30,6 +30,11 @@ using BeforeRemoval = FunctionRef<void(std::uint32_t slot, const Contact& contac
 // Removes the contacts whose bit is set, in slot order.
 void remove_gone(ContactStore& store, const Bitset& gone, BeforeRemoval before_removal);
 
+// The contacts of a shape in slot order, for what is told about them: the order of the shape's own list depends on a
+// history that a snapshot does not keep. The span lies in `scratch`, which is emptied and used.
+std::span<const std::uint32_t> list_contacts_of_shape(const ContactStore& store, std::uint32_t shape,
+                                                      Array<std::uint32_t>& scratch);
+
 // Removes all contacts of a shape, in slot order. `scratch` is emptied and used.
 void remove_contacts_of_shape(ContactStore& store, std::uint32_t shape, BeforeRemoval before_removal,
                               Array<std::uint32_t>& scratch);

@@ -1,4 +1,5 @@
 // cook_height_field: from outside data to a HeightField, or the reason why not.
+#include "base/float_mode.h"
 #include "base/hash.h"
 #include "geometry/cooked.h"
 #include "geometry/height_field.h"
@@ -168,6 +169,7 @@ std::uint64_t hash_field(const HeightField& field) {
 }  // namespace
 
 Result<Geometry> cook_height_field(const HeightFieldDef& def) {
+  const FloatMode mode;
   if (const Error error = check_field(def); error.code != ErrorCode::none) return error;
   auto field = std::make_unique<HeightField>();
   field->columns = def.columns;

@@ -1,6 +1,7 @@
 // Cooking hulls: points to grid, quickhull, thinning, polygons, columns. See hull_builder.h.
 #include "geometry/hull_builder.h"
 
+#include "base/float_mode.h"
 #include "base/hash.h"
 #include "geometry/cooked.h"
 #include "geometry/hull_faces.h"
@@ -337,6 +338,7 @@ Result<Hull> build_hull(std::span<const Vec3> points) {
 }
 
 Result<Geometry> cook_hull(std::span<const Vec3> points) {
+  const FloatMode mode;
   Result<Hull> hull = build_hull(points);
   if (!hull) return hull.error();
   auto data = std::make_shared<CookedGeometry>();

@@ -1,6 +1,7 @@
 // Mass properties of shapes by closed forms, and their algebra: turn, move, join, principal axes. See mass.h.
 #include "geometry/mass.h"
 
+#include "base/float_mode.h"
 #include "geometry/cooked.h"
 #include "geometry/hull.h"
 #include "geometry/mesh.h"
@@ -192,6 +193,7 @@ Solid TetrahedronSum::solid(double density) const {
 }
 
 Result<MassProperties> mass_properties(const AnyShape& shape, float density) {
+  const FloatMode mode;
   if (const Error error = check_shape(shape); error.code != ErrorCode::none) return error;
   if (const Error error = check_density(double(density), "kg/m^3"); error.code != ErrorCode::none)
     return error;
@@ -218,6 +220,7 @@ Result<MassProperties> mass_properties(const AnyShape& shape, float density) {
 }
 
 MassProperties hollow_sphere_mass(float radius, float density_per_area) {
+  const FloatMode mode;
   const double r = double(radius);
   const double mass = double(density_per_area) * 4.0 * kPiDouble * r * r;
   const double part = mass * r * r / 3.0;
@@ -225,6 +228,7 @@ MassProperties hollow_sphere_mass(float radius, float density_per_area) {
 }
 
 MassProperties ellipsoid_mass(Vec3 semi_axes, float density) {
+  const FloatMode mode;
   const DVec3 a(semi_axes);
   const double mass = double(density) * 4.0 / 3.0 * kPiDouble * a.x * a.y * a.z;
   return to_mass_properties(
@@ -232,6 +236,7 @@ MassProperties ellipsoid_mass(Vec3 semi_axes, float density) {
 }
 
 MassProperties tetrahedron_mass(Vec3 a, Vec3 b, Vec3 c, Vec3 d, float density) {
+  const FloatMode mode;
   const DVec3 apex(d);
   const DVec3 edges[3] = {DVec3(a) - apex, DVec3(b) - apex, DVec3(c) - apex};
   const DVec3 middle = 0.25 * (edges[0] + edges[1] + edges[2]);
@@ -245,6 +250,7 @@ MassProperties tetrahedron_mass(Vec3 a, Vec3 b, Vec3 c, Vec3 d, float density) {
 }
 
 MassProperties transformed(const MassProperties& mass, const Transform& t) {
+  const FloatMode mode;
   const Rotation r = rotation_of(t.orientation);
   Solid solid = to_solid(mass);
   const DVec3 c = solid.center;
@@ -254,6 +260,7 @@ MassProperties transformed(const MassProperties& mass, const Transform& t) {
 }
 
 MassProperties combined(std::span<const MassProperties> parts) {
+  const FloatMode mode;
   if (parts.empty()) return {};
   // Centres from the first part's, so that parts far from the origin keep their digits.
   const DVec3 origin(parts[0].center);
@@ -277,6 +284,7 @@ MassProperties combined(std::span<const MassProperties> parts) {
 }
 
 PrincipalAxes principal_axes(const Sym3& inertia) {
+  const FloatMode mode;
   const double m[6] = {double(inertia.xx), double(inertia.yy), double(inertia.zz),
                        double(inertia.xy), double(inertia.xz), double(inertia.yz)};
   double moments[3], axes[9];

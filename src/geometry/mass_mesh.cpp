@@ -1,4 +1,5 @@
 // Volume integrals over closed triangle meshes, with every reason why a mesh bounds no solid. See mass.h.
+#include "base/float_mode.h"
 #include "geometry/closed_surface.h"
 #include "geometry/mass.h"
 #include "geometry/mesh_weld.h"
@@ -51,6 +52,7 @@ Result<Solid> closed_mesh_solid(std::span<const Vec3> vertices, std::span<const 
 
 Result<MassProperties> mesh_mass(std::span<const Vec3> vertices, std::span<const std::uint32_t> indices,
                                  float density) {
+  const FloatMode mode;
   if (const Error error = check_density(double(density), "kg/m^3"); error.code != ErrorCode::none)
     return error;
   const Result<Solid> solid = closed_mesh_solid(vertices, indices, {}, double(density));

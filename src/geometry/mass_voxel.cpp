@@ -4,6 +4,7 @@
 // and the majority decides, so that a hole in the surface spoils only the rays that pass it: a ray with an odd number of
 // crossings in all does not vote.
 // Source: F. Nooruddin, G. Turk, "Simplification and Repair of Polygonal Models Using Volumetric Techniques", 2003.
+#include "base/float_mode.h"
 #include "base/sort.h"
 #include "geometry/closed_surface.h"
 #include "geometry/mass.h"
@@ -199,6 +200,7 @@ Solid sum_voxels(const VoxelGrid& grid, const std::vector<signed char>& votes, d
 
 Result<MassProperties> voxel_mass(std::span<const Vec3> vertices, std::span<const std::uint32_t> indices,
                                   float density, int resolution) {
+  const FloatMode mode;
   if (const Error error = check_density(double(density), "kg/m^3"); error.code != ErrorCode::none)
     return error;
   if (resolution < kSmallestResolution || resolution > kLargestResolution) {

@@ -2,6 +2,7 @@
 //
 // Steps: check every number, weld vertices, leave out triangles without area and doubles, order the rest by their tree, and
 // connect them. Doubles are triangles with the same three places in the same turn; one that faces the other way stays.
+#include "base/float_mode.h"
 #include "base/hash.h"
 #include "base/sort.h"
 #include "geometry/cooked.h"
@@ -143,6 +144,7 @@ std::uint64_t hash_mesh(const Mesh& mesh) {
 }  // namespace
 
 Result<Geometry> cook_mesh(const MeshDef& def) {
+  const FloatMode mode;
   if (const Error error = check_mesh(def); error.code != ErrorCode::none) return error;
   Triangles triangles;
   if (!def.vertices.empty()) triangles = keep_proper(def);

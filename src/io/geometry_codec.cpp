@@ -1,6 +1,7 @@
 // Writing and reading cooked geometry. See geometry_codec.h.
 #include "io/geometry_codec.h"
 
+#include "base/float_mode.h"
 #include "base/sort.h"
 #include "geometry/cooked.h"
 #include "geometry/height_field.h"
@@ -272,6 +273,7 @@ void write_geometry(ByteWriter& out, const Geometry& geometry) {
 }
 
 Result<Geometry> read_geometry(ByteReader& in, const GeometryTable& known) {
+  const FloatMode mode;  // what is not stored is found anew
   const auto kind = in.get<ShapeKind>();
   const auto hash = in.get<std::uint64_t>();
   ByteReader body(in.get_bytes(in.get<std::uint64_t>()));

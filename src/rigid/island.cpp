@@ -74,9 +74,7 @@ void fall_asleep(RigidWorld& w, std::uint32_t body, std::uint32_t root) {
     w.bodies.sleep[root].next_in_group = body;
   }
   w.bodies.flags[body].awake = 0;
-  BodyMotion& motion = w.bodies.motion[body];
-  motion.linear_velocity = {};
-  motion.angular_velocity = {};
+  stop(w.bodies.motion[body]);
   w.bodies.awake_stale = true;
   w.events.sleep_changes.push_back({body_id(w, body), true});
 }
@@ -132,11 +130,11 @@ void wake_all(RigidWorld& w) {
 
 void wake_neighbours(RigidWorld& w, std::uint32_t body) {
   for (const ShapeId id : w.bodies.shapes[body]) {
-    for_each_contact_of_shape(w.contacts, id.index, [&](std::uint32_t slot) {
+    for (const std::uint32_t slot : list_contacts_of_shape(w.contacts, id.index, w.listed)) {
       const Contact& contact = w.contacts.contacts[slot];
       const std::uint32_t other = contact.body_a == body ? contact.body_b : contact.body_a;
       if (contact.manifold_count > 0 && is_dynamic(w, other)) wake(w, other);
-    });
+    }
   }
   for (const std::uint32_t slot : w.bodies.joints[body]) {
     const JointRecord& joint = w.joints.records[slot];

@@ -56,7 +56,7 @@ struct RigidWorld {
   TouchChanges touches;
   Array<std::uint64_t> new_pairs;
   Array<std::uint64_t> sort_scratch;
-  Array<std::uint32_t> unwanted;       // contacts about to be removed
+  Array<std::uint32_t> listed;         // contacts of a shape that is looked at
   Array<std::uint8_t> refit_marks;     // by shape: got a new fat box in this step
   Array<ColliderBody> collider_bodies;
   RigidEvents events;

@@ -20,6 +20,13 @@ struct alignas(64) BodyMotion {
 };
 static_assert(sizeof(BodyMotion) == 64);
 
+// For a body that leaves the bodies that are moved. `moved` and `turned` too: joints to it read them, nobody clears them
+// any more as the step begins, and a snapshot does not keep them.
+inline void stop(BodyMotion& motion) {
+  motion.linear_velocity = motion.angular_velocity = {};
+  motion.moved = motion.turned = {};
+}
+
 // Columns of the record, as wide kernels see them.
 constexpr int kMotionFloats = 16;
 constexpr int kMotionLinear = 0;

@@ -208,8 +208,11 @@ void prepare_lane(ContactBlock<W>& block, int lane, const ContactConstraint& con
   set_lane(block.rolling_friction, lane, constraint.rolling_friction);
   const float turning = (a.inverse.xx + a.inverse.yy + a.inverse.zz) + (b.inverse.xx + b.inverse.yy + b.inverse.zz);
   set_lane(block.rolling_mass, lane, turning > 0.0f ? 1.0f / turning : 0.0f);
-  set_lane(block.rolling, lane, settings.warm_scale * manifold.rolling_impulse);
-  if (constraint.rolling_friction > 0.0f) block.rolls = 1;
+  // A surface that ceased to brake rolling starts from nothing: otherwise it would depend on the lanes beside it whether
+  // the old impulse acts once more.
+  const bool rolls = constraint.rolling_friction > 0.0f;
+  set_lane(block.rolling, lane, rolls ? settings.warm_scale * manifold.rolling_impulse : Vec3{});
+  if (rolls) block.rolls = 1;
   prepare_normals<W>(block, lane, manifold, a, b);
   if (manifold.count > block.point_count) block.point_count = manifold.count;
   for (int k = 0; k < manifold.count; ++k) {

@@ -1,6 +1,7 @@
 // How every command is carried out. Checks are in command_check.cpp; here everything holds.
 #include "world/command.h"
 
+#include "base/float_mode.h"
 #include "collision/pair_update.h"
 #include "math/rotation.h"
 #include "rigid/island.h"
@@ -25,8 +26,7 @@ void for_each_contact_of_body(RigidWorld& w, std::uint32_t body, Fn&& fn) {
 
 // Takes all contacts of a shape away, with end events.
 void drop_contacts(RigidWorld& w, std::uint32_t shape) {
-  Array<std::uint32_t> scratch;
-  remove_contacts_of_shape(w.contacts, shape, [&](std::uint32_t, const Contact& contact) { report_end(w, contact); }, scratch);
+  remove_contacts_of_shape(w.contacts, shape, [&](std::uint32_t, const Contact& contact) { report_end(w, contact); }, w.listed);
 }
 
 // The proxy's part that follows from the body.
@@ -317,16 +317,13 @@ Submitted carry_out(WorldState& s, const AddJoint& c) {
     w.joints.blocked.find_or_insert(block_key(joint), 0u)++;
     // Contacts that the two bodies have by now go away.
     for (const ShapeId id : w.bodies.shapes[std::size_t(joint.body_a)]) {
-      for_each_contact_of_shape(w.contacts, id.index, [&](std::uint32_t contact) {
+      for (const std::uint32_t contact : list_contacts_of_shape(w.contacts, id.index, w.listed)) {
         const Contact& pair = w.contacts.contacts[contact];
-        if (pair_key(pair.body_a, pair.body_b) == block_key(joint)) w.unwanted.push_back(contact);
-      });
+        if (pair_key(pair.body_a, pair.body_b) != block_key(joint)) continue;
+        report_end(w, pair);
+        remove_contact(w.contacts, contact);
+      }
     }
-    for (const std::uint32_t contact : w.unwanted) {
-      report_end(w, w.contacts.contacts[contact]);
-      remove_contact(w.contacts, contact);
-    }
-    w.unwanted.clear();
   }
   return {true, {}, {}, joint_id(w, slot)};
 }
@@ -383,10 +380,7 @@ Submitted carry_out(WorldState& s, const SetType& c) {
   w.bodies.flags[body].awake = 1;
   w.bodies.flags[body].frozen = 0;
   w.bodies.sleep[body] = {};
-  if (c.type == BodyType::fixed) {
-    w.bodies.motion[body].linear_velocity = {};
-    w.bodies.motion[body].angular_velocity = {};
-  }
+  if (c.type == BodyType::fixed) stop(w.bodies.motion[body]);
   w.bodies.awake_stale = true;
   refresh_mass(w, body);
   for (const ShapeId id : w.bodies.shapes[body]) refresh_proxy(w, id.index);
@@ -516,6 +510,7 @@ Submitted carry_out(WorldState& s, const Step& c) {
 void remove_joint_now(WorldState& state, std::uint32_t joint) { detach_joint(state.rigid, joint); }
 
 Submitted submit(WorldState& state, const Command& command) {
+  const FloatMode mode;  // commands and the serial parts of a step compute too
   const Error why = check_command(state, command);
   if (why.code != ErrorCode::none) {
     report_problem(state, why.code, {}, "%s", why.message);

@@ -1,6 +1,7 @@
 // The public World: turns calls into commands.
 #include <gyre/world.h>
 
+#include "base/float_mode.h"
 #include "world/command.h"
 #include "world/world_state.h"
 
@@ -52,12 +53,14 @@ bool World::set_substeps(int substeps) { return submit(*state_, SetSubsteps{subs
 
 bool World::add_force(BodyId body, Vec3 force) { return submit(*state_, AddForce{body, force, {}}).done; }
 bool World::add_force_at(BodyId body, Vec3 force, DVec3 point) {
+  const FloatMode mode;
   // t = (p - COM) x f. A stale body's centre is zero: the command is refused all the same.
   return submit(*state_, AddForce{body, force, cross(difference(point, center_of_mass(body)), force)}).done;
 }
 bool World::add_torque(BodyId body, Vec3 torque) { return submit(*state_, AddForce{body, {}, torque}).done; }
 bool World::add_impulse(BodyId body, Vec3 impulse) { return submit(*state_, AddImpulse{body, impulse, {}}).done; }
 bool World::add_impulse_at(BodyId body, Vec3 impulse, DVec3 point) {
+  const FloatMode mode;
   return submit(*state_, AddImpulse{body, impulse, cross(difference(point, center_of_mass(body)), impulse)}).done;
 }
 bool World::add_angular_impulse(BodyId body, Vec3 impulse) { return submit(*state_, AddImpulse{body, {}, impulse}).done; }

@@ -1,6 +1,7 @@
 // The public World's reading side: single getters, bulk columns, sums over the world.
 #include <gyre/world.h>
 
+#include "base/float_mode.h"
 #include "world/world_state.h"
 
 namespace gyre {
@@ -71,6 +72,7 @@ Vec3 World::angular_velocity(BodyId body) const {
 }
 Vec3 World::velocity_at(BodyId body, DVec3 point) const {
   if (!exists(body)) return {};
+  const FloatMode mode;
   return linear_velocity(body) + cross(angular_velocity(body), difference(point, center_of_mass(body)));
 }
 BodyType World::type(BodyId body) const { return exists(body) ? state_->rigid.bodies.flags[body.index].type : BodyType::fixed; }
@@ -104,6 +106,7 @@ Material World::material(ShapeId shape) const {
 
 JointReading World::joint_reading(JointId id) const {
   if (!exists(id)) return {};
+  const FloatMode mode;
   const RigidWorld& w = state_->rigid;
   const JointRecord& joint = w.joints.records[id.index];
   JointReading reading;
@@ -149,6 +152,7 @@ BodyColumns World::awake_bodies() const {
 }
 
 std::size_t World::contacts(std::span<ContactPoint> out) const {
+  const FloatMode mode;
   const RigidWorld& w = state_->rigid;
   std::size_t count = 0;
   for (const Contact& contact : w.contacts.contacts) {
@@ -207,6 +211,7 @@ Vec3 World::gravity() const { return state_->rigid.settings.gravity; }
 int World::substeps() const { return state_->rigid.settings.substeps; }
 
 Energy World::energy() const {
+  const FloatMode mode;
   const RigidWorld& w = state_->rigid;
   const DVec3 gravity(w.settings.gravity);
   Energy energy;
@@ -223,6 +228,7 @@ Energy World::energy() const {
 }
 
 Momentum World::momentum() const {
+  const FloatMode mode;
   const RigidWorld& w = state_->rigid;
   Momentum momentum;
   w.bodies.ids.for_each_live([&](std::uint32_t i) {

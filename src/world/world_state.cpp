@@ -1,5 +1,6 @@
 #include "world/world_state.h"
 
+#include "base/float_mode.h"
 #include "base/hash.h"
 #include "world/stages.h"
 
@@ -109,6 +110,7 @@ std::unique_ptr<WorldState> make_world_state(const WorldDef& def) {
 }
 
 void derive_state(RigidWorld& w) {
+  const FloatMode mode;
   BodyStore& bodies = w.bodies;
   const std::size_t count = bodies.motion.size();
   bodies.inertia.resize(count);
@@ -148,6 +150,7 @@ void derive_state(RigidWorld& w) {
 }
 
 std::uint64_t hash_state(const WorldState& state) {
+  const FloatMode mode;  // shapes are hashed as the engine knows them, with unit normals
   HashVisitor visitor;
   for_each_column(state, visitor);
   return visitor.value();

@@ -1,6 +1,8 @@
-// Prints the state's hash of every scene every 50 steps, and nothing else: whatever compiler, optimisation and processor
-// this is built for, and whatever threads and SIMD width it is given, the output must be determinism/golden.txt.
-// Usage: determinism [threads] [simd width]
+// Prints the state's hash of every scene and of some random worlds every 50 steps, and nothing else: whatever compiler,
+// optimisation and processor this is built for, and whatever threads and SIMD width it is given, the output must be
+// determinism/golden.txt. With numbers, it prints those random worlds instead.
+// Usage: determinism [threads] [simd width] [first random world] [last random world]
+#include "../determinism/random_world.h"
 #include "../determinism/scenes.h"
 
 #include <cinttypes>
@@ -11,18 +13,39 @@ namespace {
 
 using namespace gyre;
 
+constexpr int kRandomWorlds = 16;
+constexpr int kRandomSteps = 100;
+
+void print_hash(const char* name, int step, const World& world) {
+  if (step % scenes::kHashEvery == 0) std::printf("%s %d %016" PRIx64 "\n", name, step, world.hash());
+}
+
 bool print_scene(const scenes::Scene& scene, const WorldDef& def) {
   Result<World> made = World::create(def);
-  if (!made) {
-    std::printf("no world: %s\n", made.error().message);
-    return false;
-  }
+  if (!made) return false;
   World world = *std::move(made);
   scene.build(world);
   for (int step = 0; step < scenes::kSteps; ++step) {
     scenes::step_scene(scene, world, step);
-    if ((step + 1) % scenes::kHashEvery == 0)
-      std::printf("%s %d %016" PRIx64 "\n", scene.name, step + 1, world.hash());
+    print_hash(scene.name, step + 1, world);
+  }
+  return true;
+}
+
+bool print_random_world(int number, const WorldDef& computed) {
+  scenes::RandomWorld random{std::uint32_t(number)};
+  WorldDef def = random.def();
+  def.threads = computed.threads;
+  def.simd_width = computed.simd_width;
+  Result<World> made = World::create(def);
+  if (!made) return false;
+  World world = *std::move(made);
+  random.build(world);
+  char name[32];
+  std::snprintf(name, sizeof name, "random_%d", number);
+  for (int step = 0; step < kRandomSteps; ++step) {
+    random.step(world, step);
+    print_hash(name, step + 1, world);
   }
   return true;
 }
@@ -30,11 +53,20 @@ bool print_scene(const scenes::Scene& scene, const WorldDef& def) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  const auto argument = [&](int place, int otherwise) {
+    return argc > place ? std::atoi(argv[place]) : otherwise;
+  };
   WorldDef def;
-  def.threads = argc > 1 ? std::atoi(argv[1]) : 1;
-  def.simd_width = argc > 2 ? std::atoi(argv[2]) : 0;
-  for (const scenes::Scene& scene : scenes::kScenes) {
-    if (!print_scene(scene, def)) return 1;
+  def.threads = argument(1, 1);
+  def.simd_width = argument(2, 0);
+  if (argc <= 3) {
+    for (const scenes::Scene& scene : scenes::kScenes) {
+      if (!print_scene(scene, def)) return 1;
+    }
+  }
+  const int first = argument(3, 0);
+  for (int number = first; number <= argument(4, first + kRandomWorlds - 1); ++number) {
+    if (!print_random_world(number, def)) return 1;
   }
   return 0;
 }

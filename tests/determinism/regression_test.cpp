@@ -1,0 +1,134 @@
+// What once made two runs differ, each as the smallest world that showed it.
+#include "determinism/scenes.h"
+
+#include <gyre/replay.h>
+
+#include <gtest/gtest.h>
+
+#include <cfenv>
+
+namespace gyre {
+namespace {
+
+using scenes::add_fixed;
+using scenes::add_moving;
+using scenes::kStepSeconds;
+
+World make_world(const WorldDef& def = {}) {
+  Result<World> made = World::create(def);
+  EXPECT_TRUE(made) << made.error().message;
+  return *std::move(made);
+}
+
+World copy_of(const World& world) {
+  Result<World> loaded = load_snapshot(save_snapshot(world));
+  EXPECT_TRUE(loaded) << loaded.error().message;
+  return *std::move(loaded);
+}
+
+// A joint went on reading how far a body had moved in the last step before it was nailed down. A snapshot does not know.
+TEST(Snapshot, GoesOnWithAJointToABodyThatWasNailedDown) {
+  World world = make_world();
+  const BodyId above = add_moving(world, {0, 4, 0}, Box{});
+  const BodyId below = add_moving(world, {0, 2, 0}, Sphere{});
+  scenes::join(world, JointKind::ball, above, below, {0, 3.5, 0});
+  world.set_velocity(above, {3, 1, 0}, {0, 0, 2});
+  world.step(kStepSeconds);
+  world.set_type(above, BodyType::fixed);
+  World loaded = copy_of(world);
+  ASSERT_EQ(world.hash(), loaded.hash());
+  for (int step = 0; step < 5; ++step) {
+    world.step(kStepSeconds);
+    loaded.step(kStepSeconds);
+    ASSERT_EQ(world.hash(), loaded.hash()) << step;
+  }
+}
+
+// The old rolling impulse of a surface that no longer brakes rolling acted once more, but only where another contact in the
+// same block of lanes did brake it.
+TEST(SimdWidth, DoesNotShowWhenASurfaceCeasesToBrakeRolling) {
+  const Material braking{.rolling_friction = 0.05f};
+  std::uint64_t hashes[3] = {};
+  const int widths[3] = {1, 4, 8};
+  for (int k = 0; k < 3; ++k) {
+    World world = make_world({.simd_width = widths[k]});
+    add_fixed(world, {}, Plane{});
+    std::vector<BodyId> balls;
+    for (int i = 0; i < 8; ++i) {
+      balls.push_back(add_moving(world, {2.0 * i, 0.5, 0}, Sphere{}, braking));
+      world.set_velocity(balls.back(), {0, 0, 4}, {8, 0, 0});
+    }
+    for (int step = 0; step < 10; ++step) world.step(kStepSeconds);
+    for (int i = 0; i < 8; i += 2) world.set_material(world.shapes(balls[std::size_t(i)])[0], {});
+    world.set_material(world.shapes(scenes::body_number(world, 0))[0], {});
+    for (int step = 0; step < 10; ++step) world.step(kStepSeconds);
+    hashes[k] = world.hash();
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+  EXPECT_EQ(hashes[0], hashes[2]);
+}
+
+// Ends of contacts were told in the order of a list that a loaded world builds anew.
+TEST(Events, OfALoadedWorldComeInTheSameOrder) {
+  World world = make_world();
+  const BodyId floor = add_fixed(world, {0, -0.5, 0}, Box{{10, 0.5f, 10}});
+  std::vector<ShapeDef> feet(4);
+  for (std::size_t i = 0; i < feet.size(); ++i) {
+    feet[i].geometry = Box{{0.125f, 0.125f, 0.125f}};
+    feet[i].local.position = {0.75f * float(i) - 1.0f, 0, 0};
+  }
+  BodyDef table;
+  table.pose.position = {0, 0.125, 0};
+  const BodyId body = world.add_body(table, feet);
+  for (int step = 0; step < 3; ++step) world.step(kStepSeconds);
+  // Away and back, so that the contacts are found in another order than that of their slots.
+  world.set_filter(world.shapes(body)[0], {});
+  for (int step = 0; step < 3; ++step) world.step(kStepSeconds);
+  World loaded = copy_of(world);
+  std::vector<std::uint32_t> order[2];
+  World* const worlds[2] = {&world, &loaded};
+  for (int k = 0; k < 2; ++k) {
+    const BodyId a = scenes::body_number(*worlds[k], 0), b = scenes::body_number(*worlds[k], 1);
+    scenes::join(*worlds[k], JointKind::fixed, a, b, {});
+    worlds[k]->step(kStepSeconds);
+    for (const ContactEnd& end : worlds[k]->events().ends) order[k].push_back(end.shape_b.index);
+  }
+  EXPECT_TRUE(world.exists(floor));
+  EXPECT_EQ(order[0].size(), 4u);
+  EXPECT_EQ(order[0], order[1]);
+}
+
+// Only what ran in blocks kept the host's rounding out; commands, loading, cooking, readings and the hash did not.
+TEST(HostRounding, DoesNotShow) {
+  const auto outcome = [](int rounding) {
+    std::fesetround(rounding);
+    World world = make_world();
+    add_fixed(world, {}, Plane{{0.1f, 1, 0.3f}, 0.1f});
+    const float heights[] = {0, 0.3f, 0.1f, 0.7f, 0.2f, 0.1f, 0.9f, 0.3f, 0.1f};
+    if (const Result<Geometry> field = cook_height_field({heights, 3, 3, 0.7f}))
+      add_fixed(world, {0, 0.2, 0}, *field);
+    const Vec3 corners[] = {
+        {0.3f, 0, 0}, {-0.3f, 0.1f, 0}, {0, 0.4f, 0.1f}, {0.1f, 0.1f, 0.3f}, {0, -0.2f, -0.3f}};
+    const Result<Geometry> cooked = cook_hull(corners);
+    if (!cooked) return std::pair(std::uint64_t(0), 0.0);
+    const BodyId hull = add_moving(world, {0.1, 2, 0.2}, *cooked);
+    const BodyId cone = add_moving(world, {0.3, 3, 0.1}, Cone{0.3f, 0.7f});
+    scenes::join(world, JointKind::hinge, hull, cone, {0.2, 2.5, 0.1}, {0.3f, 0.1f, 0.7f});
+    world.add_impulse_at(cone, {3, 7, 0.1f}, {0.7, 3.1, 0.3});
+    for (int step = 0; step < 60; ++step) world.step(0.01f);
+    Result<World> loaded = load_snapshot(save_snapshot(world));
+    EXPECT_TRUE(loaded);
+    for (int step = 0; step < 60; ++step) loaded->step(0.01f);
+    const std::uint64_t hash = loaded->hash();
+    const double kinetic = loaded->energy().kinetic;
+    std::fesetround(FE_TONEAREST);
+    return std::pair(hash, kinetic);
+  };
+  const auto expected = outcome(FE_TONEAREST);
+  EXPECT_NE(expected.first, 0u);
+  for (const int rounding : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO})
+    EXPECT_EQ(expected, outcome(rounding)) << rounding;
+}
+
+}  // namespace
+}  // namespace gyre
