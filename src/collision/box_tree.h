@@ -59,6 +59,23 @@ class BoxTree {
     }
   }
 
+  // The box of an item that is in the tree.
+  Aabb box_of(std::uint32_t item) const { return lane_box(nodes_[places_[item] / kWidth], int(places_[item] % kWidth)); }
+  // Calls visit(box, depth) for every node, from the root (depth 0) down.
+  template <class Visit>
+  void for_each_node(Visit&& visit) const {
+    if (size_ == 0) return;
+    std::uint32_t stack[kMaxLevels * kWidth];
+    int depth = 0;
+    stack[depth++] = root_;
+    while (depth > 0) {
+      const Node& node = nodes_[stack[--depth]];
+      visit(bounds_of(node), int(nodes_[root_].level) - int(node.level));
+      if (node.level == 0) continue;
+      for (int lane = int(node.count) - 1; lane >= 0; --lane) stack[depth++] = node.child[lane];
+    }
+  }
+
   // Null if all nodes hold what they should, otherwise what is wrong. Walks everything: for tests and debug builds.
   const char* find_fault() const;
   // Sum over inner nodes of their boxes' surface over the root's: how many nodes a walk meets, roughly.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/array.h"
+#include "base/function_ref.h"
 #include "collision/proxy.h"
 #include "task/task_system.h"
 
@@ -12,6 +13,12 @@
 #include <span>
 
 namespace gyre {
+
+struct NodeBox {
+  Aabb box;
+  int depth = 0;
+  bool fixed = false;  // of the tree over what never moves
+};
 
 class Broadphase {
  public:
@@ -31,6 +38,13 @@ class Broadphase {
 
   // Appends the index of every proxy in use whose fat box overlaps `box`; ascending.
   virtual void query(std::span<const Proxy> proxies, const Aabb& box, Array<std::uint32_t>& found) const = 0;
+
+  // For the eyes of people: calls visit for the box of every inner node of every tree that the broad phase has, from the
+  // root (depth 0) down. Nothing if it has no trees.
+  virtual void for_each_node(FunctionRef<void(const NodeBox&)> visit) const;
+  // Null if it holds the proxies with their boxes, but for those in `changed` (ascending), which it has not been shown yet;
+  // otherwise what is wrong. Walks everything: for tests and debug builds.
+  virtual const char* find_fault(std::span<const Proxy> proxies, std::span<const std::uint32_t> changed) const;
 };
 
 std::unique_ptr<Broadphase> make_broadphase(BroadPhaseKind kind);

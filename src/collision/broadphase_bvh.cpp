@@ -140,19 +140,31 @@ void BroadphaseBvh::query(std::span<const Proxy> proxies, const Aabb& box,
   found.resize_uninitialized(before + count);
 }
 
-const char* BroadphaseBvh::find_fault(std::span<const Proxy> proxies) const {
+void BroadphaseBvh::for_each_node(FunctionRef<void(const NodeBox&)> visit) const {
+  for (const Home home : {kFixed, kMoving}) {
+    trees_[home].for_each_node([&](const Aabb& box, int depth) { visit({box, depth, home == kFixed}); });
+  }
+}
+
+const char* BroadphaseBvh::find_fault(std::span<const Proxy> proxies, std::span<const std::uint32_t> changed) const {
   for (const BoxTree& tree : trees_) {
     if (const char* const fault = tree.find_fault()) return fault;
   }
   std::size_t count[4] = {};
   for (std::uint32_t i = 0; i < proxies.size(); ++i) {
+    if (!changed.empty() && changed.front() == i) {
+      changed = changed.subspan(1);
+      if (i < homes_.size()) ++count[homes_[i]];
+      continue;
+    }
     const Home home = home_of(proxies[i]);
+    if (i >= homes_.size() ? home != kNoHome : homes_[i] != home) return "a proxy is not where it belongs";
     ++count[home];
-    if (homes_[i] != home) return "a proxy is not where it belongs";
-    if (trees_[kFixed].contains(i) != (home == kFixed))
-      return "the fixed tree does not hold the fixed proxies";
-    if (trees_[kMoving].contains(i) != (home == kMoving))
-      return "the moving tree does not hold the moving proxies";
+    for (const Home tree : {kFixed, kMoving}) {
+      if (trees_[tree].contains(i) != (home == tree)) return "a tree does not hold the proxies of its kind";
+      if (home == tree && !(trees_[tree].box_of(i) == proxies[i].fat_box))
+        return "a tree knows a proxy by another box than its own";
+    }
   }
   if (count[kFixed] != trees_[kFixed].size() || count[kMoving] != trees_[kMoving].size())
     return "a tree is too large";

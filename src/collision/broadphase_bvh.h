@@ -17,8 +17,8 @@ class BroadphaseBvh final : public Broadphase {
                   Array<std::uint64_t>& pairs) override;
   void query(std::span<const Proxy> proxies, const Aabb& box, Array<std::uint32_t>& found) const override;
 
-  // Null if the trees hold exactly the proxies, otherwise what is wrong. For tests and debug builds.
-  const char* find_fault(std::span<const Proxy> proxies) const;
+  void for_each_node(FunctionRef<void(const NodeBox&)> visit) const override;
+  const char* find_fault(std::span<const Proxy> proxies, std::span<const std::uint32_t> changed) const override;
   const BoxTree& moving_tree() const { return trees_[kMoving]; }
   const BoxTree& fixed_tree() const { return trees_[kFixed]; }
 

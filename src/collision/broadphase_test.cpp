@@ -150,7 +150,7 @@ TEST_P(BroadphaseOracle, EqualsPlainLoopsInAChangingWorld) {
                                                                         : 12);
     bvh.update(world.proxies, changed);
     brute->update(world.proxies, changed);
-    ASSERT_STREQ(bvh.find_fault(world.proxies), nullptr) << frame;
+    ASSERT_STREQ(bvh.find_fault(world.proxies, {}), nullptr) << frame;
     const std::vector<std::uint64_t> expected = world.expected(changed);
     Array<std::uint64_t> by_brute, by_bvh, by_threads;
     brute->find_pairs(world.proxies, changed, one, by_brute);
@@ -198,7 +198,7 @@ TEST(Broadphase, RebuildForgetsWhatWas) {
   bvh.rebuild(world.proxies);
   World other(Layout::clustered, 120);
   bvh.rebuild(other.proxies);
-  EXPECT_STREQ(bvh.find_fault(other.proxies), nullptr);
+  EXPECT_STREQ(bvh.find_fault(other.proxies, {}), nullptr);
 }
 
 TEST(Broadphase, NothingAtAll) {

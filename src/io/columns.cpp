@@ -48,6 +48,11 @@ void forget_reports(WorldState& state) {
   state.events = {};
   state.problems.clear();
   state.frozen.clear();
+  // What the solver had were constraints of the state that is replaced.
+  SolveScratch& solve = state.solve;
+  solve.constraints.clear(), solve.constraint_contact.clear(), solve.pairs.clear();
+  solve.joints.clear(), solve.joint_pairs.clear();
+  solve.colors = 0;
 }
 
 bool equal(const Proxy& a, const Proxy& b) {

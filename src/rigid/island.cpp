@@ -12,29 +12,6 @@ bool is_asleep(const RigidWorld& w, std::uint32_t body) {
   return is_dynamic(w, body) && w.bodies.flags[body].awake == 0;
 }
 
-// Whether the body can disturb a sleeping one: it is awake and dynamic, or kinematic and moving.
-bool disturbs(const RigidWorld& w, std::uint32_t body) {
-  const BodyFlags& flags = w.bodies.flags[body];
-  if (flags.frozen != 0 || flags.awake == 0) return false;
-  if (flags.type == BodyType::dynamic) return true;
-  const BodyMotion& motion = w.bodies.motion[body];
-  return flags.type == BodyType::kinematic &&
-         (motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{});
-}
-
-// Calls fn(body_a, body_b) for every contact and joint that binds; b may be a fixed body.
-template <class Fn>
-void for_each_link(const RigidWorld& w, Fn&& fn) {
-  for (const Contact& contact : w.contacts.contacts) {
-    if (contact.manifold_room == 0 || contact.manifold_count == 0 || contact.sensor != 0) continue;
-    fn(contact.body_a, contact.body_b);
-  }
-  w.joints.ids.for_each_live([&](std::uint32_t slot) {
-    const JointRecord& joint = w.joints.records[slot];
-    if (joint.body_a != kNoBody && joint.body_b != kNoBody) fn(std::uint32_t(joint.body_a), std::uint32_t(joint.body_b));
-  });
-}
-
 // Union-find over bodies; the root of an island is its lowest body.
 class Islands {
  public:
@@ -82,27 +59,42 @@ void fall_asleep(RigidWorld& w, std::uint32_t body, std::uint32_t root) {
 void update_rest_timers(RigidWorld& w, float seconds, bool& somebody) {
   const float pull = length(w.settings.gravity);
   for (const std::uint32_t i : w.bodies.awake) {
-    const BodyFlags& flags = w.bodies.flags[i];
-    if (flags.type != BodyType::dynamic) continue;
-    const BodyMotion& motion = w.bodies.motion[i];
-    const BodyMass& mass = w.bodies.masses[i];
-    const bool moves = motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{};
-    // Nothing holds a free body up: as long as it moves at all it goes on for ever.
-    const bool may_rest = flags.can_sleep != 0 && (flags.touched != 0 || !moves) && w.bodies.forces[i].force == Vec3{} &&
-                          w.bodies.forces[i].torque == Vec3{} &&
-                          (flags.touched != 0 || pull * absolute(w.bodies.forces[i].gravity_scale) == 0.0f);
-    // A body without shapes still has the extent of its inertia: turning is motion.
-    const float spread = mass.inertia.xx + mass.inertia.yy + mass.inertia.zz;
-    const float reach = max(mass.reach, mass.mass > 0.0f ? std::sqrt(spread / mass.mass) : 0.0f);
-    const float speed = length(motion.linear_velocity) + reach * length(motion.angular_velocity);
-    const float rest = kRestShare * std::sqrt((pull > 0.0f ? pull : 9.81f) * reach);
+    if (w.bodies.flags[i].type != BodyType::dynamic) continue;
+    const Rest rest = find_rest(w, i, pull);
     float& still = w.bodies.sleep[i].still_time;
-    still = may_rest && speed <= rest ? still + seconds : 0.0f;
+    still = rest.may && rest.speed <= rest.rest_speed ? still + seconds : 0.0f;
     if (still >= kTimeToSleep) somebody = true;
   }
 }
 
 }  // namespace
+
+bool disturbs(const RigidWorld& w, std::uint32_t body) {
+  const BodyFlags& flags = w.bodies.flags[body];
+  if (flags.frozen != 0 || flags.awake == 0) return false;
+  if (flags.type == BodyType::dynamic) return true;
+  const BodyMotion& motion = w.bodies.motion[body];
+  return flags.type == BodyType::kinematic &&
+         (motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{});
+}
+
+Rest find_rest(const RigidWorld& w, std::uint32_t body, float pull) {
+  const BodyFlags& flags = w.bodies.flags[body];
+  const BodyMotion& motion = w.bodies.motion[body];
+  const BodyMass& mass = w.bodies.masses[body];
+  const BodyForces& forces = w.bodies.forces[body];
+  const bool moves = motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{};
+  Rest rest;
+  // Nothing holds a free body up: as long as it moves at all it goes on for ever.
+  rest.may = flags.can_sleep != 0 && (flags.touched != 0 || !moves) && forces.force == Vec3{} && forces.torque == Vec3{} &&
+             (flags.touched != 0 || pull * absolute(forces.gravity_scale) == 0.0f);
+  // A body without shapes still has the extent of its inertia: turning is motion.
+  const float spread = mass.inertia.xx + mass.inertia.yy + mass.inertia.zz;
+  const float reach = max(mass.reach, mass.mass > 0.0f ? std::sqrt(spread / mass.mass) : 0.0f);
+  rest.speed = length(motion.linear_velocity) + reach * length(motion.angular_velocity);
+  rest.rest_speed = kRestShare * std::sqrt((pull > 0.0f ? pull : 9.81f) * reach);
+  return rest;
+}
 
 void wake(RigidWorld& w, std::uint32_t body) {
   if (!is_asleep(w, body)) {

@@ -15,6 +15,31 @@ constexpr float kTimeToSleep = 0.5f;  // s
 // Motion that counts as none: this share of sqrt(gravity * reach), the body's natural speed.
 constexpr float kRestShare = 0.015f;
 
+// Calls fn(body_a, body_b) for every contact and joint that binds two bodies; either may be one that nothing moves.
+template <class Fn>
+void for_each_link(const RigidWorld& w, Fn&& fn) {
+  for (const Contact& contact : w.contacts.contacts) {
+    if (contact.manifold_room == 0 || contact.manifold_count == 0 || contact.sensor != 0) continue;
+    fn(contact.body_a, contact.body_b);
+  }
+  w.joints.ids.for_each_live([&](std::uint32_t slot) {
+    const JointRecord& joint = w.joints.records[slot];
+    if (joint.body_a != kNoBody && joint.body_b != kNoBody) fn(std::uint32_t(joint.body_a), std::uint32_t(joint.body_b));
+  });
+}
+
+// Whether the body can disturb a sleeping one: it is awake and dynamic, or kinematic and moving.
+bool disturbs(const RigidWorld& w, std::uint32_t body);
+
+// What decides whether a dynamic body counts as still.
+struct Rest {
+  bool may = false;         // it is allowed to, no force acts on it, and something holds it up (or nothing pulls or moves it)
+  float speed = 0.0f;       // m/s, of its centre of mass and of its farthest point about that
+  float rest_speed = 0.0f;  // m/s, slower is still
+};
+// `pull`: the length of gravity, m/s^2.
+Rest find_rest(const RigidWorld& w, std::uint32_t body, float pull);
+
 // Wakes a body's group; nothing if it is awake. Events are added to w.events.
 void wake(RigidWorld& w, std::uint32_t body);
 void wake_all(RigidWorld& w);

@@ -372,8 +372,8 @@ void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& 
   gather_contacts(w, scratch);
   gather_joints(w, scratch);
   const std::uint32_t body_count = std::uint32_t(w.bodies.motion.size());
-  color_constraints(scratch.pairs, body_count, {}, {.max_colors = 32, .statics_last = true}, scratch.contact_colors);
-  color_constraints(scratch.joint_pairs, body_count, {}, {.max_colors = 32, .statics_last = true}, scratch.joint_colors);
+  color_constraints(scratch.pairs, body_count, {}, kColoringOptions, scratch.contact_colors);
+  color_constraints(scratch.joint_pairs, body_count, {}, kColoringOptions, scratch.joint_colors);
 
   Solve solve{w, scratch, kernels};
   solve.h = h;

@@ -27,6 +27,9 @@ struct SolveScratch {
   int colors = 0;
 };
 
+// How constraints are shared among groups.
+constexpr ColoringOptions kColoringOptions{.max_colors = 32, .statics_last = true};
+
 // Solves one step of `seconds` in `substeps` sub-steps: velocities, `moved`, `turned` and orientations of awake bodies,
 // impulses in manifolds and joints.
 void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& tasks, const ContactKernels& kernels,

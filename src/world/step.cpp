@@ -39,6 +39,27 @@ void report_frozen(WorldState& s) {
   }
 }
 
+void count(WorldState& s, CounterName counter, std::size_t amount) { s.profile.count(int(counter), amount); }
+
+// What the profiler is told of a step's work, from what the stages left behind.
+void count_work(WorldState& s) {
+  if (!s.profile.enabled()) return;
+  const RigidWorld& w = s.rigid;
+  std::size_t full_looks = 0;
+  for (const Contact& contact : w.contacts.contacts) {
+    if (contact.manifold_room == 0 || contact.recycled != 0) continue;
+    if (w.collider_bodies[contact.body_a].awake || w.collider_bodies[contact.body_b].awake) ++full_looks;
+  }
+  count(s, CounterName::new_pairs, w.new_pairs.size());
+  count(s, CounterName::contacts, w.contacts.live);
+  count(s, CounterName::full_looks, full_looks);
+  count(s, CounterName::manifolds, s.solve.constraints.size());
+  count(s, CounterName::colors, std::size_t(s.solve.colors));
+  count(s, CounterName::joints, s.solve.joints.size());
+  count(s, CounterName::awake_bodies, w.bodies.awake.size());
+  count(s, CounterName::fast_bodies, s.continuous.fast.size());
+}
+
 void end_step(WorldState& s, float seconds) {
   s.time += double(seconds);
   ++s.step_count;
@@ -57,7 +78,9 @@ void end_step(WorldState& s, float seconds) {
 void step_world(WorldState& s, float seconds) {
   RigidWorld& w = s.rigid;
   begin_step(s);
+  const StageZone whole(s.profile, kWholeStep);
   run_stage(s, StageName::refit, [&] { refit(w); });
+  count(s, CounterName::refitted_boxes, w.shapes.changed.size());
   run_stage(s, StageName::find_pairs, [&] { find_pairs(w, *s.tasks); });
   run_stage(s, StageName::collide, [&] { collide_pairs(w, *s.tasks, seconds); });
   run_stage(s, StageName::link_islands, [&] { link_islands(w); });
@@ -69,6 +92,7 @@ void step_world(WorldState& s, float seconds) {
   end_step(s, seconds);
   report_frozen(s);
   remove_broken_joints(s);
+  count_work(s);
 }
 
 }  // namespace gyre

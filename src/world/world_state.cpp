@@ -97,7 +97,10 @@ std::unique_ptr<WorldState> make_world_state(const WorldDef& def) {
   state->tasks = def.host_tasks.run != nullptr ? std::make_unique<TaskSystem>(def.host_tasks)
                                                : std::make_unique<TaskSystem>(def.threads);
   state->kernels = &select_contact_kernels(def.simd_width);
-  state->profile = StageProfile(std::span<const char* const>(kStageNames, kStageCount));
+  const char* timed[kStageCount + 1];
+  for (int i = 0; i < kStageCount; ++i) timed[i] = kStageNames[i];
+  timed[kWholeStep] = kWholeStepName;
+  state->profile = StageProfile(timed, kCounterNames);
   RigidWorld& w = state->rigid;
   w.world_number = state->number;
   w.settings.gravity = def.gravity;

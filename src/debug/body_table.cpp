@@ -1,0 +1,90 @@
+// read_bodies: what there is to see of bodies, as columns. See <gyre/debug.h>.
+#include "debug/flat.h"
+#include "debug/islands.h"
+#include "rigid/island.h"
+#include "world/world_state.h"
+
+#include <gyre/debug.h>
+
+namespace gyre {
+
+namespace {
+
+RestState rest_state(const BodyFlags& flags, const BodySleep& sleep) {
+  if (flags.frozen != 0) return RestState::frozen;
+  if (flags.type == BodyType::fixed) return RestState::fixed;
+  if (flags.type == BodyType::kinematic) return RestState::kinematic;
+  if (flags.awake == 0) return RestState::asleep;
+  return sleep.still_time > 0.0f ? RestState::resting : RestState::moving;
+}
+
+// Semi-axes of the solid ellipsoid with these principal moments: I_x = m (b^2 + c^2) / 5 and so on, solved for the squares.
+Vec3 semi_axes(Vec3 moments, float mass) {
+  if (!(mass > 0.0f)) return {};
+  const float scale = 2.5f / mass;
+  const auto side = [&](float opposite, float other, float own) {
+    return std::sqrt(max(scale * (opposite + other - own), 0.0f));
+  };
+  return {side(moments.y, moments.z, moments.x), side(moments.x, moments.z, moments.y),
+          side(moments.x, moments.y, moments.z)};
+}
+
+void add_body(const RigidWorld& w, std::uint32_t body, DVec3 origin, BodyTable& out) {
+  const BodyPlace& place = w.bodies.places[body];
+  const BodyMotion& motion = w.bodies.motion[body];
+  const BodyMass& mass = w.bodies.masses[body];
+  const bool movable = is_movable(w.bodies.flags[body]);
+  out.ids.push_back(body_id(w, body));
+  append(out.centers, difference(place.center, origin));
+  if (movable) {
+    const PrincipalAxes principal = principal_axes(mass.inertia);
+    append(out.axes, normalized(place.orientation * principal.orientation));
+    append(out.semi_axes, semi_axes(principal.moments, mass.mass));
+  } else {
+    append(out.axes, place.orientation);
+    append(out.semi_axes, Vec3{});
+  }
+  append(out.velocities, motion.linear_velocity);
+  append(out.spins, motion.angular_velocity);
+  const Rest rest = movable ? find_rest(w, body, length(w.settings.gravity)) : Rest{};
+  out.speeds.push_back(rest.speed);
+  out.rest_speeds.push_back(rest.rest_speed);
+  out.still_times.push_back(w.bodies.sleep[body].still_time);
+  out.states.push_back(rest_state(w.bodies.flags[body], w.bodies.sleep[body]));
+}
+
+}  // namespace
+
+const char* to_string(RestState state) {
+  switch (state) {
+    case RestState::fixed:
+      return "fixed";
+    case RestState::kinematic:
+      return "kinematic";
+    case RestState::moving:
+      return "moving";
+    case RestState::resting:
+      return "resting";
+    case RestState::asleep:
+      return "asleep";
+    case RestState::frozen:
+      return "frozen";
+  }
+  return "unknown";
+}
+
+void read_bodies(const World& world, DVec3 origin, BodyTable& out) {
+  const RigidWorld& w = world.state().rigid;
+  clear_all(out.ids, out.centers, out.axes, out.semi_axes, out.velocities, out.spins, out.speeds,
+            out.rest_speeds, out.still_times, out.states, out.islands, out.island_sizes);
+  const IslandMap islands = find_islands(w);
+  out.island_count = islands.count;
+  w.bodies.ids.for_each_live([&](std::uint32_t body) {
+    add_body(w, body, origin, out);
+    const std::uint32_t root = islands.roots[body];
+    out.islands.push_back(root);
+    out.island_sizes.push_back(root == kNoIsland ? 0 : islands.sizes[root]);
+  });
+}
+
+}  // namespace gyre

@@ -1,0 +1,60 @@
+// read_boxes: boxes of shapes and nodes of the broad phase's trees. See <gyre/debug.h>.
+#include "collision/fat_box.h"
+#include "debug/flat.h"
+#include "world/world_state.h"
+
+#include <gyre/debug.h>
+
+namespace gyre {
+
+namespace {
+
+struct Collector {
+  DVec3 origin;
+  BoxTable& out;
+
+  // Corners are rounded outward, so that what lies in a box still does when both are seen from the origin.
+  void add(const WorldBox& box, BoxKind kind, int depth, std::uint32_t shape) {
+    const Aabb seen = round_outward({box.low - origin, box.high - origin});
+    if (is_unbounded(seen)) return;
+    append(out.corners, seen.low);
+    append(out.corners, seen.high);
+    out.kinds.push_back(kind);
+    out.depths.push_back(std::uint8_t(depth));
+    out.shapes.push_back(shape);
+  }
+  void add(const Aabb& box, BoxKind kind, int depth, std::uint32_t shape) {
+    add(WorldBox{DVec3(box.low), DVec3(box.high)}, kind, depth, shape);
+  }
+};
+
+void add_nodes(const RigidWorld& w, bool fixed, BoxKind kind, Collector& boxes) {
+  w.broadphase->for_each_node([&](const NodeBox& node) {
+    if (node.fixed == fixed) boxes.add(node.box, kind, node.depth, kNoShape);
+  });
+}
+
+}  // namespace
+
+void read_boxes(const World& world, std::uint32_t kinds, DVec3 origin, BoxTable& out) {
+  const RigidWorld& w = world.state().rigid;
+  clear_all(out.corners, out.kinds, out.depths, out.shapes);
+  Collector boxes{origin, out};
+  const auto wanted = [&](BoxKind kind) { return (kinds & box_bit(kind)) != 0; };
+  if (wanted(BoxKind::tight)) {
+    w.shapes.ids.for_each_live([&](std::uint32_t shape) {
+      const ColliderShape& collider = w.shapes.colliders[shape];
+      const Pose world_from_shape = w.bodies.poses[collider.body] * collider.body_from_shape;
+      boxes.add(world_box(collider.shape, world_from_shape), BoxKind::tight, 0, shape);
+    });
+  }
+  if (wanted(BoxKind::fat)) {
+    w.shapes.ids.for_each_live(
+        [&](std::uint32_t shape) { boxes.add(w.shapes.proxies[shape].fat_box, BoxKind::fat, 0, shape); });
+  }
+  if (w.broadphase_stale) return;
+  if (wanted(BoxKind::fixed_tree)) add_nodes(w, true, BoxKind::fixed_tree, boxes);
+  if (wanted(BoxKind::moving_tree)) add_nodes(w, false, BoxKind::moving_tree, boxes);
+}
+
+}  // namespace gyre

@@ -1,0 +1,18 @@
+// Islands as they stand between two steps, for reading: union-find over what binds (rigid/island.h).
+#pragma once
+
+#include "rigid/rigid_world.h"
+
+#include <vector>
+
+namespace gyre {
+
+struct IslandMap {
+  std::vector<std::uint32_t>
+      roots;  // by body slot: the lowest body of its island; kNoIsland if nothing moves it
+  std::vector<std::uint32_t> sizes;  // by root: bodies in its island; 0 for others
+  std::uint32_t count = 0;
+};
+IslandMap find_islands(const RigidWorld& w);
+
+}  // namespace gyre

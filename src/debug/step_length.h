@@ -1,0 +1,14 @@
+// How long the last step was: impulses over it are forces.
+#pragma once
+
+#include "rigid/rigid_world.h"
+
+namespace gyre {
+
+// 1/s; 0 before the first step.
+inline float inverse_step_length(const RigidWorld& w) {
+  const float seconds = w.settings.last_substep * float(w.settings.substeps);
+  return seconds > 0.0f ? 1.0f / seconds : 0.0f;
+}
+
+}  // namespace gyre

@@ -1,0 +1,23 @@
+// set_timing, read_times: what the profiler measured. See <gyre/debug.h>.
+#include "world/stages.h"
+#include "world/world_state.h"
+
+#include <gyre/debug.h>
+
+namespace gyre {
+
+void set_timing(World& world, bool enabled) { world.state().profile.set_enabled(enabled); }
+bool timing(const World& world) { return world.state().profile.enabled(); }
+
+void read_times(const World& world, StepTimes& out) {
+  const StageProfile& profile = world.state().profile;
+  out.steps = profile.step_count();
+  const std::span<const StageTime> times = profile.step_times();
+  out.seconds = times[kWholeStep].seconds;
+  out.stages.clear();
+  for (const StageTime& stage : times.first(kStageCount)) out.stages.push_back({stage.name, stage.seconds});
+  out.counts.clear();
+  for (const StageCount& count : profile.step_counts()) out.counts.push_back({count.name, count.value});
+}
+
+}  // namespace gyre

@@ -1,0 +1,14 @@
+// validate: the walk over a world's structures, as the public header offers it.
+#include "world/state_walk.h"
+#include "world/world_state.h"
+
+#include <gyre/debug.h>
+
+namespace gyre {
+
+Error validate(const World& world) {
+  if (world.state().stepping) return make_error(ErrorCode::busy, "the world is in the middle of a step");
+  return walk_state(world.state());
+}
+
+}  // namespace gyre

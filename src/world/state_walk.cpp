@@ -1,0 +1,319 @@
+// The rules, group by group. See state_walk.h.
+#include "world/state_walk.h"
+
+#include "collision/fat_box.h"
+#include "rigid/island.h"
+#include "world/world_state.h"
+
+#include <vector>
+
+namespace gyre {
+
+namespace {
+
+Error broken(const char* rule) { return make_error(ErrorCode::invalid_data, "%s", rule); }
+template <class... Args>
+Error broken(const char* rule, Args... args) {
+  return make_error(ErrorCode::invalid_data, rule, args...);
+}
+
+class Walk {
+ public:
+  Walk(const WorldState& s, std::optional<StageName> after) : s_(s), w_(s.rigid), after_(after) {}
+
+  Error run();
+
+ private:
+  // Whether the step has come at least so far; between steps it has.
+  bool is_past(StageName stage) const { return !after_ || *after_ >= stage; }
+  bool is_right_after(StageName stage) const { return after_ && *after_ == stage; }
+
+  void list_changed();
+  Error lists_of_bodies() const;
+  Error list_of_awake() const;
+  Error blocked_bodies() const;
+  Error places() const;
+  Error fat_boxes() const;
+  Error contacts_have_pairs() const;
+  Error pairs_have_contacts() const;
+  Error groups_of_constraints() const;
+  Error every_contact_is_solved() const;
+  Error every_joint_is_solved() const;
+  Error islands() const;
+  Error nobody_sleeps_beside_motion() const;
+
+  bool was_shown(std::uint32_t shape) const { return changed_mark_[shape] == 0; }
+  bool is_active(std::uint32_t body) const {
+    return w_.bodies.flags[body].awake != 0 && is_movable(w_.bodies.flags[body]);
+  }
+
+  const WorldState& s_;
+  const RigidWorld& w_;
+  std::optional<StageName> after_;
+  std::vector<std::uint32_t> changed_;      // proxies that the broad phase has not been shown; ascending
+  std::vector<std::uint8_t> changed_mark_;  // the same by shape
+};
+
+void Walk::list_changed() {
+  changed_mark_.assign(w_.shapes.proxies.size(), 0);
+  for (const std::uint32_t shape : w_.shapes.changed) changed_mark_[shape] = 1;
+  for (std::uint32_t shape = 0; shape < changed_mark_.size(); ++shape) {
+    if (changed_mark_[shape] != 0) changed_.push_back(shape);
+  }
+}
+
+// Each shape is in the list of its body and each joint in those of its bodies, ascending and once; nothing else is.
+Error Walk::lists_of_bodies() const {
+  std::size_t listed_shapes = 0, listed_joints = 0, joint_ends = 0;
+  for (std::uint32_t body = 0; body < w_.bodies.ids.capacity(); ++body) {
+    const std::vector<ShapeId>& shapes = w_.bodies.shapes[body];
+    const std::vector<std::uint32_t>& joints = w_.bodies.joints[body];
+    if (!w_.bodies.ids.live(body) && (!shapes.empty() || !joints.empty()))
+      return broken("body %u was removed but has shapes or joints", body);
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      const std::uint32_t shape = shapes[i].index;
+      if (!w_.shapes.ids.live(shape) || w_.shapes.bodies[shape] != body ||
+          !(shapes[i] == shape_id(w_, shape)))
+        return broken("body %u lists shape %u, which is not its own", body, shape);
+      if (i > 0 && shapes[i - 1].index >= shape)
+        return broken("the shapes of body %u are not in order", body);
+    }
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      if (!w_.joints.ids.live(joints[i]))
+        return broken("body %u lists joint %u, which was removed", body, joints[i]);
+      const JointRecord& joint = w_.joints.records[joints[i]];
+      if (joint.body_a != std::int32_t(body) && joint.body_b != std::int32_t(body))
+        return broken("body %u lists joint %u, which is between others", body, joints[i]);
+      if (i > 0 && joints[i - 1] >= joints[i]) return broken("the joints of body %u are not in order", body);
+    }
+    listed_shapes += shapes.size();
+    listed_joints += joints.size();
+  }
+  w_.joints.ids.for_each_live([&](std::uint32_t slot) {
+    joint_ends += w_.joints.records[slot].body_a != kNoBody ? 1 : 0;
+    joint_ends += w_.joints.records[slot].body_b != kNoBody ? 1 : 0;
+  });
+  if (listed_shapes != w_.shapes.ids.size()) return broken("a shape is not in the list of its body");
+  if (listed_joints != joint_ends) return broken("a joint is not in the list of its body");
+  return {};
+}
+
+Error Walk::list_of_awake() const {
+  if (w_.bodies.awake_stale) return {};
+  std::size_t next = 0;
+  for (std::uint32_t body = 0; body < w_.bodies.ids.capacity(); ++body) {
+    const BodyFlags& flags = w_.bodies.flags[body];
+    const bool awake =
+        w_.bodies.ids.live(body) && flags.type != BodyType::fixed && flags.awake != 0 && flags.frozen == 0;
+    const bool listed = next < w_.bodies.awake.size() && w_.bodies.awake[next] == body;
+    if (awake != listed)
+      return broken("body %u is %s but %s listed so", body, awake ? "awake" : "not awake",
+                    listed ? "is" : "is not");
+    if (listed) ++next;
+  }
+  return next == w_.bodies.awake.size() ? Error{}
+                                        : broken("the list of awake bodies has more than there are");
+}
+
+// Bodies that a joint keeps from colliding are known as such, as often as there are such joints.
+Error Walk::blocked_bodies() const {
+  std::size_t joints = 0, counted = 0;
+  Error error;
+  w_.joints.ids.for_each_live([&](std::uint32_t slot) {
+    const JointRecord& joint = w_.joints.records[slot];
+    if (joint.collide_connected || joint.body_a == kNoBody || joint.body_b == kNoBody) return;
+    ++joints;
+    if (!w_.joints.blocked.contains(pair_key(std::uint32_t(joint.body_a), std::uint32_t(joint.body_b))))
+      error = broken("joint %u keeps its bodies from colliding, but they are not known to be kept", slot);
+  });
+  if (error.code != ErrorCode::none) return error;
+  w_.joints.blocked.for_each([&](std::uint64_t, std::uint32_t count) { counted += count; });
+  return joints == counted ? Error{} : broken("bodies are kept from colliding by more joints than there are");
+}
+
+// What is derived from the place of the centre of mass is what derivation gives. Not so within `solve`, which moves the
+// orientations on before the places.
+Error Walk::places() const {
+  if (after_ && *after_ >= StageName::solve && *after_ < StageName::finish_bodies) return {};
+  for (std::uint32_t body = 0; body < w_.bodies.ids.capacity(); ++body) {
+    if (!w_.bodies.ids.live(body)) continue;
+    if (!(w_.bodies.orientations[body] == w_.bodies.places[body].orientation))
+      return broken("body %u has two orientations", body);
+    if (!(w_.bodies.poses[body] == origin_pose(w_.bodies.places[body], w_.bodies.masses[body])))
+      return broken("the pose of body %u does not follow from its centre of mass", body);
+  }
+  return {};
+}
+
+Error Walk::fat_boxes() const {
+  for (std::uint32_t shape = 0; shape < w_.shapes.ids.capacity(); ++shape) {
+    if (!w_.shapes.ids.live(shape)) continue;
+    const ColliderShape& collider = w_.shapes.colliders[shape];
+    const WorldBox tight =
+        world_box(collider.shape, w_.bodies.poses[collider.body] * collider.body_from_shape);
+    const Aabb& fat = w_.shapes.proxies[shape].fat_box;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (double(fat.low[axis]) > tight.low[axis] || double(fat.high[axis]) < tight.high[axis])
+        return broken("the fat box of shape %u does not contain the shape", shape);
+    }
+  }
+  if (w_.broadphase_stale) return {};
+  const char* const fault = w_.broadphase->find_fault(w_.shapes.proxies, changed_);
+  return fault != nullptr ? broken("broad phase: %s", fault) : Error{};
+}
+
+Error Walk::contacts_have_pairs() const {
+  if (const char* const fault = find_fault(w_.contacts)) return broken("contacts: %s", fault);
+  for (std::uint32_t slot = 0; slot < w_.contacts.contacts.size(); ++slot) {
+    const Contact& contact = w_.contacts.contacts[slot];
+    if (contact.manifold_room == 0) continue;
+    const Proxy &a = w_.shapes.proxies[contact.shape_a], &b = w_.shapes.proxies[contact.shape_b];
+    if (!may_pair(a, b))
+      return broken("contact %u is of shapes %u and %u, which may not touch", slot, contact.shape_a,
+                    contact.shape_b);
+    if (w_.joints.blocked.contains(pair_key(contact.body_a, contact.body_b)))
+      return broken("contact %u is of bodies %u and %u, which a joint keeps from colliding", slot,
+                    contact.body_a, contact.body_b);
+    // Pairs that have come apart go in link_islands.
+    if (!is_past(StageName::link_islands) || !was_shown(contact.shape_a) || !was_shown(contact.shape_b))
+      continue;
+    if (!overlap(a.fat_box, b.fat_box))
+      return broken("contact %u is of shapes %u and %u, whose fat boxes are apart", slot, contact.shape_a,
+                    contact.shape_b);
+  }
+  return {};
+}
+
+Error Walk::pairs_have_contacts() const {
+  if (w_.broadphase_stale || !is_past(StageName::find_pairs)) return {};
+  Array<std::uint32_t> found;
+  for (std::uint32_t shape = 0; shape < w_.shapes.ids.capacity(); ++shape) {
+    if (!w_.shapes.ids.live(shape) || !was_shown(shape)) continue;
+    const Proxy& proxy = w_.shapes.proxies[shape];
+    found.clear();
+    w_.broadphase->query(w_.shapes.proxies, proxy.fat_box, found);
+    for (const std::uint32_t other : found) {
+      if (other <= shape || !was_shown(other)) continue;
+      const Proxy& other_proxy = w_.shapes.proxies[other];
+      if (!may_pair(proxy, other_proxy) || w_.joints.blocked.contains(pair_key(proxy.body, other_proxy.body)))
+        continue;
+      if (!w_.contacts.slot_of_pair.contains(pair_key(shape, other)))
+        return broken("the fat boxes of shapes %u and %u overlap, but they have no contact", shape, other);
+    }
+  }
+  return {};
+}
+
+// No group has a moving body twice, and each constraint is in one group. What is left of the last step is looked at
+// between steps, too.
+Error Walk::groups_of_constraints() const {
+  const SolveScratch& solve = s_.solve;
+  const auto fits = [](std::span<const ColoringPair> pairs, const Coloring& colors) {
+    return pairs.empty() ||
+           validate_coloring(pairs, std::uint32_t(colors.masks.size()), {}, kColoringOptions, colors);
+  };
+  if (!fits(solve.pairs, solve.contact_colors)) return broken("a group of contacts has a moving body twice");
+  if (!fits(solve.joint_pairs, solve.joint_colors))
+    return broken("a group of joints has a moving body twice");
+  return {};
+}
+
+Error Walk::every_contact_is_solved() const {
+  const Array<std::uint32_t>& solved = s_.solve.constraint_contact;
+  std::size_t next = 0;
+  for (std::uint32_t slot = 0; slot < w_.contacts.contacts.size(); ++slot) {
+    const Contact& contact = w_.contacts.contacts[slot];
+    if (contact.manifold_room == 0 || contact.sensor != 0) continue;
+    if (!is_active(contact.body_a) && !is_active(contact.body_b)) continue;
+    for (const Manifold& manifold : manifolds_of(w_.contacts, contact)) {
+      if (manifold.count == 0) continue;
+      if (next >= solved.size() || solved[next] != slot || s_.solve.constraints[next].manifold != &manifold)
+        return broken("contact %u touches, but the solver does not have it", slot);
+      ++next;
+    }
+  }
+  return next == solved.size() ? Error{} : broken("the solver has a contact that does not touch");
+}
+
+Error Walk::every_joint_is_solved() const {
+  std::size_t next = 0;
+  const Array<std::uint32_t>& solved = s_.solve.joints;
+  for (std::uint32_t slot = 0; slot < w_.joints.ids.capacity(); ++slot) {
+    const bool listed = next < solved.size() && solved[next] == slot;
+    if (listed) ++next;
+    bool acts = false;
+    if (w_.joints.ids.live(slot)) {
+      const JointRecord& joint = w_.joints.records[slot];
+      for (const std::int32_t body : {joint.body_a, joint.body_b})
+        acts = acts || (body != kNoBody && is_active(std::uint32_t(body)));
+    }
+    if (listed && !acts) return broken("the solver has joint %u, which was removed or rests", slot);
+    if (!listed && acts) return broken("joint %u has an awake body, but the solver does not have it", slot);
+  }
+  return next == solved.size() ? Error{} : broken("the solver has a joint twice");
+}
+
+// The bodies of a sleeping group hang together.
+Error Walk::islands() const {
+  std::vector<std::uint32_t> parent(w_.bodies.motion.size());
+  for (std::uint32_t i = 0; i < parent.size(); ++i) parent[i] = i;
+  const auto root_of = [&](std::uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for_each_link(w_, [&](std::uint32_t a, std::uint32_t b) {
+    if (!is_movable(w_.bodies.flags[a]) || !is_movable(w_.bodies.flags[b])) return;
+    a = root_of(a);
+    b = root_of(b);
+    parent[max(a, b)] = min(a, b);
+  });
+  for (std::uint32_t body = 0; body < parent.size(); ++body) {
+    const std::uint32_t group = w_.bodies.sleep[body].group;
+    if (group == kNoGroup) continue;
+    if (root_of(body) != root_of(group))
+      return broken("body %u sleeps in the group of body %u, but nothing links them", body, group);
+  }
+  return {};
+}
+
+Error Walk::nobody_sleeps_beside_motion() const {
+  Error error;
+  for_each_link(w_, [&](std::uint32_t a, std::uint32_t b) {
+    const auto check = [&](std::uint32_t sleeper, std::uint32_t other) {
+      const BodyFlags& flags = w_.bodies.flags[sleeper];
+      if (is_movable(flags) && flags.awake == 0 && disturbs(w_, other))
+        error = broken("body %u sleeps, although body %u beside it moves", sleeper, other);
+    };
+    check(a, b);
+    check(b, a);
+  });
+  return error;
+}
+
+Error Walk::run() {
+  Error error = check_columns(w_);
+  const auto next = [&](Error (Walk::*rule)() const, bool holds = true) {
+    if (error.code == ErrorCode::none && holds) error = (this->*rule)();
+  };
+  if (error.code != ErrorCode::none) return error;
+  list_changed();
+  next(&Walk::lists_of_bodies);
+  next(&Walk::list_of_awake);
+  next(&Walk::blocked_bodies);
+  next(&Walk::places);
+  next(&Walk::contacts_have_pairs);
+  next(&Walk::fat_boxes);
+  next(&Walk::pairs_have_contacts);
+  next(&Walk::groups_of_constraints);
+  next(&Walk::islands);
+  next(&Walk::nobody_sleeps_beside_motion, is_right_after(StageName::link_islands));
+  next(&Walk::every_contact_is_solved, is_right_after(StageName::solve));
+  next(&Walk::every_joint_is_solved, is_right_after(StageName::solve));
+  return error;
+}
+
+}  // namespace
+
+Error walk_state(const WorldState& state, std::optional<StageName> after) { return Walk(state, after).run(); }
+
+}  // namespace gyre
