@@ -73,18 +73,17 @@ constexpr std::uint8_t kNoColor = 255;
 
 // Every contact point, in the order of World::contacts().
 struct ContactTable {
-  std::vector<std::uint32_t> bodies;  // 2 a point: BodyId::index of a and b
-  std::vector<std::uint32_t> shapes;  // 2 a point: ShapeId::index of a and b
-  std::vector<float> positions;       // 3 a point: midway between the surfaces, m
-  std::vector<float> normals;         // 3 a point: unit, from a to b
-  std::vector<float> tangents;        // 6 a point: two unit vectors that make the basis with the normal
-  std::vector<float> separations;     // 1 a point: m, negative: overlap
-  std::vector<float> forces;          // 1 a point: along the normal, mean over the last step, N
-  std::vector<float>
-      friction_forces;        // 3 a point: on b, N; of the manifold, at its first point, 0 at the others
-  std::vector<float> scales;  // 1 a point: size of the smaller shape, m: how large to draw it
-  std::vector<ContactState> states;  // 1 a point
-  std::vector<std::uint8_t> colors;  // 1 a point: the solver's group that had it; kNoColor if none had
+  std::vector<std::uint32_t> bodies;   // 2 a point: BodyId::index of a and b
+  std::vector<std::uint32_t> shapes;   // 2 a point: ShapeId::index of a and b
+  std::vector<float> positions;        // 3 a point: midway between the surfaces, m
+  std::vector<float> normals;          // 3 a point: unit, from a to b
+  std::vector<float> tangents;         // 6 a point: two unit vectors that make the basis with the normal
+  std::vector<float> separations;      // 1 a point: m, negative: overlap
+  std::vector<float> forces;           // 1 a point: along the normal, mean over the last step, N
+  std::vector<float> friction_forces;  // 3 a point: on b, N, of the manifold; at its first point only
+  std::vector<float> scales;           // 1 a point: size of the smaller shape, m: how large to draw it
+  std::vector<ContactState> states;    // 1 a point
+  std::vector<std::uint8_t> colors;    // 1 a point: the solver's group that had it; kNoColor if none had
 
   std::size_t size() const { return separations.size(); }
 };
