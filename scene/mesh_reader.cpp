@@ -28,6 +28,14 @@ void read_triangles(const Field& field, const SceneLimits& limits, std::size_t v
   }
 }
 
+std::string file_not_here(const Field& file, const ReadOptions& options) {
+  std::string text = "found " + file.found() + ", but no files can be opened here";
+  if (options.files.empty()) return text;
+  text += "; given were:";
+  for (const auto& [name, bytes] : options.files) text += " \"" + name + "\"";
+  return text;
+}
+
 }  // namespace
 
 void read_mesh(SceneReading& reading, const Field& field, const std::string& name) {
@@ -41,8 +49,11 @@ void read_mesh(SceneReading& reading, const Field& field, const std::string& nam
     mesh.file = file->text();
     const std::string refusal = refuse_mesh_path(mesh.file);
     if (!refusal.empty()) file->fail("found " + file->found() + ", " + refusal);
-    if (!options.mesh_files) file->fail("found " + file->found() + ", but no files can be opened here");
-    SceneResult<MeshData> data = load_mesh_file(options.folder, mesh.file, options.limits);
+    const auto given = options.files.find(mesh.file);
+    const bool here = given != options.files.end();
+    if (!here && !options.mesh_files) file->fail(file_not_here(*file, options));
+    SceneResult<MeshData> data = here ? parse_obj(given->second, mesh.file, options.limits)
+                                      : load_mesh_file(options.folder, mesh.file, options.limits);
     if (!data) file->fail(data.error().text());
     mesh.vertices = std::move(data->vertices);
     mesh.indices = std::move(data->indices);

@@ -6,6 +6,7 @@
 #include "scene/scene_error.h"
 #include "scene/scene_limits.h"
 
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -15,6 +16,8 @@ struct ReadOptions {
   std::string file = "scene";  // named in errors
   bool mesh_files = false;     // whether files may be opened
   std::string folder;          // where mesh files are looked for; empty: the current one
+  // Bytes of mesh files by the name that the scene gives them, used before anything is opened: for where there is no disk.
+  std::map<std::string, std::string, std::less<>> files;
   SceneLimits limits;
 };
 

@@ -44,7 +44,9 @@ double SceneRunner::present_length(const SceneJoint& joint) const {
 const SceneBody* SceneRunner::body_of(BodyId id) const {
   if (!world_.exists(id)) return nullptr;
   const std::uint64_t index = world_.user_data(id);
-  return index < bodies_.size() && bodies_[index] == id ? &scene_.bodies[index] : nullptr;
+  if (index >= bodies_.size()) return nullptr;
+  const std::size_t at = std::size_t(index);
+  return bodies_[at] == id ? &scene_.bodies[at] : nullptr;
 }
 
 bool SceneRunner::step() {

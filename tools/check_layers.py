@@ -37,7 +37,7 @@ OUTER = {
     "examples": set(),
     "kit": {"kit"},
     "capi": {"capi"},
-    "web": {"web"},
+    "web": {"web", "scene"},
 }
 
 PUBLIC_STANDARD = {

@@ -22,6 +22,7 @@ package_present() {
     libgtest-dev) [ -e /usr/include/gtest/gtest.h ] ;;
     libbenchmark-dev) [ -e /usr/include/benchmark/benchmark.h ] ;;
     zlib1g-dev) [ -e /usr/include/zlib.h ] ;;
+    emscripten) command -v emcc >/dev/null 2>&1 ;;
     libclang-rt-dev) ls /usr/lib/llvm-*/lib/clang/*/lib/linux/libclang_rt.fuzzer-*.a >/dev/null 2>&1 ;;
     *) dpkg-query -W -f='${db:Status-Abbrev}' "$1" 2>/dev/null | grep -q '^ii' ;;
   esac

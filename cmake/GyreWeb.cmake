@@ -1,0 +1,21 @@
+# Flags of the WebAssembly builds. They go to every target, because all objects of a module must agree on them.
+if(GYRE_WEB_SIMD)
+  add_compile_options(-msimd128)
+endif()
+if(GYRE_WEB_THREADS)
+  add_compile_options(-pthread)
+  add_link_options(-pthread)
+endif()
+
+# Debian's nlohmann_json is headers only; emscripten does not look into the system's folders, and must not.
+if(NOT TARGET nlohmann_json::nlohmann_json)
+  set(GYRE_JSON_HEADERS /usr/include/nlohmann CACHE PATH "The folder that holds nlohmann's json.hpp")
+  if(NOT EXISTS ${GYRE_JSON_HEADERS}/json.hpp)
+    message(FATAL_ERROR "No ${GYRE_JSON_HEADERS}/json.hpp: install nlohmann-json3-dev, or set GYRE_JSON_HEADERS.")
+  endif()
+  file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/json_include)
+  file(CREATE_LINK ${GYRE_JSON_HEADERS} ${CMAKE_BINARY_DIR}/json_include/nlohmann SYMBOLIC)
+  add_library(nlohmann_json INTERFACE IMPORTED GLOBAL)
+  target_include_directories(nlohmann_json INTERFACE ${CMAKE_BINARY_DIR}/json_include)
+  add_library(nlohmann_json::nlohmann_json ALIAS nlohmann_json)
+endif()

@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# Builds the npm package web/gyre-physics: three WebAssembly modules (SIMD; SIMD and threads; plain) with Debian's emscripten, the
+# bindings, and the TypeScript around them, into web/gyre-physics/dist. `npm pack` in that folder then makes the package.
+#
+#   tools/build_web.sh [simd|threads|plain|typescript]...   only these parts; without any, all
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+. tools/setup.sh
+
+need_packages emscripten cmake ninja-build python3 nlohmann-json3-dev
+for program in node npm; do
+  command -v $program >/dev/null || { say "No $program: install Node.js 18 or newer."; exit 1; }
+done
+# Emscripten's optimiser is a Node program; a Node that is not Debian's does not look where Debian keeps its modules.
+export NODE_PATH=${NODE_PATH:-/usr/share/nodejs}
+
+package=web/gyre-physics
+parts=("$@")
+[ ${#parts[@]} -gt 0 ] || parts=(simd threads plain typescript)
+
+install_node_packages() {
+  # npm leaves its own copy of the list behind; as long as that is newer, there is nothing to do.
+  if [ ! -e $package/node_modules/.package-lock.json ] || [ $package/package-lock.json -nt $package/node_modules/.package-lock.json ]; then
+    (cd $package && npm ci --no-audit --no-fund --loglevel=error) >&2
+  fi
+}
+
+for part in "${parts[@]}"; do
+  case $part in
+    simd | threads | plain)
+      build "web-$part" gyre_web
+      node $package/tools/pack.mjs "$part" "build/web-$part/web" $package/dist/engine
+      ;;
+    typescript)
+      install_node_packages
+      python3 web/bindings/generate.py --typescript $package/src/generated.ts
+      $package/node_modules/.bin/tsc -p $package
+      cp LICENSE $package/LICENSE
+      ;;
+    *) say "Unknown part: $part"; exit 1 ;;
+  esac
+done

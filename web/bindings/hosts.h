@@ -1,0 +1,28 @@
+// What the generated functions need besides the stream: worlds with their owners, recorders in memory.
+#pragma once
+
+#include "web/bindings/stream.h"
+
+#include <gyre/replay.h>
+
+namespace gyre::web {
+
+struct OwnWorldHost final : WorldHost {
+  explicit OwnWorldHost(World own) : value(std::move(own)) {}
+  ~OwnWorldHost() override { recorder.reset(); }
+  World& world() override { return value; }
+  World value;
+};
+
+// The world inside a replay.
+struct BorrowedWorldHost final : WorldHost {
+  explicit BorrowedWorldHost(World& other) : value(&other) {}
+  World& world() override { return *value; }
+  World* value;
+};
+
+// Threads that JavaScript has ready for us. A world that asks for more gets these: a thread cannot start while the page's own
+// thread waits for it.
+void limit_threads(WorldDef& def);
+
+}  // namespace gyre::web

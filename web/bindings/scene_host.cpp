@@ -1,0 +1,119 @@
+// Scene files in the browser: the same reader and runner as the command line's. A scene's host is a world's host too, so every
+// function of World takes it.
+#include "scene/scene_reader.h"
+#include "scene/scene_runner.h"
+#include "scene/scene_writer.h"
+#include "web/bindings/hosts.h"
+
+#include <emscripten.h>
+
+#include <string>
+
+namespace gyre::web {
+namespace {
+
+struct SceneHost final : WorldHost {
+  explicit SceneHost(SceneRunner own) : runner(std::move(own)) {}
+  ~SceneHost() override { recorder.reset(); }
+  World& world() override { return runner.world(); }
+  SceneRunner runner;
+};
+
+SceneHost& scene_of(Host* host) { return *static_cast<SceneHost*>(host); }
+
+int refuse_scene(Answer& answer, const SceneError& error) {
+  return answer.checked(make_error(ErrorCode::invalid_data, "%s", error.text().c_str()));
+}
+
+}  // namespace
+}  // namespace gyre::web
+
+using namespace gyre;
+using namespace gyre::web;
+
+extern "C" {
+
+// Arguments: the scene's text, its name in errors, threads, and the files that it may name: how many, then name and bytes of each.
+// The answer: a handle.
+EMSCRIPTEN_KEEPALIVE int gyre_scene_open() {
+  Call call(nullptr);
+  Answer answer(nullptr, 0);
+  std::string_view text, file;
+  get(call, text);
+  get(call, file);
+  WorldDef def;
+  get(call, def.threads);
+  limit_threads(def);
+  ReadOptions options;
+  options.file = std::string(file);
+  for (double files = call.next(); files > 0.0; --files) {
+    std::string_view name, bytes;
+    get(call, name);
+    get(call, bytes);
+    options.files.emplace(std::string(name), std::string(bytes));
+  }
+  SceneResult<Scene> scene = read_scene(text, options);
+  if (!scene) return refuse_scene(answer, scene.error());
+  SceneResult<SceneRunner> runner = SceneRunner::create(*std::move(scene), options.file, def.threads);
+  if (!runner) return refuse_scene(answer, runner.error());
+  Host* const host = new SceneHost(*std::move(runner));
+  answer.pointer(host);
+  return answer.done();
+}
+
+// The scene's name and time step; then of its bodies and of its joints: how many, their ids, and the name of each. Ids of bodies
+// and joints that are gone stay in their places.
+EMSCRIPTEN_KEEPALIVE int gyre_scene_info(Host* host) {
+  Answer answer(host, 0);
+  const SceneRunner& runner = scene_of(host).runner;
+  const Scene& scene = runner.scene();
+  put_text(answer, std::string_view(scene.name));
+  answer.number(scene.world.time_step);
+  put_array(answer, runner.bodies());
+  for (const SceneBody& body : scene.bodies) put_text(answer, std::string_view(body.name));
+  put_array(answer, runner.joints());
+  for (const SceneJoint& joint : scene.joints) put_text(answer, std::string_view(joint.name));
+  return answer.done();
+}
+
+// Of each shape of each body, in the order of the scene: the name of its material, empty if it has none.
+EMSCRIPTEN_KEEPALIVE int gyre_scene_materials(Host* host) {
+  Answer answer(host, 0);
+  const Scene& scene = scene_of(host).runner.scene();
+  for (const SceneBody& body : scene.bodies) {
+    answer.number(double(body.shapes.size()));
+    for (const SceneShape& shape : body.shapes) {
+      put_text(answer, shape.material < 0 ? std::string_view()
+                                          : std::string_view(scene.materials[std::size_t(shape.material)].name));
+    }
+  }
+  return answer.done();
+}
+
+// One step of the scene with its timed forces.
+EMSCRIPTEN_KEEPALIVE int gyre_scene_step(Host* host) {
+  Answer answer(host, 0);
+  SceneRunner& runner = scene_of(host).runner;
+  if (runner.step()) return answer.done();
+  return answer.checked(make_error(ErrorCode::invalid_argument, "%s", runner.problem().c_str()));
+}
+
+// Steps done and the time of the scene.
+EMSCRIPTEN_KEEPALIVE int gyre_scene_progress(Host* host) {
+  Answer answer(host, 0);
+  const SceneRunner& runner = scene_of(host).runner;
+  answer.number(double(runner.steps()));
+  answer.number(runner.time());
+  return answer.done();
+}
+
+// The scene as it stands now, as the text of a scene file.
+EMSCRIPTEN_KEEPALIVE int gyre_scene_write(Host* host) {
+  Answer answer(host, 0);
+  const std::string text = write_scene(scene_of(host).runner.final_scene(), {.inline_meshes = true});
+  const std::byte* begin = reinterpret_cast<const std::byte*>(text.data());
+  answer.bytes(std::vector<std::byte>(begin, begin + text.size()));
+  return answer.done();
+}
+
+}  // extern "C"

@@ -1,0 +1,1 @@
+export { default, wasm, compressed, glue, worker } from './variant.js';

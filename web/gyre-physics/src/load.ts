@@ -1,0 +1,132 @@
+// Picks the build of the engine and starts it. The WebAssembly modules are inside JavaScript files, so that there is no second
+// address that a bundler or a server could get wrong.
+import type { Build, Engine, EngineExports } from './runtime.js';
+
+export interface LoadOptions {
+  /**
+   * Which build: 'threads' needs a page that is cross-origin isolated (or Node), 'simd' any present browser, 'plain' runs everywhere.
+   * By default the first of these that runs here; in Node 'simd', since a program's threads cost it start-up time.
+   */
+  build?: Build | undefined;
+  /** Threads besides the caller's for build 'threads'; by default one less than there are cores, at most 7. */
+  workers?: number | undefined;
+}
+
+// A function that adds two vectors (WebAssembly core specification 2.0, 4.4.3): valid only where there is SIMD.
+const simdProbe = new Uint8Array([
+  0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11,
+]);
+
+interface Surroundings {
+  crossOriginIsolated?: boolean;
+  process?: { versions?: { node?: string } };
+  navigator?: { hardwareConcurrency?: number };
+}
+const here = globalThis as unknown as Surroundings;
+const inNode = typeof here.process?.versions?.node === 'string' && typeof (globalThis as { window?: unknown }).window === 'undefined';
+
+/** The builds that can run here, the best first. */
+export function usableBuilds(): Build[] {
+  const builds: Build[] = [];
+  const simd = WebAssembly.validate(simdProbe);
+  if (simd && typeof SharedArrayBuffer !== 'undefined' && (inNode || here.crossOriginIsolated === true)) builds.push('threads');
+  if (simd) builds.push('simd');
+  builds.push('plain');
+  return builds;
+}
+
+async function cores(): Promise<number> {
+  if (here.navigator?.hardwareConcurrency) return here.navigator.hardwareConcurrency;
+  if (!inNode) return 1;
+  const os = (await import(/* @vite-ignore */ nodeModule('os'))) as { availableParallelism?: () => number; cpus(): unknown[] };
+  return os.availableParallelism?.() ?? os.cpus().length;
+}
+
+// Hidden from bundlers, which would look for it.
+function nodeModule(name: string): string {
+  return `node:${name}`;
+}
+
+type Variant = typeof import('./engine/simd.js');
+const variants: Record<Build, () => Promise<Variant>> = {
+  simd: () => import('./engine/simd.js'),
+  threads: () => import('./engine/threads.js'),
+  plain: () => import('./engine/plain.js'),
+};
+
+async function unpack(variant: Variant): Promise<Uint8Array<ArrayBuffer>> {
+  const text = atob(variant.wasm);
+  const bytes = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
+  if (!variant.compressed) return bytes;
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+async function start(build: Build, workers: number): Promise<Engine> {
+  const variant = await variants[build]();
+  const module: Record<string, unknown> = {
+    wasmBinary: await unpack(variant),
+    print: (text: string) => console.log(text),
+    printErr: (text: string) => console.warn(text),
+  };
+  const close = build === 'threads' ? await prepareThreads(module, variant, workers) : () => {};
+  const made = await variant.default(module);
+  return {
+    exports: made as unknown as EngineExports,
+    memory: made['wasmMemory'] as WebAssembly.Memory,
+    build,
+    workers,
+    close: () => {
+      close();
+      (made['_gyre_end_threads'] as (() => void) | undefined)?.();
+    },
+  };
+}
+
+/** Tells emscripten's loader where its workers' code is. Returns what to do at the end. */
+async function prepareThreads(module: Record<string, unknown>, variant: Variant, workers: number): Promise<() => void> {
+  module['workers'] = workers;
+  if (inNode) {
+    module['workerText'] = variant.worker;
+    module['glueText'] = variant.glue;
+    return () => {};
+  }
+  const glue = new Blob([variant.glue], { type: 'text/javascript' });
+  const worker = URL.createObjectURL(new Blob([variant.worker], { type: 'text/javascript' }));
+  module['mainScriptUrlOrBlob'] = glue;
+  module['locateFile'] = () => worker;
+  return () => URL.revokeObjectURL(worker);
+}
+
+export async function loadEngine(options: LoadOptions): Promise<Engine> {
+  const usable = usableBuilds();
+  const wanted = options.build;
+  if (wanted !== undefined && !(wanted in variants)) {
+    throw new TypeError(`load: build: found ${JSON.stringify(wanted)}, expected 'simd', 'threads' or 'plain'`);
+  }
+  if (wanted !== undefined && !usable.includes(wanted)) {
+    throw new Error(
+      wanted === 'threads'
+        ? "load: the build 'threads' needs a page that is cross-origin isolated (Cross-Origin-Opener-Policy: same-origin and " +
+            'Cross-Origin-Embedder-Policy: require-corp)'
+        : `load: the build '${wanted}' does not run here; usable are ${usable.join(', ')}`,
+    );
+  }
+  const workers = options.workers ?? Math.min(7, (await cores()) - 1);
+  if (!Number.isInteger(workers) || workers < 0 || workers > 63) {
+    throw new TypeError(`load: workers: found ${String(workers)}, expected a whole number from 0 to 63`);
+  }
+  if (wanted !== undefined) return start(wanted, wanted === 'threads' ? workers : 0);
+  for (const build of usable) {
+    if (build === 'threads' && (inNode || workers === 0)) continue;
+    try {
+      return await start(build, build === 'threads' ? workers : 0);
+    } catch (error) {
+      // A page may forbid workers or their memory; the next build needs less.
+      if (build === 'plain') throw error;
+      console.warn(`gyre-physics: the build '${build}' did not start, trying the next (${String(error)})`);
+    }
+  }
+  throw new Error('load: no build of the engine runs here');
+}

@@ -1,0 +1,90 @@
+// Scene files: the engine's own reader and runner.
+import type { BodyId, JointId } from './generated.js';
+import type { Runtime } from './runtime.js';
+import type { Bytes } from './stream.js';
+import { World } from './world.js';
+
+export interface SceneOptions {
+  /** Named in errors. */
+  file?: string;
+  /** The mesh files that the scene names, by the names that it gives them. */
+  files?: Readonly<Record<string, Bytes | string>>;
+  /** Workers of the world; more than one only where the engine runs with threads. */
+  threads?: number;
+}
+
+/** A world made from a scene file. It knows the scene's names, and its step() plays the scene's timed forces. */
+export class Scene extends World {
+  readonly name: string;
+  /** Seconds of a step. */
+  readonly timeStep: number;
+  /** In the order of the scene; ids stay in their places when a body is removed. */
+  readonly sceneBodies: readonly BodyId[];
+  readonly bodyNames: readonly string[];
+  readonly sceneJoints: readonly JointId[];
+  readonly jointNames: readonly string[];
+  /** Of each shape of each body, in the order of the scene: the name of its material, empty if it has none. */
+  readonly materialNames: readonly (readonly string[])[];
+
+  /** @internal Made by Gyre.openScene(). */
+  constructor(runtime: Runtime, pointer: number) {
+    super(runtime, pointer);
+    runtime.begin();
+    const r = runtime.call('gyre_scene_info', pointer);
+    this.name = r.text();
+    this.timeStep = r.number();
+    this.sceneBodies = Array.from(r.array(Float64Array, 1));
+    this.bodyNames = r.texts(this.sceneBodies.length);
+    this.sceneJoints = Array.from(r.array(Float64Array, 1));
+    this.jointNames = r.texts(this.sceneJoints.length);
+    runtime.begin();
+    const m = runtime.call('gyre_scene_materials', pointer);
+    this.materialNames = this.sceneBodies.map(() => m.texts(m.number()));
+  }
+
+  /** @internal */
+  static open(runtime: Runtime, text: string, options: SceneOptions = {}): Scene {
+    const w = runtime.begin();
+    w.text(text, 'openScene: text');
+    w.text(options.file ?? 'scene', 'openScene: file');
+    w.integer(options.threads ?? 1, 0, 64, 'openScene: threads');
+    const files = Object.entries(options.files ?? {});
+    w.integer(files.length, 0, 1e6, 'openScene: files');
+    for (const [name, bytes] of files) {
+      w.text(name, 'openScene: files');
+      if (typeof bytes === 'string') {
+        w.text(bytes, `openScene: files.${name}`);
+      } else {
+        w.bytes(bytes, `openScene: files.${name}`);
+      }
+    }
+    return new Scene(runtime, runtime.call('gyre_scene_open', 0).number());
+  }
+
+  /**
+   * With no argument, one step of the scene: the timed forces of this moment act, then the world moves on by the scene's time step.
+   * Throws when the state is no longer finite, with the body's name. With an argument, one step of the world alone.
+   */
+  override step(seconds?: number): void {
+    if (seconds !== undefined) return super.step(seconds);
+    this.runtime.begin();
+    this.runtime.call('gyre_scene_step', this.pointer);
+  }
+
+  /** The name of a body of this scene; empty for others. */
+  bodyName(body: BodyId): string {
+    return this.bodyNames[this.sceneBodies.indexOf(body)] ?? '';
+  }
+
+  /** Steps of the scene that were done. */
+  get steps(): number {
+    this.runtime.begin();
+    return this.runtime.call('gyre_scene_progress', this.pointer).number();
+  }
+
+  /** The scene as it stands now, as a scene file to go on from. Bodies and joints that were added by hand are not in it. */
+  toJson(): string {
+    this.runtime.begin();
+    return new TextDecoder().decode(this.runtime.call('gyre_scene_write', this.pointer).bytes());
+  }
+}

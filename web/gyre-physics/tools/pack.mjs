@@ -1,0 +1,40 @@
+// Makes one JavaScript file of what emscripten wrote: the loader, and the WebAssembly module in base64, packed with gzip (but for the
+// plain build: where there is no SIMD there may be no DecompressionStream).
+//
+//   node pack.mjs simd|threads|plain FROM TO
+import { mkdirSync, readFileSync, writeFileSync, existsSync } from 'node:fs';
+import { join } from 'node:path';
+import { gzipSync } from 'node:zlib';
+
+const [build, from, to] = process.argv.slice(2);
+if (!to) throw new Error('usage: pack.mjs simd|threads|plain FROM TO');
+
+/** Replaces what must be there; another emscripten may write it in another way, and then somebody has to look. */
+function replace(text, what, by) {
+  if (!text.includes(what)) throw new Error(`pack.mjs: emscripten's loader no longer has ${what}`);
+  return text.replace(what, by);
+}
+
+let glue = readFileSync(join(from, 'gyre_web.mjs'), 'utf8');
+const wasm = readFileSync(join(from, 'gyre_web.wasm'));
+const compressed = build !== 'plain';
+const text = (compressed ? gzipSync(wasm, { level: 9 }) : wasm).toString('base64');
+
+// The views over the memory are made on our side.
+glue = replace(glue, 'updateGlobalBufferAndViews(wasmMemory.buffer)', 'Module["wasmMemory"]=wasmMemory,updateGlobalBufferAndViews(wasmMemory.buffer)');
+
+// Bundlers take `new URL("file", import.meta.url)` for a file to copy; the module is handed over as bytes instead.
+glue = glue.replace(/new URL\((["'][^"']*["']),\s*import\.meta\.url\)(\.toString\(\)|\.href)?/g, '$1');
+
+const workerFile = join(from, 'gyre_web.worker.js');
+const worker = existsSync(workerFile) ? readFileSync(workerFile, 'utf8') : '';
+const parts = [glue, `export const compressed = ${compressed};`, `export const wasm = ${JSON.stringify(text)};`];
+if (build === 'threads') {
+  parts.push(`export const worker = ${JSON.stringify(worker)};`, `export const glue = ${JSON.stringify(glue)};`);
+} else {
+  parts.push(`export const worker = '';`, `export const glue = '';`);
+}
+mkdirSync(to, { recursive: true });
+writeFileSync(join(to, `${build}.js`), parts.join('\n'));
+const size = gzipSync(parts.join('\n'), { level: 9 }).length;
+console.log(`${build}: module ${wasm.length} bytes, ${gzipSync(wasm, { level: 9 }).length} packed; file ${size} packed`);
