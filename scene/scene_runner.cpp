@@ -53,7 +53,6 @@ bool SceneRunner::step() {
   problem_.clear();
   apply_forces();
   const bool done = world_.step(float(scene_.world.time_step));
-  if (done) ++steps_;
   return !find_problem() && done;
 }
 
@@ -63,6 +62,7 @@ void SceneRunner::apply_forces() {
   const double now = time() + slack;
   for (const std::size_t i : forced_) {
     const BodyId id = bodies_[i];
+    if (!world_.exists(id)) continue;
     for (const SceneForce& force : scene_.bodies[i].forces) {
       if (!(now >= force.start && now < force.end)) continue;
       const Pose pose = world_.pose(id);
@@ -134,25 +134,38 @@ SceneJoint SceneRunner::final_joint(std::size_t index) const {
   return joint;
 }
 
+void SceneRunner::put_present_state(SceneBody& body, BodyId id) const {
+  body.def.pose = world_.pose(id);
+  body.def.linear_velocity = world_.linear_velocity(id);
+  body.def.angular_velocity = world_.angular_velocity(id);
+  std::vector<SceneForce> left;
+  for (SceneForce force : body.forces) {
+    force.start = max(force.start - time(), min(force.start, 0.0));
+    force.end -= time();
+    if (force.end > 0.0) left.push_back(force);
+  }
+  body.forces = std::move(left);
+}
+
 Scene SceneRunner::final_scene() const {
   Scene out = scene_;
-  for (std::size_t i = 0; i < out.bodies.size(); ++i) {
-    SceneBody& body = out.bodies[i];
-    const BodyId id = bodies_[i];
-    body.def.pose = world_.pose(id);
-    body.def.linear_velocity = world_.linear_velocity(id);
-    body.def.angular_velocity = world_.angular_velocity(id);
-    std::vector<SceneForce> left;
-    for (SceneForce force : body.forces) {
-      force.start = max(force.start - time(), min(force.start, 0.0));
-      force.end -= time();
-      if (force.end > 0.0) left.push_back(force);
-    }
-    body.forces = std::move(left);
+  out.world.gravity = world_.gravity();
+  out.world.substeps = world_.substeps();
+  out.bodies.clear();
+  std::vector<int> places(bodies_.size(), -1);  // of each body among those that are left
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    if (!world_.exists(bodies_[i])) continue;
+    places[i] = int(out.bodies.size());
+    out.bodies.push_back(scene_.bodies[i]);
+    put_present_state(out.bodies.back(), bodies_[i]);
   }
   out.joints.clear();
   for (std::size_t i = 0; i < joints_.size(); ++i) {
-    if (world_.exists(joints_[i])) out.joints.push_back(final_joint(i));
+    if (!world_.exists(joints_[i])) continue;
+    SceneJoint joint = final_joint(i);
+    if (joint.a >= 0) joint.a = places[std::size_t(joint.a)];
+    if (joint.b >= 0) joint.b = places[std::size_t(joint.b)];
+    out.joints.push_back(std::move(joint));
   }
   for (SceneMesh& mesh : out.meshes) mesh.file.clear();
   return out;

@@ -26,8 +26,9 @@ class SceneRunner {
   World& world() { return world_; }
   const World& world() const { return world_; }
   const Scene& scene() const { return scene_; }
-  std::uint64_t steps() const { return steps_; }
-  double time() const { return double(steps_) * scene_.world.time_step; }  // s
+  // The world's own count, so that both follow when a snapshot is restored.
+  std::uint64_t steps() const { return world_.step_count(); }
+  double time() const { return double(steps()) * scene_.world.time_step; }  // s
 
   // In the order of the scene.
   std::span<const BodyId> bodies() const { return bodies_; }
@@ -35,7 +36,8 @@ class SceneRunner {
   // Null for the world or a body that is not of this scene.
   const SceneBody* body_of(BodyId id) const;
 
-  // The scene as it stands now, to be simulated on: poses, velocities, what is left of the forces and of the joints.
+  // The scene as it stands now, to be simulated on: poses, velocities, what is left of the forces and of the joints, gravity and
+  // sub-steps. Bodies and joints that were removed are left out.
   // Meshes stand in it, so that it can lie in another folder.
   Scene final_scene() const;
 
@@ -45,6 +47,7 @@ class SceneRunner {
   bool find_problem();
   double present_length(const SceneJoint& joint) const;
   SceneJoint final_joint(std::size_t index) const;
+  void put_present_state(SceneBody& body, BodyId id) const;
 
   Scene scene_;
   World world_;
@@ -52,7 +55,6 @@ class SceneRunner {
   std::vector<JointId> joints_;
   std::vector<std::size_t> forced_;  // bodies with forces
   std::vector<double> lengths_;      // of distance joints at the start
-  std::uint64_t steps_ = 0;
   std::string problem_;
 };
 

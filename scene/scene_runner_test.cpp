@@ -4,10 +4,13 @@
 #include "scene/scene_reader.h"
 #include "scene/scene_writer.h"
 
+#include <gyre/replay.h>
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace gyre {
 namespace {
@@ -211,6 +214,40 @@ TEST(SceneRunner, AFinalSceneIsAScene) {
   EXPECT_NEAR(again->joints[0].def.limits->high, 1.0f - angle, 0.02f);
   EXPECT_EQ(again->joints[0].def.anchor, (DVec3{0, 2, 0}));
   run(saved, 10);
+}
+
+TEST(SceneRunner, RestoringASnapshotRestoresTheTimeOfForces) {
+  const std::string text = pushed(R"({"force": [4, 0, 0], "start": 0.05, "end": 0.15})");
+  SceneRunner runner = run(text, 8);
+  const std::vector<std::byte> snapshot = save_snapshot(runner.world());
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(runner.step());
+  const std::uint64_t hash = runner.world().hash();
+  EXPECT_EQ(runner.steps(), 28u);
+  ASSERT_EQ(restore_snapshot(runner.world(), snapshot).code, ErrorCode::none);
+  EXPECT_EQ(runner.steps(), 8u);
+  EXPECT_NEAR(runner.time(), 0.08, 1e-12);
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(runner.step());
+  EXPECT_EQ(runner.world().hash(), hash);
+}
+
+TEST(SceneRunner, BodiesThatWereRemovedAreLeftOut) {
+  const std::string ball = R"("shapes": [{"type": "sphere", "radius": 0.1}])";
+  SceneRunner runner = run(R"({"gyre_scene": 1, "bodies": [
+      {"name": "gone", "forces": [{"force": [1, 0, 0]}], )" +
+                           ball + R"(}, {"name": "left", "position": [0, 1, 0], )" + ball +
+                           R"(}, {"name": "bob", "position": [0, 3, 0], )" + ball + R"(}],
+      "joints": [{"type": "distance", "a": "gone", "b": "left"}, {"type": "distance", "a": "left", "b": "bob"}]})");
+  ASSERT_TRUE(runner.world().remove_body(runner.bodies()[0]));
+  ASSERT_TRUE(runner.world().set_gravity({0, -1.5f, 0}));
+  ASSERT_TRUE(runner.step()) << runner.problem();  // its force is no problem
+  const Scene scene = runner.final_scene();
+  ASSERT_EQ(scene.bodies.size(), 2u);
+  EXPECT_EQ(scene.bodies[0].name, "left");
+  ASSERT_EQ(scene.joints.size(), 1u);
+  EXPECT_EQ(scene.joints[0].a, 0);
+  EXPECT_EQ(scene.joints[0].b, 1);
+  EXPECT_EQ(scene.world.gravity, (Vec3{0, -1.5f, 0}));
+  run(write_scene(scene), 5);
 }
 
 }  // namespace
