@@ -22,8 +22,8 @@ bool stderr_is_terminal() {
 
 }  // namespace
 
-Progress::Progress(bool wanted, std::uint64_t steps)
-    : active_(wanted && steps > 0 && stderr_is_terminal()), steps_(steps) {
+Progress::Progress(bool wanted, std::uint64_t steps, const char* unit)
+    : active_(wanted && steps > 0 && stderr_is_terminal()), steps_(steps), unit_(unit) {
   // A run that is over at once needs no bar.
   next_ = start_ + std::chrono::milliseconds(300);
 }
@@ -39,8 +39,8 @@ void Progress::show(std::uint64_t done) {
   char bar[kWidth + 1];
   for (int i = 0; i < kWidth; ++i) bar[i] = double(i) < share * kWidth ? '#' : '.';
   bar[kWidth] = 0;
-  std::fprintf(stderr, "\r[%s] %3d %%  %llu of %llu steps, %.0f s left   ", bar, int(100.0 * share),
-               static_cast<unsigned long long>(done), static_cast<unsigned long long>(steps_),
+  std::fprintf(stderr, "\r[%s] %3d %%  %llu of %llu %s, %.0f s left   ", bar, int(100.0 * share),
+               static_cast<unsigned long long>(done), static_cast<unsigned long long>(steps_), unit_,
                done > 0 ? passed * (1.0 - share) / share : 0.0);
   std::fflush(stderr);
   drawn_ = true;

@@ -8,7 +8,7 @@ namespace gyre {
 
 class Progress {
  public:
-  Progress(bool wanted, std::uint64_t steps);
+  Progress(bool wanted, std::uint64_t steps, const char* unit = "steps");
   ~Progress() { clear(); }
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -21,6 +21,7 @@ class Progress {
   bool active_;
   bool drawn_ = false;
   std::uint64_t steps_;
+  const char* unit_;
   Clock::time_point start_ = Clock::now();
   Clock::time_point next_ = start_;
 };

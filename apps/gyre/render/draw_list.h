@@ -1,0 +1,76 @@
+// What there is to draw at one moment: all shapes and joints of a world as coloured triangles, placed relative to an origin near
+// the subject.
+#pragma once
+
+#include "render/camera.h"
+#include "render/player.h"
+#include "render/shape_mesh.h"
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace gyre {
+
+// How a vertex is painted.
+enum class Paint : std::uint8_t {
+  matter,  // shaded, casts shadows
+  ground,  // a plane of the world: with a grid, fading into the background
+  floor,   // put under a scene that has no plane: without a grid
+};
+
+struct DrawVertex {
+  Vec3 position;
+  Vec3 normal;
+  std::uint8_t color[3];  // sRGB
+  Paint paint;
+};
+
+struct DrawList {
+  std::vector<DrawVertex> vertices;
+  // Three a triangle. `glass` is what can be seen through; it casts no shadow, and neither does the ground.
+  std::vector<std::uint32_t> solid, glass, ground;
+};
+
+// What the picture is of, which decides how fine shapes are and how far the ground reaches.
+struct Subject {
+  DVec3 origin;                 // everything is placed relative to it
+  float radius = 1.0f;          // m
+  std::optional<double> floor;  // height of a floor where the world has no plane
+  float rod_radius = 0.01f;     // m, of ropes and rods
+};
+
+// One shape of a body, by its place among the body's shapes.
+using ShapeKey = std::pair<std::uint64_t, std::size_t>;
+inline ShapeKey shape_key(BodyId body, std::size_t shape) {
+  return {std::uint64_t(body.index) << 32 | body.generation, shape};
+}
+
+class DrawListMaker {
+ public:
+  explicit DrawListMaker(const Player& player) : player_(player), joints_(player.joints()) {}
+
+  // Shapes to be drawn as glass beside sensors.
+  void set_glass(std::set<ShapeKey> glass) { glass_ = std::move(glass); }
+  DrawList make(const Camera& camera, const Subject& subject);
+
+ private:
+  struct Look {
+    SceneColor color;
+    bool glass;
+  };
+  Look look_of(BodyId body, std::size_t ordinal, std::size_t shape) const;
+  const ShapeMesh& mesh_of(const AnyShape& shape, int segments);
+  void add_joints(const Subject& subject, DrawList& list) const;
+
+  const Player& player_;
+  std::vector<SeenJoint> joints_;
+  std::set<ShapeKey> glass_;
+  std::map<std::string, ShapeMesh> meshes_;
+};
+
+}  // namespace gyre

@@ -1,0 +1,219 @@
+// gyre render: plays a scene or a recording twice, once to see where things will be and once to draw them. Nothing is written
+// before all inputs are read and the machine has shown that it can draw. See render.h.
+#include "render/render.h"
+
+#include "exit_code.h"
+#include "interrupt.h"
+#include "progress.h"
+#include "render/draw_list.h"
+#include "render/frame_output.h"
+#include "render/player.h"
+#include "render/renderer.h"
+#include "render/survey.h"
+#include "render/turning.h"
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <memory>
+
+namespace gyre {
+namespace {
+
+constexpr double kUsualSeconds = 5, kUsualFrameRate = 20;
+constexpr std::uint64_t kMostMovieBytes = std::uint64_t(2)
+                                          << 30;  // of memory, as a GIF needs all its frames at once
+
+void say(const std::string& message) { std::fprintf(stderr, "gyre: %s\n", message.c_str()); }
+
+float radians(double degrees) { return float(degrees) * (kHalfTurn / 180.0f); }
+
+double frame_rate(const RenderOptions& options) { return options.frame_rate.value_or(kUsualFrameRate); }
+
+// Which moments are drawn. A recording without an end in the options is played to its own.
+FramePlan plan_frames(const RenderOptions& options, bool is_recording) {
+  FramePlan plan;
+  if (options.out.kind == OutputKind::picture) {
+    plan.start = options.at.value_or(0);
+    return plan;
+  }
+  plan.start = options.from.value_or(0);
+  plan.interval = options.speed / frame_rate(options);
+  if (options.frames) {
+    plan.count = *options.frames;
+  } else if (is_recording && !options.seconds && !options.to) {
+    plan.count = std::numeric_limits<std::uint64_t>::max();
+  } else {
+    const double seconds =
+        options.to ? *options.to - plan.start : options.seconds.value_or(kUsualSeconds) * options.speed;
+    plan.count = std::uint64_t(max(std::floor(seconds / plan.interval + 1e-6), 1.0));
+  }
+  return plan;
+}
+
+CameraWish wish_of(const RenderOptions& options) {
+  CameraWish wish;
+  const auto place = [](const std::vector<double>& v) { return DVec3{v[0], v[1], v[2]}; };
+  if (!options.eye.empty()) wish.eye = place(options.eye);
+  if (!options.target.empty()) wish.target = place(options.target);
+  if (options.field_of_view) wish.field_of_view = radians(*options.field_of_view);
+  if (!options.direction.empty()) {
+    wish.azimuth = radians(options.direction[0]);
+    wish.elevation = radians(options.direction[1]);
+    wish.given_direction = true;
+  }
+  wish.zoom = float(options.zoom);
+  return wish;
+}
+
+// One movie in the making.
+class Rendering {
+ public:
+  explicit Rendering(const RenderOptions& options)
+      : options_(options), output_(options.out, 1.0 / frame_rate(options)) {
+    const bool movie = options.out.kind == OutputKind::movie;
+    width_ = options.width.value_or(movie ? 480 : 960);
+    height_ = options.height.value_or(movie ? 300 : 600);
+  }
+
+  int run();
+
+ private:
+  bool find_follow();
+  bool prepare();
+  int draw_frames();
+  int stop(const std::string& message) {
+    say(message);
+    return kExitInvalid;
+  }
+
+  const RenderOptions& options_;
+  FrameOutput output_;
+  int width_, height_;
+  std::unique_ptr<Player> player_;
+  std::unique_ptr<Renderer> renderer_;
+  FramePlan plan_;
+  Camera camera_;
+  Subject subject_;
+  std::set<ShapeKey> glass_;
+  std::optional<std::size_t> followed_;  // in the scene
+  std::string problem_;                  // why the simulation ends before the plan does
+};
+
+bool Rendering::find_follow() {
+  if (options_.follow.empty()) return true;
+  if (!player_->scene()) {
+    say("--follow needs the names of a scene: give the recording's with --scene");
+    return false;
+  }
+  for (std::size_t i = 0; i < player_->scene()->bodies.size(); ++i) {
+    if (player_->scene()->bodies[i].name == options_.follow) followed_ = i;
+  }
+  if (!followed_) say("--follow: there is no body \"" + options_.follow + "\"");
+  return followed_.has_value();
+}
+
+// The first look at everything.
+bool Rendering::prepare() {
+  const Survey survey(*player_, plan_);
+  problem_ = player_->problem();
+  const std::uint64_t frame_bytes = std::uint64_t(width_) * std::uint64_t(height_) * 3;
+  if (options_.out.kind == OutputKind::movie && plan_.count > kMostMovieBytes / frame_bytes) {
+    say("a movie of " + std::to_string(plan_.count) +
+        " frames of this size needs more memory than is allowed; write " +
+        "numbered pictures (--out frames/%04d.png), or fewer or smaller frames");
+    return false;
+  }
+  camera_ = survey.camera(wish_of(options_), width_, height_);
+  if (!(length(camera_.eye - camera_.target) > 1e-6) || !is_finite(camera_.eye) ||
+      !is_finite(camera_.target)) {
+    say("the camera must stand somewhere else than where it looks at");
+    return false;
+  }
+  subject_ = survey.subject(camera_);
+  glass_ = survey.hiding(camera_);
+  return true;
+}
+
+int Rendering::draw_frames() {
+  DrawListMaker maker(*player_);
+  maker.set_glass(glass_);
+  Progress progress(!options_.quiet, plan_.count, "frames");
+  Camera camera = camera_;
+  Subject subject = subject_;
+  std::optional<DVec3> follow_start;
+  for (std::uint64_t frame = 0; frame < plan_.count; ++frame) {
+    player_->advance_to(plan_.start + double(frame) * plan_.interval);
+    if (followed_) {
+      const DVec3 place = player_->world().center_of_mass(player_->bodies()[*followed_]);
+      if (!follow_start) follow_start = place;
+      camera.eye = camera_.eye + (place - *follow_start);
+      camera.target = camera_.target + (place - *follow_start);
+      subject.origin = camera.target;
+    }
+    if (!output_.add(renderer_->draw(maker.make(camera, subject), camera, subject))) {
+      progress.clear();
+      return stop(output_.message());
+    }
+    progress.show(frame + 1);
+    if (interrupted()) {
+      progress.clear();
+      if (!output_.finish()) return stop(output_.message());
+      say("interrupted after frame " + std::to_string(frame + 1) + "; what was drawn up to there is kept");
+      return kExitInterrupted;
+    }
+  }
+  progress.clear();
+  if (!output_.finish()) return stop(output_.message());
+  if (problem_.empty()) return kExitGood;
+  say("the simulation is no longer finite after " + std::to_string(output_.frames()) +
+      " frames: " + problem_ + "; what was drawn up to there is kept");
+  return kExitNotFinite;
+}
+
+int Rendering::run() {
+  std::string error;
+  player_ = open_player(options_.source, options_.look, options_.threads, error);
+  if (!player_) return stop(error);
+  if (!player_->note().empty()) say(options_.source + ": " + player_->note());
+  if (!options_.look.empty() && !player_->is_recording()) {
+    say("--scene is for recordings; " + options_.source + " is a scene itself");
+    return kExitUsage;
+  }
+  if (!find_follow()) return kExitUsage;
+  plan_ = plan_frames(options_, player_->is_recording());
+  const bool usual_movie = options_.out.kind == OutputKind::movie;
+  renderer_ = Renderer::create(width_, height_, options_.samples.value_or(usual_movie ? 16 : 48), error);
+  if (!renderer_) return stop(error);
+  const std::string noted = player_->note();
+  if (!prepare()) return kExitUsage;
+  if (player_->note() != noted) say(options_.source + ": " + player_->note());
+  if (!player_->rewind(error)) return stop(options_.source + ": " + error);
+  if (!output_.open()) return stop(output_.message());
+  const int ended = draw_frames();
+  if (ended != kExitInvalid && !options_.quiet) {
+    std::printf("%s: %llu %s of %d x %d, %.1f kB\n", options_.out.at(0).c_str(),
+                static_cast<unsigned long long>(output_.frames()), output_.frames() == 1 ? "frame" : "frames",
+                width_, height_, double(output_.bytes()) / 1000.0);
+  }
+  return ended;
+}
+
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code error;
+  return std::filesystem::equivalent(a, b, error);
+}
+
+}  // namespace
+
+int render(const RenderOptions& options) {
+  if (same_file(options.source, options.out.at(0))) {
+    say("--out would overwrite " + options.source);
+    return kExitUsage;
+  }
+  watch_interrupt();
+  return Rendering(options).run();
+}
+
+}  // namespace gyre
