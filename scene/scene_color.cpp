@@ -29,6 +29,7 @@ SceneColor resolved_color(const Scene& scene, std::size_t body, std::size_t shap
   if (part.material >= 0 && scene.materials[std::size_t(part.material)].color) {
     return *scene.materials[std::size_t(part.material)].color;
   }
+  if (std::holds_alternative<Plane>(part.geometry)) return kGroundColor;
   return automatic_color(owner.def.type, body);
 }
 

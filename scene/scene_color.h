@@ -14,6 +14,8 @@ std::string color_text(SceneColor color);
 
 // Colour number `index` of a cycle in which neighbours are easy to tell apart; light grey for what never moves.
 SceneColor automatic_color(BodyType type, std::size_t index);
+// Of planes.
+constexpr SceneColor kGroundColor{214, 216, 220};
 
 // The first of these that is given: the shape's, the body's, its material's; else the automatic one.
 SceneColor resolved_color(const Scene& scene, std::size_t body, std::size_t shape);

@@ -33,7 +33,7 @@ TEST(SceneColor, TheNearestOneGivenWins) {
   EXPECT_EQ(resolved_color(*scene, 2, 0), (SceneColor{0xa0, 0x60, 0x30}));
   EXPECT_EQ(resolved_color(*scene, 2, 1), automatic_color(BodyType::dynamic, 2));
   EXPECT_EQ(resolved_color(*scene, 2, 2), automatic_color(BodyType::dynamic, 2));
-  EXPECT_EQ(resolved_color(*scene, 0, 0), automatic_color(BodyType::fixed, 0));
+  EXPECT_EQ(resolved_color(*scene, 0, 0), kGroundColor);
   EXPECT_NE(automatic_color(BodyType::dynamic, 0), automatic_color(BodyType::dynamic, 1));
   EXPECT_EQ(automatic_color(BodyType::fixed, 0), automatic_color(BodyType::fixed, 1));
 }

@@ -84,7 +84,7 @@ def folder_of(path):
 
 def resolve(path, kind, name):
     """The file of ours that an include names, or None for a header of somebody else."""
-    places = [ROOT / "include", ROOT / "src", ROOT, ROOT / "apps"]
+    places = [ROOT / "include", ROOT / "src", ROOT, ROOT / "apps", ROOT / "apps" / "gyre"]
     if path.name.endswith("_test.cpp"):
         places.append(ROOT / "tests")  # scenes and helpers that whole-engine tests share
     if kind == '"':

@@ -5,6 +5,7 @@
     tools/make_scenes.py --check    fails if a file differs from what would be written
 """
 
+import colorsys
 import json
 import math
 import random
@@ -16,13 +17,27 @@ SCENES = Path(__file__).resolve().parent.parent / "scenes"
 # ------------------------------------------------------------------------------------------------------------ helpers
 
 MATERIALS = {
-    "wood": {"density": 650, "static_friction": 0.5, "dynamic_friction": 0.4, "restitution": 0.2},
-    "steel": {"density": 7850, "static_friction": 0.6, "dynamic_friction": 0.45, "restitution": 0.5},
-    "ice": {"density": 917, "static_friction": 0.05, "dynamic_friction": 0.03, "restitution": 0.05},
-    "rubber": {"density": 1100, "static_friction": 1.0, "dynamic_friction": 0.9, "restitution": 0.7},
-    "stone": {"density": 2600, "static_friction": 0.7, "dynamic_friction": 0.6, "restitution": 0.1},
-    "lead": {"density": 11340, "static_friction": 0.5, "dynamic_friction": 0.4, "restitution": 0.05},
+    "wood": {"density": 650, "static_friction": 0.5, "dynamic_friction": 0.4, "restitution": 0.2, "color": "#cf9a62"},
+    "steel": {"density": 7850, "static_friction": 0.6, "dynamic_friction": 0.45, "restitution": 0.5, "color": "#8d99a8"},
+    "ice": {"density": 917, "static_friction": 0.05, "dynamic_friction": 0.03, "restitution": 0.05, "color": "#bfe3f2"},
+    "rubber": {"density": 1100, "static_friction": 1.0, "dynamic_friction": 0.9, "restitution": 0.7, "color": "#454c57"},
+    "stone": {"density": 2600, "static_friction": 0.7, "dynamic_friction": 0.6, "restitution": 0.1, "color": "#bfbbb3"},
+    "lead": {"density": 11340, "static_friction": 0.5, "dynamic_friction": 0.4, "restitution": 0.05, "color": "#666b78"},
 }
+
+LAND, SAND, CONCRETE, DARK, GROUND = "#9db98b", "#cbb994", "#b4b8c0", "#4d5560", "#d6d8dc"
+BRICKS = ("#b9674c", "#c67d5c", "#a95a45", "#cc8a66")
+WOODS = ("#cf9a62", "#b98250", "#dcae7a")
+
+
+def rainbow(share, lightness=0.56, saturation=0.62):
+    """A color from red over yellow and green to violet."""
+    parts = colorsys.hls_to_rgb(0.02 + 0.74 * share, lightness, saturation)
+    return "#" + "".join(f"{round(255 * part):02x}" for part in parts)
+
+
+def view(eye, target, field_of_view=0.6):
+    return {"eye": list(eye), "target": list(target), "field_of_view": field_of_view}
 
 
 def tidy(value):
@@ -85,10 +100,12 @@ def ground(**more):
     return fixed("ground", (0, 0, 0), {"type": "plane", **more})
 
 
-def scene(name, bodies, joints=(), world=None, materials=(), **more):
+def scene(name, bodies, joints=(), world=None, materials=(), seen=None, **more):
     out = {"gyre_scene": 1, "name": name}
     if world:
         out["world"] = world
+    if seen:
+        out["view"] = seen
     if materials:
         out["materials"] = {m: MATERIALS[m] for m in materials} if not isinstance(materials, dict) else materials
     out.update(more)
@@ -129,10 +146,10 @@ def pit(half, height, thickness=0.25):
     """Four walls around the origin."""
     reach = half + thickness
     return [
-        fixed("wall east", (reach, height, 0), box(thickness, height, half + 2 * thickness)),
-        fixed("wall west", (-reach, height, 0), box(thickness, height, half + 2 * thickness)),
-        fixed("wall south", (0, height, reach), box(half, height, thickness)),
-        fixed("wall north", (0, height, -reach), box(half, height, thickness)),
+        fixed("wall east", (reach, height, 0), box(thickness, height, half + 2 * thickness), color=CONCRETE),
+        fixed("wall west", (-reach, height, 0), box(thickness, height, half + 2 * thickness), color=CONCRETE),
+        fixed("wall south", (0, height, reach), box(half, height, thickness), color=CONCRETE),
+        fixed("wall north", (0, height, -reach), box(half, height, thickness), color=CONCRETE),
     ]
 
 
@@ -160,8 +177,8 @@ def terrain_obj(cells, spacing, height):
 
 
 def stack():
-    boxes = [body(f"box {i + 1}", (0, 0.5 + i, 0), box(0.5, 0.5, 0.5, material="wood")) for i in range(10)]
-    return scene("ten boxes on each other", [ground(material="stone")] + boxes, materials=["wood", "stone"])
+    boxes = [body(f"box {i + 1}", (0, 0.5 + i, 0), box(0.5, 0.5, 0.5, material="wood"), color=WOODS[i % 3]) for i in range(10)]
+    return scene("ten boxes on each other", [ground(material="stone", color=GROUND)] + boxes, materials=["wood", "stone"])
 
 
 def card_house():
@@ -179,22 +196,23 @@ def card_house():
             for side in (-1, 1):
                 number += 1
                 bodies.append(body(f"card {number}", (middle + side * 0.5 * foot, floor + 0.5 * tall, 0),
-                                   box(thickness / 2, length / 2, width / 2, material="card"),
+                                   box(thickness / 2, length / 2, width / 2, material="card"), color=("#d9604a", "#f0e6d4")[side > 0],
                                    orientation=about((0, 0, 1), side * lean)))
         floor += tall
         for deck in range(tents - 1):
             number += 1
             middle = (deck - (tents - 2) / 2) * pitch
             bodies.append(body(f"card {number}", (middle, floor + thickness / 2, 0),
-                               box(pitch / 2 - 0.001, thickness / 2, width / 2, material="card")))
+                               box(pitch / 2 - 0.001, thickness / 2, width / 2, material="card"), color="#5b86a8"))
         floor += thickness
     materials = {"card": {"density": 800, "static_friction": 0.9, "dynamic_friction": 0.8},
-                 "table": {"density": 700, "static_friction": 1.0, "dynamic_friction": 0.9}}
-    return scene("house of cards, three storeys", bodies, materials=materials, world={"substeps": 8})
+                 "table": {"density": 700, "static_friction": 1.0, "dynamic_friction": 0.9, "color": "#b9a98f"}}
+    return scene("house of cards, three storeys", bodies, materials=materials, world={"substeps": 8},
+                 seen=view((1.7, 2.1, 4.7), (0, 1.2, 0)))
 
 
 def dominoes():
-    bodies = [ground(material="wood")]
+    bodies = [ground(material="wood", color=GROUND)]
     angle, count = 0.0, 100
     for i in range(count):
         radius = 1.0 + 0.25 * angle
@@ -208,18 +226,19 @@ def dominoes():
             speed = 2.5  # falls forward: about up x forward
             more["angular_velocity"] = [speed * dz / size, 0, -speed * dx / size]
             more["linear_velocity"] = [0.15 * speed * dx / size, 0, 0.15 * speed * dz / size]
-        bodies.append(body(f"domino {i + 1}", (x, 0.15, z), box(0.02, 0.15, 0.075, material="wood"), **more))
+        bodies.append(body(f"domino {i + 1}", (x, 0.15, z), box(0.02, 0.15, 0.075, material="wood"), color=rainbow(i / count), **more))
         angle += 0.15 / math.hypot(radius, 0.25)
-    return scene("a spiral of a hundred dominoes", bodies, materials=["wood"])
+    return scene("a spiral of a hundred dominoes", bodies, materials=["wood"], seen=view((1.6, 5.2, 6.6), (-0.35, 0, 0.15)))
 
 
 def t_handle():
     handle = body("t handle", (0, 1, 0),
-                  round_shape("cylinder", 0.025, 0.3, orientation=about((0, 0, 1), math.pi / 2)),
-                  round_shape("cylinder", 0.025, 0.15, position=[0, -0.175, 0]),
+                  round_shape("cylinder", 0.025, 0.3, orientation=about((0, 0, 1), math.pi / 2), color="#8d99a8"),
+                  round_shape("cylinder", 0.025, 0.15, position=[0, -0.175, 0], color="#d9773f"),
                   angular_velocity=[0.02, 12, 0], can_sleep=False)
     return scene("Dzhanibekov's wing nut: the middle axis is unstable", [handle],
-                 world={"gravity": [0, 0, 0], "time_step": 0.004}, materials=["steel"])
+                 world={"gravity": [0, 0, 0], "time_step": 0.004}, materials=["steel"],
+                 seen=view((0.7, 1.35, 1.15), (0, 0.97, 0)))
 
 
 def gyroscope():
@@ -227,22 +246,22 @@ def gyroscope():
     up = [-math.sin(tilt), math.cos(tilt), 0]
     spin = 120
     top = body("top", (0, 1, 0),
-               round_shape("cylinder", 0.1, 0.015, position=[0, 0.12, 0], material="steel"),
+               round_shape("cylinder", 0.1, 0.015, position=[0, 0.12, 0], material="steel", color="#cfa349"),
                round_shape("cylinder", 0.008, 0.08, position=[0, 0.08, 0], material="steel"),
                orientation=about((0, 0, 1), tilt), angular_velocity=[spin * u for u in up], can_sleep=False)
-    stand = fixed("stand", (0, 0.49, 0), round_shape("cone", 0.2, 0.49))
+    stand = fixed("stand", (0, 0.49, 0), round_shape("cone", 0.2, 0.49), color=DARK)
     pivot = {"type": "ball", "name": "pivot", "a": "stand", "b": "top", "anchor": [0, 1, 0]}
     return scene("a heavy top on its pivot", [stand, top], [pivot], world={"time_step": 0.005, "substeps": 8},
-                 materials=["steel"])
+                 materials=["steel"], seen=view((0.32, 1.28, 0.72), (0, 1.03, 0)))
 
 
 def billiards():
     r = 0.028575
     materials = {
-        "ball": {"density": 1740, "static_friction": 0.06, "dynamic_friction": 0.05, "restitution": 0.95},
+        "ball": {"density": 1740, "static_friction": 0.06, "dynamic_friction": 0.05, "restitution": 0.95, "color": "#f4f0e6"},
         "felt": {"density": 400, "static_friction": 0.25, "dynamic_friction": 0.2, "restitution": 0.5,
-                 "rolling_friction": 0.0003, "spinning_friction": 0.0003},
-        "cushion": {"density": 400, "static_friction": 0.2, "dynamic_friction": 0.15, "restitution": 0.8},
+                 "rolling_friction": 0.0003, "spinning_friction": 0.0003, "color": "#3a8f6c"},
+        "cushion": {"density": 400, "static_friction": 0.2, "dynamic_friction": 0.15, "restitution": 0.8, "color": "#7a4f33"},
     }
     pairs = [{"materials": ["ball", "felt"], "static_friction": 0.25, "dynamic_friction": 0.2, "restitution": 0.5},
              {"materials": ["ball", "cushion"], "static_friction": 0.15, "dynamic_friction": 0.14, "restitution": 0.8}]
@@ -260,22 +279,25 @@ def billiards():
             number += 1
             x = 0.635 + row * (r * math.sqrt(3) + 0.0003)
             z = (place - row / 2) * (2 * r + 0.0003)
-            bodies.append(body(f"ball {number}", (x, r, z), ball(r, material="ball"), continuous=True))
-    return scene("the break", bodies, materials=materials, material_pairs=pairs, world={"time_step": 1 / 240})
+            bodies.append(body(f"ball {number}", (x, r, z), ball(r, material="ball"), continuous=True,
+                               color="#26292e" if number == 8 else rainbow(number * 7 % 15 / 15)))
+    return scene("the break", bodies, materials=materials, material_pairs=pairs, world={"time_step": 1 / 240},
+                 seen=view((-1.15, 2.4, 2.55), (0.02, -0.1, 0.0)))
 
 
 def incline_materials():
     angle = math.radians(22)
-    out = [fixed("ramp", (0, 2, 0), box(4, 0.1, 3, static_friction=1, dynamic_friction=1), orientation=about((0, 0, 1), angle)),
+    out = [fixed("ramp", (0, 2, 0), box(4, 0.1, 3, static_friction=1, dynamic_friction=1), color="#8fa3b8", orientation=about((0, 0, 1), angle)),
            ground(static_friction=0.6)]
     # The geometric mean with the ramp's 1 makes these squares the friction that counts.
+    colors = (MATERIALS["ice"]["color"], "#efe9dc", MATERIALS["steel"]["color"], MATERIALS["wood"]["color"], MATERIALS["rubber"]["color"])
     for i, (name, friction) in enumerate((("ice", 0.05), ("teflon", 0.2), ("steel", 0.35), ("wood", 0.45), ("rubber", 0.9))):
         x, y = 2.6, 0.1 + 0.25
         position = (x * math.cos(angle) - y * math.sin(angle), 2 + x * math.sin(angle) + y * math.cos(angle), (i - 2) * 1.1)
         out.append(body(f"{name} block", position,
-                        box(0.35, 0.25, 0.35, static_friction=friction ** 2, dynamic_friction=friction ** 2),
+                        box(0.35, 0.25, 0.35, static_friction=friction ** 2, dynamic_friction=friction ** 2), color=colors[i],
                         orientation=about((0, 0, 1), angle)))
-    return scene("five materials on one ramp: tan 22 degrees is 0.40", out)
+    return scene("five materials on one ramp: tan 22 degrees is 0.40", out, seen=view((-5.5, 7.5, 11.5), (-0.9, 1.2, 0)))
 
 
 def half_wood_half_lead():
@@ -284,10 +306,11 @@ def half_wood_half_lead():
         return body(name, (0.2, 1.2, z), box(0.25, 0.2, 0.2, position=[-0.25, 0, 0], material=left),
                     box(0.25, 0.2, 0.2, position=[0.25, 0, 0], material=right))
 
-    bodies = [ground(), fixed("table", (-1, 0.5, 0), box(1, 0.5, 2)),
+    bodies = [ground(), fixed("table", (-1, 0.5, 0), box(1, 0.5, 2), color="#7f9cb3"),
               brick("lead on the table", -1, "lead", "wood"), brick("all wood", 0, "wood", "wood"),
               brick("lead in the air", 1, "wood", "lead")]
-    return scene("half wood, half lead: one stays, two tip", bodies, materials=["wood", "lead"])
+    return scene("half wood, half lead: one stays, two tip", bodies, materials=["wood", "lead"],
+                 seen=view((3.9, 3.2, 5.0), (-0.15, 0.6, 0)))
 
 
 def pile():
@@ -299,7 +322,7 @@ def pile():
         turn = [rng.uniform(-1, 1) for _ in range(3)]
         bodies.append(body(f"piece {i + 1}", (x + rng.uniform(-0.1, 0.1), 0.6 + 0.75 * layer, z + rng.uniform(-0.1, 0.1)),
                            mixed_shape(rng, i, 0.3), orientation=about(turn, rng.uniform(0, 3))))
-    return scene("240 mixed pieces in a pit", bodies)
+    return scene("240 mixed pieces in a pit", bodies, seen=view((7.2, 9.4, 10.4), (0, 2.3, 0)))
 
 
 def pin(name, x, z):
@@ -313,17 +336,17 @@ def pin(name, x, z):
         return hull(points, material="maple")
 
     belly = turned([(0, 0.026), (0.02, 0.032), (0.09, 0.058), (0.14, 0.058), (0.2, 0.04)])
-    neck = turned([(0.2, 0.04), (0.25, 0.024), (0.29, 0.024)])
+    neck = dict(turned([(0.2, 0.04), (0.25, 0.024), (0.29, 0.024)]), color="#cf4f42")
     return body(name, (x, 0, z), belly, neck, ball(0.032, position=[0, 0.345, 0], material="maple"), mass=1.5)
 
 
 def bowling():
-    materials = {"maple": {"density": 700, "static_friction": 0.35, "dynamic_friction": 0.3, "restitution": 0.6},
-                 "lane": {"density": 700, "static_friction": 0.15, "dynamic_friction": 0.1, "restitution": 0.2},
-                 "ball": {"density": 1360, "static_friction": 0.2, "dynamic_friction": 0.15, "restitution": 0.4}}
+    materials = {"maple": {"density": 700, "static_friction": 0.35, "dynamic_friction": 0.3, "restitution": 0.6, "color": "#f4f0e6"},
+                 "lane": {"density": 700, "static_friction": 0.15, "dynamic_friction": 0.1, "restitution": 0.2, "color": "#d8ad74"},
+                 "ball": {"density": 1360, "static_friction": 0.2, "dynamic_friction": 0.15, "restitution": 0.4, "color": "#35549c"}}
     bodies = [fixed("floor", (0, -0.25, 0), {"type": "plane"}),
               fixed("lane", (-5, -0.1, 0), box(7, 0.1, 0.9, material="lane")),
-              fixed("backstop", (2.2, 0.4, 0), box(0.1, 0.5, 0.9, restitution=0)),
+              fixed("backstop", (2.2, 0.4, 0), box(0.1, 0.5, 0.9, restitution=0), color=DARK),
               body("ball", (-8, 0.1085, -0.35), ball(0.1085, material="ball"), linear_velocity=[8.5, 0, 0.25],
                    angular_velocity=[14, 0, -20], continuous=True)]
     number = 0
@@ -331,12 +354,13 @@ def bowling():
         for place in range(row + 1):
             number += 1
             bodies.append(pin(f"pin {number}", row * 0.264, (place - row / 2) * 0.305))
-    return scene("a strike, perhaps", bodies, materials=materials, world={"substeps": 6})
+    return scene("a strike, perhaps", bodies, materials=materials, world={"substeps": 6},
+                 seen=view((-2.6, 1.5, 1.9), (0.55, 0.05, 0)))
 
 
 def newtons_cradle():
     r, rope, spread, swing = 0.1, 1.0, 0.3, math.radians(40)
-    materials = {"ball": {"density": 7850, "static_friction": 0, "dynamic_friction": 0, "restitution": 1}}
+    materials = {"ball": {"density": 7850, "static_friction": 0, "dynamic_friction": 0, "restitution": 1, "color": "#a9b6c4"}}
     bodies, joints = [], []
     drop = math.sqrt(rope ** 2 - spread ** 2)
     for i in range(5):
@@ -348,13 +372,14 @@ def newtons_cradle():
         for side, z in (("left", -spread), ("right", spread)):
             joints.append({"type": "distance", "name": f"wire {i + 1} {side}", "a": "world", "b": f"ball {i + 1}",
                            "anchor": [x, 0.2 + drop, z], "length": rope})
-    return scene("Newton's cradle", bodies, joints, materials=materials, world={"time_step": 1 / 240, "substeps": 8})
+    return scene("Newton's cradle", bodies, joints, materials=materials, world={"time_step": 1 / 240, "substeps": 8},
+                 seen=view((0.7, 0.85, 2.5), (-0.02, 0.58, 0)))
 
 
 def mesh_terrain():
     rng = random.Random(11)
-    bodies = [fixed("terrain", (0, 0, 0), {"type": "mesh", "mesh": "hills", "material": "stone"}),
-              fixed("valley", (0, -3, 0), {"type": "plane", "material": "stone"})]
+    bodies = [fixed("terrain", (0, 0, 0), {"type": "mesh", "mesh": "hills", "material": "stone"}, color=SAND),
+              fixed("valley", (0, -3, 0), {"type": "plane", "material": "stone", "color": GROUND})]
     for i in range(120):
         x, z = (i % 12 - 5.5) * 1.1, (i // 12 - 4.5) * 1.1
         bodies.append(body(f"piece {i + 1}", (x, hill(x, z) + 1.5 + rng.uniform(0, 1), z), mixed_shape(rng, i, 0.25),
@@ -372,7 +397,7 @@ def height_field():
             x, z = (column - (side - 1) / 2) * spacing, (row - (side - 1) / 2) * spacing
             heights.append(round(hill(x, z), 3))
     bodies = [fixed("land", (0, 0, 0), {"type": "height_field", "size": [side, side], "spacing": spacing, "heights": heights,
-                                        "static_friction": 0.7})]
+                                        "static_friction": 0.7}, color=LAND)]
     for i in range(60):
         x, z = (i % 10 - 4.5) * 1.5, (i // 10 - 2.5) * 1.5
         bodies.append(body(f"piece {i + 1}", (x, hill(x, z) + 1.2, z), mixed_shape(rng, i, 0.25)))
@@ -389,15 +414,15 @@ def bridge():
         angle = (i - planks / 2) * 2 * math.asin(0.5 * length / radius)
         return radius * math.sin(angle), 2.95 + radius * (math.cos(half) - math.cos(angle)), angle
 
-    bodies = [ground(), fixed("left bank", (-reach - 1, 1.5, 0), box(1, 1.5, 1.5)),
-              fixed("right bank", (reach + 1, 1.5, 0), box(1, 1.5, 1.5))]
+    bodies = [ground(), fixed("left bank", (-reach - 1, 1.5, 0), box(1, 1.5, 1.5), color="#9aa7a0"),
+              fixed("right bank", (reach + 1, 1.5, 0), box(1, 1.5, 1.5), color="#9aa7a0")]
     joints = []
     names = ["left bank"]
     for i in range(planks):
         (x1, y1, a1), (x2, y2, a2) = arc(i), arc(i + 1)
         name = f"plank {i + 1}"
         bodies.append(body(name, (0.5 * (x1 + x2), 0.5 * (y1 + y2), 0), box(0.24, 0.05, 1, material="wood"),
-                           orientation=about((0, 0, 1), 0.5 * (a1 + a2)), angular_damping=0.1))
+                           orientation=about((0, 0, 1), 0.5 * (a1 + a2)), angular_damping=0.1, color=WOODS[i % 2]))
         names.append(name)
     names.append("right bank")
     for i in range(planks + 1):
@@ -405,20 +430,22 @@ def bridge():
         joints.append({"type": "hinge", "name": f"hinge {i + 1}", "a": names[i], "b": names[i + 1], "anchor": [x, y, 0],
                        "axis": [0, 0, 1]})
     for i in range(5):
-        bodies.append(body(f"load {i + 1}", ((i - 2) * 1.2, 4 + 0.3 * i, 0.2 * (i - 2)), box(0.3, 0.3, 0.3, material="wood")))
-    return scene("a bridge of hinged planks", bodies, joints, materials=["wood"])
+        bodies.append(body(f"load {i + 1}", ((i - 2) * 1.2, 4 + 0.3 * i, 0.2 * (i - 2)), box(0.3, 0.3, 0.3, material="wood"), color=rainbow(i / 5)))
+    return scene("a bridge of hinged planks", bodies, joints, materials=["wood"], seen=view((5.0, 6.2, 13.2), (0.1, 1.7, 0)))
 
 
 def bouncing():
-    balls = [body(f"restitution {i / 10:g}", ((i - 5) * 0.7, 3, 0), ball(0.25, restitution=i / 10), can_sleep=False)
+    balls = [body(f"restitution {i / 10:g}", ((i - 5) * 0.7, 3, 0), ball(0.25, restitution=i / 10), color=rainbow(1 - i / 10), can_sleep=False)
              for i in range(11)]
-    return scene("restitution from 0 to 1", [ground(restitution=0)] + balls, world={"time_step": 1 / 120})
+    return scene("restitution from 0 to 1", [ground(restitution=0)] + balls, world={"time_step": 1 / 120},
+                 seen=view((1.3, 2.5, 9.4), (0.12, 1.4, 0)))
 
 
 def rolling():
     angle = math.radians(12)
     slope = about((0, 0, 1), angle)
-    bodies = [ground(), fixed("ramp", (-3, 1.2, 0), box(3, 0.1, 3), orientation=slope), fixed("stop", (-14, 0.4, 0), box(0.2, 0.4, 4))]
+    bodies = [ground(), fixed("ramp", (-3, 1.2, 0), box(3, 0.1, 3), color="#8fa3b8", orientation=slope),
+              fixed("stop", (-14, 0.4, 0), box(0.2, 0.4, 4), color=DARK)]
     side = about((1, 0, 0), math.pi / 2)
     racers = (("ball", ball(0.25)), ("cylinder", round_shape("cylinder", 0.25, 0.3, orientation=side)),
               ("capsule", round_shape("capsule", 0.25, 0.2, orientation=side)),
@@ -438,7 +465,8 @@ def rolling():
                        linear_velocity=[0, 0, 0.6]))
     bodies.append(body("coin", (3.5, 0.41, -1.5), round_shape("cylinder", 0.4, 0.03),
                        orientation=about((1, 0, 0), math.pi / 2 - 0.05), angular_velocity=[0, 12, 0]))
-    return scene("what rolls: race down a ramp, a cone around its apex, a spinning coin", bodies, world={"time_step": 1 / 120})
+    return scene("what rolls: race down a ramp, a cone around its apex, a spinning coin", bodies, world={"time_step": 1 / 120},
+                 seen=view((-0.5, 7.6, 18.5), (-4.3, 0, 0)))
 
 
 def chain():
@@ -450,23 +478,23 @@ def chain():
                                                                     orientation=about((0, 0, 1), math.pi / 2))))
         joints.append({"type": "ball", "name": f"joint {i + 1}", "a": previous, "b": name, "anchor": [0.3 * i, 6, 0]})
         previous = name
-    bodies.append(body("wrecking ball", (7.6, 6, 0), ball(0.4, material="steel"), continuous=True))
+    bodies.append(body("wrecking ball", (7.6, 6, 0), ball(0.4, material="steel"), color=DARK, continuous=True))
     joints.append({"type": "ball", "name": "hook", "a": previous, "b": "wrecking ball", "anchor": [7.2, 6, 0]})
     wall = [body(f"brick {4 * row + column + 1}", (-2.5, 0.25 + 0.5 * row, (column - 1.5) * 1.0 + 0.25 * (row % 2)),
-                 box(0.25, 0.25, 0.5, material="stone")) for row in range(5) for column in range(4)]
+                 box(0.25, 0.25, 0.5, material="stone"), color=BRICKS[(column + 2 * row) % 4]) for row in range(5) for column in range(4)]
     return scene("a wrecking ball on a chain", [ground()] + bodies + wall, joints, materials=["steel", "stone"],
-                 world={"substeps": 8})
+                 world={"substeps": 8}, seen=view((6.8, 6.0, 15.5), (2.3, 3.0, 0)))
 
 
 def machines():
     bodies = [
         ground(),
-        fixed("frame", (0, 1, 0), box(0.2, 1, 0.2)),
+        fixed("frame", (0, 1, 0), box(0.2, 1, 0.2), color=DARK),
         body("wheel", (0, 2, 0.5), round_shape("cylinder", 0.8, 0.1, orientation=about((1, 0, 0), math.pi / 2)),
              can_sleep=False),
-        fixed("rail", (3, 1, 0), box(1.5, 0.1, 0.2)),
+        fixed("rail", (3, 1, 0), box(1.5, 0.1, 0.2), color=DARK),
         body("cart", (3, 1.4, 0), box(0.3, 0.2, 0.3)),
-        fixed("post", (-3, 1.5, 0), box(0.1, 1.5, 0.1)),
+        fixed("post", (-3, 1.5, 0), box(0.1, 1.5, 0.1), color=DARK),
         body("gate", (-2.2, 1.2, 0), box(0.7, 0.8, 0.05)),
         body("rocket", (0, 0.61, 4), round_shape("capsule", 0.2, 0.4, density=200),
              forces=[{"force": [0, 700, 0], "at": [0, -0.6, 0], "frame": "body", "start": 0.5, "end": 2.5}]),
@@ -490,21 +518,22 @@ def machines():
         {"type": "distance", "name": "spring", "a": "world", "b": "weight", "anchor": [5.5, 3, -2], "length": 1,
          "stiffness": 2000, "damping": 20},
     ]
-    return scene("motors, limits, springs, forces and a kinematic mixer", bodies, joints)
+    return scene("motors, limits, springs, forces and a kinematic mixer", bodies, joints,
+                 seen=view((6.2, 6.2, 11.2), (1.0, 0.9, -0.2)))
 
 
 def showcase():
     rng = random.Random(21)
-    bodies = [ground(material="stone")]
+    bodies = [ground(material="stone", color=GROUND)]
     joints = []
     # A wall of bricks and a tower.
     for row in range(8):
         for column in range(10):
             bodies.append(body(f"brick {10 * row + column + 1}",
                                ((column - 4.5) * 0.82 + 0.41 * (row % 2), 0.2 + 0.4 * row, -2.3),
-                               box(0.4, 0.2, 0.2, material="stone")))
+                               box(0.4, 0.2, 0.2, material="stone"), color=BRICKS[(column + 2 * row) % 4]))
     for i in range(10):
-        bodies.append(body(f"tower {i + 1}", (7, 0.4 + 0.8 * i, -5), box(0.4, 0.4, 0.4, material="wood")))
+        bodies.append(body(f"tower {i + 1}", (7, 0.4 + 0.8 * i, -5), box(0.4, 0.4, 0.4, material="wood"), color=WOODS[i % 3]))
     # A pit that fills with mixed pieces.
     for wall in pit(2.0, 0.8, 0.15):
         wall["position"][0] += 6
@@ -516,13 +545,13 @@ def showcase():
                            mixed_shape(rng, i, 0.26), orientation=about([rng.uniform(-1, 1) for _ in range(3)], rng.uniform(0, 3))))
     # Balls down a ramp into dominoes.
     slope = math.radians(20)
-    bodies.append(fixed("ramp", (-9, 1.5, 0), box(2.5, 0.1, 1), orientation=about((0, 0, 1), -slope)))
+    bodies.append(fixed("ramp", (-9, 1.5, 0), box(2.5, 0.1, 1), color="#8fa3b8", orientation=about((0, 0, 1), -slope)))
     for i in range(5):
         bodies.append(body(f"rolling ball {i + 1}", (-10.9 + 0.5 * i, 2.6 - 0.18 * i, 0), ball(0.22, material="steel")))
     for i in range(30):
-        bodies.append(body(f"domino {i + 1}", (-5.5 + 0.3 * i, 0.3, 0), box(0.035, 0.3, 0.16, material="wood")))
+        bodies.append(body(f"domino {i + 1}", (-5.5 + 0.3 * i, 0.3, 0), box(0.035, 0.3, 0.16, material="wood"), color=rainbow(i / 30)))
     # A corner of hills, with pieces rolling down.
-    bodies.append(fixed("hills", (-7, 0.2, 8), {"type": "mesh", "mesh": "hills", "material": "stone"}))
+    bodies.append(fixed("hills", (-7, 0.2, 8), {"type": "mesh", "mesh": "hills", "material": "stone"}, color=LAND))
     for i in range(60):
         x, z = (i % 10 - 4.5) * 0.9, (i // 10 - 2.5) * 1.2
         bodies.append(body(f"stone {i + 1}", (-7 + x, hill(x, z) + 1.4, 8 + z), mixed_shape(rng, i, 0.24)))
@@ -534,9 +563,10 @@ def showcase():
                                                                      orientation=about((1, 0, 0), math.pi / 2))))
         joints.append({"type": "ball", "a": previous, "b": name, "anchor": [0, hook, 0.4 * i]})
         previous = name
-    bodies.append(body("wrecking ball", (0, hook, 0.4 * links + 0.5), ball(0.5, material="steel"), continuous=True))
+    bodies.append(body("wrecking ball", (0, hook, 0.4 * links + 0.5), ball(0.5, material="steel"), color=DARK, continuous=True))
     joints.append({"type": "ball", "a": previous, "b": "wrecking ball", "anchor": [0, hook, 0.4 * links]})
-    return scene("showcase", bodies, joints, materials=["stone", "wood", "steel"], meshes={"hills": {"file": "meshes/small_hills.obj"}})
+    return scene("showcase", bodies, joints, materials=["stone", "wood", "steel"], meshes={"hills": {"file": "meshes/small_hills.obj"}},
+                 seen=view((9.0, 10.5, 23.5), (-1.9, 1.5, 0.6)))
 
 
 ALL = [stack, card_house, dominoes, t_handle, gyroscope, billiards, incline_materials, half_wood_half_lead, pile, bowling,

@@ -12,7 +12,6 @@
 namespace gyre {
 namespace {
 
-constexpr SceneColor kFloorColor{214, 216, 220};
 constexpr SceneColor kRodColor{92, 96, 104};
 
 void add_quads(DrawList& list, std::uint32_t first, std::uint32_t rings, std::uint32_t a_ring) {
@@ -78,7 +77,8 @@ DrawListMaker::Look DrawListMaker::look_of(BodyId body, std::size_t ordinal, std
   const std::uint64_t index = player_.world().user_data(body);
   if (!scene || index >= player_.bodies().size() || !(player_.bodies()[index] == body) ||
       shape >= scene->bodies[index].shapes.size()) {
-    return {automatic_color(type, ordinal), glass};
+    const AnyShape& geometry = *player_.world().geometry(player_.world().shapes(body)[shape]);
+    return {std::holds_alternative<Plane>(geometry) ? kGroundColor : automatic_color(type, ordinal), glass};
   }
   return {resolved_color(*scene, index, shape), glass || scene->bodies[index].sensor};
 }
@@ -129,7 +129,7 @@ DrawList DrawListMaker::make(const Camera& camera, const Subject& subject) {
   }
   add_joints(subject, list);
   if (subject.floor && list.ground.empty()) {
-    add_plane(subject, {subject.origin.x, *subject.floor, subject.origin.z}, {0, 1, 0}, kFloorColor,
+    add_plane(subject, {subject.origin.x, *subject.floor, subject.origin.z}, {0, 1, 0}, kGroundColor,
               Paint::floor, list);
   }
   return list;

@@ -84,6 +84,11 @@ class RecordingPlayer : public Player {
   }
 
  private:
+  bool is_like(BodyId id, const SceneBody& body) const {
+    const World& world = replay_.world();
+    return world.type(id) == body.def.type && world.shapes(id).size() == body.shapes.size();
+  }
+
   // Bodies of a scene carry their number in it as user data.
   bool find_bodies(std::string& error) {
     if (!look_) return true;
@@ -91,7 +96,7 @@ class RecordingPlayer : public Player {
     std::size_t found = 0;
     for (const BodyId id : replay_.world().bodies().ids) {
       const std::uint64_t index = replay_.world().user_data(id);
-      if (index < bodies_.size() && replay_.world().shapes(id).size() == look_->bodies[index].shapes.size()) {
+      if (index < bodies_.size() && is_like(id, look_->bodies[index])) {
         bodies_[index] = id;
         ++found;
       }

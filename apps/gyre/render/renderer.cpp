@@ -15,8 +15,8 @@
 namespace gyre {
 namespace {
 
-constexpr Vec3 kSunColor{1.26f, 1.21f, 1.13f};
-constexpr Vec3 kSkyColor{0.40f, 0.435f, 0.48f};
+constexpr Vec3 kSunColor{1.06f, 1.02f, 0.95f};
+constexpr Vec3 kSkyColor{0.37f, 0.40f, 0.44f};
 constexpr Vec3 kBounceColor{0.17f, 0.165f, 0.16f};
 constexpr std::uint8_t kBackgroundLow[] = {238, 241, 244}, kBackgroundHigh[] = {205, 217, 230};
 constexpr float kSunRise = 0.9f;      // rad above the horizon

@@ -1,0 +1,342 @@
+// gyre render as a user sees it: the same bytes twice, things where a pinhole has them, exit statuses and words.
+#include "cli/run_program.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#ifdef GYRE_WITH_RENDER
+#include <gif_lib.h>
+#include <png.h>
+#endif
+
+namespace gyre {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A red box of 1 m, seen from the front; the ground is far below.
+const std::string kBox = R"({"gyre_scene": 1, "world": {"gravity": [0, 0, 0]}, "bodies": [
+  {"name": "box", "color": "#ff0000", "shapes": [{"type": "box", "half_extents": [0.5, 0.5, 0.5]}]},
+  {"name": "far ball", "position": [40, 0, 0], "shapes": [{"type": "sphere", "radius": 0.5}]}]})";
+const std::string kFalling = R"({"gyre_scene": 1, "bodies": [
+  {"name": "ground", "type": "static", "shapes": [{"type": "plane"}]},
+  {"name": "ball", "position": [0, 2, 0], "color": "#ff0000", "shapes": [{"type": "sphere", "radius": 0.5}]}]})";
+
+class Render : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("gyre_render_" + std::to_string(getpid()) + "_" +
+                                           ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    write("box.gyre.json", kBox);
+    write("fall.gyre.json", kFalling);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
+  std::string read(const std::string& name) const { return file_text(folder_ / name); }
+  // Small and with few samples, so that many pictures take little time.
+  Finished draw(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), "render");
+    return run_program(arguments, folder_);
+  }
+  Finished draw_small(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.end(), {"--size", "96x60", "--samples", "2", "--quiet"});
+    return draw(std::move(arguments));
+  }
+  std::vector<std::string> files(const fs::path& folder) const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder))
+      names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+  void expect_refused(const std::vector<std::string>& arguments, int code, const std::string& word) const {
+    const Finished done = draw(arguments);
+    EXPECT_EQ(done.code, code) << done.err;
+    EXPECT_EQ(done.out, "");
+    EXPECT_EQ(std::count(done.err.begin(), done.err.end(), '\n'), 1) << done.err;
+    EXPECT_NE(done.err.find(word), std::string::npos) << done.err << "expected: " << word;
+    EXPECT_EQ(files(folder_), (std::vector<std::string>{"box.gyre.json", "fall.gyre.json"}));
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(Render, WrongUsageIsStatusTwoAndOneLine) {
+  expect_refused({}, 2, "SCENE");
+  expect_refused({"box.gyre.json"}, 2, "--out");
+  expect_refused({"box.gyre.json", "--out", "a.jpg"}, 2, ".png or .gif");
+  expect_refused({"box.gyre.json", "--out", "a%s.png"}, 2, "%04d");
+  expect_refused({"box.gyre.json", "--out", "a.png", "--size", "0x10"}, 2, "WIDTHxHEIGHT");
+  expect_refused({"box.gyre.json", "--out", "a.png", "--size", "640"}, 2, "found 640");
+  expect_refused({"box.gyre.json", "--out", "a.png", "--camera", "1,2"}, 2, "3 numbers");
+  expect_refused({"box.gyre.json", "--out", "a.png", "--camera", "1,2,nan"}, 2, "found 1,2,nan");
+  expect_refused({"box.gyre.json", "--out", "a.png", "--camera", "1,2,3", "--look-at", "1,2,3"}, 2,
+                 "somewhere else");
+  expect_refused({"box.gyre.json", "--out", "a.png", "--direction", "0,100"}, 2, "-90 to 90");
+  expect_refused({"box.gyre.json", "--out", "a.png", "--fov", "180"}, 2, "1 to 170");
+  expect_refused({"box.gyre.json", "--out", "a.png", "--samples", "0"}, 2, "1 to 1024");
+  expect_refused({"box.gyre.json", "--out", "a.png", "--frames", "5"}, 2, "one picture");
+  expect_refused({"box.gyre.json", "--out", "a.gif", "--at", "5"}, 2, "--from and --to");
+  expect_refused({"box.gyre.json", "--out", "a.gif", "--from", "2", "--to", "1"}, 2, "later");
+  expect_refused({"box.gyre.json", "--out", "a.gif", "--to", "1", "--frames", "5"}, 2, "--frames");
+  expect_refused({"box.gyre.json", "--out", "a.gif", "--fps", "100"}, 2, "50 frames");
+  expect_refused({"box.gyre.json", "--out", "a.gif", "--frames", "0"}, 2, "found 0");
+}
+
+#ifndef GYRE_WITH_RENDER
+
+TEST_F(Render, ABuildWithoutPicturesSaysWhatToInstall) {
+  expect_refused({"box.gyre.json", "--out", "a.png"}, 3, "libepoxy-dev");
+}
+
+#else
+
+struct Pixels {
+  unsigned width = 0, height = 0;
+  std::vector<std::uint8_t> bytes;
+  bool is_red(int x, int y) const {
+    const std::size_t at = 3 * (std::size_t(y) * width + std::size_t(x));
+    return bytes[at] > 90 && bytes[at + 1] < 70 && bytes[at + 2] < 70;
+  }
+};
+Pixels read_png(const fs::path& path) {
+  Pixels out;
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  if (!png_image_begin_read_from_file(&image, path.c_str())) return out;
+  image.format = PNG_FORMAT_RGB;
+  out.bytes.resize(PNG_IMAGE_SIZE(image));
+  if (!png_image_finish_read(&image, nullptr, out.bytes.data(), 0, nullptr)) return out;
+  out.width = image.width;
+  out.height = image.height;
+  return out;
+}
+// Frames of a GIF; -1 if it cannot be decoded.
+int count_frames(const fs::path& path, int& width, int& height) {
+  int error = 0;
+  GifFileType* file = DGifOpenFileName(path.c_str(), &error);
+  if (!file) return -1;
+  const int frames = DGifSlurp(file) == GIF_OK ? file->ImageCount : -1;
+  width = file->SWidth;
+  height = file->SHeight;
+  DGifCloseFile(file, &error);
+  return frames;
+}
+// How far the picture is from one plain colour.
+double spread(const Pixels& picture) {
+  double sum = 0, squares = 0;
+  for (const std::uint8_t byte : picture.bytes) {
+    sum += byte;
+    squares += double(byte) * byte;
+  }
+  const double count = double(picture.bytes.size()), mean = sum / count;
+  return std::sqrt(squares / count - mean * mean);
+}
+
+TEST_F(Render, TwoRunsGiveTheSameBytes) {
+  for (const char* out : {"a", "b"}) {
+    ASSERT_EQ(draw_small({"fall.gyre.json", "--out", std::string(out) + ".png", "--at", "0.5"}).code, 0);
+    ASSERT_EQ(draw_small({"fall.gyre.json", "--out", std::string(out) + ".gif", "--frames", "5", "--threads",
+                          out[0] == 'a' ? "1" : "3"})
+                  .code,
+              0);
+  }
+  EXPECT_GT(read("a.png").size(), 500u);
+  EXPECT_EQ(read("a.png"), read("b.png"));
+  EXPECT_GT(read("a.gif").size(), 500u);
+  EXPECT_EQ(read("a.gif"), read("b.gif"));
+}
+
+TEST_F(Render, ABoxsCornersLieWhereAPinholeHasThem) {
+  // From 10 m before the front face (z = 0.5) and a little beside; half of the height is tan 10 degrees.
+  const Finished done = draw({"box.gyre.json", "--out", "a.png", "--size", "320x200", "--camera",
+                              "0.3,0.2,10.5", "--look-at", "0.3,0.2,0", "--fov", "20", "--samples", "16"});
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_EQ(done.out.rfind("a.png: 1 frame of 320 x 200", 0), 0u) << done.out;
+  const Pixels picture = read_png(folder_ / "a.png");
+  ASSERT_EQ(picture.width, 320u);
+  ASSERT_EQ(picture.height, 200u);
+  const double pixels_a_metre = 100 / std::tan(20 * 3.14159265358979 / 360) / 10;
+  const double left = 160 + pixels_a_metre * (-0.5 - 0.3), right = 160 + pixels_a_metre * (0.5 - 0.3);
+  const double top = 100 - pixels_a_metre * (0.5 - 0.2), bottom = 100 - pixels_a_metre * (-0.5 - 0.2);
+  // A pixel and a half inside every corner it is red, as far outside it is not.
+  for (const double x : {left, right}) {
+    for (const double y : {top, bottom}) {
+      const double in_x = x == left ? 1.5 : -1.5, in_y = y == top ? 1.5 : -1.5;
+      const auto at = [&](double px, double py) {
+        return picture.is_red(int(std::floor(px)), int(std::floor(py)));
+      };
+      EXPECT_TRUE(at(x + in_x, y + in_y)) << x << " " << y;
+      EXPECT_FALSE(at(x - in_x, y + in_y)) << x << " " << y;
+      EXPECT_FALSE(at(x + in_x, y - in_y)) << x << " " << y;
+    }
+  }
+  EXPECT_TRUE(picture.is_red(int((left + right) / 2), int((top + bottom) / 2)));
+}
+
+TEST_F(Render, ABallFallsAsItShould) {
+  // Half a second of free fall is 1.226 m: the ball is then at 0.774 m, and stood at 2 m before.
+  const std::vector<std::string> camera = {"--camera", "0,1,12", "--look-at", "0,1,0", "--fov", "20"};
+  const auto middle_at = [&](const char* time) {
+    std::vector<std::string> arguments = {"fall.gyre.json", "--out",   "a.png",     "--at", time,
+                                          "--size",         "200x200", "--samples", "8"};
+    arguments.insert(arguments.end(), camera.begin(), camera.end());
+    if (draw(arguments).code != 0) return -1.0;
+    const Pixels picture = read_png(folder_ / "a.png");
+    double sum = 0, rows = 0;
+    for (int y = 0; y < 200; ++y) {
+      const std::size_t at = 3 * (std::size_t(y) * 200 + 100);
+      if (picture.bytes[at] > picture.bytes[at + 1] + 20) {  // nothing else is red
+        sum += y + 0.5;
+        rows += 1;
+      }
+    }
+    return rows > 0 ? sum / rows : -2.0;
+  };
+  const double pixels_a_metre = 100 / std::tan(20 * 3.14159265358979 / 360) / 12;
+  EXPECT_NEAR(middle_at("0"), 100 - pixels_a_metre * (2 - 1), 2.0);
+  EXPECT_NEAR(middle_at("0.5"), 100 - pixels_a_metre * (0.774 - 1), 2.0);
+}
+
+TEST_F(Render, FramesAreCounted) {
+  ASSERT_EQ(
+      draw_small({"fall.gyre.json", "--out", "frames/%03d.png", "--from", "0.5", "--to", "1", "--fps", "8"})
+          .code,
+      0);
+  EXPECT_EQ(files(folder_ / "frames"),
+            (std::vector<std::string>{"000.png", "001.png", "002.png", "003.png"}));
+  ASSERT_EQ(draw_small({"fall.gyre.json", "--out", "a.gif", "--seconds", "0.5", "--fps", "10"}).code, 0);
+  int width = 0, height = 0;
+  EXPECT_EQ(count_frames(folder_ / "a.gif", width, height), 5);
+  EXPECT_EQ(width, 96);
+  EXPECT_EQ(height, 60);
+  // Slow motion: as long, but of less of the scene.
+  ASSERT_EQ(
+      draw_small({"fall.gyre.json", "--out", "b.gif", "--seconds", "0.5", "--fps", "10", "--speed", "0.1"})
+          .code,
+      0);
+  EXPECT_EQ(count_frames(folder_ / "b.gif", width, height), 5);
+  EXPECT_NE(read("a.gif"), read("b.gif"));
+}
+
+TEST_F(Render, ARecordingLooksLikeItsScene) {
+  ASSERT_EQ(
+      run_program({"simulate", "fall.gyre.json", "--steps", "60", "--record", "r.gyrec", "--quiet"}, folder_)
+          .code,
+      0);
+  ASSERT_EQ(draw_small({"fall.gyre.json", "--out", "scene.gif", "--frames", "15"}).code, 0);
+  ASSERT_EQ(
+      draw_small({"r.gyrec", "--scene", "fall.gyre.json", "--out", "recording.gif", "--frames", "15"}).code,
+      0);
+  EXPECT_EQ(read("scene.gif"), read("recording.gif"));
+  // To its end, which is where the scene is after a second.
+  ASSERT_EQ(draw_small({"r.gyrec", "--out", "whole.gif"}).code, 0);
+  int width = 0, height = 0;
+  EXPECT_EQ(count_frames(folder_ / "whole.gif", width, height), 21);
+  // Cut off: played as far as it goes, and said so.
+  write("cut.gyrec", read("r.gyrec").substr(0, read("r.gyrec").size() - 40));
+  const Finished cut = draw_small({"cut.gyrec", "--out", "cut.gif"});
+  EXPECT_EQ(cut.code, 0);
+  EXPECT_NE(cut.err.find("last whole step"), std::string::npos) << cut.err;
+  const Finished broken = draw_small({"stdout.txt", "--out", "x.gif"});
+  EXPECT_EQ(broken.code, 3);
+  EXPECT_FALSE(fs::exists(folder_ / "x.gif"));
+  const Finished other = draw_small({"r.gyrec", "--scene", "box.gyre.json", "--out", "x.gif"});
+  EXPECT_EQ(other.code, 3);
+  EXPECT_NE(other.err.find("not one of this scene"), std::string::npos) << other.err;
+}
+
+TEST_F(Render, WhatCannotBeReadOrWrittenIsStatusThree) {
+  write("bad.gyre.json", R"({"gyre_scene": 1, "bodies": [{"name": "b", "color": "red"}]})");
+  const Finished bad = draw_small({"bad.gyre.json", "--out", "a.png"});
+  EXPECT_EQ(bad.code, 3);
+  EXPECT_NE(bad.err.find("/bodies/0/color"), std::string::npos) << bad.err;
+  EXPECT_EQ(draw_small({"none.gyre.json", "--out", "a.png"}).code, 3);
+  EXPECT_EQ(draw_small({"box.gyre.json", "--out", "none/a.png"}).code, 3);
+  EXPECT_EQ(draw_small({"box.gyre.json", "--out", "none/none/%d.png"}).code, 3);
+  EXPECT_FALSE(fs::exists(folder_ / "none"));
+  EXPECT_FALSE(fs::exists(folder_ / "a.png"));
+  write("scene.png", kBox);
+  const Finished over = draw_small({"scene.png", "--out", "./scene.png"});
+  EXPECT_EQ(over.code, 2);
+  EXPECT_NE(over.err.find("overwrite"), std::string::npos);
+  EXPECT_EQ(read("scene.png"), kBox);
+  EXPECT_EQ(draw_small({"box.gyre.json", "--follow", "nobody", "--out", "a.png"}).code, 2);
+}
+
+TEST_F(Render, ACameraFollowsABody) {
+  // Falling, the ball stays in the middle of the picture only if the camera falls too.
+  write("free.gyre.json", R"({"gyre_scene": 1, "bodies": [
+    {"name": "ball", "position": [0, 200, 0], "color": "#ff0000", "shapes": [{"type": "sphere", "radius": 0.5}]}]})");
+  ASSERT_EQ(draw({"free.gyre.json", "--out", "%d.png", "--frames", "3", "--fps", "1", "--camera", "0,200,9",
+                  "--look-at", "0,200,0", "--follow", "ball", "--size", "64x64", "--samples", "2"})
+                .code,
+            0);
+  for (const char* name : {"0.png", "1.png", "2.png"})
+    EXPECT_TRUE(read_png(folder_ / name).is_red(32, 32)) << name;
+}
+
+TEST_F(Render, AShapeCastsItsShadowAndGlassDoesNotHide) {
+  // Straight from above: the ground beside the post is dark on the side away from the sun.
+  write("post.gyre.json", R"({"gyre_scene": 1, "bodies": [
+    {"name": "ground", "type": "static", "shapes": [{"type": "plane"}]},
+    {"name": "post", "position": [0, 1, 0], "can_sleep": false, "shapes": [{"type": "box", "half_extents": [0.1, 1, 0.1]}]}]})");
+  ASSERT_EQ(draw({"post.gyre.json", "--out", "a.png", "--size", "200x200", "--samples", "16", "--camera",
+                  "0,8,0.8", "--look-at", "0,0,0"})
+                .code,
+            0);
+  const Pixels picture = read_png(folder_ / "a.png");
+  int darkest = 255, brightest = 0;
+  for (int turn = 0; turn < 64; ++turn) {
+    const double angle = turn * 6.283185307 / 64;
+    const auto x = std::size_t(100 + 24 * std::cos(angle)), y = std::size_t(100 + 24 * std::sin(angle));
+    darkest = std::min(darkest, int(picture.bytes[3 * (y * 200 + x)]));
+    brightest = std::max(brightest, int(picture.bytes[3 * (y * 200 + x)]));
+  }
+  EXPECT_LT(darkest, brightest - 50);
+
+  write("wall.gyre.json", R"({"gyre_scene": 1, "world": {"gravity": [0, 0, 0]}, "bodies": [
+    {"name": "wall", "type": "static", "position": [0, 0, 2], "color": "#0000ff",
+     "shapes": [{"type": "box", "half_extents": [2, 2, 0.1]}]},
+    {"name": "box", "color": "#ff0000", "shapes": [{"type": "box", "half_extents": [0.5, 0.5, 0.5]}]}]})");
+  ASSERT_EQ(draw({"wall.gyre.json", "--out", "b.png", "--size", "64x64", "--samples", "32", "--camera",
+                  "0,0,9", "--look-at", "0,0,0"})
+                .code,
+            0);
+  const Pixels through = read_png(folder_ / "b.png");
+  const std::size_t at = 3 * (32 * 64 + 32);
+  EXPECT_GT(through.bytes[at], through.bytes[at + 2]);  // more of the box behind than of the wall before it
+}
+
+TEST_F(Render, EverySceneOfTheRepositoryIsAPicture) {
+  int scenes = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(GYRE_SOURCE_DIR) / "scenes")) {
+    const std::string name = entry.path().filename().string();
+    if (name.size() < 10 || name.substr(name.size() - 10) != ".gyre.json") continue;
+    ++scenes;
+    const Finished done =
+        draw_small({entry.path().string(), "--out", "a.gif", "--frames", "2", "--fps", "4"});
+    EXPECT_EQ(done.code, 0) << name << done.err;
+    int width = 0, height = 0;
+    EXPECT_EQ(count_frames(folder_ / "a.gif", width, height), 2) << name;
+    ASSERT_EQ(draw_small({entry.path().string(), "--out", "a.png"}).code, 0) << name;
+    EXPECT_GT(spread(read_png(folder_ / "a.png")), 8.0) << name;
+  }
+  EXPECT_GE(scenes, 14);
+}
+
+#endif
+
+}  // namespace
+}  // namespace gyre
