@@ -50,6 +50,7 @@ want_packages() {
   say "Installing: ${missing[*]}"
   as_root+=(env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0)
   # The package lists are refreshed only when the ones on this machine do not do.
+  gyre_installed=yes
   if "${as_root[@]}" install -y --no-install-recommends "${missing[@]}" >/dev/null 2>&1; then return 0; fi
   "${as_root[@]}" update >&2
   if "${as_root[@]}" install -y --no-install-recommends "${missing[@]}" >&2; then return 0; fi
@@ -66,8 +67,8 @@ configure() {
     say "Making $folder anew: it belongs to another checkout."
     rm -rf "$folder"
   fi
-  # Ninja itself notices changed CMake files, but not changed presets.
-  if [ ! -e "$folder/build.ninja" ] || [ CMakePresets.json -nt "$folder/build.ninja" ]; then
+  # Ninja itself notices changed CMake files, but neither changed presets nor new libraries.
+  if [ ! -e "$folder/build.ninja" ] || [ CMakePresets.json -nt "$folder/build.ninja" ] || [ "${gyre_installed-}" = yes ]; then
     say "Configuring $folder"
     cmake --preset "$1" >"build/configure-$1.log" 2>&1 || {
       cat "build/configure-$1.log" >&2
@@ -87,3 +88,6 @@ build() {
 gyre_build_packages=(
   g++ cmake ninja-build pkg-config ccache nlohmann-json3-dev libcli11-dev zlib1g-dev libgtest-dev libbenchmark-dev
 )
+
+# For gyre render, which is left out where they are missing: the libraries it is built with, and OpenGL without a graphics card.
+gyre_render_packages=(libepoxy-dev libegl-dev libpng-dev libgif-dev libegl1 libgl1 libgl1-mesa-dri)
