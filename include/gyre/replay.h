@@ -2,12 +2,14 @@
 #pragma once
 
 #include <gyre/result.h>
+#include <gyre/track.h>
 #include <gyre/world.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace gyre {
@@ -48,15 +50,31 @@ class ByteSink {
   virtual bool write(std::span<const std::byte> bytes) = 0;
 };
 
-// Records `world` until destroyed or finished: a snapshot now, then every command, then a state hash after each step. The
-// world must still be there then. A second recorder of the same world fails at once.
+// What a recording holds. Both parts may stand in one file; at least one must.
+struct RecordOptions {
+  bool commands = true;  // a snapshot, every command, a state hash after each step: for Replay, which plays it to the bit
+  bool poses = true;     // a pose track: for PoseTrack, which looks at it without simulating, in any later version
+  std::uint32_t frame_interval = 1;  // steps between two frames of the track, from 1; the last step always has one
+  float pose_accuracy = 1.0e-4f;     // m, from 1e-12 to 1e5: the most by which a coordinate of the track may be off
+};
+
+// Records `world` until destroyed or finished, beginning with its present state. The world must still be there then. A second
+// recorder of the same world fails at once, as do options out of range. What is recorded is written
+// at once and not kept.
 class Recorder {
  public:
-  Recorder(World& world, ByteSink& sink);
+  Recorder(World& world, ByteSink& sink, const RecordOptions& options = {});
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
-  bool finish();    // writes the closing chunk; true if every byte went through
+
+  // For who looks at the track: a body's name, and the colours of its shapes in the order of World::shapes. May be said at
+  // any time, and again; the last word holds for the whole recording. Nothing is written without a track.
+  void label(BodyId body, std::string_view name, std::span<const TrackColor> colors = {});
+  // Any text under a key, the same way. The first text of a key holds.
+  void note(std::string_view key, std::string_view text);
+
+  bool finish();  // writes the closing chunk; true if every byte went through
   bool failed() const;
 
  private:

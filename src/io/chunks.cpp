@@ -51,15 +51,11 @@ Error ChunkReader::read_header() {
   }
   const auto version = in.get<std::uint32_t>();
   in.get<std::uint32_t>();
-  const auto layout = in.get<std::uint64_t>();
+  layout_ = in.get<std::uint64_t>();
   if (in.failed()) return make_error(ErrorCode::invalid_data, "recording: it ends within its header");
   if (version != kRecordingVersion) {
     return make_error(ErrorCode::unsupported, "recording: it is of format %u; this version reads format %u",
                       version, kRecordingVersion);
-  }
-  if (layout != state_layout()) {
-    return make_error(ErrorCode::unsupported,
-                      "recording: it was made by a version whose worlds have another state");
   }
   place_ = kHeaderBytes;
   return {};
@@ -76,7 +72,8 @@ bool ChunkReader::next(Chunk& chunk) {
   const auto checksum = in.get<std::uint64_t>();
   if (length > left - kChunkHeaderBytes || number != number_) return false;
   if (checksum != checksum_of(start, std::size_t(length))) return false;
-  if (kind < std::uint32_t(ChunkKind::snapshot) || kind > std::uint32_t(ChunkKind::end)) return false;
+  const bool required = kind >= std::uint32_t(ChunkKind::snapshot) && kind <= std::uint32_t(ChunkKind::end);
+  if (!required && kind < kFirstOptionalKind) return false;
   chunk.kind = ChunkKind(kind);
   chunk.payload = in.get_bytes(length);
   place_ += kChunkHeaderBytes + std::size_t(length);

@@ -4,9 +4,10 @@
 //   header: magic (8 bytes), format version (u32), spare (u32), layout of the state (u64)
 //   chunk: kind (u32), number of the chunk (u32), length (u64), checksum of all that and the payload (u64), payload
 //
-// A recording begins with a snapshot. Then, for each step: geometry that is new, commands of which the last is the step
-// itself, and the hash of the state after it. An end chunk closes the file. Another snapshot may stand where the world was
-// put back to one.
+// To be played, a recording begins with a snapshot. Then, for each step: geometry that is new, commands of which the last is
+// the step itself, and the hash of the state after it. Another snapshot may stand where the world was put back to one. To be
+// looked at, it has a track beside or instead of that (track_format.h), whose chunks have kinds from 256 on. An end chunk
+// closes the file. docs/recording.md has it byte by byte.
 #pragma once
 
 #include "io/bytes.h"
@@ -23,7 +24,19 @@ enum class ChunkKind : std::uint32_t {
   commands = 3,   // command after command
   step_hash = 4,  // step count of the world (u64), hash of its state (u64)
   end = 5,        // number of steps (u64)
+
+  track_start = 256,
+  track_geometry = 257,
+  track_model = 258,
+  track_keyframe = 259,
+  track_frame = 260,
+  track_label = 261,
+  track_note = 262,
 };
+
+// Kinds from here on are passed over by who does not know them: a later version may add some.
+constexpr std::uint32_t kFirstOptionalKind = 256;
+inline bool is_optional(ChunkKind kind) { return std::uint32_t(kind) >= kFirstOptionalKind; }
 
 struct Chunk {
   ChunkKind kind = ChunkKind::end;
@@ -38,15 +51,19 @@ void write_chunk(ByteWriter& out, ChunkKind kind, std::uint32_t number, std::spa
 class ChunkReader {
  public:
   explicit ChunkReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
-  // Why this is not a recording that can be read; code none if it is. To be called first.
+  // Why these are no chunks that can be read; code none if they are. To be called first.
   Error read_header();
-  // The next chunk. False at the end of the bytes, or where they are damaged: from there on nothing can be trusted.
+  // The layout of the state in the header: whether snapshots and commands can be read.
+  std::uint64_t layout() const { return layout_; }
+  // The next chunk. False at the end of the bytes, or where they are damaged: from there on nothing can be trusted. Its kind
+  // is one of the above, or optional.
   bool next(Chunk& chunk);
 
  private:
   std::span<const std::byte> bytes_;
   std::size_t place_ = 0;
   std::uint32_t number_ = 0;
+  std::uint64_t layout_ = 0;
 };
 
 // Makes numbers, lengths and checksums right again in a recording that was changed, as far as its chunks can still be told

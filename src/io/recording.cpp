@@ -2,18 +2,39 @@
 #include "io/chunks.h"
 #include "io/command_codec.h"
 #include "io/snapshot.h"
+#include "io/track_writer.h"
 
 #include <gyre/replay.h>
 
+#include <optional>
+
 namespace gyre {
+
+namespace {
+
+bool can_record(const RecordOptions& options) {
+  return (options.commands || options.poses) && options.frame_interval > 0 &&
+         options.pose_accuracy >= 1.0e-12f && options.pose_accuracy <= 1.0e5f;
+}
+
+// Whether bodies that exist may look different afterwards.
+bool changes_models(const Command& command) {
+  return std::holds_alternative<AddShape>(command) || std::holds_alternative<RemoveShape>(command) ||
+         std::holds_alternative<SetType>(command) || std::holds_alternative<SetMaterial>(command);
+}
+
+}  // namespace
 
 struct Recorder::Log final : CommandLog {
   // Commands wait for the step that they belong to, unless they become this many bytes.
   static constexpr std::size_t kMostPending = std::size_t(1) << 20;
 
-  Log(WorldState& recorded, ByteSink& to) : state(&recorded), sink(to) {}
+  Log(WorldState& recorded, ByteSink& to, const RecordOptions& wanted)
+      : state(&recorded), sink(to), options(wanted) {}
 
   void on_command(const Command& command) override {
+    if (track && changes_models(command)) track->models_changed();
+    if (!options.commands) return;
     for_each_shape(command, [&](const AnyShape& shape) {
       if (!geometry.add(shape)) return;
       ByteWriter payload;
@@ -26,16 +47,48 @@ struct Recorder::Log final : CommandLog {
   }
 
   void on_step_done(WorldState& done) override {
-    ByteWriter payload;
-    payload.put(done.step_count);
-    payload.put(hash_state(done));
-    emit(ChunkKind::step_hash, payload.view());
+    if (options.commands) {
+      ByteWriter payload;
+      payload.put(done.step_count);
+      payload.put(hash_state(done));
+      emit(ChunkKind::step_hash, payload.view());
+    }
     ++steps;
+    frame_due = true;
+    if (steps % options.frame_interval == 0) frame();
   }
 
   void on_restored(WorldState&) override {
+    if (track) track->jumped();
+    if (!options.commands) return;
     flush();
     snapshot();
+  }
+
+  // The state as a frame of the track.
+  void frame() {
+    if (track && !failed)
+      track->frame(*state,
+                   [this](ChunkKind kind, std::span<const std::byte> payload) { emit(kind, payload); });
+    frame_due = false;
+  }
+
+  void begin() {
+    ByteWriter header;
+    write_recording_header(header);
+    write(header.view());
+    if (options.commands) snapshot();
+    if (!options.poses) return;
+    TrackStart start;
+    start.frame_interval = options.frame_interval;
+    // The coarsest steps that are fine enough: a coordinate is off by half of one at most.
+    start.steps.position_bits = kLeastPositionBits;
+    for (double step = double(1 << -kLeastPositionBits); 0.5 * step > double(options.pose_accuracy);
+         step *= 0.5)
+      ++start.steps.position_bits;
+    track.emplace(start);
+    track->begin([this](ChunkKind kind, std::span<const std::byte> payload) { emit(kind, payload); });
+    frame();
   }
 
   void snapshot() {
@@ -62,34 +115,50 @@ struct Recorder::Log final : CommandLog {
 
   WorldState* state;  // null once finished
   ByteSink& sink;
+  RecordOptions options;
+  std::optional<TrackWriter> track;
   GeometryTable geometry;  // all that the file holds
   ByteWriter pending;
   std::uint32_t chunks = 0;
   std::uint64_t steps = 0;
+  bool frame_due = false;  // a step was done since the last frame
   bool failed = false;
 };
 
-Recorder::Recorder(World& world, ByteSink& sink) : log_(std::make_unique<Log>(world.state(), sink)) {
+Recorder::Recorder(World& world, ByteSink& sink, const RecordOptions& options)
+    : log_(std::make_unique<Log>(world.state(), sink, options)) {
   Log& log = *log_;
-  if (log.state->log != nullptr || log.state->stepping) {
-    // A world is recorded once at a time.
+  // A world is recorded once at a time.
+  if (log.state->log != nullptr || log.state->stepping || !can_record(options)) {
     log.failed = true;
     log.state = nullptr;
     return;
   }
   log.state->log = &log;
-  ByteWriter header;
-  write_recording_header(header);
-  log.write(header.view());
-  log.snapshot();
+  log.begin();
 }
 
 Recorder::~Recorder() { finish(); }
+
+void Recorder::label(BodyId body, std::string_view name, std::span<const TrackColor> colors) {
+  if (log_->state == nullptr || !log_->track) return;
+  ByteWriter payload;
+  write_track_label(payload, body, name, colors);
+  log_->emit(ChunkKind::track_label, payload.view());
+}
+
+void Recorder::note(std::string_view key, std::string_view text) {
+  if (log_->state == nullptr || !log_->track) return;
+  ByteWriter payload;
+  write_track_note(payload, key, text);
+  log_->emit(ChunkKind::track_note, payload.view());
+}
 
 bool Recorder::finish() {
   Log& log = *log_;
   if (log.state == nullptr) return !log.failed;
   log.flush();
+  if (log.frame_due) log.frame();
   ByteWriter payload;
   payload.put(log.steps);
   log.emit(ChunkKind::end, payload.view());

@@ -26,6 +26,7 @@ class Opener {
   // False ends the reading: what came before can be played.
   bool take(const Chunk& chunk) {
     if (recording_.closed) return false;
+    if (is_optional(chunk.kind)) return true;
     switch (chunk.kind) {
       case ChunkKind::snapshot:
         return take_snapshot(chunk);
@@ -38,8 +39,9 @@ class Opener {
       case ChunkKind::end:
         recording_.closed = true;
         return true;
+      default:
+        return false;
     }
-    return false;
   }
 
  private:
@@ -97,12 +99,20 @@ Result<Recording> open_recording(std::vector<std::byte> bytes) {
   ChunkReader reader(recording.bytes);
   const Error e = reader.read_header();
   if (e.code != ErrorCode::none) return e;
+  if (reader.layout() != state_layout()) {
+    return make_error(
+        ErrorCode::unsupported,
+        "recording: it was made by a version whose worlds have another state, so it cannot be played; its "
+        "poses can be looked at if it has any");
+  }
   Opener opener(recording);
   Chunk chunk;
   while (reader.next(chunk) && opener.take(chunk)) {
   }
   if (recording.first_snapshot.empty()) {
-    return make_error(ErrorCode::invalid_data, "recording: its first state is missing or damaged");
+    return make_error(
+        ErrorCode::invalid_data,
+        "recording: its first state is missing or damaged; it may have been made to be looked at only");
   }
   return Result<Recording>(std::move(recording));
 }

@@ -1,0 +1,143 @@
+// From a world to frames. See track_writer.h and track_coder.h.
+#include "io/track_writer.h"
+
+#include "base/hash.h"
+
+namespace gyre {
+
+namespace {
+
+bool is_awake(const BodyFlags& flags) {
+  return flags.awake != 0 && flags.type != BodyType::fixed && flags.frozen == 0;
+}
+
+}  // namespace
+
+void TrackWriter::begin(EmitChunk emit) const {
+  ByteWriter payload;
+  write_track_start(payload, start_);
+  emit(ChunkKind::track_start, payload.view());
+}
+
+std::uint32_t TrackWriter::geometry_number(const AnyShape& shape, EmitChunk emit) {
+  const Geometry* const cooked = std::get_if<Geometry>(&shape);
+  if (cooked == nullptr) return 0;
+  const auto next = std::uint32_t(geometry_numbers_.size());
+  const std::uint32_t number = geometry_numbers_.find_or_insert(cooked->content_hash(), next);
+  if (number == next) {
+    ByteWriter payload;
+    write_track_geometry(payload, *cooked);
+    emit(ChunkKind::track_geometry, payload.view());
+  }
+  return number;
+}
+
+std::uint32_t TrackWriter::model_of(const RigidWorld& w, std::uint32_t body, EmitChunk emit) {
+  ByteWriter shapes;
+  for (const ShapeId id : w.bodies.shapes[body]) {
+    TrackShape shape;
+    shape.geometry = w.shapes.geometry[id.index];
+    shape.local = w.shapes.places[id.index];
+    shape.material_id = w.shapes.materials[id.index].id;
+    shape.sensor = w.shapes.proxies[id.index].sensor != 0;
+    write_track_shape(shapes, shape, geometry_number(shape.geometry, emit));
+  }
+  ByteWriter payload;
+  write_track_model(payload, w.bodies.flags[body].type, std::uint32_t(w.bodies.shapes[body].size()),
+                    shapes.view());
+  const auto next = std::uint32_t(model_numbers_.size());
+  const std::uint64_t hash = hash_bytes(payload.view().data(), payload.size());
+  const std::uint32_t number = model_numbers_.find_or_insert(hash, next);
+  if (number == next) emit(ChunkKind::track_model, payload.view());
+  return number;
+}
+
+void TrackWriter::look_at_known(const WorldState& state, WrittenBody& written) {
+  const std::uint32_t index = written.body.index;
+  const Pose& pose = state.rigid.bodies.poses[index];
+  const bool awake = is_awake(state.rigid.bodies.flags[index]);
+  written.moved = awake;
+  if (awake || !(pose == written.seen)) {
+    if (is_finite(pose)) written.next = round_pose(pose, start_.steps);
+    written.moved = awake || !(written.next == written.body.pose.now);
+    written.seen = pose;
+  }
+  if (awake == written.body.awake && written.moved == written.body.active) return;
+  written.body.awake = awake;
+  written.body.active = written.moved;
+  changes_.push_back({index, BodyChange::flags});
+}
+
+void TrackWriter::look_at(const WorldState& state, std::uint32_t index, bool key, EmitChunk emit) {
+  const BodyStore& bodies = state.rigid.bodies;
+  WrittenBody& written = bodies_[index];
+  written.moved = false;
+  if (!bodies.ids.live(index)) {
+    if (!written.present) return;
+    written.present = false;
+    ++set_version_;
+    if (!key) changes_.push_back({index, BodyChange::removed});
+    return;
+  }
+  const auto generation = std::uint16_t(bodies.ids.generation(index));
+  const bool known = written.present && written.body.generation == generation;
+  const std::uint32_t model =
+      known && !models_stale_ ? written.body.model : model_of(state.rigid, index, emit);
+  const bool same = known && model == written.body.model;
+  if (!same) ++set_version_;
+  if (same && !key) {
+    look_at_known(state, written);
+    return;
+  }
+  written.present = true;
+  written.seen = bodies.poses[index];
+  if (is_finite(written.seen)) {
+    written.next = round_pose(written.seen, start_.steps);
+  } else if (!known) {
+    written.next = round_pose({}, start_.steps);
+  }
+  written.body.index = index;
+  written.body.generation = generation;
+  written.body.model = model;
+  written.body.awake = written.body.active = is_awake(bodies.flags[index]);
+  written.body.pose = begin_history(written.next);
+  changes_.push_back({index, BodyChange::put});
+}
+
+std::vector<std::byte> TrackWriter::frame_bits() {
+  BitWriter bits;
+  std::uint64_t count = changes_.size();
+  code_change_count(bits, count);
+  std::uint64_t expected = 0;
+  for (Change& change : changes_) {
+    std::uint64_t gap = change.index - expected;
+    code_change(bits, gap, change.kind);
+    expected = std::uint64_t(change.index) + 1;
+    WrittenBody& written = bodies_[change.index];
+    if (change.kind == BodyChange::put) code_put(bits, written.body, written.next, start_.steps);
+    if (change.kind == BodyChange::flags) code_flags(bits, written.body);
+  }
+  for (WrittenBody& written : bodies_) {
+    if (!written.moved) continue;
+    code_next_pose(bits, written.next, written.body.pose, start_.steps);
+    advance(written.body.pose, written.next, start_.steps);
+  }
+  return bits.take();
+}
+
+void TrackWriter::frame(const WorldState& state, EmitChunk emit) {
+  const bool key = frames_since_key_ >= kKeyframeInterval;
+  frames_since_key_ = key ? 1 : frames_since_key_ + 1;
+  changes_.clear();
+  // Slots are never given back, but a world may be put back to when it had fewer.
+  const std::size_t slots = state.rigid.bodies.ids.capacity();
+  if (bodies_.size() < slots) bodies_.resize(slots);
+  for (std::uint32_t i = 0; i < bodies_.size(); ++i) look_at(state, i, key, emit);
+  models_stale_ = false;
+  ByteWriter payload;
+  write_frame_head(payload, {state.step_count, state.time, set_version_});
+  payload.put_bytes(frame_bits());
+  emit(key ? ChunkKind::track_keyframe : ChunkKind::track_frame, payload.view());
+}
+
+}  // namespace gyre
