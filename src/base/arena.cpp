@@ -1,4 +1,5 @@
-// Blocks of an arena: each new one is as large as all before it together, and reset() melts them into one.
+// Blocks of an arena: each new one is as large as all before it together, and reset() melts them into one that is as large
+// as the step needed, and a little more.
 #include "base/arena.h"
 
 #include <cstring>
@@ -15,12 +16,7 @@ constexpr std::size_t round_up(std::size_t bytes) { return (bytes + kMemoryAlign
 
 }  // namespace
 
-Arena::Arena(Arena&& other) noexcept
-    : current_(std::exchange(other.current_, nullptr)),
-      used_(std::exchange(other.used_, 0)),
-      used_before_(std::exchange(other.used_before_, 0)),
-      held_(std::exchange(other.held_, 0)),
-      high_water_(std::exchange(other.high_water_, 0)) {}
+Arena::Arena(Arena&& other) noexcept { *this = std::move(other); }
 
 Arena& Arena::operator=(Arena&& other) noexcept {
   if (this == &other) return *this;
@@ -29,7 +25,9 @@ Arena& Arena::operator=(Arena&& other) noexcept {
   used_ = std::exchange(other.used_, 0);
   used_before_ = std::exchange(other.used_before_, 0);
   held_ = std::exchange(other.held_, 0);
+  peak_ = std::exchange(other.peak_, 0);
   high_water_ = std::exchange(other.high_water_, 0);
+  clock_ = other.clock_;
   return *this;
 }
 
@@ -37,7 +35,10 @@ Arena::~Arena() { free_blocks(); }
 
 void* Arena::take(std::size_t bytes) {
   const std::size_t rounded = round_up(bytes);
-  if (current_ == nullptr || rounded > current_->capacity - used_) add_block(rounded);
+  if (current_ == nullptr || rounded > current_->capacity - used_) {
+    const std::size_t least = held_ < kFirstBlock ? kFirstBlock : held_;
+    add_block(rounded < least ? least : rounded);
+  }
   std::byte* const memory = reinterpret_cast<std::byte*>(current_) + kHeader + used_;
   used_ += rounded;
   if constexpr (kAssertsActive) std::memset(memory, 0xff, rounded);
@@ -45,32 +46,48 @@ void* Arena::take(std::size_t bytes) {
 }
 
 void Arena::add_block(std::size_t capacity) {
-  const std::size_t least = held_ < kFirstBlock ? kFirstBlock : held_;
-  const std::size_t room = capacity < least ? least : capacity;
-  if (room > SIZE_MAX - kHeader) out_of_memory(room);
+  if (capacity > SIZE_MAX - kHeader) out_of_memory(capacity);
   used_before_ += used_;
-  current_ = new (allocate(room + kHeader)) Block{current_, room};
+  current_ = new (allocate(capacity + kHeader)) Block{current_, used_, capacity};
   used_ = 0;
-  held_ += room;
+  held_ += capacity;
+}
+
+void Arena::release(Mark mark) {
+  peak_ = step_peak();
+  while (current_ != mark.block) free_newest();
+  GYRE_ASSERT(mark.used <= used_, "marks are gone back to in the order of a stack");
+  used_ = mark.used;
 }
 
 void Arena::reset() {
+  const std::size_t peak = step_peak();
   high_water_ = high_water();
-  const bool in_pieces = current_ != nullptr && current_->previous != nullptr;
-  const std::size_t room = held_;
-  if (in_pieces) free_blocks();
+  peak_ = 0;
+  const bool too_small = peak > held_ || (current_ != nullptr && current_->previous != nullptr);
+  const bool too_large = clock_.rests(peak, held_);
   used_ = 0;
   used_before_ = 0;
-  if (in_pieces) add_block(room);
+  if (!too_small && !too_large) return;
+  const std::size_t need = too_small ? peak : clock_.most_needed();
+  const std::size_t room = round_up(need + need / 8);
+  free_blocks();
+  add_block(room < kFirstBlock ? kFirstBlock : room);
+}
+
+void Arena::free_newest() {
+  Block* const block = current_;
+  current_ = block->previous;
+  used_ = block->used_in_previous;
+  used_before_ -= used_;
+  held_ -= block->capacity;
+  deallocate(block, block->capacity + kHeader);
 }
 
 void Arena::free_blocks() {
-  while (current_ != nullptr) {
-    Block* const block = current_;
-    current_ = block->previous;
-    deallocate(block, block->capacity + kHeader);
-  }
-  held_ = 0;
+  while (current_ != nullptr) free_newest();
+  used_ = 0;
+  used_before_ = 0;
 }
 
 }  // namespace gyre

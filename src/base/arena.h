@@ -1,9 +1,12 @@
-// Arena: bump memory that lives for one step. make() hands out uninitialised arrays; reset() takes all of them back at
-// once and keeps the memory, as one block large enough for what the last step needed, so that after the first steps
-// nothing is allocated any more. One per worker: nothing here is shared between threads.
+// Arena: bump memory that lives for one step or less. make() hands out uninitialised arrays; reset() takes all of them back
+// at once and keeps the memory, as one block large enough for what the last step needed, so that after the first steps
+// nothing is allocated any more. A part of a step may take back what it used by itself (ArenaScope), so that the parts use
+// the same memory one after the other. What was not needed for long is given back. One per worker: nothing here is shared
+// between threads.
 #pragma once
 
 #include "base/check.h"
+#include "base/idle_clock.h"
 #include "base/memory.h"
 
 #include <cstddef>
@@ -36,27 +39,54 @@ class Arena {
   // Takes back all memory handed out.
   void reset();
 
-  // Bytes handed out since the last reset, with rounding to whole cache lines; the most that ever was; bytes held.
+  // A place to go back to: release() takes back what was handed out since then.
+  struct Mark {
+    const void* block = nullptr;
+    std::size_t used = 0;
+  };
+  Mark mark() const { return {current_, used_}; }
+  void release(Mark mark);
+
+  // Bytes handed out and not taken back, with rounding to whole cache lines; the most that ever was; bytes held.
   std::size_t bytes_used() const { return used_before_ + used_; }
-  std::size_t high_water() const { return high_water_ < bytes_used() ? bytes_used() : high_water_; }
+  std::size_t high_water() const { return high_water_ < step_peak() ? step_peak() : high_water_; }
   std::size_t bytes_held() const { return held_; }
 
  private:
   // Sits at the start of each block and takes one cache line of it.
   struct Block {
     Block* previous;
-    std::size_t capacity;  // bytes after the header
+    std::size_t used_in_previous;  // when this one was added
+    std::size_t capacity;          // bytes after the header
   };
 
   void* take(std::size_t bytes);
   void add_block(std::size_t capacity);
+  void free_newest();
   void free_blocks();
+  // The most that was out at once since the last reset.
+  std::size_t step_peak() const { return peak_ < bytes_used() ? bytes_used() : peak_; }
 
   Block* current_ = nullptr;     // the newest; older ones hang behind it and are full
   std::size_t used_ = 0;         // of the current block
   std::size_t used_before_ = 0;  // of all older blocks
   std::size_t held_ = 0;         // capacity of all blocks
+  std::size_t peak_ = 0;         // of this step, at the last release
   std::size_t high_water_ = 0;
+  IdleClock clock_;
+};
+
+// Takes back, at the end of a block of code, what was handed out in it.
+class ArenaScope {
+ public:
+  explicit ArenaScope(Arena& arena) : arena_(arena), mark_(arena.mark()) {}
+  ~ArenaScope() { arena_.release(mark_); }
+  ArenaScope(const ArenaScope&) = delete;
+  ArenaScope& operator=(const ArenaScope&) = delete;
+
+ private:
+  Arena& arena_;
+  Arena::Mark mark_;
 };
 
 }  // namespace gyre

@@ -61,6 +61,45 @@ TEST(Arena, CountsWhatItGave) {
   EXPECT_EQ(arena.high_water(), used);
 }
 
+TEST(Arena, AScopeGivesItsMemoryToTheNext) {
+  Arena arena;
+  const auto step = [&arena] {
+    arena.make<std::uint8_t>(1000);
+    for (int part = 0; part < 10; ++part) {
+      const ArenaScope scope(arena);
+      const std::span<std::uint8_t> outer = arena.make<std::uint8_t>(100000);
+      std::memset(outer.data(), 1, outer.size());
+      {
+        const ArenaScope inner(arena);
+        const std::span<std::uint8_t> piece = arena.make<std::uint8_t>(200000);
+        std::memset(piece.data(), 2, piece.size());
+      }
+      for (const std::uint8_t byte : outer) ASSERT_EQ(byte, 1);
+    }
+    EXPECT_EQ(arena.bytes_used(), 1024u);
+  };
+  step();
+  EXPECT_EQ(arena.high_water(), 1024u + 100032u + 200000u);
+  arena.reset();
+  EXPECT_LE(arena.bytes_held(), arena.high_water() / 8 * 9 + 64);
+  const std::uint64_t before = allocation_count();
+  for (int i = 0; i < 5; ++i) {
+    step();
+    arena.reset();
+  }
+  EXPECT_EQ(allocation_count(), before);
+}
+
+TEST(Arena, GivesBackWhatWasNotNeededForLong) {
+  Arena arena;
+  arena.make<std::uint8_t>(1 << 20);
+  for (int i = 0; i < 200; ++i) {
+    arena.reset();
+    arena.make<std::uint8_t>(20000);
+  }
+  EXPECT_LT(arena.bytes_held(), 30000u);
+}
+
 TEST(Arena, GivesAllMemoryBack) {
   const std::uint64_t before = total_bytes();
   {

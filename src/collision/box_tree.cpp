@@ -316,19 +316,19 @@ void BoxTree::move(std::uint32_t item, const Aabb& box) {
 // -------------------------------------------------------------------------------------------------- many at once
 
 void BoxTree::build(std::span<const std::uint32_t> items, std::span<const Aabb> boxes) {
-  clear();
-  if (items.empty()) return;
+  begin_build();
+  for (std::size_t i = 0; i < items.size(); ++i) add_to_build(items[i], boxes[i]);
+  finish_build();
+}
+
+void BoxTree::finish_build() {
+  if (entries_.empty()) return;
   std::uint32_t highest = 0;
-  entries_.clear();
-  entries_.reserve(items.size());
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    entries_.push_back({boxes[i], items[i]});
-    highest = max(highest, items[i]);
-  }
+  for (const Entry& entry : entries_) highest = max(highest, entry.child);
   if (places_.size() <= highest) places_.resize(std::size_t(highest) + 1, kNowhere);
-  size_ = items.size();
+  size_ = entries_.size();
   int level = 0;
-  while (items.size() > room_of(level)) ++level;
+  while (size_ > room_of(level)) ++level;
   root_ = build_node(entries_, level, 0);
 }
 

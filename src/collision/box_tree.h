@@ -13,6 +13,7 @@
 #pragma once
 
 #include "base/array.h"
+#include "base/idle_clock.h"
 #include "math/wide.h"
 
 #include <gyre/math.h>
@@ -33,6 +34,18 @@ class BoxTree {
   void clear();
   // Forgets everything and builds anew: items[i] has boxes[i].
   void build(std::span<const std::uint32_t> items, std::span<const Aabb> boxes);
+  // The same for items that come one by one: begin_build(), add_to_build() for each, finish_build().
+  void begin_build() {
+    clear();
+    entries_.clear();
+  }
+  void add_to_build(std::uint32_t item, const Aabb& box) { entries_.push_back({box, item}); }
+  void finish_build();
+  // To be called once a step: what a build needed is given back when none came for long.
+  void trim() {
+    clock_.trim(entries_, entries_.size());
+    entries_.clear();
+  }
   void insert(std::uint32_t item, const Aabb& box);
   void remove(std::uint32_t item);
   // Gives an item that is in the tree another box.
@@ -80,7 +93,7 @@ class BoxTree {
   const char* find_fault() const;
   // Sum over inner nodes of their boxes' surface over the root's: how many nodes a walk meets, roughly.
   double cost() const;
-  std::size_t bytes() const { return nodes_.bytes() + places_.bytes() + free_.bytes(); }
+  std::size_t bytes() const { return nodes_.bytes() + places_.bytes() + free_.bytes() + entries_.bytes(); }
 
  private:
   static constexpr std::uint32_t kNowhere = 0xffffffffu;
@@ -139,7 +152,8 @@ class BoxTree {
   Array<Node> nodes_;
   Array<std::uint32_t> free_;
   Array<std::uint32_t> places_;  // by item: kWidth * node + lane, or kNowhere
-  Array<Entry> entries_;         // scratch of build
+  Array<Entry> entries_;         // of the present build
+  IdleClock clock_;
   std::uint32_t root_ = kNowhere;
   std::uint32_t next_improved_ = 0;
   std::size_t size_ = 0;

@@ -45,6 +45,10 @@ class Broadphase {
   // Null if it holds the proxies with their boxes, but for those in `changed` (ascending), which it has not been shown yet;
   // otherwise what is wrong. Walks everything: for tests and debug builds.
   virtual const char* find_fault(std::span<const Proxy> proxies, std::span<const std::uint32_t> changed) const;
+  // To be called once a step: memory that only searches and builds need is given back when it was not needed for long.
+  virtual void trim() = 0;
+  // Of memory held.
+  virtual std::size_t bytes() const = 0;
 };
 
 std::unique_ptr<Broadphase> make_broadphase(BroadPhaseKind kind);

@@ -38,14 +38,11 @@ BroadphaseBvh::Home BroadphaseBvh::home_of(const Proxy& proxy) {
 }
 
 void BroadphaseBvh::build_tree(std::span<const Proxy> proxies, Home home) {
-  items_.clear();
-  boxes_.clear();
+  trees_[home].begin_build();
   for (std::uint32_t i = 0; i < proxies.size(); ++i) {
-    if (homes_[i] != home) continue;
-    items_.push_back(i);
-    boxes_.push_back(proxies[i].fat_box);
+    if (homes_[i] == home) trees_[home].add_to_build(i, proxies[i].fat_box);
   }
-  trees_[home].build(items_, boxes_);
+  trees_[home].finish_build();
 }
 
 void BroadphaseBvh::rebuild(std::span<const Proxy> proxies) {
@@ -144,6 +141,15 @@ void BroadphaseBvh::for_each_node(FunctionRef<void(const NodeBox&)> visit) const
   for (const Home home : {kFixed, kMoving}) {
     trees_[home].for_each_node([&](const Aabb& box, int depth) { visit({box, depth, home == kFixed}); });
   }
+}
+
+void BroadphaseBvh::trim() {
+  for (BoxTree& tree : trees_) tree.trim();
+  collector_.trim();
+}
+
+std::size_t BroadphaseBvh::bytes() const {
+  return trees_[0].bytes() + trees_[1].bytes() + unbounded_.bytes() + homes_.bytes() + collector_.bytes();
 }
 
 const char* BroadphaseBvh::find_fault(std::span<const Proxy> proxies, std::span<const std::uint32_t> changed) const {

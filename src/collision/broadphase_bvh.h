@@ -16,6 +16,8 @@ class BroadphaseBvh final : public Broadphase {
   void find_pairs(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved, TaskSystem& tasks,
                   Array<std::uint64_t>& pairs) override;
   void query(std::span<const Proxy> proxies, const Aabb& box, Array<std::uint32_t>& found) const override;
+  void trim() override;
+  std::size_t bytes() const override;
 
   void for_each_node(FunctionRef<void(const NodeBox&)> visit) const override;
   const char* find_fault(std::span<const Proxy> proxies, std::span<const std::uint32_t> changed) const override;
@@ -34,8 +36,6 @@ class BroadphaseBvh final : public Broadphase {
   Array<std::uint32_t> unbounded_;  // ascending
   Array<Home> homes_;               // by proxy
   PairCollector collector_;
-  Array<std::uint32_t> items_;  // scratch of build_tree
-  Array<Aabb> boxes_;
 };
 
 }  // namespace gyre

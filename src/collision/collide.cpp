@@ -9,7 +9,6 @@ namespace {
 
 // Contacts a block: one word of a bitset, so that no two blocks write to the same one.
 constexpr int kBlock = 64;
-constexpr int kBodyBlock = 512;
 
 void prepare_bits(Bitset& bits, std::size_t count) {
   if (bits.size() < count) bits.resize(count);
@@ -26,15 +25,11 @@ void look(ContactStore& store, std::uint32_t slot, const CollideInput& input, To
     contact.ended = 1;
     changes.gone.set(slot);
   } else {
-    const BodyLook& look_a = changes.looks[contact.body_a];
-    const BodyLook& look_b = changes.looks[contact.body_b];
+    const BodyLook& look_a = input.looks[contact.body_a];
+    const BodyLook& look_b = input.looks[contact.body_b];
     if (look_a.spin < 0.0f && look_b.spin < 0.0f) return;
-    const ContactPair pair{&input.shapes[contact.shape_a],
-                           &input.shapes[contact.shape_b],
-                           &input.bodies[contact.body_a],
-                           &input.bodies[contact.body_b],
-                           &look_a,
-                           &look_b};
+    const ContactPair pair{&input.shapes[contact.shape_a], &input.shapes[contact.shape_b], &look_a, &look_b,
+                           input.centers[contact.body_a],  input.centers[contact.body_b]};
     touches = contact.sensor != 0 ? look_at_sensor(contact, pair)
                                   : update_contact(store, contact, pair, input.recycle);
   }
@@ -50,12 +45,6 @@ void collide(ContactStore& store, const CollideInput& input, TaskSystem& tasks, 
   prepare_bits(changes.began, count);
   prepare_bits(changes.ended, count);
   prepare_bits(changes.gone, count);
-  changes.looks.resize_uninitialized(input.bodies.size());
-  for_blocks(tasks, int(input.bodies.size()), kBodyBlock, [&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i) {
-      changes.looks[i] = make_body_look(input.bodies[std::size_t(i)], input.seconds);
-    }
-  });
   for_blocks(tasks, int(count), kBlock, [&](int begin, int end, int) {
     for (int slot = begin; slot < end; ++slot) look(store, std::uint32_t(slot), input, changes);
   });

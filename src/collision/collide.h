@@ -24,7 +24,7 @@ struct ColliderShape {
   float size = 0.0f;
 };
 
-// One body, as the stage needs it.
+// One body, as its look is made from it.
 struct ColliderBody {
   Pose pose;              // of the origin
   Vec3 center;            // centre of mass, body frame
@@ -34,15 +34,7 @@ struct ColliderBody {
   bool awake = false;     // awake and not fixed
 };
 
-struct CollideInput {
-  std::span<const ColliderShape> shapes;
-  std::span<const ColliderBody> bodies;
-  std::span<const Proxy> proxies;
-  float seconds = 0.0f;  // length of the step: how far things may come
-  bool recycle = true;   // false: looks at every pair anew (tests compare with that)
-};
-
-// What contacts that have not changed need to know of a body, in one cache line. Made at the start of the stage.
+// What contacts need to know of a body, in one cache line. Made before the stage.
 struct alignas(64) BodyLook {
   DVec3 position;  // of the origin
   Quat orientation;
@@ -52,12 +44,22 @@ struct alignas(64) BodyLook {
   float extent = 0.0f;  // m, a bound of the farthest point from the origin
 };
 
+// `seconds`: length of the step, how far things may come.
+BodyLook make_body_look(const ColliderBody& body, float seconds);
+
+struct CollideInput {
+  std::span<const ColliderShape> shapes;
+  std::span<const BodyLook> looks;  // by body
+  std::span<const Vec3> centers;    // by body: centre of mass, body frame
+  std::span<const Proxy> proxies;
+  bool recycle = true;  // false: looks at every pair anew (tests compare with that)
+};
+
 // Bits by contact slot: what changed in this step.
 struct TouchChanges {
   Bitset began;  // not touching before, touching now (sensors too)
   Bitset ended;  // the other way round
   Bitset gone;   // fat boxes no longer overlap: remove the contact (`ended` is set too if it was touching)
-  Array<BodyLook> looks;  // memory of the stage, by body
 };
 
 // Brings all contacts up to date. A contact with no awake body is left exactly as it is, unless it is gone.

@@ -71,12 +71,20 @@ class CollideScene {
     remove_gone(store, changes.gone, [](std::uint32_t, const Contact&) {});
   }
 
-  void look() { collide(store, {shapes, bodies, proxies, seconds, recycle}, tasks_, changes); }
+  void look() {
+    std::vector<BodyLook> looks;
+    std::vector<Vec3> centers;
+    for (const ColliderBody& body : bodies) {
+      looks.push_back(make_body_look(body, seconds));
+      centers.push_back(body.center);
+    }
+    collide(store, {shapes, looks, centers, proxies, recycle}, tasks_, changes);
+  }
 
   // The contact of two shapes; null if there is none.
   Contact* contact(std::uint32_t a, std::uint32_t b) {
-    const std::uint32_t* const slot = store.slot_of_pair.find(pair_key(a, b));
-    return slot != nullptr ? &store.contacts[*slot] : nullptr;
+    const std::uint32_t slot = find_contact(store, pair_key(a, b));
+    return slot != SlotTable::kNone ? &store.contacts[slot] : nullptr;
   }
   // The only manifold of two shapes; a manifold without points if there is none.
   Manifold manifold(std::uint32_t a, std::uint32_t b) {

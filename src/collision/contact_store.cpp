@@ -50,6 +50,13 @@ void give_manifolds(ContactStore& store, std::uint32_t first, std::uint16_t room
   }
 }
 
+// How the table of pairs reads the key of a slot.
+auto key_reader(const ContactStore& store) {
+  return [&store](std::uint32_t slot) {
+    return std::uint64_t(store.contacts[slot].shape_a) << 32 | store.contacts[slot].shape_b;
+  };
+}
+
 void link(ContactStore& store, std::uint32_t slot) {
   const Contact& contact = store.contacts[slot];
   if (store.first_of_shape.size() <= contact.shape_b) {
@@ -98,8 +105,12 @@ std::uint32_t FreePlaces::lowest() {
   return found == free_.size() ? kNone : hint_;
 }
 
+std::uint32_t find_contact(const ContactStore& store, std::uint64_t key) {
+  return store.slot_of_pair.find(key, key_reader(store));
+}
+
 std::uint32_t add_contact(ContactStore& store, std::uint64_t key, const PairShapes& shapes) {
-  GYRE_ASSERT(!store.slot_of_pair.contains(key), "a pair has one contact");
+  GYRE_ASSERT(find_contact(store, key) == SlotTable::kNone, "a pair has one contact");
   std::uint32_t slot = store.free_contacts.lowest();
   if (slot == FreePlaces::kNone) {
     slot = std::uint32_t(store.contacts.size());
@@ -121,7 +132,7 @@ std::uint32_t add_contact(ContactStore& store, std::uint64_t key, const PairShap
   // Nothing of a former owner may leak into hashes and snapshots.
   for (std::uint32_t i = 0; i < contact.manifold_room; ++i)
     store.manifolds[contact.first_manifold + i] = Manifold{};
-  store.slot_of_pair.insert(key, slot);
+  store.slot_of_pair.insert(key, slot, key_reader(store));
   link(store, slot);
   ++store.live;
   return slot;
@@ -131,7 +142,7 @@ void remove_contact(ContactStore& store, std::uint32_t slot) {
   const Contact contact = store.contacts[slot];
   GYRE_ASSERT(contact.manifold_room != 0, "the contact exists");
   unlink(store, slot);
-  store.slot_of_pair.erase(pair_key(contact.shape_a, contact.shape_b));
+  store.slot_of_pair.erase(pair_key(contact.shape_a, contact.shape_b), key_reader(store));
   for (std::uint32_t i = 0; i < contact.manifold_room; ++i)
     store.manifolds[contact.first_manifold + i] = Manifold{};
   give_manifolds(store, contact.first_manifold, contact.manifold_room);
@@ -143,7 +154,6 @@ void remove_contact(ContactStore& store, std::uint32_t slot) {
 void rebuild_index(ContactStore& store) {
   const std::size_t count = store.contacts.size();
   store.slot_of_pair.clear();
-  store.slot_of_pair.reserve(count);
   store.first_of_shape.clear();
   store.links.clear();
   store.links.resize(count);
@@ -158,7 +168,7 @@ void rebuild_index(ContactStore& store) {
       store.free_contacts.give(slot);
       continue;
     }
-    store.slot_of_pair.insert(pair_key(contact.shape_a, contact.shape_b), slot);
+    store.slot_of_pair.insert(pair_key(contact.shape_a, contact.shape_b), slot, key_reader(store));
     link(store, slot);
     ++store.live;
     std::uint8_t& used = store.chunk_used[contact.first_manifold / kChunk];
@@ -187,8 +197,8 @@ const char* find_fault(const ContactStore& store, std::uint32_t slot, Array<std:
     if ((used[i / kChunk] & bit) != 0) return "two contacts own one manifold";
     used[i / kChunk] = std::uint8_t(used[i / kChunk] | bit);
   }
-  const std::uint32_t* const found = store.slot_of_pair.find(pair_key(contact.shape_a, contact.shape_b));
-  if (found == nullptr || *found != slot) return "the index does not lead to the contact";
+  if (find_contact(store, pair_key(contact.shape_a, contact.shape_b)) != slot)
+    return "the index does not lead to the contact";
   const std::uint32_t shapes[2] = {contact.shape_a, contact.shape_b};
   for (std::uint32_t side = 0; side < 2; ++side) {
     const std::uint32_t self = 2 * slot + side;

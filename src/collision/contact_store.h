@@ -8,8 +8,7 @@
 
 #include "base/array.h"
 #include "base/bitset.h"
-#include "base/flat_map.h"
-#include "base/function_ref.h"
+#include "base/slot_table.h"
 #include "collision/proxy.h"
 #include "geometry/manifold.h"
 
@@ -77,7 +76,7 @@ struct ContactStore {
   std::uint32_t live = 0;
 
   // The rest follows from `contacts` (rebuild_index makes it anew) and is no part of the state.
-  FlatMap<std::uint32_t> slot_of_pair;  // pair_key -> slot
+  SlotTable slot_of_pair;  // see find_contact
   Array<std::uint32_t>
       first_of_shape;         // by shape: the first link of its list, in no particular order; may be short
   Array<ContactLinks> links;  // by slot
@@ -96,6 +95,8 @@ struct PairShapes {
   ContactSurface surface;
 };
 
+// The slot of a pair's contact; SlotTable::kNone if it has none.
+std::uint32_t find_contact(const ContactStore& store, std::uint64_t key);
 // Adds a contact (the pair must be new) / removes one; the manifolds' impulses go with it.
 std::uint32_t add_contact(ContactStore& store, std::uint64_t key, const PairShapes& shapes);
 void remove_contact(ContactStore& store, std::uint32_t slot);

@@ -54,8 +54,6 @@ View make_view(const ContactPair& pair, float size) {
   return view;
 }
 
-DVec3 center_of_mass(const ColliderBody& body) { return body.pose * body.center; }
-
 // ------------------------------------------------------------------------------------------------------- recycling
 
 // The motion of B in A's body frame from `seen` to `now`, small or not.
@@ -139,6 +137,16 @@ Follow follow_of(const Shape& a, const Shape& b) {
   return follow;
 }
 
+Pose pose_of(const BodyLook& look) { return {look.position, look.orientation}; }
+DVec3 center_of_mass(const BodyLook& look, Vec3 center) { return pose_of(look) * center; }
+// The frame that anchors lie in.
+const BodyLook& frame_look(const ContactPair& pair, const Follow& follow) {
+  return follow.frame_is_b ? *pair.look_b : *pair.look_a;
+}
+Vec3 frame_center(const ContactPair& pair, const Follow& follow) {
+  return follow.frame_is_b ? pair.center_b : pair.center_a;
+}
+
 // The way of the moving body's point at an anchor.
 Vec3 way_of(const PointAnchor& anchor, Vec3 seen_normal, const Follow& follow, const PointMotion& motion) {
   return motion.of(anchor.position + follow.side * (0.5f * anchor.separation + follow.radius) * seen_normal);
@@ -197,11 +205,11 @@ bool recycle(ContactStore& store, const Contact& contact, const ContactPair& pai
   for (const Manifold& manifold : manifolds) {
     if (!anchors_hold(manifold, follow, view.size, motion.sine, points)) return false;
   }
-  const ColliderBody& frame = follow.frame_is_b ? *pair.body_b : *pair.body_a;
-  const Mat3 world_from_frame = to_matrix(frame.pose.orientation);
-  const Vec3 com_b_from_a = difference(center_of_mass(*pair.body_b), center_of_mass(*pair.body_a));
+  const Mat3 world_from_frame = to_matrix(frame_look(pair, follow).orientation);
+  const Vec3 com_b_from_a =
+      difference(center_of_mass(*pair.look_b, pair.center_b), center_of_mass(*pair.look_a, pair.center_a));
   for (Manifold& manifold : manifolds) {
-    move_manifold(manifold, follow, world_from_frame, frame.center, com_b_from_a, points);
+    move_manifold(manifold, follow, world_from_frame, frame_center(pair, follow), com_b_from_a, points);
   }
   return true;
 }
@@ -228,8 +236,8 @@ template <int kRoom>
 void ask_shapes(const ContactPair& pair, float reach, PairCache& cache, Found<kRoom>& found) {
   Shape a = pair.shape_a->shape;
   Shape b = pair.shape_b->shape;
-  found.frame = pair.body_a->pose * pair.shape_a->body_from_shape;
-  Pose frame_b = pair.body_b->pose * pair.shape_b->body_from_shape;
+  found.frame = pose_of(*pair.look_a) * pair.shape_a->body_from_shape;
+  Pose frame_b = pose_of(*pair.look_b) * pair.shape_b->body_from_shape;
   center_plane(a, found.frame, frame_b.position);
   center_plane(b, frame_b, found.frame.position);
   found.count = collide_shapes(a, b, inverse_times(found.frame, frame_b), reach, cache, found.manifolds);
@@ -346,16 +354,16 @@ void match_by_place(Former<kRoom>& former, Manifold& manifold, unsigned matched,
 
 // From the frame of shape A into world axes, and into the body frame for anchors. Impulses are zero.
 Manifold to_world(const LocalManifold& local, const Pose& frame, const ContactPair& pair) {
-  const bool frame_is_b = follow_of(pair.shape_a->shape, pair.shape_b->shape).frame_is_b;
-  const ColliderBody& frame_body = frame_is_b ? *pair.body_b : *pair.body_a;
+  const Follow follow = follow_of(pair.shape_a->shape, pair.shape_b->shape);
+  const Quat frame_turn = frame_look(pair, follow).orientation;
   // Each side by itself: one of the two may be far away (a plane's body), and floats with it.
-  const Vec3 frame_from_a = difference(frame.position, center_of_mass(*pair.body_a));
-  const Vec3 frame_from_b = difference(frame.position, center_of_mass(*pair.body_b));
+  const Vec3 frame_from_a = difference(frame.position, center_of_mass(*pair.look_a, pair.center_a));
+  const Vec3 frame_from_b = difference(frame.position, center_of_mass(*pair.look_b, pair.center_b));
   Manifold out;
   out.normal = rotate(frame.orientation, local.normal);
   out.count = local.count;
   out.triangle = local.triangle;
-  out.seen_normal = rotate_inverse(frame_body.pose.orientation, out.normal);
+  out.seen_normal = rotate_inverse(frame_turn, out.normal);
   for (int i = 0; i < local.count; ++i) {
     ContactPointState& point = out.points[i];
     const Vec3 place = rotate(frame.orientation, local.points[i].position);
@@ -363,9 +371,8 @@ Manifold to_world(const LocalManifold& local, const Pose& frame, const ContactPa
     point.from_b = place + frame_from_b;
     point.separation = local.points[i].separation;
     point.feature = local.points[i].feature;
-    out.anchors[i].position =
-        rotate_inverse(frame_body.pose.orientation, frame_is_b ? point.from_b : point.from_a) +
-        frame_body.center;
+    out.anchors[i].position = rotate_inverse(frame_turn, follow.frame_is_b ? point.from_b : point.from_a) +
+                              frame_center(pair, follow);
     out.anchors[i].separation = point.separation;
   }
   return out;

@@ -17,17 +17,14 @@
 
 namespace gyre {
 
-// The two sides of a contact. What most contacts need of a body lies in its BodyLook alone.
+// The two sides of a contact.
 struct ContactPair {
   const ColliderShape* shape_a;
   const ColliderShape* shape_b;
-  const ColliderBody* body_a;
-  const ColliderBody* body_b;
   const BodyLook* look_a;
   const BodyLook* look_b;
+  Vec3 center_a, center_b;  // centres of mass, body frames
 };
-
-BodyLook make_body_look(const ColliderBody& body, float seconds);
 
 // The smaller of two sizes, of those that are sizes at all (see ColliderShape::size).
 float smaller_size(float a, float b);

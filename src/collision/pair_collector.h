@@ -4,6 +4,7 @@
 
 #include "base/array.h"
 #include "base/bitset.h"
+#include "base/idle_clock.h"
 #include "base/sort.h"
 #include "collision/proxy.h"
 #include "task/parallel.h"
@@ -42,6 +43,21 @@ class PairCollector {
     append_sorted(pairs);
   }
 
+  // To be called once a step: gives memory back that was not needed for long.
+  void trim() {
+    const std::size_t needed = last_ * sizeof(std::uint64_t);
+    last_ = 0;
+    if (!clock_.rests(needed, scratch_.bytes())) return;
+    most_ = 2 * clock_.most_needed() / sizeof(std::uint64_t);
+    for (Array<std::uint64_t>& keys : found_) keys = Array<std::uint64_t>();
+    scratch_ = Array<std::uint64_t>();
+  }
+  std::size_t bytes() const {
+    std::size_t sum = scratch_.bytes() + (is_moved_.size() + 7) / 8;
+    for (const Array<std::uint64_t>& keys : found_) sum += keys.bytes();
+    return sum;
+  }
+
  private:
   static constexpr int kBlock = 32;
 
@@ -54,6 +70,7 @@ class PairCollector {
     const std::size_t count = pairs.size() - before;
     // Which worker finds how many changes from run to run: each gets room for all, so that none grows once warm.
     if (count > most_) most_ = count + count / 2;
+    last_ = last_ < count ? count : last_;
     if (scratch_.size() < count) scratch_.resize_uninitialized(most_);
     radix_sort_u64({pairs.data() + before, count}, scratch_);
   }
@@ -62,6 +79,8 @@ class PairCollector {
   Array<Array<std::uint64_t>> found_;  // by worker
   Array<std::uint64_t> scratch_;
   std::size_t most_ = 0;
+  std::size_t last_ = 0;  // pairs found since the last trim()
+  IdleClock clock_;
 };
 
 }  // namespace gyre

@@ -8,7 +8,7 @@ namespace gyre {
 void add_pairs(ContactStore& store, std::span<const std::uint64_t> keys, const BlockedBodies& blocked,
                FunctionRef<PairShapes(std::uint64_t key)> describe, Array<std::uint32_t>* added) {
   for (const std::uint64_t key : keys) {
-    if (store.slot_of_pair.contains(key)) continue;
+    if (find_contact(store, key) != SlotTable::kNone) continue;
     const PairShapes shapes = describe(key);
     if (!blocked.empty() && blocked.contains(pair_key(shapes.body_a, shapes.body_b))) continue;
     const std::uint32_t slot = add_contact(store, key, shapes);

@@ -1,6 +1,7 @@
 // read_contacts: every contact point as columns. See <gyre/debug.h>.
 #include "debug/flat.h"
 #include "debug/step_length.h"
+#include "rigid/solve_batches.h"
 #include "world/world_state.h"
 
 #include <gyre/debug.h>
@@ -9,22 +10,29 @@ namespace gyre {
 
 namespace {
 
-// Finds the solver's group of manifolds that are asked for in the order of their contacts, as the solver gathered them.
+// The solver's groups of all manifolds that it has to solve, found anew: they follow from the contacts alone.
 class SolverColors {
  public:
-  explicit SolverColors(const SolveScratch& solve) : solve_(solve) {}
+  explicit SolverColors(const RigidWorld& w) {
+    Array<ColoringPair> pairs;
+    for (const Contact& contact : w.contacts.contacts) {
+      if (!is_solved(w, contact)) continue;
+      const ColoringPair pair{is_active(w, contact.body_a) ? contact.body_a : ColoringPair::kNone,
+                              is_active(w, contact.body_b) ? contact.body_b : ColoringPair::kNone};
+      for (const Manifold& manifold : manifolds_of(w.contacts, contact)) {
+        if (manifold.count > 0) pairs.push_back(pair);
+      }
+    }
+    color_constraints(pairs, std::uint32_t(w.bodies.motion.size()), {}, kColoringOptions, coloring_);
+  }
 
-  std::uint8_t find(std::uint32_t slot, const Manifold& manifold) {
-    const Array<std::uint32_t>& contacts = solve_.constraint_contact;
-    while (next_ < contacts.size() && contacts[next_] < slot) ++next_;
-    if (next_ >= contacts.size() || contacts[next_] != slot) return kNoColor;
-    if (solve_.constraints[next_].manifold != &manifold) return kNoColor;
-    const std::size_t found = next_++;
-    return found < solve_.contact_colors.color.size() ? solve_.contact_colors.color[found] : kNoColor;
+  // To be asked in the order of the contacts, for each manifold with points.
+  std::uint8_t next(const RigidWorld& w, const Contact& contact) {
+    return is_solved(w, contact) ? coloring_.color[next_++] : kNoColor;
   }
 
  private:
-  const SolveScratch& solve_;
+  Coloring coloring_;
   std::size_t next_ = 0;
 };
 
@@ -74,13 +82,12 @@ void read_contacts(const World& world, DVec3 origin, ContactTable& out) {
   const RigidWorld& w = world.state().rigid;
   clear_all(out.bodies, out.shapes, out.positions, out.normals, out.tangents, out.separations, out.forces,
             out.friction_forces, out.scales, out.states, out.colors);
-  SolverColors colors(world.state().solve);
-  for (std::uint32_t slot = 0; slot < w.contacts.contacts.size(); ++slot) {
-    const Contact& contact = w.contacts.contacts[slot];
+  SolverColors colors(w);
+  for (const Contact& contact : w.contacts.contacts) {
     if (contact.manifold_room == 0) continue;
     for (const Manifold& manifold : manifolds_of(w.contacts, contact)) {
       if (manifold.count == 0) continue;
-      const std::uint8_t color = colors.find(slot, manifold);
+      const std::uint8_t color = colors.next(w, contact);
       for (int k = 0; k < manifold.count; ++k) {
         add_point(w, contact, manifold, k, origin, out);
         out.colors.push_back(color);

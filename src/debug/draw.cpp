@@ -130,7 +130,7 @@ void Drawing::geometry() {
   w_.shapes.ids.for_each_live([&](std::uint32_t shape) {
     lines.clear();
     add_wireframe(w_.shapes.geometry[shape], lines, paint_.options().segments);
-    const Pose pose = w_.bodies.poses[w_.shapes.bodies[shape]] * w_.shapes.places[shape];
+    const Pose pose = origin_pose(w_.bodies, w_.shapes.bodies[shape]) * w_.shapes.places[shape];
     const Transform seen{difference(pose.position, paint_.options().origin), pose.orientation};
     const Color color = w_.shapes.proxies[shape].sensor ? kYellow : shape_color(shape);
     for (std::size_t i = 0; i < lines.size() / 6; ++i) {

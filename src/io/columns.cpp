@@ -52,6 +52,7 @@ void forget_reports(WorldState& state) {
   SolveScratch& solve = state.solve;
   solve.constraints.clear(), solve.constraint_contact.clear(), solve.pairs.clear();
   solve.joints.clear(), solve.joint_pairs.clear();
+  solve.manifold_count = solve.joint_count = 0;
   solve.colors = 0;
 }
 

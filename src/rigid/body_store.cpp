@@ -19,7 +19,6 @@ IdPool::Slot add_body_slot(BodyStore& store) {
     store.sleep.resize(count);
     store.overrides.resize(count);
     store.user_data.resize(count);
-    store.poses.resize(count);
     store.shapes.resize(count);
     store.joints.resize(count);
   }
@@ -33,7 +32,6 @@ IdPool::Slot add_body_slot(BodyStore& store) {
   store.sleep[i] = {};
   store.overrides[i] = {};
   store.user_data[i] = 0;
-  store.poses[i] = {};
   store.shapes[i].clear();
   store.joints[i].clear();
   store.awake_stale = true;

@@ -7,11 +7,10 @@
 
 #include "base/array.h"
 #include "base/slot_map.h"
+#include "base/small_array.h"
 #include "solver/body_motion.h"
 
 #include <gyre/defs.h>
-
-#include <vector>
 
 namespace gyre {
 
@@ -81,9 +80,8 @@ struct BodyStore {
   Array<BodySleep> sleep;
   Array<BodyOverrides> overrides;
   Array<std::uint64_t> user_data;
-  Array<Pose> poses;                // of the origins; derived
-  std::vector<std::vector<ShapeId>> shapes;         // by body, ascending index; derived
-  std::vector<std::vector<std::uint32_t>> joints;   // by body, ascending index; derived
+  Array<SmallArray<ShapeId, 1>> shapes;         // by body, ascending index; derived
+  Array<SmallArray<std::uint32_t, 2>> joints;   // by body, ascending index; derived
   Array<std::uint32_t> awake;       // dynamic bodies that are awake and kinematic ones, ascending; derived
   bool awake_stale = false;         // `awake` must be rebuilt before use
 };
@@ -94,8 +92,12 @@ void remove_body_slot(BodyStore& store, std::uint32_t body);
 // Recomputes the world-frame inverse inertia of one body from its orientation and locked axes.
 BodyInertia world_inertia(const BodyMass& mass, const BodyFlags& flags, Quat orientation);
 void refresh_inertia(BodyStore& store, std::uint32_t body);
-// The pose of the body's origin, from the place of its centre of mass.
+// The pose of the body's origin, from the place of its centre of mass. It is not kept: rounding would make the kept one
+// differ from what a world that is loaded can know.
 Pose origin_pose(const BodyPlace& place, const BodyMass& mass);
+inline Pose origin_pose(const BodyStore& store, std::uint32_t body) {
+  return origin_pose(store.places[body], store.masses[body]);
+}
 void refresh_awake(BodyStore& store);
 inline bool is_movable(const BodyFlags& flags) { return flags.type == BodyType::dynamic && flags.frozen == 0; }
 

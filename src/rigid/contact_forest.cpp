@@ -8,11 +8,7 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
 
-bool is_active(const RigidWorld& w, std::int32_t body) {
-  if (body == kNoBody) return false;
-  const BodyFlags& flags = w.bodies.flags[body];
-  return flags.awake != 0 && is_movable(flags);
-}
+bool is_active(const RigidWorld& w, std::int32_t body) { return body != kNoBody && is_active(w, std::uint32_t(body)); }
 
 // A body that could be part of a resting tree.
 bool is_quiet(const RigidWorld& w, std::uint32_t body, float pull) {
@@ -41,29 +37,31 @@ struct Tally {
   std::uint32_t first = kNone;  // its contact with the fixed world
 };
 
-// The islands of one step: union-find over bodies and what each island has.
+// The islands of one batch: union-find over bodies, by their places in it, and what each island has.
 class IslandTally {
  public:
-  IslandTally(std::size_t bodies, Arena& arena) : parent_(arena.make<std::uint32_t>(bodies)), tally_(arena.make<Tally>(bodies)) {
+  IslandTally(std::size_t bodies, std::span<const std::uint32_t> places, Arena& arena)
+      : places_(places), parent_(arena.make<std::uint32_t>(bodies)), tally_(arena.make<Tally>(bodies)) {
     for (std::uint32_t i = 0; i < bodies; ++i) parent_[i] = i, tally_[i] = {};
   }
   std::uint32_t root(std::uint32_t i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
-  void unite(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
+  void unite(std::int32_t body_a, std::int32_t body_b) {
+    const std::uint32_t a = root(places_[std::size_t(body_a)]);
+    const std::uint32_t b = root(places_[std::size_t(body_b)]);
     if (a < b) {
       parent_[b] = a;
     } else {
       parent_[a] = b;
     }
   }
-  Tally& of(std::uint32_t body) { return tally_[root(body)]; }
+  Tally& of(std::uint32_t body) { return tally_[root(places_[body])]; }
   Tally& at_root(std::uint32_t root) { return tally_[root]; }
 
  private:
+  std::span<const std::uint32_t> places_;
   std::span<std::uint32_t> parent_;
   std::span<Tally> tally_;
 };
@@ -71,20 +69,20 @@ class IslandTally {
 void unite_all(const RigidWorld& w, std::span<const ContactConstraint> constraints, std::span<const std::uint32_t> joints,
                IslandTally& islands) {
   for (const ContactConstraint& c : constraints) {
-    if (is_active(w, c.body_a) && is_active(w, c.body_b)) islands.unite(std::uint32_t(c.body_a), std::uint32_t(c.body_b));
+    if (is_active(w, c.body_a) && is_active(w, c.body_b)) islands.unite(c.body_a, c.body_b);
   }
   for (const std::uint32_t slot : joints) {
     const JointRecord& joint = w.joints.records[slot];
     if (is_active(w, joint.body_a) && is_active(w, joint.body_b)) {
-      islands.unite(std::uint32_t(joint.body_a), std::uint32_t(joint.body_b));
+      islands.unite(joint.body_a, joint.body_b);
     }
   }
 }
 
-void count_all(const RigidWorld& w, std::span<const ContactConstraint> constraints, std::span<const std::uint32_t> joints,
+void count_all(const RigidWorld& w, std::span<const ContactConstraint> constraints, const SolveBatch& batch,
                IslandTally& islands) {
   const float pull = length(w.settings.gravity);
-  for (const std::uint32_t body : w.bodies.awake) {
+  for (const std::uint32_t body : batch.bodies) {
     if (!is_movable(w.bodies.flags[body])) continue;
     Tally& tally = islands.of(body);
     ++tally.bodies;
@@ -101,7 +99,7 @@ void count_all(const RigidWorld& w, std::span<const ContactConstraint> constrain
     tally.first = i;
     if (!is_still(w, active_a ? c.body_b : c.body_a)) ++tally.refused;
   }
-  for (const std::uint32_t slot : joints) {
+  for (const std::uint32_t slot : batch.joints) {
     const JointRecord& joint = w.joints.records[slot];
     for (const std::int32_t body : {joint.body_a, joint.body_b}) {
       if (is_active(w, body)) ++islands.of(std::uint32_t(body)).refused;
@@ -113,21 +111,23 @@ bool hangs(const Tally& tally) {
   return tally.refused == 0 && tally.grounded == 1 && tally.contacts == tally.bodies && tally.bodies > 0;
 }
 
-// For each body the constraints it is in, as linked lists: link 2 * constraint + side.
+// For each body that moves the constraints it is in, as linked lists: link 2 * constraint + side.
 struct Links {
-  std::span<std::uint32_t> first;  // by body
+  std::span<std::uint32_t> first;  // by the body's place
   std::span<std::uint32_t> next;   // by link
 };
 
-Links link_constraints(std::size_t bodies, std::span<const ContactConstraint> constraints, Arena& arena) {
+Links link_constraints(const RigidWorld& w, std::span<const ContactConstraint> constraints, std::size_t bodies,
+                       std::span<const std::uint32_t> places, Arena& arena) {
   Links links{arena.make<std::uint32_t>(bodies), arena.make<std::uint32_t>(2 * constraints.size())};
   for (std::uint32_t& f : links.first) f = kNone;
   for (std::uint32_t i = std::uint32_t(constraints.size()); i-- > 0;) {
     const std::int32_t ends[2] = {constraints[i].body_a, constraints[i].body_b};
     for (std::uint32_t side = 0; side < 2; ++side) {
-      if (ends[side] == kNoBody) continue;
-      links.next[2 * i + side] = links.first[std::size_t(ends[side])];
-      links.first[std::size_t(ends[side])] = 2 * i + side;
+      if (!is_active(w, ends[side])) continue;
+      std::uint32_t& first = links.first[places[std::size_t(ends[side])]];
+      links.next[2 * i + side] = first;
+      first = 2 * i + side;
     }
   }
   return links;
@@ -148,28 +148,31 @@ TreeNode make_node(const RigidWorld& w, std::int32_t body, std::int32_t parent, 
 
 }  // namespace
 
-ContactForest find_contact_trees(const RigidWorld& w, std::span<ContactConstraint> constraints,
-                                 std::span<const std::uint32_t> joints, Arena& arena) {
+ContactForest find_contact_trees(const RigidWorld& w, std::span<ContactConstraint> constraints, const SolveBatch& batch,
+                                 std::span<const std::uint32_t> places, Arena& arena) {
   ContactForest forest;
   if (constraints.empty() || !(length(w.settings.gravity) > 0.0f)) return forest;
-  IslandTally islands(w.bodies.motion.size(), arena);
-  unite_all(w, constraints, joints, islands);
-  count_all(w, constraints, joints, islands);
+  IslandTally islands(batch.bodies.size(), places, arena);
+  unite_all(w, constraints, batch.joints, islands);
+  count_all(w, constraints, batch, islands);
   std::size_t trees = 0, nodes = 0;
-  for (const std::uint32_t body : w.bodies.awake) {
-    if (!is_movable(w.bodies.flags[body]) || islands.root(body) != body || !hangs(islands.at_root(body))) continue;
+  const auto is_tree = [&](std::uint32_t place) {
+    return is_movable(w.bodies.flags[batch.bodies[place]]) && islands.root(place) == place && hangs(islands.at_root(place));
+  };
+  for (std::uint32_t place = 0; place < batch.bodies.size(); ++place) {
+    if (!is_tree(place)) continue;
     ++trees;
-    nodes += islands.at_root(body).bodies;
+    nodes += islands.at_root(place).bodies;
   }
   if (trees == 0) return forest;
   forest.trees = arena.make<ContactTree>(trees);
   forest.nodes = arena.make<TreeNode>(nodes);
   forest.work = arena.make<TreeWork>(nodes);
-  const Links links = link_constraints(w.bodies.motion.size(), constraints, arena);
+  const Links links = link_constraints(w, constraints, batch.bodies.size(), places, arena);
   std::uint32_t used = 0;
   std::size_t tree = 0;
-  for (const std::uint32_t root : w.bodies.awake) {
-    if (!is_movable(w.bodies.flags[root]) || islands.root(root) != root || !hangs(islands.at_root(root))) continue;
+  for (std::uint32_t root = 0; root < batch.bodies.size(); ++root) {
+    if (!is_tree(root)) continue;
     const std::uint32_t first = islands.at_root(root).first;
     const ContactConstraint& ground = constraints[first];
     const bool is_b = is_active(w, ground.body_b);
@@ -178,7 +181,7 @@ ContactForest find_contact_trees(const RigidWorld& w, std::span<ContactConstrain
     // Breadth first: every other contact of a body leads to a child, as there are no loops.
     for (std::uint32_t at = begin; at < used; ++at) {
       const TreeNode node = forest.nodes[at];
-      for (std::uint32_t link = links.first[std::size_t(node.body)]; link != kNone; link = links.next[link]) {
+      for (std::uint32_t link = links.first[places[std::size_t(node.body)]]; link != kNone; link = links.next[link]) {
         const std::uint32_t i = link / 2;
         if (i == node.constraint) continue;
         const bool child_is_b = link % 2 == 0;

@@ -5,6 +5,7 @@
 
 #include "base/arena.h"
 #include "rigid/rigid_world.h"
+#include "rigid/solve_batches.h"
 #include "solver/contact_tree.h"
 
 namespace gyre {
@@ -18,9 +19,9 @@ struct ContactForest {
 // Slower than this share of sqrt(gravity * reach) counts as at rest.
 constexpr float kTreeRestShare = 0.1f;
 
-// Marks the constraints that are in trees as rigid. `joints` are the slots of joints that act in this step.
-ContactForest find_contact_trees(const RigidWorld& w, std::span<ContactConstraint> constraints,
-                                 std::span<const std::uint32_t> joints, Arena& arena);
+// Of one batch; `places` are those of all (solve_batches.h). Marks the constraints that are in trees as rigid.
+ContactForest find_contact_trees(const RigidWorld& w, std::span<ContactConstraint> constraints, const SolveBatch& batch,
+                                 std::span<const std::uint32_t> places, Arena& arena);
 
 // Tells the nodes where the kernels keep their contacts: `order` has `width` constraint indices a block.
 void place_tree_nodes(ContactForest& forest, std::span<const std::uint32_t> order, int width, std::size_t constraints,

@@ -14,7 +14,7 @@ Sweep sweep_of_body(const RigidWorld& w, std::uint32_t body) {
   const BodyMotion& motion = w.bodies.motion[body];
   const BodyFlags& flags = w.bodies.flags[body];
   const bool moves = flags.type != BodyType::fixed && flags.awake != 0 && flags.frozen == 0;
-  return {w.bodies.poses[body], w.bodies.masses[body].center, moves ? motion.moved : Vec3{}, moves ? motion.turned : Vec3{}};
+  return {origin_pose(w.bodies, body), w.bodies.masses[body].center, moves ? motion.moved : Vec3{}, moves ? motion.turned : Vec3{}};
 }
 
 }  // namespace
@@ -33,7 +33,7 @@ void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, 
   // The shapes of each fast body as plain indices, in a place that is found by body.
   const std::span<std::span<const std::uint32_t>> shapes = arena.make<std::span<const std::uint32_t>>(w.bodies.motion.size());
   for (const FastBody& fast : scratch.fast) {
-    const std::vector<ShapeId>& ids = w.bodies.shapes[fast.body];
+    const std::span<const ShapeId> ids = w.bodies.shapes[fast.body];
     const std::span<std::uint32_t> list = arena.make<std::uint32_t>(ids.size());
     for (std::size_t k = 0; k < ids.size(); ++k) list[k] = ids[k].index;
     shapes[fast.body] = list;

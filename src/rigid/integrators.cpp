@@ -30,9 +30,8 @@ Vec3 damped(Vec3 v, Vec3 acceleration, float damping, float h) {
 
 }  // namespace
 
-void predict(BodyStore& bodies, int begin, int end, float h, Vec3 gravity) {
-  for (int n = begin; n < end; ++n) {
-    const std::uint32_t i = bodies.awake[n];
+void predict(BodyStore& bodies, std::span<const std::uint32_t> list, float h, Vec3 gravity) {
+  for (const std::uint32_t i : list) {
     const BodyFlags& flags = bodies.flags[i];
     if (flags.type != BodyType::dynamic) continue;
     BodyMotion& motion = bodies.motion[i];
@@ -51,9 +50,8 @@ void predict(BodyStore& bodies, int begin, int end, float h, Vec3 gravity) {
   }
 }
 
-void advance(BodyStore& bodies, int begin, int end, float h) {
-  for (int n = begin; n < end; ++n) {
-    const std::uint32_t i = bodies.awake[n];
+void advance(BodyStore& bodies, std::span<const std::uint32_t> list, float h) {
+  for (const std::uint32_t i : list) {
     const BodyFlags& flags = bodies.flags[i];
     BodyMotion& motion = bodies.motion[i];
     if ((flags.locked_linear | flags.locked_angular) != 0) {

@@ -1,5 +1,5 @@
 // Moving bodies between constraints: `predict` gives them the velocity that forces alone would, `advance` moves them by
-// the velocity that the solver left. Both work on blocks of the list of awake bodies.
+// the velocity that the solver left. Both work on lists of awake bodies.
 //
 // Semi-implicit Euler (symplectic: E. Hairer, C. Lubich, G. Wanner, "Geometric Numerical Integration", I.1): a kick by
 // forces and constraints at the present place, then the exact drift of a free body: x += h v, and torque-free rotation
@@ -17,8 +17,8 @@ constexpr float kMaxSpeed = 1.0e7f;   // m/s
 constexpr float kMaxSpin = 2.0e4f;    // rad/s
 
 // Velocities from forces, torques, gravity and damping over h.
-void predict(BodyStore& bodies, int begin, int end, float h, Vec3 gravity);
+void predict(BodyStore& bodies, std::span<const std::uint32_t> list, float h, Vec3 gravity);
 // Displacement from velocities over h, orientation by free rotation, world inertia of the new orientation.
-void advance(BodyStore& bodies, int begin, int end, float h);
+void advance(BodyStore& bodies, std::span<const std::uint32_t> list, float h);
 
 }  // namespace gyre

@@ -31,9 +31,9 @@ BoxMotion box_motion(const RigidWorld& w, std::uint32_t shape, float seconds) {
           seconds * w.bodies.masses[body].reach * length(motion.angular_velocity)};
 }
 
-WorldBox needed_box_of(const RigidWorld& w, std::uint32_t shape, const BoxMotion& motion) {
+WorldBox needed_box_of(const RigidWorld& w, std::uint32_t shape, const Pose& origin, const BoxMotion& motion) {
   const ColliderShape& collider = w.shapes.colliders[shape];
-  const Pose world_from_shape = w.bodies.poses[collider.body] * collider.body_from_shape;
+  const Pose world_from_shape = origin * collider.body_from_shape;
   return needed_box(world_box(collider.shape, world_from_shape), motion);
 }
 
@@ -90,7 +90,7 @@ void freeze(RigidWorld& w, std::uint32_t body) {
 
 void refit_shape(RigidWorld& w, std::uint32_t shape, float seconds) {
   const BoxMotion motion = box_motion(w, shape, seconds);
-  w.shapes.proxies[shape].fat_box = fat_box(needed_box_of(w, shape, motion), motion);
+  w.shapes.proxies[shape].fat_box = fat_box(needed_box_of(w, shape, origin_pose(w.bodies, w.shapes.colliders[shape].body), motion), motion);
   w.shapes.changed.push_back(shape);
 }
 
@@ -116,35 +116,51 @@ void refit(RigidWorld& w) {
   }
 }
 
-void find_pairs(RigidWorld& w, TaskSystem& tasks) {
+std::size_t find_pairs(RigidWorld& w, TaskSystem& tasks) {
   w.new_pairs.clear();
   if (!w.shapes.changed.empty()) {
     w.broadphase->find_pairs(w.shapes.proxies, w.shapes.changed, tasks, w.new_pairs);
   }
+  w.clocks.changed.trim(w.shapes.changed, w.shapes.changed.size());
   w.shapes.changed.clear();
   add_pairs(w.contacts, w.new_pairs, w.joints.blocked, [&](std::uint64_t key) { return describe_pair(w, key); });
+  const std::size_t found = w.new_pairs.size();
+  w.broadphase->trim();
+  w.clocks.new_pairs.trim(w.new_pairs, w.new_pairs.size());
+  w.clocks.sort_scratch.trim(w.sort_scratch, w.sort_scratch.size());
+  w.new_pairs.clear();
+  w.sort_scratch.clear();
+  return found;
 }
 
-void collide_pairs(RigidWorld& w, TaskSystem& tasks, float seconds) {
+bool may_move(const RigidWorld& w, std::uint32_t body) {
+  const BodyFlags& flags = w.bodies.flags[body];
+  if (flags.awake == 0 || flags.frozen != 0 || flags.type == BodyType::fixed) return false;
+  const BodyMotion& motion = w.bodies.motion[body];
+  return flags.type == BodyType::dynamic || motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{};
+}
+
+void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds) {
+  const ArenaScope scope(arena);
   const std::size_t count = w.bodies.motion.size();
-  w.collider_bodies.resize(count);
+  const std::span<BodyLook> looks = arena.make<BodyLook>(count);
+  const std::span<Vec3> centers = arena.make<Vec3>(count);
   const auto fill = [&](std::uint32_t i) {
     const BodyMotion& motion = w.bodies.motion[i];
-    const BodyFlags& flags = w.bodies.flags[i];
-    ColliderBody& body = w.collider_bodies[i];
-    body.pose = w.bodies.poses[i];
+    ColliderBody body;
+    body.pose = origin_pose(w.bodies, i);
     body.center = w.bodies.masses[i].center;
     body.linear_velocity = motion.linear_velocity;
     body.angular_velocity = motion.angular_velocity;
     body.reach = w.bodies.masses[i].reach;
-    const bool moves = motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{};
-    body.awake = flags.awake != 0 && flags.frozen == 0 &&
-                 (flags.type == BodyType::dynamic || (flags.type == BodyType::kinematic && moves));
+    body.awake = may_move(w, i);
+    looks[i] = make_body_look(body, seconds);
+    centers[i] = body.center;
   };
   for_blocks(tasks, int(count), 4 * kBodiesPerBlock, [&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) fill(std::uint32_t(i));
   });
-  const CollideInput input{w.shapes.colliders, w.collider_bodies, w.shapes.proxies, seconds};
+  const CollideInput input{w.shapes.colliders, looks, centers, w.shapes.proxies};
   collide(w.contacts, input, tasks, w.touches);
 }
 
@@ -174,12 +190,12 @@ void finish_bodies(RigidWorld& w, TaskSystem& tasks, float seconds, Array<std::u
       const std::uint32_t i = bodies.awake[n];
       bodies.places[i].center += bodies.motion[i].moved;
       bodies.places[i].orientation = bodies.orientations[i];
-      bodies.poses[i] = origin_pose(bodies.places[i], bodies.masses[i]);
+      const Pose origin = origin_pose(bodies, i);
       bodies.forces[i].force = {};
       bodies.forces[i].torque = {};
       for (const ShapeId id : bodies.shapes[i]) {
         const BoxMotion motion = box_motion(w, id.index, seconds);
-        const WorldBox needed = needed_box_of(w, id.index, motion);
+        const WorldBox needed = needed_box_of(w, id.index, origin, motion);
         Proxy& proxy = w.shapes.proxies[id.index];
         if (!needs_refit(proxy.fat_box, needed, motion)) continue;
         proxy.fat_box = fat_box(needed, motion);

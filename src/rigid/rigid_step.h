@@ -18,9 +18,12 @@ struct ContinuousScratch {
 // Tells the broad phase what came, went or moved its fat box since the last step.
 void refit(RigidWorld& w);
 // New pairs of fat boxes become contacts, in key order.
-void find_pairs(RigidWorld& w, TaskSystem& tasks);
+// Returns how many pairs of boxes the broad phase named.
+std::size_t find_pairs(RigidWorld& w, TaskSystem& tasks);
+// Whether the body may be elsewhere when the step ends: contacts between bodies that may not are not looked at.
+bool may_move(const RigidWorld& w, std::uint32_t body);
 // Looks at every contact that could have changed: manifolds in, touch changes out.
-void collide_pairs(RigidWorld& w, TaskSystem& tasks, float seconds);
+void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds);
 // Events of touches; removes pairs that came apart; wakes what was touched.
 void link_islands(RigidWorld& w);
 // New places, poses, inertia and fat boxes of awake bodies; freezes bodies whose state is not finite. Returns how many

@@ -3,6 +3,7 @@
 
 #include "base/arena.h"
 #include "base/flat_map.h"
+#include "base/idle_clock.h"
 #include "collision/broadphase.h"
 #include "collision/collide.h"
 #include "collision/contact_store.h"
@@ -42,6 +43,12 @@ struct RigidEvents {
   Array<SleepChange> sleep_changes;
 };
 
+// When memory that only busy steps need was last needed.
+struct ScratchClocks {
+  IdleClock changed, new_pairs, sort_scratch;
+  IdleClock begins, ends, hits, sensors, broken, sleep_changes;
+};
+
 struct RigidWorld {
   BodyStore bodies;
   ShapeStore shapes;
@@ -58,8 +65,8 @@ struct RigidWorld {
   Array<std::uint64_t> sort_scratch;
   Array<std::uint32_t> listed;         // contacts of a shape that is looked at
   Array<std::uint8_t> refit_marks;     // by shape: got a new fat box in this step
-  Array<ColliderBody> collider_bodies;
   RigidEvents events;
+  ScratchClocks clocks;
   std::uint16_t world_number = 0;      // for ids in events
 };
 

@@ -1,9 +1,13 @@
 #include "rigid/solve_step.h"
 
+#include "base/sort.h"
 #include "rigid/contact_forest.h"
 #include "rigid/integrators.h"
+#include "rigid/solve_batches.h"
 #include "task/parallel.h"
 #include "task/program.h"
+
+#include <bit>
 
 namespace gyre {
 
@@ -37,6 +41,8 @@ struct Solve {
   RigidWorld& w;
   SolveScratch& scratch;
   const ContactKernels& kernels;
+  SolveBatch batch{};
+  std::span<const std::uint32_t> places{};  // of bodies in their batches
   void* blocks = nullptr;
   float h = 0.0f;
   ContactSettings contact_settings{};
@@ -65,11 +71,6 @@ std::int32_t solver_body(const RigidWorld& w, std::uint32_t body) {
   return flags.type == BodyType::fixed || flags.frozen != 0 ? kNoBody : std::int32_t(body);
 }
 
-bool is_active(const RigidWorld& w, std::uint32_t body) {
-  const BodyFlags& flags = w.bodies.flags[body];
-  return flags.awake != 0 && is_movable(flags);
-}
-
 Vec3 point_velocity(const RigidWorld& w, std::uint32_t body, Vec3 from_center) {
   const BodyMotion& motion = w.bodies.motion[body];
   return motion.linear_velocity + cross(motion.angular_velocity, from_center);
@@ -86,8 +87,8 @@ void note_approach(const RigidWorld& w, const Contact& contact, Manifold& manifo
   }
 }
 
-// The events of contacts that were struck hard in this step, in contact order.
-void report_hits(RigidWorld& w, const SolveScratch& s) {
+// Those contacts of a batch that were struck hard in this step.
+void note_hits(const RigidWorld& w, SolveScratch& s) {
   for (std::size_t i = 0; i < s.constraints.size(); ++i) {
     const Contact& contact = w.contacts.contacts[s.constraint_contact[i]];
     const Manifold& manifold = *s.constraints[i].manifold;
@@ -100,23 +101,32 @@ void report_hits(RigidWorld& w, const SolveScratch& s) {
       struck = &point;
     }
     if (struck == nullptr) continue;
-    w.events.hits.push_back({shape_id(w, contact.shape_a), shape_id(w, contact.shape_b), body_id(w, contact.body_a),
-                             body_id(w, contact.body_b), w.bodies.places[contact.body_a].center + struck->from_a,
-                             manifold.normal, fastest});
+    s.hits.push_back({s.constraint_contact[i],
+                      {shape_id(w, contact.shape_a), shape_id(w, contact.shape_b), body_id(w, contact.body_a),
+                       body_id(w, contact.body_b), w.bodies.places[contact.body_a].center + struck->from_a,
+                       manifold.normal, fastest}});
   }
 }
 
-void gather_contacts(RigidWorld& w, SolveScratch& s) {
+// The events of all batches, in contact order.
+void report_hits(RigidWorld& w, SolveScratch& s, Arena& arena) {
+  const ArenaScope scope(arena);
+  merge_sort(s.hits.view(), arena.make<SlotHit>(s.hits.size()),
+             [](const SlotHit& a, const SlotHit& b) { return a.slot < b.slot; });
+  for (const SlotHit& hit : s.hits) w.events.hits.push_back(hit.hit);
+}
+
+void gather_contacts(Solve& solve) {
+  RigidWorld& w = solve.w;
+  SolveScratch& s = solve.scratch;
   s.constraints.clear();
   s.constraint_contact.clear();
   s.impacts.clear();
   s.pairs.clear();
   const float fall = std::sqrt(length(w.settings.gravity));
-  for (std::uint32_t slot = 0; slot < w.contacts.contacts.size(); ++slot) {
+  for (const std::uint32_t slot : solve.batch.contacts) {
     const Contact& contact = w.contacts.contacts[slot];
-    if (contact.manifold_room == 0 || contact.manifold_count == 0 || contact.sensor != 0) continue;
     const bool active_a = is_active(w, contact.body_a), active_b = is_active(w, contact.body_b);
-    if (!active_a && !active_b) continue;
     w.bodies.flags[contact.body_a].touched = 1;
     w.bodies.flags[contact.body_b].touched = 1;
     ContactConstraint constraint;
@@ -134,26 +144,28 @@ void gather_contacts(RigidWorld& w, SolveScratch& s) {
       constraint.manifold = &manifold;
       s.constraints.push_back(constraint);
       s.constraint_contact.push_back(slot);
-      s.pairs.push_back({active_a ? contact.body_a : ColoringPair::kNone, active_b ? contact.body_b : ColoringPair::kNone});
+      s.pairs.push_back({active_a ? solve.places[contact.body_a] : ColoringPair::kNone,
+                         active_b ? solve.places[contact.body_b] : ColoringPair::kNone});
       if (constraint.restitution > 0.0f) s.impacts.push_back(make_impact(constraint));
     }
   }
 }
 
-void gather_joints(RigidWorld& w, SolveScratch& s) {
+void gather_joints(Solve& solve) {
+  RigidWorld& w = solve.w;
+  SolveScratch& s = solve.scratch;
   s.joints.clear();
   s.joint_pairs.clear();
-  w.joints.ids.for_each_live([&](std::uint32_t slot) {
+  for (const std::uint32_t slot : solve.batch.joints) {
     const JointRecord& joint = w.joints.records[slot];
     const bool active_a = joint.body_a != kNoBody && is_active(w, std::uint32_t(joint.body_a));
     const bool active_b = joint.body_b != kNoBody && is_active(w, std::uint32_t(joint.body_b));
-    if (!active_a && !active_b) return;
     if (joint.body_a != kNoBody) w.bodies.flags[joint.body_a].touched = 1;
     if (joint.body_b != kNoBody) w.bodies.flags[joint.body_b].touched = 1;
     s.joints.push_back(slot);
-    s.joint_pairs.push_back({active_a ? std::uint32_t(joint.body_a) : ColoringPair::kNone,
-                             active_b ? std::uint32_t(joint.body_b) : ColoringPair::kNone});
-  });
+    s.joint_pairs.push_back({active_a ? solve.places[std::size_t(joint.body_a)] : ColoringPair::kNone,
+                             active_b ? solve.places[std::size_t(joint.body_b)] : ColoringPair::kNone});
+  }
 }
 
 // Lays the coloured constraints out in blocks of W lanes. A group starts a new block; constraints of the overflow group
@@ -177,8 +189,8 @@ std::span<Group> lay_out_contacts(Solve& solve, Arena& arena) {
       }
     }
     groups[used++] = {&solve, first, block - first};
+    s.colors_used |= std::uint64_t{1} << g;
   }
-  s.colors = int(used);
   solve.blocks = arena.make<std::byte>(std::size_t(block) * solve.kernels.block_bytes).data();
   return groups.first(used);
 }
@@ -196,15 +208,20 @@ std::span<Group> lay_out_joints(Solve& solve, Arena& arena) {
 
 // --------------------------------------------------------------------------------------------------- stages' kernels
 
+// The bodies of some blocks.
+std::span<const std::uint32_t> bodies_of(const Solve& s, int begin, int end) {
+  const int first = begin * kBodiesPerBlock;
+  const int last = min(end * kBodiesPerBlock, int(s.batch.bodies.size()));
+  return s.batch.bodies.subspan(std::size_t(first), std::size_t(last - first));
+}
+
 void predict_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
-  const int count = int(s.w.bodies.awake.size());
-  predict(s.w.bodies, begin * kBodiesPerBlock, min(end * kBodiesPerBlock, count), s.h, s.w.settings.gravity);
+  predict(s.w.bodies, bodies_of(s, begin, end), s.h, s.w.settings.gravity);
 }
 void advance_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
-  const int count = int(s.w.bodies.awake.size());
-  advance(s.w.bodies, begin * kBodiesPerBlock, min(end * kBodiesPerBlock, count), s.h);
+  advance(s.w.bodies, bodies_of(s, begin, end), s.h);
 }
 void watch_stage(void* context, int, int, int) {
   const Solve& s = *static_cast<Solve*>(context);
@@ -316,7 +333,7 @@ void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> join
   ProgramWriter program(arena.make<Stage>(2 + std::size_t(substeps) * per_substep));
   std::uint32_t blocks = 0;
   for (const Group& group : contacts) blocks += group.count;
-  const int body_blocks = count_blocks(int(solve.w.bodies.awake.size()), kBodiesPerBlock);
+  const int body_blocks = count_blocks(int(solve.batch.bodies.size()), kBodiesPerBlock);
   const int impact_blocks = solve.scratch.impacts.empty() ? 0 : 1;
   program.add(prepare_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
   for (int i = 0; i < substeps; ++i) {
@@ -357,6 +374,27 @@ void begin_joint_work(Solve& solve, Arena& arena, float warm_scale) {
   }
 }
 
+void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale) {
+  const ArenaScope scope(arena);
+  SolveScratch& scratch = solve.scratch;
+  gather_contacts(solve);
+  gather_joints(solve);
+  const std::uint32_t bodies = std::uint32_t(solve.batch.bodies.size());
+  color_constraints(scratch.pairs, bodies, {}, kColoringOptions, scratch.contact_colors);
+  color_constraints(scratch.joint_pairs, bodies, {}, kColoringOptions, scratch.joint_colors);
+  begin_joint_work(solve, arena, warm_scale);
+  solve.forest = find_contact_trees(solve.w, scratch.constraints, solve.batch, solve.places, arena);
+  const std::span<Group> contacts = lay_out_contacts(solve, arena);
+  place_tree_nodes(solve.forest, scratch.order, solve.kernels.width, scratch.constraints.size(), arena);
+  solve.tree_solve = {solve.forest.nodes, solve.forest.work, scratch.constraints, solve.contact_bodies.motion,
+                      &solve.kernels,     solve.blocks,      solve.h};
+  const std::span<Group> joints = lay_out_joints(solve, arena);
+  run_substeps(solve, contacts, joints, arena, tasks);
+  note_hits(solve.w, scratch);
+  scratch.manifold_count += scratch.constraints.size();
+  scratch.joint_count += scratch.joints.size();
+}
+
 }  // namespace
 
 void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& tasks, const ContactKernels& kernels,
@@ -369,12 +407,6 @@ void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& 
     w.bodies.motion[body].moved = {};
     w.bodies.motion[body].turned = {};
   }
-  gather_contacts(w, scratch);
-  gather_joints(w, scratch);
-  const std::uint32_t body_count = std::uint32_t(w.bodies.motion.size());
-  color_constraints(scratch.pairs, body_count, {}, kColoringOptions, scratch.contact_colors);
-  color_constraints(scratch.joint_pairs, body_count, {}, kColoringOptions, scratch.joint_colors);
-
   Solve solve{w, scratch, kernels};
   solve.h = h;
   const float frequency = min(kContactFrequency, 0.25f / h);
@@ -388,15 +420,18 @@ void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& 
   solve.impact_settings = {h, kBounceShare * h * length(w.settings.gravity)};
   solve.contact_bodies = {w.bodies.motion.data(), w.bodies.inertia.data()};
   solve.joint_bodies = {w.bodies.motion.data(), w.bodies.inertia.data(), w.bodies.orientations.data()};
-  begin_joint_work(solve, arena, warm_scale);
-  solve.forest = find_contact_trees(w, scratch.constraints, scratch.joints, arena);
-  const std::span<Group> contacts = lay_out_contacts(solve, arena);
-  place_tree_nodes(solve.forest, scratch.order, kernels.width, scratch.constraints.size(), arena);
-  solve.tree_solve = {solve.forest.nodes, solve.forest.work,  scratch.constraints, w.bodies.motion.data(),
-                      &kernels,           solve.blocks, h};
-  const std::span<Group> joints = lay_out_joints(solve, arena);
-  run_substeps(solve, contacts, joints, arena, tasks);
-  report_hits(w, scratch);
+  scratch.manifold_count = scratch.joint_count = 0;
+  scratch.colors_used = 0;
+  scratch.hits.clear();
+  const ArenaScope scope(arena);
+  const SolveBatches batches = find_batches(w, arena, kBatchSize * std::uint32_t(tasks.worker_count()));
+  solve.places = batches.places;
+  for (const SolveBatch& batch : batches.batches) {
+    solve.batch = batch;
+    solve_batch(solve, arena, tasks, warm_scale);
+  }
+  scratch.colors = std::popcount(scratch.colors_used);
+  report_hits(w, scratch, arena);
 }
 
 }  // namespace gyre

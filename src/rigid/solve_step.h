@@ -1,4 +1,5 @@
-// The sub-steps of a rigid step as a program: constraints are gathered and coloured once, then for each sub-step
+// The sub-steps of a rigid step as a program, one for each batch of islands (solve_batches.h), one after the other:
+// constraints are gathered and coloured once, then for each sub-step
 //   watch impacts, predict, strike impacts, prepare joints, warm start, solve, advance, release impacts, relax.
 // Workers meet at a barrier between stages; within one, blocks share no moving body.
 #pragma once
@@ -12,7 +13,13 @@
 
 namespace gyre {
 
-// Kept from step to step only for its memory.
+// A hit, before those of all batches are put into the order of their contacts.
+struct SlotHit {
+  std::uint32_t slot = 0;
+  ContactHit hit;
+};
+
+// Of the present batch; kept from step to step only for its memory.
 struct SolveScratch {
   Array<ContactConstraint> constraints;
   Array<std::uint32_t> constraint_contact;  // contact slot of each constraint
@@ -22,13 +29,17 @@ struct SolveScratch {
   Coloring joint_colors;
   Array<std::uint32_t> joints;       // slots of joints that act in this step
   Array<ColoringPair> joint_pairs;
-  Array<std::uint64_t> immovable;    // bits by body
   Array<std::uint32_t> order;        // constraint indices, W a block
+  Array<SlotHit> hits;               // of all batches
+  std::size_t manifold_count = 0;    // of all batches
+  std::size_t joint_count = 0;
+  std::uint64_t colors_used = 0;     // bits
   int colors = 0;
 };
 
 // How constraints are shared among groups.
 constexpr ColoringOptions kColoringOptions{.max_colors = 32, .statics_last = true};
+static_assert(kColoringOptions.max_colors < 64, "colors_used has a bit for each, and one for the rest");
 
 // Solves one step of `seconds` in `substeps` sub-steps: velocities, `moved`, `turned` and orientations of awake bodies,
 // impulses in manifolds and joints.

@@ -37,16 +37,9 @@ void refresh_proxy(RigidWorld& w, std::uint32_t shape) {
   proxy.pushes = flags.type == BodyType::dynamic;
 }
 
-// The pose is derived from the centre of mass at once, not taken as given: rounding makes the two differ, and a world that
-// is loaded here must go on with the same bits.
-void refresh_pose(BodyStore& bodies, std::uint32_t body) {
-  bodies.poses[body] = origin_pose(bodies.places[body], bodies.masses[body]);
-}
-
-// Mass, centre and inertia from shapes and overrides; the origin stays where it is.
-void refresh_mass(RigidWorld& w, std::uint32_t body) {
+// Mass, centre and inertia from shapes and overrides; the origin is, or stays, at `origin`.
+void refresh_mass(RigidWorld& w, std::uint32_t body, const Pose& origin) {
   BodyStore& bodies = w.bodies;
-  const Pose origin = bodies.poses[body];
   const Vec3 old_center = bodies.masses[body].center;
   const BodyOverrides& given = bodies.overrides[body];
   BodyMass mass;
@@ -91,15 +84,28 @@ void refresh_mass(RigidWorld& w, std::uint32_t body) {
   motion.linear_velocity += cross(motion.angular_velocity, rotate(origin.orientation, mass.center - old_center));
   bodies.places[body] = {origin * mass.center, origin.orientation};
   bodies.orientations[body] = origin.orientation;
-  refresh_pose(bodies, body);
   refresh_inertia(bodies, body);
   for_each_contact_of_body(w, body, [](Contact& contact) { forget_look(contact); });
 }
+void refresh_mass(RigidWorld& w, std::uint32_t body) { refresh_mass(w, body, origin_pose(w.bodies, body)); }
 
-void insert_sorted(std::vector<ShapeId>& list, ShapeId id) {
-  auto at = list.begin();
-  while (at != list.end() && at->index < id.index) ++at;
-  list.insert(at, id);
+std::uint32_t index_of(ShapeId id) { return id.index; }
+std::uint32_t index_of(std::uint32_t slot) { return slot; }
+
+// Lists of shapes and joints ascend.
+template <class List, class Item>
+void insert_sorted(List& list, Item item) {
+  std::size_t at = 0;
+  while (at < list.size() && index_of(list[at]) < index_of(item)) ++at;
+  list.insert_at(at, item);
+}
+template <class List>
+void erase_index(List& list, std::uint32_t index) {
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (index_of(list[i]) != index) continue;
+    list.erase_at(i);
+    return;
+  }
 }
 
 ShapeId attach_shape(RigidWorld& w, std::uint32_t body, const ShapeDef& def) {
@@ -149,9 +155,8 @@ Submitted carry_out(WorldState& s, const AddBody& c) {
   if (def.center_of_mass) given.has_center = 1, given.center = *def.center_of_mass;
   if (def.inertia) given.has_inertia = 1, given.inertia = *def.inertia;
   w.bodies.user_data[body] = def.user_data;
-  w.bodies.poses[body] = {def.pose.position, normalized(def.pose.orientation)};
   for (const ShapeDef& shape : c.shapes) attach_shape(w, body, shape);
-  refresh_mass(w, body);
+  refresh_mass(w, body, {def.pose.position, normalized(def.pose.orientation)});
   if (def.type != BodyType::fixed) {
     w.bodies.motion[body].linear_velocity = def.linear_velocity + Vec3{};
     w.bodies.motion[body].angular_velocity = def.angular_velocity + Vec3{};
@@ -168,15 +173,6 @@ bool blocks(const JointRecord& joint) {
   return !joint.collide_connected && joint.body_a != kNoBody && joint.body_b != kNoBody;
 }
 
-void erase_value(std::vector<std::uint32_t>& list, std::uint32_t value) {
-  for (auto at = list.begin(); at != list.end(); ++at) {
-    if (*at == value) {
-      list.erase(at);
-      return;
-    }
-  }
-}
-
 // Contacts between two bodies that may now collide again (or no more) are found anew by touching their boxes.
 void recheck_pairs(RigidWorld& w, const JointRecord& joint) {
   for (const std::int32_t body : {joint.body_a, joint.body_b}) {
@@ -190,7 +186,7 @@ void detach_joint(RigidWorld& w, std::uint32_t slot) {
   for (const std::int32_t body : {joint.body_a, joint.body_b}) {
     if (body == kNoBody) continue;
     stir(w, std::uint32_t(body));
-    erase_value(w.bodies.joints[std::size_t(body)], slot);
+    erase_index(w.bodies.joints[std::size_t(body)], slot);
   }
   if (blocks(joint)) {
     std::uint32_t* count = w.joints.blocked.find(block_key(joint));
@@ -231,13 +227,7 @@ Submitted carry_out(WorldState& s, const RemoveShape& c) {
   stir(w, body);
   wake_neighbours(w, body);
   drop_contacts(w, shape);
-  std::vector<ShapeId>& list = w.bodies.shapes[body];
-  for (auto at = list.begin(); at != list.end(); ++at) {
-    if (at->index == shape) {
-      list.erase(at);
-      break;
-    }
-  }
+  erase_index(w.bodies.shapes[body], shape);
   remove_shape_slot(w.shapes, shape);
   refresh_mass(w, body);
   return {true, {}, {}, {}};
@@ -259,7 +249,7 @@ JointEnd joint_end(const RigidWorld& w, std::int32_t body, DVec3 anchor, Quat wo
 DVec3 default_anchor_b(const RigidWorld& w, const JointRecord& joint, const JointDef& def) {
   if (def.kind != JointKind::distance) return def.anchor;
   if (def.anchor_b) return *def.anchor_b;
-  return joint.body_b == kNoBody ? DVec3{} : w.bodies.poses[joint.body_b].position;
+  return joint.body_b == kNoBody ? DVec3{} : origin_pose(w.bodies, std::uint32_t(joint.body_b)).position;
 }
 
 void set_distance(JointRecord& joint, const JointDef& def, float present) {
@@ -308,10 +298,7 @@ Submitted carry_out(WorldState& s, const AddJoint& c) {
   for (const std::int32_t body : {joint.body_a, joint.body_b}) {
     if (body == kNoBody) continue;
     stir(w, std::uint32_t(body));
-    std::vector<std::uint32_t>& list = w.bodies.joints[std::size_t(body)];
-    auto at = list.begin();
-    while (at != list.end() && *at < slot) ++at;
-    list.insert(at, slot);
+    insert_sorted(w.bodies.joints[std::size_t(body)], slot);
   }
   if (blocks(joint)) {
     w.joints.blocked.find_or_insert(block_key(joint), 0u)++;
@@ -341,7 +328,6 @@ Submitted carry_out(WorldState& s, const SetPose& c) {
   const Pose pose{c.pose.position, normalized(c.pose.orientation)};
   w.bodies.places[body] = {pose * w.bodies.masses[body].center, pose.orientation};
   w.bodies.orientations[body] = pose.orientation;
-  refresh_pose(w.bodies, body);
   refresh_inertia(w.bodies, body);
   for (const ShapeId id : w.bodies.shapes[body]) drop_contacts(w, id.index);
   refit_body(w, body);

@@ -3,6 +3,7 @@
 
 #include "collision/fat_box.h"
 #include "rigid/island.h"
+#include "rigid/solve_batches.h"
 #include "world/world_state.h"
 
 #include <vector>
@@ -37,15 +38,11 @@ class Walk {
   Error contacts_have_pairs() const;
   Error pairs_have_contacts() const;
   Error groups_of_constraints() const;
-  Error every_contact_is_solved() const;
-  Error every_joint_is_solved() const;
+  Error everything_is_solved() const;
   Error islands() const;
   Error nobody_sleeps_beside_motion() const;
 
   bool was_shown(std::uint32_t shape) const { return changed_mark_[shape] == 0; }
-  bool is_active(std::uint32_t body) const {
-    return w_.bodies.flags[body].awake != 0 && is_movable(w_.bodies.flags[body]);
-  }
 
   const WorldState& s_;
   const RigidWorld& w_;
@@ -66,8 +63,8 @@ void Walk::list_changed() {
 Error Walk::lists_of_bodies() const {
   std::size_t listed_shapes = 0, listed_joints = 0, joint_ends = 0;
   for (std::uint32_t body = 0; body < w_.bodies.ids.capacity(); ++body) {
-    const std::vector<ShapeId>& shapes = w_.bodies.shapes[body];
-    const std::vector<std::uint32_t>& joints = w_.bodies.joints[body];
+    const std::span<const ShapeId> shapes = w_.bodies.shapes[body];
+    const std::span<const std::uint32_t> joints = w_.bodies.joints[body];
     if (!w_.bodies.ids.live(body) && (!shapes.empty() || !joints.empty()))
       return broken("body %u was removed but has shapes or joints", body);
     for (std::size_t i = 0; i < shapes.size(); ++i) {
@@ -139,8 +136,6 @@ Error Walk::places() const {
     if (!w_.bodies.ids.live(body)) continue;
     if (!(w_.bodies.orientations[body] == w_.bodies.places[body].orientation))
       return broken("body %u has two orientations", body);
-    if (!(w_.bodies.poses[body] == origin_pose(w_.bodies.places[body], w_.bodies.masses[body])))
-      return broken("the pose of body %u does not follow from its centre of mass", body);
   }
   return {};
 }
@@ -150,7 +145,7 @@ Error Walk::fat_boxes() const {
     if (!w_.shapes.ids.live(shape)) continue;
     const ColliderShape& collider = w_.shapes.colliders[shape];
     const WorldBox tight =
-        world_box(collider.shape, w_.bodies.poses[collider.body] * collider.body_from_shape);
+        world_box(collider.shape, origin_pose(w_.bodies, collider.body) * collider.body_from_shape);
     const Aabb& fat = w_.shapes.proxies[shape].fat_box;
     for (int axis = 0; axis < 3; ++axis) {
       if (double(fat.low[axis]) > tight.low[axis] || double(fat.high[axis]) < tight.high[axis])
@@ -197,7 +192,7 @@ Error Walk::pairs_have_contacts() const {
       const Proxy& other_proxy = w_.shapes.proxies[other];
       if (!may_pair(proxy, other_proxy) || w_.joints.blocked.contains(pair_key(proxy.body, other_proxy.body)))
         continue;
-      if (!w_.contacts.slot_of_pair.contains(pair_key(shape, other)))
+      if (find_contact(w_.contacts, pair_key(shape, other)) == SlotTable::kNone)
         return broken("the fat boxes of shapes %u and %u overlap, but they have no contact", shape, other);
     }
   }
@@ -218,39 +213,54 @@ Error Walk::groups_of_constraints() const {
   return {};
 }
 
-Error Walk::every_contact_is_solved() const {
-  const Array<std::uint32_t>& solved = s_.solve.constraint_contact;
-  std::size_t next = 0;
-  for (std::uint32_t slot = 0; slot < w_.contacts.contacts.size(); ++slot) {
-    const Contact& contact = w_.contacts.contacts[slot];
-    if (contact.manifold_room == 0 || contact.sensor != 0) continue;
-    if (!is_active(contact.body_a) && !is_active(contact.body_b)) continue;
-    for (const Manifold& manifold : manifolds_of(w_.contacts, contact)) {
-      if (manifold.count == 0) continue;
-      if (next >= solved.size() || solved[next] != slot || s_.solve.constraints[next].manifold != &manifold)
-        return broken("contact %u touches, but the solver does not have it", slot);
-      ++next;
+// Whether the lists of all batches together are the slots for which acts(slot) holds, each once.
+template <class Acts>
+bool are_all(const SolveBatches& batches, std::span<const std::uint32_t> SolveBatch::*list, std::size_t slots, const Acts& acts) {
+  std::vector<std::uint8_t> listed(slots);
+  for (const SolveBatch& batch : batches.batches) {
+    for (std::size_t i = 0; i < (batch.*list).size(); ++i) {
+      const std::uint32_t slot = (batch.*list)[i];
+      if (slot >= slots || (i > 0 && (batch.*list)[i - 1] >= slot) || listed[slot]++ != 0) return false;
     }
   }
-  return next == solved.size() ? Error{} : broken("the solver has a contact that does not touch");
+  for (std::uint32_t slot = 0; slot < slots; ++slot) {
+    if (acts(slot) != (listed[slot] != 0)) return false;
+  }
+  return true;
 }
 
-Error Walk::every_joint_is_solved() const {
-  std::size_t next = 0;
-  const Array<std::uint32_t>& solved = s_.solve.joints;
-  for (std::uint32_t slot = 0; slot < w_.joints.ids.capacity(); ++slot) {
-    const bool listed = next < solved.size() && solved[next] == slot;
-    if (listed) ++next;
-    bool acts = false;
-    if (w_.joints.ids.live(slot)) {
-      const JointRecord& joint = w_.joints.records[slot];
-      for (const std::int32_t body : {joint.body_a, joint.body_b})
-        acts = acts || (body != kNoBody && is_active(std::uint32_t(body)));
-    }
-    if (listed && !acts) return broken("the solver has joint %u, which was removed or rests", slot);
-    if (!listed && acts) return broken("joint %u has an awake body, but the solver does not have it", slot);
+// What acts is in one batch, as are all that it moves; and the solver had as much of it. The batches are found anew, and
+// smaller, so that there are several.
+Error Walk::everything_is_solved() const {
+  Arena arena;
+  const SolveBatches batches = find_batches(w_, arena, 16);
+  const auto acts = [&](std::uint32_t slot) { return is_solved(w_, w_.contacts.contacts[slot]); };
+  if (!are_all(batches, &SolveBatch::contacts, w_.contacts.contacts.size(), acts))
+    return broken("a contact with manifolds and an awake body is not in one batch");
+  const auto joint_acts = [&](std::uint32_t slot) { return w_.joints.ids.live(slot) && is_solved(w_, w_.joints.records[slot]); };
+  if (!are_all(batches, &SolveBatch::joints, w_.joints.ids.capacity(), joint_acts))
+    return broken("a joint with an awake body is not in one batch");
+  std::vector<std::uint32_t> batch_of(w_.bodies.motion.size(), 0xffffffffu);
+  std::size_t manifolds = 0, joints = 0, bodies = 0;
+  for (std::uint32_t i = 0; i < batches.batches.size(); ++i) {
+    for (const std::uint32_t body : batches.batches[i].bodies) batch_of[body] = i;
+    bodies += batches.batches[i].bodies.size();
+    joints += batches.batches[i].joints.size();
   }
-  return next == solved.size() ? Error{} : broken("the solver has a joint twice");
+  if (bodies != w_.bodies.awake.size()) return broken("the batches are not of all awake bodies");
+  const auto is_elsewhere = [&](std::uint32_t body, std::uint32_t batch) {
+    return w_.bodies.flags[body].type != BodyType::fixed && batch_of[body] != 0xffffffffu && batch_of[body] != batch;
+  };
+  for (std::uint32_t i = 0; i < batches.batches.size(); ++i) {
+    for (const std::uint32_t slot : batches.batches[i].contacts) {
+      const Contact& contact = w_.contacts.contacts[slot];
+      if (is_elsewhere(contact.body_a, i) || is_elsewhere(contact.body_b, i))
+        return broken("contact %u is in another batch than its bodies", slot);
+      for (const Manifold& manifold : manifolds_of(w_.contacts, contact)) manifolds += manifold.count > 0 ? 1 : 0;
+    }
+  }
+  if (manifolds != s_.solve.manifold_count) return broken("the solver has other manifolds than those that touch");
+  return joints == s_.solve.joint_count ? Error{} : broken("the solver has other joints than those that act");
 }
 
 // The bodies of a sleeping group hang together.
@@ -307,8 +317,7 @@ Error Walk::run() {
   next(&Walk::groups_of_constraints);
   next(&Walk::islands);
   next(&Walk::nobody_sleeps_beside_motion, is_right_after(StageName::link_islands));
-  next(&Walk::every_contact_is_solved, is_right_after(StageName::solve));
-  next(&Walk::every_joint_is_solved, is_right_after(StageName::solve));
+  next(&Walk::everything_is_solved, is_right_after(StageName::solve));
   return error;
 }
 

@@ -41,21 +41,25 @@ void report_frozen(WorldState& s) {
 
 void count(WorldState& s, CounterName counter, std::size_t amount) { s.profile.count(int(counter), amount); }
 
+// Right after the stage, which leaves contacts that it did not look at as they were.
+void count_full_looks(WorldState& s) {
+  if (!s.profile.enabled()) return;
+  std::size_t full_looks = 0;
+  for (const Contact& contact : s.rigid.contacts.contacts) {
+    if (contact.manifold_room == 0 || contact.ended != 0 || contact.recycled != 0) continue;
+    if (may_move(s.rigid, contact.body_a) || may_move(s.rigid, contact.body_b)) ++full_looks;
+  }
+  count(s, CounterName::full_looks, full_looks);
+}
+
 // What the profiler is told of a step's work, from what the stages left behind.
 void count_work(WorldState& s) {
   if (!s.profile.enabled()) return;
   const RigidWorld& w = s.rigid;
-  std::size_t full_looks = 0;
-  for (const Contact& contact : w.contacts.contacts) {
-    if (contact.manifold_room == 0 || contact.recycled != 0) continue;
-    if (w.collider_bodies[contact.body_a].awake || w.collider_bodies[contact.body_b].awake) ++full_looks;
-  }
-  count(s, CounterName::new_pairs, w.new_pairs.size());
   count(s, CounterName::contacts, w.contacts.live);
-  count(s, CounterName::full_looks, full_looks);
-  count(s, CounterName::manifolds, s.solve.constraints.size());
+  count(s, CounterName::manifolds, s.solve.manifold_count);
   count(s, CounterName::colors, std::size_t(s.solve.colors));
-  count(s, CounterName::joints, s.solve.joints.size());
+  count(s, CounterName::joints, s.solve.joint_count);
   count(s, CounterName::awake_bodies, w.bodies.awake.size());
   count(s, CounterName::fast_bodies, s.continuous.fast.size());
 }
@@ -69,6 +73,13 @@ void end_step(WorldState& s, float seconds) {
   next.begins.clear(), next.ends.clear(), next.hits.clear();
   next.sensors.clear(), next.broken.clear(), next.sleep_changes.clear();
   const RigidEvents& e = s.shown;
+  ScratchClocks& clocks = s.rigid.clocks;
+  clocks.begins.trim(next.begins, e.begins.size());
+  clocks.ends.trim(next.ends, e.ends.size());
+  clocks.hits.trim(next.hits, e.hits.size());
+  clocks.sensors.trim(next.sensors, e.sensors.size());
+  clocks.broken.trim(next.broken, e.broken.size());
+  clocks.sleep_changes.trim(next.sleep_changes, e.sleep_changes.size());
   s.events = {e.begins, e.ends, e.hits, e.sensors, e.broken, e.sleep_changes};
   s.stepping = false;
 }
@@ -81,8 +92,9 @@ void step_world(WorldState& s, float seconds) {
   const StageZone whole(s.profile, kWholeStep);
   run_stage(s, StageName::refit, [&] { refit(w); });
   count(s, CounterName::refitted_boxes, w.shapes.changed.size());
-  run_stage(s, StageName::find_pairs, [&] { find_pairs(w, *s.tasks); });
-  run_stage(s, StageName::collide, [&] { collide_pairs(w, *s.tasks, seconds); });
+  run_stage(s, StageName::find_pairs, [&] { count(s, CounterName::new_pairs, find_pairs(w, *s.tasks)); });
+  run_stage(s, StageName::collide, [&] { collide_pairs(w, s.arena, *s.tasks, seconds); });
+  count_full_looks(s);
   run_stage(s, StageName::link_islands, [&] { link_islands(w); });
   run_stage(s, StageName::solve, [&] { solve_step(w, s.solve, s.arena, *s.tasks, *s.kernels, seconds); });
   run_stage(s, StageName::clamp_fast_bodies, [&] { clamp_fast_bodies(w, s.continuous, s.arena, *s.tasks); });

@@ -19,7 +19,7 @@ bool lives(const WorldState& s, JointId id) { return lives(s, s.rigid.joints.ids
 void read_body(const WorldState& s, std::uint32_t body) {
   const BodyStore& bodies = s.rigid.bodies;
   s.read_ids.push_back(body_id(s.rigid, body));
-  s.read_poses.push_back(bodies.poses[body]);
+  s.read_poses.push_back(origin_pose(bodies, body));
   s.read_linear.push_back(bodies.motion[body].linear_velocity);
   s.read_angular.push_back(bodies.motion[body].angular_velocity);
 }
@@ -60,7 +60,10 @@ bool World::exists(BodyId body) const { return lives(*state_, body); }
 bool World::exists(ShapeId shape) const { return lives(*state_, shape); }
 bool World::exists(JointId joint) const { return lives(*state_, joint); }
 
-Pose World::pose(BodyId body) const { return exists(body) ? state_->rigid.bodies.poses[body.index] : Pose{}; }
+Pose World::pose(BodyId body) const {
+  const FloatMode mode;  // the origin is worked out from the centre of mass
+  return exists(body) ? origin_pose(state_->rigid.bodies, body.index) : Pose{};
+}
 DVec3 World::center_of_mass(BodyId body) const {
   return exists(body) ? state_->rigid.bodies.places[body.index].center : DVec3{};
 }
@@ -139,11 +142,13 @@ JointReading World::joint_reading(JointId id) const {
 }
 
 BodyColumns World::bodies() const {
+  const FloatMode mode;
   clear_read(*state_);
   state_->rigid.bodies.ids.for_each_live([&](std::uint32_t body) { read_body(*state_, body); });
   return {state_->read_ids, state_->read_poses, state_->read_linear, state_->read_angular};
 }
 BodyColumns World::awake_bodies() const {
+  const FloatMode mode;
   clear_read(*state_);
   state_->rigid.bodies.ids.for_each_live([&](std::uint32_t body) {
     if (is_awake(body_id(state_->rigid, body))) read_body(*state_, body);

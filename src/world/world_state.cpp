@@ -118,12 +118,10 @@ void derive_state(RigidWorld& w) {
   const std::size_t count = bodies.motion.size();
   bodies.inertia.resize(count);
   bodies.orientations.resize(count);
-  bodies.poses.resize(count);
   bodies.shapes.resize(count);
   bodies.joints.resize(count);
   for (std::uint32_t i = 0; i < count; ++i) {
     bodies.orientations[i] = bodies.places[i].orientation;
-    bodies.poses[i] = origin_pose(bodies.places[i], bodies.masses[i]);
     refresh_inertia(bodies, i);
     bodies.shapes[i].clear();
     bodies.joints[i].clear();
