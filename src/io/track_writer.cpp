@@ -54,7 +54,7 @@ std::uint32_t TrackWriter::model_of(const RigidWorld& w, std::uint32_t body, Emi
 
 void TrackWriter::look_at_known(const WorldState& state, WrittenBody& written) {
   const std::uint32_t index = written.body.index;
-  const Pose& pose = state.rigid.bodies.poses[index];
+  const Pose pose = origin_pose(state.rigid.bodies, index);
   const bool awake = is_awake(state.rigid.bodies.flags[index]);
   written.moved = awake;
   if (awake || !(pose == written.seen)) {
@@ -90,7 +90,7 @@ void TrackWriter::look_at(const WorldState& state, std::uint32_t index, bool key
     return;
   }
   written.present = true;
-  written.seen = bodies.poses[index];
+  written.seen = origin_pose(bodies, index);
   if (is_finite(written.seen)) {
     written.next = round_pose(written.seen, start_.steps);
   } else if (!known) {
