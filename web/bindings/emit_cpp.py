@@ -1,6 +1,7 @@
 """Writes the C++ half: one exported function for each function of the engine, and how each struct is read and written."""
 
 import re
+import zlib
 
 
 HEAD = """// Made by web/bindings/generate.py from the headers in include/gyre; not to be edited.
@@ -8,6 +9,8 @@ HEAD = """// Made by web/bindings/generate.py from the headers in include/gyre; 
 // One exported function for each function of the engine. Arguments come from the call buffer, results go to the
 // answer buffer, both rows of doubles (see stream.h); the TypeScript half is made from the same list.
 #include "web/bindings/hosts.h"
+
+HEADERS
 
 #include <emscripten.h>
 
@@ -21,8 +24,9 @@ class CppWriter:
         self.model = model
 
     def write(self):
+        """The text, and the number of this version of it."""
         m = self.model
-        parts = [HEAD]
+        parts = [HEAD.replace("HEADERS", "\n".join(f"#include <gyre/{name}.h>" for name in m.files))]
         parts.append("namespace gyre::web {\n")
         parts.append(self.checks())
         for name in self.variants():
@@ -42,8 +46,15 @@ class CppWriter:
         parts.append('using namespace gyre;\nusing namespace gyre::web;\n\nextern "C" {\n\n')
         for index, function in enumerate(m.functions):
             parts.append(self.function(function, index))
+        version = self.version("".join(parts))
+        parts.append(f"// Equal to the number in the TypeScript half, or the two do not belong together.\n"
+                     f"EMSCRIPTEN_KEEPALIVE int gyre_bindings_version() {{ return {version}; }}\n\n")
         parts.append('}  // extern "C"\n')
-        return "".join(parts)
+        return "".join(parts), version
+
+    @staticmethod
+    def version(text):
+        return zlib.crc32(text.encode()) >> 1
 
     def variants(self):
         return [name for name, value in self.model.api.aliases.items() if value.startswith("variant<")]
@@ -212,8 +223,9 @@ class CppWriter:
             inner = m.inner(result)[1]
             if inner in m.api.classes:
                 return f"  return answer.made_or_refused<{inner}>({call});\n"
-            return f"  auto result = {call};\n  if (!result) return answer.checked(result.error());\n" \
-                   f"  {self.put(inner, '*result', '')};\n  return answer.done();\n"
+            value, start = ("value", f"  const {inner}& value = answer.keep(*std::move(result));\n") if m.is_struct(inner) else ("*result", "")
+            return f"  auto result = {call};\n  if (!result) return answer.checked(result.error());\n{start}" \
+                   f"  {self.put(inner, value, '')};\n  return answer.done();\n"
         if owner == "World" and function.owner and not function.const and (result == "bool" or result in m.ids):
             return f"  return answer.command(self, {call});\n"
         if result in m.api.classes and result != "Geometry":
@@ -223,4 +235,6 @@ class CppWriter:
                    f"  if (result != nullptr) {self.put(result, '*result', '')};\n  return answer.done();\n"
         if m.array_of(result) == "byte":
             return f"  answer.bytes({call});\n  return answer.done();\n"
-        return f"  const auto& result = {call};\n  {self.put(result, 'result', function.name)};\n{after}  return answer.done();\n"
+        # Texts and arrays of a struct are read after the call.
+        kept = f"answer.keep({call})" if m.is_struct(result) else call
+        return f"  const auto& result = {kept};\n  {self.put(result, 'result', function.name)};\n{after}  return answer.done();\n"

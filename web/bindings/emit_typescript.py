@@ -13,6 +13,8 @@ import type { World } from './world.js';
 """
 # Classes to which TypeScript adds by hand: the generated one is their base.
 EXTENDED = ("World",)
+# Structs that src/scene.ts writes too.
+CALLED_BY_HAND = ("Stepping",)
 VECTOR_INPUT = {"Vec3": "VectorInput", "DVec3": "VectorInput", "Quat": "QuaternionInput"}
 TUPLES = {"Vec3": "Vec3", "DVec3": "Vec3", "Quat": "Quat", "Sym3": "Sym3", "Mat3": "Mat3", "Mat4": "Mat4"}
 
@@ -31,9 +33,9 @@ class TypeScriptWriter:
         self.model = model
         self.both = set(model.read_structs) & set(model.written_structs)
 
-    def write(self):
+    def write(self, version):
         m = self.model
-        parts = [HEAD, self.values(), self.ids()]
+        parts = [HEAD, f"/** @internal */\nexport const bindingsVersion = {version};\n\n", self.values(), self.ids()]
         for enum in m.api.enums.values():
             parts.append(self.enum(enum))
         parts += [self.written_type(name) for name in m.written_structs]
@@ -286,7 +288,8 @@ class TypeScriptWriter:
         keys = ", ".join(f"'{camel(part.name)}'" for part in fields)
         extra = ", 'kind'" if any(name in value for value in self.model.api.aliases.values() if value.startswith("variant<")) else ""
         lines = [f"const keysOf{name} = new Set([{keys}{extra}]);\n",
-                 f"export function write{name}(w: Writer, value: {self.input_name(name)}): void {{\n",
+                 f"{'/** @internal */ export ' if name in CALLED_BY_HAND else ''}function write{name}"
+                 f"(w: Writer, value: {self.input_name(name)}): void {{\n",
                  f"  const bits = w.open(value, keysOf{name}, '{name}');\n"]
         for i, part in enumerate(fields):
             place = f"value.{camel(part.name)}"
@@ -295,7 +298,7 @@ class TypeScriptWriter:
         return "".join(lines) + "}\n"
 
     def reader(self, name):
-        lines = [f"export function read{name}(r: Reader): {name} {{\n"]
+        lines = [f"function read{name}(r: Reader): {name} {{\n"]
         results = []
         for part in self.model.fields(name):
             if self.model.array_of(part.type) == "Pose":

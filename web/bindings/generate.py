@@ -32,7 +32,8 @@ def main():
     options = parser.parse_args()
     try:
         model = Model(options.include)
-        cpp, typescript = CppWriter(model).write(), TypeScriptWriter(model).write()
+        cpp, version = CppWriter(model).write()
+        typescript = TypeScriptWriter(model).write(version)
     except HeaderError as error:
         print(f"web bindings: {error}", file=sys.stderr)
         return 1

@@ -326,7 +326,7 @@ def read_declaration(api, doc, body, after, code):
             api.structs[name] = Struct(name, fields, doc, name)
         else:
             api.classes[name] = parse_class(doc, name, body)
-    elif match := re.match(r"(?:inline )?constexpr [\w:]+ k(\w+) = ([^;(]+);$", code):
+    elif match := re.match(r"(?:inline )?constexpr [\w:]+ k(\w+) = ([^;]+);$", code):
         api.constants[match.group(1)] = (match.group(2).strip(), " ".join(t for t in (doc, after) if t))
     elif match := re.match(r"using (\w+) = (.*);$", code, re.S):
         api.aliases[match.group(1)] = plain_type(match.group(2))

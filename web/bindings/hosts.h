@@ -21,6 +21,9 @@ struct BorrowedWorldHost final : WorldHost {
   World* value;
 };
 
+// Made by generate.py: only the fields that were given change.
+void get(Call& call, Stepping& out);
+
 // Threads that JavaScript has ready for us. A world that asks for more gets these: a thread cannot start while the page's own
 // thread waits for it.
 void limit_threads(WorldDef& def);

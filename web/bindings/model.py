@@ -10,7 +10,9 @@ from pathlib import Path
 import headers
 
 ROOT = Path(__file__).resolve().parents[2]
-HEADERS = ["math", "ids", "result", "geometry", "defs", "events", "world", "replay", "debug", "track"]
+HEADERS = ["math", "ids", "result", "geometry", "defs", "events", "world", "replay", "debug"]
+# Public headers that are not bound, and why.
+NOT_BOUND = {"gyre": "includes the others", "track": "its functions are declared, not defined"}
 
 LEFT_OUT = {
     "World::state": "the inside of the engine",
@@ -67,7 +69,7 @@ class Model:
     def __init__(self, include):
         self.files = [name for name in HEADERS if (include / "gyre" / f"{name}.h").exists()]
         self.api = headers.read_headers([include / "gyre" / f"{name}.h" for name in self.files])
-        unknown = {path.stem for path in (include / "gyre").glob("*.h")} - set(HEADERS) - {"gyre"}
+        unknown = {path.stem for path in (include / "gyre").glob("*.h")} - set(HEADERS) - set(NOT_BOUND)
         if unknown:
             raise headers.HeaderError(f"new public headers, not bound: {', '.join(sorted(unknown))}: add them to HEADERS")
         self.ids = tuple(name for name, value in self.api.aliases.items() if value.startswith("Id<"))
@@ -76,6 +78,7 @@ class Model:
         self.functions = [f for f in self.all_functions() if not self.left_out(f)]
         for function in self.functions:
             self.use(function)
+        self.refuse_equal_names()
 
     # ------------------------------------------------------------------------------------------------ choosing
 
@@ -84,6 +87,15 @@ class Model:
             yield from group.constructors
             yield from group.functions
         yield from self.api.functions
+
+    def refuse_equal_names(self):
+        seen = {}
+        for function in self.functions:
+            place = (self.self_class(function), self.script_name(function))
+            if place in seen:
+                raise headers.HeaderError(f"{self.full_key(function)} and {self.full_key(seen[place])} would both be "
+                                          f"{place[1]}() in TypeScript: give one a name in RENAMED")
+            seen[place] = function
 
     @staticmethod
     def key(function):

@@ -1,5 +1,6 @@
 // Scene files in the browser: the same reader and runner as the command line's. A scene's host is a world's host too, so every
 // function of World takes it.
+#include "scene/scene_color.h"
 #include "scene/scene_reader.h"
 #include "scene/scene_runner.h"
 #include "scene/scene_writer.h"
@@ -21,6 +22,18 @@ struct SceneHost final : WorldHost {
 
 SceneHost& scene_of(Host* host) { return *static_cast<SceneHost*>(host); }
 
+void overrule(Call& call, SceneWorld& world) {
+  if (call.given()) get(call, world.gravity);
+  if (call.given()) get(call, world.time_step);
+  if (call.given()) get(call, world.sleeping);
+  Stepping stepping{world.substeps, world.integrator, world.solver, world.broad_phase};
+  if (call.given()) get(call, stepping);
+  world.substeps = stepping.substeps;
+  world.integrator = stepping.integrator;
+  world.solver = stepping.solver;
+  world.broad_phase = stepping.broad_phase;
+}
+
 int refuse_scene(Answer& answer, const SceneError& error) {
   return answer.checked(make_error(ErrorCode::invalid_data, "%s", error.text().c_str()));
 }
@@ -33,8 +46,9 @@ using namespace gyre::web;
 
 extern "C" {
 
-// Arguments: the scene's text, its name in errors, threads, and the files that it may name: how many, then name and bytes of each.
-// The answer: a handle.
+// Arguments: the scene's text, its name in errors, threads; the files that it may name: how many, then name and bytes of each; and
+// settings that overrule those of the scene, each after whether it is given: gravity, time step, sleeping, stepping. The answer: a
+// handle.
 EMSCRIPTEN_KEEPALIVE int gyre_scene_open() {
   Call call(nullptr);
   Answer answer(nullptr, 0);
@@ -54,6 +68,7 @@ EMSCRIPTEN_KEEPALIVE int gyre_scene_open() {
   }
   SceneResult<Scene> scene = read_scene(text, options);
   if (!scene) return refuse_scene(answer, scene.error());
+  overrule(call, scene->world);
   SceneResult<SceneRunner> runner = SceneRunner::create(*std::move(scene), options.file, def.threads);
   if (!runner) return refuse_scene(answer, runner.error());
   Host* const host = new SceneHost(*std::move(runner));
@@ -76,17 +91,23 @@ EMSCRIPTEN_KEEPALIVE int gyre_scene_info(Host* host) {
   return answer.done();
 }
 
-// Of each shape of each body, in the order of the scene: the name of its material, empty if it has none.
-EMSCRIPTEN_KEEPALIVE int gyre_scene_materials(Host* host) {
+// How the scene looks. Of each body, in the order of the scene: how many shapes, and of each its colour as 0xrrggbb and the name of its
+// material, empty if it has none. Then whether the scene says from where to look, and if so eye, target and the angle of view.
+EMSCRIPTEN_KEEPALIVE int gyre_scene_looks(Host* host) {
   Answer answer(host, 0);
   const Scene& scene = scene_of(host).runner.scene();
-  for (const SceneBody& body : scene.bodies) {
-    answer.number(double(body.shapes.size()));
-    for (const SceneShape& shape : body.shapes) {
-      put_text(answer, shape.material < 0 ? std::string_view()
-                                          : std::string_view(scene.materials[std::size_t(shape.material)].name));
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const std::vector<SceneShape>& shapes = scene.bodies[i].shapes;
+    answer.number(double(shapes.size()));
+    for (std::size_t k = 0; k < shapes.size(); ++k) {
+      const SceneColor color = resolved_color(scene, i, k);
+      answer.number(double(color.red << 16 | color.green << 8 | color.blue));
+      put_text(answer, shapes[k].material < 0 ? std::string_view()
+                                              : std::string_view(scene.materials[std::size_t(shapes[k].material)].name));
     }
   }
+  answer.number(scene.view.has_value());
+  if (scene.view) put(answer, scene.view->eye), put(answer, scene.view->target), put(answer, scene.view->field_of_view);
   return answer.done();
 }
 

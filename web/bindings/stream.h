@@ -194,6 +194,10 @@ class Answer {
     if (store_->kept == nullptr) store_->kept = std::make_shared<T>();
     return *static_cast<T*>(store_->kept.get());
   }
+  template <class T>
+  const T& keep(T value) {
+    return kept<T>() = std::move(value);
+  }
   void saw_world(std::uint16_t number);
 
   // The answer's address, or 0: then error() tells why.

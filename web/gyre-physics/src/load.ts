@@ -1,5 +1,6 @@
 // Picks the build of the engine and starts it. The WebAssembly modules are inside JavaScript files, so that there is no second
 // address that a bundler or a server could get wrong.
+import { bindingsVersion } from './generated.js';
 import type { Build, Engine, EngineExports } from './runtime.js';
 
 export interface LoadOptions {
@@ -63,6 +64,21 @@ async function unpack(variant: Variant): Promise<Uint8Array<ArrayBuffer>> {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
+interface ThreadWorker {
+  onmessage: ((event: { data: unknown }) => void) | null;
+  onerror: ((event: unknown) => void) | null;
+  postMessage(message: unknown): void;
+  terminate(): unknown;
+}
+
+/** The workers of one engine: how to make them, and how to end them. */
+interface Workshop {
+  create(): ThreadWorker;
+  /** When all have started: they no longer keep a program running. */
+  settle(): void;
+  close(): void;
+}
+
 async function start(build: Build, workers: number): Promise<Engine> {
   const variant = await variants[build]();
   const module: Record<string, unknown> = {
@@ -70,33 +86,76 @@ async function start(build: Build, workers: number): Promise<Engine> {
     print: (text: string) => console.log(text),
     printErr: (text: string) => console.warn(text),
   };
-  const close = build === 'threads' ? await prepareThreads(module, variant, workers) : () => {};
-  const made = await variant.default(module);
+  let workshop: Workshop | undefined;
+  if (build === 'threads') {
+    workshop = inNode ? await nodeWorkshop(variant.worker) : pageWorkshop(variant.worker);
+    module['workers'] = workers;
+    module['createWorker'] = () => workshop!.create();
+  }
+  try {
+    const made = await variant.default(module);
+    workshop?.settle();
+    const exports = made as unknown as EngineExports;
+    if (exports['_gyre_bindings_version']?.() !== bindingsVersion) {
+      throw new Error(`load: the build '${build}' was made from other headers than this JavaScript: run tools/build_web.sh`);
+    }
+    return {
+      exports,
+      memory: made['wasmMemory'] as WebAssembly.Memory,
+      build,
+      workers,
+      close: () => workshop?.close(),
+    };
+  } catch (error) {
+    workshop?.close();
+    throw error;
+  }
+}
+
+function pageWorkshop(code: string): Workshop {
+  const address = URL.createObjectURL(new Blob([code], { type: 'text/javascript' }));
+  const made: Worker[] = [];
   return {
-    exports: made as unknown as EngineExports,
-    memory: made['wasmMemory'] as WebAssembly.Memory,
-    build,
-    workers,
+    create: () => {
+      const worker = new Worker(address);
+      made.push(worker);
+      return worker as unknown as ThreadWorker;
+    },
+    settle: () => {},
     close: () => {
-      close();
-      (made['_gyre_end_threads'] as (() => void) | undefined)?.();
+      for (const worker of made) worker.terminate();
+      URL.revokeObjectURL(address);
     },
   };
 }
 
-/** Tells emscripten's loader where its workers' code is. Returns what to do at the end. */
-async function prepareThreads(module: Record<string, unknown>, variant: Variant, workers: number): Promise<() => void> {
-  module['workers'] = workers;
-  if (inNode) {
-    module['workerText'] = variant.worker;
-    module['glueText'] = variant.glue;
-    return () => {};
-  }
-  const glue = new Blob([variant.glue], { type: 'text/javascript' });
-  const worker = URL.createObjectURL(new Blob([variant.worker], { type: 'text/javascript' }));
-  module['mainScriptUrlOrBlob'] = glue;
-  module['locateFile'] = () => worker;
-  return () => URL.revokeObjectURL(worker);
+// What a worker of Node lacks of a worker of a page.
+const nodePrelude = `const { parentPort } = require('node:worker_threads');
+globalThis.self = globalThis;
+globalThis.postMessage = (message) => parentPort.postMessage(message);
+parentPort.on('message', (data) => globalThis.onmessage({ data }));
+`;
+
+async function nodeWorkshop(code: string): Promise<Workshop> {
+  const { Worker: NodeWorker } = (await import(/* @vite-ignore */ nodeModule('worker_threads'))) as typeof import('node:worker_threads');
+  const made: InstanceType<typeof NodeWorker>[] = [];
+  return {
+    create: () => {
+      const worker = new NodeWorker(nodePrelude + code, { eval: true });
+      made.push(worker);
+      const wrapped: ThreadWorker = {
+        onmessage: null,
+        onerror: null,
+        postMessage: (message) => worker.postMessage(message),
+        terminate: () => worker.terminate(),
+      };
+      worker.on('message', (data: unknown) => wrapped.onmessage?.({ data }));
+      worker.on('error', (error: unknown) => wrapped.onerror?.(error));
+      return wrapped;
+    },
+    settle: () => made.forEach((worker) => worker.unref()),
+    close: () => made.forEach((worker) => void worker.terminate()),
+  };
 }
 
 export async function loadEngine(options: LoadOptions): Promise<Engine> {

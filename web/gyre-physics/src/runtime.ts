@@ -46,9 +46,11 @@ export class Runtime {
   /** Calls the engine; throws what it refuses. The reader stands at the answer. */
   call(name: string, pointer: number, extra = 0): Reader {
     this.writer.handedOver();
+    const run = this.exports[`_${name}`];
+    if (run === undefined) throw new GyreError(`the engine has no function ${name}`, -1);
     let address: number;
     try {
-      address = this.exports[`_${name}`]!(pointer, extra);
+      address = run(pointer, extra);
     } catch (error) {
       this.stopped = `the engine has stopped (${String(error)}); load() it again`;
       throw new GyreError(this.stopped, -1);
@@ -116,6 +118,7 @@ export abstract class Handle {
     this.runtime.release(pointer);
   }
 
+  /** @internal For `using`; left out of the types, which older compilers read too. */
   [Symbol.dispose](): void {
     this.dispose();
   }

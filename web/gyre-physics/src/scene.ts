@@ -1,7 +1,7 @@
 // Scene files: the engine's own reader and runner.
-import type { BodyId, JointId } from './generated.js';
+import { type BodyId, type JointId, type Stepping, type Vec3, writeStepping } from './generated.js';
 import type { Runtime } from './runtime.js';
-import type { Bytes } from './stream.js';
+import type { Bytes, VectorInput } from './stream.js';
 import { World } from './world.js';
 
 export interface SceneOptions {
@@ -11,6 +11,28 @@ export interface SceneOptions {
   files?: Readonly<Record<string, Bytes | string>>;
   /** Workers of the world; more than one only where the engine runs with threads. */
   threads?: number;
+  /** Settings of the world instead of those that the scene gives. */
+  settings?: SceneSettings;
+}
+
+export interface SceneSettings {
+  /** m/s^2 */
+  gravity?: VectorInput;
+  /** Seconds of a step. */
+  timeStep?: number;
+  sleeping?: boolean;
+  /** Only what is given changes. */
+  stepping?: Stepping;
+}
+
+/** Where a picture is taken from. */
+export interface SceneView {
+  /** m */
+  eye: Vec3;
+  /** What stands in the middle of the picture, m. */
+  target: Vec3;
+  /** rad, from bottom to top of the picture. */
+  fieldOfView: number;
 }
 
 /** A world made from a scene file. It knows the scene's names, and its step() plays the scene's timed forces. */
@@ -25,6 +47,10 @@ export class Scene extends World {
   readonly jointNames: readonly string[];
   /** Of each shape of each body, in the order of the scene: the name of its material, empty if it has none. */
   readonly materialNames: readonly (readonly string[])[];
+  /** Of each shape of each body: its colour as 0xrrggbb. What the scene leaves open has a colour from a fixed cycle. */
+  readonly colors: readonly (readonly number[])[];
+  /** Where a good picture is taken from, if the scene says it. */
+  readonly view: SceneView | undefined;
 
   /** @internal Made by Gyre.openScene(). */
   constructor(runtime: Runtime, pointer: number) {
@@ -38,8 +64,23 @@ export class Scene extends World {
     this.sceneJoints = Array.from(r.array(Float64Array, 1));
     this.jointNames = r.texts(this.sceneJoints.length);
     runtime.begin();
-    const m = runtime.call('gyre_scene_materials', pointer);
-    this.materialNames = this.sceneBodies.map(() => m.texts(m.number()));
+    const looks = runtime.call('gyre_scene_looks', pointer);
+    const names: string[][] = [];
+    const colors: number[][] = [];
+    for (let i = 0; i < this.sceneBodies.length; ++i) {
+      const shapes = looks.number();
+      names.push([]);
+      colors.push([]);
+      for (let k = 0; k < shapes; ++k) {
+        colors[i]!.push(looks.number());
+        names[i]!.push(looks.text());
+      }
+    }
+    this.materialNames = names;
+    this.colors = colors;
+    this.view = looks.boolean()
+      ? { eye: looks.vector(3) as Vec3, target: looks.vector(3) as Vec3, fieldOfView: looks.number() }
+      : undefined;
   }
 
   /** @internal */
@@ -58,6 +99,14 @@ export class Scene extends World {
         w.bytes(bytes, `openScene: files.${name}`);
       }
     }
+    const settings = options.settings ?? {};
+    for (const key in settings) {
+      if (!['gravity', 'timeStep', 'sleeping', 'stepping'].includes(key)) throw new TypeError(`openScene: no setting is named "${key}"`);
+    }
+    if (w.given(settings.gravity)) w.vector(settings.gravity, 3, 'openScene: gravity');
+    if (w.given(settings.timeStep)) w.number(settings.timeStep, 'openScene: timeStep');
+    if (w.given(settings.sleeping)) w.boolean(settings.sleeping, 'openScene: sleeping');
+    if (w.given(settings.stepping)) writeStepping(w, settings.stepping);
     return new Scene(runtime, runtime.call('gyre_scene_open', 0).number());
   }
 

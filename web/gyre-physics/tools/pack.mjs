@@ -2,7 +2,7 @@
 // plain build: where there is no SIMD there may be no DecompressionStream).
 //
 //   node pack.mjs simd|threads|plain FROM TO
-import { mkdirSync, readFileSync, writeFileSync, existsSync } from 'node:fs';
+import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { gzipSync } from 'node:zlib';
 
@@ -26,14 +26,21 @@ glue = replace(glue, 'updateGlobalBufferAndViews(wasmMemory.buffer)', 'Module["w
 // Bundlers take `new URL("file", import.meta.url)` for a file to copy; the module is handed over as bytes instead.
 glue = glue.replace(/new URL\((["'][^"']*["']),\s*import\.meta\.url\)(\.toString\(\)|\.href)?/g, '$1');
 
-const workerFile = join(from, 'gyre_web.worker.js');
-const worker = existsSync(workerFile) ? readFileSync(workerFile, 'utf8') : '';
-const parts = [glue, `export const compressed = ${compressed};`, `export const wasm = ${JSON.stringify(text)};`];
+const parts = [];
 if (build === 'threads') {
-  parts.push(`export const worker = ${JSON.stringify(worker)};`, `export const glue = ${JSON.stringify(glue)};`);
+  // Workers are made by src/load.ts, each from one text: the loader, and emscripten's code around a thread.
+  if (!/new Worker\(/.test(glue)) throw new Error('pack.mjs: the loader makes no workers');
+  glue = glue.replace(/new Worker\([^()]*\)/g, 'Module["createWorker"]()');
+  const around = readFileSync(join(from, 'gyre_web.worker.js'), 'utf8');
+  const loading = /\(e\.data\.urlOrBlob\s*\?[^.]*import\(e\.data\.urlOrBlob\)\s*:\s*import\([^)]*\)\)\.then\(function\s*\(exports\)\s*\{\s*return exports\.default\(Module\);?\s*\}\)/;
+  if (!loading.test(around)) throw new Error('pack.mjs: the worker loads its code in another way');
+  let inside = replace(glue, 'import.meta.url', '""');
+  inside = replace(inside, 'export default createGyre;', '');
+  parts.push(`export const worker = ${JSON.stringify(inside + around.replace(loading, 'createGyre(Module)'))};`);
 } else {
-  parts.push(`export const worker = '';`, `export const glue = '';`);
+  parts.push(`export const worker = '';`);
 }
+parts.unshift(glue, `export const compressed = ${compressed};`, `export const wasm = ${JSON.stringify(text)};`);
 mkdirSync(to, { recursive: true });
 writeFileSync(join(to, `${build}.js`), parts.join('\n'));
 const size = gzipSync(parts.join('\n'), { level: 9 }).length;

@@ -7,6 +7,5 @@ export default create;
 export declare const wasm: string;
 /** Whether the module was packed with gzip first. */
 export declare const compressed: boolean;
-/** With threads: the loader's text and the worker's, for the workers. */
-export declare const glue: string;
+/** With threads: the code of a worker; otherwise empty. */
 export declare const worker: string;

@@ -1,0 +1,37 @@
+// The promise: after 600 steps every scene has the same state, bit for bit, natively and in each build of the package.
+import assert from 'node:assert/strict';
+import test from 'node:test';
+
+import { engine, gyre, hashText, meshFiles, nativeHash, nativeProgram, sceneNames, sceneText } from './kit.mjs';
+
+const steps = 600;
+const builds = process.env.GYRE_WEB_BUILD ? [process.env.GYRE_WEB_BUILD] : ['simd', 'threads', 'plain'];
+const skip = nativeProgram === null ? 'no native gyre to compare with: build it, or set GYRE_CLI' : false;
+
+test('there are scenes to compare', () => assert.ok(sceneNames.length >= 15, `${sceneNames.length} scenes`));
+
+for (const build of builds) {
+  test(`build ${build}`, { skip }, async (t) => {
+    const engineOfBuild = await engine(build);
+    assert.equal(engineOfBuild.build, build);
+    for (const name of sceneNames) {
+      await t.test(name, () => {
+        const threads = build === 'threads' ? engineOfBuild.maxThreads : 1;
+        const scene = engineOfBuild.openScene(sceneText(name), { file: name, files: meshFiles(), threads });
+        for (let i = 0; i < steps; ++i) scene.step();
+        assert.equal(hashText(scene), nativeHash(name, steps));
+        scene.dispose();
+      });
+      // Workers go back to the pool when the page's own thread is free.
+      await new Promise((resolve) => setTimeout(resolve, 5));
+    }
+  });
+}
+
+test('the hash sees a difference of one bit', async () => {
+  const world = (await engine(builds[0])).createWorld();
+  const body = world.addBody({ pose: { position: [0, 1, 0] } }, { geometry: gyre.sphere() });
+  const before = world.hash();
+  world.setPose(body, { position: [0, 1 + 2 ** -52, 0] });
+  assert.notEqual(world.hash(), before);
+});

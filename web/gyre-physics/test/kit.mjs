@@ -1,0 +1,48 @@
+// What the tests share: the package as its users get it, the scenes of the repository, and the native program to compare with.
+import { execFileSync } from 'node:child_process';
+import { existsSync, readdirSync, readFileSync } from 'node:fs';
+import { dirname, join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+
+export const root = join(dirname(fileURLToPath(import.meta.url)), '../../..');
+export const dist = join(root, 'web/gyre-physics/dist');
+export const gyre = await import('../dist/index.js');
+
+const engines = new Map();
+/** The engine in one of its builds; tests of a file share it. */
+export async function engine(build = 'simd') {
+  if (!engines.has(build)) engines.set(build, gyre.load({ build, workers: build === 'threads' ? 3 : undefined }));
+  return engines.get(build);
+}
+
+export const sceneFolder = join(root, 'scenes');
+export const sceneNames = readdirSync(sceneFolder).filter((name) => name.endsWith('.gyre.json')).sort();
+
+export function sceneText(name) {
+  return readFileSync(join(sceneFolder, name), 'utf8');
+}
+
+/** Mesh files by the names that scenes give them. */
+export function meshFiles() {
+  const files = {};
+  for (const name of readdirSync(join(sceneFolder, 'meshes'))) {
+    if (name.endsWith('.obj')) files[`meshes/${name}`] = readFileSync(join(sceneFolder, 'meshes', name));
+  }
+  return files;
+}
+
+/** The native program, or null: GYRE_CLI names it, else that of the release build. */
+export const nativeProgram = [process.env.GYRE_CLI, join(root, 'build/release/bin/gyre')].find((path) => path && existsSync(path)) ?? null;
+
+export function nativeHash(scene, steps) {
+  const printed = execFileSync(nativeProgram, ['simulate', join(sceneFolder, scene), '--steps', String(steps), '--hash', '--quiet'], {
+    encoding: 'utf8',
+  });
+  const hash = printed.match(/^[0-9a-f]{16}$/m);
+  if (!hash) throw new Error(`no hash in what ${nativeProgram} printed: ${printed}`);
+  return hash[0];
+}
+
+export function hashText(world) {
+  return world.hash().toString(16).padStart(16, '0');
+}
