@@ -1,4 +1,5 @@
 // read_bodies: what there is to see of bodies, as columns. See <gyre/debug.h>.
+#include "base/float_mode.h"
 #include "debug/flat.h"
 #include "debug/islands.h"
 #include "rigid/island.h"
@@ -74,6 +75,7 @@ const char* to_string(RestState state) {
 }
 
 void read_bodies(const World& world, DVec3 origin, BodyTable& out) {
+  const FloatMode mode;
   const RigidWorld& w = world.state().rigid;
   clear_all(out.ids, out.centers, out.axes, out.semi_axes, out.velocities, out.spins, out.speeds,
             out.rest_speeds, out.still_times, out.states, out.islands, out.island_sizes);

@@ -1,4 +1,5 @@
 // read_boxes: boxes of shapes and nodes of the broad phase's trees. See <gyre/debug.h>.
+#include "base/float_mode.h"
 #include "collision/fat_box.h"
 #include "debug/flat.h"
 #include "world/world_state.h"
@@ -37,6 +38,7 @@ void add_nodes(const RigidWorld& w, bool fixed, BoxKind kind, Collector& boxes) 
 }  // namespace
 
 void read_boxes(const World& world, std::uint32_t kinds, DVec3 origin, BoxTable& out) {
+  const FloatMode mode;
   const RigidWorld& w = world.state().rigid;
   clear_all(out.corners, out.kinds, out.depths, out.shapes);
   Collector boxes{origin, out};

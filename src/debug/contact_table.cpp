@@ -1,4 +1,5 @@
 // read_contacts: every contact point as columns. See <gyre/debug.h>.
+#include "base/float_mode.h"
 #include "debug/flat.h"
 #include "debug/step_length.h"
 #include "rigid/solve_batches.h"
@@ -79,6 +80,7 @@ const char* to_string(ContactState state) {
 }
 
 void read_contacts(const World& world, DVec3 origin, ContactTable& out) {
+  const FloatMode mode;
   const RigidWorld& w = world.state().rigid;
   clear_all(out.bodies, out.shapes, out.positions, out.normals, out.tangents, out.separations, out.forces,
             out.friction_forces, out.scales, out.states, out.colors);

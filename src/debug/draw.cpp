@@ -1,4 +1,5 @@
 // draw_debug: lines and points for every layer that is wanted, from the same tables that users read. See <gyre/debug.h>.
+#include "base/float_mode.h"
 #include "debug/painter.h"
 #include "rigid/island.h"
 #include "world/world_state.h"
@@ -344,6 +345,7 @@ const char* to_string(DrawLayer layer) {
 }
 
 void draw_debug(const World& world, const DrawOptions& options, DebugDraw& out) {
+  const FloatMode mode;
   clear_all(out.line_positions, out.line_colors, out.point_positions, out.point_colors);
   for (DebugDraw::Range& range : out.layers) range = {};
   out.cut = false;

@@ -1,4 +1,5 @@
 // explain: why a body is awake, who touches it, what pulls it; as ids and as words. See <gyre/debug.h>.
+#include "base/float_mode.h"
 #include "debug/islands.h"
 #include "debug/step_length.h"
 #include "debug/words.h"
@@ -184,6 +185,7 @@ const char* to_string(AwakeReason reason) {
 }
 
 Explanation explain(const World& world, BodyId body, const BodyNames& names) {
+  const FloatMode mode;
   Explanation out;
   if (world.exists(body)) Inquiry(world.state().rigid, body.index).answer(out);
   write_words(out, body, names);

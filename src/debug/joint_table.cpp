@@ -1,4 +1,5 @@
 // read_joints: every joint with its frames, limits and what it bears. See <gyre/debug.h>.
+#include "base/float_mode.h"
 #include "debug/flat.h"
 #include "debug/step_length.h"
 #include "world/world_state.h"
@@ -57,6 +58,7 @@ void add_joint(const RigidWorld& w, std::uint32_t slot, DVec3 origin, JointTable
 }  // namespace
 
 void read_joints(const World& world, DVec3 origin, JointTable& out) {
+  const FloatMode mode;
   const RigidWorld& w = world.state().rigid;
   clear_all(out.ids, out.kinds, out.bodies, out.anchors, out.frames, out.has_limits, out.limits,
             out.positions, out.forces, out.torques);

@@ -1,4 +1,5 @@
 // add_wireframe: the edges and outlines of a shape in its own frame. See <gyre/debug.h>.
+#include "base/float_mode.h"
 #include "debug/flat.h"
 #include "geometry/cooked.h"
 #include "geometry/height_field.h"
@@ -178,6 +179,7 @@ void Wire::shape(const Geometry& cooked) {
 }  // namespace
 
 void add_wireframe(const AnyShape& shape, std::vector<float>& lines, int segments) {
+  const FloatMode mode;
   Wire wire(lines, segments);
   std::visit([&](const auto& kind) { wire.shape(kind); }, shape);
 }

@@ -1,12 +1,31 @@
 // One step of the world, as the list of its stages. Each is a function from arrays to arrays in the folders below.
+#include "base/check.h"
 #include "rigid/island.h"
 #include "rigid/rigid_step.h"
 #include "world/stages.h"
+#include "world/state_walk.h"
 #include "world/world_state.h"
 
 namespace gyre {
 
 namespace {
+
+#if defined(GYRE_VALIDATE) && GYRE_VALIDATE
+// Large worlds are walked now and then only: a walk costs several times what a stage does.
+bool is_walked(const WorldState& s, StageName stage) {
+  constexpr std::size_t kSmall = 2000;
+  constexpr std::uint64_t kEvery = 16;
+  const RigidWorld& w = s.rigid;
+  const bool small = w.bodies.motion.size() + w.shapes.colliders.size() + w.contacts.live < kSmall;
+  return s.walks && (small || (s.step_count % kEvery == 0 && int(stage) == kStageCount - 1));
+}
+
+void walk_after(const WorldState& s, StageName stage) {
+  if (!is_walked(s, stage)) return;
+  const Error fault = walk_state(s, stage);
+  if (fault.code != ErrorCode::none) check_failed(kStageNames[int(stage)], fault.message, __FILE__, __LINE__);
+}
+#endif
 
 // Times a stage and lets tools look at the state after it.
 template <class Fn>
@@ -15,6 +34,7 @@ void run_stage(WorldState& s, StageName stage, Fn&& fn) {
     const StageZone zone(s.profile, int(stage));
     fn();
   }
+  GYRE_VALIDATE_ONLY(walk_after(s, stage));
   if (s.stage_hook.call != nullptr) s.stage_hook.call(s.stage_hook.context, kStageNames[int(stage)]);
 }
 
