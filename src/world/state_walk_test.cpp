@@ -142,11 +142,9 @@ TEST(Walk, FindsListsThatDisagree) {
                     "body 2 lists shape 1, which is not its own"));
   EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.bodies.joints[7].clear(); }),
                     "a joint is not in the list of its body"));
-  EXPECT_TRUE(tells(fault_after([](WorldState& s) {
-                      s.rigid.bodies.joints[7] = {0, 7};
-                    }),
+  EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.bodies.joints[7].push_back(7); }),
                     "body 7 lists joint 7, which was removed"));
-  EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.bodies.joints[1] = {1}; }),
+  EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.bodies.joints[1].push_back(1); }),
                     "body 1 lists joint 1, which is between others"));
   EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.bodies.awake.pop_back(); }),
                     "body 8 is awake but is not listed so"));
@@ -162,8 +160,6 @@ TEST(Walk, FindsColumnsThatCannotBe) {
 }
 
 TEST(Walk, FindsPlacesThatDisagree) {
-  EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.bodies.poses[3].position.x += 1e-9; }),
-                    "the pose of body 3 does not follow"));
   EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.bodies.orientations[3].x += 1e-6f; }),
                     "body 3 has two orientations"));
 }
@@ -182,8 +178,9 @@ TEST(Walk, FindsBoxesThatDoNotHold) {
 TEST(Walk, FindsContactsWithoutPairsAndPairsWithoutContacts) {
   EXPECT_TRUE(tells(fault_after([](WorldState& s) {
                       const Contact contact = awake_contact(s);
-                      remove_contact(s.rigid.contacts, *s.rigid.contacts.slot_of_pair.find(
-                                                           pair_key(contact.shape_a, contact.shape_b)));
+                      remove_contact(
+                          s.rigid.contacts,
+                          find_contact(s.rigid.contacts, pair_key(contact.shape_a, contact.shape_b)));
                     }),
                     "overlap, but they have no contact"));
   EXPECT_TRUE(tells(fault_after([](WorldState& s) {
@@ -218,20 +215,14 @@ TEST(Walk, FindsGroupsThatShareABody) {
 TEST(Walk, FindsWhatTheSolverWasNotGiven) {
   // Right after the step nothing has changed since its stage `solve`.
   constexpr StageName kSolve = StageName::solve;
-  const auto forget_last = [](WorldState& s) {
-    s.solve.constraint_contact.pop_back();
-    s.solve.constraints.pop_back();
-    s.solve.pairs.clear();
-  };
-  EXPECT_TRUE(tells(fault_after(forget_last, kSolve), "touches, but the solver does not have it"));
-  EXPECT_TRUE(
-      tells(fault_after([](WorldState& s) { awake_contact(s).manifold_count = 0; }, kSolve), "the solver"));
-  EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.solve.joints.pop_back(); }, kSolve),
-                    "joint 1 has an awake body, but the solver does not have it"));
-  EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.solve.joints.push_back(5); }, kSolve),
-                    "the solver has a joint twice"));
+  EXPECT_TRUE(tells(fault_after([](WorldState& s) { --s.solve.manifold_count; }, kSolve),
+                    "the solver has other manifolds"));
+  EXPECT_TRUE(tells(fault_after([](WorldState& s) { awake_contact(s).manifold_count = 0; }, kSolve),
+                    "the solver has other manifolds than those that touch"));
+  EXPECT_TRUE(tells(fault_after([](WorldState& s) { ++s.solve.joint_count; }, kSolve),
+                    "the solver has other joints"));
   EXPECT_TRUE(tells(fault_after([](WorldState& s) { remove_joint_now(s, 1); }, kSolve),
-                    "joint 1, which was removed or rests"));
+                    "the solver has other joints than those that act"));
 }
 
 TEST(Walk, FindsIslandsThatDoNotHangTogether) {
