@@ -1,4 +1,4 @@
-// Recordings from outside: refused, or played to their end and back, the same each time.
+// Recordings from outside: refused, or played to their end and back, the same each time. Their tracks: fuzz_track.cpp.
 #include "edits.h"
 #include "io/chunks.h"
 #include "small_scene.h"
