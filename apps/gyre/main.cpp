@@ -33,6 +33,7 @@ int run(int argc, char** argv) {
   gyre::add_simulate(app, exit_code);
   gyre::add_info(app, exit_code);
   gyre::add_render(app, exit_code);
+  gyre::add_view(app, exit_code);
   gyre::add_schema(app, exit_code);
 
   try {

@@ -5,6 +5,7 @@
 #include "exit_code.h"
 #include "interrupt.h"
 #include "progress.h"
+#include "scene/scene_labels.h"
 #include "scene/scene_reader.h"
 #include "scene/scene_writer.h"
 #include "summary.h"
@@ -102,7 +103,13 @@ bool Simulation::open_outputs() {
   if (!options_.final.empty() && !check(final_.open(options_.final), final_)) return false;
   if (!options_.record.empty()) {
     if (!check(record_.open(options_.record), record_)) return false;
-    recorder_ = std::make_unique<Recorder>(runner_.world(), sink_);
+    RecordOptions what;
+    what.commands = options_.record_as != "poses";
+    what.poses = options_.record_as != "commands";
+    what.frame_interval = options_.record_every;
+    what.pose_accuracy = options_.record_accuracy;
+    recorder_ = std::make_unique<Recorder>(runner_.world(), sink_, what);
+    label_bodies(*recorder_, runner_);
   }
   return true;
 }

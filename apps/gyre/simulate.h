@@ -24,6 +24,9 @@ struct SimulateOptions {
   std::string solver, integrator, broad_phase, stepping;  // empty: what the scene says
   bool no_sleeping = false;
   std::string record, trace, stats, final;
+  std::string record_as = "all";  // or poses, commands
+  std::uint32_t record_every = 1;
+  float record_accuracy = 1.0e-4f;  // m
   std::uint64_t trace_every = 1;
   bool hash = false, json = false, quiet = false;
 };

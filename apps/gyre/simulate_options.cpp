@@ -24,6 +24,19 @@ CLI::Validator number_between(double low, bool open_low, double high, const std:
       "", "");
 }
 
+CLI::Validator one_of(std::vector<std::string> list) {
+  return CLI::Validator(
+      [list](std::string& text) {
+        std::string expected;
+        for (const std::string& word : list) {
+          if (word == text) return std::string();
+          expected += (expected.empty() ? "" : ", ") + word;
+        }
+        return "found " + text + ", expected one of " + expected;
+      },
+      "", "");
+}
+
 void add_time_options(CLI::App& command, SimulateOptions& options) {
   CLI::Option* duration = command
                               .add_option("--duration", options.duration,
@@ -48,39 +61,45 @@ void add_time_options(CLI::App& command, SimulateOptions& options) {
 }
 
 void add_method_options(CLI::App& command, SimulateOptions& options) {
-  const auto words = [](std::vector<std::string> list) {
-    return CLI::Validator(
-        [list](std::string& text) {
-          std::string expected;
-          for (const std::string& word : list) {
-            if (word == text) return std::string();
-            expected += (expected.empty() ? "" : ", ") + word;
-          }
-          return "found " + text + ", expected one of " + expected;
-        },
-        "", "");
-  };
   command.add_option("--solver", options.solver, "Contact solver: soft_step")
       ->type_name("NAME")
-      ->check(words({"soft_step", "sequential_impulses", "lcp"}));
+      ->check(one_of({"soft_step", "sequential_impulses", "lcp"}));
   command.add_option("--integrator", options.integrator, "Integrator: semi_implicit_euler")
       ->type_name("NAME")
-      ->check(words({"explicit_euler", "semi_implicit_euler", "rk4", "verlet"}));
+      ->check(one_of({"explicit_euler", "semi_implicit_euler", "rk4", "verlet"}));
   command
       .add_option("--broad-phase", options.broad_phase,
                   "Broad phase: bvh or brute_force; never changes a result")
       ->type_name("NAME")
-      ->check(words(
+      ->check(one_of(
           {"bvh", "grid", "octree", "quadtree", "kd_tree", "bsp_tree", "sweep_and_prune", "brute_force"}));
   command.add_option("--stepping", options.stepping, "Time plan: fixed")
       ->type_name("NAME")
-      ->check(words({"fixed", "adaptive"}));
+      ->check(one_of({"fixed", "adaptive"}));
   command.add_flag("--no-sleeping", options.no_sleeping, "Resting bodies stay awake");
 }
 
 void add_output_options(CLI::App& command, SimulateOptions& options) {
-  command.add_option("--record", options.record, "Write a recording that can be replayed bit by bit")
-      ->type_name("FILE.gyrec");
+  CLI::Option* record = command
+                            .add_option("--record", options.record,
+                                        "Write a recording, to be looked at and replayed bit by bit")
+                            ->type_name("FILE.gyrec");
+  command
+      .add_option("--record-as", options.record_as,
+                  "What it holds: all; poses (only to be looked at); commands (only to be replayed)")
+      ->type_name("WHAT")
+      ->check(one_of({"all", "poses", "commands"}))
+      ->needs(record);
+  command.add_option("--record-every", options.record_every, "Poses of every Nth step, and of the last")
+      ->type_name("N")
+      ->check(number_between(1, false, 1e9, "an integer from 1 to 1e9"))
+      ->needs(record);
+  command
+      .add_option("--record-accuracy", options.record_accuracy,
+                  "By how much a position may be off in m; 0.0001 if not given. Replays are always exact")
+      ->type_name("M")
+      ->check(number_between(1e-12, false, 1e5, "a number from 1e-12 to 1e5"))
+      ->needs(record);
   command.add_option("--trace", options.trace, "Write a table of the motion of every body")
       ->type_name("FILE.csv");
   command.add_option("--trace-every", options.trace_every, "Trace only every Nth step")

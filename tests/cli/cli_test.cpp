@@ -104,6 +104,11 @@ TEST_F(CommandLine, WrongUsageIsStatusTwoAndOneLine) {
   expect_usage({"simulate", "s.gyre.json", "--trace-every", "0", "--trace", "t.csv"}, "1 to");
   expect_usage({"simulate", "s.gyre.json", "--trace", "t.csv", "--stats", "t.csv"}, "same file");
   expect_usage({"simulate", "s.gyre.json", "--trace", "./s.gyre.json"}, "overwrite the scene");
+  expect_usage({"simulate", "s.gyre.json", "--record-as", "poses"}, "--record");
+  expect_usage({"simulate", "s.gyre.json", "--record", "r.gyrec", "--record-as", "film"},
+               "found film, expected one of all");
+  expect_usage({"simulate", "s.gyre.json", "--record", "r.gyrec", "--record-every", "0"}, "1 to");
+  expect_usage({"simulate", "s.gyre.json", "--record", "r.gyrec", "--record-accuracy", "0"}, "1e-12 to");
   expect_usage({"info"}, "SCENE");
   expect_usage({"schema", "more"}, "more");
 }
@@ -280,7 +285,8 @@ TEST_F(CommandLine, CtrlCIsStatus130AndKeepsWhatWasRecorded) {
 }
 
 TEST_F(CommandLine, ARecordingReplaysToTheSameHash) {
-  const Finished done = gyre({"simulate", "s.gyre.json", "--steps", "50", "--record", "r.gyrec", "--hash", "--quiet"});
+  const Finished done =
+      gyre({"simulate", "s.gyre.json", "--steps", "50", "--record", "r.gyrec", "--hash", "--quiet"});
   ASSERT_EQ(done.code, 0) << done.err;
   Result<Replay> replay = open_recording("r.gyrec");
   ASSERT_TRUE(replay) << replay.error().message;
@@ -295,9 +301,51 @@ TEST_F(CommandLine, ARecordingReplaysToTheSameHash) {
   EXPECT_EQ(hash, done.out);
 }
 
+TEST_F(CommandLine, ARecordingCanBeLookedAtWithNamesAndColours) {
+  ASSERT_EQ(gyre({"simulate", "s.gyre.json", "--steps", "50", "--record", "r.gyrec", "--quiet"}).code, 0);
+  const std::string text = read("r.gyrec");
+  const std::byte* const bytes = reinterpret_cast<const std::byte*>(text.data());
+  Result<PoseTrack> track = PoseTrack::open({bytes, bytes + text.size()});
+  ASSERT_TRUE(track) << track.error().message;
+  ASSERT_EQ(track->frame_count(), 51u);
+  EXPECT_NEAR(track->time(50), 0.5, 1e-6);
+  EXPECT_EQ(track->label(track->frame().ids[1]).name, "box, \"left\"");
+  EXPECT_EQ(track->label(track->frame().ids[1]).colors.size(), 1u);
+  EXPECT_NE(track->note("scene").find("\"small\""), std::string_view::npos);
+  ASSERT_EQ(track->seek(50).code, ErrorCode::none);
+  EXPECT_LT(track->frame().poses[2].position.y, 2.0);
+}
+
+TEST_F(CommandLine, ARecordingHoldsWhatWasAskedFor) {
+  const auto size = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"simulate", "s.gyre.json", "--steps", "60",
+                                          "--record", "r.gyrec",     "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(gyre(arguments).code, 0);
+    return read("r.gyrec").size();
+  };
+  const auto track = [&] {
+    const std::string text = read("r.gyrec");
+    const std::byte* const bytes = reinterpret_cast<const std::byte*>(text.data());
+    return PoseTrack::open({bytes, bytes + text.size()});
+  };
+  const std::size_t all = size({}), poses = size({"--record-as", "poses"});
+  EXPECT_FALSE(open_recording("r.gyrec"));
+  EXPECT_TRUE(track());
+  const std::size_t commands = size({"--record-as", "commands"});
+  EXPECT_TRUE(open_recording("r.gyrec"));
+  EXPECT_FALSE(track());
+  EXPECT_GT(all, poses);
+  EXPECT_GT(all, commands);
+  EXPECT_LT(size({"--record-as", "poses", "--record-every", "4"}), poses / 2);
+  EXPECT_EQ(track()->frame_count(), 16u);
+  EXPECT_GT(size({"--record-as", "poses", "--record-accuracy", "1e-9"}), poses);
+  EXPECT_LE(track()->accuracy().position, 1e-9);
+}
+
 TEST_F(CommandLine, ARecordingThatWasStoppedIsWhole) {
-  const Finished done =
-      run_program({"simulate", "s.gyre.json", "--duration", "1e9", "--record", "r.gyrec"}, folder_, "r.gyrec");
+  const Finished done = run_program({"simulate", "s.gyre.json", "--duration", "1e9", "--record", "r.gyrec"},
+                                    folder_, "r.gyrec");
   EXPECT_EQ(done.code, 130) << done.err;
   Result<Replay> replay = open_recording("r.gyrec");
   ASSERT_TRUE(replay) << replay.error().message;

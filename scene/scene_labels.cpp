@@ -1,0 +1,39 @@
+// What a recorder is told of a scene. See scene_labels.h.
+#include "scene/scene_labels.h"
+
+#include "scene/json_writer.h"
+#include "scene/scene_color.h"
+
+namespace gyre {
+
+std::string scene_note(const Scene& scene) {
+  JsonWriter json;
+  json.begin_object();
+  json.field("name", scene.name);
+  json.field("time_step", scene.world.time_step);
+  if (scene.view) {
+    json.key("view").begin_object();
+    json.field("eye", scene.view->eye);
+    json.field("target", scene.view->target);
+    json.field("field_of_view", scene.view->field_of_view);
+    json.end_object();
+  }
+  json.end_object();
+  return json.take();
+}
+
+void label_bodies(Recorder& recorder, const SceneRunner& runner) {
+  const Scene& scene = runner.scene();
+  recorder.note("scene", scene_note(scene));
+  std::vector<TrackColor> colors;
+  for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
+    colors.clear();
+    for (std::size_t shape = 0; shape < scene.bodies[body].shapes.size(); ++shape) {
+      const SceneColor color = resolved_color(scene, body, shape);
+      colors.push_back({color.red, color.green, color.blue});
+    }
+    recorder.label(runner.bodies()[body], scene.bodies[body].name, colors);
+  }
+}
+
+}  // namespace gyre
