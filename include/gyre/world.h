@@ -99,6 +99,12 @@ class World {
   bool set_sleeping(bool enabled);
   bool set_awake(BodyId body, bool awake);  // false puts the body's whole island to sleep
   bool set_substeps(int substeps);
+  bool set_combine_rules(CombineRule friction, CombineRule restitution);  // of all contacts; wakes everything
+
+  // How the world is computed, not what happens in it: never changes a bit, so neither recordings nor snapshots know it.
+  // False and a problem if out of range, during a step, or (threads) if the host's own tasks are used.
+  bool set_threads(int threads);  // as WorldDef::threads
+  bool set_broad_phase(BroadPhaseKind kind);
 
   // Forces act during the next step and add up (D'Alembert); torques t = (p - COM) x f too. World frame.
   bool add_force(BodyId body, Vec3 force);                    // N, at the centre of mass
@@ -145,6 +151,8 @@ class World {
   std::uint64_t step_count() const;
   Vec3 gravity() const;
   int substeps() const;
+  // A definition with every setting as it is now: what a new world is made of that shall be like this one.
+  WorldDef def() const;
   Energy energy() const;
   Momentum momentum() const;
   float max_penetration() const;  // m, deepest contact point of the last step; 0 if none overlaps

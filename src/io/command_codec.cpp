@@ -190,7 +190,7 @@ void fields(C& c, T& v) {
 }
 template <class C, class T>
 requires IsOneOf<T, AddBody, AddShape, SetPose, SetType, SetGravityScale, SetMaterial, SetFilter, SetMotor,
-                 SetAwake>
+                 SetAwake, SetCombineRules>
 void fields(C& c, T& v) {
   auto& [first, second] = v;
   all(c, first, second);

@@ -70,7 +70,8 @@ std::vector<Command> all_commands() {
           SetSubsteps{9},
           AddForce{body, {1, 2, 3}, {4, 5, 6}},
           AddImpulse{body, {1, 2, 3}, {4, 5, 6}},
-          Step{0.25f}};
+          Step{0.25f},
+          SetCombineRules{CombineRule::minimum, CombineRule::product}};
 }
 
 TEST(CommandCodec, EveryCommandComesBack) {

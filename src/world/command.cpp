@@ -462,6 +462,16 @@ Submitted carry_out(WorldState& s, const SetSubsteps& c) {
   return {true, {}, {}, {}};
 }
 
+Submitted carry_out(WorldState& s, const SetCombineRules& c) {
+  RigidWorld& w = s.rigid;
+  if (w.settings.friction_rule == c.friction && w.settings.restitution_rule == c.restitution) return {true, {}, {}, {}};
+  w.settings.friction_rule = c.friction;
+  w.settings.restitution_rule = c.restitution;
+  w.shapes.ids.for_each_live([&](std::uint32_t shape) { remix(w, shape); });
+  wake_all(w);
+  return {true, {}, {}, {}};
+}
+
 // Sums that leave a float's range are held at its ends.
 Vec3 bounded(Vec3 v) {
   constexpr float kMost = 3.0e38f;

@@ -93,13 +93,18 @@ struct AddImpulse {
   BodyId body;
   Vec3 impulse, angular;
 };
+struct SetCombineRules {
+  CombineRule friction = CombineRule::geometric_mean;
+  CombineRule restitution = CombineRule::maximum;
+};
 struct Step {
   float seconds = 0;
 };
 
+// Recordings know a command by its place: new ones come last.
 using Command = std::variant<AddBody, RemoveBody, AddShape, RemoveShape, AddJoint, RemoveJoint, SetPose, SetVelocity,
                              MoveKinematic, SetType, SetGravity, SetGravityScale, SetDamping, SetMaterial, SetMaterialPair,
-                             SetFilter, SetMotor, SetSleeping, SetAwake, SetSubsteps, AddForce, AddImpulse, Step>;
+                             SetFilter, SetMotor, SetSleeping, SetAwake, SetSubsteps, AddForce, AddImpulse, Step, SetCombineRules>;
 
 // What a command gave back: whether it was done, and the id of what it made.
 struct Submitted {

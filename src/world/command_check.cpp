@@ -245,6 +245,12 @@ Error check(const WorldState&, const SetSubsteps& c) {
   if (c.substeps >= 1 && c.substeps <= 64) return ok();
   return refuse("substeps is %d; it must lie within 1 and 64", c.substeps);
 }
+Error check(const WorldState&, const SetCombineRules& c) {
+  for (const CombineRule rule : {c.friction, c.restitution}) {
+    if (rule > CombineRule::product) return refuse("combine rule %d: there is no such rule", int(rule));
+  }
+  return ok();
+}
 Error check(const WorldState& s, const AddForce& c) {
   Error e = check_body(s, c.body, "add_force");
   if (e.code == ErrorCode::none) e = check_finite("force", c.force);

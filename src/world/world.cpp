@@ -51,6 +51,48 @@ bool World::set_sleeping(bool enabled) { return submit(*state_, SetSleeping{enab
 bool World::set_awake(BodyId body, bool awake) { return submit(*state_, SetAwake{body, awake}).done; }
 bool World::set_substeps(int substeps) { return submit(*state_, SetSubsteps{substeps}).done; }
 
+bool World::set_combine_rules(CombineRule friction, CombineRule restitution) {
+  return submit(*state_, SetCombineRules{friction, restitution}).done;
+}
+
+namespace {
+
+// Why the world cannot be computed as `def` says from now on; code none if it can.
+Error check_change(const WorldState& s, const WorldDef& def) {
+  if (s.stepping) return make_error(ErrorCode::busy, "the world is in the middle of a step");
+  return check_world_def(def);
+}
+bool refuse_change(WorldState& s, const Error& why) {
+  report_problem(s, why.code, {}, "%s", why.message);
+  return false;
+}
+
+}  // namespace
+
+bool World::set_threads(int threads) {
+  WorldDef wanted = state_->def;
+  wanted.threads = threads;
+  Error why = check_change(*state_, wanted);
+  if (why.code == ErrorCode::none && wanted.host_tasks.run != nullptr) {
+    why = make_error(ErrorCode::unsupported, "threads: this world uses the host's own tasks");
+  }
+  if (why.code != ErrorCode::none) return refuse_change(*state_, why);
+  state_->tasks = std::make_unique<TaskSystem>(threads);
+  state_->def.threads = threads;
+  return true;
+}
+bool World::set_broad_phase(BroadPhaseKind kind) {
+  WorldDef wanted = state_->def;
+  wanted.stepping.broad_phase = kind;
+  const Error why = check_change(*state_, wanted);
+  if (why.code != ErrorCode::none) return refuse_change(*state_, why);
+  // The next step builds it from all boxes. Which of them changed it is told then, too.
+  state_->rigid.broadphase = make_broadphase(kind);
+  state_->rigid.broadphase_stale = true;
+  state_->def.stepping.broad_phase = kind;
+  return true;
+}
+
 bool World::add_force(BodyId body, Vec3 force) { return submit(*state_, AddForce{body, force, {}}).done; }
 bool World::add_force_at(BodyId body, Vec3 force, DVec3 point) {
   const FloatMode mode;

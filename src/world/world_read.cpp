@@ -213,6 +213,16 @@ WorldCounts World::counts() const {
 double World::time() const { return state_->time; }
 std::uint64_t World::step_count() const { return state_->step_count; }
 Vec3 World::gravity() const { return state_->rigid.settings.gravity; }
+WorldDef World::def() const {
+  const RigidSettings& settings = state_->rigid.settings;
+  WorldDef def = state_->def;
+  def.gravity = settings.gravity;
+  def.stepping.substeps = settings.substeps;
+  def.sleeping = settings.sleeping != 0;
+  def.friction_rule = settings.friction_rule;
+  def.restitution_rule = settings.restitution_rule;
+  return def;
+}
 int World::substeps() const { return state_->rigid.settings.substeps; }
 
 Energy World::energy() const {
