@@ -3,8 +3,10 @@
 #include "../determinism/scenes.h"
 #include "edits.h"
 
+#include <gyre/debug.h>
 #include <gyre/replay.h>
 
+#include <cstdio>
 #include <cstdlib>
 
 namespace {
@@ -233,6 +235,11 @@ void call(World& world, Ids& ids, Input& in) {
 }
 
 void check_world(const World& world) {
+  const Error fault = validate(world);
+  if (fault.code != ErrorCode::none) {
+    std::fprintf(stderr, "%s\n", fault.message);
+    std::abort();
+  }
   const BodyColumns bodies = world.bodies();
   for (std::size_t i = 0; i < bodies.ids.size(); ++i) {
     if (!is_finite(bodies.poses[i].position) || !is_finite(bodies.poses[i].orientation)) std::abort();

@@ -2,6 +2,8 @@
 #include "base/memory.h"
 #include "laws/kit.h"
 
+#include <gyre/debug.h>
+
 #include <chrono>
 
 namespace gyre::laws {
@@ -9,6 +11,12 @@ namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// All structures of the engine agree with each other.
+void expect_whole(const World& world) {
+  const Error fault = validate(world);
+  EXPECT_EQ(fault.code, ErrorCode::none) << fault.message;
 }
 
 // A pit with a floor and four walls, and boxes dropped into it layer upon layer.
@@ -52,6 +60,7 @@ void drop(int n, int side, double seconds, const char* name) {
   const auto start = std::chrono::steady_clock::now();
   run(pit.world, seconds);
   expect_contained(pit);
+  expect_whole(pit.world);
   std::printf("[row] %s: %d boxes, %.1f s of computing for %g s\n", name, n, seconds_since(start), seconds);
   limit_row("deepest penetration (m)", double(pit.world.max_penetration()), 1e-2, 5e-3);
   limit_row("awake", pit.world.counts().awake_bodies, 0, 0);
@@ -66,6 +75,7 @@ TEST(Capacity, ManyCoincidentBodiesTakeBoundedTime) {
   for (int i = 0; i < 5; ++i) world.step(kStep);
   const double t = seconds_since(start);
   EXPECT_LT(t, 10.0);
+  expect_whole(world);
   for (const Pose& p : world.bodies().poses) EXPECT_TRUE(is_finite(p));
 }
 TEST(LongCapacity, FiveThousandCoincidentShapesOfFixedBodies) {
@@ -91,6 +101,7 @@ TEST(Capacity, FiveThousandShapesOnOneBody) {
   for (int i = 0; i < 60; ++i) world.step(kStep);
   EXPECT_LT(seconds_since(start), 20.0);
   EXPECT_NEAR(world.pose(slab).position.y, 0.05, 0.02);
+  expect_whole(world);
 }
 TEST(LongCapacity, AHundredThousandFixedAndAThousandMoving) {
   World world = make_world();
@@ -109,6 +120,7 @@ TEST(LongCapacity, AHundredThousandFixedAndAThousandMoving) {
   const double each = seconds_since(start) / 120.0;
   EXPECT_TRUE(limit_row("B-07 seconds a step among 100,000 fixed", each, 0.1, 0.01));
   for (const BodyId b : moving) EXPECT_NEAR(world.pose(b).position.y, 0.5, 0.02);
+  expect_whole(world);
 }
 
 TEST(Churn, MemoryReachesAPlateau) {
@@ -125,6 +137,7 @@ TEST(Churn, MemoryReachesAPlateau) {
                           {.geometry = Box{{0.4f, 0.4f, 0.4f}}});
     ASSERT_TRUE(slot);
     if (i % 500 == 0) world.step(kStep);
+    if (i % 2500 == 13) expect_whole(world);
     if (i == 20000) early = total_bytes();
     late = total_bytes();
   }
