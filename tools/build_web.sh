@@ -36,6 +36,11 @@ for part in "${parts[@]}"; do
       python3 web/bindings/generate.py --typescript $package/src/generated.ts
       $package/node_modules/.bin/tsc -p $package
       cp LICENSE $package/LICENSE
+      # A bundler wants every file that is named; a build that was not made is an empty one, which load() passes over.
+      mkdir -p $package/dist/engine
+      for build in simd threads plain; do
+        [ -e $package/dist/engine/$build.js ] || node $package/tools/pack.mjs "$build" none $package/dist/engine
+      done
       ;;
     *) say "Unknown part: $part"; exit 1 ;;
   esac

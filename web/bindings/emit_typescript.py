@@ -2,7 +2,7 @@
 
 import re
 
-from model import BITS, FLAT, LEFT_OUT, NUMBERS, camel, pascal
+from model import BITS, FLAT, LEFT_OUT, NUMBERS, TAKEN_BY_HAND, camel, pascal
 
 HEAD = """// Made by web/bindings/generate.py from the headers in include/gyre; not to be edited. Names are those of C++ in camelCase, and so
 // are the comments.
@@ -12,9 +12,7 @@ import type { World } from './world.js';
 
 """
 # Classes to which TypeScript adds by hand: the generated one is their base.
-EXTENDED = ("World",)
-# Structs that src/scene.ts writes too.
-CALLED_BY_HAND = ("Stepping",)
+EXTENDED = ("World", "Recorder")
 VECTOR_INPUT = {"Vec3": "VectorInput", "DVec3": "VectorInput", "Quat": "QuaternionInput"}
 TUPLES = {"Vec3": "Vec3", "DVec3": "Vec3", "Quat": "Quat", "Sym3": "Sym3", "Mat3": "Mat3", "Mat4": "Mat4"}
 
@@ -288,7 +286,7 @@ class TypeScriptWriter:
         keys = ", ".join(f"'{camel(part.name)}'" for part in fields)
         extra = ", 'kind'" if any(name in value for value in self.model.api.aliases.values() if value.startswith("variant<")) else ""
         lines = [f"const keysOf{name} = new Set([{keys}{extra}]);\n",
-                 f"{'/** @internal */ export ' if name in CALLED_BY_HAND else ''}function write{name}"
+                 f"{'/** @internal */ export ' if name in TAKEN_BY_HAND else ''}function write{name}"
                  f"(w: Writer, value: {self.input_name(name)}): void {{\n",
                  f"  const bits = w.open(value, keysOf{name}, '{name}');\n"]
         for i, part in enumerate(fields):

@@ -41,20 +41,6 @@ Store* store_of(Host* host, int function) {
   return stores[at].get();
 }
 
-struct MemorySink final : ByteSink {
-  bool write(std::span<const std::byte> more) override {
-    bytes.insert(bytes.end(), more.begin(), more.end());
-    return true;
-  }
-  std::vector<std::byte> bytes;
-};
-
-struct RecorderHost final : Host {
-  explicit RecorderHost(World& world) : recorder(world, sink) {}
-  MemorySink sink;  // outlives the recorder
-  Recorder recorder;
-};
-
 }  // namespace
 
 Host* find_host(double handle) {
@@ -167,24 +153,32 @@ EMSCRIPTEN_KEEPALIVE int gyre_error() {
 
 EMSCRIPTEN_KEEPALIVE void gyre_release(Host* host) { delete host; }
 
+// Arguments: whether options are given, and these. The answer: the recorder's handle; the world's host owns it.
 EMSCRIPTEN_KEEPALIVE int gyre_recorder_start(Host* host) {
-  Answer answer(nullptr, 0);
+  Call call(host);
+  Answer answer(host, 0);
+  RecordOptions options;
+  if (call.given()) get(call, options);
   WorldHost& world = *static_cast<WorldHost*>(host);
-  auto recorder = std::make_unique<RecorderHost>(world.world());
-  if (recorder->recorder.failed()) {
+  if (world.recorder != nullptr) {
     return answer.checked(make_error(ErrorCode::busy, "record: this world is being recorded already"));
   }
+  auto recorder = std::make_unique<RecorderHost>(world.world(), options);
+  recorder->world_number = world.world_number;
+  if (recorder->recorder.failed()) {
+    return answer.checked(make_error(ErrorCode::invalid_argument,
+                                     "record: commands or poses must be recorded, frame_interval is at least 1, and pose_accuracy "
+                                     "from 1e-12 to 1e5 m"));
+  }
   world.recorder = std::move(recorder);
+  answer.pointer(static_cast<Host*>(world.recorder.get()));
   return answer.done();
 }
 
-// The bytes since the last call; `finish` closes the recording first.
+// The bytes since the last call; `finish` closes the recording first, and the recorder is gone.
 EMSCRIPTEN_KEEPALIVE int gyre_recorder_take(Host* host, int finish) {
   Answer answer(nullptr, 0);
   WorldHost& world = *static_cast<WorldHost*>(host);
-  if (world.recorder == nullptr) {
-    return answer.checked(make_error(ErrorCode::invalid_argument, "record: this world is not being recorded"));
-  }
   RecorderHost& recorder = static_cast<RecorderHost&>(*world.recorder);
   if (finish != 0) recorder.recorder.finish();
   answer.bytes(std::exchange(recorder.sink.bytes, {}));

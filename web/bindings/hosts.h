@@ -23,6 +23,27 @@ struct BorrowedWorldHost final : WorldHost {
 
 // Made by generate.py: only the fields that were given change.
 void get(Call& call, Stepping& out);
+void get(Call& call, RecordOptions& out);
+
+struct MemorySink final : ByteSink {
+  bool write(std::span<const std::byte> more) override {
+    bytes.insert(bytes.end(), more.begin(), more.end());
+    return true;
+  }
+  std::vector<std::byte> bytes;
+};
+
+// Owned by the host of the world that it records.
+struct RecorderHost final : Host {
+  RecorderHost(World& world, const RecordOptions& options) : recorder(world, sink, options) {}
+  MemorySink sink;  // outlives the recorder
+  Recorder recorder;
+};
+
+template <>
+inline Recorder& object<Recorder>(Host* host) {
+  return static_cast<RecorderHost*>(host)->recorder;
+}
 
 // Threads that JavaScript has ready for us. A world that asks for more gets these: a thread cannot start while the page's own
 // thread waits for it.

@@ -10,9 +10,9 @@ from pathlib import Path
 import headers
 
 ROOT = Path(__file__).resolve().parents[2]
-HEADERS = ["math", "ids", "result", "geometry", "defs", "events", "world", "replay", "debug"]
+HEADERS = ["math", "ids", "result", "geometry", "defs", "events", "world", "replay", "debug", "track"]
 # Public headers that are not bound, and why.
-NOT_BOUND = {"gyre": "includes the others", "track": "its functions are declared, not defined"}
+NOT_BOUND = {"gyre": "includes the others"}
 
 LEFT_OUT = {
     "World::state": "the inside of the engine",
@@ -23,7 +23,9 @@ LEFT_OUT = {
     "Geometry::shared": "the inside of the engine",
     "WorldDef.host_tasks": "function pointers; a page has no thread pool to lend",
     "HostTasks": "see WorldDef.host_tasks",
-    "Recorder": "by hand in hosts.cpp, with memory as its sink",
+    "Recorder::Recorder": "by hand in hosts.cpp, with memory as its sink",
+    "Recorder::finish": "by hand in hosts.cpp, which also takes the bytes",
+    "Recorder::failed": "memory as a sink does not fail; options out of range are an error at the start",
     "ByteSink": "by hand in hosts.cpp: the recorder's memory",
     "BodyNames": "a function pointer; bodies of a scene are named by the scene",
     "to_string": "names of enumerators are part of the enums, see nameOf",
@@ -39,6 +41,7 @@ RENAMED = {
     "World::exists(JointId)": "jointExists",
     "World::create(WorldDef)": "createWorld",
     "Replay::open(vector<byte>,WorldDef)": "openReplay",
+    "PoseTrack::open(vector<byte>)": "openPoseTrack",
     "first_difference(span<byte>,WorldDef,WorldDef,int,float)": "firstDifference",
     "first_difference(span<byte>,WorldDef)": "firstDifferenceOfRecording",
 }
@@ -51,6 +54,8 @@ NUMBERS = {"float": None, "double": None, "int": (-2**31, 2**31 - 1), "int32_t":
 ARRAYS = {"float": "Float32Array", "double": "Float64Array", "int": "Int32Array", "int32_t": "Int32Array",
           "uint32_t": "Uint32Array", "uint16_t": "Uint16Array", "uint8_t": "Uint8Array", "bool": "Uint8Array"}
 IDS = ("BodyId", "ShapeId", "JointId")
+# Structs that functions by hand take.
+TAKEN_BY_HAND = ("Stepping", "RecordOptions")
 # 64-bit numbers that are bits rather than counts: bigint in TypeScript. The others are numbers, the largest is Infinity.
 BITS = ("hash", "content_hash", "user_data")
 
@@ -78,6 +83,8 @@ class Model:
         self.functions = [f for f in self.all_functions() if not self.left_out(f)]
         for function in self.functions:
             self.use(function)
+        for name in TAKEN_BY_HAND:
+            self.walk(name, self.written_structs, "TAKEN_BY_HAND")
         self.refuse_equal_names()
 
     # ------------------------------------------------------------------------------------------------ choosing

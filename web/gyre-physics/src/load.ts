@@ -81,6 +81,7 @@ interface Workshop {
 
 async function start(build: Build, workers: number): Promise<Engine> {
   const variant = await variants[build]();
+  if (variant.wasm === '') throw new Error(`load: the build '${build}' was left out of this copy of the package`);
   const module: Record<string, unknown> = {
     wasmBinary: await unpack(variant),
     print: (text: string) => console.log(text),
@@ -90,6 +91,7 @@ async function start(build: Build, workers: number): Promise<Engine> {
   if (build === 'threads') {
     workshop = inNode ? await nodeWorkshop(variant.worker) : pageWorkshop(variant.worker);
     module['workers'] = workers;
+    module['cores'] = await cores();
     module['createWorker'] = () => workshop!.create();
   }
   try {

@@ -1,8 +1,8 @@
 // Scene files: the engine's own reader and runner.
-import { type BodyId, type JointId, type Stepping, type Vec3, writeStepping } from './generated.js';
+import { type BodyId, type JointId, type RecordOptions, type Stepping, type Vec3, writeStepping } from './generated.js';
 import type { Runtime } from './runtime.js';
 import type { Bytes, VectorInput } from './stream.js';
-import { World } from './world.js';
+import { type Recorder, World } from './world.js';
 
 export interface SceneOptions {
   /** Named in errors. */
@@ -118,6 +118,19 @@ export class Scene extends World {
     if (seconds !== undefined) return super.step(seconds);
     this.runtime.begin();
     this.runtime.call('gyre_scene_step', this.pointer);
+  }
+
+  /** Records; bodies are labelled with the scene's names and colours, and its name and view are noted. */
+  override record(options?: RecordOptions): Recorder {
+    const recorder = super.record(options);
+    const { name, view } = this;
+    const noted = view && { eye: view.eye, target: view.target, field_of_view: view.fieldOfView };
+    recorder.note('scene', JSON.stringify({ name, view: noted }));
+    this.sceneBodies.forEach((body, i) => {
+      const parts = this.colors[i]!.map((color) => ({ red: color >> 16, green: (color >> 8) & 255, blue: color & 255 }));
+      if (this.bodyExists(body)) recorder.label(body, this.bodyNames[i]!, parts);
+    });
+    return recorder;
   }
 
   /** The name of a body of this scene; empty for others. */

@@ -300,6 +300,45 @@ test('recordings: taken in pieces, played, sought back', () => {
   assert.throws(() => inner.step(second), /disposed/);
 });
 
+test('pose tracks: frames, names and colours without simulating', () => {
+  const scene = api.openScene(JSON.stringify({
+    gyre_scene: 1, name: 'two', view: { eye: [5, 5, 5], target: [0, 0, 0] },
+    bodies: [{ name: 'ground', type: 'static', shapes: [{ type: 'plane' }] }, { name: 'ball', color: '#ff8000', position: [0, 4, 0], shapes: [{ type: 'sphere', radius: 0.5 }] }],
+  }));
+  const recorder = scene.record({ frameInterval: 2 });
+  assert.throws(() => scene.record(), /already/);
+  const places = [scene.pose(scene.sceneBodies[1]).position];
+  for (let i = 1; i <= 40; ++i) {
+    scene.step();
+    if (i % 2 === 0) places.push(scene.pose(scene.sceneBodies[1]).position);
+  }
+  const bytes = recorder.finish();
+  assert.throws(() => recorder.take(), /finished/);
+  assert.throws(() => scene.record({ commands: false, poses: false }), /must be recorded/);
+  const track = api.openPoseTrack(bytes);
+  assert.equal(track.frameCount(), places.length);
+  for (const frame of [20, 3, 0, 11]) {
+    track.seek(frame);
+    const { ids, positions, awake } = track.frame();
+    assert.equal(ids.length, 2);
+    assert.equal(awake.length, 2);
+    close(positions.slice(3), places[frame], 2 * track.accuracy().position);
+  }
+  const ball = track.frame().ids[1];
+  const label = track.label(ball);
+  assert.equal(label.name, 'ball');
+  assert.deepEqual([label.colors.red[0], label.colors.green[0], label.colors.blue[0]], [255, 128, 0]);
+  assert.equal(JSON.parse(track.note('scene')).name, 'two');
+  const models = track.models();
+  assert.deepEqual(models[track.frame().models[1]].shapes[0].geometry, sphere({ radius: 0.5 }));
+  assert.throws(() => track.seek(1000), /frame/);
+  assert.throws(() => api.openPoseTrack(new Uint8Array(3)), gyre.GyreError);
+  // What is not kept ends by itself.
+  scene.record().dispose();
+  scene.record();
+  scene.dispose();
+});
+
 test('scenes: names, meshes, forces, and what they are told to change', () => {
   assert.throws(() => api.openScene(sceneText('mesh_terrain.gyre.json')), /\.obj.*no files/);
   assert.throws(() => api.openScene(sceneText('mesh_terrain.gyre.json'), { files: { 'hills.obj': '' } }), /given were: "hills\.obj"/);

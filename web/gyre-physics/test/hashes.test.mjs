@@ -2,10 +2,10 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 
-import { engine, gyre, hashText, meshFiles, nativeHash, nativeProgram, sceneNames, sceneText } from './kit.mjs';
+import { engine, gyre, hashText, made, meshFiles, nativeHash, nativeProgram, sceneNames, sceneText } from './kit.mjs';
 
 const steps = 600;
-const builds = process.env.GYRE_WEB_BUILD ? [process.env.GYRE_WEB_BUILD] : ['simd', 'threads', 'plain'];
+const builds = process.env.GYRE_WEB_BUILD ? [process.env.GYRE_WEB_BUILD] : ['simd', 'threads', 'plain'].filter(made);
 const skip = nativeProgram === null ? 'no native gyre to compare with: build it, or set GYRE_CLI' : false;
 
 test('there are scenes to compare', () => assert.ok(sceneNames.length >= 15, `${sceneNames.length} scenes`));

@@ -1,6 +1,6 @@
 // What the tests share: the package as its users get it, the scenes of the repository, and the native program to compare with.
 import { execFileSync } from 'node:child_process';
-import { existsSync, readdirSync, readFileSync } from 'node:fs';
+import { existsSync, readdirSync, readFileSync, statSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
@@ -8,10 +8,16 @@ export const root = join(dirname(fileURLToPath(import.meta.url)), '../../..');
 export const dist = join(root, 'web/gyre-physics/dist');
 export const gyre = await import('../dist/index.js');
 
+/** Whether a build was made. */
+export function made(build) {
+  const path = join(dist, 'engine', `${build}.js`);
+  return existsSync(path) && statSync(path).size > 1000;
+}
+
 const engines = new Map();
 /** The engine in one of its builds; tests of a file share it. */
 export async function engine(build = 'simd') {
-  if (!engines.has(build)) engines.set(build, gyre.load({ build, workers: build === 'threads' ? 3 : undefined }));
+  if (!engines.has(build)) engines.set(build, gyre.load({ build, workers: build === 'threads' ? 2 : undefined }));
   return engines.get(build);
 }
 

@@ -7,7 +7,7 @@ import { join } from 'node:path';
 import test, { after, before } from 'node:test';
 import { gzipSync } from 'node:zlib';
 
-import { root } from './kit.mjs';
+import { made, root } from './kit.mjs';
 
 const source = join(root, 'web/gyre-physics');
 const readme = readFileSync(join(source, 'README.md'), 'utf8');
@@ -60,7 +60,7 @@ console.log('ran');
   assert.match(execFileSync(process.execPath, ['more.js'], { cwd: folder, encoding: 'utf8', timeout: 60000 }), /ran/);
 });
 
-test('a program with threads ends by itself', { skip: !readdirSync(join(source, 'dist/engine')).includes('threads.js') && 'the build with threads is not made' }, () => {
+test('a program with threads ends by itself', { skip: !made('threads') && 'the build with threads is not made' }, () => {
   writeFileSync(join(folder, 'threads.js'), `import { load } from 'gyre-physics';
 const gyre = await load({ build: 'threads', workers: 2 });
 const world = gyre.createWorld({ threads: 3 });

@@ -1,13 +1,19 @@
 // Makes one JavaScript file of what emscripten wrote: the loader, and the WebAssembly module in base64, packed with gzip (but for the
 // plain build: where there is no SIMD there may be no DecompressionStream).
 //
-//   node pack.mjs simd|threads|plain FROM TO
+//   node pack.mjs simd|threads|plain FROM TO     FROM is the folder of emscripten's output; "none" makes an empty build
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { gzipSync } from 'node:zlib';
 
 const [build, from, to] = process.argv.slice(2);
 if (!to) throw new Error('usage: pack.mjs simd|threads|plain FROM TO');
+
+if (from === 'none') {
+  mkdirSync(to, { recursive: true });
+  writeFileSync(join(to, `${build}.js`), "export default undefined;\nexport const compressed = false;\nexport const wasm = '';\nexport const worker = '';\n");
+  process.exit(0);
+}
 
 /** Replaces what must be there; another emscripten may write it in another way, and then somebody has to look. */
 function replace(text, what, by) {
@@ -28,6 +34,8 @@ glue = glue.replace(/new URL\((["'][^"']*["']),\s*import\.meta\.url\)(\.toString
 
 const parts = [];
 if (build === 'threads') {
+  // Node has no navigator; src/load.ts knows how many cores there are.
+  glue = replace(glue, 'navigator["hardwareConcurrency"]', '(Module["cores"]||1)');
   // Workers are made by src/load.ts, each from one text: the loader, and emscripten's code around a thread.
   if (!/new Worker\(/.test(glue)) throw new Error('pack.mjs: the loader makes no workers');
   glue = glue.replace(/new Worker\([^()]*\)/g, 'Module["createWorker"]()');
