@@ -70,6 +70,8 @@ class Simulation {
   Simulation(const SimulateOptions& options, SceneRunner runner)
       : options_(options), runner_(std::move(runner)) {}
 
+  // The first of --explain's names that no body has; null if all are known.
+  const std::string* find_unknown_body() const;
   bool open_outputs();
   int run();
 
@@ -90,8 +92,16 @@ class Simulation {
   OutputFile record_, final_;
   FileSink sink_{record_};
   std::unique_ptr<Recorder> recorder_;
+  StageSums stages_;
   RunFigures figures_;
 };
+
+const std::string* Simulation::find_unknown_body() const {
+  for (const std::string& name : options_.explain) {
+    if (!find_body(runner_, name)) return &name;
+  }
+  return nullptr;
+}
 
 bool Simulation::open_outputs() {
   const auto check = [](bool opened, const OutputFile& file) {
@@ -131,12 +141,14 @@ bool Simulation::record_step(double step_ms) {
 int Simulation::run_steps(std::uint64_t steps) {
   using Clock = std::chrono::steady_clock;
   Progress progress(!options_.quiet, steps);
+  set_timing(runner_.world(), options_.times);
   if (!record_step(0)) return kExitInvalid;
   for (std::uint64_t i = 0; i < steps; ++i) {
     const Clock::time_point begin = Clock::now();
     const bool finite = runner_.step();
     const double step_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
     figures_.step_ms.push_back(float(step_ms));
+    if (options_.times) stages_.add(runner_.world());
     if (!finite) {
       progress.clear();
       say("the simulation is no longer finite in step " + std::to_string(i + 1) + ": " + runner_.problem() +
@@ -180,6 +192,7 @@ void Simulation::print_result() const {
     out = summary_json(runner_, figures_);
   } else {
     if (!options_.quiet) out = summary_text(runner_, figures_);
+    out += times_text(figures_) + explanations_text(figures_);
     if (options_.hash) out += hash_text(runner_.world()) + "\n";
   }
   std::fwrite(out.data(), 1, out.size(), stdout);
@@ -191,6 +204,10 @@ int Simulation::run() {
   const int ended = run_steps(step_count(options_, runner_.scene().world.time_step));
   figures_.wall_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
   if (ended == kExitInvalid) return ended;
+  figures_.stages = stages_.means();
+  figures_.stages_step_ms = stages_.step_ms();
+  for (const std::string& name : options_.explain)
+    figures_.explanations.emplace_back(name, explain_body(runner_, find_body(runner_, name)));
   if (!finish_outputs(ended)) return kExitInvalid;
   print_result();
   return ended;
@@ -221,6 +238,10 @@ int simulate(const SimulateOptions& options) {
     return kExitInvalid;
   }
   Simulation simulation(options, *std::move(runner));
+  if (const std::string* const unknown = simulation.find_unknown_body()) {
+    say("--explain: the scene has no body \"" + *unknown + "\"");
+    return kExitUsage;
+  }
   if (!simulation.open_outputs()) return kExitInvalid;
   return simulation.run();
 }

@@ -28,7 +28,8 @@ struct SimulateOptions {
   std::uint32_t record_every = 1;
   float record_accuracy = 1.0e-4f;  // m
   std::uint64_t trace_every = 1;
-  bool hash = false, json = false, quiet = false;
+  std::vector<std::string> explain;  // names of bodies
+  bool times = false, hash = false, json = false, quiet = false;
 };
 
 // What the options say instead of the scene. Returns the reason if this version does not have it.

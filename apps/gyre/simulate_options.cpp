@@ -108,6 +108,13 @@ void add_output_options(CLI::App& command, SimulateOptions& options) {
   command.add_option("--stats", options.stats, "Write a table of figures of each step")
       ->type_name("FILE.csv");
   command.add_option("--final", options.final, "Write the final state as a scene")->type_name("FILE.json");
+  command
+      .add_option("--explain", options.explain,
+                  "Say why this body is awake or asleep at the end; may be repeated")
+      ->type_name("NAME")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command.add_flag("--times", options.times, "Say which stages of a step take how long");
   command.add_flag("--hash", options.hash, "Print a hash of the final state, the same on every machine");
   command.add_flag("--json", options.json, "Print the summary as JSON");
   command.add_flag("--quiet", options.quiet, "Print no summary and show no progress");

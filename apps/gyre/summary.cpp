@@ -10,11 +10,11 @@
 namespace gyre {
 namespace {
 
-struct StepTimes {
+struct WallTimes {
   double median = 0, mean = 0, p99 = 0, max = 0;  // ms
 };
 
-StepTimes step_times(std::vector<float> times) {
+WallTimes wall_times(std::vector<float> times) {
   if (times.empty()) return {};
   std::sort(times.begin(), times.end());
   double sum = 0;
@@ -48,7 +48,7 @@ std::string summary_text(const SceneRunner& runner, const RunFigures& figures) {
   const World& world = runner.world();
   const WorldCounts counts = world.counts();
   const Energy energy = world.energy();
-  const StepTimes times = step_times(figures.step_ms);
+  const WallTimes times = wall_times(figures.step_ms);
   std::string out;
   if (!runner.scene().name.empty()) out += runner.scene().name + ": ";
   out += counted(counts.bodies, "body", "bodies") + ", " + counted(counts.joints, "joint", "joints") + "\n";
@@ -71,11 +71,29 @@ std::string summary_text(const SceneRunner& runner, const RunFigures& figures) {
   return out;
 }
 
+std::string times_text(const RunFigures& figures) {
+  if (figures.stages.empty()) return {};
+  std::string out = "stages of a step, mean:\n";
+  for (const StageMean& stage : figures.stages) {
+    char line[96];
+    const double share = figures.stages_step_ms > 0 ? 100 * stage.ms / figures.stages_step_ms : 0;
+    std::snprintf(line, sizeof line, "  %-18s %9.4f ms  %5.1f %%\n", stage.name.c_str(), stage.ms, share);
+    out += line;
+  }
+  return out;
+}
+
+std::string explanations_text(const RunFigures& figures) {
+  std::string out;
+  for (const auto& [name, words] : figures.explanations) out += words + "\n";
+  return out;
+}
+
 std::string summary_json(const SceneRunner& runner, const RunFigures& figures) {
   const World& world = runner.world();
   const WorldCounts counts = world.counts();
   const Energy energy = world.energy();
-  const StepTimes times = step_times(figures.step_ms);
+  const WallTimes times = wall_times(figures.step_ms);
   JsonWriter json;
   json.begin_object();
   json.field("scene", runner.scene().name);
@@ -93,6 +111,16 @@ std::string summary_json(const SceneRunner& runner, const RunFigures& figures) {
   json.field("p99", float(times.p99));
   json.field("max", float(times.max));
   json.end_object();
+  if (!figures.stages.empty()) {
+    json.key("stage_ms").begin_object(JsonLayout::one_line);
+    for (const StageMean& stage : figures.stages) json.field(stage.name.c_str(), float(stage.ms));
+    json.end_object();
+  }
+  if (!figures.explanations.empty()) {
+    json.key("explanations").begin_object();
+    for (const auto& [name, words] : figures.explanations) json.field(name.c_str(), words);
+    json.end_object();
+  }
   json.field("energy", energy.kinetic + energy.potential + energy.elastic);
   json.field("kinetic_energy", energy.kinetic);
   json.field("potential_energy", energy.potential);

@@ -126,8 +126,11 @@ void Sentences::rest() {
   const bool still = out_.speed <= out_.rest_speed;
   add(" Its speed is %.3g m/s, %s the %.3g m/s that count as still", double(out_.speed),
       still ? "below" : "above", double(out_.rest_speed));
-  if (out_.still_seconds > 0.0f) add("; it has been still for %.2f s", double(out_.still_seconds));
-  add(" (%.2g s are needed).", double(out_.seconds_to_sleep));
+  if (out_.still_seconds > 0.0f) {
+    add("; it has been still for %.2f of the %.2g s that are needed", double(out_.still_seconds),
+        double(out_.seconds_to_sleep));
+  }
+  add(".");
 }
 
 void Sentences::island() {

@@ -103,6 +103,8 @@ TEST_F(CommandLine, WrongUsageIsStatusTwoAndOneLine) {
   expect_usage({"simulate", "s.gyre.json", "--stepping", "adaptive"}, "not supported");
   expect_usage({"simulate", "s.gyre.json", "--trace-every", "0", "--trace", "t.csv"}, "1 to");
   expect_usage({"simulate", "s.gyre.json", "--trace", "t.csv", "--stats", "t.csv"}, "same file");
+  expect_usage({"simulate", "s.gyre.json", "--explain", "nobody"}, "no body \"nobody\"");
+  expect_usage({"simulate", "s.gyre.json", "--explain", ""}, "no body \"\"");
   expect_usage({"simulate", "s.gyre.json", "--trace", "./s.gyre.json"}, "overwrite the scene");
   expect_usage({"simulate", "s.gyre.json", "--record-as", "poses"}, "--record");
   expect_usage({"simulate", "s.gyre.json", "--record", "r.gyrec", "--record-as", "film"},
@@ -230,6 +232,35 @@ TEST_F(CommandLine, JsonSummaryHasWhatWasPromised) {
         "\"mean\": ", "\"p99\": ", "\"max\": ", "\"energy\": ", "\"hash\": \""}) {
     EXPECT_NE(done.out.find(key), std::string::npos) << key << "\n" << done.out;
   }
+}
+
+TEST_F(CommandLine, ExplainSaysWhyABodyIsAwake) {
+  const std::string left = R"(box, "left")";
+  Finished done =
+      gyre({"simulate", "s.gyre.json", "--steps", "10", "--quiet", "--explain", left, "--explain", "ground"});
+  EXPECT_EQ(done.code, 0) << done.err;
+  std::vector<std::string> lines = lines_of(done.out);
+  ASSERT_EQ(lines.size(), 2u) << done.out;
+  EXPECT_EQ(lines[0].rfind(left + " is awake because nothing touches it", 0), 0u) << lines[0];
+  EXPECT_EQ(lines[1], "ground is fixed: it never moves.");
+  done = gyre({"simulate", "s.gyre.json", "--duration", "3", "--quiet", "--explain", left});
+  EXPECT_NE(done.out.find(left + " is asleep."), std::string::npos) << done.out;
+  EXPECT_NE(done.out.find("It touches ground (4 points, 9.81e+03 N"), std::string::npos) << done.out;
+  done = gyre({"simulate", "s.gyre.json", "--duration", "3", "--json", "--explain", "ball"});
+  EXPECT_NE(done.out.find(R"("explanations": {)"), std::string::npos) << done.out;
+}
+
+TEST_F(CommandLine, TimesListsTheStages) {
+  Finished done = gyre({"simulate", "s.gyre.json", "--steps", "20", "--quiet", "--times"});
+  EXPECT_EQ(done.code, 0) << done.err;
+  const std::vector<std::string> lines = lines_of(done.out);
+  ASSERT_EQ(lines.size(), 10u) << done.out;
+  EXPECT_EQ(lines[0], "stages of a step, mean:");
+  EXPECT_EQ(lines[3].rfind("  collide ", 0), 0u);
+  done = gyre({"simulate", "s.gyre.json", "--steps", "20", "--json", "--times"});
+  EXPECT_NE(done.out.find(R"("stage_ms": {"refit": )"), std::string::npos) << done.out;
+  done = gyre({"simulate", "s.gyre.json", "--steps", "0", "--quiet", "--times"});
+  EXPECT_EQ(done.out, "") << "no step, no times";
 }
 
 TEST_F(CommandLine, QuietSaysNothing) {
