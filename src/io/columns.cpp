@@ -97,6 +97,9 @@ void adopt_columns(WorldState& state, StateColumns&& columns) {
   state.time = columns.time;
   state.step_count = columns.step_count;
   forget_reports(state);
+  // Bytes from outside can break rules that the engine never would (boxes that hold no shape, say), and are stepped without
+  // harm. A walk that stops at them would blame the engine.
+  state.walks = false;
   if (state.log != nullptr) state.log->on_restored(state);
 }
 

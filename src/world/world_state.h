@@ -56,7 +56,7 @@ struct WorldState {
   RigidEvents shown;              // events of the last step; rigid.events collects those of the next
   Events events;                  // spans into `shown`
   bool stepping = false;
-  bool walks = true;              // builds with GYRE_VALIDATE: structures are walked after each stage
+  bool walks = true;              // builds with GYRE_VALIDATE: after each stage all structures are walked
   std::uint16_t number = 0;       // of this world, in its ids
   // Copies that bulk reading hands out; refreshed on demand.
   mutable std::vector<BodyId> read_ids;
