@@ -193,11 +193,12 @@ struct Wide {
       return v[lane];
     }
   }
+  // A plain store where the lane is not known: Clang else takes the vector out, changes it on the stack, and puts it back.
   GYRE_INLINE void set(int lane, float value) {
     if constexpr (W == 1) {
       (void)lane, v = value;
     } else {
-      v[lane] = value;
+      __builtin_memcpy(reinterpret_cast<char*>(&v) + 4 * lane, &value, sizeof value);
     }
   }
 
