@@ -1,6 +1,10 @@
 // gyre render as a user sees it: the same bytes twice, things where a pinhole has them, exit statuses and words.
 #include "cli/run_program.h"
 
+#include <gyre/gyre.h>
+#include <gyre/replay.h>
+#include <gyre/track.h>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -255,6 +259,61 @@ TEST_F(Render, ARecordingLooksLikeItsScene) {
   const Finished other = draw_small({"r.gyrec", "--scene", "box.gyre.json", "--out", "x.gif"});
   EXPECT_EQ(other.code, 3);
   EXPECT_NE(other.err.find("not one of this scene"), std::string::npos) << other.err;
+}
+
+TEST_F(Render, ATrackIsLookedAtWithoutSimulating) {
+  // A recording of poses alone: a red ball that drops and a plane, with the name and the colour said by labels.
+  Result<World> world = World::create();
+  ASSERT_TRUE(world);
+  const BodyId ground = world->add_body({.type = BodyType::fixed}, {.geometry = Plane{}});
+  const BodyId ball = world->add_body({.pose = {.position = {0, 2, 0}}}, {.geometry = Sphere{0.5f}});
+  struct Sink : ByteSink {
+    std::string bytes;
+    bool write(std::span<const std::byte> more) override {
+      bytes.append(reinterpret_cast<const char*>(more.data()), more.size());
+      return true;
+    }
+  } sink;
+  {
+    Recorder recorder(*world, sink, {.commands = false});
+    const TrackColor red{255, 0, 0};
+    recorder.label(ball, "ball", {&red, 1});
+    recorder.label(ground, "ground");
+    recorder.note(
+        "scene",
+        R"({"name": "x", "view": {"eye": [0, 1, 12], "target": [0, 1, 0], "field_of_view": 0.349}})");
+    for (int i = 0; i < 60; ++i) world->step(1.0f / 60.0f);
+    ASSERT_TRUE(recorder.finish());
+  }
+  write("t.gyrec", sink.bytes);
+  // The scene with that camera looks the same, to what rounding the track leaves.
+  ASSERT_EQ(draw_small({"t.gyrec", "--out", "track.png", "--at", "0.5"}).code, 0);
+  ASSERT_EQ(draw_small({"fall.gyre.json", "--out", "scene.png", "--at", "0.5", "--camera", "0,1,12",
+                        "--look-at", "0,1,0", "--fov", "20"})
+                .code,
+            0);
+  const Pixels track = read_png(folder_ / "track.png"), scene = read_png(folder_ / "scene.png");
+  ASSERT_EQ(track.bytes.size(), scene.bytes.size());
+  int red = 0, different = 0;
+  for (int y = 0; y < 60; ++y) {
+    for (int x = 0; x < 96; ++x) {
+      red += track.is_red(x, y) ? 1 : 0;
+      const std::size_t at = 3 * std::size_t(y * 96 + x);
+      different += std::abs(track.bytes[at] - scene.bytes[at]) > 40 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(red, 50);
+  EXPECT_LT(different, 5);
+  EXPECT_EQ(draw_small({"t.gyrec", "--out", "f.png", "--follow", "ball"}).code, 0);
+  EXPECT_EQ(draw_small({"t.gyrec", "--out", "f.png", "--follow", "nobody"}).code, 2);
+  ASSERT_EQ(draw_small({"t.gyrec", "--out", "whole.gif"}).code, 0);
+  int width = 0, height = 0;
+  EXPECT_EQ(count_frames(folder_ / "whole.gif", width, height), 21);
+}
+
+TEST_F(Render, TooManyFramesAreRefusedBeforeTheWork) {
+  expect_refused({"fall.gyre.json", "--out", "a.gif", "--seconds", "10000000"}, 2, "200000000 frames");
+  expect_refused({"fall.gyre.json", "--out", "%d.png", "--seconds", "10000000"}, 2, "at most 10000000");
 }
 
 TEST_F(Render, WhatCannotBeReadOrWrittenIsStatusThree) {

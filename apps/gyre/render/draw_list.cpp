@@ -38,6 +38,20 @@ void add_plane(const Subject& subject, DVec3 point, Vec3 normal, SceneColor colo
   list.ground.insert(list.ground.end(), {first, first + 1, first + 2, first, first + 2, first + 3});
 }
 
+void add_link(const SeenLink& link, Vec3 down, const Subject& subject, DrawList& list) {
+  constexpr int kSides = 12;
+  constexpr int kTurns = 10;
+  const Vec3 a = difference(link.a, subject.origin), b = difference(link.b, subject.origin);
+  const std::vector<Vec3> line = link.spring ? coil_line(a, b, 5.0f * subject.rod_radius, kTurns)
+                                             : hanging_line(a, b, link.length, down);
+  const auto first = std::uint32_t(list.vertices.size());
+  for (const TubePoint& point : tube_rings(line, subject.rod_radius, kSides)) {
+    list.vertices.push_back(
+        {point.position, point.normal, {kRodColor.red, kRodColor.green, kRodColor.blue}, Paint::matter});
+  }
+  add_quads(list, first, std::uint32_t(line.size()), kSides + 1);
+}
+
 std::uint8_t toned(std::uint8_t part, float tone) { return std::uint8_t(float(part) * tone + 0.5f); }
 
 // All that a mesh depends on, as bytes.
@@ -70,19 +84,6 @@ int segments_for(float radius_pixels) {
 
 }  // namespace
 
-DrawListMaker::Look DrawListMaker::look_of(BodyId body, std::size_t ordinal, std::size_t shape) const {
-  const bool glass = glass_.count(shape_key(body, shape)) > 0;
-  const BodyType type = player_.world().type(body);
-  const Scene* scene = player_.scene();
-  const std::uint64_t index = player_.world().user_data(body);
-  if (!scene || index >= player_.bodies().size() || !(player_.bodies()[index] == body) ||
-      shape >= scene->bodies[index].shapes.size()) {
-    const AnyShape& geometry = *player_.world().geometry(player_.world().shapes(body)[shape]);
-    return {std::holds_alternative<Plane>(geometry) ? kGroundColor : automatic_color(type, ordinal), glass};
-  }
-  return {resolved_color(*scene, index, shape), glass || scene->bodies[index].sensor};
-}
-
 const ShapeMesh& DrawListMaker::mesh_of(const AnyShape& shape, int segments) {
   MeshKey key;
   key.add(shape.index());
@@ -93,74 +94,49 @@ const ShapeMesh& DrawListMaker::mesh_of(const AnyShape& shape, int segments) {
   return at->second;
 }
 
-DrawList DrawListMaker::make(const Camera& camera, const Subject& subject) {
+void DrawListMaker::add_shape(const SeenShape& shape, const Pose& pose, bool glass, const Camera& camera,
+                              DVec3 origin, DrawList& list) {
+  const float away = max(float(length(pose.position - camera.eye)), 1e-6f);
+  const float radius_pixels = rounding_radius(*shape.geometry) / away * camera.focal_pixels();
+  const ShapeMesh& mesh = mesh_of(*shape.geometry, segments_for(radius_pixels));
+  const auto first = std::uint32_t(list.vertices.size());
+  const Mat3 turned = to_matrix(pose.orientation);
+  const Vec3 moved = difference(pose.position, origin);
+  const SceneColor color = shape.color;
+  for (const MeshVertex& vertex : mesh.vertices) {
+    list.vertices.push_back(
+        {turned * vertex.position + moved,
+         turned * vertex.normal,
+         {toned(color.red, vertex.tone), toned(color.green, vertex.tone), toned(color.blue, vertex.tone)},
+         Paint::matter});
+  }
+  std::vector<std::uint32_t>& indices = glass ? list.glass : list.solid;
+  for (const std::uint32_t index : mesh.indices) indices.push_back(first + index);
+}
+
+DrawList DrawListMaker::make(const Sight& sight, const Camera& camera, const Subject& subject) {
   DrawList list;
-  const World& world = player_.world();
-  const BodyColumns bodies = world.bodies();
-  for (std::size_t i = 0; i < bodies.ids.size(); ++i) {
-    const std::span<const ShapeId> shapes = world.shapes(bodies.ids[i]);
+  for (const SeenBody& body : sight.bodies) {
+    const std::span<const SeenShape> shapes = sight.shapes_of(body);
     for (std::size_t k = 0; k < shapes.size(); ++k) {
-      const AnyShape& shape = *world.geometry(shapes[k]);
-      const Look look = look_of(bodies.ids[i], i, k);
-      const Pose pose = bodies.poses[i] * world.local_transform(shapes[k]);
-      const SceneColor color = look.color;
-      if (const Plane* plane = std::get_if<Plane>(&shape)) {
+      const Pose pose = body.pose * shapes[k].local;
+      if (const Plane* plane = std::get_if<Plane>(shapes[k].geometry)) {
         const Vec3 normal = normalized(plane->normal);
         const Vec3 point = (plane->offset / dot(plane->normal, plane->normal)) * plane->normal;
-        add_plane(subject, pose * point, rotate(pose.orientation, normal), color, Paint::ground, list);
-        continue;
+        add_plane(subject, pose * point, rotate(pose.orientation, normal), shapes[k].color, Paint::ground,
+                  list);
+      } else {
+        const bool glass = shapes[k].sensor || glass_.count(shape_key(body.id, k)) > 0;
+        add_shape(shapes[k], pose, glass, camera, subject.origin, list);
       }
-      const float away = max(float(length(pose.position - camera.eye)), 1e-6f);
-      const ShapeMesh& mesh =
-          mesh_of(shape, segments_for(rounding_radius(shape) / away * camera.focal_pixels()));
-      const auto first = std::uint32_t(list.vertices.size());
-      const Mat3 turned = to_matrix(pose.orientation);
-      const Vec3 moved = difference(pose.position, subject.origin);
-      for (const MeshVertex& vertex : mesh.vertices) {
-        list.vertices.push_back(
-            {turned * vertex.position + moved,
-             turned * vertex.normal,
-             {toned(color.red, vertex.tone), toned(color.green, vertex.tone), toned(color.blue, vertex.tone)},
-             Paint::matter});
-      }
-      std::vector<std::uint32_t>& indices = look.glass ? list.glass : list.solid;
-      for (const std::uint32_t index : mesh.indices) indices.push_back(first + index);
     }
   }
-  add_joints(subject, list);
+  for (const SeenLink& link : sight.links) add_link(link, sight.down, subject, list);
   if (subject.floor && list.ground.empty()) {
     add_plane(subject, {subject.origin.x, *subject.floor, subject.origin.z}, {0, 1, 0}, kGroundColor,
               Paint::floor, list);
   }
   return list;
-}
-
-void DrawListMaker::add_joints(const Subject& subject, DrawList& list) const {
-  const World& world = player_.world();
-  for (const SeenJoint& seen : joints_) {
-    const JointDef& def = seen.joint->def;
-    if (def.kind != JointKind::distance) continue;
-    const auto is_gone = [&](BodyId body, int index) { return index >= 0 && !world.exists(body); };
-    if (is_gone(seen.a, seen.joint->a) || is_gone(seen.b, seen.joint->b)) continue;
-    if (seen.id != JointId{} && !world.exists(seen.id)) continue;
-    const auto end = [&](BodyId body, int index, Vec3 point, DVec3 place) {
-      return difference(index < 0 ? place : world.pose(body) * point, subject.origin);
-    };
-    const Vec3 a = end(seen.a, seen.joint->a, seen.point_a, seen.place_a);
-    const Vec3 b = end(seen.b, seen.joint->b, seen.point_b, seen.place_b);
-    const bool spring = def.stiffness.has_value();
-    const std::vector<Vec3> line = spring ? coil_line(a, b, 5.0f * subject.rod_radius, 10)
-                                          : hanging_line(a, b, def.max_length.value_or(0.0f),
-                                                         normalized(world.gravity(), Vec3{0, -1, 0}));
-    constexpr int kSides = 12;
-    const auto first = std::uint32_t(list.vertices.size());
-    const std::vector<TubePoint> rings = tube_rings(line, subject.rod_radius, kSides);
-    for (const TubePoint& point : rings) {
-      list.vertices.push_back(
-          {point.position, point.normal, {kRodColor.red, kRodColor.green, kRodColor.blue}, Paint::matter});
-    }
-    add_quads(list, first, std::uint32_t(line.size()), kSides + 1);
-  }
 }
 
 }  // namespace gyre

@@ -1,10 +1,10 @@
-// What there is to draw at one moment: all shapes and joints of a world as coloured triangles, placed relative to an origin near
+// What there is to draw at one moment: all shapes and ropes as coloured triangles, placed relative to an origin near
 // the subject.
 #pragma once
 
 #include "render/camera.h"
-#include "render/player.h"
 #include "render/shape_mesh.h"
+#include "render/sight.h"
 
 #include <cstdint>
 #include <map>
@@ -52,23 +52,15 @@ inline ShapeKey shape_key(BodyId body, std::size_t shape) {
 
 class DrawListMaker {
  public:
-  explicit DrawListMaker(const Player& player) : player_(player), joints_(player.joints()) {}
-
   // Shapes to be drawn as glass beside sensors.
   void set_glass(std::set<ShapeKey> glass) { glass_ = std::move(glass); }
-  DrawList make(const Camera& camera, const Subject& subject);
+  DrawList make(const Sight& sight, const Camera& camera, const Subject& subject);
 
  private:
-  struct Look {
-    SceneColor color;
-    bool glass;
-  };
-  Look look_of(BodyId body, std::size_t ordinal, std::size_t shape) const;
   const ShapeMesh& mesh_of(const AnyShape& shape, int segments);
-  void add_joints(const Subject& subject, DrawList& list) const;
+  void add_shape(const SeenShape& shape, const Pose& pose, bool glass, const Camera& camera, DVec3 origin,
+                 DrawList& list);
 
-  const Player& player_;
-  std::vector<SeenJoint> joints_;
   std::set<ShapeKey> glass_;
   std::map<std::string, ShapeMesh> meshes_;
 };

@@ -1,23 +1,35 @@
 // Scenes and recordings as one thing to play. See player.h.
 #include "render/player.h"
 
+#include "render/track_player.h"
 #include "scene/mesh_file.h"
 #include "scene/scene_reader.h"
 #include "scene/scene_runner.h"
 
-#include <optional>
+#include <gyre/replay.h>
+
+#include <span>
+#include <vector>
 
 namespace gyre {
 namespace {
+
+BodyId find_body(const Scene& scene, std::span<const BodyId> bodies, const std::string& name) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (scene.bodies[i].name == name) return bodies[i];
+  }
+  return {};
+}
 
 class ScenePlayer : public Player {
  public:
   ScenePlayer(Scene scene, std::string path, int threads)
       : source_(std::move(scene)), path_(std::move(path)), threads_(threads) {}
 
-  const World& world() const override { return runner_->world(); }
-  const Scene* scene() const override { return &runner_->scene(); }
-  std::span<const BodyId> bodies() const override { return runner_->bodies(); }
+  void look(Sight& out) const override { look_at(runner_->world(), &source_, runner_->bodies(), out); }
+  std::optional<SceneView> view() const override { return source_.view; }
+  BodyId find(const std::string& name) const override { return find_body(source_, runner_->bodies(), name); }
+  bool has_weight() const override { return !(runner_->world().gravity() == Vec3{}); }
   bool is_recording() const override { return false; }
   double time() const override { return runner_->time(); }
 
@@ -39,8 +51,6 @@ class ScenePlayer : public Player {
   }
 
  private:
-  std::span<const JointId> joint_ids() const override { return runner_->joints(); }
-
   Scene source_;
   std::string path_;
   int threads_;
@@ -49,15 +59,28 @@ class ScenePlayer : public Player {
 
 class RecordingPlayer : public Player {
  public:
-  RecordingPlayer(Replay replay, std::optional<Scene> look)
-      : replay_(std::move(replay)), look_(std::move(look)) {
+  // How things look is told by `look`, a scene, or else by the recording's own track, if there is one.
+  RecordingPlayer(Replay replay, std::optional<Scene> look, std::optional<PoseTrack> track)
+      : replay_(std::move(replay)), look_(std::move(look)), track_(std::move(track)) {
     start_ = replay_.world().time();
-    if (replay_.truncated()) note_ = "the recording has no end; it is played up to its last whole step";
+    if (replay_.truncated()) note_ = kTruncatedNote;
   }
 
-  const World& world() const override { return replay_.world(); }
-  const Scene* scene() const override { return look_ ? &*look_ : nullptr; }
-  std::span<const BodyId> bodies() const override { return bodies_; }
+  void look(Sight& out) const override {
+    look_at(replay_.world(), look_ ? &*look_ : nullptr, bodies_, out);
+    if (!look_ && track_) apply_track_colors(*track_, out);
+  }
+  std::optional<SceneView> view() const override {
+    if (look_) return look_->view;
+    return track_ ? view_of_track(*track_) : std::nullopt;
+  }
+  BodyId find(const std::string& name) const override {
+    if (look_) return find_body(*look_, bodies_, name);
+    Sight sight;
+    look(sight);
+    return track_ ? find_in_track(*track_, sight.bodies, name) : BodyId{};
+  }
+  bool has_weight() const override { return !(replay_.world().gravity() == Vec3{}); }
   bool is_recording() const override { return true; }
   double time() const override { return replay_.world().time() - start_; }
 
@@ -110,6 +133,7 @@ class RecordingPlayer : public Player {
   // World::time() and its like do not change a replay.
   mutable Replay replay_;
   std::optional<Scene> look_;
+  std::optional<PoseTrack> track_;
   std::vector<BodyId> bodies_;
   double start_ = 0;
 };
@@ -119,26 +143,30 @@ bool looks_like_scene(const std::string& bytes) {
   return at == std::string::npos || bytes[at] == '{';
 }
 
+// Whether the first step comes out as it was recorded. What another version of Gyre recorded mostly does not.
+bool replays_alike(Replay& replay) {
+  bool matches = true;
+  if (replay.step_count() > 0) replay.step(&matches);
+  return replay.seek(0).code == ErrorCode::none && matches;
+}
+
+// Replayed where that is possible, as a track knows no ropes; else its track is looked at.
 std::unique_ptr<Player> open_recording(const std::string& path, const std::string& bytes,
-                                       const std::string& look, int threads, std::string& error) {
+                                       std::optional<Scene> look, int threads, std::string& error) {
   const auto* data = reinterpret_cast<const std::byte*>(bytes.data());
   WorldDef def;
   def.threads = threads;
   Result<Replay> replay = Replay::open(std::vector<std::byte>(data, data + bytes.size()), def);
-  if (!replay) {
-    error = path + ": " + replay.error().message;
-    return nullptr;
+  Result<PoseTrack> track = PoseTrack::open(std::vector<std::byte>(data, data + bytes.size()));
+  const bool good = replay && replays_alike(*replay);
+  if (!good && track && !look) return make_track_player(*std::move(track));
+  if (replay) {
+    std::optional<PoseTrack> looks;
+    if (track) looks.emplace(*std::move(track));
+    return std::make_unique<RecordingPlayer>(*std::move(replay), std::move(look), std::move(looks));
   }
-  std::optional<Scene> scene;
-  if (!look.empty()) {
-    SceneResult<Scene> read = load_scene(look);
-    if (!read) {
-      error = read.error().text();
-      return nullptr;
-    }
-    scene = *std::move(read);
-  }
-  return std::make_unique<RecordingPlayer>(*std::move(replay), std::move(scene));
+  error = path + ": " + replay.error().message;
+  return nullptr;
 }
 
 }  // namespace
@@ -149,30 +177,6 @@ bool Player::advance_to(double seconds) {
     if (!step()) return false;
   }
   return true;
-}
-
-std::vector<SeenJoint> Player::joints() const {
-  std::vector<SeenJoint> out;
-  if (!scene()) return out;
-  for (std::size_t i = 0; i < scene()->joints.size(); ++i) {
-    const SceneJoint& joint = scene()->joints[i];
-    SeenJoint seen;
-    seen.joint = &joint;
-    if (i < joint_ids().size()) seen.id = joint_ids()[i];
-    const auto start = [&](int body) {
-      return body < 0 ? Pose{} : scene()->bodies[std::size_t(body)].def.pose;
-    };
-    if (joint.a >= 0) seen.a = bodies()[std::size_t(joint.a)];
-    if (joint.b >= 0) seen.b = bodies()[std::size_t(joint.b)];
-    seen.place_a = seen.place_b = joint.def.anchor;
-    if (joint.def.kind == JointKind::distance) {
-      seen.place_b = joint.def.anchor_b ? *joint.def.anchor_b : start(joint.b).position;
-    }
-    seen.point_a = inverse_times(start(joint.a), seen.place_a);
-    seen.point_b = inverse_times(start(joint.b), seen.place_b);
-    out.push_back(seen);
-  }
-  return out;
 }
 
 std::unique_ptr<Player> open_player(const std::string& path, const std::string& look, int threads,
@@ -195,7 +199,16 @@ std::unique_ptr<Player> open_player(const std::string& path, const std::string& 
     }
     player = std::make_unique<ScenePlayer>(*std::move(scene), path, threads);
   } else {
-    player = open_recording(path, bytes, look, threads, error);
+    std::optional<Scene> scene;
+    if (!look.empty()) {
+      SceneResult<Scene> read = load_scene(look);
+      if (!read) {
+        error = read.error().text();
+        return nullptr;
+      }
+      scene = *std::move(read);
+    }
+    player = open_recording(path, bytes, std::move(scene), threads, error);
   }
   if (player && !player->rewind(error)) {
     if (error.find(path) != 0) error = path + ": " + error;

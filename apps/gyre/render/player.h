@@ -2,36 +2,27 @@
 // on; rewind() begins anew.
 #pragma once
 
+#include "render/sight.h"
 #include "scene/scene.h"
 
-#include <gyre/replay.h>
-#include <gyre/world.h>
-
 #include <memory>
-#include <span>
+#include <optional>
 #include <string>
-#include <vector>
 
 namespace gyre {
 
-// A joint of the scene that can be seen: its ends in the frames of the bodies (world: no body).
-struct SeenJoint {
-  BodyId a, b;
-  JointId id;  // null in a recording, which does not tell when a joint breaks
-  Vec3 point_a, point_b;
-  DVec3 place_a, place_b;  // the ends at the start
-  const SceneJoint* joint = nullptr;
-};
+constexpr const char* kTruncatedNote = "the recording has no end; it is played up to its last whole step";
 
 class Player {
  public:
   virtual ~Player() = default;
 
-  virtual const World& world() const = 0;
-  // The scene that tells colours, sensors and joints; null for a recording without one.
-  virtual const Scene* scene() const = 0;
-  // The bodies of that scene, in its order.
-  virtual std::span<const BodyId> bodies() const = 0;
+  virtual void look(Sight& out) const = 0;
+  // Where a good picture is taken from, if that is known.
+  virtual std::optional<SceneView> view() const = 0;
+  // The body of that name; null if there is none or names are not known.
+  virtual BodyId find(const std::string& name) const = 0;
+  virtual bool has_weight() const = 0;
   virtual bool is_recording() const = 0;
   virtual double time() const = 0;  // s since the beginning
   // False at the end of a recording, and when the state is no longer finite.
@@ -45,10 +36,8 @@ class Player {
 
   // Steps until `seconds` is reached, at most half a step before or after it; false if the end came first.
   bool advance_to(double seconds);
-  std::vector<SeenJoint> joints() const;
 
  protected:
-  virtual std::span<const JointId> joint_ids() const { return {}; }
   std::string problem_, note_;
   double last_step_ = 0;  // s
 };

@@ -22,6 +22,8 @@ namespace gyre {
 namespace {
 
 constexpr double kUsualSeconds = 5, kUsualFrameRate = 20;
+constexpr std::uint64_t kUntilTheEnd = std::numeric_limits<std::uint64_t>::max();  // of a recording
+constexpr std::uint64_t kMostPictures = 10'000'000;
 constexpr std::uint64_t kMostMovieBytes = std::uint64_t(2)
                                           << 30;  // of memory, as a GIF needs all its frames at once
 
@@ -43,7 +45,7 @@ FramePlan plan_frames(const RenderOptions& options, bool is_recording) {
   if (options.frames) {
     plan.count = *options.frames;
   } else if (is_recording && !options.seconds && !options.to) {
-    plan.count = std::numeric_limits<std::uint64_t>::max();
+    plan.count = kUntilTheEnd;
   } else {
     const double seconds =
         options.to ? *options.to - plan.start : options.seconds.value_or(kUsualSeconds) * options.speed;
@@ -67,6 +69,14 @@ CameraWish wish_of(const RenderOptions& options) {
   return wish;
 }
 
+// Where a body is; the place it was at, if it is gone.
+DVec3 place_of(const Sight& sight, BodyId id, DVec3 before) {
+  for (const SeenBody& body : sight.bodies) {
+    if (body.id.index == id.index && body.id.generation == id.generation) return body.pose.position;
+  }
+  return before;
+}
+
 // One movie in the making.
 class Rendering {
  public:
@@ -81,6 +91,7 @@ class Rendering {
 
  private:
   bool find_follow();
+  bool fits_in_memory() const;
   bool prepare();
   int draw_frames();
   int stop(const std::string& message) {
@@ -97,34 +108,39 @@ class Rendering {
   Camera camera_;
   Subject subject_;
   std::set<ShapeKey> glass_;
-  std::optional<std::size_t> followed_;  // in the scene
-  std::string problem_;                  // why the simulation ends before the plan does
+  BodyId followed_;
+  std::string problem_;  // why the simulation ends before the plan does
 };
 
 bool Rendering::find_follow() {
   if (options_.follow.empty()) return true;
-  if (!player_->scene()) {
-    say("--follow needs the names of a scene: give the recording's with --scene");
-    return false;
-  }
-  for (std::size_t i = 0; i < player_->scene()->bodies.size(); ++i) {
-    if (player_->scene()->bodies[i].name == options_.follow) followed_ = i;
-  }
-  if (!followed_) say("--follow: there is no body \"" + options_.follow + "\"");
-  return followed_.has_value();
+  followed_ = player_->find(options_.follow);
+  if (followed_) return true;
+  const bool nameless = player_->is_recording() && options_.look.empty();
+  say("--follow: there is no body \"" + options_.follow + "\"" +
+      (nameless ? " (the names of a recording come from its scene: --scene)" : ""));
+  return false;
+}
+
+// A movie's frames are all kept until it is written.
+bool Rendering::fits_in_memory() const {
+  const std::uint64_t frame_bytes = std::uint64_t(width_) * std::uint64_t(height_) * 3;
+  const std::uint64_t most =
+      options_.out.kind == OutputKind::movie ? kMostMovieBytes / frame_bytes : kMostPictures;
+  if (plan_.count <= most) return true;
+  say("found " + std::to_string(plan_.count) + " frames, expected at most " + std::to_string(most) +
+      (options_.out.kind == OutputKind::movie
+           ? " in a GIF of this size; numbered pictures (--out frames/%04d.png) can be more"
+           : std::string()));
+  return false;
 }
 
 // The first look at everything.
 bool Rendering::prepare() {
+  if (plan_.count != kUntilTheEnd && !fits_in_memory()) return false;
   const Survey survey(*player_, plan_);
   problem_ = player_->problem();
-  const std::uint64_t frame_bytes = std::uint64_t(width_) * std::uint64_t(height_) * 3;
-  if (options_.out.kind == OutputKind::movie && plan_.count > kMostMovieBytes / frame_bytes) {
-    say("a movie of " + std::to_string(plan_.count) +
-        " frames of this size needs more memory than is allowed; write " +
-        "numbered pictures (--out frames/%04d.png), or fewer or smaller frames");
-    return false;
-  }
+  if (!fits_in_memory()) return false;  // how long a recording is, is only known now
   camera_ = survey.camera(wish_of(options_), width_, height_);
   if (!(length(camera_.eye - camera_.target) > 1e-6) || !is_finite(camera_.eye) ||
       !is_finite(camera_.target)) {
@@ -137,7 +153,8 @@ bool Rendering::prepare() {
 }
 
 int Rendering::draw_frames() {
-  DrawListMaker maker(*player_);
+  DrawListMaker maker;
+  Sight sight;
   maker.set_glass(glass_);
   Progress progress(!options_.quiet, plan_.count, "frames");
   Camera camera = camera_;
@@ -145,14 +162,15 @@ int Rendering::draw_frames() {
   std::optional<DVec3> follow_start;
   for (std::uint64_t frame = 0; frame < plan_.count; ++frame) {
     player_->advance_to(plan_.start + double(frame) * plan_.interval);
+    player_->look(sight);
     if (followed_) {
-      const DVec3 place = player_->world().center_of_mass(player_->bodies()[*followed_]);
+      const DVec3 place = place_of(sight, followed_, follow_start.value_or(camera_.target));
       if (!follow_start) follow_start = place;
       camera.eye = camera_.eye + (place - *follow_start);
       camera.target = camera_.target + (place - *follow_start);
       subject.origin = camera.target;
     }
-    if (!output_.add(renderer_->draw(maker.make(camera, subject), camera, subject))) {
+    if (!output_.add(renderer_->draw(maker.make(sight, camera, subject), camera, subject))) {
       progress.clear();
       return stop(output_.message());
     }

@@ -64,9 +64,10 @@ void add_parsed(CLI::App& command, const char* name, const char* type, const cha
 }
 
 void add_camera_options(CLI::App& command, RenderOptions& options) {
-  add_parsed(command, "--camera", "X,Y,Z",
-             "Where the camera stands, in m; left out: so that all that moves is seen",
-             [&options](const std::string& text) { return parse_numbers(text, 3, options.eye); });
+  add_parsed(
+      command, "--camera", "X,Y,Z",
+      "Where the camera stands, in m; left out: where the scene says, or so that all that moves is seen",
+      [&options](const std::string& text) { return parse_numbers(text, 3, options.eye); });
   add_parsed(command, "--look-at", "X,Y,Z", "Where the camera looks, in m",
              [&options](const std::string& text) { return parse_numbers(text, 3, options.target); });
   add_parsed(command, "--direction", "AZIMUTH,ELEVATION",
@@ -128,6 +129,9 @@ std::string check_together(const RenderOptions& options) {
   if (options.to && *options.to <= options.from.value_or(0)) return "--to must be later than --from";
   if (options.out.kind == OutputKind::movie && options.frame_rate && *options.frame_rate > 50) {
     return "--fps: a GIF has at most 50 frames a second";
+  }
+  if (!options.eye.empty() && options.eye == options.target) {
+    return "--camera must stand somewhere else than --look-at";
   }
   if (!options.direction.empty() && !options.eye.empty()) return "--direction has no meaning with --camera";
   if (!options.direction.empty() && std::abs(options.direction[1]) > 90) {

@@ -258,13 +258,36 @@ ShapeMesh cooked_mesh(const Geometry& geometry) {
   }
 }
 
-Aabb box_of(const ShapeMesh& mesh) {
-  if (mesh.vertices.empty()) return {{1, 1, 1}, {-1, -1, -1}};
-  Aabb box{mesh.vertices[0].position, mesh.vertices[0].position};
-  for (const MeshVertex& vertex : mesh.vertices) {
-    box = {min(box.low, vertex.position), max(box.high, vertex.position)};
-  }
+Aabb box_of(std::span<const Vec3> points) {
+  if (points.empty()) return {{1, 1, 1}, {-1, -1, -1}};
+  Aabb box{points[0], points[0]};
+  for (const Vec3 point : points) box = {min(box.low, point), max(box.high, point)};
   return box;
+}
+
+Aabb box_of(const HeightFieldView& field) {
+  const float x = 0.5f * float(field.columns - 1) * field.spacing,
+              z = 0.5f * float(field.rows - 1) * field.spacing;
+  Aabb box{{-x, 1, -z}, {x, -1, z}};
+  bool any = false;
+  for (const float height : field.heights) {
+    if (std::isnan(height)) continue;
+    box.low.y = any ? min(box.low.y, height) : height;
+    box.high.y = any ? max(box.high.y, height) : height;
+    any = true;
+  }
+  return any ? box : Aabb{{1, 1, 1}, {-1, -1, -1}};
+}
+
+Aabb box_of(const Geometry& geometry) {
+  switch (geometry.kind()) {
+    case ShapeKind::hull:
+      return box_of(view_hull(geometry).vertices);
+    case ShapeKind::mesh:
+      return box_of(view_mesh(geometry).vertices);
+    default:
+      return box_of(view_height_field(geometry));
+  }
 }
 
 struct MeshMaker {
@@ -291,7 +314,7 @@ struct BoxMaker {
   Aabb operator()(const Cylinder& s) const { return around({s.radius, s.half_height, s.radius}); }
   Aabb operator()(const Cone& s) const { return around({s.radius, s.half_height, s.radius}); }
   Aabb operator()(const Plane&) const { return {{1, 1, 1}, {-1, -1, -1}}; }
-  Aabb operator()(const Geometry& geometry) const { return box_of(cooked_mesh(geometry)); }
+  Aabb operator()(const Geometry& geometry) const { return box_of(geometry); }
 };
 
 struct RoundingMaker {

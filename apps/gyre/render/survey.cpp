@@ -41,8 +41,9 @@ std::optional<float> enter_box(Vec3 start, Vec3 direction, const Aabb& box) {
 }  // namespace
 
 Survey::Survey(Player& player, FramePlan& plan) {
-  if (player.scene()) view_ = player.scene()->view;
-  has_weight_ = !(player.world().gravity() == Vec3{});
+  view_ = player.view();
+  has_weight_ = player.has_weight();
+  Sight sight;
   lowest_ = lowest_still_ = std::numeric_limits<double>::infinity();
   for (std::uint64_t frame = 0; frame < plan.count; ++frame) {
     if (!player.advance_to(plan.start + double(frame) * plan.interval)) {
@@ -50,49 +51,47 @@ Survey::Survey(Player& player, FramePlan& plan) {
       plan.count = max(frame, std::uint64_t(1));
       if (frame > 0) break;
     }
-    if (frame == 0) look_at_still(player.world());
-    if (frame % every_ == 0) look_at_moving(player.world());
+    if (frame % every_ != 0) continue;
+    player.look(sight);
+    if (frame == 0) look_at_still(sight);
+    look_at_moving(sight);
   }
 }
 
-void Survey::look_at_still(const World& world) {
-  for (const BodyId body : world.bodies().ids) {
-    if (world.type(body) != BodyType::fixed) continue;
-    const std::span<const ShapeId> shapes = world.shapes(body);
+void Survey::look_at_still(const Sight& sight) {
+  for (const SeenBody& body : sight.bodies) {
+    if (body.type != BodyType::fixed) continue;
+    const std::span<const SeenShape> shapes = sight.shapes_of(body);
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-      const AnyShape& shape = *world.geometry(shapes[i]);
+      const AnyShape& shape = *shapes[i].geometry;
       if (std::holds_alternative<Plane>(shape)) {
         has_plane_ = true;
         continue;
       }
       const Aabb box = bounding_box(shape);
       if (box.low.x > box.high.x) continue;
-      const Pose pose = world.pose(body) * world.local_transform(shapes[i]);
+      const Pose pose = body.pose * shapes[i].local;
       const bool solid =
           !std::holds_alternative<Geometry>(shape) || std::get<Geometry>(shape).kind() == ShapeKind::hull;
-      walls_.push_back({shape_key(body, i), pose, box, solid});
+      walls_.push_back({shape_key(body.id, i), pose, box, solid});
       const Vec3 half = half_size(box);
       for (int corner = 0; corner < 8; ++corner) {
         const Vec3 side{corner & 1 ? 1.0f : -1.0f, corner & 2 ? 1.0f : -1.0f, corner & 4 ? 1.0f : -1.0f};
-        still_.push_back({pose * (center(box) + multiply_each(side, half)), 0.0f});
+        const DVec3 place = pose * (center(box) + multiply_each(side, half));
+        still_.push_back({place, 0.0f});
+        lowest_still_ = min(lowest_still_, place.y);
       }
-      const Mat3 turned = to_matrix(pose.orientation);
-      const double reach =
-          std::abs(turned.x.y) * half.x + std::abs(turned.y.y) * half.y + std::abs(turned.z.y) * half.z;
-      lowest_still_ = min(lowest_still_, (pose * center(box)).y - reach);
     }
   }
 }
 
-void Survey::look_at_moving(const World& world) {
-  const BodyColumns bodies = world.bodies();
-  for (std::size_t i = 0; i < bodies.ids.size(); ++i) {
-    if (world.type(bodies.ids[i]) == BodyType::fixed) continue;
-    for (const ShapeId shape : world.shapes(bodies.ids[i])) {
-      const float radius = bounding_radius(*world.geometry(shape));
-      if (!(radius > 0.0f)) continue;
-      const Pose pose = bodies.poses[i] * world.local_transform(shape);
-      if (!is_finite(pose)) continue;
+void Survey::look_at_moving(const Sight& sight) {
+  for (const SeenBody& body : sight.bodies) {
+    if (body.type == BodyType::fixed) continue;
+    for (const SeenShape& shape : sight.shapes_of(body)) {
+      const float radius = bounding_radius(*shape.geometry);
+      const Pose pose = body.pose * shape.local;
+      if (!(radius > 0.0f) || !is_finite(pose)) continue;
       moving_.push_back({pose.position, radius});
       lowest_ = min(lowest_, pose.position.y - double(radius));
     }

@@ -53,8 +53,8 @@ class Survey {
     Aabb box;    // in the shape's frame
     bool solid;  // neither a mesh nor a height field, which are grounds rather than walls
   };
-  void look_at_still(const World& world);
-  void look_at_moving(const World& world);
+  void look_at_still(const Sight& sight);
+  void look_at_moving(const Sight& sight);
   void thin_out();
   std::vector<Ball> important() const;
 

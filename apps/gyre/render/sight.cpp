@@ -1,0 +1,63 @@
+// What there is to see in a world. See sight.h.
+#include "render/sight.h"
+
+#include "scene/scene_color.h"
+
+#include <gyre/debug.h>
+
+namespace gyre {
+namespace {
+
+SeenShape look_at_shape(const World& world, ShapeId id, BodyType type, std::size_t ordinal) {
+  const AnyShape* geometry = world.geometry(id);
+  const bool plane = std::holds_alternative<Plane>(*geometry);
+  return {geometry, world.local_transform(id), plane ? kGroundColor : automatic_color(type, ordinal)};
+}
+
+// Ropes and rods. Joints of a scene have its order as their indices, as nothing else was added before them.
+void look_at_links(const World& world, const Scene* scene, Sight& out) {
+  JointTable joints;
+  const DVec3 origin = out.bodies.empty() ? DVec3{} : out.bodies[0].pose.position;
+  read_joints(world, origin, joints);
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    if (joints.kinds[i] != JointKind::distance) continue;
+    const float* ends = &joints.anchors[6 * i];
+    SeenLink link;
+    link.a = origin + Vec3{ends[0], ends[1], ends[2]};
+    link.b = origin + Vec3{ends[3], ends[4], ends[5]};
+    constexpr float kNoEnd = 1e29f;
+    if (joints.has_limits[i] && joints.limits[2 * i + 1] < kNoEnd) link.length = joints.limits[2 * i + 1];
+    const std::size_t index = joints.ids[i].index;
+    if (scene && index < scene->joints.size()) link.spring = scene->joints[index].def.stiffness.has_value();
+    out.links.push_back(link);
+  }
+}
+
+}  // namespace
+
+void look_at(const World& world, const Scene* scene, std::span<const BodyId> bodies, Sight& out) {
+  out.bodies.clear();
+  out.shapes.clear();
+  out.links.clear();
+  out.down = normalized(world.gravity(), Vec3{0, -1, 0});
+  const BodyColumns all = world.bodies();
+  for (std::size_t i = 0; i < all.ids.size(); ++i) {
+    const BodyId id = all.ids[i];
+    const std::span<const ShapeId> shapes = world.shapes(id);
+    out.bodies.push_back({id, world.type(id), all.poses[i], out.shapes.size(), shapes.size()});
+    // Bodies of a scene carry their number in it as user data.
+    const std::uint64_t index = world.user_data(id);
+    const bool known = scene && index < bodies.size() && bodies[index] == id;
+    for (std::size_t k = 0; k < shapes.size(); ++k) {
+      SeenShape shape = look_at_shape(world, shapes[k], world.type(id), i);
+      if (known && k < scene->bodies[index].shapes.size()) {
+        shape.color = resolved_color(*scene, index, k);
+        shape.sensor = scene->bodies[index].sensor;
+      }
+      out.shapes.push_back(shape);
+    }
+  }
+  look_at_links(world, scene, out);
+}
+
+}  // namespace gyre

@@ -1,0 +1,53 @@
+// What there is to see at one moment, whether it comes from a world that is simulated or from a file.
+#pragma once
+
+#include "scene/scene.h"
+
+#include <gyre/geometry.h>
+#include <gyre/ids.h>
+#include <gyre/math.h>
+#include <gyre/world.h>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace gyre {
+
+struct SeenShape {
+  const AnyShape* geometry = nullptr;
+  Transform local{};  // body_from_shape
+  SceneColor color{};
+  bool sensor = false;
+};
+
+struct SeenBody {
+  BodyId id{};
+  BodyType type = BodyType::dynamic;
+  Pose pose{};  // world_from_body
+  std::size_t first_shape = 0, shape_count = 0;
+};
+
+// A rod, rope or spring.
+struct SeenLink {
+  DVec3 a, b;
+  float length = 0.0f;  // m, of a rope, which sags if it is longer than the way; 0: straight
+  bool spring = false;
+};
+
+struct Sight {
+  std::vector<SeenBody> bodies;  // in order of their ids
+  std::vector<SeenShape> shapes;
+  std::vector<SeenLink> links;
+  Vec3 down{0, -1, 0};  // unit
+
+  std::span<const SeenShape> shapes_of(const SeenBody& body) const {
+    return {shapes.data() + body.first_shape, body.shape_count};
+  }
+};
+
+// Looks at a world. `scene` (may be null) tells colours, sensors and which rods are springs; `bodies` are the world's bodies in its
+// order. The geometries stay the world's.
+void look_at(const World& world, const Scene* scene, std::span<const BodyId> bodies, Sight& out);
+
+}  // namespace gyre

@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+"""Draws every scene in scenes/ with `gyre render`: the gallery in docs/, or thumbnails.
+
+    tools/make_gallery.py                      writes docs/gallery.md and docs/pictures/
+    tools/make_gallery.py stack pile           draws only these two anew
+    tools/make_gallery.py --thumbnails FOLDER  writes FOLDER/<scene>.png, 240 x 150 pixels, instead
+    tools/make_gallery.py --check              fails if a scene is not in the gallery, or the pictures are too large
+
+--gyre PATH is the program, build/release/bin/gyre if not given.
+"""
+
+import argparse
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+SCENES = ROOT / "scenes"
+PAGE = ROOT / "docs" / "gallery.md"
+PICTURES = ROOT / "docs" / "pictures"
+MOST_BYTES = 3_000_000  # all pictures together
+
+MOVIE = "--size 360x225 --fps 12.5"
+PICTURE = "--size 480x300"
+
+# What each scene shows, and the options of its picture. A scene that is not here is drawn by the last line.
+ENTRIES = {
+    "showcase": ("Some of everything: bricks, dominoes, a pit of mixed shapes, hills of triangles and a ball on a chain.",
+                 "movie", "--from 0.6 --seconds 3"),
+    "pile": ("Spheres, boxes, capsules, cylinders, cones and hulls fall into a pit. The front walls are drawn as glass.",
+             "movie", "--seconds 3"),
+    "dominoes": ("Each domino tips the next; the colors only show the order.", "movie", "--seconds 5 --speed 2.5"),
+    "bowling": ("A ball with side spin. Each pin is two hulls and a sphere.", "movie", "--from 0.6 --seconds 3"),
+    "billiards": ("The break, at 240 steps a second, in slow motion. Balls, cloth and cushions have their own friction and "
+                  "restitution by a table of pairs.", "movie", "--from 0.05 --seconds 4 --speed 0.5"),
+    "bridge": ("Twenty-one hinges hold twenty planks and what falls on them.", "movie", "--seconds 3"),
+    "chain": ("A chain of ball joints pulls a ball 500 times as heavy as a link.", "movie", "--seconds 4"),
+    "machines": ("A driven hinge, a slider on a spring, a gate with limits, a coil spring, a rocket, and a mixer that "
+                 "nothing can stop.", "movie", "--seconds 4"),
+    "newtons_cradle": ("Ten rods, five balls, restitution 1.", "movie", "--seconds 3"),
+    "bouncing": ("Restitution from 0 on the left to 1 on the right. The last ball bounces for ever.", "movie", "--seconds 5"),
+    "incline_materials": ("Friction decides who stays on a slope of 22 degrees: above tan 22 = 0.40, nothing slides.",
+                          "movie", "--seconds 3"),
+    "half_wood_half_lead": ("Bricks with two halves of different density: the centre of mass decides which of them tip.",
+                            "movie", "--seconds 2"),
+    "rolling": ("A ball, a cylinder, a capsule and a hollow cylinder race down a ramp; a cone rolls around its apex, a coin spins.",
+                "movie", "--seconds 6"),
+    "gyroscope": ("A heavy top precesses about its pivot.", "movie", "--seconds 5"),
+    "t_handle": ("Without weight, a body that spins about its middle axis turns over, again and again.", "movie",
+                 "--seconds 6"),
+    "mesh_terrain": ("A hundred and twenty pieces on a triangle mesh.", "movie", "--seconds 3"),
+    "height_field": ("Sixty pieces on a grid of heights.", "picture", "--at 3"),
+    "card_house": ("Fifteen cards, held by friction alone.", "picture", "--at 5"),
+    "stack": ("Ten boxes. They stand for as long as you like.", "picture", "--at 5"),
+}
+ELSE = ("", "picture", "--at 2")
+
+
+def scene_names():
+    """Those of the table first, in its order."""
+    there = sorted(path.name.removesuffix(".gyre.json") for path in SCENES.glob("*.gyre.json"))
+    return [name for name in ENTRIES if name in there] + [name for name in there if name not in ENTRIES]
+
+
+def picture_of(name):
+    words, kind, options = ENTRIES.get(name, ELSE)
+    ending, common = ("gif", MOVIE) if kind == "movie" else ("png", PICTURE)
+    return words, PICTURES / f"{name}.{ending}", f"{common} {options}"
+
+
+def draw(gyre, name, out, options):
+    command = [gyre, "render", str(SCENES / f"{name}.gyre.json"), "--out", str(out), *options.split()]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(command)}\n{done.stderr.strip()}")
+    print(done.stdout.strip())
+
+
+def page_text():
+    parts = ["# Gallery", "",
+             "Every scene in [scenes/](../scenes), drawn by `gyre render` without a graphics card. `tools/make_gallery.py` makes this page;",
+             "below each picture stands the command that draws it. To see a scene from all sides: `./run view SCENE`."]
+    for name in scene_names():
+        words, picture, options = picture_of(name)
+        title = json.loads((SCENES / f"{name}.gyre.json").read_text(encoding="utf-8"))["name"]
+        parts += ["", f"## {title[0].upper()}{title[1:]}", "", f"![{title}](pictures/{picture.name})", ""]
+        parts += [words, ""] if words else []
+        parts += [f"`gyre render scenes/{name}.gyre.json --out {picture.name} {options}`"]
+    return "\n".join(parts) + "\n"
+
+
+def check():
+    problems = []
+    if not PAGE.is_file() or PAGE.read_text(encoding="utf-8") != page_text():
+        problems.append(f"{PAGE.relative_to(ROOT)} is not what this script writes")
+    pictures = [picture_of(name)[1] for name in scene_names()]
+    problems += [f"{path.relative_to(ROOT)} is missing" for path in pictures if not path.is_file()]
+    problems += [f"{path.relative_to(ROOT)} belongs to no scene" for path in PICTURES.glob("*") if path not in pictures]
+    size = sum(path.stat().st_size for path in PICTURES.glob("*"))
+    if size > MOST_BYTES:
+        problems.append(f"the pictures have {size} bytes together, more than {MOST_BYTES}")
+    for problem in problems:
+        print(f"{problem}; run tools/make_gallery.py")
+    print(f"make_gallery: {len(pictures)} pictures, {size / 1e6:.2f} MB, {len(problems)} problems")
+    return 1 if problems else 0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("scenes", nargs="*", metavar="SCENE")
+    parser.add_argument("--gyre", default=str(ROOT / "build" / "release" / "bin" / "gyre"), metavar="PATH")
+    parser.add_argument("--thumbnails", metavar="FOLDER")
+    parser.add_argument("--check", action="store_true")
+    arguments = parser.parse_args()
+    unknown = sorted(set(arguments.scenes) - set(scene_names()))
+    if unknown:
+        sys.exit(f"no such scene: {', '.join(unknown)}")
+    if arguments.check:
+        return check()
+    names = arguments.scenes or scene_names()
+    if arguments.thumbnails:
+        folder = Path(arguments.thumbnails)
+        folder.mkdir(parents=True, exist_ok=True)
+        for name in names:
+            draw(arguments.gyre, name, folder / f"{name}.png", "--size 240x150 --at 1.5 --samples 24")
+        return 0
+    PICTURES.mkdir(parents=True, exist_ok=True)
+    for name in names:
+        _, picture, options = picture_of(name)
+        draw(arguments.gyre, name, picture, options)
+    PAGE.write_text(page_text(), encoding="utf-8")
+    return check()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
