@@ -35,7 +35,7 @@ ENTRIES = {
     "billiards": ("The break, at 240 steps a second, in slow motion. Balls, cloth and cushions have their own friction and "
                   "restitution by a table of pairs.", "movie", "--from 0.05 --seconds 4 --speed 0.5"),
     "bridge": ("Twenty-one hinges hold twenty planks and what falls on them.", "movie", "--seconds 3"),
-    "chain": ("A chain of ball joints pulls a ball 500 times as heavy as a link.", "movie", "--seconds 4"),
+    "chain": ("A chain of ball joints pulls a ball 130 times as heavy as a link.", "movie", "--seconds 4"),
     "machines": ("A driven hinge, a slider on a spring, a gate with limits, a coil spring, a rocket, and a mixer that "
                  "nothing can stop.", "movie", "--seconds 4"),
     "newtons_cradle": ("Ten rods, five balls, restitution 1.", "movie", "--seconds 3"),

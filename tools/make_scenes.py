@@ -228,7 +228,7 @@ def dominoes():
             more["linear_velocity"] = [0.15 * speed * dx / size, 0, 0.15 * speed * dz / size]
         bodies.append(body(f"domino {i + 1}", (x, 0.15, z), box(0.02, 0.15, 0.075, material="wood"), color=rainbow(i / count), **more))
         angle += 0.15 / math.hypot(radius, 0.25)
-    return scene("a spiral of a hundred dominoes", bodies, materials=["wood"], seen=view((1.7, 4.7, 5.9), (0.35, 0, 0.05)))
+    return scene("a spiral of a hundred dominoes", bodies, materials=["wood"], seen=view((1.8, 5.0, 6.5), (0.3, 0, 0.28)))
 
 
 def t_handle():
