@@ -212,7 +212,7 @@ class Array {
   // From one cache line up, doubling while small. A large array grows by an eighth: each element is then copied eight
   // times on the way there, which is little, and no more than an eighth of its memory waits for elements to come.
   std::size_t next_capacity(std::size_t needed) const {
-    constexpr std::size_t kLarge = 64 * 1024;  // bytes
+    constexpr std::size_t kLarge = 16 * 1024;  // bytes
     const std::size_t least = sizeof(T) < kMemoryAlign ? kMemoryAlign / sizeof(T) : 1;
     const std::size_t more = bytes() < kLarge ? capacity_ : capacity_ / 8;
     const std::size_t enlarged = more < SIZE_MAX - capacity_ ? capacity_ + more : SIZE_MAX;

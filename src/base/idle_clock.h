@@ -35,6 +35,14 @@ class IdleClock {
     array.reserve(2 * most_ / sizeof(T));
   }
 
+  // The same for two arrays that change places every step, of which `next` is empty.
+  template <class T>
+  void trim(Array<T>& next, Array<T>& shown) {
+    if (!rests(shown.size() * sizeof(T), next.bytes() + shown.bytes())) return;
+    next = Array<T>();
+    if (shown.empty()) shown = Array<T>();
+  }
+
  private:
   static constexpr std::size_t kWorthGivingBack = 64 * 1024;  // bytes
   // Odd, so that of two arrays that change places every step each has its turn.

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "base/bitset.h"
+#include "base/shared_column.h"
 #include "collision/contact_store.h"
 #include "geometry/shape.h"
 #include "task/task_system.h"
@@ -14,14 +15,31 @@
 
 namespace gyre {
 
-// One shape, as the stage needs it; indexed like proxies.
+// One shape, as the stage needs it.
 struct ColliderShape {
   Shape shape;
   Transform body_from_shape;
-  std::uint32_t body = 0;
   // inner_radius of the shape, or of its thinnest part: the scale of tolerances. 0 (meshes, height fields) and kUnbounded
   // (planes) leave that to the shape they meet.
   float size = 0.0f;
+};
+
+// All shapes, by index: plainly, or shared (shape i is records[places[i]]).
+class ColliderShapes {
+ public:
+  template <class Shapes>
+    requires std::is_convertible_v<const Shapes&, std::span<const ColliderShape>>
+  ColliderShapes(const Shapes& shapes)  // NOLINT: either form is all that is needed
+      : records_(std::span<const ColliderShape>(shapes).data()) {}
+  ColliderShapes(const SharedColumn<ColliderShape>& shapes)  // NOLINT
+      : records_(shapes.records()), places_(shapes.places()) {}
+  const ColliderShape& operator[](std::uint32_t shape) const {
+    return records_[places_ != nullptr ? places_[shape] : shape];
+  }
+
+ private:
+  const ColliderShape* records_ = nullptr;
+  const std::uint32_t* places_ = nullptr;
 };
 
 // One body, as its look is made from it.
@@ -48,7 +66,7 @@ struct alignas(64) BodyLook {
 BodyLook make_body_look(const ColliderBody& body, float seconds);
 
 struct CollideInput {
-  std::span<const ColliderShape> shapes;
+  ColliderShapes shapes;
   std::span<const BodyLook> looks;  // by body
   std::span<const Vec3> centers;    // by body: centre of mass, body frame
   std::span<const Proxy> proxies;

@@ -21,7 +21,6 @@ class CollideScene {
     ColliderShape shape;
     shape.shape = make_shape(geometry);
     shape.body_from_shape = local;
-    shape.body = index;
     shape.size = inner_radius(shape.shape);
     shapes.push_back(shape);
     ColliderBody body;

@@ -86,8 +86,8 @@ double first_impact(const ContinuousInput& input, const FastBody& fast, Array<st
     for (const std::uint32_t other : found) {
       if (!is_obstacle(input.proxies[index], input.proxies[other], fast.continuous)) continue;
       const ColliderShape& obstacle = input.shapes[other];
-      if (!input.blocked.empty() && input.blocked.contains(pair_key(fast.body, obstacle.body))) continue;
-      const Sweep other_sweep = input.sweep_of(obstacle.body);
+      if (!input.blocked.empty() && input.blocked.contains(pair_key(fast.body, input.proxies[other].body))) continue;
+      const Sweep other_sweep = input.sweep_of(input.proxies[other].body);
       if (!is_sound(other_sweep)) continue;
       const SweptShape swept = make_swept_shape(obstacle.shape, obstacle.body_from_shape, other_sweep);
       end = min(end, mover.impact_with(swept, end, triangle));

@@ -34,7 +34,7 @@ inline bool is_fast(Vec3 moved, Vec3 turned, float reach, float inner) {
 }
 
 struct ContinuousInput {
-  std::span<const ColliderShape> shapes;
+  ColliderShapes shapes;
   std::span<const Proxy> proxies;  // as the broad phase last saw them
   const Broadphase& broadphase;
   const BlockedBodies& blocked;

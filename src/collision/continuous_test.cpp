@@ -93,7 +93,6 @@ class Scene {
     const auto index = std::uint32_t(shapes.size());
     ColliderShape shape;
     shape.shape = make_shape(geometry);
-    shape.body = index;
     shape.size = inner_radius(shape.shape);
     shapes.push_back(shape);
     geometries_.push_back(geometry);

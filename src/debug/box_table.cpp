@@ -46,7 +46,7 @@ void read_boxes(const World& world, std::uint32_t kinds, DVec3 origin, BoxTable&
   if (wanted(BoxKind::tight)) {
     w.shapes.ids.for_each_live([&](std::uint32_t shape) {
       const ColliderShape& collider = w.shapes.colliders[shape];
-      const Pose world_from_shape = origin_pose(w.bodies, collider.body) * collider.body_from_shape;
+      const Pose world_from_shape = origin_pose(w.bodies, w.shapes.bodies[shape]) * collider.body_from_shape;
       boxes.add(world_box(collider.shape, world_from_shape), BoxKind::tight, 0, shape);
     });
   }

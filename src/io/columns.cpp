@@ -77,6 +77,10 @@ struct ByteCounter {
   void operator()(const char*, const Array<T>& column) {
     bytes += column.bytes();
   }
+  template <class T>
+  void operator()(const char*, const SharedColumn<T>& column) {
+    bytes += column.bytes();
+  }
   void operator()(const char*, const IdPool& ids) { bytes += ids.bytes(); }
   void operator()(const char*, const std::vector<AnyShape>& shapes) {
     bytes += shapes.capacity() * sizeof(AnyShape);

@@ -35,6 +35,12 @@ struct Tracer {
     out.rows.reserve(column.size());
     for (const T& record : column) out.rows.push_back(hash_record(record));
   }
+  template <class T>
+  void operator()(const char* name, const SharedColumn<T>& column) {
+    StateTrace::Column& out = add(name);
+    out.rows.reserve(column.size());
+    for (std::size_t i = 0; i < column.size(); ++i) out.rows.push_back(hash_record(column[i]));
+  }
   void operator()(const char* name, const IdPool& ids) {
     StateTrace::Column& out = add(name);
     for (const std::uint32_t generation : ids.generations()) out.rows.push_back(generation);

@@ -33,6 +33,10 @@ template <class T>
 struct ColumnLayout<Array<T>> {
   static RecordLayout get() { return layout_of<T>(); }
 };
+template <class T>
+struct ColumnLayout<SharedColumn<T>> {
+  static RecordLayout get() { return layout_of<T>(); }
+};
 template <>
 struct ColumnLayout<IdPool> {
   static RecordLayout get() { return layout_of<std::uint32_t>(); }
@@ -69,6 +73,13 @@ class ColumnWriter {
   template <class T>
   void write(const Array<T>& column) {
     write_records(column.view());
+  }
+  template <class T>
+  void write(const SharedColumn<T>& column) {
+    Array<T> records;
+    records.reserve(column.size());
+    for (std::size_t i = 0; i < column.size(); ++i) records.push_back(column[i]);
+    write(records);
   }
   void write(const IdPool& ids) { write_records(ids.generations()); }
   void write(const std::vector<AnyShape>& shapes) {
@@ -167,6 +178,14 @@ class ColumnReader {
     if (!size_fits<T>(stored)) return false;
     column.resize(std::size_t(stored.count));
     return read_records(stored, column.view());
+  }
+  template <class T>
+  bool read(const StoredColumn& stored, SharedColumn<T>& column) {
+    Array<T> records;
+    if (!read(stored, records)) return false;
+    column.resize(records.size());
+    for (std::size_t i = 0; i < records.size(); ++i) column.set(i, records[i]);
+    return true;
   }
   bool read(const StoredColumn& stored, IdPool& ids) {
     Array<std::uint32_t> generations;

@@ -26,11 +26,11 @@ IdPool::Slot add_body_slot(BodyStore& store) {
   store.inertia[i] = {};
   store.places[i] = {};
   store.orientations[i] = {};
-  store.masses[i] = {};
+  store.masses.set(i, {});
   store.forces[i] = {};
   store.flags[i] = {};
   store.sleep[i] = {};
-  store.overrides[i] = {};
+  store.overrides.set(i, {});
   store.user_data[i] = 0;
   store.shapes[i].clear();
   store.joints[i].clear();

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "base/array.h"
+#include "base/shared_column.h"
 #include "base/slot_map.h"
 #include "base/small_array.h"
 #include "solver/body_motion.h"
@@ -68,17 +69,27 @@ struct BodyOverrides {
   Sym3 inertia;
 };
 
+inline auto shared_bits(const BodyMass& m) {
+  static_assert(sizeof(BodyMass) == 80, "every field is among the bits");
+  return words_of(m.mass, m.inverse_mass, m.center, m.inertia, m.inverse_inertia, m.reach, m.size, m.isotropic);
+}
+inline auto shared_bits(const BodyOverrides& o) {
+  static_assert(sizeof(BodyOverrides) == 44, "every field is among the bits");
+  const std::uint32_t has = std::uint32_t(o.has_mass) | std::uint32_t(o.has_center) << 8 | std::uint32_t(o.has_inertia) << 16;
+  return words_of(has, o.mass, o.center, o.inertia);
+}
+
 struct BodyStore {
   IdPool ids;
   Array<BodyMotion> motion;
   Array<BodyInertia> inertia;       // world axes, of the present orientation; can be rebuilt
   Array<BodyPlace> places;
   Array<Quat> orientations;         // beside `places` for the solver's gathers; equal to places[i].orientation between steps
-  Array<BodyMass> masses;
+  SharedColumn<BodyMass> masses;
   Array<BodyForces> forces;
   Array<BodyFlags> flags;
   Array<BodySleep> sleep;
-  Array<BodyOverrides> overrides;
+  SharedColumn<BodyOverrides> overrides;
   Array<std::uint64_t> user_data;
   Array<SmallArray<ShapeId, 1>> shapes;         // by body, ascending index; derived
   Array<SmallArray<std::uint32_t, 2>> joints;   // by body, ascending index; derived

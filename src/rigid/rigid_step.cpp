@@ -25,7 +25,7 @@ void sort_changed(Array<std::uint32_t>& changed, Array<std::uint64_t>& keys, Arr
 }
 
 BoxMotion box_motion(const RigidWorld& w, std::uint32_t shape, float seconds) {
-  const std::uint32_t body = w.shapes.colliders[shape].body;
+  const std::uint32_t body = w.shapes.bodies[shape];
   const BodyMotion& motion = w.bodies.motion[body];
   return {w.shapes.colliders[shape].size, seconds * motion.linear_velocity,
           seconds * w.bodies.masses[body].reach * length(motion.angular_velocity)};
@@ -40,8 +40,8 @@ WorldBox needed_box_of(const RigidWorld& w, std::uint32_t shape, const Pose& ori
 PairShapes describe_pair(const RigidWorld& w, std::uint64_t key) {
   const std::uint32_t a = std::uint32_t(key >> 32), b = std::uint32_t(key);
   PairShapes pair;
-  pair.body_a = w.shapes.colliders[a].body;
-  pair.body_b = w.shapes.colliders[b].body;
+  pair.body_a = w.shapes.bodies[a];
+  pair.body_b = w.shapes.bodies[b];
   const auto is_mesh = [&](std::uint32_t shape) {
     const ShapeKind kind = w.shapes.colliders[shape].shape.kind;
     return kind == ShapeKind::mesh || kind == ShapeKind::height_field;
@@ -90,7 +90,7 @@ void freeze(RigidWorld& w, std::uint32_t body) {
 
 void refit_shape(RigidWorld& w, std::uint32_t shape, float seconds) {
   const BoxMotion motion = box_motion(w, shape, seconds);
-  w.shapes.proxies[shape].fat_box = fat_box(needed_box_of(w, shape, origin_pose(w.bodies, w.shapes.colliders[shape].body), motion), motion);
+  w.shapes.proxies[shape].fat_box = fat_box(needed_box_of(w, shape, origin_pose(w.bodies, w.shapes.bodies[shape]), motion), motion);
   w.shapes.changed.push_back(shape);
 }
 

@@ -11,15 +11,16 @@ IdPool::Slot add_shape_slot(ShapeStore& store) {
     store.colliders.resize(i + 1);
     store.proxies.resize(i + 1);
     store.materials.resize(i + 1);
+    if (i >= store.geometry.capacity()) store.geometry.reserve(i + i / 8 + 16);  // as arrays grow
     store.geometry.resize(i + 1);
     store.density.resize(i + 1);
     store.user_data.resize(i + 1);
   }
   store.bodies[i] = 0;
-  store.places[i] = {};
-  store.colliders[i] = {};
+  store.places.set(i, {});
+  store.colliders.set(i, {});
   store.proxies[i] = {};
-  store.materials[i] = {};
+  store.materials.set(i, {});
   store.geometry[i] = Sphere{};
   store.density[i] = 0.0f;
   store.user_data[i] = 0;
@@ -35,11 +36,11 @@ void remove_shape_slot(ShapeStore& store, std::uint32_t shape) {
 }
 
 void refresh_collider(ShapeStore& store, std::uint32_t shape) {
-  ColliderShape& collider = store.colliders[shape];
+  ColliderShape collider;
   collider.shape = make_shape(store.geometry[shape]);
   collider.body_from_shape = store.places[shape];
-  collider.body = store.bodies[shape];
   collider.size = inner_radius(collider.shape);
+  store.colliders.set(shape, collider);
 }
 
 MassProperties shapes_mass(const ShapeStore& store, std::span<const ShapeId> shapes) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/array.h"
+#include "base/shared_column.h"
 #include "base/slot_map.h"
 #include "collision/collide.h"
 #include "collision/proxy.h"
@@ -12,13 +13,26 @@
 
 namespace gyre {
 
+inline auto shared_bits(const Transform& t) { return words_of(t.position, t.orientation); }
+inline auto shared_bits(const Material& m) {
+  static_assert(sizeof(Material) == 24, "every field is among the bits");
+  return words_of(m.static_friction, m.dynamic_friction, m.restitution, m.rolling_friction, m.spinning_friction,
+                  std::uint32_t(m.id));
+}
+inline auto shared_bits(const ColliderShape& c) {
+  const Shape& s = c.shape;
+  const std::uint64_t data = reinterpret_cast<std::uintptr_t>(s.hull);
+  return words_of(std::uint32_t(s.kind), s.radius, s.extents, s.offset, data, c.body_from_shape.position,
+                  c.body_from_shape.orientation, c.size);
+}
+
 struct ShapeStore {
   IdPool ids;
   Array<std::uint32_t> bodies;      // owner of each shape
-  Array<Transform> places;          // body_from_shape
-  Array<ColliderShape> colliders;   // inner form of all that; borrows from `geometry`; derived
+  SharedColumn<Transform> places;          // body_from_shape
+  SharedColumn<ColliderShape> colliders;   // inner form of all that; borrows from `geometry`; derived
   Array<Proxy> proxies;             // fat boxes are state: they decide when pairs begin
-  Array<Material> materials;
+  SharedColumn<Material> materials;
   std::vector<AnyShape> geometry;   // keeps cooked data alive
   Array<float> density;
   Array<std::uint64_t> user_data;

@@ -11,8 +11,9 @@
 
 namespace gyre {
 
-// Manifolds and joints in a batch, for each worker; an island that has more is a batch of its own.
-constexpr std::uint32_t kBatchSize = 2048;
+// Manifolds and joints in a batch; an island that has more is a batch of its own. Workers that meet after each colour of a
+// batch need more of it to do in between.
+constexpr std::uint32_t batch_size(int workers) { return workers == 1 ? 1024u : 2048u * std::uint32_t(workers); }
 
 struct SolveBatch {
   std::span<const std::uint32_t> bodies;  // awake: dynamic, and kinematic ones
@@ -37,7 +38,7 @@ inline bool is_active(const RigidWorld& w, std::uint32_t body) {
 bool is_solved(const RigidWorld& w, const Contact& contact);
 bool is_solved(const RigidWorld& w, const JointRecord& joint);
 
-// All lists are of `arena`. `size`: kBatchSize for all workers together.
+// All lists are of `arena`. `size`: batch_size().
 SolveBatches find_batches(const RigidWorld& w, Arena& arena, std::uint32_t size);
 
 }  // namespace gyre

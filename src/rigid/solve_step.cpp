@@ -424,7 +424,7 @@ void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& 
   scratch.colors_used = 0;
   scratch.hits.clear();
   const ArenaScope scope(arena);
-  const SolveBatches batches = find_batches(w, arena, kBatchSize * std::uint32_t(tasks.worker_count()));
+  const SolveBatches batches = find_batches(w, arena, batch_size(tasks.worker_count()));
   solve.places = batches.places;
   for (const SolveBatch& batch : batches.batches) {
     solve.batch = batch;

@@ -41,7 +41,7 @@ void refresh_proxy(RigidWorld& w, std::uint32_t shape) {
 void refresh_mass(RigidWorld& w, std::uint32_t body, const Pose& origin) {
   BodyStore& bodies = w.bodies;
   const Vec3 old_center = bodies.masses[body].center;
-  const BodyOverrides& given = bodies.overrides[body];
+  const BodyOverrides given = bodies.overrides[body];
   BodyMass mass;
   mass.size = kUnbounded;
   for (const ShapeId id : bodies.shapes[body]) {
@@ -78,7 +78,7 @@ void refresh_mass(RigidWorld& w, std::uint32_t body, const Pose& origin) {
     const float reach = outer_radius(w.shapes.colliders[id.index].shape, inverse_times(place, mass.center));
     mass.reach = max(mass.reach, reach);
   }
-  bodies.masses[body] = mass;
+  bodies.masses.set(body, mass);
   // The velocity belongs to the centre of mass: where that moves in the body, so does it.
   BodyMotion& motion = bodies.motion[body];
   motion.linear_velocity += cross(motion.angular_velocity, rotate(origin.orientation, mass.center - old_center));
@@ -111,10 +111,10 @@ void erase_index(List& list, std::uint32_t index) {
 ShapeId attach_shape(RigidWorld& w, std::uint32_t body, const ShapeDef& def) {
   const std::uint32_t shape = add_shape_slot(w.shapes).index;
   w.shapes.bodies[shape] = body;
-  w.shapes.places[shape] = {def.local.position, normalized(def.local.orientation)};
+  w.shapes.places.set(shape, {def.local.position, normalized(def.local.orientation)});
   w.shapes.geometry[shape] = def.geometry;
   w.shapes.density[shape] = def.density;
-  w.shapes.materials[shape] = def.material;
+  w.shapes.materials.set(shape, def.material);
   w.shapes.user_data[shape] = def.user_data;
   Proxy& proxy = w.shapes.proxies[shape];
   proxy.body = body;
@@ -150,10 +150,11 @@ Submitted carry_out(WorldState& s, const AddBody& c) {
   forces.linear_damping = def.linear_damping;
   forces.angular_damping = def.angular_damping;
   forces.gravity_scale = def.gravity_scale;
-  BodyOverrides& given = w.bodies.overrides[body];
+  BodyOverrides given;
   if (def.mass) given.has_mass = 1, given.mass = *def.mass;
   if (def.center_of_mass) given.has_center = 1, given.center = *def.center_of_mass;
   if (def.inertia) given.has_inertia = 1, given.inertia = *def.inertia;
+  w.bodies.overrides.set(body, given);
   w.bodies.user_data[body] = def.user_data;
   for (const ShapeDef& shape : c.shapes) attach_shape(w, body, shape);
   refresh_mass(w, body, {def.pose.position, normalized(def.pose.orientation)});
@@ -399,7 +400,7 @@ void remix(RigidWorld& w, std::uint32_t shape) {
 }
 Submitted carry_out(WorldState& s, const SetMaterial& c) {
   RigidWorld& w = s.rigid;
-  w.shapes.materials[c.shape.index] = c.material;
+  w.shapes.materials.set(c.shape.index, c.material);
   remix(w, c.shape.index);
   stir(w, w.shapes.bodies[c.shape.index]);
   wake_neighbours(w, w.shapes.bodies[c.shape.index]);

@@ -149,7 +149,7 @@ Error Walk::fat_boxes() const {
     if (!w_.shapes.ids.live(shape)) continue;
     const ColliderShape& collider = w_.shapes.colliders[shape];
     const WorldBox tight =
-        world_box(collider.shape, origin_pose(w_.bodies, collider.body) * collider.body_from_shape);
+        world_box(collider.shape, origin_pose(w_.bodies, w_.shapes.bodies[shape]) * collider.body_from_shape);
     const Aabb& fat = w_.shapes.proxies[shape].fat_box;
     for (int axis = 0; axis < 3; ++axis) {
       if (double(fat.low[axis]) > tight.low[axis] || double(fat.high[axis]) < tight.high[axis])

@@ -94,12 +94,12 @@ void end_step(WorldState& s, float seconds) {
   next.sensors.clear(), next.broken.clear(), next.sleep_changes.clear();
   const RigidEvents& e = s.shown;
   ScratchClocks& clocks = s.rigid.clocks;
-  clocks.begins.trim(next.begins, e.begins.size());
-  clocks.ends.trim(next.ends, e.ends.size());
-  clocks.hits.trim(next.hits, e.hits.size());
-  clocks.sensors.trim(next.sensors, e.sensors.size());
-  clocks.broken.trim(next.broken, e.broken.size());
-  clocks.sleep_changes.trim(next.sleep_changes, e.sleep_changes.size());
+  clocks.begins.trim(next.begins, s.shown.begins);
+  clocks.ends.trim(next.ends, s.shown.ends);
+  clocks.hits.trim(next.hits, s.shown.hits);
+  clocks.sensors.trim(next.sensors, s.shown.sensors);
+  clocks.broken.trim(next.broken, s.shown.broken);
+  clocks.sleep_changes.trim(next.sleep_changes, s.shown.sleep_changes);
   s.events = {e.begins, e.ends, e.hits, e.sensors, e.broken, e.sleep_changes};
   s.stepping = false;
 }

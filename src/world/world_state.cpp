@@ -32,6 +32,11 @@ class HashVisitor {
     hasher_.add(std::uint64_t(column.size()));
     for (const T& record : column) add_record(record);
   }
+  template <class T>
+  void operator()(const char*, const SharedColumn<T>& column) {
+    hasher_.add(std::uint64_t(column.size()));
+    for (std::size_t i = 0; i < column.size(); ++i) add_record(column[i]);
+  }
   void operator()(const char*, const IdPool& ids) {
     for (const std::uint32_t generation : ids.generations()) hasher_.add(std::uint64_t(generation));
   }

@@ -64,8 +64,8 @@ struct WorldState {
   mutable std::vector<Vec3> read_linear, read_angular;
 };
 
-// Calls visit(name, column) for every column that is simulation state, in a fixed order. A column is an Array of records
-// that state_fields.h knows, an IdPool, the vector of geometry, or a single record.
+// Calls visit(name, column) for every column that is simulation state, in a fixed order. A column is an Array or SharedColumn of
+// records that state_fields.h knows, an IdPool, the vector of geometry, or a single record.
 template <class State, class Visitor>
 void for_each_column(State& s, Visitor&& visit) {
   visit("time", s.time);
