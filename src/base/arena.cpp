@@ -70,7 +70,7 @@ void Arena::reset() {
   used_before_ = 0;
   if (!too_small && !too_large) return;
   const std::size_t need = too_small ? peak : clock_.most_needed();
-  const std::size_t room = round_up(need + need / 8);
+  const std::size_t room = round_up(need + need / 16);
   free_blocks();
   add_block(room < kFirstBlock ? kFirstBlock : room);
 }

@@ -81,7 +81,7 @@ TEST(Arena, AScopeGivesItsMemoryToTheNext) {
   step();
   EXPECT_EQ(arena.high_water(), 1024u + 100032u + 200000u);
   arena.reset();
-  EXPECT_LE(arena.bytes_held(), arena.high_water() / 8 * 9 + 64);
+  EXPECT_LE(arena.bytes_held(), arena.high_water() / 16 * 17 + 128);
   const std::uint64_t before = allocation_count();
   for (int i = 0; i < 5; ++i) {
     step();

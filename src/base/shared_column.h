@@ -22,7 +22,8 @@ class SharedColumn {
  public:
   std::size_t size() const { return places_.size(); }
   std::size_t bytes() const {
-    return places_.bytes() + records_.bytes() + keys_.bytes() + users_.bytes() + free_.bytes() + table_.bytes();
+    return places_.bytes() + records_.bytes() + keys_.bytes() + users_.bytes() + free_.bytes() +
+           table_.bytes();
   }
   // How many different records there are.
   std::size_t distinct() const { return table_.size(); }
@@ -62,7 +63,8 @@ class SharedColumn {
     const auto key_of = [this](std::uint32_t place) { return keys_[place]; };
     std::uint32_t place = table_.find(key, key_of);
     // Another record with the same hash: the next key is as good.
-    while (place != SlotTable::kNone && shared_bits(records_[place]) != bits) place = table_.find(++key, key_of);
+    while (place != SlotTable::kNone && shared_bits(records_[place]) != bits)
+      place = table_.find(++key, key_of);
     if (place == SlotTable::kNone) {
       place = make_place();
       records_[place] = record;
@@ -107,7 +109,9 @@ auto words_of(const Fields&... fields) {
   static_assert(((sizeof(Fields) % 4 == 0) && ...), "fields are whole words");
   std::array<std::uint32_t, kBytes / 4> words;
   std::size_t at = 0;
-  ((std::memcpy(reinterpret_cast<std::byte*>(words.data()) + at, &fields, sizeof(Fields)), at += sizeof(Fields)), ...);
+  ((std::memcpy(reinterpret_cast<std::byte*>(words.data()) + at, &fields, sizeof(Fields)),
+    at += sizeof(Fields)),
+   ...);
   return words;
 }
 

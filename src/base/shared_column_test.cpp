@@ -28,11 +28,13 @@ TEST(SharedColumn, AgreesWithAnArray) {
     if (expected.empty()) continue;
     const std::size_t i = random() % expected.size();
     // Zeros of both signs are different records.
-    const Record record{(random() % 2 == 0 ? -1.0f : 1.0f) * float(random() % 4), static_cast<std::uint32_t>(random() % 5)};
+    const Record record{(random() % 2 == 0 ? -1.0f : 1.0f) * float(random() % 4),
+                        static_cast<std::uint32_t>(random() % 5)};
     column.set(i, record);
     expected[i] = record;
     ASSERT_EQ(column.size(), expected.size());
-    for (std::size_t k = 0; k < expected.size(); ++k) ASSERT_EQ(shared_bits(column[k]), shared_bits(expected[k]));
+    for (std::size_t k = 0; k < expected.size(); ++k)
+      ASSERT_EQ(shared_bits(column[k]), shared_bits(expected[k]));
     ASSERT_LE(column.distinct(), 41u);
   }
   const SharedColumn<Record> copy = column;

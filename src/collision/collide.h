@@ -28,8 +28,8 @@ struct ColliderShape {
 class ColliderShapes {
  public:
   template <class Shapes>
-    requires std::is_convertible_v<const Shapes&, std::span<const ColliderShape>>
-  ColliderShapes(const Shapes& shapes)  // NOLINT: either form is all that is needed
+  requires std::is_convertible_v<const Shapes&, std::span<const ColliderShape>> ColliderShapes(
+      const Shapes& shapes)  // NOLINT: either form is all that is needed
       : records_(std::span<const ColliderShape>(shapes).data()) {}
   ColliderShapes(const SharedColumn<ColliderShape>& shapes)  // NOLINT
       : records_(shapes.records()), places_(shapes.places()) {}

@@ -553,7 +553,8 @@ TEST(Collide, ThreadsChangeNothing) {
       }
       scene.step();
     }
-    results[threads - 1].assign(scene.store.manifolds.begin(), scene.store.manifolds.end());
+    for (std::size_t i = 0; i < scene.store.manifolds.size(); ++i)
+      results[threads - 1].push_back(scene.store.manifolds[i]);
     ASSERT_EQ(results[0].size(), results[threads - 1].size());
     ASSERT_EQ(
         std::memcmp(results[0].data(), results[threads - 1].data(), results[0].size() * sizeof(Manifold)), 0);

@@ -8,6 +8,7 @@
 
 #include "base/array.h"
 #include "base/bitset.h"
+#include "base/paged_array.h"
 #include "base/slot_table.h"
 #include "collision/proxy.h"
 #include "geometry/manifold.h"
@@ -71,8 +72,8 @@ class FreePlaces {
 };
 
 struct ContactStore {
-  Array<Contact> contacts;    // by slot; empty slots have manifold_room 0
-  Array<Manifold> manifolds;  // runs owned by contacts
+  Array<Contact> contacts;             // by slot; empty slots have manifold_room 0
+  PagedArray<Manifold, 64> manifolds;  // runs owned by contacts; a run lies within a page
   std::uint32_t live = 0;
 
   // The rest follows from `contacts` (rebuild_index makes it anew) and is no part of the state.
@@ -120,10 +121,12 @@ void for_each_contact_of_shape(const ContactStore& store, std::uint32_t shape, F
 const char* find_fault(const ContactStore& store);
 
 inline std::span<Manifold> manifolds_of(ContactStore& store, const Contact& contact) {
-  return {store.manifolds.data() + contact.first_manifold, contact.manifold_count};
+  if (contact.manifold_count == 0) return {};
+  return {&store.manifolds[contact.first_manifold], contact.manifold_count};
 }
 inline std::span<const Manifold> manifolds_of(const ContactStore& store, const Contact& contact) {
-  return {store.manifolds.data() + contact.first_manifold, contact.manifold_count};
+  if (contact.manifold_count == 0) return {};
+  return {&store.manifolds[contact.first_manifold], contact.manifold_count};
 }
 
 }  // namespace gyre

@@ -381,7 +381,7 @@ Manifold to_world(const LocalManifold& local, const Pose& frame, const ContactPa
 template <int kRoom>
 void write_manifolds(ContactStore& store, Contact& contact, const Found<kRoom>& found,
                      const ContactPair& pair, float size) {
-  Manifold* const out = store.manifolds.data() + contact.first_manifold;
+  Manifold* const out = &store.manifolds[contact.first_manifold];
   Former<kRoom> former;
   former.count = contact.manifold_count;
   for (int m = 0; m < former.count; ++m) former.manifolds[m] = out[m];

@@ -77,8 +77,8 @@ struct ByteCounter {
   void operator()(const char*, const Array<T>& column) {
     bytes += column.bytes();
   }
-  template <class T>
-  void operator()(const char*, const SharedColumn<T>& column) {
+  template <IsColumn T>
+  void operator()(const char*, const T& column) {
     bytes += column.bytes();
   }
   void operator()(const char*, const IdPool& ids) { bytes += ids.bytes(); }

@@ -35,8 +35,8 @@ struct Tracer {
     out.rows.reserve(column.size());
     for (const T& record : column) out.rows.push_back(hash_record(record));
   }
-  template <class T>
-  void operator()(const char* name, const SharedColumn<T>& column) {
+  template <IsColumn T>
+  void operator()(const char* name, const T& column) {
     StateTrace::Column& out = add(name);
     out.rows.reserve(column.size());
     for (std::size_t i = 0; i < column.size(); ++i) out.rows.push_back(hash_record(column[i]));

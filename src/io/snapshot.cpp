@@ -33,9 +33,9 @@ template <class T>
 struct ColumnLayout<Array<T>> {
   static RecordLayout get() { return layout_of<T>(); }
 };
-template <class T>
-struct ColumnLayout<SharedColumn<T>> {
-  static RecordLayout get() { return layout_of<T>(); }
+template <IsColumn Column>
+struct ColumnLayout<Column> {
+  static RecordLayout get() { return layout_of<RecordOf<Column>>(); }
 };
 template <>
 struct ColumnLayout<IdPool> {
@@ -74,9 +74,9 @@ class ColumnWriter {
   void write(const Array<T>& column) {
     write_records(column.view());
   }
-  template <class T>
-  void write(const SharedColumn<T>& column) {
-    Array<T> records;
+  template <IsColumn T>
+  void write(const T& column) {
+    Array<RecordOf<T>> records;
     records.reserve(column.size());
     for (std::size_t i = 0; i < column.size(); ++i) records.push_back(column[i]);
     write(records);
@@ -179,9 +179,9 @@ class ColumnReader {
     column.resize(std::size_t(stored.count));
     return read_records(stored, column.view());
   }
-  template <class T>
-  bool read(const StoredColumn& stored, SharedColumn<T>& column) {
-    Array<T> records;
+  template <IsColumn T>
+  bool read(const StoredColumn& stored, T& column) {
+    Array<RecordOf<T>> records;
     if (!read(stored, records)) return false;
     column.resize(records.size());
     for (std::size_t i = 0; i < records.size(); ++i) column.set(i, records[i]);

@@ -13,7 +13,7 @@ namespace gyre {
 
 // Manifolds and joints in a batch; an island that has more is a batch of its own. Workers that meet after each colour of a
 // batch need more of it to do in between.
-constexpr std::uint32_t batch_size(int workers) { return workers == 1 ? 1024u : 2048u * std::uint32_t(workers); }
+constexpr std::uint32_t batch_size(int workers) { return workers == 1 ? 512u : 2048u * std::uint32_t(workers); }
 
 struct SolveBatch {
   std::span<const std::uint32_t> bodies;  // awake: dynamic, and kinematic ones

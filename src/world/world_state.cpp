@@ -33,7 +33,8 @@ class HashVisitor {
     for (const T& record : column) add_record(record);
   }
   template <class T>
-  void operator()(const char*, const SharedColumn<T>& column) {
+    requires IsColumn<T>
+  void operator()(const char*, const T& column) {
     hasher_.add(std::uint64_t(column.size()));
     for (std::size_t i = 0; i < column.size(); ++i) add_record(column[i]);
   }

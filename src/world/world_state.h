@@ -64,7 +64,19 @@ struct WorldState {
   mutable std::vector<Vec3> read_linear, read_angular;
 };
 
-// Calls visit(name, column) for every column that is simulation state, in a fixed order. A column is an Array or SharedColumn of
+// Columns that are read and set one record at a time.
+template <class T>
+constexpr bool is_column = false;
+template <class T>
+constexpr bool is_column<SharedColumn<T>> = true;
+template <class T, std::size_t N>
+constexpr bool is_column<PagedArray<T, N>> = true;
+template <class T>
+concept IsColumn = is_column<T>;
+template <IsColumn T>
+using RecordOf = std::remove_cvref_t<decltype(std::declval<const T&>()[std::size_t{0}])>;
+
+// Calls visit(name, column) for every column that is simulation state, in a fixed order. A column is an Array or an IsColumn of
 // records that state_fields.h knows, an IdPool, the vector of geometry, or a single record.
 template <class State, class Visitor>
 void for_each_column(State& s, Visitor&& visit) {

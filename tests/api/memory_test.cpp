@@ -1,5 +1,6 @@
 // A step that has seen its scene before takes no memory, neither by the engine's door nor around it; a resting box is small.
 #include "base/memory.h"
+#include "base/check.h"
 #include "laws/kit.h"
 #include "world/world_state.h"
 
@@ -7,36 +8,47 @@
 
 #include <atomic>
 #include <cstdlib>
+#include <cstring>
 #include <new>
 
 namespace {
 std::atomic<long> news{0};
+std::atomic<long long> bytes_out{0};
+
+// Each block has its size in front of it, at a distance that keeps the alignment.
+constexpr std::size_t kPlain = 16;
+void* take(std::size_t bytes, std::size_t align) {
+  news.fetch_add(1, std::memory_order_relaxed);
+  bytes_out.fetch_add((long long)(bytes), std::memory_order_relaxed);
+  const std::size_t front = align < kPlain ? kPlain : align;
+  char* const block = static_cast<char*>(std::aligned_alloc(front, (bytes + 2 * front - 1) / front * front));
+  if (block == nullptr) std::abort();
+  std::memcpy(block, &bytes, sizeof bytes);
+  return block + front;
 }
+void give(void* p, std::size_t align) {
+  if (p == nullptr) return;
+  char* const block = static_cast<char*>(p) - (align < kPlain ? kPlain : align);
+  std::size_t bytes = 0;
+  std::memcpy(&bytes, block, sizeof bytes);
+  bytes_out.fetch_sub((long long)(bytes), std::memory_order_relaxed);
+  std::free(block);
+}
+}  // namespace
 
 // Counting stand-ins for the whole program. The compiler cannot see that they belong together.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wmismatched-new-delete"
 #endif
-void* operator new(std::size_t bytes) {
-  news.fetch_add(1, std::memory_order_relaxed);
-  void* const p = std::malloc(bytes == 0 ? 1 : bytes);
-  if (p == nullptr) std::abort();
-  return p;
-}
-void* operator new(std::size_t bytes, std::align_val_t align) {
-  news.fetch_add(1, std::memory_order_relaxed);
-  const std::size_t a = std::size_t(align);
-  void* const p = std::aligned_alloc(a, (bytes + a - 1) / a * a);
-  if (p == nullptr) std::abort();
-  return p;
-}
+void* operator new(std::size_t bytes) { return take(bytes, kPlain); }
+void* operator new(std::size_t bytes, std::align_val_t align) { return take(bytes, std::size_t(align)); }
 void* operator new(std::size_t bytes, std::align_val_t align, const std::nothrow_t&) noexcept {
-  return operator new(bytes, align);
+  return take(bytes, std::size_t(align));
 }
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+void operator delete(void* p) noexcept { give(p, kPlain); }
+void operator delete(void* p, std::size_t) noexcept { give(p, kPlain); }
+void operator delete(void* p, std::align_val_t align) noexcept { give(p, std::size_t(align)); }
+void operator delete(void* p, std::size_t, std::align_val_t align) noexcept { give(p, std::size_t(align)); }
 
 namespace gyre::laws {
 namespace {
@@ -102,6 +114,92 @@ TEST(NoAllocation, WhileAsleep) {
   add_ground(world);
   for (int i = 0; i < 50; ++i) world.add_body({.pose = {.position = {2.0 * i, 0.5, 0}}}, {.geometry = Box{}});
   expect_none(world, 300, 120, "asleep");
+}
+
+// ------------------------------------------------------------------------------------------------- bytes a resting box
+
+void add_stacks(World& world, int boxes) {
+  for (int i = 0; i < boxes; ++i) {
+    const int stack = i / 10;
+    world.add_body({.pose = {.position = {2.0 * (stack % 100), 0.5 + i % 10, 2.0 * (stack / 100)}}},
+                   {.geometry = Box{}});
+  }
+}
+void add_floor(World& world, int boxes) {
+  for (int i = 0; i < boxes; ++i) {
+    world.add_body({.pose = {.position = {1.5 * (i % 100), 0.5, 1.5 * (i / 100)}}}, {.geometry = Box{}});
+  }
+}
+// Walls of twenty rows in which each box lies on two: nearly three manifolds a box.
+void add_walls(World& world, int boxes) {
+  for (int i = 0; i < boxes; ++i) {
+    const int wall = i / 200, row = i % 200 / 10, column = i % 10;
+    world.add_body({.pose = {.position = {1.02 * column + 0.51 * (row % 2), 0.5 + row, 2.0 * wall}}},
+                   {.geometry = Box{}});
+  }
+}
+
+// Everything that the world allocates, by box, once what only its first steps needed is given back.
+double bytes_a_box(void (*add)(World&, int), int boxes, bool sleeping) {
+  const long long before = bytes_out.load();
+  World world = make_world({.threads = 1, .sleeping = sleeping});
+  add_ground(world);
+  add(world, boxes);
+  for (int i = 0; i < 140; ++i) world.step(kStep);
+  if (!sleeping) {
+    EXPECT_EQ(world.counts().awake_bodies, boxes);
+  }
+  return double(bytes_out.load() - before) / boxes;
+}
+void expect_small(const char* name, void (*add)(World&, int), double most) {
+  if (kAssertsActive) GTEST_SKIP() << "too slow in a build that checks itself; the bytes are the same";
+  const double awake = bytes_a_box(add, 10000, false), asleep = bytes_a_box(add, 10000, true);
+  std::printf("[row] %s of 10,000 boxes: %.0f B a box awake, %.0f B where they may sleep\n", name, awake,
+              asleep);
+  EXPECT_LT(awake, most);
+  EXPECT_LT(asleep, most);
+}
+
+TEST(BytesOfARestingBox, InAStack) { expect_small("stacks", add_stacks, 1024); }
+TEST(LongBytesOfARestingBox, OnTheFloor) { expect_small("a floor", add_floor, 1024); }
+TEST(LongBytesOfARestingBox, InAWall) { expect_small("walls", add_walls, 2048); }
+
+TEST(LongBytesOfARestingBox, AreTheSameForAHundredThousand) {
+  if (kAssertsActive) GTEST_SKIP() << "too slow in a build that checks itself; the bytes are the same";
+  const double many = bytes_a_box(add_stacks, 100000, false);
+  std::printf("[row] stacks of 100,000 boxes: %.0f B a box\n", many);
+  EXPECT_LT(many, 1024);
+}
+
+// Ten minutes in which something comes and something goes in every step.
+TEST(LongChurn, MemoryStaysBounded) {
+  const long long before = bytes_out.load();
+  World world = make_world();
+  add_ground(world);
+  std::vector<BodyId> bodies(300);
+  std::uint32_t random = 1;
+  const auto next = [&](std::uint32_t below) {
+    random = random * 1664525u + 1013904223u;
+    return (random >> 8) % below;
+  };
+  constexpr int kMinutes = 10, kStepsPerMinute = 3600;
+  long long most[kMinutes] = {};
+  for (int minute = 0; minute < kMinutes; ++minute) {
+    for (int i = 0; i < kStepsPerMinute; ++i) {
+      BodyId& body = bodies[next(300)];
+      if (body) world.remove_body(body);
+      const DVec3 place{double(next(8)), 1.0 + next(6), double(next(8))};
+      const AnyShape geometry =
+          next(2) == 0 ? AnyShape(Box{{0.4f, 0.3f + 0.01f * float(next(40)), 0.4f}}) : AnyShape(Sphere{0.4f});
+      body = world.add_body({.pose = {.position = place}}, {.geometry = geometry});
+      world.step(kStep);
+      most[minute] = std::max(most[minute], bytes_out.load() - before);
+    }
+  }
+  std::printf("[row] churn: %.0f kB at most in the first minute, %.0f kB in the last\n",
+              double(most[0]) / 1e3, double(most[kMinutes - 1]) / 1e3);
+  for (int minute = 2; minute < kMinutes; ++minute)
+    EXPECT_LT(double(most[minute]), 1.1 * double(std::max(most[0], most[1])));
 }
 
 }  // namespace
