@@ -39,3 +39,5 @@ endif()
 if(EXISTS ${PROJECT_SOURCE_DIR}/scenes)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/gyre)
 endif()
+# The viewer, if it was built (tools/build_viewer.sh): gyre view finds it beside the program.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/web/viewer/dist/ DESTINATION ${CMAKE_INSTALL_DATADIR}/gyre/viewer OPTIONAL)

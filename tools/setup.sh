@@ -22,6 +22,7 @@ package_present() {
     libgtest-dev) [ -e /usr/include/gtest/gtest.h ] ;;
     libbenchmark-dev) [ -e /usr/include/benchmark/benchmark.h ] ;;
     zlib1g-dev) [ -e /usr/include/zlib.h ] ;;
+    libcpp-httplib-dev) [ -e /usr/include/httplib.h ] ;;
     emscripten) command -v emcc >/dev/null 2>&1 ;;
     libclang-rt-dev) ls /usr/lib/llvm-*/lib/clang/*/lib/linux/libclang_rt.fuzzer-*.a >/dev/null 2>&1 ;;
     *) dpkg-query -W -f='${db:Status-Abbrev}' "$1" 2>/dev/null | grep -q '^ii' ;;
@@ -91,3 +92,6 @@ gyre_build_packages=(
 
 # For gyre render, which is left out where they are missing: the libraries it is built with, and OpenGL without a graphics card.
 gyre_render_packages=(libepoxy-dev libegl-dev libpng-dev libgif-dev libegl1 libgl1 libgl1-mesa-dri)
+
+# For gyre view, which is left out where it is missing: the server.
+gyre_view_packages=(libcpp-httplib-dev)
