@@ -431,6 +431,45 @@ TEST(Track, OfAnotherVersionsWorldIsReadWhereReplayIsRefused) {
   EXPECT_EQ(track->frame_count(), 11u);
 }
 
+// tests/recordings/everything_1.gyrec was written by the first version of the format, and stays as it is.
+TEST(Track, WrittenByVersionOneIsStillRead) {
+  std::ifstream file(GYRE_SOURCE_DIR "/tests/recordings/everything_1.gyrec", std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const std::byte* const bytes = reinterpret_cast<const std::byte*>(text.data());
+  Result<PoseTrack> track = PoseTrack::open({bytes, bytes + text.size()});
+  ASSERT_TRUE(track) << track.error().message;
+  EXPECT_FALSE(track->truncated());
+  ASSERT_EQ(track->frame_count(), 151u);
+  ASSERT_EQ(track->seek(150).code, ErrorCode::none);
+  const TrackFrame frame = track->frame();
+  EXPECT_NEAR(frame.time, 2.5, 1e-6);
+  const char* const names[] = {"ground", "tile", "hills", "ball",  "dice",
+                               "pill",   "tin",  "hat",   "stone", "hammer"};
+  ASSERT_EQ(frame.ids.size(), 10u);
+  for (std::size_t i = 0; i < 10; ++i) EXPECT_EQ(track->label(frame.ids[i]).name, names[i]);
+  EXPECT_EQ(track->label(frame.ids[3]).colors[0], (TrackColor{0xc0, 0x40, 0x20}));
+  EXPECT_EQ(frame.poses[3].position, (DVec3{4.74755859375, 1.0953369140625, -1.2524414062500}));
+  EXPECT_LT(
+      angle_between(frame.poses[9].orientation, {-0.342010498f, -0.198318481f, 0.915538389f, -0.0740814209f}),
+      1e-5);
+  EXPECT_EQ(frame.awake[3], 1);
+  EXPECT_EQ(frame.awake[4], 0);
+  const auto shape = [&](std::size_t body, std::size_t number = 0) -> const AnyShape& {
+    return track->models()[frame.models[body]].shapes.at(number).geometry;
+  };
+  EXPECT_TRUE(std::holds_alternative<Plane>(shape(0)));
+  EXPECT_EQ(view_mesh(std::get<Geometry>(shape(1))).indices.size(), 6u);
+  EXPECT_EQ(view_height_field(std::get<Geometry>(shape(2))).columns, 3u);
+  EXPECT_EQ(std::get<Sphere>(shape(3)).radius, 0.5f);
+  EXPECT_EQ(std::get<Box>(shape(4)).rounding, 0.1f);
+  EXPECT_EQ(std::get<Capsule>(shape(5)).half_height, 0.5f);
+  EXPECT_EQ(std::get<Cylinder>(shape(6)).radius, 0.5f);
+  EXPECT_EQ(std::get<Cone>(shape(7)).radius, 0.5f);
+  EXPECT_EQ(view_hull(std::get<Geometry>(shape(8))).vertices.size(), 6u);
+  EXPECT_EQ(std::get<Box>(shape(9, 1)).half_extents.x, 0.4f);
+  EXPECT_NE(track->note("scene").find("something of everything"), std::string_view::npos);
+}
+
 TEST(Track, PassesOverChunksItDoesNotKnow) {
   const Recorded recorded = record(kScenes[1], 10);
   ByteWriter longer;

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -345,6 +346,43 @@ TEST_F(CommandLine, ARecordingCanBeLookedAtWithNamesAndColours) {
   EXPECT_NE(track->note("scene").find("\"small\""), std::string_view::npos);
   ASSERT_EQ(track->seek(50).code, ErrorCode::none);
   EXPECT_LT(track->frame().poses[2].position.y, 2.0);
+}
+
+// tools/recording_to_csv.py was written from docs/recording.md and shares nothing with the engine.
+TEST_F(CommandLine, ARecordingIsAsItsPageSays) {
+  if (std::system("python3 --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no python3";
+  ASSERT_EQ(gyre({"simulate", "s.gyre.json", "--steps", "150", "--record", "r.gyrec", "--trace", "t.csv",
+                  "--quiet"})
+                .code,
+            0);
+  const std::string command = "python3 '" GYRE_SOURCE_DIR "/tools/recording_to_csv.py' '" +
+                              (folder_ / "r.gyrec").string() + "' > '" + (folder_ / "p.csv").string() + "'";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  const std::vector<std::string> read_back = lines_of(read("p.csv")), traced = lines_of(read("t.csv"));
+  ASSERT_EQ(read_back.size(), traced.size());
+  const auto cells = [](const std::string& line) {
+    // From the end: names may hold commas.
+    std::vector<std::string> found;
+    std::string cell;
+    std::istringstream stream(line);
+    while (std::getline(stream, cell, ',')) found.push_back(cell);
+    return std::vector<std::string>(found.rbegin(), found.rend());
+  };
+  for (std::size_t i = 1; i < traced.size(); ++i) {
+    const std::vector<std::string> a = cells(read_back[i]), b = cells(traced[i]);
+    ASSERT_GE(a.size(), 11u);
+    ASSERT_EQ(a[0], b[0]) << traced[i];                // awake
+    ASSERT_EQ(a.back(), b.back());                     // step
+    ASSERT_EQ(a[8].substr(0, 4), b[14].substr(0, 4));  // the end of the name
+    double same = 0, turned = 0;
+    for (std::size_t part = 1; part <= 4; ++part) {
+      const double u = std::atof(a[part].c_str()), v = std::atof(b[part + 6].c_str());
+      same = std::max(same, std::abs(u - v)), turned = std::max(turned, std::abs(u + v));
+    }
+    ASSERT_LT(std::min(same, turned), 3e-5) << read_back[i] << "\n" << traced[i];
+    for (std::size_t axis = 5; axis <= 7; ++axis)
+      ASSERT_NEAR(std::atof(a[axis].c_str()), std::atof(b[axis + 6].c_str()), 6.2e-5) << read_back[i];
+  }
 }
 
 TEST_F(CommandLine, ARecordingHoldsWhatWasAskedFor) {

@@ -74,7 +74,9 @@ void try_track(const std::vector<std::byte>& bytes) {
     check_frame(*track);
     looks.push_back(look(track->frame()));
   }
-  for (std::size_t i = looks.size(); i-- > 0;) {
+  // Back by leaps, each of which decodes all that came since a keyframe.
+  for (std::size_t i = looks.size(); i > 0;) {
+    i = i > 23 ? i - 23 : 0;
     if (track->seek(i).code != ErrorCode::none || look(track->frame()) != looks[i]) std::abort();
   }
   if (looks.size() < count) {
