@@ -1,9 +1,11 @@
-// Prints the state's hash of every scene and of some random worlds every 50 steps, and nothing else: whatever compiler,
-// optimisation and processor this is built for, and whatever threads and SIMD width it is given, the output must be
-// determinism/golden.txt. With numbers, it prints those random worlds instead.
+// Prints the state's hash of every scene and of some random worlds every 50 steps, the hash of each scene's pose track, and
+// nothing else: whatever compiler, optimisation and processor this is built for, and whatever threads and SIMD width it is
+// given, the output must be determinism/golden.txt. With numbers, it prints those random worlds instead.
 // Usage: determinism [threads] [simd width] [first random world] [last random world]
 #include "../determinism/random_world.h"
 #include "../determinism/scenes.h"
+
+#include <gyre/replay.h>
 
 #include <cinttypes>
 #include <cstdio>
@@ -20,15 +22,31 @@ void print_hash(const char* name, int step, const World& world) {
   if (step % scenes::kHashEvery == 0) std::printf("%s %d %016" PRIx64 "\n", name, step, world.hash());
 }
 
+struct HashSink final : ByteSink {
+  bool write(std::span<const std::byte> bytes) override {
+    for (const std::byte byte : bytes) hash = (hash ^ std::uint64_t(byte)) * 0x100000001b3u;  // FNV-1a
+    return true;
+  }
+  std::uint64_t hash = 0xcbf29ce484222325u;
+};
+
+// The hash of a recording's bytes, by when it is whole.
+void print_track(const char* name, Recorder& recorder, const HashSink& sink) {
+  if (recorder.finish()) std::printf("%s_track %d %016" PRIx64 "\n", name, scenes::kSteps, sink.hash);
+}
+
 bool print_scene(const scenes::Scene& scene, const WorldDef& def) {
   Result<World> made = World::create(def);
   if (!made) return false;
   World world = *std::move(made);
   scene.build(world);
+  HashSink sink;
+  Recorder recorder(world, sink, {.commands = false});
   for (int step = 0; step < scenes::kSteps; ++step) {
     scenes::step_scene(scene, world, step);
     print_hash(scene.name, step + 1, world);
   }
+  print_track(scene.name, recorder, sink);
   return true;
 }
 
