@@ -1,5 +1,5 @@
 // Scene files: the engine's own reader and runner.
-import { type BodyId, type JointId, type RecordOptions, type Stepping, type Vec3, writeStepping } from './generated.js';
+import { type BodyId, type JointId, type RecordOptions, type SteppingInput, type Vec3, writeStepping } from './generated.js';
 import type { Runtime } from './runtime.js';
 import type { Bytes, VectorInput } from './stream.js';
 import { type Recorder, World } from './world.js';
@@ -22,7 +22,7 @@ export interface SceneSettings {
   timeStep?: number;
   sleeping?: boolean;
   /** Only what is given changes. */
-  stepping?: Stepping;
+  stepping?: SteppingInput;
 }
 
 /** Where a picture is taken from. */

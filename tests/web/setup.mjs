@@ -1,0 +1,45 @@
+// What every test file begins with: one browser, one server, and pages that are closed behind each test.
+import assert from 'node:assert/strict';
+import { join, resolve } from 'node:path';
+import { after, before } from 'node:test';
+import { launch, newPage, ready } from './browser.mjs';
+export { ready };
+import { serve } from './server.mjs';
+
+export const root = resolve(import.meta.dirname, '../..');
+export const dist = join(root, 'web/viewer/dist');
+
+export function viewerTests({ files = {} } = {}) {
+  const state = {};
+  before(async () => {
+    state.server = await serve(dist, files);
+    state.browser = await launch();
+  });
+  after(async () => {
+    await state.browser?.close();
+    await state.server?.close();
+  });
+  return {
+    // A page at /?query. With `wait`, until its scene is open; the motion is off, so that pictures are the same every time.
+    async open(t, query = '', { wait = true, ...options } = {}) {
+      const page = await newPage(state.browser, options);
+      t.after(() => page.context().close());
+      await page.goto(`${state.server.address}?${query}`);
+      if (wait) await ready(page);
+      return page;
+    },
+    // A page without an error, whatever it did.
+    noErrors(page) {
+      assert.deepEqual(page.errors, []);
+    },
+  };
+}
+
+// The next picture is drawn, and everything that a frame changes is on the page.
+export async function settled(page) {
+  await page.evaluate(async () => {
+    await window.gyre.viewer.playback.idle();
+    await document.fonts.ready;
+    for (let i = 0; i < 3; i++) await new Promise((done) => requestAnimationFrame(done));
+  });
+}

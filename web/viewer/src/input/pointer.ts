@@ -1,0 +1,108 @@
+// The hand. On a body that can move it pulls; a click without moving selects; everywhere else it is the camera's.
+import { Vector3 } from 'three';
+import { BodyFlag } from '../protocol';
+import * as store from '../state/store';
+import type { Viewer } from '../viewer';
+
+const CLICK = 5; // pixels that a click may move
+
+interface Press {
+  id: number;
+  x: number;
+  y: number;
+  key: number | null;
+  grabbed: Vector3 | null; // where in the scene the body was taken hold of
+}
+
+export class Pointer {
+  private press: Press | null = null;
+  private at = { x: 0, y: 0, fresh: false };
+  private readonly touches = new Set<number>();
+
+  constructor(private readonly viewer: Viewer) {
+    const element = viewer.stage.renderer.domElement;
+    element.addEventListener('pointerdown', (event) => this.down(event));
+    element.addEventListener('pointermove', (event) => this.move(event));
+    for (const name of ['pointerup', 'pointercancel'] as const) element.addEventListener(name, (event) => this.up(event));
+    element.addEventListener('pointerleave', () => (element.style.cursor = ''));
+    element.addEventListener('dblclick', (event) => this.doubleClick(event));
+  }
+
+  // Where the pointer was last, for what is thrown.
+  get place(): { x: number; y: number } {
+    const box = this.viewer.stage.renderer.domElement.getBoundingClientRect();
+    return this.at.x === 0 && this.at.y === 0 ? { x: box.left + box.width / 2, y: box.top + box.height / 2 } : this.at;
+  }
+
+  private down(event: PointerEvent): void {
+    this.touches.add(event.pointerId);
+    this.at = { x: event.clientX, y: event.clientY, fresh: false };
+    const { viewer } = this;
+    const frame = viewer.playback.frame;
+    viewer.stage.renderer.domElement.focus({ preventScroll: true });
+    // A second finger means the camera.
+    if (this.touches.size > 1) return this.letGo();
+    if (event.button !== 0 || !frame) return;
+    const picked = viewer.picker.pick(viewer.bodies, event.clientX, event.clientY);
+    this.press = { id: event.pointerId, x: event.clientX, y: event.clientY, key: picked?.key ?? null, grabbed: null };
+    const movable = picked && (frame.flags[picked.row]! & BodyFlag.dynamic) !== 0 && store.scene.peek()?.live;
+    if (!movable || event.ctrlKey || event.metaKey || event.shiftKey) return;
+    this.press.grabbed = picked.point;
+    viewer.rig.controls.enabled = false;
+    viewer.stage.renderer.domElement.setPointerCapture(event.pointerId);
+    viewer.stage.renderer.domElement.style.cursor = 'grabbing';
+    viewer.playback.command({ do: 'grab', key: picked.key, at: picked.point.toArray() });
+  }
+
+  private move(event: PointerEvent): void {
+    this.at = { x: event.clientX, y: event.clientY, fresh: true };
+  }
+
+  private up(event: PointerEvent): void {
+    this.touches.delete(event.pointerId);
+    const { press } = this;
+    if (!press || press.id !== event.pointerId) return;
+    const still = Math.hypot(event.clientX - press.x, event.clientY - press.y) < CLICK;
+    this.letGo();
+    if (still && event.type === 'pointerup') {
+      store.selected.value = press.key;
+      if (press.key !== null && innerWidth > 900) store.panel.value = 'inspect';
+    }
+  }
+
+  private doubleClick(event: MouseEvent): void {
+    const picked = this.viewer.picker.pick(this.viewer.bodies, event.clientX, event.clientY);
+    if (!picked || this.viewer.bodies.known.get(picked.key)?.type === 'fixed') return;
+    store.selected.value = picked.key;
+    store.following.value = true;
+  }
+
+  private letGo(): void {
+    if (this.press?.grabbed) this.viewer.playback.command({ do: 'release' });
+    this.press = null;
+    this.viewer.rig.controls.enabled = true;
+    this.viewer.stage.renderer.domElement.style.cursor = '';
+  }
+
+  // Once a picture: the body follows the pointer in the plane in which it was taken, whatever the camera does meanwhile.
+  update(): void {
+    if (!this.at.fresh) return;
+    this.at.fresh = false;
+    const { viewer } = this;
+    if (this.press?.grabbed) {
+      const to = viewer.picker.onPlaneThrough(this.press.grabbed, this.at.x, this.at.y);
+      if (to) viewer.playback.command({ do: 'pull', to: to.toArray() });
+    } else if (this.touches.size === 0) {
+      this.hover();
+    }
+  }
+
+  private hover(): void {
+    const { viewer } = this;
+    const frame = viewer.playback.frame;
+    if (!frame || frame.flags.length > 4000) return;
+    const picked = viewer.picker.pick(viewer.bodies, this.at.x, this.at.y);
+    const movable = picked && (frame.flags[picked.row]! & BodyFlag.dynamic) !== 0 && store.scene.peek()?.live;
+    viewer.stage.renderer.domElement.style.cursor = movable ? 'grab' : '';
+  }
+}

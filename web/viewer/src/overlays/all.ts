@@ -1,0 +1,23 @@
+// Every overlay there is, in the order of the panel.
+import { Bounds } from './bounds';
+import { Contacts } from './contacts';
+import { Friction } from './friction';
+import { Hulls } from './hulls';
+import { Islands } from './islands';
+import { Joints } from './joints';
+import { Mass } from './mass';
+import type { OverlayKind } from './overlay';
+import { Tree } from './tree';
+import { Velocities } from './velocities';
+
+export const overlayKinds: readonly OverlayKind[] = [
+  { name: 'contacts', label: 'Contacts', hint: 'points and normals, longer with more load', key: '1', make: () => new Contacts() },
+  { name: 'friction', label: 'Friction', hint: 'tangents of the contact basis, and the impulse', key: '2', make: () => new Friction() },
+  { name: 'bounds', label: 'Bounding boxes', hint: 'of every shape', key: '3', make: () => new Bounds() },
+  { name: 'tree', label: 'Broad-phase tree', hint: 'nodes, from the root (warm) to the leaves (cold)', key: '4', make: () => new Tree() },
+  { name: 'islands', label: 'Islands and sleep', hint: 'what is solved together; grey sleeps', key: '5', make: () => new Islands() },
+  { name: 'mass', label: 'Mass and inertia', hint: 'centres of mass, ellipsoids of inertia', key: '6', make: () => new Mass() },
+  { name: 'joints', label: 'Joint frames', hint: 'anchors, axes, and gaps in pink', key: '7', make: () => new Joints() },
+  { name: 'velocities', label: 'Velocities', hint: 'linear (blue), angular (pink)', key: '8', make: () => new Velocities() },
+  { name: 'hulls', label: 'Collision shapes', hint: 'what really collides, as wire', key: '9', make: () => new Hulls() },
+];

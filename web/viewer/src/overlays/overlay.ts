@@ -1,0 +1,25 @@
+// An overlay: something drawn over the bodies that says what the engine knows about them. One file each; the list is in all.ts.
+import type { Object3D } from 'three';
+import type { Bodies } from '../draw/bodies';
+import type { Frame, OverlayName } from '../protocol';
+
+export interface OverlayView {
+  frame: Frame;
+  bodies: Bodies;
+  scale: number; // m, the radius of the scene: how long an arrow of usual size may be
+}
+
+export interface Overlay {
+  readonly object: Object3D;
+  // Called for every new frame, and for every picture while bodies glide between two frames.
+  update(view: OverlayView): void;
+  clear(): void;
+}
+
+export interface OverlayKind {
+  name: OverlayName;
+  label: string;
+  hint: string;
+  key: string; // on the keyboard
+  make: () => Overlay;
+}

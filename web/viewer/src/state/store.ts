@@ -1,0 +1,41 @@
+// What the page shows, as signals. The frame itself changes sixty times a second and is no signal: whoever draws it listens with
+// onFrame; the interface reads the few numbers it shows from `shown`, which follows at a reader's pace.
+import { signal } from '@preact/signals';
+import type { BodyReport, SceneDescription, Stats } from '../protocol';
+
+export type Panel = 'inspect' | 'overlays' | 'world' | 'charts';
+
+export interface SceneEntry {
+  name: string; // as in the scene file
+  file: string; // under scenes/
+  thumbnail: string; // under scenes/
+  bodies: number;
+  joints: number;
+}
+
+export interface Notice {
+  title: string;
+  text: string;
+  fatal: boolean; // nothing is open behind it
+}
+
+export const scene = signal<SceneDescription | null>(null);
+export const opening = signal<string | null>(null); // the name of what is being opened
+export const notice = signal<Notice | null>(null);
+
+export const playing = signal(false);
+export const speed = signal(1);
+export const step = signal(0);
+export const lastStep = signal(0);
+export const time = signal(0);
+export const stats = signal<Stats | null>(null);
+export const framesPerSecond = signal(0);
+
+export const selected = signal<number | null>(null); // key of a body
+export const report = signal<BodyReport | null>(null);
+export const following = signal(false);
+
+export const panel = signal<Panel | null>(null);
+export const scenesOpen = signal(false);
+export const helpOpen = signal(false);
+export const sceneList = signal<SceneEntry[]>([]);

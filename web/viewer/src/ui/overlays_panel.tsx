@@ -1,0 +1,56 @@
+// What to draw over the scene, how to colour it, how well to draw it.
+import type { JSX } from 'preact';
+import { overlayKinds } from '../overlays/all';
+import * as preferences from '../state/preferences';
+import * as store from '../state/store';
+import { Section, Segments, Switch } from './parts';
+
+// What a recording of poses cannot know: it holds no contacts and no tree.
+const IN_RECORDINGS = new Set(['hulls']);
+
+export function OverlaysPanel(): JSX.Element {
+  const { overlays, colorBy, quality } = preferences;
+  const live = store.scene.value?.live ?? true;
+  return (
+    <>
+      <Section title="Draw" {...(live ? {} : { note: 'A recording holds poses only: contacts, trees and forces are there when the scene is played live.' })}>
+        {overlayKinds.map(({ name, label, hint, key }) => (
+          <Switch
+            key={name}
+            label={label}
+            hint={hint}
+            shortcut={key}
+            on={overlays.value.has(name)}
+            disabled={!live && !IN_RECORDINGS.has(name)}
+            onChange={() => preferences.toggleOverlay(name)}
+          />
+        ))}
+      </Section>
+      <Section title="Colour by">
+        <Segments
+          label="Colour by"
+          value={colorBy.value}
+          options={[
+            { value: 'scene', text: 'Scene' },
+            { value: 'material', text: 'Material' },
+            { value: 'body', text: 'Body' },
+            { value: 'sleep', text: 'Sleep' },
+            { value: 'speed', text: 'Speed' },
+          ]}
+          onChange={(value) => (colorBy.value = value)}
+        />
+      </Section>
+      <Section title="Picture">
+        <Segments
+          label="Picture"
+          value={quality.value}
+          options={[
+            { value: 'high', text: 'Fine' },
+            { value: 'low', text: 'Fast' },
+          ]}
+          onChange={(value) => (quality.value = value)}
+        />
+      </Section>
+    </>
+  );
+}

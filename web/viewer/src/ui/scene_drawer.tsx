@@ -1,0 +1,65 @@
+// The scenes, with pictures, and files of one's own.
+import { FolderOpen, X } from 'lucide-preact';
+import { useRef } from 'preact/hooks';
+import type { JSX } from 'preact';
+import { plural } from '../format';
+import { openFile, openListed } from '../open';
+import * as store from '../state/store';
+import type { Viewer } from '../viewer';
+import { IconButton } from './parts';
+
+export function SceneDrawer({ viewer }: { viewer: Viewer }): JSX.Element | null {
+  const input = useRef<HTMLInputElement>(null);
+  if (!store.scenesOpen.value) return null;
+  const close = (): void => {
+    store.scenesOpen.value = false;
+  };
+  return (
+    <aside class="bar drawer" aria-label="Scenes">
+      <div class="panel-head">
+        <h2>Scenes</h2>
+        <div class="head-actions">
+          <button type="button" class="quiet" onClick={() => input.current?.click()}>
+            <FolderOpen size={16} /> Open a file
+          </button>
+          <IconButton label="Close" shortcut="Esc" onClick={close}>
+            <X size={18} />
+          </IconButton>
+        </div>
+        <input
+          ref={input}
+          type="file"
+          accept=".json,.gyrec"
+          hidden
+          onChange={(event) => {
+            const file = event.currentTarget.files?.[0];
+            if (file) void openFile(viewer, file);
+            event.currentTarget.value = '';
+          }}
+        />
+      </div>
+      <div class="scene-grid">
+        {store.sceneList.value.map((entry) => (
+          <button
+            key={entry.file}
+            type="button"
+            class="scene-card"
+            aria-current={store.scene.value?.file === entry.file}
+            onClick={() => {
+              if (innerWidth < 900) close();
+              void openListed(viewer, entry);
+            }}
+          >
+            <img src={`./scenes/${entry.thumbnail}`} alt="" width="320" height="200" loading="lazy" />
+            <span class="scene-card-name">{entry.name}</span>
+            <span class="hint">
+              {plural(entry.bodies, 'body', 'bodies')}
+              {entry.joints > 0 && `, ${plural(entry.joints, 'joint')}`}
+            </span>
+          </button>
+        ))}
+        {store.sceneList.value.length === 0 && <p class="hint">No list of scenes lies beside this page. Open a file instead.</p>}
+      </div>
+    </aside>
+  );
+}

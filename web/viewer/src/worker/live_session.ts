@@ -1,0 +1,376 @@
+// A scene that is simulated here: steps, commands, the way back, settings, and what the page is told after each.
+import { BroadPhaseKind, type Gyre, IntegratorKind, type Scene, SolverKind, type BodyId } from 'gyre-physics';
+import type {
+  BodyDescription,
+  BodyReport,
+  Box,
+  Command,
+  FrameMessage,
+  NewWorldSettings,
+  OverlayName,
+  SceneDescription,
+  Structure,
+  Vec3,
+  WorldSettings,
+} from '../protocol';
+import { Describer } from './describe';
+import { engineWords } from './engine';
+import { extent } from './extent';
+import { Hand } from './hand';
+import { Keys, slotOf, worldPart } from './keys';
+import { Looks } from './looks';
+import { Past } from './past';
+import type { SceneText } from './scene_source';
+import type { Session } from './session';
+import { throwableShape } from './throwables';
+import { readFlags, readLinks, readOverlays, readRows, readStats, reportOn } from './world_reader';
+
+const MANY_BODIES = 800; // from here on a second thread pays
+
+// soft_step in scene files, softStep in the engine's interface
+const snake = (name: string): string => name.replace(/[A-Z]/g, (letter) => `_${letter.toLowerCase()}`);
+
+// { field: value } for the value behind such a name, nothing where none is given.
+function valueOf<F extends string, T extends Readonly<Record<string, number>>>(field: F, kinds: T, name: string | undefined): { [K in F]?: T[keyof T] } {
+  const key = Object.keys(kinds).find((entry) => snake(entry) === name);
+  return (key === undefined ? {} : { [field]: kinds[key] }) as { [K in F]?: T[keyof T] };
+}
+
+export class LiveSession implements Session {
+  private scene: Scene;
+  private settings: WorldSettings;
+  private readonly origin: Vec3;
+  private readonly looks: Looks;
+  private readonly keys = new Keys();
+  private readonly past = new Past();
+  private readonly hand = new Hand();
+  private readonly describer: Describer;
+  private readonly thrown = new Map<number, string>(); // names of what was added, by key
+  private overlays: ReadonlySet<OverlayName> = new Set();
+  private ids = new Float64Array(0);
+  private types = new Uint8Array(0);
+  private structure = 0;
+  private readonly sent = new Set<number>(); // keys of bodies that the page knows
+  private appliedHere = 0; // how many of the commands at this step have been done
+  private step = 0;
+  private stepMs = 0;
+  private problem: string | null = null;
+
+  constructor(
+    private readonly gyre: Gyre,
+    private readonly source: SceneText,
+    asked: NewWorldSettings,
+  ) {
+    const count = source.json.bodies?.length ?? 0;
+    const threads = asked.threads ?? (count >= MANY_BODIES ? gyre.maxThreads : 1);
+    this.scene = this.openScene({ ...asked, threads });
+    this.looks = new Looks(source.json, this.scene);
+    this.describer = new Describer(gyre);
+    this.origin = this.middle();
+    this.settings = this.readSettings(threads, asked.simdWidth ?? 0);
+    this.scene.sceneBodies.forEach((id) => this.keys.key(id));
+    this.past.keep({ step: 0, bytes: this.scene.saveSnapshot(), hand: null });
+  }
+
+  private openScene(settings: NewWorldSettings): Scene {
+    const { broadPhase, solver, integrator } = settings;
+    const scene = this.gyre.openScene(this.source.text, {
+      file: this.source.file,
+      files: this.source.files,
+      threads: settings.threads ?? 1,
+      settings: {
+        stepping: {
+          ...valueOf('broadPhase', BroadPhaseKind, broadPhase),
+          ...valueOf('solver', SolverKind, solver),
+          ...valueOf('integrator', IntegratorKind, integrator),
+        },
+      },
+    });
+    scene.setTiming(true);
+    return scene;
+  }
+
+  private readSettings(threads: number, simdWidth: number): WorldSettings {
+    const world = this.source.json.world ?? {};
+    const named = (name: string, first: string): string => (typeof world[name] === 'string' ? (world[name] as string) : first);
+    return {
+      gravity: Array.from(this.scene.gravity()) as Vec3,
+      substeps: this.scene.substeps(),
+      sleeping: world['sleeping'] !== false,
+      timeStep: this.scene.timeStep,
+      solver: named('solver', snake(Object.keys(SolverKind)[0]!)),
+      integrator: named('integrator', snake(Object.keys(IntegratorKind)[0]!)),
+      broadPhase: named('broad_phase', snake(Object.keys(BroadPhaseKind)[0]!)),
+      threads,
+      simdWidth,
+    };
+  }
+
+  // Far from the world's origin, floats are counted from the middle of what there is.
+  private middle(): Vec3 {
+    const { positions } = this.scene.bodies();
+    const middle: Vec3 = [0, 0, 0];
+    for (let i = 0; i < positions.length; i++) middle[i % 3]! += (3 * positions[i]!) / positions.length;
+    return middle.every((value) => Math.abs(value) < 1000) ? [0, 0, 0] : (middle.map(Math.round) as Vec3);
+  }
+
+  describe(): SceneDescription {
+    const { settings, gyre } = this;
+    return {
+      title: this.scene.name || this.source.file,
+      file: this.source.file,
+      live: true,
+      origin: this.origin,
+      bounds: this.bounds(),
+      view: this.looks.view(this.origin),
+      stages: this.scene.readTimes().stages.name,
+      settings,
+      choices: {
+        solver: Object.keys(SolverKind).map(snake),
+        integrator: Object.keys(IntegratorKind).map(snake),
+        broadPhase: Object.keys(BroadPhaseKind).map(snake),
+        simdWidth: [0],
+        maxThreads: gyre.maxThreads,
+      },
+      engine: engineWords(gyre, settings.threads, settings.simdWidth),
+      lastStep: this.past.lastStep,
+      truncated: false,
+    };
+  }
+
+  private bounds(): Box {
+    const { ids, poses } = readRows(this.scene, this.origin);
+    const bodies = Array.from(ids, (id) => this.describer.body(this.scene, id, 0, ''));
+    return extent(bodies, poses, (surface) => this.describer.vertices(surface));
+  }
+
+  // -------------------------------------------------------------------------------------------------------------- going on
+
+  advance(steps: number, commands: readonly Command[]): FrameMessage {
+    this.problem = null;
+    for (const command of commands) this.act(command);
+    const begin = performance.now();
+    for (let i = 0; i < steps && this.problem === null; i++) this.stepOnce();
+    if (steps > 0) this.stepMs = (performance.now() - begin) / steps;
+    return this.frame();
+  }
+
+  // Something new, now.
+  private act(command: Command): void {
+    if (this.past.lastStep > this.step || this.past.at(this.step).length > this.appliedHere) this.forgetFuture();
+    this.past.add(this.step, this.appliedHere, command);
+    this.appliedHere++;
+    this.do(command);
+  }
+
+  private forgetFuture(): void {
+    this.past.cut(this.step);
+    this.keys.keepOnly(this.scene.bodies().ids);
+  }
+
+  private stepOnce(): void {
+    const planned = this.past.at(this.step);
+    while (this.appliedHere < planned.length) this.do(planned[this.appliedHere++]!);
+    const begin = performance.now();
+    try {
+      this.scene.step();
+    } catch (error) {
+      this.problem = (error as Error).message;
+    }
+    this.step++;
+    this.appliedHere = 0;
+    this.past.lastStep = Math.max(this.past.lastStep, this.step);
+    if (this.past.due(this.step, performance.now() - begin)) {
+      this.past.keep({ step: this.step, bytes: this.scene.saveSnapshot(), hand: this.hand.state });
+    }
+  }
+
+  seek(step: number): FrameMessage {
+    const wanted = Math.min(Math.max(step, 0), this.past.lastStep);
+    this.problem = null;
+    const back = wanted < this.step || (wanted === this.step && this.appliedHere > 0);
+    const keyframe = this.past.before(wanted);
+    if (back || keyframe.step > this.step) {
+      this.scene.restoreSnapshot(keyframe.bytes);
+      this.hand.state = keyframe.hand;
+      this.step = keyframe.step;
+      this.appliedHere = 0;
+    }
+    while (this.step < wanted && this.problem === null) this.stepOnce();
+    return this.frame();
+  }
+
+  private do(command: Command): void {
+    const { scene } = this;
+    const world = worldPart(scene.sceneBodies[0] ?? scene.bodies().ids[0] ?? 0);
+    const idOf = (key: number): BodyId => this.keys.id(key, world);
+    try {
+      switch (command.do) {
+        case 'grab':
+          return this.hand.grab(scene, idOf(command.key), this.inWorld(command.at));
+        case 'pull':
+          return this.hand.pull(scene, this.inWorld(command.to));
+        case 'release':
+          return this.hand.release(scene);
+        case 'throw':
+          return this.throw(command);
+        case 'remove':
+          if (this.hand.state?.body === idOf(command.key)) this.hand.release(scene);
+          return scene.removeBody(idOf(command.key));
+        case 'push':
+          return scene.addImpulseAt(idOf(command.key), command.impulse, this.inWorld(command.at));
+        case 'wake':
+          return scene.setAwake(idOf(command.key), command.awake);
+        case 'gravity':
+          this.settings = { ...this.settings, gravity: command.value };
+          return this.setGravity(command.value);
+        case 'substeps':
+          this.settings = { ...this.settings, substeps: command.value };
+          return scene.setSubsteps(command.value);
+        case 'sleeping':
+          this.settings = { ...this.settings, sleeping: command.value };
+          return scene.setSleeping(command.value);
+      }
+    } catch (error) {
+      this.problem = (error as Error).message;
+    }
+  }
+
+  // What sleeps does not feel gravity change by itself.
+  private setGravity(gravity: Vec3): void {
+    this.scene.setGravity(gravity);
+    for (const [row, id] of this.scene.bodies().ids.slice().entries()) {
+      if (this.typeOf(id, row) && !this.scene.isAwake(id)) this.scene.setAwake(id, true);
+    }
+  }
+
+  private typeOf(id: BodyId, row: number): boolean {
+    return (this.ids[row] === id ? this.types[row]! : this.scene.type(id)) === 2;
+  }
+
+  private throw(command: Extract<Command, { do: 'throw' }>): void {
+    const id = this.scene.addBody(
+      { pose: { position: this.inWorld(command.from) }, linearVelocity: command.velocity, continuous: true },
+      { geometry: throwableShape(command.what, command.size), density: command.density, material: { restitution: 0.2 } },
+    );
+    const key = this.keys.key(id);
+    if (!this.thrown.has(key)) this.thrown.set(key, `${command.what} ${this.thrown.size + 1}`);
+  }
+
+  private inWorld(place: Vec3): Vec3 {
+    return [place[0] + this.origin[0], place[1] + this.origin[1], place[2] + this.origin[2]];
+  }
+
+  // ------------------------------------------------------------------------------------------------------------ being seen
+
+  frame(fresh = false): FrameMessage {
+    const { scene } = this;
+    const rows = readRows(scene, this.origin);
+    const structure = this.restructure(rows.ids, fresh);
+    return {
+      frame: {
+        step: this.step,
+        time: this.step * this.settings.timeStep,
+        lastStep: this.past.lastStep,
+        structure: this.structure,
+        poses: rows.poses,
+        velocities: rows.velocities,
+        flags: readFlags(scene, rows.ids, this.types),
+        stats: readStats(scene, this.stepMs),
+        links: readLinks(scene, this.origin),
+        overlays: readOverlays(scene, this.overlays, this.origin),
+        problem: this.problem,
+      },
+      structure,
+    };
+  }
+
+  private restructure(ids: Float64Array, fresh: boolean): Structure | null {
+    const same = ids.length === this.ids.length && ids.every((id, row) => id === this.ids[row]);
+    if (same && !fresh) return null;
+    if (fresh) this.sent.clear();
+    this.ids = ids as Float64Array<ArrayBuffer>;
+    this.types = Uint8Array.from(ids, (id) => this.scene.type(id));
+    this.structure++;
+    const keys = Uint32Array.from(ids, (id) => this.keys.key(id));
+    const added: BodyDescription[] = [];
+    keys.forEach((key, row) => {
+      if (this.sent.has(key)) return;
+      this.sent.add(key);
+      added.push(this.describeBody(ids[row]!, key));
+    });
+    return { number: this.structure, keys, added, surfaces: this.describer.takeSurfaces() };
+  }
+
+  private describeBody(id: BodyId, key: number): BodyDescription {
+    const index = key < this.scene.sceneBodies.length ? key : -1;
+    const body = this.describer.body(this.scene, id, key, this.nameOf(key));
+    body.shapes.forEach((shape, i) => Object.assign(shape, this.looks.shape(index, i)));
+    return body;
+  }
+
+  private nameOf(key: number): string {
+    return this.scene.bodyNames[key] ?? this.thrown.get(key) ?? 'hand';
+  }
+
+  setOverlays(names: readonly OverlayName[]): void {
+    this.overlays = new Set(names);
+  }
+
+  inspect(key: number): BodyReport | null {
+    const id = this.keys.id(key, worldPart(this.ids[0] ?? 0));
+    if (!id || !this.scene.bodyExists(id)) return null;
+    return reportOn(this.gyre, this.scene, id, key, this.nameOf(key), this.withNames(this.scene.explain(id).words));
+  }
+
+  // The engine calls bodies by their slots ("body 12"); a visitor knows them by name.
+  private withNames(words: string): string {
+    return words.replace(/\bbody (\d+)\b/g, (text, slot: string) => {
+      const id = this.ids.find((candidate) => slotOf(candidate) === Number(slot));
+      return id === undefined ? text : `“${this.nameOf(this.keys.key(id))}”`;
+    });
+  }
+
+  // -------------------------------------------------------------------------------------------------------------- settings
+
+  // The same scene in a world of other settings, put to where this one stands. The way back stays open.
+  configure(settings: NewWorldSettings): void {
+    const snapshot = this.scene.saveSnapshot();
+    const next = { ...this.settings, ...settings };
+    const changed: NewWorldSettings = {
+      threads: next.threads,
+      simdWidth: next.simdWidth,
+      broadPhase: next.broadPhase,
+      solver: next.solver,
+      integrator: next.integrator,
+    };
+    const scene = this.openScene(changed);
+    try {
+      scene.restoreSnapshot(snapshot);
+    } catch (error) {
+      scene.dispose();
+      throw error;
+    }
+    const before = worldPart(this.ids[0] ?? 0);
+    this.scene.dispose();
+    this.scene = scene;
+    this.settings = next;
+    const now = worldPart(scene.bodies().ids[0] ?? 0);
+    this.past.moveWorld(now - before);
+    this.hand.moveWorld(now - before);
+  }
+
+  hash(): string {
+    return this.scene.hash().toString(16).padStart(16, '0');
+  }
+
+  save(what: 'scene' | 'snapshot'): { name: string; bytes: Uint8Array } {
+    const stem = this.source.file.replace(/\.gyre\.json$/, '');
+    if (what === 'snapshot') return { name: `${stem}.gyresnap`, bytes: this.scene.saveSnapshot() };
+    return { name: `${stem}-${this.step}.gyre.json`, bytes: new TextEncoder().encode(this.scene.toJson()) };
+  }
+
+  close(): void {
+    this.scene.dispose();
+  }
+}

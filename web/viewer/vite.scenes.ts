@@ -1,0 +1,65 @@
+// Puts the scenes of the repository beside the page: scenes/*.gyre.json with their mesh files, thumbnails/*.webp, and a list of
+// them, scenes/index.json. The development server reads them from where they lie, a build copies them.
+import { existsSync, readdirSync, readFileSync, statSync } from 'node:fs';
+import { basename, join, normalize, resolve } from 'node:path';
+import type { Plugin } from 'vite';
+
+const scenes = resolve(import.meta.dirname, '../../scenes');
+const thumbnails = resolve(import.meta.dirname, 'thumbnails');
+
+// The showcase first, the others by name.
+function sceneFiles(): string[] {
+  const files = readdirSync(scenes).filter((file) => file.endsWith('.gyre.json'));
+  const rank = (file: string): string => (file.startsWith('showcase.') ? '' : file);
+  return files.sort((a, b) => (rank(a) < rank(b) ? -1 : 1));
+}
+
+function list(): string {
+  const entries = sceneFiles().map((file) => {
+    const scene = JSON.parse(readFileSync(join(scenes, file), 'utf8')) as { name?: string; bodies?: unknown[]; joints?: unknown[] };
+    const stem = basename(file, '.gyre.json');
+    return {
+      name: scene.name ?? stem,
+      file,
+      thumbnail: `${stem}.webp`,
+      bodies: scene.bodies?.length ?? 0,
+      joints: scene.joints?.length ?? 0,
+    };
+  });
+  return `${JSON.stringify({ scenes: entries }, null, 1)}\n`;
+}
+
+// Where scenes/NAME is taken from; null if there is no such file.
+function fileFor(name: string): string | null {
+  const clean = normalize(name);
+  if (clean.startsWith('..') || clean.startsWith('/')) return null;
+  const file = clean.endsWith('.webp') ? join(thumbnails, clean) : join(scenes, clean);
+  return existsSync(file) && statSync(file).isFile() ? file : null;
+}
+
+export function gyreScenes(): Plugin {
+  return {
+    name: 'gyre-scenes',
+    configureServer(server) {
+      server.middlewares.use('/scenes/', (request, response, next) => {
+        const name = decodeURIComponent((request.url ?? '').replace(/^\//, '').replace(/\?.*/, ''));
+        if (name === 'index.json') return void response.setHeader('Content-Type', 'application/json').end(list());
+        const file = fileFor(name);
+        if (!file) return next();
+        response.end(readFileSync(file));
+      });
+    },
+    generateBundle() {
+      this.emitFile({ type: 'asset', fileName: 'scenes/index.json', source: list() });
+      const emit = (name: string): void => {
+        const file = fileFor(name);
+        if (file) this.emitFile({ type: 'asset', fileName: `scenes/${name}`, source: readFileSync(file) });
+      };
+      for (const file of sceneFiles()) {
+        emit(file);
+        emit(`${basename(file, '.gyre.json')}.webp`);
+      }
+      for (const mesh of readdirSync(join(scenes, 'meshes'))) emit(`meshes/${mesh}`);
+    },
+  };
+}
