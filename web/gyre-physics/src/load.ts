@@ -85,7 +85,10 @@ async function start(build: Build, workers: number): Promise<Engine> {
   const module: Record<string, unknown> = {
     wasmBinary: await unpack(variant),
     print: (text: string) => console.log(text),
-    printErr: (text: string) => console.warn(text),
+    printErr: (text: string) => {
+      // Said of the thread that waits for a world's workers to end. They do so at once.
+      if (!text.startsWith('Blocking on the main thread')) console.warn(text);
+    },
   };
   let workshop: Workshop | undefined;
   if (build === 'threads') {
