@@ -24,7 +24,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kUsualPort = 8642;
-constexpr const char* kHowToBuild = "tools/build_viewer.sh (needs Node.js 18 or newer, npm and emscripten)";
+constexpr const char* kBuilder = "tools/build_viewer.sh";
+constexpr const char* kBuilderNeeds = " (it needs Node.js 20.19 or newer, npm and emscripten)";
 
 void say(const std::string& message) { std::fprintf(stderr, "gyre: %s\n", message.c_str()); }
 
@@ -59,8 +60,8 @@ std::string page_without_viewer(const std::string& file_path) {
       "<h1>The viewer is not built</h1><p>This gyre works, but the page that shows scenes is not there. In "
       "the source tree, "
       "<code>";
-  page += kHowToBuild;
-  page += "</code> builds it; then start <code>gyre view</code> again.</p>";
+  page += std::string(kBuilder) + "</code> builds it" + kBuilderNeeds;
+  page += "; then start <code>gyre view</code> again.</p>";
   if (!file_path.empty()) {
     page += "<p>The file itself: <a href=\"" + file_path + "\">" + file_path + "</a></p>";
   }
@@ -151,7 +152,8 @@ int view(const ViewOptions& options) {
   }
   const bool has_viewer = files.find("/index.html") != nullptr;
   if (!has_viewer)
-    say(std::string("the viewer is not built, so there is little to see; this builds it: ") + kHowToBuild);
+    say(std::string("the viewer is not built, so there is little to see; this builds it: ") + kBuilder +
+        kBuilderNeeds);
 
   ViewServer server(std::move(files), page_without_viewer(shown_path));
   const int port = bind(server, options);

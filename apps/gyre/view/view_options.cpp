@@ -18,7 +18,9 @@ void add_view(CLI::App& app, int& exit_code) {
           "FILE", options->file,
           "The scene (*.gyre.json) or recording (*.gyrec); without it, the scenes that come with the viewer")
       ->type_name("");
-  command->add_option("--port", options->port, "Port, 0 for any that is free; 8642 if it is, otherwise any")
+  command
+      ->add_option("--port", options->port,
+                   "Port; 0 for any that is free. Without it 8642, or any if that is taken")
       ->type_name("N")
       ->check([](const std::string& text) {
         int port = -1;
