@@ -137,10 +137,18 @@ void wake_neighbours(RigidWorld& w, std::uint32_t body) {
 }
 
 void wake_touched(RigidWorld& w) {
-  for_each_link(w, [&](std::uint32_t a, std::uint32_t b) {
-    if (is_asleep(w, a) && disturbs(w, b)) wake(w, a);
-    if (is_asleep(w, b) && disturbs(w, a)) wake(w, b);
-  });
+  // Whoever wakes disturbs its own neighbours in turn, also those that an earlier link led to: nobody may sleep beside a
+  // body that is solved, since colours and islands know only those that are awake.
+  bool woken = true;
+  while (woken) {
+    woken = false;
+    const auto disturb = [&](std::uint32_t sleeper, std::uint32_t other) {
+      if (!is_asleep(w, sleeper) || !disturbs(w, other)) return;
+      wake(w, sleeper);
+      woken = true;
+    };
+    for_each_link(w, [&](std::uint32_t a, std::uint32_t b) { disturb(a, b), disturb(b, a); });
+  }
 }
 
 void put_to_sleep(RigidWorld& w, Arena& arena, float seconds) {

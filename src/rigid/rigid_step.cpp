@@ -69,7 +69,8 @@ bool finite_state(const BodyMotion& motion, Quat orientation) {
          is_finite(orientation);
 }
 
-// Takes a body whose state went wrong back to where it last was and keeps it there.
+// Takes a body whose state went wrong back to where it last was and keeps it there. Impulses that are no numbers must not
+// stay with its contacts and joints: they would go over to the next body, and the bits of a NaN differ between processors.
 void freeze(RigidWorld& w, std::uint32_t body) {
   w.bodies.motion[body] = {};
   w.bodies.orientations[body] = w.bodies.places[body].orientation;
@@ -84,6 +85,7 @@ void freeze(RigidWorld& w, std::uint32_t body) {
       forget_look(contact);
     });
   }
+  for (const std::uint32_t slot : w.bodies.joints[body]) forget_impulses(w.joints.records[slot]);
 }
 
 }  // namespace

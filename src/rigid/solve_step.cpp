@@ -61,6 +61,7 @@ struct Group {
   Solve* solve = nullptr;
   std::uint32_t first = 0;  // first block of contacts, or first place in the joint order
   std::uint32_t count = 0;  // blocks or joints
+  bool serial = false;      // what is left over when the colours are used up: its members share bodies
 };
 
 // ------------------------------------------------------------------------------------------------- gathering, colours
@@ -188,7 +189,7 @@ std::span<Group> lay_out_contacts(Solve& solve, Arena& arena) {
         s.order.push_back(lane < lanes && i + lane < members.size() ? members[i + lane] : 0xffffffffu);
       }
     }
-    groups[used++] = {&solve, first, block - first};
+    groups[used++] = {&solve, first, block - first, g == colors.overflow_group()};
     s.colors_used |= std::uint64_t{1} << g;
   }
   solve.blocks = arena.make<std::byte>(std::size_t(block) * solve.kernels.block_bytes).data();
@@ -201,7 +202,7 @@ std::span<Group> lay_out_joints(Solve& solve, Arena& arena) {
   std::size_t used = 0;
   for (int g = 0; g < colors.group_count(); ++g) {
     const std::uint32_t count = colors.offsets[g + 1] - colors.offsets[g];
-    if (count > 0) groups[used++] = {&solve, colors.offsets[g], count};
+    if (count > 0) groups[used++] = {&solve, colors.offsets[g], count, g == colors.overflow_group()};
   }
   return groups.first(used);
 }
@@ -317,7 +318,8 @@ class ProgramWriter {
   }
   void add_groups(void (*kernel)(void*, int, int, int), std::span<Group> groups, std::uint32_t items_per_block, int per_claim) {
     for (Group& group : groups) {
-      add(kernel, &group, int((group.count + items_per_block - 1) / items_per_block), per_claim);
+      const int blocks = int((group.count + items_per_block - 1) / items_per_block);
+      add(kernel, &group, blocks, group.serial ? blocks : per_claim);
     }
   }
   std::span<const Stage> stages() const { return room_.first(used_); }

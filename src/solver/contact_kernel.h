@@ -211,7 +211,10 @@ GYRE_INLINE void solve_rolling(ContactBlock<W>& block, PairMotion<W>& pair) {
   const Wide<W> limit = block.rolling_friction * normal_load<W>(block);
   const Wide<W> size = sqrt(dot(wanted, wanted));
   const Wide<W> scale = select(size > limit, limit / select(size > zero, size, one), one);
-  const Vec3W<W> next = scale * wanted;
+  // A lane that does not roll must come out as from a block without this: also where `wanted` leaves a float's range.
+  const auto rolls = block.rolling_friction > zero;
+  const Vec3W<W> bounded = scale * wanted;
+  const Vec3W<W> next{select(rolls, bounded.x, zero), select(rolls, bounded.y, zero), select(rolls, bounded.z, zero)};
   turn<W>(block, pair, next - block.rolling);
   block.rolling = next;
 }
@@ -256,6 +259,9 @@ GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W>& pair, cons
       residual[i] = select(idle[i], zero, speed + select(apart, separation * rate, zero));
       leak[i] = zero;
     }
+    // A point that the lane does not have must stay out of the sums even where speeds leave a float's range: 0 times that
+    // would be no number, and a block of the lane's own would not have it.
+    residual[i] = select(block.relief[i] > zero, residual[i], zero);
   }
   for (int i = 0; i < count; ++i) {
     Wide<W> change = zero;

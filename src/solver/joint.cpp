@@ -216,6 +216,13 @@ float axis_impulse(const JointRecord& joint) {
 
 }  // namespace
 
+void forget_impulses(JointRecord& joint) {
+  joint.linear_impulse = joint.angular_impulse = {};
+  joint.low_impulse = joint.high_impulse = joint.motor_impulse = joint.spring_impulse = 0.0f;
+  joint.position = 0.0f;
+  joint.total_linear = joint.total_angular = {};
+}
+
 void begin_joint(JointRecord& joint, JointWork& work, float warm_scale) {
   joint.linear_impulse *= warm_scale;
   joint.angular_impulse *= warm_scale;

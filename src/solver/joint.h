@@ -96,6 +96,8 @@ struct JointWork {
   bool spring_is_stiff = false;
 };
 
+// Takes everything away that the last step left in the record: the joint goes on as if it were new.
+void forget_impulses(JointRecord& joint);
 // Scales the kept impulses to a new sub-step length and clears the sums; once a step.
 void begin_joint(JointRecord& joint, JointWork& work, float warm_scale);
 void prepare_joint(JointRecord& joint, JointWork& work, const JointPlaces& places, const JointBodies& bodies,

@@ -3,6 +3,8 @@
 //
 // What drive() does follows from the number, the step and what the world holds. So a copy of the RandomWorld goes on with a
 // copy of the world: a loaded snapshot, a world that was rolled back, a replay.
+//
+// No call draws two of its arguments from the dice: compilers take arguments in any order.
 #pragma once
 
 #include "scenes.h"
@@ -152,7 +154,8 @@ class RandomWorld {
 
   ShapeDef random_shape(Random& random, bool tidy) {
     ShapeDef shape;
-    shape.geometry = tidy ? AnyShape(Box{}) : convex(int(pick(random, 7)), random.next(0.1875f, 0.5625f));
+    const int kind = int(pick(random, 7));
+    shape.geometry = tidy ? AnyShape(Box{}) : convex(kind, random.next(0.1875f, 0.5625f));
     if (!tidy || pick(random, 4) == 0) shape.material = random_material(random);
     if (pick(random, 16) == 0) shape.density = random.next(10, 8000);
     if (pick(random, 24) == 0) shape.sensor = true;
@@ -223,6 +226,7 @@ class RandomWorld {
 
   void command(World& world, Random& random) {
     const BodyId body = any_body(world, random);
+    const ShapeId shape = any_shape(world, random);
     const Vec3 push = random.next_vector(600);
     switch (pick(random, 26)) {
       case 0:
@@ -242,9 +246,9 @@ class RandomWorld {
         world.remove_joint(any_joint(world, random));
         break;
       case 8: {
-        ShapeDef shape = random_shape(random, false);
-        shape.local.position = random.next_vector(0.5f);
-        world.add_shape(body, shape);
+        ShapeDef added = random_shape(random, false);
+        added.local.position = random.next_vector(0.5f);
+        world.add_shape(body, added);
         break;
       }
       case 9:
@@ -255,7 +259,7 @@ class RandomWorld {
         break;
       case 11:
         world.set_type(body, BodyType(pick(random, 3)));
-        world.set_velocity(body, random.next_vector(1), random.next_vector(1));
+        world.set_velocity(body, random.next_vector(1), {0.5f, -1, 0.25f});
         break;
       case 12:  // what was nailed down comes loose again
         for (std::size_t i = 1; i < world.bodies().ids.size(); ++i) {
@@ -267,10 +271,10 @@ class RandomWorld {
         world.set_awake(body, coin(random));
         break;
       case 14:
-        world.set_filter(any_shape(world, random), random_filter(random));
+        world.set_filter(shape, random_filter(random));
         break;
       case 15:
-        world.set_material(any_shape(world, random), random_material(random));
+        world.set_material(shape, random_material(random));
         break;
       case 16:
         set_pair(world, random);
@@ -283,6 +287,8 @@ class RandomWorld {
 
   void push_something(World& world, Random& random, BodyId body, Vec3 push) {
     const DVec3 point = world.center_of_mass(body) + random.next_vector(0.25f);
+    const JointId joint = any_joint(world, random);
+    const float speed = coin(random) ? 0.0078125f : 0.25f;  // m/s for each N s
     switch (pick(random, 10)) {
       case 0:
         world.add_force_at(body, 20 * push, point);
@@ -297,7 +303,7 @@ class RandomWorld {
         world.add_angular_impulse(body, 0.25f * push);
         break;
       case 4:
-        world.set_velocity(body, random.next_vector(coin(random) ? 4.0f : 120.0f), random.next_vector(4));
+        world.set_velocity(body, speed * push, random.next_vector(4));
         break;
       case 5: {
         const Pose pose{point, random.next_rotation()};
@@ -305,10 +311,10 @@ class RandomWorld {
         break;
       }
       case 6:
-        world.set_motor(any_joint(world, random), random_motor(random));
+        world.set_motor(joint, random_motor(random));
         break;
       case 7:
-        world.set_damping(body, random.next(0, 1), random.next(0, 1));
+        world.set_damping(body, random.next(0, 1), 0.5f);
         world.set_gravity_scale(body, random.next(0.25f, 1.25f));
         break;
       case 8:
@@ -339,10 +345,11 @@ class RandomWorld {
     const BodyId body = any_body(world, random);
     const float huge[] = {1.0e15f, 1.0e25f, 3.0e38f};
     const float size = huge[pick(random, 3)];
+    const Vec3 much = random.next_vector(size);
     if (coin(random)) {
-      world.set_velocity(body, random.next_vector(size), random.next_vector(coin(random) ? size : 1.0f));
+      world.set_velocity(body, much, random.next_vector(coin(random) ? size : 1.0f));
     } else {
-      world.add_force_at(body, random.next_vector(size), world.center_of_mass(body) + Vec3{0.25f, 0, 0});
+      world.add_force_at(body, much, world.center_of_mass(body) + Vec3{0.25f, 0, 0});
     }
   }
 

@@ -68,6 +68,29 @@ TEST(SimdWidth, DoesNotShowWhenASurfaceCeasesToBrakeRolling) {
   EXPECT_EQ(hashes[0], hashes[2]);
 }
 
+// Constraints for which no colour was left share bodies, and were solved by several workers at once.
+TEST(Threads, DoNotShowWhereABodyHasMoreConstraintsThanThereAreColors) {
+  const auto outcome = [](int threads) {
+    World world = make_world({.threads = threads});
+    add_fixed(world, {}, Plane{});
+    const BodyId plate = add_moving(world, {0, 0.5, 0}, Box{{6, 0.5f, 6}});
+    for (int i = 0; i < 100; ++i) {
+      const DVec3 place{1.125 * (i % 10) - 5, 1.5, 1.125 * (i / 10) - 5};
+      const BodyId box = add_moving(world, place, Box{{0.5f, 0.5f, 0.5f}});
+      world.set_velocity(box, {0.25f * float(i % 5), 0, 0.25f * float(i % 3)}, {});
+    }
+    for (int i = 0; i < 80; ++i) {
+      const DVec3 place{0.125 * i - 5, 4, 0};
+      const BodyId ball = add_moving(world, place + DVec3{0, 1, 2}, Sphere{0.0625f});
+      scenes::join(world, JointKind::ball, plate, ball, place);
+    }
+    for (int step = 0; step < 20; ++step) world.step(kStepSeconds);
+    return world.hash();
+  };
+  const std::uint64_t expected = outcome(1);
+  for (int again = 0; again < 4; ++again) EXPECT_EQ(expected, outcome(2 + again)) << again;
+}
+
 // Ends of contacts were told in the order of a list that a loaded world builds anew.
 TEST(Events, OfALoadedWorldComeInTheSameOrder) {
   World world = make_world();
