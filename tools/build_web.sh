@@ -36,10 +36,13 @@ for part in "${parts[@]}"; do
       python3 web/bindings/generate.py --typescript $package/src/generated.ts
       $package/node_modules/.bin/tsc -p $package
       cp LICENSE $package/LICENSE
-      # A bundler wants every file that is named; a build that was not made is an empty one, which load() passes over.
-      mkdir -p $package/dist/engine
+      # A bundler wants every file that is named; a build that was not made, or of other headers, is an empty one, which load()
+      # passes over.
+      version=$(sed -n 's/^export const bindingsVersion = \([0-9]*\);$/\1/p' $package/src/generated.ts)
       for build in simd threads plain; do
-        [ -e $package/dist/engine/$build.js ] || node $package/tools/pack.mjs "$build" none $package/dist/engine
+        if [ "$(head -n 1 $package/dist/engine/$build.js 2>/dev/null)" != "// bindings $version" ]; then
+          node $package/tools/pack.mjs "$build" none $package/dist/engine
+        fi
       done
       ;;
     *) say "Unknown part: $part"; exit 1 ;;

@@ -48,7 +48,9 @@ if (build === 'threads') {
 } else {
   parts.push(`export const worker = '';`);
 }
-parts.unshift(glue, `export const compressed = ${compressed};`, `export const wasm = ${JSON.stringify(text)};`);
+// The number by which tools/build_web.sh sees that a file is out of date.
+const version = readFileSync(join(from, 'bindings/bindings.cpp'), 'utf8').match(/gyre_bindings_version\(\) \{ return (\d+); \}/)[1];
+parts.unshift(`// bindings ${version}`, glue, `export const compressed = ${compressed};`, `export const wasm = ${JSON.stringify(text)};`);
 mkdirSync(to, { recursive: true });
 writeFileSync(join(to, `${build}.js`), parts.join('\n'));
 const size = gzipSync(parts.join('\n'), { level: 9 }).length;
