@@ -16,7 +16,7 @@ async function picture(page, part) {
 
 for (const theme of ['dark', 'light']) {
   test(`the page, ${theme}`, async (t) => {
-    const page = await viewer.open(t, `scene=showcase&play=0&theme=${theme}`, { width: 760, height: 480, theme });
+    const page = await viewer.open(t, `scene=showcase&play=0&theme=${theme}`, { width: 800, height: 520, theme });
     await page.evaluate(() => window.gyre.advance(45));
     comparePicture(`page-${theme}`, await picture(page));
     viewer.noErrors(page);
