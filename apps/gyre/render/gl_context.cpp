@@ -67,7 +67,7 @@ GlContext::~GlContext() {
   if (!display_) return;
   eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
   if (context_) eglDestroyContext(display_, context_);
-  eglTerminate(display_);
+  // The display stays for the next context. Ending it would unload Mesa's driver, which loses memory when it goes.
 }
 
 }  // namespace gyre
