@@ -7,11 +7,13 @@ namespace gyre {
 
 SceneRunner::SceneRunner(Scene scene, World world) : scene_(std::move(scene)), world_(std::move(world)) {}
 
-SceneResult<SceneRunner> SceneRunner::create(Scene scene, const std::string& file, int threads) {
+SceneResult<SceneRunner> SceneRunner::create(Scene scene, const std::string& file, int threads,
+                                             int simd_width) {
   const SceneWorld& settings = scene.world;
   WorldDef def;
   def.gravity = settings.gravity;
   def.threads = threads;
+  def.simd_width = simd_width;
   def.stepping = {settings.substeps, settings.integrator, settings.solver, settings.broad_phase};
   def.sleeping = settings.sleeping;
   Result<World> world = World::create(def);

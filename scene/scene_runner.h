@@ -16,7 +16,8 @@ namespace gyre {
 class SceneRunner {
  public:
   // `file` is named in errors. Whatever the engine refuses is an error that names the place in the scene.
-  static SceneResult<SceneRunner> create(Scene scene, const std::string& file, int threads = 1);
+  static SceneResult<SceneRunner> create(Scene scene, const std::string& file, int threads = 1,
+                                         int simd_width = 0);
 
   // Applies the forces of this moment and moves the world on by the scene's time step. False when the state is no longer
   // finite: then problem() says what happened, and to whom.

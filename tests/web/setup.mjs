@@ -9,10 +9,10 @@ import { serve } from './server.mjs';
 export const root = resolve(import.meta.dirname, '../..');
 export const dist = join(root, 'web/viewer/dist');
 
-export function viewerTests({ files = {} } = {}) {
+export function viewerTests({ files = {}, isolated = true } = {}) {
   const state = {};
   before(async () => {
-    state.server = await serve(dist, files);
+    state.server = await serve(dist, files, { isolated });
     state.browser = await launch();
   });
   after(async () => {

@@ -46,9 +46,9 @@ using namespace gyre::web;
 
 extern "C" {
 
-// Arguments: the scene's text, its name in errors, threads; the files that it may name: how many, then name and bytes of each; and
-// settings that overrule those of the scene, each after whether it is given: gravity, time step, sleeping, stepping. The answer: a
-// handle.
+// Arguments: the scene's text, its name in errors, threads, SIMD width; the files that it may name: how many, then name and bytes
+// of each; and settings that overrule those of the scene, each after whether it is given: gravity, time step, sleeping, stepping.
+// The answer: a handle.
 EMSCRIPTEN_KEEPALIVE int gyre_scene_open() {
   Call call(nullptr);
   Answer answer(nullptr, 0);
@@ -58,6 +58,7 @@ EMSCRIPTEN_KEEPALIVE int gyre_scene_open() {
   WorldDef def;
   get(call, def.threads);
   limit_threads(def);
+  get(call, def.simd_width);
   ReadOptions options;
   options.file = std::string(file);
   for (double files = call.next(); files > 0.0; --files) {
@@ -69,7 +70,8 @@ EMSCRIPTEN_KEEPALIVE int gyre_scene_open() {
   SceneResult<Scene> scene = read_scene(text, options);
   if (!scene) return refuse_scene(answer, scene.error());
   overrule(call, scene->world);
-  SceneResult<SceneRunner> runner = SceneRunner::create(*std::move(scene), options.file, def.threads);
+  SceneResult<SceneRunner> runner =
+      SceneRunner::create(*std::move(scene), options.file, def.threads, def.simd_width);
   if (!runner) return refuse_scene(answer, runner.error());
   Host* const host = new SceneHost(*std::move(runner));
   answer.pointer(host);
@@ -102,12 +104,14 @@ EMSCRIPTEN_KEEPALIVE int gyre_scene_looks(Host* host) {
     for (std::size_t k = 0; k < shapes.size(); ++k) {
       const SceneColor color = resolved_color(scene, i, k);
       answer.number(double(color.red << 16 | color.green << 8 | color.blue));
-      put_text(answer, shapes[k].material < 0 ? std::string_view()
-                                              : std::string_view(scene.materials[std::size_t(shapes[k].material)].name));
+      put_text(answer, shapes[k].material < 0
+                           ? std::string_view()
+                           : std::string_view(scene.materials[std::size_t(shapes[k].material)].name));
     }
   }
   answer.number(scene.view.has_value());
-  if (scene.view) put(answer, scene.view->eye), put(answer, scene.view->target), put(answer, scene.view->field_of_view);
+  if (scene.view)
+    put(answer, scene.view->eye), put(answer, scene.view->target), put(answer, scene.view->field_of_view);
   return answer.done();
 }
 

@@ -11,6 +11,8 @@ export interface SceneOptions {
   files?: Readonly<Record<string, Bytes | string>>;
   /** Workers of the world; more than one only where the engine runs with threads. */
   threads?: number;
+  /** Lanes of the solver's kernels: 1 or 4; 0, the default, is the best of the build. Never changes a bit of the result. */
+  simdWidth?: number;
   /** Settings of the world instead of those that the scene gives. */
   settings?: SceneSettings;
 }
@@ -89,6 +91,7 @@ export class Scene extends World {
     w.text(text, 'openScene: text');
     w.text(options.file ?? 'scene', 'openScene: file');
     w.integer(options.threads ?? 1, 0, 64, 'openScene: threads');
+    w.integer(options.simdWidth ?? 0, 0, 16, 'openScene: simdWidth');
     const files = Object.entries(options.files ?? {});
     w.integer(files.length, 0, 1e6, 'openScene: files');
     for (const [name, bytes] of files) {

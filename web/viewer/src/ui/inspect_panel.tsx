@@ -48,7 +48,7 @@ function Report({ report, viewer }: { report: BodyReport; viewer: Viewer }): JSX
           </button>
         )}
       </div>
-      {dynamic && (
+      {report.mass > 0 && (
         <Section title="Mass">
           <dl>
             <Row name="Mass">{short(report.mass)} kg</Row>
@@ -61,10 +61,14 @@ function Report({ report, viewer }: { report: BodyReport; viewer: Viewer }): JSX
         <dl>
           <Row name="Position">{vector(report.position, 3)} m</Row>
           <Row name="Orientation">{report.rotation.map((value) => fixed(value, 3)).join('  ')}</Row>
-          <Row name="Velocity">{vector(report.linear, 3)} m/s</Row>
-          <Row name="Speed">{short(Math.hypot(...report.linear))} m/s</Row>
-          <Row name="Angular velocity">{vector(report.angular, 3)} rad/s</Row>
-          {dynamic && <Row name="Kinetic energy">{short(report.kinetic)} J</Row>}
+          {live && (
+            <>
+              <Row name="Velocity">{vector(report.linear, 3)} m/s</Row>
+              <Row name="Speed">{short(Math.hypot(...report.linear))} m/s</Row>
+              <Row name="Angular velocity">{vector(report.angular, 3)} rad/s</Row>
+            </>
+          )}
+          {report.mass > 0 && <Row name="Kinetic energy">{short(report.kinetic)} J</Row>}
         </dl>
       </Section>
     </>

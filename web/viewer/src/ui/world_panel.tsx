@@ -140,7 +140,7 @@ function NewWorld({ viewer }: { viewer: Viewer }): JSX.Element {
       <Choice
         label="SIMD width"
         value={settings.simdWidth}
-        options={choices.simdWidth.map((width) => ({ value: width, text: width === 0 ? 'Widest' : width === 1 ? '1 (none)' : String(width) }))}
+        options={choices.simdWidth.map((width) => ({ value: width, text: width === 0 ? 'Widest' : width === 1 ? '1 lane' : `${width} lanes` }))}
         disabled={choices.simdWidth.length < 2 || changing.value}
         onChange={(simdWidth) => void change({ simdWidth })}
       />

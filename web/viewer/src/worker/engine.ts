@@ -22,6 +22,6 @@ export function engineWords(gyre: Gyre, threads: number, simdWidth: number): str
     plain: 'WebAssembly without SIMD',
   };
   const isolated = gyre.build === 'threads' ? '' : globalThis.crossOriginIsolated ? '' : ' (threads need a page that is cross-origin isolated)';
-  const width = simdWidth > 0 ? `, ${simdWidth} lanes` : '';
+  const width = simdWidth > 0 ? `, ${simdWidth} ${simdWidth === 1 ? 'lane' : 'lanes'}` : '';
   return `${builds[gyre.build]}, ${threads} of ${gyre.maxThreads} threads in use${width}${isolated}`;
 }

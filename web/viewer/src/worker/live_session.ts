@@ -78,6 +78,7 @@ export class LiveSession implements Session {
       file: this.source.file,
       files: this.source.files,
       threads: settings.threads ?? 1,
+      simdWidth: settings.simdWidth ?? 0,
       settings: {
         stepping: {
           ...valueOf('broadPhase', BroadPhaseKind, broadPhase),
@@ -129,7 +130,7 @@ export class LiveSession implements Session {
         solver: Object.keys(SolverKind).map(snake),
         integrator: Object.keys(IntegratorKind).map(snake),
         broadPhase: Object.keys(BroadPhaseKind).map(snake),
-        simdWidth: [0],
+        simdWidth: gyre.build === 'plain' ? [0] : [0, 1],
         maxThreads: gyre.maxThreads,
       },
       engine: engineWords(gyre, settings.threads, settings.simdWidth),
