@@ -35,11 +35,19 @@ export function viewerTests({ files = {}, isolated = true } = {}) {
   };
 }
 
-// The next picture is drawn, and everything that a frame changes is on the page.
+// Everything that a frame changes is on the page, and the picture is drawn: reading a pixel waits for the renderer, and the frames
+// after it bring the picture to the screen.
 export async function settled(page) {
   await page.evaluate(async () => {
-    await window.gyre.viewer.playback.idle();
+    const frames = async (count) => {
+      for (let i = 0; i < count; i++) await new Promise((done) => requestAnimationFrame(done));
+    };
+    const { playback, stage } = window.gyre.viewer;
+    await playback.idle();
     await document.fonts.ready;
-    for (let i = 0; i < 3; i++) await new Promise((done) => requestAnimationFrame(done));
+    await frames(3);
+    const gl = stage.renderer.getContext();
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+    await frames(2);
   });
 }

@@ -84,6 +84,7 @@ export class Viewer {
     });
     effect(() => this.switchOverlays(preferences.overlays.value));
     effect(() => this.selection.show(store.selected.value));
+    effect(() => this.stage.setLift(store.panel.value !== null && innerWidth <= 900 && innerHeight > 500 ? 0.22 : 0));
   }
 
   private switchOverlays(names: ReadonlySet<OverlayName>): void {

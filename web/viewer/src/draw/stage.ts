@@ -33,6 +33,7 @@ export class Stage {
   private readonly hemisphere = new HemisphereLight();
   private readonly fog = new Fog('#000', 10, 100);
   private reach = 10;
+  private lift = 0;
 
   constructor(private readonly holder: HTMLElement) {
     this.renderer = new WebGLRenderer({ antialias: true, powerPreference: 'high-performance', preserveDrawingBuffer: false });
@@ -112,7 +113,16 @@ export class Stage {
     this.camera.aspect = width / height;
     // A tall screen sees as much to the sides as a square one does.
     this.camera.fov = width < height ? 2 * Math.atan(Math.tan(Math.PI / 8) * Math.min(height / width, 1.6)) * (180 / Math.PI) : 45;
+    // A sheet covers the lower part of a phone's screen: the scene moves up to what is left.
+    if (this.lift > 0) this.camera.setViewOffset(width, height, 0, this.lift * height, width, height);
+    else this.camera.clearViewOffset();
     this.camera.updateProjectionMatrix();
+  }
+
+  // By which part of its height the picture is moved up.
+  setLift(part: number): void {
+    this.lift = part;
+    this.resize();
   }
 
   render(): void {

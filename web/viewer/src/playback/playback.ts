@@ -183,8 +183,9 @@ export class Playback {
 
   // ------------------------------------------------------------------------------------------------------------ the worker
 
+  // Until nothing is under way or waits to be sent.
   async idle(): Promise<void> {
-    while (this.busy) await this.busy.catch(() => undefined);
+    while (this.pump()) await this.busy?.catch(() => undefined);
   }
 
   private async exclusively<T>(work: () => Promise<T>): Promise<T> {
