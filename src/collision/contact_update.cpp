@@ -170,6 +170,7 @@ void carry_friction(const Manifold& from, Manifold& to) {
   to.friction_impulse = from.friction_impulse - dot(from.friction_impulse, to.normal) * to.normal;
   to.rolling_impulse = from.rolling_impulse - dot(from.rolling_impulse, to.normal) * to.normal;
   to.twist_impulse = from.twist_impulse;
+  to.age = from.age;
   to.sliding = from.sliding;
 }
 
@@ -187,7 +188,6 @@ void move_manifold(Manifold& manifold, const Follow& follow, const Mat3& world_f
     point.separation = anchor.separation + follow.side * dot(way, manifold.seen_normal);
     point.total_impulse = 0.0f;
     point.approach_speed = 0.0f;
-    ++point.age;
   }
   carry_friction(manifold, manifold);
   manifold.total_friction = {};
@@ -308,7 +308,7 @@ void take_over(Former<kRoom>& former, int m, int i, ContactPointState& point) {
   const ContactPointState& old = former.manifolds[m].points[i];
   former.point_taken[m][i] = true;
   point.normal_impulse = old.normal_impulse;
-  point.age = old.age + 1;
+  point.held = old.held;
 }
 
 // By name within the former manifold; bit i of the result is set for each point that found its own.

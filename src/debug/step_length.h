@@ -7,8 +7,7 @@ namespace gyre {
 
 // 1/s; 0 before the first step.
 inline float inverse_step_length(const RigidWorld& w) {
-  const float seconds = w.settings.last_substep * float(w.settings.substeps);
-  return seconds > 0.0f ? 1.0f / seconds : 0.0f;
+  return w.settings.last_step > 0.0f ? 1.0f / w.settings.last_step : 0.0f;
 }
 
 }  // namespace gyre

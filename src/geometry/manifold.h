@@ -33,7 +33,7 @@ struct ContactPointState {
   float total_impulse = 0.0f;   // N s, over the whole last step
   float approach_speed = 0.0f;  // m/s, before the step's first impulse; positive when closing
   std::uint32_t feature = 0;
-  std::uint32_t age = 0;        // steps for which this feature has been in contact
+  float held = 0.0f;            // N s: the load that the point is used to (a slow mean of normal_impulse)
 };
 
 // A contact point as the last full look found it, in the body frame of A, or of B where only A is a core swept by a ball:
@@ -47,6 +47,7 @@ struct Manifold {
   Vec3 normal{0, 1, 0};  // unit, world axes, from A to B
   std::int32_t count = 0;
   ContactPointState points[kMaxManifoldPoints];
+  float age = 0.0f;           // s for which it has borne load without a break
   Vec3 friction_impulse;      // N s on B, in the tangent plane, world axes
   float twist_impulse = 0.0f;   // N m s on B about the normal
   Vec3 rolling_impulse;       // N m s on B, world axes

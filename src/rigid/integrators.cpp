@@ -7,13 +7,6 @@ namespace gyre {
 
 namespace {
 
-Vec3 without_locked(Vec3 v, std::uint8_t locked) {
-  if (locked & 1) v.x = 0.0f;
-  if (locked & 2) v.y = 0.0f;
-  if (locked & 4) v.z = 0.0f;
-  return v;
-}
-
 Vec3 clamp_length(Vec3 v, float most) {
   const float top = largest(absolute(v));
   if (!(top > most * 0.5f)) return v;

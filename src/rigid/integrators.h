@@ -16,6 +16,14 @@ namespace gyre {
 constexpr float kMaxSpeed = 1.0e7f;   // m/s
 constexpr float kMaxSpin = 2.0e4f;    // rad/s
 
+// The vector without its components along locked world axes (bits 1, 2, 4: x, y, z).
+inline Vec3 without_locked(Vec3 v, std::uint8_t locked) {
+  if (locked & 1) v.x = 0.0f;
+  if (locked & 2) v.y = 0.0f;
+  if (locked & 4) v.z = 0.0f;
+  return v;
+}
+
 // Velocities from forces, torques, gravity and damping over h.
 void predict(BodyStore& bodies, std::span<const std::uint32_t> list, float h, Vec3 gravity);
 // Displacement from velocities over h, orientation by free rotation, world inertia of the new orientation.

@@ -62,7 +62,7 @@ void update_rest_timers(RigidWorld& w, float seconds, bool& somebody) {
     if (w.bodies.flags[i].type != BodyType::dynamic) continue;
     const Rest rest = find_rest(w, i, pull);
     float& still = w.bodies.sleep[i].still_time;
-    still = rest.may && rest.speed <= rest.rest_speed ? still + seconds : 0.0f;
+    still = rest.may && rest.speed + rest.pushed / seconds <= rest.rest_speed ? still + seconds : 0.0f;
     if (still >= kTimeToSleep) somebody = true;
   }
 }
@@ -92,6 +92,7 @@ Rest find_rest(const RigidWorld& w, std::uint32_t body, float pull) {
   const float spread = mass.inertia.xx + mass.inertia.yy + mass.inertia.zz;
   const float reach = max(mass.reach, mass.mass > 0.0f ? std::sqrt(spread / mass.mass) : 0.0f);
   rest.speed = length(motion.linear_velocity) + reach * length(motion.angular_velocity);
+  rest.pushed = motion.pushed;
   rest.rest_speed = kRestShare * std::sqrt((pull > 0.0f ? pull : 9.81f) * reach);
   return rest;
 }

@@ -30,7 +30,8 @@ struct RigidSettings {
   CombineRule friction_rule = CombineRule::geometric_mean;
   CombineRule restitution_rule = CombineRule::maximum;
   std::uint8_t spare = 0;
-  float last_substep = 0.0f;  // s: the warm start is scaled by the change of it
+  float last_substep = 0.0f;  // s, between two sweeps of the solver: the warm start is scaled by the change of it
+  float last_step = 0.0f;     // s
 };
 
 // What happened in a step, before it is made public.

@@ -3,6 +3,7 @@
 #include "base/sort.h"
 #include "rigid/contact_forest.h"
 #include "rigid/integrators.h"
+#include "rigid/projection.h"
 #include "rigid/solve_batches.h"
 #include "task/parallel.h"
 #include "task/program.h"
@@ -13,11 +14,14 @@ namespace gyre {
 
 namespace {
 
-// Contacts take overlap back with this frequency (Hz) unless the sub-step is too long for it; heavily damped. Stiffer is
-// not better: sweeps lag behind, and with two sweeps a sub-step the softness must give way faster than half the rate at
-// which overlap is taken back, or piles shake (docs/decisions/contact-softness.md).
-constexpr float kContactFrequency = 40.0f;
-constexpr float kContactDamping = 10.0f;
+// Contacts begin as soft springs and stiffen as they age, with this time to half; these are the rate at which a new one
+// asks overlap back and that at which it gives way (1/s). docs/decisions/contact-softness.md tells how they were found.
+constexpr float kContactRate = 9.0f;
+constexpr float kContactLeak = 44.0f;
+constexpr float kContactAging = 0.25f;
+// A sub-step is solved in parts: one sweep over the constraints, then everything moves. Two short parts hold four times
+// as stiff as two sweeps in one place.
+constexpr int kParts = 2;
 // Joints: errors are taken back at this rate (1/s), and impulses give way at this one, a little more than half of it, as
 // sweeps that lag behind need (the same page). Neither depends on the sub-step.
 constexpr float kJointRate = 40.0f;
@@ -52,6 +56,7 @@ struct Solve {
   JointBodies joint_bodies{};
   std::span<JointWork> joint_work{};
   std::span<JointPlaces> joint_places{};
+  std::span<KeptVelocity> kept{};  // of the batch's bodies, while overlap is pushed apart
   ContactForest forest{};
   TreeSolve tree_solve{};
 };
@@ -138,6 +143,7 @@ void gather_contacts(Solve& solve) {
     constraint.rolling_friction = contact.surface.rolling_friction;
     constraint.spinning_friction = contact.surface.spinning_friction;
     constraint.restitution = contact.surface.restitution;
+    constraint.size = contact.size;
     constraint.push_speed = kPushShare * (fall > 0.0f ? fall : 3.132f) * std::sqrt(contact.size);
     for (Manifold& manifold : manifolds_of(w.contacts, contact)) {
       if (manifold.count == 0) continue;
@@ -216,6 +222,12 @@ std::span<const std::uint32_t> bodies_of(const Solve& s, int begin, int end) {
   return s.batch.bodies.subspan(std::size_t(first), std::size_t(last - first));
 }
 
+std::span<KeptVelocity> velocities_of(const Solve& s, int begin, int end) {
+  const int first = begin * kBodiesPerBlock;
+  const int last = min(end * kBodiesPerBlock, int(s.kept.size()));
+  return s.kept.subspan(std::size_t(first), std::size_t(last - first));
+}
+
 void predict_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
   predict(s.w.bodies, bodies_of(s, begin, end), s.h, s.w.settings.gravity);
@@ -253,7 +265,7 @@ void prepare_contacts_stage(void* context, int begin, int end, int) {
 }
 void finish_contacts_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
-  s.kernels.finish(s.blocks, begin, end, s.scratch.constraints.data(), s.scratch.order.data());
+  s.kernels.finish(s.blocks, begin, end, s.scratch.constraints.data(), s.scratch.order.data(), s.contact_settings);
 }
 void warm_contacts_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
@@ -268,6 +280,19 @@ void relax_contacts_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
   g.solve->kernels.relax(g.solve->blocks, int(g.first) + begin, int(g.first) + end, g.solve->contact_bodies.motion,
                          g.solve->h);
+}
+void project_contacts_stage(void* context, int begin, int end, int) {
+  const Group& g = *static_cast<Group*>(context);
+  g.solve->kernels.project(g.solve->blocks, int(g.first) + begin, int(g.first) + end, g.solve->contact_bodies.motion,
+                           g.solve->contact_settings.step);
+}
+void begin_projection_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  begin_projection(s.w.bodies, bodies_of(s, begin, end), velocities_of(s, begin, end));
+}
+void end_projection_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  end_projection(s.w.bodies, bodies_of(s, begin, end), velocities_of(s, begin, end));
 }
 
 // Calls fn(record, work, places) for the joints of some blocks of a group.
@@ -330,15 +355,15 @@ class ProgramWriter {
 };
 
 void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> joints, Arena& arena, TaskSystem& tasks) {
-  const int substeps = solve.w.settings.substeps;
-  const std::size_t per_substep = 7 + 5 * joints.size() + 3 * contacts.size();
-  ProgramWriter program(arena.make<Stage>(2 + std::size_t(substeps) * per_substep));
+  const int parts = kParts * solve.w.settings.substeps;
+  const std::size_t per_part = 7 + 5 * joints.size() + 2 * contacts.size();
+  ProgramWriter program(arena.make<Stage>(4 + std::size_t(parts) * per_part + 2 * contacts.size()));
   std::uint32_t blocks = 0;
   for (const Group& group : contacts) blocks += group.count;
   const int body_blocks = count_blocks(int(solve.batch.bodies.size()), kBodiesPerBlock);
   const int impact_blocks = solve.scratch.impacts.empty() ? 0 : 1;
   program.add(prepare_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
-  for (int i = 0; i < substeps; ++i) {
+  for (int i = 0; i < parts; ++i) {
     program.add(watch_stage, &solve, impact_blocks);
     program.add(predict_stage, &solve, body_blocks);
     program.add(strike_stage, &solve, impact_blocks);
@@ -353,7 +378,12 @@ void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> join
     program.add(release_stage, &solve, impact_blocks);
     program.add_groups(prepare_joints_stage, joints, kJointsPerBlock, 1);
     program.add_groups(relax_joints_stage, joints, kJointsPerBlock, 1);
+  }
+  if (blocks > 0) {
     program.add_groups(relax_contacts_stage, contacts, 1, kBlocksPerClaim);
+    program.add(begin_projection_stage, &solve, body_blocks);
+    program.add_groups(project_contacts_stage, contacts, 1, kBlocksPerClaim);
+    program.add(end_projection_stage, &solve, body_blocks);
   }
   program.add(finish_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
   run_program(tasks, program.stages());
@@ -385,6 +415,7 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   color_constraints(scratch.pairs, bodies, {}, kColoringOptions, scratch.contact_colors);
   color_constraints(scratch.joint_pairs, bodies, {}, kColoringOptions, scratch.joint_colors);
   begin_joint_work(solve, arena, warm_scale);
+  solve.kept = arena.make<KeptVelocity>(solve.batch.bodies.size());
   solve.forest = find_contact_trees(solve.w, scratch.constraints, solve.batch, solve.places, arena);
   const std::span<Group> contacts = lay_out_contacts(solve, arena);
   place_tree_nodes(solve.forest, scratch.order, solve.kernels.width, scratch.constraints.size(), arena);
@@ -401,25 +432,30 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
 
 void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& tasks, const ContactKernels& kernels,
                 float seconds) {
-  const float h = seconds / float(w.settings.substeps);
+  const float h = seconds / float(kParts * w.settings.substeps);
   const float warm_scale = w.settings.last_substep > 0.0f ? h / w.settings.last_substep : 0.0f;
   w.settings.last_substep = h;
+  w.settings.last_step = seconds;
   for (const std::uint32_t body : w.bodies.awake) {
     w.bodies.flags[body].touched = 0;
     w.bodies.motion[body].moved = {};
     w.bodies.motion[body].turned = {};
+    w.bodies.motion[body].pushed = 0.0f;
   }
   Solve solve{w, scratch, kernels};
   solve.h = h;
-  const float frequency = min(kContactFrequency, 0.25f / h);
-  const Softness moving = make_softness(frequency, kContactDamping, h);
-  const Softness fixed = make_softness(2.0f * frequency, kContactDamping, h);
-  solve.contact_settings = {h, moving.bias_rate, moving.mass_scale, moving.impulse_scale,
-                            fixed.bias_rate, fixed.mass_scale, fixed.impulse_scale, warm_scale};
+  const float pull = length(w.settings.gravity);
+  solve.contact_settings = {.substep = h,
+                            .step = seconds,
+                            .rate = min(kContactRate, 0.8f / h),
+                            .give = kContactLeak * h / (1.0f + kContactLeak * h),
+                            .aging = kContactAging,
+                            .warm_scale = warm_scale,
+                            .up = pull > 0.0f ? (-1.0f / pull) * w.settings.gravity : Vec3{}};
   // Long sub-steps take back no more than the whole error and give way by less than the whole impulse.
   const float give = kJointLeak * h / (1.0f + kJointLeak * h);
   solve.joint_settings = {h, {min(kJointRate, 0.8f / h), 1.0f - give, give}};
-  solve.impact_settings = {h, kBounceShare * h * length(w.settings.gravity)};
+  solve.impact_settings = {h, kBounceShare * h * pull};
   solve.contact_bodies = {w.bodies.motion.data(), w.bodies.inertia.data()};
   solve.joint_bodies = {w.bodies.motion.data(), w.bodies.inertia.data(), w.bodies.orientations.data()};
   scratch.manifold_count = scratch.joint_count = 0;

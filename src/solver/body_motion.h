@@ -12,11 +12,11 @@ struct alignas(64) BodyMotion {
   Vec3 linear_velocity;   // m/s, of the centre of mass, world frame
   Vec3 angular_velocity;  // rad/s, world frame
   float inverse_mass = 0.0f;  // 1/kg; 0 for fixed and kinematic bodies
-  float spare_1 = 0.0f;
+  float pushed = 0.0f;        // m: the farthest that overlap pushed a point of the body in this step
   Vec3 moved;   // m, of the centre of mass since the step began
   Vec3 turned;  // rad, rotation vector since the step began (sum of the sub-steps')
+  float spare_1 = 0.0f;
   float spare_2 = 0.0f;
-  float spare_3 = 0.0f;
 };
 static_assert(sizeof(BodyMotion) == 64);
 
@@ -25,6 +25,7 @@ static_assert(sizeof(BodyMotion) == 64);
 inline void stop(BodyMotion& motion) {
   motion.linear_velocity = motion.angular_velocity = {};
   motion.moved = motion.turned = {};
+  motion.pushed = 0.0f;
 }
 
 // Columns of the record, as wide kernels see them.

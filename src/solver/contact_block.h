@@ -24,6 +24,7 @@ struct ContactConstraint {
   float spinning_friction = 0.0f;  // m
   float restitution = 0.0f;
   bool rigid = false;              // no softness: part of a tree that is solved directly
+  float size = 0.0f;               // m, of the smaller body
   float push_speed = 0.0f;         // m/s: the fastest that overlap is taken back
   Vec3 surface_velocity;           // m/s, of b's surface against a's, in the tangent plane
 };
@@ -31,10 +32,12 @@ struct ContactConstraint {
 // What is the same for all contacts of a step.
 struct ContactSettings {
   float substep = 0.0f;  // s
-  // Softness of contacts between two moving bodies, and of those against the fixed world (stiffer: it cannot give way).
-  float moving_bias_rate = 0.0f, moving_mass_scale = 1.0f, moving_impulse_scale = 0.0f;
-  float fixed_bias_rate = 0.0f, fixed_mass_scale = 1.0f, fixed_impulse_scale = 0.0f;
+  float step = 0.0f;     // s
+  // A contact that has just begun to bear load is a soft spring: it asks overlap back at `rate` (1/s) and gives way by the
+  // share `give` of the load it is not used to. Both fade as it ages: at `aging` seconds to half.
+  float rate = 0.0f, give = 0.0f, aging = 1.0f;
   float warm_scale = 1.0f;  // present sub-step over the last step's: impulses are kept per sub-step
+  Vec3 up;                  // against gravity; zero where there is none
 };
 
 // The body arrays that the kernels work on.
@@ -63,9 +66,12 @@ struct ContactKernels {
   void (*warm_start)(void* blocks, int begin, int end, BodyMotion* motion);
   void (*solve)(void* blocks, int begin, int end, BodyMotion* motion, float substep);
   void (*relax)(void* blocks, int begin, int end, BodyMotion* motion, float substep);
+  // Pushes what overlaps apart; `motion` holds displacements (m, rad) in the place of velocities.
+  void (*project)(void* blocks, int begin, int end, BodyMotion* motion, float step);
   void (*read_impulse)(const void* blocks, int block, int lane, ContactImpulse& impulse);
   void (*write_impulse)(void* blocks, int block, int lane, const ContactImpulse& impulse);
-  void (*finish)(void* blocks, int begin, int end, const ContactConstraint* constraints, const std::uint32_t* order);
+  void (*finish)(void* blocks, int begin, int end, const ContactConstraint* constraints, const std::uint32_t* order,
+                 const ContactSettings& settings);
 };
 
 // The widest kernels that this machine runs well and that have at most `width` lanes (0: any). Same bits whichever.

@@ -1,10 +1,11 @@
-// The contact kernels: prepare, warm start, solve, relax and finish, one template for every width. Lane i of a block
+// The contact kernels: prepare, warm start, solve, project and finish, one template for every width. Lane i of a block
 // computes exactly what a block of width 1 would, so the width never changes a bit.
 //
 // A manifold has up to four normal rows and one friction row triple at the centre of pressure: two tangents and the twist
 // about the normal, limited together by an ellipsoid (S. Goyal, A. Ruina, J. Papadopoulos, "Planar sliding with dry
 // friction", 1991; R. Howe, M. Cutkosky, 1996), which couples sliding with spinning as a patch of uniform pressure does.
-// Normal rows are soft while overlap is taken back and rigid while velocities relax (E. Catto, "Soft Step", 2024).
+// Normal rows are soft springs (after E. Catto, "Soft Constraints", 2011) that stiffen with age and get used to their load:
+// docs/decisions/contact-softness.md. Overlap is taken back apart from velocities (contact_project.h).
 // The normal rows of a manifold are solved together: taken one after the other they would set every box rocking.
 //
 // Error of a point: s = separation + n . (moved_b - moved_a + turned_b x r_b - turned_a x r_a), first order on purpose: a
@@ -17,6 +18,9 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
+// The fastest that springs take overlap back, as a share of the speed with which it is pushed apart: unlike that, theirs is
+// momentum.
+constexpr float kSpringSpeed = 0.125f;
 // Projected sweeps over the points of a manifold in which some would pull.
 constexpr int kPullSweeps = 6;
 
@@ -25,6 +29,7 @@ struct PointBlock {
   Vec3W<W> from_a, from_b;
   Wide<W> separation;     // as the step began
   Wide<W> impulse;        // accumulated in this sub-step
+  Wide<W> held;           // the load it is used to
   Wide<W> total;          // summed over the step
 };
 
@@ -34,10 +39,12 @@ struct ContactBlock {
   std::int32_t write_a[W], write_b[W];  // the same, kNoBody for bodies that nothing pushes
   std::int32_t point_count = 0;         // the most of any lane
   std::int32_t rolls = 0;               // any lane has rolling friction
+  std::int32_t has_fresh = 0;           // any lane is fresh
   Vec3W<W> normal, tangent_1, tangent_2;
   Wide<W> inverse_mass_a, inverse_mass_b;
   Sym3W<W> inverse_inertia_a, inverse_inertia_b;
-  Wide<W> bias_rate, mass_scale, impulse_scale, push_speed;
+  Wide<W> rate, give, slop, push_speed;
+  Wide<W> mobility_a, mobility_b;  // shares of the inverse masses that a push apart sees
   // Friction at the centre of pressure.
   Vec3W<W> friction_from_a, friction_from_b;
   Wide<W> static_friction, dynamic_friction;
@@ -48,6 +55,7 @@ struct ContactBlock {
   Wide<W> surface_1, surface_2;
   Wide<W> friction_1, friction_2, twist;
   Wide<W> sliding;        // 1 where friction was at its limit
+  Wide<W> fresh;          // 1 where no load is known yet
   Wide<W> total_1, total_2;
   // Rolling friction.
   Wide<W> rolling_friction, rolling_mass;
@@ -221,8 +229,9 @@ GYRE_INLINE void solve_rolling(ContactBlock<W>& block, PairMotion<W>& pair) {
 
 // The normal rows of a manifold, solved together as a small complementarity problem: first as if all points pushed (which
 // treats them alike: no order, no rocking), then, where some would pull, by projected sweeps in the space of impulses.
-// Soft: overlap is taken back at bias_rate, at most push_speed. Rigid: only approach stops.
-template <int W, bool kSoft>
+// Sprung: the spring draws its points to an overlap of `slop`, in both directions, and gives way to what it is not used to.
+// Not sprung: only approach stops, and the speed with which springs pushed goes.
+template <int W, bool kSprung>
 GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W>& pair, const Wide<W>* a, const Wide<W>* b,
                                float substep) {
   const Wide<W> zero(0.0f);
@@ -232,31 +241,28 @@ GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W>& pair, cons
   const Vec3W<W> turned_a{a[11], a[12], a[13]};
   const Vec3W<W> turned_b{b[11], b[12], b[13]};
   const int count = block.point_count;
-  Wide<W> residual[kMaxManifoldPoints];  // speed that the row wants to lose, softness included
+  Wide<W> residual[kMaxManifoldPoints];  // speed that the row wants to lose
   Wide<W> leak[kMaxManifoldPoints];
   Wide<W> next[kMaxManifoldPoints];
   auto pulls = one < zero;
-  [[maybe_unused]] decltype(pulls) idle[kMaxManifoldPoints];
   for (int i = 0; i < count; ++i) {
     const PointBlock<W>& point = block.points[i];
     const Vec3W<W> drift = moved + cross(turned_b, point.from_b) - cross(turned_a, point.from_a);
     const Wide<W> separation = point.separation + dot(drift, block.normal);
     const Wide<W> speed = dot(relative_velocity<W>(pair, point.from_a, point.from_b), block.normal);
     const auto apart = separation > zero;
-    if constexpr (kSoft) {
-      const Wide<W> asked = separation * block.bias_rate;
-      const Wide<W> bias = select(apart, separation * rate, max(asked, zero - block.push_speed));
-      residual[i] = select(apart, one, block.mass_scale) * (speed + bias);
+    if constexpr (kSprung) {
+      const Wide<W> asked = (separation + block.slop) * block.rate;
+      const Wide<W> fastest = zero - Wide<W>(kSpringSpeed) * block.push_speed;
+      const auto is_capped = asked < fastest;
+      residual[i] = speed + select(apart, separation * rate + block.slop * block.rate, max(asked, fastest));
       // Where the speed is capped the impulse gives way less by the same share: the spring still bears its load.
-      const Wide<W> capped = select(asked < zero - block.push_speed, (zero - block.push_speed) / select(apart, zero - one, asked), one);
-      leak[i] = select(apart, zero, block.impulse_scale * capped) * point.impulse;
+      const Wide<W> share = select(is_capped, fastest / select(is_capped, asked, one), one);
+      leak[i] = select(apart, zero, block.give * share) * max(point.impulse - point.held, zero);
     } else {
-      // A point that is apart and was not needed to stop anything is none of this sub-step's business: what it may do in the
-      // next one is for the next solve to say. Holding it back here would brake whatever is about to land.
-      // (A lane's missing points are not idle: the lane must go the same way as it would in a block of its own.)
-      idle[i] = apart & (point.impulse <= zero) & (block.relief[i] > zero);
-      pulls = pulls | idle[i];
-      residual[i] = select(idle[i], zero, speed + select(apart, separation * rate, zero));
+      // A point that is apart may be let go, never be held back: that would brake whatever is about to land.
+      const Wide<W> excess = select(point.impulse > zero, max(speed + separation * rate, zero), zero);
+      residual[i] = select(apart, excess, speed);
       leak[i] = zero;
     }
     // A point that the lane does not have must stay out of the sums even where speeds leave a float's range: 0 times that
@@ -269,22 +275,15 @@ GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W>& pair, cons
     const Wide<W> wanted = block.points[i].impulse - change - leak[i];
     pulls = pulls | (wanted < zero);
     next[i] = max(wanted, zero);
-    if constexpr (!kSoft) next[i] = select(idle[i], zero, next[i]);
   }
   if (any(pulls)) {
     // From the impulses that stand, not from the block's answer with its pulls cut off: that is too strong, and piles shake.
-    for (int i = 0; i < count; ++i) {
-      Wide<W> start = max(block.points[i].impulse - leak[i], zero);
-      if constexpr (!kSoft) start = select(idle[i], zero, start);
-      next[i] = select(pulls, start, next[i]);
-    }
+    for (int i = 0; i < count; ++i) next[i] = select(pulls, max(block.points[i].impulse - leak[i], zero), next[i]);
     for (int sweep = 0; sweep < kPullSweeps; ++sweep) {
       for (int i = 0; i < count; ++i) {
         Wide<W> speed = residual[i];
         for (int j = 0; j < count; ++j) speed = speed + block.k[packed(i, j)] * (next[j] - block.points[j].impulse + leak[j]);
-        Wide<W> wanted = max(next[i] - block.relief[i] * speed, zero);
-        if constexpr (!kSoft) wanted = select(idle[i], zero, wanted);
-        next[i] = select(pulls, wanted, next[i]);
+        next[i] = select(pulls, max(next[i] - block.relief[i] * speed, zero), next[i]);
       }
     }
   }
@@ -304,6 +303,30 @@ GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W>& pair, cons
   pair.angular_b = pair.angular_b + block.inverse_inertia_b * cross(arm_b, block.normal);
 }
 
+// Contacts that bore nothing yet: friction knows no load that limits it, so the normals have to come first once.
+template <int W>
+GYRE_INLINE void strike_fresh(ContactBlock<W>& block, PairMotion<W>& pair, const Wide<W>* a, const Wide<W>* b, float substep) {
+  const auto fresh = block.fresh > Wide<W>(0.0f);
+  const ContactBlock<W> old = block;
+  const PairMotion<W> old_pair = pair;
+  solve_normals<W, true>(block, pair, a, b, substep);
+  solve_friction<W>(block, pair);
+  for (int k = 0; k < block.point_count; ++k) {
+    block.points[k].impulse = select(fresh, block.points[k].impulse, old.points[k].impulse);
+  }
+  block.friction_1 = select(fresh, block.friction_1, old.friction_1);
+  block.friction_2 = select(fresh, block.friction_2, old.friction_2);
+  block.twist = select(fresh, block.twist, old.twist);
+  block.sliding = select(fresh, block.sliding, old.sliding);
+  block.fresh = Wide<W>(0.0f);
+  block.has_fresh = 0;
+  pair.linear_a = select<W>(fresh, pair.linear_a, old_pair.linear_a);
+  pair.angular_a = select<W>(fresh, pair.angular_a, old_pair.angular_a);
+  pair.linear_b = select<W>(fresh, pair.linear_b, old_pair.linear_b);
+  pair.angular_b = select<W>(fresh, pair.angular_b, old_pair.angular_b);
+}
+
+// Normals last: what bodies move with then closes nowhere; an error of the slip does no harm.
 template <int W>
 void solve_blocks(void* memory, int begin, int end, BodyMotion* motion, float substep) {
   auto* blocks = static_cast<ContactBlock<W>*>(memory);
@@ -312,13 +335,18 @@ void solve_blocks(void* memory, int begin, int end, BodyMotion* motion, float su
     Wide<W> a[kMotionFloats], b[kMotionFloats];
     load_pair<W>(block, motion, a, b);
     PairMotion<W> pair = velocities<W>(a, b);
+    if (block.has_fresh != 0) strike_fresh<W>(block, pair, a, b, substep);
     if (block.rolls != 0) solve_rolling<W>(block, pair);
     solve_friction<W>(block, pair);
     solve_normals<W, true>(block, pair, a, b, substep);
+    for (int k = 0; k < block.point_count; ++k) block.points[k].total = block.points[k].total + block.points[k].impulse;
+    block.total_1 = block.total_1 + block.friction_1;
+    block.total_2 = block.total_2 + block.friction_2;
     store_pair<W>(block, motion, pair, a, b);
   }
 }
 
+// Once, at the end of a step.
 template <int W>
 void relax_blocks(void* memory, int begin, int end, BodyMotion* motion, float substep) {
   auto* blocks = static_cast<ContactBlock<W>*>(memory);
@@ -327,13 +355,17 @@ void relax_blocks(void* memory, int begin, int end, BodyMotion* motion, float su
     Wide<W> a[kMotionFloats], b[kMotionFloats];
     load_pair<W>(block, motion, a, b);
     PairMotion<W> pair = velocities<W>(a, b);
-    // Friction last: its limit is then that of the load which stands.
-    solve_normals<W, false>(block, pair, a, b, substep);
+    const Wide<W> friction_1 = block.friction_1, friction_2 = block.friction_2;
+    Wide<W> impulses[kMaxManifoldPoints];
+    for (int k = 0; k < block.point_count; ++k) impulses[k] = block.points[k].impulse;
     if (block.rolls != 0) solve_rolling<W>(block, pair);
     solve_friction<W>(block, pair);
-    for (int k = 0; k < block.point_count; ++k) block.points[k].total = block.points[k].total + block.points[k].impulse;
-    block.total_1 = block.total_1 + block.friction_1;
-    block.total_2 = block.total_2 + block.friction_2;
+    solve_normals<W, false>(block, pair, a, b, substep);
+    for (int k = 0; k < block.point_count; ++k) {
+      block.points[k].total = block.points[k].total + (block.points[k].impulse - impulses[k]);
+    }
+    block.total_1 = block.total_1 + (block.friction_1 - friction_1);
+    block.total_2 = block.total_2 + (block.friction_2 - friction_2);
     store_pair<W>(block, motion, pair, a, b);
   }
 }

@@ -3,9 +3,18 @@
 #pragma once
 
 #include "solver/contact_kernel.h"
+#include "solver/contact_project.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
+
+// The overlap that springs draw their points to, as a share of the size: loaded points then stay in touch.
+constexpr float kSpringSlop = 4.0e-4f;
+// How much of the lower body's mobility is denied to it where a contact faces straight up.
+constexpr float kLowerShare = 0.7f;
+// A point gets used to its load as a mean over its age: of at least the first time (s), of at most the second.
+constexpr float kShortestMean = 0.5f;
+constexpr float kLongestMean = 1.0f;
 
 // What one lane needs, in scalars. Everything here is computed once per manifold and step.
 struct LaneFriction {
@@ -171,6 +180,23 @@ void prepare_normals(ContactBlock<W>& block, int lane, const Manifold& manifold,
   }
 }
 
+// How soft the lane's contact is, and who gives way when overlap is pushed apart: what lies on top, as far as the contact
+// faces up. So a heap is freed from below in few passes, as if the lower body were much heavier (E. Guendelman, R. Bridson,
+// R. Fedkiw, "Nonconvex Rigid Bodies with Stacking", 2003, calls it shock propagation).
+template <int W>
+void prepare_softness(ContactBlock<W>& block, int lane, const ContactConstraint& constraint, const ContactSettings& settings) {
+  const Manifold& manifold = *constraint.manifold;
+  const float youth = settings.aging / (settings.aging + manifold.age);
+  set_lane(block.rate, lane, youth * settings.rate);
+  set_lane(block.give, lane, constraint.rigid ? 0.0f : youth * settings.give);
+  set_lane(block.slop, lane, kSpringSlop * constraint.size);
+  set_lane(block.push_speed, lane, constraint.push_speed);
+  const bool fixed = block.write_a[lane] == kNoBody || block.write_b[lane] == kNoBody;
+  const float rise = fixed ? 0.0f : kLowerShare * dot(manifold.normal, settings.up);
+  set_lane(block.mobility_a, lane, 1.0f - gyre::max(rise, 0.0f));
+  set_lane(block.mobility_b, lane, 1.0f + gyre::min(rise, 0.0f));
+}
+
 template <int W>
 void prepare_lane(ContactBlock<W>& block, int lane, const ContactConstraint& constraint, ContactBodies bodies,
                   const ContactSettings& settings) {
@@ -192,19 +218,17 @@ void prepare_lane(ContactBlock<W>& block, int lane, const ContactConstraint& con
   set_lane(block.inverse_mass_b, lane, b.inverse_mass);
   set_lane(block.inverse_inertia_a, lane, a.inverse);
   set_lane(block.inverse_inertia_b, lane, b.inverse);
-  const bool fixed = block.write_a[lane] == kNoBody || block.write_b[lane] == kNoBody;
-  set_lane(block.bias_rate, lane, fixed ? settings.fixed_bias_rate : settings.moving_bias_rate);
-  const float mass_scale = fixed ? settings.fixed_mass_scale : settings.moving_mass_scale;
-  const float impulse_scale = fixed ? settings.fixed_impulse_scale : settings.moving_impulse_scale;
-  set_lane(block.mass_scale, lane, constraint.rigid ? 1.0f : mass_scale);
-  set_lane(block.impulse_scale, lane, constraint.rigid ? 0.0f : impulse_scale);
-  set_lane(block.push_speed, lane, constraint.push_speed);
+  prepare_softness<W>(block, lane, constraint, settings);
   prepare_friction<W>(block, lane, constraint, a, b, normal, t1, t2);
   const Vec3 friction = settings.warm_scale * manifold.friction_impulse;
   set_lane(block.friction_1, lane, dot(friction, t1));
   set_lane(block.friction_2, lane, dot(friction, t2));
   set_lane(block.twist, lane, settings.warm_scale * manifold.twist_impulse);
   set_lane(block.sliding, lane, float(manifold.sliding));
+  bool bears = false;
+  for (int k = 0; k < manifold.count; ++k) bears = bears || manifold.points[k].normal_impulse > 0.0f;
+  set_lane(block.fresh, lane, bears ? 0.0f : 1.0f);
+  if (!bears) block.has_fresh = 1;
   set_lane(block.rolling_friction, lane, constraint.rolling_friction);
   const float turning = (a.inverse.xx + a.inverse.yy + a.inverse.zz) + (b.inverse.xx + b.inverse.yy + b.inverse.zz);
   set_lane(block.rolling_mass, lane, turning > 0.0f ? 1.0f / turning : 0.0f);
@@ -222,6 +246,7 @@ void prepare_lane(ContactBlock<W>& block, int lane, const ContactConstraint& con
     set_lane(point.from_b, lane, from.from_b);
     set_lane(point.separation, lane, from.separation);
     set_lane(point.impulse, lane, settings.warm_scale * from.normal_impulse);
+    set_lane(point.held, lane, settings.warm_scale * from.held);
   }
 }
 
@@ -240,8 +265,22 @@ void prepare_blocks(void* memory, int begin, int end, const ContactConstraint* c
   }
 }
 
+// The loads of a manifold are in: its age, and what its points are used to.
+inline void age_manifold(Manifold& manifold, const ContactSettings& settings) {
+  bool bears = false;
+  for (int k = 0; k < manifold.count; ++k) bears = bears || manifold.points[k].normal_impulse > 0.0f;
+  manifold.age = bears ? manifold.age + settings.step : 0.0f;
+  const float mean = gyre::min(gyre::max(manifold.age, kShortestMean), kLongestMean);
+  const float gain = gyre::min(settings.step / mean, 1.0f);
+  for (int k = 0; k < manifold.count; ++k) {
+    ContactPointState& point = manifold.points[k];
+    point.held = point.normal_impulse > 0.0f ? point.held + gain * (point.normal_impulse - point.held) : 0.0f;
+  }
+}
+
 template <int W>
-void finish_blocks(void* memory, int begin, int end, const ContactConstraint* constraints, const std::uint32_t* order) {
+void finish_blocks(void* memory, int begin, int end, const ContactConstraint* constraints, const std::uint32_t* order,
+                   const ContactSettings& settings) {
   auto* blocks = static_cast<ContactBlock<W>*>(memory);
   for (int i = begin; i < end; ++i) {
     const ContactBlock<W>& block = blocks[i];
@@ -259,6 +298,7 @@ void finish_blocks(void* memory, int begin, int end, const ContactConstraint* co
         manifold.points[k].normal_impulse = get_lane(block.points[k].impulse, lane);
         manifold.points[k].total_impulse += get_lane(block.points[k].total, lane);
       }
+      age_manifold(manifold, settings);
     }
   }
 }
@@ -278,9 +318,14 @@ void read_block_impulse(const void* memory, int index, int lane, ContactImpulse&
 template <int W>
 void write_block_impulse(void* memory, int index, int lane, const ContactImpulse& impulse) {
   ContactBlock<W>& block = static_cast<ContactBlock<W>*>(memory)[index];
-  for (int k = 0; k < kMaxManifoldPoints; ++k) set_lane(block.points[k].impulse, lane, impulse.normal[k]);
-  set_lane(block.friction_1, lane, dot(impulse.friction, get_lane(block.tangent_1, lane)));
-  set_lane(block.friction_2, lane, dot(impulse.friction, get_lane(block.tangent_2, lane)));
+  // The sums over the step count what stands in the end.
+  const auto replace = [lane](Wide<W>& present, Wide<W>& total, float value) {
+    set_lane(total, lane, get_lane(total, lane) + (value - get_lane(present, lane)));
+    set_lane(present, lane, value);
+  };
+  for (int k = 0; k < kMaxManifoldPoints; ++k) replace(block.points[k].impulse, block.points[k].total, impulse.normal[k]);
+  replace(block.friction_1, block.total_1, dot(impulse.friction, get_lane(block.tangent_1, lane)));
+  replace(block.friction_2, block.total_2, dot(impulse.friction, get_lane(block.tangent_2, lane)));
   set_lane(block.twist, lane, impulse.twist);
   set_lane(block.rolling, lane, impulse.rolling);
   set_lane(block.sliding, lane, 0.0f);
@@ -295,6 +340,7 @@ constexpr ContactKernels contact_kernels() {
           warm_start_blocks<W>,
           solve_blocks<W>,
           relax_blocks<W>,
+          project_blocks<W>,
           read_block_impulse<W>,
           write_block_impulse<W>,
           finish_blocks<W>};

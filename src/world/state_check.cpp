@@ -15,6 +15,7 @@ const char* fault_in_settings(const RigidSettings& settings) {
   if (!is_finite(settings.gravity)) return "gravity is not finite";
   if (!is_finite(settings.last_substep) || settings.last_substep < 0.0f)
     return "the last sub-step has no length";
+  if (!is_finite(settings.last_step) || settings.last_step < 0.0f) return "the last step has no length";
   return nullptr;
 }
 

@@ -107,11 +107,11 @@ void for_each_field(T& r, F&& f) {
 template <Is<ContactPointState> T, class F>
 void for_each_field(T& r, F&& f) {
   for_each_field(r.from_a, f), f(r.separation), for_each_field(r.from_b, f), f(r.normal_impulse), f(r.total_impulse);
-  f(r.approach_speed), f(r.feature), f(r.age);
+  f(r.approach_speed), f(r.feature), f(r.held);
 }
 template <Is<Manifold> T, class F>
 void for_each_field(T& r, F&& f) {
-  for_each_field(r.normal, f), f(r.count);
+  for_each_field(r.normal, f), f(r.count), f(r.age);
   for (auto& point : r.points) for_each_field(point, f);
   for_each_field(r.friction_impulse, f), f(r.twist_impulse), for_each_field(r.rolling_impulse, f), f(r.triangle);
   for_each_field(r.total_friction, f), f(r.sliding), for_each_field(r.seen_normal, f);
@@ -133,6 +133,7 @@ void for_each_field(T& r, F&& f) {
 template <Is<RigidSettings> T, class F>
 void for_each_field(T& r, F&& f) {
   for_each_field(r.gravity, f), f(r.substeps), f(r.sleeping), f(r.friction_rule), f(r.restitution_rule), f(r.last_substep);
+  f(r.last_step);
 }
 
 }  // namespace gyre

@@ -113,7 +113,7 @@ JointReading World::joint_reading(JointId id) const {
   const RigidWorld& w = state_->rigid;
   const JointRecord& joint = w.joints.records[id.index];
   JointReading reading;
-  const float seconds = w.settings.last_substep * float(w.settings.substeps);
+  const float seconds = w.settings.last_step;
   if (seconds > 0.0f) {
     reading.force = (1.0f / seconds) * joint.total_linear;
     reading.torque = (1.0f / seconds) * joint.total_angular;

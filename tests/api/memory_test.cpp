@@ -97,7 +97,7 @@ TEST(NoAllocation, InJointsAndThreads) {
     world.add_joint({.kind = JointKind::ball, .a = last, .b = link, .anchor = {double(i), 0, 0}});
     last = link;
   }
-  expect_none(world, 600, 120, "chain on two threads");
+  expect_none(world, 1800, 120, "chain on two threads");
 }
 TEST(NoAllocation, WhileStagesAreTimed) {
   World world = make_world({.sleeping = false});

@@ -89,7 +89,8 @@ TEST(Billiards, SlidingTurnsIntoRolling) {
     EXPECT_TRUE(relative_row("A-83 time until it rolls", when, expected, 2e-2, 1e-3));
     EXPECT_TRUE(relative_row("A-83 final speed", double(world.linear_velocity(ball).x),
                              draw ? 24.0 / 7.0 : 40.0 / 7.0, 2e-2, 1e-3));
-    EXPECT_NEAR(last_slip, 0.0, 1e-3);
+    // The ball rolls on the middle of the overlap that contacts keep, 2e-4 m at most, at 11 rad/s.
+    EXPECT_NEAR(last_slip, 0.0, 11.5 * 2e-4);
   }
 }
 

@@ -1,0 +1,125 @@
+// Pushing apart what overlaps, once a step, after the bodies have moved. Places change, velocities do not: no energy comes
+// of it, however deep the overlap. Part of the kernels (one template for every width).
+//
+// Each manifold asks for a share of its overlap beyond the slop back, by displacements along the least-mass direction
+// M^-1 J^T x with x >= 0 (nonlinear projected Gauss-Seidel: J. Jansson, J. Vergeest, 2003; E. Catto, "Iterative Dynamics",
+// 2005), whereby the body on top is the one that gives way (prepare_softness).
+#pragma once
+
+#include "solver/contact_kernel.h"
+
+namespace gyre {
+inline namespace GYRE_TARGET_NAMESPACE {
+
+// The share of an overlap that is taken back in a step, and the overlap that may stay, as a multiple of the springs' slop.
+constexpr float kProjectedShare = 0.4f;
+constexpr float kProjectionSlop = 1.5f;
+// Projected sweeps over the points of a manifold.
+constexpr int kProjectionSweeps = 8;
+
+// Displacements so far, without those of bodies that nothing pushes: their records hold velocities.
+template <int W>
+GYRE_INLINE PairMotion<W> displacements(const ContactBlock<W>& block, const Wide<W>* a, const Wide<W>* b) {
+  Wide<W> moves_a, moves_b;
+  for (int lane = 0; lane < W; ++lane) {
+    moves_a.set(lane, block.write_a[lane] == kNoBody ? 0.0f : 1.0f);
+    moves_b.set(lane, block.write_b[lane] == kNoBody ? 0.0f : 1.0f);
+  }
+  const Wide<W> zero(0.0f);
+  const auto in_a = moves_a > zero, in_b = moves_b > zero;
+  const PairMotion<W> pair = velocities<W>(a, b);
+  const Vec3W<W> none{zero, zero, zero};
+  return {select<W>(in_a, pair.linear_a, none), select<W>(in_a, pair.angular_a, none), select<W>(in_b, pair.linear_b, none),
+          select<W>(in_b, pair.angular_b, none)};
+}
+
+// What a unit push at each point does to the two bodies, and to the separations of the points.
+template <int W>
+struct PushResponse {
+  Wide<W> inverse_mass_a, inverse_mass_b;
+  Vec3W<W> turn_a[kMaxManifoldPoints], turn_b[kMaxManifoldPoints];
+  Wide<W> k[10];
+};
+
+template <int W>
+GYRE_INLINE PushResponse<W> push_response(const ContactBlock<W>& block) {
+  PushResponse<W> response;
+  response.inverse_mass_a = block.mobility_a * block.inverse_mass_a;
+  response.inverse_mass_b = block.mobility_b * block.inverse_mass_b;
+  const Wide<W> masses = response.inverse_mass_a + response.inverse_mass_b;
+  Vec3W<W> arm_a[kMaxManifoldPoints], arm_b[kMaxManifoldPoints];
+  for (int i = 0; i < block.point_count; ++i) {
+    arm_a[i] = cross(block.points[i].from_a, block.normal);
+    arm_b[i] = cross(block.points[i].from_b, block.normal);
+    response.turn_a[i] = block.mobility_a * (block.inverse_inertia_a * arm_a[i]);
+    response.turn_b[i] = block.mobility_b * (block.inverse_inertia_b * arm_b[i]);
+    for (int j = 0; j <= i; ++j) {
+      response.k[packed(i, j)] = masses + dot(arm_a[j], response.turn_a[i]) + dot(arm_b[j], response.turn_b[i]);
+    }
+  }
+  return response;
+}
+
+// How far each point wants to be pushed; at least minus the way that it may close. False if no lane overlaps.
+template <int W>
+GYRE_INLINE bool wanted_pushes(const ContactBlock<W>& block, const PairMotion<W>& pair, const Wide<W>* a, const Wide<W>* b,
+                               float step, Wide<W>* wanted) {
+  const Wide<W> zero(0.0f);
+  const Vec3W<W> moved = Vec3W<W>{b[8], b[9], b[10]} - Vec3W<W>{a[8], a[9], a[10]};
+  const Vec3W<W> turned_a{a[11], a[12], a[13]};
+  const Vec3W<W> turned_b{b[11], b[12], b[13]};
+  const Wide<W> most = block.push_speed * Wide<W>(step);
+  auto overlaps = zero < zero;
+  for (int i = 0; i < block.point_count; ++i) {
+    const PointBlock<W>& point = block.points[i];
+    const Vec3W<W> drift = moved + cross(turned_b, point.from_b) - cross(turned_a, point.from_a) +
+                           relative_velocity<W>(pair, point.from_a, point.from_b);
+    const Wide<W> over = zero - (point.separation + dot(drift, block.normal) + Wide<W>(kProjectionSlop) * block.slop);
+    const auto exists = block.relief[i] > zero;
+    const auto deep = (over > zero) & exists;
+    overlaps = overlaps | deep;
+    wanted[i] = select(exists, select(deep, min(Wide<W>(kProjectedShare) * over, most), over), zero);
+  }
+  return any(overlaps);
+}
+
+template <int W>
+void project_blocks(void* memory, int begin, int end, BodyMotion* motion, float step) {
+  auto* blocks = static_cast<ContactBlock<W>*>(memory);
+  const Wide<W> zero(0.0f);
+  for (int n = begin; n < end; ++n) {
+    ContactBlock<W>& block = blocks[n];
+    Wide<W> a[kMotionFloats], b[kMotionFloats];
+    load_pair<W>(block, motion, a, b);
+    PairMotion<W> pair = displacements<W>(block, a, b);
+    Wide<W> wanted[kMaxManifoldPoints];
+    if (!wanted_pushes<W>(block, pair, a, b, step, wanted)) continue;
+    const PushResponse<W> response = push_response<W>(block);
+    const int count = block.point_count;
+    Wide<W> pushes[kMaxManifoldPoints], relief[kMaxManifoldPoints];
+    for (int i = 0; i < count; ++i) {
+      pushes[i] = zero;
+      const Wide<W> k = response.k[packed(i, i)];
+      relief[i] = select((k > zero) & (block.relief[i] > zero), Wide<W>(1.0f) / select(k > zero, k, Wide<W>(1.0f)), zero);
+    }
+    for (int sweep = 0; sweep < kProjectionSweeps; ++sweep) {
+      for (int i = 0; i < count; ++i) {
+        Wide<W> left = wanted[i];
+        for (int j = 0; j < count; ++j) left = left - response.k[packed(i, j)] * pushes[j];
+        pushes[i] = max(pushes[i] + relief[i] * left, zero);
+      }
+    }
+    Wide<W> total = zero;
+    for (int i = 0; i < count; ++i) {
+      total = total + pushes[i];
+      pair.angular_a = pair.angular_a - pushes[i] * response.turn_a[i];
+      pair.angular_b = pair.angular_b + pushes[i] * response.turn_b[i];
+    }
+    pair.linear_a = pair.linear_a - (response.inverse_mass_a * total) * block.normal;
+    pair.linear_b = pair.linear_b + (response.inverse_mass_b * total) * block.normal;
+    store_pair<W>(block, motion, pair, a, b);
+  }
+}
+
+}  // namespace GYRE_TARGET_NAMESPACE
+}  // namespace gyre
