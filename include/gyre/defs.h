@@ -21,7 +21,7 @@ enum class SolverKind : std::uint8_t { soft_step };
 enum class CombineRule : std::uint8_t { geometric_mean, average, minimum, maximum, product };
 
 struct Stepping {
-  int substeps = 4;  // 1 to 64 equal sub-steps a step
+  int substeps = 4;  // 1 to 64 equal sub-steps a step; bodies move twice in each
   IntegratorKind integrator = IntegratorKind::semi_implicit_euler;
   SolverKind solver = SolverKind::soft_step;
   BroadPhaseKind broad_phase = BroadPhaseKind::bvh;

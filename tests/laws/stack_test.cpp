@@ -118,6 +118,9 @@ void pyramid(int base, float edge, double seconds, double good, const char* name
   EXPECT_LT(sink, 0.5 * e);
 }
 // Every box is still where it was put, within half its edge.
+TEST(Pyramid, OfSmallBoxesStands) {
+  pyramid(10, 0.05f, 10.0, 0.025, "pyramid of 10 boxes of 5 cm: drift (m)");
+}
 TEST(LongPyramid, OfSixtyStands) { pyramid(60, 1.0f, 10.0, 0.5, "pyramid of 60: drift (m)"); }
 
 TEST(Overhang, HarmonicStackStandsUpToItsLimit) {

@@ -53,8 +53,8 @@ test('a falling box follows the parabola and comes to rest', () => {
   const body = world.addBody({ pose: { position: [0, 5, 0] } }, { geometry: box() });
   const steps = 30;
   for (let i = 0; i < steps; ++i) world.step(second);
-  // Sub-steps of h: y = y0 - g t (t + h) / 2 for semi-implicit Euler.
-  const t = steps * second, h = second / world.substeps();
+  // Bodies move twice a sub-step, by h: y = y0 - g t (t + h) / 2 for semi-implicit Euler.
+  const t = steps * second, h = second / (2 * world.substeps());
   close([world.pose(body).position[1]], [5 - (9.81 * t * (t + h)) / 2], 1e-5);
   for (let i = 0; i < 150; ++i) world.step(second);
   close(world.pose(body).position, [0, 0.5, 0], 1e-4);
