@@ -17,8 +17,9 @@ Vec3 clamp_length(Vec3 v, float most) {
 // The exact step of dv/dt = a - c v.
 Vec3 damped(Vec3 v, Vec3 acceleration, float damping, float h) {
   if (!(damping > 0.0f)) return v + h * acceleration;
-  const double e = exp(-double(damping) * double(h));
-  return float(e) * v + float((1.0 - e) / double(damping)) * acceleration;
+  // As a change of v: e itself, so near 1, would round the same way in every sub-step.
+  const double lost = 1.0 - exp(-double(damping) * double(h));
+  return v + (float(lost / double(damping)) * acceleration - float(lost) * v);
 }
 
 }  // namespace

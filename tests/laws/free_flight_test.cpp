@@ -60,9 +60,8 @@ TEST(Damping, IsExactlyExponentialAtAnyStep) {
                                         .angular_damping = 0.7f},
                                        {.geometry = Sphere{}});
     run(world, 1.0, step);
-    // Each of the 480 to 1,920 moves rounds a float, 2^-25 of the value on average in one direction at worst.
-    EXPECT_NEAR(double(world.linear_velocity(body).x), 10.0 * std::exp(-2.0), 8e-5) << step;
-    EXPECT_NEAR(double(world.angular_velocity(body).y), 3.0 * std::exp(-0.7), 8e-5) << step;
+    EXPECT_NEAR(double(world.linear_velocity(body).x), 10.0 * std::exp(-2.0), 2e-5) << step;
+    EXPECT_NEAR(double(world.angular_velocity(body).y), 3.0 * std::exp(-0.7), 2e-5) << step;
   }
 }
 

@@ -72,13 +72,15 @@ TEST(Invariance, OfTheUnitOfMass) {
     EXPECT_TRUE(limit_row("A-171 masses times a power of two",
                           largest_difference(one, play({.mass_scale = scale}, 1.0)), 1e-5, 0.0));
   }
-  // Other factors round differently, and contacts that come and go multiply that: by some thousands in a second of tumbling.
+  // Other factors round differently, and contacts that come and go multiply that. The row is met for half a second; after a
+  // second of tumbling it is not, which is printed, and guarded against growing.
   const Record half = play({}, 0.5);
   for (const float scale : {1e-3f, 0.7f, 1e3f}) {
     EXPECT_TRUE(limit_row("A-171 masses times anything, 0.5 s",
                           largest_difference(half, play({.mass_scale = scale}, 0.5)), 1e-5, 1e-6));
-    EXPECT_TRUE(limit_row("A-171 masses times anything, 1 s",
-                          largest_difference(one, play({.mass_scale = scale}, 1.0)), 1e-4, 1e-6));
+    const double second = largest_difference(one, play({.mass_scale = scale}, 1.0));
+    limit_row("A-171 masses times anything, 1 s", second, 1e-5, 1e-6);
+    EXPECT_LT(second, 1e-4);
   }
 }
 

@@ -1,4 +1,4 @@
-// Contact points, and their normals as arrows from body a to body b: longer with more load, a stub where nothing presses.
+// Contact points, and their normals as arrows from body a to body b: longer with more load, shortest where nothing presses.
 // Yellow bears load, red slides.
 import { Group } from 'three';
 import { overlayColors } from '../draw/palette';
