@@ -230,7 +230,7 @@ GYRE_INLINE void solve_rolling(ContactBlock<W>& block, PairMotion<W>& pair) {
 // The normal rows of a manifold, solved together as a small complementarity problem: first as if all points pushed (which
 // treats them alike: no order, no rocking), then, where some would pull, by projected sweeps in the space of impulses.
 // Sprung: the spring draws its points to an overlap of `slop`, in both directions, and gives way to what it is not used to.
-// Not sprung: only approach stops, and the speed with which springs pushed goes.
+// Not sprung: only approach stops, and under load the speed with which springs pushed goes.
 template <int W, bool kSprung>
 GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W>& pair, const Wide<W>* a, const Wide<W>* b,
                                float substep) {
