@@ -12,6 +12,9 @@ namespace gyre {
 
 namespace {
 
+// What leaves a float's range must not get into the state.
+Vec3 finite_or(Vec3 value, Vec3 otherwise) { return is_finite(value) ? value : otherwise; }
+
 // A body that a user pushes is awake.
 void stir(RigidWorld& w, std::uint32_t body) {
   if (is_movable(w.bodies.flags[body])) wake(w, body);
@@ -81,7 +84,8 @@ void refresh_mass(RigidWorld& w, std::uint32_t body, const Pose& origin) {
   bodies.masses.set(body, mass);
   // The velocity belongs to the centre of mass: where that moves in the body, so does it.
   BodyMotion& motion = bodies.motion[body];
-  motion.linear_velocity += cross(motion.angular_velocity, rotate(origin.orientation, mass.center - old_center));
+  const Vec3 carried = cross(motion.angular_velocity, rotate(origin.orientation, mass.center - old_center));
+  motion.linear_velocity = finite_or(motion.linear_velocity + carried, motion.linear_velocity);
   bodies.places[body] = {origin * mass.center, origin.orientation};
   bodies.orientations[body] = origin.orientation;
   refresh_inertia(bodies, body);
@@ -351,8 +355,9 @@ Submitted carry_out(WorldState& s, const MoveKinematic& c) {
   const Pose pose{c.pose.position, orientation};
   const DVec3 center = pose * w.bodies.masses[body].center;
   BodyMotion& motion = w.bodies.motion[body];
-  motion.linear_velocity = (1.0f / c.seconds) * difference(center, w.bodies.places[body].center) + Vec3{};
-  motion.angular_velocity = (1.0f / c.seconds) * rotation_between(w.bodies.places[body].orientation, orientation) + Vec3{};
+  motion.linear_velocity = finite_or((1.0f / c.seconds) * difference(center, w.bodies.places[body].center) + Vec3{}, {});
+  motion.angular_velocity =
+      finite_or((1.0f / c.seconds) * rotation_between(w.bodies.places[body].orientation, orientation) + Vec3{}, {});
   return {true, {}, {}, {}};
 }
 
