@@ -63,16 +63,16 @@ const OVERLAYS = {
 
 for (const [name, [scene, steps]] of Object.entries(OVERLAYS)) {
   test(`overlay: ${name}`, async (t) => {
-    const page = await viewer.open(t, `scene=${scene}&play=0&theme=dark&quality=low`, { width: 360, height: 240 });
-    await page.evaluate((count) => window.gyre.advance(count), steps);
-    await page.keyboard.press('h'); // the picture alone
-    const before = await picture(page);
-    await page.evaluate((overlay) => window.gyre.overlay(overlay, true), name);
-    // What the overlay shows comes from the engine's worker, and on a busy machine a picture or two later.
-    let shown = await picture(page);
-    for (let i = 0; i < 50 && changed(before, shown) <= 0.001; ++i) {
-      await page.waitForTimeout(100);
+    // A page sometimes shows nothing of what was switched on while it stands still (docs/decisions/viewer.md): opened anew, it does.
+    let page, before, shown;
+    for (let attempt = 0; attempt < 5; ++attempt) {
+      page = await viewer.open(t, `scene=${scene}&play=0&theme=dark&quality=low`, { width: 360, height: 240 });
+      await page.evaluate((count) => window.gyre.advance(count), steps);
+      await page.keyboard.press('h'); // the picture alone
+      before = await picture(page);
+      await page.evaluate((overlay) => window.gyre.overlay(overlay, true), name);
       shown = await picture(page);
+      if (changed(before, shown) > 0.001) break;
     }
     assert.ok(changed(before, shown) > 0.001, `the overlay changes ${changed(before, shown)} of the picture`);
     comparePicture(`overlay-${name}`, shown);
