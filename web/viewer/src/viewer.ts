@@ -33,7 +33,8 @@ export class Viewer {
   private readonly painter: BodyPainter;
   private readonly selection: Selection;
   private readonly links = new Links();
-  private readonly overlays = new Map<OverlayName, Overlay>();
+  private readonly overlays = new Map<OverlayName, Overlay>(); // those that are switched on, in the scene
+  private readonly overlaysMade = new Map<OverlayName, Overlay>();
   private bounds = new Box3();
   private readonly center = new Vector3();
   radius = 10; // m, of a ball around the scene
@@ -88,19 +89,24 @@ export class Viewer {
   }
 
   private switchOverlays(names: ReadonlySet<OverlayName>): void {
-    for (const kind of overlayKinds) {
-      let overlay = this.overlays.get(kind.name);
-      if (names.has(kind.name) && !overlay) {
-        this.overlays.set(kind.name, (overlay = kind.make()));
-        this.stage.scene.add(overlay.object);
-      }
-      if (!overlay) continue;
-      overlay.object.visible = names.has(kind.name);
-      if (!overlay.object.visible) overlay.clear();
+    for (const { name, make } of overlayKinds) {
+      const overlay = this.overlays.get(name);
+      if (names.has(name) && !overlay) this.addOverlay(name, make);
+      if (names.has(name) || !overlay) continue;
+      this.overlays.delete(name);
+      overlay.object.removeFromParent();
+      overlay.clear();
     }
     this.painter.islands = names.has('islands');
     this.playback.overlays([...names]);
     this.repaint();
+  }
+
+  private addOverlay(name: OverlayName, make: () => Overlay): void {
+    const overlay = this.overlaysMade.get(name) ?? make();
+    this.overlaysMade.set(name, overlay);
+    this.overlays.set(name, overlay);
+    this.stage.scene.add(overlay.object);
   }
 
   // Another scene: nothing of the old one stays, and the camera goes to it.
@@ -166,9 +172,7 @@ export class Viewer {
     this.selection.update();
     if (!moving) return;
     this.links.update(frame);
-    for (const overlay of this.overlays.values()) {
-      if (overlay.object.visible) overlay.update(view);
-    }
+    for (const overlay of this.overlays.values()) overlay.update(view);
   }
 
   // Where the body that is looked at is drawn.

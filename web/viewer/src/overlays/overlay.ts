@@ -10,6 +10,8 @@ export interface OverlayView {
 }
 
 export interface Overlay {
+  // In the scene while the overlay is switched on. Whether it is visible is the overlay's own affair: it may have nothing to show
+  // yet, because the engine has not answered or nothing touches, and something with the next frame.
   readonly object: Object3D;
   // Called for every new frame, and for every picture while bodies glide between two frames.
   update(view: OverlayView): void;
