@@ -77,18 +77,6 @@ void part_into_groups(std::span<Entry> entries, int groups, std::size_t* sizes) 
 
 }  // namespace
 
-Aabb BoxTree::lane_box(const Node& node, int lane) {
-  return {{node.low[0][lane], node.low[1][lane], node.low[2][lane]},
-          {node.high[0][lane], node.high[1][lane], node.high[2][lane]}};
-}
-
-void BoxTree::set_lane_box(Node& node, int lane, const Aabb& box) {
-  for (int axis = 0; axis < 3; ++axis) {
-    node.low[axis][lane] = box.low[axis];
-    node.high[axis][lane] = box.high[axis];
-  }
-}
-
 Aabb BoxTree::bounds_of(const Node& node) {
   Aabb box = lane_box(node, 0);
   for (int lane = 1; lane < node.count; ++lane) box = merge(box, lane_box(node, lane));
@@ -104,9 +92,8 @@ std::uint32_t BoxTree::make_node(int level) {
     free_.pop_back();
   }
   Node& node = nodes_[index];
-  constexpr float kNever = std::numeric_limits<float>::infinity();
   for (int lane = 0; lane < kWidth; ++lane) {
-    set_lane_box(node, lane, {{kNever, kNever, kNever}, {-kNever, -kNever, -kNever}});
+    clear_lane_box(node, lane);
     node.child[lane] = kNowhere;
   }
   node.parent = kNowhere;
@@ -152,8 +139,7 @@ void BoxTree::remove_lane(std::uint32_t node, int lane) {
   Node& n = nodes_[node];
   const int last = --n.count;
   if (lane != last) set_child(node, lane, {lane_box(n, last), n.child[last]});
-  constexpr float kNever = std::numeric_limits<float>::infinity();
-  set_lane_box(n, last, {{kNever, kNever, kNever}, {-kNever, -kNever, -kNever}});
+  clear_lane_box(n, last);
   n.child[last] = kNowhere;
 }
 
@@ -351,8 +337,10 @@ std::uint32_t BoxTree::build_node(std::span<Entry> entries, int level, int lowes
   return node;
 }
 
-void BoxTree::improve(int nodes) {
+void BoxTree::improve(std::size_t changes) {
   if (root_ == kNowhere) return;
+  constexpr std::size_t kChangesPerNode = 128;
+  int nodes = int(1 + changes / kChangesPerNode);
   // Most nodes lie on level 0 and have nothing to regroup: they are passed by, a bounded number of them.
   for (int passed = 0; nodes > 0 && passed < 16 * nodes + 64; ++passed) {
     if (next_improved_ >= nodes_.size()) next_improved_ = 0;

@@ -14,7 +14,8 @@
 
 #include "base/array.h"
 #include "base/idle_clock.h"
-#include "math/wide.h"
+#include "collision/box_lanes.h"
+#include "collision/box_sweep.h"
 
 #include <gyre/math.h>
 
@@ -26,7 +27,7 @@ namespace gyre {
 
 class BoxTree {
  public:
-  static constexpr int kWidth = 8;
+  static constexpr int kWidth = BoxLanes::kWidth;
 
   std::size_t size() const { return size_; }
   bool contains(std::uint32_t item) const { return item < places_.size() && places_[item] != kNowhere; }
@@ -50,8 +51,8 @@ class BoxTree {
   void remove(std::uint32_t item);
   // Gives an item that is in the tree another box.
   void move(std::uint32_t item, const Aabb& box);
-  // Regroups the children of up to `nodes` inner nodes, going round the tree from call to call.
-  void improve(int nodes);
+  // Regroups the children of a few inner nodes, going round the tree from call to call: one, and more after many changes.
+  void improve(std::size_t changes);
 
   // Calls visit(item) for each item whose box overlaps `box`.
   template <class Visit>
@@ -72,8 +73,46 @@ class BoxTree {
     }
   }
 
+  // Calls visit(item, reach) for each item whose box the sweep may touch from t = 0 to `reach`, roughly from near to far; it
+  // returns the new reach, below 0 to end the walk. Returns the last one.
+  template <class Visit>
+  float for_each_along(const SweepTest& sweep, float reach, Visit&& visit) const {
+    if (size_ == 0) return reach;
+    struct Waiting {
+      std::uint32_t node;
+      float enter;
+    };
+    Waiting stack[kMaxLevels * kWidth];
+    int depth = 0;
+    stack[depth++] = {root_, 0.0f};
+    while (depth > 0) {
+      const Waiting next = stack[--depth];
+      if (!(next.enter <= reach * 1.00001f)) continue;
+      const Node& node = nodes_[next.node];
+      float enter[kWidth];
+      const unsigned mask = sweep.mask(node, reach, enter);
+      const int bottom = depth;
+      for (unsigned rest = mask; rest != 0; rest &= rest - 1) {
+        const int lane = std::countr_zero(rest);
+        if (node.level == 0) {
+          reach = visit(node.child[lane], reach);
+          if (reach < 0.0f) return reach;
+          continue;
+        }
+        // Nearest on top; lanes that start together keep their order.
+        int place = depth++;
+        for (; place > bottom && stack[place - 1].enter <= enter[lane]; --place)
+          stack[place] = stack[place - 1];
+        stack[place] = {node.child[lane], enter[lane]};
+      }
+    }
+    return reach;
+  }
+
   // The box of an item that is in the tree.
-  Aabb box_of(std::uint32_t item) const { return lane_box(nodes_[places_[item] / kWidth], int(places_[item] % kWidth)); }
+  Aabb box_of(std::uint32_t item) const {
+    return lane_box(nodes_[places_[item] / kWidth], int(places_[item] % kWidth));
+  }
   // Calls visit(box, depth) for every node, from the root (depth 0) down.
   template <class Visit>
   void for_each_node(Visit&& visit) const {
@@ -102,9 +141,7 @@ class BoxTree {
   static constexpr int kLeastInHalf = 3;
 
   // Lanes from `count` on have a box that nothing overlaps.
-  struct alignas(64) Node {
-    float low[3][kWidth];
-    float high[3][kWidth];
+  struct alignas(64) Node : BoxLanes {
     std::uint32_t child[kWidth];  // nodes; on level 0, items
     std::uint32_t parent;
     std::uint8_t lane;  // in the parent
@@ -119,20 +156,6 @@ class BoxTree {
     std::uint32_t child;
   };
 
-  // Bit i: lane i's box overlaps `box`.
-  static unsigned overlap_mask(const Node& node, const Aabb& box) {
-    using Half = Wide<4>;
-    const auto half = [&](int first) {
-      const auto load = [first](const float* lanes) { return Half::load(lanes + first); };
-      const Mask<4> x = (load(node.low[0]) <= Half(box.high.x)) & (load(node.high[0]) >= Half(box.low.x));
-      const Mask<4> y = (load(node.low[1]) <= Half(box.high.y)) & (load(node.high[1]) >= Half(box.low.y));
-      const Mask<4> z = (load(node.low[2]) <= Half(box.high.z)) & (load(node.high[2]) >= Half(box.low.z));
-      return to_bits(x & y & z);
-    };
-    return half(0) | half(4) << 4;
-  }
-  static Aabb lane_box(const Node& node, int lane);
-  static void set_lane_box(Node& node, int lane, const Aabb& box);
   static Aabb bounds_of(const Node& node);
 
   std::uint32_t make_node(int level);

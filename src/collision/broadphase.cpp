@@ -7,7 +7,9 @@
 namespace gyre {
 
 void Broadphase::for_each_node(FunctionRef<void(const NodeBox&)>) const {}
-const char* Broadphase::find_fault(std::span<const Proxy>, std::span<const std::uint32_t>) const { return nullptr; }
+const char* Broadphase::find_fault(std::span<const Proxy>, std::span<const std::uint32_t>) const {
+  return nullptr;
+}
 
 std::unique_ptr<Broadphase> make_broadphase(BroadPhaseKind kind) {
   switch (kind) {

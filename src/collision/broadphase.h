@@ -4,6 +4,7 @@
 
 #include "base/array.h"
 #include "base/function_ref.h"
+#include "collision/box_sweep.h"
 #include "collision/proxy.h"
 #include "task/task_system.h"
 
@@ -19,6 +20,9 @@ struct NodeBox {
   int depth = 0;
   bool fixed = false;  // of the tree over what never moves
 };
+
+// What a cast does with a candidate: returns how far along the sweep it is still to look, at most `reach`; below 0 ends it.
+using CastVisit = FunctionRef<float(std::uint32_t index, float reach)>;
 
 class Broadphase {
  public:
@@ -39,12 +43,21 @@ class Broadphase {
   // Appends the index of every proxy in use whose fat box overlaps `box`; ascending.
   virtual void query(std::span<const Proxy> proxies, const Aabb& box, Array<std::uint32_t>& found) const = 0;
 
+  // Calls visit(index, reach) once for each proxy in use whose fat box the sweep meets from t = 0 to `reach` (0 to 1), which
+  // visit may shorten as it goes; returns the last reach. The order is roughly from near to far, differs between broad
+  // phases, and is none that a result may depend on: what is met at `reach` itself is visited too, so that a caller who keeps
+  // the nearest hit (of equal ones that of the lowest index) and returns its t gets the same from all. May be called from
+  // several threads at once, and allocates nothing.
+  virtual float cast(std::span<const Proxy> proxies, const BoxSweep& sweep, float reach,
+                     CastVisit visit) const = 0;
+
   // For the eyes of people: calls visit for the box of every inner node of every tree that the broad phase has, from the
   // root (depth 0) down. Nothing if it has no trees.
   virtual void for_each_node(FunctionRef<void(const NodeBox&)> visit) const;
   // Null if it holds the proxies with their boxes, but for those in `changed` (ascending), which it has not been shown yet;
   // otherwise what is wrong. Walks everything: for tests and debug builds.
-  virtual const char* find_fault(std::span<const Proxy> proxies, std::span<const std::uint32_t> changed) const;
+  virtual const char* find_fault(std::span<const Proxy> proxies,
+                                 std::span<const std::uint32_t> changed) const;
   // To be called once a step: memory that only searches and builds need is given back when it was not needed for long.
   virtual void trim() = 0;
   // Of memory held.

@@ -21,4 +21,13 @@ void BroadphaseBrute::query(std::span<const Proxy> proxies, const Aabb& box,
   }
 }
 
+float BroadphaseBrute::cast(std::span<const Proxy> proxies, const BoxSweep& sweep, float reach,
+                            CastVisit visit) const {
+  for (std::uint32_t i = 0; i < proxies.size() && reach >= 0.0f; ++i) {
+    if (proxies[i].motion != ProxyMotion::none && meets(sweep, reach, proxies[i].fat_box))
+      reach = visit(i, reach);
+  }
+  return reach;
+}
+
 }  // namespace gyre

@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
+#include <string>
 #include <vector>
 
 namespace gyre {
@@ -134,12 +136,83 @@ struct World {
 
 std::vector<std::uint64_t> to_vector(const Array<std::uint64_t>& keys) { return {keys.begin(), keys.end()}; }
 
+constexpr BroadPhaseKind kKinds[] = {BroadPhaseKind::bvh, BroadPhaseKind::brute_force};
+
+// What a caller who looks for the nearest makes of a cast: the way to each box stands for an exact test.
+struct NearestHit {
+  float reach = 1.0f;
+  std::uint32_t index = 0xffffffffu;
+  bool operator==(const NearestHit&) const = default;
+};
+NearestHit nearest(const Broadphase& broadphase, const std::vector<Proxy>& proxies, const BoxSweep& sweep) {
+  NearestHit best;
+  broadphase.cast(proxies, sweep, 1.0f, [&](std::uint32_t index, float reach) {
+    float low = 0.0f, high = 1.0f;
+    if (!meets(sweep, 0.0f, proxies[index].fat_box)) {
+      for (int i = 0; i < 30; ++i) {
+        const float middle = 0.5f * (low + high);
+        (meets(sweep, middle, proxies[index].fat_box) ? high : low) = middle;
+      }
+    } else {
+      high = 0.0f;
+    }
+    if (high < best.reach || (high == best.reach && index < best.index)) best = {high, index};
+    return std::min(reach, best.reach);
+  });
+  return best;
+}
+
+BoxSweep random_sweep(World& world) {
+  Random& random = world.random;
+  BoxSweep sweep{DVec3(random.vector(-25, 25)), random.vector(-40, 40), {}};
+  if (random.next(3) == 0) sweep.half_extents = random.vector(0, 1);
+  if (random.next(3) == 0) sweep.way = {0, random.real(-30, 30), 0};
+  if (random.next(12) == 0) sweep.way = {};
+  if (world.layout == Layout::flat && random.next(2) == 0) sweep.start.y = sweep.way.y = 0.0f;
+  if (world.layout == Layout::line)
+    sweep = {{random.real(-600, 600), 0, 0}, {random.real(-900, 900), 0, 0}, {}};
+  return sweep;
+}
+
+void expect_same_answers(World& world, const Broadphase& broadphase, const Broadphase& brute) {
+  const Aabb box = world.box();
+  Array<std::uint32_t> a{7u}, b{7u};
+  brute.query(world.proxies, box, a);
+  broadphase.query(world.proxies, box, b);
+  ASSERT_EQ(a, b);
+  for (int i = 0; i < 20; ++i) {
+    const BoxSweep sweep = random_sweep(world);
+    std::vector<std::uint32_t> expected, found;
+    for (std::uint32_t k = 0; k < world.proxies.size(); ++k) {
+      if (world.proxies[k].motion != ProxyMotion::none && meets(sweep, 0.8f, world.proxies[k].fat_box))
+        expected.push_back(k);
+    }
+    EXPECT_EQ(broadphase.cast(world.proxies, sweep, 0.8f,
+                              [&](std::uint32_t index, float reach) {
+                                found.push_back(index);
+                                return reach;
+                              }),
+              0.8f);
+    std::sort(found.begin(), found.end());
+    ASSERT_EQ(found, expected);
+    ASSERT_EQ(nearest(broadphase, world.proxies, sweep), nearest(brute, world.proxies, sweep));
+    if (expected.empty()) continue;
+    int visits = 0;
+    broadphase.cast(world.proxies, sweep, 0.8f, [&](std::uint32_t, float) {
+      ++visits;
+      return -1.0f;
+    });
+    ASSERT_EQ(visits, 1);
+  }
+}
+
 class BroadphaseOracle : public testing::TestWithParam<Layout> {};
 
 TEST_P(BroadphaseOracle, EqualsPlainLoopsInAChangingWorld) {
   World world(GetParam(), 400);
+  std::vector<std::unique_ptr<Broadphase>> broadphases;
+  for (const BroadPhaseKind kind : kKinds) broadphases.push_back(make_broadphase(kind));
   const auto brute = make_broadphase(BroadPhaseKind::brute_force);
-  BroadphaseBvh bvh;
   TaskSystem one(1), three(3);
   std::size_t found = 0;
   for (int frame = 0; frame < 110; ++frame) {
@@ -148,25 +221,20 @@ TEST_P(BroadphaseOracle, EqualsPlainLoopsInAChangingWorld) {
                                                       : frame % 20 == 0 ? 2
                                                       : frame % 3 == 0  ? 60
                                                                         : 12);
-    bvh.update(world.proxies, changed);
-    brute->update(world.proxies, changed);
-    ASSERT_STREQ(bvh.find_fault(world.proxies, {}), nullptr) << frame;
     const std::vector<std::uint64_t> expected = world.expected(changed);
-    Array<std::uint64_t> by_brute, by_bvh, by_threads;
-    brute->find_pairs(world.proxies, changed, one, by_brute);
-    bvh.find_pairs(world.proxies, changed, one, by_bvh);
-    bvh.find_pairs(world.proxies, changed, three, by_threads);
-    ASSERT_EQ(to_vector(by_brute), expected) << frame;
-    ASSERT_EQ(to_vector(by_bvh), expected) << frame;
-    ASSERT_EQ(to_vector(by_threads), expected) << frame;
-    found += expected.size();
-    if (frame % 10 == 5) {
-      const Aabb box = world.box();
-      Array<std::uint32_t> a{7u}, b{7u};
-      brute->query(world.proxies, box, a);
-      bvh.query(world.proxies, box, b);
-      ASSERT_EQ(a, b);
+    for (const auto& broadphase : broadphases) {
+      SCOPED_TRACE(std::to_string(frame) + ", kind " + std::to_string(&broadphase - broadphases.data()));
+      broadphase->update(world.proxies, changed);
+      ASSERT_STREQ(broadphase->find_fault(world.proxies, {}), nullptr);
+      Array<std::uint64_t> pairs, by_threads;
+      broadphase->find_pairs(world.proxies, changed, one, pairs);
+      broadphase->find_pairs(world.proxies, changed, three, by_threads);
+      ASSERT_EQ(to_vector(pairs), expected);
+      ASSERT_EQ(to_vector(by_threads), expected);
+      if (frame % 10 == 5) expect_same_answers(world, *broadphase, *brute);
+      broadphase->trim();
     }
+    found += expected.size();
   }
   EXPECT_GT(found, 500u) << "the world is too empty to test anything";
 }
@@ -182,7 +250,7 @@ TEST(Broadphase, EveryThreadCountFindsTheSame) {
   const std::vector<std::uint64_t> expected = world.expected(all);
   for (int threads = 1; threads <= 4; ++threads) {
     TaskSystem tasks(threads);
-    for (const BroadPhaseKind kind : {BroadPhaseKind::bvh, BroadPhaseKind::brute_force}) {
+    for (const BroadPhaseKind kind : kKinds) {
       const auto broadphase = make_broadphase(kind);
       broadphase->rebuild(world.proxies);
       Array<std::uint64_t> pairs;
@@ -194,24 +262,57 @@ TEST(Broadphase, EveryThreadCountFindsTheSame) {
 
 TEST(Broadphase, RebuildForgetsWhatWas) {
   World world(Layout::spread, 300);
-  BroadphaseBvh bvh;
-  bvh.rebuild(world.proxies);
   World other(Layout::clustered, 120);
-  bvh.rebuild(other.proxies);
-  EXPECT_STREQ(bvh.find_fault(other.proxies, {}), nullptr);
+  for (const BroadPhaseKind kind : kKinds) {
+    const auto broadphase = make_broadphase(kind);
+    broadphase->rebuild(world.proxies);
+    broadphase->rebuild(other.proxies);
+    EXPECT_STREQ(broadphase->find_fault(other.proxies, {}), nullptr) << int(kind);
+    expect_same_answers(other, *broadphase, *make_broadphase(BroadPhaseKind::brute_force));
+  }
+}
+
+// Everything comes, goes one by one, and comes again.
+TEST(Broadphase, EmptiesAndFillsAgain) {
+  World world(Layout::clustered, 150);
+  const std::vector<Proxy> all = world.proxies;
+  TaskSystem tasks(1);
+  for (const BroadPhaseKind kind : kKinds) {
+    const auto broadphase = make_broadphase(kind);
+    world.proxies = all;
+    broadphase->rebuild(world.proxies);
+    for (std::uint32_t i = 0; i < all.size(); ++i) {
+      world.proxies[i].motion = ProxyMotion::none;
+      broadphase->update(world.proxies, {&i, 1});
+      ASSERT_STREQ(broadphase->find_fault(world.proxies, {}), nullptr) << int(kind) << " without " << i;
+    }
+    expect_same_answers(world, *broadphase, *make_broadphase(BroadPhaseKind::brute_force));
+    for (std::uint32_t i = 0; i < all.size(); ++i) {
+      world.proxies[i] = all[i];
+      broadphase->update(world.proxies, {&i, 1});
+      Array<std::uint64_t> pairs;
+      broadphase->find_pairs(world.proxies, {&i, 1}, tasks, pairs);
+      ASSERT_EQ(to_vector(pairs), world.expected({i})) << int(kind) << " with " << i;
+    }
+    ASSERT_STREQ(broadphase->find_fault(world.proxies, {}), nullptr) << int(kind);
+  }
 }
 
 TEST(Broadphase, NothingAtAll) {
-  BroadphaseBvh bvh;
   TaskSystem tasks(1);
-  Array<std::uint64_t> pairs;
-  Array<std::uint32_t> found;
-  bvh.rebuild({});
-  bvh.update({}, {});
-  bvh.find_pairs({}, {}, tasks, pairs);
-  bvh.query({}, {{-1, -1, -1}, {1, 1, 1}}, found);
-  EXPECT_TRUE(pairs.empty());
-  EXPECT_TRUE(found.empty());
+  for (const BroadPhaseKind kind : kKinds) {
+    const auto broadphase = make_broadphase(kind);
+    Array<std::uint64_t> pairs;
+    Array<std::uint32_t> found;
+    broadphase->rebuild({});
+    broadphase->update({}, {});
+    broadphase->find_pairs({}, {}, tasks, pairs);
+    broadphase->query({}, {{-1, -1, -1}, {1, 1, 1}}, found);
+    EXPECT_EQ(broadphase->cast({}, {{}, {1, 0, 0}, {}}, 1.0f, [](std::uint32_t, float) { return -1.0f; }),
+              1.0f);
+    EXPECT_TRUE(pairs.empty());
+    EXPECT_TRUE(found.empty());
+  }
 }
 
 TEST(Broadphase, FixedProxiesNeverPair) {
@@ -223,26 +324,28 @@ TEST(Broadphase, FixedProxiesNeverPair) {
 }
 
 TEST(Broadphase, AllocatesNothingOnceWarm) {
-  World world(Layout::spread, 2000);
-  BroadphaseBvh bvh;
-  TaskSystem tasks(2);
-  Array<std::uint64_t> pairs;
-  std::vector<std::uint32_t> changed;
-  for (std::uint32_t i = 0; i < world.proxies.size(); i += 3) changed.push_back(i);
-  bvh.rebuild(world.proxies);
-  std::uint64_t allocations = 0;
-  for (int frame = 0; frame < 60; ++frame) {
-    if (frame == 30) allocations = allocation_count();
-    const Vec3 by = frame % 2 == 0 ? Vec3{0.7f, 0, 0} : Vec3{-0.7f, 0, 0};
-    for (const std::uint32_t i : changed) {
-      Aabb& box = world.proxies[i].fat_box;
-      box = {box.low + by, box.high + by};
+  for (const BroadPhaseKind kind : kKinds) {
+    World world(Layout::spread, 2000);
+    const auto broadphase = make_broadphase(kind);
+    TaskSystem tasks(2);
+    Array<std::uint64_t> pairs;
+    std::vector<std::uint32_t> changed;
+    for (std::uint32_t i = 0; i < world.proxies.size(); i += 3) changed.push_back(i);
+    broadphase->rebuild(world.proxies);
+    std::uint64_t allocations = 0;
+    for (int frame = 0; frame < 60; ++frame) {
+      if (frame == 30) allocations = allocation_count();
+      const Vec3 by = frame % 2 == 0 ? Vec3{0.7f, 0, 0} : Vec3{-0.7f, 0, 0};
+      for (const std::uint32_t i : changed) {
+        Aabb& box = world.proxies[i].fat_box;
+        box = {box.low + by, box.high + by};
+      }
+      broadphase->update(world.proxies, changed);
+      pairs.clear();
+      broadphase->find_pairs(world.proxies, changed, tasks, pairs);
     }
-    bvh.update(world.proxies, changed);
-    pairs.clear();
-    bvh.find_pairs(world.proxies, changed, tasks, pairs);
+    EXPECT_EQ(allocation_count(), allocations) << int(kind);
   }
-  EXPECT_EQ(allocation_count(), allocations);
 }
 
 // The tree must stay good while things wander for a long time: not much worse than when built anew.
@@ -263,7 +366,7 @@ TEST(BoxTree, KeepsItsQuality) {
       boxes[i] = {boxes[i].low + by, boxes[i].high + by};
       tree.move(i, boxes[i]);
     }
-    tree.improve(5);
+    tree.improve(4 * 128);
   }
   ASSERT_STREQ(tree.find_fault(), nullptr);
   std::vector<std::uint32_t> items(boxes.size());
