@@ -10,7 +10,7 @@ namespace gyre {
 namespace {
 
 // Grazing turns converge slowly. Where this is not enough, the time reached so far counts as the impact: never late.
-constexpr int kMaxSteps = 100;
+constexpr int kMaxSteps = 1000;
 constexpr double kTolerance = 0.25;  // of the target
 
 bool is_still(Vec3 turned) { return turned.x == 0.0f && turned.y == 0.0f && turned.z == 0.0f; }

@@ -8,7 +8,9 @@ namespace {
 // their length, and what is flatter is better served by its ends.
 constexpr double kParallel = 1.0e-12;
 // Squared sine of the smallest angle of a triangle that still has a plane.
-constexpr double kSliver = 1.0e-24;
+constexpr double kFlat = 1.0e-24;
+// And of one that needs care: the cross product of its sides has lost the digits that tell where its plane leans.
+constexpr double kSliver = 1.0e-8;
 
 SimplexPoint at_corner(DVec3 a, int corner) {
   SimplexPoint out;
@@ -52,6 +54,38 @@ SimplexPoint on_face(DVec3 p, const DVec3* q, int i, int j, int k) {
   return out;
 }
 
+// A triangle with a tiny angle, measured along its longest side and at a right angle to it: errors along the side stay as
+// small as those of coordinates, and so do errors across it.
+SimplexPoint closest_on_sliver(DVec3 p, DVec3 a, DVec3 b, DVec3 c) {
+  const DVec3 q[3] = {a, b, c};
+  const double ab = length_squared(b - a), bc = length_squared(c - b), ca = length_squared(a - c);
+  // The longest side from `o` to `u`, and `w` off it, nearer to `o`.
+  int w = ab >= bc && ab >= ca ? 2 : bc >= ca ? 0 : 1;
+  int o = (w + 1) % 3, u = (w + 2) % 3;
+  if (length_squared(q[w] - q[u]) < length_squared(q[w] - q[o])) {
+    const int swapped = o;
+    o = u;
+    u = swapped;
+  }
+  const DVec3 side = q[u] - q[o], other = q[w] - q[o], from = p - q[o];
+  const double side_squared = length_squared(side), slope = dot(other, side) / side_squared;
+  const DVec3 across = other - slope * side;
+  const double t = dot(from, across) / length_squared(across);
+  const double s = dot(from, side) / side_squared - t * slope;
+  if (!(s > 0.0) || !(t > 0.0) || !(s + t < 1.0)) return best_edge(p, a, b, c);
+  const DVec3 normal = cross(side, across);
+  SimplexPoint out;
+  out.weights[o] = 1.0 - s - t;
+  out.weights[u] = s;
+  out.weights[w] = t;
+  out.point = p - (dot(from, normal) / dot(normal, normal)) * normal;
+  out.corners = 7;
+  return out;
+}
+
+// Faces of a tetrahedron: three corners, opposite one.
+constexpr int kFaces[4][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {0, 2, 3, 1}, {1, 3, 2, 0}};
+
 }  // namespace
 
 SegmentPoint closest_on_segment(DVec3 p, DVec3 a, DVec3 b) {
@@ -92,7 +126,8 @@ SimplexPoint closest_on_triangle(DVec3 p, DVec3 a, DVec3 b, DVec3 c) {
   const DVec3 ab = b - a, ac = c - a, normal = cross(ab, ac);
   const double nn = dot(normal, normal);
   const double longest = max(dot(ab, ab), max(dot(ac, ac), length_squared(c - b)));
-  if (!(nn > kSliver * longest * longest)) return best_edge(p, a, b, c);
+  if (!(nn > kFlat * longest * longest)) return best_edge(p, a, b, c);
+  if (!(nn > kSliver * longest * longest)) return closest_on_sliver(p, a, b, c);
   // Signed areas of the three triangles that p's projection makes with the edges.
   const DVec3 pa = a - p, pb = b - p, pc = c - p;
   const double wa = dot(cross(pb, pc), normal), wb = dot(cross(pc, pa), normal),
@@ -123,8 +158,6 @@ SimplexPoint closest_on_triangle(DVec3 p, DVec3 a, DVec3 b, DVec3 c) {
 
 SimplexPoint closest_on_tetrahedron(DVec3 p, DVec3 a, DVec3 b, DVec3 c, DVec3 d) {
   const DVec3 q[4] = {a, b, c, d};
-  constexpr int kFaces[4][4] = {
-      {0, 1, 2, 3}, {0, 3, 1, 2}, {0, 2, 3, 1}, {1, 3, 2, 0}};  // three corners, opposite one
   double side[4], weight_sum = 0.0;
   bool flat = false;
   SimplexPoint inside;
@@ -157,6 +190,13 @@ SimplexPoint closest_on_tetrahedron(DVec3 p, DVec3 a, DVec3 b, DVec3 c, DVec3 d)
     best = found ? nearer(p, best, candidate) : candidate;
     found = true;
   }
+  return best;
+}
+
+SimplexPoint closest_on_tetrahedron_surface(DVec3 p, DVec3 a, DVec3 b, DVec3 c, DVec3 d) {
+  const DVec3 q[4] = {a, b, c, d};
+  SimplexPoint best = on_face(p, q, kFaces[0][0], kFaces[0][1], kFaces[0][2]);
+  for (int f = 1; f < 4; ++f) best = nearer(p, best, on_face(p, q, kFaces[f][0], kFaces[f][1], kFaces[f][2]));
   return best;
 }
 

@@ -38,5 +38,8 @@ struct SimplexPoint {
 SimplexPoint closest_on_triangle(DVec3 p, DVec3 a, DVec3 b, DVec3 c);
 // corners = 15 and point = p when `p` lies inside.
 SimplexPoint closest_on_tetrahedron(DVec3 p, DVec3 a, DVec3 b, DVec3 c, DVec3 d);
+// The same for its four faces alone, of which one always is the answer: for a `p` that cannot lie inside, where the sides
+// of a sliver would say so by rounding.
+SimplexPoint closest_on_tetrahedron_surface(DVec3 p, DVec3 a, DVec3 b, DVec3 c, DVec3 d);
 
 }  // namespace gyre

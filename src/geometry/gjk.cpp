@@ -72,7 +72,7 @@ void keep_corners(DifferencePoint* simplex, int& count, SimplexPoint& near) {
   count = kept;
 }
 
-SimplexPoint nearest_to_origin(const DifferencePoint* s, int count) {
+SimplexPoint nearest_to_origin(const DifferencePoint* s, int count, bool outside) {
   const DVec3 origin;
   switch (count) {
     case 1: {
@@ -94,6 +94,7 @@ SimplexPoint nearest_to_origin(const DifferencePoint* s, int count) {
     case 3:
       return closest_on_triangle(origin, s[0].way, s[1].way, s[2].way);
     default:
+      if (outside) return closest_on_tetrahedron_surface(origin, s[0].way, s[1].way, s[2].way, s[3].way);
       return closest_on_tetrahedron(origin, s[0].way, s[1].way, s[2].way, s[3].way);
   }
 }
@@ -130,13 +131,22 @@ CoreDistance core_distance(const CorePair& pair, double max_distance, Vec3 guess
   double n_length = length(n);
   n = n_length > 0.0 ? n / n_length : DVec3{0, 1, 0};
 
+  // Of the directions looked at, the one along which the cores are farthest apart: their distance is not less. A sliver
+  // of a simplex may name another that does not part them at all.
+  DVec3 best = n;
+  double best_bound = -1.0e300, bound = 0.0;
   DifferencePoint* simplex = out.simplex;
   SimplexPoint near;  // of the simplex to the origin
   double squared = 0.0;
   int count = 0;
+  const double touch = kTouch * pair.size();
   for (out.iterations = 1; out.iterations <= kMaxIterations; ++out.iterations) {
     const DifferencePoint w = pair.support(-n);
-    const double bound = dot(w.way, n);
+    bound = dot(w.way, n);
+    if (bound > best_bound) {
+      best_bound = bound;
+      best = n;
+    }
     if (bound > max_distance) {
       out.beyond = true;
       out.distance = bound;
@@ -152,7 +162,8 @@ CoreDistance core_distance(const CorePair& pair, double max_distance, Vec3 guess
     DifferencePoint next[4] = {simplex[0], simplex[1], simplex[2], simplex[3]};
     next[count] = w;
     int next_count = count + 1;
-    SimplexPoint next_near = nearest_to_origin(next, next_count);
+    // Where some direction parts them no simplex holds the origin, whatever rounding makes of it.
+    SimplexPoint next_near = nearest_to_origin(next, next_count, best_bound > touch);
     const double next_squared = length_squared(next_near.point);
     // Rounding has the last word: what does not come nearer is as near as it gets.
     if (count > 0 && next_near.corners != 15 && next_squared >= squared) break;
@@ -161,7 +172,6 @@ CoreDistance core_distance(const CorePair& pair, double max_distance, Vec3 guess
     count = next_count;
     near = next_near;
     squared = next_squared;
-    const double touch = kTouch * pair.size();
     if (count == 4 || squared <= touch * touch) {
       out.overlap = true;
       break;
@@ -170,7 +180,10 @@ CoreDistance core_distance(const CorePair& pair, double max_distance, Vec3 guess
   }
   out.simplex_count = count;
   out.normal = n;
-  if (!out.beyond && !out.overlap) out.distance = std::sqrt(squared);
+  if (!out.beyond && !out.overlap) {
+    out.distance = std::sqrt(squared);
+    if (best_bound - bound > kGap * out.distance) out.normal = best;
+  }
   for (int i = 0; i < count; ++i) {
     out.on_a += near.weights[i] * simplex[i].on_a;
     out.on_b += near.weights[i] * simplex[i].on_b;

@@ -161,7 +161,8 @@ TEST(Gjk, AGoodGuessSavesWork) {
 TEST(Gjk, ScalingByPowersOfTwoScalesEveryBit) {
   Random random(16);
   for (int i = 0; i < 1000; ++i) {
-    const Shape a = make_along_y(ShapeKind::cylinder, random(0.2f, 1), random(0.2f, 1));
+    const float radius = random(0.2f, 1), half = random(0.2f, 1);
+    const Shape a = make_along_y(ShapeKind::cylinder, radius, half);
     const Shape b = make_box({random(0.2f, 1), random(0.2f, 1), random(0.2f, 1)});
     const Transform t{1.7f * random.direction(), random.turn()};
     const CoreDistance one = core_distance(CorePair(a, b, t), 1.0e30, {});
