@@ -16,6 +16,11 @@ const files = {
   'noise.gyrec': Buffer.from(Array.from({ length: 400 }, (_, i) => (i * 197 + 91) % 256)),
   'header_only.gyrec': Buffer.from('GYREPLAY'),
   'empty.gyre.json': '',
+  'nothing.gyre.json': 'null',
+  'list.gyre.json': '[1, 2]',
+  'later.gyre.json': '{"gyre_scene": 9, "bodies": []}',
+  'later.gyrec': Buffer.concat([Buffer.from('GYREPLAY'), Buffer.from([9, 0, 0, 0]), Buffer.alloc(64)]),
+  'world.gyresnap': Buffer.concat([Buffer.from('GYRESNAP'), Buffer.alloc(64)]),
   'good.gyre.json': stack,
 };
 const viewer = viewerTests({ files });
@@ -30,6 +35,11 @@ const cases = [
   ['noise.gyrec', /recording/i],
   ['header_only.gyrec', /recording/i],
   ['empty.gyre.json', /empty\.gyre\.json/],
+  ['nothing.gyre.json', /expected a scene/],
+  ['list.gyre.json', /expected a scene/],
+  ['later.gyre.json', /found 9, expected 1/],
+  ['later.gyrec', /format 9; this version reads format 1/],
+  ['world.gyresnap', /is a snapshot/],
   ['nowhere.gyre.json', /There is no nowhere\.gyre\.json/],
 ];
 
@@ -43,7 +53,7 @@ test('a broken file gives its message', async (t) => {
       await page.locator('[role=alertdialog]').waitFor();
       const text = await page.locator('[role=alertdialog]').innerText();
       assert.match(text, pattern);
-      assert.doesNotMatch(text, /undefined|\[object|TypeError|load\(\)/);
+      assert.doesNotMatch(text, /undefined|\[object|TypeError|Cannot read|load\(\)/);
     });
   }
 });

@@ -69,6 +69,19 @@ test('the space bar throws what the panel says', async (t) => {
   viewer.noErrors(page);
 });
 
+test('what is thrown has a name of its own', async (t) => {
+  const page = await viewer.open(t, 'scene=machines&play=0&quality=low', { width: 640, height: 400 });
+  for (let i = 0; i < 2; i++) {
+    await page.evaluate(async () => {
+      window.gyre.command({ do: 'throw', what: 'ball', size: 0.2, density: 1000, from: [0, 9 + 2 * window.gyre.step, 0], velocity: [0, 0, 0] });
+      await window.gyre.advance(1);
+    });
+  }
+  const names = await page.evaluate(() => window.gyre.names());
+  assert.equal(new Set(names).size, names.length, `two of one name: ${names}`);
+  viewer.noErrors(page);
+});
+
 test('B puts a body down under the pointer', async (t) => {
   const page = await viewer.open(t, 'scene=stack&play=0&quality=low', { width: 800, height: 600 });
   await settled(page);

@@ -26,6 +26,26 @@ test('broad phase, SIMD width and threads change no bit', async (t) => {
   viewer.noErrors(page);
 });
 
+test('settings are those of the moment that is shown', async (t) => {
+  const page = await viewer.open(t, 'scene=stack&play=0&quality=low', { width: 640, height: 400 });
+  const settings = () => page.evaluate(() => ({ sleeping: window.gyre.scene.settings.sleeping, substeps: window.gyre.scene.settings.substeps, up: window.gyre.scene.settings.gravity[1] }));
+  await page.evaluate(() => window.gyre.advance(10));
+  const before = await settings();
+  await page.evaluate(async () => {
+    window.gyre.command({ do: 'gravity', value: [0, 1.5, 0] });
+    window.gyre.command({ do: 'substeps', value: 7 });
+    window.gyre.command({ do: 'sleeping', value: false });
+    await window.gyre.advance(10);
+  });
+  const after = { sleeping: false, substeps: 7, up: 1.5 };
+  assert.deepEqual(await settings(), after);
+  await page.evaluate(() => window.gyre.seek(5));
+  assert.deepEqual(await settings(), before);
+  await page.evaluate(() => window.gyre.advance(10));
+  assert.deepEqual(await settings(), after);
+  viewer.noErrors(page);
+});
+
 test('gravity, sub-steps and sleeping act at once', async (t) => {
   const page = await viewer.open(t, 'scene=stack&play=0&quality=low', { width: 1100, height: 800 });
   await page.evaluate(() => window.gyre.advance(200));

@@ -35,8 +35,10 @@ export function plural(count: number, one: string, many = `${one}s`): string {
   return `${count.toLocaleString('en')} ${count === 1 ? one : many}`;
 }
 
+const SPELLED: Readonly<Record<string, string>> = { bvh: 'BVH', semi_implicit_euler: 'Semi-implicit Euler' };
+
 // soft_step -> Soft step
 export function words(name: string): string {
-  const text = name.replaceAll('_', ' ');
+  const text = SPELLED[name] ?? name.replaceAll('_', ' ');
   return text.charAt(0).toUpperCase() + text.slice(1);
 }

@@ -48,10 +48,14 @@ export interface BodyDescription {
   shapes: ShapeDescription[];
 }
 
-export interface WorldSettings {
+// Those that commands change in the course of a run, and that are others again in its past.
+export interface RunSettings {
   gravity: Vec3;
   substeps: number;
   sleeping: boolean;
+}
+
+export interface WorldSettings extends RunSettings {
   timeStep: number;
   solver: string;
   integrator: string;
@@ -158,6 +162,7 @@ export interface Frame {
   stats: Stats;
   links: Float32Array; // rods, ropes and springs: 6 each, the anchors on a and on b
   overlays: OverlayData;
+  settings: RunSettings | null; // as they are at this step; null in a recording
   problem: string | null; // the engine's words, when the state is no longer finite or a call was refused
 }
 

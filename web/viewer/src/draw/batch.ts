@@ -5,6 +5,7 @@ import type { Part } from './shape_geometry';
 export class Batch {
   readonly mesh: InstancedMesh;
   readonly rows: Int32Array;
+  private sphereIsOld = false;
   private readonly locals: Float32Array; // 12 a part: three columns and the place
 
   constructor(geometry: BufferGeometry, material: Material, parts: readonly { row: number; part: Part }[]) {
@@ -62,8 +63,15 @@ export class Batch {
     }
     if (any) {
       this.mesh.instanceMatrix.needsUpdate = true;
-      this.mesh.boundingSphere = null; // found anew when something is picked
+      this.sphereIsOld = true;
     }
+  }
+
+  // Before rays are sent at it. The sphere around ten thousand parts costs more than placing them, and nothing else needs it fresh.
+  readyToPick(): InstancedMesh {
+    if (this.sphereIsOld) this.mesh.computeBoundingSphere();
+    this.sphereIsOld = false;
+    return this.mesh;
   }
 
   color(colorOf: (row: number, part: number) => Color): void {

@@ -30,7 +30,7 @@ export class Picker {
     this.aim(x, y);
     let best: Picked | null = null;
     for (const batch of bodies.meshesToPick) {
-      for (const hit of this.caster.intersectObject(batch.mesh, false)) {
+      for (const hit of this.caster.intersectObject(batch.readyToPick(), false)) {
         if (hit.instanceId === undefined || (best && hit.distance >= best.distance)) continue;
         const row = batch.rows[hit.instanceId]!;
         best = { key: bodies.keys[row]!, row, point: hit.point.clone(), distance: hit.distance };

@@ -1,5 +1,5 @@
-// Velocities at the centre of mass: linear, the way of a quarter of a second; angular, along the axis of turning, a unit of the scene for
-// a whole turn a second. What stands still has none.
+// Velocities at the centre of mass: linear, the way of a quarter of a second; angular, along the axis of turning, a quarter of the
+// scene's radius for a whole turn a second, up to twice that. What stands still has none.
 import { Quaternion, Vector3 } from 'three';
 import { overlayColors } from '../draw/palette';
 import { LineLayer } from './line_layer';
@@ -17,6 +17,7 @@ export class Velocities implements Overlay {
     const turn = new Quaternion();
     const still = 0.002 * scale;
     const perTurn = (0.25 * scale) / (2 * Math.PI);
+    const longest = 0.5 * scale;
     lines.begin();
     for (let row = 0; row < frame.flags.length; row++) {
       const body = bodies.known.get(bodies.keys[row]!);
@@ -30,8 +31,10 @@ export class Velocities implements Overlay {
       if (SECONDS * Math.hypot(v[0]!, v[1]!, v[2]!) > still) {
         lines.arrow(x, y, z, SECONDS * v[0]!, SECONDS * v[1]!, SECONDS * v[2]!, overlayColors.linear);
       }
-      if (perTurn * Math.hypot(v[3]!, v[4]!, v[5]!) > still) {
-        lines.arrow(x, y, z, perTurn * v[3]!, perTurn * v[4]!, perTurn * v[5]!, overlayColors.angular);
+      const spin = Math.hypot(v[3]!, v[4]!, v[5]!);
+      if (perTurn * spin > still) {
+        const unit = Math.min(perTurn, longest / spin);
+        lines.arrow(x, y, z, unit * v[3]!, unit * v[4]!, unit * v[5]!, overlayColors.angular);
       }
     }
     lines.end();

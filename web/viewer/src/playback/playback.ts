@@ -220,10 +220,21 @@ export class Playback {
     if (!this.previous) this.shownTime = frame.time;
     for (const listener of this.listeners) listener(frame, structure, jumped);
     this.tell(frame, jumped);
+    this.tellSettings(frame);
     if (frame.problem) {
       store.playing.value = false;
       store.notice.value = { title: 'The engine refused', text: frame.problem, fatal: false };
     }
+  }
+
+  // Where the past or what was done in it is played again, its settings come with it. Those that the visitor is just changing are
+  // on the page already, and on their way to the engine.
+  private tellSettings({ settings: now }: Frame): void {
+    const scene = store.scene.peek();
+    if (!scene || !now || this.commands.length > 0) return;
+    const { gravity, substeps, sleeping } = scene.settings;
+    if (substeps === now.substeps && sleeping === now.sleeping && gravity.every((value, i) => value === now.gravity[i])) return;
+    store.scene.value = { ...scene, settings: { ...scene.settings, ...now } };
   }
 
   private tell(frame: Frame, jumped: boolean): void {

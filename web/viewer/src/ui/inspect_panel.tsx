@@ -52,7 +52,7 @@ function Report({ report, viewer }: { report: BodyReport; viewer: Viewer }): JSX
         <Section title="Mass">
           <dl>
             <Row name="Mass">{short(report.mass)} kg</Row>
-            <Row name="Principal moments">{report.principalMoments.map(short).join(' · ')} kg m²</Row>
+            <Row name="Principal moments">{report.principalMoments.map(short).join(' · ')} kg m²</Row>
             <Row name="Centre of mass">{vector(report.centerOfMass, 3)} m</Row>
           </dl>
         </Section>

@@ -30,6 +30,10 @@ export class Keys {
     return place === undefined ? 0 : place + world;
   }
 
+  has(key: number): boolean {
+    return this.placeOfKey.has(key);
+  }
+
   // Forgets all but these: a future that was cut off may give its slots to others.
   keepOnly(ids: Iterable<BodyId>): void {
     const kept = new Set<number>();

@@ -8,6 +8,7 @@ import type {
   FrameMessage,
   NewWorldSettings,
   OverlayName,
+  RunSettings,
   SceneDescription,
   Structure,
   Vec3,
@@ -29,6 +30,10 @@ const MANY_BODIES = 800; // from here on a second thread pays
 
 // soft_step in scene files, softStep in the engine's interface
 const snake = (name: string): string => name.replace(/[A-Z]/g, (letter) => `_${letter.toLowerCase()}`);
+
+function nameOf(kinds: Readonly<Record<string, number>>, value: number): string {
+  return snake(Object.keys(kinds).find((name) => kinds[name] === value) ?? '');
+}
 
 // { field: value } for the value behind such a name, nothing where none is given.
 function valueOf<F extends string, T extends Readonly<Record<string, number>>>(field: F, kinds: T, name: string | undefined): { [K in F]?: T[keyof T] } {
@@ -92,19 +97,21 @@ export class LiveSession implements Session {
   }
 
   private readSettings(threads: number, simdWidth: number): WorldSettings {
-    const world = this.source.json.world ?? {};
-    const named = (name: string, first: string): string => (typeof world[name] === 'string' ? (world[name] as string) : first);
+    const { stepping } = this.scene.def();
     return {
-      gravity: Array.from(this.scene.gravity()) as Vec3,
-      substeps: this.scene.substeps(),
-      sleeping: world['sleeping'] !== false,
+      ...this.runSettings(),
       timeStep: this.scene.timeStep,
-      solver: named('solver', snake(Object.keys(SolverKind)[0]!)),
-      integrator: named('integrator', snake(Object.keys(IntegratorKind)[0]!)),
-      broadPhase: named('broad_phase', snake(Object.keys(BroadPhaseKind)[0]!)),
+      solver: nameOf(SolverKind, stepping.solver),
+      integrator: nameOf(IntegratorKind, stepping.integrator),
+      broadPhase: nameOf(BroadPhaseKind, stepping.broadPhase),
       threads,
       simdWidth,
     };
+  }
+
+  private runSettings(): RunSettings {
+    const { gravity, sleeping, stepping } = this.scene.def();
+    return { gravity: Array.from(gravity) as Vec3, substeps: stepping.substeps, sleeping };
   }
 
   // Far from the world's origin, floats are counted from the middle of what there is.
@@ -116,7 +123,8 @@ export class LiveSession implements Session {
   }
 
   describe(): SceneDescription {
-    const { settings, gyre } = this;
+    const { gyre } = this;
+    const settings = { ...this.settings, ...this.runSettings() };
     return {
       title: this.scene.name || this.source.file,
       file: this.source.file,
@@ -167,6 +175,9 @@ export class LiveSession implements Session {
   private forgetFuture(): void {
     this.past.cut(this.step);
     this.keys.keepOnly(this.scene.bodies().ids);
+    for (const key of this.thrown.keys()) {
+      if (!this.keys.has(key)) this.thrown.delete(key);
+    }
   }
 
   private stepOnce(): void {
@@ -223,13 +234,10 @@ export class LiveSession implements Session {
         case 'wake':
           return scene.setAwake(idOf(command.key), command.awake);
         case 'gravity':
-          this.settings = { ...this.settings, gravity: command.value };
           return this.setGravity(command.value);
         case 'substeps':
-          this.settings = { ...this.settings, substeps: command.value };
           return scene.setSubsteps(command.value);
         case 'sleeping':
-          this.settings = { ...this.settings, sleeping: command.value };
           return scene.setSleeping(command.value);
       }
     } catch (error) {
@@ -255,7 +263,15 @@ export class LiveSession implements Session {
       { geometry: throwableShape(command.what, command.size), density: command.density, material: { restitution: 0.2 } },
     );
     const key = this.keys.key(id);
-    if (!this.thrown.has(key)) this.thrown.set(key, `${command.what} ${this.thrown.size + 1}`);
+    if (!this.thrown.has(key)) this.thrown.set(key, this.freeName(command.what));
+  }
+
+  // "ball 1", or the next number that no body has.
+  private freeName(what: string): string {
+    const taken = new Set([...this.scene.bodyNames, ...this.thrown.values()]);
+    let number = 1;
+    while (taken.has(`${what} ${number}`)) number++;
+    return `${what} ${number}`;
   }
 
   private inWorld(place: Vec3): Vec3 {
@@ -280,6 +296,7 @@ export class LiveSession implements Session {
         stats: readStats(scene, this.stepMs),
         links: readLinks(scene, this.origin),
         overlays: readOverlays(scene, this.overlays, this.origin),
+        settings: this.runSettings(),
         problem: this.problem,
       },
       structure,

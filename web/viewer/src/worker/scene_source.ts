@@ -10,12 +10,11 @@ export interface SceneText {
 
 // What the worker itself reads of a scene; the engine checks all of it.
 export interface SceneJson {
-  world?: Record<string, unknown>;
   meshes?: Record<string, { file?: string }>;
   bodies?: { sensor?: boolean }[];
 }
 
-const RECORDING = [0x47, 0x59, 0x52, 0x45]; // every file of the engine's own begins so: GYRE
+const beginsWith = (bytes: Uint8Array, text: string): boolean => [...text].every((letter, i) => bytes[i] === letter.charCodeAt(0));
 
 export async function bytesOf(source: Source): Promise<Uint8Array> {
   if (source.kind === 'bytes') return source.bytes;
@@ -35,7 +34,10 @@ async function fetchBytes(url: string, name: string): Promise<Uint8Array> {
 }
 
 export function isRecording(bytes: Uint8Array, name: string): boolean {
-  return name.endsWith('.gyrec') || RECORDING.every((byte, i) => bytes[i] === byte);
+  if (beginsWith(bytes, 'GYRESNAP')) {
+    throw new Error(`${name} is a snapshot, which a program loads (loadSnapshot). The page opens scenes (.gyre.json) and recordings (.gyrec).`);
+  }
+  return name.endsWith('.gyrec') || beginsWith(bytes, 'GYREPLAY');
 }
 
 export async function sceneText(source: Source, bytes: Uint8Array): Promise<SceneText> {
@@ -46,12 +48,7 @@ export async function sceneText(source: Source, bytes: Uint8Array): Promise<Scen
   } catch {
     throw new Error(`${file} is neither a scene (a text file, .gyre.json) nor a recording (.gyrec).`);
   }
-  let json: SceneJson = {};
-  try {
-    json = JSON.parse(text) as SceneJson;
-  } catch {
-    // The engine's reader says what is wrong and where, in better words.
-  }
+  const json = sceneJson(text);
   const files: Record<string, Uint8Array> = {};
   for (const mesh of meshFiles(json)) {
     if (source.kind === 'bytes') {
@@ -63,8 +60,18 @@ export async function sceneText(source: Source, bytes: Uint8Array): Promise<Scen
   return { file, text, files, json };
 }
 
+// Of a file that is no scene, nothing: the engine's reader says what is wrong and where, in better words.
+function sceneJson(text: string): SceneJson {
+  try {
+    const json: unknown = JSON.parse(text);
+    return typeof json === 'object' && json !== null ? json : {};
+  } catch {
+    return {};
+  }
+}
+
 function meshFiles(json: SceneJson): string[] {
-  const meshes: unknown = json?.meshes;
+  const meshes: unknown = json.meshes;
   if (typeof meshes !== 'object' || meshes === null) return [];
   return Object.values(meshes as Record<string, { file?: unknown } | null>)
     .map((mesh) => mesh?.file)

@@ -123,6 +123,7 @@ export class TrackSession implements Session {
         stats: { ...NO_STATS, bodies: count, awake: at.awake.reduce((sum, awake) => sum + awake, 0) },
         links: new Float32Array(0),
         overlays: {},
+        settings: null,
         problem: null,
       },
       structure,
