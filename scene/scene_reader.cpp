@@ -56,14 +56,15 @@ void read_world(const Field& field, SceneWorld& world) {
         {{"soft_step", SolverKind::soft_step}, {"sequential_impulses", {}}, {"lcp", {}}});
   }
   if (const auto broad_phase = members.find("broad_phase")) {
-    world.broad_phase = broad_phase->choice<BroadPhaseKind>({{"bvh", BroadPhaseKind::bvh},
-                                                             {"grid", {}},
-                                                             {"octree", {}},
-                                                             {"quadtree", {}},
-                                                             {"kd_tree", {}},
-                                                             {"bsp_tree", {}},
-                                                             {"sweep_and_prune", {}},
-                                                             {"brute_force", BroadPhaseKind::brute_force}});
+    world.broad_phase =
+        broad_phase->choice<BroadPhaseKind>({{"bvh", BroadPhaseKind::bvh},
+                                             {"grid", BroadPhaseKind::grid},
+                                             {"octree", BroadPhaseKind::octree},
+                                             {"quadtree", BroadPhaseKind::quadtree},
+                                             {"kd_tree", BroadPhaseKind::kd_tree},
+                                             {"bsp_tree", BroadPhaseKind::bsp_tree},
+                                             {"sweep_and_prune", BroadPhaseKind::sweep_and_prune},
+                                             {"brute_force", BroadPhaseKind::brute_force}});
   }
   if (const auto stepping = members.find("stepping"))
     stepping->choice<bool>({{"fixed", true}, {"adaptive", {}}});

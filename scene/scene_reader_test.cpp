@@ -104,7 +104,7 @@ TEST(SceneReader, RefusesWhatIsWrongInTheWorld) {
        "/world/integrator",
        {"found \"rk5\"", "one of \"explicit_euler\""}},
       {world_with(R"("solver": "lcp")"), "/world/solver", {"not supported"}},
-      {world_with(R"("broad_phase": "kd_tree")"), "/world/broad_phase", {"not supported"}},
+      {world_with(R"("broad_phase": "kdtree")"), "/world/broad_phase", {"found \"kdtree\"", "\"kd_tree\""}},
       {world_with(R"("stepping": "adaptive")"), "/world/stepping", {"not supported"}},
       {world_with(R"("timestep": 0.01)"), "/world/timestep", {"unknown field in a world", "\"time_step\""}},
   };

@@ -37,7 +37,7 @@ void write_world(JsonWriter& json, const SceneWorld& world) {
   json.field("gravity", world.gravity);
   json.field("time_step", world.time_step);
   json.field("substeps", world.substeps);
-  if (world.broad_phase == BroadPhaseKind::brute_force) json.field("broad_phase", "brute_force");
+  if (world.broad_phase != BroadPhaseKind::bvh) json.field("broad_phase", to_string(world.broad_phase));
   unless_default(json, "sleeping", world.sleeping, true);
   json.end_object();
 }

@@ -7,6 +7,8 @@
 
 #include <cmath>
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace gyre {
 namespace {
@@ -35,6 +37,12 @@ CLI::Validator one_of(std::vector<std::string> list) {
         return "found " + text + ", expected one of " + expected;
       },
       "", "");
+}
+
+std::vector<std::string> broad_phases() {
+  std::vector<std::string> names;
+  for (int i = 0; i < kBroadPhaseKindCount; ++i) names.emplace_back(to_string(BroadPhaseKind(i)));
+  return names;
 }
 
 void add_time_options(CLI::App& command, SimulateOptions& options) {
@@ -68,11 +76,12 @@ void add_method_options(CLI::App& command, SimulateOptions& options) {
       ->type_name("NAME")
       ->check(one_of({"explicit_euler", "semi_implicit_euler", "rk4", "verlet"}));
   command
-      .add_option("--broad-phase", options.broad_phase,
-                  "Broad phase: bvh or brute_force; never changes a result")
+      .add_option(
+          "--broad-phase", options.broad_phase,
+          "Broad phase: bvh, grid, octree, quadtree, kd_tree, bsp_tree, sweep_and_prune or brute_force; "
+          "never changes a result")
       ->type_name("NAME")
-      ->check(one_of(
-          {"bvh", "grid", "octree", "quadtree", "kd_tree", "bsp_tree", "sweep_and_prune", "brute_force"}));
+      ->check(one_of(broad_phases()));
   command.add_option("--stepping", options.stepping, "Time plan: fixed")
       ->type_name("NAME")
       ->check(one_of({"fixed", "adaptive"}));
@@ -142,12 +151,8 @@ std::string apply_overrides(const SimulateOptions& options, SceneWorld& world) {
   }
   if (!options.stepping.empty() && options.stepping != "fixed")
     return missing("--stepping", options.stepping);
-  if (options.broad_phase == "bvh") {
-    world.broad_phase = BroadPhaseKind::bvh;
-  } else if (options.broad_phase == "brute_force") {
-    world.broad_phase = BroadPhaseKind::brute_force;
-  } else if (!options.broad_phase.empty()) {
-    return missing("--broad-phase", options.broad_phase);
+  for (int i = 0; i < kBroadPhaseKindCount; ++i) {
+    if (options.broad_phase == to_string(BroadPhaseKind(i))) world.broad_phase = BroadPhaseKind(i);
   }
   if (options.time_step) world.time_step = *options.time_step;
   if (options.substeps) world.substeps = *options.substeps;

@@ -14,7 +14,19 @@ namespace gyre {
 // ------------------------------------------------------------------------------------------------------------ world
 
 enum class IntegratorKind : std::uint8_t { semi_implicit_euler };
-enum class BroadPhaseKind : std::uint8_t { bvh, brute_force };
+// Which structure finds the pairs whose boxes overlap. All find the same; docs/broad_phases.md says when each is fast.
+enum class BroadPhaseKind : std::uint8_t {
+  bvh,              // wide trees of bounding volumes, one of what is fixed and one of what moves
+  brute_force,      // every pair, one by one
+  grid,             // uniform hashed grid
+  octree,           // loose octree
+  quadtree,         // loose quadtree, its cells columns along y
+  kd_tree,          // parts at medians, along axes
+  bsp_tree,         // parts by planes of 13 directions
+  sweep_and_prune,  // sorted along the axis of largest spread
+};
+constexpr int kBroadPhaseKindCount = 8;
+const char* to_string(BroadPhaseKind kind);
 enum class SolverKind : std::uint8_t { soft_step };
 
 // How two materials make one number: of the two values, or table entries where MaterialPair says so.

@@ -10,6 +10,8 @@
 
 #include <gyre/math.h>
 
+#include <cstdint>
+
 namespace gyre {
 
 struct BoxSweep {
@@ -83,6 +85,30 @@ class SweepTest {
     const bool up = way_[axis] > 0.0f;
     range.enter = max(range.enter, (up ? to_low : to_high) * inverse_[axis]);
     range.leave = min(range.leave, (up ? to_high : to_low) * inverse_[axis]);
+  }
+  // The same along a direction whose parts are 1, 0 or -1.
+  void clip_along(const std::int8_t* signs, float low, float high, SweepRange& range) const {
+    float origin = 0.0f, way = 0.0f, room = 0.0f, size = 0.0f, all_ways = 0.0f;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (signs[axis] == 0) continue;
+      origin += float(signs[axis]) * origin_[axis];
+      way += float(signs[axis]) * way_[axis];
+      room += extent_[axis];
+      size += absolute(origin_[axis]);
+      all_ways += absolute(way_[axis]);
+    }
+    // Rounding of the sums above, and of those that made `low` and `high` from numbers about as large.
+    room += 1.0e-6f * (size + all_ways + room);
+    if (absolute(way) <= 1.0e-4f * all_ways || absolute(way) < 1.0e-30f) {
+      room += 1.01e-4f * all_ways + 1.0e-30f;
+      if (!(low - room <= origin && high + room >= origin)) range = {1.0f, -1.0f};
+      return;
+    }
+    const float to_low = low - room - origin, to_high = high + room - origin;
+    const float early = (way > 0.0f ? to_low : to_high) / way, late = (way > 0.0f ? to_high : to_low) / way;
+    // The sum of the ways has lost up to three digits.
+    range.enter = max(range.enter, early - 2.0e-3f * absolute(early));
+    range.leave = min(range.leave, late + 2.0e-3f * absolute(late));
   }
   SweepRange clip(const Aabb& box, SweepRange range) const {
     for (int axis = 0; axis < 3; ++axis) clip(axis, box.low[axis], box.high[axis], range);

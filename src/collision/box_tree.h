@@ -28,6 +28,7 @@ namespace gyre {
 class BoxTree {
  public:
   static constexpr int kWidth = BoxLanes::kWidth;
+  static constexpr std::size_t kRebuildShare = 4;  // building is cheaper when more than a quarter changes
 
   std::size_t size() const { return size_; }
   bool contains(std::uint32_t item) const { return item < places_.size() && places_[item] != kNowhere; }

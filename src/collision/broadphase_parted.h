@@ -4,7 +4,8 @@
 //
 // The index is what a broad phase is named after. It holds items (small numbers) with boxes, and has
 //   insert(item, box), remove(item), move(item, box), clear(), begin_build(), add_to_build(item, box), finish_build(),
-//   improve(changes)      bounded upkeep after so many changes; not called after a build
+//   kRebuildShare         when more than one in so many changes at once, building is cheaper
+//   improve(changes)      upkeep after so many changes, before anything is asked; not called after a build
 //   for_each_overlap(box, visit), for_each_along(sweep, reach, visit), for_each_node(visit)
 //   contains(item), box_of(item), size(), bytes(), trim(), find_fault()
 // Walks may visit more items than overlap, but each at most once: every candidate is looked at again here.
@@ -43,9 +44,8 @@ class BroadphaseParted : public Broadphase {
   PairCollector collector_;
 
  private:
-  // When this many and this share of an index's items change at once, building anew is cheaper than one change at a time.
+  // When this many and the index's own share of its items change at once, it is built anew instead of changed.
   static constexpr std::size_t kManyChanges = 64;
-  static constexpr std::size_t kRebuildShare = 4;  // a quarter
 
   static Home home_of(const Proxy& proxy) {
     if (proxy.motion == ProxyMotion::none) return kNoHome;
@@ -143,7 +143,8 @@ void BroadphaseParted<Index>::update(std::span<const Proxy> proxies, std::span<c
   }
   bool build[2];
   for (const Home home : {kFixed, kMoving}) {
-    build[home] = changes[home] > kManyChanges && changes[home] > indices_[home].size() / kRebuildShare;
+    build[home] =
+        changes[home] > kManyChanges && changes[home] > indices_[home].size() / Index::kRebuildShare;
     // An index that is to be built anew is emptied first, so that no change below touches it.
     if (build[home]) indices_[home].clear();
   }

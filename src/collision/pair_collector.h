@@ -21,27 +21,40 @@ class PairCollector {
   template <class Search>
   void collect(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved, TaskSystem& tasks,
                Array<std::uint64_t>& pairs, const Search& search) {
+    collect_from(proxies, moved, int(moved.size()), tasks, pairs, [&](int i, const auto& emit) {
+      const std::uint32_t self = moved[std::size_t(i)];
+      if (proxies[self].motion == ProxyMotion::none) return;
+      search(self, [&](std::uint32_t other) {
+        // A pair of two moved proxies is found from the lower one only.
+        if (other == self || (other < self && is_moved(other))) return;
+        emit(self, other);
+      });
+    });
+  }
+
+  // The same from other places than the moved proxies: calls search(i, emit) for each i below `count`; together they must
+  // call emit(one, other) once for each pair that overlaps and of which one is_moved().
+  template <class Search>
+  void collect_from(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved, int count,
+                    TaskSystem& tasks, Array<std::uint64_t>& pairs, const Search& search) {
     if (is_moved_.size() < proxies.size()) is_moved_.resize(proxies.size());
     for (const std::uint32_t index : moved) is_moved_.set(index);
     found_.resize(std::size_t(tasks.worker_count()));
     for (Array<std::uint64_t>& keys : found_) keys.reserve(most_);
-    for_blocks(tasks, int(moved.size()), kBlock, [&](int begin, int end, int worker) {
+    for_blocks(tasks, count, kBlock, [&](int begin, int end, int worker) {
       Array<std::uint64_t>& keys = found_[worker];
-      for (int i = begin; i < end; ++i) {
-        const std::uint32_t self = moved[std::size_t(i)];
-        const Proxy& a = proxies[self];
-        if (a.motion == ProxyMotion::none) continue;
-        search(self, [&](std::uint32_t other) {
-          // A pair of two moved proxies is found from the lower one only.
-          if (other == self || (other < self && is_moved_.test(other))) return;
-          const Proxy& b = proxies[other];
-          if (overlap(a.fat_box, b.fat_box) && may_pair(a, b)) keys.push_back(pair_key(self, other));
-        });
-      }
+      const auto emit = [&](std::uint32_t one, std::uint32_t other) {
+        const Proxy& a = proxies[one];
+        const Proxy& b = proxies[other];
+        if (overlap(a.fat_box, b.fat_box) && may_pair(a, b)) keys.push_back(pair_key(one, other));
+      };
+      for (int i = begin; i < end; ++i) search(i, emit);
     });
     for (const std::uint32_t index : moved) is_moved_.clear(index);
     append_sorted(pairs);
   }
+  // While collecting.
+  bool is_moved(std::uint32_t index) const { return is_moved_.test(index); }
 
   // To be called once a step: gives memory back that was not needed for long.
   void trim() {

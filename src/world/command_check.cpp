@@ -288,7 +288,7 @@ Error check_world_def(const WorldDef& def) {
   if (def.stepping.substeps < 1 || def.stepping.substeps > 64) {
     return refuse("stepping.substeps is %d; it must lie within 1 and 64", def.stepping.substeps);
   }
-  if (def.stepping.broad_phase > BroadPhaseKind::brute_force) return refuse("stepping.broad_phase: there is no such kind");
+  if (int(def.stepping.broad_phase) >= kBroadPhaseKindCount) return refuse("stepping.broad_phase: there is no such kind");
   if (def.host_tasks.run != nullptr && def.host_tasks.worker_count < 1) {
     return refuse("host_tasks.worker_count is %d; it must be at least 1", def.host_tasks.worker_count);
   }

@@ -90,8 +90,7 @@ TEST(Settings, ThreadsAndBroadPhaseChangeNothing) {
     scene.build(alone);
     for (int step = 0; step < 120; ++step) {
       if (step % 15 == 7) {
-        EXPECT_TRUE(
-            changed.set_broad_phase(step % 30 == 7 ? BroadPhaseKind::brute_force : BroadPhaseKind::bvh));
+        EXPECT_TRUE(changed.set_broad_phase(BroadPhaseKind((1 + step / 15) % kBroadPhaseKindCount)));
       }
       if (step % 20 == 3) {
         EXPECT_TRUE(changed.set_threads(1 + step / 20 % 3));

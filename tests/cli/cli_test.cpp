@@ -100,7 +100,7 @@ TEST_F(CommandLine, WrongUsageIsStatusTwoAndOneLine) {
   expect_usage({"simulate", "s.gyre.json", "--solver", "magic"}, "found magic, expected one of soft_step");
   expect_usage({"simulate", "s.gyre.json", "--solver", "lcp"}, "not supported");
   expect_usage({"simulate", "s.gyre.json", "--integrator", "rk4"}, "not supported");
-  expect_usage({"simulate", "s.gyre.json", "--broad-phase", "octree"}, "not supported");
+  expect_usage({"simulate", "s.gyre.json", "--broad-phase", "tree"}, "found tree, expected one of bvh");
   expect_usage({"simulate", "s.gyre.json", "--stepping", "adaptive"}, "not supported");
   expect_usage({"simulate", "s.gyre.json", "--trace-every", "0", "--trace", "t.csv"}, "1 to");
   expect_usage({"simulate", "s.gyre.json", "--trace", "t.csv", "--stats", "t.csv"}, "same file");
@@ -197,10 +197,13 @@ TEST_F(CommandLine, TheHashIsOneLineAndTheSameForAnyThreads) {
         gyre({"simulate", "s.gyre.json", "--steps", "100", "--hash", "--quiet", "--threads", threads}).out,
         one.out);
   }
-  EXPECT_EQ(
-      gyre({"simulate", "s.gyre.json", "--steps", "100", "--hash", "--quiet", "--broad-phase", "brute_force"})
-          .out,
-      one.out);
+  for (const char* kind :
+       {"bvh", "grid", "octree", "quadtree", "kd_tree", "bsp_tree", "sweep_and_prune", "brute_force"}) {
+    EXPECT_EQ(
+        gyre({"simulate", "s.gyre.json", "--steps", "100", "--hash", "--quiet", "--broad-phase", kind}).out,
+        one.out)
+        << kind;
+  }
   EXPECT_NE(gyre({"simulate", "s.gyre.json", "--steps", "101", "--hash", "--quiet"}).out, one.out);
   EXPECT_NE(gyre({"simulate", "s.gyre.json", "--steps", "100", "--hash", "--quiet", "--substeps", "8"}).out,
             one.out);

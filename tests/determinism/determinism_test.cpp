@@ -4,6 +4,7 @@
 // The goldens change when the engine's numbers change on purpose: then tests/determinism/update_golden.sh writes them anew.
 #include "determinism/scenes.h"
 
+#include <gyre/debug.h>
 #include <gyre/replay.h>
 
 #include <gtest/gtest.h>
@@ -89,11 +90,33 @@ TEST_P(Determinism, SameAtEveryNumberOfThreads) {
 }
 
 TEST_P(Determinism, SameWithEveryBroadPhase) {
-  for (const BroadPhaseKind kind : {BroadPhaseKind::bvh, BroadPhaseKind::brute_force}) {
+  for (int kind = 0; kind < kBroadPhaseKindCount; ++kind) {
     WorldDef def;
-    def.stepping.broad_phase = kind;
-    EXPECT_TRUE(runs_golden(GetParam(), def)) << int(kind);
+    def.stepping.broad_phase = BroadPhaseKind(kind);
+    EXPECT_TRUE(runs_golden(GetParam(), def)) << to_string(def.stepping.broad_phase);
   }
+}
+
+// Long after the goldens end, when most things rest: whole worlds step side by side, each with its own broad phase.
+TEST_P(Determinism, SameWithEveryBroadPhaseForTwiceAsLong) {
+  const Scene& scene = GetParam();
+  if (scene.drive != nullptr) GTEST_SKIP() << "it is driven for as long as the goldens last";
+  std::vector<World> worlds;
+  for (int kind = 0; kind < kBroadPhaseKindCount; ++kind) {
+    WorldDef def;
+    def.stepping.broad_phase = BroadPhaseKind(kind);
+    worlds.push_back(make_world(def));
+    scene.build(worlds.back());
+  }
+  for (int step = 0; step < 2 * kSteps; ++step) {
+    for (World& world : worlds) world.step(scenes::kStepSeconds);
+    if (step % 20 != 19) continue;
+    for (int kind = 1; kind < kBroadPhaseKindCount; ++kind) {
+      ASSERT_EQ(worlds[std::size_t(kind)].hash(), worlds[0].hash())
+          << to_string(BroadPhaseKind(kind)) << ", step " << step;
+    }
+  }
+  for (const World& world : worlds) EXPECT_EQ(validate(world).code, ErrorCode::none) << validate(world).message;
 }
 
 // Saved half-way, loaded into a world of other threads and width, and gone on from there.

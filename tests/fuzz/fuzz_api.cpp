@@ -270,7 +270,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   WorldDef other;
   other.threads = 2;
   other.simd_width = 1;
-  other.stepping.broad_phase = BroadPhaseKind::brute_force;
+  other.stepping.broad_phase = BroadPhaseKind(steps % kBroadPhaseKindCount);
   Result<Replay> replay = Replay::open(std::move(sink.bytes), other);
   if (!replay || replay->truncated() || replay->step_count() != steps) std::abort();
   bool matches = true;
