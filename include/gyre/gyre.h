@@ -6,5 +6,6 @@
 #include <gyre/geometry.h>
 #include <gyre/ids.h>
 #include <gyre/math.h>
+#include <gyre/queries.h>
 #include <gyre/result.h>
 #include <gyre/world.h>

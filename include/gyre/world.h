@@ -9,10 +9,12 @@
 #include <gyre/events.h>
 #include <gyre/ids.h>
 #include <gyre/math.h>
+#include <gyre/queries.h>
 #include <gyre/result.h>
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 namespace gyre {
@@ -144,6 +146,44 @@ class World {
   // Copies up to out.size() contact points in a fixed order; returns how many there are.
   std::size_t contacts(std::span<ContactPoint> out) const;
 
+  // ---------------------------------------------------------------------------------------------------------- queries
+  // See queries.h. None of them changes anything; any number of threads may ask at once while nobody changes or steps the
+  // world. Functions that fill `out` return how many answers there are; where that is more than fit, the first are kept.
+
+  std::optional<CastHit> cast_ray(DVec3 origin, Vec3 way, const QueryFilter& filter = {}) const;  // the nearest hit
+  bool ray_hits(DVec3 origin, Vec3 way, const QueryFilter& filter = {}) const;                    // whether there is any
+  // The first hit of every shape that the ray meets, by fraction.
+  std::size_t cast_ray_all(DVec3 origin, Vec3 way, std::span<CastHit> out, const QueryFilter& filter = {}) const;
+
+  std::optional<CastHit> cast_shape(const ShapeCast& cast, const QueryFilter& filter = {}) const;
+  bool shape_hits(const ShapeCast& cast, const QueryFilter& filter = {}) const;
+  std::size_t cast_shape_all(const ShapeCast& cast, std::span<CastHit> out, const QueryFilter& filter = {}) const;
+
+  bool overlaps(const ShapePlace& place, const QueryFilter& filter = {}) const;
+  // Every shape that the given one overlaps or touches, by index.
+  std::size_t find_overlaps(const ShapePlace& place, std::span<Overlap> out, const QueryFilter& filter = {}) const;
+
+  // The nearest point of any shape within `max_distance` (m, at least 0), and all shapes within it by distance.
+  std::optional<ClosestPoint> closest_point(const ShapePlace& place, double max_distance,
+                                            const QueryFilter& filter = {}) const;
+  std::size_t find_closest(const ShapePlace& place, double max_distance, std::span<ClosestPoint> out,
+                           const QueryFilter& filter = {}) const;
+  // Every contact in which the shape overlaps another, deepest first: one of each convex shape or plane, up to eight of a
+  // mesh or height field, whose inner edges give none.
+  std::size_t find_penetrations(const ShapePlace& place, std::span<Penetration> out, const QueryFilter& filter = {}) const;
+
+  // Many at once, over the world's threads: out[i] answers question i, and is empty (no body) where nothing is met. An error
+  // names the first question that cannot be asked, or spans of different length; then nothing is asked at all. One batch at
+  // a time uses the threads; a batch asked meanwhile by another thread is answered by that thread alone.
+  Error cast_rays(std::span<const Ray> rays, std::span<CastHit> out, const QueryFilter& filter = {}) const;
+  Error cast_shapes(std::span<const ShapeCast> casts, std::span<CastHit> out, const QueryFilter& filter = {}) const;
+  Error closest_points(std::span<const ShapePlace> places, double max_distance, std::span<ClosestPoint> out,
+                       const QueryFilter& filter = {}) const;
+  // counts[i]: how many shapes place i overlaps.
+  Error count_overlaps(std::span<const ShapePlace> places, std::span<std::uint32_t> counts,
+                       const QueryFilter& filter = {}) const;
+
+  // ---------------------------------------------------------------------------------------------------- the last step
   const Events& events() const;  // of the last step
   std::span<const Problem> problems() const;  // since the last step began, the step included
   WorldCounts counts() const;

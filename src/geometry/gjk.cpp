@@ -15,33 +15,6 @@ constexpr double kGap = 1.0e-9;
 // Cores nearer than this part of their size touch.
 constexpr double kTouch = 1.0e-10;
 
-// Farthest point of a core along a direction, in the shape's frame. The same mapping as geometry/support.h, in double:
-// curved cores need a support point that is exact to the direction, or the normal of near shapes drowns in rounding.
-DVec3 core_support(const Shape& shape, DVec3 d) {
-  const double h = double(shape.extents.y);
-  switch (shape.kind) {
-    case ShapeKind::box: {
-      const DVec3 e{shape.extents};
-      return {d.x < 0.0 ? -e.x : e.x, d.y < 0.0 ? -e.y : e.y, d.z < 0.0 ? -e.z : e.z};
-    }
-    case ShapeKind::capsule:
-      return {0.0, d.y < 0.0 ? -h : h, 0.0};
-    case ShapeKind::cylinder:
-    case ShapeKind::cone: {
-      const double radius = double(shape.radius);
-      const double radial = std::sqrt(d.x * d.x + d.z * d.z);
-      const double s = radial > 1.0e-150 ? radius / radial : 0.0;
-      const DVec3 rim{radial > 1.0e-150 ? s * d.x : radius, -h, s * d.z};
-      if (shape.kind == ShapeKind::cylinder) return {rim.x, d.y < 0.0 ? -h : h, rim.z};
-      return 2.0 * h * d.y > radius * radial ? DVec3{0.0, h, 0.0} : rim;
-    }
-    case ShapeKind::hull:
-      return DVec3(shape.hull->vertices[std::size_t(support_vertex(*shape.hull, to_float(d)))]);
-    default:
-      return {};
-  }
-}
-
 double core_size(const Shape& shape) {
   switch (shape.kind) {
     case ShapeKind::box:
@@ -56,6 +29,13 @@ double core_size(const Shape& shape) {
     default:
       return 0.0;
   }
+}
+
+DVec3 farthest_corner(const DVec3* triangle, DVec3 direction) {
+  const double a = dot(triangle[0], direction), b = dot(triangle[1], direction),
+               c = dot(triangle[2], direction);
+  if (a >= b && a >= c) return triangle[0];
+  return b >= c ? triangle[1] : triangle[2];
 }
 
 bool same(DVec3 a, DVec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
@@ -99,16 +79,61 @@ SimplexPoint nearest_to_origin(const DifferencePoint* s, int count, bool outside
   }
 }
 
+double largest_part(DVec3 v) { return max(absolute(v.x), max(absolute(v.y), absolute(v.z))); }
+
 }  // namespace
 
+DVec3 core_support(const Shape& shape, DVec3 d) {
+  const double h = double(shape.extents.y);
+  switch (shape.kind) {
+    case ShapeKind::box: {
+      const DVec3 e{shape.extents};
+      return {d.x < 0.0 ? -e.x : e.x, d.y < 0.0 ? -e.y : e.y, d.z < 0.0 ? -e.z : e.z};
+    }
+    case ShapeKind::capsule:
+      return {0.0, d.y < 0.0 ? -h : h, 0.0};
+    case ShapeKind::cylinder:
+    case ShapeKind::cone: {
+      const double radius = double(shape.radius);
+      const double radial = std::sqrt(d.x * d.x + d.z * d.z);
+      const double s = radial > 1.0e-150 ? radius / radial : 0.0;
+      const DVec3 rim{radial > 1.0e-150 ? s * d.x : radius, -h, s * d.z};
+      if (shape.kind == ShapeKind::cylinder) return {rim.x, d.y < 0.0 ? -h : h, rim.z};
+      return 2.0 * h * d.y > radius * radial ? DVec3{0.0, h, 0.0} : rim;
+    }
+    case ShapeKind::hull:
+      return DVec3(shape.hull->vertices[std::size_t(support_vertex(*shape.hull, to_float(d)))]);
+    default:
+      return {};
+  }
+}
+
+// In double, from a quaternion brought to length 1: B stays the rigid body that the float quaternion means.
 CorePair::CorePair(const Shape& a, const Shape& b, const Transform& a_from_b)
-    : a_(&a), b_(&b), position_(a_from_b.position) {
-  // In double, from a quaternion brought to length 1: B stays the rigid body that the float quaternion means.
-  const DQuat q = normalized(to_double(a_from_b.orientation));
-  x_ = rotate(q, DVec3{1, 0, 0});
-  y_ = rotate(q, DVec3{0, 1, 0});
-  z_ = rotate(q, DVec3{0, 0, 1});
-  size_ = max(max(core_size(a), core_size(b)), double(largest(absolute(a_from_b.position))));
+    : CorePair(a, b, DVec3(a_from_b.position), normalized(to_double(a_from_b.orientation))) {}
+
+CorePair::CorePair(const Shape& a, const Shape& b, DVec3 position, DQuat orientation)
+    : a_(&a), b_(&b), core_size_(max(core_size(a), core_size(b))) {
+  turn_b(orientation);
+  move_b(position);
+}
+
+CorePair::CorePair(const DVec3 (&triangle)[3], const Shape& b, DVec3 position, DQuat orientation)
+    : triangle_(triangle), b_(&b), core_size_(core_size(b)) {
+  for (const DVec3& corner : triangle) core_size_ = max(core_size_, largest_part(corner));
+  turn_b(orientation);
+  move_b(position);
+}
+
+void CorePair::turn_b(DQuat orientation) {
+  x_ = rotate(orientation, DVec3{1, 0, 0});
+  y_ = rotate(orientation, DVec3{0, 1, 0});
+  z_ = rotate(orientation, DVec3{0, 0, 1});
+}
+
+void CorePair::move_b(DVec3 position) {
+  position_ = position;
+  size_ = max(core_size_, largest_part(position));
 }
 
 DVec3 CorePair::to_b(DVec3 d) const { return {dot(x_, d), dot(y_, d), dot(z_, d)}; }
@@ -116,7 +141,7 @@ DVec3 CorePair::from_b(DVec3 d) const { return d.x * x_ + d.y * y_ + d.z * z_; }
 
 DifferencePoint CorePair::support(DVec3 direction) const {
   DifferencePoint out;
-  out.on_a = core_support(*a_, -direction);
+  out.on_a = a_ != nullptr ? core_support(*a_, -direction) : farthest_corner(triangle_, -direction);
   out.on_b = from_b(core_support(*b_, to_b(direction))) + position_;
   out.way = out.on_b - out.on_a;
   return out;

@@ -12,8 +12,13 @@
 #pragma once
 
 #include "geometry/shape.h"
+#include "math/rotation.h"
 
 namespace gyre {
+
+// The core's farthest point along a direction (any length but zero), in the shape's frame: support.h in double. Curved cores
+// need a support point that is exact to the direction, or the normal of near shapes drowns in rounding.
+DVec3 core_support(const Shape& shape, DVec3 direction);
 
 // A point of the Minkowski difference B - A, and the two points it came from; all in A's frame.
 struct DifferencePoint {
@@ -25,6 +30,12 @@ struct DifferencePoint {
 class CorePair {
  public:
   CorePair(const Shape& a, const Shape& b, const Transform& a_from_b);
+  CorePair(const Shape& a, const Shape& b, DVec3 position, DQuat orientation);  // of unit length
+  // A triangle in place of A; the corners are borrowed.
+  CorePair(const DVec3 (&triangle)[3], const Shape& b, DVec3 position, DQuat orientation);
+
+  // Puts B elsewhere, turned as it was.
+  void move_b(DVec3 position);
 
   // The point of B - A farthest along `direction` (unit, A's frame).
   DifferencePoint support(DVec3 direction) const;
@@ -33,17 +44,19 @@ class CorePair {
   double separation(DVec3 direction) const;
   // A length that is as large as the shapes: what tolerances are relative to.
   double size() const { return size_; }
-  const Shape& a() const { return *a_; }
-  const Shape& b() const { return *b_; }
   DVec3 to_b(DVec3 direction) const;    // a direction of A's frame in B's
   DVec3 from_b(DVec3 direction) const;  // and back
   DVec3 center_of_b() const { return position_; }
 
  private:
-  const Shape* a_;
+  void turn_b(DQuat orientation);
+
+  const Shape* a_ = nullptr;  // null: the triangle
+  const DVec3* triangle_ = nullptr;
   const Shape* b_;
   DVec3 x_, y_, z_;  // B's axes in A's frame
   DVec3 position_;
+  double core_size_;  // of the larger core
   double size_;
 };
 

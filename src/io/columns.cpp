@@ -100,6 +100,7 @@ void adopt_columns(WorldState& state, StateColumns&& columns) {
   state.rigid = std::move(columns.rigid);
   state.time = columns.time;
   state.step_count = columns.step_count;
+  state.shown_changes.store(kNothingShown, std::memory_order_relaxed);
   forget_reports(state);
   // Bytes from outside can break rules that the engine never would (boxes that hold no shape, say), and are stepped without
   // harm. A walk that stops at them would blame the engine.
@@ -120,6 +121,7 @@ void KeptState::put_back(WorldState& state) const {
       !w.broadphase_stale && list_differing(w.shapes.proxies, columns_.rigid.shapes.proxies, changed);
   copy_columns(columns_, state);
   derive_state(w);
+  state.shown_changes.store(kNothingShown, std::memory_order_relaxed);
   if (same_proxies) {
     // What the broad phase has not seen of the present state, of the kept one, and what differs between the two.
     changed.append(changed_);

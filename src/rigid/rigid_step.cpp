@@ -12,18 +12,6 @@ namespace {
 
 constexpr int kBodiesPerBlock = 64;
 
-// The list of changed proxies, ascending and without repeats.
-void sort_changed(Array<std::uint32_t>& changed, Array<std::uint64_t>& keys, Array<std::uint64_t>& scratch) {
-  keys.clear();
-  for (const std::uint32_t shape : changed) keys.push_back(shape);
-  scratch.resize_uninitialized(keys.size());
-  radix_sort_u64(keys, scratch);
-  changed.clear();
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    if (i == 0 || keys[i] != keys[i - 1]) changed.push_back(std::uint32_t(keys[i]));
-  }
-}
-
 BoxMotion box_motion(const RigidWorld& w, std::uint32_t shape, float seconds) {
   const std::uint32_t body = w.shapes.bodies[shape];
   const BodyMotion& motion = w.bodies.motion[body];
@@ -89,6 +77,17 @@ void freeze(RigidWorld& w, std::uint32_t body) {
 }
 
 }  // namespace
+
+void sort_changed(Array<std::uint32_t>& changed, Array<std::uint64_t>& keys, Array<std::uint64_t>& scratch) {
+  keys.clear();
+  for (const std::uint32_t shape : changed) keys.push_back(shape);
+  scratch.resize_uninitialized(keys.size());
+  radix_sort_u64(keys, scratch);
+  changed.clear();
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (i == 0 || keys[i] != keys[i - 1]) changed.push_back(std::uint32_t(keys[i]));
+  }
+}
 
 void refit_shape(RigidWorld& w, std::uint32_t shape, float seconds) {
   const BoxMotion motion = box_motion(w, shape, seconds);

@@ -15,6 +15,8 @@ struct ContinuousScratch {
   ContinuousCollision collision;
 };
 
+// A list of changed proxies, ascending and without repeats; the other two are scratch.
+void sort_changed(Array<std::uint32_t>& changed, Array<std::uint64_t>& keys, Array<std::uint64_t>& scratch);
 // Tells the broad phase what came, went or moved its fat box since the last step.
 void refit(RigidWorld& w);
 // New pairs of fat boxes become contacts, in key order.

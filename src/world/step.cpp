@@ -41,6 +41,7 @@ void run_stage(WorldState& s, StageName stage, Fn&& fn) {
 void begin_step(WorldState& s) {
   s.stepping = true;
   s.arena.reset();
+  s.shown_changes.store(kNothingShown, std::memory_order_relaxed);
   s.frozen.clear();
   s.problems.clear();
   s.profile.begin_step();

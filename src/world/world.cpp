@@ -89,6 +89,7 @@ bool World::set_broad_phase(BroadPhaseKind kind) {
   // The next step builds it from all boxes. Which of them changed it is told then, too.
   state_->rigid.broadphase = make_broadphase(kind);
   state_->rigid.broadphase_stale = true;
+  state_->shown_changes.store(kNothingShown, std::memory_order_relaxed);
   state_->def.stepping.broad_phase = kind;
   return true;
 }

@@ -14,7 +14,9 @@
 
 #include <gyre/world.h>
 
+#include <atomic>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 namespace gyre {
@@ -34,6 +36,8 @@ struct StageHook {
   void (*call)(void* context, const char* stage) = nullptr;
   void* context = nullptr;
 };
+
+constexpr std::size_t kNothingShown = std::size_t(-1);
 
 struct WorldState {
   // Simulation state.
@@ -58,6 +62,13 @@ struct WorldState {
   bool stepping = false;
   bool walks = true;              // builds with GYRE_VALIDATE: after each stage all structures are walked
   std::uint16_t number = 0;       // of this world, in its ids
+  // How many entries of rigid.shapes.changed queries have shown to the broad phase already; kNothingShown when it may not even
+  // have been built. Queries bring it up to date under the lock, since several threads may ask at once.
+  std::atomic<std::size_t> shown_changes{kNothingShown};
+  std::mutex query_lock;
+  std::mutex batch_lock;          // the workers answer one batch of queries at a time
+  Array<std::uint32_t> changes_to_show;
+  Array<std::uint64_t> change_keys, change_scratch;
   // Copies that bulk reading hands out; refreshed on demand.
   mutable std::vector<BodyId> read_ids;
   mutable std::vector<Pose> read_poses;

@@ -6,6 +6,7 @@
 
 #include <gyre/debug.h>
 
+#include <array>
 #include <atomic>
 #include <cstdlib>
 #include <cstring>
@@ -114,6 +115,60 @@ TEST(NoAllocation, WhileAsleep) {
   add_ground(world);
   for (int i = 0; i < 50; ++i) world.add_body({.pose = {.position = {2.0 * i, 0.5, 0}}}, {.geometry = Box{}});
   expect_none(world, 300, 120, "asleep");
+}
+
+// Questions of every kind, alone and in batches over two threads, in a heap that moves on between them.
+TEST(NoAllocation, InQueries) {
+  World world = make_world({.threads = 2});
+  world.state().walks = false;
+  std::vector<float> heights(33 * 33);
+  for (std::size_t i = 0; i < heights.size(); ++i) heights[i] = 0.1f * float(i * 7919u % 10u);
+  world.add_body({.type = BodyType::fixed},
+                 {.geometry = *cook_height_field({.heights = heights, .columns = 33, .rows = 33})});
+  for (int i = 0; i < 200; ++i) {
+    world.add_body({.pose = {.position = {1.1 * (i % 10), 2.0 + 1.1 * (i / 100), 1.1 * (i / 10 % 10)}}},
+                   {.geometry = i % 2 == 0 ? AnyShape(Box{}) : AnyShape(Sphere{})});
+  }
+  std::vector<Ray> rays(500);
+  std::vector<ShapeCast> casts(100);
+  std::vector<ShapePlace> places(100);
+  for (std::size_t i = 0; i < rays.size(); ++i) rays[i] = {{0.02 * double(i), 9, 0.01 * double(i)}, {0.3f, -20, 0}};
+  for (std::size_t i = 0; i < casts.size(); ++i) {
+    casts[i] = {Capsule{}, {{0.1 * double(i), 9, 0.1 * double(i)}, {}}, {0, -12, 0}};
+    places[i] = {Box{}, {{0.1 * double(i), 2, 0.1 * double(i)}, {}}};
+  }
+  std::vector<CastHit> hits(rays.size());
+  std::vector<ClosestPoint> closest(places.size());
+  std::vector<std::uint32_t> counts(places.size());
+  std::array<Penetration, 16> deep;
+  std::array<Overlap, 16> overlapping;
+  const auto ask = [&] {
+    (void)world.cast_rays(rays, hits);
+    (void)world.cast_shapes(casts, std::span(hits).first(casts.size()));
+    (void)world.closest_points(places, 2.0, closest);
+    (void)world.count_overlaps(places, counts);
+    std::size_t found = world.cast_ray_all(rays[3].origin, rays[3].way, hits);
+    for (const ShapePlace& place : places) {
+      found += world.find_penetrations(place, deep) + world.find_overlaps(place, overlapping);
+      found += world.find_closest(place, 1.0, closest) + std::size_t(world.overlaps(place));
+      found += std::size_t(world.ray_hits(place.pose.position, {0, -5, 0}));
+    }
+    return found;
+  };
+  for (int i = 0; i < 120; ++i) {
+    world.step(kStep);
+    ask();
+  }
+  const long before = news.load();
+  const std::uint64_t blocks = allocation_count();
+  std::size_t found = 0;
+  for (int i = 0; i < 30; ++i) {
+    world.step(kStep);
+    found += ask();
+  }
+  EXPECT_GT(found, 1000u);
+  EXPECT_EQ(news.load() - before, 0);
+  EXPECT_EQ(allocation_count() - blocks, 0u);
 }
 
 // ------------------------------------------------------------------------------------------------- bytes a resting box

@@ -10,7 +10,7 @@ from pathlib import Path
 import headers
 
 ROOT = Path(__file__).resolve().parents[2]
-HEADERS = ["math", "ids", "result", "geometry", "defs", "events", "world", "replay", "debug", "track"]
+HEADERS = ["math", "ids", "result", "geometry", "queries", "defs", "events", "world", "replay", "debug", "track"]
 # Public headers that are not bound, and why.
 NOT_BOUND = {"gyre": "includes the others"}
 
@@ -27,6 +27,8 @@ LEFT_OUT = {
     "Recorder::finish": "by hand in hosts.cpp, which also takes the bytes",
     "Recorder::failed": "memory as a sink does not fail; options out of range are an error at the start",
     "ByteSink": "by hand in hosts.cpp: the recorder's memory",
+    "QueryFilter.accepts": "a function pointer; the layers of the filter are carried",
+    "QueryFilter.user": "see QueryFilter.accepts",
     "BodyNames": "a function pointer; bodies of a scene are named by the scene",
     "to_string": "names of enumerators are part of the enums, see nameOf",
     "Vec3": "numbers in a row", "DVec3": "numbers in a row", "Quat": "numbers in a row", "Sym3": "numbers in a row",

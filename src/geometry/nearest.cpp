@@ -1,0 +1,166 @@
+// GJK against convex shapes, planes and triangles. See nearest.h.
+#include "geometry/nearest.h"
+
+#include "geometry/cast_surface.h"
+#include "geometry/support.h"
+
+namespace gyre {
+namespace {
+
+// The least distance, less rounding, at which a search in growing boxes may stop.
+constexpr double kRounding = 1.0e-6;
+constexpr float kBoxSlack = 1.0e-3f;  // bounds() of a disc seen from the side loses half of a float's digits
+
+// From two cores to two surfaces.
+bool finish(const CoreDistance& near, double radius_a, double radius_b, double max_distance, Nearest& out) {
+  const double radii = radius_a + radius_b;
+  if (near.beyond || near.distance - radii > max_distance) return false;
+  out.normal = near.normal;
+  out.overlap = near.overlap || near.distance <= radii;
+  out.distance = out.overlap ? 0.0 : near.distance - radii;
+  out.on_target = near.on_a + radius_a * near.normal;
+  out.on_convex = near.on_b - radius_b * near.normal;
+  if (near.overlap) {
+    out.on_target = out.on_convex = near.on_a;
+  } else if (out.overlap) {
+    out.on_target = out.on_convex = 0.5 * (out.on_target + out.on_convex);
+  }
+  return true;
+}
+
+bool nearest_of_plane(const Shape& plane, const PlacedShape& convex, double max_distance, Nearest& out) {
+  const DVec3 normal(plane.extents);
+  const DVec3 lowest =
+      rotate(convex.orientation, core_support(*convex.shape, rotate_inverse(convex.orientation, -normal)));
+  out.on_convex = convex.position + lowest - double(core_radius(*convex.shape)) * normal;
+  const double height = dot(normal, out.on_convex) - double(plane.offset);
+  if (height > max_distance) return false;
+  out.normal = normal;
+  out.overlap = height <= 0.0;
+  out.distance = out.overlap ? 0.0 : height;
+  out.on_target = out.overlap ? out.on_convex : out.on_convex - height * normal;
+  return true;
+}
+
+bool nearest_of_triangle(const SurfaceTriangle& triangle, const PlacedShape& convex, double max_distance,
+                         Nearest& out) {
+  const DVec3 pivot(triangle.a);
+  const DVec3 corners[3] = {{}, DVec3(triangle.b) - pivot, DVec3(triangle.c) - pivot};
+  const CorePair pair(corners, *convex.shape, convex.position - pivot, convex.orientation);
+  const auto radius = double(core_radius(*convex.shape));
+  if (!finish(core_distance(pair, max_distance + radius, {}), 0.0, radius, max_distance,
+              out))
+    return false;
+  out.on_target += pivot;
+  out.on_convex += pivot;
+  return true;
+}
+
+// A lower bound of the distance of two boxes, or 0.
+float box_gap(const Aabb& a, const Aabb& b) {
+  const Vec3 gap = max(max(a.low - b.high, b.low - a.high), Vec3{});
+  return length(gap);
+}
+
+Aabb outward(DVec3 low, DVec3 high) {
+  const double size =
+      max(max(absolute(low.x), absolute(high.x)),
+          max(max(absolute(low.y), absolute(high.y)), max(absolute(low.z), absolute(high.z))));
+  const double slack = 2.0e-7 * size;
+  const DVec3 all{slack, slack, slack};
+  return {to_float(low - all), to_float(high + all)};
+}
+
+// The nearest triangle whose box comes within `reach` of the convex shape's box.
+class SurfaceSearch {
+ public:
+  SurfaceSearch(const Shape& surface, const PlacedShape& convex, double max_distance)
+      : surface_(surface), convex_(convex), reach_(max_distance) {
+    const Aabb box = bounds(*convex.shape, {{}, to_float(convex.orientation)});
+    const float slack = kBoxSlack * outer_radius(*convex.shape, {});
+    const Aabb grown = grow(box, slack);
+    box_ = outward(convex.position + DVec3(grown.low), convex.position + DVec3(grown.high));
+  }
+
+  // In boxes that grow twofold, so that a near triangle is found without looking at all.
+  bool run(Nearest& out) {
+    const Aabb& all = surface_.kind == ShapeKind::mesh ? surface_.mesh->tree.box : surface_.field->box;
+    const auto least = double(box_gap(all, box_));
+    if (least * (1.0 - kRounding) > reach_) return false;
+    const double most = reach_;
+    double look = least + double(largest(half_size(box_))) +
+                  1.0e-6 * double(largest(max(absolute(all.low), absolute(all.high))));
+    for (;; look *= 2.0) {
+      const bool last = look >= most;
+      walk(last ? most : look);
+      // What is found beyond the box that was looked at may not be the nearest.
+      if (last || (found_ && reach_ <= look * (1.0 - kRounding))) break;
+    }
+    out = best_;
+    return found_;
+  }
+
+ private:
+  void walk(double distance) {
+    const float margin = distance < double(kUnbounded) ? float(distance * (1.0 + kRounding)) : kUnbounded;
+    const Aabb box = grow(box_, margin);
+    if (surface_.kind == ShapeKind::mesh) {
+      const StaticTree& tree = surface_.mesh->tree;
+      walk_overlaps(
+          tree, box,
+          [&](std::uint32_t node, int lane) { return may_be_nearer(child_box(tree.nodes[node], lane)); },
+          [&](std::uint32_t first, std::uint32_t count) {
+            for (std::uint32_t id = first; id < first + count; ++id) {
+              if (may_be_nearer(triangle_box(*surface_.mesh, id)))
+                look_at(surface_triangle(*surface_.mesh, id));
+            }
+          });
+      return;
+    }
+    const HeightField& field = *surface_.field;
+    walk_cells(
+        field, box, [&](HeightBlock block) { return may_be_nearer(block_box(field, block)); },
+        [&](std::uint32_t column, std::uint32_t row) {
+          if (!is_solid_cell(field, column, row) || !may_be_nearer(block_box(field, {-1, column, row})))
+            return;
+          for (int half = 0; half < 2; ++half) look_at(surface_triangle(field, column, row, half));
+        });
+  }
+
+  bool may_be_nearer(const Aabb& box) const {
+    return double(box_gap(box, box_)) * (1.0 - kRounding) <= reach_;
+  }
+
+  void look_at(const SurfaceTriangle& triangle) {
+    Nearest next;
+    if (!nearest_of_triangle(triangle, convex_, reach_, next)) return;
+    next.triangle = public_triangle(surface_, triangle.id);
+    if (found_ && (next.distance > best_.distance ||
+                   (next.distance == best_.distance && next.triangle >= best_.triangle)))
+      return;
+    best_ = next;
+    found_ = true;
+    reach_ = next.distance;
+  }
+
+  const Shape& surface_;
+  const PlacedShape& convex_;
+  Aabb box_;  // of the convex shape
+  double reach_;
+  bool found_ = false;
+  Nearest best_;
+};
+
+}  // namespace
+
+bool find_nearest(const Shape& target, const PlacedShape& convex, double max_distance, Nearest& out) {
+  out = {};
+  if (target.kind == ShapeKind::plane) return nearest_of_plane(target, convex, max_distance, out);
+  if (!is_convex(target.kind)) return SurfaceSearch(target, convex, max_distance).run(out);
+  const CorePair pair(target, *convex.shape, convex.position, convex.orientation);
+  const auto radius_a = double(core_radius(target)), radius_b = double(core_radius(*convex.shape));
+  return finish(core_distance(pair, max_distance + radius_a + radius_b, {}), radius_a,
+                radius_b, max_distance, out);
+}
+
+}  // namespace gyre

@@ -1,0 +1,414 @@
+// The public World's questions: checks, the broad phase brought up to date, answers put in order and given ids, batches over
+// the workers.
+#include <gyre/world.h>
+
+#include "base/float_mode.h"
+#include "collision/query.h"
+#include "task/parallel.h"
+#include "world/world_state.h"
+
+namespace gyre {
+
+namespace {
+
+constexpr double kMostPlace = 1.0e12;  // m, as for bodies
+constexpr int kBlock = 32;             // questions that one worker takes at a time
+
+// ---------------------------------------------------------------------------------------------------------------- checks
+
+bool is_fine(const Error& error) { return error.code == ErrorCode::none; }
+
+Error check_vector(const char* what, const char* field, DVec3 p) {
+  if (absolute(p.x) <= kMostPlace && absolute(p.y) <= kMostPlace && absolute(p.z) <= kMostPlace) return {};
+  return make_error(ErrorCode::invalid_argument,
+                    "%s: %s is (%g, %g, %g); every component must be finite and within 1e12 m", what, field,
+                    p.x, p.y, p.z);
+}
+
+Error check_place(const char* what, const AnyShape& shape, const Pose& pose) {
+  const Error e = check_shape(shape);
+  if (!is_fine(e)) return e;
+  const ShapeKind kind = make_shape(shape).kind;
+  if (!is_convex(kind)) {
+    return make_error(ErrorCode::invalid_geometry, "%s: shape is a %s; only a convex shape can be asked with",
+                      what, to_string(kind));
+  }
+  const Quat q = pose.orientation;
+  const float size = dot(q, q);
+  if (!is_finite(size) || !(size > 1.0e-12f)) {
+    return make_error(
+        ErrorCode::invalid_argument,
+        "%s: pose.orientation is (%g, %g, %g, %g); it must be a finite quaternion that is not zero", what,
+        double(q.x), double(q.y), double(q.z), double(q.w));
+  }
+  return check_vector(what, "pose.position", pose.position);
+}
+
+Error check_distance(double max_distance) {
+  if (max_distance >= 0.0) return {};
+  return make_error(ErrorCode::invalid_argument, "max_distance is %g m; it must be 0 or more", max_distance);
+}
+
+Error check_question(const Ray& ray) { return check_ray(ray); }
+Error check_question(const ShapeCast& cast) { return check_shape_cast(cast); }
+Error check_question(const ShapePlace& place) { return check_shape_place(place); }
+
+// ------------------------------------------------------------------------------------------------------------- the world
+
+// Shows the broad phase what came, went or moved since it last looked. Whoever comes first does it for all.
+void show_changes(WorldState& s) {
+  RigidWorld& w = s.rigid;
+  if (s.shown_changes.load(std::memory_order_acquire) == w.shapes.changed.size()) return;
+  const std::lock_guard<std::mutex> lock(s.query_lock);
+  const std::size_t shown = s.shown_changes.load(std::memory_order_relaxed);
+  if (shown == w.shapes.changed.size()) return;
+  if (shown == kNothingShown && w.broadphase_stale) {
+    w.broadphase->rebuild(w.shapes.proxies);
+  } else {
+    s.changes_to_show.assign(w.shapes.changed.view());
+    sort_changed(s.changes_to_show, s.change_keys, s.change_scratch);
+    w.broadphase->update(w.shapes.proxies, s.changes_to_show);
+  }
+  s.shown_changes.store(w.shapes.changed.size(), std::memory_order_release);
+}
+
+bool accepts(const RigidWorld& w, const QueryFilter& filter, std::uint32_t shape) {
+  const Proxy& proxy = w.shapes.proxies[shape];
+  if ((proxy.filter.layer & filter.layers) == 0 || (proxy.sensor && !filter.sensors)) return false;
+  if (filter.ignored && filter.ignored == body_id(w, proxy.body)) return false;
+  return filter.accepts == nullptr || filter.accepts(filter.user, shape_id(w, shape), body_id(w, proxy.body));
+}
+
+// Calls ask(input), with all that collision needs to answer.
+template <class Ask>
+void ask_world(const WorldState& s, const QueryFilter& filter, Ask&& ask) {
+  const RigidWorld& w = s.rigid;
+  const auto pose_of = [&](std::uint32_t shape) {
+    return origin_pose(w.bodies, w.shapes.bodies[shape]) * w.shapes.places[shape];
+  };
+  const auto is_accepted = [&](std::uint32_t shape) { return accepts(w, filter, shape); };
+  const QueryInput input{w.shapes.colliders, w.shapes.proxies, *w.broadphase, pose_of,
+                         is_accepted,        filter.back_faces};
+  ask(input);
+}
+
+WorldShape world_shape(const AnyShape& shape, const Pose& pose) {
+  return {make_shape(shape), {pose.position, normalized(pose.orientation)}, {}, 0.0f};
+}
+WorldShape world_shape(const ShapePlace& place) { return world_shape(place.shape, place.pose); }
+WorldShape world_shape(const ShapeCast& cast) {
+  WorldShape out = world_shape(cast.shape, cast.pose);
+  out.way = cast.way;
+  out.skin = cast.skin;
+  return out;
+}
+
+// -------------------------------------------------------------------------------------------------------------- answers
+
+// Who answers: what all public answers begin with.
+template <class Answer>
+Answer named(const RigidWorld& w, std::uint32_t shape, std::uint32_t triangle) {
+  Answer answer;
+  answer.body = body_id(w, w.shapes.bodies[shape]);
+  answer.shape = shape_id(w, shape);
+  for (const ShapeId id : w.bodies.shapes[answer.body.index]) {
+    if (id == answer.shape) break;
+    ++answer.sub_shape;
+  }
+  answer.triangle = triangle == kNoTriangle ? -1 : std::int32_t(triangle);
+  return answer;
+}
+CastHit public_answer(const RigidWorld& w, const ShapeHit& hit) {
+  auto out = named<CastHit>(w, hit.shape, hit.triangle);
+  out.point = hit.point;
+  out.normal = hit.normal;
+  out.fraction = hit.fraction;
+  out.inside = hit.inside;
+  out.depth = hit.depth;
+  return out;
+}
+ClosestPoint public_answer(const RigidWorld& w, const ShapeNear& near) {
+  auto out = named<ClosestPoint>(w, near.shape, near.triangle);
+  out.point = near.point;
+  out.own_point = near.own_point;
+  out.normal = near.normal;
+  out.distance = near.distance;
+  return out;
+}
+Penetration public_answer(const RigidWorld& w, const ShapePenetration& deep) {
+  auto out = named<Penetration>(w, deep.shape, deep.triangle);
+  out.point = deep.point;
+  out.normal = deep.normal;
+  out.depth = float(deep.depth);
+  return out;
+}
+
+double measure(const CastHit& hit) { return hit.fraction; }
+double measure(const ClosestPoint& near) { return near.distance; }
+double measure(const Penetration& deep) { return -double(deep.depth); }
+double measure(const Overlap&) { return 0.0; }
+
+template <class Answer>
+bool comes_before(const Answer& a, const Answer& b) {
+  if (measure(a) != measure(b)) return measure(a) < measure(b);
+  return a.shape.index != b.shape.index ? a.shape.index < b.shape.index : a.triangle < b.triangle;
+}
+
+// The first answers, in order, as many as there is room for.
+template <class Answer>
+class FirstAnswers {
+ public:
+  explicit FirstAnswers(std::span<Answer> out) : out_(out) {}
+
+  void add(const Answer& answer) {
+    ++count_;
+    std::size_t place = kept_;
+    while (place > 0 && comes_before(answer, out_[place - 1])) --place;
+    if (place == out_.size()) return;
+    if (kept_ < out_.size()) ++kept_;
+    for (std::size_t i = kept_ - 1; i > place; --i) out_[i] = out_[i - 1];
+    out_[place] = answer;
+  }
+  std::size_t count() const { return count_; }
+
+ private:
+  std::span<Answer> out_;
+  std::size_t kept_ = 0, count_ = 0;
+};
+
+void cast(const QueryInput& input, const Ray& ray, HitVisit found) {
+  cast_ray(input, {ray.origin, ray.way}, found);
+}
+void cast(const QueryInput& input, const ShapeCast& shape, HitVisit found) {
+  cast_shape(input, world_shape(shape), found);
+}
+
+// Of the nearest hit; an empty one if there is none.
+template <class Question>
+CastHit nearest_hit(const WorldState& s, const Question& question, const QueryFilter& filter) {
+  ShapeHit nearest;
+  bool any = false;
+  ask_world(s, filter, [&](const QueryInput& input) {
+    cast(input, question, [&](const ShapeHit& hit) {
+      const bool equal = any && hit.fraction == nearest.fraction;
+      if (!any || hit.fraction < nearest.fraction || (equal && hit.shape < nearest.shape)) nearest = hit;
+      any = true;
+      return nearest.fraction;
+    });
+  });
+  return any ? public_answer(s.rigid, nearest) : CastHit{};
+}
+
+template <class Question>
+bool hits_any(const WorldState& s, const Question& question, const QueryFilter& filter) {
+  bool any = false;
+  ask_world(s, filter, [&](const QueryInput& input) {
+    cast(input, question, [&](const ShapeHit&) {
+      any = true;
+      return -1.0;
+    });
+  });
+  return any;
+}
+
+template <class Question>
+std::size_t all_hits(const WorldState& s, const Question& question, std::span<CastHit> out,
+                     const QueryFilter& filter) {
+  FirstAnswers<CastHit> answers(out);
+  ask_world(s, filter, [&](const QueryInput& input) {
+    cast(input, question, [&](const ShapeHit& hit) {
+      answers.add(public_answer(s.rigid, hit));
+      return 1.0;
+    });
+  });
+  return answers.count();
+}
+
+ClosestPoint nearest_point(const WorldState& s, const ShapePlace& place, double max_distance,
+                           const QueryFilter& filter) {
+  ShapeNear nearest;
+  bool any = false;
+  ask_world(s, filter, [&](const QueryInput& input) {
+    any = find_nearest_shape(input, world_shape(place), max_distance, nearest);
+  });
+  return any ? public_answer(s.rigid, nearest) : ClosestPoint{};
+}
+
+// Calls `found` for each shape within the distance, until it says false.
+template <class Found>
+void for_each_near(const WorldState& s, const ShapePlace& place, double max_distance,
+                   const QueryFilter& filter, Found&& found) {
+  ask_world(s, filter,
+            [&](const QueryInput& input) { find_near(input, world_shape(place), max_distance, found); });
+}
+
+// Checks a single question and gets the world ready for it.
+template <class Question>
+bool is_ready(WorldState& s, const Question& question) {
+  if (s.stepping || !is_fine(check_question(question))) return false;
+  show_changes(s);
+  return true;
+}
+
+// Answers many questions: answer(question) for each, over the workers, or alone if they are busy.
+template <class Question, class Answer, class Ask>
+Error answer_all(WorldState& s, std::span<const Question> questions, std::span<Answer> out, Ask&& ask) {
+  if (s.stepping) return make_error(ErrorCode::busy, "the world is in the middle of a step");
+  if (questions.size() != out.size()) {
+    return make_error(ErrorCode::invalid_argument, "%zu questions but room for %zu answers", questions.size(),
+                      out.size());
+  }
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    const Error e = check_question(questions[i]);
+    if (!is_fine(e)) return make_error(e.code, "question %zu: %.200s", i, e.message);
+  }
+  show_changes(s);
+  const std::unique_lock<std::mutex> workers(s.batch_lock, std::try_to_lock);
+  constexpr std::size_t kMost = 1u << 30;  // what a loop in blocks can count
+  for (std::size_t first = 0; first < questions.size(); first += kMost) {
+    const auto count = int(min(questions.size() - first, kMost));
+    const auto answer_some = [&](int begin, int end, int) {
+      for (int i = begin; i < end; ++i) out[first + std::size_t(i)] = ask(questions[first + std::size_t(i)]);
+    };
+    if (workers.owns_lock()) {
+      for_blocks(*s.tasks, count, kBlock, answer_some);
+    } else {
+      const FloatMode mode;
+      answer_some(0, count, 0);
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Error check_ray(const Ray& ray) {
+  const Error e = check_vector("ray", "origin", ray.origin);
+  return is_fine(e) ? check_vector("ray", "way", DVec3(ray.way)) : e;
+}
+Error check_shape_cast(const ShapeCast& cast) {
+  Error e = check_place("shape cast", cast.shape, cast.pose);
+  if (is_fine(e)) e = check_vector("shape cast", "way", DVec3(cast.way));
+  if (!is_fine(e) || (is_finite(cast.skin) && cast.skin >= 0.0f)) return e;
+  return make_error(ErrorCode::invalid_argument, "shape cast: skin is %g m; it must be finite and 0 or more",
+                    double(cast.skin));
+}
+Error check_shape_place(const ShapePlace& place) {
+  return check_place("shape place", place.shape, place.pose);
+}
+
+std::optional<CastHit> World::cast_ray(DVec3 origin, Vec3 way, const QueryFilter& filter) const {
+  const FloatMode mode;
+  const Ray ray{origin, way};
+  if (!is_ready(*state_, ray)) return {};
+  const CastHit hit = nearest_hit(*state_, ray, filter);
+  return hit ? std::optional(hit) : std::nullopt;
+}
+bool World::ray_hits(DVec3 origin, Vec3 way, const QueryFilter& filter) const {
+  const FloatMode mode;
+  const Ray ray{origin, way};
+  return is_ready(*state_, ray) && hits_any(*state_, ray, filter);
+}
+std::size_t World::cast_ray_all(DVec3 origin, Vec3 way, std::span<CastHit> out,
+                                const QueryFilter& filter) const {
+  const FloatMode mode;
+  const Ray ray{origin, way};
+  return is_ready(*state_, ray) ? all_hits(*state_, ray, out, filter) : 0;
+}
+
+std::optional<CastHit> World::cast_shape(const ShapeCast& cast, const QueryFilter& filter) const {
+  const FloatMode mode;
+  if (!is_ready(*state_, cast)) return {};
+  const CastHit hit = nearest_hit(*state_, cast, filter);
+  return hit ? std::optional(hit) : std::nullopt;
+}
+bool World::shape_hits(const ShapeCast& cast, const QueryFilter& filter) const {
+  const FloatMode mode;
+  return is_ready(*state_, cast) && hits_any(*state_, cast, filter);
+}
+std::size_t World::cast_shape_all(const ShapeCast& cast, std::span<CastHit> out,
+                                  const QueryFilter& filter) const {
+  const FloatMode mode;
+  return is_ready(*state_, cast) ? all_hits(*state_, cast, out, filter) : 0;
+}
+
+bool World::overlaps(const ShapePlace& place, const QueryFilter& filter) const {
+  const FloatMode mode;
+  bool any = false;
+  if (!is_ready(*state_, place)) return false;
+  for_each_near(*state_, place, 0.0, filter, [&](const ShapeNear&) { return !(any = true); });
+  return any;
+}
+std::size_t World::find_overlaps(const ShapePlace& place, std::span<Overlap> out,
+                                 const QueryFilter& filter) const {
+  const FloatMode mode;
+  FirstAnswers<Overlap> answers(out);
+  if (!is_ready(*state_, place)) return 0;
+  for_each_near(*state_, place, 0.0, filter, [&](const ShapeNear& near) {
+    answers.add(named<Overlap>(state_->rigid, near.shape, near.triangle));
+    return true;
+  });
+  return answers.count();
+}
+
+std::optional<ClosestPoint> World::closest_point(const ShapePlace& place, double max_distance,
+                                                 const QueryFilter& filter) const {
+  const FloatMode mode;
+  if (!is_fine(check_distance(max_distance)) || !is_ready(*state_, place)) return {};
+  const ClosestPoint nearest = nearest_point(*state_, place, max_distance, filter);
+  return nearest ? std::optional(nearest) : std::nullopt;
+}
+std::size_t World::find_closest(const ShapePlace& place, double max_distance, std::span<ClosestPoint> out,
+                                const QueryFilter& filter) const {
+  const FloatMode mode;
+  FirstAnswers<ClosestPoint> answers(out);
+  if (!is_fine(check_distance(max_distance)) || !is_ready(*state_, place)) return 0;
+  for_each_near(*state_, place, max_distance, filter, [&](const ShapeNear& near) {
+    answers.add(public_answer(state_->rigid, near));
+    return true;
+  });
+  return answers.count();
+}
+
+std::size_t World::find_penetrations(const ShapePlace& place, std::span<Penetration> out,
+                                     const QueryFilter& filter) const {
+  const FloatMode mode;
+  FirstAnswers<Penetration> answers(out);
+  if (!is_ready(*state_, place)) return 0;
+  ask_world(*state_, filter, [&](const QueryInput& input) {
+    gyre::find_penetrations(input, world_shape(place), [&](const ShapePenetration& deep) {
+      answers.add(public_answer(state_->rigid, deep));
+    });
+  });
+  return answers.count();
+}
+
+Error World::cast_rays(std::span<const Ray> rays, std::span<CastHit> out, const QueryFilter& filter) const {
+  return answer_all(*state_, rays, out, [&](const Ray& ray) { return nearest_hit(*state_, ray, filter); });
+}
+Error World::cast_shapes(std::span<const ShapeCast> casts, std::span<CastHit> out,
+                         const QueryFilter& filter) const {
+  return answer_all(*state_, casts, out,
+                    [&](const ShapeCast& cast) { return nearest_hit(*state_, cast, filter); });
+}
+Error World::closest_points(std::span<const ShapePlace> places, double max_distance,
+                            std::span<ClosestPoint> out, const QueryFilter& filter) const {
+  const Error e = check_distance(max_distance);
+  if (!is_fine(e)) return e;
+  return answer_all(*state_, places, out, [&](const ShapePlace& place) {
+    return nearest_point(*state_, place, max_distance, filter);
+  });
+}
+Error World::count_overlaps(std::span<const ShapePlace> places, std::span<std::uint32_t> counts,
+                            const QueryFilter& filter) const {
+  return answer_all(*state_, places, counts, [&](const ShapePlace& place) {
+    std::uint32_t count = 0;
+    for_each_near(*state_, place, 0.0, filter, [&](const ShapeNear&) {
+      ++count;
+      return true;
+    });
+    return count;
+  });
+}
+
+}  // namespace gyre
