@@ -11,9 +11,12 @@ namespace {
 constexpr double kRounding = 1.0e-6;
 constexpr float kBoxSlack = 1.0e-3f;  // bounds() of a disc seen from the side loses half of a float's digits
 
-// From two cores to two surfaces.
-bool finish(const CoreDistance& near, double radius_a, double radius_b, double max_distance, Nearest& out) {
+// From the distance of two cores to that of two surfaces.
+bool finish(const CorePair& pair, double radius_a, double radius_b, double max_distance, Nearest& out) {
   const double radii = radius_a + radius_b;
+  // Looks a little farther than asked: hulls choose their support points in float.
+  const double reach = (max_distance + radii) * (1.0 + kRounding) + kRounding * pair.size();
+  const CoreDistance near = core_distance(pair, reach, {});
   if (near.beyond || near.distance - radii > max_distance) return false;
   out.normal = near.normal;
   out.overlap = near.overlap || near.distance <= radii;
@@ -48,9 +51,7 @@ bool nearest_of_triangle(const SurfaceTriangle& triangle, const PlacedShape& con
   const DVec3 corners[3] = {{}, DVec3(triangle.b) - pivot, DVec3(triangle.c) - pivot};
   const CorePair pair(corners, *convex.shape, convex.position - pivot, convex.orientation);
   const auto radius = double(core_radius(*convex.shape));
-  if (!finish(core_distance(pair, max_distance + radius, {}), 0.0, radius, max_distance,
-              out))
-    return false;
+  if (!finish(pair, 0.0, radius, max_distance, out)) return false;
   out.on_target += pivot;
   out.on_convex += pivot;
   return true;
@@ -159,8 +160,7 @@ bool find_nearest(const Shape& target, const PlacedShape& convex, double max_dis
   if (!is_convex(target.kind)) return SurfaceSearch(target, convex, max_distance).run(out);
   const CorePair pair(target, *convex.shape, convex.position, convex.orientation);
   const auto radius_a = double(core_radius(target)), radius_b = double(core_radius(*convex.shape));
-  return finish(core_distance(pair, max_distance + radius_a + radius_b, {}), radius_a,
-                radius_b, max_distance, out);
+  return finish(pair, radius_a, radius_b, max_distance, out);
 }
 
 }  // namespace gyre
