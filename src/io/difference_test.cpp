@@ -1,6 +1,7 @@
 #include "io/difference.h"
 
 #include "determinism/scenes.h"
+#include "memory_sink.h"
 
 #include <gtest/gtest.h>
 
@@ -106,14 +107,6 @@ TEST(FirstDifference, NoneBetweenThreadsAndWidths) {
   EXPECT_EQ(found->step, UINT64_MAX) << found->stage << " " << found->column << " " << found->row;
   EXPECT_FALSE(first_difference({}, a, b, 1, 0.01f));
 }
-
-struct MemorySink final : ByteSink {
-  bool write(std::span<const std::byte> more) override {
-    bytes.insert(bytes.end(), more.begin(), more.end());
-    return true;
-  }
-  std::vector<std::byte> bytes;
-};
 
 TEST(FirstDifference, OfARecordingMadeWithAFault) {
   World world = *World::create();

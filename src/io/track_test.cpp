@@ -3,9 +3,7 @@
 #include "io/chunks.h"
 #include "io/track_writer.h"
 
-#include "determinism/scenes.h"
-
-#include <gyre/replay.h>
+#include "determinism/record_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -19,14 +17,6 @@ namespace {
 using scenes::kScenes;
 using scenes::Scene;
 using scenes::step_scene;
-
-struct MemorySink final : ByteSink {
-  bool write(std::span<const std::byte> more) override {
-    bytes.insert(bytes.end(), more.begin(), more.end());
-    return true;
-  }
-  std::vector<std::byte> bytes;
-};
 
 constexpr RecordOptions kPosesOnly{.commands = false};
 
@@ -78,17 +68,10 @@ struct Recorded {
 };
 Recorded record(const Scene& scene, int steps, const RecordOptions& options = {}, const WorldDef& def = {}) {
   Recorded recorded;
-  World world = *World::create(def);
-  scene.build(world);
-  MemorySink sink;
-  Recorder recorder(world, sink, options);
-  recorded.looks.push_back(look_at(world));
-  for (int i = 0; i < steps; ++i) {
-    step_scene(scene, world, i);
-    recorded.looks.push_back(look_at(world));
-  }
-  EXPECT_TRUE(recorder.finish());
-  recorded.bytes = std::move(sink.bytes);
+  recorded.bytes =
+      scenes::record_scene(scene, steps, {.options = options, .world = def},
+                           [&](const World& world) { recorded.looks.push_back(look_at(world)); });
+  EXPECT_FALSE(recorded.bytes.empty());
   return recorded;
 }
 

@@ -2,20 +2,12 @@
 // no part of either if it does not.
 #include "determinism/scenes.h"
 #include "laws/kit.h"
+#include "memory_sink.h"
 
 #include <gyre/debug.h>
-#include <gyre/replay.h>
 
 namespace gyre::laws {
 namespace {
-
-struct MemorySink final : ByteSink {
-  bool write(std::span<const std::byte> more) override {
-    bytes.insert(bytes.end(), more.begin(), more.end());
-    return true;
-  }
-  std::vector<std::byte> bytes;
-};
 
 void expect_equal(const WorldDef& a, const WorldDef& b) {
   EXPECT_EQ(a.gravity, b.gravity);

@@ -3,9 +3,9 @@
 //
 // The goldens change when the engine's numbers change on purpose: then tests/determinism/update_golden.sh writes them anew.
 #include "determinism/scenes.h"
+#include "memory_sink.h"
 
 #include <gyre/debug.h>
-#include <gyre/replay.h>
 
 #include <gtest/gtest.h>
 
@@ -130,14 +130,6 @@ TEST_P(Determinism, SameAcrossASnapshot) {
   ASSERT_TRUE(second) << second.error().message;
   EXPECT_TRUE(follows_golden(GetParam(), *second, kSteps / 2, kSteps));
 }
-
-struct MemorySink final : ByteSink {
-  bool write(std::span<const std::byte> more) override {
-    bytes.insert(bytes.end(), more.begin(), more.end());
-    return true;
-  }
-  std::vector<std::byte> bytes;
-};
 
 TEST_P(Determinism, SameWhenARecordingIsPlayed) {
   MemorySink sink;

@@ -6,8 +6,7 @@
 #include "determinism/random_world.h"
 
 #include "base/hash.h"
-
-#include <gyre/replay.h>
+#include "memory_sink.h"
 
 #include <gtest/gtest.h>
 
@@ -91,14 +90,6 @@ Seen look(const World& world) {
 }
 
 // ------------------------------------------------------------------------------------------------------ the reference
-
-struct MemorySink final : ByteSink {
-  bool write(std::span<const std::byte> more) override {
-    bytes.insert(bytes.end(), more.begin(), more.end());
-    return true;
-  }
-  std::vector<std::byte> bytes;
-};
 
 // Where a run can be taken up again: the state and who drives it on.
 struct Bookmark {

@@ -1,10 +1,10 @@
 // Any calls in any order with any arguments: nothing crashes, what can be read is finite, and a recording of it all plays
 // back to the same bits with other threads and another width.
 #include "../determinism/scenes.h"
+#include "../memory_sink.h"
 #include "edits.h"
 
 #include <gyre/debug.h>
-#include <gyre/replay.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -13,14 +13,6 @@ namespace {
 
 using namespace gyre;
 using fuzz::Input;
-
-struct MemorySink final : ByteSink {
-  bool write(std::span<const std::byte> more) override {
-    bytes.insert(bytes.end(), more.begin(), more.end());
-    return true;
-  }
-  std::vector<std::byte> bytes;
-};
 
 float number(Input& in) {
   const std::uint8_t kind = in.byte();

@@ -1,23 +1,14 @@
 // Recordings from outside: refused, or played to their end and back, the same each time. Their tracks: fuzz_track.cpp.
+#include "../memory_sink.h"
 #include "edits.h"
 #include "io/chunks.h"
 #include "small_scene.h"
-
-#include <gyre/replay.h>
 
 #include <cstdlib>
 
 namespace {
 
 using namespace gyre;
-
-struct MemorySink final : ByteSink {
-  bool write(std::span<const std::byte> more) override {
-    bytes.insert(bytes.end(), more.begin(), more.end());
-    return true;
-  }
-  std::vector<std::byte> bytes;
-};
 
 // The scene itself from its snapshot, then a command of every kind.
 const std::vector<std::byte>& good_recording() {

@@ -1,25 +1,16 @@
 // Tracks from outside: refused, or looked at forward and back, the same each time; and the bits of a single frame.
+#include "../memory_sink.h"
 #include "base/hash.h"
 #include "edits.h"
 #include "io/chunks.h"
 #include "io/track_coder.h"
 #include "small_scene.h"
 
-#include <gyre/replay.h>
-
 #include <cstdlib>
 
 namespace {
 
 using namespace gyre;
-
-struct MemorySink final : ByteSink {
-  bool write(std::span<const std::byte> more) override {
-    bytes.insert(bytes.end(), more.begin(), more.end());
-    return true;
-  }
-  std::vector<std::byte> bytes;
-};
 
 // Bodies of every kind that come, go and change, over two keyframes.
 const std::vector<std::byte>& good_track() {
