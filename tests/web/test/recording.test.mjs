@@ -18,9 +18,17 @@ for (let i = 0; i < STEPS; i++) {
   places.push(Array.from(scene.bodies().positions));
 }
 const whole = Buffer.from(recorder.finish());
+const recordAgain = (options) => {
+  const again = gyre.openScene(readFileSync(join(root, 'scenes/machines.gyre.json'), 'utf8'));
+  const other = again.record(options);
+  for (let i = 0; i < STEPS; i++) again.step();
+  return Buffer.from(other.finish());
+};
+const poses = recordAgain({ commands: false });
+const energies = (({ kinetic, potential, elastic }) => ({ kinetic, potential, elastic }))(scene.energy());
 gyre.close();
 
-const viewer = viewerTests({ files: { 'whole.gyrec': whole, 'cut.gyrec': whole.subarray(0, Math.floor(0.7 * whole.length)) } });
+const viewer = viewerTests({ files: { 'whole.gyrec': whole, 'cut.gyrec': whole.subarray(0, Math.floor(0.7 * whole.length)), 'poses.gyrec': poses } });
 
 // The largest difference of any coordinate to the world that was recorded.
 async function farthest(page, step) {
@@ -50,5 +58,45 @@ test('a recording that was cut off plays up to its last whole frame', async (t) 
   assert.ok(lastStep > 0 && lastStep < STEPS, `${lastStep} frames`);
   await page.evaluate((last) => window.gyre.seek(last), lastStep);
   assert.ok((await farthest(page, lastStep)) < 1.2 * ACCURACY);
+  viewer.noErrors(page);
+});
+
+const NEEDS_WORLD = ['contacts', 'friction', 'bounds', 'tree', 'islands', 'joints'];
+
+test('a recording with commands has everything inside that the live scene has', async (t) => {
+  const page = await viewer.open(t, 'file=/files/whole.gyrec&play=0&quality=low', { width: 640, height: 400 });
+  await page.evaluate((names) => names.forEach((name) => window.gyre.overlay(name, true)), NEEDS_WORLD);
+  await page.evaluate((last) => window.gyre.seek(last), STEPS);
+  const inside = () => page.evaluate(() => {
+    const { overlays, stats, links } = window.gyre.viewer.playback.frame;
+    return { contacts: overlays.contacts.scales.length, boxes: overlays.bounds.length, nodes: overlays.tree.depths.length, joints: overlays.joints.rigid.length, islands: overlays.islands.length, links: links.length, stats };
+  });
+  const end = await inside();
+  const { kinetic, potential, elastic } = end.stats;
+  assert.deepEqual({ kinetic, potential, elastic }, energies);
+  assert.equal(end.joints, 4);
+  assert.equal(end.links, 6);
+  assert.ok(end.contacts > 0 && end.boxes > 0 && end.nodes > 0 && end.islands > 0);
+  // Back, and again the same: the world goes the way that the poses go.
+  await page.evaluate(() => window.gyre.seek(17));
+  assert.notEqual((await inside()).stats.kinetic, kinetic);
+  await page.evaluate((last) => window.gyre.seek(last), STEPS);
+  assert.deepEqual({ ...(await inside()).stats, stepMs: 0, stageMs: [] }, { ...end.stats, stepMs: 0, stageMs: [] });
+  // The inspector knows what only a world knows.
+  const report = await page.evaluate((key) => window.gyre.viewer.playback.client.request('inspect', { key }), await page.evaluate(() => window.gyre.key('wheel')));
+  assert.ok(report.mass > 0 && report.words.includes('wheel'), report.words);
+  viewer.noErrors(page);
+});
+
+test('a recording of poses says what it lacks', async (t) => {
+  const page = await viewer.open(t, 'file=/files/poses.gyrec&play=0&quality=low', { width: 1000, height: 700 });
+  assert.match(await page.evaluate(() => window.gyre.scene.posesOnly), /looked at only/);
+  await page.keyboard.press('o');
+  assert.match(await page.locator('.panel-body').innerText(), /Only poses are known/);
+  assert.ok(await page.getByRole('switch', { name: /^Contacts/ }).isDisabled());
+  await page.keyboard.press('c');
+  assert.match(await page.locator('.panel-body').innerText(), /no times, energies or contacts/);
+  await page.evaluate(() => window.gyre.seek(40));
+  assert.ok((await farthest(page, 40)) < 1.2 * ACCURACY);
   viewer.noErrors(page);
 });

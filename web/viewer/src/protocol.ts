@@ -86,6 +86,7 @@ export interface SceneDescription {
   engine: string; // one line: build, threads, SIMD
   lastStep: number; // of a recording: its length; of a live scene: 0
   truncated: boolean; // the recording ends before its closing chunk
+  posesOnly: string; // of a recording without a world behind its poses, in words why; empty if there is one
 }
 
 // Sent whenever bodies came or went. Row i of every frame with this number belongs to keys[i].
@@ -160,6 +161,7 @@ export interface Frame {
   velocities: Float32Array; // 6 a row: linear of the centre of mass, angular
   flags: Uint8Array; // BodyFlag a row
   stats: Stats;
+  measured: boolean; // whether a world stands behind the numbers; without, only bodies are counted
   links: Float32Array; // rods, ropes and springs: 6 each, the anchors on a and on b
   overlays: OverlayData;
   settings: RunSettings | null; // as they are at this step; null in a recording

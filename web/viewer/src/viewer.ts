@@ -130,7 +130,7 @@ export class Viewer {
       this.selection.show(store.selected.peek());
       this.painted = false;
     }
-    this.history.add(frame, jumped);
+    if (frame.measured) this.history.add(frame, jumped);
     this.dirty = true;
     this.inspection.follow(frame);
     if (this.painter.changes) this.painted = false;

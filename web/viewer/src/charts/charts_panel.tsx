@@ -42,8 +42,8 @@ export function ChartsPanel({ viewer }: { viewer: Viewer }): JSX.Element {
   const time = column(samples, (sample) => sample.time);
   const mark = store.time.value;
   const common = { mark, version: shown };
-  if (scene && !scene.live) {
-    return <p class="hint">A recording of poses holds no times, energies or contacts. Open the scene itself to see them live.</p>;
+  if (scene?.posesOnly) {
+    return <p class="hint">Only poses are known ({scene.posesOnly}): no times, energies or contacts. They need a recording with commands, or the scene itself.</p>;
   }
   return (
     <>

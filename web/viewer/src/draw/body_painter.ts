@@ -22,8 +22,9 @@ export class BodyPainter {
     const flags = frame.flags[row] ?? 0;
     const awake = (flags & BodyFlag.awake) !== 0;
     const dynamic = (flags & BodyFlag.dynamic) !== 0;
-    if (this.islands) {
-      const island = frame.overlays.islands?.[row] ?? -1;
+    const { islands } = frame.overlays;
+    if (this.islands && islands) {
+      const island = islands[row] ?? -1;
       if (!dynamic) return out.copy(this.theme.fixed);
       (island >= 0 ? numberColor(island, out) : out.copy(this.gray));
       return awake ? out : out.lerp(this.gray, 0.65);

@@ -2,7 +2,7 @@
 import { Vector3 } from 'three';
 import { BodyFlag } from '../protocol';
 import * as store from '../state/store';
-import type { Viewer } from '../viewer';
+import type { Surroundings } from './surroundings';
 
 const CLICK = 5; // pixels that a click may move
 
@@ -19,7 +19,7 @@ export class Pointer {
   private at = { x: 0, y: 0, fresh: false };
   private readonly touches = new Set<number>();
 
-  constructor(private readonly viewer: Viewer) {
+  constructor(private readonly viewer: Surroundings) {
     const element = viewer.stage.renderer.domElement;
     element.addEventListener('pointerdown', (event) => this.down(event));
     element.addEventListener('pointermove', (event) => this.move(event));

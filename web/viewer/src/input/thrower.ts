@@ -2,13 +2,13 @@
 import { Vector3 } from 'three';
 import { throwable, throwSpeed } from '../state/preferences';
 import * as store from '../state/store';
-import type { Viewer } from '../viewer';
+import type { Surroundings } from './surroundings';
 
 const DENSITY = 1500; // kg/m^3
 const NOTHING: [number, number, number] = [0, 0, 0];
 
 export class Thrower {
-  constructor(private readonly viewer: Viewer) {}
+  constructor(private readonly viewer: Surroundings) {}
 
   // As large as suits the scene.
   private get size(): number {

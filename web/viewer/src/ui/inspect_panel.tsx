@@ -25,6 +25,7 @@ export function InspectPanel({ viewer }: { viewer: Viewer }): JSX.Element {
 
 function Report({ report, viewer }: { report: BodyReport; viewer: Viewer }): JSX.Element {
   const live = store.scene.value?.live ?? false;
+  const moving = store.scene.value?.posesOnly === '';
   const dynamic = report.type === 'dynamic';
   return (
     <>
@@ -61,7 +62,7 @@ function Report({ report, viewer }: { report: BodyReport; viewer: Viewer }): JSX
         <dl>
           <Row name="Position">{vector(report.position, 3)} m</Row>
           <Row name="Orientation">{report.rotation.map((value) => fixed(value, 3)).join('  ')}</Row>
-          {live && (
+          {moving && (
             <>
               <Row name="Velocity">{vector(report.linear, 3)} m/s</Row>
               <Row name="Speed">{short(Math.hypot(...report.linear))} m/s</Row>

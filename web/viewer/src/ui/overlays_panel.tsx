@@ -5,15 +5,15 @@ import * as preferences from '../state/preferences';
 import * as store from '../state/store';
 import { Section, Segments, Switch } from './parts';
 
-// What a recording of poses cannot know: it holds no contacts and no tree.
-const IN_RECORDINGS = new Set(['hulls']);
+// What poses alone are enough for.
+const OF_POSES = new Set(['hulls']);
 
 export function OverlaysPanel(): JSX.Element {
   const { overlays, colorBy, quality } = preferences;
-  const live = store.scene.value?.live ?? true;
+  const missing = store.scene.value?.posesOnly ?? '';
   return (
     <>
-      <Section title="Draw" {...(live ? {} : { note: 'A recording holds poses only: contacts, trees and forces are there when the scene is played live.' })}>
+      <Section title="Draw" {...(missing ? { note: `Only poses are known (${missing}). Contacts, trees and forces need a recording with commands, or the scene itself.` } : {})}>
         {overlayKinds.map(({ name, label, hint, key }) => (
           <Switch
             key={name}
@@ -21,7 +21,7 @@ export function OverlaysPanel(): JSX.Element {
             hint={hint}
             shortcut={key}
             on={overlays.value.has(name)}
-            disabled={!live && !IN_RECORDINGS.has(name)}
+            disabled={missing !== '' && !OF_POSES.has(name)}
             onChange={() => preferences.toggleOverlay(name)}
           />
         ))}

@@ -18,13 +18,13 @@ import { Describer } from './describe';
 import { engineWords } from './engine';
 import { extent } from './extent';
 import { Hand } from './hand';
-import { Keys, slotOf, worldPart } from './keys';
+import { Keys, worldPart } from './keys';
 import { Looks } from './looks';
 import { Past } from './past';
 import type { SceneText } from './scene_source';
 import type { Session } from './session';
 import { throwableShape } from './throwables';
-import { readFlags, readLinks, readOverlays, readRows, readStats, reportOn } from './world_reader';
+import { readFlags, readLinks, readOverlays, readRows, readStats, reportOn, withNames } from './world_reader';
 
 const MANY_BODIES = 800; // from here on a second thread pays
 
@@ -144,6 +144,7 @@ export class LiveSession implements Session {
       engine: engineWords(gyre, settings.threads, settings.simdWidth),
       lastStep: this.past.lastStep,
       truncated: false,
+      posesOnly: '',
     };
   }
 
@@ -294,6 +295,7 @@ export class LiveSession implements Session {
         velocities: rows.velocities,
         flags: readFlags(scene, rows.ids, this.types),
         stats: readStats(scene, this.stepMs),
+        measured: true,
         links: readLinks(scene, this.origin),
         overlays: readOverlays(scene, this.overlays, this.origin),
         settings: this.runSettings(),
@@ -338,15 +340,7 @@ export class LiveSession implements Session {
   inspect(key: number): BodyReport | null {
     const id = this.keys.id(key, worldPart(this.ids[0] ?? 0));
     if (!id || !this.scene.bodyExists(id)) return null;
-    return reportOn(this.gyre, this.scene, id, key, this.nameOf(key), this.withNames(this.scene.explain(id).words));
-  }
-
-  // The engine calls bodies by their slots ("body 12"); a visitor knows them by name.
-  private withNames(words: string): string {
-    return words.replace(/\bbody (\d+)\b/g, (text, slot: string) => {
-      const id = this.ids.find((candidate) => slotOf(candidate) === Number(slot));
-      return id === undefined ? text : `“${this.nameOf(this.keys.key(id))}”`;
-    });
+    return reportOn(this.gyre, this.scene, id, key, this.nameOf(key), withNames(this.scene.explain(id).words, this.ids, (other) => this.nameOf(this.keys.key(other))));
   }
 
   // -------------------------------------------------------------------------------------------------------------- settings

@@ -1,5 +1,6 @@
-// A recording that is played: the poses of its track, frame by frame, forward and back. Nothing is simulated.
-import { type Gyre, type PoseTrack, type TrackFrame, BodyType } from 'gyre-physics';
+// A recording that is played: the poses of its track, frame by frame, forward and back. What poses do not tell comes from the world
+// behind them, where the recording holds its commands too (replayed_world.ts).
+import { type Gyre, type PoseTrack, type TrackFrame, type World, BodyType } from 'gyre-physics';
 import {
   type BodyDescription,
   BodyFlag,
@@ -18,13 +19,17 @@ import {
 } from '../protocol';
 import { Describer, typeName } from './describe';
 import { extent } from './extent';
-import { Keys } from './keys';
+import { Keys, placeOf, worldPart } from './keys';
+import { ReplayedWorld } from './replayed_world';
 import type { Session } from './session';
+import { readLinks, readOverlays, readRows, readStats, reportOn, withNames } from './world_reader';
 
 const NO_STATS: Stats = {
   stepMs: 0, stageMs: [], bodies: 0, awake: 0, pairs: 0, touching: 0, contactPoints: 0, kinetic: 0, potential: 0, elastic: 0,
   linear: [0, 0, 0], angular: [0, 0, 0], maxPenetration: 0,
 };
+
+const NEEDS_WORLD: ReadonlySet<OverlayName> = new Set<OverlayName>(['contacts', 'friction', 'bounds', 'tree', 'islands', 'mass', 'joints', 'velocities']);
 
 // What `gyre simulate` writes down beside the poses.
 interface SceneNote {
@@ -43,15 +48,19 @@ export class TrackSession implements Session {
   private readonly sent = new Map<number, number>(); // key to model, as the page knows it
   private set = -1;
   private structure = 0;
+  private readonly behind: ReplayedWorld | string;
+  private overlays: ReadonlySet<OverlayName> = new Set();
+  private weighed = false; // whether the page has been told the masses
 
   constructor(
-    gyre: Gyre,
+    private readonly gyre: Gyre,
     bytes: Uint8Array,
     private readonly file: string,
   ) {
     this.track = gyre.openPoseTrack(bytes);
     this.frames = this.track.frameCount();
     this.models = this.track.models();
+    this.behind = ReplayedWorld.open(gyre, bytes);
     this.describer = new Describer(gyre);
     this.note = readNote(this.track.note('scene'));
     const { positions } = this.track.frame();
@@ -71,7 +80,7 @@ export class TrackSession implements Session {
       origin: this.origin,
       bounds: this.bounds(),
       view: view ? { eye: here(view.eye), target: here(view.target), fieldOfView: view.field_of_view ?? 0.7 } : null,
-      stages: [],
+      stages: this.behind instanceof ReplayedWorld ? this.behind.stages : [],
       settings: {
         gravity: [0, -9.81, 0],
         substeps: 0,
@@ -83,6 +92,7 @@ export class TrackSession implements Session {
       engine: `Poses as recorded, to within ${(1000 * accuracy.position).toPrecision(2)} mm and ${(1000 * accuracy.orientation).toPrecision(2)} mrad`,
       lastStep: this.frames - 1,
       truncated: this.track.truncated(),
+      posesOnly: this.behind instanceof ReplayedWorld ? '' : this.behind,
     };
   }
 
@@ -104,7 +114,8 @@ export class TrackSession implements Session {
 
   frame(fresh = false): FrameMessage {
     const at = this.track.frame();
-    const structure = this.restructure(at, fresh);
+    const world = this.world(at, [...this.overlays].some((name) => NEEDS_WORLD.has(name)));
+    const structure = this.restructure(at, world, fresh);
     const count = at.ids.length;
     const flags = new Uint8Array(count);
     for (let row = 0; row < count; row++) {
@@ -118,16 +129,26 @@ export class TrackSession implements Session {
         lastStep: this.frames - 1,
         structure: this.structure,
         poses: this.poses(at),
-        velocities: new Float32Array(6 * count),
+        velocities: world ? readRows(world, this.origin).velocities : new Float32Array(6 * count),
         flags,
-        stats: { ...NO_STATS, bodies: count, awake: at.awake.reduce((sum, awake) => sum + awake, 0) },
-        links: new Float32Array(0),
-        overlays: {},
+        stats: world ? readStats(world, (this.behind as ReplayedWorld).stepMs) : { ...NO_STATS, bodies: count, awake: at.awake.reduce((sum, awake) => sum + awake, 0) },
+        measured: world !== null,
+        links: world ? readLinks(world, this.origin) : new Float32Array(0),
+        overlays: world ? readOverlays(world, this.overlays, this.origin) : {},
         settings: null,
         problem: null,
       },
       structure,
     };
+  }
+
+  // The world at this frame, if there is one and its bodies are those of the frame. `needed`: however long the way there is.
+  private world({ step, ids }: TrackFrame, needed: boolean): World | null {
+    if (!(this.behind instanceof ReplayedWorld)) return null;
+    const world = this.behind.at(Number(step), needed);
+    const own = world?.bodies().ids;
+    if (!world || !own || own.length !== ids.length) return null;
+    return own.every((id, row) => placeOf(id) === placeOf(ids[row]!)) ? world : null;
   }
 
   private poses({ ids, positions, orientations }: TrackFrame): Float32Array {
@@ -139,33 +160,41 @@ export class TrackSession implements Session {
     return poses;
   }
 
-  private restructure(at: TrackFrame, fresh: boolean): Structure | null {
-    if (at.setVersion === this.set && !fresh) return null;
+  private restructure(at: TrackFrame, world: World | null, fresh: boolean): Structure | null {
+    const weigh = world !== null && !this.weighed;
+    if (at.setVersion === this.set && !fresh && !weigh) return null;
     this.set = at.setVersion;
-    if (fresh) this.sent.clear();
+    if (fresh || weigh) this.sent.clear();
+    this.weighed = world !== null;
     const keys = Uint32Array.from(at.ids, (id) => this.keys.key(id));
     const added: BodyDescription[] = [];
     keys.forEach((key, row) => {
       const model = at.models[row]!;
       if (this.sent.get(key) === model) return;
       this.sent.set(key, model);
-      added.push(this.describeBody(at.ids[row]!, key, model));
+      added.push({ ...this.describeBody(at.ids[row]!, key, model), ...(world ? massOf(world, at.ids[row]!) : {}) });
     });
     return { number: ++this.structure, keys, added, surfaces: this.describer.takeSurfaces() };
   }
 
+  private nameOf(id: number): string {
+    return this.track.label(id).name || `body ${this.keys.key(id)}`;
+  }
+
   private describeBody(id: number, key: number, index: number): BodyDescription {
     const model = this.models[index]!;
-    const { name, colors } = this.track.label(id);
+    const { colors } = this.track.label(id);
     const shapes = model.shapes.map((shape, i) => ({
       ...this.describer.shape(shape.geometry, shape.local),
       sensor: shape.sensor,
       color: i < colors.count ? (colors.red[i]! << 16) | (colors.green[i]! << 8) | colors.blue[i]! : null,
     }));
-    return { key, name: name || `body ${key}`, type: typeName(model.type), mass: 0, centerOfMass: [0, 0, 0], inertia: [0, 0, 0, 0, 0, 0], shapes };
+    return { key, name: this.nameOf(id), type: typeName(model.type), mass: 0, centerOfMass: [0, 0, 0], inertia: [0, 0, 0, 0, 0, 0], shapes };
   }
 
-  setOverlays(_names: readonly OverlayName[]): void {} // a track has nothing for them
+  setOverlays(names: readonly OverlayName[]): void {
+    this.overlays = new Set(names);
+  }
 
   configure(_settings: NewWorldSettings): void {
     throw new Error('A recording is played as it was made: its settings cannot be changed.');
@@ -175,10 +204,15 @@ export class TrackSession implements Session {
     const at = this.track.frame();
     const row = at.ids.findIndex((id) => this.keys.key(id) === key);
     if (row < 0) return null;
+    const world = this.world(at, true);
+    if (world) {
+      const id = placeOf(at.ids[row]!) + worldPart(world.bodies().ids[row]!);
+      return reportOn(this.gyre, world, id, key, this.nameOf(id), withNames(world.explain(id).words, at.ids, (other) => this.nameOf(other)));
+    }
     const position = Array.from(at.positions.slice(3 * row, 3 * row + 3)) as DoubleVec3;
     return {
       key,
-      name: this.track.label(at.ids[row]!).name || `body ${key}`,
+      name: this.nameOf(at.ids[row]!),
       type: typeName(this.models[at.models[row]!]!.type),
       awake: at.awake[row] !== 0,
       mass: 0,
@@ -202,8 +236,14 @@ export class TrackSession implements Session {
   }
 
   close(): void {
+    if (this.behind instanceof ReplayedWorld) this.behind.close();
     this.track.dispose();
   }
+}
+
+function massOf(world: World, id: number): Pick<BodyDescription, 'mass' | 'centerOfMass' | 'inertia'> {
+  const { mass, center, inertia } = world.massProperties(placeOf(id) + worldPart(world.bodies().ids[0] ?? 0));
+  return { mass, centerOfMass: center, inertia };
 }
 
 function readNote(text: string): SceneNote {

@@ -3,6 +3,7 @@
 import { BodyType, BoxKind, ContactState, type Gyre, JointKind, kNoIsland, type BodyId, type World } from 'gyre-physics';
 import { BodyFlag, type BodyReport, type DoubleVec3, type OverlayData, type OverlayName, type Quat, type Stats, type Vec3 } from '../protocol';
 import { typeName } from './describe';
+import { slotOf } from './keys';
 
 export interface Rows {
   ids: Float64Array;
@@ -105,6 +106,14 @@ export function readOverlays(world: World, names: ReadonlySet<OverlayName>, orig
     };
   }
   return data;
+}
+
+// The engine calls bodies by their slots ("body 12"); a visitor knows them by name.
+export function withNames(words: string, ids: ArrayLike<number>, nameOf: (id: number) => string): string {
+  return words.replace(/\bbody (\d+)\b/g, (text, slot: string) => {
+    const id = Array.prototype.find.call(ids, (candidate: number) => slotOf(candidate) === Number(slot)) as number | undefined;
+    return id === undefined ? text : `“${nameOf(id)}”`;
+  });
 }
 
 export function reportOn(gyre: Gyre, world: World, id: BodyId, key: number, name: string, words: string): BodyReport {
