@@ -8,8 +8,8 @@
 namespace gyre {
 namespace {
 
-// Cells are this many times as large as the median box: larger ones hold too many boxes, smaller ones make boxes lie in
-// too many cells.
+// Cells are this many times as large as a box that three quarters of all do not exceed: larger ones hold too many boxes,
+// smaller ones make boxes lie in too many cells.
 constexpr float kCellsPerBox = 1.5f;
 constexpr std::size_t kSample = 512;
 // The grid is built anew when it holds this many times as much, or as little, as when it was built.
@@ -51,7 +51,7 @@ void HashedGrid::choose_cell_size() {
   }
   merge_sort(std::span(sides, count), std::span(scratch, count), [](float a, float b) { return a < b; });
   // Boxes without any size still need cells that have one.
-  cell_size_ = max(kCellsPerBox * sides[count / 2], 1.0e-6f);
+  cell_size_ = max(kCellsPerBox * sides[count * 3 / 4], 1.0e-6f);
   inverse_size_ = 1.0f / cell_size_;
 }
 

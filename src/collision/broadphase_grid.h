@@ -2,8 +2,8 @@
 // cell that it touches; two boxes are found in the one cell that holds the lower corner of what they have in common. Boxes
 // over too many cells lie in a list of their own and are looked at by all: a grid has one size, and that is its weakness.
 //
-// The cell's size is a small multiple of the median size of the boxes when the grid is built; it is built anew by itself
-// when it has become far larger or smaller.
+// The cell's size follows that of the boxes, the largest quarter left aside, when the grid is built; it is built anew by
+// itself when it holds far more or less than then.
 //
 // Sources: C. Ericson, "Real-Time Collision Detection", 2005, chapter 7.1; M. Teschner et al., "Optimized Spatial Hashing
 // for Collision Detection of Deformable Objects", 2003; J. Amanatides, A. Woo, "A Fast Voxel Traversal Algorithm for Ray
@@ -77,7 +77,7 @@ class HashedGrid {
 
  private:
   static constexpr std::uint32_t kNone = BoxBuckets::kNone;
-  static constexpr std::int64_t kMostCells = 512;           // of one box
+  static constexpr std::int64_t kMostCells = 64;           // of one box
   static constexpr std::int32_t kFarthest = (1 << 20) - 1;  // cells beyond this count as this one
 
   struct Cell {

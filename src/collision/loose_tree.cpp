@@ -44,7 +44,7 @@ void LooseTree<kAxes>::clear() {
   root_ = kNone;
 }
 
-// A first cell around the box, large against its size and against the last digit of its place, so that corners are exact.
+// A first cell around the box, large against the last digit of its place, so that corners are exact.
 template <int kAxes>
 void LooseTree<kAxes>::make_root(const Aabb& box) {
   float size = 0.0f, place = 0.0f;
@@ -53,7 +53,7 @@ void LooseTree<kAxes>::make_root(const Aabb& box) {
     size = max(size, box.high[axis] - box.low[axis]);
     place = max(place, max(absolute(box.low[axis]), absolute(box.high[axis])));
   }
-  const float least = max(size, place * (1.0f / 65536.0f));
+  const float least = max(1.125f * size, place * (1.0f / 65536.0f));
   int level = kLowestLevel;
   float side = side_of_level(level);
   while (side < least && level < kHighestLevel) {
@@ -62,15 +62,23 @@ void LooseTree<kAxes>::make_root(const Aabb& box) {
   }
   Cell cell{};
   cell.side = side;
-  for (int i = 0; i < kAxes; ++i) {
-    cell.low[i] = multiple_below(0.5f * box.low[kAxis[i]] + 0.5f * box.high[kAxis[i]], side);
-  }
+  for (int i = 0; i < kAxes; ++i) cell.low[i] = multiple_below(box.low[kAxis[i]], 0.0625f * side);
   root_ = make_node(cell, level);
+}
+
+// Whether the box has its centre in the cell, and does not reach out too far.
+template <int kAxes>
+bool LooseTree<kAxes>::holds(const Cell& cell, const Aabb& box) {
+  for (int i = 0; i < kAxes; ++i) {
+    const float middle = 0.5f * box.low[kAxis[i]] + 0.5f * box.high[kAxis[i]];
+    if (!(middle >= cell.low[i] && middle <= cell.low[i] + cell.side)) return false;
+  }
+  return gyre::contains(loose_box(cell), box);
 }
 
 template <int kAxes>
 void LooseTree<kAxes>::enlarge_root(const Aabb& box) {
-  while (!gyre::contains(loose_box(nodes_[root_].cell), box) && nodes_[root_].level < kHighestLevel) {
+  while (!holds(nodes_[root_].cell, box) && nodes_[root_].level < kHighestLevel) {
     const std::uint32_t old = root_;
     const Cell small = nodes_[old].cell;
     Cell large{};
@@ -105,6 +113,11 @@ void LooseTree<kAxes>::finish_build() {
 template <int kAxes>
 bool LooseTree<kAxes>::fits_in_child(const Node& node, const Aabb& box, int& lane) const {
   if (node.level <= kLowestLevel) return false;
+  // Where places have no more digits for smaller cells.
+  const float least = 0.125f * node.cell.side;
+  for (const float low : node.cell.low) {
+    if (low + least - low != least) return false;
+  }
   lane = lane_for(node.cell, box);
   return gyre::contains(loose_box(cell_of_child(node.cell, lane)), box);
 }
@@ -150,7 +163,7 @@ void LooseTree<kAxes>::insert(std::uint32_t item, const Aabb& box) {
   make_room(item);
   GYRE_ASSERT(places_[item] == kNone, "the item is not in the tree yet");
   if (root_ == kNone) make_root(box);
-  if (!gyre::contains(loose_box(nodes_[root_].cell), box)) enlarge_root(box);
+  if (!holds(nodes_[root_].cell, box)) enlarge_root(box);
   place(root_, item, box);
   ++size_;
 }

@@ -140,6 +140,7 @@ class LooseTree : public BucketIndex {
     return lane;
   }
 
+  static bool holds(const Cell& cell, const Aabb& box);
   std::uint32_t make_node(const Cell& cell, int level);
   void make_root(const Aabb& box);
   void enlarge_root(const Aabb& box);
