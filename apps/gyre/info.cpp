@@ -1,6 +1,8 @@
-// gyre info: what a scene holds, and the mass properties of each body as the engine found them.
+// gyre info: what a scene holds, the mass properties of each body as the engine found them, and how tight bounding volumes of
+// its meshes are.
 #include "commands.h"
 #include "exit_code.h"
+#include "mesh_bounds.h"
 #include "scene/json_writer.h"
 #include "scene/number_text.h"
 #include "scene/scene_reader.h"
@@ -94,6 +96,7 @@ void print_text(const SceneRunner& runner) {
     out += "  principal        " + vector(principal.moments) + " kg m^2 about " + vector(axes.x) + ", " +
            vector(axes.y) + ", " + vector(axes.z) + "\n";
   }
+  for (const SceneMesh& mesh : scene.meshes) append_mesh_bounds(out, mesh);
   std::fwrite(out.data(), 1, out.size(), stdout);
 }
 
@@ -153,6 +156,9 @@ void print_json(const SceneRunner& runner) {
   json.key("bodies").begin_array();
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) write_body(json, runner, i);
   json.end_array();
+  json.key("meshes").begin_array();
+  for (const SceneMesh& mesh : scene.meshes) write_mesh_bounds(json, mesh);
+  json.end_array();
   json.end_object();
   const std::string text = json.take();
   std::fwrite(text.data(), 1, text.size(), stdout);
@@ -185,7 +191,7 @@ void add_info(CLI::App& app, int& exit_code) {
     bool json = false;
   };
   CLI::App* command =
-      app.add_subcommand("info", "Show what a scene holds, and the mass properties of its bodies");
+      app.add_subcommand("info", "Show what a scene holds, the mass properties of its bodies and the bounds of its meshes");
   const auto options = std::make_shared<Options>();
   command->add_option("SCENE", options->scene, "The scene file (*.gyre.json)")->required()->type_name("");
   command->add_flag("--json", options->json, "Print it as JSON");

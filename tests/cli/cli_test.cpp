@@ -441,6 +441,23 @@ TEST_F(CommandLine, InfoShowsMassProperties) {
   }
 }
 
+TEST_F(CommandLine, InfoShowsHowTightBoundsOfMeshesAre) {
+  // A tetrahedron of a cube's corners fills a third of the cube.
+  write("m.gyre.json", R"({"gyre_scene": 1, "bodies": [], "meshes": {
+      "tetra": {"vertices": [[0,0,0], [1,1,0], [1,0,1], [0,1,1]], "triangles": [[0,1,2], [0,2,3], [0,3,1], [1,3,2]]},
+      "sheet": {"vertices": [[0,0,0], [2,0,0], [0,3,0]], "triangles": [[0,1,2]]}}})");
+  const Finished text = gyre({"info", "m.gyre.json"});
+  EXPECT_EQ(text.code, 0) << text.err;
+  EXPECT_NE(text.out.find("mesh \"tetra\", 4 vertices, 4 triangles"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("no volume"), std::string::npos) << text.out;
+  const Finished json = gyre({"info", "m.gyre.json", "--json"});
+  EXPECT_EQ(json.code, 0);
+  for (const char* key : {"\"volume\": 0.333333", "\"box\": {\"volume\": 1, \"surface_area\": 6, \"times_hull\": 3, ",
+                          "\"hull\": null", "\"times_mesh\": null", "\"k_dop_26\": {"}) {
+    EXPECT_NE(json.out.find(key), std::string::npos) << key << "\n" << json.out;
+  }
+}
+
 TEST_F(CommandLine, SchemaIsPrinted) {
   const Finished done = gyre({"schema"});
   EXPECT_EQ(done.code, 0);
