@@ -6,8 +6,8 @@ from model import BITS, FLAT, LEFT_OUT, NUMBERS, TAKEN_BY_HAND, camel, pascal
 
 HEAD = """// Made by web/bindings/generate.py from the headers in include/gyre; not to be edited. Names are those of C++ in camelCase, and so
 // are the comments.
-import { Handle, type Runtime } from './runtime.js';
-import type { Reader, Writer, Numbers, WritableNumbers, VectorInput, QuaternionInput, Bytes } from './stream.js';
+import { type Answer, Handle, type Runtime } from './runtime.js';
+import type { Writer, Numbers, WritableNumbers, VectorInput, QuaternionInput, Bytes } from './stream.js';
 import type { World } from './world.js';
 
 """
@@ -196,7 +196,7 @@ class TypeScriptWriter:
             lines.append(f"    case {value}:\n")
         lines.append(f"      w.number({parts.index('Geometry')}, 'kind');\n      return w.handle(shape.geometry, 'shape.geometry');\n"
                      "    default:\n      throw w.wrong('shape.kind', (shape as { kind: unknown }).kind, 'one of ShapeKind');\n  }\n}\n\n")
-        lines.append(f"function read{name}(r: Reader): {name} {{\n  switch (r.number()) {{\n")
+        lines.append(f"function read{name}(r: Answer): {name} {{\n  switch (r.number()) {{\n")
         for part in simple:
             lines.append(f"    case {parts.index(part)}:\n      return {{ kind: ShapeKind.{kind(part)}, ...read{part}(r) }};\n")
         lines.append("    default: {\n      const geometry = new Geometry(r.runtime, r.number());\n"
@@ -296,7 +296,7 @@ class TypeScriptWriter:
         return "".join(lines) + "}\n"
 
     def reader(self, name):
-        lines = [f"function read{name}(r: Reader): {name} {{\n"]
+        lines = [f"function read{name}(r: Answer): {name} {{\n"]
         results = []
         for part in self.model.fields(name):
             if self.model.array_of(part.type) == "Pose":
@@ -309,7 +309,7 @@ class TypeScriptWriter:
         return "".join(lines) + f"  return {{ {', '.join(results)} }};\n}}\n"
 
     def columns_reader(self, name):
-        lines = [f"function read{name}Columns(r: Reader): {self.columns_name(name)} {{\n  const count = r.number();\n"]
+        lines = [f"function read{name}Columns(r: Answer): {self.columns_name(name)} {{\n  const count = r.number();\n"]
         for field, _, kind, _ in self.model.leaves(name):
             array, width, _ = self.model.column_type(kind, field)
             if array == "text":

@@ -25,10 +25,11 @@ const recordAgain = (options) => {
   return Buffer.from(other.finish());
 };
 const poses = recordAgain({ commands: false });
+const commands = recordAgain({ poses: false });
 const energies = (({ kinetic, potential, elastic }) => ({ kinetic, potential, elastic }))(scene.energy());
 gyre.close();
 
-const viewer = viewerTests({ files: { 'whole.gyrec': whole, 'cut.gyrec': whole.subarray(0, Math.floor(0.7 * whole.length)), 'poses.gyrec': poses } });
+const viewer = viewerTests({ files: { 'whole.gyrec': whole, 'cut.gyrec': whole.subarray(0, Math.floor(0.7 * whole.length)), 'poses.gyrec': poses, 'commands.gyrec': commands } });
 
 // The largest difference of any coordinate to the world that was recorded.
 async function farthest(page, step) {
@@ -85,6 +86,17 @@ test('a recording with commands has everything inside that the live scene has', 
   // The inspector knows what only a world knows.
   const report = await page.evaluate((key) => window.gyre.viewer.playback.client.request('inspect', { key }), await page.evaluate(() => window.gyre.key('wheel')));
   assert.ok(report.mass > 0 && report.words.includes('wheel'), report.words);
+  viewer.noErrors(page);
+});
+
+test('a recording of commands alone is simulated and then played', async (t) => {
+  const page = await viewer.open(t, 'file=/files/commands.gyrec&play=0&quality=low', { width: 640, height: 400 });
+  assert.equal(await page.evaluate(() => window.gyre.scene.lastStep), STEPS);
+  for (const step of [90, 31, 0]) {
+    await page.evaluate((wanted) => window.gyre.seek(wanted), step);
+    assert.ok((await farthest(page, step)) < 1.2 * ACCURACY, `step ${step} is ${await farthest(page, step)} m off`);
+  }
+  assert.equal(await page.evaluate(() => window.gyre.scene.posesOnly), '');
   viewer.noErrors(page);
 });
 

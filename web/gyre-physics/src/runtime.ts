@@ -1,6 +1,5 @@
 // One loaded engine: its functions, its memory, and the handles of what lives in it.
 import { GyreError, Heap, Reader, Writer } from './stream.js';
-import type { World } from './world.js';
 
 /** Which of the three builds of the engine runs. */
 export type Build = 'simd' | 'threads' | 'plain';
@@ -15,14 +14,17 @@ export interface Engine {
   close(): void;
 }
 
+/** What a call gives back, to be read in order. */
+export type Answer = Reader<Runtime>;
+
 export class Runtime {
   readonly exports: EngineExports;
   readonly build: Build;
   /** Makes the class of worlds; set by it, since it builds on this. */
-  static makeWorld: (runtime: Runtime, pointer: number, owner?: Handle) => World;
+  static makeWorld: (runtime: Runtime, pointer: number, owner?: Handle) => Handle;
 
   private readonly writer: Writer;
-  private readonly reader: Reader;
+  private readonly reader: Answer;
   private readonly registry: FinalizationRegistry<number> | undefined;
   private stopped = '';
 
@@ -44,7 +46,7 @@ export class Runtime {
   }
 
   /** Calls the engine; throws what it refuses. The reader stands at the answer. */
-  call(name: string, pointer: number, extra = 0): Reader {
+  call(name: string, pointer: number, extra = 0): Answer {
     this.writer.handedOver();
     const run = this.exports[`_${name}`];
     if (run === undefined) throw new GyreError(`the engine has no function ${name}`, -1);
@@ -61,8 +63,9 @@ export class Runtime {
     throw new GyreError(reader.text(), code);
   }
 
-  world(pointer: number, owner?: Handle): World {
-    return Runtime.makeWorld(this, pointer, owner);
+  /** `World` is the class that makeWorld makes, which builds on this one and so is not named here. */
+  world<World extends Handle>(pointer: number, owner?: Handle): World {
+    return Runtime.makeWorld(this, pointer, owner) as World;
   }
 
   watch(handle: Handle, pointer: number): void {

@@ -1,6 +1,15 @@
 // Arguments to the engine and answers from it: rows of numbers in the engine's memory (web/bindings/stream.h says how each kind of
 // value is laid out). Nothing here keeps an object per value, and nothing has to be freed.
-import type { Handle, Runtime } from './runtime.js';
+
+/** What rows of numbers need of the engine that they belong to. */
+export interface Calls {
+  readonly exports: Readonly<Record<string, (...numbers: number[]) => number>>;
+}
+/** What can be handed to the engine: something that lives in it. */
+export interface Living {
+  readonly runtime: Calls;
+  readonly pointer: number;
+}
 
 /** Numbers in a row: an array or a typed array. */
 export type Numbers = ArrayLike<number>;
@@ -66,7 +75,7 @@ export class Writer {
   private readonly allocated: number[] = [];
 
   constructor(
-    private readonly runtime: Runtime,
+    private readonly runtime: Calls,
     private readonly heap: Heap,
   ) {}
 
@@ -249,7 +258,7 @@ export class Writer {
     this.bytes(encoder.encode(value), where);
   }
 
-  handle(value: Handle, where: string): void {
+  handle(value: Living, where: string): void {
     if (typeof value !== 'object' || value === null || !('pointer' in value)) {
       throw this.wrong(where, value, 'an object of this package');
     }
@@ -264,13 +273,14 @@ type ArrayKind<T> = {
   readonly BYTES_PER_ELEMENT: number;
 };
 
-export class Reader {
+/** `Owner` is what objects that are read belong to. */
+export class Reader<Owner = unknown> {
   /** Whether arrays are copied: those of calls without an owner are overwritten by the next. */
   copies = false;
   private at = 0;
 
   constructor(
-    readonly runtime: Runtime,
+    readonly runtime: Owner,
     private readonly heap: Heap,
   ) {}
 
@@ -339,7 +349,7 @@ export class Reader {
     return this.copies ? view.slice() : view;
   }
 
-  list<T>(read: (reader: Reader) => T): T[] {
+  list<T>(read: (reader: this) => T): T[] {
     const out = new Array<T>(this.number());
     for (let i = 0; i < out.length; ++i) out[i] = read(this);
     return out;

@@ -4,6 +4,16 @@ import type { Gyre, Replay, World } from 'gyre-physics';
 
 const PATIENCE = 80; // ms that a frame may wait for numbers that nobody asked for
 
+// The track that a recording without one would have: all of it is simulated once.
+export function trackOf(gyre: Gyre, commands: Uint8Array): Uint8Array {
+  const replay = gyre.openReplay(commands);
+  const recorder = replay.world().record({ commands: false });
+  while (replay.step());
+  const track = recorder.finish();
+  replay.dispose();
+  return track;
+}
+
 export class ReplayedWorld {
   private msPerStep = 0.5;
   private readonly firstStep: number;
@@ -23,6 +33,10 @@ export class ReplayedWorld {
     } catch (error) {
       return (error as Error).message;
     }
+  }
+
+  get truncated(): boolean {
+    return this.replay.truncated();
   }
 
   get stages(): string[] {

@@ -1,6 +1,6 @@
 // A recording that is played: the poses of its track, frame by frame, forward and back. What poses do not tell comes from the world
 // behind them, where the recording holds its commands too (replayed_world.ts).
-import { type Gyre, type PoseTrack, type TrackFrame, type World, BodyType } from 'gyre-physics';
+import { type Gyre, type PoseTrack, type TrackFrame, type World, BodyType, ErrorCode, GyreError } from 'gyre-physics';
 import {
   type BodyDescription,
   BodyFlag,
@@ -20,7 +20,7 @@ import {
 import { Describer, typeName } from './describe';
 import { extent } from './extent';
 import { Keys, placeOf, worldPart } from './keys';
-import { ReplayedWorld } from './replayed_world';
+import { ReplayedWorld, trackOf } from './replayed_world';
 import type { Session } from './session';
 import { readLinks, readOverlays, readRows, readStats, reportOn, withNames } from './world_reader';
 
@@ -57,7 +57,7 @@ export class TrackSession implements Session {
     bytes: Uint8Array,
     private readonly file: string,
   ) {
-    this.track = gyre.openPoseTrack(bytes);
+    this.track = openTrack(gyre, bytes);
     this.frames = this.track.frameCount();
     this.models = this.track.models();
     this.behind = ReplayedWorld.open(gyre, bytes);
@@ -91,7 +91,7 @@ export class TrackSession implements Session {
       choices: { solver: [], integrator: [], broadPhase: [], simdWidth: [], maxThreads: 1 },
       engine: `Poses as recorded, to within ${(1000 * accuracy.position).toPrecision(2)} mm and ${(1000 * accuracy.orientation).toPrecision(2)} mrad`,
       lastStep: this.frames - 1,
-      truncated: this.track.truncated(),
+      truncated: this.track.truncated() || (this.behind instanceof ReplayedWorld && this.behind.truncated),
       posesOnly: this.behind instanceof ReplayedWorld ? '' : this.behind,
     };
   }
@@ -238,6 +238,15 @@ export class TrackSession implements Session {
   close(): void {
     if (this.behind instanceof ReplayedWorld) this.behind.close();
     this.track.dispose();
+  }
+}
+
+function openTrack(gyre: Gyre, bytes: Uint8Array): PoseTrack {
+  try {
+    return gyre.openPoseTrack(bytes);
+  } catch (error) {
+    if (!(error instanceof GyreError) || error.code !== ErrorCode.unsupported) throw error;
+    return gyre.openPoseTrack(trackOf(gyre, bytes)); // it holds commands only
   }
 }
 
