@@ -26,7 +26,8 @@ struct ContactHit {
   Vec3 normal{};      // from a to b
   float speed = 0;  // m/s, of approach along the normal
 };
-// Something entered or left a sensor.
+// Something entered or left a sensor. What passes through within one step, however fast, is told to enter and to leave in
+// that step; sensors that are meshes or height fields see only what overlaps them between steps.
 struct SensorTouch {
   ShapeId sensor{}, visitor{};
   bool begins = true;

@@ -8,6 +8,9 @@
 // What a shape touches as the step begins must not hold it: a body that slides would freeze at every step. The solver
 // answers for such pairs; only the core, a ball half as large as the inner one, is swept against them, so that nothing
 // passes all the way. In a mesh or height field this holds for each plane of its triangles by itself.
+//
+// Sensors hold nothing up. What has passed through one within the step is told as a crossing, because no look between steps
+// would see it.
 #pragma once
 
 #include "base/function_ref.h"
@@ -25,7 +28,13 @@ namespace gyre {
 struct FastBody {
   std::uint32_t body = 0;
   bool continuous = false;  // also against dynamic bodies (always against fixed and kinematic ones)
+  float least = 0.0f;       // part of its way that it keeps in any case
 };
+
+// A visitor that a fast body carried through a sensor, or was passed by one: shapes, as the key to sort by.
+inline std::uint64_t crossing_key(std::uint32_t sensor, std::uint32_t visitor) {
+  return std::uint64_t(sensor) << 32 | visitor;
+}
 
 // Whether a motion is far enough to look at: more than this share of the inner radius of the body's thinnest shape.
 constexpr float kFastShare = 0.5f;
@@ -49,13 +58,20 @@ class ContinuousCollision {
   // fractions[i] of the motion of fast[i] is to be kept: 1 where nothing is in the way. Parallel over bodies.
   void clamp_fast_bodies(const ContinuousInput& input, std::span<const FastBody> fast, TaskSystem& tasks,
                          std::span<float> fractions);
+  // Of the last call: crossing_key of each sensor and visitor, in rising order, also of pairs that overlapped from the
+  // start. Convex sensors only.
+  std::span<const std::uint64_t> crossings() const { return crossings_; }
 
  private:
   struct Worker {
     Array<std::uint32_t> found;
+    Array<std::uint64_t> crossings;
     std::unique_ptr<TriangleHull> triangle = std::make_unique<TriangleHull>();
   };
+  void gather_crossings();
+
   Array<Worker> workers_;
+  Array<std::uint64_t> crossings_, sort_scratch_;
 };
 
 }  // namespace gyre

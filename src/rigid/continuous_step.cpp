@@ -17,6 +17,17 @@ Sweep sweep_of_body(const RigidWorld& w, std::uint32_t body) {
   return {origin_pose(w.bodies, body), w.bodies.masses[body].center, moves ? motion.moved : Vec3{}, moves ? motion.turned : Vec3{}};
 }
 
+// What was inside as the step began has been told to begin, and its end is seen when the contact is looked at again.
+void report_crossings(RigidWorld& w, std::span<const std::uint64_t> crossings) {
+  for (const std::uint64_t key : crossings) {
+    const std::uint32_t sensor = std::uint32_t(key >> 32), visitor = std::uint32_t(key);
+    const std::uint32_t slot = find_contact(w.contacts, pair_key(sensor, visitor));
+    if (slot != SlotTable::kNone && w.contacts.contacts[slot].touching != 0) continue;
+    w.events.sensors.push_back({shape_id(w, sensor), shape_id(w, visitor), true});
+    w.events.sensors.push_back({shape_id(w, sensor), shape_id(w, visitor), false});
+  }
+}
+
 }  // namespace
 
 void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, TaskSystem& tasks) {
@@ -26,7 +37,9 @@ void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, 
     const BodyMotion& motion = w.bodies.motion[i];
     const BodyMass& mass = w.bodies.masses[i];
     if (is_fast(motion.moved, motion.turned, mass.reach, mass.size)) {
-      scratch.fast.push_back({i, w.bodies.flags[i].continuous != 0});
+      // What contacts already act on must not be held in the air by a sweep: it keeps a part of its way, and they answer.
+      const float least = w.bodies.flags[i].touched != 0 ? kLeastProgress : 0.0f;
+      scratch.fast.push_back({i, w.bodies.flags[i].continuous != 0, least});
     }
   }
   if (scratch.fast.empty()) return;
@@ -43,11 +56,10 @@ void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, 
   const ContinuousInput input{w.shapes.colliders, w.shapes.proxies, *w.broadphase, w.joints.blocked, sweep_of, shapes_of};
   scratch.fractions.resize(scratch.fast.size());
   scratch.collision.clamp_fast_bodies(input, scratch.fast, tasks, scratch.fractions);
+  report_crossings(w, scratch.collision.crossings());
   for (std::size_t k = 0; k < scratch.fast.size(); ++k) {
     const std::uint32_t i = scratch.fast[k].body;
-    // What contacts already act on must not be held in the air by a sweep: it keeps a part of its way, and they answer.
-    const float least = w.bodies.flags[i].touched != 0 ? kLeastProgress : 0.0f;
-    const float fraction = max(scratch.fractions[k], least);
+    const float fraction = scratch.fractions[k];
     if (!(fraction < 1.0f)) continue;
     w.bodies.orientations[i] = pose_at(sweep_of_body(w, i), double(fraction)).orientation;
     w.bodies.motion[i].moved *= fraction;

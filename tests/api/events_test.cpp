@@ -35,6 +35,50 @@ TEST(Sensor, ReportsWhatPassesAndTouchesNothing) {
   EXPECT_TRUE(world.events().begins.empty());
 }
 
+// A bullet that is before a thin sensor at one step's end and beyond it at the next one's: it has been inside.
+TEST(Sensor, ReportsBulletsThatPassWithinAStep) {
+  for (const float speed : {5.0f, 60.0f, 300.0f, 3000.0f}) {
+    for (const bool moving_gate : {false, true}) {
+      for (int phase = 0; phase < 20; ++phase) {
+        World world = make_world({.gravity = {0, 0, 0}, .threads = 1 + phase % 2});
+        const double start = -2.0 - double(speed) / 60.0 * phase / 20.0;
+        const BodyId still = world.add_body({.pose = {.position = {0, 0, 0}}},
+                                            {.geometry = Box{{0.005f, 2, 2}}, .sensor = !moving_gate});
+        const BodyId bullet =
+            world.add_body({.pose = {.position = {start, 0.1, 0.2}}, .linear_velocity = {speed, 0, 0}},
+                           {.geometry = Sphere{0.02f}, .sensor = moving_gate});
+        // Beside the way, and behind a wall: nothing is reported of these.
+        world.add_body({.type = BodyType::fixed, .pose = {.position = {0, 5, 0}}},
+                       {.geometry = Box{}, .sensor = true});
+        std::vector<bool> seen;
+        for (int i = 0; i < 90; ++i) {
+          world.step(kStep);
+          for (const SensorTouch& t : world.events().sensors) {
+            EXPECT_EQ(t.sensor, world.shapes(moving_gate ? bullet : still)[0]);
+            EXPECT_EQ(t.visitor, world.shapes(moving_gate ? still : bullet)[0]);
+            seen.push_back(t.begins);
+          }
+        }
+        EXPECT_EQ(seen, (std::vector<bool>{true, false})) << "B-32 at " << speed << " m/s, phase " << phase;
+        EXPECT_EQ(world.linear_velocity(bullet), (Vec3{speed, 0, 0}));
+      }
+    }
+  }
+}
+
+TEST(Sensor, BehindAWallSeesNoBullet) {
+  World world = make_world({.gravity = {0, 0, 0}});
+  world.add_body({.type = BodyType::fixed}, {.geometry = Box{{0.01f, 2, 2}}});
+  world.add_body({.type = BodyType::fixed, .pose = {.position = {1, 0, 0}}},
+                 {.geometry = Box{{0.005f, 2, 2}}, .sensor = true});
+  world.add_body({.pose = {.position = {-2, 0, 0}}, .linear_velocity = {300, 0, 0}},
+                 {.geometry = Sphere{0.02f}});
+  for (int i = 0; i < 60; ++i) {
+    world.step(kStep);
+    EXPECT_TRUE(world.events().sensors.empty());
+  }
+}
+
 TEST(Joints, BreakAboveTheirForceAndSaySo) {
   World world = make_world();
   const BodyId weight = world.add_body({.mass = 10.0f}, {.geometry = Box{}});
