@@ -3,6 +3,7 @@
 #include "base/sort.h"
 #include "collision/fat_box.h"
 #include "collision/pair_update.h"
+#include "collision/seam.h"
 #include "rigid/island.h"
 #include "task/parallel.h"
 
@@ -163,6 +164,7 @@ void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds
   });
   const CollideInput input{w.shapes.colliders, looks, centers, w.shapes.proxies};
   collide(w.contacts, input, tasks, w.touches);
+  hide_seams(w.contacts, input, tasks, w.hidden_contacts);
 }
 
 void link_islands(RigidWorld& w) {

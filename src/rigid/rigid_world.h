@@ -62,6 +62,7 @@ struct RigidWorld {
   std::unique_ptr<Broadphase> broadphase;
   bool broadphase_stale = true;        // must be rebuilt from all proxies
   TouchChanges touches;
+  Bitset hidden_contacts;  // those at flush edges, in the last step
   Array<std::uint64_t> new_pairs;
   Array<std::uint64_t> sort_scratch;
   Array<std::uint32_t> listed;         // contacts of a shape that is looked at

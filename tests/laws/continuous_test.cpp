@@ -160,6 +160,153 @@ TEST(Sliding, OverAMeshHasNoBumps) {
   }
 }
 
+// A floor of separate boxes, tops at y = 0 but for `step` on every other one.
+World floor_of_boxes(const AnyShape& tile, double pitch, double half_height, double step = 0.0) {
+  World world = make_world({.sleeping = false});
+  const int n = int(14.0 / pitch);
+  for (int i = -n; i <= n; ++i) {
+    for (int k = -n; k <= n; ++k) {
+      const double y = -half_height + ((i + k) % 2 == 0 ? step : 0.0);
+      world.add_body({.type = BodyType::fixed, .pose = {.position = {pitch * i, y, pitch * k}}},
+                     {.geometry = tile, .material = surface(0.0f)});
+    }
+  }
+  return world;
+}
+std::vector<Slider> more_sliders() {
+  std::vector<Slider> all = sliders();
+  all.push_back({"small sphere", Sphere{0.1f}, 0.1});
+  all.push_back({"capsule", Capsule{0.2f, 0.3f}, 0.5});
+  all.push_back({"cylinder", Cylinder{0.3f, 0.2f}, 0.2});
+  all.push_back({"rounded box", Box{{0.4f, 0.3f, 0.4f}, 0.1f}, 0.3});
+  return all;
+}
+
+TEST(Sliding, OverFlushBoxesHasNoBumps) {
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i)
+    corners.push_back({i & 1 ? 0.5f : -0.5f, i & 2 ? 0.5f : -0.5f, i & 4 ? 0.5f : -0.5f});
+  const AnyShape hull = *cook_hull(corners);
+  for (const Slider& s : more_sliders()) {
+    std::printf("[row] gap 3: flush boxes of 1 m, of 0.7 m, and hulls\n");
+    expect_smooth(s.name, slide(floor_of_boxes(Box{}, 1.0, 0.5), s.shape, s.height));
+    expect_smooth(s.name, slide(floor_of_boxes(Box{{0.35f, 0.35f, 0.35f}}, 0.7, 0.35), s.shape, s.height));
+    expect_smooth(s.name, slide(floor_of_boxes(hull, 1.0, 0.5), s.shape, s.height));
+  }
+}
+
+// Boxes of one fixed body, side by side, are as flush as those of many.
+TEST(Sliding, OverACompoundHasNoBumps) {
+  for (const Slider& s : sliders()) {
+    World world = make_world({.sleeping = false});
+    std::vector<ShapeDef> tiles;
+    for (int i = -12; i <= 12; ++i) {
+      for (int k = -5; k <= 5; ++k)
+        tiles.push_back({.geometry = Box{},
+                         .local = {.position = {float(i), -0.5f, float(k)}},
+                         .material = surface(0.0f)});
+    }
+    world.add_body({.type = BodyType::fixed}, tiles);
+    expect_smooth(s.name, slide(std::move(world), s.shape, s.height));
+  }
+}
+
+// Laid too high or low by a two-hundredth of what slides: no more than that is felt.
+TEST(Sliding, OverBoxesAllButFlushIsNotThrown) {
+  for (const Slider& s : sliders()) {
+    const double step = 0.005 * s.height;
+    const Slide slid = slide(floor_of_boxes(Box{}, 1.0, 0.5, -step), s.shape, s.height);
+    EXPECT_LT(slid.bump, 2.0 * step) << s.name;
+    EXPECT_LT(slid.speed_loss, 0.01) << s.name;
+  }
+}
+
+// Along a wall of separate boxes, pressed against it.
+TEST(Sliding, AlongAWallOfBoxesDoesNotCatch) {
+  for (const AnyShape& shape :
+       {AnyShape(Box{{0.3f, 0.3f, 0.3f}}), AnyShape(Sphere{0.3f}), AnyShape(Capsule{0.3f, 0.3f})}) {
+    World world = make_world({.gravity = {0, 0, -9.81f}, .sleeping = false});
+    for (int i = -12; i <= 12; ++i) {
+      for (int k = -2; k <= 2; ++k)
+        world.add_body({.type = BodyType::fixed, .pose = {.position = {double(i), double(k), -0.5}}},
+                       {.geometry = Box{}, .material = surface(0.0f)});
+    }
+    const BodyId mover =
+        world.add_body({.pose = {.position = {-6.03, 0.2, 0.3}}, .linear_velocity = {6, 0.3f, 0}},
+                       {.geometry = shape, .material = surface(0.0f)});
+    run(world, 1.5);
+    EXPECT_NEAR(double(world.linear_velocity(mover).x), 6.0, 1e-3);
+    EXPECT_NEAR(world.pose(mover).position.x, -6.03 + 9.0, 5e-3);
+    EXPECT_NEAR(world.pose(mover).position.z, 0.3, 1e-3);
+  }
+}
+
+// What is hidden at a seam must not be hidden in a corner: a wall on the floor stops what slides into it, also what reaches
+// it with its lowest edge first.
+TEST(Sliding, IntoACornerStopsAtTheWall) {
+  for (const bool tiles : {false, true}) {
+    for (const float lean : {0.0f, 0.3f, 0.7f, 1.2f}) {
+      for (const float speed : {0.5f, 3.0f, 12.0f}) {
+        World world = tiles ? floor_of_boxes(Box{}, 1.0, 0.5) : make_world({.sleeping = false});
+        if (!tiles) add_ground(world, surface(0.0f));
+        world.add_body({.type = BodyType::fixed, .pose = {.position = {2.5, 0.5, 0}}},
+                       {.geometry = Box{{0.5f, 0.5f, 5}}, .material = surface(0.0f)});
+        const double height = 0.02 * std::cos(double(lean)) + 0.5 * std::sin(double(lean));
+        const BodyId rod = world.add_body(
+            {.pose = {.position = {0, height, 0}, .orientation = from_axis_angle({0, 0, 1}, -lean)},
+             .linear_velocity = {speed, 0, 0}},
+            {.geometry = Box{{0.5f, 0.02f, 0.2f}}, .material = surface(0.0f)});
+        double farthest = -10.0;
+        for (int i = 0; i < 300; ++i) {
+          world.step(kStep);
+          const Pose pose = world.pose(rod);
+          if (pose.position.y > 1.0) break;  // thrown over
+          for (int c = 0; c < 4; ++c) {
+            const DVec3 corner =
+                pose.position + turned(pose.orientation, {c & 1 ? 0.5 : -0.5, c & 2 ? 0.02 : -0.02, 0});
+            if (corner.y < 0.98) farthest = std::max(farthest, corner.x);
+          }
+        }
+        EXPECT_LT(farthest, 2.01) << lean << " " << speed << " " << tiles;
+      }
+    }
+  }
+}
+
+// Fast bodies over rough ground: sweeps leave them their way, and only bumps take their speed.
+TEST(Continuous, DoesNotHoldWhatGoesOverRoughGround) {
+  std::vector<float> heights(400 * 60);
+  std::uint32_t random = 1;
+  for (float& h : heights) {
+    random = random * 1664525u + 1013904223u;
+    h = 0.02f * (float(random >> 8) / 8388608.0f - 1.0f);
+  }
+  const Geometry ground =
+      *cook_height_field({.heights = heights, .columns = 400, .rows = 60, .spacing = 0.25f});
+  for (const AnyShape& shape :
+       {AnyShape(Sphere{0.2f}), AnyShape(Box{{0.2f, 0.1f, 0.2f}}), AnyShape(Box{{0.2f, 0.02f, 0.2f}})}) {
+    for (const float speed : {10.0f, 40.0f}) {
+      World world = make_world({.sleeping = false});
+      world.add_body({.type = BodyType::fixed}, {.geometry = ground, .material = surface(0.0f)});
+      const BodyId body =
+          world.add_body({.pose = {.position = {-45, 0.35, 0.1}}, .linear_velocity = {speed, 0, 0}},
+                         {.geometry = shape, .material = surface(0.0f)});
+      int held = 0;
+      double last = -45.0;
+      for (int i = 0; i < 90; ++i) {
+        const double expected = double(world.linear_velocity(body).x) / 60.0;
+        world.step(kStep);
+        const double x = world.pose(body).position.x;
+        // Where the speed is still there afterwards, the way should have been gone.
+        const bool kept = double(world.linear_velocity(body).x) > 30.0 * expected;
+        held += int(kept && x - last < 0.2 * expected);
+        last = x;
+      }
+      EXPECT_TRUE(limit_row("steps of 90 over rough ground that were held", held, 4, 0)) << speed;
+    }
+  }
+}
+
 TEST(Rest, OnTwoTrianglesEndsInSleep) {
   World world = make_world();
   world.add_body({.type = BodyType::fixed}, {.geometry = floor_mesh(20.0f, 1)});

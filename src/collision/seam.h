@@ -1,0 +1,22 @@
+// Separate bodies laid flush are one surface: what slides from one onto the next must not catch on the edge between them.
+//
+// In: contacts that were just looked at. Out: those of them without points that no surface of the whole would have made.
+//
+// A point p of B with the normal n (out of B) belongs to the surface of the whole only if no body A that holds p goes on
+// beyond p along n: otherwise the way out of B leads through A. For a ball over A, beside the edge of B, the nearest point of
+// the whole is on A. In a corner that is not so although it looks alike: there B rises out of A, along the normal of A's own
+// contact. Both are questions about farthest points, exact for convex bodies; steps of less than kFlush count as none.
+#pragma once
+
+#include "collision/collide.h"
+
+namespace gyre {
+
+// In sizes of the contact: bodies that part or step by less are flush.
+constexpr float kFlush = 0.01f;
+
+// Takes the points from every contact of a moving shape with a resting convex one that another resting convex shape, touched
+// by it too, hides. Such a contact is looked at anew in the next step.
+void hide_seams(ContactStore& store, const CollideInput& input, TaskSystem& tasks, Bitset& hidden);
+
+}  // namespace gyre
