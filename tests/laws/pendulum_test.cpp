@@ -99,6 +99,41 @@ TEST(CompoundPendulum, SmallSwings) {
   }
 }
 
+// A rod of 1 m, all but upright on its hinge, as it falls past the horizontal.
+TEST(FallingRod, PassesTheHorizontalAtItsRateWithItsForces) {
+  World world = make_world({.sleeping = false});
+  const double push = 0.01;
+  BodyDef def =
+      point_body(1.0, {1.0f / 12, 1e-4f, 1.0f / 12}, {0.5 * std::sin(push), 0.5 * std::cos(push), 0});
+  def.pose.orientation = from_axis_angle({0, 0, 1}, float(-push));
+  const BodyId rod = world.add_body(def);
+  const JointId hinge = world.add_joint({.kind = JointKind::hinge, .b = rod, .axis = {0, 0, 1}});
+  double before = 0.0, rate_before = 0.0;
+  Vec3 force_before;
+  for (int i = 0; i < 600; ++i) {
+    world.step(kStep);
+    const DVec3 p = world.pose(rod).position;
+    const double angle = std::atan2(p.x, p.y), rate = -double(world.angular_velocity(rod).z);
+    const Vec3 force = world.joint_reading(hinge).force;
+    if (angle >= 0.5 * kPiDouble) {
+      // The rate at the crossing; the force is the mean over a step, so that of its middle.
+      const double part = (0.5 * kPiDouble - before) / (angle - before);
+      const double crossing = rate_before + part * (rate - rate_before);
+      world.step(kStep);
+      const Vec3 after = world.joint_reading(hinge).force;
+      const float s = float(part) + 0.5f;
+      const Vec3 at =
+          s < 1.0f ? force_before + s * (force - force_before) : force + (s - 1.0f) * (after - force);
+      EXPECT_TRUE(relative_row("A-34 rate at the horizontal", crossing, 5.42494, 5e-3, 2e-4));
+      EXPECT_TRUE(relative_row("A-34 force up (m g)", double(at.y) / kGravity, 0.25, 3e-2, 5e-3));
+      EXPECT_TRUE(relative_row("A-34 force to the hinge (m g)", -double(at.x) / kGravity, 1.5, 3e-2, 5e-3));
+      return;
+    }
+    before = angle, rate_before = rate, force_before = force;
+  }
+  FAIL() << "it did not fall";
+}
+
 TEST(ConicalPendulum, TurnsAtItsRateWithItsTension) {
   World world = make_world({.sleeping = false});
   BodyDef def = point_body(1.0, {1e-3f, 1e-3f, 1e-3f}, {0.5, -std::sqrt(0.75), 0});

@@ -73,6 +73,29 @@ TEST(Spring, StifferThanTheStepGainsNoEnergy) {
   EXPECT_TRUE(limit_row("A-53 energy over start", most / start, 1.01, 1.0001));
 }
 
+// A damped spring is a map with the exact decay and rate, which puts its rest off by the decay of one sub-step. Asleep it
+// stays where it was let alone, below the speed that counts as rest.
+TEST(Spring, SagsByTheWeightOverItsStiffness) {
+  for (const bool sleeping : {false, true}) {
+    World world = make_world({.sleeping = sleeping});
+    const float moment = 0.4f * 0.1f * 0.1f;
+    const BodyId mass = world.add_body(point_body(1.0, {moment, moment, moment}, {0, -1, 0}));
+    world.add_joint({.kind = JointKind::distance,
+                     .b = mass,
+                     .anchor = {0, 0, 0},
+                     .length = 1.0f,
+                     .stiffness = 100.0f,
+                     .damping = 2.0f});
+    run(world, 30.0);
+    const double sag = -1.0 - world.pose(mass).position.y;
+    if (sleeping) {
+      EXPECT_TRUE(row("A-54 sag where it may sleep (m)", sag, 0.0981, 2e-3, 1e-6));
+    } else {
+      EXPECT_TRUE(row("A-54 sag (m)", sag, 0.0981, 1e-3, 1e-6));
+    }
+  }
+}
+
 TEST(Spring, ModesOfTwoMasses) {
   const double omegas[] = {6.1803, 16.1803};
   const double shapes[] = {1.6180, -0.6180};
