@@ -5,6 +5,7 @@
 #include <gyre/math.h>
 #include <gyre/result.h>
 
+#include <cstdint>
 #include <span>
 
 namespace gyre {
@@ -25,6 +26,15 @@ struct ContactHit {
   DVec3 point{};
   Vec3 normal{};      // from a to b
   float speed = 0;  // m/s, of approach along the normal
+  float impulse = 0;           // N s, along the normal, over the whole step and all points with this normal
+  std::int32_t triangle = -1;  // of a mesh or height field, numbered as in CastHit (queries.h); else -1
+};
+// Two shapes touched in the last step and in the one before. Not an event: there may be very many, so World::persisting()
+// lists them for who asks.
+struct ContactPersist {
+  ShapeId shape_a{}, shape_b{};
+  BodyId body_a{}, body_b{};
+  float impulse = 0;  // N s, along the normals, over the last step and all points
 };
 // Something entered or left a sensor. What passes through within one step, however fast, is told to enter and to leave in
 // that step; sensors that are meshes or height fields see only what overlaps them between steps.

@@ -40,6 +40,7 @@ struct ContactPoint {
   float normal_impulse = 0;  // N s, summed over the step
   Vec3 friction_impulse{};   // N s on b, summed over the step; of the whole manifold, at its first point (zero at the others)
   Vec3 relative_velocity{};  // m/s, of b against a at the point, rotation included
+  std::int32_t triangle = -1;  // of a mesh or height field, numbered as in CastHit: the deepest of those with this normal
 };
 
 struct JointReading {
@@ -185,6 +186,9 @@ class World {
 
   // ---------------------------------------------------------------------------------------------------- the last step
   const Events& events() const;  // of the last step
+  // Copies up to out.size() pairs that touched in the last step and in the one before, in a fixed order; returns how many
+  // there are. Pairs that sleep count as touching.
+  std::size_t persisting(std::span<ContactPersist> out) const;
   std::span<const Problem> problems() const;  // since the last step began, the step included
   WorldCounts counts() const;
   double time() const;           // s

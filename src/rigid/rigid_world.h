@@ -82,6 +82,8 @@ inline JointId joint_id(const RigidWorld& w, std::uint32_t joint) {
   return {joint, std::uint16_t(w.joints.ids.generation(joint)), w.world_number};
 }
 
+// The number, as the user gave it, of the triangle that a manifold lies on; -1 if it lies on none.
+std::int32_t public_triangle(const RigidWorld& w, const Contact& contact, const Manifold& manifold);
 // Surface of a pair of shapes: the table's entry, or the combine rules.
 ContactSurface combine_materials(const RigidWorld& w, const Material& a, const Material& b);
 

@@ -100,8 +100,10 @@ void note_hits(const RigidWorld& w, SolveScratch& s) {
     const Manifold& manifold = *s.constraints[i].manifold;
     float fastest = kHitShare * std::sqrt(9.81f * contact.size);
     const ContactPointState* struck = nullptr;
+    float impulse = 0.0f;
     for (int k = 0; k < manifold.count; ++k) {
       const ContactPointState& point = manifold.points[k];
+      impulse += point.total_impulse;
       if (!(point.total_impulse > 0.0f) || !(point.approach_speed > fastest)) continue;
       fastest = point.approach_speed;
       struck = &point;
@@ -110,7 +112,7 @@ void note_hits(const RigidWorld& w, SolveScratch& s) {
     s.hits.push_back({s.constraint_contact[i],
                       {shape_id(w, contact.shape_a), shape_id(w, contact.shape_b), body_id(w, contact.body_a),
                        body_id(w, contact.body_b), w.bodies.places[contact.body_a].center + struck->from_a,
-                       manifold.normal, fastest}});
+                       manifold.normal, fastest, impulse, public_triangle(w, contact, manifold)}});
   }
 }
 

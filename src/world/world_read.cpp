@@ -176,6 +176,7 @@ std::size_t World::contacts(std::span<ContactPoint> out) const {
         point.tangent_1 = any_perpendicular(manifold.normal);
         point.tangent_2 = cross(manifold.normal, point.tangent_1);
         point.separation = from.separation;
+        point.triangle = public_triangle(w, contact, manifold);
         point.normal_impulse = from.total_impulse;
         point.friction_impulse = k == 0 ? manifold.total_friction : Vec3{};
         const BodyMotion& a = w.bodies.motion[contact.body_a];
@@ -183,6 +184,25 @@ std::size_t World::contacts(std::span<ContactPoint> out) const {
         point.relative_velocity = b.linear_velocity + cross(b.angular_velocity, from.from_b) - a.linear_velocity -
                                   cross(a.angular_velocity, from.from_a);
       }
+    }
+  }
+  return count;
+}
+
+std::size_t World::persisting(std::span<ContactPersist> out) const {
+  const FloatMode mode;
+  const RigidWorld& w = state_->rigid;
+  std::size_t count = 0;
+  for (std::uint32_t slot = 0; slot < w.contacts.contacts.size(); ++slot) {
+    const Contact& contact = w.contacts.contacts[slot];
+    if (contact.manifold_room == 0 || contact.touching == 0 || contact.sensor != 0) continue;
+    if (slot < w.touches.began.size() && w.touches.began.test(slot)) continue;
+    if (count++ >= out.size()) continue;
+    ContactPersist& pair = out[count - 1];
+    pair = {shape_id(w, contact.shape_a), shape_id(w, contact.shape_b), body_id(w, contact.body_a),
+            body_id(w, contact.body_b), 0.0f};
+    for (const Manifold& manifold : manifolds_of(w.contacts, contact)) {
+      for (int k = 0; k < manifold.count; ++k) pair.impulse += manifold.points[k].total_impulse;
     }
   }
   return count;

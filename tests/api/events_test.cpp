@@ -79,6 +79,94 @@ TEST(Sensor, BehindAWallSeesNoBullet) {
   }
 }
 
+// A pair begins once, persists from the next step on, and ends once; what it bears is told each step.
+TEST(Events, OfABoxThatLandsRestsAndIsTakenAway) {
+  World world = make_world({.sleeping = false});
+  const BodyId ground = add_ground(world);
+  const BodyId box = world.add_body({.pose = {.position = {0, 0.8, 0}}, .mass = 2.0f}, {.geometry = Box{}});
+  int begins = 0, ends = 0, first = -1;
+  double struck = 0.0;
+  for (int i = 0; i < 120; ++i) {
+    world.step(kStep);
+    begins += int(world.events().begins.size());
+    ends += int(world.events().ends.size());
+    if (begins == 1 && first < 0) first = i;
+    for (const ContactHit& hit : world.events().hits) {
+      struck += double(hit.impulse);
+      EXPECT_EQ(hit.triangle, -1);
+      EXPECT_GT(hit.speed, 1.0f);
+    }
+    ContactPersist pairs[2];
+    const std::size_t count = world.persisting(pairs);
+    EXPECT_EQ(count, first >= 0 && i > first ? 1u : 0u) << i;
+    if (i > 100) {
+      EXPECT_EQ(pairs[0].body_a, ground);
+      EXPECT_EQ(pairs[0].body_b, box);
+      EXPECT_NEAR(double(pairs[0].impulse), 2.0 * kGravity / 60.0, 1e-3) << "it bears the weight";
+    }
+  }
+  EXPECT_EQ(begins, 1);
+  EXPECT_EQ(ends, 0);
+  // The hit takes the momentum of a fall of 0.3 m, and what gravity adds in the step.
+  EXPECT_NEAR(struck, 2.0 * std::sqrt(2.0 * kGravity * 0.3), 2.0 * kGravity / 60.0 + 0.05);
+  world.set_pose(box, {{0, 5, 0}, {}});
+  world.step(kStep);
+  EXPECT_EQ(world.events().ends.size(), 1u);
+  EXPECT_EQ(world.persisting({}), 0u);
+}
+
+TEST(Events, NameTheTriangle) {
+  World world = make_world({.sleeping = false});
+  const Vec3 vertices[] = {{-2, 0, -2}, {-2, 0, 2}, {2, 0, -2}, {2, 0, 2}};
+  const std::uint32_t indices[] = {0, 1, 2, 2, 1, 3};
+  world.add_body({.type = BodyType::fixed}, {.geometry = *cook_mesh({.vertices = vertices, .indices = indices})});
+  world.add_body({.pose = {.position = {-1, 0.8, -1}}}, {.geometry = Sphere{0.5f}});
+  world.add_body({.pose = {.position = {1, 0.8, 1}}}, {.geometry = Sphere{0.5f}});
+  int hits = 0;
+  for (int i = 0; i < 60; ++i) {
+    world.step(kStep);
+    for (const ContactHit& hit : world.events().hits) {
+      ++hits;
+      EXPECT_EQ(hit.triangle, hit.point.x < 0.0 ? 0 : 1);
+    }
+  }
+  EXPECT_EQ(hits, 2);
+  std::vector<ContactPoint> points(world.contacts({}));
+  world.contacts(points);
+  ASSERT_EQ(points.size(), 2u);
+  for (const ContactPoint& point : points) EXPECT_EQ(point.triangle, point.position.x < 0.0 ? 0 : 1);
+}
+
+// Sensors of every type of body see visitors of every other, as far as one of the two can move.
+TEST(Sensor, SeesEveryTypeOfBody) {
+  const BodyType types[] = {BodyType::fixed, BodyType::kinematic, BodyType::dynamic};
+  for (const BodyType sensor_type : types) {
+    for (const BodyType visitor_type : types) {
+      World world = make_world({.gravity = {0, 0, 0}});
+      const bool sensor_moves = visitor_type == BodyType::fixed;
+      const Vec3 way{3, 0, 0};
+      BodyDef sensor{.type = sensor_type, .pose = {.position = {-3, 0, 0}}};
+      BodyDef visitor{.type = visitor_type, .pose = {.position = {3, 0, 0}}};
+      if (sensor_moves && sensor_type != BodyType::fixed) sensor.linear_velocity = way;
+      if (!sensor_moves) visitor.linear_velocity = -way;
+      const BodyId gate = world.add_body(sensor, {.geometry = Box{}, .sensor = true});
+      const BodyId guest = world.add_body(visitor, {.geometry = Box{}});
+      int in = 0, out = 0;
+      for (int i = 0; i < 200; ++i) {
+        world.step(kStep);
+        for (const SensorTouch& touch : world.events().sensors) {
+          EXPECT_EQ(world.body_of(touch.sensor), gate);
+          EXPECT_EQ(world.body_of(touch.visitor), guest);
+          (touch.begins ? in : out) += 1;
+        }
+      }
+      const int expected = sensor_type == BodyType::fixed && visitor_type == BodyType::fixed ? 0 : 1;
+      EXPECT_EQ(in, expected) << int(sensor_type) << " " << int(visitor_type);
+      EXPECT_EQ(out, expected) << int(sensor_type) << " " << int(visitor_type);
+    }
+  }
+}
+
 TEST(Joints, BreakAboveTheirForceAndSaySo) {
   World world = make_world();
   const BodyId weight = world.add_body({.mass = 10.0f}, {.geometry = Box{}});
