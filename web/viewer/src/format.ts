@@ -35,7 +35,7 @@ export function plural(count: number, one: string, many = `${one}s`): string {
   return `${count.toLocaleString('en')} ${count === 1 ? one : many}`;
 }
 
-const SPELLED: Readonly<Record<string, string>> = { bvh: 'BVH', semi_implicit_euler: 'Semi-implicit Euler' };
+const SPELLED: Readonly<Record<string, string>> = { bvh: 'BVH', kd_tree: 'k-d tree', bsp_tree: 'BSP tree', semi_implicit_euler: 'Semi-implicit Euler' };
 
 // soft_step -> Soft step
 export function words(name: string): string {
