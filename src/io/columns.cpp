@@ -51,7 +51,7 @@ void forget_reports(WorldState& state) {
   // What the solver had were constraints of the state that is replaced.
   SolveScratch& solve = state.solve;
   solve.constraints.clear(), solve.constraint_contact.clear(), solve.pairs.clear();
-  solve.joints.clear(), solve.joint_pairs.clear();
+  solve.swept_joints.clear(), solve.joint_pairs.clear();
   solve.manifold_count = solve.joint_count = 0;
   solve.colors = 0;
 }

@@ -1,8 +1,10 @@
 #include "rigid/solve_step.h"
 
+#include "base/check.h"
 #include "base/sort.h"
 #include "rigid/contact_forest.h"
 #include "rigid/integrators.h"
+#include "rigid/linkages.h"
 #include "rigid/projection.h"
 #include "rigid/solve_batches.h"
 #include "task/parallel.h"
@@ -26,6 +28,9 @@ constexpr int kParts = 2;
 // sweeps that lag behind need (the same page). Neither depends on the sub-step.
 constexpr float kJointRate = 40.0f;
 constexpr float kJointLeak = 22.0f;
+// Those of linkages are solved exactly; rows give way by this share of what would move them freely, enough to decide among
+// redundant ones (docs/decisions/joint-trees.md).
+constexpr float kLinkageGive = 1.0e-4f;
 // The fastest that overlap is taken back, as a share of sqrt(gravity * size): falling its own size is a body's natural
 // scale of speed, so the rule holds from millimetres to kilometres.
 constexpr float kPushShare = 0.4f;
@@ -56,6 +61,8 @@ struct Solve {
   JointBodies joint_bodies{};
   std::span<JointWork> joint_work{};
   std::span<JointPlaces> joint_places{};
+  Linkages linkages{};
+  LinkageSolve linkage_solve{};
   std::span<KeptVelocity> kept{};  // of the batch's bodies, while overlap is pushed apart
   ContactForest forest{};
   TreeSolve tree_solve{};
@@ -163,15 +170,17 @@ void gather_contacts(Solve& solve) {
 void gather_joints(Solve& solve) {
   RigidWorld& w = solve.w;
   SolveScratch& s = solve.scratch;
-  s.joints.clear();
+  s.swept_joints.clear();
   s.joint_pairs.clear();
-  for (const std::uint32_t slot : solve.batch.joints) {
+  for (std::uint32_t i = 0; i < solve.batch.joints.size(); ++i) {
+    const std::uint32_t slot = solve.batch.joints[i];
     const JointRecord& joint = w.joints.records[slot];
     const bool active_a = joint.body_a != kNoBody && is_active(w, std::uint32_t(joint.body_a));
     const bool active_b = joint.body_b != kNoBody && is_active(w, std::uint32_t(joint.body_b));
     if (joint.body_a != kNoBody) w.bodies.flags[joint.body_a].touched = 1;
     if (joint.body_b != kNoBody) w.bodies.flags[joint.body_b].touched = 1;
-    s.joints.push_back(slot);
+    if (solve.linkages.swept[i] == 0) continue;
+    s.swept_joints.push_back(i);
     s.joint_pairs.push_back({active_a ? solve.places[std::size_t(joint.body_a)] : ColoringPair::kNone,
                              active_b ? solve.places[std::size_t(joint.body_b)] : ColoringPair::kNone});
   }
@@ -303,14 +312,20 @@ void for_joints(const Group& g, int begin, int end, Fn&& fn) {
   Solve& s = *g.solve;
   const std::uint32_t last = min(std::uint32_t(end * kJointsPerBlock), g.count);
   for (std::uint32_t n = std::uint32_t(begin * kJointsPerBlock); n < last; ++n) {
-    const std::uint32_t i = s.scratch.joint_colors.order[g.first + n];
-    fn(s.w.joints.records[s.scratch.joints[i]], s.joint_work[i], s.joint_places[i]);
+    const std::uint32_t i = s.scratch.swept_joints[s.scratch.joint_colors.order[g.first + n]];
+    fn(s.w.joints.records[s.batch.joints[i]], s.joint_work[i], s.joint_places[i]);
   }
 }
-void prepare_joints_stage(void* context, int begin, int end, int) {
+void place_joints_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
   for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces& places) {
-    prepare_joint(joint, work, places, g.solve->joint_bodies, g.solve->joint_settings);
+    place_joint(joint, work, places, g.solve->joint_bodies, g.solve->joint_settings);
+  });
+}
+void bend_joints_stage(void* context, int begin, int end, int) {
+  const Group& g = *static_cast<Group*>(context);
+  for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
+    bend_joint(joint, work, g.solve->joint_bodies, g.solve->joint_settings);
   });
 }
 void warm_joints_stage(void* context, int begin, int end, int) {
@@ -333,6 +348,13 @@ void relax_joints_stage(void* context, int begin, int end, int) {
   });
 }
 
+// Of linkages [begin, end).
+template <void (*kernel)(const Linkage&, const LinkageSolve&)>
+void linkage_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  for (int i = begin; i < end; ++i) kernel(s.linkages.linkages[std::size_t(i)], s.linkage_solve);
+}
+
 // ---------------------------------------------------------------------------------------------------------- program
 
 // The table of stages, written into memory that is large enough for it.
@@ -341,7 +363,9 @@ class ProgramWriter {
   explicit ProgramWriter(std::span<Stage> room) : room_(room) {}
 
   void add(void (*kernel)(void*, int, int, int), void* context, int blocks, int per_claim = 1) {
-    if (blocks > 0) room_[used_++] = {kernel, context, blocks, per_claim};
+    if (blocks == 0) return;
+    GYRE_ASSERT(used_ < room_.size(), "the program has more stages than were counted");
+    room_[used_++] = {kernel, context, blocks, per_claim};
   }
   void add_groups(void (*kernel)(void*, int, int, int), std::span<Group> groups, std::uint32_t items_per_block, int per_claim) {
     for (Group& group : groups) {
@@ -358,28 +382,37 @@ class ProgramWriter {
 
 void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> joints, Arena& arena, TaskSystem& tasks) {
   const int parts = kParts * solve.w.settings.substeps;
-  const std::size_t per_part = 7 + 5 * joints.size() + 2 * contacts.size();
-  ProgramWriter program(arena.make<Stage>(4 + std::size_t(parts) * per_part + 2 * contacts.size()));
+  const std::size_t per_part = 12 + 5 * joints.size() + 2 * contacts.size();
+  ProgramWriter program(
+      arena.make<Stage>(5 + std::size_t(parts) * per_part + 2 * contacts.size() + joints.size()));
   std::uint32_t blocks = 0;
   for (const Group& group : contacts) blocks += group.count;
   const int body_blocks = count_blocks(int(solve.batch.bodies.size()), kBodiesPerBlock);
   const int impact_blocks = solve.scratch.impacts.empty() ? 0 : 1;
   program.add(prepare_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
+  const int linkages = int(solve.linkages.linkages.size());
+  program.add_groups(place_joints_stage, joints, kJointsPerBlock, 1);
+  program.add(linkage_stage<place_linkage>, &solve, linkages);
   for (int i = 0; i < parts; ++i) {
     program.add(watch_stage, &solve, impact_blocks);
     program.add(predict_stage, &solve, body_blocks);
     program.add(strike_stage, &solve, impact_blocks);
-    program.add_groups(prepare_joints_stage, joints, kJointsPerBlock, 1);
+    program.add_groups(bend_joints_stage, joints, kJointsPerBlock, 1);
+    program.add(linkage_stage<warm_linkage>, &solve, linkages);
     program.add_groups(warm_joints_stage, joints, kJointsPerBlock, 1);
     program.add_groups(warm_contacts_stage, contacts, 1, kBlocksPerClaim);
     program.add_groups(solve_joints_stage, joints, kJointsPerBlock, 1);
+    program.add(linkage_stage<solve_linkage>, &solve, linkages);
     program.add_groups(solve_contacts_stage, contacts, 1, kBlocksPerClaim);
+    program.add(linkage_stage<solve_linkage>, &solve, linkages);
     program.add(solve_trees_stage, &solve, int(solve.forest.trees.size()), kTreesPerClaim);
     program.add(advance_stage, &solve, body_blocks);
     program.add(settle_trees_stage, &solve, int(solve.forest.trees.size()), kTreesPerClaim);
     program.add(release_stage, &solve, impact_blocks);
-    program.add_groups(prepare_joints_stage, joints, kJointsPerBlock, 1);
+    program.add_groups(place_joints_stage, joints, kJointsPerBlock, 1);
+    program.add(linkage_stage<place_linkage>, &solve, linkages);
     program.add_groups(relax_joints_stage, joints, kJointsPerBlock, 1);
+    program.add(linkage_stage<relax_linkage>, &solve, linkages);
   }
   if (blocks > 0) {
     program.add_groups(relax_contacts_stage, contacts, 1, kBlocksPerClaim);
@@ -397,11 +430,11 @@ DVec3 joint_place(const BodyStore& bodies, std::int32_t body, DVec3 world_anchor
 
 void begin_joint_work(Solve& solve, Arena& arena, float warm_scale) {
   RigidWorld& w = solve.w;
-  const std::size_t count = solve.scratch.joints.size();
+  const std::size_t count = solve.batch.joints.size();
   solve.joint_work = arena.make<JointWork>(count);
   solve.joint_places = arena.make<JointPlaces>(count);
   for (std::size_t i = 0; i < count; ++i) {
-    JointRecord& joint = w.joints.records[solve.scratch.joints[i]];
+    JointRecord& joint = w.joints.records[solve.batch.joints[i]];
     begin_joint(joint, solve.joint_work[i], warm_scale);
     solve.joint_places[i].offset = difference(joint_place(w.bodies, joint.body_b, joint.world_anchor_b),
                                               joint_place(w.bodies, joint.body_a, joint.world_anchor_a));
@@ -412,11 +445,19 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   const ArenaScope scope(arena);
   SolveScratch& scratch = solve.scratch;
   gather_contacts(solve);
+  solve.linkages = find_linkages(solve.w, solve.batch, solve.places, arena);
   gather_joints(solve);
   const std::uint32_t bodies = std::uint32_t(solve.batch.bodies.size());
   color_constraints(scratch.pairs, bodies, {}, kColoringOptions, scratch.contact_colors);
   color_constraints(scratch.joint_pairs, bodies, {}, kColoringOptions, scratch.joint_colors);
   begin_joint_work(solve, arena, warm_scale);
+  solve.linkage_solve = {.records = solve.w.joints.records,
+                         .work = solve.joint_work,
+                         .places = solve.joint_places,
+                         .bodies = solve.joint_bodies,
+                         .settings = solve.joint_settings,
+                         .give = kLinkageGive};
+  solve.linkage_solve.settings.swept = false;
   solve.kept = arena.make<KeptVelocity>(solve.batch.bodies.size());
   solve.forest = find_contact_trees(solve.w, scratch.constraints, solve.batch, solve.places, arena);
   const std::span<Group> contacts = lay_out_contacts(solve, arena);
@@ -427,7 +468,7 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   run_substeps(solve, contacts, joints, arena, tasks);
   note_hits(solve.w, scratch);
   scratch.manifold_count += scratch.constraints.size();
-  scratch.joint_count += scratch.joints.size();
+  scratch.joint_count += solve.batch.joints.size();
 }
 
 }  // namespace
@@ -456,7 +497,7 @@ void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& 
                             .up = pull > 0.0f ? (-1.0f / pull) * w.settings.gravity : Vec3{}};
   // Long sub-steps take back no more than the whole error and give way by less than the whole impulse.
   const float give = kJointLeak * h / (1.0f + kJointLeak * h);
-  solve.joint_settings = {h, {min(kJointRate, 0.8f / h), 1.0f - give, give}};
+  solve.joint_settings = {h, {min(kJointRate, 0.8f / h), 1.0f - give, give}, true};
   solve.impact_settings = {h, kBounceShare * h * pull};
   solve.contact_bodies = {w.bodies.motion.data(), w.bodies.inertia.data()};
   solve.joint_bodies = {w.bodies.motion.data(), w.bodies.inertia.data(), w.bodies.orientations.data()};

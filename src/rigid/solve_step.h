@@ -28,11 +28,11 @@ struct SolveScratch {
   Array<ColoringPair> pairs;
   Coloring contact_colors;
   Coloring joint_colors;
-  Array<std::uint32_t> joints;       // slots of joints that act in this step
-  Array<ColoringPair> joint_pairs;
-  Array<std::uint32_t> order;        // constraint indices, W a block
-  Array<SlotHit> hits;               // of all batches
-  std::size_t manifold_count = 0;    // of all batches
+  Array<std::uint32_t> swept_joints;  // those of the batch's that are in no linkage: places in its list
+  Array<ColoringPair> joint_pairs;    // theirs
+  Array<std::uint32_t> order;         // constraint indices, W a block
+  Array<SlotHit> hits;                // of all batches
+  std::size_t manifold_count = 0;     // of all batches
   std::size_t joint_count = 0;
   std::uint64_t colors_used = 0;     // bits
   int colors = 0;

@@ -59,17 +59,25 @@ void prepare_ball(const JointPair& pair, JointWork& work) {
   work.linear_mass = inverse(point_matrix(pair, work.from_a, work.from_b));
 }
 
-void prepare_hinge(JointRecord& joint, const JointPair& pair, JointWork& work, Quat frame_a, Quat frame_b) {
-  prepare_ball(pair, work);
+bool has_axis_rows(const JointRecord& joint) {
+  return (joint.kind == JointKind::hinge || joint.kind == JointKind::slider) &&
+         (joint.motor_force > 0.0f || joint.has_limits);
+}
+
+void prepare_hinge(JointRecord& joint, const JointPair& pair, JointWork& work, Quat frame_a, Quat frame_b,
+                   bool swept) {
   const Mat3 axes_a = to_matrix(frame_a);
   const Vec3 axis_b = rotate(frame_b, {1, 0, 0});
   work.axis = axes_a.x;
   work.perpendicular_1 = axes_a.y;
   work.perpendicular_2 = axes_a.z;
   work.angular_error = cross(work.axis, axis_b);
-  const Mat3 k = to_matrix(pair.inverse_inertia_a()) + to_matrix(pair.inverse_inertia_b());
-  work.angular_mass = inverse_in_plane(k, work.perpendicular_1, work.perpendicular_2);
-  work.axis_mass = inverse_or_zero(turn_matrix(pair, work.axis));
+  if (swept) {
+    prepare_ball(pair, work);
+    const Mat3 k = to_matrix(pair.inverse_inertia_a()) + to_matrix(pair.inverse_inertia_b());
+    work.angular_mass = inverse_in_plane(k, work.perpendicular_1, work.perpendicular_2);
+  }
+  if (has_axis_rows(joint)) work.axis_mass = inverse_or_zero(turn_matrix(pair, work.axis));
   // The twist of b's frame in a's, unwrapped by staying near the last value.
   const Quat twist = conjugate(frame_a) * frame_b;
   const float angle = 2.0f * atan2(twist.x, twist.w);
@@ -77,7 +85,8 @@ void prepare_hinge(JointRecord& joint, const JointPair& pair, JointWork& work, Q
   work.position = joint.position = angle + 2.0f * kPi * std::floor(turns + 0.5f);
 }
 
-void prepare_slider(JointRecord& joint, const JointPair& pair, JointWork& work, Quat frame_a, Quat frame_b, float h) {
+void prepare_slider(JointRecord& joint, const JointPair& pair, JointWork& work, Quat frame_a, Quat frame_b,
+                    bool swept) {
   const Mat3 axes_a = to_matrix(frame_a);
   work.axis = axes_a.x;
   work.perpendicular_1 = axes_a.y;
@@ -86,16 +95,20 @@ void prepare_slider(JointRecord& joint, const JointPair& pair, JointWork& work, 
   // The rows act at b's anchor: the arm of a reaches to where b's anchor is now.
   work.from_a += work.error;
   work.error -= work.position * work.axis;
-  work.bend = bend_of(pair, work, true, h);
-  work.linear_mass = inverse_in_plane(point_matrix(pair, work.from_a, work.from_b), work.perpendicular_1, work.perpendicular_2);
   work.angular_error = to_rotation_vector(frame_b * conjugate(frame_a));
-  work.angular_mass = to_matrix(inverse(pair.inverse_inertia_a() + pair.inverse_inertia_b()));
-  work.axis_mass = inverse_or_zero(axis_matrix(pair, work.axis, work.from_a, work.from_b));
+  if (swept) {
+    const Mat3 k = point_matrix(pair, work.from_a, work.from_b);
+    work.linear_mass = inverse_in_plane(k, work.perpendicular_1, work.perpendicular_2);
+    work.angular_mass = to_matrix(inverse(pair.inverse_inertia_a() + pair.inverse_inertia_b()));
+  }
+  if (has_axis_rows(joint))
+    work.axis_mass = inverse_or_zero(axis_matrix(pair, work.axis, work.from_a, work.from_b));
 }
 
-void prepare_fixed(const JointPair& pair, JointWork& work, Quat frame_a, Quat frame_b) {
-  prepare_ball(pair, work);
+void prepare_fixed(const JointPair& pair, JointWork& work, Quat frame_a, Quat frame_b, bool swept) {
   work.angular_error = to_rotation_vector(frame_b * conjugate(frame_a));
+  if (!swept) return;
+  prepare_ball(pair, work);
   work.angular_mass = to_matrix(inverse(pair.inverse_inertia_a() + pair.inverse_inertia_b()));
 }
 
@@ -104,10 +117,6 @@ void prepare_distance(JointRecord& joint, const JointPair& pair, JointWork& work
   work.axis = normalized(work.error, rotate({}, {0, 1, 0}));
   work.position = joint.position = distance;
   work.axis_mass = inverse_or_zero(axis_matrix(pair, work.axis, work.from_a, work.from_b));
-  const Vec3 speed = pair.point_velocity(work.from_a, work.from_b);
-  const Vec3 across = speed - dot(speed, work.axis) * work.axis;
-  work.axis_bend = dot(work.bend, work.axis) +
-                   (distance > 0.0f ? 0.5f * settings.substep * length_squared(across) / distance : 0.0f);
   if (joint.is_spring) prepare_spring(joint, work, distance - joint.rest_length, settings);
 }
 
@@ -235,8 +244,8 @@ void begin_joint(JointRecord& joint, JointWork& work, float warm_scale) {
   work = {};
 }
 
-void prepare_joint(JointRecord& joint, JointWork& work, const JointPlaces& places, const JointBodies& bodies,
-                   const JointSettings& settings) {
+void place_joint(JointRecord& joint, JointWork& work, const JointPlaces& places, const JointBodies& bodies,
+                 const JointSettings& settings) {
   const JointPair pair(joint, bodies);
   const Quat orientation_a = orientation_of(joint.body_a, bodies);
   const Quat orientation_b = orientation_of(joint.body_b, bodies);
@@ -245,14 +254,35 @@ void prepare_joint(JointRecord& joint, JointWork& work, const JointPlaces& place
   work.error = places.offset + pair.moved() + work.from_b - work.from_a;
   const Quat frame_a = orientation_a * joint.local_frame_a;
   const Quat frame_b = orientation_b * joint.local_frame_b;
-  work.bend = bend_of(pair, work, false, settings.substep);
   switch (joint.kind) {
-    case JointKind::ball: prepare_ball(pair, work); break;
-    case JointKind::hinge: prepare_hinge(joint, pair, work, frame_a, frame_b); break;
-    case JointKind::slider: prepare_slider(joint, pair, work, frame_a, frame_b, settings.substep); break;
-    case JointKind::fixed: prepare_fixed(pair, work, frame_a, frame_b); break;
-    case JointKind::distance: prepare_distance(joint, pair, work, settings); break;
+    case JointKind::ball:
+      if (settings.swept) prepare_ball(pair, work);
+      break;
+    case JointKind::hinge:
+      prepare_hinge(joint, pair, work, frame_a, frame_b, settings.swept);
+      break;
+    case JointKind::slider:
+      prepare_slider(joint, pair, work, frame_a, frame_b, settings.swept);
+      break;
+    case JointKind::fixed:
+      prepare_fixed(pair, work, frame_a, frame_b, settings.swept);
+      break;
+    case JointKind::distance:
+      prepare_distance(joint, pair, work, settings);
+      break;
   }
+}
+
+void bend_joint(const JointRecord& joint, JointWork& work, const JointBodies& bodies,
+                const JointSettings& settings) {
+  const JointPair pair(joint, bodies);
+  work.bend = bend_of(pair, work, joint.kind == JointKind::slider, settings.substep);
+  if (joint.kind != JointKind::distance) return;
+  const Vec3 speed = pair.point_velocity(work.from_a, work.from_b);
+  const Vec3 across = speed - dot(speed, work.axis) * work.axis;
+  const float distance = work.position;
+  work.axis_bend = dot(work.bend, work.axis) +
+                   (distance > 0.0f ? 0.5f * settings.substep * length_squared(across) / distance : 0.0f);
 }
 
 void warm_start_joint(const JointRecord& joint, const JointWork& work, const JointBodies& bodies) {
@@ -289,6 +319,26 @@ void solve_joint(JointRecord& joint, const JointWork& work, const JointBodies& b
       break;
     case JointKind::distance: solve_distance(joint, work, pair, settings, soft); break;
   }
+  pair.store();
+}
+
+void warm_start_joint_axis(const JointRecord& joint, const JointWork& work, const JointBodies& bodies) {
+  if (!has_axis_rows(joint)) return;
+  JointPair pair(joint, bodies);
+  const Vec3 along = axis_impulse(joint) * work.axis;
+  if (joint.kind == JointKind::hinge) {
+    pair.turn(along);
+  } else {
+    pair.push(along, work.from_a, work.from_b);
+  }
+  pair.store();
+}
+
+void solve_joint_axis(JointRecord& joint, const JointWork& work, const JointBodies& bodies,
+                      const JointSettings& settings, bool soft) {
+  if (!has_axis_rows(joint)) return;
+  JointPair pair(joint, bodies);
+  solve_axis(joint, work, pair, settings, soft);
   pair.store();
 }
 

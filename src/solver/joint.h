@@ -74,7 +74,8 @@ struct JointBodies {
 
 struct JointSettings {
   float substep = 0.0f;
-  Softness softness;     // of the joint's own rows
+  Softness softness;  // of the joint's own rows
+  bool swept = true;  // false: the rows of the joint's equations are solved elsewhere (solver/linkage.h)
 };
 
 // One joint in one sub-step, prepared. Lives in the step's arena.
@@ -100,11 +101,19 @@ struct JointWork {
 void forget_impulses(JointRecord& joint);
 // Scales the kept impulses to a new sub-step length and clears the sums; once a step.
 void begin_joint(JointRecord& joint, JointWork& work, float warm_scale);
-void prepare_joint(JointRecord& joint, JointWork& work, const JointPlaces& places, const JointBodies& bodies,
-                   const JointSettings& settings);
+// What depends on where the bodies are: once they have moved.
+void place_joint(JointRecord& joint, JointWork& work, const JointPlaces& places, const JointBodies& bodies,
+                 const JointSettings& settings);
+// What depends on their velocities: before they are solved.
+void bend_joint(const JointRecord& joint, JointWork& work, const JointBodies& bodies,
+                const JointSettings& settings);
 void warm_start_joint(const JointRecord& joint, const JointWork& work, const JointBodies& bodies);
-void solve_joint(JointRecord& joint, const JointWork& work, const JointBodies& bodies, const JointSettings& settings,
-                 bool soft);
+void solve_joint(JointRecord& joint, const JointWork& work, const JointBodies& bodies,
+                 const JointSettings& settings, bool soft);
+// Only the limits and the motor along or about the axis of a slider or hinge.
+void warm_start_joint_axis(const JointRecord& joint, const JointWork& work, const JointBodies& bodies);
+void solve_joint_axis(JointRecord& joint, const JointWork& work, const JointBodies& bodies,
+                      const JointSettings& settings, bool soft);
 // Adds the sub-step's impulses to the sums.
 void sum_joint(JointRecord& joint, const JointWork& work);
 

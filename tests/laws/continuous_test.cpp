@@ -50,7 +50,7 @@ TEST(Blade, StrikesAPostAtAnySpin) {
       Unwrapped turned_by;
       for (int i = 0; i < 60; ++i) {
         world.step(kStep);
-        for (const ContactBegin& c : world.events().begins) hit |= c.body_a == post || c.body_b == post;
+        for (const ContactHit& c : world.events().hits) hit |= c.body_a == post || c.body_b == post;
       }
       EXPECT_TRUE(hit) << "A-153 at " << rate << " rad/s, phase " << phase;
       EXPECT_LT(std::fabs(world.angular_velocity(blade).y), 0.5f * rate)

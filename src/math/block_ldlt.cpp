@@ -1,0 +1,404 @@
+#include "math/block_ldlt.h"
+
+#include "base/check.h"
+#include "math/dense.h"
+
+#include <algorithm>
+#include <type_traits>
+
+namespace gyre {
+
+namespace {
+
+constexpr std::uint32_t kNone = 0xffffffffu;
+
+// The graph while nodes are eliminated: for each node the neighbours that are left.
+class Elimination {
+ public:
+  Elimination(std::span<const std::uint8_t> sizes, std::span<const BlockEdge> edges, Arena& arena)
+      : arena_(arena),
+        sizes_(sizes),
+        lists_(arena.make<List>(sizes.size())),
+        marks_(arena.make<std::uint32_t>(sizes.size())),
+        heads_(arena.make<std::uint32_t>(sizes.size() + 1)),
+        before_(arena.make<std::uint32_t>(sizes.size())),
+        after_(arena.make<std::uint32_t>(sizes.size())) {
+    for (List& list : lists_) list = {};
+    for (std::uint32_t& mark : marks_) mark = kNone;
+    for (std::uint32_t& head : heads_) head = kNone;
+    for (const BlockEdge& edge : edges) ++lists_[edge.a].room, ++lists_[edge.b].room;
+    for (List& list : lists_) list.items = arena.make<std::uint32_t>(list.room).data();
+    for (const BlockEdge& edge : edges) lists_[edge.a].add(edge.b), lists_[edge.b].add(edge.a);
+    for (std::uint32_t node = std::uint32_t(sizes.size()); node-- > 0;) {
+      drop_doubles(node);
+      insert(node);
+    }
+  }
+
+  // Takes the next node out; its neighbours stay readable until the next call. kNone if none is left.
+  std::uint32_t next() {
+    while (lowest_ < heads_.size() && heads_[lowest_] == kNone) ++lowest_;
+    if (lowest_ == heads_.size()) return kNone;
+    const std::uint32_t node = heads_[lowest_];
+    remove(node);
+    return node;
+  }
+  std::span<const std::uint32_t> neighbours(std::uint32_t node) const {
+    return {lists_[node].items, lists_[node].count};
+  }
+
+  // The neighbours of the node become neighbours of each other.
+  void eliminate(std::uint32_t node) {
+    const std::span<const std::uint32_t> around = neighbours(node);
+    for (const std::uint32_t other : around) marks_[other] = node;
+    for (const std::uint32_t other : around) {
+      remove(other);
+      List& list = lists_[other];
+      std::uint32_t kept = 0;
+      for (std::uint32_t i = 0; i < list.count; ++i) {
+        const std::uint32_t item = list.items[i];
+        if (item != node && marks_[item] != node) list.items[kept++] = item;
+      }
+      list.count = kept;
+      reserve(list, kept + std::uint32_t(around.size()) - 1);
+      for (const std::uint32_t item : around) {
+        if (item != other) list.add(item);
+      }
+      insert(other);
+    }
+  }
+
+ private:
+  struct List {
+    std::uint32_t* items = nullptr;
+    std::uint32_t count = 0, room = 0;
+    void add(std::uint32_t item) { items[count++] = item; }
+  };
+
+  void drop_doubles(std::uint32_t node) {
+    List& list = lists_[node];
+    std::uint32_t kept = 0;
+    for (std::uint32_t i = 0; i < list.count; ++i) {
+      const std::uint32_t item = list.items[i];
+      if (marks_[item] == node) continue;
+      marks_[item] = node;
+      list.items[kept++] = item;
+    }
+    list.count = kept;
+  }
+  void reserve(List& list, std::uint32_t room) {
+    if (room <= list.room) return;
+    list.room = 2 * room;
+    std::uint32_t* items = arena_.make<std::uint32_t>(list.room).data();
+    std::copy(list.items, list.items + list.count, items);
+    list.items = items;
+  }
+  // Nodes by number of neighbours, in doubly linked lists.
+  void insert(std::uint32_t node) {
+    const std::uint32_t degree = lists_[node].count;
+    before_[node] = kNone;
+    after_[node] = heads_[degree];
+    if (heads_[degree] != kNone) before_[heads_[degree]] = node;
+    heads_[degree] = node;
+    lowest_ = std::min(lowest_, degree);
+  }
+  void remove(std::uint32_t node) {
+    if (after_[node] != kNone) before_[after_[node]] = before_[node];
+    if (before_[node] != kNone) {
+      after_[before_[node]] = after_[node];
+    } else {
+      heads_[lists_[node].count] = after_[node];
+    }
+  }
+
+  Arena& arena_;
+  std::span<const std::uint8_t> sizes_;
+  std::span<List> lists_;
+  std::span<std::uint32_t> marks_;
+  std::span<std::uint32_t> heads_, before_, after_;
+  std::uint32_t lowest_ = 0;
+};
+
+// For each pair of entries of each column the block that its elimination changes: entry i (rows) by entry j <= i.
+std::span<std::uint32_t> list_targets(std::span<BlockColumn> columns, std::span<const BlockEntry> entries,
+                                      Arena& arena) {
+  std::size_t count = 0;
+  for (BlockColumn& column : columns) {
+    const std::size_t below = column.end - column.begin;
+    column.targets = std::uint32_t(count);
+    count += below * (below + 1) / 2;
+  }
+  const std::span<std::uint32_t> targets = arena.make<std::uint32_t>(count);
+  for (const BlockColumn& column : columns) {
+    for (std::uint32_t j = column.begin; j < column.end; ++j) {
+      const BlockColumn& other = columns[entries[j].place];
+      std::uint32_t at = other.begin;
+      for (std::uint32_t i = j; i < column.end; ++i) {
+        const std::uint32_t local = i - column.begin;
+        std::uint32_t& target = targets[column.targets + local * (local + 1) / 2 + (j - column.begin)];
+        if (i == j) {
+          target = other.diagonal;
+          continue;
+        }
+        while (entries[at].place != entries[i].place) ++at;
+        target = entries[at].offset;
+      }
+    }
+  }
+  return targets;
+}
+
+void sort_by_place(std::span<BlockEntry> entries) {
+  for (std::size_t i = 1; i < entries.size(); ++i) {
+    const BlockEntry entry = entries[i];
+    std::size_t k = i;
+    for (; k > 0 && entries[k - 1].place > entry.place; --k) entries[k] = entries[k - 1];
+    entries[k] = entry;
+  }
+}
+
+// Kernels: R, Q and C are numbers of rows known when compiling, or 0 for those of the arguments.
+template <int R, int C>
+void multiply(const double* b, const double* d, double* out, int rows, int columns) {
+  const int r_end = R > 0 ? R : rows, c_end = C > 0 ? C : columns;
+  for (int r = 0; r < r_end; ++r) {
+    for (int c = 0; c < c_end; ++c) {
+      double sum = 0.0;
+      for (int k = 0; k < c_end; ++k) sum += b[r * c_end + k] * d[k * c_end + c];
+      out[r * c_end + c] = sum;
+    }
+  }
+}
+template <int R, int Q, int C>
+void subtract_product(const double* w, const double* b, double* out, int rows, int others, int columns) {
+  const int r_end = R > 0 ? R : rows, q_end = Q > 0 ? Q : others, c_end = C > 0 ? C : columns;
+  for (int r = 0; r < r_end; ++r) {
+    for (int q = 0; q < q_end; ++q) {
+      double sum = 0.0;
+      for (int k = 0; k < c_end; ++k) sum += w[r * c_end + k] * b[q * c_end + k];
+      out[r * q_end + q] -= sum;
+    }
+  }
+}
+
+// Calls fn with the number as a constant where it is that of a ball joint or a hinge, 0 otherwise.
+template <class Fn>
+void with_constant(std::uint32_t rows, Fn&& fn) {
+  if (rows == 3) return fn(std::integral_constant<int, 3>());
+  if (rows == 5) return fn(std::integral_constant<int, 5>());
+  fn(std::integral_constant<int, 0>());
+}
+
+// The inverse of a block, zero in the rows whose pivots were dropped.
+template <int N>
+void invert(double* block) {
+  double a[N][N];
+  for (int r = 0; r < N; ++r) {
+    for (int c = 0; c < N; ++c) a[r][c] = block[r * N + c];
+  }
+  const Ldlt<N, double> f = factor_ldlt(a);
+  // The inverse of L, below its diagonal; of a dropped pivot's column only the pivot's own row would remain, as zero.
+  double inverse[N][N] = {};
+  for (int c = 0; c < N; ++c) {
+    inverse[c][c] = 1.0;
+    for (int r = c + 1; r < N; ++r) {
+      double sum = 0.0;
+      for (int k = c; k < r; ++k) sum += f.lower[r][k] * inverse[k][c];
+      inverse[r][c] = -sum;
+    }
+  }
+  for (int r = 0; r < N; ++r) {
+    for (int c = 0; c <= r; ++c) {
+      double sum = 0.0;
+      for (int k = r; k < N; ++k) sum += inverse[k][r] * f.inverse_pivot[k] * inverse[k][c];
+      block[r * N + c] = block[c * N + r] = sum;
+    }
+  }
+}
+
+void invert(double* block, std::uint32_t size) {
+  switch (size) {
+    case 1:
+      return invert<1>(block);
+    case 2:
+      return invert<2>(block);
+    case 3:
+      return invert<3>(block);
+    case 4:
+      return invert<4>(block);
+    case 5:
+      return invert<5>(block);
+    default:
+      return invert<6>(block);
+  }
+}
+
+// y -= B x, and y -= B^T x.
+template <int R, int C>
+void subtract_times(const double* b, const double* x, double* y, int rows, int columns) {
+  const int r_end = R > 0 ? R : rows, c_end = C > 0 ? C : columns;
+  for (int r = 0; r < r_end; ++r) {
+    double sum = 0.0;
+    for (int c = 0; c < c_end; ++c) sum += b[r * c_end + c] * x[c];
+    y[r] -= sum;
+  }
+}
+template <int R, int C>
+void subtract_transposed_times(const double* b, const double* x, double* y, int rows, int columns) {
+  const int r_end = R > 0 ? R : rows, c_end = C > 0 ? C : columns;
+  for (int r = 0; r < r_end; ++r) {
+    for (int c = 0; c < c_end; ++c) y[c] -= b[r * c_end + c] * x[r];
+  }
+}
+
+// Eliminates a column of C rows (0: as many as it has).
+template <int C>
+void eliminate_column(const BlockPlan& plan, const BlockColumn& column, double* values, double* room) {
+  const double* diagonal = values + column.diagonal;
+  const int columns = int(column.size);
+  double* scaled = room;
+  const std::uint32_t* target = plan.targets.data() + column.targets;
+  for (std::uint32_t i = column.begin; i < column.end; ++i) {
+    const BlockEntry& entry = plan.entries[i];
+    const int rows = int(plan.columns[entry.place].size);
+    with_constant(std::uint32_t(rows), [&](auto r) {
+      multiply<r(), C>(values + entry.offset, diagonal, scaled, rows, columns);
+      for (std::uint32_t j = column.begin; j <= i; ++j) {
+        const BlockEntry& other = plan.entries[j];
+        const int others = int(plan.columns[other.place].size);
+        double* out = values + *target++;
+        with_constant(std::uint32_t(others), [&](auto q) {
+          subtract_product<r(), q(), C>(scaled, values + other.offset, out, rows, others, columns);
+        });
+      }
+    });
+    scaled += rows * columns;
+  }
+  if (column.begin < column.end) std::copy(room, scaled, values + plan.entries[column.begin].offset);
+}
+
+template <int C>
+void solve_down(const BlockPlan& plan, const BlockColumn& column, const double* values, double* x) {
+  for (std::uint32_t i = column.begin; i < column.end; ++i) {
+    const BlockColumn& row = plan.columns[plan.entries[i].place];
+    with_constant(row.size, [&](auto r) {
+      subtract_times<r(), C>(values + plan.entries[i].offset, x + column.row, x + row.row, int(row.size),
+                             int(column.size));
+    });
+  }
+}
+
+template <int C>
+void solve_up(const BlockPlan& plan, const BlockColumn& column, const double* values, double* x) {
+  const int size = C > 0 ? C : int(column.size);
+  double own[kMostBlockRows] = {};
+  for (int r = 0; r < size; ++r) {
+    for (int c = 0; c < size; ++c)
+      own[r] += values[column.diagonal + std::uint32_t(r * size + c)] * x[column.row + std::uint32_t(c)];
+  }
+  for (std::uint32_t i = column.begin; i < column.end; ++i) {
+    const BlockColumn& row = plan.columns[plan.entries[i].place];
+    with_constant(row.size, [&](auto r) {
+      subtract_transposed_times<r(), C>(values + plan.entries[i].offset, x + row.row, own, int(row.size),
+                                        size);
+    });
+  }
+  for (int r = 0; r < size; ++r) x[column.row + std::uint32_t(r)] = own[r];
+}
+
+// The columns' neighbours as they are eliminated, by node; false if that costs too much.
+bool eliminate_all(std::span<const std::uint8_t> sizes, std::span<const BlockEdge> edges,
+                   std::uint64_t most_work, Arena& arena, std::span<std::uint32_t> place_of,
+                   std::span<std::uint32_t> node_at, std::span<std::span<const std::uint32_t>> below,
+                   std::uint64_t& work) {
+  Elimination elimination(sizes, edges, arena);
+  work = 0;
+  for (std::uint32_t place = 0; place < sizes.size(); ++place) {
+    const std::uint32_t node = elimination.next();
+    const std::span<const std::uint32_t> around = elimination.neighbours(node);
+    std::uint64_t rows = 0;
+    for (const std::uint32_t other : around) rows += sizes[other];
+    const std::uint64_t own = sizes[node];
+    work += own * own * own + own * own * rows + own * rows * (rows + 1) / 2;
+    if (work > most_work) return false;
+    place_of[node] = place;
+    node_at[place] = node;
+    below[place] = around;
+    elimination.eliminate(node);
+  }
+  return true;
+}
+
+}  // namespace
+
+bool plan_blocks(std::span<const std::uint8_t> sizes, std::span<const BlockEdge> edges,
+                 std::uint64_t most_work, Arena& arena, BlockPlan& plan) {
+  const std::size_t count = sizes.size();
+  const std::span<std::uint32_t> place_of = arena.make<std::uint32_t>(count);
+  const std::span<std::uint32_t> node_at = arena.make<std::uint32_t>(count);
+  const std::span<std::span<const std::uint32_t>> below = arena.make<std::span<const std::uint32_t>>(count);
+  plan = {};
+  if (!eliminate_all(sizes, edges, most_work, arena, place_of, node_at, below, plan.work)) return false;
+  std::size_t entry_count = 0;
+  for (const std::span<const std::uint32_t>& nodes : below) entry_count += nodes.size();
+  const std::span<BlockColumn> columns = arena.make<BlockColumn>(count);
+  const std::span<BlockEntry> entries = arena.make<BlockEntry>(entry_count);
+  std::uint32_t used = 0;
+  for (std::uint32_t place = 0; place < count; ++place) {
+    BlockColumn& column = columns[place];
+    column.size = sizes[node_at[place]];
+    column.row = plan.rows;
+    plan.rows += column.size;
+    column.diagonal = plan.values;
+    plan.values += column.size * column.size;
+    column.begin = used;
+    for (const std::uint32_t node : below[place]) entries[used++].place = place_of[node];
+    column.end = used;
+    const std::span<BlockEntry> own = entries.subspan(column.begin, column.end - column.begin);
+    sort_by_place(own);
+    std::uint32_t values = 0;
+    for (BlockEntry& entry : own) {
+      entry.offset = plan.values + values;
+      values += column.size * sizes[node_at[entry.place]];
+    }
+    plan.values += values;
+    plan.widest = std::max(plan.widest, values);
+  }
+  plan.place_of = place_of;
+  plan.node_at = node_at;
+  plan.columns = columns;
+  plan.entries = entries;
+  plan.targets = list_targets(columns, entries, arena);
+  return true;
+}
+
+BlockPlace find_block(const BlockPlan& plan, std::uint32_t a, std::uint32_t b) {
+  const std::uint32_t place_a = plan.place_of[a], place_b = plan.place_of[b];
+  const BlockColumn& column = plan.columns[std::min(place_a, place_b)];
+  const std::uint32_t later = std::max(place_a, place_b);
+  for (std::uint32_t i = column.begin; i < column.end; ++i) {
+    if (plan.entries[i].place == later) return {plan.entries[i].offset, place_a == later};
+  }
+  GYRE_ASSERT(false, "the nodes are not neighbours");
+  return {};
+}
+
+void factor_blocks(const BlockPlan& plan, std::span<double> values, std::span<double> room) {
+  for (const BlockColumn& column : plan.columns) {
+    invert(&values[column.diagonal], column.size);
+    with_constant(column.size,
+                  [&](auto c) { eliminate_column<c()>(plan, column, values.data(), room.data()); });
+  }
+}
+
+void solve_blocks(const BlockPlan& plan, std::span<const double> values, std::span<double> x) {
+  for (const BlockColumn& column : plan.columns) {
+    with_constant(column.size, [&](auto c) { solve_down<c()>(plan, column, values.data(), x.data()); });
+  }
+  for (std::size_t place = plan.columns.size(); place-- > 0;) {
+    const BlockColumn& column = plan.columns[place];
+    with_constant(column.size, [&](auto c) { solve_up<c()>(plan, column, values.data(), x.data()); });
+  }
+}
+
+}  // namespace gyre

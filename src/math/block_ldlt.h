@@ -1,0 +1,72 @@
+// Sparse symmetric matrices of small dense blocks, factored as L D L^T: an order of elimination that makes few new blocks,
+// found once for a pattern, and then as many factorisations and solutions as there are values.
+//
+// The order is minimum degree: the node with the fewest neighbours goes first, then its neighbours become neighbours of each
+// other; of equals the one that became so last goes first, so a chain is walked from end to end. On a tree this is
+// elimination from the leaves to the root, with hardly a new block. Everything is a function of the numbering of nodes
+// and edges: the same bits everywhere.
+//
+// Sources: W. Tinney and J. Walker, Proc. IEEE 55, 1967 (minimum degree); A. George and J. Liu, "Computer Solution of Large
+// Sparse Positive Definite Systems", 1981.
+#pragma once
+
+#include "base/arena.h"
+
+#include <cstdint>
+#include <span>
+
+namespace gyre {
+
+constexpr int kMostBlockRows = 6;
+
+// Two nodes whose block is not zero. Pairs may repeat; a node is not paired with itself.
+struct BlockEdge {
+  std::uint32_t a = 0, b = 0;
+};
+
+struct BlockEntry {
+  std::uint32_t place = 0;  // of the row's node in the order
+  std::uint32_t offset =
+      0;  // of its block among the values: rows of `place` by rows of the column, row after row
+};
+
+struct BlockColumn {
+  std::uint32_t size = 0;            // rows of the node
+  std::uint32_t row = 0;             // its first in vectors
+  std::uint32_t diagonal = 0;        // offset of its own block among the values
+  std::uint32_t begin = 0, end = 0;  // entries below the diagonal, by place
+  std::uint32_t targets = 0;         // first of the blocks that eliminating it changes
+};
+
+// Memory is the arena's that it was made in.
+struct BlockPlan {
+  std::span<const std::uint32_t> place_of;  // place in the order, by node
+  std::span<const std::uint32_t> node_at;   // node, by place
+  std::span<const BlockColumn> columns;     // by place
+  std::span<const BlockEntry> entries;
+  std::span<const std::uint32_t> targets;  // offsets, for each pair of entries of a column, row by row
+  std::uint32_t values = 0;                // how many doubles the matrix takes
+  std::uint32_t rows = 0;                  // how many a vector takes
+  std::uint32_t widest = 0;                // values of the largest column below its diagonal
+  std::uint64_t work = 0;                  // multiplications in one factorisation
+};
+
+// Plans the elimination of nodes with `sizes` rows (1 to 6). False, and no plan, once it would take more than `most_work`
+// multiplications.
+bool plan_blocks(std::span<const std::uint8_t> sizes, std::span<const BlockEdge> edges,
+                 std::uint64_t most_work, Arena& arena, BlockPlan& plan);
+
+// Where the block of two nodes lies. `first_is_row`: its rows are those of `a`, otherwise those of `b`.
+struct BlockPlace {
+  std::uint32_t offset = 0;
+  bool first_is_row = false;
+};
+BlockPlace find_block(const BlockPlan& plan, std::uint32_t a, std::uint32_t b);
+
+// Replaces the values of the matrix (lower triangle of blocks; diagonal blocks whole) by those of its factors. Pivots that
+// are only rounding are dropped, as in math/dense.h. `room` holds plan.widest doubles.
+void factor_blocks(const BlockPlan& plan, std::span<double> values, std::span<double> room);
+// Solves in place: the right side before, the solution after, rows in the order of the plan.
+void solve_blocks(const BlockPlan& plan, std::span<const double> values, std::span<double> x);
+
+}  // namespace gyre

@@ -1,0 +1,252 @@
+#include "rigid/linkages.h"
+
+namespace gyre {
+
+namespace {
+
+constexpr std::uint32_t kNone = 0xffffffffu;
+// A linkage is solved directly if a factorisation takes no more multiplications than this for each row.
+constexpr std::uint64_t kMostWorkPerRow = 400;
+// and if no more pairs of joints share a body than this for each joint.
+constexpr std::uint64_t kMostPairsPerJoint = 8;
+
+// The joints of a batch that have equations, and how they hang together.
+struct Graph {
+  std::span<std::uint32_t> joints;  // places in the batch's list
+  std::span<std::uint32_t> first;  // by body's place: where its part of `at_body` begins; one more at the end
+  std::span<std::uint32_t> at_body;  // numbers in `joints`, body by body
+  std::span<std::uint32_t> parent;   // by body's place
+};
+
+// Calls fn(body) for those of the joint's bodies that move.
+template <class Fn>
+void for_active(const RigidWorld& w, const JointRecord& joint, Fn&& fn) {
+  for (const std::int32_t body : {joint.body_a, joint.body_b}) {
+    if (body != kNoBody && is_active(w, std::uint32_t(body))) fn(std::uint32_t(body));
+  }
+}
+
+std::uint32_t root_of(const Graph& graph, std::uint32_t place) {
+  const std::span<std::uint32_t> parent = graph.parent;
+  while (parent[place] != place) place = parent[place] = parent[parent[place]];
+  return place;
+}
+
+Graph make_graph(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
+                 Arena& arena) {
+  Graph graph;
+  const std::span<std::uint32_t> joints = arena.make<std::uint32_t>(batch.joints.size());
+  graph.first = arena.make<std::uint32_t>(batch.bodies.size() + 1);
+  graph.parent = arena.make<std::uint32_t>(batch.bodies.size());
+  for (std::uint32_t& first : graph.first) first = 0;
+  for (std::uint32_t place = 0; place < graph.parent.size(); ++place) graph.parent[place] = place;
+  std::size_t count = 0, ends = 0;
+  for (std::uint32_t i = 0; i < batch.joints.size(); ++i) {
+    const JointRecord& joint = w.joints.records[batch.joints[i]];
+    if (count_linkage_rows(joint) == 0) continue;
+    joints[count++] = i;
+    std::uint32_t previous = kNone;
+    for_active(w, joint, [&](std::uint32_t body) {
+      ++graph.first[places[body] + 1];
+      ++ends;
+      if (previous != kNone) {
+        const std::uint32_t a = root_of(graph, previous), b = root_of(graph, places[body]);
+        graph.parent[max(a, b)] = min(a, b);
+      }
+      previous = places[body];
+    });
+  }
+  graph.joints = joints.first(count);
+  for (std::size_t i = 1; i < graph.first.size(); ++i) graph.first[i] += graph.first[i - 1];
+  graph.at_body = arena.make<std::uint32_t>(ends);
+  const ArenaScope scope(arena);
+  const std::span<std::uint32_t> used = arena.make<std::uint32_t>(batch.bodies.size());
+  for (std::uint32_t& n : used) n = 0;
+  for (std::uint32_t n = 0; n < graph.joints.size(); ++n) {
+    for_active(w, w.joints.records[batch.joints[graph.joints[n]]], [&](std::uint32_t body) {
+      const std::uint32_t place = places[body];
+      graph.at_body[graph.first[place] + used[place]++] = n;
+    });
+  }
+  return graph;
+}
+
+// Sorts the joints by the root of their linkage, in the order of the lowest joint of each; joints of one keep theirs.
+struct Groups {
+  std::span<std::uint32_t> members;  // numbers in graph.joints
+  std::span<std::uint32_t> ends;
+  std::span<std::uint32_t> local;  // by number in graph.joints: which of its group it is
+};
+Groups group_joints(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
+                    const Graph& graph, Arena& arena) {
+  Groups groups{arena.make<std::uint32_t>(graph.joints.size()),
+                arena.make<std::uint32_t>(graph.joints.size()),
+                arena.make<std::uint32_t>(graph.joints.size())};
+  const std::span<std::uint32_t> group_of_root = arena.make<std::uint32_t>(batch.bodies.size());
+  const std::span<std::uint32_t> group_of = arena.make<std::uint32_t>(graph.joints.size());
+  for (std::uint32_t& group : group_of_root) group = kNone;
+  std::uint32_t count = 0;
+  for (std::uint32_t n = 0; n < graph.joints.size(); ++n) {
+    std::uint32_t place = kNone;
+    for_active(w, w.joints.records[batch.joints[graph.joints[n]]],
+               [&](std::uint32_t body) { place = places[body]; });
+    std::uint32_t& group = group_of_root[root_of(graph, place)];
+    if (group == kNone) {
+      group = count;
+      groups.ends[count++] = 0;
+    }
+    group_of[n] = group;
+    groups.local[n] = groups.ends[group]++;
+  }
+  groups.ends = groups.ends.first(count);
+  for (std::uint32_t group = 1; group < count; ++group) groups.ends[group] += groups.ends[group - 1];
+  for (std::uint32_t n = 0; n < graph.joints.size(); ++n) {
+    const std::uint32_t begin = group_of[n] == 0 ? 0 : groups.ends[group_of[n] - 1];
+    groups.members[begin + groups.local[n]] = n;
+  }
+  return groups;
+}
+
+class LinkageMaker {
+ public:
+  LinkageMaker(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
+               const Graph& graph, std::span<const std::uint32_t> local, Arena& arena)
+      : w_(w),
+        batch_(batch),
+        places_(places),
+        graph_(graph),
+        local_(local),
+        arena_(arena),
+        sides_(arena.make<std::uint32_t>(batch.bodies.size())) {
+    for (std::uint32_t& side : sides_) side = kNone;
+  }
+
+  bool make(std::span<const std::uint32_t> members, Linkage& linkage) {
+    const std::size_t pairs = count_pairs(members);
+    if (pairs > kMostPairsPerJoint * members.size()) return false;
+    make_nodes(members, linkage);
+    make_bodies(linkage);
+    const std::span<LinkageCoupling> couplings = arena_.make<LinkageCoupling>(pairs);
+    const std::span<BlockEdge> edges = arena_.make<BlockEdge>(pairs);
+    list_pairs(members, linkage, couplings, edges);
+    const std::span<std::uint8_t> sizes = arena_.make<std::uint8_t>(members.size());
+    std::uint64_t rows = 0;
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      sizes[i] = std::uint8_t(linkage.nodes[i].count);
+      rows += sizes[i];
+    }
+    if (!plan_blocks(sizes, edges, kMostWorkPerRow * rows, arena_, linkage.plan)) return false;
+    for (std::size_t i = 0; i < pairs; ++i) {
+      const BlockPlace block = find_block(linkage.plan, edges[i].a, edges[i].b);
+      LinkageCoupling& c = couplings[i];
+      c.offset = block.offset;
+      if (block.first_is_row) continue;
+      c = {c.column, c.row, c.offset, c.body, c.column_has_b, c.row_has_b};
+    }
+    linkage.couplings = couplings;
+    linkage.values = arena_.make<double>(linkage.plan.values);
+    linkage.room = arena_.make<double>(linkage.plan.widest);
+    linkage.vector = arena_.make<double>(linkage.plan.rows);
+    return true;
+  }
+
+ private:
+  const JointRecord& record(std::uint32_t number) const {
+    return w_.joints.records[batch_.joints[graph_.joints[number]]];
+  }
+  std::span<const std::uint32_t> at_body(std::uint32_t body) const {
+    const std::uint32_t place = places_[body];
+    return graph_.at_body.subspan(graph_.first[place], graph_.first[place + 1] - graph_.first[place]);
+  }
+  std::size_t count_pairs(std::span<const std::uint32_t> members) const {
+    std::size_t twice = 0;
+    for (const std::uint32_t n : members) {
+      for_active(w_, record(n), [&](std::uint32_t body) { twice += at_body(body).size() - 1; });
+    }
+    return twice / 2;
+  }
+  void make_nodes(std::span<const std::uint32_t> members, Linkage& linkage) {
+    linkage.nodes = arena_.make<LinkageNode>(members.size());
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      LinkageNode& node = linkage.nodes[i] = LinkageNode{};
+      node.work = graph_.joints[members[i]];
+      node.record = batch_.joints[node.work];
+      node.body_a = w_.joints.records[node.record].body_a;
+      node.body_b = w_.joints.records[node.record].body_b;
+      node.count = count_linkage_rows(w_.joints.records[node.record]);
+    }
+  }
+  // The bodies that move, each once, in the order in which the joints name them.
+  void make_bodies(Linkage& linkage) {
+    linkage.bodies = arena_.make<LinkageBody>(2 * linkage.nodes.size());
+    std::size_t used = 0;
+    const auto side_of = [&](std::int32_t body) -> std::int32_t {
+      if (body == kNoBody || !is_active(w_, std::uint32_t(body))) return -1;
+      std::uint32_t& side = sides_[places_[std::size_t(body)]];
+      if (side == kNone) {
+        side = std::uint32_t(used);
+        linkage.bodies[used] = LinkageBody{};
+        linkage.bodies[used++].body = body;
+      }
+      return std::int32_t(side);
+    };
+    for (LinkageNode& node : linkage.nodes) {
+      node.side_a = side_of(node.body_a);
+      node.side_b = side_of(node.body_b);
+    }
+    linkage.bodies = linkage.bodies.first(used);
+  }
+  // Every pair of joints that share a body that moves, once for each such body.
+  void list_pairs(std::span<const std::uint32_t> members, const Linkage& linkage,
+                  std::span<LinkageCoupling> couplings, std::span<BlockEdge> edges) const {
+    std::size_t used = 0;
+    for (std::uint32_t i = 0; i < members.size(); ++i) {
+      for_active(w_, record(members[i]), [&](std::uint32_t body) {
+        for (const std::uint32_t n : at_body(body)) {
+          const std::uint32_t other = local_[n];
+          if (other >= i) break;  // in order
+          edges[used] = {i, other};
+          couplings[used++] = {i,
+                               other,
+                               0,
+                               std::int32_t(body),
+                               linkage.nodes[i].body_b == std::int32_t(body),
+                               linkage.nodes[other].body_b == std::int32_t(body)};
+        }
+      });
+    }
+  }
+
+  const RigidWorld& w_;
+  const SolveBatch& batch_;
+  std::span<const std::uint32_t> places_;
+  const Graph& graph_;
+  std::span<const std::uint32_t> local_;
+  Arena& arena_;
+  std::span<std::uint32_t> sides_;  // by body's place: which body of its linkage it is
+};
+
+}  // namespace
+
+Linkages find_linkages(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
+                       Arena& arena) {
+  const std::span<std::uint8_t> swept = arena.make<std::uint8_t>(batch.joints.size());
+  for (std::uint8_t& flag : swept) flag = 1;
+  if (batch.joints.empty()) return {{}, swept};
+  const Graph graph = make_graph(w, batch, places, arena);
+  const Groups groups = group_joints(w, batch, places, graph, arena);
+  const std::span<Linkage> linkages = arena.make<Linkage>(groups.ends.size());
+  LinkageMaker maker(w, batch, places, graph, groups.local, arena);
+  std::size_t made = 0;
+  for (std::size_t group = 0; group < groups.ends.size(); ++group) {
+    const std::uint32_t begin = group == 0 ? 0 : groups.ends[group - 1];
+    const std::span<const std::uint32_t> members = groups.members.subspan(begin, groups.ends[group] - begin);
+    linkages[made] = Linkage{};
+    if (!maker.make(members, linkages[made])) continue;
+    for (const LinkageNode& node : linkages[made].nodes) swept[node.work] = 0;
+    ++made;
+  }
+  return {linkages.first(made), swept};
+}
+
+}  // namespace gyre

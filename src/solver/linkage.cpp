@@ -1,0 +1,416 @@
+#include "solver/linkage.h"
+
+#include "math/dense.h"
+#include "solver/joint_blocks.h"
+
+namespace gyre {
+
+namespace {
+
+// Bodies that turn by less than this in a sub-step (rad) do so along a straight line; of those that turn by more than that,
+// the rows ask for less and less of the bend: a whip's end then loses energy instead of gaining it.
+constexpr float kLeastTurn = 1.0e-4f;
+constexpr float kMostTurn = 0.15f;
+// h^2 k / I up to which tension is left alone; kick and drift are stable up to 4.
+constexpr float kMostPull = 1.0f;
+
+void add_point_row(LinkageNode& node, const JointWork& work, Vec3 direction) {
+  LinkageRow& row = node.rows[node.count++];
+  row.push = direction;
+  row.arm_a = cross(work.from_a, direction);
+  row.arm_b = cross(work.from_b, direction);
+}
+void add_turn_row(LinkageNode& node, Vec3 axis) {
+  LinkageRow& row = node.rows[node.count++];
+  row.push = {};
+  row.arm_a = row.arm_b = axis;
+}
+
+void make_rows(LinkageNode& node, const JointRecord& joint, const JointWork& work) {
+  constexpr Vec3 kAxes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  node.count = 0;
+  switch (joint.kind) {
+    case JointKind::distance:
+      add_point_row(node, work, work.axis);
+      break;
+    case JointKind::slider:
+      add_point_row(node, work, work.perpendicular_1);
+      add_point_row(node, work, work.perpendicular_2);
+      break;
+    default:
+      for (const Vec3 axis : kAxes) add_point_row(node, work, axis);
+  }
+  if (joint.kind == JointKind::hinge) {
+    add_turn_row(node, work.perpendicular_1);
+    add_turn_row(node, work.perpendicular_2);
+  } else if (joint.kind == JointKind::slider || joint.kind == JointKind::fixed) {
+    for (const Vec3 axis : kAxes) add_turn_row(node, axis);
+  }
+}
+
+bool is_turn(const LinkageRow& row) { return row.push == Vec3{}; }
+
+// The joint's accumulated impulses in terms of its rows, and back.
+float kept_impulse(const JointRecord& joint, const LinkageRow& row) {
+  if (joint.kind == JointKind::distance) return joint.low_impulse;
+  return is_turn(row) ? dot(joint.angular_impulse, row.arm_a) : dot(joint.linear_impulse, row.push);
+}
+void keep_impulse(JointRecord& joint, const LinkageRow& row, float impulse) {
+  if (joint.kind == JointKind::distance) {
+    joint.low_impulse += impulse;
+  } else if (is_turn(row)) {
+    joint.angular_impulse += impulse * row.arm_a;
+  } else {
+    joint.linear_impulse += impulse * row.push;
+  }
+}
+
+float error_of(const JointRecord& joint, const JointWork& work, const LinkageRow& row) {
+  if (joint.kind == JointKind::distance) return work.position - joint.min_length;
+  return is_turn(row) ? dot(work.angular_error, row.arm_a) : dot(work.error, row.push);
+}
+
+// A force f at arm r turns with the body's orientation like a spring of stiffness (r . f) 1 - sym(r f^T). Springs that a
+// sub-step does not resolve, h^2 k > I, would make the links of a heavily loaded chain flutter ever more; so the inertia
+// against the joints' impulses is raised towards h^2 k, as if the turning of forces were implicit (M. Tournier, M. Nesme,
+// B. Gilles, F. Faure, "Stable Constrained Dynamics", 2015). Of a body that nothing pulls like that it stays as it is, to
+// the bit.
+void add_pull(LinkageBody& body, Vec3 r, Vec3 f) {
+  const float k = dot(r, f);
+  body.pull = body.pull + Sym3{k - r.x * f.x,
+                               k - r.y * f.y,
+                               k - r.z * f.z,
+                               -0.5f * (r.x * f.y + r.y * f.x),
+                               -0.5f * (r.x * f.z + r.z * f.x),
+                               -0.5f * (r.y * f.z + r.z * f.y)};
+}
+
+// What of the symmetric matrix holds back.
+Sym3 positive_part(const Sym3& m) {
+  const double matrix[6] = {double(m.xx), double(m.yy), double(m.zz),
+                            double(m.xy), double(m.xz), double(m.yz)};
+  double values[3], axes[9];
+  symmetric_eigen(matrix, values, axes);
+  Sym3 sum;
+  for (int i = 0; i < 3; ++i) {
+    if (!(values[i] > 0.0)) continue;
+    const Vec3 a{float(axes[3 * i]), float(axes[3 * i + 1]), float(axes[3 * i + 2])};
+    sum = sum + float(values[i]) * Sym3{a.x * a.x, a.y * a.y, a.z * a.z, a.x * a.y, a.x * a.z, a.y * a.z};
+  }
+  return sum;
+}
+
+void raise_inertias(const Linkage& linkage, const LinkageSolve& s) {
+  for (LinkageBody& body : linkage.bodies) body.pull = {};
+  const float h = s.settings.substep;
+  for (const LinkageNode& node : linkage.nodes) {
+    const JointRecord& joint = s.records[node.record];
+    const JointWork& work = s.work[node.work];
+    Vec3 force = joint.linear_impulse / h;
+    if (joint.kind == JointKind::distance) force = (joint.low_impulse / h) * work.axis;
+    if (node.side_a >= 0) add_pull(linkage.bodies[std::size_t(node.side_a)], work.from_a, -force);
+    if (node.side_b >= 0) add_pull(linkage.bodies[std::size_t(node.side_b)], work.from_b, force);
+  }
+  for (LinkageBody& body : linkage.bodies) {
+    body.inverse = s.bodies.inertia[body.body].inverse;
+    body.inertia = inverse(body.inverse);
+    const Mat3 spin = to_matrix(body.inverse) * to_matrix(body.pull);
+    const float unresolved = h * h * 0.5f * (spin.x.x + spin.y.y + spin.z.z);
+    if (!(unresolved > kMostPull)) continue;
+    const float share = h * h * (1.0f - kMostPull / unresolved);
+    body.inverse = inverse(body.inertia + share * positive_part(body.pull));
+  }
+}
+
+// The rows' spins, and the node's own block K + give.
+void make_own_block(LinkageNode& node, const Linkage& linkage, const LinkageSolve& s, double* block) {
+  constexpr LinkageBody kImmovable{};
+  const LinkageBody& a = node.side_a < 0 ? kImmovable : linkage.bodies[std::size_t(node.side_a)];
+  const LinkageBody& b = node.side_b < 0 ? kImmovable : linkage.bodies[std::size_t(node.side_b)];
+  const float inverse_mass = (a.body == kNoBody ? 0.0f : s.bodies.inertia[a.body].inverse_mass) +
+                             (b.body == kNoBody ? 0.0f : s.bodies.inertia[b.body].inverse_mass);
+  for (int i = 0; i < node.count; ++i) {
+    LinkageRow& row = node.rows[i];
+    row.spin_a = a.inverse * row.arm_a;
+    row.spin_b = b.inverse * row.arm_b;
+    for (int j = 0; j <= i; ++j) {
+      const LinkageRow& other = node.rows[j];
+      float k = inverse_mass * dot(row.push, other.push) + dot(row.arm_a, other.spin_a) +
+                dot(row.arm_b, other.spin_b);
+      if (i == j) {
+        row.give = s.give * k;
+        k += row.give;
+      }
+      block[i * node.count + j] = block[j * node.count + i] = double(k);
+    }
+  }
+}
+
+// Adds what the shared body couples: signs, because a feels the opposite of what b does.
+void add_coupling(const LinkageCoupling& coupling, const LinkageNode& row, const LinkageNode& column,
+                  const BodyInertia& body, double* block) {
+  const float sign = coupling.row_has_b == coupling.column_has_b ? 1.0f : -1.0f;
+  const float inverse_mass = body.inverse_mass;
+  for (int i = 0; i < row.count; ++i) {
+    const Vec3 push = (sign * inverse_mass) * row.rows[i].push;
+    const Vec3 spin = sign * (coupling.row_has_b ? row.rows[i].spin_b : row.rows[i].spin_a);
+    for (int j = 0; j < column.count; ++j) {
+      const LinkageRow& other = column.rows[j];
+      const Vec3 arm = coupling.column_has_b ? other.arm_b : other.arm_a;
+      block[i * column.count + j] += double(dot(push, other.push) + dot(spin, arm));
+    }
+  }
+}
+
+// The bodies of a node while it is read or pushed.
+class NodeBodies {
+ public:
+  NodeBodies(const LinkageNode& node, const JointBodies& bodies)
+      : a_(node.body_a, bodies), b_(node.body_b, bodies) {}
+  float speed(const LinkageRow& row) const {
+    return dot(row.push, b_.linear - a_.linear) + dot(row.arm_b, b_.angular) - dot(row.arm_a, a_.angular);
+  }
+  void push(const LinkageRow& row, float impulse) {
+    a_.linear -= (impulse * a_.inverse_mass) * row.push;
+    b_.linear += (impulse * b_.inverse_mass) * row.push;
+    a_.angular -= impulse * row.spin_a;
+    b_.angular += impulse * row.spin_b;
+  }
+  void store() const {
+    a_.store();
+    b_.store();
+  }
+
+ private:
+  struct Side {
+    Side(std::int32_t body, const JointBodies& bodies) {
+      if (body == kNoBody) return;
+      const BodyInertia& inertia = bodies.inertia[body];
+      motion = &bodies.motion[body];
+      inverse_mass = inertia.inverse_mass;
+      movable = inverse_mass > 0.0f || inertia.inverse != Sym3{};
+      linear = motion->linear_velocity;
+      angular = motion->angular_velocity;
+    }
+    // Adding zero keeps -0 out of the state.
+    void store() const {
+      if (!movable) return;
+      motion->linear_velocity = linear + Vec3{};
+      motion->angular_velocity = angular + Vec3{};
+    }
+    BodyMotion* motion = nullptr;
+    float inverse_mass = 0.0f;
+    bool movable = false;
+    Vec3 linear, angular;
+  };
+  Side a_, b_;
+};
+
+// As from_rotation_vector, by series: turns of a sub-step are small, and of those that are not kMostTurn leaves little.
+Quat small_rotation(Vec3 v) {
+  const float a = min(length_squared(v), 1.0f);
+  const Vec3 u = (0.5f - a * (1.0f / 48.0f - a / 3840.0f)) * v;
+  return {u.x, u.y, u.z, 1.0f - a * (1.0f / 8.0f - a * (1.0f / 384.0f))};
+}
+
+// What a body's velocities do in the coming sub-step.
+struct Course {
+  Vec3 linear, angular;
+  Quat turn;
+
+  // How far turning takes the end of an arm.
+  Vec3 swing(Vec3 arm) const {
+    const Vec3 u{turn.x, turn.y, turn.z};
+    const Vec3 t = 2.0f * cross(u, arm);
+    return turn.w * t + cross(u, t);
+  }
+};
+
+Course course_of(const Linkage& linkage, const LinkageSolve& s, std::int32_t body, std::int32_t side) {
+  if (body == kNoBody) return {};
+  const BodyMotion& motion = s.bodies.motion[body];
+  if (side >= 0)
+    return {motion.linear_velocity, motion.angular_velocity, linkage.bodies[std::size_t(side)].turn};
+  const Vec3 w = motion.angular_velocity;
+  return {motion.linear_velocity, w, small_rotation(s.settings.substep * w)};
+}
+
+// How the joint's errors will have changed at the end of the sub-step, over its length, beyond what the rows see.
+struct Bend {
+  Vec3 point, turn;
+};
+
+Vec3 turn_bend(const JointRecord& joint, const JointWork& work, const Course& a, const Course& b, float h) {
+  const Vec3 seen = b.angular - a.angular;
+  if (joint.kind == JointKind::hinge) {
+    const Vec3 error = work.angular_error;  // axis a x axis b
+    const Vec3 axis_b =
+        cross(error, work.axis) + std::sqrt(max(0.0f, 1.0f - length_squared(error))) * work.axis;
+    const Vec3 change_a = a.swing(work.axis), change_b = b.swing(axis_b);
+    return (cross(change_a, axis_b) + cross(work.axis, change_b) + cross(change_a, change_b)) / h - seen;
+  }
+  const Quat later = b.turn * from_rotation_vector(work.angular_error) * conjugate(a.turn);
+  return (to_rotation_vector(later) - work.angular_error) / h - seen;
+}
+
+Bend bend_of(const JointRecord& joint, const JointWork& work, const Course& a, const Course& b, float h) {
+  Bend bend;
+  const Vec3 along = joint.kind == JointKind::slider ? work.position * work.axis : Vec3{};
+  const Vec3 arm_a = work.from_a - work.error - along;  // to a's own anchor
+  const Vec3 seen = b.linear + cross(b.angular, work.from_b) - a.linear - cross(a.angular, work.from_a);
+  const Vec3 apart = h * (b.linear - a.linear) + b.swing(work.from_b) - a.swing(work.from_a);
+  switch (joint.kind) {
+    case JointKind::slider: {
+      // Seen from a's frame as it will be.
+      const Vec3 now = work.error + along;
+      const Vec3 later = now + h * (b.linear - a.linear) + b.swing(work.from_b) - a.swing(arm_a);
+      bend.point = (later + Course{{}, {}, conjugate(a.turn)}.swing(later) - now) / h - seen;
+      break;
+    }
+    case JointKind::distance: {
+      const Vec3 now = work.position * work.axis;
+      bend.point = ((length(now + apart) - work.position) / h - dot(seen, work.axis)) * work.axis;
+      break;
+    }
+    default:
+      bend.point = apart / h - seen;
+  }
+  if (joint.kind == JointKind::hinge || joint.kind == JointKind::slider || joint.kind == JointKind::fixed)
+    bend.turn = turn_bend(joint, work, a, b, h);
+  return bend;
+}
+
+// What is asked of the rows: that the end of the sub-step, not its beginning, meets the joints (docs/derive/joints.md).
+void ask_rows(const Linkage& linkage, const LinkageSolve& s) {
+  const float h = s.settings.substep;
+  for (LinkageBody& body : linkage.bodies) {
+    const Vec3 w = s.bodies.motion[body.body].angular_velocity;
+    const Vec3 swerve = s.bodies.inertia[body.body].inverse * cross(body.inertia * w, w);  // free rotation
+    body.turn = small_rotation(h * (w + (0.5f * h) * swerve));
+  }
+  for (LinkageNode& node : linkage.nodes) {
+    const JointRecord& joint = s.records[node.record];
+    const JointWork& work = s.work[node.work];
+    const Course a = course_of(linkage, s, node.body_a, node.side_a);
+    const Course b = course_of(linkage, s, node.body_b, node.side_b);
+    const float fastest = square(h) * max(length_squared(a.angular), length_squared(b.angular));
+    Bend bend;
+    if (fastest > square(kLeastTurn)) bend = bend_of(joint, work, a, b, h);
+    if (fastest > square(kMostTurn)) {
+      bend.point *= square(kMostTurn) / fastest;
+      bend.turn *= square(kMostTurn) / fastest;
+    }
+    for (int i = 0; i < node.count; ++i) {
+      LinkageRow& row = node.rows[i];
+      row.wanted = -s.settings.softness.bias_rate * error_of(joint, work, row) -
+                   (is_turn(row) ? dot(bend.turn, row.arm_a) : dot(bend.point, row.push));
+    }
+  }
+}
+
+// Solves for the change of all impulses and applies it; soft: what is wanted and the give count, otherwise only the speed.
+void solve_rows(const Linkage& linkage, const LinkageSolve& s, bool soft) {
+  for (std::size_t n = 0; n < linkage.nodes.size(); ++n) {
+    const LinkageNode& node = linkage.nodes[n];
+    const JointRecord& joint = s.records[node.record];
+    const NodeBodies bodies(node, s.bodies);
+    double* x = &linkage.vector[linkage.plan.columns[linkage.plan.place_of[n]].row];
+    for (int i = 0; i < node.count; ++i) {
+      const LinkageRow& row = node.rows[i];
+      float missing = -bodies.speed(row);
+      if (soft) missing += row.wanted - row.give * kept_impulse(joint, row);
+      x[i] = double(missing);
+    }
+  }
+  solve_blocks(linkage.plan, linkage.values, linkage.vector);
+  for (std::size_t n = 0; n < linkage.nodes.size(); ++n) {
+    const LinkageNode& node = linkage.nodes[n];
+    JointRecord& joint = s.records[node.record];
+    NodeBodies bodies(node, s.bodies);
+    const double* x = &linkage.vector[linkage.plan.columns[linkage.plan.place_of[n]].row];
+    for (int i = 0; i < node.count; ++i) {
+      const float impulse = float(x[i]);
+      bodies.push(node.rows[i], impulse);
+      keep_impulse(joint, node.rows[i], impulse);
+    }
+    bodies.store();
+  }
+}
+
+void sweep_axes(const Linkage& linkage, const LinkageSolve& s, bool soft) {
+  for (const LinkageNode& node : linkage.nodes) {
+    solve_joint_axis(s.records[node.record], s.work[node.work], s.bodies, s.settings, soft);
+  }
+}
+
+}  // namespace
+
+int count_linkage_rows(const JointRecord& joint) {
+  switch (joint.kind) {
+    case JointKind::ball:
+      return 3;
+    case JointKind::hinge:
+      return 5;
+    case JointKind::slider:
+      return 5;
+    case JointKind::fixed:
+      return 6;
+    case JointKind::distance:
+      return joint.min_length == joint.max_length && !joint.is_spring ? 1 : 0;
+  }
+  return 0;
+}
+
+void place_linkage(const Linkage& linkage, const LinkageSolve& s) {
+  for (double& value : linkage.values) value = 0.0;
+  for (std::size_t n = 0; n < linkage.nodes.size(); ++n) {
+    LinkageNode& node = linkage.nodes[n];
+    JointRecord& joint = s.records[node.record];
+    JointWork& work = s.work[node.work];
+    place_joint(joint, work, s.places[node.work], s.bodies, s.settings);
+    make_rows(node, joint, work);
+  }
+  raise_inertias(linkage, s);
+  for (std::size_t n = 0; n < linkage.nodes.size(); ++n) {
+    make_own_block(linkage.nodes[n], linkage, s,
+                   &linkage.values[linkage.plan.columns[linkage.plan.place_of[n]].diagonal]);
+  }
+  for (const LinkageCoupling& coupling : linkage.couplings) {
+    add_coupling(coupling, linkage.nodes[coupling.row], linkage.nodes[coupling.column],
+                 s.bodies.inertia[coupling.body], &linkage.values[coupling.offset]);
+  }
+  factor_blocks(linkage.plan, linkage.values, linkage.room);
+}
+
+void warm_linkage(const Linkage& linkage, const LinkageSolve& s) {
+  for (const LinkageNode& node : linkage.nodes) {
+    JointRecord& joint = s.records[node.record];
+    const JointWork& work = s.work[node.work];
+    warm_start_joint_axis(joint, work, s.bodies);
+    // What was kept, along the rows as they are now.
+    float kept[kMostBlockRows];
+    for (int i = 0; i < node.count; ++i) kept[i] = kept_impulse(joint, node.rows[i]);
+    joint.linear_impulse = joint.angular_impulse = {};
+    if (joint.kind == JointKind::distance) joint.low_impulse = 0.0f;
+    NodeBodies bodies(node, s.bodies);
+    for (int i = 0; i < node.count; ++i) {
+      bodies.push(node.rows[i], kept[i]);
+      keep_impulse(joint, node.rows[i], kept[i]);
+    }
+    bodies.store();
+  }
+}
+
+void solve_linkage(const Linkage& linkage, const LinkageSolve& s) {
+  sweep_axes(linkage, s, true);
+  ask_rows(linkage, s);
+  solve_rows(linkage, s, true);
+}
+
+void relax_linkage(const Linkage& linkage, const LinkageSolve& s) {
+  sweep_axes(linkage, s, false);
+  solve_rows(linkage, s, false);
+  for (const LinkageNode& node : linkage.nodes) sum_joint(s.records[node.record], s.work[node.work]);
+}
+
+}  // namespace gyre

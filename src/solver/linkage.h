@@ -1,0 +1,84 @@
+// Linkages: bodies that hang together by joints, solved directly.
+//
+// The rows of a joint that hold always (a common point, a common axis, the length of a rod) are equations. Those of a whole
+// linkage are solved together: (J M^-1 J^T + give) p = -(J v + errors), a sparse matrix of one block a joint, factored in an
+// order found once a step (math/block_ldlt.h); for a tree that is elimination from the leaves to the root. What may stop
+// acting (limits, motors) is swept over first, the equations have the last word. The rows, softness excepted, are those of
+// solver/joint.h; docs/derive/joints.md has the equations, docs/decisions/joint-trees.md the figures.
+//
+// Sources: D. Baraff, "Linear-Time Dynamics using Lagrange Multipliers", SIGGRAPH 1996; R. Featherstone, "Rigid Body Dynamics
+// Algorithms", 2008, chapter 8.
+#pragma once
+
+#include "math/block_ldlt.h"
+#include "solver/joint.h"
+
+namespace gyre {
+
+// One row of a joint: it sees push . (v_b - v_a) + arm_b . w_b - arm_a . w_a.
+struct LinkageRow {
+  Vec3 push;            // direction of a force; zero for a turning row
+  Vec3 arm_a, arm_b;    // r x push, or the axis of a turn
+  Vec3 spin_a, spin_b;  // inverse inertia times arm
+  float give = 0.0f;    // added to K: the speed by which the row gives way to an impulse of one
+  float wanted = 0.0f;  // the speed asked for
+};
+
+// A joint of a linkage, while it is solved.
+struct LinkageNode {
+  std::uint32_t record = 0;  // slot of the joint
+  std::uint32_t work = 0;    // place of its JointWork
+  std::int32_t body_a = kNoBody, body_b = kNoBody;
+  std::int32_t side_a = -1, side_b = -1;  // which bodies of the linkage they are; -1: it cannot be pushed
+  int count = 0;                          // rows
+  LinkageRow rows[kMostBlockRows];
+};
+
+// A body of a linkage that moves.
+struct LinkageBody {
+  std::int32_t body = kNoBody;
+  Sym3 pull;     // by how much tension holds its orientation: N m / rad
+  Sym3 inverse;  // inertia, raised to what a sub-step can bear
+  Sym3 inertia;  // as it is
+  Quat turn;     // what its velocities make of a sub-step
+};
+
+// Two joints that share a body that moves, and where their block lies.
+struct LinkageCoupling {
+  std::uint32_t row = 0, column = 0;  // nodes
+  std::uint32_t offset = 0;
+  std::int32_t body = kNoBody;
+  bool row_has_b = false, column_has_b = false;  // the body is b of the joint
+};
+
+struct Linkage {
+  std::span<LinkageNode> nodes;
+  std::span<LinkageBody> bodies;
+  std::span<const LinkageCoupling> couplings;
+  BlockPlan plan;
+  std::span<double> values;  // of the matrix, then of its factors
+  std::span<double> room;
+  std::span<double> vector;
+};
+
+struct LinkageSolve {
+  std::span<JointRecord> records;
+  std::span<JointWork> work;
+  std::span<const JointPlaces> places;
+  JointBodies bodies;
+  JointSettings settings;
+  float give = 0.0f;  // share of K by which rows give way
+};
+
+// How many rows of the joint are equations: 0 to 6.
+int count_linkage_rows(const JointRecord& joint);
+
+// The rows where the bodies are now, and their matrix, factored.
+void place_linkage(const Linkage& linkage, const LinkageSolve& solve);
+// With the velocities after the forces: what is asked of the rows, and the impulses of the last sub-step.
+void warm_linkage(const Linkage& linkage, const LinkageSolve& solve);
+void solve_linkage(const Linkage& linkage, const LinkageSolve& solve);
+// After the move: takes away all speed along the rows, and sums the impulses.
+void relax_linkage(const Linkage& linkage, const LinkageSolve& solve);
+
+}  // namespace gyre

@@ -1,0 +1,506 @@
+// Things made of many joints: chains, bridges, linkages with more joints than they need, loops. They must not stretch, must
+// not gain energy, and must keep their momentum. docs/decisions/joint-trees.md has the figures.
+#include "laws/kit.h"
+
+#include <string>
+
+namespace gyre::laws {
+namespace {
+
+// Bodies and joints whose anchors are remembered, so that tests can see them part.
+class Assembly {
+ public:
+  explicit Assembly(const WorldDef& def) : world(make_world(def)) {}
+
+  World world;
+  std::vector<BodyId> bodies;
+  std::vector<JointId> joints;
+
+  BodyId add(const BodyDef& body, const AnyShape& shape, float density = 1000.0f) {
+    // Parts of an assembly do not touch each other.
+    bodies.push_back(world.add_body(
+        body, {.geometry = shape, .density = density, .filter = {.layer = 2, .collides_with = 1}}));
+    return bodies.back();
+  }
+  JointId join(JointKind kind, BodyId a, BodyId b, DVec3 anchor, Vec3 axis = {0, 0, 1}) {
+    anchors_.push_back({a, b, from_world(a, anchor), from_world(b, anchor)});
+    joints.push_back(world.add_joint({.kind = kind, .a = a, .b = b, .anchor = anchor, .axis = axis}));
+    return joints.back();
+  }
+  double largest_gap() const {
+    double most = 0.0;
+    for (const Anchor& anchor : anchors_) most = std::max(most, gap(anchor));
+    return most;
+  }
+  double sum_of_gaps() const {
+    double sum = 0.0;
+    for (const Anchor& anchor : anchors_) sum += gap(anchor);
+    return sum;
+  }
+  double energy() const {
+    const Energy e = world.energy();
+    return e.kinetic + e.potential;
+  }
+
+ private:
+  struct Anchor {
+    BodyId a, b;
+    DVec3 on_a, on_b;
+  };
+  DVec3 from_world(BodyId body, DVec3 p) const {
+    if (!world.exists(body)) return p;
+    const Pose pose = world.pose(body);
+    return turned_back(pose.orientation, p - pose.position);
+  }
+  DVec3 to_world(BodyId body, DVec3 p) const {
+    if (!world.exists(body)) return p;
+    const Pose pose = world.pose(body);
+    return pose.position + turned(pose.orientation, p);
+  }
+  double gap(const Anchor& anchor) const {
+    return length(to_world(anchor.a, anchor.on_a) - to_world(anchor.b, anchor.on_b));
+  }
+
+  std::vector<Anchor> anchors_;
+};
+
+// ------------------------------------------------------------------------------------------------------------- chains
+
+enum class Links { balls, hinges, rods };
+
+struct ChainCase {
+  Links links = Links::balls;
+  bool swings = false;
+  int count = 100;
+  float load = 1000.0f;  // mass of the last body, that of the others being 1
+  int substeps = 4;
+};
+
+constexpr double kPitch = 0.5;
+
+// The most that the chain is ever longer than it was, over its length.
+double worst_stretch(const ChainCase& c, double seconds) {
+  Assembly chain({.stepping = {.substeps = c.substeps}, .sleeping = false});
+  const DVec3 way = c.swings ? DVec3{1, 0, 0} : DVec3{0, -1, 0};
+  const Quat turn = c.swings ? from_axis_angle({0, 0, 1}, -0.5f * kPi) : Quat{};
+  BodyId last{};
+  for (int i = 0; i < c.count; ++i) {
+    BodyDef def{.pose = {(double(i) + 0.5) * kPitch * way, turn}};
+    def.mass = i + 1 == c.count ? c.load : 1.0f;
+    const BodyId body = chain.add(def, Capsule{0.05f, 0.15f});
+    if (c.links == Links::rods) {
+      chain.world.add_joint({.kind = JointKind::distance,
+                             .a = last,
+                             .b = body,
+                             .anchor = std::max(0.0, i - 0.5) * kPitch * way});
+    } else {
+      chain.join(c.links == Links::balls ? JointKind::ball : JointKind::hinge, last, body,
+                 double(i) * kPitch * way);
+    }
+    last = body;
+  }
+  double worst = 0.0;
+  for (double t = 0.0; t < seconds; t += double(kStep)) {
+    chain.world.step(kStep);
+    double sum = chain.sum_of_gaps();
+    if (c.links == Links::rods) {
+      DVec3 from{};
+      for (const BodyId body : chain.bodies) {
+        const DVec3 to = chain.world.pose(body).position;
+        sum += std::fabs(length(to - from) - (body == chain.bodies[0] ? 0.5 : 1.0) * kPitch);
+        from = to;
+      }
+    }
+    worst = std::max(worst, sum / (kPitch * c.count));
+  }
+  return worst;
+}
+
+TEST(Chain, HoldsAThousandTimesItsLinks) {
+  for (const Links links : {Links::balls, Links::hinges, Links::rods}) {
+    EXPECT_TRUE(
+        limit_row("stretch of 100 links, 1:1000, hanging", worst_stretch({links, false}, 3.0), 1e-2, 1e-3));
+    EXPECT_TRUE(
+        limit_row("stretch of 100 links, 1:1000, swinging", worst_stretch({links, true}, 5.0), 1e-2, 2e-3));
+  }
+}
+
+TEST(Chain, HoldsOtherLoadsLengthsAndSubsteps) {
+  EXPECT_TRUE(limit_row("1:1", worst_stretch({.swings = true, .load = 1.0f}, 5.0), 1e-2, 1e-4));
+  EXPECT_TRUE(limit_row("1:10,000, hanging", worst_stretch({.load = 1.0e4f}, 3.0), 1e-2, 1e-3));
+  EXPECT_TRUE(
+      limit_row("1:10,000, swinging", worst_stretch({.swings = true, .load = 1.0e4f}, 5.0), 1e-2, 1e-3));
+  EXPECT_TRUE(limit_row("20 links", worst_stretch({.swings = true, .count = 20}, 5.0), 1e-2, 1e-3));
+  EXPECT_TRUE(limit_row("1,000 links", worst_stretch({.count = 1000}, 0.5), 1e-2, 1e-3));
+  EXPECT_TRUE(limit_row("one sub-step", worst_stretch({.swings = true, .substeps = 1}, 5.0), 1e-2, 1e-3));
+}
+
+// twenty links and a ball of 200 times a link's mass, let go at 60 degrees, swing as one rigid pendulum would.
+TEST(Chain, WreckingBallKeepsTime) {
+  Assembly chain({.sleeping = false});
+  const double angle = kPiDouble / 3.0;
+  const DVec3 way{std::sin(angle), -std::cos(angle), 0};
+  const double link = 0.25;
+  BodyId last{};
+  double moment = 0.0, mass_times_arm = 0.0;
+  for (int i = 0; i < 20; ++i) {
+    const double arm = (i + 0.5) * link;
+    const BodyId body = chain.add(point_body(1.0, {0.005f, 0.005f, 0.005f}, arm * way), Sphere{0.02f}, 0.0f);
+    chain.join(JointKind::ball, last, body, double(i) * link * way);
+    moment += arm * arm + 0.005;
+    mass_times_arm += arm;
+    last = body;
+  }
+  const double arm = 20 * link + 0.4;
+  const BodyId ball = chain.add(point_body(200.0, {12.8f, 12.8f, 12.8f}, arm * way), Sphere{0.4f}, 0.0f);
+  chain.join(JointKind::ball, last, ball, 20 * link * way);
+  moment += 200.0 * arm * arm + 12.8;
+  mass_times_arm += 200.0 * arm;
+  double a = 1.0, g = std::cos(0.5 * angle);
+  for (int i = 0; i < 30; ++i) {
+    const double mean = 0.5 * (a + g);
+    g = std::sqrt(a * g);
+    a = mean;
+  }
+  const double period = 2.0 * kPiDouble * std::sqrt(moment / (mass_times_arm * kGravity)) / a;
+  ZeroCrossings through;
+  for (int i = 0; i < 60 * 40 && through.count() <= 5; ++i) {
+    through.add(double(i) * double(kStep), chain.world.pose(ball).position.x);
+    chain.world.step(kStep);
+  }
+  EXPECT_TRUE(relative_row("A-114 period", through.mean_period(), period, 3e-2, 5e-3));
+  EXPECT_TRUE(limit_row("A-114 links apart (m)", chain.largest_gap(), 1e-3, 1e-4));
+}
+
+// forty links of 0.1 m between points 3 m apart, damped until they hang: the sag of a catenary.
+TEST(Chain, HangsAsACatenary) {
+  Assembly chain({.sleeping = false});
+  const double link = 0.1;
+  // An arc of the right span to begin with: chord over arc = sin(t) / t = 3 / 4.
+  double low = 0.1, high = 3.0;
+  for (int i = 0; i < 60; ++i) {
+    const double t = 0.5 * (low + high);
+    (std::sin(t) / t > 0.75 ? low : high) = t;
+  }
+  DVec3 at{-1.5, 0, 0};
+  double chord = 0.0;
+  const auto direction = [&](int i) { return -low + 2.0 * low * (i + 0.5) / 40.0; };
+  for (int i = 0; i < 40; ++i) chord += link * std::cos(direction(i));
+  BodyId last{};
+  for (int i = 0; i < 40; ++i) {
+    const double d = direction(i);
+    const DVec3 way{std::cos(d) * 3.0 / chord, std::sin(d) * 3.0 / chord, 0};  // 0.03 % longer
+    BodyDef def = point_body(0.1, {1e-4f, 1e-4f, 1e-4f}, at + 0.5 * link * way);
+    def.linear_damping = def.angular_damping = 1.0f;
+    const BodyId body = chain.add(def, Sphere{0.01f}, 0.0f);
+    chain.join(JointKind::ball, last, body, at);
+    at = at + link * way;
+    last = body;
+  }
+  chain.join(JointKind::ball, last, {}, at);
+  run(chain.world, 20.0);
+  double lowest = 0.0;
+  for (const BodyId body : chain.bodies) lowest = std::min(lowest, chain.world.pose(body).position.y);
+  EXPECT_TRUE(relative_row("A-46 sag (m)", -lowest, 1.17734, 1e-2, 1e-3));
+  const JointReading end = chain.world.joint_reading(chain.joints[0]);
+  const double weight_per_metre = 40 * 0.1 * kGravity / 4.0;
+  EXPECT_TRUE(relative_row("A-46 horizontal tension", std::fabs(double(end.force.x)) / weight_per_metre,
+                           1.11008, 1e-2, 2e-3));
+  EXPECT_TRUE(relative_row("A-46 tension at the end", double(length(end.force)) / weight_per_metre, 2.28742,
+                           3e-2, 2e-3));
+}
+
+// -------------------------------------------------------------------------------------------------------- energy etc.
+
+// `count` rods of 1 m, one hanging on the other, let go level.
+double energy_drift(int count, JointKind kind, int substeps, double seconds) {
+  Assembly rods({.stepping = {.substeps = substeps}, .sleeping = false});
+  BodyId last{};
+  for (int i = 0; i < count; ++i) {
+    const BodyId body = rods.add({.pose = {.position = {i + 0.5, 0, 0}}}, Box{{0.5f, 0.05f, 0.05f}});
+    rods.join(kind, last, body, {double(i), 0, 0});
+    last = body;
+  }
+  const double mass = double(rods.world.mass_properties(last).mass);
+  const double range = 2.0 * mass * kGravity * 0.5 * count * count;  // between hanging and standing
+  const double start = rods.energy();
+  double worst = 0.0;
+  for (int i = 0; i < int(seconds * 60.0); ++i) {
+    rods.world.step(kStep);
+    worst = std::max(worst, std::fabs(rods.energy() - start) / range);
+  }
+  return worst;
+}
+
+TEST(DoublePendulum, KeepsItsEnergyForAMinute) {
+  EXPECT_TRUE(limit_row("hinges, 16 sub-steps", energy_drift(2, JointKind::hinge, 16, 60.0), 1e-2, 1e-3));
+  EXPECT_TRUE(limit_row("balls, 16 sub-steps", energy_drift(2, JointKind::ball, 16, 60.0), 1e-2, 1e-3));
+  EXPECT_TRUE(limit_row("three rods, 16 sub-steps", energy_drift(3, JointKind::hinge, 16, 60.0), 1e-2, 1e-3));
+  EXPECT_TRUE(limit_row("hinges, 4 sub-steps", energy_drift(2, JointKind::hinge, 4, 60.0), 1e-2, 5e-3));
+}
+
+TEST(FreeChain, KeepsItsMomentumAndEnergy) {
+  for (const JointKind kind : {JointKind::ball, JointKind::hinge}) {
+    for (const int count : {2, 10, 60}) {
+      Assembly chain({.gravity = {0, 0, 0}, .sleeping = false});
+      BodyId last{};
+      for (int i = 0; i < count; ++i) {
+        const float f = float(i);
+        const BodyId body =
+            chain.add({.pose = {.position = {double(i), 0, 0}},
+                       .linear_velocity = {0, float(std::sin(0.7 * i)), float(std::cos(1.0 * i))},
+                       .angular_velocity = {1, 0.3f * f / float(count), -0.5f}},
+                      Box{{0.5f, 0.1f, 0.05f}});
+        if (i > 0) chain.join(kind, last, body, {i - 0.5, 0, 0}, i % 2 == 0 ? Vec3{0, 1, 0} : Vec3{0, 0, 1});
+        last = body;
+      }
+      chain.world.step(kStep);  // velocities now agree with the joints
+      const auto spin = [&] {   // about the common centre of mass
+        double mass = 0.0;
+        DVec3 center{};
+        for (const BodyId body : chain.bodies) {
+          const double m = double(chain.world.mass_properties(body).mass);
+          center = center + m * chain.world.center_of_mass(body);
+          mass += m;
+        }
+        const Momentum momentum = chain.world.momentum();
+        return momentum.angular - cross((1.0 / mass) * center, momentum.linear);
+      };
+      const DVec3 before = spin();
+      const double energy = chain.energy();
+      double worst = 0.0;
+      for (int i = 0; i < 1200; ++i) {
+        chain.world.step(kStep);
+        worst = std::max(worst, length(spin() - before) / length(before));
+      }
+      EXPECT_TRUE(limit_row("angular momentum of a free chain, 20 s", worst, 1e-3, 1e-4));
+      EXPECT_TRUE(limit_row("its energy", std::fabs(chain.energy() / energy - 1.0), 1e-2, 1e-3));
+    }
+  }
+}
+
+// ------------------------------------------------------------------------------------------------- loops and linkages
+
+void add_ring(Assembly& ring, int count, JointKind kind, double spin) {
+  const double radius = 0.3 * count / (2.0 * kPiDouble);
+  for (int i = 0; i < count; ++i) {
+    const double a = 2.0 * kPiDouble * i / count;
+    ring.add({.pose = {{radius * std::cos(a), radius * std::sin(a), 0}, from_axis_angle({0, 0, 1}, float(a))},
+              .linear_velocity = {float(-spin * radius * std::sin(a)), float(spin * radius * std::cos(a)), 0},
+              .angular_velocity = {0, 0, float(spin)}},
+             Capsule{0.05f, 0.1f});
+  }
+  for (int i = 0; i < count; ++i) {
+    const double a = 2.0 * kPiDouble * (i + 0.5) / count;
+    ring.join(kind, ring.bodies[std::size_t(i)], ring.bodies[std::size_t((i + 1) % count)],
+              {radius * std::cos(a), radius * std::sin(a), 0});
+  }
+}
+
+// twenty links in a ring. Hinges with parallel axes say more about a ring than need be said.
+TEST(Ring, SpinsForAMinute) {
+  for (const JointKind kind : {JointKind::ball, JointKind::hinge}) {
+    Assembly ring({.gravity = {0, 0, 0}, .sleeping = false});
+    add_ring(ring, 20, kind, 5.0);
+    const double spin = ring.world.momentum().angular.z;
+    double gap = 0.0;
+    for (int i = 0; i < 3600; ++i) {
+      ring.world.step(kStep);
+      gap = std::max(gap, ring.largest_gap());
+    }
+    EXPECT_TRUE(limit_row("A-44 gap (m)", gap, 1e-3, 1e-5));
+    EXPECT_TRUE(relative_row("A-44 angular momentum", ring.world.momentum().angular.z, spin, 1e-3, 1e-4));
+    DVec3 center{};
+    for (const BodyId body : ring.bodies) center = center + (1.0 / 20.0) * ring.world.pose(body).position;
+    EXPECT_TRUE(limit_row("A-44 centre (m)", length(center), 1e-3, 1e-5));
+  }
+}
+
+TEST(Ring, HangsAndWhipsWithoutGainingEnergy) {
+  for (const JointKind kind : {JointKind::ball, JointKind::hinge}) {
+    Assembly ring({.sleeping = false});
+    add_ring(ring, 20, kind, 0.0);
+    ring.join(JointKind::ball, {}, ring.bodies[0], ring.world.pose(ring.bodies[0]).position);
+    const double start = ring.energy();
+    const double scale = 20.0 * double(ring.world.mass_properties(ring.bodies[0]).mass) * kGravity * 2.0;
+    double gap = 0.0, gain = 0.0;
+    for (int i = 0; i < 3600; ++i) {
+      ring.world.step(kStep);
+      gap = std::max(gap, ring.largest_gap());
+      gain = std::max(gain, (ring.energy() - start) / scale);
+    }
+    EXPECT_TRUE(limit_row("gap while it whips (m)", gap, 1e-2, 1e-3));
+    EXPECT_TRUE(limit_row("energy gained, of its weight times its length", gain, 2e-2, 1e-3));
+  }
+}
+
+// Six links: the ground, a bar, and four parallel cranks between them, of which two would do.
+TEST(SixBarLinkage, TurnsForAMinuteWithTwiceTheJointsItNeeds) {
+  Assembly linkage({.sleeping = false});
+  const BodyId bar = linkage.add({.pose = {.position = {1.5, 0, 0}}}, Box{{2.0f, 0.05f, 0.05f}});
+  for (int k = 0; k < 4; ++k) {
+    const BodyId crank = linkage.add({.pose = {.position = {double(k), 0.5, 0}}}, Box{{0.05f, 0.5f, 0.05f}});
+    linkage.join(JointKind::hinge, {}, crank, {double(k), 1, 0});
+    linkage.join(JointKind::hinge, crank, bar, {double(k), 0, 0});
+    linkage.world.set_velocity(crank, {1.5f, 0, 0}, {0, 0, 3});
+  }
+  linkage.world.set_velocity(bar, {3, 0, 0}, {});
+  const double start = linkage.energy();
+  const double weight = double(linkage.world.mass_properties(bar).mass) * kGravity;
+  double gap = 0.0, tilt = 0.0, change = 0.0, force = 0.0;
+  for (int i = 0; i < 3600; ++i) {
+    linkage.world.step(kStep);
+    gap = std::max(gap, linkage.largest_gap());
+    tilt = std::max(tilt, double(std::fabs(2.0f * linkage.world.pose(bar).orientation.z)));
+    change = std::max(change, std::fabs(linkage.energy() - start) / weight);
+    for (const JointId joint : linkage.joints)
+      force = std::max(force, double(length(linkage.world.joint_reading(joint).force)));
+  }
+  EXPECT_TRUE(limit_row("gap of the six-bar (m)", gap, 1e-3, 1e-5));
+  EXPECT_TRUE(limit_row("its bar's tilt (rad)", tilt, 1e-3, 1e-5));
+  EXPECT_TRUE(limit_row("its energy, of weight times crank", change, 1e-2, 5e-3));
+  // Joints that do not need each other must not fight each other: with two cranks none bears more than 1.7 weights.
+  EXPECT_TRUE(limit_row("largest force in a joint, weights", force / weight, 2.0, 1.7));
+}
+
+// crank 0.3, coupler 0.8, rocker 0.6 on a ground of 0.9 m. Freudenstein: the rocker's angle from the crank's.
+TEST(FourBarLinkage, FollowsFreudenstein) {
+  const double a = 0.3, b = 0.8, c = 0.6, d = 0.9;
+  const auto rocker_angle = [&](double crank) {
+    const DVec3 p{a * std::cos(crank), a * std::sin(crank), 0};
+    const double x = p.x - d, y = p.y, r = std::sqrt(x * x + y * y);
+    return std::atan2(y, x) - std::acos((r * r + c * c - b * b) / (2.0 * r * c));
+  };
+  const double start = 1.0;
+  const DVec3 p{a * std::cos(start), a * std::sin(start), 0};
+  const double rocker = rocker_angle(start);
+  const DVec3 q{d + c * std::cos(rocker), c * std::sin(rocker), 0};
+  Assembly linkage({.gravity = {0, 0, 0}, .sleeping = false});
+  const auto link = [&](DVec3 from, DVec3 to) {
+    const DVec3 way = to - from;
+    const float length_of = float(length(way));
+    return linkage.add(
+        {.pose = {0.5 * (from + to), from_axis_angle({0, 0, 1}, float(std::atan2(way.y, way.x)))}},
+        Box{{0.5f * length_of, 0.02f, 0.02f}});
+  };
+  const BodyId crank = link({}, p), coupler = link(p, q), swing = link({d, 0, 0}, q);
+  const JointId drive = linkage.join(JointKind::hinge, {}, crank, {});
+  linkage.join(JointKind::hinge, crank, coupler, p);
+  linkage.join(JointKind::hinge, coupler, swing, q);
+  linkage.join(JointKind::hinge, swing, {}, {d, 0, 0});
+  linkage.world.set_motor(drive, {.target_velocity = 2.0f, .max_force = 1000.0f});
+  double worst = 0.0;
+  for (int i = 0; i < 1200; ++i) {
+    linkage.world.step(kStep);
+    const Quat at = linkage.world.pose(crank).orientation, end = linkage.world.pose(swing).orientation;
+    const double expected = rocker_angle(2.0 * std::atan2(double(at.z), double(at.w)));
+    double error = 2.0 * std::atan2(double(end.z), double(end.w)) - expected;
+    error -= 2.0 * kPiDouble * std::round(error / (2.0 * kPiDouble));
+    worst = std::max(worst, std::fabs(error));
+  }
+  EXPECT_TRUE(limit_row("A-43 rocker angle (rad)", worst, 1e-2, 1e-4));
+  EXPECT_TRUE(relative_row("A-43 speed of the crank", double(linkage.world.angular_velocity(crank).z), 2.0,
+                           1e-2, 1e-4));
+}
+
+// ------------------------------------------------------------------------------------------------------------- bridges
+
+struct BridgeCase {
+  int planks = 200;
+  bool two_balls = false;  // at either edge, where a hinge would do
+  double slack = 0.02;     // of the length
+  float box_density = 0.0f;
+  double seconds = 60.0;
+};
+
+struct BridgeOutcome {
+  double gap = 0.0;
+  double lowest_plank = 0.0, lowest_box = 0.0;
+};
+
+BridgeOutcome hold_bridge(const BridgeCase& c) {
+  Assembly bridge({.sleeping = false});
+  const double plank = 0.5, span = c.planks * plank * (1.0 - c.slack);
+  double low = 1e-6, high = 3.0;  // half the angle of the arc
+  for (int i = 0; i < 60; ++i) {
+    const double t = 0.5 * (low + high);
+    (std::sin(t) / t > 1.0 - c.slack ? low : high) = t;
+  }
+  const auto direction = [&](int i) { return c.slack > 0.0 ? -low + 2.0 * low * (i + 0.5) / c.planks : 0.0; };
+  double chord = 0.0;
+  for (int i = 0; i < c.planks; ++i) chord += plank * std::cos(direction(i));
+  const double size = plank * span / chord;
+  const auto join = [&](BodyId a, BodyId b, DVec3 at) {
+    if (!c.two_balls) bridge.join(JointKind::hinge, a, b, at);
+    for (const double side : {-0.5, 0.5}) {
+      if (c.two_balls) bridge.join(JointKind::ball, a, b, at + DVec3{0, 0, side});
+    }
+  };
+  DVec3 at{};
+  BodyId last{};
+  for (int i = 0; i < c.planks; ++i) {
+    const DVec3 way{std::cos(direction(i)), std::sin(direction(i)), 0};
+    const BodyId body = bridge.world.add_body(
+        {.pose = {at + 0.5 * size * way, from_axis_angle({0, 0, 1}, float(direction(i)))}},
+        {.geometry = Box{{float(0.475 * size), 0.05f, 1.0f}}, .density = 400.0f});
+    bridge.bodies.push_back(body);
+    join(last, body, at);
+    at = at + size * way;
+    last = body;
+  }
+  join(last, {}, at);
+  std::vector<BodyId> boxes;
+  const double middle = bridge.world.pose(bridge.bodies[std::size_t(c.planks / 2)]).position.y;
+  for (int i = -2; i <= 2 && c.box_density > 0.0f; ++i) {
+    boxes.push_back(bridge.world.add_body({.pose = {.position = {0.5 * span + 1.5 * i, middle + 0.65, 0}}},
+                                          {.geometry = Box{{0.4f, 0.4f, 0.4f}}, .density = c.box_density}));
+  }
+  BridgeOutcome outcome;
+  for (int i = 0; i < int(c.seconds * 60.0); ++i) {
+    bridge.world.step(kStep);
+    outcome.gap = std::max(outcome.gap, bridge.largest_gap());
+  }
+  for (const BodyId b : bridge.bodies)
+    outcome.lowest_plank = std::min(outcome.lowest_plank, bridge.world.pose(b).position.y);
+  for (const BodyId b : boxes)
+    outcome.lowest_box = std::min(outcome.lowest_box, bridge.world.pose(b).position.y);
+  return outcome;
+}
+
+// Straight from bank to bank there is no slack at all: only what the joints give lets it hang.
+TEST(Bridge, OfFortyPlanksHoldsStraightOrSlackWithHingesOrPairsOfBalls) {
+  for (const bool two_balls : {false, true}) {
+    for (const double slack : {0.0, 0.02}) {
+      const BridgeOutcome bridge = hold_bridge({40, two_balls, slack, 0.0f, 5.0});
+      EXPECT_TRUE(limit_row("gap of 40 planks (m)", bridge.gap, 1e-3, 1e-4));
+      EXPECT_GT(bridge.lowest_plank, slack > 0.0 ? -3.0 : -1.0);
+    }
+  }
+}
+
+TEST(Bridge, OfFortyPlanksCarriesBoxes) {
+  for (const float density : {1000.0f, 4000.0f}) {  // 13 and 50 times a plank's mass
+    const BridgeOutcome bridge = hold_bridge({40, false, 0.02, density, 5.0});
+    EXPECT_TRUE(limit_row("gap of 40 planks under boxes (m)", bridge.gap, 5e-2, 1e-2));
+    EXPECT_GT(bridge.lowest_box, bridge.lowest_plank);
+  }
+}
+
+TEST(LongBridge, OfTwoHundredPlanksStandsForAMinute) {
+  for (const bool two_balls : {false, true}) {
+    EXPECT_TRUE(limit_row("gap of 200 planks (m)", hold_bridge({200, two_balls, 0.02}).gap, 1e-3, 1e-4));
+    EXPECT_TRUE(
+        limit_row("gap of 200 planks, straight (m)", hold_bridge({200, two_balls, 0.0}).gap, 2e-3, 1e-3));
+  }
+}
+
+TEST(LongBridge, OfTwoHundredPlanksCarriesBoxesForAMinute) {
+  for (const float density : {1000.0f, 5000.0f}) {
+    const BridgeOutcome bridge = hold_bridge({200, false, 0.02, density});
+    EXPECT_TRUE(limit_row("gap of 200 planks under boxes (m)", bridge.gap, 5e-2, 1e-2));
+    EXPECT_GT(bridge.lowest_box, bridge.lowest_plank);
+  }
+}
+
+}  // namespace
+}  // namespace gyre::laws
