@@ -3,6 +3,7 @@
 
 #include "geometry/clip.h"
 #include "geometry/manifold_core.h"
+#include "geometry/manifold_crossing.h"
 #include "math/rotation.h"
 
 namespace gyre {
@@ -374,6 +375,35 @@ void collide_edges(const Boxes& x, const Transform& a_from_b, const Axis& found,
   out.points[0].feature = feature_edges(edge_number(i, corner_a), edge_number(j, corner_b));
 }
 
+// The face whose normal is within kNearFace of the axis of two edges; none if there is none.
+Axis face_near_edges(const Boxes& x, const Axis& edges) {
+  const int i = (edges.number - kFirstEdge) / 3, j = (edges.number - kFirstEdge) % 3;
+  const Vec3 edge_a{i == 0 ? 1.0f : 0.0f, i == 1 ? 1.0f : 0.0f, i == 2 ? 1.0f : 0.0f};
+  const Vec3 normal = normalized(cross(edge_a, Vec3{x.r[0][j], x.r[1][j], x.r[2][j]}));
+  Axis best;
+  float nearest = kNearFace;
+  for (int k = 0; k < 3; ++k) {
+    const float along_a = absolute(normal[k]);
+    if (along_a > nearest) nearest = along_a, best = {k, face_a(x, k)};
+    const float along_b = absolute(dot(normal, Vec3{x.r[0][k], x.r[1][k], x.r[2][k]}));
+    if (along_b > nearest) nearest = along_b, best = {kFirstB + k, face_b(x, k)};
+  }
+  return best;
+}
+
+// See manifold_crossing.h.
+void collide_crossing(const Boxes& x, const Transform& a_from_b, const Axis& edges, float max_separation,
+                      LocalManifold& out) {
+  const Axis face = face_near_edges(x, edges);
+  if (face.number != kNoAxis) {
+    collide_face(x, a_from_b, face, max_separation, out);
+    const float thin = min(min(min(x.a[0], x.a[1]), x.a[2]), min(min(x.b[0], x.b[1]), x.b[2]));
+    if (stands_for_crossing(out, edges.separation, thin)) return;
+    out.count = 0;
+  }
+  collide_edges(x, a_from_b, edges, out);
+}
+
 }  // namespace
 
 void collide_boxes(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
@@ -388,7 +418,7 @@ void collide_boxes(const Shape& a, const Shape& b, const Transform& a_from_b, fl
   cache.words[0] = std::uint32_t(found.number + 1);
   if (found.separation > max_separation) return;
   if (found.number >= kFirstEdge) {
-    collide_edges(x, a_from_b, found, out);
+    collide_crossing(x, a_from_b, found, max_separation, out);
   } else {
     collide_face(x, a_from_b, found, max_separation, out);
   }

@@ -4,6 +4,7 @@
 #include "geometry/clip.h"
 #include "geometry/closest.h"
 #include "geometry/manifold_core.h"
+#include "geometry/manifold_crossing.h"
 #include "geometry/separating_axis.h"
 
 namespace gyre {
@@ -98,6 +99,48 @@ void edge_point(const Polytope& a, const Polytope& b, const Transform& a_from_b,
   out.points[0].feature = feature_edges(std::uint32_t(axis.index_a), std::uint32_t(axis.index_b));
 }
 
+void face_manifold(const Polytope& a, const Polytope& b, const Transform& a_from_b, const PolytopeAxis& axis,
+                   float max_separation, LocalManifold& out) {
+  const bool is_a = axis.kind == AxisKind::face_a;
+  ManifoldPoint points[kMaxClipPoints];
+  const Roles roles{is_a ? a : b, is_a ? b : a, is_a ? a_from_b : inverse(a_from_b), is_a};
+  const int found =
+      face_points(roles, is_a ? axis.index_a : axis.index_b, axis.separation, max_separation, points);
+  const Vec3 normal = is_a ? axis.normal : b.planes[axis.index_b].normal;
+  out.normal = axis.normal;
+  out.count = found > 0 ? reduce_points(points, found, normal) : 0;
+  for (int i = 0; i < out.count; ++i) {
+    out.points[i] = points[i];
+    if (!is_a) out.points[i].position = a_from_b * points[i].position;
+  }
+}
+
+// The face whose normal is within kNearFace of a normal from A to B; none if there is none.
+PolytopeAxis face_near(const Polytope& a, const Polytope& b, const Transform& a_from_b, Vec3 normal) {
+  PolytopeAxis best;
+  float nearest = kNearFace;
+  for (int k = 0; k < a.face_count; ++k) {
+    const float along = dot(a.planes[k].normal, normal);
+    if (along > nearest) nearest = along, best.kind = AxisKind::face_a, best.index_a = k;
+  }
+  const Vec3 towards_a = -rotate_inverse(a_from_b.orientation, normal);
+  for (int k = 0; k < b.face_count; ++k) {
+    const float along = dot(b.planes[k].normal, towards_a);
+    if (along > nearest) nearest = along, best.kind = AxisKind::face_b, best.index_b = k;
+  }
+  if (best.kind != AxisKind::none) separation_along(a, b, a_from_b, best);
+  return best;
+}
+
+// See manifold_crossing.h.
+bool crossing_faces(const Polytope& a, const Polytope& b, const Transform& a_from_b,
+                    const PolytopeAxis& edges, float max_separation, LocalManifold& out) {
+  const PolytopeAxis face = face_near(a, b, a_from_b, edges.normal);
+  if (face.kind == AxisKind::none) return false;
+  face_manifold(a, b, a_from_b, face, max_separation, out);
+  return stands_for_crossing(out, edges.separation, min(a.inner_radius, b.inner_radius));
+}
+
 // False when they are farther apart than allowed along some axis.
 bool collide_polytopes(const Polytope& a, const Polytope& b, const Transform& a_from_b, float max_separation,
                        PairCache& cache, LocalManifold& out) {
@@ -107,22 +150,14 @@ bool collide_polytopes(const Polytope& a, const Polytope& b, const Transform& a_
   const PolytopeAxis axis = separating_axis(a, b, a_from_b, max_separation, favoured);
   cache.words[0] = axis_name(axis);
   if (axis.separation > max_separation) return false;
-  out.normal = axis.normal;
-  if (axis.kind == AxisKind::edges) {
-    edge_point(a, b, a_from_b, axis, out);
+  if (axis.kind != AxisKind::edges) {
+    face_manifold(a, b, a_from_b, axis, max_separation, out);
     return true;
   }
-  const bool is_a = axis.kind == AxisKind::face_a;
-  ManifoldPoint points[kMaxClipPoints];
-  const Roles roles{is_a ? a : b, is_a ? b : a, is_a ? a_from_b : inverse(a_from_b), is_a};
-  const int found =
-      face_points(roles, is_a ? axis.index_a : axis.index_b, axis.separation, max_separation, points);
-  const Vec3 normal = is_a ? axis.normal : b.planes[axis.index_b].normal;
-  out.count = found > 0 ? reduce_points(points, found, normal) : 0;
-  for (int i = 0; i < out.count; ++i) {
-    out.points[i] = points[i];
-    if (!is_a) out.points[i].position = a_from_b * points[i].position;
-  }
+  if (crossing_faces(a, b, a_from_b, axis, max_separation, out)) return true;
+  out.normal = axis.normal;
+  out.count = 0;
+  edge_point(a, b, a_from_b, axis, out);
   return true;
 }
 
