@@ -10,7 +10,7 @@ namespace {
 
 // Cells are this many times as large as a box that three quarters of all do not exceed: larger ones hold too many boxes,
 // smaller ones make boxes lie in too many cells.
-constexpr float kCellsPerBox = 1.5f;
+constexpr float kCellsPerBox = 2.5f;
 constexpr std::size_t kSample = 512;
 // The grid is built anew when it holds this many times as much, or as little, as when it was built.
 constexpr std::size_t kOutgrown = 4;

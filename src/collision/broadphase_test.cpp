@@ -221,7 +221,7 @@ void expect_same_answers(World& world, const Broadphase& broadphase, const Broad
 class BroadphaseOracle : public testing::TestWithParam<Layout> {};
 
 TEST_P(BroadphaseOracle, EqualsPlainLoopsInAChangingWorld) {
-  World world(GetParam(), 400);
+  World world(GetParam(), 700);
   std::vector<std::unique_ptr<Broadphase>> broadphases;
   for (const BroadPhaseKind kind : all_kinds()) broadphases.push_back(make_broadphase(kind));
   const auto brute = make_broadphase(BroadPhaseKind::brute_force);

@@ -122,40 +122,49 @@ bool LooseTree<kAxes>::fits_in_child(const Node& node, const Aabb& box, int& lan
   return gyre::contains(loose_box(cell_of_child(node.cell, lane)), box);
 }
 
+// The child in a lane, made if there is none.
+template <int kAxes>
+std::uint32_t LooseTree<kAxes>::child_in(std::uint32_t index, int lane) {
+  if (nodes_[index].child[lane] == kNone) {
+    const std::uint32_t made = make_node(cell_of_child(nodes_[index].cell, lane), nodes_[index].level - 1);
+    nodes_[made].parent = index;
+    nodes_[made].lane = std::uint8_t(lane);
+    nodes_[index].child[lane] = made;
+    ++nodes_[index].children;
+  }
+  return nodes_[index].child[lane];
+}
+
 // Puts an item that the node can hold into the lowest cell below it.
 template <int kAxes>
 void LooseTree<kAxes>::place(std::uint32_t index, std::uint32_t item, const Aabb& box) {
   int lane = 0;
-  while (nodes_[index].parted && fits_in_child(nodes_[index], box, lane)) {
-    if (nodes_[index].child[lane] == kNone) {
-      const std::uint32_t made = make_node(cell_of_child(nodes_[index].cell, lane), nodes_[index].level - 1);
-      nodes_[made].parent = index;
-      nodes_[made].lane = std::uint8_t(lane);
-      nodes_[index].child[lane] = made;
-      ++nodes_[index].children;
-    }
-    index = nodes_[index].child[lane];
-  }
+  while (nodes_[index].parted && fits_in_child(nodes_[index], box, lane)) index = child_in(index, lane);
   put(nodes_[index].items, index, item, box);
-  if (++nodes_[index].count > kFewItems && !nodes_[index].parted) part(index);
+  ++nodes_[index].count;
+  while (index != kNone && nodes_[index].count > kFewItems && !nodes_[index].parted) index = part(index);
 }
 
-// Gives what fits into children to them.
+// Gives what fits into children to them. Returns the child that holds too much itself now, if one does.
 template <int kAxes>
-void LooseTree<kAxes>::part(std::uint32_t index) {
+std::uint32_t LooseTree<kAxes>::part(std::uint32_t index) {
   nodes_[index].parted = true;
   BoxEntry entries[kFewItems + 1];
   std::uint32_t count = 0;
   buckets_.for_each(nodes_[index].items, [&](std::uint32_t item, const Aabb& box, std::uint32_t) {
     entries[count++] = {box, item};
   });
+  std::uint32_t full = kNone;
   for (std::uint32_t i = 0; i < count; ++i) {
     int lane = 0;
     if (!fits_in_child(nodes_[index], entries[i].box, lane)) continue;
+    const std::uint32_t child = child_in(index, lane);
     take(nodes_[index].items, entries[i].item);
     --nodes_[index].count;
-    place(index, entries[i].item, entries[i].box);
+    put(nodes_[child].items, child, entries[i].item, entries[i].box);
+    if (++nodes_[child].count > kFewItems) full = child;
   }
+  return full;
 }
 
 template <int kAxes>

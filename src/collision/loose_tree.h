@@ -3,7 +3,7 @@
 // found without looking at anything else. With three axes it is the loose octree; with two (x and z: those that lie flat)
 // the loose quadtree, whose cells are columns without end.
 //
-// Cells come when more than a handful of boxes would share one, and go when they are empty. The root doubles its side
+// Cells come when more than a few dozen boxes would share one, and go when they are empty. The root doubles its side
 // whenever something lies outside.
 //
 // Sources: R. Finkel, J. Bentley, "Quad Trees: A Data Structure for Retrieval on Composite Keys", 1974; T. Ulrich, "Loose
@@ -89,8 +89,8 @@ class LooseTree : public BucketIndex {
  private:
   static constexpr int kChildren = 1 << kAxes;
   static constexpr int kAxis[3] = {0, kAxes == 3 ? 1 : 2, 2};
-  static constexpr std::uint32_t kFewItems = 8;  // before a cell gets cells of its own
-  static constexpr int kLowestLevel = -24;       // sides of 2^level metres
+  static constexpr std::uint32_t kFewItems = 32;  // before a cell gets cells of its own
+  static constexpr int kLowestLevel = -24;        // sides of 2^level metres
   static constexpr int kHighestLevel = 126;
   static constexpr int kStackSize = (kHighestLevel - kLowestLevel + 1) * (kChildren - 1) + 1;
 
@@ -146,7 +146,8 @@ class LooseTree : public BucketIndex {
   void enlarge_root(const Aabb& box);
   bool fits_in_child(const Node& node, const Aabb& box, int& lane) const;
   void place(std::uint32_t node, std::uint32_t item, const Aabb& box);
-  void part(std::uint32_t node);
+  std::uint32_t child_in(std::uint32_t node, int lane);
+  std::uint32_t part(std::uint32_t node);
   void drop_empty(std::uint32_t node);
 
   Array<Node> nodes_;

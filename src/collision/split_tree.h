@@ -135,8 +135,8 @@ class SplitTree : public BucketIndex {
 
  private:
   static constexpr int kChildren = Splitter::kChildren;
-  static constexpr std::uint32_t kMostInLeaf = 16;
-  static constexpr std::uint32_t kFewInLeaf = 8;  // when it is built
+  static constexpr std::uint32_t kMostInLeaf = 32;
+  static constexpr std::uint32_t kFewInLeaf = 16;  // when it is built
   static constexpr std::uint32_t kFewArrivals = 64;
   static constexpr int kMostDepth = 96;
   static constexpr int kStackSize = (kMostDepth + 2) * kChildren;
