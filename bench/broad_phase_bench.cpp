@@ -1,7 +1,7 @@
 // What a broad phase costs a step, against the number of bodies: a fifth of them have changed their boxes, as in a world at
 // work, and the pairs of these are asked for. One thread, and its own time: what else the machine does counts little.
 //
-// Worlds, each with about two pairs a body whatever their number:
+// Worlds, each with about one pair a body whatever their number:
 //   uniform     boxes of 1 m anywhere in a cube
 //   clustered   the same in heaps of 500, far apart
 //   unequal     sides from 0.1 to 30 m, as many from 0.1 to 1 as from 1 to 10
