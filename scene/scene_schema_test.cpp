@@ -37,7 +37,7 @@ TEST(SceneSchema, AcceptsEverySceneOfTheRepositoryAndSoDoesTheReader) {
   const Json schema = parse(scene_schema());
   SchemaCheck check(schema);
   int scenes = 0;
-  for (const auto& entry : fs::directory_iterator(kScenes)) {
+  for (const auto& entry : fs::recursive_directory_iterator(kScenes)) {
     const std::string name = entry.path().filename().string();
     if (name.size() < 10 || name.substr(name.size() - 10) != ".gyre.json") continue;
     ++scenes;

@@ -52,7 +52,7 @@ void forget_reports(WorldState& state) {
   SolveScratch& solve = state.solve;
   solve.constraints.clear(), solve.constraint_contact.clear(), solve.pairs.clear();
   solve.swept_joints.clear(), solve.joint_pairs.clear();
-  solve.manifold_count = solve.joint_count = 0;
+  solve.manifold_count = solve.joint_count = solve.swept_joint_count = 0;
   solve.colors = 0;
 }
 

@@ -469,6 +469,7 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   note_hits(solve.w, scratch);
   scratch.manifold_count += scratch.constraints.size();
   scratch.joint_count += solve.batch.joints.size();
+  scratch.swept_joint_count += scratch.swept_joints.size();
 }
 
 }  // namespace
@@ -501,7 +502,7 @@ void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& 
   solve.impact_settings = {h, kBounceShare * h * pull};
   solve.contact_bodies = {w.bodies.motion.data(), w.bodies.inertia.data()};
   solve.joint_bodies = {w.bodies.motion.data(), w.bodies.inertia.data(), w.bodies.orientations.data()};
-  scratch.manifold_count = scratch.joint_count = 0;
+  scratch.manifold_count = scratch.joint_count = scratch.swept_joint_count = 0;
   scratch.colors_used = 0;
   scratch.hits.clear();
   const ArenaScope scope(arena);

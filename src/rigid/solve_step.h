@@ -34,6 +34,7 @@ struct SolveScratch {
   Array<SlotHit> hits;                // of all batches
   std::size_t manifold_count = 0;     // of all batches
   std::size_t joint_count = 0;
+  std::size_t swept_joint_count = 0;
   std::uint64_t colors_used = 0;     // bits
   int colors = 0;
 };

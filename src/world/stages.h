@@ -35,12 +35,14 @@ enum class CounterName : std::uint8_t {
   manifolds,       // that the solver had
   colors,          // groups that they were solved in
   joints,          // that the solver had
+  swept_joints,    // of these: springs, ropes, and nets too dense to be solved directly
   awake_bodies,
   fast_bodies,     // swept, because they moved far
 };
-constexpr int kCounterCount = 9;
+constexpr int kCounterCount = 10;
 inline constexpr const char* kCounterNames[kCounterCount] = {"refitted_boxes", "new_pairs", "contacts",
                                                              "full_looks",     "manifolds", "colors",
-                                                             "joints",         "awake_bodies", "fast_bodies"};
+                                                             "joints",         "swept_joints", "awake_bodies",
+                                                             "fast_bodies"};
 
 }  // namespace gyre

@@ -81,6 +81,7 @@ void count_work(WorldState& s) {
   count(s, CounterName::manifolds, s.solve.manifold_count);
   count(s, CounterName::colors, std::size_t(s.solve.colors));
   count(s, CounterName::joints, s.solve.joint_count);
+  count(s, CounterName::swept_joints, s.solve.swept_joint_count);
   count(s, CounterName::awake_bodies, w.bodies.awake.size());
   count(s, CounterName::fast_bodies, s.continuous.fast.size());
 }

@@ -2,6 +2,8 @@
 // not gain energy, and must keep their momentum. docs/decisions/joint-trees.md has the figures.
 #include "laws/kit.h"
 
+#include <gyre/debug.h>
+
 #include <string>
 
 namespace gyre::laws {
@@ -499,6 +501,89 @@ TEST(LongBridge, OfTwoHundredPlanksCarriesBoxesForAMinute) {
     const BridgeOutcome bridge = hold_bridge({200, false, 0.02, density});
     EXPECT_TRUE(limit_row("gap of 200 planks under boxes (m)", bridge.gap, 5e-2, 1e-2));
     EXPECT_GT(bridge.lowest_box, bridge.lowest_plank);
+  }
+}
+
+// -------------------------------------------------------------------------------------------------- where it ends
+
+std::uint64_t count_of(const World& world, const std::string& name) {
+  StepTimes times;
+  read_times(world, times);
+  for (const StepCount& count : times.counts) {
+    if (name == count.name) return count.value;
+  }
+  ADD_FAILURE() << "no counter " << name;
+  return 0;
+}
+
+// A square net hung up at its corners: narrow ones are solved directly, wide ones are swept, and the step says so.
+TEST(Net, IsSweptWhereItIsTooDense) {
+  for (const int side : {3, 24}) {
+    Assembly net({.sleeping = false});
+    set_timing(net.world, true);
+    for (int k = 0; k < side * side; ++k) net.add({.pose = {.position = {double(k % side), 0, double(k / side)}}}, Sphere{0.4f});
+    for (int k = 0; k < side * side; ++k) {
+      const DVec3 at{double(k % side), 0, double(k / side)};
+      if (k % side + 1 < side) net.join(JointKind::ball, net.bodies[std::size_t(k)], net.bodies[std::size_t(k + 1)], at + DVec3{0.5, 0, 0});
+      if (k + side < side * side)
+        net.join(JointKind::ball, net.bodies[std::size_t(k)], net.bodies[std::size_t(k + side)], at + DVec3{0, 0, 0.5});
+    }
+    for (const int k : {0, side - 1, side * (side - 1), side * side - 1})
+      net.join(JointKind::ball, {}, net.bodies[std::size_t(k)], {double(k % side), 0, double(k / side)});
+    run(net.world, 2.0);
+    const std::uint64_t joints = count_of(net.world, "joints");
+    EXPECT_EQ(joints, net.joints.size());
+    EXPECT_EQ(count_of(net.world, "swept_joints"), side == 3 ? 0u : joints);
+    EXPECT_TRUE(limit_row("gap of a net (m)", net.largest_gap(), side == 3 ? 1e-3 : 0.2, 1e-4));
+  }
+}
+
+// A wheel with more spokes than pairs of joints are listed for.
+TEST(Hub, OfManySpokesHolds) {
+  for (const int spokes : {6, 60}) {
+    Assembly wheel({.gravity = {0, 0, 0}, .sleeping = false});
+    set_timing(wheel.world, true);
+    const BodyId hub = wheel.add({.angular_velocity = {0, 0, 3}}, Cylinder{0.5f, 0.2f});
+    for (int i = 0; i < spokes; ++i) {
+      const double a = 2.0 * kPiDouble * i / spokes;
+      const DVec3 way{std::cos(a), std::sin(a), 0};
+      const BodyId spoke = wheel.add({.pose = {1.5 * way, from_axis_angle({0, 0, 1}, float(a))},
+                                      .linear_velocity = {float(-4.5 * way.y), float(4.5 * way.x), 0},
+                                      .angular_velocity = {0, 0, 3}},
+                                     Box{{0.5f, 0.02f, 0.02f}});
+      wheel.join(JointKind::fixed, hub, spoke, way);
+    }
+    const double spin = wheel.world.momentum().angular.z;
+    run(wheel.world, 10.0);
+    EXPECT_EQ(count_of(wheel.world, "swept_joints"), spokes == 6 ? 0u : std::uint64_t(spokes));
+    EXPECT_TRUE(limit_row("gap of a wheel (m)", wheel.largest_gap(), spokes == 6 ? 1e-4 : 1e-2, 1e-5));
+    EXPECT_TRUE(relative_row("spin of a wheel", wheel.world.momentum().angular.z, spin, 1e-3, 1e-5));
+  }
+}
+
+// An arm of hinges that motors hold level against gravity, and one that only limits hold.
+TEST(Arm, IsHeldLevelByMotorsOrLimits) {
+  for (const bool by_motors : {true, false}) {
+    Assembly arm({.sleeping = false});
+    BodyId last{};
+    for (int i = 0; i < 6; ++i) {
+      const BodyId body = arm.add({.pose = {.position = {i + 0.5, 0, 0}}}, Box{{0.5f, 0.1f, 0.1f}});
+      JointDef hinge{.kind = JointKind::hinge, .a = last, .b = body, .anchor = {double(i), 0, 0}, .axis = {0, 0, 1}};
+      if (by_motors) {
+        hinge.motor = {.target_position = 0.0f, .max_force = 1.0e5f};
+      } else {
+        hinge.limits = Limits{0.0f, 1.0f};
+      }
+      arm.joints.push_back(arm.world.add_joint(hinge));
+      last = body;
+    }
+    run(arm.world, 5.0);
+    EXPECT_TRUE(limit_row(by_motors ? "sag of a driven arm of 6 m (m)" : "sag of an arm at its limits (m)",
+                          -arm.world.pose(last).position.y, 0.3, 1e-2));
+    const JointReading root = arm.world.joint_reading(arm.joints[0]);
+    const double weight = 6.0 * 40.0 * kGravity;
+    EXPECT_TRUE(relative_row("force at its root (N)", double(root.force.y), weight, 2e-2, 1e-3));
+    EXPECT_TRUE(relative_row("torque at its root (N m)", double(root.torque.z), 3.0 * weight, 5e-2, 1e-3));
   }
 }
 
