@@ -42,6 +42,8 @@ struct SceneMaterial {
   float density = 1000.0f;  // kg/m^3
   std::optional<SceneColor> color;
   Material surface;         // `id` stays 0: it is given when a world is made
+  // As in SurfaceRule, in the frame of the body: a belt's speed (m/s), and the direction in which a one-way surface lets pass.
+  Vec3 surface_velocity, one_way;
 };
 
 // What is not given follows from the two materials by the world's combine rules.

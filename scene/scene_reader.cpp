@@ -113,6 +113,8 @@ void read_material(SceneReading& reading, const std::string& name, const Field& 
   material.name = name;
   const SurfaceFields given = read_surface(members);
   members.read("color", material.color);
+  members.read("surface_velocity", material.surface_velocity);
+  members.read("one_way", material.one_way);
   members.finish();
   if (given.density) material.density = *given.density;
   complete_friction(given, material.surface);

@@ -100,7 +100,9 @@ constexpr char kPart0[] = R"json({
         "restitution": { "type": ["number", "null"], "minimum": 0, "maximum": 1, "default": 0 },
         "rolling_friction": { "$ref": "#/$defs/not_negative_or_null", "default": 0, "description": "m" },
         "spinning_friction": { "$ref": "#/$defs/not_negative_or_null", "default": 0, "description": "m" },
-        "color": { "$ref": "#/$defs/color" }
+        "color": { "$ref": "#/$defs/color" },
+        "surface_velocity": { "$ref": "#/$defs/vector", "default": [0, 0, 0], "description": "m/s, in the body's frame: the surface runs like a conveyor belt" },
+        "one_way": { "$ref": "#/$defs/vector", "default": [0, 0, 0], "description": "direction in the body's frame: what moves along it passes, what comes against it is held; zero: nothing passes" }
       }
     },
     "material_pair": {

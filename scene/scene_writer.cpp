@@ -51,6 +51,8 @@ void write_material(JsonWriter& json, const SceneMaterial& material) {
   unless_default(json, "rolling_friction", material.surface.rolling_friction, 0.0f);
   unless_default(json, "spinning_friction", material.surface.spinning_friction, 0.0f);
   write_color(json, material.color);
+  unless_default(json, "surface_velocity", material.surface_velocity, Vec3{});
+  unless_default(json, "one_way", material.one_way, Vec3{});
   json.end_object();
 }
 

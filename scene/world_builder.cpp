@@ -39,6 +39,13 @@ std::string WorldBuilder::last_refusal() const {
 }
 
 bool WorldBuilder::add_pairs() {
+  for (std::size_t i = 0; i < scene_.materials.size(); ++i) {
+    const SceneMaterial& material = scene_.materials[i];
+    if (material.surface_velocity == Vec3{} && material.one_way == Vec3{}) continue;
+    const auto id = std::uint16_t(i + 1);
+    if (!world_.set_surface_rule({id, material.surface, material.surface_velocity, material.one_way}))
+      return fail(pointer_to("materials", i), last_refusal());
+  }
   for (std::size_t i = 0; i < scene_.material_pairs.size(); ++i) {
     const SceneMaterialPair& pair = scene_.material_pairs[i];
     const Material& a = scene_.materials[std::size_t(pair.a)].surface;

@@ -79,6 +79,16 @@ struct MaterialPair {
   float restitution = 0.0f;
 };
 
+// What else a surface does: a row of the world's table (World::set_surface_rule), for shapes whose material has the id and for
+// triangles of meshes that carry it (MeshDef::materials). Directions are in the frame of the body.
+struct SurfaceRule {
+  std::uint16_t id = 0;  // Material::id, above 0
+  Material material{};   // of triangles that carry the id; a shape's own material stays what it is
+  Vec3 velocity{};       // m/s: the surface runs on like a conveyor belt while the body stays; only along the surface
+  // What moves along this direction passes through, what comes against it is held; any length. Zero: nothing passes.
+  Vec3 one_way{};
+};
+
 // Who may touch whom: two shapes may when each one's layer is among the other's collides_with. Two equal non-zero groups
 // overrule that: always if positive, never if negative.
 struct Filter {

@@ -90,6 +90,8 @@ struct MeshDef {
   std::span<const Vec3> vertices{};
   std::span<const std::uint32_t> indices{};  // three a triangle, counter-clockwise seen from the solid side's outside
   bool double_sided = false;               // also collide with the back of the triangles
+  // One a triangle, or none at all: SurfaceRule::id of its material; 0 = the material of the shape.
+  std::span<const std::uint16_t> materials{};
 };
 // A triangle mesh for static and kinematic bodies. Triangles without area are left out; indices out of range and
 // non-finite vertices are refused with the triangle's or vertex's number. Edges that lie within a flat or concave

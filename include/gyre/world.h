@@ -97,6 +97,7 @@ class World {
   bool set_damping(BodyId body, float linear, float angular);
   bool set_material(ShapeId shape, const Material& material);
   bool set_material_pair(const MaterialPair& pair);
+  bool set_surface_rule(const SurfaceRule& rule);  // replaces the rule of the same id; wakes everything
   bool set_filter(ShapeId shape, const Filter& filter);
   bool set_motor(JointId joint, const Motor& motor);
   bool set_sleeping(bool enabled);

@@ -27,6 +27,7 @@ struct Mesh {
   // By node, bit i for lane i: all triangles below lie inside one flat patch, so nothing but their plane can be touched.
   std::vector<std::uint8_t> flat_lanes;
   bool double_sided = false;
+  std::vector<std::uint16_t> materials;  // by the number in the MeshDef; empty if none has one of its own
 
   std::uint32_t triangle_count() const { return std::uint32_t(normals.size()); }
 };

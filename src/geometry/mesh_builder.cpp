@@ -26,6 +26,10 @@ Error check_mesh(const MeshDef& def) {
     return make_error(ErrorCode::invalid_geometry, "mesh: %zu triangles; at most %u are allowed", triangles,
                       StaticTree::kMaxItems);
   }
+  if (!def.materials.empty() && def.materials.size() != triangles) {
+    return make_error(ErrorCode::invalid_geometry, "mesh: %zu materials for %zu triangles; needs one each, or none",
+                      def.materials.size(), triangles);
+  }
   for (std::size_t i = 0; i < def.vertices.size(); ++i) {
     const Vec3 v = def.vertices[i];
     if (!is_finite(v)) {
@@ -138,6 +142,7 @@ std::uint64_t hash_mesh(const Mesh& mesh) {
   hasher.add(std::uint64_t(mesh.vertices.size()));
   hasher.add(std::as_bytes(std::span<const Vec3>(mesh.vertices)));
   hasher.add(std::as_bytes(std::span<const std::uint32_t>(mesh.indices)));
+  for (const std::uint16_t material : mesh.materials) hasher.add(std::uint64_t(material));
   return hasher.value();
 }
 
@@ -155,6 +160,7 @@ Result<Geometry> cook_mesh(const MeshDef& def) {
   }
   auto mesh = std::make_unique<Mesh>();
   mesh->double_sided = def.double_sided;
+  mesh->materials.assign(def.materials.begin(), def.materials.end());
   arrange(def.vertices, triangles, *mesh);
   connect_triangles(*mesh);
   auto cooked = std::make_shared<CookedGeometry>();

@@ -131,6 +131,11 @@ void fields(C& c, T& v) {
   auto& [a, b, static_friction, dynamic_friction, restitution] = v;
   all(c, a, b, static_friction, dynamic_friction, restitution);
 }
+template <class C, Is<SurfaceRule> T>
+void fields(C& c, T& v) {
+  auto& [id, material, velocity, one_way] = v;
+  all(c, id, material, velocity, one_way);
+}
 template <class C, Is<Filter> T>
 void fields(C& c, T& v) {
   auto& [layer, collides_with, group] = v;
@@ -182,7 +187,7 @@ template <class T, class... Of>
 concept IsOneOf = (Is<T, Of> || ...);
 
 template <class C, class T>
-requires IsOneOf<T, RemoveBody, RemoveShape, AddJoint, RemoveJoint, SetGravity, SetMaterialPair, SetSleeping,
+requires IsOneOf<T, RemoveBody, RemoveShape, AddJoint, RemoveJoint, SetGravity, SetMaterialPair, SetSurfaceRule, SetSleeping,
                  SetSubsteps, Step>
 void fields(C& c, T& v) {
   auto& [only] = v;

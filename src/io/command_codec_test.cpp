@@ -71,7 +71,8 @@ std::vector<Command> all_commands() {
           AddForce{body, {1, 2, 3}, {4, 5, 6}},
           AddImpulse{body, {1, 2, 3}, {4, 5, 6}},
           Step{0.25f},
-          SetCombineRules{CombineRule::minimum, CombineRule::product}};
+          SetCombineRules{CombineRule::minimum, CombineRule::product},
+          SetSurfaceRule{{4, {.static_friction = 0.1f, .id = 4}, {1, 2, 3}, {0, 1, 0}}}};
 }
 
 TEST(CommandCodec, EveryCommandComesBack) {

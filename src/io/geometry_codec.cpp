@@ -151,11 +151,15 @@ Error read_hull(ByteReader& in, CookedGeometry& cooked) {
 
 // ------------------------------------------------------------------------------------------------------------- meshes
 
+constexpr std::uint8_t kDoubleSided = 1, kHasMaterials = 2;
+
 void write_mesh(ByteWriter& out, const Mesh& mesh) {
-  out.put(mesh.double_sided);
+  // The first byte was the double-sidedness alone once.
+  out.put(std::uint8_t((mesh.double_sided ? kDoubleSided : 0) | (mesh.materials.empty() ? 0 : kHasMaterials)));
   out.put_all(floats_of(mesh.vertices));
   out.put_all(std::span<const std::uint32_t>(mesh.indices));
   out.put_all(std::span<const std::uint32_t>(mesh.source));
+  if (!mesh.materials.empty()) out.put_all(std::span<const std::uint16_t>(mesh.materials));
 }
 
 // The triangles in the order in which they were given: ascending `source`. False if two have the same.
@@ -188,11 +192,19 @@ Error rebuild_tree(Mesh& mesh) {
 Error read_mesh(ByteReader& in, CookedGeometry& cooked) {
   constexpr float kMaxCoordinate = 1.0e9f;  // m, as cook_mesh has it
   auto mesh = std::make_unique<Mesh>();
-  mesh->double_sided = in.get<bool>();
+  const auto bits = in.get<std::uint8_t>();
+  if (bits > (kDoubleSided | kHasMaterials)) return bad("a mesh of an unknown kind");
+  mesh->double_sided = (bits & kDoubleSided) != 0;
   mesh->vertices = get_vectors(in);
   mesh->indices = in.get_all<std::uint32_t>();
   mesh->source = in.get_all<std::uint32_t>();
   const std::size_t triangles = mesh->source.size();
+  if ((bits & kHasMaterials) != 0) {
+    mesh->materials = in.get_all<std::uint16_t>();
+    for (const std::uint32_t triangle : mesh->source) {
+      if (triangle >= mesh->materials.size()) return bad("a mesh with a triangle without material");
+    }
+  }
   if (in.failed() || triangles == 0 || triangles > StaticTree::kMaxItems ||
       mesh->indices.size() != 3 * triangles) {
     return bad("a mesh of an impossible size");

@@ -46,12 +46,23 @@ struct ColumnLayout<std::vector<AnyShape>> {
   static RecordLayout get() { return {1, kShapeLayout}; }
 };
 
+// A column that came after the first format and is empty is not written, and one that is not there is empty: older snapshots
+// open, and those without what is new are as they were.
+template <class Column>
+constexpr bool is_later_column = std::is_same_v<Column, Array<SurfaceRule>>;
+template <class Column>
+bool is_left_out(const Column& column) {
+  if constexpr (is_later_column<Column>) return column.empty();
+  return false;
+}
+
 class ColumnWriter {
  public:
   explicit ColumnWriter(ByteWriter& out) : out_(out) {}
 
   template <class Column>
   void operator()(const char* name, const Column& column) {
+    if (is_left_out(column)) return;
     const std::string_view text(name);
     out_.put(std::uint8_t(text.size()));
     out_.put_bytes(std::as_bytes(std::span<const char>(text)));
@@ -132,6 +143,9 @@ class ColumnReader {
   void operator()(const char* name, Column& column) {
     if (error_.code != ErrorCode::none) return;
     StoredColumn* const found = find(name);
+    if constexpr (is_later_column<Column>) {
+      if (found == nullptr) return column.clear();
+    }
     if (found == nullptr) {
       error_ = make_error(ErrorCode::invalid_data, "snapshot: column '%s' is missing", name);
     } else if (found->used) {

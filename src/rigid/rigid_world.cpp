@@ -1,7 +1,5 @@
 #include "rigid/rigid_world.h"
 
-#include "geometry/mesh.h"
-
 namespace gyre {
 
 namespace {
@@ -31,15 +29,6 @@ const MaterialPair* find_pair(const Array<MaterialPair>& pairs, std::uint16_t a,
 }
 
 }  // namespace
-
-std::int32_t public_triangle(const RigidWorld& w, const Contact& contact, const Manifold& manifold) {
-  for (const std::uint32_t shape : {contact.shape_a, contact.shape_b}) {
-    const Shape& surface = w.shapes.colliders[shape].shape;
-    if (surface.kind == ShapeKind::mesh) return std::int32_t(surface.mesh->source[manifold.triangle]);
-    if (surface.kind == ShapeKind::height_field) return std::int32_t(manifold.triangle);
-  }
-  return -1;
-}
 
 ContactSurface combine_materials(const RigidWorld& w, const Material& a, const Material& b) {
   ContactSurface surface;

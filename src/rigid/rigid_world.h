@@ -56,6 +56,7 @@ struct RigidWorld {
   JointStore joints;
   ContactStore contacts;
   Array<MaterialPair> material_pairs;  // sorted by (a, b), a <= b
+  Array<SurfaceRule> surface_rules;    // sorted by id
   RigidSettings settings;
 
   // Not state: can be rebuilt or lives for one step.
@@ -82,8 +83,6 @@ inline JointId joint_id(const RigidWorld& w, std::uint32_t joint) {
   return {joint, std::uint16_t(w.joints.ids.generation(joint)), w.world_number};
 }
 
-// The number, as the user gave it, of the triangle that a manifold lies on; -1 if it lies on none.
-std::int32_t public_triangle(const RigidWorld& w, const Contact& contact, const Manifold& manifold);
 // Surface of a pair of shapes: the table's entry, or the combine rules.
 ContactSurface combine_materials(const RigidWorld& w, const Material& a, const Material& b);
 

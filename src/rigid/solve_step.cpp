@@ -7,6 +7,7 @@
 #include "rigid/linkages.h"
 #include "rigid/projection.h"
 #include "rigid/solve_batches.h"
+#include "rigid/surface_rules.h"
 #include "task/parallel.h"
 #include "task/program.h"
 
@@ -116,10 +117,10 @@ void note_hits(const RigidWorld& w, SolveScratch& s) {
       struck = &point;
     }
     if (struck == nullptr) continue;
+    const DVec3 place = w.bodies.places[contact.body_a].center + struck->from_a;
     s.hits.push_back({s.constraint_contact[i],
                       {shape_id(w, contact.shape_a), shape_id(w, contact.shape_b), body_id(w, contact.body_a),
-                       body_id(w, contact.body_b), w.bodies.places[contact.body_a].center + struck->from_a,
-                       manifold.normal, fastest, impulse, public_triangle(w, contact, manifold)}});
+                       body_id(w, contact.body_b), place, manifold.normal, fastest, impulse, triangle_at(w, contact, place)}});
   }
 }
 
@@ -139,6 +140,7 @@ void gather_contacts(Solve& solve) {
   s.impacts.clear();
   s.pairs.clear();
   const float fall = std::sqrt(length(w.settings.gravity));
+  const bool has_rules = !w.surface_rules.empty();
   for (const std::uint32_t slot : solve.batch.contacts) {
     const Contact& contact = w.contacts.contacts[slot];
     const bool active_a = is_active(w, contact.body_a), active_b = is_active(w, contact.body_b);
@@ -159,10 +161,14 @@ void gather_contacts(Solve& solve) {
       note_approach(w, contact, manifold);
       constraint.manifold = &manifold;
       s.constraints.push_back(constraint);
+      if (has_rules && !apply_surface_rules(w, contact, manifold, s.constraints.back())) {
+        s.constraints.pop_back();
+        continue;
+      }
       s.constraint_contact.push_back(slot);
       s.pairs.push_back({active_a ? solve.places[contact.body_a] : ColoringPair::kNone,
                          active_b ? solve.places[contact.body_b] : ColoringPair::kNone});
-      if (constraint.restitution > 0.0f) s.impacts.push_back(make_impact(constraint));
+      if (s.constraints.back().restitution > 0.0f) s.impacts.push_back(make_impact(s.constraints.back()));
     }
   }
 }

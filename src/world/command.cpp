@@ -432,6 +432,18 @@ Submitted carry_out(WorldState& s, const SetMaterialPair& c) {
   wake_all(w);
   return {true, {}, {}, {}};
 }
+Submitted carry_out(WorldState& s, const SetSurfaceRule& c) {
+  Array<SurfaceRule>& rules = s.rigid.surface_rules;
+  std::size_t at = 0;
+  while (at < rules.size() && rules[at].id < c.rule.id) ++at;
+  if (at < rules.size() && rules[at].id == c.rule.id) {
+    rules[at] = c.rule;
+  } else {
+    rules.insert_at(at, c.rule);
+  }
+  wake_all(s.rigid);
+  return {true, {}, {}, {}};
+}
 Submitted carry_out(WorldState& s, const SetFilter& c) {
   RigidWorld& w = s.rigid;
   const std::uint32_t shape = c.shape.index;

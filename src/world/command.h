@@ -67,6 +67,9 @@ struct SetMaterial {
 struct SetMaterialPair {
   MaterialPair pair;
 };
+struct SetSurfaceRule {
+  SurfaceRule rule;
+};
 struct SetFilter {
   ShapeId shape;
   Filter filter;
@@ -104,7 +107,8 @@ struct Step {
 // Recordings know a command by its place: new ones come last.
 using Command = std::variant<AddBody, RemoveBody, AddShape, RemoveShape, AddJoint, RemoveJoint, SetPose, SetVelocity,
                              MoveKinematic, SetType, SetGravity, SetGravityScale, SetDamping, SetMaterial, SetMaterialPair,
-                             SetFilter, SetMotor, SetSleeping, SetAwake, SetSubsteps, AddForce, AddImpulse, Step, SetCombineRules>;
+                             SetFilter, SetMotor, SetSleeping, SetAwake, SetSubsteps, AddForce, AddImpulse, Step, SetCombineRules,
+                             SetSurfaceRule>;
 
 // What a command gave back: whether it was done, and the id of what it made.
 struct Submitted {

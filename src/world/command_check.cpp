@@ -234,6 +234,13 @@ Error check(const WorldState&, const SetMaterialPair& c) {
   return check_material("material pair",
                         {c.pair.static_friction, c.pair.dynamic_friction, c.pair.restitution, 0.0f, 0.0f, 0});
 }
+Error check(const WorldState&, const SetSurfaceRule& c) {
+  if (c.rule.id == 0) return refuse("surface rule: its id must be above 0");
+  Error e = check_material("surface rule: material", c.rule.material);
+  if (e.code == ErrorCode::none) e = check_finite("surface rule: velocity", c.rule.velocity);
+  if (e.code == ErrorCode::none) e = check_range("surface rule: velocity", largest(absolute(c.rule.velocity)), 0.0f, 1.0e6f);
+  return e.code == ErrorCode::none ? check_finite("surface rule: one_way", c.rule.one_way) : e;
+}
 Error check(const WorldState& s, const SetFilter& c) { return check_shape_id(s, c.shape, "set_filter"); }
 Error check(const WorldState& s, const SetMotor& c) {
   const Error e = check_joint_id(s, c.joint, "set_motor");

@@ -121,8 +121,21 @@ const char* fault_in_contact(const RigidWorld& w, const Contact& contact) {
   return nullptr;
 }
 
+const char* fault_in_rules(std::span<const SurfaceRule> rules) {
+  for (std::size_t i = 0; i < rules.size(); ++i) {
+    if (rules[i].id == 0 || (i > 0 && rules[i].id <= rules[i - 1].id)) return "surface rules out of order";
+    if (!is_finite(rules[i].velocity) || !is_finite(rules[i].one_way)) return "a surface rule that is not finite";
+    const Material& m = rules[i].material;
+    for (const float value : {m.static_friction, m.dynamic_friction, m.restitution, m.rolling_friction, m.spinning_friction}) {
+      if (!is_finite(value) || value < 0.0f) return "a surface rule with a bad material";
+    }
+  }
+  return nullptr;
+}
+
 const char* fault_in(const RigidWorld& w) {
   const char* fault = fault_in_settings(w.settings);
+  if (fault == nullptr) fault = fault_in_rules(w.surface_rules.view());
   if (fault == nullptr) fault = fault_in_sizes(w);
   if (fault != nullptr) return fault;
   for (std::uint32_t i = 0; fault == nullptr && i < w.bodies.ids.capacity(); ++i)

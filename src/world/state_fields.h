@@ -55,6 +55,10 @@ template <Is<MaterialPair> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.a), f(r.b), f(r.static_friction), f(r.dynamic_friction), f(r.restitution);
 }
+template <Is<SurfaceRule> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.id), for_each_field(r.material, f), for_each_field(r.velocity, f), for_each_field(r.one_way, f);
+}
 template <Is<BodyMotion> T, class F>
 void for_each_field(T& r, F&& f) {
   // `moved` and `turned` live for a step only; the inverse mass follows from the mass.

@@ -45,6 +45,7 @@ bool World::set_damping(BodyId body, float linear, float angular) {
 }
 bool World::set_material(ShapeId shape, const Material& material) { return submit(*state_, SetMaterial{shape, material}).done; }
 bool World::set_material_pair(const MaterialPair& pair) { return submit(*state_, SetMaterialPair{pair}).done; }
+bool World::set_surface_rule(const SurfaceRule& rule) { return submit(*state_, SetSurfaceRule{rule}).done; }
 bool World::set_filter(ShapeId shape, const Filter& filter) { return submit(*state_, SetFilter{shape, filter}).done; }
 bool World::set_motor(JointId joint, const Motor& motor) { return submit(*state_, SetMotor{joint, motor}).done; }
 bool World::set_sleeping(bool enabled) { return submit(*state_, SetSleeping{enabled}).done; }

@@ -2,6 +2,7 @@
 #include <gyre/world.h>
 
 #include "base/float_mode.h"
+#include "rigid/surface_rules.h"
 #include "world/world_state.h"
 
 namespace gyre {
@@ -176,7 +177,7 @@ std::size_t World::contacts(std::span<ContactPoint> out) const {
         point.tangent_1 = any_perpendicular(manifold.normal);
         point.tangent_2 = cross(manifold.normal, point.tangent_1);
         point.separation = from.separation;
-        point.triangle = public_triangle(w, contact, manifold);
+        point.triangle = triangle_at(w, contact, point.position);
         point.normal_impulse = from.total_impulse;
         point.friction_impulse = k == 0 ? manifold.total_friction : Vec3{};
         const BodyMotion& a = w.bodies.motion[contact.body_a];
