@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -50,6 +52,42 @@ TEST(SceneRunner, NamesAndBodies) {
   EXPECT_EQ(runner.body_of(runner.bodies()[1])->name, "two");
   EXPECT_EQ(runner.body_of(BodyId{}), nullptr);
   EXPECT_EQ(runner.world().counts().bodies, 2);
+}
+
+SceneRunner run_file(const char* name, double seconds) {
+  std::ifstream file(std::string(GYRE_SOURCE_DIR "/scenes/") + name);
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  SceneResult<Scene> scene = read_scene(text);
+  EXPECT_TRUE(scene) << scene.error().text();
+  SceneResult<SceneRunner> runner = SceneRunner::create(*std::move(scene), "test");
+  EXPECT_TRUE(runner) << runner.error().text();
+  while (runner->world().time() < seconds) EXPECT_TRUE(runner->step()) << runner->problem();
+  return *std::move(runner);
+}
+BodyId named(const SceneRunner& runner, const char* name) {
+  for (const BodyId body : runner.bodies()) {
+    if (runner.body_of(body)->name == name) return body;
+  }
+  ADD_FAILURE() << "no body " << name;
+  return {};
+}
+
+TEST(SceneRunner, CratesTakeTheSpeedOfTheirBelt) {
+  const SceneRunner runner = run_file("belt.gyre.json", 1.0);
+  const World& world = runner.world();
+  EXPECT_NEAR(world.linear_velocity(named(runner, "light crate")).x, 2.0f, 1e-3f);
+  EXPECT_NEAR(world.linear_velocity(named(runner, "crate back")).x, -1.0f, 1e-3f);
+  // What slips still gains mu g a second: mu is the geometric mean of 0.5 and 0.02.
+  EXPECT_NEAR(world.linear_velocity(named(runner, "slippery crate")).x, 0.1f * 9.81f, 0.02f);
+}
+
+TEST(SceneRunner, OneWayPlatformsLetPassAndHold) {
+  const SceneRunner runner = run_file("one_way.gyre.json", 5.0);
+  const World& world = runner.world();
+  // From below through one platform and through two, and from above onto the upper one.
+  EXPECT_NEAR(world.pose(named(runner, "ball")).position.y, 1.5 + 0.25, 0.01);
+  EXPECT_NEAR(world.pose(named(runner, "box")).position.y, 3.0 + 0.25, 0.01);
+  EXPECT_NEAR(world.pose(named(runner, "weight")).position.y, 3.0 + 0.3, 0.01);
 }
 
 TEST(SceneRunner, AForceActsInEveryStepThatBeginsInItsWindow) {
