@@ -118,7 +118,8 @@ double first_impact(const ContinuousInput& input, const FastBody& fast, const Sw
   for_each_in_the_way(
       input, fast, sweep, found,
       [&](const Proxy& self, const Proxy& other) { return is_obstacle(self, other, fast.continuous); },
-      [&](const Mover& mover, std::uint32_t, std::uint32_t, const SweptShape& other) {
+      [&](const Mover& mover, std::uint32_t, std::uint32_t index, const SweptShape& other) {
+        if (input.lets_pass != nullptr && (*input.lets_pass)(index, sweep.moved - other.sweep->moved)) return;
         end = min(end, mover.impact_with(other, end, triangle));
       });
   return end;

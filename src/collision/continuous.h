@@ -51,6 +51,8 @@ struct ContinuousInput {
   // worker.
   FunctionRef<Sweep(std::uint32_t body)> sweep_of;
   FunctionRef<std::span<const std::uint32_t>(std::uint32_t body)> shapes_of;
+  // Whether the shape in the way lets pass what moves so against it; null: none does.
+  const FunctionRef<bool(std::uint32_t shape, Vec3 way)>* lets_pass = nullptr;
 };
 
 class ContinuousCollision {

@@ -2,6 +2,7 @@
 // collision/continuous sweep them, and takes back what motion they may not keep.
 #include "collision/continuous.h"
 #include "rigid/rigid_step.h"
+#include "rigid/surface_rules.h"
 
 namespace gyre {
 
@@ -53,7 +54,10 @@ void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, 
   }
   const auto sweep_of = [&](std::uint32_t body) { return sweep_of_body(w, body); };
   const auto shapes_of = [&](std::uint32_t body) { return shapes[body]; };
-  const ContinuousInput input{w.shapes.colliders, w.shapes.proxies, *w.broadphase, w.joints.blocked, sweep_of, shapes_of};
+  const auto passes = [&](std::uint32_t shape, Vec3 way) { return lets_pass(w, shape, way); };
+  const FunctionRef<bool(std::uint32_t shape, Vec3 way)> one_way(passes);
+  const ContinuousInput input{w.shapes.colliders, w.shapes.proxies, *w.broadphase, w.joints.blocked, sweep_of, shapes_of,
+                              w.surface_rules.empty() ? nullptr : &one_way};
   scratch.fractions.resize(scratch.fast.size());
   scratch.collision.clamp_fast_bodies(input, scratch.fast, tasks, scratch.fractions);
   report_crossings(w, scratch.collision.crossings());

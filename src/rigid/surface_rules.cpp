@@ -147,6 +147,11 @@ bool apply_surface_rules(const RigidWorld& w, const Contact& contact, Manifold& 
   return true;
 }
 
+bool lets_pass(const RigidWorld& w, std::uint32_t shape, Vec3 way) {
+  const SurfaceRule* const rule = find_rule(w, w.shapes.materials[shape].id);
+  return rule != nullptr && dot(turn_to_world(w, w.shapes.bodies[shape], rule->one_way), way) > 0.0f;
+}
+
 std::int32_t triangle_at(const RigidWorld& w, const Contact& contact, DVec3 place) {
   for (const std::uint32_t shape : {contact.shape_a, contact.shape_b}) {
     const ShapeKind kind = w.shapes.colliders[shape].shape.kind;

@@ -19,6 +19,9 @@ namespace gyre {
 bool apply_surface_rules(const RigidWorld& w, const Contact& contact, Manifold& manifold,
                          ContactConstraint& constraint);
 
+// Whether a shape as a whole lets pass what moves along `way` (world axes) against it: for sweeps of fast bodies.
+bool lets_pass(const RigidWorld& w, std::uint32_t shape, Vec3 way);
+
 // The number, as the user gave it, of the triangle that lies nearest to a contact's point; -1 if neither shape has triangles.
 std::int32_t triangle_at(const RigidWorld& w, const Contact& contact, DVec3 place);
 
