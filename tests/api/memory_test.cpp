@@ -155,20 +155,24 @@ TEST(NoAllocation, InQueries) {
     }
     return found;
   };
-  for (int i = 0; i < 120; ++i) {
+  // The busiest steps come first; what steps take while the heap goes on settling is not the queries'.
+  for (int i = 0; i < 300; ++i) {
     world.step(kStep);
-    ask();
+    if (i < 60 || i > 260) ask();
   }
-  const long before = news.load();
-  const std::uint64_t blocks = allocation_count();
+  Taken taken{0, 0};
   std::size_t found = 0;
   for (int i = 0; i < 30; ++i) {
     world.step(kStep);
+    const long before = news.load();
+    const std::uint64_t blocks = allocation_count();
     found += ask();
+    taken.news += news.load() - before;
+    taken.blocks += allocation_count() - blocks;
   }
   EXPECT_GT(found, 1000u);
-  EXPECT_EQ(news.load() - before, 0);
-  EXPECT_EQ(allocation_count() - blocks, 0u);
+  EXPECT_EQ(taken.news, 0);
+  EXPECT_EQ(taken.blocks, 0u);
 }
 
 // ------------------------------------------------------------------------------------------------- bytes a resting box
