@@ -410,7 +410,7 @@ void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> join
     program.add_groups(solve_joints_stage, joints, kJointsPerBlock, 1);
     program.add(linkage_stage<solve_linkage>, &solve, linkages);
     program.add_groups(solve_contacts_stage, contacts, 1, kBlocksPerClaim);
-    program.add(linkage_stage<solve_linkage>, &solve, linkages);
+    program.add(linkage_stage<solve_linkage_again>, &solve, linkages);
     program.add(solve_trees_stage, &solve, int(solve.forest.trees.size()), kTreesPerClaim);
     program.add(advance_stage, &solve, body_blocks);
     program.add(settle_trees_stage, &solve, int(solve.forest.trees.size()), kTreesPerClaim);

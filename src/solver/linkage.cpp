@@ -383,6 +383,8 @@ void place_linkage(const Linkage& linkage, const LinkageSolve& s) {
 }
 
 void warm_linkage(const Linkage& linkage, const LinkageSolve& s) {
+  // Before the impulses of the last sub-step: after a blow these are not of this one, and the bend of such speeds is none.
+  ask_rows(linkage, s);
   for (const LinkageNode& node : linkage.nodes) {
     JointRecord& joint = s.records[node.record];
     const JointWork& work = s.work[node.work];
@@ -403,7 +405,12 @@ void warm_linkage(const Linkage& linkage, const LinkageSolve& s) {
 
 void solve_linkage(const Linkage& linkage, const LinkageSolve& s) {
   sweep_axes(linkage, s, true);
-  ask_rows(linkage, s);
+  solve_rows(linkage, s, true);
+  ask_rows(linkage, s);  // now with velocities that agree with the joints
+}
+
+void solve_linkage_again(const Linkage& linkage, const LinkageSolve& s) {
+  sweep_axes(linkage, s, true);
   solve_rows(linkage, s, true);
 }
 

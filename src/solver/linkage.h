@@ -78,6 +78,8 @@ void place_linkage(const Linkage& linkage, const LinkageSolve& solve);
 // With the velocities after the forces: what is asked of the rows, and the impulses of the last sub-step.
 void warm_linkage(const Linkage& linkage, const LinkageSolve& solve);
 void solve_linkage(const Linkage& linkage, const LinkageSolve& solve);
+// After the contacts.
+void solve_linkage_again(const Linkage& linkage, const LinkageSolve& solve);
 // After the move: takes away all speed along the rows, and sums the impulses.
 void relax_linkage(const Linkage& linkage, const LinkageSolve& solve);
 

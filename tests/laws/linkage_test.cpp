@@ -174,6 +174,36 @@ TEST(Chain, WreckingBallKeepsTime) {
   EXPECT_TRUE(limit_row("A-114 links apart (m)", chain.largest_gap(), 1e-3, 1e-4));
 }
 
+// The chain is longer than its nail is high: the ball strikes the ground, and the blow must not come back as speed.
+TEST(Chain, WreckingBallStrikesTheGroundWithoutGainingEnergy) {
+  for (const float restitution : {0.0f, 0.5f}) {
+    for (const int substeps : {1, 4, 8}) {
+      Assembly chain({.stepping = {.substeps = substeps}, .sleeping = false});
+      add_ground(chain.world);
+      BodyId last{};
+      for (int i = 0; i < 24; ++i) {
+        const BodyId body = chain.add({.pose = {{0.3 * i + 0.15, 6, 0}, from_axis_angle({0, 0, 1}, 0.5f * kPi)}},
+                                      Capsule{0.05f, 0.1f}, 7850.0f);
+        chain.join(JointKind::ball, last, body, {0.3 * i, 6, 0});
+        last = body;
+      }
+      const BodyId ball = chain.world.add_body({.pose = {.position = {7.6, 6, 0}}},
+                                               {.geometry = Sphere{0.4f},
+                                                .density = 7850.0f,
+                                                .material = surface(0.5f, restitution)});
+      chain.join(JointKind::ball, last, ball, {7.2, 6, 0});
+      const double start = chain.energy();
+      double most = start;
+      for (int i = 0; i < 300; ++i) {
+        chain.world.step(kStep);
+        most = std::max(most, chain.energy());
+      }
+      EXPECT_TRUE(limit_row("energy gained in blows, of that at the start", most / start - 1.0, 1e-2, 1e-3));
+      EXPECT_TRUE(limit_row("gap after blows (m)", chain.largest_gap(), 1e-2, 1e-3));
+    }
+  }
+}
+
 // forty links of 0.1 m between points 3 m apart, damped until they hang: the sag of a catenary.
 TEST(Chain, HangsAsACatenary) {
   Assembly chain({.sleeping = false});
