@@ -476,16 +476,16 @@ def chain():
     previous = "world"
     for i in range(24):
         name = f"link {i + 1}"
-        bodies.append(body(name, (0.3 * i + 0.15, 6, 0), round_shape("capsule", 0.05, 0.1, material="steel",
+        bodies.append(body(name, (0.3 * i + 0.15, 8.3, 0), round_shape("capsule", 0.05, 0.1, material="steel",
                                                                     orientation=about((0, 0, 1), math.pi / 2))))
-        joints.append({"type": "ball", "name": f"joint {i + 1}", "a": previous, "b": name, "anchor": [0.3 * i, 6, 0]})
+        joints.append({"type": "ball", "name": f"joint {i + 1}", "a": previous, "b": name, "anchor": [0.3 * i, 8.3, 0]})
         previous = name
-    bodies.append(body("wrecking ball", (7.6, 6, 0), ball(0.4, material="steel"), color=DARK, continuous=True))
-    joints.append({"type": "ball", "name": "hook", "a": previous, "b": "wrecking ball", "anchor": [7.2, 6, 0]})
+    bodies.append(body("wrecking ball", (7.6, 8.3, 0), ball(0.4, material="steel"), color=DARK, continuous=True))
+    joints.append({"type": "ball", "name": "hook", "a": previous, "b": "wrecking ball", "anchor": [7.2, 8.3, 0]})
     wall = [body(f"brick {4 * row + column + 1}", (-2.5, 0.25 + 0.5 * row, (column - 1.5) * 1.0 + 0.25 * (row % 2)),
                  box(0.25, 0.25, 0.5, material="stone"), color=BRICKS[(column + 2 * row) % 4]) for row in range(5) for column in range(4)]
     return scene("a wrecking ball on a chain", [ground()] + bodies + wall, joints, materials=["steel", "stone"],
-                 world={"substeps": 8}, seen=view((6.8, 6.0, 15.5), (2.3, 3.0, 0)))
+                 world={"substeps": 8}, seen=view((6.8, 7.0, 18.5), (1.8, 4.2, 0)))
 
 
 def machines():
