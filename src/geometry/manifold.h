@@ -24,16 +24,17 @@ struct LocalManifold {
 };
 
 // A manifold as it lives in the contact store from step to step: in world axes, anchored at both bodies' centres of mass,
-// with the impulses that the solver left there. `count` 0 means that nothing is near enough to matter.
+// with the impulses that the solver left there. `count` 0 means that nothing is near enough to matter. The solver reads and
+// writes both records four floats at a time: what belongs together lies together.
 struct ContactPointState {
   Vec3 from_a;                 // m, world axes: from A's centre of mass to the point, as the step began
   float separation = 0.0f;     // m, as the step began
   Vec3 from_b;
+  std::uint32_t feature = 0;
   float normal_impulse = 0.0f;  // N s, of the last sub-step: the warm start
   float total_impulse = 0.0f;   // N s, over the whole last step
-  float approach_speed = 0.0f;  // m/s, before the step's first impulse; positive when closing
-  std::uint32_t feature = 0;
   float held = 0.0f;            // N s: the load that the point is used to (a slow mean of normal_impulse)
+  float approach_speed = 0.0f;  // m/s, before the step's first impulse; positive when closing
 };
 
 // A contact point as the last full look found it, in the body frame of A, or of B where only A is a core swept by a ball:

@@ -1,6 +1,7 @@
 #include "rigid/contact_forest.h"
 
 #include "math/rotation.h"
+#include "rigid/integrators.h"
 
 namespace gyre {
 
@@ -16,6 +17,7 @@ bool is_quiet(const RigidWorld& w, std::uint32_t body, float pull) {
   const BodyMotion& motion = w.bodies.motion[body];
   const float reach = w.bodies.masses[body].reach;
   const float speed = length(motion.linear_velocity) + reach * length(motion.angular_velocity);
+  if (turns_alone(w.bodies, body, w.settings.last_substep)) return false;
   return flags.locked_linear == 0 && flags.locked_angular == 0 && speed <= kTreeRestShare * std::sqrt(pull * reach);
 }
 
@@ -134,6 +136,7 @@ Links link_constraints(const RigidWorld& w, std::span<const ContactConstraint> c
 }
 
 TreeNode make_node(const RigidWorld& w, std::int32_t body, std::int32_t parent, std::uint32_t constraint, bool is_b) {
+  const float pull = length(w.settings.gravity);
   const BodyMass& mass = w.bodies.masses[body];
   TreeNode node;
   node.body = body;
@@ -141,6 +144,8 @@ TreeNode make_node(const RigidWorld& w, std::int32_t body, std::int32_t parent, 
   node.constraint = constraint;
   node.sign = is_b ? 1.0f : -1.0f;
   node.mass = mass.mass;
+  node.still = kTreeStillShare * std::sqrt(pull * mass.reach);
+  node.still_spin = mass.reach > 0.0f ? node.still / mass.reach : 0.0f;
   node.center = w.bodies.places[body].center;
   node.inertia = rotate_inertia(w.bodies.places[body].orientation, mass.inertia);
   return node;
@@ -190,7 +195,7 @@ ContactForest find_contact_trees(const RigidWorld& w, std::span<ContactConstrain
       }
     }
     for (std::uint32_t i = begin; i < used; ++i) constraints[forest.nodes[i].constraint].rigid = true;
-    forest.trees[tree++] = {begin, used, false};
+    forest.trees[tree++] = {begin, used};
   }
   return forest;
 }

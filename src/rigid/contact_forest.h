@@ -18,6 +18,8 @@ struct ContactForest {
 
 // Slower than this share of sqrt(gravity * reach) counts as at rest.
 constexpr float kTreeRestShare = 0.1f;
+// Slower than this share of it a sweep has left nothing to solve.
+constexpr float kTreeStillShare = 1.0e-7f;
 
 // Of one batch; `places` are those of all (solve_batches.h). Marks the constraints that are in trees as rigid.
 ContactForest find_contact_trees(const RigidWorld& w, std::span<ContactConstraint> constraints, const SolveBatch& batch,

@@ -1,5 +1,6 @@
 #include "rigid/integrators.h"
 
+#include "math/rotation.h"
 #include "math/trig.h"
 #include "rigid/free_rotation.h"
 
@@ -7,64 +8,156 @@ namespace gyre {
 
 namespace {
 
-Vec3 clamp_length(Vec3 v, float most) {
+// The fastest turn in a sub-step (rad) that the kernels make. Their error is of order angle^3 / 12 where there is a
+// gyroscopic torque: below a float's resolution. Without one it is that of how fast the axis itself turns.
+constexpr float kKernelAngle = 0.01f;
+constexpr float kKernelAngleIsotropic = 0.1f;
+
+Vec3 within_length(Vec3 v, float most) {
   const float top = largest(absolute(v));
   if (!(top > most * 0.5f)) return v;
   const float size = top * length(v / top);  // no overflow
   return size > most ? (most / size) * v : v;
 }
 
-// The exact step of dv/dt = a - c v.
-Vec3 damped(Vec3 v, Vec3 acceleration, float damping, float h) {
-  if (!(damping > 0.0f)) return v + h * acceleration;
-  // As a change of v: e itself, so near 1, would round the same way in every sub-step.
-  const double lost = 1.0 - exp(-double(damping) * double(h));
-  return v + (float(lost / double(damping)) * acceleration - float(lost) * v);
+// The vector without its components along locked world axes (bits 1, 2, 4: x, y, z).
+Vec3 without_locked(Vec3 v, std::uint8_t locked) {
+  if (locked & 1) v.x = 0.0f;
+  if (locked & 2) v.y = 0.0f;
+  if (locked & 4) v.z = 0.0f;
+  return v;
+}
+
+// The exact step of dv/dt = a - damping v is v += gain a - lost v.
+struct Damping {
+  float gain, lost;
+
+  Damping(float damping, float h) : gain(h), lost(0.0f) {
+    if (!(damping > 0.0f)) return;
+    // As a change of v: e itself, so near 1, would round the same way in every sub-step.
+    const double share = 1.0 - exp(-double(damping) * double(h));
+    gain = float(share / double(damping));
+    lost = float(share);
+  }
+};
+
+// The inertia of a body whose orientation is known.
+void refresh_world_inertia(BodyStore& bodies, std::uint32_t i) {
+  const BodyMass& mass = bodies.masses[i];
+  const BodyFlags& flags = bodies.flags[i];
+  if (mass.isotropic != 0 && flags.locked_angular == 0) return;
+  bodies.inertia[i] = world_inertia(mass, flags, bodies.orientations[i]);
+}
+
+// The turn of one body over `seconds` with the velocity that it has.
+void turn_body(BodyStore& bodies, std::uint32_t i, float seconds) {
+  const BodyFlags& flags = bodies.flags[i];
+  const BodyMass& mass = bodies.masses[i];
+  BodyMotion& motion = bodies.motion[i];
+  Quat& orientation = bodies.orientations[i];
+  if (flags.locked_angular != 0)
+    motion.angular_velocity = without_locked(motion.angular_velocity, flags.locked_angular);
+  if (flags.type == BodyType::kinematic || mass.isotropic != 0 || flags.locked_angular != 0) {
+    motion.turned += rotate_steadily(orientation, motion.angular_velocity, seconds);
+    if (flags.locked_angular != 0 && flags.locked_angular != 7) refresh_world_inertia(bodies, i);
+  } else {
+    motion.turned += rotate_freely(orientation, motion.angular_velocity, mass.inertia, seconds);
+    refresh_world_inertia(bodies, i);
+  }
+  motion.angular_velocity += Vec3{};
+}
+
+// Velocity by the forces of a sub-step.
+void kick(BodyStore& bodies, std::uint32_t i, const Motions& motions) {
+  const BodyFlags& flags = bodies.flags[i];
+  const BodyForces& forces = bodies.forces[i];
+  const BodyInertia& inertia = bodies.inertia[i];
+  BodyMotion& motion = bodies.motion[i];
+  const Damping linear(forces.linear_damping, motions.substep),
+      angular(forces.angular_damping, motions.substep);
+  const Vec3 pull = forces.gravity_scale * motions.gravity + inertia.inverse_mass * forces.force;
+  const Vec3 v = motion.linear_velocity + (linear.gain * pull - linear.lost * motion.linear_velocity);
+  const Vec3 w = motion.angular_velocity +
+                 (angular.gain * (inertia.inverse * forces.torque) - angular.lost * motion.angular_velocity);
+  // Adding zero keeps -0 out of the state, so that wide kernels may add zeros to lanes that nothing touches.
+  motion.linear_velocity = within_length(without_locked(v, flags.locked_linear), kMaxSpeed) + Vec3{};
+  motion.angular_velocity = within_length(without_locked(w, flags.locked_angular), kMaxSpin) + Vec3{};
+}
+
+void fly_body(BodyStore& bodies, std::uint32_t i, const Motions& motions) {
+  const BodyFlags& flags = bodies.flags[i];
+  const BodyForces& forces = bodies.forces[i];
+  BodyMotion& motion = bodies.motion[i];
+  const bool is_kicked = flags.type == BodyType::dynamic;
+  // Without torques the momentum is the same in every sub-step: one rotation instead of many.
+  const bool turns_freely = !is_kicked || (forces.torque == Vec3{} && forces.angular_damping == 0.0f);
+  for (int part = 0; part < motions.count; ++part) {
+    if (is_kicked) kick(bodies, i, motions);
+    motion.linear_velocity = without_locked(motion.linear_velocity, flags.locked_linear);
+    motion.moved += motions.substep * motion.linear_velocity;
+    if (!turns_freely) turn_body(bodies, i, motions.substep);
+  }
+  if (turns_freely) turn_body(bodies, i, float(motions.count) * motions.substep);
 }
 
 }  // namespace
 
-void predict(BodyStore& bodies, std::span<const std::uint32_t> list, float h, Vec3 gravity) {
-  for (const std::uint32_t i : list) {
-    const BodyFlags& flags = bodies.flags[i];
-    if (flags.type != BodyType::dynamic) continue;
-    BodyMotion& motion = bodies.motion[i];
-    const BodyForces& forces = bodies.forces[i];
-    const BodyInertia& inertia = bodies.inertia[i];
-    const Vec3 pull = forces.gravity_scale * gravity + inertia.inverse_mass * forces.force;
-    Vec3 v = damped(motion.linear_velocity, pull, forces.linear_damping, h);
-    Vec3 w = damped(motion.angular_velocity, inertia.inverse * forces.torque, forces.angular_damping, h);
-    if ((flags.locked_linear | flags.locked_angular) != 0) {
-      v = without_locked(v, flags.locked_linear);
-      w = without_locked(w, flags.locked_angular);
-    }
-    // Adding zero keeps -0 out of the state, so that wide kernels may add zeros to lanes that nothing touches.
-    motion.linear_velocity = clamp_length(v, kMaxSpeed) + Vec3{};
-    motion.angular_velocity = clamp_length(w, kMaxSpin) + Vec3{};
-  }
+bool turns_alone(const BodyStore& bodies, std::uint32_t body, float substep) {
+  const BodyFlags& flags = bodies.flags[body];
+  if (flags.type != BodyType::dynamic || flags.locked_angular != 0) return true;
+  const float most = bodies.masses[body].isotropic != 0 ? kKernelAngleIsotropic : kKernelAngle;
+  return !(substep * length(bodies.motion[body].angular_velocity) <= most);
 }
 
-void advance(BodyStore& bodies, std::span<const std::uint32_t> list, float h) {
-  for (const std::uint32_t i : list) {
-    const BodyFlags& flags = bodies.flags[i];
+MovedBody describe_motion(const BodyStore& bodies, std::uint32_t body, const Motions& motions, bool shown) {
+  const BodyFlags& flags = bodies.flags[body];
+  const BodyForces& forces = bodies.forces[body];
+  const BodyMass& mass = bodies.masses[body];
+  MovedBody moved;
+  moved.body = std::int32_t(body);
+  moved.orientation = bodies.orientations[body];
+  moved.turns_alone = turns_alone(bodies, body, motions.substep);
+  moved.shown = shown;
+  if (flags.type != BodyType::dynamic) return moved;
+  const Damping linear(forces.linear_damping, motions.substep),
+      angular(forces.angular_damping, motions.substep);
+  moved.kick = linear.gain *
+               (forces.gravity_scale * motions.gravity + bodies.inertia[body].inverse_mass * forces.force);
+  moved.linear_lost = linear.lost;
+  moved.torque = angular.gain * forces.torque;
+  moved.angular_lost = angular.lost;
+  moved.reach = mass.reach;
+  moved.inertia = mass.inertia;
+  moved.inverse_inertia = mass.inverse_inertia;
+  moved.locked = flags.locked_linear;
+  moved.isotropic = mass.isotropic != 0;
+  return moved;
+}
+
+void fly(BodyStore& bodies, std::span<const std::uint32_t> list, const Motions& motions) {
+  for (const std::uint32_t i : list) fly_body(bodies, i, motions);
+}
+
+void turn_alone(BodyStore& bodies, std::span<const std::uint32_t> list, float substep) {
+  for (const std::uint32_t i : list) turn_body(bodies, i, substep);
+}
+
+void finish_turns(BodyStore& bodies, std::span<const MovedBody> moved, std::span<const Vec3> pushes) {
+  for (std::size_t n = 0; n < moved.size(); ++n) {
+    const std::uint32_t i = std::uint32_t(moved[n].body);
+    if (bodies.flags[i].type != BodyType::dynamic) continue;
     BodyMotion& motion = bodies.motion[i];
-    if ((flags.locked_linear | flags.locked_angular) != 0) {
-      motion.linear_velocity = without_locked(motion.linear_velocity, flags.locked_linear);
-      motion.angular_velocity = without_locked(motion.angular_velocity, flags.locked_angular);
-    }
-    motion.moved += h * motion.linear_velocity;
-    const BodyMass& mass = bodies.masses[i];
     Quat& orientation = bodies.orientations[i];
-    if (flags.type == BodyType::kinematic || mass.isotropic != 0 || flags.locked_angular != 0) {
-      motion.turned += rotate_steadily(orientation, motion.angular_velocity, h);
-      if (flags.locked_angular != 0 && flags.locked_angular != 7) {
-        bodies.inertia[i] = world_inertia(mass, flags, orientation);
-      }
+    if (moved[n].turns_alone) {
+      const Vec3 turn = without_locked(pushes[n], bodies.flags[i].locked_angular);
+      if (turn == Vec3{}) continue;
+      motion.turned += rotate_steadily(orientation, turn, 1.0f);
+    } else if (motion.turned == Vec3{}) {
+      orientation = moved[n].orientation;
     } else {
-      motion.turned += rotate_freely(orientation, motion.angular_velocity, mass.inertia, h);
-      bodies.inertia[i] = world_inertia(mass, flags, orientation);
+      orientation = integrate_rotation(moved[n].orientation, motion.turned);
     }
-    motion.angular_velocity += Vec3{};
+    refresh_world_inertia(bodies, i);
   }
 }
 

@@ -1,5 +1,6 @@
-// Moving bodies between constraints: `predict` gives them the velocity that forces alone would, `advance` moves them by
-// the velocity that the solver left. Both work on lists of awake bodies.
+// Moving bodies. Those that no constraint acts on fly: the whole step at once. The others are moved by the motion kernels
+// (solver/motion_kernel.h), sub-step by sub-step between the constraints; here is what they do not do: the description of a
+// body for them, rotations that are fast or bound to axes, and orientations at the end of the step.
 //
 // Semi-implicit Euler (symplectic: E. Hairer, C. Lubich, G. Wanner, "Geometric Numerical Integration", I.1): a kick by
 // forces and constraints at the present place, then the exact drift of a free body: x += h v, and torque-free rotation
@@ -7,26 +8,33 @@
 #pragma once
 
 #include "rigid/body_store.h"
+#include "solver/motion_block.h"
 
 #include <span>
 
 namespace gyre {
 
-// Beyond these nothing is simulated faithfully; speeds are clamped to them and the clamping is reported.
-constexpr float kMaxSpeed = 1.0e7f;   // m/s
-constexpr float kMaxSpin = 2.0e4f;    // rad/s
+// The sub-steps of a step and what acts in all of them.
+struct Motions {
+  int count = 1;
+  float substep = 0.0f;
+  Vec3 gravity;
+};
 
-// The vector without its components along locked world axes (bits 1, 2, 4: x, y, z).
-inline Vec3 without_locked(Vec3 v, std::uint8_t locked) {
-  if (locked & 1) v.x = 0.0f;
-  if (locked & 2) v.y = 0.0f;
-  if (locked & 4) v.z = 0.0f;
-  return v;
-}
+// Whether a body spins so fast, or is so bound, that the motion kernels leave its rotation to turn_alone.
+bool turns_alone(const BodyStore& bodies, std::uint32_t body, float substep);
 
-// Velocities from forces, torques, gravity and damping over h.
-void predict(BodyStore& bodies, std::span<const std::uint32_t> list, float h, Vec3 gravity);
-// Displacement from velocities over h, orientation by free rotation, world inertia of the new orientation.
-void advance(BodyStore& bodies, std::span<const std::uint32_t> list, float h);
+// A body of which constraints are made, as the motion kernels want it. `shown`: somebody looks at its place in each sub-step.
+MovedBody describe_motion(const BodyStore& bodies, std::uint32_t body, const Motions& motions, bool shown);
+
+// A whole step of bodies that no constraint acts on, kinematic ones among them.
+void fly(BodyStore& bodies, std::span<const std::uint32_t> list, const Motions& motions);
+
+// The rotation of a sub-step of bodies that turn alone.
+void turn_alone(BodyStore& bodies, std::span<const std::uint32_t> list, float substep);
+
+// At the end of a step: orientations and world inertia of the bodies of which constraints were made. `pushes` (rotation
+// vectors, one for each of `moved`) are the turns by which overlap was pushed apart.
+void finish_turns(BodyStore& bodies, std::span<const MovedBody> moved, std::span<const Vec3> pushes);
 
 }  // namespace gyre

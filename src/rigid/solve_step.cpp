@@ -1,11 +1,10 @@
 #include "rigid/solve_step.h"
 
 #include "base/check.h"
-#include "base/sort.h"
 #include "rigid/contact_forest.h"
+#include "rigid/hits.h"
 #include "rigid/integrators.h"
 #include "rigid/linkages.h"
-#include "rigid/projection.h"
 #include "rigid/solve_batches.h"
 #include "rigid/surface_rules.h"
 #include "task/parallel.h"
@@ -38,10 +37,9 @@ constexpr float kPushShare = 0.4f;
 // Nothing bounces that closes slower than this many times the speed that gravity gives in a sub-step.
 constexpr float kBounceShare = 2.0f;
 
-// A contact is reported as a hit when it closes faster than this share of sqrt(9.81 m/s^2 * size).
-constexpr float kHitShare = 0.3f;
-
 constexpr int kBodiesPerBlock = 64;
+constexpr int kMotionBlocksPerClaim = 8;
+constexpr int kSpinnersPerClaim = 8;
 constexpr int kJointsPerBlock = 8;
 constexpr int kBlocksPerClaim = 4;
 constexpr int kTreesPerClaim = 8;
@@ -64,7 +62,12 @@ struct Solve {
   std::span<JointPlaces> joint_places{};
   Linkages linkages{};
   LinkageSolve linkage_solve{};
-  std::span<KeptVelocity> kept{};  // of the batch's bodies, while overlap is pushed apart
+  Motions motions{};
+  std::span<MovedBody> moved{};            // the batch's bodies that constraints act on,
+  void* motion_blocks = nullptr;           // the same for the kernels,
+  std::span<Vec3> pushes{};                // and how overlap turned them
+  std::span<std::uint32_t> spinners{};     // those of them that turn alone
+  std::span<std::uint32_t> flying{};       // the others
   ContactForest forest{};
   TreeSolve tree_solve{};
 };
@@ -85,51 +88,12 @@ std::int32_t solver_body(const RigidWorld& w, std::uint32_t body) {
   return flags.type == BodyType::fixed || flags.frozen != 0 ? kNoBody : std::int32_t(body);
 }
 
-Vec3 point_velocity(const RigidWorld& w, std::uint32_t body, Vec3 from_center) {
-  const BodyMotion& motion = w.bodies.motion[body];
-  return motion.linear_velocity + cross(motion.angular_velocity, from_center);
-}
+// What BodyFlags::touched says in a step: constraints act on the body; they also look at its place in each sub-step.
+constexpr std::uint8_t kUntouched = 0, kTouched = 1, kPlaceShown = 2;
 
-// How fast points that bore nothing yet are closing as the step begins: should they meet in it, that is the hit.
-void note_approach(const RigidWorld& w, const Contact& contact, Manifold& manifold) {
-  for (int k = 0; k < manifold.count; ++k) {
-    ContactPointState& point = manifold.points[k];
-    point.approach_speed = 0.0f;
-    if (point.normal_impulse > 0.0f) continue;
-    point.approach_speed = dot(manifold.normal, point_velocity(w, contact.body_a, point.from_a) -
-                                                    point_velocity(w, contact.body_b, point.from_b));
-  }
-}
-
-// Those contacts of a batch that were struck hard in this step.
-void note_hits(const RigidWorld& w, SolveScratch& s) {
-  for (std::size_t i = 0; i < s.constraints.size(); ++i) {
-    const Contact& contact = w.contacts.contacts[s.constraint_contact[i]];
-    const Manifold& manifold = *s.constraints[i].manifold;
-    float fastest = kHitShare * std::sqrt(9.81f * contact.size);
-    const ContactPointState* struck = nullptr;
-    float impulse = 0.0f;
-    for (int k = 0; k < manifold.count; ++k) {
-      const ContactPointState& point = manifold.points[k];
-      impulse += point.total_impulse;
-      if (!(point.total_impulse > 0.0f) || !(point.approach_speed > fastest)) continue;
-      fastest = point.approach_speed;
-      struck = &point;
-    }
-    if (struck == nullptr) continue;
-    const DVec3 place = w.bodies.places[contact.body_a].center + struck->from_a;
-    s.hits.push_back({s.constraint_contact[i],
-                      {shape_id(w, contact.shape_a), shape_id(w, contact.shape_b), body_id(w, contact.body_a),
-                       body_id(w, contact.body_b), place, manifold.normal, fastest, impulse, triangle_at(w, contact, place)}});
-  }
-}
-
-// The events of all batches, in contact order.
-void report_hits(RigidWorld& w, SolveScratch& s, Arena& arena) {
-  const ArenaScope scope(arena);
-  merge_sort(s.hits.view(), arena.make<SlotHit>(s.hits.size()),
-             [](const SlotHit& a, const SlotHit& b) { return a.slot < b.slot; });
-  for (const SlotHit& hit : s.hits) w.events.hits.push_back(hit.hit);
+void touch_body(RigidWorld& w, std::uint32_t body, std::uint8_t touch) {
+  std::uint8_t& touched = w.bodies.flags[body].touched;
+  touched = max(touched, touch);
 }
 
 void gather_contacts(Solve& solve) {
@@ -144,8 +108,9 @@ void gather_contacts(Solve& solve) {
   for (const std::uint32_t slot : solve.batch.contacts) {
     const Contact& contact = w.contacts.contacts[slot];
     const bool active_a = is_active(w, contact.body_a), active_b = is_active(w, contact.body_b);
-    w.bodies.flags[contact.body_a].touched = 1;
-    w.bodies.flags[contact.body_b].touched = 1;
+    const std::uint8_t touch = contact.surface.restitution > 0.0f ? kPlaceShown : kTouched;
+    touch_body(w, contact.body_a, touch);
+    touch_body(w, contact.body_b, touch);
     ContactConstraint constraint;
     constraint.body_a = solver_body(w, contact.body_a);
     constraint.body_b = solver_body(w, contact.body_b);
@@ -183,13 +148,40 @@ void gather_joints(Solve& solve) {
     const JointRecord& joint = w.joints.records[slot];
     const bool active_a = joint.body_a != kNoBody && is_active(w, std::uint32_t(joint.body_a));
     const bool active_b = joint.body_b != kNoBody && is_active(w, std::uint32_t(joint.body_b));
-    if (joint.body_a != kNoBody) w.bodies.flags[joint.body_a].touched = 1;
-    if (joint.body_b != kNoBody) w.bodies.flags[joint.body_b].touched = 1;
+    if (joint.body_a != kNoBody) touch_body(w, std::uint32_t(joint.body_a), kPlaceShown);
+    if (joint.body_b != kNoBody) touch_body(w, std::uint32_t(joint.body_b), kPlaceShown);
     if (solve.linkages.swept[i] == 0) continue;
     s.swept_joints.push_back(i);
     s.joint_pairs.push_back({active_a ? solve.places[std::size_t(joint.body_a)] : ColoringPair::kNone,
                              active_b ? solve.places[std::size_t(joint.body_b)] : ColoringPair::kNone});
   }
+}
+
+// Parts the bodies of a batch into those that constraints act on and those that fly.
+void gather_motion(Solve& solve, Arena& arena) {
+  RigidWorld& w = solve.w;
+  const std::size_t count = solve.batch.bodies.size();
+  solve.moved = arena.make<MovedBody>(count);
+  solve.pushes = arena.make<Vec3>(count);
+  solve.flying = arena.make<std::uint32_t>(count);
+  solve.spinners = arena.make<std::uint32_t>(count);
+  std::size_t moved = 0, flying = 0, spinners = 0;
+  for (const std::uint32_t body : solve.batch.bodies) {
+    const std::uint8_t touched = w.bodies.flags[body].touched;
+    if (touched == kUntouched) {
+      solve.flying[flying++] = body;
+      continue;
+    }
+    solve.moved[moved] = describe_motion(w.bodies, body, solve.motions, touched == kPlaceShown);
+    if (solve.moved[moved].turns_alone) solve.spinners[spinners++] = body;
+    ++moved;
+  }
+  solve.moved = solve.moved.first(moved);
+  solve.pushes = solve.pushes.first(moved);
+  solve.flying = solve.flying.first(flying);
+  solve.spinners = solve.spinners.first(spinners);
+  const std::size_t width = std::size_t(solve.kernels.width);
+  solve.motion_blocks = arena.make<std::byte>((moved + width - 1) / width * solve.kernels.motion.block_bytes).data();
 }
 
 // Lays the coloured constraints out in blocks of W lanes. A group starts a new block; constraints of the overflow group
@@ -232,26 +224,54 @@ std::span<Group> lay_out_joints(Solve& solve, Arena& arena) {
 
 // --------------------------------------------------------------------------------------------------- stages' kernels
 
-// The bodies of some blocks.
-std::span<const std::uint32_t> bodies_of(const Solve& s, int begin, int end) {
-  const int first = begin * kBodiesPerBlock;
-  const int last = min(end * kBodiesPerBlock, int(s.batch.bodies.size()));
-  return s.batch.bodies.subspan(std::size_t(first), std::size_t(last - first));
+// Bodies [begin, end) of a list in blocks of `size`.
+template <class T>
+std::span<T> block_of(std::span<T> list, int begin, int end, int size) {
+  const std::size_t first = std::size_t(begin) * std::size_t(size);
+  return list.subspan(first, min(std::size_t(end) * std::size_t(size), list.size()) - first);
 }
 
-std::span<KeptVelocity> velocities_of(const Solve& s, int begin, int end) {
-  const int first = begin * kBodiesPerBlock;
-  const int last = min(end * kBodiesPerBlock, int(s.kept.size()));
-  return s.kept.subspan(std::size_t(first), std::size_t(last - first));
-}
-
-void predict_stage(void* context, int begin, int end, int) {
+void fly_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
-  predict(s.w.bodies, bodies_of(s, begin, end), s.h, s.w.settings.gravity);
+  fly(s.w.bodies, block_of(s.flying, begin, end, kBodiesPerBlock), s.motions);
+}
+void prepare_motion_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  s.kernels.motion.prepare(s.motion_blocks, begin, end, s.moved.data(), int(s.moved.size()), s.contact_bodies.inertia);
+}
+void predict_cold_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  s.kernels.motion.predict(s.motion_blocks, begin, end, s.contact_bodies.motion, false);
+}
+void predict_warm_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  s.kernels.motion.predict(s.motion_blocks, begin, end, s.contact_bodies.motion, true);
+}
+void warm_motion_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  s.kernels.motion.warm(s.motion_blocks, begin, end, s.contact_bodies.motion);
+}
+void watch_motion_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  s.kernels.motion.watch(s.motion_blocks, begin, end, s.contact_bodies.motion);
+}
+void note_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  s.kernels.motion.note(s.motion_blocks, begin, end, s.contact_bodies.motion);
 }
 void advance_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
-  advance(s.w.bodies, bodies_of(s, begin, end), s.h);
+  BodyStore& bodies = s.w.bodies;
+  s.kernels.motion.advance(s.motion_blocks, begin, end,
+                           {bodies.motion.data(), bodies.inertia.data(), bodies.orientations.data()}, s.h);
+}
+void turn_alone_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  turn_alone(s.w.bodies, block_of(s.spinners, begin, end, kSpinnersPerClaim), s.h);
+}
+void finish_turns_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  finish_turns(s.w.bodies, block_of(s.moved, begin, end, kBodiesPerBlock), block_of(s.pushes, begin, end, kBodiesPerBlock));
 }
 void watch_stage(void* context, int, int, int) {
   const Solve& s = *static_cast<Solve*>(context);
@@ -269,10 +289,6 @@ void release_stage(void* context, int, int, int) {
 void solve_trees_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
   for (int i = begin; i < end; ++i) solve_tree(s.forest.trees[std::size_t(i)], s.tree_solve);
-}
-void settle_trees_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  for (int i = begin; i < end; ++i) settle_tree(s.forest.trees[std::size_t(i)], s.tree_solve);
 }
 
 void prepare_contacts_stage(void* context, int begin, int end, int) {
@@ -305,11 +321,11 @@ void project_contacts_stage(void* context, int begin, int end, int) {
 }
 void begin_projection_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
-  begin_projection(s.w.bodies, bodies_of(s, begin, end), velocities_of(s, begin, end));
+  s.kernels.motion.begin_projection(s.motion_blocks, begin, end, s.contact_bodies.motion);
 }
 void end_projection_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
-  end_projection(s.w.bodies, bodies_of(s, begin, end), velocities_of(s, begin, end));
+  s.kernels.motion.end_projection(s.motion_blocks, begin, end, s.contact_bodies.motion, s.pushes.data());
 }
 
 // Calls fn(record, work, places) for the joints of some blocks of a group.
@@ -386,46 +402,67 @@ class ProgramWriter {
   std::size_t used_ = 0;
 };
 
-void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> joints, Arena& arena, TaskSystem& tasks) {
-  const int parts = kParts * solve.w.settings.substeps;
-  const std::size_t per_part = 12 + 5 * joints.size() + 2 * contacts.size();
-  ProgramWriter program(
-      arena.make<Stage>(5 + std::size_t(parts) * per_part + 2 * contacts.size() + joints.size()));
-  std::uint32_t blocks = 0;
-  for (const Group& group : contacts) blocks += group.count;
-  const int body_blocks = count_blocks(int(solve.batch.bodies.size()), kBodiesPerBlock);
-  const int impact_blocks = solve.scratch.impacts.empty() ? 0 : 1;
-  program.add(prepare_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
+// The stages of one part of a sub-step. Impacts and joints are between forces, contacts and moves only where there are any.
+//
+// Stacks at rest are solved directly after the first sweep, which gives them the loads of this step, and after the last,
+// which leaves them at rest: in between nothing is left for the sweeps to change.
+void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> contacts, std::span<Group> joints) {
+  const bool first = part == 0, last = part + 1 == solve.motions.count;
+  const int bodies = count_blocks(int(solve.moved.size()), solve.kernels.width);
+  const int impacts = solve.scratch.impacts.empty() ? 0 : 1;
+  const int trees = first || last ? int(solve.forest.trees.size()) : 0;
   const int linkages = int(solve.linkages.linkages.size());
+  // Joints act between forces and contacts: what they give is none of the contacts' work.
+  const bool has_joints = linkages > 0 || !joints.empty();
+  const bool is_warm = !first && impacts == 0;
+  program.add(watch_stage, &solve, impacts);
+  program.add(is_warm ? predict_warm_stage : predict_cold_stage, &solve, bodies, kMotionBlocksPerClaim);
+  program.add(strike_stage, &solve, impacts);
+  if (!first && !is_warm) program.add(warm_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
+  program.add_groups(bend_joints_stage, joints, kJointsPerBlock, 1);
+  program.add(linkage_stage<warm_linkage>, &solve, linkages);
+  program.add_groups(warm_joints_stage, joints, kJointsPerBlock, 1);
+  if (first) {
+    program.add(watch_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
+    program.add_groups(warm_contacts_stage, contacts, 1, kBlocksPerClaim);
+    program.add(note_stage, &solve, bodies, kMotionBlocksPerClaim);
+  }
+  program.add_groups(solve_joints_stage, joints, kJointsPerBlock, 1);
+  program.add(linkage_stage<solve_linkage>, &solve, linkages);
+  if (has_joints) program.add(watch_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
+  program.add_groups(solve_contacts_stage, contacts, 1, kBlocksPerClaim);
+  program.add(solve_trees_stage, &solve, trees, kTreesPerClaim);
+  if (has_joints) program.add(note_stage, &solve, bodies, kMotionBlocksPerClaim);
+  program.add(linkage_stage<solve_linkage_again>, &solve, linkages);
+  if (has_joints) program.add(watch_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
+  program.add(advance_stage, &solve, bodies, kMotionBlocksPerClaim);
+  program.add(turn_alone_stage, &solve, count_blocks(int(solve.spinners.size()), kSpinnersPerClaim));
+  program.add(release_stage, &solve, impacts);
   program.add_groups(place_joints_stage, joints, kJointsPerBlock, 1);
   program.add(linkage_stage<place_linkage>, &solve, linkages);
-  for (int i = 0; i < parts; ++i) {
-    program.add(watch_stage, &solve, impact_blocks);
-    program.add(predict_stage, &solve, body_blocks);
-    program.add(strike_stage, &solve, impact_blocks);
-    program.add_groups(bend_joints_stage, joints, kJointsPerBlock, 1);
-    program.add(linkage_stage<warm_linkage>, &solve, linkages);
-    program.add_groups(warm_joints_stage, joints, kJointsPerBlock, 1);
-    program.add_groups(warm_contacts_stage, contacts, 1, kBlocksPerClaim);
-    program.add_groups(solve_joints_stage, joints, kJointsPerBlock, 1);
-    program.add(linkage_stage<solve_linkage>, &solve, linkages);
-    program.add_groups(solve_contacts_stage, contacts, 1, kBlocksPerClaim);
-    program.add(linkage_stage<solve_linkage_again>, &solve, linkages);
-    program.add(solve_trees_stage, &solve, int(solve.forest.trees.size()), kTreesPerClaim);
-    program.add(advance_stage, &solve, body_blocks);
-    program.add(settle_trees_stage, &solve, int(solve.forest.trees.size()), kTreesPerClaim);
-    program.add(release_stage, &solve, impact_blocks);
-    program.add_groups(place_joints_stage, joints, kJointsPerBlock, 1);
-    program.add(linkage_stage<place_linkage>, &solve, linkages);
-    program.add_groups(relax_joints_stage, joints, kJointsPerBlock, 1);
-    program.add(linkage_stage<relax_linkage>, &solve, linkages);
-  }
-  if (blocks > 0) {
-    program.add_groups(relax_contacts_stage, contacts, 1, kBlocksPerClaim);
-    program.add(begin_projection_stage, &solve, body_blocks);
-    program.add_groups(project_contacts_stage, contacts, 1, kBlocksPerClaim);
-    program.add(end_projection_stage, &solve, body_blocks);
-  }
+  program.add_groups(relax_joints_stage, joints, kJointsPerBlock, 1);
+  program.add(linkage_stage<relax_linkage>, &solve, linkages);
+}
+
+void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> joints, Arena& arena, TaskSystem& tasks) {
+  const int parts = solve.motions.count;
+  const std::size_t per_part = 18 + 5 * joints.size() + 2 * contacts.size();
+  ProgramWriter program(
+      arena.make<Stage>(9 + std::size_t(parts) * per_part + 2 * contacts.size() + joints.size()));
+  std::uint32_t blocks = 0;
+  for (const Group& group : contacts) blocks += group.count;
+  const int bodies = count_blocks(int(solve.moved.size()), solve.kernels.width);
+  program.add(fly_stage, &solve, count_blocks(int(solve.flying.size()), kBodiesPerBlock));
+  program.add(prepare_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
+  program.add(prepare_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
+  program.add_groups(place_joints_stage, joints, kJointsPerBlock, 1);
+  program.add(linkage_stage<place_linkage>, &solve, int(solve.linkages.linkages.size()));
+  for (int i = 0; i < parts; ++i) add_part(program, solve, i, contacts, joints);
+  program.add_groups(relax_contacts_stage, contacts, 1, kBlocksPerClaim);
+  program.add(begin_projection_stage, &solve, bodies, kMotionBlocksPerClaim);
+  program.add_groups(project_contacts_stage, contacts, 1, kBlocksPerClaim);
+  program.add(end_projection_stage, &solve, bodies, kMotionBlocksPerClaim);
+  program.add(finish_turns_stage, &solve, count_blocks(int(solve.moved.size()), kBodiesPerBlock));
   program.add(finish_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
   run_program(tasks, program.stages());
 }
@@ -464,12 +501,12 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
                          .settings = solve.joint_settings,
                          .give = kLinkageGive};
   solve.linkage_solve.settings.swept = false;
-  solve.kept = arena.make<KeptVelocity>(solve.batch.bodies.size());
+  gather_motion(solve, arena);
   solve.forest = find_contact_trees(solve.w, scratch.constraints, solve.batch, solve.places, arena);
   const std::span<Group> contacts = lay_out_contacts(solve, arena);
   place_tree_nodes(solve.forest, scratch.order, solve.kernels.width, scratch.constraints.size(), arena);
   solve.tree_solve = {solve.forest.nodes, solve.forest.work, scratch.constraints, solve.contact_bodies.motion,
-                      &solve.kernels,     solve.blocks,      solve.h};
+                      &solve.kernels,     solve.blocks,      solve.contact_settings.step};
   const std::span<Group> joints = lay_out_joints(solve, arena);
   run_substeps(solve, contacts, joints, arena, tasks);
   note_hits(solve.w, scratch);
@@ -494,6 +531,7 @@ void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& 
   }
   Solve solve{w, scratch, kernels};
   solve.h = h;
+  solve.motions = {kParts * w.settings.substeps, h, w.settings.gravity};
   const float pull = length(w.settings.gravity);
   solve.contact_settings = {.substep = h,
                             .step = seconds,

@@ -1,6 +1,7 @@
 // The sub-steps of a rigid step as a program, one for each batch of islands (solve_batches.h), one after the other:
 // constraints are gathered and coloured once, then for each sub-step
-//   watch impacts, predict, strike impacts, prepare joints, warm start, solve, advance, release impacts, relax joints;
+//   watch impacts, predict, strike impacts, prepare joints, warm start, solve, advance, release impacts, relax joints
+// (docs/step.md has the table);
 // at the end contacts are relaxed and overlap is pushed apart.
 // Workers meet at a barrier between stages; within one, blocks share no moving body.
 #pragma once

@@ -32,6 +32,7 @@ inline void stop(BodyMotion& motion) {
 constexpr int kMotionFloats = 16;
 constexpr int kMotionLinear = 0;
 constexpr int kMotionAngular = 3;
+constexpr int kMotionPushed = 7;
 constexpr int kMotionMoved = 8;
 constexpr int kMotionTurned = 11;
 
@@ -39,7 +40,9 @@ constexpr int kMotionTurned = 11;
 struct BodyInertia {
   Sym3 inverse;                 // 1/(kg m^2), world axes
   float inverse_mass = 0.0f;
+  float spare = 0.0f;           // kernels read eight floats
 };
+static_assert(sizeof(BodyInertia) == 32);
 
 // "No body": the fixed world, which has no record.
 constexpr std::int32_t kNoBody = -1;

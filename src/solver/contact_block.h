@@ -7,13 +7,14 @@
 
 #include "geometry/manifold.h"
 #include "solver/body_motion.h"
+#include "solver/motion_block.h"
 
 #include <cstdint>
 #include <span>
 
 namespace gyre {
 
-// One manifold to be solved. Plain data: the same for every width.
+// One manifold to be solved. Plain data: the same for every width; the kernels read it four floats at a time.
 struct ContactConstraint {
   Manifold* manifold = nullptr;
   std::int32_t body_a = kNoBody;  // index of the motion record; kNoBody for fixed bodies
@@ -22,11 +23,11 @@ struct ContactConstraint {
   float dynamic_friction = 0.0f;
   float rolling_friction = 0.0f;   // m
   float spinning_friction = 0.0f;  // m
-  float restitution = 0.0f;
-  bool rigid = false;              // no softness: part of a tree that is solved directly
   float size = 0.0f;               // m, of the smaller body
   float push_speed = 0.0f;         // m/s: the fastest that overlap is taken back
   Vec3 surface_velocity;           // m/s, of b's surface against a's, in the tangent plane
+  float restitution = 0.0f;
+  bool rigid = false;              // no spring: part of a tree that is solved directly
 };
 
 // What is the same for all contacts of a step.
@@ -72,6 +73,7 @@ struct ContactKernels {
   void (*write_impulse)(void* blocks, int block, int lane, const ContactImpulse& impulse);
   void (*finish)(void* blocks, int begin, int end, const ContactConstraint* constraints, const std::uint32_t* order,
                  const ContactSettings& settings);
+  MotionKernels motion;
 };
 
 // The widest kernels that this machine runs well and that have at most `width` lanes (0: any). Same bits whichever.

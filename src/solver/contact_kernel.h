@@ -26,13 +26,14 @@ constexpr int kPullSweeps = 6;
 
 template <int W>
 struct PointBlock {
-  Vec3W<W> from_a, from_b;
+  Vec3W<W> arm;           // from a centre of mass to the point, times the normal: what a push along it turns
   Wide<W> separation;     // as the step began
   Wide<W> impulse;        // accumulated in this sub-step
   Wide<W> held;           // the load it is used to
   Wide<W> total;          // summed over the step
 };
 
+// In the order of use: what only some stages read comes last.
 template <int W>
 struct ContactBlock {
   std::int32_t read_a[W], read_b[W];    // motion records, or kNoBody
@@ -43,28 +44,31 @@ struct ContactBlock {
   Vec3W<W> normal, tangent_1, tangent_2;
   Wide<W> inverse_mass_a, inverse_mass_b;
   Sym3W<W> inverse_inertia_a, inverse_inertia_b;
-  Wide<W> rate, give, slop, push_speed;
-  Wide<W> mobility_a, mobility_b;  // shares of the inverse masses that a push apart sees
   // Friction at the centre of pressure.
   Vec3W<W> friction_from_a, friction_from_b;
-  Wide<W> static_friction, dynamic_friction;
-  Wide<W> twist_per_normal_static, twist_per_normal_dynamic;  // m: torque limit over normal impulse
+  // Inverse friction coefficients, static and dynamic, and the same of the twist (1/m): 0 where there is no friction.
+  Wide<W> static_grip, dynamic_grip, static_twist_grip, dynamic_twist_grip;
   Wide<W> inverse_k11, inverse_k12, inverse_k13, inverse_k22, inverse_k23, inverse_k33;  // of (tangent_1, tangent_2, twist)
   Wide<W> slide_mass;     // scalar step for sliding, so that friction opposes the slip in every direction alike
   Wide<W> twist_radius;   // m: scale of the twist row beside the tangents
   Wide<W> surface_1, surface_2;
   Wide<W> friction_1, friction_2, twist;
   Wide<W> sliding;        // 1 where friction was at its limit
-  Wide<W> fresh;          // 1 where no load is known yet
   Wide<W> total_1, total_2;
+  // Inverse of the regularised K = J M^-1 J^T of the normal rows, upper triangle by rows (00 01 02 03 11 12 13 22 23 33); it and
+  // `relief` are 0 in rows of points that a lane does not have.
+  Wide<W> inverse_k[10];
+  Wide<W> relief[kMaxManifoldPoints];  // 1 / K_ii
+  Wide<W> rate, give, slop, push_speed;
+  // All points' arms on a body differ from `arm` by the same: one of these is zero, that of the body whose centre is nearer.
+  Vec3W<W> arm_shift_a, arm_shift_b;
+  PointBlock<W> points[kMaxManifoldPoints];
+  Wide<W> k[10];
+  Wide<W> fresh;                   // 1 where no load is known yet
+  Wide<W> mobility_a, mobility_b;  // shares of the inverse masses that a push apart sees
   // Rolling friction.
   Wide<W> rolling_friction, rolling_mass;
   Vec3W<W> rolling;
-  // K = J M^-1 J^T of the normal rows, upper triangle by rows (00 01 02 03 11 12 13 22 23 33), and its regularised inverse;
-  // `inverse_k[..]` and `relief` are 0 in rows of points that a lane does not have.
-  Wide<W> k[10], inverse_k[10];
-  Wide<W> relief[kMaxManifoldPoints];  // 1 / K_ii
-  PointBlock<W> points[kMaxManifoldPoints];
 };
 
 // Place of row i, column j (either order) in a packed upper triangle.
@@ -103,14 +107,37 @@ GYRE_INLINE void store_pair(const ContactBlock<W>& block, BodyMotion* motion, co
   scatter<8, W>(&motion->linear_velocity.x, block.write_b, b);
 }
 
-// Adds the impulse `p` on B at `from_b` (and -p on A at `from_a`).
+// Adds the impulse `p` on B at `from_b` (and -p on A at `from_a`), and the angular impulse `t` on B (and -t on A).
 template <int W>
-GYRE_INLINE void push(const ContactBlock<W>& block, PairMotion<W>& pair, Vec3W<W> p, Vec3W<W> from_a, Vec3W<W> from_b) {
+GYRE_INLINE void push(const ContactBlock<W>& block, PairMotion<W>& pair, Vec3W<W> p, Vec3W<W> from_a, Vec3W<W> from_b,
+                      Vec3W<W> t) {
   pair.linear_a = pair.linear_a - block.inverse_mass_a * p;
-  pair.angular_a = pair.angular_a - block.inverse_inertia_a * cross(from_a, p);
+  pair.angular_a = pair.angular_a - block.inverse_inertia_a * (cross(from_a, p) + t);
   pair.linear_b = pair.linear_b + block.inverse_mass_b * p;
-  pair.angular_b = pair.angular_b + block.inverse_inertia_b * cross(from_b, p);
+  pair.angular_b = pair.angular_b + block.inverse_inertia_b * (cross(from_b, p) + t);
 }
+
+// Adds an impulse `p` along the normal; `turn` is the sum of its parts times the arms of their points.
+template <int W>
+GYRE_INLINE void push_normal(const ContactBlock<W>& block, PairMotion<W>& pair, Wide<W> p, Vec3W<W> turn) {
+  pair.linear_a = pair.linear_a - (block.inverse_mass_a * p) * block.normal;
+  pair.angular_a = pair.angular_a - block.inverse_inertia_a * (turn + p * block.arm_shift_a);
+  pair.linear_b = pair.linear_b + (block.inverse_mass_b * p) * block.normal;
+  pair.angular_b = pair.angular_b + block.inverse_inertia_b * (turn + p * block.arm_shift_b);
+}
+
+// How much, along the normal, B's points move against A's: what is the same for all points, and what turns add for each.
+template <int W>
+struct NormalMotion {
+  Wide<W> common;
+  Vec3W<W> turn;
+
+  GYRE_INLINE NormalMotion(const ContactBlock<W>& block, Vec3W<W> way, Vec3W<W> turn_a, Vec3W<W> turn_b) {
+    common = dot(way, block.normal) + (dot(turn_b, block.arm_shift_b) - dot(turn_a, block.arm_shift_a));
+    turn = turn_b - turn_a;
+  }
+  GYRE_INLINE Wide<W> at(const PointBlock<W>& point) const { return common + dot(turn, point.arm); }
+};
 
 // Adds the angular impulse `t` on B (and -t on A).
 template <int W>
@@ -133,13 +160,16 @@ void warm_start_blocks(void* memory, int begin, int end, BodyMotion* motion) {
     Wide<W> a[kMotionFloats], b[kMotionFloats];
     load_pair<W>(block, motion, a, b);
     PairMotion<W> pair = velocities<W>(a, b);
-    for (int k = 0; k < block.point_count; ++k) {
+    Wide<W> total = block.points[0].impulse;
+    Vec3W<W> turn_sum = total * block.points[0].arm;
+    for (int k = 1; k < block.point_count; ++k) {
       const PointBlock<W>& point = block.points[k];
-      push<W>(block, pair, point.impulse * block.normal, point.from_a, point.from_b);
+      total = total + point.impulse;
+      turn_sum = turn_sum + point.impulse * point.arm;
     }
+    push_normal<W>(block, pair, total, turn_sum);
     push<W>(block, pair, block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2, block.friction_from_a,
-            block.friction_from_b);
-    turn<W>(block, pair, block.twist * block.normal);
+            block.friction_from_b, block.twist * block.normal);
     if (block.rolls != 0) turn<W>(block, pair, block.rolling);
     store_pair<W>(block, motion, pair, a, b);
   }
@@ -169,34 +199,27 @@ GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W>& pair) {
   Wide<W> f2 = block.friction_2 - (block.inverse_k12 * v1 + block.inverse_k22 * v2 + block.inverse_k23 * v3);
   Wide<W> f3 = block.twist - (block.inverse_k13 * v1 + block.inverse_k23 * v2 + block.inverse_k33 * v3);
 
+  // Where on its limit the impulse is: 1 on the ellipsoid. No load, no friction.
   const auto was_sliding = block.sliding > zero;
-  const Wide<W> slide_limit = block.dynamic_friction * load;
-  const Wide<W> slide_twist = block.twist_per_normal_dynamic * load;
-  const Wide<W> limit = select(was_sliding, slide_limit, block.static_friction * load);
-  const Wide<W> twist_limit = select(was_sliding, slide_twist, block.twist_per_normal_static * load);
-  const Wide<W> inverse_limit = select(limit > zero, one / limit, zero);
-  const Wide<W> inverse_twist = select(twist_limit > zero, one / twist_limit, zero);
-  const Wide<W> use = (f1 * f1 + f2 * f2) * (inverse_limit * inverse_limit) + (f3 * f3) * (inverse_twist * inverse_twist);
+  const auto loaded = load > zero;
+  const Wide<W> per_load = select(loaded, one / select(loaded, load, one), zero);
+  const Wide<W> grip = select(was_sliding, block.dynamic_grip, block.static_grip) * per_load;
+  const Wide<W> twist_grip = select(was_sliding, block.dynamic_twist_grip, block.static_twist_grip) * per_load;
+  const Wide<W> use = (f1 * f1 + f2 * f2) * (grip * grip) + (f3 * f3) * (twist_grip * twist_grip);
   const auto sticks = use <= one;
 
   // Sliding: a step along the slip, alike in every direction, then onto the ellipsoid.
   const Wide<W> g1 = block.friction_1 - block.slide_mass * v1;
   const Wide<W> g2 = block.friction_2 - block.slide_mass * v2;
   const Wide<W> g3 = block.twist - block.slide_mass * (block.twist_radius * block.twist_radius) * v3;
-  const Wide<W> inverse_slide = select(slide_limit > zero, one / slide_limit, zero);
-  const Wide<W> inverse_slide_twist = select(slide_twist > zero, one / slide_twist, zero);
-  const Wide<W> reach = (g1 * g1 + g2 * g2) * (inverse_slide * inverse_slide) +
-                        (g3 * g3) * (inverse_slide_twist * inverse_slide_twist);
+  const Wide<W> slide_grip = block.dynamic_grip * per_load;
+  const Wide<W> slide_twist_grip = block.dynamic_twist_grip * per_load;
+  const Wide<W> reach = (g1 * g1 + g2 * g2) * (slide_grip * slide_grip) + (g3 * g3) * (slide_twist_grip * slide_twist_grip);
   const Wide<W> scale = select(reach > one, one / sqrt(reach), one);
-  f1 = select(sticks, f1, g1 * scale);
-  f2 = select(sticks, f2, g2 * scale);
-  f3 = select(sticks, f3, g3 * scale);
+  f1 = keep(grip > zero, select(sticks, f1, g1 * scale));
+  f2 = keep(grip > zero, select(sticks, f2, g2 * scale));
+  f3 = keep(twist_grip > zero, select(sticks, f3, g3 * scale));
   block.sliding = select(sticks, zero, one);
-
-  // No load, no friction.
-  f1 = select(limit > zero, f1, zero);
-  f2 = select(limit > zero, f2, zero);
-  f3 = select(twist_limit > zero, f3, zero);
 
   const Wide<W> d1 = f1 - block.friction_1;
   const Wide<W> d2 = f2 - block.friction_2;
@@ -204,8 +227,8 @@ GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W>& pair) {
   block.friction_1 = f1;
   block.friction_2 = f2;
   block.twist = f3;
-  push<W>(block, pair, d1 * block.tangent_1 + d2 * block.tangent_2, block.friction_from_a, block.friction_from_b);
-  turn<W>(block, pair, d3 * block.normal);
+  push<W>(block, pair, d1 * block.tangent_1 + d2 * block.tangent_2, block.friction_from_a, block.friction_from_b,
+          d3 * block.normal);
 }
 
 // Rolling friction: a torque against the relative turning, at most rolling_friction times the load.
@@ -231,25 +254,22 @@ GYRE_INLINE void solve_rolling(ContactBlock<W>& block, PairMotion<W>& pair) {
 // treats them alike: no order, no rocking), then, where some would pull, by projected sweeps in the space of impulses.
 // Sprung: the spring draws its points to an overlap of `slop`, in both directions, and gives way to what it is not used to.
 // Not sprung: only approach stops, and under load the speed with which springs pushed goes.
-template <int W, bool kSprung>
-GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W>& pair, const Wide<W>* a, const Wide<W>* b,
-                               float substep) {
+template <int W, bool kSprung, int Count>
+GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W>& pair, const Wide<W>* a, const Wide<W>* b,
+                              float substep) {
   const Wide<W> zero(0.0f);
   const Wide<W> one(1.0f);
   const Wide<W> rate(1.0f / substep);
   const Vec3W<W> moved = Vec3W<W>{b[8], b[9], b[10]} - Vec3W<W>{a[8], a[9], a[10]};
-  const Vec3W<W> turned_a{a[11], a[12], a[13]};
-  const Vec3W<W> turned_b{b[11], b[12], b[13]};
-  const int count = block.point_count;
-  Wide<W> residual[kMaxManifoldPoints];  // speed that the row wants to lose
-  Wide<W> leak[kMaxManifoldPoints];
-  Wide<W> next[kMaxManifoldPoints];
-  auto pulls = one < zero;
-  for (int i = 0; i < count; ++i) {
+  const NormalMotion<W> ways(block, moved, {a[11], a[12], a[13]}, {b[11], b[12], b[13]});
+  const NormalMotion<W> speeds(block, pair.linear_b - pair.linear_a, pair.angular_a, pair.angular_b);
+  Wide<W> residual[Count];  // speed that the row wants to lose
+  Wide<W> kept[Count];      // the impulse as it stands, less what the spring gives way
+  GYRE_UNROLL
+  for (int i = 0; i < Count; ++i) {
     const PointBlock<W>& point = block.points[i];
-    const Vec3W<W> drift = moved + cross(turned_b, point.from_b) - cross(turned_a, point.from_a);
-    const Wide<W> separation = point.separation + dot(drift, block.normal);
-    const Wide<W> speed = dot(relative_velocity<W>(pair, point.from_a, point.from_b), block.normal);
+    const Wide<W> separation = point.separation + ways.at(point);
+    const Wide<W> speed = speeds.at(point);
     const auto apart = separation > zero;
     if constexpr (kSprung) {
       const Wide<W> asked = (separation + block.slop) * block.rate;
@@ -257,73 +277,103 @@ GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W>& pair, cons
       const auto is_capped = asked < fastest;
       residual[i] = speed + select(apart, separation * rate + block.slop * block.rate, max(asked, fastest));
       // Where the speed is capped the impulse gives way less by the same share: the spring still bears its load.
-      const Wide<W> share = select(is_capped, fastest / select(is_capped, asked, one), one);
-      leak[i] = select(apart, zero, block.give * share) * max(point.impulse - point.held, zero);
+      const Wide<W> share = any(is_capped) ? select(is_capped, fastest / select(is_capped, asked, one), one) : one;
+      // A point that parts ceases to give way by degrees.
+      const Wide<W> near = max(block.slop - max(separation, zero), zero);
+      kept[i] = point.impulse - (block.give * near) * share * max(point.impulse - point.held, zero);
     } else {
       // A point that is apart may be let go, never be held back: that would brake whatever is about to land.
       const Wide<W> excess = select(point.impulse > zero, max(speed + separation * rate, zero), zero);
       residual[i] = select(apart, excess, speed);
-      leak[i] = zero;
+      kept[i] = point.impulse;
     }
     // A point that the lane does not have must stay out of the sums even where speeds leave a float's range: 0 times that
     // would be no number, and a block of the lane's own would not have it.
-    residual[i] = select(block.relief[i] > zero, residual[i], zero);
+    residual[i] = keep(block.relief[i] > zero, residual[i]);
   }
-  for (int i = 0; i < count; ++i) {
-    Wide<W> change = zero;
-    for (int j = 0; j < count; ++j) change = change + block.inverse_k[packed(i, j)] * residual[j];
-    const Wide<W> wanted = block.points[i].impulse - change - leak[i];
+  Wide<W> next[Count];
+  auto pulls = one < zero;
+  GYRE_UNROLL
+  for (int i = 0; i < Count; ++i) {
+    Wide<W> change = block.inverse_k[packed(i, 0)] * residual[0];
+    GYRE_UNROLL
+    for (int j = 1; j < Count; ++j) change = change + block.inverse_k[packed(i, j)] * residual[j];
+    const Wide<W> wanted = kept[i] - change;
     pulls = pulls | (wanted < zero);
     next[i] = max(wanted, zero);
   }
-  if (any(pulls)) {
+  if (Count > 1 && any(pulls)) {
     // From the impulses that stand, not from the block's answer with its pulls cut off: that is too strong, and piles shake.
-    for (int i = 0; i < count; ++i) next[i] = select(pulls, max(block.points[i].impulse - leak[i], zero), next[i]);
+    Wide<W> tried[Count], change[Count];
+    GYRE_UNROLL
+    for (int i = 0; i < Count; ++i) {
+      tried[i] = max(kept[i], zero);
+      change[i] = tried[i] - kept[i];
+    }
     for (int sweep = 0; sweep < kPullSweeps; ++sweep) {
-      for (int i = 0; i < count; ++i) {
+      GYRE_UNROLL
+      for (int i = 0; i < Count; ++i) {
         Wide<W> speed = residual[i];
-        for (int j = 0; j < count; ++j) speed = speed + block.k[packed(i, j)] * (next[j] - block.points[j].impulse + leak[j]);
-        next[i] = select(pulls, max(next[i] - block.relief[i] * speed, zero), next[i]);
+        GYRE_UNROLL
+        for (int j = 0; j < Count; ++j) speed = speed + block.k[packed(i, j)] * change[j];
+        tried[i] = max(tried[i] - block.relief[i] * speed, zero);
+        change[i] = tried[i] - kept[i];
       }
     }
+    GYRE_UNROLL
+    for (int i = 0; i < Count; ++i) next[i] = select(pulls, tried[i], next[i]);
   }
-  Wide<W> total = zero;
-  Vec3W<W> arm_a{zero, zero, zero}, arm_b{zero, zero, zero};
-  for (int i = 0; i < count; ++i) {
+  Wide<W> total = next[0] - block.points[0].impulse;
+  Vec3W<W> turn_sum = total * block.points[0].arm;
+  block.points[0].impulse = next[0];
+  GYRE_UNROLL
+  for (int i = 1; i < Count; ++i) {
     PointBlock<W>& point = block.points[i];
     const Wide<W> change = next[i] - point.impulse;
     point.impulse = next[i];
     total = total + change;
-    arm_a = arm_a + change * point.from_a;
-    arm_b = arm_b + change * point.from_b;
+    turn_sum = turn_sum + change * point.arm;
   }
-  pair.linear_a = pair.linear_a - (block.inverse_mass_a * total) * block.normal;
-  pair.angular_a = pair.angular_a - block.inverse_inertia_a * cross(arm_a, block.normal);
-  pair.linear_b = pair.linear_b + (block.inverse_mass_b * total) * block.normal;
-  pair.angular_b = pair.angular_b + block.inverse_inertia_b * cross(arm_b, block.normal);
+  push_normal<W>(block, pair, total, turn_sum);
+}
+
+template <int W, bool kSprung>
+GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W>& pair, const Wide<W>* a, const Wide<W>* b,
+                               float substep) {
+  switch (block.point_count) {
+    case 1:
+      return solve_points<W, kSprung, 1>(block, pair, a, b, substep);
+    case 2:
+      return solve_points<W, kSprung, 2>(block, pair, a, b, substep);
+    case 3:
+      return solve_points<W, kSprung, 3>(block, pair, a, b, substep);
+    default:
+      return solve_points<W, kSprung, 4>(block, pair, a, b, substep);
+  }
 }
 
 // Contacts that bore nothing yet: friction knows no load that limits it, so the normals have to come first once.
 template <int W>
-GYRE_INLINE void strike_fresh(ContactBlock<W>& block, PairMotion<W>& pair, const Wide<W>* a, const Wide<W>* b, float substep) {
+__attribute__((noinline)) void strike_fresh(ContactBlock<W>& block, PairMotion<W>& pair, const Wide<W>* a, const Wide<W>* b, float substep) {
   const auto fresh = block.fresh > Wide<W>(0.0f);
-  const ContactBlock<W> old = block;
-  const PairMotion<W> old_pair = pair;
+  const PairMotion<W> old = pair;
+  Wide<W> impulses[kMaxManifoldPoints];
+  for (int k = 0; k < block.point_count; ++k) impulses[k] = block.points[k].impulse;
+  const Wide<W> friction_1 = block.friction_1, friction_2 = block.friction_2, twist = block.twist, sliding = block.sliding;
   solve_normals<W, true>(block, pair, a, b, substep);
   solve_friction<W>(block, pair);
   for (int k = 0; k < block.point_count; ++k) {
-    block.points[k].impulse = select(fresh, block.points[k].impulse, old.points[k].impulse);
+    block.points[k].impulse = select(fresh, block.points[k].impulse, impulses[k]);
   }
-  block.friction_1 = select(fresh, block.friction_1, old.friction_1);
-  block.friction_2 = select(fresh, block.friction_2, old.friction_2);
-  block.twist = select(fresh, block.twist, old.twist);
-  block.sliding = select(fresh, block.sliding, old.sliding);
-  block.fresh = Wide<W>(0.0f);
+  block.friction_1 = select(fresh, block.friction_1, friction_1);
+  block.friction_2 = select(fresh, block.friction_2, friction_2);
+  block.twist = select(fresh, block.twist, twist);
+  block.sliding = select(fresh, block.sliding, sliding);
   block.has_fresh = 0;
-  pair.linear_a = select<W>(fresh, pair.linear_a, old_pair.linear_a);
-  pair.angular_a = select<W>(fresh, pair.angular_a, old_pair.angular_a);
-  pair.linear_b = select<W>(fresh, pair.linear_b, old_pair.linear_b);
-  pair.angular_b = select<W>(fresh, pair.angular_b, old_pair.angular_b);
+  pair.linear_a = select<W>(fresh, pair.linear_a, old.linear_a);
+  pair.angular_a = select<W>(fresh, pair.angular_a, old.angular_a);
+  pair.linear_b = select<W>(fresh, pair.linear_b, old.linear_b);
+  pair.angular_b = select<W>(fresh, pair.angular_b, old.angular_b);
 }
 
 // Normals last: what bodies move with then closes nowhere; an error of the slip does no harm.

@@ -1,9 +1,13 @@
 // Fills contact blocks from manifolds as the step begins, and reads impulses back as it ends. Part of the kernels (one
-// template for every width); apart from contact_kernel.h because it runs once a step and is scalar by nature.
+// template for every width); apart from contact_kernel.h because it runs once a step. Records are read and written four
+// floats at a time, W records side by side (math/wide_vec.h: Rows).
 #pragma once
 
 #include "solver/contact_kernel.h"
 #include "solver/contact_project.h"
+#include "solver/motion_kernel.h"
+
+#include <cstddef>
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
@@ -16,47 +20,103 @@ constexpr float kLowerShare = 0.7f;
 constexpr float kShortestMean = 0.5f;
 constexpr float kLongestMean = 1.0f;
 
-// What one lane needs, in scalars. Everything here is computed once per manifold and step.
-struct LaneFriction {
-  Vec3 from_a, from_b;        // centre of pressure
-  float twist_radius = 0.0f;  // m: mean lever arm of a patch of uniform pressure under the points
+// A patch narrower than this share of the size does not brake spinning.
+constexpr float kLeastPatch = 1.0e-3f;
+// Friction coefficients beyond this count as this: their inverse must not vanish.
+constexpr float kMostFriction = 1.0e6f;
+
+// ----------------------------------------------------------------------------------------------- records, side by side
+
+// Where the fours begin in the records, in floats.
+constexpr int kManifoldNormal = 0, kManifoldPoints = 4, kManifoldFriction = 52, kManifoldTwist = 56, kManifoldTotals = 60,
+              kManifoldSliding = 64, kPointA = 0, kPointB = 4, kPointImpulse = 8, kPointFloats = 12, kInertiaMass = 4,
+              kConstraintFriction = 4, kConstraintSize = 8;
+static_assert(offsetof(Manifold, normal) == 4 * kManifoldNormal && offsetof(Manifold, points) == 4 * kManifoldPoints);
+static_assert(offsetof(Manifold, age) == 4 * kManifoldFriction && offsetof(Manifold, friction_impulse) == 4 * kManifoldFriction + 4);
+static_assert(offsetof(Manifold, twist_impulse) == 4 * kManifoldTwist && offsetof(Manifold, rolling_impulse) == 4 * kManifoldTwist + 4);
+static_assert(offsetof(Manifold, total_friction) == 4 * kManifoldTotals + 4 && offsetof(Manifold, sliding) == 4 * kManifoldSliding);
+static_assert(sizeof(ContactPointState) == 4 * kPointFloats && offsetof(ContactPointState, from_b) == 4 * kPointB);
+static_assert(offsetof(ContactPointState, normal_impulse) == 4 * kPointImpulse && offsetof(ContactPointState, separation) == 12);
+static_assert(offsetof(ContactPointState, total_impulse) == 4 * kPointImpulse + 4 && offsetof(ContactPointState, held) == 4 * kPointImpulse + 8);
+static_assert(offsetof(BodyInertia, inverse_mass) == 4 * kInertiaMass + 8);
+static_assert(offsetof(ContactConstraint, static_friction) == 4 * kConstraintFriction);
+static_assert(offsetof(ContactConstraint, size) == 4 * kConstraintSize);
+
+// The manifolds, points and bodies of a block's lanes. Lanes without a contact, and points that a lane does not have, read
+// zeros and are not written.
+template <int W>
+struct LaneRecords {
+  const float* constraint[W];
+  float* manifold[W];
+  float* point[kMaxManifoldPoints][W];
+  const float* inertia_a[W];
+  const float* inertia_b[W];
+  std::uint32_t lanes = 0;  // bits
+  int point_count = 0;      // the most of any lane
+  Wide<W> exists[kMaxManifoldPoints];  // 1 or 0
 };
 
-// The centre of pressure and the patch's mean lever arm. Points weigh by the load they carried; where nothing bore load
-// yet, those that touch count. The share of lever arm: a uniform square's mean distance from its centre is 0.541 of its
-// corners', a uniform segment's half of its ends'.
-inline LaneFriction pressure_patch(const Manifold& manifold) {
-  float weights[kMaxManifoldPoints];
-  float sum = 0.0f;
-  float nearest = manifold.points[0].separation;
-  for (int k = 1; k < manifold.count; ++k) nearest = gyre::min(nearest, manifold.points[k].separation);
-  for (int k = 0; k < manifold.count; ++k) sum += weights[k] = manifold.points[k].normal_impulse;
-  if (!(sum > 0.0f)) {
-    // A point counts less the farther it is above the lowest, in units of the manifold's extent.
-    float extent = 0.0f;
-    for (int k = 1; k < manifold.count; ++k) {
-      extent = gyre::max(extent, length(manifold.points[k].from_a - manifold.points[0].from_a));
-    }
-    const float fade = extent > 0.0f ? 100.0f / extent : 0.0f;
-    for (int k = 0; k < manifold.count; ++k) {
-      const float above = fade * (manifold.points[k].separation - nearest);
-      sum += weights[k] = 1.0f / (1.0f + above * above);
-    }
+// Manifolds lie anywhere in memory: those of the next block come while this one is worked on.
+template <int W>
+GYRE_INLINE void fetch_ahead(const ContactConstraint* constraints, const std::uint32_t* order) {
+  for (int lane = 0; lane < W; ++lane) {
+    if (order[lane] == 0xffffffffu) continue;
+    const char* manifold = reinterpret_cast<const char*>(constraints[order[lane]].manifold);
+    GYRE_UNROLL
+    for (int line = 0; line < 5; ++line) __builtin_prefetch(manifold + 64 * line);
   }
-  LaneFriction patch;
-  for (int k = 0; k < manifold.count; ++k) {
-    const float share = weights[k] / sum;
-    patch.from_a += share * manifold.points[k].from_a;
-    patch.from_b += share * manifold.points[k].from_b;
-  }
-  float arm = 0.0f;
-  for (int k = 0; k < manifold.count; ++k) {
-    arm += weights[k] / sum * length(manifold.points[k].from_a - patch.from_a);
-  }
-  patch.twist_radius = (manifold.count > 2 ? 0.541f : 0.5f) * arm;
-  return patch;
 }
 
+template <int W>
+GYRE_INLINE void load_four(const float* const (&record)[W], int first, Wide<W>* out) {
+  if constexpr (W == 1) {
+    for (int c = 0; c < 4; ++c) out[c].v = record[0][first + c];
+  } else {
+    Rows<W>::gather(record, first, out);
+  }
+}
+template <int W>
+GYRE_INLINE void store_four(float* const (&record)[W], int first, const Wide<W>* in) {
+  if constexpr (W == 1) {
+    for (int c = 0; c < 4; ++c) record[0][first + c] = in[c].v;
+  } else {
+    Rows<W>::template scatter<4>(record, first, in);
+  }
+}
+
+// `nowhere` is what lanes without a record read (zeros) and write.
+template <int W>
+LaneRecords<W> find_records(const ContactConstraint* constraints, const std::uint32_t* order, ContactBodies bodies,
+                            float (&nowhere)[80]) {
+  alignas(64) static constexpr float kImmovable[8] = {};
+  LaneRecords<W> records;
+  for (int k = 0; k < kMaxManifoldPoints; ++k) records.exists[k] = Wide<W>(0.0f);
+  for (int lane = 0; lane < W; ++lane) {
+    records.constraint[lane] = records.manifold[lane] = nowhere;
+    records.inertia_a[lane] = records.inertia_b[lane] = kImmovable;
+    for (int k = 0; k < kMaxManifoldPoints; ++k) records.point[k][lane] = nowhere;
+    if (order[lane] == 0xffffffffu) continue;
+    const ContactConstraint& constraint = constraints[order[lane]];
+    Manifold& manifold = *constraint.manifold;
+    records.lanes |= 1u << lane;
+    records.constraint[lane] = reinterpret_cast<const float*>(&constraint);
+    records.manifold[lane] = &manifold.normal.x;
+    if (bodies.inertia != nullptr) {
+      if (constraint.body_a != kNoBody) records.inertia_a[lane] = &bodies.inertia[constraint.body_a].inverse.xx;
+      if (constraint.body_b != kNoBody) records.inertia_b[lane] = &bodies.inertia[constraint.body_b].inverse.xx;
+    }
+    for (int k = 0; k < manifold.count; ++k) {
+      records.point[k][lane] = &manifold.points[k].from_a.x;
+      records.exists[k].set(lane, 1.0f);
+    }
+    if (manifold.count > records.point_count) records.point_count = manifold.count;
+  }
+  return records;
+}
+
+// --------------------------------------------------------------------------------------------------------- preparation
+
+// Lanes of one float, for those who look at single contacts.
 template <int W>
 void set_lane(Wide<W>& wide, int lane, float value) {
   wide.set(lane, value);
@@ -73,181 +133,331 @@ void set_lane(Vec3W<W>& wide, int lane, Vec3 v) {
   set_lane(wide.z, lane, v.z);
 }
 template <int W>
-void set_lane(Sym3W<W>& wide, int lane, const Sym3& m) {
-  set_lane(wide.xx, lane, m.xx);
-  set_lane(wide.yy, lane, m.yy);
-  set_lane(wide.zz, lane, m.zz);
-  set_lane(wide.xy, lane, m.xy);
-  set_lane(wide.xz, lane, m.xz);
-  set_lane(wide.yz, lane, m.yz);
-}
-template <int W>
 Vec3 get_lane(const Vec3W<W>& wide, int lane) {
   return {get_lane(wide.x, lane), get_lane(wide.y, lane), get_lane(wide.z, lane)};
 }
 
+// Arms of the points while a block is prepared.
+template <int W>
+struct PointArms {
+  Vec3W<W> from_a, from_b;
+};
+
+// As any_perpendicular of <gyre/math.h>.
+template <int W>
+GYRE_INLINE Vec3W<W> any_perpendicular(Vec3W<W> a) {
+  const Wide<W> zero(0.0f), one(1.0f), bound(0.57735f);
+  const auto x = absolute(a.x) < bound;
+  const auto y = absolute(a.y) < bound;
+  const Vec3W<W> other{select(x, one, zero), select(x, zero, select(y, one, zero)), select(x, zero, select(y, zero, one))};
+  return normalized<W>(cross(a, other));
+}
+
+// The centre of pressure and the patch's mean lever arm. Points weigh by the load they carried; where nothing bore load
+// yet, those that touch count. The share of lever arm: a uniform square's mean distance from its centre is 0.541 of its
+// corners', a uniform segment's half of its ends'. Returns the lever arm.
+template <int W>
+GYRE_INLINE Wide<W> pressure_patch(ContactBlock<W>& block, const LaneRecords<W>& records,
+                                   const PointArms<W> (&arms)[kMaxManifoldPoints]) {
+  const Wide<W> zero(0.0f), one(1.0f);
+  const int count = block.point_count;
+  Wide<W> weights[kMaxManifoldPoints];
+  Wide<W> sum = zero;
+  for (int k = 0; k < count; ++k) sum = sum + (weights[k] = block.points[k].impulse);
+  const auto bears = sum > zero;
+  if (!all(bears)) {
+    // A point counts less the farther it is above the lowest, in units of the manifold's extent.
+    Wide<W> extent = zero, nearest = block.points[0].separation;
+    for (int k = 1; k < count; ++k) {
+      const auto exists = records.exists[k] > zero;
+      extent = select(exists, max(extent, length(arms[k].from_a - arms[0].from_a)), extent);
+      nearest = select(exists, min(nearest, block.points[k].separation), nearest);
+    }
+    const auto wide = extent > zero;
+    const Wide<W> fade = select(wide, Wide<W>(100.0f) / select(wide, extent, one), zero);
+    Wide<W> near_sum = zero;
+    for (int k = 0; k < count; ++k) {
+      const Wide<W> above = fade * (block.points[k].separation - nearest);
+      const Wide<W> weight = keep(records.exists[k] > zero, one / (one + above * above));
+      weights[k] = select(bears, weights[k], weight);
+      near_sum = near_sum + weight;
+    }
+    sum = select(bears, sum, near_sum);
+  }
+  const Wide<W> share = one / select(sum > zero, sum, one);
+  Vec3W<W> from_a{zero, zero, zero}, from_b{zero, zero, zero};
+  for (int k = 0; k < count; ++k) {
+    weights[k] = weights[k] * share;
+    from_a = from_a + weights[k] * arms[k].from_a;
+    from_b = from_b + weights[k] * arms[k].from_b;
+  }
+  Wide<W> arm = zero;
+  for (int k = 0; k < count; ++k) arm = arm + weights[k] * length(arms[k].from_a - from_a);
+  block.friction_from_a = from_a;
+  block.friction_from_b = from_b;
+  return select(records.exists[2] > zero, Wide<W>(0.541f), Wide<W>(0.5f)) * arm;
+}
+
+// What a lane's surfaces are like.
+template <int W>
+struct SurfaceLanes {
+  Wide<W> static_friction, dynamic_friction, rolling_friction, spinning_friction;
+};
+
 // Effective mass matrix of the friction rows and its inverse; the twist row is left out where it has no lever arm.
 template <int W>
-void prepare_friction(ContactBlock<W>& block, int lane, const ContactConstraint& constraint, const BodyInertia& a,
-                      const BodyInertia& b, Vec3 normal, Vec3 t1, Vec3 t2) {
-  const Manifold& manifold = *constraint.manifold;
-  const LaneFriction patch = pressure_patch(manifold);
-  const Vec3 a1 = cross(patch.from_a, t1), a2 = cross(patch.from_a, t2);
-  const Vec3 b1 = cross(patch.from_b, t1), b2 = cross(patch.from_b, t2);
-  const Vec3 ia1 = a.inverse * a1, ia2 = a.inverse * a2, ian = a.inverse * normal;
-  const Vec3 ib1 = b.inverse * b1, ib2 = b.inverse * b2, ibn = b.inverse * normal;
-  const float inverse_masses = a.inverse_mass + b.inverse_mass;
-  Sym3 k;
+GYRE_INLINE void prepare_friction(ContactBlock<W>& block, const SurfaceLanes<W>& surface, Wide<W> radius, Wide<W> size) {
+  const Wide<W> zero(0.0f), one(1.0f);
+  const Vec3W<W> t1 = block.tangent_1, t2 = block.tangent_2, n = block.normal;
+  const Vec3W<W> a1 = cross(block.friction_from_a, t1), a2 = cross(block.friction_from_a, t2);
+  const Vec3W<W> b1 = cross(block.friction_from_b, t1), b2 = cross(block.friction_from_b, t2);
+  const Vec3W<W> ia1 = block.inverse_inertia_a * a1, ia2 = block.inverse_inertia_a * a2, ian = block.inverse_inertia_a * n;
+  const Vec3W<W> ib1 = block.inverse_inertia_b * b1, ib2 = block.inverse_inertia_b * b2, ibn = block.inverse_inertia_b * n;
+  const Wide<W> inverse_masses = block.inverse_mass_a + block.inverse_mass_b;
+  Sym3W<W> k;
   k.xx = inverse_masses + dot(a1, ia1) + dot(b1, ib1);
   k.yy = inverse_masses + dot(a2, ia2) + dot(b2, ib2);
   k.xy = dot(a1, ia2) + dot(b1, ib2);
-  k.zz = dot(normal, ian) + dot(normal, ibn);
+  k.zz = dot(n, ian) + dot(n, ibn);
   k.xz = dot(a1, ian) + dot(b1, ibn);
   k.yz = dot(a2, ian) + dot(b2, ibn);
-  const float radius = patch.twist_radius;
-  const float twist_static = constraint.static_friction * radius + constraint.spinning_friction;
-  const float twist_dynamic = constraint.dynamic_friction * radius + constraint.spinning_friction;
-  const bool twists = twist_static > 0.0f && k.zz > 0.0f;
-  if (!twists) k.xz = k.yz = 0.0f, k.zz = 1.0f;
-  Sym3 inverse_k = inverse(k);
-  if (!twists) inverse_k.zz = 0.0f;
-  set_lane(block.friction_from_a, lane, patch.from_a);
-  set_lane(block.friction_from_b, lane, patch.from_b);
-  set_lane(block.inverse_k11, lane, inverse_k.xx);
-  set_lane(block.inverse_k22, lane, inverse_k.yy);
-  set_lane(block.inverse_k33, lane, inverse_k.zz);
-  set_lane(block.inverse_k12, lane, inverse_k.xy);
-  set_lane(block.inverse_k13, lane, inverse_k.xz);
-  set_lane(block.inverse_k23, lane, inverse_k.yz);
+  const Wide<W> twist_static = surface.static_friction * radius + surface.spinning_friction;
+  const Wide<W> twist_dynamic = surface.dynamic_friction * radius + surface.spinning_friction;
+  // Where one point bears all, the patch is as wide as rounding made it: that is no lever.
+  const auto is_patch = (radius > Wide<W>(kLeastPatch) * size) | (surface.spinning_friction > zero);
+  const auto twists = is_patch & (twist_static > zero) & (k.zz > zero);
+  const Wide<W> turning = k.zz;
+  k.xz = keep(twists, k.xz);
+  k.yz = keep(twists, k.yz);
+  k.zz = select(twists, k.zz, one);
+  const Sym3W<W> inverse_k = inverse(k);
+  block.inverse_k11 = inverse_k.xx;
+  block.inverse_k22 = inverse_k.yy;
+  block.inverse_k33 = keep(twists, inverse_k.zz);
+  block.inverse_k12 = inverse_k.xy;
+  block.inverse_k13 = inverse_k.xz;
+  block.inverse_k23 = inverse_k.yz;
   // The scale at which a twist of 1 rad/s slips like a metre per second; with it the largest eigenvalue of K is bounded by
   // its trace, and the inverse of half of it is a safe common step.
-  const float scale = twists && constraint.dynamic_friction > 0.0f ? twist_dynamic / constraint.dynamic_friction : radius;
-  const float bound = gyre::max(gyre::max(k.xx, k.yy) + gyre::absolute(k.xy), twists ? square(scale) * k.zz : 0.0f);
-  set_lane(block.twist_radius, lane, twists ? scale : 0.0f);
-  set_lane(block.slide_mass, lane, bound > 0.0f ? 1.0f / bound : 0.0f);
-  set_lane(block.static_friction, lane, constraint.static_friction);
-  set_lane(block.dynamic_friction, lane, constraint.dynamic_friction);
-  set_lane(block.twist_per_normal_static, lane, twists ? twist_static : 0.0f);
-  set_lane(block.twist_per_normal_dynamic, lane, twists ? twist_dynamic : 0.0f);
-  set_lane(block.surface_1, lane, dot(constraint.surface_velocity, t1));
-  set_lane(block.surface_2, lane, dot(constraint.surface_velocity, t2));
+  const auto slides = surface.dynamic_friction > zero;
+  const Wide<W> scale = select(twists & slides, twist_dynamic / select(slides, surface.dynamic_friction, one), radius);
+  const Wide<W> bound = max(max(k.xx, k.yy) + absolute(k.xy), keep(twists, scale * scale * turning));
+  block.twist_radius = keep(twists, scale);
+  block.slide_mass = keep(bound > zero, one / select(bound > zero, bound, one));
+  const auto grip = [&](Wide<W> friction) {
+    return keep(friction > zero, one / select(friction > zero, min(friction, Wide<W>(kMostFriction)), one));
+  };
+  block.static_grip = grip(surface.static_friction);
+  block.dynamic_grip = grip(surface.dynamic_friction);
+  block.static_twist_grip = keep(twists, grip(twist_static));
+  block.dynamic_twist_grip = keep(twists, grip(twist_dynamic));
+  // Where the patch has shrunk to a point the twist of the last step is far beyond its limit: pulled back as one with the
+  // friction it would take that with it.
+  const Wide<W> most = twist_static * normal_load<W>(block);
+  block.twist = keep(twists, clamp(block.twist, zero - most, most));
 }
 
 // K of the normal rows and its inverse. Four points of a plane give rank 3 at most, so the inverse is of K with its
-// diagonal raised by a share: the impulses that no motion can tell apart then change least.
+// diagonal raised by a share: the impulses that no motion can tell apart then change least. Rows of points that a lane does
+// not have are those of the identity while Cholesky's factor is made, and 0 after.
 template <int W>
-void prepare_normals(ContactBlock<W>& block, int lane, const Manifold& manifold, const BodyInertia& a, const BodyInertia& b) {
+GYRE_INLINE void prepare_normals(ContactBlock<W>& block, const LaneRecords<W>& records) {
   constexpr float kRegular = 0.02f;
-  const int count = manifold.count;
-  Vec3 ja[kMaxManifoldPoints], jb[kMaxManifoldPoints];
-  float l[4][4] = {};  // Cholesky factor of the regularised K
-  float k[4][4] = {};
+  const Wide<W> zero(0.0f), one(1.0f);
+  const int count = block.point_count;
+  const Wide<W> inverse_masses = block.inverse_mass_a + block.inverse_mass_b;
+  Wide<W> l[10], inverse_diagonal[kMaxManifoldPoints];  // Cholesky factor of the regularised K
   for (int i = 0; i < count; ++i) {
-    ja[i] = cross(manifold.points[i].from_a, manifold.normal);
-    jb[i] = cross(manifold.points[i].from_b, manifold.normal);
-    const Vec3 ia = a.inverse * ja[i], ib = b.inverse * jb[i];
-    for (int j = 0; j <= i; ++j) k[i][j] = k[j][i] = a.inverse_mass + b.inverse_mass + dot(ja[j], ia) + dot(jb[j], ib);
-  }
-  for (int i = 0; i < count; ++i) {
+    const PointBlock<W>& point = block.points[i];
+    const Vec3W<W> ia = block.inverse_inertia_a * (point.arm + block.arm_shift_a);
+    const Vec3W<W> ib = block.inverse_inertia_b * (point.arm + block.arm_shift_b);
+    const Vec3W<W> turn = ia + ib;
+    const Wide<W> common = inverse_masses + (dot(block.arm_shift_a, ia) + dot(block.arm_shift_b, ib));
+    const auto exists = records.exists[i] > zero;
     for (int j = 0; j <= i; ++j) {
-      float sum = i == j ? k[i][i] * (1.0f + kRegular) : k[i][j];
-      for (int m = 0; m < j; ++m) sum -= l[i][m] * l[j][m];
-      if (i == j) {
-        l[i][i] = sum > 0.0f ? std::sqrt(sum) : 1.0f;
-      } else {
-        l[i][j] = sum / l[j][j];
-      }
+      const Wide<W> k = common + dot(block.points[j].arm, turn);
+      block.k[packed(j, i)] = keep(exists & (records.exists[j] > zero), k);
     }
+    const Wide<W> own = block.k[packed(i, i)];
+    block.relief[i] = keep(own > zero, one / select(own > zero, own, one));
+    for (int j = 0; j < i; ++j) {
+      Wide<W> sum = block.k[packed(j, i)];
+      for (int m = 0; m < j; ++m) sum = sum - l[packed(m, i)] * l[packed(m, j)];
+      l[packed(j, i)] = sum * inverse_diagonal[j];
+    }
+    Wide<W> sum = own * Wide<W>(1.0f + kRegular);
+    for (int m = 0; m < i; ++m) sum = sum - l[packed(m, i)] * l[packed(m, i)];
+    inverse_diagonal[i] = one / select(sum > zero, sqrt(sum), one);
   }
   // Columns of the inverse, by forward and back substitution.
   for (int column = 0; column < count; ++column) {
-    float x[4] = {};
+    Wide<W> x[kMaxManifoldPoints];
     for (int i = 0; i < count; ++i) {
-      float sum = i == column ? 1.0f : 0.0f;
-      for (int m = 0; m < i; ++m) sum -= l[i][m] * x[m];
-      x[i] = sum / l[i][i];
+      if (i < column) {
+        x[i] = zero;
+        continue;
+      }
+      Wide<W> sum = i == column ? one : zero;
+      for (int m = column; m < i; ++m) sum = sum - l[packed(m, i)] * x[m];
+      x[i] = sum * inverse_diagonal[i];
     }
+    const auto exists = records.exists[column] > zero;
     for (int i = count - 1; i >= 0; --i) {
-      float sum = x[i];
-      for (int m = i + 1; m < count; ++m) sum -= l[m][i] * x[m];
-      x[i] = sum / l[i][i];
+      Wide<W> sum = x[i];
+      for (int m = i + 1; m < count; ++m) sum = sum - l[packed(i, m)] * x[m];
+      x[i] = sum * inverse_diagonal[i];
+      if (i <= column) block.inverse_k[packed(i, column)] = keep(exists, x[i]);
     }
-    for (int i = 0; i <= column; ++i) {
-      set_lane(block.k[packed(i, column)], lane, k[i][column]);
-      set_lane(block.inverse_k[packed(i, column)], lane, x[i]);
-    }
-    set_lane(block.relief[column], lane, k[column][column] > 0.0f ? 1.0f / k[column][column] : 0.0f);
   }
 }
 
-// How soft the lane's contact is, and who gives way when overlap is pushed apart: what lies on top, as far as the contact
+// How soft the lanes' contacts are, and who gives way when overlap is pushed apart: what lies on top, as far as the contact
 // faces up. So a heap is freed from below in few passes, as if the lower body were much heavier (E. Guendelman, R. Bridson,
 // R. Fedkiw, "Nonconvex Rigid Bodies with Stacking", 2003, calls it shock propagation).
 template <int W>
-void prepare_softness(ContactBlock<W>& block, int lane, const ContactConstraint& constraint, const ContactSettings& settings) {
-  const Manifold& manifold = *constraint.manifold;
-  const float youth = settings.aging / (settings.aging + manifold.age);
-  set_lane(block.rate, lane, youth * settings.rate);
-  set_lane(block.give, lane, constraint.rigid ? 0.0f : youth * settings.give);
-  set_lane(block.slop, lane, kSpringSlop * constraint.size);
-  set_lane(block.push_speed, lane, constraint.push_speed);
-  const bool fixed = block.write_a[lane] == kNoBody || block.write_b[lane] == kNoBody;
-  const float rise = fixed ? 0.0f : kLowerShare * dot(manifold.normal, settings.up);
-  set_lane(block.mobility_a, lane, 1.0f - gyre::max(rise, 0.0f));
-  set_lane(block.mobility_b, lane, 1.0f + gyre::min(rise, 0.0f));
+GYRE_INLINE void prepare_softness(ContactBlock<W>& block, const ContactConstraint* constraints, const std::uint32_t* order,
+                                  Wide<W> age, Wide<W> size, const ContactSettings& settings) {
+  const Wide<W> zero(0.0f), one(1.0f), aging(settings.aging);
+  Wide<W> yields, both;  // 1: not part of a tree; both bodies can be pushed
+  for (int lane = 0; lane < W; ++lane) {
+    yields.set(lane, order[lane] != 0xffffffffu && constraints[order[lane]].rigid ? 0.0f : 1.0f);
+    both.set(lane, block.write_a[lane] == kNoBody || block.write_b[lane] == kNoBody ? 0.0f : 1.0f);
+  }
+  const Wide<W> youth = aging / (aging + age);
+  block.rate = keep(yields > zero, youth * Wide<W>(settings.rate));
+  block.slop = Wide<W>(kSpringSlop) * size;
+  const auto has_slop = block.slop > zero;
+  block.give = keep((yields > zero) & has_slop, youth * Wide<W>(settings.give) / select(has_slop, block.slop, one));
+  const Wide<W> rise = keep(both > zero, Wide<W>(kLowerShare) * dot(block.normal, splat<W>(settings.up)));
+  block.mobility_a = one - max(rise, zero);
+  block.mobility_b = one + min(rise, zero);
+}
+
+// What friction, twist and rolling begin with.
+template <int W>
+GYRE_INLINE void prepare_impulses(ContactBlock<W>& block, const LaneRecords<W>& records, const SurfaceLanes<W>& surface,
+                                  const ContactSettings& settings, Wide<W>& age) {
+  const Wide<W> zero(0.0f), one(1.0f), warm(settings.warm_scale);
+  Wide<W> in[4];
+  load_four<W>(records.manifold, kManifoldFriction, in);
+  age = in[0];
+  const Vec3W<W> friction = warm * Vec3W<W>{in[1], in[2], in[3]};
+  block.friction_1 = dot(friction, block.tangent_1);
+  block.friction_2 = dot(friction, block.tangent_2);
+  load_four<W>(records.manifold, kManifoldTwist, in);
+  block.twist = warm * in[0];
+  block.rolling_friction = surface.rolling_friction;
+  // A surface that ceased to brake rolling starts from nothing: otherwise it would depend on the lanes beside it whether
+  // the old impulse acts once more.
+  const auto rolls = surface.rolling_friction > zero;
+  block.rolling = keep<W>(rolls, warm * Vec3W<W>{in[1], in[2], in[3]});
+  if (any(rolls)) block.rolls = 1;
+  const Sym3W<W>& a = block.inverse_inertia_a;
+  const Sym3W<W>& b = block.inverse_inertia_b;
+  const Wide<W> turning = (a.xx + a.yy + a.zz) + (b.xx + b.yy + b.zz);
+  block.rolling_mass = keep(turning > zero, one / select(turning > zero, turning, one));
 }
 
 template <int W>
-void prepare_lane(ContactBlock<W>& block, int lane, const ContactConstraint& constraint, ContactBodies bodies,
-                  const ContactSettings& settings) {
-  static constexpr BodyInertia kImmovable{};
-  const Manifold& manifold = *constraint.manifold;
-  const BodyInertia& a = constraint.body_a == kNoBody ? kImmovable : bodies.inertia[constraint.body_a];
-  const BodyInertia& b = constraint.body_b == kNoBody ? kImmovable : bodies.inertia[constraint.body_b];
-  block.read_a[lane] = constraint.body_a;
-  block.read_b[lane] = constraint.body_b;
-  block.write_a[lane] = a.inverse_mass > 0.0f || a.inverse != Sym3{} ? constraint.body_a : kNoBody;
-  block.write_b[lane] = b.inverse_mass > 0.0f || b.inverse != Sym3{} ? constraint.body_b : kNoBody;
-  const Vec3 normal = manifold.normal;
-  const Vec3 t1 = any_perpendicular(normal);
-  const Vec3 t2 = cross(normal, t1);
-  set_lane(block.normal, lane, normal);
-  set_lane(block.tangent_1, lane, t1);
-  set_lane(block.tangent_2, lane, t2);
-  set_lane(block.inverse_mass_a, lane, a.inverse_mass);
-  set_lane(block.inverse_mass_b, lane, b.inverse_mass);
-  set_lane(block.inverse_inertia_a, lane, a.inverse);
-  set_lane(block.inverse_inertia_b, lane, b.inverse);
-  prepare_softness<W>(block, lane, constraint, settings);
-  prepare_friction<W>(block, lane, constraint, a, b, normal, t1, t2);
-  const Vec3 friction = settings.warm_scale * manifold.friction_impulse;
-  set_lane(block.friction_1, lane, dot(friction, t1));
-  set_lane(block.friction_2, lane, dot(friction, t2));
-  set_lane(block.twist, lane, settings.warm_scale * manifold.twist_impulse);
-  set_lane(block.sliding, lane, float(manifold.sliding));
-  bool bears = false;
-  for (int k = 0; k < manifold.count; ++k) bears = bears || manifold.points[k].normal_impulse > 0.0f;
-  set_lane(block.fresh, lane, bears ? 0.0f : 1.0f);
-  if (!bears) block.has_fresh = 1;
-  set_lane(block.rolling_friction, lane, constraint.rolling_friction);
-  const float turning = (a.inverse.xx + a.inverse.yy + a.inverse.zz) + (b.inverse.xx + b.inverse.yy + b.inverse.zz);
-  set_lane(block.rolling_mass, lane, turning > 0.0f ? 1.0f / turning : 0.0f);
-  // A surface that ceased to brake rolling starts from nothing: otherwise it would depend on the lanes beside it whether
-  // the old impulse acts once more.
-  const bool rolls = constraint.rolling_friction > 0.0f;
-  set_lane(block.rolling, lane, rolls ? settings.warm_scale * manifold.rolling_impulse : Vec3{});
-  if (rolls) block.rolls = 1;
-  prepare_normals<W>(block, lane, manifold, a, b);
-  if (manifold.count > block.point_count) block.point_count = manifold.count;
-  for (int k = 0; k < manifold.count; ++k) {
-    const ContactPointState& from = manifold.points[k];
-    PointBlock<W>& point = block.points[k];
-    set_lane(point.from_a, lane, from.from_a);
-    set_lane(point.from_b, lane, from.from_b);
-    set_lane(point.separation, lane, from.separation);
-    set_lane(point.impulse, lane, settings.warm_scale * from.normal_impulse);
-    set_lane(point.held, lane, settings.warm_scale * from.held);
+GYRE_INLINE void load_inertia(const float* const (&record)[W], Wide<W>& inverse_mass, Sym3W<W>& inverse) {
+  Wide<W> low[4], high[4];
+  load_four<W>(record, 0, low);
+  load_four<W>(record, kInertiaMass, high);
+  inverse = {low[0], low[1], low[2], low[3], high[0], high[1]};
+  inverse_mass = high[2];
+}
+
+// Lanes of whole numbers: bodies, and what is sliding.
+template <int W>
+void prepare_lanes(ContactBlock<W>& block, const LaneRecords<W>& records, const ContactConstraint* constraints,
+                   const std::uint32_t* order) {
+  const Wide<W> zero(0.0f);
+  const Sym3W<W>& a = block.inverse_inertia_a;
+  const Sym3W<W>& b = block.inverse_inertia_b;
+  // Whatever pushes a body turns or moves it by a diagonal element.
+  const std::uint32_t moves_a = to_bits((block.inverse_mass_a > zero) | (a.xx != zero) | (a.yy != zero) | (a.zz != zero));
+  const std::uint32_t moves_b = to_bits((block.inverse_mass_b > zero) | (b.xx != zero) | (b.yy != zero) | (b.zz != zero));
+  for (int lane = 0; lane < W; ++lane) {
+    block.read_a[lane] = block.read_b[lane] = block.write_a[lane] = block.write_b[lane] = kNoBody;
+    block.sliding.set(lane, 0.0f);
+    if ((records.lanes >> lane & 1u) == 0) continue;
+    const ContactConstraint& constraint = constraints[order[lane]];
+    block.read_a[lane] = constraint.body_a;
+    block.read_b[lane] = constraint.body_b;
+    if ((moves_a >> lane & 1u) != 0) block.write_a[lane] = constraint.body_a;
+    if ((moves_b >> lane & 1u) != 0) block.write_b[lane] = constraint.body_b;
+    block.sliding.set(lane, float(constraint.manifold->sliding));
   }
+}
+
+// Which body's centre the arms are measured from, and by how much they differ on the other. From the nearer one: the other
+// may be large or far away, and its arms rounded. What nothing moves has no arms at all.
+template <int W>
+GYRE_INLINE Mask<W> place_arms(ContactBlock<W>& block, const PointArms<W>& first) {
+  const Wide<W> zero(0.0f);
+  const Vec3W<W> none{zero, zero, zero};
+  Wide<W> reads_a, reads_b;
+  for (int lane = 0; lane < W; ++lane) {
+    reads_a.set(lane, block.read_a[lane] == kNoBody ? 0.0f : 1.0f);
+    reads_b.set(lane, block.read_b[lane] == kNoBody ? 0.0f : 1.0f);
+  }
+  const auto has_a = reads_a > zero, has_b = reads_b > zero;
+  const auto nearer_a = has_a & (~has_b | (length_squared(first.from_a) <= length_squared(first.from_b)));
+  const Vec3W<W> shift = cross(first.from_b - first.from_a, block.normal);  // of arms from A to B
+  block.arm_shift_a = select<W>(has_a & ~nearer_a, -shift, none);
+  block.arm_shift_b = select<W>(has_b & nearer_a, shift, none);
+  return nearer_a;
+}
+
+template <int W>
+void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints, const std::uint32_t* order,
+                   ContactBodies bodies, const ContactSettings& settings) {
+  const Wide<W> zero(0.0f), one(1.0f), warm(settings.warm_scale);
+  alignas(64) float nowhere[80] = {};
+  const LaneRecords<W> records = find_records<W>(constraints, order, bodies, nowhere);
+  block.point_count = records.point_count;
+  block.rolls = block.has_fresh = 0;
+  Wide<W> in[4];
+  load_four<W>(records.manifold, kManifoldNormal, in);
+  block.normal = {in[0], in[1], in[2]};
+  block.tangent_1 = any_perpendicular<W>(block.normal);
+  block.tangent_2 = cross(block.normal, block.tangent_1);
+  load_inertia<W>(records.inertia_a, block.inverse_mass_a, block.inverse_inertia_a);
+  load_inertia<W>(records.inertia_b, block.inverse_mass_b, block.inverse_inertia_b);
+  prepare_lanes<W>(block, records, constraints, order);
+  PointArms<W> arms[kMaxManifoldPoints];
+  auto nearer_a = one > zero;
+  for (int k = 0; k < block.point_count; ++k) {
+    PointBlock<W>& point = block.points[k];
+    load_four<W>(records.point[k], kPointA, in);
+    arms[k].from_a = {in[0], in[1], in[2]};
+    point.separation = in[3];
+    load_four<W>(records.point[k], kPointB, in);
+    arms[k].from_b = {in[0], in[1], in[2]};
+    if (k == 0) nearer_a = place_arms<W>(block, arms[0]);
+    load_four<W>(records.point[k], kPointImpulse, in);
+    point.impulse = warm * in[0];
+    point.held = warm * in[2];
+    point.total = zero;
+    point.arm = cross(select<W>(nearer_a, arms[k].from_a, arms[k].from_b), block.normal);
+  }
+  load_four<W>(records.constraint, kConstraintFriction, in);
+  const SurfaceLanes<W> surface{in[0], in[1], in[2], in[3]};
+  load_four<W>(records.constraint, kConstraintSize, in);
+  const Wide<W> size = in[0];
+  block.push_speed = in[1];
+  load_four<W>(records.constraint, kConstraintSize + 2, in);
+  const Vec3W<W> surface_velocity{in[0], in[1], in[2]};
+  block.surface_1 = dot(surface_velocity, block.tangent_1);
+  block.surface_2 = dot(surface_velocity, block.tangent_2);
+  block.total_1 = block.total_2 = zero;
+  Wide<W> age;
+  prepare_impulses<W>(block, records, surface, settings, age);
+  block.fresh = select(age > zero, zero, one);
+  if ((to_bits(block.fresh > zero) & records.lanes) != 0) block.has_fresh = 1;
+  prepare_softness<W>(block, constraints, order, age, size, settings);
+  prepare_friction<W>(block, surface, pressure_patch<W>(block, records, arms), size);
+  prepare_normals<W>(block, records);
 }
 
 template <int W>
@@ -255,53 +465,63 @@ void prepare_blocks(void* memory, int begin, int end, const ContactConstraint* c
                     ContactBodies bodies, const ContactSettings& settings) {
   auto* blocks = static_cast<ContactBlock<W>*>(memory);
   for (int i = begin; i < end; ++i) {
-    ContactBlock<W>& block = blocks[i];
-    block = ContactBlock<W>{};
-    for (int lane = 0; lane < W; ++lane) {
-      const std::uint32_t index = order[i * W + lane];
-      block.read_a[lane] = block.read_b[lane] = block.write_a[lane] = block.write_b[lane] = kNoBody;
-      if (index != 0xffffffffu) prepare_lane<W>(block, lane, constraints[index], bodies, settings);
-    }
+    if (i + 1 < end) fetch_ahead<W>(constraints, order + (i + 1) * W);
+    prepare_block<W>(blocks[i], constraints, order + i * W, bodies, settings);
   }
 }
 
-// The loads of a manifold are in: its age, and what its points are used to.
-inline void age_manifold(Manifold& manifold, const ContactSettings& settings) {
-  bool bears = false;
-  for (int k = 0; k < manifold.count; ++k) bears = bears || manifold.points[k].normal_impulse > 0.0f;
-  manifold.age = bears ? manifold.age + settings.step : 0.0f;
-  const float mean = gyre::min(gyre::max(manifold.age, kShortestMean), kLongestMean);
-  const float gain = gyre::min(settings.step / mean, 1.0f);
-  for (int k = 0; k < manifold.count; ++k) {
-    ContactPointState& point = manifold.points[k];
-    point.held = point.normal_impulse > 0.0f ? point.held + gain * (point.normal_impulse - point.held) : 0.0f;
+// -------------------------------------------------------------------------------------------------------------- finish
+
+// Impulses back into the manifolds; the manifolds' age, and what their points are used to.
+template <int W>
+void finish_block(const ContactBlock<W>& block, const ContactConstraint* constraints, const std::uint32_t* order,
+                  const ContactSettings& settings) {
+  const Wide<W> zero(0.0f), one(1.0f);
+  alignas(64) float nowhere[80] = {};
+  const LaneRecords<W> records = find_records<W>(constraints, order, {}, nowhere);
+  Wide<W> row[4];
+  load_four<W>(records.manifold, kManifoldFriction, row);
+  // Of the whole step: what bore nothing just as it ended is no reason to forget all.
+  Wide<W> load = zero;
+  for (int k = 0; k < block.point_count; ++k) load = max(load, block.points[k].total);
+  const Wide<W> age = keep(load > zero, row[0] + Wide<W>(settings.step));
+  const Wide<W> mean = min(max(age, Wide<W>(kShortestMean)), Wide<W>(kLongestMean));
+  const Wide<W> gain = min(Wide<W>(settings.step) / mean, one);
+  // Adding zero makes -0 from a lane that rested be the 0 that a narrower kernel would have.
+  const Vec3W<W> none{zero, zero, zero};
+  const Vec3W<W> friction = block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2 + none;
+  const Vec3W<W> total = block.total_1 * block.tangent_1 + block.total_2 * block.tangent_2 + none;
+  const Wide<W> friction_row[4] = {age, friction.x, friction.y, friction.z};
+  store_four<W>(records.manifold, kManifoldFriction, friction_row);
+  const Wide<W> twist_row[4] = {block.twist + zero, block.rolling.x + zero, block.rolling.y + zero, block.rolling.z + zero};
+  store_four<W>(records.manifold, kManifoldTwist, twist_row);
+  for (int lane = 0; lane < W; ++lane) {
+    if ((records.lanes >> lane & 1u) == 0) continue;
+    Manifold& manifold = *constraints[order[lane]].manifold;
+    manifold.total_friction = {total.x[lane], total.y[lane], total.z[lane]};
+    manifold.sliding = block.sliding[lane] > 0.0f ? 1u : 0u;
+  }
+  for (int k = 0; k < block.point_count; ++k) {
+    const PointBlock<W>& point = block.points[k];
+    load_four<W>(records.point[k], kPointImpulse, row);
+    const Wide<W> impulse = point.impulse + zero;
+    const Wide<W> held = keep(point.total > zero, row[2] + gain * (impulse - row[2]));
+    const Wide<W> point_row[4] = {impulse, row[1] + (point.total + zero), held, row[3]};
+    store_four<W>(records.point[k], kPointImpulse, point_row);
   }
 }
 
 template <int W>
 void finish_blocks(void* memory, int begin, int end, const ContactConstraint* constraints, const std::uint32_t* order,
                    const ContactSettings& settings) {
-  auto* blocks = static_cast<ContactBlock<W>*>(memory);
+  auto* blocks = static_cast<const ContactBlock<W>*>(memory);
   for (int i = begin; i < end; ++i) {
-    const ContactBlock<W>& block = blocks[i];
-    for (int lane = 0; lane < W; ++lane) {
-      const std::uint32_t index = order[i * W + lane];
-      if (index == 0xffffffffu) continue;
-      Manifold& manifold = *constraints[index].manifold;
-      const Vec3 t1 = get_lane(block.tangent_1, lane), t2 = get_lane(block.tangent_2, lane);
-      manifold.friction_impulse = get_lane(block.friction_1, lane) * t1 + get_lane(block.friction_2, lane) * t2;
-      manifold.total_friction = get_lane(block.total_1, lane) * t1 + get_lane(block.total_2, lane) * t2;
-      manifold.twist_impulse = get_lane(block.twist, lane);
-      manifold.rolling_impulse = get_lane(block.rolling, lane);
-      manifold.sliding = get_lane(block.sliding, lane) > 0.0f ? 1u : 0u;
-      for (int k = 0; k < manifold.count; ++k) {
-        manifold.points[k].normal_impulse = get_lane(block.points[k].impulse, lane);
-        manifold.points[k].total_impulse += get_lane(block.points[k].total, lane);
-      }
-      age_manifold(manifold, settings);
-    }
+    if (i + 1 < end) fetch_ahead<W>(constraints, order + (i + 1) * W);
+    finish_block<W>(blocks[i], constraints, order + i * W, settings);
   }
 }
+
+// ------------------------------------------------------------------------------------------------------ single contacts
 
 template <int W>
 void read_block_impulse(const void* memory, int index, int lane, ContactImpulse& impulse) {
@@ -312,7 +532,8 @@ void read_block_impulse(const void* memory, int index, int lane, ContactImpulse&
   impulse.twist = get_lane(block.twist, lane);
   impulse.rolling = get_lane(block.rolling, lane);
   impulse.friction_from_b = get_lane(block.friction_from_b, lane);
-  impulse.twist_per_normal = get_lane(block.twist_per_normal_static, lane);
+  const float twist_grip = get_lane(block.static_twist_grip, lane);
+  impulse.twist_per_normal = twist_grip > 0.0f ? 1.0f / twist_grip : 0.0f;
 }
 
 template <int W>
@@ -343,7 +564,8 @@ constexpr ContactKernels contact_kernels() {
           project_blocks<W>,
           read_block_impulse<W>,
           write_block_impulse<W>,
-          finish_blocks<W>};
+          finish_blocks<W>,
+          motion_kernels<W>()};
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

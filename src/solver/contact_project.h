@@ -47,15 +47,14 @@ GYRE_INLINE PushResponse<W> push_response(const ContactBlock<W>& block) {
   response.inverse_mass_a = block.mobility_a * block.inverse_mass_a;
   response.inverse_mass_b = block.mobility_b * block.inverse_mass_b;
   const Wide<W> masses = response.inverse_mass_a + response.inverse_mass_b;
-  Vec3W<W> arm_a[kMaxManifoldPoints], arm_b[kMaxManifoldPoints];
   for (int i = 0; i < block.point_count; ++i) {
-    arm_a[i] = cross(block.points[i].from_a, block.normal);
-    arm_b[i] = cross(block.points[i].from_b, block.normal);
-    response.turn_a[i] = block.mobility_a * (block.inverse_inertia_a * arm_a[i]);
-    response.turn_b[i] = block.mobility_b * (block.inverse_inertia_b * arm_b[i]);
-    for (int j = 0; j <= i; ++j) {
-      response.k[packed(i, j)] = masses + dot(arm_a[j], response.turn_a[i]) + dot(arm_b[j], response.turn_b[i]);
-    }
+    const PointBlock<W>& point = block.points[i];
+    response.turn_a[i] = block.mobility_a * (block.inverse_inertia_a * (point.arm + block.arm_shift_a));
+    response.turn_b[i] = block.mobility_b * (block.inverse_inertia_b * (point.arm + block.arm_shift_b));
+    const Vec3W<W> turn = response.turn_a[i] + response.turn_b[i];
+    const Wide<W> common =
+        masses + (dot(block.arm_shift_a, response.turn_a[i]) + dot(block.arm_shift_b, response.turn_b[i]));
+    for (int j = 0; j <= i; ++j) response.k[packed(i, j)] = common + dot(block.points[j].arm, turn);
   }
   return response;
 }
@@ -65,16 +64,15 @@ template <int W>
 GYRE_INLINE bool wanted_pushes(const ContactBlock<W>& block, const PairMotion<W>& pair, const Wide<W>* a, const Wide<W>* b,
                                float step, Wide<W>* wanted) {
   const Wide<W> zero(0.0f);
-  const Vec3W<W> moved = Vec3W<W>{b[8], b[9], b[10]} - Vec3W<W>{a[8], a[9], a[10]};
-  const Vec3W<W> turned_a{a[11], a[12], a[13]};
-  const Vec3W<W> turned_b{b[11], b[12], b[13]};
+  // The way so far in the step, and what was pushed already.
+  const Vec3W<W> moved = (Vec3W<W>{b[8], b[9], b[10]} - Vec3W<W>{a[8], a[9], a[10]}) + (pair.linear_b - pair.linear_a);
+  const NormalMotion<W> ways(block, moved, Vec3W<W>{a[11], a[12], a[13]} + pair.angular_a,
+                             Vec3W<W>{b[11], b[12], b[13]} + pair.angular_b);
   const Wide<W> most = block.push_speed * Wide<W>(step);
   auto overlaps = zero < zero;
   for (int i = 0; i < block.point_count; ++i) {
     const PointBlock<W>& point = block.points[i];
-    const Vec3W<W> drift = moved + cross(turned_b, point.from_b) - cross(turned_a, point.from_a) +
-                           relative_velocity<W>(pair, point.from_a, point.from_b);
-    const Wide<W> over = zero - (point.separation + dot(drift, block.normal) + Wide<W>(kProjectionSlop) * block.slop);
+    const Wide<W> over = zero - (point.separation + ways.at(point) + Wide<W>(kProjectionSlop) * block.slop);
     const auto exists = block.relief[i] > zero;
     const auto deep = (over > zero) & exists;
     overlaps = overlaps | deep;

@@ -4,8 +4,8 @@ namespace gyre {
 
 namespace {
 
-// Errors of place are taken back with this rate (1/s).
-constexpr float kRate = 20.0f;
+// Errors of place are taken back with this rate (1/s), twice a step.
+constexpr float kRate = 10.0f;
 
 // Shares >= 0 of the points of a patch that put the centre of pressure at (x, y) of the contact plane: their sum is 1 and
 // their mean point is (x, y). False if it lies outside the patch.
@@ -109,18 +109,11 @@ bool bear_wrench(const ContactConstraint& constraint, Vec3 origin, Vec3 force, V
   return true;
 }
 
-// The twist of the upper body against the lower that takes back the errors of the contact's points: speed along the normal
-// at the patch's middle, and a tilt.
-struct Correction {
-  Vec3 velocity;  // at the middle of the points
-  Vec3 tilt;      // rad/s
-  Vec3 middle;    // from B's centre of mass
-};
-Correction correction_of(const ContactConstraint& constraint, const BodyMotion* a, const BodyMotion* b) {
+TreeCorrection correction_of(const ContactConstraint& constraint, const BodyMotion* a, const BodyMotion* b) {
   const Manifold& manifold = *constraint.manifold;
   const Vec3 n = manifold.normal;
   const int count = manifold.count;
-  Correction c;
+  TreeCorrection c;
   float separations[4] = {};
   float mean = 0.0f;
   for (int k = 0; k < count; ++k) {
@@ -149,10 +142,29 @@ Correction correction_of(const ContactConstraint& constraint, const BodyMotion* 
   return c;
 }
 
+// Whether the sweeps left every body as good as at rest.
+bool is_still(const ContactTree& tree, const TreeSolve& s) {
+  for (std::uint32_t i = tree.begin; i < tree.end; ++i) {
+    const TreeNode& node = s.nodes[i];
+    const BodyMotion& motion = s.motion[node.body];
+    if (largest(absolute(motion.linear_velocity)) > node.still || largest(absolute(motion.angular_velocity)) > node.still_spin) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void stop_tree(const ContactTree& tree, const TreeSolve& s) {
+  for (std::uint32_t i = tree.begin; i < tree.end; ++i) {
+    BodyMotion& motion = s.motion[s.nodes[i].body];
+    motion.linear_velocity = motion.angular_velocity = {};
+  }
+}
+
 }  // namespace
 
-void solve_tree(ContactTree& tree, const TreeSolve& s) {
-  tree.rests = false;
+void solve_tree(const ContactTree& tree, const TreeSolve& s) {
+  if (is_still(tree, s)) return stop_tree(tree, s);
   const DVec3 base = s.nodes[tree.begin].center;
   for (std::uint32_t i = tree.begin; i < tree.end; ++i) {
     const TreeNode& node = s.nodes[i];
@@ -183,38 +195,38 @@ void solve_tree(ContactTree& tree, const TreeSolve& s) {
       below.spin += work.spin + cross(work.point - below.point, work.momentum);
     }
   }
-  tree.rests = true;
-  // Root to leaves: velocities that take back errors of place; impulses as found.
+  // Root to leaves: impulses as found, and velocities that take back errors of place. They are made as
+  // displacements over the step; what stays is rest.
   for (std::uint32_t i = tree.begin; i < tree.end; ++i) {
     const TreeNode& node = s.nodes[i];
+    TreeWork& work = s.work[i];
     const ContactConstraint& constraint = s.constraints[node.constraint];
-    s.kernels->write_impulse(s.blocks, int(node.block), int(node.lane), s.work[i].impulse);
+    s.kernels->write_impulse(s.blocks, int(node.block), int(node.lane), work.impulse);
     const BodyMotion* a = constraint.body_a == kNoBody ? nullptr : &s.motion[constraint.body_a];
     const BodyMotion* b = constraint.body_b == kNoBody ? nullptr : &s.motion[constraint.body_b];
-    const Correction c = correction_of(constraint, a, b);
+    work.correction = correction_of(constraint, a, b);
+  }
+  for (std::uint32_t i = tree.begin; i < tree.end; ++i) {
+    const TreeNode& node = s.nodes[i];
+    TreeWork& work = s.work[i];
+    const ContactConstraint& constraint = s.constraints[node.constraint];
     Vec3 linear, angular;
-    Vec3 way;  // from the parent's centre to this body's
     if (node.parent >= 0) {
-      const BodyMotion& below = s.motion[s.nodes[std::size_t(node.parent)].body];
-      way = difference(node.center, s.nodes[std::size_t(node.parent)].center);
-      angular = below.angular_velocity;
-      linear = below.linear_velocity + cross(angular, way);
+      const TreeWork& below = s.work[std::size_t(node.parent)];
+      const Vec3 way = difference(node.center, s.nodes[std::size_t(node.parent)].center);
+      angular = below.angular;
+      linear = below.linear + cross(angular, way);
     }
     // The correction is of B against A at the middle of the patch; `own` is the body's centre from there.
+    const TreeCorrection& c = work.correction;
     const Vec3 middle_own = c.middle + arm_of(node, constraint, 0) - constraint.manifold->points[0].from_b;
     const Vec3 tilt = node.sign * c.tilt;
+    work.linear = linear + node.sign * c.velocity + cross(tilt, -middle_own);
+    work.angular = angular + tilt;
     BodyMotion& motion = s.motion[node.body];
-    motion.linear_velocity = linear + node.sign * c.velocity + cross(tilt, -middle_own);
-    motion.angular_velocity = angular + tilt;
-  }
-}
-
-void settle_tree(const ContactTree& tree, const TreeSolve& s) {
-  if (!tree.rests) return;
-  for (std::uint32_t i = tree.begin; i < tree.end; ++i) {
-    BodyMotion& motion = s.motion[s.nodes[i].body];
-    motion.linear_velocity = {};
-    motion.angular_velocity = {};
+    motion.linear_velocity = motion.angular_velocity = {};
+    motion.moved += s.step * work.linear;
+    motion.turned += s.step * work.angular;
   }
 }
 

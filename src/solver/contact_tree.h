@@ -27,6 +27,8 @@ struct TreeNode {
   std::uint32_t block = 0;        // where the kernels hold it
   std::uint32_t lane = 0;
   float sign = 1.0f;              // 1 if the body is the constraint's b
+  float still = 0.0f;             // m/s, rad/s: slower than this nothing is left to solve
+  float still_spin = 0.0f;
   float mass = 0.0f;
   DVec3 center;                   // as the step began
   Sym3 inertia;                   // world axes, as the step began
@@ -35,7 +37,14 @@ struct TreeNode {
 // Nodes [begin, end) of one island.
 struct ContactTree {
   std::uint32_t begin = 0, end = 0;
-  bool rests = false;   // the last solve succeeded
+};
+
+// The twist of the upper body against the lower that takes back the errors of the contact's points: speed along the normal
+// at the patch's middle, and a tilt.
+struct TreeCorrection {
+  Vec3 velocity;  // at the middle of the points
+  Vec3 tilt;      // rad/s
+  Vec3 middle;    // from B's centre of mass
 };
 
 // What a solve needs of a node while it works.
@@ -43,6 +52,8 @@ struct TreeWork {
   DVec3 momentum, spin;      // of the subtree, about the node's contact point
   DVec3 point;               // the contact point, from a common origin near the tree
   ContactImpulse impulse;    // proposed
+  TreeCorrection correction;
+  Vec3 linear, angular;      // velocity that takes errors of place back
 };
 
 struct TreeSolve {
@@ -52,13 +63,11 @@ struct TreeSolve {
   BodyMotion* motion = nullptr;
   const ContactKernels* kernels = nullptr;
   void* blocks = nullptr;
-  float substep = 0.0f;
+  float step = 0.0f;  // s
 };
 
-// After a sweep: brings the tree to rest if its contacts can do that, and gives its bodies the velocities that take back
-// what errors of place there are.
-void solve_tree(ContactTree& tree, const TreeSolve& solve);
-// After the move: takes those velocities away again.
-void settle_tree(const ContactTree& tree, const TreeSolve& solve);
+// After the last sweep of a step: brings the tree to rest if its contacts can do that, and moves its bodies to take back what errors of place
+// there are.
+void solve_tree(const ContactTree& tree, const TreeSolve& solve);
 
 }  // namespace gyre

@@ -1,0 +1,16 @@
+// Hits: contacts that are struck hard in a step. How fast their points close is looked at before the solve, whether they
+// met is known after it.
+#pragma once
+
+#include "rigid/solve_step.h"
+
+namespace gyre {
+
+// How fast points that bore nothing yet are closing as the step begins: should they meet in it, that is the hit.
+void note_approach(const RigidWorld& w, const Contact& contact, Manifold& manifold);
+// Those contacts of a batch that were struck hard in this step.
+void note_hits(const RigidWorld& w, SolveScratch& s);
+// The events of all batches, in contact order.
+void report_hits(RigidWorld& w, SolveScratch& s, Arena& arena);
+
+}  // namespace gyre
