@@ -412,16 +412,17 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   const int impacts = solve.scratch.impacts.empty() ? 0 : 1;
   const int trees = first || last ? int(solve.forest.trees.size()) : 0;
   const int linkages = int(solve.linkages.linkages.size());
-  // Joints act between forces and contacts: what they give is none of the contacts' work.
+  // Joints act between forces and contacts: what they give is none of the contacts' work, and how they bend in the sub-step
+  // is none of what contacts gave in the last one.
   const bool has_joints = linkages > 0 || !joints.empty();
-  const bool is_warm = !first && impacts == 0;
+  const bool is_warm = !first && impacts == 0 && !has_joints;
   program.add(watch_stage, &solve, impacts);
   program.add(is_warm ? predict_warm_stage : predict_cold_stage, &solve, bodies, kMotionBlocksPerClaim);
   program.add(strike_stage, &solve, impacts);
-  if (!first && !is_warm) program.add(warm_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
   program.add_groups(bend_joints_stage, joints, kJointsPerBlock, 1);
   program.add(linkage_stage<warm_linkage>, &solve, linkages);
   program.add_groups(warm_joints_stage, joints, kJointsPerBlock, 1);
+  if (!first && !is_warm) program.add(warm_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
   if (first) {
     program.add(watch_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
     program.add_groups(warm_contacts_stage, contacts, 1, kBlocksPerClaim);
