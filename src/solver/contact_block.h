@@ -16,9 +16,6 @@ namespace gyre {
 
 // One manifold to be solved. Plain data: the same for every width; the kernels read it four floats at a time.
 struct ContactConstraint {
-  Manifold* manifold = nullptr;
-  std::int32_t body_a = kNoBody;  // index of the motion record; kNoBody for fixed bodies
-  std::int32_t body_b = kNoBody;
   float static_friction = 0.0f;
   float dynamic_friction = 0.0f;
   float rolling_friction = 0.0f;   // m
@@ -27,7 +24,10 @@ struct ContactConstraint {
   float push_speed = 0.0f;         // m/s: the fastest that overlap is taken back
   Vec3 surface_velocity;           // m/s, of b's surface against a's, in the tangent plane
   float restitution = 0.0f;
+  std::int32_t body_a = kNoBody;  // index of the motion record; kNoBody for fixed bodies
+  std::int32_t body_b = kNoBody;
   bool rigid = false;              // no spring: part of a tree that is solved directly
+  Manifold* manifold = nullptr;
 };
 
 // What is the same for all contacts of a step.

@@ -30,7 +30,7 @@ constexpr float kMostFriction = 1.0e6f;
 // Where the fours begin in the records, in floats.
 constexpr int kManifoldNormal = 0, kManifoldPoints = 4, kManifoldFriction = 52, kManifoldTwist = 56, kManifoldTotals = 60,
               kManifoldSliding = 64, kPointA = 0, kPointB = 4, kPointImpulse = 8, kPointFloats = 12, kInertiaMass = 4,
-              kConstraintFriction = 4, kConstraintSize = 8;
+              kConstraintFriction = 0, kConstraintSize = 4;
 static_assert(offsetof(Manifold, normal) == 4 * kManifoldNormal && offsetof(Manifold, points) == 4 * kManifoldPoints);
 static_assert(offsetof(Manifold, age) == 4 * kManifoldFriction && offsetof(Manifold, friction_impulse) == 4 * kManifoldFriction + 4);
 static_assert(offsetof(Manifold, twist_impulse) == 4 * kManifoldTwist && offsetof(Manifold, rolling_impulse) == 4 * kManifoldTwist + 4);
