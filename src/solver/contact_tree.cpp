@@ -6,6 +6,8 @@ namespace {
 
 // Errors of place are taken back with this rate (1/s), twice a step.
 constexpr float kRate = 10.0f;
+// Nearer than this share of the size a point is where it belongs.
+constexpr float kStillGap = 1.0e-6f;
 
 // Shares >= 0 of the points of a patch that put the centre of pressure at (x, y) of the contact plane: their sum is 1 and
 // their mean point is (x, y). False if it lies outside the patch.
@@ -142,13 +144,17 @@ TreeCorrection correction_of(const ContactConstraint& constraint, const BodyMoti
   return c;
 }
 
-// Whether the sweeps left every body as good as at rest.
+// Whether the sweeps left every body as good as at rest, where it belongs.
 bool is_still(const ContactTree& tree, const TreeSolve& s) {
   for (std::uint32_t i = tree.begin; i < tree.end; ++i) {
     const TreeNode& node = s.nodes[i];
     const BodyMotion& motion = s.motion[node.body];
     if (largest(absolute(motion.linear_velocity)) > node.still || largest(absolute(motion.angular_velocity)) > node.still_spin) {
       return false;
+    }
+    const ContactConstraint& constraint = s.constraints[node.constraint];
+    for (int k = 0; k < constraint.manifold->count; ++k) {
+      if (absolute(constraint.manifold->points[k].separation) > kStillGap * constraint.size) return false;
     }
   }
   return true;
