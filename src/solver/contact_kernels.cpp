@@ -3,6 +3,12 @@
 
 namespace gyre {
 
+#if defined(__wasm__) && !defined(__wasm_simd128__)
+constexpr bool kHasFour = false;  // see contact_kernels_sse2.cpp
+#else
+constexpr bool kHasFour = true;
+#endif
+
 extern const ContactKernels kContactKernels_w1;
 extern const ContactKernels kContactKernels_sse2;
 #if defined(__x86_64__)
@@ -19,7 +25,10 @@ const ContactKernels& select_contact_kernels(int width) {
   }
   if (most >= 8 && __builtin_cpu_supports("avx2")) return kContactKernels_avx2;
 #endif
-  return most >= 4 ? kContactKernels_sse2 : kContactKernels_w1;
+  if constexpr (kHasFour) {
+    if (most >= 4) return kContactKernels_sse2;
+  }
+  return kContactKernels_w1;
 }
 
 }  // namespace gyre

@@ -2,9 +2,12 @@
 #define GYRE_TARGET_NAMESPACE target_sse2
 #include "solver/contact_prepare.h"
 
+// WebAssembly without SIMD would have every lane's code one after the other: its kernels are those of width 1.
+#if !defined(__wasm__) || defined(__wasm_simd128__)
 namespace gyre {
 
 extern const ContactKernels kContactKernels_sse2;
 const ContactKernels kContactKernels_sse2 = contact_kernels<4>();
 
 }  // namespace gyre
+#endif
