@@ -106,6 +106,10 @@ class PointMotion {
   Mat3 less_one_;
 };
 
+bool has_rim(const Shape& shape) {
+  return shape.kind == ShapeKind::cylinder || shape.kind == ShapeKind::cone;
+}
+
 bool is_flat(const Shape& shape) {
   return shape.kind >= ShapeKind::hull || (shape.kind == ShapeKind::box && shape.radius == 0.0f);
 }
@@ -378,6 +382,26 @@ Manifold to_world(const LocalManifold& local, const Pose& frame, const ContactPa
   return out;
 }
 
+// What rolls on a rim may go farther in a step than any point goes with its load, and the lowest point of a rim changes its name
+// where it passes a corner. If one point is left over on either side, it is the same.
+template <int kRoom>
+void match_rolling(Former<kRoom>& former, Manifold& manifold, unsigned matched_before) {
+  if (former.count != 1) return;
+  int lonely = -1, orphan = -1;
+  for (int i = 0; i < manifold.count; ++i) {
+    if ((matched_before >> i & 1u) != 0 || manifold.points[i].normal_impulse != 0.0f) continue;
+    if (lonely >= 0) return;
+    lonely = i;
+  }
+  for (int k = 0; k < former.manifolds[0].count; ++k) {
+    if (former.point_taken[0][k] || former.manifolds[0].points[k].normal_impulse == 0.0f) continue;
+    if (orphan >= 0) return;
+    orphan = k;
+  }
+  if (lonely >= 0 && orphan >= 0 && dot(former.manifolds[0].normal, manifold.normal) >= kSameSide)
+    take_over(former, 0, orphan, manifold.points[lonely]);
+}
+
 template <int kRoom>
 void write_manifolds(ContactStore& store, Contact& contact, const Found<kRoom>& found,
                      const ContactPair& pair, float size) {
@@ -395,6 +419,8 @@ void write_manifolds(ContactStore& store, Contact& contact, const Found<kRoom>& 
     matched[m] = match_by_feature(former, old, out[m]);
   }
   for (int m = 0; m < found.count; ++m) match_by_place(former, out[m], matched[m], kMatch * size);
+  if (found.count == 1 && (has_rim(pair.shape_a->shape) || has_rim(pair.shape_b->shape)))
+    match_rolling(former, out[0], matched[0]);
   // Nothing of the past stays behind in what is not in use.
   for (int m = found.count; m < former.count; ++m) out[m] = Manifold{};
   contact.manifold_count = std::uint16_t(found.count);

@@ -5,6 +5,7 @@
 #include "rigid/hits.h"
 #include "rigid/integrators.h"
 #include "rigid/linkages.h"
+#include "rigid/rolling.h"
 #include "rigid/solve_batches.h"
 #include "rigid/surface_rules.h"
 #include "task/parallel.h"
@@ -70,6 +71,7 @@ struct Solve {
   std::span<std::uint32_t> flying{};       // the others
   ContactForest forest{};
   TreeSolve tree_solve{};
+  RollingContacts rolling{};
 };
 
 // A run of blocks of one colour.
@@ -130,6 +132,7 @@ void gather_contacts(Solve& solve) {
         s.constraints.pop_back();
         continue;
       }
+      s.constraints.back().spinning_friction += patch_friction(w, contact, s.constraints.back());
       s.constraint_contact.push_back(slot);
       s.pairs.push_back({active_a ? solve.places[contact.body_a] : ColoringPair::kNone,
                          active_b ? solve.places[contact.body_b] : ColoringPair::kNone});
@@ -304,8 +307,23 @@ void warm_contacts_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
   g.solve->kernels.warm_start(g.solve->blocks, int(g.first) + begin, int(g.first) + end, g.solve->contact_bodies.motion);
 }
+// Takes the points of those contacts along that roll, which are few. They share no moving body with others of their colour.
+void follow_contacts(const Group& g, int begin, int end) {
+  Solve& s = *g.solve;
+  if (s.rolling.contacts.empty()) return;
+  const int width = s.kernels.width;
+  for (int i = (int(g.first) + begin) * width; i < (int(g.first) + end) * width; ++i) {
+    const std::uint32_t constraint = s.scratch.order[std::size_t(i)];
+    const std::uint32_t place = constraint == 0xffffffffu ? kNotRolling : s.rolling.of_constraint[constraint];
+    if (place == kNotRolling) continue;
+    const FollowedArms arms =
+        follow_contact(s.w, s.rolling.contacts[place], *s.scratch.constraints[constraint].manifold, 0.5f * s.h);
+    s.kernels.follow(s.blocks, i / width, i % width, arms, s.contact_bodies.inertia, s.contact_bodies.motion);
+  }
+}
 void solve_contacts_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
+  follow_contacts(g, begin, end);
   g.solve->kernels.solve(g.solve->blocks, int(g.first) + begin, int(g.first) + end, g.solve->contact_bodies.motion,
                          g.solve->h);
 }
@@ -491,6 +509,7 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   gather_contacts(solve);
   solve.linkages = find_linkages(solve.w, solve.batch, solve.places, arena);
   gather_joints(solve);
+  solve.rolling = find_rolling_contacts(solve.w, scratch, solve.contact_settings.step, arena);
   const std::uint32_t bodies = std::uint32_t(solve.batch.bodies.size());
   color_constraints(scratch.pairs, bodies, {}, kColoringOptions, scratch.contact_colors);
   color_constraints(scratch.joint_pairs, bodies, {}, kColoringOptions, scratch.joint_colors);

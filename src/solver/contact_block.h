@@ -57,6 +57,23 @@ struct ContactImpulse {
   float twist_per_normal = 0.0f;  // m, limit of the twist (read only)
 };
 
+// From both centres of mass to the points of a contact (m, world axes).
+struct PointArmPairs {
+  Vec3 from_a[kMaxManifoldPoints], from_b[kMaxManifoldPoints];
+};
+
+// Where the points of a contact are in a sub-step, if not where they were as the step began: in its middle, where speeds are
+// taken, and as it begins, where impulses act.
+struct FollowedArms {
+  int count = 0;
+  PointArmPairs middle, before, now;  // `before`: as the last sub-step began
+  // m, less what the bodies' motion since the step began makes of it with the arms of the middle.
+  float separation[kMaxManifoldPoints] = {};
+  // The body that the points go along with, and what free rotation adds to its angular velocity until the middle (rad/s).
+  bool with_b = true;
+  Vec3 drift;
+};
+
 // The kernels of one CPU target: every function works on blocks [begin, end) of the array at `blocks`. `order` lists
 // constraint indices block by block, W a block; 0xffffffff marks an empty lane.
 struct ContactKernels {
@@ -64,6 +81,9 @@ struct ContactKernels {
   std::size_t block_bytes;
   void (*prepare)(void* blocks, int begin, int end, const ContactConstraint* constraints, const std::uint32_t* order,
                   ContactBodies bodies, const ContactSettings& settings);
+  // Moves the points of one contact, and along with them the impulses that stand, which these velocities have.
+  void (*follow)(void* blocks, int block, int lane, const FollowedArms& arms, const BodyInertia* inertia,
+                 BodyMotion* motion);
   void (*warm_start)(void* blocks, int begin, int end, BodyMotion* motion);
   void (*solve)(void* blocks, int begin, int end, BodyMotion* motion, float substep);
   void (*relax)(void* blocks, int begin, int end, BodyMotion* motion, float substep);

@@ -1,6 +1,6 @@
 // The contact kernels for one kind of CPU, in a namespace of its own so that the linker can never mix them with others'.
 #define GYRE_TARGET_NAMESPACE target_avx512
-#include "solver/contact_prepare.h"
+#include "solver/contact_kernel_table.h"
 
 namespace gyre {
 

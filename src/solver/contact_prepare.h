@@ -4,8 +4,6 @@
 #pragma once
 
 #include "solver/contact_kernel.h"
-#include "solver/contact_project.h"
-#include "solver/motion_kernel.h"
 
 #include <cstddef>
 
@@ -204,9 +202,10 @@ struct SurfaceLanes {
   Wide<W> static_friction, dynamic_friction, rolling_friction, spinning_friction;
 };
 
-// Effective mass matrix of the friction rows and its inverse; the twist row is left out where it has no lever arm.
+// Effective mass matrix of the friction rows, and its inverse into the block; the twist row is left out where it has no
+// lever arm (all of them where `twists` says so).
 template <int W>
-GYRE_INLINE void prepare_friction(ContactBlock<W>& block, const SurfaceLanes<W>& surface, Wide<W> radius, Wide<W> size) {
+GYRE_INLINE Sym3W<W> prepare_friction_masses(ContactBlock<W>& block, Mask<W> has_lever, Mask<W>& twists) {
   const Wide<W> zero(0.0f), one(1.0f);
   const Vec3W<W> t1 = block.tangent_1, t2 = block.tangent_2, n = block.normal;
   const Vec3W<W> a1 = cross(block.friction_from_a, t1), a2 = cross(block.friction_from_a, t2);
@@ -221,12 +220,8 @@ GYRE_INLINE void prepare_friction(ContactBlock<W>& block, const SurfaceLanes<W>&
   k.zz = dot(n, ian) + dot(n, ibn);
   k.xz = dot(a1, ian) + dot(b1, ibn);
   k.yz = dot(a2, ian) + dot(b2, ibn);
-  const Wide<W> twist_static = surface.static_friction * radius + surface.spinning_friction;
-  const Wide<W> twist_dynamic = surface.dynamic_friction * radius + surface.spinning_friction;
-  // Where one point bears all, the patch is as wide as rounding made it: that is no lever.
-  const auto is_patch = (radius > Wide<W>(kLeastPatch) * size) | (surface.spinning_friction > zero);
-  const auto twists = is_patch & (twist_static > zero) & (k.zz > zero);
-  const Wide<W> turning = k.zz;
+  twists = has_lever & (k.zz > zero);
+  const Sym3W<W> all_rows = k;
   k.xz = keep(twists, k.xz);
   k.yz = keep(twists, k.yz);
   k.zz = select(twists, k.zz, one);
@@ -237,11 +232,24 @@ GYRE_INLINE void prepare_friction(ContactBlock<W>& block, const SurfaceLanes<W>&
   block.inverse_k12 = inverse_k.xy;
   block.inverse_k13 = inverse_k.xz;
   block.inverse_k23 = inverse_k.yz;
+  return all_rows;
+}
+
+// The friction rows: their masses and limits. `radius`: the patch's lever arm.
+template <int W>
+GYRE_INLINE void prepare_friction(ContactBlock<W>& block, const SurfaceLanes<W>& surface, Wide<W> radius, Wide<W> size) {
+  const Wide<W> zero(0.0f), one(1.0f);
+  const Wide<W> twist_static = surface.static_friction * radius + surface.spinning_friction;
+  const Wide<W> twist_dynamic = surface.dynamic_friction * radius + surface.spinning_friction;
+  // Where one point bears all, the patch is as wide as rounding made it: that is no lever.
+  const auto is_patch = (radius > Wide<W>(kLeastPatch) * size) | (surface.spinning_friction > zero);
+  auto twists = one < zero;
+  const Sym3W<W> k = prepare_friction_masses<W>(block, is_patch & (twist_static > zero), twists);
   // The scale at which a twist of 1 rad/s slips like a metre per second; with it the largest eigenvalue of K is bounded by
   // its trace, and the inverse of half of it is a safe common step.
   const auto slides = surface.dynamic_friction > zero;
   const Wide<W> scale = select(twists & slides, twist_dynamic / select(slides, surface.dynamic_friction, one), radius);
-  const Wide<W> bound = max(max(k.xx, k.yy) + absolute(k.xy), keep(twists, scale * scale * turning));
+  const Wide<W> bound = max(max(k.xx, k.yy) + absolute(k.xy), keep(twists, scale * scale * k.zz));
   block.twist_radius = keep(twists, scale);
   block.slide_mass = keep(bound > zero, one / select(bound > zero, bound, one));
   const auto grip = [&](Wide<W> friction) {
@@ -261,7 +269,7 @@ GYRE_INLINE void prepare_friction(ContactBlock<W>& block, const SurfaceLanes<W>&
 // diagonal raised by a share: the impulses that no motion can tell apart then change least. Rows of points that a lane does
 // not have are those of the identity while Cholesky's factor is made, and 0 after.
 template <int W>
-GYRE_INLINE void prepare_normals(ContactBlock<W>& block, const LaneRecords<W>& records) {
+GYRE_INLINE void prepare_normals(ContactBlock<W>& block, const Wide<W> (&point_exists)[kMaxManifoldPoints]) {
   constexpr float kRegular = 0.02f;
   const Wide<W> zero(0.0f), one(1.0f);
   const int count = block.point_count;
@@ -273,10 +281,10 @@ GYRE_INLINE void prepare_normals(ContactBlock<W>& block, const LaneRecords<W>& r
     const Vec3W<W> ib = block.inverse_inertia_b * (point.arm + block.arm_shift_b);
     const Vec3W<W> turn = ia + ib;
     const Wide<W> common = inverse_masses + (dot(block.arm_shift_a, ia) + dot(block.arm_shift_b, ib));
-    const auto exists = records.exists[i] > zero;
+    const auto exists = point_exists[i] > zero;
     for (int j = 0; j <= i; ++j) {
       const Wide<W> k = common + dot(block.points[j].arm, turn);
-      block.k[packed(j, i)] = keep(exists & (records.exists[j] > zero), k);
+      block.k[packed(j, i)] = keep(exists & (point_exists[j] > zero), k);
     }
     const Wide<W> own = block.k[packed(i, i)];
     block.relief[i] = keep(own > zero, one / select(own > zero, own, one));
@@ -301,7 +309,7 @@ GYRE_INLINE void prepare_normals(ContactBlock<W>& block, const LaneRecords<W>& r
       for (int m = column; m < i; ++m) sum = sum - l[packed(m, i)] * x[m];
       x[i] = sum * inverse_diagonal[i];
     }
-    const auto exists = records.exists[column] > zero;
+    const auto exists = point_exists[column] > zero;
     for (int i = count - 1; i >= 0; --i) {
       Wide<W> sum = x[i];
       for (int m = i + 1; m < count; ++m) sum = sum - l[packed(i, m)] * x[m];
@@ -417,6 +425,8 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
   const LaneRecords<W> records = find_records<W>(constraints, order, bodies, nowhere);
   block.point_count = records.point_count;
   block.rolls = block.has_fresh = 0;
+  block.follows_a = block.follows_b = 0;
+  block.drift = Vec3W<W>{zero, zero, zero};
   Wide<W> in[4];
   load_four<W>(records.manifold, kManifoldNormal, in);
   block.normal = {in[0], in[1], in[2]};
@@ -457,7 +467,7 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
   if ((to_bits(block.fresh > zero) & records.lanes) != 0) block.has_fresh = 1;
   prepare_softness<W>(block, constraints, order, age, size, settings);
   prepare_friction<W>(block, surface, pressure_patch<W>(block, records, arms), size);
-  prepare_normals<W>(block, records);
+  prepare_normals<W>(block, records.exists);
 }
 
 template <int W>
@@ -550,22 +560,6 @@ void write_block_impulse(void* memory, int index, int lane, const ContactImpulse
   set_lane(block.twist, lane, impulse.twist);
   set_lane(block.rolling, lane, impulse.rolling);
   set_lane(block.sliding, lane, 0.0f);
-}
-
-// The table that a kernel file exports.
-template <int W>
-constexpr ContactKernels contact_kernels() {
-  return {W,
-          sizeof(ContactBlock<W>),
-          prepare_blocks<W>,
-          warm_start_blocks<W>,
-          solve_blocks<W>,
-          relax_blocks<W>,
-          project_blocks<W>,
-          read_block_impulse<W>,
-          write_block_impulse<W>,
-          finish_blocks<W>,
-          motion_kernels<W>()};
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

@@ -38,27 +38,23 @@ Circle roll_a_lap(float step) {
   return seen;
 }
 
-// Contacts are looked for once a step, and the rim rolls on from its point of contact meanwhile. So this is a matter of the
-// length of the step: at 60 Hz the rate is right to 2 %, lean and spin are not to the row's 3 %; at 240 Hz all are.
+// The point of contact runs on round the rim within a step, and the contact with it: second order in the sub-step.
 TEST(Coin, RollsInASteadyCircle) {
-  const Circle coarse = roll_a_lap(kStep), fine = roll_a_lap(kStep / 4.0f),
-               finest = roll_a_lap(kStep / 16.0f);
-  EXPECT_TRUE(relative_row("A-26 rate of turning, 60 Hz", coarse.rate, 1.0833, 3e-2, 3e-3));
-  relative_row("A-26 largest lean (degrees), 60 Hz", coarse.most_lean, 20.0, 3e-2, 3e-3);
-  EXPECT_TRUE(relative_row("A-26 smallest lean (degrees), 60 Hz", coarse.least_lean, 20.0, 3e-2, 3e-3));
-  relative_row("A-26 spin about its axis, 60 Hz", coarse.spin, 4.3330, 3e-2, 3e-3);
-  EXPECT_TRUE(relative_row("A-26 rate of turning, 240 Hz", fine.rate, 1.0833, 3e-2, 3e-3));
-  EXPECT_TRUE(relative_row("A-26 largest lean (degrees), 240 Hz", fine.most_lean, 20.0, 3e-2, 3e-3));
-  EXPECT_TRUE(relative_row("A-26 spin about its axis, 240 Hz", fine.spin, 4.3330, 3e-2, 3e-3));
-  EXPECT_LT(std::fabs(finest.most_lean - 20.0), 0.4 * std::fabs(fine.most_lean - 20.0))
-      << "first order at least";
-  EXPECT_LT(std::fabs(fine.most_lean - 20.0), 0.4 * std::fabs(coarse.most_lean - 20.0));
+  for (const float step : {kStep, kStep / 4.0f, kStep / 16.0f}) {
+    const Circle seen = roll_a_lap(step);
+    std::printf("[row] step %g s\n", double(step));
+    EXPECT_TRUE(relative_row("A-26 rate of turning", seen.rate, 1.0833, 3e-3, 3e-3));
+    EXPECT_TRUE(relative_row("A-26 largest lean (degrees)", seen.most_lean, 20.0, 6e-3, 3e-3));
+    EXPECT_TRUE(relative_row("A-26 smallest lean (degrees)", seen.least_lean, 20.0, 6e-3, 3e-3));
+    EXPECT_TRUE(relative_row("A-26 spin about its axis", seen.spin, 4.3330, 3e-3, 3e-3));
+  }
 }
 
 struct Whirl {
   double gain, exponent, rest;
 };
-// A coin let go on its edge at 10 degrees, its centre at rest and its rim rolling: the lower it lies, the faster the point of
+// A coin let go on its edge at 10 degrees, its centre at rest and its rim rolling (it turns about the line from its centre to the
+// point of contact): the lower it lies, the faster the point of
 // contact runs round, until it rests.
 Whirl whirl(float step) {
   const double radius = 0.0375, half = 0.0032, tilt = 10.0 * double(kDegree);
@@ -66,11 +62,13 @@ Whirl whirl(float step) {
   Material rough = surface(1.0f);
   rough.rolling_friction = 5e-5f;
   add_ground(world, rough);
-  const double rate = 2.0 * std::sqrt(kGravity / (radius * std::sin(tilt)));
+  const double s = std::sin(tilt), c = std::cos(tilt), thin = 0.25 * radius * radius + half * half / 3.0;
+  const double rate =
+      std::sqrt(kGravity * (radius * c - half * s) / (s * (thin * c - 0.5 * radius * half * s)));
   const DVec3 n{-std::sin(tilt), std::cos(tilt), 0};
   BodyDef def{.pose = {.position = {0, radius * std::sin(tilt) + half * std::cos(tilt), 0}}};
   def.pose.orientation = from_axis_angle({0, 0, 1}, float(tilt));
-  def.angular_velocity = to_float(rate * (DVec3{0, 1, 0} - std::cos(tilt) * n));
+  def.angular_velocity = to_float(rate * (DVec3{0, 1, 0} - (c - s * half / radius) * n));
   const BodyId coin =
       world.add_body(def, {.geometry = Cylinder{float(radius), float(half)}, .material = rough});
   const auto energy = [&] { return world.energy().kinetic + world.energy().potential; };
@@ -84,7 +82,8 @@ Whirl whirl(float step) {
     const DVec3 axis = turned(world.pose(coin).orientation, {0, 1, 0});
     const double sine = std::sqrt(axis.x * axis.x + axis.z * axis.z);
     const DVec3 w = wide(world.angular_velocity(coin));
-    if (sine > std::sin(2.0 * double(kDegree))) {
+    // The law is that of small tilts.
+    if (sine > std::sin(1.0 * double(kDegree)) && sine < std::sin(5.0 * double(kDegree))) {
       const double x = std::log(sine), y = std::log(length(w - dot(w, axis) * axis) / sine);
       sum_x += x, sum_y += y, sum_xx += x * x, sum_xy += x * y, count += 1.0;
     }
@@ -94,15 +93,19 @@ Whirl whirl(float step) {
   return seen;
 }
 
-// The point of contact runs round the rim 12 times a second and faster: 60 steps a second are too few to follow it, and the
-// coin falls at once (without gaining energy). 1,000 steps show the law.
+// The point of contact runs round the rim 12 times a second and faster. At 60 steps a second that is more than a radian a step,
+// and the coin comes to rest in a fraction of a second; 1,000 steps show the law. Whatever the step, hardly anything is gained:
+// the weight that lay a slop of 4e-4 sizes too deep, and what is lost again where a corner of the rim's polygon takes over.
 TEST(Coin, WhirlsFasterAsItSinks) {
-  const Whirl coarse = whirl(kStep), fine = whirl(1e-3f);
-  EXPECT_TRUE(limit_row("A-27 energy gained in a step over all, 60 Hz", coarse.gain, 1e-3, 0.0));
-  EXPECT_GT(coarse.rest, 0.0) << "it comes to rest";
-  EXPECT_TRUE(limit_row("A-27 energy gained in a step over all, 1 kHz", fine.gain, 1e-3, 0.0));
-  EXPECT_TRUE(row("A-27 exponent of the rate over the tilt, 1 kHz", fine.exponent, -0.5, 0.05, 0.05));
-  EXPECT_GT(fine.rest, 0.0) << "it comes to rest";
+  for (const float step : {kStep, 4e-3f, 1e-3f}) {
+    const Whirl seen = whirl(step);
+    std::printf("[row] step %g s\n", double(step));
+    EXPECT_TRUE(limit_row("A-27 energy gained in a step over all", seen.gain, 6e-4, 0.0));
+    EXPECT_GT(seen.rest, 0.0) << "it comes to rest";
+    if (step < 2e-3f) {
+      EXPECT_TRUE(row("A-27 exponent of the rate over the tilt", seen.exponent, -0.5, 0.05, 0.05));
+    }
+  }
 }
 
 }  // namespace

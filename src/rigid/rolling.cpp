@@ -1,0 +1,214 @@
+#include "rigid/rolling.h"
+
+#include "geometry/support.h"
+
+namespace gyre {
+
+namespace {
+
+// A contact whose bodies turn against each other by less than this in a step (rad) stays where it is.
+constexpr float kLeastTurn = 1.0e-4f;
+// Half a sub-step's turn (rad) beyond which the change of the axis is not followed to the full.
+constexpr float kLargestTurn = 0.2f;
+// How far a contact may run in a sub-step, as a share of its arm, before it loses energy on its way.
+constexpr float kLargestRun = 0.02f;
+// Mean distance of the load from the middle of a ball's patch, as a share of the radius.
+constexpr float kBallPatch = 5.0e-3f;
+// A point belongs to the rim where it lies in the direction of the lowest one (cosine), as far out as the surface is (share of
+// the radius), and where the axis leans from the normal by more than this (sine): below it the lowest point is noise.
+constexpr float kSameDirection = 0.9999f, kSameRadius = 0.01f, kLeastLean = 1.0e-3f;
+
+bool is_flat(const Shape& shape) {
+  return !is_convex(shape.kind) || (shape.kind == ShapeKind::hull) ||
+         (shape.kind == ShapeKind::box && shape.radius == 0.0f);
+}
+
+// Radius of the surface at a height over the middle of the shape.
+float radius_at(const Shape& shape, float height) {
+  if (shape.kind == ShapeKind::cylinder) return shape.radius;
+  return shape.radius * clamp(0.5f * (1.0f - height / shape.extents.y), 0.0f, 1.0f);
+}
+
+// The unit vector towards the other shape at a right angle to the axis, and the sine of the angle between the two.
+struct Lowest {
+  Vec3 direction;
+  float lean;
+  Lowest(Vec3 outward, Vec3 axis) {
+    const Vec3 across = outward - dot(outward, axis) * axis;
+    lean = length(across);
+    direction = lean > 0.0f ? across / lean : Vec3{};
+  }
+};
+
+RollingPoint describe_point(const Shape& shape, const RollingContact& rolling, Quat orientation, Vec3 center,
+                            Vec3 arm, float separation) {
+  RollingPoint point;
+  const Vec3 half_gap = (0.5f * separation) * rolling.outward;
+  const Vec3 on_surface = arm - half_gap;
+  if (core_radius(shape) > 0.0f) {
+    point.reach = core_radius(shape);
+    point.core = rotate_inverse(orientation, on_surface - point.reach * rolling.outward);
+    point.rest = half_gap;
+    return point;
+  }
+  const Vec3 axis = rotate(orientation, rolling.axis);
+  const Vec3 from_middle = on_surface - rotate(orientation, center);
+  const float height = dot(from_middle, axis);
+  const Vec3 across = from_middle - height * axis;
+  const float radius = radius_at(shape, height);
+  const Lowest lowest(rolling.outward, axis);
+  point.on_rim = lowest.lean > kLeastLean &&
+                 dot(across, lowest.direction) >= kSameDirection * length(across) &&
+                 absolute(length(across) - radius) <= kSameRadius * shape.radius;
+  if (!point.on_rim) {
+    point.core = rotate_inverse(orientation, arm);
+    return point;
+  }
+  point.reach = length(across);
+  point.core = center + height * rolling.axis;
+  point.rest = arm - (rotate(orientation, point.core) + point.reach * lowest.direction);
+  return point;
+}
+
+// Whether it matters where the contact goes.
+bool rolls(const RigidWorld& w, const Shape& shape, const RollingContact& rolling, Vec3 center,
+           float seconds) {
+  const Vec3 spin = w.bodies.motion[std::size_t(rolling.body)].angular_velocity;
+  const Vec3 other_spin =
+      rolling.other == kNoBody ? Vec3{} : w.bodies.motion[std::size_t(rolling.other)].angular_velocity;
+  if (!(seconds * length(spin - other_spin) > kLeastTurn)) return false;
+  if (shape.kind != ShapeKind::sphere || center != Vec3{}) return true;
+  // Below a ball's centre it stays, and only what it rolls on can notice.
+  return rolling.other != kNoBody &&
+         (other_spin != Vec3{} || w.bodies.inertia[std::size_t(rolling.other)].inverse_mass > 0.0f);
+}
+
+bool describe(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint, float seconds,
+              RollingContact& rolling) {
+  if (contact.recycled != 0) return false;
+  const bool flat_a = is_flat(w.shapes.colliders[contact.shape_a].shape);
+  const bool flat_b = is_flat(w.shapes.colliders[contact.shape_b].shape);
+  if (flat_a == flat_b) return false;
+  rolling.body = flat_a ? constraint.body_b : constraint.body_a;
+  rolling.other = flat_a ? constraint.body_a : constraint.body_b;
+  if (rolling.body == kNoBody) return false;
+  const std::uint32_t body = std::uint32_t(rolling.body);
+  const ColliderShape& collider = w.shapes.colliders[flat_a ? contact.shape_b : contact.shape_a];
+  const Vec3 center = collider.body_from_shape.position - w.bodies.masses[body].center;
+  if (!rolls(w, collider.shape, rolling, center, seconds)) return false;
+  const Manifold& manifold = *constraint.manifold;
+  rolling.side = flat_a ? 1.0f : -1.0f;
+  rolling.axis = rotate(collider.body_from_shape.orientation, Vec3{0, 1, 0});
+  rolling.outward = -rolling.side * manifold.normal;
+  rolling.offset = rolling.side * (manifold.points[0].from_a - manifold.points[0].from_b);
+  for (int k = 0; k < manifold.count; ++k) {
+    const ContactPointState& point = manifold.points[k];
+    rolling.points[k] = describe_point(collider.shape, rolling, w.bodies.orientations[body], center,
+                                       flat_a ? point.from_b : point.from_a, point.separation);
+    rolling.arms.from_a[k] = point.from_a;
+    rolling.arms.from_b[k] = point.from_b;
+  }
+  return true;
+}
+
+Quat turned_on(Quat q, Vec3 turn) {
+  return normalized(Quat{0.5f * turn.x, 0.5f * turn.y, 0.5f * turn.z, 1.0f} * q);
+}
+
+// How much the angular velocity of a free body changes in a time, as its momentum stays: to the first order, and of turns that
+// are not too large for that.
+Vec3 free_change(const RigidWorld& w, std::size_t body, Quat orientation, float seconds) {
+  const BodyMass& mass = w.bodies.masses[body];
+  if (mass.isotropic != 0 || w.bodies.flags[body].locked_angular != 0 || mass.inverse_mass == 0.0f) return {};
+  const Vec3 spin = rotate_inverse(orientation, w.bodies.motion[body].angular_velocity);
+  const float turn = seconds * length(spin);
+  const float share = turn > kLargestTurn ? kLargestTurn / turn : 1.0f;
+  return rotate(orientation, (share * seconds) * (mass.inverse_inertia * cross(mass.inertia * spin, spin)));
+}
+
+Vec3 arm_of(const RollingContact& rolling, const RollingPoint& point, Quat orientation) {
+  const Vec3 direction =
+      point.on_rim ? Lowest(rolling.outward, rotate(orientation, rolling.axis)).direction : rolling.outward;
+  return rotate(orientation, point.core) + point.reach * direction + point.rest;
+}
+
+}  // namespace
+
+float patch_friction(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint) {
+  if (constraint.manifold->count != 1) return 0.0f;
+  const float a = core_radius(w.shapes.colliders[contact.shape_a].shape);
+  const float b = core_radius(w.shapes.colliders[contact.shape_b].shape);
+  if (a == 0.0f && b == 0.0f) return 0.0f;
+  // Two balls touch as one of the combined curvature does on a plane.
+  const float radius = a == 0.0f ? b : b == 0.0f ? a : a * (b / (a + b));
+  return constraint.dynamic_friction * kBallPatch * radius;
+}
+
+RollingContacts find_rolling_contacts(RigidWorld& w, const SolveScratch& scratch, float seconds,
+                                      Arena& arena) {
+  const std::size_t count = scratch.constraints.size();
+  const auto contact_of = [&](std::size_t i) -> const Contact& {
+    return w.contacts.contacts[scratch.constraint_contact[i]];
+  };
+  std::size_t found = 0;
+  RollingContact rolling;
+  for (std::size_t i = 0; i < count; ++i)
+    found += describe(w, contact_of(i), scratch.constraints[i], seconds, rolling);
+  RollingContacts all;
+  if (found == 0) return all;
+  all.contacts = arena.make<RollingContact>(found);
+  all.of_constraint = arena.make<std::uint32_t>(count);
+  std::uint32_t place = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    all.of_constraint[i] = kNotRolling;
+    rolling = RollingContact{};
+    if (!describe(w, contact_of(i), scratch.constraints[i], seconds, rolling)) continue;
+    rolling.constraint = i;
+    for (const std::int32_t body : {rolling.body, rolling.other}) {
+      if (body != kNoBody) w.bodies.flags[std::size_t(body)].touched = 2;
+    }
+    all.contacts[place] = rolling;
+    all.of_constraint[i] = place++;
+  }
+  return all;
+}
+
+FollowedArms follow_contact(const RigidWorld& w, RollingContact& rolling, const Manifold& manifold,
+                            float ahead) {
+  const std::size_t body = std::size_t(rolling.body);
+  const BodyMotion still;
+  const BodyMotion& motion = w.bodies.motion[body];
+  const BodyMotion& other = rolling.other == kNoBody ? still : w.bodies.motion[std::size_t(rolling.other)];
+  const Quat now = w.bodies.orientations[body];
+  const Quat middle = turned_on(now, ahead * motion.angular_velocity);
+  const Vec3 offset = rolling.offset + (motion.moved - other.moved);
+  const Vec3 middle_offset = offset + ahead * (motion.linear_velocity - other.linear_velocity);
+  const auto put = [&](PointArmPairs& pairs, int k, Vec3 arm, Vec3 apart) {
+    pairs.from_a[k] = rolling.side > 0.0f ? arm + apart : arm;
+    pairs.from_b[k] = rolling.side > 0.0f ? arm : arm + apart;
+  };
+  FollowedArms arms;
+  arms.count = manifold.count;
+  arms.before = rolling.arms;
+  for (int k = 0; k < manifold.count; ++k) {
+    const ContactPointState& point = manifold.points[k];
+    const Vec3 at_first = rolling.side > 0.0f ? point.from_b : point.from_a;
+    const Vec3 arm = arm_of(rolling, rolling.points[k], now),
+               middle_arm = arm_of(rolling, rolling.points[k], middle);
+    // Where the contact runs far in a sub-step the leapfrog scheme would gain energy at times. Impulses that act where speeds
+    // are taken lose it.
+    const float run = 2.0f * length(middle_arm - arm), most = kLargestRun * length(arm);
+    const float share = run > most ? min(run / most - 1.0f, 1.0f) : 0.0f;
+    put(arms.now, k, arm + share * (middle_arm - arm), offset + share * (middle_offset - offset));
+    put(arms.middle, k, middle_arm, middle_offset);
+    // Surfaces come nearer by what the arm grows outward; what turning the body makes of it is taken off again.
+    arms.separation[k] = point.separation - dot(arm - at_first, rolling.outward) +
+                         dot(cross(motion.turned, middle_arm), rolling.outward);
+  }
+  arms.with_b = rolling.side > 0.0f;
+  arms.drift = free_change(w, body, now, ahead);
+  rolling.arms = arms.now;
+  return arms;
+}
+
+}  // namespace gyre

@@ -1,0 +1,61 @@
+// Where the points of contacts that roll are within a step.
+//
+// Manifolds are found once a step. Until the next one a ball's point of contact stays below its centre, that of a disc runs
+// round its rim, and the point on what they roll on goes with it: neither stays where it was, nor goes with the material. To
+// leave them behind is an error of the first order in the step, which tilts a coin that rolls in a circle and slows or speeds
+// what rolls on something that turns.
+//
+// A point of a curved shape is, from its body's centre of mass,
+//   r = R core + reach u + rest
+// with R core fixed in the body (a ball's centre, a point of a capsule's segment or of a cylinder's axis), and u the unit vector
+// towards the other shape: the normal, or for cylinders and cones the part of it at a right angle to their axis. All of it is
+// exact on a plane, however far the body turns. Speeds are taken in the middle of a sub-step, separations at its beginning.
+// Source of the idea: the rolling equations of D. Montana, "The kinematics of contact and grasp", 1988.
+#pragma once
+
+#include "rigid/solve_step.h"
+
+namespace gyre {
+
+struct RollingPoint {
+  Vec3 core;  // m, body frame
+  float reach = 0.0f;
+  Vec3 rest;  // m, world axes: half the gap, and rounding
+  bool on_rim = false;
+};
+
+// A contact of a curved shape with a flat one.
+struct RollingContact {
+  std::uint32_t constraint = 0;
+  std::int32_t body = kNoBody;  // that is curved
+  std::int32_t other = kNoBody;
+  float side = 1.0f;  // 1 if it is the constraint's b, else -1
+  Vec3 axis;          // body frame, unit: of symmetry
+  Vec3 outward;       // world axes: the normal, out of the curved shape
+  Vec3 offset;        // m, from the other body's centre of mass to the curved one's, as the step began
+  RollingPoint points[kMaxManifoldPoints];
+  PointArmPairs arms;  // as the last sub-step began
+};
+
+struct RollingContacts {
+  std::span<RollingContact> contacts;
+  std::span<std::uint32_t> of_constraint;  // its place among them; kNotRolling
+};
+constexpr std::uint32_t kNotRolling = 0xffffffffu;
+
+// What a ball's patch of contact adds to the spinning friction (m), as a ball's load is never borne by a point: otherwise it
+// would spin for ever, and friction against sliding would not know that the ball spins (a tippe top would not turn over).
+// 0 where more than one point or no ball touches. After P. Contensou, "Couplage entre frottement de glissement et frottement
+// de pivotement dans la theorie de la toupie", 1963.
+float patch_friction(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint);
+
+// Those among the constraints of the batch whose bodies turn against each other. Marks the bodies as ones whose place others
+// look at.
+RollingContacts find_rolling_contacts(RigidWorld& w, const SolveScratch& scratch, float seconds,
+                                      Arena& arena);
+
+// Where the contact is in a sub-step that begins now, with its middle in `ahead` seconds.
+FollowedArms follow_contact(const RigidWorld& w, RollingContact& rolling, const Manifold& manifold,
+                            float ahead);
+
+}  // namespace gyre

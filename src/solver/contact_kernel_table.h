@@ -1,0 +1,29 @@
+// All kernels of one CPU target, as the table that a kernel file exports.
+#pragma once
+
+#include "solver/contact_follow.h"
+#include "solver/contact_prepare.h"
+#include "solver/contact_project.h"
+#include "solver/motion_kernel.h"
+
+namespace gyre {
+inline namespace GYRE_TARGET_NAMESPACE {
+
+template <int W>
+constexpr ContactKernels contact_kernels() {
+  return {W,
+          sizeof(ContactBlock<W>),
+          prepare_blocks<W>,
+          follow_lane<W>,
+          warm_start_blocks<W>,
+          solve_blocks<W>,
+          relax_blocks<W>,
+          project_blocks<W>,
+          read_block_impulse<W>,
+          write_block_impulse<W>,
+          finish_blocks<W>,
+          motion_kernels<W>()};
+}
+
+}  // namespace GYRE_TARGET_NAMESPACE
+}  // namespace gyre
