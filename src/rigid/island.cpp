@@ -62,7 +62,8 @@ void update_rest_timers(RigidWorld& w, float seconds, bool& somebody) {
     if (w.bodies.flags[i].type != BodyType::dynamic) continue;
     const Rest rest = find_rest(w, i, pull);
     float& still = w.bodies.sleep[i].still_time;
-    still = rest.may && rest.speed + rest.pushed / seconds <= rest.rest_speed ? still + seconds : 0.0f;
+    const float motion = rest.speed + kPushWeight * rest.pushed / seconds;
+    still = rest.may && motion <= rest.rest_speed ? still + seconds : 0.0f;
     if (still >= kTimeToSleep) somebody = true;
   }
 }

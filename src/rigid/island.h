@@ -14,6 +14,8 @@ namespace gyre {
 constexpr float kTimeToSleep = 0.5f;  // s
 // Motion that counts as none: this share of sqrt(gravity * reach), the body's natural speed.
 constexpr float kRestShare = 0.015f;
+// Being pushed apart counts as faster motion than it is: a heap that falls asleep keeps the overlap that it has then.
+constexpr float kPushWeight = 4.0f;
 
 // Calls fn(body_a, body_b) for every contact and joint that binds two bodies; either may be one that nothing moves.
 template <class Fn>

@@ -50,7 +50,8 @@ double settle(const Heap& heap, int variant, double* overlap) {
 }
 
 // What rolls, or spins on a point, is braked by nothing but rolling and spinning friction: such heaps have some, a fortieth
-// of a radius and less. Overlap: a third of what the planks are thick at half. How long a heap takes is chance to a part, so each falls five times, and the middle one counts.
+// of a radius and less. Overlap: a fifth of what the planks are thick at half. How long a heap takes is chance to a part, so
+// each falls five times, and the middle one counts.
 TEST(Heap, OfAnythingSleepsWithinTenSeconds) {
   const AnyShape plank = Box{{0.1f, 0.015f, 0.5f}}, hull = plank_hull(), cylinder = Cylinder{0.2f, 0.3f};
   const AnyShape coin = Cylinder{0.2f, 0.02f}, cone = Cone{0.2f, 0.2f}, box = Box{{0.2f, 0.2f, 0.2f}};
@@ -76,7 +77,7 @@ TEST(Heap, OfAnythingSleepsWithinTenSeconds) {
     const double time = times[2], overlap = overlaps[2];
     std::printf("[row] B-31 %s\n", heap.name);
     EXPECT_TRUE(limit_row("B-31 time until all sleep (s)", time, 10.0, 6.0)) << heap.name;
-    EXPECT_TRUE(limit_row("B-31 deepest overlap then (m)", overlap, 5e-3, 1e-3)) << heap.name;
+    EXPECT_TRUE(limit_row("B-31 deepest overlap then (m)", overlap, 3e-3, 1e-3)) << heap.name;
   }
 }
 
