@@ -16,8 +16,9 @@ constexpr float kKernelAngleIsotropic = 0.1f;
 Vec3 within_length(Vec3 v, float most) {
   const float top = largest(absolute(v));
   if (!(top > most * 0.5f)) return v;
-  const float size = top * length(v / top);  // no overflow
-  return size > most ? (most / size) * v : v;
+  // In units of the largest component: the length itself may be beyond all floats.
+  const float size = length(v / top), limit = most / top;
+  return size > limit ? (limit / size) * v : v;
 }
 
 // The vector without its components along locked world axes (bits 1, 2, 4: x, y, z).

@@ -77,13 +77,14 @@ GYRE_INLINE Vec3W<W> within_length(Vec3W<W> v, float most) {
   if (!any(may_exceed)) return v;
   const Wide<W> scale = select(may_exceed, top, Wide<W>(1.0f));
   const Vec3W<W> u{v.x / scale, v.y / scale, v.z / scale};
-  const Wide<W> size = top * sqrt(dot(u, u));
-  const auto exceeds = may_exceed & (size > Wide<W>(most));
-  const Wide<W> share = Wide<W>(most) / select(exceeds, size, Wide<W>(1.0f));
+  // In units of the largest component: the length itself may be beyond all floats.
+  const Wide<W> size = sqrt(dot(u, u)), limit = Wide<W>(most) / scale;
+  const auto exceeds = may_exceed & (size > limit);
+  const Wide<W> share = limit / select(exceeds, size, Wide<W>(1.0f));
   return select<W>(exceeds, share * v, v);
 }
 
-// log(exp(turn) exp(turned)) to the fourth order.
+// log(exp(turn) exp(turned)) but for terms of the fourth order.
 template <int W>
 GYRE_INLINE Vec3W<W> compose_turns(Vec3W<W> turn, Vec3W<W> turned) {
   const Vec3W<W> c = cross(turn, turned);

@@ -50,6 +50,27 @@ TEST(Tower, OfFortyStandsAMinuteAwake) {
   EXPECT_TRUE(limit_row("40 boxes for 60 s: sink (m)", std::fabs(r.sink), 0.45, 1e-2));
 }
 
+// Boxes that were set down a little deep, or a little high, come to rest where their surfaces touch.
+TEST(Tower, RestsOnItsSurfaces) {
+  for (const double gap : {-1e-3, -1e-4, 1e-4, 1e-3}) {
+    World world = make_world({.sleeping = false});
+    add_ground(world);
+    const std::vector<BodyId> boxes = tower(world, 5);
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      Pose pose = world.pose(boxes[i]);
+      pose.position.y += gap * double(i + 1);
+      world.set_pose(boxes[i], pose);
+    }
+    run(world, 5.0);
+    double worst = 0.0;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      worst = std::max(worst, std::fabs(world.pose(boxes[i]).position.y - (double(i) + 0.5)));
+    }
+    std::printf("[row] gap at the start %g m\n", gap);
+    EXPECT_TRUE(limit_row("five boxes at rest off their places (m)", worst, 1e-4, 1e-5));
+  }
+}
+
 TEST(Tower, ReadsItsOwnWeight) {
   for (const bool sleeping : {false, true}) {
     World world = make_world({.sleeping = sleeping});
