@@ -250,4 +250,17 @@ class Array {
   std::size_t capacity_ = 0;
 };
 
+// The index of an item that is not in use: the last of those given back in `free`, or of a new one. What it holds is the caller's to
+// set.
+template <class T>
+std::uint32_t take_place(Array<T>& items, Array<std::uint32_t>& free) {
+  if (free.empty()) {
+    items.emplace_back();
+    return std::uint32_t(items.size() - 1);
+  }
+  const std::uint32_t index = free.back();
+  free.pop_back();
+  return index;
+}
+
 }  // namespace gyre

@@ -123,13 +123,7 @@ class BoxBuckets {
   };
 
   std::uint32_t make_chunk() {
-    std::uint32_t index = std::uint32_t(chunks_.size());
-    if (free_.empty()) {
-      chunks_.emplace_back();
-    } else {
-      index = free_.back();
-      free_.pop_back();
-    }
+    const std::uint32_t index = take_place(chunks_, free_);
     for (std::uint32_t lane = 0; lane < kWidth; ++lane) clear_lane_box(chunks_[index], int(lane));
     chunks_[index].next = kNone;
     chunks_[index].count = 0;

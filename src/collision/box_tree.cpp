@@ -84,13 +84,7 @@ Aabb BoxTree::bounds_of(const Node& node) {
 }
 
 std::uint32_t BoxTree::make_node(int level) {
-  std::uint32_t index = std::uint32_t(nodes_.size());
-  if (free_.empty()) {
-    nodes_.emplace_back();
-  } else {
-    index = free_.back();
-    free_.pop_back();
-  }
+  const std::uint32_t index = take_place(nodes_, free_);
   Node& node = nodes_[index];
   for (int lane = 0; lane < kWidth; ++lane) {
     clear_lane_box(node, lane);

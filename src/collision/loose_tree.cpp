@@ -21,13 +21,7 @@ float multiple_below(float x, float side) {
 
 template <int kAxes>
 std::uint32_t LooseTree<kAxes>::make_node(const Cell& cell, int level) {
-  std::uint32_t index = std::uint32_t(nodes_.size());
-  if (free_.empty()) {
-    nodes_.emplace_back();
-  } else {
-    index = free_.back();
-    free_.pop_back();
-  }
+  const std::uint32_t index = take_place(nodes_, free_);
   Node& node = nodes_[index];
   node = Node();
   node.cell = cell;

@@ -9,13 +9,7 @@ namespace gyre {
 
 template <class Splitter>
 std::uint32_t SplitTree<Splitter>::make_node(std::uint32_t parent) {
-  std::uint32_t index = std::uint32_t(nodes_.size());
-  if (free_.empty()) {
-    nodes_.emplace_back();
-  } else {
-    index = free_.back();
-    free_.pop_back();
-  }
+  const std::uint32_t index = take_place(nodes_, free_);
   nodes_[index] = Node();
   nodes_[index].parent = parent;
   constexpr float kEnd = std::numeric_limits<float>::infinity();
