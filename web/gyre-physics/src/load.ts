@@ -56,7 +56,7 @@ const variants: Record<Build, () => Promise<Variant>> = {
 };
 
 async function unpack(variant: Variant): Promise<Uint8Array<ArrayBuffer>> {
-  const text = atob(variant.wasm);
+  const text = variant.compressed ? atob(variant.wasm) : variant.wasm;
   const bytes = new Uint8Array(text.length);
   for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
   if (!variant.compressed) return bytes;
