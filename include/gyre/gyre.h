@@ -3,6 +3,7 @@
 
 #include <gyre/defs.h>
 #include <gyre/events.h>
+#include <gyre/fields.h>
 #include <gyre/geometry.h>
 #include <gyre/ids.h>
 #include <gyre/math.h>

@@ -7,6 +7,7 @@
 
 #include <gyre/defs.h>
 #include <gyre/events.h>
+#include <gyre/fields.h>
 #include <gyre/ids.h>
 #include <gyre/math.h>
 #include <gyre/queries.h>
@@ -85,6 +86,8 @@ class World {
   bool remove_shape(ShapeId shape);
   JointId add_joint(const JointDef& joint);
   bool remove_joint(JointId joint);
+  FieldId add_field(const FieldDef& field);  // wakes everything, as every change of fields does
+  bool remove_field(FieldId field);
 
   // --------------------------------------------------------------------------------------------------------- change
   bool set_pose(BodyId body, const Pose& pose);  // teleports: velocity is kept, contacts are found anew
@@ -98,6 +101,7 @@ class World {
   bool set_material(ShapeId shape, const Material& material);
   bool set_material_pair(const MaterialPair& pair);
   bool set_surface_rule(const SurfaceRule& rule);  // replaces the rule of the same id; wakes everything
+  bool set_field(FieldId field, const FieldDef& def);
   bool set_filter(ShapeId shape, const Filter& filter);
   bool set_motor(JointId joint, const Motor& motor);
   bool set_sleeping(bool enabled);
@@ -119,6 +123,9 @@ class World {
   bool add_impulse_at(BodyId body, Vec3 impulse, DVec3 point);
   bool add_angular_impulse(BodyId body, Vec3 impulse);        // N m s
 
+  // Pushes every dynamic body that it reaches, at once; see ExplosionDef. Bodies in its way are those of now.
+  bool explode(const ExplosionDef& explosion);
+
   // Moves the world on. `seconds` above 0 and at most 1; false and a problem otherwise.
   bool step(float seconds);
 
@@ -126,6 +133,7 @@ class World {
   bool exists(BodyId body) const;
   bool exists(ShapeId shape) const;
   bool exists(JointId joint) const;
+  bool exists(FieldId field) const;
   // Of a stale id: the zero value.
   Pose pose(BodyId body) const;
   DVec3 center_of_mass(BodyId body) const;  // world
@@ -142,6 +150,10 @@ class World {
   Transform local_transform(ShapeId shape) const;
   Material material(ShapeId shape) const;
   JointReading joint_reading(JointId joint) const;
+  // As it acts: directions of length 1, the density that holds.
+  FieldDef field(FieldId field) const;
+  // Copies up to out.size() fields, by index; returns how many there are.
+  std::size_t fields(std::span<FieldId> out) const;
 
   BodyColumns bodies() const;        // every body
   BodyColumns awake_bodies() const;  // those that moved or could have

@@ -136,6 +136,23 @@ void fields(C& c, T& v) {
   auto& [id, material, velocity, one_way] = v;
   all(c, id, material, velocity, one_way);
 }
+template <class C, Is<FieldBounds> T>
+void fields(C& c, T& v) {
+  auto& [low, high] = v;
+  all(c, low, high);
+}
+template <class C, Is<FieldDef> T>
+void fields(C& c, T& v) {
+  auto& [kind, bounds, layers, velocity, density, drag_coefficient, linear_drag, turbulence, turbulence_length, center,
+         strength, radius, falloff, core, axis, normal, offset] = v;
+  all(c, kind, bounds, layers, velocity, density, drag_coefficient, linear_drag, turbulence, turbulence_length, center,
+      strength, radius, falloff, core, axis, normal, offset);
+}
+template <class C, Is<ExplosionDef> T>
+void fields(C& c, T& v) {
+  auto& [center, pressure, reference, falloff, radius, occlusion, layers] = v;
+  all(c, center, pressure, reference, falloff, radius, occlusion, layers);
+}
 template <class C, Is<Filter> T>
 void fields(C& c, T& v) {
   auto& [layer, collides_with, group] = v;
@@ -188,14 +205,14 @@ concept IsOneOf = (Is<T, Of> || ...);
 
 template <class C, class T>
 requires IsOneOf<T, RemoveBody, RemoveShape, AddJoint, RemoveJoint, SetGravity, SetMaterialPair, SetSurfaceRule, SetSleeping,
-                 SetSubsteps, Step>
+                 SetSubsteps, AddField, RemoveField, Explode, Step>
 void fields(C& c, T& v) {
   auto& [only] = v;
   all(c, only);
 }
 template <class C, class T>
 requires IsOneOf<T, AddBody, AddShape, SetPose, SetType, SetGravityScale, SetMaterial, SetFilter, SetMotor,
-                 SetAwake, SetCombineRules>
+                 SetAwake, SetField, SetCombineRules>
 void fields(C& c, T& v) {
   auto& [first, second] = v;
   all(c, first, second);

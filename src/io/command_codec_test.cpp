@@ -72,7 +72,11 @@ std::vector<Command> all_commands() {
           AddImpulse{body, {1, 2, 3}, {4, 5, 6}},
           Step{0.25f},
           SetCombineRules{CombineRule::minimum, CombineRule::product},
-          SetSurfaceRule{{4, {.static_friction = 0.1f, .id = 4}, {1, 2, 3}, {0, 1, 0}}}};
+          SetSurfaceRule{{4, {.static_friction = 0.1f, .id = 4}, {1, 2, 3}, {0, 1, 0}}},
+          AddField{{.kind = FieldKind::vortex, .bounds = FieldBounds{{1, 2, 3}, {4, 5, 6}}, .strength = 7, .axis = {0, 0, 1}}},
+          SetField{{1, 1, 1}, {.kind = FieldKind::buoyancy, .density = 900, .offset = 2}},
+          RemoveField{{1, 1, 1}},
+          Explode{{.center = {1, 2, 3}, .pressure = 4, .occlusion = false}}};
 }
 
 TEST(CommandCodec, EveryCommandComesBack) {

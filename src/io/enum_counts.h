@@ -5,6 +5,7 @@
 #include "io/bytes.h"
 
 #include <gyre/defs.h>
+#include <gyre/fields.h>
 
 namespace gyre {
 
@@ -16,6 +17,8 @@ template <>
 inline constexpr int kEnumCount<JointKind> = int(JointKind::distance) + 1;
 template <>
 inline constexpr int kEnumCount<CombineRule> = int(CombineRule::product) + 1;
+template <>
+inline constexpr int kEnumCount<FieldKind> = int(FieldKind::buoyancy) + 1;
 template <>
 inline constexpr int kEnumCount<ProxyMotion> = int(ProxyMotion::moving) + 1;
 

@@ -49,7 +49,7 @@ struct ColumnLayout<std::vector<AnyShape>> {
 // A column that came after the first format and is empty is not written, and one that is not there is empty: older snapshots
 // open, and those without what is new are as they were.
 template <class Column>
-constexpr bool is_later_column = std::is_same_v<Column, Array<SurfaceRule>>;
+constexpr bool is_later_column = std::is_same_v<Column, Array<SurfaceRule>> || std::is_same_v<Column, Array<FieldRecord>>;
 template <class Column>
 bool is_left_out(const Column& column) {
   if constexpr (is_later_column<Column>) return column.empty();

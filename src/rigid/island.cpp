@@ -95,6 +95,16 @@ Rest find_rest(const RigidWorld& w, std::uint32_t body, float pull) {
   rest.speed = length(motion.linear_velocity) + reach * length(motion.angular_velocity);
   rest.pushed = motion.pushed;
   rest.rest_speed = kRestShare * std::sqrt((pull > 0.0f ? pull : 9.81f) * reach);
+  if (body < w.field_rest.size() && w.field_rest[body].acts != kNoFields) {
+    // What only turns round in a field is slow for a moment: at rest its speed must stay, too. And what floats comes near
+    // its place as slowly as it is near: it must be slow indeed.
+    const FieldRest& field = w.field_rest[body];
+    constexpr float kFloatingShare = 1.0f / 200.0f;
+    if (field.acts == kFieldsAlone) rest.rest_speed *= kFloatingShare;
+    const float change = length(motion.linear_velocity - field.linear) + reach * length(motion.angular_velocity - field.angular);
+    const float most = rest.rest_speed * w.settings.last_step / kTimeToSleep;
+    rest.may = rest.may && field.is_unsteady == 0 && change <= most;
+  }
   return rest;
 }
 

@@ -8,6 +8,7 @@
 #include "collision/collide.h"
 #include "collision/contact_store.h"
 #include "rigid/body_store.h"
+#include "rigid/field_record.h"
 #include "rigid/shape_store.h"
 #include "solver/joint.h"
 
@@ -50,6 +51,14 @@ struct ScratchClocks {
   IdleClock begins, ends, hits, sensors, broken, sleep_changes;
 };
 
+// How a body that fields act on fared in a step; by body, in worlds with fields.
+constexpr std::uint8_t kNoFields = 0, kFieldsToo = 1, kFieldsAlone = 2;
+struct FieldRest {
+  Vec3 linear, angular;            // velocity as the step began
+  std::uint8_t acts = kNoFields;   // beside constraints, or alone
+  std::uint8_t is_unsteady = 0;  // a field acts that changes by itself
+};
+
 struct RigidWorld {
   BodyStore bodies;
   ShapeStore shapes;
@@ -57,6 +66,7 @@ struct RigidWorld {
   ContactStore contacts;
   Array<MaterialPair> material_pairs;  // sorted by (a, b), a <= b
   Array<SurfaceRule> surface_rules;    // sorted by id
+  Array<FieldRecord> fields;           // by slot
   RigidSettings settings;
 
   // Not state: can be rebuilt or lives for one step.
@@ -67,6 +77,8 @@ struct RigidWorld {
   Array<std::uint64_t> new_pairs;
   Array<std::uint64_t> sort_scratch;
   Array<std::uint32_t> listed;         // contacts of a shape that is looked at
+  double now = 0.0;                    // s, as the step begins: for fields that change by themselves
+  Array<FieldRest> field_rest;
   Array<std::uint8_t> refit_marks;     // by shape: got a new fat box in this step
   RigidEvents events;
   ScratchClocks clocks;

@@ -2,6 +2,7 @@
 
 #include "base/check.h"
 #include "rigid/contact_forest.h"
+#include "rigid/fields.h"
 #include "rigid/hits.h"
 #include "rigid/integrators.h"
 #include "rigid/linkages.h"
@@ -72,6 +73,7 @@ struct Solve {
   ContactForest forest{};
   TreeSolve tree_solve{};
   RollingContacts rolling{};
+  FieldSolve fields{};
 };
 
 // A run of blocks of one colour.
@@ -158,6 +160,13 @@ void gather_joints(Solve& solve) {
     s.joint_pairs.push_back({active_a ? solve.places[std::size_t(joint.body_a)] : ColoringPair::kNone,
                              active_b ? solve.places[std::size_t(joint.body_b)] : ColoringPair::kNone});
   }
+}
+
+void gather_fields(Solve& solve, Arena& arena) {
+  solve.fields = {&solve.w, {}, solve.h};
+  if (solve.w.field_rest.empty()) return;
+  solve.fields.bodies = find_field_bodies(solve.w, solve.batch.bodies, arena);
+  for (const FieldBody& field : solve.fields.bodies) touch_body(solve.w, field.body, kPlaceShown);
 }
 
 // Parts the bodies of a batch into those that constraints act on and those that fly.
@@ -434,6 +443,8 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   // is none of what contacts gave in the last one.
   const bool has_joints = linkages > 0 || !joints.empty();
   const bool is_warm = !first && impacts == 0 && !has_joints;
+  const int fields = solve.fields.blocks();
+  program.add(watch_fields_stage, &solve.fields, fields);
   program.add(watch_stage, &solve, impacts);
   program.add(is_warm ? predict_warm_stage : predict_cold_stage, &solve, bodies, kMotionBlocksPerClaim);
   program.add(strike_stage, &solve, impacts);
@@ -446,6 +457,9 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
     program.add_groups(warm_contacts_stage, contacts, 1, kBlocksPerClaim);
     program.add(note_stage, &solve, bodies, kMotionBlocksPerClaim);
   }
+  // What contacts and joints gave in the last part is in the velocities by now: a stream pulls at what really moves.
+  program.add(apply_fields_stage, &solve.fields, fields);
+  if (fields > 0) program.add(watch_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
   program.add_groups(solve_joints_stage, joints, kJointsPerBlock, 1);
   program.add(linkage_stage<solve_linkage>, &solve, linkages);
   if (has_joints) program.add(watch_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
@@ -465,14 +479,15 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
 
 void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> joints, Arena& arena, TaskSystem& tasks) {
   const int parts = solve.motions.count;
-  const std::size_t per_part = 18 + 5 * joints.size() + 2 * contacts.size();
+  const std::size_t per_part = 21 + 5 * joints.size() + 2 * contacts.size();
   ProgramWriter program(
-      arena.make<Stage>(9 + std::size_t(parts) * per_part + 2 * contacts.size() + joints.size()));
+      arena.make<Stage>(10 + std::size_t(parts) * per_part + 2 * contacts.size() + joints.size()));
   std::uint32_t blocks = 0;
   for (const Group& group : contacts) blocks += group.count;
   const int bodies = count_blocks(int(solve.moved.size()), solve.kernels.width);
   program.add(fly_stage, &solve, count_blocks(int(solve.flying.size()), kBodiesPerBlock));
   program.add(prepare_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
+  program.add(prepare_fields_stage, &solve.fields, solve.fields.blocks());
   program.add(prepare_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
   program.add_groups(place_joints_stage, joints, kJointsPerBlock, 1);
   program.add(linkage_stage<place_linkage>, &solve, int(solve.linkages.linkages.size()));
@@ -510,6 +525,7 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   solve.linkages = find_linkages(solve.w, solve.batch, solve.places, arena);
   gather_joints(solve);
   solve.rolling = find_rolling_contacts(solve.w, scratch, solve.contact_settings.step, arena);
+  gather_fields(solve, arena);
   const std::uint32_t bodies = std::uint32_t(solve.batch.bodies.size());
   color_constraints(scratch.pairs, bodies, {}, kColoringOptions, scratch.contact_colors);
   color_constraints(scratch.joint_pairs, bodies, {}, kColoringOptions, scratch.joint_colors);
@@ -549,6 +565,8 @@ void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& 
     w.bodies.motion[body].turned = {};
     w.bodies.motion[body].pushed = 0.0f;
   }
+  w.field_rest.clear();
+  if (!w.fields.empty()) w.field_rest.resize(w.bodies.motion.size());
   Solve solve{w, scratch, kernels};
   solve.h = h;
   solve.motions = {kParts * w.settings.substeps, h, w.settings.gravity};

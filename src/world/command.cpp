@@ -6,6 +6,7 @@
 #include "math/rotation.h"
 #include "rigid/island.h"
 #include "rigid/rigid_step.h"
+#include "world/field_commands.h"
 #include "world/world_state.h"
 
 namespace gyre {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <gyre/defs.h>
+#include <gyre/fields.h>
 #include <gyre/result.h>
 
 #include <variant>
@@ -100,6 +101,19 @@ struct SetCombineRules {
   CombineRule friction = CombineRule::geometric_mean;
   CombineRule restitution = CombineRule::maximum;
 };
+struct AddField {
+  FieldDef def;
+};
+struct SetField {
+  FieldId field;
+  FieldDef def;
+};
+struct RemoveField {
+  FieldId field;
+};
+struct Explode {
+  ExplosionDef def;
+};
 struct Step {
   float seconds = 0;
 };
@@ -108,7 +122,7 @@ struct Step {
 using Command = std::variant<AddBody, RemoveBody, AddShape, RemoveShape, AddJoint, RemoveJoint, SetPose, SetVelocity,
                              MoveKinematic, SetType, SetGravity, SetGravityScale, SetDamping, SetMaterial, SetMaterialPair,
                              SetFilter, SetMotor, SetSleeping, SetAwake, SetSubsteps, AddForce, AddImpulse, Step, SetCombineRules,
-                             SetSurfaceRule>;
+                             SetSurfaceRule, AddField, SetField, RemoveField, Explode>;
 
 // What a command gave back: whether it was done, and the id of what it made.
 struct Submitted {
@@ -116,6 +130,7 @@ struct Submitted {
   BodyId body;
   ShapeId shape;
   JointId joint;
+  FieldId field{};
 };
 
 // Checks the command, shows it to the log, does it. A command that is refused changes nothing and is one problem.

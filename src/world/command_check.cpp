@@ -1,4 +1,5 @@
 // What every command must hold before it is carried out. The message names object, field, value and allowed range.
+#include "world/field_commands.h"
 #include "world/world_state.h"
 
 #include <cstdio>

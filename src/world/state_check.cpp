@@ -1,5 +1,6 @@
 // Whether columns that came from outside hang together: every index leads somewhere, every ring closes, every count has
 // its room. A state that passes can be stepped without harm, however strange its numbers are.
+#include "world/field_commands.h"
 #include "world/world_state.h"
 
 namespace gyre {
@@ -136,6 +137,7 @@ const char* fault_in_rules(std::span<const SurfaceRule> rules) {
 const char* fault_in(const RigidWorld& w) {
   const char* fault = fault_in_settings(w.settings);
   if (fault == nullptr) fault = fault_in_rules(w.surface_rules.view());
+  if (fault == nullptr) fault = fault_in_fields(w.fields.view());
   if (fault == nullptr) fault = fault_in_sizes(w);
   if (fault != nullptr) return fault;
   for (std::uint32_t i = 0; fault == nullptr && i < w.bodies.ids.capacity(); ++i)

@@ -59,6 +59,13 @@ template <Is<SurfaceRule> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.id), for_each_field(r.material, f), for_each_field(r.velocity, f), for_each_field(r.one_way, f);
 }
+template <Is<FieldRecord> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.generation), f(r.kind), f(r.has_bounds), f(r.layers), for_each_field(r.low, f), for_each_field(r.high, f);
+  for_each_field(r.velocity, f), f(r.density), f(r.drag_coefficient), f(r.linear_drag), f(r.turbulence), f(r.turbulence_length);
+  for_each_field(r.center, f), f(r.strength), f(r.radius), f(r.falloff), f(r.core);
+  for_each_field(r.axis, f), for_each_field(r.normal, f), f(r.offset);
+}
 template <Is<BodyMotion> T, class F>
 void for_each_field(T& r, F&& f) {
   // `moved` and `turned` live for a step only; the inverse mass follows from the mass.

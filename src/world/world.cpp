@@ -46,6 +46,10 @@ bool World::set_damping(BodyId body, float linear, float angular) {
 bool World::set_material(ShapeId shape, const Material& material) { return submit(*state_, SetMaterial{shape, material}).done; }
 bool World::set_material_pair(const MaterialPair& pair) { return submit(*state_, SetMaterialPair{pair}).done; }
 bool World::set_surface_rule(const SurfaceRule& rule) { return submit(*state_, SetSurfaceRule{rule}).done; }
+FieldId World::add_field(const FieldDef& field) { return submit(*state_, AddField{field}).field; }
+bool World::set_field(FieldId field, const FieldDef& def) { return submit(*state_, SetField{field, def}).done; }
+bool World::remove_field(FieldId field) { return submit(*state_, RemoveField{field}).done; }
+bool World::explode(const ExplosionDef& explosion) { return submit(*state_, Explode{explosion}).done; }
 bool World::set_filter(ShapeId shape, const Filter& filter) { return submit(*state_, SetFilter{shape, filter}).done; }
 bool World::set_motor(JointId joint, const Motor& motor) { return submit(*state_, SetMotor{joint, motor}).done; }
 bool World::set_sleeping(bool enabled) { return submit(*state_, SetSleeping{enabled}).done; }

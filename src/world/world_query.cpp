@@ -5,6 +5,7 @@
 #include "base/float_mode.h"
 #include "collision/query.h"
 #include "task/parallel.h"
+#include "world/query_sight.h"
 #include "world/world_state.h"
 
 namespace gyre {
@@ -281,6 +282,23 @@ Error answer_all(WorldState& s, std::span<const Question> questions, std::span<A
 }
 
 }  // namespace
+
+bool is_in_sight(WorldState& s, DVec3 from, DVec3 to, std::uint32_t body) {
+  QueryFilter filter;
+  filter.ignored = body_id(s.rigid, body);
+  filter.back_faces = true;
+  const Ray ray{from, difference(to, from)};
+  if (!is_fine(check_ray(ray))) return false;
+  show_changes(s);
+  bool hidden = false;
+  ask_world(s, filter, [&](const QueryInput& input) {
+    cast(input, ray, [&](const ShapeHit& hit) {
+      hidden = hidden || !hit.inside;
+      return hidden ? -1.0 : 1.0;
+    });
+  });
+  return !hidden;
+}
 
 Error check_ray(const Ray& ray) {
   const Error e = check_vector("ray", "origin", ray.origin);

@@ -3,6 +3,7 @@
 
 #include "base/float_mode.h"
 #include "rigid/surface_rules.h"
+#include "world/field_commands.h"
 #include "world/world_state.h"
 
 namespace gyre {
@@ -106,6 +107,21 @@ Transform World::local_transform(ShapeId shape) const {
 }
 Material World::material(ShapeId shape) const {
   return exists(shape) ? state_->rigid.shapes.materials[shape.index] : Material{};
+}
+
+bool World::exists(FieldId field) const { return is_field(*state_, field); }
+FieldDef World::field(FieldId field) const {
+  return is_field(*state_, field) ? field_def(state_->rigid.fields[field.index]) : FieldDef{};
+}
+std::size_t World::fields(std::span<FieldId> out) const {
+  const Array<FieldRecord>& fields = state_->rigid.fields;
+  std::size_t count = 0;
+  for (std::uint32_t slot = 0; slot < fields.size(); ++slot) {
+    if (!fields[slot].is_live()) continue;
+    if (count < out.size()) out[count] = {slot, std::uint16_t(fields[slot].generation), state_->number};
+    ++count;
+  }
+  return count;
 }
 
 JointReading World::joint_reading(JointId id) const {

@@ -96,6 +96,7 @@ void for_each_column(State& s, Visitor&& visit) {
   visit("settings", s.rigid.settings);
   visit("material_pairs", s.rigid.material_pairs);
   visit("surface_rules", s.rigid.surface_rules);
+  visit("fields", s.rigid.fields);
   visit("body_ids", s.rigid.bodies.ids);
   visit("body_motion", s.rigid.bodies.motion);
   visit("body_places", s.rigid.bodies.places);

@@ -1,0 +1,126 @@
+// Explosions: blows on the surfaces that face a point. Bodies are independent of each other, and go by slot.
+//
+// Occlusion is asked with rays: from the center to the middle of each body's shapes and to eight points of its surface. The
+// share of those that arrive is the share of the blow.
+#include "geometry/surface_patches.h"
+#include "math/rotation.h"
+#include "math/trig.h"
+#include "rigid/island.h"
+#include "world/field_commands.h"
+#include "world/query_sight.h"
+#include "world/world_state.h"
+
+namespace gyre {
+
+namespace {
+
+struct Blow {
+  DVec3 linear, angular;  // N s, N m s about the centre of mass
+};
+
+// Pressure at a distance (m), Pa s.
+double pressure_at(const ExplosionDef& def, double distance) {
+  if (distance > double(def.radius)) return 0.0;
+  const double ratio = double(def.reference) / max(distance, double(def.reference));
+  const double n = double(def.falloff);
+  const double share = n == 0.0 ? 1.0 : n == 1.0 ? ratio : n == 2.0 ? ratio * ratio : exp(n * log(ratio));
+  return double(def.pressure) * share;
+}
+
+struct ShapeAt {
+  const Shape* shape;
+  DVec3 origin;  // world
+  DQuat turn;
+};
+ShapeAt shape_at(const RigidWorld& w, std::uint32_t shape) {
+  const BodyPlace& place = w.bodies.places[w.shapes.bodies[shape]];
+  const Transform& local = w.shapes.places[shape];
+  const DQuat body = normalized(to_double(place.orientation));
+  const DVec3 from_center = DVec3(local.position) - DVec3(w.bodies.masses[w.shapes.bodies[shape]].center);
+  return {&w.shapes.colliders[shape].shape, place.center + rotate(body, from_center), body * to_double(local.orientation)};
+}
+
+// Sums of round shapes over patches miss their shadow by a little: this makes it right for a far explosion.
+double shadow_scale(const ShapeAt& at, DVec3 center) {
+  const ShapeKind kind = at.shape->kind;
+  const DVec3 from = rotate_inverse(at.turn, at.origin - center);
+  const double distance = length(from);
+  if (kind == ShapeKind::box || kind == ShapeKind::hull || !(distance > 0.0)) return 1.0;
+  const DVec3 way = from / distance;
+  double facing = 0.0;
+  for_each_patch(*at.shape, {0, 1, 0}, double(kUnbounded),
+                 [&](const SurfacePatch& patch) { facing += max(-dot(way, patch.normal), 0.0) * patch.area; });
+  return facing > 0.0 ? projected_area(*at.shape, way) / facing : 1.0;
+}
+
+Blow blow_on(const RigidWorld& w, std::uint32_t body, const ExplosionDef& def) {
+  Blow blow;
+  for (const ShapeId id : w.bodies.shapes[body]) {
+    const Proxy& proxy = w.shapes.proxies[id.index];
+    if (proxy.sensor || (proxy.filter.layer & def.layers) == 0) continue;
+    const ShapeAt at = shape_at(w, id.index);
+    const double scale = shadow_scale(at, def.center);
+    for_each_patch(*at.shape, {0, 1, 0}, double(kUnbounded), [&](const SurfacePatch& patch) {
+      const DVec3 place = at.origin + rotate(at.turn, patch.place);
+      const DVec3 from = place - def.center;
+      const double distance = length(from);
+      if (!(distance > 0.0)) return;
+      const double facing = -dot(from, rotate(at.turn, patch.normal)) / distance;
+      if (facing <= 0.0) return;
+      const DVec3 push = (scale * pressure_at(def, distance) * facing * patch.area / distance) * from;
+      blow.linear += push;
+      blow.angular += cross(place - w.bodies.places[body].center, push);
+    });
+  }
+  return blow;
+}
+
+// The share of the body that the center sees.
+double seen_share(WorldState& s, std::uint32_t body, DVec3 center) {
+  const RigidWorld& w = s.rigid;
+  int asked = 0, seen = 0;
+  for (const ShapeId id : w.bodies.shapes[body]) {
+    if (w.shapes.proxies[id.index].sensor) continue;
+    const ShapeAt at = shape_at(w, id.index);
+    const Aabb box = bounds(*at.shape, {});
+    const DVec3 middle = 0.5 * (DVec3(box.low) + DVec3(box.high)), half = 0.5 * (DVec3(box.high) - DVec3(box.low));
+    for (int corner = -1; corner < 8; ++corner) {
+      DVec3 point = middle;
+      // Within the shape's box at half its size each way: inside of most shapes.
+      if (corner >= 0) {
+        point += DVec3{(corner & 1) != 0 ? 0.5 * half.x : -0.5 * half.x, (corner & 2) != 0 ? 0.5 * half.y : -0.5 * half.y,
+                       (corner & 4) != 0 ? 0.5 * half.z : -0.5 * half.z};
+      }
+      ++asked;
+      seen += is_in_sight(s, center, at.origin + rotate(at.turn, point), body) ? 1 : 0;
+    }
+  }
+  return asked > 0 ? double(seen) / asked : 0.0;
+}
+
+}  // namespace
+
+Submitted carry_out(WorldState& s, const Explode& c) {
+  RigidWorld& w = s.rigid;
+  const ExplosionDef& def = c.def;
+  w.bodies.ids.for_each_live([&](std::uint32_t body) {
+    if (!is_movable(w.bodies.flags[body])) return;
+    const double distance = length(w.bodies.places[body].center - def.center);
+    if (distance > double(def.radius) + double(w.bodies.masses[body].reach)) return;
+    Blow blow = blow_on(w, body, def);
+    if (blow.linear == DVec3{} && blow.angular == DVec3{}) return;
+    const double share = def.occlusion ? seen_share(s, body, def.center) : 1.0;
+    if (share == 0.0) return;
+    const BodyInertia& inertia = w.bodies.inertia[body];
+    BodyMotion& motion = w.bodies.motion[body];
+    const Vec3 linear = motion.linear_velocity + inertia.inverse_mass * to_float(share * blow.linear);
+    const Vec3 angular = motion.angular_velocity + inertia.inverse * to_float(share * blow.angular);
+    if (!is_finite(linear) || !is_finite(angular)) return;
+    wake(w, body);
+    motion.linear_velocity = linear + Vec3{};
+    motion.angular_velocity = angular + Vec3{};
+  });
+  return {true, {}, {}, {}};
+}
+
+}  // namespace gyre

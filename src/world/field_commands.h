@@ -1,0 +1,26 @@
+// Commands about fields, and explosions: checked and carried out like those of command.h.
+#pragma once
+
+#include "rigid/field_record.h"
+#include "world/command.h"
+
+#include <span>
+
+namespace gyre {
+
+Error check(const WorldState& state, const AddField& c);
+Error check(const WorldState& state, const SetField& c);
+Error check(const WorldState& state, const RemoveField& c);
+Error check(const WorldState& state, const Explode& c);
+
+Submitted carry_out(WorldState& state, const AddField& c);
+Submitted carry_out(WorldState& state, const SetField& c);
+Submitted carry_out(WorldState& state, const RemoveField& c);
+Submitted carry_out(WorldState& state, const Explode& c);
+
+// Whether the field of an id exists.
+bool is_field(const WorldState& state, FieldId id);
+// Why fields that came from outside cannot be a state; null if they can.
+const char* fault_in_fields(std::span<const FieldRecord> fields);
+
+}  // namespace gyre
