@@ -5,6 +5,7 @@
 #pragma once
 
 #include <gyre/defs.h>
+#include <gyre/fields.h>
 
 #include <cstdint>
 #include <optional>
@@ -110,6 +111,12 @@ struct SceneJoint {
   int a = -1, b = -1;  // bodies; -1 is the world
 };
 
+// Goes off in the first step that begins at `start` or later.
+struct SceneExplosion {
+  ExplosionDef def;
+  double start = 0.0;  // s
+};
+
 struct Scene {
   std::string name;
   SceneWorld world;
@@ -119,6 +126,8 @@ struct Scene {
   std::vector<SceneMesh> meshes;
   std::vector<SceneBody> bodies;
   std::vector<SceneJoint> joints;
+  std::vector<FieldDef> fields;
+  std::vector<SceneExplosion> explosions;
 };
 
 }  // namespace gyre

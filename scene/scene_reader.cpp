@@ -207,7 +207,12 @@ void read_scene_object(SceneReading& reading, const Field& root) {
   refuse_section(members, "soft_bodies", "soft bodies");
   refuse_section(members, "gases", "gases");
   refuse_section(members, "liquids", "liquids");
-  refuse_section(members, "force_fields", "force fields");
+  if (const auto fields = members.find("force_fields")) {
+    const std::size_t count = fields->array("an array of force fields");
+    constexpr std::size_t kMostFields = 10000;
+    if (count > kMostFields) fields->expected("at most 10000 force fields");
+    for (std::size_t i = 0; i < count; ++i) read_field(reading, fields->element(i));
+  }
   members.finish();
 }
 

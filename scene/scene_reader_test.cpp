@@ -326,7 +326,7 @@ TEST(SceneReader, RefusesWhatIsWrongInAJoint) {
 }
 
 TEST(SceneReader, RefusesMatterThatThisVersionDoesNotHave) {
-  for (const char* section : {"cloths", "ropes", "soft_bodies", "gases", "liquids", "force_fields"}) {
+  for (const char* section : {"cloths", "ropes", "soft_bodies", "gases", "liquids"}) {
     const std::string quoted = std::string("\"") + section + "\": ";
     expect_refused(
         {scene_with(quoted + R"([{"name": "x"}])"), std::string("/") + section + "/0", {"not supported"}});

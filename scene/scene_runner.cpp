@@ -62,6 +62,11 @@ void SceneRunner::apply_forces() {
   // The step begins at a multiple of the time step; what is left of rounding must not move a window by a step.
   const double slack = 1.0e-4 * scene_.world.time_step;
   const double now = time() + slack;
+  for (const SceneExplosion& explosion : scene_.explosions) {
+    // In the first step alone what was to begin before it.
+    const bool is_due = now >= explosion.start && (now - scene_.world.time_step < explosion.start || steps() == 0);
+    if (is_due) world_.explode(explosion.def);
+  }
   for (const std::size_t i : forced_) {
     const BodyId id = bodies_[i];
     if (!world_.exists(id)) continue;
@@ -168,6 +173,15 @@ Scene SceneRunner::final_scene() const {
     if (joint.a >= 0) joint.a = places[std::size_t(joint.a)];
     if (joint.b >= 0) joint.b = places[std::size_t(joint.b)];
     out.joints.push_back(std::move(joint));
+  }
+  out.fields.clear();
+  std::vector<FieldId> fields(world_.fields({}));
+  world_.fields(fields);
+  for (const FieldId id : fields) out.fields.push_back(world_.field(id));
+  out.explosions.clear();
+  for (SceneExplosion explosion : scene_.explosions) {
+    explosion.start -= time();
+    if (explosion.start > -1.0e-4 * scene_.world.time_step || steps() == 0) out.explosions.push_back(explosion);
   }
   for (SceneMesh& mesh : out.meshes) mesh.file.clear();
   return out;

@@ -510,10 +510,27 @@ constexpr char kPart2[] = R"json(        "area_density": { "$ref": "#/$defs/posi
       "required": ["type"],
       "additionalProperties": false,
       "properties": {
-        "type": { "enum": ["wind", "radial", "vortex", "drag"] },
-        "velocity": { "$ref": "#/$defs/vector" },
-        "turbulence": { "$ref": "#/$defs/not_negative" },
-        "bounds": { "anyOf": [{ "type": "null" }, { "$ref": "#/$defs/box" }] }
+        "type": { "enum": ["wind", "radial", "vortex", "drag", "buoyancy", "explosion"] },
+        "bounds": { "anyOf": [{ "type": "null" }, { "$ref": "#/$defs/box" }], "description": "where it acts, by centre of mass; null: everywhere" },
+        "layers": { "type": ["integer", "null"], "minimum": 0, "maximum": 4294967295, "default": 4294967295, "description": "bodies with a shape in one of these layers" },
+        "velocity": { "$ref": "#/$defs/vector_or_null", "default": [0, 0, 0], "description": "m/s, of the medium (wind, vortex, drag, buoyancy)" },
+        "density": { "$ref": "#/$defs/not_negative_or_null", "description": "kg/m^3, of the medium; default 1.2, of buoyancy 1000" },
+        "drag_coefficient": { "$ref": "#/$defs/not_negative_or_null", "default": 1, "description": "of the drag by shape, with the square of the speed" },
+        "linear_drag": { "$ref": "#/$defs/not_negative_or_null", "default": 0, "description": "1/s: velocity and spin against the medium die away at this rate besides" },
+        "turbulence": { "$ref": "#/$defs/not_negative_or_null", "default": 0, "description": "wind: root mean square of the gusts over the mean speed" },
+        "turbulence_length": { "$ref": "#/$defs/positive_or_null", "default": 10, "description": "wind: m, size of the gusts" },
+        "center": { "$ref": "#/$defs/vector_or_null", "default": [0, 0, 0], "description": "radial, vortex, explosion" },
+        "strength": { "type": ["number", "null"], "default": 0, "description": "at the radius: radial m/s^2 towards the center, vortex m/s about the axis" },
+        "radius": { "$ref": "#/$defs/not_negative_or_null", "default": 1, "description": "m; explosion: nothing farther away is hit, default 10" },
+        "falloff": { "type": ["number", "null"], "minimum": -4, "maximum": 4, "default": 2, "description": "radial, explosion: power of the distance" },
+        "core": { "$ref": "#/$defs/not_negative_or_null", "default": 0, "description": "radial: m, within which it weakens" },
+        "axis": { "$ref": "#/$defs/vector_or_null", "default": [0, 1, 0], "description": "vortex" },
+        "normal": { "$ref": "#/$defs/vector_or_null", "default": [0, 1, 0], "description": "buoyancy: up from the surface" },
+        "offset": { "type": ["number", "null"], "default": 0, "description": "buoyancy: m, the surface is where dot(normal, p) = offset" },
+        "pressure": { "type": ["number", "null"], "default": 100, "description": "explosion: Pa s at the reference distance" },
+        "reference": { "$ref": "#/$defs/positive_or_null", "default": 1, "description": "explosion: m" },
+        "occlusion": { "type": ["boolean", "null"], "default": true, "description": "explosion: bodies hide others" },
+        "start": { "type": ["number", "null"], "default": 0, "description": "explosion: s, it goes off in the first step that begins then or later" }
       }
     }
   }

@@ -72,6 +72,7 @@ std::string wrapped(const std::string& definition, const std::string& members) {
     return start + R"("bodies": [{"name": "b", "shapes": [{"type": "sphere", "radius": 1, )" + members +
            "}]}]}";
   }
+  if (definition == "force_field") return start + R"("force_fields": [{"type": "wind", )" + members + "}]}";
   if (definition == "force") return start + R"("bodies": [{"name": "b", "forces": [{)" + members + "}]}]}";
   const std::string joint =
       start +
@@ -85,7 +86,7 @@ TEST(SceneSchema, TheReaderKnowsEveryMember) {
   const Json schema = parse(scene_schema());
   int members = 0;
   for (const char* definition :
-       {"world", "view", "material", "material_pair", "body", "shape_common", "force", "motor", "joint"}) {
+       {"world", "view", "material", "material_pair", "body", "shape_common", "force", "force_field", "motor", "joint"}) {
     for (const auto& [member, rule] : schema["$defs"][definition]["properties"].items()) {
       if (wrapped(definition, "").find("\"" + member + "\"") != std::string::npos) continue;  // there already
       // A value that no member takes: the refusal must be about the value.
@@ -134,6 +135,11 @@ TEST(SceneSchema, BothRefuseTheSame) {
       {"shape_common", R"("half_height": 1)"},
       {"force", R"("frame": "local")"},
       {"force", R"("at": [1])"},
+      {"force_field", R"("velocity": [1])"},
+      {"force_field", R"("turbulence": -1)"},
+      {"force_field", R"("bounds": [[0, 0, 0]])"},
+      {"force_field", R"("layers": -1)"},
+      {"force_field", R"("speed": 1)"},
       {"motor", R"("max_force": -1)"},
       {"motor", R"("speed": 1)"},
       {"joint", R"("limits": [1])"},

@@ -292,6 +292,65 @@ void write_joint(JsonWriter& json, const Scene& scene, const SceneJoint& joint) 
   json.end_object();
 }
 
+void write_bounds(JsonWriter& json, const FieldBounds& bounds) {
+  json.key("bounds").begin_array(kOneLine);
+  json.value(bounds.low);
+  json.value(bounds.high);
+  json.end_array();
+}
+
+void write_medium(JsonWriter& json, const FieldDef& def) {
+  const FieldDef none;
+  unless_default(json, "velocity", def.velocity, none.velocity);
+  if_given(json, "density", def.density);
+  unless_default(json, "drag_coefficient", def.drag_coefficient, none.drag_coefficient);
+  unless_default(json, "linear_drag", def.linear_drag, none.linear_drag);
+}
+
+void write_field(JsonWriter& json, const FieldDef& def) {
+  const FieldDef none;
+  const bool is_round = def.kind == FieldKind::radial || def.kind == FieldKind::vortex;
+  json.begin_object(kOneLine);
+  json.field("type", to_string(def.kind));
+  if (def.bounds) write_bounds(json, *def.bounds);
+  if (def.layers != none.layers) json.field("layers", std::int64_t(def.layers));
+  if (def.kind != FieldKind::radial) write_medium(json, def);
+  if (def.kind == FieldKind::wind) {
+    unless_default(json, "turbulence", def.turbulence, none.turbulence);
+    unless_default(json, "turbulence_length", def.turbulence_length, none.turbulence_length);
+  }
+  if (is_round) {
+    json.field("center", def.center);
+    json.field("strength", def.strength);
+    json.field("radius", def.radius);
+  }
+  if (def.kind == FieldKind::radial) {
+    json.field("falloff", def.falloff);
+    unless_default(json, "core", def.core, none.core);
+  }
+  if (def.kind == FieldKind::vortex) json.field("axis", def.axis);
+  if (def.kind == FieldKind::buoyancy) {
+    json.field("normal", def.normal);
+    json.field("offset", def.offset);
+  }
+  json.end_object();
+}
+
+void write_explosion(JsonWriter& json, const SceneExplosion& explosion) {
+  const ExplosionDef& def = explosion.def;
+  json.begin_object(kOneLine);
+  json.field("type", "explosion");
+  json.field("start", explosion.start);
+  json.field("center", def.center);
+  json.field("pressure", def.pressure);
+  json.field("reference", def.reference);
+  json.field("falloff", def.falloff);
+  json.field("radius", def.radius);
+  unless_default(json, "occlusion", def.occlusion, true);
+  if (def.layers != 0xffffffffu) json.field("layers", std::int64_t(def.layers));
+  json.end_object();
+}
+
 }  // namespace
 
 std::string write_scene(const Scene& scene, const WriteOptions& options) {
@@ -322,6 +381,12 @@ std::string write_scene(const Scene& scene, const WriteOptions& options) {
   if (!scene.joints.empty()) {
     json.key("joints").begin_array();
     for (const SceneJoint& joint : scene.joints) write_joint(json, scene, joint);
+    json.end_array();
+  }
+  if (!scene.fields.empty() || !scene.explosions.empty()) {
+    json.key("force_fields").begin_array();
+    for (const FieldDef& field : scene.fields) write_field(json, field);
+    for (const SceneExplosion& explosion : scene.explosions) write_explosion(json, explosion);
     json.end_array();
   }
   json.end_object();

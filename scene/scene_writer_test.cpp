@@ -63,7 +63,15 @@ const std::string kEverything = R"({
      "min_length": 0.5, "max_length": 2, "stiffness": 100, "damping": 3},
     {"type": "distance", "a": "box", "b": "other"}
   ],
-  "cloths": [], "ropes": [], "soft_bodies": [], "gases": [], "liquids": [], "force_fields": []
+  "cloths": [], "ropes": [], "soft_bodies": [], "gases": [], "liquids": [],
+  "force_fields": [
+    {"type": "wind", "velocity": [5, 0, 0], "turbulence": 0.2, "bounds": null},
+    {"type": "wind", "velocity": [5, 1, 0], "turbulence": 0.1, "turbulence_length": 3, "bounds": [[-1, -2, -3], [1, 2, 3]], "layers": 6},
+    {"type": "radial", "center": [1, 2, 3], "strength": -4, "radius": 2, "falloff": 1.5, "core": 0.1},
+    {"type": "vortex", "center": [0, 1, 0], "axis": [0, 2, 0], "strength": 8, "radius": 1, "density": 2, "linear_drag": 0.5},
+    {"type": "drag", "drag_coefficient": 0.4, "density": null},
+    {"type": "buoyancy", "normal": [0, 1, 0], "offset": 0.5, "density": 1025, "velocity": [0.5, 0, 0]},
+    {"type": "explosion", "start": 1.5, "center": [0, 1, 0], "pressure": 50, "reference": 2, "falloff": 1, "radius": 8, "occlusion": false, "layers": 2}]
 })";
 
 TEST(SceneWriter, WritingWhatWasReadIsStable) {

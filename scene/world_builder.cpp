@@ -25,7 +25,7 @@ Overloaded(Ts...) -> Overloaded<Ts...>;
 bool WorldBuilder::build() {
   mesh_cache_.resize(scene_.meshes.size());
   hull_cache_.resize(scene_.meshes.size());
-  return add_pairs() && add_bodies() && add_joints();
+  return add_pairs() && add_bodies() && add_joints() && add_fields();
 }
 
 bool WorldBuilder::fail(std::string pointer, std::string message) {
@@ -197,6 +197,13 @@ bool WorldBuilder::add_joints() {
     const JointId id = world_.add_joint(def);
     if (!id) return fail(pointer_to("joints", i), last_refusal());
     joints_.push_back(id);
+  }
+  return true;
+}
+
+bool WorldBuilder::add_fields() {
+  for (std::size_t i = 0; i < scene_.fields.size(); ++i) {
+    if (!world_.add_field(scene_.fields[i])) return fail(pointer_to("force_fields", i), last_refusal());
   }
   return true;
 }

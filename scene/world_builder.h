@@ -27,6 +27,7 @@ class WorldBuilder {
   bool add_pairs();
   bool add_bodies();
   bool add_joints();
+  bool add_fields();
   bool make_shape(std::size_t body, std::size_t shape, ShapeDef& out);
   bool cook(const SceneHull& hull, const std::string& pointer, Geometry& out);
   bool cook(const SceneTriangles& mesh, const std::string& pointer, Geometry& out);

@@ -38,7 +38,8 @@ struct FieldBounds {
 struct FieldDef {
   FieldKind kind = FieldKind::wind;
   std::optional<FieldBounds> bounds{};  // none: everywhere
-  std::uint32_t layers = 0xffffffffu;   // bodies with a shape whose Filter::layer has a bit in it; bodies without shapes too
+  std::uint32_t layers =
+      0xffffffffu;  // bodies with a shape whose Filter::layer has a bit in it; bodies without shapes too
 
   // Wind, vortex, drag, buoyancy: the medium.
   Vec3 velocity{};                 // m/s
@@ -74,11 +75,11 @@ struct FieldDef {
 // pressure (reference / r)^falloff cos(angle) dA away from it, so bodies are thrown and turned by their shape.
 struct ExplosionDef {
   DVec3 center{};
-  float pressure = 100.0f;   // Pa s (impulse on a square metre) at the reference distance
-  float reference = 1.0f;    // m; nearer than this it grows no more
-  float falloff = 2.0f;      // 0 to 4
-  float radius = 10.0f;      // m: nothing farther away is hit
-  bool occlusion = true;     // what lies behind another body, seen from the center, is spared
+  float pressure = 100.0f;             // Pa s (impulse on a square metre) at the reference distance
+  float reference = 1.0f;              // m; nearer than this it grows no more
+  float falloff = 2.0f;                // 0 to 4
+  float radius = 10.0f;                // m: nothing farther away is hit
+  bool occlusion = true;               // what lies behind another body, seen from the center, is spared
   std::uint32_t layers = 0xffffffffu;  // bodies that are hit, as in FieldDef; all bodies hide others
 };
 

@@ -93,7 +93,8 @@ class PolyhedronCut {
 };
 
 // Corners by the signs of their coordinates (bit 0: x positive ...), counter-clockwise seen from outside.
-constexpr std::uint8_t kBoxFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+constexpr std::uint8_t kBoxFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                          {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
 
 SubmergedPart box_part(DVec3 half, DVec3 normal, double level) {
   PolyhedronCut cut(normal, level);
@@ -112,7 +113,8 @@ SubmergedPart box_part(DVec3 half, DVec3 normal, double level) {
 SubmergedPart hull_part(const Hull& hull, DVec3 normal, double level) {
   PolyhedronCut cut(normal, level);
   for (int face = 0; face < hull.face_count(); ++face) {
-    const std::uint32_t first = hull.face_offsets[std::size_t(face)], last = hull.face_offsets[std::size_t(face) + 1];
+    const std::uint32_t first = hull.face_offsets[std::size_t(face)],
+                        last = hull.face_offsets[std::size_t(face) + 1];
     cut.begin_face();
     for (std::uint32_t i = first; i < last; ++i) cut.corner(DVec3(hull.vertices[hull.face_vertices[i]]));
     cut.corner(DVec3(hull.vertices[hull.face_vertices[first]]));

@@ -22,7 +22,7 @@ constexpr Node kNodes[12] = {
 // A stretch of the axis on which the square of the radius is a polynomial of the way from `middle`.
 struct Section {
   double low, high;
-  bool ball;                // radius^2 = size^2 - (y - middle)^2, else radius = size + slope (y - middle)
+  bool ball;  // radius^2 = size^2 - (y - middle)^2, else radius = size + slope (y - middle)
   double size, slope, middle;
 
   double radius_squared(double y) const {

@@ -31,8 +31,14 @@ std::vector<Named> shapes() {
           {"cylinder", Cylinder{0.5f, 0.25f}},
           {"cone", Cone{0.4f, 0.6f}},
           {"wedge", hull_of({{0, 1, 0}, {1, 0, 0}, {-1, 0, 1}, {-1, 0, -1}})},
-          {"gem", hull_of({{0.9f, 0, 0}, {-0.8f, 0.1f, 0}, {0, 0.7f, 0.1f}, {0.1f, -0.6f, 0}, {0, 0.2f, 1.1f},
-                           {0.1f, 0, -0.9f}, {0.5f, 0.4f, 0.3f}, {-0.4f, -0.3f, 0.5f}})}};
+          {"gem", hull_of({{0.9f, 0, 0},
+                           {-0.8f, 0.1f, 0},
+                           {0, 0.7f, 0.1f},
+                           {0.1f, -0.6f, 0},
+                           {0, 0.2f, 1.1f},
+                           {0.1f, 0, -0.9f},
+                           {0.5f, 0.4f, 0.3f},
+                           {-0.4f, -0.3f, 0.5f}})}};
 }
 
 // Numbers in [0, 1) that repeat.
@@ -60,7 +66,8 @@ bool contains(const Shape& s, DVec3 p) {
     case ShapeKind::sphere:
       return length(p) < r;
     case ShapeKind::box:
-      return std::fabs(p.x) < double(s.extents.x) && std::fabs(p.y) < h && std::fabs(p.z) < double(s.extents.z);
+      return std::fabs(p.x) < double(s.extents.x) && std::fabs(p.y) < h &&
+             std::fabs(p.z) < double(s.extents.z);
     case ShapeKind::capsule:
       return std::hypot(rho, p.y - std::fmax(-h, std::fmin(h, p.y))) < r;
     case ShapeKind::cylinder:
@@ -149,7 +156,8 @@ TEST(Submerged, TheCutIsTheRateOfTheVolume) {
       const double top = extent(shape, n), bottom = -extent(shape, -n);
       const double level = bottom + (0.1 + 0.8 * dice.next()) * (top - bottom);
       const SubmergedPart part = submerged_part(shape, n, level);
-      const SubmergedPart more = submerged_part(shape, n, level + kSmall), less = submerged_part(shape, n, level - kSmall);
+      const SubmergedPart more = submerged_part(shape, n, level + kSmall),
+                          less = submerged_part(shape, n, level - kSmall);
       const double size = std::pow(volume_of(shape), 1.0 / 3.0);
       // Corners and edges give the area kinks: a central difference is then of first order.
       const double slack = 20.0 * kSmall * size;
@@ -177,7 +185,8 @@ TEST(Submerged, TheCutIsTheRateOfTheVolume) {
 TEST(Submerged, RoundShapesAreWithinTheStatedError) {
   Dice dice;
   double worst = 0;
-  for (const AnyShape& any : {AnyShape(Capsule{0.3f, 0.6f}), AnyShape(Cylinder{0.5f, 0.25f}), AnyShape(Cone{0.4f, 0.6f})}) {
+  for (const AnyShape& any :
+       {AnyShape(Capsule{0.3f, 0.6f}), AnyShape(Cylinder{0.5f, 0.25f}), AnyShape(Cone{0.4f, 0.6f})}) {
     const Shape shape = make_shape(any);
     const double r = double(shape.radius), h = double(shape.extents.y);
     const double end = h + (shape.kind == ShapeKind::capsule ? r : 0.0);
@@ -192,8 +201,10 @@ TEST(Submerged, RoundShapesAreWithinTheStatedError) {
         const double z = std::fmax(std::fabs(y) - h, 0.0);
         const double rho = shape.kind == ShapeKind::cone ? r * (h - y) / (2 * h) : std::sqrt(r * r - z * z);
         const double t = (level - n.y * y) / lean;
-        if (t >= rho) volume += kPiDouble * rho * rho;
-        else if (t > -rho) volume += rho * rho * (kPiDouble - std::acos(t / rho)) + t * std::sqrt(rho * rho - t * t);
+        if (t >= rho)
+          volume += kPiDouble * rho * rho;
+        else if (t > -rho)
+          volume += rho * rho * (kPiDouble - std::acos(t / rho)) + t * std::sqrt(rho * rho - t * t);
       }
       volume *= 2 * end / kSlices;
       const double error = std::fabs(submerged_part(shape, n, level).volume - volume) / volume_of(shape);

@@ -97,7 +97,8 @@ void hull_patches(const Hull& hull, DVec3 normal, double level, PatchFn fn) {
 
 constexpr int kAround = 16;
 // cos and sin of (i + 1/2) / 16 of a turn.
-constexpr double kCos[4] = {0.98078528040323043, 0.83146961230254524, 0.55557023301960218, 0.19509032201612825};
+constexpr double kCos[4] = {0.98078528040323043, 0.83146961230254524, 0.55557023301960218,
+                            0.19509032201612825};
 
 DVec3 around(int i) {
   const int quarter = i / 4, part = i % 4;
@@ -150,7 +151,8 @@ class Rings {
     for (const Node& node : kFour) {
       const double z = low + node.at * (high - low);
       const double across = std::sqrt(radius * radius - z * z);
-      show(middle + z, across, across / radius, z / radius, 2.0 * kPiDouble * radius * node.weight * (high - low));
+      show(middle + z, across, across / radius, z / radius,
+           2.0 * kPiDouble * radius * node.weight * (high - low));
     }
   }
   // A cone's or cylinder's side from (low, radius_low) to (high, radius_high).
@@ -159,7 +161,8 @@ class Rings {
     const double slant = std::sqrt(rise * rise + narrow * narrow);
     for (const Node& node : kFour) {
       const double radius = radius_low - node.at * narrow;
-      show(low + node.at * rise, radius, rise / slant, narrow / slant, 2.0 * kPiDouble * radius * slant * node.weight);
+      show(low + node.at * rise, radius, rise / slant, narrow / slant,
+           2.0 * kPiDouble * radius * slant * node.weight);
     }
   }
 
@@ -203,7 +206,8 @@ double cone_shadow(double radius, double height, double along, double across) {
 
 }  // namespace
 
-void for_each_patch(const Shape& shape, DVec3 normal, double level, FunctionRef<void(const SurfacePatch&)> fn) {
+void for_each_patch(const Shape& shape, DVec3 normal, double level,
+                    FunctionRef<void(const SurfacePatch&)> fn) {
   switch (shape.kind) {
     case ShapeKind::box:
       return box_patches(shape, normal, level, fn);

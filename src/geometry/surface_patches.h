@@ -15,13 +15,14 @@
 namespace gyre {
 
 struct SurfacePatch {
-  DVec3 place;   // m
-  DVec3 normal;  // unit, outward
+  DVec3 place;        // m
+  DVec3 normal;       // unit, outward
   double area = 0.0;  // m^2
 };
 
 // Everything below {p : dot(normal, p) = level}; `level` kUnbounded for the whole surface. Convex kinds.
-void for_each_patch(const Shape& shape, DVec3 normal, double level, FunctionRef<void(const SurfacePatch&)> fn);
+void for_each_patch(const Shape& shape, DVec3 normal, double level,
+                    FunctionRef<void(const SurfacePatch&)> fn);
 
 // The area (m^2) of the shape's shadow along the unit vector `direction`. Convex kinds.
 double projected_area(const Shape& shape, DVec3 direction);

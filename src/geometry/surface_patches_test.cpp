@@ -48,7 +48,8 @@ TEST(SurfacePatches, MakeTheWholeSurface) {
 
 // A direction's shadow, by rays through a grid across it: 400 x 400 points, so within a percent of the rim's share.
 TEST(SurfacePatches, ShadowsAreWhatRaysCount) {
-  const DVec3 directions[] = {{0, 1, 0}, {1, 0, 0}, {0.6, 0.8, 0}, {0.48, -0.6, 0.64}, {0.8, 0.2, 0.5656854249}};
+  const DVec3 directions[] = {
+      {0, 1, 0}, {1, 0, 0}, {0.6, 0.8, 0}, {0.48, -0.6, 0.64}, {0.8, 0.2, 0.5656854249}};
   for (const Known& k : known()) {
     const Shape shape = make_shape(k.shape);
     for (const DVec3& raw : directions) {
@@ -88,7 +89,8 @@ TEST(SurfacePatches, OnlyWhatIsBelow) {
   EXPECT_NEAR(below(Box{{1, 1, 1}}, {0, 1, 0}, -1.5), 0.0, 1e-12);
   const double sqrt_half = std::sqrt(0.5);
   EXPECT_NEAR(below(Box{{1, 1, 1}}, {sqrt_half, sqrt_half, 0}, 0.0), 12.0, 1e-12);
-  const double cylinder = 2 * kPiDouble * 1 * 1 + kPiDouble;  // lid and half the side of one of radius 1, height 2
+  const double cylinder =
+      2 * kPiDouble * 1 * 1 + kPiDouble;  // lid and half the side of one of radius 1, height 2
   EXPECT_NEAR(below(Cylinder{1, 1}, {0, 1, 0}, 0.0), cylinder, 0.05 * cylinder);
   EXPECT_NEAR(below(Sphere{1}, {0, 1, 0}, 0.0), 2 * kPiDouble, 0.02 * kPiDouble);
 }

@@ -42,6 +42,9 @@ struct BodyForces {
   float gravity_scale = 1.0f;
 };
 
+// What BodyFlags::touched says in a step: constraints or fields act on the body; they also look at its place in each sub-step.
+constexpr std::uint8_t kUntouched = 0, kTouched = 1, kPlaceShown = 2;
+
 struct BodyFlags {
   BodyType type = BodyType::fixed;
   std::uint8_t awake = 0;

@@ -37,7 +37,8 @@ void lock(const BodyFlags& flags, Six2& matrix, Six& right) {
   }
 }
 
-void add_pulls(const RigidWorld& w, const FieldBody& from, const BodyStance& stance, Six& force, Six2& stiffness) {
+void add_pulls(const RigidWorld& w, const FieldBody& from, const BodyStance& stance, Six& force,
+               Six2& stiffness) {
   const double mass = double(w.bodies.masses[from.body].mass);
   for (const std::uint32_t slot : from.acting) {
     const FieldRecord& field = w.fields[slot];
@@ -53,7 +54,8 @@ double weight_along(const RigidWorld& w, const FieldRecord& field) {
   return field.kind == FieldKind::buoyancy ? -double(dot(w.settings.gravity, field.normal)) : 0.0;
 }
 
-void add_lifts(const RigidWorld& w, const FieldBody& from, const BodyStance& stance, Six& force, Six2& stiffness) {
+void add_lifts(const RigidWorld& w, const FieldBody& from, const BodyStance& stance, Six& force,
+               Six2& stiffness) {
   for (const std::uint32_t slot : from.acting) {
     const double gravity = weight_along(w, w.fields[slot]);
     if (gravity > 0.0) add_lift(w, w.fields[slot], from.body, stance, gravity, force, stiffness);
@@ -62,8 +64,8 @@ void add_lifts(const RigidWorld& w, const FieldBody& from, const BodyStance& sta
 
 // Lift and torque of a light body where the sub-step will lead it: v = v* + h / m F(x + h v) along the gravity, whose right side
 // falls with v, so there is one root. Found by regula falsi (the Illinois variant: M. Dowell, P. Jarratt, 1971).
-void add_implicit_lifts(const RigidWorld& w, const FieldBody& from, const BodyStance& stance, double h, Six& force,
-                        Six2& stiffness) {
+void add_implicit_lifts(const RigidWorld& w, const FieldBody& from, const BodyStance& stance, double h,
+                        Six& force, Six2& stiffness) {
   const DVec3 gravity(w.settings.gravity);
   const DVec3 up = gravity / -length(gravity);
   const double give = h / double(w.bodies.masses[from.body].mass), start = dot(stance.velocity, up);
@@ -133,7 +135,8 @@ void apply_fields(RigidWorld& w, const FieldBody& from, double h) {
   Six2 matrix = mass_matrix(w.bodies.masses[from.body], stance);
   const double filter = filter_of(matrix, stiffness, h) * h * h;
   add_scaled(matrix, filter, stiffness);
-  const Six gained = make_six(stance.velocity - DVec3(from.linear_before), stance.spin - DVec3(from.angular_before));
+  const Six gained =
+      make_six(stance.velocity - DVec3(from.linear_before), stance.spin - DVec3(from.angular_before));
   const Six held = stiffness * gained;
   Six right;
   for (int i = 0; i < 6; ++i) right.v[i] = h * force.v[i] - filter * held.v[i];
@@ -162,7 +165,8 @@ bool is_light(const RigidWorld& w, const FieldBody& from, double h) {
     const double gravity = weight_along(w, field);
     if (!(gravity > 0.0)) continue;
     for (const ShapeId id : w.bodies.shapes[from.body]) {
-      if (is_seen(w, field, id.index)) lift += double(field.density) * gravity * volume_of(w.shapes.colliders[id.index].shape);
+      if (is_seen(w, field, id.index))
+        lift += double(field.density) * gravity * volume_of(w.shapes.colliders[id.index].shape);
     }
   }
   const BodyMass& mass = w.bodies.masses[from.body];
@@ -173,7 +177,8 @@ void prepare_fields(RigidWorld& w, FieldBody& from, double h) {
   from.light = is_light(w, from, h);
   const BodyStance stance = stance_of(w, from.body);
   FieldRest& rest = w.field_rest[from.body];
-  rest = {w.bodies.motion[from.body].linear_velocity, w.bodies.motion[from.body].angular_velocity, from.alone ? kFieldsAlone : kFieldsToo, 0};
+  rest = {w.bodies.motion[from.body].linear_velocity, w.bodies.motion[from.body].angular_velocity,
+          from.alone ? kFieldsAlone : kFieldsToo, 0};
   const double time = w.now + 0.5 * double(w.settings.last_step);
   for (std::size_t i = 0; i < from.acting.size(); ++i) {
     const FieldRecord& field = w.fields[from.acting[i]];
@@ -191,12 +196,15 @@ template <class Fn>
 void for_bodies(void* context, int begin, int end, Fn&& fn) {
   const FieldSolve& solve = *static_cast<FieldSolve*>(context);
   const std::size_t last = min(std::size_t(end) * kFieldBodiesPerBlock, solve.bodies.size());
-  for (std::size_t i = std::size_t(begin) * kFieldBodiesPerBlock; i < last; ++i) fn(*solve.world, solve.bodies[i], solve.h);
+  for (std::size_t i = std::size_t(begin) * kFieldBodiesPerBlock; i < last; ++i)
+    fn(*solve.world, solve.bodies[i], solve.h);
 }
 
 }  // namespace
 
-std::span<FieldBody> find_field_bodies(const RigidWorld& w, std::span<const std::uint32_t> bodies, Arena& arena) {
+FieldSolve find_field_bodies(RigidWorld& w, std::span<const std::uint32_t> bodies, float h, Arena& arena) {
+  FieldSolve solve{&w, {}, h};
+  if (w.field_rest.empty()) return solve;
   const auto acts = [&](std::uint32_t slot, std::uint32_t body) {
     return w.fields[slot].is_live() && acts_on(w, w.fields[slot], body, w.bodies.places[body].center);
   };
@@ -227,13 +235,18 @@ std::span<FieldBody> find_field_bodies(const RigidWorld& w, std::span<const std:
     out[count].drags = drags.subspan(first, links - first);
     out[count++].acting = list.subspan(first, links - first);
   }
-  return out;
+  for (const FieldBody& made : out) w.bodies.flags[made.body].touched = kPlaceShown;
+  solve.bodies = out;
+  return solve;
 }
 
-int FieldSolve::blocks() const { return (int(bodies.size()) + kFieldBodiesPerBlock - 1) / kFieldBodiesPerBlock; }
+int FieldSolve::blocks() const {
+  return (int(bodies.size()) + kFieldBodiesPerBlock - 1) / kFieldBodiesPerBlock;
+}
 
 void prepare_fields_stage(void* context, int begin, int end, int) {
-  for_bodies(context, begin, end, [](RigidWorld& w, FieldBody& body, float h) { prepare_fields(w, body, double(h)); });
+  for_bodies(context, begin, end,
+             [](RigidWorld& w, FieldBody& body, float h) { prepare_fields(w, body, double(h)); });
 }
 void watch_fields_stage(void* context, int begin, int end, int) {
   for_bodies(context, begin, end, [](const RigidWorld& w, FieldBody& body, float) {
@@ -242,7 +255,8 @@ void watch_fields_stage(void* context, int begin, int end, int) {
   });
 }
 void apply_fields_stage(void* context, int begin, int end, int) {
-  for_bodies(context, begin, end, [](RigidWorld& w, const FieldBody& body, float h) { apply_fields(w, body, double(h)); });
+  for_bodies(context, begin, end,
+             [](RigidWorld& w, const FieldBody& body, float h) { apply_fields(w, body, double(h)); });
 }
 
 }  // namespace gyre

@@ -24,16 +24,13 @@ namespace gyre {
 struct FieldBody {
   std::uint32_t body = 0;
   std::span<const std::uint32_t> acting{};  // slots of fields
-  std::span<Six2> drags{};  // D of each of these, zero for those that are no media
-  Six2 drag;                // their sum
+  std::span<Six2> drags{};                  // D of each of these, zero for those that are no media
+  Six2 drag;                                // their sum
   bool dragged = false;
-  bool light = false;       // its lift is implicit
-  bool alone = false;       // no constraint acts on the body
+  bool light = false;                  // its lift is implicit
+  bool alone = false;                  // no constraint acts on the body
   Vec3 linear_before, angular_before;  // u0
 };
-
-// Those of the bodies on which a field acts, in the same order.
-std::span<FieldBody> find_field_bodies(const RigidWorld& w, std::span<const std::uint32_t> bodies, Arena& arena);
 
 // Stages of the program of sub-steps, over blocks of kFieldBodiesPerBlock bodies; their context is this.
 struct FieldSolve {
@@ -44,6 +41,10 @@ struct FieldSolve {
   int blocks() const;
 };
 constexpr int kFieldBodiesPerBlock = 8;
+
+// Of those of the bodies on which a field acts, in the same order; BodyFlags::touched says so too, after constraints had their say.
+FieldSolve find_field_bodies(RigidWorld& w, std::span<const std::uint32_t> bodies, float h, Arena& arena);
+
 // Once, as the step begins: drag and stream.
 void prepare_fields_stage(void* context, int begin, int end, int worker);
 // As a sub-step begins: each notes its velocity.

@@ -21,9 +21,12 @@ struct Gust {
 // Three sizes with energies as the 2/3 power of the size (A. N. Kolmogorov, 1941), two waves each; weights sum to 1.
 constexpr double kLarge = 0.24657, kMiddle = 0.15533, kSmall = 0.09810;
 constexpr Gust kGusts[6] = {
-    {{0.80, 0.00, 0.60}, {-0.36, 0.80, 0.48}, 0.3, 1.0, kLarge}, {{0.60, 0.00, -0.80}, {0.48, 0.80, 0.36}, 2.1, 1.0, kLarge},
-    {{0.64, 0.60, 0.48}, {0.60, 0.00, -0.80}, 4.4, 2.0, kMiddle}, {{0.48, -0.80, 0.36}, {0.64, 0.60, 0.48}, 1.2, 2.0, kMiddle},
-    {{0.36, 0.48, 0.80}, {0.80, -0.60, 0.00}, 5.7, 4.0, kSmall}, {{-0.28, 0.96, 0.00}, {0.00, 0.00, 1.00}, 3.3, 4.0, kSmall},
+    {{0.80, 0.00, 0.60}, {-0.36, 0.80, 0.48}, 0.3, 1.0, kLarge},
+    {{0.60, 0.00, -0.80}, {0.48, 0.80, 0.36}, 2.1, 1.0, kLarge},
+    {{0.64, 0.60, 0.48}, {0.60, 0.00, -0.80}, 4.4, 2.0, kMiddle},
+    {{0.48, -0.80, 0.36}, {0.64, 0.60, 0.48}, 1.2, 2.0, kMiddle},
+    {{0.36, 0.48, 0.80}, {0.80, -0.60, 0.00}, 5.7, 4.0, kSmall},
+    {{-0.28, 0.96, 0.00}, {0.00, 0.00, 1.00}, 3.3, 4.0, kSmall},
 };
 
 DVec3 gusts_at(const FieldRecord& field, DVec3 place, double time) {
@@ -66,8 +69,10 @@ struct PushSum {
   void add_scaled(double scale, const PushSum& more) {
     whole += scale * more.whole;
     first += scale * more.first;
-    second.xx += scale * more.second.xx, second.yy += scale * more.second.yy, second.zz += scale * more.second.zz;
-    second.xy += scale * more.second.xy, second.xz += scale * more.second.xz, second.yz += scale * more.second.yz;
+    second.xx += scale * more.second.xx, second.yy += scale * more.second.yy,
+        second.zz += scale * more.second.zz;
+    second.xy += scale * more.second.xy, second.xz += scale * more.second.xz,
+        second.yz += scale * more.second.yz;
   }
 };
 
@@ -91,7 +96,8 @@ void add_push(Six2& to, const PushSum& s) {
 }
 
 bool is_round(ShapeKind kind) {
-  return kind == ShapeKind::sphere || kind == ShapeKind::capsule || kind == ShapeKind::cylinder || kind == ShapeKind::cone;
+  return kind == ShapeKind::sphere || kind == ShapeKind::capsule || kind == ShapeKind::cylinder ||
+         kind == ShapeKind::cone;
 }
 
 // A shape's frame within the world, about the body's centre of mass.
@@ -99,7 +105,8 @@ struct ShapeStance {
   DQuat turn;    // world_from_shape
   DVec3 offset;  // of the shape's origin from the centre of mass, world axes
 };
-ShapeStance stance_of(const RigidWorld& w, std::uint32_t body, std::uint32_t shape, const BodyStance& stance) {
+ShapeStance stance_of(const RigidWorld& w, std::uint32_t body, std::uint32_t shape,
+                      const BodyStance& stance) {
   const Transform& place = w.shapes.places[shape];
   return {stance.turn * to_double(place.orientation),
           rotate(stance.turn, DVec3(place.position) - DVec3(w.bodies.masses[body].center))};
@@ -113,7 +120,8 @@ struct ShapePlane {
 ShapePlane plane_of(const FieldRecord& field, const BodyStance& body, const ShapeStance& shape) {
   if (field.kind != FieldKind::buoyancy) return {{0, 1, 0}, double(kUnbounded)};
   const DVec3 normal(field.normal);
-  return {rotate_inverse(shape.turn, normal), field.offset - dot(normal, body.center) - dot(normal, shape.offset)};
+  return {rotate_inverse(shape.turn, normal),
+          field.offset - dot(normal, body.center) - dot(normal, shape.offset)};
 }
 
 // The drag by one shape's surface, for the velocity at which the medium now streams against it.
@@ -129,8 +137,9 @@ PushSum shape_push(const Shape& shape, const ShapeStance& at, const ShapePlane& 
     if (c > 0.0) sum.add(c, r);
   });
   if (!is_round(shape.kind) || speed == 0.0) return sum;
-  for_each_patch(shape, {0, 1, 0}, double(kUnbounded),
-                 [&](const SurfacePatch& patch) { facing += max(-dot(wind, patch.normal), 0.0) * patch.area; });
+  for_each_patch(shape, {0, 1, 0}, double(kUnbounded), [&](const SurfacePatch& patch) {
+    facing += max(-dot(wind, patch.normal), 0.0) * patch.area;
+  });
   if (!(facing > 0.0)) return sum;
   PushSum exact;
   exact.add_scaled(projected_area(shape, wind / speed) * speed / facing, sum);
@@ -138,7 +147,8 @@ PushSum shape_push(const Shape& shape, const ShapeStance& at, const ShapePlane& 
 }
 
 // The share of the body's volume that is below the field's plane.
-double submerged_share(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyStance& stance) {
+double submerged_share(const RigidWorld& w, const FieldRecord& field, std::uint32_t body,
+                       const BodyStance& stance) {
   double below = 0.0, whole = 0.0;
   for (const ShapeId id : w.bodies.shapes[body]) {
     if (!is_seen(w, field, id.index)) continue;
@@ -150,7 +160,8 @@ double submerged_share(const RigidWorld& w, const FieldRecord& field, std::uint3
   return whole > 0.0 ? below / whole : 0.0;
 }
 
-void add_linear_drag(const RigidWorld& w, std::uint32_t body, const BodyStance& stance, double rate, Six2& to) {
+void add_linear_drag(const RigidWorld& w, std::uint32_t body, const BodyStance& stance, double rate,
+                     Six2& to) {
   const BodyMass& mass = w.bodies.masses[body];
   const Sym3 inertia = rotate_inertia(to_float(stance.turn), mass.inertia);
   for (int i = 0; i < 3; ++i) to.m[i][i] += rate * double(mass.mass);
@@ -193,8 +204,8 @@ bool is_seen(const RigidWorld& w, const FieldRecord& field, std::uint32_t shape)
 bool acts_on(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, DVec3 center) {
   if (field.has_bounds != 0) {
     const DVec3 low = field.low, high = field.high;
-    if (!(center.x >= low.x && center.y >= low.y && center.z >= low.z && center.x <= high.x && center.y <= high.y &&
-          center.z <= high.z)) {
+    if (!(center.x >= low.x && center.y >= low.y && center.z >= low.z && center.x <= high.x &&
+          center.y <= high.y && center.z <= high.z)) {
       return false;
     }
   }
@@ -202,8 +213,10 @@ bool acts_on(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, 
   if (shapes.empty()) return true;
   if (field.kind == FieldKind::buoyancy) {
     // Nothing of the body can come below the surface in this step.
-    const double height = dot(DVec3(field.normal), center) - field.offset, step = double(w.settings.last_step);
-    const double way = step * (double(length(w.bodies.motion[body].linear_velocity)) + step * double(length(w.settings.gravity)));
+    const double height = dot(DVec3(field.normal), center) - field.offset,
+                 step = double(w.settings.last_step);
+    const double way = step * (double(length(w.bodies.motion[body].linear_velocity)) +
+                               step * double(length(w.settings.gravity)));
     if (height > double(w.bodies.masses[body].reach) + way) return false;
   }
   for (const ShapeId id : shapes) {
@@ -219,8 +232,8 @@ Six stream_at(const FieldRecord& field, DVec3 place, double time) {
   return out;
 }
 
-void add_drag(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyStance& stance, const Six& stream,
-              Six2& matrix) {
+void add_drag(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyStance& stance,
+              const Six& stream, Six2& matrix) {
   Six against = stream;
   add(against, make_six(-stance.velocity, -stance.spin));
   const double half = 0.5 * double(field.density) * double(field.drag_coefficient);
@@ -229,7 +242,8 @@ void add_drag(const RigidWorld& w, const FieldRecord& field, std::uint32_t body,
     for (const ShapeId id : w.bodies.shapes[body]) {
       if (!is_seen(w, field, id.index)) continue;
       const ShapeStance at = stance_of(w, body, id.index, stance);
-      sum.add_scaled(half, shape_push(w.shapes.colliders[id.index].shape, at, plane_of(field, stance, at), against));
+      sum.add_scaled(
+          half, shape_push(w.shapes.colliders[id.index].shape, at, plane_of(field, stance, at), against));
     }
     add_push(matrix, sum);
   }
@@ -258,8 +272,8 @@ Pull pull_at(const FieldRecord& field, DVec3 place) {
   return out;
 }
 
-void add_lift(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyStance& stance, double gravity,
-              Six& force, Six2& stiffness) {
+void add_lift(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyStance& stance,
+              double gravity, Six& force, Six2& stiffness) {
   const DVec3 up(field.normal);
   const double weight = double(field.density) * gravity;
   for (const ShapeId id : w.bodies.shapes[body]) {
@@ -281,7 +295,8 @@ void add_lift(const RigidWorld& w, const FieldRecord& field, std::uint32_t body,
     const DVec3 middle = at.offset + rotate(at.turn, part.area_center);
     add_row(stiffness, weight * part.area, make_six(up, cross(middle, up)));
     const SecondMoments& s = part.spread;
-    const DVec3 axes[3] = {rotate(at.turn, {1, 0, 0}), rotate(at.turn, {0, 1, 0}), rotate(at.turn, {0, 0, 1})};
+    const DVec3 axes[3] = {rotate(at.turn, {1, 0, 0}), rotate(at.turn, {0, 1, 0}),
+                           rotate(at.turn, {0, 0, 1})};
     const double spread[3][3] = {{s.xx, s.xy, s.xz}, {s.xy, s.yy, s.yz}, {s.xz, s.yz, s.zz}};
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) {

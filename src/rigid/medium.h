@@ -16,7 +16,9 @@ struct Six {
   DVec3 linear() const { return {v[0], v[1], v[2]}; }
   DVec3 angular() const { return {v[3], v[4], v[5]}; }
 };
-inline Six make_six(DVec3 linear, DVec3 angular) { return {{linear.x, linear.y, linear.z, angular.x, angular.y, angular.z}}; }
+inline Six make_six(DVec3 linear, DVec3 angular) {
+  return {{linear.x, linear.y, linear.z, angular.x, angular.y, angular.z}};
+}
 
 // A symmetric matrix of six rows.
 struct Six2 {
@@ -44,8 +46,8 @@ bool acts_on(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, 
 Six stream_at(const FieldRecord& field, DVec3 place, double time);
 
 // Drag as matrix * (stream - velocity): linear in the difference of the two, with the size of the difference taken from now.
-void add_drag(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyStance& stance, const Six& stream,
-              Six2& matrix);
+void add_drag(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyStance& stance,
+              const Six& stream, Six2& matrix);
 
 // The acceleration of a radial field at a place, and its stiffness (1/s^2), not below that of the steepest direction.
 struct Pull {
@@ -56,7 +58,7 @@ Pull pull_at(const FieldRecord& field, DVec3 place);
 
 // The lift of what is submerged, and how it gives way to motion: d(force)/d(motion) = -stiffness, with what would lower the
 // stiffness left out.
-void add_lift(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyStance& stance, double gravity,
-              Six& force, Six2& stiffness);
+void add_lift(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyStance& stance,
+              double gravity, Six& force, Six2& stiffness);
 
 }  // namespace gyre

@@ -92,9 +92,6 @@ std::int32_t solver_body(const RigidWorld& w, std::uint32_t body) {
   return flags.type == BodyType::fixed || flags.frozen != 0 ? kNoBody : std::int32_t(body);
 }
 
-// What BodyFlags::touched says in a step: constraints act on the body; they also look at its place in each sub-step.
-constexpr std::uint8_t kUntouched = 0, kTouched = 1, kPlaceShown = 2;
-
 void touch_body(RigidWorld& w, std::uint32_t body, std::uint8_t touch) {
   std::uint8_t& touched = w.bodies.flags[body].touched;
   touched = max(touched, touch);
@@ -160,13 +157,6 @@ void gather_joints(Solve& solve) {
     s.joint_pairs.push_back({active_a ? solve.places[std::size_t(joint.body_a)] : ColoringPair::kNone,
                              active_b ? solve.places[std::size_t(joint.body_b)] : ColoringPair::kNone});
   }
-}
-
-void gather_fields(Solve& solve, Arena& arena) {
-  solve.fields = {&solve.w, {}, solve.h};
-  if (solve.w.field_rest.empty()) return;
-  solve.fields.bodies = find_field_bodies(solve.w, solve.batch.bodies, arena);
-  for (const FieldBody& field : solve.fields.bodies) touch_body(solve.w, field.body, kPlaceShown);
 }
 
 // Parts the bodies of a batch into those that constraints act on and those that fly.
@@ -525,7 +515,7 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   solve.linkages = find_linkages(solve.w, solve.batch, solve.places, arena);
   gather_joints(solve);
   solve.rolling = find_rolling_contacts(solve.w, scratch, solve.contact_settings.step, arena);
-  gather_fields(solve, arena);
+  solve.fields = find_field_bodies(solve.w, solve.batch.bodies, solve.h, arena);
   const std::uint32_t bodies = std::uint32_t(solve.batch.bodies.size());
   color_constraints(scratch.pairs, bodies, {}, kColoringOptions, scratch.contact_colors);
   color_constraints(scratch.joint_pairs, bodies, {}, kColoringOptions, scratch.joint_colors);

@@ -37,7 +37,8 @@ ShapeAt shape_at(const RigidWorld& w, std::uint32_t shape) {
   const Transform& local = w.shapes.places[shape];
   const DQuat body = normalized(to_double(place.orientation));
   const DVec3 from_center = DVec3(local.position) - DVec3(w.bodies.masses[w.shapes.bodies[shape]].center);
-  return {&w.shapes.colliders[shape].shape, place.center + rotate(body, from_center), body * to_double(local.orientation)};
+  return {&w.shapes.colliders[shape].shape, place.center + rotate(body, from_center),
+          body * to_double(local.orientation)};
 }
 
 // Sums of round shapes over patches miss their shadow by a little: this makes it right for a far explosion.
@@ -48,8 +49,9 @@ double shadow_scale(const ShapeAt& at, DVec3 center) {
   if (kind == ShapeKind::box || kind == ShapeKind::hull || !(distance > 0.0)) return 1.0;
   const DVec3 way = from / distance;
   double facing = 0.0;
-  for_each_patch(*at.shape, {0, 1, 0}, double(kUnbounded),
-                 [&](const SurfacePatch& patch) { facing += max(-dot(way, patch.normal), 0.0) * patch.area; });
+  for_each_patch(*at.shape, {0, 1, 0}, double(kUnbounded), [&](const SurfacePatch& patch) {
+    facing += max(-dot(way, patch.normal), 0.0) * patch.area;
+  });
   return facing > 0.0 ? projected_area(*at.shape, way) / facing : 1.0;
 }
 
@@ -83,12 +85,14 @@ double seen_share(WorldState& s, std::uint32_t body, DVec3 center) {
     if (w.shapes.proxies[id.index].sensor) continue;
     const ShapeAt at = shape_at(w, id.index);
     const Aabb box = bounds(*at.shape, {});
-    const DVec3 middle = 0.5 * (DVec3(box.low) + DVec3(box.high)), half = 0.5 * (DVec3(box.high) - DVec3(box.low));
+    const DVec3 middle = 0.5 * (DVec3(box.low) + DVec3(box.high)),
+                half = 0.5 * (DVec3(box.high) - DVec3(box.low));
     for (int corner = -1; corner < 8; ++corner) {
       DVec3 point = middle;
       // Within the shape's box at half its size each way: inside of most shapes.
       if (corner >= 0) {
-        point += DVec3{(corner & 1) != 0 ? 0.5 * half.x : -0.5 * half.x, (corner & 2) != 0 ? 0.5 * half.y : -0.5 * half.y,
+        point += DVec3{(corner & 1) != 0 ? 0.5 * half.x : -0.5 * half.x,
+                       (corner & 2) != 0 ? 0.5 * half.y : -0.5 * half.y,
                        (corner & 4) != 0 ? 0.5 * half.z : -0.5 * half.z};
       }
       ++asked;

@@ -24,11 +24,14 @@ Error check_number(const char* field, double value, double low, double high) {
   return refuse("%s is %g; it must lie within %g and %g", field, value, low, high);
 }
 Error check_place(const char* field, DVec3 p) {
-  if (is_finite(p) && absolute(p.x) <= kFarthest && absolute(p.y) <= kFarthest && absolute(p.z) <= kFarthest) return {};
+  if (is_finite(p) && absolute(p.x) <= kFarthest && absolute(p.y) <= kFarthest && absolute(p.z) <= kFarthest)
+    return {};
   return refuse("%s is (%g, %g, %g); every component must be finite and within 1e12 m", field, p.x, p.y, p.z);
 }
 Error check_direction(const char* field, Vec3 v) {
-  if (!is_finite(v)) return refuse("%s is (%g, %g, %g); every component must be finite", field, double(v.x), double(v.y), double(v.z));
+  if (!is_finite(v))
+    return refuse("%s is (%g, %g, %g); every component must be finite", field, double(v.x), double(v.y),
+                  double(v.z));
   if (!(largest(absolute(v)) > 1.0e-37f)) return refuse("%s is zero; it must have a direction", field);
   return {};
 }
@@ -47,8 +50,8 @@ Error check_def(const FieldDef& d) {
     if (!is_fine(e)) return e;
     const DVec3 low = d.bounds->low, high = d.bounds->high;
     if (!(low.x <= high.x && low.y <= high.y && low.z <= high.z)) {
-      return refuse("field.bounds.low is (%g, %g, %g), in part above field.bounds.high (%g, %g, %g)", low.x, low.y, low.z, high.x,
-                    high.y, high.z);
+      return refuse("field.bounds.low is (%g, %g, %g), in part above field.bounds.high (%g, %g, %g)", low.x,
+                    low.y, low.z, high.x, high.y, high.z);
     }
   }
   const NamedNumber numbers[] = {
@@ -80,8 +83,8 @@ FieldId field_id(const WorldState& s, std::uint32_t slot) {
 
 Error check_id(const WorldState& s, FieldId id, const char* what) {
   if (is_field(s, id)) return {};
-  return make_error(ErrorCode::stale_id, "%s: field %u (generation %u) does not exist in this world", what, id.index,
-                    unsigned(id.generation));
+  return make_error(ErrorCode::stale_id, "%s: field %u (generation %u) does not exist in this world", what,
+                    id.index, unsigned(id.generation));
 }
 
 }  // namespace
@@ -121,7 +124,8 @@ Submitted carry_out(WorldState& s, const AddField& c) {
   constexpr std::uint32_t kLastGeneration = 0xffff;
   std::uint32_t slot = 0;
   // A slot that has used up its generations is not handed out again.
-  while (slot < fields.size() && (fields[slot].is_live() || fields[slot].generation >= kLastGeneration)) ++slot;
+  while (slot < fields.size() && (fields[slot].is_live() || fields[slot].generation >= kLastGeneration))
+    ++slot;
   if (slot == fields.size()) fields.push_back({});
   const std::uint32_t generation = fields[slot].generation + 1;
   fields[slot] = make_field_record(c.def);

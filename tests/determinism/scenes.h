@@ -397,11 +397,72 @@ inline void drive_changes(World& world, int step) {
   }
 }
 
+inline FieldDef pool(float level) {
+  FieldDef def;
+  def.kind = FieldKind::buoyancy;
+  def.bounds = FieldBounds{{-6, -8, -6}, {6, 8, 6}};
+  def.linear_drag = 0.5f;
+  def.velocity = {0.25f, 0, 0.125f};
+  def.offset = level;
+  return def;
+}
+
+// Every kind of field at once: a pool with a whirl over it, gusts across both, a pull to one side.
+inline void build_fields(World& world) {
+  add_fixed(world, {0, -3, 0}, Box{{8, 0.5f, 8}});
+  world.add_field(pool(0.0f));
+  FieldDef whirl;
+  whirl.kind = FieldKind::vortex;
+  whirl.center = {0.5, 0, -0.25};
+  whirl.strength = 6;
+  whirl.radius = 3;
+  whirl.velocity = {0, 1.5f, 0};
+  world.add_field(whirl);
+  FieldDef gusts;
+  gusts.velocity = {4, 0, 1};
+  gusts.turbulence = 0.5f;
+  gusts.turbulence_length = 4;
+  world.add_field(gusts);
+  FieldDef pull;
+  pull.kind = FieldKind::radial;
+  pull.center = {7, 1, 0};
+  pull.strength = 2;
+  pull.radius = 4;
+  pull.falloff = 1.5f;
+  pull.core = 0.5f;
+  world.add_field(pull);
+  Random random(8);
+  for (int i = 0; i < 40; ++i) {
+    BodyDef body;
+    body.pose.position = {-3.0 + 1.5 * (i % 5), 0.5 + 1.25 * (i / 20), -2.0 + 1.25 * (i / 5 % 4)};
+    body.pose.orientation = random.next_rotation();
+    body.locked.angular[1] = i % 11 == 3;
+    ShapeDef shape;
+    shape.geometry = convex(i, 0.375f);
+    shape.density = 0.5f * float(1 << (i % 13));  // from 0.5 to 2,048: from foam to stone
+    world.add_body(body, shape);
+  }
+}
+
+inline void drive_fields(World& world, int step) {
+  FieldId ids[4];
+  world.fields(ids);
+  if (step % 60 == 20) world.set_field(ids[0], pool(step % 120 == 20 ? 0.5f : 0.0f));
+  if (step == 150) world.remove_field(ids[1]);
+  if (step == 200) world.add_field({});
+  if (step % 75 == 50) {
+    ExplosionDef blow;
+    blow.center = {-1, -1, 0.5};
+    blow.pressure = 200;
+    world.explode(blow);
+  }
+}
+
 inline constexpr Scene kScenes[] = {
     {"stacks", build_stacks, nullptr},         {"pile", build_pile, nullptr},
     {"joints", build_joints, nullptr},         {"terrain", build_terrain, nullptr},
     {"cloud", build_cloud, nullptr},           {"pusher", build_pusher, drive_pusher},
-    {"changes", build_changes, drive_changes},
+    {"changes", build_changes, drive_changes}, {"fields", build_fields, drive_fields},
 };
 
 // One step of a scene; `step` counts from 0.

@@ -10,7 +10,10 @@ namespace {
 constexpr double kWater = 1000.0;
 
 FieldDef water(float linear_drag = 0.0f, float drag_coefficient = 0.0f) {
-  return {.kind = FieldKind::buoyancy, .density = float(kWater), .drag_coefficient = drag_coefficient, .linear_drag = linear_drag};
+  return {.kind = FieldKind::buoyancy,
+          .density = float(kWater),
+          .drag_coefficient = drag_coefficient,
+          .linear_drag = linear_drag};
 }
 
 BodyId add_floater(World& world, const AnyShape& shape, float density, DVec3 place, Quat turn = {}) {
@@ -19,7 +22,9 @@ BodyId add_floater(World& world, const AnyShape& shape, float density, DVec3 pla
   return world.add_body(def, {.geometry = shape, .density = density});
 }
 
-Vec3 up_of(const World& world, BodyId body) { return rotate_inverse(world.pose(body).orientation, {0, 1, 0}); }
+Vec3 up_of(const World& world, BodyId body) {
+  return rotate_inverse(world.pose(body).orientation, {0, 1, 0});
+}
 
 TEST(Buoyancy, BoxFindsArchimedesDraught) {
   const Vec3 half{1.0f, 0.25f, 1.5f};
@@ -41,10 +46,12 @@ TEST(Buoyancy, BoxFindsArchimedesDraught) {
 TEST(Buoyancy, WhatFloatsStillSleeps) {
   World world = make_world();
   const FieldId field = world.add_field(water(3.0f, 1.0f));
-  const BodyId box = add_floater(world, Box{{1.0f, 0.25f, 1.5f}}, 400.0f, {0, 0.3, 0}, from_axis_angle({0, 0, 1}, 0.2f));
+  const BodyId box =
+      add_floater(world, Box{{1.0f, 0.25f, 1.5f}}, 400.0f, {0, 0.3, 0}, from_axis_angle({0, 0, 1}, 0.2f));
   for (int i = 0; i < 30 * 60 && world.is_awake(box); ++i) world.step(kStep);
   EXPECT_FALSE(world.is_awake(box));
-  EXPECT_TRUE(relative_row("draught of a box that sleeps", 0.25 - world.pose(box).position.y, 0.2, 1.0e-2, 1.0e-3));
+  EXPECT_TRUE(
+      relative_row("draught of a box that sleeps", 0.25 - world.pose(box).position.y, 0.2, 1.0e-2, 1.0e-3));
   FieldDef higher = world.field(field);
   higher.offset = 1.0;
   world.set_field(field, higher);
@@ -61,7 +68,8 @@ TEST(Buoyancy, SubmergedBodyFeelsTheDifferenceOfWeights) {
     const BodyId ball = add_floater(world, Sphere{0.2f}, density, {0, -50, 0});
     run(world, 1.0);
     const double expected = kGravity * (kWater / double(density) - 1.0);
-    EXPECT_TRUE(row("speed after a second under water", double(world.linear_velocity(ball).y), expected, 1.0e-4, 1.0e-5));
+    EXPECT_TRUE(row("speed after a second under water", double(world.linear_velocity(ball).y), expected,
+                    1.0e-4, 1.0e-5));
   }
 }
 
@@ -77,12 +85,15 @@ TEST(Buoyancy, RoundShapesFindTheirDraught) {
   // A ball with its middle y above the water displaces pi/3 (r - y)^2 (2 r + y).
   const double y = settle(Sphere{0.5f}, 300.0f, {});
   const double displaced = kPiDouble / 3 * (0.5 - y) * (0.5 - y) * (1.0 + y);
-  EXPECT_TRUE(relative_row("mass displaced by a ball", displaced, 0.3 * 4.0 / 3.0 * kPiDouble * 0.125, 1.0e-2, 1.0e-4));
+  EXPECT_TRUE(relative_row("mass displaced by a ball", displaced, 0.3 * 4.0 / 3.0 * kPiDouble * 0.125, 1.0e-2,
+                           1.0e-4));
   // A lying cylinder: a segment of its circle.
   const double z = settle(Cylinder{0.5f, 1.5f}, 700.0f, from_axis_angle({1, 0, 0}, kPi / 2));
   const double segment = 0.25 * std::acos(z / 0.5) - z * std::sqrt(0.25 - z * z);
-  EXPECT_TRUE(relative_row("mass displaced by a lying cylinder", segment, 0.7 * kPiDouble * 0.25, 1.0e-2, 1.0e-4));
-  EXPECT_TRUE(row("middle of a ball of half the density", settle(Sphere{0.5f}, 500.0f, {}), 0.0, 1.0e-4, 1.0e-6));
+  EXPECT_TRUE(
+      relative_row("mass displaced by a lying cylinder", segment, 0.7 * kPiDouble * 0.25, 1.0e-2, 1.0e-4));
+  EXPECT_TRUE(
+      row("middle of a ball of half the density", settle(Sphere{0.5f}, 500.0f, {}), 0.0, 1.0e-4, 1.0e-6));
 }
 
 // A log of square section floats flat below 21.13 % of water's density and above 78.87 %, and on an edge at half of it.
@@ -169,7 +180,8 @@ TEST(Buoyancy, RollHasItsPeriod) {
 TEST(Buoyancy, NoBodyIsTooLight) {
   for (const int substeps : {1, 4}) {
     for (const float density : {1.0f, 10.0f, 100.0f}) {
-      for (const AnyShape& shape : {AnyShape(Box{{0.5f, 0.00005f, 0.5f}}), AnyShape(Sphere{0.02f}), AnyShape(Box{{0.3f, 0.3f, 0.3f}})}) {
+      for (const AnyShape& shape : {AnyShape(Box{{0.5f, 0.00005f, 0.5f}}), AnyShape(Sphere{0.02f}),
+                                    AnyShape(Box{{0.3f, 0.3f, 0.3f}})}) {
         World world = make_world({.stepping = {.substeps = substeps}, .sleeping = false});
         world.add_field(water());
         const BodyId body = add_floater(world, shape, density, {0, 0.5, 0});
@@ -180,7 +192,8 @@ TEST(Buoyancy, NoBodyIsTooLight) {
         }
         EXPECT_TRUE(is_finite(world.pose(body).position));
         // Without drag it flies again and again; forces that change along the way within a sub-step cost or give some of it.
-        EXPECT_LT(highest, 0.5 * 1.25) << "density " << density << " sub-steps " << substeps << " kind " << shape.index();
+        EXPECT_LT(highest, 0.5 * 1.25)
+            << "density " << density << " sub-steps " << substeps << " kind " << shape.index();
       }
     }
   }
@@ -218,11 +231,13 @@ TEST(Buoyancy, TheSameBodyInPartsOrAsAHullFloatsAlike) {
     return world.pose(body);
   };
   std::vector<Vec3> corners;
-  for (int i = 0; i < 8; ++i) corners.push_back({(i & 1) ? 0.8f : -0.8f, (i & 2) ? 0.3f : -0.3f, (i & 4) ? 0.5f : -0.5f});
+  for (int i = 0; i < 8; ++i)
+    corners.push_back({(i & 1) ? 0.8f : -0.8f, (i & 2) ? 0.3f : -0.3f, (i & 4) ? 0.5f : -0.5f});
   const Pose box = height({{.geometry = Box{{0.8f, 0.3f, 0.5f}}, .density = 600}});
   const Pose hull = height({{.geometry = *cook_hull(corners), .density = 600}});
-  const Pose halves = height({{.geometry = Box{{0.4f, 0.3f, 0.5f}}, .local = {{-0.4f, 0, 0}, {}}, .density = 600},
-                              {.geometry = Box{{0.4f, 0.3f, 0.5f}}, .local = {{0.4f, 0, 0}, {}}, .density = 600}});
+  const Pose halves =
+      height({{.geometry = Box{{0.4f, 0.3f, 0.5f}}, .local = {{-0.4f, 0, 0}, {}}, .density = 600},
+              {.geometry = Box{{0.4f, 0.3f, 0.5f}}, .local = {{0.4f, 0, 0}, {}}, .density = 600}});
   EXPECT_NEAR(box.position.y, hull.position.y, 1e-4);
   EXPECT_NEAR(std::fabs(dot(box.orientation, hull.orientation)), 1.0, 1e-6);
   // The inner faces of the halves face the stream too, which changes their drag, not their lift.

@@ -20,10 +20,12 @@ TEST(Fields, LinearDragHasItsTerminalSpeed) {
   world.add_field({.kind = FieldKind::drag, .density = 0.0f, .linear_drag = 0.5f});
   const BodyId ball = add_ball(world, 0.1f, 1000, {0, 0, 0});
   run(world, 2.0);
-  EXPECT_TRUE(relative_row("A-06 v(2 s), drag 0.5/s", -double(world.linear_velocity(ball).y), 12.402, 1.0e-2, 5.0e-4));
+  EXPECT_TRUE(relative_row("A-06 v(2 s), drag 0.5/s", -double(world.linear_velocity(ball).y), 12.402, 1.0e-2,
+                           5.0e-4));
   EXPECT_TRUE(relative_row("A-06 fall in 2 s", -world.pose(ball).position.y, 14.436, 1.0e-2, 5.0e-4));
   run(world, 40.0);
-  EXPECT_TRUE(relative_row("A-06 terminal speed", -double(world.linear_velocity(ball).y), 19.62, 1.0e-4, 1.0e-6));
+  EXPECT_TRUE(
+      relative_row("A-06 terminal speed", -double(world.linear_velocity(ball).y), 19.62, 1.0e-4, 1.0e-6));
 }
 
 // m v' = m g - 1/2 rho C A v^2: v = u tanh(g t / u).
@@ -37,7 +39,8 @@ TEST(Fields, QuadraticDragHasItsTerminalSpeed) {
   const Case cases[] = {{"ball", Sphere{0.2f}, kPiDouble * 0.04, {}},
                         {"box", Box{{0.2f, 0.1f, 0.3f}}, 4 * 0.2 * 0.3, {}},
                         {"standing cylinder", Cylinder{0.2f, 0.5f}, kPiDouble * 0.04, {}},
-                        {"lying capsule", Capsule{0.1f, 0.3f}, kPiDouble * 0.01 + 4 * 0.1 * 0.3, from_axis_angle({1, 0, 0}, kPi / 2)},
+                        {"lying capsule", Capsule{0.1f, 0.3f}, kPiDouble * 0.01 + 4 * 0.1 * 0.3,
+                         from_axis_angle({1, 0, 0}, kPi / 2)},
                         {"cone, apex up", Cone{0.3f, 0.2f}, kPiDouble * 0.09, {}}};
   for (const Case& c : cases) {
     World world = make_world();
@@ -50,10 +53,12 @@ TEST(Fields, QuadraticDragHasItsTerminalSpeed) {
     const double u = std::sqrt(2 * mass * kGravity / (1.2 * 0.8 * c.area));
     run(world, 0.5 * u / kGravity);
     const double t = world.time();
-    EXPECT_TRUE(relative_row((std::string("falling ") + c.name).c_str(), -double(world.linear_velocity(body).y),
-                             u * std::tanh(kGravity * t / u), 1.0e-2, 1.0e-3));
+    EXPECT_TRUE(relative_row((std::string("falling ") + c.name).c_str(),
+                             -double(world.linear_velocity(body).y), u * std::tanh(kGravity * t / u), 1.0e-2,
+                             1.0e-3));
     run(world, 12 * u / kGravity);
-    EXPECT_TRUE(relative_row("  its terminal speed", -double(world.linear_velocity(body).y), u, 1.0e-3, 1.0e-5));
+    EXPECT_TRUE(
+        relative_row("  its terminal speed", -double(world.linear_velocity(body).y), u, 1.0e-3, 1.0e-5));
   }
 }
 
@@ -65,17 +70,20 @@ TEST(Fields, APlateThatTurnsIsSlowed) {
   const double a = 2.0, b = 3.0;
   BodyDef def;
   def.angular_velocity = {0, 0, 5};
-  const BodyId plate = world.add_body(def, {.geometry = Box{{float(a / 2), 0.001f, float(b / 2)}}, .density = 500});
+  const BodyId plate =
+      world.add_body(def, {.geometry = Box{{float(a / 2), 0.001f, float(b / 2)}}, .density = 500});
   const double inertia = double(world.mass_properties(plate).inertia.zz);
   const double k = 1.2 * b * a * a * a * a / 64 / inertia;
   run(world, 2.0);
-  EXPECT_TRUE(relative_row("spin of a plate after 2 s", double(world.angular_velocity(plate).z), 5.0 / (1 + k * 5.0 * 2.0), 3.0e-2, 1.0e-2));
+  EXPECT_TRUE(relative_row("spin of a plate after 2 s", double(world.angular_velocity(plate).z),
+                           5.0 / (1 + k * 5.0 * 2.0), 3.0e-2, 1.0e-2));
 }
 
 TEST(Fields, WindCarriesAndNeverOvertakes) {
   World world = weightless();
   world.add_field({.velocity = {20, 0, 0}, .drag_coefficient = 0.5f});
-  const BodyId light = add_ball(world, 0.5f, 0.05f, {0, 0, 0}), heavy = add_ball(world, 0.5f, 2000.0f, {0, 5, 0});
+  const BodyId light = add_ball(world, 0.5f, 0.05f, {0, 0, 0}),
+               heavy = add_ball(world, 0.5f, 2000.0f, {0, 5, 0});
   double fastest = 0;
   for (int i = 0; i < 600; ++i) {
     world.step(kStep);
@@ -86,13 +94,18 @@ TEST(Fields, WindCarriesAndNeverOvertakes) {
   // v = w - w / (1 + k w t) for the heavy one.
   const double k = 0.5 * 1.2 * 0.5 * kPiDouble * 0.25 / (2000.0 * 4.0 / 3.0 * kPiDouble * 0.125);
   const double expected = 20.0 * (1 - 1 / (1 + k * 20.0 * 10.0));
-  EXPECT_TRUE(relative_row("heavy ball in the wind", double(world.linear_velocity(heavy).x), expected, 1.0e-2, 1.0e-3));
+  EXPECT_TRUE(relative_row("heavy ball in the wind", double(world.linear_velocity(heavy).x), expected, 1.0e-2,
+                           1.0e-3));
 }
 
 // A body that follows the air at once shows the gusts: their mean and root mean square.
 TEST(Fields, GustsHaveTheirMeanAndTheirSize) {
   World world = weightless();
-  world.add_field({.velocity = {10, 0, 0}, .density = 0.0f, .linear_drag = 1.0e5f, .turbulence = 0.2f, .turbulence_length = 5.0f});
+  world.add_field({.velocity = {10, 0, 0},
+                   .density = 0.0f,
+                   .linear_drag = 1.0e5f,
+                   .turbulence = 0.2f,
+                   .turbulence_length = 5.0f});
   BodyDef def;
   def.type = BodyType::dynamic;
   double square = 0;
@@ -101,7 +114,8 @@ TEST(Fields, GustsHaveTheirMeanAndTheirSize) {
   // At many places at once: the ball is set back to the next one each step.
   const BodyId ball = add_ball(world, 0.1f, 1000, {0, 0, 0});
   for (int i = 0; i < 4000; ++i) {
-    world.set_pose(ball, {{std::fmod(i * 7.31, 200.0), std::fmod(i * 3.77, 150.0), std::fmod(i * 5.19, 170.0)}, {}});
+    world.set_pose(
+        ball, {{std::fmod(i * 7.31, 200.0), std::fmod(i * 3.77, 150.0), std::fmod(i * 5.19, 170.0)}, {}});
     world.step(kStep);
     const DVec3 gust = DVec3(world.linear_velocity(ball)) - DVec3{10, 0, 0};
     mean += gust;
@@ -125,7 +139,9 @@ TEST(Fields, RadialPullHasKeplersOrbits) {
     const DVec3 w = wide(world.linear_velocity(body));
     return 0.5 * dot(w, w) - k / length(world.pose(body).position);
   };
-  const auto spin = [&](BodyId body) { return length(cross(world.pose(body).position, wide(world.linear_velocity(body)))); };
+  const auto spin = [&](BodyId body) {
+    return length(cross(world.pose(body).position, wide(world.linear_velocity(body))));
+  };
   const double e0 = energy(ellipse), l0 = spin(ellipse);
   Unwrapped angle;
   double worst = 0, worst_spin = 0, late = 0;
@@ -136,7 +152,8 @@ TEST(Fields, RadialPullHasKeplersOrbits) {
     (i < 1800 ? worst : late) = std::fmax(i < 1800 ? worst : late, error);
     worst_spin = std::fmax(worst_spin, std::fabs(spin(ellipse) / l0 - 1));
   }
-  EXPECT_TRUE(relative_row("angle of a circular orbit in 60 s", angle.turned(), 60.0 * v / r, 1.0e-3, 1.0e-4));
+  EXPECT_TRUE(
+      relative_row("angle of a circular orbit in 60 s", angle.turned(), 60.0 * v / r, 1.0e-3, 1.0e-4));
   EXPECT_TRUE(limit_row("energy of an elliptic orbit, first half minute", worst, 3.0e-2, 3.0e-3));
   EXPECT_TRUE(limit_row("  second half minute: no drift", late, 1.1 * worst, worst));
   EXPECT_TRUE(limit_row("  its angular momentum", worst_spin, 1.0e-4, 1.0e-5));
@@ -152,7 +169,8 @@ TEST(Fields, ARadialPullThatGrowsIsASpring) {
     world.step(kStep);
     crossings.add(world.time(), world.pose(ball).position.x);
   }
-  EXPECT_TRUE(relative_row("period in a spring's field", crossings.mean_period(), 2 * kPiDouble / 3, 1.0e-3, 1.0e-4));
+  EXPECT_TRUE(
+      relative_row("period in a spring's field", crossings.mean_period(), 2 * kPiDouble / 3, 1.0e-3, 1.0e-4));
   World stiff = weightless();
   stiff.add_field({.kind = FieldKind::radial, .strength = 1.0e6f, .radius = 1.0f, .falloff = -1.0f});
   const BodyId held = add_ball(stiff, 0.1f, 1000, {1, 0, 0});
@@ -170,7 +188,12 @@ TEST(Fields, ARadialPullThatGrowsIsASpring) {
 TEST(Fields, VortexSpiralsAsItsEquationSays) {
   World world = weightless();
   const double rate = 2.0, c = 1.5;
-  world.add_field({.kind = FieldKind::vortex, .density = 0.0f, .linear_drag = float(c), .strength = float(rate * 10), .radius = 10.0f, .axis = {0, 0, 3}});
+  world.add_field({.kind = FieldKind::vortex,
+                   .density = 0.0f,
+                   .linear_drag = float(c),
+                   .strength = float(rate * 10),
+                   .radius = 10.0f,
+                   .axis = {0, 0, 3}});
   const BodyId ball = add_ball(world, 0.1f, 1000, {1, 0, 0});
   run(world, 3.0);
   using Complex = std::complex<double>;
@@ -180,19 +203,25 @@ TEST(Fields, VortexSpiralsAsItsEquationSays) {
   const DVec3 p = world.pose(ball).position;
   EXPECT_TRUE(row("vortex: x after 3 s", p.x, z.real(), 1.0e-2 * std::abs(z), 1.0e-3));
   EXPECT_TRUE(row("vortex: y after 3 s", p.y, z.imag(), 1.0e-2 * std::abs(z), 1.0e-3));
-  EXPECT_TRUE(relative_row("  its spin", double(world.angular_velocity(ball).z), rate * (1 - std::exp(-c * 3.0)), 1.0e-2, 2.0e-3));
+  EXPECT_TRUE(relative_row("  its spin", double(world.angular_velocity(ball).z),
+                           rate * (1 - std::exp(-c * 3.0)), 1.0e-2, 2.0e-3));
   // Outside the core the speed falls with the distance.
   World outside = weightless();
-  outside.add_field({.kind = FieldKind::vortex, .density = 0.0f, .linear_drag = 1.0e5f, .strength = 6.0f, .radius = 2.0f});
+  outside.add_field(
+      {.kind = FieldKind::vortex, .density = 0.0f, .linear_drag = 1.0e5f, .strength = 6.0f, .radius = 2.0f});
   const BodyId leaf = add_ball(outside, 0.1f, 1000, {8, 0, 0});
   outside.step(1.0f / 600.0f);
-  EXPECT_TRUE(relative_row("speed at four radii", double(length(outside.linear_velocity(leaf))), 1.5, 1.0e-3, 1.0e-4));
+  EXPECT_TRUE(relative_row("speed at four radii", double(length(outside.linear_velocity(leaf))), 1.5, 1.0e-3,
+                           1.0e-4));
   EXPECT_LT(outside.linear_velocity(leaf).z, 0.0f) << "counter-clockwise seen against y: from x towards -z";
 }
 
 TEST(Fields, BoundsAndLayersSayWhom) {
   World world = weightless();
-  const FieldId field = world.add_field({.bounds = FieldBounds{{-1, -1, -1}, {1, 1, 1}}, .layers = 2, .velocity = {10, 0, 0}, .linear_drag = 1});
+  const FieldId field = world.add_field({.bounds = FieldBounds{{-1, -1, -1}, {1, 1, 1}},
+                                         .layers = 2,
+                                         .velocity = {10, 0, 0},
+                                         .linear_drag = 1});
   const auto ball = [&](std::uint32_t layer, DVec3 place) {
     BodyDef def;
     def.pose.position = place;
@@ -248,8 +277,10 @@ TEST(Explosion, AFarBallGetsThePressureOnItsShadow) {
   EXPECT_TRUE(world.explode({.center = {0, 0, 0}, .pressure = 5000, .radius = 20}));
   const double mass = double(world.mass_properties(near).mass), area = kPiDouble * 0.01;
   // A ball is not flat: its front is nearer. That is R / r of the pressure at most.
-  EXPECT_TRUE(relative_row("ball at 5 m", double(world.linear_velocity(near).x), 5000 / 25.0 * area / mass, 4.0e-2, 2.0e-2));
-  EXPECT_TRUE(relative_row("ball at 10 m", double(world.linear_velocity(far).y), 5000 / 100.0 * area / mass, 2.0e-2, 1.0e-2));
+  EXPECT_TRUE(relative_row("ball at 5 m", double(world.linear_velocity(near).x), 5000 / 25.0 * area / mass,
+                           4.0e-2, 2.0e-2));
+  EXPECT_TRUE(relative_row("ball at 10 m", double(world.linear_velocity(far).y), 5000 / 100.0 * area / mass,
+                           2.0e-2, 1.0e-2));
   EXPECT_EQ(world.linear_velocity(beyond), Vec3{});
   EXPECT_LT(length(world.angular_velocity(near)), 1e-3f);
 }
@@ -281,8 +312,10 @@ TEST(Explosion, MomentumCancelsAllRound) {
 TEST(Explosion, WallsHide) {
   World world = weightless();
   world.add_body({.type = BodyType::fixed, .pose = {.position = {2, 0, 0}}}, {.geometry = Box{{0.1f, 2, 2}}});
-  const BodyId behind = add_ball(world, 0.2f, 1000, {4, 0, 0}), open = add_ball(world, 0.2f, 1000, {-4, 0, 0});
-  const BodyId half = add_ball(world, 0.2f, 1000, {4, 4.2, 0});  // the wall's upper edge hides up to y = 4.0 or so there
+  const BodyId behind = add_ball(world, 0.2f, 1000, {4, 0, 0}),
+               open = add_ball(world, 0.2f, 1000, {-4, 0, 0});
+  const BodyId half =
+      add_ball(world, 0.2f, 1000, {4, 4.2, 0});  // the wall's upper edge hides up to y = 4.0 or so there
   world.explode({.pressure = 1000, .occlusion = true});
   EXPECT_EQ(world.linear_velocity(behind), Vec3{});
   EXPECT_LT(world.linear_velocity(open).x, -0.01f);
