@@ -30,20 +30,6 @@ int opposing_face(const Polytope& polytope, int vertex, Vec3 direction) {
   return best;
 }
 
-// The face that opposes `direction` most among those that oppose it less than `limit`; -1 if none faces that way.
-int next_opposing_face(const Polytope& polytope, Vec3 direction, float limit) {
-  int best = -1;
-  float least = -0.05f;
-  for (int f = 0; f < polytope.face_count; ++f) {
-    const float slope = dot(polytope.planes[f].normal, direction);
-    if (slope < least && slope > limit) {
-      least = slope;
-      best = f;
-    }
-  }
-  return best;
-}
-
 struct Roles {
   const Polytope& reference;
   const Polytope& incident;
@@ -51,38 +37,87 @@ struct Roles {
   bool reference_is_a;
 };
 
-// Points of the reference's face against the incident's faces, in the reference's frame.
-int face_points(const Roles& roles, int face, float separation, float max_separation, ManifoldPoint* points) {
-  FacePolygon reference, incident;
-  face_polygon(roles.reference, face, reference);
-  const Vec3 outward = reference.normal;
-  const Vec3 local = rotate_inverse(roles.reference_from_incident.orientation, outward);
-  FacePair pair;
-  pair.a = roles.reference_is_a ? &reference : &incident;
-  pair.b = roles.reference_is_a ? &incident : &reference;
-  pair.normal = roles.reference_is_a ? outward : -outward;
-  pair.max_separation = max_separation;
-  const auto clip_with = [&](int other) {
-    face_polygon(roles.incident, other, incident);
-    for (int i = 0; i < incident.count; ++i) {
-      incident.vertices[i] = roles.reference_from_incident * incident.vertices[i];
-    }
-    return clip_faces(pair, roles.reference_is_a, points);
-  };
-  const int deepest = lowest_vertex(roles.incident, local);
-  int count = clip_with(opposing_face(roles.incident, deepest, local));
-  if (count > 0 || separation > 0.0f) return count;
-  // They overlap, but not there: other faces that look this way, the most opposed first.
-  float slope = -2.0f;
-  for (int tries = 0; tries < 8; ++tries) {
-    const int other = next_opposing_face(roles.incident, local, slope);
-    if (other < 0) break;
-    slope = dot(roles.incident.planes[other].normal, local);
-    count = clip_with(other);
-    if (count > 0) return count;
+// In inner radii of the thinner: a face's points stand for the contact if the deepest of them is within this part of it.
+constexpr float kMissed = 1.0e-3f;
+// Faces that look this way by less than this cosine are sides.
+constexpr float kLooksThisWay = 1.0e-4f;
+constexpr int kMaxVertices = 256;
+
+float missed(const Polytope& a, const Polytope& b) { return kMissed * min(a.inner_radius, b.inner_radius); }
+
+// Candidate points of one face of the reference, against one face of the incident after the other.
+class FacePoints {
+ public:
+  FacePoints(const Roles& roles, int face, float max_separation)
+      : roles_(roles), outward_(roles.reference.planes[face].normal) {
+    face_polygon(roles.reference, face, reference_);
+    pair_.a = roles.reference_is_a ? &reference_ : &incident_;
+    pair_.b = roles.reference_is_a ? &incident_ : &reference_;
+    pair_.normal = roles.reference_is_a ? outward_ : -outward_;
+    pair_.max_separation = max_separation;
   }
-  return 0;
-}
+
+  // `separation` is that of the two along the face's normal.
+  int find(float separation) {
+    const Vec3 local = rotate_inverse(roles_.reference_from_incident.orientation, outward_);
+    const int first = opposing_face(roles_.incident, lowest_vertex(roles_.incident, local), local);
+    clip_with(first);
+    if (separation > 0.0f) return count_;
+    const float enough = separation + missed(roles_.reference, roles_.incident);
+    if (deepest_ > enough) clip_with_others(first, local);
+    return count_;
+  }
+  ManifoldPoint* points() { return points_; }
+
+ private:
+  // They overlap, but not there, or not only: every other face that looks this way and reaches deeper is cut too.
+  void clip_with_others(int first, Vec3 local) {
+    const Polytope& incident = roles_.incident;
+    const float height = dot(outward_, reference_.vertices[0] - roles_.reference_from_incident.position);
+    float separations[kMaxVertices];
+    for (int i = 0; i < incident.vertex_count; ++i)
+      separations[i] = dot(local, incident.vertices[i]) - height;
+    for (int f = 0; f < incident.face_count; ++f) {
+      if (f == first || dot(incident.planes[f].normal, local) > -kLooksThisWay) continue;
+      face_polygon(incident, f, incident_);
+      float lowest = kUnbounded;
+      for (int i = 0; i < incident_.count; ++i) lowest = min(lowest, separations[incident_.ids[i]]);
+      if (lowest < deepest_) clip_with(f);
+    }
+  }
+  void clip_with(int face) {
+    face_polygon(roles_.incident, face, incident_);
+    for (int i = 0; i < incident_.count; ++i) {
+      incident_.vertices[i] = roles_.reference_from_incident * incident_.vertices[i];
+    }
+    ManifoldPoint* const found = points_ + count_;
+    ManifoldPoint clipped[kMaxClipPoints];
+    const int room = kMaxClipPoints - count_,
+              count = min(clip_faces(pair_, roles_.reference_is_a, clipped), room);
+    int kept = 0;
+    for (int i = 0; i < count; ++i) {
+      if (is_known(clipped[i])) continue;
+      found[kept++] = clipped[i];
+      deepest_ = min(deepest_, clipped[i].separation);
+    }
+    count_ += kept;
+  }
+  // Faces that share a corner or an edge meet the reference in the same points.
+  bool is_known(const ManifoldPoint& point) const {
+    for (int i = 0; i < count_; ++i) {
+      if (points_[i].feature == point.feature || points_[i].position == point.position) return true;
+    }
+    return false;
+  }
+
+  const Roles& roles_;
+  Vec3 outward_;
+  FacePolygon reference_, incident_;
+  FacePair pair_;
+  float deepest_ = kUnbounded;
+  int count_ = 0;
+  ManifoldPoint points_[kMaxClipPoints];
+};
 
 // None when the polytopes are apart and the edges pass beside each other.
 void edge_point(const Polytope& a, const Polytope& b, const Transform& a_from_b, const PolytopeAxis& axis,
@@ -102,10 +137,10 @@ void edge_point(const Polytope& a, const Polytope& b, const Transform& a_from_b,
 void face_manifold(const Polytope& a, const Polytope& b, const Transform& a_from_b, const PolytopeAxis& axis,
                    float max_separation, LocalManifold& out) {
   const bool is_a = axis.kind == AxisKind::face_a;
-  ManifoldPoint points[kMaxClipPoints];
   const Roles roles{is_a ? a : b, is_a ? b : a, is_a ? a_from_b : inverse(a_from_b), is_a};
-  const int found =
-      face_points(roles, is_a ? axis.index_a : axis.index_b, axis.separation, max_separation, points);
+  FacePoints candidates(roles, is_a ? axis.index_a : axis.index_b, max_separation);
+  const int found = candidates.find(axis.separation);
+  ManifoldPoint* const points = candidates.points();
   const Vec3 normal = is_a ? axis.normal : b.planes[axis.index_b].normal;
   out.normal = axis.normal;
   out.count = found > 0 ? reduce_points(points, found, normal) : 0;
@@ -113,6 +148,12 @@ void face_manifold(const Polytope& a, const Polytope& b, const Transform& a_from
     out.points[i] = points[i];
     if (!is_a) out.points[i].position = a_from_b * points[i].position;
   }
+}
+
+float deepest_of(const LocalManifold& manifold) {
+  float least = kUnbounded;
+  for (int i = 0; i < manifold.count; ++i) least = min(least, manifold.points[i].separation);
+  return least;
 }
 
 // The face whose normal is within kNearFace of a normal from A to B; none if there is none.
@@ -152,6 +193,8 @@ bool collide_polytopes(const Polytope& a, const Polytope& b, const Transform& a_
   if (axis.separation > max_separation) return false;
   if (axis.kind != AxisKind::edges) {
     face_manifold(a, b, a_from_b, axis, max_separation, out);
+    // Apart, and nearest beside the face.
+    if (axis.separation > 0.0f && deepest_of(out) > axis.separation + missed(a, b)) out.count = 0;
     return true;
   }
   if (crossing_faces(a, b, a_from_b, axis, max_separation, out)) return true;

@@ -62,6 +62,7 @@ class MeshCollider {
     settle_deep_patches();
     push_out();
     if (groups_.empty() && convex_.vertex_count() > 2) look_for_corners();
+    if (groups_.empty() && rim_separation_ < kUnbounded) add_rim();
     return groups_.finish(position_, out);
   }
 
@@ -69,6 +70,7 @@ class MeshCollider {
   void look_at(std::uint32_t id);
   void settle_waiting();
   void settle_deep_patches();
+  bool runs_through(const NearTriangle& t) const;
   void note_overlap(const Waiting& found, float best);
   void push_out();
   void look_for_corners();
@@ -85,7 +87,8 @@ class MeshCollider {
 
   bool stands_already(Vec3 normal) const;
   bool stand(Vec3 normal, float separation);
-  void add_face(const NearTriangle& t);
+  void add_face(const NearTriangle& t, float deepest = -kUnbounded);
+  void add_rim();
   bool add_deep_corners(const NearTriangle& t);
   void add_feature(const NearTriangle& t, const FeatureAxis& axis);
   bool is_buried(const NearTriangle& t, Vec3 direction) const;
@@ -107,6 +110,10 @@ class MeshCollider {
   // Of the triangles that the shape certainly overlaps, the one through whose front it leaves first; those with the
   // shape's middle before them first of all.
   Waiting exit_{0, -__builtin_huge_valf(), true, false};
+  // The nearest triangle over which a point of a curved shape lies, although none of its facing polygon's does.
+  float rim_separation_ = kUnbounded;
+  std::uint32_t rim_triangle_ = 0;
+  Vec3 on_rim_;
   // How deep the shape sits in the triangle that holds it most, by its best direction out, allowed or not.
   float overlap_ = 0.0f;
   MeshCandidates candidates_;
@@ -149,11 +156,12 @@ bool MeshCollider::stand(Vec3 normal, float separation) {
   return true;
 }
 
-void MeshCollider::add_face(const NearTriangle& t) {
+void MeshCollider::add_face(const NearTriangle& t, float deepest) {
   know_side(t.normal);
   know_face();
   points_.count = 0;
   face_points(t, convex_, side_, max_separation_, points_);
+  points_.drop_below(deepest);
   if (is_buried(t, t.normal)) points_.count = 0;
   groups_.add(t.normal, t.id, points_);
 }
@@ -183,6 +191,16 @@ bool MeshCollider::add_deep_corners(const NearTriangle& t) {
     }
   }
   return added;
+}
+
+// A cap is cut a little inside of its rim, and only that may lie over a triangle.
+void MeshCollider::add_rim() {
+  const NearTriangle t = triangle(rim_triangle_);
+  const float separation = dot(t.normal, on_rim_ - t.v[0]) - convex_.radius();
+  if (separation > max_separation_) return;
+  points_.count = 0;
+  points_.add(on_rim_ - (convex_.radius() + 0.5f * separation) * t.normal, separation, t.id);
+  groups_.add(t.normal, t.id, points_);
 }
 
 void MeshCollider::add_feature(const NearTriangle& t, const FeatureAxis& axis) {
@@ -277,6 +295,11 @@ void MeshCollider::look_at(std::uint32_t id) {
   }
   if (face >= axes.feature.separation - bias_) {
     add_face(t);
+    if (points_.count == 0 && axes.over_face && face < rim_separation_) {
+      rim_separation_ = face;
+      rim_triangle_ = id;
+      on_rim_ = axes.on_core;
+    }
     // Beside an edge the face alone may have no point, or none that is deep enough.
     const float wanted = axes.feature.separation + 0.1f * kAxisBias * convex_.size();
     if (axes.feature.separation < axes.best - kAxisBias * convex_.size() || points_.deepest() <= wanted) {
@@ -294,7 +317,8 @@ void MeshCollider::settle(const Waiting& waiting) {
     if (dot(standing_[i].normal, t.normal) > kSameNormal) return add_face(t);
   }
   if (is_ruled_out(t, waiting.behind)) return;
-  add_face(t);
+  // What is apart from the triangle may still reach below its plane, beside it or under its edge: nothing to be pushed out.
+  add_face(t, waiting.overlaps ? -kUnbounded : -kCoverSlack * convex_.size());
   bool added = points_.count > 0;
   if ((added || waiting.overlaps) && add_deep_corners(t)) added = true;
   if (added) stand(t.normal, waiting.face_separation);
@@ -322,12 +346,33 @@ void MeshCollider::settle_waiting() {
   for (int i = 0; i < waiting_count_; ++i) settle(waiting_[i]);
 }
 
+// Whether the shape, which lies mostly behind the triangle's plane, comes through the surface there, and not beside its
+// border: where the line from its lowest to its highest point crosses the plane there must be ground.
+bool MeshCollider::runs_through(const NearTriangle& t) const {
+  const Vec3 low = convex_.support(-t.normal), high = convex_.support(t.normal);
+  const float below = dot(t.normal, t.v[0] - low), above = dot(t.normal, high - t.v[0]);
+  if (!(below > 0.0f && above > 0.0f)) return false;
+  const Vec3 crossing = lerp(low, high, below / (below + above)) + position_;
+  const float slack = kCoverSlack * convex_.size();
+  std::uint32_t ids[16];
+  const int count = find_triangles(surface_, grow({crossing, crossing}, slack), ids);
+  for (int i = 0; i < count; ++i) {
+    const NearTriangle other = triangle(ids[i]);
+    const Vec3 p = crossing - position_;
+    bool inside = dot(other.normal, t.normal) > kSameNormal;
+    for (int k = 0; k < 3; ++k) inside = inside && dot(other.outward[k], p - other.v[k]) <= slack;
+    if (inside) return true;
+  }
+  return false;
+}
+
 // A shape that leans and pierces a large flat patch may have neither a corner above nor a triangle in question below.
 void MeshCollider::settle_deep_patches() {
   for (int i = 0; i < candidates_.deep_patch_count; ++i) {
     const NearTriangle t = triangle(candidates_.deep_patches[i]);
     know_side(t.normal);
-    if (is_ruled_out(t, dot(t.normal, convex_.center() - t.v[0]) < 0.0f)) continue;
+    const bool behind = dot(t.normal, convex_.center() - t.v[0]) < 0.0f;
+    if (is_ruled_out(t, behind) || (behind && !runs_through(t))) continue;
     if (add_deep_corners(t)) stand(t.normal, face_separation(t));
   }
 }

@@ -322,5 +322,27 @@ TEST(CollideMeshEdges, DoublesFromBehindAreNoEdges) {
   expect_no_ghosts(sheet.cook(), -2.0f, 2.0f);
 }
 
+// A ball above a ridge of a fraction of a degree, its foot on neither side, had no contact at all.
+TEST(CollideMeshEdges, ABallRestsOnARidgeThatIsAllButFlat) {
+  for (const float slope : {1.0e-4f, 4.0e-4f, 9.0e-4f, 3.0e-3f}) {
+    Triangles roof;
+    roof.quad({-1, -slope, -1}, {-1, -slope, 1}, {0, 0, 1}, {0, 0, -1});
+    roof.quad({0, 0, -1}, {0, 0, 1}, {1, -slope, 1}, {1, -slope, -1});
+    const Geometry ground = roof.cook();
+    for (const float x : {0.0f, 0.3f, -0.6f}) {
+      const Manifolds found = collide(ground, Sphere{1.0f}, {{x * slope, 1.001f, 0.1f}, {}});
+      ASSERT_GE(found.count, 1) << slope << " " << x;
+      EXPECT_NEAR(found.deepest(), 0.001f, 1.0e-5f) << slope << " " << x;
+    }
+  }
+}
+
+// A cone beside and below the border of a floor, its tip above the floor's plane, was thrown up by more than its height.
+TEST(CollideMeshEdges, WhatIsBelowAndBesideAFloorIsNotTouched) {
+  const Geometry floor = flat_grid(1.0f, 0.5f).cook();
+  const Manifolds found = collide(floor, Cone{0.7f, 0.7f}, {{-0.19f, -0.63f, -1.2f}, {}});
+  EXPECT_EQ(found.count, 0);
+}
+
 }  // namespace
 }  // namespace gyre

@@ -129,5 +129,29 @@ TEST(ManifoldRound, CapsulesEqualTheirSegmentsDistance) {
   }
 }
 
+// A ball whose middle lay on a cylinder's rim, to rounding, was pushed along that rounding: deeper in, not out.
+TEST(ManifoldRound, ABallWithItsMiddleOnARimIsPushedOut) {
+  const Shape cylinder = make_along_y(ShapeKind::cylinder, 0.664687872f, 0.206659272f),
+              ball = make_sphere(1.0f);
+  const Transform t{{-0.53012538f, 0.206659377f, 0.400970191f}, {}};
+  const LocalManifold m = collide(cylinder, ball, t, 0.02f);
+  ASSERT_EQ(m.count, 1);
+  const CorePair pair(cylinder, ball, t);
+  EXPECT_NEAR(separation(cylinder, ball, pair, DVec3(m.normal)) - 1.0, double(m.points[0].separation),
+              1.0e-5);
+}
+
+// Capsules one behind the other, on one axis but for rounding, were given two points that lay far too shallow.
+TEST(ManifoldRound, CapsulesEndToEndTouchInOnePoint) {
+  const Shape a = make_along_y(ShapeKind::capsule, 0.5f, 0.35f),
+              b = make_along_y(ShapeKind::capsule, 0.5f, 0.45f);
+  for (const float x : {0.0f, -2.3e-8f, 6.7e-7f, 1.0e-5f}) {
+    const LocalManifold m = collide(a, b, {{0, -1.7f, 0}, normalized(Quat{x, 0, 0.5f * x, 1})}, 0.02f);
+    ASSERT_EQ(m.count, 1) << x;
+    EXPECT_NEAR(m.points[0].separation, -0.1f, 1.0e-4f) << x;
+    EXPECT_LT(length(m.normal - Vec3{0, -1, 0}), 1.0e-3f) << x;
+  }
+}
+
 }  // namespace
 }  // namespace gyre

@@ -4,6 +4,7 @@
 #include "geometry/closest.h"
 #include "geometry/gjk.h"
 #include "geometry/penetration.h"
+#include "geometry/sphere_triangle.h"
 
 namespace gyre {
 namespace {
@@ -49,14 +50,16 @@ class Search {
     if (t_.edge[edge] != EdgeKind::convex && t_.edge[edge] != EdgeKind::open) return false;
     if (dot(d, t_.outward[edge]) < -kArcSlack) return false;
     const float front = dot(d, t_.normal);
-    if (t_.edge[edge] == EdgeKind::open) return front >= -kArcSlack;
+    // The border of a surface that is solid from both sides is the rim of a plate.
+    if (t_.edge[edge] == EdgeKind::open) return surface_.double_sided() || front >= -kArcSlack;
     const Vec3 other = t_.neighbor_normal[edge];
     return dot(d, cross(other, t_.along[edge])) >= -kArcSlack &&
            (front >= -kArcSlack || dot(d, other) >= -kArcSlack);
   }
 
   bool corner_allows(int corner, Vec3 d) const {
-    if ((t_.flat_corners >> corner & 1) != 0 || dot(d, t_.normal) < -kArcSlack) return false;
+    if ((t_.flat_corners >> corner & 1) != 0) return false;
+    if (!surface_.double_sided() && dot(d, t_.normal) < -kArcSlack) return false;
     const int own = t_.turned && corner != 0 ? 3 - corner : corner;
     return surface_.mesh != nullptr ? in_normal_cone(*surface_.mesh, t_.id, own, d, kArcSlack)
                                     : in_normal_cone(*surface_.field, t_.id, own, d, kArcSlack);
@@ -104,11 +107,13 @@ class Search {
     core_best_ = max(core_best_, separation + convex_.radius());
     if (is_backwards(d)) {
       // As a separating direction it still counts.
-      if (separation > max_separation_) found_.best = separation;
+      if (separation > 0.0f) found_.best = max(found_.best, separation);
       return false;
     }
     found_.best = max(found_.best, separation);
-    if (!(separation > useful()) || is_face(d) || !allows(corners, d)) return false;
+    // Nearest points beside the face are exact, however little their direction leans.
+    if (is_face(d) && source != AxisSource::nearest_pair) return false;
+    if (!(separation > useful()) || !allows(corners, d)) return false;
     found_.feature.separation = separation;
     found_.feature.direction = d;
     found_.feature.corners = corners;
@@ -121,6 +126,8 @@ class Search {
   void edge_axes();
   void edge_axis(const HullEdge& edge, int i, float left_part, float right_part);
   void segment_axes();
+  bool is_pierced() const;
+  void nearest_of_sphere();
   void nearest_pair();
   void nearest_of_vertices(double& best, SimplexPoint& on_triangle, DVec3& on_convex) const;
   bool nearest_by_gjk();
@@ -213,7 +220,32 @@ void Search::nearest_of_vertices(double& best, SimplexPoint& on_triangle, DVec3&
   }
 }
 
-// A point or segment that does not cross the triangle: the true direction is that between the nearest points.
+void Search::nearest_of_sphere() {
+  const DVec3 middle(convex_.vertex(0));
+  const SphereTriangle found =
+      sphere_triangle(middle, double(convex_.radius()), DVec3(t_.v[0]), DVec3(t_.v[1]), DVec3(t_.v[2]));
+  if (!(found.distance > 1.0e-6 * double(convex_.size()))) return;
+  if (offer(to_float(found.normal), float(found.distance) - convex_.radius(), found.corners,
+            AxisSource::nearest_pair)) {
+    found_.feature.on_core = to_float(middle);
+  }
+}
+
+// Whether the segment runs through the triangle. (All cross products of a sliver's edges may lie too near to each other for
+// an axis search to tell.)
+bool Search::is_pierced() const {
+  const DVec3 a(t_.v[0]), b(t_.v[1]), c(t_.v[2]), from(convex_.vertex(0)), to(convex_.vertex(1));
+  const DVec3 front = cross(b - a, c - a);
+  const double start = dot(front, from - a), end = dot(front, to - a);
+  if ((start > 0.0 && end > 0.0) || (start < 0.0 && end < 0.0)) return false;
+  // On which side of each edge the segment's line passes, seen along it.
+  const DVec3 way = to - from;
+  const double ab = dot(cross(b - a, way), from - a), bc = dot(cross(c - b, way), from - b),
+               ca = dot(cross(a - c, way), from - c);
+  return (ab >= 0.0 && bc >= 0.0 && ca >= 0.0) || (ab <= 0.0 && bc <= 0.0 && ca <= 0.0);
+}
+
+// A segment that does not cross the triangle: the true direction is that between the nearest points.
 void Search::nearest_pair() {
   double best = __builtin_huge_val();
   SimplexPoint on_triangle;
@@ -232,7 +264,7 @@ void Search::nearest_pair() {
       on_convex = pair.on_b;
     }
   };
-  if (convex_.vertex_count() == 2) try_edge(convex_.vertex(0), convex_.vertex(1));
+  try_edge(convex_.vertex(0), convex_.vertex(1));
   // Corners of the triangle beside the segment.
   const Vec3 inset{convex_.radius(), convex_.radius(), convex_.radius()};
   const Aabb core{convex_.local_box().low + inset, convex_.local_box().high - inset};
@@ -263,9 +295,12 @@ void Search::polyhedron() {
   }
   if (convex_.radius() == 0.0f || apart()) return;
   // The features of overlapping cores have distances too, but those mean nothing.
-  const bool overlap = convex_.vertex_count() > 1 && !(core_best_ > 1.0e-6f * convex_.size());
-  if (overlap) return;
-  if (convex_.vertex_count() <= 2) {
+  if (convex_.vertex_count() == 2 ? is_pierced()
+                                  : convex_.vertex_count() > 2 && !(core_best_ > 1.0e-6f * convex_.size()))
+    return;
+  if (convex_.vertex_count() == 1) {
+    nearest_of_sphere();
+  } else if (convex_.vertex_count() == 2) {
     nearest_pair();
   } else {
     nearest_by_gjk();
@@ -310,6 +345,10 @@ bool Search::nearest_by_gjk() {
   }
   const SimplexPoint near = closest_on_triangle(found.on_b, DVec3(t_.v[0]), DVec3(t_.v[1]), DVec3(t_.v[2]));
   const float separation = float(found.distance) - convex_.radius();
+  if (near.corners == 7) {
+    found_.over_face = true;
+    found_.on_core = to_float(found.on_b);
+  }
   if (offer(to_float(found.normal), separation, near.corners, AxisSource::nearest_pair)) {
     found_.feature.on_core = to_float(found.on_b);
   }

@@ -77,6 +77,8 @@ struct FeatureAxis {
 struct AxisSearch {
   float best = -__builtin_huge_valf();  // the largest separation along any direction, allowed or not
   FeatureAxis feature;                  // the best allowed direction besides the face's normal
+  bool over_face = false;               // the nearest point of the core, where it was searched for, lies over the face
+  Vec3 on_core;                         // that point
 };
 
 // Room for the triangle in the form that GJK takes, kept between triangles so that it is made once.

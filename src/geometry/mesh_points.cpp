@@ -11,6 +11,8 @@ namespace {
 constexpr float kFlush = 0.985f;
 // Sine between two edges that run side by side and touch in two points.
 constexpr float kParallel = 0.05f;
+// How far two edges may pass beside each other and still cross, of the longer one's length.
+constexpr float kBeside = 1.0e-3f;
 
 // The kinds in the order in which a reduction prefers equally good points: corners of the shape keep a manifold steadiest.
 enum class PointKind : std::uint32_t { shape_corner, surface_corner, edges, nearest };
@@ -200,8 +202,12 @@ void EdgeContact::nearest() const {
   const SegmentPair pair =
       closest_of_segments(DVec3(start()), DVec3(end()), DVec3(face.vertices[0]), DVec3(last));
   const Vec3 p = to_float(pair.on_a), q = to_float(pair.on_b);
+  // Apart, and not across each other: what is nearest is found elsewhere.
+  const float along = dot(direction, q - p);
+  const float beside = kBeside * max(t.length[edge], length(last - face.vertices[0])) + t.slack;
+  if (along > emit.radius && length_squared(q - p) > square(along) + square(beside)) return;
   const std::uint32_t name = face.count == 1 ? face.ids[0] : edge_name(face, 0);
-  emit.pair(q, dot(direction, q - p) - emit.radius, point_name(PointKind::edges, t.edge_id[edge], name));
+  emit.pair(q, along - emit.radius, point_name(PointKind::edges, t.edge_id[edge], name));
 }
 
 // The edge of a polygon that is lowest along `direction`, or its lowest corner.
@@ -236,6 +242,8 @@ void corner_points(const NearTriangle& t, int corner, const PlacedConvex& convex
   if (axis.source != AxisSource::nearest_pair) {
     const float facing = dot(face.normal, emit.direction);
     const bool flush = face.count >= 3 && facing < -kFlush;
+    // Beside the face there is nothing above the corner at that height.
+    if (flush && !inside_polygon(face, v, t.slack)) return;
     height = flush ? dot(face.normal, face.vertices[0] - v) / facing
                    : convex.lowest(emit.direction) - dot(emit.direction, v);
   }

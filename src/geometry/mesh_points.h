@@ -29,6 +29,14 @@ struct MeshPoints {
     for (int i = 0; i < count; ++i) least = min(least, points[i].separation);
     return least;
   }
+  // Forgets the points of a lesser separation.
+  void drop_below(float separation) {
+    int kept = 0;
+    for (int i = 0; i < count; ++i) {
+      if (points[i].separation >= separation) points[kept++] = points[i];
+    }
+    count = kept;
+  }
   void add(Vec3 position, float separation, std::uint32_t feature) {
     if (count < kRoom) points[count++] = {position, separation, feature};
   }

@@ -14,6 +14,8 @@ constexpr double kParallel = 1.0e-8;
 constexpr float kShallow = 1.0e-2f;
 // Tie margin of the edges' distance test, relative to the shapes' size.
 constexpr float kReachMargin = 1.0e-4f;
+// How far a corner may lie beyond the edge that is outermost, of the largest coordinate.
+constexpr float kOutermost = 1.0e-5f;
 constexpr int kMaxVertices = 255, kMaxFaces = 255, kMaxEdges = 510;
 
 // Separation of `other` above a plane of the reference polytope, the plane given in other's frame.
@@ -151,6 +153,8 @@ class EdgeCandidates {
   EdgeCandidates(const Polytope& a, const Polytope& b, const Transform& a_from_b) : a_(a), b_(b) {
     turn_ = to_matrix(a_from_b.orientation);
     shift_ = a_from_b.position;
+    for (int i = 0; i < a.vertex_count; ++i) size_a_ = max(size_a_, largest(absolute(a.vertices[i])));
+    for (int i = 0; i < b.vertex_count; ++i) size_b_ = max(size_b_, largest(absolute(b.vertices[i])));
   }
 
   void collect(const BestFace& face, float max_separation) {
@@ -200,6 +204,16 @@ class EdgeCandidates {
     return product * absolute(product) > bound;
   }
 
+  // Whether no corner of A lies beyond its edge along the axis, and none of B before its own. Beside an edge as sharp as a
+  // knife two normals all but oppose each other, so that which way is out, and whether arcs cross, is of rounding.
+  bool is_outermost(int i, int k, Vec3 normal) const {
+    const Vec3 from_a = a_.vertices[a_.edges[arcs_a.index[i]].from];
+    const Vec3 from_b = b_.vertices[b_.edges[arcs_b.index[k]].from];
+    const Vec3 down = transpose_times(turn_, normal);
+    return highest_along(a_, normal) - dot(normal, from_a) <= kOutermost * size_a_ &&
+           dot(down, from_b) - lowest_along(b_, down) <= kOutermost * size_b_;
+  }
+
   EdgeColumns arcs_a, arcs_b;
 
  private:
@@ -207,6 +221,7 @@ class EdgeCandidates {
   const Polytope& b_;
   Mat3 turn_;
   Vec3 shift_;
+  float size_a_ = 0.0f, size_b_ = 0.0f;  // of the coordinates
 };
 
 // The pair of edges of largest separation, if that is above `floor`; a = -1 if none is.
@@ -227,7 +242,13 @@ EdgePair best_edges(const Polytope& a, const Polytope& b, const Transform& a_fro
         EdgePair pair;
         const Vec3 outward = near.arcs_a.left(i) + near.arcs_a.right(i);
         if (!search.evaluate(near.arcs_a.index[i], near.arcs_b.index[k], outward, pair)) continue;
-        if (pair.separation > best.separation) best = pair;
+        if (!(pair.separation > best.separation)) continue;
+        if (!near.is_outermost(i, k, pair.normal)) {
+          pair.normal = -pair.normal;
+          pair.separation = -pair.separation;
+          if (!(pair.separation > best.separation) || !near.is_outermost(i, k, pair.normal)) continue;
+        }
+        best = pair;
       }
     }
   }

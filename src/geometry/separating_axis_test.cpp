@@ -85,6 +85,20 @@ TEST(SeparatingAxis, StopsOnlyAtTrueSeparation) {
   EXPECT_GT(stopped, 100);
 }
 
+// A plate as thin as a blade in the middle of a box was told to be half a metre apart from it: of the two normals beside its
+// edge each was nearly the other's opposite, and so was the way out that they made.
+TEST(SeparatingAxis, ABladeInABoxIsNotApart) {
+  Hulls hulls;
+  const Shape blade = hulls.add({{-0.399887264f, -2.17296765e-05f, -0.325181812f},
+                                 {-0.0628757924f, -3.40793777e-05f, -0.100432485f},
+                                 {0.23933576f, 2.39250276e-05f, 0.426628321f},
+                                 {0.0386715978f, 3.23241657e-05f, -0.242452294f}});
+  ASSERT_EQ(blade.kind, ShapeKind::hull);
+  const BoxPolytope box({0.920598924f, 0.58331269f, 0.593902528f});
+  const PolytopeAxis axis = separating_axis(make_polytope(*blade.hull), box.view(), {}, 0.02f, {});
+  EXPECT_NEAR(axis.separation, -0.5834f, 2.0e-3f);
+}
+
 TEST(SeparatingAxis, NamesComeBackAndStrangeOnesDoNot) {
   const BoxPolytope box({1, 1, 1});
   const Polytope view = box.view();
