@@ -4,19 +4,19 @@
 #include "base/sort.h"
 #include "collision/fat_box.h"
 #include "collision/swept_surface.h"
+#include "geometry/nearest.h"
 #include "task/parallel.h"
 
 namespace gyre {
 namespace {
 
 constexpr int kBlock = 4;  // bodies: each is work enough
-constexpr float kCoreShare = 0.5f;
 // In inner radii of the moving shape. What is left must lie within what collide() looks for, and so near that it counts as
 // touching there.
 constexpr double kTarget = 0.0025;
 constexpr double kTouching = 0.01;
-constexpr double kClear = 0.01;       // of the target: nearer than that, the next look at the contact decides
-constexpr double kCoreTarget = 0.05;  // of the core's radius
+constexpr double kClear = 0.01;  // of the target: nearer than that, the next look at the contact decides
+constexpr double kCoreTarget = 0.025;
 
 // A box around the whole way of a shape, turning included: around both ends, and the bulge between.
 Aabb swept_box(const SweptShape& shape) {
@@ -47,29 +47,22 @@ struct Mover {
   SweptShape core_swept;
   ImpactScale scale;
 
-  Mover(const ColliderShape& shape, const Sweep& sweep)
+  Mover(const ColliderShape& shape, const Sweep& sweep, float least, bool slides)
       : whole(make_swept_shape(shape.shape, shape.body_from_shape, sweep)),
-        core(make_core(shape.shape, shape.body_from_shape, kCoreShare)),
-        core_swept(make_swept_shape(core.ball, core.body_from_ball, sweep)) {
+        core(make_core(shape.shape, shape.body_from_shape)),
+        core_swept(make_swept_shape(core.shape, core.body_from_core, sweep)) {
     const auto size = double(inner_radius(shape.shape));
-    scale = {kTarget * size, kTouching * size, kCoreTarget * double(core.ball.radius)};
+    scale = {kTarget * size, kTouching * size, kCoreTarget * size, double(least), slides};
   }
   Mover(const Mover&) = delete;
   Mover& operator=(const Mover&) = delete;
 
-  // First time before `end` at which the shape must stop in front of `other`; `end` if it need not.
-  double impact_with(const SweptShape& other, double end, TriangleHull& triangle) const {
-    if (!is_convex(other.shape->kind) && other.shape->kind != ShapeKind::plane) {
-      return impact_with_surface(whole, core_swept, other, end, scale, triangle);
-    }
-    const bool touching = find_gap(whole, other, 0.0, scale.touching).distance <= scale.touching;
-    if (!touching) {
-      const Impact impact = time_of_impact(whole, other, 0.0, end, scale.target);
-      return impact.hit ? impact.time : end;
-    }
-    if (find_gap(core_swept, other, 0.0, scale.core_target).distance <= scale.core_target) return end;
-    const Impact impact = time_of_impact(core_swept, other, 0.0, end, scale.core_target);
-    return impact.hit ? impact.time : end;
+  // Where before `end` the shape must stop in front of `other`, or only its core.
+  Stop stop_before(const SweptShape& other, double end, bool core_only, TriangleHull& triangle) const {
+    const SweptShape& own = core_only ? core_swept : whole;
+    if (!is_convex(other.shape->kind) && other.shape->kind != ShapeKind::plane)
+      return stop_before_surface(own, core_swept, other, end, scale, triangle);
+    return gyre::stop_before(own, core_swept, other, 0.0, end, scale);
   }
 
   // Whether the shape comes into `other` before `end` and is clearly out of it at `end`. Whether it was inside as the step
@@ -89,46 +82,74 @@ bool is_sound(const Sweep& sweep) {
   return is_finite(sweep.pose) && is_finite(sweep.moved) && is_finite(sweep.turned);
 }
 
-// Calls visit(shape on its way, its proxy, the other's index, the other on its way) for all that the shapes of a fast body
+// What is left of a motion from a time on.
+Sweep rest_of(const Sweep& sweep, double from) {
+  if (from == 0.0) return sweep;
+  const float rest = float(1.0 - from);
+  return {pose_at(sweep, from), sweep.center, rest * sweep.moved, rest * sweep.turned};
+}
+
+// A fast body on its way, or on the last part of it: what moves beside it does so from `from` on.
+struct Way {
+  const FastBody& fast;
+  const Sweep& sweep;
+  double from = 0.0;
+  bool slides = false;
+  bool core_only = false;
+};
+
+// Calls visit(shape on its way, its index, the other's index, the other on its way) for all that the shapes of a fast body
 // may come near and that `wanted` says yes to. `found` is scratch.
 template <class Wanted, class Visit>
-void for_each_in_the_way(const ContinuousInput& input, const FastBody& fast, const Sweep& sweep,
-                         Array<std::uint32_t>& found, const Wanted& wanted, const Visit& visit) {
-  for (const std::uint32_t index : input.shapes_of(fast.body)) {
+void for_each_in_the_way(const ContinuousInput& input, const Way& way, Array<std::uint32_t>& found,
+                         const Wanted& wanted, const Visit& visit) {
+  for (const std::uint32_t index : input.shapes_of(way.fast.body)) {
     const ColliderShape& shape = input.shapes[index];
     if (!is_convex(shape.shape.kind)) continue;
-    const Mover mover(shape, sweep);
+    const Mover mover(shape, way.sweep, way.slides ? 0.0f : way.fast.least, way.slides);
     found.clear();
     input.broadphase.query(input.proxies, swept_box(mover.whole), found);
     for (const std::uint32_t other : found) {
       if (!wanted(input.proxies[index], input.proxies[other])) continue;
       const ColliderShape& obstacle = input.shapes[other];
-      if (!input.blocked.empty() && input.blocked.contains(pair_key(fast.body, input.proxies[other].body)))
+      if (!input.blocked.empty() &&
+          input.blocked.contains(pair_key(way.fast.body, input.proxies[other].body)))
         continue;
-      const Sweep other_sweep = input.sweep_of(input.proxies[other].body);
-      if (!is_sound(other_sweep)) continue;
+      const Sweep all = input.sweep_of(input.proxies[other].body);
+      if (!is_sound(all)) continue;
+      const Sweep other_sweep = rest_of(all, way.from);
       visit(mover, index, other, make_swept_shape(obstacle.shape, obstacle.body_from_shape, other_sweep));
     }
   }
 }
 
-double first_impact(const ContinuousInput& input, const FastBody& fast, const Sweep& sweep,
-                    Array<std::uint32_t>& found, TriangleHull& triangle) {
-  double end = 1.0;
+// Where a body must stop, and which of its shapes in front of which.
+struct BodyStop : Stop {
+  std::uint32_t shape = 0, obstacle = 0;
+};
+
+BodyStop first_stop(const ContinuousInput& input, const Way& way, Array<std::uint32_t>& found,
+                    TriangleHull& triangle) {
+  BodyStop first;
   for_each_in_the_way(
-      input, fast, sweep, found,
-      [&](const Proxy& self, const Proxy& other) { return is_obstacle(self, other, fast.continuous); },
-      [&](const Mover& mover, std::uint32_t, std::uint32_t index, const SweptShape& other) {
-        if (input.lets_pass != nullptr && (*input.lets_pass)(index, sweep.moved - other.sweep->moved)) return;
-        end = min(end, mover.impact_with(other, end, triangle));
+      input, way, found,
+      [&](const Proxy& self, const Proxy& other) { return is_obstacle(self, other, way.fast.continuous); },
+      [&](const Mover& mover, std::uint32_t index, std::uint32_t obstacle, const SweptShape& other) {
+        if (input.lets_pass != nullptr && (*input.lets_pass)(obstacle, way.sweep.moved - other.sweep->moved))
+          return;
+        const Stop stop = mover.stop_before(other, first.time, way.core_only, triangle);
+        if (!stop.hit || !(stop.time < first.time || !first.hit)) return;
+        static_cast<Stop&>(first) = stop;
+        first.shape = index;
+        first.obstacle = obstacle;
       });
-  return end;
+  return first;
 }
 
-void find_crossings(const ContinuousInput& input, const FastBody& fast, const Sweep& sweep, double end,
-                    Array<std::uint32_t>& found, Array<std::uint64_t>& crossings) {
+void find_crossings(const ContinuousInput& input, const Way& way, double end, Array<std::uint32_t>& found,
+                    Array<std::uint64_t>& crossings) {
   for_each_in_the_way(
-      input, fast, sweep, found, is_gate,
+      input, way, found, is_gate,
       [&](const Mover& mover, std::uint32_t index, std::uint32_t gate, const SweptShape& other) {
         if (!mover.crosses(other, end)) return;
         const bool senses = input.proxies[index].sensor;
@@ -136,10 +157,108 @@ void find_crossings(const ContinuousInput& input, const FastBody& fast, const Sw
       });
 }
 
+// How much of a way along an obstacle a shape can go and still touch it where both are then: the contact of the next step
+// must find it there, or nothing would ever answer for the hit. `drift` is the way against the obstacle.
+double part_in_touch(const ContinuousInput& input, const BodyStop& stop, Pose pose, DVec3 drift) {
+  const ColliderShape& own = input.shapes[stop.shape];
+  const ColliderShape& other = input.shapes[stop.obstacle];
+  const Pose frame = pose_at(input.sweep_of(input.proxies[stop.obstacle].body), 1.0) * other.body_from_shape;
+  const double touching = kTouching * double(inner_radius(own.shape));
+  const DVec3 start = pose.position;
+  const auto touches = [&](double part) {
+    pose.position = start + part * drift;
+    const Pose placed = pose * own.body_from_shape;
+    const DQuat back = conjugate(normalized(to_double(frame.orientation)));
+    Nearest nearest;
+    return find_nearest(other.shape,
+                        {&own.shape, rotate(back, placed.position - frame.position),
+                         back * normalized(to_double(placed.orientation))},
+                        touching, nearest);
+  };
+  if (touches(1.0)) return 1.0;
+  double low = 0.0, high = 1.0;
+  for (int i = 0; i < 12; ++i) {
+    const double middle = 0.5 * (low + high);
+    (touches(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+// A body that was stopped spends the rest of its step on what it met: on its way along it, and with it. It does not turn
+// meanwhile, so that what was between the two stays between them. Of a second obstacle it follows the crease.
+class Slide {
+ public:
+  Slide(const ContinuousInput& input, const FastBody& fast, Array<std::uint32_t>& found,
+        Array<std::uint64_t>& crossings, TriangleHull& triangle)
+      : input_(input), fast_(fast), found_(found), crossings_(crossings), triangle_(triangle) {}
+
+  // How far the body's middle goes (m) after `stop`.
+  Vec3 run(const Sweep& sweep, const BodyStop& stop) {
+    DVec3 normals[2];
+    BodyStop last = stop;
+    DVec3 way = (1.0 - stop.time) * DVec3(sweep.moved), gone;
+    Pose pose = pose_at(sweep, stop.time);
+    double from = stop.time;
+    for (int k = 0; k < 2; ++k) {
+      if (!may_slide(last)) break;
+      normals[k] = last.normal;
+      const DVec3 carried = (1.0 - from) * DVec3(sweep_of(last).moved);
+      DVec3 drift = along(way - carried, normals, k);
+      // Of what the core only is in the way the shape itself may be in, and need not stay in touch.
+      if (!stop.by_core) drift = part_in_touch(input_, last, moved(pose, carried), drift) * drift;
+      const Sweep next{pose, sweep.center, to_float(drift + carried), {}};
+      const Way rest{fast_, next, from, true, stop.by_core};
+      const BodyStop second = first_stop(input_, rest, found_, triangle_);
+      const double part = second.hit ? second.time : 1.0;
+      find_crossings(input_, rest, part, found_, crossings_);
+      // What moves on pushes the body before it whatever stands behind.
+      const DVec3 step = part * drift + carried;
+      gone += step;
+      pose.position += step;
+      if (!second.hit || !(carried == DVec3{})) break;
+      way = (1.0 - part) * drift;
+      from += part * (1.0 - from);
+      last = second;
+    }
+    return to_float(gone);
+  }
+
+ private:
+  const Sweep sweep_of(const BodyStop& stop) const {
+    return input_.sweep_of(input_.proxies[stop.obstacle].body);
+  }
+  bool may_slide(const BodyStop& stop) const {
+    return stop.hit && stop.time < 1.0 && length_squared(stop.normal) > 0.5 &&
+           !input_.proxies[stop.obstacle].pushes && sweep_of(stop).turned == Vec3{};
+  }
+  static Pose moved(Pose pose, DVec3 way) {
+    pose.position += way;
+    return pose;
+  }
+  // The way without what leads into the obstacles met so far (k + 1 of them).
+  static DVec3 along(DVec3 way, const DVec3 (&normals)[2], int k) {
+    way = way - max(dot(way, normals[k]), 0.0) * normals[k];
+    if (k == 0 || dot(way, normals[0]) <= 0.0) return way;
+    const DVec3 crease = cross(normals[0], normals[1]);
+    const double squared = length_squared(crease);
+    return squared > 1.0e-12 ? (dot(way, crease) / squared) * crease : DVec3{};
+  }
+
+  const ContinuousInput& input_;
+  const FastBody& fast_;
+  Array<std::uint32_t>& found_;
+  Array<std::uint64_t>& crossings_;
+  TriangleHull& triangle_;
+};
+
 }  // namespace
 
+Aabb box_of_way(const ColliderShape& shape, const Sweep& sweep) {
+  return swept_box(make_swept_shape(shape.shape, shape.body_from_shape, sweep));
+}
+
 void ContinuousCollision::clamp_fast_bodies(const ContinuousInput& input, std::span<const FastBody> fast,
-                                            TaskSystem& tasks, std::span<float> fractions) {
+                                            TaskSystem& tasks, std::span<KeptMotion> kept) {
   crossings_.clear();
   if (fast.empty()) return;
   workers_.resize(std::size_t(tasks.worker_count()));
@@ -149,14 +268,22 @@ void ContinuousCollision::clamp_fast_bodies(const ContinuousInput& input, std::s
     for (int i = begin; i < end; ++i) {
       const FastBody& body = fast[std::size_t(i)];
       const Sweep sweep = input.sweep_of(body.body);
-      fractions[std::size_t(i)] = 1.0f;
+      KeptMotion& out = kept[std::size_t(i)];
+      out = {};
       if (!is_sound(sweep)) continue;
-      const double time = first_impact(input, body, sweep, own.found, *own.triangle);
+      const Way way{body, sweep};
+      BodyStop stop = first_stop(input, way, own.found, *own.triangle);
       // Rounded down: the fraction must not pass the impact.
-      const auto fraction = float(time);
-      const float kept = max(double(fraction) > time ? fraction * (1.0f - 1.2e-7f) : fraction, body.least);
-      fractions[std::size_t(i)] = kept;
-      find_crossings(input, body, sweep, double(kept), own.found, own.crossings);
+      const auto fraction = float(stop.time);
+      out.fraction = double(fraction) > stop.time ? fraction * (1.0f - 1.2e-7f) : fraction;
+      find_crossings(input, way, double(out.fraction), own.found, own.crossings);
+      stop.time = double(out.fraction);
+      if (stop.by_core && length_squared(stop.normal) > 0.5) {
+        out.blow = to_float(stop.normal);
+        out.blow_at = stop.point;
+        out.other = input.proxies[stop.obstacle].body;
+      }
+      if (stop.hit) out.slide = Slide(input, body, own.found, own.crossings, *own.triangle).run(sweep, stop);
     }
   });
   gather_crossings();

@@ -2,12 +2,13 @@
 // where they first meet it.
 //
 // In: bodies as the step began and how far the solver moved them; the broad phase as it was then. Out: for each fast body
-// the fraction of its motion to keep (pose_at(sweep, fraction) is where it ends). It is left a small part of its size short
-// of touching, where the next step's contacts find it; its velocity stays, and they answer to it.
+// the fraction of its motion to keep (pose_at(sweep, fraction) is where it meets something), and a way along what it met on
+// which it spends the rest of its step. It is left a small part of its size short of touching, where the next step's contacts
+// find it; its velocity stays, and they answer to it.
 //
 // What a shape touches as the step begins must not hold it: a body that slides would freeze at every step. The solver
-// answers for such pairs; only the core, a ball half as large as the inner one, is swept against them, so that nothing
-// passes all the way. In a mesh or height field this holds for each plane of its triangles by itself.
+// answers for such pairs; only the core, the shape with half of its inner radius taken off all around, is swept against them,
+// so that no part of it passes. In a mesh or height field this holds for each plane of its triangles by itself.
 //
 // Sensors hold nothing up. What has passed through one within the step is told as a crossing, because no look between steps
 // would see it.
@@ -31,6 +32,18 @@ struct FastBody {
   float least = 0.0f;       // part of its way that it keeps in any case
 };
 
+// What a fast body keeps of its motion: a fraction of it (1 where nothing is in the way), and then, without turning, a way
+// along what it met.
+struct KeptMotion {
+  float fraction = 1.0f;
+  Vec3 slide;  // m, of the centre of mass
+  // Where the core was in the way, although the shape was in touch already: the solver did not hold it there. Whoever moves
+  // the body must take its speed into `other` at that point.
+  Vec3 blow;                // unit, from the body to the other; zero: there was none
+  DVec3 blow_at;            // world
+  std::uint32_t other = 0;  // body
+};
+
 // A visitor that a fast body carried through a sensor, or was passed by one: shapes, as the key to sort by.
 inline std::uint64_t crossing_key(std::uint32_t sensor, std::uint32_t visitor) {
   return std::uint64_t(sensor) << 32 | visitor;
@@ -41,6 +54,9 @@ constexpr float kFastShare = 0.5f;
 inline bool is_fast(Vec3 moved, Vec3 turned, float reach, float inner) {
   return length(moved) + length(turned) * reach > kFastShare * inner;
 }
+
+// A box around the whole way of a shape, turning included.
+Aabb box_of_way(const ColliderShape& shape, const Sweep& sweep);
 
 struct ContinuousInput {
   ColliderShapes shapes;
@@ -57,9 +73,9 @@ struct ContinuousInput {
 
 class ContinuousCollision {
  public:
-  // fractions[i] of the motion of fast[i] is to be kept: 1 where nothing is in the way. Parallel over bodies.
+  // kept[i] of the motion of fast[i] is to be kept. Parallel over bodies.
   void clamp_fast_bodies(const ContinuousInput& input, std::span<const FastBody> fast, TaskSystem& tasks,
-                         std::span<float> fractions);
+                         std::span<KeptMotion> kept);
   // Of the last call: crossing_key of each sensor and visitor, in rising order, also of pairs that overlapped from the
   // start. Convex sensors only.
   std::span<const std::uint64_t> crossings() const { return crossings_; }

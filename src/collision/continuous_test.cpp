@@ -129,13 +129,15 @@ class Scene {
 
   // With the boxes of the last clamp().
   std::vector<float> clamp_as_is(const std::vector<FastBody>& fast) {
-    std::vector<float> fractions(fast.size(), -1.0f);
+    kept_.assign(fast.size(), {-1.0f, {}});
     const auto sweep_of = [&](std::uint32_t body) { return sweeps[body]; };
     const auto shapes_of = [&](std::uint32_t body) {
       return std::span<const std::uint32_t>(&indices_[body], 1);
     };
     stage_.clamp_fast_bodies({shapes, proxies, *broadphase_, blocked, sweep_of, shapes_of}, fast, tasks_,
-                             fractions);
+                             kept_);
+    std::vector<float> fractions;
+    for (const KeptMotion& kept : kept_) fractions.push_back(kept.fraction);
     return fractions;
   }
   float clamp_as_is(std::uint32_t body) { return clamp_as_is({{body, false}})[0]; }
@@ -154,6 +156,7 @@ class Scene {
   TaskSystem tasks_;
   std::unique_ptr<Broadphase> broadphase_ = make_broadphase(BroadPhaseKind::bvh);
   ContinuousCollision stage_;
+  std::vector<KeptMotion> kept_;
   std::vector<std::uint32_t> indices_;
   std::vector<AnyShape> geometries_;  // keeps cooked data alive
 };

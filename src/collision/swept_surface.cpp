@@ -12,6 +12,60 @@ namespace {
 
 constexpr int kMaxPieces = 32;
 constexpr float kPieceRadii = 4.0f;  // a piece is about so many outer radii long
+constexpr float kCoreShare = 0.5f;   // of the inner radius
+// A core as near as this part of where it is left is taken for deep.
+constexpr double kDeep = 1.0e-3;
+// A shape that slides may come nearer than it was left by this, and close in by this sine: rounding, not a stop.
+constexpr double kSlideShare = 0.5, kSlideSlack = 1.0e-6;
+
+Stop no_stop(double end) { return {end, false, false, {}, {}}; }
+
+// What touches from the start is the solver's; only the core must not pass. What is deeper than that already is free.
+Stop stop_of_core(const SweptShape& core, const SweptShape& b, double start, double end,
+                  const ImpactScale& scale) {
+  const Gap gap = find_gap(core, b, start, 2.0 * scale.core_target);
+  if (!gap.beyond && gap.distance <= kDeep * scale.core_target) return no_stop(end);
+  // What is left near from the step before may come nearer, or it would be held there even as it leaves.
+  const double target = gap.beyond ? scale.core_target : min(scale.core_target, 0.5 * gap.distance);
+  const Impact impact = time_of_impact(core, b, start, end, target);
+  if (!impact.hit) return no_stop(end);
+  Stop stop;
+  stop.time = impact.time;
+  stop.hit = stop.by_core = true;
+  stop.normal = find_gap(core, b, impact.time, 4.0 * target).normal;
+  const Pose frame = pose_at(*core.sweep, impact.time) * core.body_from_shape;
+  const Vec3 towards = rotate_inverse(frame.orientation, to_float(stop.normal));
+  stop.point = frame * support(*core.shape, towards) + double(core_radius(*core.shape)) * stop.normal;
+  return stop;
+}
+
+// Stops where the shape is met, or, if that is before the part of its way that it keeps, where its core is.
+Stop stop_of_whole(const SweptShape& a, const SweptShape& core, const SweptShape& b, double start, double end,
+                   const ImpactScale& scale) {
+  const Impact impact = time_of_impact(a, b, start, end, scale.target);
+  if (!impact.hit) return no_stop(end);
+  if (impact.time < scale.least) {
+    Stop deep = stop_of_core(core, b, impact.time, min(scale.least, end), scale);
+    deep.hit = deep.by_core = true;
+    return deep;
+  }
+  return {impact.time, true, false, find_gap(a, b, impact.time, 2.0 * scale.target).normal, {}};
+}
+
+// Along what it touches a convex shape that does not turn may go on: the plane between the two stays between them.
+Stop stop_of_slide(const SweptShape& a, const SweptShape& b, double start, double end,
+                   const ImpactScale& scale) {
+  const double target = kSlideShare * scale.target;
+  const Gap gap = find_gap(a, b, start, 2.0 * target);
+  if (!gap.beyond && gap.distance <= 1.25 * target) {
+    const DVec3 way = DVec3(a.sweep->moved) - DVec3(b.sweep->moved);
+    const bool closes = dot(way, gap.normal) > kSlideSlack * length(way) || !(b.sweep->turned == Vec3{});
+    return {closes ? start : end, closes, false, gap.normal, {}};
+  }
+  const Impact impact = time_of_impact(a, b, start, end, target);
+  if (!impact.hit) return no_stop(end);
+  return {impact.time, true, false, find_gap(a, b, impact.time, 2.0 * scale.target).normal, {}};
+}
 
 // The moving shape as the surface sees it.
 class SurfaceSweep {
@@ -26,17 +80,18 @@ class SurfaceSweep {
         hull_(hull),
         start_(surface_from_a(0.0)) {}
 
-  double first_impact(double end) {
+  Stop first_stop(double end) {
     const float way = length(a_.sweep->moved - b_.sweep->moved) + length(a_.sweep->turned) * a_.radius;
     const int wanted = 1 + int(min(way / (kPieceRadii * a_.radius), float(kMaxPieces - 1)));
-    for (int piece = 0; piece < wanted; ++piece) {
+    stop_ = no_stop(end);
+    for (int piece = 0; piece < wanted && !stop_.hit; ++piece) {
       const double from = double(piece) / double(wanted);
-      if (from >= end) return end;
-      const double to = min(double(piece + 1) / double(wanted), end);
-      const double time = look_at_piece(from, to);
-      if (time < to) return time;
+      if (from >= end) break;
+      stop_.time = min(double(piece + 1) / double(wanted), end);
+      look_at_piece(from);
     }
-    return end;
+    if (!stop_.hit) stop_.time = end;
+    return stop_;
   }
 
  private:
@@ -58,41 +113,39 @@ class SurfaceSweep {
                 bulge + float(scale_.touching));
   }
 
-  double look_at_piece(double from, double to) {
-    const Aabb box = piece_box(from, to);
+  void look_at_piece(double from) {
+    const Aabb box = piece_box(from, stop_.time);
     // Triangles are moved near the origin of a frame of their own, so that floats stay small in a large mesh.
     origin_ = surface_from_a(from).position;
     near_frame_ = b_;
     near_frame_.body_from_shape = b_.body_from_shape * Transform{origin_, {}};
-    double end = to;
     if (surface_.mesh != nullptr) {
       walk_overlaps(
           surface_.mesh->tree, box, [](std::uint32_t, int) { return true; },
           [&](std::uint32_t first, std::uint32_t count) {
             for (std::uint32_t id = first; id < first + count; ++id) {
-              if (overlap(triangle_box(*surface_.mesh, id), box)) end = look_at(id, from, end);
+              if (overlap(triangle_box(*surface_.mesh, id), box)) look_at(id, from);
             }
           });
-      return end;
+      return;
     }
     walk_cells(
         *surface_.field, box, [](HeightBlock) { return true; },
         [&](std::uint32_t column, std::uint32_t row) {
           if (!is_solid_cell(*surface_.field, column, row)) return;
           const std::uint32_t cell = row * surface_.field->cell_columns() + column;
-          end = look_at(2 * cell, from, end);
-          end = look_at(2 * cell + 1, from, end);
+          look_at(2 * cell, from);
+          look_at(2 * cell + 1, from);
         });
-    return end;
   }
 
-  double look_at(std::uint32_t id, double from, double end) {
+  void look_at(std::uint32_t id, double from) {
     const TriangleView view = surface_.triangle(id);
     Vec3 normal = view.normal;
     // Which side of the plane the middle is on when the step begins decides; along a straight way it cannot come back.
     const Vec3 middle = start_ * inverse_times(a_.body_from_shape, core_.body_from_shape.position);
     if (dot(normal, middle - view.v[0]) < 0.0f) {
-      if (!surface_.double_sided()) return end;
+      if (!surface_.double_sided()) return;
       normal = -normal;
     }
     const Vec3 lowest = start_ * support(*a_.shape, rotate_inverse(start_.orientation, -normal));
@@ -101,14 +154,15 @@ class SurfaceSweep {
     near_frame_.shape = &hull_.shape();
     near_frame_.radius =
         outer_radius(hull_.shape(), inverse_times(near_frame_.body_from_shape, b_.sweep->center));
-    if (height > scale_.touching) {
-      const Impact impact = time_of_impact(a_, near_frame_, from, end, scale_.target);
-      return impact.hit ? impact.time : end;
+    Stop found;
+    if (scale_.slides) {
+      found = stop_of_slide(a_, near_frame_, from, stop_.time, scale_);
+    } else if (height > scale_.touching) {
+      found = stop_of_whole(a_, core_, near_frame_, from, stop_.time, scale_);
+    } else {
+      found = stop_of_core(core_, near_frame_, from, stop_.time, scale_);
     }
-    if (from == 0.0 && find_gap(core_, near_frame_, 0.0, scale_.core_target).distance <= scale_.core_target)
-      return end;
-    const Impact impact = time_of_impact(core_, near_frame_, from, end, scale_.core_target);
-    return impact.hit ? impact.time : end;
+    if (found.hit && found.time < stop_.time) stop_ = found;
   }
 
   const SweptShape& a_;
@@ -120,6 +174,7 @@ class SurfaceSweep {
   const Transform start_;
   Vec3 origin_;
   SweptShape near_frame_;
+  Stop stop_;
 };
 
 }  // namespace
@@ -146,18 +201,84 @@ void TriangleHull::set(Vec3 a, Vec3 b, Vec3 c) {
   hull_.centroid = (a + b + c) / 3.0f;
 }
 
-Core make_core(const Shape& shape, const Transform& body_from_shape, float share) {
-  Core core;
-  core.ball.kind = ShapeKind::sphere;
-  core.ball.radius = share * inner_radius(shape);
-  const Vec3 middle = shape.kind == ShapeKind::hull ? shape.hull->centroid : Vec3{};
-  core.body_from_ball = {body_from_shape * middle, body_from_shape.orientation};
-  return core;
+namespace {
+
+// The largest box in the axes of the hull's own box, and of its proportions, that keeps `margin` from every face.
+Vec3 box_in_hull(const Hull& hull, float margin) {
+  const Vec3 half = half_size(hull.box);
+  float scale = 1.0f;
+  for (const HullPlane& plane : hull.planes) {
+    const float room = plane.offset - dot(plane.normal, hull.centroid) - margin;
+    const float wanted = dot(absolute(plane.normal), half);
+    if (scale * wanted > room) scale = max(room, 0.0f) / wanted;
+  }
+  return scale * half;
 }
 
-double impact_with_surface(const SweptShape& a, const SweptShape& core, const SweptShape& b, double end,
-                           const ImpactScale& scale, TriangleHull& triangle) {
-  return SurfaceSweep(a, core, b, scale, triangle).first_impact(end);
+Shape ball_of(float radius) {
+  Shape ball;
+  ball.kind = ShapeKind::sphere;
+  ball.radius = radius;
+  return ball;
+}
+
+}  // namespace
+
+Core make_core(const Shape& shape, const Transform& body_from_shape) {
+  const float off = kCoreShare * inner_radius(shape);
+  Core core{shape, body_from_shape};
+  switch (shape.kind) {
+    case ShapeKind::box: {
+      // The rounding goes first.
+      core.shape.radius = max(shape.radius - off, 0.0f);
+      const float rest = max(off - shape.radius, 0.0f);
+      core.shape.extents = shape.extents - Vec3{rest, rest, rest};
+      return core;
+    }
+    case ShapeKind::capsule:
+      core.shape.radius = shape.radius - off;
+      return core;
+    case ShapeKind::cylinder:
+      core.shape.radius = shape.radius - off;
+      core.shape.extents.y = shape.extents.y - off;
+      return core;
+    case ShapeKind::cone: {
+      // Half as large about the middle of the ball that touches base and mantle.
+      const float r = shape.radius, h = shape.extents.y;
+      const float inscribed = 2.0f * h * r / (r + std::sqrt(r * r + 4.0f * h * h));
+      core.shape.radius = (1.0f - kCoreShare) * r;
+      core.shape.extents.y = (1.0f - kCoreShare) * h;
+      core.body_from_core.position = body_from_shape * Vec3{0, kCoreShare * (inscribed - h), 0};
+      return core;
+    }
+    case ShapeKind::hull: {
+      const Vec3 half = box_in_hull(*shape.hull, off);
+      core.shape = ball_of(off);
+      if (smallest(half) > off) {
+        core.shape.kind = ShapeKind::box;
+        core.shape.radius = 0.0f;
+        core.shape.extents = half;
+      }
+      core.body_from_core.position = body_from_shape * shape.hull->centroid;
+      return core;
+    }
+    default:
+      core.shape = ball_of(shape.radius - off);
+      return core;
+  }
+}
+
+Stop stop_before(const SweptShape& a, const SweptShape& core, const SweptShape& b, double start, double end,
+                 const ImpactScale& scale) {
+  if (scale.slides) return stop_of_slide(a, b, start, end, scale);
+  if (find_gap(a, b, start, scale.touching).distance <= scale.touching)
+    return stop_of_core(core, b, start, end, scale);
+  return stop_of_whole(a, core, b, start, end, scale);
+}
+
+Stop stop_before_surface(const SweptShape& a, const SweptShape& core, const SweptShape& b, double end,
+                         const ImpactScale& scale, TriangleHull& triangle) {
+  return SurfaceSweep(a, core, b, scale, triangle).first_stop(end);
 }
 
 }  // namespace gyre

@@ -20,23 +20,37 @@ class TriangleHull {
   Shape shape_;
 };
 
-// A ball well inside a convex shape, as a shape of its own.
+// What is left of a convex shape when about half of its inner radius is taken off all around, as a shape of its own: a
+// thinner rod of a rod, a smaller plate of a plate. A hull leaves a box in its axes, or a ball where that is larger.
 struct Core {
-  Shape ball;
-  Transform body_from_ball;
+  Shape shape;
+  Transform body_from_core;
 };
-Core make_core(const Shape& shape, const Transform& body_from_shape, float share);
+Core make_core(const Shape& shape, const Transform& body_from_shape);
 
 // How near is near, in metres: set from the moving shape's size.
 struct ImpactScale {
-  double target;       // how far from each other two shapes are left
-  double touching;     // nearer than this as the step begins: only the core is swept
-  double core_target;  // the core is left this far
+  double target;        // how far from each other two shapes are left
+  double touching;      // nearer than this as the step begins: only the core is swept
+  double core_target;   // the core is left this far
+  double least = 0.0;   // part of its way that the shape keeps in any case, if its core can
+  bool slides = false;  // what it touches it slides along: only what closes in stops it, and it does not turn
 };
 
-// First time before `end` at which `a` must stop in front of the surface `b` (a mesh or height field; its radius is not
-// used); `end` if it need not.
-double impact_with_surface(const SweptShape& a, const SweptShape& core, const SweptShape& b, double end,
-                           const ImpactScale& scale, TriangleHull& triangle);
+// Where a shape must stop.
+struct Stop {
+  double time = 1.0;
+  bool hit = false;
+  bool by_core = false;  // only the core was in the way
+  DVec3 normal;          // unit, from the shape to what it met
+  DVec3 point;           // of the core if that was in the way: where it would have gone in, world axes
+};
+// First time before `end` at which `a` must stop in front of `b`, both convex (or b a plane).
+Stop stop_before(const SweptShape& a, const SweptShape& core, const SweptShape& b, double start, double end,
+                 const ImpactScale& scale);
+
+// The same for the surface `b` (a mesh or height field; its radius is not used).
+Stop stop_before_surface(const SweptShape& a, const SweptShape& core, const SweptShape& b, double end,
+                         const ImpactScale& scale, TriangleHull& triangle);
 
 }  // namespace gyre

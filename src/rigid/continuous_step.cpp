@@ -29,6 +29,93 @@ void report_crossings(RigidWorld& w, std::span<const std::uint64_t> crossings) {
   }
 }
 
+// The middle of mass as the body will be once its motion is done.
+DVec3 middle_of(const RigidWorld& w, std::uint32_t body) {
+  return w.bodies.places[body].center + DVec3(w.bodies.motion[body].moved);
+}
+
+// Takes the speed with which a body goes on into what its core met: first by an impulse without bounce at the point where the
+// core would have gone in, and then, if its middle still goes that way, by one through the middle. What is at rest or asleep is
+// not moved by them.
+class Blow {
+ public:
+  Blow(RigidWorld& w, std::uint32_t body, const KeptMotion& kept)
+      : w_(w), bodies_{body, kept.other}, normal_(kept.blow), at_(kept.blow_at) {}
+
+  void take() {
+    for (int k = 0; k < 2; ++k) lever_[k] = to_float(at_ - middle_of(w_, bodies_[k]));
+    push();
+    // Through the middle of the body that was stopped.
+    lever_[0] = {};
+    push();
+  }
+
+ private:
+  bool is_moved(std::uint32_t i) const {
+    return is_movable(w_.bodies.flags[i]) && w_.bodies.flags[i].awake != 0;
+  }
+  void push() {
+    Vec3 turn[2];
+    float mass = 0.0f, closing = 0.0f;
+    for (int k = 0; k < 2; ++k) {
+      const std::uint32_t i = bodies_[k];
+      const BodyMotion& motion = w_.bodies.motion[i];
+      const Vec3 speed = motion.linear_velocity + cross(motion.angular_velocity, lever_[k]);
+      closing += (k == 0 ? 1.0f : -1.0f) * dot(speed, normal_);
+      if (!is_moved(i)) continue;
+      turn[k] = w_.bodies.inertia[i].inverse * cross(lever_[k], normal_);
+      mass += motion.inverse_mass + dot(cross(turn[k], lever_[k]), normal_);
+    }
+    if (!(closing > 0.0f) || !(mass > 0.0f)) return;
+    for (int k = 0; k < 2; ++k) {
+      if (!is_moved(bodies_[k])) continue;
+      BodyMotion& motion = w_.bodies.motion[bodies_[k]];
+      const float impulse = (k == 0 ? -closing : closing) / mass;
+      motion.linear_velocity += impulse * motion.inverse_mass * normal_;
+      motion.angular_velocity += impulse * turn[k];
+    }
+  }
+
+  RigidWorld& w_;
+  std::uint32_t bodies_[2];
+  Vec3 normal_;
+  DVec3 at_;
+  Vec3 lever_[2];
+};
+
+// What moves by itself runs over what stands in its way, however slow that is: such bodies are fast against it.
+void add_those_overrun(const RigidWorld& w, ContinuousScratch& scratch) {
+  scratch.listed.resize(w.bodies.motion.size());
+  bool any = false;
+  for (const std::uint32_t i : w.bodies.awake) {
+    const BodyFlags& flags = w.bodies.flags[i];
+    if (flags.type != BodyType::kinematic || w.bodies.shapes[i].empty()) continue;
+    const Sweep sweep = sweep_of_body(w, i);
+    const float way = length(sweep.moved) + length(sweep.turned) * w.bodies.masses[i].reach;
+    if (!(way > 0.0f)) continue;
+    if (!any) {
+      scratch.listed.reset_all();
+      for (const FastBody& fast : scratch.fast) scratch.listed.set(fast.body);
+      any = true;
+    }
+    for (const ShapeId id : w.bodies.shapes[i]) {
+      const ColliderShape& shape = w.shapes.colliders[id.index];
+      if (shape.shape.kind == ShapeKind::plane) continue;
+      scratch.found.clear();
+      w.broadphase->query(w.shapes.proxies, box_of_way(shape, sweep), scratch.found);
+      for (const std::uint32_t found : scratch.found) {
+        const std::uint32_t body = w.shapes.proxies[found].body;
+        if (scratch.listed.test(body) || !is_movable(w.bodies.flags[body]) || w.bodies.flags[body].awake == 0 ||
+            !may_pair(w.shapes.proxies[id.index], w.shapes.proxies[found]) ||
+            !(way > kFastShare * w.bodies.masses[body].size))
+          continue;
+        scratch.listed.set(body);
+        scratch.fast.push_back({body, w.bodies.flags[body].continuous != 0, 0.0f});
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, TaskSystem& tasks) {
@@ -43,6 +130,7 @@ void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, 
       scratch.fast.push_back({i, w.bodies.flags[i].continuous != 0, least});
     }
   }
+  add_those_overrun(w, scratch);
   if (scratch.fast.empty()) return;
   // The shapes of each fast body as plain indices, in a place that is found by body.
   const std::span<std::span<const std::uint32_t>> shapes = arena.make<std::span<const std::uint32_t>>(w.bodies.motion.size());
@@ -58,17 +146,18 @@ void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, 
   const FunctionRef<bool(std::uint32_t shape, Vec3 way)> one_way(passes);
   const ContinuousInput input{w.shapes.colliders, w.shapes.proxies, *w.broadphase, w.joints.blocked, sweep_of, shapes_of,
                               w.surface_rules.empty() ? nullptr : &one_way};
-  scratch.fractions.resize(scratch.fast.size());
-  scratch.collision.clamp_fast_bodies(input, scratch.fast, tasks, scratch.fractions);
+  scratch.kept.resize(scratch.fast.size());
+  scratch.collision.clamp_fast_bodies(input, scratch.fast, tasks, scratch.kept);
   report_crossings(w, scratch.collision.crossings());
   for (std::size_t k = 0; k < scratch.fast.size(); ++k) {
     const std::uint32_t i = scratch.fast[k].body;
-    const float fraction = scratch.fractions[k];
-    if (!(fraction < 1.0f)) continue;
-    w.bodies.orientations[i] = pose_at(sweep_of_body(w, i), double(fraction)).orientation;
-    w.bodies.motion[i].moved *= fraction;
-    w.bodies.motion[i].turned *= fraction;
+    const KeptMotion& kept = scratch.kept[k];
+    if (!(kept.fraction < 1.0f)) continue;
+    w.bodies.orientations[i] = pose_at(sweep_of_body(w, i), double(kept.fraction)).orientation;
+    w.bodies.motion[i].moved = kept.fraction * w.bodies.motion[i].moved + kept.slide;
+    w.bodies.motion[i].turned *= kept.fraction;
     w.bodies.inertia[i] = world_inertia(w.bodies.masses[i], w.bodies.flags[i], w.bodies.orientations[i]);
+    if (!(kept.blow == Vec3{})) Blow(w, i, kept).take();
   }
 }
 

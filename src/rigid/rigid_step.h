@@ -11,7 +11,9 @@ namespace gyre {
 // Kept from step to step only for its memory.
 struct ContinuousScratch {
   Array<FastBody> fast;
-  Array<float> fractions;
+  Array<KeptMotion> kept;
+  Array<std::uint32_t> found;
+  Bitset listed;
   ContinuousCollision collision;
 };
 
