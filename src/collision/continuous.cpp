@@ -283,7 +283,11 @@ void ContinuousCollision::clamp_fast_bodies(const ContinuousInput& input, std::s
         out.blow_at = stop.point;
         out.other = input.proxies[stop.obstacle].body;
       }
-      if (stop.hit) out.slide = Slide(input, body, own.found, own.crossings, *own.triangle).run(sweep, stop);
+      // What lies on something already meets the next piece of it at an edge that is none: it is not to be lifted over that.
+      const bool fresh = !(body.least > 0.0f) || stop.by_core;
+      const bool slides = stop.hit && body.slides &&
+                          (fresh || !(input.sweep_of(input.proxies[stop.obstacle].body).moved == Vec3{}));
+      if (slides) out.slide = Slide(input, body, own.found, own.crossings, *own.triangle).run(sweep, stop);
     }
   });
   gather_crossings();

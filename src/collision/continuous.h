@@ -29,7 +29,8 @@ namespace gyre {
 struct FastBody {
   std::uint32_t body = 0;
   bool continuous = false;  // also against dynamic bodies (always against fixed and kinematic ones)
-  float least = 0.0f;       // part of its way that it keeps in any case
+  float least = 0.0f;       // part of its way that it keeps in any case, if its core can
+  bool slides = true;       // goes on along what it met; not what hangs on joints, which know nothing of it
 };
 
 // What a fast body keeps of its motion: a fraction of it (1 where nothing is in the way), and then, without turning, a way

@@ -11,9 +11,9 @@ namespace {
 
 bool is_rounded(const Shape& shape) { return shape.kind == ShapeKind::box && shape.radius > 0.0f; }
 
-constexpr ConvexMethod R = ConvexMethod::round, B = ConvexMethod::boxes, P = ConvexMethod::polyhedra,
-                       C = ConvexMethod::cores;
-constexpr ConvexMethod kMethods[6][6] = {
+constexpr ContactMethod R = ContactMethod::round, B = ContactMethod::boxes, P = ContactMethod::polyhedra,
+                        C = ContactMethod::cores;
+constexpr ContactMethod kMethods[6][6] = {
     //            sphere box capsule cylinder cone hull
     /* sphere   */ {R, R, R, R, R, R},
     /* box      */ {R, B, C, C, C, P},
@@ -25,34 +25,37 @@ constexpr ConvexMethod kMethods[6][6] = {
 
 }  // namespace
 
-const char* to_string(ConvexMethod method) {
-  switch (method) {
-    case ConvexMethod::round:
-      return "round";
-    case ConvexMethod::boxes:
-      return "boxes";
-    case ConvexMethod::polyhedra:
-      return "polyhedra";
-    default:
-      return "cores";
-  }
+const char* to_string(ContactMethod method) {
+  constexpr const char* kNames[kContactMethodCount] = {
+      "none", "round", "boxes", "polyhedra", "cores", "plane", "seven_features", "axes", "nearest"};
+  return kNames[int(method)];
 }
 
-ConvexMethod convex_method(ShapeKind a, ShapeKind b) { return kMethods[int(a)][int(b)]; }
+ContactMethod contact_method(const Shape& a, const Shape& b) {
+  const bool convex_a = is_convex(a.kind), convex_b = is_convex(b.kind);
+  if (!convex_a && !convex_b) return ContactMethod::none;
+  if (convex_a && convex_b) {
+    const ContactMethod method = kMethods[int(a.kind)][int(b.kind)];
+    return (method == B || method == P) && (is_rounded(a) || is_rounded(b)) ? C : method;
+  }
+  const Shape& convex = convex_a ? a : b;
+  if ((convex_a ? b : a).kind == ShapeKind::plane) return ContactMethod::plane;
+  if (convex.kind == ShapeKind::sphere) return ContactMethod::seven_features;
+  const bool curved = convex.kind == ShapeKind::cylinder || convex.kind == ShapeKind::cone;
+  return curved ? ContactMethod::nearest : ContactMethod::axes;
+}
 
 void collide_convex(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
                     PairCache& cache, LocalManifold& out) {
   out.count = 0;
   // Bodies that are about to be taken out of the world.
   if (!is_finite(a_from_b)) return;
-  ConvexMethod method = convex_method(a.kind, b.kind);
-  if ((method == B || method == P) && (is_rounded(a) || is_rounded(b))) method = C;
-  switch (method) {
-    case ConvexMethod::round:
+  switch (contact_method(a, b)) {
+    case ContactMethod::round:
       return collide_round(a, b, a_from_b, max_separation, cache, out);
-    case ConvexMethod::boxes:
+    case ContactMethod::boxes:
       return collide_boxes(a, b, a_from_b, max_separation, cache, out);
-    case ConvexMethod::polyhedra:
+    case ContactMethod::polyhedra:
       return collide_polyhedra(a, b, a_from_b, max_separation, cache, out);
     default:
       return collide_cores(a, b, a_from_b, max_separation, cache, out);

@@ -110,7 +110,7 @@ void add_those_overrun(const RigidWorld& w, ContinuousScratch& scratch) {
             !(way > kFastShare * w.bodies.masses[body].size))
           continue;
         scratch.listed.set(body);
-        scratch.fast.push_back({body, w.bodies.flags[body].continuous != 0, 0.0f});
+        scratch.fast.push_back({body, w.bodies.flags[body].continuous != 0, 0.0f, w.bodies.joints[body].empty()});
       }
     }
   }
@@ -127,7 +127,7 @@ void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, 
     if (is_fast(motion.moved, motion.turned, mass.reach, mass.size)) {
       // What contacts already act on must not be held in the air by a sweep: it keeps a part of its way, and they answer.
       const float least = w.bodies.flags[i].touched != 0 ? kLeastProgress : 0.0f;
-      scratch.fast.push_back({i, w.bodies.flags[i].continuous != 0, least});
+      scratch.fast.push_back({i, w.bodies.flags[i].continuous != 0, least, w.bodies.joints[i].empty()});
     }
   }
   add_those_overrun(w, scratch);

@@ -179,8 +179,10 @@ Shot shoot(Dice& dice, int projectile_kind, WallKind wall_kind, const Geometry& 
     world.step(kStep);
     const Pose at = world.pose(wall_id), own = world.pose(id);
     const DVec3 middle = turned_back(at.orientation, own.position - at.position);
-    if (std::fabs(middle.x) > double(kHalf) || std::fabs(middle.z) > double(kHalf))
-      break;  // gone past its border
+    if (std::fabs(middle.x) > double(kHalf) || std::fabs(middle.z) > double(kHalf)) {
+      out.pierced = false;  // gone past its border
+      break;
+    }
     out.through = out.through || middle.y < 0.0;
     out.pierced = false;
     for (const DVec3& tip : projectile.tips) {
