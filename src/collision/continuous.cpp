@@ -202,7 +202,7 @@ class Slide {
     for (int k = 0; k < 2; ++k) {
       if (!may_slide(last)) break;
       normals[k] = last.normal;
-      const DVec3 carried = (1.0 - from) * DVec3(sweep_of(last).moved);
+      const DVec3 carried = is_pushed(last) ? DVec3{} : (1.0 - from) * DVec3(sweep_of(last).moved);
       DVec3 drift = along(way - carried, normals, k);
       // Of what the core only is in the way the shape itself may be in, and need not stay in touch.
       if (!stop.by_core) drift = part_in_touch(input_, last, moved(pose, carried), drift) * drift;
@@ -224,13 +224,13 @@ class Slide {
   }
 
  private:
-  const Sweep sweep_of(const BodyStop& stop) const {
-    return input_.sweep_of(input_.proxies[stop.obstacle].body);
-  }
+  Sweep sweep_of(const BodyStop& stop) const { return input_.sweep_of(input_.proxies[stop.obstacle].body); }
   bool may_slide(const BodyStop& stop) const {
-    return stop.hit && stop.time < 1.0 && length_squared(stop.normal) > 0.5 &&
-           !input_.proxies[stop.obstacle].pushes && sweep_of(stop).turned == Vec3{};
+    if (!stop.hit || stop.time >= 1.0 || !(length_squared(stop.normal) > 0.5)) return false;
+    return stop.by_core || (!is_pushed(stop) && sweep_of(stop).turned == Vec3{});
   }
+  // Where what a sweep pushes will be, only its own sweep knows.
+  bool is_pushed(const BodyStop& stop) const { return input_.proxies[stop.obstacle].pushes; }
   static Pose moved(Pose pose, DVec3 way) {
     pose.position += way;
     return pose;

@@ -46,7 +46,9 @@ Stop stop_of_whole(const SweptShape& a, const SweptShape& core, const SweptShape
   if (!impact.hit) return no_stop(end);
   if (impact.time < scale.least) {
     Stop deep = stop_of_core(core, b, impact.time, min(scale.least, end), scale);
-    deep.hit = deep.by_core = true;
+    if (deep.hit) return deep;
+    deep.hit = true;
+    deep.normal = find_gap(core, b, deep.time, 1.0e3 * scale.touching).normal;
     return deep;
   }
   return {impact.time, true, false, find_gap(a, b, impact.time, 2.0 * scale.target).normal, {}};

@@ -87,8 +87,12 @@ GYRE_INLINE Vec3W<W> within_length(Vec3W<W> v, float most) {
 // log(exp(turn) exp(turned)) but for terms of the fourth order.
 template <int W>
 GYRE_INLINE Vec3W<W> compose_turns(Vec3W<W> turn, Vec3W<W> turned) {
-  const Vec3W<W> c = cross(turn, turned);
-  return turned + turn + 0.5f * c + (1.0f / 12.0f) * cross(turn - turned, c);
+  const Vec3W<W> c = cross(turn, turned), sum = turned + turn;
+  const Vec3W<W> composed = sum + 0.5f * c + (1.0f / 12.0f) * cross(turn - turned, c);
+  // Two turns are never more than both together. Of what whirls by several turns a part the series says otherwise, and from
+  // part to part it would grow beyond all bounds.
+  const Wide<W> most = 2.1f * (dot(turn, turn) + dot(turned, turned));
+  return select<W>(dot(composed, composed) <= most, composed, sum);
 }
 
 template <class Number>

@@ -178,7 +178,7 @@ Shot shoot(Dice& dice, int projectile_kind, WallKind wall_kind, const Geometry& 
   for (int step = 0; step < 20; ++step) {
     world.step(kStep);
     const Pose at = world.pose(wall_id), own = world.pose(id);
-    const DVec3 middle = turned_back(at.orientation, own.position - at.position);
+    const DVec3 middle = turned_back(at.orientation, world.center_of_mass(id) - at.position);
     if (std::fabs(middle.x) > double(kHalf) || std::fabs(middle.z) > double(kHalf)) {
       out.pierced = false;  // gone past its border
       break;
