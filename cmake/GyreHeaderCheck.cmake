@@ -5,7 +5,7 @@ if(NOT GYRE_CHECK_HEADERS OR GYRE_SANITIZE OR GYRE_COVERAGE)
 endif()
 
 file(GLOB_RECURSE headers CONFIGURE_DEPENDS
-  ${PROJECT_SOURCE_DIR}/include/gyre/*.h ${PROJECT_SOURCE_DIR}/src/*.h ${PROJECT_SOURCE_DIR}/scene/*.h)
+  ${PROJECT_SOURCE_DIR}/include/gyre/*.h ${PROJECT_SOURCE_DIR}/src/*.h ${PROJECT_SOURCE_DIR}/scene/*.h ${PROJECT_SOURCE_DIR}/kit/*.h)
 set(sources)
 foreach(header IN LISTS headers)
   file(RELATIVE_PATH name ${PROJECT_SOURCE_DIR} ${header})
