@@ -64,7 +64,7 @@ def main():
     any_words = [(re.compile(pattern), why) for pattern, why in ANY_WORDS]
     problems = 0
     count = 0
-    for top in ("include", "src"):
+    for top in ("include", "src", "kit"):
         for path in sorted((ROOT / top).rglob("*")):
             if path.suffix not in (".h", ".cpp") or TESTS.search(path.name):
                 continue
