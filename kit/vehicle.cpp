@@ -1,0 +1,425 @@
+// One call: wheels find their ground, springs and bars give loads, tyres and drive line are turned on together in short steps, and
+// the mean of the tyres' forces goes to the body.
+//
+// The drive line is stiff: a wheel's spin follows the ground within milliseconds, and faster the slower it rolls. So each wheel's
+// spin is taken on linearly implicit in its own slip, and clutch and differentials are dampers just as stiff as a short step bears.
+#include <gyre/kit/vehicle.h>
+
+namespace gyre::kit {
+
+namespace {
+
+constexpr int kShortSteps = 8;
+// Ground speeds below this count as this much in slips, so that these stay finite at rest.
+constexpr float kSlowest = 0.5f;  // m/s
+
+float clamp_to(float value, float most) { return value > most ? most : value < -most ? -most : value; }
+
+float torque_at(const EngineDef& engine, float speed) {
+  const std::vector<TorquePoint>& c = engine.curve;
+  if (speed <= c.front().speed) return c.front().torque;
+  for (std::size_t i = 1; i < c.size(); ++i) {
+    if (speed > c[i].speed) continue;
+    const float t = (speed - c[i - 1].speed) / (c[i].speed - c[i - 1].speed);
+    return c[i - 1].torque + t * (c[i].torque - c[i - 1].torque);
+  }
+  return c.back().torque;
+}
+
+// 2 s / (1 + s^2) up to the peak, then down to the sliding share.
+float tyre_curve(const TyreDef& tyre, float s) {
+  const float bell = 2.0f * s / (1.0f + s * s);
+  return s <= 1.0f ? bell : tyre.slide + (1.0f - tyre.slide) * bell;
+}
+
+// A wheel on the ground in this call.
+struct Rolling {
+  Vec3 along{}, across{};  // unit, in the ground: where it rolls, and to its left
+  float speed = 0.0f;      // m/s along, of the vehicle against the ground
+  float side = 0.0f;       // m/s across
+  float inertia = 0.0f;    // kg m^2, with what the ground holds of the wheel within a short step
+  Vec3 sum{};              // of forces over the short steps
+};
+
+class Drive {
+ public:
+  Drive(World& world, const VehicleDef& def, BodyId body, VehicleState& state, const VehicleInput& input,
+        float seconds)
+      : world_(world),
+        def_(def),
+        body_(body),
+        s_(state),
+        in_(input),
+        seconds_(seconds),
+        pose_(world.pose(body)),
+        mass_(world.mass_properties(body).mass) {
+    up_ = rotate(pose_.orientation, def.up);
+    forward_ = rotate(pose_.orientation, def.forward);
+  }
+
+  void run() {
+    steering_ = in_.steer * steering_limit();
+    for (std::size_t i = 0; i < def_.wheels.size(); ++i) find_ground(i);
+    share_loads();
+    shift();
+    const float h = seconds_ / float(kShortSteps);
+    for (int k = 0; k < kShortSteps; ++k) turn_on(h);
+    push();
+    s_.lean_torque = 0.0f;
+    if (def_.lean.frequency > 0.0f) lean();
+  }
+
+ private:
+  // The steering angle of full lock: at speed no more than the lean can follow.
+  float steering_limit() const {
+    if (!(def_.lean.frequency > 0.0f)) return def_.steer_angle;
+    float front = -1.0e9f, rear = 1.0e9f;
+    for (const WheelDef& wheel : def_.wheels) {
+      front = max(front, dot(wheel.mount, def_.forward));
+      rear = min(rear, dot(wheel.mount, def_.forward));
+    }
+    const SinCos most = sin_cos(def_.lean.most);
+    const float speed = dot(world_.linear_velocity(body_), forward_);
+    const float angle =
+        atan2((front - rear) * length(world_.gravity()) * most.sin, max(square(speed), 1.0e-6f) * most.cos);
+    return min(angle, def_.steer_angle);
+  }
+
+  // A spring and a damper towards the direction in which gravity and the bend's acceleration pull together.
+  void lean() {
+    const Vec3 gravity = world_.gravity();
+    const float pull = length(gravity);
+    if (!(pull > 0.0f)) return;
+    const Vec3 high = gravity / -pull;
+    const Vec3 spin = world_.angular_velocity(body_);
+    const float speed = dot(world_.linear_velocity(body_), forward_);
+    const SinCos most = sin_cos(def_.lean.most);
+    const float bend = clamp_to(speed * dot(spin, high) / pull, most.sin / most.cos);
+    const Vec3 target = normalized(high + bend * normalized(cross(high, forward_)));
+    float height = 0.0f, touching = 0.0f;
+    for (std::size_t i = 0; i < count(); ++i) {
+      if (!s_.wheels[i].on_ground) continue;
+      height += dot(difference(world_.center_of_mass(body_), s_.wheels[i].contact), up_);
+      touching += 1.0f;
+    }
+    if (touching == 0.0f) return;
+    height = height / touching;
+    const Vec3 axis = rotate_inverse(pose_.orientation, forward_);
+    // It leans about the ground, as far as tyres hold; before they do, it turns about its centre: no stiffer than a step bears there.
+    const float alone = dot(axis, world_.mass_properties(body_).inertia * axis);
+    const float whole = alone + mass_ * square(height);
+    const float rate = 2.0f * kPi * def_.lean.frequency;
+    const float stiffness = min(whole * square(rate), 0.2f * alone / square(seconds_));
+    const float damping = min(2.0f * def_.lean.damping_ratio * rate * whole, 0.7f * alone / seconds_);
+    s_.lean_torque = stiffness * dot(cross(up_, target), forward_) - damping * dot(spin, forward_);
+    world_.add_torque(body_, s_.lean_torque * forward_);
+  }
+
+  std::size_t count() const { return def_.wheels.size(); }
+
+  void find_ground(std::size_t i) {
+    const WheelDef& d = def_.wheels[i];
+    WheelState& w = s_.wheels[i];
+    w.steer = d.steer * steering_;
+    const DVec3 top = pose_ * d.mount + d.travel * up_;
+    QueryFilter filter;
+    filter.layers = def_.layers;
+    filter.ignored = body_;
+    const float reach = d.travel + d.radius;
+    const auto hit = world_.cast_ray(top, -reach * up_, filter);
+    w.on_ground = hit && !hit->inside && dot(hit->normal, up_) > 0.1f;
+    w.load = 0.0f;
+    w.force = {};
+    if (!w.on_ground) {
+      w.compression = 0.0f;
+      return;
+    }
+    w.contact = hit->point;
+    w.normal = hit->normal;
+    w.ground = hit->body;
+    w.compression = reach - float(hit->fraction) * reach;
+    roll_along(w, rolling_[i]);
+  }
+
+  void roll_along(const WheelState& w, Rolling& r) const {
+    const SinCos turn = sin_cos(w.steer);
+    const Vec3 left = cross(up_, forward_);
+    const Vec3 heading = turn.cos * forward_ + turn.sin * left;
+    r.along = normalized(heading - dot(heading, w.normal) * w.normal, forward_);
+    r.across = cross(w.normal, r.along);
+    const Vec3 v = world_.velocity_at(body_, w.contact) - world_.velocity_at(w.ground, w.contact);
+    r.speed = dot(v, r.along);
+    r.side = dot(v, r.across);
+    r.sum = {};
+  }
+
+  // Springs, dampers, bars. Both are held below what a step of a body on so many wheels bears.
+  void share_loads() {
+    const float share = mass_ / float(count());
+    for (std::size_t i = 0; i < count(); ++i) {
+      const WheelDef& d = def_.wheels[i];
+      WheelState& w = s_.wheels[i];
+      if (!w.on_ground) continue;
+      const float stiffness = min(d.stiffness, 0.25f * share / square(seconds_));
+      const float damping = min(d.damping, 0.5f * share / seconds_);
+      const Vec3 v = world_.velocity_at(body_, w.contact) - world_.velocity_at(w.ground, w.contact);
+      w.load = stiffness * w.compression - damping * dot(v, w.normal);
+    }
+    for (const AxleDef& axle : def_.axles) {
+      WheelState &a = s_.wheels[axle.left], &b = s_.wheels[axle.right];
+      const float roll = axle.anti_roll * (a.compression - b.compression);
+      if (a.on_ground) a.load += roll;
+      if (b.on_ground) b.load -= roll;
+    }
+    for (std::size_t i = 0; i < count(); ++i) s_.wheels[i].load = max(s_.wheels[i].load, 0.0f);
+  }
+
+  void shift() {
+    if (s_.shifting > 0.0f) {
+      s_.shifting = max(s_.shifting - seconds_, 0.0f);
+      return;
+    }
+    const int last = int(def_.gearbox.ratios.size());
+    int wanted = in_.gear < -1 ? -1 : in_.gear > last ? last : in_.gear;
+    if (def_.gearbox.automatic && in_.gear > 0) {
+      // By the wheels, not by an engine that runs ahead of a slipping clutch.
+      const float geared = driven_speed();
+      wanted = s_.gear > 0 ? s_.gear : 1;
+      if (s_.gear > 0 && geared > def_.gearbox.shift_up && s_.gear < last) ++wanted;
+      if (s_.gear > 1 && geared < def_.gearbox.shift_down) --wanted;
+    }
+    if (wanted == s_.gear) return;
+    s_.gear = wanted;
+    s_.shifting = def_.gearbox.shift_time;
+  }
+
+  // Turns of the engine for one of the wheels.
+  float ratio() const {
+    const GearboxDef& g = def_.gearbox;
+    if (s_.gear == 0) return 0.0f;
+    return g.final_ratio * (s_.gear < 0 ? -g.reverse : g.ratios[std::size_t(s_.gear) - 1]);
+  }
+
+  // Of the engine, if the clutch held.
+  float driven_speed() const {
+    float driven = 0.0f;
+    for (std::size_t i = 0; i < count(); ++i) driven += def_.wheels[i].drive * s_.wheels[i].spin * ratio();
+    return driven;
+  }
+
+  // Torque of the clutch on the gearbox: a damper, as stiff as the two sides bear, that slips above what it holds.
+  float clutch_torque(float h) const {
+    const float gear = ratio();
+    if (gear == 0.0f || s_.shifting > 0.0f) return 0.0f;
+    float inverse = 1.0f / def_.engine.inertia;
+    for (std::size_t i = 0; i < count(); ++i) {
+      const WheelDef& d = def_.wheels[i];
+      inverse += square(d.drive * gear) / rolling_[i].inertia;
+    }
+    // Below one and a half times its idle speed it lets go, so that the engine does not stall.
+    const float above = (s_.engine_speed - def_.engine.idle) / (0.5f * def_.engine.idle);
+    const float grip = clamp(above, 0.0f, 1.0f);
+    const float holds = def_.gearbox.clutch * (1.0f - in_.clutch) * grip;
+    return clamp_to((s_.engine_speed - driven_speed()) / (h * inverse), holds);
+  }
+
+  void turn_engine(float h, float load) {
+    const EngineDef& e = def_.engine;
+    const float speed = s_.engine_speed;
+    const float idle = speed < e.idle ? 0.3f : 0.0f;  // the governor's share
+    const bool cut = speed > e.redline || s_.shifting > 0.0f;
+    const float throttle = cut ? idle : max(in_.throttle, idle);
+    const float made = throttle * torque_at(e, speed) - (1.0f - throttle) * e.braking * speed;
+    s_.engine_speed = max(speed + h * (made - load) / e.inertia, 0.0f);
+  }
+
+  void turn_on(float h) {
+    for (std::size_t i = 0; i < count(); ++i) {
+      float slope = 0.0f;
+      if (s_.wheels[i].on_ground) tyre(def_.wheels[i], s_.wheels[i], rolling_[i], slope);
+      rolling_[i].inertia = def_.wheels[i].inertia + h * square(def_.wheels[i].radius) * slope;
+    }
+    const float clutch = clutch_torque(h), gear = ratio();
+    float torque[VehicleState::kMostWheels];
+    for (std::size_t i = 0; i < count(); ++i) torque[i] = def_.wheels[i].drive * clutch * gear;
+    for (const AxleDef& axle : def_.axles) {
+      const float apart = s_.wheels[axle.left].spin - s_.wheels[axle.right].spin;
+      const float across =
+          clamp_to(apart / (h * (1.0f / rolling_[axle.left].inertia + 1.0f / rolling_[axle.right].inertia)),
+                   axle.lock);
+      torque[axle.left] -= across;
+      torque[axle.right] += across;
+    }
+    for (const TrackDef& track : def_.tracks) {
+      const float each = -track.side * in_.steer * track.steering / float(track.wheels.size());
+      for (const int wheel : track.wheels) torque[wheel] += each;
+    }
+    for (std::size_t i = 0; i < count(); ++i) turn_wheel(i, torque[i], h);
+    for (const TrackDef& track : def_.tracks) bind(track);
+    turn_engine(h, clutch);
+  }
+
+  // One speed for all wheels of a track: what they turn with stays.
+  void bind(const TrackDef& track) {
+    float momentum = 0.0f, inertia = 0.0f;
+    for (const int wheel : track.wheels) {
+      momentum += rolling_[wheel].inertia * s_.wheels[wheel].spin;
+      inertia += rolling_[wheel].inertia;
+    }
+    for (const int wheel : track.wheels) s_.wheels[wheel].spin = momentum / inertia;
+  }
+
+  void turn_wheel(std::size_t i, float torque, float h) {
+    const WheelDef& d = def_.wheels[i];
+    WheelState& w = s_.wheels[i];
+    Rolling& r = rolling_[i];
+    float slope = 0.0f, pull = 0.0f;  // of the tyre's force with the wheel's speed; the force along
+    if (w.on_ground) pull = tyre(d, w, r, slope);
+    const float inertia = r.inertia;
+    w.spin += h * (torque - d.radius * pull) / inertia;
+    // Brakes and rolling resistance stop it and never turn it back.
+    const float hold = in_.brake * d.brake + in_.handbrake * d.handbrake +
+                       (w.on_ground ? d.tyre.rolling * w.load * d.radius : 0.0f);
+    w.spin -= clamp_to(w.spin, h * hold / inertia);
+    w.angle += h * w.spin;
+    if (w.on_ground) {
+      float unused = 0.0f;
+      const float along = tyre(d, w, r, unused);
+      r.sum += along * r.along + side_ * r.across;
+    }
+  }
+
+  // Force along; that across is left in side_. Similarity: slips over those of the peaks are one vector.
+  float tyre(const WheelDef& d, WheelState& w, const Rolling& r, float& slope) {
+    const float ground = max(absolute(r.speed), kSlowest);
+    w.slip = (w.spin * d.radius - r.speed) / ground;
+    w.slip_angle = atan2(r.side, ground);
+    const float x = w.slip / d.tyre.peak_slip, y = -w.slip_angle / d.tyre.peak_angle;
+    const float s = std::sqrt(x * x + y * y);
+    const float most = d.tyre.grip * w.load;
+    const float share = s > 1.0e-6f ? tyre_curve(d.tyre, s) / s : 2.0f;
+    slope = most * share / (d.tyre.peak_slip * ground);
+    // Nobody is stopped more than it moves: what rests on the wheel, within the step.
+    const float bears = w.load / 9.81f / seconds_;
+    side_ = clamp_to(most * share * y, absolute(r.side) * bears);
+    return clamp_to(most * share * x, absolute(w.spin * d.radius - r.speed) * bears + most * 0.02f);
+  }
+
+  void push() {
+    for (std::size_t i = 0; i < count(); ++i) {
+      WheelState& w = s_.wheels[i];
+      if (!w.on_ground) continue;
+      w.force = (1.0f / float(kShortSteps)) * rolling_[i].sum;
+      const Vec3 all = w.force + w.load * w.normal;
+      world_.add_force_at(body_, all, w.contact);
+      if (world_.type(w.ground) == BodyType::dynamic) world_.add_force_at(w.ground, -all, w.contact);
+    }
+  }
+
+  World& world_;
+  const VehicleDef& def_;
+  BodyId body_;
+  VehicleState& s_;
+  const VehicleInput& in_;
+  float seconds_;
+  Pose pose_;
+  float mass_;
+  Vec3 up_, forward_;
+  Rolling rolling_[VehicleState::kMostWheels];
+  float side_ = 0.0f;
+  float steering_ = 0.0f;  // rad
+};
+
+Error refuse(const char* what, double value) {
+  return make_error(ErrorCode::invalid_argument, "vehicle: %s is %g; it is out of range", what, value);
+}
+bool is_positive(float v) { return is_finite(v) && v > 0.0f; }
+bool is_share(float v, float low) { return is_finite(v) && v >= low && v <= 1.0f; }
+
+Error check_wheel(const WheelDef& d) {
+  for (const float v : {d.radius, d.inertia, d.travel, d.stiffness, d.tyre.peak_slip, d.tyre.peak_angle}) {
+    if (!is_positive(v))
+      return refuse("a wheel's radius, inertia, travel, stiffness or slip of the peak", double(v));
+  }
+  for (const float v : {d.damping, d.brake, d.handbrake, d.tyre.grip, d.tyre.slide, d.tyre.rolling}) {
+    if (!is_finite(v) || v < 0.0f) return refuse("a wheel's damping, brake, grip or resistance", double(v));
+  }
+  if (!is_finite(d.mount)) return refuse("a wheel's mount", double(d.mount.x));
+  return is_share(d.drive, 0.0f) && is_share(d.steer, -1.0f)
+             ? Error{}
+             : refuse("a wheel's share of drive or steering", double(d.drive));
+}
+
+}  // namespace
+
+Error check_vehicle(const VehicleDef& def) {
+  const std::size_t count = def.wheels.size();
+  if (count < 1 || count > std::size_t(VehicleState::kMostWheels))
+    return refuse("the number of wheels", double(count));
+  if (!(absolute(length(def.forward) - 1.0f) < 1.0e-3f) || !(absolute(length(def.up) - 1.0f) < 1.0e-3f) ||
+      !(absolute(dot(def.forward, def.up)) < 1.0e-3f)) {
+    return refuse("the angle of forward and up, which are of length 1 and at right angles,",
+                  double(dot(def.forward, def.up)));
+  }
+  for (const WheelDef& wheel : def.wheels) {
+    const Error e = check_wheel(wheel);
+    if (e.code != ErrorCode::none) return e;
+  }
+  for (const AxleDef& axle : def.axles) {
+    if (axle.left < 0 || axle.right < 0 || std::size_t(axle.left) >= count ||
+        std::size_t(axle.right) >= count) {
+      return refuse("an axle's wheel", double(axle.left));
+    }
+    if (!is_finite(axle.anti_roll) || axle.anti_roll < 0.0f || !(axle.lock >= 0.0f))
+      return refuse("an axle's bar or lock", double(axle.lock));
+  }
+  for (const TrackDef& track : def.tracks) {
+    if (track.wheels.empty() || !is_finite(track.steering))
+      return refuse("a track's steering (or it has no wheels)", double(track.steering));
+    for (const int wheel : track.wheels) {
+      if (wheel < 0 || std::size_t(wheel) >= count) return refuse("a track's wheel", double(wheel));
+    }
+  }
+  if (!(def.lean.frequency >= 0.0f && def.lean.frequency <= 10.0f) ||
+      !(def.lean.most > 0.0f && def.lean.most < 1.5f)) {
+    return refuse("the lean's frequency or angle", double(def.lean.frequency));
+  }
+  if (def.engine.curve.empty() || !is_positive(def.engine.inertia) || !is_positive(def.engine.idle)) {
+    return refuse("the engine's inertia (or it has no torque curve)", double(def.engine.inertia));
+  }
+  for (std::size_t i = 1; i < def.engine.curve.size(); ++i) {
+    if (!(def.engine.curve[i].speed > def.engine.curve[i - 1].speed))
+      return refuse("a speed of the torque curve", double(def.engine.curve[i].speed));
+  }
+  for (const float ratio : def.gearbox.ratios) {
+    if (!is_positive(ratio)) return refuse("a gear's ratio", double(ratio));
+  }
+  return def.gearbox.ratios.empty() ? refuse("the number of gears", 0.0) : Error{};
+}
+
+Error drive_vehicle(World& world, const VehicleDef& def, BodyId body, VehicleState& state,
+                    const VehicleInput& input, float seconds) {
+  const Error e = check_vehicle(def);
+  if (e.code != ErrorCode::none) return e;
+  if (!world.exists(body))
+    return make_error(ErrorCode::stale_id, "vehicle: body %u does not exist in this world", body.index);
+  if (!(seconds > 0.0f && seconds <= 0.1f)) return refuse("seconds", double(seconds));
+  if (!is_share(input.throttle, 0.0f) || !is_share(input.brake, 0.0f) || !is_share(input.handbrake, 0.0f) ||
+      !is_share(input.clutch, 0.0f) || !is_share(input.steer, -1.0f)) {
+    return refuse("an input (throttle among them)", double(input.throttle));
+  }
+  Drive(world, def, body, state, input, seconds).run();
+  return {};
+}
+
+Pose wheel_pose(const World& world, const VehicleDef& def, BodyId body, const VehicleState& state,
+                int wheel) {
+  const WheelDef& d = def.wheels[std::size_t(wheel)];
+  const WheelState& w = state.wheels[wheel];
+  const Pose pose = world.pose(body);
+  const Vec3 middle = d.mount + w.compression * def.up;
+  const Quat turn = from_axis_angle(def.up, w.steer) * from_axis_angle(cross(def.up, def.forward), w.angle);
+  return {pose * middle, normalized(pose.orientation * turn)};
+}
+
+}  // namespace gyre::kit
