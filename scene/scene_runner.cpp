@@ -120,12 +120,23 @@ SceneJoint SceneRunner::final_joint(std::size_t index) const {
     const Pose& start = scene_.bodies[std::size_t(body)].def.pose;
     return world_.pose(bodies_[std::size_t(body)]) * inverse_times(start, place);
   };
-  def.anchor = carried(joint.a, def.anchor);
+  if (def.kind == JointKind::path) {
+    const DVec3 on_b = carried(joint.b, def.anchor);
+    for (Vec3& point : def.path) point = difference(carried(joint.a, def.anchor + point), on_b);
+    def.anchor = on_b;
+  } else {
+    def.anchor = carried(joint.a, def.anchor);
+  }
   if (def.anchor_b) def.anchor_b = carried(joint.b, *def.anchor_b);
   if (joint.a >= 0) {
     const Quat start = scene_.bodies[std::size_t(joint.a)].def.pose.orientation;
     const Quat now = world_.pose(bodies_[std::size_t(joint.a)]).orientation;
     def.axis = rotate(now, rotate_inverse(start, def.axis));
+  }
+  if (joint.b >= 0 && def.axis_b) {
+    const Quat start = scene_.bodies[std::size_t(joint.b)].def.pose.orientation;
+    const Quat now = world_.pose(bodies_[std::size_t(joint.b)]).orientation;
+    def.axis_b = rotate(now, rotate_inverse(start, *def.axis_b));
   }
   // Zero of a hinge or slider is the pose in which it is made: the travel so far is taken off what refers to it.
   const float travelled = world_.joint_reading(joints_[index]).position;

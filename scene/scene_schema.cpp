@@ -2,6 +2,8 @@
 // scenes/scene.schema.json is the same text; a test compares them.
 #include "scene/scene_schema.h"
 
+#include "scene/scene_schema_joints.h"
+
 namespace gyre {
 namespace {
 
@@ -314,53 +316,9 @@ constexpr char kPart1[] = R"json(            "group": { "type": "integer", "mini
         "end": { "type": "number", "default": 1e9, "description": "s" }
       }
     },
-    "motor": {
-      "type": ["object", "null"],
-      "additionalProperties": false,
-      "properties": {
-        "target_velocity": { "type": "number", "minimum": -1e6, "maximum": 1e6, "default": 0, "description": "rad/s or m/s" },
-        "target_position": { "type": ["number", "null"], "default": null, "description": "rad or m; makes it a spring to there" },
-        "max_force": { "$ref": "#/$defs/not_negative", "default": 0, "description": "N m or N" },
-        "frequency": { "$ref": "#/$defs/factor", "default": 0, "description": "Hz, of the spring" },
-        "damping_ratio": { "$ref": "#/$defs/factor", "default": 1 }
-      }
-    },
-    "joint": {
-      "type": "object",
-      "required": ["type", "a", "b"],
-      "additionalProperties": false,
-      "properties": {
-        "type": {
-          "enum": ["ball", "hinge", "slider", "fixed", "distance", "cone", "universal", "six_dof", "gear", "pulley", "wheel"]
-        },
-        "name": { "type": ["string", "null"], "minLength": 1, "maxLength": 1024 },
-        "a": { "type": "string", "description": "a body, or world" },
-        "b": { "type": "string", "description": "a body, or world" },
-        "anchor": { "$ref": "#/$defs/vector_or_null", "description": "world frame, at the start; distance: the point on a" },
-        "axis": { "$ref": "#/$defs/vector_or_null", "description": "world frame, at the start" },
-        "anchor_b": { "$ref": "#/$defs/vector_or_null", "description": "distance and pulley: the point on b; null: b's origin" },
-        "limits": {
-          "type": ["array", "null"],
-          "items": { "type": "number", "minimum": -1e9, "maximum": 1e9 },
-          "minItems": 2,
-          "maxItems": 2
-        },
-        "motor": { "$ref": "#/$defs/motor" },
-        "length": { "$ref": "#/$defs/not_negative_or_null", "description": "distance: of the rod, or the spring at rest" },
-        "min_length": { "$ref": "#/$defs/not_negative_or_null" },
-        "max_length": { "$ref": "#/$defs/not_negative_or_null" },
-        "stiffness": { "$ref": "#/$defs/not_negative_or_null", "description": "distance: N/m" },
-        "damping": { "$ref": "#/$defs/not_negative_or_null", "description": "distance: N s/m" },
-        "break_force": { "$ref": "#/$defs/positive_or_null", "description": "N" },
-        "break_torque": { "$ref": "#/$defs/positive_or_null", "description": "N m" },
-        "collide_connected": { "type": "boolean", "default": false }
-      },
-      "allOf": [
-        { "if": { "properties": { "type": { "enum": ["ball", "hinge"] } } }, "then": { "required": ["anchor"] } },
-        { "if": { "properties": { "type": { "enum": ["hinge", "slider"] } } }, "then": { "required": ["axis"] } }
-      ]
-    },
-    "cloth": {
+)json";
+
+constexpr char kPart2[] = R"json(    "cloth": {
       "type": "object",
       "required": ["name"],
       "additionalProperties": false,
@@ -381,7 +339,7 @@ constexpr char kPart1[] = R"json(            "group": { "type": "integer", "mini
         "links": { "enum": ["springs", "rods", "membrane"] },
 )json";
 
-constexpr char kPart2[] = R"json(        "area_density": { "$ref": "#/$defs/positive" },
+constexpr char kPart3[] = R"json(        "area_density": { "$ref": "#/$defs/positive" },
         "stretch_stiffness": { "$ref": "#/$defs/not_negative" },
         "shear_stiffness": { "$ref": "#/$defs/not_negative" },
         "bend_stiffness": { "$ref": "#/$defs/not_negative" },
@@ -541,7 +499,7 @@ constexpr char kPart2[] = R"json(        "area_density": { "$ref": "#/$defs/posi
 
 std::string scene_schema() {
   std::string out;
-  for (const char* part : {kPart0, kPart1, kPart2}) out += part;
+  for (const char* part : {kPart0, kPart1, kSchemaOfJoints, kPart2, kPart3}) out += part;
   return out;
 }
 

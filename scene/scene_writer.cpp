@@ -228,30 +228,14 @@ void write_body(JsonWriter& json, const Scene& scene, const SceneBody& body) {
   json.end_object();
 }
 
-const char* joint_word(JointKind kind) {
-  switch (kind) {
-    case JointKind::ball:
-      return "ball";
-    case JointKind::hinge:
-      return "hinge";
-    case JointKind::slider:
-      return "slider";
-    case JointKind::fixed:
-      return "fixed";
-    case JointKind::distance:
-      return "distance";
-  }
-  return "ball";
+void write_limits(JsonWriter& json, const Limits& limits) {
+  json.key("limits").begin_array(kOneLine);
+  json.value(limits.low);
+  json.value(limits.high);
+  json.end_array();
 }
 
-void write_travel(JsonWriter& json, const JointDef& def) {
-  if (def.limits) {
-    json.key("limits").begin_array(kOneLine);
-    json.value(def.limits->low);
-    json.value(def.limits->high);
-    json.end_array();
-  }
-  const Motor& motor = def.motor;
+void write_motor(JsonWriter& json, const Motor& motor) {
   const Motor none;
   if (motor.target_velocity == none.target_velocity && !motor.target_position &&
       motor.max_force == none.max_force && motor.frequency == none.frequency &&
@@ -267,20 +251,112 @@ void write_travel(JsonWriter& json, const JointDef& def) {
   json.end_object();
 }
 
+void write_axis(JsonWriter& json, const char* key, const JointAxisDef& axis, AxisMotion otherwise) {
+  json.key(key).begin_object(kOneLine);
+  const char* const words[] = {"locked", "free", "limited"};
+  if (axis.motion == AxisMotion::limited) {
+    write_limits(json, axis.limits);
+  } else if (axis.motion != otherwise) {
+    json.field("motion", words[int(axis.motion)]);
+  }
+  unless_default(json, "limit_frequency", axis.limit_frequency, 0.0f);
+  unless_default(json, "limit_damping_ratio", axis.limit_damping_ratio, 1.0f);
+  write_motor(json, axis.motor);
+  unless_default(json, "stiffness", axis.stiffness, 0.0f);
+  unless_default(json, "damping", axis.damping, 0.0f);
+  unless_default(json, "rest_position", axis.rest_position, 0.0f);
+  unless_default(json, "friction", axis.friction, 0.0f);
+  json.end_object();
+}
+
+void write_axes(JsonWriter& json, const JointDef& def) {
+  const bool all = def.kind == JointKind::six_dof;
+  if (!all && def.kind != JointKind::wheel && def.kind != JointKind::universal) return;
+  json.key("axes").begin_object();
+  if (all) {
+    write_axis(json, "linear_x", def.linear_x, AxisMotion::locked);
+    write_axis(json, "linear_y", def.linear_y, AxisMotion::locked);
+    write_axis(json, "linear_z", def.linear_z, AxisMotion::locked);
+  }
+  if (def.kind != JointKind::universal) write_axis(json, "angular_x", def.angular_x, AxisMotion::locked);
+  if (all) write_axis(json, "angular_y", def.angular_y, AxisMotion::locked);
+  if (all) write_axis(json, "angular_z", def.angular_z, AxisMotion::locked);
+  if (def.kind == JointKind::universal) write_axis(json, "angular_z", def.angular_z, AxisMotion::locked);
+  json.end_object();
+}
+
+void write_drive(JsonWriter& json, const PoseDrive& drive) {
+  json.key("drive").begin_object(kOneLine);
+  unless_default(json, "position", drive.position, Vec3{});
+  unless_default(json, "orientation", drive.orientation, Quat{});
+  unless_default(json, "linear_velocity", drive.linear_velocity, Vec3{});
+  unless_default(json, "angular_velocity", drive.angular_velocity, Vec3{});
+  unless_default(json, "frequency", drive.frequency, 0.0f);
+  unless_default(json, "damping_ratio", drive.damping_ratio, 1.0f);
+  unless_default(json, "max_force", drive.max_force, 0.0f);
+  unless_default(json, "max_torque", drive.max_torque, 0.0f);
+  json.end_object();
+}
+
+void write_path(JsonWriter& json, const JointDef& def) {
+  json.key("path").begin_array();
+  for (const Vec3& point : def.path) json.value(def.anchor + point);
+  json.end_array();
+  unless_default(json, "path_closed", def.path_closed, false);
+  const char* const words[] = {"free", "fixed", "following"};
+  json.field("path_orientation", words[int(def.path_orientation)]);
+}
+
+void write_special(JsonWriter& json, const JointDef& def) {
+  write_axes(json, def);
+  if (def.swing_y && def.swing_z) {
+    json.key("swing").begin_array(kOneLine);
+    json.value(*def.swing_y);
+    json.value(*def.swing_z);
+    json.end_array();
+  }
+  unless_default(json, "ratio", def.ratio, 1.0f);
+  if (def.kind == JointKind::pulley) {
+    json.field("ground_a", def.ground_a);
+    json.field("ground_b", def.ground_b);
+  }
+  if (def.kind == JointKind::path) write_path(json, def);
+  if (def.kind == JointKind::cone || def.kind == JointKind::mouse || def.kind == JointKind::motor)
+    write_drive(json, def.drive);
+}
+
+bool has_axis(JointKind kind) {
+  switch (kind) {
+    case JointKind::ball:
+    case JointKind::fixed:
+    case JointKind::distance:
+    case JointKind::pulley:
+    case JointKind::path:
+    case JointKind::mouse: return false;
+    default: return true;
+  }
+}
+
 void write_joint(JsonWriter& json, const Scene& scene, const SceneJoint& joint) {
   const JointDef& def = joint.def;
   const auto end = [&](int body) {
     return body < 0 ? std::string("world") : scene.bodies[std::size_t(body)].name;
   };
   json.begin_object();
-  json.field("type", joint_word(def.kind));
+  json.field("type", to_string(def.kind));
   if (!joint.name.empty()) json.field("name", joint.name);
   json.field("a", end(joint.a));
   json.field("b", end(joint.b));
   json.field("anchor", def.anchor);
-  if (def.kind == JointKind::hinge || def.kind == JointKind::slider) json.field("axis", def.axis);
+  if (has_axis(def.kind)) json.field("axis", def.axis);
+  if_given(json, "axis_b", def.axis_b);
   if_given(json, "anchor_b", def.anchor_b);
-  write_travel(json, def);
+  if (def.limits) write_limits(json, *def.limits);
+  unless_default(json, "limit_frequency", def.limit_frequency, 0.0f);
+  unless_default(json, "limit_damping_ratio", def.limit_damping_ratio, 1.0f);
+  write_motor(json, def.motor);
+  unless_default(json, "friction", def.friction, 0.0f);
+  write_special(json, def);
   if_given(json, "length", def.length);
   if_given(json, "min_length", def.min_length);
   if_given(json, "max_length", def.max_length);

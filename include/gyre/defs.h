@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace gyre {
 
@@ -144,20 +145,38 @@ struct BodyDef {
 // ------------------------------------------------------------------------------------------------------------- joints
 
 enum class JointKind : std::uint8_t {
-  ball,      // one common point
-  hinge,     // one common point and axis
-  slider,    // b slides along an axis of a and does not turn against it
-  fixed,     // b keeps its pose in a
-  distance,  // rod, rope or spring between a point of a and a point of b
+  ball,             // one common point
+  hinge,            // one common point and axis
+  slider,           // b slides along an axis of a and does not turn against it
+  fixed,            // b keeps its pose in a
+  distance,         // rod, rope or spring between a point of a and a point of b
+  cone,             // a ball whose swing stays within an ellipse and whose twist within limits: a shoulder
+  universal,        // one common point; b turns about `axis`, fixed in a, and about `axis_b`, fixed in b, which keep their angle
+  six_dof,          // each of the six axes of the joint as it is told: locked, free, limited, sprung, driven
+  gear,             // a's turning about `axis` is -ratio times b's turning about `axis_b`
+  rack_and_pinion,  // b's way along `axis_b` is ratio times a's turning about `axis`
+  pulley,           // a rope from a over two fixed points to b; it pulls and never pushes
+  wheel,            // b spins about `axis_b`, is sprung along `axis` of a, and is steered about it
+  path,             // a point of b stays on a curve that is fixed in a
+  mouse,            // a point of b is dragged with a limited force
+  motor,            // b is driven to a pose in a with a limited force and torque
 };
+constexpr int kJointKindCount = 15;
 const char* to_string(JointKind kind);
 
+// The axes of a joint's frame: x along `axis`, z along `axis_b` as far as that is across, fixed in a. Linear: where b's
+// anchor is from a's. Angular: Cardan angles x, y, z, each about an axis that the one before has turned (x is fixed in a, z
+// in b); y stays within a quarter turn.
+enum class JointAxis : std::uint8_t { linear_x, linear_y, linear_z, angular_x, angular_y, angular_z };
+constexpr int kJointAxisCount = 6;
+const char* to_string(JointAxis axis);
+
 struct Limits {
-  float low = 0.0f;   // rad (hinge) or m (slider)
+  float low = 0.0f;   // rad (turning) or m (sliding)
   float high = 0.0f;
 };
 
-// Drives a hinge (rad, N m) or slider (m, N). With target_position it is a spring to that position (frequency,
+// Drives what turns (rad, N m) or slides (m, N). With target_position it is a spring to that position (frequency,
 // damping_ratio), otherwise it drives to target_velocity; either way with at most max_force.
 struct Motor {
   float target_velocity = 0.0f;
@@ -167,20 +186,61 @@ struct Motor {
   float damping_ratio = 1.0f;
 };
 
+enum class AxisMotion : std::uint8_t {
+  locked,   // stays where it was when the joint was added
+  free,     // not held; may be driven, sprung and braked
+  limited,  // free between limits
+};
+
+// What holds for one axis of a joint. All that is given acts at once and adds up.
+struct JointAxisDef {
+  AxisMotion motion = AxisMotion::locked;
+  Limits limits{};                   // if limited; rad or m, zero is the pose when added
+  float limit_frequency = 0.0f;      // Hz: the ends give way like springs on what the joint moves; 0 = they hold
+  float limit_damping_ratio = 1.0f;
+  Motor motor{};
+  float stiffness = 0.0f;            // N/m or N m/rad: Hooke's spring to rest_position
+  float damping = 0.0f;              // N s/m or N m s/rad
+  float rest_position = 0.0f;        // m or rad
+  float friction = 0.0f;             // N or N m: dry friction against motion
+};
+
+// Drives b to a pose in a: motors, mice, cones. With a frequency the pose is a spring's rest; frequency 0 is as stiff as the step
+// allows. The velocities are what it moves on with.
+struct PoseDrive {
+  Vec3 position{};               // m, of b's anchor from a's, in the joint's frame on a
+  Quat orientation{};            // joint's frame on a from joint's frame on b; as they were when added: none
+  Vec3 linear_velocity{};        // m/s, of the target, in the joint's frame on a
+  Vec3 angular_velocity{};       // rad/s
+  float frequency = 0.0f;        // Hz
+  float damping_ratio = 1.0f;
+  float max_force = 0.0f;        // N; 0 = it does not push
+  float max_torque = 0.0f;       // N m; 0 = it does not turn
+};
+
+enum class PathOrientation : std::uint8_t {
+  free,       // b turns as it likes
+  fixed,      // b does not turn against a
+  following,  // b turns with the curve, without twist about it
+};
+
 // A joint between two bodies; a null id is the world. Anchors and axes are given in the world frame as the bodies stand
-// when the joint is added; they are stored in the bodies' frames.
+// when the joint is added; they are stored in the bodies' frames. docs/joints.md says what each kind leaves free.
 struct JointDef {
   JointKind kind = JointKind::ball;
   BodyId a{};
   BodyId b{};
-  DVec3 anchor{};                        // the common point; distance: the point on a
-  Vec3 axis{1, 0, 0};                  // hinge and slider
-  std::optional<DVec3> anchor_b{};       // distance: the point on b; none = b's origin
-  std::optional<Limits> limits{};        // hinge and slider; zero is the pose when added
-  Motor motor{};                         // hinge and slider
+  DVec3 anchor{};                        // the common point; distance, pulley: the point on a; path: of b, on the curve; mouse: of b
+  Vec3 axis{1, 0, 0};                  // hinge, slider; cone: about which b twists; six_dof, motor: x of the frame; wheel: suspension and
+                                       // steering, from the ground up; gear, rack_and_pinion: about which a turns
+  std::optional<DVec3> anchor_b{};       // distance, pulley: the point on b; none = b's origin
+  std::optional<Limits> limits{};        // hinge, slider; cone: twist; universal: about axis; wheel: suspension; path: along it.
+                                         // Zero is the pose when added
+  Motor motor{};                         // as limits, but wheel: spin
   // Distance: with none of these a rod of the present length. min and max make a rope (a gap within which nothing acts);
-  // stiffness makes a Hooke spring of rest length `length`.
-  std::optional<float> length{};         // m
+  // stiffness makes a Hooke spring of rest length `length`. Hinge, slider, wheel (suspension): a spring to the pose when added,
+  // N/m or N m/rad.
+  std::optional<float> length{};         // m; pulley: of the rope, of which ratio times b's part counts; none = as it is
   std::optional<float> min_length{};     // m
   std::optional<float> max_length{};     // m
   std::optional<float> stiffness{};      // N/m
@@ -188,6 +248,26 @@ struct JointDef {
   std::optional<float> break_force{};    // N: the joint breaks above it
   std::optional<float> break_torque{};   // N m
   bool collide_connected = false;      // whether the two bodies still collide with each other
+  // universal, wheel (spin), gear, rack_and_pinion (way): of b; six_dof, motor, cone: z of the frame. None: gear as axis, rack an
+  // error, others any across axis.
+  std::optional<Vec3> axis_b{};
+  float friction = 0.0f;               // N or N m, dry: as motor; ball and cone: against all turning
+  float limit_frequency = 0.0f;        // Hz: `limits` give way like springs; 0 = they hold
+  float limit_damping_ratio = 1.0f;
+  std::optional<float> swing_y{};      // cone: how far b's axis may turn about the frame's y and z, rad, 0 to pi; with one given the
+  std::optional<float> swing_z{};      // other is the same; none = freely
+  float ratio = 1.0f;                  // gear: as above; rack_and_pinion: m/rad, the pinion's radius; pulley: of b's part of the rope
+  DVec3 ground_a{};                    // pulley: the points that the rope runs over, fixed in the world
+  DVec3 ground_b{};
+  JointAxisDef linear_x{}, linear_y{}, linear_z{};     // six_dof
+  JointAxisDef angular_x{}, angular_y{}, angular_z{};  // six_dof; wheel: angular_x steers; universal: angular_z about axis_b
+  PoseDrive drive{};                   // motor, mouse; cone: its turning part
+  // Path: points that the curve runs through (Catmull-Rom), m from the anchor, world axes; 2 to kMostPathPoints, a closed
+  // one at least 3. The curve must pass near the anchor.
+  std::vector<Vec3> path{};
+  bool path_closed = false;
+  PathOrientation path_orientation = PathOrientation::free;
 };
+constexpr int kMostPathPoints = 4096;
 
 }  // namespace gyre

@@ -47,8 +47,17 @@ struct ContactPoint {
 struct JointReading {
   Vec3 force{};   // N on b, world frame, mean over the last step
   Vec3 torque{};  // N m on b about the anchor, world frame
-  float position = 0;  // hinge: rad (continuous beyond +-pi), slider: m, distance: m
-  float velocity = 0;
+  // Of what the joint leaves free. Hinge, cone (twist), universal (about axis), wheel (spin), gear and rack_and_pinion (a's
+  // turning): rad, continuous beyond +-pi. Slider, path: m along it. Distance, pulley: m, the length. six_dof: linear_x.
+  float position = 0;
+  float velocity = 0;  // hinge, slider, distance; others: see joint_axis_reading()
+};
+
+// One of a joint's axes (JointAxis).
+struct JointAxisReading {
+  float position = 0;  // m or rad, continuous beyond +-pi
+  float velocity = 0;  // m/s or rad/s, of b against a
+  float force = 0;     // N or N m along it by limits, motor, spring and friction together, mean over the last step
 };
 
 struct WorldCounts {
@@ -104,6 +113,13 @@ class World {
   bool set_field(FieldId field, const FieldDef& def);
   bool set_filter(ShapeId shape, const Filter& filter);
   bool set_motor(JointId joint, const Motor& motor);
+  // Replaces all that acts on one axis: limits, motor, spring, friction. six_dof: any; hinge, universal and cone (twist): angular_x;
+  // universal: angular_z too; slider and path: linear_x; wheel: linear_x (suspension), angular_x (steering), angular_z (spin). Only
+  // axes of a six_dof and steering can be locked: where they are then.
+  bool set_joint_axis(JointId joint, JointAxis axis, const JointAxisDef& def);
+  bool set_drive(JointId joint, const PoseDrive& drive);  // motor, mouse, cone
+  // A joint that is not enabled does nothing, but keeps its bodies from colliding as before.
+  bool set_joint_enabled(JointId joint, bool enabled);
   bool set_sleeping(bool enabled);
   bool set_awake(BodyId body, bool awake);  // false puts the body's whole island to sleep
   bool set_substeps(int substeps);
@@ -154,6 +170,10 @@ class World {
   FieldDef field(FieldId field) const;
   // Copies up to out.size() fields, by index; returns how many there are.
   std::size_t fields(std::span<FieldId> out) const;
+  // Zero for axes that the joint's kind holds. Hinge: angular_x; slider, distance, path, pulley: linear_x; gear: angular_x (a) and
+  // angular_y (b).
+  JointAxisReading joint_axis_reading(JointId joint, JointAxis axis) const;
+  bool joint_enabled(JointId joint) const;
 
   BodyColumns bodies() const;        // every body
   BodyColumns awake_bodies() const;  // those that moved or could have

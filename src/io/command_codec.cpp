@@ -24,7 +24,10 @@ class FieldWriter {
     out_.put(value.index), out_.put(value.generation);
   }
   void shape(const AnyShape& value) { write_shape(out_, value); }
-  void count(const std::vector<ShapeDef>& list) { out_.put(std::uint64_t(list.size())); }
+  template <class T>
+  void count(const std::vector<T>& list) {
+    out_.put(std::uint64_t(list.size()));
+  }
   template <class T>
   bool has(const std::optional<T>& value) {
     out_.put(value.has_value());
@@ -48,9 +51,10 @@ class FieldReader {
     value.world = value.generation != 0 ? world_ : std::uint16_t(0);
   }
   void shape(AnyShape& value) { value = read_shape(in_, geometry_); }
-  void count(std::vector<ShapeDef>& list) {
-    constexpr std::size_t kLeastShapeDef = 64;  // bytes; it takes more
-    list.resize(in_.get_count(kLeastShapeDef));
+  template <class T>
+  void count(std::vector<T>& list) {
+    constexpr std::size_t kLeast = std::is_same_v<T, ShapeDef> ? 64 : sizeof(T);  // bytes; a shape takes more
+    list.resize(in_.get_count(kLeast));
   }
   template <class T>
   bool has(std::optional<T>& value) {
@@ -185,17 +189,35 @@ void fields(C& c, T& v) {
   auto& [velocity, position, force, frequency, damping] = v;
   all(c, velocity, position, force, frequency, damping);
 }
+template <class C, Is<JointAxisDef> T>
+void fields(C& c, T& v) {
+  auto& [motion, limits, limit_frequency, limit_damping, motor, stiffness, damping, rest, friction] = v;
+  all(c, motion, limits, limit_frequency, limit_damping, motor, stiffness, damping, rest, friction);
+}
+template <class C, Is<PoseDrive> T>
+void fields(C& c, T& v) {
+  auto& [position, orientation, linear, angular, frequency, damping, force, torque] = v;
+  all(c, position, orientation, linear, angular, frequency, damping, force, torque);
+}
+template <class C, class T>
+requires(Is<T, std::vector<ShapeDef>> || Is<T, std::vector<Vec3>>) void fields(C& c, T& list) {
+  c.count(list);
+  for (auto& item : list) all(c, item);
+}
+// What only kinds beyond these five say: a recording of these stays as short as it was, and older ones open.
+constexpr bool says_more(JointKind kind) { return kind > JointKind::distance; }
 template <class C, Is<JointDef> T>
 void fields(C& c, T& v) {
   auto& [kind, a, b, anchor, axis, anchor_b, limits, motor, length, min_length, max_length, stiffness,
-         damping, break_force, break_torque, collide_connected] = v;
+         damping, break_force, break_torque, collide_connected, axis_b, friction, limit_frequency, limit_damping,
+         swing_y, swing_z, ratio, ground_a, ground_b, linear_x, linear_y, linear_z, angular_x, angular_y, angular_z,
+         drive, path, path_closed, path_orientation] = v;
   all(c, kind, a, b, anchor, axis, anchor_b, limits, motor, length, min_length, max_length, stiffness,
       damping, break_force, break_torque, collide_connected);
-}
-template <class C, Is<std::vector<ShapeDef>> T>
-void fields(C& c, T& list) {
-  c.count(list);
-  for (auto& shape : list) all(c, shape);
+  all(c, friction, limit_frequency, limit_damping);
+  if (!says_more(kind)) return;
+  all(c, axis_b, swing_y, swing_z, ratio, ground_a, ground_b, linear_x, linear_y, linear_z, angular_x, angular_y,
+      angular_z, drive, path, path_closed, path_orientation);
 }
 
 // ----------------------------------------------------------------------------------------------------------- commands
@@ -212,13 +234,13 @@ void fields(C& c, T& v) {
 }
 template <class C, class T>
 requires IsOneOf<T, AddBody, AddShape, SetPose, SetType, SetGravityScale, SetMaterial, SetFilter, SetMotor,
-                 SetAwake, SetField, SetCombineRules>
+                 SetAwake, SetField, SetCombineRules, SetDrive, SetJointEnabled>
 void fields(C& c, T& v) {
   auto& [first, second] = v;
   all(c, first, second);
 }
 template <class C, class T>
-requires IsOneOf<T, SetVelocity, MoveKinematic, SetDamping, AddForce, AddImpulse>
+requires IsOneOf<T, SetVelocity, MoveKinematic, SetDamping, AddForce, AddImpulse, SetJointAxis>
 void fields(C& c, T& v) {
   auto& [first, second, third] = v;
   all(c, first, second, third);

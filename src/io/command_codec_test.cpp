@@ -76,7 +76,34 @@ std::vector<Command> all_commands() {
           AddField{{.kind = FieldKind::vortex, .bounds = FieldBounds{{1, 2, 3}, {4, 5, 6}}, .strength = 7, .axis = {0, 0, 1}}},
           SetField{{1, 1, 1}, {.kind = FieldKind::buoyancy, .density = 900, .offset = 2}},
           RemoveField{{1, 1, 1}},
-          Explode{{.center = {1, 2, 3}, .pressure = 4, .occlusion = false}}};
+          Explode{{.center = {1, 2, 3}, .pressure = 4, .occlusion = false}},
+          SetJointAxis{joint, JointAxis::angular_y, {.motion = AxisMotion::limited, .limits = {1, 2}, .friction = 3}},
+          SetDrive{joint, {.position = {1, 2, 3}, .frequency = 4, .max_torque = 5}},
+          SetJointEnabled{joint, false}};
+}
+
+// What only some kinds of joints have comes back as well.
+TEST(CommandCodec, JointsOfEveryKindComeBack) {
+  for (int kind = 0; kind < kJointKindCount; ++kind) {
+    JointDef def{.kind = JointKind(kind), .friction = 0.5f, .limit_frequency = 6.0f, .limit_damping_ratio = 0.7f};
+    if (def.kind > JointKind::distance) {
+      def.axis_b = Vec3{0, 0, 1}, def.swing_y = 0.3f, def.swing_z = 0.2f, def.ratio = 4.0f;
+      def.ground_a = {1, 2, 3}, def.ground_b = {4, 5, 6};
+      def.linear_y = {.motion = AxisMotion::free, .stiffness = 7.0f}, def.angular_z = {.motor = {.target_position = 2.0f}};
+      def.drive = {.orientation = {0, 0, 1, 0}, .linear_velocity = {1, 0, 0}, .max_force = 8.0f};
+      def.path = {{1, 2, 3}, {4, 5, 6}}, def.path_closed = true, def.path_orientation = PathOrientation::following;
+    }
+    const std::vector<std::byte> bytes = bytes_of(AddJoint{def});
+    ByteReader in(bytes);
+    const Command back = read_command(in, {}, kWorld);
+    EXPECT_TRUE(in.finished()) << kind;
+    EXPECT_EQ(bytes_of(back), bytes) << kind;
+    const JointDef& read = std::get<AddJoint>(back).def;
+    EXPECT_EQ(read.friction, 0.5f);
+    EXPECT_EQ(read.path.size(), def.path.size());
+    EXPECT_EQ(read.linear_y.stiffness, def.linear_y.stiffness);
+    EXPECT_EQ(read.drive.max_force, def.drive.max_force);
+  }
 }
 
 TEST(CommandCodec, EveryCommandComesBack) {

@@ -14,7 +14,13 @@ inline constexpr int kEnumCount<ShapeKind> = kShapeKindCount;
 template <>
 inline constexpr int kEnumCount<BodyType> = int(BodyType::dynamic) + 1;
 template <>
-inline constexpr int kEnumCount<JointKind> = int(JointKind::distance) + 1;
+inline constexpr int kEnumCount<JointKind> = kJointKindCount;
+template <>
+inline constexpr int kEnumCount<JointAxis> = kJointAxisCount;
+template <>
+inline constexpr int kEnumCount<AxisMotion> = int(AxisMotion::limited) + 1;
+template <>
+inline constexpr int kEnumCount<PathOrientation> = int(PathOrientation::following) + 1;
 template <>
 inline constexpr int kEnumCount<CombineRule> = int(CombineRule::product) + 1;
 template <>

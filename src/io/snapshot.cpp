@@ -46,10 +46,7 @@ struct ColumnLayout<std::vector<AnyShape>> {
   static RecordLayout get() { return {1, kShapeLayout}; }
 };
 
-// A column that came after the first format and is empty is not written, and one that is not there is empty: older snapshots
-// open, and those without what is new are as they were.
-template <class Column>
-constexpr bool is_later_column = std::is_same_v<Column, Array<SurfaceRule>> || std::is_same_v<Column, Array<FieldRecord>>;
+// A later column that is empty is not written, and one that is not there is empty: older snapshots open.
 template <class Column>
 bool is_left_out(const Column& column) {
   if constexpr (is_later_column<Column>) return column.empty();

@@ -43,7 +43,7 @@ Graph make_graph(const RigidWorld& w, const SolveBatch& batch, std::span<const s
   std::size_t count = 0, ends = 0;
   for (std::uint32_t i = 0; i < batch.joints.size(); ++i) {
     const JointRecord& joint = w.joints.records[batch.joints[i]];
-    if (count_linkage_rows(joint) == 0) continue;
+    if (count_equations(joint, detail_of(w.joints, batch.joints[i])) == 0) continue;
     joints[count++] = i;
     std::uint32_t previous = kNone;
     for_active(w, joint, [&](std::uint32_t body) {
@@ -173,7 +173,7 @@ class LinkageMaker {
       node.record = batch_.joints[node.work];
       node.body_a = w_.joints.records[node.record].body_a;
       node.body_b = w_.joints.records[node.record].body_b;
-      node.count = count_linkage_rows(w_.joints.records[node.record]);
+      node.count = count_equations(w_.joints.records[node.record], detail_of(w_.joints, node.record));
     }
   }
   // The bodies that move, each once, in the order in which the joints name them.

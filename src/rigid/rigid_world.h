@@ -21,8 +21,21 @@ namespace gyre {
 struct JointStore {
   IdPool ids;
   Array<JointRecord> records;
+  Array<JointDetail> details;      // by slot, as far as a joint needed one: most worlds have none
+  Array<PathPoint> path_points;    // of all curves, one after the other
   FlatMap<std::uint32_t> blocked;  // body pair key -> number of joints that keep the two from colliding; derived
 };
+
+// What the joint has beyond its record; null if nothing.
+inline const JointDetail* detail_of(const JointStore& joints, std::uint32_t slot) {
+  return slot < joints.details.size() && joints.details[slot].used ? &joints.details[slot] : nullptr;
+}
+inline JointDetail* detail_of(JointStore& joints, std::uint32_t slot) {
+  return slot < joints.details.size() && joints.details[slot].used ? &joints.details[slot] : nullptr;
+}
+inline std::span<const PathPoint> path_of(const JointStore& joints, const JointDetail& detail) {
+  return joints.path_points.view().subspan(detail.path_first, detail.path_count);
+}
 
 struct RigidSettings {
   Vec3 gravity{0, -9.81f, 0};

@@ -26,7 +26,7 @@ Constraints list_constraints(const RigidWorld& w, Arena& arena) {
     manifolds += contact.manifold_count;
   }
   w.joints.ids.for_each_live([&](std::uint32_t slot) {
-    if (is_solved(w, w.joints.records[slot])) joints[joint_count++] = slot;
+    if (is_joint_solved(w, slot)) joints[joint_count++] = slot;
   });
   return {contacts.first(contact_count), joints.first(joint_count), manifolds + joint_count};
 }
@@ -134,7 +134,10 @@ bool is_solved(const RigidWorld& w, const Contact& contact) {
   if (contact.manifold_room == 0 || contact.manifold_count == 0 || contact.sensor != 0) return false;
   return is_active(w, contact.body_a) || is_active(w, contact.body_b);
 }
-bool is_solved(const RigidWorld& w, const JointRecord& joint) {
+bool is_joint_solved(const RigidWorld& w, std::uint32_t slot) {
+  const JointRecord& joint = w.joints.records[slot];
+  const JointDetail* const detail = detail_of(w.joints, slot);
+  if (detail != nullptr && detail->disabled) return false;
   return (joint.body_a != kNoBody && is_active(w, std::uint32_t(joint.body_a))) ||
          (joint.body_b != kNoBody && is_active(w, std::uint32_t(joint.body_b)));
 }

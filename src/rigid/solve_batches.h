@@ -36,7 +36,7 @@ inline bool is_active(const RigidWorld& w, std::uint32_t body) {
 
 // Whether constraints are made of the contact.
 bool is_solved(const RigidWorld& w, const Contact& contact);
-bool is_solved(const RigidWorld& w, const JointRecord& joint);
+bool is_joint_solved(const RigidWorld& w, std::uint32_t slot);
 
 // All lists are of `arena`. `size`: batch_size().
 SolveBatches find_batches(const RigidWorld& w, Arena& arena, std::uint32_t size);

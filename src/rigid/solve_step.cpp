@@ -383,7 +383,7 @@ void relax_joints_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
   for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
     solve_joint(joint, work, g.solve->joint_bodies, g.solve->joint_settings, false);
-    sum_joint(joint, work);
+    sum_joint(joint, work, g.solve->joint_bodies);
   });
 }
 
@@ -502,10 +502,25 @@ void begin_joint_work(Solve& solve, Arena& arena, float warm_scale) {
   solve.joint_places = arena.make<JointPlaces>(count);
   for (std::size_t i = 0; i < count; ++i) {
     JointRecord& joint = w.joints.records[solve.batch.joints[i]];
-    begin_joint(joint, solve.joint_work[i], warm_scale);
+    JointDetail* const detail = detail_of(w.joints, solve.batch.joints[i]);
+    std::span<const PathPoint> path;
+    if (detail != nullptr) path = path_of(w.joints, *detail);
+    begin_joint(joint, detail, path, solve.joint_work[i], warm_scale, arena);
+    solve.joint_places[i] = {};
+    if (detail != nullptr && joint.kind == JointKind::pulley) {
+      const DVec3 a = joint_place(w.bodies, joint.body_a, joint.world_anchor_a);
+      const DVec3 b = joint_place(w.bodies, joint.body_b, joint.world_anchor_b);
+      solve.joint_places[i].ground_a = difference(detail->ground_a, a);
+      solve.joint_places[i].ground_b = difference(detail->ground_b, b);
+    }
     solve.joint_places[i].offset = difference(joint_place(w.bodies, joint.body_b, joint.world_anchor_b),
                                               joint_place(w.bodies, joint.body_a, joint.world_anchor_a));
   }
+}
+
+void finish_joint_work(Solve& solve) {
+  for (std::size_t i = 0; i < solve.batch.joints.size(); ++i)
+    finish_joint(solve.w.joints.records[solve.batch.joints[i]], solve.joint_work[i]);
 }
 
 void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale) {
@@ -535,6 +550,7 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
                       &solve.kernels,     solve.blocks,      solve.contact_settings.step};
   const std::span<Group> joints = lay_out_joints(solve, arena);
   run_substeps(solve, contacts, joints, arena, tasks);
+  finish_joint_work(solve);
   note_hits(solve.w, scratch);
   scratch.manifold_count += scratch.constraints.size();
   scratch.joint_count += solve.batch.joints.size();

@@ -1,7 +1,8 @@
 #include "solver/joint.h"
 
-#include "math/trig.h"
 #include "solver/joint_blocks.h"
+#include "solver/joint_drive.h"
+#include "solver/joint_kinds.h"
 
 namespace gyre {
 
@@ -22,187 +23,86 @@ Vec3 bend_of(const JointPair& pair, const JointWork& work, bool slides, float h)
   return 0.5f * h * bend;
 }
 
-// Coefficients of a spring row for one sub-step.
-//
-// As long as the sub-step resolves the spring (omega h <= 1) the explicit kick gets the stiffness and damping with which
-// kick and drift together have exactly the eigenvalues of the continuous oscillator: det = exp(-2 zeta omega h), trace =
-// 2 exp(-zeta omega h) cos(omega_d h). An undamped spring then keeps its amplitude for ever and its period exactly. Faster
-// springs are implicit: stable at any stiffness.
-void prepare_spring(const JointRecord& joint, JointWork& work, float displacement, const JointSettings& settings) {
-  const double h = double(settings.substep);
-  const double mass = double(work.axis_mass);
-  if (!(mass > 0.0)) return;
-  const double omega = std::sqrt(double(joint.stiffness) / mass);
-  const double decay = 0.5 * double(joint.damping) / mass;  // zeta omega
-  work.spring_is_stiff = omega * h > 1.0 || decay * h > 1.0;
-  if (work.spring_is_stiff) {
-    const double damping_ratio = omega > 0.0 ? decay / omega : 0.0;
-    work.spring = make_softness(float(omega / (2.0 * kPiDouble)), float(damping_ratio), settings.substep);
-    if (!(omega > 0.0)) {
-      // A pure damper, implicitly: J = -h c v'.
-      const double give = 1.0 / (1.0 + 2.0 * decay * h);
-      work.spring = {0.0f, float(1.0 - give), float(give)};
-    }
-    work.spring_position = displacement;
-    return;
-  }
-  const double e1 = exp(-decay * h);
-  const double e2 = e1 * e1;
-  const double square_d = omega * omega - decay * decay;
-  const double angle = std::sqrt(square_d < 0.0 ? -square_d : square_d) * h;
-  const double c = square_d < 0.0 ? 0.5 * (exp(angle) + exp(-angle)) : sin_cos(angle).cos;
-  work.spring_damping = float(1.0 - e2);
-  work.spring_position = float((1.0 + e2 - 2.0 * e1 * c) / h) * displacement;
-}
-
 void prepare_ball(const JointPair& pair, JointWork& work) {
   work.linear_mass = inverse(point_matrix(pair, work.from_a, work.from_b));
 }
 
-bool has_axis_rows(const JointRecord& joint) {
-  return (joint.kind == JointKind::hinge || joint.kind == JointKind::slider) &&
-         (joint.motor_force > 0.0f || joint.has_limits);
+// The axis of a hinge, slider or distance joint, if anything acts along or about it.
+AxisWork* only_axis(JointWork& work) { return work.axes.empty() ? nullptr : &work.axes[0]; }
+
+void place_line_axis(JointWork& work, const JointPair& pair, const JointSettings& settings) {
+  AxisWork* const x = only_axis(work);
+  if (x == nullptr) return;
+  x->row = {work.axis, work.axis, cross(work.from_a, work.axis), cross(work.from_b, work.axis)};
+  x->axis.position = work.position;
+  prepare_axis(*x, pair, settings);
 }
 
-void prepare_hinge(JointRecord& joint, const JointPair& pair, JointWork& work, Quat frame_a, Quat frame_b,
-                   bool swept) {
-  const Mat3 axes_a = to_matrix(frame_a);
-  const Vec3 axis_b = rotate(frame_b, {1, 0, 0});
+void prepare_hinge(JointRecord& joint, const JointPair& pair, JointWork& work, const JointSettings& settings) {
+  const Mat3 axes_a = to_matrix(work.frame_a);
+  const Vec3 axis_b = rotate(work.frame_b, {1, 0, 0});
   work.axis = axes_a.x;
   work.perpendicular_1 = axes_a.y;
   work.perpendicular_2 = axes_a.z;
   work.angular_error = cross(work.axis, axis_b);
-  if (swept) {
+  if (settings.swept) {
     prepare_ball(pair, work);
     const Mat3 k = to_matrix(pair.inverse_inertia_a()) + to_matrix(pair.inverse_inertia_b());
     work.angular_mass = inverse_in_plane(k, work.perpendicular_1, work.perpendicular_2);
   }
-  if (has_axis_rows(joint)) work.axis_mass = inverse_or_zero(turn_matrix(pair, work.axis));
   // The twist of b's frame in a's, unwrapped by staying near the last value.
-  const Quat twist = conjugate(frame_a) * frame_b;
-  const float angle = 2.0f * atan2(twist.x, twist.w);
-  const float turns = (joint.position - angle) / (2.0f * kPi);
-  work.position = joint.position = angle + 2.0f * kPi * std::floor(turns + 0.5f);
+  const Quat twist = conjugate(work.frame_a) * work.frame_b;
+  work.position = joint.position = unwrapped(2.0f * atan2(twist.x, twist.w), joint.position);
+  AxisWork* const x = only_axis(work);
+  if (x == nullptr) return;
+  x->row = {{}, {}, work.axis, work.axis};
+  x->axis.position = work.position;
+  prepare_axis(*x, pair, settings);
 }
 
-void prepare_slider(JointRecord& joint, const JointPair& pair, JointWork& work, Quat frame_a, Quat frame_b,
-                    bool swept) {
-  const Mat3 axes_a = to_matrix(frame_a);
+void prepare_slider(JointRecord& joint, const JointPair& pair, JointWork& work, const JointSettings& settings) {
+  const Mat3 axes_a = to_matrix(work.frame_a);
   work.axis = axes_a.x;
   work.perpendicular_1 = axes_a.y;
   work.perpendicular_2 = axes_a.z;
   work.position = joint.position = dot(work.error, work.axis);
   // The rows act at b's anchor: the arm of a reaches to where b's anchor is now.
   work.from_a += work.error;
-  work.error -= work.position * work.axis;
-  work.angular_error = to_rotation_vector(frame_b * conjugate(frame_a));
-  if (swept) {
+  work.along = work.position * work.axis;
+  work.error -= work.along;
+  work.angular_error = to_rotation_vector(work.frame_b * conjugate(work.frame_a));
+  if (settings.swept) {
     const Mat3 k = point_matrix(pair, work.from_a, work.from_b);
     work.linear_mass = inverse_in_plane(k, work.perpendicular_1, work.perpendicular_2);
     work.angular_mass = to_matrix(inverse(pair.inverse_inertia_a() + pair.inverse_inertia_b()));
   }
-  if (has_axis_rows(joint))
-    work.axis_mass = inverse_or_zero(axis_matrix(pair, work.axis, work.from_a, work.from_b));
+  place_line_axis(work, pair, settings);
 }
 
-void prepare_fixed(const JointPair& pair, JointWork& work, Quat frame_a, Quat frame_b, bool swept) {
-  work.angular_error = to_rotation_vector(frame_b * conjugate(frame_a));
+void prepare_fixed(const JointPair& pair, JointWork& work, bool swept) {
+  work.angular_error = to_rotation_vector(work.frame_b * conjugate(work.frame_a));
   if (!swept) return;
   prepare_ball(pair, work);
   work.angular_mass = to_matrix(inverse(pair.inverse_inertia_a() + pair.inverse_inertia_b()));
 }
 
 void prepare_distance(JointRecord& joint, const JointPair& pair, JointWork& work, const JointSettings& settings) {
-  const float distance = length(work.error);
   work.axis = normalized(work.error, rotate({}, {0, 1, 0}));
-  work.position = joint.position = distance;
-  work.axis_mass = inverse_or_zero(axis_matrix(pair, work.axis, work.from_a, work.from_b));
-  if (joint.is_spring) prepare_spring(joint, work, distance - joint.rest_length, settings);
+  work.position = joint.position = length(work.error);
+  place_line_axis(work, pair, settings);
 }
 
-// Limits and motor along (slider) or about (hinge) the axis.
-void solve_axis(JointRecord& joint, const JointWork& work, JointPair& pair, const JointSettings& settings, bool soft) {
-  const bool turns = joint.kind == JointKind::hinge;
-  const auto speed = [&] {
-    return turns ? dot(pair.turning(), work.axis) : dot(pair.point_velocity(work.from_a, work.from_b), work.axis);
-  };
-  const auto apply = [&](float impulse) {
-    if (turns) {
-      pair.turn(impulse * work.axis);
-    } else {
-      pair.push(impulse * work.axis, work.from_a, work.from_b);
-    }
-  };
-  if (joint.motor_force > 0.0f) {
-    float wanted = 0.0f;
-    if (joint.has_motor_target) {
-      const float error = work.position - joint.motor_position;
-      const Softness drive = joint.motor_frequency > 0.0f
-                                 ? make_softness(joint.motor_frequency, joint.motor_damping, settings.substep)
-                                 : settings.softness;
-      const float closing = speed() - joint.motor_velocity + drive.bias_rate * error;
-      wanted = joint.motor_impulse - drive.mass_scale * work.axis_mass * closing - drive.impulse_scale * joint.motor_impulse;
-    } else {
-      wanted = joint.motor_impulse - work.axis_mass * (speed() - joint.motor_velocity);
-    }
-    const float most = joint.motor_force * settings.substep;
-    const float next = clamp(wanted, -most, most);
-    apply(next - joint.motor_impulse);
-    joint.motor_impulse = next;
-  }
-  if (joint.has_limits) {
-    const float low = stop_change(work.axis_mass, speed(), work.position - joint.limits.low, joint.low_impulse, settings, soft);
-    apply(low);
-    joint.low_impulse += low;
-    const float high = stop_change(work.axis_mass, -speed(), joint.limits.high - work.position, joint.high_impulse,
-                                   settings, soft);
-    apply(-high);
-    joint.high_impulse += high;
-  }
+void solve_axes(const JointWork& work, JointPair& pair, const JointSettings& settings, bool soft) {
+  if (work.drive != nullptr) solve_drive(work, pair, settings);
+  for (AxisWork& x : work.axes) solve_axis(x, pair, settings, soft);
 }
-
-void solve_distance(JointRecord& joint, const JointWork& work, JointPair& pair, const JointSettings& settings, bool soft) {
-  const float bend = soft ? work.axis_bend : 0.0f;
-  const auto speed = [&] { return dot(pair.point_velocity(work.from_a, work.from_b), work.axis) + bend; };
-  const auto apply = [&](float impulse) { pair.push(impulse * work.axis, work.from_a, work.from_b); };
-  if (joint.is_spring && soft) {
-    float next = 0.0f;
-    if (work.spring_is_stiff) {
-      next = joint.spring_impulse -
-             work.spring.mass_scale * work.axis_mass * (speed() + work.spring.bias_rate * work.spring_position) -
-             work.spring.impulse_scale * joint.spring_impulse;
-    } else {
-      const float before = work.axis_mass * speed() - joint.spring_impulse;  // momentum without this spring's impulse
-      next = -work.axis_mass * work.spring_position - work.spring_damping * before;
-    }
-    apply(next - joint.spring_impulse);
-    joint.spring_impulse = next;
+void warm_axes(const JointWork& work, JointPair& pair, bool rods) {
+  for (const AxisWork& x : work.axes) {
+    if (rods || !x.is_rod) push_axis(x.row, axis_impulse(x.axis), pair);
   }
-  if (joint.min_length == joint.max_length) {
-    // A rod: one two-sided row, kept in low_impulse (positive pushes apart).
-    const float error = work.position - joint.min_length;
-    float change = -work.axis_mass * speed();
-    if (soft) {
-      const Softness& s = settings.softness;
-      change = -s.mass_scale * work.axis_mass * (speed() + s.bias_rate * error) -
-               s.impulse_scale * joint.low_impulse;
-    }
-    apply(change);
-    joint.low_impulse += change;
-    return;
-  }
-  if (joint.min_length > 0.0f) {
-    const float low = stop_change(work.axis_mass, speed(), work.position - joint.min_length, joint.low_impulse, settings, soft);
-    apply(low);
-    joint.low_impulse += low;
-  }
-  if (joint.max_length < kUnlimitedLength) {
-    const float high = stop_change(work.axis_mass, -speed(), joint.max_length - work.position, joint.high_impulse,
-                                   settings, soft);
-    apply(-high);
-    joint.high_impulse += high;
-  }
+  if (work.drive != nullptr) warm_drive(work, pair);
 }
+bool has_axes(const JointWork& work) { return !work.axes.empty() || work.drive != nullptr; }
 
 void solve_turn_rows(JointRecord& joint, const JointWork& work, JointPair& pair, const JointSettings& settings, bool soft) {
   const Vec3 change = row_change(work.angular_mass, pair.turning(), work.angular_error, joint.angular_impulse,
@@ -218,30 +118,173 @@ void solve_point_rows(JointRecord& joint, const JointWork& work, JointPair& pair
   joint.linear_impulse += change;
 }
 
-// Impulse along the axis by limits, motor and spring together (on B).
-float axis_impulse(const JointRecord& joint) {
-  return joint.low_impulse - joint.high_impulse + joint.motor_impulse + joint.spring_impulse;
+// The axis of kinds whose record has all that acts there; details may add to it.
+JointAxisRecord axis_of_record(const JointRecord& joint, const JointDetail* detail, JointAxis index) {
+  JointAxisRecord axis;
+  if (detail != nullptr) axis = detail->axes[int(index)];
+  axis.motion = joint.has_limits ? AxisMotion::limited : AxisMotion::free;
+  axis.limits = joint.limits;
+  axis.has_motor_target = joint.has_motor_target;
+  axis.motor_velocity = joint.motor_velocity;
+  axis.motor_position = joint.motor_position;
+  axis.motor_force = joint.motor_force;
+  axis.motor_frequency = joint.motor_frequency;
+  axis.motor_damping = joint.motor_damping;
+  if (joint.kind == JointKind::distance) {
+    axis.motion = AxisMotion::limited;
+    axis.limits = {joint.min_length, joint.max_length};
+    axis.motor_force = 0.0f;
+    axis.stiffness = joint.is_spring ? joint.stiffness : 0.0f;
+    axis.damping = joint.is_spring ? joint.damping : 0.0f;
+    axis.rest_position = joint.rest_length;
+  }
+  axis.low_impulse = joint.low_impulse;
+  axis.high_impulse = joint.high_impulse;
+  axis.motor_impulse = joint.motor_impulse;
+  axis.spring_impulse = joint.spring_impulse;
+  axis.position = joint.position;
+  return axis;
+}
+
+bool keeps_axis_in_record(JointKind kind) {
+  return kind == JointKind::hinge || kind == JointKind::slider || kind == JointKind::distance;
+}
+
+void scale_impulses(JointAxisRecord& axis, float scale) {
+  axis.low_impulse *= scale;
+  axis.high_impulse *= scale;
+  axis.motor_impulse *= scale;
+  axis.spring_impulse *= scale;
+  axis.friction_impulse *= scale;
+  axis.total = 0.0f;
+}
+
+// The axes on which anything acts.
+void begin_axes(const JointRecord& joint, JointWork& work, float warm_scale, Arena& arena) {
+  AxisWork found[kJointAxisCount];
+  std::size_t count = 0;
+  const auto add = [&](JointAxis index, JointAxisRecord axis) {
+    scale_impulses(axis, warm_scale);
+    AxisWork& x = found[count++];
+    x.axis = axis;
+    x.index = index;
+    x.has_low = x.has_high = axis.motion == AxisMotion::limited;
+  };
+  if (keeps_axis_in_record(joint.kind)) {
+    const JointAxis index = joint.kind == JointKind::hinge ? JointAxis::angular_x : JointAxis::linear_x;
+    const JointAxisRecord axis = axis_of_record(joint, work.detail, index);
+    if (joint.kind == JointKind::distance || acts(axis)) add(index, axis);
+    if (joint.kind == JointKind::distance) {
+      found[0].is_rod = joint.min_length == joint.max_length;
+      found[0].has_low = joint.min_length > 0.0f;
+      found[0].has_high = joint.max_length < kUnlimitedLength;
+    }
+  } else if (work.detail != nullptr) {
+    for (int i = 0; i < kJointAxisCount; ++i) {
+      const JointAxisRecord& axis = work.detail->axes[i];
+      if (axis.motion != AxisMotion::locked && acts(axis)) add(JointAxis(i), axis);
+    }
+    adjust_axes(joint, std::span<AxisWork>(found, count));
+  }
+  if (count == 0) return;
+  work.axes = arena.make<AxisWork>(count);
+  for (std::size_t i = 0; i < count; ++i) work.axes[i] = found[i];
+}
+
+void place_kind(JointRecord& joint, JointWork& work, const JointPair& pair, const JointPlaces& places,
+                const JointSettings& settings) {
+  switch (joint.kind) {
+    case JointKind::ball:
+      if (settings.swept) prepare_ball(pair, work);
+      break;
+    case JointKind::cone:
+      if (settings.swept) prepare_ball(pair, work);
+      place_cone(joint, work, pair, settings);
+      break;
+    case JointKind::hinge: prepare_hinge(joint, pair, work, settings); break;
+    case JointKind::slider: prepare_slider(joint, pair, work, settings); break;
+    case JointKind::fixed: prepare_fixed(pair, work, settings.swept); break;
+    case JointKind::distance: prepare_distance(joint, pair, work, settings); break;
+    case JointKind::universal:
+    case JointKind::six_dof:
+    case JointKind::wheel: place_six_axes(joint, work, pair, settings); break;
+    case JointKind::gear: place_gear(joint, work); break;
+    case JointKind::rack_and_pinion: place_rack(joint, work, pair, places); break;
+    case JointKind::pulley: place_pulley(joint, work, pair, places, settings); break;
+    case JointKind::path: place_path(joint, work, pair, settings); break;
+    case JointKind::mouse:
+    case JointKind::motor: break;
+  }
+  if (work.drive != nullptr) place_drive(work, pair, settings);
+  if (work.rows != nullptr && settings.swept) prepare_rows(*work.rows, pair);
 }
 
 }  // namespace
 
-void forget_impulses(JointRecord& joint) {
-  joint.linear_impulse = joint.angular_impulse = {};
-  joint.low_impulse = joint.high_impulse = joint.motor_impulse = joint.spring_impulse = 0.0f;
-  joint.position = 0.0f;
-  joint.total_linear = joint.total_angular = {};
+JointAxis main_axis(JointKind kind) {
+  switch (kind) {
+    case JointKind::hinge:
+    case JointKind::cone:
+    case JointKind::universal:
+    case JointKind::gear:
+    case JointKind::rack_and_pinion: return JointAxis::angular_x;
+    case JointKind::wheel: return JointAxis::angular_z;
+    default: return JointAxis::linear_x;
+  }
 }
 
-void begin_joint(JointRecord& joint, JointWork& work, float warm_scale) {
+bool has_rows(JointKind kind) {
+  return kind == JointKind::universal || kind == JointKind::six_dof || kind == JointKind::wheel ||
+         kind == JointKind::gear || kind == JointKind::rack_and_pinion || kind == JointKind::path;
+}
+
+int count_equations(const JointRecord& joint, const JointDetail* detail) {
+  switch (joint.kind) {
+    case JointKind::ball:
+    case JointKind::cone: return 3;
+    case JointKind::hinge:
+    case JointKind::slider: return 5;
+    case JointKind::fixed: return 6;
+    case JointKind::distance: return joint.min_length == joint.max_length && !joint.is_spring ? 1 : 0;
+    case JointKind::gear:
+    case JointKind::rack_and_pinion: return 1;
+    case JointKind::path: return detail->path_orientation == PathOrientation::free ? 2 : 5;
+    case JointKind::universal:
+    case JointKind::six_dof:
+    case JointKind::wheel: {
+      int count = 0;
+      for (const JointAxisRecord& axis : detail->axes) count += axis.motion == AxisMotion::locked ? 1 : 0;
+      return count;
+    }
+    case JointKind::pulley:
+    case JointKind::mouse:
+    case JointKind::motor: return 0;
+  }
+  return 0;
+}
+
+void begin_joint(JointRecord& joint, JointDetail* detail, std::span<const PathPoint> path, JointWork& work, float warm_scale,
+                 Arena& arena) {
   joint.linear_impulse *= warm_scale;
   joint.angular_impulse *= warm_scale;
-  joint.low_impulse *= warm_scale;
-  joint.high_impulse *= warm_scale;
-  joint.motor_impulse *= warm_scale;
-  joint.spring_impulse *= warm_scale;
   joint.total_linear = {};
   joint.total_angular = {};
   work = {};
+  work.detail = detail;
+  work.path = path;
+  begin_axes(joint, work, warm_scale, arena);
+  if (detail == nullptr) return;
+  for (float& impulse : detail->row_impulses) impulse *= warm_scale;
+  if (has_rows(joint.kind)) {
+    work.rows = arena.make<JointRows>(1).data();
+    *work.rows = {};
+  }
+  if (!has_drive(*detail)) return;
+  detail->drive_force_impulse *= warm_scale;
+  detail->drive_torque_impulse *= warm_scale;
+  detail->friction_impulse *= warm_scale;
+  work.drive = arena.make<DriveWork>(1).data();
+  *work.drive = {};
 }
 
 void place_joint(JointRecord& joint, JointWork& work, const JointPlaces& places, const JointBodies& bodies,
@@ -252,105 +295,112 @@ void place_joint(JointRecord& joint, JointWork& work, const JointPlaces& places,
   work.from_a = rotate(orientation_a, joint.local_anchor_a);
   work.from_b = rotate(orientation_b, joint.local_anchor_b);
   work.error = places.offset + pair.moved() + work.from_b - work.from_a;
-  const Quat frame_a = orientation_a * joint.local_frame_a;
-  const Quat frame_b = orientation_b * joint.local_frame_b;
-  switch (joint.kind) {
-    case JointKind::ball:
-      if (settings.swept) prepare_ball(pair, work);
-      break;
-    case JointKind::hinge:
-      prepare_hinge(joint, pair, work, frame_a, frame_b, settings.swept);
-      break;
-    case JointKind::slider:
-      prepare_slider(joint, pair, work, frame_a, frame_b, settings.swept);
-      break;
-    case JointKind::fixed:
-      prepare_fixed(pair, work, frame_a, frame_b, settings.swept);
-      break;
-    case JointKind::distance:
-      prepare_distance(joint, pair, work, settings);
-      break;
-  }
+  work.frame_a = orientation_a * joint.local_frame_a;
+  work.frame_b = orientation_b * joint.local_frame_b;
+  place_kind(joint, work, pair, places, settings);
 }
 
 void bend_joint(const JointRecord& joint, JointWork& work, const JointBodies& bodies,
                 const JointSettings& settings) {
   const JointPair pair(joint, bodies);
-  work.bend = bend_of(pair, work, joint.kind == JointKind::slider, settings.substep);
+  const bool slides = joint.kind == JointKind::slider || has_rows(joint.kind);
+  work.bend = bend_of(pair, work, slides, settings.substep);
+  if (joint.kind == JointKind::pulley) bend_pulley(work, pair, settings.substep);
   if (joint.kind != JointKind::distance) return;
   const Vec3 speed = pair.point_velocity(work.from_a, work.from_b);
   const Vec3 across = speed - dot(speed, work.axis) * work.axis;
   const float distance = work.position;
-  work.axis_bend = dot(work.bend, work.axis) +
-                   (distance > 0.0f ? 0.5f * settings.substep * length_squared(across) / distance : 0.0f);
+  work.axes[0].bend = dot(work.bend, work.axis) +
+                      (distance > 0.0f ? 0.5f * settings.substep * length_squared(across) / distance : 0.0f);
 }
 
 void warm_start_joint(const JointRecord& joint, const JointWork& work, const JointBodies& bodies) {
   JointPair pair(joint, bodies);
-  const float along = axis_impulse(joint);
-  if (joint.kind == JointKind::hinge) {
-    pair.push(joint.linear_impulse, work.from_a, work.from_b);
-    pair.turn(joint.angular_impulse + along * work.axis);
+  if (work.rows != nullptr) {
+    warm_rows(*work.rows, *work.detail, pair);
   } else {
-    pair.push(joint.linear_impulse + along * work.axis, work.from_a, work.from_b);
+    pair.push(joint.linear_impulse, work.from_a, work.from_b);
     pair.turn(joint.angular_impulse);
   }
+  warm_axes(work, pair, true);
   pair.store();
 }
 
 void solve_joint(JointRecord& joint, const JointWork& work, const JointBodies& bodies, const JointSettings& settings,
                  bool soft) {
   JointPair pair(joint, bodies);
+  solve_axes(work, pair, settings, soft);
   switch (joint.kind) {
-    case JointKind::ball: solve_point_rows(joint, work, pair, settings, soft); break;
+    case JointKind::ball:
+    case JointKind::cone: solve_point_rows(joint, work, pair, settings, soft); break;
     case JointKind::hinge:
-      solve_axis(joint, work, pair, settings, soft);
-      solve_turn_rows(joint, work, pair, settings, soft);
-      solve_point_rows(joint, work, pair, settings, soft);
-      break;
     case JointKind::slider:
-      solve_axis(joint, work, pair, settings, soft);
-      solve_turn_rows(joint, work, pair, settings, soft);
-      solve_point_rows(joint, work, pair, settings, soft);
-      break;
     case JointKind::fixed:
       solve_turn_rows(joint, work, pair, settings, soft);
       solve_point_rows(joint, work, pair, settings, soft);
       break;
-    case JointKind::distance: solve_distance(joint, work, pair, settings, soft); break;
+    default:
+      if (work.rows != nullptr) sweep_rows(joint, work, pair, settings, soft);
   }
   pair.store();
 }
 
-void warm_start_joint_axis(const JointRecord& joint, const JointWork& work, const JointBodies& bodies) {
-  if (!has_axis_rows(joint)) return;
+void warm_start_joint_axes(const JointRecord& joint, const JointWork& work, const JointBodies& bodies) {
+  if (!has_axes(work)) return;
   JointPair pair(joint, bodies);
-  const Vec3 along = axis_impulse(joint) * work.axis;
-  if (joint.kind == JointKind::hinge) {
-    pair.turn(along);
-  } else {
-    pair.push(along, work.from_a, work.from_b);
-  }
+  warm_axes(work, pair, false);  // rods are equations
   pair.store();
 }
 
-void solve_joint_axis(JointRecord& joint, const JointWork& work, const JointBodies& bodies,
+void solve_joint_axes(JointRecord& joint, const JointWork& work, const JointBodies& bodies,
                       const JointSettings& settings, bool soft) {
-  if (!has_axis_rows(joint)) return;
+  if (!has_axes(work)) return;
   JointPair pair(joint, bodies);
-  solve_axis(joint, work, pair, settings, soft);
+  solve_axes(work, pair, settings, soft);
   pair.store();
 }
 
-void sum_joint(JointRecord& joint, const JointWork& work) {
-  const float along = axis_impulse(joint);
-  if (joint.kind == JointKind::hinge) {
-    joint.total_linear += joint.linear_impulse;
-    joint.total_angular += joint.angular_impulse + along * work.axis;
-  } else {
-    joint.total_linear += joint.linear_impulse + along * work.axis;
-    joint.total_angular += joint.angular_impulse;
+void sum_joint(JointRecord& joint, const JointWork& work, const JointBodies& bodies) {
+  if (work.rows != nullptr) gather_rows(joint, work);
+  joint.total_linear += joint.linear_impulse;
+  joint.total_angular += joint.angular_impulse;
+  if (!has_axes(work)) return;
+  const JointPair pair(joint, bodies);
+  for (AxisWork& x : work.axes) {
+    const float along = axis_impulse(x.axis);
+    x.axis.total += along;
+    joint.total_linear += along * x.row.push_b;
+    joint.total_angular += along * (x.row.arm_b - cross(work.from_b, x.row.push_b));
+    x.speed_before = axis_speed(x.row, pair);
   }
+  if (work.drive != nullptr) sum_drive(joint, *work.detail);
+}
+
+void finish_joint(JointRecord& joint, const JointWork& work) {
+  for (const AxisWork& x : work.axes) {
+    if (work.detail != nullptr) work.detail->axes[int(x.index)] = x.axis;
+    if (!keeps_axis_in_record(joint.kind)) continue;
+    joint.low_impulse = x.axis.low_impulse;
+    joint.high_impulse = x.axis.high_impulse;
+    joint.motor_impulse = x.axis.motor_impulse;
+    joint.spring_impulse = x.axis.spring_impulse;
+  }
+}
+
+void forget_impulses(JointRecord& joint) {
+  joint.linear_impulse = joint.angular_impulse = {};
+  joint.low_impulse = joint.high_impulse = joint.motor_impulse = joint.spring_impulse = 0.0f;
+  joint.position = 0.0f;
+  joint.total_linear = joint.total_angular = {};
+}
+
+void forget_impulses(JointDetail& detail) {
+  for (JointAxisRecord& axis : detail.axes) {
+    axis.low_impulse = axis.high_impulse = axis.motor_impulse = axis.spring_impulse = axis.friction_impulse = 0.0f;
+    axis.position = axis.total = 0.0f;
+  }
+  for (float& impulse : detail.row_impulses) impulse = 0.0f;
+  detail.drive_force_impulse = detail.drive_torque_impulse = detail.friction_impulse = {};
 }
 
 }  // namespace gyre

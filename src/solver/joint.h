@@ -6,63 +6,16 @@
 // velocities), as contacts are.
 #pragma once
 
-#include "solver/body_motion.h"
-#include "solver/softness.h"
-
-#include <gyre/defs.h>
-
-#include <cstdint>
-#include <span>
+#include "base/arena.h"
+#include "solver/joint_axis.h"
+#include "solver/joint_record.h"
 
 namespace gyre {
 
-// A joint as it persists from step to step: part of the world's state.
-struct JointRecord {
-  JointKind kind = JointKind::ball;
-  bool has_limits = false;
-  bool is_spring = false;        // distance with stiffness
-  bool collide_connected = false;
-  bool has_motor_target = false;
-  std::int32_t body_a = kNoBody;
-  std::int32_t body_b = kNoBody;
-  Vec3 local_anchor_a;           // from the centre of mass, body frame
-  Vec3 local_anchor_b;
-  Quat local_frame_a;            // body_from_joint
-  Quat local_frame_b;
-  DVec3 world_anchor_a;          // where the anchor is when that body is the world
-  DVec3 world_anchor_b;
-  Limits limits;                 // rad or m
-  float motor_velocity = 0.0f;   // target
-  float motor_position = 0.0f;   // target, if has_motor_target
-  float motor_force = 0.0f;      // 0: no motor
-  float motor_frequency = 0.0f;
-  float motor_damping = 1.0f;
-  float rest_length = 0.0f;      // distance: m; of the spring
-  float min_length = 0.0f;
-  float max_length = 0.0f;
-  float stiffness = 0.0f;
-  float damping = 0.0f;
-  float break_force = 0.0f;      // 0: unbreakable
-  float break_torque = 0.0f;
-  // Impulses of the last sub-step, world axes, on B: the warm start.
-  Vec3 linear_impulse;
-  Vec3 angular_impulse;
-  float low_impulse = 0.0f;      // limits
-  float high_impulse = 0.0f;
-  float motor_impulse = 0.0f;
-  float spring_impulse = 0.0f;
-  float position = 0.0f;         // unwrapped angle, slide or length
-  // Sums over the last step, for reading.
-  Vec3 total_linear;
-  Vec3 total_angular;
-};
-
-// max_length of a joint without one.
-constexpr float kUnlimitedLength = 1.0e30f;
-
 // What a step knows about one joint: the difference of the anchors' owners' centres, exact at any distance from the origin.
 struct JointPlaces {
-  Vec3 offset;  // centre (or world anchor) of b minus that of a, as the step began
+  Vec3 offset;              // centre (or world anchor) of b minus that of a, as the step began
+  Vec3 ground_a, ground_b;  // pulley: the fixed points minus the centres of a and b
 };
 
 // The columns that joints are solved on, indexed by body.
@@ -78,6 +31,29 @@ struct JointSettings {
   bool swept = true;  // false: the rows of the joint's equations are solved elsewhere (solver/linkage.h)
 };
 
+// One row that holds always: it sees push . (v_b - v_a) + arm_b . w_b - arm_a . w_a.
+struct JointRow {
+  Vec3 push;          // direction of a force; zero for a turning row
+  Vec3 arm_a, arm_b;  // r x push, or the axis of a turn
+  float error = 0.0f;
+};
+
+// The rows of kinds that are not made of the blocks of a point and a turn, and their K, factored.
+struct JointRows {
+  int count = 0;
+  JointRow rows[kJointAxisCount];
+  double factors[kJointAxisCount * kJointAxisCount] = {};
+};
+
+// What a drive to a pose, and friction against all turning, know of a sub-step.
+struct DriveWork {
+  Vec3 point_error, turn_error;  // world
+  Vec3 point_speed, turn_speed;  // asked for
+  Vec3 from_a;                   // to where b's anchor is
+  Mat3 point_mass, turn_mass;
+  Softness softness;
+};
+
 // One joint in one sub-step, prepared. Lives in the step's arena.
 struct JointWork {
   Vec3 from_a, from_b;       // anchors from the centres of mass, world axes
@@ -86,21 +62,21 @@ struct JointWork {
   Vec3 axis;                 // hinge and slider: of a; distance: unit from a to b
   Vec3 perpendicular_1, perpendicular_2;
   Vec3 angular_error;        // rotation vector that turns a's frame onto b's
+  Vec3 along;                // where b's anchor is from a's, as far as that is no error
+  Quat frame_a, frame_b;     // world_from_joint
   Mat3 linear_mass;          // inverse of K
   Mat3 angular_mass;
-  float axis_bend = 0.0f;    // m/s: the same for the distance
-  float axis_mass = 0.0f;    // effective mass of the motion along or about the axis
   float position = 0.0f;
-  float spring_position = 0.0f;  // speed asked for by the spring's displacement
-  float spring_damping = 0.0f;   // share of the relative speed taken away
-  Softness spring;               // stiff springs: implicit
-  bool spring_is_stiff = false;
+  JointDetail* detail = nullptr;  // of the joint, if it has one
+  std::span<const PathPoint> path{};
+  std::span<AxisWork> axes{};
+  JointRows* rows = nullptr;
+  DriveWork* drive = nullptr;
 };
 
-// Takes everything away that the last step left in the record: the joint goes on as if it were new.
-void forget_impulses(JointRecord& joint);
-// Scales the kept impulses to a new sub-step length and clears the sums; once a step.
-void begin_joint(JointRecord& joint, JointWork& work, float warm_scale);
+// Once a step: room for the work, impulses scaled to a new sub-step length, sums cleared.
+void begin_joint(JointRecord& joint, JointDetail* detail, std::span<const PathPoint> path, JointWork& work, float warm_scale,
+                 Arena& arena);
 // What depends on where the bodies are: once they have moved.
 void place_joint(JointRecord& joint, JointWork& work, const JointPlaces& places, const JointBodies& bodies,
                  const JointSettings& settings);
@@ -110,11 +86,20 @@ void bend_joint(const JointRecord& joint, JointWork& work, const JointBodies& bo
 void warm_start_joint(const JointRecord& joint, const JointWork& work, const JointBodies& bodies);
 void solve_joint(JointRecord& joint, const JointWork& work, const JointBodies& bodies,
                  const JointSettings& settings, bool soft);
-// Only the limits and the motor along or about the axis of a slider or hinge.
-void warm_start_joint_axis(const JointRecord& joint, const JointWork& work, const JointBodies& bodies);
-void solve_joint_axis(JointRecord& joint, const JointWork& work, const JointBodies& bodies,
+// Only what is no equation: axes (limits, motors, springs, friction) and drives.
+void warm_start_joint_axes(const JointRecord& joint, const JointWork& work, const JointBodies& bodies);
+void solve_joint_axes(JointRecord& joint, const JointWork& work, const JointBodies& bodies,
                       const JointSettings& settings, bool soft);
-// Adds the sub-step's impulses to the sums.
-void sum_joint(JointRecord& joint, const JointWork& work);
+// Once velocities are those that the sub-step ends with: adds its impulses to the sums.
+void sum_joint(JointRecord& joint, const JointWork& work, const JointBodies& bodies);
+// Once a step: what the work knows goes back into the joint.
+void finish_joint(JointRecord& joint, const JointWork& work);
+
+// The axis that a joint's limits, motor and position are about.
+JointAxis main_axis(JointKind kind);
+// Whether the kind's equations are in JointWork::rows rather than blocks of a point and a turn.
+bool has_rows(JointKind kind);
+// How many rows of the joint are equations: 0 to 6.
+int count_equations(const JointRecord& joint, const JointDetail* detail);
 
 }  // namespace gyre

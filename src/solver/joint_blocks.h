@@ -37,6 +37,9 @@ class JointPair {
   const Sym3& inverse_inertia_b() const { return inertia_b_->inverse; }
   Vec3 moved() const { return (b_ != nullptr ? b_->moved : Vec3{}) - (a_ != nullptr ? a_->moved : Vec3{}); }
 
+  Vec3 moved_a() const { return a_ != nullptr ? a_->moved : Vec3{}; }
+  Vec3 moved_b() const { return b_ != nullptr ? b_->moved : Vec3{}; }
+
   // The impulse p on B at r_b, and -p on A at r_a.
   void push(Vec3 p, Vec3 r_a, Vec3 r_b) {
     linear_a -= inverse_mass_a() * p;
@@ -93,6 +96,11 @@ inline float axis_matrix(const JointPair& pair, Vec3 axis, Vec3 r_a, Vec3 r_b) {
 // K of a row about `axis`.
 inline float turn_matrix(const JointPair& pair, Vec3 axis) {
   return dot(axis, pair.inverse_inertia_a() * axis) + dot(axis, pair.inverse_inertia_b() * axis);
+}
+
+// The angle, which is known up to whole turns, that is nearest to another.
+inline float unwrapped(float angle, float near) {
+  return angle + 2.0f * kPi * std::floor((near - angle) / (2.0f * kPi) + 0.5f);
 }
 
 inline float inverse_or_zero(float k) { return k > 0.0f ? 1.0f / k : 0.0f; }

@@ -2,6 +2,7 @@
 
 #include "math/dense.h"
 #include "solver/joint_blocks.h"
+#include "solver/joint_kinds.h"
 
 namespace gyre {
 
@@ -29,6 +30,14 @@ void add_turn_row(LinkageNode& node, Vec3 axis) {
 void make_rows(LinkageNode& node, const JointRecord& joint, const JointWork& work) {
   constexpr Vec3 kAxes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   node.count = 0;
+  if (work.rows != nullptr) {
+    for (; node.count < work.rows->count; ++node.count) {
+      const JointRow& from = work.rows->rows[node.count];
+      LinkageRow& row = node.rows[node.count];
+      row.push = from.push, row.arm_a = from.arm_a, row.arm_b = from.arm_b;
+    }
+    return;
+  }
   switch (joint.kind) {
     case JointKind::distance:
       add_point_row(node, work, work.axis);
@@ -51,21 +60,31 @@ void make_rows(LinkageNode& node, const JointRecord& joint, const JointWork& wor
 bool is_turn(const LinkageRow& row) { return row.push == Vec3{}; }
 
 // The joint's accumulated impulses in terms of its rows, and back.
-float kept_impulse(const JointRecord& joint, const LinkageRow& row) {
-  if (joint.kind == JointKind::distance) return joint.low_impulse;
+float kept_impulse(const JointRecord& joint, const JointWork& work, const LinkageRow& row, int i) {
+  if (work.rows != nullptr) return work.detail->row_impulses[i];
+  if (joint.kind == JointKind::distance) return work.axes[0].axis.low_impulse;
   return is_turn(row) ? dot(joint.angular_impulse, row.arm_a) : dot(joint.linear_impulse, row.push);
 }
-void keep_impulse(JointRecord& joint, const LinkageRow& row, float impulse) {
-  if (joint.kind == JointKind::distance) {
-    joint.low_impulse += impulse;
+void keep_impulse(JointRecord& joint, const JointWork& work, const LinkageRow& row, int i, float impulse) {
+  if (work.rows != nullptr) {
+    work.detail->row_impulses[i] += impulse;
+  } else if (joint.kind == JointKind::distance) {
+    work.axes[0].axis.low_impulse += impulse;
   } else if (is_turn(row)) {
     joint.angular_impulse += impulse * row.arm_a;
   } else {
     joint.linear_impulse += impulse * row.push;
   }
 }
+void forget_kept(JointRecord& joint, const JointWork& work) {
+  joint.linear_impulse = joint.angular_impulse = {};
+  if (work.rows == nullptr && joint.kind == JointKind::distance) work.axes[0].axis.low_impulse = 0.0f;
+  if (work.rows == nullptr) return;
+  for (float& impulse : work.detail->row_impulses) impulse = 0.0f;
+}
 
-float error_of(const JointRecord& joint, const JointWork& work, const LinkageRow& row) {
+float error_of(const JointRecord& joint, const JointWork& work, const LinkageRow& row, int i) {
+  if (work.rows != nullptr) return work.rows->rows[i].error;
   if (joint.kind == JointKind::distance) return work.position - joint.min_length;
   return is_turn(row) ? dot(work.angular_error, row.arm_a) : dot(work.error, row.push);
 }
@@ -107,7 +126,7 @@ void raise_inertias(const Linkage& linkage, const LinkageSolve& s) {
     const JointRecord& joint = s.records[node.record];
     const JointWork& work = s.work[node.work];
     Vec3 force = joint.linear_impulse / h;
-    if (joint.kind == JointKind::distance) force = (joint.low_impulse / h) * work.axis;
+    if (joint.kind == JointKind::distance) force = (work.axes[0].axis.low_impulse / h) * work.axis;
     if (node.side_a >= 0) add_pull(linkage.bodies[std::size_t(node.side_a)], work.from_a, -force);
     if (node.side_b >= 0) add_pull(linkage.bodies[std::size_t(node.side_b)], work.from_b, force);
   }
@@ -255,7 +274,7 @@ Vec3 turn_bend(const JointRecord& joint, const JointWork& work, const Course& a,
 
 Bend bend_of(const JointRecord& joint, const JointWork& work, const Course& a, const Course& b, float h) {
   Bend bend;
-  const Vec3 along = joint.kind == JointKind::slider ? work.position * work.axis : Vec3{};
+  const Vec3 along = work.along;
   const Vec3 arm_a = work.from_a - work.error - along;  // to a's own anchor
   const Vec3 seen = b.linear + cross(b.angular, work.from_b) - a.linear - cross(a.angular, work.from_a);
   const Vec3 apart = h * (b.linear - a.linear) + b.swing(work.from_b) - a.swing(work.from_a);
@@ -280,6 +299,24 @@ Bend bend_of(const JointRecord& joint, const JointWork& work, const Course& a, c
   return bend;
 }
 
+// The same for each row of a kind that is a list of rows: by what they would say at the end of the sub-step.
+void rows_bend(const JointRecord& joint, const JointWork& work, const LinkageNode& node, const Course& a, const Course& b,
+               float h, float (&bends)[kJointAxisCount]) {
+  const Vec3 arm_a = work.from_a - work.error - work.along;  // to a's own anchor
+  const Vec3 now = work.error + work.along;
+  const Vec3 moved = h * (b.linear - a.linear);
+  const RowPose later{now + moved + b.swing(work.from_b) - a.swing(arm_a), now - work.from_b + arm_a + moved,
+                      a.turn * work.frame_a, b.turn * work.frame_b};
+  float errors[kJointAxisCount];
+  measure_rows(joint, work, later, errors);
+  for (int i = 0; i < node.count; ++i) {
+    const LinkageRow& row = node.rows[i];
+    const float seen =
+        dot(row.push, b.linear - a.linear) + dot(row.arm_b, b.angular) - dot(row.arm_a, a.angular);
+    bends[i] = (errors[i] - work.rows->rows[i].error) / h - seen;
+  }
+}
+
 // What is asked of the rows: that the end of the sub-step, not its beginning, meets the joints (docs/derive/joints.md).
 void ask_rows(const Linkage& linkage, const LinkageSolve& s) {
   const float h = s.settings.substep;
@@ -294,16 +331,26 @@ void ask_rows(const Linkage& linkage, const LinkageSolve& s) {
     const Course a = course_of(linkage, s, node.body_a, node.side_a);
     const Course b = course_of(linkage, s, node.body_b, node.side_b);
     const float fastest = square(h) * max(length_squared(a.angular), length_squared(b.angular));
+    const float share = fastest > square(kMostTurn) ? square(kMostTurn) / fastest : 1.0f;
     Bend bend;
-    if (fastest > square(kLeastTurn)) bend = bend_of(joint, work, a, b, h);
-    if (fastest > square(kMostTurn)) {
-      bend.point *= square(kMostTurn) / fastest;
-      bend.turn *= square(kMostTurn) / fastest;
+    float bends[kJointAxisCount] = {};
+    if (fastest > square(kLeastTurn)) {
+      if (work.rows != nullptr) {
+        rows_bend(joint, work, node, a, b, h, bends);
+      } else {
+        bend = bend_of(joint, work, a, b, h);
+      }
+    }
+    if (share < 1.0f) {
+      bend.point *= share;
+      bend.turn *= share;
     }
     for (int i = 0; i < node.count; ++i) {
       LinkageRow& row = node.rows[i];
-      row.wanted = -s.settings.softness.bias_rate * error_of(joint, work, row) -
-                   (is_turn(row) ? dot(bend.turn, row.arm_a) : dot(bend.point, row.push));
+      row.wanted = -s.settings.softness.bias_rate * error_of(joint, work, row, i);
+      row.wanted -= work.rows != nullptr ? share * bends[i]
+                    : is_turn(row)       ? dot(bend.turn, row.arm_a)
+                                         : dot(bend.point, row.push);
     }
   }
 }
@@ -313,12 +360,13 @@ void solve_rows(const Linkage& linkage, const LinkageSolve& s, bool soft) {
   for (std::size_t n = 0; n < linkage.nodes.size(); ++n) {
     const LinkageNode& node = linkage.nodes[n];
     const JointRecord& joint = s.records[node.record];
+    const JointWork& work = s.work[node.work];
     const NodeBodies bodies(node, s.bodies);
     double* x = &linkage.vector[linkage.plan.columns[linkage.plan.place_of[n]].row];
     for (int i = 0; i < node.count; ++i) {
       const LinkageRow& row = node.rows[i];
       float missing = -bodies.speed(row);
-      if (soft) missing += row.wanted - row.give * kept_impulse(joint, row);
+      if (soft) missing += row.wanted - row.give * kept_impulse(joint, work, row, i);
       x[i] = double(missing);
     }
   }
@@ -331,7 +379,7 @@ void solve_rows(const Linkage& linkage, const LinkageSolve& s, bool soft) {
     for (int i = 0; i < node.count; ++i) {
       const float impulse = float(x[i]);
       bodies.push(node.rows[i], impulse);
-      keep_impulse(joint, node.rows[i], impulse);
+      keep_impulse(joint, s.work[node.work], node.rows[i], i, impulse);
     }
     bodies.store();
   }
@@ -339,27 +387,11 @@ void solve_rows(const Linkage& linkage, const LinkageSolve& s, bool soft) {
 
 void sweep_axes(const Linkage& linkage, const LinkageSolve& s, bool soft) {
   for (const LinkageNode& node : linkage.nodes) {
-    solve_joint_axis(s.records[node.record], s.work[node.work], s.bodies, s.settings, soft);
+    solve_joint_axes(s.records[node.record], s.work[node.work], s.bodies, s.settings, soft);
   }
 }
 
 }  // namespace
-
-int count_linkage_rows(const JointRecord& joint) {
-  switch (joint.kind) {
-    case JointKind::ball:
-      return 3;
-    case JointKind::hinge:
-      return 5;
-    case JointKind::slider:
-      return 5;
-    case JointKind::fixed:
-      return 6;
-    case JointKind::distance:
-      return joint.min_length == joint.max_length && !joint.is_spring ? 1 : 0;
-  }
-  return 0;
-}
 
 void place_linkage(const Linkage& linkage, const LinkageSolve& s) {
   for (double& value : linkage.values) value = 0.0;
@@ -388,16 +420,15 @@ void warm_linkage(const Linkage& linkage, const LinkageSolve& s) {
   for (const LinkageNode& node : linkage.nodes) {
     JointRecord& joint = s.records[node.record];
     const JointWork& work = s.work[node.work];
-    warm_start_joint_axis(joint, work, s.bodies);
+    warm_start_joint_axes(joint, work, s.bodies);
     // What was kept, along the rows as they are now.
     float kept[kMostBlockRows];
-    for (int i = 0; i < node.count; ++i) kept[i] = kept_impulse(joint, node.rows[i]);
-    joint.linear_impulse = joint.angular_impulse = {};
-    if (joint.kind == JointKind::distance) joint.low_impulse = 0.0f;
+    for (int i = 0; i < node.count; ++i) kept[i] = kept_impulse(joint, work, node.rows[i], i);
+    forget_kept(joint, work);
     NodeBodies bodies(node, s.bodies);
     for (int i = 0; i < node.count; ++i) {
       bodies.push(node.rows[i], kept[i]);
-      keep_impulse(joint, node.rows[i], kept[i]);
+      keep_impulse(joint, work, node.rows[i], i, kept[i]);
     }
     bodies.store();
   }
@@ -417,7 +448,7 @@ void solve_linkage_again(const Linkage& linkage, const LinkageSolve& s) {
 void relax_linkage(const Linkage& linkage, const LinkageSolve& s) {
   sweep_axes(linkage, s, false);
   solve_rows(linkage, s, false);
-  for (const LinkageNode& node : linkage.nodes) sum_joint(s.records[node.record], s.work[node.work]);
+  for (const LinkageNode& node : linkage.nodes) sum_joint(s.records[node.record], s.work[node.work], s.bodies);
 }
 
 }  // namespace gyre

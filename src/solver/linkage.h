@@ -70,9 +70,6 @@ struct LinkageSolve {
   float give = 0.0f;  // share of K by which rows give way
 };
 
-// How many rows of the joint are equations: 0 to 6.
-int count_linkage_rows(const JointRecord& joint);
-
 // The rows where the bodies are now, and their matrix, factored.
 void place_linkage(const Linkage& linkage, const LinkageSolve& solve);
 // With the velocities after the forces: what is asked of the rows, and the impulses of the last sub-step.

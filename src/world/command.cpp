@@ -7,6 +7,7 @@
 #include "rigid/island.h"
 #include "rigid/rigid_step.h"
 #include "world/field_commands.h"
+#include "world/joint_commands.h"
 #include "world/world_state.h"
 
 namespace gyre {
@@ -94,20 +95,17 @@ void refresh_mass(RigidWorld& w, std::uint32_t body, const Pose& origin) {
 }
 void refresh_mass(RigidWorld& w, std::uint32_t body) { refresh_mass(w, body, origin_pose(w.bodies, body)); }
 
-std::uint32_t index_of(ShapeId id) { return id.index; }
-std::uint32_t index_of(std::uint32_t slot) { return slot; }
-
-// Lists of shapes and joints ascend.
-template <class List, class Item>
-void insert_sorted(List& list, Item item) {
+// A body's shapes, ascending.
+template <class List>
+void insert_sorted(List& list, ShapeId item) {
   std::size_t at = 0;
-  while (at < list.size() && index_of(list[at]) < index_of(item)) ++at;
+  while (at < list.size() && list[at].index < item.index) ++at;
   list.insert_at(at, item);
 }
 template <class List>
 void erase_index(List& list, std::uint32_t index) {
   for (std::size_t i = 0; i < list.size(); ++i) {
-    if (index_of(list[i]) != index) continue;
+    if (list[i].index != index) continue;
     list.erase_at(i);
     return;
   }
@@ -171,44 +169,12 @@ Submitted carry_out(WorldState& s, const AddBody& c) {
   return {true, body_id(w, body), {}, {}};
 }
 
-// The two bodies of joints that keep them from colliding.
-std::uint64_t block_key(const JointRecord& joint) {
-  return pair_key(std::uint32_t(joint.body_a), std::uint32_t(joint.body_b));
-}
-bool blocks(const JointRecord& joint) {
-  return !joint.collide_connected && joint.body_a != kNoBody && joint.body_b != kNoBody;
-}
-
-// Contacts between two bodies that may now collide again (or no more) are found anew by touching their boxes.
-void recheck_pairs(RigidWorld& w, const JointRecord& joint) {
-  for (const std::int32_t body : {joint.body_a, joint.body_b}) {
-    if (body == kNoBody) continue;
-    for (const ShapeId id : w.bodies.shapes[std::size_t(body)]) w.shapes.changed.push_back(id.index);
-  }
-}
-
-void detach_joint(RigidWorld& w, std::uint32_t slot) {
-  const JointRecord joint = w.joints.records[slot];
-  for (const std::int32_t body : {joint.body_a, joint.body_b}) {
-    if (body == kNoBody) continue;
-    stir(w, std::uint32_t(body));
-    erase_index(w.bodies.joints[std::size_t(body)], slot);
-  }
-  if (blocks(joint)) {
-    std::uint32_t* count = w.joints.blocked.find(block_key(joint));
-    if (count != nullptr && --*count == 0) w.joints.blocked.erase(block_key(joint));
-    recheck_pairs(w, joint);
-  }
-  w.joints.ids.release(slot);
-  w.joints.records[slot] = {};
-}
-
 Submitted carry_out(WorldState& s, const RemoveBody& c) {
   RigidWorld& w = s.rigid;
   const std::uint32_t body = c.body.index;
   stir(w, body);
   wake_neighbours(w, body);
-  while (!w.bodies.joints[body].empty()) detach_joint(w, w.bodies.joints[body].front());
+  while (!w.bodies.joints[body].empty()) remove_joint(w, w.bodies.joints[body].front());
   for (const ShapeId id : w.bodies.shapes[body]) {
     drop_contacts(w, id.index);
     remove_shape_slot(w.shapes, id.index);
@@ -239,90 +205,10 @@ Submitted carry_out(WorldState& s, const RemoveShape& c) {
   return {true, {}, {}, {}};
 }
 
-// A point and a frame of the world in the frame of one end of a joint.
-struct JointEnd {
-  Vec3 anchor;
-  Quat frame;
-  DVec3 world_anchor;
-};
-JointEnd joint_end(const RigidWorld& w, std::int32_t body, DVec3 anchor, Quat world_from_joint) {
-  if (body == kNoBody) return {{}, world_from_joint, anchor};
-  const BodyPlace& place = w.bodies.places[body];
-  return {rotate_inverse(place.orientation, difference(anchor, place.center)),
-          normalized(conjugate(place.orientation) * world_from_joint), anchor};
-}
-
-DVec3 default_anchor_b(const RigidWorld& w, const JointRecord& joint, const JointDef& def) {
-  if (def.kind != JointKind::distance) return def.anchor;
-  if (def.anchor_b) return *def.anchor_b;
-  return joint.body_b == kNoBody ? DVec3{} : origin_pose(w.bodies, std::uint32_t(joint.body_b)).position;
-}
-
-void set_distance(JointRecord& joint, const JointDef& def, float present) {
-  const float length = def.length ? *def.length : present;
-  joint.rest_length = length;
-  joint.is_spring = def.stiffness.has_value() || def.damping.has_value();
-  joint.stiffness = def.stiffness ? *def.stiffness : 0.0f;
-  joint.damping = def.damping ? *def.damping : 0.0f;
-  const bool free = joint.is_spring || def.min_length || def.max_length;
-  joint.min_length = def.min_length ? *def.min_length : (free ? 0.0f : length);
-  joint.max_length = def.max_length ? *def.max_length : (free ? kUnlimitedLength : length);
-  joint.position = present;
-}
-
-void set_motor(JointRecord& joint, const Motor& motor) {
-  joint.motor_velocity = motor.target_velocity;
-  joint.has_motor_target = motor.target_position.has_value();
-  joint.motor_position = motor.target_position ? *motor.target_position : 0.0f;
-  joint.motor_force = motor.max_force;
-  joint.motor_frequency = motor.frequency;
-  joint.motor_damping = motor.damping_ratio;
-}
-
-Submitted carry_out(WorldState& s, const AddJoint& c) {
-  RigidWorld& w = s.rigid;
-  const JointDef& def = c.def;
-  const std::uint32_t slot = w.joints.ids.acquire().index;
-  if (slot >= w.joints.records.size()) w.joints.records.resize(slot + 1);
-  JointRecord joint;
-  joint.kind = def.kind;
-  joint.body_a = def.a ? std::int32_t(def.a.index) : kNoBody;
-  joint.body_b = def.b ? std::int32_t(def.b.index) : kNoBody;
-  joint.collide_connected = def.collide_connected;
-  const DVec3 anchor_b = default_anchor_b(w, joint, def);
-  const Quat frame = from_directions({1, 0, 0}, normalized(def.axis));
-  const JointEnd a = joint_end(w, joint.body_a, def.anchor, frame);
-  const JointEnd b = joint_end(w, joint.body_b, anchor_b, frame);
-  joint.local_anchor_a = a.anchor, joint.local_frame_a = a.frame, joint.world_anchor_a = a.world_anchor;
-  joint.local_anchor_b = b.anchor, joint.local_frame_b = b.frame, joint.world_anchor_b = b.world_anchor;
-  if (def.limits) joint.has_limits = true, joint.limits = *def.limits;
-  set_motor(joint, def.motor);
-  joint.break_force = def.break_force ? *def.break_force : 0.0f;
-  joint.break_torque = def.break_torque ? *def.break_torque : 0.0f;
-  if (def.kind == JointKind::distance) set_distance(joint, def, length(difference(anchor_b, def.anchor)));
-  w.joints.records[slot] = joint;
-  for (const std::int32_t body : {joint.body_a, joint.body_b}) {
-    if (body == kNoBody) continue;
-    stir(w, std::uint32_t(body));
-    insert_sorted(w.bodies.joints[std::size_t(body)], slot);
-  }
-  if (blocks(joint)) {
-    w.joints.blocked.find_or_insert(block_key(joint), 0u)++;
-    // Contacts that the two bodies have by now go away.
-    for (const ShapeId id : w.bodies.shapes[std::size_t(joint.body_a)]) {
-      for (const std::uint32_t contact : list_contacts_of_shape(w.contacts, id.index, w.listed)) {
-        const Contact& pair = w.contacts.contacts[contact];
-        if (pair_key(pair.body_a, pair.body_b) != block_key(joint)) continue;
-        report_end(w, pair);
-        remove_contact(w.contacts, contact);
-      }
-    }
-  }
-  return {true, {}, {}, joint_id(w, slot)};
-}
+Submitted carry_out(WorldState& s, const AddJoint& c) { return {true, {}, {}, add_joint(s.rigid, c.def)}; }
 
 Submitted carry_out(WorldState& s, const RemoveJoint& c) {
-  detach_joint(s.rigid, c.joint.index);
+  remove_joint(s.rigid, c.joint.index);
   return {true, {}, {}, {}};
 }
 
@@ -456,11 +342,19 @@ Submitted carry_out(WorldState& s, const SetFilter& c) {
   return {true, {}, {}, {}};
 }
 Submitted carry_out(WorldState& s, const SetMotor& c) {
-  JointRecord& joint = s.rigid.joints.records[c.joint.index];
-  set_motor(joint, c.motor);
-  for (const std::int32_t body : {joint.body_a, joint.body_b}) {
-    if (body != kNoBody) stir(s.rigid, std::uint32_t(body));
-  }
+  set_motor(s.rigid, c.joint.index, c.motor);
+  return {true, {}, {}, {}};
+}
+Submitted carry_out(WorldState& s, const SetJointAxis& c) {
+  set_joint_axis(s.rigid, c.joint.index, c.axis, c.def);
+  return {true, {}, {}, {}};
+}
+Submitted carry_out(WorldState& s, const SetDrive& c) {
+  set_drive(s.rigid, c.joint.index, c.drive);
+  return {true, {}, {}, {}};
+}
+Submitted carry_out(WorldState& s, const SetJointEnabled& c) {
+  set_joint_enabled(s.rigid, c.joint.index, c.enabled);
   return {true, {}, {}, {}};
 }
 Submitted carry_out(WorldState& s, const SetSleeping& c) {
@@ -522,7 +416,7 @@ Submitted carry_out(WorldState& s, const Step& c) {
 
 }  // namespace
 
-void remove_joint_now(WorldState& state, std::uint32_t joint) { detach_joint(state.rigid, joint); }
+void remove_joint_now(WorldState& state, std::uint32_t joint) { remove_joint(state.rigid, joint); }
 
 Submitted submit(WorldState& state, const Command& command) {
   const FloatMode mode;  // commands and the serial parts of a step compute too

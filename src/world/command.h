@@ -79,6 +79,19 @@ struct SetMotor {
   JointId joint;
   Motor motor;
 };
+struct SetJointAxis {
+  JointId joint;
+  JointAxis axis = JointAxis::linear_x;
+  JointAxisDef def;
+};
+struct SetDrive {
+  JointId joint;
+  PoseDrive drive;
+};
+struct SetJointEnabled {
+  JointId joint;
+  bool enabled = true;
+};
 struct SetSleeping {
   bool enabled = true;
 };
@@ -122,7 +135,7 @@ struct Step {
 using Command = std::variant<AddBody, RemoveBody, AddShape, RemoveShape, AddJoint, RemoveJoint, SetPose, SetVelocity,
                              MoveKinematic, SetType, SetGravity, SetGravityScale, SetDamping, SetMaterial, SetMaterialPair,
                              SetFilter, SetMotor, SetSleeping, SetAwake, SetSubsteps, AddForce, AddImpulse, Step, SetCombineRules,
-                             SetSurfaceRule, AddField, SetField, RemoveField, Explode>;
+                             SetSurfaceRule, AddField, SetField, RemoveField, Explode, SetJointAxis, SetDrive, SetJointEnabled>;
 
 // What a command gave back: whether it was done, and the id of what it made.
 struct Submitted {

@@ -1,5 +1,6 @@
 // What every command must hold before it is carried out. The message names object, field, value and allowed range.
 #include "world/field_commands.h"
+#include "world/joint_commands.h"
 #include "world/world_state.h"
 
 #include <cstdio>
@@ -152,6 +153,107 @@ Error check_distance(const JointDef& d) {
   return ok();
 }
 
+Error first_of(std::initializer_list<Error> errors) {
+  for (const Error& e : errors) {
+    if (e.code != ErrorCode::none) return e;
+  }
+  return ok();
+}
+
+Error check_direction(const char* field, Vec3 v) {
+  const Error e = check_finite(field, v);
+  if (e.code != ErrorCode::none) return e;
+  return largest(absolute(v)) > 0.0f ? ok() : refuse("%s is zero; it must have a direction", field);
+}
+
+Error check_limits(const Limits& limits) {
+  return first_of({check_range("joint.limits.low", limits.low, -1.0e9f, 1.0e9f),
+                   check_range("joint.limits.high", limits.high, limits.low, 1.0e9f)});
+}
+
+Error check_axis(const JointAxisDef& d) {
+  if (d.motion > AxisMotion::limited) return refuse("joint axis: motion is %d; there is no such", int(d.motion));
+  return first_of({d.motion == AxisMotion::limited ? check_limits(d.limits) : ok(),
+                   check_range("joint axis: limit_frequency", d.limit_frequency, 0.0f, 1.0e6f),
+                   check_range("joint axis: limit_damping_ratio", d.limit_damping_ratio, 0.0f, 1.0e6f), check_motor(d.motor),
+                   check_range("joint axis: stiffness", d.stiffness, 0.0f, 1.0e30f),
+                   check_range("joint axis: damping", d.damping, 0.0f, 1.0e30f),
+                   check_range("joint axis: rest_position", d.rest_position, -1.0e9f, 1.0e9f),
+                   check_range("joint axis: friction", d.friction, 0.0f, 1.0e30f)});
+}
+
+Error check_drive(const PoseDrive& d) {
+  return first_of({check_pose("drive", {DVec3(d.position), d.orientation}),
+                   check_finite("drive.linear_velocity", d.linear_velocity),
+                   check_finite("drive.angular_velocity", d.angular_velocity),
+                   check_range("drive.frequency", d.frequency, 0.0f, 1.0e6f),
+                   check_range("drive.damping_ratio", d.damping_ratio, 0.0f, 1.0e6f),
+                   check_range("drive.max_force", d.max_force, 0.0f, 1.0e30f),
+                   check_range("drive.max_torque", d.max_torque, 0.0f, 1.0e30f)});
+}
+
+Error check_path(const JointDef& d) {
+  const std::size_t least = d.path_closed ? 3 : 2;
+  if (d.path.size() < least || d.path.size() > std::size_t(kMostPathPoints))
+    return refuse("joint.path has %d points; it must have %d to %d", int(d.path.size()), int(least), kMostPathPoints);
+  if (d.path_orientation > PathOrientation::following)
+    return refuse("joint.path_orientation is %d; there is no such", int(d.path_orientation));
+  for (std::size_t i = 0; i < d.path.size(); ++i) {
+    const Vec3 p = d.path[i];
+    if (!is_finite(p) || !(largest(absolute(p)) <= 1.0e6f))
+      return refuse("joint.path[%d] is (%g, %g, %g); it must be finite and within 1e6 m", int(i), double(p.x), double(p.y),
+                    double(p.z));
+    const Vec3 next = d.path[(i + 1) % d.path.size()];
+    if (p == next && (i + 1 < d.path.size() || d.path_closed))
+      return refuse("joint.path[%d] and the point after it are the same", int(i));
+  }
+  return ok();
+}
+
+// What only kinds beyond the first five look at.
+Error check_kind(const JointDef& d) {
+  if (d.axis_b) {
+    const Error e = check_direction("joint.axis_b", *d.axis_b);
+    if (e.code != ErrorCode::none) return e;
+  }
+  const Vec3 axis = normalized(d.axis), other = d.axis_b ? normalized(*d.axis_b) : Vec3{};
+  const float between = length(cross(axis, other));
+  switch (d.kind) {
+    case JointKind::universal:
+    case JointKind::wheel:
+      if (d.axis_b && !(between > 0.17f)) return refuse("joint.axis_b is along joint.axis; they must differ by 10 degrees or more");
+      return first_of({check_axis(d.angular_x), check_axis(d.angular_z)});
+    case JointKind::rack_and_pinion:
+      if (!d.axis_b || !(between > 0.99f))
+        return refuse("joint.axis_b, the rack's way, must be given and across joint.axis");
+      break;
+    case JointKind::cone:
+      return first_of({check_optional("joint.swing_y", d.swing_y, 0.0f), check_optional("joint.swing_z", d.swing_z, 0.0f),
+                       d.swing_y ? check_range("joint.swing_y", *d.swing_y, 0.0f, 3.1416f) : ok(),
+                       d.swing_z ? check_range("joint.swing_z", *d.swing_z, 0.0f, 3.1416f) : ok(), check_drive(d.drive)});
+    case JointKind::six_dof:
+      return first_of({check_axis(d.linear_x), check_axis(d.linear_y), check_axis(d.linear_z), check_axis(d.angular_x),
+                       check_axis(d.angular_y), check_axis(d.angular_z)});
+    case JointKind::mouse:
+    case JointKind::motor: return check_drive(d.drive);
+    case JointKind::pulley: {
+      const Error e = first_of({check_pose("joint.ground_a", {d.ground_a, {}}), check_pose("joint.ground_b", {d.ground_b, {}}),
+                                check_optional("joint.length", d.length, 0.0f)});
+      if (e.code != ErrorCode::none) return e;
+      if (!d.a || !d.b) return refuse("joint.a and joint.b of a pulley must both be bodies");
+      return check_range("joint.ratio", d.ratio, 1.0e-6f, 1.0e6f);
+    }
+    case JointKind::path: return check_path(d);
+    default: break;
+  }
+  if (d.kind == JointKind::gear || d.kind == JointKind::rack_and_pinion) {
+    const Error e = check_range("joint.ratio", d.ratio, -1.0e6f, 1.0e6f);
+    if (e.code != ErrorCode::none) return e;
+    if (!(absolute(d.ratio) >= 1.0e-6f)) return refuse("joint.ratio is %g; it must not be zero", double(d.ratio));
+  }
+  return ok();
+}
+
 Error check(const WorldState& s, const AddJoint& c) {
   const JointDef& d = c.def;
   Error e = ok();
@@ -160,15 +262,19 @@ Error check(const WorldState& s, const AddJoint& c) {
   if (e.code != ErrorCode::none) return e;
   if (!d.a && !d.b) return refuse("joint.a and joint.b are both the world; one must be a body");
   if (d.a == d.b) return refuse("joint.a and joint.b are the same body (%u)", d.a.index);
-  if (d.kind > JointKind::distance) return refuse("joint.kind is %d; there is no such kind", int(d.kind));
+  if (int(d.kind) >= kJointKindCount) return refuse("joint.kind is %d; there is no such kind", int(d.kind));
   e = check_pose("joint.anchor", {d.anchor, {}});
   if (e.code == ErrorCode::none && d.anchor_b) e = check_pose("joint.anchor_b", {*d.anchor_b, {}});
   if (e.code == ErrorCode::none) e = check_finite("joint.axis", d.axis);
   if (e.code != ErrorCode::none) return e;
   if (!(largest(absolute(d.axis)) > 0.0f)) return refuse("joint.axis is zero; it must have a direction");
-  if (d.limits) {
-    e = check_range("joint.limits.low", d.limits->low, -1.0e9f, 1.0e9f);
-    if (e.code == ErrorCode::none) e = check_range("joint.limits.high", d.limits->high, d.limits->low, 1.0e9f);
+  if (d.limits) e = check_limits(*d.limits);
+  if (e.code == ErrorCode::none) {
+    e = first_of({check_range("joint.friction", d.friction, 0.0f, 1.0e30f),
+                  check_range("joint.limit_frequency", d.limit_frequency, 0.0f, 1.0e6f),
+                  check_range("joint.limit_damping_ratio", d.limit_damping_ratio, 0.0f, 1.0e6f),
+                  check_optional("joint.stiffness", d.stiffness, 0.0f), check_optional("joint.damping", d.damping, 0.0f),
+                  check_kind(d)});
   }
   if (e.code == ErrorCode::none) e = check_motor(d.motor);
   if (e.code == ErrorCode::none) e = check_optional("joint.break_force", d.break_force, 0.0f);
@@ -247,6 +353,24 @@ Error check(const WorldState& s, const SetMotor& c) {
   const Error e = check_joint_id(s, c.joint, "set_motor");
   return e.code != ErrorCode::none ? e : check_motor(c.motor);
 }
+Error check(const WorldState& s, const SetJointAxis& c) {
+  const Error e = check_joint_id(s, c.joint, "set_joint_axis");
+  if (e.code != ErrorCode::none) return e;
+  const JointKind kind = s.rigid.joints.records[c.joint.index].kind;
+  if (int(c.axis) >= kJointAxisCount || ((open_axes(kind) >> int(c.axis)) & 1u) == 0) {
+    return refuse("set_joint_axis: a %s joint has no %s to set", to_string(kind),
+                  int(c.axis) < kJointAxisCount ? to_string(c.axis) : "such axis");
+  }
+  return check_axis(c.def);
+}
+Error check(const WorldState& s, const SetDrive& c) {
+  const Error e = check_joint_id(s, c.joint, "set_drive");
+  if (e.code != ErrorCode::none) return e;
+  const JointKind kind = s.rigid.joints.records[c.joint.index].kind;
+  if (!has_pose_drive(kind)) return refuse("set_drive: a %s joint has no drive; motor, mouse and cone have", to_string(kind));
+  return check_drive(c.drive);
+}
+Error check(const WorldState& s, const SetJointEnabled& c) { return check_joint_id(s, c.joint, "set_joint_enabled"); }
 Error check(const WorldState&, const SetSleeping&) { return ok(); }
 Error check(const WorldState& s, const SetAwake& c) { return check_body(s, c.body, "set_awake"); }
 Error check(const WorldState&, const SetSubsteps& c) {

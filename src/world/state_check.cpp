@@ -35,7 +35,8 @@ const char* fault_in_sizes(const RigidWorld& w) {
       s.user_data.size() != shapes) {
     return "the shape columns differ in length";
   }
-  if (w.joints.records.size() != w.joints.ids.capacity()) return "the joint columns differ in length";
+  if (w.joints.records.size() != w.joints.ids.capacity() || w.joints.details.size() > w.joints.records.size())
+    return "the joint columns differ in length";
   if (w.contacts.manifolds.size() % kMaxMeshManifolds != 0) return "manifolds do not fill chunks";
   return nullptr;
 }
@@ -96,12 +97,47 @@ const char* fault_in_shape(const RigidWorld& w, std::uint32_t i) {
 }
 
 const char* fault_in_joint(const RigidWorld& w, const JointRecord& joint) {
-  if (joint.kind > JointKind::distance) return "a joint of unknown kind";
+  if (int(joint.kind) >= kJointKindCount) return "a joint of unknown kind";
   for (const std::int32_t body : {joint.body_a, joint.body_b}) {
     if (body != kNoBody && (body < 0 || !w.bodies.ids.live(std::uint32_t(body))))
       return "a joint without a body";
   }
   if (joint.body_a == joint.body_b) return "a joint between one thing and itself";
+  return nullptr;
+}
+
+// Whether a kind cannot be solved without details.
+bool needs_detail(JointKind kind) { return kind > JointKind::distance; }
+
+const char* fault_in_detail(const JointStore& joints, std::uint32_t slot) {
+  const JointDetail* const detail = detail_of(joints, slot);
+  if (!joints.ids.live(slot)) return detail != nullptr ? "details of a joint that is not there" : nullptr;
+  const JointKind kind = joints.records[slot].kind;
+  if (detail == nullptr) return needs_detail(kind) ? "a joint without its details" : nullptr;
+  if (std::uint64_t(detail->path_first) + detail->path_count > joints.path_points.size())
+    return "a curve without its points";
+  if ((kind == JointKind::path) != (detail->path_count > 0)) return "a joint with a curve that is not bound to one";
+  if (kind == JointKind::path && detail->path_count < (detail->path_closed ? 3u : 2u)) return "a curve of too few points";
+  const PoseDrive& drive = detail->drive;
+  for (const float value : {detail->ratio, detail->start, detail->path_place, detail->swing_y, detail->swing_z, detail->friction,
+                            drive.frequency, drive.damping_ratio, drive.max_force, drive.max_torque}) {
+    if (!is_finite(value)) return "a joint's detail that is not finite";
+  }
+  if (!is_finite(drive.position) || !is_finite(drive.orientation) || !is_finite(drive.linear_velocity) ||
+      !is_finite(drive.angular_velocity))
+    return "a joint's drive that is not finite";
+  return nullptr;
+}
+
+const char* fault_in_paths(const JointStore& joints) {
+  std::uint64_t points = 0;
+  joints.ids.for_each_live([&](std::uint32_t slot) {
+    if (const JointDetail* const detail = detail_of(joints, slot)) points += detail->path_count;
+  });
+  if (points != joints.path_points.size()) return "points of no curve";
+  for (const PathPoint& point : joints.path_points) {
+    if (!is_finite(point.position) || !is_finite(point.up) || !is_finite(point.along)) return "a point of a curve that is not finite";
+  }
   return nullptr;
 }
 
@@ -147,7 +183,9 @@ const char* fault_in(const RigidWorld& w) {
     fault = fault_in_shape(w, i);
   for (std::uint32_t i = 0; fault == nullptr && i < w.joints.ids.capacity(); ++i) {
     if (w.joints.ids.live(i)) fault = fault_in_joint(w, w.joints.records[i]);
+    if (fault == nullptr) fault = fault_in_detail(w.joints, i);
   }
+  if (fault == nullptr) fault = fault_in_paths(w.joints);
   for (std::size_t i = 0; fault == nullptr && i < w.contacts.contacts.size(); ++i) {
     fault = fault_in_contact(w, w.contacts.contacts[i]);
   }

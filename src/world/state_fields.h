@@ -141,6 +141,35 @@ void for_each_field(T& r, F&& f) {
   f(r.low_impulse), f(r.high_impulse), f(r.motor_impulse), f(r.spring_impulse), f(r.position);
   for_each_field(r.total_linear, f), for_each_field(r.total_angular, f);
 }
+template <Is<JointAxisRecord> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.motion), f(r.has_motor_target), f(r.limits.low), f(r.limits.high), f(r.limit_frequency), f(r.limit_damping);
+  f(r.motor_velocity), f(r.motor_position), f(r.motor_force), f(r.motor_frequency), f(r.motor_damping);
+  f(r.stiffness), f(r.damping), f(r.rest_position), f(r.friction), f(r.hold);
+  f(r.low_impulse), f(r.high_impulse), f(r.motor_impulse), f(r.spring_impulse), f(r.friction_impulse);
+  f(r.position), f(r.total);
+}
+template <Is<PoseDrive> T, class F>
+void for_each_field(T& r, F&& f) {
+  for_each_field(r.position, f), for_each_field(r.orientation, f);
+  for_each_field(r.linear_velocity, f), for_each_field(r.angular_velocity, f);
+  f(r.frequency), f(r.damping_ratio), f(r.max_force), f(r.max_torque);
+}
+template <Is<JointDetail> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.used), f(r.disabled), f(r.path_closed), f(r.has_swing), f(r.path_orientation);
+  for (auto& axis : r.axes) for_each_field(axis, f);
+  for (auto& impulse : r.row_impulses) f(impulse);
+  for_each_field(r.drive, f), for_each_field(r.drive_force_impulse, f), for_each_field(r.drive_torque_impulse, f);
+  f(r.friction), for_each_field(r.friction_impulse, f), f(r.swing_y), f(r.swing_z), f(r.ratio);
+  for_each_field(r.reference_a, f), for_each_field(r.reference_b, f), f(r.start);
+  for_each_field(r.ground_a, f), for_each_field(r.ground_b, f);
+  f(r.path_first), f(r.path_count), f(r.path_place);
+}
+template <Is<PathPoint> T, class F>
+void for_each_field(T& r, F&& f) {
+  for_each_field(r.position, f), f(r.along), for_each_field(r.up, f);
+}
 template <Is<RigidSettings> T, class F>
 void for_each_field(T& r, F&& f) {
   for_each_field(r.gravity, f), f(r.substeps), f(r.sleeping), f(r.friction_rule), f(r.restitution_rule), f(r.last_substep);

@@ -241,7 +241,7 @@ Error Walk::everything_is_solved() const {
   const auto acts = [&](std::uint32_t slot) { return is_solved(w_, w_.contacts.contacts[slot]); };
   if (!are_all(batches, &SolveBatch::contacts, w_.contacts.contacts.size(), acts))
     return broken("a contact with manifolds and an awake body is not in one batch");
-  const auto joint_acts = [&](std::uint32_t slot) { return w_.joints.ids.live(slot) && is_solved(w_, w_.joints.records[slot]); };
+  const auto joint_acts = [&](std::uint32_t slot) { return w_.joints.ids.live(slot) && is_joint_solved(w_, slot); };
   if (!are_all(batches, &SolveBatch::joints, w_.joints.ids.capacity(), joint_acts))
     return broken("a joint with an awake body is not in one batch");
   std::vector<std::uint32_t> batch_of(w_.bodies.motion.size(), 0xffffffffu);

@@ -51,6 +51,11 @@ bool World::set_field(FieldId field, const FieldDef& def) { return submit(*state
 bool World::remove_field(FieldId field) { return submit(*state_, RemoveField{field}).done; }
 bool World::explode(const ExplosionDef& explosion) { return submit(*state_, Explode{explosion}).done; }
 bool World::set_filter(ShapeId shape, const Filter& filter) { return submit(*state_, SetFilter{shape, filter}).done; }
+bool World::set_joint_axis(JointId joint, JointAxis axis, const JointAxisDef& def) {
+  return submit(*state_, SetJointAxis{joint, axis, def}).done;
+}
+bool World::set_drive(JointId joint, const PoseDrive& drive) { return submit(*state_, SetDrive{joint, drive}).done; }
+bool World::set_joint_enabled(JointId joint, bool enabled) { return submit(*state_, SetJointEnabled{joint, enabled}).done; }
 bool World::set_motor(JointId joint, const Motor& motor) { return submit(*state_, SetMotor{joint, motor}).done; }
 bool World::set_sleeping(bool enabled) { return submit(*state_, SetSleeping{enabled}).done; }
 bool World::set_awake(BodyId body, bool awake) { return submit(*state_, SetAwake{body, awake}).done; }

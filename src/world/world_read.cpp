@@ -4,6 +4,7 @@
 #include "base/float_mode.h"
 #include "rigid/surface_rules.h"
 #include "world/field_commands.h"
+#include "world/joint_reading.h"
 #include "world/world_state.h"
 
 namespace gyre {
@@ -30,24 +31,6 @@ void clear_read(const WorldState& s) {
   s.read_poses.clear();
   s.read_linear.clear();
   s.read_angular.clear();
-}
-
-// The places of a joint's two anchors.
-void joint_anchors(const RigidWorld& w, const JointRecord& joint, DVec3& a, DVec3& b) {
-  const auto place = [&](std::int32_t body, Vec3 local, DVec3 world) {
-    if (body == kNoBody) return world;
-    return w.bodies.places[body].center + rotate(w.bodies.places[body].orientation, local);
-  };
-  a = place(joint.body_a, joint.local_anchor_a, joint.world_anchor_a);
-  b = place(joint.body_b, joint.local_anchor_b, joint.world_anchor_b);
-}
-
-double spring_energy(const RigidWorld& w, const JointRecord& joint) {
-  if (!joint.is_spring) return 0.0;
-  DVec3 a, b;
-  joint_anchors(w, joint, a, b);
-  const double stretch = length(b - a) - double(joint.rest_length);
-  return 0.5 * double(joint.stiffness) * stretch * stretch;
 }
 
 // Angular momentum about the centre of mass, world frame, in double.
@@ -127,35 +110,17 @@ std::size_t World::fields(std::span<FieldId> out) const {
 JointReading World::joint_reading(JointId id) const {
   if (!exists(id)) return {};
   const FloatMode mode;
-  const RigidWorld& w = state_->rigid;
-  const JointRecord& joint = w.joints.records[id.index];
-  JointReading reading;
-  const float seconds = w.settings.last_step;
-  if (seconds > 0.0f) {
-    reading.force = (1.0f / seconds) * joint.total_linear;
-    reading.torque = (1.0f / seconds) * joint.total_angular;
-  }
-  reading.position = joint.position;
-  const auto motion = [&](std::int32_t body) { return body == kNoBody ? BodyMotion{} : w.bodies.motion[body]; };
-  const auto orientation = [&](std::int32_t body) { return body == kNoBody ? Quat{} : w.bodies.places[body].orientation; };
-  const BodyMotion a = motion(joint.body_a), b = motion(joint.body_b);
-  const Vec3 axis = rotate(orientation(joint.body_a) * joint.local_frame_a, {1, 0, 0});
-  const Vec3 arm_a = rotate(orientation(joint.body_a), joint.local_anchor_a);
-  const Vec3 arm_b = rotate(orientation(joint.body_b), joint.local_anchor_b);
-  const Vec3 speed = b.linear_velocity + cross(b.angular_velocity, arm_b) - a.linear_velocity - cross(a.angular_velocity, arm_a);
-  switch (joint.kind) {
-    case JointKind::hinge: reading.velocity = dot(b.angular_velocity - a.angular_velocity, axis); break;
-    case JointKind::slider: reading.velocity = dot(speed, axis); break;
-    case JointKind::distance: {
-      DVec3 from, to;
-      joint_anchors(w, joint, from, to);
-      reading.velocity = dot(speed, normalized(difference(to, from)));
-      break;
-    }
-    case JointKind::ball:
-    case JointKind::fixed: break;
-  }
-  return reading;
+  return read_joint(state_->rigid, id.index);
+}
+JointAxisReading World::joint_axis_reading(JointId id, JointAxis axis) const {
+  if (!exists(id) || int(axis) >= kJointAxisCount) return {};
+  const FloatMode mode;
+  return read_joint_axis(state_->rigid, id.index, axis);
+}
+bool World::joint_enabled(JointId id) const {
+  if (!exists(id)) return false;
+  const JointDetail* const detail = detail_of(state_->rigid.joints, id.index);
+  return detail == nullptr || !detail->disabled;
 }
 
 BodyColumns World::bodies() const {
@@ -275,7 +240,7 @@ Energy World::energy() const {
                       0.5 * dot(spin_momentum(w.bodies, i), DVec3(motion.angular_velocity));
     energy.potential -= mass * double(w.bodies.forces[i].gravity_scale) * dot(gravity, w.bodies.places[i].center);
   });
-  w.joints.ids.for_each_live([&](std::uint32_t slot) { energy.elastic += spring_energy(w, w.joints.records[slot]); });
+  w.joints.ids.for_each_live([&](std::uint32_t slot) { energy.elastic += spring_energy(w, slot); });
   return energy;
 }
 
@@ -305,16 +270,5 @@ float World::max_penetration() const {
 }
 
 std::uint64_t World::hash() const { return hash_state(*state_); }
-
-const char* to_string(JointKind kind) {
-  switch (kind) {
-    case JointKind::ball: return "ball";
-    case JointKind::hinge: return "hinge";
-    case JointKind::slider: return "slider";
-    case JointKind::fixed: return "fixed";
-    case JointKind::distance: return "distance";
-  }
-  return "unknown";
-}
 
 }  // namespace gyre

@@ -29,9 +29,7 @@ class HashVisitor {
   void operator()(const char*, const RigidSettings& settings) { add_record(settings); }
   template <class T>
   void operator()(const char*, const Array<T>& column) {
-    // Tables that came later: without rows a world has the hash that it always had.
-    constexpr bool is_later = std::is_same_v<T, SurfaceRule> || std::is_same_v<T, FieldRecord>;
-    if (is_later && column.empty()) return;
+    if (is_later_column<Array<T>> && column.empty()) return;
     hasher_.add(std::uint64_t(column.size()));
     for (const T& record : column) add_record(record);
   }

@@ -87,6 +87,12 @@ concept IsColumn = is_column<T>;
 template <IsColumn T>
 using RecordOf = std::remove_cvref_t<decltype(std::declval<const T&>()[std::size_t{0}])>;
 
+// Columns that came after the first format: those of a world without such things are empty, and such a world has the hash and
+// the snapshot that it always had.
+template <class Column>
+constexpr bool is_later_column = std::is_same_v<Column, Array<SurfaceRule>> || std::is_same_v<Column, Array<JointDetail>> ||
+                                 std::is_same_v<Column, Array<PathPoint>> || std::is_same_v<Column, Array<FieldRecord>>;
+
 // Calls visit(name, column) for every column that is simulation state, in a fixed order. A column is an Array or an IsColumn of
 // records that state_fields.h knows, an IdPool, the vector of geometry, or a single record.
 template <class State, class Visitor>
@@ -116,6 +122,8 @@ void for_each_column(State& s, Visitor&& visit) {
   visit("shape_user_data", s.rigid.shapes.user_data);
   visit("joint_ids", s.rigid.joints.ids);
   visit("joints", s.rigid.joints.records);
+  visit("joint_details", s.rigid.joints.details);
+  visit("path_points", s.rigid.joints.path_points);
   visit("contacts", s.rigid.contacts.contacts);
   visit("manifolds", s.rigid.contacts.manifolds);
 }

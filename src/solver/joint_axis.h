@@ -1,0 +1,61 @@
+// One axis of a joint: a single row along or about which a joint is free, and all that may act there: a Hooke spring, a motor,
+// dry friction, and stops at either end, hard or soft. Hinges, sliders, ropes, rods and springs have one such axis, other kinds
+// up to six; what acts is the same.
+#pragma once
+
+#include "solver/joint_record.h"
+#include "solver/softness.h"
+
+#include <cstdint>
+#include <span>
+
+namespace gyre {
+
+class JointPair;
+struct JointSettings;
+
+// What the row sees: push_b . v_b + arm_b . w_b - push_a . v_a - arm_a . w_a.
+struct AxisRow {
+  Vec3 push_a, push_b;
+  Vec3 arm_a, arm_b;
+};
+
+// What a spring makes of a sub-step: v' = kept v + loaded (what else changed v) - returned x. See prepare_spring().
+struct SpringStep {
+  float kept = 1.0f;
+  float loaded = 1.0f;
+  float returned = 0.0f;  // 1/s
+  Softness implicit;      // if the sub-step does not resolve the spring
+  bool is_implicit = false;
+};
+
+struct AxisWork {
+  JointAxisRecord axis;  // settings and impulses; goes back into the joint when the step is over
+  JointAxis index = JointAxis::linear_x;
+  bool has_low = false, has_high = false;
+  bool is_rod = false;  // one two-sided stop at limits.low, its impulse in low_impulse
+  AxisRow row;
+  float mass = 0.0f;          // effective
+  float bend = 0.0f;          // m/s: how far the position changes in the sub-step beyond what the row sees
+  float speed_before = 0.0f;  // as the part began, before forces
+  SpringStep spring;
+  Softness drive, stop;
+};
+
+inline bool has_spring(const JointAxisRecord& axis) { return axis.stiffness > 0.0f || axis.damping > 0.0f; }
+// Whether anything acts on an axis that is not locked.
+inline bool acts(const JointAxisRecord& axis) {
+  return axis.motion == AxisMotion::limited || axis.motor_force > 0.0f || axis.friction > 0.0f ||
+         has_spring(axis);
+}
+
+float axis_speed(const AxisRow& row, const JointPair& pair);
+void push_axis(const AxisRow& row, float impulse, JointPair& pair);
+// Impulse of everything along the axis together.
+float axis_impulse(const JointAxisRecord& axis);
+
+// Once the row and the position are known.
+void prepare_axis(AxisWork& axis, const JointPair& pair, const JointSettings& settings);
+void solve_axis(AxisWork& axis, JointPair& pair, const JointSettings& settings, bool soft);
+
+}  // namespace gyre

@@ -1,0 +1,229 @@
+#include "world/joint_reading.h"
+
+#include "solver/joint_kinds.h"
+#include "solver/path.h"
+
+namespace gyre {
+
+namespace {
+
+// The two ends as they stand and move.
+struct JointState {
+  BodyMotion a, b;
+  Quat frame_a, frame_b;
+  Vec3 speed;  // of b's anchor against a's body there
+  Vec3 turning;
+};
+JointState state_of(const RigidWorld& w, const JointRecord& joint) {
+  const auto motion = [&](std::int32_t body) {
+    return body == kNoBody ? BodyMotion{} : w.bodies.motion[std::size_t(body)];
+  };
+  const auto orientation = [&](std::int32_t body) {
+    return body == kNoBody ? Quat{} : w.bodies.places[std::size_t(body)].orientation;
+  };
+  const JointAnchors anchors = joint_anchors(w, joint);
+  JointState s;
+  s.a = motion(joint.body_a), s.b = motion(joint.body_b);
+  s.frame_a = orientation(joint.body_a) * joint.local_frame_a;
+  s.frame_b = orientation(joint.body_b) * joint.local_frame_b;
+  const Vec3 arm_b = rotate(orientation(joint.body_b), joint.local_anchor_b);
+  const Vec3 arm_a =
+      rotate(orientation(joint.body_a), joint.local_anchor_a) + difference(anchors.b, anchors.a);
+  s.speed = s.b.linear_velocity + cross(s.b.angular_velocity, arm_b) - s.a.linear_velocity -
+            cross(s.a.angular_velocity, arm_a);
+  s.turning = s.b.angular_velocity - s.a.angular_velocity;
+  return s;
+}
+
+float line_speed(const RigidWorld& w, const JointRecord& joint, const JointDetail* detail,
+                 const JointState& s, int axis) {
+  switch (joint.kind) {
+    case JointKind::distance: {
+      const JointAnchors anchors = joint_anchors(w, joint);
+      return dot(s.speed, normalized(difference(anchors.b, anchors.a)));
+    }
+    case JointKind::path: {
+      const PathCurve curve{path_of(w.joints, *detail), detail->path_closed};
+      return dot(s.speed, rotate(s.frame_a, normalized(sample_path(curve, detail->path_place).first)));
+    }
+    case JointKind::pulley: {
+      const JointAnchors anchors = joint_anchors(w, joint);
+      const auto speed = [&](const BodyMotion& m, std::int32_t body, DVec3 anchor, DVec3 ground) {
+        const Vec3 arm = difference(anchor, w.bodies.places[std::size_t(body)].center);
+        return dot(m.linear_velocity + cross(m.angular_velocity, arm),
+                   normalized(difference(anchor, ground)));
+      };
+      return speed(s.a, joint.body_a, anchors.a, detail->ground_a) +
+             detail->ratio * speed(s.b, joint.body_b, anchors.b, detail->ground_b);
+    }
+    default:
+      break;
+  }
+  const Vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  return dot(s.speed, rotate(s.frame_a, unit[axis]));
+}
+
+float turn_speed(const JointRecord& joint, const JointState& s, int axis) {
+  const Vec3 x_a = rotate(s.frame_a, {1, 0, 0}), x_b = rotate(s.frame_b, {1, 0, 0});
+  switch (joint.kind) {
+    case JointKind::hinge:
+      return dot(s.turning, x_a);
+    case JointKind::cone:
+      return dot(s.turning, twist_axis(s.frame_a, s.frame_b));
+    case JointKind::gear:
+      return axis == 0 ? dot(s.a.angular_velocity, x_a) : dot(s.b.angular_velocity, x_b);
+    case JointKind::rack_and_pinion:
+      return dot(s.a.angular_velocity, x_a);
+    default:
+      return dot(s.turning, angle_axis(s.frame_a, s.frame_b, axis));
+  }
+}
+
+// The axes that a kind has a place on: a bit each.
+std::uint32_t readable_axes(JointKind kind) {
+  const auto bit = [](JointAxis axis) { return 1u << int(axis); };
+  switch (kind) {
+    case JointKind::six_dof:
+      return (1u << kJointAxisCount) - 1;
+    case JointKind::universal:
+      return bit(JointAxis::angular_x) | bit(JointAxis::angular_z);
+    case JointKind::wheel:
+      return bit(JointAxis::linear_x) | bit(JointAxis::angular_x) | bit(JointAxis::angular_z);
+    case JointKind::gear:
+      return bit(JointAxis::angular_x) | bit(JointAxis::angular_y);
+    case JointKind::ball:
+    case JointKind::fixed:
+    case JointKind::mouse:
+    case JointKind::motor:
+      return 0;
+    default:
+      return bit(main_axis(kind));
+  }
+}
+
+// Forces along the one axis of joints that keep it in their record: what the rows across it do not explain.
+float force_in_record(const JointRecord& joint, const JointState& s) {
+  const Vec3 along = rotate(s.frame_a, {1, 0, 0});
+  return joint.kind == JointKind::hinge ? dot(joint.total_angular, along) : dot(joint.total_linear, along);
+}
+
+}  // namespace
+
+JointAnchors joint_anchors(const RigidWorld& w, const JointRecord& joint) {
+  const auto place = [&](std::int32_t body, Vec3 local, DVec3 world) {
+    if (body == kNoBody) return world;
+    const BodyPlace& at = w.bodies.places[std::size_t(body)];
+    return at.center + rotate(at.orientation, local);
+  };
+  return {place(joint.body_a, joint.local_anchor_a, joint.world_anchor_a),
+          place(joint.body_b, joint.local_anchor_b, joint.world_anchor_b)};
+}
+
+JointReading read_joint(const RigidWorld& w, std::uint32_t slot) {
+  const JointRecord& joint = w.joints.records[slot];
+  JointReading reading;
+  const float seconds = w.settings.last_step;
+  if (seconds > 0.0f) {
+    reading.force = (1.0f / seconds) * joint.total_linear;
+    reading.torque = (1.0f / seconds) * joint.total_angular;
+  }
+  reading.position = joint.position;
+  reading.velocity = read_joint_axis(w, slot, main_axis(joint.kind)).velocity;
+  return reading;
+}
+
+JointAxisReading read_joint_axis(const RigidWorld& w, std::uint32_t slot, JointAxis axis) {
+  const JointRecord& joint = w.joints.records[slot];
+  if (((readable_axes(joint.kind) >> int(axis)) & 1u) == 0) return {};
+  const JointDetail* const detail = detail_of(w.joints, slot);
+  const JointState s = state_of(w, joint);
+  const float seconds = w.settings.last_step;
+  const int i = int(axis);
+  JointAxisReading reading;
+  reading.velocity = i < 3 ? line_speed(w, joint, detail, s, i) : turn_speed(joint, s, i - 3);
+  if (joint.kind <= JointKind::distance) {
+    reading.position = joint.position;
+    if (seconds > 0.0f) reading.force = force_in_record(joint, s) / seconds;
+    return reading;
+  }
+  reading.position = detail->axes[i].position;
+  if (seconds > 0.0f) reading.force = detail->axes[i].total / seconds;
+  return reading;
+}
+
+double spring_energy(const RigidWorld& w, std::uint32_t slot) {
+  const JointRecord& joint = w.joints.records[slot];
+  const JointDetail* const detail = detail_of(w.joints, slot);
+  if (detail != nullptr && detail->disabled) return 0.0;
+  if (joint.kind == JointKind::distance) {
+    if (!joint.is_spring) return 0.0;
+    const JointAnchors anchors = joint_anchors(w, joint);
+    const double stretch = length(anchors.b - anchors.a) - double(joint.rest_length);
+    return 0.5 * double(joint.stiffness) * stretch * stretch;
+  }
+  double energy = 0.0;
+  if (detail == nullptr) return energy;
+  const bool in_record = joint.kind == JointKind::hinge || joint.kind == JointKind::slider;
+  for (const JointAxisRecord& axis : detail->axes) {
+    if (axis.stiffness <= 0.0f || axis.motion == AxisMotion::locked) continue;
+    const double stretch = double(in_record ? joint.position : axis.position) - double(axis.rest_position);
+    energy += 0.5 * double(axis.stiffness) * stretch * stretch;
+  }
+  return energy;
+}
+
+const char* to_string(JointKind kind) {
+  switch (kind) {
+    case JointKind::ball:
+      return "ball";
+    case JointKind::hinge:
+      return "hinge";
+    case JointKind::slider:
+      return "slider";
+    case JointKind::fixed:
+      return "fixed";
+    case JointKind::distance:
+      return "distance";
+    case JointKind::cone:
+      return "cone";
+    case JointKind::universal:
+      return "universal";
+    case JointKind::six_dof:
+      return "six_dof";
+    case JointKind::gear:
+      return "gear";
+    case JointKind::rack_and_pinion:
+      return "rack_and_pinion";
+    case JointKind::pulley:
+      return "pulley";
+    case JointKind::wheel:
+      return "wheel";
+    case JointKind::path:
+      return "path";
+    case JointKind::mouse:
+      return "mouse";
+    case JointKind::motor:
+      return "motor";
+  }
+  return "unknown";
+}
+
+const char* to_string(JointAxis axis) {
+  switch (axis) {
+    case JointAxis::linear_x:
+      return "linear_x";
+    case JointAxis::linear_y:
+      return "linear_y";
+    case JointAxis::linear_z:
+      return "linear_z";
+    case JointAxis::angular_x:
+      return "angular_x";
+    case JointAxis::angular_y:
+      return "angular_y";
+    case JointAxis::angular_z:
+      return "angular_z";
+  }
+  return "unknown";
+}
+
+}  // namespace gyre

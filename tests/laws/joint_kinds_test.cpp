@@ -1,0 +1,533 @@
+// Kinds of joints that are more than axes: cones, gears, racks, pulleys, curves, drags, drives to a pose; breaking, switching off,
+// and how machines of them move. Closed forms.
+#include "laws/kit.h"
+
+#include <gyre/replay.h>
+
+namespace gyre::laws {
+namespace {
+
+// --------------------------------------------------------------------------------------------------------------- cones
+
+// How far b's axis, along x, is from where it was, about y and about z.
+struct SwingOf {
+  double y, z, angle;
+};
+SwingOf swing_of(const World& world, BodyId body) {
+  const Vec3 x = rotate(world.pose(body).orientation, {1, 0, 0});
+  const double angle = std::atan2(std::hypot(double(x.y), double(x.z)), double(x.x));
+  const double sine = std::hypot(double(x.y), double(x.z));
+  if (sine < 1e-9) return {0, 0, 0};
+  return {-angle * double(x.z) / sine, angle * double(x.y) / sine, angle};
+}
+
+// A body is turned from many sides against the ellipse of its swing, and stops where it is.
+TEST(Cone, HoldsItsSwingWithinAnEllipse) {
+  for (const bool round : {true, false}) {
+    for (int k = 0; k < 24; ++k) {
+      const double a = 2.0 * kPiDouble * k / 24.0;
+      World world = make_world({.gravity = {0, 0, 0}, .sleeping = false});
+      const BodyId body = world.add_body(point_body(1.0, {0.1f, 0.1f, 0.1f}));
+      const float ly = 0.8f, lz = round ? 0.8f : 0.4f;
+      const JointId joint = world.add_joint(
+          {.kind = JointKind::cone, .b = body, .axis_b = Vec3{0, 0, 1}, .swing_y = ly, .swing_z = lz});
+      ASSERT_TRUE(joint);
+      double most = 0.0;
+      for (int i = 0; i < 240; ++i) {
+        // A weight that pulls the axis to one side: it comes to rest where the ellipse is farthest that way.
+        const Vec3 x = rotate(world.pose(body).orientation, {1, 0, 0});
+        const Vec3 pull{0, float(std::sin(a)), float(-std::cos(a))};
+        world.add_torque(body, 1.0f * cross(x, pull) - 0.3f * world.angular_velocity(body));
+        world.step(kStep);
+        const SwingOf s = swing_of(world, body);
+        most = std::max(most, std::hypot(s.y / double(ly), s.z / double(lz)));
+      }
+      const SwingOf s = swing_of(world, body);
+      const double share = std::hypot(s.y / double(ly), s.z / double(lz));
+      SCOPED_TRACE(testing::Message() << "direction " << k << (round ? ", round" : ", ellipse"));
+      EXPECT_NEAR(share, 1.0, 5e-3);
+      EXPECT_LE(most, 1.02);
+      EXPECT_LE(length(world.pose(body).position), 1e-4);
+      if (round) {
+        EXPECT_NEAR(s.y, 0.8 * std::cos(a), 0.01);
+        EXPECT_NEAR(s.z, 0.8 * std::sin(a), 0.01);
+      }
+    }
+  }
+}
+
+TEST(Cone, LetsItsTwistAloneWithinTheSwing) {
+  World world = weightless();
+  BodyDef def = point_body(1.0, {0.1f, 0.1f, 0.1f});
+  def.angular_velocity = {2, 0, 0};
+  const BodyId body = world.add_body(def);
+  const JointId joint =
+      world.add_joint({.kind = JointKind::cone, .b = body, .swing_y = 0.5f, .swing_z = 0.3f});
+  run(world, 10.0);
+  EXPECT_NEAR(double(world.angular_velocity(body).x), 2.0, 1e-5);
+  EXPECT_NEAR(double(world.joint_axis_reading(joint, JointAxis::angular_x).position), 20.0, 1e-3);
+}
+
+// Friction against all turning stops it at torque over inertia, whatever its axis.
+TEST(Cone, AndBallAreBrakedByFriction) {
+  for (const JointKind kind : {JointKind::ball, JointKind::cone}) {
+    World world = weightless();
+    BodyDef def = point_body(1.0, {0.5f, 0.5f, 0.5f});
+    def.angular_velocity = {0.6f, 0.0f, 0.8f};
+    const BodyId body = world.add_body(def);
+    ASSERT_TRUE(world.add_joint({.kind = kind, .b = body, .friction = 0.25f}));
+    run(world, 1.0);
+    EXPECT_NEAR(double(length(world.angular_velocity(body))), 0.5, 1e-3);
+    EXPECT_NEAR(double(world.angular_velocity(body).x), 0.3, 1e-3) << "the axis stays";
+    run(world, 1.5);
+    EXPECT_NEAR(double(length(world.angular_velocity(body))), 0.0, 1e-6);
+  }
+}
+
+// --------------------------------------------------------------------------------------------------------------- gears
+
+struct GearRig {
+  World world = weightless();
+  BodyId first, second;
+  JointId gear;
+  GearRig() {
+    first = world.add_body(point_body(1.0, {1, 1, 1}));
+    second = world.add_body(point_body(1.0, {9, 9, 9}, {2, 0, 0}));
+    world.add_joint({.kind = JointKind::hinge, .b = first, .axis = {0, 0, 1}});
+    world.add_joint({.kind = JointKind::hinge, .b = second, .anchor = {2, 0, 0}, .axis = {0, 0, 1}});
+    gear =
+        world.add_joint({.kind = JointKind::gear, .a = first, .b = second, .axis = {0, 0, 1}, .ratio = 3.0f});
+  }
+};
+
+// 3:1, inertias 1 and 9, a torque of 1 on the first: 1 / (1 + 9 / 9) rad/s^2.
+TEST(Gear, TurnsShaftsInItsRatio) {
+  GearRig rig;
+  for (int i = 0; i < 120; ++i) {
+    rig.world.add_torque(rig.first, {0, 0, 1});
+    rig.world.step(kStep);
+  }
+  EXPECT_TRUE(relative_row("A-42 acceleration", double(rig.world.angular_velocity(rig.first).z) / 2.0, 0.5,
+                           1e-2, 1e-4));
+  EXPECT_TRUE(relative_row(
+      "A-42 ratio of speeds",
+      double(rig.world.angular_velocity(rig.first).z) / double(rig.world.angular_velocity(rig.second).z),
+      -3.0, 1e-4, 1e-6));
+  rig.world.set_velocity(rig.first, {}, {0, 0, 30});
+  rig.world.set_velocity(rig.second, {}, {0, 0, -10});
+  run(rig.world, 22.0);  // more than a hundred turns
+  const double a = double(rig.world.joint_axis_reading(rig.gear, JointAxis::angular_x).position);
+  const double b = double(rig.world.joint_axis_reading(rig.gear, JointAxis::angular_y).position);
+  EXPECT_GT(a, 2.0 * kPiDouble * 100.0);
+  EXPECT_TRUE(limit_row("A-42 drift in 100 turns (rad)", std::fabs(a + 3.0 * b), 1e-3, 1e-4));
+}
+
+TEST(Gear, OfNegativeRatioTurnsTheSameWay) {
+  World world = weightless();
+  const BodyId a = world.add_body(point_body(1.0, {1, 1, 1}));
+  const BodyId b = world.add_body(point_body(1.0, {1, 1, 1}, {1, 0, 0}));
+  world.add_joint({.kind = JointKind::hinge, .b = a, .axis = {0, 0, 1}});
+  world.add_joint({.kind = JointKind::hinge, .b = b, .anchor = {1, 0, 0}, .axis = {0, 1, 0}});  // bevel gears
+  world.add_joint(
+      {.kind = JointKind::gear, .a = a, .b = b, .axis = {0, 0, 1}, .axis_b = Vec3{0, 1, 0}, .ratio = -2.0f});
+  for (int i = 0; i < 60; ++i) {
+    world.add_torque(a, {0, 0, 1});
+    world.step(kStep);
+  }
+  EXPECT_NEAR(double(world.angular_velocity(a).z), 1.0 / 1.25, 1e-4);
+  EXPECT_NEAR(double(world.angular_velocity(b).y), 0.5 / 1.25, 1e-4);
+}
+
+// A rack of 2 kg on a pinion of radius 0.25 m and inertia 0.125 under 1 N m: 1 / (0.125 + 2 * 0.25^2) = 4 rad/s^2.
+TEST(RackAndPinion, RollWithoutSlip) {
+  World world = weightless();
+  const BodyId pinion = world.add_body(point_body(1.0, {1, 1, 0.125f}));
+  const BodyId rack = world.add_body(point_body(2.0, {1, 1, 1}, {0, -0.25, 0}));
+  world.add_joint({.kind = JointKind::hinge, .b = pinion, .axis = {0, 0, 1}});
+  world.add_joint({.kind = JointKind::slider, .b = rack, .axis = {1, 0, 0}});
+  const JointId joint = world.add_joint({.kind = JointKind::rack_and_pinion,
+                                         .a = pinion,
+                                         .b = rack,
+                                         .axis = {0, 0, 1},
+                                         .axis_b = Vec3{1, 0, 0},
+                                         .ratio = 0.25f});
+  ASSERT_TRUE(joint);
+  for (int i = 0; i < 120; ++i) {
+    world.add_torque(pinion, {0, 0, 1});
+    world.step(kStep);
+  }
+  EXPECT_TRUE(relative_row("A-42 pinion (rad/s)", double(world.angular_velocity(pinion).z), 8.0, 1e-2, 1e-4));
+  EXPECT_TRUE(relative_row("A-42 rack (m/s)", double(world.linear_velocity(rack).x), 2.0, 1e-2, 1e-4));
+  run(world, 60.0);
+  const double turned = double(world.joint_axis_reading(joint, JointAxis::angular_x).position);
+  EXPECT_TRUE(limit_row("A-42 slip of the rack in 76 turns (m)",
+                        std::fabs(world.pose(rack).position.x - 0.25 * turned), 1e-3, 1e-4));
+}
+
+// A free rack against a free pinion: what one gets the other gives, also in angular momentum.
+TEST(RackAndPinion, KeepMomentumBetweenThem) {
+  World world = weightless();
+  const BodyId pinion = world.add_body(point_body(1.0, {0.2f, 0.2f, 0.2f}));
+  const BodyId rack = world.add_body(point_body(2.0, {0.4f, 0.4f, 0.4f}, {0, -0.25, 0}));
+  world.add_joint({.kind = JointKind::rack_and_pinion,
+                   .a = pinion,
+                   .b = rack,
+                   .axis = {0, 0, 1},
+                   .axis_b = Vec3{1, 0, 0},
+                   .ratio = 0.25f});
+  world.set_velocity(pinion, {}, {0, 0, 4});
+  world.step(kStep);
+  const Momentum m = world.momentum();
+  EXPECT_NEAR(length(m.linear), 0.0, 1e-5);
+  EXPECT_NEAR(m.angular.z, 0.2 * 4.0, 1e-3);
+}
+
+// ------------------------------------------------------------------------------------------------------------- pulleys
+
+// 1 kg and 2 kg on a rope without mass.
+TEST(Pulley, IsAtwoodsMachine) {
+  World world = make_world({.sleeping = false});
+  const BodyId light = world.add_body(point_body(1.0, {1e-2f, 1e-2f, 1e-2f}, {-0.5, -2, 0}));
+  const BodyId heavy = world.add_body(point_body(2.0, {1e-2f, 1e-2f, 1e-2f}, {0.5, -1, 0}));
+  const JointId rope = world.add_joint({.kind = JointKind::pulley,
+                                        .a = light,
+                                        .b = heavy,
+                                        .anchor = {-0.5, -2, 0},
+                                        .ground_a = {-0.5, 0, 0},
+                                        .ground_b = {0.5, 0, 0}});
+  ASSERT_TRUE(rope);
+  run(world, 0.5);
+  EXPECT_TRUE(relative_row("A-41 acceleration", -double(world.linear_velocity(heavy).y) / 0.5, kGravity / 3.0,
+                           1e-2, 1e-4));
+  EXPECT_TRUE(
+      relative_row("A-41 tension (N)", double(length(world.joint_reading(rope).force)), 13.08, 1e-2, 1e-4));
+  EXPECT_NEAR(double(world.joint_reading(rope).position), 3.0, 1e-4);
+}
+
+// A block and tackle: ratio 2 balances a weight twice as heavy; a rope never pushes.
+TEST(Pulley, MultipliesForceAndGoesSlack) {
+  World world = make_world({.sleeping = false});
+  const BodyId a = world.add_body(point_body(2.0, {1e-2f, 1e-2f, 1e-2f}, {-0.5, -2, 0}));
+  const BodyId b = world.add_body(point_body(4.0, {1e-2f, 1e-2f, 1e-2f}, {0.5, -1, 0}));
+  const JointId rope = world.add_joint({.kind = JointKind::pulley,
+                                        .a = a,
+                                        .b = b,
+                                        .anchor = {-0.5, -2, 0},
+                                        .ratio = 2.0f,
+                                        .ground_a = {-0.5, 0, 0},
+                                        .ground_b = {0.5, 0, 0}});
+  run(world, 2.0);
+  EXPECT_NEAR(double(world.linear_velocity(a).y), 0.0, 1e-4);
+  EXPECT_NEAR(world.pose(b).position.y, -1.0, 1e-3);
+  world.set_velocity(a, {0, 3, 0}, {});
+  world.step(kStep);
+  EXPECT_NEAR(double(world.linear_velocity(b).y), -kGravity / 60.0, 1e-3) << "slack: b falls freely";
+  EXPECT_LT(double(world.joint_reading(rope).position), 4.0);
+}
+
+// --------------------------------------------------------------------------------------------------------------- paths
+
+std::vector<Vec3> circle(float radius, int count) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < count; ++i) {
+    const double a = 2.0 * kPiDouble * i / count;
+    points.push_back({radius * float(std::sin(a)), radius * float(1.0 - std::cos(a)), 0});
+  }
+  return points;
+}
+
+// A bead on a wire that is a circle of 2 m, upright: small swings take 2 pi sqrt(R / g), and energy stays.
+TEST(Path, BeadOnACircularWireIsAPendulum) {
+  World world = make_world({.sleeping = false});
+  const BodyId bead = world.add_body(point_body(1.0, {1e-3f, 1e-3f, 1e-3f}));
+  ASSERT_TRUE(
+      world.add_joint({.kind = JointKind::path, .b = bead, .path = circle(2.0f, 64), .path_closed = true}));
+  world.set_velocity(bead, {0.2f, 0, 0}, {});
+  ZeroCrossings through;
+  double off = 0.0;
+  for (int i = 0; i < 1800; ++i) {
+    const DVec3 p = world.pose(bead).position;
+    through.add(double(i) * double(kStep), p.x);
+    off = std::max(off, std::fabs(std::hypot(p.x, p.y - 2.0) - 2.0));
+    world.step(kStep);
+  }
+  const double amplitude = 0.2 / std::sqrt(2.0 * kGravity);
+  const double period = 2.0 * kPiDouble * std::sqrt(2.0 / kGravity) * (1.0 + amplitude * amplitude / 16.0);
+  EXPECT_TRUE(relative_row("period of a bead", through.mean_period(), period, 2e-3, 2e-4));
+  EXPECT_TRUE(limit_row("off the wire (m)", off, 1e-3, 1e-4));
+}
+
+// Looping the loop without friction: speed at the top of v0^2 - 4 g R, and no energy lost in 20 rounds.
+TEST(Path, KeepsItsEnergyAround) {
+  for (const PathOrientation orientation :
+       {PathOrientation::free, PathOrientation::fixed, PathOrientation::following}) {
+    World world = make_world({.sleeping = false});
+    const BodyId bead = world.add_body(point_body(1.0, {0.05f, 0.05f, 0.05f}));
+    ASSERT_TRUE(world.add_joint({.kind = JointKind::path,
+                                 .b = bead,
+                                 .path = circle(2.0f, 64),
+                                 .path_closed = true,
+                                 .path_orientation = orientation}));
+    const float v0 = 12.0f;
+    world.set_velocity(bead, {v0, 0, 0},
+                       orientation == PathOrientation::following ? Vec3{0, 0, v0 / 2} : Vec3{});
+    world.step(kStep);
+    const auto energy = [&] { return world.energy().kinetic + world.energy().potential; };
+    const double start = energy();
+    double worst = 0.0, tilt = 0.0;
+    int rounds = 0;
+    double before = 0.0;
+    for (int i = 0; i < 1200; ++i) {
+      world.step(kStep);
+      worst = std::max(worst, std::fabs(energy() / start - 1.0));
+      const DVec3 p = world.pose(bead).position;
+      if (before < 0.0 && p.x >= 0.0 && p.y < 2.0) ++rounds;
+      before = p.x;
+      if (orientation != PathOrientation::following) continue;
+      const DVec3 along = turned(world.pose(bead).orientation, {1, 0, 0});
+      tilt = std::max(tilt, std::fabs(dot(along, (1.0 / 2.0) * (p - DVec3{0, 2, 0}))));
+    }
+    EXPECT_GE(rounds, 14);
+    EXPECT_TRUE(limit_row("energy lost or gained on a loop", worst, 2e-2, 2e-3));
+    EXPECT_TRUE(limit_row("its nose off the curve (rad)", tilt, 2e-2, 2e-3));
+  }
+}
+
+TEST(Path, EndsWhereItEnds) {
+  World world = weightless();
+  const BodyId cart = world.add_body(point_body(1.0, {1, 1, 1}));
+  const JointId joint = world.add_joint(
+      {.kind = JointKind::path, .b = cart, .path = {{-1, 0, 0}, {0, 0, 0}, {1, 0.2f, 0}, {2, 0, 0}}});
+  world.set_velocity(cart, {3, 0, 0}, {});
+  run(world, 3.0);
+  EXPECT_NEAR(world.pose(cart).position.x, 2.0, 2e-3);
+  EXPECT_NEAR(double(world.joint_reading(joint).velocity), 0.0, 1e-3);
+}
+
+// ---------------------------------------------------------------------------------------------------- mice and motors
+
+// A mouse pulls a body after a point, with no more than its force: 10 kg, 5 N, from 4 m away.
+TEST(Mouse, DragsWithALimitedForce) {
+  World world = weightless();
+  const BodyId body = world.add_body(point_body(10.0, {1, 1, 1}));
+  const JointId mouse =
+      world.add_joint({.kind = JointKind::mouse, .b = body, .drive = {.frequency = 5.0f, .max_force = 5.0f}});
+  ASSERT_TRUE(mouse);
+  EXPECT_TRUE(world.set_drive(mouse, {.position = {4, 0, 0}, .frequency = 5.0f, .max_force = 5.0f}));
+  run(world, 1.0);
+  EXPECT_NEAR(double(world.linear_velocity(body).x), 0.5, 1e-3) << "at full force";
+  EXPECT_NEAR(double(length(world.joint_reading(mouse).force)), 5.0, 1e-3);
+  EXPECT_TRUE(world.set_drive(mouse, {.position = {4, 1, 0}, .frequency = 5.0f, .max_force = 5000.0f}));
+  run(world, 2.0);
+  EXPECT_LE(length(world.pose(body).position - DVec3{4, 1, 0}), 1e-3);
+}
+
+// Off its centre it turns the body too: a point of it, not its centre, comes to the mouse.
+TEST(Mouse, DragsTheVeryPoint) {
+  World world = make_world({.sleeping = false});
+  BodyDef def = point_body(1.0, {0.1f, 0.1f, 0.1f});
+  def.angular_damping = 3.0f;
+  const BodyId body = world.add_body(def);
+  ASSERT_TRUE(world.add_joint({.kind = JointKind::mouse,
+                               .b = body,
+                               .anchor = {0.5, 0, 0},
+                               .drive = {.frequency = 10.0f, .max_force = 200.0f}}));
+  run(world, 15.0);
+  const DVec3 hung = world.pose(body).position;
+  const double omega = 2.0 * kPiDouble * 10.0;
+  EXPECT_NEAR(hung.x, 0.5, 1e-2);
+  EXPECT_NEAR(hung.y, -0.5, 0.5 * kGravity / omega + 1e-2) << "hangs below the point";
+}
+
+TEST(PoseMotor, BringsABodyToItsPose) {
+  const Quat turn = from_rotation_vector({0.4f, -0.3f, 0.8f});
+  for (const float frequency : {0.0f, 3.0f}) {
+    World world = make_world({.sleeping = false});
+    const BodyId body = world.add_body(point_body(2.0, {0.2f, 0.3f, 0.4f}));
+    const JointId motor = world.add_joint({.kind = JointKind::motor,
+                                           .b = body,
+                                           .drive = {.position = {1, 2, 3},
+                                                     .orientation = turn,
+                                                     .frequency = frequency,
+                                                     .max_force = 1000.0f,
+                                                     .max_torque = 500.0f}});
+    ASSERT_TRUE(motor);
+    run(world, 3.0);
+    const double omega = 2.0 * kPiDouble * double(frequency);
+    const double sag = frequency > 0.0f ? kGravity / (omega * omega) : 0.0;
+    EXPECT_LE(length(world.pose(body).position - DVec3{1, 2 - sag, 3}), 2e-3);
+    EXPECT_LE(double(length(to_rotation_vector(world.pose(body).orientation * conjugate(turn)))), 1e-3);
+    EXPECT_NEAR(double(world.joint_reading(motor).force.y), 2.0 * kGravity, 0.05);
+  }
+}
+
+TEST(PoseMotor, TurnsNoHarderThanItMay) {
+  World world = weightless();
+  const BodyId body = world.add_body(point_body(1.0, {1, 1, 1}));
+  world.add_joint({.kind = JointKind::motor,
+                   .b = body,
+                   .drive = {.orientation = from_axis_angle({0, 0, 1}, 2.5f), .max_torque = 0.5f}});
+  run(world, 1.0);
+  EXPECT_NEAR(double(world.angular_velocity(body).z), 0.5, 1e-3);
+}
+
+// ------------------------------------------------------------------------------------------- breaking, switching, state
+
+TEST(EveryKindOfJoint, BreaksAboveItsForceAndSaysSo) {
+  for (const JointKind kind : {JointKind::ball, JointKind::hinge, JointKind::slider, JointKind::fixed,
+                               JointKind::distance, JointKind::cone, JointKind::universal, JointKind::six_dof,
+                               JointKind::wheel, JointKind::path, JointKind::mouse, JointKind::motor}) {
+    for (const bool heavy : {false, true}) {
+      World world = make_world({.gravity = {0, 0, -10}, .sleeping = false});
+      const BodyId body = world.add_body(point_body(heavy ? 1.1 : 0.9, {0.1f, 0.1f, 0.1f}));
+      JointDef def{.kind = kind, .b = body, .break_force = 10.0f, .path = {{-2, 0, 0}, {2, 0, 0}}};
+      if (kind == JointKind::distance) def.anchor = {0, 0, 1};
+      def.drive = {.max_force = 1000.0f, .max_torque = 1000.0f};
+      const JointId joint = world.add_joint(def);
+      ASSERT_TRUE(joint) << to_string(kind);
+      bool told = false;
+      for (int i = 0; i < 120; ++i) {
+        world.step(kStep);
+        for (const JointBroken& broken : world.events().broken) {
+          told = told || broken.joint == joint;
+          EXPECT_GT(broken.force, 10.0f);
+        }
+      }
+      EXPECT_EQ(told, heavy) << to_string(kind);
+      EXPECT_EQ(world.exists(joint), !heavy) << to_string(kind);
+    }
+  }
+}
+
+TEST(EveryKindOfJoint, BreaksAboveItsTorque) {
+  for (const JointKind kind : {JointKind::hinge, JointKind::slider, JointKind::fixed, JointKind::universal,
+                               JointKind::six_dof, JointKind::wheel, JointKind::motor}) {
+    for (const bool strong : {false, true}) {
+      World world = weightless();
+      const BodyId body = world.add_body(point_body(1.0, {0.1f, 0.1f, 0.1f}));
+      JointDef def{.kind = kind, .b = body, .break_torque = 2.0f, .axis_b = Vec3{0, 0, 1}};
+      def.drive = {.max_force = 1000.0f, .max_torque = 1000.0f};
+      if (kind == JointKind::six_dof) def.angular_x.motion = def.angular_z.motion = AxisMotion::free;
+      const JointId joint = world.add_joint(def);
+      for (int i = 0; i < 30; ++i) {
+        world.add_torque(body, {0, strong ? 2.2f : 1.8f, 0});
+        world.step(kStep);
+      }
+      EXPECT_EQ(world.exists(joint), !strong) << to_string(kind);
+    }
+  }
+}
+
+TEST(EveryKindOfJoint, DoesNothingWhileItIsOff) {
+  World world = make_world({.sleeping = false});
+  const BodyId body = world.add_body(point_body(1.0, {0.1f, 0.1f, 0.1f}));
+  const JointId joint = world.add_joint({.kind = JointKind::fixed, .b = body});
+  run(world, 0.5);
+  EXPECT_NEAR(world.pose(body).position.y, 0.0, 1e-4);
+  EXPECT_TRUE(world.set_joint_enabled(joint, false));
+  EXPECT_FALSE(world.joint_enabled(joint));
+  run(world, 0.5);
+  EXPECT_NEAR(double(world.linear_velocity(body).y), -0.5 * kGravity, 1e-4);
+  EXPECT_TRUE(world.set_joint_enabled(joint, true));
+  run(world, 2.0);
+  EXPECT_NEAR(world.pose(body).position.y, 0.0, 1e-3) << "it takes its body back";
+}
+
+// One world with every kind, each doing something.
+void add_everything(World& world) {
+  const auto body = [&](double x) { return world.add_body(point_body(1.0, {0.2f, 0.3f, 0.25f}, {x, 0, 0})); };
+  world.add_joint({.kind = JointKind::cone,
+                   .b = body(0),
+                   .anchor = {0.3, 0.2, 0},
+                   .limits = Limits{-0.5f, 0.5f},
+                   .friction = 0.1f,
+                   .swing_y = 0.6f,
+                   .swing_z = 0.3f});
+  world.add_joint({.kind = JointKind::universal,
+                   .b = body(2),
+                   .anchor = {2.5, 0, 0},
+                   .axis_b = Vec3{0, 0.2f, 1},
+                   .angular_z = {.motion = AxisMotion::free, .stiffness = 3.0f, .damping = 0.1f}});
+  JointDef six{.kind = JointKind::six_dof, .b = body(4), .anchor = {4, 0.5, 0}};
+  six.linear_y = {.motion = AxisMotion::limited, .limits = {-0.1f, 0.2f}, .limit_frequency = 3.0f};
+  six.angular_x = {.motion = AxisMotion::free, .motor = {.target_velocity = 2.0f, .max_force = 1.0f}};
+  six.angular_z = {.motion = AxisMotion::free, .friction = 0.2f};
+  world.add_joint(six);
+  const BodyId g1 = body(6), g2 = body(7);
+  world.add_joint({.kind = JointKind::hinge,
+                   .b = g1,
+                   .anchor = {6, 0, 0},
+                   .axis = {0, 0, 1},
+                   .motor = {.target_velocity = 5.0f, .max_force = 2.0f},
+                   .stiffness = 0.1f,
+                   .friction = 0.05f});
+  world.add_joint({.kind = JointKind::hinge, .b = g2, .anchor = {7, 0, 0}, .axis = {0, 0, 1}});
+  world.add_joint({.kind = JointKind::gear, .a = g1, .b = g2, .axis = {0, 0, 1}, .ratio = 2.5f});
+  const BodyId rack = world.add_body(point_body(1.0, {0.2f, 0.3f, 0.25f}, {7, -0.5, 0}));
+  world.add_joint({.kind = JointKind::slider, .b = rack, .anchor = {7, -0.5, 0}});
+  world.add_joint({.kind = JointKind::rack_and_pinion,
+                   .a = g2,
+                   .b = rack,
+                   .axis = {0, 0, 1},
+                   .axis_b = Vec3{1, 0, 0},
+                   .ratio = 0.5f});
+  const BodyId p1 = body(9), p2 = body(10);
+  world.add_joint({.kind = JointKind::pulley,
+                   .a = p1,
+                   .b = p2,
+                   .anchor = {9, 0, 0},
+                   .ratio = 1.5f,
+                   .ground_a = {9, 3, 0},
+                   .ground_b = {10, 2, 0.5}});
+  world.add_joint({.kind = JointKind::wheel,
+                   .a = p1,
+                   .b = body(12),
+                   .anchor = {12, 0, 0},
+                   .axis = {0, 1, 0},
+                   .limits = Limits{-0.2f, 0.2f},
+                   .motor = {.target_velocity = 3.0f, .max_force = 1.0f},
+                   .stiffness = 200.0f,
+                   .damping = 10.0f,
+                   .axis_b = Vec3{0, 0, 1},
+                   .angular_x = {.motion = AxisMotion::limited, .limits = {-0.5f, 0.5f}}});
+  world.add_joint({.kind = JointKind::path,
+                   .b = body(14),
+                   .anchor = {14, 0, 0},
+                   .path = {{-1, 1, 0}, {0, 0, 0}, {1, 1, 0.5f}, {0, 2, 0}},
+                   .path_closed = true,
+                   .path_orientation = PathOrientation::following});
+  world.add_joint({.kind = JointKind::path,
+                   .b = body(18),
+                   .anchor = {18, 0, 0},
+                   .path = {{-1, 1, 0}, {0, 0, 0}, {1, 1, 0.5f}}});
+  world.add_joint({.kind = JointKind::mouse,
+                   .b = body(16),
+                   .anchor = {16.2, 0, 0},
+                   .drive = {.position = {0.3f, 1, 0}, .frequency = 2.0f, .max_force = 30.0f}});
+  world.add_joint({.kind = JointKind::motor,
+                   .a = p2,
+                   .b = body(20),
+                   .anchor = {20, 0, 0},
+                   .drive = {.position = {0.3f, 1, 0}, .max_force = 30.0f, .max_torque = 5.0f}});
+}
+
+// Snapshot in the middle, rollback, and a recording with changes on the way all lead to the same bits.
+TEST(EveryKindOfJoint, IsInSnapshotsAndRecordings) {
+  World world = make_world({.sleeping = false});
+  add_everything(world);
+  ASSERT_TRUE(world.problems().empty()) << world.problems()[0].message;
+  run(world, 1.0);
+  const std::vector<std::byte> saved = save_snapshot(world);
+  Result<World> loaded = load_snapshot(saved);
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  EXPECT_EQ(loaded->hash(), world.hash());
+  for (int i = 0; i < 120; ++i) {
+    world.step(kStep);
+    loaded->step(kStep);
+  }
+  EXPECT_EQ(loaded->hash(), world.hash());
+  EXPECT_TRUE(is_finite(world.energy().kinetic));
+}
+
+}  // namespace
+}  // namespace gyre::laws

@@ -1,0 +1,331 @@
+// Every kind of joint: what it leaves free moves as if alone, what it holds stays, and what acts on it does what its name
+// says. Closed forms.
+#include "laws/kit.h"
+
+namespace gyre::laws {
+namespace {
+
+// ---------------------------------------------------------------------------------------------------- frees and holds
+
+// What a kind leaves free of a body that stands on the world: which of six motions of its frame.
+struct Freedom {
+  const char* name;
+  JointDef def;
+  bool free[6];  // slides along x, y, z; turns about x, y, z
+};
+
+JointAxisDef of(AxisMotion motion) { return {.motion = motion}; }
+
+std::vector<Freedom> freedoms() {
+  std::vector<Freedom> all = {
+      {"ball", {.kind = JointKind::ball}, {false, false, false, true, true, true}},
+      {"hinge", {.kind = JointKind::hinge}, {false, false, false, true, false, false}},
+      {"slider", {.kind = JointKind::slider}, {true, false, false, false, false, false}},
+      {"fixed", {.kind = JointKind::fixed}, {false, false, false, false, false, false}},
+      {"cone", {.kind = JointKind::cone}, {false, false, false, true, true, true}},
+      {"universal",
+       {.kind = JointKind::universal, .axis_b = Vec3{0, 0, 1}},
+       {false, false, false, true, false, true}},
+      {"wheel",
+       {.kind = JointKind::wheel, .axis_b = Vec3{0, 0, 1}},
+       {true, false, false, false, false, true}},
+      {"steered wheel",
+       {.kind = JointKind::wheel, .axis_b = Vec3{0, 0, 1}, .angular_x = of(AxisMotion::free)},
+       {true, false, false, true, false, true}},
+      {"path",
+       {.kind = JointKind::path, .path = {{-9, 0, 0}, {-1, 0, 0}, {1, 0, 0}, {9, 0, 0}}},
+       {true, false, false, true, true, true}},
+      {"path, fixed",
+       {.kind = JointKind::path,
+        .path = {{-9, 0, 0}, {-1, 0, 0}, {1, 0, 0}, {9, 0, 0}},
+        .path_orientation = PathOrientation::fixed},
+       {true, false, false, false, false, false}},
+  };
+  // Of six axes every single one, and all but one.
+  for (int axis = 0; axis < 6; ++axis) {
+    for (const bool inverted : {false, true}) {
+      Freedom f{"six_dof", {.kind = JointKind::six_dof, .axis_b = Vec3{0, 0, 1}}, {}};
+      JointAxisDef* const axes[] = {&f.def.linear_x,  &f.def.linear_y,  &f.def.linear_z,
+                                    &f.def.angular_x, &f.def.angular_y, &f.def.angular_z};
+      for (int i = 0; i < 6; ++i) {
+        f.free[i] = (i == axis) != inverted;
+        if (f.free[i]) axes[i]->motion = AxisMotion::free;
+      }
+      all.push_back(f);
+    }
+  }
+  return all;
+}
+
+constexpr Vec3 kUnits[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+
+// A free motion is that of a body without a joint; a held one does not happen, however it is pushed.
+TEST(EveryKind, LeavesFreeWhatItSaysAndHoldsTheRest) {
+  for (const Freedom& kind : freedoms()) {
+    for (int axis = 0; axis < 6; ++axis) {
+      World world = weightless();
+      const BodyId body = world.add_body(point_body(2.0, {0.3f, 0.5f, 0.7f}, {1, 2, 3}));
+      JointDef def = kind.def;
+      def.b = body;
+      def.anchor = {1, 2, 3};
+      ASSERT_TRUE(world.add_joint(def));
+      const Vec3 unit = kUnits[axis % 3];
+      const double moments[3] = {0.3, 0.5, 0.7};
+      double expected = 0.0;
+      for (int i = 0; i < 60; ++i) {
+        if (axis < 3) {
+          world.add_force(body, 2.0f * unit);
+        } else {
+          world.add_torque(body, 0.5f * unit);
+        }
+        world.step(kStep);
+      }
+      expected = axis < 3 ? 1.0 : 0.5 / moments[axis - 3];
+      const Vec3 velocity = axis < 3 ? world.linear_velocity(body) : world.angular_velocity(body);
+      const double speed = double(dot(velocity, unit));
+      const DVec3 off = world.pose(body).position - DVec3{1, 2, 3};
+      const Vec3 turn = to_rotation_vector(world.pose(body).orientation);
+      const double moved = axis < 3 ? dot(off, DVec3(unit)) : double(dot(turn, unit));
+      const char* const label = axis < 3 ? "slides" : "turns";
+      SCOPED_TRACE(testing::Message() << kind.name << " " << label << " along or about axis " << axis % 3);
+      if (kind.free[axis]) {
+        EXPECT_NEAR(speed, expected, 1e-4 * expected);
+        EXPECT_NEAR(moved, 0.5 * expected, 0.01 * expected);  // first order in the sub-step: h / 2 of 1 s
+      } else {
+        EXPECT_NEAR(speed, 0.0, 1e-4 * expected);
+        EXPECT_NEAR(moved, 0.0, 1e-4);
+      }
+    }
+  }
+}
+
+// Held axes do not creep under a weight at an arm: 1 kg 1 m out, beside a wall.
+TEST(EveryKind, CarriesAWeightAtAnArm) {
+  for (const Freedom& kind : freedoms()) {
+    for (int down = 0; down < 3; ++down) {
+      World world = make_world({.gravity = -9.81f * kUnits[down], .sleeping = false});
+      const BodyId body = world.add_body(point_body(1.0, {0.1f, 0.1f, 0.1f}));
+      JointDef def = kind.def;
+      def.b = body;
+      const Vec3 arm = kUnits[(down + 1) % 3];  // across gravity
+      def.anchor = -1.0 * DVec3(arm);
+      const int about = 3 + (down + 2) % 3;
+      if (kind.free[down] || kind.free[about]) continue;
+      bool couples =
+          false;  // Cardan angles turn each other's axes: only where nothing else is free they hold alone
+      for (int i = 3; i < 6; ++i) couples = couples || kind.free[i];
+      if (couples) continue;
+      const JointId joint = world.add_joint(def);
+      ASSERT_TRUE(joint);
+      run(world, 2.0);
+      SCOPED_TRACE(testing::Message() << kind.name << " weight along axis " << down);
+      EXPECT_LE(length(world.pose(body).position), 1e-3);
+      const JointReading reading = world.joint_reading(joint);
+      EXPECT_NEAR(double(length(reading.force)), 9.81, 0.01 * 9.81);
+      EXPECT_NEAR(double(length(reading.torque)), 9.81, 0.01 * 9.81);
+    }
+  }
+}
+
+// ------------------------------------------------------------------------------------------------ what acts on an axis
+
+// The single axes that something may act on, as bodies of inertia 1 on the world.
+struct Axis {
+  const char* name;
+  JointDef def;
+  JointAxis axis;
+  bool turns;
+  Vec3 unit;  // of the motion
+};
+std::vector<Axis> axes() {
+  JointDef slider6{.kind = JointKind::six_dof, .axis_b = Vec3{0, 0, 1}};
+  slider6.linear_y.motion = AxisMotion::free;
+  JointDef hinge6{.kind = JointKind::six_dof, .axis_b = Vec3{0, 0, 1}};
+  hinge6.angular_y.motion = AxisMotion::free;
+  const JointDef universal{.kind = JointKind::universal, .axis_b = Vec3{0, 0, 1}};
+  const JointDef wheel{.kind = JointKind::wheel, .axis_b = Vec3{0, 0, 1}, .angular_x = of(AxisMotion::free)};
+  return {
+      {"hinge", {.kind = JointKind::hinge}, JointAxis::angular_x, true, {1, 0, 0}},
+      {"slider", {.kind = JointKind::slider}, JointAxis::linear_x, false, {1, 0, 0}},
+      {"cone's twist", {.kind = JointKind::cone}, JointAxis::angular_x, true, {1, 0, 0}},
+      {"universal about a's axis", universal, JointAxis::angular_x, true, {1, 0, 0}},
+      {"universal about b's axis", universal, JointAxis::angular_z, true, {0, 0, 1}},
+      {"wheel's suspension", wheel, JointAxis::linear_x, false, {1, 0, 0}},
+      {"wheel's steering", wheel, JointAxis::angular_x, true, {1, 0, 0}},
+      {"wheel's spin", wheel, JointAxis::angular_z, true, {0, 0, 1}},
+      {"six_dof slide", slider6, JointAxis::linear_y, false, {0, 1, 0}},
+      {"six_dof turn", hinge6, JointAxis::angular_y, true, {0, 1, 0}},
+      {"path",
+       {.kind = JointKind::path, .path = {{-99, 0, 0}, {-1, 0, 0}, {1, 0, 0}, {99, 0, 0}}},
+       JointAxis::linear_x,
+       false,
+       {1, 0, 0}},
+  };
+}
+
+struct Rig {
+  World world;
+  BodyId body;
+  JointId joint;
+  const Axis& axis;
+
+  Rig(const Axis& a, const JointAxisDef& def, Vec3 gravity = {})
+      : world(make_world({.gravity = gravity, .sleeping = false})), axis(a) {
+    body = world.add_body(point_body(1.0, {1, 1, 1}));
+    JointDef made = a.def;
+    made.b = body;
+    joint = world.add_joint(made);
+    EXPECT_TRUE(world.set_joint_axis(joint, a.axis, def)) << a.name;
+  }
+  void push(float by) {
+    if (axis.turns) {
+      world.add_torque(body, by * axis.unit);
+    } else {
+      world.add_force(body, by * axis.unit);
+    }
+  }
+  JointAxisReading reading() const { return world.joint_axis_reading(joint, axis.axis); }
+  double speed() const {
+    return double(dot(axis.turns ? world.angular_velocity(body) : world.linear_velocity(body), axis.unit));
+  }
+  void set_speed(float speed) {
+    world.set_velocity(body, axis.turns ? Vec3{} : speed * axis.unit,
+                       axis.turns ? speed * axis.unit : Vec3{});
+  }
+};
+
+TEST(EveryAxis, StopsAtItsLimits) {
+  for (const Axis& axis : axes()) {
+    SCOPED_TRACE(axis.name);
+    for (const float way : {-1.0f, 1.0f}) {
+      Rig rig(axis, {.motion = AxisMotion::limited, .limits = {-0.3f, 0.5f}});
+      double most = 0.0;
+      for (int i = 0; i < 240; ++i) {
+        rig.push(2.0f * way);
+        rig.world.step(kStep);
+        most = std::max(most, double(way) * double(rig.reading().position));
+      }
+      const double stop = way > 0.0f ? 0.5 : 0.3;
+      EXPECT_NEAR(double(rig.reading().position), double(way) * stop, 2e-3);
+      EXPECT_LE(most, stop + 5e-3);
+      EXPECT_NEAR(rig.speed(), 0.0, 1e-3);
+      EXPECT_NEAR(double(rig.reading().force), -2.0 * double(way), 1e-2);
+    }
+  }
+}
+
+// A soft limit gives way like a spring of its frequency on the body: load / (2 pi f)^2.
+TEST(EveryAxis, GivesWayAtSoftLimits) {
+  for (const Axis& axis : axes()) {
+    SCOPED_TRACE(axis.name);
+    Rig rig(axis, {.motion = AxisMotion::limited,
+                   .limits = {-0.1f, 0.1f},
+                   .limit_frequency = 2.0f,
+                   .limit_damping_ratio = 1.0f});
+    for (int i = 0; i < 600; ++i) {
+      rig.push(5.0f);
+      rig.world.step(kStep);
+    }
+    const double omega = 2.0 * kPiDouble * 2.0;
+    EXPECT_NEAR(double(rig.reading().position), 0.1 + 5.0 / (omega * omega), 1e-4);
+  }
+}
+
+// a motor of limited force brings what is free to its speed at force / inertia, and holds it there with none.
+TEST(EveryAxis, IsDrivenToASpeed) {
+  for (const Axis& axis : axes()) {
+    SCOPED_TRACE(axis.name);
+    Rig rig(axis, {.motion = AxisMotion::free, .motor = {.target_velocity = 1.0f, .max_force = 2.0f}});
+    for (int i = 0; i < 15; ++i) rig.world.step(kStep);
+    EXPECT_NEAR(rig.speed(), 0.5, 1e-4) << "still at full force";
+    EXPECT_NEAR(double(rig.reading().force), 2.0, 1e-3);
+    run(rig.world, 0.5);
+    EXPECT_NEAR(rig.speed(), 1.0, 1e-4);
+    run(rig.world, 0.1);
+    EXPECT_NEAR(double(rig.reading().force), 0.0, 1e-3);
+    EXPECT_NEAR(double(rig.reading().velocity), 1.0, 1e-4);
+  }
+}
+
+TEST(EveryAxis, IsDrivenToAPlace) {
+  for (const Axis& axis : axes()) {
+    SCOPED_TRACE(axis.name);
+    for (const float frequency : {0.0f, 2.0f}) {
+      Rig rig(axis, {.motion = AxisMotion::free,
+                     .motor = {.target_position = 0.4f, .max_force = 1000.0f, .frequency = frequency}});
+      run(rig.world, 3.0);
+      EXPECT_NEAR(double(rig.reading().position), 0.4, 1e-4);
+      // Under a load it gives way as its spring does, or not at all.
+      for (int i = 0; i < 300; ++i) {
+        rig.push(3.0f);
+        rig.world.step(kStep);
+      }
+      const double omega = 2.0 * kPiDouble * double(frequency);
+      const double sag = frequency > 0.0f ? 3.0 / (omega * omega) : 0.0;
+      EXPECT_NEAR(double(rig.reading().position), 0.4 + sag, frequency > 0.0f ? 1e-3 : 2e-3);
+    }
+  }
+}
+
+TEST(EveryAxis, IsSprungAsHookeSays) {
+  for (const Axis& axis : axes()) {
+    SCOPED_TRACE(axis.name);
+    Rig rig(axis, {.motion = AxisMotion::free, .stiffness = 39.478418f, .rest_position = 0.25f});
+    ZeroCrossings through;
+    for (int i = 0; i < 600; ++i) {
+      through.add(double(i) * double(kStep), double(rig.reading().position) - 0.25);
+      rig.world.step(kStep);
+    }
+    EXPECT_NEAR(through.mean_period(), 1.0, 1e-3);
+    EXPECT_NEAR(rig.world.energy().elastic + rig.world.energy().kinetic, 0.5 * 39.478418 * 0.25 * 0.25, 0.02);
+    // And it carries a load where force is stiffness times displacement.
+    Rig damped(axis,
+               {.motion = AxisMotion::free, .stiffness = 40.0f, .damping = 6.0f, .rest_position = 0.25f});
+    for (int i = 0; i < 900; ++i) {
+      damped.push(4.0f);
+      damped.world.step(kStep);
+    }
+    EXPECT_NEAR(double(damped.reading().position), 0.35, 1e-5);
+  }
+}
+
+TEST(EveryAxis, IsBrakedByFriction) {
+  for (const Axis& axis : axes()) {
+    SCOPED_TRACE(axis.name);
+    Rig rig(axis, {.motion = AxisMotion::free, .friction = 2.0f});
+    rig.set_speed(1.0f);
+    for (int i = 0; i < 15; ++i) rig.world.step(kStep);
+    EXPECT_NEAR(rig.speed(), 0.5, 1e-3);
+    run(rig.world, 1.0);
+    EXPECT_NEAR(rig.speed(), 0.0, 1e-6);
+    EXPECT_NEAR(double(rig.reading().position), 0.25, 5e-3);
+    const double there = double(rig.reading().position);
+    for (int i = 0; i < 120; ++i) {
+      rig.push(1.9f);
+      rig.world.step(kStep);
+    }
+    EXPECT_NEAR(double(rig.reading().position), there, 1e-4) << "stiction holds below its force";
+    for (int i = 0; i < 60; ++i) {
+      rig.push(3.0f);
+      rig.world.step(kStep);
+    }
+    EXPECT_NEAR(rig.speed(), 1.0, 1e-2);
+  }
+}
+
+// what acts on one axis adds up.
+TEST(EveryAxis, AddsSpringAndMotor) {
+  for (const Axis& axis : axes()) {
+    SCOPED_TRACE(axis.name);
+    Rig rig(axis, {.motion = AxisMotion::free,
+                   .motor = {.target_velocity = 1.0f, .max_force = 3.0f},
+                   .stiffness = 10.0f,
+                   .damping = 5.0f,
+                   .rest_position = -0.2f});
+    run(rig.world, 10.0);
+    EXPECT_NEAR(double(rig.reading().position), -0.2 + 3.0 / 10.0, 1e-3);
+  }
+}
+
+}  // namespace
+}  // namespace gyre::laws
