@@ -106,4 +106,196 @@ def loop():
     return scene("a loop of forty links", (1, 4.5, 12), (1.2, 4, 0), bodies, joints)
 
 
-ALL = (chain, bridge, linkage, loop)
+WOOD, STEEL, CLAY, DARK, LAND = "#cf9a62", "#8d99a8", "#b9674c", "#4d5560", "#9db98b"
+
+
+def ground(size=20):
+    return {"name": "ground", "type": "static", "position": [0, -0.5, 0], "color": LAND, "shapes": [bar(size, 0.5, size)]}
+
+
+def post(name, position, shape, **more):
+    return {"name": name, "type": "static", "position": list(position), "color": DARK, **more, "shapes": [shape]}
+
+
+def joint(kind, a, b, **more):
+    return {"type": kind, "a": a, "b": b, **more}
+
+
+def cylinder(radius, half_height, **more):
+    return {"type": "cylinder", "radius": radius, "half_height": half_height, **more}
+
+
+def ball(radius, **more):
+    return {"type": "sphere", "radius": radius, **more}
+
+
+UPRIGHT_TO_Z = {"axis": [1, 0, 0], "angle": math.pi / 2}  # a cylinder's axis along z
+
+
+def wheel_part(name, position, radius, width, color, **more):
+    """A disc about z with a peg that shows how it turns."""
+    return {"name": name, "position": list(position), "filter": APART, "color": color, **more,
+            "shapes": [cylinder(radius, width, orientation=UPRIGHT_TO_Z),
+                       bar(0.08 * radius, 0.3 * radius, 1.4 * width, position=[0, 0.55 * radius, 0])]}
+
+
+def cone():
+    """A row of arms that hang from shoulders: cones of different ellipses, let go level."""
+    bodies, joints = [ground()], []
+    for i, (y, z) in enumerate(((0.2, 0.2), (0.8, 0.8), (0.2, 1.2), (1.2, 0.2), (1.5, 1.5))):
+        x = (i - 2) * 1.6
+        bodies.append(post(f"shoulder {i + 1}", (x, 3, 0), ball(0.15)))
+        bodies.append(part(f"upper arm {i + 1}", (x, 2.5, 0), bar(0.09, 0.5, 0.14), color=WOOD,
+                           angular_velocity=[2.5, 1, 2.5]))
+        bodies.append(part(f"forearm {i + 1}", (x, 1.55, 0), bar(0.07, 0.45, 0.1), color=CLAY))
+        joints.append(joint("cone", f"shoulder {i + 1}", f"upper arm {i + 1}", anchor=[x, 3, 0], axis=[0, -1, 0], axis_b=[0, 0, 1],
+                            swing=[y, z], limits=[-0.4, 0.4], friction=0.2))
+        joints.append(joint("hinge", f"upper arm {i + 1}", f"forearm {i + 1}", anchor=[x, 2, 0], axis=[1, 0, 0], limits=[-2.3, 0]))
+    return scene("arms on cones", (0, 2.6, 9), (0, 2, 0), bodies, joints)
+
+
+def universal():
+    """A shaft in three pieces around two corners, driven at one end: the middle one runs unevenly, the last evenly again."""
+    bend = 0.6
+    along = [(1, 0), (math.cos(bend), math.sin(bend)), (1, 0)]
+    points, bodies, joints = [(-3.0, 1.5)], [ground()], []
+    for x, y in along:
+        points.append((points[-1][0] + 2 * x, points[-1][1] + 2 * y))
+    names = ("driven", "middle", "last")
+    for name, (x, y), (p, q) in zip(names, along, points):
+        bodies.append(part(name, (p + x, q + y, 0), bar(0.94, 0.09, 0.09), orientation=turned(math.atan2(y, x)), color=CLAY if name == "middle" else STEEL))
+    for name, number in (("driven", 0), ("last", 2)):
+        p, q = points[number]
+        joints.append(joint("hinge", "world", name, name=f"bearing of the {name}", anchor=[p + 1, q, 0], axis=[1, 0, 0]))
+    joints[0]["motor"] = {"target_velocity": 4, "max_force": 400}
+    joints.append(joint("universal", "driven", "middle", anchor=[*points[1], 0], axis=[0, 0, 1], axis_b=[-math.sin(bend), math.cos(bend), 0]))
+    joints.append(joint("universal", "middle", "last", anchor=[*points[2], 0], axis=[-math.sin(bend), math.cos(bend), 0], axis_b=[0, 0, 1]))
+    return scene("a shaft around two corners", (0.3, 2.6, 8), (0, 2, 0), bodies, joints)
+
+
+def spring():
+    """Weights on springs: from soft and undamped to 10^9 N/m on a gram."""
+    bodies, joints = [post("beam", (0, 5, 0), bar(5, 0.1, 0.3)), ground()], []
+    cases = ((1, 40, 0), (1, 100, 0), (1, 100, 4), (1, 1000, 0), (4, 1000, 126), (0.001, 1e9, 0))
+    for i, (mass, stiffness, damping) in enumerate(cases):
+        x = (i - 2.5) * 1.6
+        bodies.append(part(f"weight {i + 1}", (x, 3, 0), bar(0.25, 0.25, 0.25), mass=mass, color=CLAY if damping else WOOD))
+        joints.append(joint("distance", "beam", f"weight {i + 1}", name=f"spring {i + 1}", anchor=[x, 4.9, 0], anchor_b=[x, 3, 0],
+                            length=1.9, stiffness=stiffness, damping=damping))
+    return scene("weights on springs", (0, 3, 11), (0, 2.8, 0), bodies, joints)
+
+
+def six_dof():
+    """Plates on posts, each free, sprung, driven or limited along or about one axis."""
+    free, drive = {"motion": "free"}, {"motor": {"target_velocity": 2, "max_force": 500}}
+    cases = {"linear_x": {"limits": [-0.6, 0.6], **drive}, "linear_y": {**free, "stiffness": 4000, "damping": 60},
+             "linear_z": {**free, "stiffness": 3000, "friction": 20}, "angular_x": {**free, **drive},
+             "angular_y": {**free, "motor": {"target_position": 0.5, "frequency": 1, "damping_ratio": 0.3, "max_force": 500}},
+             "angular_z": {"limits": [-0.3, 0.3], "limit_frequency": 2, "limit_damping_ratio": 0.1}}
+    bodies, joints = [ground()], []
+    for i, (axis, what) in enumerate(cases.items()):
+        x = (i - 2.5) * 2
+        bodies.append(post(f"post {i + 1}", (x, 0.7, 0), bar(0.08, 0.7, 0.08)))
+        bodies.append(part(axis, (x, 1.6, 0), bar(0.5, 0.08, 0.4, density=400), color=WOOD,
+                           linear_velocity=[0, -1, 1.5] if axis in ("linear_y", "linear_z") else [0, 0, 0],
+                           angular_velocity=[0, 0, 3] if axis == "angular_z" else [0, 0, 0]))
+        joints.append(joint("six_dof", f"post {i + 1}", axis, anchor=[x, 1.5, 0], axis=[1, 0, 0], axis_b=[0, 0, 1], axes={axis: what}))
+    return scene("six axes, one each", (0, 3.5, 11), (0, 1.3, 0), bodies, joints)
+
+
+def gear():
+    """A train of four gears; the first is driven, a weight hangs from nothing: the last turns 12 times slower."""
+    bodies, joints, x, radius = [ground()], [], -2.2, 0.3
+    radii = (0.3, 0.6, 0.45, 2 * 0.3 * 1.5)
+    for i, r in enumerate(radii):
+        x += r + (radius if i else 0)
+        radius = r
+        bodies.append(wheel_part(f"gear {i + 1}", (x, 1.6, 0), r * 0.98, 0.06, (STEEL, CLAY, WOOD, DARK)[i]))
+        joints.append(joint("hinge", "world", f"gear {i + 1}", anchor=[x, 1.6, 0], axis=[0, 0, 1], friction=2 if i == 3 else 0))
+        if i:
+            joints.append(joint("gear", f"gear {i}", f"gear {i + 1}", axis=[0, 0, 1], axis_b=[0, 0, 1], ratio=radii[i] / radii[i - 1]))
+    joints[0]["motor"] = {"target_velocity": 6, "max_force": 200}
+    return scene("a train of gears", (-0.2, 1.9, 6.5), (-0.2, 1.5, 0), bodies, joints)
+
+
+def rack_and_pinion():
+    """A pinion driven to and fro moves a rack; a spring pulls it back."""
+    bodies = [ground(), wheel_part("pinion", (0, 1.6, 0), 0.4, 0.06, STEEL), part("rack", (0, 1.1, 0), bar(1.6, 0.1, 0.06), color=WOOD)]
+    joints = [joint("hinge", "world", "pinion", anchor=[0, 1.6, 0], axis=[0, 0, 1], motor={"target_velocity": 3, "max_force": 150}),
+              joint("slider", "world", "rack", axis=[1, 0, 0], limits=[-1.5, 1.5], limit_frequency=1, limit_damping_ratio=0),
+              joint("rack_and_pinion", "pinion", "rack", axis=[0, 0, 1], axis_b=[1, 0, 0], ratio=0.4)]
+    return scene("a rack on a pinion", (0, 1.8, 5), (0, 1.4, 0), bodies, joints)
+
+
+def pulley():
+    """Atwood's machine, and a tackle whose ratio of two lets 10 kg balance 20 kg."""
+    bodies, joints = [ground(), post("beam", (0, 4.2, 0), bar(3, 0.1, 0.2))], []
+    for i, (x, light, heavy, ratio) in enumerate(((-1.6, 10, 20, 1), (1.6, 10, 20, 2))):
+        for side, sign, mass in (("light", -1, light), ("heavy", 1, heavy)):
+            bodies.append(part(f"{side} {i + 1}", (x + 0.7 * sign, 2, 0), bar(0.2, 0.2, 0.2), mass=mass, color=WOOD if sign < 0 else DARK))
+        joints.append(joint("pulley", f"light {i + 1}", f"heavy {i + 1}", anchor=[x - 0.7, 2.2, 0], anchor_b=[x + 0.7, 2.2, 0],
+                            ground_a=[x - 0.7, 4.1, 0], ground_b=[x + 0.7, 4.1, 0], ratio=ratio))
+    return scene("ropes over pulleys", (0, 2.8, 9), (0, 2.2, 0), bodies, joints)
+
+
+def wheel():
+    """A cart on four wheels, sprung and driven, the front ones steered, over a row of sills."""
+    bodies = [{**ground(40), "shapes": [bar(40, 0.5, 40)]}]
+    for i in range(8):
+        bodies.append(post(f"sill {i + 1}", (4 + 2.2 * i, 0.02, 0.4 if i % 2 else -0.4), bar(0.12, 0.06, 1.2)))
+    bodies.append(part("chassis", (0, 0.75, 0), bar(1.2, 0.2, 0.5, density=300), color=CLAY))
+    joints = []
+    for name, x, z in (("front left", 0.9, -0.7), ("front right", 0.9, 0.7), ("rear left", -0.9, -0.7), ("rear right", -0.9, 0.7)):
+        bodies.append({**wheel_part(name, (x, 0.4, z), 0.38, 0.1, DARK), "filter": {"layer": 2, "collides_with": 1}})
+        front = name.startswith("front")
+        steer = {"limits": [-0.6, 0.6], "motor": {"target_position": 0.08, "max_force": 4000, "frequency": 6}}
+        joints.append(joint("wheel", "chassis", name, anchor=[x, 0.4, z], axis=[0, 1, 0], axis_b=[0, 0, 1], limits=[-0.2, 0.2],
+                            stiffness=9000, damping=700, motor={"target_velocity": -9, "max_force": 0 if front else 60},
+                            **({"axes": {"angular_x": steer}} if front else {})))
+    return scene("a cart on sprung wheels", (6, 5, 14), (6, 0.5, 0), bodies, joints)
+
+
+def path():
+    """Carts on a closed track with a loop, held to it and turning with it; a bead on an open wire."""
+    points = [(-6, 4.2, 0), (-4, 2.2, 0), (-2, 0.8, 0)]
+    for i in range(13):
+        a = 2 * math.pi * i / 12
+        points.append((1.5 * math.sin(a), 2.2 - 1.5 * math.cos(a), -0.6 + 1.2 * i / 12))
+    points += [(2.5, 0.8, 1), (4.5, 1.4, 0.4), (5.5, 2.2, -1.5), (4.5, 2.6, -3.4), (0, 3, -4), (-4, 3.6, -3.6), (-6.4, 4.2, -2)]
+    points = [[x, y + 0.4, z] for x, y, z in points]
+    bodies, joints = [ground()], []
+    for i in range(3):
+        x, y, z = points[-1 - i]
+        bodies.append(part(f"cart {i + 1}", (x, y, z), bar(0.35, 0.15, 0.2), color=(CLAY, WOOD, STEEL)[i]))
+        joints.append(joint("path", "world", f"cart {i + 1}", anchor=[x, y, z], path=points, path_closed=True, path_orientation="following",
+                            motor={"target_velocity": 3, "max_force": 60}))
+    wire = [[-3, 2.5, 4], [-1.5, 1.2, 4], [0, 0.8, 4], [1.5, 1.2, 4], [3, 2.5, 4]]
+    bodies.append(part("bead", (-3, 2.5, 4), ball(0.18), color=DARK))
+    joints.append(joint("path", "world", "bead", anchor=[-3, 2.5, 4], path=wire))
+    return scene("carts on a track with a loop", (0, 5, 15), (0, 2, 0), bodies, joints)
+
+
+def mouse():
+    """Three bodies dragged by a point of theirs to the same height: by enough force, by little, and by too little."""
+    bodies, joints = [ground()], []
+    for i, force in enumerate((2000, 420, 300)):
+        x = (i - 1) * 2
+        bodies.append(part(f"box {i + 1}", (x, 0.3, 0), bar(0.4, 0.3, 0.3, density=140), color=(WOOD, CLAY, STEEL)[i], angular_damping=1))
+        joints.append(joint("mouse", "world", f"box {i + 1}", anchor=[x + 0.4, 0.6, 0], drive={"position": [0, 1.5, 0], "frequency": 2, "max_force": force}))
+    return scene("boxes dragged by a corner", (0, 2, 7), (0, 1.2, 0), bodies, joints)
+
+
+def motor():
+    """Plates held in the air at a pose by motors, weak and strong, and balls that fall on them."""
+    bodies, joints = [ground()], []
+    for i, (force, torque, frequency) in enumerate(((3000, 800, 0), (3000, 800, 2), (600, 30, 4))):
+        x = (i - 1) * 2.4
+        bodies.append({"name": f"plate {i + 1}", "position": [x, 1.5, 0], "color": (STEEL, WOOD, CLAY)[i], "shapes": [bar(0.9, 0.06, 0.9, density=250)]})
+        joints.append(joint("motor", "world", f"plate {i + 1}", anchor=[x, 1.5, 0],
+                            drive={"orientation": {"axis": [0, 0, 1], "angle": 0.15}, "frequency": frequency, "max_force": force, "max_torque": torque}))
+        for k in range(3):
+            bodies.append({"name": f"ball {i + 1} {k + 1}", "position": [x + 0.3 * (k - 1), 3 + k, 0.2 * (k - 1)], "color": DARK, "shapes": [ball(0.2)]})
+    return scene("plates that motors hold", (0, 3, 9), (0, 1.8, 0), bodies, joints)
+
+
+ALL = (chain, bridge, linkage, loop, cone, universal, spring, six_dof, gear, rack_and_pinion, pulley, wheel, path, mouse, motor)
