@@ -26,7 +26,8 @@ TEST(Gimbal, PrecessesAboutTheOtherAxis) {
     world.step(kStep);
     last = double(world.joint_reading(second).position);
   }
-  EXPECT_TRUE(relative_row("A-22 precession (rad/s)", std::fabs(last) / (steps / 60.0), 0.25, 2e-2, 1e-3));
+  // The torque turns the spin with it: its part along the outer axis is torque times time.
+  EXPECT_TRUE(relative_row("A-22 precession (rad/s)", std::sin(std::fabs(last)) / (steps / 60.0), 0.25, 2e-2, 1e-3));
   EXPECT_NEAR(double(length(world.angular_velocity(rotor))), 100.0, 0.1);
 }
 
@@ -208,7 +209,7 @@ TEST(JointTrouble, DrivenAgainstATeleportedBase) {
 TEST(JointTrouble, SpringOnAKinematicBody) {
   World world = weightless();
   const BodyId base = world.add_body({.type = BodyType::kinematic, .linear_velocity = {2, 0, 0}});
-  const BodyId body = world.add_body(point_body(1.0, {0.1f, 0.1f, 0.1f}, {0, -1, 0}));
+  const BodyId body = world.add_body(point_body(1.0, {0.1f, 0.1f, 0.1f}, {-1, 0, 0}));
   world.add_joint({.kind = JointKind::distance,
                    .a = base,
                    .b = body,
