@@ -2,6 +2,7 @@
 
 #include "geometry/submerged.h"
 #include "math/dense.h"
+#include "solver/motion_block.h"
 
 namespace gyre {
 
@@ -111,6 +112,12 @@ double filter_of(const Six2& mass, const Six2& stiffness, double h) {
   return 0.25 + 4.0 * most / (1.0 + most);
 }
 
+// Pulls may grow with the distance: speeds end where they do everywhere.
+Vec3 within(DVec3 v, double most) {
+  const double size = length(v);
+  return to_float(size > most ? (most / size) * v : v);
+}
+
 // What the streams would give a body at rest.
 Six find_drive(const RigidWorld& w, const FieldBody& from, const BodyStance& stance, double time) {
   Six sum;
@@ -149,8 +156,8 @@ void apply_fields(RigidWorld& w, const FieldBody& from, double h) {
   lock(w.bodies.flags[from.body], matrix, right);
   // Masses and moments may differ by many orders: pivots are judged against their own row only.
   solve_ldlt(factor_ldlt(matrix.m, 1.0e-300), right.v);
-  const Vec3 v = to_float(stance.velocity + right.linear()), a = to_float(stance.spin + right.angular());
-  // What leaves a float's range does not get into the state.
+  const Vec3 v = within(stance.velocity + right.linear(), double(kMaxSpeed));
+  const Vec3 a = within(stance.spin + right.angular(), double(kMaxSpin));
   if (!is_finite(v) || !is_finite(a)) return;
   motion.linear_velocity = v + Vec3{};
   motion.angular_velocity = a + Vec3{};
@@ -235,7 +242,10 @@ FieldSolve find_field_bodies(RigidWorld& w, std::span<const std::uint32_t> bodie
     out[count].drags = drags.subspan(first, links - first);
     out[count++].acting = list.subspan(first, links - first);
   }
-  for (const FieldBody& made : out) w.bodies.flags[made.body].touched = kPlaceShown;
+  for (const FieldBody& made : out) {
+    w.bodies.flags[made.body].touched = kPlaceShown;
+    w.field_rest[made.body].acts = made.alone ? kFieldsAlone : kFieldsToo;
+  }
   solve.bodies = out;
   return solve;
 }

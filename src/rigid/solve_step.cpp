@@ -175,6 +175,8 @@ void gather_motion(Solve& solve, Arena& arena) {
       continue;
     }
     solve.moved[moved] = describe_motion(w.bodies, body, solve.motions, touched == kPlaceShown);
+    // A field may spin a light body up within the step, beyond what the kernels turn.
+    if (!w.field_rest.empty() && w.field_rest[body].acts != kNoFields) solve.moved[moved].turns_alone = true;
     if (solve.moved[moved].turns_alone) solve.spinners[spinners++] = body;
     ++moved;
   }

@@ -100,6 +100,19 @@ TEST(NoAllocation, InJointsAndThreads) {
   }
   expect_none(world, 1800, 120, "chain on two threads");
 }
+TEST(NoAllocation, InFields) {
+  World world = make_world({.threads = 2, .sleeping = false});
+  world.add_field({.kind = FieldKind::buoyancy, .linear_drag = 0.5f});
+  world.add_field({.velocity = {0.3f, 0, 0}, .turbulence = 0.3f});
+  world.add_field({.kind = FieldKind::vortex, .strength = 0.1f});
+  world.add_field({.kind = FieldKind::radial, .strength = 0.01f});
+  for (int i = 0; i < 40; ++i) {
+    const AnyShape shapes[] = {Box{{0.3f, 0.2f, 0.3f}}, Cylinder{0.2f, 0.4f}, Sphere{0.3f}};
+    world.add_body({.pose = {.position = {3.0 * (i % 5), 0.2, 3.0 * (i / 5)}}},
+                   {.geometry = shapes[i % 3], .density = i % 4 == 0 ? 2.0f : 400.0f});
+  }
+  expect_none(world, 300, 120, "fields on two threads");
+}
 TEST(NoAllocation, WhileStagesAreTimed) {
   World world = make_world({.sleeping = false});
   set_timing(world, true);

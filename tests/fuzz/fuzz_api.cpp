@@ -146,10 +146,37 @@ void add_joint(World& world, Ids& ids, Input& in) {
   ids.joints.push_back(world.add_joint(def));
 }
 
+FieldDef field_def(Input& in) {
+  FieldDef def;
+  def.kind = FieldKind(in.byte() % 6);
+  if (flag(in)) def.bounds = FieldBounds{DVec3(vector(in)), DVec3(vector(in))};
+  if (flag(in)) def.layers = in.word();
+  def.velocity = vector(in);
+  if (flag(in)) def.density = number(in);
+  def.drag_coefficient = number(in);
+  def.linear_drag = number(in);
+  def.turbulence = number(in);
+  def.turbulence_length = number(in);
+  def.center = DVec3(vector(in));
+  def.strength = number(in);
+  def.radius = number(in);
+  def.falloff = number(in);
+  def.core = number(in);
+  if (flag(in)) def.axis = vector(in);
+  if (flag(in)) def.normal = vector(in);
+  def.offset = double(number(in));
+  return def;
+}
+FieldId any_field(const World& world, Input& in) {
+  FieldId ids[8];
+  const std::size_t count = world.fields(ids);
+  return count == 0 ? FieldId{} : ids[in.byte() % (count < 8 ? count : 8)];
+}
+
 void call(World& world, Ids& ids, Input& in) {
   constexpr std::size_t kMostBodies = 24;
   const BodyId body = Ids::pick(ids.bodies, in);
-  switch (in.byte() % 24) {
+  switch (in.byte() % 28) {
     case 0:
     case 1:
       if (world.bodies().ids.size() < kMostBodies)
@@ -219,6 +246,18 @@ void call(World& world, Ids& ids, Input& in) {
       break;
     case 22:
       world.set_sleeping(flag(in));
+      break;
+    case 23:
+      if (world.fields({}) < 6) world.add_field(field_def(in));
+      break;
+    case 24:
+      world.set_field(any_field(world, in), field_def(in));
+      break;
+    case 25:
+      world.remove_field(any_field(world, in));
+      break;
+    case 26:
+      world.explode({DVec3(vector(in)), number(in), number(in), number(in), number(in), flag(in), in.word()});
       break;
     default:
       world.step(number(in));
