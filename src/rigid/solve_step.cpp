@@ -6,6 +6,7 @@
 #include "rigid/hits.h"
 #include "rigid/integrators.h"
 #include "rigid/linkages.h"
+#include "rigid/program_writer.h"
 #include "rigid/rolling.h"
 #include "rigid/solve_batches.h"
 #include "rigid/surface_rules.h"
@@ -397,29 +398,6 @@ void linkage_stage(void* context, int begin, int end, int) {
 }
 
 // ---------------------------------------------------------------------------------------------------------- program
-
-// The table of stages, written into memory that is large enough for it.
-class ProgramWriter {
- public:
-  explicit ProgramWriter(std::span<Stage> room) : room_(room) {}
-
-  void add(void (*kernel)(void*, int, int, int), void* context, int blocks, int per_claim = 1) {
-    if (blocks == 0) return;
-    GYRE_ASSERT(used_ < room_.size(), "the program has more stages than were counted");
-    room_[used_++] = {kernel, context, blocks, per_claim};
-  }
-  void add_groups(void (*kernel)(void*, int, int, int), std::span<Group> groups, std::uint32_t items_per_block, int per_claim) {
-    for (Group& group : groups) {
-      const int blocks = int((group.count + items_per_block - 1) / items_per_block);
-      add(kernel, &group, blocks, group.serial ? blocks : per_claim);
-    }
-  }
-  std::span<const Stage> stages() const { return room_.first(used_); }
-
- private:
-  std::span<Stage> room_;
-  std::size_t used_ = 0;
-};
 
 // The stages of one part of a sub-step. Impacts and joints are between forces, contacts and moves only where there are any.
 //
