@@ -1,0 +1,63 @@
+// A wedge under a load: statics with friction on two faces. It stays while its angle is below twice the angle of friction:
+// tan(angle) < 2 mu / (1 - mu^2).
+#include "laws/kit.h"
+
+namespace gyre::laws {
+namespace {
+
+// A prism along z: (x, y) corners.
+Geometry prism(const std::vector<Vec3>& corners, float half_width) {
+  std::vector<Vec3> points;
+  for (const Vec3 p : corners) {
+    points.push_back({p.x, p.y, -half_width});
+    points.push_back({p.x, p.y, half_width});
+  }
+  return *cook_hull(points);
+}
+
+// How far a wedge of 1 kg is pushed out from under a block of 100 kg that can only go up and down: in ten seconds, and in the
+// last of them, when overlap from the load's arrival is taken back.
+struct Way {
+  double all, last;
+};
+Way pushed_out(double degrees, double mu) {
+  World world = make_world({.sleeping = false});
+  add_ground(world, surface(float(mu)));
+  const float rise = float(std::tan(degrees * double(kDegree)));
+  BodyDef wedge_def{.pose = {.position = {0, 0, 0}}};
+  wedge_def.mass = 1.0f;
+  const BodyId wedge = world.add_body(
+      wedge_def, {.geometry = prism({{-1, 0, 0}, {1, 0, 0}, {1, 2.0f * rise, 0}, {-1, 1e-3f, 0}}, 0.5f),
+                  .material = surface(float(mu))});
+  BodyDef block_def{.locked = {.linear = {true, false, true}, .angular = {true, true, true}}};
+  block_def.mass = 100.0f;
+  // Its underside lies on the wedge between x = -0.5 and x = 0.5.
+  const float slope = (2.0f * rise - 1e-3f) / 2.0f;
+  const auto height = [&](float x) { return 1e-3f + slope * (x + 1.0f); };
+  world.add_body(
+      block_def,
+      {.geometry = prism(
+           {{-0.5f, height(-0.5f), 0}, {0.5f, height(0.5f), 0}, {0.5f, 1.5f, 0}, {-0.5f, 1.5f, 0}}, 0.5f),
+       .material = surface(float(mu))});
+  run(world, 9.0);
+  const double before = world.pose(wedge).position.x;
+  run(world, 1.0);
+  return {world.pose(wedge).position.x, std::fabs(world.pose(wedge).position.x - before)};
+}
+TEST(Wedge, LocksBelowTwiceTheAngleOfFriction) {
+  EXPECT_TRUE(limit_row("A-73 8 degrees, mu 0.2: last second (m)", pushed_out(8.0, 0.2).last, 1e-3, 1e-5));
+  EXPECT_GT(pushed_out(8.0, 0.05).all, 1.0) << "A-73 8 degrees, mu 0.05";
+  for (const double mu : {0.05, 0.0699, 0.2}) {
+    const double limit = 2.0 * std::atan(mu) / double(kDegree);
+    const Way below = pushed_out(limit - 0.3, mu), above = pushed_out(limit + 0.3, mu);
+    std::printf(
+        "[row] A-73 mu %g, 0.3 degrees below the limit: %g m in all, %g m in the last second; above: %g m\n",
+        mu, below.all, below.last, above.all);
+    EXPECT_LT(below.last, 1e-3) << mu;
+    EXPECT_LT(below.all, 0.3) << mu;
+    EXPECT_GT(above.all, 0.5) << mu;
+  }
+}
+
+}  // namespace
+}  // namespace gyre::laws
