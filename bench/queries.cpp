@@ -1,5 +1,6 @@
 // Rays, moving balls and overlaps a second in a world of 10,000 boxes over a terrain of triangles: one by one, in batches over
-// the workers, by brute force, and by Bullet where its headers are at hand.
+// the workers, by brute force, by Bullet where its headers are at hand, and by Box3D where BOX3D_ROOT names a folder with its
+// headers (include/) and its library (libbox3d.a).
 //
 //   bench/queries [rounds]
 //
@@ -16,11 +17,15 @@
 #include <memory>
 #include <optional>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
 #if defined(GYRE_HAVE_BULLET)
 #include <btBulletCollisionCommon.h>
+#endif
+#if defined(GYRE_HAVE_BOX3D)
+#include <box3d/box3d.h>
 #endif
 
 namespace {
@@ -167,9 +172,9 @@ class BulletWorld {
                            btTransform(btQuaternion::getIdentity(), to), hit);
     return hit.hasHit();
   }
-  std::size_t overlaps(const ShapePlace& place) {
+  std::size_t overlaps(const ShapePlace& place, bool box = false) {
     btCollisionObject object;
-    object.setCollisionShape(&ball_);
+    object.setCollisionShape(box ? static_cast<btCollisionShape*>(&large_box_) : &ball_);
     object.setWorldTransform(btTransform(btQuaternion::getIdentity(), bullet(place.pose.position)));
     Counter counter;
     world_.contactTest(&object, counter);
@@ -201,9 +206,83 @@ class BulletWorld {
   btCollisionWorld world_{&dispatcher_, &broad_phase_, &configuration_};
   btTriangleMesh triangles_;
   std::unique_ptr<btBvhTriangleMeshShape> terrain_;
-  btBoxShape box_{btVector3(0.5, 0.5, 0.5)};
+  btBoxShape box_{btVector3(0.5, 0.5, 0.5)}, large_box_{btVector3(1, 1, 1)};
   btSphereShape small_ball_{0.5}, ball_{1.0};
   std::vector<std::unique_ptr<btCollisionObject>> objects_;
+};
+#endif
+
+#if defined(GYRE_HAVE_BOX3D)
+b3Vec3 box3d(DVec3 v) { return {float(v.x), float(v.y), float(v.z)}; }
+
+// The same world in Box3D: static bodies.
+class Box3dWorld {
+ public:
+  explicit Box3dWorld(const Scene& scene) {
+    b3WorldDef def = b3DefaultWorldDef();
+    world_ = b3CreateWorld(&def);
+    std::vector<b3Vec3> vertices;
+    for (const Vec3& v : scene.vertices) vertices.push_back({v.x, v.y, v.z});
+    std::vector<std::int32_t> indices(scene.indices.begin(), scene.indices.end());
+    b3MeshDef mesh{};
+    mesh.vertices = vertices.data();
+    mesh.vertexCount = int(vertices.size());
+    mesh.indices = indices.data();
+    mesh.triangleCount = int(indices.size() / 3);
+    mesh.identifyEdges = true;
+    terrain_ = b3CreateMesh(&mesh, nullptr, 0);
+    b3ShapeDef shape = b3DefaultShapeDef();
+    b3BodyDef body = b3DefaultBodyDef();
+    b3CreateMeshShape(b3CreateBody(world_, &body), &shape, terrain_, {1, 1, 1});
+    const b3BoxHull box = b3MakeBoxHull(0.5f, 0.5f, 0.5f);
+    for (const Pose& pose : scene.boxes) {
+      const Quat q = pose.orientation;
+      body.position = box3d(pose.position);
+      body.rotation = {{q.x, q.y, q.z}, q.w};
+      b3CreateHullShape(b3CreateBody(world_, &body), &shape, &box.base);
+    }
+    b3World_Step(world_, 1.0f / 60.0f, 1);
+  }
+  ~Box3dWorld() {
+    b3DestroyWorld(world_);
+    b3DestroyMesh(terrain_);
+  }
+  Box3dWorld(const Box3dWorld&) = delete;
+  Box3dWorld& operator=(const Box3dWorld&) = delete;
+
+  bool ray(const Ray& ray) const {
+    return b3World_CastRayClosest(world_, box3d(ray.origin), box3d(DVec3(ray.way)), b3DefaultQueryFilter())
+        .hit;
+  }
+  bool ball(const ShapeCast& cast) const {
+    const b3Vec3 middle{0, 0, 0};
+    const b3ShapeProxy proxy{&middle, 1, 0.5f};
+    float nearest = 1.0f;
+    b3World_CastShape(
+        world_, box3d(cast.pose.position), &proxy, box3d(DVec3(cast.way)), b3DefaultQueryFilter(),
+        [](b3ShapeId, b3Pos, b3Vec3, float fraction, uint64_t, int, int, void* context) {
+          *static_cast<float*>(context) = fraction;
+          return fraction;
+        },
+        &nearest);
+    return nearest < 1.0f;
+  }
+  std::size_t overlaps(const ShapePlace& place, std::span<const b3Vec3> points, float radius) const {
+    const b3ShapeProxy proxy{points.data(), int(points.size()), radius};
+    std::size_t found = 0;
+    b3World_OverlapShape(
+        world_, box3d(place.pose.position), &proxy, b3DefaultQueryFilter(),
+        [](b3ShapeId, void* context) {
+          ++*static_cast<std::size_t*>(context);
+          return true;
+        },
+        &found);
+    return found;
+  }
+
+ private:
+  b3WorldId world_;
+  b3MeshData* terrain_ = nullptr;
 };
 #endif
 
@@ -217,7 +296,7 @@ int main(int count, char** arguments) {
   const World brute = make_world(scene, BroadPhaseKind::brute_force, 1);
   std::vector<CastHit> hits(scene.rays.size());
   std::vector<std::uint32_t> counts(scene.places.size());
-  std::vector<Row> rays, casts, overlaps;
+  std::vector<Row> rays, casts, overlaps, boxes;
   const auto few = [](std::size_t n) { return std::max<std::size_t>(n / 40, 1); };  // of what takes long
 
   const auto cast_rays = [&](const World& world, std::size_t n) {
@@ -265,6 +344,26 @@ int main(int count, char** arguments) {
                       double(few(scene.places.size())),
                       [&] { count_overlaps(brute, few(scene.places.size())); },
                       {}});
+  const auto box_at = [](const ShapePlace& place) { return ShapePlace{Box{{1, 1, 1}}, place.pose}; };
+  std::vector<ShapePlace> box_places;
+  for (const ShapePlace& place : scene.places) box_places.push_back(box_at(place));
+  boxes.push_back({"one by one",
+                   double(box_places.size()),
+                   [&] {
+                     for (const ShapePlace& place : box_places) sink = sink + one.find_overlaps(place, {});
+                   },
+                   {}});
+  boxes.push_back({"batch, all workers",
+                   double(box_places.size()),
+                   [&] { sink = sink + std::size_t(all.count_overlaps(box_places, counts).code); },
+                   {}});
+  boxes.push_back({"brute force",
+                   double(few(box_places.size())),
+                   [&] {
+                     for (std::size_t i = 0; i < few(box_places.size()); ++i)
+                       sink = sink + brute.find_overlaps(box_places[i], {});
+                   },
+                   {}});
 #if defined(GYRE_HAVE_BULLET)
   BulletWorld other(scene);
   // Bullet's rays do not see a box that they start in, and meet what they pass by centimetres, the more the longer they are.
@@ -294,8 +393,54 @@ int main(int count, char** arguments) {
                         for (const ShapePlace& place : scene.places) sink = sink + other.overlaps(place);
                       },
                       {}});
+  boxes.push_back({"Bullet",
+                   double(scene.places.size()),
+                   [&] {
+                     for (const ShapePlace& place : scene.places) sink = sink + other.overlaps(place, true);
+                   },
+                   {}});
+#endif
+#if defined(GYRE_HAVE_BOX3D)
+  const Box3dWorld third(scene);
+  std::size_t different = 0;
+  for (const Ray& ray : scene.rays) {
+    const std::optional<CastHit> hit = one.cast_ray(ray.origin, ray.way);
+    different += !(hit && hit->inside) && third.ray(ray) != hit.has_value();
+  }
+  std::printf("of %zu rays %zu meet something in only one of Gyre and Box3D\n", scene.rays.size(), different);
+  const b3Vec3 middle[1] = {{0, 0, 0}};
+  std::vector<b3Vec3> corners;
+  for (int i = 0; i < 8; ++i)
+    corners.push_back({i & 1 ? 1.0f : -1.0f, i & 2 ? 1.0f : -1.0f, i & 4 ? 1.0f : -1.0f});
+  rays.push_back({"Box3D",
+                  double(scene.rays.size()),
+                  [&] {
+                    for (const Ray& ray : scene.rays) sink = sink + third.ray(ray);
+                  },
+                  {}});
+  casts.push_back({"Box3D",
+                   double(scene.casts.size()),
+                   [&] {
+                     for (const ShapeCast& cast : scene.casts) sink = sink + third.ball(cast);
+                   },
+                   {}});
+  overlaps.push_back({"Box3D",
+                      double(scene.places.size()),
+                      [&] {
+                        for (const ShapePlace& place : scene.places)
+                          sink = sink + third.overlaps(place, middle, 1.0f);
+                      },
+                      {}});
+  boxes.push_back({"Box3D",
+                   double(scene.places.size()),
+                   [&] {
+                     for (const ShapePlace& place : scene.places)
+                       sink = sink + third.overlaps(place, corners, 0.0f);
+                   },
+                   {}});
 #endif
   measure("rays", rays, rounds);
   measure("moving balls", casts, rounds);
   measure("overlaps of a ball", overlaps, rounds);
+  measure("overlaps of a box", boxes, rounds);
 }

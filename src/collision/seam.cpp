@@ -2,15 +2,18 @@
 #include "collision/seam.h"
 
 #include "geometry/gjk.h"
+#include "geometry/mesh_candidates.h"
 #include "geometry/support.h"
 #include "task/parallel.h"
 
 namespace gyre {
 namespace {
 
-constexpr int kBlock = 64;  // contacts: one word of the bits
+constexpr int kBlock = 64;  // contacts: whole words of the bits
 // Normals nearer than this are of one face.
 constexpr float kSameFace = 0.99999f;
+// Sine of the least lean of a normal out of a triangle's.
+constexpr float kLeaning = 1.0e-3f;
 
 // A contact of a shape that is pushed with one that is not, from the latter's side.
 struct Side {
@@ -22,7 +25,7 @@ struct Side {
 // False if the contact is of another sort.
 bool find_side(const ContactStore& store, std::uint32_t slot, const CollideInput& input, Side& side) {
   const Contact& c = store.contacts[slot];
-  if (c.manifold_room != 1 || c.manifold_count == 0 || c.sensor != 0) return false;
+  if (c.manifold_room == 0 || c.manifold_count == 0 || c.sensor != 0) return false;
   const bool a_moves = input.proxies[c.shape_a].pushes, b_moves = input.proxies[c.shape_b].pushes;
   if (a_moves == b_moves) return false;
   side = a_moves ? Side{c.shape_a, c.shape_b, c.body_a, c.body_b, -1.0f}
@@ -78,64 +81,135 @@ class PlacedShape {
   Vec3 origin_;
 };
 
-// Whether all points of a contact are hidden by the neighbour with which the mover has a contact too: they lie in it, it
-// goes on beyond them, and the contact's own shape does not rise out of it.
-bool hides(const ContactStore& store, const CollideInput& input, const Contact& contact, const Side& side,
-           const Contact& other, const Side& neighbour) {
-  const Manifold& manifold = store.manifolds[contact.first_manifold];
-  const Vec3 out = side.out * manifold.normal;
-  const Vec3 up = neighbour.out * store.manifolds[other.first_manifold].normal;
-  const PlacedShape own(input, side.other, side.other_body, contact.body_a);
-  const PlacedShape by(input, neighbour.other, neighbour.other_body, contact.body_a);
-  const float slack = kFlush * contact.size;
-  for (int i = 0; i < manifold.count; ++i) {
-    const ContactPointState& state = manifold.points[i];
-    // The point midway, and from there half the separation back to the surface.
-    const Vec3 point = state.from_a - 0.5f * state.separation * out;
-    if (reach_beyond(own.shape(), own.point(point), own.direction(up)) > 2.0f * slack) return false;
-    if (reach_beyond(by.shape(), by.point(point), by.direction(out)) <= 2.0f * slack) return false;
-    if (!holds(by.shape(), by.point(point), slack)) return false;
-  }
-  return true;
+bool is_surface(const Shape& shape) {
+  return shape.kind == ShapeKind::mesh || shape.kind == ShapeKind::height_field;
 }
 
-bool is_hidden(const ContactStore& store, std::uint32_t slot, const CollideInput& input) {
+// How far a shape rises beyond a point along a direction: of a surface only the triangle that is touched.
+float rises(const Shape& shape, std::uint32_t triangle, Vec3 point, Vec3 direction) {
+  if (!is_surface(shape)) return reach_beyond(shape, point, direction);
+  const TriangleView view = Surface(shape).triangle(triangle);
+  float most = -kUnbounded;
+  for (const Vec3 corner : view.v) most = max(most, dot(corner - point, direction));
+  return most;
+}
+
+// Whether a surface goes on, level, from a point in the way that a direction leans: a step on, there is still a triangle of
+// the plane in which the point lies.
+bool goes_on(const Shape& shape, Vec3 point, Vec3 direction, float slack) {
+  const Surface surface(shape);
+  std::uint32_t ids[32];
+  const int count = find_triangles(surface, grow({point, point}, 3.0f * slack), ids);
+  for (int i = 0; i < count; ++i) {
+    const TriangleView view = surface.triangle(ids[i]);
+    if (absolute(dot(view.normal, point - view.v[0])) > slack) continue;
+    const Vec3 leaning = direction - dot(direction, view.normal) * view.normal;
+    // A triangle's own normal is no seam.
+    if (length_squared(leaning) < kLeaning * kLeaning) continue;
+    const Vec3 ahead = point + 2.0f * slack * normalized(leaning);
+    bool inside = true;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 edge = view.v[next_corner(k)] - view.v[k];
+      inside = inside && dot(cross(edge, view.normal), ahead - view.v[k]) <= 0.0f;
+    }
+    if (inside) return true;
+  }
+  return false;
+}
+
+// Whether the neighbour goes on beyond a point of the contact along the contact's normal, and holds it.
+bool goes_beyond(const Shape& shape, Vec3 point, Vec3 direction, float slack) {
+  if (is_surface(shape)) return goes_on(shape, point, direction, slack);
+  return reach_beyond(shape, point, direction) > 2.0f * slack && holds(shape, point, slack);
+}
+
+// A manifold of a contact between a mover and something that rests.
+struct Patch {
+  const Contact& contact;
+  const Side& side;
+  const Manifold& manifold;
+  Vec3 out() const { return side.out * manifold.normal; }
+};
+
+// Which points of a manifold (bits) are hidden by the neighbour with which the mover has one too: they lie in it, it goes on
+// beyond them, and the manifold's own shape does not rise out of it.
+unsigned hidden_points(const CollideInput& input, const Patch& own, const Patch& neighbour) {
+  const Vec3 out = own.out(), up = neighbour.out();
+  const PlacedShape its(input, own.side.other, own.side.other_body, own.contact.body_a);
+  const PlacedShape by(input, neighbour.side.other, neighbour.side.other_body, own.contact.body_a);
+  const float slack = kFlush * own.contact.size;
+  unsigned hidden = 0;
+  for (int i = 0; i < own.manifold.count; ++i) {
+    const ContactPointState& state = own.manifold.points[i];
+    // The point midway, and from there half the separation back to the surface.
+    const Vec3 point = state.from_a - 0.5f * state.separation * out;
+    if (rises(its.shape(), own.manifold.triangle, its.point(point), its.direction(up)) > 2.0f * slack)
+      continue;
+    if (goes_beyond(by.shape(), by.point(point), by.direction(out), slack)) hidden |= 1u << i;
+  }
+  return hidden;
+}
+
+bool is_hidden(const ContactStore& store, std::uint32_t slot, int index, const CollideInput& input) {
   Side side;
   if (!find_side(store, slot, input, side) || input.looks[side.mover_body].spin < 0.0f) return false;
   const Contact& contact = store.contacts[slot];
-  const Manifold& manifold = store.manifolds[contact.first_manifold];
-  bool hidden = false;
+  const Patch own{contact, side, store.manifolds[contact.first_manifold + std::uint32_t(index)]};
+  const unsigned all = (1u << own.manifold.count) - 1u;
+  unsigned hidden = 0;
   for_each_contact_of_shape(store, side.mover, [&](std::uint32_t other_slot) {
     Side neighbour;
-    if (hidden || other_slot == slot || !find_side(store, other_slot, input, neighbour)) return;
+    if (hidden == all || other_slot == slot || !find_side(store, other_slot, input, neighbour)) return;
     if (neighbour.mover != side.mover || !rest_together(input, side.other_body, neighbour.other_body)) return;
     const Contact& other = store.contacts[other_slot];
-    const Manifold& its = store.manifolds[other.first_manifold];
-    if (side.out * neighbour.out * dot(manifold.normal, its.normal) > kSameFace) return;
-    // Two that hide each other both stay: better a bump than a hole.
-    hidden = hides(store, input, contact, side, other, neighbour) &&
-             !hides(store, input, other, neighbour, contact, side);
+    for (std::uint32_t m = 0; m < other.manifold_count && hidden != all; ++m) {
+      const Patch by{other, neighbour, store.manifolds[other.first_manifold + m]};
+      if (dot(own.out(), by.out()) > kSameFace) continue;
+      const unsigned found = hidden_points(input, own, by);
+      // Two that hide each other both stay: better a bump than a hole.
+      if (found != 0 && hidden_points(input, by, own) != (1u << by.manifold.count) - 1u) hidden |= found;
+    }
   });
-  return hidden;
+  return hidden == all;
+}
+
+// Takes the hidden manifolds out of a contact.
+void take_out(ContactStore& store, std::size_t slot, const Bitset& hidden) {
+  Contact& contact = store.contacts[slot];
+  Manifold* const manifolds = &store.manifolds[contact.first_manifold];
+  int kept = 0;
+  for (int i = 0; i < contact.manifold_count; ++i) {
+    if (hidden.test(slot * kMaxMeshManifolds + std::size_t(i))) continue;
+    if (kept != i) manifolds[kept] = manifolds[i];
+    ++kept;
+  }
+  if (kept == contact.manifold_count) return;
+  for (int i = kept; i < contact.manifold_count; ++i) manifolds[i] = {};
+  contact.manifold_count = std::uint16_t(kept);
+  forget_look(contact);
 }
 
 }  // namespace
 
 void hide_seams(ContactStore& store, const CollideInput& input, TaskSystem& tasks, Bitset& hidden) {
   const std::size_t count = store.contacts.size();
-  if (hidden.size() < count) hidden.resize(count);
+  if (hidden.size() < count * kMaxMeshManifolds) hidden.resize(count * kMaxMeshManifolds);
   hidden.reset_all();
   // All are asked before any is changed: nobody is hidden by who is hidden earlier in the list.
   for_blocks(tasks, int(count), kBlock, [&](int begin, int end, int) {
     for (int slot = begin; slot < end; ++slot) {
-      if (is_hidden(store, std::uint32_t(slot), input)) hidden.set(std::size_t(slot));
+      const int manifolds = store.contacts[std::size_t(slot)].manifold_count;
+      for (int i = 0; i < manifolds; ++i) {
+        if (is_hidden(store, std::uint32_t(slot), i, input))
+          hidden.set(std::size_t(slot) * kMaxMeshManifolds + std::size_t(i));
+      }
     }
   });
-  hidden.for_each_set([&](std::size_t slot) {
-    Contact& contact = store.contacts[slot];
-    store.manifolds[contact.first_manifold] = {};
-    contact.manifold_count = 0;
-    forget_look(contact);
+  std::size_t last = count;
+  hidden.for_each_set([&](std::size_t bit) {
+    const std::size_t slot = bit / kMaxMeshManifolds;
+    if (slot != last) take_out(store, slot, hidden);
+    last = slot;
   });
 }
 

@@ -6,6 +6,8 @@
 // beyond p along n: otherwise the way out of B leads through A. For a ball over A, beside the edge of B, the nearest point of
 // the whole is on A. In a corner that is not so although it looks alike: there B rises out of A, along the normal of A's own
 // contact. Both are questions about farthest points, exact for convex bodies; steps of less than kFlush count as none.
+// Meshes and height fields are surfaces: one of them hides a point that lies on it if it goes on, level, the way that the
+// normal leans, and of the other only the triangle that is touched must not rise.
 #pragma once
 
 #include "collision/collide.h"
@@ -15,8 +17,8 @@ namespace gyre {
 // In sizes of the contact: bodies that part or step by less are flush.
 constexpr float kFlush = 0.01f;
 
-// Takes the points from every contact of a moving shape with a resting convex one that another resting convex shape, touched
-// by it too, hides. Such a contact is looked at anew in the next step.
+// Takes those manifolds from every contact of a moving shape with a resting one that another resting shape, touched by it
+// too, hides. `hidden` is scratch. Such a contact is looked at anew in the next step.
 void hide_seams(ContactStore& store, const CollideInput& input, TaskSystem& tasks, Bitset& hidden);
 
 }  // namespace gyre

@@ -130,6 +130,28 @@ TEST(NoAllocation, WhileAsleep) {
   expect_none(world, 300, 120, "asleep");
 }
 
+// Balls and plates that are swept in every step, and slide along what they hit; a wall that moves runs over others.
+TEST(NoAllocation, WhileFastBodiesFly) {
+  World world = make_world({.gravity = {0, 0, 0}, .threads = 2, .sleeping = false});
+  const Material smooth{.static_friction = 0.0f, .dynamic_friction = 0.0f, .restitution = 1.0f};
+  for (int side = 0; side < 6; ++side) {
+    DVec3 at{};
+    (side / 2 == 0 ? at.x : side / 2 == 1 ? at.y : at.z) = side % 2 == 0 ? -10.0 : 10.0;
+    const Vec3 half{side / 2 == 0 ? 0.5f : 11.0f, side / 2 == 1 ? 0.5f : 11.0f, side / 2 == 2 ? 0.5f : 11.0f};
+    world.add_body({.type = BodyType::fixed, .pose = {.position = at}},
+                   {.geometry = Box{half}, .material = smooth});
+  }
+  world.add_body({.type = BodyType::kinematic, .angular_velocity = {0, 3, 0}},
+                 {.geometry = Box{{4, 1, 0.1f}}, .material = smooth});
+  for (int i = 0; i < 60; ++i) {
+    world.add_body({.pose = {.position = {-8.0 + 0.26 * i, 3.0 + 0.1 * i, -5.0 + 0.15 * i}},
+                    .linear_velocity = {300, 97.0f + float(i), 41}},
+                   {.geometry = i % 2 == 0 ? AnyShape(Sphere{0.1f}) : AnyShape(Box{{0.2f, 0.02f, 0.2f}}),
+                    .material = smooth});
+  }
+  expect_none(world, 900, 120, "fast bodies");
+}
+
 // Questions of every kind, alone and in batches over two threads, in a heap that moves on between them.
 TEST(NoAllocation, InQueries) {
   World world = make_world({.threads = 2});
@@ -145,7 +167,8 @@ TEST(NoAllocation, InQueries) {
   std::vector<Ray> rays(500);
   std::vector<ShapeCast> casts(100);
   std::vector<ShapePlace> places(100);
-  for (std::size_t i = 0; i < rays.size(); ++i) rays[i] = {{0.02 * double(i), 9, 0.01 * double(i)}, {0.3f, -20, 0}};
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    rays[i] = {{0.02 * double(i), 9, 0.01 * double(i)}, {0.3f, -20, 0}};
   for (std::size_t i = 0; i < casts.size(); ++i) {
     casts[i] = {Capsule{}, {{0.1 * double(i), 9, 0.1 * double(i)}, {}}, {0, -12, 0}};
     places[i] = {Box{}, {{0.1 * double(i), 2, 0.1 * double(i)}, {}}};
@@ -165,6 +188,12 @@ TEST(NoAllocation, InQueries) {
       found += world.find_penetrations(place, deep) + world.find_overlaps(place, overlapping);
       found += world.find_closest(place, 1.0, closest) + std::size_t(world.overlaps(place));
       found += std::size_t(world.ray_hits(place.pose.position, {0, -5, 0}));
+      found += std::size_t(world.closest_point(place, 2.0).has_value());
+    }
+    for (const ShapeCast& cast : casts) {
+      found += std::size_t(world.cast_shape(cast).has_value()) + std::size_t(world.shape_hits(cast));
+      found += world.cast_shape_all(cast, hits);
+      found += std::size_t(world.cast_ray(cast.pose.position, cast.way).has_value());
     }
     return found;
   };
