@@ -9,7 +9,7 @@
 namespace gyre {
 namespace {
 
-constexpr int kBlock = 64;  // contacts: whole words of the bits
+constexpr int kBlock = 64;  // contacts: one word of the bits
 // Normals nearer than this are of one face.
 constexpr float kSameFace = 0.99999f;
 // Sine of the least lean of a normal out of a triangle's.
@@ -173,44 +173,49 @@ bool is_hidden(const ContactStore& store, std::uint32_t slot, int index, const C
   return hidden == all;
 }
 
+// Bits of the manifolds of a contact that are hidden.
+std::uint8_t hidden_manifolds(const ContactStore& store, std::uint32_t slot, const CollideInput& input) {
+  unsigned mask = 0;
+  for (int i = 0; i < store.contacts[slot].manifold_count; ++i) {
+    if (is_hidden(store, slot, i, input)) mask |= 1u << i;
+  }
+  return std::uint8_t(mask);
+}
+
 // Takes the hidden manifolds out of a contact.
-void take_out(ContactStore& store, std::size_t slot, const Bitset& hidden) {
+void take_out(ContactStore& store, std::uint32_t slot, std::uint8_t mask) {
   Contact& contact = store.contacts[slot];
   Manifold* const manifolds = &store.manifolds[contact.first_manifold];
   int kept = 0;
   for (int i = 0; i < contact.manifold_count; ++i) {
-    if (hidden.test(slot * kMaxMeshManifolds + std::size_t(i))) continue;
+    if ((mask >> i & 1) != 0) continue;
     if (kept != i) manifolds[kept] = manifolds[i];
     ++kept;
   }
-  if (kept == contact.manifold_count) return;
   for (int i = kept; i < contact.manifold_count; ++i) manifolds[i] = {};
   contact.manifold_count = std::uint16_t(kept);
   forget_look(contact);
 }
+static_assert(kMaxMeshManifolds <= 8);
 
 }  // namespace
 
-void hide_seams(ContactStore& store, const CollideInput& input, TaskSystem& tasks, Bitset& hidden) {
+void hide_seams(ContactStore& store, const CollideInput& input, TaskSystem& tasks, SeamScratch& scratch) {
   const std::size_t count = store.contacts.size();
-  if (hidden.size() < count * kMaxMeshManifolds) hidden.resize(count * kMaxMeshManifolds);
-  hidden.reset_all();
+  if (scratch.hidden.size() < count) scratch.hidden.resize(count);
+  scratch.hidden.reset_all();
   // All are asked before any is changed: nobody is hidden by who is hidden earlier in the list.
   for_blocks(tasks, int(count), kBlock, [&](int begin, int end, int) {
     for (int slot = begin; slot < end; ++slot) {
-      const int manifolds = store.contacts[std::size_t(slot)].manifold_count;
-      for (int i = 0; i < manifolds; ++i) {
-        if (is_hidden(store, std::uint32_t(slot), i, input))
-          hidden.set(std::size_t(slot) * kMaxMeshManifolds + std::size_t(i));
-      }
+      if (hidden_manifolds(store, std::uint32_t(slot), input) != 0) scratch.hidden.set(std::size_t(slot));
     }
   });
-  std::size_t last = count;
-  hidden.for_each_set([&](std::size_t bit) {
-    const std::size_t slot = bit / kMaxMeshManifolds;
-    if (slot != last) take_out(store, slot, hidden);
-    last = slot;
+  // Which of their manifolds: asked again, for the few there are.
+  scratch.found.clear();
+  scratch.hidden.for_each_set([&](std::size_t slot) {
+    scratch.found.push_back({std::uint32_t(slot), hidden_manifolds(store, std::uint32_t(slot), input)});
   });
+  for (const SeamScratch::Found& found : scratch.found) take_out(store, found.slot, found.manifolds);
 }
 
 }  // namespace gyre

@@ -17,8 +17,18 @@ namespace gyre {
 // In sizes of the contact: bodies that part or step by less are flush.
 constexpr float kFlush = 0.01f;
 
+// Kept from step to step only for its memory.
+struct SeamScratch {
+  struct Found {
+    std::uint32_t slot;
+    std::uint8_t manifolds;  // bits
+  };
+  Bitset hidden;  // contacts
+  Array<Found> found;
+};
+
 // Takes those manifolds from every contact of a moving shape with a resting one that another resting shape, touched by it
-// too, hides. `hidden` is scratch. Such a contact is looked at anew in the next step.
-void hide_seams(ContactStore& store, const CollideInput& input, TaskSystem& tasks, Bitset& hidden);
+// too, hides. Such a contact is looked at anew in the next step.
+void hide_seams(ContactStore& store, const CollideInput& input, TaskSystem& tasks, SeamScratch& scratch);
 
 }  // namespace gyre

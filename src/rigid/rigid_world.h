@@ -7,6 +7,7 @@
 #include "collision/broadphase.h"
 #include "collision/collide.h"
 #include "collision/contact_store.h"
+#include "collision/seam.h"
 #include "rigid/body_store.h"
 #include "rigid/field_record.h"
 #include "rigid/shape_store.h"
@@ -86,7 +87,7 @@ struct RigidWorld {
   std::unique_ptr<Broadphase> broadphase;
   bool broadphase_stale = true;        // must be rebuilt from all proxies
   TouchChanges touches;
-  Bitset hidden_contacts;  // those at flush edges, in the last step
+  SeamScratch seams;  // contacts at flush edges, in the last step
   Array<std::uint64_t> new_pairs;
   Array<std::uint64_t> sort_scratch;
   Array<std::uint32_t> listed;         // contacts of a shape that is looked at
