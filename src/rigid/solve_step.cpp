@@ -5,6 +5,7 @@
 #include "rigid/fields.h"
 #include "rigid/hits.h"
 #include "rigid/integrators.h"
+#include "rigid/joint_works.h"
 #include "rigid/linkages.h"
 #include "rigid/program_writer.h"
 #include "rigid/rolling.h"
@@ -471,38 +472,6 @@ void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> join
   run_program(tasks, program.stages());
 }
 
-DVec3 joint_place(const BodyStore& bodies, std::int32_t body, DVec3 world_anchor) {
-  return body == kNoBody ? world_anchor : bodies.places[body].center;
-}
-
-void begin_joint_work(Solve& solve, Arena& arena, float warm_scale) {
-  RigidWorld& w = solve.w;
-  const std::size_t count = solve.batch.joints.size();
-  solve.joint_work = arena.make<JointWork>(count);
-  solve.joint_places = arena.make<JointPlaces>(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    JointRecord& joint = w.joints.records[solve.batch.joints[i]];
-    JointDetail* const detail = detail_of(w.joints, solve.batch.joints[i]);
-    std::span<const PathPoint> path;
-    if (detail != nullptr) path = path_of(w.joints, *detail);
-    begin_joint(joint, detail, path, solve.joint_work[i], warm_scale, arena);
-    solve.joint_places[i] = {};
-    if (detail != nullptr && joint.kind == JointKind::pulley) {
-      const DVec3 a = joint_place(w.bodies, joint.body_a, joint.world_anchor_a);
-      const DVec3 b = joint_place(w.bodies, joint.body_b, joint.world_anchor_b);
-      solve.joint_places[i].ground_a = difference(detail->ground_a, a);
-      solve.joint_places[i].ground_b = difference(detail->ground_b, b);
-    }
-    solve.joint_places[i].offset = difference(joint_place(w.bodies, joint.body_b, joint.world_anchor_b),
-                                              joint_place(w.bodies, joint.body_a, joint.world_anchor_a));
-  }
-}
-
-void finish_joint_work(Solve& solve) {
-  for (std::size_t i = 0; i < solve.batch.joints.size(); ++i)
-    finish_joint(solve.w.joints.records[solve.batch.joints[i]], solve.joint_work[i]);
-}
-
 void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale) {
   const ArenaScope scope(arena);
   SolveScratch& scratch = solve.scratch;
@@ -514,7 +483,9 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   const std::uint32_t bodies = std::uint32_t(solve.batch.bodies.size());
   color_constraints(scratch.pairs, bodies, {}, kColoringOptions, scratch.contact_colors);
   color_constraints(scratch.joint_pairs, bodies, {}, kColoringOptions, scratch.joint_colors);
-  begin_joint_work(solve, arena, warm_scale);
+  const JointWorks works = begin_joints(solve.w, solve.batch, warm_scale, arena);
+  solve.joint_work = works.work;
+  solve.joint_places = works.places;
   solve.linkage_solve = {.records = solve.w.joints.records,
                          .work = solve.joint_work,
                          .places = solve.joint_places,
@@ -530,7 +501,7 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
                       &solve.kernels,     solve.blocks,      solve.contact_settings.step};
   const std::span<Group> joints = lay_out_joints(solve, arena);
   run_substeps(solve, contacts, joints, arena, tasks);
-  finish_joint_work(solve);
+  finish_joints(solve.w, solve.batch, solve.joint_work);
   note_hits(solve.w, scratch);
   scratch.manifold_count += scratch.constraints.size();
   scratch.joint_count += solve.batch.joints.size();

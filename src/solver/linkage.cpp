@@ -317,6 +317,13 @@ void rows_bend(const JointRecord& joint, const JointWork& work, const LinkageNod
   }
 }
 
+// The square of the rate at which a rod turns, also between bodies that do not (rad/s).
+float rod_rate(const JointRecord& joint, const JointWork& work, const Course& a, const Course& b) {
+  if (joint.kind != JointKind::distance || !(work.position > 0.0f)) return 0.0f;
+  const Vec3 speed = b.linear + cross(b.angular, work.from_b) - a.linear - cross(a.angular, work.from_a);
+  return length_squared(cross(speed, work.axis)) / square(work.position);
+}
+
 // What is asked of the rows: that the end of the sub-step, not its beginning, meets the joints (docs/derive/joints.md).
 void ask_rows(const Linkage& linkage, const LinkageSolve& s) {
   const float h = s.settings.substep;
@@ -330,11 +337,11 @@ void ask_rows(const Linkage& linkage, const LinkageSolve& s) {
     const JointWork& work = s.work[node.work];
     const Course a = course_of(linkage, s, node.body_a, node.side_a);
     const Course b = course_of(linkage, s, node.body_b, node.side_b);
-    const float fastest = square(h) * max(length_squared(a.angular), length_squared(b.angular));
+    const float fastest = square(h) * max(max(length_squared(a.angular), length_squared(b.angular)), rod_rate(joint, work, a, b));
     const float share = fastest > square(kMostTurn) ? square(kMostTurn) / fastest : 1.0f;
     Bend bend;
     float bends[kJointAxisCount] = {};
-    if (fastest > square(kLeastTurn)) {
+    if (fastest > square(kLeastTurn) || joint.kind == JointKind::path) {
       if (work.rows != nullptr) {
         rows_bend(joint, work, node, a, b, h, bends);
       } else {

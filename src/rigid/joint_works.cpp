@@ -1,0 +1,38 @@
+#include "rigid/joint_works.h"
+
+namespace gyre {
+
+namespace {
+
+DVec3 joint_place(const BodyStore& bodies, std::int32_t body, DVec3 world_anchor) {
+  return body == kNoBody ? world_anchor : bodies.places[std::size_t(body)].center;
+}
+
+}  // namespace
+
+JointWorks begin_joints(RigidWorld& w, const SolveBatch& batch, float warm_scale, Arena& arena) {
+  const std::size_t count = batch.joints.size();
+  const JointWorks works{arena.make<JointWork>(count), arena.make<JointPlaces>(count)};
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t slot = batch.joints[i];
+    JointRecord& joint = w.joints.records[slot];
+    JointDetail* const detail = detail_of(w.joints, slot);
+    std::span<const PathPoint> path;
+    if (detail != nullptr) path = path_of(w.joints, *detail);
+    begin_joint(joint, detail, path, works.work[i], warm_scale, arena);
+    const DVec3 a = joint_place(w.bodies, joint.body_a, joint.world_anchor_a);
+    const DVec3 b = joint_place(w.bodies, joint.body_b, joint.world_anchor_b);
+    works.places[i] = {difference(b, a), {}, {}};
+    if (detail == nullptr || joint.kind != JointKind::pulley) continue;
+    works.places[i].ground_a = difference(detail->ground_a, a);
+    works.places[i].ground_b = difference(detail->ground_b, b);
+  }
+  return works;
+}
+
+void finish_joints(RigidWorld& w, const SolveBatch& batch, std::span<const JointWork> work) {
+  for (std::size_t i = 0; i < batch.joints.size(); ++i)
+    finish_joint(w.joints.records[batch.joints[i]], work[i]);
+}
+
+}  // namespace gyre
