@@ -5,6 +5,8 @@
 // as well on a world that was loaded half-way.
 #pragma once
 
+#include "joint_scene.h"
+
 #include <gyre/gyre.h>
 
 #include <cstdint>
@@ -463,6 +465,7 @@ inline constexpr Scene kScenes[] = {
     {"joints", build_joints, nullptr},         {"terrain", build_terrain, nullptr},
     {"cloud", build_cloud, nullptr},           {"pusher", build_pusher, drive_pusher},
     {"changes", build_changes, drive_changes}, {"fields", build_fields, drive_fields},
+    {"joint_kinds", build_joint_kinds, nullptr},
 };
 
 // One step of a scene; `step` counts from 0.
