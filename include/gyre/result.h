@@ -15,6 +15,7 @@ enum class ErrorCode : std::uint8_t {
   unsupported,       // data of a newer format, or a combination that Gyre does not have
   stale_id,          // the object of an id does not exist (any more), or is another world's
   busy,              // the world is in the middle of a step
+  cancelled,         // a progress callback asked to stop
 };
 
 // A code, and words that name the object, the field, what was found and what is allowed.
