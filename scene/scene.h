@@ -4,6 +4,7 @@
 // Materials, meshes and bodies are referred to by their index in the scene.
 #pragma once
 
+#include <gyre/decomposition.h>
 #include <gyre/defs.h>
 #include <gyre/fields.h>
 
@@ -42,7 +43,7 @@ struct SceneMaterial {
   std::string name;
   float density = 1000.0f;  // kg/m^3
   std::optional<SceneColor> color;
-  Material surface;         // `id` stays 0: it is given when a world is made
+  Material surface;  // `id` stays 0: it is given when a world is made
   // As in SurfaceRule, in the frame of the body: a belt's speed (m/s), and the direction in which a one-way surface lets pass.
   Vec3 surface_velocity, one_way;
 };
@@ -72,8 +73,22 @@ struct SceneHeightField {
   float spacing = 1.0f;
   std::vector<float> heights;  // NaN: a hole
 };
-using SceneGeometry =
-    std::variant<Sphere, Box, Capsule, Cylinder, Cone, Plane, SceneHull, SceneTriangles, SceneHeightField>;
+// A concave mesh as convex hulls. As read it stands for all of them; split_decompositions() puts one shape for each hull in
+// its place, so that what comes after sees as many shapes as the world has.
+struct SceneDecomposition {
+  int mesh = 0;
+  int max_hulls = 32;
+  float concavity = 0.02f;
+  int max_hull_vertices = 128;
+  SurfaceMeaning meaning = SurfaceMeaning::automatic;
+  float shell_thickness = 0.0f;
+
+  Geometry hull;               // none before it is split
+  int part = 0;                // which of the hulls
+  float density_scale = 1.0f;  // so that all hulls together weigh what the solid does
+};
+using SceneGeometry = std::variant<Sphere, Box, Capsule, Cylinder, Cone, Plane, SceneHull, SceneTriangles,
+                                   SceneHeightField, SceneDecomposition>;
 
 struct SceneShape {
   SceneGeometry geometry = Sphere{};
@@ -128,6 +143,7 @@ struct Scene {
   std::vector<SceneJoint> joints;
   std::vector<FieldDef> fields;
   std::vector<SceneExplosion> explosions;
+  std::vector<std::string> notes;  // what whoever runs it should know; never written
 };
 
 }  // namespace gyre

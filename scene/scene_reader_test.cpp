@@ -216,7 +216,10 @@ TEST(SceneReader, RefusesWhatIsWrongInAShape) {
   const BadScene table[] = {
       {shape_with(""), at + "/type", {"found nothing", "a shape needs it"}},
       {shape_with(R"("type": "ball")"), at + "/type", {"found \"ball\"", "\"sphere\""}},
-      {shape_with(R"("type": "convex_decomposition", "mesh": "x")"), at + "/type", {"not supported"}},
+      {shape_with(R"("type": "convex_decomposition")"),
+       at + "/mesh",
+       {"found nothing", "a convex decomposition needs it"}},
+      {shape_with(R"("type": "convex_decomposition", "mesh": "x")"), at + "/mesh", {"\"x\""}},
       {shape_with(R"("type": "sphere")"), at + "/radius", {"found nothing", "a sphere needs it"}},
       {shape_with(R"("type": "sphere", "radius": -1)"),
        at + "/radius",

@@ -1,6 +1,7 @@
 // Runs a scene. See scene_runner.h.
 #include "scene/scene_runner.h"
 
+#include "scene/decomposition_split.h"
 #include "scene/world_builder.h"
 
 namespace gyre {
@@ -9,6 +10,9 @@ SceneRunner::SceneRunner(Scene scene, World world) : scene_(std::move(scene)), w
 
 SceneResult<SceneRunner> SceneRunner::create(Scene scene, const std::string& file, int threads,
                                              int simd_width) {
+  SplitOptions split;
+  split.threads = threads;
+  if (std::optional<SceneError> error = split_decompositions(scene, file, split)) return *std::move(error);
   const SceneWorld& settings = scene.world;
   WorldDef def;
   def.gravity = settings.gravity;

@@ -267,10 +267,29 @@ constexpr char kPart1[] = R"json(            "group": { "type": "integer", "mini
           "properties": {
             "type": { "const": "convex_decomposition" },
             "mesh": { "type": "string" },
-            "max_hulls": { "type": "integer", "minimum": 1, "default": 32 },
-            "concavity": { "$ref": "#/$defs/positive", "default": 0.02 }
+            "max_hulls": { "type": "integer", "minimum": 1, "maximum": 1024, "default": 32 },
+            "concavity": {
+              "type": "number",
+              "minimum": 0.001,
+              "maximum": 1,
+              "default": 0.02,
+              "description": "how far hulls may reach beyond the solid, and surface may lie below them, as a part of the diameter of the mesh"
+            },
+            "max_hull_vertices": { "type": "integer", "minimum": 8, "maximum": 255, "default": 128 },
+            "meaning": {
+              "enum": ["automatic", "solid", "shell"],
+              "default": "automatic",
+              "description": "whether the triangles bound a solid or are a sheet; automatic: a sheet if it is wide open"
+            },
+            "shell_thickness": {
+              "type": "number",
+              "minimum": 0,
+              "default": 0,
+              "description": "m, of a sheet; 0: half of concavity times the diameter of the mesh"
+            }
           },
-          "required": ["mesh"]
+          "required": ["mesh"],
+          "description": "a concave mesh as convex hulls, for bodies of any type; see docs/decomposition.md"
         },
         {
           "properties": {

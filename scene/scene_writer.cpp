@@ -129,6 +129,17 @@ struct GeometryWriter {
     json.field("type", "mesh");
     json.field("mesh", scene.meshes[std::size_t(s.mesh)].name);
   }
+  void operator()(const SceneDecomposition& s) const {
+    const SceneDecomposition standard;
+    json.field("type", "convex_decomposition");
+    json.field("mesh", scene.meshes[std::size_t(s.mesh)].name);
+    json.field("max_hulls", s.max_hulls);
+    json.field("concavity", s.concavity);
+    if (s.max_hull_vertices != standard.max_hull_vertices)
+      json.field("max_hull_vertices", s.max_hull_vertices);
+    if (s.meaning != standard.meaning) json.field("meaning", to_string(s.meaning));
+    if (s.shell_thickness != standard.shell_thickness) json.field("shell_thickness", s.shell_thickness);
+  }
   void operator()(const SceneHeightField& s) const {
     json.field("type", "height_field");
     json.key("size").begin_array(kOneLine);
@@ -218,7 +229,11 @@ void write_body(JsonWriter& json, const Scene& scene, const SceneBody& body) {
   unless_default(json, "sensor", body.sensor, false);
   write_color(json, body.color);
   json.key("shapes").begin_array();
-  for (const SceneShape& shape : body.shapes) write_shape(json, scene, shape);
+  for (const SceneShape& shape : body.shapes) {
+    // The first hull of a decomposition stands for all.
+    const auto* const hull = std::get_if<SceneDecomposition>(&shape.geometry);
+    if (hull == nullptr || hull->part == 0) write_shape(json, scene, shape);
+  }
   json.end_array();
   if (!body.forces.empty()) {
     json.key("forces").begin_array();

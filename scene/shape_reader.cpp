@@ -6,7 +6,18 @@
 namespace gyre {
 namespace {
 
-enum class ShapeWord { sphere, box, capsule, cylinder, cone, convex_hull, mesh, height_field, plane };
+enum class ShapeWord {
+  sphere,
+  box,
+  capsule,
+  cylinder,
+  cone,
+  convex_hull,
+  mesh,
+  height_field,
+  plane,
+  convex_decomposition
+};
 
 void need_unmoving(const Field& field, const SceneBody& body, const char* what) {
   if (body.def.type != BodyType::dynamic) return;
@@ -64,6 +75,22 @@ SceneHeightField read_height_field(Members& members) {
   return out;
 }
 
+SceneDecomposition read_decomposition(const SceneReading& reading, Members& members) {
+  SceneDecomposition out;
+  out.mesh = find_name(reading.meshes, members.need("mesh"), "a mesh");
+  if (const auto most = members.find_value("max_hulls")) out.max_hulls = int(most->integer(1, 1024));
+  members.read("concavity", out.concavity, Range::between(0.001, 1));
+  if (const auto most = members.find_value("max_hull_vertices"))
+    out.max_hull_vertices = int(most->integer(8, 255));
+  if (const auto meaning = members.find_value("meaning")) {
+    out.meaning = meaning->choice<SurfaceMeaning>({{"automatic", SurfaceMeaning::automatic},
+                                                   {"solid", SurfaceMeaning::solid},
+                                                   {"shell", SurfaceMeaning::shell}});
+  }
+  members.read("shell_thickness", out.shell_thickness, Range::at_least(0));
+  return out;
+}
+
 Plane read_plane(Members& members) {
   Plane plane;
   if (const auto normal = members.find("normal")) {
@@ -94,6 +121,8 @@ const char* words_for(ShapeWord word) {
       return "a height field";
     case ShapeWord::plane:
       return "a plane";
+    case ShapeWord::convex_decomposition:
+      return "a convex decomposition";
   }
   return "a shape";
 }
@@ -119,6 +148,8 @@ SceneGeometry read_geometry(const SceneReading& reading, Members& members, Shape
       return read_height_field(members);
     case ShapeWord::plane:
       return read_plane(members);
+    case ShapeWord::convex_decomposition:
+      return read_decomposition(reading, members);
   }
   return Sphere{};
 }
@@ -139,7 +170,7 @@ void read_shape(SceneReading& reading, const Field& field, SceneBody& body) {
                                                  {"cone", ShapeWord::cone},
                                                  {"convex_hull", ShapeWord::convex_hull},
                                                  {"mesh", ShapeWord::mesh},
-                                                 {"convex_decomposition", {}},
+                                                 {"convex_decomposition", ShapeWord::convex_decomposition},
                                                  {"height_field", ShapeWord::height_field},
                                                  {"plane", ShapeWord::plane}});
   const bool unmoving =

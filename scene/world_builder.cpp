@@ -140,6 +140,10 @@ bool WorldBuilder::make_shape(std::size_t body, std::size_t index, ShapeDef& out
                                    [&](const SceneHull& hull) { return cooked(hull); },
                                    [&](const SceneTriangles& mesh) { return cooked(mesh); },
                                    [&](const SceneHeightField& field) { return cooked(field); },
+                                   [&](const SceneDecomposition& hulls) {
+                                     out.geometry = hulls.hull;
+                                     return true;
+                                   },
                                    [&](const auto& simple) {
                                      out.geometry = simple;
                                      return true;
@@ -150,10 +154,39 @@ bool WorldBuilder::make_shape(std::size_t body, std::size_t index, ShapeDef& out
   out.local = shape.local;
   out.density = shape.material >= 0 ? scene_.materials[std::size_t(shape.material)].density : 1000.0f;
   if (shape.density) out.density = *shape.density;
+  if (const auto* const hulls = std::get_if<SceneDecomposition>(&shape.geometry))
+    out.density *= hulls->density_scale;
   out.material = surface_of(shape);
   out.filter = scene_.bodies[body].filter;
   out.sensor = scene_.bodies[body].sensor;
   return true;
+}
+
+// Of decomposed meshes that are closed the exact mass, centre and inertia are known, which those of their hulls only come near.
+void WorldBuilder::take_solid_mass(std::size_t body, const std::vector<ShapeDef>& shapes,
+                                   BodyDef& def) const {
+  if (def.type != BodyType::dynamic || def.mass || def.center_of_mass || def.inertia) return;
+  std::vector<MassProperties> parts;
+  bool any = false;
+  for (std::size_t k = 0; k < shapes.size(); ++k) {
+    const auto* const hulls = std::get_if<SceneDecomposition>(&scene_.bodies[body].shapes[k].geometry);
+    if ((hulls != nullptr && hulls->part > 0) || !(shapes[k].density > 0.0f)) continue;
+    Result<MassProperties> mass = mass_properties(Sphere{}, 1.0f);
+    if (hulls != nullptr) {
+      const SceneMesh& mesh = scene_.meshes[std::size_t(hulls->mesh)];
+      mass = mesh_mass(mesh.vertices, mesh.indices, shapes[k].density / hulls->density_scale);
+      any = true;
+    } else {
+      mass = mass_properties(shapes[k].geometry, shapes[k].density);
+    }
+    if (!mass) return;
+    parts.push_back(transformed(*mass, shapes[k].local));
+  }
+  if (!any) return;
+  const MassProperties all = combined(parts);
+  def.mass = all.mass;
+  def.center_of_mass = all.center;
+  def.inertia = all.inertia;
 }
 
 // Finds out which part of a refused body the engine does not take, by trying the parts alone in an empty world.
@@ -181,6 +214,7 @@ bool WorldBuilder::add_bodies() {
     }
     BodyDef def = body.def;
     def.user_data = i;
+    take_solid_mass(i, shapes, def);
     const BodyId id = world_.add_body(def, shapes);
     if (!id) return blame(i, def, shapes);
     bodies_.push_back(id);

@@ -32,6 +32,7 @@ class WorldBuilder {
   bool cook(const SceneHull& hull, const std::string& pointer, Geometry& out);
   bool cook(const SceneTriangles& mesh, const std::string& pointer, Geometry& out);
   bool cook(const SceneHeightField& field, const std::string& pointer, Geometry& out);
+  void take_solid_mass(std::size_t body, const std::vector<ShapeDef>& shapes, BodyDef& def) const;
   Material surface_of(const SceneShape& shape) const;
   bool blame(std::size_t body, const BodyDef& def, const std::vector<ShapeDef>& shapes);
 

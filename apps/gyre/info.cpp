@@ -3,9 +3,9 @@
 #include "commands.h"
 #include "exit_code.h"
 #include "mesh_bounds.h"
+#include "scene/decomposition_folder.h"
 #include "scene/json_writer.h"
 #include "scene/number_text.h"
-#include "scene/scene_reader.h"
 #include "scene/scene_runner.h"
 
 #include <CLI/CLI.hpp>
@@ -32,15 +32,19 @@ struct Counts {
 };
 
 constexpr const char* kBodyWords[] = {"static", "kinematic", "dynamic"};
-constexpr const char* kShapeWords[] = {"sphere", "box",         "capsule", "cylinder",    "cone",
-                                       "plane",  "convex_hull", "mesh",    "height_field"};
+constexpr const char* kShapeWords[] = {
+    "sphere", "box",         "capsule", "cylinder",     "cone",
+    "plane",  "convex_hull", "mesh",    "height_field", "convex_decomposition"};
 constexpr const char* kJointWords[] = {"ball", "hinge", "slider", "fixed", "distance"};
 
 Counts count(const Scene& scene) {
   Counts out;
   for (const SceneBody& body : scene.bodies) {
     ++out.bodies[std::size_t(body.def.type)];
-    for (const SceneShape& shape : body.shapes) ++out.shapes[shape.geometry.index()];
+    for (const SceneShape& shape : body.shapes) {
+      const auto* const hull = std::get_if<SceneDecomposition>(&shape.geometry);
+      if (hull == nullptr || hull->part == 0) ++out.shapes[shape.geometry.index()];
+    }
   }
   for (const SceneJoint& joint : scene.joints) ++out.joints[std::size_t(joint.def.kind)];
   return out;
@@ -165,11 +169,12 @@ void print_json(const SceneRunner& runner) {
 }
 
 int show_info(const std::string& path, bool as_json) {
-  SceneResult<Scene> scene = load_scene(path);
+  SceneResult<Scene> scene = load_split_scene(path);
   if (!scene) {
     std::fprintf(stderr, "gyre: %s\n", scene.error().text().c_str());
     return kExitInvalid;
   }
+  for (const std::string& note : scene->notes) std::fprintf(stderr, "gyre: %s\n", note.c_str());
   const SceneResult<SceneRunner> runner = SceneRunner::create(*std::move(scene), path);
   if (!runner) {
     std::fprintf(stderr, "gyre: %s\n", runner.error().text().c_str());
@@ -190,8 +195,8 @@ void add_info(CLI::App& app, int& exit_code) {
     std::string scene;
     bool json = false;
   };
-  CLI::App* command =
-      app.add_subcommand("info", "Show what a scene holds, the mass properties of its bodies and the bounds of its meshes");
+  CLI::App* command = app.add_subcommand(
+      "info", "Show what a scene holds, the mass properties of its bodies and the bounds of its meshes");
   const auto options = std::make_shared<Options>();
   command->add_option("SCENE", options->scene, "The scene file (*.gyre.json)")->required()->type_name("");
   command->add_flag("--json", options->json, "Print it as JSON");

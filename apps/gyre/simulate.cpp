@@ -5,8 +5,8 @@
 #include "exit_code.h"
 #include "interrupt.h"
 #include "progress.h"
+#include "scene/decomposition_folder.h"
 #include "scene/scene_labels.h"
-#include "scene/scene_reader.h"
 #include "scene/scene_writer.h"
 #include "summary.h"
 
@@ -213,6 +213,20 @@ int Simulation::run() {
   return ended;
 }
 
+// With hulls for concave meshes, which take seconds when they are new.
+SceneResult<Scene> load_decomposed(const SimulateOptions& options) {
+  constexpr std::uint64_t kTicks = 1000;
+  Progress progress(!options.quiet, kTicks, "permille of a mesh");
+  SplitOptions split;
+  split.threads = options.threads;
+  split.progress = [](void* user, float done) {
+    static_cast<Progress*>(user)->show(std::uint64_t(done * float(kTicks)));
+    return !interrupted();
+  };
+  split.user = &progress;
+  return load_split_scene(options.scene, split);
+}
+
 }  // namespace
 
 int simulate(const SimulateOptions& options) {
@@ -221,17 +235,21 @@ int simulate(const SimulateOptions& options) {
     say(clash);
     return kExitUsage;
   }
-  SceneResult<Scene> scene = load_scene(options.scene);
+  watch_interrupt();
+  SceneResult<Scene> scene = load_decomposed(options);
+  if (!scene && interrupted()) return kExitInterrupted;
   if (!scene) {
     say(scene.error().text());
     return kExitInvalid;
+  }
+  if (!options.quiet) {
+    for (const std::string& note : scene->notes) say(note);
   }
   const std::string refusal = apply_overrides(options, scene->world);
   if (!refusal.empty()) {
     say(refusal);
     return kExitUsage;
   }
-  watch_interrupt();
   SceneResult<SceneRunner> runner = SceneRunner::create(*std::move(scene), options.scene, options.threads);
   if (!runner) {
     say(runner.error().text());

@@ -2,8 +2,8 @@
 #include "render/player.h"
 
 #include "render/track_player.h"
+#include "scene/decomposition_folder.h"
 #include "scene/mesh_file.h"
-#include "scene/scene_reader.h"
 #include "scene/scene_runner.h"
 
 #include <gyre/replay.h>
@@ -192,7 +192,7 @@ std::unique_ptr<Player> open_player(const std::string& path, const std::string& 
   }
   std::unique_ptr<Player> player;
   if (looks_like_scene(bytes)) {
-    SceneResult<Scene> scene = load_scene(path);
+    SceneResult<Scene> scene = load_split_scene(path);
     if (!scene) {
       error = scene.error().text();
       return nullptr;
@@ -201,7 +201,7 @@ std::unique_ptr<Player> open_player(const std::string& path, const std::string& 
   } else {
     std::optional<Scene> scene;
     if (!look.empty()) {
-      SceneResult<Scene> read = load_scene(look);
+      SceneResult<Scene> read = load_split_scene(look);
       if (!read) {
         error = read.error().text();
         return nullptr;
