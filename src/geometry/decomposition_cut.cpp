@@ -13,7 +13,7 @@ constexpr double kCutLength = 0.02;   // cost of a cut as long as the part's gir
 constexpr double kAlongSides = 0.15;  // gain of a cut along all that is concave
 constexpr std::size_t kSides = 8;     // flat concave sides that give planes
 constexpr double kSameWay = 0.996;    // directions within 5 degrees are one
-constexpr int kRoughVertices = 48;    // of the hulls by which cuts are judged
+constexpr int kRoughVertices = 255;   // of the hulls by which cuts are judged
 
 // ------------------------------------------------------------------------------------------------------- directions
 
@@ -140,7 +140,7 @@ class FamilyCosts {
   // The volumes below (or above) each plane.
   std::vector<double> sweep(bool from_low) const;
   ConvexBody rough(std::span<const DVec3> points) const {
-    return make_body(points, {kRoughVertices, 0.05 * solid_.tolerance, 1.0e-6});
+    return make_body(points, {kRoughVertices, 1.0e-3 * solid_.tolerance, 1.0e-6});
   }
 
   const Solid3& solid_;
@@ -308,7 +308,7 @@ Cut best_of_family(const Solid3& solid, const Part& part, const CutFamily& famil
 }
 
 bool clearly_better(const Cut& a, const Cut& b) {
-  // The hulls by which cuts are judged have few vertices: equal cuts differ by as much.
+  // Far above rounding: scaled and mirrored meshes are cut alike.
   constexpr double kRounding = 2.0e-3;
   return a.cost < b.cost - kRounding;
 }
