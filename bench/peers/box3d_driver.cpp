@@ -2,6 +2,9 @@
 // default, continuous collision on, contact recycling on). SIMD width is whatever the library was built with.
 #include "bench/scenes/engine.h"
 
+#include <algorithm>
+#include <set>
+
 #include "box3d/box3d.h"
 #include "box3d/collision.h"
 

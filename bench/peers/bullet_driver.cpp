@@ -4,6 +4,9 @@
 // built thread-safe for that; otherwise a run with two threads is skipped).
 #include "bench/scenes/engine.h"
 
+#include <algorithm>
+#include <set>
+
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcherMt.h>
 #include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolverMt.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorldMt.h>

@@ -2,6 +2,9 @@
 // discrete motion quality, convex radius 5 cm inside the shape, deterministic), damping set to zero.
 #include "bench/scenes/engine.h"
 
+#include <algorithm>
+#include <set>
+
 #include <Jolt/Jolt.h>
 
 #include <Jolt/Core/Factory.h>

@@ -3,6 +3,9 @@
 // (islands only; its collision search stays single-threaded).
 #include "bench/scenes/engine.h"
 
+#include <algorithm>
+#include <set>
+
 #include <ode/ode.h>
 
 using namespace gyre::bench;
@@ -196,6 +199,7 @@ struct Ode final : Engine {
       }
       if (a && b) joined.insert({std::min(a, b), std::max(a, b)});
     }
+    return true;
   }
 
   static void near(void* self, dGeomID g1, dGeomID g2) {
@@ -212,7 +216,6 @@ struct Ode final : Engine {
       c[i].surface.mu = o.scene->friction;
       dJointAttach(dJointCreateContact(o.world, o.contacts, &c[i]), a, b);
     }
-    return true;
   }
   void step() override {
     dSpaceCollide(space, this, &Ode::near);

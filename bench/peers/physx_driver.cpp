@@ -3,6 +3,9 @@
 // temporal Gauss-Seidel solver instead of the default projected Gauss-Seidel one.
 #include "bench/scenes/engine.h"
 
+#include <algorithm>
+#include <set>
+
 #include <PxPhysicsAPI.h>
 
 #ifndef POSITION_ITERATIONS
