@@ -1,6 +1,7 @@
 #include "rigid/solve_step.h"
 
 #include "base/check.h"
+#include "base/prefetch.h"
 #include "rigid/contact_forest.h"
 #include "rigid/fields.h"
 #include "rigid/hits.h"
@@ -47,6 +48,8 @@ constexpr int kSpinnersPerClaim = 8;
 constexpr int kJointsPerBlock = 8;
 constexpr int kBlocksPerClaim = 4;
 constexpr int kTreesPerClaim = 8;
+// Manifolds lie anywhere in memory: how many contacts before its turn one is asked for.
+constexpr std::size_t kAhead = 6;
 
 // What every stage of the program reads.
 struct Solve {
@@ -99,16 +102,23 @@ void touch_body(RigidWorld& w, std::uint32_t body, std::uint8_t touch) {
   touched = max(touched, touch);
 }
 
+void fetch_manifold(const ContactStore& store, std::uint32_t slot) {
+  prefetch(&store.manifolds[store.contacts[slot].first_manifold], sizeof(Manifold));
+}
+
 void gather_contacts(Solve& solve) {
   RigidWorld& w = solve.w;
   SolveScratch& s = solve.scratch;
   s.constraints.clear();
   s.constraint_contact.clear();
+  s.fast_constraints.clear();
   s.impacts.clear();
   s.pairs.clear();
   const float fall = std::sqrt(length(w.settings.gravity));
   const bool has_rules = !w.surface_rules.empty();
-  for (const std::uint32_t slot : solve.batch.contacts) {
+  for (std::size_t i = 0; i < solve.batch.contacts.size(); ++i) {
+    if (i + kAhead < solve.batch.contacts.size()) fetch_manifold(w.contacts, solve.batch.contacts[i + kAhead]);
+    const std::uint32_t slot = solve.batch.contacts[i];
     const Contact& contact = w.contacts.contacts[slot];
     const bool active_a = is_active(w, contact.body_a), active_b = is_active(w, contact.body_b);
     const std::uint8_t touch = contact.surface.restitution > 0.0f ? kPlaceShown : kTouched;
@@ -126,14 +136,16 @@ void gather_contacts(Solve& solve) {
     constraint.push_speed = kPushShare * (fall > 0.0f ? fall : 3.132f) * std::sqrt(contact.size);
     for (Manifold& manifold : manifolds_of(w.contacts, contact)) {
       if (manifold.count == 0) continue;
-      note_approach(w, contact, manifold);
+      const bool fast = note_approach(w, contact, manifold);
       constraint.manifold = &manifold;
+      constraint.point_count = manifold.count;
       s.constraints.push_back(constraint);
       if (has_rules && !apply_surface_rules(w, contact, manifold, s.constraints.back())) {
         s.constraints.pop_back();
         continue;
       }
       s.constraints.back().spinning_friction += patch_friction(w, contact, s.constraints.back());
+      if (fast) s.fast_constraints.push_back(std::uint32_t(s.constraint_contact.size()));
       s.constraint_contact.push_back(slot);
       s.pairs.push_back({active_a ? solve.places[contact.body_a] : ColoringPair::kNone,
                          active_b ? solve.places[contact.body_b] : ColoringPair::kNone});

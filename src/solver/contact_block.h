@@ -26,6 +26,7 @@ struct ContactConstraint {
   float restitution = 0.0f;
   std::int32_t body_a = kNoBody;  // index of the motion record; kNoBody for fixed bodies
   std::int32_t body_b = kNoBody;
+  std::int32_t point_count = 0;    // the manifold's
   bool rigid = false;              // no spring: part of a tree that is solved directly
   Manifold* manifold = nullptr;
 };
