@@ -35,6 +35,7 @@ void look(ContactStore& store, std::uint32_t slot, const CollideInput& input, To
                            input.centers[contact.body_a],  input.centers[contact.body_b]};
     touches = contact.sensor != 0 ? look_at_sensor(contact, pair)
                                   : update_contact(store, contact, pair, input.recycle);
+    if (contact.manifold_count != 0 && proxy_a.pushes != proxy_b.pushes) changes.beside_resting.set(slot);
   }
   if (touches && contact.touching == 0) changes.began.set(slot);
   if (!touches && contact.touching != 0) changes.ended.set(slot);
@@ -53,6 +54,7 @@ void collide(ContactStore& store, const CollideInput& input, TaskSystem& tasks, 
   prepare_bits(changes.began, count);
   prepare_bits(changes.ended, count);
   prepare_bits(changes.gone, count);
+  prepare_bits(changes.beside_resting, count);
   for_blocks(tasks, int(count), kBlock, [&](int begin, int end, int) {
     for (int slot = begin; slot < min(begin + kAhead, end); ++slot) fetch_manifold(store, slot);
     for (int slot = begin; slot < end; ++slot) {

@@ -50,7 +50,8 @@ void note_hits(const RigidWorld& w, SolveScratch& s) {
     const DVec3 place = w.bodies.places[contact.body_a].center + struck->from_a;
     s.hits.push_back({s.constraint_contact[i],
                       {shape_id(w, contact.shape_a), shape_id(w, contact.shape_b), body_id(w, contact.body_a),
-                       body_id(w, contact.body_b), place, manifold.normal, fastest, impulse, triangle_at(w, contact, place)}});
+                       body_id(w, contact.body_b), place, manifold.normal, fastest, impulse,
+                       triangle_at(w, contact, place)}});
   }
 }
 
