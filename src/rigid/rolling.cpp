@@ -1,6 +1,7 @@
 #include "rigid/rolling.h"
 
 #include "geometry/support.h"
+#include "rigid/solve_batches.h"
 
 namespace gyre {
 
@@ -111,6 +112,52 @@ bool describe(const RigidWorld& w, const Contact& contact, const ContactConstrai
   return true;
 }
 
+bool bears(const ContactConstraint& constraint) {
+  for (int k = 0; k < constraint.point_count; ++k) {
+    if (constraint.manifold->points[k].normal_impulse > 0.0f) return true;
+  }
+  return false;
+}
+
+// Whether a contact alone bears a body: it alone bore load in the last step, or none did and there is no other. What is held
+// from several sides does not run round its rim, and there may be thousands of those.
+class Bearers {
+ public:
+  Bearers(const RigidWorld& w, std::span<const ContactConstraint> constraints, std::span<const std::uint32_t> places,
+          std::size_t bodies, Arena& arena)
+      : w_(w), places_(places), counts_(arena.make<Count>(bodies)) {
+    for (Count& count : counts_) count = {};
+    for (const ContactConstraint& constraint : constraints) {
+      const bool loaded = bears(constraint);
+      for (const std::int32_t body : {constraint.body_a, constraint.body_b}) {
+        if (!is_borne(body)) continue;
+        Count& count = counts_[places_[std::size_t(body)]];
+        count.all = std::uint8_t(count.all < 2 ? count.all + 1 : 2);
+        count.loaded = std::uint8_t(count.loaded < 2 ? count.loaded + loaded : 2);
+      }
+    }
+  }
+  bool is_alone(const ContactConstraint& constraint) const {
+    const bool loaded = bears(constraint);
+    return is_alone(constraint.body_a, loaded) || is_alone(constraint.body_b, loaded);
+  }
+
+ private:
+  struct Count {
+    std::uint8_t all = 0, loaded = 0;  // constraints, at most 2
+  };
+  bool is_borne(std::int32_t body) const { return body != kNoBody && is_active(w_, std::uint32_t(body)); }
+  bool is_alone(std::int32_t body, bool loaded) const {
+    if (!is_borne(body)) return false;
+    const Count count = counts_[places_[std::size_t(body)]];
+    return loaded ? count.loaded == 1 : count.loaded == 0 && count.all == 1;
+  }
+
+  const RigidWorld& w_;
+  std::span<const std::uint32_t> places_;
+  std::span<Count> counts_;
+};
+
 Quat turned_on(Quat q, Vec3 turn) {
   return normalized(Quat{0.5f * turn.x, 0.5f * turn.y, 0.5f * turn.z, 1.0f} * q);
 }
@@ -144,32 +191,32 @@ float patch_friction(const RigidWorld& w, const Contact& contact, const ContactC
   return constraint.dynamic_friction * kBallPatch * radius;
 }
 
-RollingContacts find_rolling_contacts(RigidWorld& w, const SolveScratch& scratch, float seconds,
-                                      Arena& arena) {
-  const std::size_t count = scratch.constraints.size();
-  const auto contact_of = [&](std::size_t i) -> const Contact& {
-    return w.contacts.contacts[scratch.constraint_contact[i]];
-  };
-  std::size_t found = 0;
-  RollingContact rolling;
-  for (std::size_t i = 0; i < count; ++i)
-    found += describe(w, contact_of(i), scratch.constraints[i], seconds, rolling);
+RollingContacts find_rolling_contacts(RigidWorld& w, const SolveScratch& scratch,
+                                      std::span<const std::uint32_t> places, std::size_t bodies,
+                                      float seconds, Arena& arena) {
+  const std::span<const ContactConstraint> constraints = scratch.constraints;
+  const Bearers bearers(w, constraints, places, bodies, arena);
+  std::size_t most = 0;
+  for (const ContactConstraint& constraint : constraints) most += bearers.is_alone(constraint);
+  const std::span<RollingContact> room = arena.make<RollingContact>(most);
   RollingContacts all;
-  if (found == 0) return all;
-  all.contacts = arena.make<RollingContact>(found);
-  all.of_constraint = arena.make<std::uint32_t>(count);
-  std::uint32_t place = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
+  if (room.empty()) return all;
+  all.of_constraint = arena.make<std::uint32_t>(constraints.size());
+  std::uint32_t found = 0;
+  for (std::uint32_t i = 0; i < constraints.size(); ++i) {
     all.of_constraint[i] = kNotRolling;
+    if (!bearers.is_alone(constraints[i])) continue;
+    RollingContact& rolling = room[found];
     rolling = RollingContact{};
-    if (!describe(w, contact_of(i), scratch.constraints[i], seconds, rolling)) continue;
+    if (!describe(w, w.contacts.contacts[scratch.constraint_contact[i]], constraints[i], seconds, rolling))
+      continue;
     rolling.constraint = i;
     for (const std::int32_t body : {rolling.body, rolling.other}) {
       if (body != kNoBody) w.bodies.flags[std::size_t(body)].touched = 2;
     }
-    all.contacts[place] = rolling;
-    all.of_constraint[i] = place++;
+    all.of_constraint[i] = found++;
   }
+  all.contacts = room.first(found);
   return all;
 }
 

@@ -49,10 +49,10 @@ constexpr std::uint32_t kNotRolling = 0xffffffffu;
 // de pivotement dans la theorie de la toupie", 1963.
 float patch_friction(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint);
 
-// Those among the constraints of the batch whose bodies turn against each other. Marks the bodies as ones whose place others
-// look at.
-RollingContacts find_rolling_contacts(RigidWorld& w, const SolveScratch& scratch, float seconds,
-                                      Arena& arena);
+// Those among the constraints of the batch that alone bear a body, and whose bodies turn against each other. `places`: of
+// bodies in the batch, which has so many. Marks the bodies as ones whose place others look at.
+RollingContacts find_rolling_contacts(RigidWorld& w, const SolveScratch& scratch, std::span<const std::uint32_t> places,
+                                      std::size_t bodies, float seconds, Arena& arena);
 
 // Where the contact is in a sub-step that begins now, with its middle in `ahead` seconds.
 FollowedArms follow_contact(const RigidWorld& w, RollingContact& rolling, const Manifold& manifold,

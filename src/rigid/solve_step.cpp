@@ -490,7 +490,8 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   gather_contacts(solve);
   solve.linkages = find_linkages(solve.w, solve.batch, solve.places, arena);
   gather_joints(solve);
-  solve.rolling = find_rolling_contacts(solve.w, scratch, solve.contact_settings.step, arena);
+  solve.rolling = find_rolling_contacts(solve.w, scratch, solve.places, solve.batch.bodies.size(),
+                                        solve.contact_settings.step, arena);
   solve.fields = find_field_bodies(solve.w, solve.batch.bodies, solve.h, arena);
   const std::uint32_t bodies = std::uint32_t(solve.batch.bodies.size());
   color_constraints(scratch.pairs, bodies, {}, kColoringOptions, scratch.contact_colors);
