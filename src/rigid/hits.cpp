@@ -33,7 +33,8 @@ bool note_approach(const RigidWorld& w, const Contact& contact, Manifold& manifo
 }
 
 void note_hits(const RigidWorld& w, SolveScratch& s) {
-  for (const std::uint32_t i : s.fast_constraints) {
+  for (std::size_t i = 0; i < s.constraints.size(); ++i) {
+    if (!s.constraints[i].fast) continue;
     const Contact& contact = w.contacts.contacts[s.constraint_contact[i]];
     const Manifold& manifold = *s.constraints[i].manifold;
     float fastest = hit_speed(contact);

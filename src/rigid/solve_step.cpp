@@ -106,12 +106,18 @@ void fetch_manifold(const ContactStore& store, std::uint32_t slot) {
   prefetch(&store.manifolds[store.contacts[slot].first_manifold], sizeof(Manifold));
 }
 
+bool bears_load(const Manifold& manifold) {
+  for (int k = 0; k < manifold.count; ++k) {
+    if (manifold.points[k].normal_impulse > 0.0f) return true;
+  }
+  return false;
+}
+
 void gather_contacts(Solve& solve) {
   RigidWorld& w = solve.w;
   SolveScratch& s = solve.scratch;
   s.constraints.clear();
   s.constraint_contact.clear();
-  s.fast_constraints.clear();
   s.impacts.clear();
   s.pairs.clear();
   const float fall = std::sqrt(length(w.settings.gravity));
@@ -136,16 +142,16 @@ void gather_contacts(Solve& solve) {
     constraint.push_speed = kPushShare * (fall > 0.0f ? fall : 3.132f) * std::sqrt(contact.size);
     for (Manifold& manifold : manifolds_of(w.contacts, contact)) {
       if (manifold.count == 0) continue;
-      const bool fast = note_approach(w, contact, manifold);
+      constraint.fast = note_approach(w, contact, manifold);
       constraint.manifold = &manifold;
       constraint.point_count = manifold.count;
+      constraint.loaded = bears_load(manifold);
       s.constraints.push_back(constraint);
       if (has_rules && !apply_surface_rules(w, contact, manifold, s.constraints.back())) {
         s.constraints.pop_back();
         continue;
       }
       s.constraints.back().spinning_friction += patch_friction(w, contact, s.constraints.back());
-      if (fast) s.fast_constraints.push_back(std::uint32_t(s.constraint_contact.size()));
       s.constraint_contact.push_back(slot);
       s.pairs.push_back({active_a ? solve.places[contact.body_a] : ColoringPair::kNone,
                          active_b ? solve.places[contact.body_b] : ColoringPair::kNone});
@@ -322,25 +328,41 @@ void warm_contacts_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
   g.solve->kernels.warm_start(g.solve->blocks, int(g.first) + begin, int(g.first) + end, g.solve->contact_bodies.motion);
 }
-// Takes the points of those contacts along that roll, which are few. They share no moving body with others of their colour.
-void follow_contacts(const Group& g, int begin, int end) {
+// Calls fn(rolling, block, lane) for those contacts of the blocks that roll, which are few.
+template <class Fn>
+void for_each_rolling(const Group& g, int begin, int end, Fn&& fn) {
   Solve& s = *g.solve;
   if (s.rolling.contacts.empty()) return;
   const int width = s.kernels.width;
   for (int i = (int(g.first) + begin) * width; i < (int(g.first) + end) * width; ++i) {
     const std::uint32_t constraint = s.scratch.order[std::size_t(i)];
     const std::uint32_t place = constraint == 0xffffffffu ? kNotRolling : s.rolling.of_constraint[constraint];
-    if (place == kNotRolling) continue;
-    const FollowedArms arms =
-        follow_contact(s.w, s.rolling.contacts[place], *s.scratch.constraints[constraint].manifold, 0.5f * s.h);
-    s.kernels.follow(s.blocks, i / width, i % width, arms, s.contact_bodies.inertia, s.contact_bodies.motion);
+    if (place != kNotRolling) fn(s.rolling.contacts[place], i / width, i % width);
   }
+}
+// Takes their points along, and their bodies to the velocities of the middle of the sub-step: no other contact bears these.
+void follow_contacts(const Group& g, int begin, int end) {
+  Solve& s = *g.solve;
+  for_each_rolling(g, begin, end, [&](RollingContact& rolling, int block, int lane) {
+    const Manifold& manifold = *s.scratch.constraints[rolling.constraint].manifold;
+    const FollowedArms arms = follow_contact(s.w, rolling, manifold, 0.5f * s.h);
+    s.kernels.follow(s.blocks, block, lane, arms, s.contact_bodies.inertia, s.contact_bodies.motion);
+    Vec3& spin = s.contact_bodies.motion[rolling.body].angular_velocity;
+    spin = spin + rolling.drift;
+  });
+}
+void leave_middle(const Group& g, int begin, int end) {
+  for_each_rolling(g, begin, end, [&](const RollingContact& rolling, int, int) {
+    Vec3& spin = g.solve->contact_bodies.motion[rolling.body].angular_velocity;
+    spin = spin - rolling.drift;
+  });
 }
 void solve_contacts_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
   follow_contacts(g, begin, end);
   g.solve->kernels.solve(g.solve->blocks, int(g.first) + begin, int(g.first) + end, g.solve->contact_bodies.motion,
                          g.solve->h);
+  leave_middle(g, begin, end);
 }
 void relax_contacts_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);

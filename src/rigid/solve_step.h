@@ -25,7 +25,6 @@ struct SlotHit {
 struct SolveScratch {
   Array<ContactConstraint> constraints;
   Array<std::uint32_t> constraint_contact;  // contact slot of each constraint
-  Array<std::uint32_t> fast_constraints;    // constraints that may turn out to be hits (rigid/hits.h)
   Array<ImpactContact> impacts;
   Array<ColoringPair> pairs;
   Coloring contact_colors;
