@@ -473,5 +473,23 @@ TEST_F(CommandLine, OutputsReplaceFilesOnlyWhenWhole) {
   EXPECT_EQ(gyre({"simulate", "s.gyre.json", "--steps", "1", "--trace", "/dev/null"}).code, 0);
 }
 
+TEST_F(CommandLine, BenchPrintsTimesBesideQuality) {
+  const Finished text = gyre({"bench", "tower", "chain", "--steps", "20", "--stages"});
+  EXPECT_EQ(text.code, 0) << text.err;
+  const std::vector<std::string> lines = lines_of(text.out);
+  ASSERT_GE(lines.size(), 5u);
+  EXPECT_NE(lines[0].find("overlap mm"), std::string::npos);
+  EXPECT_EQ(lines[1].substr(0, 5), "tower");
+  EXPECT_NE(text.out.find("  solve "), std::string::npos) << text.out;
+  const Finished json = gyre({"bench", "tower", "--steps", "20", "--rounds", "2", "--json"});
+  EXPECT_EQ(json.code, 0) << json.err;
+  EXPECT_NE(json.out.find("\"scene\": \"tower\""), std::string::npos) << json.out;
+  EXPECT_NE(json.out.find("\"rounds\": 2"), std::string::npos) << json.out;
+  const Finished wrong = gyre({"bench", "towre"});
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_EQ(wrong.out, "");
+  EXPECT_NE(wrong.err.find("no scene 'towre'"), std::string::npos) << wrong.err;
+}
+
 }  // namespace
 }  // namespace gyre
