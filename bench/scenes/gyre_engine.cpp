@@ -13,6 +13,11 @@ BodyType type_of(Motion motion) {
   return motion == Motion::kinematic ? BodyType::kinematic : BodyType::dynamic;
 }
 
+gyre::JointKind kind_of(JointKind kind) {
+  if (kind == JointKind::ball) return gyre::JointKind::ball;
+  return kind == JointKind::cone ? gyre::JointKind::cone : gyre::JointKind::hinge;
+}
+
 Filter filter_of(Layer layer) {
   if (layer == Layer::fixed) return {.layer = 1};
   if (layer == Layer::normal) return {.layer = 2};
@@ -81,20 +86,18 @@ void GyreEngine::add_bodies(const Scene& scene) {
 void GyreEngine::add_joints(const Scene& scene) {
   for (const Joint& joint : scene.joints) {
     JointDef def;
-    def.kind = joint.kind == JointKind::hinge ? gyre::JointKind::hinge : gyre::JointKind::ball;
+    def.kind = kind_of(joint.kind);
     def.a = ids_[std::size_t(joint.a)];
     def.b = ids_[std::size_t(joint.b)];
     def.anchor = place(joint.anchor);
     def.axis = narrow(joint.axis);
-    if (joint.kind == JointKind::hinge) def.limits = Limits{float(joint.lo), float(joint.hi)};
+    if (joint.kind != JointKind::ball) def.limits = Limits{float(joint.lo), float(joint.hi)};
+    if (joint.kind == JointKind::cone) def.swing_y = float(joint.cone);
     world_->add_joint(def);
   }
 }
 
 bool GyreEngine::create(const Scene& scene, int threads, bool sleep, std::string& why_not) {
-  for (const Joint& joint : scene.joints) {
-    if (joint.kind == JointKind::cone) return why_not = "no joint with a cone of swing", false;
-  }
   WorldDef def;
   def.gravity = {0, float(kGravity), 0};
   def.threads = threads;
