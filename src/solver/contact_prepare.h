@@ -224,7 +224,8 @@ GYRE_INLINE Sym3W<W> prepare_friction_masses(ContactBlock<W>& block, Mask<W> has
   const Sym3W<W> all_rows = k;
   k.xz = keep(twists, k.xz);
   k.yz = keep(twists, k.yz);
-  k.zz = select(twists, k.zz, one);
+  // In the place of a row that is left out something of the same kind: a scale of one would know the unit of mass.
+  k.zz = select(twists, k.zz, select(k.xx > zero, k.xx, one));
   const Sym3W<W> inverse_k = inverse(k);
   block.inverse_k11 = inverse_k.xx;
   block.inverse_k22 = inverse_k.yy;
