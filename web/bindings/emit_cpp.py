@@ -199,7 +199,7 @@ class CppWriter:
         return (f"  std::vector<{element}>& rows = answer.kept<std::vector<{element}>>();\n"
                 f"  rows.resize({target}{function.name}({before}{{}}));\n"
                 f"  {target}{function.name}({before}rows);\n"
-                f"  put_rows(answer, std::span<const {element}>(rows));\n"
+                f"  {self.put_array(element, 'rows', parameter.name)};\n"
                 "  return answer.done();\n}\n\n")
 
     def call_and_answer(self, function, owner, arguments, filled, outs):

@@ -173,6 +173,12 @@ void get(Call& call, std::span<const T>& out) {
   out = rows;
 }
 
+template <class T>
+void get(Call& call, std::vector<T>& out) {
+  out.resize(static_cast<std::size_t>(call.next()));
+  for (T& row : out) get(call, row);
+}
+
 // ------------------------------------------------------------------------------------------------------------ results
 
 double handle_of(std::uint32_t index, std::uint16_t generation, std::uint16_t world);
