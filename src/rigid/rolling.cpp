@@ -11,6 +11,8 @@ namespace {
 constexpr float kLeastTurn = 1.0e-4f;
 // Half a sub-step's turn (rad) beyond which the change of the axis is not followed to the full.
 constexpr float kLargestTurn = 0.2f;
+// How far a contact may run round its rim in a step (rad): a disc that lies down runs faster and faster.
+constexpr float kLargestRound = 0.8f;
 // How far a contact may run in a sub-step, as a share of its arm, before it loses energy on its way.
 constexpr float kLargestRun = 0.02f;
 // Mean distance of the load from the middle of a ball's patch, as a share of the radius.
@@ -72,11 +74,18 @@ RollingPoint describe_point(const Shape& shape, const RollingContact& rolling, Q
 }
 
 // Whether it matters where the contact goes.
-bool rolls(const RigidWorld& w, const Shape& shape, const RollingContact& rolling, float seconds) {
+bool rolls(const RigidWorld& w, const ColliderShape& collider, const RollingContact& rolling, Vec3 outward,
+           float seconds) {
+  const Shape& shape = collider.shape;
   const Vec3 spin = w.bodies.motion[std::size_t(rolling.body)].angular_velocity;
   const Vec3 other_spin =
       rolling.other == kNoBody ? Vec3{} : w.bodies.motion[std::size_t(rolling.other)].angular_velocity;
   if (!(seconds * length(spin - other_spin) > kLeastTurn)) return false;
+  if (core_radius(shape) == 0.0f) {
+    const Quat orientation = w.bodies.orientations[std::size_t(rolling.body)];
+    const Vec3 axis = rotate(orientation, rotate(collider.body_from_shape.orientation, Vec3{0, 1, 0}));
+    return seconds * length(cross(spin - other_spin, axis)) <= kLargestRound * Lowest(outward, axis).lean;
+  }
   if (shape.kind != ShapeKind::sphere || rolling.center != Vec3{}) return true;
   // Below a ball's centre it stays, and only what it rolls on can notice.
   return rolling.other != kNoBody &&
@@ -130,7 +139,7 @@ bool choose_body(const RigidWorld& w, const Contact& contact, const ContactConst
   if (!bearers.is_alone(constraint, rolling.body)) return false;
   const ColliderShape& collider = w.shapes.colliders[flat_a ? contact.shape_b : contact.shape_a];
   rolling.center = collider.body_from_shape.position - w.bodies.masses[std::size_t(rolling.body)].center;
-  return rolls(w, collider.shape, rolling, seconds);
+  return rolls(w, collider, rolling, -rolling.side * constraint.manifold->normal, seconds);
 }
 
 void describe(const RigidWorld& w, const Contact& contact, const Manifold& manifold,
