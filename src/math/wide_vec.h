@@ -178,18 +178,13 @@ GYRE_INLINE Sym3W<W> select(Mask<W> mask, const Sym3W<W>& a, const Sym3W<W>& b) 
 }
 // The inverse; the zero matrix where `m` is singular.
 template <int W>
-GYRE_INLINE Sym3W<W> inverse(const Sym3W<W>& matrix) {
-  const Wide<W> a = absolute(matrix.xx), b = absolute(matrix.yy), c = absolute(matrix.zz);
-  const Wide<W> ab = select(a < b, b, a), largest = select(ab < c, c, ab);
-  const Mask<W> is_zero = largest == 0.0f;
-  const Wide<W> scale = 1.0f / select(is_zero, Wide<W>(1.0f), largest);
-  const Sym3W<W> m = scale * matrix;
+GYRE_INLINE Sym3W<W> inverse(const Sym3W<W>& m) {
   const Wide<W> cxx = m.yy * m.zz - m.yz * m.yz;
   const Wide<W> cxy = m.xz * m.yz - m.xy * m.zz;
   const Wide<W> cxz = m.xy * m.yz - m.xz * m.yy;
   const Wide<W> det = m.xx * cxx + m.xy * cxy + m.xz * cxz;
   const Mask<W> regular = det != 0.0f;
-  const Wide<W> s = scale / det;
+  const Wide<W> s = 1.0f / det;
   return {keep(regular, s * cxx),
           keep(regular, s * (m.xx * m.zz - m.xz * m.xz)),
           keep(regular, s * (m.xx * m.yy - m.xy * m.xy)),

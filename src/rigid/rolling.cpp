@@ -11,8 +11,8 @@ namespace {
 constexpr float kLeastTurn = 1.0e-4f;
 // Half a sub-step's turn (rad) beyond which the change of the axis is not followed to the full.
 constexpr float kLargestTurn = 0.2f;
-// How far a contact may run round its rim in a step (rad): a disc that lies down runs faster and faster.
-constexpr float kLargestRound = 0.8f;
+// How far a contact may run round its rim in a step (rad) and still be followed: a disc that lies down runs faster and faster.
+constexpr float kLargestRound = 0.3f;
 // How far a contact may run in a sub-step, as a share of its arm, before it loses energy on its way.
 constexpr float kLargestRun = 0.02f;
 // Mean distance of the load from the middle of a ball's patch, as a share of the radius.
