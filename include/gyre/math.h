@@ -196,20 +196,14 @@ constexpr Sym3 to_symmetric(const Mat3& m) {
           0.5f * (m.x.z + m.z.x),
           0.5f * (m.y.z + m.z.y)};
 }
-// The inverse; the zero matrix if `m` is singular. Scaled first: the determinant of a millimetre's inertia, or of a kilometre's,
-// is no float.
-constexpr Sym3 inverse(const Sym3& matrix) {
-  const float a = matrix.xx < 0.0f ? -matrix.xx : matrix.xx, b = matrix.yy < 0.0f ? -matrix.yy : matrix.yy;
-  const float c = matrix.zz < 0.0f ? -matrix.zz : matrix.zz;
-  const float ab = a < b ? b : a, largest = ab < c ? c : ab;
-  const float scale = largest > 0.0f ? 1.0f / largest : 1.0f;
-  const Sym3 m = scale * matrix;
+// The inverse; the zero matrix if `m` is singular.
+constexpr Sym3 inverse(const Sym3& m) {
   const float cxx = m.yy * m.zz - m.yz * m.yz;
   const float cxy = m.xz * m.yz - m.xy * m.zz;
   const float cxz = m.xy * m.yz - m.xz * m.yy;
   const float det = m.xx * cxx + m.xy * cxy + m.xz * cxz;
   if (det == 0.0f) return {};
-  const float s = scale / det;
+  const float s = 1.0f / det;
   return {s * cxx,
           s * (m.xx * m.zz - m.xz * m.xz),
           s * (m.xx * m.yy - m.xy * m.xy),

@@ -29,8 +29,6 @@ struct SeamScratch {
 
 // Takes those manifolds from every contact of a moving shape with a resting one that another resting shape, touched by it
 // too, hides. Such a contact is looked at anew in the next step.
-// `beside_resting`: see TouchChanges.
-void hide_seams(ContactStore& store, const CollideInput& input, const Bitset& beside_resting, TaskSystem& tasks,
-                SeamScratch& scratch);
+void hide_seams(ContactStore& store, const CollideInput& input, TaskSystem& tasks, SeamScratch& scratch);
 
 }  // namespace gyre

@@ -53,11 +53,9 @@ namespace {
 // The inverse of `inertia` on the axes that are free, zero on the locked ones: the inverse of the sub-matrix, not the
 // sub-matrix of the inverse, since a locked axis takes up whatever torque it needs.
 Sym3 inverse_on_free_axes(Sym3 inertia, std::uint8_t locked) {
-  // In the place of what is left out something of the same kind: one would know the unit of mass.
-  const float own = max(inertia.xx, max(inertia.yy, inertia.zz));
-  if (locked & 1) inertia.xy = inertia.xz = 0.0f, inertia.xx = own;
-  if (locked & 2) inertia.xy = inertia.yz = 0.0f, inertia.yy = own;
-  if (locked & 4) inertia.xz = inertia.yz = 0.0f, inertia.zz = own;
+  if (locked & 1) inertia.xy = inertia.xz = 0.0f, inertia.xx = 1.0f;
+  if (locked & 2) inertia.xy = inertia.yz = 0.0f, inertia.yy = 1.0f;
+  if (locked & 4) inertia.xz = inertia.yz = 0.0f, inertia.zz = 1.0f;
   Sym3 result = inverse(inertia);
   if (locked & 1) result.xx = 0.0f;
   if (locked & 2) result.yy = 0.0f;

@@ -224,8 +224,7 @@ GYRE_INLINE Sym3W<W> prepare_friction_masses(ContactBlock<W>& block, Mask<W> has
   const Sym3W<W> all_rows = k;
   k.xz = keep(twists, k.xz);
   k.yz = keep(twists, k.yz);
-  // In the place of a row that is left out something of the same kind: a scale of one would know the unit of mass.
-  k.zz = select(twists, k.zz, select(k.xx > zero, k.xx, one));
+  k.zz = select(twists, k.zz, one);
   const Sym3W<W> inverse_k = inverse(k);
   block.inverse_k11 = inverse_k.xx;
   block.inverse_k22 = inverse_k.yy;
@@ -426,6 +425,8 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
   const LaneRecords<W> records = find_records<W>(constraints, order, bodies, nowhere);
   block.point_count = records.point_count;
   block.rolls = block.has_fresh = 0;
+  block.follows_a = block.follows_b = 0;
+  block.drift = Vec3W<W>{zero, zero, zero};
   Wide<W> in[4];
   load_four<W>(records.manifold, kManifoldNormal, in);
   block.normal = {in[0], in[1], in[2]};
