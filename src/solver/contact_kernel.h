@@ -179,6 +179,9 @@ void warm_start_blocks(void* memory, int begin, int end, BodyMotion* motion) {
   }
 }
 
+// N s: less than this is no load. The square of its inverse is still a float; what dies away goes through all of them down to zero.
+constexpr float kLeastLoad = 1.0e-18f;
+
 // Sum of the normal impulses of a manifold.
 template <int W>
 GYRE_INLINE Wide<W> normal_load(const ContactBlock<W>& block) {
@@ -205,7 +208,7 @@ GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W>& pair) {
 
   // Where on its limit the impulse is: 1 on the ellipsoid. No load, no friction.
   const auto was_sliding = block.sliding > zero;
-  const auto loaded = load > zero;
+  const auto loaded = load > Wide<W>(kLeastLoad);
   const Wide<W> per_load = select(loaded, one / select(loaded, load, one), zero);
   const Wide<W> grip = select(was_sliding, block.dynamic_grip, block.static_grip) * per_load;
   const Wide<W> twist_grip = select(was_sliding, block.dynamic_twist_grip, block.static_twist_grip) * per_load;

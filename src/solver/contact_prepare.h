@@ -162,7 +162,7 @@ GYRE_INLINE Wide<W> pressure_patch(ContactBlock<W>& block, const LaneRecords<W>&
   Wide<W> weights[kMaxManifoldPoints];
   Wide<W> sum = zero;
   for (int k = 0; k < count; ++k) sum = sum + (weights[k] = block.points[k].impulse);
-  const auto bears = sum > zero;
+  const auto bears = sum > Wide<W>(kLeastLoad);
   if (!all(bears)) {
     // A point counts less the farther it is above the lowest, in units of the manifold's extent.
     Wide<W> extent = zero, nearest = block.points[0].separation;
