@@ -196,14 +196,25 @@ constexpr Sym3 to_symmetric(const Mat3& m) {
           0.5f * (m.x.z + m.z.x),
           0.5f * (m.y.z + m.z.y)};
 }
-// The inverse; the zero matrix if `m` is singular.
-constexpr Sym3 inverse(const Sym3& m) {
+// A power of two by which a matrix with this largest element on its diagonal is multiplied before its determinant is taken: that of a
+// millimetre's inertia, or of a kilometre's, is no float. Powers of two change no digit.
+constexpr float inverse_scale(float largest) {
+  if (largest > 0x1p30f) return largest > 0x1p70f ? 0x1p-100f : 0x1p-50f;
+  if (largest < 0x1p-30f) return largest < 0x1p-70f ? 0x1p100f : 0x1p50f;
+  return 1.0f;
+}
+// The inverse; the zero matrix if it is singular.
+constexpr Sym3 inverse(const Sym3& matrix) {
+  const float a = matrix.xx < 0.0f ? -matrix.xx : matrix.xx, b = matrix.yy < 0.0f ? -matrix.yy : matrix.yy;
+  const float c = matrix.zz < 0.0f ? -matrix.zz : matrix.zz;
+  const float scale = inverse_scale(max(a, max(b, c)));
+  const Sym3 m = scale * matrix;
   const float cxx = m.yy * m.zz - m.yz * m.yz;
   const float cxy = m.xz * m.yz - m.xy * m.zz;
   const float cxz = m.xy * m.yz - m.xz * m.yy;
   const float det = m.xx * cxx + m.xy * cxy + m.xz * cxz;
   if (det == 0.0f) return {};
-  const float s = 1.0f / det;
+  const float s = scale / det;
   return {s * cxx,
           s * (m.xx * m.zz - m.xz * m.xz),
           s * (m.xx * m.yy - m.xy * m.xy),

@@ -178,13 +178,21 @@ GYRE_INLINE Sym3W<W> select(Mask<W> mask, const Sym3W<W>& a, const Sym3W<W>& b) 
 }
 // The inverse; the zero matrix where `m` is singular.
 template <int W>
-GYRE_INLINE Sym3W<W> inverse(const Sym3W<W>& m) {
+GYRE_INLINE Sym3W<W> inverse(const Sym3W<W>& matrix) {
+  // As inverse_scale() in gyre/math.h.
+  const Wide<W> largest = max(absolute(matrix.xx), max(absolute(matrix.yy), absolute(matrix.zz)));
+  Wide<W> scale(1.0f);
+  scale = select(largest > Wide<W>(0x1p30f), Wide<W>(0x1p-50f), scale);
+  scale = select(largest > Wide<W>(0x1p70f), Wide<W>(0x1p-100f), scale);
+  scale = select(largest < Wide<W>(0x1p-30f), Wide<W>(0x1p50f), scale);
+  scale = select(largest < Wide<W>(0x1p-70f), Wide<W>(0x1p100f), scale);
+  const Sym3W<W> m = scale * matrix;
   const Wide<W> cxx = m.yy * m.zz - m.yz * m.yz;
   const Wide<W> cxy = m.xz * m.yz - m.xy * m.zz;
   const Wide<W> cxz = m.xy * m.yz - m.xz * m.yy;
   const Wide<W> det = m.xx * cxx + m.xy * cxy + m.xz * cxz;
   const Mask<W> regular = det != 0.0f;
-  const Wide<W> s = 1.0f / det;
+  const Wide<W> s = scale / det;
   return {keep(regular, s * cxx),
           keep(regular, s * (m.xx * m.zz - m.xz * m.xz)),
           keep(regular, s * (m.xx * m.yy - m.xy * m.xy)),
