@@ -78,6 +78,7 @@ struct TouchChanges {
   Bitset began;  // not touching before, touching now (sensors too)
   Bitset ended;  // the other way round
   Bitset gone;   // fat boxes no longer overlap: remove the contact (`ended` is set too if it was touching)
+  Bitset beside_resting;  // looked at, has points, and only one of the two is moved by contacts (for seam.h)
 };
 
 // Brings all contacts up to date. A contact with no awake body is left exactly as it is, unless it is gone.

@@ -200,13 +200,15 @@ static_assert(kMaxMeshManifolds <= 8);
 
 }  // namespace
 
-void hide_seams(ContactStore& store, const CollideInput& input, TaskSystem& tasks, SeamScratch& scratch) {
+void hide_seams(ContactStore& store, const CollideInput& input, const Bitset& beside_resting, TaskSystem& tasks,
+                SeamScratch& scratch) {
   const std::size_t count = store.contacts.size();
   if (scratch.hidden.size() < count) scratch.hidden.resize(count);
   scratch.hidden.reset_all();
   // All are asked before any is changed: nobody is hidden by who is hidden earlier in the list.
   for_blocks(tasks, int(count), kBlock, [&](int begin, int end, int) {
     for (int slot = begin; slot < end; ++slot) {
+      if (!beside_resting.test(std::size_t(slot))) continue;
       if (hidden_manifolds(store, std::uint32_t(slot), input) != 0) scratch.hidden.set(std::size_t(slot));
     }
   });

@@ -29,6 +29,8 @@ struct SeamScratch {
 
 // Takes those manifolds from every contact of a moving shape with a resting one that another resting shape, touched by it
 // too, hides. Such a contact is looked at anew in the next step.
-void hide_seams(ContactStore& store, const CollideInput& input, TaskSystem& tasks, SeamScratch& scratch);
+// `beside_resting`: see TouchChanges.
+void hide_seams(ContactStore& store, const CollideInput& input, const Bitset& beside_resting, TaskSystem& tasks,
+                SeamScratch& scratch);
 
 }  // namespace gyre

@@ -29,7 +29,7 @@ bool is_still(const RigidWorld& w, std::int32_t body) {
 }
 
 bool is_patch(const ContactConstraint& c) {
-  return c.manifold->count >= 3 && c.static_friction > 0.0f && c.surface_velocity == Vec3{};
+  return c.point_count >= 3 && c.static_friction > 0.0f && c.surface_velocity == Vec3{};
 }
 
 // What is counted about an island, at its root in the union-find.

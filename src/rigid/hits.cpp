@@ -10,6 +10,8 @@ namespace {
 // A contact is reported as a hit when it closes faster than this share of sqrt(9.81 m/s^2 * size).
 constexpr float kHitShare = 0.3f;
 
+float hit_speed(const Contact& contact) { return kHitShare * std::sqrt(9.81f * contact.size); }
+
 Vec3 point_velocity(const RigidWorld& w, std::uint32_t body, Vec3 from_center) {
   const BodyMotion& motion = w.bodies.motion[body];
   return motion.linear_velocity + cross(motion.angular_velocity, from_center);
@@ -17,23 +19,25 @@ Vec3 point_velocity(const RigidWorld& w, std::uint32_t body, Vec3 from_center) {
 
 }  // namespace
 
-// How fast points that bore nothing yet are closing as the step begins: should they meet in it, that is the hit.
-void note_approach(const RigidWorld& w, const Contact& contact, Manifold& manifold) {
+bool note_approach(const RigidWorld& w, const Contact& contact, Manifold& manifold) {
+  float fastest = 0.0f;
   for (int k = 0; k < manifold.count; ++k) {
     ContactPointState& point = manifold.points[k];
     point.approach_speed = 0.0f;
     if (point.normal_impulse > 0.0f) continue;
     point.approach_speed = dot(manifold.normal, point_velocity(w, contact.body_a, point.from_a) -
                                                     point_velocity(w, contact.body_b, point.from_b));
+    fastest = max(fastest, point.approach_speed);
   }
+  return fastest > 0.0f && fastest > hit_speed(contact);
 }
 
-// Those contacts of a batch that were struck hard in this step.
 void note_hits(const RigidWorld& w, SolveScratch& s) {
   for (std::size_t i = 0; i < s.constraints.size(); ++i) {
+    if (!s.constraints[i].fast) continue;
     const Contact& contact = w.contacts.contacts[s.constraint_contact[i]];
     const Manifold& manifold = *s.constraints[i].manifold;
-    float fastest = kHitShare * std::sqrt(9.81f * contact.size);
+    float fastest = hit_speed(contact);
     const ContactPointState* struck = nullptr;
     float impulse = 0.0f;
     for (int k = 0; k < manifold.count; ++k) {
@@ -47,11 +51,11 @@ void note_hits(const RigidWorld& w, SolveScratch& s) {
     const DVec3 place = w.bodies.places[contact.body_a].center + struck->from_a;
     s.hits.push_back({s.constraint_contact[i],
                       {shape_id(w, contact.shape_a), shape_id(w, contact.shape_b), body_id(w, contact.body_a),
-                       body_id(w, contact.body_b), place, manifold.normal, fastest, impulse, triangle_at(w, contact, place)}});
+                       body_id(w, contact.body_b), place, manifold.normal, fastest, impulse,
+                       triangle_at(w, contact, place)}});
   }
 }
 
-// The events of all batches, in contact order.
 void report_hits(RigidWorld& w, SolveScratch& s, Arena& arena) {
   const ArenaScope scope(arena);
   merge_sort(s.hits.view(), arena.make<SlotHit>(s.hits.size()),

@@ -6,8 +6,9 @@
 
 namespace gyre {
 
-// How fast points that bore nothing yet are closing as the step begins: should they meet in it, that is the hit.
-void note_approach(const RigidWorld& w, const Contact& contact, Manifold& manifold);
+// How fast points that bore nothing yet are closing as the step begins: should they meet in it, that is the hit. Returns whether
+// one of them is fast enough to be told.
+bool note_approach(const RigidWorld& w, const Contact& contact, Manifold& manifold);
 // Those contacts of a batch that were struck hard in this step.
 void note_hits(const RigidWorld& w, SolveScratch& s);
 // The events of all batches, in contact order.

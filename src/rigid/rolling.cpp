@@ -40,8 +40,8 @@ struct Lowest {
   }
 };
 
-RollingPoint describe_point(const Shape& shape, const RollingContact& rolling, Quat orientation, Vec3 center,
-                            Vec3 arm, float separation) {
+RollingPoint describe_point(const Shape& shape, const RollingContact& rolling, Quat orientation, Vec3 arm,
+                            float separation) {
   RollingPoint point;
   const Vec3 half_gap = (0.5f * separation) * rolling.outward;
   const Vec3 on_surface = arm - half_gap;
@@ -52,7 +52,7 @@ RollingPoint describe_point(const Shape& shape, const RollingContact& rolling, Q
     return point;
   }
   const Vec3 axis = rotate(orientation, rolling.axis);
-  const Vec3 from_middle = on_surface - rotate(orientation, center);
+  const Vec3 from_middle = on_surface - rotate(orientation, rolling.center);
   const float height = dot(from_middle, axis);
   const Vec3 across = from_middle - height * axis;
   const float radius = radius_at(shape, height);
@@ -65,50 +65,54 @@ RollingPoint describe_point(const Shape& shape, const RollingContact& rolling, Q
     return point;
   }
   point.reach = length(across);
-  point.core = center + height * rolling.axis;
+  point.core = rolling.center + height * rolling.axis;
   point.rest = arm - (rotate(orientation, point.core) + point.reach * lowest.direction);
   return point;
 }
 
 // Whether it matters where the contact goes.
-bool rolls(const RigidWorld& w, const Shape& shape, const RollingContact& rolling, Vec3 center,
-           float seconds) {
+bool rolls(const RigidWorld& w, const Shape& shape, const RollingContact& rolling, float seconds) {
   const Vec3 spin = w.bodies.motion[std::size_t(rolling.body)].angular_velocity;
   const Vec3 other_spin =
       rolling.other == kNoBody ? Vec3{} : w.bodies.motion[std::size_t(rolling.other)].angular_velocity;
   if (!(seconds * length(spin - other_spin) > kLeastTurn)) return false;
-  if (shape.kind != ShapeKind::sphere || center != Vec3{}) return true;
+  if (shape.kind != ShapeKind::sphere || rolling.center != Vec3{}) return true;
   // Below a ball's centre it stays, and only what it rolls on can notice.
   return rolling.other != kNoBody &&
          (other_spin != Vec3{} || w.bodies.inertia[std::size_t(rolling.other)].inverse_mass > 0.0f);
 }
 
-bool describe(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint, float seconds,
-              RollingContact& rolling) {
+// Which of the two bodies rolls, if one does.
+bool choose_body(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint, float seconds,
+                 RollingContact& rolling) {
   if (contact.recycled != 0) return false;
   const bool flat_a = is_flat(w.shapes.colliders[contact.shape_a].shape);
   const bool flat_b = is_flat(w.shapes.colliders[contact.shape_b].shape);
   if (flat_a == flat_b) return false;
   rolling.body = flat_a ? constraint.body_b : constraint.body_a;
   rolling.other = flat_a ? constraint.body_a : constraint.body_b;
-  if (rolling.body == kNoBody) return false;
-  const std::uint32_t body = std::uint32_t(rolling.body);
-  const ColliderShape& collider = w.shapes.colliders[flat_a ? contact.shape_b : contact.shape_a];
-  const Vec3 center = collider.body_from_shape.position - w.bodies.masses[body].center;
-  if (!rolls(w, collider.shape, rolling, center, seconds)) return false;
-  const Manifold& manifold = *constraint.manifold;
   rolling.side = flat_a ? 1.0f : -1.0f;
+  if (rolling.body == kNoBody) return false;
+  const ColliderShape& collider = w.shapes.colliders[flat_a ? contact.shape_b : contact.shape_a];
+  rolling.center = collider.body_from_shape.position - w.bodies.masses[std::size_t(rolling.body)].center;
+  return rolls(w, collider.shape, rolling, seconds);
+}
+
+void describe(const RigidWorld& w, const Contact& contact, const Manifold& manifold,
+              RollingContact& rolling) {
+  const bool is_b = rolling.side > 0.0f;
+  const ColliderShape& collider = w.shapes.colliders[is_b ? contact.shape_b : contact.shape_a];
   rolling.axis = rotate(collider.body_from_shape.orientation, Vec3{0, 1, 0});
   rolling.outward = -rolling.side * manifold.normal;
   rolling.offset = rolling.side * (manifold.points[0].from_a - manifold.points[0].from_b);
   for (int k = 0; k < manifold.count; ++k) {
     const ContactPointState& point = manifold.points[k];
-    rolling.points[k] = describe_point(collider.shape, rolling, w.bodies.orientations[body], center,
-                                       flat_a ? point.from_b : point.from_a, point.separation);
+    rolling.points[k] =
+        describe_point(collider.shape, rolling, w.bodies.orientations[std::size_t(rolling.body)],
+                       is_b ? point.from_b : point.from_a, point.separation);
     rolling.arms.from_a[k] = point.from_a;
     rolling.arms.from_b[k] = point.from_b;
   }
-  return true;
 }
 
 Quat turned_on(Quat q, Vec3 turn) {
@@ -144,31 +148,32 @@ float patch_friction(const RigidWorld& w, const Contact& contact, const ContactC
   return constraint.dynamic_friction * kBallPatch * radius;
 }
 
-RollingContacts find_rolling_contacts(RigidWorld& w, const SolveScratch& scratch, float seconds,
-                                      Arena& arena) {
-  const std::size_t count = scratch.constraints.size();
-  const auto contact_of = [&](std::size_t i) -> const Contact& {
+RollingContacts find_rolling_contacts(RigidWorld& w, const SolveScratch& scratch, float seconds, Arena& arena) {
+  const std::span<const ContactConstraint> constraints = scratch.constraints;
+  const auto contact_of = [&](std::uint32_t i) -> const Contact& {
     return w.contacts.contacts[scratch.constraint_contact[i]];
   };
-  std::size_t found = 0;
+  std::uint32_t found = 0;
   RollingContact rolling;
-  for (std::size_t i = 0; i < count; ++i)
-    found += describe(w, contact_of(i), scratch.constraints[i], seconds, rolling);
+  const auto chosen = [&](std::uint32_t i) {
+    return choose_body(w, contact_of(i), constraints[i], seconds, rolling);
+  };
+  for (std::uint32_t i = 0; i < constraints.size(); ++i) found += chosen(i);
   RollingContacts all;
   if (found == 0) return all;
   all.contacts = arena.make<RollingContact>(found);
-  all.of_constraint = arena.make<std::uint32_t>(count);
-  std::uint32_t place = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
+  all.of_constraint = arena.make<std::uint32_t>(constraints.size());
+  found = 0;
+  for (std::uint32_t i = 0; i < constraints.size(); ++i) {
     all.of_constraint[i] = kNotRolling;
-    rolling = RollingContact{};
-    if (!describe(w, contact_of(i), scratch.constraints[i], seconds, rolling)) continue;
+    if (!chosen(i)) continue;
     rolling.constraint = i;
+    describe(w, contact_of(i), *constraints[i].manifold, rolling);
     for (const std::int32_t body : {rolling.body, rolling.other}) {
       if (body != kNoBody) w.bodies.flags[std::size_t(body)].touched = 2;
     }
-    all.contacts[place] = rolling;
-    all.of_constraint[i] = place++;
+    all.contacts[found] = rolling;
+    all.of_constraint[i] = found++;
   }
   return all;
 }
@@ -205,8 +210,7 @@ FollowedArms follow_contact(const RigidWorld& w, RollingContact& rolling, const 
     arms.separation[k] = point.separation - dot(arm - at_first, rolling.outward) +
                          dot(cross(motion.turned, middle_arm), rolling.outward);
   }
-  arms.with_b = rolling.side > 0.0f;
-  arms.drift = free_change(w, body, now, ahead);
+  rolling.drift = free_change(w, body, now, ahead);
   rolling.arms = arms.now;
   return arms;
 }

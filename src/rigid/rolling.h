@@ -30,11 +30,13 @@ struct RollingContact {
   std::int32_t body = kNoBody;  // that is curved
   std::int32_t other = kNoBody;
   float side = 1.0f;  // 1 if it is the constraint's b, else -1
+  Vec3 center;        // of the shape from the body's centre of mass, body frame
   Vec3 axis;          // body frame, unit: of symmetry
   Vec3 outward;       // world axes: the normal, out of the curved shape
   Vec3 offset;        // m, from the other body's centre of mass to the curved one's, as the step began
   RollingPoint points[kMaxManifoldPoints];
   PointArmPairs arms;  // as the last sub-step began
+  Vec3 drift;  // rad/s: what free rotation adds to the body's angular velocity until the middle of the sub-step
 };
 
 struct RollingContacts {
@@ -51,8 +53,7 @@ float patch_friction(const RigidWorld& w, const Contact& contact, const ContactC
 
 // Those among the constraints of the batch whose bodies turn against each other. Marks the bodies as ones whose place others
 // look at.
-RollingContacts find_rolling_contacts(RigidWorld& w, const SolveScratch& scratch, float seconds,
-                                      Arena& arena);
+RollingContacts find_rolling_contacts(RigidWorld& w, const SolveScratch& scratch, float seconds, Arena& arena);
 
 // Where the contact is in a sub-step that begins now, with its middle in `ahead` seconds.
 FollowedArms follow_contact(const RigidWorld& w, RollingContact& rolling, const Manifold& manifold,

@@ -1,16 +1,10 @@
 #include "rigid/solve_step.h"
 
 #include "base/check.h"
-#include "rigid/contact_forest.h"
-#include "rigid/fields.h"
 #include "rigid/hits.h"
-#include "rigid/integrators.h"
 #include "rigid/joint_works.h"
-#include "rigid/linkages.h"
 #include "rigid/program_writer.h"
-#include "rigid/rolling.h"
-#include "rigid/solve_batches.h"
-#include "rigid/surface_rules.h"
+#include "rigid/solve_gather.h"
 #include "task/parallel.h"
 #include "task/program.h"
 
@@ -35,9 +29,6 @@ constexpr float kJointLeak = 22.0f;
 // Those of linkages are solved exactly; rows give way by this share of what would move them freely, enough to decide among
 // redundant ones (docs/decisions/joint-trees.md).
 constexpr float kLinkageGive = 1.0e-4f;
-// The fastest that overlap is taken back, as a share of sqrt(gravity * size): falling its own size is a body's natural
-// scale of speed, so the rule holds from millimetres to kilometres.
-constexpr float kPushShare = 0.4f;
 // Nothing bounces that closes slower than this many times the speed that gravity gives in a sub-step.
 constexpr float kBounceShare = 2.0f;
 
@@ -47,186 +38,6 @@ constexpr int kSpinnersPerClaim = 8;
 constexpr int kJointsPerBlock = 8;
 constexpr int kBlocksPerClaim = 4;
 constexpr int kTreesPerClaim = 8;
-
-// What every stage of the program reads.
-struct Solve {
-  RigidWorld& w;
-  SolveScratch& scratch;
-  const ContactKernels& kernels;
-  SolveBatch batch{};
-  std::span<const std::uint32_t> places{};  // of bodies in their batches
-  void* blocks = nullptr;
-  float h = 0.0f;
-  ContactSettings contact_settings{};
-  JointSettings joint_settings{};
-  ImpactSettings impact_settings{};
-  ContactBodies contact_bodies{};
-  JointBodies joint_bodies{};
-  std::span<JointWork> joint_work{};
-  std::span<JointPlaces> joint_places{};
-  Linkages linkages{};
-  LinkageSolve linkage_solve{};
-  Motions motions{};
-  std::span<MovedBody> moved{};            // the batch's bodies that constraints act on,
-  void* motion_blocks = nullptr;           // the same for the kernels,
-  std::span<Vec3> pushes{};                // and how overlap turned them
-  std::span<std::uint32_t> spinners{};     // those of them that turn alone
-  std::span<std::uint32_t> flying{};       // the others
-  ContactForest forest{};
-  TreeSolve tree_solve{};
-  RollingContacts rolling{};
-  FieldSolve fields{};
-};
-
-// A run of blocks of one colour.
-struct Group {
-  Solve* solve = nullptr;
-  std::uint32_t first = 0;  // first block of contacts, or first place in the joint order
-  std::uint32_t count = 0;  // blocks or joints
-  bool serial = false;      // what is left over when the colours are used up: its members share bodies
-};
-
-// ------------------------------------------------------------------------------------------------- gathering, colours
-
-// A body as constraints know it: kNoBody if it never moves (its record is then never read).
-std::int32_t solver_body(const RigidWorld& w, std::uint32_t body) {
-  const BodyFlags& flags = w.bodies.flags[body];
-  return flags.type == BodyType::fixed || flags.frozen != 0 ? kNoBody : std::int32_t(body);
-}
-
-void touch_body(RigidWorld& w, std::uint32_t body, std::uint8_t touch) {
-  std::uint8_t& touched = w.bodies.flags[body].touched;
-  touched = max(touched, touch);
-}
-
-void gather_contacts(Solve& solve) {
-  RigidWorld& w = solve.w;
-  SolveScratch& s = solve.scratch;
-  s.constraints.clear();
-  s.constraint_contact.clear();
-  s.impacts.clear();
-  s.pairs.clear();
-  const float fall = std::sqrt(length(w.settings.gravity));
-  const bool has_rules = !w.surface_rules.empty();
-  for (const std::uint32_t slot : solve.batch.contacts) {
-    const Contact& contact = w.contacts.contacts[slot];
-    const bool active_a = is_active(w, contact.body_a), active_b = is_active(w, contact.body_b);
-    const std::uint8_t touch = contact.surface.restitution > 0.0f ? kPlaceShown : kTouched;
-    touch_body(w, contact.body_a, touch);
-    touch_body(w, contact.body_b, touch);
-    ContactConstraint constraint;
-    constraint.body_a = solver_body(w, contact.body_a);
-    constraint.body_b = solver_body(w, contact.body_b);
-    constraint.static_friction = contact.surface.static_friction;
-    constraint.dynamic_friction = contact.surface.dynamic_friction;
-    constraint.rolling_friction = contact.surface.rolling_friction;
-    constraint.spinning_friction = contact.surface.spinning_friction;
-    constraint.restitution = contact.surface.restitution;
-    constraint.size = contact.size;
-    constraint.push_speed = kPushShare * (fall > 0.0f ? fall : 3.132f) * std::sqrt(contact.size);
-    for (Manifold& manifold : manifolds_of(w.contacts, contact)) {
-      if (manifold.count == 0) continue;
-      note_approach(w, contact, manifold);
-      constraint.manifold = &manifold;
-      s.constraints.push_back(constraint);
-      if (has_rules && !apply_surface_rules(w, contact, manifold, s.constraints.back())) {
-        s.constraints.pop_back();
-        continue;
-      }
-      s.constraints.back().spinning_friction += patch_friction(w, contact, s.constraints.back());
-      s.constraint_contact.push_back(slot);
-      s.pairs.push_back({active_a ? solve.places[contact.body_a] : ColoringPair::kNone,
-                         active_b ? solve.places[contact.body_b] : ColoringPair::kNone});
-      if (s.constraints.back().restitution > 0.0f) s.impacts.push_back(make_impact(s.constraints.back()));
-    }
-  }
-}
-
-void gather_joints(Solve& solve) {
-  RigidWorld& w = solve.w;
-  SolveScratch& s = solve.scratch;
-  s.swept_joints.clear();
-  s.joint_pairs.clear();
-  for (std::uint32_t i = 0; i < solve.batch.joints.size(); ++i) {
-    const std::uint32_t slot = solve.batch.joints[i];
-    const JointRecord& joint = w.joints.records[slot];
-    const bool active_a = joint.body_a != kNoBody && is_active(w, std::uint32_t(joint.body_a));
-    const bool active_b = joint.body_b != kNoBody && is_active(w, std::uint32_t(joint.body_b));
-    if (joint.body_a != kNoBody) touch_body(w, std::uint32_t(joint.body_a), kPlaceShown);
-    if (joint.body_b != kNoBody) touch_body(w, std::uint32_t(joint.body_b), kPlaceShown);
-    if (solve.linkages.swept[i] == 0) continue;
-    s.swept_joints.push_back(i);
-    s.joint_pairs.push_back({active_a ? solve.places[std::size_t(joint.body_a)] : ColoringPair::kNone,
-                             active_b ? solve.places[std::size_t(joint.body_b)] : ColoringPair::kNone});
-  }
-}
-
-// Parts the bodies of a batch into those that constraints act on and those that fly.
-void gather_motion(Solve& solve, Arena& arena) {
-  RigidWorld& w = solve.w;
-  const std::size_t count = solve.batch.bodies.size();
-  solve.moved = arena.make<MovedBody>(count);
-  solve.pushes = arena.make<Vec3>(count);
-  solve.flying = arena.make<std::uint32_t>(count);
-  solve.spinners = arena.make<std::uint32_t>(count);
-  std::size_t moved = 0, flying = 0, spinners = 0;
-  for (const std::uint32_t body : solve.batch.bodies) {
-    const std::uint8_t touched = w.bodies.flags[body].touched;
-    if (touched == kUntouched) {
-      solve.flying[flying++] = body;
-      continue;
-    }
-    solve.moved[moved] = describe_motion(w.bodies, body, solve.motions, touched == kPlaceShown);
-    // A field may spin a light body up within the step, beyond what the kernels turn.
-    if (!w.field_rest.empty() && w.field_rest[body].acts != kNoFields) solve.moved[moved].turns_alone = true;
-    if (solve.moved[moved].turns_alone) solve.spinners[spinners++] = body;
-    ++moved;
-  }
-  solve.moved = solve.moved.first(moved);
-  solve.pushes = solve.pushes.first(moved);
-  solve.flying = solve.flying.first(flying);
-  solve.spinners = solve.spinners.first(spinners);
-  const std::size_t width = std::size_t(solve.kernels.width);
-  solve.motion_blocks = arena.make<std::byte>((moved + width - 1) / width * solve.kernels.motion.block_bytes).data();
-}
-
-// Lays the coloured constraints out in blocks of W lanes. A group starts a new block; constraints of the overflow group
-// get a block each, so that they are solved one after the other at every width.
-std::span<Group> lay_out_contacts(Solve& solve, Arena& arena) {
-  SolveScratch& s = solve.scratch;
-  const Coloring& colors = s.contact_colors;
-  const std::uint32_t width = std::uint32_t(solve.kernels.width);
-  const std::span<Group> groups = arena.make<Group>(std::size_t(colors.group_count()));
-  s.order.clear();
-  std::size_t used = 0;
-  std::uint32_t block = 0;
-  for (int g = 0; g < colors.group_count(); ++g) {
-    const std::span<const std::uint32_t> members = colors.group(g);
-    if (members.empty()) continue;
-    const std::uint32_t lanes = g == colors.overflow_group() ? 1 : width;
-    const std::uint32_t first = block;
-    for (std::size_t i = 0; i < members.size(); i += lanes, ++block) {
-      for (std::uint32_t lane = 0; lane < width; ++lane) {
-        s.order.push_back(lane < lanes && i + lane < members.size() ? members[i + lane] : 0xffffffffu);
-      }
-    }
-    groups[used++] = {&solve, first, block - first, g == colors.overflow_group()};
-    s.colors_used |= std::uint64_t{1} << g;
-  }
-  solve.blocks = arena.make<std::byte>(std::size_t(block) * solve.kernels.block_bytes).data();
-  return groups.first(used);
-}
-
-std::span<Group> lay_out_joints(Solve& solve, Arena& arena) {
-  const Coloring& colors = solve.scratch.joint_colors;
-  const std::span<Group> groups = arena.make<Group>(std::size_t(colors.group_count()));
-  std::size_t used = 0;
-  for (int g = 0; g < colors.group_count(); ++g) {
-    const std::uint32_t count = colors.offsets[g + 1] - colors.offsets[g];
-    if (count > 0) groups[used++] = {&solve, colors.offsets[g], count, g == colors.overflow_group()};
-  }
-  return groups.first(used);
-}
 
 // --------------------------------------------------------------------------------------------------- stages' kernels
 
@@ -310,25 +121,41 @@ void warm_contacts_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
   g.solve->kernels.warm_start(g.solve->blocks, int(g.first) + begin, int(g.first) + end, g.solve->contact_bodies.motion);
 }
-// Takes the points of those contacts along that roll, which are few. They share no moving body with others of their colour.
-void follow_contacts(const Group& g, int begin, int end) {
+// Calls fn(rolling, block, lane) for those contacts of the blocks that roll, which are few.
+template <class Fn>
+void for_each_rolling(const Group& g, int begin, int end, Fn&& fn) {
   Solve& s = *g.solve;
   if (s.rolling.contacts.empty()) return;
   const int width = s.kernels.width;
   for (int i = (int(g.first) + begin) * width; i < (int(g.first) + end) * width; ++i) {
     const std::uint32_t constraint = s.scratch.order[std::size_t(i)];
     const std::uint32_t place = constraint == 0xffffffffu ? kNotRolling : s.rolling.of_constraint[constraint];
-    if (place == kNotRolling) continue;
-    const FollowedArms arms =
-        follow_contact(s.w, s.rolling.contacts[place], *s.scratch.constraints[constraint].manifold, 0.5f * s.h);
-    s.kernels.follow(s.blocks, i / width, i % width, arms, s.contact_bodies.inertia, s.contact_bodies.motion);
+    if (place != kNotRolling) fn(s.rolling.contacts[place], i / width, i % width);
   }
+}
+// Takes their points along, and their bodies to the velocities of the middle of the sub-step: no other contact bears these.
+void follow_contacts(const Group& g, int begin, int end) {
+  Solve& s = *g.solve;
+  for_each_rolling(g, begin, end, [&](RollingContact& rolling, int block, int lane) {
+    const Manifold& manifold = *s.scratch.constraints[rolling.constraint].manifold;
+    const FollowedArms arms = follow_contact(s.w, rolling, manifold, 0.5f * s.h);
+    s.kernels.follow(s.blocks, block, lane, arms, s.contact_bodies.inertia, s.contact_bodies.motion);
+    Vec3& spin = s.contact_bodies.motion[rolling.body].angular_velocity;
+    spin = spin + rolling.drift;
+  });
+}
+void leave_middle(const Group& g, int begin, int end) {
+  for_each_rolling(g, begin, end, [&](const RollingContact& rolling, int, int) {
+    Vec3& spin = g.solve->contact_bodies.motion[rolling.body].angular_velocity;
+    spin = spin - rolling.drift;
+  });
 }
 void solve_contacts_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
   follow_contacts(g, begin, end);
   g.solve->kernels.solve(g.solve->blocks, int(g.first) + begin, int(g.first) + end, g.solve->contact_bodies.motion,
                          g.solve->h);
+  leave_middle(g, begin, end);
 }
 void relax_contacts_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);

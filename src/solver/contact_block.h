@@ -26,7 +26,9 @@ struct ContactConstraint {
   float restitution = 0.0f;
   std::int32_t body_a = kNoBody;  // index of the motion record; kNoBody for fixed bodies
   std::int32_t body_b = kNoBody;
+  std::int32_t point_count = 0;    // the manifold's
   bool rigid = false;              // no spring: part of a tree that is solved directly
+  bool fast = false;               // closes so fast that it may be told as a hit
   Manifold* manifold = nullptr;
 };
 
@@ -69,9 +71,6 @@ struct FollowedArms {
   PointArmPairs middle, before, now;  // `before`: as the last sub-step began
   // m, less what the bodies' motion since the step began makes of it with the arms of the middle.
   float separation[kMaxManifoldPoints] = {};
-  // The body that the points go along with, and what free rotation adds to its angular velocity until the middle (rad/s).
-  bool with_b = true;
-  Vec3 drift;
 };
 
 // The kernels of one CPU target: every function works on blocks [begin, end) of the array at `blocks`. `order` lists

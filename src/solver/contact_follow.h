@@ -165,8 +165,6 @@ void follow_lane(void* memory, int index, int lane, const FollowedArms& arms, co
   prepare_friction_masses<1>(one, one.twist_radius > Wide<1>(0.0f), twists);
   prepare_normals<1>(one, exists);
   put_lane_back<W>(block, lane, one, arms);
-  (arms.with_b ? block.follows_b : block.follows_a) |= 1u << lane;
-  set_lane<W>(block.drift, lane, arms.drift);
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

@@ -41,8 +41,6 @@ struct ContactBlock {
   std::int32_t point_count = 0;         // the most of any lane
   std::int32_t rolls = 0;               // any lane has rolling friction
   std::int32_t has_fresh = 0;           // any lane is fresh
-  // Bits of the lanes whose points go along within the step with their a, or with their b (contact_follow.h).
-  std::uint32_t follows_a = 0, follows_b = 0;
   Vec3W<W> normal, tangent_1, tangent_2;
   Wide<W> inverse_mass_a, inverse_mass_b;
   Sym3W<W> inverse_inertia_a, inverse_inertia_b;
@@ -71,8 +69,6 @@ struct ContactBlock {
   // Rolling friction.
   Wide<W> rolling_friction, rolling_mass;
   Vec3W<W> rolling;
-  // By how much the angular velocity of the body that they follow is another in the middle of the sub-step than as solved for.
-  Vec3W<W> drift;
 };
 
 // Place of row i, column j (either order) in a packed upper triangle.
@@ -383,18 +379,6 @@ __attribute__((noinline)) void strike_fresh(ContactBlock<W>& block, PairMotion<W
   pair.angular_b = select<W>(fresh, pair.angular_b, old.angular_b);
 }
 
-// To the velocities of the middle of the sub-step (sign 1) and back (-1).
-template <int W>
-__attribute__((noinline)) void drift_motion(const ContactBlock<W>& block, PairMotion<W>& pair, float sign) {
-  Wide<W> share_a, share_b;
-  for (int lane = 0; lane < W; ++lane) {
-    share_a.set(lane, (block.follows_a >> lane & 1u) != 0 ? sign : 0.0f);
-    share_b.set(lane, (block.follows_b >> lane & 1u) != 0 ? sign : 0.0f);
-  }
-  pair.angular_a = pair.angular_a + share_a * block.drift;
-  pair.angular_b = pair.angular_b + share_b * block.drift;
-}
-
 // Normals last: what bodies move with then closes nowhere; an error of the slip does no harm.
 template <int W>
 void solve_blocks(void* memory, int begin, int end, BodyMotion* motion, float substep) {
@@ -404,13 +388,10 @@ void solve_blocks(void* memory, int begin, int end, BodyMotion* motion, float su
     Wide<W> a[kMotionFloats], b[kMotionFloats];
     load_pair<W>(block, motion, a, b);
     PairMotion<W> pair = velocities<W>(a, b);
-    const bool follows = (block.follows_a | block.follows_b) != 0;
-    if (follows) drift_motion<W>(block, pair, 1.0f);
     if (block.has_fresh != 0) strike_fresh<W>(block, pair, a, b, substep);
     if (block.rolls != 0) solve_rolling<W>(block, pair);
     solve_friction<W>(block, pair);
     solve_normals<W, true>(block, pair, a, b, substep);
-    if (follows) drift_motion<W>(block, pair, -1.0f);
     for (int k = 0; k < block.point_count; ++k) block.points[k].total = block.points[k].total + block.points[k].impulse;
     block.total_1 = block.total_1 + block.friction_1;
     block.total_2 = block.total_2 + block.friction_2;

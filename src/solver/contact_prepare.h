@@ -425,8 +425,6 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
   const LaneRecords<W> records = find_records<W>(constraints, order, bodies, nowhere);
   block.point_count = records.point_count;
   block.rolls = block.has_fresh = 0;
-  block.follows_a = block.follows_b = 0;
-  block.drift = Vec3W<W>{zero, zero, zero};
   Wide<W> in[4];
   load_four<W>(records.manifold, kManifoldNormal, in);
   block.normal = {in[0], in[1], in[2]};

@@ -1,0 +1,15 @@
+// Asks for memory that will be read soon, where the order of reading is known and the processor cannot guess it.
+#pragma once
+
+#include <cstddef>
+
+namespace gyre {
+
+constexpr std::size_t kCacheLine = 64;
+
+inline void prefetch(const void* address, std::size_t bytes) {
+  const char* const begin = static_cast<const char*>(address);
+  for (std::size_t offset = 0; offset < bytes; offset += kCacheLine) __builtin_prefetch(begin + offset);
+}
+
+}  // namespace gyre

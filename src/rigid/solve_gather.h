@@ -1,0 +1,66 @@
+// What the program of a batch works on, and how it is gathered: constraints, bodies, and both laid out as the kernels want them.
+//
+// In: a batch of whole islands (rigid/solve_batches.h). Out: Solve, and groups of constraints by colour.
+#pragma once
+
+#include "rigid/contact_forest.h"
+#include "rigid/fields.h"
+#include "rigid/integrators.h"
+#include "rigid/linkages.h"
+#include "rigid/rolling.h"
+#include "rigid/solve_batches.h"
+#include "rigid/solve_step.h"
+
+namespace gyre {
+
+// What every stage of the program reads.
+struct Solve {
+  RigidWorld& w;
+  SolveScratch& scratch;
+  const ContactKernels& kernels;
+  SolveBatch batch{};
+  std::span<const std::uint32_t> places{};  // of bodies in their batches
+  void* blocks = nullptr;
+  float h = 0.0f;
+  ContactSettings contact_settings{};
+  JointSettings joint_settings{};
+  ImpactSettings impact_settings{};
+  ContactBodies contact_bodies{};
+  JointBodies joint_bodies{};
+  std::span<JointWork> joint_work{};
+  std::span<JointPlaces> joint_places{};
+  Linkages linkages{};
+  LinkageSolve linkage_solve{};
+  Motions motions{};
+  std::span<MovedBody> moved{};            // the batch's bodies that constraints act on,
+  void* motion_blocks = nullptr;           // the same for the kernels,
+  std::span<Vec3> pushes{};                // and how overlap turned them
+  std::span<std::uint32_t> spinners{};     // those of them that turn alone
+  std::span<std::uint32_t> flying{};       // the others
+  ContactForest forest{};
+  TreeSolve tree_solve{};
+  RollingContacts rolling{};
+  FieldSolve fields{};
+};
+
+// A run of blocks of one colour.
+struct Group {
+  Solve* solve = nullptr;
+  std::uint32_t first = 0;  // first block of contacts, or first place in the joint order
+  std::uint32_t count = 0;  // blocks or joints
+  bool serial = false;      // what is left over when the colours are used up: its members share bodies
+};
+
+// The batch's contacts as constraints, and what colouring needs to know of them; marks the bodies as touched.
+void gather_contacts(Solve& solve);
+// Those joints of the batch that are in no linkage; likewise.
+void gather_joints(Solve& solve);
+// Parts the bodies of a batch into those that constraints act on and those that fly.
+void gather_motion(Solve& solve, Arena& arena);
+
+// Lays the coloured constraints out in blocks of W lanes. A group starts a new block; constraints of the overflow group
+// get a block each, so that they are solved one after the other at every width.
+std::span<Group> lay_out_contacts(Solve& solve, Arena& arena);
+std::span<Group> lay_out_joints(Solve& solve, Arena& arena);
+
+}  // namespace gyre
