@@ -53,7 +53,7 @@ const OVERLAYS = {
   contacts: ['stack', 40],
   friction: ['incline_materials', 30],
   bounds: ['rolling', 60],
-  tree: ['pile', 60],
+  tree: ['stack', 40], // few lines: each is drawn a little differently by other browsers
   islands: ['half_wood_half_lead', 40],
   mass: ['machines', 30],
   joints: ['bridge', 40],
