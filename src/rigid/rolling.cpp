@@ -82,6 +82,14 @@ bool rolls(const RigidWorld& w, const Shape& shape, const RollingContact& rollin
          (other_spin != Vec3{} || w.bodies.inertia[std::size_t(rolling.other)].inverse_mass > 0.0f);
 }
 
+// Whether it bore load in the last step, or lies on already.
+bool may_bear(const Manifold& manifold) {
+  for (int k = 0; k < manifold.count; ++k) {
+    if (manifold.points[k].normal_impulse > 0.0f || manifold.points[k].separation <= 0.0f) return true;
+  }
+  return false;
+}
+
 // Which of the two bodies rolls, if one does.
 bool choose_body(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint, float seconds,
                  RollingContact& rolling) {
@@ -92,7 +100,7 @@ bool choose_body(const RigidWorld& w, const Contact& contact, const ContactConst
   rolling.body = flat_a ? constraint.body_b : constraint.body_a;
   rolling.other = flat_a ? constraint.body_a : constraint.body_b;
   rolling.side = flat_a ? 1.0f : -1.0f;
-  if (rolling.body == kNoBody) return false;
+  if (rolling.body == kNoBody || !may_bear(*constraint.manifold)) return false;
   const ColliderShape& collider = w.shapes.colliders[flat_a ? contact.shape_b : contact.shape_a];
   rolling.center = collider.body_from_shape.position - w.bodies.masses[std::size_t(rolling.body)].center;
   return rolls(w, collider.shape, rolling, seconds);
