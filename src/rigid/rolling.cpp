@@ -1,6 +1,7 @@
 #include "rigid/rolling.h"
 
 #include "geometry/support.h"
+#include "rigid/solve_batches.h"
 
 namespace gyre {
 
@@ -82,6 +83,13 @@ bool rolls(const RigidWorld& w, const Shape& shape, const RollingContact& rollin
          (other_spin != Vec3{} || w.bodies.inertia[std::size_t(rolling.other)].inverse_mass > 0.0f);
 }
 
+bool bears_load(const Manifold& manifold) {
+  for (int k = 0; k < manifold.count; ++k) {
+    if (manifold.points[k].normal_impulse > 0.0f) return true;
+  }
+  return false;
+}
+
 // Whether it bore load in the last step, or lies on already.
 bool may_bear(const Manifold& manifold) {
   for (int k = 0; k < manifold.count; ++k) {
@@ -90,9 +98,43 @@ bool may_bear(const Manifold& manifold) {
   return false;
 }
 
+// Whether a contact is all that bears a body: it alone bore load in the last step, or none did and there is no other. What is
+// held from several sides does not run round its rim, and there may be thousands of those.
+class Bearers {
+ public:
+  Bearers(const RigidWorld& w, std::span<const ContactConstraint> constraints,
+          std::span<const std::uint32_t> places, std::size_t bodies, Arena& arena)
+      : w_(w), places_(places), counts_(arena.make<Count>(bodies)) {
+    for (Count& count : counts_) count = {};
+    for (const ContactConstraint& constraint : constraints) {
+      for (const std::int32_t body : {constraint.body_a, constraint.body_b}) {
+        if (!is_borne(body)) continue;
+        Count& count = counts_[places_[std::size_t(body)]];
+        count.all = std::uint8_t(count.all < 2 ? count.all + 1 : 2);
+        count.loaded = std::uint8_t(count.loaded < 2 ? count.loaded + bears_load(*constraint.manifold) : 2);
+      }
+    }
+  }
+  bool is_alone(const ContactConstraint& constraint, std::int32_t body) const {
+    if (!is_borne(body)) return false;
+    const Count count = counts_[places_[std::size_t(body)]];
+    return bears_load(*constraint.manifold) ? count.loaded == 1 : count.loaded == 0 && count.all == 1;
+  }
+
+ private:
+  struct Count {
+    std::uint8_t all = 0, loaded = 0;  // constraints, at most 2
+  };
+  bool is_borne(std::int32_t body) const { return body != kNoBody && is_active(w_, std::uint32_t(body)); }
+
+  const RigidWorld& w_;
+  std::span<const std::uint32_t> places_;
+  std::span<Count> counts_;
+};
+
 // Which of the two bodies rolls, if one does.
-bool choose_body(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint, float seconds,
-                 RollingContact& rolling) {
+bool choose_body(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint,
+                 const Bearers& bearers, float seconds, RollingContact& rolling) {
   if (contact.recycled != 0) return false;
   const bool flat_a = is_flat(w.shapes.colliders[contact.shape_a].shape);
   const bool flat_b = is_flat(w.shapes.colliders[contact.shape_b].shape);
@@ -101,6 +143,7 @@ bool choose_body(const RigidWorld& w, const Contact& contact, const ContactConst
   rolling.other = flat_a ? constraint.body_a : constraint.body_b;
   rolling.side = flat_a ? 1.0f : -1.0f;
   if (rolling.body == kNoBody || !may_bear(*constraint.manifold)) return false;
+  rolling.once = !bearers.is_alone(constraint, rolling.body);
   const ColliderShape& collider = w.shapes.colliders[flat_a ? contact.shape_b : contact.shape_a];
   rolling.center = collider.body_from_shape.position - w.bodies.masses[std::size_t(rolling.body)].center;
   return rolls(w, collider.shape, rolling, seconds);
@@ -156,15 +199,18 @@ float patch_friction(const RigidWorld& w, const Contact& contact, const ContactC
   return constraint.dynamic_friction * kBallPatch * radius;
 }
 
-RollingContacts find_rolling_contacts(RigidWorld& w, const SolveScratch& scratch, float seconds, Arena& arena) {
+RollingContacts find_rolling_contacts(RigidWorld& w, const SolveScratch& scratch,
+                                      std::span<const std::uint32_t> places, std::size_t bodies,
+                                      float seconds, Arena& arena) {
   const std::span<const ContactConstraint> constraints = scratch.constraints;
   const auto contact_of = [&](std::uint32_t i) -> const Contact& {
     return w.contacts.contacts[scratch.constraint_contact[i]];
   };
+  const Bearers bearers(w, constraints, places, bodies, arena);
   std::uint32_t found = 0;
   RollingContact rolling;
   const auto chosen = [&](std::uint32_t i) {
-    return choose_body(w, contact_of(i), constraints[i], seconds, rolling);
+    return choose_body(w, contact_of(i), constraints[i], bearers, seconds, rolling);
   };
   for (std::uint32_t i = 0; i < constraints.size(); ++i) found += chosen(i);
   RollingContacts all;
@@ -211,14 +257,14 @@ FollowedArms follow_contact(const RigidWorld& w, RollingContact& rolling, const 
     // Where the contact runs far in a sub-step the leapfrog scheme would gain energy at times. Impulses that act where speeds
     // are taken lose it.
     const float run = 2.0f * length(middle_arm - arm), most = kLargestRun * length(arm);
-    const float share = run > most ? min(run / most - 1.0f, 1.0f) : 0.0f;
+    const float share = rolling.once ? 1.0f : run > most ? min(run / most - 1.0f, 1.0f) : 0.0f;
     put(arms.now, k, arm + share * (middle_arm - arm), offset + share * (middle_offset - offset));
     put(arms.middle, k, middle_arm, middle_offset);
     // Surfaces come nearer by what the arm grows outward; what turning the body makes of it is taken off again.
     arms.separation[k] = point.separation - dot(arm - at_first, rolling.outward) +
                          dot(cross(motion.turned, middle_arm), rolling.outward);
   }
-  rolling.drift = free_change(w, body, now, ahead);
+  if (!rolling.once) rolling.drift = free_change(w, body, now, ahead);
   rolling.arms = arms.now;
   return arms;
 }

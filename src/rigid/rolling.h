@@ -30,6 +30,8 @@ struct RollingContact {
   std::int32_t body = kNoBody;  // that is curved
   std::int32_t other = kNoBody;
   float side = 1.0f;  // 1 if it is the constraint's b, else -1
+  bool once = false;    // held from several sides: it stays where it is in the middle of the step,
+  bool placed = false;  // once it was taken there
   Vec3 center;        // of the shape from the body's centre of mass, body frame
   Vec3 axis;          // body frame, unit: of symmetry
   Vec3 outward;       // world axes: the normal, out of the curved shape
@@ -51,9 +53,11 @@ constexpr std::uint32_t kNotRolling = 0xffffffffu;
 // de pivotement dans la theorie de la toupie", 1963.
 float patch_friction(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint);
 
-// Those among the constraints of the batch whose bodies turn against each other. Marks the bodies as ones whose place others
-// look at.
-RollingContacts find_rolling_contacts(RigidWorld& w, const SolveScratch& scratch, float seconds, Arena& arena);
+// Those among the constraints of the batch whose bodies turn against each other. `places`: of bodies in the batch, which has so
+// many. Marks the bodies as ones whose place others look at.
+RollingContacts find_rolling_contacts(RigidWorld& w, const SolveScratch& scratch,
+                                      std::span<const std::uint32_t> places, std::size_t bodies,
+                                      float seconds, Arena& arena);
 
 // Where the contact is in a sub-step that begins now, with its middle in `ahead` seconds.
 FollowedArms follow_contact(const RigidWorld& w, RollingContact& rolling, const Manifold& manifold,

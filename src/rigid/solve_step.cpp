@@ -137,8 +137,11 @@ void for_each_rolling(const Group& g, int begin, int end, Fn&& fn) {
 void follow_contacts(const Group& g, int begin, int end) {
   Solve& s = *g.solve;
   for_each_rolling(g, begin, end, [&](RollingContact& rolling, int block, int lane) {
+    if (rolling.placed) return;
+    rolling.placed = rolling.once;
     const Manifold& manifold = *s.scratch.constraints[rolling.constraint].manifold;
-    const FollowedArms arms = follow_contact(s.w, rolling, manifold, 0.5f * s.h);
+    const float ahead = 0.5f * (rolling.once ? s.contact_settings.step : s.h);
+    const FollowedArms arms = follow_contact(s.w, rolling, manifold, ahead);
     s.kernels.follow(s.blocks, block, lane, arms, s.contact_bodies.inertia, s.contact_bodies.motion);
     Vec3& spin = s.contact_bodies.motion[rolling.body].angular_velocity;
     spin = spin + rolling.drift;
@@ -146,6 +149,7 @@ void follow_contacts(const Group& g, int begin, int end) {
 }
 void leave_middle(const Group& g, int begin, int end) {
   for_each_rolling(g, begin, end, [&](const RollingContact& rolling, int, int) {
+    if (rolling.once) return;
     Vec3& spin = g.solve->contact_bodies.motion[rolling.body].angular_velocity;
     spin = spin - rolling.drift;
   });
@@ -305,7 +309,8 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   gather_contacts(solve);
   solve.linkages = find_linkages(solve.w, solve.batch, solve.places, arena);
   gather_joints(solve);
-  solve.rolling = find_rolling_contacts(solve.w, scratch, solve.contact_settings.step, arena);
+  solve.rolling = find_rolling_contacts(solve.w, scratch, solve.places, solve.batch.bodies.size(),
+                                        solve.contact_settings.step, arena);
   solve.fields = find_field_bodies(solve.w, solve.batch.bodies, solve.h, arena);
   const std::uint32_t bodies = std::uint32_t(solve.batch.bodies.size());
   color_constraints(scratch.pairs, bodies, {}, kColoringOptions, scratch.contact_colors);
