@@ -11,6 +11,8 @@ namespace {
 constexpr float kLeastTurn = 1.0e-4f;
 // Half a sub-step's turn (rad) beyond which the change of the axis is not followed to the full.
 constexpr float kLargestTurn = 0.2f;
+// How far a contact may run round its rim in a step (rad) to be taken along once.
+constexpr float kLargestRound = 0.3f;
 // How far a contact may run in a sub-step, as a share of its arm, before it loses energy on its way.
 constexpr float kLargestRun = 0.02f;
 // Mean distance of the load from the middle of a ball's patch, as a share of the radius.
@@ -69,6 +71,19 @@ RollingPoint describe_point(const Shape& shape, const RollingContact& rolling, Q
   point.core = rolling.center + height * rolling.axis;
   point.rest = arm - (rotate(orientation, point.core) + point.reach * lowest.direction);
   return point;
+}
+
+// Whether it runs so far round a rim in a step that the middle of its way says little of the rest.
+bool runs_far(const RigidWorld& w, const ColliderShape& collider, const RollingContact& rolling, Vec3 outward,
+              float seconds) {
+  if (core_radius(collider.shape) > 0.0f) return false;
+  const BodyMotion still;
+  const BodyMotion& motion = w.bodies.motion[std::size_t(rolling.body)];
+  const BodyMotion& other = rolling.other == kNoBody ? still : w.bodies.motion[std::size_t(rolling.other)];
+  const Quat orientation = w.bodies.orientations[std::size_t(rolling.body)];
+  const Vec3 axis = rotate(orientation, rotate(collider.body_from_shape.orientation, Vec3{0, 1, 0}));
+  const float tilting = length(cross(motion.angular_velocity - other.angular_velocity, axis));
+  return seconds * tilting > kLargestRound * Lowest(outward, axis).lean;
 }
 
 // Whether it matters where the contact goes.
@@ -143,8 +158,9 @@ bool choose_body(const RigidWorld& w, const Contact& contact, const ContactConst
   rolling.other = flat_a ? constraint.body_a : constraint.body_b;
   rolling.side = flat_a ? 1.0f : -1.0f;
   if (rolling.body == kNoBody || !may_bear(*constraint.manifold)) return false;
-  rolling.once = !bearers.is_alone(constraint, rolling.body);
   const ColliderShape& collider = w.shapes.colliders[flat_a ? contact.shape_b : contact.shape_a];
+  const Vec3 outward = -rolling.side * constraint.manifold->normal;
+  rolling.once = !bearers.is_alone(constraint, rolling.body) && !runs_far(w, collider, rolling, outward, seconds);
   rolling.center = collider.body_from_shape.position - w.bodies.masses[std::size_t(rolling.body)].center;
   return rolls(w, collider.shape, rolling, seconds);
 }
