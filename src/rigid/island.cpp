@@ -8,6 +8,18 @@ namespace {
 
 bool is_dynamic(const RigidWorld& w, std::uint32_t body) { return is_movable(w.bodies.flags[body]); }
 
+// What swings on a spring is slow where it turns round, a hundredth of its size from where it will rest: it must be this many times
+// slower than what lies on something.
+constexpr float kSpringRest = 0.1f;
+
+bool is_on_spring(const RigidWorld& w, std::uint32_t body) {
+  for (const std::uint32_t slot : w.bodies.joints[body]) {
+    const JointRecord& joint = w.joints.records[slot];
+    if (joint.is_spring || joint.stiffness > 0.0f) return true;
+  }
+  return false;
+}
+
 bool is_asleep(const RigidWorld& w, std::uint32_t body) {
   return is_dynamic(w, body) && w.bodies.flags[body].awake == 0;
 }
@@ -95,6 +107,7 @@ Rest find_rest(const RigidWorld& w, std::uint32_t body, float pull) {
   rest.speed = length(motion.linear_velocity) + reach * length(motion.angular_velocity);
   rest.pushed = motion.pushed;
   rest.rest_speed = kRestShare * std::sqrt((pull > 0.0f ? pull : 9.81f) * reach);
+  if (is_on_spring(w, body)) rest.rest_speed *= kSpringRest;
   if (body < w.field_rest.size() && w.field_rest[body].acts != kNoFields) {
     // What only turns round in a field is slow for a moment: at rest its speed must stay, too. And what floats comes near
     // its place as slowly as it is near: it must be slow indeed.

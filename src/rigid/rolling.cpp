@@ -160,7 +160,8 @@ bool choose_body(const RigidWorld& w, const Contact& contact, const ContactConst
   if (rolling.body == kNoBody || !may_bear(*constraint.manifold)) return false;
   const ColliderShape& collider = w.shapes.colliders[flat_a ? contact.shape_b : contact.shape_a];
   const Vec3 outward = -rolling.side * constraint.manifold->normal;
-  rolling.once = !bearers.is_alone(constraint, rolling.body) && !runs_far(w, collider, rolling, outward, seconds);
+  rolling.once =
+      !bearers.is_alone(constraint, rolling.body) && !runs_far(w, collider, rolling, outward, seconds);
   rolling.center = collider.body_from_shape.position - w.bodies.masses[std::size_t(rolling.body)].center;
   return rolls(w, collider.shape, rolling, seconds);
 }
