@@ -1,6 +1,7 @@
 // The stage that keeps fast bodies from passing through things: lists those that moved far against their size, lets
 // collision/continuous sweep them, and takes back what motion they may not keep.
 #include "collision/continuous.h"
+#include "rigid/joint_closing.h"
 #include "rigid/rigid_step.h"
 #include "rigid/surface_rules.h"
 
@@ -116,6 +117,33 @@ void add_those_overrun(const RigidWorld& w, ContinuousScratch& scratch) {
   }
 }
 
+// Of two stopped bodies with a joint between them both keep what the one that is stopped first keeps.
+void stop_together(const RigidWorld& w, const ContinuousScratch& scratch, std::span<KeptMotion> kept, Arena& arena) {
+  constexpr std::uint32_t kNone = 0xffffffffu;
+  constexpr int kMostRounds = 16;
+  const std::span<std::uint32_t> place = arena.make<std::uint32_t>(w.bodies.motion.size());
+  for (std::uint32_t& p : place) p = kNone;
+  for (std::uint32_t k = 0; k < kept.size(); ++k) {
+    if (kept[k].fraction < 1.0f) place[scratch.fast[k].body] = k;
+  }
+  bool changed = true;
+  for (int round = 0; round < kMostRounds && changed; ++round) {
+    changed = false;
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+      if (!(kept[k].fraction < 1.0f)) continue;
+      const std::int32_t body = std::int32_t(scratch.fast[k].body);
+      for (const std::uint32_t slot : w.bodies.joints[std::size_t(body)]) {
+        const JointRecord& joint = w.joints.records[slot];
+        const std::int32_t other = joint.body_a == body ? joint.body_b : joint.body_a;
+        if (other == kNoBody || place[std::size_t(other)] == kNone || !closes_joint(w, slot)) continue;
+        const float others = kept[place[std::size_t(other)]].fraction;
+        changed = changed || others < kept[k].fraction;
+        kept[k].fraction = min(kept[k].fraction, others);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, TaskSystem& tasks) {
@@ -149,6 +177,13 @@ void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, 
   scratch.kept.resize(scratch.fast.size());
   scratch.collision.clamp_fast_bodies(input, scratch.fast, tasks, scratch.kept);
   report_crossings(w, scratch.collision.crossings());
+  const std::span<std::uint32_t> stopped = arena.make<std::uint32_t>(scratch.fast.size());
+  std::size_t stopped_count = 0;  // that have joints
+  for (std::size_t k = 0; k < scratch.fast.size(); ++k) {
+    const std::uint32_t i = scratch.fast[k].body;
+    if (scratch.kept[k].fraction < 1.0f && !w.bodies.joints[i].empty()) stopped[stopped_count++] = i;
+  }
+  if (stopped_count > 0) stop_together(w, scratch, scratch.kept, arena);
   for (std::size_t k = 0; k < scratch.fast.size(); ++k) {
     const std::uint32_t i = scratch.fast[k].body;
     const KeptMotion& kept = scratch.kept[k];
@@ -159,6 +194,7 @@ void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, 
     w.bodies.inertia[i] = world_inertia(w.bodies.masses[i], w.bodies.flags[i], w.bodies.orientations[i]);
     if (!(kept.blow == Vec3{})) Blow(w, i, kept).take();
   }
+  if (stopped_count > 0) close_joints(w, stopped.first(stopped_count), arena);
 }
 
 }  // namespace gyre

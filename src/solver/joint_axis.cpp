@@ -150,12 +150,13 @@ void solve_axis(AxisWork& x, JointPair& pair, const JointSettings& settings, boo
     if (settings.swept) change(axis.low_impulse, rod_change(x, speed(), settings, soft), 1.0f);
     return;
   }
+  const float least = x.row.push_b == Vec3{} && x.row.push_a == Vec3{} ? -kMostTurnError : -1.0e30f;
   if (x.has_low) {
-    const float gap = axis.position - axis.limits.low;
+    const float gap = max(axis.position - axis.limits.low, least);
     change(axis.low_impulse, end_change(x, speed(), gap, axis.low_impulse, settings, soft), 1.0f);
   }
   if (x.has_high) {
-    const float gap = axis.limits.high - axis.position;
+    const float gap = max(axis.limits.high - axis.position, least);
     change(axis.high_impulse, end_change(x, -speed(), gap, axis.high_impulse, settings, soft), -1.0f);
   }
 }

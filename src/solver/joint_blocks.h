@@ -105,6 +105,20 @@ inline float unwrapped(float angle, float near) {
 
 inline float inverse_or_zero(float k) { return k > 0.0f ? 1.0f / k : 0.0f; }
 
+// What a joint does not allow is taken back no faster than as if it were this much: bodies that are joined, or let go by what held
+// them, far from where the joint would have them do not strike out.
+constexpr float kMostTurnError = 0.2f;   // rad
+constexpr float kMostPointError = 0.1f;  // m
+
+inline Vec3 within(Vec3 v, float most) {
+  const float size = length(v);
+  return size > most ? (most / size) * v : v;
+}
+inline float error_taken_back(const JointRow& row) {
+  const float most = row.push == Vec3{} ? kMostTurnError : kMostPointError;
+  return clamp(row.error, -most, most);
+}
+
 // K restricted to the plane of two unit vectors, inverted there and zero along the rest: m = P (P^T K P)^-1 P^T.
 inline Mat3 inverse_in_plane(const Mat3& k, Vec3 u, Vec3 v) {
   const float kuu = dot(u, k * u), kvv = dot(v, k * v), kuv = dot(u, k * v);

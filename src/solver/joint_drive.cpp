@@ -6,11 +6,6 @@ namespace gyre {
 
 namespace {
 
-Vec3 within(Vec3 v, float most) {
-  const float size = length(v);
-  return size > most ? (most / size) * v : v;
-}
-
 // The change of an impulse that brings `speed` to what is asked, as far as `most` allows.
 Vec3 drive_change(const Mat3& mass, Vec3 speed, Vec3 error, Vec3 impulse, const Softness& s, float most) {
   const Vec3 wanted =

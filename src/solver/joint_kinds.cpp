@@ -415,7 +415,7 @@ void sweep_rows(JointRecord& joint, const JointWork& work, JointPair& pair, cons
     const JointRow& row = rows.rows[i];
     float speed = axis_speed({row.push, row.push, row.arm_a, row.arm_b}, pair);
     if (bends) speed += dot(row.push, work.bend);
-    x[i] = double(soft ? speed + s.bias_rate * row.error : speed);
+    x[i] = double(soft ? speed + s.bias_rate * error_taken_back(row) : speed);
   }
   solve_ldlt(std::span<const double>(rows.factors, n * n), rows.count, std::span<double>(x, n));
   for (int i = 0; i < rows.count; ++i) {

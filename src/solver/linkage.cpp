@@ -84,9 +84,11 @@ void forget_kept(JointRecord& joint, const JointWork& work) {
 }
 
 float error_of(const JointRecord& joint, const JointWork& work, const LinkageRow& row, int i) {
-  if (work.rows != nullptr) return work.rows->rows[i].error;
-  if (joint.kind == JointKind::distance) return work.position - joint.min_length;
-  return is_turn(row) ? dot(work.angular_error, row.arm_a) : dot(work.error, row.push);
+  if (work.rows != nullptr) return error_taken_back(work.rows->rows[i]);
+  if (is_turn(row)) return dot(work.angular_error, row.arm_a);
+  if (joint.kind == JointKind::distance)
+    return clamp(work.position - joint.min_length, -kMostPointError, kMostPointError);
+  return dot(within(work.error, kMostPointError), row.push);
 }
 
 // A force f at arm r turns with the body's orientation like a spring of stiffness (r . f) 1 - sym(r f^T). Springs that a

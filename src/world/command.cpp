@@ -89,6 +89,7 @@ void refresh_mass(RigidWorld& w, std::uint32_t body, const Pose& origin) {
   const Vec3 carried = cross(motion.angular_velocity, rotate(origin.orientation, mass.center - old_center));
   motion.linear_velocity = finite_or(motion.linear_velocity + carried, motion.linear_velocity);
   bodies.places[body] = {origin * mass.center, origin.orientation};
+  shift_joint_ends(w, body, mass.center - old_center);
   bodies.orientations[body] = origin.orientation;
   refresh_inertia(bodies, body);
   for_each_contact_of_body(w, body, [](Contact& contact) { forget_look(contact); });

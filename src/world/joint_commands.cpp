@@ -434,6 +434,24 @@ void set_drive(RigidWorld& w, std::uint32_t slot, const PoseDrive& drive) {
   stir_ends(w, joint);
 }
 
+void shift_joint_ends(RigidWorld& w, std::uint32_t body, Vec3 by) {
+  if (by == Vec3{}) return;
+  for (const std::uint32_t slot : w.bodies.joints[body]) {
+    JointRecord& joint = w.joints.records[slot];
+    const bool is_a = joint.body_a == std::int32_t(body);
+    Vec3& anchor = is_a ? joint.local_anchor_a : joint.local_anchor_b;
+    anchor -= by;
+    if (joint.kind != JointKind::rack_and_pinion) continue;
+    // Its way is counted from centre to centre.
+    const auto orientation = [&](std::int32_t of) {
+      return of == kNoBody ? Quat{} : w.bodies.places[std::size_t(of)].orientation;
+    };
+    const Vec3 along = rotate(orientation(joint.body_b) * joint.local_frame_b, {1, 0, 0});
+    const float further = dot(rotate(orientation(std::int32_t(body)), by), along);
+    detail_of(w.joints, slot)->start += is_a ? -further : further;
+  }
+}
+
 void set_joint_enabled(RigidWorld& w, std::uint32_t slot, bool enabled) {
   if (detail_of(w.joints, slot) == nullptr) {
     if (enabled) return;
