@@ -1,0 +1,698 @@
+// Ragdolls: their description, limits, each way of driving them against closed forms, hand-overs, and that nothing explodes.
+#include <gyre/gyre.h>
+#include <gyre/kit/ragdoll.h>
+#include <gyre/replay.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+
+namespace gyre::kit {
+namespace {
+
+constexpr float kStep = 1.0f / 60.0f;
+constexpr float kDegree = kPi / 180.0f;
+constexpr double kGravity = 9.81;
+
+World make_world(Vec3 gravity = {0, -9.81f, 0}, int threads = 1) {
+  WorldDef def;
+  def.gravity = gravity;
+  def.threads = threads;
+  return std::move(*World::create(def));
+}
+void add_ground(World& world) { world.add_body({.type = BodyType::fixed}, {.geometry = Plane{}}); }
+
+bool row(const char* name, double measured, double expected, double good) {
+  const double error = std::fabs(measured - expected);
+  std::printf("[row] %-52s %10.5g expected %10.5g  off by %8.1e  good %8.1e\n", name, measured, expected,
+              error, good);
+  return error <= good;
+}
+
+// The largest gap of a joint (m), and the largest turn beyond limits (rad).
+double largest_gap(const World& world, const RagdollDef& def, const Ragdoll& ragdoll) {
+  double gap = 0;
+  for (std::size_t i = 1; i < def.bones.size(); ++i) {
+    const Pose parent = world.pose(ragdoll.bones[std::size_t(def.bones[i].parent)].body);
+    gap = std::max(gap,
+                   length(parent * def.bones[i].rest.position - world.pose(ragdoll.bones[i].body).position));
+  }
+  return gap;
+}
+double most_beyond(const RagdollDef& def, const RagdollPose& pose) {
+  float most = 0;
+  for (std::size_t i = 1; i < def.bones.size(); ++i) most = std::max(most, beyond_limits(def, pose, int(i)));
+  return double(most);
+}
+double farthest(const World& world, const Ragdoll& ragdoll, const RagdollPose& target) {
+  double far = 0;
+  for (std::size_t i = 0; i < target.bones.size(); ++i) {
+    const Pose wanted = target.world_from_model * target.bones[i];
+    far = std::max(far, length(world.pose(ragdoll.bones[i].body).position - wanted.position));
+  }
+  return far;
+}
+double most_turned(const World& world, const Ragdoll& ragdoll, const RagdollPose& target) {
+  float most = 0;
+  for (std::size_t i = 0; i < target.bones.size(); ++i) {
+    const Quat wanted = (target.world_from_model * target.bones[i]).orientation;
+    most = std::max(
+        most, length(to_rotation_vector(world.pose(ragdoll.bones[i].body).orientation * conjugate(wanted))));
+  }
+  return double(most);
+}
+
+Ragdoll add(World& world, const RagdollDef& def, const RagdollPose& start) {
+  Result<Ragdoll> made = add_ragdoll(world, def, start);
+  EXPECT_TRUE(made) << made.error().message;
+  return made ? *made : Ragdoll{};
+}
+void drive(World& world, const RagdollDef& def, Ragdoll& ragdoll, const RagdollPose& target,
+           std::span<const BoneDrive> drives) {
+  const Error e = drive_ragdoll(world, def, ragdoll, target, drives, kStep);
+  ASSERT_EQ(e.code, ErrorCode::none) << e.message;
+  ASSERT_TRUE(world.step(kStep));
+}
+
+float random_in(std::mt19937& random, float low, float high) {
+  return low + (high - low) * float(random() % 100001) / 100000.0f;
+}
+Quat random_turn(std::mt19937& random) {
+  Quat q{};
+  do {
+    q = {random_in(random, -1, 1), random_in(random, -1, 1), random_in(random, -1, 1),
+         random_in(random, -1, 1)};
+  } while (dot(q, q) > 1.0f || dot(q, q) < 0.01f);
+  return normalized(q);
+}
+// Every joint somewhere within a share of its limits.
+RagdollPose random_pose(const RagdollDef& def, const Pose& at, std::mt19937& random, float share) {
+  RagdollPose pose = middle_pose(def, at);
+  for (std::size_t i = 1; i < def.bones.size(); ++i) {
+    const BoneJoint& j = def.bones[i].joint;
+    const auto part = [&](const Limits& l) {
+      return share * random_in(random, -0.5f, 0.5f) * (l.high - l.low);
+    };
+    const bool cone = j.kind == BoneJointKind::cone;
+    turn_bone(def, pose, int(i),
+              {part(j.turn), cone ? 0.7f * part(j.swing_y) : 0, cone ? 0.7f * part(j.swing_z) : 0});
+  }
+  return pose;
+}
+
+// Without friction in its joints: closed forms know none.
+RagdollDef free_humanoid() {
+  RagdollDef def = make_humanoid();
+  for (BoneDef& bone : def.bones) bone.joint.friction = 0;
+  return def;
+}
+
+// One limb on a root that does not move, hanging sideways.
+RagdollDef arm_def(BoneJointKind kind, float mass = 2.0f, float length = 0.6f) {
+  RagdollDef def;
+  def.angular_damping = 0;
+  BoneDef root;
+  root.name = "root";
+  root.shapes = {{.geometry = Box{{0.1f, 0.1f, 0.1f}}}};
+  BoneDef arm;
+  arm.name = "arm";
+  arm.parent = 0;
+  arm.rest.position = {0.1f, 0, 0};
+  arm.shapes = {{.geometry = Capsule{0.05f, 0.5f * length - 0.05f},
+                 .local = {{0.5f * length, 0, 0}, from_axis_angle({0, 0, 1}, -0.5f * kPi)}}};
+  arm.mass = mass;
+  arm.joint.kind = kind;
+  arm.joint.axis = kind == BoneJointKind::hinge ? Vec3{0, 0, 1} : Vec3{1, 0, 0};
+  arm.joint.turn = {-1.5f, 1.5f};
+  arm.joint.swing_y = arm.joint.swing_z = {-1.5f, 1.5f};
+  arm.joint.max_torque = 1000;
+  def.bones = {root, arm};
+  return def;
+}
+
+// --------------------------------------------------------------------------------------------------------- description
+
+TEST(Ragdoll, AHumanoidIsAsItsTableSays) {
+  const RagdollDef def = make_humanoid(1.8f, 80.0f);
+  ASSERT_EQ(check_ragdoll(def).code, ErrorCode::none) << check_ragdoll(def).message;
+  EXPECT_EQ(def.bones.size(), 16u);
+  double sum = 0;
+  for (const BoneDef& bone : def.bones) sum += double(*bone.mass);
+  EXPECT_NEAR(sum, 80.0, 1e-4);
+  EXPECT_NEAR(double(*def.bones[std::size_t(find_bone(def, "left thigh"))].mass), 0.1416 * 80, 1e-4);
+  World world = make_world();
+  add(world, def, rest_pose(def));
+  const auto top = world.cast_ray({0, 5, 0.01}, {0, -9, 0}), sole = world.cast_ray({0.085, -5, 0}, {0, 9, 0});
+  ASSERT_TRUE(top && sole);
+  EXPECT_NEAR(top->point.y, 1.8, 0.01);
+  EXPECT_NEAR(sole->point.y, 0.0, 1e-3);
+  EXPECT_EQ(find_bone(def, "tail"), -1);
+  EXPECT_LT(most_beyond(def, rest_pose(def)), 1e-6);
+  EXPECT_LT(most_beyond(def, middle_pose(def)), 1e-6);
+}
+
+TEST(Ragdoll, SaysWhatIsWrongWithADescription) {
+  const std::function<void(RagdollDef&)> broken[] = {
+      [](RagdollDef& d) { d.bones.clear(); },
+      [](RagdollDef& d) { d.bones[3].name = ""; },
+      [](RagdollDef& d) { d.bones[3].name = "pelvis"; },
+      [](RagdollDef& d) { d.bones[0].parent = 0; },
+      [](RagdollDef& d) { d.bones[3].parent = 7; },
+      [](RagdollDef& d) { d.bones[3].parent = -1; },
+      [](RagdollDef& d) { d.bones[3].shapes.clear(); },
+      [](RagdollDef& d) { d.bones[3].mass = -1.0f; },
+      [](RagdollDef& d) { d.bones[3].inertia = Sym3{1, 1, 5, 0, 0, 0}; },
+      [](RagdollDef& d) { d.bones[3].shapes[0].geometry = Plane{}; },
+      [](RagdollDef& d) { d.bones[3].shapes[0].density = 0, d.bones[3].mass = {}; },
+      [](RagdollDef& d) {
+        d.bones[3].rest.orientation = {1, 1, 1, 1};
+      },
+      [](RagdollDef& d) { d.bones[3].joint.axis = {}; },
+      [](RagdollDef& d) {
+        d.bones[3].joint.across = {0, 2, 0};
+      },
+      [](RagdollDef& d) {
+        d.bones[3].joint.swing_y = {1, -1};
+      },
+      [](RagdollDef& d) {
+        d.bones[3].joint.turn = {-4, 4};
+      },
+      [](RagdollDef& d) { d.bones[3].joint.friction = -1; },
+      [](RagdollDef& d) { d.neighbours = 0; },
+      [](RagdollDef& d) {
+        d.apart = {{3, 99}};
+      },
+      [](RagdollDef& d) { d.angular_damping = -1; },
+  };
+  const char* const words[] = {"0 bones",
+                               "no name",
+                               "both called 'pelvis'",
+                               "first is the root",
+                               "parents stand before",
+                               "parents stand before",
+                               "'head' has no shapes",
+                               "mass is -1",
+                               "'head'",
+                               "'head'",
+                               "weighs 0",
+                               "orientation of length 1",
+                               "axis",
+                               "across",
+                               "swing_y is 1 to -1",
+                               "turn is -4 to 4",
+                               "friction",
+                               "neighbours is 0",
+                               "pair 3, 99",
+                               "dampings"};
+  static_assert(std::size(broken) == std::size(words));
+  for (std::size_t i = 0; i < std::size(broken); ++i) {
+    RagdollDef def = make_humanoid();
+    broken[i](def);
+    const Error e = check_ragdoll(def);
+    EXPECT_NE(e.code, ErrorCode::none) << "case " << i;
+    EXPECT_NE(std::string(e.message).find(words[i]), std::string::npos) << "case " << i << ": " << e.message;
+    World world = make_world();
+    EXPECT_FALSE(add_ragdoll(world, def, {{}, std::vector<Transform>(def.bones.size())}));
+    EXPECT_EQ(world.counts().bodies, 0) << "case " << i;
+    EXPECT_FALSE(stabilized(def));
+  }
+  World world = make_world();
+  const RagdollDef def = make_humanoid();
+  EXPECT_FALSE(add_ragdoll(world, def, {}));
+  Ragdoll ragdoll = add(world, def, rest_pose(def));
+  const std::uint64_t hash = world.hash();
+  const BoneDrive odd[] = {{.key = {.strength = 2}},
+                           {.motor = {.strength = -1}},
+                           {.key = {.strength = 1, .frequency = -1}},
+                           {.key = {.strength = 1, .max_force = std::nanf("")}}};
+  for (const BoneDrive& d : odd)
+    EXPECT_NE(drive_ragdoll(world, def, ragdoll, rest_pose(def), {&d, 1}, kStep).code, ErrorCode::none);
+  const BoneDrive limp;
+  EXPECT_NE(drive_ragdoll(world, def, ragdoll, {}, {&limp, 1}, kStep).code, ErrorCode::none);
+  EXPECT_NE(drive_ragdoll(world, def, ragdoll, rest_pose(def), {&limp, 1}, 0).code, ErrorCode::none);
+  EXPECT_NE(drive_ragdoll(world, def, ragdoll, rest_pose(def), {}, kStep).code, ErrorCode::none);
+  EXPECT_EQ(world.hash(), hash);
+  remove_ragdoll(world, ragdoll);
+  EXPECT_EQ(world.counts().bodies, 0);
+  EXPECT_EQ(world.counts().joints, 0);
+}
+
+// What a bone is turned by is told as it was asked for, and beyond limits by as much as it is.
+TEST(Ragdoll, TellsTheAnglesOfItsJoints) {
+  const RagdollDef def = make_humanoid();
+  const int knee = find_bone(def, "left shank"), shoulder = find_bone(def, "right upper arm");
+  for (const float angle : {-0.4f, 0.3f, 2.0f, 2.5f}) {
+    RagdollPose pose = rest_pose(def);
+    turn_bone(def, pose, knee, {angle, 0, 0});
+    EXPECT_NEAR(bone_turn(def, pose, knee).x, angle, 1e-5f);
+    const float expected = std::max({0.0f, -angle, angle - 135 * kDegree});
+    EXPECT_NEAR(beyond_limits(def, pose, knee), expected, 1e-5f);
+    const std::size_t foot = std::size_t(find_bone(def, "left foot"));
+    EXPECT_NEAR(pose.bones[foot].position.y, 0.502f - 0.434f * std::cos(angle), 1e-4f)
+        << "the foot hangs on it";
+  }
+  // Straight forward from the middle of a round cone.
+  RagdollPose pose = middle_pose(def);
+  turn_bone(def, pose, shoulder, {0, 0.8f, 1.7f});
+  EXPECT_NEAR(beyond_limits(def, pose, shoulder), std::sqrt(0.8f * 0.8f + 1.7f * 1.7f) - 100 * kDegree,
+              1e-4f);
+  pose = middle_pose(def);
+  turn_bone(def, pose, shoulder, {2.0f, 0, 0});
+  EXPECT_NEAR(beyond_limits(def, pose, shoulder), 2.0f - 80 * kDegree, 1e-4f);
+  // Along the axes of an ellipse.
+  const int hip = find_bone(def, "left thigh");
+  pose = middle_pose(def);
+  turn_bone(def, pose, hip, {0, 0.7f, 0});
+  EXPECT_NEAR(beyond_limits(def, pose, hip), 0.7f - 35 * kDegree, 1e-4f);
+}
+
+TEST(Ragdoll, StandsWhereItIsPut) {
+  const RagdollDef def = make_humanoid();
+  std::mt19937 random(5);
+  World world = make_world({});
+  const Pose at{{1000, 2, -3e5}, random_turn(random)};
+  const RagdollPose start = random_pose(def, at, random, 1.0f);
+  const Ragdoll ragdoll = add(world, def, start);
+  EXPECT_LT(farthest(world, ragdoll, start), 1e-5);
+  EXPECT_LT(most_turned(world, ragdoll, start), 1e-6);
+  const RagdollPose read = read_ragdoll(world, def, ragdoll);
+  for (std::size_t i = 0; i < start.bones.size(); ++i) {
+    EXPECT_LT(length(read.bones[i].position - start.bones[i].position), 1e-5f);
+    EXPECT_NEAR(absolute(dot(read.bones[i].orientation, start.bones[i].orientation)), 1.0f, 1e-6f);
+  }
+}
+
+// -------------------------------------------------------------------------------------------------------------- limits
+
+// Each joint in turn, pushed against its limits from all sides, with its parent held.
+TEST(Ragdoll, LimitsHold) {
+  RagdollDef def = make_humanoid();
+  def.angular_damping = 5;  // nothing else brings a hand to rest that is pulled about
+  double most = 0, least_turn = 9;
+  for (std::size_t bone = 1; bone < def.bones.size(); ++bone) {
+    World world = make_world({});
+    Ragdoll ragdoll = add(world, def, middle_pose(def));
+    std::vector<BoneDrive> drives(def.bones.size());
+    for (std::size_t i = 0; i < def.bones.size(); ++i) {
+      bool hangs = i == bone;
+      for (int p = int(i); p > 0 && !hangs; p = def.bones[std::size_t(p)].parent)
+        hangs = std::size_t(p) == bone;
+      drives[i].kinematic = !hangs;
+    }
+    const RagdollPose target = middle_pose(def);
+    // Twice its weight, at its end. Stops give way by leak h^2 / rate = 9.5e-6 s^2 of the acceleration that they stop: of the
+    // hands', 1,500 rad/s^2, by 0.8 degrees.
+    const float force = 2.0f * *def.bones[bone].mass * float(kGravity);
+    const Vec3 end = 1.8f * def.bones[bone].shapes[0].local.position;
+    double far = 0;
+    for (int i = 0; i < 360; ++i) {
+      const Vec3 axis = rotate(from_axis_angle({0, 0, 1}, float(i / 60) * 1.047f) *
+                                   from_axis_angle({0, 1, 0}, float(i / 60) * 1.3f),
+                               {1, 0, 0});
+      world.add_force_at(ragdoll.bones[bone].body, force * axis, world.pose(ragdoll.bones[bone].body) * end);
+      drive(world, def, ragdoll, target, drives);
+      const RagdollPose now = read_ragdoll(world, def, ragdoll);
+      if (i % 60 >= 45) most = std::max(most, double(beyond_limits(def, now, int(bone))));
+      far = std::max(far, double(length(bone_turn(def, now, int(bone)) - bone_turn(def, target, int(bone)))));
+    }
+    least_turn = std::min(least_turn, far);
+  }
+  std::printf("[row] limits under twice the bone's weight: beyond by %.3f degrees at most\n",
+              most / double(kDegree));
+  EXPECT_LT(most / double(kDegree), 1.0);
+  EXPECT_GT(least_turn, 0.2) << "every joint was turned";
+}
+
+// -------------------------------------------------------------------------------------------------------------- drives
+
+RagdollPose moving(const RagdollDef& def, double time) {
+  RagdollPose pose = rest_pose(def, {{0.8 * time, 3, 0}, from_axis_angle({0, 1, 0}, float(0.5 * time))});
+  const float swing = 0.5f * float(std::sin(3 * time));
+  turn_bone(def, pose, find_bone(def, "left thigh"), {0, 0, 0.4f + swing});
+  turn_bone(def, pose, find_bone(def, "right thigh"), {0, 0, 0.4f - swing});
+  turn_bone(def, pose, find_bone(def, "left shank"), {0.8f + swing, 0, 0});
+  turn_bone(def, pose, find_bone(def, "left upper arm"), {0, -0.8f, swing});
+  turn_bone(def, pose, find_bone(def, "right upper arm"), {0, 0.8f, -swing});
+  turn_bone(def, pose, find_bone(def, "right forearm"), {0.9f + swing, 0, 0});
+  turn_bone(def, pose, find_bone(def, "head"), {0.3f, 0.1f, swing});
+  return pose;
+}
+
+TEST(Ragdoll, KinematicBonesAreWhereTheTargetIs) {
+  const RagdollDef def = make_humanoid();
+  World world = make_world();
+  Ragdoll ragdoll = add(world, def, moving(def, 0));
+  const BoneDrive kinematic{.kinematic = true};
+  for (int i = 1; i <= 120; ++i) {
+    const RagdollPose target = moving(def, i / 60.0);
+    drive(world, def, ragdoll, target, {&kinematic, 1});
+    // A step from a place of a few metres in floats, and turns of a tenth of a radian.
+    ASSERT_LT(farthest(world, ragdoll, target), 1e-5);
+    ASSERT_LT(most_turned(world, ragdoll, target), 1e-5);
+  }
+}
+
+// A key to the world is a spring and damper on each bone's own mass: all sag by g / (2 pi f)^2.
+TEST(Ragdoll, KeyedToTheWorldSagsLikeASpring) {
+  const RagdollDef def = free_humanoid();
+  for (const float frequency : {2.0f, 5.0f}) {
+    World world = make_world();
+    const RagdollPose target = rest_pose(def, {{0, 3, 0}, {}});
+    Ragdoll ragdoll = add(world, def, target);
+    const BoneDrive keyed{.key = {.strength = 1, .frequency = frequency}};
+    for (int i = 0; i < 180; ++i) drive(world, def, ragdoll, target, {&keyed, 1});
+    const double sag = target.world_from_model.position.y + double(target.bones[0].position.y) -
+                       world.pose(ragdoll.bones[0].body).position.y;
+    const double expected = kGravity / std::pow(2 * kPiDouble * double(frequency), 2);
+    EXPECT_TRUE(row("keyed to the world: sag, m", sag, expected, 0.002 * expected));
+    EXPECT_LT(most_turned(world, ragdoll, target), 2e-4);
+    // Half the strength: half the stiffness.
+    const BoneDrive half{.key = {.strength = 0.5f, .frequency = frequency}};
+    for (int i = 0; i < 240; ++i) drive(world, def, ragdoll, target, {&half, 1});
+    const double more = target.world_from_model.position.y + double(target.bones[0].position.y) -
+                        world.pose(ragdoll.bones[0].body).position.y;
+    EXPECT_TRUE(row("the same at half strength", more, 2 * expected, 0.004 * expected));
+  }
+}
+
+// At a steady speed and turning it lags behind by nothing; when swinging, by about acceleration / (2 pi f)^2.
+TEST(Ragdoll, KeyedFollowsWithoutLag) {
+  const RagdollDef def = free_humanoid();
+  for (const bool to_root : {false, true}) {
+    World world = make_world({});
+    const auto steady = [&](double time) {
+      return rest_pose(def, {{2.0 * time, 3, -time}, from_axis_angle({0, 1, 0}, float(0.0 * time))});
+    };
+    Ragdoll ragdoll = add(world, def, steady(0));
+    std::vector<BoneDrive> drives(def.bones.size(),
+                                  {.key = {.strength = 1, .frequency = 6}, .key_to_root = to_root});
+    drives[0].kinematic = to_root;
+    for (int i = 1; i <= 180; ++i) drive(world, def, ragdoll, steady(i / 60.0), drives);
+    // Three hundredths of a step's way of 37 mm: what the parts of a step differ by in speed.
+    EXPECT_TRUE(row(
+        to_root ? "keyed to the root, steady motion: lag, m" : "keyed to the world, steady motion: lag, m",
+        farthest(world, ragdoll, steady(3.0)), 0.0, 0.03 * std::sqrt(5.0) / 60));
+  }
+  World world = make_world({});
+  Ragdoll ragdoll = add(world, def, moving(def, 0));
+  const BoneDrive stiff{.key = {.strength = 1}};
+  double turned = 0, far = 0;
+  for (int i = 1; i <= 240; ++i) {
+    const RagdollPose target = moving(def, i / 60.0);
+    drive(world, def, ragdoll, target, {&stiff, 1});
+    if (i < 60) continue;
+    turned = std::max(turned, most_turned(world, ragdoll, target));
+    far = std::max(far, farthest(world, ragdoll, target));
+  }
+  std::printf("[row] keyed as stiffly as the step allows, walking: off by %.2f mm and %.2f degrees at most\n",
+              1e3 * far, turned / double(kDegree));
+  EXPECT_LT(far, 0.01);
+  EXPECT_LT(turned, 0.03);
+}
+
+// The motor's spring against gravity: k angle = m g l cos(angle), k = (2 pi f)^2 I of the arm about the joint for a hinge.
+TEST(Ragdoll, MotorsSagAsTheirFrequencySays) {
+  const double m = 2.0, l = 0.3, radius = 0.05, half = 0.25;
+  // Capsule about its end: cylinder and two halves of a ball.
+  const double cylinder = kPiDouble * radius * radius * 2 * half,
+               ball = 4.0 / 3 * kPiDouble * std::pow(radius, 3);
+  const double rho = m / (cylinder + ball);
+  const double across = rho * cylinder * (radius * radius / 4 + half * half / 3) +
+                        rho * ball * (0.4 * radius * radius + half * half + 0.75 * radius * half);
+  const double inertia = across + m * l * l;
+  for (const float frequency : {1.5f, 4.0f, 10.0f}) {
+    const RagdollDef def = arm_def(BoneJointKind::hinge);
+    World world = make_world();
+    Ragdoll ragdoll = add(world, def, rest_pose(def));
+    const BoneDrive drives[] = {{.kinematic = true}, {.motor = {.strength = 1, .frequency = frequency}}};
+    for (int i = 0; i < 300; ++i) drive(world, def, ragdoll, rest_pose(def), drives);
+    const double k = std::pow(2 * kPiDouble * double(frequency), 2) * inertia;
+    double sag = 0;
+    for (int i = 0; i < 50; ++i) sag = m * kGravity * l * std::cos(sag) / k;
+    const double measured = -double(bone_turn(def, read_ragdoll(world, def, ragdoll), 1).x);
+    EXPECT_TRUE(row("hinge motor: sag, rad", measured, sag, 0.005 * sag + 2e-6));
+  }
+}
+
+// A cone's motor: the same stiffness for all directions is that of the mean; measured by a torque about the vertical at two
+// strengths, and that it holds up to its torque and gives way beyond.
+TEST(Ragdoll, MotorsGiveWayAtTheirTorque) {
+  for (const BoneJointKind kind : {BoneJointKind::hinge, BoneJointKind::cone, BoneJointKind::ball}) {
+    RagdollDef def = arm_def(kind);
+    const double weight = 2.0 * kGravity * 0.3;  // N m, held level
+    for (const double share : {0.9, 1.1}) {
+      def.bones[1].joint.max_torque = float(weight / share);
+      World world = make_world();
+      Ragdoll ragdoll = add(world, def, rest_pose(def));
+      const BoneDrive drives[] = {{.kinematic = true}, {.motor = {.strength = 1, .frequency = 0}}};
+      double turned = 0;
+      for (int i = 0; i < 120; ++i) {
+        drive(world, def, ragdoll, rest_pose(def), drives);
+        turned = std::max(turned, double(length(bone_turn(def, read_ragdoll(world, def, ragdoll), 1))));
+      }
+      if (share < 1) {
+        EXPECT_LT(turned, 2e-3) << int(kind);
+      } else {
+        EXPECT_GT(turned, 0.3) << int(kind);
+      }
+    }
+  }
+}
+
+TEST(Ragdoll, MotorsReachThePose) {
+  RagdollDef def = *stabilized(free_humanoid());
+  for (BoneDef& bone : def.bones)
+    bone.shapes[0].filter.group = -1;  // poses in which limbs cross can be reached then
+  std::mt19937 random(11);
+  double turned = 0;
+  for (int k = 0; k < 10; ++k) {
+    World world = make_world({});
+    const Pose at{{0, 2, 0}, {}};
+    Ragdoll ragdoll = add(world, def, random_pose(def, at, random, 0.8f));
+    const RagdollPose target = random_pose(def, at, random, 0.8f);
+    const BoneDrive motor{.motor = {.strength = 1}};
+    for (int i = 0; i < 240; ++i) drive(world, def, ragdoll, target, {&motor, 1});
+    const RagdollPose now = read_ragdoll(world, def, ragdoll);
+    for (std::size_t i = 1; i < def.bones.size(); ++i) {
+      turned = std::max(turned, double(length(bone_turn(def, now, int(i)) - bone_turn(def, target, int(i)))));
+    }
+  }
+  std::printf("[row] motors, no gravity, ten random poses: off by %.4f degrees at most\n",
+              turned / double(kDegree));
+  EXPECT_LT(turned / double(kDegree), 1.0);
+}
+
+// Kinematic, then let go or driven by motors: no velocity changes at the hand-over itself.
+TEST(Ragdoll, HandOversKeepVelocities) {
+  const RagdollDef def = make_humanoid();
+  for (const bool motors : {false, true}) {
+    World world = make_world({});
+    Ragdoll ragdoll = add(world, def, moving(def, 0));
+    const BoneDrive kinematic{.kinematic = true};
+    const BoneDrive after{.motor = {.strength = motors ? 1.0f : 0.0f}};
+    int i = 1;
+    for (; i <= 60; ++i) drive(world, def, ragdoll, moving(def, i / 60.0), {&kinematic, 1});
+    // At the bone's origin: a body's centre of mass is another one while it is kinematic.
+    const auto velocity = [&](BodyId body) { return world.velocity_at(body, world.pose(body).position); };
+    std::vector<Vec3> linear, angular;
+    for (const RagdollBone& bone : ragdoll.bones) {
+      linear.push_back(velocity(bone.body));
+      angular.push_back(world.angular_velocity(bone.body));
+    }
+    ASSERT_EQ(drive_ragdoll(world, def, ragdoll, moving(def, i / 60.0), {&after, 1}, kStep).code,
+              ErrorCode::none);
+    for (std::size_t k = 0; k < linear.size(); ++k) {
+      EXPECT_LT(length(velocity(ragdoll.bones[k].body) - linear[k]), 1e-6f);
+      EXPECT_EQ(world.angular_velocity(ragdoll.bones[k].body), angular[k]);
+      EXPECT_EQ(world.type(ragdoll.bones[k].body), BodyType::dynamic);
+    }
+    // And its momentum is that of what moved: the target's velocities are those of a body that hangs together, but for what the
+    // second order in the step adds.
+    const DVec3 before = world.momentum().linear;
+    world.step(kStep);
+    EXPECT_LT(length(world.momentum().linear - before), 1e-4 * length(before));
+    double jump = 0;
+    for (std::size_t k = 0; k < linear.size(); ++k)
+      jump = std::max(jump, double(length(velocity(ragdoll.bones[k].body) - linear[k])));
+    std::printf("[row] hand-over to %s: velocities change by %.3f m/s in the first step\n",
+                motors ? "motors" : "nothing", jump);
+    EXPECT_LT(jump, 0.35) << "accelerations of the pose itself are up to 9 m/s^2 at the hands, a step long";
+  }
+}
+
+// The upper body kinematic, one arm limp, the legs on motors, a hand keyed: each does its own.
+TEST(Ragdoll, BonesAreDrivenEachInItsOwnWay) {
+  const RagdollDef def = make_humanoid();
+  World world = make_world();
+  const RagdollPose target = rest_pose(def, {{0, 3, 0}, {}});
+  Ragdoll ragdoll = add(world, def, target);
+  std::vector<BoneDrive> drives(def.bones.size(), {.kinematic = true});
+  const auto at = [&](const char* name) { return std::size_t(find_bone(def, name)); };
+  for (const char* name : {"left upper arm", "left forearm", "left hand"}) drives[at(name)] = {};
+  for (const char* name : {"right upper arm", "right forearm"}) drives[at(name)] = {.key = {.strength = 1}};
+  for (const char* name : {"left thigh", "left shank", "left foot"})
+    drives[at(name)] = {.motor = {.strength = 1, .frequency = 8}};
+  for (int i = 0; i < 600; ++i) drive(world, def, ragdoll, target, drives);
+  const auto off = [&](const char* name) {
+    return length((world.pose(ragdoll.bones[at(name)].body).position -
+                   (target.world_from_model * target.bones[at(name)]).position));
+  };
+  EXPECT_GT(off("left hand"), 0.5) << "limp: it hangs";
+  EXPECT_LT(off("right hand"), 5e-3) << "keyed";
+  EXPECT_LT(off("left foot"), 0.02) << "on motors";
+  EXPECT_LT(off("head"), 1e-5) << "kinematic";
+  // The limp arm is drawn back, then left and right change places.
+  for (const float frequency : {1.5f, 10.0f}) {
+    for (const char* name : {"left upper arm", "left forearm", "left hand"})
+      drives[at(name)] = {.key = {.strength = 1, .frequency = frequency}};
+    for (int i = 0; i < 120; ++i) drive(world, def, ragdoll, target, drives);
+  }
+  for (const char* name :
+       {"left upper arm", "left forearm", "left hand", "left thigh", "left shank", "left foot"})
+    std::swap(drives[at(name)], drives[at((std::string("right") + (name + 4)).c_str())]);
+  for (int i = 0; i < 120; ++i) drive(world, def, ragdoll, target, drives);
+  EXPECT_LT(off("left hand"), 1e-5) << "kinematic now";
+  EXPECT_LT(largest_gap(world, def, ragdoll), 1e-3);
+  EXPECT_TRUE(world.problems().empty());
+}
+
+// ------------------------------------------------------------------------------------------------------ stabilisation
+
+TEST(Ragdoll, StabilisationKeepsTheMassAndItsWord) {
+  std::mt19937 random(3);
+  for (int k = 0; k < 200; ++k) {
+    RagdollDef def = make_humanoid();
+    for (BoneDef& bone : def.bones) bone.mass = std::exp(random_in(random, -5, 5));
+    const StableDef stable{.mass_ratio = random_in(random, 1, 6),
+                           .slenderness = random_in(random, 1.5f, 10),
+                           .inertia_ratio = random_in(random, 1, 10)};
+    const Result<RagdollDef> made = stabilized(def, stable);
+    ASSERT_TRUE(made);
+    double before = 0, after = 0;
+    for (std::size_t i = 0; i < def.bones.size(); ++i) {
+      before += double(*def.bones[i].mass), after += double(*made->bones[i].mass);
+      EXPECT_EQ(check_inertia(*made->bones[i].inertia).code, ErrorCode::none);
+      const Vec3 moments = principal_axes(*made->bones[i].inertia).moments;
+      EXPECT_LE(moments.z, moments.x * stable.slenderness * 1.001f);
+      if (i == 0) continue;
+      const BoneDef& parent = made->bones[std::size_t(def.bones[i].parent)];
+      const float ratio = *made->bones[i].mass / *parent.mass;
+      EXPECT_LE(std::max(ratio, 1 / ratio), stable.mass_ratio * 1.001f);
+      EXPECT_LE(moments.z, principal_axes(*parent.inertia).moments.x * stable.inertia_ratio * 1.001f);
+    }
+    EXPECT_NEAR(after / before, 1.0, 1e-6);
+  }
+  // What is alike enough stays as it is.
+  const RagdollDef def = arm_def(BoneJointKind::hinge, 7.0f, 0.25f);
+  const Result<RagdollDef> same = stabilized(def, {.mass_ratio = 2, .slenderness = 20, .inertia_ratio = 20});
+  ASSERT_TRUE(same);
+  EXPECT_FLOAT_EQ(*same->bones[1].mass, 7.0f);
+  EXPECT_FALSE(stabilized(def, {.mass_ratio = 0.5f}));
+}
+
+// --------------------------------------------------------------------------------------------------------- the whole
+
+// Poses that no joint allows, bones through bones, at the ground and above it. Limbs that lie on the wrong side of others may
+// stay there; without contact between the bones all are taken back to within their limits.
+TEST(Ragdoll, NoStartMakesItExplode) {
+  for (const bool contacts : {true, false}) {
+    std::mt19937 random(17);
+    double fastest = 0, gap = 0, kinetic = 0;
+    std::vector<double> beyond;
+    for (int k = 0; k < 40; ++k) {
+      RagdollDef def = k % 2 == 0 ? make_humanoid() : *stabilized(make_humanoid());
+      if (!contacts) {
+        for (BoneDef& bone : def.bones) bone.shapes[0].filter.group = -1;
+      }
+      World world = make_world();
+      add_ground(world);
+      RagdollPose start = rest_pose(def, {{0, k % 3 == 0 ? 0.5 : 3.0, 0}, random_turn(random)});
+      for (Transform& bone : start.bones) bone.orientation = random_turn(random);
+      Ragdoll ragdoll = add(world, def, start);
+      for (int i = 0; i < 420; ++i) {
+        ASSERT_TRUE(world.step(kStep));
+        ASSERT_TRUE(world.problems().empty()) << world.problems()[0].message;
+        for (const RagdollBone& bone : ragdoll.bones)
+          fastest = std::max(fastest, double(length(world.linear_velocity(bone.body))));
+      }
+      gap = std::max(gap, largest_gap(world, def, ragdoll));
+      kinetic = std::max(kinetic, world.energy().kinetic);
+      beyond.push_back(most_beyond(def, read_ragdoll(world, def, ragdoll)) / double(kDegree));
+    }
+    std::sort(beyond.begin(), beyond.end());
+    std::printf(
+        "[row] 40 impossible starts, bones %s: fastest %.1f m/s; after 7 s joints open by %.2f mm, kinetic "
+        "energy %.4f J, beyond "
+        "limits by %.1f degrees, half of them by less than %.2f\n",
+        contacts ? "touch" : "do not touch", fastest, 1e3 * gap, kinetic, beyond.back(), beyond[20]);
+    // A fall from 4 m is 9 m/s, and a limb taken back by 8 rad/s on two others that are too adds as much.
+    EXPECT_LT(fastest, contacts ? 50.0 : 25.0);
+    EXPECT_LT(kinetic, 0.05);
+    EXPECT_LT(gap, contacts ? 0.05 : 1e-3);
+    if (!contacts) {
+      EXPECT_LT(beyond.back(), 3.0);
+    }
+  }
+}
+
+TEST(Ragdoll, IsTheSameOnAnyNumberOfThreadsAndAfterASnapshot) {
+  const RagdollDef def = *stabilized(make_humanoid());
+  std::uint64_t hashes[3];
+  for (const int threads : {1, 3}) {
+    World world = make_world({0, -9.81f, 0}, threads);
+    add_ground(world);
+    std::vector<Ragdoll> ragdolls;
+    for (int k = 0; k < 4; ++k) ragdolls.push_back(add(world, def, rest_pose(def, {{1.2 * k, 0.3, 0}, {}})));
+    const auto go = [&](int from, int to) {
+      for (int i = from; i < to; ++i) {
+        for (std::size_t k = 0; k < 4; ++k) {
+          RagdollPose target = moving(def, i / 60.0);
+          target.world_from_model.position = {1.2 * double(k) + 0.1 * i / 60.0, 0.3, 0};
+          BoneDrive d;
+          if (k == 0) d.motor.strength = 1;
+          if (k == 1) d.key.strength = i > 60 ? 0.5f : 0.0f, d.key.frequency = 3, d.motor.strength = 0.3f;
+          if (k == 2) d.kinematic = i < 90;
+          ASSERT_EQ(drive_ragdoll(world, def, ragdolls[k], target, {&d, 1}, kStep).code, ErrorCode::none);
+        }
+        ASSERT_TRUE(world.step(kStep));
+      }
+    };
+    go(1, 40);
+    const auto moment = save_snapshot(world);
+    const std::vector<Ragdoll> then = ragdolls;
+    go(40, 150);
+    hashes[threads == 1 ? 0 : 1] = world.hash();
+    ASSERT_EQ(restore_snapshot(world, moment).code, ErrorCode::none);
+    ragdolls = then;
+    go(40, 150);
+    hashes[2] = world.hash();
+    EXPECT_EQ(hashes[2], hashes[threads == 1 ? 0 : 1]);
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+// Limp it comes to rest on the ground; on motors towards a pose that does not move, too.
+TEST(Ragdoll, FallsAsleep) {
+  for (const bool motors : {false, true}) {
+    const RagdollDef def = make_humanoid();
+    World world = make_world();
+    add_ground(world);
+    Ragdoll ragdoll = add(world, def, rest_pose(def, {{0, 0.5, 0}, from_axis_angle({1, 0, 0}, 0.6f)}));
+    const BoneDrive d{.motor = {.strength = motors ? 0.3f : 0.0f}};
+    int asleep = 0;
+    for (int i = 0; i < 1200 && asleep == 0; ++i) {
+      drive(world, def, ragdoll, rest_pose(def), {&d, 1});
+      if (world.counts().awake_bodies == 0) asleep = i;
+    }
+    std::printf("[row] %s: asleep after %.1f s\n", motors ? "on weak motors" : "limp", asleep / 60.0);
+    EXPECT_GT(asleep, 0) << motors;
+    EXPECT_LT(largest_gap(world, def, ragdoll), 1e-3);
+    EXPECT_LT(most_beyond(def, read_ragdoll(world, def, ragdoll)), 2 * double(kDegree));
+  }
+}
+
+}  // namespace
+}  // namespace gyre::kit

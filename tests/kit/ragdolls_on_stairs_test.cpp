@@ -1,0 +1,148 @@
+// Crowds of ragdolls fall down stairs: nothing is lost, joints hold, limits hold, no energy comes from nowhere, and in the end all sleep.
+#include <gyre/gyre.h>
+#include <gyre/kit/ragdoll.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace gyre::kit {
+namespace {
+
+constexpr float kStep = 1.0f / 60.0f;
+constexpr double kDegree = kPiDouble / 180.0;
+constexpr int kStairs = 24;
+constexpr double kRise = 0.18, kRun = 0.28, kWidth = 10.0, kTop = kStairs * kRise;
+
+// Down along x from a landing at x < 0; a wall on either side.
+void add_stairs(World& world) {
+  const auto block = [&](DVec3 low, DVec3 high) {
+    const DVec3 half = 0.5 * (high - low);
+    world.add_body({.type = BodyType::fixed, .pose = {0.5 * (low + high), {}}},
+                   {.geometry = Box{to_float(half)}});
+  };
+  block({-8, -1, -kWidth / 2}, {0, kTop, kWidth / 2});
+  for (int i = 1; i < kStairs; ++i)
+    block({(i - 1) * kRun, -1, -kWidth / 2}, {i * kRun, kTop - i * kRise, kWidth / 2});
+  block({-8, -1, -kWidth / 2 - 1}, {30, kTop + 6, -kWidth / 2});
+  block({-8, -1, kWidth / 2}, {30, kTop + 6, kWidth / 2 + 1});
+  world.add_body({.type = BodyType::fixed}, {.geometry = Plane{}});
+}
+double ground_at(DVec3 p) {
+  if (p.x < 0) return kTop;
+  return std::max(0.0, kTop - kRise * (std::floor(p.x / kRun) + 1));
+}
+
+struct Judged {
+  std::vector<float> gaps;    // m, of every joint in every tenth step
+  double through = -1e9;      // m: how far a bone's centre was below the ground, at most
+  double gained = 0;          // J in a step
+  std::vector<float> beyond;  // degrees, of every bone in every tenth step
+  int awake = 0;
+  double seconds = 0;
+};
+
+Judged fall(int count, double seconds, int threads = 1) {
+  WorldDef wd;
+  wd.threads = threads;
+  World world = std::move(*World::create(wd));
+  add_stairs(world);
+  const RagdollDef def = *stabilized(make_humanoid());
+  std::vector<Ragdoll> crowd;
+  for (int i = 0; i < count; ++i) {
+    // Rows of five across the stairs, each above the last, all turned otherwise about the pelvis; they are pushed downstairs.
+    const int row = i / 5, column = i % 5;
+    const Quat turn =
+        from_axis_angle({0, 1, 0}, 2.4f * float(i)) * from_axis_angle({1, 0, 0}, 0.9f * float(i % 7) - 2.7f);
+    const Pose pelvis{{-1.0 + 0.9 * (row % 4), kTop + 1.2 + 1.9 * row, 1.95 * (column - 2)}, turn};
+    const Pose at = pelvis * Transform{-1.0f * def.bones[0].rest.position, {}};
+    const Result<Ragdoll> made = add_ragdoll(world, def, middle_pose(def, at));
+    EXPECT_TRUE(made) << made.error().message;
+    if (!made) return {};
+    crowd.push_back(*made);
+    for (const RagdollBone& bone : crowd.back().bones) world.set_velocity(bone.body, {1.5f, 0, 0}, {});
+  }
+  Judged j;
+  double energy = world.energy().kinetic + world.energy().potential;
+  for (int i = 0; i < int(seconds * 60); ++i) {
+    EXPECT_TRUE(world.step(kStep));
+    EXPECT_TRUE(world.problems().empty()) << world.problems()[0].message;
+    if (::testing::Test::HasFailure()) return j;
+    const double now = world.energy().kinetic + world.energy().potential;
+    j.gained = std::max(j.gained, now - energy);
+    energy = now;
+    if (i % 10 != 9) continue;
+    for (const Ragdoll& ragdoll : crowd) {
+      const RagdollPose pose = read_ragdoll(world, def, ragdoll);
+      for (std::size_t k = 0; k < def.bones.size(); ++k) {
+        const DVec3 center = world.center_of_mass(ragdoll.bones[k].body);
+        j.through = std::max(j.through, ground_at(center) - center.y);
+        if (k == 0) continue;
+        const Pose parent = world.pose(ragdoll.bones[std::size_t(def.bones[k].parent)].body);
+        j.gaps.push_back(
+            float(length(parent * def.bones[k].rest.position - world.pose(ragdoll.bones[k].body).position)));
+        j.beyond.push_back(float(double(beyond_limits(def, pose, int(k))) / kDegree));
+      }
+    }
+    j.awake = world.counts().awake_bodies;
+    j.seconds = (i + 1) / 60.0;
+    if (j.awake == 0) break;
+  }
+  return j;
+}
+
+void judge(int count, Judged j) {
+  ASSERT_FALSE(j.beyond.empty());
+  std::sort(j.beyond.begin(), j.beyond.end());
+  std::sort(j.gaps.begin(), j.gaps.end());
+  const auto share = [](const std::vector<float>& of, double part) {
+    return double(of[std::size_t(part * double(of.size() - 1))]);
+  };
+  std::printf(
+      "[row] %d ragdolls on stairs: joints open by %.3f mm at p99, %.2f at p99.9, %.1f at most; beyond "
+      "limits by %.2f degrees at "
+      "p99, %.2f at p99.9, %.1f at most; centres %.3f m above the ground at least; %.2f J gained in a step "
+      "at most; %d bodies "
+      "awake after %.1f s\n",
+      count, 1e3 * share(j.gaps, 0.99), 1e3 * share(j.gaps, 0.999), 1e3 * share(j.gaps, 1),
+      share(j.beyond, 0.99), share(j.beyond, 0.999), share(j.beyond, 1), -j.through, j.gained, j.awake,
+      j.seconds);
+  EXPECT_LT(share(j.gaps, 0.999), 0.01);
+  EXPECT_LT(share(j.gaps, 1), 0.05) << "a limb struck at 10 m/s, for a step";
+  EXPECT_LT(share(j.beyond, 0.99), 3.0);
+  EXPECT_LT(j.through, 0.0) << "no centre is ever inside the stairs";
+  EXPECT_EQ(j.awake, 0);
+  // Places that are taken back (overlap, joints) lift something now and then: by a third of a millimetre of their weight at most.
+  EXPECT_LT(j.gained, 0.25 * count);
+}
+
+TEST(RagdollsOnStairs, TwentyComeToRest) { judge(20, fall(20, 30)); }
+
+TEST(LongRagdollsOnStairs, TwoHundredComeToRest) { judge(200, fall(200, 60, 2)); }
+
+// scenes/joints/ragdolls_on_stairs.gyre.json is what examples/ragdoll_scene.cpp writes, to the last digit.
+TEST(RagdollsOnStairs, TheSceneIsWhatTheExampleWrites) {
+  const auto read = [](std::FILE* file) {
+    std::string text;
+    char part[4096];
+    while (const std::size_t got = std::fread(part, 1, sizeof part, file)) text.append(part, got);
+    return text;
+  };
+  std::FILE* const program = popen(GYRE_BINARY_DIR "/bin/examples/ragdoll_scene", "r");
+  ASSERT_NE(program, nullptr);
+  const std::string written = read(program);
+  if (pclose(program) != 0) GTEST_SKIP() << "built without examples";
+  std::FILE* const file = std::fopen(GYRE_SOURCE_DIR "/scenes/joints/ragdolls_on_stairs.gyre.json", "rb");
+  ASSERT_NE(file, nullptr);
+  const std::string stored = read(file);
+  std::fclose(file);
+  EXPECT_TRUE(written == stored)
+      << "write it anew: bin/examples/ragdoll_scene > scenes/joints/ragdolls_on_stairs.gyre.json";
+}
+
+}  // namespace
+}  // namespace gyre::kit
