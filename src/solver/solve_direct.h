@@ -1,0 +1,36 @@
+// Solves the complementarity problem of a small island to the last digits: by Dantzig's or Lemke's pivoting, or by Newton's method
+// alone, whichever is asked for.
+//
+// Lemke's method solves the problem with friction polygons as one (the formulation of Stewart and Trinkle: one variable per corner
+// and one for how fast the point slides). Dantzig's needs limits that are numbers: it solves with those that the loads of
+// the last round give, until loads and limits agree. The two share no code but A and q. What either finds is polished by Newton's
+// method (solver/solve_newton.h), which also says how good it is; with Coulomb's disc the polygon only leads there.
+#pragma once
+
+#include "solver/complementarity.h"
+
+namespace gyre {
+
+enum class DirectMethod : unsigned char {
+  quick,  // Newton's method from where x stands; where that fails, Dantzig's
+  dantzig,
+  lemke,
+  newton,
+};
+
+struct DirectResult {
+  double residual = 0.0;  // N s or N m s, largest of all rows
+  int pivots = 0;
+  int rounds = 0;  // of limits from loads
+  int newton_steps = 0;
+  bool is_solved = false;
+};
+
+// How much memory a problem with these limits needs, in numbers. `set`: the polygon, also where the disc is wanted.
+std::size_t direct_room(std::span<const RowLimits> limits, const FrictionSet& set, DirectMethod method);
+
+// `polygon`: what pivoting uses in the place of problem.friction if that is the disc; else the same.
+DirectResult solve_direct(const DenseProblem& problem, const FrictionSet& polygon, DirectMethod method,
+                          double tolerance, std::span<double> x, NumberRoom room);
+
+}  // namespace gyre
