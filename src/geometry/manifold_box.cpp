@@ -18,6 +18,9 @@ constexpr float kDepthBias = 0.05f, kSizeBias = 1.0e-3f;
 // Squared sine between two edges below which they have no axis of their own (the faces' axes serve), and below which
 // float rounding would show, so that the axis is worked out again in double.
 constexpr float kParallel = 1.0e-8f, kShallow = 1.0e-2f;
+// A face's points stand for the contact if the deepest of them is within this part of the thinnest half extent, and of an
+// overlap within that part of the depth too.
+constexpr float kMissed = 1.0e-3f, kLost = 0.1f;
 // Error of a separation times a cross product's length, relative to the sum of all lengths in it.
 constexpr float kRounding = 4.0e-7f;
 
@@ -45,6 +48,9 @@ void fill(Boxes& boxes, const Shape& a, const Shape& b, const Transform& a_from_
   }
 }
 
+inline float thinnest(const Boxes& x) {
+  return min(min(min(x.a[0], x.a[1]), x.a[2]), min(min(x.b[0], x.b[1]), x.b[2]));
+}
 inline float face_a(const Boxes& x, int i) {
   return absolute(x.t[i]) - x.a[i] - (x.b[0] * x.c[i][0] + x.b[1] * x.c[i][1] + x.b[2] * x.c[i][2]);
 }
@@ -106,8 +112,7 @@ Axis search(const Boxes& x, const Transform& a_from_b, float max_separation, int
     if (s[k] > face.separation) face = {k, s[k]};
   }
   if (face.separation > max_separation) return face;
-  const float thin = min(min(min(x.a[0], x.a[1]), x.a[2]), min(min(x.b[0], x.b[1]), x.b[2]));
-  const float bias = kDepthBias * absolute(face.separation) + kSizeBias * thin;
+  const float bias = kDepthBias * absolute(face.separation) + kSizeBias * thinnest(x);
 
   // Edges are worth a look only when they beat the face by more than half of the bias.
   Axis edge;
@@ -338,39 +343,76 @@ void collide_face(const Boxes& x, const Transform& a_from_b, const Axis& found, 
   for (int i = 0; i < count; ++i) out.points[i] = points[i];
 }
 
-// Leaves out.count at 0 when the boxes are apart and the edges pass beside each other.
+// In float for edges that cross at an angle, in double for those nearly parallel: where they cross is then a quotient of small
+// differences, and the normal one of nothing else.
+struct FloatEdges {
+  using Real = float;
+  using Vector = Vec3;
+  Vector columns[3];  // B's axes in A's frame
+  FloatEdges(const Boxes& x, const Transform&)
+      : columns{{x.r[0][0], x.r[1][0], x.r[2][0]},
+                {x.r[0][1], x.r[1][1], x.r[2][1]},
+                {x.r[0][2], x.r[1][2], x.r[2][2]}} {}
+  static Vec3 unit(Vec3 v) { return normalized(v); }
+  static Vec3 to_float(Vec3 v) { return v; }
+};
+struct DoubleEdges {
+  using Real = double;
+  using Vector = DVec3;
+  Vector columns[3];
+  DoubleEdges(const Boxes&, const Transform& a_from_b) {
+    const DQuat q = normalized(to_double(a_from_b.orientation));
+    for (int k = 0; k < 3; ++k)
+      columns[k] = rotate(q, DVec3{k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0});
+  }
+  static DVec3 unit(DVec3 v) { return v / length(v); }
+  static Vec3 to_float(DVec3 v) { return gyre::to_float(v); }
+};
+
+// Leaves out.count at 0 when the edges pass beside each other: of boxes apart another feature is nearer, and of those that
+// overlap the faces beside nearly parallel edges were as good.
+template <class Edges>
 void collide_edges(const Boxes& x, const Transform& a_from_b, const Axis& found, LocalManifold& out) {
+  using Real = typename Edges::Real;
+  using Vector = typename Edges::Vector;
+  const Edges edges(x, a_from_b);
   const int i = (found.number - kFirstEdge) / 3, j = (found.number - kFirstEdge) % 3;
-  const Vec3 edge_a{i == 0 ? 1.0f : 0.0f, i == 1 ? 1.0f : 0.0f, i == 2 ? 1.0f : 0.0f};
-  const Vec3 edge_b{x.r[0][j], x.r[1][j], x.r[2][j]};
-  Vec3 normal = normalized(cross(edge_a, edge_b));
-  const Vec3 t = a_from_b.position;
-  if (dot(normal, t) < 0.0f) normal = -normal;
+  const Vector edge_a{Real(i == 0), Real(i == 1), Real(i == 2)};
+  const Vector edge_b = edges.columns[j];
+  const Vector across = cross(edge_a, edge_b);
+  Vector normal = Edges::unit(across);
+  const Vector t{Real(a_from_b.position.x), Real(a_from_b.position.y), Real(a_from_b.position.z)};
+  if (dot(normal, t) < Real(0)) normal = -normal;
   // The edge of each box that is farthest along the normal towards the other.
-  float on_a[3], on_b_local[3];
+  Real on_a[3], on_b_local[3];
   std::uint32_t corner_a = 0, corner_b = 0;
   for (int k = 0; k < 3; ++k) {
-    const bool up_a = normal[k] > 0.0f;
-    on_a[k] = k == i ? 0.0f : (up_a ? x.a[k] : -x.a[k]);
+    const bool up_a = normal[k] > Real(0);
+    on_a[k] = k == i ? Real(0) : Real(up_a ? x.a[k] : -x.a[k]);
     corner_a |= up_a ? 1u << k : 0u;
-    const bool up_b = dot(normal, Vec3{x.r[0][k], x.r[1][k], x.r[2][k]}) < 0.0f;
-    on_b_local[k] = k == j ? 0.0f : (up_b ? x.b[k] : -x.b[k]);
+    const bool up_b = dot(normal, edges.columns[k]) < Real(0);
+    on_b_local[k] = k == j ? Real(0) : Real(up_b ? x.b[k] : -x.b[k]);
     corner_b |= up_b ? 1u << k : 0u;
   }
-  const Vec3 pa{on_a[0], on_a[1], on_a[2]};
-  Vec3 pb = t;
-  for (int k = 0; k < 3; ++k) pb += on_b_local[k] * Vec3{x.r[0][k], x.r[1][k], x.r[2][k]};
+  const Vector pa{on_a[0], on_a[1], on_a[2]};
+  Vector pb = t;
+  for (int k = 0; k < 3; ++k) pb += on_b_local[k] * edges.columns[k];
   // Nearest points of the two lines: both edges are unit, and not parallel.
-  const Vec3 d = pb - pa;
-  const float c = dot(edge_a, edge_b), da = dot(d, edge_a), db = dot(d, edge_b);
-  const float det = edge_length_squared(x, i, j);
-  const float along_a = (da - c * db) / det, along_b = (c * da - db) / det;
-  const float end_a = clamp(along_a, -x.a[i], x.a[i]), end_b = clamp(along_b, -x.b[j], x.b[j]);
-  // Apart, and not across each other: an end is nearest.
-  if (found.separation > 0.0f && (end_a != along_a || end_b != along_b)) return;
-  out.normal = normal;
+  const Vector d = pb - pa;
+  const Real c = dot(edge_a, edge_b), da = dot(d, edge_a), db = dot(d, edge_b);
+  const Real det = across[kNext[i]] * across[kNext[i]] + across[kAfter[i]] * across[kAfter[i]];
+  const Real along_a = (da - c * db) / det, along_b = (c * da - db) / det;
+  const Real end_a = clamp(along_a, Real(-x.a[i]), Real(x.a[i])),
+             end_b = clamp(along_b, Real(-x.b[j]), Real(x.b[j]));
+  const Vector on_edge_a = pa + end_a * edge_a, on_edge_b = pb + end_b * edge_b;
+  // Not across each other: an end is nearest.
+  if ((end_a != along_a || end_b != along_b) &&
+      (found.separation > 0.0f ||
+       length(on_edge_b - on_edge_a) > Real((1.0f + kLost) * -found.separation + kMissed * thinnest(x))))
+    return;
+  out.normal = Edges::to_float(normal);
   out.count = 1;
-  out.points[0].position = 0.5f * ((pa + end_a * edge_a) + (pb + end_b * edge_b));
+  out.points[0].position = Edges::to_float(Real(0.5) * (on_edge_a + on_edge_b));
   out.points[0].separation = found.separation;
   out.points[0].feature = feature_edges(edge_number(i, corner_a), edge_number(j, corner_b));
 }
@@ -391,17 +433,27 @@ Axis face_near_edges(const Boxes& x, const Axis& edges) {
   return best;
 }
 
+float deepest_of(const LocalManifold& manifold) {
+  float least = kUnbounded;
+  for (int i = 0; i < manifold.count; ++i) least = min(least, manifold.points[i].separation);
+  return least;
+}
+
 // See manifold_crossing.h.
 void collide_crossing(const Boxes& x, const Transform& a_from_b, const Axis& edges, float max_separation,
                       LocalManifold& out) {
   const Axis face = face_near_edges(x, edges);
   if (face.number != kNoAxis) {
     collide_face(x, a_from_b, face, max_separation, out);
-    const float thin = min(min(min(x.a[0], x.a[1]), x.a[2]), min(min(x.b[0], x.b[1]), x.b[2]));
-    if (stands_for_crossing(out, edges.separation, thin)) return;
+    if (stands_for_crossing(out, edges.separation, thinnest(x))) return;
     out.count = 0;
   }
-  collide_edges(x, a_from_b, edges, out);
+  const int i = (edges.number - kFirstEdge) / 3, j = (edges.number - kFirstEdge) % 3;
+  if (edge_length_squared(x, i, j) < kShallow) {
+    collide_edges<DoubleEdges>(x, a_from_b, edges, out);
+  } else {
+    collide_edges<FloatEdges>(x, a_from_b, edges, out);
+  }
 }
 
 }  // namespace
@@ -421,6 +473,9 @@ void collide_boxes(const Shape& a, const Shape& b, const Transform& a_from_b, fl
     collide_crossing(x, a_from_b, found, max_separation, out);
   } else {
     collide_face(x, a_from_b, found, max_separation, out);
+    // Nearest, or deepest, beside the face.
+    const float lost = deepest_of(out) - found.separation;
+    if (lost > kMissed * thinnest(x) + kLost * max(-found.separation, 0.0f)) out.count = 0;
   }
   // Near, or even overlapping, but beside each other's faces.
   if (out.count == 0) collide_cores(a, b, a_from_b, max_separation, cache, out);

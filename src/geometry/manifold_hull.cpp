@@ -39,6 +39,8 @@ struct Roles {
 
 // In inner radii of the thinner: a face's points stand for the contact if the deepest of them is within this part of it.
 constexpr float kMissed = 1.0e-3f;
+// ... and of an overlap within this part of the depth too: what is lost again and again would never come free.
+constexpr float kLost = 0.1f;
 // Faces that look this way by less than this cosine are sides.
 constexpr float kLooksThisWay = 1.0e-4f;
 constexpr int kMaxVertices = 256;
@@ -119,7 +121,8 @@ class FacePoints {
   ManifoldPoint points_[kMaxClipPoints];
 };
 
-// None when the polytopes are apart and the edges pass beside each other.
+// None when the edges pass beside each other: of polytopes apart another feature is nearer, and of those that overlap the faces
+// beside nearly parallel edges were as good.
 void edge_point(const Polytope& a, const Polytope& b, const Transform& a_from_b, const PolytopeAxis& axis,
                 LocalManifold& out) {
   const HullEdge &ea = a.edges[axis.index_a], &eb = b.edges[axis.index_b];
@@ -127,7 +130,9 @@ void edge_point(const Polytope& a, const Polytope& b, const Transform& a_from_b,
       closest_of_segments(DVec3(a.vertices[ea.from]), DVec3(a.vertices[ea.to]),
                           DVec3(a_from_b * b.vertices[eb.from]), DVec3(a_from_b * b.vertices[eb.to]));
   const bool at_end = near.s <= 0.0 || near.s >= 1.0 || near.t <= 0.0 || near.t >= 1.0;
-  if (axis.separation > 0.0f && at_end) return;
+  if (at_end && (axis.separation > 0.0f ||
+                 length(near.on_b - near.on_a) > double((1.0f + kLost) * -axis.separation + missed(a, b))))
+    return;
   out.count = 1;
   out.points[0].position = to_float(0.5 * (near.on_a + near.on_b));
   out.points[0].separation = axis.separation;
@@ -193,8 +198,9 @@ bool collide_polytopes(const Polytope& a, const Polytope& b, const Transform& a_
   if (axis.separation > max_separation) return false;
   if (axis.kind != AxisKind::edges) {
     face_manifold(a, b, a_from_b, axis, max_separation, out);
-    // Apart, and nearest beside the face.
-    if (axis.separation > 0.0f && deepest_of(out) > axis.separation + missed(a, b)) out.count = 0;
+    // Nearest, or deepest, beside the face.
+    const float lost = deepest_of(out) - axis.separation;
+    if (lost > missed(a, b) + kLost * max(-axis.separation, 0.0f)) out.count = 0;
     return true;
   }
   if (crossing_faces(a, b, a_from_b, axis, max_separation, out)) return true;

@@ -60,6 +60,7 @@ class Proof {
   double by = 0.0;
   LocalManifold m;
   Nearest near;
+  double along = 0.0, deepest = 0.0;  // what the shapes say of the manifold's normal, and what it says itself
 
   void run(float reach, bool search, bool pivot) {
     distance();
@@ -110,8 +111,8 @@ class Proof {
     if (absolute(length(DVec3(m.normal)) - 1.0) > 2.0e-6)
       return say("normal not unit", length(DVec3(m.normal)));
     const DVec3 n = DVec3(m.normal) / length(DVec3(m.normal));
-    const double along = surface_separation(odd_.a, odd_.b, pair_, n);
-    double deepest = 1.0e300;
+    along = surface_separation(odd_.a, odd_.b, pair_, n);
+    deepest = 1.0e300;
     for (int i = 0; i < m.count; ++i) deepest = min(deepest, double(m.points[i].separation));
     // What faces with many corners and caps lose to the polygons that stand for them, and points found before by rounding.
     // Nor does a manifold keep the very deepest of points that are equally deep for its width (geometry/clip).
@@ -126,7 +127,7 @@ class Proof {
       const double left = left_inside(deepest * n, cut, along < -0.1 * thin_ ? 3 : 0, reach);
       if (left > cut) say("a corner is left inside", left);
     }
-    points_lie_on_both(n, along, cut);
+    points_lie_on_both(n, cut);
     // Faces stand for edges that are up to a twelfth better, and for edges that all but lie in them.
     const double favour = 3.0e-3 * thin_ + rounding_;
     if (!near.overlap && deepest < 0.91 * near.distance - favour)
@@ -140,7 +141,7 @@ class Proof {
       pivot_about_points(n);
   }
 
-  void points_lie_on_both(DVec3 n, double along, double cut) {
+  void points_lie_on_both(DVec3 n, double cut) {
     const double slack = cut + 0.1 * max(-along, 0.0);
     for (int i = 0; i < m.count; ++i) {
       const ManifoldPoint& point = m.points[i];
@@ -170,9 +171,9 @@ class Proof {
       PairCache cache;
       LocalManifold found[kMaxMeshManifolds];
       if (collide_shapes(odd_.a, odd_.b, t, reach, cache, found) == 0) return left;
-      float deepest = kUnbounded;
-      for (int i = 0; i < found[0].count; ++i) deepest = min(deepest, found[0].points[i].separation);
-      back = DVec3(deepest * found[0].normal);
+      float depth = kUnbounded;
+      for (int i = 0; i < found[0].count; ++i) depth = min(depth, found[0].points[i].separation);
+      back = DVec3(depth * found[0].normal);
       t.position = t.position - to_float(back);
     }
   }
@@ -267,8 +268,9 @@ void prove(Kinds kinds, int pairs, unsigned seed) {
       if (++wrong > 5) continue;
       std::ostringstream text;
       text << proof.wrong << " by " << proof.by << ", pair " << i << ": " << describe(odd) << ", nearest "
-           << proof.near.distance << ", " << proof.m.count << " points, normal " << proof.m.normal.x << " "
-           << proof.m.normal.y << " " << proof.m.normal.z;
+           << proof.near.distance << ", along " << proof.along << " deepest " << proof.deepest << ", "
+           << proof.m.count << " points, normal " << proof.m.normal.x << " " << proof.m.normal.y << " "
+           << proof.m.normal.z;
       std::printf("%s\n", text.str().c_str());
     }
   }
