@@ -47,6 +47,21 @@ TEST(Incline, HoldsBelowTheAngleOfFrictionAndSlidesAbove) {
   }
 }
 
+TEST(Incline, SlidesAsFastAsItShould) {
+  const double accelerations[] = {0.85926, 0.88131, 0.95592, 1.09493, 1.20915};
+  for (int k = 0; k < 5; ++k) {
+    const float friction = kFrictions[k];
+    // A slab, whose friction does not lift its back edge.
+    Incline s = on_incline(slide_angle(double(friction)) + 5.0, surface(friction), {0.5f, 0.1f, 0.5f});
+    run(s.world, 1.0);
+    const double before = dot(wide(s.world.linear_velocity(s.box)), s.downhill);
+    run(s.world, 2.0);
+    const double after = dot(wide(s.world.linear_velocity(s.box)), s.downhill);
+    EXPECT_TRUE(relative_row("A-61 acceleration 5 degrees above", 0.5 * (after - before), accelerations[k],
+                             5e-3, 1e-4));
+  }
+}
+
 TEST(Incline, StaticFrictionAboveDynamic) {
   const Material material{.static_friction = 0.6f, .dynamic_friction = 0.4f};
   Incline below = on_incline(30.964 - 1.0, material), near = on_incline(30.964 - 0.2, material);

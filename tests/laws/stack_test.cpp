@@ -113,7 +113,10 @@ TEST(Tower, AThousandToOne) {
                         std::fabs(1.5 - world.pose(heavy).position.y), 1.5e-2, 1.5e-3));
 }
 
-void pyramid(int base, float edge, double seconds, double good, const char* name) {
+struct Pyramid {
+  double drift, sink;  // m, of the worst box
+};
+Pyramid pyramid(int base, float edge, double seconds) {
   World world = make_world({.sleeping = false});
   add_ground(world);
   std::vector<BodyId> boxes;
@@ -128,21 +131,28 @@ void pyramid(int base, float edge, double seconds, double good, const char* name
     }
   }
   run(world, seconds);
-  double drift = 0.0, sink = 0.0;
+  Pyramid worst{0, 0};
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const DVec3 d = world.pose(boxes[i]).position - places[i];
-    drift = std::max(drift, std::sqrt(d.x * d.x + d.z * d.z));
-    sink = std::max(sink, std::fabs(d.y));
+    worst.drift = std::max(worst.drift, std::sqrt(d.x * d.x + d.z * d.z));
+    worst.sink = std::max(worst.sink, std::fabs(d.y));
   }
-  std::printf("[row] %s: sink of the worst box %g m\n", name, sink);
-  EXPECT_TRUE(limit_row(name, drift, good, 0.1 * good));
-  EXPECT_LT(sink, 0.5 * e);
+  return worst;
 }
-// Every box is still where it was put, within half its edge.
+// Every box is still where it was put, within half its edge. Thirty rows of 5 cm, as the table has them, fall: a way of swaying
+// whose hold by the sweeps is below its own buckling load (docs/decisions/contact-softness.md; neither more sweeps at the start
+// nor other softness mended it). That is printed.
 TEST(Pyramid, OfSmallBoxesStands) {
-  pyramid(10, 0.05f, 10.0, 0.025, "pyramid of 10 boxes of 5 cm: drift (m)");
+  const Pyramid ten = pyramid(10, 0.05f, 10.0), thirty = pyramid(30, 0.05f, 10.0);
+  EXPECT_TRUE(limit_row("pyramid of 10 boxes of 5 cm: drift (m)", ten.drift, 0.025, 0.0025));
+  EXPECT_LT(ten.sink, 0.025);
+  limit_row("A-118 pyramid of 30 boxes of 5 cm: drift (m)", thirty.drift, 0.01, 0.001);
 }
-TEST(LongPyramid, OfSixtyStands) { pyramid(60, 1.0f, 10.0, 0.5, "pyramid of 60: drift (m)"); }
+TEST(LongPyramid, OfSixtyStands) {
+  const Pyramid sixty = pyramid(60, 1.0f, 10.0);
+  EXPECT_TRUE(limit_row("pyramid of 60: drift (m)", sixty.drift, 0.5, 0.05));
+  EXPECT_LT(sixty.sink, 0.5);
+}
 
 TEST(Overhang, HarmonicStackStandsUpToItsLimit) {
   for (const double reach : {0.95, 0.98, 1.02, 1.05}) {
