@@ -24,6 +24,7 @@ Geometry cook(const std::vector<float>& heights, std::uint32_t columns, std::uin
 }
 const HeightField& field_of(const Geometry& geometry) { return *geometry.data()->field; }
 
+// B-13: these, the smallest, and holes below.
 TEST(CookHeightField, RefusesBadData) {
   const std::vector<float> heights(12, 0.0f);
   const auto refused = [&](HeightFieldDef def, const char* word) {

@@ -1,4 +1,5 @@
-// Hulls: what every hull must keep (closed, convex, all points inside), known polyhedra, and bad input.
+// Hulls: what every hull must keep (closed, convex, all points inside), known polyhedra, and bad input (row B-10 of the
+// validation table).
 #include "geometry/hull_builder.h"
 
 #include "geometry/cooked.h"

@@ -50,7 +50,7 @@ TEST(Rollback, EventsOfTheAbandonedFutureAreGone) {
   EXPECT_TRUE(world.events().ends.empty());
 }
 
-// Every frame goes back eight steps and plays them again, first with other input, then with the real one.
+// B-22: every frame goes back eight steps and plays them again, first with other input, then with the real one.
 void soak(const Scene& scene, int steps) {
   constexpr int kBack = 8;
   World straight = *World::create();

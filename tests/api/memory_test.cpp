@@ -272,7 +272,7 @@ TEST(LongBytesOfARestingBox, AreTheSameForAHundredThousand) {
   EXPECT_LT(many, 1024);
 }
 
-// Ten minutes in which something comes and something goes in every step.
+// B-28, for as long as a test may take: ten minutes in which something comes and something goes in every step.
 TEST(LongChurn, MemoryStaysBounded) {
   const long long before = bytes_out.load();
   World world = make_world();

@@ -124,6 +124,7 @@ TEST(Misuse, TheOthersAreUntouchedByABodyThatIsLost) {
   }
 }
 
+// B-02.
 TEST(Misuse, ExtremesOfMassAndInertia) {
   for (const float mass : {1e-30f, 1e-10f, 1e10f, 1e30f}) {
     World world = make_world();
@@ -132,8 +133,8 @@ TEST(Misuse, ExtremesOfMassAndInertia) {
     if (!b) continue;  // refusing is an answer too
     const BodyId other = world.add_body({.pose = {.position = {0.2, 2.2, 0}}}, {.geometry = Box{}});
     for (int i = 0; i < 120; ++i) world.step(kStep);
-    EXPECT_TRUE(is_finite(world.pose(b)) && is_finite(world.linear_velocity(b))) << mass;
-    EXPECT_TRUE(is_finite(world.pose(other)) && is_finite(world.linear_velocity(other))) << mass;
+    EXPECT_TRUE(is_finite(world.pose(b)) && is_finite(world.linear_velocity(b))) << "B-02 " << mass;
+    EXPECT_TRUE(is_finite(world.pose(other)) && is_finite(world.linear_velocity(other))) << "B-02 " << mass;
   }
   World world = make_world({.gravity = {0, -0.0f, 1e-40f}});
   const BodyId b = world.add_body({.inertia = Sym3{1e30f, 1e30f, 1e30f, 0, 0, 0}}, {.geometry = Box{}});
@@ -154,6 +155,7 @@ TEST(Misuse, BodiesWithoutMassMoveAllTheSame) {
   }
 }
 
+// B-04: stale, forged, of another world, removed twice.
 TEST(StaleIds, NeverReachAnotherObject) {
   World world = make_world(), other = make_world();
   const BodyId gone = world.add_body({}, {.geometry = Box{}});
@@ -168,7 +170,7 @@ TEST(StaleIds, NeverReachAnotherObject) {
   BodyId beyond = next;
   beyond.index = 0x7fffffff;
   for (const BodyId bad : {gone, foreign, forged, beyond, BodyId{}}) {
-    EXPECT_FALSE(world.exists(bad));
+    EXPECT_FALSE(world.exists(bad)) << "B-04";
     EXPECT_FALSE(world.set_velocity(bad, {1, 0, 0}, {}));
     expect_refused(world, ErrorCode::stale_id, "does not exist");
     EXPECT_FALSE(world.set_pose(bad, {}));
@@ -203,6 +205,7 @@ TEST(HugeStep, IsFinite) {
   }
 }
 
+// B-06.
 TEST(Order, AddAndRemoveBeforeTheFirstStepAndWhileAsleep) {
   World world = make_world();
   const BodyId ground = add_ground(world);
@@ -224,7 +227,7 @@ TEST(Order, AddAndRemoveBeforeTheFirstStepAndWhileAsleep) {
   EXPECT_TRUE(world.set_awake(a, false));
   EXPECT_FALSE(world.is_awake(b)) << "the whole island";
   EXPECT_TRUE(world.remove_body(a));
-  EXPECT_FALSE(world.exists(j)) << "joints go with their bodies";
+  EXPECT_FALSE(world.exists(j)) << "B-06 joints go with their bodies";
   run(world, 2.0);
   EXPECT_NEAR(world.pose(b).position.y, 0.5, 0.02);
   EXPECT_TRUE(world.remove_body(ground));
