@@ -191,7 +191,15 @@ void read_lengths(Members& members, JointDef& def) {
     if (const auto anchor = members.find_value("anchor_b")) def.anchor_b = anchor->place();
     members.read("length", def.length, Range::at_least(0));
   }
-  if (def.kind != distance) return refuse_all(members, {"min_length", "max_length"}, "only distance joints have this");
+  if (def.kind != distance) {
+    return refuse_all(members, {"min_length", "max_length", "frequency", "damping_ratio"}, "only distance joints have this");
+  }
+  members.read("frequency", def.frequency, Range::between(1.0e-6, kMostSurface));
+  if (!def.frequency) members.refuse("damping_ratio", "it goes with a frequency");
+  members.read("damping_ratio", def.damping_ratio, Range::between(0, kMostSurface));
+  if (def.frequency && (def.stiffness || def.damping)) {
+    members.need("frequency").fail("found beside stiffness or damping, of which it takes the place");
+  }
   members.read("min_length", def.min_length, Range::at_least(0));
   members.read("max_length", def.max_length, Range::at_least(0));
   if (def.min_length && def.max_length && *def.min_length > *def.max_length) {

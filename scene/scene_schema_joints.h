@@ -114,6 +114,8 @@ constexpr char kSchemaOfJoints[] = R"json(    "motor": {
         "max_length": { "$ref": "#/$defs/not_negative_or_null" },
         "stiffness": { "$ref": "#/$defs/not_negative_or_null", "description": "distance: N/m; hinge, slider, wheel (suspension) and the like: N/m or N m/rad" },
         "damping": { "$ref": "#/$defs/not_negative_or_null", "description": "N s/m or N m s/rad" },
+        "frequency": { "type": ["number", "null"], "minimum": 1e-6, "maximum": 1e6, "description": "distance, instead of stiffness and damping: Hz, of the two bodies alone" },
+        "damping_ratio": { "$ref": "#/$defs/factor", "default": 0 },
         "break_force": { "$ref": "#/$defs/positive_or_null", "description": "N" },
         "break_torque": { "$ref": "#/$defs/positive_or_null", "description": "N m" },
         "collide_connected": { "type": "boolean", "default": false }

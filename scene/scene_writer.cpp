@@ -377,6 +377,8 @@ void write_joint(JsonWriter& json, const Scene& scene, const SceneJoint& joint) 
   if_given(json, "max_length", def.max_length);
   if_given(json, "stiffness", def.stiffness);
   if_given(json, "damping", def.damping);
+  if_given(json, "frequency", def.frequency);
+  unless_default(json, "damping_ratio", def.damping_ratio, 0.0f);
   if_given(json, "break_force", def.break_force);
   if_given(json, "break_torque", def.break_torque);
   unless_default(json, "collide_connected", def.collide_connected, false);

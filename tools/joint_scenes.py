@@ -298,4 +298,100 @@ def motor():
     return scene("plates that motors hold", (0, 3, 9), (0, 1.8, 0), bodies, joints)
 
 
-ALL = (chain, bridge, linkage, loop, cone, universal, spring, six_dof, gear, rack_and_pinion, pulley, wheel, path, mouse, motor)
+def hinge_scene():
+    """Doors: free with friction, between hard and soft stops, on a spring, driven to a place and at a speed, and one that breaks off."""
+    cases = (("with friction", {"friction": 8}), ("between stops", {"limits": [-0.6, 1.2]}),
+             ("between soft stops", {"limits": [-0.6, 0.6], "limit_frequency": 3, "limit_damping_ratio": 0.1}),
+             ("on a spring", {"stiffness": 20, "damping": 0.8}),
+             ("driven to a place", {"motor": {"target_position": 1, "frequency": 0.8, "damping_ratio": 0.4, "max_force": 300}}),
+             ("driven at a speed", {"motor": {"target_velocity": 2, "max_force": 100}}),
+             ("that breaks off", {"limits": [-0.5, 0.5], "break_torque": 60}))
+    bodies, joints = [ground()], []
+    for i, (name, what) in enumerate(cases):
+        x = (i - 3) * 2
+        bodies.append(post(f"post {i + 1}", (x - 0.75, 1, 0), bar(0.06, 1, 0.06)))
+        bodies.append(part(f"door {name}", (x - 0.05, 1, 0), bar(0.6, 0.8, 0.03, density=300), color=(WOOD, CLAY)[i % 2],
+                           angular_velocity=[0, 3, 0], linear_velocity=[0, 0, -2.1]))
+        joints.append(joint("hinge", f"post {i + 1}", f"door {name}", anchor=[x - 0.75, 1, 0], axis=[0, 1, 0], **what))
+    return scene("doors", (0, 5.5, 13), (0, 0.8, 0), bodies, joints)
+
+
+def slider():
+    """Sledges on rails: free with friction, between hard and soft stops, on a spring, driven to a place and at a speed, and a lift."""
+    cases = (("with friction", {"friction": 60}), ("between stops", {"limits": [-1, 1.5]}),
+             ("between soft stops", {"limits": [-1, 1], "limit_frequency": 2, "limit_damping_ratio": 0.1}),
+             ("on a spring", {"stiffness": 600, "damping": 12}),
+             ("driven to a place", {"motor": {"target_position": 1.5, "frequency": 0.7, "damping_ratio": 0.5, "max_force": 2000}}),
+             ("driven at a speed", {"limits": [-3, 3], "motor": {"target_velocity": 1, "max_force": 400}}))
+    bodies, joints = [ground()], []
+    for i, (name, what) in enumerate(cases):
+        z = (i - 2.5) * 1.2
+        bodies.append(post(f"rail {i + 1}", (0, 0.2, z), bar(4, 0.05, 0.05)))
+        bodies.append(part(f"sledge {name}", (0, 0.5, z), bar(0.4, 0.2, 0.3, density=200), color=(WOOD, CLAY)[i % 2], linear_velocity=[3, 0, 0]))
+        joints.append(joint("slider", f"rail {i + 1}", f"sledge {name}", axis=[1, 0, 0], **what))
+    bodies.append(part("lift", (5.5, 0.6, 0), bar(0.7, 0.08, 0.7, density=300), color=STEEL))
+    joints.append(joint("slider", "world", "lift", axis=[0, 1, 0], limits=[0, 2.5], motor={"target_velocity": 0.6, "max_force": 6000}))
+    bodies.append(part("load", (5.5, 0.95, 0), bar(0.25, 0.25, 0.25), color=DARK, filter={"layer": 1}))
+    bodies[-2]["filter"] = {"layer": 1}
+    return scene("sledges on rails, and a lift", (1, 6, 11), (1, 0.4, 0), bodies, joints)
+
+
+def fixed():
+    """Beams of ten welded boxes out of a wall: one holds, one breaks under its weight; and a column under a hundred times its boxes."""
+    bodies, joints = [ground(), post("wall", (-5.2, 2, 0), bar(0.2, 2, 2))], []
+    for name, z, strength in (("strong", -0.8, None), ("weak", 0.8, 120)):
+        for i in range(10):
+            bodies.append(part(f"{name} {i + 1}", (-4.8 + 0.4 * i, 3, z), bar(0.2, 0.15, 0.15, density=300), color=WOOD if strength is None else CLAY))
+            joints.append(joint("fixed", f"{name} {i}" if i else "wall", f"{name} {i + 1}", anchor=[-5 + 0.4 * i, 3, z],
+                                **({} if strength is None else {"break_torque": strength})))
+    for i in range(8):
+        bodies.append(part(f"column {i + 1}", (3, 0.25 + 0.5 * i, 0), bar(0.25, 0.25, 0.25, density=8), color=STEEL))
+        joints.append(joint("fixed", f"column {i}" if i else "ground", f"column {i + 1}", anchor=[3, 0.5 * i, 0]))
+    bodies.append(part("load", (3.1, 4.5, 0), bar(0.5, 0.5, 0.5, density=100), color=DARK))
+    joints.append(joint("fixed", "column 8", "load", anchor=[3, 4, 0]))
+    return scene("welded beams and a column", (0, 3, 12), (-0.5, 2, 0), bodies, joints)
+
+
+def distance():
+    """Weights on a rod, a rope, a rope with a least length, springs by stiffness and by frequency, and a rope that breaks."""
+    cases = (("rod", {}), ("rope", {"max_length": 2.2}), ("between two lengths", {"min_length": 1, "max_length": 2.2}),
+             ("spring by stiffness", {"length": 1.2, "stiffness": 60, "damping": 1}),
+             ("spring by frequency", {"length": 1.2, "frequency": 1.5, "damping_ratio": 0.05}),
+             ("rope that breaks", {"max_length": 2.2, "break_force": 60}))
+    bodies, joints = [ground(), post("beam", (0, 5, 0), bar(6, 0.1, 0.3))], []
+    for i, (name, what) in enumerate(cases):
+        x = (i - 2.5) * 2
+        bodies.append(part(f"on a {name}", (x + 1.2, 3.8, 0), ball(0.2), mass=4, color=(WOOD, CLAY)[i % 2], angular_damping=2))
+        joints.append(joint("distance", "beam", f"on a {name}", name=name, anchor=[x, 4.9, 0], anchor_b=[x + 1.2, 3.8, 0], **what))
+    return scene("rods, ropes and springs", (0, 3, 12), (0, 3, 0), bodies, joints)
+
+
+def ball_scene():
+    """A mobile: bars in balance on ball joints; and a pair of balls whose friction brakes them."""
+    bodies, joints = [ground(), post("beam", (0, 5, 0), bar(3, 0.1, 0.3))], []
+    weights = iter(range(1, 5))
+
+    def hang(x, y, reach, level, above):
+        name = f"bar {level} {x:g}"
+        bodies.append(part(name, (x, y, 0), bar(reach, 0.04, 0.04, density=300), color=STEEL, angular_velocity=[0, 0.5 * level, 0.1]))
+        joints.append(joint("ball", above, name, anchor=[x, y + 0.4, 0]))
+        for side in (-1, 1):
+            if level == 1:
+                hang(x + side * reach, y - 0.9, reach / 2, 2, name)
+            else:
+                weight = f"weight {next(weights)}"
+                bodies.append(part(weight, (x + side * reach, y - 0.6, 0), ball(0.2), color=(WOOD, CLAY)[side > 0]))
+                joints.append(joint("ball", name, weight, anchor=[x + side * reach, y, 0]))
+
+    hang(0, 4.3, 1.6, 1, "beam")
+    for i, friction in enumerate((0, 8)):
+        x = 2.2 + 1.6 * i
+        bodies.append(post(f"stand {i + 1}", (x, 0.5, 1.5), bar(0.06, 0.5, 0.06)))
+        bodies.append(part(f"club {i + 1}", (x + 0.5, 1, 1.5), bar(0.5, 0.07, 0.07, density=300), color=DARK))
+        joints.append(joint("ball", f"stand {i + 1}", f"club {i + 1}", anchor=[x, 1, 1.5], friction=friction))
+    return scene("a mobile, and clubs with and without friction", (1, 3, 9), (0.6, 2.6, 0), bodies, joints)
+
+
+hinge_scene.__name__, ball_scene.__name__ = "hinge", "ball"
+
+ALL = (ball_scene, hinge_scene, slider, fixed, distance, chain, bridge, linkage, loop, cone, universal, spring, six_dof, gear, rack_and_pinion, pulley, wheel, path, mouse, motor)

@@ -238,13 +238,17 @@ struct JointDef {
                                          // Zero is the pose when added
   Motor motor{};                         // as limits, but wheel: spin
   // Distance: with none of these a rod of the present length. min and max make a rope (a gap within which nothing acts);
-  // stiffness makes a Hooke spring of rest length `length`. Hinge, slider, wheel (suspension): a spring to the pose when added,
-  // N/m or N m/rad.
+  // stiffness, damping or frequency make a Hooke spring of rest length `length`. Hinge, slider, wheel (suspension): a spring to the
+  // pose when added, N/m or N m/rad.
   std::optional<float> length{};         // m; pulley: of the rope, of which ratio times b's part counts; none = as it is
   std::optional<float> min_length{};     // m
   std::optional<float> max_length{};     // m
   std::optional<float> stiffness{};      // N/m
   std::optional<float> damping{};        // N s/m
+  // Distance, instead of stiffness and damping: those that let the two bodies alone, as heavy as they are when the joint is added,
+  // swing along the line at this many Hz, and this share of critical damping.
+  std::optional<float> frequency{};
+  float damping_ratio = 0.0f;
   std::optional<float> break_force{};    // N: the joint breaks above it
   std::optional<float> break_torque{};   // N m
   bool collide_connected = false;      // whether the two bodies still collide with each other

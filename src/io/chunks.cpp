@@ -2,6 +2,7 @@
 #include "io/chunks.h"
 
 #include "base/hash.h"
+#include "io/command_codec.h"
 #include "io/snapshot.h"
 
 #include <cstring>
@@ -26,11 +27,13 @@ std::uint64_t checksum_of(const std::byte* chunk, std::size_t payload_bytes) {
 
 }  // namespace
 
+std::uint64_t recording_layout() { return mix_bits(state_layout() + kCommandLayout); }
+
 void write_recording_header(ByteWriter& out) {
   out.put_bytes(std::as_bytes(std::span<const char>(kMagic, sizeof kMagic - 1)));
   out.put(kRecordingVersion);
   out.put(std::uint32_t(0));
-  out.put(state_layout());
+  out.put(recording_layout());
 }
 
 void write_chunk(ByteWriter& out, ChunkKind kind, std::uint32_t number, std::span<const std::byte> payload) {

@@ -18,6 +18,9 @@ namespace gyre {
 
 constexpr std::uint32_t kRecordingVersion = 1;
 
+// Of state and commands together: only builds with the same one play each other's recordings.
+std::uint64_t recording_layout();
+
 enum class ChunkKind : std::uint32_t {
   snapshot = 1,
   geometry = 2,   // one cooked geometry

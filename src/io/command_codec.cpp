@@ -209,11 +209,11 @@ constexpr bool says_more(JointKind kind) { return kind > JointKind::distance; }
 template <class C, Is<JointDef> T>
 void fields(C& c, T& v) {
   auto& [kind, a, b, anchor, axis, anchor_b, limits, motor, length, min_length, max_length, stiffness,
-         damping, break_force, break_torque, collide_connected, axis_b, friction, limit_frequency, limit_damping,
+         damping, frequency, damping_ratio, break_force, break_torque, collide_connected, axis_b, friction, limit_frequency, limit_damping,
          swing_y, swing_z, ratio, ground_a, ground_b, linear_x, linear_y, linear_z, angular_x, angular_y, angular_z,
          drive, path, path_closed, path_orientation] = v;
   all(c, kind, a, b, anchor, axis, anchor_b, limits, motor, length, min_length, max_length, stiffness,
-      damping, break_force, break_torque, collide_connected);
+      damping, frequency, damping_ratio, break_force, break_torque, collide_connected);
   all(c, friction, limit_frequency, limit_damping);
   if (!says_more(kind)) return;
   all(c, axis_b, swing_y, swing_z, ratio, ground_a, ground_b, linear_x, linear_y, linear_z, angular_x, angular_y,

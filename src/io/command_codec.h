@@ -8,6 +8,9 @@
 
 namespace gyre {
 
+// Counts the changes of what commands look like as bytes.
+constexpr std::uint64_t kCommandLayout = 1;
+
 void write_command(ByteWriter& out, const Command& command);
 
 // The next command, its ids those of the world with this number. Fails the reader if there is none.

@@ -99,7 +99,7 @@ Result<Recording> open_recording(std::vector<std::byte> bytes) {
   ChunkReader reader(recording.bytes);
   const Error e = reader.read_header();
   if (e.code != ErrorCode::none) return e;
-  if (reader.layout() != state_layout()) {
+  if (reader.layout() != recording_layout()) {
     return make_error(
         ErrorCode::unsupported,
         "recording: it was made by a version whose worlds have another state, so it cannot be played; its "

@@ -26,7 +26,7 @@ Error read_snapshot(std::span<const std::byte> bytes, std::uint16_t world_number
 // All cooked geometry that a world's shapes use.
 void collect_geometry(const WorldState& state, GeometryTable& geometry);
 
-// Hash of the names and layouts of all columns: two builds with the same one read each other's snapshots.
+// Hash of the names and layouts of all columns: two builds with the same one hold the same state.
 std::uint64_t state_layout();
 
 // Makes the checksum of a snapshot that was changed right again. For tests that damage what lies behind it.

@@ -146,7 +146,10 @@ Error check_distance(const JointDef& d) {
   if (e.code == ErrorCode::none) e = check_optional("joint.max_length", d.max_length, 0.0f);
   if (e.code == ErrorCode::none) e = check_optional("joint.stiffness", d.stiffness, 0.0f);
   if (e.code == ErrorCode::none) e = check_optional("joint.damping", d.damping, 0.0f);
+  if (e.code == ErrorCode::none && d.frequency) e = check_range("joint.frequency", *d.frequency, 1.0e-6f, 1.0e6f);
+  if (e.code == ErrorCode::none) e = check_range("joint.damping_ratio", d.damping_ratio, 0.0f, 1.0e6f);
   if (e.code != ErrorCode::none) return e;
+  if (d.frequency && (d.stiffness || d.damping)) return refuse("joint.frequency is instead of joint.stiffness and joint.damping; give one");
   if (d.min_length && d.max_length && *d.min_length > *d.max_length) {
     return refuse("joint.min_length is %g, above joint.max_length %g", double(*d.min_length), double(*d.max_length));
   }
@@ -280,6 +283,8 @@ Error check(const WorldState& s, const AddJoint& c) {
   if (e.code == ErrorCode::none) e = check_optional("joint.break_force", d.break_force, 0.0f);
   if (e.code == ErrorCode::none) e = check_optional("joint.break_torque", d.break_torque, 0.0f);
   if (e.code == ErrorCode::none && d.kind == JointKind::distance) e = check_distance(d);
+  if (e.code == ErrorCode::none && d.kind != JointKind::distance && d.frequency)
+    e = refuse("joint.frequency: only distance joints have it; motors have their own");
   return e;
 }
 Error check(const WorldState& s, const RemoveJoint& c) { return check_joint_id(s, c.joint, "remove_joint"); }

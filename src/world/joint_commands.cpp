@@ -125,13 +125,38 @@ JointFrames make_frames(const JointDef& def) {
 
 // ---------------------------------------------------------------------------------------------------- what acts on it
 
+// What the two bodies move along a line through their anchors, kg; 0 if nothing can move.
+double mass_along(const RigidWorld& w, const JointRecord& joint, DVec3 anchor_a, DVec3 anchor_b) {
+  const Vec3 way = normalized(difference(anchor_b, anchor_a), {0, 1, 0});
+  double inverse = 0.0;
+  const auto add = [&](std::int32_t body, DVec3 anchor) {
+    if (body == kNoBody) return;
+    const std::size_t i = std::size_t(body);
+    const BodyPlace& place = w.bodies.places[i];
+    const BodyInertia at = world_inertia(w.bodies.masses[i], w.bodies.flags[i], place.orientation);
+    const Vec3 arm = cross(difference(anchor, place.center), way);
+    inverse += double(at.inverse_mass) + double(dot(arm, at.inverse * arm));
+  };
+  add(joint.body_a, anchor_a);
+  add(joint.body_b, anchor_b);
+  return inverse > 0.0 ? 1.0 / inverse : 0.0;
+}
+
+// A spring that is told by its frequency, as one of stiffness and damping.
+void set_frequency(JointRecord& joint, const JointDef& def, double mass) {
+  const double omega = 2.0 * kPiDouble * double(*def.frequency);
+  joint.is_spring = true;
+  joint.stiffness = float(omega * omega * mass);
+  joint.damping = float(2.0 * double(def.damping_ratio) * omega * mass);
+}
+
 void set_distance(JointRecord& joint, const JointDef& def, float present) {
   const float length = def.length ? *def.length : present;
   joint.rest_length = length;
   joint.is_spring = def.stiffness.has_value() || def.damping.has_value();
   joint.stiffness = def.stiffness ? *def.stiffness : 0.0f;
   joint.damping = def.damping ? *def.damping : 0.0f;
-  const bool free = joint.is_spring || def.min_length || def.max_length;
+  const bool free = joint.is_spring || def.frequency || def.min_length || def.max_length;
   joint.min_length = def.min_length ? *def.min_length : (free ? 0.0f : length);
   joint.max_length = def.max_length ? *def.max_length : (free ? kUnlimitedLength : length);
   joint.position = present;
@@ -368,7 +393,10 @@ JointId add_joint(RigidWorld& w, const JointDef& def) {
   set_motor_of(joint, def.motor);
   joint.break_force = def.break_force ? *def.break_force : 0.0f;
   joint.break_torque = def.break_torque ? *def.break_torque : 0.0f;
-  if (def.kind == JointKind::distance) set_distance(joint, def, length(difference(anchor_b, def.anchor)));
+  if (def.kind == JointKind::distance) {
+    set_distance(joint, def, length(difference(anchor_b, def.anchor)));
+    if (def.frequency) set_frequency(joint, def, mass_along(w, joint, def.anchor, anchor_b));
+  }
   w.joints.records[slot] = joint;
   if (needs_detail(def)) fill_detail(w, joint, make_detail(w.joints, slot), def, a, b, frames);
   stir_ends(w, joint);

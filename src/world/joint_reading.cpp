@@ -2,6 +2,7 @@
 
 #include "solver/joint_kinds.h"
 #include "solver/path.h"
+#include "world/joint_commands.h"
 
 namespace gyre {
 
@@ -79,16 +80,11 @@ float turn_speed(const JointRecord& joint, const JointState& s, int axis) {
   }
 }
 
-// The axes that a kind has a place on: a bit each.
+// The axes that a kind has a place on: a bit each. Those that something may act on, if there are any.
 std::uint32_t readable_axes(JointKind kind) {
   const auto bit = [](JointAxis axis) { return 1u << int(axis); };
+  if (const std::uint32_t open = open_axes(kind)) return open;
   switch (kind) {
-    case JointKind::six_dof:
-      return (1u << kJointAxisCount) - 1;
-    case JointKind::universal:
-      return bit(JointAxis::angular_x) | bit(JointAxis::angular_z);
-    case JointKind::wheel:
-      return bit(JointAxis::linear_x) | bit(JointAxis::angular_x) | bit(JointAxis::angular_z);
     case JointKind::gear:
       return bit(JointAxis::angular_x) | bit(JointAxis::angular_y);
     case JointKind::ball:

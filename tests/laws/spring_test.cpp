@@ -61,6 +61,49 @@ TEST(Spring, DampedResponse) {
   }
 }
 
+// By frequency and damping: between two bodies, with the anchor of one off its centre, so that turning takes part.
+TEST(Spring, IsToldByItsFrequency) {
+  const double ratios[] = {0.0, 0.1, 0.5};
+  for (const double ratio : ratios) {
+    World world = make_world({.gravity = {0, 0, 0}, .sleeping = false});
+    const BodyId a = world.add_body(point_body(2.0, {0.3f, 0.3f, 0.3f}, {0, 0, 0}));
+    const BodyId b = world.add_body(point_body(3.0, {0.5f, 0.5f, 0.5f}, {2.01, 0, 0}));
+    const JointId spring = world.add_joint({.kind = JointKind::distance,
+                                            .a = a,
+                                            .b = b,
+                                            .anchor = {0, 0.2, 0},
+                                            .anchor_b = DVec3{2.01, 0.2, 0},
+                                            .length = 2.0f,
+                                            .frequency = 2.0f,
+                                            .damping_ratio = float(ratio)});
+    ASSERT_TRUE(spring);
+    // Small swings: the line keeps its direction, and the effective mass its value.
+    const double damped = std::sqrt(1.0 - ratio * ratio);
+    ZeroCrossings through;
+    double peak = 0.0;
+    for (int i = 0; i < 240; ++i) {
+      const double x = double(world.joint_reading(spring).position) - 2.0;
+      if (i > 0) through.add(double(i) * double(kStep), x);
+      if (i > 20 && i < 45) peak = std::max(peak, x);
+      world.step(kStep);
+    }
+    if (ratio < 0.3) {
+      EXPECT_TRUE(relative_row("period by frequency (s)", through.mean_period(), 0.5 / damped, 1e-2, 1e-3));
+    }
+    const double expected = std::exp(-2.0 * kPiDouble * ratio / damped);
+    EXPECT_TRUE(row("ratio of peaks by damping ratio", peak / 0.01, expected, 2e-2, 2e-3));
+  }
+}
+
+TEST(Spring, RefusesAFrequencyBesideAStiffness) {
+  World world = weightless();
+  const BodyId body = world.add_body(point_body(1.0, {1, 1, 1}, {2, 0, 0}));
+  EXPECT_FALSE(world.add_joint({.kind = JointKind::distance, .b = body, .stiffness = 1.0f, .frequency = 2.0f}));
+  EXPECT_FALSE(world.add_joint({.kind = JointKind::distance, .b = body, .frequency = -1.0f}));
+  EXPECT_FALSE(world.add_joint({.kind = JointKind::hinge, .b = body, .frequency = 2.0f}));
+  EXPECT_FALSE(world.problems().empty());
+}
+
 TEST(Spring, StifferThanTheStepGainsNoEnergy) {
   Oscillator o = pulled(2400.0 * 2400.0, 0.0, 0.01f);
   const double start = o.world.energy().elastic;
