@@ -127,6 +127,7 @@ struct JointTable {
   std::vector<std::uint8_t> has_limits;  // 1 a joint; distance: 1 for a rope, 0 for a rod or spring
   std::vector<float> limits;     // 2 a joint: low and high, rad (hinge) or m; 0 without limits, 1e30: no end
   std::vector<float> positions;  // 1 a joint: angle (rad), slide or length (m)
+  std::vector<float> motors;     // 2 a joint, of its main axis: speed (or way to the target, rad or m), and greatest force; 0: none
   std::vector<float> forces;     // 3 a joint: on b, mean over the last step, N
   std::vector<float> torques;    // 3 a joint: on b, N m
 

@@ -232,13 +232,20 @@ void Drawing::velocities() {
   }
 }
 
-// Where the joint may go, and where it is: an arc about a hinge's axis, a stretch along a slider's.
+// What turns about x of its frame, and what slides along it, as far as limits and motors of the main axis go.
+bool turns_about_x(JointKind kind) {
+  return kind == JointKind::hinge || kind == JointKind::cone || kind == JointKind::universal;
+}
+bool slides_along_x(JointKind kind) { return kind == JointKind::slider || kind == JointKind::wheel; }
+
+// Where the joint may go, where it is, and where its motor drives it: an arc about a hinge's axis, a stretch along a slider's.
 void Drawing::joint_limits(const JointTable& joints, std::size_t i, float size) {
   const Vec3 anchor = vector_at(joints.anchors, 2 * i);
   const Mat3 frame = to_matrix(quaternion_at(joints.frames, 2 * i));
   const float low = joints.limits[2 * i], high = joints.limits[2 * i + 1], now = joints.positions[i];
   const bool limited = joints.has_limits[i] != 0;
-  if (joints.kinds[i] == JointKind::hinge) {
+  const float drive = joints.motors[2 * i + 1] > 0.0f ? clamp(joints.motors[2 * i], -1.0f, 1.0f) : 0.0f;
+  if (turns_about_x(joints.kinds[i])) {
     const auto at = [&](float angle) {
       const SinCos turn = sin_cos(angle);
       return anchor + size * (turn.cos * frame.y + turn.sin * frame.z);
@@ -249,9 +256,13 @@ void Drawing::joint_limits(const JointTable& joints, std::size_t i, float size) 
       paint_.line(anchor, at(high), kYellow);
     }
     paint_.line(anchor, at(now), kWhite);
+    if (drive != 0.0f) paint_.arc(anchor, 0.8f * size * frame.y, 0.8f * size * frame.z, now, now + drive, kOrange);
   }
-  if (joints.kinds[i] == JointKind::slider && limited) {
-    paint_.line(anchor + low * frame.x, anchor + high * frame.x, kYellow);
+  if (slides_along_x(joints.kinds[i])) {
+    if (limited) paint_.line(anchor + low * frame.x, anchor + high * frame.x, kYellow);
+    // A wheel's motor spins it.
+    if (drive != 0.0f && joints.kinds[i] == JointKind::slider)
+      paint_.line(anchor + now * frame.x, anchor + (now + drive * size) * frame.x, kOrange);
   }
 }
 

@@ -51,6 +51,11 @@ void add_joint(const RigidWorld& w, std::uint32_t slot, DVec3 origin, JointTable
   out.limits.push_back(!limited ? 0.0f : by_length ? joint.min_length : joint.limits.low);
   out.limits.push_back(!limited ? 0.0f : by_length ? joint.max_length : joint.limits.high);
   out.positions.push_back(joint.position);
+  const bool driven = joint.motor_force > 0.0f;
+  out.motors.push_back(!driven                  ? 0.0f
+                       : joint.has_motor_target ? joint.motor_position - joint.position
+                                                : joint.motor_velocity);
+  out.motors.push_back(driven ? joint.motor_force : 0.0f);
   append(out.forces, inverse_step_length(w) * joint.total_linear);
   append(out.torques, inverse_step_length(w) * joint.total_angular);
 }
@@ -61,7 +66,7 @@ void read_joints(const World& world, DVec3 origin, JointTable& out) {
   const FloatMode mode;
   const RigidWorld& w = world.state().rigid;
   clear_all(out.ids, out.kinds, out.bodies, out.anchors, out.frames, out.has_limits, out.limits,
-            out.positions, out.forces, out.torques);
+            out.positions, out.motors, out.forces, out.torques);
   w.joints.ids.for_each_live([&](std::uint32_t slot) { add_joint(w, slot, origin, out); });
 }
 

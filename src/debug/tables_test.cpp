@@ -364,6 +364,7 @@ TEST(JointTable, TellsFramesLimitsAndLoads) {
   const double length_now = length(place(table.anchors, 1, origin) - place(table.anchors, 0, origin));
   EXPECT_NEAR(length_now, 2.0, 1e-3);
   EXPECT_NEAR(table.positions[0], length_now, 1e-4);
+  ASSERT_EQ(table.motors.size(), 2 * table.size());
   EXPECT_EQ(table.has_limits[0], 1);
   EXPECT_EQ(table.limits[1], 2.0f);
   // The rope bears the lamp: 8 kg.
@@ -378,6 +379,14 @@ TEST(JointTable, TellsFramesLimitsAndLoads) {
   }
   // The hinge carries the door: 80 kg.
   EXPECT_NEAR(table.forces[4], 80 * kGravity, 0.01 * 80 * kGravity);
+  EXPECT_EQ(table.motors[3], 0.0f) << "nothing drives it";
+  world.set_motor(hinge, {.target_velocity = 0.5f, .max_force = 3.0f});
+  read_joints(world, origin, table);
+  EXPECT_EQ(table.motors[2], 0.5f);
+  EXPECT_EQ(table.motors[3], 3.0f);
+  world.set_motor(hinge, {.target_position = 0.25f, .max_force = 3.0f});
+  read_joints(world, origin, table);
+  EXPECT_EQ(table.motors[2], 0.25f - table.positions[1]) << "the way that is left";
 }
 
 TEST(Tables, OfAnEmptyWorldAreEmpty) {

@@ -21,17 +21,31 @@ struct Car {
 };
 constexpr double kMass = 1500, kFront = 1.2, kRear = 1.4, kTrack = 1.5, kRadius = 0.33;
 
+// What wheels are put to: its mass, principal moments, and a box whose middle is `up` above its origin.
+struct Hull {
+  DVec3 place;
+  float mass;
+  Vec3 moments;
+  Vec3 half;
+  float up;
+  Vec3 center{};
+};
+BodyId add_hull(World& world, const Hull& hull) {
+  BodyDef body;
+  body.pose.position = hull.place;
+  body.mass = hull.mass;
+  body.center_of_mass = hull.center;
+  body.inertia = Sym3{hull.moments.x, hull.moments.y, hull.moments.z, 0, 0, 0};
+  ShapeDef shape;
+  shape.geometry = Box{hull.half};
+  shape.local.position = {0, hull.up, 0};
+  return world.add_body(body, shape);
+}
+
 Car make_car(World& world, DVec3 place = {0, 0.6, 0}) {
   Car car;
-  BodyDef body;
-  body.pose.position = place;
-  body.mass = float(kMass);
-  body.center_of_mass = Vec3{0, -0.1f, 0};
-  body.inertia = Sym3{2500, 2700, 600, 0, 0, 0};
-  ShapeDef shape;
-  shape.geometry = Box{{0.8f, 0.2f, 2.0f}};
-  shape.local.position = {0, 0.25f, 0};
-  car.body = world.add_body(body, shape);
+  car.body =
+      add_hull(world, {place, float(kMass), {2500, 2700, 600}, {0.8f, 0.2f, 2.0f}, 0.25f, {0, -0.1f, 0}});
   for (const bool front : {true, false}) {
     for (const float side : {1.0f, -1.0f}) {
       WheelDef wheel;
@@ -48,6 +62,47 @@ Car make_car(World& world, DVec3 place = {0, 0.6, 0}) {
   return car;
 }
 
+// Eight tonnes on ten road wheels in two tracks.
+Car make_tank(World& world, double height = 0.9) {
+  Car tank{{}, add_hull(world, {{0, height, 0}, 8000, {20000, 25000, 9000}, {1.2f, 0.3f, 2.4f}, 0.3f}), {}};
+  tank.def.tracks = {{{}, 1.0f, 30000}, {{}, -1.0f, 30000}};
+  for (int i = 0; i < 10; ++i) {
+    WheelDef wheel;
+    wheel.mount = {i % 2 == 0 ? 1.2f : -1.2f, -0.2f, 1.8f - 0.9f * float(i / 2)};
+    wheel.stiffness = 60000;
+    wheel.damping = 8000;
+    wheel.drive = 0.1f;
+    wheel.tyre.rolling = 0;
+    tank.def.tracks[std::size_t(i % 2)].wheels.push_back(int(tank.def.wheels.size()));
+    tank.def.wheels.push_back(wheel);
+  }
+  tank.def.engine = {.curve = {{0, 800}}, .redline = 1000, .inertia = 1.0f, .braking = 0};
+  tank.def.gearbox = {
+      .ratios = {3.0f}, .final_ratio = 4.0f, .clutch = 5000, .shift_time = 0, .automatic = false};
+  return tank;
+}
+
+// A motorcycle of 250 kg: two wheels in line.
+Car make_bike(World& world, double height = 0.75) {
+  Car bike{{}, add_hull(world, {{0, height, 0}, 250, {45, 40, 12}, {0.15f, 0.25f, 0.6f}, 0.1f}), {}};
+  for (const bool front : {true, false}) {
+    WheelDef wheel;
+    wheel.mount = {0, -0.35f, front ? 0.7f : -0.7f};
+    wheel.radius = 0.3f;
+    wheel.inertia = 0.5f;
+    wheel.travel = 0.15f;
+    wheel.stiffness = 16000;
+    wheel.damping = 1500;
+    wheel.steer = front ? 1.0f : 0.0f;
+    wheel.drive = front ? 0.0f : 1.0f;
+    wheel.tyre.grip = 1.3f;
+    wheel.tyre.rolling = 0;
+    bike.def.wheels.push_back(wheel);
+  }
+  bike.def.lean.frequency = 2.0f;
+  return bike;
+}
+
 void drive(World& world, Car& car, const VehicleInput& input, double seconds) {
   for (int i = 0; i < int(std::lround(seconds * 60)); ++i) {
     const Error e = drive_vehicle(world, car.def, car.body, car.state, input, kStep);
@@ -61,6 +116,11 @@ World make_road() {
   world.add_body({.type = BodyType::fixed}, {.geometry = Plane{}});
   return world;
 }
+
+struct SinCos {
+  float sin, cos;
+};
+SinCos sin_cos_of(double angle) { return {float(std::sin(angle)), float(std::cos(angle))}; }
 
 double forward_speed(const World& world, const Car& car) {
   return double(dot(world.linear_velocity(car.body), rotate(world.pose(car.body).orientation, {0, 0, 1})));
@@ -104,6 +164,39 @@ TEST(Vehicle, AcceleratesAsItsGearSays) {
   const double moved = kMass + 4 * 1.0 / (r * r) + 0.2 * gear * gear / (r * r);
   EXPECT_TRUE(relative_row("acceleration in gear, m/s^2", (forward_speed(world, car) - before) / 2,
                            200 * gear / r / moved, 2e-2));
+}
+
+// Force over load against slip, along, across and both at once: 2 s / (1 + s^2) of the grip up to the peak, then falling to `slide`.
+TEST(Vehicle, TyresPullAsTheirCurvesSay) {
+  const float speed = 20.0f;
+  double worst = 0.0;
+  for (const double along : {-1.5, -0.5, 0.0, 0.25, 1.0, 4.0}) {     // of the slip at the peak
+    for (const double across : {-3.0, -0.25, 0.0, 0.5, 1.0, 2.0}) {  // of the angle at the peak
+      World world = make_road();
+      Car car = make_car(world);
+      for (WheelDef& wheel : car.def.wheels) {
+        wheel.inertia = 1.0e6f;  // what the tyre does to its wheel must not change the slip
+        wheel.drive = 0.0f;
+        wheel.tyre = {.grip = 0.9f, .slide = 0.7f, .peak_slip = 0.1f, .peak_angle = 0.12f, .rolling = 0};
+      }
+      drive(world, car, {.gear = 0}, 2.0);
+      const SinCos drift = sin_cos_of(0.12 * across);
+      world.set_velocity(car.body, {speed * drift.sin, 0, speed * drift.cos}, {});
+      for (int i = 0; i < 4; ++i)
+        car.state.wheels[i].spin = speed * drift.cos * float(1.0 + 0.1 * along) / float(kRadius);
+      ASSERT_EQ(drive_vehicle(world, car.def, car.body, car.state, {.gear = 0}, kStep).code, ErrorCode::none);
+      const double s = std::hypot(along, across), peak = 2 * s / (1 + s * s);
+      const double share = s <= 1 ? peak : 0.7 + 0.3 * peak;
+      const WheelState& wheel = car.state.wheels[0];
+      const double most = 0.9 * double(wheel.load);
+      const double expected_along = s > 0 ? most * share * along / s : 0.0;
+      const double expected_across = s > 0 ? -most * share * across / s : 0.0;
+      worst = std::max(worst, std::fabs(double(wheel.force.z) - expected_along) / most);
+      worst = std::max(worst, std::fabs(double(wheel.force.x) - expected_across) / most);
+    }
+  }
+  EXPECT_LE(worst, 1e-2);
+  std::printf("[row] tyre curves along and across, worst of 36 points: %.2e of the grip\n", worst);
 }
 
 // All wheels locked: the sliding share of the grip. Just enough brake: near the peak of it.
@@ -231,59 +324,48 @@ TEST(Vehicle, AntiRollBarsHoldItUpright) {
   EXPECT_LT(lean[1], 0.6 * lean[0]);
 }
 
-// Over a field of heights for half a minute: upright and on its wheels, and the same way again from a snapshot.
+// Over a field of heights for half a minute, on four wheels, tracks and two: upright, and the same way again from a snapshot.
 TEST(Vehicle, DrivesOverHeightFieldsTheSameWayAgain) {
-  World world = *World::create({});
-  std::vector<float> heights(101 * 101);
-  for (int i = 0; i < 101 * 101; ++i) {
-    heights[std::size_t(i)] = 0.5f * rotate(from_axis_angle({0, 1, 0}, 0.19f * float(i % 101)), {1, 0, 0}).x *
-                              rotate(from_axis_angle({0, 1, 0}, 0.23f * float(i / 101)), {1, 0, 0}).z;
+  for (const int kind : {0, 1, 2}) {
+    SCOPED_TRACE(kind == 0 ? "car" : kind == 1 ? "tracked" : "motorcycle");
+    World world = *World::create({});
+    std::vector<float> heights(101 * 101);
+    for (int i = 0; i < 101 * 101; ++i) {
+      heights[std::size_t(i)] = 0.5f *
+                                rotate(from_axis_angle({0, 1, 0}, 0.19f * float(i % 101)), {1, 0, 0}).x *
+                                rotate(from_axis_angle({0, 1, 0}, 0.23f * float(i / 101)), {1, 0, 0}).z;
+    }
+    world.add_body({.type = BodyType::fixed}, {.geometry = *cook_height_field({heights, 101, 101, 2.0f})});
+    Car car = kind == 0   ? make_car(world, {0, 1.5, 0})
+              : kind == 1 ? make_tank(world, 2.0)
+                          : make_bike(world, 1.5);
+    // A track steers by what it adds; a motorcycle goes by a fifth of the torque.
+    const VehicleInput input{.throttle = kind == 2 ? 0.08f : 0.35f,
+                             .steer = kind == 0   ? 0.4f
+                                      : kind == 1 ? 0.15f
+                                                  : 0.3f};
+    const auto go = [&](int from, int to) {
+      for (int i = from; i < to; ++i) drive(world, car, input, 1.0 / 60);
+    };
+    go(0, 900);
+    const auto moment = save_snapshot(world);
+    const VehicleState then = car.state;
+    go(900, 1800);
+    EXPECT_GT(rotate(world.pose(car.body).orientation, {0, 1, 0}).y, 0.7f);
+    EXPECT_GT(forward_speed(world, car), 1.0);
+    EXPECT_LT(length(world.pose(car.body).position), 90.0);
+    const std::uint64_t hash = world.hash();
+    ASSERT_EQ(restore_snapshot(world, moment).code, ErrorCode::none);
+    car.state = then;
+    go(900, 1800);
+    EXPECT_EQ(world.hash(), hash);
   }
-  world.add_body({.type = BodyType::fixed}, {.geometry = *cook_height_field({heights, 101, 101, 2.0f})});
-  Car car = make_car(world, {0, 1.5, 0});
-  const auto go = [&](int from, int to) {
-    for (int i = from; i < to; ++i) drive(world, car, {.throttle = 0.35f, .steer = 0.4f}, 1.0 / 60);
-  };
-  go(0, 900);
-  const auto moment = save_snapshot(world);
-  const VehicleState then = car.state;
-  go(900, 1800);
-  EXPECT_GT(rotate(world.pose(car.body).orientation, {0, 1, 0}).y, 0.7f);
-  EXPECT_GT(forward_speed(world, car), 1.0);
-  EXPECT_LT(length(world.pose(car.body).position), 90.0);
-  const std::uint64_t hash = world.hash();
-  ASSERT_EQ(restore_snapshot(world, moment).code, ErrorCode::none);
-  car.state = then;
-  go(900, 1800);
-  EXPECT_EQ(world.hash(), hash);
 }
 
-// Ten road wheels in two tracks: straight on as its torque says, and round on the spot.
+// Straight on as its torque says, and round on the spot.
 TEST(Vehicle, TracksTurnTogether) {
   World world = make_road();
-  BodyDef body;
-  body.pose.position = {0, 0.9, 0};
-  body.mass = 8000.0f;
-  body.center_of_mass = Vec3{};
-  body.inertia = Sym3{20000, 25000, 9000, 0, 0, 0};
-  ShapeDef hull;
-  hull.geometry = Box{{1.2f, 0.3f, 2.4f}};
-  hull.local.position = {0, 0.3f, 0};
-  Car tank{{}, world.add_body(body, hull), {}};
-  tank.def.tracks = {{{}, 1.0f, 30000}, {{}, -1.0f, 30000}};
-  for (int i = 0; i < 10; ++i) {
-    WheelDef wheel;
-    wheel.mount = {i % 2 == 0 ? 1.2f : -1.2f, -0.2f, 1.8f - 0.9f * float(i / 2)};
-    wheel.stiffness = 60000;
-    wheel.damping = 8000;
-    wheel.drive = 0.1f;
-    wheel.tyre.rolling = 0;
-    tank.def.tracks[std::size_t(i % 2)].wheels.push_back(int(tank.def.wheels.size()));
-    tank.def.wheels.push_back(wheel);
-  }
-  tank.def.engine = {.curve = {{0, 800}}, .redline = 1000, .inertia = 1.0f, .braking = 0};
-  tank.def.gearbox = {
-      .ratios = {3.0f}, .final_ratio = 4.0f, .clutch = 5000, .shift_time = 0, .automatic = false};
+  Car tank = make_tank(world);
   drive(world, tank, {.gear = 1}, 3.0);
   drive(world, tank, {.throttle = 1, .gear = 1}, 1.5);
   const double before = forward_speed(world, tank);
@@ -302,33 +384,10 @@ TEST(Vehicle, TracksTurnTogether) {
   for (int i = 2; i < 10; ++i) EXPECT_EQ(tank.state.wheels[i].spin, tank.state.wheels[i % 2].spin);
 }
 
-// Two wheels in line: it stands, and in a bend leans by atan(v^2 / g R) with hardly any torque left to hold it there.
+// It stands, and in a bend leans by atan(v^2 / g R) with hardly any torque left to hold it there.
 TEST(Vehicle, MotorcyclesLeanIntoBends) {
   World world = make_road();
-  BodyDef body;
-  body.pose.position = {0, 0.75, 0};
-  body.mass = 250.0f;
-  body.center_of_mass = Vec3{};
-  body.inertia = Sym3{45, 40, 12, 0, 0, 0};
-  ShapeDef frame;
-  frame.geometry = Box{{0.15f, 0.25f, 0.6f}};
-  frame.local.position = {0, 0.1f, 0};
-  Car bike{{}, world.add_body(body, frame), {}};
-  for (const bool front : {true, false}) {
-    WheelDef wheel;
-    wheel.mount = {0, -0.35f, front ? 0.7f : -0.7f};
-    wheel.radius = 0.3f;
-    wheel.inertia = 0.5f;
-    wheel.travel = 0.15f;
-    wheel.stiffness = 16000;
-    wheel.damping = 1500;
-    wheel.steer = front ? 1.0f : 0.0f;
-    wheel.drive = front ? 0.0f : 1.0f;
-    wheel.tyre.grip = 1.3f;
-    wheel.tyre.rolling = 0;
-    bike.def.wheels.push_back(wheel);
-  }
-  bike.def.lean.frequency = 2.0f;
+  Car bike = make_bike(world);
   drive(world, bike, {.gear = 0}, 2.0);
   EXPECT_NEAR(double(rotate(world.pose(bike.body).orientation, {0, 1, 0}).y), 1.0, 1e-4) << "it stands";
   world.set_velocity(bike.body, {0, 0, 15}, {});

@@ -13,9 +13,13 @@ const MOMENT = { billiards: 70, bowling: 95, chain: 75, dominoes: 150, newtons_c
 const USUAL = 60;
 
 const asked = process.argv.slice(2);
-const all = readdirSync(join(root, 'scenes')).filter((name) => name.endsWith('.gyre.json')).map((name) => name.replace('.gyre.json', ''));
+const scenesIn = (folder) =>
+  readdirSync(join(root, 'scenes', folder)).filter((name) => name.endsWith('.gyre.json')).map((name) => join(folder, name.replace('.gyre.json', '')));
+const folders = readdirSync(join(root, 'scenes'), { withFileTypes: true }).filter((entry) => entry.isDirectory());
+const all = ['', ...folders.map((entry) => entry.name)].flatMap(scenesIn);
 const out = join(root, 'web/viewer/thumbnails');
 mkdirSync(out, { recursive: true });
+for (const folder of folders) mkdirSync(join(out, folder.name), { recursive: true });
 
 const server = await serve(dist);
 const browser = await launch();

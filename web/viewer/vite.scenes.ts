@@ -1,5 +1,5 @@
-// Puts the scenes of the repository beside the page: scenes/*.gyre.json with their mesh files, thumbnails/*.webp, and a list of
-// them, scenes/index.json. The development server reads them from where they lie, a build copies them.
+// Puts the scenes of the repository beside the page: scenes/*.gyre.json and those one folder deeper (joints, fields ...) with their
+// mesh files, thumbnails/*.webp, and a list of them, scenes/index.json. The development server reads them from where they lie, a build copies them.
 import { existsSync, readdirSync, readFileSync, statSync } from 'node:fs';
 import { basename, join, normalize, resolve } from 'node:path';
 import type { Plugin } from 'vite';
@@ -7,21 +7,45 @@ import type { Plugin } from 'vite';
 const scenes = resolve(import.meta.dirname, '../../scenes');
 const thumbnails = resolve(import.meta.dirname, 'thumbnails');
 
-// The showcase first, the others by name.
+const isScene = (file: string): boolean => file.endsWith('.gyre.json');
+
+const folders = (): string[] =>
+  readdirSync(scenes, { withFileTypes: true })
+    .filter((entry) => entry.isDirectory())
+    .map((entry) => entry.name)
+    .sort();
+
+// The showcase first, the others by name; then those of the folders, as folder/file.
 function sceneFiles(): string[] {
-  const files = readdirSync(scenes).filter((file) => file.endsWith('.gyre.json'));
   const rank = (file: string): string => (file.startsWith('showcase.') ? '' : file);
-  return files.sort((a, b) => (rank(a) < rank(b) ? -1 : 1));
+  const files = readdirSync(scenes).filter(isScene);
+  files.sort((a, b) => (rank(a) < rank(b) ? -1 : 1));
+  const deeper = folders().flatMap((folder) =>
+    readdirSync(join(scenes, folder))
+      .filter(isScene)
+      .sort()
+      .map((file) => `${folder}/${file}`),
+  );
+  return [...files, ...deeper];
 }
+
+// scenes/meshes and the meshes of folders.
+function meshFiles(): string[] {
+  return ['.', ...folders()]
+    .map((folder) => join(folder, 'meshes'))
+    .filter((folder) => existsSync(join(scenes, folder)))
+    .flatMap((folder) => readdirSync(join(scenes, folder)).map((file) => `${folder}/${file}`));
+}
+
+const pictureOf = (file: string): string => file.replace(/\.gyre\.json$/, '.webp');
 
 function list(): string {
   const entries = sceneFiles().map((file) => {
     const scene = JSON.parse(readFileSync(join(scenes, file), 'utf8')) as { name?: string; bodies?: unknown[]; joints?: unknown[] };
-    const stem = basename(file, '.gyre.json');
     return {
-      name: scene.name ?? stem,
+      name: scene.name ?? basename(file, '.gyre.json'),
       file,
-      thumbnail: `${stem}.webp`,
+      thumbnail: existsSync(join(thumbnails, pictureOf(file))) ? pictureOf(file) : null,
       bodies: scene.bodies?.length ?? 0,
       joints: scene.joints?.length ?? 0,
     };
@@ -57,9 +81,9 @@ export function gyreScenes(): Plugin {
       };
       for (const file of sceneFiles()) {
         emit(file);
-        emit(`${basename(file, '.gyre.json')}.webp`);
+        emit(pictureOf(file));
       }
-      for (const mesh of readdirSync(join(scenes, 'meshes'))) emit(`meshes/${mesh}`);
+      for (const mesh of meshFiles()) emit(mesh);
     },
   };
 }

@@ -8,7 +8,12 @@ import { root, viewerTests } from '../setup.mjs';
 const viewer = viewerTests();
 // Stands to the last bit: what rests as a tree is solved exactly.
 const STILL = new Set(['stack.gyre.json']);
-const scenes = readdirSync(join(root, 'scenes')).filter((name) => name.endsWith('.gyre.json'));
+const scenesIn = (folder) =>
+  readdirSync(join(root, 'scenes', folder))
+    .filter((name) => name.endsWith('.gyre.json'))
+    .map((name) => (folder ? `${folder}/${name}` : name));
+const folders = readdirSync(join(root, 'scenes'), { withFileTypes: true }).filter((entry) => entry.isDirectory());
+const scenes = ['', ...folders.map((entry) => entry.name)].flatMap(scenesIn);
 
 test('every scene opens and plays', async (t) => {
   const page = await viewer.open(t, 'scene=stack&quality=low&play=0', { width: 640, height: 400 });
@@ -16,7 +21,7 @@ test('every scene opens and plays', async (t) => {
     await t.test(scene, async () => {
       await page.evaluate(() => document.activeElement?.blur());
       if (!(await page.locator('.drawer').count())) await page.keyboard.press('s');
-      await page.locator(`.scene-card:has(img[src$="${scene.replace('.gyre.json', '.webp')}"])`).click();
+      await page.locator(`.scene-card[data-file="${scene}"]`).click();
       await page.waitForFunction((name) => window.gyre.ready && window.gyre.file === name, scene);
       const before = await page.evaluate(() => (window.gyre.speed = 4) && window.gyre.poses());
       await page.waitForFunction(() => window.gyre.step >= 120, null, { timeout: 60000 });

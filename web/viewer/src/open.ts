@@ -25,6 +25,9 @@ async function open(viewer: Viewer, source: Source, play: boolean): Promise<bool
 
 const wantsToPlay = (): boolean => new URLSearchParams(location.search).get('play') !== '0';
 
+// Folders stay folders.
+const inAddress = (name: string): string => name.split('/').map(encodeURIComponent).join('/');
+
 function remember(search: string): void {
   const query = new URLSearchParams(location.search);
   query.delete('file');
@@ -35,7 +38,7 @@ function remember(search: string): void {
 }
 
 export function openListed(viewer: Viewer, entry: SceneEntry): Promise<boolean> {
-  remember(`scene=${encodeURIComponent(entry.file.replace(/\.gyre\.json$/, ''))}`);
+  remember(`scene=${inAddress(entry.file.replace(/\.gyre\.json$/, ''))}`);
   return open(viewer, { kind: 'url', url: new URL(`./scenes/${entry.file}`, document.baseURI).href, name: entry.file }, true);
 }
 
@@ -73,5 +76,5 @@ export async function openFromAddress(viewer: Viewer): Promise<void> {
     store.scenesOpen.value = true;
     return;
   }
-  await open(viewer, { kind: 'url', url: new URL(`./scenes/${encodeURIComponent(name)}`, document.baseURI).href, name }, wantsToPlay());
+  await open(viewer, { kind: 'url', url: new URL(`./scenes/${inAddress(name)}`, document.baseURI).href, name }, wantsToPlay());
 }

@@ -143,6 +143,10 @@ export interface JointData {
   anchors: Float32Array; // 6 a joint: on a, on b
   frames: Float32Array; // 8 a joint: quaternions of its frame on a and on b, x along the axis
   rigid: Uint8Array; // 1 a joint: whether the anchors ought to coincide
+  ways: Uint8Array; // 1 a joint: how limits and motor are shown: 0 not, 1 about x of the frame on a, 2 along it
+  limits: Float32Array; // 2 a joint: rad or m; NaN without
+  positions: Float32Array; // 1 a joint: rad or m
+  motors: Float32Array; // 1 a joint: where its motor drives it, rad/s, m/s or the way that is left; 0 without
 }
 export interface OverlayData {
   contacts?: ContactData;

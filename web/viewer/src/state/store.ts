@@ -7,8 +7,8 @@ export type Panel = 'inspect' | 'overlays' | 'world' | 'charts';
 
 export interface SceneEntry {
   name: string; // as in the scene file
-  file: string; // under scenes/
-  thumbnail: string; // under scenes/
+  file: string; // under scenes/, one folder deep at most
+  thumbnail: string | null; // under scenes/
   bodies: number;
   joints: number;
 }

@@ -44,13 +44,14 @@ export function SceneDrawer({ viewer }: { viewer: Viewer }): JSX.Element | null 
             key={entry.file}
             type="button"
             class="scene-card"
+            data-file={entry.file}
             aria-current={store.scene.value?.file === entry.file}
             onClick={() => {
               if (innerWidth < 900) close();
               void openListed(viewer, entry);
             }}
           >
-            <img src={`./scenes/${entry.thumbnail}`} alt="" width="320" height="200" loading="lazy" />
+            {entry.thumbnail && <img src={`./scenes/${entry.thumbnail}`} alt="" width="320" height="200" loading="lazy" />}
             <span class="scene-card-name">{entry.name}</span>
             <span class="hint">
               {plural(entry.bodies, 'body', 'bodies')}

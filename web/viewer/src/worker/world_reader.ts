@@ -73,6 +73,12 @@ export function readLinks(world: World, origin: Vec3): Float32Array {
   return Float32Array.from(links);
 }
 
+// Whether the main axis of a kind of joint is shown as a turn about x of its frame (1), as a way along it (2), or not.
+function wayOf(kind: JointKind): number {
+  if (kind === JointKind.hinge || kind === JointKind.cone || kind === JointKind.universal) return 1;
+  return kind === JointKind.slider || kind === JointKind.wheel ? 2 : 0;
+}
+
 const bit = (kind: number): number => 1 << kind;
 
 export function readOverlays(world: World, names: ReadonlySet<OverlayName>, origin: Vec3): OverlayData {
@@ -103,6 +109,13 @@ export function readOverlays(world: World, names: ReadonlySet<OverlayName>, orig
       anchors: table.anchors.slice(),
       frames: table.frames.slice(),
       rigid: Uint8Array.from(table.kinds, (kind) => (kind === JointKind.distance ? 0 : 1)),
+      ways: Uint8Array.from(table.kinds, wayOf),
+      limits: Float32Array.from(table.limits, (limit, i) => (table.hasLimits[i >> 1] ? limit : NaN)),
+      positions: table.positions.slice(),
+      // A wheel's motor spins it; what is shown of a wheel is its suspension.
+      motors: Float32Array.from(table.kinds, (kind, i) =>
+        table.motors[2 * i + 1]! > 0 && kind !== JointKind.wheel ? table.motors[2 * i]! : 0,
+      ),
     };
   }
   return data;
