@@ -1,5 +1,7 @@
 #include "rigid/linkages.h"
 
+#include <algorithm>
+
 namespace gyre {
 
 namespace {
@@ -110,12 +112,13 @@ Groups group_joints(const RigidWorld& w, const SolveBatch& batch, std::span<cons
 class LinkageMaker {
  public:
   LinkageMaker(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
-               const Graph& graph, std::span<const std::uint32_t> local, Arena& arena)
+               const Graph& graph, std::span<const std::uint32_t> local, DenseNets& dense, Arena& arena)
       : w_(w),
         batch_(batch),
         places_(places),
         graph_(graph),
         local_(local),
+        dense_(dense),
         arena_(arena),
         sides_(arena.make<std::uint32_t>(batch.bodies.size())) {
     for (std::uint32_t& side : sides_) side = kNone;
@@ -135,7 +138,11 @@ class LinkageMaker {
       sizes[i] = std::uint8_t(linkage.nodes[i].count);
       rows += sizes[i];
     }
-    if (!plan_blocks(sizes, edges, kMostWorkPerRow * rows, arena_, linkage.plan)) return false;
+    if (dense_.holds(sizes, edges)) return false;
+    if (!plan_blocks(sizes, edges, kMostWorkPerRow * rows, arena_, linkage.plan)) {
+      dense_.add(sizes, edges);
+      return false;
+    }
     for (std::size_t i = 0; i < pairs; ++i) {
       const BlockPlace block = find_block(linkage.plan, edges[i].a, edges[i].b);
       LinkageCoupling& c = couplings[i];
@@ -222,21 +229,40 @@ class LinkageMaker {
   std::span<const std::uint32_t> places_;
   const Graph& graph_;
   std::span<const std::uint32_t> local_;
+  DenseNets& dense_;
   Arena& arena_;
   std::span<std::uint32_t> sides_;  // by body's place: which body of its linkage it is
 };
 
 }  // namespace
 
+bool DenseNets::holds(std::span<const std::uint8_t> sizes, std::span<const BlockEdge> edges) const {
+  for (const Net& net : nets_) {
+    if (net.sizes != sizes.size() || net.edges != edges.size()) continue;
+    const auto same = [](const BlockEdge& a, const BlockEdge& b) { return a.a == b.a && a.b == b.b; };
+    if (std::equal(sizes.begin(), sizes.end(), sizes_.data() + net.first_size) &&
+        std::equal(edges.begin(), edges.end(), edges_.data() + net.first_edge, same))
+      return true;
+  }
+  return false;
+}
+
+void DenseNets::add(std::span<const std::uint8_t> sizes, std::span<const BlockEdge> edges) {
+  if (nets_.size() == kMost) nets_.clear(), sizes_.clear(), edges_.clear();
+  nets_.push_back({sizes_.size(), sizes.size(), edges_.size(), edges.size()});
+  for (const std::uint8_t size : sizes) sizes_.push_back(size);
+  for (const BlockEdge& edge : edges) edges_.push_back(edge);
+}
+
 Linkages find_linkages(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
-                       Arena& arena) {
+                       DenseNets& dense, Arena& arena) {
   const std::span<std::uint8_t> swept = arena.make<std::uint8_t>(batch.joints.size());
   for (std::uint8_t& flag : swept) flag = 1;
   if (batch.joints.empty()) return {{}, swept};
   const Graph graph = make_graph(w, batch, places, arena);
   const Groups groups = group_joints(w, batch, places, graph, arena);
   const std::span<Linkage> linkages = arena.make<Linkage>(groups.ends.size());
-  LinkageMaker maker(w, batch, places, graph, groups.local, arena);
+  LinkageMaker maker(w, batch, places, graph, groups.local, dense, arena);
   std::size_t made = 0;
   for (std::size_t group = 0; group < groups.ends.size(); ++group) {
     const std::uint32_t begin = group == 0 ? 0 : groups.ends[group - 1];

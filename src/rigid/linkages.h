@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/arena.h"
+#include "base/array.h"
 #include "rigid/rigid_world.h"
 #include "rigid/solve_batches.h"
 #include "solver/linkage.h"
@@ -14,8 +15,25 @@ struct Linkages {
   std::span<const std::uint8_t> swept;  // by place in the batch's list of joints: 1 if it is in no linkage
 };
 
+// Nets that were found too dense to be planned, by all that the plan is made of: whoever asks for the same again need not try. Kept
+// from step to step; what is in it never changes a result.
+class DenseNets {
+ public:
+  bool holds(std::span<const std::uint8_t> sizes, std::span<const BlockEdge> edges) const;
+  void add(std::span<const std::uint8_t> sizes, std::span<const BlockEdge> edges);
+
+ private:
+  static constexpr std::size_t kMost = 8;
+  struct Net {
+    std::size_t first_size = 0, sizes = 0, first_edge = 0, edges = 0;
+  };
+  Array<Net> nets_;
+  Array<std::uint8_t> sizes_;  // of all nets, one after the other
+  Array<BlockEdge> edges_;
+};
+
 // Of one batch; `places` are those of all (solve_batches.h).
 Linkages find_linkages(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
-                       Arena& arena);
+                       DenseNets& dense, Arena& arena);
 
 }  // namespace gyre

@@ -307,7 +307,7 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   const ArenaScope scope(arena);
   SolveScratch& scratch = solve.scratch;
   gather_contacts(solve);
-  solve.linkages = find_linkages(solve.w, solve.batch, solve.places, arena);
+  solve.linkages = find_linkages(solve.w, solve.batch, solve.places, scratch.dense_nets, arena);
   gather_joints(solve);
   solve.rolling = find_rolling_contacts(solve.w, scratch, solve.places, solve.batch.bodies.size(),
                                         solve.contact_settings.step, arena);

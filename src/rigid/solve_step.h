@@ -7,6 +7,7 @@
 #pragma once
 
 #include "base/arena.h"
+#include "rigid/linkages.h"
 #include "rigid/rigid_world.h"
 #include "solver/contact_block.h"
 #include "solver/impact.h"
@@ -31,6 +32,7 @@ struct SolveScratch {
   Coloring joint_colors;
   Array<std::uint32_t> swept_joints;  // those of the batch's that are in no linkage: places in its list
   Array<ColoringPair> joint_pairs;    // theirs
+  DenseNets dense_nets;
   Array<std::uint32_t> order;         // constraint indices, W a block
   Array<SlotHit> hits;                // of all batches
   std::size_t manifold_count = 0;     // of all batches

@@ -295,8 +295,11 @@ void place_joint(JointRecord& joint, JointWork& work, const JointPlaces& places,
   work.from_a = rotate(orientation_a, joint.local_anchor_a);
   work.from_b = rotate(orientation_b, joint.local_anchor_b);
   work.error = places.offset + pair.moved() + work.from_b - work.from_a;
-  work.frame_a = orientation_a * joint.local_frame_a;
-  work.frame_b = orientation_b * joint.local_frame_b;
+  const bool is_turned_freely = joint.kind == JointKind::ball || joint.kind == JointKind::distance;
+  if (!is_turned_freely || work.drive != nullptr) {
+    work.frame_a = orientation_a * joint.local_frame_a;
+    work.frame_b = orientation_b * joint.local_frame_b;
+  }
   place_kind(joint, work, pair, places, settings);
 }
 
@@ -320,7 +323,7 @@ void warm_start_joint(const JointRecord& joint, const JointWork& work, const Joi
     warm_rows(*work.rows, *work.detail, pair);
   } else {
     pair.push(joint.linear_impulse, work.from_a, work.from_b);
-    pair.turn(joint.angular_impulse);
+    if (joint.angular_impulse != Vec3{}) pair.turn(joint.angular_impulse);
   }
   warm_axes(work, pair, true);
   pair.store();

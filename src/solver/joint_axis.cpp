@@ -137,11 +137,20 @@ void solve_axis(AxisWork& x, JointPair& pair, const JointSettings& settings, boo
   if (!(x.mass > 0.0f)) return;
   JointAxisRecord& axis = x.axis;
   const float bend = soft ? x.bend : 0.0f;
+  // Most limits are far away and most frictions hold what rests: what changes nothing is not pushed, and the speed not asked for again.
+  float speed_now = 0.0f;
+  bool is_known = false;
   const auto change = [&](float& kept, float by, float sign) {
+    if (by == 0.0f) return;
     push_axis(x.row, sign * by, pair);
     kept += by;
+    is_known = false;
   };
-  const auto speed = [&] { return axis_speed(x.row, pair) + bend; };
+  const auto speed = [&] {
+    if (!is_known) speed_now = axis_speed(x.row, pair) + bend;
+    is_known = true;
+    return speed_now;
+  };
   if (soft && has_spring(axis)) change(axis.spring_impulse, spring_change(x, speed()), 1.0f);
   if (axis.motor_force > 0.0f) change(axis.motor_impulse, motor_change(x, speed(), settings.substep), 1.0f);
   if (axis.friction > 0.0f)

@@ -77,13 +77,17 @@ class JointPair {
   const BodyInertia* inertia_b_ = &kImmovable;
 };
 
+// [r] S [r]: products with the zeros of [r] left out, the others in the order of whole matrices.
+inline Mat3 between_skews(Vec3 r, const Sym3& s) {
+  const Mat3 m = to_matrix(s);
+  return {cross(r, r.z * m.y - r.y * m.z), cross(r, r.x * m.z - r.z * m.x), cross(r, r.y * m.x - r.x * m.y)};
+}
+
 // K of a point: (1/m_a + 1/m_b) - [r_a] I_a^-1 [r_a] - [r_b] I_b^-1 [r_b].
 inline Mat3 point_matrix(const JointPair& pair, Vec3 r_a, Vec3 r_b) {
   const float m = pair.inverse_mass_a() + pair.inverse_mass_b();
-  const Mat3 sa = skew(r_a), sb = skew(r_b);
-  const Mat3 ia = sa * (to_matrix(pair.inverse_inertia_a()) * sa);
-  const Mat3 ib = sb * (to_matrix(pair.inverse_inertia_b()) * sb);
-  return diagonal({m, m, m}) - ia - ib;
+  return diagonal({m, m, m}) - between_skews(r_a, pair.inverse_inertia_a()) -
+         between_skews(r_b, pair.inverse_inertia_b());
 }
 
 // K of a row along `axis` through the anchors.

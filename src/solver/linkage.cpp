@@ -1,6 +1,7 @@
 #include "solver/linkage.h"
 
 #include "math/dense.h"
+#include "math/wide_vec.h"
 #include "solver/joint_blocks.h"
 #include "solver/joint_kinds.h"
 
@@ -15,26 +16,24 @@ constexpr float kMostTurn = 0.15f;
 // h^2 k / I up to which tension is left alone; kick and drift are stable up to 4.
 constexpr float kMostPull = 1.0f;
 
+void add_row(LinkageNode& node, Vec3 push, Vec3 arm_a, Vec3 arm_b) {
+  const int row = node.count++;
+  node.rows.push.set(row, push);
+  node.rows.arm_a.set(row, arm_a);
+  node.rows.arm_b.set(row, arm_b);
+}
 void add_point_row(LinkageNode& node, const JointWork& work, Vec3 direction) {
-  LinkageRow& row = node.rows[node.count++];
-  row.push = direction;
-  row.arm_a = cross(work.from_a, direction);
-  row.arm_b = cross(work.from_b, direction);
+  add_row(node, direction, cross(work.from_a, direction), cross(work.from_b, direction));
 }
-void add_turn_row(LinkageNode& node, Vec3 axis) {
-  LinkageRow& row = node.rows[node.count++];
-  row.push = {};
-  row.arm_a = row.arm_b = axis;
-}
+void add_turn_row(LinkageNode& node, Vec3 axis) { add_row(node, {}, axis, axis); }
 
 void make_rows(LinkageNode& node, const JointRecord& joint, const JointWork& work) {
   constexpr Vec3 kAxes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   node.count = 0;
   if (work.rows != nullptr) {
-    for (; node.count < work.rows->count; ++node.count) {
-      const JointRow& from = work.rows->rows[node.count];
-      LinkageRow& row = node.rows[node.count];
-      row.push = from.push, row.arm_a = from.arm_a, row.arm_b = from.arm_b;
+    for (int i = 0; i < work.rows->count; ++i) {
+      const JointRow& from = work.rows->rows[i];
+      add_row(node, from.push, from.arm_a, from.arm_b);
     }
     return;
   }
@@ -57,23 +56,24 @@ void make_rows(LinkageNode& node, const JointRecord& joint, const JointWork& wor
   }
 }
 
-bool is_turn(const LinkageRow& row) { return row.push == Vec3{}; }
+bool is_turn(const LinkageRows& rows, int i) { return rows.push.at(i) == Vec3{}; }
 
 // The joint's accumulated impulses in terms of its rows, and back.
-float kept_impulse(const JointRecord& joint, const JointWork& work, const LinkageRow& row, int i) {
+float kept_impulse(const JointRecord& joint, const JointWork& work, const LinkageRows& rows, int i) {
   if (work.rows != nullptr) return work.detail->row_impulses[i];
   if (joint.kind == JointKind::distance) return work.axes[0].axis.low_impulse;
-  return is_turn(row) ? dot(joint.angular_impulse, row.arm_a) : dot(joint.linear_impulse, row.push);
+  return is_turn(rows, i) ? dot(joint.angular_impulse, rows.arm_a.at(i))
+                          : dot(joint.linear_impulse, rows.push.at(i));
 }
-void keep_impulse(JointRecord& joint, const JointWork& work, const LinkageRow& row, int i, float impulse) {
+void keep_impulse(JointRecord& joint, const JointWork& work, const LinkageRows& rows, int i, float impulse) {
   if (work.rows != nullptr) {
     work.detail->row_impulses[i] += impulse;
   } else if (joint.kind == JointKind::distance) {
     work.axes[0].axis.low_impulse += impulse;
-  } else if (is_turn(row)) {
-    joint.angular_impulse += impulse * row.arm_a;
+  } else if (is_turn(rows, i)) {
+    joint.angular_impulse += impulse * rows.arm_a.at(i);
   } else {
-    joint.linear_impulse += impulse * row.push;
+    joint.linear_impulse += impulse * rows.push.at(i);
   }
 }
 void forget_kept(JointRecord& joint, const JointWork& work) {
@@ -83,12 +83,12 @@ void forget_kept(JointRecord& joint, const JointWork& work) {
   for (float& impulse : work.detail->row_impulses) impulse = 0.0f;
 }
 
-float error_of(const JointRecord& joint, const JointWork& work, const LinkageRow& row, int i) {
+float error_of(const JointRecord& joint, const JointWork& work, const LinkageRows& rows, int i) {
   if (work.rows != nullptr) return error_taken_back(work.rows->rows[i]);
-  if (is_turn(row)) return dot(work.angular_error, row.arm_a);
+  if (is_turn(rows, i)) return dot(work.angular_error, rows.arm_a.at(i));
   if (joint.kind == JointKind::distance)
     return clamp(work.position - joint.min_length, -kMostPointError, kMostPointError);
-  return dot(within(work.error, kMostPointError), row.push);
+  return dot(within(work.error, kMostPointError), rows.push.at(i));
 }
 
 // A force f at arm r turns with the body's orientation like a spring of stiffness (r . f) 1 - sym(r f^T). Springs that a
@@ -143,6 +143,22 @@ void raise_inertias(const Linkage& linkage, const LinkageSolve& s) {
   }
 }
 
+// Four rows side by side, from `first` on: every x86-64, 64-bit ARM and WebAssembly has registers of four.
+constexpr int kHalf = 4;
+static_assert(kRowLanes == 2 * kHalf);
+using Rows4 = Vec3W<kHalf>;
+Rows4 load_rows(const RowVectors& v, int first) {
+  return {Wide<kHalf>::load_unaligned(v.x + first), Wide<kHalf>::load_unaligned(v.y + first),
+          Wide<kHalf>::load_unaligned(v.z + first)};
+}
+void store_rows(RowVectors& to, int first, const Rows4& v) {
+  v.x.store_unaligned(to.x + first), v.y.store_unaligned(to.y + first), v.z.store_unaligned(to.z + first);
+}
+Rows4 splat_rows(Vec3 v) { return splat<kHalf>(v); }
+Rows4 turn_rows(const Sym3& m, const RowVectors& arms, int first) {
+  return Sym3W<kHalf>{m.xx, m.yy, m.zz, m.xy, m.xz, m.yz} * load_rows(arms, first);
+}
+
 // The rows' spins, and the node's own block K + give.
 void make_own_block(LinkageNode& node, const Linkage& linkage, const LinkageSolve& s, double* block) {
   constexpr LinkageBody kImmovable{};
@@ -150,19 +166,25 @@ void make_own_block(LinkageNode& node, const Linkage& linkage, const LinkageSolv
   const LinkageBody& b = node.side_b < 0 ? kImmovable : linkage.bodies[std::size_t(node.side_b)];
   const float inverse_mass = (a.body == kNoBody ? 0.0f : s.bodies.inertia[a.body].inverse_mass) +
                              (b.body == kNoBody ? 0.0f : s.bodies.inertia[b.body].inverse_mass);
-  for (int i = 0; i < node.count; ++i) {
-    LinkageRow& row = node.rows[i];
-    row.spin_a = a.inverse * row.arm_a;
-    row.spin_b = b.inverse * row.arm_b;
-    for (int j = 0; j <= i; ++j) {
-      const LinkageRow& other = node.rows[j];
-      float k = inverse_mass * dot(row.push, other.push) + dot(row.arm_a, other.spin_a) +
-                dot(row.arm_b, other.spin_b);
-      if (i == j) {
-        row.give = s.give * k;
-        k += row.give;
+  LinkageRows& rows = node.rows;
+  const int count = node.count;
+  for (int first = 0; first < count; first += kHalf) {
+    const Rows4 pushes = load_rows(rows.push, first);
+    const Rows4 spins_a = turn_rows(a.inverse, rows.arm_a, first),
+                spins_b = turn_rows(b.inverse, rows.arm_b, first);
+    store_rows(rows.spin_a, first, spins_a);
+    store_rows(rows.spin_b, first, spins_b);
+    for (int i = first; i < count; ++i) {
+      float k[kHalf];
+      (Wide<kHalf>(inverse_mass) * dot(splat_rows(rows.push.at(i)), pushes) +
+       dot(splat_rows(rows.arm_a.at(i)), spins_a) + dot(splat_rows(rows.arm_b.at(i)), spins_b))
+          .store_unaligned(k);
+      if (i < first + kHalf) {
+        rows.give[i] = s.give * k[i - first];
+        k[i - first] += rows.give[i];
       }
-      block[i * node.count + j] = block[j * node.count + i] = double(k);
+      for (int j = first; j <= i && j < first + kHalf; ++j)
+        block[i * count + j] = block[j * count + i] = double(k[j - first]);
     }
   }
 }
@@ -171,14 +193,18 @@ void make_own_block(LinkageNode& node, const Linkage& linkage, const LinkageSolv
 void add_coupling(const LinkageCoupling& coupling, const LinkageNode& row, const LinkageNode& column,
                   const BodyInertia& body, double* block) {
   const float sign = coupling.row_has_b == coupling.column_has_b ? 1.0f : -1.0f;
-  const float inverse_mass = body.inverse_mass;
-  for (int i = 0; i < row.count; ++i) {
-    const Vec3 push = (sign * inverse_mass) * row.rows[i].push;
-    const Vec3 spin = sign * (coupling.row_has_b ? row.rows[i].spin_b : row.rows[i].spin_a);
-    for (int j = 0; j < column.count; ++j) {
-      const LinkageRow& other = column.rows[j];
-      const Vec3 arm = coupling.column_has_b ? other.arm_b : other.arm_a;
-      block[i * column.count + j] += double(dot(push, other.push) + dot(spin, arm));
+  const float scale = sign * body.inverse_mass;
+  const RowVectors& spins = coupling.row_has_b ? row.rows.spin_b : row.rows.spin_a;
+  const RowVectors& arms_of = coupling.column_has_b ? column.rows.arm_b : column.rows.arm_a;
+  const int columns = column.count;
+  for (int first = 0; first < columns; first += kHalf) {
+    const Rows4 pushes = load_rows(column.rows.push, first), arms = load_rows(arms_of, first);
+    for (int i = 0; i < row.count; ++i) {
+      float k[kHalf];
+      (dot(splat_rows(scale * row.rows.push.at(i)), pushes) + dot(splat_rows(sign * spins.at(i)), arms))
+          .store_unaligned(k);
+      for (int j = first; j < columns && j < first + kHalf; ++j)
+        block[i * columns + j] += double(k[j - first]);
     }
   }
 }
@@ -188,14 +214,21 @@ class NodeBodies {
  public:
   NodeBodies(const LinkageNode& node, const JointBodies& bodies)
       : a_(node.body_a, bodies), b_(node.body_b, bodies) {}
-  float speed(const LinkageRow& row) const {
-    return dot(row.push, b_.linear - a_.linear) + dot(row.arm_b, b_.angular) - dot(row.arm_a, a_.angular);
+  void speeds(const LinkageRows& rows, int count, float (&out)[kRowLanes]) const {
+    const Rows4 u = splat_rows(b_.linear - a_.linear), w_a = splat_rows(a_.angular),
+                w_b = splat_rows(b_.angular);
+    for (int first = 0; first < count; first += kHalf) {
+      (dot(load_rows(rows.push, first), u) + dot(load_rows(rows.arm_b, first), w_b) -
+       dot(load_rows(rows.arm_a, first), w_a))
+          .store_unaligned(out + first);
+    }
   }
-  void push(const LinkageRow& row, float impulse) {
-    a_.linear -= (impulse * a_.inverse_mass) * row.push;
-    b_.linear += (impulse * b_.inverse_mass) * row.push;
-    a_.angular -= impulse * row.spin_a;
-    b_.angular += impulse * row.spin_b;
+  void push(const LinkageRows& rows, int row, float impulse) {
+    const Vec3 push = rows.push.at(row);
+    a_.linear -= (impulse * a_.inverse_mass) * push;
+    b_.linear += (impulse * b_.inverse_mass) * push;
+    a_.angular -= impulse * rows.spin_a.at(row);
+    b_.angular += impulse * rows.spin_b.at(row);
   }
   void store() const {
     a_.store();
@@ -302,8 +335,8 @@ Bend bend_of(const JointRecord& joint, const JointWork& work, const Course& a, c
 }
 
 // The same for each row of a kind that is a list of rows: by what they would say at the end of the sub-step.
-void rows_bend(const JointRecord& joint, const JointWork& work, const LinkageNode& node, const Course& a, const Course& b,
-               float h, float (&bends)[kJointAxisCount]) {
+void rows_bend(const JointRecord& joint, const JointWork& work, const LinkageNode& node, const Course& a,
+               const Course& b, float h, float (&bends)[kJointAxisCount]) {
   const Vec3 arm_a = work.from_a - work.error - work.along;  // to a's own anchor
   const Vec3 now = work.error + work.along;
   const Vec3 moved = h * (b.linear - a.linear);
@@ -312,9 +345,8 @@ void rows_bend(const JointRecord& joint, const JointWork& work, const LinkageNod
   float errors[kJointAxisCount];
   measure_rows(joint, work, later, errors);
   for (int i = 0; i < node.count; ++i) {
-    const LinkageRow& row = node.rows[i];
-    const float seen =
-        dot(row.push, b.linear - a.linear) + dot(row.arm_b, b.angular) - dot(row.arm_a, a.angular);
+    const float seen = dot(node.rows.push.at(i), b.linear - a.linear) +
+                       dot(node.rows.arm_b.at(i), b.angular) - dot(node.rows.arm_a.at(i), a.angular);
     bends[i] = (errors[i] - work.rows->rows[i].error) / h - seen;
   }
 }
@@ -339,7 +371,8 @@ void ask_rows(const Linkage& linkage, const LinkageSolve& s) {
     const JointWork& work = s.work[node.work];
     const Course a = course_of(linkage, s, node.body_a, node.side_a);
     const Course b = course_of(linkage, s, node.body_b, node.side_b);
-    const float fastest = square(h) * max(max(length_squared(a.angular), length_squared(b.angular)), rod_rate(joint, work, a, b));
+    const float fastest = square(h) * max(max(length_squared(a.angular), length_squared(b.angular)),
+                                          rod_rate(joint, work, a, b));
     const float share = fastest > square(kMostTurn) ? square(kMostTurn) / fastest : 1.0f;
     Bend bend;
     float bends[kJointAxisCount] = {};
@@ -355,11 +388,11 @@ void ask_rows(const Linkage& linkage, const LinkageSolve& s) {
       bend.turn *= share;
     }
     for (int i = 0; i < node.count; ++i) {
-      LinkageRow& row = node.rows[i];
-      row.wanted = -s.settings.softness.bias_rate * error_of(joint, work, row, i);
-      row.wanted -= work.rows != nullptr ? share * bends[i]
-                    : is_turn(row)       ? dot(bend.turn, row.arm_a)
-                                         : dot(bend.point, row.push);
+      LinkageRows& rows = node.rows;
+      rows.wanted[i] = -s.settings.softness.bias_rate * error_of(joint, work, rows, i);
+      rows.wanted[i] -= work.rows != nullptr ? share * bends[i]
+                        : is_turn(rows, i)   ? dot(bend.turn, rows.arm_a.at(i))
+                                             : dot(bend.point, rows.push.at(i));
     }
   }
 }
@@ -372,10 +405,11 @@ void solve_rows(const Linkage& linkage, const LinkageSolve& s, bool soft) {
     const JointWork& work = s.work[node.work];
     const NodeBodies bodies(node, s.bodies);
     double* x = &linkage.vector[linkage.plan.columns[linkage.plan.place_of[n]].row];
+    float speeds[kRowLanes];
+    bodies.speeds(node.rows, node.count, speeds);
     for (int i = 0; i < node.count; ++i) {
-      const LinkageRow& row = node.rows[i];
-      float missing = -bodies.speed(row);
-      if (soft) missing += row.wanted - row.give * kept_impulse(joint, work, row, i);
+      float missing = -speeds[i];
+      if (soft) missing += node.rows.wanted[i] - node.rows.give[i] * kept_impulse(joint, work, node.rows, i);
       x[i] = double(missing);
     }
   }
@@ -387,8 +421,8 @@ void solve_rows(const Linkage& linkage, const LinkageSolve& s, bool soft) {
     const double* x = &linkage.vector[linkage.plan.columns[linkage.plan.place_of[n]].row];
     for (int i = 0; i < node.count; ++i) {
       const float impulse = float(x[i]);
-      bodies.push(node.rows[i], impulse);
-      keep_impulse(joint, s.work[node.work], node.rows[i], i, impulse);
+      bodies.push(node.rows, i, impulse);
+      keep_impulse(joint, s.work[node.work], node.rows, i, impulse);
     }
     bodies.store();
   }
@@ -432,12 +466,12 @@ void warm_linkage(const Linkage& linkage, const LinkageSolve& s) {
     warm_start_joint_axes(joint, work, s.bodies);
     // What was kept, along the rows as they are now.
     float kept[kMostBlockRows];
-    for (int i = 0; i < node.count; ++i) kept[i] = kept_impulse(joint, work, node.rows[i], i);
+    for (int i = 0; i < node.count; ++i) kept[i] = kept_impulse(joint, work, node.rows, i);
     forget_kept(joint, work);
     NodeBodies bodies(node, s.bodies);
     for (int i = 0; i < node.count; ++i) {
-      bodies.push(node.rows[i], kept[i]);
-      keep_impulse(joint, work, node.rows[i], i, kept[i]);
+      bodies.push(node.rows, i, kept[i]);
+      keep_impulse(joint, work, node.rows, i, kept[i]);
     }
     bodies.store();
   }
@@ -457,7 +491,8 @@ void solve_linkage_again(const Linkage& linkage, const LinkageSolve& s) {
 void relax_linkage(const Linkage& linkage, const LinkageSolve& s) {
   sweep_axes(linkage, s, false);
   solve_rows(linkage, s, false);
-  for (const LinkageNode& node : linkage.nodes) sum_joint(s.records[node.record], s.work[node.work], s.bodies);
+  for (const LinkageNode& node : linkage.nodes)
+    sum_joint(s.records[node.record], s.work[node.work], s.bodies);
 }
 
 }  // namespace gyre

@@ -15,13 +15,22 @@
 
 namespace gyre {
 
-// One row of a joint: it sees push . (v_b - v_a) + arm_b . w_b - arm_a . w_a.
-struct LinkageRow {
-  Vec3 push;            // direction of a force; zero for a turning row
-  Vec3 arm_a, arm_b;    // r x push, or the axis of a turn
-  Vec3 spin_a, spin_b;  // inverse inertia times arm
-  float give = 0.0f;    // added to K: the speed by which the row gives way to an impulse of one
-  float wanted = 0.0f;  // the speed asked for
+// The rows of a joint lie side by side, so that what one of them has to do with all others is one run over lanes. Lanes beyond the
+// rows are zero.
+constexpr int kRowLanes = 8;
+struct RowVectors {
+  float x[kRowLanes] = {}, y[kRowLanes] = {}, z[kRowLanes] = {};
+  Vec3 at(int row) const { return {x[row], y[row], z[row]}; }
+  void set(int row, Vec3 v) { x[row] = v.x, y[row] = v.y, z[row] = v.z; }
+};
+
+// A row sees push . (v_b - v_a) + arm_b . w_b - arm_a . w_a.
+struct LinkageRows {
+  RowVectors push;            // direction of a force; zero for a turning row
+  RowVectors arm_a, arm_b;    // r x push, or the axis of a turn
+  RowVectors spin_a, spin_b;  // inverse inertia times arm
+  float give[kRowLanes] = {};    // added to K: the speed by which the row gives way to an impulse of one
+  float wanted[kRowLanes] = {};  // the speed asked for
 };
 
 // A joint of a linkage, while it is solved.
@@ -31,8 +40,9 @@ struct LinkageNode {
   std::int32_t body_a = kNoBody, body_b = kNoBody;
   std::int32_t side_a = -1, side_b = -1;  // which bodies of the linkage they are; -1: it cannot be pushed
   int count = 0;                          // rows
-  LinkageRow rows[kMostBlockRows];
+  LinkageRows rows;
 };
+static_assert(kMostBlockRows <= kRowLanes);
 
 // A body of a linkage that moves.
 struct LinkageBody {
