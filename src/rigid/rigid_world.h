@@ -91,6 +91,7 @@ struct RigidWorld {
   Array<std::uint64_t> new_pairs;
   Array<std::uint64_t> sort_scratch;
   Array<std::uint32_t> listed;         // contacts of a shape that is looked at
+  std::uint64_t steps = 0;             // done before this one: for what is looked at only now and then
   double now = 0.0;                    // s, as the step begins: for fields that change by themselves
   Array<FieldRest> field_rest;
   Array<std::uint8_t> refit_marks;     // by shape: got a new fat box in this step

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "rigid/contact_forest.h"
+#include "rigid/contact_structures.h"
 #include "rigid/fields.h"
 #include "rigid/integrators.h"
 #include "rigid/linkages.h"
@@ -39,6 +40,8 @@ struct Solve {
   std::span<std::uint32_t> flying{};       // the others
   ContactForest forest{};
   TreeSolve tree_solve{};
+  std::span<ContactStructure> structures{};
+  StructureSolve structure_solve{};
   RollingContacts rolling{};
   FieldSolve fields{};
 };

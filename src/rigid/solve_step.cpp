@@ -108,6 +108,13 @@ void solve_trees_stage(void* context, int begin, int end, int) {
   for (int i = begin; i < end; ++i) solve_tree(s.forest.trees[std::size_t(i)], s.tree_solve);
 }
 
+// One after the other: they share the step's arena, which nobody else uses meanwhile.
+template <void (*kernel)(ContactStructure&, const StructureSolve&)>
+void structures_stage(void* context, int, int, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  for (ContactStructure& structure : s.structures) kernel(structure, s.structure_solve);
+}
+
 void prepare_contacts_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
   s.kernels.prepare(s.blocks, begin, end, s.scratch.constraints.data(), s.scratch.order.data(), s.contact_bodies,
@@ -233,13 +240,14 @@ void linkage_stage(void* context, int begin, int end, int) {
 
 // The stages of one part of a sub-step. Impacts and joints are between forces, contacts and moves only where there are any.
 //
-// Stacks at rest are solved directly after the first sweep, which gives them the loads of this step, and after the last,
-// which leaves them at rest: in between nothing is left for the sweeps to change.
+// Stacks and structures at rest are solved directly after the first sweep, which gives them the loads of this step, and after
+// the last, which leaves them at rest: in between nothing is left for the sweeps to change.
 void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> contacts, std::span<Group> joints) {
   const bool first = part == 0, last = part + 1 == solve.motions.count;
   const int bodies = count_blocks(int(solve.moved.size()), solve.kernels.width);
   const int impacts = solve.scratch.impacts.empty() ? 0 : 1;
   const int trees = first || last ? int(solve.forest.trees.size()) : 0;
+  const int structures = solve.structures.empty() ? 0 : 1;
   const int linkages = int(solve.linkages.linkages.size());
   // Joints act between forces and contacts: what they give is none of the contacts' work, and how they bend in the sub-step
   // is none of what contacts gave in the last one.
@@ -267,6 +275,8 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   if (has_joints) program.add(watch_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
   program.add_groups(solve_contacts_stage, contacts, 1, kBlocksPerClaim);
   program.add(solve_trees_stage, &solve, trees, kTreesPerClaim);
+  if (first) program.add(structures_stage<solve_structure_first>, &solve, structures);
+  if (last) program.add(structures_stage<solve_structure_last>, &solve, structures);
   if (has_joints) program.add(note_stage, &solve, bodies, kMotionBlocksPerClaim);
   program.add(linkage_stage<solve_linkage_again>, &solve, linkages);
   if (has_joints) program.add(watch_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
@@ -281,7 +291,7 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
 
 void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> joints, Arena& arena, TaskSystem& tasks) {
   const int parts = solve.motions.count;
-  const std::size_t per_part = 21 + 5 * joints.size() + 2 * contacts.size();
+  const std::size_t per_part = 22 + 5 * joints.size() + 2 * contacts.size();
   ProgramWriter program(
       arena.make<Stage>(10 + std::size_t(parts) * per_part + 2 * contacts.size() + joints.size()));
   std::uint32_t blocks = 0;
@@ -301,6 +311,29 @@ void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> join
   program.add(finish_turns_stage, &solve, count_blocks(int(solve.moved.size()), kBodiesPerBlock));
   program.add(finish_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
   run_program(tasks, program.stages());
+}
+
+// The islands at rest, which are solved directly.
+void find_resting(Solve& solve, Arena& arena) {
+  solve.forest = {};
+  solve.structures = {};
+  const std::span<ContactConstraint> constraints = solve.scratch.constraints.view();
+  if (constraints.empty() || !(length(solve.w.settings.gravity) > 0.0f)) return;
+  const RestingIslands islands(solve.w, constraints, solve.batch, solve.places, arena);
+  solve.forest = find_contact_trees(solve.w, constraints, solve.batch, solve.places, islands, arena);
+  solve.structures = find_contact_structures(solve.w, constraints, solve.batch, solve.places, islands, arena);
+}
+void place_resting(Solve& solve, Arena& arena) {
+  if (solve.forest.nodes.empty() && solve.structures.empty()) return;
+  const SolveScratch& scratch = solve.scratch;
+  const int width = solve.kernels.width;
+  const std::span<const std::uint32_t> places = find_kernel_places(scratch.order, scratch.constraints.size(), arena);
+  place_tree_nodes(solve.forest, places, width);
+  place_structure_contacts(solve.structures, places, width);
+  BodyMotion* motion = solve.contact_bodies.motion;
+  solve.tree_solve = {solve.forest.nodes, solve.forest.work, scratch.constraints, motion,
+                      &solve.kernels,     solve.blocks,      solve.contact_settings.step};
+  solve.structure_solve = {scratch.constraints, motion, &solve.kernels, solve.blocks, &arena};
 }
 
 void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale) {
@@ -326,11 +359,9 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
                          .give = kLinkageGive};
   solve.linkage_solve.settings.swept = false;
   gather_motion(solve, arena);
-  solve.forest = find_contact_trees(solve.w, scratch.constraints, solve.batch, solve.places, arena);
+  find_resting(solve, arena);
   const std::span<Group> contacts = lay_out_contacts(solve, arena);
-  place_tree_nodes(solve.forest, scratch.order, solve.kernels.width, scratch.constraints.size(), arena);
-  solve.tree_solve = {solve.forest.nodes, solve.forest.work, scratch.constraints, solve.contact_bodies.motion,
-                      &solve.kernels,     solve.blocks,      solve.contact_settings.step};
+  place_resting(solve, arena);
   const std::span<Group> joints = lay_out_joints(solve, arena);
   run_substeps(solve, contacts, joints, arena, tasks);
   finish_joints(solve.w, solve.batch, solve.joint_work);

@@ -90,6 +90,8 @@ struct ContactKernels {
   void (*project)(void* blocks, int begin, int end, BodyMotion* motion, float step);
   void (*read_impulse)(const void* blocks, int block, int lane, ContactImpulse& impulse);
   void (*write_impulse)(void* blocks, int block, int lane, const ContactImpulse& impulse);
+  // From now on the contact is no spring in this step.
+  void (*harden)(void* blocks, int block, int lane);
   void (*finish)(void* blocks, int begin, int end, const ContactConstraint* constraints, const std::uint32_t* order,
                  const ContactSettings& settings);
   MotionKernels motion;

@@ -21,6 +21,7 @@ constexpr ContactKernels contact_kernels() {
           project_blocks<W>,
           read_block_impulse<W>,
           write_block_impulse<W>,
+          harden_block<W>,
           finish_blocks<W>,
           motion_kernels<W>()};
 }

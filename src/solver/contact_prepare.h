@@ -560,5 +560,12 @@ void write_block_impulse(void* memory, int index, int lane, const ContactImpulse
   set_lane(block.sliding, lane, 0.0f);
 }
 
+template <int W>
+void harden_block(void* memory, int index, int lane) {
+  ContactBlock<W>& block = static_cast<ContactBlock<W>*>(memory)[index];
+  set_lane(block.rate, lane, 0.0f);
+  set_lane(block.give, lane, 0.0f);
+}
+
 }  // namespace GYRE_TARGET_NAMESPACE
 }  // namespace gyre

@@ -119,6 +119,7 @@ void step_world(WorldState& s, float seconds) {
   count_full_looks(s);
   run_stage(s, StageName::link_islands, [&] { link_islands(w); });
   w.now = s.time;
+  w.steps = s.step_count;
   run_stage(s, StageName::solve, [&] { solve_step(w, s.solve, s.arena, *s.tasks, *s.kernels, seconds); });
   run_stage(s, StageName::clamp_fast_bodies, [&] { clamp_fast_bodies(w, s.continuous, s.arena, *s.tasks); });
   run_stage(s, StageName::finish_bodies, [&] { finish_bodies(w, *s.tasks, seconds, s.frozen); });

@@ -1,0 +1,139 @@
+#include "rigid/contact_structures.h"
+
+#include "math/rotation.h"
+
+namespace gyre {
+
+namespace {
+
+// Larger islands are not looked at,
+constexpr std::uint32_t kMostBodies = 512;
+// nor those that have more contacts than this for each body: heaps, whose every body leans on many.
+constexpr std::uint32_t kMostContactsPerBody = 4;
+// What has more bodies than this and did not hold in the last step is looked at once in so many steps.
+constexpr std::uint32_t kSmall = 4;
+constexpr std::uint64_t kPatience = 8;
+
+bool may_stand(const RigidWorld& w, const IslandCount& count) {
+  if (count.refused || count.stirring || count.grounded == 0) return false;
+  // Trees are solved by themselves.
+  if (!count.balances && count.grounded == 1 && count.contacts == count.bodies) return false;
+  if (count.bodies > kMostBodies || count.contacts > kMostContactsPerBody * count.bodies) return false;
+  return !count.springs || count.bodies <= kSmall || w.steps % kPatience == 0;
+}
+
+class StructureMaker {
+ public:
+  StructureMaker(const RigidWorld& w, std::span<const ContactConstraint> constraints, const SolveBatch& batch,
+                 std::span<const std::uint32_t> places, const RestingIslands& islands, Arena& arena)
+      : w_(w),
+        constraints_(constraints),
+        batch_(batch),
+        places_(places),
+        islands_(islands),
+        arena_(arena),
+        node_of_(arena.make<std::uint32_t>(batch.bodies.size())),
+        members_(arena.make<Members>(batch.bodies.size())) {
+    for (std::uint32_t i = 0; i < node_of_.size(); ++i) node_of_[i] = kNoNode, members_[i] = {};
+  }
+
+  // Lists of what each island at `roots` has, by its root.
+  void list(std::span<const std::uint32_t> roots) {
+    for (const std::uint32_t root : roots) {
+      members_[root].nodes = arena_.make<StructureNode>(islands_.at_root(root).bodies);
+      members_[root].contacts = arena_.make<StructureContact>(islands_.at_root(root).contacts);
+    }
+    for (std::uint32_t place = 0; place < batch_.bodies.size(); ++place) {
+      if (!is_movable(w_.bodies.flags[batch_.bodies[place]])) continue;
+      Members& members = members_[islands_.root_of(place)];
+      if (members.nodes.empty()) continue;
+      node_of_[place] = members.bodies;
+      members.nodes[members.bodies++] = make_node(batch_.bodies[place]);
+    }
+    for (std::uint32_t i = 0; i < constraints_.size(); ++i) {
+      const ContactConstraint& c = constraints_[i];
+      const std::int32_t body = is_active(w_, c.body_a) ? c.body_a : c.body_b;
+      Members& members = members_[islands_.root_of(places_[std::size_t(body)])];
+      if (members.nodes.empty()) continue;
+      StructureContact& contact = members.contacts[members.count++] = {};
+      contact.constraint = i;
+      contact.node_a = node_at(c.body_a);
+      contact.node_b = node_at(c.body_b);
+    }
+  }
+
+  ContactStructure make(std::uint32_t root) const {
+    const Members& members = members_[root];
+    ContactStructure structure;
+    structure.nodes = members.nodes;
+    structure.contacts = members.contacts;
+    structure.work = arena_.make<StructureWork>(members.contacts.size());
+    return structure;
+  }
+
+ private:
+  struct Members {
+    std::span<StructureNode> nodes;
+    std::span<StructureContact> contacts;
+    std::uint32_t bodies = 0, count = 0;
+  };
+
+  std::uint32_t node_at(std::int32_t body) const {
+    return is_active(w_, body) ? node_of_[places_[std::size_t(body)]] : kNoNode;
+  }
+  StructureNode make_node(std::uint32_t body) const {
+    const BodyMass& mass = w_.bodies.masses[body];
+    StructureNode node;
+    node.body = std::int32_t(body);
+    node.mass = mass.mass;
+    node.still = kStructureStillShare * std::sqrt(length(w_.settings.gravity) * mass.reach);
+    node.still_spin = mass.reach > 0.0f ? node.still / mass.reach : 0.0f;
+    node.inertia = rotate_inertia(w_.bodies.places[body].orientation, mass.inertia);
+    return node;
+  }
+
+  const RigidWorld& w_;
+  std::span<const ContactConstraint> constraints_;
+  const SolveBatch& batch_;
+  std::span<const std::uint32_t> places_;
+  const RestingIslands& islands_;
+  Arena& arena_;
+  std::span<std::uint32_t> node_of_;  // by body's place
+  std::span<Members> members_;        // by root
+};
+
+}  // namespace
+
+std::span<ContactStructure> find_contact_structures(const RigidWorld& w,
+                                                    std::span<const ContactConstraint> constraints,
+                                                    const SolveBatch& batch,
+                                                    std::span<const std::uint32_t> places,
+                                                    const RestingIslands& islands, Arena& arena) {
+  std::size_t count = 0;
+  for (std::uint32_t place = 0; place < batch.bodies.size(); ++place) {
+    if (islands.is_root(place) && may_stand(w, islands.at_root(place))) ++count;
+  }
+  if (count == 0) return {};
+  const std::span<std::uint32_t> roots = arena.make<std::uint32_t>(count);
+  count = 0;
+  for (std::uint32_t place = 0; place < batch.bodies.size(); ++place) {
+    if (islands.is_root(place) && may_stand(w, islands.at_root(place))) roots[count++] = place;
+  }
+  StructureMaker maker(w, constraints, batch, places, islands, arena);
+  maker.list(roots);
+  const std::span<ContactStructure> structures = arena.make<ContactStructure>(count);
+  for (std::size_t i = 0; i < count; ++i) structures[i] = maker.make(roots[i]);
+  return structures;
+}
+
+void place_structure_contacts(std::span<ContactStructure> structures, std::span<const std::uint32_t> places,
+                              int width) {
+  for (ContactStructure& structure : structures) {
+    for (StructureContact& contact : structure.contacts) {
+      contact.block = places[contact.constraint] / std::uint32_t(width);
+      contact.lane = places[contact.constraint] % std::uint32_t(width);
+    }
+  }
+}
+
+}  // namespace gyre

@@ -1,0 +1,143 @@
+#include "rigid/resting_islands.h"
+
+#include "rigid/integrators.h"
+#include "solver/contact_structure.h"
+
+namespace gyre {
+
+namespace {
+
+// What may be part of a resting island: not bound to axes, no faster than the share.
+bool is_slow(const RigidWorld& w, std::uint32_t body, float pull, float share) {
+  const BodyMotion& motion = w.bodies.motion[body];
+  const float reach = w.bodies.masses[body].reach;
+  const float speed = length(motion.linear_velocity) + reach * length(motion.angular_velocity);
+  return speed <= share * std::sqrt(pull * reach);
+}
+bool is_free(const RigidWorld& w, std::uint32_t body) {
+  const BodyFlags& flags = w.bodies.flags[body];
+  return !turns_alone(w.bodies, body, w.settings.last_substep) && flags.locked_linear == 0 &&
+         flags.locked_angular == 0;
+}
+
+// The other end of a constraint may be the fixed world or a kinematic body that stands still.
+bool is_still(const RigidWorld& w, std::int32_t body) {
+  if (body == kNoBody) return true;
+  const BodyMotion& motion = w.bodies.motion[body];
+  return motion.linear_velocity == Vec3{} && motion.angular_velocity == Vec3{};
+}
+
+}  // namespace
+
+RestingIslands::RestingIslands(const RigidWorld& w, std::span<const ContactConstraint> constraints,
+                               const SolveBatch& batch, std::span<const std::uint32_t> places, Arena& arena)
+    : w_(w),
+      batch_(batch),
+      places_(places),
+      parent_(arena.make<std::uint32_t>(batch.bodies.size())),
+      counts_(arena.make<IslandCount>(batch.bodies.size())) {
+  for (std::uint32_t i = 0; i < parent_.size(); ++i) parent_[i] = i, counts_[i] = {};
+  unite_all(constraints, batch.joints);
+  count_bodies();
+  count_contacts(constraints);
+  count_joints();
+}
+
+bool RestingIslands::is_root(std::uint32_t place) const {
+  return parent_[place] == place && is_movable(w_.bodies.flags[batch_.bodies[place]]);
+}
+
+std::uint32_t RestingIslands::root_of(std::uint32_t place) const {
+  while (parent_[place] != place) place = parent_[place];
+  return place;
+}
+
+std::uint32_t RestingIslands::root(std::uint32_t place) {
+  while (parent_[place] != place) place = parent_[place] = parent_[parent_[place]];
+  return place;
+}
+
+void RestingIslands::unite(std::int32_t body_a, std::int32_t body_b) {
+  const std::uint32_t a = root(places_[std::size_t(body_a)]);
+  const std::uint32_t b = root(places_[std::size_t(body_b)]);
+  parent_[max(a, b)] = min(a, b);
+}
+
+void RestingIslands::unite_all(std::span<const ContactConstraint> constraints,
+                               std::span<const std::uint32_t> joints) {
+  for (const ContactConstraint& c : constraints) {
+    if (is_active(w_, c.body_a) && is_active(w_, c.body_b)) unite(c.body_a, c.body_b);
+  }
+  for (const std::uint32_t slot : joints) {
+    const JointRecord& joint = w_.joints.records[slot];
+    if (is_active(w_, joint.body_a) && is_active(w_, joint.body_b)) unite(joint.body_a, joint.body_b);
+  }
+}
+
+void RestingIslands::count_bodies() {
+  const float pull = length(w_.settings.gravity);
+  for (const std::uint32_t body : batch_.bodies) {
+    if (!is_movable(w_.bodies.flags[body])) continue;
+    IslandCount& count = of(std::int32_t(body));
+    ++count.bodies;
+    if (!is_free(w_, body) || !is_slow(w_, body, pull, kRestShare)) {
+      count.refused = true;
+    } else if (!is_slow(w_, body, pull, kCalmShare)) {
+      count.stirring = true;
+    }
+  }
+}
+
+void RestingIslands::count_contacts(std::span<const ContactConstraint> constraints) {
+  for (std::uint32_t i = 0; i < constraints.size(); ++i) {
+    const ContactConstraint& c = constraints[i];
+    const bool active_a = is_active(w_, c.body_a), active_b = is_active(w_, c.body_b);
+    IslandCount& count = of(active_a ? c.body_a : c.body_b);
+    ++count.contacts;
+    if (!(c.static_friction > 0.0f) || c.surface_velocity != Vec3{}) count.refused = true;
+    if (c.point_count < 3) count.balances = true;
+    if (c.manifold->age < kHeldAge) count.springs = true;
+    if (active_a && active_b) continue;
+    ++count.grounded;
+    count.first = i;
+    if (!is_still(w_, active_a ? c.body_b : c.body_a)) count.refused = true;
+  }
+}
+
+void RestingIslands::count_joints() {
+  for (const std::uint32_t slot : batch_.joints) {
+    const JointRecord& joint = w_.joints.records[slot];
+    for (const std::int32_t body : {joint.body_a, joint.body_b}) {
+      if (is_active(w_, body)) of(body).refused = true;
+    }
+  }
+}
+
+IncidentContacts link_incident_contacts(const RigidWorld& w, std::span<const ContactConstraint> constraints,
+                                        std::size_t bodies, std::span<const std::uint32_t> places,
+                                        Arena& arena) {
+  IncidentContacts links{arena.make<std::uint32_t>(bodies),
+                         arena.make<std::uint32_t>(2 * constraints.size())};
+  for (std::uint32_t& f : links.first) f = kNoPlace;
+  for (std::uint32_t i = std::uint32_t(constraints.size()); i-- > 0;) {
+    const std::int32_t ends[2] = {constraints[i].body_a, constraints[i].body_b};
+    for (std::uint32_t side = 0; side < 2; ++side) {
+      if (!is_active(w, ends[side])) continue;
+      std::uint32_t& first = links.first[places[std::size_t(ends[side])]];
+      links.next[2 * i + side] = first;
+      first = 2 * i + side;
+    }
+  }
+  return links;
+}
+
+std::span<std::uint32_t> find_kernel_places(std::span<const std::uint32_t> order, std::size_t constraints,
+                                            Arena& arena) {
+  const std::span<std::uint32_t> places = arena.make<std::uint32_t>(constraints);
+  for (std::uint32_t i = 0; i < order.size(); ++i) {
+    if (order[i] != kNoPlace) places[order[i]] = i;
+  }
+  return places;
+}
+
+}  // namespace gyre

@@ -1,0 +1,77 @@
+// The islands of a batch that may be at rest, counted for the solvers that take such islands whole: trees of contacts
+// (contact_forest.h) and structures (contact_structures.h).
+#pragma once
+
+#include "base/arena.h"
+#include "rigid/rigid_world.h"
+#include "rigid/solve_batches.h"
+#include "solver/contact_block.h"
+
+namespace gyre {
+
+constexpr std::uint32_t kNoPlace = 0xffffffffu;
+
+// Slower than this share of sqrt(gravity * reach) counts as at rest.
+constexpr float kRestShare = 0.1f;
+// and slower than this one as all but at rest: what has loops is looked at only then.
+constexpr float kCalmShare = 0.02f;
+// Slower than this share of it a sweep has left nothing to solve.
+constexpr float kStillShare = 1.0e-7f;
+// The same of an island with loops, whose loads have more rounding.
+constexpr float kStructureStillShare = 1.0e-6f;
+
+inline bool is_active(const RigidWorld& w, std::int32_t body) {
+  return body != kNoBody && is_active(w, std::uint32_t(body));
+}
+
+// What is counted about an island.
+struct IslandCount {
+  std::uint32_t bodies = 0, contacts = 0, grounded = 0;
+  std::uint32_t first = kNoPlace;  // its last contact with the fixed world
+  bool refused = false;   // cannot be at rest: fast or bound bodies, joints, moving ground, no friction
+  bool stirring = false;  // a body at rest is not calm
+  bool balances = false;  // a contact has one or two points
+  bool springs = false;   // a contact was not solved directly in the last step
+};
+
+class RestingIslands {
+ public:
+  // `constraints` and `places` as in find_contact_trees().
+  RestingIslands(const RigidWorld& w, std::span<const ContactConstraint> constraints, const SolveBatch& batch,
+                 std::span<const std::uint32_t> places, Arena& arena);
+
+  // By place of a body in the batch. Only roots have counts.
+  bool is_root(std::uint32_t place) const;
+  const IslandCount& at_root(std::uint32_t place) const { return counts_[place]; }
+  std::uint32_t root_of(std::uint32_t place) const;
+
+ private:
+  std::uint32_t root(std::uint32_t place);
+  IslandCount& of(std::int32_t body) { return counts_[root(places_[std::size_t(body)])]; }
+  void unite(std::int32_t body_a, std::int32_t body_b);
+  void unite_all(std::span<const ContactConstraint> constraints, std::span<const std::uint32_t> joints);
+  void count_bodies();
+  void count_contacts(std::span<const ContactConstraint> constraints);
+  void count_joints();
+
+  const RigidWorld& w_;
+  const SolveBatch& batch_;
+  std::span<const std::uint32_t> places_;
+  std::span<std::uint32_t> parent_;
+  std::span<IslandCount> counts_;
+};
+
+// For each body that moves the constraints it is in, as linked lists: link 2 * constraint + side (0: it is their a).
+struct IncidentContacts {
+  std::span<std::uint32_t> first;  // by the body's place
+  std::span<std::uint32_t> next;   // by link
+};
+IncidentContacts link_incident_contacts(const RigidWorld& w, std::span<const ContactConstraint> constraints,
+                                        std::size_t bodies, std::span<const std::uint32_t> places,
+                                        Arena& arena);
+
+// Where the kernels keep each constraint: `order` has `width` constraint indices a block. By constraint: its place in `order`.
+std::span<std::uint32_t> find_kernel_places(std::span<const std::uint32_t> order, std::size_t constraints,
+                                            Arena& arena);
+
+}  // namespace gyre

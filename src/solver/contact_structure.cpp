@@ -1,0 +1,440 @@
+#include "solver/contact_structure.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace gyre {
+
+namespace {
+
+// What counts as one that does not stand: after so many rounds, or multiplications where these are fewer rounds. Card houses and
+// towers of planks take one to six rounds, arches near their limit up to twenty.
+constexpr int kMostRounds = 30;
+constexpr int kLeastRounds = 6;
+constexpr std::uint64_t kMostWork = 2'000'000;
+// What a point that lets go keeps of its stiffness in the second derivative, but not in what it bears.
+constexpr double kTrace = 1.0e-6;
+// The longest step, in Newton's, and how finely it is found.
+constexpr double kLongestStep = 1.0e3;
+constexpr int kCuts = 40;
+// Contacts begin this stiff sideways, as elastic bodies are (R. Mindlin, 1949: 2 (1 - nu) / (2 - nu) = 0.82 for nu = 0.3), and
+// what is softer than this bears nothing sideways.
+constexpr float kShear = 0.8f;
+constexpr float kLeastShear = 1.0e-7f;
+// A contact asked for too much friction is softened so that it bears this share of what it can.
+constexpr double kFrictionAim = 0.7;
+constexpr double kMostSoftening = 0.05;  // at once
+// The age of contacts that were held and are not any more (s).
+constexpr float kReleasedAge = 2.0f;
+// Points further apart than this share of the size do not touch.
+constexpr float kTouchingGap = 1.0e-3f;
+// What an answer may leave of a body's speed, over what counts as still: rounding.
+constexpr double kResidual = 100.0;
+
+// A row of a contact: what it is about, on either body. The structure's rows are those of bodies: place, then rotation.
+struct Row {
+  double a[6], b[6];
+  double stiffness = 0.0;
+};
+
+Row make_row(Vec3 direction, Vec3 from_a, Vec3 from_b, double stiffness) {
+  const Vec3 turn_a = cross(from_a, direction), turn_b = cross(from_b, direction);
+  return {{-double(direction.x), -double(direction.y), -double(direction.z), -double(turn_a.x),
+           -double(turn_a.y), -double(turn_a.z)},
+          {double(direction.x), double(direction.y), double(direction.z), double(turn_b.x), double(turn_b.y),
+           double(turn_b.z)},
+          stiffness};
+}
+
+// The rows of a contact: one for each point, two of friction and one of twist where the load gives them any.
+struct Rows {
+  Row normal[kMaxManifoldPoints];
+  Row tangent[2], twist;
+  Vec3 u, v;
+  bool rubs = false;
+};
+
+Rows rows_of(const ContactConstraint& constraint, const StructureWork& work) {
+  const Manifold& manifold = *constraint.manifold;
+  const Vec3 n = manifold.normal;
+  Rows rows;
+  for (int k = 0; k < manifold.count; ++k) {
+    rows.normal[k] = make_row(n, manifold.points[k].from_a, manifold.points[k].from_b, 1.0);
+  }
+  rows.u = any_perpendicular(n);
+  rows.v = cross(n, rows.u);
+  rows.rubs = constraint.static_friction > 0.0f && work.touching != 0;
+  if (!rows.rubs) return rows;
+  const Vec3 from_b = work.impulse.friction_from_b;
+  const Vec3 from_a = from_b + (manifold.points[0].from_a - manifold.points[0].from_b);
+  const double shear = double(work.shear) * double(std::popcount(work.touching));
+  rows.tangent[0] = make_row(rows.u, from_a, from_b, shear);
+  rows.tangent[1] = make_row(rows.v, from_a, from_b, shear);
+  const double arm = double(work.impulse.twist_per_normal) / double(constraint.static_friction);
+  rows.twist = {{0, 0, 0, -double(n.x), -double(n.y), -double(n.z)},
+                {0, 0, 0, double(n.x), double(n.y), double(n.z)},
+                shear * arm * arm};
+  return rows;
+}
+
+void add_outer(double* block, const double* rows, const double* columns, double factor) {
+  for (int i = 0; i < 6; ++i) {
+    const double scaled = factor * rows[i];
+    for (int j = 0; j < 6; ++j) block[6 * i + j] += scaled * columns[j];
+  }
+}
+
+// Whether the sweeps left every body as good as at rest.
+bool is_still(const ContactStructure& s, const StructureSolve& solve) {
+  for (const StructureNode& node : s.nodes) {
+    const BodyMotion& motion = solve.motion[node.body];
+    if (largest(absolute(motion.linear_velocity)) > node.still) return false;
+    if (largest(absolute(motion.angular_velocity)) > node.still_spin) return false;
+  }
+  return true;
+}
+
+void stop(const ContactStructure& s, const StructureSolve& solve) {
+  for (const StructureNode& node : s.nodes) {
+    BodyMotion& motion = solve.motion[node.body];
+    motion.linear_velocity = motion.angular_velocity = {};
+  }
+}
+
+// From now on its contacts are no springs,
+void hold(const ContactStructure& s, const StructureSolve& solve) {
+  for (const StructureContact& contact : s.contacts) {
+    solve.constraints[contact.constraint].manifold->age = kHeldAge;
+    solve.kernels->harden(solve.blocks, int(contact.block), int(contact.lane));
+  }
+}
+// and from now on they are.
+void release(const ContactStructure& s, const StructureSolve& solve) {
+  for (const StructureContact& contact : s.contacts) {
+    Manifold& manifold = *solve.constraints[contact.constraint].manifold;
+    if (manifold.age >= kHeldAge) manifold.age = kReleasedAge;
+  }
+}
+
+class Solver {
+ public:
+  Solver(ContactStructure& structure, const StructureSolve& solve) : s_(structure), solve_(solve) {}
+
+  // Finds impulses that stop everything; false if it cannot. Newton's method on the springs' energy, which is convex: pieces of
+  // parabolas that meet where points let go.
+  bool find() {
+    if (!plan()) return false;
+    if (!s_.begun) begin();
+    gather_loads();
+    for (double& x : place_) x = 0.0;
+    const std::uint64_t affordable = kMostWork / (plan_.work + 1);
+    const int rounds = int(min(std::uint64_t(kMostRounds), max(std::uint64_t(kLeastRounds), affordable)));
+    for (int round = 0; round < rounds; ++round) {
+      assemble();
+      factor_blocks(plan_, values_, room_);
+      find_way();
+      solve_blocks(plan_, values_, way_);
+      go(find_step());
+      give_friction();
+      if (bears_all()) return true;
+    }
+    return false;
+  }
+
+  void write() const {
+    for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
+      const StructureContact& contact = s_.contacts[i];
+      solve_.kernels->write_impulse(solve_.blocks, int(contact.block), int(contact.lane), s_.work[i].impulse);
+    }
+  }
+
+ private:
+  bool plan() {
+    Arena& arena = *solve_.arena;
+    const std::span<std::uint8_t> sizes = arena.make<std::uint8_t>(s_.nodes.size());
+    for (std::uint8_t& size : sizes) size = 6;
+    const std::span<BlockEdge> edges = arena.make<BlockEdge>(s_.contacts.size());
+    std::size_t count = 0;
+    for (const StructureContact& contact : s_.contacts) {
+      if (contact.is_between()) edges[count++] = {contact.node_a, contact.node_b};
+    }
+    if (!plan_blocks(sizes, edges.first(count), kMostStructureWorkPerRow * 6 * sizes.size(), arena, plan_))
+      return false;
+    for (StructureContact& contact : s_.contacts) {
+      if (contact.is_between()) contact.coupling = find_block(plan_, contact.node_a, contact.node_b);
+    }
+    values_ = arena.make<double>(plan_.values);
+    room_ = arena.make<double>(plan_.widest);
+    loads_ = arena.make<double>(plan_.rows);
+    place_ = arena.make<double>(plan_.rows);
+    way_ = arena.make<double>(plan_.rows);
+    return true;
+  }
+
+  // Every point bears, but those that are ahead of their contact: they never will.
+  void begin() {
+    s_.begun = true;
+    for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
+      const ContactConstraint& c = constraint(i);
+      StructureWork& work = s_.work[i] = {};
+      work.shear = kShear;
+      for (int k = 0; k < c.manifold->count; ++k) {
+        const bool touches = c.manifold->points[k].separation <= kTouchingGap * c.size;
+        if (touches) work.touching = std::uint8_t(work.touching | 1u << k);
+      }
+      work.pressed = work.touching;
+    }
+  }
+
+  const ContactConstraint& constraint(std::uint32_t i) const {
+    return solve_.constraints[s_.contacts[i].constraint];
+  }
+  const BlockColumn& column(std::uint32_t node) const { return plan_.columns[plan_.place_of[node]]; }
+  double* rows_at(std::span<double> x, std::uint32_t node) const { return x.data() + column(node).row; }
+
+  // What the contacts must bear: what they do, less the momentum that is left over.
+  void gather_loads() {
+    for (std::uint32_t i = 0; i < s_.nodes.size(); ++i) {
+      const StructureNode& node = s_.nodes[i];
+      const BodyMotion& motion = solve_.motion[node.body];
+      const Vec3 momentum = node.mass * motion.linear_velocity, spin = node.inertia * motion.angular_velocity;
+      double* load = rows_at(loads_, i);
+      load[0] = -double(momentum.x), load[1] = -double(momentum.y), load[2] = -double(momentum.z);
+      load[3] = -double(spin.x), load[4] = -double(spin.y), load[5] = -double(spin.z);
+    }
+    for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
+      const StructureContact& contact = s_.contacts[i];
+      ContactImpulse& impulse = s_.work[i].impulse;
+      solve_.kernels->read_impulse(solve_.blocks, int(contact.block), int(contact.lane), impulse);
+      add_wrench(contact, constraint(i), impulse, 1.0, loads_);
+    }
+  }
+
+  // Adds what the impulses do to both bodies.
+  void add_wrench(const StructureContact& contact, const ContactConstraint& c, const ContactImpulse& impulse,
+                  double factor, std::span<double> x) const {
+    const Manifold& manifold = *c.manifold;
+    const auto add = [&](Vec3 direction, Vec3 from_a, Vec3 from_b, float value) {
+      const Row row = make_row(direction, from_a, from_b, 1.0);
+      const double amount = factor * double(value);
+      if (contact.node_a != kNoNode) {
+        for (int j = 0; j < 6; ++j) rows_at(x, contact.node_a)[j] += amount * row.a[j];
+      }
+      if (contact.node_b != kNoNode) {
+        for (int j = 0; j < 6; ++j) rows_at(x, contact.node_b)[j] += amount * row.b[j];
+      }
+    };
+    for (int k = 0; k < manifold.count; ++k) {
+      add(manifold.normal, manifold.points[k].from_a, manifold.points[k].from_b, impulse.normal[k]);
+    }
+    const Vec3 from_b = impulse.friction_from_b;
+    add(impulse.friction, from_b + (manifold.points[0].from_a - manifold.points[0].from_b), from_b, 1.0f);
+    const Vec3 turn = impulse.twist * manifold.normal + impulse.rolling;
+    const double turns[3] = {factor * double(turn.x), factor * double(turn.y), factor * double(turn.z)};
+    for (int j = 0; j < 3; ++j) {
+      if (contact.node_a != kNoNode) rows_at(x, contact.node_a)[3 + j] -= turns[j];
+      if (contact.node_b != kNoNode) rows_at(x, contact.node_b)[3 + j] += turns[j];
+    }
+  }
+
+  // The second derivative of the energy; points that do not bear keep a trace of stiffness, so that what nothing holds has one.
+  void assemble() {
+    for (double& value : values_) value = 0.0;
+    for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
+      const StructureContact& contact = s_.contacts[i];
+      const StructureWork& work = s_.work[i];
+      const Rows rows = rows_of(constraint(i), work);
+      for (int k = 0; k < constraint(i).manifold->count; ++k) {
+        if ((work.touching >> k & 1) == 0) continue;
+        add_row(contact, rows.normal[k], (work.pressed >> k & 1) != 0 ? 1.0 : kTrace);
+      }
+      if (!rows.rubs) continue;
+      for (const Row* row : {&rows.tangent[0], &rows.tangent[1], &rows.twist})
+        add_row(contact, *row, row->stiffness);
+    }
+  }
+  void add_row(const StructureContact& contact, const Row& row, double stiffness) {
+    double* values = values_.data();
+    if (contact.node_a != kNoNode)
+      add_outer(values + column(contact.node_a).diagonal, row.a, row.a, stiffness);
+    if (contact.node_b != kNoNode)
+      add_outer(values + column(contact.node_b).diagonal, row.b, row.b, stiffness);
+    if (!contact.is_between()) return;
+    const bool a_first = contact.coupling.first_is_row;
+    add_outer(values + contact.coupling.offset, a_first ? row.a : row.b, a_first ? row.b : row.a, stiffness);
+  }
+
+  // How far the bodies' moves `x` press the row together.
+  double along(const StructureContact& contact, const Row& row, std::span<double> x) const {
+    double sum = 0.0;
+    if (contact.node_a != kNoNode) {
+      const double* moves = rows_at(x, contact.node_a);
+      for (int j = 0; j < 6; ++j) sum += row.a[j] * moves[j];
+    }
+    if (contact.node_b != kNoNode) {
+      const double* moves = rows_at(x, contact.node_b);
+      for (int j = 0; j < 6; ++j) sum += row.b[j] * moves[j];
+    }
+    return sum;
+  }
+  void add_to(std::span<double> x, const StructureContact& contact, const Row& row, double amount) const {
+    if (contact.node_a != kNoNode) {
+      for (int j = 0; j < 6; ++j) rows_at(x, contact.node_a)[j] += amount * row.a[j];
+    }
+    if (contact.node_b != kNoNode) {
+      for (int j = 0; j < 6; ++j) rows_at(x, contact.node_b)[j] += amount * row.b[j];
+    }
+  }
+
+  // What is not borne yet.
+  void find_way() {
+    std::copy(loads_.begin(), loads_.end(), way_.begin());
+    for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
+      const StructureContact& contact = s_.contacts[i];
+      const StructureWork& work = s_.work[i];
+      const Rows rows = rows_of(constraint(i), work);
+      for (int k = 0; k < constraint(i).manifold->count; ++k) {
+        if ((work.touching >> k & 1) == 0) continue;
+        add_to(way_, contact, rows.normal[k], -max(along(contact, rows.normal[k], place_), 0.0));
+      }
+      if (!rows.rubs) continue;
+      for (const Row* row : {&rows.tangent[0], &rows.tangent[1], &rows.twist}) {
+        add_to(way_, contact, *row, -row->stiffness * along(contact, *row, place_));
+      }
+    }
+  }
+
+  // How far to go along `way_`: to where the energy is least. Its derivative grows, so it is bracketed and cut in parts.
+  double find_step() {
+    slope_ = curve_ = 0.0;
+    for (std::size_t j = 0; j < way_.size(); ++j) slope_ -= loads_[j] * way_[j];
+    for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
+      const StructureContact& contact = s_.contacts[i];
+      StructureWork& work = s_.work[i];
+      const Rows rows = rows_of(constraint(i), work);
+      for (int k = 0; k < constraint(i).manifold->count; ++k) {
+        work.at[k] = work.ahead[k] = 0.0;
+        if ((work.touching >> k & 1) == 0) continue;
+        work.at[k] = along(contact, rows.normal[k], place_);
+        work.ahead[k] = along(contact, rows.normal[k], way_);
+      }
+      if (!rows.rubs) continue;
+      for (const Row* row : {&rows.tangent[0], &rows.tangent[1], &rows.twist}) {
+        const double ahead = along(contact, *row, way_);
+        slope_ += row->stiffness * along(contact, *row, place_) * ahead;
+        curve_ += row->stiffness * ahead * ahead;
+      }
+    }
+    if (absolute(slope_at(1.0)) <= 1.0e-9 * absolute(slope_at(0.0))) return 1.0;
+    double low = 0.0, high = 1.0;
+    while (slope_at(high) < 0.0 && high < kLongestStep) low = high, high *= 2.0;
+    for (int cut = 0; cut < kCuts; ++cut) {
+      const double middle = 0.5 * (low + high);
+      (slope_at(middle) < 0.0 ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+  }
+  double slope_at(double t) const {
+    double slope = slope_ + t * curve_;
+    for (const StructureWork& work : s_.work) {
+      for (int k = 0; k < kMaxManifoldPoints; ++k)
+        slope += max(work.at[k] + t * work.ahead[k], 0.0) * work.ahead[k];
+    }
+    return slope;
+  }
+
+  void go(double t) {
+    for (std::size_t j = 0; j < place_.size(); ++j) place_[j] += t * way_[j];
+    for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
+      StructureWork& work = s_.work[i];
+      work.pressed = 0;
+      for (int k = 0; k < kMaxManifoldPoints; ++k) {
+        const double press = work.at[k] + t * work.ahead[k];
+        if (press > 0.0) work.pressed = std::uint8_t(work.pressed | 1u << k);
+        work.impulse.normal[k] = float(max(press, 0.0));
+      }
+    }
+  }
+
+  // Friction and twist of all contacts, no more than there can be; those that were asked for more give way sideways.
+  void give_friction() {
+    for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
+      const StructureContact& contact = s_.contacts[i];
+      const ContactConstraint& c = constraint(i);
+      StructureWork& work = s_.work[i];
+      const Rows rows = rows_of(c, work);
+      ContactImpulse& impulse = work.impulse;
+      impulse.friction = impulse.rolling = {};
+      impulse.twist = 0.0f;
+      double load = 0.0;
+      for (const float normal : impulse.normal) load += double(normal);
+      if (!rows.rubs || !(load > 0.0)) continue;
+      const double u = rows.tangent[0].stiffness * along(contact, rows.tangent[0], place_);
+      const double v = rows.tangent[1].stiffness * along(contact, rows.tangent[1], place_);
+      const double twist = rows.twist.stiffness * along(contact, rows.twist, place_);
+      const double limit = double(impulse.twist_per_normal) * load;
+      const double slide = std::sqrt(u * u + v * v) / (double(c.static_friction) * load);
+      const double turn = limit > 0.0 ? twist / limit : 0.0;
+      const double use = std::sqrt(slide * slide + turn * turn);
+      const double share = use > 1.0 ? 1.0 / use : 1.0;
+      impulse.friction = float(share * u) * rows.u + float(share * v) * rows.v;
+      impulse.twist = float(share * twist);
+      if (use > 1.0)
+        work.shear = max(work.shear * float(max(kFrictionAim / use, kMostSoftening)), kLeastShear);
+    }
+  }
+
+  // Whether nothing that must be borne is left over: bodies that could still move have no load to do so.
+  bool bears_all() {
+    std::copy(loads_.begin(), loads_.end(), way_.begin());
+    for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
+      add_wrench(s_.contacts[i], constraint(i), s_.work[i].impulse, -1.0, way_);
+    }
+    for (std::uint32_t i = 0; i < s_.nodes.size(); ++i) {
+      const StructureNode& node = s_.nodes[i];
+      const double* left = rows_at(way_, i);
+      const double speed =
+          max(absolute(left[0]), max(absolute(left[1]), absolute(left[2]))) / double(node.mass);
+      if (!(speed <= kResidual * double(node.still))) return false;
+      const double least = double(min(node.inertia.xx, min(node.inertia.yy, node.inertia.zz)));
+      const double spin = max(absolute(left[3]), max(absolute(left[4]), absolute(left[5]))) / least;
+      if (!(spin <= kResidual * double(node.still_spin))) return false;
+    }
+    return true;
+  }
+
+  ContactStructure& s_;
+  const StructureSolve& solve_;
+  BlockPlan plan_;
+  double slope_ = 0.0, curve_ = 0.0;  // of the energy along the way, without its points
+  std::span<double> values_, room_, loads_, place_, way_;
+};
+
+}  // namespace
+
+void solve_structure_first(ContactStructure& structure, const StructureSolve& solve) {
+  structure.solved = is_still(structure, solve);
+  if (!structure.solved) {
+    const ArenaScope scope(*solve.arena);
+    Solver solver(structure, solve);
+    structure.solved = solver.find();
+    if (!structure.solved) return release(structure, solve);
+    solver.write();
+  }
+  hold(structure, solve);
+  stop(structure, solve);
+}
+
+void solve_structure_last(ContactStructure& structure, const StructureSolve& solve) {
+  if (!structure.solved) return;
+  if (!is_still(structure, solve)) {
+    const ArenaScope scope(*solve.arena);
+    Solver solver(structure, solve);
+    if (!solver.find()) return;
+    solver.write();
+  }
+  stop(structure, solve);
+}
+
+}  // namespace gyre
