@@ -218,6 +218,30 @@ def gear():
     return scene("a train of gears", (-0.2, 1.9, 6.5), (-0.2, 1.5, 0), bodies, joints)
 
 
+def planetary():
+    """Sun, three planets on a carrier, and a ring that is held: gears between pairs of shafts, by Willis's formula."""
+    sun, planet = 0.5, 0.5  # pitch radii, m
+    ring, height = sun + 2 * planet, 2
+    bodies, joints = [ground()], []
+    for i in range(36):
+        a = 2 * math.pi * i / 36
+        bodies.append(post(f"ring {i + 1}", ((ring + 0.08) * math.cos(a), height + (ring + 0.08) * math.sin(a), 0), bar(0.06, 0.14, 0.1),
+                           orientation=turned(a)))
+    bodies.append(wheel_part("sun", (0, height, 0), 0.98 * sun, 0.06, STEEL))
+    bodies.append(part("carrier", (0, height, -0.2), cylinder(sun + planet + 0.1, 0.03, orientation=UPRIGHT_TO_Z), color=WOOD))
+    for name in ("sun", "carrier"):
+        joints.append(joint("hinge", "world", name, name=f"shaft of the {name}", anchor=[0, height, 0], axis=[0, 0, 1]))
+    joints[0]["motor"] = {"target_velocity": 4, "max_force": 300}
+    joints.append(joint("gear", "sun", "carrier", axis=[0, 0, 1], axis_b=[0, 0, 1], ratio=-(1 + ring / sun)))
+    for i in range(3):
+        a = 2 * math.pi * i / 3
+        at = ((sun + planet) * math.cos(a), height + (sun + planet) * math.sin(a), 0)
+        bodies.append(wheel_part(f"planet {i + 1}", at, 0.98 * planet, 0.06, CLAY))
+        joints.append(joint("hinge", "carrier", f"planet {i + 1}", anchor=list(at), axis=[0, 0, 1]))
+        joints.append(joint("gear", f"planet {i + 1}", "carrier", axis=[0, 0, 1], axis_b=[0, 0, 1], ratio=-(1 - ring / planet)))
+    return scene("a planetary gear", (0, 2.2, 6), (0, height, 0), bodies, joints)
+
+
 def rack_and_pinion():
     """A pinion driven to and fro moves a rack; a spring pulls it back."""
     bodies = [ground(), wheel_part("pinion", (0, 1.6, 0), 0.4, 0.06, STEEL), part("rack", (0, 1.1, 0), bar(1.6, 0.1, 0.06), color=WOOD)]
@@ -394,4 +418,4 @@ def ball_scene():
 
 hinge_scene.__name__, ball_scene.__name__ = "hinge", "ball"
 
-ALL = (ball_scene, hinge_scene, slider, fixed, distance, chain, bridge, linkage, loop, cone, universal, spring, six_dof, gear, rack_and_pinion, pulley, wheel, path, mouse, motor)
+ALL = (ball_scene, hinge_scene, slider, fixed, distance, chain, bridge, linkage, loop, cone, universal, spring, six_dof, gear, planetary, rack_and_pinion, pulley, wheel, path, mouse, motor)

@@ -176,6 +176,53 @@ TEST(Gear, OfNegativeRatioTurnsTheSameWay) {
   EXPECT_NEAR(double(world.angular_velocity(b).y), 0.5 / 1.25, 1e-4);
 }
 
+// A planetary gear whose ring is held, of gears between pairs of shafts by Willis's formula: with sun, planets and ring of 24, 24 and
+// 72 teeth the carrier turns at 1 / (1 + 72 / 24) of the sun, a planet at 1 - 72 / 24 of the carrier, both against the world.
+TEST(Gear, PlanetsFollowWillis) {
+  World world = weightless();
+  const auto turning = [](double mass, float about, DVec3 place) {
+    return point_body(mass, {about, about, about}, place);
+  };
+  const BodyId sun = world.add_body(turning(1.0, 0.5f, {}));
+  const BodyId carrier = world.add_body(turning(2.0, 0.8f, {}));
+  world.add_joint({.kind = JointKind::hinge, .b = sun, .axis = {0, 0, 1}});
+  world.add_joint({.kind = JointKind::hinge, .b = carrier, .axis = {0, 0, 1}});
+  ASSERT_TRUE(world.add_joint(
+      {.kind = JointKind::gear, .a = sun, .b = carrier, .axis = {0, 0, 1}, .ratio = -(1.0f + 72.0f / 24.0f)}));
+  std::vector<BodyId> planets;
+  for (int i = 0; i < 3; ++i) {
+    const double a = 2.0 * kPiDouble * i / 3.0;
+    const DVec3 at{2.0 * std::cos(a), 2.0 * std::sin(a), 0};  // pitch radii of 1 m
+    planets.push_back(world.add_body(turning(0.3, 0.2f, at)));
+    world.add_joint(
+        {.kind = JointKind::hinge, .a = carrier, .b = planets.back(), .anchor = at, .axis = {0, 0, 1}});
+    ASSERT_TRUE(world.add_joint({.kind = JointKind::gear,
+                                 .a = planets.back(),
+                                 .b = carrier,
+                                 .axis = {0, 0, 1},
+                                 .ratio = -(1.0f - 72.0f / 24.0f)}));
+  }
+  for (int i = 0; i < 120; ++i) {
+    world.add_torque(sun, {0, 0, 2});
+    world.step(kStep);
+  }
+  const auto spin = [&](BodyId body) { return double(world.angular_velocity(body).z); };
+  // Seen from the sun: the carrier with the planets' masses by the square of 1 / 4, the planets' own turning by that of 1 / 2.
+  const double moved = 0.5 + (0.8 + 3 * 0.3 * 4.0) / 16.0 + 3 * 0.2 / 4.0;
+  EXPECT_TRUE(relative_row("A-42 planetary: acceleration of the sun", spin(sun) / 2.0, 2.0 / moved, 1e-2, 1e-4));
+  EXPECT_TRUE(relative_row("A-42 planetary: sun over carrier", spin(sun) / spin(carrier), 4.0, 1e-4, 1e-6));
+  // Teeth do not slip: sun and planet move alike where they meet, planet and ring not at all.
+  for (const BodyId planet : planets) {
+    const DVec3 out = 0.5 * world.pose(planet).position;  // of length 1
+    const auto tooth = [&](BodyId body, DVec3 at) { return DVec3(world.velocity_at(body, at)); };
+    EXPECT_LE(length(tooth(sun, out) - tooth(planet, out)), 1e-3 * spin(sun));
+    EXPECT_LE(length(tooth(planet, 3.0 * out)), 1e-3 * spin(sun));
+  }
+  run(world, 20.0);
+  const double slip = std::fabs(spin(sun) - 4.0 * spin(carrier));
+  EXPECT_TRUE(limit_row("A-42 planetary: slip of the carrier (rad/s)", slip, 1e-3, 1e-4));
+}
+
 // A rack of 2 kg on a pinion of radius 0.25 m and inertia 0.125 under 1 N m: 1 / (0.125 + 2 * 0.25^2) = 4 rad/s^2.
 TEST(RackAndPinion, RollWithoutSlip) {
   World world = weightless();
