@@ -1,24 +1,28 @@
-// Rays, moving balls and overlaps a second in a world of 10,000 boxes over a terrain of triangles: one by one, in batches over
-// the workers, by brute force, by Bullet where its headers are at hand, and by Box3D where BOX3D_ROOT names a folder with its
-// headers (include/) and its library (libbox3d.a).
+// Rays, moving balls, overlaps, closest points and ways out of overlap a second in a world of 10,000 boxes over a terrain of
+// triangles: one by one, in batches over one worker, two and all, by brute force, by Bullet where its headers are at hand, by Box3D
+// where BOX3D_ROOT names a folder with its headers (include/) and its library (libbox3d.a), and by Jolt where GYRE_JOLT names its
+// built source (bench/peers).
 //
 //   bench/queries [rounds]
 //
 // Everything is measured in turn, round after round, so that what else the machine does falls on all alike. Printed are the
 // median of the rounds, and ratios to Gyre's single queries as the median of the ratios within a round, with half the distance
-// between their quartiles as the error.
+// between their quartiles as the error: by the time of the processors, and by the clock on the wall.
 #include <gyre/gyre.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <random>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #if defined(GYRE_HAVE_BULLET)
@@ -26,6 +30,9 @@
 #endif
 #if defined(GYRE_HAVE_BOX3D)
 #include <box3d/box3d.h>
+#endif
+#if defined(GYRE_HAVE_JOLT)
+#include "bench/peers/jolt_queries.h"
 #endif
 
 namespace {
@@ -94,39 +101,51 @@ World make_world(const Scene& scene, BroadPhaseKind kind, int threads) {
   return world;
 }
 
-double seconds(const std::function<void()>& work) {
-  const auto begin = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
 struct Row {
   std::string name;
   double count = 0;
   std::function<void()> work;
-  std::vector<double> times;  // s a query, round after round
+  std::vector<double> times;  // s a query, round after round: of the clock on the wall
+  std::vector<double>
+      processor;  // and of all processors together, which other work on the machine does not lengthen
 };
+
+void time_round(Row& row, bool kept) {
+  const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t begin_processor = std::clock();
+  row.work();
+  const double processor = double(std::clock() - begin_processor) / double(CLOCKS_PER_SEC);
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (!kept) return;
+  row.times.push_back(wall / row.count);
+  row.processor.push_back(processor / row.count);
+}
 
 double quantile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
   return values[std::size_t(share * double(values.size() - 1) + 0.5)];
 }
 
+struct Ratio {
+  double middle, error;
+};
+Ratio ratio(const std::vector<double>& first, const std::vector<double>& second) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < first.size(); ++i) ratios.push_back(first[i] / second[i]);
+  return {quantile(ratios, 0.5), 0.5 * (quantile(ratios, 0.75) - quantile(ratios, 0.25))};
+}
+
 // The first row of a group is what the others are compared with.
 void measure(const char* what, std::vector<Row>& rows, int rounds) {
   for (int round = -1; round < rounds; ++round) {
-    for (Row& row : rows) {
-      const double time = seconds(row.work) / row.count;
-      if (round >= 0) row.times.push_back(time);
-    }
+    for (Row& row : rows) time_round(row, round >= 0);
   }
   std::printf("%s\n", what);
   for (const Row& row : rows) {
-    std::vector<double> ratios;
-    for (std::size_t i = 0; i < row.times.size(); ++i) ratios.push_back(rows[0].times[i] / row.times[i]);
-    std::printf("  %-28s %12.0f a second   x %.3g +- %.2g\n", row.name.c_str(),
-                1.0 / quantile(row.times, 0.5), quantile(ratios, 0.5),
-                0.5 * (quantile(ratios, 0.75) - quantile(ratios, 0.25)));
+    const Ratio wall = ratio(rows[0].times, row.times), processor = ratio(rows[0].processor, row.processor);
+    std::printf("  %-20s %10.0f a second of a processor, x %.3g +- %.2g; on the wall x %.3g +- %.2g\n",
+                row.name.c_str(), 1.0 / quantile(row.processor, 0.5), processor.middle, processor.error,
+                wall.middle, wall.error);
   }
 }
 
@@ -286,161 +305,167 @@ class Box3dWorld {
 };
 #endif
 
-}  // namespace
-
-int main(int count, char** arguments) {
-  const int rounds = count > 1 ? std::max(1, std::atoi(arguments[1])) : 15;
-  const Scene scene = make_scene();
-  const World one = make_world(scene, BroadPhaseKind::bvh, 1),
-              all = make_world(scene, BroadPhaseKind::bvh, 0);
-  const World brute = make_world(scene, BroadPhaseKind::brute_force, 1);
-  std::vector<CastHit> hits(scene.rays.size());
-  std::vector<std::uint32_t> counts(scene.places.size());
-  std::vector<Row> rays, casts, overlaps, boxes;
-  const auto few = [](std::size_t n) { return std::max<std::size_t>(n / 40, 1); };  // of what takes long
-
-  const auto cast_rays = [&](const World& world, std::size_t n) {
-    for (std::size_t i = 0; i < n; ++i)
-      sink = sink + world.cast_ray(scene.rays[i].origin, scene.rays[i].way).has_value();
-  };
-  rays.push_back({"one by one", double(scene.rays.size()), [&] { cast_rays(one, scene.rays.size()); }, {}});
-  rays.push_back({"batch, one worker",
-                  double(scene.rays.size()),
-                  [&] { sink = sink + std::size_t(one.cast_rays(scene.rays, hits).code); },
-                  {}});
-  rays.push_back({"batch, all workers",
-                  double(scene.rays.size()),
-                  [&] { sink = sink + std::size_t(all.cast_rays(scene.rays, hits).code); },
-                  {}});
-  rays.push_back(
-      {"brute force", double(few(scene.rays.size())), [&] { cast_rays(brute, few(scene.rays.size())); }, {}});
-  const auto cast_shapes = [&](const World& world, std::size_t n) {
-    for (std::size_t i = 0; i < n; ++i) sink = sink + world.cast_shape(scene.casts[i]).has_value();
-  };
-  casts.push_back(
-      {"one by one", double(scene.casts.size()), [&] { cast_shapes(one, scene.casts.size()); }, {}});
-  casts.push_back(
-      {"batch, all workers",
-       double(scene.casts.size()),
-       [&] {
-         sink =
-             sink + std::size_t(all.cast_shapes(scene.casts, std::span(hits).first(scene.casts.size())).code);
-       },
-       {}});
-  casts.push_back({"brute force",
-                   double(few(scene.casts.size())),
-                   [&] { cast_shapes(brute, few(scene.casts.size())); },
-                   {}});
-  const auto count_overlaps = [&](const World& world, std::size_t n) {
-    for (std::size_t i = 0; i < n; ++i) sink = sink + world.find_overlaps(scene.places[i], {});
-  };
-  overlaps.push_back(
-      {"one by one", double(scene.places.size()), [&] { count_overlaps(one, scene.places.size()); }, {}});
-  overlaps.push_back({"batch, all workers",
-                      double(scene.places.size()),
-                      [&] { sink = sink + std::size_t(all.count_overlaps(scene.places, counts).code); },
-                      {}});
-  overlaps.push_back({"brute force",
-                      double(few(scene.places.size())),
-                      [&] { count_overlaps(brute, few(scene.places.size())); },
-                      {}});
-  const auto box_at = [](const ShapePlace& place) { return ShapePlace{Box{{1, 1, 1}}, place.pose}; };
-  std::vector<ShapePlace> box_places;
-  for (const ShapePlace& place : scene.places) box_places.push_back(box_at(place));
-  boxes.push_back({"one by one",
-                   double(box_places.size()),
-                   [&] {
-                     for (const ShapePlace& place : box_places) sink = sink + one.find_overlaps(place, {});
-                   },
-                   {}});
-  boxes.push_back({"batch, all workers",
-                   double(box_places.size()),
-                   [&] { sink = sink + std::size_t(all.count_overlaps(box_places, counts).code); },
-                   {}});
-  boxes.push_back({"brute force",
-                   double(few(box_places.size())),
-                   [&] {
-                     for (std::size_t i = 0; i < few(box_places.size()); ++i)
-                       sink = sink + brute.find_overlaps(box_places[i], {});
-                   },
-                   {}});
-#if defined(GYRE_HAVE_BULLET)
-  BulletWorld other(scene);
-  // Bullet's rays do not see a box that they start in, and meet what they pass by centimetres, the more the longer they are.
-  std::size_t differ = 0, near_misses = 0;
-  for (const Ray& ray : scene.rays) {
-    const std::optional<CastHit> hit = one.cast_ray(ray.origin, ray.way);
-    if ((hit && hit->inside) || other.ray(ray) == hit.has_value()) continue;
-    ++(one.shape_hits({Sphere{0.01f}, {ray.origin, {}}, ray.way}) ? near_misses : differ);
+#if defined(GYRE_HAVE_JOLT)
+bench::JoltQueries make_jolt(const Scene& scene) {
+  std::vector<bench::JoltBox> boxes;
+  for (const Pose& pose : scene.boxes) {
+    const DVec3 p = pose.position;
+    const Quat q = pose.orientation;
+    boxes.push_back({{p.x, p.y, p.z}, {q.x, q.y, q.z, q.w}});
   }
-  std::printf("of %zu rays %zu meet something in only one engine, %zu more pass something within 1 cm\n",
-              scene.rays.size(), differ, near_misses);
-  rays.push_back({"Bullet",
-                  double(scene.rays.size()),
-                  [&] {
-                    for (const Ray& ray : scene.rays) sink = sink + other.ray(ray);
-                  },
-                  {}});
-  casts.push_back({"Bullet",
-                   double(scene.casts.size()),
-                   [&] {
-                     for (const ShapeCast& cast : scene.casts) sink = sink + other.ball(cast);
-                   },
-                   {}});
-  overlaps.push_back({"Bullet",
-                      double(scene.places.size()),
-                      [&] {
-                        for (const ShapePlace& place : scene.places) sink = sink + other.overlaps(place);
-                      },
-                      {}});
-  boxes.push_back({"Bullet",
-                   double(scene.places.size()),
-                   [&] {
-                     for (const ShapePlace& place : scene.places) sink = sink + other.overlaps(place, true);
-                   },
-                   {}});
+  return bench::JoltQueries({&scene.vertices[0].x, 3 * scene.vertices.size()},
+                            {&scene.indices[0], scene.indices.size()}, boxes);
+}
+#endif
+
+// The rows of one question: asked one by one, in batches, by brute force, and of others.
+class Bench {
+ public:
+  explicit Bench(int rounds) : rounds_(rounds) {}
+  void run() {
+    const std::size_t n = scene_.places.size();
+    ask(
+        "rays", scene_.rays.size(),
+        [&](const World& w, std::size_t i) {
+          return w.cast_ray(scene_.rays[i].origin, scene_.rays[i].way).has_value();
+        },
+        [&](const World& w) { return w.cast_rays(scene_.rays, hits_); });
+#if defined(GYRE_HAVE_BULLET)
+    other("Bullet", scene_.rays.size(), [&](std::size_t i) { return bullet_.ray(scene_.rays[i]); });
 #endif
 #if defined(GYRE_HAVE_BOX3D)
-  const Box3dWorld third(scene);
-  std::size_t different = 0;
-  for (const Ray& ray : scene.rays) {
-    const std::optional<CastHit> hit = one.cast_ray(ray.origin, ray.way);
-    different += !(hit && hit->inside) && third.ray(ray) != hit.has_value();
-  }
-  std::printf("of %zu rays %zu meet something in only one of Gyre and Box3D\n", scene.rays.size(), different);
-  const b3Vec3 middle[1] = {{0, 0, 0}};
-  std::vector<b3Vec3> corners;
-  for (int i = 0; i < 8; ++i)
-    corners.push_back({i & 1 ? 1.0f : -1.0f, i & 2 ? 1.0f : -1.0f, i & 4 ? 1.0f : -1.0f});
-  rays.push_back({"Box3D",
-                  double(scene.rays.size()),
-                  [&] {
-                    for (const Ray& ray : scene.rays) sink = sink + third.ray(ray);
-                  },
-                  {}});
-  casts.push_back({"Box3D",
-                   double(scene.casts.size()),
-                   [&] {
-                     for (const ShapeCast& cast : scene.casts) sink = sink + third.ball(cast);
-                   },
-                   {}});
-  overlaps.push_back({"Box3D",
-                      double(scene.places.size()),
-                      [&] {
-                        for (const ShapePlace& place : scene.places)
-                          sink = sink + third.overlaps(place, middle, 1.0f);
-                      },
-                      {}});
-  boxes.push_back({"Box3D",
-                   double(scene.places.size()),
-                   [&] {
-                     for (const ShapePlace& place : scene.places)
-                       sink = sink + third.overlaps(place, corners, 0.0f);
-                   },
-                   {}});
+    other("Box3D", scene_.rays.size(), [&](std::size_t i) { return box3d_.ray(scene_.rays[i]); });
 #endif
-  measure("rays", rays, rounds);
-  measure("moving balls", casts, rounds);
-  measure("overlaps of a ball", overlaps, rounds);
-  measure("overlaps of a box", boxes, rounds);
-}
+#if defined(GYRE_HAVE_JOLT)
+    other("Jolt", scene_.rays.size(),
+          [&](std::size_t i) { return jolt_.ray(&scene_.rays[i].origin.x, &scene_.rays[i].way.x); });
+#endif
+    finish();
+    ask(
+        "moving balls", n,
+        [&](const World& w, std::size_t i) { return w.cast_shape(scene_.casts[i]).has_value(); },
+        [&](const World& w) { return w.cast_shapes(scene_.casts, std::span(hits_).first(n)); });
+#if defined(GYRE_HAVE_BULLET)
+    other("Bullet", n, [&](std::size_t i) { return bullet_.ball(scene_.casts[i]); });
+#endif
+#if defined(GYRE_HAVE_BOX3D)
+    other("Box3D", n, [&](std::size_t i) { return box3d_.ball(scene_.casts[i]); });
+#endif
+#if defined(GYRE_HAVE_JOLT)
+    other("Jolt", n, [&](std::size_t i) {
+      return jolt_.ball(&scene_.casts[i].pose.position.x, &scene_.casts[i].way.x, 0.5f);
+    });
+#endif
+    finish();
+    overlaps("overlaps of a ball", scene_.places, false);
+    std::vector<ShapePlace> cubes;
+    for (const ShapePlace& place : scene_.places) cubes.push_back({Box{{1, 1, 1}}, place.pose});
+    overlaps("overlaps of a box", cubes, true);
+    ask(
+        "closest points within 5 m of a ball", n,
+        [&](const World& w, std::size_t i) { return w.closest_point(scene_.places[i], 5.0).has_value(); },
+        [&](const World& w) { return w.closest_points(scene_.places, 5.0, closest_); });
+    finish();
+    ask("ways out of overlap of a box", n,
+        [&](const World& w, std::size_t i) { return w.find_penetrations(cubes[i], deep_); }, {});
+    finish();
+  }
+
+ private:
+  using One = std::function<std::size_t(const World&, std::size_t)>;
+  using Batch = std::function<Error(const World&)>;
+
+  void ask(const char* what, std::size_t count, const One& one, const Batch& batch) {
+    what_ = what;
+    rows_.clear();
+    const auto singly = [one](const World& world, std::size_t n) {
+      for (std::size_t i = 0; i < n; ++i) sink = sink + one(world, i);
+    };
+    const std::size_t few = std::max<std::size_t>(count / 40, 1);  // of what takes long
+    rows_.push_back({"one by one", double(count), [this, singly, count] { singly(one_, count); }, {}, {}});
+    if (batch) {
+      const auto together = [&](const char* name, const World& world) {
+        rows_.push_back(
+            {name, double(count), [batch, &world] { sink = sink + std::size_t(batch(world).code); }, {}, {}});
+      };
+      together("batch, one worker", one_);
+      together("batch, two workers", two_);
+      together("batch, all workers", all_);
+    }
+    rows_.push_back({"brute force", double(few), [this, singly, few] { singly(brute_, few); }, {}, {}});
+  }
+  void overlaps(const char* what, const std::vector<ShapePlace>& places, bool cube) {
+    const std::size_t n = places.size();
+    ask(
+        what, n, [&](const World& w, std::size_t i) { return w.find_overlaps(places[i], {}); },
+        [&](const World& w) { return w.count_overlaps(places, counts_); });
+    static_cast<void>(cube);
+#if defined(GYRE_HAVE_BULLET)
+    other("Bullet", n, [&, cube](std::size_t i) { return bullet_.overlaps(places[i], cube); });
+#endif
+#if defined(GYRE_HAVE_BOX3D)
+    std::vector<b3Vec3> points(1, b3Vec3{0, 0, 0});
+    if (cube) points.clear();
+    for (int i = 0; i < (cube ? 8 : 0); ++i)
+      points.push_back({i & 1 ? 1.0f : -1.0f, i & 2 ? 1.0f : -1.0f, i & 4 ? 1.0f : -1.0f});
+    other("Box3D", n, [&, points, cube](std::size_t i) {
+      return box3d_.overlaps(places[i], points, cube ? 0.0f : 1.0f);
+    });
+#endif
+#if defined(GYRE_HAVE_JOLT)
+    other("Jolt", n,
+          [&, cube](std::size_t i) { return jolt_.overlaps(&places[i].pose.position.x, 1.0f, cube); });
+#endif
+    finish();
+  }
+  template <class Fn>
+  void other(const char* name, std::size_t count, Fn fn) {
+    const auto all = [fn, count] {
+      std::size_t met = 0;
+      for (std::size_t i = 0; i < count; ++i) met += std::size_t(fn(i));
+      sink = sink + met;
+      return met;
+    };
+    found_.push_back({name, all()});
+    rows_.push_back({name, double(count), [all] { all(); }, {}, {}});
+  }
+  void finish() {
+    measure(what_, rows_, rounds_);
+    if (!found_.empty()) {
+      // That all answer the same question: how much each of them met.
+      const std::size_t before = sink;
+      rows_[0].work();
+      std::printf("  met: Gyre %zu", sink - before);
+      for (const auto& [name, count] : found_) std::printf(", %s %zu", name, count);
+      std::printf("\n");
+    }
+    found_.clear();
+  }
+
+  int rounds_;
+  const Scene scene_ = make_scene();
+  const World one_ = make_world(scene_, BroadPhaseKind::bvh, 1),
+              two_ = make_world(scene_, BroadPhaseKind::bvh, 2),
+              all_ = make_world(scene_, BroadPhaseKind::bvh, 0);
+  const World brute_ = make_world(scene_, BroadPhaseKind::brute_force, 1);
+#if defined(GYRE_HAVE_BULLET)
+  BulletWorld bullet_{scene_};
+#endif
+#if defined(GYRE_HAVE_BOX3D)
+  const Box3dWorld box3d_{scene_};
+#endif
+#if defined(GYRE_HAVE_JOLT)
+  const bench::JoltQueries jolt_ = make_jolt(scene_);
+#endif
+  std::vector<CastHit> hits_ = std::vector<CastHit>(scene_.rays.size());
+  std::vector<std::uint32_t> counts_ = std::vector<std::uint32_t>(scene_.places.size());
+  std::vector<ClosestPoint> closest_ = std::vector<ClosestPoint>(scene_.places.size());
+  std::array<Penetration, 16> deep_;
+  const char* what_ = "";
+  std::vector<Row> rows_;
+  std::vector<std::pair<const char*, std::size_t>> found_;
+};
+
+}  // namespace
+
+int main(int count, char** arguments) { Bench(count > 1 ? std::max(1, std::atoi(arguments[1])) : 15).run(); }
