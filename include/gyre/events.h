@@ -37,7 +37,7 @@ struct ContactPersist {
   float impulse = 0;  // N s, along the normals, over the last step and all points
 };
 // Something entered or left a sensor. What passes through within one step, however fast, is told to enter and to leave in
-// that step; sensors that are meshes or height fields see only what overlaps them between steps.
+// that step. A sensor or a visitor that is a mesh or height field is met from both sides; two of these do not see each other.
 struct SensorTouch {
   ShapeId sensor{}, visitor{};
   bool begins = true;

@@ -67,8 +67,10 @@ struct Mover {
 
   // Whether the shape comes into `other` before `end` and is clearly out of it at `end`. Whether it was inside as the step
   // began is for the caller to know: the look at the contact decided that, in float.
-  bool crosses(const SweptShape& other, double end) const {
-    if (!is_convex(other.shape->kind)) return false;
+  bool crosses(const SweptShape& other, double end, TriangleHull& triangle) const {
+    if (other.shape->kind == ShapeKind::plane) return false;  // a half space is not crossed, only entered
+    if (!is_convex(other.shape->kind))
+      return crosses_surface(whole, other, end, kClear * scale.target, scale, triangle);
     if (find_gap(whole, other, end, scale.target).distance <= kClear * scale.target) return false;
     const double before = find_gap(whole, other, 0.0, scale.target).distance;
     // At the very surface: on its way in or out.
@@ -147,11 +149,11 @@ BodyStop first_stop(const ContinuousInput& input, const Way& way, Array<std::uin
 }
 
 void find_crossings(const ContinuousInput& input, const Way& way, double end, Array<std::uint32_t>& found,
-                    Array<std::uint64_t>& crossings) {
+                    Array<std::uint64_t>& crossings, TriangleHull& triangle) {
   for_each_in_the_way(
       input, way, found, is_gate,
       [&](const Mover& mover, std::uint32_t index, std::uint32_t gate, const SweptShape& other) {
-        if (!mover.crosses(other, end)) return;
+        if (!mover.crosses(other, end, triangle)) return;
         const bool senses = input.proxies[index].sensor;
         crossings.push_back(senses ? crossing_key(index, gate) : crossing_key(gate, index));
       });
@@ -210,7 +212,7 @@ class Slide {
       const Way rest{fast_, next, from, true, stop.by_core};
       const BodyStop second = first_stop(input_, rest, found_, triangle_);
       const double part = second.hit ? second.time : 1.0;
-      find_crossings(input_, rest, part, found_, crossings_);
+      find_crossings(input_, rest, part, found_, crossings_, triangle_);
       // What moves on pushes the body before it whatever stands behind.
       const DVec3 step = part * drift + carried;
       gone += step;
@@ -260,9 +262,10 @@ Aabb box_of_way(const ColliderShape& shape, const Sweep& sweep) {
 void ContinuousCollision::clamp_fast_bodies(const ContinuousInput& input, std::span<const FastBody> fast,
                                             TaskSystem& tasks, std::span<KeptMotion> kept) {
   crossings_.clear();
-  if (fast.empty()) return;
+  if (fast.empty() && input.gates.empty()) return;
   workers_.resize(std::size_t(tasks.worker_count()));
   for (Worker& worker : workers_) worker.crossings.clear();
+  look_at_gates(input);
   for_blocks(tasks, int(fast.size()), kBlock, [&](int begin, int end, int worker) {
     Worker& own = workers_[worker];
     for (int i = begin; i < end; ++i) {
@@ -272,11 +275,15 @@ void ContinuousCollision::clamp_fast_bodies(const ContinuousInput& input, std::s
       out = {};
       if (!is_sound(sweep)) continue;
       const Way way{body, sweep};
+      if (body.only_crosses) {
+        find_crossings(input, way, 1.0, own.found, own.crossings, *own.triangle);
+        continue;
+      }
       BodyStop stop = first_stop(input, way, own.found, *own.triangle);
       // Rounded down: the fraction must not pass the impact.
       const auto fraction = float(stop.time);
       out.fraction = double(fraction) > stop.time ? fraction * (1.0f - 1.2e-7f) : fraction;
-      find_crossings(input, way, double(out.fraction), own.found, own.crossings);
+      find_crossings(input, way, double(out.fraction), own.found, own.crossings, *own.triangle);
       stop.time = double(out.fraction);
       if (stop.by_core && length_squared(stop.normal) > 0.5) {
         out.blow = to_float(stop.normal);
@@ -291,6 +298,22 @@ void ContinuousCollision::clamp_fast_bodies(const ContinuousInput& input, std::s
     }
   });
   gather_crossings();
+}
+
+void ContinuousCollision::look_at_gates(const ContinuousInput& input) {
+  for (const GatePair& pair : input.gates) {
+    const ColliderShape &shape = input.shapes[pair.convex], &surface = input.shapes[pair.surface];
+    const Sweep sweep = input.sweep_of(input.proxies[pair.convex].body);
+    const Sweep other = input.sweep_of(input.proxies[pair.surface].body);
+    if (!is_sound(sweep) || !is_sound(other)) continue;
+    const Mover mover(shape, sweep, 0.0f, false);
+    if (!mover.crosses(make_swept_shape(surface.shape, surface.body_from_shape, other), 1.0,
+                       *workers_[0].triangle))
+      continue;
+    const bool senses = input.proxies[pair.convex].sensor;
+    workers_[0].crossings.push_back(senses ? crossing_key(pair.convex, pair.surface)
+                                           : crossing_key(pair.surface, pair.convex));
+  }
 }
 
 // In an order that neither threads nor the broad phase know of, each pair once although both may be fast.

@@ -28,9 +28,10 @@ namespace gyre {
 // A body that may have gone too far.
 struct FastBody {
   std::uint32_t body = 0;
-  bool continuous = false;  // also against dynamic bodies (always against fixed and kinematic ones)
-  float least = 0.0f;       // part of its way that it keeps in any case, if its core can
-  bool slides = true;       // goes on along what it met; not what hangs on joints, which know nothing of it
+  bool continuous = false;    // also against dynamic bodies (always against fixed and kinematic ones)
+  float least = 0.0f;         // part of its way that it keeps in any case, if its core can
+  bool slides = true;         // goes on along what it met; not what hangs on joints, which know nothing of it
+  bool only_crosses = false;  // nothing stops it: only what it crosses is told
 };
 
 // What a fast body keeps of its motion: a fraction of it (1 where nothing is in the way), and then, without turning, a way
@@ -59,6 +60,12 @@ inline bool is_fast(Vec3 moved, Vec3 turned, float reach, float inner) {
 // A box around the whole way of a shape, turning included.
 Aabb box_of_way(const ColliderShape& shape, const Sweep& sweep);
 
+// A surface that moves by itself and a convex shape on its way, one of them a sensor: shapes. The surface is not swept itself,
+// and where it will be the broad phase does not know.
+struct GatePair {
+  std::uint32_t convex = 0, surface = 0;
+};
+
 struct ContinuousInput {
   ColliderShapes shapes;
   std::span<const Proxy> proxies;  // as the broad phase last saw them
@@ -70,6 +77,7 @@ struct ContinuousInput {
   FunctionRef<std::span<const std::uint32_t>(std::uint32_t body)> shapes_of;
   // Whether the shape in the way lets pass what moves so against it; null: none does.
   const FunctionRef<bool(std::uint32_t shape, Vec3 way)>* lets_pass = nullptr;
+  std::span<const GatePair> gates{};
 };
 
 class ContinuousCollision {
@@ -78,7 +86,7 @@ class ContinuousCollision {
   void clamp_fast_bodies(const ContinuousInput& input, std::span<const FastBody> fast, TaskSystem& tasks,
                          std::span<KeptMotion> kept);
   // Of the last call: crossing_key of each sensor and visitor, in rising order, also of pairs that overlapped from the
-  // start. Convex sensors only.
+  // start.
   std::span<const std::uint64_t> crossings() const { return crossings_; }
 
  private:
@@ -88,6 +96,7 @@ class ContinuousCollision {
     std::unique_ptr<TriangleHull> triangle = std::make_unique<TriangleHull>();
   };
   void gather_crossings();
+  void look_at_gates(const ContinuousInput& input);
 
   Array<Worker> workers_;
   Array<std::uint64_t> crossings_, sort_scratch_;

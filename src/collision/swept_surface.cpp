@@ -83,17 +83,35 @@ class SurfaceSweep {
         start_(surface_from_a(0.0)) {}
 
   Stop first_stop(double end) {
-    const float way = length(a_.sweep->moved - b_.sweep->moved) + length(a_.sweep->turned) * a_.radius;
-    const int wanted = 1 + int(min(way / (kPieceRadii * a_.radius), float(kMaxPieces - 1)));
+    const int wanted = pieces();
     stop_ = no_stop(end);
     for (int piece = 0; piece < wanted && !stop_.hit; ++piece) {
       const double from = double(piece) / double(wanted);
       if (from >= end) break;
       stop_.time = min(double(piece + 1) / double(wanted), end);
-      look_at_piece(from);
+      for_each_triangle(from, stop_.time, [&](std::uint32_t id) { look_at(id, from); });
     }
     if (!stop_.hit) stop_.time = end;
     return stop_;
+  }
+
+  bool crosses(double end, double clear) {
+    bool met = false;
+    for_each_triangle(end, end, [&](std::uint32_t id) {
+      place(surface_.triangle(id));
+      met = met || find_gap(a_, near_frame_, end, scale_.target).distance <= clear;
+    });
+    if (met) return false;
+    const int wanted = pieces();
+    for (int piece = 0; piece < wanted && !met; ++piece) {
+      const double from = double(piece) / double(wanted), to = min(double(piece + 1) / double(wanted), end);
+      if (from >= end) break;
+      for_each_triangle(from, to, [&](std::uint32_t id) {
+        place(surface_.triangle(id));
+        met = met || meets(from, to);
+      });
+    }
+    return met;
   }
 
  private:
@@ -115,8 +133,15 @@ class SurfaceSweep {
                 bulge + float(scale_.touching));
   }
 
-  void look_at_piece(double from) {
-    const Aabb box = piece_box(from, stop_.time);
+  int pieces() const {
+    const float way = length(a_.sweep->moved - b_.sweep->moved) + length(a_.sweep->turned) * a_.radius;
+    return 1 + int(min(way / (kPieceRadii * a_.radius), float(kMaxPieces - 1)));
+  }
+
+  // Calls fn(triangle) for those that the shape may come near between two times.
+  template <class Fn>
+  void for_each_triangle(double from, double to, const Fn& fn) {
+    const Aabb box = piece_box(from, to);
     // Triangles are moved near the origin of a frame of their own, so that floats stay small in a large mesh.
     origin_ = surface_from_a(from).position;
     near_frame_ = b_;
@@ -126,7 +151,7 @@ class SurfaceSweep {
           surface_.mesh->tree, box, [](std::uint32_t, int) { return true; },
           [&](std::uint32_t first, std::uint32_t count) {
             for (std::uint32_t id = first; id < first + count; ++id) {
-              if (overlap(triangle_box(*surface_.mesh, id), box)) look_at(id, from);
+              if (overlap(triangle_box(*surface_.mesh, id), box)) fn(id);
             }
           });
       return;
@@ -136,9 +161,24 @@ class SurfaceSweep {
         [&](std::uint32_t column, std::uint32_t row) {
           if (!is_solid_cell(*surface_.field, column, row)) return;
           const std::uint32_t cell = row * surface_.field->cell_columns() + column;
-          look_at(2 * cell, from);
-          look_at(2 * cell + 1, from);
+          fn(2 * cell);
+          fn(2 * cell + 1);
         });
+  }
+
+  void place(const TriangleView& view) {
+    hull_.set(view.v[0] - origin_, view.v[1] - origin_, view.v[2] - origin_);
+    near_frame_.shape = &hull_.shape();
+    near_frame_.radius =
+        outer_radius(hull_.shape(), inverse_times(near_frame_.body_from_shape, b_.sweep->center));
+  }
+
+  // Whether the shape comes onto the triangle that was placed last, from either side. What it is on already as the step
+  // begins counts where it goes in farther.
+  bool meets(double from, double to) const {
+    const double before = find_gap(a_, near_frame_, from, scale_.target).distance;
+    if (before > 0.0) return time_of_impact(a_, near_frame_, from, to, min(scale_.target, 0.5 * before)).hit;
+    return from > 0.0 || find_gap(a_, near_frame_, 0.001 * to, scale_.target).distance < before;
   }
 
   void look_at(std::uint32_t id, double from) {
@@ -152,10 +192,7 @@ class SurfaceSweep {
     }
     const Vec3 lowest = start_ * support(*a_.shape, rotate_inverse(start_.orientation, -normal));
     const double height = double(dot(normal, lowest - view.v[0])) - double(core_radius(*a_.shape));
-    hull_.set(view.v[0] - origin_, view.v[1] - origin_, view.v[2] - origin_);
-    near_frame_.shape = &hull_.shape();
-    near_frame_.radius =
-        outer_radius(hull_.shape(), inverse_times(near_frame_.body_from_shape, b_.sweep->center));
+    place(view);
     Stop found;
     if (scale_.slides) {
       found = stop_of_slide(a_, near_frame_, from, stop_.time, scale_);
@@ -281,6 +318,11 @@ Stop stop_before(const SweptShape& a, const SweptShape& core, const SweptShape& 
 Stop stop_before_surface(const SweptShape& a, const SweptShape& core, const SweptShape& b, double end,
                          const ImpactScale& scale, TriangleHull& triangle) {
   return SurfaceSweep(a, core, b, scale, triangle).first_stop(end);
+}
+
+bool crosses_surface(const SweptShape& a, const SweptShape& b, double end, double clear,
+                     const ImpactScale& scale, TriangleHull& triangle) {
+  return SurfaceSweep(a, a, b, scale, triangle).crosses(end, clear);
 }
 
 }  // namespace gyre

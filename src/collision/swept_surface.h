@@ -53,4 +53,8 @@ Stop stop_before(const SweptShape& a, const SweptShape& core, const SweptShape& 
 Stop stop_before_surface(const SweptShape& a, const SweptShape& core, const SweptShape& b, double end,
                          const ImpactScale& scale, TriangleHull& triangle);
 
+// Whether `a` comes onto the surface `b` before `end`, from either side, and is farther than `clear` (m) from it at `end`.
+bool crosses_surface(const SweptShape& a, const SweptShape& b, double end, double clear,
+                     const ImpactScale& scale, TriangleHull& triangle);
+
 }  // namespace gyre

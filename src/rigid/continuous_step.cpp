@@ -84,38 +84,60 @@ class Blow {
   Vec3 lever_[2];
 };
 
-// What moves by itself runs over what stands in its way, however slow that is: such bodies are fast against it.
-void add_those_overrun(const RigidWorld& w, ContinuousScratch& scratch) {
-  scratch.listed.resize(w.bodies.motion.size());
-  bool any = false;
-  for (const std::uint32_t i : w.bodies.awake) {
-    const BodyFlags& flags = w.bodies.flags[i];
-    if (flags.type != BodyType::kinematic || w.bodies.shapes[i].empty()) continue;
-    const Sweep sweep = sweep_of_body(w, i);
-    const float way = length(sweep.moved) + length(sweep.turned) * w.bodies.masses[i].reach;
-    if (!(way > 0.0f)) continue;
-    if (!any) {
-      scratch.listed.reset_all();
-      for (const FastBody& fast : scratch.fast) scratch.listed.set(fast.body);
-      any = true;
+// What moves by itself runs over what stands in its way, however slow that is: such bodies are fast against it. Where one of the
+// two is a sensor and nothing can stop either, both are looked at for what they cross.
+class Overrun {
+ public:
+  Overrun(const RigidWorld& w, ContinuousScratch& scratch) : w_(w), scratch_(scratch) {}
+
+  void add_all() {
+    scratch_.gates.clear();
+    scratch_.listed.resize(w_.bodies.motion.size());
+    for (const std::uint32_t i : w_.bodies.awake) {
+      if (w_.bodies.flags[i].type != BodyType::kinematic || w_.bodies.shapes[i].empty()) continue;
+      const Sweep sweep = sweep_of_body(w_, i);
+      const float way = length(sweep.moved) + length(sweep.turned) * w_.bodies.masses[i].reach;
+      if (way > 0.0f) add_those_before(i, sweep, way);
     }
-    for (const ShapeId id : w.bodies.shapes[i]) {
-      const ColliderShape& shape = w.shapes.colliders[id.index];
+  }
+
+ private:
+  void add_those_before(std::uint32_t i, const Sweep& sweep, float way) {
+    for (const ShapeId id : w_.bodies.shapes[i]) {
+      const ColliderShape& shape = w_.shapes.colliders[id.index];
       if (shape.shape.kind == ShapeKind::plane) continue;
-      scratch.found.clear();
-      w.broadphase->query(w.shapes.proxies, box_of_way(shape, sweep), scratch.found);
-      for (const std::uint32_t found : scratch.found) {
-        const std::uint32_t body = w.shapes.proxies[found].body;
-        if (scratch.listed.test(body) || !is_movable(w.bodies.flags[body]) || w.bodies.flags[body].awake == 0 ||
-            !may_pair(w.shapes.proxies[id.index], w.shapes.proxies[found]) ||
-            !(way > kFastShare * w.bodies.masses[body].size))
-          continue;
-        scratch.listed.set(body);
-        scratch.fast.push_back({body, w.bodies.flags[body].continuous != 0, 0.0f, w.bodies.joints[body].empty()});
+      scratch_.found.clear();
+      w_.broadphase->query(w_.shapes.proxies, box_of_way(shape, sweep), scratch_.found);
+      for (const std::uint32_t found : scratch_.found) {
+        const Proxy &own = w_.shapes.proxies[id.index], &other = w_.shapes.proxies[found];
+        if (!may_pair(own, other)) continue;
+        const bool moves = is_movable(w_.bodies.flags[other.body]) && w_.bodies.flags[other.body].awake != 0;
+        const bool surface = !is_convex(shape.shape.kind) && is_convex(w_.shapes.colliders[found].shape.kind);
+        if (surface && own.sensor != other.sensor) scratch_.gates.push_back({found, id.index});
+        if (moves) {
+          if (way > kFastShare * w_.bodies.masses[other.body].size) add(other.body, false);
+        } else if (own.sensor != other.sensor) {
+          add(other.body, true);
+          add(i, true);
+        }
       }
     }
   }
-}
+  void add(std::uint32_t body, bool only_crosses) {
+    if (!any_) {
+      scratch_.listed.reset_all();
+      for (const FastBody& fast : scratch_.fast) scratch_.listed.set(fast.body);
+      any_ = true;
+    }
+    if (scratch_.listed.test(body)) return;
+    scratch_.listed.set(body);
+    scratch_.fast.push_back({body, w_.bodies.flags[body].continuous != 0, 0.0f, w_.bodies.joints[body].empty(), only_crosses});
+  }
+
+  const RigidWorld& w_;
+  ContinuousScratch& scratch_;
+  bool any_ = false;
+};
 
 // Of two stopped bodies with a joint between them both keep what the one that is stopped first keeps.
 void stop_together(const RigidWorld& w, const ContinuousScratch& scratch, std::span<KeptMotion> kept, Arena& arena) {
@@ -155,11 +177,11 @@ void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, 
     if (is_fast(motion.moved, motion.turned, mass.reach, mass.size)) {
       // What contacts already act on must not be held in the air by a sweep: it keeps a part of its way, and they answer.
       const float least = w.bodies.flags[i].touched != 0 ? kLeastProgress : 0.0f;
-      scratch.fast.push_back({i, w.bodies.flags[i].continuous != 0, least, w.bodies.joints[i].empty()});
+      scratch.fast.push_back({i, w.bodies.flags[i].continuous != 0, least, w.bodies.joints[i].empty(), false});
     }
   }
-  add_those_overrun(w, scratch);
-  if (scratch.fast.empty()) return;
+  Overrun(w, scratch).add_all();
+  if (scratch.fast.empty() && scratch.gates.empty()) return;
   // The shapes of each fast body as plain indices, in a place that is found by body.
   const std::span<std::span<const std::uint32_t>> shapes = arena.make<std::span<const std::uint32_t>>(w.bodies.motion.size());
   for (const FastBody& fast : scratch.fast) {
@@ -173,7 +195,7 @@ void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, 
   const auto passes = [&](std::uint32_t shape, Vec3 way) { return lets_pass(w, shape, way); };
   const FunctionRef<bool(std::uint32_t shape, Vec3 way)> one_way(passes);
   const ContinuousInput input{w.shapes.colliders, w.shapes.proxies, *w.broadphase, w.joints.blocked, sweep_of, shapes_of,
-                              w.surface_rules.empty() ? nullptr : &one_way};
+                              w.surface_rules.empty() ? nullptr : &one_way, scratch.gates};
   scratch.kept.resize(scratch.fast.size());
   scratch.collision.clamp_fast_bodies(input, scratch.fast, tasks, scratch.kept);
   report_crossings(w, scratch.collision.crossings());

@@ -15,6 +15,7 @@ struct ContinuousScratch {
   Array<std::uint32_t> found;
   Bitset listed;
   ContinuousCollision collision;
+  Array<GatePair> gates;
 };
 
 // A list of changed proxies, ascending and without repeats; the other two are scratch.
