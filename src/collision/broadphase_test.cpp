@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "collision/broadphase_bvh.h"
 #include "collision/fat_box.h"
+#include "random.h"
 
 #include <gtest/gtest.h>
 
@@ -17,20 +18,7 @@
 namespace gyre {
 namespace {
 
-struct Random {
-  std::uint64_t state = 88172645463325252ull;
-  std::uint32_t next(std::uint32_t below) {
-    state ^= state << 13;
-    state ^= state >> 7;
-    state ^= state << 17;
-    return std::uint32_t((state >> 11) % below);
-  }
-  float real(float low, float high) { return low + (high - low) * float(next(1u << 20)) / float(1u << 20); }
-  Vec3 vector(float low, float high) {
-    const float x = real(low, high), y = real(low, high);
-    return {x, y, real(low, high)};
-  }
-};
+using testing_random::Random;
 
 enum class Layout { spread, clustered, one_place, mixed_sizes, flat, line, far_away, wild };
 

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "collision/collide_scene.h"
 #include "collision/contact_update.h"
+#include "random.h"
 
 #include <gtest/gtest.h>
 
@@ -13,21 +14,7 @@
 namespace gyre {
 namespace {
 
-struct Random {
-  std::uint64_t state = 88172645463325252ull;
-  std::uint32_t next(std::uint32_t below) {
-    state ^= state << 13;
-    state ^= state >> 7;
-    state ^= state << 17;
-    return std::uint32_t((state >> 11) % below);
-  }
-  float real(float low, float high) { return low + (high - low) * float(next(1u << 20)) / float(1u << 20); }
-  Vec3 vector(float low, float high) {
-    const float x = real(low, high), y = real(low, high);
-    return {x, y, real(low, high)};
-  }
-  Quat turn(float most) { return from_rotation_vector(vector(-most, most)); }
-};
+using testing_random::Random;
 
 const Box kGround{{10, 1, 10}};
 const Box kCube{{0.5f, 0.5f, 0.5f}};

@@ -2,6 +2,7 @@
 #include "collision/contact_store.h"
 
 #include "collision/pair_update.h"
+#include "random.h"
 
 #include <gtest/gtest.h>
 
@@ -13,15 +14,7 @@
 namespace gyre {
 namespace {
 
-struct Random {
-  std::uint64_t state = 88172645463325252ull;
-  std::uint32_t next(std::uint32_t below) {
-    state ^= state << 13;
-    state ^= state >> 7;
-    state ^= state << 17;
-    return std::uint32_t((state >> 11) % below);
-  }
-};
+using testing_random::Random;
 
 PairShapes describe(std::uint64_t key) {
   PairShapes shapes;
