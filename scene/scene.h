@@ -22,6 +22,7 @@ struct SceneWorld {
   int substeps = 4;
   IntegratorKind integrator = IntegratorKind::semi_implicit_euler;
   SolverKind solver = SolverKind::soft_step;
+  SolverOptions solver_options{};
   BroadPhaseKind broad_phase = BroadPhaseKind::bvh;
   bool sleeping = true;
 };

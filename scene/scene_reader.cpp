@@ -52,9 +52,23 @@ void read_world(const Field& field, SceneWorld& world) {
                                             {"verlet", {}}});
   }
   if (const auto solver = members.find("solver")) {
-    world.solver = solver->choice<SolverKind>(
-        {{"soft_step", SolverKind::soft_step}, {"sequential_impulses", {}}, {"lcp", {}}});
+    world.solver = solver->choice<SolverKind>({{"soft_step", SolverKind::soft_step},
+                                               {"sequential_impulses", SolverKind::sequential_impulses},
+                                               {"lcp", SolverKind::lcp}});
   }
+  if (const auto method = members.find("lcp_method")) {
+    world.solver_options.lcp_method = method->choice<LcpMethod>({{"automatic", LcpMethod::automatic},
+                                                  {"dantzig", LcpMethod::dantzig},
+                                                  {"lemke", LcpMethod::lemke},
+                                                  {"newton", LcpMethod::newton},
+                                                  {"nncg", LcpMethod::nncg}});
+  }
+  if (const auto sides = members.find("friction_sides")) {
+    world.solver_options.friction_sides = int(sides->integer(0, 32));
+    if (world.solver_options.friction_sides % 2 != 0 || world.solver_options.friction_sides == 2) sides->expected("0 or an even number of 4 to 32");
+  }
+  if (const auto iterations = members.find("iterations")) world.solver_options.iterations = int(iterations->integer(0, 10000));
+  if (const auto rows = members.find("direct_rows")) world.solver_options.direct_rows = int(rows->integer(0, 600));
   if (const auto broad_phase = members.find("broad_phase")) {
     world.broad_phase =
         broad_phase->choice<BroadPhaseKind>({{"bvh", BroadPhaseKind::bvh},

@@ -18,7 +18,11 @@ SceneResult<SceneRunner> SceneRunner::create(Scene scene, const std::string& fil
   def.gravity = settings.gravity;
   def.threads = threads;
   def.simd_width = simd_width;
-  def.stepping = {settings.substeps, settings.integrator, settings.solver, settings.broad_phase};
+  def.stepping = {.substeps = settings.substeps,
+                  .integrator = settings.integrator,
+                  .solver = settings.solver,
+                  .broad_phase = settings.broad_phase,
+                  .solver_options = settings.solver_options};
   def.sleeping = settings.sleeping;
   Result<World> world = World::create(def);
   if (!world) return SceneError{file, 0, 0, "/world", world.error().message};

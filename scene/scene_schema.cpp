@@ -72,6 +72,22 @@ constexpr char kPart0[] = R"json({
         "substeps": { "type": "integer", "minimum": 1, "maximum": 64, "default": 4 },
         "integrator": { "enum": ["explicit_euler", "semi_implicit_euler", "rk4", "verlet"], "default": "semi_implicit_euler" },
         "solver": { "enum": ["soft_step", "sequential_impulses", "lcp"], "default": "soft_step" },
+        "lcp_method": {
+          "enum": ["automatic", "dantzig", "lemke", "newton", "nncg"], "default": "automatic",
+          "description": "lcp: how the complementarity problem of an island is solved"
+        },
+        "friction_sides": {
+          "type": "integer", "minimum": 0, "maximum": 32, "multipleOf": 2, "not": { "const": 2 }, "default": 0,
+          "description": "sequential_impulses, lcp: of the friction pyramid; 0: Coulomb's cone"
+        },
+        "iterations": {
+          "type": "integer", "minimum": 0, "maximum": 10000, "default": 0,
+          "description": "sequential_impulses, lcp: sweeps a sub-step; 0: 10, or at most 200 for NNCG"
+        },
+        "direct_rows": {
+          "type": "integer", "minimum": 0, "maximum": 600, "default": 200,
+          "description": "lcp: islands with more rows are left to NNCG"
+        },
         "broad_phase": {
           "enum": ["bvh", "grid", "octree", "quadtree", "kd_tree", "bsp_tree", "sweep_and_prune", "brute_force"],
           "default": "bvh"

@@ -37,6 +37,11 @@ void write_world(JsonWriter& json, const SceneWorld& world) {
   json.field("gravity", world.gravity);
   json.field("time_step", world.time_step);
   json.field("substeps", world.substeps);
+  if (world.solver != SolverKind::soft_step) json.field("solver", to_string(world.solver));
+  if (world.solver_options.lcp_method != LcpMethod::automatic) json.field("lcp_method", to_string(world.solver_options.lcp_method));
+  unless_default(json, "friction_sides", world.solver_options.friction_sides, 0);
+  unless_default(json, "iterations", world.solver_options.iterations, 0);
+  unless_default(json, "direct_rows", world.solver_options.direct_rows, SolverOptions{}.direct_rows);
   if (world.broad_phase != BroadPhaseKind::bvh) json.field("broad_phase", to_string(world.broad_phase));
   unless_default(json, "sleeping", world.sleeping, true);
   json.end_object();

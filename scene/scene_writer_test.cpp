@@ -15,7 +15,7 @@ const std::string kEverything = R"({
   "gyre_scene": 1,
   "name": "every member, \"quoted\" and \u00e4",
   "world": {"gravity": [0.1, -9.81, 1e-7], "time_step": 0.00833333333, "substeps": 8, "integrator": "semi_implicit_euler",
-            "solver": "soft_step", "broad_phase": "brute_force", "stepping": "fixed", "sleeping": false},
+            "solver": "lcp", "lcp_method": "lemke", "friction_sides": 8, "iterations": 40, "direct_rows": 90, "broad_phase": "brute_force", "stepping": "fixed", "sleeping": false},
   "view": {"eye": [1, 2.5, 1e6], "target": [0, 1, 0], "field_of_view": 0.9},
   "materials": {
     "ice": {"color": "#a0C0ff", "density": 917, "static_friction": 0.1, "dynamic_friction": 0.03, "restitution": 0.05,
@@ -92,6 +92,11 @@ TEST(SceneWriter, EveryNumberKeepsItsBits) {
   EXPECT_EQ(first->world.time_step, second->world.time_step);
   EXPECT_EQ(first->world.gravity, second->world.gravity);
   EXPECT_EQ(first->world.substeps, 8);
+  EXPECT_EQ(second->world.solver, SolverKind::lcp);
+  EXPECT_EQ(second->world.solver_options.lcp_method, LcpMethod::lemke);
+  EXPECT_EQ(second->world.solver_options.friction_sides, 8);
+  EXPECT_EQ(second->world.solver_options.iterations, 40);
+  EXPECT_EQ(second->world.solver_options.direct_rows, 90);
   EXPECT_EQ(second->world.broad_phase, BroadPhaseKind::brute_force);
   EXPECT_FALSE(second->world.sleeping);
   ASSERT_EQ(first->bodies.size(), second->bodies.size());

@@ -69,7 +69,7 @@ void add_time_options(CLI::App& command, SimulateOptions& options) {
 }
 
 void add_method_options(CLI::App& command, SimulateOptions& options) {
-  command.add_option("--solver", options.solver, "Contact solver: soft_step")
+  command.add_option("--solver", options.solver, "Solver of contacts and joints: soft_step, sequential_impulses or lcp")
       ->type_name("NAME")
       ->check(one_of({"soft_step", "sequential_impulses", "lcp"}));
   command.add_option("--integrator", options.integrator, "Integrator: semi_implicit_euler")
@@ -145,7 +145,9 @@ std::string apply_overrides(const SimulateOptions& options, SceneWorld& world) {
   const auto missing = [](const char* option, const std::string& word) {
     return std::string(option) + " " + word + " is not supported by this version of Gyre";
   };
-  if (!options.solver.empty() && options.solver != "soft_step") return missing("--solver", options.solver);
+  for (int i = 0; i < kSolverKindCount; ++i) {
+    if (options.solver == to_string(SolverKind(i))) world.solver = SolverKind(i);
+  }
   if (!options.integrator.empty() && options.integrator != "semi_implicit_euler") {
     return missing("--integrator", options.integrator);
   }

@@ -28,7 +28,31 @@ enum class BroadPhaseKind : std::uint8_t {
 };
 constexpr int kBroadPhaseKindCount = 8;
 const char* to_string(BroadPhaseKind kind);
-enum class SolverKind : std::uint8_t { soft_step };
+// How contacts and joints are solved in a sub-step; docs/numerics.md compares them.
+enum class SolverKind : std::uint8_t {
+  soft_step,            // soft impulses in two short parts; stacks at rest and linkages exactly
+  sequential_impulses,  // rows one after the other with accumulated impulses: joints, then contacts, each in the order of creation
+  lcp,                  // all rows of an island at once, as a complementarity problem
+};
+constexpr int kSolverKindCount = 3;
+const char* to_string(SolverKind kind);
+// How the complementarity problem of an island is solved.
+enum class LcpMethod : std::uint8_t {
+  automatic,  // Newton's method and Dantzig's pivoting up to SolverOptions::direct_rows, above NNCG
+  dantzig,    // principal pivoting; needs a friction pyramid
+  lemke,      // complementary pivoting; needs a friction pyramid
+  newton,     // semi-smooth Newton on the pyramid or the cone
+  nncg,       // nonsmooth nonlinear conjugate gradients, for islands of any size
+};
+constexpr int kLcpMethodCount = 5;
+const char* to_string(LcpMethod method);
+// How sequential_impulses and lcp work; soft_step does not look at it.
+struct SolverOptions {
+  LcpMethod lcp_method = LcpMethod::automatic;
+  int friction_sides = 0;  // of the friction pyramid, an even number of 4 to 32; 0: Coulomb's cone
+  int iterations = 0;      // sweeps a sub-step, at most 10,000; 0: 10 for sequential_impulses, at most 200 for NNCG
+  int direct_rows = 200;   // lcp: islands with more rows (a contact point has three) are left to NNCG; 0 to 600
+};
 
 // How two materials make one number: of the two values, or table entries where MaterialPair says so.
 enum class CombineRule : std::uint8_t { geometric_mean, average, minimum, maximum, product };
@@ -38,6 +62,7 @@ struct Stepping {
   IntegratorKind integrator = IntegratorKind::semi_implicit_euler;
   SolverKind solver = SolverKind::soft_step;
   BroadPhaseKind broad_phase = BroadPhaseKind::bvh;
+  SolverOptions solver_options{};
 };
 
 // The door for the host application's own threads. `run` executes task(context, i) for every i in [0, count), possibly

@@ -68,6 +68,17 @@ struct WorldCounts {
   int colors = 0;
 };
 
+// What the solvers sequential_impulses and lcp left in the last step; all zero with soft_step.
+struct SolverReading {
+  // N s, or N m s for rows that turn: by how much an impulse of any row misses what is complementary to its speed, the largest of
+  // all rows and sub-steps (the residual of the natural map; docs/numerics.md).
+  double residual = 0;
+  int islands = 0;         // that were solved
+  int direct_islands = 0;  // of these, by a direct method
+  int largest_rows = 0;    // of the largest island
+  int sweeps = 0;          // the most that an island took
+};
+
 struct Energy {
   double kinetic = 0;    // J
   double potential = 0;  // J, in gravity, zero at the world's origin
@@ -123,6 +134,7 @@ class World {
   bool set_sleeping(bool enabled);
   bool set_awake(BodyId body, bool awake);  // false puts the body's whole island to sleep
   bool set_substeps(int substeps);
+  bool set_solver(SolverKind solver, const SolverOptions& options = {});  // from the next step on; as WorldDef::stepping
   bool set_combine_rules(CombineRule friction, CombineRule restitution);  // of all contacts; wakes everything
 
   // How the world is computed, not what happens in it: never changes a bit, so neither recordings nor snapshots know it.
@@ -224,6 +236,7 @@ class World {
   std::size_t persisting(std::span<ContactPersist> out) const;
   std::span<const Problem> problems() const;  // since the last step began, the step included
   WorldCounts counts() const;
+  SolverReading solver_reading() const;
   double time() const;           // s
   std::uint64_t step_count() const;
   Vec3 gravity() const;

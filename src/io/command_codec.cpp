@@ -140,6 +140,11 @@ void fields(C& c, T& v) {
   auto& [id, material, velocity, one_way] = v;
   all(c, id, material, velocity, one_way);
 }
+template <class C, Is<SolverOptions> T>
+void fields(C& c, T& v) {
+  auto& [method, sides, iterations, rows] = v;
+  all(c, method, sides, iterations, rows);
+}
 template <class C, Is<FieldBounds> T>
 void fields(C& c, T& v) {
   auto& [low, high] = v;
@@ -234,7 +239,7 @@ void fields(C& c, T& v) {
 }
 template <class C, class T>
 requires IsOneOf<T, AddBody, AddShape, SetPose, SetType, SetGravityScale, SetMaterial, SetFilter, SetMotor,
-                 SetAwake, SetField, SetCombineRules, SetDrive, SetJointEnabled>
+                 SetAwake, SetField, SetCombineRules, SetDrive, SetJointEnabled, SetSolver>
 void fields(C& c, T& v) {
   auto& [first, second] = v;
   all(c, first, second);

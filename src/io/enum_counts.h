@@ -22,6 +22,10 @@ inline constexpr int kEnumCount<AxisMotion> = int(AxisMotion::limited) + 1;
 template <>
 inline constexpr int kEnumCount<PathOrientation> = int(PathOrientation::following) + 1;
 template <>
+inline constexpr int kEnumCount<SolverKind> = kSolverKindCount;
+template <>
+inline constexpr int kEnumCount<LcpMethod> = kLcpMethodCount;
+template <>
 inline constexpr int kEnumCount<CombineRule> = int(CombineRule::product) + 1;
 template <>
 inline constexpr int kEnumCount<FieldKind> = int(FieldKind::buoyancy) + 1;

@@ -11,6 +11,7 @@
 #include "rigid/body_store.h"
 #include "rigid/field_record.h"
 #include "rigid/shape_store.h"
+#include "rigid/solver_settings.h"
 #include "solver/joint.h"
 
 #include <gyre/events.h>
@@ -82,6 +83,7 @@ struct RigidWorld {
   Array<SurfaceRule> surface_rules;    // sorted by id
   Array<FieldRecord> fields;           // by slot
   RigidSettings settings;
+  Array<SolverSettings> solver;        // one, or none: the default solver
 
   // Not state: can be rebuilt or lives for one step.
   std::unique_ptr<Broadphase> broadphase;

@@ -5,6 +5,7 @@
 #include "rigid/joint_works.h"
 #include "rigid/program_writer.h"
 #include "rigid/solve_gather.h"
+#include "rigid/solve_rows.h"
 #include "task/parallel.h"
 #include "task/program.h"
 
@@ -375,7 +376,9 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
 
 void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& tasks, const ContactKernels& kernels,
                 float seconds) {
-  const float h = seconds / float(kParts * w.settings.substeps);
+  const SolverSettings* const row_solver = row_solver_of(w);
+  const int parts = row_solver != nullptr ? w.settings.substeps : kParts * w.settings.substeps;
+  const float h = seconds / float(parts);
   const float warm_scale = w.settings.last_substep > 0.0f ? h / w.settings.last_substep : 0.0f;
   w.settings.last_substep = h;
   w.settings.last_step = seconds;
@@ -389,7 +392,7 @@ void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& 
   if (!w.fields.empty()) w.field_rest.resize(w.bodies.motion.size());
   Solve solve{w, scratch, kernels};
   solve.h = h;
-  solve.motions = {kParts * w.settings.substeps, h, w.settings.gravity};
+  solve.motions = {parts, h, w.settings.gravity};
   const float pull = length(w.settings.gravity);
   solve.contact_settings = {.substep = h,
                             .step = seconds,
@@ -400,19 +403,24 @@ void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& 
                             .up = pull > 0.0f ? (-1.0f / pull) * w.settings.gravity : Vec3{}};
   // Long sub-steps take back no more than the whole error and give way by less than the whole impulse.
   const float give = kJointLeak * h / (1.0f + kJointLeak * h);
-  solve.joint_settings = {h, {min(kJointRate, 0.8f / h), 1.0f - give, give}, true};
+  solve.joint_settings = {h, {min(kJointRate, 0.8f / h), 1.0f - give, give}, row_solver == nullptr};
   solve.impact_settings = {h, kBounceShare * h * pull};
   solve.contact_bodies = {w.bodies.motion.data(), w.bodies.inertia.data()};
   solve.joint_bodies = {w.bodies.motion.data(), w.bodies.inertia.data(), w.bodies.orientations.data()};
   scratch.manifold_count = scratch.joint_count = scratch.swept_joint_count = 0;
   scratch.colors_used = 0;
+  scratch.rows = {};
   scratch.hits.clear();
   const ArenaScope scope(arena);
   const SolveBatches batches = find_batches(w, arena, batch_size(tasks.worker_count()));
   solve.places = batches.places;
   for (const SolveBatch& batch : batches.batches) {
     solve.batch = batch;
-    solve_batch(solve, arena, tasks, warm_scale);
+    if (row_solver != nullptr) {
+      solve_batch_as_rows(solve, *row_solver, arena, tasks, warm_scale);
+    } else {
+      solve_batch(solve, arena, tasks, warm_scale);
+    }
   }
   scratch.colors = std::popcount(scratch.colors_used);
   report_hits(w, scratch, arena);

@@ -40,6 +40,7 @@ struct SolveScratch {
   std::size_t swept_joint_count = 0;
   std::uint64_t colors_used = 0;     // bits
   int colors = 0;
+  RowReport rows;                    // of solvers that work on rows
 };
 
 // How constraints are shared among groups.

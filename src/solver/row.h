@@ -48,9 +48,12 @@ struct RowBody {
 };
 
 constexpr std::int32_t kNoRowBody = -1;
+constexpr int kMostRowBlock = 6;
 
 struct Row {
   std::int32_t body_a = kNoRowBody, body_b = kNoRowBody;  // places in the island's list
+  // Of the first of several equations between the same two bodies, as a joint has them: how many; sweeps solve them together.
+  std::int32_t block = 1;
   RowLimits limits;
   // J: what of the bodies' velocities the row sees, signs included.
   DVec3 linear_a, angular_a, linear_b, angular_b;

@@ -12,8 +12,8 @@ namespace {
 // Share by which diagonals are raised for pivoting: redundant rows then have one solution. Newton's method takes it back.
 constexpr double kGive = 1.0e-9;
 constexpr double kParting = 1.0e-10;
-constexpr int kRounds = 40;
-constexpr int kQuickSteps = 12, kPolishSteps = 30;
+constexpr int kRounds = 20;
+constexpr int kQuickSteps = 10, kRoundSteps = 8, kPolishSteps = 30;
 
 // A variable of a method in terms of the problem's rows: x_row and, of a cone, x_(row + 1) get its value times these.
 struct Part {
@@ -109,7 +109,7 @@ void run_dantzig(const DenseProblem& p, const FrictionSet& polygon, double toler
       if (part.second != 0.0) x[std::size_t(part.row) + 1] += part.second * dantzig.x(int(i));
     }
     for (std::size_t i = 0; i < best.size(); ++i) best[i] = x[i];
-    const NewtonResult polished = solve_newton(p, tolerance, kPolishSteps, best, room);
+    const NewtonResult polished = solve_newton(p, tolerance, kRoundSteps, best, room);
     result.newton_steps += polished.steps;
     result.residual = polished.residual;
     if (polished.residual > tolerance) continue;
@@ -235,8 +235,9 @@ class Equations {
   std::span<double> own_, column_, at_;
 };
 
-void run_lemke(const DenseProblem& p, const FrictionSet& polygon, double tolerance, std::span<double> x,
-               NumberRoom room, DirectResult& result) {
+// With the diagonal raised by the share `give`.
+void run_lemke(const DenseProblem& p, const FrictionSet& polygon, double give, double tolerance,
+               std::span<double> x, NumberRoom room, DirectResult& result) {
   const std::size_t n = std::size_t(p.size);
   std::size_t equations = 0;
   const std::size_t size = count_lemke(p.limits, polygon, equations);
@@ -245,7 +246,7 @@ void run_lemke(const DenseProblem& p, const FrictionSet& polygon, double toleran
   const std::span<double> a = room.take(n * n), q = room.take(n), z = room.take(size);
   for (std::size_t i = 0; i < n * n; ++i) a[i] = p.a[i];
   for (std::size_t i = 0; i < n; ++i) {
-    a[i * n + i] *= 1.0 + kGive;
+    a[i * n + i] *= 1.0 + give;
     q[i] = p.q[i];
     for (std::size_t j = 0; j < n; ++j) q[i] += a[i * n + j] * lemke.shift[j];
   }
@@ -284,19 +285,28 @@ void run_lemke(const DenseProblem& p, const FrictionSet& polygon, double toleran
 
 }  // namespace
 
-std::size_t direct_room(std::span<const RowLimits> limits, const FrictionSet& set, DirectMethod method) {
-  const std::size_t n = limits.size();
+DirectSize count_direct(std::span<const RowLimits> limits) {
+  DirectSize size;
+  size.rows = limits.size();
+  for (const RowLimits& l : limits) {
+    size.equations += is_equation(l) ? 1 : 0;
+    size.cones += l.kind == RowKind::cone ? 1 : 0;
+  }
+  return size;
+}
+
+std::size_t direct_room(const DirectSize& size, const FrictionSet& set, DirectMethod method) {
+  const std::size_t n = size.rows, sides = std::size_t(set.sides);
   std::size_t most = newton_room(n);
   if (method == DirectMethod::quick || method == DirectMethod::dantzig) {
-    const std::size_t parts = count_segments(limits, set);
+    const std::size_t parts = n + size.cones * (sides / 2);
     most = max(most, 3 * parts + parts * parts + parts + Dantzig::room_for(parts) + n + newton_room(n));
   }
   if (method == DirectMethod::lemke) {
-    std::size_t equations = 0;
-    const std::size_t size = count_lemke(limits, set, equations);
-    const std::size_t own =
-        3 * size + size * size + size + 2 * n + n * n + n + size + Equations::room_for(equations);
-    most = max(most, own + lemke_room(size) + newton_room(n));
+    // Rows with a limit on either side have three variables at the most.
+    const std::size_t z = 3 * n + size.cones * (sides + 1);
+    const std::size_t own = 3 * z + z * z + z + 2 * n + n * n + n + z + Equations::room_for(size.equations);
+    most = max(most, own + lemke_room(z) + newton_room(n));
   }
   return most;
 }
@@ -309,12 +319,14 @@ DirectResult solve_direct(const DenseProblem& problem, const FrictionSet& polygo
         problem, tolerance, method == DirectMethod::newton ? kPolishSteps : kQuickSteps, x, room);
     result.residual = newton.residual;
     result.newton_steps = newton.steps;
-    if (result.residual > tolerance && method == DirectMethod::quick)
-      run_dantzig(problem, polygon, tolerance, x, room, result);
   } else if (method == DirectMethod::dantzig) {
     run_dantzig(problem, polygon, tolerance, x, room, result);
   } else {
-    run_lemke(problem, polygon, tolerance, x, room, result);
+    // Where rows are so redundant that pivots are rounding, more of it tells them apart.
+    for (const double give : {kGive, 100.0 * kGive, 10000.0 * kGive}) {
+      run_lemke(problem, polygon, give, tolerance, x, room, result);
+      if (result.residual <= tolerance) break;
+    }
   }
   result.is_solved = result.residual <= tolerance;
   return result;

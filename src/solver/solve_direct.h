@@ -26,8 +26,14 @@ struct DirectResult {
   bool is_solved = false;
 };
 
-// How much memory a problem with these limits needs, in numbers. `set`: the polygon, also where the disc is wanted.
-std::size_t direct_room(std::span<const RowLimits> limits, const FrictionSet& set, DirectMethod method);
+// What a problem's memory depends on; each may be more than there will be.
+struct DirectSize {
+  std::size_t rows = 0;
+  std::size_t equations = 0, cones = 0;  // of the rows; a cone is two rows
+};
+DirectSize count_direct(std::span<const RowLimits> limits);
+// How much memory a problem needs, in numbers. `set`: the polygon, also where the disc is wanted.
+std::size_t direct_room(const DirectSize& size, const FrictionSet& set, DirectMethod method);
 
 // `polygon`: what pivoting uses in the place of problem.friction if that is the disc; else the same.
 DirectResult solve_direct(const DenseProblem& problem, const FrictionSet& polygon, DirectMethod method,

@@ -1,13 +1,16 @@
 #include "solver/solve_newton.h"
 
 #include <cmath>
+#include <iterator>
 
 namespace gyre {
 
 namespace {
 
-// Share of A_ii by which a step is kept small where rows are redundant.
-constexpr double kNear = 1.0e-9;
+// Share of A_ii by which a step is kept small where rows are redundant: at most, far from the solution, and at least.
+constexpr double kMostNear = 1.0e-4, kLeastNear = 1.0e-10;
+// Shares of a step that are tried until one makes the residuals' sum of squares less.
+constexpr double kShares[] = {1.0, 0.5, 0.25, 0.1, 0.03};
 // Steps without progress after which it is given up.
 constexpr int kPatience = 6;
 
@@ -17,6 +20,7 @@ struct Equations {
   std::span<const double> x, w;
   std::span<double> matrix, right;
   std::size_t n;
+  double near;
 
   double* row(int i) const { return &matrix[std::size_t(i) * n]; }
   // Adds `share` times the derivative of w_i, per A_ii like `rate`.
@@ -30,7 +34,7 @@ struct Equations {
   // w_i = 0.
   void rest(int i, double rate) const {
     add_speed(row(i), i, 1.0 / rate);
-    row(i)[i] += kNear;
+    row(i)[i] += near;
     right[std::size_t(i)] = -w[std::size_t(i)] / rate;
   }
   // x_i = value, which grows by `per_load` with the load.
@@ -75,7 +79,7 @@ struct Equations {
     double* const to = row(into);
     for (int k = 0; k < 2; ++k) {
       add_speed(to, i + k, share * direction[k] / rate);
-      to[i + k] += kNear * direction[k];
+      to[i + k] += near * direction[k];
     }
     right[std::size_t(into)] -=
         share * (direction[0] * w[std::size_t(i)] + direction[1] * w[std::size_t(i) + 1]) / rate;
@@ -115,7 +119,7 @@ struct Equations {
         for (int k = 0; k < 2; ++k) {
           to[i + k] += (1.0 - share) * along[k];
           add_speed(to, i + k, share * along[k] / rate);
-          to[i + k] += kNear * along[k];
+          to[i + k] += near * along[k];
         }
         right[std::size_t(i) + 1] = -(along[0] * x[std::size_t(i)] + along[1] * x[std::size_t(i) + 1]);
         return;
@@ -171,25 +175,48 @@ struct Equations {
   }
 };
 
+double sum_of_squares(const DenseProblem& problem, std::span<const double> x, std::span<const double> w) {
+  double sum = 0.0;
+  for (int i = 0; i < problem.size; ++i) {
+    sum += square(row_residual(
+        i, problem.limits[std::size_t(i)], *problem.friction, [&](int j) { return x[std::size_t(j)]; },
+        [&](int j) { return w[std::size_t(j)]; }, [&](int j) { return problem.at(j, j); }));
+  }
+  return sum;
+}
+
 }  // namespace
 
 NewtonResult solve_newton(const DenseProblem& problem, double tolerance, int most_steps, std::span<double> x,
                           NumberRoom room) {
   const std::size_t n = std::size_t(problem.size);
   const std::span<double> matrix = room.take(n * n), right = room.take(n), w = room.take(n),
-                          now = room.take(n);
+                          now = room.take(n), next = room.take(n);
   for (std::size_t i = 0; i < n; ++i) now[i] = x[i];
   find_speeds(problem, now, w);
-  NewtonResult result{find_residual(problem, now, w), 0};
+  double residual = find_residual(problem, now, w), squares = sum_of_squares(problem, now, w);
+  NewtonResult result{residual, 0};
+  const double scale = max(impulse_scale(problem), 1.0e-300);
   int idle = 0;
   while (result.residual > tolerance && result.steps < most_steps && idle < kPatience) {
-    const Equations equations{problem, now, w, matrix, right, n};
+    const double near = clamp(residual / scale, kLeastNear, kMostNear);
+    const Equations equations{problem, now, w, matrix, right, n, near};
     equations.write();
     if (!equations.solve()) break;
-    for (std::size_t i = 0; i < n; ++i) now[i] += right[i];
-    find_speeds(problem, now, w);
     ++result.steps;
-    const double residual = find_residual(problem, now, w);
+    // The whole step if no share of it is better: now and then the way leads over a hill.
+    for (int k = 0;; ++k) {
+      const bool is_last = k == int(std::size(kShares));
+      const double share = is_last ? 1.0 : kShares[k];
+      for (std::size_t i = 0; i < n; ++i) next[i] = now[i] + share * right[i];
+      find_speeds(problem, next, w);
+      const double now_squares = sum_of_squares(problem, next, w);
+      if (!is_last && !(now_squares < (1.0 - 1.0e-3 * share) * squares)) continue;
+      squares = now_squares;
+      break;
+    }
+    for (std::size_t i = 0; i < n; ++i) now[i] = next[i];
+    residual = find_residual(problem, now, w);
     if (!(residual < 1.0e300)) break;
     if (residual < result.residual) {
       result.residual = residual;

@@ -14,7 +14,7 @@
 
 namespace gyre {
 
-constexpr std::size_t newton_room(std::size_t size) { return size * size + 4 * size; }
+constexpr std::size_t newton_room(std::size_t size) { return size * size + 5 * size; }
 
 struct NewtonResult {
   double residual = 0.0;

@@ -1,5 +1,7 @@
 #include "solver/solve_sweeps.h"
 
+#include "math/dense.h"
+
 namespace gyre {
 
 namespace {
@@ -19,6 +21,28 @@ double change_row(Row& row, double impulse, std::span<RowBody> bodies) {
   return row.diagonal * change * change;
 }
 
+// J_i M^-1 J_j^T of two rows between the same bodies.
+double coupling(const Row& i, const Row& j) {
+  return dot(i.linear_a, j.gain_linear_a) + dot(i.angular_a, j.gain_angular_a) +
+         dot(i.linear_b, j.gain_linear_b) + dot(i.angular_b, j.gain_angular_b);
+}
+
+// The equations of a joint, exactly. Returns the sum of squared changes.
+double solve_block(std::span<Row> rows, std::span<RowBody> bodies) {
+  const std::size_t n = rows.size();
+  double k[kMostRowBlock * kMostRowBlock], x[kMostRowBlock];
+  for (std::size_t i = 0; i < n; ++i) {
+    x[i] = -row_w(rows[i], bodies);
+    for (std::size_t j = 0; j <= i; ++j) k[i * n + j] = coupling(rows[i], rows[j]);
+    k[i * n + i] = rows[i].diagonal;
+  }
+  factor_ldlt(std::span<double>(k, n * n), int(n));
+  solve_ldlt(std::span<const double>(k, n * n), int(n), std::span<double>(x, n));
+  double moved = 0.0;
+  for (std::size_t i = 0; i < n; ++i) moved += change_row(rows[i], rows[i].impulse + x[i], bodies);
+  return moved;
+}
+
 }  // namespace
 
 void warm_start_rows(std::span<const Row> rows, std::span<RowBody> bodies) {
@@ -32,6 +56,11 @@ double sweep_rows_once(std::span<Row> rows, std::span<RowBody> bodies, const Fri
   const auto impulse_of = [&](int j) { return rows[std::size_t(j)].impulse; };
   for (std::size_t i = 0; i < rows.size(); ++i) {
     Row& row = rows[i];
+    if (row.block > 1) {
+      moved += solve_block(rows.subspan(i, std::size_t(row.block)), bodies);
+      i += std::size_t(row.block) - 1;
+      continue;
+    }
     if (!(row.diagonal > 0.0)) continue;
     if (row.limits.kind == RowKind::cone) {
       Row& second = rows[i + 1];

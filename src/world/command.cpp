@@ -376,6 +376,13 @@ Submitted carry_out(WorldState& s, const SetSubsteps& c) {
   return {true, {}, {}, {}};
 }
 
+Submitted carry_out(WorldState& s, const SetSolver& c) {
+  s.rigid.solver.clear();
+  if (c.solver != SolverKind::soft_step) s.rigid.solver.push_back({c.solver, c.options});
+  s.def.stepping.solver_options = c.options;
+  return {true, {}, {}, {}};
+}
+
 Submitted carry_out(WorldState& s, const SetCombineRules& c) {
   RigidWorld& w = s.rigid;
   if (w.settings.friction_rule == c.friction && w.settings.restitution_rule == c.restitution) return {true, {}, {}, {}};

@@ -102,6 +102,10 @@ struct SetAwake {
 struct SetSubsteps {
   int substeps = 4;
 };
+struct SetSolver {
+  SolverKind solver = SolverKind::soft_step;
+  SolverOptions options;
+};
 struct AddForce {
   BodyId body;
   Vec3 force, torque;
@@ -135,7 +139,8 @@ struct Step {
 using Command = std::variant<AddBody, RemoveBody, AddShape, RemoveShape, AddJoint, RemoveJoint, SetPose, SetVelocity,
                              MoveKinematic, SetType, SetGravity, SetGravityScale, SetDamping, SetMaterial, SetMaterialPair,
                              SetFilter, SetMotor, SetSleeping, SetAwake, SetSubsteps, AddForce, AddImpulse, Step, SetCombineRules,
-                             SetSurfaceRule, AddField, SetField, RemoveField, Explode, SetJointAxis, SetDrive, SetJointEnabled>;
+                             SetSurfaceRule, AddField, SetField, RemoveField, Explode, SetJointAxis, SetDrive, SetJointEnabled,
+                             SetSolver>;
 
 // What a command gave back: whether it was done, and the id of what it made.
 struct Submitted {

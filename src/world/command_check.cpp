@@ -382,6 +382,10 @@ Error check(const WorldState&, const SetSubsteps& c) {
   if (c.substeps >= 1 && c.substeps <= 64) return ok();
   return refuse("substeps is %d; it must lie within 1 and 64", c.substeps);
 }
+Error check(const WorldState&, const SetSolver& c) {
+  const char* const fault = fault_in(SolverSettings{c.solver, c.options});
+  return fault == nullptr ? ok() : refuse("set_solver: %s", fault);
+}
 Error check(const WorldState&, const SetCombineRules& c) {
   for (const CombineRule rule : {c.friction, c.restitution}) {
     if (rule > CombineRule::product) return refuse("combine rule %d: there is no such rule", int(rule));
@@ -425,6 +429,9 @@ Error check_world_def(const WorldDef& def) {
   if (def.stepping.substeps < 1 || def.stepping.substeps > 64) {
     return refuse("stepping.substeps is %d; it must lie within 1 and 64", def.stepping.substeps);
   }
+  const Stepping& by = def.stepping;
+  const char* const fault = fault_in(SolverSettings{by.solver, by.solver_options});
+  if (fault != nullptr) return refuse("stepping.%s", fault);
   if (int(def.stepping.broad_phase) >= kBroadPhaseKindCount) return refuse("stepping.broad_phase: there is no such kind");
   if (def.host_tasks.run != nullptr && def.host_tasks.worker_count < 1) {
     return refuse("host_tasks.worker_count is %d; it must be at least 1", def.host_tasks.worker_count);

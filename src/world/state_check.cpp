@@ -170,8 +170,16 @@ const char* fault_in_rules(std::span<const SurfaceRule> rules) {
   return nullptr;
 }
 
+const char* fault_in_solver(std::span<const SolverSettings> solver) {
+  if (solver.empty()) return nullptr;
+  if (solver.size() > 1) return "more than one solver";
+  if (solver[0].kind == SolverKind::soft_step) return "settings of a solver that is not there";
+  return fault_in(solver[0]);
+}
+
 const char* fault_in(const RigidWorld& w) {
   const char* fault = fault_in_settings(w.settings);
+  if (fault == nullptr) fault = fault_in_solver(w.solver.view());
   if (fault == nullptr) fault = fault_in_rules(w.surface_rules.view());
   if (fault == nullptr) fault = fault_in_fields(w.fields.view());
   if (fault == nullptr) fault = fault_in_sizes(w);

@@ -170,6 +170,10 @@ template <Is<PathPoint> T, class F>
 void for_each_field(T& r, F&& f) {
   for_each_field(r.position, f), f(r.along), for_each_field(r.up, f);
 }
+template <Is<SolverSettings> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.kind), f(r.options.lcp_method), f(r.options.friction_sides), f(r.options.iterations), f(r.options.direct_rows);
+}
 template <Is<RigidSettings> T, class F>
 void for_each_field(T& r, F&& f) {
   for_each_field(r.gravity, f), f(r.substeps), f(r.sleeping), f(r.friction_rule), f(r.restitution_rule), f(r.last_substep);

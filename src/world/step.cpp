@@ -60,6 +60,15 @@ void report_frozen(WorldState& s) {
   }
 }
 
+// A method that was asked for by name does not take islands of any size.
+void report_large_islands(WorldState& s) {
+  const RowReport& rows = s.solve.rows;
+  if (rows.too_large == 0) return;
+  const SolverSettings& solver = s.rigid.solver[0];
+  report_problem(s, ErrorCode::unsupported, {}, "%d islands of up to %d rows are beyond direct_rows %d of %s: NNCG solved them",
+                 rows.too_large, rows.largest, solver.options.direct_rows, to_string(solver.options.lcp_method));
+}
+
 void count(WorldState& s, CounterName counter, std::size_t amount) { s.profile.count(int(counter), amount); }
 
 // Right after the stage, which leaves contacts that it did not look at as they were.
@@ -127,6 +136,7 @@ void step_world(WorldState& s, float seconds) {
   run_stage(s, StageName::put_to_sleep, [&] { put_to_sleep(w, s.arena, seconds); });
   end_step(s, seconds);
   report_frozen(s);
+  report_large_islands(s);
   remove_broken_joints(s);
   count_work(s);
 }

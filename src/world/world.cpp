@@ -59,6 +59,9 @@ bool World::set_joint_enabled(JointId joint, bool enabled) { return submit(*stat
 bool World::set_motor(JointId joint, const Motor& motor) { return submit(*state_, SetMotor{joint, motor}).done; }
 bool World::set_sleeping(bool enabled) { return submit(*state_, SetSleeping{enabled}).done; }
 bool World::set_awake(BodyId body, bool awake) { return submit(*state_, SetAwake{body, awake}).done; }
+bool World::set_solver(SolverKind solver, const SolverOptions& options) {
+  return submit(*state_, SetSolver{solver, options}).done;
+}
 bool World::set_substeps(int substeps) { return submit(*state_, SetSubsteps{substeps}).done; }
 
 bool World::set_combine_rules(CombineRule friction, CombineRule restitution) {

@@ -212,6 +212,11 @@ WorldCounts World::counts() const {
   return counts;
 }
 
+SolverReading World::solver_reading() const {
+  const RowReport& rows = state_->solve.rows;
+  return {rows.residual, rows.islands, rows.direct, rows.largest, rows.sweeps};
+}
+
 double World::time() const { return state_->time; }
 std::uint64_t World::step_count() const { return state_->step_count; }
 Vec3 World::gravity() const { return state_->rigid.settings.gravity; }
@@ -220,6 +225,11 @@ WorldDef World::def() const {
   WorldDef def = state_->def;
   def.gravity = settings.gravity;
   def.stepping.substeps = settings.substeps;
+  def.stepping.solver = SolverKind::soft_step;
+  for (const SolverSettings& solver : state_->rigid.solver) {
+    def.stepping.solver = solver.kind;
+    def.stepping.solver_options = solver.options;
+  }
   def.sleeping = settings.sleeping != 0;
   def.friction_rule = settings.friction_rule;
   def.restitution_rule = settings.restitution_rule;

@@ -113,6 +113,8 @@ std::unique_ptr<WorldState> make_world_state(const WorldDef& def) {
   w.settings.gravity = def.gravity;
   w.settings.substeps = def.stepping.substeps;
   w.settings.sleeping = def.sleeping ? 1 : 0;
+  if (const Stepping& by = def.stepping; by.solver != SolverKind::soft_step)
+    w.solver.push_back({by.solver, by.solver_options});
   w.settings.friction_rule = def.friction_rule;
   w.settings.restitution_rule = def.restitution_rule;
   w.broadphase = make_broadphase(def.stepping.broad_phase);

@@ -91,7 +91,8 @@ using RecordOf = std::remove_cvref_t<decltype(std::declval<const T&>()[std::size
 // the snapshot that it always had.
 template <class Column>
 constexpr bool is_later_column = std::is_same_v<Column, Array<SurfaceRule>> || std::is_same_v<Column, Array<JointDetail>> ||
-                                 std::is_same_v<Column, Array<PathPoint>> || std::is_same_v<Column, Array<FieldRecord>>;
+                                 std::is_same_v<Column, Array<PathPoint>> || std::is_same_v<Column, Array<FieldRecord>> ||
+                                 std::is_same_v<Column, Array<SolverSettings>>;
 
 // Calls visit(name, column) for every column that is simulation state, in a fixed order. A column is an Array or an IsColumn of
 // records that state_fields.h knows, an IdPool, the vector of geometry, or a single record.
@@ -100,6 +101,7 @@ void for_each_column(State& s, Visitor&& visit) {
   visit("time", s.time);
   visit("step_count", s.step_count);
   visit("settings", s.rigid.settings);
+  visit("solver", s.rigid.solver);
   visit("material_pairs", s.rigid.material_pairs);
   visit("surface_rules", s.rigid.surface_rules);
   visit("fields", s.rigid.fields);

@@ -98,7 +98,6 @@ TEST_F(CommandLine, WrongUsageIsStatusTwoAndOneLine) {
   expect_usage({"simulate", "s.gyre.json", "--substeps", "65"}, "1 to 64");
   expect_usage({"simulate", "s.gyre.json", "--threads", "-1"}, "0 to 1024");
   expect_usage({"simulate", "s.gyre.json", "--solver", "magic"}, "found magic, expected one of soft_step");
-  expect_usage({"simulate", "s.gyre.json", "--solver", "lcp"}, "not supported");
   expect_usage({"simulate", "s.gyre.json", "--integrator", "rk4"}, "not supported");
   expect_usage({"simulate", "s.gyre.json", "--broad-phase", "tree"}, "found tree, expected one of bvh");
   expect_usage({"simulate", "s.gyre.json", "--stepping", "adaptive"}, "not supported");

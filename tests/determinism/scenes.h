@@ -460,12 +460,39 @@ inline void drive_fields(World& world, int step) {
   }
 }
 
+// The other solvers, by some of the scenes above.
+inline void build_pile_sequential(World& world) {
+  build_pile(world);
+  world.set_solver(SolverKind::sequential_impulses);
+}
+inline void build_joint_kinds_sequential(World& world) {
+  build_joint_kinds(world);
+  world.set_solver(SolverKind::sequential_impulses, {.friction_sides = 6, .iterations = 5});
+}
+inline void build_stacks_lcp(World& world) {
+  build_stacks(world);
+  world.set_solver(SolverKind::lcp);
+}
+inline void build_joint_kinds_lcp(World& world) {
+  build_joint_kinds(world);
+  world.set_solver(SolverKind::lcp, {.friction_sides = 4, .direct_rows = 60});
+}
+inline void build_changes_lcp(World& world) {
+  build_changes(world);
+  world.set_solver(SolverKind::lcp, {.iterations = 20, .direct_rows = 24});
+}
+
 inline constexpr Scene kScenes[] = {
     {"stacks", build_stacks, nullptr},         {"pile", build_pile, nullptr},
     {"joints", build_joints, nullptr},         {"terrain", build_terrain, nullptr},
     {"cloud", build_cloud, nullptr},           {"pusher", build_pusher, drive_pusher},
     {"changes", build_changes, drive_changes}, {"fields", build_fields, drive_fields},
     {"joint_kinds", build_joint_kinds, nullptr},
+    {"pile_sequential", build_pile_sequential, nullptr},
+    {"joint_kinds_sequential", build_joint_kinds_sequential, nullptr},
+    {"stacks_lcp", build_stacks_lcp, nullptr},
+    {"joint_kinds_lcp", build_joint_kinds_lcp, nullptr},
+    {"changes_lcp", build_changes_lcp, drive_changes},
 };
 
 // One step of a scene; `step` counts from 0.

@@ -26,12 +26,17 @@ void overrule(Call& call, SceneWorld& world) {
   if (call.given()) get(call, world.gravity);
   if (call.given()) get(call, world.time_step);
   if (call.given()) get(call, world.sleeping);
-  Stepping stepping{world.substeps, world.integrator, world.solver, world.broad_phase};
+  Stepping stepping{.substeps = world.substeps,
+                    .integrator = world.integrator,
+                    .solver = world.solver,
+                    .broad_phase = world.broad_phase,
+                    .solver_options = world.solver_options};
   if (call.given()) get(call, stepping);
   world.substeps = stepping.substeps;
   world.integrator = stepping.integrator;
   world.solver = stepping.solver;
   world.broad_phase = stepping.broad_phase;
+  world.solver_options = stepping.solver_options;
 }
 
 int refuse_scene(Answer& answer, const SceneError& error) {

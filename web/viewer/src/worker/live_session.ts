@@ -359,6 +359,9 @@ export class LiveSession implements Session {
     const scene = this.openScene(changed);
     try {
       scene.restoreSnapshot(snapshot);
+      // The solver is part of the state, so the snapshot brought the old one back.
+      const { kind } = valueOf('kind', SolverKind, next.solver);
+      if (kind !== undefined) scene.setSolver(kind, scene.def().stepping.solverOptions);
     } catch (error) {
       scene.dispose();
       throw error;

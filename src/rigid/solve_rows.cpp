@@ -1,0 +1,478 @@
+#include "rigid/solve_rows.h"
+
+#include "rigid/hits.h"
+#include "rigid/joint_works.h"
+#include "rigid/program_writer.h"
+#include "rigid/row_islands.h"
+#include "solver/constraint_rows.h"
+#include "solver/delassus.h"
+#include "solver/solve_sweeps.h"
+#include "task/parallel.h"
+
+namespace gyre {
+
+namespace {
+
+constexpr int kBodiesPerBlock = 64;
+constexpr int kMotionBlocksPerClaim = 8;
+constexpr int kSpinnersPerClaim = 8;
+// Sides of the polygon by which pivoting leads to Coulomb's disc.
+constexpr int kLeadingSides = 8;
+// Impulses are found to this share of the largest that stops a row alone, and to this many N s where that is less.
+constexpr double kDirectShare = 1.0e-7, kDirectImpulse = 1.0e-7, kRounding = 1.0e-11;
+constexpr double kNncgShare = 1.0e-5;
+// Sweeps that lead Newton's method nearer, and rows up to which pivoting is tried where that still does not end.
+constexpr int kLeadingSweeps = 64, kMostPivotRows = 100;
+
+// What one worker needs for the island that it is at.
+struct WorkerRoom {
+  std::span<Row> rows;
+  std::span<float*> kept;
+  std::span<RowBody> bodies;
+  std::span<RowLimits> limits;
+  std::span<std::int32_t> starts, first, next;
+  std::span<double> numbers;
+};
+
+struct RowSolve {
+  Solve& solve;
+  const SolverSettings& settings;
+  FrictionSet friction, polygon;
+  DirectMethod method = DirectMethod::quick;
+  RowIslands islands{};
+  std::span<WorkerRoom> rooms{};
+  std::span<RowReport> reports{};  // by island
+  float warm_scale = 1.0f;
+};
+
+// The rows of a sub-step of one island, and who they came from.
+struct IslandRows {
+  const RowIsland& island;
+  WorkerRoom& room;
+  RowFrame frame;
+  RowList list;
+
+  std::span<Row> rows() const { return room.rows.first(std::size_t(list.count)); }
+  std::span<RowBody> bodies() const { return frame.bodies; }
+};
+
+int sweeps_of(const SolverSettings& settings) {
+  if (settings.options.iterations > 0) return settings.options.iterations;
+  return settings.kind == SolverKind::lcp ? kNncgSweeps : kSequentialSweeps;
+}
+bool takes_directly(const RowSolve& s, int rows) {
+  if (s.settings.kind != SolverKind::lcp || s.settings.options.lcp_method == LcpMethod::nncg) return false;
+  return rows <= s.settings.options.direct_rows;
+}
+
+IslandRows begin_island(const RowSolve& s, const RowIsland& island, WorkerRoom& room, bool at_rest) {
+  const BodyStore& store = s.solve.w.bodies;
+  for (std::size_t i = 0; i < island.bodies.size(); ++i) {
+    const std::uint32_t slot = island.bodies[i];
+    const BodyMotion& motion = store.motion[slot];
+    const BodyInertia& inertia = store.inertia[slot];
+    RowBody& body = room.bodies[i];
+    body = {};
+    if (!at_rest) body.linear = DVec3(motion.linear_velocity), body.angular = DVec3(motion.angular_velocity);
+    const std::uint8_t locked = store.flags[slot].locked_linear;
+    const double w = double(inertia.inverse_mass);
+    body.inverse_mass = {(locked & 1) != 0 ? 0.0 : w, (locked & 2) != 0 ? 0.0 : w,
+                         (locked & 4) != 0 ? 0.0 : w};
+    const Sym3& m = inertia.inverse;
+    const double six[6] = {double(m.xx), double(m.yy), double(m.zz),
+                           double(m.xy), double(m.xz), double(m.yz)};
+    for (int k = 0; k < 6; ++k) body.inverse_inertia[k] = six[k];
+  }
+  const RowFrame frame{room.bodies.first(island.bodies.size()), s.islands.place.data(), store.motion.data(),
+                       double(s.solve.h)};
+  return {island, room, frame, {room.rows.data(), room.kept.data(), 0}};
+}
+
+// ---------------------------------------------------------------------------------------------------------- solving
+
+double largest_alone(std::span<const Row> rows, std::span<const RowBody> bodies) {
+  double most = 0.0;
+  for (const Row& row : rows) {
+    if (!(row.diagonal > 0.0)) continue;
+    const double w = row_speed(row, bodies) - row.wanted;
+    most = max(most, (w < 0.0 ? -w : w) / row.diagonal);
+  }
+  return most;
+}
+
+void sweep_island(const RowSolve& s, const IslandRows& island, NumberRoom room, double scale,
+                  RowReport& report) {
+  const std::span<Row> rows = island.rows();
+  const std::span<RowBody> bodies = island.bodies();
+  warm_start_rows(rows, bodies);
+  if (s.settings.kind == SolverKind::lcp) {
+    const SweepResult result =
+        solve_nncg(rows, bodies, s.friction, kNncgShare * scale, sweeps_of(s.settings), room);
+    report.sweeps = max(report.sweeps, result.sweeps);
+    report.residual = max(report.residual, result.residual);
+    return;
+  }
+  for (int i = 0; i < sweeps_of(s.settings); ++i) sweep_rows_once(rows, bodies, s.friction);
+  report.sweeps = sweeps_of(s.settings);
+  report.residual = max(report.residual, find_row_residual(rows, bodies, s.friction));
+}
+
+// False if it left more than it should; the rows' impulses are then the best that it found.
+bool solve_island_directly(const RowSolve& s, const IslandRows& island, NumberRoom room, DirectMethod method,
+                           double scale, RowReport& report) {
+  const std::span<Row> rows = island.rows();
+  const std::size_t n = rows.size();
+  const std::span<double> a = room.take(n * n), q = room.take(n), x = room.take(n);
+  WorkerRoom& own = island.room;
+  fill_delassus(rows, island.bodies().size(), a, own.first, own.next);
+  for (std::size_t i = 0; i < n; ++i) {
+    q[i] = row_speed(rows[i], island.bodies()) - rows[i].wanted;
+    x[i] = rows[i].impulse;
+    own.limits[i] = rows[i].limits;
+  }
+  const DenseProblem problem{int(n), a, q, own.limits.first(n), &s.friction};
+  const double tolerance = max(kRounding * scale, min(kDirectImpulse, kDirectShare * scale));
+  const DirectResult result = solve_direct(problem, s.polygon, method, tolerance, x, room);
+  for (std::size_t i = 0; i < n; ++i) rows[i].impulse = x[i];
+  if (!result.is_solved) return false;
+  warm_start_rows(rows, island.bodies());
+  report.residual = max(report.residual, result.residual);
+  report.direct = 1;
+  return true;
+}
+
+// Newton's method from where the impulses stand; where it does not end, from where some sweeps lead; then pivoting, which ends
+// from anywhere, where it is not too dear.
+bool solve_island_by_all_means(const RowSolve& s, const IslandRows& island, NumberRoom room, double scale,
+                               RowReport& report) {
+  const std::span<Row> rows = island.rows();
+  if (solve_island_directly(s, island, room, DirectMethod::quick, scale, report)) return true;
+  warm_start_rows(rows, island.bodies());
+  solve_nncg(rows, island.bodies(), s.friction, kNncgShare * scale, kLeadingSweeps, room);
+  for (const Row& row : rows) push_row(row, -row.impulse, island.bodies());
+  if (solve_island_directly(s, island, room, DirectMethod::quick, scale, report)) return true;
+  return int(rows.size()) <= kMostPivotRows &&
+         solve_island_directly(s, island, room, DirectMethod::dantzig, scale, report);
+}
+
+void solve_island(const RowSolve& s, const IslandRows& island, RowReport& report) {
+  const std::span<Row> rows = island.rows();
+  if (rows.empty()) return;
+  report.islands = 1;
+  report.largest = max(report.largest, int(rows.size()));
+  const double scale = largest_alone(rows, island.bodies());
+  const NumberRoom room(island.room.numbers);
+  const LcpMethod method = s.settings.options.lcp_method;
+  if (takes_directly(s, int(rows.size()))) {
+    const bool is_solved = method == LcpMethod::automatic
+                               ? solve_island_by_all_means(s, island, room, scale, report)
+                               : solve_island_directly(s, island, room, s.method, scale, report);
+    if (is_solved) return;
+  } else if (s.settings.kind == SolverKind::lcp && method != LcpMethod::automatic &&
+             method != LcpMethod::nncg) {
+    report.too_large = 1;
+  }
+  sweep_island(s, island, room, scale, report);
+}
+
+// ----------------------------------------------------------------------------------------------------------- stages
+
+void make_rows(const RowSolve& s, IslandRows& island, bool first) {
+  Solve& solve = s.solve;
+  int next = 0;
+  for (const std::uint32_t i : island.island.joints) {
+    JointRecord& joint = solve.w.joints.records[solve.batch.joints[i]];
+    bend_joint(joint, solve.joint_work[i], solve.joint_bodies, solve.joint_settings);
+    island.room.starts[std::size_t(next++)] = island.list.count;
+    add_joint_rows(joint, solve.joint_work[i], solve.joint_settings, island.frame, island.list);
+  }
+  const float warm = first ? s.warm_scale : 1.0f;
+  for (const std::uint32_t i : island.island.constraints) {
+    island.room.starts[std::size_t(next++)] = island.list.count;
+    add_contact_rows(solve.scratch.constraints[i], island.frame, warm, island.list);
+  }
+  island.room.starts[std::size_t(next)] = island.list.count;
+}
+
+void keep_impulses(const RowSolve& s, const IslandRows& island) {
+  Solve& solve = s.solve;
+  std::size_t next = 0;
+  const auto range = [&] {
+    const std::size_t begin = std::size_t(island.room.starts[next]),
+                      end = std::size_t(island.room.starts[next + 1]);
+    ++next;
+    return std::pair(begin, end - begin);
+  };
+  for (const std::uint32_t i : island.island.joints) {
+    const auto [begin, count] = range();
+    keep_joint_impulses(solve.w.joints.records[solve.batch.joints[i]], solve.joint_work[i],
+                        island.room.rows.subspan(begin, count), island.room.kept.subspan(begin, count));
+  }
+  for (const std::uint32_t i : island.island.constraints) {
+    const auto [begin, count] = range();
+    keep_contact_impulses(solve.scratch.constraints[i], s.friction, island.room.rows.subspan(begin, count));
+  }
+}
+
+// Adding zero keeps -0 out of the state.
+void store_velocities(const RowSolve& s, const IslandRows& island) {
+  for (std::size_t i = 0; i < island.island.bodies.size(); ++i) {
+    BodyMotion& motion = s.solve.w.bodies.motion[island.island.bodies[i]];
+    motion.linear_velocity = to_float(island.frame.bodies[i].linear) + Vec3{};
+    motion.angular_velocity = to_float(island.frame.bodies[i].angular) + Vec3{};
+  }
+}
+
+template <bool first>
+void solve_islands_stage(void* context, int begin, int end, int worker) {
+  const RowSolve& s = *static_cast<RowSolve*>(context);
+  for (int i = begin; i < end; ++i) {
+    IslandRows island =
+        begin_island(s, s.islands.islands[std::size_t(i)], s.rooms[std::size_t(worker)], false);
+    make_rows(s, island, first);
+    solve_island(s, island, s.reports[std::size_t(i)]);
+    store_velocities(s, island);
+    keep_impulses(s, island);
+  }
+}
+
+void push_apart_stage(void* context, int begin, int end, int worker) {
+  const RowSolve& s = *static_cast<RowSolve*>(context);
+  Solve& solve = s.solve;
+  for (int i = begin; i < end; ++i) {
+    IslandRows island =
+        begin_island(s, s.islands.islands[std::size_t(i)], s.rooms[std::size_t(worker)], true);
+    bool overlaps = false;
+    for (const std::uint32_t c : island.island.constraints) {
+      if (add_overlap_rows(solve.scratch.constraints[c], island.frame, solve.contact_settings.step,
+                           island.list))
+        overlaps = true;
+    }
+    if (!overlaps) continue;
+    for (const std::uint32_t j : island.island.joints)
+      add_joint_equations(solve.w.joints.records[solve.batch.joints[j]], solve.joint_work[j], island.frame,
+                          island.list);
+    RowReport unheard;  // of displacements, not impulses
+    solve_island(s, island, unheard);
+    store_velocities(s, island);
+  }
+}
+
+void place_joints_stage(void* context, int begin, int end, int) {
+  const RowSolve& s = *static_cast<RowSolve*>(context);
+  Solve& solve = s.solve;
+  for (int i = begin; i < end; ++i) {
+    for (const std::uint32_t j : s.islands.islands[std::size_t(i)].joints)
+      place_joint(solve.w.joints.records[solve.batch.joints[j]], solve.joint_work[j], solve.joint_places[j],
+                  solve.joint_bodies, solve.joint_settings);
+  }
+}
+void sum_joints_stage(void* context, int begin, int end, int) {
+  const RowSolve& s = *static_cast<RowSolve*>(context);
+  Solve& solve = s.solve;
+  for (int i = begin; i < end; ++i) {
+    for (const std::uint32_t j : s.islands.islands[std::size_t(i)].joints)
+      sum_joint(solve.w.joints.records[solve.batch.joints[j]], solve.joint_work[j], solve.joint_bodies);
+  }
+}
+
+template <class T>
+std::span<T> block_of(std::span<T> list, int begin, int end, int size) {
+  const std::size_t first = std::size_t(begin) * std::size_t(size);
+  return list.subspan(first, min(std::size_t(end) * std::size_t(size), list.size()) - first);
+}
+void fly_stage(void* context, int begin, int end, int) {
+  const Solve& s = static_cast<RowSolve*>(context)->solve;
+  fly(s.w.bodies, block_of(s.flying, begin, end, kBodiesPerBlock), s.motions);
+}
+void prepare_motion_stage(void* context, int begin, int end, int) {
+  const Solve& s = static_cast<RowSolve*>(context)->solve;
+  s.kernels.motion.prepare(s.motion_blocks, begin, end, s.moved.data(), int(s.moved.size()),
+                           s.contact_bodies.inertia);
+}
+void predict_stage(void* context, int begin, int end, int) {
+  const Solve& s = static_cast<RowSolve*>(context)->solve;
+  s.kernels.motion.predict(s.motion_blocks, begin, end, s.contact_bodies.motion, false);
+}
+void advance_stage(void* context, int begin, int end, int) {
+  const Solve& s = static_cast<RowSolve*>(context)->solve;
+  BodyStore& bodies = s.w.bodies;
+  s.kernels.motion.advance(s.motion_blocks, begin, end,
+                           {bodies.motion.data(), bodies.inertia.data(), bodies.orientations.data()}, s.h);
+}
+void turn_alone_stage(void* context, int begin, int end, int) {
+  const Solve& s = static_cast<RowSolve*>(context)->solve;
+  turn_alone(s.w.bodies, block_of(s.spinners, begin, end, kSpinnersPerClaim), s.h);
+}
+void finish_turns_stage(void* context, int begin, int end, int) {
+  const Solve& s = static_cast<RowSolve*>(context)->solve;
+  finish_turns(s.w.bodies, block_of(s.moved, begin, end, kBodiesPerBlock),
+               block_of(s.pushes, begin, end, kBodiesPerBlock));
+}
+void begin_projection_stage(void* context, int begin, int end, int) {
+  const Solve& s = static_cast<RowSolve*>(context)->solve;
+  s.kernels.motion.begin_projection(s.motion_blocks, begin, end, s.contact_bodies.motion);
+}
+void end_projection_stage(void* context, int begin, int end, int) {
+  const Solve& s = static_cast<RowSolve*>(context)->solve;
+  s.kernels.motion.end_projection(s.motion_blocks, begin, end, s.contact_bodies.motion, s.pushes.data());
+}
+void watch_stage(void* context, int, int, int) {
+  const Solve& s = static_cast<RowSolve*>(context)->solve;
+  watch_impacts(s.scratch.impacts, s.contact_bodies);
+}
+void strike_stage(void* context, int, int, int) {
+  const Solve& s = static_cast<RowSolve*>(context)->solve;
+  strike_impacts(s.scratch.impacts, s.contact_bodies, s.impact_settings);
+}
+void release_stage(void* context, int, int, int) {
+  const Solve& s = static_cast<RowSolve*>(context)->solve;
+  release_impacts(s.scratch.impacts, s.contact_bodies, s.impact_settings);
+}
+
+// ---------------------------------------------------------------------------------------------------------- program
+
+void run_substeps(RowSolve& s, Arena& arena, TaskSystem& tasks) {
+  Solve& solve = s.solve;
+  const int islands = int(s.islands.islands.size());
+  const int bodies = count_blocks(int(solve.moved.size()), solve.kernels.width);
+  const int impacts = solve.scratch.impacts.empty() ? 0 : 1;
+  const int fields = solve.fields.blocks();
+  ProgramWriter program(arena.make<Stage>(8 + 11 * std::size_t(solve.motions.count)));
+  program.add(fly_stage, &s, count_blocks(int(solve.flying.size()), kBodiesPerBlock));
+  program.add(prepare_motion_stage, &s, bodies, kMotionBlocksPerClaim);
+  program.add(prepare_fields_stage, &solve.fields, fields);
+  program.add(place_joints_stage, &s, islands);
+  for (int i = 0; i < solve.motions.count; ++i) {
+    program.add(watch_fields_stage, &solve.fields, fields);
+    program.add(watch_stage, &s, impacts);
+    program.add(predict_stage, &s, bodies, kMotionBlocksPerClaim);
+    program.add(strike_stage, &s, impacts);
+    program.add(apply_fields_stage, &solve.fields, fields);
+    program.add(i == 0 ? solve_islands_stage<true> : solve_islands_stage<false>, &s, islands);
+    program.add(advance_stage, &s, bodies, kMotionBlocksPerClaim);
+    program.add(turn_alone_stage, &s, count_blocks(int(solve.spinners.size()), kSpinnersPerClaim));
+    program.add(release_stage, &s, impacts);
+    program.add(place_joints_stage, &s, islands);
+    program.add(sum_joints_stage, &s, islands);
+  }
+  program.add(begin_projection_stage, &s, bodies, kMotionBlocksPerClaim);
+  program.add(push_apart_stage, &s, islands);
+  program.add(end_projection_stage, &s, bodies, kMotionBlocksPerClaim);
+  program.add(finish_turns_stage, &s, count_blocks(int(solve.moved.size()), kBodiesPerBlock));
+  run_program(tasks, program.stages());
+}
+
+// Room for the largest island, for each worker: whoever comes to it.
+void make_rooms(RowSolve& s, Arena& arena, TaskSystem& tasks) {
+  std::size_t rows = 0, bodies = 0, owners = 0, numbers = 0;
+  for (const RowIsland& island : s.islands.islands) {
+    const std::size_t n = island.size.rows;
+    rows = max(rows, n);
+    bodies = max(bodies, island.bodies.size());
+    owners = max(owners, island.joints.size() + island.constraints.size());
+    std::size_t own = nncg_room(n);
+    if (s.settings.kind == SolverKind::lcp && s.settings.options.lcp_method != LcpMethod::nncg) {
+      // Fewer rows than were counted may come within what is solved directly.
+      const auto add = [&](int most, DirectMethod method) {
+        DirectSize size = island.size;
+        size.rows = min(n, std::size_t(most));
+        size.equations = min(size.equations, size.rows), size.cones = min(size.cones, (size.rows + 1) / 2);
+        own = max(own, size.rows * size.rows + 2 * size.rows + direct_room(size, s.polygon, method));
+      };
+      const int most = s.settings.options.direct_rows;
+      const bool is_automatic = s.settings.options.lcp_method == LcpMethod::automatic;
+      add(most, is_automatic ? DirectMethod::newton : s.method);
+      if (is_automatic) add(min(most, kMostPivotRows), DirectMethod::dantzig);
+    }
+    numbers = max(numbers, own);
+  }
+  s.rooms = arena.make<WorkerRoom>(std::size_t(tasks.worker_count()));
+  for (WorkerRoom& room : s.rooms) {
+    room = {arena.make<Row>(rows),
+            arena.make<float*>(rows),
+            arena.make<RowBody>(bodies),
+            arena.make<RowLimits>(rows),
+            arena.make<std::int32_t>(owners + 1),
+            arena.make<std::int32_t>(bodies),
+            arena.make<std::int32_t>(2 * rows),
+            arena.make<double>(numbers)};
+  }
+}
+
+// Rows look at their bodies' places in each sub-step.
+void show_bodies(Solve& solve) {
+  RigidWorld& w = solve.w;
+  for (const std::uint32_t slot : solve.batch.joints) {
+    const JointRecord& joint = w.joints.records[slot];
+    if (joint.body_a != kNoBody) w.bodies.flags[std::size_t(joint.body_a)].touched = kPlaceShown;
+    if (joint.body_b != kNoBody) w.bodies.flags[std::size_t(joint.body_b)].touched = kPlaceShown;
+  }
+  for (const std::uint32_t body : solve.batch.bodies) {
+    std::uint8_t& touched = w.bodies.flags[body].touched;
+    if (touched != kUntouched) touched = kPlaceShown;
+  }
+}
+
+void add_reports(RowReport& sum, std::span<const RowReport> reports) {
+  for (const RowReport& report : reports) {
+    sum.residual = max(sum.residual, report.residual);
+    sum.islands += report.islands;
+    sum.largest = max(sum.largest, report.largest);
+    sum.direct += report.direct;
+    sum.too_large += report.too_large;
+    sum.sweeps = max(sum.sweeps, report.sweeps);
+  }
+}
+
+DirectMethod direct_method(LcpMethod method) {
+  switch (method) {
+    case LcpMethod::dantzig:
+      return DirectMethod::dantzig;
+    case LcpMethod::lemke:
+      return DirectMethod::lemke;
+    case LcpMethod::newton:
+      return DirectMethod::newton;
+    case LcpMethod::automatic:
+    case LcpMethod::nncg:
+      break;
+  }
+  return DirectMethod::quick;
+}
+
+}  // namespace
+
+void solve_batch_as_rows(Solve& solve, const SolverSettings& settings, Arena& arena, TaskSystem& tasks,
+                         float warm_scale) {
+  const ArenaScope scope(arena);
+  SolveScratch& scratch = solve.scratch;
+  gather_contacts(solve);
+  for (const ContactConstraint& constraint : scratch.constraints) constraint.manifold->total_friction = {};
+  show_bodies(solve);
+  solve.fields = find_field_bodies(solve.w, solve.batch.bodies, solve.h, arena);
+  const JointWorks works = begin_joints(solve.w, solve.batch, warm_scale, arena);
+  solve.joint_work = works.work;
+  solve.joint_places = works.places;
+  gather_motion(solve, arena);
+  RowSolve rows{solve, settings, make_friction_set(settings.options.friction_sides), {}};
+  rows.polygon = settings.options.friction_sides == 0 ? make_friction_set(kLeadingSides) : rows.friction;
+  rows.method = direct_method(settings.options.lcp_method);
+  rows.warm_scale = warm_scale;
+  rows.islands = find_row_islands(solve.w, scratch, solve.batch, solve.joint_work, arena);
+  rows.reports = arena.make<RowReport>(rows.islands.islands.size());
+  for (RowReport& report : rows.reports) report = {};
+  make_rooms(rows, arena, tasks);
+  run_substeps(rows, arena, tasks);
+  add_reports(scratch.rows, rows.reports);
+  for (const ContactConstraint& constraint : scratch.constraints) {
+    float load = 0.0f;
+    for (int k = 0; k < constraint.manifold->count; ++k) load += constraint.manifold->points[k].total_impulse;
+    constraint.manifold->age = load > 0.0f ? constraint.manifold->age + solve.contact_settings.step : 0.0f;
+  }
+  finish_joints(solve.w, solve.batch, solve.joint_work);
+  note_hits(solve.w, scratch);
+  scratch.manifold_count += scratch.constraints.size();
+  scratch.joint_count += solve.batch.joints.size();
+}
+
+}  // namespace gyre

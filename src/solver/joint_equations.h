@@ -1,0 +1,97 @@
+// The rows of a joint that hold always, one by one, and where their impulses are kept, for the solvers that see all of an island as
+// rows. (Linkages keep theirs side by side: solver/linkage.cpp.)
+#pragma once
+
+#include "solver/joint_blocks.h"
+#include "solver/joint_kinds.h"
+
+namespace gyre {
+
+// It sees push . (v_b - v_a) + arm_b . w_b - arm_a . w_a.
+struct JointEquation {
+  Vec3 push;  // direction of a force; zero for a turning row
+  Vec3 arm_a, arm_b;
+};
+struct JointEquations {
+  int count = 0;
+  JointEquation rows[kJointAxisCount];
+};
+
+inline void add_point_row(JointEquations& node, const JointWork& work, Vec3 direction) {
+  JointEquation& row = node.rows[node.count++];
+  row.push = direction;
+  row.arm_a = cross(work.from_a, direction);
+  row.arm_b = cross(work.from_b, direction);
+}
+inline void add_turn_row(JointEquations& node, Vec3 axis) {
+  JointEquation& row = node.rows[node.count++];
+  row.push = {};
+  row.arm_a = row.arm_b = axis;
+}
+
+inline void make_equations(JointEquations& node, const JointRecord& joint, const JointWork& work) {
+  constexpr Vec3 kAxes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  node.count = 0;
+  if (work.rows != nullptr) {
+    for (; node.count < work.rows->count; ++node.count) {
+      const JointRow& from = work.rows->rows[node.count];
+      JointEquation& row = node.rows[node.count];
+      row.push = from.push, row.arm_a = from.arm_a, row.arm_b = from.arm_b;
+    }
+    return;
+  }
+  switch (joint.kind) {
+    case JointKind::distance:
+      add_point_row(node, work, work.axis);
+      break;
+    case JointKind::slider:
+      add_point_row(node, work, work.perpendicular_1);
+      add_point_row(node, work, work.perpendicular_2);
+      break;
+    default:
+      for (const Vec3 axis : kAxes) add_point_row(node, work, axis);
+  }
+  if (joint.kind == JointKind::hinge) {
+    add_turn_row(node, work.perpendicular_1);
+    add_turn_row(node, work.perpendicular_2);
+  } else if (joint.kind == JointKind::slider || joint.kind == JointKind::fixed) {
+    for (const Vec3 axis : kAxes) add_turn_row(node, axis);
+  }
+}
+
+inline bool is_turn(const JointEquation& row) { return row.push == Vec3{}; }
+
+// The joint's accumulated impulses in terms of its rows, and back.
+inline float kept_impulse(const JointRecord& joint, const JointWork& work, const JointEquation& row, int i) {
+  if (work.rows != nullptr) return work.detail->row_impulses[i];
+  if (joint.kind == JointKind::distance) return work.axes[0].axis.low_impulse;
+  return is_turn(row) ? dot(joint.angular_impulse, row.arm_a) : dot(joint.linear_impulse, row.push);
+}
+inline void keep_impulse(JointRecord& joint, const JointWork& work, const JointEquation& row, int i,
+                         float impulse) {
+  if (work.rows != nullptr) {
+    work.detail->row_impulses[i] += impulse;
+  } else if (joint.kind == JointKind::distance) {
+    work.axes[0].axis.low_impulse += impulse;
+  } else if (is_turn(row)) {
+    joint.angular_impulse += impulse * row.arm_a;
+  } else {
+    joint.linear_impulse += impulse * row.push;
+  }
+}
+inline void forget_kept(JointRecord& joint, const JointWork& work) {
+  joint.linear_impulse = joint.angular_impulse = {};
+  if (work.rows == nullptr && joint.kind == JointKind::distance) work.axes[0].axis.low_impulse = 0.0f;
+  if (work.rows == nullptr) return;
+  for (float& impulse : work.detail->row_impulses) impulse = 0.0f;
+}
+
+inline float error_of(const JointRecord& joint, const JointWork& work, const JointEquation& row, int i) {
+  if (work.rows != nullptr) return error_taken_back(work.rows->rows[i]);
+  if (is_turn(row)) return dot(work.angular_error, row.arm_a);
+  if (joint.kind == JointKind::distance)
+    return clamp(work.position - joint.min_length, -kMostPointError, kMostPointError);
+  return dot(within(work.error, kMostPointError), row.push);
+}
+
+}  // namespace gyre
