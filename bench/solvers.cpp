@@ -4,7 +4,7 @@
 //
 // Columns: scene, way, sub-steps, milliseconds of processor time a step (median), deepest overlap (m), widest joint (m), farthest that anything
 // moved from where it was built (m), largest residual (N s), rows of the largest island, joints and contacts as the run ended.
-// Overlap, joints and residual are the worst of the second half of the run. tools/make_numerics.py draws them.
+// Overlap, joints and residual are the worst of the second half of the run. tools/make_solver_comparison.py draws them.
 #include <gyre/gyre.h>
 
 #include <algorithm>

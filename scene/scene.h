@@ -24,6 +24,10 @@ struct SceneWorld {
   SolverKind solver = SolverKind::soft_step;
   SolverOptions solver_options{};
   BroadPhaseKind broad_phase = BroadPhaseKind::bvh;
+  SpringKind springs = SpringKind::implicit;
+  TimeStepping stepping = TimeStepping::fixed;
+  float tolerance = 1.0e-5f;  // m; of steps that are not fixed
+  int max_impacts = 128;      // times of impact in a step; adaptive
   bool sleeping = true;
 };
 

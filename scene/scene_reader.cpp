@@ -46,10 +46,10 @@ void read_world(const Field& field, SceneWorld& world) {
   if (const auto substeps = members.find("substeps")) world.substeps = int(substeps->integer(1, 64));
   if (const auto integrator = members.find("integrator")) {
     world.integrator =
-        integrator->choice<IntegratorKind>({{"explicit_euler", {}},
+        integrator->choice<IntegratorKind>({{"explicit_euler", IntegratorKind::explicit_euler},
                                             {"semi_implicit_euler", IntegratorKind::semi_implicit_euler},
-                                            {"rk4", {}},
-                                            {"verlet", {}}});
+                                            {"rk4", IntegratorKind::rk4},
+                                            {"verlet", IntegratorKind::verlet}});
   }
   if (const auto solver = members.find("solver")) {
     world.solver = solver->choice<SolverKind>({{"soft_step", SolverKind::soft_step},
@@ -80,8 +80,17 @@ void read_world(const Field& field, SceneWorld& world) {
                                              {"sweep_and_prune", BroadPhaseKind::sweep_and_prune},
                                              {"brute_force", BroadPhaseKind::brute_force}});
   }
-  if (const auto stepping = members.find("stepping"))
-    stepping->choice<bool>({{"fixed", true}, {"adaptive", {}}});
+  if (const auto springs = members.find("springs")) {
+    world.springs = springs->choice<SpringKind>(
+        {{"implicit", SpringKind::implicit}, {"explicit", SpringKind::explicit_force}});
+  }
+  if (const auto stepping = members.find("stepping")) {
+    world.stepping = stepping->choice<TimeStepping>({{"fixed", TimeStepping::fixed},
+                                                     {"adaptive", TimeStepping::adaptive},
+                                                     {"error_controlled", TimeStepping::error_controlled}});
+  }
+  members.read("tolerance", world.tolerance, Range::between(1.0e-9, 1));
+  if (const auto impacts = members.find("max_impacts")) world.max_impacts = int(impacts->integer(1, 4096));
   members.read("sleeping", world.sleeping);
   members.finish();
 }

@@ -97,9 +97,9 @@ TEST(SceneReader, RefusesWhatIsWrongInTheWorld) {
       {world_with(R"("substeps": 18446744073709551615)"), "/world/substeps", {"expected an integer"}},
       {world_with(R"("substeps": null)"), "/world/substeps", {"found null"}},
       {world_with(R"("sleeping": 1)"), "/world/sleeping", {"found 1, expected true or false"}},
-      {world_with(R"("integrator": "rk4")"),
-       "/world/integrator",
-       {"\"rk4\" is not supported by this version"}},
+      {world_with(R"("springs": "stiff")"), "/world/springs", {"found \"stiff\"", "\"implicit\""}},
+      {world_with(R"("tolerance": 0)"), "/world/tolerance", {"found 0"}},
+      {world_with(R"("max_impacts": 5000)"), "/world/max_impacts", {"found 5000"}},
       {world_with(R"("integrator": "rk5")"),
        "/world/integrator",
        {"found \"rk5\"", "one of \"explicit_euler\""}},
@@ -110,7 +110,7 @@ TEST(SceneReader, RefusesWhatIsWrongInTheWorld) {
       {world_with(R"("iterations": -1)"), "/world/iterations", {"found -1"}},
       {world_with(R"("direct_rows": 601)"), "/world/direct_rows", {"found 601"}},
       {world_with(R"("broad_phase": "kdtree")"), "/world/broad_phase", {"found \"kdtree\"", "\"kd_tree\""}},
-      {world_with(R"("stepping": "adaptive")"), "/world/stepping", {"not supported"}},
+      {world_with(R"("stepping": "often")"), "/world/stepping", {"found \"often\"", "\"adaptive\""}},
       {world_with(R"("timestep": 0.01)"), "/world/timestep", {"unknown field in a world", "\"time_step\""}},
   };
   for (const BadScene& bad : table) expect_refused(bad);

@@ -22,6 +22,10 @@ SceneResult<SceneRunner> SceneRunner::create(Scene scene, const std::string& fil
                   .integrator = settings.integrator,
                   .solver = settings.solver,
                   .broad_phase = settings.broad_phase,
+                  .springs = settings.springs,
+                  .time = settings.stepping,
+                  .tolerance = settings.tolerance,
+                  .max_impacts = settings.max_impacts,
                   .solver_options = settings.solver_options};
   def.sleeping = settings.sleeping;
   Result<World> world = World::create(def);
@@ -103,6 +107,11 @@ void SceneRunner::apply_forces() {
 bool SceneRunner::find_problem() {
   for (const Problem& problem : world_.problems()) {
     const SceneBody* body = body_of(problem.body);
+    if (problem.code == ErrorCode::unstable) {
+      if (warning_.empty())
+        warning_ = (body ? "body \"" + body->name + "\": " : std::string()) + problem.message;
+      continue;
+    }
     problem_ = (body ? "body \"" + body->name + "\": " : std::string()) + problem.message;
     return true;
   }

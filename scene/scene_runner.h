@@ -23,6 +23,8 @@ class SceneRunner {
   // finite: then problem() says what happened, and to whom.
   bool step();
   const std::string& problem() const { return problem_; }
+  // The first warning of the run: motion goes on, but is not what it should be. Empty: none yet.
+  const std::string& warning() const { return warning_; }
 
   World& world() { return world_; }
   const World& world() const { return world_; }
@@ -57,6 +59,7 @@ class SceneRunner {
   std::vector<std::size_t> forced_;  // bodies with forces
   std::vector<double> lengths_;      // of distance joints at the start
   std::string problem_;
+  std::string warning_;
 };
 
 }  // namespace gyre

@@ -92,7 +92,18 @@ constexpr char kPart0[] = R"json({
           "enum": ["bvh", "grid", "octree", "quadtree", "kd_tree", "bsp_tree", "sweep_and_prune", "brute_force"],
           "default": "bvh"
         },
-        "stepping": { "enum": ["fixed", "adaptive"], "default": "fixed", "description": "adaptive: advance to the times of impact" },
+        "springs": {
+          "enum": ["implicit", "explicit"],
+          "default": "implicit",
+          "description": "explicit: springs of distance joints are forces that the integrator sees at its stages"
+        },
+        "stepping": {
+          "enum": ["fixed", "adaptive", "error_controlled"],
+          "default": "fixed",
+          "description": "adaptive: advance to the times of impact; error_controlled: sub-steps by the estimated error"
+        },
+        "tolerance": { "type": "number", "minimum": 1e-9, "maximum": 1, "default": 1e-5, "description": "m, of a step that is not fixed" },
+        "max_impacts": { "type": "integer", "minimum": 1, "maximum": 4096, "default": 128, "description": "in a step, adaptive" },
         "sleeping": { "type": "boolean", "default": true }
       }
     },

@@ -37,6 +37,14 @@ void write_world(JsonWriter& json, const SceneWorld& world) {
   json.field("gravity", world.gravity);
   json.field("time_step", world.time_step);
   json.field("substeps", world.substeps);
+  if (world.integrator != IntegratorKind::semi_implicit_euler)
+    json.field("integrator", to_string(world.integrator));
+  if (world.springs != SpringKind::implicit) json.field("springs", to_string(world.springs));
+  if (world.stepping != TimeStepping::fixed) {
+    json.field("stepping", to_string(world.stepping));
+    json.field("tolerance", world.tolerance);
+    json.field("max_impacts", world.max_impacts);
+  }
   if (world.solver != SolverKind::soft_step) json.field("solver", to_string(world.solver));
   if (world.solver_options.lcp_method != LcpMethod::automatic) json.field("lcp_method", to_string(world.solver_options.lcp_method));
   unless_default(json, "friction_sides", world.solver_options.friction_sides, 0);

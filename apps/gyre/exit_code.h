@@ -4,7 +4,8 @@
 namespace gyre {
 
 constexpr int kExitGood = 0;
-constexpr int kExitUsage = 2;  // wrong options or arguments
+constexpr int kExitFailed = 1;  // validate: a measured number is not what it must be
+constexpr int kExitUsage = 2;   // wrong options or arguments
 constexpr int kExitInvalid =
     3;  // a scene or file cannot be read or is invalid, or an output cannot be written
 constexpr int kExitNotFinite = 4;      // the simulation stopped being finite

@@ -143,12 +143,18 @@ int Simulation::run_steps(std::uint64_t steps) {
   Progress progress(!options_.quiet, steps);
   set_timing(runner_.world(), options_.times);
   if (!record_step(0)) return kExitInvalid;
+  bool warned = false;
   for (std::uint64_t i = 0; i < steps; ++i) {
     const Clock::time_point begin = Clock::now();
     const bool finite = runner_.step();
     const double step_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
     figures_.step_ms.push_back(float(step_ms));
     if (options_.times) stages_.add(runner_.world());
+    if (!warned && !runner_.warning().empty()) {
+      warned = true;
+      progress.clear();
+      say("warning: " + runner_.warning());
+    }
     if (!finite) {
       progress.clear();
       say("the simulation is no longer finite in step " + std::to_string(i + 1) + ": " + runner_.problem() +

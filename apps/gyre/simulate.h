@@ -20,8 +20,9 @@ struct SimulateOptions {
   std::optional<std::uint64_t> steps;
   std::optional<double> time_step;
   std::optional<int> substeps;
+  std::optional<float> tolerance;  // m
   int threads = 1;
-  std::string solver, integrator, broad_phase, stepping;  // empty: what the scene says
+  std::string solver, integrator, broad_phase, stepping, springs;  // empty: what the scene says
   bool no_sleeping = false;
   std::string record, trace, stats, final;
   std::string record_as = "all";  // or poses, commands

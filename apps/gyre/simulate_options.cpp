@@ -72,7 +72,9 @@ void add_method_options(CLI::App& command, SimulateOptions& options) {
   command.add_option("--solver", options.solver, "Solver of contacts and joints: soft_step, sequential_impulses or lcp")
       ->type_name("NAME")
       ->check(one_of({"soft_step", "sequential_impulses", "lcp"}));
-  command.add_option("--integrator", options.integrator, "Integrator: semi_implicit_euler")
+  command
+      .add_option("--integrator", options.integrator,
+                  "Integrator: explicit_euler, semi_implicit_euler, rk4 or verlet")
       ->type_name("NAME")
       ->check(one_of({"explicit_euler", "semi_implicit_euler", "rk4", "verlet"}));
   command
@@ -82,9 +84,19 @@ void add_method_options(CLI::App& command, SimulateOptions& options) {
           "never changes a result")
       ->type_name("NAME")
       ->check(one_of(broad_phases()));
-  command.add_option("--stepping", options.stepping, "Time plan: fixed")
+  command
+      .add_option("--stepping", options.stepping,
+                  "Time plan: fixed, adaptive (to impacts) or error_controlled")
       ->type_name("NAME")
-      ->check(one_of({"fixed", "adaptive"}));
+      ->check(one_of({"fixed", "adaptive", "error_controlled"}));
+  command.add_option("--tolerance", options.tolerance, "Error of a step in m, if the time plan is not fixed")
+      ->type_name("M")
+      ->check(number_between(1e-9, false, 1, "a number from 1e-9 to 1"));
+  command
+      .add_option("--springs", options.springs,
+                  "Springs of distance joints: implicit, or explicit (forces to the integrator)")
+      ->type_name("NAME")
+      ->check(one_of({"implicit", "explicit"}));
   command.add_flag("--no-sleeping", options.no_sleeping, "Resting bodies stay awake");
 }
 
@@ -142,17 +154,19 @@ void add_simulate(CLI::App& app, int& exit_code) {
 }
 
 std::string apply_overrides(const SimulateOptions& options, SceneWorld& world) {
-  const auto missing = [](const char* option, const std::string& word) {
-    return std::string(option) + " " + word + " is not supported by this version of Gyre";
-  };
   for (int i = 0; i < kSolverKindCount; ++i) {
     if (options.solver == to_string(SolverKind(i))) world.solver = SolverKind(i);
   }
-  if (!options.integrator.empty() && options.integrator != "semi_implicit_euler") {
-    return missing("--integrator", options.integrator);
+  for (int i = 0; i < kIntegratorKindCount; ++i) {
+    if (options.integrator == to_string(IntegratorKind(i))) world.integrator = IntegratorKind(i);
   }
-  if (!options.stepping.empty() && options.stepping != "fixed")
-    return missing("--stepping", options.stepping);
+  for (int i = 0; i < kTimeSteppingCount; ++i) {
+    if (options.stepping == to_string(TimeStepping(i))) world.stepping = TimeStepping(i);
+  }
+  for (const SpringKind springs : {SpringKind::implicit, SpringKind::explicit_force}) {
+    if (options.springs == to_string(springs)) world.springs = springs;
+  }
+  if (options.tolerance) world.tolerance = *options.tolerance;
   for (int i = 0; i < kBroadPhaseKindCount; ++i) {
     if (options.broad_phase == to_string(BroadPhaseKind(i))) world.broad_phase = BroadPhaseKind(i);
   }

@@ -14,7 +14,30 @@ namespace gyre {
 
 // ------------------------------------------------------------------------------------------------------------ world
 
-enum class IntegratorKind : std::uint8_t { semi_implicit_euler };
+// How velocities and places follow from forces. Orders are those of the error in smooth motion. A body that contacts or joints act
+// on moves by the velocity that they leave it, as by semi-implicit Euler; docs/numerics.md has the tables.
+enum class IntegratorKind : std::uint8_t {
+  semi_implicit_euler,  // order 1, symplectic: v += h a, then x += h v
+  explicit_euler,       // order 1, gains energy: x += h v, then v += h a
+  rk4,                  // order 4: W. Kutta, 1901; forces at four stages
+  verlet,  // order 2, without velocities: C. Stoermer; L. Verlet, 1967; the state is the last two poses
+};
+constexpr int kIntegratorKindCount = 4;
+const char* to_string(IntegratorKind kind);
+// How springs act that are joints of two points (JointKind::distance with stiffness and nothing else).
+enum class SpringKind : std::uint8_t {
+  implicit,  // rows of the solver, stable at any stiffness
+  explicit_force,  // forces that the integrator sees at each of its stages; World::spring_stability() says what it can follow
+};
+const char* to_string(SpringKind kind);
+// How a step is cut.
+enum class TimeStepping : std::uint8_t {
+  fixed,             // equal sub-steps
+  adaptive,          // to each impact, found and resolved at its time; between them as error_controlled
+  error_controlled,  // as many sub-steps as keep the estimated error of a step below `tolerance`
+};
+constexpr int kTimeSteppingCount = 3;
+const char* to_string(TimeStepping stepping);
 // Which structure finds the pairs whose boxes overlap. All find the same; docs/broad_phases.md says when each is fast.
 enum class BroadPhaseKind : std::uint8_t {
   bvh,              // wide trees of bounding volumes, one of what is fixed and one of what moves
@@ -62,6 +85,12 @@ struct Stepping {
   IntegratorKind integrator = IntegratorKind::semi_implicit_euler;
   SolverKind solver = SolverKind::soft_step;
   BroadPhaseKind broad_phase = BroadPhaseKind::bvh;
+  SpringKind springs = SpringKind::implicit;
+  TimeStepping time = TimeStepping::fixed;
+  float tolerance =
+      1.0e-5f;  // m, not below 1e-9: of the estimated error of a body's points in a step; if not fixed
+  int max_impacts =
+      128;  // 1 to 4096: adaptive: times of impact in a step; the rest of the step is then a fixed one
   SolverOptions solver_options{};
 };
 

@@ -16,6 +16,7 @@ enum class ErrorCode : std::uint8_t {
   stale_id,          // the object of an id does not exist (any more), or is another world's
   busy,              // the world is in the middle of a step
   cancelled,         // a progress callback asked to stop
+  unstable,          // an explicit scheme cannot follow what it is to compute: it will gain energy
 };
 
 // A code, and words that name the object, the field, what was found and what is allowed.

@@ -60,6 +60,16 @@ struct JointAxisReading {
   float force = 0;     // N or N m along it by limits, motor, spring and friction together, mean over the last step
 };
 
+// Whether the integrator can follow the springs that are forces (Stepping::springs): the fastest oscillation of all of them together,
+// and the longest time that a body may move in one go. A sub-step is two of these.
+struct SpringStability {
+  int springs = 0;         // that are forces, of bodies that are awake
+  double frequency = 0;    // Hz, undamped
+  double damping_ratio = 0;
+  double critical_step = 0;  // s; infinity if there are no such springs; 0 if the integrator gains energy at any step
+  JointId joint{};         // the spring that takes the largest part
+};
+
 struct WorldCounts {
   int bodies = 0, awake_bodies = 0, shapes = 0, joints = 0;
   int pairs = 0;           // of overlapping fat boxes
@@ -134,6 +144,10 @@ class World {
   bool set_sleeping(bool enabled);
   bool set_awake(BodyId body, bool awake);  // false puts the body's whole island to sleep
   bool set_substeps(int substeps);
+  // As in Stepping; a motion goes on from its present places and velocities.
+  bool set_integrator(IntegratorKind integrator);
+  bool set_springs(SpringKind springs);
+  bool set_time_stepping(TimeStepping time, float tolerance = 1.0e-5f, int max_impacts = 128);
   bool set_solver(SolverKind solver, const SolverOptions& options = {});  // from the next step on; as WorldDef::stepping
   bool set_combine_rules(CombineRule friction, CombineRule restitution);  // of all contacts; wakes everything
 
@@ -236,6 +250,8 @@ class World {
   std::size_t persisting(std::span<ContactPersist> out) const;
   std::span<const Problem> problems() const;  // since the last step began, the step included
   WorldCounts counts() const;
+  StepReport step_report() const;            // how the last step was cut
+  SpringStability spring_stability() const;  // of now; where a step is longer than the critical one, problems() says so too
   SolverReading solver_reading() const;
   double time() const;           // s
   std::uint64_t step_count() const;

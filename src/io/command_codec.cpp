@@ -244,6 +244,11 @@ void fields(C& c, T& v) {
   auto& [first, second] = v;
   all(c, first, second);
 }
+template <class C, Is<SetMotion> T>
+void fields(C& c, T& v) {
+  auto& [integrator, springs, time, tolerance, max_impacts] = v;
+  all(c, integrator, springs, time, tolerance, max_impacts);
+}
 template <class C, class T>
 requires IsOneOf<T, SetVelocity, MoveKinematic, SetDamping, AddForce, AddImpulse, SetJointAxis>
 void fields(C& c, T& v) {

@@ -80,7 +80,8 @@ std::vector<Command> all_commands() {
           Explode{{.center = {1, 2, 3}, .pressure = 4, .occlusion = false}},
           SetJointAxis{joint, JointAxis::angular_y, {.motion = AxisMotion::limited, .limits = {1, 2}, .friction = 3}},
           SetDrive{joint, {.position = {1, 2, 3}, .frequency = 4, .max_torque = 5}},
-          SetJointEnabled{joint, false}};
+          SetJointEnabled{joint, false},
+          SetMotion{IntegratorKind::rk4, SpringKind::explicit_force, TimeStepping::adaptive, 0.5f, 7}};
 }
 
 // What only some kinds of joints have comes back as well.

@@ -28,6 +28,12 @@ inline constexpr int kEnumCount<LcpMethod> = kLcpMethodCount;
 template <>
 inline constexpr int kEnumCount<CombineRule> = int(CombineRule::product) + 1;
 template <>
+inline constexpr int kEnumCount<IntegratorKind> = kIntegratorKindCount;
+template <>
+inline constexpr int kEnumCount<SpringKind> = int(SpringKind::explicit_force) + 1;
+template <>
+inline constexpr int kEnumCount<TimeStepping> = kTimeSteppingCount;
+template <>
 inline constexpr int kEnumCount<FieldKind> = int(FieldKind::buoyancy) + 1;
 template <>
 inline constexpr int kEnumCount<ProxyMotion> = int(ProxyMotion::moving) + 1;

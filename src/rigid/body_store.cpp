@@ -32,6 +32,7 @@ IdPool::Slot add_body_slot(BodyStore& store) {
   store.sleep[i] = {};
   store.overrides.set(i, {});
   store.user_data[i] = 0;
+  if (i < store.last_moves.size()) store.last_moves[i] = {};
   store.shapes[i].clear();
   store.joints[i].clear();
   store.awake_stale = true;

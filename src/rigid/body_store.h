@@ -9,6 +9,7 @@
 #include "base/shared_column.h"
 #include "base/slot_map.h"
 #include "base/small_array.h"
+#include "rigid/motion_settings.h"
 #include "solver/body_motion.h"
 
 #include <gyre/defs.h>
@@ -94,6 +95,7 @@ struct BodyStore {
   Array<BodySleep> sleep;
   SharedColumn<BodyOverrides> overrides;
   Array<std::uint64_t> user_data;
+  Array<LastMove> last_moves;       // by slot, in worlds with the integrator verlet; else empty
   Array<SmallArray<ShapeId, 1>> shapes;         // by body, ascending index; derived
   Array<SmallArray<std::uint32_t, 2>> joints;   // by body, ascending index; derived
   Array<std::uint32_t> awake;       // dynamic bodies that are awake and kinematic ones, ascending; derived

@@ -209,17 +209,44 @@ void for_bodies(void* context, int begin, int end, Fn&& fn) {
 
 }  // namespace
 
-FieldSolve find_field_bodies(RigidWorld& w, std::span<const std::uint32_t> bodies, float h, Arena& arena) {
+Six force_of_fields(const RigidWorld& w, std::uint32_t body, std::span<const std::uint32_t> fields,
+                    const BodyStance& stance, double time) {
+  Six force;
+  Six2 stiffness;
+  for (const std::uint32_t slot : fields) {
+    const FieldRecord& field = w.fields[slot];
+    if (field.kind == FieldKind::radial)
+      add(force,
+          make_six(double(w.bodies.masses[body].mass) * pull_at(field, stance.center).acceleration, {}));
+    if (const double gravity = weight_along(w, field); gravity > 0.0)
+      add_lift(w, field, body, stance, gravity, force, stiffness);
+    if (!field.is_medium()) continue;
+    const Six stream = stream_at(field, stance.center, time);
+    Six slip = stream;
+    const Six velocity = make_six(stance.velocity, stance.spin);
+    for (int i = 0; i < 6; ++i) slip.v[i] -= velocity.v[i];
+    Six2 drag;
+    add_drag(w, field, body, stance, stream, drag);
+    add(force, drag * slip);
+  }
+  return force;
+}
+
+FieldSolve find_field_bodies(RigidWorld& w, std::span<const std::uint32_t> bodies, float h, Arena& arena,
+                             bool free) {
   FieldSolve solve{&w, {}, h};
   if (w.field_rest.empty()) return solve;
   const auto acts = [&](std::uint32_t slot, std::uint32_t body) {
     return w.fields[slot].is_live() && acts_on(w, w.fields[slot], body, w.bodies.places[body].center);
   };
+  const auto may_act = [&](std::uint32_t body) {
+    return is_movable(w.bodies.flags[body]) && (free || w.bodies.flags[body].touched != kUntouched);
+  };
   const std::uint32_t slots = std::uint32_t(w.fields.size());
   std::size_t count = 0, links = 0;
   for (const std::uint32_t body : bodies) {
     std::size_t acting = 0;
-    if (is_movable(w.bodies.flags[body])) {
+    if (may_act(body)) {
       for (std::uint32_t slot = 0; slot < slots; ++slot) acting += acts(slot, body) ? 1 : 0;
     }
     links += acting;
@@ -230,7 +257,7 @@ FieldSolve find_field_bodies(RigidWorld& w, std::span<const std::uint32_t> bodie
   const std::span<Six2> drags = arena.make<Six2>(links);
   count = links = 0;
   for (const std::uint32_t body : bodies) {
-    if (!is_movable(w.bodies.flags[body])) continue;
+    if (!may_act(body)) continue;
     const std::size_t first = links;
     for (std::uint32_t slot = 0; slot < slots; ++slot) {
       if (acts(slot, body)) list[links++] = slot;

@@ -32,6 +32,10 @@ struct FieldBody {
   Vec3 linear_before, angular_before;  // u0
 };
 
+// What fields do to a body at one moment, with drag as it is then: for integrators that look at forces at several stages.
+Six force_of_fields(const RigidWorld& w, std::uint32_t body, std::span<const std::uint32_t> fields,
+                    const BodyStance& stance, double time);
+
 // Stages of the program of sub-steps, over blocks of kFieldBodiesPerBlock bodies; their context is this.
 struct FieldSolve {
   RigidWorld* world = nullptr;
@@ -43,7 +47,9 @@ struct FieldSolve {
 constexpr int kFieldBodiesPerBlock = 8;
 
 // Of those of the bodies on which a field acts, in the same order; BodyFlags::touched says so too, after constraints had their say.
-FieldSolve find_field_bodies(RigidWorld& w, std::span<const std::uint32_t> bodies, float h, Arena& arena);
+// Without `free` only of those that constraints act on too.
+FieldSolve find_field_bodies(RigidWorld& w, std::span<const std::uint32_t> bodies, float h, Arena& arena,
+                             bool free = true);
 
 // Once, as the step begins: drag and stream.
 void prepare_fields_stage(void* context, int begin, int end, int worker);

@@ -17,29 +17,6 @@ constexpr float kTinyAngle = 2.0e-3f;
 // An angular velocity this near to parallel with the momentum (relative) spins about a principal axis.
 constexpr float kSteady = 1.0e-7f;
 
-// A symmetric tensor in double. The inverse is found here from the float inertia: the float inverse is not quite its
-// inverse, and that error, the same in every sub-step, would add up over minutes.
-struct Tensor {
-  double xx, yy, zz, xy, xz, yz;
-};
-
-Tensor to_double(const Sym3& m) {
-  return {double(m.xx), double(m.yy), double(m.zz), double(m.xy), double(m.xz), double(m.yz)};
-}
-
-Tensor inverse(const Tensor& m) {
-  const double cxx = m.yy * m.zz - m.yz * m.yz;
-  const double cxy = m.xz * m.yz - m.xy * m.zz;
-  const double cxz = m.xy * m.yz - m.xz * m.yy;
-  const double s = 1.0 / (m.xx * cxx + m.xy * cxy + m.xz * cxz);
-  return {s * cxx, s * (m.xx * m.zz - m.xz * m.xz), s * (m.xx * m.yy - m.xy * m.xy),
-          s * cxy, s * cxz, s * (m.xy * m.xz - m.xx * m.yz)};
-}
-
-DVec3 times(const Tensor& m, DVec3 v) {
-  return {m.xx * v.x + m.xy * v.y + m.xz * v.z, m.xy * v.x + m.yy * v.y + m.yz * v.z, m.xz * v.x + m.yz * v.y + m.zz * v.z};
-}
-
 // Angular velocity in the body's frame of a body with world momentum `momentum`.
 DVec3 body_velocity(const DQuat& q, DVec3 momentum, const Tensor& inverse_inertia) {
   return times(inverse_inertia, rotate_inverse(q, momentum));
@@ -69,6 +46,27 @@ DQuat runge_kutta_4(const DQuat& q, DVec3 momentum, const Tensor& inverse_inerti
 
 }  // namespace
 
+Tensor to_double(const Sym3& m) {
+  return {double(m.xx), double(m.yy), double(m.zz), double(m.xy), double(m.xz), double(m.yz)};
+}
+
+Tensor inverse(const Tensor& m) {
+  const double cxx = m.yy * m.zz - m.yz * m.yz;
+  const double cxy = m.xz * m.yz - m.xy * m.zz;
+  const double cxz = m.xy * m.yz - m.xz * m.yy;
+  const double s = 1.0 / (m.xx * cxx + m.xy * cxy + m.xz * cxz);
+  return {s * cxx, s * (m.xx * m.zz - m.xz * m.xz), s * (m.xx * m.yy - m.xy * m.xy),
+          s * cxy, s * cxz, s * (m.xy * m.xz - m.xx * m.yz)};
+}
+
+DQuat turn_at_momentum(DQuat start, DVec3 momentum, const Tensor& inverse_inertia, double seconds, double angle) {
+  const int steps = 1 + int(min(angle / kInnerAngle, kMostInnerSteps));
+  const double h = seconds / double(steps);
+  DQuat q = start;
+  for (int i = 0; i < steps; ++i) q = runge_kutta_4(q, momentum, inverse_inertia, h);
+  return q;
+}
+
 Vec3 rotate_steadily(Quat& orientation, Vec3 angular_velocity, float seconds) {
   const Vec3 turn = seconds * angular_velocity;
   if (turn == Vec3{}) return {};
@@ -96,9 +94,7 @@ Vec3 rotate_freely(Quat& orientation, Vec3& angular_velocity, const Sym3& inerti
         start_velocity + 0.5 * double(seconds) * times(inverse_tensor, cross(start_momentum, start_velocity));
     q = normalized(start * exponential_map(double(seconds) * middle));
   } else {
-    const int steps = 1 + int(min(double(angle) / kInnerAngle, kMostInnerSteps));
-    const double h = double(seconds) / double(steps);
-    for (int i = 0; i < steps; ++i) q = runge_kutta_4(q, world_momentum, inverse_tensor, h);
+    q = turn_at_momentum(start, world_momentum, inverse_tensor, double(seconds), double(angle));
   }
   angular_velocity = to_float(rotate(q, body_velocity(q, world_momentum, inverse_tensor)));
   orientation = to_float(q);

@@ -17,6 +17,13 @@ Vec3 point_velocity(const RigidWorld& w, std::uint32_t body, Vec3 from_center) {
   return motion.linear_velocity + cross(motion.angular_velocity, from_center);
 }
 
+// `struck`: the point that closed fastest.
+ContactHit make_hit(const RigidWorld& w, const Contact& contact, const Manifold& manifold, const ContactPointState& struck, float impulse) {
+  const DVec3 place = w.bodies.places[contact.body_a].center + struck.from_a;
+  return {shape_id(w, contact.shape_a), shape_id(w, contact.shape_b), body_id(w, contact.body_a), body_id(w, contact.body_b),
+          place,           manifold.normal,  struck.approach_speed,  impulse,     triangle_at(w, contact, place)};
+}
+
 }  // namespace
 
 bool note_approach(const RigidWorld& w, const Contact& contact, Manifold& manifold) {
@@ -48,12 +55,17 @@ void note_hits(const RigidWorld& w, SolveScratch& s) {
       struck = &point;
     }
     if (struck == nullptr) continue;
-    const DVec3 place = w.bodies.places[contact.body_a].center + struck->from_a;
-    s.hits.push_back({s.constraint_contact[i],
-                      {shape_id(w, contact.shape_a), shape_id(w, contact.shape_b), body_id(w, contact.body_a),
-                       body_id(w, contact.body_b), place, manifold.normal, fastest, impulse,
-                       triangle_at(w, contact, place)}});
+    s.hits.push_back({s.constraint_contact[i], make_hit(w, contact, manifold, *struck, impulse)});
   }
+}
+
+void report_blow(RigidWorld& w, const Contact& contact, const Manifold& manifold, float impulse) {
+  const ContactPointState* struck = nullptr;
+  for (int k = 0; k < manifold.count; ++k) {
+    const ContactPointState& point = manifold.points[k];
+    if (struck == nullptr || point.approach_speed > struck->approach_speed) struck = &point;
+  }
+  if (struck != nullptr) w.events.hits.push_back(make_hit(w, contact, manifold, *struck, impulse));
 }
 
 void report_hits(RigidWorld& w, SolveScratch& s, Arena& arena) {

@@ -11,6 +11,8 @@ namespace gyre {
 bool note_approach(const RigidWorld& w, const Contact& contact, Manifold& manifold);
 // Those contacts of a batch that were struck hard in this step.
 void note_hits(const RigidWorld& w, SolveScratch& s);
+// A blow outside of the solve, whose points' approach was noted before it.
+void report_blow(RigidWorld& w, const Contact& contact, const Manifold& manifold, float impulse);
 // The events of all batches, in contact order.
 void report_hits(RigidWorld& w, SolveScratch& s, Arena& arena);
 

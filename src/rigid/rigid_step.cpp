@@ -183,7 +183,7 @@ void link_islands(RigidWorld& w) {
   refresh_awake(w.bodies);
 }
 
-void finish_bodies(RigidWorld& w, TaskSystem& tasks, float seconds, Array<std::uint32_t>& frozen) {
+void finish_bodies(RigidWorld& w, TaskSystem& tasks, float seconds, Array<std::uint32_t>& frozen, bool last) {
   BodyStore& bodies = w.bodies;
   for (const std::uint32_t i : bodies.awake) {
     if (!finite_state(bodies.motion[i], bodies.orientations[i])) frozen.push_back(i);
@@ -197,8 +197,10 @@ void finish_bodies(RigidWorld& w, TaskSystem& tasks, float seconds, Array<std::u
       bodies.places[i].center += bodies.motion[i].moved;
       bodies.places[i].orientation = bodies.orientations[i];
       const Pose origin = origin_pose(bodies, i);
-      bodies.forces[i].force = {};
-      bodies.forces[i].torque = {};
+      if (last) {
+        bodies.forces[i].force = {};
+        bodies.forces[i].torque = {};
+      }
       for (const ShapeId id : bodies.shapes[i]) {
         const BoxMotion motion = box_motion(w, id.index, seconds);
         const WorldBox needed = needed_box_of(w, id.index, origin, motion);

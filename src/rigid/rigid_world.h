@@ -83,6 +83,7 @@ struct RigidWorld {
   Array<SurfaceRule> surface_rules;    // sorted by id
   Array<FieldRecord> fields;           // by slot
   RigidSettings settings;
+  Array<MotionSettings> motion_settings;  // one, where they are not the default; else none
   Array<SolverSettings> solver;        // one, or none: the default solver
 
   // Not state: can be rebuilt or lives for one step.
@@ -99,8 +100,13 @@ struct RigidWorld {
   Array<std::uint8_t> refit_marks;     // by shape: got a new fat box in this step
   RigidEvents events;
   ScratchClocks clocks;
+  Array<std::uint8_t> waiting;         // by contact: it does not act (rigid/impact_times.h); adaptive steps, else empty
   std::uint16_t world_number = 0;      // for ids in events
 };
+
+inline MotionSettings motion_settings(const RigidWorld& w) {
+  return w.motion_settings.empty() ? MotionSettings{} : w.motion_settings[0];
+}
 
 inline BodyId body_id(const RigidWorld& w, std::uint32_t body) {
   return {body, std::uint16_t(w.bodies.ids.generation(body)), w.world_number};

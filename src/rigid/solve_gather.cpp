@@ -39,10 +39,11 @@ void gather_contacts(Solve& solve) {
   s.impacts.clear();
   s.pairs.clear();
   const float fall = std::sqrt(length(w.settings.gravity));
-  const bool has_rules = !w.surface_rules.empty();
+  const bool has_rules = !w.surface_rules.empty(), some_wait = !w.waiting.empty();
   for (std::size_t i = 0; i < solve.batch.contacts.size(); ++i) {
     if (i + kAhead < solve.batch.contacts.size()) fetch_manifold(w.contacts, solve.batch.contacts[i + kAhead]);
     const std::uint32_t slot = solve.batch.contacts[i];
+    if (some_wait && w.waiting[slot] != 0) continue;
     const Contact& contact = w.contacts.contacts[slot];
     const bool active_a = is_active(w, contact.body_a), active_b = is_active(w, contact.body_b);
     const std::uint8_t touch = contact.surface.restitution > 0.0f ? kPlaceShown : kTouched;
@@ -87,6 +88,7 @@ void gather_joints(Solve& solve) {
     const JointRecord& joint = w.joints.records[slot];
     const bool active_a = joint.body_a != kNoBody && is_active(w, std::uint32_t(joint.body_a));
     const bool active_b = joint.body_b != kNoBody && is_active(w, std::uint32_t(joint.body_b));
+    if (solve.is_smooth && is_explicit_spring(w, slot)) continue;
     if (joint.body_a != kNoBody) touch_body(w, std::uint32_t(joint.body_a), kPlaceShown);
     if (joint.body_b != kNoBody) touch_body(w, std::uint32_t(joint.body_b), kPlaceShown);
     if (solve.linkages.swept[i] == 0) continue;
@@ -107,6 +109,7 @@ void gather_motion(Solve& solve, Arena& arena) {
   for (const std::uint32_t body : solve.batch.bodies) {
     const std::uint8_t touched = w.bodies.flags[body].touched;
     if (touched == kUntouched) {
+      if (solve.is_smooth && is_movable(w.bodies.flags[body])) continue;
       solve.flying[flying++] = body;
       continue;
     }

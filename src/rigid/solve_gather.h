@@ -9,6 +9,7 @@
 #include "rigid/integrators.h"
 #include "rigid/linkages.h"
 #include "rigid/rolling.h"
+#include "rigid/smooth_motion.h"
 #include "rigid/solve_batches.h"
 #include "rigid/solve_step.h"
 
@@ -44,6 +45,8 @@ struct Solve {
   StructureSolve structure_solve{};
   RollingContacts rolling{};
   FieldSolve fields{};
+  bool is_smooth = false;  // free bodies are moved by the schemes of rigid/smooth_schemes.h
+  SmoothMotion smooth{};
 };
 
 // A run of blocks of one colour.

@@ -33,6 +33,9 @@ constexpr float kLinkageGive = 1.0e-4f;
 // Nothing bounces that closes slower than this many times the speed that gravity gives in a sub-step.
 constexpr float kBounceShare = 2.0f;
 
+// By how much impulses grow at most from one part of an adaptive step to the next.
+constexpr float kMostWarm = 4.0f;
+
 constexpr int kBodiesPerBlock = 64;
 constexpr int kMotionBlocksPerClaim = 8;
 constexpr int kSpinnersPerClaim = 8;
@@ -230,6 +233,19 @@ void relax_joints_stage(void* context, int begin, int end, int) {
   });
 }
 
+void move_smooth(void* context, int begin, int end, int worker) {
+  move_smooth_stage(&static_cast<Solve*>(context)->smooth, begin, end, worker);
+}
+void move_carried(void* context, int begin, int end, int worker) {
+  move_carried_stage(&static_cast<Solve*>(context)->smooth, begin, end, worker);
+}
+void kick_carriers(void* context, int begin, int end, int worker) {
+  kick_carriers_stage(&static_cast<Solve*>(context)->smooth, begin, end, worker);
+}
+void finish_smooth(void* context, int begin, int end, int worker) {
+  finish_smooth_stage(&static_cast<Solve*>(context)->smooth, begin, end, worker);
+}
+
 // Of linkages [begin, end).
 template <void (*kernel)(const Linkage&, const LinkageSolve&)>
 void linkage_stage(void* context, int begin, int end, int) {
@@ -257,6 +273,10 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   const int fields = solve.fields.blocks();
   program.add(watch_fields_stage, &solve.fields, fields);
   program.add(watch_stage, &solve, impacts);
+  if (solve.smooth.any_carried) {
+    program.add(move_carried, &solve, solve.smooth.count());
+    program.add(kick_carriers, &solve, 1);
+  }
   program.add(is_warm ? predict_warm_stage : predict_cold_stage, &solve, bodies, kMotionBlocksPerClaim);
   program.add(strike_stage, &solve, impacts);
   program.add_groups(bend_joints_stage, joints, kJointsPerBlock, 1);
@@ -292,13 +312,14 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
 
 void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> joints, Arena& arena, TaskSystem& tasks) {
   const int parts = solve.motions.count;
-  const std::size_t per_part = 22 + 5 * joints.size() + 2 * contacts.size();
+  const std::size_t per_part = 24 + 5 * joints.size() + 2 * contacts.size();
   ProgramWriter program(
-      arena.make<Stage>(10 + std::size_t(parts) * per_part + 2 * contacts.size() + joints.size()));
+      arena.make<Stage>(12 + std::size_t(parts) * per_part + 2 * contacts.size() + joints.size()));
   std::uint32_t blocks = 0;
   for (const Group& group : contacts) blocks += group.count;
   const int bodies = count_blocks(int(solve.moved.size()), solve.kernels.width);
   program.add(fly_stage, &solve, count_blocks(int(solve.flying.size()), kBodiesPerBlock));
+  program.add(move_smooth, &solve, solve.smooth.count());
   program.add(prepare_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
   program.add(prepare_fields_stage, &solve.fields, solve.fields.blocks());
   program.add(prepare_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
@@ -310,6 +331,7 @@ void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> join
   program.add_groups(project_contacts_stage, contacts, 1, kBlocksPerClaim);
   program.add(end_projection_stage, &solve, bodies, kMotionBlocksPerClaim);
   program.add(finish_turns_stage, &solve, count_blocks(int(solve.moved.size()), kBodiesPerBlock));
+  program.add(finish_smooth, &solve, solve.smooth.count());
   program.add(finish_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
   run_program(tasks, program.stages());
 }
@@ -345,7 +367,10 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   gather_joints(solve);
   solve.rolling = find_rolling_contacts(solve.w, scratch, solve.places, solve.batch.bodies.size(),
                                         solve.contact_settings.step, arena);
-  solve.fields = find_field_bodies(solve.w, solve.batch.bodies, solve.h, arena);
+  if (solve.is_smooth)
+    solve.smooth =
+        find_smooth_motion(solve.w, solve.batch, solve.places, solve.motions.count, solve.h, arena);
+  solve.fields = find_field_bodies(solve.w, solve.batch.bodies, solve.h, arena, !solve.is_smooth);
   const std::uint32_t bodies = std::uint32_t(solve.batch.bodies.size());
   color_constraints(scratch.pairs, bodies, {}, kColoringOptions, scratch.contact_colors);
   color_constraints(scratch.joint_pairs, bodies, {}, kColoringOptions, scratch.joint_colors);
@@ -366,10 +391,18 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   const std::span<Group> joints = lay_out_joints(solve, arena);
   run_substeps(solve, contacts, joints, arena, tasks);
   finish_joints(solve.w, solve.batch, solve.joint_work);
+  if (solve.is_smooth) finish_springs(solve.w, solve.smooth, scratch.report);
   note_hits(solve.w, scratch);
   scratch.manifold_count += scratch.constraints.size();
   scratch.joint_count += solve.batch.joints.size();
   scratch.swept_joint_count += scratch.swept_joints.size();
+}
+
+// What constraints moved has its velocity from them.
+void forget_moves(RigidWorld& w) {
+  for (const std::uint32_t body : w.bodies.awake) {
+    if (w.bodies.flags[body].touched != kUntouched) w.bodies.last_moves[body] = {};
+  }
 }
 
 }  // namespace
@@ -379,7 +412,9 @@ void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& 
   const SolverSettings* const row_solver = row_solver_of(w);
   const int parts = row_solver != nullptr ? w.settings.substeps : kParts * w.settings.substeps;
   const float h = seconds / float(parts);
-  const float warm_scale = w.settings.last_substep > 0.0f ? h / w.settings.last_substep : 0.0f;
+  float warm_scale = w.settings.last_substep > 0.0f ? h / w.settings.last_substep : 0.0f;
+  // Parts of a step up to an impact may be as short as they like: what one of these leaves is mostly rounding.
+  if (!w.waiting.empty()) warm_scale = min(warm_scale, kMostWarm);
   w.settings.last_substep = h;
   w.settings.last_step = seconds;
   for (const std::uint32_t body : w.bodies.awake) {
@@ -390,9 +425,12 @@ void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& 
   }
   w.field_rest.clear();
   if (!w.fields.empty()) w.field_rest.resize(w.bodies.motion.size());
+  const bool keeps_moves = motion_settings(w).integrator == IntegratorKind::verlet;
+  if (keeps_moves) w.bodies.last_moves.resize(w.bodies.motion.size());
   Solve solve{w, scratch, kernels};
   solve.h = h;
   solve.motions = {parts, h, w.settings.gravity};
+  solve.is_smooth = !w.motion_settings.empty();
   const float pull = length(w.settings.gravity);
   solve.contact_settings = {.substep = h,
                             .step = seconds,
@@ -409,6 +447,7 @@ void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& 
   solve.joint_bodies = {w.bodies.motion.data(), w.bodies.inertia.data(), w.bodies.orientations.data()};
   scratch.manifold_count = scratch.joint_count = scratch.swept_joint_count = 0;
   scratch.colors_used = 0;
+  scratch.report = {};
   scratch.rows = {};
   scratch.hits.clear();
   const ArenaScope scope(arena);
@@ -423,6 +462,7 @@ void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& 
     }
   }
   scratch.colors = std::popcount(scratch.colors_used);
+  if (keeps_moves) forget_moves(w);
   report_hits(w, scratch, arena);
 }
 

@@ -38,6 +38,7 @@ struct SolveScratch {
   std::size_t manifold_count = 0;     // of all batches
   std::size_t joint_count = 0;
   std::size_t swept_joint_count = 0;
+  StepReport report;
   std::uint64_t colors_used = 0;     // bits
   int colors = 0;
   RowReport rows;                    // of solvers that work on rows

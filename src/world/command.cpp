@@ -376,6 +376,15 @@ Submitted carry_out(WorldState& s, const SetSubsteps& c) {
   return {true, {}, {}, {}};
 }
 
+Submitted carry_out(WorldState& s, const SetMotion& c) {
+  RigidWorld& w = s.rigid;
+  const MotionSettings motion{c.integrator, c.springs, c.time, c.tolerance, c.max_impacts};
+  w.motion_settings.clear();
+  if (!is_default(motion)) w.motion_settings.push_back(motion);
+  if (motion.integrator != IntegratorKind::verlet) w.bodies.last_moves.clear();
+  return {true, {}, {}, {}};
+}
+
 Submitted carry_out(WorldState& s, const SetSolver& c) {
   s.rigid.solver.clear();
   if (c.solver != SolverKind::soft_step) s.rigid.solver.push_back({c.solver, c.options});

@@ -131,6 +131,13 @@ struct RemoveField {
 struct Explode {
   ExplosionDef def;
 };
+struct SetMotion {
+  IntegratorKind integrator = IntegratorKind::semi_implicit_euler;
+  SpringKind springs = SpringKind::implicit;
+  TimeStepping time = TimeStepping::fixed;
+  float tolerance = 1.0e-5f;
+  int max_impacts = 128;
+};
 struct Step {
   float seconds = 0;
 };
@@ -140,7 +147,7 @@ using Command = std::variant<AddBody, RemoveBody, AddShape, RemoveShape, AddJoin
                              MoveKinematic, SetType, SetGravity, SetGravityScale, SetDamping, SetMaterial, SetMaterialPair,
                              SetFilter, SetMotor, SetSleeping, SetAwake, SetSubsteps, AddForce, AddImpulse, Step, SetCombineRules,
                              SetSurfaceRule, AddField, SetField, RemoveField, Explode, SetJointAxis, SetDrive, SetJointEnabled,
-                             SetSolver>;
+                             SetMotion, SetSolver>;
 
 // What a command gave back: whether it was done, and the id of what it made.
 struct Submitted {

@@ -378,6 +378,21 @@ Error check(const WorldState& s, const SetDrive& c) {
 Error check(const WorldState& s, const SetJointEnabled& c) { return check_joint_id(s, c.joint, "set_joint_enabled"); }
 Error check(const WorldState&, const SetSleeping&) { return ok(); }
 Error check(const WorldState& s, const SetAwake& c) { return check_body(s, c.body, "set_awake"); }
+Error check_motion(IntegratorKind integrator, SpringKind springs, TimeStepping time, float tolerance, int max_impacts) {
+  if (int(integrator) >= kIntegratorKindCount) return refuse("integrator: there is no such kind");
+  if (int(springs) > int(SpringKind::explicit_force)) return refuse("springs: there is no such kind");
+  if (int(time) >= kTimeSteppingCount) return refuse("time stepping: there is no such kind");
+  if (!is_finite(tolerance) || tolerance < kLeastTolerance || tolerance > 1.0f) {
+    return refuse("tolerance is %g; it must lie within %g and 1", double(tolerance), double(kLeastTolerance));
+  }
+  if (max_impacts < 1 || max_impacts > kMostImpacts) {
+    return refuse("max_impacts is %d; it must lie within 1 and %d", max_impacts, kMostImpacts);
+  }
+  return ok();
+}
+Error check(const WorldState&, const SetMotion& c) {
+  return check_motion(c.integrator, c.springs, c.time, c.tolerance, c.max_impacts);
+}
 Error check(const WorldState&, const SetSubsteps& c) {
   if (c.substeps >= 1 && c.substeps <= 64) return ok();
   return refuse("substeps is %d; it must lie within 1 and 64", c.substeps);
@@ -429,6 +444,8 @@ Error check_world_def(const WorldDef& def) {
   if (def.stepping.substeps < 1 || def.stepping.substeps > 64) {
     return refuse("stepping.substeps is %d; it must lie within 1 and 64", def.stepping.substeps);
   }
+  e = check_motion(def.stepping.integrator, def.stepping.springs, def.stepping.time, def.stepping.tolerance, def.stepping.max_impacts);
+  if (e.code != ErrorCode::none) return e;
   const Stepping& by = def.stepping;
   const char* const fault = fault_in(SolverSettings{by.solver, by.solver_options});
   if (fault != nullptr) return refuse("stepping.%s", fault);

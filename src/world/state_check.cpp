@@ -20,6 +20,21 @@ const char* fault_in_settings(const RigidSettings& settings) {
   return nullptr;
 }
 
+const char* fault_in_motion(const RigidWorld& w) {
+  if (w.motion_settings.size() > 1) return "settings of motion that contradict each other";
+  for (const MotionSettings& m : w.motion_settings) {
+    if (!is_finite(m.tolerance) || m.tolerance < kLeastTolerance) return "a tolerance that nothing can keep";
+    if (m.max_impacts < 1 || m.max_impacts > kMostImpacts) return "a bound of impacts beyond 1 to 4096";
+    if (m.planned_substeps < 0 || m.planned_substeps > 64) return "planned sub-steps beyond 0 to 64";
+  }
+  if (w.bodies.last_moves.size() > w.bodies.ids.capacity()) return "last moves of bodies that are not there";
+  for (const LastMove& move : w.bodies.last_moves) {
+    if (!is_finite(move.moved) || !is_finite(move.turned) || !is_finite(move.seconds) || move.seconds < 0.0)
+      return "a last move that is not finite";
+  }
+  return nullptr;
+}
+
 const char* fault_in_sizes(const RigidWorld& w) {
   const BodyStore& b = w.bodies;
   const std::size_t bodies = b.ids.capacity();
@@ -183,6 +198,7 @@ const char* fault_in(const RigidWorld& w) {
   if (fault == nullptr) fault = fault_in_rules(w.surface_rules.view());
   if (fault == nullptr) fault = fault_in_fields(w.fields.view());
   if (fault == nullptr) fault = fault_in_sizes(w);
+  if (fault == nullptr) fault = fault_in_motion(w);
   if (fault != nullptr) return fault;
   for (std::uint32_t i = 0; fault == nullptr && i < w.bodies.ids.capacity(); ++i)
     fault = fault_in_body(w.bodies, i);

@@ -170,6 +170,15 @@ template <Is<PathPoint> T, class F>
 void for_each_field(T& r, F&& f) {
   for_each_field(r.position, f), f(r.along), for_each_field(r.up, f);
 }
+template <Is<MotionSettings> T, class F>
+void for_each_field(T& r, F&& f) {
+  f(r.integrator), f(r.springs), f(r.time), f(r.tolerance), f(r.max_impacts), f(r.planned_substeps);
+}
+template <Is<LastMove> T, class F>
+void for_each_field(T& r, F&& f) {
+  for_each_field(r.moved, f), for_each_field(r.turned, f), f(r.seconds);
+  for_each_field(r.linear, f), for_each_field(r.angular, f);
+}
 template <Is<SolverSettings> T, class F>
 void for_each_field(T& r, F&& f) {
   f(r.kind), f(r.options.lcp_method), f(r.options.friction_sides), f(r.options.iterations), f(r.options.direct_rows);

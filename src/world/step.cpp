@@ -2,6 +2,7 @@
 #include "base/check.h"
 #include "rigid/island.h"
 #include "rigid/rigid_step.h"
+#include "rigid/spring_stability.h"
 #include "world/stages.h"
 #include "world/state_walk.h"
 #include "world/world_state.h"
@@ -60,6 +61,27 @@ void report_frozen(WorldState& s) {
   }
 }
 
+// An explicit scheme must not explode in silence: the step that it would need is told, in every step that is longer.
+void report_stiffness(WorldState& s) {
+  const RigidWorld& w = s.rigid;
+  const MotionSettings motion = motion_settings(w);
+  if (motion.springs != SpringKind::explicit_force) return;
+  const SpringMode mode = find_fastest_mode(w, s.arena);
+  if (mode.springs == 0) return;
+  const double longest = critical_step(motion.integrator, mode.frequency, mode.decay);
+  const double parts = double(s.solve.report.parts);
+  const double step = parts > 0.0 ? double(w.settings.last_step) / parts : double(w.settings.last_substep);
+  if (step <= longest) return;
+  const JointRecord& joint = w.joints.records[mode.joint];
+  const std::int32_t body = joint.body_b != kNoBody ? joint.body_b : joint.body_a;
+  constexpr double kTurn = 6.283185307179586;
+  report_problem(s, ErrorCode::unstable, body_id(w, std::uint32_t(body)),
+                 "%s cannot follow the explicit springs (%.4g Hz, most of it joint %u): it moves by %.4g s "
+                 "at a time, the critical "
+                 "step is %.4g s; use more sub-steps or springs 'implicit'",
+                 to_string(motion.integrator), mode.frequency / kTurn, mode.joint, step, longest);
+}
+
 // A method that was asked for by name does not take islands of any size.
 void report_large_islands(WorldState& s) {
   const RowReport& rows = s.solve.rows;
@@ -95,6 +117,103 @@ void count_work(WorldState& s) {
   count(s, CounterName::fast_bodies, s.continuous.fast.size());
 }
 
+// Who touches whom, and where.
+void look(WorldState& s, float seconds) {
+  RigidWorld& w = s.rigid;
+  run_stage(s, StageName::refit, [&] { refit(w); });
+  count(s, CounterName::refitted_boxes, w.shapes.changed.size());
+  run_stage(s, StageName::find_pairs, [&] { count(s, CounterName::new_pairs, find_pairs(w, *s.tasks)); });
+  run_stage(s, StageName::collide, [&] { collide_pairs(w, s.arena, *s.tasks, seconds); });
+  count_full_looks(s);
+  run_stage(s, StageName::link_islands, [&] { link_islands(w); });
+}
+
+// What follows on the motion of `seconds`, the last of a step of `whole` or not.
+void finish(WorldState& s, float seconds, float whole, bool last) {
+  RigidWorld& w = s.rigid;
+  run_stage(s, StageName::clamp_fast_bodies, [&] { clamp_fast_bodies(w, s.continuous, s.arena, *s.tasks); });
+  run_stage(s, StageName::finish_bodies, [&] { finish_bodies(w, *s.tasks, whole, s.frozen, last); });
+  run_stage(s, StageName::break_joints, [&] { break_joints(w, seconds); });
+  run_stage(s, StageName::put_to_sleep, [&] { put_to_sleep(w, s.arena, seconds); });
+}
+
+void step_at_once(WorldState& s, float seconds) {
+  look(s, seconds);
+  s.rigid.now = s.time;
+  run_stage(s, StageName::solve, [&] { solve_step(s.rigid, s.solve, s.arena, *s.tasks, *s.kernels, seconds); });
+  finish(s, seconds, seconds, true);
+}
+
+// How often a part of a step is tried until it ends at an impact, and the shortest part, as a share of the step.
+constexpr int kMostTries = 8;
+constexpr double kShortest = 1.0e-7;
+
+// The solve of at most `left`, as long as it takes until the first impact. Says how long that is, and whether it is one.
+double solve_to_impact(WorldState& s, double left, float seconds, bool& is_impact) {
+  RigidWorld& w = s.rigid;
+  const std::int32_t substeps = w.settings.substeps;
+  const std::size_t hits = w.events.hits.size();
+  const bool bounded = w.waiting.empty();
+  if (!bounded) s.impacts.before.keep(w);
+  double length = left;
+  is_impact = false;
+  for (int n = 0;; ++n) {
+    w.settings.substeps = clamp(std::int32_t(std::ceil(double(substeps) * length / double(seconds))), 1, substeps);
+    solve_step(w, s.solve, s.arena, *s.tasks, *s.kernels, float(length));
+    if (bounded || n + 1 == kMostTries) break;
+    const FirstImpact first = find_first_impact(w, s.impacts.before, length);
+    if (!(first.time < length)) break;
+    is_impact = !first.turn;
+    s.impacts.before.put_back(w);
+    w.events.hits.resize(hits);
+    length = max(first.time, kShortest * double(seconds));
+  }
+  w.settings.substeps = substeps;
+  return length;
+}
+
+// Strikes what has met; then who touches whom must be asked again, since others are ahead of those that were struck.
+void strike(WorldState& s, float threshold, float seconds, float left) {
+  RigidWorld& w = s.rigid;
+  if (!strike_touching(w, s.impacts, threshold)) return;
+  for (const std::uint32_t body : s.impacts.struck) {
+    for (const ShapeId id : w.bodies.shapes[body]) refit_shape(w, id.index, seconds);
+  }
+  look(s, left);
+}
+
+// From impact to impact. What would bounce on for less than 1/64 of the step does not bounce any more: so a ball that bounces
+// infinitely often in finite time comes to rest.
+void step_to_impacts(WorldState& s, float seconds) {
+  RigidWorld& w = s.rigid;
+  const std::int32_t most = motion_settings(w).max_impacts;
+  const float threshold = max(length(w.settings.gravity) * seconds / 128.0f, 1.0e-6f);
+  StepReport report;
+  double left = double(seconds);
+  for (int part = 0; left > 0.0; ++part) {
+    w.now = s.time + (double(seconds) - left);
+    look(s, float(left));
+    report.bounded = report.impacts >= most || part > 3 * most;
+    if (report.bounded) {
+      w.waiting.clear();
+    } else {
+      strike(s, threshold, seconds, float(left));
+      list_waiting(w, threshold);
+    }
+    double length = left;
+    bool is_impact = false;
+    run_stage(s, StageName::solve, [&] { length = solve_to_impact(s, left, seconds, is_impact); });
+    report.parts = max(report.parts, s.solve.report.parts);
+    report.error += s.solve.report.error;
+    const bool last = length >= left;
+    if (is_impact && !last) ++report.impacts;
+    finish(s, float(length), seconds, last);
+    left = last ? 0.0 : left - length;
+  }
+  w.waiting.clear();
+  s.solve.report = report;
+}
+
 void end_step(WorldState& s, float seconds) {
   s.time += double(seconds);
   ++s.step_count;
@@ -118,24 +237,16 @@ void end_step(WorldState& s, float seconds) {
 }  // namespace
 
 void step_world(WorldState& s, float seconds) {
-  RigidWorld& w = s.rigid;
   begin_step(s);
-  const StageZone whole(s.profile, kWholeStep);
-  run_stage(s, StageName::refit, [&] { refit(w); });
-  count(s, CounterName::refitted_boxes, w.shapes.changed.size());
-  run_stage(s, StageName::find_pairs, [&] { count(s, CounterName::new_pairs, find_pairs(w, *s.tasks)); });
-  run_stage(s, StageName::collide, [&] { collide_pairs(w, s.arena, *s.tasks, seconds); });
-  count_full_looks(s);
-  run_stage(s, StageName::link_islands, [&] { link_islands(w); });
-  w.now = s.time;
-  w.steps = s.step_count;
-  run_stage(s, StageName::solve, [&] { solve_step(w, s.solve, s.arena, *s.tasks, *s.kernels, seconds); });
-  run_stage(s, StageName::clamp_fast_bodies, [&] { clamp_fast_bodies(w, s.continuous, s.arena, *s.tasks); });
-  run_stage(s, StageName::finish_bodies, [&] { finish_bodies(w, *s.tasks, seconds, s.frozen); });
-  run_stage(s, StageName::break_joints, [&] { break_joints(w, seconds); });
-  run_stage(s, StageName::put_to_sleep, [&] { put_to_sleep(w, s.arena, seconds); });
+  s.rigid.steps = s.step_count;
+  {
+    const StageZone whole(s.profile, kWholeStep);
+    if (motion_settings(s.rigid).time == TimeStepping::adaptive) step_to_impacts(s, seconds);
+    else step_at_once(s, seconds);
+  }
   end_step(s, seconds);
   report_frozen(s);
+  report_stiffness(s);
   report_large_islands(s);
   remove_broken_joints(s);
   count_work(s);

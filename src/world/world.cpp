@@ -64,6 +64,19 @@ bool World::set_solver(SolverKind solver, const SolverOptions& options) {
 }
 bool World::set_substeps(int substeps) { return submit(*state_, SetSubsteps{substeps}).done; }
 
+bool World::set_integrator(IntegratorKind integrator) {
+  const MotionSettings m = motion_settings(state_->rigid);
+  return submit(*state_, SetMotion{integrator, m.springs, m.time, m.tolerance, m.max_impacts}).done;
+}
+bool World::set_springs(SpringKind springs) {
+  const MotionSettings m = motion_settings(state_->rigid);
+  return submit(*state_, SetMotion{m.integrator, springs, m.time, m.tolerance, m.max_impacts}).done;
+}
+bool World::set_time_stepping(TimeStepping time, float tolerance, int max_impacts) {
+  const MotionSettings m = motion_settings(state_->rigid);
+  return submit(*state_, SetMotion{m.integrator, m.springs, time, tolerance, max_impacts}).done;
+}
+
 bool World::set_combine_rules(CombineRule friction, CombineRule restitution) {
   return submit(*state_, SetCombineRules{friction, restitution}).done;
 }

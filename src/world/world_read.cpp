@@ -2,10 +2,13 @@
 #include <gyre/world.h>
 
 #include "base/float_mode.h"
+#include "rigid/spring_stability.h"
 #include "rigid/surface_rules.h"
 #include "world/field_commands.h"
 #include "world/joint_reading.h"
 #include "world/world_state.h"
+
+#include <limits>
 
 namespace gyre {
 
@@ -225,6 +228,14 @@ WorldDef World::def() const {
   WorldDef def = state_->def;
   def.gravity = settings.gravity;
   def.stepping.substeps = settings.substeps;
+  const MotionSettings motion = motion_settings(state_->rigid);
+  def.stepping.integrator = motion.integrator;
+  def.stepping.springs = motion.springs;
+  def.stepping.time = motion.time;
+  if (!state_->rigid.motion_settings.empty()) {
+    def.stepping.tolerance = motion.tolerance;
+    def.stepping.max_impacts = motion.max_impacts;
+  }
   def.stepping.solver = SolverKind::soft_step;
   for (const SolverSettings& solver : state_->rigid.solver) {
     def.stepping.solver = solver.kind;
@@ -234,6 +245,24 @@ WorldDef World::def() const {
   def.friction_rule = settings.friction_rule;
   def.restitution_rule = settings.restitution_rule;
   return def;
+}
+StepReport World::step_report() const { return state_->solve.report; }
+SpringStability World::spring_stability() const {
+  const FloatMode mode;
+  const RigidWorld& w = state_->rigid;
+  Arena arena;
+  const SpringMode fastest = find_fastest_mode(w, arena);
+  SpringStability out;
+  out.springs = fastest.springs;
+  out.critical_step = std::numeric_limits<double>::infinity();
+  if (fastest.springs == 0) return out;
+  constexpr double kTurn = 6.283185307179586;
+  out.frequency = fastest.frequency / kTurn;
+  out.damping_ratio = fastest.frequency > 0.0 ? fastest.decay / fastest.frequency : 0.0;
+  const double step = critical_step(motion_settings(w).integrator, fastest.frequency, fastest.decay);
+  if (step < kAnyStep) out.critical_step = step;
+  out.joint = joint_id(w, fastest.joint);
+  return out;
 }
 int World::substeps() const { return state_->rigid.settings.substeps; }
 

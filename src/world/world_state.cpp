@@ -117,6 +117,9 @@ std::unique_ptr<WorldState> make_world_state(const WorldDef& def) {
     w.solver.push_back({by.solver, by.solver_options});
   w.settings.friction_rule = def.friction_rule;
   w.settings.restitution_rule = def.restitution_rule;
+  const MotionSettings motion{def.stepping.integrator, def.stepping.springs, def.stepping.time,
+                              def.stepping.tolerance, def.stepping.max_impacts};
+  if (!is_default(motion)) w.motion_settings.push_back(motion);
   w.broadphase = make_broadphase(def.stepping.broad_phase);
   return state;
 }

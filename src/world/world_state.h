@@ -4,6 +4,7 @@
 
 #include "base/arena.h"
 #include "base/profile.h"
+#include "rigid/impact_times.h"
 #include "rigid/rigid_step.h"
 #include "rigid/rigid_world.h"
 #include "rigid/solve_step.h"
@@ -52,6 +53,7 @@ struct WorldState {
   Arena arena;
   SolveScratch solve;
   ContinuousScratch continuous;
+  ImpactScratch impacts;
   StageProfile profile;
   StageHook stage_hook;
   CommandLog* log = nullptr;
@@ -92,6 +94,7 @@ using RecordOf = std::remove_cvref_t<decltype(std::declval<const T&>()[std::size
 template <class Column>
 constexpr bool is_later_column = std::is_same_v<Column, Array<SurfaceRule>> || std::is_same_v<Column, Array<JointDetail>> ||
                                  std::is_same_v<Column, Array<PathPoint>> || std::is_same_v<Column, Array<FieldRecord>> ||
+                                 std::is_same_v<Column, Array<MotionSettings>> || std::is_same_v<Column, Array<LastMove>> ||
                                  std::is_same_v<Column, Array<SolverSettings>>;
 
 // Calls visit(name, column) for every column that is simulation state, in a fixed order. A column is an Array or an IsColumn of
@@ -101,12 +104,14 @@ void for_each_column(State& s, Visitor&& visit) {
   visit("time", s.time);
   visit("step_count", s.step_count);
   visit("settings", s.rigid.settings);
+  visit("motion_settings", s.rigid.motion_settings);
   visit("solver", s.rigid.solver);
   visit("material_pairs", s.rigid.material_pairs);
   visit("surface_rules", s.rigid.surface_rules);
   visit("fields", s.rigid.fields);
   visit("body_ids", s.rigid.bodies.ids);
   visit("body_motion", s.rigid.bodies.motion);
+  visit("body_last_moves", s.rigid.bodies.last_moves);
   visit("body_places", s.rigid.bodies.places);
   visit("body_masses", s.rigid.bodies.masses);
   visit("body_forces", s.rigid.bodies.forces);

@@ -98,9 +98,9 @@ TEST_F(CommandLine, WrongUsageIsStatusTwoAndOneLine) {
   expect_usage({"simulate", "s.gyre.json", "--substeps", "65"}, "1 to 64");
   expect_usage({"simulate", "s.gyre.json", "--threads", "-1"}, "0 to 1024");
   expect_usage({"simulate", "s.gyre.json", "--solver", "magic"}, "found magic, expected one of soft_step");
-  expect_usage({"simulate", "s.gyre.json", "--integrator", "rk4"}, "not supported");
+  expect_usage({"simulate", "s.gyre.json", "--integrator", "rk5"}, "semi_implicit_euler");
   expect_usage({"simulate", "s.gyre.json", "--broad-phase", "tree"}, "found tree, expected one of bvh");
-  expect_usage({"simulate", "s.gyre.json", "--stepping", "adaptive"}, "not supported");
+  expect_usage({"simulate", "s.gyre.json", "--stepping", "often"}, "error_controlled");
   expect_usage({"simulate", "s.gyre.json", "--trace-every", "0", "--trace", "t.csv"}, "1 to");
   expect_usage({"simulate", "s.gyre.json", "--trace", "t.csv", "--stats", "t.csv"}, "same file");
   expect_usage({"simulate", "s.gyre.json", "--explain", "nobody"}, "no body \"nobody\"");

@@ -42,7 +42,7 @@ Circle roll_a_lap(float step) {
 TEST(Coin, RollsInASteadyCircle) {
   for (const float step : {kStep, kStep / 4.0f, kStep / 16.0f}) {
     const Circle seen = roll_a_lap(step);
-    std::printf("[row] step %g s\n", double(step));
+    say("[row] step %g s\n", double(step));
     EXPECT_TRUE(relative_row("A-26 rate of turning", seen.rate, 1.0833, 3e-3, 3e-3));
     EXPECT_TRUE(relative_row("A-26 largest lean (degrees)", seen.most_lean, 20.0, 6e-3, 3e-3));
     EXPECT_TRUE(relative_row("A-26 smallest lean (degrees)", seen.least_lean, 20.0, 6e-3, 3e-3));
@@ -99,7 +99,7 @@ Whirl whirl(float step) {
 TEST(Coin, WhirlsFasterAsItSinks) {
   for (const float step : {kStep, 4e-3f, 1e-3f}) {
     const Whirl seen = whirl(step);
-    std::printf("[row] step %g s\n", double(step));
+    say("[row] step %g s\n", double(step));
     EXPECT_TRUE(limit_row("A-27 energy gained in a step over all", seen.gain, 6e-4, 0.0));
     EXPECT_GT(seen.rest, 0.0) << "it comes to rest";
     if (step < 2e-3f) {

@@ -131,7 +131,7 @@ Slide slide(World world, const AnyShape& shape, double rest_height) {
   return s;
 }
 void expect_smooth(const char* name, const Slide& s, double bump = 3e-4) {
-  std::printf("[row] %s\n", name);
+  say("[row] %s\n", name);
   EXPECT_TRUE(limit_row("  bump (m)", s.bump, bump, 2e-5)) << name;
   EXPECT_TRUE(limit_row("  loss of speed (relative)", s.speed_loss, 1e-3, 1e-5)) << name;
   EXPECT_TRUE(limit_row("  change of heading (rad)", s.heading, 1e-3, 1e-5)) << name;
@@ -154,7 +154,7 @@ TEST(Sliding, OverAMeshHasNoBumps) {
       World world = make_world({.sleeping = false});
       world.add_body({.type = BodyType::fixed},
                      {.geometry = floor_mesh(cell, int(24.0f / cell)), .material = surface(0.0f)});
-      std::printf("[row] A-160 cell %g\n", double(cell));
+      say("[row] A-160 cell %g\n", double(cell));
       expect_smooth(s.name, slide(std::move(world), s.shape, s.height));
     }
   }
@@ -188,7 +188,7 @@ TEST(Sliding, OverFlushBoxesHasNoBumps) {
     corners.push_back({i & 1 ? 0.5f : -0.5f, i & 2 ? 0.5f : -0.5f, i & 4 ? 0.5f : -0.5f});
   const AnyShape hull = *cook_hull(corners);
   for (const Slider& s : more_sliders()) {
-    std::printf("[row] gap 3: flush boxes of 1 m, of 0.7 m, and hulls\n");
+    say("[row] %s\n", "gap 3: flush boxes of 1 m, of 0.7 m, and hulls");
     expect_smooth(s.name, slide(floor_of_boxes(Box{}, 1.0, 0.5), s.shape, s.height));
     expect_smooth(s.name, slide(floor_of_boxes(Box{{0.35f, 0.35f, 0.35f}}, 0.7, 0.35), s.shape, s.height));
     expect_smooth(s.name, slide(floor_of_boxes(hull, 1.0, 0.5), s.shape, s.height));
@@ -250,7 +250,7 @@ World floor_of_pieces(Ground ground) {
 TEST(Sliding, OverFlushMeshesAndHeightFieldsHasNoBumps) {
   std::vector<Slider> all = more_sliders();
   for (const Ground ground : {Ground::meshes, Ground::height_fields, Ground::meshes_and_boxes}) {
-    std::printf("[row] gap 3: flush pieces, sort %d\n", int(ground));
+    say("[row] gap 3: flush pieces, sort %d\n", int(ground));
     for (const Slider& s : all)
       expect_smooth(s.name, slide(floor_of_pieces(ground), s.shape, s.height), 1e-3);
   }

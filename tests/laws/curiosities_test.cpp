@@ -31,7 +31,7 @@ TEST(TippeTop, TurnsOverAndKeepsJellettsInvariant) {
     if (turned(world.pose(top).orientation, {0, 1, 0}).y < std::cos(150.0 * double(kDegree)))
       over = i * double(kStep);
   }
-  std::printf("[row] A-23 turned over after %g s\n", over);
+  say("[row] A-23 turned over after %g s\n", over);
   EXPECT_GT(over, 0.0);
   EXPECT_TRUE(limit_row("A-23 change of Jellett's invariant", error, 5e-2, 5e-3));
 }

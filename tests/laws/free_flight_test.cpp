@@ -16,7 +16,7 @@ TEST(FreeFall, IsTheExactParabolaOrThatOfTheIntegrator) {
   const double euler = exact - 0.5 * kGravity * 2.0 / 480.0;
   const double expected = std::fabs(y - exact) < std::fabs(y - euler) ? exact : euler;
   EXPECT_TRUE(row("A-01 free fall", y, expected, 1e-3, 1e-4));
-  std::printf("[row] A-01 distance from the exact parabola %g m\n", y - exact);
+  say("[row] A-01 distance from the exact parabola %g m\n", y - exact);
   EXPECT_TRUE(row("A-01 free fall, x", world.pose(ball).position.x, 40.0, 1e-3, 1e-4));
 }
 

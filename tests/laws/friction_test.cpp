@@ -169,7 +169,7 @@ TEST(Friction, SpinningBoxIsBrakedLikeAUniformlyPressedPatch) {
   // Mean distance from the centre of a square of side 2: 0.765196 m; k^2 = 2/3 m^2.
   const double patch = 10.0 - 0.245 * kGravity * 0.765196 / (2.0 / 3.0) * (60.0 * double(kStep));
   const double corners = 10.0 - 0.245 * kGravity * std::sqrt(2.0) / (2.0 / 3.0) * (60.0 * double(kStep));
-  std::printf("[row] A-69 four corners would give %g\n", corners);
+  say("[row] A-69 four corners would give %g\n", corners);
   EXPECT_TRUE(row("A-69 spin after 1 s (rad/s)", double(world.angular_velocity(box).y), patch, 5e-3, 5e-3));
 }
 

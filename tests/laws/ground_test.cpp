@@ -71,7 +71,7 @@ TEST(Ramp, OfFewAndOfManySegmentsIsOneRamp) {
   for (const Ramp kind : {Ramp::mesh, Ramp::boxes}) {
     for (const int segments : {3, 30}) {
       const RampRun off = roll_down(kind, segments);
-      std::printf("[row] A-163 %d segments, %s\n", segments,
+      say("[row] A-163 %d segments, %s\n", segments,
                   kind == Ramp::mesh ? "one mesh" : "boxes laid flush");
       EXPECT_TRUE(limit_row("A-163 way down off the exact one (relative)", off.down, 2e-2, 1e-3));
       EXPECT_TRUE(limit_row("A-163 way across (relative)", off.across, 2e-2, 1e-3));
@@ -95,7 +95,7 @@ TEST(DenseMesh, DoesNotStallALargeBox) {
     lowest = std::min(lowest, y), highest = std::max(highest, y);
   }
   const double each = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() / 30.0;
-  std::printf("[row] A-164 milliseconds a step: %.2f\n", 1e3 * each);
+  say("[row] A-164 milliseconds a step: %.2f\n", 1e3 * each);
   const double t = 0.5;
   EXPECT_TRUE(relative_row("A-164 way of a 5 m box on 1 cm cells (m)", world.pose(box).position.x,
                            3.0 * t - 0.5 * 0.3 * kGravity * t * t, 1e-2, 1e-3));
@@ -187,7 +187,7 @@ TEST(CreationOrder, DoesNotShowInAHeapsStatistics) {
     if (shuffle == 0) {
       // Contacts that begin bear nothing yet: a heap made anew gives way a little, in any order.
       before = after;
-      std::printf("[row] A-173 mean height %g m, of the heap that was copied %g m\n", before.mean,
+      say("[row] A-173 mean height %g m, of the heap that was copied %g m\n", before.mean,
                   heights(first, settled).mean);
       continue;
     }

@@ -154,7 +154,7 @@ TEST(Stack, OfFiveIsAsHighAtEverySize) {
     }
     run(world, 10.0);
     const DVec3 p = world.pose(top).position;
-    std::printf("[row] edge %g m\n", edge);
+    say("[row] edge %g m\n", edge);
     EXPECT_TRUE(relative_row(edge < 2.0 ? "A-176 height over edge" : "A-177 height over edge", p.y / edge,
                              4.5, edge < 2.0 ? 2e-2 : 1e-3, edge < 2.0 ? 5e-3 : 1e-4));
     EXPECT_LT(std::fabs(p.x) + std::fabs(p.z), 0.05 * edge);
@@ -182,7 +182,7 @@ TEST(StepRefinement, Converges) {
     double last = 1.0;
     for (const float hertz : {30.0f, 60.0f, 120.0f, 240.0f}) {
       const double error = std::fabs(sliding_distance(hertz, ball) - exact) / exact;
-      std::printf("[row] A-174 %s at %g Hz: off by %g\n", ball ? "ball" : "slab", double(hertz), error);
+      say("[row] A-174 %s at %g Hz: off by %g\n", ball ? "ball" : "slab", double(hertz), error);
       EXPECT_TRUE(limit_row("A-174 error over that of twice the step, or 1e-4", error, std::max(last, 1e-4),
                             std::max(0.5 * last, 1e-4)));
       last = error;

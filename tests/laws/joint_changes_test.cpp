@@ -2,6 +2,8 @@
 // back without striking out.
 #include <gyre/gyre.h>
 
+#include "laws/kit.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -169,9 +171,8 @@ TEST(JointChanges, StaysClosedWhereASweepStopsABody) {
   }
   std::sort(gaps.begin(), gaps.end());
   const double median = gaps[gaps.size() / 2], p99 = gaps[gaps.size() * 99 / 100];
-  std::printf(
-      "[row] flails against a wall at 3 to 20 m/s: joint open by %.2f mm in the median, %.2f at p99\n",
-      1e3 * median, 1e3 * p99);
+  laws::say("[row] flails against a wall at 3 to 20 m/s: joint open by %.2f mm in the median, %.2f at p99\n",
+            1e3 * median, 1e3 * p99);
   EXPECT_LT(median, 5e-3);
   EXPECT_LT(p99, 8e-2);
 }

@@ -1,4 +1,4 @@
-// What stands by leaning: card houses, towers of planks, arches of dry stones; and a rope that holds by friction round a drum.
+// What stands by leaning: card houses, towers of planks, arches of dry stones.
 #include "laws/kit.h"
 
 namespace gyre::laws {
@@ -169,63 +169,6 @@ TEST(DryArch, StandsDownToMilankovitchsThickness) {
     EXPECT_LT(arch_moves(0.11 * 2.0, count, 10.0), 1.0e-3) << count << " stones fell";
     EXPECT_GT(arch_moves(0.105 * 2.0, count, 10.0), 0.3) << count << " stones stood that cannot";
   }
-}
-
-// --------------------------------------------------------------------------------------------------------------- rope
-
-// A rope of 60 links half round a fixed drum, pulled at one end by T1 and at the other by T2, which grows: it slips when T2 is
-// e^(mu pi) T1 (L. Euler, 1762; J. Eytelwein, 1808).
-double capstan_slips_at(double friction, double pull) {
-  constexpr double kRadius = 1.0, kThick = 0.02;
-  constexpr int kWrapped = 40, kTail = 10;
-  World world = make_world({.gravity = {}, .sleeping = false});
-  world.add_body({.type = BodyType::fixed, .pose = {.orientation = from_axis_angle({1, 0, 0}, 0.5f * kPi)}},
-                 {.geometry = Cylinder{float(kRadius), 0.5f}, .material = surface(float(friction))});
-  // Middles of links on the circle on which they touch the drum, then straight down.
-  const double way = kRadius + kThick, step = kPi / kWrapped, pitch = 2.0 * way * std::tan(0.5 * step);
-  std::vector<BodyId> links;
-  for (int i = -kTail; i < kWrapped + kTail; ++i) {
-    BodyDef def;
-    double angle = kPi - (double(i) + 0.5) * step;  // of the middle, from the x axis
-    if (i < 0) {
-      def.pose.position = {-way, (double(i) + 0.5) * pitch, 0};
-      angle = kPi;
-    } else if (i >= kWrapped) {
-      def.pose.position = {way, -(double(i - kWrapped) + 0.5) * pitch, 0};
-      angle = 0.0;
-    } else {
-      def.pose.position = {way * std::cos(angle), way * std::sin(angle), 0};
-    }
-    // A capsule's axis is y: along the rope, from the left end to the right one.
-    def.pose.orientation = from_axis_angle({0, 0, 1}, float(angle - kPi));
-    links.push_back(world.add_body(def, {.geometry = Capsule{float(kThick), float(0.5 * pitch - kThick)},
-                                         .density = 200,
-                                         .material = surface(float(friction)),
-                                         .filter = {.group = -1}}));
-  }
-  for (std::size_t i = 0; i + 1 < links.size(); ++i) {
-    const Pose pose = world.pose(links[i]);
-    const DVec3 anchor = pose.position + turned(pose.orientation, {0, 0.5 * pitch, 0});
-    world.add_joint({.kind = JointKind::ball, .a = links[i], .b = links[i + 1], .anchor = anchor});
-  }
-  double slips_at = 0.0;
-  const double from = world.pose(links.back()).position.y;
-  for (int i = 0; i < 60 * 40 && slips_at == 0.0; ++i) {
-    const double ratio = 1.0 + 0.05 * double(i) * double(kStep);
-    world.add_force(links.front(), {0, -float(pull), 0});
-    world.add_force(links.back(), {0, -float(pull * ratio), 0});
-    world.step(kStep);
-    if (world.pose(links.back()).position.y < from - 0.5 * pitch) slips_at = ratio;
-  }
-  return slips_at;
-}
-// A link of it has 20 g.
-TEST(Capstan, HoldsByTheExponentialOfItsWrap) {
-  const double exact = std::exp(0.3 * kPi);
-  EXPECT_TRUE(
-      relative_row("A-74 capstan, pull 2 N: T2 / T1 at slip", capstan_slips_at(0.3, 2.0), exact, 0.15, 0.05));
-  EXPECT_TRUE(relative_row("A-74 capstan, pull 10 N: T2 / T1 at slip", capstan_slips_at(0.3, 10.0), exact,
-                           0.15, 0.05));
 }
 
 }  // namespace

@@ -179,7 +179,7 @@ TEST(MassRow, OfBadMeshesIsRefused) {
   EXPECT_NE(refusal(crossing).find("cross each other"), std::string::npos) << "A-142 " << refusal(crossing);
   EXPECT_NE(refusal(box_mesh({1, 0, 1})).find("enclose"), std::string::npos)
       << "A-142 " << refusal(box_mesh({1, 0, 1}));
-  std::printf("[row] A-142 \"%s\"\n", refusal(open).c_str());
+  say("[row] A-142 \"%s\"\n", refusal(open).c_str());
 }
 
 // A tensor that no body has is refused with the axis; one at the very limit, a flat plate, is not.
@@ -194,7 +194,7 @@ TEST(MassRow, OfImpossibleTensorsIsRefusedWithTheAxis) {
     ASSERT_FALSE(world.problems().empty());
     const char* const said = world.problems().back().message;
     EXPECT_NE(std::strstr(said, axes[axis]), nullptr) << "A-143 " << said;
-    std::printf("[row] A-143 \"%s\"\n", said);
+    say("[row] A-143 \"%s\"\n", said);
     d[axis] = 2.0f;
     EXPECT_TRUE(world.add_body({.inertia = Sym3{d[0], d[1], d[2], 0, 0, 0}}, {.geometry = Box{}})) << "A-143";
   }

@@ -111,7 +111,7 @@ TEST(PainleveRod, NeitherJamsNorGainsEnergy) {
             << mu << " " << degrees << " " << side;
         EXPECT_EQ(seen.hash, slide_rod(mu, degrees * double(kDegree), side).hash);
         if (degrees == 58.3) {
-          std::printf("[row] A-28 mu %.3f side %+g: gain %.1e, largest impulse %.3f N s\n", mu, side,
+          say("[row] A-28 mu %.3f side %+g: gain %.1e, largest impulse %.3f N s\n", mu, side,
                       seen.energy_gain, seen.largest_impulse);
         }
       }

@@ -75,7 +75,7 @@ TEST(Heap, OfAnythingSleepsWithinTenSeconds) {
     std::sort(times.begin(), times.end());
     std::sort(overlaps.begin(), overlaps.end());
     const double time = times[4], overlap = overlaps[4];
-    std::printf("[row] B-31 %s\n", heap.name);
+    say("[row] B-31 %s\n", heap.name);
     EXPECT_TRUE(limit_row("B-31 time until all sleep (s)", time, 10.0, 6.0)) << heap.name;
     EXPECT_TRUE(limit_row("B-31 deepest overlap then (m)", overlap, 3e-3, 1e-3)) << heap.name;
   }

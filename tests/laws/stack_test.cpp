@@ -37,7 +37,7 @@ TEST(Tower, StandsAndSleeps) {
   const double sinks[] = {0.03, 0.11, 0.45};
   for (int k = 0; k < 3; ++k) {
     const TowerResult r = stand(sizes[k], 30.0, true);
-    std::printf("[row] A-110 %d boxes\n", sizes[k]);
+    say("[row] A-110 %d boxes\n", sizes[k]);
     EXPECT_TRUE(limit_row("A-110 sink (m)", std::fabs(r.sink), sinks[k], 1e-2));
     EXPECT_TRUE(limit_row("A-110 drift (m)", r.drift, 3e-2, 1e-3));
     EXPECT_TRUE(r.asleep);
@@ -66,7 +66,7 @@ TEST(Tower, RestsOnItsSurfaces) {
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       worst = std::max(worst, std::fabs(world.pose(boxes[i]).position.y - (double(i) + 0.5)));
     }
-    std::printf("[row] gap at the start %g m\n", gap);
+    say("[row] gap at the start %g m\n", gap);
     EXPECT_TRUE(limit_row("five boxes at rest off their places (m)", worst, 1e-4, 1e-5));
   }
 }
@@ -169,7 +169,7 @@ TEST(Overhang, HarmonicStackStandsUpToItsLimit) {
     }
     run(world, 20.0);
     const double y = world.pose(last).position.y;
-    std::printf("[row] A-119 reach %g of the limit: top at %g\n", reach, y);
+    say("[row] A-119 reach %g of the limit: top at %g\n", reach, y);
     EXPECT_EQ(y > 0.65, reach < 1.0) << "A-119 " << reach;
   }
 }
@@ -208,7 +208,7 @@ TEST(Dominoes, FallAsFastForTheirSizeAtEverySize) {
   for (const double gap : {0.25, 0.4, 0.6}) {
     const Wave one = dominoes(1.0, gap), four = dominoes(4.0, gap);
     EXPECT_TRUE(one.all_fell && four.all_fell) << "A-117 " << gap;
-    std::printf("[row] A-117 speed over sqrt(g h) at a gap of %g h: %g, four times as large: %g\n", gap,
+    say("[row] A-117 speed over sqrt(g h) at a gap of %g h: %g, four times as large: %g\n", gap,
                 one.speed, four.speed);
     EXPECT_TRUE(relative_row("A-117 ratio of speeds", 2.0 * four.speed / one.speed, 2.0,
                              gap < 0.5 ? 5e-2 : 6e-2, 1e-2))

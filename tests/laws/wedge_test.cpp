@@ -50,8 +50,7 @@ TEST(Wedge, LocksBelowTwiceTheAngleOfFriction) {
   for (const double mu : {0.05, 0.0699, 0.2}) {
     const double limit = 2.0 * std::atan(mu) / double(kDegree);
     const Way below = pushed_out(limit - 0.3, mu), above = pushed_out(limit + 0.3, mu);
-    std::printf(
-        "[row] A-73 mu %g, 0.3 degrees below the limit: %g m in all, %g m in the last second; above: %g m\n",
+    say("[row] A-73 mu %g, 0.3 degrees below the limit: %g m in all, %g m in the last second; above: %g m\n",
         mu, below.all, below.last, above.all);
     EXPECT_LT(below.last, 1e-3) << mu;
     EXPECT_LT(below.all, 0.3) << mu;

@@ -30,11 +30,19 @@ void overrule(Call& call, SceneWorld& world) {
                     .integrator = world.integrator,
                     .solver = world.solver,
                     .broad_phase = world.broad_phase,
+                    .springs = world.springs,
+                    .time = world.stepping,
+                    .tolerance = world.tolerance,
+                    .max_impacts = world.max_impacts,
                     .solver_options = world.solver_options};
   if (call.given()) get(call, stepping);
   world.substeps = stepping.substeps;
   world.integrator = stepping.integrator;
   world.solver = stepping.solver;
+  world.springs = stepping.springs;
+  world.stepping = stepping.time;
+  world.tolerance = stepping.tolerance;
+  world.max_impacts = stepping.max_impacts;
   world.broad_phase = stepping.broad_phase;
   world.solver_options = stepping.solver_options;
 }

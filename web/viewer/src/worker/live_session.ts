@@ -359,6 +359,8 @@ export class LiveSession implements Session {
     const scene = this.openScene(changed);
     try {
       scene.restoreSnapshot(snapshot);
+      // The integrator is a part of the state that came with the snapshot.
+      if (next.integrator !== this.settings.integrator) scene.setIntegrator(valueOf('integrator', IntegratorKind, next.integrator).integrator!);
       // The solver is part of the state, so the snapshot brought the old one back.
       const { kind } = valueOf('kind', SolverKind, next.solver);
       if (kind !== undefined) scene.setSolver(kind, scene.def().stepping.solverOptions);
