@@ -73,7 +73,6 @@ std::vector<Command> all_commands() {
           Step{0.25f},
           SetCombineRules{CombineRule::minimum, CombineRule::product},
           SetSurfaceRule{{4, {.static_friction = 0.1f, .id = 4}, {1, 2, 3}, {0, 1, 0}}},
-          SetSolver{SolverKind::lcp, {LcpMethod::lemke, 8, 30, 90}},
           AddField{{.kind = FieldKind::vortex, .bounds = FieldBounds{{1, 2, 3}, {4, 5, 6}}, .strength = 7, .axis = {0, 0, 1}}},
           SetField{{1, 1, 1}, {.kind = FieldKind::buoyancy, .density = 900, .offset = 2}},
           RemoveField{{1, 1, 1}},
@@ -81,7 +80,8 @@ std::vector<Command> all_commands() {
           SetJointAxis{joint, JointAxis::angular_y, {.motion = AxisMotion::limited, .limits = {1, 2}, .friction = 3}},
           SetDrive{joint, {.position = {1, 2, 3}, .frequency = 4, .max_torque = 5}},
           SetJointEnabled{joint, false},
-          SetMotion{IntegratorKind::rk4, SpringKind::explicit_force, TimeStepping::adaptive, 0.5f, 7}};
+          SetMotion{IntegratorKind::rk4, SpringKind::explicit_force, TimeStepping::adaptive, 0.5f, 7},
+          SetSolver{SolverKind::lcp, {LcpMethod::lemke, 8, 30, 90}}};
 }
 
 // What only some kinds of joints have comes back as well.

@@ -470,6 +470,9 @@ void solve_batch_as_rows(Solve& solve, const SolverSettings& settings, Arena& ar
     constraint.manifold->age = load > 0.0f ? constraint.manifold->age + solve.contact_settings.step : 0.0f;
   }
   finish_joints(solve.w, solve.batch, solve.joint_work);
+  // Rows have no colours: what says so looks at these.
+  scratch.pairs.clear();
+  scratch.joint_pairs.clear();
   note_hits(solve.w, scratch);
   scratch.manifold_count += scratch.constraints.size();
   scratch.joint_count += solve.batch.joints.size();

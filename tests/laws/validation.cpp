@@ -16,8 +16,8 @@ using laws::Row;
 
 // Laws that must hold with every part of a kind, by suite. The others are about the default part, or about joints and
 // machines that only it has been tuned for.
-constexpr std::array kOfEveryIntegrator = {"FreeFlight", "Integrator"};
-constexpr std::array kOfEverySolver = {"Sliding", "Friction", "Incline"};
+constexpr std::array kOfEveryIntegrator = {"Projectile", "LinearDrag", "Damping", "Forces", "Impulses", "GravityScale", "LockedAxes", "Incline", "Sliding", "Tower", "Bounce", "HeadOn", "MiddleAxis", "Precession", "FreeRotation"};
+constexpr std::array kOfEverySolver = {"Incline", "Sliding", "Friction", "Tower", "Overhang", "Wedge", "InclinedStack", "Bounce", "HeadOn", "Pendulum", "BallJoint", "CompoundPendulum", "Overlap"};
 
 bool names(std::span<const char* const> suites, const std::string& suite) {
   return std::any_of(suites.begin(), suites.end(), [&](const char* name) { return suite == name; });
