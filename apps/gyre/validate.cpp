@@ -23,7 +23,8 @@ int run_laws(const ValidateOptions& options) {
   std::error_code error;
   const fs::path laws = fs::read_symlink("/proc/self/exe", error).parent_path() / "gyre-laws";
   if (!fs::exists(laws, error)) {
-    std::fprintf(stderr, "%s is not there: it is built with the tests (GYRE_BUILD_TESTS=ON, target gyre_laws)\n",
+    std::fprintf(stderr,
+                 "%s is not there: it is built with the tests (GYRE_BUILD_TESTS=ON, target gyre_laws)\n",
                  laws.c_str());
     return kExitUsage;
   }
@@ -50,9 +51,11 @@ void add_validate(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("validate", "Measure laws of physics against what is exact");
   const auto options = std::make_shared<Options>();
   add_validate_options(*command, options->laws);
-  CLI::Option* integrators = command->add_flag(
-      "--integrators", options->integrators, "Instead: error of each integrator against the size of its step");
-  command->add_flag("--csv", options->csv, "With --integrators: rows of CSV instead of a table")->needs(integrators);
+  CLI::Option* integrators =
+      command->add_flag("--integrators", options->integrators,
+                        "Instead: error of each integrator against the size of its step");
+  command->add_flag("--csv", options->csv, "With --integrators: rows of CSV instead of a table")
+      ->needs(integrators);
   command->callback([options, &exit_code] {
     if (!options->integrators) {
       exit_code = run_laws(options->laws);

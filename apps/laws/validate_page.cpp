@@ -29,10 +29,17 @@ std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
     switch (c) {
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '&': out += "&amp;"; break;
-      default: out += c;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '&':
+        out += "&amp;";
+        break;
+      default:
+        out += c;
     }
   }
   return out;
@@ -67,20 +74,24 @@ std::string row_of(const ValidationRow& row) {
 }  // namespace
 
 std::string make_validation_page(const Validation& v) {
-  const auto missed = std::count_if(v.rows.begin(), v.rows.end(), [](const ValidationRow& row) { return !row.met; });
-  const auto failed =
-      std::count_if(v.laws.begin(), v.laws.end(), [](const ValidationLaw& law) { return !law.failure.empty(); });
+  const auto missed =
+      std::count_if(v.rows.begin(), v.rows.end(), [](const ValidationRow& row) { return !row.met; });
+  const auto failed = std::count_if(v.laws.begin(), v.laws.end(),
+                                    [](const ValidationLaw& law) { return !law.failure.empty(); });
   std::string page = kHead;
-  page += "<h1>Laws measured</h1><p>" + std::to_string(v.rows.size()) + " rows, " + std::to_string(missed) + " missed; " +
-          std::to_string(v.laws.size()) + " laws, " + std::to_string(failed) +
-          " do not hold. Bars are errors over tolerances, a decade an eighth of the width; the mark is the tolerance.</p>\n";
+  page += "<h1>Laws measured</h1><p>" + std::to_string(v.rows.size()) + " rows, " + std::to_string(missed) +
+          " missed; " + std::to_string(v.laws.size()) + " laws, " + std::to_string(failed) +
+          " do not hold. Bars are errors over tolerances, a decade an eighth of the width; the mark is the "
+          "tolerance.</p>\n";
   for (const ValidationLaw& law : v.laws) {
     if (law.failure.empty()) continue;
-    page += "<h2>" + escaped(law.law) + " does not hold (" + escaped(law.integrator) + ", " + escaped(law.solver) + ")</h2><pre>" +
-            escaped(law.failure) + "</pre>\n";
+    page += "<h2>" + escaped(law.law) + " does not hold (" + escaped(law.integrator) + ", " +
+            escaped(law.solver) + ")</h2><pre>" + escaped(law.failure) + "</pre>\n";
   }
-  page += "<table><tr><th>row</th><th>measured</th><th>exact</th><th>error</th><th>tolerance</th><th></th><th></th><th>integrator, "
-          "solver</th></tr>\n";
+  page +=
+      "<table><tr><th>row</th><th>measured</th><th>exact</th><th>error</th><th>tolerance</th><th></th><th></"
+      "th><th>integrator, "
+      "solver</th></tr>\n";
   for (const ValidationRow& row : v.rows) page += row_of(row);
   return page + "</table></body></html>\n";
 }

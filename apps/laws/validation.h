@@ -11,8 +11,9 @@
 namespace gyre {
 
 struct ValidationRow {
-  std::string law;   // suite and test
-  std::string name;  // the row's, beginning with its number in the table where it has one; empty: the law has no figures
+  std::string law;  // suite and test
+  std::string
+      name;  // the row's, beginning with its number in the table where it has one; empty: the law has no figures
   std::string integrator, solver;
   double measured = 0.0, expected = 0.0;
   double tolerance = 0.0;  // greatest error, or greatest value of a limit
@@ -27,6 +28,7 @@ struct ValidationRow {
 
 struct ValidationLaw {
   std::string law, integrator, solver;
+  bool default_parts = false;  // what the engine promises; with other parts it is a comparison
   double seconds = 0.0;
   std::string failure;  // empty: it holds
 };
