@@ -6,8 +6,8 @@ import { test } from 'node:test';
 import { root, viewerTests } from '../setup.mjs';
 
 const viewer = viewerTests();
-// Stands to the last bit: what rests as a tree is solved exactly.
-const STILL = new Set(['stack.gyre.json']);
+// These stand to the last bit: what rests, as a tree of contacts or as a structure, is solved exactly.
+const STILL = new Set(['stack.gyre.json', 'card_house.gyre.json']);
 const scenesIn = (folder) =>
   readdirSync(join(root, 'scenes', folder))
     .filter((name) => name.endsWith('.gyre.json'))

@@ -109,7 +109,7 @@ export function readOverlays(world: World, names: ReadonlySet<OverlayName>, orig
       anchors: table.anchors.slice(),
       frames: table.frames.slice(),
       rigid: Uint8Array.from(table.kinds, (kind) => (kind === JointKind.distance ? 0 : 1)),
-      ways: Uint8Array.from(table.kinds, wayOf),
+      ways: Uint8Array.from(table.kinds, (kind) => wayOf(kind as JointKind)),
       limits: Float32Array.from(table.limits, (limit, i) => (table.hasLimits[i >> 1] ? limit : NaN)),
       positions: table.positions.slice(),
       // A wheel's motor spins it; what is shown of a wheel is its suspension.
