@@ -351,12 +351,13 @@ TEST(Decomposition, EdgesOfManyTrianglesAreCounted) {
   EXPECT_LT(d.report.excess_volume, 1.0e-3);
 }
 
-TEST(Decomposition, SoupsOfTrianglesNeverBreakIt) {
+// Rounds of soups that grow by `more` triangles each.
+void try_soups(int more) {
   Random random;
   for (int round = 0; round < 6; ++round) {
     TestMesh mesh;
     for (int i = 0; i < 60; ++i) mesh.vertices.push_back(random.vector());
-    for (int i = 0; i < 10 + 20 * round; ++i) mesh.add(random.index(60), random.index(60), random.index(60));
+    for (int i = 0; i < 10 + more * round; ++i) mesh.add(random.index(60), random.index(60), random.index(60));
     DecompositionDef def = mesh.def();
     def.concavity = 0.1f;
     def.max_hulls = 8;
@@ -368,6 +369,8 @@ TEST(Decomposition, SoupsOfTrianglesNeverBreakIt) {
     EXPECT_TRUE(is_finite(d->report.overhang) && is_finite(d->report.excess_volume));
   }
 }
+TEST(Decomposition, SoupsOfTrianglesNeverBreakIt) { try_soups(4); }
+TEST(LongDecomposition, DenseSoupsOfTrianglesNeverBreakIt) { try_soups(20); }
 
 // ------------------------------------------------------------------------------------------------------------- limits
 
