@@ -7,7 +7,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . tools/setup.sh
 
-need_packages emscripten cmake ninja-build python3 nlohmann-json3-dev
+need_packages emscripten cmake ninja-build python3 nlohmann-json3-dev zopfli
 for program in node npm; do
   command -v $program >/dev/null || { say "No $program: install Node.js 18 or newer."; exit 1; }
 done
@@ -36,6 +36,7 @@ for part in "${parts[@]}"; do
       python3 web/bindings/generate.py --typescript $package/src/generated.ts
       $package/node_modules/.bin/tsc -p $package
       cp LICENSE $package/LICENSE
+      { echo '/*'; cat $package/node_modules/fflate/LICENSE; echo '*/'; cat $package/node_modules/fflate/esm/browser.js; } > $package/dist/inflate.js
       # A bundler wants every file that is named; a build that was not made, or of other headers, is an empty one, which load()
       # passes over.
       version=$(sed -n 's/^export const bindingsVersion = \([0-9]*\);$/\1/p' $package/src/generated.ts)

@@ -56,10 +56,11 @@ const variants: Record<Build, () => Promise<Variant>> = {
 };
 
 async function unpack(variant: Variant): Promise<Uint8Array<ArrayBuffer>> {
-  const text = variant.compressed ? atob(variant.wasm) : variant.wasm;
+  const text = atob(variant.wasm);
   const bytes = new Uint8Array(text.length);
   for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
-  if (!variant.compressed) return bytes;
+  // Browsers of before 2023 cannot unpack by themselves.
+  if (typeof DecompressionStream === 'undefined') return (await import('./inflate.js')).gunzipSync(bytes);
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'));
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }

@@ -47,6 +47,18 @@ test("the README's first example prints what it says", () => {
   assert.ok(Math.abs(printed - 0.5) < 1e-3, `printed ${printed}`);
 });
 
+test('where nothing unpacks gzip, the package does', () => {
+  const code = `delete globalThis.DecompressionStream;
+const { load, BodyType } = await import('gyre-physics');
+const gyre = await load({ build: 'plain' });
+const world = gyre.createWorld({ gravity: [0, -8, 0] });
+const ball = world.addBody({ type: BodyType.dynamic });
+world.step(1 / 64);
+console.log(world.linearVelocity(ball)[1]);`;
+  writeFileSync(join(folder, 'old.js'), code);
+  assert.equal(Number(execFileSync(process.execPath, ['old.js'], { cwd: folder, encoding: 'utf8', timeout: 60000 })), -0.125);
+});
+
 test("the README's other examples run", async () => {
   const [, , rest] = readme.split('```js\n').map((part) => part.split('```')[0]);
   const scene = JSON.stringify({ gyre_scene: 1, bodies: [{ name: 'ball', shapes: [{ type: 'sphere', radius: 0.5 }] }] });

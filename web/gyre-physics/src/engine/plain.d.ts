@@ -1,1 +1,1 @@
-export { default, wasm, compressed, worker } from './variant.js';
+export { default, wasm, worker } from './variant.js';

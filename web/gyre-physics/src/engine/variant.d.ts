@@ -3,9 +3,7 @@
 /** Emscripten's loader. */
 declare const create: (module: Record<string, unknown>) => Promise<Record<string, unknown>>;
 export default create;
-/** The WebAssembly module in base64. */
+/** The WebAssembly module, packed with gzip, in base64. */
 export declare const wasm: string;
-/** Whether the module was packed with gzip first. */
-export declare const compressed: boolean;
 /** With threads: the code of a worker; otherwise empty. */
 export declare const worker: string;
