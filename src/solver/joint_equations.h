@@ -1,5 +1,5 @@
-// The rows of a joint that hold always, one by one, and where their impulses are kept, for the solvers that see all of an island as
-// rows. (Linkages keep theirs side by side: solver/linkage.cpp.)
+// The rows of a joint that hold always, one by one, and where their impulses are kept: for linkages (solver/linkage.cpp), which
+// lay them side by side, and for the solvers that see all of an island as rows (solver/joint_rows.cpp).
 #pragma once
 
 #include "solver/joint_blocks.h"
@@ -17,46 +17,43 @@ struct JointEquations {
   JointEquation rows[kJointAxisCount];
 };
 
-inline void add_point_row(JointEquations& node, const JointWork& work, Vec3 direction) {
-  JointEquation& row = node.rows[node.count++];
-  row.push = direction;
-  row.arm_a = cross(work.from_a, direction);
-  row.arm_b = cross(work.from_b, direction);
-}
-inline void add_turn_row(JointEquations& node, Vec3 axis) {
-  JointEquation& row = node.rows[node.count++];
-  row.push = {};
-  row.arm_a = row.arm_b = axis;
-}
-
-inline void make_equations(JointEquations& node, const JointRecord& joint, const JointWork& work) {
+// Calls add(push, arm_a, arm_b) for each of them.
+template <class Add>
+inline void list_equations(const JointRecord& joint, const JointWork& work, Add&& add) {
   constexpr Vec3 kAxes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  node.count = 0;
+  const auto add_point = [&](Vec3 way) { add(way, cross(work.from_a, way), cross(work.from_b, way)); };
+  const auto add_turn = [&](Vec3 axis) { add(Vec3{}, axis, axis); };
   if (work.rows != nullptr) {
-    for (; node.count < work.rows->count; ++node.count) {
-      const JointRow& from = work.rows->rows[node.count];
-      JointEquation& row = node.rows[node.count];
-      row.push = from.push, row.arm_a = from.arm_a, row.arm_b = from.arm_b;
+    for (int i = 0; i < work.rows->count; ++i) {
+      const JointRow& from = work.rows->rows[i];
+      add(from.push, from.arm_a, from.arm_b);
     }
     return;
   }
   switch (joint.kind) {
     case JointKind::distance:
-      add_point_row(node, work, work.axis);
+      add_point(work.axis);
       break;
     case JointKind::slider:
-      add_point_row(node, work, work.perpendicular_1);
-      add_point_row(node, work, work.perpendicular_2);
+      add_point(work.perpendicular_1);
+      add_point(work.perpendicular_2);
       break;
     default:
-      for (const Vec3 axis : kAxes) add_point_row(node, work, axis);
+      for (const Vec3 axis : kAxes) add_point(axis);
   }
   if (joint.kind == JointKind::hinge) {
-    add_turn_row(node, work.perpendicular_1);
-    add_turn_row(node, work.perpendicular_2);
+    add_turn(work.perpendicular_1);
+    add_turn(work.perpendicular_2);
   } else if (joint.kind == JointKind::slider || joint.kind == JointKind::fixed) {
-    for (const Vec3 axis : kAxes) add_turn_row(node, axis);
+    for (const Vec3 axis : kAxes) add_turn(axis);
   }
+}
+
+inline void make_equations(JointEquations& node, const JointRecord& joint, const JointWork& work) {
+  node.count = 0;
+  list_equations(joint, work, [&](Vec3 push, Vec3 arm_a, Vec3 arm_b) {
+    node.rows[node.count++] = {push, arm_a, arm_b};
+  });
 }
 
 inline bool is_turn(const JointEquation& row) { return row.push == Vec3{}; }

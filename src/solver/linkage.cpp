@@ -2,8 +2,7 @@
 
 #include "math/dense.h"
 #include "math/wide_vec.h"
-#include "solver/joint_blocks.h"
-#include "solver/joint_kinds.h"
+#include "solver/joint_equations.h"
 
 namespace gyre {
 
@@ -16,79 +15,18 @@ constexpr float kMostTurn = 0.15f;
 // h^2 k / I up to which tension is left alone; kick and drift are stable up to 4.
 constexpr float kMostPull = 1.0f;
 
-void add_row(LinkageNode& node, Vec3 push, Vec3 arm_a, Vec3 arm_b) {
-  const int row = node.count++;
-  node.rows.push.set(row, push);
-  node.rows.arm_a.set(row, arm_a);
-  node.rows.arm_b.set(row, arm_b);
-}
-void add_point_row(LinkageNode& node, const JointWork& work, Vec3 direction) {
-  add_row(node, direction, cross(work.from_a, direction), cross(work.from_b, direction));
-}
-void add_turn_row(LinkageNode& node, Vec3 axis) { add_row(node, {}, axis, axis); }
-
 void make_rows(LinkageNode& node, const JointRecord& joint, const JointWork& work) {
-  constexpr Vec3 kAxes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   node.count = 0;
-  if (work.rows != nullptr) {
-    for (int i = 0; i < work.rows->count; ++i) {
-      const JointRow& from = work.rows->rows[i];
-      add_row(node, from.push, from.arm_a, from.arm_b);
-    }
-    return;
-  }
-  switch (joint.kind) {
-    case JointKind::distance:
-      add_point_row(node, work, work.axis);
-      break;
-    case JointKind::slider:
-      add_point_row(node, work, work.perpendicular_1);
-      add_point_row(node, work, work.perpendicular_2);
-      break;
-    default:
-      for (const Vec3 axis : kAxes) add_point_row(node, work, axis);
-  }
-  if (joint.kind == JointKind::hinge) {
-    add_turn_row(node, work.perpendicular_1);
-    add_turn_row(node, work.perpendicular_2);
-  } else if (joint.kind == JointKind::slider || joint.kind == JointKind::fixed) {
-    for (const Vec3 axis : kAxes) add_turn_row(node, axis);
-  }
+  list_equations(joint, work, [&](Vec3 push, Vec3 arm_a, Vec3 arm_b) {
+    const int row = node.count++;
+    node.rows.push.set(row, push);
+    node.rows.arm_a.set(row, arm_a);
+    node.rows.arm_b.set(row, arm_b);
+  });
 }
 
-bool is_turn(const LinkageRows& rows, int i) { return rows.push.at(i) == Vec3{}; }
-
-// The joint's accumulated impulses in terms of its rows, and back.
-float kept_impulse(const JointRecord& joint, const JointWork& work, const LinkageRows& rows, int i) {
-  if (work.rows != nullptr) return work.detail->row_impulses[i];
-  if (joint.kind == JointKind::distance) return work.axes[0].axis.low_impulse;
-  return is_turn(rows, i) ? dot(joint.angular_impulse, rows.arm_a.at(i))
-                          : dot(joint.linear_impulse, rows.push.at(i));
-}
-void keep_impulse(JointRecord& joint, const JointWork& work, const LinkageRows& rows, int i, float impulse) {
-  if (work.rows != nullptr) {
-    work.detail->row_impulses[i] += impulse;
-  } else if (joint.kind == JointKind::distance) {
-    work.axes[0].axis.low_impulse += impulse;
-  } else if (is_turn(rows, i)) {
-    joint.angular_impulse += impulse * rows.arm_a.at(i);
-  } else {
-    joint.linear_impulse += impulse * rows.push.at(i);
-  }
-}
-void forget_kept(JointRecord& joint, const JointWork& work) {
-  joint.linear_impulse = joint.angular_impulse = {};
-  if (work.rows == nullptr && joint.kind == JointKind::distance) work.axes[0].axis.low_impulse = 0.0f;
-  if (work.rows == nullptr) return;
-  for (float& impulse : work.detail->row_impulses) impulse = 0.0f;
-}
-
-float error_of(const JointRecord& joint, const JointWork& work, const LinkageRows& rows, int i) {
-  if (work.rows != nullptr) return error_taken_back(work.rows->rows[i]);
-  if (is_turn(rows, i)) return dot(work.angular_error, rows.arm_a.at(i));
-  if (joint.kind == JointKind::distance)
-    return clamp(work.position - joint.min_length, -kMostPointError, kMostPointError);
-  return dot(within(work.error, kMostPointError), rows.push.at(i));
+JointEquation equation_at(const LinkageRows& rows, int i) {
+  return {rows.push.at(i), rows.arm_a.at(i), rows.arm_b.at(i)};
 }
 
 // A force f at arm r turns with the body's orientation like a spring of stiffness (r . f) 1 - sym(r f^T). Springs that a
@@ -389,10 +327,10 @@ void ask_rows(const Linkage& linkage, const LinkageSolve& s) {
     }
     for (int i = 0; i < node.count; ++i) {
       LinkageRows& rows = node.rows;
-      rows.wanted[i] = -s.settings.softness.bias_rate * error_of(joint, work, rows, i);
-      rows.wanted[i] -= work.rows != nullptr ? share * bends[i]
-                        : is_turn(rows, i)   ? dot(bend.turn, rows.arm_a.at(i))
-                                             : dot(bend.point, rows.push.at(i));
+      rows.wanted[i] = -s.settings.softness.bias_rate * error_of(joint, work, equation_at(rows, i), i);
+      rows.wanted[i] -= work.rows != nullptr            ? share * bends[i]
+                        : is_turn(equation_at(rows, i)) ? dot(bend.turn, rows.arm_a.at(i))
+                                                        : dot(bend.point, rows.push.at(i));
     }
   }
 }
@@ -409,7 +347,9 @@ void solve_rows(const Linkage& linkage, const LinkageSolve& s, bool soft) {
     bodies.speeds(node.rows, node.count, speeds);
     for (int i = 0; i < node.count; ++i) {
       float missing = -speeds[i];
-      if (soft) missing += node.rows.wanted[i] - node.rows.give[i] * kept_impulse(joint, work, node.rows, i);
+      if (soft)
+        missing +=
+            node.rows.wanted[i] - node.rows.give[i] * kept_impulse(joint, work, equation_at(node.rows, i), i);
       x[i] = double(missing);
     }
   }
@@ -422,7 +362,7 @@ void solve_rows(const Linkage& linkage, const LinkageSolve& s, bool soft) {
     for (int i = 0; i < node.count; ++i) {
       const float impulse = float(x[i]);
       bodies.push(node.rows, i, impulse);
-      keep_impulse(joint, s.work[node.work], node.rows, i, impulse);
+      keep_impulse(joint, s.work[node.work], equation_at(node.rows, i), i, impulse);
     }
     bodies.store();
   }
@@ -466,12 +406,12 @@ void warm_linkage(const Linkage& linkage, const LinkageSolve& s) {
     warm_start_joint_axes(joint, work, s.bodies);
     // What was kept, along the rows as they are now.
     float kept[kMostBlockRows];
-    for (int i = 0; i < node.count; ++i) kept[i] = kept_impulse(joint, work, node.rows, i);
+    for (int i = 0; i < node.count; ++i) kept[i] = kept_impulse(joint, work, equation_at(node.rows, i), i);
     forget_kept(joint, work);
     NodeBodies bodies(node, s.bodies);
     for (int i = 0; i < node.count; ++i) {
       bodies.push(node.rows, i, kept[i]);
-      keep_impulse(joint, work, node.rows, i, kept[i]);
+      keep_impulse(joint, work, equation_at(node.rows, i), i, kept[i]);
     }
     bodies.store();
   }
