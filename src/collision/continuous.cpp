@@ -128,6 +128,7 @@ void for_each_in_the_way(const ContinuousInput& input, const Way& way, Array<std
 // Where a body must stop, and which of its shapes in front of which.
 struct BodyStop : Stop {
   std::uint32_t shape = 0, obstacle = 0;
+  bool near_gate = false;  // something on its way may be crossed
 };
 
 BodyStop first_stop(const ContinuousInput& input, const Way& way, Array<std::uint32_t>& found,
@@ -135,7 +136,10 @@ BodyStop first_stop(const ContinuousInput& input, const Way& way, Array<std::uin
   BodyStop first;
   for_each_in_the_way(
       input, way, found,
-      [&](const Proxy& self, const Proxy& other) { return is_obstacle(self, other, way.fast.continuous); },
+      [&](const Proxy& self, const Proxy& other) {
+        first.near_gate = first.near_gate || self.sensor != other.sensor;
+        return is_obstacle(self, other, way.fast.continuous);
+      },
       [&](const Mover& mover, std::uint32_t index, std::uint32_t obstacle, const SweptShape& other) {
         if (input.lets_pass != nullptr && (*input.lets_pass)(obstacle, way.sweep.moved - other.sweep->moved))
           return;
@@ -212,7 +216,7 @@ class Slide {
       const Way rest{fast_, next, from, true, stop.by_core};
       const BodyStop second = first_stop(input_, rest, found_, triangle_);
       const double part = second.hit ? second.time : 1.0;
-      find_crossings(input_, rest, part, found_, crossings_, triangle_);
+      if (second.near_gate) find_crossings(input_, rest, part, found_, crossings_, triangle_);
       // What moves on pushes the body before it whatever stands behind.
       const DVec3 step = part * drift + carried;
       gone += step;
@@ -283,7 +287,8 @@ void ContinuousCollision::clamp_fast_bodies(const ContinuousInput& input, std::s
       // Rounded down: the fraction must not pass the impact.
       const auto fraction = float(stop.time);
       out.fraction = double(fraction) > stop.time ? fraction * (1.0f - 1.2e-7f) : fraction;
-      find_crossings(input, way, double(out.fraction), own.found, own.crossings, *own.triangle);
+      if (stop.near_gate)
+        find_crossings(input, way, double(out.fraction), own.found, own.crossings, *own.triangle);
       stop.time = double(out.fraction);
       if (stop.by_core && length_squared(stop.normal) > 0.5) {
         out.blow = to_float(stop.normal);

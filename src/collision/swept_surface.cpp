@@ -15,6 +15,9 @@ constexpr float kPieceRadii = 4.0f;  // a piece is about so many outer radii lon
 constexpr float kCoreShare = 0.5f;   // of the inner radius
 // A core as near as this part of where it is left is taken for deep.
 constexpr double kDeep = 1.0e-3;
+// How often a shape is advanced towards a triangle's plane before it is worth a search, and how far at least, in distances.
+constexpr int kMostAdvances = 12;
+constexpr double kLeastAdvance = 0.1;
 // A shape that slides may come nearer than it was left by this, and close in by this sine: rounding, not a stop.
 constexpr double kSlideShare = 0.5, kSlideSlack = 1.0e-6;
 
@@ -23,6 +26,7 @@ Stop no_stop(double end) { return {end, false, false, {}, {}}; }
 // What touches from the start is the solver's; only the core must not pass. What is deeper than that already is free.
 Stop stop_of_core(const SweptShape& core, const SweptShape& b, double start, double end,
                   const ImpactScale& scale) {
+  if (stays_clear(core, b, start, end, 2.0 * scale.core_target)) return no_stop(end);
   const Gap gap = find_gap(core, b, start, 2.0 * scale.core_target);
   if (!gap.beyond && gap.distance <= kDeep * scale.core_target) return no_stop(end);
   // What is left near from the step before may come nearer, or it would be held there even as it leaves.
@@ -181,6 +185,43 @@ class SurfaceSweep {
     return from > 0.0 || find_gap(a_, near_frame_, 0.001 * to, scale_.target).distance < before;
   }
 
+  // How far the shape, or its core, lies above a plane of the surface.
+  double height_of(const SweptShape& shape, const Transform& surface_from_a, Vec3 normal, Vec3 corner) const {
+    const Transform from_shape = surface_from_a * inverse_times(a_.body_from_shape, shape.body_from_shape);
+    const Vec3 lowest = from_shape * support(*shape.shape, rotate_inverse(from_shape.orientation, -normal));
+    return double(dot(normal, lowest - corner)) - double(core_radius(*shape.shape));
+  }
+
+  // Whether the shape, so high above a plane of the surface as the step begins, stays farther from it than `distance` until the
+  // piece ends. By the same advances as time_of_impact, but along the one normal, which needs no search.
+  bool stays_above(const SweptShape& shape, Vec3 normal, Vec3 corner, double height, double distance) const {
+    if (!(b_.sweep->turned == Vec3{})) return false;
+    const DVec3 up(rotate(b_.sweep->pose.orientation, rotate(b_.body_from_shape.orientation, normal)));
+    const double closing = -dot(DVec3(shape.sweep->moved) - DVec3(b_.sweep->moved), up) +
+                           length(cross(DVec3(shape.sweep->turned), up)) * double(shape.radius);
+    const double rounding =
+        4.0e-6 * double(largest(absolute(corner)) + largest(absolute(start_.position)) + a_.radius);
+    double time = 0.0;
+    for (int i = 0; i < kMostAdvances; ++i) {
+      const double rest = height - distance - rounding;
+      if (rest > max(closing, 0.0) * (stop_.time - time)) return true;
+      if (!(rest > kLeastAdvance * distance)) return false;
+      time += rest / closing;
+      height = height_of(shape, surface_from_a(time), normal, corner);
+    }
+    return false;
+  }
+
+  // Whether nothing can stop the shape, `height` above the triangle as the step begins, before the piece ends: most of what
+  // comes near a triangle's box flies past or lies on it already.
+  bool stays_clear_of(const TriangleView& view, Vec3 normal, double height) const {
+    const Vec3 corner = view.v[0];
+    if (height > scale_.touching) return stays_above(a_, normal, corner, height, 2.0 * scale_.target);
+    if (scale_.slides) return false;
+    return stays_above(core_, normal, corner, height_of(core_, start_, normal, corner),
+                       2.0 * scale_.core_target);
+  }
+
   void look_at(std::uint32_t id, double from) {
     const TriangleView view = surface_.triangle(id);
     Vec3 normal = view.normal;
@@ -192,6 +233,7 @@ class SurfaceSweep {
     }
     const Vec3 lowest = start_ * support(*a_.shape, rotate_inverse(start_.orientation, -normal));
     const double height = double(dot(normal, lowest - view.v[0])) - double(core_radius(*a_.shape));
+    if (stays_clear_of(view, normal, height)) return;
     place(view);
     Stop found;
     if (scale_.slides) {
@@ -309,6 +351,7 @@ Core make_core(const Shape& shape, const Transform& body_from_shape) {
 
 Stop stop_before(const SweptShape& a, const SweptShape& core, const SweptShape& b, double start, double end,
                  const ImpactScale& scale) {
+  if (stays_clear(a, b, start, end, max(scale.touching, 2.0 * scale.target))) return no_stop(end);
   if (scale.slides) return stop_of_slide(a, b, start, end, scale);
   if (find_gap(a, b, start, scale.touching).distance <= scale.touching)
     return stop_of_core(core, b, start, end, scale);

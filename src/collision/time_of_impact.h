@@ -48,4 +48,8 @@ struct Impact {
 // The first time from `start` to `end` at which the two are as near as `target` (m, above zero).
 Impact time_of_impact(const SweptShape& a, const SweptShape& b, double start, double end, double target);
 
+// Whether the two stay farther apart than `distance` from `start` to `end`, as far as the axes of B's frame can tell: true is
+// certain, false says nothing (always so of planes). A small part of the work of time_of_impact, which then finds no hit.
+bool stays_clear(const SweptShape& a, const SweptShape& b, double start, double end, double distance);
+
 }  // namespace gyre
