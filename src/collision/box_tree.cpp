@@ -9,6 +9,9 @@ namespace {
 // Children of a node when it is built: room is left for those that come later.
 constexpr std::size_t kFill = 6;
 
+// A tree that was refitted serves until its nodes have this many times the surface, against their items, that they were built with.
+constexpr float kWorn = 1.2f;
+
 // Items below a node of this level, when it is built.
 std::size_t room_of(int level) {
   std::size_t room = kFill;
@@ -310,6 +313,25 @@ void BoxTree::finish_build() {
   int level = 0;
   while (size_ > room_of(level)) ++level;
   root_ = build_node(entries_, level, 0);
+  looseness_ = refit_nodes();
+}
+
+bool BoxTree::refit() { return refit_nodes() <= kWorn * looseness_; }
+
+// Makes the boxes that nodes keep of their children exact, from the bottom up. Returns their surface over that of the items.
+float BoxTree::refit_nodes() {
+  if (root_ == kNowhere) return 0.0f;
+  float items = 0.0f, inner = 0.0f;
+  for (int level = 0; level <= nodes_[root_].level; ++level) {
+    for (Node& node : nodes_) {
+      if (node.used == 0 || node.level != level) continue;
+      for (int lane = 0; lane < node.count; ++lane) {
+        if (level > 0) set_lane_box(node, lane, bounds_of(nodes_[node.child[lane]]));
+        (level > 0 ? inner : items) += half_area(lane_box(node, lane));
+      }
+    }
+  }
+  return items > 0.0f ? inner / items : inner;
 }
 
 // `lowest`: the level of the nodes that take the entries themselves as children.

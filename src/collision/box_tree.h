@@ -4,7 +4,8 @@
 // In: items (small indices) with boxes. Out: walks over the items whose boxes overlap a box. A box that stays inside its
 // node's is changed in place; others are taken out and put in again. Nodes that overflow are split where the two halves'
 // surfaces are smallest. Each improve() regroups the grandchildren of a few nodes, in turn, so quality is kept up by
-// bounded work a step. Many items at once are built from the top by halving along the longest side.
+// bounded work a step. Many items at once are built from the top by halving along the longest side; where many of them move, but
+// little against each other, nodes are only made to fit again.
 //
 // Which items a walk finds never depends on the tree's shape, only their order does.
 //
@@ -52,6 +53,12 @@ class BoxTree {
   void remove(std::uint32_t item);
   // Gives an item that is in the tree another box.
   void move(std::uint32_t item, const Aabb& box);
+  // Many boxes at once, nothing in or out: place() for each, and then refit() before anything is asked. False once the nodes have
+  // grown so much against the boxes in them that the tree should be built anew.
+  void place(std::uint32_t item, const Aabb& box) {
+    set_lane_box(nodes_[places_[item] / kWidth], int(places_[item] % kWidth), box);
+  }
+  bool refit();
   // Regroups the children of a few inner nodes, going round the tree from call to call: one, and more after many changes.
   void improve(std::size_t changes);
 
@@ -159,6 +166,7 @@ class BoxTree {
 
   static Aabb bounds_of(const Node& node);
 
+  float refit_nodes();
   std::uint32_t make_node(int level);
   void free_node(std::uint32_t index);
   void set_child(std::uint32_t node, int lane, const Entry& entry);
@@ -180,6 +188,7 @@ class BoxTree {
   IdleClock clock_;
   std::uint32_t root_ = kNowhere;
   std::uint32_t next_improved_ = 0;
+  float looseness_ = 0.0f;  // when it was built: surface of the nodes over that of the boxes
   std::size_t size_ = 0;
 };
 

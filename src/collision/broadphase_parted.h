@@ -5,6 +5,7 @@
 // The index is what a broad phase is named after. It holds items (small numbers) with boxes, and has
 //   insert(item, box), remove(item), move(item, box), clear(), begin_build(), add_to_build(item, box), finish_build(),
 //   kRebuildShare         when more than one in so many changes at once, building is cheaper
+//   place(item, box), refit()    if it has these: many boxes changed at once; refit() is false where building is better
 //   improve(changes)      upkeep after so many changes, before anything is asked; not called after a build
 //   for_each_overlap(box, visit), for_each_along(sweep, reach, visit), for_each_node(visit)
 //   contains(item), box_of(item), size(), bytes(), trim(), find_fault()
@@ -58,6 +59,9 @@ class BroadphaseParted : public Broadphase {
   void add(std::uint32_t index, const Proxy& proxy, Home home);
   void remove(std::uint32_t index);
   void change(std::span<const Proxy> proxies, std::uint32_t index, const bool* build);
+  // Many boxes of the index changed, none came or went.
+  static constexpr bool kRefits = requires(Index & index) { index.refit(); };
+  void place_all(std::span<const Proxy> proxies, std::span<const std::uint32_t> changed, Home home);
 };
 
 namespace parted_detail {
@@ -133,24 +137,52 @@ void BroadphaseParted<Index>::change(std::span<const Proxy> proxies, std::uint32
 }
 
 template <class Index>
+void BroadphaseParted<Index>::place_all(std::span<const Proxy> proxies,
+                                        std::span<const std::uint32_t> changed, Home home) {
+  if constexpr (kRefits) {
+    std::size_t count = 0;
+    for (const std::uint32_t index : changed) {
+      if (homes_[index] != home) continue;
+      indices_[home].place(index, proxies[index].fat_box);
+      ++count;
+    }
+    if (indices_[home].refit()) {
+      indices_[home].improve(count);
+    } else {
+      build_index(proxies, home);
+    }
+  }
+}
+
+template <class Index>
 void BroadphaseParted<Index>::update(std::span<const Proxy> proxies, std::span<const std::uint32_t> changed) {
   if (homes_.size() < proxies.size()) homes_.resize(proxies.size(), kNoHome);
   std::size_t changes[4] = {};
+  bool stay[4] = {true, true, true, true};
   for (const std::uint32_t index : changed) {
     const Home home = home_of(proxies[index]);
     ++changes[home];
-    if (home != homes_[index]) ++changes[homes_[index]];
+    if (home == homes_[index]) continue;
+    ++changes[homes_[index]];
+    stay[home] = stay[homes_[index]] = false;
   }
   bool build[2];
   for (const Home home : {kFixed, kMoving}) {
     build[home] =
         changes[home] > kManyChanges && changes[home] > indices_[home].size() / Index::kRebuildShare;
+    if (kRefits && build[home] && stay[home]) continue;
+    stay[home] = false;
     // An index that is to be built anew is emptied first, so that no change below touches it.
     if (build[home]) indices_[home].clear();
   }
-  for (const std::uint32_t index : changed) change(proxies, index, build);
+  for (const std::uint32_t index : changed) {
+    const Home home = homes_[index];
+    if (!has_index(home) || !stay[home]) change(proxies, index, build);
+  }
   for (const Home home : {kFixed, kMoving}) {
-    if (build[home]) {
+    if (stay[home]) {
+      place_all(proxies, changed, home);
+    } else if (build[home]) {
       build_index(proxies, home);
     } else if (changes[home] > 0) {
       indices_[home].improve(changes[home]);

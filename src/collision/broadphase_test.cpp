@@ -413,6 +413,53 @@ TEST(BoxTree, KeepsItsQuality) {
   EXPECT_LT(tree.cost(), 1.6 * fresh.cost());
 }
 
+// What all moves is refitted, and built anew when that has made it much worse; either way walks find what overlaps.
+TEST(BoxTree, RefitsWhileThatIsGood) {
+  Random random;
+  BoxTree tree, fresh;
+  std::vector<Aabb> boxes;
+  std::vector<std::uint32_t> items;
+  std::vector<Vec3> velocities;
+  const Vec3 half{0.5f, 0.5f, 0.5f};
+  for (std::uint32_t i = 0; i < 2000; ++i) {
+    const Vec3 middle = random.vector(-20, 20);
+    boxes.push_back({middle - half, middle + half});
+    items.push_back(i);
+    velocities.push_back(random.vector(-1, 1));
+  }
+  tree.build(items, boxes);
+  int built = 0;
+  for (int frame = 0; frame < 60; ++frame) {
+    // All together at first, then each its own way.
+    for (std::uint32_t i = 0; i < items.size(); ++i) {
+      const Vec3 by = frame < 20 ? Vec3{0.3f, -0.5f, 0.1f} : velocities[i];
+      boxes[i] = {boxes[i].low + by, boxes[i].high + by};
+      tree.place(i, boxes[i]);
+    }
+    if (!tree.refit()) {
+      tree.build(items, boxes);
+      ++built;
+    }
+    ASSERT_STREQ(tree.find_fault(), nullptr) << frame;
+    if (frame == 19) {
+      EXPECT_EQ(built, 0);
+    }
+    if (frame % 10 != 9) continue;
+    fresh.build(items, boxes);
+    EXPECT_LT(tree.cost(), 1.6 * fresh.cost()) << frame;
+    const Aabb asked = boxes[std::size_t(frame)];
+    std::vector<std::uint32_t> found, expected;
+    tree.for_each_overlap(asked, [&](std::uint32_t item) { found.push_back(item); });
+    for (const std::uint32_t i : items) {
+      if (overlap(boxes[i], asked)) expected.push_back(i);
+    }
+    std::sort(found.begin(), found.end());
+    EXPECT_EQ(found, expected) << frame;
+  }
+  EXPECT_GT(built, 0);
+  EXPECT_LT(built, 40);
+}
+
 TEST(BoxTree, PartitionPutsTheLowerOnesFirst) {
   Random random;
   struct Entry {
