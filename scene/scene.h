@@ -31,6 +31,30 @@ struct SceneWorld {
   bool sleeping = true;
 };
 
+// What of it a world takes as its Stepping, and back.
+inline Stepping stepping_of(const SceneWorld& world) {
+  return {.substeps = world.substeps,
+          .integrator = world.integrator,
+          .solver = world.solver,
+          .broad_phase = world.broad_phase,
+          .springs = world.springs,
+          .time = world.stepping,
+          .tolerance = world.tolerance,
+          .max_impacts = world.max_impacts,
+          .solver_options = world.solver_options};
+}
+inline void set_stepping(SceneWorld& world, const Stepping& stepping) {
+  world.substeps = stepping.substeps;
+  world.integrator = stepping.integrator;
+  world.solver = stepping.solver;
+  world.broad_phase = stepping.broad_phase;
+  world.springs = stepping.springs;
+  world.stepping = stepping.time;
+  world.tolerance = stepping.tolerance;
+  world.max_impacts = stepping.max_impacts;
+  world.solver_options = stepping.solver_options;
+}
+
 // How something looks in pictures: sRGB, 0 to 255 each.
 struct SceneColor {
   std::uint8_t red = 0, green = 0, blue = 0;

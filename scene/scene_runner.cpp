@@ -18,15 +18,7 @@ SceneResult<SceneRunner> SceneRunner::create(Scene scene, const std::string& fil
   def.gravity = settings.gravity;
   def.threads = threads;
   def.simd_width = simd_width;
-  def.stepping = {.substeps = settings.substeps,
-                  .integrator = settings.integrator,
-                  .solver = settings.solver,
-                  .broad_phase = settings.broad_phase,
-                  .springs = settings.springs,
-                  .time = settings.stepping,
-                  .tolerance = settings.tolerance,
-                  .max_impacts = settings.max_impacts,
-                  .solver_options = settings.solver_options};
+  def.stepping = stepping_of(settings);
   def.sleeping = settings.sleeping;
   Result<World> world = World::create(def);
   if (!world) return SceneError{file, 0, 0, "/world", world.error().message};
@@ -76,7 +68,8 @@ void SceneRunner::apply_forces() {
   const double now = time() + slack;
   for (const SceneExplosion& explosion : scene_.explosions) {
     // In the first step alone what was to begin before it.
-    const bool is_due = now >= explosion.start && (now - scene_.world.time_step < explosion.start || steps() == 0);
+    const bool is_due =
+        now >= explosion.start && (now - scene_.world.time_step < explosion.start || steps() == 0);
     if (is_due) world_.explode(explosion.def);
   }
   for (const std::size_t i : forced_) {
@@ -209,7 +202,8 @@ Scene SceneRunner::final_scene() const {
   out.explosions.clear();
   for (SceneExplosion explosion : scene_.explosions) {
     explosion.start -= time();
-    if (explosion.start > -1.0e-4 * scene_.world.time_step || steps() == 0) out.explosions.push_back(explosion);
+    if (explosion.start > -1.0e-4 * scene_.world.time_step || steps() == 0)
+      out.explosions.push_back(explosion);
   }
   for (SceneMesh& mesh : out.meshes) mesh.file.clear();
   return out;

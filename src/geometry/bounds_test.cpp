@@ -4,6 +4,7 @@
 
 #include "geometry/gjk.h"
 #include "geometry/shape.h"
+#include "random.h"
 
 #include <gtest/gtest.h>
 
@@ -16,27 +17,16 @@
 namespace gyre {
 namespace {
 
-struct Random {
-  std::uint64_t state = 88172645463325252ull;
-  std::uint32_t next(std::uint32_t below) {
-    state ^= state << 13;
-    state ^= state >> 7;
-    state ^= state << 17;
-    return std::uint32_t((state >> 11) % below);
+using testing_random::Random;
+
+// A rotation, all alike probable.
+Quat any_turn(Random& random) {
+  for (;;) {
+    const Vec3 v = random.vector(-1, 1);
+    const Quat q{v.x, v.y, v.z, random.real(-1, 1)};
+    if (dot(q, q) > 0.05f && dot(q, q) < 1.0f) return normalized(q);
   }
-  float real(float low, float high) { return low + (high - low) * float(next(1u << 24)) / float(1u << 24); }
-  Vec3 vector(float low, float high) {
-    const float x = real(low, high), y = real(low, high);
-    return {x, y, real(low, high)};
-  }
-  Quat rotation() {
-    for (;;) {
-      const Vec3 v = vector(-1, 1);
-      const Quat q{v.x, v.y, v.z, real(-1, 1)};
-      if (dot(q, q) > 0.05f && dot(q, q) < 1.0f) return normalized(q);
-    }
-  }
-};
+}
 
 using Cloud = std::vector<Vec3>;
 
@@ -54,7 +44,7 @@ std::vector<std::pair<std::string, Cloud>> clouds() {
   Random random;
   std::vector<std::pair<std::string, Cloud>> all;
   const auto add = [&](const char* name, Cloud points, Vec3 middle = {}, float scale = 1.0f) {
-    turn(points, random.rotation());
+    turn(points, any_turn(random));
     for (Vec3& p : points) p = scale * p + middle;
     all.emplace_back(name, points);
   };
@@ -218,7 +208,7 @@ TEST(Bounds, SmallestBoxOfKnownSolids) {
     for (int i = 0; i < 8; ++i)
       corners.push_back(
           multiply_each(half, {i & 1 ? 1.0f : -1.0f, i & 2 ? 1.0f : -1.0f, i & 4 ? 1.0f : -1.0f}));
-    turn(corners, random.rotation());
+    turn(corners, any_turn(random));
     const double exact = 8.0 * double(half.x) * double(half.y) * double(half.z);
     ASSERT_NEAR(volume(*fit_oriented_box(corners)) / exact, 1.0, 2.0e-5);
     // The same with points strewn inside, and the principal axes of a box with unlike sides.
@@ -227,11 +217,11 @@ TEST(Bounds, SmallestBoxOfKnownSolids) {
     ASSERT_NEAR(volume(*fit_oriented_box(corners)) / exact, 1.0, 2.0e-5);
     // Four corners of a cube make a regular tetrahedron: the cube is its smallest box, with no side on a face of it.
     Cloud tetrahedron{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
-    turn(tetrahedron, random.rotation());
+    turn(tetrahedron, any_turn(random));
     ASSERT_NEAR(volume(*fit_oriented_box(tetrahedron)), 8.0, 1.0e-4);
     // A rectangle has no volume, and no box of it should reach beyond its plane.
     Cloud rectangle{{1, 2, 0}, {-1, 2, 0}, {1, -2, 0}, {-1, -2, 0}};
-    turn(rectangle, random.rotation());
+    turn(rectangle, any_turn(random));
     ASSERT_NEAR(surface_area(*fit_oriented_box(rectangle)), 16.0, 1.0e-3);
   }
 }
@@ -253,7 +243,7 @@ TEST(Bounds, NoSampledRotationHasASmallerBox) {
         best = q;
       }
     };
-    for (int i = 0; i < 6000; ++i) try_rotation(random.rotation());
+    for (int i = 0; i < 6000; ++i) try_rotation(any_turn(random));
     // And around the best of them, ever nearer.
     for (float angle = 0.2f; angle > 1.0e-4f; angle *= 0.7f) {
       for (int i = 0; i < 40; ++i)
@@ -264,7 +254,7 @@ TEST(Bounds, NoSampledRotationHasASmallerBox) {
 }
 
 OrientedBox random_box(Random& random) {
-  return {random.vector(-2, 2), random.vector(0.05f, 1.5f), random.rotation()};
+  return {random.vector(-2, 2), random.vector(0.05f, 1.5f), any_turn(random)};
 }
 
 TEST(Bounds, TurnedBoxesOverlapAsTheirDistanceSays) {
@@ -340,8 +330,8 @@ TEST(Bounds, MergesHoldBoth) {
     const float far = round % 3 == 0 ? 0.3f : 4.0f;
     Cloud one = cloud_in_box(random, 30, random.vector(0.1f, 2.0f)),
           other = cloud_in_box(random, 30, random.vector(0.1f, 1.0f));
-    turn(one, random.rotation());
-    turn(other, random.rotation());
+    turn(one, any_turn(random));
+    turn(other, any_turn(random));
     const Vec3 away = random.vector(-far, far);
     for (Vec3& p : other) p += away;
     Cloud both = one;
@@ -432,7 +422,7 @@ TEST(Bounds, CostsAgreeWithCounting) {
   Random random;
   for (int round = 0; round < 6; ++round) {
     Cloud points = cloud_in_box(random, 40, {1, 0.8f, 1.3f});
-    turn(points, random.rotation());
+    turn(points, any_turn(random));
     const Aabb box = *fit_box(points);
     for (const KDopKind kind : {KDopKind::k14, KDopKind::k18, KDopKind::k26}) {
       const KDop dop = *fit_k_dop(points, kind);
@@ -454,7 +444,7 @@ TEST(Bounds, MoreDirectionsAreTighter) {
   Random random;
   for (int round = 0; round < 20; ++round) {
     Cloud points = cloud_in_box(random, 100, {1, 2, 0.5f});
-    turn(points, random.rotation());
+    turn(points, any_turn(random));
     const double box = volume(*fit_box(points)), k14 = volume(*fit_k_dop(points, KDopKind::k14)),
                  k18 = volume(*fit_k_dop(points, KDopKind::k18)),
                  k26 = volume(*fit_k_dop(points, KDopKind::k26));

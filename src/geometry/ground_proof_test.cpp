@@ -19,6 +19,7 @@
 #include <array>
 #include <cstdio>
 #include <limits>
+#include <map>
 #include <sstream>
 #include <string>
 
@@ -391,6 +392,7 @@ void prove_one(const Ground& ground, const Shape& shape, Transform pose, GroundP
 void prove(Kinds kinds, int pairs, unsigned seed) {
   Random random(seed + unsigned(kinds.shape * 4 + int(kinds.ground)));
   int wrong = 0, touching = 0, apart = 0;
+  std::map<std::string, int> reasons;
   Ground ground;
   for (int begin = 0; begin < pairs; begin += 1000) {
     Hulls hulls;
@@ -418,6 +420,7 @@ void prove(Kinds kinds, int pairs, unsigned seed) {
       touching += proof.count > 0;
       apart += !proof.near.overlap;
       if (proof.wrong == nullptr) continue;
+      ++reasons[proof.wrong];
       if (++wrong > 5) continue;
       std::ostringstream text;
       text << proof.wrong << " by " << proof.by << ", pair " << i << ": " << describe(shape, pose)
@@ -427,6 +430,7 @@ void prove(Kinds kinds, int pairs, unsigned seed) {
     }
   }
   std::printf("%d of %d pairs are not proven\n", wrong, pairs);
+  for (const auto& [reason, times] : reasons) std::printf("  %d: %s\n", times, reason.c_str());
   EXPECT_LE(wrong, kinds.ground == GroundKind::plane ? 0 : max(pairs / 2000, 1)) << "of " << pairs;
   EXPECT_GT(touching, pairs / 6);
   EXPECT_GT(apart, pairs / 25);

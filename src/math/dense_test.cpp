@@ -1,6 +1,8 @@
 // Eigenvectors rebuild their matrix; factorisations solve, also singular and badly scaled systems.
 #include "math/dense.h"
 
+#include "random.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,15 +13,8 @@
 namespace gyre {
 namespace {
 
-struct Random {
-  std::uint64_t state = 0x853c49e6748fea9bu;
-  double between(double low, double high) {
-    state += 0x9e3779b97f4a7c15u;
-    std::uint64_t z = state;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return low + (high - low) * double((z ^ (z >> 31)) >> 11) * 0x1p-53;
-  }
+struct Random : testing_random::Mixed {
+  Random() : Mixed{0x853c49e6748fea9bu} {}
 };
 
 // The laws of an eigen decomposition: ascending, orthonormal, right-handed, and A diag A^T is the matrix.

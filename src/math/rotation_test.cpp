@@ -1,6 +1,8 @@
 // Round trips between all forms of a rotation, over random and degenerate ones; turned inertia; the double twins.
 #include "math/rotation.h"
 
+#include "random.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,16 +15,9 @@
 namespace gyre {
 namespace {
 
-struct Random {
-  std::uint64_t state = 0x2545f4914f6cdd1du;
-  double unit() {
-    state += 0x9e3779b97f4a7c15u;
-    std::uint64_t z = state;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return double((z ^ (z >> 31)) >> 11) * 0x1p-53;
-  }
-  float between(double low, double high) { return float(low + (high - low) * unit()); }
+struct Random : testing_random::Mixed {
+  Random() : Mixed{0x2545f4914f6cdd1du} {}
+  float between(double low, double high) { return float(Mixed::between(low, high)); }
   Vec3 vector() { return {between(-1, 1), between(-1, 1), between(-1, 1)}; }
   Quat rotation() {
     for (;;) {

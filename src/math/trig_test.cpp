@@ -2,6 +2,8 @@
 // values. The library is allowed here: it is the oracle.
 #include "math/trig.h"
 
+#include "random.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,17 +31,8 @@ double ulps(T found, long double exact) {
 }
 
 // A small generator of our own, so that the inputs are the same everywhere.
-struct Random {
-  std::uint64_t state = 0x9e3779b97f4a7c15u;
-  std::uint64_t next() {
-    state += 0x9e3779b97f4a7c15u;
-    std::uint64_t z = state;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
-  }
-  double unit() { return double(next() >> 11) * 0x1p-53; }
-  double between(double low, double high) { return low + (high - low) * unit(); }
+struct Random : testing_random::Mixed {
+  Random() : Mixed{0x9e3779b97f4a7c15u} {}
   // A finite double of any size.
   double any_double() {
     for (;;) {

@@ -2,6 +2,8 @@
 // infinities and NaN; width 1 gives the bits of plain C++.
 #include "math/wide.h"
 
+#include "random.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,15 +16,8 @@
 namespace gyre {
 namespace {
 
-struct Random {
-  std::uint64_t state = 0x94d049bb133111ebu;
-  std::uint64_t next() {
-    state += 0x9e3779b97f4a7c15u;
-    std::uint64_t z = state;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
-  }
+struct Random : testing_random::Mixed {
+  Random() : Mixed{0x94d049bb133111ebu} {}
 };
 
 // Numbers of all kinds; every eighth block of 16 is ordinary alone, so that ordinary results dominate somewhere.

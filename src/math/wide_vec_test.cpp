@@ -1,6 +1,8 @@
 // Wide vectors have the bits of the scalar ones; gather and scatter move exactly the records they are asked to.
 #include "math/wide_vec.h"
 
+#include "random.h"
+
 #include <gtest/gtest.h>
 #include <gyre/math.h>
 
@@ -14,15 +16,9 @@
 namespace gyre {
 namespace {
 
-struct Random {
-  std::uint64_t state = 0xbf58476d1ce4e5b9u;
-  float between(float low, float high) {
-    state += 0x9e3779b97f4a7c15u;
-    std::uint64_t z = state;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return float(double(low) + (double(high) - double(low)) * double((z ^ (z >> 31)) >> 11) * 0x1p-53);
-  }
+struct Random : testing_random::Mixed {
+  Random() : Mixed{0xbf58476d1ce4e5b9u} {}
+  float between(float low, float high) { return single(low, high); }
   Vec3 vector() { return {between(-2, 2), between(-2, 2), between(-2, 2)}; }
 };
 

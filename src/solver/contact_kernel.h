@@ -260,9 +260,7 @@ GYRE_INLINE void solve_rolling(ContactBlock<W>& block, PairMotion<W>& pair) {
 template <int W, bool kSprung, int Count>
 GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W>& pair, const Wide<W>* a, const Wide<W>* b,
                               float substep) {
-  const Wide<W> zero(0.0f);
-  const Wide<W> one(1.0f);
-  const Wide<W> rate(1.0f / substep);
+  const Wide<W> zero(0.0f), one(1.0f), rate(1.0f / substep);
   const Vec3W<W> moved = Vec3W<W>{b[8], b[9], b[10]} - Vec3W<W>{a[8], a[9], a[10]};
   const NormalMotion<W> ways(block, moved, {a[11], a[12], a[13]}, {b[11], b[12], b[13]});
   const NormalMotion<W> speeds(block, pair.linear_b - pair.linear_a, pair.angular_a, pair.angular_b);

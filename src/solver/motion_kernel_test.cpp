@@ -1,4 +1,5 @@
 // The motion kernels against plain rotations in double, and every width against width 1.
+#include "random.h"
 #include "solver/contact_block.h"
 #include "solver/motion_block.h"
 
@@ -14,15 +15,9 @@
 namespace gyre {
 namespace {
 
-struct Random {
-  std::uint64_t state = 0x94d049bb133111ebu;
-  float between(float low, float high) {
-    state += 0x9e3779b97f4a7c15u;
-    std::uint64_t z = state;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return float(double(low) + (double(high) - double(low)) * double((z ^ (z >> 31)) >> 11) * 0x1p-53);
-  }
+struct Random : testing_random::Mixed {
+  Random() : Mixed{0x94d049bb133111ebu} {}
+  float between(float low, float high) { return single(low, high); }
   Vec3 vector(float most) { return {between(-most, most), between(-most, most), between(-most, most)}; }
 };
 

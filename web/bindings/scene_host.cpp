@@ -26,25 +26,9 @@ void overrule(Call& call, SceneWorld& world) {
   if (call.given()) get(call, world.gravity);
   if (call.given()) get(call, world.time_step);
   if (call.given()) get(call, world.sleeping);
-  Stepping stepping{.substeps = world.substeps,
-                    .integrator = world.integrator,
-                    .solver = world.solver,
-                    .broad_phase = world.broad_phase,
-                    .springs = world.springs,
-                    .time = world.stepping,
-                    .tolerance = world.tolerance,
-                    .max_impacts = world.max_impacts,
-                    .solver_options = world.solver_options};
+  Stepping stepping = stepping_of(world);
   if (call.given()) get(call, stepping);
-  world.substeps = stepping.substeps;
-  world.integrator = stepping.integrator;
-  world.solver = stepping.solver;
-  world.springs = stepping.springs;
-  world.stepping = stepping.time;
-  world.tolerance = stepping.tolerance;
-  world.max_impacts = stepping.max_impacts;
-  world.broad_phase = stepping.broad_phase;
-  world.solver_options = stepping.solver_options;
+  set_stepping(world, stepping);
 }
 
 int refuse_scene(Answer& answer, const SceneError& error) {
