@@ -10,16 +10,21 @@ namespace {
 constexpr std::uint32_t kMostBodies = 512;
 // nor those that have more contacts than this for each body: heaps, whose every body leans on many.
 constexpr std::uint32_t kMostContactsPerBody = 4;
-// What has more bodies than this and did not hold in the last step is looked at once in so many steps.
-constexpr std::uint32_t kSmall = 4;
-constexpr std::uint64_t kPatience = 8;
+// What did not hold in the last step is looked at once in so many steps, by its bodies: looking is dear where there are many.
+constexpr std::uint32_t kSmall = 4, kLarge = 128;
+constexpr std::uint64_t kPatience = 8, kMostPatience = 16;
+
+bool is_its_turn(const RigidWorld& w, std::uint32_t bodies) {
+  if (bodies <= kSmall) return true;
+  return w.steps % (bodies <= kLarge ? kPatience : kMostPatience) == 0;
+}
 
 bool may_stand(const RigidWorld& w, const IslandCount& count) {
   if (count.refused || count.stirring || count.grounded == 0) return false;
   // Trees are solved by themselves.
   if (!count.balances && count.grounded == 1 && count.contacts == count.bodies) return false;
   if (count.bodies > kMostBodies || count.contacts > kMostContactsPerBody * count.bodies) return false;
-  return !count.springs || count.bodies <= kSmall || w.steps % kPatience == 0;
+  return (count.held && !count.springs) || is_its_turn(w, count.bodies);
 }
 
 class StructureMaker {
@@ -65,6 +70,7 @@ class StructureMaker {
   ContactStructure make(std::uint32_t root) const {
     const Members& members = members_[root];
     ContactStructure structure;
+    structure.settling = islands_.at_root(root).settling;
     structure.nodes = members.nodes;
     structure.contacts = members.contacts;
     structure.work = arena_.make<StructureWork>(members.contacts.size());

@@ -84,6 +84,8 @@ void RestingIslands::count_bodies() {
       count.refused = true;
     } else if (!is_slow(w_, body, pull, kCalmShare)) {
       count.stirring = true;
+    } else if (!is_slow(w_, body, pull, kSettledShare)) {
+      count.settling = true;
     }
   }
 }
@@ -96,7 +98,11 @@ void RestingIslands::count_contacts(std::span<const ContactConstraint> constrain
     ++count.contacts;
     if (!(c.static_friction > 0.0f) || c.surface_velocity != Vec3{}) count.refused = true;
     if (c.point_count < 3) count.balances = true;
-    if (c.manifold->age < kHeldAge) count.springs = true;
+    if (c.manifold->age >= kHeldAge) {
+      count.held = true;
+    } else if (c.manifold->age > 0.0f) {
+      count.springs = true;
+    }
     if (active_a && active_b) continue;
     ++count.grounded;
     count.first = i;

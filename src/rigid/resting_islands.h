@@ -19,6 +19,8 @@ constexpr float kCalmShare = 0.02f;
 constexpr float kStillShare = 1.0e-7f;
 // The same of an island with loops, whose loads have more rounding.
 constexpr float kStructureStillShare = 1.0e-6f;
+// An island with loops that is slower than this as a step begins has nothing to lose but what the step's forces give it.
+constexpr float kSettledShare = 1.0e-4f;
 
 inline bool is_active(const RigidWorld& w, std::int32_t body) {
   return body != kNoBody && is_active(w, std::uint32_t(body));
@@ -30,8 +32,10 @@ struct IslandCount {
   std::uint32_t first = kNoPlace;  // its last contact with the fixed world
   bool refused = false;   // cannot be at rest: fast or bound bodies, joints, moving ground, no friction
   bool stirring = false;  // a body at rest is not calm
+  bool settling = false;  // one is not settled
   bool balances = false;  // a contact has one or two points
-  bool springs = false;   // a contact was not solved directly in the last step
+  bool springs = false;   // a contact bore load in the last step and was not solved directly
+  bool held = false;      // and one was
 };
 
 class RestingIslands {

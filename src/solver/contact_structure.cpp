@@ -8,11 +8,12 @@ namespace gyre {
 
 namespace {
 
-// What counts as one that does not stand: after so many rounds, or multiplications where these are fewer rounds. Card houses and
-// towers of planks take one to six rounds, arches near their limit up to twenty.
+// What counts as one that does not stand: after so many rounds, or multiplications where these are fewer rounds. Pyramids and
+// walls take one round, card houses and towers of planks up to six, arches near their limit up to twenty.
 constexpr int kMostRounds = 30;
-constexpr int kLeastRounds = 6;
-constexpr std::uint64_t kMostWork = 2'000'000;
+constexpr int kLeastRounds = 12;
+constexpr int kMostStuck = 5;  // rounds in turn after which no less was left over
+constexpr std::uint64_t kMostWork = 6'000'000;
 // What a point that lets go keeps of its stiffness in the second derivative, but not in what it bears.
 constexpr double kTrace = 1.0e-6;
 // The longest step, in Newton's, and how finely it is found.
@@ -29,22 +30,25 @@ constexpr double kMostSoftening = 0.05;  // at once
 constexpr float kReleasedAge = 2.0f;
 // Points further apart than this share of the size do not touch.
 constexpr float kTouchingGap = 1.0e-3f;
+constexpr double kEndless = 1.0e30;
 // What an answer may leave of a body's speed, over what counts as still: rounding.
 constexpr double kResidual = 100.0;
 
-// A row of a contact: what it is about, on either body. The structure's rows are those of bodies: place, then rotation.
+// A row of a contact: what it is about, on either body, and what it bears before anything moves. The structure's rows are those
+// of bodies: place, then rotation.
 struct Row {
   double a[6], b[6];
-  double stiffness = 0.0;
+  double stiffness = 0.0, before = 0.0;
 };
 
-Row make_row(Vec3 direction, Vec3 from_a, Vec3 from_b, double stiffness) {
+Row make_row(Vec3 direction, Vec3 from_a, Vec3 from_b, double stiffness, float before) {
   const Vec3 turn_a = cross(from_a, direction), turn_b = cross(from_b, direction);
   return {{-double(direction.x), -double(direction.y), -double(direction.z), -double(turn_a.x),
            -double(turn_a.y), -double(turn_a.z)},
           {double(direction.x), double(direction.y), double(direction.z), double(turn_b.x), double(turn_b.y),
            double(turn_b.z)},
-          stiffness};
+          stiffness,
+          double(before)};
 }
 
 // The rows of a contact: one for each point, two of friction and one of twist where the load gives them any.
@@ -60,7 +64,8 @@ Rows rows_of(const ContactConstraint& constraint, const StructureWork& work) {
   const Vec3 n = manifold.normal;
   Rows rows;
   for (int k = 0; k < manifold.count; ++k) {
-    rows.normal[k] = make_row(n, manifold.points[k].from_a, manifold.points[k].from_b, 1.0);
+    rows.normal[k] =
+        make_row(n, manifold.points[k].from_a, manifold.points[k].from_b, 1.0, work.before.normal[k]);
   }
   rows.u = any_perpendicular(n);
   rows.v = cross(n, rows.u);
@@ -69,12 +74,13 @@ Rows rows_of(const ContactConstraint& constraint, const StructureWork& work) {
   const Vec3 from_b = work.impulse.friction_from_b;
   const Vec3 from_a = from_b + (manifold.points[0].from_a - manifold.points[0].from_b);
   const double shear = double(work.shear) * double(std::popcount(work.touching));
-  rows.tangent[0] = make_row(rows.u, from_a, from_b, shear);
-  rows.tangent[1] = make_row(rows.v, from_a, from_b, shear);
+  rows.tangent[0] = make_row(rows.u, from_a, from_b, shear, dot(work.before.friction, rows.u));
+  rows.tangent[1] = make_row(rows.v, from_a, from_b, shear, dot(work.before.friction, rows.v));
   const double arm = double(work.impulse.twist_per_normal) / double(constraint.static_friction);
   rows.twist = {{0, 0, 0, -double(n.x), -double(n.y), -double(n.z)},
                 {0, 0, 0, double(n.x), double(n.y), double(n.z)},
-                shear * arm * arm};
+                shear * arm * arm,
+                double(work.before.twist)};
   return rows;
 }
 
@@ -126,18 +132,24 @@ class Solver {
   bool find() {
     if (!plan()) return false;
     if (!s_.begun) begin();
+    if (!touches_all()) return false;
     gather_loads();
     for (double& x : place_) x = 0.0;
     const std::uint64_t affordable = kMostWork / (plan_.work + 1);
     const int rounds = int(min(std::uint64_t(kMostRounds), max(std::uint64_t(kLeastRounds), affordable)));
-    for (int round = 0; round < rounds; ++round) {
+    double least = kEndless;
+    int stuck = 0;
+    for (int round = 0; round < rounds && stuck < kMostStuck; ++round) {
       assemble();
       factor_blocks(plan_, values_, room_);
       find_way();
       solve_blocks(plan_, values_, way_);
       go(find_step());
       give_friction();
-      if (bears_all()) return true;
+      const double left = left_over();
+      if (left <= 1.0) return true;
+      stuck = left < least ? 0 : stuck + 1;
+      least = min(least, left);
     }
     return false;
   }
@@ -183,8 +195,22 @@ class Solver {
         const bool touches = c.manifold->points[k].separation <= kTouchingGap * c.size;
         if (touches) work.touching = std::uint8_t(work.touching | 1u << k);
       }
-      work.pressed = work.touching;
     }
+  }
+
+  // A body that touches nothing falls.
+  bool touches_all() {
+    for (double& x : way_) x = 0.0;
+    for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
+      if (s_.work[i].touching == 0) continue;
+      for (const std::uint32_t node : {s_.contacts[i].node_a, s_.contacts[i].node_b}) {
+        if (node != kNoNode) rows_at(way_, node)[0] = 1.0;
+      }
+    }
+    for (std::uint32_t i = 0; i < s_.nodes.size(); ++i) {
+      if (rows_at(way_, i)[0] == 0.0) return false;
+    }
+    return true;
   }
 
   const ContactConstraint& constraint(std::uint32_t i) const {
@@ -205,9 +231,17 @@ class Solver {
     }
     for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
       const StructureContact& contact = s_.contacts[i];
-      ContactImpulse& impulse = s_.work[i].impulse;
-      solve_.kernels->read_impulse(solve_.blocks, int(contact.block), int(contact.lane), impulse);
-      add_wrench(contact, constraint(i), impulse, 1.0, loads_);
+      StructureWork& work = s_.work[i];
+      solve_.kernels->read_impulse(solve_.blocks, int(contact.block), int(contact.lane), work.before);
+      add_wrench(contact, constraint(i), work.before, 1.0, loads_);
+      // A contact that bore nothing yet begins with all its points.
+      std::uint8_t loaded = 0;
+      for (int k = 0; k < kMaxManifoldPoints; ++k) {
+        if ((work.touching >> k & 1) == 0) work.before.normal[k] = 0.0f;
+        if (work.before.normal[k] > 0.0f) loaded = std::uint8_t(loaded | 1u << k);
+      }
+      work.pressed = loaded != 0 ? loaded : work.touching;
+      work.impulse = work.before;
     }
   }
 
@@ -216,7 +250,7 @@ class Solver {
                   double factor, std::span<double> x) const {
     const Manifold& manifold = *c.manifold;
     const auto add = [&](Vec3 direction, Vec3 from_a, Vec3 from_b, float value) {
-      const Row row = make_row(direction, from_a, from_b, 1.0);
+      const Row row = make_row(direction, from_a, from_b, 1.0, 0.0f);
       const double amount = factor * double(value);
       if (contact.node_a != kNoNode) {
         for (int j = 0; j < 6; ++j) rows_at(x, contact.node_a)[j] += amount * row.a[j];
@@ -278,6 +312,10 @@ class Solver {
     }
     return sum;
   }
+  // What the row bears where the bodies are now.
+  double borne(const StructureContact& contact, const Row& row) const {
+    return row.before + row.stiffness * along(contact, row, place_);
+  }
   void add_to(std::span<double> x, const StructureContact& contact, const Row& row, double amount) const {
     if (contact.node_a != kNoNode) {
       for (int j = 0; j < 6; ++j) rows_at(x, contact.node_a)[j] += amount * row.a[j];
@@ -296,11 +334,11 @@ class Solver {
       const Rows rows = rows_of(constraint(i), work);
       for (int k = 0; k < constraint(i).manifold->count; ++k) {
         if ((work.touching >> k & 1) == 0) continue;
-        add_to(way_, contact, rows.normal[k], -max(along(contact, rows.normal[k], place_), 0.0));
+        add_to(way_, contact, rows.normal[k], -max(borne(contact, rows.normal[k]), 0.0));
       }
       if (!rows.rubs) continue;
       for (const Row* row : {&rows.tangent[0], &rows.tangent[1], &rows.twist}) {
-        add_to(way_, contact, *row, -row->stiffness * along(contact, *row, place_));
+        add_to(way_, contact, *row, -borne(contact, *row));
       }
     }
   }
@@ -316,13 +354,13 @@ class Solver {
       for (int k = 0; k < constraint(i).manifold->count; ++k) {
         work.at[k] = work.ahead[k] = 0.0;
         if ((work.touching >> k & 1) == 0) continue;
-        work.at[k] = along(contact, rows.normal[k], place_);
+        work.at[k] = borne(contact, rows.normal[k]);
         work.ahead[k] = along(contact, rows.normal[k], way_);
       }
       if (!rows.rubs) continue;
       for (const Row* row : {&rows.tangent[0], &rows.tangent[1], &rows.twist}) {
         const double ahead = along(contact, *row, way_);
-        slope_ += row->stiffness * along(contact, *row, place_) * ahead;
+        slope_ += borne(contact, *row) * ahead;
         curve_ += row->stiffness * ahead * ahead;
       }
     }
@@ -370,9 +408,8 @@ class Solver {
       double load = 0.0;
       for (const float normal : impulse.normal) load += double(normal);
       if (!rows.rubs || !(load > 0.0)) continue;
-      const double u = rows.tangent[0].stiffness * along(contact, rows.tangent[0], place_);
-      const double v = rows.tangent[1].stiffness * along(contact, rows.tangent[1], place_);
-      const double twist = rows.twist.stiffness * along(contact, rows.twist, place_);
+      const double u = borne(contact, rows.tangent[0]), v = borne(contact, rows.tangent[1]);
+      const double twist = borne(contact, rows.twist);
       const double limit = double(impulse.twist_per_normal) * load;
       const double slide = std::sqrt(u * u + v * v) / (double(c.static_friction) * load);
       const double turn = limit > 0.0 ? twist / limit : 0.0;
@@ -380,29 +417,34 @@ class Solver {
       const double share = use > 1.0 ? 1.0 / use : 1.0;
       impulse.friction = float(share * u) * rows.u + float(share * v) * rows.v;
       impulse.twist = float(share * twist);
-      if (use > 1.0)
-        work.shear = max(work.shear * float(max(kFrictionAim / use, kMostSoftening)), kLeastShear);
+      if (use <= 1.0) continue;
+      const float rest = float(max(kFrictionAim / use, kMostSoftening));
+      work.shear = max(work.shear * rest, kLeastShear);
+      work.before.friction *= rest;
+      work.before.twist *= rest;
     }
   }
 
-  // Whether nothing that must be borne is left over: bodies that could still move have no load to do so.
-  bool bears_all() {
+  // The most that a body has left to be borne, over what it may: bodies that could still move have no load to do so.
+  double left_over() {
     std::copy(loads_.begin(), loads_.end(), way_.begin());
     for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
       add_wrench(s_.contacts[i], constraint(i), s_.work[i].impulse, -1.0, way_);
     }
+    double most = 0.0;
     for (std::uint32_t i = 0; i < s_.nodes.size(); ++i) {
       const StructureNode& node = s_.nodes[i];
-      const double* left = rows_at(way_, i);
-      const double speed =
-          max(absolute(left[0]), max(absolute(left[1]), absolute(left[2]))) / double(node.mass);
-      if (!(speed <= kResidual * double(node.still))) return false;
-      const double least = double(min(node.inertia.xx, min(node.inertia.yy, node.inertia.zz)));
-      const double spin = max(absolute(left[3]), max(absolute(left[4]), absolute(left[5]))) / least;
-      if (!(spin <= kResidual * double(node.still_spin))) return false;
+      const double* rest = rows_at(way_, i);
+      const double speed = length_of(rest) / double(node.mass);
+      const double spin =
+          length_of(rest + 3) / double(min(node.inertia.xx, min(node.inertia.yy, node.inertia.zz)));
+      const double left = max(speed / double(node.still), spin / double(node.still_spin)) / kResidual;
+      if (!(speed + spin < kEndless)) return kEndless;  // no number
+      most = max(most, left);
     }
-    return true;
+    return most;
   }
+  static double length_of(const double* v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
   ContactStructure& s_;
   const StructureSolve& solve_;
@@ -411,30 +453,32 @@ class Solver {
   std::span<double> values_, room_, loads_, place_, way_;
 };
 
-}  // namespace
-
-void solve_structure_first(ContactStructure& structure, const StructureSolve& solve) {
-  structure.solved = is_still(structure, solve);
-  if (!structure.solved) {
-    const ArenaScope scope(*solve.arena);
-    Solver solver(structure, solve);
-    structure.solved = solver.find();
-    if (!structure.solved) return release(structure, solve);
-    solver.write();
-  }
-  hold(structure, solve);
-  stop(structure, solve);
-}
-
-void solve_structure_last(ContactStructure& structure, const StructureSolve& solve) {
-  if (!structure.solved) return;
+// Brings the structure to rest; false if its contacts cannot.
+bool bring_to_rest(ContactStructure& structure, const StructureSolve& solve) {
   if (!is_still(structure, solve)) {
     const ArenaScope scope(*solve.arena);
     Solver solver(structure, solve);
-    if (!solver.find()) return;
+    if (!solver.find()) return false;
     solver.write();
   }
   stop(structure, solve);
+  return true;
+}
+
+}  // namespace
+
+void solve_structure_first(ContactStructure& structure, const StructureSolve& solve) {
+  if (structure.settling) return;
+  structure.solved = bring_to_rest(structure, solve);
+  structure.solved ? hold(structure, solve) : release(structure, solve);
+}
+
+void solve_structure_last(ContactStructure& structure, const StructureSolve& solve) {
+  if (structure.solved) {
+    bring_to_rest(structure, solve);
+  } else if (structure.settling) {
+    bring_to_rest(structure, solve) ? hold(structure, solve) : release(structure, solve);
+  }
 }
 
 }  // namespace gyre

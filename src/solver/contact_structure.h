@@ -40,7 +40,7 @@ struct StructureContact {
 
 // What a solve needs of a contact while it works; kept from the first part of a step to its last.
 struct StructureWork {
-  ContactImpulse impulse;                  // proposed
+  ContactImpulse before, impulse;          // as it was found, and proposed
   float shear = 0.0f;                      // stiffness sideways over that along the normal
   std::uint8_t touching = 0, pressed = 0;  // bits, by point: may bear, and bears
   double at[kMaxManifoldPoints] = {},
@@ -52,8 +52,9 @@ struct ContactStructure {
   std::span<const StructureNode> nodes;
   std::span<StructureContact> contacts;
   std::span<StructureWork> work;
-  bool begun = false;   // `work` is that of this step
-  bool solved = false;  // in the first part of the step
+  bool settling = false;  // it still moved as the step began
+  bool begun = false;     // `work` is that of this step
+  bool solved = false;    // in the first part of the step
 };
 
 struct StructureSolve {
@@ -68,10 +69,11 @@ struct StructureSolve {
 constexpr float kHeldAge = 1.0e4f;
 
 // A structure is solved directly if a factorisation takes no more multiplications than this for each row.
-constexpr std::uint64_t kMostStructureWorkPerRow = 1000;
+constexpr std::uint64_t kMostStructureWorkPerRow = 2500;
 
 // After the first sweep of a step: brings the structure to rest if its contacts can do that; and again after the last if the
-// first could.
+// first could. What still settles is brought to rest after the last alone: the impulses that stop it are not those that hold it, and
+// what follows in the step would begin with them.
 void solve_structure_first(ContactStructure& structure, const StructureSolve& solve);
 void solve_structure_last(ContactStructure& structure, const StructureSolve& solve);
 
