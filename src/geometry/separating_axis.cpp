@@ -2,6 +2,9 @@
 #include "geometry/separating_axis.h"
 
 #include "math/rotation.h"
+#include "math/wide_vec.h"
+
+#include <bit>
 
 namespace gyre {
 namespace {
@@ -89,18 +92,29 @@ struct EdgePair {
   float separation = -kUnbounded;
 };
 
-// For eight edges of b: negative where the mirrored arc of the edge on the unit sphere crosses the arc of edge i of a.
-void arcs_cross(const EdgeColumns& a, int i, const EdgeColumns& b, int first, float* out) {
-  const Vec3 d = a.direction(i), l = a.left(i), r = a.right(i);
-  for (int lane = 0; lane < EdgeColumns::kLanes; ++lane) {
-    const int k = first + lane;
-    const float left_b = b.left_x[k] * d.x + b.left_y[k] * d.y + b.left_z[k] * d.z;
-    const float right_b = b.right_x[k] * d.x + b.right_y[k] * d.y + b.right_z[k] * d.z;
-    const float left_a = b.x[k] * l.x + b.y[k] * l.y + b.z[k] * l.z;
-    const float right_a = b.x[k] * r.x + b.y[k] * r.y + b.z[k] * r.z;
+// A bit for each of eight edges of b whose mirrored arc on the unit sphere crosses the arc of edge i of a.
+unsigned arcs_cross(const EdgeColumns& a, int i, const EdgeColumns& b, int first) {
+  constexpr int kHalf = 4;  // every x86-64, 64-bit ARM and WebAssembly has registers of four
+  using Floats = Wide<kHalf>;
+  const auto load = [](const float* x, const float* y, const float* z) {
+    return Vec3W<kHalf>{Floats::load_unaligned(x), Floats::load_unaligned(y), Floats::load_unaligned(z)};
+  };
+  const Vec3W<kHalf> d = splat<kHalf>(a.direction(i)), l = splat<kHalf>(a.left(i)),
+                     r = splat<kHalf>(a.right(i));
+  const Floats zero(0.0f);
+  unsigned crossing = 0;
+  for (int half = 0; half < EdgeColumns::kLanes; half += kHalf) {
+    const int k = first + half;
+    const Vec3W<kHalf> along = load(b.x + k, b.y + k, b.z + k);
+    const Floats left_b = dot(load(b.left_x + k, b.left_y + k, b.left_z + k), d);
+    const Floats right_b = dot(load(b.right_x + k, b.right_y + k, b.right_z + k), d);
+    const Floats left_a = dot(along, l), right_a = dot(along, r);
     // The ends of each arc lie on different sides of the other, and not on the far side of the sphere.
-    out[lane] = max(max(left_b * right_b, left_a * right_a), left_b * right_a);
+    const Mask<kHalf> cross =
+        (left_b * right_b < zero) & (left_a * right_a < zero) & (left_b * right_a < zero);
+    crossing |= to_bits(cross) << half;
   }
+  return crossing;
 }
 
 class EdgeSearch {
@@ -140,6 +154,13 @@ void near_edges(const Polytope& p, const float* heights, float limit, EdgeColumn
   out.count = count;
 }
 
+// Of the coordinates.
+float size_of(const Polytope& p) {
+  float size = 0.0f;
+  for (int i = 0; i < p.vertex_count; ++i) size = max(size, largest(absolute(p.vertices[i])));
+  return size;
+}
+
 struct BestFace {
   AxisKind kind;
   int face;
@@ -153,8 +174,6 @@ class EdgeCandidates {
   EdgeCandidates(const Polytope& a, const Polytope& b, const Transform& a_from_b) : a_(a), b_(b) {
     turn_ = to_matrix(a_from_b.orientation);
     shift_ = a_from_b.position;
-    for (int i = 0; i < a.vertex_count; ++i) size_a_ = max(size_a_, largest(absolute(a.vertices[i])));
-    for (int i = 0; i < b.vertex_count; ++i) size_b_ = max(size_b_, largest(absolute(b.vertices[i])));
   }
 
   void collect(const BestFace& face, float max_separation) {
@@ -210,8 +229,8 @@ class EdgeCandidates {
     const Vec3 from_a = a_.vertices[a_.edges[arcs_a.index[i]].from];
     const Vec3 from_b = b_.vertices[b_.edges[arcs_b.index[k]].from];
     const Vec3 down = transpose_times(turn_, normal);
-    return highest_along(a_, normal) - dot(normal, from_a) <= kOutermost * size_a_ &&
-           dot(down, from_b) - lowest_along(b_, down) <= kOutermost * size_b_;
+    return highest_along(a_, normal) - dot(normal, from_a) <= kOutermost * size_of(a_) &&
+           dot(down, from_b) - lowest_along(b_, down) <= kOutermost * size_of(b_);
   }
 
   EdgeColumns arcs_a, arcs_b;
@@ -221,7 +240,6 @@ class EdgeCandidates {
   const Polytope& b_;
   Mat3 turn_;
   Vec3 shift_;
-  float size_a_ = 0.0f, size_b_ = 0.0f;  // of the coordinates
 };
 
 // The pair of edges of largest separation, if that is above `floor`; a = -1 if none is.
@@ -234,11 +252,9 @@ EdgePair best_edges(const Polytope& a, const Polytope& b, const Transform& a_fro
   best.separation = floor;
   for (int i = 0; i < near.arcs_a.count; ++i) {
     for (int first = 0; first < near.arcs_b.count; first += EdgeColumns::kLanes) {
-      float crossing[EdgeColumns::kLanes];
-      arcs_cross(near.arcs_a, i, near.arcs_b, first, crossing);
-      for (int lane = 0; lane < EdgeColumns::kLanes; ++lane) {
-        const int k = first + lane;
-        if (!(crossing[lane] < 0.0f) || !near.may_exceed(i, k, best.separation)) continue;
+      for (unsigned rest = arcs_cross(near.arcs_a, i, near.arcs_b, first); rest != 0; rest &= rest - 1) {
+        const int k = first + std::countr_zero(rest);
+        if (!near.may_exceed(i, k, best.separation)) continue;
         EdgePair pair;
         const Vec3 outward = near.arcs_a.left(i) + near.arcs_a.right(i);
         if (!search.evaluate(near.arcs_a.index[i], near.arcs_b.index[k], outward, pair)) continue;
