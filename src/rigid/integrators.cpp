@@ -13,12 +13,14 @@ namespace {
 constexpr float kKernelAngle = 0.01f;
 constexpr float kKernelAngleIsotropic = 0.1f;
 
-Vec3 within_length(Vec3 v, float most) {
-  const float top = largest(absolute(v));
-  if (!(top > most * 0.5f)) return v;
+Vec3 shortened(Vec3 v, float top, float most) {
   // In units of the largest component: the length itself may be beyond all floats.
   const float size = length(v / top), limit = most / top;
   return size > limit ? (limit / size) * v : v;
+}
+Vec3 within_length(Vec3 v, float most) {
+  const float top = largest(absolute(v));
+  return top > most * 0.5f ? shortened(v, top, most) : v;
 }
 
 // The vector without its components along locked world axes (bits 1, 2, 4: x, y, z).
@@ -85,6 +87,30 @@ void kick(BodyStore& bodies, std::uint32_t i, const Motions& motions) {
   motion.angular_velocity = within_length(without_locked(w, flags.locked_angular), kMaxSpin) + Vec3{};
 }
 
+// The kicks and moves of all parts of a step for a body without torques: what each part has in common is worked out once, and
+// the spin, which no part changes, is only kept within bounds.
+void kick_and_move(BodyStore& bodies, std::uint32_t i, const Motions& motions) {
+  const BodyFlags& flags = bodies.flags[i];
+  const BodyForces& forces = bodies.forces[i];
+  BodyMotion& motion = bodies.motion[i];
+  const Damping damping(forces.linear_damping, motions.substep);
+  const Vec3 kick =
+      damping.gain * (forces.gravity_scale * motions.gravity + bodies.inertia[i].inverse_mass * forces.force);
+  Vec3 v = motion.linear_velocity, moved = motion.moved;
+  for (int part = 0; part < motions.count; ++part) {
+    v = v + (kick - damping.lost * v);
+    v = within_length(without_locked(v, flags.locked_linear), kMaxSpeed) + Vec3{};
+    moved += motions.substep * v;
+  }
+  motion.linear_velocity = v;
+  motion.moved = moved;
+  const bool is_bounded = largest(absolute(motion.angular_velocity)) <= 0.5f * kMaxSpin;
+  for (int part = 0; part < (is_bounded ? 1 : motions.count); ++part) {
+    motion.angular_velocity =
+        within_length(without_locked(motion.angular_velocity, flags.locked_angular), kMaxSpin) + Vec3{};
+  }
+}
+
 void fly_body(BodyStore& bodies, std::uint32_t i, const Motions& motions) {
   const BodyFlags& flags = bodies.flags[i];
   const BodyForces& forces = bodies.forces[i];
@@ -92,6 +118,10 @@ void fly_body(BodyStore& bodies, std::uint32_t i, const Motions& motions) {
   const bool is_kicked = flags.type == BodyType::dynamic;
   // Without torques the momentum is the same in every sub-step: one rotation instead of many.
   const bool turns_freely = !is_kicked || (forces.torque == Vec3{} && forces.angular_damping == 0.0f);
+  if (is_kicked && turns_freely) {
+    kick_and_move(bodies, i, motions);
+    return turn_body(bodies, i, float(motions.count) * motions.substep);
+  }
   for (int part = 0; part < motions.count; ++part) {
     if (is_kicked) kick(bodies, i, motions);
     motion.linear_velocity = without_locked(motion.linear_velocity, flags.locked_linear);
