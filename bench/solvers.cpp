@@ -85,17 +85,23 @@ void build_heavy_stack(Stage& s) {
   s.add_ground();
   for (int i = 0; i < 5; ++i) s.add(Box{{0.5f, 0.5f, 0.5f}}, {0, 0.5 + i, 0}, i == 4 ? 1.0e6f : 1.0e3f);
 }
-void build_wall(Stage& s) {
+void build_wall_of(Stage& s, int rows, int columns) {
   s.add_ground();
-  for (int row = 0; row < 5; ++row)
-    for (int i = 0; i < 4; ++i)
+  for (int row = 0; row < rows; ++row)
+    for (int i = 0; i < columns; ++i)
       s.add(Box{{0.5f, 0.25f, 0.25f}}, {1.0 * i + (row % 2) * 0.5, 0.25 + 0.5 * row, 0});
 }
-void build_pyramid(Stage& s) {
+void build_wall(Stage& s) { build_wall_of(s, 5, 4); }
+void build_large_wall(Stage& s) { build_wall_of(s, 8, 6); }
+void build_huge_wall(Stage& s) { build_wall_of(s, 16, 12); }
+void build_pyramid_of(Stage& s, int rows) {
   s.add_ground();
-  for (int row = 0; row < 5; ++row)
-    for (int i = 0; i < 5 - row; ++i) s.add(Box{{0.5f, 0.5f, 0.5f}}, {1.1 * i + 0.55 * row, 0.5 + row, 0});
+  for (int row = 0; row < rows; ++row)
+    for (int i = 0; i < rows - row; ++i) s.add(Box{{0.5f, 0.5f, 0.5f}}, {1.1 * i + 0.55 * row, 0.5 + row, 0});
 }
+void build_pyramid(Stage& s) { build_pyramid_of(s, 5); }
+void build_large_pyramid(Stage& s) { build_pyramid_of(s, 9); }
+void build_huge_pyramid(Stage& s) { build_pyramid_of(s, 20); }
 void build_arch(Stage& s) {
   s.add_ground(0.7f);
   const int stones = 13;
@@ -122,15 +128,18 @@ void build_incline(Stage& s) {
   for (int i = 0; i < 5; ++i)
     s.add(Box{{0.5f, 0.25f, 0.5f}}, DVec3(rotate(tilt, {0, 1.25f + 0.5f * float(i), 0})), 1000, 0.6f, tilt);
 }
-void build_pile(Stage& s) {
+void build_pile_of(Stage& s, int count) {
   s.add_ground();
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < count; ++i) {
     const DVec3 place{0.7 * (i % 4) + 0.05 * (i % 3), 0.6 + 0.8 * (i / 16),
                       0.7 * (i / 4 % 4) + 0.03 * (i % 5)};
     if (i % 2 == 0) s.add(Sphere{0.3f}, place);
     if (i % 2 == 1) s.add(Box{{0.3f, 0.25f, 0.3f}}, place);
   }
 }
+void build_pile(Stage& s) { build_pile_of(s, 40); }
+void build_large_pile(Stage& s) { build_pile_of(s, 100); }
+void build_huge_pile(Stage& s) { build_pile_of(s, 320); }
 void build_domino(Stage& s) {
   s.add_ground();
   for (int i = 0; i < 10; ++i) s.add(Box{{0.05f, 0.5f, 0.25f}}, {0.4 * i, 0.5, 0});
@@ -174,6 +183,12 @@ constexpr NamedScene kAllScenes[] = {
     {"incline", build_incline}, {"pile", build_pile},       {"dominoes", build_domino},
     {"chain", build_chain},     {"swing", build_swing},     {"bridge", build_bridge},
 };
+// Measured where asked for by name: islands of one to several thousand rows.
+constexpr NamedScene kLargeScenes[] = {
+    {"large_wall", build_large_wall},     {"large_pyramid", build_large_pyramid},
+    {"large_pile", build_large_pile},     {"huge_wall", build_huge_wall},
+    {"huge_pyramid", build_huge_pyramid}, {"huge_pile", build_huge_pile},
+};
 
 struct Way {
   const char* name;
@@ -185,8 +200,10 @@ constexpr Way kWays[] = {
     {"soft_step", SolverKind::soft_step},
     {"sequential_10", SolverKind::sequential_impulses},
     {"sequential_50", SolverKind::sequential_impulses, {.iterations = 50}},
-    {"lcp_automatic", SolverKind::lcp, {.direct_rows = 300}},
-    {"lcp_dantzig", SolverKind::lcp, {.lcp_method = LcpMethod::dantzig, .friction_sides = 4, .direct_rows = 130}},
+    {"lcp_automatic", SolverKind::lcp},
+    {"lcp_dantzig",
+     SolverKind::lcp,
+     {.lcp_method = LcpMethod::dantzig, .friction_sides = 4, .direct_rows = 130}},
     {"lcp_lemke", SolverKind::lcp, {.lcp_method = LcpMethod::lemke, .friction_sides = 4, .direct_rows = 100}},
     {"lcp_nncg", SolverKind::lcp, {.lcp_method = LcpMethod::nncg}},
 };
@@ -232,18 +249,30 @@ void measure(const NamedScene& scene, const Way& way, double seconds) {
 
 int main(int count, char** words) {
   double seconds = 3.0;
-  std::vector<std::string> wanted;
+  std::vector<std::string> wanted, ways;
   for (int i = 1; i < count; ++i) {
     if (std::strcmp(words[i], "--seconds") == 0 && i + 1 < count) {
       seconds = std::atof(words[++i]);
+    } else if (std::strcmp(words[i], "--way") == 0 && i + 1 < count) {
+      ways.push_back(words[++i]);
     } else {
       wanted.push_back(words[i]);
     }
   }
   std::printf("scene,way,substeps,step_ms,overlap,widest,farthest,residual,rows,direct\n");
+  const auto is_wanted = [](const std::vector<std::string>& names, const char* name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  const auto measure = [&](const gyre::NamedScene& scene) {
+    for (const gyre::Way& way : gyre::kWays) {
+      if (ways.empty() || is_wanted(ways, way.name)) gyre::measure(scene, way, seconds);
+    }
+  };
   for (const gyre::NamedScene& scene : gyre::kAllScenes) {
-    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), scene.name) == wanted.end()) continue;
-    for (const gyre::Way& way : gyre::kWays) gyre::measure(scene, way, seconds);
+    if (wanted.empty() || is_wanted(wanted, scene.name)) measure(scene);
+  }
+  for (const gyre::NamedScene& scene : gyre::kLargeScenes) {
+    if (is_wanted(wanted, scene.name)) measure(scene);
   }
   return 0;
 }

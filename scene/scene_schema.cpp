@@ -86,7 +86,7 @@ constexpr char kPart0[] = R"json({
         },
         "direct_rows": {
           "type": "integer", "minimum": 0, "maximum": 600, "default": 200,
-          "description": "lcp: islands with more rows are left to NNCG"
+          "description": "lcp: pivoting leaves islands with more rows to Newton's method"
         },
         "broad_phase": {
           "enum": ["bvh", "grid", "octree", "quadtree", "kd_tree", "bsp_tree", "sweep_and_prune", "brute_force"],

@@ -61,10 +61,10 @@ constexpr int kSolverKindCount = 3;
 const char* to_string(SolverKind kind);
 // How the complementarity problem of an island is solved.
 enum class LcpMethod : std::uint8_t {
-  automatic,  // Newton's method and Dantzig's pivoting up to SolverOptions::direct_rows, above NNCG
+  automatic,  // Newton's method; where it does not end, pivoting for small islands and NNCG for others
   dantzig,    // principal pivoting; needs a friction pyramid
   lemke,      // complementary pivoting; needs a friction pyramid
-  newton,     // semi-smooth Newton on the pyramid or the cone
+  newton,     // semi-smooth Newton on the pyramid or the cone, for islands of any size
   nncg,       // nonsmooth nonlinear conjugate gradients, for islands of any size
 };
 constexpr int kLcpMethodCount = 5;
@@ -74,7 +74,7 @@ struct SolverOptions {
   LcpMethod lcp_method = LcpMethod::automatic;
   int friction_sides = 0;  // of the friction pyramid, an even number of 4 to 32; 0: Coulomb's cone
   int iterations = 0;      // sweeps a sub-step, at most 10,000; 0: 10 for sequential_impulses, at most 200 for NNCG
-  int direct_rows = 200;   // lcp: islands with more rows (a contact point has three) are left to NNCG; 0 to 600
+  int direct_rows = 200;   // lcp: pivoting leaves islands with more rows (a contact point has three) to Newton's method; 0 to 600
 };
 
 // How two materials make one number: of the two values, or table entries where MaterialPair says so.

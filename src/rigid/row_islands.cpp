@@ -1,5 +1,6 @@
 #include "rigid/row_islands.h"
 
+#include "math/block_lu.h"
 #include "solver/constraint_rows.h"
 
 namespace gyre {
@@ -121,11 +122,29 @@ RowIslands find_row_islands(const RigidWorld& w, const SolveScratch& scratch, co
   RowIslands islands{arena.make<RowIsland>(count), place};
   for (std::uint32_t i = 0; i < count; ++i) {
     RowIsland& island = islands.islands[i];
-    island = {own.of(i), contacts.of(i), joints.of(i), {}};
+    island = {own.of(i), contacts.of(i), joints.of(i), {}, {}};
     island.size = size_of(w, scratch, batch, work, island);
     for (std::size_t n = 0; n < island.bodies.size(); ++n) place[island.bodies[n]] = std::int32_t(n);
   }
   return islands;
+}
+
+void plan_row_islands(const RigidWorld& w, const SolveScratch& scratch, const SolveBatch& batch,
+                      std::uint64_t most_work, Arena& arena, RowIslands& islands) {
+  for (RowIsland& island : islands.islands) {
+    const std::span<std::uint8_t> sizes = arena.make<std::uint8_t>(island.bodies.size());
+    for (std::uint8_t& size : sizes) size = kLuBlock;
+    const std::span<BlockEdge> edges =
+        arena.make<BlockEdge>(island.constraints.size() + island.joints.size());
+    std::size_t count = 0;
+    const auto add = [&](Ends ends) {
+      if (ends.a == kNone || ends.b == kNone || ends.a == ends.b) return;
+      edges[count++] = {std::uint32_t(islands.place[ends.a]), std::uint32_t(islands.place[ends.b])};
+    };
+    for (const std::uint32_t i : island.constraints) add(ends_of(w, scratch.constraints[i]));
+    for (const std::uint32_t i : island.joints) add(ends_of(w, w.joints.records[batch.joints[i]]));
+    plan_blocks(sizes, edges.first(count), most_work, arena, island.plan);
+  }
 }
 
 }  // namespace gyre

@@ -4,6 +4,7 @@
 // ascending, its joints and contacts in the order of their slots. Who works on an island, and when, changes no bit of it.
 #pragma once
 
+#include "math/block_ldlt.h"
 #include "rigid/solve_batches.h"
 #include "rigid/solve_step.h"
 #include "solver/solve_direct.h"
@@ -15,12 +16,17 @@ struct RowIsland {
   std::span<const std::uint32_t> constraints;  // places in SolveScratch::constraints
   std::span<const std::uint32_t> joints;       // places in the batch's list
   DirectSize size;                             // of its rows, at most
+  BlockPlan plan;                              // of its bodies, a node for each; empty if not planned
 };
 
 struct RowIslands {
   std::span<RowIsland> islands;
   std::span<const std::int32_t> place;  // by body: in its island's list; kNoRowBody if no row moves it
 };
+
+// The pattern of an island's bodies, for Newton's method: planned where a factorisation takes at most `most_work` multiplications.
+void plan_row_islands(const RigidWorld& w, const SolveScratch& scratch, const SolveBatch& batch,
+                      std::uint64_t most_work, Arena& arena, RowIslands& islands);
 
 RowIslands find_row_islands(const RigidWorld& w, const SolveScratch& scratch, const SolveBatch& batch,
                             std::span<const JointWork> work, Arena& arena);

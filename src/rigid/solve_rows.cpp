@@ -4,6 +4,7 @@
 #include "rigid/joint_works.h"
 #include "rigid/program_writer.h"
 #include "rigid/row_islands.h"
+#include "solver/body_newton.h"
 #include "solver/constraint_rows.h"
 #include "solver/delassus.h"
 #include "solver/solve_sweeps.h"
@@ -20,9 +21,14 @@ constexpr int kSpinnersPerClaim = 8;
 constexpr int kLeadingSides = 8;
 // Impulses are found to this share of the largest that stops a row alone, and to this many N s where that is less.
 constexpr double kDirectShare = 1.0e-7, kDirectImpulse = 1.0e-7, kRounding = 1.0e-11;
+constexpr double kAccepted = 5.0;  // what Newton's method may leave of these where it gets no further
 constexpr double kNncgShare = 1.0e-5;
-// Sweeps that lead Newton's method nearer, and rows up to which pivoting is tried where that still does not end.
-constexpr int kLeadingSweeps = 64, kMostPivotRows = 100;
+// Newton's steps from where the impulses stand, and from where so many sweeps lead where that does not end; rows up to
+// which the longer ones are tried, and up to which pivoting is tried where that does not end either.
+constexpr int kNewtonSteps = 30, kLeadingSweeps[] = {0, 64, 256, 1024}, kMostLedFar = 1500,
+              kMostPivotRows = 100;
+// Multiplications of a factorisation above which an island is left to NNCG: about a tenth of a second.
+constexpr std::uint64_t kMostFactorWork = 100'000'000;
 
 // What one worker needs for the island that it is at.
 struct WorkerRoom {
@@ -38,7 +44,7 @@ struct RowSolve {
   Solve& solve;
   const SolverSettings& settings;
   FrictionSet friction, polygon;
-  DirectMethod method = DirectMethod::quick;
+  DirectMethod method = DirectMethod::dantzig;
   RowIslands islands{};
   std::span<WorkerRoom> rooms{};
   std::span<RowReport> reports{};  // by island
@@ -60,10 +66,7 @@ int sweeps_of(const SolverSettings& settings) {
   if (settings.options.iterations > 0) return settings.options.iterations;
   return settings.kind == SolverKind::lcp ? kNncgSweeps : kSequentialSweeps;
 }
-bool takes_directly(const RowSolve& s, int rows) {
-  if (s.settings.kind != SolverKind::lcp || s.settings.options.lcp_method == LcpMethod::nncg) return false;
-  return rows <= s.settings.options.direct_rows;
-}
+bool pivots(LcpMethod method) { return method == LcpMethod::dantzig || method == LcpMethod::lemke; }
 
 IslandRows begin_island(const RowSolve& s, const RowIsland& island, WorkerRoom& room, bool at_rest) {
   const BodyStore& store = s.solve.w.bodies;
@@ -117,6 +120,10 @@ void sweep_island(const RowSolve& s, const IslandRows& island, NumberRoom room, 
   report.residual = max(report.residual, find_row_residual(rows, bodies, s.friction));
 }
 
+double direct_tolerance(double scale) {
+  return max(kRounding * scale, min(kDirectImpulse, kDirectShare * scale));
+}
+
 // False if it left more than it should; the rows' impulses are then the best that it found.
 bool solve_island_directly(const RowSolve& s, const IslandRows& island, NumberRoom room, DirectMethod method,
                            double scale, RowReport& report) {
@@ -131,7 +138,7 @@ bool solve_island_directly(const RowSolve& s, const IslandRows& island, NumberRo
     own.limits[i] = rows[i].limits;
   }
   const DenseProblem problem{int(n), a, q, own.limits.first(n), &s.friction};
-  const double tolerance = max(kRounding * scale, min(kDirectImpulse, kDirectShare * scale));
+  const double tolerance = direct_tolerance(scale);
   const DirectResult result = solve_direct(problem, s.polygon, method, tolerance, x, room);
   for (std::size_t i = 0; i < n; ++i) rows[i].impulse = x[i];
   if (!result.is_solved) return false;
@@ -141,18 +148,37 @@ bool solve_island_directly(const RowSolve& s, const IslandRows& island, NumberRo
   return true;
 }
 
-// Newton's method from where the impulses stand; where it does not end, from where some sweeps lead; then pivoting, which ends
-// from anywhere, where it is not too dear.
+// Newton's method; false if it does not end. The rows' impulses are then the best that it found.
+bool solve_island_by_newton(const RowSolve& s, const IslandRows& island, NumberRoom room, double scale,
+                            RowReport& report) {
+  const std::span<Row> rows = island.rows();
+  const std::span<double> x = room.take(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) x[i] = rows[i].impulse;
+  const double tolerance = direct_tolerance(scale);
+  const NewtonResult result = solve_body_newton({rows, island.bodies(), &s.friction, &island.island.plan},
+                                                tolerance, kNewtonSteps, x, room);
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].impulse = x[i];
+  if (!(result.residual <= kAccepted * tolerance)) return false;
+  warm_start_rows(rows, island.bodies());
+  report.residual = max(report.residual, result.residual);
+  report.direct = 1;
+  return true;
+}
+
+// Newton's method from where the impulses stand; where it does not end, from where some sweeps lead.
 bool solve_island_by_all_means(const RowSolve& s, const IslandRows& island, NumberRoom room, double scale,
                                RowReport& report) {
   const std::span<Row> rows = island.rows();
-  if (solve_island_directly(s, island, room, DirectMethod::quick, scale, report)) return true;
-  warm_start_rows(rows, island.bodies());
-  solve_nncg(rows, island.bodies(), s.friction, kNncgShare * scale, kLeadingSweeps, room);
-  for (const Row& row : rows) push_row(row, -row.impulse, island.bodies());
-  if (solve_island_directly(s, island, room, DirectMethod::quick, scale, report)) return true;
-  return int(rows.size()) <= kMostPivotRows &&
-         solve_island_directly(s, island, room, DirectMethod::dantzig, scale, report);
+  for (const int sweeps : kLeadingSweeps) {
+    if (sweeps > kLeadingSweeps[1] && int(rows.size()) > kMostLedFar) break;
+    if (sweeps > 0) {
+      warm_start_rows(rows, island.bodies());
+      solve_nncg(rows, island.bodies(), s.friction, kNncgShare * scale, sweeps, room);
+      for (const Row& row : rows) push_row(row, -row.impulse, island.bodies());
+    }
+    if (solve_island_by_newton(s, island, room, scale, report)) return true;
+  }
+  return false;
 }
 
 void solve_island(const RowSolve& s, const IslandRows& island, RowReport& report) {
@@ -163,14 +189,17 @@ void solve_island(const RowSolve& s, const IslandRows& island, RowReport& report
   const double scale = largest_alone(rows, island.bodies());
   const NumberRoom room(island.room.numbers);
   const LcpMethod method = s.settings.options.lcp_method;
-  if (takes_directly(s, int(rows.size()))) {
-    const bool is_solved = method == LcpMethod::automatic
-                               ? solve_island_by_all_means(s, island, room, scale, report)
-                               : solve_island_directly(s, island, room, s.method, scale, report);
-    if (is_solved) return;
-  } else if (s.settings.kind == SolverKind::lcp && method != LcpMethod::automatic &&
-             method != LcpMethod::nncg) {
-    report.too_large = 1;
+  if (s.settings.kind == SolverKind::lcp && method != LcpMethod::nncg) {
+    const int most = s.settings.options.direct_rows;
+    const bool fits = int(rows.size()) <= most;
+    if (pivots(method) && fits && solve_island_directly(s, island, room, s.method, scale, report)) return;
+    if (pivots(method) && !fits) report.too_large = 1;
+    if (!(pivots(method) && fits) && !island.island.plan.columns.empty() &&
+        solve_island_by_all_means(s, island, room, scale, report))
+      return;
+    if (method == LcpMethod::automatic && int(rows.size()) <= min(most, kMostPivotRows) &&
+        solve_island_directly(s, island, room, DirectMethod::dantzig, scale, report))
+      return;
   }
   sweep_island(s, island, room, scale, report);
 }
@@ -373,17 +402,15 @@ void make_rooms(RowSolve& s, Arena& arena, TaskSystem& tasks) {
     owners = max(owners, island.joints.size() + island.constraints.size());
     std::size_t own = nncg_room(n);
     if (s.settings.kind == SolverKind::lcp && s.settings.options.lcp_method != LcpMethod::nncg) {
-      // Fewer rows than were counted may come within what is solved directly.
-      const auto add = [&](int most, DirectMethod method) {
-        DirectSize size = island.size;
-        size.rows = min(n, std::size_t(most));
-        size.equations = min(size.equations, size.rows), size.cones = min(size.cones, (size.rows + 1) / 2);
-        own = max(own, size.rows * size.rows + 2 * size.rows + direct_room(size, s.polygon, method));
-      };
-      const int most = s.settings.options.direct_rows;
-      const bool is_automatic = s.settings.options.lcp_method == LcpMethod::automatic;
-      add(most, is_automatic ? DirectMethod::newton : s.method);
-      if (is_automatic) add(min(most, kMostPivotRows), DirectMethod::dantzig);
+      if (!island.plan.columns.empty()) own = max(own, n + body_newton_room(n, island.plan));
+      // Fewer rows than were counted may come within what pivoting takes.
+      const LcpMethod method = s.settings.options.lcp_method;
+      int most = s.settings.options.direct_rows;
+      if (!pivots(method)) most = method == LcpMethod::automatic ? min(most, kMostPivotRows) : 0;
+      DirectSize size = island.size;
+      size.rows = min(n, std::size_t(most));
+      size.equations = min(size.equations, size.rows), size.cones = min(size.cones, (size.rows + 1) / 2);
+      own = max(own, size.rows * size.rows + 2 * size.rows + direct_room(size, s.polygon, s.method));
     }
     numbers = max(numbers, own);
   }
@@ -425,21 +452,6 @@ void add_reports(RowReport& sum, std::span<const RowReport> reports) {
   }
 }
 
-DirectMethod direct_method(LcpMethod method) {
-  switch (method) {
-    case LcpMethod::dantzig:
-      return DirectMethod::dantzig;
-    case LcpMethod::lemke:
-      return DirectMethod::lemke;
-    case LcpMethod::newton:
-      return DirectMethod::newton;
-    case LcpMethod::automatic:
-    case LcpMethod::nncg:
-      break;
-  }
-  return DirectMethod::quick;
-}
-
 }  // namespace
 
 void solve_batch_as_rows(Solve& solve, const SolverSettings& settings, Arena& arena, TaskSystem& tasks,
@@ -456,9 +468,11 @@ void solve_batch_as_rows(Solve& solve, const SolverSettings& settings, Arena& ar
   gather_motion(solve, arena);
   RowSolve rows{solve, settings, make_friction_set(settings.options.friction_sides), {}};
   rows.polygon = settings.options.friction_sides == 0 ? make_friction_set(kLeadingSides) : rows.friction;
-  rows.method = direct_method(settings.options.lcp_method);
+  if (settings.options.lcp_method == LcpMethod::lemke) rows.method = DirectMethod::lemke;
   rows.warm_scale = warm_scale;
   rows.islands = find_row_islands(solve.w, scratch, solve.batch, solve.joint_work, arena);
+  if (settings.kind == SolverKind::lcp && settings.options.lcp_method != LcpMethod::nncg)
+    plan_row_islands(solve.w, scratch, solve.batch, kMostFactorWork, arena, rows.islands);
   rows.reports = arena.make<RowReport>(rows.islands.islands.size());
   for (RowReport& report : rows.reports) report = {};
   make_rooms(rows, arena, tasks);

@@ -21,14 +21,16 @@ void find_speeds(const DenseProblem& problem, std::span<const double> x, std::sp
   }
 }
 
+double dense_residual(const DenseProblem& problem, int i, std::span<const double> x,
+                      std::span<const double> w) {
+  return row_residual(
+      i, problem.limits[std::size_t(i)], *problem.friction, [&](int j) { return x[std::size_t(j)]; },
+      [&](int j) { return w[std::size_t(j)]; }, [&](int j) { return problem.at(j, j); });
+}
+
 double find_residual(const DenseProblem& problem, std::span<const double> x, std::span<const double> w) {
   double most = 0.0;
-  for (int i = 0; i < problem.size; ++i) {
-    most = max(most, row_residual(
-                         i, problem.limits[std::size_t(i)], *problem.friction,
-                         [&](int j) { return x[std::size_t(j)]; }, [&](int j) { return w[std::size_t(j)]; },
-                         [&](int j) { return problem.at(j, j); }));
-  }
+  for (int i = 0; i < problem.size; ++i) most = max(most, dense_residual(problem, i, x, w));
   return most;
 }
 

@@ -70,6 +70,8 @@ double row_residual(int i, const RowLimits& limits, const FrictionSet& friction,
 
 // w = A x + q.
 void find_speeds(const DenseProblem& problem, std::span<const double> x, std::span<double> w);
+double dense_residual(const DenseProblem& problem, int i, std::span<const double> x,
+                      std::span<const double> w);
 // The largest residual of all rows; `w` belongs to `x`.
 double find_residual(const DenseProblem& problem, std::span<const double> x, std::span<const double> w);
 // What impulses are measured by: the largest that stops a row alone.

@@ -1,6 +1,7 @@
 // What the tests of the row solvers share: islands of bodies and contacts, made by hand or by a seed.
 #pragma once
 
+#include "math/block_lu.h"
 #include "solver/complementarity.h"
 #include "solver/delassus.h"
 #include "solver/solve_direct.h"
@@ -129,6 +130,19 @@ struct Dense {
     problem = {int(n), a, q, limits, &friction};
   }
 };
+
+// The pattern of an island's bodies for solver/body_newton.h.
+inline BlockPlan plan_of(const Island& island, Arena& arena) {
+  const std::vector<std::uint8_t> sizes(island.bodies.size(), kLuBlock);
+  std::vector<BlockEdge> edges;
+  for (const Row& row : island.rows) {
+    if (row.body_a >= 0 && row.body_b >= 0)
+      edges.push_back({std::uint32_t(row.body_a), std::uint32_t(row.body_b)});
+  }
+  BlockPlan plan;
+  plan_blocks(sizes, edges, std::uint64_t{1} << 40, arena, plan);
+  return plan;
+}
 
 inline std::vector<RowBody> pushed(const Island& island, std::span<const double> x) {
   std::vector<RowBody> bodies = island.bodies;

@@ -13,7 +13,7 @@ namespace {
 constexpr double kGive = 1.0e-9;
 constexpr double kParting = 1.0e-10;
 constexpr int kRounds = 20;
-constexpr int kQuickSteps = 10, kRoundSteps = 8, kPolishSteps = 30;
+constexpr int kRoundSteps = 8, kPolishSteps = 30;
 
 // A variable of a method in terms of the problem's rows: x_row and, of a cone, x_(row + 1) get its value times these.
 struct Part {
@@ -298,7 +298,7 @@ DirectSize count_direct(std::span<const RowLimits> limits) {
 std::size_t direct_room(const DirectSize& size, const FrictionSet& set, DirectMethod method) {
   const std::size_t n = size.rows, sides = std::size_t(set.sides);
   std::size_t most = newton_room(n);
-  if (method == DirectMethod::quick || method == DirectMethod::dantzig) {
+  if (method == DirectMethod::dantzig) {
     const std::size_t parts = n + size.cones * (sides / 2);
     most = max(most, 3 * parts + parts * parts + parts + Dantzig::room_for(parts) + n + newton_room(n));
   }
@@ -314,12 +314,7 @@ std::size_t direct_room(const DirectSize& size, const FrictionSet& set, DirectMe
 DirectResult solve_direct(const DenseProblem& problem, const FrictionSet& polygon, DirectMethod method,
                           double tolerance, std::span<double> x, NumberRoom room) {
   DirectResult result;
-  if (method == DirectMethod::quick || method == DirectMethod::newton) {
-    const NewtonResult newton = solve_newton(
-        problem, tolerance, method == DirectMethod::newton ? kPolishSteps : kQuickSteps, x, room);
-    result.residual = newton.residual;
-    result.newton_steps = newton.steps;
-  } else if (method == DirectMethod::dantzig) {
+  if (method == DirectMethod::dantzig) {
     run_dantzig(problem, polygon, tolerance, x, room, result);
   } else {
     // Where rows are so redundant that pivots are rounding, more of it tells them apart.

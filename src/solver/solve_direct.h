@@ -1,5 +1,4 @@
-// Solves the complementarity problem of a small island to the last digits: by Dantzig's or Lemke's pivoting, or by Newton's method
-// alone, whichever is asked for.
+// Solves the complementarity problem of a small island to the last digits by Dantzig's or Lemke's pivoting.
 //
 // Lemke's method solves the problem with friction polygons as one (the formulation of Stewart and Trinkle: one variable per corner
 // and one for how fast the point slides). Dantzig's needs limits that are numbers: it solves with those that the loads of
@@ -12,10 +11,8 @@
 namespace gyre {
 
 enum class DirectMethod : unsigned char {
-  quick,  // Newton's method from where x stands; where that fails, Dantzig's
   dantzig,
   lemke,
-  newton,
 };
 
 struct DirectResult {

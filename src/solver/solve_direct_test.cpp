@@ -2,6 +2,7 @@
 #include "solver/solve_direct.h"
 
 #include "math/dense.h"
+#include "solver/body_newton.h"
 #include "solver/lcp_dantzig.h"
 #include "solver/lcp_lemke.h"
 #include "solver/rows_test_kit.h"
@@ -125,10 +126,10 @@ TEST(Lemke, FindsWhatTryingAllLimitsFinds) {
 }
 
 std::vector<double> solve_by(const Dense& dense, const FrictionSet& polygon, DirectMethod method,
-                             DirectResult& result) {
+                             DirectResult& result, double tolerance = 1.0e-9) {
   std::vector<double> x(dense.q.size(), 0.0),
       numbers(direct_room(count_direct(dense.limits), polygon, method));
-  result = solve_direct(dense.problem, polygon, method, 1.0e-9, x, NumberRoom(numbers));
+  result = solve_direct(dense.problem, polygon, method, tolerance, x, NumberRoom(numbers));
   return x;
 }
 
@@ -141,11 +142,11 @@ TEST(SolveDirect, DantzigLemkeAndNncgAgreeOnHeapsWithFriction) {
       const Dense dense(island, polygon);
       DirectResult by_dantzig, by_lemke;
       const std::vector<RowBody> dantzig =
-          pushed(island, solve_by(dense, polygon, DirectMethod::dantzig, by_dantzig));
+          pushed(island, solve_by(dense, polygon, DirectMethod::dantzig, by_dantzig, 1.0e-11));
       const std::vector<RowBody> lemke =
-          pushed(island, solve_by(dense, polygon, DirectMethod::lemke, by_lemke));
-      EXPECT_LT(by_dantzig.residual, 1.0e-6) << sides << " sides, seed " << seed;
-      EXPECT_LT(by_lemke.residual, 1.0e-6) << sides << " sides, seed " << seed;
+          pushed(island, solve_by(dense, polygon, DirectMethod::lemke, by_lemke, 1.0e-11));
+      EXPECT_LT(by_dantzig.residual, 1.0e-8) << sides << " sides, seed " << seed;
+      EXPECT_LT(by_lemke.residual, 1.0e-8) << sides << " sides, seed " << seed;
       EXPECT_LT(apart(dantzig, lemke), 1.0e-6) << sides << " sides, seed " << seed;
       Island swept = island;
       std::vector<double> numbers(nncg_room(swept.rows.size()));
@@ -187,15 +188,28 @@ TEST(SolveDirect, RedundantCornersBearAThousandfoldLoad) {
   const Island island = make_stack({1, 1, 1, 1, 1000}, kick);
   const FrictionSet polygon = make_friction_set(4);
   const Dense dense(island, polygon);
-  for (const DirectMethod method : {DirectMethod::dantzig, DirectMethod::lemke, DirectMethod::newton}) {
-    DirectResult result;
-    const std::vector<double> x = solve_by(dense, polygon, method, result);
-    EXPECT_LT(result.residual, 1.0e-6) << int(method);
-    for (const RowBody& body : pushed(island, x)) EXPECT_LT(length(body.linear), 1.0e-7) << int(method);
+  // A residual of r leaves speeds of r times the largest diagonal, and of the ground's impulse that times all mass.
+  double stiffest = 0.0;
+  for (const Row& row : island.rows) stiffest = std::max(stiffest, row.diagonal);
+  const auto check = [&](const char* method, double residual, const std::vector<double>& x) {
+    EXPECT_LT(residual, 1.0e-11) << method;
+    for (const RowBody& body : pushed(island, x))
+      EXPECT_LT(length(body.linear), stiffest * 1.0e-11) << method;
     double ground = 0.0;
     for (std::size_t i = 0; i < 12; i += 3) ground += x[i];
-    EXPECT_NEAR(ground, 1004.0 * kick, 1.0e-5) << int(method);
+    EXPECT_NEAR(ground, 1004.0 * kick, 1004.0 * stiffest * 1.0e-11) << method;
+  };
+  for (const DirectMethod method : {DirectMethod::dantzig, DirectMethod::lemke}) {
+    DirectResult result;
+    const std::vector<double> x = solve_by(dense, polygon, method, result, 1.0e-11);
+    check(method == DirectMethod::dantzig ? "Dantzig" : "Lemke", result.residual, x);
   }
+  Arena arena;
+  const BlockPlan plan = plan_of(island, arena);
+  std::vector<double> x(island.rows.size(), 0.0), numbers(body_newton_room(x.size(), plan));
+  const NewtonResult newton =
+      solve_body_newton({island.rows, island.bodies, &polygon, &plan}, 1.0e-11, 10, x, NumberRoom(numbers));
+  check("Newton", newton.residual, x);
   // What many sweeps make of the same.
   Island swept = island;
   for (int i = 0; i < 50; ++i) sweep_rows_once(swept.rows, swept.bodies, polygon);

@@ -87,7 +87,7 @@ void report_large_islands(WorldState& s) {
   const RowReport& rows = s.solve.rows;
   if (rows.too_large == 0) return;
   const SolverSettings& solver = s.rigid.solver[0];
-  report_problem(s, ErrorCode::unsupported, {}, "%d islands of up to %d rows are beyond direct_rows %d of %s: NNCG solved them",
+  report_problem(s, ErrorCode::unsupported, {}, "%d islands of up to %d rows are beyond direct_rows %d of %s: Newton's method solved them",
                  rows.too_large, rows.largest, solver.options.direct_rows, to_string(solver.options.lcp_method));
 }
 

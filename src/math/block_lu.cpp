@@ -1,0 +1,121 @@
+#include "math/block_lu.h"
+
+namespace gyre {
+
+namespace {
+
+constexpr int N = kLuBlock;
+
+void exchange(double& a, double& b) {
+  const double t = a;
+  a = b;
+  b = t;
+}
+
+// The block by its factors, the row exchanged with each in turn in `pivots`.
+bool factor_block(double* block, double* pivots) {
+  for (int k = 0; k < N; ++k) {
+    int best = k;
+    double most = 0.0;
+    for (int r = k; r < N; ++r) {
+      const double v = block[r * N + k], size = v < 0.0 ? -v : v;
+      if (size > most) most = size, best = r;
+    }
+    pivots[k] = double(best);
+    if (!(most > 0.0 && most < 1.0e300)) return false;
+    if (best != k) {
+      for (int c = 0; c < N; ++c) exchange(block[k * N + c], block[best * N + c]);
+    }
+    for (int r = k + 1; r < N; ++r) {
+      const double by = block[r * N + k] /= block[k * N + k];
+      for (int c = k + 1; c < N; ++c) block[r * N + c] -= by * block[k * N + c];
+    }
+  }
+  return true;
+}
+
+// Columns of C numbers each row: X = block^-1 X.
+template <int C>
+void solve_block(const double* block, const double* pivots, double* x) {
+  for (int k = 0; k < N; ++k) {
+    const int other = int(pivots[k]);
+    if (other == k) continue;
+    for (int c = 0; c < C; ++c) exchange(x[k * C + c], x[other * C + c]);
+  }
+  for (int r = 1; r < N; ++r) {
+    for (int k = 0; k < r; ++k) {
+      for (int c = 0; c < C; ++c) x[r * C + c] -= block[r * N + k] * x[k * C + c];
+    }
+  }
+  for (int r = N; r-- > 0;) {
+    for (int k = r + 1; k < N; ++k) {
+      for (int c = 0; c < C; ++c) x[r * C + c] -= block[r * N + k] * x[k * C + c];
+    }
+    for (int c = 0; c < C; ++c) x[r * C + c] /= block[r * N + r];
+  }
+}
+
+// out -= a b.
+void subtract_product(const double* a, const double* b, double* out) {
+  for (int r = 0; r < N; ++r) {
+    double sum[N];
+    for (int c = 0; c < N; ++c) sum[c] = out[r * N + c];
+    for (int k = 0; k < N; ++k) {
+      const double by = a[r * N + k];
+      for (int c = 0; c < N; ++c) sum[c] -= by * b[k * N + c];
+    }
+    for (int c = 0; c < N; ++c) out[r * N + c] = sum[c];
+  }
+}
+
+// y -= a x.
+void subtract_times(const double* a, const double* x, double* y) {
+  for (int r = 0; r < N; ++r) {
+    double sum = y[r];
+    for (int c = 0; c < N; ++c) sum -= a[r * N + c] * x[c];
+    y[r] = sum;
+  }
+}
+
+}  // namespace
+
+bool factor_lu(const BlockLu& lu) {
+  const BlockPlan& plan = *lu.plan;
+  double* const lower = lu.lower.data();
+  double* const upper = lu.upper.data();
+  for (const BlockColumn& column : plan.columns) {
+    double* const pivots = &lu.pivots[column.row];
+    if (!factor_block(lower + column.diagonal, pivots)) return false;
+    for (std::uint32_t j = column.begin; j < column.end; ++j)
+      solve_block<N>(lower + column.diagonal, pivots, upper + plan.entries[j].offset);
+    const std::uint32_t* target = plan.targets.data() + column.targets;
+    for (std::uint32_t i = column.begin; i < column.end; ++i) {
+      const std::uint32_t own = plan.entries[i].offset;
+      for (std::uint32_t j = column.begin; j < i; ++j) {
+        const std::uint32_t other = plan.entries[j].offset, to = *target++;
+        subtract_product(lower + own, upper + other, lower + to);
+        subtract_product(lower + other, upper + own, upper + to);
+      }
+      subtract_product(lower + own, upper + own, lower + *target++);
+    }
+  }
+  return true;
+}
+
+void solve_lu(const BlockLu& lu, std::span<double> x) {
+  const BlockPlan& plan = *lu.plan;
+  for (const BlockColumn& column : plan.columns) {
+    double* const own = &x[column.row];
+    solve_block<1>(&lu.lower[column.diagonal], &lu.pivots[column.row], own);
+    for (std::uint32_t i = column.begin; i < column.end; ++i)
+      subtract_times(&lu.lower[plan.entries[i].offset], own, &x[plan.columns[plan.entries[i].place].row]);
+  }
+  for (std::size_t place = plan.columns.size(); place-- > 0;) {
+    const BlockColumn& column = plan.columns[place];
+    for (std::uint32_t i = column.begin; i < column.end; ++i)
+      subtract_times(&lu.upper[plan.entries[i].offset], &x[plan.columns[plan.entries[i].place].row],
+                     &x[column.row]);
+  }
+}
+
+}  // namespace gyre

@@ -1,0 +1,29 @@
+// Sparse matrices of 6 x 6 blocks whose pattern is symmetric but whose values are not, factored as L U in the order of a plan
+// (math/block_ldlt.h). Rows are exchanged within a block only, which is enough where the matrix is near to a positive definite
+// one, as those of Newton's method on an island's bodies are.
+//
+// Values: two arrays of plan.values doubles. `lower` has the diagonal blocks, and below them the block of entry i of a column at
+// its offset, rows of i; `upper` has at the same offset the block across the diagonal, rows of the column.
+//
+// Source: G. Golub, C. Van Loan, "Matrix Computations", 4th ed., 2013, ch. 3.2 (block LU) and 3.4 (partial pivoting).
+#pragma once
+
+#include "math/block_ldlt.h"
+
+namespace gyre {
+
+constexpr int kLuBlock = 6;
+
+// A matrix and the factors that replace it. All nodes of the plan have kLuBlock rows.
+struct BlockLu {
+  const BlockPlan* plan = nullptr;
+  std::span<double> lower, upper;
+  std::span<double> pivots;  // plan->rows: which row of its block each was exchanged with
+};
+
+// False if a pivot is zero or not a number: the matrix is singular.
+bool factor_lu(const BlockLu& lu);
+// Solves in place, rows in the order of the plan.
+void solve_lu(const BlockLu& lu, std::span<double> x);
+
+}  // namespace gyre

@@ -1,0 +1,213 @@
+#include "solver/body_newton.h"
+
+#include "solver/natural_map.h"
+
+namespace gyre {
+
+namespace {
+
+// A number for each of the velocities that a row sees: a's three and three of turning, then b's.
+constexpr std::size_t kSeen = 12;
+
+void spread(const DVec3& linear, const DVec3& angular, double* to) {
+  to[0] = linear.x, to[1] = linear.y, to[2] = linear.z;
+  to[3] = angular.x, to[4] = angular.y, to[5] = angular.z;
+}
+
+class BodyNewton {
+ public:
+  BodyNewton(const RowProblem& problem, NumberRoom& room)
+      : p_(problem),
+        lu_{problem.plan, room.take(problem.plan->values), room.take(problem.plan->values),
+            room.take(problem.plan->rows)},
+        step_(room.take(problem.plan->rows)),
+        velocities_(room.take(problem.plan->rows)),
+        constants_(room.take(rows())),
+        gains_(room.take(kSeen * rows())) {}
+
+  std::size_t rows() const { return p_.rows.size(); }
+  double residual_of(int i, std::span<const double> x, std::span<const double> w) const {
+    const auto in = [](std::span<const double> list) {
+      return [list](int j) { return list[std::size_t(j)]; };
+    };
+    return row_residual(i, p_.rows[std::size_t(i)].limits, *p_.friction, in(x), in(w),
+                        [&](int j) { return p_.rows[std::size_t(j)].diagonal; });
+  }
+  void find_speeds(std::span<const double> x, std::span<double> w) const {
+    for (std::size_t i = 0; i < p_.bodies.size(); ++i)
+      spread(p_.bodies[i].linear, p_.bodies[i].angular, &velocities_[kLuBlock * i]);
+    push(x);
+    for (std::size_t i = 0; i < rows(); ++i)
+      w[i] = seen(p_.rows[i]) - p_.rows[i].wanted + p_.rows[i].give * x[i];
+  }
+  void find_change(std::span<const double> dx, std::span<double> dw) const {
+    for (double& value : velocities_) value = 0.0;
+    push(dx);
+    for (std::size_t i = 0; i < rows(); ++i) dw[i] = seen(p_.rows[i]) + p_.rows[i].give * dx[i];
+  }
+
+  bool find_step(std::span<const double> x, std::span<const double> w, double near, std::span<double> dx) {
+    // What loads are made of first.
+    for (const bool of_loads : {true, false}) {
+      for (std::size_t i = 0; i < rows(); ++i) {
+        const RowKind kind = p_.rows[i].limits.kind;
+        if (kind != RowKind::cone_second && (kind == RowKind::box) == of_loads) resolve(i, x, w, near);
+      }
+    }
+    assemble();
+    if (!factor_lu(lu_)) return false;
+    solve_lu(lu_, step_);
+    for (std::size_t i = 0; i < rows(); ++i) {
+      const double* const gain = &gains_[kSeen * i];
+      double sum = constants_[i];
+      const double* const a = at(p_.rows[i].body_a);
+      const double* const b = at(p_.rows[i].body_b);
+      for (int k = 0; a != nullptr && k < kLuBlock; ++k) sum -= gain[k] * a[k];
+      for (int k = 0; b != nullptr && k < kLuBlock; ++k) sum -= gain[kLuBlock + k] * b[k];
+      dx[i] = sum;
+    }
+    return true;
+  }
+
+ private:
+  // dx = constant - gain dv of row i, and of the second of a cone.
+  void resolve(std::size_t i, std::span<const double> x, std::span<const double> w, double near) {
+    const Row& row = p_.rows[i];
+    const RowLimits& limits = row.limits;
+    const bool is_cone = limits.kind == RowKind::cone;
+    const std::size_t count = is_cone ? 2 : 1;
+    MapPoint at{{x[i], 0.0}, {w[i], 0.0}, row.diagonal, 0.0, near};
+    if (is_cone) at.x[1] = x[i + 1], at.w[1] = w[i + 1], at.rate = max(at.rate, p_.rows[i + 1].diagonal);
+    if (limits.kind != RowKind::box) at.load = load_of(limits, [&](int j) { return x[std::size_t(j)]; });
+    const MapEquations e = is_cone ? cone_equations(limits, *p_.friction, at) : scalar_equation(limits, at);
+    // (own + speed give) dx = right - speed J dv - load dL.
+    double own[2][2] = {{1.0, 0.0}, {0.0, 1.0}};
+    for (std::size_t r = 0; r < count; ++r) {
+      for (std::size_t k = 0; k < count; ++k) own[r][k] = e.own[r][k] + e.speed[r][k] * p_.rows[i + k].give;
+    }
+    const double d = own[0][0] * own[1][1] - own[0][1] * own[1][0];
+    const double inverse[2][2] = {{own[1][1] / d, -own[0][1] / d}, {-own[1][0] / d, own[0][0] / d}};
+    for (std::size_t r = 0; r < count; ++r) {
+      double* const gain = &gains_[kSeen * (i + r)];
+      for (std::size_t k = 0; k < kSeen; ++k) gain[k] = 0.0;
+      double constant = 0.0, of_load = 0.0;
+      for (std::size_t k = 0; k < count; ++k) {
+        constant += inverse[r][k] * e.right[k];
+        of_load += inverse[r][k] * e.load[k];
+        double by = 0.0;
+        for (std::size_t m = 0; m < count; ++m) by += inverse[r][m] * e.speed[m][k];
+        if (by != 0.0) add_seen(p_.rows[i + k], by, gain);
+      }
+      for (std::int32_t k = 0; of_load != 0.0 && k < limits.load_count; ++k) {
+        const std::size_t j = std::size_t(limits.load_first + k);
+        constant -= of_load * constants_[j];
+        for (std::size_t m = 0; m < kSeen; ++m) gain[m] -= of_load * gains_[kSeen * j + m];
+      }
+      constants_[i + r] = constant;
+    }
+  }
+  static void add_seen(const Row& row, double by, double* gain) {
+    double all[kSeen];
+    spread(row.linear_a, row.angular_a, all);
+    spread(row.linear_b, row.angular_b, all + kLuBlock);
+    for (std::size_t k = 0; k < kSeen; ++k) gain[k] += by * all[k];
+  }
+
+  // The matrix 1 + M^-1 J^T G, and its right side M^-1 J^T c.
+  void assemble() {
+    for (double& value : lu_.lower) value = 0.0;
+    for (double& value : lu_.upper) value = 0.0;
+    for (double& value : step_) value = 0.0;
+    for (const BlockColumn& column : lu_.plan->columns) {
+      for (int k = 0; k < kLuBlock; ++k) lu_.lower[column.diagonal + std::uint32_t(7 * k)] = 1.0;
+    }
+    std::int32_t last_a = kNoRowBody, last_b = kNoRowBody;
+    BlockPlace between;
+    for (std::size_t i = 0; i < rows(); ++i) {
+      const Row& row = p_.rows[i];
+      const double* const gain = &gains_[kSeen * i];
+      double push_a[kLuBlock], push_b[kLuBlock];
+      spread(row.gain_linear_a, row.gain_angular_a, push_a);
+      spread(row.gain_linear_b, row.gain_angular_b, push_b);
+      if (row.body_a != kNoRowBody) {
+        add_product(push_a, gain, &lu_.lower[column_of(row.body_a).diagonal]);
+        add_times(push_a, constants_[i], at(row.body_a));
+      }
+      if (row.body_b != kNoRowBody) {
+        add_product(push_b, gain + kLuBlock, &lu_.lower[column_of(row.body_b).diagonal]);
+        add_times(push_b, constants_[i], at(row.body_b));
+      }
+      if (row.body_a == kNoRowBody || row.body_b == kNoRowBody) continue;
+      if (row.body_a != last_a || row.body_b != last_b) {
+        last_a = row.body_a, last_b = row.body_b;
+        between = find_block(*lu_.plan, std::uint32_t(last_a), std::uint32_t(last_b));
+      }
+      add_product(push_a, gain + kLuBlock, &(between.first_is_row ? lu_.lower : lu_.upper)[between.offset]);
+      add_product(push_b, gain, &(between.first_is_row ? lu_.upper : lu_.lower)[between.offset]);
+    }
+  }
+  static void add_product(const double* push, const double* gain, double* block) {
+    for (int r = 0; r < kLuBlock; ++r) {
+      for (int c = 0; c < kLuBlock; ++c) block[r * kLuBlock + c] += push[r] * gain[c];
+    }
+  }
+  static void add_times(const double* push, double by, double* to) {
+    for (int k = 0; k < kLuBlock; ++k) to[k] += by * push[k];
+  }
+
+  const BlockColumn& column_of(std::int32_t body) const {
+    return lu_.plan->columns[lu_.plan->place_of[std::size_t(body)]];
+  }
+  // Where the body's part of the step lies; null if no row moves it.
+  double* at(std::int32_t body) const { return body == kNoRowBody ? nullptr : &step_[column_of(body).row]; }
+
+  // Adds what impulses do to the velocities.
+  void push(std::span<const double> impulses) const {
+    for (std::size_t i = 0; i < rows(); ++i) {
+      const Row& row = p_.rows[i];
+      double push[kLuBlock];
+      if (row.body_a != kNoRowBody) {
+        spread(row.gain_linear_a, row.gain_angular_a, push);
+        add_times(push, impulses[i], &velocities_[kLuBlock * std::size_t(row.body_a)]);
+      }
+      if (row.body_b != kNoRowBody) {
+        spread(row.gain_linear_b, row.gain_angular_b, push);
+        add_times(push, impulses[i], &velocities_[kLuBlock * std::size_t(row.body_b)]);
+      }
+    }
+  }
+  double seen(const Row& row) const {
+    double sum = 0.0, all[kLuBlock];
+    const auto add = [&](std::int32_t body) {
+      const double* const v = &velocities_[kLuBlock * std::size_t(body)];
+      for (int k = 0; k < kLuBlock; ++k) sum += all[k] * v[k];
+    };
+    if (row.body_a != kNoRowBody) {
+      spread(row.linear_a, row.angular_a, all);
+      add(row.body_a);
+    }
+    if (row.body_b != kNoRowBody) {
+      spread(row.linear_b, row.angular_b, all);
+      add(row.body_b);
+    }
+    return sum;
+  }
+
+  const RowProblem& p_;
+  BlockLu lu_;
+  std::span<double> step_, velocities_, constants_, gains_;
+};
+
+}  // namespace
+
+std::size_t body_newton_room(std::size_t rows, const BlockPlan& plan) {
+  return 2 * plan.values + 3 * plan.rows + (1 + kSeen) * rows + newton_search_room(rows);
+}
+
+NewtonResult solve_body_newton(const RowProblem& problem, double tolerance, int most_steps,
+                               std::span<double> x, NumberRoom room) {
+  BodyNewton newton(problem, room);
+  return newton_search(newton, tolerance, most_steps, x, room);
+}
+
+}  // namespace gyre
