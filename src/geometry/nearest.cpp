@@ -2,6 +2,7 @@
 #include "geometry/nearest.h"
 
 #include "geometry/cast_surface.h"
+#include "geometry/closest.h"
 #include "geometry/support.h"
 
 namespace gyre {
@@ -49,6 +50,22 @@ bool nearest_of_triangle(const SurfaceTriangle& triangle, const PlacedShape& con
                          Nearest& out) {
   const DVec3 pivot(triangle.a);
   const DVec3 corners[3] = {{}, DVec3(triangle.b) - pivot, DVec3(triangle.c) - pivot};
+  if (convex.shape->kind == ShapeKind::sphere) {
+    const DVec3 middle = convex.position - pivot;
+    const SimplexPoint near = closest_on_triangle(middle, corners[0], corners[1], corners[2]);
+    const DVec3 way = middle - near.point;
+    const double apart = length(way), gap = apart - double(convex.shape->radius);
+    if (gap > max_distance) return false;
+    // One that its middle lies in is a case for the search below.
+    if (gap > 0.0 && apart > kRounding * length(middle)) {
+      out.normal = way / apart;
+      out.overlap = false;
+      out.distance = gap;
+      out.on_target = near.point + pivot;
+      out.on_convex = convex.position - double(convex.shape->radius) * out.normal;
+      return true;
+    }
+  }
   const CorePair pair(corners, *convex.shape, convex.position - pivot, convex.orientation);
   const auto radius = double(core_radius(*convex.shape));
   if (!finish(pair, 0.0, radius, max_distance, out)) return false;
