@@ -147,17 +147,23 @@ class Bearers {
   std::span<Count> counts_;
 };
 
-// Which of the two bodies rolls, if one does.
-bool choose_body(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint,
-                 const Bearers& bearers, float seconds, RollingContact& rolling) {
+// Whether one of the two shapes is round and the other flat, and what holds them apart is looked at anew: of what is flat all
+// through no contact is, and nothing more is asked.
+bool may_roll(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint) {
   if (contact.recycled != 0) return false;
   const bool flat_a = is_flat(w.shapes.colliders[contact.shape_a].shape);
   const bool flat_b = is_flat(w.shapes.colliders[contact.shape_b].shape);
   if (flat_a == flat_b) return false;
+  return (flat_a ? constraint.body_b : constraint.body_a) != kNoBody && may_bear(*constraint.manifold);
+}
+
+// Which of the two bodies rolls, if one does.
+bool choose_body(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint,
+                 const Bearers& bearers, float seconds, RollingContact& rolling) {
+  const bool flat_a = is_flat(w.shapes.colliders[contact.shape_a].shape);
   rolling.body = flat_a ? constraint.body_b : constraint.body_a;
   rolling.other = flat_a ? constraint.body_a : constraint.body_b;
   rolling.side = flat_a ? 1.0f : -1.0f;
-  if (rolling.body == kNoBody || !may_bear(*constraint.manifold)) return false;
   const ColliderShape& collider = w.shapes.colliders[flat_a ? contact.shape_b : contact.shape_a];
   const Vec3 outward = -rolling.side * constraint.manifold->normal;
   rolling.once =
@@ -223,28 +229,37 @@ RollingContacts find_rolling_contacts(RigidWorld& w, const SolveScratch& scratch
   const auto contact_of = [&](std::uint32_t i) -> const Contact& {
     return w.contacts.contacts[scratch.constraint_contact[i]];
   };
+  RollingContacts all;
+  const std::span<std::uint32_t> candidates = arena.make<std::uint32_t>(constraints.size());
+  std::size_t count = 0;
+  for (std::uint32_t i = 0; i < constraints.size(); ++i) {
+    candidates[count] = i;
+    count += may_roll(w, contact_of(i), constraints[i]);
+  }
+  if (count == 0) return all;
   const Bearers bearers(w, constraints, places, bodies, arena);
   std::uint32_t found = 0;
   RollingContact rolling;
   const auto chosen = [&](std::uint32_t i) {
     return choose_body(w, contact_of(i), constraints[i], bearers, seconds, rolling);
   };
-  for (std::uint32_t i = 0; i < constraints.size(); ++i) found += chosen(i);
-  RollingContacts all;
+  for (std::size_t n = 0; n < count; ++n) {
+    if (chosen(candidates[n])) candidates[found++] = candidates[n];
+  }
   if (found == 0) return all;
   all.contacts = arena.make<RollingContact>(found);
   all.of_constraint = arena.make<std::uint32_t>(constraints.size());
-  found = 0;
-  for (std::uint32_t i = 0; i < constraints.size(); ++i) {
-    all.of_constraint[i] = kNotRolling;
-    if (!chosen(i)) continue;
+  for (std::uint32_t& place : all.of_constraint) place = kNotRolling;
+  for (std::uint32_t n = 0; n < found; ++n) {
+    const std::uint32_t i = candidates[n];
+    chosen(i);
     rolling.constraint = i;
     describe(w, contact_of(i), *constraints[i].manifold, rolling);
     for (const std::int32_t body : {rolling.body, rolling.other}) {
       if (body != kNoBody) w.bodies.flags[std::size_t(body)].touched = 2;
     }
-    all.contacts[found] = rolling;
-    all.of_constraint[i] = found++;
+    all.contacts[n] = rolling;
+    all.of_constraint[i] = n;
   }
   return all;
 }
