@@ -64,8 +64,8 @@ struct Events {
 
 // How a step was cut, where time is not fixed.
 struct StepReport {
-  int parts = 0;         // the most in which the motion of free bodies was computed; 0: there were none
-  float error = 0;       // m, the largest estimated error of a free body's points in the step
+  int parts = 0;         // the most in which the motion of a body was computed, if not fixed; 0: there were none
+  float error = 0;       // m, the largest estimated error of a body's points in the step
   int impacts = 0;       // times of impact that were advanced to
   bool bounded = false;  // there were more than Stepping::max_impacts: the rest of the step was a fixed one
 };

@@ -38,6 +38,7 @@ class TriedStep {
 
 struct ImpactScratch {
   TriedStep before;
+  Array<BodyMotion> other;  // what the step was with half the sub-steps
   Array<ImpactContact> impacts;
   Array<std::uint32_t> slots;   // of each
   Array<std::uint8_t> fast;     // of each: to be told as a hit

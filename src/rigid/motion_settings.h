@@ -18,7 +18,7 @@ struct MotionSettings {
   float tolerance = 1.0e-5f;       // m
   std::int32_t max_impacts = 128;  // in a step
   std::int32_t planned_substeps =
-      0;  // of the next step, by the error of the last; 0: as many as the settings say
+      0;  // that the next step begins with, by the error of the last; 0: as many as the settings say
 };
 
 inline bool is_default(const MotionSettings& m) {

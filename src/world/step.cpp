@@ -1,5 +1,6 @@
 // One step of the world, as the list of its stages. Each is a function from arrays to arrays in the folders below.
 #include "base/check.h"
+#include "rigid/doubled_steps.h"
 #include "rigid/island.h"
 #include "rigid/rigid_step.h"
 #include "rigid/spring_stability.h"
@@ -137,10 +138,47 @@ void finish(WorldState& s, float seconds, float whole, bool last) {
   run_stage(s, StageName::put_to_sleep, [&] { put_to_sleep(w, s.arena, seconds); });
 }
 
+// With as many sub-steps, at least those of the settings, as keep the error of what constraints move within the tolerance.
+void solve_to_tolerance(WorldState& s, float seconds) {
+  RigidWorld& w = s.rigid;
+  MotionSettings& motion = w.motion_settings[0];
+  const std::int32_t least = w.settings.substeps;
+  const std::size_t hits = w.events.hits.size();
+  std::int32_t substeps = clamp(motion.planned_substeps, least, max(least, kMostPlanned / 2));
+  s.impacts.before.keep(w);
+  const auto solve = [&] {
+    w.settings.substeps = substeps;
+    solve_step(w, s.solve, s.arena, *s.tasks, *s.kernels, seconds);
+    w.settings.substeps = least;
+  };
+  solve();
+  motion.planned_substeps = 0;
+  if (!is_anything_touched(w)) return;
+  double error = 0.0;
+  while (2 * substeps <= kMostPlanned) {
+    s.impacts.other = w.bodies.motion;
+    s.impacts.before.put_back(w);
+    w.events.hits.resize(hits);
+    substeps *= 2;
+    solve();
+    error = ends_apart(w, s.impacts.other, seconds);
+    if (!(error > double(motion.tolerance))) break;
+  }
+  // The next step begins with half of these, or with a quarter where that should do.
+  const std::int32_t planned = error < 0.25 * double(motion.tolerance) ? substeps / 4 : substeps / 2;
+  if (planned > least) motion.planned_substeps = planned;
+  const int a_substep = w.solver.empty() ? 2 : 1;
+  s.solve.report.parts = max(s.solve.report.parts, a_substep * substeps);
+  s.solve.report.error = max(s.solve.report.error, float(error));
+}
+
 void step_at_once(WorldState& s, float seconds) {
   look(s, seconds);
   s.rigid.now = s.time;
-  run_stage(s, StageName::solve, [&] { solve_step(s.rigid, s.solve, s.arena, *s.tasks, *s.kernels, seconds); });
+  run_stage(s, StageName::solve, [&] {
+    if (motion_settings(s.rigid).time == TimeStepping::error_controlled) return solve_to_tolerance(s, seconds);
+    solve_step(s.rigid, s.solve, s.arena, *s.tasks, *s.kernels, seconds);
+  });
   finish(s, seconds, seconds, true);
 }
 

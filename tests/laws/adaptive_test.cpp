@@ -267,5 +267,118 @@ TEST(Adaptive, AStackStands) {
   EXPECT_LE(length(world.linear_velocity(top)), 1e-4f);
 }
 
+// ------------------------------------------------------------------------------------------------------ to a tolerance
+
+World controlled(float tolerance, int substeps = 1, Vec3 gravity = {0, -float(kGravity), 0}) {
+  WorldDef def;
+  def.gravity = gravity;
+  def.sleeping = false;
+  def.stepping.substeps = substeps;
+  def.stepping.time = TimeStepping::error_controlled;
+  def.stepping.tolerance = tolerance;
+  return make_world(def);
+}
+
+// Two rods that hang on each other, raised to the side. Returns the lower.
+BodyId add_double_pendulum(World& world, float damping = 0.0f) {
+  BodyId last{};
+  for (int i = 0; i < 2; ++i) {
+    BodyDef def;
+    def.pose.position = {0.5 + i, 0, 0};
+    def.angular_damping = def.linear_damping = damping;
+    const BodyId rod = world.add_body(def, {.geometry = Box{{0.5f, 0.05f, 0.05f}}, .density = 1000});
+    JointDef joint;
+    joint.a = last, joint.b = rod, joint.anchor = {double(i), 0, 0};
+    world.add_joint(joint);
+    last = rod;
+  }
+  return last;
+}
+
+DVec3 swung(World world, double seconds, float step, int* parts = nullptr) {
+  const BodyId lower = add_double_pendulum(world);
+  for (int i = 0; i < int(std::lround(seconds / double(step))); ++i) {
+    world.step(step);
+    if (parts != nullptr) *parts = std::max(*parts, world.step_report().parts);
+  }
+  return world.pose(lower).position;
+}
+
+TEST(ErrorControl, ADoublePendulumIsAsExactAsAsked) {
+  WorldDef def;
+  def.gravity = {0, -float(kGravity), 0};
+  def.sleeping = false;
+  def.stepping.substeps = 64;
+  const DVec3 exact = swung(make_world(def), 0.5, 1.0f / 960.0f);
+  double last_error = 1.0;
+  int last_parts = 0;
+  for (const float tolerance : {1.0e-2f, 1.0e-3f, 2.0e-4f}) {
+    int parts = 0;
+    const double error = length(swung(controlled(tolerance), 0.5, 1.0f / 30.0f, &parts) - exact);
+    // Of 15 steps each is within the tolerance.
+    EXPECT_LT(error, 15.0 * double(tolerance)) << tolerance;
+    EXPECT_LT(error, last_error) << tolerance;
+    EXPECT_GT(parts, last_parts) << tolerance;
+    last_error = error, last_parts = parts;
+  }
+}
+
+TEST(ErrorControl, SubstepsFallBackWhenMotionDies) {
+  World world = controlled(1.0e-4f);
+  add_double_pendulum(world, 2.0f);
+  int most = 0;
+  for (int i = 0; i < 600; ++i) {
+    world.step(1.0f / 60.0f);
+    most = std::max(most, world.step_report().parts);
+  }
+  EXPECT_GE(most, 16);
+  EXPECT_EQ(world.step_report().parts, 4);  // of two sub-steps, twice the one of the settings
+}
+
+TEST(ErrorControl, WhatIsWithinItsToleranceIsTheStepOfTwiceTheSubsteps) {
+  // A step that was tried leaves no trace: to the bit what a world of four sub-steps does.
+  WorldDef def;
+  def.gravity = {0, -float(kGravity), 0};
+  def.sleeping = false;
+  def.stepping.substeps = 4;
+  World plain = make_world(def), tried = controlled(1.0f, 2);
+  std::vector<BodyId> bodies[2];
+  for (World* world : {&plain, &tried}) {
+    std::vector<BodyId>& own = bodies[world == &tried];
+    own.push_back(add_double_pendulum(*world));
+    world->add_body({.type = BodyType::fixed, .pose = {.position = {0, -3, 0}}}, {.geometry = Plane{}});
+    for (int i = 0; i < 4; ++i) {
+      const Pose pose{.position = {5.0, -2.5 + i, 0}};
+      own.push_back(world->add_body({.pose = pose}, {.geometry = Box{{0.5f, 0.5f, 0.5f}}}));
+    }
+  }
+  for (int i = 0; i < 120; ++i) {
+    plain.step(1.0f / 60.0f);
+    tried.step(1.0f / 60.0f);
+    for (std::size_t k = 0; k < bodies[0].size(); ++k) {
+      const Pose a = plain.pose(bodies[0][k]), b = tried.pose(bodies[1][k]);
+      ASSERT_EQ(a.position, b.position) << i << " body " << k;
+      ASSERT_EQ(a.orientation, b.orientation) << i << " body " << k;
+    }
+  }
+  EXPECT_NE(plain.pose(bodies[0][0]).position.y, 0.0);
+}
+
+TEST(ErrorControl, ABlowIsToldToBeLessExact) {
+  World world = controlled(1.0e-6f, 4);
+  world.add_body({.type = BodyType::fixed}, {.geometry = Plane{}, .material = surface(0.5f, 1.0f)});
+  world.add_body({.pose = {.position = {0, 0.6, 0}}, .linear_velocity = {0, -5, 0}},
+                 {.geometry = Sphere{.radius = 0.25f}, .material = surface(0.5f, 1.0f)});
+  float blow = 0.0f, flight = 0.0f;
+  for (int i = 0; i < 12; ++i) {
+    world.step(1.0f / 60.0f);
+    const float error = world.step_report().error;
+    (error > 1.0e-6f ? blow : flight) = std::max(error, error > 1.0e-6f ? blow : flight);
+  }
+  EXPECT_GT(blow, 1.0e-6f);
+  EXPECT_LT(blow, 0.1f);
+  EXPECT_GT(flight, 0.0f);
+}
+
 }  // namespace
 }  // namespace gyre::laws
