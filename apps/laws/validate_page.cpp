@@ -15,7 +15,7 @@ constexpr const char* kHead = R"(<!doctype html>
 body{font:14px/1.4 system-ui,sans-serif;margin:2em auto;max-width:80em;padding:0 1em;color:#222;background:#fff}
 table{border-collapse:collapse;width:100%}
 th,td{text-align:right;padding:.15em .6em;border-bottom:1px solid #e4e4e4;font-variant-numeric:tabular-nums}
-th:first-child,td:first-child{text-align:left}
+th:first-child,td:first-child{text-align:left}td:not(:first-child){white-space:nowrap}
 .bar{width:14em;background:#f0f0f0;position:relative;height:.8em}
 .bar i{position:absolute;left:0;top:0;bottom:0;background:#5b86a8}
 .bar b{position:absolute;left:75%;top:-.2em;bottom:-.2em;border-left:2px solid #222}
