@@ -72,7 +72,9 @@ class MeshCollider {
   void settle_deep_patches();
   bool runs_through(const NearTriangle& t) const;
   void note_overlap(const Waiting& found, float best);
+  bool overlaps_indeed(const Waiting& found);
   void push_out();
+  void add_corner(const NearTriangle& t, float face_separation);
   void look_for_corners();
   void settle(const Waiting& waiting);
   bool is_ruled_out(const NearTriangle& t, bool behind) const;
@@ -303,6 +305,7 @@ void MeshCollider::look_at(std::uint32_t id) {
     // Beside an edge the face alone may have no point, or none that is deep enough.
     const float wanted = axes.feature.separation + 0.1f * kAxisBias * convex_.size();
     if (axes.feature.separation < axes.best - kAxisBias * convex_.size() || points_.deepest() <= wanted) {
+      if (!inside_patch && axes.best > 0.0f) add_corner(t, face);
       if (stand(t.normal, face)) add_deep_corners(t);
       return;
     }
@@ -319,6 +322,7 @@ void MeshCollider::settle(const Waiting& waiting) {
   if (is_ruled_out(t, waiting.behind)) return;
   // What is apart from the triangle may still reach below its plane, beside it or under its edge: nothing to be pushed out.
   add_face(t, waiting.overlaps ? -kUnbounded : -kCoverSlack * convex_.size());
+  if (!waiting.overlaps && !waiting.behind) add_corner(t, waiting.face_separation);
   bool added = points_.count > 0;
   if ((added || waiting.overlaps) && add_deep_corners(t)) added = true;
   if (added) stand(t.normal, waiting.face_separation);
@@ -385,18 +389,45 @@ void MeshCollider::note_overlap(const Waiting& found, float best) {
   if (better) exit_ = found;
 }
 
+// An axis search takes needles and plates for overlapping where the edges' axes are too short to be told from rounding.
+bool MeshCollider::overlaps_indeed(const Waiting& found) {
+  if (!found.overlaps || convex_.face_count() == 0) return found.overlaps;
+  const NearTriangle t = triangle(found.id);
+  return !(search_nearest(surface_, t, convex_, found.face_separation, max_separation_, scratch_).best >
+           0.0f);
+}
+
 // The shape overlaps triangles, but none of them lies under one of its corners, as when a blunt hull has sunk across a small
 // hill: it leaves through the front of one, pushed at its lowest point.
 void MeshCollider::push_out() {
   const bool in_question =
       overlap_ < -2.0f * kAxisBias * convex_.size() && groups_.deepest() > 0.1f * overlap_;
   if (!exit_.overlaps || !(in_question || groups_.empty())) return;
+  exit_.overlaps = overlaps_indeed(exit_);
+  for (int i = 0; i < waiting_count_ && !exit_.overlaps; ++i) {
+    if (overlaps_indeed(waiting_[i])) exit_ = waiting_[i];
+  }
+  if (!exit_.overlaps) return;
   const NearTriangle t = triangle(exit_.id);
   const Vec3 lowest = convex_.support(-t.normal);
   const float separation = dot(t.normal, lowest - t.v[0]) - convex_.radius();
   points_.count = 0;
   points_.add(lowest - (convex_.radius() + 0.5f * separation) * t.normal, separation, t.id);
   groups_.add(t.normal, t.id, points_);
+}
+
+// Where the lowest corner of a polyhedron lies a little beside the triangle, the points above its face are all farther than
+// the edge is, and an axis search does not know the direction between that corner and the edge. Keeps `points_`.
+void MeshCollider::add_corner(const NearTriangle& t, float face_separation) {
+  const float slack = kAxisBias * convex_.size();
+  if (points_.count == 0 || convex_.face_count() == 0 || points_.deepest() <= face_separation + slack) return;
+  const AxisSearch axes = search_nearest(surface_, t, convex_, face_separation, max_separation_, scratch_);
+  if (axes.best > max_separation_ || axes.feature.separation < axes.best ||
+      points_.deepest() <= axes.best + slack)
+    return;
+  const MeshPoints kept = points_;
+  add_feature(t, axes.feature);
+  points_ = kept;
 }
 
 // A polyhedron that comes near with a corner beside an edge: axis searches know faces and pairs of edges only.

@@ -3,6 +3,7 @@
 #include "geometry/cooked.h"
 #include "geometry/manifold_mesh.h"
 #include "geometry/mesh_contact_test.h"
+#include "geometry/nearest.h"
 
 #include <gtest/gtest.h>
 
@@ -342,6 +343,57 @@ TEST(CollideMeshEdges, WhatIsBelowAndBesideAFloorIsNotTouched) {
   const Geometry floor = flat_grid(1.0f, 0.5f).cook();
   const Manifolds found = collide(floor, Cone{0.7f, 0.7f}, {{-0.19f, -0.63f, -1.2f}, {}});
   EXPECT_EQ(found.count, 0);
+}
+
+// A hull whose lowest corner hangs a little beside a ridge was told to be half as far away again: only points over the face
+// counted, and they lie higher.
+TEST(CollideMeshEdges, ACornerBesideARidgeIsAsNearAsItIs) {
+  Triangles roof;
+  roof.quad({-2, -2, -2}, {-2, -2, 2}, {0, 0, 2}, {0, 0, -2});
+  roof.quad({0, 0, -2}, {0, 0, 2}, {2, 0, 2}, {2, 0, -2});
+  const Geometry ground = roof.cook();
+  const Vec3 corners[] = {{0, 0, 0},           {0.2f, 0.35f, 0.3f},  {0.2f, 0.35f, -0.3f},
+                          {-0.3f, 0.1f, 0.3f}, {-0.3f, 0.1f, -0.3f}, {0, 0.6f, 0}};
+  const Geometry hull = *cook_hull(corners);
+  for (const Vec3 at : {Vec3{-0.003f, 0.00624f, 0.1f}, Vec3{-0.003f, 0.005f, -0.7f}}) {
+    const Manifolds found = collide(ground, hull, {at, {}}, 0.012f);
+    ASSERT_GE(found.count, 1);
+    const Vec3 way{at.x, at.y, 0};  // to the nearest point of the ridge
+    EXPECT_NEAR(found.deepest(), length(way), 1.0e-6f);
+    EXPECT_NE(found.along(normalized(way), 1.0e-4f), nullptr);
+  }
+}
+
+// Needles and plates over steps and slopes were taken for overlapping, and pushed out by decimetres.
+TEST(CollideMeshEdges, ThinHullsThatAreApartAreNotPushed) {
+  Random random{82};
+  const Geometry ground =
+      grid(0.2f, 0.1f, [&](float x, float) { return 0.03f * float(int(10.0f * x + 2.5f) / 2); }).cook();
+  int apart = 0, pushed = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const float thin = i % 2 == 0 ? 2.0e-4f : 2.0e-6f;
+    std::vector<Vec3> points;
+    for (int k = 0; k < 4 + i % 5 * 5; ++k)
+      points.push_back(multiply_each({0.4f, thin, i % 3 == 0 ? 0.4f : 10.0f * thin}, random.direction()));
+    const Result<Geometry> hull = cook_hull(points);
+    if (!hull) continue;
+    const Shape shape = make_shape(AnyShape(*hull));
+    Transform pose{{random.between(-0.2f, 0.2f), 1.0f, random.between(-0.2f, 0.2f)}, random.rotation()};
+    gyre::Nearest near;
+    for (int k = 0; k < 8; ++k) {  // down, until they all but touch
+      const PlacedShape placed{&shape, DVec3(pose.position), to_double(pose.orientation)};
+      near.distance = 1.0;  // beside the ground there is nothing
+      if (!find_nearest(make_shape(ground), placed, 10.0, near)) break;
+      if (near.overlap || near.distance < 2.0e-4) break;
+      pose.position.y -= float(near.distance - 1.0e-4);
+    }
+    if (near.overlap || near.distance > 0.008) continue;
+    ++apart;
+    const Manifolds found = collide(ground, *hull, pose, 0.008f);
+    pushed += found.count > 0 && found.deepest() < -4.0e-4f;
+  }
+  EXPECT_LE(pushed, 1) << "of " << apart << ": one in ten thousand is still taken for overlapping";
+  EXPECT_GT(apart, 5000);
 }
 
 }  // namespace

@@ -355,7 +355,6 @@ bool Search::nearest_by_gjk() {
   return true;
 }
 
-// Cylinders and cones: cap normals, mantle lines against edges, mantle normals at corners, and the arcs of active edges.
 }  // namespace
 
 Surface::Surface(const Shape& shape) {
