@@ -32,6 +32,21 @@ TEST_F(Validate, PrintsMeasuredAgainstExact) {
   EXPECT_EQ(run.out.find("[row]"), std::string::npos) << "the tests printed beside the table";
 }
 
+TEST_F(Validate, ARowNamesThePartsThatItsLawChose) {
+  const Finished run = run_program(
+      {"validate", "--filter", "Integrators.HaveTheirOrders", "--default-parts", "--json"}, folder_);
+  EXPECT_EQ(run.code, 0) << run.err;
+  const json table = json::parse(run.out);
+  int others = 0;
+  for (const json& row : table.at("rows")) {
+    const std::string name = row.at("row").get<std::string>(),
+                      integrator = row.at("integrator").get<std::string>();
+    EXPECT_TRUE(name.ends_with(integrator)) << row;
+    if (integrator != "semi_implicit_euler") ++others;
+  }
+  EXPECT_GT(others, 0);
+}
+
 TEST_F(Validate, EveryPartIsNamedInItsRows) {
   const Finished run = run_program({"validate", "--filter", "Projectile.*:Incline.*", "--json"}, folder_);
   EXPECT_EQ(run.code, 0) << run.err;

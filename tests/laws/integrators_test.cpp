@@ -7,12 +7,18 @@
 namespace gyre::laws {
 namespace {
 
+World trial_world(IntegratorKind kind, Vec3 gravity, int substeps) {
+  in_use().integrator = kind;
+  return trials::make_world(kind, gravity, substeps);
+}
+
 constexpr IntegratorKind kKinds[] = {IntegratorKind::semi_implicit_euler, IntegratorKind::explicit_euler,
                                      IntegratorKind::rk4, IntegratorKind::verlet};
 
 TEST(Integrators, HaveTheirOrders) {
   for (const trials::Trial& trial : trials::kTrials) {
     for (const IntegratorKind kind : kKinds) {
+      in_use().integrator = kind;
       const std::vector<double> errors = trials::errors_of(trial, kind);
       const std::string name = std::string("A-03 ") + trial.name + " " + to_string(kind);
       if (trials::is_exact(kind, trial)) {
@@ -26,6 +32,7 @@ TEST(Integrators, HaveTheirOrders) {
 }
 
 TEST(Integrators, VerletKeepsItsOrderWhereTheStepChanges) {
+  in_use().integrator = IntegratorKind::verlet;
   const double coarse = trials::uneven_spring_error(IntegratorKind::verlet, 160);
   const double fine = trials::uneven_spring_error(IntegratorKind::verlet, 320);
   EXPECT_TRUE(
@@ -38,7 +45,7 @@ TEST(Integrators, EnergyOfALongOscillation) {
   const double h = 1.0 / 240.0, n = 2400.0, k = square(trials::kTurn * h);
   const double expected[] = {1.0, std::pow(1.0 + k, n), 1.0, 1.0}, good[] = {0.03, 0.01, 1e-4, 1e-3};
   for (const IntegratorKind kind : kKinds) {
-    World world = trials::make_world(kind, {}, 1);
+    World world = trial_world(kind, {}, 1);
     BodyDef def = trials::point();
     def.pose.position = {2.1, 0, 0};
     const BodyId body = world.add_body(def);
@@ -77,7 +84,7 @@ TEST(Integrators, AllComeToRestOnAFloorWithoutFalseSpeed) {
 
 TEST(Integrators, MomentumOfSpringsBetweenBodiesIsKept) {
   for (const IntegratorKind kind : kKinds) {
-    World world = trials::make_world(kind, {}, 4);
+    World world = trial_world(kind, {}, 4);
     BodyId bodies[3];
     for (int i = 0; i < 3; ++i) {
       BodyDef def = trials::point();
@@ -147,7 +154,7 @@ TEST(Stiffness, IsToldAtTheStepFromWhichASchemeExplodes) {
     for (const float stiffness : {1.0f, 1.0e3f, 1.0e6f}) {
       for (const float mass : {0.01f, 1.0f, 100.0f}) {
         const auto grows = [&](double part, double* told, bool* warned) {
-          World world = trials::make_world(kind, {}, 1);
+          World world = trial_world(kind, {}, 1);
           BodyDef def = trials::point();
           def.mass = mass;
           def.pose.position = {2.001, 0, 0};
@@ -183,7 +190,7 @@ TEST(Stiffness, IsToldAtTheStepFromWhichASchemeExplodes) {
 
 TEST(Stiffness, OfManySpringsTogether) {
   // A chain of equal masses and springs between two walls: w = 2 sqrt(k/m) sin(n pi / (2 (n + 1))).
-  World world = trials::make_world(IntegratorKind::verlet, {}, 4);
+  World world = trial_world(IntegratorKind::verlet, {}, 4);
   constexpr int kCount = 10;
   BodyId last{};
   for (int i = 0; i <= kCount; ++i) {
@@ -207,7 +214,7 @@ TEST(Stiffness, OfManySpringsTogether) {
 }
 
 TEST(Stiffness, ExplicitEulerIsToldToGrowAndDampersHelp) {
-  World world = trials::make_world(IntegratorKind::explicit_euler, {}, 4);
+  World world = trial_world(IntegratorKind::explicit_euler, {}, 4);
   BodyDef def = trials::point();
   def.pose.position = {2.5, 0, 0};
   const BodyId body = world.add_body(def);

@@ -30,9 +30,16 @@ inline Choice& choice() {
   return chosen;
 }
 
+// Which parts the world has that was made last: that is what rows are about.
+inline Choice& in_use() {
+  static Choice used;
+  return used;
+}
+
 inline World make_world(WorldDef def = {}) {
   if (def.stepping.integrator == Stepping{}.integrator) def.stepping.integrator = choice().integrator;
   if (def.stepping.solver == Stepping{}.solver) def.stepping.solver = choice().solver;
+  in_use() = {def.stepping.integrator, def.stepping.solver};
   Result<World> made = World::create(def);
   if (!made) std::fprintf(stderr, "%s\n", made.error().message);
   return std::move(*made);
@@ -77,6 +84,7 @@ struct Row {
   double good = 0.0, top = 0.0;   // greatest error, or greatest value of a limit
   bool is_limit = false;          // at most `good`; nothing is expected
   bool met = false, met_top = false;
+  Choice parts;
 };
 struct Rows {
   bool printed = true;  // on standard output, one a line
@@ -95,7 +103,7 @@ void say(const char* format, Arguments... arguments) {
 // Measured against expected, within `good` (absolute), and whether it is within `top` too.
 inline bool row(const char* name, double measured, double expected, double good, double top) {
   const double error = std::fabs(measured - expected);
-  rows().list.push_back({name, measured, expected, good, top, false, error <= good, error <= top});
+  rows().list.push_back({name, measured, expected, good, top, false, error <= good, error <= top, in_use()});
   say("[row] %-44s %14.7g expected %12.7g  error %9.2e  good %8.1e %s  top %8.1e %s\n", name, measured, expected, error,
       good, error <= good ? "met" : "FAIL", top, error <= top ? "met" : "no");
   return error <= good;
@@ -105,7 +113,7 @@ inline bool relative_row(const char* name, double measured, double expected, dou
 }
 // A number that must stay at or below `good`.
 inline bool limit_row(const char* name, double measured, double good, double top) {
-  rows().list.push_back({name, measured, 0.0, good, top, true, measured <= good, measured <= top});
+  rows().list.push_back({name, measured, 0.0, good, top, true, measured <= good, measured <= top, in_use()});
   say("[row] %-44s %14.7g at most  %12.7g  %s  top %8.1e %s\n", name, measured, good, measured <= good ? "met" : "FAIL",
       top, measured <= top ? "met" : "no");
   return measured <= good;

@@ -60,6 +60,7 @@ class Collector : public testing::EmptyTestEventListener {
   }
   void OnTestStart(const testing::TestInfo&) override {
     laws::rows().list.clear();
+    laws::in_use() = laws::choice();
     failure_.clear();
   }
   void OnTestPartResult(const testing::TestPartResult& result) override {
@@ -68,8 +69,9 @@ class Collector : public testing::EmptyTestEventListener {
   void OnTestEnd(const testing::TestInfo& info) override {
     const std::string law = std::string(info.test_suite_name()) + "." + info.name();
     for (const Row& row : laws::rows().list) {
-      validation.rows.push_back({law, row.name, integrator_, solver_, row.measured, row.expected, row.good,
-                                 row.top, row.is_limit, row.met, row.met_top});
+      validation.rows.push_back({law, row.name, to_string(row.parts.integrator), to_string(row.parts.solver),
+                                 row.measured, row.expected, row.good, row.top, row.is_limit, row.met,
+                                 row.met_top});
     }
     validation.laws.push_back({law, integrator_, solver_, default_parts_,
                                double(info.result()->elapsed_time()) * 1.0e-3, failure_});
