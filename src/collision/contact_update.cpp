@@ -2,6 +2,7 @@
 #include "collision/contact_update.h"
 
 #include "collision/fat_box.h"
+#include "geometry/manifold_mesh.h"
 #include "geometry/support.h"
 
 namespace gyre {
@@ -14,6 +15,8 @@ constexpr float kLargestApproach = 1.0f;
 // apart than kKept beyond the speculative distance are not kept, only how near they were. Where nothing touches, and the
 // pair goes less than kSlow in a step, the look reaches far: it is cheaper to look once than to look in every step.
 constexpr float kKept = 0.005f, kNearSlack = 0.03f, kFarSlack = 0.25f, kSlow = 0.02f;
+// Above a mesh a look at boxes alone comes first, as far as the pair goes in some steps: what falls need not look in each.
+constexpr float kClearSteps = 4.0f;
 // How far points may go against each other, and how far the pair may tilt (rad), before it is looked at anew: where flat
 // features meet, or a core swept by a ball and a flat feature; and where something else is round. There the contact goes on
 // while the bodies' points do not, and what lags behind would brake what rolls.
@@ -426,11 +429,27 @@ void write_manifolds(ContactStore& store, Contact& contact, const Found<kRoom>& 
   contact.manifold_count = std::uint16_t(found.count);
 }
 
+void note_look(Contact& contact, const View& view, float looked) {
+  contact.looked = looked;
+  contact.size = view.size;
+  contact.seen_a_from_b = view.a_from_b;
+}
+
+bool is_clear_of_surface(const ContactPair& pair, const View& view, float reach) {
+  const Transform a_from_b =
+      inverse(pair.shape_a->body_from_shape) * view.a_from_b * pair.shape_b->body_from_shape;
+  return is_clear_of_surface(pair.shape_a->shape, pair.shape_b->shape, a_from_b, reach);
+}
+
 // kRoom is the contact's manifold_room.
 template <int kRoom>
 void look_anew(ContactStore& store, Contact& contact, const ContactPair& pair, const View& view) {
   const float kept = view.speculative + kKept * view.size;
   float reach = view.speculative + kNearSlack * view.size;
+  if (kRoom > 1 && contact.manifold_count == 0) {
+    const float far_reach = view.speculative + kClearSteps * view.way + kFarSlack * view.size;
+    if (is_clear_of_surface(pair, view, far_reach)) return note_look(contact, view, far_reach);
+  }
   Found<kRoom> found;
   bool clear = false;
   if (kRoom == 1 && contact.manifold_count == 0 && view.way < kSlow * view.size) {
@@ -444,9 +463,7 @@ void look_anew(ContactStore& store, Contact& contact, const ContactPair& pair, c
   const float left_out = min(keep_near(found, kept), reach);
   if (found.count > 0 || contact.manifold_count > 0) write_manifolds(store, contact, found, pair, view.size);
   // Points measure separation along one normal, which is not always that of the nearest features: hence only a part.
-  contact.looked = left_out < reach ? kept + 0.75f * (left_out - kept) : reach;
-  contact.size = view.size;
-  contact.seen_a_from_b = view.a_from_b;
+  note_look(contact, view, left_out < reach ? kept + 0.75f * (left_out - kept) : reach);
 }
 
 bool carried_load(std::span<const Manifold> manifolds) {

@@ -82,6 +82,7 @@ class MeshCollider {
   NearTriangle triangle(std::uint32_t id) const { return near_triangle(surface_, id, position_, convex_); }
   void know_side(Vec3 normal);
   void know_face();
+  bool is_beside(const NearTriangle& t) const;
   bool rests_inside(const NearTriangle& t, float face_separation);
   float face_separation(const NearTriangle& t) const {
     return side_.lowest - dot(t.normal, t.v[0]) - convex_.radius();
@@ -127,8 +128,9 @@ class MeshCollider {
 void MeshCollider::know_side(Vec3 normal) {
   if (side_known_ && side_.normal == normal) return;
   side_.normal = normal;
-  side_.lowest = convex_.lowest(normal);
-  side_.highest = convex_.highest(normal);
+  const PlacedConvex::Extent extent = convex_.extent(normal);
+  side_.lowest = extent.low;
+  side_.highest = extent.high;
   side_.has_face = false;
   side_known_ = true;
 }
@@ -257,8 +259,11 @@ bool MeshCollider::is_buried(const NearTriangle& t, Vec3 direction) const {
 // Whether a lowest corner of the shape lies so far inside the triangle's sides that no direction but the face's normal can be
 // better: a disc around its foot, as wide as the corner is deep, belongs to the triangle.
 bool MeshCollider::rests_inside(const NearTriangle& t, float face_separation) {
-  know_face();
   const float room = max(-face_separation - convex_.radius(), 0.0f) + t.slack;
+  if (convex_.has_vertices() &&
+      !convex_.has_low_vertex_inside(t.normal, side_.lowest + bias_, t.outward, t.v, room))
+    return false;
+  know_face();
   for (int k = 0; k < side_.face.count; ++k) {
     const Vec3 corner = side_.face.vertices[k];
     if (dot(t.normal, corner) > side_.lowest + bias_) continue;
@@ -269,12 +274,26 @@ bool MeshCollider::rests_inside(const NearTriangle& t, float face_separation) {
   return false;
 }
 
+// Whether a ball or capsule lies certainly too far beyond one of the triangle's sides.
+bool MeshCollider::is_beside(const NearTriangle& t) const {
+  if (convex_.vertex_count() != 1 && convex_.vertex_count() != 2) return false;
+  const Vec3 first = convex_.vertex(0), last = convex_.vertex(convex_.vertex_count() - 1);
+  const float reach = 1.00001f * (convex_.radius() + max_separation_) + t.slack;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 edge = t.v[next_corner(i)] - t.v[i], outward = cross(edge, t.normal);
+    const float beyond = min(dot(outward, first - t.v[i]), dot(outward, last - t.v[i]));
+    if (beyond > 0.0f && square(beyond) > square(reach) * length_squared(edge)) return true;
+  }
+  return false;
+}
+
 void MeshCollider::look_at(std::uint32_t id) {
   NearTriangle t = place_triangle(surface_, id, position_, convex_);
   know_side(t.normal);
   const float height = dot(t.normal, t.v[0]);
   const float face = face_separation(t);
   if (face > max_separation_ || side_.highest - height + convex_.radius() <= 0.0f) return;
+  if (is_before_a_face(t, convex_, max_separation_, scratch_) || is_beside(t)) return;
   measure_edges(t);
   const bool inside_patch = t.flat_corners == 7 && t.edge[0] == EdgeKind::flat &&
                             t.edge[1] == EdgeKind::flat && t.edge[2] == EdgeKind::flat;
@@ -451,6 +470,16 @@ int collide_mesh(const Shape& mesh, const Shape& b, const Transform& a_from_b, f
                  LocalManifold* out) {
   if (!is_convex(b.kind)) return 0;
   return MeshCollider(mesh, b, a_from_b, max_separation).run(out);
+}
+
+bool is_clear_of_surface(const Shape& a, const Shape& b, const Transform& a_from_b, float reach) {
+  const bool swapped = is_convex(a.kind);
+  const Shape& convex = swapped ? a : b;
+  const Shape& other = swapped ? b : a;
+  if (!is_convex(convex.kind) || other.kind < ShapeKind::mesh) return false;
+  const Aabb box = bounds(convex, swapped ? inverse(a_from_b) : a_from_b);
+  const float rounding = 1.0e-6f * max(largest(absolute(box.low)), largest(absolute(box.high)));
+  return !has_triangle(Surface(other), grow(box, reach + rounding));
 }
 
 }  // namespace gyre

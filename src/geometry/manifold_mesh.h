@@ -45,4 +45,8 @@ class ManifoldGroups {
   Group groups_[kRoom];
 };
 
+// Whether a mesh or height field (one of the two) has nothing within `reach` of the other, convex shape, by a look at boxes
+// alone: false where they do not tell, or where the two are of other kinds.
+bool is_clear_of_surface(const Shape& a, const Shape& b, const Transform& a_from_b, float reach);
+
 }  // namespace gyre

@@ -57,6 +57,32 @@ void expect_same(const Manifolds& a, const Manifolds& b, bool also_normals = tru
   EXPECT_NEAR(a.deepest(), b.deepest(), 2.0e-5f);
 }
 
+// What the look at boxes lets go, the look at triangles finds no contact with; and not all of it is let go only far away.
+TEST(CollideHeightField, NothingTouchesWhatIsClearOfTheSurface) {
+  const Ground hills =
+      make_ground(24, 0.4f, [](float x, float z) { return std::sin(x) * std::cos(1.3f * z); });
+  Random random{7};
+  int clear = 0, near = 0;
+  for (int round = 0; round < 200; ++round) {
+    for (const AnyShape& shape : all_kinds(random)) {
+      const Transform pose{{random.between(-4, 4), random.between(-3, 4), random.between(-4, 4)},
+                           random.rotation()};
+      const float reach = random.between(0.01f, 0.6f);
+      for (const Geometry& ground : {hills.mesh, hills.field}) {
+        const Shape surface = make_shape(ground), convex = make_shape(shape);
+        const bool is_clear = is_clear_of_surface(surface, convex, pose, reach);
+        EXPECT_EQ(is_clear, is_clear_of_surface(convex, surface, inverse(pose), 0.999f * reach) && is_clear);
+        const int contacts = collide(ground, shape, pose, reach).count;
+        EXPECT_TRUE(!is_clear || contacts == 0);
+        clear += is_clear ? 1 : 0;
+        near += contacts == 0 && !is_clear ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(clear, near);
+  EXPECT_FALSE(is_clear_of_surface(make_shape(Sphere{1}), make_shape(Sphere{1}), {{9, 0, 0}, {}}, 0.0f));
+}
+
 TEST(CollideHeightField, EqualsTheSameGroundAsAMesh) {
   Random random{83};
   const std::vector<AnyShape> kinds = all_kinds(random);

@@ -5,6 +5,9 @@
 #include "geometry/gjk.h"
 #include "geometry/penetration.h"
 #include "geometry/sphere_triangle.h"
+#include "math/wide_vec.h"
+
+#include <bit>
 
 namespace gyre {
 namespace {
@@ -14,6 +17,13 @@ namespace {
 constexpr float kFaceAngle = 1.0e-3f;
 constexpr float kArcSlack = 1.0e-3f;
 constexpr float kLevelSlack = 1.0e-3f;
+
+using Floats = Wide<4>;
+
+Floats lanes(float a, float b, float c) {
+  const float row[4] = {a, b, c, 0.0f};
+  return Floats::load_unaligned(row);
+}
 
 class Search {
  public:
@@ -143,10 +153,8 @@ class Search {
 };
 
 void Search::face_axes() {
-  float separations[PlacedConvex::kMaxVertices];
-  convex_.face_separations(t_.v, separations);
   for (int i = 0; i < convex_.face_count() && !apart(); ++i) {
-    const float separation = separations[i] - convex_.radius();
+    const float separation = scratch_.before_face[i] - convex_.radius();
     if (separation <= useful()) continue;
     const Vec3 d = -convex_.face_normal(i);
     offer(d, separation, supporting_corners(d), AxisSource::shape_face);
@@ -154,15 +162,40 @@ void Search::face_axes() {
 }
 
 // An edge of the triangle and one of the polyhedron make a face of their Minkowski difference where their arcs on the
-// sphere of normals cross: the triangle's runs from its normal through `outward` to the other side.
+// sphere of normals cross: the triangle's runs from its normal through `outward` to the other side. The triangle's three
+// edges are looked at side by side; what may be better than the best before this edge is looked at by itself.
 void Search::edge_axes() {
+  const auto across = [](const Vec3* v) {
+    return Vec3W<4>{lanes(v[0].x, v[1].x, v[2].x), lanes(v[0].y, v[1].y, v[2].y),
+                    lanes(v[0].z, v[1].z, v[2].z)};
+  };
+  const Vec3W<4> along = across(t_.along), outward = across(t_.outward), corner = across(t_.v);
+  const auto is_active = [&](int i) {
+    return t_.edge[i] == EdgeKind::convex || t_.edge[i] == EdgeKind::open ? 1.0f : 0.0f;
+  };
+  const Mask<4> active = lanes(is_active(0), is_active(1), is_active(2)) > Floats(0.0f);
+  const Floats radius(convex_.radius()), zero(0.0f);
   // What each face's normal has along the triangle's edges: it serves all edges of the face.
-  float component[3][PlacedConvex::kMaxVertices];
-  for (int i = 0; i < 3; ++i) convex_.face_components(t_.along[i], component[i]);
+  alignas(16) float component[PlacedConvex::kMaxVertices][4];
+  for (int f = 0; f < convex_.face_count(); ++f)
+    dot(splat<4>(convex_.face_normal(f)), along).store(component[f]);
   for (const HullEdge& edge : convex_.edges()) {
-    for (int i = 0; i < 3; ++i) {
-      const float l = component[i][edge.left], r = component[i][edge.right];
-      if (l * r < 0.0f) edge_axis(edge, i, absolute(l), absolute(r));
+    const Floats left = Floats::load(component[edge.left]), right = Floats::load(component[edge.right]);
+    const Mask<4> crosses = left * right < zero;
+    if (none(crosses)) continue;
+    const Floats left_part = absolute(left), right_part = absolute(right);
+    const Vec3W<4> crossing = right_part * splat<4>(convex_.face_normal(edge.left)) +
+                              left_part * splat<4>(convex_.face_normal(edge.right));
+    const Floats scaled = dot(crossing, corner - splat<4>(convex_.vertex(edge.from)));
+    const Floats needed = select(active, Floats(min(found_.best, useful())), Floats(found_.best));
+    // `crossing` is at most as long as the two parts together: most overlapping pairs are known to be no better without
+    // a root.
+    const Floats longest = left_part + right_part;
+    const Mask<4> worse = (scaled < zero) & (scaled - radius * longest < needed * longest);
+    unsigned rest = to_bits(and_not(crosses & (dot(crossing, outward) < zero), worse));
+    for (; rest != 0; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      edge_axis(edge, i, left_part[i], right_part[i]);
     }
     if (apart()) return;
   }
@@ -171,13 +204,9 @@ void Search::edge_axes() {
 void Search::edge_axis(const HullEdge& edge, int i, float left_part, float right_part) {
   const Vec3 crossing =
       right_part * convex_.face_normal(edge.left) + left_part * convex_.face_normal(edge.right);
-  if (!(dot(crossing, t_.outward[i]) < 0.0f)) return;
   const float scaled = dot(crossing, t_.v[i] - convex_.vertex(edge.from));
   const bool active = t_.edge[i] == EdgeKind::convex || t_.edge[i] == EdgeKind::open;
   const float needed = active ? min(found_.best, useful()) : found_.best;
-  // `crossing` is at most as long as the two parts together: most overlapping pairs are known to be no better without a root.
-  const float longest = left_part + right_part;
-  if (scaled < 0.0f && scaled - convex_.radius() * longest < needed * longest) return;
   // Nearly along a face's normal (short and long edges, tiny angles) the face's own axis serves.
   const float size = length(crossing);
   if (!(size > 1.0e-4f)) return;
@@ -386,6 +415,12 @@ void measure_edges(NearTriangle& t) {
     t.along[i] = edge / t.length[i];
     t.outward[i] = cross(t.along[i], t.normal);
   }
+}
+
+bool is_before_a_face(const TriangleView& triangle, const PlacedConvex& convex, float max_separation,
+                      AxisScratch& scratch) {
+  return convex.face_count() > 0 &&
+         convex.face_separations(triangle.v, scratch.before_face) - convex.radius() > max_separation;
 }
 
 AxisSearch search_axes(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,

@@ -77,14 +77,21 @@ struct FeatureAxis {
 struct AxisSearch {
   float best = -__builtin_huge_valf();  // the largest separation along any direction, allowed or not
   FeatureAxis feature;                  // the best allowed direction besides the face's normal
-  bool over_face = false;               // the nearest point of the core, where it was searched for, lies over the face
-  Vec3 on_core;                         // that point
+  bool over_face = false;  // the nearest point of the core, where it was searched for, lies over the face
+  Vec3 on_core;            // that point
 };
 
-// Room for the triangle in the form that GJK takes, kept between triangles so that it is made once.
+// Room for the triangle in the form that GJK takes, kept between triangles so that it is made once, and for how far the
+// triangle lies before each face of a polyhedron.
 struct AxisScratch {
   Hull triangle;
+  float before_face[PlacedConvex::kMaxVertices];
 };
+
+// Whether the triangle lies farther than `max_separation` before a face of the shape. Must be asked before search_axes,
+// which goes on from the faces' separations in `scratch`.
+bool is_before_a_face(const TriangleView& triangle, const PlacedConvex& convex, float max_separation,
+                      AxisScratch& scratch);
 
 // Looks at all directions but the face's normal, for which the caller knows the separation of the surfaces. Ends early once
 // one separation is above `max_separation`.

@@ -21,11 +21,8 @@ class Gatherer {
   Gatherer(const Surface& surface, const PlacedConvex& convex, Vec3 position, float max_separation,
            MeshCandidates& out)
       : surface_(surface), convex_(convex), position_(position), max_separation_(max_separation), out_(out) {
-    constexpr Vec3 kX{1, 0, 0}, kY{0, 1, 0}, kZ{0, 0, 1};
-    const Aabb core{{convex.lowest(kX), convex.lowest(kY), convex.lowest(kZ)},
-                    {convex.highest(kX), convex.highest(kY), convex.highest(kZ)}};
     const float rounding = 1.2e-7f * largest(absolute(position));
-    box_ = grow(core, convex.radius() + max_separation + rounding);
+    box_ = grow(convex.box(), convex.radius() + max_separation + rounding);
     box_ = {box_.low + position, box_.high + position};
   }
 
@@ -118,8 +115,9 @@ class Gatherer {
     if (surface_.double_sided() && dot(normal, convex_.center() + position_ - point) < 0.0f) normal = -normal;
     if (!side_known_ || !(side_.normal == normal)) {
       side_.normal = normal;
-      side_.lowest = convex_.lowest(normal);
-      side_.highest = convex_.highest(normal);
+      const PlacedConvex::Extent extent = convex_.extent(normal);
+      side_.lowest = extent.low;
+      side_.highest = extent.high;
       convex_.face_towards(-normal, side_.face);
       side_known_ = true;
       stand_ins_ = 0;
@@ -273,6 +271,28 @@ int find_triangles(const Surface& surface, const Aabb& box, std::span<std::uint3
         add(2 * (row * field.cell_columns() + column) + 1);
       });
   return int(count);
+}
+
+bool has_triangle(const Surface& surface, const Aabb& box) {
+  bool found = false;
+  if (surface.mesh != nullptr) {
+    const Mesh& mesh = *surface.mesh;
+    walk_overlaps(
+        mesh.tree, box, [&](std::uint32_t, int) { return !found; },
+        [&](std::uint32_t first, std::uint32_t count) {
+          for (std::uint32_t id = first; id < first + count && !found; ++id)
+            found = overlap(triangle_box(mesh, id), box);
+        });
+    return found;
+  }
+  const HeightField& field = *surface.field;
+  walk_cells(
+      field, box, [&](HeightBlock) { return !found; },
+      [&](std::uint32_t column, std::uint32_t row) {
+        if (is_solid_cell(field, column, row))
+          found = found || overlap(block_box(field, {-1, column, row}), box);
+      });
+  return found;
 }
 
 }  // namespace gyre

@@ -28,4 +28,7 @@ void find_candidates(const Surface& surface, const PlacedConvex& convex, Vec3 po
 // that do not fit into `out` are left out. Returns how many were written.
 int find_triangles(const Surface& surface, const Aabb& box, std::span<std::uint32_t> out);
 
+// Whether the box of any triangle overlaps a box in the surface's frame.
+bool has_triangle(const Surface& surface, const Aabb& box);
+
 }  // namespace gyre

@@ -1,6 +1,8 @@
 // Placing a convex shape beside a mesh. See placed_convex.h.
 #include "geometry/placed_convex.h"
 
+#include "math/wide_vec.h"
+
 namespace gyre {
 namespace {
 
@@ -12,6 +14,52 @@ constexpr HullEdge kBoxEdges[12] = {
     {0, 4, 2, 0}, {1, 5, 1, 2}, {2, 6, 0, 3}, {3, 7, 3, 1},  // along z
 };
 
+// The columns of a box: corners by the bits of their signs, normals of the faces.
+constexpr float kCornerX[8] = {-1, 1, -1, 1, -1, 1, -1, 1};
+constexpr float kCornerY[8] = {-1, -1, 1, 1, -1, -1, 1, 1};
+constexpr float kCornerZ[8] = {-1, -1, -1, -1, 1, 1, 1, 1};
+constexpr float kBoxNormalX[8] = {-1, 1, -0.0f, 0, -0.0f, 0, 0, 0};
+constexpr float kBoxNormalY[8] = {-0.0f, 0, -1, 1, -0.0f, 0, 0, 0};
+constexpr float kBoxNormalZ[8] = {-0.0f, 0, -0.0f, 0, -1, 1, 1, 1};
+
+using Floats = Wide<PlacedConvex::kLanes>;
+using Vectors = Vec3W<PlacedConvex::kLanes>;
+
+Vectors load(const float* x, const float* y, const float* z, int i) {
+  return {Floats::load_unaligned(x + i), Floats::load_unaligned(y + i), Floats::load_unaligned(z + i)};
+}
+
+float least(Floats a) { return min(min(a[0], a[1]), min(a[2], a[3])); }
+float greatest(Floats a) { return max(max(a[0], a[1]), max(a[2], a[3])); }
+
+// Columns turned into other axes, in the order of roundings of a matrix times a vector.
+void turn_columns(const Mat3& turn, const float* x, const float* y, const float* z, int count, float* out_x,
+                  float* out_y, float* out_z) {
+  const Vectors a = splat<4>(turn.x), b = splat<4>(turn.y), c = splat<4>(turn.z);
+  for (int i = 0; i < count; i += PlacedConvex::kLanes) {
+    const Vectors v = load(x, y, z, i);
+    const Vectors turned = v.x * a + v.y * b + v.z * c;
+    turned.x.store_unaligned(out_x + i);
+    turned.y.store_unaligned(out_y + i);
+    turned.z.store_unaligned(out_z + i);
+  }
+}
+
+// The box of a shape's surface in its own frame.
+Aabb box_of(const Shape& shape) {
+  switch (shape.kind) {
+    case ShapeKind::capsule:
+    case ShapeKind::box: {
+      const Vec3 half = shape.extents + Vec3{shape.radius, shape.radius, shape.radius};
+      return {-half, half};
+    }
+    case ShapeKind::hull:
+      return shape.hull->box;
+    default:
+      return bounds(shape, Transform{});
+  }
+}
+
 }  // namespace
 
 PlacedConvex::PlacedConvex(const Shape& shape, Quat orientation)
@@ -21,60 +69,127 @@ PlacedConvex::PlacedConvex(const Shape& shape, Quat orientation)
       radius_(core_radius(shape)) {
   const Vec3 e = shape.extents;
   switch (shape.kind) {
-    case ShapeKind::sphere:
-      add_vertex({0, 0, 0});
+    case ShapeKind::sphere: {
+      constexpr float kZero[kLanes] = {};
+      place_vertices(kZero, kZero, kZero, 1);
       break;
-    case ShapeKind::capsule:
-      add_vertex({0, -e.y, 0});
-      add_vertex({0, e.y, 0});
+    }
+    case ShapeKind::capsule: {
+      constexpr float kZero[kLanes] = {};
+      const float y[kLanes] = {-e.y, e.y, e.y, e.y};
+      place_vertices(kZero, y, kZero, 2);
       break;
-    case ShapeKind::box:
-      for (int i = 0; i < 8; ++i)
-        add_vertex({(i & 1) ? e.x : -e.x, (i & 2) ? e.y : -e.y, (i & 4) ? e.z : -e.z});
-      for (int axis = 0; axis < 3; ++axis) {
-        const Vec3 normal{axis == 0 ? 1.0f : 0.0f, axis == 1 ? 1.0f : 0.0f, axis == 2 ? 1.0f : 0.0f};
-        add_face(-normal, e[axis]);
-        add_face(normal, e[axis]);
+    }
+    case ShapeKind::box: {
+      float x[8], y[8], z[8];
+      for (int i = 0; i < 8; ++i) {
+        x[i] = kCornerX[i] * e.x;
+        y[i] = kCornerY[i] * e.y;
+        z[i] = kCornerZ[i] * e.z;
       }
+      place_vertices(x, y, z, 8);
+      const float offsets[8] = {e.x, e.x, e.y, e.y, e.z, e.z, e.z, e.z};
+      place_faces(kBoxNormalX, kBoxNormalY, kBoxNormalZ, offsets, 6);
       edges_ = kBoxEdges;
       break;
+    }
     case ShapeKind::hull:
-      for (const Vec3 v : shape.hull->vertices) add_vertex(v);
-      for (const HullPlane& plane : shape.hull->planes) add_face(plane.normal, plane.offset);
-      edges_ = shape.hull->edges;
-      center_ = rotation_ * shape.hull->centroid;
+      place_hull(*shape.hull);
       break;
     default:
       break;
   }
-  local_box_ = bounds(shape, Transform{});
+  local_box_ = box_of(shape);
   size_ = length(max(absolute(local_box_.low), absolute(local_box_.high)));
-}
-
-void PlacedConvex::add_vertex(Vec3 local) {
-  const Vec3 v = rotation_ * local;
-  x_[vertex_count_] = v.x;
-  y_[vertex_count_] = v.y;
-  z_[vertex_count_] = v.z;
-  ++vertex_count_;
-}
-
-void PlacedConvex::add_face(Vec3 local_normal, float offset) {
-  const Vec3 n = rotation_ * local_normal;
-  nx_[face_count_] = n.x;
-  ny_[face_count_] = n.y;
-  nz_[face_count_] = n.z;
-  offset_[face_count_] = offset;
-  ++face_count_;
-}
-
-float PlacedConvex::lowest(Vec3 direction) const {
-  if (vertex_count_ == 0) return dot(direction, support(-direction));
-  float low = x_[0] * direction.x + y_[0] * direction.y + z_[0] * direction.z;
-  for (int i = 1; i < vertex_count_; ++i) {
-    low = min(low, x_[i] * direction.x + y_[i] * direction.y + z_[i] * direction.z);
+  const Vec3 axes[4] = {rotation_.x, rotation_.y, rotation_.z, {}};
+  for (int i = 0; i < 4; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      row_[k][i] = axes[i][k];
+      row_size_[k][i] = absolute(axes[i][k]);
+    }
+    local_low_[i] = i < 3 ? local_box_.low[i] : 0.0f;
+    local_high_[i] = i < 3 ? local_box_.high[i] : 0.0f;
   }
-  return low;
+}
+
+void PlacedConvex::place_vertices(const float* x, const float* y, const float* z, int count) {
+  vertex_count_ = count;
+  turn_columns(rotation_, x, y, z, count, x_, y_, z_);
+}
+
+void PlacedConvex::place_faces(const float* x, const float* y, const float* z, const float* offsets,
+                               int count) {
+  face_count_ = count;
+  turn_columns(rotation_, x, y, z, count, nx_, ny_, nz_);
+  for (int i = 0; i < padded(count); ++i) offset_[i] = offsets[i];
+}
+
+void PlacedConvex::place_hull(const Hull& hull) {
+  place_vertices(hull.x.data(), hull.y.data(), hull.z.data(), hull.vertex_count());
+  float x[kMaxVertices], y[kMaxVertices], z[kMaxVertices], offsets[kMaxVertices];
+  const int count = hull.face_count();
+  for (int i = 0; i < padded(count); ++i) {
+    const HullPlane& plane = hull.planes[std::size_t(min(i, count - 1))];
+    x[i] = plane.normal.x;
+    y[i] = plane.normal.y;
+    z[i] = plane.normal.z;
+    offsets[i] = plane.offset;
+  }
+  place_faces(x, y, z, offsets, count);
+  edges_ = hull.edges;
+  center_ = rotation_ * hull.centroid;
+}
+
+float PlacedConvex::face_separations(const Vec3* corners, float* out) const {
+  const Vectors a = splat<4>(corners[0]), b = splat<4>(corners[1]), c = splat<4>(corners[2]);
+  Floats most(-__builtin_huge_valf());
+  for (int i = 0; i < face_count_; i += kLanes) {
+    const Vectors n = load(nx_, ny_, nz_, i);
+    const Floats separation = min(dot(n, a), min(dot(n, b), dot(n, c))) - Floats::load_unaligned(offset_ + i);
+    separation.store_unaligned(out + i);
+    most = max(most, separation);
+  }
+  return greatest(most);
+}
+
+PlacedConvex::Extent PlacedConvex::extent(Vec3 direction) const {
+  if (vertex_count_ == 0) return {dot(direction, support(-direction)), dot(direction, support(direction))};
+  const Vectors d = splat<4>(direction);
+  Floats low = dot(load(x_, y_, z_, 0), d), high = low;
+  for (int i = kLanes; i < vertex_count_; i += kLanes) {
+    const Floats height = dot(load(x_, y_, z_, i), d);
+    low = min(low, height);
+    high = max(high, height);
+  }
+  return {least(low), greatest(high)};
+}
+
+Aabb PlacedConvex::box() const {
+  if (vertex_count_ == 0) {
+    const Extent x = extent({1, 0, 0}), y = extent({0, 1, 0}), z = extent({0, 0, 1});
+    return {{x.low, y.low, z.low}, {x.high, y.high, z.high}};
+  }
+  Vectors low = load(x_, y_, z_, 0), high = low;
+  for (int i = kLanes; i < vertex_count_; i += kLanes) {
+    const Vectors v = load(x_, y_, z_, i);
+    low = gyre::min(low, v);
+    high = gyre::max(high, v);
+  }
+  return {{least(low.x), least(low.y), least(low.z)}, {greatest(high.x), greatest(high.y), greatest(high.z)}};
+}
+
+bool PlacedConvex::has_low_vertex_inside(Vec3 direction, float height, const Vec3* outward,
+                                         const Vec3* points, float room) const {
+  const Vectors d = splat<4>(direction);
+  for (int i = 0; i < vertex_count_; i += kLanes) {
+    const Vectors v = load(x_, y_, z_, i);
+    Mask<4> inside = dot(d, v) <= Floats(height);
+    if (none(inside)) continue;
+    for (int k = 0; k < 3; ++k)
+      inside = inside & (dot(splat<4>(outward[k]), v - splat<4>(points[k])) < Floats(-room));
+    if (any(inside)) return true;
+  }
+  return false;
 }
 
 int PlacedConvex::lowest_vertex(Vec3 direction) const {
@@ -106,13 +221,12 @@ bool PlacedConvex::may_touch(const Aabb& box, float reach) const {
     const Vec3 outside = max(absolute(middle) - half, {0, 0, 0});
     return length_squared(outside) <= square(radius_ + reach) * 1.0001f;
   }
-  const Vec3 axes[3] = {rotation_.x, rotation_.y, rotation_.z};
-  const float slack = reach + 1.0e-6f * largest(absolute(middle));
-  for (int i = 0; i < 3; ++i) {
-    const float along = dot(axes[i], middle), spread = dot(absolute(axes[i]), half) + slack;
-    if (along - spread > local_box_.high[i] || along + spread < local_box_.low[i]) return false;
-  }
-  return true;
+  const Floats x(middle.x), y(middle.y), z(middle.z);
+  const Floats along = Floats::load(row_[0]) * x + Floats::load(row_[1]) * y + Floats::load(row_[2]) * z;
+  const Floats spread =
+      Floats::load(row_size_[0]) * Floats(half.x) + Floats::load(row_size_[1]) * Floats(half.y) +
+      Floats::load(row_size_[2]) * Floats(half.z) + Floats(reach + 1.0e-6f * largest(absolute(middle)));
+  return none((along - spread > Floats::load(local_high_)) | (along + spread < Floats::load(local_low_)));
 }
 
 float PlacedConvex::box_distance(Vec3 point) const {

@@ -34,32 +34,29 @@ class PlacedConvex {
   int face_count() const { return face_count_; }
   Vec3 face_normal(int i) const { return {nx_[i], ny_[i], nz_[i]}; }
   float face_offset(int i) const { return offset_[i]; }  // dot(normal, p) = offset on the face
-  // The component of every face's normal along `direction`, into face_count() floats.
-  void face_components(Vec3 direction, float* out) const {
-    for (int i = 0; i < face_count_; ++i)
-      out[i] = nx_[i] * direction.x + ny_[i] * direction.y + nz_[i] * direction.z;
-  }
-  // How far a triangle's lowest corner lies before each face, into face_count() floats.
-  void face_separations(const Vec3* corners, float* out) const {
-    const Vec3 a = corners[0], b = corners[1], c = corners[2];
-    for (int i = 0; i < face_count_; ++i) {
-      const float at_a = nx_[i] * a.x + ny_[i] * a.y + nz_[i] * a.z;
-      const float at_b = nx_[i] * b.x + ny_[i] * b.y + nz_[i] * b.z;
-      const float at_c = nx_[i] * c.x + ny_[i] * c.y + nz_[i] * c.z;
-      out[i] = min(at_a, min(at_b, at_c)) - offset_[i];
-    }
-  }
+  // How far a triangle's lowest corner lies before each face, into padded(face_count()) floats; returns the greatest.
+  float face_separations(const Vec3* corners, float* out) const;
   // Edges between two faces; empty for capsules, whose one edge has no faces (vertex 0 to vertex 1).
   std::span<const HullEdge> edges() const { return edges_; }
 
   // The core's extent along `direction`: the least and the greatest dot product of it with any of its points.
-  float lowest(Vec3 direction) const;
-  float highest(Vec3 direction) const { return -lowest(-direction); }
+  float lowest(Vec3 direction) const { return extent(direction).low; }
+  float highest(Vec3 direction) const { return extent(direction).high; }
+  struct Extent {
+    float low, high;
+  };
+  Extent extent(Vec3 direction) const;
+  // The core's box in the mesh's axes.
+  Aabb box() const;
   Vec3 support(Vec3 direction) const;
   // The feature that faces `direction`, in the mesh's axes. FacePolygon ids keep their meaning.
   void face_towards(Vec3 direction, FacePolygon& out) const;
   // The vertex of the core farthest against `direction`; only if has_vertices().
   int lowest_vertex(Vec3 direction) const;
+  // Whether any vertex not higher than `height` along `direction` lies more than `room` inside of each of three planes
+  // through points; only if has_vertices().
+  bool has_low_vertex_inside(Vec3 direction, float height, const Vec3* outward, const Vec3* points,
+                             float room) const;
 
   // Whether anything within `reach` of the surface may lie in the box: false only if certainly nothing does.
   bool may_touch(const Aabb& box, float reach) const;
@@ -69,9 +66,14 @@ class PlacedConvex {
   Vec3 from_local(Vec3 v) const { return rotation_ * v; }
   const Aabb& local_box() const { return local_box_; }
 
+  // Columns are searched four at a time: behind the last of them its copies stand.
+  static constexpr int kLanes = 4;
+  static constexpr int padded(int count) { return (count + kLanes - 1) / kLanes * kLanes; }
+
  private:
-  void add_vertex(Vec3 local);
-  void add_face(Vec3 local_normal, float offset);
+  void place_vertices(const float* x, const float* y, const float* z, int count);
+  void place_faces(const float* x, const float* y, const float* z, const float* offsets, int count);
+  void place_hull(const Hull& hull);
 
   const Shape* shape_;
   Quat orientation_;
@@ -79,11 +81,14 @@ class PlacedConvex {
   float radius_ = 0.0f, size_ = 0.0f;
   Vec3 center_;
   Aabb local_box_;  // of the surface, in the shape's frame
+  // The turn's rows, of the turn itself and without signs, and the local box, one axis of the shape a lane.
+  alignas(16) float row_[3][4], row_size_[3][4];
+  alignas(16) float local_low_[4], local_high_[4];
   int vertex_count_ = 0, face_count_ = 0;
   std::span<const HullEdge> edges_;
   // Columns, not cleared: only the counted ones are ever read.
-  float x_[kMaxVertices], y_[kMaxVertices], z_[kMaxVertices];
-  float nx_[kMaxVertices], ny_[kMaxVertices], nz_[kMaxVertices], offset_[kMaxVertices];
+  alignas(16) float x_[kMaxVertices], y_[kMaxVertices], z_[kMaxVertices];
+  alignas(16) float nx_[kMaxVertices], ny_[kMaxVertices], nz_[kMaxVertices], offset_[kMaxVertices];
 };
 
 // What a shape has to say about the planes with one normal. Neighbouring triangles mostly share it, so it is asked once.

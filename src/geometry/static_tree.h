@@ -8,6 +8,8 @@
 // 2007 (binned surface area heuristic); H. Dammertz, J. Hanika, A. Keller, "Shallow Bounding Volume Hierarchies", 2008.
 #pragma once
 
+#include "math/wide.h"
+
 #include <gyre/math.h>
 
 #include <cstdint>
@@ -54,14 +56,16 @@ void build_static_tree(std::span<const Aabb> boxes, StaticTree& tree);
 
 // Which children's boxes overlap `box`: bit i for lane i.
 inline unsigned overlap_mask(const StaticTree::Node& node, const Aabb& box) {
-  std::uint8_t hit[StaticTree::kWidth];
-  for (int i = 0; i < StaticTree::kWidth; ++i) {
-    hit[i] = std::uint8_t((node.low[0][i] <= box.high.x) & (box.low.x <= node.high[0][i]) &
-                          (node.low[1][i] <= box.high.y) & (box.low.y <= node.high[1][i]) &
-                          (node.low[2][i] <= box.high.z) & (box.low.z <= node.high[2][i]));
-  }
+  constexpr int kHalf = 4;
+  using Floats = Wide<kHalf>;
   unsigned mask = 0;
-  for (int i = 0; i < StaticTree::kWidth; ++i) mask |= unsigned(hit[i]) << i;
+  for (int i = 0; i < StaticTree::kWidth; i += kHalf) {
+    const auto overlap = [&](int axis) {
+      return (Floats::load_unaligned(node.low[axis] + i) <= Floats(box.high[axis])) &
+             (Floats(box.low[axis]) <= Floats::load_unaligned(node.high[axis] + i));
+    };
+    mask |= to_bits(overlap(0) & overlap(1) & overlap(2)) << i;
+  }
   return mask;
 }
 

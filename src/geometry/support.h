@@ -22,12 +22,16 @@ struct FacePolygon {
   // Unit, outward. For a segment: at a right angle to it, as near to the asked direction as that allows. For a point: the
   // asked direction.
   Vec3 normal;
-  // Counter-clockwise seen from outside.
-  Vec3 vertices[kMaxFaceVertices];
+  // Counter-clockwise seen from outside. Like their names not cleared: only the counted ones are ever read.
+  union {
+    Vec3 vertices[kMaxFaceVertices];
+  };
   // Names each vertex within the whole shape, and keeps its meaning while the shape turns.
-  std::uint8_t ids[kMaxFaceVertices] = {};
+  std::uint8_t ids[kMaxFaceVertices];
   // Names the face, segment or point within the shape; below 256 too.
   std::uint32_t feature = 0;
+
+  FacePolygon() {}
 };
 
 // The radius of the ball that sweeps the core: sphere and capsule radius, box rounding, else 0.
