@@ -11,6 +11,7 @@
 #pragma once
 
 #include "base/arena.h"
+#include "math/block_plan.h"
 
 #include <cstdint>
 #include <span>
@@ -22,20 +23,6 @@ constexpr int kMostBlockRows = 6;
 // Two nodes whose block is not zero. Pairs may repeat; a node is not paired with itself.
 struct BlockEdge {
   std::uint32_t a = 0, b = 0;
-};
-
-struct BlockEntry {
-  std::uint32_t place = 0;  // of the row's node in the order
-  std::uint32_t offset =
-      0;  // of its block among the values: rows of `place` by rows of the column, row after row
-};
-
-struct BlockColumn {
-  std::uint32_t size = 0;            // rows of the node
-  std::uint32_t row = 0;             // its first in vectors
-  std::uint32_t diagonal = 0;        // offset of its own block among the values
-  std::uint32_t begin = 0, end = 0;  // entries below the diagonal, by place
-  std::uint32_t targets = 0;         // first of the blocks that eliminating it changes
 };
 
 // Memory is the arena's that it was made in.

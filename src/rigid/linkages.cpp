@@ -11,6 +11,8 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 constexpr std::uint64_t kMostWorkPerRow = 400;
 // and if no more pairs of joints share a body than this for each joint.
 constexpr std::uint64_t kMostPairsPerJoint = 8;
+// How many shapes a linkage is compared with. A shape found anew costs time, never bits.
+constexpr std::size_t kShapesCompared = 16;
 
 // The joints of a batch that have equations, and how they hang together.
 struct Graph {
@@ -112,14 +114,17 @@ Groups group_joints(const RigidWorld& w, const SolveBatch& batch, std::span<cons
 class LinkageMaker {
  public:
   LinkageMaker(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
-               const Graph& graph, std::span<const std::uint32_t> local, DenseNets& dense, Arena& arena)
+               std::span<const JointWork> work, const Graph& graph, std::span<const std::uint32_t> local,
+               std::size_t most, DenseNets& dense, Arena& arena)
       : w_(w),
         batch_(batch),
         places_(places),
+        work_(work),
         graph_(graph),
         local_(local),
         dense_(dense),
         arena_(arena),
+        shapes_(arena.make<LinkageShape>(most)),
         sides_(arena.make<std::uint32_t>(batch.bodies.size())) {
     for (std::uint32_t& side : sides_) side = kNone;
   }
@@ -129,6 +134,9 @@ class LinkageMaker {
     if (pairs > kMostPairsPerJoint * members.size()) return false;
     make_nodes(members, linkage);
     make_bodies(linkage);
+    LinkageShape shape;
+    const bool in_lanes = describe(linkage, shape);
+    if (in_lanes && find_shape(shape, linkage)) return true;
     const std::span<LinkageCoupling> couplings = arena_.make<LinkageCoupling>(pairs);
     const std::span<BlockEdge> edges = arena_.make<BlockEdge>(pairs);
     list_pairs(members, linkage, couplings, edges);
@@ -151,11 +159,17 @@ class LinkageMaker {
       c = {c.column, c.row, c.offset, c.body, c.column_has_b, c.row_has_b};
     }
     linkage.couplings = couplings;
+    if (in_lanes) {
+      add_shape(shape, linkage);
+      return true;
+    }
     linkage.values = arena_.make<double>(linkage.plan.values);
     linkage.room = arena_.make<double>(linkage.plan.widest);
     linkage.vector = arena_.make<double>(linkage.plan.rows);
     return true;
   }
+
+  std::span<LinkageShape> shapes() const { return shapes_.first(shape_count_); }
 
  private:
   const JointRecord& record(std::uint32_t number) const {
@@ -224,13 +238,65 @@ class LinkageMaker {
     }
   }
 
+  // The linkage as lanes have it; false if they cannot bear it. Bodies that cannot be pushed come last, one for each joint's end.
+  bool describe(const Linkage& linkage, LinkageShape& shape) {
+    for (const LinkageNode& node : linkage.nodes) {
+      LaneNode lane;
+      if (!fits_lane(w_.joints.records[node.record], work_[node.work], lane)) return false;
+    }
+    shape.nodes = arena_.make<LaneNode>(linkage.nodes.size());
+    shape.body_count = shape.moving_count = std::uint32_t(linkage.bodies.size());
+    for (std::size_t i = 0; i < linkage.nodes.size(); ++i) {
+      const LinkageNode& node = linkage.nodes[i];
+      LaneNode& lane = shape.nodes[i] = LaneNode{};
+      fits_lane(w_.joints.records[node.record], work_[node.work], lane);
+      lane.rows = std::uint32_t(node.count);
+      lane.a = node.side_a < 0 ? shape.body_count++ : std::uint32_t(node.side_a);
+      lane.b = node.side_b < 0 ? shape.body_count++ : std::uint32_t(node.side_b);
+    }
+    return true;
+  }
+  bool find_shape(const LinkageShape& shape, Linkage& linkage) const {
+    const auto same = [](const LaneNode& a, const LaneNode& b) {
+      return a.kind == b.kind && a.has_twist == b.has_twist && a.has_swing == b.has_swing && a.a == b.a && a.b == b.b;
+    };
+    const std::size_t oldest = shape_count_ > kShapesCompared ? shape_count_ - kShapesCompared : 0;
+    for (std::size_t i = shape_count_; i-- > oldest;) {
+      const LinkageShape& other = shapes_[i];
+      if (other.moving_count != shape.moving_count || other.nodes.size() != shape.nodes.size()) continue;
+      if (!std::equal(shape.nodes.begin(), shape.nodes.end(), other.nodes.begin(), same)) continue;
+      linkage.shape = std::int32_t(i);
+      return true;
+    }
+    return false;
+  }
+  void add_shape(LinkageShape& shape, Linkage& linkage) {
+    shape.plan = linkage.plan;
+    for (std::size_t i = 0; i < shape.nodes.size(); ++i) {
+      const BlockColumn& column = shape.plan.columns[shape.plan.place_of[i]];
+      shape.nodes[i].row = column.row;
+      shape.nodes[i].diagonal = column.diagonal;
+    }
+    shape.couplings = arena_.make<LaneCoupling>(linkage.couplings.size());
+    for (std::size_t i = 0; i < linkage.couplings.size(); ++i) {
+      const LinkageCoupling& c = linkage.couplings[i];
+      const LaneNode& row = shape.nodes[c.row];
+      shape.couplings[i] = {c.row, c.column, c.offset, c.row_has_b ? row.b : row.a, c.row_has_b, c.column_has_b};
+    }
+    linkage.shape = std::int32_t(shape_count_);
+    shapes_[shape_count_++] = shape;
+  }
+
   const RigidWorld& w_;
   const SolveBatch& batch_;
   std::span<const std::uint32_t> places_;
+  std::span<const JointWork> work_;
   const Graph& graph_;
   std::span<const std::uint32_t> local_;
   DenseNets& dense_;
   Arena& arena_;
+  std::span<LinkageShape> shapes_;
+  std::size_t shape_count_ = 0;
   std::span<std::uint32_t> sides_;  // by body's place: which body of its linkage it is
 };
 
@@ -255,24 +321,25 @@ void DenseNets::add(std::span<const std::uint8_t> sizes, std::span<const BlockEd
 }
 
 Linkages find_linkages(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
-                       DenseNets& dense, Arena& arena) {
+                       std::span<const JointWork> work, DenseNets& dense, Arena& arena) {
   const std::span<std::uint8_t> swept = arena.make<std::uint8_t>(batch.joints.size());
   for (std::uint8_t& flag : swept) flag = 1;
-  if (batch.joints.empty()) return {{}, swept};
+  if (batch.joints.empty()) return {{}, {}, {}, swept};
   const Graph graph = make_graph(w, batch, places, arena);
   const Groups groups = group_joints(w, batch, places, graph, arena);
+  // Those of their own from the front, those alike from the back.
   const std::span<Linkage> linkages = arena.make<Linkage>(groups.ends.size());
-  LinkageMaker maker(w, batch, places, graph, groups.local, dense, arena);
-  std::size_t made = 0;
+  LinkageMaker maker(w, batch, places, work, graph, groups.local, groups.ends.size(), dense, arena);
+  std::size_t own = 0, alike = linkages.size();
   for (std::size_t group = 0; group < groups.ends.size(); ++group) {
     const std::uint32_t begin = group == 0 ? 0 : groups.ends[group - 1];
     const std::span<const std::uint32_t> members = groups.members.subspan(begin, groups.ends[group] - begin);
-    linkages[made] = Linkage{};
-    if (!maker.make(members, linkages[made])) continue;
-    for (const LinkageNode& node : linkages[made].nodes) swept[node.work] = 0;
-    ++made;
+    Linkage linkage;
+    if (!maker.make(members, linkage)) continue;
+    for (const LinkageNode& node : linkage.nodes) swept[node.work] = 0;
+    linkages[linkage.shape < 0 ? own++ : --alike] = linkage;
   }
-  return {linkages.first(made), swept};
+  return {linkages.first(own), linkages.subspan(alike), maker.shapes(), swept};
 }
 
 }  // namespace gyre

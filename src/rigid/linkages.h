@@ -6,12 +6,23 @@
 #include "base/array.h"
 #include "rigid/rigid_world.h"
 #include "rigid/solve_batches.h"
+#include "solver/lane_records.h"
 #include "solver/linkage.h"
 
 namespace gyre {
 
+// What linkages that hang together alike have in common: how, and the order of their elimination.
+struct LinkageShape {
+  std::span<LaneNode> nodes;
+  std::span<LaneCoupling> couplings;
+  BlockPlan plan;
+  std::uint32_t body_count = 0, moving_count = 0;
+};
+
 struct Linkages {
-  std::span<Linkage> linkages;
+  std::span<Linkage> linkages;       // each solved by itself
+  std::span<Linkage> alike;          // those that are solved side by side,
+  std::span<LinkageShape> shapes;    // and what they are like
   std::span<const std::uint8_t> swept;  // by place in the batch's list of joints: 1 if it is in no linkage
 };
 
@@ -32,8 +43,8 @@ class DenseNets {
   Array<BlockEdge> edges_;
 };
 
-// Of one batch; `places` are those of all (solve_batches.h).
+// Of one batch; `places` are those of all (solve_batches.h), `work` that of the batch's joints.
 Linkages find_linkages(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
-                       DenseNets& dense, Arena& arena);
+                       std::span<const JointWork> work, DenseNets& dense, Arena& arena);
 
 }  // namespace gyre

@@ -7,6 +7,7 @@
 #include "rigid/contact_structures.h"
 #include "rigid/fields.h"
 #include "rigid/integrators.h"
+#include "rigid/linkage_bundles.h"
 #include "rigid/linkages.h"
 #include "rigid/rolling.h"
 #include "rigid/smooth_motion.h"
@@ -33,6 +34,7 @@ struct Solve {
   std::span<JointPlaces> joint_places{};
   Linkages linkages{};
   LinkageSolve linkage_solve{};
+  BundleSolve bundles{};
   Motions motions{};
   std::span<MovedBody> moved{};            // the batch's bodies that constraints act on,
   void* motion_blocks = nullptr;           // the same for the kernels,

@@ -253,6 +253,25 @@ void linkage_stage(void* context, int begin, int end, int) {
   for (int i = begin; i < end; ++i) kernel(s.linkages.linkages[std::size_t(i)], s.linkage_solve);
 }
 
+// Of linkages side by side.
+void begin_bundles_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  begin_bundles(s.bundles, begin, end, s.linkage_solve);
+}
+void finish_bundles_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  finish_bundles(s.bundles, begin, end, s.linkage_solve);
+}
+using BundleKernel = void (*LinkageKernels::*)(const LinkageBundle&, const LaneArrays&, const LaneSettings&);
+template <BundleKernel... kernels>
+void bundle_stage(void* context, int begin, int end, int) {
+  const BundleSolve& s = static_cast<Solve*>(context)->bundles;
+  for (int i = begin; i < end; ++i) {
+    const LinkageBundle& bundle = s.bundles[std::size_t(i)].lanes;
+    ((bundle.kernels->*kernels)(bundle, s.arrays, s.settings), ...);
+  }
+}
+
 // ---------------------------------------------------------------------------------------------------------- program
 
 // The stages of one part of a sub-step. Impacts and joints are between forces, contacts and moves only where there are any.
@@ -265,10 +284,10 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   const int impacts = solve.scratch.impacts.empty() ? 0 : 1;
   const int trees = first || last ? int(solve.forest.trees.size()) : 0;
   const int structures = solve.structures.empty() ? 0 : 1;
-  const int linkages = int(solve.linkages.linkages.size());
+  const int linkages = int(solve.linkages.linkages.size()), bundles = int(solve.bundles.bundles.size());
   // Joints act between forces and contacts: what they give is none of the contacts' work, and how they bend in the sub-step
   // is none of what contacts gave in the last one.
-  const bool has_joints = linkages > 0 || !joints.empty();
+  const bool has_joints = linkages > 0 || bundles > 0 || !joints.empty();
   const bool is_warm = !first && impacts == 0 && !has_joints;
   const int fields = solve.fields.blocks();
   program.add(watch_fields_stage, &solve.fields, fields);
@@ -281,6 +300,7 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   program.add(strike_stage, &solve, impacts);
   program.add_groups(bend_joints_stage, joints, kJointsPerBlock, 1);
   program.add(linkage_stage<warm_linkage>, &solve, linkages);
+  program.add(bundle_stage<&LinkageKernels::warm>, &solve, bundles);
   program.add_groups(warm_joints_stage, joints, kJointsPerBlock, 1);
   if (!first && !is_warm) program.add(warm_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
   if (first) {
@@ -293,6 +313,7 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   if (fields > 0) program.add(watch_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
   program.add_groups(solve_joints_stage, joints, kJointsPerBlock, 1);
   program.add(linkage_stage<solve_linkage>, &solve, linkages);
+  program.add(bundle_stage<&LinkageKernels::solve>, &solve, bundles);
   if (has_joints) program.add(watch_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
   program.add_groups(solve_contacts_stage, contacts, 1, kBlocksPerClaim);
   program.add(solve_trees_stage, &solve, trees, kTreesPerClaim);
@@ -300,21 +321,27 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   if (last) program.add(structures_stage<solve_structure_last>, &solve, structures);
   if (has_joints) program.add(note_stage, &solve, bodies, kMotionBlocksPerClaim);
   program.add(linkage_stage<solve_linkage_again>, &solve, linkages);
+  program.add(bundle_stage<&LinkageKernels::solve_again>, &solve, bundles);
   if (has_joints) program.add(watch_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
   program.add(advance_stage, &solve, bodies, kMotionBlocksPerClaim);
   program.add(turn_alone_stage, &solve, count_blocks(int(solve.spinners.size()), kSpinnersPerClaim));
   program.add(release_stage, &solve, impacts);
   program.add_groups(place_joints_stage, joints, kJointsPerBlock, 1);
   program.add(linkage_stage<place_linkage>, &solve, linkages);
+  if (!joints.empty()) program.add(bundle_stage<&LinkageKernels::place>, &solve, bundles);
   program.add_groups(relax_joints_stage, joints, kJointsPerBlock, 1);
   program.add(linkage_stage<relax_linkage>, &solve, linkages);
+  // Where no joint is swept in between, while their rows are still in the cache.
+  program.add(joints.empty() ? bundle_stage<&LinkageKernels::place, &LinkageKernels::relax>
+                             : bundle_stage<&LinkageKernels::relax>,
+              &solve, bundles);
 }
 
 void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> joints, Arena& arena, TaskSystem& tasks) {
   const int parts = solve.motions.count;
-  const std::size_t per_part = 24 + 5 * joints.size() + 2 * contacts.size();
+  const std::size_t per_part = (solve.bundles.bundles.empty() ? 24 : 29) + 5 * joints.size() + 2 * contacts.size();
   ProgramWriter program(
-      arena.make<Stage>(12 + std::size_t(parts) * per_part + 2 * contacts.size() + joints.size()));
+      arena.make<Stage>(15 + std::size_t(parts) * per_part + 2 * contacts.size() + joints.size()));
   std::uint32_t blocks = 0;
   for (const Group& group : contacts) blocks += group.count;
   const int bodies = count_blocks(int(solve.moved.size()), solve.kernels.width);
@@ -325,6 +352,9 @@ void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> join
   program.add(prepare_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
   program.add_groups(place_joints_stage, joints, kJointsPerBlock, 1);
   program.add(linkage_stage<place_linkage>, &solve, int(solve.linkages.linkages.size()));
+  const int bundles = int(solve.bundles.bundles.size());
+  program.add(begin_bundles_stage, &solve, bundles);
+  program.add(bundle_stage<&LinkageKernels::place>, &solve, bundles);
   for (int i = 0; i < parts; ++i) add_part(program, solve, i, contacts, joints);
   program.add_groups(relax_contacts_stage, contacts, 1, kBlocksPerClaim);
   program.add(begin_projection_stage, &solve, bodies, kMotionBlocksPerClaim);
@@ -333,6 +363,7 @@ void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> join
   program.add(finish_turns_stage, &solve, count_blocks(int(solve.moved.size()), kBodiesPerBlock));
   program.add(finish_smooth, &solve, solve.smooth.count());
   program.add(finish_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
+  program.add(finish_bundles_stage, &solve, bundles);
   run_program(tasks, program.stages());
 }
 
@@ -363,7 +394,11 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   const ArenaScope scope(arena);
   SolveScratch& scratch = solve.scratch;
   gather_contacts(solve);
-  solve.linkages = find_linkages(solve.w, solve.batch, solve.places, scratch.dense_nets, arena);
+  const JointWorks works = begin_joints(solve.w, solve.batch, warm_scale, arena);
+  solve.joint_work = works.work;
+  solve.joint_places = works.places;
+  solve.linkages =
+      find_linkages(solve.w, solve.batch, solve.places, solve.joint_work, scratch.dense_nets, arena);
   gather_joints(solve);
   solve.rolling = find_rolling_contacts(solve.w, scratch, solve.places, solve.batch.bodies.size(),
                                         solve.contact_settings.step, arena);
@@ -374,9 +409,6 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   const std::uint32_t bodies = std::uint32_t(solve.batch.bodies.size());
   color_constraints(scratch.pairs, bodies, {}, kColoringOptions, scratch.contact_colors);
   color_constraints(scratch.joint_pairs, bodies, {}, kColoringOptions, scratch.joint_colors);
-  const JointWorks works = begin_joints(solve.w, solve.batch, warm_scale, arena);
-  solve.joint_work = works.work;
-  solve.joint_places = works.places;
   solve.linkage_solve = {.records = solve.w.joints.records,
                          .work = solve.joint_work,
                          .places = solve.joint_places,
@@ -384,6 +416,7 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
                          .settings = solve.joint_settings,
                          .give = kLinkageGive};
   solve.linkage_solve.settings.swept = false;
+  solve.bundles = lay_out_bundles(solve.linkages, solve.kernels, solve.linkage_solve, arena);
   gather_motion(solve, arena);
   find_resting(solve, arena);
   const std::span<Group> contacts = lay_out_contacts(solve, arena);

@@ -7,6 +7,7 @@
 
 #include "geometry/manifold.h"
 #include "solver/body_motion.h"
+#include "solver/linkage_lanes.h"
 #include "solver/motion_block.h"
 
 #include <cstdint>
@@ -95,6 +96,7 @@ struct ContactKernels {
   void (*finish)(void* blocks, int begin, int end, const ContactConstraint* constraints, const std::uint32_t* order,
                  const ContactSettings& settings);
   MotionKernels motion;
+  LinkageKernels linkages;
 };
 
 // The widest kernels that this machine runs well and that have at most `width` lanes (0: any). Same bits whichever.

@@ -4,6 +4,7 @@
 #include "solver/contact_follow.h"
 #include "solver/contact_prepare.h"
 #include "solver/contact_project.h"
+#include "solver/linkage_kernel.h"
 #include "solver/motion_kernel.h"
 
 namespace gyre {
@@ -23,7 +24,8 @@ constexpr ContactKernels contact_kernels() {
           write_block_impulse<W>,
           harden_block<W>,
           finish_blocks<W>,
-          motion_kernels<W>()};
+          motion_kernels<W>(),
+          linkage_kernels<W>()};
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

@@ -159,36 +159,43 @@ void scale_impulses(JointAxisRecord& axis, float scale) {
   axis.total = 0.0f;
 }
 
+// An axis on which something acts.
+void begin_axis(AxisWork& x, JointAxis index, const JointAxisRecord& axis, float warm_scale) {
+  x = {};
+  x.axis = axis;
+  scale_impulses(x.axis, warm_scale);
+  x.index = index;
+  x.has_low = x.has_high = axis.motion == AxisMotion::limited;
+}
+
 // The axes on which anything acts.
 void begin_axes(const JointRecord& joint, JointWork& work, float warm_scale, Arena& arena) {
-  AxisWork found[kJointAxisCount];
-  std::size_t count = 0;
-  const auto add = [&](JointAxis index, JointAxisRecord axis) {
-    scale_impulses(axis, warm_scale);
-    AxisWork& x = found[count++];
-    x.axis = axis;
-    x.index = index;
-    x.has_low = x.has_high = axis.motion == AxisMotion::limited;
-  };
   if (keeps_axis_in_record(joint.kind)) {
     const JointAxis index = joint.kind == JointKind::hinge ? JointAxis::angular_x : JointAxis::linear_x;
     const JointAxisRecord axis = axis_of_record(joint, work.detail, index);
-    if (joint.kind == JointKind::distance || acts(axis)) add(index, axis);
-    if (joint.kind == JointKind::distance) {
-      found[0].is_rod = joint.min_length == joint.max_length;
-      found[0].has_low = joint.min_length > 0.0f;
-      found[0].has_high = joint.max_length < kUnlimitedLength;
-    }
-  } else if (work.detail != nullptr) {
-    for (int i = 0; i < kJointAxisCount; ++i) {
-      const JointAxisRecord& axis = work.detail->axes[i];
-      if (axis.motion != AxisMotion::locked && acts(axis)) add(JointAxis(i), axis);
-    }
-    adjust_axes(joint, std::span<AxisWork>(found, count));
+    if (joint.kind != JointKind::distance && !acts(axis)) return;
+    work.axes = arena.make<AxisWork>(1);
+    begin_axis(work.axes[0], index, axis, warm_scale);
+    if (joint.kind != JointKind::distance) return;
+    work.axes[0].is_rod = joint.min_length == joint.max_length;
+    work.axes[0].has_low = joint.min_length > 0.0f;
+    work.axes[0].has_high = joint.max_length < kUnlimitedLength;
+    return;
   }
+  if (work.detail == nullptr) return;
+  const auto acts_on = [&](int i) {
+    const JointAxisRecord& axis = work.detail->axes[i];
+    return axis.motion != AxisMotion::locked && acts(axis);
+  };
+  std::size_t count = 0;
+  for (int i = 0; i < kJointAxisCount; ++i) count += acts_on(i) ? 1 : 0;
   if (count == 0) return;
   work.axes = arena.make<AxisWork>(count);
-  for (std::size_t i = 0; i < count; ++i) work.axes[i] = found[i];
+  std::size_t used = 0;
+  for (int i = 0; i < kJointAxisCount; ++i) {
+    if (acts_on(i)) begin_axis(work.axes[used++], JointAxis(i), work.detail->axes[i], warm_scale);
+  }
+  adjust_axes(joint, work.axes);
 }
 
 void place_kind(JointRecord& joint, JointWork& work, const JointPair& pair, const JointPlaces& places,

@@ -376,6 +376,13 @@ void sweep_axes(const Linkage& linkage, const LinkageSolve& s, bool soft) {
 
 }  // namespace
 
+void raise_inertia(const float* pull, const float* inertia, float share, float* inverse_inertia) {
+  const auto matrix = [](const float* m) { return Sym3{m[0], m[1], m[2], m[3], m[4], m[5]}; };
+  const Sym3 raised = inverse(matrix(inertia) + share * positive_part(matrix(pull)));
+  const float out[6] = {raised.xx, raised.yy, raised.zz, raised.xy, raised.xz, raised.yz};
+  for (int i = 0; i < 6; ++i) inverse_inertia[i] = out[i];
+}
+
 void place_linkage(const Linkage& linkage, const LinkageSolve& s) {
   for (double& value : linkage.values) value = 0.0;
   for (std::size_t n = 0; n < linkage.nodes.size(); ++n) {

@@ -66,6 +66,7 @@ struct Linkage {
   std::span<LinkageBody> bodies;
   std::span<const LinkageCoupling> couplings;
   BlockPlan plan;
+  std::int32_t shape = -1;  // of the linkages that are solved side by side (solver/linkage_lanes.h): which it is like
   std::span<double> values;  // of the matrix, then of its factors
   std::span<double> room;
   std::span<double> vector;
@@ -79,6 +80,9 @@ struct LinkageSolve {
   JointSettings settings;
   float give = 0.0f;  // share of K by which rows give way
 };
+
+// The inverse of an inertia raised by `share` of what of `pull` holds back (six floats each, as Sym3).
+void raise_inertia(const float* pull, const float* inertia, float share, float* inverse_inertia);
 
 // The rows where the bodies are now, and their matrix, factored.
 void place_linkage(const Linkage& linkage, const LinkageSolve& solve);

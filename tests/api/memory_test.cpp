@@ -98,7 +98,7 @@ TEST(NoAllocation, InJointsAndThreads) {
     world.add_joint({.kind = JointKind::ball, .a = last, .b = link, .anchor = {double(i), 0, 0}});
     last = link;
   }
-  expect_none(world, 1800, 120, "chain on two threads");
+  expect_none(world, 2400, 120, "chain on two threads");  // it swings for long, and now and then links touch
 }
 TEST(NoAllocation, InFields) {
   World world = make_world({.threads = 2, .sleeping = false});

@@ -1,0 +1,92 @@
+// WideDouble<H>: H doubles that move as one, for kernels whose floats are not enough (factorisations). The W floats of a register
+// are two such halves, low lanes first, because a register holds half as many doubles; with W = 1 there is one. Lane i has the
+// bits of plain double arithmetic, as promised in math/wide.h.
+#pragma once
+
+#include "math/wide.h"
+
+namespace gyre {
+inline namespace GYRE_TARGET_NAMESPACE {
+
+template <int H>
+struct DoubleLanes {
+  static_assert(H == 2 || H == 4 || H == 8);
+  typedef double Double __attribute__((vector_size(8 * H)));
+  typedef double AnyDouble __attribute__((vector_size(8 * H), may_alias));
+  typedef float HalfFloat __attribute__((vector_size(4 * H)));
+};
+template <>
+struct DoubleLanes<1> {
+  using Double = double;
+  using AnyDouble = double;
+  using HalfFloat = float;
+};
+
+// How many halves W lanes are, and how wide these.
+template <int W>
+constexpr int kHalves = W == 1 ? 1 : 2;
+template <int W>
+constexpr int kHalfLanes = W / kHalves<W>;
+
+template <int H>
+struct WideDouble {
+  using Double = typename DoubleLanes<H>::Double;
+  Double v;
+
+  WideDouble() = default;
+  GYRE_INLINE WideDouble(double value) : v(value - Double{}) {}
+  static GYRE_INLINE WideDouble of(Double lanes) {
+    WideDouble wide;
+    wide.v = lanes;
+    return wide;
+  }
+  // From and to H doubles in a row, aligned to 8 H bytes.
+  static GYRE_INLINE WideDouble load(const double* from) {
+    return of(*reinterpret_cast<const typename DoubleLanes<H>::AnyDouble*>(from));
+  }
+  GYRE_INLINE void store(double* to) const { *reinterpret_cast<typename DoubleLanes<H>::AnyDouble*>(to) = v; }
+
+  friend GYRE_INLINE WideDouble operator+(WideDouble a, WideDouble b) { return of(a.v + b.v); }
+  friend GYRE_INLINE WideDouble operator-(WideDouble a, WideDouble b) { return of(a.v - b.v); }
+  friend GYRE_INLINE WideDouble operator*(WideDouble a, WideDouble b) { return of(a.v * b.v); }
+  friend GYRE_INLINE WideDouble operator/(WideDouble a, WideDouble b) { return of(a.v / b.v); }
+  friend GYRE_INLINE WideDouble& operator+=(WideDouble& a, WideDouble b) { return a = a + b; }
+  friend GYRE_INLINE WideDouble& operator-=(WideDouble& a, WideDouble b) { return a = a - b; }
+  // `value` where a > b, +0 elsewhere.
+  friend GYRE_INLINE WideDouble keep_where_above(WideDouble a, WideDouble b, WideDouble value) {
+    if constexpr (H == 1) {
+      return a.v > b.v ? value : WideDouble(0.0);
+    } else {
+      return of(a.v > b.v ? value.v : Double{});
+    }
+  }
+};
+
+// Half `Half` of the lanes as doubles, and two halves as floats, rounded.
+template <int Half, int W>
+GYRE_INLINE WideDouble<kHalfLanes<W>> half_of(Wide<W> a) {
+  using Result = WideDouble<kHalfLanes<W>>;
+  if constexpr (W == 1) {
+    return Result(double(a.v));
+  } else {
+    typename DoubleLanes<kHalfLanes<W>>::HalfFloat part;
+    __builtin_memcpy(&part, reinterpret_cast<const char*>(&a.v) + Half * sizeof part, sizeof part);
+    return Result::of(__builtin_convertvector(part, typename Result::Double));
+  }
+}
+template <int W>
+GYRE_INLINE Wide<W> join_halves(WideDouble<kHalfLanes<W>> low, WideDouble<kHalfLanes<W>> high) {
+  if constexpr (W == 1) {
+    return (void)high, Wide<W>(float(low.v));
+  } else {
+    using Part = typename DoubleLanes<kHalfLanes<W>>::HalfFloat;
+    const Part a = __builtin_convertvector(low.v, Part), b = __builtin_convertvector(high.v, Part);
+    if constexpr (W == 4) return Wide<W>::of(__builtin_shufflevector(a, b, 0, 1, 2, 3));
+    if constexpr (W == 8) return Wide<W>::of(__builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7));
+    if constexpr (W == 16)
+      return Wide<W>::of(__builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15));
+  }
+}
+
+}  // namespace GYRE_TARGET_NAMESPACE
+}  // namespace gyre

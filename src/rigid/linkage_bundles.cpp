@@ -1,0 +1,108 @@
+#include "rigid/linkage_bundles.h"
+
+#include <algorithm>
+
+namespace gyre {
+
+namespace {
+
+// Many lanes of long linkages leave the cache: these stand side by side only where half of the lanes are used.
+constexpr std::size_t kLongLinkage = 64;
+
+// How many of `left` linkages of a shape the next bundle takes.
+std::size_t lanes_of(std::size_t left, const LinkageShape& shape, std::size_t width) {
+  const std::size_t fewest = shape.nodes.size() > kLongLinkage ? (width + 1) / 2 : 2;
+  return left < fewest ? 1 : std::min(left, width);
+}
+
+LinkageBundle make_bundle(const LinkageShape& shape, const LinkageKernels& kernels, Arena& arena) {
+  LinkageBundle b;
+  b.kernels = &kernels;
+  b.nodes = shape.nodes.data();
+  b.couplings = shape.couplings.data();
+  b.node_count = std::uint32_t(shape.nodes.size());
+  b.coupling_count = std::uint32_t(shape.couplings.size());
+  b.body_count = shape.body_count;
+  b.moving_count = shape.moving_count;
+  b.columns = shape.plan.columns.data();
+  b.entries = shape.plan.entries.data();
+  b.targets = shape.plan.targets.data();
+  b.column_count = std::uint32_t(shape.plan.columns.size());
+  b.value_count = shape.plan.values;
+  b.row_count = shape.plan.rows;
+  const std::size_t width = std::size_t(kernels.width);
+  b.bodies = arena.make<std::byte>(b.body_count * kernels.body_bytes).data();
+  b.joints = arena.make<std::byte>(b.node_count * kernels.joint_bytes).data();
+  b.values = arena.make<double>(b.value_count * width).data();
+  b.vector = arena.make<double>(b.row_count * width).data();
+  b.room = arena.make<double>(shape.plan.widest * width).data();
+  return b;
+}
+
+}  // namespace
+
+BundleSolve lay_out_bundles(const Linkages& linkages, const ContactKernels& kernels,
+                            const LinkageSolve& solve, Arena& arena) {
+  BundleSolve result;
+  result.arrays = {solve.bodies.motion, solve.bodies.inertia, solve.bodies.orientation};
+  const Softness& softness = solve.settings.softness;
+  result.settings = {solve.settings.substep, softness.bias_rate, softness.mass_scale,
+                     softness.impulse_scale, solve.give,         raise_inertia};
+  const std::size_t count = linkages.alike.size();
+  if (count == 0) return result;
+  // Sorted by shape, those of a shape in the order of their first joints (they were listed from the back).
+  const std::span<const Linkage*> sorted = arena.make<const Linkage*>(count);
+  const std::span<std::size_t> ends = arena.make<std::size_t>(linkages.shapes.size() + 1);
+  for (std::size_t& end : ends) end = 0;
+  for (const Linkage& linkage : linkages.alike) ++ends[std::size_t(linkage.shape) + 1];
+  for (std::size_t i = 1; i < ends.size(); ++i) ends[i] += ends[i - 1];
+  for (std::size_t i = count; i-- > 0;)
+    sorted[ends[std::size_t(linkages.alike[i].shape)]++] = &linkages.alike[i];
+  result.bundles = arena.make<Bundled>(count);
+  const LinkageKernels& wide = kernels.linkages;
+  const LinkageKernels& single = select_contact_kernels(1).linkages;
+  std::size_t used = 0, first = 0;
+  for (std::size_t shape = 0; shape < linkages.shapes.size(); ++shape) {
+    while (first < ends[shape]) {
+      const std::size_t lanes =
+          lanes_of(ends[shape] - first, linkages.shapes[shape], std::size_t(wide.width));
+      result.bundles[used++] = {make_bundle(linkages.shapes[shape], lanes > 1 ? wide : single, arena),
+                                sorted.subspan(first, lanes)};
+      first += lanes;
+    }
+  }
+  result.bundles = result.bundles.first(used);
+  return result;
+}
+
+void begin_bundles(const BundleSolve& bundles, int begin, int end, const LinkageSolve& solve) {
+  for (int i = begin; i < end; ++i) {
+    const Bundled& bundle = bundles.bundles[std::size_t(i)];
+    if (int(bundle.linkages.size()) < bundle.lanes.kernels->width) clear_lanes(bundle.lanes);
+    for (std::size_t lane = 0; lane < bundle.linkages.size(); ++lane) {
+      const Linkage& linkage = *bundle.linkages[lane];
+      for (std::uint32_t n = 0; n < bundle.lanes.node_count; ++n) {
+        const LinkageNode& node = linkage.nodes[n];
+        const LaneNode& shape = bundle.lanes.nodes[n];
+        set_lane_body(bundle.lanes, int(lane), shape.a, node.body_a);
+        set_lane_body(bundle.lanes, int(lane), shape.b, node.body_b);
+        begin_lane(bundle.lanes, int(lane), n, solve.records[node.record], solve.work[node.work],
+                   solve.places[node.work]);
+      }
+    }
+  }
+}
+
+void finish_bundles(const BundleSolve& bundles, int begin, int end, const LinkageSolve& solve) {
+  for (int i = begin; i < end; ++i) {
+    const Bundled& bundle = bundles.bundles[std::size_t(i)];
+    for (std::size_t lane = 0; lane < bundle.linkages.size(); ++lane) {
+      for (std::uint32_t n = 0; n < bundle.lanes.node_count; ++n) {
+        const LinkageNode& node = bundle.linkages[lane]->nodes[n];
+        finish_lane(bundle.lanes, int(lane), n, solve.records[node.record], solve.work[node.work]);
+      }
+    }
+  }
+}
+
+}  // namespace gyre

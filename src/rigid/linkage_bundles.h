@@ -1,0 +1,29 @@
+// Lays linkages that hang together alike side by side (solver/linkage_lanes.h): the kernels' W to a bundle, those that are left
+// over one by one.
+//
+// In: the linkages of a batch (rigid/linkages.h). Out: bundles in the step's arena; as the step ends, impulses in the joints.
+#pragma once
+
+#include "rigid/linkages.h"
+#include "solver/contact_block.h"
+
+namespace gyre {
+
+struct Bundled {
+  LinkageBundle lanes;
+  std::span<const Linkage*> linkages;  // by lane
+};
+
+struct BundleSolve {
+  std::span<Bundled> bundles;
+  LaneArrays arrays;
+  LaneSettings settings;
+};
+
+BundleSolve lay_out_bundles(const Linkages& linkages, const ContactKernels& kernels,
+                            const LinkageSolve& solve, Arena& arena);
+// Of bundles [begin, end).
+void begin_bundles(const BundleSolve& bundles, int begin, int end, const LinkageSolve& solve);
+void finish_bundles(const BundleSolve& bundles, int begin, int end, const LinkageSolve& solve);
+
+}  // namespace gyre

@@ -1,0 +1,22 @@
+// Between the records of joints and the lanes of a bundle of linkages (solver/linkage_lanes.h): which joints lanes can bear, and
+// what goes in as the step begins and comes out as it ends.
+#pragma once
+
+#include "solver/joint.h"
+#include "solver/linkage_lanes.h"
+
+namespace gyre {
+
+// Whether it is a ball, cone or hinge joint on which nothing acts but hard stops. Says which these are in `node`.
+bool fits_lane(const JointRecord& joint, const JointWork& work, LaneNode& node);
+
+// Clears all lanes of a bundle: those that are never set have no bodies.
+void clear_lanes(const LinkageBundle& bundle);
+void set_lane_body(const LinkageBundle& bundle, int lane, std::uint32_t body, std::int32_t record);
+void begin_lane(const LinkageBundle& bundle, int lane, std::uint32_t node, const JointRecord& joint,
+                const JointWork& work, const JointPlaces& places);
+// Impulses, sums and positions, back into the record, or into the work where finish_joint() looks for them.
+void finish_lane(const LinkageBundle& bundle, int lane, std::uint32_t node, JointRecord& joint,
+                 const JointWork& work);
+
+}  // namespace gyre

@@ -1,0 +1,157 @@
+// What the kernels keep of a bundle of linkages (solver/linkage_lanes.h): bodies and joints, W of each side by side, and the way
+// between them and the records of bodies.
+#pragma once
+
+#include "math/wide_vec.h"
+#include "solver/linkage_matrix.h"
+
+namespace gyre {
+inline namespace GYRE_TARGET_NAMESPACE {
+
+template <int W>
+struct LinkedBody {
+  std::int32_t record[W];
+  Vec3W<W> linear, angular;  // velocities, while a stage works on them
+  Wide<W> inverse_mass;
+  Sym3W<W> inverse;      // of the inertia, raised to what a sub-step can bear
+  Sym3W<W> own_inverse;  // of the inertia as it is
+  Sym3W<W> inertia;
+  QuatW<W> turn;  // what its velocities make of a sub-step
+  // While joints are placed: the pose, and by how much tension holds it (N m/rad).
+  QuatW<W> orientation;
+  Vec3W<W> moved;
+  Sym3W<W> pull;
+};
+
+// As LaneAxis and LaneJoint.
+template <int W>
+struct LinkedAxis {
+  Vec3W<W> about;
+  Wide<W> mass, low, high, low_gap, high_gap, low_impulse, high_impulse, total;
+};
+template <int W>
+struct LinkedJoint {
+  Vec3W<W> local_a, local_b, offset, from_a, from_b, error, give, wanted, linear_impulse, total_linear,
+      total_angular;
+  QuatW<W> local_frame_a, local_frame_b;
+  Wide<W> position;
+  Vec3W<W> angular_impulse, axis, perpendicular_1, perpendicular_2, angular_error;
+  Wide<W> turn_give_1, turn_give_2, turn_wanted_1, turn_wanted_2;
+  Wide<W> swing_grip_y, swing_grip_z;
+  LinkedAxis<W> twist, swing;
+};
+static_assert(sizeof(LinkedAxis<1>) == sizeof(LaneAxis) && sizeof(LinkedJoint<1>) == sizeof(LaneJoint));
+
+// A bundle while a stage works on it.
+template <int W>
+struct Bundle {
+  const LinkageBundle& plain;
+  LinkedBody<W>* bodies;
+  LinkedJoint<W>* joints;
+
+  GYRE_INLINE explicit Bundle(const LinkageBundle& bundle)
+      : plain(bundle),
+        bodies(reinterpret_cast<LinkedBody<W>*>(bundle.bodies)),
+        joints(reinterpret_cast<LinkedJoint<W>*>(bundle.joints)) {}
+  GYRE_INLINE bool moves(std::uint32_t body) const { return body < plain.moving_count; }
+
+  // Floats as doubles of the matrix and of the vector, and back.
+  GYRE_INLINE void set_value(std::uint32_t i, Wide<W> v) const {
+    constexpr int H = kHalfLanes<W>;
+    half_of<0>(v).store(plain.values + i * H);
+    if constexpr (W > 1) half_of<1>(v).store(plain.values + (std::size_t(plain.value_count) + i) * H);
+  }
+  GYRE_INLINE void add_value(std::uint32_t i, Wide<W> v) const {
+    using D = WideDouble<kHalfLanes<W>>;
+    constexpr int H = kHalfLanes<W>;
+    double* const low = plain.values + i * H;
+    (D::load(low) + half_of<0>(v)).store(low);
+    if constexpr (W > 1) {
+      double* const high = plain.values + (std::size_t(plain.value_count) + i) * H;
+      (D::load(high) + half_of<1>(v)).store(high);
+    }
+  }
+  GYRE_INLINE void set_row(std::uint32_t row, Wide<W> v) const {
+    constexpr int H = kHalfLanes<W>;
+    half_of<0>(v).store(plain.vector + row * H);
+    if constexpr (W > 1) half_of<1>(v).store(plain.vector + (std::size_t(plain.row_count) + row) * H);
+  }
+  GYRE_INLINE Wide<W> row(std::uint32_t row) const {
+    using D = WideDouble<kHalfLanes<W>>;
+    constexpr int H = kHalfLanes<W>;
+    const D low = D::load(plain.vector + row * H);
+    if constexpr (W == 1) return join_halves<W>(low, low);
+    return join_halves<W>(low, D::load(plain.vector + (std::size_t(plain.row_count) + row) * H));
+  }
+};
+
+// `Fours` times four floats of records of `stride` floats; of `none` where there is no record.
+template <int Fours, int W>
+GYRE_INLINE void gather_fours(const float* base, int stride, const std::int32_t* indices, const float* none,
+                              int first, Wide<W>* out) {
+  const float* record[W];
+  GYRE_UNROLL
+  for (int i = 0; i < W; ++i) record[i] = indices[i] < 0 ? none : base + std::ptrdiff_t(indices[i]) * stride;
+  if constexpr (W == 1) {
+    GYRE_UNROLL
+    for (int c = 0; c < 4 * Fours; ++c) out[c] = Wide<W>(record[0][first + c]);
+  } else {
+    Rows<W>::gather(record, first, out);
+    if constexpr (Fours > 1) Rows<W>::gather(record, first + 4, out + 4);
+  }
+}
+
+template <int W>
+GYRE_INLINE void load_velocities(const Bundle<W>& bundle, const LaneArrays& arrays) {
+  for (std::uint32_t i = 0; i < bundle.plain.body_count; ++i) {
+    LinkedBody<W>& body = bundle.bodies[i];
+    Wide<W> c[8];
+    gather8<W>(&arrays.motion->linear_velocity.x, body.record, c);
+    body.linear = {c[0], c[1], c[2]};
+    body.angular = {c[3], c[4], c[5]};
+  }
+}
+
+template <int W>
+GYRE_INLINE void store_velocities(const Bundle<W>& bundle, const LaneArrays& arrays) {
+  // Adding zero keeps -0 out of the state.
+  const Wide<W> zero(0.0f);
+  for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i) {
+    const LinkedBody<W>& body = bundle.bodies[i];
+    const Wide<W> c[6] = {body.linear.x + zero,  body.linear.y + zero,  body.linear.z + zero,
+                          body.angular.x + zero, body.angular.y + zero, body.angular.z + zero};
+    scatter<6, W>(&arrays.motion->linear_velocity.x, body.record, c);
+  }
+}
+
+// Where the bodies are, and their inertia.
+template <int W>
+GYRE_INLINE void load_poses(const Bundle<W>& bundle, const LaneArrays& arrays) {
+  alignas(64) static constexpr float kZeros[kRecordFloats] = {};
+  alignas(16) static constexpr float kUnturned[4] = {0.0f, 0.0f, 0.0f, 1.0f};
+  constexpr int kInertiaFloats = int(sizeof(BodyInertia) / sizeof(float));
+  for (std::uint32_t i = 0; i < bundle.plain.body_count; ++i) {
+    LinkedBody<W>& body = bundle.bodies[i];
+    Wide<W> c[8];
+    gather_fours<1, W>(&arrays.orientation->x, 4, body.record, kUnturned, 0, c);
+    body.orientation = {c[0], c[1], c[2], c[3]};
+    gather_fours<1, W>(&arrays.motion->linear_velocity.x, kMotionFloats, body.record, kZeros, kMotionMoved,
+                       c);
+    body.moved = {c[0], c[1], c[2]};
+    const Wide<W> zero(0.0f);
+    body.pull = {zero, zero, zero, zero, zero, zero};
+    if (!bundle.moves(i)) {
+      body.inverse_mass = zero;
+      body.inverse = body.own_inverse = body.inertia = body.pull;
+      continue;
+    }
+    gather_fours<2, W>(&arrays.inertia->inverse.xx, kInertiaFloats, body.record, kZeros, 0, c);
+    body.own_inverse = {c[0], c[1], c[2], c[3], c[4], c[5]};
+    body.inverse = body.own_inverse;
+    body.inverse_mass = c[6];
+    body.inertia = inverse(body.own_inverse);
+  }
+}
+
+}  // namespace GYRE_TARGET_NAMESPACE
+}  // namespace gyre

@@ -1,0 +1,269 @@
+// The velocities of a bundle of linkages (solver/linkage_lanes.h): what warm_linkage(), solve_linkage() and relax_linkage() do for
+// one alone. A ball joint's three rows are one vector here, and an impulse goes to a body as a force at its arm.
+#pragma once
+
+#include "solver/linkage_place.h"
+
+namespace gyre {
+inline namespace GYRE_TARGET_NAMESPACE {
+
+// As in solver/linkage.cpp.
+constexpr float kLaneLeastTurn = 1.0e-4f;  // rad
+constexpr float kLaneMostTurn = 0.15f;
+
+// -------------------------------------------------------------------------------------------------- what is asked for
+
+template <int W>
+GYRE_INLINE QuatW<W> small_rotation(Vec3W<W> v) {
+  const Wide<W> a = min(length_squared(v), Wide<W>(1.0f));
+  const Vec3W<W> u = (0.5f - a * (1.0f / 48.0f - a * (1.0f / 3840.0f))) * v;
+  return {u.x, u.y, u.z, 1.0f - a * (1.0f / 8.0f - a * (1.0f / 384.0f))};
+}
+
+// How far turning takes the end of an arm.
+template <int W>
+GYRE_INLINE Vec3W<W> swing_of(const QuatW<W>& turn, Vec3W<W> arm) {
+  const Vec3W<W> u{turn.x, turn.y, turn.z};
+  const Vec3W<W> t = 2.0f * cross(u, arm);
+  return turn.w * t + cross(u, t);
+}
+
+// How a hinge's error will have changed at the end of the sub-step, over its length, beyond what the rows see.
+template <int W>
+GYRE_INLINE Vec3W<W> hinge_bend(const LinkedJoint<W>& joint, const LinkedBody<W>& a, const LinkedBody<W>& b,
+                                float per_substep) {
+  const Vec3W<W> error = joint.angular_error;  // axis a x axis b
+  const Vec3W<W> axis_b =
+      cross(error, joint.axis) + sqrt(max(1.0f - length_squared(error), Wide<W>(0.0f))) * joint.axis;
+  const Vec3W<W> change_a = swing_of(a.turn, joint.axis), change_b = swing_of(b.turn, axis_b);
+  return per_substep * (cross(change_a, axis_b) + cross(joint.axis, change_b) + cross(change_a, change_b)) -
+         (b.angular - a.angular);
+}
+
+// That the end of the sub-step, not its beginning, meets the joints.
+template <int W>
+GYRE_INLINE void ask_lanes(const Bundle<W>& bundle, const LaneSettings& s) {
+  const float h = s.substep, per_substep = 1.0f / s.substep;
+  for (std::uint32_t i = 0; i < bundle.plain.body_count; ++i) {
+    LinkedBody<W>& body = bundle.bodies[i];
+    const Vec3W<W> w = body.angular;
+    const Vec3W<W> swerve = body.own_inverse * cross(body.inertia * w, w);  // free rotation
+    body.turn = small_rotation(h * (w + (0.5f * h) * swerve));
+  }
+  for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
+    const LaneNode& node = bundle.plain.nodes[n];
+    LinkedJoint<W>& joint = bundle.joints[n];
+    const LinkedBody<W>&a = bundle.bodies[node.a], &b = bundle.bodies[node.b];
+    const Wide<W> fastest = (h * h) * max(length_squared(a.angular), length_squared(b.angular));
+    // Of those that hardly turn nothing is asked; of those that turn far, less.
+    constexpr float kMost = kLaneMostTurn * kLaneMostTurn, kLeast = kLaneLeastTurn * kLaneLeastTurn;
+    Wide<W> share = keep(fastest > kLeast, Wide<W>(1.0f));
+    share = select(fastest > kMost, kMost / fastest, share);
+    const Vec3W<W> bend = per_substep * (swing_of(b.turn, joint.from_b) - swing_of(a.turn, joint.from_a)) -
+                          (cross(b.angular, joint.from_b) - cross(a.angular, joint.from_a));
+    joint.wanted = Wide<W>(-s.rate) * within(joint.error, kLanePointError) - share * bend;
+    if (node.kind != JointKind::hinge) continue;
+    const Vec3W<W> turn =
+        Wide<W>(-s.rate) * joint.angular_error - share * hinge_bend(joint, a, b, per_substep);
+    joint.turn_wanted_1 = dot(turn, joint.perpendicular_1);
+    joint.turn_wanted_2 = dot(turn, joint.perpendicular_2);
+  }
+}
+
+// --------------------------------------------------------------------------------------------------------- equations
+
+// The impulse p at the joint and the turning impulse t, on b, and their opposites on a.
+template <int W>
+GYRE_INLINE void push_joint(const Bundle<W>& bundle, const LaneNode& node, const LinkedJoint<W>& joint,
+                            Vec3W<W> p, Vec3W<W> t) {
+  if (bundle.moves(node.a)) {
+    LinkedBody<W>& a = bundle.bodies[node.a];
+    a.linear -= a.inverse_mass * p;
+    a.angular -= a.inverse * (cross(joint.from_a, p) + t);
+  }
+  if (bundle.moves(node.b)) {
+    LinkedBody<W>& b = bundle.bodies[node.b];
+    b.linear += b.inverse_mass * p;
+    b.angular += b.inverse * (cross(joint.from_b, p) + t);
+  }
+}
+
+// Solves for the change of all impulses and applies it; Soft: what is wanted and the give count, otherwise only the speed.
+template <int W, bool Soft>
+GYRE_INLINE void solve_rows(const Bundle<W>& bundle) {
+  for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
+    const LaneNode& node = bundle.plain.nodes[n];
+    const LinkedJoint<W>& joint = bundle.joints[n];
+    const LinkedBody<W>&a = bundle.bodies[node.a], &b = bundle.bodies[node.b];
+    Vec3W<W> missing = a.linear + cross(a.angular, joint.from_a) - b.linear - cross(b.angular, joint.from_b);
+    if constexpr (Soft) missing += joint.wanted - multiply_each(joint.give, joint.linear_impulse);
+    bundle.set_row(node.row, missing.x);
+    bundle.set_row(node.row + 1, missing.y);
+    bundle.set_row(node.row + 2, missing.z);
+    if (node.kind != JointKind::hinge) continue;
+    const Vec3W<W> turning = a.angular - b.angular;
+    Wide<W> first = dot(turning, joint.perpendicular_1), second = dot(turning, joint.perpendicular_2);
+    if constexpr (Soft) {
+      first += joint.turn_wanted_1 - joint.turn_give_1 * dot(joint.angular_impulse, joint.perpendicular_1);
+      second += joint.turn_wanted_2 - joint.turn_give_2 * dot(joint.angular_impulse, joint.perpendicular_2);
+    }
+    bundle.set_row(node.row + 3, first);
+    bundle.set_row(node.row + 4, second);
+  }
+  solve_lanes<W>(bundle.plain);
+  for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
+    const LaneNode& node = bundle.plain.nodes[n];
+    LinkedJoint<W>& joint = bundle.joints[n];
+    const Vec3W<W> p{bundle.row(node.row), bundle.row(node.row + 1), bundle.row(node.row + 2)};
+    Vec3W<W> t{Wide<W>(0.0f), Wide<W>(0.0f), Wide<W>(0.0f)};
+    if (node.kind == JointKind::hinge) {
+      t = bundle.row(node.row + 3) * joint.perpendicular_1 + bundle.row(node.row + 4) * joint.perpendicular_2;
+      joint.angular_impulse += t;
+    }
+    push_joint(bundle, node, joint, p, t);
+    joint.linear_impulse += p;
+  }
+}
+
+// -------------------------------------------------------------------------------------------------------------- stops
+
+// A turning impulse about a stop's axis.
+template <int W>
+GYRE_INLINE void push_stop(const Bundle<W>& bundle, const LaneNode& node, Vec3W<W> t) {
+  if (bundle.moves(node.a)) {
+    LinkedBody<W>& a = bundle.bodies[node.a];
+    a.angular -= a.own_inverse * t;
+  }
+  if (bundle.moves(node.b)) {
+    LinkedBody<W>& b = bundle.bodies[node.b];
+    b.angular += b.own_inverse * t;
+  }
+}
+
+// One end: as stop_change() of solver/joint_blocks.h. `sign`: of the turn that brings the end nearer, against b's.
+template <int W, bool Soft>
+GYRE_INLINE void solve_stop(const Bundle<W>& bundle, const LaneNode& node, const LinkedAxis<W>& axis,
+                            Wide<W> gap, Wide<W>& impulse, float sign, const LaneSettings& s,
+                            float per_substep) {
+  const Vec3W<W> turning = bundle.bodies[node.b].angular - bundle.bodies[node.a].angular;
+  const Wide<W> speed = sign * dot(axis.about, turning);
+  const Mask<W> open = gap > 0.0f;
+  Wide<W> wanted;
+  if constexpr (Soft) {
+    const Wide<W> closed = s.mass_scale * (axis.mass * (speed + s.rate * gap)) + s.impulse_scale * impulse;
+    wanted = impulse - select(open, axis.mass * (speed + gap * per_substep), closed);
+  } else {
+    wanted = impulse - axis.mass * (speed + keep(open, gap * per_substep));
+  }
+  // Where the bodies cannot be turned the mass is zero, and nothing changes.
+  const Wide<W> change = keep(axis.mass > 0.0f, max(wanted, Wide<W>(0.0f)) - impulse);
+  if (!any(change != 0.0f)) return;
+  impulse += change;
+  push_stop(bundle, node, (sign * change) * axis.about);
+}
+
+template <int W, bool Soft>
+GYRE_INLINE void sweep_stops(const Bundle<W>& bundle, const LaneSettings& s) {
+  const float per_substep = 1.0f / s.substep;
+  for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
+    const LaneNode& node = bundle.plain.nodes[n];
+    LinkedJoint<W>& joint = bundle.joints[n];
+    if (node.has_twist) {
+      LinkedAxis<W>& axis = joint.twist;
+      solve_stop<W, Soft>(bundle, node, axis, axis.low_gap, axis.low_impulse, 1.0f, s, per_substep);
+      solve_stop<W, Soft>(bundle, node, axis, axis.high_gap, axis.high_impulse, -1.0f, s, per_substep);
+    }
+    if (node.has_swing) {
+      LinkedAxis<W>& axis = joint.swing;
+      solve_stop<W, Soft>(bundle, node, axis, axis.high_gap, axis.high_impulse, -1.0f, s, per_substep);
+    }
+  }
+}
+
+template <int W>
+GYRE_INLINE void warm_stop(const Bundle<W>& bundle, const LaneNode& node, const LinkedAxis<W>& axis) {
+  const Wide<W> along = axis.low_impulse - axis.high_impulse;
+  if (any(along != 0.0f)) push_stop(bundle, node, along * axis.about);
+}
+
+template <int W>
+GYRE_INLINE void sum_stop(LinkedJoint<W>& joint, LinkedAxis<W>& axis) {
+  const Wide<W> along = axis.low_impulse - axis.high_impulse;
+  axis.total += along;
+  joint.total_angular += along * axis.about;
+}
+
+// ------------------------------------------------------------------------------------------------------------- stages
+
+template <int W>
+void warm_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
+  const Bundle<W> bundle(plain);
+  load_velocities(bundle, arrays);
+  // Before the impulses of the last sub-step: after a blow these are not of this one, and the bend of such speeds is none.
+  ask_lanes(bundle, s);
+  for (std::uint32_t n = 0; n < plain.node_count; ++n) {
+    const LaneNode& node = plain.nodes[n];
+    LinkedJoint<W>& joint = bundle.joints[n];
+    if (node.has_twist) warm_stop(bundle, node, joint.twist);
+    if (node.has_swing) warm_stop(bundle, node, joint.swing);
+    // What was kept, along the rows as they are now.
+    if (node.kind == JointKind::hinge) {
+      joint.angular_impulse = dot(joint.angular_impulse, joint.perpendicular_1) * joint.perpendicular_1 +
+                              dot(joint.angular_impulse, joint.perpendicular_2) * joint.perpendicular_2;
+    }
+    push_joint(bundle, node, joint, joint.linear_impulse, joint.angular_impulse);
+  }
+  store_velocities(bundle, arrays);
+}
+
+template <int W>
+void solve_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
+  const Bundle<W> bundle(plain);
+  load_velocities(bundle, arrays);
+  sweep_stops<W, true>(bundle, s);
+  solve_rows<W, true>(bundle);
+  ask_lanes(bundle, s);  // now with velocities that agree with the joints
+  store_velocities(bundle, arrays);
+}
+
+template <int W>
+void solve_bundle_again(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
+  const Bundle<W> bundle(plain);
+  load_velocities(bundle, arrays);
+  sweep_stops<W, true>(bundle, s);
+  solve_rows<W, true>(bundle);
+  store_velocities(bundle, arrays);
+}
+
+// After the move: takes away all speed along the rows, and sums the impulses.
+template <int W>
+void relax_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
+  const Bundle<W> bundle(plain);
+  load_velocities(bundle, arrays);
+  sweep_stops<W, false>(bundle, s);
+  solve_rows<W, false>(bundle);
+  for (std::uint32_t n = 0; n < plain.node_count; ++n) {
+    const LaneNode& node = plain.nodes[n];
+    LinkedJoint<W>& joint = bundle.joints[n];
+    joint.total_linear += joint.linear_impulse;
+    joint.total_angular += joint.angular_impulse;
+    if (node.has_twist) sum_stop(joint, joint.twist);
+    if (node.has_swing) sum_stop(joint, joint.swing);
+  }
+  store_velocities(bundle, arrays);
+}
+
+template <int W>
+constexpr LinkageKernels linkage_kernels() {
+  return {W,
+          sizeof(LinkedBody<W>),
+          sizeof(LinkedJoint<W>),
+          place_bundle<W>,
+          warm_bundle<W>,
+          solve_bundle<W>,
+          solve_bundle_again<W>,
+          relax_bundle<W>};
+}
+
+}  // namespace GYRE_TARGET_NAMESPACE
+}  // namespace gyre

@@ -1,0 +1,321 @@
+// Linkages side by side against the same linkages one by one: the equations are the same, so the results agree to rounding; and
+// each lane has the same bits whatever the width.
+#include "base/arena.h"
+#include "math/rotation.h"
+#include "math/trig.h"
+#include "solver/contact_block.h"
+#include "solver/lane_records.h"
+#include "solver/linkage.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+namespace gyre {
+namespace {
+
+constexpr int kBodies = 6, kJoints = 6, kCopies = 7;
+constexpr float kSubstep = 1.0f / 480.0f;
+const JointSettings kSettings{kSubstep, {40.0f, 0.96f, 0.04f}, false};
+
+struct Random {
+  std::uint32_t state;
+  float next() {  // -1 to 1
+    state = state * 1664525u + 1013904223u;
+    return float(state >> 8) / float(1 << 23) - 1.0f;
+  }
+  Vec3 vector(float size) { return {size * next(), size * next(), size * next()}; }
+};
+
+// Who hangs on whom: from the world a hinge with stops, cones with and without stops, a ball, a hinge without stops, and a second
+// ball between the same two bodies, which makes a loop.
+struct Member {
+  JointKind kind;
+  std::int32_t a, b;
+  bool stops;
+};
+constexpr Member kMembers[kJoints] = {{JointKind::hinge, kNoBody, 0, true}, {JointKind::cone, 0, 1, true},
+                                      {JointKind::ball, 1, 2, false},       {JointKind::hinge, 3, 1, false},
+                                      {JointKind::cone, 0, 4, false},       {JointKind::ball, 1, 2, false}};
+
+// Several copies of that linkage, each in a state of its own, and the work of a step.
+struct Crowd {
+  Arena arena;
+  std::vector<BodyMotion> motion{std::size_t(kBodies * kCopies)};
+  std::vector<BodyInertia> inertia{std::size_t(kBodies * kCopies)};
+  std::vector<Quat> orientation{std::size_t(kBodies * kCopies)};
+  std::vector<JointRecord> records{std::size_t(kJoints * kCopies)};
+  std::vector<JointDetail> details{std::size_t(kJoints * kCopies)};
+  std::vector<JointWork> work{std::size_t(kJoints * kCopies)};
+  std::vector<JointPlaces> places{std::size_t(kJoints * kCopies)};
+
+  explicit Crowd(float tension) {
+    Random random{12345};
+    for (std::size_t i = 0; i < motion.size(); ++i) {
+      motion[i].linear_velocity = random.vector(3.0f);
+      motion[i].angular_velocity = random.vector(8.0f);
+      motion[i].inverse_mass = inertia[i].inverse_mass = 1.0f + 0.5f * random.next();
+      motion[i].moved = random.vector(0.01f);
+      inertia[i].inverse = {.xx = 20 + random.next(),
+                            .yy = 30 + random.next(),
+                            .zz = 25 + random.next(),
+                            .xy = random.next(),
+                            .xz = random.next(),
+                            .yz = random.next()};
+      orientation[i] = from_rotation_vector(random.vector(1.0f));
+    }
+    for (std::size_t i = 0; i < records.size(); ++i) set_joint(i, random, tension);
+  }
+
+  void set_joint(std::size_t i, Random& random, float tension) {
+    const Member& member = kMembers[i % kJoints];
+    const std::int32_t first = std::int32_t(i) / kJoints * kBodies;
+    JointRecord& joint = records[i];
+    joint.kind = member.kind;
+    joint.body_a = member.a == kNoBody ? kNoBody : first + member.a;
+    joint.body_b = first + member.b;
+    joint.local_anchor_a = random.vector(0.3f);
+    joint.local_anchor_b = random.vector(0.3f);
+    joint.local_frame_a = from_rotation_vector(random.vector(0.3f));
+    joint.local_frame_b = from_rotation_vector(random.vector(0.3f));
+    joint.linear_impulse = random.vector(tension);
+    const Quat a = joint.body_a == kNoBody ? Quat{} : orientation[std::size_t(joint.body_a)];
+    const Quat b = orientation[std::size_t(joint.body_b)];
+    if (joint.kind == JointKind::hinge) {  // not far from where it should be
+      joint.local_frame_b =
+          conjugate(b) * (from_rotation_vector(random.vector(0.02f)) * a * joint.local_frame_a);
+      joint.angular_impulse = random.vector(0.01f);
+    }
+    const Vec3 moved = motion[std::size_t(joint.body_b)].moved -
+                       (joint.body_a == kNoBody ? Vec3{} : motion[std::size_t(joint.body_a)].moved);
+    places[i].offset =
+        rotate(a, joint.local_anchor_a) - rotate(b, joint.local_anchor_b) - moved + random.vector(0.002f);
+    if (!member.stops) {
+      begin_joint(joint, nullptr, {}, work[i], 1.0f, arena);
+      return;
+    }
+    joint.has_limits = true;
+    joint.limits = {-0.2f, 0.1f + 0.2f * random.next()};
+    joint.low_impulse = 0.003f;
+    JointDetail& detail = details[i];
+    detail.swing_y = 0.4f;
+    detail.swing_z = 0.7f;
+    for (const JointAxis axis : {JointAxis::angular_x, JointAxis::angular_y}) {
+      if (joint.kind == JointKind::hinge) break;
+      detail.axes[int(axis)].motion = AxisMotion::limited;
+      detail.axes[int(axis)].limits = joint.limits;
+      detail.axes[int(axis)].high_impulse = 0.002f;
+    }
+    begin_joint(joint, joint.kind == JointKind::hinge ? nullptr : &detail, {}, work[i], 1.0f, arena);
+  }
+
+  LinkageSolve solve() {
+    return {.records = records,
+            .work = work,
+            .places = places,
+            .bodies = {motion.data(), inertia.data(), orientation.data()},
+            .settings = kSettings,
+            .give = 1.0e-4f};
+  }
+};
+
+// The plan and the couplings, and the lanes' form of them.
+struct Shape {
+  Arena arena;
+  BlockPlan plan;
+  std::vector<LinkageCoupling> couplings;
+  std::vector<LaneCoupling> lane_couplings;
+  std::vector<LaneNode> nodes{std::size_t(kJoints)};
+
+  Shape() {
+    std::vector<std::uint8_t> sizes;
+    std::vector<BlockEdge> edges;
+    for (const Member& m : kMembers) sizes.push_back(m.kind == JointKind::hinge ? 5 : 3);
+    for (std::uint32_t i = 0; i < kJoints; ++i) {
+      for (std::uint32_t j = 0; j < i; ++j) {
+        for (const std::int32_t body : {kMembers[i].a, kMembers[i].b}) {
+          if (body == kNoBody || (kMembers[j].a != body && kMembers[j].b != body)) continue;
+          edges.push_back({i, j});
+          couplings.push_back({i, j, 0, body, kMembers[i].b == body, kMembers[j].b == body});
+        }
+      }
+    }
+    EXPECT_TRUE(plan_blocks(sizes, edges, 100000, arena, plan));
+    for (LinkageCoupling& c : couplings) {
+      const BlockPlace block = find_block(plan, c.row, c.column);
+      if (!block.first_is_row) c = {c.column, c.row, 0, c.body, c.column_has_b, c.row_has_b};
+      c.offset = block.offset;
+      lane_couplings.push_back(
+          {c.row, c.column, c.offset, std::uint32_t(c.body), c.row_has_b, c.column_has_b});
+    }
+    for (std::size_t i = 0; i < kJoints; ++i) {
+      LaneNode& node = nodes[i];
+      node.a = kMembers[i].a == kNoBody ? kBodies : std::uint32_t(kMembers[i].a);
+      node.b = std::uint32_t(kMembers[i].b);
+      node.rows = sizes[i];
+      node.row = plan.columns[plan.place_of[i]].row;
+      node.diagonal = plan.columns[plan.place_of[i]].diagonal;
+    }
+  }
+};
+
+void solve_one_by_one(Crowd& crowd, const Shape& shape) {
+  const LinkageSolve solve = crowd.solve();
+  for (int copy = 0; copy < kCopies; ++copy) {
+    std::vector<LinkageNode> nodes{std::size_t(kJoints)};
+    std::vector<LinkageBody> bodies{std::size_t(kBodies)};
+    std::vector<LinkageCoupling> couplings = shape.couplings;
+    std::vector<double> values(shape.plan.values), room(shape.plan.widest), vector(shape.plan.rows);
+    for (int i = 0; i < kBodies; ++i) bodies[std::size_t(i)].body = copy * kBodies + i;
+    for (LinkageCoupling& c : couplings) c.body += copy * kBodies;
+    for (int i = 0; i < kJoints; ++i) {
+      LinkageNode& node = nodes[std::size_t(i)];
+      node.record = node.work = std::uint32_t(copy * kJoints + i);
+      node.body_a = crowd.records[node.record].body_a;
+      node.body_b = crowd.records[node.record].body_b;
+      node.side_a = kMembers[i].a == kNoBody ? -1 : kMembers[i].a;
+      node.side_b = kMembers[i].b;
+      node.count = int(shape.nodes[std::size_t(i)].rows);
+    }
+    const Linkage linkage{nodes, bodies, couplings, shape.plan, -1, values, room, vector};
+    for (int part = 0; part < 2; ++part) {
+      place_linkage(linkage, solve);
+      warm_linkage(linkage, solve);
+      solve_linkage(linkage, solve);
+      solve_linkage_again(linkage, solve);
+    }
+    relax_linkage(linkage, solve);
+  }
+  for (std::size_t i = 0; i < crowd.records.size(); ++i) finish_joint(crowd.records[i], crowd.work[i]);
+}
+
+void solve_side_by_side(Crowd& crowd, Shape& shape, int width) {
+  const LinkageKernels& kernels = select_contact_kernels(width).linkages;
+  const LinkageSolve solve = crowd.solve();
+  const LaneArrays arrays{crowd.motion.data(), crowd.inertia.data(), crowd.orientation.data()};
+  const LaneSettings settings{kSubstep,
+                              kSettings.softness.bias_rate,
+                              kSettings.softness.mass_scale,
+                              kSettings.softness.impulse_scale,
+                              solve.give,
+                              raise_inertia};
+  for (std::size_t i = 0; i < kJoints; ++i) {
+    ASSERT_TRUE(fits_lane(crowd.records[i], crowd.work[i], shape.nodes[i]));
+  }
+  Arena arena;
+  const std::size_t lanes = std::size_t(kernels.width);
+  LinkageBundle bundle{&kernels,
+                       shape.nodes.data(),
+                       shape.lane_couplings.data(),
+                       kJoints,
+                       std::uint32_t(shape.lane_couplings.size()),
+                       kBodies + 1,
+                       kBodies,
+                       shape.plan.columns.data(),
+                       shape.plan.entries.data(),
+                       shape.plan.targets.data(),
+                       kJoints,
+                       shape.plan.values,
+                       shape.plan.rows,
+                       arena.make<std::byte>((kBodies + 1) * kernels.body_bytes).data(),
+                       arena.make<std::byte>(kJoints * kernels.joint_bytes).data(),
+                       arena.make<double>(lanes * shape.plan.values).data(),
+                       arena.make<double>(lanes * shape.plan.rows).data(),
+                       arena.make<double>(lanes * shape.plan.widest).data()};
+  for (int first = 0; first < kCopies; first += kernels.width) {
+    const int used = std::min(kernels.width, kCopies - first);
+    clear_lanes(bundle);
+    const auto for_each_joint = [&](auto&& call) {
+      for (int lane = 0; lane < used; ++lane) {
+        for (std::uint32_t n = 0; n < kJoints; ++n) call(lane, n, std::size_t(first + lane) * kJoints + n);
+      }
+    };
+    for_each_joint([&](int lane, std::uint32_t n, std::size_t i) {
+      begin_lane(bundle, lane, n, crowd.records[i], crowd.work[i], crowd.places[i]);
+      set_lane_body(bundle, lane, shape.nodes[n].a, crowd.records[i].body_a);
+      set_lane_body(bundle, lane, shape.nodes[n].b, crowd.records[i].body_b);
+    });
+    for (int part = 0; part < 2; ++part) {
+      kernels.place(bundle, arrays, settings);
+      kernels.warm(bundle, arrays, settings);
+      kernels.solve(bundle, arrays, settings);
+      kernels.solve_again(bundle, arrays, settings);
+    }
+    kernels.relax(bundle, arrays, settings);
+    for_each_joint([&](int lane, std::uint32_t n, std::size_t i) {
+      finish_lane(bundle, lane, n, crowd.records[i], crowd.work[i]);
+    });
+  }
+  for (std::size_t i = 0; i < crowd.records.size(); ++i) finish_joint(crowd.records[i], crowd.work[i]);
+}
+
+double apart(Vec3 a, Vec3 b) { return double(length(a - b)); }
+
+// Rounding to float in some ten solutions of a system with a condition of about a thousand.
+constexpr double kRounding = 2.0e-4;
+
+void expect_same(const Crowd& one, const Crowd& other) {
+  for (std::size_t i = 0; i < one.motion.size(); ++i) {
+    EXPECT_LT(apart(one.motion[i].linear_velocity, other.motion[i].linear_velocity), 3.0 * kRounding)
+        << "body " << i;
+    EXPECT_LT(apart(one.motion[i].angular_velocity, other.motion[i].angular_velocity), 8.0 * kRounding)
+        << "body " << i;
+  }
+  for (std::size_t i = 0; i < one.records.size(); ++i) {
+    const JointRecord &a = one.records[i], &b = other.records[i];
+    if (i % kJoints != 2 && i % kJoints != 5) {  // the two balls that share their load by the give alone
+      EXPECT_LT(apart(a.linear_impulse, b.linear_impulse), 3.0 * kRounding) << "joint " << i;
+      EXPECT_LT(apart(a.total_linear, b.total_linear), 3.0 * kRounding) << "joint " << i;
+    }
+    EXPECT_LT(apart(a.angular_impulse, b.angular_impulse), kRounding) << "joint " << i;
+    EXPECT_LT(apart(a.total_angular, b.total_angular), kRounding) << "joint " << i;
+    EXPECT_NEAR(double(a.low_impulse), double(b.low_impulse), kRounding) << "joint " << i;
+    EXPECT_NEAR(double(a.high_impulse), double(b.high_impulse), kRounding) << "joint " << i;
+    EXPECT_NEAR(double(a.position), double(b.position), 2.0e-6) << "joint " << i;
+    for (int axis = 3; axis < 5; ++axis) {
+      const JointAxisRecord &x = one.details[i].axes[axis], &y = other.details[i].axes[axis];
+      EXPECT_NEAR(double(x.low_impulse), double(y.low_impulse), kRounding) << "joint " << i;
+      EXPECT_NEAR(double(x.high_impulse), double(y.high_impulse), kRounding) << "joint " << i;
+      EXPECT_NEAR(double(x.total), double(y.total), kRounding) << "joint " << i;
+      EXPECT_NEAR(double(x.position), double(y.position), 2.0e-5) << "joint " << i;
+    }
+  }
+}
+
+TEST(LinkageKernel, LanesDoWhatOneLinkageDoes) {
+  for (const float tension : {0.05f, 50.0f}) {  // the second raises inertias
+    SCOPED_TRACE(tension);
+    Shape shape;
+    Crowd one_by_one(tension), side_by_side(tension), untouched(tension);
+    solve_one_by_one(one_by_one, shape);
+    solve_side_by_side(side_by_side, shape, 0);
+    EXPECT_GT(apart(one_by_one.motion[0].linear_velocity, untouched.motion[0].linear_velocity), 0.1);
+    if (tension < 1.0f) expect_same(one_by_one, side_by_side);
+  }
+}
+
+TEST(LinkageKernel, EveryWidthHasTheSameBits) {
+  for (const float tension : {0.05f, 50.0f}) {
+    Shape shape;
+    Crowd reference(tension);
+    solve_side_by_side(reference, shape, 1);
+    for (const int width : {4, 8, 16}) {
+      Crowd crowd(tension);
+      solve_side_by_side(crowd, shape, width);
+      const std::size_t motions = crowd.motion.size() * sizeof(BodyMotion);
+      EXPECT_EQ(std::memcmp(crowd.motion.data(), reference.motion.data(), motions), 0) << "width " << width;
+      const auto same = [](const JointRecord& a, const JointRecord& b) {
+        return a.linear_impulse == b.linear_impulse && a.angular_impulse == b.angular_impulse &&
+               a.total_linear == b.total_linear && a.total_angular == b.total_angular &&
+               a.low_impulse == b.low_impulse && a.high_impulse == b.high_impulse && a.position == b.position;
+      };
+      for (std::size_t i = 0; i < crowd.records.size(); ++i)
+        EXPECT_TRUE(same(crowd.records[i], reference.records[i])) << "width " << width << ", joint " << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gyre

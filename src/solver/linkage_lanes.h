@@ -1,0 +1,107 @@
+// Linkages side by side: where several hang together alike (the ragdolls of a heap, the chains of a curtain), lane i of a
+// bundle is the i-th of them, and kernels (solver/linkage_kernel.h) solve W at once in the time of one. The equations are those
+// of solver/linkage.h; this is the form of linkages of ball, cone and hinge joints on which nothing acts but hard stops.
+//
+// A lane never sees its neighbours, so its bits do not depend on them, on W, or on which bundle a linkage is in.
+#pragma once
+
+#include "math/block_plan.h"
+#include "solver/body_motion.h"
+
+#include <gyre/defs.h>
+
+#include <cstddef>
+
+namespace gyre {
+
+// A stop at either end of an axis about which a joint turns. In each of these structs the floats are in the order of the kernels'
+// (a float of a lane is W floats there).
+struct LaneAxis {
+  Vec3 about;                             // of this sub-step: turning a limb about it changes the angle
+  float mass = 0.0f;                      // effective
+  float low = 0.0f, high = 0.0f;          // rad: where the stops are
+  float low_gap = 0.0f, high_gap = 0.0f;  // rad: how far it is to them
+  float low_impulse = 0.0f, high_impulse = 0.0f;
+  float total = 0.0f;  // of the impulses over the step
+};
+
+// A joint as one lane.
+struct LaneJoint {
+  Vec3 local_a, local_b;  // anchors from the centres of mass, body frames
+  Vec3 offset;            // JointPlaces::offset
+  Vec3 from_a, from_b;    // of this sub-step: anchors from the centres of mass, world axes
+  Vec3 error;             // anchor b minus anchor a
+  Vec3 give, wanted;      // of the three rows of the point, as LinkageRows
+  Vec3 linear_impulse;
+  Vec3 total_linear, total_angular;
+  // What hinges and cones have.
+  Quat local_frame_a, local_frame_b;
+  float position = 0.0f;  // rad: the twist
+  Vec3 angular_impulse;
+  // Hinges: a's axis and what is across it, the error, the two rows that keep the axes together.
+  Vec3 axis, perpendicular_1, perpendicular_2, angular_error;
+  float turn_give_1 = 0.0f, turn_give_2 = 0.0f, turn_wanted_1 = 0.0f, turn_wanted_2 = 0.0f;
+  float swing_grip_y = 0.0f, swing_grip_z = 0.0f;  // cones: 1 / the largest swing, 1/rad
+  LaneAxis twist, swing;
+};
+
+// What the linkages of a bundle have in common.
+struct LaneNode {
+  JointKind kind = JointKind::ball;
+  bool has_twist = false, has_swing = false;      // stops
+  std::uint32_t a = 0, b = 0;                     // entries of the bundle's bodies
+  std::uint32_t rows = 0, row = 0, diagonal = 0;  // in the plan
+};
+struct LaneCoupling {
+  std::uint32_t row = 0, column = 0;  // nodes
+  std::uint32_t offset = 0;
+  std::uint32_t body = 0;
+  bool row_has_b = false, column_has_b = false;
+};
+
+struct LinkageKernels;
+struct LinkageBundle {
+  const LinkageKernels* kernels = nullptr;
+  const LaneNode* nodes = nullptr;
+  const LaneCoupling* couplings = nullptr;
+  std::uint32_t node_count = 0, coupling_count = 0;
+  std::uint32_t body_count = 0, moving_count = 0;  // those that can be pushed come first
+  // The plan of elimination, the same for all lanes.
+  const BlockColumn* columns = nullptr;
+  const BlockEntry* entries = nullptr;
+  const std::uint32_t* targets = nullptr;
+  std::uint32_t column_count = 0, value_count = 0, row_count = 0;
+  std::byte* bodies = nullptr;
+  std::byte* joints = nullptr;
+  double* values = nullptr;  // one half of the lanes after the other: math/wide_double.h
+  double* vector = nullptr;
+  double* room = nullptr;  // of the widest column, for one half
+};
+
+struct LaneArrays {
+  BodyMotion* motion = nullptr;
+  const BodyInertia* inertia = nullptr;
+  const Quat* orientation = nullptr;
+};
+
+struct LaneSettings {
+  float substep = 0.0f;
+  float rate = 0.0f;                              // 1/s, at which errors are taken back
+  float mass_scale = 0.0f, impulse_scale = 0.0f;  // of stops, as Softness
+  float give = 0.0f;                              // as LinkageSolve::give
+  // The inverse of an inertia raised by `share` of what of `pull` holds back (six floats each, as Sym3).
+  void (*raise)(const float* pull, const float* inertia, float share, float* inverse) = nullptr;
+};
+
+// The kernels of one CPU target. Each body is a block of `body_bytes` that begins with the lanes' body indices (kNoBody: none).
+struct LinkageKernels {
+  int width;
+  std::size_t body_bytes, joint_bytes;
+  void (*place)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  void (*warm)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  void (*solve)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  void (*solve_again)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  void (*relax)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+};
+
+}  // namespace gyre
