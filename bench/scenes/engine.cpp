@@ -10,7 +10,6 @@
 namespace gyre::bench {
 namespace {
 
-constexpr int kLooks = 8;
 constexpr int kHalfSecond = 30;  // steps
 
 std::vector<BodyState> states(Engine& engine, const Scene& scene) {
@@ -50,6 +49,8 @@ void print(const char* engine, const RunOptions& options, const std::string& set
               r.median_ms, r.mean_ms, r.p99_ms, r.max_ms, r.first_ms);
   std::printf("\"last_quarter_ms\":%.4f,\"cpu_ms_per_step\":%.4f,\"wall_ms\":%.1f,\"preempted\":%ld,",
               r.last_quarter_ms, r.cpu_ms_per_step, r.wall_ms, r.preempted);
+  std::printf("\"settled_median_ms\":%.4f,\"settled_p99_ms\":%.4f,\"settled_max_ms\":%.4f,",
+              r.settled_median_ms, r.settled_p99_ms, r.settled_max_ms);
   std::printf("\"create_ms\":%.1f,\"rss_mb\":%.1f,\"finite\":%d,\"lost\":%ld,\"asleep\":%ld,\"fallen\":%ld,",
               r.create_ms, r.rss_mb, int(q.finite), q.lost, q.asleep, q.fallen);
   std::printf("\"pairs_near\":%ld,\"pairs_touching\":%ld,\"pairs_deep\":%ld,", q.near, q.touching, q.deep);
@@ -73,39 +74,47 @@ bool parse(int argc, char** argv, RunOptions& options) {
   if (argc < 4) {
     std::fprintf(
         stderr,
-        "usage: %s SCENE THREADS STEPS [sleep]\n  STEPS 0: as many as the scene has. Scenes:", argv[0]);
+        "usage: %s SCENE THREADS STEPS [sleep] [end]\n  STEPS 0: as many as the scene has. Scenes:", argv[0]);
     for (const char* name : scene_names()) std::fprintf(stderr, " %s", name);
-    std::fprintf(stderr, "\n  box_pile and mesh_rain also with a number of bodies, as in box_pile:10000.\n");
+    std::fprintf(
+        stderr,
+        "\n  box_pile and mesh_rain also with a number of bodies, as in box_pile:10000; field only so.\n");
     return false;
   }
   options.scene = argv[1];
   options.threads = std::atoi(argv[2]);
   options.steps = std::atoi(argv[3]);
-  for (int i = 4; i < argc; ++i) options.sleep = options.sleep || std::strcmp(argv[i], "sleep") == 0;
+  for (int i = 4; i < argc; ++i) {
+    options.sleep = options.sleep || std::strcmp(argv[i], "sleep") == 0;
+    options.end_only = options.end_only || std::strcmp(argv[i], "end") == 0;
+  }
   return true;
 }
 
 }  // namespace
 
-RunResult run(Engine& engine, const Scene& scene, int steps) {
+RunResult run(Engine& engine, const Scene& scene, int steps, int looks) {
   const Judge judge(scene);
   RunResult r;
-  std::vector<double> ms;
+  std::vector<double> ms, cpu_of_step;
   std::vector<BodyState> half_second_ago, last_step, now;
   const double before = peak_mb();
   double cpu = 0;
   for (int k = 0; k < steps; ++k) {
+    const bool is_look = k == steps - 1 || (k + 1) % std::max(1, steps / looks) == 0;
+    // What is copied and judged below is no memory of the engine's.
+    if (r.rss_mb == 0 && (is_look || k == steps - kHalfSecond)) r.rss_mb = peak_mb() - before;
     if (k == steps - kHalfSecond) half_second_ago = states(engine, scene);
     if (k == steps - 1) last_step = states(engine, scene);
     const long preempted = preemptions();
     const double cpu_begin = cpu_ms(), begin = wall_ms();
     engine.step();
     ms.push_back(wall_ms() - begin);
-    cpu += cpu_ms() - cpu_begin;
+    cpu_of_step.push_back(cpu_ms() - cpu_begin);
+    cpu += cpu_of_step.back();
     r.preempted += preemptions() - preempted;
     r.wall_ms += ms.back();
-    if (k != steps - 1 && (k + 1) % std::max(1, steps / kLooks) != 0) continue;
-    if (r.rss_mb == 0) r.rss_mb = peak_mb() - before;  // the judge's own memory comes later
+    if (!is_look) continue;
     now = states(engine, scene);
     look(judge, now, r);
     if (!r.end.finite) break;
@@ -122,6 +131,10 @@ RunResult run(Engine& engine, const Scene& scene, int steps) {
   r.first_ms = ms.front();
   r.last_quarter_ms = quantile({ms.end() - std::ptrdiff_t(ms.size() / 4), ms.end()}, 0.5);
   r.cpu_ms_per_step = cpu / double(ms.size());
+  cpu_of_step.erase(cpu_of_step.begin(), cpu_of_step.begin() + std::ptrdiff_t(ms.size() / 2));
+  r.settled_median_ms = quantile(cpu_of_step, 0.5);
+  r.settled_p99_ms = quantile(cpu_of_step, 0.99);
+  r.settled_max_ms = quantile(cpu_of_step, 1.0);
   return r;
 }
 
@@ -173,7 +186,7 @@ int run_program(Engine& engine, int argc, char** argv) {
         r.rays_per_second, r.hits, r.fraction_sum, create_ms, peak_mb() - memory);
     return 0;
   }
-  RunResult r = run(engine, *scene, steps);
+  RunResult r = run(engine, *scene, steps, options.end_only ? 1 : 8);
   r.create_ms = create_ms;
   r.rss_mb += created_mb;
   print(engine.name(), options, engine.settings(), *scene, r);

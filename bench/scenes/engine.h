@@ -1,6 +1,6 @@
 // What a driver says of its engine, and the program that runs one scene in it: times it, judges it, and prints one line of JSON.
 //
-//   PROGRAM SCENE THREADS STEPS [sleep]     STEPS 0: as many as the scene has
+//   PROGRAM SCENE THREADS STEPS [sleep] [end]     STEPS 0: as many as the scene has; end: judged only as it ends
 #pragma once
 
 #include <string>
@@ -29,6 +29,7 @@ struct RunOptions {
   int threads = 1;
   int steps = 0;  // 0: as many as the scene has
   bool sleep = false;
+  bool end_only = false;  // judged as the run ends alone: memory and the slowest steps are the engine's own
 };
 
 // Figures of one run, in ms and in the units of Quality.
@@ -36,6 +37,8 @@ struct RunResult {
   int steps = 0;
   double median_ms = 0, mean_ms = 0, p99_ms = 0, max_ms = 0, first_ms = 0, last_quarter_ms = 0;
   double cpu_ms_per_step = 0, wall_ms = 0, create_ms = 0, rss_mb = 0;
+  // Processor time of the steps after the first half of the run, when contacts exist: other programs lengthen them least.
+  double settled_median_ms = 0, settled_p99_ms = 0, settled_max_ms = 0;
   long preempted = 0;
   Quality end;  // as the run ended
   double pen_peak = 0, speed_peak = 0, joint_peak = 0, limit_peak = 0,
@@ -45,8 +48,8 @@ struct RunResult {
   double creep_mean = 0, move_mean = 0;
 };
 
-// `engine` has created `scene`.
-RunResult run(Engine& engine, const Scene& scene, int steps);
+// `engine` has created `scene`. Judged `looks` times, evenly over the run and as it ends.
+RunResult run(Engine& engine, const Scene& scene, int steps, int looks = 8);
 
 struct RayResult {
   std::size_t rays = 0;

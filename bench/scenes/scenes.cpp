@@ -138,6 +138,30 @@ Scene mesh_rain(int count) {
   return sc;
 }
 
+// A town of fixed boxes, ten to a column over a square metre and a half, and a hundredth as many small ones that rain on it.
+Scene field(int count) {
+  Scene sc;
+  sc.steps = 120;
+  const int side = std::max(1, int(std::lround(std::sqrt(count / 10.0))));
+  Lcg g(12);
+  for (int i = 0; i < count; ++i) {
+    const int l = i / (side * side), r = i % (side * side);
+    const V3 h{g.range(0.4, 0.7), g.range(0.3, 0.5), g.range(0.4, 0.7)};
+    add(sc, box(h), {(r % side - side / 2) * 1.5, 0.5 + 1.0 * l, (r / side - side / 2) * 1.5}, {},
+        Motion::fixed);
+  }
+  const int moving = std::max(1, count / 100), columns = std::max(1, int(std::sqrt(double(moving))));
+  const double top = 1.5 + count / (side * side), gap = 1.5 * side / columns;
+  for (int i = 0; i < moving; ++i) {
+    const int r = i % (columns * columns);
+    add(sc, box({0.3, 0.3, 0.3}),
+        {(r % columns - 0.5 * columns) * gap, top + 0.8 * (i / (columns * columns)),
+         (r / columns - 0.5 * columns) * gap},
+        g.rotation());
+  }
+  return sc;
+}
+
 Scene tumbler() {
   Scene sc;
   sc.steps = 600;
@@ -242,7 +266,7 @@ namespace {
 
 struct NamedScene {
   const char* name;
-  Scene (*make)();
+  Scene (*make)();  // none: only with a number of bodies
   Scene (*make_of)(int bodies) = nullptr;
 };
 const NamedScene kScenes[] = {
@@ -261,6 +285,7 @@ const NamedScene kScenes[] = {
     {"tower", tower},
     {"heavy_stack", heavy_stack},
     {"rays", ray_field},
+    {"field", nullptr, field},
 };
 
 }  // namespace
@@ -268,7 +293,9 @@ const NamedScene kScenes[] = {
 const std::vector<const char*>& scene_names() {
   static const std::vector<const char*> names = [] {
     std::vector<const char*> all;
-    for (const NamedScene& scene : kScenes) all.push_back(scene.name);
+    for (const NamedScene& scene : kScenes) {
+      if (scene.make != nullptr) all.push_back(scene.name);
+    }
     return all;
   }();
   return names;
@@ -280,7 +307,7 @@ std::optional<Scene> find_scene(const std::string& name) {
     if (name.substr(0, colon) != named.name) continue;
     std::optional<Scene> scene;
     if (colon == std::string::npos) {
-      scene = named.make();
+      if (named.make != nullptr) scene = named.make();
     } else if (const int bodies = std::atoi(name.c_str() + colon + 1);
                named.make_of != nullptr && bodies > 0) {
       scene = named.make_of(bodies);
