@@ -42,6 +42,7 @@ struct BenchResult {
   bench::RunResult run;
   double spread_ms = 0;  // half of what lies between the fastest and the slowest round
   std::vector<StageSum> stages;
+  double touching = 0, points = 0;  // mean a step, where stages are timed: pairs that touch, contact points
   std::string skipped;
 };
 
@@ -64,11 +65,15 @@ class TimedEngine final : public bench::Engine {
       stages_[i].name = times_.stages[i].name;
       stages_[i].ms += 1e3 * times_.stages[i].seconds;
     }
+    const WorldCounts counts = engine_.world().counts();
+    touching += counts.touching;
+    points += counts.contact_points;
   }
   bench::BodyState state(int body) override { return engine_.state(body); }
   bool cast_ray(bench::V3 from, bench::V3 by, double& fraction) override {
     return engine_.cast_ray(from, by, fraction);
   }
+  double touching = 0, points = 0;  // sums over the steps
 
  private:
   bench::GyreEngine& engine_;
@@ -96,6 +101,8 @@ BenchResult run_scene(const bench::Scene& scene, const BenchOptions& options) {
     rounds.back().first = rounds.back().second.mean_ms;
     for (StageSum& stage : stages) stage.ms /= double(rounds.back().second.steps);
     result.stages = stages;
+    result.touching = timed.touching / double(rounds.back().second.steps);
+    result.points = timed.points / double(rounds.back().second.steps);
   }
   if (rounds.empty()) return result;
   std::sort(rounds.begin(), rounds.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -119,6 +126,9 @@ void print_row(const BenchResult& r) {
               1e3 * r.run.end.pen_p99, 1e3 * r.run.joint_peak, r.run.stretch_peak, 1e3 * r.run.creep_mean);
   for (const StageSum& stage : r.stages) {
     std::printf("  %-22s %9.4f ms  %5.1f %%\n", stage.name.c_str(), stage.ms, 100 * stage.ms / r.run.mean_ms);
+  }
+  if (!r.stages.empty()) {
+    std::printf("  %-22s %9.0f pairs, %.0f points, mean of the steps\n", "touch", r.touching, r.points);
   }
 }
 
@@ -146,6 +156,8 @@ void write_result(JsonWriter& out, const BenchResult& r) {
     out.key("stage_ms").begin_object(JsonLayout::one_line);
     for (const StageSum& stage : r.stages) out.field(stage.name, float(stage.ms));
     out.end_object();
+    out.field("touching_pairs", float(r.touching));
+    out.field("contact_points", float(r.points));
   }
   out.field("create_ms", float(r.run.create_ms));
   out.field("memory_mb", float(r.run.rss_mb));
