@@ -32,56 +32,74 @@ class HashVisitor {
   template <class T>
   void operator()(const char*, const Array<T>& column) {
     if (is_later_column<Array<T>> && column.empty()) return;
-    hasher_.add(std::uint64_t(column.size()));
+    add_at_once(column.size());
     for (const T& record : column) add_record(record);
   }
   template <class T>
     requires IsColumn<T>
   void operator()(const char*, const T& column) {
-    hasher_.add(std::uint64_t(column.size()));
+    add_at_once(column.size());
     for (std::size_t i = 0; i < column.size(); ++i) add_record(column[i]);
   }
   void operator()(const char*, const IdPool& ids) {
-    for (const std::uint32_t generation : ids.generations()) hasher_.add(std::uint64_t(generation));
+    for (const std::uint32_t generation : ids.generations()) add_at_once(generation);
   }
   void operator()(const char*, const std::vector<AnyShape>& geometry) {
-    for (const AnyShape& shape : geometry) hasher_.add(hash_shape(shape));
+    for (const AnyShape& shape : geometry) add_at_once(hash_shape(shape));
   }
   std::uint64_t value() {
-    flush();
+    eat(used_);
+    used_ = 0;
     return hasher_.value();
   }
 
  private:
   template <class T>
   void add_record(const T& record) {
-    for_each_field(record, [this](const auto& value) { this->add(value); });
+    // Every field takes a byte or more of its record: there is room for all of them without looking at each.
+    static_assert(sizeof(T) + std::size_t(kGroup) <= std::size_t(kWords));
+    if (used_ + int(sizeof(T)) > kWords) drain();
+    int used = used_;
+    for_each_field(record, [this, &used](const auto& value) { words_[used++] = word_of(value); });
+    used_ = used;
   }
   template <class T>
   void add(const T& value) {
-    std::uint64_t word = 0;
-    if constexpr (std::is_same_v<T, double>) {
-      word = __builtin_bit_cast(std::uint64_t, value);
-    } else if constexpr (std::is_same_v<T, float>) {
-      word = __builtin_bit_cast(std::uint32_t, value);
-    } else {
-      word = std::uint64_t(value);
-    }
-    words_[used_++] = word;
-    if (used_ == kWords) flush();
+    if (used_ == kWords) drain();
+    words_[used_++] = word_of(value);
   }
-  void flush() {
-    if constexpr (std::endian::native == std::endian::little) {
-      hasher_.add(std::as_bytes(std::span(words_, std::size_t(used_))));  // the same bytes, all at once
+  template <class T>
+  static std::uint64_t word_of(const T& value) {
+    if constexpr (std::is_same_v<T, double>) {
+      return __builtin_bit_cast(std::uint64_t, value);
+    } else if constexpr (std::is_same_v<T, float>) {
+      return __builtin_bit_cast(std::uint32_t, value);
     } else {
-      for (int i = 0; i < used_; ++i) hasher_.add(words_[i]);
+      return std::uint64_t(value);
     }
-    used_ = 0;
+  }
+  // Fields go to the hash in groups; a count that is told at once comes before those of the group that is not full yet.
+  void add_at_once(std::uint64_t word) {
+    drain();
+    hasher_.add(word);
+  }
+  void drain() {
+    const int whole = used_ / kGroup * kGroup;
+    eat(whole);
+    used_ -= whole;
+    for (int i = 0; i < used_; ++i) words_[i] = words_[whole + i];
+  }
+  void eat(int count) {
+    if constexpr (std::endian::native == std::endian::little) {
+      hasher_.add(std::as_bytes(std::span(words_, std::size_t(count))));  // the same bytes, all together
+    } else {
+      for (int i = 0; i < count; ++i) hasher_.add(words_[i]);
+    }
   }
 
   static std::uint64_t hash_shape(const AnyShape& shape);
 
-  static constexpr int kWords = 64;
+  static constexpr int kGroup = 64, kWords = 2048;
   std::uint64_t words_[kWords];
   int used_ = 0;
   Hasher hasher_;
