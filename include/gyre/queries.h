@@ -77,6 +77,8 @@ struct Overlap {
   ShapeId shape{};
   std::int32_t sub_shape = 0;
   std::int32_t triangle = -1;  // the lowest of those that overlap, numbered as in CastHit
+
+  explicit operator bool() const { return bool(body); }
 };
 
 struct ClosestPoint {
@@ -100,6 +102,8 @@ struct Penetration {
   DVec3 point{};      // midway between the surfaces, where they are deepest
   Vec3 normal{};      // unit: moving the shape that asks by depth * normal ends this contact
   float depth = 0.0f;  // m, above 0
+
+  explicit operator bool() const { return bool(body); }
 };
 
 // Why a query cannot be asked; code none if it can.

@@ -226,11 +226,14 @@ class World {
   // The nearest point of any shape within `max_distance` (m, at least 0), and all shapes within it by distance.
   std::optional<ClosestPoint> closest_point(const ShapePlace& place, double max_distance,
                                             const QueryFilter& filter = {}) const;
+  bool any_within(const ShapePlace& place, double max_distance, const QueryFilter& filter = {}) const;
   std::size_t find_closest(const ShapePlace& place, double max_distance, std::span<ClosestPoint> out,
                            const QueryFilter& filter = {}) const;
   // Every contact in which the shape overlaps another, deepest first: one of each convex shape or plane, up to eight of a
   // mesh or height field, whose inner edges give none.
   std::size_t find_penetrations(const ShapePlace& place, std::span<Penetration> out, const QueryFilter& filter = {}) const;
+  // The first of them. Whether there is any, or a touch: overlaps.
+  std::optional<Penetration> deepest_penetration(const ShapePlace& place, const QueryFilter& filter = {}) const;
 
   // Many at once, over the world's threads: out[i] answers question i, and is empty (no body) where nothing is met. An error
   // names the first question that cannot be asked, or spans of different length; then nothing is asked at all. One batch at
@@ -239,9 +242,31 @@ class World {
   Error cast_shapes(std::span<const ShapeCast> casts, std::span<CastHit> out, const QueryFilter& filter = {}) const;
   Error closest_points(std::span<const ShapePlace> places, double max_distance, std::span<ClosestPoint> out,
                        const QueryFilter& filter = {}) const;
+  Error deepest_penetrations(std::span<const ShapePlace> places, std::span<Penetration> out,
+                             const QueryFilter& filter = {}) const;
   // counts[i]: how many shapes place i overlaps.
   Error count_overlaps(std::span<const ShapePlace> places, std::span<std::uint32_t> counts,
                        const QueryFilter& filter = {}) const;
+  // out[i]: 1 if question i meets, overlaps or is near anything, or else 0.
+  Error rays_hit(std::span<const Ray> rays, std::span<std::uint8_t> out, const QueryFilter& filter = {}) const;
+  Error shapes_hit(std::span<const ShapeCast> casts, std::span<std::uint8_t> out, const QueryFilter& filter = {}) const;
+  Error places_overlap(std::span<const ShapePlace> places, std::span<std::uint8_t> out,
+                       const QueryFilter& filter = {}) const;
+  Error places_near(std::span<const ShapePlace> places, double max_distance, std::span<std::uint8_t> out,
+                    const QueryFilter& filter = {}) const;
+  // All answers of each question, in the order of the single question. The room is shared out alike: of out.size() = n * room
+  // answers those of question i begin at out[i * room]. counts[i] is how many there are; where they are more than `room`, the
+  // first are kept.
+  Error cast_rays_all(std::span<const Ray> rays, std::span<CastHit> out, std::span<std::uint32_t> counts,
+                      const QueryFilter& filter = {}) const;
+  Error cast_shapes_all(std::span<const ShapeCast> casts, std::span<CastHit> out, std::span<std::uint32_t> counts,
+                        const QueryFilter& filter = {}) const;
+  Error find_overlaps_all(std::span<const ShapePlace> places, std::span<Overlap> out, std::span<std::uint32_t> counts,
+                          const QueryFilter& filter = {}) const;
+  Error find_closest_all(std::span<const ShapePlace> places, double max_distance, std::span<ClosestPoint> out,
+                         std::span<std::uint32_t> counts, const QueryFilter& filter = {}) const;
+  Error find_penetrations_all(std::span<const ShapePlace> places, std::span<Penetration> out,
+                              std::span<std::uint32_t> counts, const QueryFilter& filter = {}) const;
 
   // ---------------------------------------------------------------------------------------------------- the last step
   const Events& events() const;  // of the last step

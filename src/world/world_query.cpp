@@ -243,6 +243,45 @@ void for_each_near(const WorldState& s, const ShapePlace& place, double max_dist
             [&](const QueryInput& input) { find_near(input, world_shape(place), max_distance, found); });
 }
 
+bool is_near_any(const WorldState& s, const ShapePlace& place, double max_distance,
+                 const QueryFilter& filter) {
+  bool any = false;
+  for_each_near(s, place, max_distance, filter, [&](const ShapeNear&) { return !(any = true); });
+  return any;
+}
+std::size_t all_near(const WorldState& s, const ShapePlace& place, double max_distance,
+                     std::span<ClosestPoint> out, const QueryFilter& filter) {
+  FirstAnswers<ClosestPoint> answers(out);
+  for_each_near(s, place, max_distance, filter, [&](const ShapeNear& near) {
+    answers.add(public_answer(s.rigid, near));
+    return true;
+  });
+  return answers.count();
+}
+std::size_t all_overlaps(const WorldState& s, const ShapePlace& place, std::span<Overlap> out,
+                         const QueryFilter& filter) {
+  FirstAnswers<Overlap> answers(out);
+  for_each_near(s, place, 0.0, filter, [&](const ShapeNear& near) {
+    answers.add(named<Overlap>(s.rigid, near.shape, near.triangle));
+    return true;
+  });
+  return answers.count();
+}
+std::size_t all_penetrations(const WorldState& s, const ShapePlace& place, std::span<Penetration> out,
+                             const QueryFilter& filter) {
+  FirstAnswers<Penetration> answers(out);
+  ask_world(s, filter, [&](const QueryInput& input) {
+    find_penetrations(input, world_shape(place),
+                      [&](const ShapePenetration& deep) { answers.add(public_answer(s.rigid, deep)); });
+  });
+  return answers.count();
+}
+Penetration deepest(const WorldState& s, const ShapePlace& place, const QueryFilter& filter) {
+  Penetration out;
+  all_penetrations(s, place, std::span(&out, 1), filter);
+  return out;
+}
+
 // Checks a single question and gets the world ready for it.
 template <class Question>
 bool is_ready(WorldState& s, const Question& question) {
@@ -251,13 +290,13 @@ bool is_ready(WorldState& s, const Question& question) {
   return true;
 }
 
-// Answers many questions: answer(question) for each, over the workers, or alone if they are busy.
-template <class Question, class Answer, class Ask>
-Error answer_all(WorldState& s, std::span<const Question> questions, std::span<Answer> out, Ask&& ask) {
+// Calls ask(i, question) for each question, over the workers, or alone if they are busy.
+template <class Question, class Ask>
+Error ask_each(WorldState& s, std::span<const Question> questions, std::size_t room, Ask&& ask) {
   if (s.stepping) return make_error(ErrorCode::busy, "the world is in the middle of a step");
-  if (questions.size() != out.size()) {
+  if (questions.size() != room) {
     return make_error(ErrorCode::invalid_argument, "%zu questions but room for %zu answers", questions.size(),
-                      out.size());
+                      room);
   }
   for (std::size_t i = 0; i < questions.size(); ++i) {
     const Error e = check_question(questions[i]);
@@ -269,7 +308,8 @@ Error answer_all(WorldState& s, std::span<const Question> questions, std::span<A
   for (std::size_t first = 0; first < questions.size(); first += kMost) {
     const auto count = int(min(questions.size() - first, kMost));
     const auto answer_some = [&](int begin, int end, int) {
-      for (int i = begin; i < end; ++i) out[first + std::size_t(i)] = ask(questions[first + std::size_t(i)]);
+      for (std::size_t i = first + std::size_t(begin); i < first + std::size_t(end); ++i)
+        ask(i, questions[i]);
     };
     if (workers.owns_lock()) {
       for_blocks(*s.tasks, count, kBlock, answer_some);
@@ -279,6 +319,28 @@ Error answer_all(WorldState& s, std::span<const Question> questions, std::span<A
     }
   }
   return {};
+}
+
+// One answer each: out[i] = answer(question).
+template <class Question, class Answer, class Ask>
+Error answer_each(WorldState& s, std::span<const Question> questions, std::span<Answer> out, Ask&& answer) {
+  return ask_each(s, questions, out.size(),
+                  [&](std::size_t i, const Question& question) { out[i] = Answer(answer(question)); });
+}
+
+// All answers of each: counts[i] = fill(question, its part of out).
+template <class Question, class Answer, class Ask>
+Error fill_each(WorldState& s, std::span<const Question> questions, std::span<Answer> out,
+                std::span<std::uint32_t> counts, Ask&& fill) {
+  const std::size_t room = questions.empty() ? 0 : out.size() / questions.size();
+  if (room * questions.size() != out.size()) {
+    return make_error(ErrorCode::invalid_argument,
+                      "room for %zu answers cannot be shared out alike among %zu questions", out.size(),
+                      questions.size());
+  }
+  return ask_each(s, questions, counts.size(), [&](std::size_t i, const Question& question) {
+    counts[i] = std::uint32_t(fill(question, out.subspan(i * room, room)));
+  });
 }
 
 }  // namespace
@@ -352,21 +414,12 @@ std::size_t World::cast_shape_all(const ShapeCast& cast, std::span<CastHit> out,
 
 bool World::overlaps(const ShapePlace& place, const QueryFilter& filter) const {
   const FloatMode mode;
-  bool any = false;
-  if (!is_ready(*state_, place)) return false;
-  for_each_near(*state_, place, 0.0, filter, [&](const ShapeNear&) { return !(any = true); });
-  return any;
+  return is_ready(*state_, place) && is_near_any(*state_, place, 0.0, filter);
 }
 std::size_t World::find_overlaps(const ShapePlace& place, std::span<Overlap> out,
                                  const QueryFilter& filter) const {
   const FloatMode mode;
-  FirstAnswers<Overlap> answers(out);
-  if (!is_ready(*state_, place)) return 0;
-  for_each_near(*state_, place, 0.0, filter, [&](const ShapeNear& near) {
-    answers.add(named<Overlap>(state_->rigid, near.shape, near.triangle));
-    return true;
-  });
-  return answers.count();
+  return is_ready(*state_, place) ? all_overlaps(*state_, place, out, filter) : 0;
 }
 
 std::optional<ClosestPoint> World::closest_point(const ShapePlace& place, double max_distance,
@@ -376,56 +429,113 @@ std::optional<ClosestPoint> World::closest_point(const ShapePlace& place, double
   const ClosestPoint nearest = nearest_point(*state_, place, max_distance, filter);
   return nearest ? std::optional(nearest) : std::nullopt;
 }
+bool World::any_within(const ShapePlace& place, double max_distance, const QueryFilter& filter) const {
+  const FloatMode mode;
+  return is_fine(check_distance(max_distance)) && is_ready(*state_, place) &&
+         is_near_any(*state_, place, max_distance, filter);
+}
 std::size_t World::find_closest(const ShapePlace& place, double max_distance, std::span<ClosestPoint> out,
                                 const QueryFilter& filter) const {
   const FloatMode mode;
-  FirstAnswers<ClosestPoint> answers(out);
   if (!is_fine(check_distance(max_distance)) || !is_ready(*state_, place)) return 0;
-  for_each_near(*state_, place, max_distance, filter, [&](const ShapeNear& near) {
-    answers.add(public_answer(state_->rigid, near));
-    return true;
-  });
-  return answers.count();
+  return all_near(*state_, place, max_distance, out, filter);
 }
 
+std::optional<Penetration> World::deepest_penetration(const ShapePlace& place,
+                                                      const QueryFilter& filter) const {
+  const FloatMode mode;
+  if (!is_ready(*state_, place)) return {};
+  const Penetration out = deepest(*state_, place, filter);
+  return out ? std::optional(out) : std::nullopt;
+}
 std::size_t World::find_penetrations(const ShapePlace& place, std::span<Penetration> out,
                                      const QueryFilter& filter) const {
   const FloatMode mode;
-  FirstAnswers<Penetration> answers(out);
-  if (!is_ready(*state_, place)) return 0;
-  ask_world(*state_, filter, [&](const QueryInput& input) {
-    gyre::find_penetrations(input, world_shape(place), [&](const ShapePenetration& deep) {
-      answers.add(public_answer(state_->rigid, deep));
-    });
-  });
-  return answers.count();
+  return is_ready(*state_, place) ? all_penetrations(*state_, place, out, filter) : 0;
 }
 
+// --------------------------------------------------------------------------------------------------------------- batches
+
 Error World::cast_rays(std::span<const Ray> rays, std::span<CastHit> out, const QueryFilter& filter) const {
-  return answer_all(*state_, rays, out, [&](const Ray& ray) { return nearest_hit(*state_, ray, filter); });
+  return answer_each(*state_, rays, out, [&](const Ray& ray) { return nearest_hit(*state_, ray, filter); });
+}
+Error World::rays_hit(std::span<const Ray> rays, std::span<std::uint8_t> out,
+                      const QueryFilter& filter) const {
+  return answer_each(*state_, rays, out, [&](const Ray& ray) { return hits_any(*state_, ray, filter); });
+}
+Error World::cast_rays_all(std::span<const Ray> rays, std::span<CastHit> out, std::span<std::uint32_t> counts,
+                           const QueryFilter& filter) const {
+  return fill_each(*state_, rays, out, counts, [&](const Ray& ray, std::span<CastHit> part) {
+    return all_hits(*state_, ray, part, filter);
+  });
 }
 Error World::cast_shapes(std::span<const ShapeCast> casts, std::span<CastHit> out,
                          const QueryFilter& filter) const {
-  return answer_all(*state_, casts, out,
-                    [&](const ShapeCast& cast) { return nearest_hit(*state_, cast, filter); });
+  return answer_each(*state_, casts, out,
+                     [&](const ShapeCast& cast) { return nearest_hit(*state_, cast, filter); });
 }
+Error World::shapes_hit(std::span<const ShapeCast> casts, std::span<std::uint8_t> out,
+                        const QueryFilter& filter) const {
+  return answer_each(*state_, casts, out,
+                     [&](const ShapeCast& cast) { return hits_any(*state_, cast, filter); });
+}
+Error World::cast_shapes_all(std::span<const ShapeCast> casts, std::span<CastHit> out,
+                             std::span<std::uint32_t> counts, const QueryFilter& filter) const {
+  return fill_each(*state_, casts, out, counts, [&](const ShapeCast& cast, std::span<CastHit> part) {
+    return all_hits(*state_, cast, part, filter);
+  });
+}
+
 Error World::closest_points(std::span<const ShapePlace> places, double max_distance,
                             std::span<ClosestPoint> out, const QueryFilter& filter) const {
   const Error e = check_distance(max_distance);
   if (!is_fine(e)) return e;
-  return answer_all(*state_, places, out, [&](const ShapePlace& place) {
+  return answer_each(*state_, places, out, [&](const ShapePlace& place) {
     return nearest_point(*state_, place, max_distance, filter);
   });
 }
+Error World::places_near(std::span<const ShapePlace> places, double max_distance, std::span<std::uint8_t> out,
+                         const QueryFilter& filter) const {
+  const Error e = check_distance(max_distance);
+  if (!is_fine(e)) return e;
+  return answer_each(*state_, places, out, [&](const ShapePlace& place) {
+    return is_near_any(*state_, place, max_distance, filter);
+  });
+}
+Error World::find_closest_all(std::span<const ShapePlace> places, double max_distance,
+                              std::span<ClosestPoint> out, std::span<std::uint32_t> counts,
+                              const QueryFilter& filter) const {
+  const Error e = check_distance(max_distance);
+  if (!is_fine(e)) return e;
+  return fill_each(*state_, places, out, counts, [&](const ShapePlace& place, std::span<ClosestPoint> part) {
+    return all_near(*state_, place, max_distance, part, filter);
+  });
+}
+
 Error World::count_overlaps(std::span<const ShapePlace> places, std::span<std::uint32_t> counts,
                             const QueryFilter& filter) const {
-  return answer_all(*state_, places, counts, [&](const ShapePlace& place) {
-    std::uint32_t count = 0;
-    for_each_near(*state_, place, 0.0, filter, [&](const ShapeNear&) {
-      ++count;
-      return true;
-    });
-    return count;
+  return find_overlaps_all(places, {}, counts, filter);
+}
+Error World::places_overlap(std::span<const ShapePlace> places, std::span<std::uint8_t> out,
+                            const QueryFilter& filter) const {
+  return places_near(places, 0.0, out, filter);
+}
+Error World::find_overlaps_all(std::span<const ShapePlace> places, std::span<Overlap> out,
+                               std::span<std::uint32_t> counts, const QueryFilter& filter) const {
+  return fill_each(*state_, places, out, counts, [&](const ShapePlace& place, std::span<Overlap> part) {
+    return all_overlaps(*state_, place, part, filter);
+  });
+}
+
+Error World::deepest_penetrations(std::span<const ShapePlace> places, std::span<Penetration> out,
+                                  const QueryFilter& filter) const {
+  return answer_each(*state_, places, out,
+                     [&](const ShapePlace& place) { return deepest(*state_, place, filter); });
+}
+Error World::find_penetrations_all(std::span<const ShapePlace> places, std::span<Penetration> out,
+                                   std::span<std::uint32_t> counts, const QueryFilter& filter) const {
+  return fill_each(*state_, places, out, counts, [&](const ShapePlace& place, std::span<Penetration> part) {
+    return all_penetrations(*state_, place, part, filter);
   });
 }
 

@@ -175,7 +175,12 @@ TEST(NoAllocation, InQueries) {
   }
   std::vector<CastHit> hits(rays.size());
   std::vector<ClosestPoint> closest(places.size());
-  std::vector<std::uint32_t> counts(places.size());
+  std::vector<std::uint32_t> counts(places.size()), ray_counts(rays.size());
+  std::vector<std::uint8_t> any(rays.size());
+  std::vector<CastHit> all_hits(3 * rays.size());
+  std::vector<ClosestPoint> all_closest(3 * places.size());
+  std::vector<Overlap> all_overlaps(3 * places.size());
+  std::vector<Penetration> all_deep(3 * places.size());
   std::array<Penetration, 16> deep;
   std::array<Overlap, 16> overlapping;
   const auto ask = [&] {
@@ -183,9 +188,16 @@ TEST(NoAllocation, InQueries) {
     (void)world.cast_shapes(casts, std::span(hits).first(casts.size()));
     (void)world.closest_points(places, 2.0, closest);
     (void)world.count_overlaps(places, counts);
+    (void)world.rays_hit(rays, any);
+    (void)world.cast_rays_all(rays, all_hits, ray_counts);
+    (void)world.find_closest_all(places, 1.0, all_closest, counts);
+    (void)world.find_overlaps_all(places, all_overlaps, counts);
+    (void)world.find_penetrations_all(places, all_deep, counts);
     std::size_t found = world.cast_ray_all(rays[3].origin, rays[3].way, hits);
     for (const ShapePlace& place : places) {
       found += world.find_penetrations(place, deep) + world.find_overlaps(place, overlapping);
+      found += std::size_t(world.deepest_penetration(place).has_value());
+      found += std::size_t(world.any_within(place, 1.0));
       found += world.find_closest(place, 1.0, closest) + std::size_t(world.overlaps(place));
       found += std::size_t(world.ray_hits(place.pose.position, {0, -5, 0}));
       found += std::size_t(world.closest_point(place, 2.0).has_value());

@@ -1,124 +1,13 @@
 // Queries of a whole world: the same answers as asking every shape alone, with every broad phase and number of threads, right
 // after every change, far from the origin, and refused where they cannot be asked.
-#include "laws/kit.h"
+#include "api/query_crowd.h"
 
 #include <array>
 #include <cstring>
-#include <limits>
-#include <random>
 #include <thread>
 
 namespace gyre::laws {
 namespace {
-
-struct Random {
-  std::mt19937 engine;
-  float operator()(float low, float high) { return low + (high - low) * float(engine() >> 8) / 16777216.0f; }
-  int below(int n) { return int(engine() % unsigned(n)); }
-  Vec3 in_box(float half) {
-    const float x = (*this)(-half, half), y = (*this)(-half, half), z = (*this)(-half, half);
-    return {x, y, z};
-  }
-  Quat turn() {
-    const float x = (*this)(-1, 1), y = (*this)(-1, 1), z = (*this)(-1, 1), w = (*this)(-1, 1);
-    return normalized(Quat{x, y, z, w});
-  }
-};
-
-Geometry rough_mesh(Random& random, bool double_sided) {
-  constexpr int kSide = 12;
-  std::vector<Vec3> vertices;
-  std::vector<std::uint32_t> indices;
-  for (int i = 0; i < kSide * kSide; ++i)
-    vertices.push_back({float(i % kSide) - 5.5f, random(-0.7f, 0.7f), float(i / kSide) - 5.5f});
-  for (int row = 0; row + 1 < kSide; ++row) {
-    for (int column = 0; column + 1 < kSide; ++column) {
-      const auto at = [&](int c, int r) { return std::uint32_t((row + r) * kSide + column + c); };
-      indices.insert(indices.end(), {at(0, 0), at(0, 1), at(1, 0), at(1, 0), at(0, 1), at(1, 1)});
-    }
-  }
-  return *cook_mesh({.vertices = vertices, .indices = indices, .double_sided = double_sided});
-}
-Geometry rough_field(Random& random) {
-  std::vector<float> heights(15 * 9);
-  for (float& h : heights) h = random.below(12) == 0 ? std::numeric_limits<float>::quiet_NaN() : random(-0.7f, 0.7f);
-  return *cook_height_field({.heights = heights, .columns = 15, .rows = 9, .spacing = 0.8f});
-}
-AnyShape random_convex(Random& random) {
-  const float a = random(0.2f, 0.8f), b = random(0.2f, 0.8f), c = random(0.2f, 0.8f);
-  switch (random.below(7)) {
-    case 0:
-      return Sphere{a};
-    case 1:
-      return Box{{a, b, c}};
-    case 2:
-      return Box{{a, b, c}, 0.15f};
-    case 3:
-      return Capsule{a, b};
-    case 4:
-      return Cylinder{a, b};
-    case 5:
-      return Cone{a, b};
-    default: {
-      std::vector<Vec3> points;
-      for (int i = 0; i < 12; ++i) points.push_back(random.in_box(0.8f));
-      return *cook_hull(points);
-    }
-  }
-}
-
-struct Crowd {
-  World world;
-  std::vector<BodyId> bodies;
-};
-
-// Every kind of shape, bodies of several shapes, sensors, layers; some of them have moved since the last step.
-Crowd crowd(unsigned seed, BroadPhaseKind kind, int threads = 1, DVec3 origin = {}) {
-  Random random{std::mt19937(seed)};
-  WorldDef def;
-  def.threads = threads;
-  def.gravity = {};
-  def.stepping.broad_phase = kind;
-  Crowd c{make_world(def), {}};
-  const auto pose = [&] { return Pose{origin + random.in_box(9.0f), random.turn()}; };
-  const Plane plane{normalized(random.in_box(1.0f)), -9.0f};
-  c.bodies.push_back(c.world.add_body({.type = BodyType::fixed, .pose = {origin, {}}}, {.geometry = plane}));
-  for (int i = 0; i < 4; ++i) {
-    const Geometry surface = i % 2 == 0 ? rough_mesh(random, i == 2) : rough_field(random);
-    c.bodies.push_back(c.world.add_body({.type = BodyType::fixed, .pose = pose()}, {.geometry = surface}));
-  }
-  for (int i = 0; i < 150; ++i) {
-    std::vector<ShapeDef> shapes(std::size_t(1 + (random.below(4) == 0 ? 3 : 0)));
-    for (ShapeDef& shape : shapes) {
-      shape.geometry = random_convex(random);
-      if (shapes.size() > 1) shape.local = {random.in_box(1.0f), random.turn()};
-      shape.sensor = random.below(10) == 0;
-      shape.filter.layer = 1u << random.below(4);
-    }
-    const BodyType type = random.below(3) == 0 ? BodyType::dynamic : BodyType::fixed;
-    c.bodies.push_back(c.world.add_body({.type = type, .pose = pose()}, shapes));
-  }
-  if (seed % 3 != 0) c.world.step(kStep);
-  if (seed % 3 == 2) {
-    for (int i = 0; i < 20; ++i) c.world.set_pose(c.bodies[std::size_t(10 + i)], pose());
-    for (int i = 0; i < 10; ++i) c.world.remove_body(c.bodies[std::size_t(60 + i)]);
-  }
-  return c;
-}
-
-Ray random_ray(Random& random, DVec3 origin = {}) {
-  const Vec3 from = random.in_box(12.0f);
-  Vec3 way = 2.0f * (random.in_box(7.0f) - from);
-  if (random.below(5) == 0) way = {0.0f, way.y, 0.0f};
-  return {origin + from, way};
-}
-ShapePlace random_place(Random& random, DVec3 origin = {}) {
-  return {random_convex(random), {origin + random.in_box(10.0f), random.turn()}};
-}
-ShapeCast random_cast(Random& random, DVec3 origin = {}) {
-  const ShapePlace place = random_place(random, origin);
-  return {place.shape, place.pose, random.in_box(15.0f)};
-}
 
 bool only_this(void* user, ShapeId shape, BodyId) { return *static_cast<ShapeId*>(user) == shape; }
 
@@ -244,7 +133,8 @@ TEST(Queries, InBatchesDependOnNothing) {
     found += hits[i] ? 1 : 0;
   }
   EXPECT_GT(found, 1000);
-  for (std::size_t i = 0; i < casts.size(); ++i) shape_hits[i] = one.world.cast_shape(casts[i]).value_or(CastHit{});
+  for (std::size_t i = 0; i < casts.size(); ++i)
+    shape_hits[i] = one.world.cast_shape(casts[i]).value_or(CastHit{});
   for (std::size_t i = 0; i < places.size(); ++i) {
     closest[i] = one.world.closest_point(places[i], 3.0).value_or(ClosestPoint{});
     counts[i] = std::uint32_t(one.world.find_overlaps(places[i], {}));
@@ -373,7 +263,8 @@ TEST(Queries, LeaveOutWhatTheFilterSays) {
 // The same crowd, asked the same, a thousand kilometres away.
 TEST(Queries, AreAsPreciseAThousandKilometresAway) {
   const DVec3 far_away{1.0e6, -0.7e6, 0.4e6};
-  const Crowd near_crowd = crowd(1, BroadPhaseKind::bvh), far_crowd = crowd(1, BroadPhaseKind::bvh, 1, far_away);
+  const Crowd near_crowd = crowd(1, BroadPhaseKind::bvh),
+              far_crowd = crowd(1, BroadPhaseKind::bvh, 1, far_away);
   Random random{std::mt19937(500)};
   int hits = 0, differ = 0;
   for (int i = 0; i < 3000; ++i) {
@@ -410,7 +301,8 @@ TEST(Queries, TellTheWayOutOfOverlap) {
   int overlaps = 0;
   for (int i = 0; i < 400; ++i) {
     World world = make_world();
-    world.add_body({.type = BodyType::fixed, .pose = {{}, random.turn()}}, {.geometry = random_convex(random)});
+    world.add_body({.type = BodyType::fixed, .pose = {{}, random.turn()}},
+                   {.geometry = random_convex(random)});
     ShapePlace place{random_convex(random), {DVec3(random.in_box(0.9f)), random.turn()}};
     std::array<Penetration, 4> out;
     const std::size_t count = world.find_penetrations(place, out);
@@ -433,7 +325,8 @@ TEST(Queries, TellTheWayOutOfOverlap) {
     const std::uint32_t a = k / 5 * 6 + k % 5;
     indices.insert(indices.end(), {a, a + 6, a + 1, a + 1, a + 6, a + 7});
   }
-  const BodyId floor = world.add_body({.type = BodyType::fixed}, {.geometry = *cook_mesh({vertices, indices})});
+  const BodyId floor =
+      world.add_body({.type = BodyType::fixed}, {.geometry = *cook_mesh({vertices, indices})});
   std::array<Penetration, 8> out;
   ASSERT_EQ(world.find_penetrations({Sphere{0.5f}, {{0.1, 0.4, 0.3}, {}}}, out), 1u);
   EXPECT_EQ(out[0].body, floor);
