@@ -42,6 +42,7 @@ using namespace gyre;
 constexpr int kBoxes = 10000;
 constexpr int kSide = 128;         // cells of the terrain
 constexpr float kHalfWorld = 100;  // m
+constexpr std::size_t kRoom = 16;  // answers kept where all are asked for
 
 struct Scene {
   std::vector<Vec3> vertices;
@@ -342,6 +343,20 @@ class Bench {
 #endif
     finish();
     ask(
+        "rays, all hits", scene_.rays.size(),
+        [&](const World& w, std::size_t i) {
+          return w.cast_ray_all(scene_.rays[i].origin, scene_.rays[i].way, all_hits_);
+        },
+        [&](const World& w) { return w.cast_rays_all(scene_.rays, many_hits_, ray_counts_); });
+    finish();
+    ask(
+        "rays, any hit", scene_.rays.size(),
+        [&](const World& w, std::size_t i) {
+          return std::size_t(w.ray_hits(scene_.rays[i].origin, scene_.rays[i].way));
+        },
+        [&](const World& w) { return w.rays_hit(scene_.rays, any_); });
+    finish();
+    ask(
         "moving balls", n,
         [&](const World& w, std::size_t i) { return w.cast_shape(scene_.casts[i]).has_value(); },
         [&](const World& w) { return w.cast_shapes(scene_.casts, std::span(hits_).first(n)); });
@@ -357,6 +372,13 @@ class Bench {
     });
 #endif
     finish();
+    ask(
+        "moving balls, all hits", n,
+        [&](const World& w, std::size_t i) { return w.cast_shape_all(scene_.casts[i], all_hits_); },
+        [&](const World& w) {
+          return w.cast_shapes_all(scene_.casts, std::span(many_hits_).first(kRoom * n), counts_);
+        });
+    finish();
     overlaps("overlaps of a ball", scene_.places, false);
     std::vector<ShapePlace> cubes;
     for (const ShapePlace& place : scene_.places) cubes.push_back({Box{{1, 1, 1}}, place.pose});
@@ -366,8 +388,15 @@ class Bench {
         [&](const World& w, std::size_t i) { return w.closest_point(scene_.places[i], 5.0).has_value(); },
         [&](const World& w) { return w.closest_points(scene_.places, 5.0, closest_); });
     finish();
-    ask("ways out of overlap of a box", n,
-        [&](const World& w, std::size_t i) { return w.find_penetrations(cubes[i], deep_); }, {});
+    ask(
+        "all shapes within 5 m of a ball", n,
+        [&](const World& w, std::size_t i) { return w.find_closest(scene_.places[i], 5.0, near_); },
+        [&](const World& w) { return w.find_closest_all(scene_.places, 5.0, many_near_, counts_); });
+    finish();
+    ask(
+        "ways out of overlap of a box", n,
+        [&](const World& w, std::size_t i) { return w.find_penetrations(cubes[i], deep_); },
+        [&](const World& w) { return w.find_penetrations_all(cubes, many_deep_, counts_); });
     finish();
   }
 
@@ -460,7 +489,14 @@ class Bench {
   std::vector<CastHit> hits_ = std::vector<CastHit>(scene_.rays.size());
   std::vector<std::uint32_t> counts_ = std::vector<std::uint32_t>(scene_.places.size());
   std::vector<ClosestPoint> closest_ = std::vector<ClosestPoint>(scene_.places.size());
-  std::array<Penetration, 16> deep_;
+  std::array<Penetration, kRoom> deep_;
+  std::array<CastHit, kRoom> all_hits_;
+  std::array<ClosestPoint, kRoom> near_;
+  std::vector<CastHit> many_hits_ = std::vector<CastHit>(kRoom * scene_.rays.size());
+  std::vector<std::uint32_t> ray_counts_ = std::vector<std::uint32_t>(scene_.rays.size());
+  std::vector<std::uint8_t> any_ = std::vector<std::uint8_t>(scene_.rays.size());
+  std::vector<ClosestPoint> many_near_ = std::vector<ClosestPoint>(kRoom * scene_.places.size());
+  std::vector<Penetration> many_deep_ = std::vector<Penetration>(kRoom * scene_.places.size());
   const char* what_ = "";
   std::vector<Row> rows_;
   std::vector<std::pair<const char*, std::size_t>> found_;

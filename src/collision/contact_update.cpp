@@ -4,6 +4,7 @@
 #include "collision/fat_box.h"
 #include "geometry/manifold_mesh.h"
 #include "geometry/support.h"
+#include "geometry/surface_overlap.h"
 
 namespace gyre {
 namespace {
@@ -493,6 +494,13 @@ float smaller_size(float a, float b) {
 }
 
 bool look_at_sensor(Contact& contact, const ContactPair& pair) {
+  const Shape& a = pair.shape_a->shape;
+  const Shape& b = pair.shape_b->shape;
+  if (!is_convex(a.kind) && !is_convex(b.kind)) {
+    const Pose frame_a = pose_of(*pair.look_a) * pair.shape_a->body_from_shape;
+    return surfaces_overlap(a, b,
+                            inverse_times(frame_a, pose_of(*pair.look_b) * pair.shape_b->body_from_shape));
+  }
   Found<kMaxMeshManifolds> found;
   ask_shapes(pair, 0.0f, contact.cache, found);
   keep_near(found, 0.0f);

@@ -118,6 +118,46 @@ TEST(Sensor, OfTrianglesSeesWhatPasses) {
       << "of " << tried;
 }
 
+// Sensors and visitors that are both surfaces or planes: sheets, slabs and fields that a kinematic body carries through, and out of,
+// what cannot touch them.
+TEST(Sensor, OfTrianglesSeesTriangles) {
+  enum { plane = 4, kinds };
+  const auto shape_of = [](int kind) {
+    return kind == plane ? AnyShape(Plane{}) : AnyShape(gate_of_triangles(kind));
+  };
+  for (int kind = 0; kind < kinds; ++kind) {
+    for (int other = 0; other < kinds; ++other) {
+      for (int way = 0; way < 4; ++way) {
+        const bool still_senses = way % 2 == 0, turned = way / 2 == 1;
+        World world = make_world({.gravity = {0, 0, 0}, .threads = 1 + way % 2});
+        // The one that moves stands upright, so that the two cross; a plane that moves is turned over, and so apart from one below.
+        const float angle = other == plane ? kPi : turned ? 0.5f * kPi : 0.4f * kPi;
+        const Quat turn{std::sin(0.5f * angle), 0, 0, std::cos(0.5f * angle)};
+        const BodyId still =
+            world.add_body({.type = BodyType::fixed}, {.geometry = shape_of(kind), .sensor = still_senses});
+        BodyDef moving{
+            .type = BodyType::kinematic, .pose = {{0.1, 5, 0.2}, turn}, .linear_velocity = {0, -3, 0}};
+        const BodyId visitor = world.add_body(moving, {.geometry = shape_of(other), .sensor = !still_senses});
+        std::vector<bool> seen;
+        for (int i = 0; i < 400; ++i) {
+          if (i == 200) world.set_velocity(visitor, {0, 3, 0}, {});
+          world.step(kStep);
+          for (const SensorTouch& t : world.events().sensors) {
+            seen.push_back(t.begins);
+            EXPECT_EQ(world.body_of(still_senses ? t.visitor : t.sensor), visitor);
+            EXPECT_EQ(world.body_of(still_senses ? t.sensor : t.visitor), still);
+          }
+        }
+        // Down through it and up again: what is solid below, or turned over above what is, is left only where it came from.
+        const bool solid = kind == plane || other == plane;
+        const std::vector<bool> expected =
+            solid ? std::vector<bool>{true, false} : std::vector<bool>{true, false, true, false};
+        EXPECT_EQ(seen, expected) << "of kind " << kind << ", visited by " << other << ", case " << way;
+      }
+    }
+  }
+}
+
 TEST(Sensor, BehindAWallSeesNoBullet) {
   World world = make_world({.gravity = {0, 0, 0}});
   world.add_body({.type = BodyType::fixed}, {.geometry = Box{{0.01f, 2, 2}}});

@@ -4,7 +4,9 @@
 #include "collision/time_of_impact.h"
 #include "geometry/cast.h"
 #include "geometry/cooked.h"
+#include "geometry/height_field.h"
 #include "geometry/manifold_convex.h"
+#include "geometry/mesh.h"
 #include "geometry/nearest.h"
 
 #include <gyre/bounds.h>
@@ -144,11 +146,23 @@ std::string structure_table() {
     broad += std::string(i > 0 ? ", `" : "`") + to_string(BroadPhaseKind(i)) + "`";
   for (int i = 0; i < kBoundKindCount; ++i)
     bounds += std::string(i > 0 ? ", `" : "`") + to_string(BoundKind(i)) + "`";
+  // What a cooked shape of each kind carries.
+  std::string with_tree, with_pyramid;
+  for (const Named& it : all_shapes()) {
+    const bool tree = it.shape.kind == ShapeKind::mesh && !it.shape.mesh->tree.nodes.empty();
+    const bool pyramid = it.shape.kind == ShapeKind::height_field && !it.shape.field->levels.empty();
+    if (tree) with_tree += (with_tree.empty() ? "" : ", ") + it.name;
+    if (pyramid) with_pyramid += (with_pyramid.empty() ? "" : ", ") + it.name;
+  }
+  const std::string lanes = std::to_string(StaticTree::kWidth);
+  const std::string cells = std::to_string(1u << HeightField::kBlockShift);
   return row({"structure", "which", "choose by"}) + rule(3) +
          row({"broad phases", broad, "`World::set_broad_phase`, `broad_phase` of a scene"}) +
          row({"bounding volumes", bounds, "`gyre/bounds.h`, `gyre info`"}) +
-         row({"static tree of triangles, 8 wide", "every mesh", "–"}) +
-         row({"pyramid of height ranges", "every height field", "–"});
+         row({"tree of bounding boxes, " + lanes + " children a node", "the triangles of a " + with_tree,
+              "–"}) +
+         row({"pyramid of height ranges over blocks of " + cells + " x " + cells + " cells",
+              "the cells of a " + with_pyramid, "–"});
 }
 
 std::string with_table(const std::string& text, const std::string& mark, const std::string& table) {
