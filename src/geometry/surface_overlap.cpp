@@ -4,8 +4,6 @@
 #include "geometry/cast_surface.h"
 #include "math/rotation.h"
 
-#include <cmath>
-
 namespace gyre {
 namespace {
 
@@ -58,10 +56,9 @@ bool any_triangle(const Shape& surface, const Aabb& box, Test&& test) {
   walk_cells(
       *surface.field, box, [&](HeightBlock) { return !found; },
       [&](std::uint32_t column, std::uint32_t row) {
-        for (int half = 0; half < 2 && !found; ++half) {
-          const SurfaceTriangle triangle = surface_triangle(*surface.field, column, row, half);
-          if (std::isfinite(triangle.a.y + triangle.b.y + triangle.c.y)) found = test(triangle);
-        }
+        if (!is_solid_cell(*surface.field, column, row)) return;
+        for (int half = 0; half < 2 && !found; ++half)
+          found = test(surface_triangle(*surface.field, column, row, half));
       });
   return found;
 }

@@ -55,15 +55,20 @@ Surface random_field(Random& random, std::uint32_t columns, std::uint32_t rows) 
   std::vector<float> heights;
   for (std::uint32_t i = 0; i < columns * rows; ++i)
     heights.push_back(random(0, 1) < 0.2f ? std::numeric_limits<float>::quiet_NaN() : random(-0.5f, 0.5f));
-  Surface out{*cook_height_field({.heights = heights, .columns = columns, .rows = rows, .spacing = 0.7f}),
-              {}};
+  heights[0] = heights[1] = heights[columns] = heights[columns + 1] = 0.2f;  // at least one cell is no hole
+  const Result<Geometry> cooked =
+      cook_height_field({.heights = heights, .columns = columns, .rows = rows, .spacing = 0.7f});
+  if (!cooked) ADD_FAILURE() << cooked.error().message;
+  Surface out{*cooked, {}};
   const Shape shape = make_shape(out.geometry);
   for (std::uint32_t row = 0; row + 1 < rows; ++row) {
     for (std::uint32_t column = 0; column + 1 < columns; ++column) {
-      for (int half = 0; half < 2; ++half) {
+      const std::size_t corner = row * columns + column;
+      const float sum =
+          heights[corner] + heights[corner + 1] + heights[corner + columns] + heights[corner + columns + 1];
+      for (int half = 0; half < 2 && std::isfinite(sum); ++half) {
         const SurfaceTriangle t = surface_triangle(*shape.field, column, row, half);
-        if (std::isfinite(t.a.y + t.b.y + t.c.y))
-          out.triangles.push_back({DVec3(t.a), DVec3(t.b), DVec3(t.c)});
+        out.triangles.push_back({DVec3(t.a), DVec3(t.b), DVec3(t.c)});
       }
     }
   }
@@ -102,15 +107,15 @@ TEST(SurfacesOverlap, LikeAllPairsOfTriangles) {
                        : random_field(random, 2 + std::uint32_t(random.engine() % 5), 4);
     };
     const Surface a = surface(i % 2), b = surface(i / 2 % 2);
-    const Transform a_from_b{random.in_box(2.5f), random.turn()};
+    const Transform a_from_b{random.in_box(1.0f), random.turn()};
     const bool expected = cut(a.triangles, b.triangles, a_from_b);
     const Shape shape_a = make_shape(a.geometry), shape_b = make_shape(b.geometry);
     EXPECT_EQ(surfaces_overlap(shape_a, shape_b, a_from_b), expected) << i;
     EXPECT_EQ(surfaces_overlap(shape_b, shape_a, inverse(a_from_b)), expected) << i;
     (expected ? together : apart) += 1;
   }
-  EXPECT_GT(together, 500);
-  EXPECT_GT(apart, 500);
+  EXPECT_GT(together, 300);
+  EXPECT_GT(apart, 300);
 }
 
 TEST(SurfacesOverlap, PlanesAreSolidBelow) {
