@@ -160,6 +160,12 @@ TEST(SurfacesOverlap, FlushAndTouching) {
   EXPECT_TRUE(surfaces_overlap(shape, shape, {{1, 0, 0}, {}}));
   EXPECT_FALSE(surfaces_overlap(shape, shape, {{0.75f, 0, 0.75f}, {}})) << "in one plane, boxes meet";
   EXPECT_FALSE(surfaces_overlap(shape, shape, {{0, 0.001f, 0}, {}}));
+  // In one plane, and only the long edge of the first parts the two.
+  const Vec3 w[3] = {{0.6f, 0, 0.6f}, {0.7f, 0, 3.0f}, {10.0f, 0, 0.7f}};
+  const Geometry corner = *cook_mesh({.vertices = w, .indices = t});
+  EXPECT_FALSE(surfaces_overlap(shape, make_shape(corner), {}));
+  EXPECT_FALSE(surfaces_overlap(make_shape(corner), shape, {}));
+  EXPECT_TRUE(surfaces_overlap(shape, make_shape(corner), {{-0.2f, 0, -0.2f}, {}}));
 }
 
 }  // namespace

@@ -384,6 +384,20 @@ TEST(QueryBatches, HaveTheSameBitsOverThreads) {
   }
 }
 
+// What overlaps by no more than the skin may be left and slid along, but not entered.
+TEST(QuerySkin, LetsGoOfWhatItStandsIn) {
+  World world = make_world();
+  add_ground(world);
+  const auto cast = [&](Vec3 way, float skin) {
+    return world.cast_shape({Box{}, {{0, 0.49, 0}, {}}, way, skin}).has_value();
+  };
+  EXPECT_TRUE(cast({1, 0, 0}, 0.0f));
+  EXPECT_TRUE(cast({1, 0, 0}, 0.005f));
+  EXPECT_FALSE(cast({1, 0, 0}, 0.02f));
+  EXPECT_FALSE(cast({0, 1, 0}, 0.02f));
+  EXPECT_TRUE(cast({0, -1, 0}, 0.02f));
+}
+
 // Room that cannot be shared out alike, and counts of another length, are refused; no room at all only counts.
 TEST(QueryBatches, SayWhyTheyCannotBeAsked) {
   World world = make_world();
