@@ -3,6 +3,7 @@
 #include "base/prefetch.h"
 #include "rigid/hits.h"
 #include "rigid/surface_rules.h"
+#include "solver/ball_records.h"
 
 namespace gyre {
 
@@ -153,13 +154,31 @@ std::span<Group> lay_out_contacts(Solve& solve, Arena& arena) {
 }
 
 std::span<Group> lay_out_joints(Solve& solve, Arena& arena) {
+  if (solve.scratch.swept_joints.empty()) return {};
   const Coloring& colors = solve.scratch.joint_colors;
-  const std::span<Group> groups = arena.make<Group>(std::size_t(colors.group_count()));
+  const std::span<Group> groups = arena.make<Group>(2 * std::size_t(colors.group_count()));
+  solve.joint_order = arena.make<std::uint32_t>(colors.order.size());
+  const std::uint32_t width = std::uint32_t(solve.kernels.width);
+  const auto is_ball = [&](std::uint32_t member) {
+    const std::uint32_t joint = solve.scratch.swept_joints[member];
+    return fits_ball_lane(solve.w.joints.records[solve.batch.joints[joint]], solve.joint_work[joint]);
+  };
   std::size_t used = 0;
+  std::uint32_t blocks = 0;
   for (int g = 0; g < colors.group_count(); ++g) {
-    const std::uint32_t count = colors.offsets[g + 1] - colors.offsets[g];
-    if (count > 0) groups[used++] = {&solve, colors.offsets[g], count, g == colors.overflow_group()};
+    const std::span<const std::uint32_t> members = colors.group(g);
+    const std::uint32_t first = colors.offsets[g], count = std::uint32_t(members.size());
+    const bool serial = g == colors.overflow_group();
+    std::uint32_t balls = 0, others = 0;
+    for (const std::uint32_t member : members) balls += !serial && is_ball(member) ? 1 : 0;
+    std::uint32_t placed = 0;
+    for (const std::uint32_t member : members)
+      solve.joint_order[first + (!serial && is_ball(member) ? placed++ : balls + others++)] = member;
+    if (balls > 0) groups[used++] = {&solve, first, balls, false, std::int32_t(blocks)};
+    if (others > 0) groups[used++] = {&solve, first + balls, count - balls, serial};
+    blocks += (balls + width - 1) / width;
   }
+  solve.balls = arena.make<std::byte>(blocks * solve.kernels.balls.block_bytes).data();
   return groups.first(used);
 }
 

@@ -35,6 +35,8 @@ struct Solve {
   Linkages linkages{};
   LinkageSolve linkage_solve{};
   BundleSolve bundles{};
+  std::span<std::uint32_t> joint_order{};  // places in the list of swept joints, by groups
+  void* balls = nullptr;  // joints side by side: solver/ball_lanes.h
   Motions motions{};
   std::span<MovedBody> moved{};            // the batch's bodies that constraints act on,
   void* motion_blocks = nullptr;           // the same for the kernels,
@@ -57,6 +59,7 @@ struct Group {
   std::uint32_t first = 0;  // first block of contacts, or first place in the joint order
   std::uint32_t count = 0;  // blocks or joints
   bool serial = false;      // what is left over when the colours are used up: its members share bodies
+  std::int32_t ball_block = -1;  // joints that are solved side by side: their first block
 };
 
 // The batch's contacts as constraints, and what colouring needs to know of them; marks the bodies as touched.
@@ -69,6 +72,7 @@ void gather_motion(Solve& solve, Arena& arena);
 // Lays the coloured constraints out in blocks of W lanes. A group starts a new block; constraints of the overflow group
 // get a block each, so that they are solved one after the other at every width.
 std::span<Group> lay_out_contacts(Solve& solve, Arena& arena);
+// Of each colour first those joints that are solved side by side, then the others.
 std::span<Group> lay_out_joints(Solve& solve, Arena& arena);
 
 }  // namespace gyre

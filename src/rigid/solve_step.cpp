@@ -6,6 +6,7 @@
 #include "rigid/program_writer.h"
 #include "rigid/solve_gather.h"
 #include "rigid/solve_rows.h"
+#include "solver/ball_records.h"
 #include "task/parallel.h"
 #include "task/program.h"
 
@@ -39,7 +40,7 @@ constexpr float kMostWarm = 4.0f;
 constexpr int kBodiesPerBlock = 64;
 constexpr int kMotionBlocksPerClaim = 8;
 constexpr int kSpinnersPerClaim = 8;
-constexpr int kJointsPerBlock = 8;
+constexpr int kJointsPerBlock = 16;  // whole blocks of lanes at every width
 constexpr int kBlocksPerClaim = 4;
 constexpr int kTreesPerClaim = 8;
 
@@ -197,36 +198,103 @@ void for_joints(const Group& g, int begin, int end, Fn&& fn) {
   Solve& s = *g.solve;
   const std::uint32_t last = min(std::uint32_t(end * kJointsPerBlock), g.count);
   for (std::uint32_t n = std::uint32_t(begin * kJointsPerBlock); n < last; ++n) {
-    const std::uint32_t i = s.scratch.swept_joints[s.scratch.joint_colors.order[g.first + n]];
+    const std::uint32_t i = s.scratch.swept_joints[s.joint_order[g.first + n]];
     fn(s.w.joints.records[s.batch.joints[i]], s.joint_work[i], s.joint_places[i]);
   }
 }
+// The blocks of a group whose joints are solved side by side.
+struct Balls {
+  const BallKernels& kernels;
+  void* blocks;
+  BallArrays arrays;
+  BallSettings settings;
+  int begin, end;
+};
+Balls balls_of(const Group& g, int begin, int end) {
+  const Solve& s = *g.solve;
+  const Softness& softness = s.joint_settings.softness;
+  const int width = s.kernels.width, joints = min(end * kJointsPerBlock, int(g.count));
+  return {s.kernels.balls,
+          s.balls,
+          {s.joint_bodies.motion, s.joint_bodies.inertia, s.joint_bodies.orientation},
+          {s.h, softness.bias_rate, softness.mass_scale, softness.impulse_scale},
+          g.ball_block + begin * kJointsPerBlock / width,
+          g.ball_block + count_blocks(joints, width)};
+}
+// Calls fn(block, lane, joint) for the joints of such a group.
+template <class Fn>
+void for_balls(const Group& g, int begin, int end, Fn&& fn) {
+  const int width = g.solve->kernels.width;
+  int n = begin * kJointsPerBlock;
+  for_joints(g, begin, end, [&](JointRecord& joint, JointWork&, const JointPlaces& places) {
+    fn(g.ball_block + n / width, n % width, joint, places);
+    ++n;
+  });
+}
+void begin_balls_stage(void* context, int begin, int end, int) {
+  const Group& g = *static_cast<Group*>(context);
+  if (g.ball_block < 0) return;
+  const Balls balls = balls_of(g, begin, end);
+  // Lanes without a joint join nothing.
+  if (int(g.count) % balls.kernels.width != 0) clear_balls(balls.kernels, balls.blocks, balls.end - 1);
+  for_balls(g, begin, end, [&](int block, int lane, const JointRecord& joint, const JointPlaces& places) {
+    begin_ball(balls.kernels, balls.blocks, block, lane, joint, places, balls.arrays.inertia);
+  });
+}
+void finish_balls_stage(void* context, int begin, int end, int) {
+  const Group& g = *static_cast<Group*>(context);
+  if (g.ball_block < 0) return;
+  const Balls balls = balls_of(g, begin, end);
+  for_balls(g, begin, end, [&](int block, int lane, JointRecord& joint, const JointPlaces&) {
+    finish_ball(balls.kernels, balls.blocks, block, lane, joint);
+  });
+}
 void place_joints_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
+  if (g.ball_block >= 0) {
+    const Balls balls = balls_of(g, begin, end);
+    return balls.kernels.place(balls.blocks, balls.begin, balls.end, balls.arrays);
+  }
   for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces& places) {
     place_joint(joint, work, places, g.solve->joint_bodies, g.solve->joint_settings);
   });
 }
 void bend_joints_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
+  if (g.ball_block >= 0) {
+    const Balls balls = balls_of(g, begin, end);
+    return balls.kernels.bend(balls.blocks, balls.begin, balls.end, balls.arrays, balls.settings);
+  }
   for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
     bend_joint(joint, work, g.solve->joint_bodies, g.solve->joint_settings);
   });
 }
 void warm_joints_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
+  if (g.ball_block >= 0) {
+    const Balls balls = balls_of(g, begin, end);
+    return balls.kernels.warm(balls.blocks, balls.begin, balls.end, balls.arrays);
+  }
   for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
     warm_start_joint(joint, work, g.solve->joint_bodies);
   });
 }
 void solve_joints_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
+  if (g.ball_block >= 0) {
+    const Balls balls = balls_of(g, begin, end);
+    return balls.kernels.solve(balls.blocks, balls.begin, balls.end, balls.arrays, balls.settings);
+  }
   for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
     solve_joint(joint, work, g.solve->joint_bodies, g.solve->joint_settings, true);
   });
 }
 void relax_joints_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
+  if (g.ball_block >= 0) {
+    const Balls balls = balls_of(g, begin, end);
+    return balls.kernels.relax(balls.blocks, balls.begin, balls.end, balls.arrays);
+  }
   for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
     solve_joint(joint, work, g.solve->joint_bodies, g.solve->joint_settings, false);
     sum_joint(joint, work, g.solve->joint_bodies);
@@ -341,7 +409,7 @@ void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> join
   const int parts = solve.motions.count;
   const std::size_t per_part = (solve.bundles.bundles.empty() ? 24 : 29) + 5 * joints.size() + 2 * contacts.size();
   ProgramWriter program(
-      arena.make<Stage>(15 + std::size_t(parts) * per_part + 2 * contacts.size() + joints.size()));
+      arena.make<Stage>(15 + std::size_t(parts) * per_part + 2 * contacts.size() + 3 * joints.size()));
   std::uint32_t blocks = 0;
   for (const Group& group : contacts) blocks += group.count;
   const int bodies = count_blocks(int(solve.moved.size()), solve.kernels.width);
@@ -350,6 +418,7 @@ void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> join
   program.add(prepare_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
   program.add(prepare_fields_stage, &solve.fields, solve.fields.blocks());
   program.add(prepare_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
+  program.add_groups(begin_balls_stage, joints, kJointsPerBlock, 1);
   program.add_groups(place_joints_stage, joints, kJointsPerBlock, 1);
   program.add(linkage_stage<place_linkage>, &solve, int(solve.linkages.linkages.size()));
   const int bundles = int(solve.bundles.bundles.size());
@@ -364,6 +433,7 @@ void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> join
   program.add(finish_smooth, &solve, solve.smooth.count());
   program.add(finish_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
   program.add(finish_bundles_stage, &solve, bundles);
+  program.add_groups(finish_balls_stage, joints, kJointsPerBlock, 1);
   run_program(tasks, program.stages());
 }
 

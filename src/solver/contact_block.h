@@ -6,6 +6,7 @@
 #pragma once
 
 #include "geometry/manifold.h"
+#include "solver/ball_lanes.h"
 #include "solver/body_motion.h"
 #include "solver/linkage_lanes.h"
 #include "solver/motion_block.h"
@@ -97,6 +98,7 @@ struct ContactKernels {
                  const ContactSettings& settings);
   MotionKernels motion;
   LinkageKernels linkages;
+  BallKernels balls;
 };
 
 // The widest kernels that this machine runs well and that have at most `width` lanes (0: any). Same bits whichever.

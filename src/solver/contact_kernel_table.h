@@ -1,6 +1,7 @@
 // All kernels of one CPU target, as the table that a kernel file exports.
 #pragma once
 
+#include "solver/ball_kernel.h"
 #include "solver/contact_follow.h"
 #include "solver/contact_prepare.h"
 #include "solver/contact_project.h"
@@ -25,7 +26,8 @@ constexpr ContactKernels contact_kernels() {
           harden_block<W>,
           finish_blocks<W>,
           motion_kernels<W>(),
-          linkage_kernels<W>()};
+          linkage_kernels<W>(),
+          ball_kernels<W>()};
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

@@ -8,12 +8,34 @@ namespace gyre {
 
 namespace {
 
-constexpr std::size_t kLaneFloats = sizeof(LaneJoint) / sizeof(float);
-static_assert(sizeof(LaneJoint) == kLaneFloats * sizeof(float));
+// Floats of a lane that balls have, that all others have too, and of an axis, which go in and come out.
+constexpr std::size_t kBallFloats = offsetof(LaneJoint, local_frame_a) / sizeof(float);
+constexpr std::size_t kFrameFloats = offsetof(LaneJoint, twist) / sizeof(float);
+constexpr std::size_t kAxisFloats = offsetof(LaneAxis, low_gap) / sizeof(float) + 1;
+constexpr std::size_t kTwist = offsetof(LaneJoint, twist) / sizeof(float);
+constexpr std::size_t kSwing = offsetof(LaneJoint, swing) / sizeof(float);
 
-float* lane_of(const LinkageBundle& bundle, int lane, std::uint32_t node) {
-  return reinterpret_cast<float*>(bundle.joints + node * bundle.kernels->joint_bytes) + lane;
-}
+// A joint's lane of a bundle, and ranges of its floats.
+class Lane {
+ public:
+  Lane(const LinkageBundle& bundle, int lane, std::uint32_t node)
+      : first_(reinterpret_cast<float*>(bundle.joints + node * bundle.kernels->joint_bytes) + lane),
+        width_(std::size_t(bundle.kernels->width)) {}
+  void write(const void* from, std::size_t begin, std::size_t count) const {
+    for (std::size_t i = 0; i < count; ++i)
+      std::memcpy(first_ + (begin + i) * width_, static_cast<const std::byte*>(from) + i * sizeof(float),
+                  sizeof(float));
+  }
+  void read(void* to, std::size_t begin, std::size_t count) const {
+    for (std::size_t i = 0; i < count; ++i)
+      std::memcpy(static_cast<std::byte*>(to) + i * sizeof(float), first_ + (begin + i) * width_,
+                  sizeof(float));
+  }
+
+ private:
+  float* first_;
+  std::size_t width_;
+};
 
 AxisWork* axis_at(const JointWork& work, JointAxis index) {
   for (AxisWork& x : work.axes) {
@@ -22,17 +44,22 @@ AxisWork* axis_at(const JointWork& work, JointAxis index) {
   return nullptr;
 }
 
-void begin_axis(LaneAxis& lane, const AxisWork& x) {
-  lane.low = x.axis.limits.low;
-  lane.high = x.axis.limits.high;
-  lane.low_impulse = x.axis.low_impulse;
-  lane.high_impulse = x.axis.high_impulse;
-  lane.total = x.axis.total;
+void begin_axis(const Lane& lane, std::size_t at, const AxisWork& x) {
+  LaneAxis from;
+  from.low = x.axis.limits.low;
+  from.high = x.axis.limits.high;
+  from.low_impulse = x.axis.low_impulse;
+  from.high_impulse = x.axis.high_impulse;
+  from.total = x.axis.total;
+  lane.write(&from, at, kAxisFloats);
 }
-void finish_axis(const LaneAxis& lane, AxisWork& x) {
-  x.axis.low_impulse = lane.low_impulse;
-  x.axis.high_impulse = lane.high_impulse;
-  x.axis.total = lane.total;
+LaneAxis finish_axis(const Lane& lane, std::size_t at, AxisWork& x) {
+  LaneAxis to;
+  lane.read(&to, at, kAxisFloats);
+  x.axis.low_impulse = to.low_impulse;
+  x.axis.high_impulse = to.high_impulse;
+  x.axis.total = to.total;
+  return to;
 }
 
 }  // namespace
@@ -71,6 +98,8 @@ void set_lane_body(const LinkageBundle& bundle, int lane, std::uint32_t body, st
 
 void begin_lane(const LinkageBundle& bundle, int lane, std::uint32_t node, const JointRecord& joint,
                 const JointWork& work, const JointPlaces& places) {
+  const Lane to(bundle, lane, node);
+  const bool is_ball = joint.kind == JointKind::ball;
   LaneJoint from;
   from.local_a = joint.local_anchor_a;
   from.local_b = joint.local_anchor_b;
@@ -82,43 +111,37 @@ void begin_lane(const LinkageBundle& bundle, int lane, std::uint32_t node, const
   from.local_frame_b = joint.local_frame_b;
   from.position = joint.position;
   if (joint.kind == JointKind::hinge) from.angular_impulse = joint.angular_impulse;
-  if (const AxisWork* const x = axis_at(work, JointAxis::angular_x)) begin_axis(from.twist, *x);
+  if (const AxisWork* const x = axis_at(work, JointAxis::angular_x)) begin_axis(to, kTwist, *x);
   if (const AxisWork* const x = axis_at(work, JointAxis::angular_y)) {
     constexpr float kLeastSwing = 1.0e-3f;  // rad
-    begin_axis(from.swing, *x);
+    begin_axis(to, kSwing, *x);
     from.swing_grip_y = 1.0f / max(work.detail->swing_y, kLeastSwing);
     from.swing_grip_z = 1.0f / max(work.detail->swing_z, kLeastSwing);
   }
-  float floats[kLaneFloats];
-  std::memcpy(floats, &from, sizeof from);
-  float* const to = lane_of(bundle, lane, node);
-  const std::size_t width = std::size_t(bundle.kernels->width);
-  for (std::size_t i = 0; i < kLaneFloats; ++i) to[i * width] = floats[i];
+  to.write(&from, 0, is_ball ? kBallFloats : kFrameFloats);
 }
 
 void finish_lane(const LinkageBundle& bundle, int lane, std::uint32_t node, JointRecord& joint,
                  const JointWork& work) {
-  float floats[kLaneFloats];
-  const float* const from = lane_of(bundle, lane, node);
-  const std::size_t width = std::size_t(bundle.kernels->width);
-  for (std::size_t i = 0; i < kLaneFloats; ++i) floats[i] = from[i * width];
+  const Lane from(bundle, lane, node);
+  const bool is_ball = joint.kind == JointKind::ball;
   LaneJoint to;
-  std::memcpy(static_cast<void*>(&to), floats, sizeof to);
+  from.read(&to, 0, is_ball ? kBallFloats : kFrameFloats);
   joint.linear_impulse = to.linear_impulse;
   joint.angular_impulse = to.angular_impulse;
   joint.total_linear = to.total_linear;
   joint.total_angular = to.total_angular;
-  if (joint.kind == JointKind::ball) return;
+  if (is_ball) return;
   joint.position = to.position;
   if (joint.kind == JointKind::cone && work.detail != nullptr) work.detail->axes[3].position = to.position;
   if (AxisWork* const x = axis_at(work, JointAxis::angular_x)) {
-    finish_axis(to.twist, *x);
+    finish_axis(from, kTwist, *x);
     x->axis.position = to.position;
   }
   if (AxisWork* const x = axis_at(work, JointAxis::angular_y)) {
-    finish_axis(to.swing, *x);
+    const LaneAxis swing = finish_axis(from, kSwing, *x);
     x->axis.limits = {};
-    x->axis.position = -to.swing.low_gap;
+    x->axis.position = -swing.low_gap;
   }
 }
 

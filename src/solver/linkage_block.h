@@ -26,21 +26,23 @@ struct LinkedBody {
 // As LaneAxis and LaneJoint.
 template <int W>
 struct LinkedAxis {
+  Wide<W> low, high, low_impulse, high_impulse, total, low_gap, high_gap;
   Vec3W<W> about;
-  Wide<W> mass, low, high, low_gap, high_gap, low_impulse, high_impulse, total;
+  Wide<W> mass;
 };
 template <int W>
 struct LinkedJoint {
-  Vec3W<W> local_a, local_b, offset, from_a, from_b, error, give, wanted, linear_impulse, total_linear,
-      total_angular;
+  Vec3W<W> local_a, local_b, offset, linear_impulse, angular_impulse, total_linear, total_angular;
   QuatW<W> local_frame_a, local_frame_b;
-  Wide<W> position;
-  Vec3W<W> angular_impulse, axis, perpendicular_1, perpendicular_2, angular_error;
-  Wide<W> turn_give_1, turn_give_2, turn_wanted_1, turn_wanted_2;
-  Wide<W> swing_grip_y, swing_grip_z;
+  Wide<W> position, swing_grip_y, swing_grip_z;
   LinkedAxis<W> twist, swing;
+  Vec3W<W> from_a, from_b, error, give, wanted;
+  Vec3W<W> axis, perpendicular_1, perpendicular_2, angular_error;
+  Wide<W> turn_give_1, turn_give_2, turn_wanted_1, turn_wanted_2;
 };
 static_assert(sizeof(LinkedAxis<1>) == sizeof(LaneAxis) && sizeof(LinkedJoint<1>) == sizeof(LaneJoint));
+static_assert(offsetof(LinkedJoint<1>, swing) == offsetof(LaneJoint, swing));
+static_assert(offsetof(LinkedJoint<1>, from_a) == offsetof(LaneJoint, from_a));
 
 // A bundle while a stage works on it.
 template <int W>

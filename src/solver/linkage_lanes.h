@@ -15,34 +15,34 @@
 namespace gyre {
 
 // A stop at either end of an axis about which a joint turns. In each of these structs the floats are in the order of the kernels'
-// (a float of a lane is W floats there).
+// (a float of a lane is W floats there); what goes in and comes out stands first.
 struct LaneAxis {
+  float low = 0.0f, high = 0.0f;  // rad: where the stops are
+  float low_impulse = 0.0f, high_impulse = 0.0f;
+  float total = 0.0f;                     // of the impulses over the step
+  float low_gap = 0.0f, high_gap = 0.0f;  // rad: how far it is to them
   Vec3 about;                             // of this sub-step: turning a limb about it changes the angle
   float mass = 0.0f;                      // effective
-  float low = 0.0f, high = 0.0f;          // rad: where the stops are
-  float low_gap = 0.0f, high_gap = 0.0f;  // rad: how far it is to them
-  float low_impulse = 0.0f, high_impulse = 0.0f;
-  float total = 0.0f;  // of the impulses over the step
 };
 
 // A joint as one lane.
 struct LaneJoint {
   Vec3 local_a, local_b;  // anchors from the centres of mass, body frames
   Vec3 offset;            // JointPlaces::offset
-  Vec3 from_a, from_b;    // of this sub-step: anchors from the centres of mass, world axes
-  Vec3 error;             // anchor b minus anchor a
-  Vec3 give, wanted;      // of the three rows of the point, as LinkageRows
-  Vec3 linear_impulse;
+  Vec3 linear_impulse, angular_impulse;
   Vec3 total_linear, total_angular;
   // What hinges and cones have.
   Quat local_frame_a, local_frame_b;
-  float position = 0.0f;  // rad: the twist
-  Vec3 angular_impulse;
+  float position = 0.0f;                           // rad: the twist
+  float swing_grip_y = 0.0f, swing_grip_z = 0.0f;  // cones: 1 / the largest swing, 1/rad
+  LaneAxis twist, swing;
+  // Of this sub-step.
+  Vec3 from_a, from_b;  // anchors from the centres of mass, world axes
+  Vec3 error;           // anchor b minus anchor a
+  Vec3 give, wanted;    // of the three rows of the point, as LinkageRows
   // Hinges: a's axis and what is across it, the error, the two rows that keep the axes together.
   Vec3 axis, perpendicular_1, perpendicular_2, angular_error;
   float turn_give_1 = 0.0f, turn_give_2 = 0.0f, turn_wanted_1 = 0.0f, turn_wanted_2 = 0.0f;
-  float swing_grip_y = 0.0f, swing_grip_z = 0.0f;  // cones: 1 / the largest swing, 1/rad
-  LaneAxis twist, swing;
 };
 
 // What the linkages of a bundle have in common.

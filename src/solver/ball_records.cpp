@@ -1,0 +1,75 @@
+#include "solver/ball_records.h"
+
+#include <cstring>
+
+namespace gyre {
+
+namespace {
+
+constexpr std::size_t kBallFloats = sizeof(LaneBall) / sizeof(float);
+static_assert(sizeof(LaneBall) == kBallFloats * sizeof(float));
+constexpr std::size_t kImpulse = offsetof(LaneBall, impulse) / sizeof(float);
+constexpr std::size_t kTotal = offsetof(LaneBall, total) / sizeof(float);
+
+std::size_t place_of(const BallKernels& kernels, int block) {
+  return std::size_t(block) * kernels.block_bytes;
+}
+
+void set_bodies(const BallKernels& kernels, void* blocks, int block, int lane, const LaneBallBodies& bodies) {
+  const std::int32_t records[] = {bodies.read_a, bodies.read_b, bodies.write_a, bodies.write_b};
+  std::byte* const first = static_cast<std::byte*>(blocks) + place_of(kernels, block);
+  for (int i = 0; i < 4; ++i) {
+    const std::size_t at = std::size_t(i * kernels.width + lane) * sizeof(std::int32_t);
+    std::memcpy(first + at, &records[i], sizeof(std::int32_t));
+  }
+}
+
+bool is_movable(const BodyInertia& inertia) {
+  return inertia.inverse_mass > 0.0f || inertia.inverse != Sym3{};
+}
+
+}  // namespace
+
+bool fits_ball_lane(const JointRecord& joint, const JointWork& work) {
+  return joint.kind == JointKind::ball && work.axes.empty() && work.drive == nullptr &&
+         work.rows == nullptr && joint.angular_impulse == Vec3{};
+}
+
+void clear_balls(const BallKernels& kernels, void* blocks, int block) {
+  std::memset(static_cast<std::byte*>(blocks) + place_of(kernels, block), 0, kernels.block_bytes);
+  for (int lane = 0; lane < kernels.width; ++lane) set_bodies(kernels, blocks, block, lane, {});
+}
+
+void begin_ball(const BallKernels& kernels, void* blocks, int block, int lane, const JointRecord& joint,
+                const JointPlaces& places, const BodyInertia* inertia) {
+  const auto writes = [&](std::int32_t body) {
+    return body != kNoBody && is_movable(inertia[body]) ? body : kNoBody;
+  };
+  set_bodies(kernels, blocks, block, lane,
+             {joint.body_a, joint.body_b, writes(joint.body_a), writes(joint.body_b)});
+  LaneBall from;
+  from.local_a = joint.local_anchor_a;
+  from.local_b = joint.local_anchor_b;
+  from.offset = places.offset;
+  from.impulse = joint.linear_impulse;
+  from.total = joint.total_linear;
+  float floats[kBallFloats];
+  std::memcpy(floats, &from, sizeof from);
+  std::byte* const first = static_cast<std::byte*>(blocks) + place_of(kernels, block) + kernels.first_float;
+  float* const to = reinterpret_cast<float*>(first) + lane;
+  for (std::size_t i = 0; i < kBallFloats; ++i) to[i * std::size_t(kernels.width)] = floats[i];
+}
+
+void finish_ball(const BallKernels& kernels, const void* blocks, int block, int lane, JointRecord& joint) {
+  const std::byte* const first =
+      static_cast<const std::byte*>(blocks) + place_of(kernels, block) + kernels.first_float;
+  const float* const from = reinterpret_cast<const float*>(first) + lane;
+  const auto vector_at = [&](std::size_t i) {
+    const std::size_t width = std::size_t(kernels.width);
+    return Vec3{from[i * width], from[(i + 1) * width], from[(i + 2) * width]};
+  };
+  joint.linear_impulse = vector_at(kImpulse);
+  joint.total_linear = vector_at(kTotal);
+}
+
+}  // namespace gyre

@@ -1,0 +1,19 @@
+// Between the records of joints and the lanes of ball joints side by side (solver/ball_lanes.h).
+#pragma once
+
+#include "solver/ball_lanes.h"
+#include "solver/joint.h"
+
+namespace gyre {
+
+// Whether it is a ball joint on which nothing else acts.
+bool fits_ball_lane(const JointRecord& joint, const JointWork& work);
+
+// A block whose lanes join nothing.
+void clear_balls(const BallKernels& kernels, void* blocks, int block);
+void begin_ball(const BallKernels& kernels, void* blocks, int block, int lane, const JointRecord& joint,
+                const JointPlaces& places, const BodyInertia* inertia);
+// Impulses and sums, back into the record.
+void finish_ball(const BallKernels& kernels, const void* blocks, int block, int lane, JointRecord& joint);
+
+}  // namespace gyre
