@@ -11,12 +11,15 @@ namespace {
 
 // The part of its way that a body in contact keeps whatever the sweep says.
 constexpr float kLeastProgress = 0.2f;
+// How often bodies that follow others by joints are swept in turn.
+constexpr int kMostRounds = 4;
 
 Sweep sweep_of_body(const RigidWorld& w, std::uint32_t body) {
   const BodyMotion& motion = w.bodies.motion[body];
   const BodyFlags& flags = w.bodies.flags[body];
   const bool moves = flags.type != BodyType::fixed && flags.awake != 0 && flags.frozen == 0;
-  return {origin_pose(w.bodies, body), w.bodies.masses[body].center, moves ? motion.moved : Vec3{}, moves ? motion.turned : Vec3{}};
+  return {origin_pose(w.bodies, body), w.bodies.masses[body].center, moves ? motion.moved : Vec3{},
+          moves ? motion.turned : Vec3{}};
 }
 
 // What was inside as the step began has been told to begin, and its end is seen when the contact is looked at again.
@@ -131,7 +134,8 @@ class Overrun {
     }
     if (scratch_.listed.test(body)) return;
     scratch_.listed.set(body);
-    scratch_.fast.push_back({body, w_.bodies.flags[body].continuous != 0, 0.0f, w_.bodies.joints[body].empty(), only_crosses});
+    scratch_.fast.push_back(
+        {body, w_.bodies.flags[body].continuous != 0, 0.0f, w_.bodies.joints[body].empty(), only_crosses});
   }
 
   const RigidWorld& w_;
@@ -139,17 +143,25 @@ class Overrun {
   bool any_ = false;
 };
 
+std::size_t count_stopped_with_joints(const RigidWorld& w, const ContinuousScratch& scratch) {
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < scratch.fast.size(); ++k)
+    count += scratch.kept[k].fraction < 1.0f && !w.bodies.joints[scratch.fast[k].body].empty() ? 1 : 0;
+  return count;
+}
+
 // Of two stopped bodies with a joint between them both keep what the one that is stopped first keeps.
-void stop_together(const RigidWorld& w, const ContinuousScratch& scratch, std::span<KeptMotion> kept, Arena& arena) {
+void stop_together(const RigidWorld& w, const ContinuousScratch& scratch, std::span<KeptMotion> kept,
+                   Arena& arena) {
   constexpr std::uint32_t kNone = 0xffffffffu;
-  constexpr int kMostRounds = 16;
+  constexpr int kMostPasses = 16;
   const std::span<std::uint32_t> place = arena.make<std::uint32_t>(w.bodies.motion.size());
   for (std::uint32_t& p : place) p = kNone;
   for (std::uint32_t k = 0; k < kept.size(); ++k) {
     if (kept[k].fraction < 1.0f) place[scratch.fast[k].body] = k;
   }
   bool changed = true;
-  for (int round = 0; round < kMostRounds && changed; ++round) {
+  for (int pass = 0; pass < kMostPasses && changed; ++pass) {
     changed = false;
     for (std::size_t k = 0; k < kept.size(); ++k) {
       if (!(kept[k].fraction < 1.0f)) continue;
@@ -157,7 +169,7 @@ void stop_together(const RigidWorld& w, const ContinuousScratch& scratch, std::s
       for (const std::uint32_t slot : w.bodies.joints[std::size_t(body)]) {
         const JointRecord& joint = w.joints.records[slot];
         const std::int32_t other = joint.body_a == body ? joint.body_b : joint.body_a;
-        if (other == kNoBody || place[std::size_t(other)] == kNone || !closes_joint(w, slot)) continue;
+        if (other == kNoBody || place[std::size_t(other)] == kNone || !holds_point(w, slot)) continue;
         const float others = kept[place[std::size_t(other)]].fraction;
         changed = changed || others < kept[k].fraction;
         kept[k].fraction = min(kept[k].fraction, others);
@@ -166,24 +178,34 @@ void stop_together(const RigidWorld& w, const ContinuousScratch& scratch, std::s
   }
 }
 
-}  // namespace
-
-void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, TaskSystem& tasks) {
+void list_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch) {
   scratch.fast.clear();
   for (const std::uint32_t i : w.bodies.awake) {
     if (!is_movable(w.bodies.flags[i]) || w.bodies.shapes[i].empty()) continue;
     const BodyMotion& motion = w.bodies.motion[i];
     const BodyMass& mass = w.bodies.masses[i];
-    if (is_fast(motion.moved, motion.turned, mass.reach, mass.size)) {
-      // What contacts already act on must not be held in the air by a sweep: it keeps a part of its way, and they answer.
-      const float least = w.bodies.flags[i].touched != 0 ? kLeastProgress : 0.0f;
-      scratch.fast.push_back({i, w.bodies.flags[i].continuous != 0, least, w.bodies.joints[i].empty(), false});
-    }
+    if (!is_fast(motion.moved, motion.turned, mass.reach, mass.size)) continue;
+    // What contacts already act on must not be held in the air by a sweep: it keeps a part of its way, and they answer.
+    const float least = w.bodies.flags[i].touched != 0 ? kLeastProgress : 0.0f;
+    scratch.fast.push_back({i, w.bodies.flags[i].continuous != 0, least, w.bodies.joints[i].empty(), false});
   }
   Overrun(w, scratch).add_all();
-  if (scratch.fast.empty() && scratch.gates.empty()) return;
+}
+
+void list_moved_bodies(const RigidWorld& w, ContinuousScratch& scratch) {
+  scratch.fast.clear();
+  scratch.gates.clear();
+  for (const std::uint32_t i : scratch.moved) {
+    if (!w.bodies.shapes[i].empty())
+      scratch.fast.push_back({i, w.bodies.flags[i].continuous != 0, 0.0f, false, false});
+  }
+}
+
+// What the listed bodies keep of their ways: into scratch.kept.
+void sweep_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& arena, TaskSystem& tasks) {
   // The shapes of each fast body as plain indices, in a place that is found by body.
-  const std::span<std::span<const std::uint32_t>> shapes = arena.make<std::span<const std::uint32_t>>(w.bodies.motion.size());
+  const std::span<std::span<const std::uint32_t>> shapes =
+      arena.make<std::span<const std::uint32_t>>(w.bodies.motion.size());
   for (const FastBody& fast : scratch.fast) {
     const std::span<const ShapeId> ids = w.bodies.shapes[fast.body];
     const std::span<std::uint32_t> list = arena.make<std::uint32_t>(ids.size());
@@ -194,29 +216,55 @@ void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, 
   const auto shapes_of = [&](std::uint32_t body) { return shapes[body]; };
   const auto passes = [&](std::uint32_t shape, Vec3 way) { return lets_pass(w, shape, way); };
   const FunctionRef<bool(std::uint32_t shape, Vec3 way)> one_way(passes);
-  const ContinuousInput input{w.shapes.colliders, w.shapes.proxies, *w.broadphase, w.joints.blocked, sweep_of, shapes_of,
-                              w.surface_rules.empty() ? nullptr : &one_way, scratch.gates};
+  const ContinuousInput input{w.shapes.colliders,
+                              w.shapes.proxies,
+                              *w.broadphase,
+                              w.joints.blocked,
+                              sweep_of,
+                              shapes_of,
+                              w.surface_rules.empty() ? nullptr : &one_way,
+                              scratch.gates};
   scratch.kept.resize(scratch.fast.size());
   scratch.collision.clamp_fast_bodies(input, scratch.fast, tasks, scratch.kept);
-  report_crossings(w, scratch.collision.crossings());
-  const std::span<std::uint32_t> stopped = arena.make<std::uint32_t>(scratch.fast.size());
-  std::size_t stopped_count = 0;  // that have joints
-  for (std::size_t k = 0; k < scratch.fast.size(); ++k) {
-    const std::uint32_t i = scratch.fast[k].body;
-    if (scratch.kept[k].fraction < 1.0f && !w.bodies.joints[i].empty()) stopped[stopped_count++] = i;
-  }
-  if (stopped_count > 0) stop_together(w, scratch, scratch.kept, arena);
+}
+
+// Puts the listed bodies where they stay. Returns those that were stopped and hang on joints.
+std::span<const StoppedBody> take_back(RigidWorld& w, ContinuousScratch& scratch, Arena& arena) {
+  const std::span<StoppedBody> stopped = arena.make<StoppedBody>(count_stopped_with_joints(w, scratch));
+  std::size_t stopped_count = 0;
+  if (!stopped.empty()) stop_together(w, scratch, scratch.kept, arena);
   for (std::size_t k = 0; k < scratch.fast.size(); ++k) {
     const std::uint32_t i = scratch.fast[k].body;
     const KeptMotion& kept = scratch.kept[k];
     if (!(kept.fraction < 1.0f)) continue;
+    BodyMotion& motion = w.bodies.motion[i];
+    if (!w.bodies.joints[i].empty())
+      stopped[stopped_count++] = {i, kept.fraction, motion.moved, motion.turned};
     w.bodies.orientations[i] = pose_at(sweep_of_body(w, i), double(kept.fraction)).orientation;
-    w.bodies.motion[i].moved = kept.fraction * w.bodies.motion[i].moved + kept.slide;
-    w.bodies.motion[i].turned *= kept.fraction;
+    motion.moved = kept.fraction * motion.moved + kept.slide;
+    motion.turned *= kept.fraction;
     w.bodies.inertia[i] = world_inertia(w.bodies.masses[i], w.bodies.flags[i], w.bodies.orientations[i]);
     if (!(kept.blow == Vec3{})) Blow(w, i, kept).take();
   }
-  if (stopped_count > 0) close_joints(w, stopped.first(stopped_count), arena);
+  return stopped;
+}
+
+}  // namespace
+
+void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, TaskSystem& tasks) {
+  list_fast_bodies(w, scratch);
+  if (scratch.fast.empty() && scratch.gates.empty()) return;
+  for (int round = 1; round <= kMostRounds; ++round) {
+    sweep_fast_bodies(w, scratch, arena, tasks);
+    if (round == 1) report_crossings(w, scratch.collision.crossings());
+    const std::span<const StoppedBody> stopped = take_back(w, scratch, arena);
+    if (stopped.empty()) return;
+    // What hangs on those that were stopped comes after, on ways that have not been looked at.
+    scratch.moved.clear();
+    close_joints(w, stopped, round == kMostRounds, scratch.moved, arena);
+    list_moved_bodies(w, scratch);
+    if (scratch.fast.empty()) return;
+  }
 }
 
 }  // namespace gyre

@@ -2,16 +2,27 @@
 #pragma once
 
 #include "base/arena.h"
+#include "base/array.h"
 #include "rigid/rigid_world.h"
 
 #include <span>
 
 namespace gyre {
 
-// Moves the bodies that hang on `stopped` (as this step will leave them) until their joints are
-// closed again: places and orientations alone, no velocities. Bodies that were stopped stay but for a little.
-// Only joints that hold a point are.
-bool closes_joint(const RigidWorld& w, std::uint32_t joint);
-void close_joints(RigidWorld& w, std::span<const std::uint32_t> stopped, Arena& arena);
+// A fast body that goes only a part of its way in this step.
+struct StoppedBody {
+  std::uint32_t body = 0;
+  float fraction = 1.0f;  // of its way, up to where it met something
+  Vec3 moved, turned;     // the whole way, as BodyMotion has it
+};
+
+// Whether the joint holds a point of its bodies together: two stopped bodies that it joins stop as one.
+bool holds_point(const RigidWorld& w, std::uint32_t joint);
+// Moves bodies that hang together with those that were stopped, which stand where they will stay, so that the joints between them are
+// closed and within their limits again: places and orientations alone, no velocities. Stopped ones are moved but for a little.
+// `stays`: nothing goes on beyond where the first that it hangs together with was stopped. Adds to `moved` what ends far, against its
+// size, from where it would have ended: it was not swept on that way.
+void close_joints(RigidWorld& w, std::span<const StoppedBody> stopped, bool stays,
+                  Array<std::uint32_t>& moved, Arena& arena);
 
 }  // namespace gyre

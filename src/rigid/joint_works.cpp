@@ -10,6 +10,18 @@ DVec3 joint_place(const BodyStore& bodies, std::int32_t body, DVec3 world_anchor
 
 }  // namespace
 
+JointPlaces joint_places(const RigidWorld& w, std::uint32_t slot) {
+  const JointRecord& joint = w.joints.records[slot];
+  const JointDetail* const detail = detail_of(w.joints, slot);
+  const DVec3 a = joint_place(w.bodies, joint.body_a, joint.world_anchor_a);
+  const DVec3 b = joint_place(w.bodies, joint.body_b, joint.world_anchor_b);
+  JointPlaces places{difference(b, a), {}, {}};
+  if (detail == nullptr || joint.kind != JointKind::pulley) return places;
+  places.ground_a = difference(detail->ground_a, a);
+  places.ground_b = difference(detail->ground_b, b);
+  return places;
+}
+
 JointWorks begin_joints(RigidWorld& w, const SolveBatch& batch, float warm_scale, Arena& arena) {
   const std::size_t count = batch.joints.size();
   const JointWorks works{arena.make<JointWork>(count), arena.make<JointPlaces>(count)};
@@ -20,12 +32,7 @@ JointWorks begin_joints(RigidWorld& w, const SolveBatch& batch, float warm_scale
     std::span<const PathPoint> path;
     if (detail != nullptr) path = path_of(w.joints, *detail);
     begin_joint(joint, detail, path, works.work[i], warm_scale, arena);
-    const DVec3 a = joint_place(w.bodies, joint.body_a, joint.world_anchor_a);
-    const DVec3 b = joint_place(w.bodies, joint.body_b, joint.world_anchor_b);
-    works.places[i] = {difference(b, a), {}, {}};
-    if (detail == nullptr || joint.kind != JointKind::pulley) continue;
-    works.places[i].ground_a = difference(detail->ground_a, a);
-    works.places[i].ground_b = difference(detail->ground_b, b);
+    works.places[i] = joint_places(w, slot);
   }
   return works;
 }

@@ -13,6 +13,8 @@ struct JointWorks {
   std::span<JointPlaces> places;
 };
 
+// Where the ends of the joint stand as the step begins.
+JointPlaces joint_places(const RigidWorld& w, std::uint32_t slot);
 JointWorks begin_joints(RigidWorld& w, const SolveBatch& batch, float warm_scale, Arena& arena);
 // What the work knows goes back into the joints.
 void finish_joints(RigidWorld& w, const SolveBatch& batch, std::span<const JointWork> work);

@@ -16,6 +16,7 @@ struct ContinuousScratch {
   Bitset listed;
   ContinuousCollision collision;
   Array<GatePair> gates;
+  Array<std::uint32_t> moved;  // bodies that follow others by joints
 };
 
 // A list of changed proxies, ascending and without repeats; the other two are scratch.

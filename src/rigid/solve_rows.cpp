@@ -73,18 +73,9 @@ IslandRows begin_island(const RowSolve& s, const RowIsland& island, WorkerRoom& 
   for (std::size_t i = 0; i < island.bodies.size(); ++i) {
     const std::uint32_t slot = island.bodies[i];
     const BodyMotion& motion = store.motion[slot];
-    const BodyInertia& inertia = store.inertia[slot];
     RowBody& body = room.bodies[i];
-    body = {};
+    body = make_row_body(store.inertia[slot], store.flags[slot].locked_linear);
     if (!at_rest) body.linear = DVec3(motion.linear_velocity), body.angular = DVec3(motion.angular_velocity);
-    const std::uint8_t locked = store.flags[slot].locked_linear;
-    const double w = double(inertia.inverse_mass);
-    body.inverse_mass = {(locked & 1) != 0 ? 0.0 : w, (locked & 2) != 0 ? 0.0 : w,
-                         (locked & 4) != 0 ? 0.0 : w};
-    const Sym3& m = inertia.inverse;
-    const double six[6] = {double(m.xx), double(m.yy), double(m.zz),
-                           double(m.xy), double(m.xz), double(m.yz)};
-    for (int k = 0; k < 6; ++k) body.inverse_inertia[k] = six[k];
   }
   const RowFrame frame{room.bodies.first(island.bodies.size()), s.islands.place.data(), store.motion.data(),
                        double(s.solve.h)};

@@ -26,6 +26,17 @@ struct RowFrame {
   double substep = 0.0;
 };
 
+// A body at rest. `locked_linear`: bits 0 to 2: not moved along the world's x, y, z.
+inline RowBody make_row_body(const BodyInertia& inertia, std::uint8_t locked_linear) {
+  const double w = double(inertia.inverse_mass);
+  const Sym3& m = inertia.inverse;
+  return {{},
+          {},
+          {(locked_linear & 1) != 0 ? 0.0 : w, (locked_linear & 2) != 0 ? 0.0 : w,
+           (locked_linear & 4) != 0 ? 0.0 : w},
+          {double(m.xx), double(m.yy), double(m.zz), double(m.xy), double(m.xz), double(m.yz)}};
+}
+
 // Rows of an island, and where the impulse of each is kept (null where several rows share what keeps them).
 struct RowList {
   Row* rows = nullptr;
