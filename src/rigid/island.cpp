@@ -68,14 +68,21 @@ void fall_asleep(RigidWorld& w, std::uint32_t body, std::uint32_t root) {
   w.events.sleep_changes.push_back({body_id(w, body), true});
 }
 
+// What is slow gains the time; what is faster than it may be pays by how much further it goes than it might have. So a limb of
+// a heap that slips once by a hair does not keep thousands awake, and what has begun to move has nothing left after a step or two.
+float gained_rest(const Rest& rest, float seconds) {
+  const float motion = rest.speed + kPushWeight * rest.pushed / seconds;
+  if (motion <= rest.rest_speed) return seconds;
+  return rest.rest_speed > 0.0f ? seconds * (1.0f - motion / rest.rest_speed) : -kMostStillTime;
+}
+
 void update_rest_timers(RigidWorld& w, float seconds, bool& somebody) {
   const float pull = length(w.settings.gravity);
   for (const std::uint32_t i : w.bodies.awake) {
     if (w.bodies.flags[i].type != BodyType::dynamic) continue;
     const Rest rest = find_rest(w, i, pull);
     float& still = w.bodies.sleep[i].still_time;
-    const float motion = rest.speed + kPushWeight * rest.pushed / seconds;
-    still = rest.may && motion <= rest.rest_speed ? still + seconds : 0.0f;
+    still = rest.may ? clamp(still + gained_rest(rest, seconds), 0.0f, kMostStillTime) : 0.0f;
     if (still >= kTimeToSleep) somebody = true;
   }
 }
@@ -99,13 +106,14 @@ Rest find_rest(const RigidWorld& w, std::uint32_t body, float pull) {
   const bool moves = motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{};
   Rest rest;
   // Nothing holds a free body up: as long as it moves at all it goes on for ever.
-  rest.may = flags.can_sleep != 0 && (flags.touched != 0 || !moves) && forces.force == Vec3{} && forces.torque == Vec3{} &&
-             (flags.touched != 0 || pull * absolute(forces.gravity_scale) == 0.0f);
+  rest.may = flags.can_sleep != 0 && (flags.touched != 0 || !moves) && forces.force == Vec3{} &&
+             forces.torque == Vec3{} && (flags.touched != 0 || pull * absolute(forces.gravity_scale) == 0.0f);
   // A body without shapes still has the extent of its inertia: turning is motion.
   const float spread = mass.inertia.xx + mass.inertia.yy + mass.inertia.zz;
   const float reach = max(mass.reach, mass.mass > 0.0f ? std::sqrt(spread / mass.mass) : 0.0f);
   rest.speed = length(motion.linear_velocity) + reach * length(motion.angular_velocity);
-  rest.pushed = motion.pushed;
+  // What is pushed apart in every step, and taken back by what it hangs on or is wedged in, goes nowhere.
+  rest.pushed = min(motion.pushed, length(motion.moved) + reach * length(motion.turned));
   rest.rest_speed = kRestShare * std::sqrt((pull > 0.0f ? pull : 9.81f) * reach);
   if (is_on_spring(w, body)) rest.rest_speed *= kSpringRest;
   if (body < w.field_rest.size() && w.field_rest[body].acts != kNoFields) {
@@ -114,7 +122,8 @@ Rest find_rest(const RigidWorld& w, std::uint32_t body, float pull) {
     const FieldRest& field = w.field_rest[body];
     constexpr float kFloatingShare = 1.0f / 200.0f;
     if (field.acts == kFieldsAlone) rest.rest_speed *= kFloatingShare;
-    const float change = length(motion.linear_velocity - field.linear) + reach * length(motion.angular_velocity - field.angular);
+    const float change = length(motion.linear_velocity - field.linear) +
+                         reach * length(motion.angular_velocity - field.angular);
     const float most = rest.rest_speed * w.settings.last_step / kTimeToSleep;
     rest.may = rest.may && field.is_unsteady == 0 && change <= most;
   }
@@ -156,7 +165,8 @@ void wake_neighbours(RigidWorld& w, std::uint32_t body) {
   for (const std::uint32_t slot : w.bodies.joints[body]) {
     const JointRecord& joint = w.joints.records[slot];
     for (const std::int32_t end : {joint.body_a, joint.body_b}) {
-      if (end != kNoBody && std::uint32_t(end) != body && is_dynamic(w, std::uint32_t(end))) wake(w, std::uint32_t(end));
+      if (end != kNoBody && std::uint32_t(end) != body && is_dynamic(w, std::uint32_t(end)))
+        wake(w, std::uint32_t(end));
     }
   }
 }

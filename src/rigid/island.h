@@ -12,6 +12,8 @@ namespace gyre {
 
 // A body rests after so long without motion.
 constexpr float kTimeToSleep = 0.5f;  // s
+// More is not counted, so that what rested for long is not excused for longer.
+constexpr float kMostStillTime = 2.0f * kTimeToSleep;
 // Motion that counts as none: this share of sqrt(gravity * reach), the body's natural speed.
 constexpr float kRestShare = 0.015f;
 // Being pushed apart counts as faster motion than it is: a heap that falls asleep keeps the overlap that it has then.

@@ -30,6 +30,8 @@ LinkageBundle make_bundle(const LinkageShape& shape, const LinkageKernels& kerne
   b.column_count = std::uint32_t(shape.plan.columns.size());
   b.value_count = shape.plan.values;
   b.row_count = shape.plan.rows;
+  for (const LaneNode& node : shape.nodes)
+    b.stop_count += (node.has_twist ? 1 : 0) + (node.has_swing ? 1 : 0);
   const std::size_t width = std::size_t(kernels.width);
   b.bodies = arena.make<std::byte>(b.body_count * kernels.body_bytes).data();
   b.joints = arena.make<std::byte>(b.node_count * kernels.joint_bytes).data();
@@ -42,12 +44,11 @@ LinkageBundle make_bundle(const LinkageShape& shape, const LinkageKernels& kerne
 }  // namespace
 
 BundleSolve lay_out_bundles(const Linkages& linkages, const ContactKernels& kernels,
-                            const LinkageSolve& solve, Arena& arena) {
+                            const LinkageSolve& solve, std::size_t workers, Arena& arena) {
   BundleSolve result;
   result.arrays = {solve.bodies.motion, solve.bodies.inertia, solve.bodies.orientation};
   const Softness& softness = solve.settings.softness;
-  result.settings = {solve.settings.substep, softness.bias_rate, softness.mass_scale,
-                     softness.impulse_scale, solve.give,         raise_inertia};
+  result.settings = {solve.settings.substep, softness.bias_rate, solve.give, raise_inertia};
   const std::size_t count = linkages.alike.size();
   if (count == 0) return result;
   // Sorted by shape, those of a shape in the order of their first joints (they were listed from the back).
@@ -72,6 +73,11 @@ BundleSolve lay_out_bundles(const Linkages& linkages, const ContactKernels& kern
     }
   }
   result.bundles = result.bundles.first(used);
+  std::size_t room = 0;
+  for (const Bundled& bundle : result.bundles)
+    room = max(room, bundle.lanes.kernels->stop_room(bundle.lanes));
+  result.rooms = arena.make<std::byte*>(workers);
+  for (std::byte*& part : result.rooms) part = arena.make<std::byte>(room).data();
   return result;
 }
 

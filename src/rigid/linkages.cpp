@@ -1,5 +1,7 @@
 #include "rigid/linkages.h"
 
+#include "solver/linkage_stops.h"
+
 #include <algorithm>
 
 namespace gyre {
@@ -258,7 +260,8 @@ class LinkageMaker {
   }
   bool find_shape(const LinkageShape& shape, Linkage& linkage) const {
     const auto same = [](const LaneNode& a, const LaneNode& b) {
-      return a.kind == b.kind && a.has_twist == b.has_twist && a.has_swing == b.has_swing && a.a == b.a && a.b == b.b;
+      return a.kind == b.kind && a.has_twist == b.has_twist && a.has_swing == b.has_swing && a.a == b.a &&
+             a.b == b.b;
     };
     const std::size_t oldest = shape_count_ > kShapesCompared ? shape_count_ - kShapesCompared : 0;
     for (std::size_t i = shape_count_; i-- > oldest;) {
@@ -281,7 +284,8 @@ class LinkageMaker {
     for (std::size_t i = 0; i < linkage.couplings.size(); ++i) {
       const LinkageCoupling& c = linkage.couplings[i];
       const LaneNode& row = shape.nodes[c.row];
-      shape.couplings[i] = {c.row, c.column, c.offset, c.row_has_b ? row.b : row.a, c.row_has_b, c.column_has_b};
+      shape.couplings[i] = {c.row,       c.column,      c.offset, c.row_has_b ? row.b : row.a,
+                            c.row_has_b, c.column_has_b};
     }
     linkage.shape = std::int32_t(shape_count_);
     shapes_[shape_count_++] = shape;
@@ -340,6 +344,21 @@ Linkages find_linkages(const RigidWorld& w, const SolveBatch& batch, std::span<c
     linkages[linkage.shape < 0 ? own++ : --alike] = linkage;
   }
   return {linkages.first(own), linkages.subspan(alike), maker.shapes(), swept};
+}
+
+std::span<std::span<double>> find_stops(const Linkages& linkages, std::span<const JointWork> work,
+                                        std::size_t workers, Arena& arena) {
+  std::size_t most = 0;
+  for (Linkage& linkage : linkages.linkages) {
+    for (const LinkageNode& node : linkage.nodes)
+      for (const AxisWork& axis : work[node.work].axes)
+        linkage.has_stops = linkage.has_stops || has_hard_stop(axis);
+    if (linkage.has_stops) most = max(most, stops_room(linkage.plan.rows, linkage.bodies.size()));
+  }
+  if (most == 0) return {};
+  const std::span<std::span<double>> rooms = arena.make<std::span<double>>(workers);
+  for (std::span<double>& room : rooms) room = arena.make<double>(most);
+  return rooms;
 }
 
 }  // namespace gyre

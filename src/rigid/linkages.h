@@ -20,9 +20,9 @@ struct LinkageShape {
 };
 
 struct Linkages {
-  std::span<Linkage> linkages;       // each solved by itself
-  std::span<Linkage> alike;          // those that are solved side by side,
-  std::span<LinkageShape> shapes;    // and what they are like
+  std::span<Linkage> linkages;          // each solved by itself
+  std::span<Linkage> alike;             // those that are solved side by side,
+  std::span<LinkageShape> shapes;       // and what they are like
   std::span<const std::uint8_t> swept;  // by place in the batch's list of joints: 1 if it is in no linkage
 };
 
@@ -46,5 +46,9 @@ class DenseNets {
 // Of one batch; `places` are those of all (solve_batches.h), `work` that of the batch's joints.
 Linkages find_linkages(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
                        std::span<const JointWork> work, DenseNets& dense, Arena& arena);
+
+// Notes which linkages that are solved alone have stops. Returns room to solve these in, by worker.
+std::span<std::span<double>> find_stops(const Linkages& linkages, std::span<const JointWork> work,
+                                        std::size_t workers, Arena& arena);
 
 }  // namespace gyre

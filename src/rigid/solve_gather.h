@@ -34,6 +34,7 @@ struct Solve {
   std::span<JointPlaces> joint_places{};
   Linkages linkages{};
   LinkageSolve linkage_solve{};
+  std::span<std::span<double>> stop_rooms{};  // by worker, where a linkage has stops
   BundleSolve bundles{};
   std::span<std::uint32_t> joint_order{};  // places in the list of swept joints, by groups
   void* balls = nullptr;  // joints side by side: solver/ball_lanes.h

@@ -59,7 +59,8 @@ void fly_stage(void* context, int begin, int end, int) {
 }
 void prepare_motion_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
-  s.kernels.motion.prepare(s.motion_blocks, begin, end, s.moved.data(), int(s.moved.size()), s.contact_bodies.inertia);
+  s.kernels.motion.prepare(s.motion_blocks, begin, end, s.moved.data(), int(s.moved.size()),
+                           s.contact_bodies.inertia);
 }
 void predict_cold_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
@@ -93,7 +94,8 @@ void turn_alone_stage(void* context, int begin, int end, int) {
 }
 void finish_turns_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
-  finish_turns(s.w.bodies, block_of(s.moved, begin, end, kBodiesPerBlock), block_of(s.pushes, begin, end, kBodiesPerBlock));
+  finish_turns(s.w.bodies, block_of(s.moved, begin, end, kBodiesPerBlock),
+               block_of(s.pushes, begin, end, kBodiesPerBlock));
 }
 void watch_stage(void* context, int, int, int) {
   const Solve& s = *static_cast<Solve*>(context);
@@ -122,16 +124,18 @@ void structures_stage(void* context, int, int, int) {
 
 void prepare_contacts_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
-  s.kernels.prepare(s.blocks, begin, end, s.scratch.constraints.data(), s.scratch.order.data(), s.contact_bodies,
-                    s.contact_settings);
+  s.kernels.prepare(s.blocks, begin, end, s.scratch.constraints.data(), s.scratch.order.data(),
+                    s.contact_bodies, s.contact_settings);
 }
 void finish_contacts_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
-  s.kernels.finish(s.blocks, begin, end, s.scratch.constraints.data(), s.scratch.order.data(), s.contact_settings);
+  s.kernels.finish(s.blocks, begin, end, s.scratch.constraints.data(), s.scratch.order.data(),
+                   s.contact_settings);
 }
 void warm_contacts_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
-  g.solve->kernels.warm_start(g.solve->blocks, int(g.first) + begin, int(g.first) + end, g.solve->contact_bodies.motion);
+  g.solve->kernels.warm_start(g.solve->blocks, int(g.first) + begin, int(g.first) + end,
+                              g.solve->contact_bodies.motion);
 }
 // Calls fn(rolling, block, lane) for those contacts of the blocks that roll, which are few.
 template <class Fn>
@@ -169,19 +173,19 @@ void leave_middle(const Group& g, int begin, int end) {
 void solve_contacts_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
   follow_contacts(g, begin, end);
-  g.solve->kernels.solve(g.solve->blocks, int(g.first) + begin, int(g.first) + end, g.solve->contact_bodies.motion,
-                         g.solve->h);
+  g.solve->kernels.solve(g.solve->blocks, int(g.first) + begin, int(g.first) + end,
+                         g.solve->contact_bodies.motion, g.solve->h);
   leave_middle(g, begin, end);
 }
 void relax_contacts_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
-  g.solve->kernels.relax(g.solve->blocks, int(g.first) + begin, int(g.first) + end, g.solve->contact_bodies.motion,
-                         g.solve->h);
+  g.solve->kernels.relax(g.solve->blocks, int(g.first) + begin, int(g.first) + end,
+                         g.solve->contact_bodies.motion, g.solve->h);
 }
 void project_contacts_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
-  g.solve->kernels.project(g.solve->blocks, int(g.first) + begin, int(g.first) + end, g.solve->contact_bodies.motion,
-                           g.solve->contact_settings.step);
+  g.solve->kernels.project(g.solve->blocks, int(g.first) + begin, int(g.first) + end,
+                           g.solve->contact_bodies.motion, g.solve->contact_settings.step);
 }
 void begin_projection_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
@@ -316,9 +320,11 @@ void finish_smooth(void* context, int begin, int end, int worker) {
 
 // Of linkages [begin, end).
 template <void (*kernel)(const Linkage&, const LinkageSolve&)>
-void linkage_stage(void* context, int begin, int end, int) {
+void linkage_stage(void* context, int begin, int end, int worker) {
   const Solve& s = *static_cast<Solve*>(context);
-  for (int i = begin; i < end; ++i) kernel(s.linkages.linkages[std::size_t(i)], s.linkage_solve);
+  LinkageSolve own = s.linkage_solve;
+  if (!s.stop_rooms.empty()) own.room = s.stop_rooms[std::size_t(worker)];
+  for (int i = begin; i < end; ++i) kernel(s.linkages.linkages[std::size_t(i)], own);
 }
 
 // Of linkages side by side.
@@ -332,11 +338,13 @@ void finish_bundles_stage(void* context, int begin, int end, int) {
 }
 using BundleKernel = void (*LinkageKernels::*)(const LinkageBundle&, const LaneArrays&, const LaneSettings&);
 template <BundleKernel... kernels>
-void bundle_stage(void* context, int begin, int end, int) {
+void bundle_stage(void* context, int begin, int end, int worker) {
   const BundleSolve& s = static_cast<Solve*>(context)->bundles;
+  LaneSettings settings = s.settings;
+  settings.room = s.rooms[std::size_t(worker)];
   for (int i = begin; i < end; ++i) {
     const LinkageBundle& bundle = s.bundles[std::size_t(i)].lanes;
-    ((bundle.kernels->*kernels)(bundle, s.arrays, s.settings), ...);
+    ((bundle.kernels->*kernels)(bundle, s.arrays, settings), ...);
   }
 }
 
@@ -346,7 +354,8 @@ void bundle_stage(void* context, int begin, int end, int) {
 //
 // Stacks and structures at rest are solved directly after the first sweep, which gives them the loads of this step, and after
 // the last, which leaves them at rest: in between nothing is left for the sweeps to change.
-void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> contacts, std::span<Group> joints) {
+void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> contacts,
+              std::span<Group> joints) {
   const bool first = part == 0, last = part + 1 == solve.motions.count;
   const int bodies = count_blocks(int(solve.moved.size()), solve.kernels.width);
   const int impacts = solve.scratch.impacts.empty() ? 0 : 1;
@@ -405,9 +414,11 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
               &solve, bundles);
 }
 
-void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> joints, Arena& arena, TaskSystem& tasks) {
+void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> joints, Arena& arena,
+                  TaskSystem& tasks) {
   const int parts = solve.motions.count;
-  const std::size_t per_part = (solve.bundles.bundles.empty() ? 24 : 29) + 5 * joints.size() + 2 * contacts.size();
+  const std::size_t per_part =
+      (solve.bundles.bundles.empty() ? 24 : 29) + 5 * joints.size() + 2 * contacts.size();
   ProgramWriter program(
       arena.make<Stage>(15 + std::size_t(parts) * per_part + 2 * contacts.size() + 3 * joints.size()));
   std::uint32_t blocks = 0;
@@ -451,11 +462,12 @@ void place_resting(Solve& solve, Arena& arena) {
   if (solve.forest.nodes.empty() && solve.structures.empty()) return;
   const SolveScratch& scratch = solve.scratch;
   const int width = solve.kernels.width;
-  const std::span<const std::uint32_t> places = find_kernel_places(scratch.order, scratch.constraints.size(), arena);
+  const std::span<const std::uint32_t> places =
+      find_kernel_places(scratch.order, scratch.constraints.size(), arena);
   place_tree_nodes(solve.forest, places, width);
   place_structure_contacts(solve.structures, places, width);
   BodyMotion* motion = solve.contact_bodies.motion;
-  solve.tree_solve = {solve.forest.nodes, solve.forest.work, scratch.constraints, motion,
+  solve.tree_solve = {solve.forest.nodes, solve.forest.work, scratch.constraints,        motion,
                       &solve.kernels,     solve.blocks,      solve.contact_settings.step};
   solve.structure_solve = {scratch.constraints, motion, &solve.kernels, solve.blocks, &arena};
 }
@@ -486,7 +498,9 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
                          .settings = solve.joint_settings,
                          .give = kLinkageGive};
   solve.linkage_solve.settings.swept = false;
-  solve.bundles = lay_out_bundles(solve.linkages, solve.kernels, solve.linkage_solve, arena);
+  solve.stop_rooms = find_stops(solve.linkages, solve.joint_work, std::size_t(tasks.worker_count()), arena);
+  solve.bundles = lay_out_bundles(solve.linkages, solve.kernels, solve.linkage_solve,
+                                  std::size_t(tasks.worker_count()), arena);
   gather_motion(solve, arena);
   find_resting(solve, arena);
   const std::span<Group> contacts = lay_out_contacts(solve, arena);
@@ -510,8 +524,8 @@ void forget_moves(RigidWorld& w) {
 
 }  // namespace
 
-void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& tasks, const ContactKernels& kernels,
-                float seconds) {
+void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& tasks,
+                const ContactKernels& kernels, float seconds) {
   const SolverSettings* const row_solver = row_solver_of(w);
   const int parts = row_solver != nullptr ? w.settings.substeps : kParts * w.settings.substeps;
   const float h = seconds / float(parts);

@@ -44,7 +44,7 @@ void prepare_hinge(JointRecord& joint, const JointPair& pair, JointWork& work, c
   work.axis = axes_a.x;
   work.perpendicular_1 = axes_a.y;
   work.perpendicular_2 = axes_a.z;
-  work.angular_error = within(cross(work.axis, axis_b), kMostTurnError);
+  work.angular_error = within(cross(work.axis, axis_b), kMostErrors.turn);
   if (settings.swept) {
     prepare_ball(pair, work);
     const Mat3 k = to_matrix(pair.inverse_inertia_a()) + to_matrix(pair.inverse_inertia_b());
@@ -70,7 +70,7 @@ void prepare_slider(JointRecord& joint, const JointPair& pair, JointWork& work, 
   work.from_a += work.error;
   work.along = work.position * work.axis;
   work.error -= work.along;
-  work.angular_error = within(to_rotation_vector(work.frame_b * conjugate(work.frame_a)), kMostTurnError);
+  work.angular_error = within(to_rotation_vector(work.frame_b * conjugate(work.frame_a)), kMostErrors.turn);
   if (settings.swept) {
     const Mat3 k = point_matrix(pair, work.from_a, work.from_b);
     work.linear_mass = inverse_in_plane(k, work.perpendicular_1, work.perpendicular_2);
@@ -80,7 +80,7 @@ void prepare_slider(JointRecord& joint, const JointPair& pair, JointWork& work, 
 }
 
 void prepare_fixed(const JointPair& pair, JointWork& work, bool swept) {
-  work.angular_error = within(to_rotation_vector(work.frame_b * conjugate(work.frame_a)), kMostTurnError);
+  work.angular_error = within(to_rotation_vector(work.frame_b * conjugate(work.frame_a)), kMostErrors.turn);
   if (!swept) return;
   prepare_ball(pair, work);
   work.angular_mass = to_matrix(inverse(pair.inverse_inertia_a() + pair.inverse_inertia_b()));

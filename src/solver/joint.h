@@ -28,7 +28,7 @@ struct JointBodies {
 struct JointSettings {
   float substep = 0.0f;
   Softness softness;  // of the joint's own rows
-  bool swept = true;  // false: the rows of the joint's equations are solved elsewhere (solver/linkage.h)
+  bool swept = true;  // false: the joint's equations and hard stops are solved elsewhere (solver/linkage.h)
 };
 
 // One row that holds always: it sees push . (v_b - v_a) + arm_b . w_b - arm_a . w_a.

@@ -159,7 +159,8 @@ void solve_axis(AxisWork& x, JointPair& pair, const JointSettings& settings, boo
     if (settings.swept) change(axis.low_impulse, rod_change(x, speed(), settings, soft), 1.0f);
     return;
   }
-  const float least = x.row.push_b == Vec3{} && x.row.push_a == Vec3{} ? -kMostTurnError : -1.0e30f;
+  if (!settings.swept && !(axis.limit_frequency > 0.0f)) return;
+  const float least = x.row.push_b == Vec3{} && x.row.push_a == Vec3{} ? -kMostErrors.turn : -1.0e30f;
   if (x.has_low) {
     const float gap = max(axis.position - axis.limits.low, least);
     change(axis.low_impulse, end_change(x, speed(), gap, axis.low_impulse, settings, soft), 1.0f);

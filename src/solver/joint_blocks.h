@@ -5,6 +5,7 @@
 // w_a x r_a. Source: E. Catto, "Iterative Dynamics with Temporal Coherence", 2005.
 #pragma once
 
+#include "solver/error_bounds.h"
 #include "solver/joint.h"
 
 namespace gyre {
@@ -60,7 +61,9 @@ class JointPair {
 
  private:
   static constexpr BodyInertia kImmovable{};
-  static bool movable(const BodyInertia& inertia) { return inertia.inverse_mass > 0.0f || inertia.inverse != Sym3{}; }
+  static bool movable(const BodyInertia& inertia) {
+    return inertia.inverse_mass > 0.0f || inertia.inverse != Sym3{};
+  }
   static void read(const BodyMotion& motion, Vec3& linear, Vec3& angular) {
     linear = motion.linear_velocity;
     angular = motion.angular_velocity;
@@ -109,17 +112,12 @@ inline float unwrapped(float angle, float near) {
 
 inline float inverse_or_zero(float k) { return k > 0.0f ? 1.0f / k : 0.0f; }
 
-// What a joint does not allow is taken back no faster than as if it were this much: bodies that are joined, or let go by what held
-// them, far from where the joint would have them do not strike out.
-constexpr float kMostTurnError = 0.2f;   // rad
-constexpr float kMostPointError = 0.1f;  // m
-
 inline Vec3 within(Vec3 v, float most) {
   const float size = length(v);
   return size > most ? (most / size) * v : v;
 }
-inline float error_taken_back(const JointRow& row) {
-  const float most = row.push == Vec3{} ? kMostTurnError : kMostPointError;
+inline float error_taken_back(const JointRow& row, ErrorBounds bounds = kMostErrors) {
+  const float most = row.push == Vec3{} ? bounds.turn : bounds.point;
   return clamp(row.error, -most, most);
 }
 
@@ -136,13 +134,15 @@ inline Mat3 inverse_in_plane(const Mat3& k, Vec3 u, Vec3 v) {
 }
 
 // The change of an accumulated impulse that meets `speed` = 0 (plus bias), soft or rigid.
-inline Vec3 row_change(const Mat3& mass, Vec3 speed, Vec3 error, Vec3 impulse, const Softness& soft, bool is_soft) {
+inline Vec3 row_change(const Mat3& mass, Vec3 speed, Vec3 error, Vec3 impulse, const Softness& soft,
+                       bool is_soft) {
   if (!is_soft) return -(mass * speed);
   return -soft.mass_scale * (mass * (speed + soft.bias_rate * error)) - soft.impulse_scale * impulse;
 }
 
 // A one-sided row: distance `gap` left before the stop, closing speed -speed. Returns the change of `impulse` (>= 0).
-inline float stop_change(float mass, float speed, float gap, float impulse, const JointSettings& settings, bool is_soft) {
+inline float stop_change(float mass, float speed, float gap, float impulse, const JointSettings& settings,
+                         bool is_soft) {
   float wanted = 0.0f;
   if (gap > 0.0f) {
     wanted = impulse - mass * (speed + gap / settings.substep);

@@ -83,12 +83,13 @@ inline void forget_kept(JointRecord& joint, const JointWork& work) {
   for (float& impulse : work.detail->row_impulses) impulse = 0.0f;
 }
 
-inline float error_of(const JointRecord& joint, const JointWork& work, const JointEquation& row, int i) {
-  if (work.rows != nullptr) return error_taken_back(work.rows->rows[i]);
-  if (is_turn(row)) return dot(work.angular_error, row.arm_a);
+inline float error_of(const JointRecord& joint, const JointWork& work, const JointEquation& row, int i,
+                      ErrorBounds bounds = kMostErrors) {
+  if (work.rows != nullptr) return error_taken_back(work.rows->rows[i], bounds);
+  if (is_turn(row)) return dot(within(work.angular_error, bounds.turn), row.arm_a);
   if (joint.kind == JointKind::distance)
-    return clamp(work.position - joint.min_length, -kMostPointError, kMostPointError);
-  return dot(within(work.error, kMostPointError), row.push);
+    return clamp(work.position - joint.min_length, -bounds.point, bounds.point);
+  return dot(within(work.error, bounds.point), row.push);
 }
 
 }  // namespace gyre

@@ -3,6 +3,7 @@
 #include "math/dense.h"
 #include "math/wide_vec.h"
 #include "solver/joint_equations.h"
+#include "solver/linkage_stops.h"
 
 namespace gyre {
 
@@ -297,7 +298,7 @@ float rod_rate(const JointRecord& joint, const JointWork& work, const Course& a,
 }
 
 // What is asked of the rows: that the end of the sub-step, not its beginning, meets the joints (docs/derive/joints.md).
-void ask_rows(const Linkage& linkage, const LinkageSolve& s) {
+void ask_rows(const Linkage& linkage, const LinkageSolve& s, ErrorBounds bounds) {
   const float h = s.settings.substep;
   for (LinkageBody& body : linkage.bodies) {
     const Vec3 w = s.bodies.motion[body.body].angular_velocity;
@@ -327,7 +328,8 @@ void ask_rows(const Linkage& linkage, const LinkageSolve& s) {
     }
     for (int i = 0; i < node.count; ++i) {
       LinkageRows& rows = node.rows;
-      rows.wanted[i] = -s.settings.softness.bias_rate * error_of(joint, work, equation_at(rows, i), i);
+      rows.wanted[i] =
+          -s.settings.softness.bias_rate * error_of(joint, work, equation_at(rows, i), i, bounds);
       rows.wanted[i] -= work.rows != nullptr            ? share * bends[i]
                         : is_turn(equation_at(rows, i)) ? dot(bend.turn, rows.arm_a.at(i))
                                                         : dot(bend.point, rows.push.at(i));
@@ -406,10 +408,11 @@ void place_linkage(const Linkage& linkage, const LinkageSolve& s) {
 
 void warm_linkage(const Linkage& linkage, const LinkageSolve& s) {
   // Before the impulses of the last sub-step: after a blow these are not of this one, and the bend of such speeds is none.
-  ask_rows(linkage, s);
+  ask_rows(linkage, s, kErrorsBeforeContacts);
   for (const LinkageNode& node : linkage.nodes) {
     JointRecord& joint = s.records[node.record];
     const JointWork& work = s.work[node.work];
+    forget_stops(work);
     warm_start_joint_axes(joint, work, s.bodies);
     // What was kept, along the rows as they are now.
     float kept[kMostBlockRows];
@@ -427,17 +430,20 @@ void warm_linkage(const Linkage& linkage, const LinkageSolve& s) {
 void solve_linkage(const Linkage& linkage, const LinkageSolve& s) {
   sweep_axes(linkage, s, true);
   solve_rows(linkage, s, true);
-  ask_rows(linkage, s);  // now with velocities that agree with the joints
+  solve_stops(linkage, s, kErrorsBeforeContacts);
+  ask_rows(linkage, s, kMostErrors);  // now with velocities that agree with the joints
 }
 
 void solve_linkage_again(const Linkage& linkage, const LinkageSolve& s) {
   sweep_axes(linkage, s, true);
   solve_rows(linkage, s, true);
+  solve_stops(linkage, s, kMostErrors);
 }
 
 void relax_linkage(const Linkage& linkage, const LinkageSolve& s) {
   sweep_axes(linkage, s, false);
   solve_rows(linkage, s, false);
+  solve_stops(linkage, s, kNoErrors);
   for (const LinkageNode& node : linkage.nodes)
     sum_joint(s.records[node.record], s.work[node.work], s.bodies);
 }

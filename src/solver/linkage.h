@@ -26,9 +26,9 @@ struct RowVectors {
 
 // A row sees push . (v_b - v_a) + arm_b . w_b - arm_a . w_a.
 struct LinkageRows {
-  RowVectors push;            // direction of a force; zero for a turning row
-  RowVectors arm_a, arm_b;    // r x push, or the axis of a turn
-  RowVectors spin_a, spin_b;  // inverse inertia times arm
+  RowVectors push;               // direction of a force; zero for a turning row
+  RowVectors arm_a, arm_b;       // r x push, or the axis of a turn
+  RowVectors spin_a, spin_b;     // inverse inertia times arm
   float give[kRowLanes] = {};    // added to K: the speed by which the row gives way to an impulse of one
   float wanted[kRowLanes] = {};  // the speed asked for
 };
@@ -66,10 +66,12 @@ struct Linkage {
   std::span<LinkageBody> bodies;
   std::span<const LinkageCoupling> couplings;
   BlockPlan plan;
-  std::int32_t shape = -1;  // of the linkages that are solved side by side (solver/linkage_lanes.h): which it is like
+  std::int32_t shape =
+      -1;  // of the linkages that are solved side by side (solver/linkage_lanes.h): which it is like
   std::span<double> values;  // of the matrix, then of its factors
   std::span<double> room;
   std::span<double> vector;
+  bool has_stops = false;  // limits that do not give way (solver/linkage_stops.h)
 };
 
 struct LinkageSolve {
@@ -78,7 +80,8 @@ struct LinkageSolve {
   std::span<const JointPlaces> places;
   JointBodies bodies;
   JointSettings settings;
-  float give = 0.0f;  // share of K by which rows give way
+  float give = 0.0f;         // share of K by which rows give way
+  std::span<double> room{};  // of the worker, for the stops of the largest linkage
 };
 
 // The inverse of an inertia raised by `share` of what of `pull` holds back (six floats each, as Sym3).

@@ -2,7 +2,7 @@
 // one alone. A ball joint's three rows are one vector here, and an impulse goes to a body as a force at its arm.
 #pragma once
 
-#include "solver/linkage_place.h"
+#include "solver/linkage_stops_kernel.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
@@ -42,7 +42,7 @@ GYRE_INLINE Vec3W<W> hinge_bend(const LinkedJoint<W>& joint, const LinkedBody<W>
 
 // That the end of the sub-step, not its beginning, meets the joints.
 template <int W>
-GYRE_INLINE void ask_lanes(const Bundle<W>& bundle, const LaneSettings& s) {
+GYRE_INLINE void ask_lanes(const Bundle<W>& bundle, const LaneSettings& s, ErrorBounds bounds) {
   const float h = s.substep, per_substep = 1.0f / s.substep;
   for (std::uint32_t i = 0; i < bundle.plain.body_count; ++i) {
     LinkedBody<W>& body = bundle.bodies[i];
@@ -61,10 +61,10 @@ GYRE_INLINE void ask_lanes(const Bundle<W>& bundle, const LaneSettings& s) {
     share = select(fastest > kMost, kMost / fastest, share);
     const Vec3W<W> bend = per_substep * (swing_of(b.turn, joint.from_b) - swing_of(a.turn, joint.from_a)) -
                           (cross(b.angular, joint.from_b) - cross(a.angular, joint.from_a));
-    joint.wanted = Wide<W>(-s.rate) * within(joint.error, kLanePointError) - share * bend;
+    joint.wanted = Wide<W>(-s.rate) * within(joint.error, bounds.point) - share * bend;
     if (node.kind != JointKind::hinge) continue;
-    const Vec3W<W> turn =
-        Wide<W>(-s.rate) * joint.angular_error - share * hinge_bend(joint, a, b, per_substep);
+    const Vec3W<W> turn = Wide<W>(-s.rate) * within(joint.angular_error, bounds.turn) -
+                          share * hinge_bend(joint, a, b, per_substep);
     joint.turn_wanted_1 = dot(turn, joint.perpendicular_1);
     joint.turn_wanted_2 = dot(turn, joint.perpendicular_2);
   }
@@ -127,63 +127,16 @@ GYRE_INLINE void solve_rows(const Bundle<W>& bundle) {
 
 // -------------------------------------------------------------------------------------------------------------- stops
 
-// A turning impulse about a stop's axis.
+// They are found anew each time: an impulse that is kept would be none the better for it.
 template <int W>
-GYRE_INLINE void push_stop(const Bundle<W>& bundle, const LaneNode& node, Vec3W<W> t) {
-  if (bundle.moves(node.a)) {
-    LinkedBody<W>& a = bundle.bodies[node.a];
-    a.angular -= a.own_inverse * t;
-  }
-  if (bundle.moves(node.b)) {
-    LinkedBody<W>& b = bundle.bodies[node.b];
-    b.angular += b.own_inverse * t;
-  }
-}
-
-// One end: as stop_change() of solver/joint_blocks.h. `sign`: of the turn that brings the end nearer, against b's.
-template <int W, bool Soft>
-GYRE_INLINE void solve_stop(const Bundle<W>& bundle, const LaneNode& node, const LinkedAxis<W>& axis,
-                            Wide<W> gap, Wide<W>& impulse, float sign, const LaneSettings& s,
-                            float per_substep) {
-  const Vec3W<W> turning = bundle.bodies[node.b].angular - bundle.bodies[node.a].angular;
-  const Wide<W> speed = sign * dot(axis.about, turning);
-  const Mask<W> open = gap > 0.0f;
-  Wide<W> wanted;
-  if constexpr (Soft) {
-    const Wide<W> closed = s.mass_scale * (axis.mass * (speed + s.rate * gap)) + s.impulse_scale * impulse;
-    wanted = impulse - select(open, axis.mass * (speed + gap * per_substep), closed);
-  } else {
-    wanted = impulse - axis.mass * (speed + keep(open, gap * per_substep));
-  }
-  // Where the bodies cannot be turned the mass is zero, and nothing changes.
-  const Wide<W> change = keep(axis.mass > 0.0f, max(wanted, Wide<W>(0.0f)) - impulse);
-  if (!any(change != 0.0f)) return;
-  impulse += change;
-  push_stop(bundle, node, (sign * change) * axis.about);
-}
-
-template <int W, bool Soft>
-GYRE_INLINE void sweep_stops(const Bundle<W>& bundle, const LaneSettings& s) {
-  const float per_substep = 1.0f / s.substep;
-  for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
-    const LaneNode& node = bundle.plain.nodes[n];
-    LinkedJoint<W>& joint = bundle.joints[n];
-    if (node.has_twist) {
-      LinkedAxis<W>& axis = joint.twist;
-      solve_stop<W, Soft>(bundle, node, axis, axis.low_gap, axis.low_impulse, 1.0f, s, per_substep);
-      solve_stop<W, Soft>(bundle, node, axis, axis.high_gap, axis.high_impulse, -1.0f, s, per_substep);
-    }
-    if (node.has_swing) {
-      LinkedAxis<W>& axis = joint.swing;
-      solve_stop<W, Soft>(bundle, node, axis, axis.high_gap, axis.high_impulse, -1.0f, s, per_substep);
-    }
-  }
+GYRE_INLINE void forget_stops(LinkedJoint<W>& joint) {
+  joint.twist.low_impulse = joint.twist.high_impulse = Wide<W>(0.0f);
+  joint.swing.low_impulse = joint.swing.high_impulse = Wide<W>(0.0f);
 }
 
 template <int W>
-GYRE_INLINE void warm_stop(const Bundle<W>& bundle, const LaneNode& node, const LinkedAxis<W>& axis) {
-  const Wide<W> along = axis.low_impulse - axis.high_impulse;
-  if (any(along != 0.0f)) push_stop(bundle, node, along * axis.about);
+GYRE_INLINE void solve_stops(const Bundle<W>& bundle, const LaneSettings& s, ErrorBounds bounds) {
+  if (bundle.plain.stop_count > 0) LaneStops<W>(bundle, s, bounds).solve();
 }
 
 template <int W>
@@ -200,12 +153,11 @@ void warm_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const Lan
   const Bundle<W> bundle(plain);
   load_velocities(bundle, arrays);
   // Before the impulses of the last sub-step: after a blow these are not of this one, and the bend of such speeds is none.
-  ask_lanes(bundle, s);
+  ask_lanes(bundle, s, kErrorsBeforeContacts);
   for (std::uint32_t n = 0; n < plain.node_count; ++n) {
     const LaneNode& node = plain.nodes[n];
     LinkedJoint<W>& joint = bundle.joints[n];
-    if (node.has_twist) warm_stop(bundle, node, joint.twist);
-    if (node.has_swing) warm_stop(bundle, node, joint.swing);
+    forget_stops(joint);
     // What was kept, along the rows as they are now.
     if (node.kind == JointKind::hinge) {
       joint.angular_impulse = dot(joint.angular_impulse, joint.perpendicular_1) * joint.perpendicular_1 +
@@ -220,9 +172,9 @@ template <int W>
 void solve_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const Bundle<W> bundle(plain);
   load_velocities(bundle, arrays);
-  sweep_stops<W, true>(bundle, s);
   solve_rows<W, true>(bundle);
-  ask_lanes(bundle, s);  // now with velocities that agree with the joints
+  solve_stops(bundle, s, kErrorsBeforeContacts);
+  ask_lanes(bundle, s, kMostErrors);  // now with velocities that agree with the joints
   store_velocities(bundle, arrays);
 }
 
@@ -230,8 +182,8 @@ template <int W>
 void solve_bundle_again(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const Bundle<W> bundle(plain);
   load_velocities(bundle, arrays);
-  sweep_stops<W, true>(bundle, s);
   solve_rows<W, true>(bundle);
+  solve_stops(bundle, s, kMostErrors);
   store_velocities(bundle, arrays);
 }
 
@@ -240,8 +192,8 @@ template <int W>
 void relax_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const Bundle<W> bundle(plain);
   load_velocities(bundle, arrays);
-  sweep_stops<W, false>(bundle, s);
   solve_rows<W, false>(bundle);
+  solve_stops(bundle, s, kNoErrors);
   for (std::uint32_t n = 0; n < plain.node_count; ++n) {
     const LaneNode& node = plain.nodes[n];
     LinkedJoint<W>& joint = bundle.joints[n];
@@ -258,6 +210,7 @@ constexpr LinkageKernels linkage_kernels() {
   return {W,
           sizeof(LinkedBody<W>),
           sizeof(LinkedJoint<W>),
+          stop_room<W>,
           place_bundle<W>,
           warm_bundle<W>,
           solve_bundle<W>,

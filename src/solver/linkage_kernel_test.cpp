@@ -6,6 +6,7 @@
 #include "solver/contact_block.h"
 #include "solver/lane_records.h"
 #include "solver/linkage.h"
+#include "solver/linkage_stops.h"
 
 #include <gtest/gtest.h>
 
@@ -162,7 +163,9 @@ struct Shape {
 };
 
 void solve_one_by_one(Crowd& crowd, const Shape& shape) {
-  const LinkageSolve solve = crowd.solve();
+  LinkageSolve solve = crowd.solve();
+  std::vector<double> stop_room(stops_room(shape.plan.rows, kBodies));
+  solve.room = stop_room;
   for (int copy = 0; copy < kCopies; ++copy) {
     std::vector<LinkageNode> nodes{std::size_t(kJoints)};
     std::vector<LinkageBody> bodies{std::size_t(kBodies)};
@@ -179,7 +182,7 @@ void solve_one_by_one(Crowd& crowd, const Shape& shape) {
       node.side_b = kMembers[i].b;
       node.count = int(shape.nodes[std::size_t(i)].rows);
     }
-    const Linkage linkage{nodes, bodies, couplings, shape.plan, -1, values, room, vector};
+    const Linkage linkage{nodes, bodies, couplings, shape.plan, -1, values, room, vector, true};
     for (int part = 0; part < 2; ++part) {
       place_linkage(linkage, solve);
       warm_linkage(linkage, solve);
@@ -195,12 +198,7 @@ void solve_side_by_side(Crowd& crowd, Shape& shape, int width) {
   const LinkageKernels& kernels = select_contact_kernels(width).linkages;
   const LinkageSolve solve = crowd.solve();
   const LaneArrays arrays{crowd.motion.data(), crowd.inertia.data(), crowd.orientation.data()};
-  const LaneSettings settings{kSubstep,
-                              kSettings.softness.bias_rate,
-                              kSettings.softness.mass_scale,
-                              kSettings.softness.impulse_scale,
-                              solve.give,
-                              raise_inertia};
+  LaneSettings settings{kSubstep, kSettings.softness.bias_rate, solve.give, raise_inertia};
   for (std::size_t i = 0; i < kJoints; ++i) {
     ASSERT_TRUE(fits_lane(crowd.records[i], crowd.work[i], shape.nodes[i]));
   }
@@ -219,11 +217,15 @@ void solve_side_by_side(Crowd& crowd, Shape& shape, int width) {
                        kJoints,
                        shape.plan.values,
                        shape.plan.rows,
+                       0,
                        arena.make<std::byte>((kBodies + 1) * kernels.body_bytes).data(),
                        arena.make<std::byte>(kJoints * kernels.joint_bytes).data(),
                        arena.make<double>(lanes * shape.plan.values).data(),
                        arena.make<double>(lanes * shape.plan.rows).data(),
                        arena.make<double>(lanes * shape.plan.widest).data()};
+  for (const LaneNode& node : shape.nodes)
+    bundle.stop_count += (node.has_twist ? 1 : 0) + (node.has_swing ? 1 : 0);
+  settings.room = arena.make<std::byte>(kernels.stop_room(bundle)).data();
   for (int first = 0; first < kCopies; first += kernels.width) {
     const int used = std::min(kernels.width, kCopies - first);
     clear_lanes(bundle);

@@ -7,6 +7,7 @@
 
 #include "math/block_plan.h"
 #include "solver/body_motion.h"
+#include "solver/error_bounds.h"
 
 #include <gyre/defs.h>
 
@@ -71,6 +72,7 @@ struct LinkageBundle {
   const BlockEntry* entries = nullptr;
   const std::uint32_t* targets = nullptr;
   std::uint32_t column_count = 0, value_count = 0, row_count = 0;
+  std::uint32_t stop_count = 0;  // axes with stops
   std::byte* bodies = nullptr;
   std::byte* joints = nullptr;
   double* values = nullptr;  // one half of the lanes after the other: math/wide_double.h
@@ -86,17 +88,18 @@ struct LaneArrays {
 
 struct LaneSettings {
   float substep = 0.0f;
-  float rate = 0.0f;                              // 1/s, at which errors are taken back
-  float mass_scale = 0.0f, impulse_scale = 0.0f;  // of stops, as Softness
-  float give = 0.0f;                              // as LinkageSolve::give
+  float rate = 0.0f;  // 1/s, at which errors are taken back
+  float give = 0.0f;  // as LinkageSolve::give
   // The inverse of an inertia raised by `share` of what of `pull` holds back (six floats each, as Sym3).
   void (*raise)(const float* pull, const float* inertia, float share, float* inverse) = nullptr;
+  std::byte* room = nullptr;  // of the worker, as much as stop_room() says for any of the bundles
 };
 
 // The kernels of one CPU target. Each body is a block of `body_bytes` that begins with the lanes' body indices (kNoBody: none).
 struct LinkageKernels {
   int width;
   std::size_t body_bytes, joint_bytes;
+  std::size_t (*stop_room)(const LinkageBundle& bundle);  // bytes
   void (*place)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
   void (*warm)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
   void (*solve)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);

@@ -8,9 +8,7 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// As in solver/joint_blocks.h and solver/linkage.cpp.
-constexpr float kLaneTurnError = 0.2f;   // rad
-constexpr float kLanePointError = 0.1f;  // m
+// As in solver/linkage.cpp.
 constexpr float kLanePull = 1.0f;
 
 template <int W>
@@ -33,8 +31,8 @@ GYRE_INLINE void place_axis(LinkedAxis<W>& axis, Vec3W<W> about, const LinkedBod
 
 template <int W>
 GYRE_INLINE void place_twist(LinkedAxis<W>& axis, Wide<W> position) {
-  axis.low_gap = max(position - axis.low, Wide<W>(-kLaneTurnError));
-  axis.high_gap = max(axis.high - position, Wide<W>(-kLaneTurnError));
+  axis.low_gap = max(position - axis.low, Wide<W>(-kMostErrors.turn));
+  axis.high_gap = max(axis.high - position, Wide<W>(-kMostErrors.turn));
 }
 
 // How far b's axis may still lean out of a's, and the axis about which the stop is nearest: find_swing_stop() of
@@ -62,7 +60,7 @@ GYRE_INLINE void place_swing(LinkedJoint<W>& joint, const Mat3W<W>& frame_a, Vec
   gap = select(leans, (1.0f - share * angle) / size, gap);
   place_axis(joint.swing, about, a, b);
   joint.swing.low_gap = gap;  // as it is
-  joint.swing.high_gap = max(gap, Wide<W>(-kLaneTurnError));
+  joint.swing.high_gap = max(gap, Wide<W>(-kMostErrors.turn));
 }
 
 // ------------------------------------------------------------------------------------------------------------- joints
@@ -85,7 +83,7 @@ GYRE_INLINE void place_lane_joint(const LaneNode& node, LinkedJoint<W>& joint, c
     joint.axis = frame_a.x;
     joint.perpendicular_1 = frame_a.y;
     joint.perpendicular_2 = frame_a.z;
-    joint.angular_error = within(cross(frame_a.x, x_b), kLaneTurnError);
+    joint.angular_error = within(cross(frame_a.x, x_b), kMostErrors.turn);
     if (node.has_twist) place_axis(joint.twist, frame_a.x, a, b);
     return;
   }

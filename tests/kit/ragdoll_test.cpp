@@ -277,8 +277,8 @@ TEST(Ragdoll, NoStartMakesItExplode) {
         "energy %.4f J, beyond "
         "limits by %.1f degrees, half of them by less than %.2f\n",
         contacts ? "touch" : "do not touch", fastest, 1e3 * gap, kinetic, beyond.back(), beyond[20]);
-    // A fall from 4 m is 9 m/s, and a limb taken back by 8 rad/s on two others that are too adds as much.
-    EXPECT_LT(fastest, contacts ? 50.0 : 25.0);
+    // A fall from 4 m is 9 m/s, and four limbs of 0.3 m in a row, each taken back by 8 rad/s against the one before, add 24.
+    EXPECT_LT(fastest, contacts ? 50.0 : 33.0);
     EXPECT_LT(kinetic, 0.05);
     EXPECT_LT(gap, contacts ? 0.05 : 1e-3);
     if (!contacts) {
