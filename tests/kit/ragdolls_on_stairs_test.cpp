@@ -121,8 +121,8 @@ void judge(int count, Judged j) {
   EXPECT_LT(share(j.gaps, 0.999), 0.01);
   EXPECT_LT(share(j.gaps, 1), 0.05) << "a limb struck at 10 m/s, for a step";
   EXPECT_LT(share(j.beyond, 0.99), 3.0);
-  // Nothing thin passes through: at 10 m/s and more under the weight of a crowd a limb is pressed in by its own thickness, at most.
-  EXPECT_LT(j.inside, 0.05) << "the thinnest limb is 76 mm thick";
+  // Nothing thin passes through: at 10 m/s and more under the weight of a crowd a limb is pressed in by less than its own thickness.
+  EXPECT_LT(j.inside, 0.076) << "the thinnest limb is 76 mm thick";
   EXPECT_EQ(j.awake, 0);
   // Places that are taken back (overlap, joints) lift something now and then, and limbs that are wedged in a heap slip: by less than
   // a millimetre of the crowd's weight.
@@ -131,7 +131,7 @@ void judge(int count, Judged j) {
 
 TEST(RagdollsOnStairs, TwentyComeToRest) { judge(20, fall(20, 30)); }
 
-TEST(LongRagdollsOnStairs, TwoHundredComeToRest) { judge(200, fall(200, 60, 2)); }
+TEST(LongRagdollsOnStairs, TwoHundredComeToRest) { judge(200, fall(200, 120, 2)); }
 
 // scenes/joints/ragdolls_on_stairs.gyre.json is what examples/ragdoll_scene.cpp writes, to the last digit.
 TEST(RagdollsOnStairs, TheSceneIsWhatTheExampleWrites) {
