@@ -287,10 +287,15 @@ bool is_beyond(const Found<kRoom>& found, float reach) {
 // The manifolds before this look, and which of their points have found a heir.
 template <int kRoom>
 struct Former {
-  Manifold manifolds[kRoom];
+  // Not cleared: only the counted ones are ever read.
+  union {
+    Manifold manifolds[kRoom];
+  };
   int count = 0;
   bool taken[kRoom] = {};
   bool point_taken[kRoom][kMaxManifoldPoints] = {};
+
+  Former() {}
 };
 
 // The former manifold that goes on in the new one; -1 if none does. A single manifold always goes on.

@@ -84,6 +84,8 @@ class SurfaceSweep {
         surface_(*b.shape),
         scale_(scale),
         hull_(hull),
+        is_surface_still_(b.sweep->turned == Vec3{} && b.sweep->moved == Vec3{}),
+        world_from_surface_(b.sweep->pose * b.body_from_shape),
         start_(surface_from_a(0.0)) {}
 
   Stop first_stop(double end) {
@@ -120,8 +122,9 @@ class SurfaceSweep {
 
  private:
   Transform surface_from_a(double time) const {
-    return inverse_times(pose_at(*b_.sweep, time) * b_.body_from_shape,
-                         pose_at(*a_.sweep, time) * a_.body_from_shape);
+    return inverse_times(
+        is_surface_still_ ? world_from_surface_ : pose_at(*b_.sweep, time) * b_.body_from_shape,
+        pose_at(*a_.sweep, time) * a_.body_from_shape);
   }
 
   // Holds the shape all along the piece, in the surface's frame. A turn bulges out of the box around its two ends by
@@ -252,6 +255,8 @@ class SurfaceSweep {
   const Surface surface_;
   const ImpactScale& scale_;
   TriangleHull& hull_;
+  const bool is_surface_still_;
+  const Pose world_from_surface_;  // as the step begins
   const Transform start_;
   Vec3 origin_;
   SweptShape near_frame_;

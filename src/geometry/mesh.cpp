@@ -5,6 +5,11 @@ namespace gyre {
 
 TriangleView view_triangle(const Mesh& mesh, std::uint32_t triangle) {
   TriangleView view;
+  view_triangle(mesh, triangle, view);
+  return view;
+}
+
+void view_triangle(const Mesh& mesh, std::uint32_t triangle, TriangleView& view) {
   view.id = triangle;
   view.normal = mesh.normals[triangle];
   const std::uint16_t flags = mesh.flags[triangle];
@@ -18,7 +23,6 @@ TriangleView view_triangle(const Mesh& mesh, std::uint32_t triangle) {
     view.edge_id[i] = twin == Mesh::kNoTwin ? half_edge : min(half_edge, twin);
     view.neighbor_normal[i] = twin == Mesh::kNoTwin ? view.normal : mesh.normals[twin / 3];
   }
-  return view;
 }
 
 bool in_normal_cone(const Mesh& mesh, std::uint32_t triangle, int corner, Vec3 direction, float tolerance) {

@@ -38,8 +38,9 @@ constexpr int kFlatCornerShift = 6;
 constexpr std::uint16_t kInsidePatch = 1 << 9;
 constexpr EdgeKind edge_kind(std::uint16_t flags, int edge) { return EdgeKind(flags >> (2 * edge) & 3); }
 
-// The triangle with its surroundings, in the mesh's frame.
+// The triangle with its surroundings, in the mesh's frame; or written to where it is wanted.
 TriangleView view_triangle(const Mesh& mesh, std::uint32_t triangle);
+void view_triangle(const Mesh& mesh, std::uint32_t triangle, TriangleView& out);
 
 inline Aabb triangle_box(const Mesh& mesh, std::uint32_t triangle) {
   const std::uint32_t* corner = mesh.indices.data() + 3 * std::size_t(triangle);

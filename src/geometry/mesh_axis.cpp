@@ -394,7 +394,11 @@ Surface::Surface(const Shape& shape) {
 NearTriangle place_triangle(const Surface& surface, std::uint32_t id, Vec3 position,
                             const PlacedConvex& convex) {
   NearTriangle t;
-  static_cast<TriangleView&>(t) = surface.triangle(id);
+  if (surface.mesh != nullptr) {
+    view_triangle(*surface.mesh, id, t);
+  } else {
+    static_cast<TriangleView&>(t) = view_triangle(*surface.field, id);
+  }
   if (surface.double_sided() && dot(t.normal, convex.center() + position - t.v[0]) < 0.0f) {
     static_cast<TriangleView&>(t) = seen_from_behind(t);
     t.turned = true;

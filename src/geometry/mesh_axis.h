@@ -35,11 +35,18 @@ struct Surface {
 
 // A triangle moved to the origin of the convex shape, with its edges measured.
 struct NearTriangle : TriangleView {
-  Vec3 along[3];  // unit, from v[i] to the next corner
-  float length[3] = {};
-  Vec3 outward[3];      // unit, in the plane, away from the triangle
+  // Known once the edges are measured, and not cleared before.
+  union {
+    Vec3 along[3];  // unit, from v[i] to the next corner
+  };
+  float length[3];
+  union {
+    Vec3 outward[3];  // unit, in the plane, away from the triangle
+  };
   float slack = 0.0f;   // m: what rounding can do to the places of its corners
   bool turned = false;  // seen from behind: corners 1 and 2 have changed places against the surface's own
+
+  NearTriangle() {}
 };
 
 // The triangle without its edges' measures. `position` is that of the convex shape. A double-sided surface shows the side on

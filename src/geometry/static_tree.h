@@ -12,6 +12,7 @@
 
 #include <gyre/math.h>
 
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -84,10 +85,11 @@ void walk_overlaps(const StaticTree& tree, const Aabb& box, Enter&& enter, Visit
       continue;
     }
     const StaticTree::Node& node = tree.nodes[child];
-    const unsigned mask = overlap_mask(node, box);
     // The last lane goes to the bottom, so the first comes off first.
-    for (int lane = StaticTree::kWidth - 1; lane >= 0; --lane) {
-      if ((mask >> lane & 1u) != 0 && enter(child, lane)) stack[depth++] = node.child[lane];
+    for (unsigned mask = overlap_mask(node, box); mask != 0;) {
+      const int lane = int(std::bit_width(mask)) - 1;
+      mask ^= 1u << lane;
+      if (enter(child, lane)) stack[depth++] = node.child[lane];
     }
   }
 }
