@@ -12,6 +12,8 @@ namespace {
 // Grazing turns converge slowly. Where this is not enough, the time reached so far counts as the impact: never late.
 constexpr int kMaxSteps = 1000;
 constexpr double kTolerance = 0.25;  // of the target
+// How often the two are advanced along one normal before nearest points are searched for again.
+constexpr int kMostAdvances = 8;
 
 bool is_still(Vec3 turned) { return turned.x == 0.0f && turned.y == 0.0f && turned.z == 0.0f; }
 
@@ -59,6 +61,32 @@ double closing_rate(const SweptShape& a, const SweptShape& b, DVec3 way, DVec3 f
                     double time) {
   const double rate = closing_rate(a, b, way, normal);
   return is_still(b.sweep->turned) ? rate : min(rate, closing_rate_beside(a, b, way, from_b, normal, time));
+}
+
+// How far the core reaches along a direction from its body's middle.
+double reach_along(const SweptShape& a, double time, DVec3 normal) {
+  const Quat turn = is_still(a.sweep->turned)
+                        ? a.sweep->pose.orientation
+                        : integrate_rotation(a.sweep->pose.orientation, float(time) * a.sweep->turned);
+  const Vec3 in_body = rotate_inverse(turn, to_float(normal));
+  const Vec3 in_shape = rotate_inverse(a.body_from_shape.orientation, in_body);
+  return double(dot(in_shape, support(*a.shape, in_shape))) +
+         double(dot(in_body, a.body_from_shape.position - a.sweep->center));
+}
+
+// Along one normal the two can be followed without a search: what lies between them along it is never more than their distance.
+// True if they do not come as near as `target` before `end`; else `time` is moved on as far as that normal tells. B does not
+// turn.
+bool passes_along(const SweptShape& a, DVec3 way, const Gap& gap, double closing, double target, double end,
+                  double& time) {
+  const double start = time, reach = reach_along(a, start, gap.normal), straight = dot(way, gap.normal);
+  double rest = gap.distance - target;
+  for (int i = 0; i < kMostAdvances && rest > kTolerance * target; ++i) {
+    time += rest / closing;
+    rest = gap.distance - target - straight * (time - start) - (reach_along(a, time, gap.normal) - reach);
+    if (closing * (end - time) <= rest) return true;
+  }
+  return false;
 }
 
 Gap find_gap(const SweptShape& a, const SweptShape& b, const Pose& pose_a, const Pose& pose_b,
@@ -120,7 +148,12 @@ Impact time_of_impact(const SweptShape& a, const SweptShape& b, double start, do
     const double closing = closing_rate(a, b, way, from_b, gap.normal, end - time);
     // Both the line and the rate of turning are constant: what does not close along one normal now never does.
     if (closing * (end - time) <= rest) return {};
-    time += rest / closing;
+    const bool searched = a.shape->kind != ShapeKind::plane && b.shape->kind != ShapeKind::plane;
+    if (searched && !is_still(a.sweep->turned) && is_still(b.sweep->turned)) {
+      if (passes_along(a, way, gap, closing, target, end, time)) return {};
+    } else {
+      time += rest / closing;
+    }
   }
   return {true, time};
 }

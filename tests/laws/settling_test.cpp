@@ -16,6 +16,7 @@ struct Heap {
   std::vector<AnyShape> shapes;
   float restitution = 0.0f;
   float rolling_friction = 0.0f;
+  int falls = 9;
 };
 
 // Seconds until all of 32 bodies in a pit of 2 m sleep, from when the last of them has fallen in; 28 if they do not.
@@ -51,7 +52,8 @@ double settle(const Heap& heap, int variant, double* overlap) {
 
 // What rolls, or spins on a point, is braked by nothing but rolling and spinning friction: such heaps have some, a fortieth
 // of a radius and less. Overlap: a fifth of what the planks are thick at half. How long a heap takes is chance to a part, so
-// each falls nine times, and the middle one counts.
+// each falls nine times, and the middle one counts. Of heaps of coins a third takes longer than ten seconds: the middle one of
+// nine would exceed them one time in seven, of 27 one time in 28.
 TEST(Heap, OfAnythingSleepsWithinTenSeconds) {
   const AnyShape plank = Box{{0.1f, 0.015f, 0.5f}}, hull = plank_hull(), cylinder = Cylinder{0.2f, 0.3f};
   const AnyShape coin = Cylinder{0.2f, 0.02f}, cone = Cone{0.2f, 0.2f}, box = Box{{0.2f, 0.2f, 0.2f}};
@@ -61,20 +63,21 @@ TEST(Heap, OfAnythingSleepsWithinTenSeconds) {
       {"planks as hulls", {hull}},
       {"planks, e = 0.5", {plank}, 0.5f},
       {"cylinders", {cylinder}, 0.0f, 5e-3f},
-      {"coins", {coin}, 0.0f, 5e-3f},
+      {"coins", {coin}, 0.0f, 5e-3f, 27},
       {"boxes, e = 0.8", {box}, 0.8f},
       {"balls, e = 0.5", {ball}, 0.5f, 5e-3f},
       {"capsules", {capsule}, 0.0f, 5e-3f},
       {"all kinds", {plank, cylinder, cone, box, hull, capsule, ball, coin}, 0.0f, 5e-3f},
       {"all kinds, e = 0.4", {plank, cylinder, cone, box, hull, capsule, ball, coin}, 0.4f, 5e-3f}};
   for (const Heap& heap : heaps) {
-    std::vector<double> times(9), overlaps(9);
-    for (int variant = 0; variant < 9; ++variant) {
+    const std::size_t falls = std::size_t(heap.falls);
+    std::vector<double> times(falls), overlaps(falls);
+    for (int variant = 0; variant < heap.falls; ++variant) {
       times[std::size_t(variant)] = settle(heap, variant, &overlaps[std::size_t(variant)]);
     }
     std::sort(times.begin(), times.end());
     std::sort(overlaps.begin(), overlaps.end());
-    const double time = times[4], overlap = overlaps[4];
+    const double time = times[falls / 2], overlap = overlaps[falls / 2];
     say("[row] B-31 %s\n", heap.name);
     EXPECT_TRUE(limit_row("B-31 time until all sleep (s)", time, 10.0, 6.0)) << heap.name;
     EXPECT_TRUE(limit_row("B-31 deepest overlap then (m)", overlap, 3e-3, 1e-3)) << heap.name;
