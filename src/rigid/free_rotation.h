@@ -2,7 +2,8 @@
 //
 // The angular momentum L in the world frame is constant, so the only unknown is the orientation: q' = 1/2 w q with
 // w = R I^-1 R^T L. L is kept exactly (to rounding) by construction and the energy to the order of the scheme, for any
-// inertia tensor and any speed; bodies that spin about a principal axis turn by the exponential map, which is exact.
+// inertia tensor and any speed; bodies that spin about a principal axis turn by the exponential map, and bodies of
+// revolution by two of them (the axis goes round L, the body about its axis), which is exact.
 //
 // Method: Runge-Kutta 4 on the orientation with L fixed, in inner steps of at most kInnerAngle; one midpoint step (error
 // of order angle^3) where the angle is so small that it is exact in float. Source of the idea: E. Hairer, C. Lubich,
