@@ -22,8 +22,9 @@ constexpr float kPlay = 0.25f;           // of the size of a stopped body: its c
 constexpr float kStoppedShare = 0.01f;   // of its inverse mass, with which it is moved
 constexpr std::size_t kMostJoints = 48;  // around each stopped body; those of the body itself always
 constexpr int kParts = 2;                // of the rest of the way
+constexpr float kShortTurn = 0.2f;       // rad: where nothing turns further, one is enough
 constexpr int kCorrections = 4;          // at the end of each
-constexpr double kOpen = 1.0e-4;         // m or rad: less is left to the next step
+constexpr double kOpen = 3.0e-4;         // m or rad: less is left to the next step
 constexpr double kClosed = 1.0e-3;       // m or rad: more, and it is no way to go
 constexpr int kNewtonSteps = 20;
 constexpr double kNewtonShare = 1.0e-4;  // of the largest impulse that closes one row alone
@@ -244,10 +245,11 @@ class Closing {
     // What was off as the step began is no fault of the way.
     const double least = max(kClosed, 1.1 * correct());
     keep();
-    for (int part = 0; part < kParts && !stays_;) {
-      move(1.0f / float(kParts));
+    const int parts = count_parts();
+    for (int part = 0; part < parts && !stays_;) {
+      move(1.0f / float(parts), 0.0);
       const double open = correct();
-      const bool more_held = hold_those_moved_far(float(part + 1) / float(kParts));
+      const bool more_held = hold_those_moved_far(float(part + 1) / float(parts));
       if (!more_held && open < least) {
         keep();
         ++part;
@@ -257,9 +259,14 @@ class Closing {
       if (!more_held) return;
     }
   }
+  int count_parts() const {
+    float most = 0.0f;
+    for (const Member& member : members_) most = max(most, length_squared(member.rest_turned));
+    return most < kShortTurn * kShortTurn ? 1 : kParts;
+  }
   double correct() {
-    double open = 1.0;
-    for (int k = 0; k < kCorrections && !(open < kOpen); ++k) open = move(0.0f);
+    double open = move(0.0f, kOpen);
+    for (int k = 1; k < kCorrections && !(open < kOpen); ++k) open = move(0.0f, kOpen);
     return open;
   }
   void keep() {
@@ -270,8 +277,9 @@ class Closing {
       motion_[i].moved = before_[i].moved, orientations_[i] = before_[i].orientation;
   }
 
-  // One part: a displacement is what a second would make of the velocities. Returns how far the joints were off.
-  double move(float share) {
+  // One part: a displacement is what a second would make of the velocities. Returns how far the joints were off; nothing moves where that
+  // is less than `least`.
+  double move(float share, double least) {
     for (std::size_t i = 0; i < members_.size(); ++i) {
       motion_[i].linear_velocity = share * members_[i].rest_moved;
       motion_[i].angular_velocity = share * members_[i].rest_turned;
@@ -297,6 +305,7 @@ class Closing {
       open = max(open, wrong);
       if (rows[i].diagonal > 0.0) most = max(most, wrong / rows[i].diagonal);
     }
+    if (open < least) return open;
     if (most > 0.0) {
       const FrictionSet none;
       solve_body_newton({rows, row_bodies_, &none, &plan_}, kNewtonShare * most, kNewtonSteps, impulses_,
