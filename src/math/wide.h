@@ -92,6 +92,17 @@ struct Mask {
     }
   }
 
+  // The inverse of to_bits.
+  static GYRE_INLINE Mask of_bits(std::uint32_t bits) {
+    if constexpr (W == 1) {
+      return splat((bits & 1u) != 0u);
+    } else {
+      Int own{};
+      for (int i = 0; i < W; ++i) own[i] = 1 << i;
+      return from(((int(bits) - Int{}) & own) != Int{});
+    }
+  }
+
   GYRE_INLINE bool operator[](int lane) const {
     if constexpr (W == 1) {
       return (void)lane, v != 0;

@@ -167,6 +167,7 @@ void expect_lanes() {
     EXPECT_TRUE(any(mask));
     EXPECT_EQ(all(mask), W == 1);
     EXPECT_EQ(to_bits(mask), 1u << i);
+    EXPECT_EQ(to_bits(Mask<W>::of_bits(1u << i)), 1u << i);
     for (int j = 0; j < W; ++j) EXPECT_EQ(mask[j], j == i);
     for (int j = 0; j < W; ++j) EXPECT_EQ(select(mask, a, zero)[j], j == i ? a[j] : 0.0f);
     EXPECT_EQ(truncate(a)[i], int(a[i]));

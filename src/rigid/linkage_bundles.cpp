@@ -38,13 +38,14 @@ LinkageBundle make_bundle(const LinkageShape& shape, const LinkageKernels& kerne
   b.values = arena.make<double>(b.value_count * width).data();
   b.vector = arena.make<double>(b.row_count * width).data();
   b.room = arena.make<double>(shape.plan.widest * width).data();
+  b.stops = arena.make<std::byte>(kernels.stop_room(b)).data();
   return b;
 }
 
 }  // namespace
 
 BundleSolve lay_out_bundles(const Linkages& linkages, const ContactKernels& kernels,
-                            const LinkageSolve& solve, std::size_t workers, Arena& arena) {
+                            const LinkageSolve& solve, Arena& arena) {
   BundleSolve result;
   result.arrays = {solve.bodies.motion, solve.bodies.inertia, solve.bodies.orientation};
   const Softness& softness = solve.settings.softness;
@@ -73,11 +74,6 @@ BundleSolve lay_out_bundles(const Linkages& linkages, const ContactKernels& kern
     }
   }
   result.bundles = result.bundles.first(used);
-  std::size_t room = 0;
-  for (const Bundled& bundle : result.bundles)
-    room = max(room, bundle.lanes.kernels->stop_room(bundle.lanes));
-  result.rooms = arena.make<std::byte*>(workers);
-  for (std::byte*& part : result.rooms) part = arena.make<std::byte>(room).data();
   return result;
 }
 

@@ -18,11 +18,10 @@ struct BundleSolve {
   std::span<Bundled> bundles;
   LaneArrays arrays;
   LaneSettings settings;
-  std::span<std::byte*> rooms;  // for stops, by worker
 };
 
 BundleSolve lay_out_bundles(const Linkages& linkages, const ContactKernels& kernels,
-                            const LinkageSolve& solve, std::size_t workers, Arena& arena);
+                            const LinkageSolve& solve, Arena& arena);
 // Of bundles [begin, end).
 void begin_bundles(const BundleSolve& bundles, int begin, int end, const LinkageSolve& solve);
 void finish_bundles(const BundleSolve& bundles, int begin, int end, const LinkageSolve& solve);

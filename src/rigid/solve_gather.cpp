@@ -59,6 +59,8 @@ void gather_contacts(Solve& solve) {
     constraint.spinning_friction = contact.surface.spinning_friction;
     constraint.restitution = contact.surface.restitution;
     constraint.size = contact.size;
+    constraint.linked = (active_a && !w.bodies.joints[contact.body_a].empty()) ||
+                        (active_b && !w.bodies.joints[contact.body_b].empty());
     constraint.push_speed = kPushShare * (fall > 0.0f ? fall : 3.132f) * std::sqrt(contact.size);
     for (Manifold& manifold : manifolds_of(w.contacts, contact)) {
       if (manifold.count == 0) continue;

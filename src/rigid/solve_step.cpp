@@ -338,13 +338,11 @@ void finish_bundles_stage(void* context, int begin, int end, int) {
 }
 using BundleKernel = void (*LinkageKernels::*)(const LinkageBundle&, const LaneArrays&, const LaneSettings&);
 template <BundleKernel... kernels>
-void bundle_stage(void* context, int begin, int end, int worker) {
+void bundle_stage(void* context, int begin, int end, int) {
   const BundleSolve& s = static_cast<Solve*>(context)->bundles;
-  LaneSettings settings = s.settings;
-  settings.room = s.rooms[std::size_t(worker)];
   for (int i = begin; i < end; ++i) {
     const LinkageBundle& bundle = s.bundles[std::size_t(i)].lanes;
-    ((bundle.kernels->*kernels)(bundle, s.arrays, settings), ...);
+    ((bundle.kernels->*kernels)(bundle, s.arrays, s.settings), ...);
   }
 }
 
@@ -499,8 +497,7 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
                          .give = kLinkageGive};
   solve.linkage_solve.settings.swept = false;
   solve.stop_rooms = find_stops(solve.linkages, solve.joint_work, std::size_t(tasks.worker_count()), arena);
-  solve.bundles = lay_out_bundles(solve.linkages, solve.kernels, solve.linkage_solve,
-                                  std::size_t(tasks.worker_count()), arena);
+  solve.bundles = lay_out_bundles(solve.linkages, solve.kernels, solve.linkage_solve, arena);
   gather_motion(solve, arena);
   find_resting(solve, arena);
   const std::span<Group> contacts = lay_out_contacts(solve, arena);

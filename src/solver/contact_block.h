@@ -30,6 +30,7 @@ struct ContactConstraint {
   std::int32_t body_b = kNoBody;
   std::int32_t point_count = 0;    // the manifold's
   bool rigid = false;              // no spring: part of a tree that is solved directly
+  bool linked = false;             // one of the bodies hangs on a joint
   bool fast = false;               // closes so fast that it may be told as a hit
   Manifold* manifold = nullptr;
 };

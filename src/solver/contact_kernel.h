@@ -21,6 +21,10 @@ inline namespace GYRE_TARGET_NAMESPACE {
 // The fastest that springs take overlap back, as a share of the speed with which it is pushed apart: unlike that, theirs is
 // momentum.
 constexpr float kSpringSpeed = 0.125f;
+// By how many slops a point of a linked body must be apart to have opened; then it bears nothing. Speeds alone would lower its impulse by
+// what its body weighs, while it pushes all that hangs on that body by joints: a wedged limb that slipped took the pressure along for
+// centimetres.
+constexpr float kOpenSlops = 4.0f;
 // Projected sweeps over the points of a manifold in which some would pull.
 constexpr int kPullSweeps = 6;
 
@@ -41,6 +45,7 @@ struct ContactBlock {
   std::int32_t point_count = 0;         // the most of any lane
   std::int32_t rolls = 0;               // any lane has rolling friction
   std::int32_t has_fresh = 0;           // any lane is fresh
+  std::uint32_t linked = 0;             // lanes, as bits, of which a body hangs on a joint
   Vec3W<W> normal, tangent_1, tangent_2;
   Wide<W> inverse_mass_a, inverse_mass_b;
   Sym3W<W> inverse_inertia_a, inverse_inertia_b;
@@ -264,6 +269,8 @@ GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W>& pair, const
   const Vec3W<W> moved = Vec3W<W>{b[8], b[9], b[10]} - Vec3W<W>{a[8], a[9], a[10]};
   const NormalMotion<W> ways(block, moved, {a[11], a[12], a[13]}, {b[11], b[12], b[13]});
   const NormalMotion<W> speeds(block, pair.linear_b - pair.linear_a, pair.angular_a, pair.angular_b);
+  const auto is_linked = Mask<W>::of_bits(block.linked);
+  const Wide<W> open = Wide<W>(kOpenSlops) * block.slop;
   Wide<W> residual[Count];  // speed that the row wants to lose
   Wide<W> kept[Count];      // the impulse as it stands, less what the spring gives way
   GYRE_UNROLL
@@ -282,6 +289,7 @@ GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W>& pair, const
       // A point that parts ceases to give way by degrees.
       const Wide<W> near = max(block.slop - max(separation, zero), zero);
       kept[i] = point.impulse - (block.give * near) * share * max(point.impulse - point.held, zero);
+      if (block.linked != 0) kept[i] = select(is_linked & (separation > open), zero, kept[i]);
     } else {
       // A point that is apart may be let go, never be held back: that would brake whatever is about to land.
       const Wide<W> excess = select(point.impulse > zero, max(speed + separation * rate, zero), zero);

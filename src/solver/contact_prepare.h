@@ -329,6 +329,7 @@ GYRE_INLINE void prepare_softness(ContactBlock<W>& block, const ContactConstrain
   Wide<W> yields, both;  // 1: not part of a tree; both bodies can be pushed
   for (int lane = 0; lane < W; ++lane) {
     yields.set(lane, order[lane] != 0xffffffffu && constraints[order[lane]].rigid ? 0.0f : 1.0f);
+    if (order[lane] != 0xffffffffu && constraints[order[lane]].linked) block.linked |= 1u << lane;
     both.set(lane, block.write_a[lane] == kNoBody || block.write_b[lane] == kNoBody ? 0.0f : 1.0f);
   }
   const Wide<W> youth = aging / (aging + age);
@@ -425,6 +426,7 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
   const LaneRecords<W> records = find_records<W>(constraints, order, bodies, nowhere);
   block.point_count = records.point_count;
   block.rolls = block.has_fresh = 0;
+  block.linked = 0;
   Wide<W> in[4];
   load_four<W>(records.manifold, kManifoldNormal, in);
   block.normal = {in[0], in[1], in[2]};

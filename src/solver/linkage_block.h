@@ -73,10 +73,11 @@ struct Bundle {
       (D::load(high) + half_of<1>(v)).store(high);
     }
   }
-  GYRE_INLINE void set_row(std::uint32_t row, Wide<W> v) const {
+  GYRE_INLINE void set_row(std::uint32_t row, Wide<W> v) const { set_row(plain.vector, row, v); }
+  GYRE_INLINE void set_row(double* vector, std::uint32_t row, Wide<W> v) const {
     constexpr int H = kHalfLanes<W>;
-    half_of<0>(v).store(plain.vector + row * H);
-    if constexpr (W > 1) half_of<1>(v).store(plain.vector + (std::size_t(plain.row_count) + row) * H);
+    half_of<0>(v).store(vector + row * H);
+    if constexpr (W > 1) half_of<1>(v).store(vector + (std::size_t(plain.row_count) + row) * H);
   }
   GYRE_INLINE Wide<W> row(std::uint32_t row) const {
     using D = WideDouble<kHalfLanes<W>>;
@@ -86,6 +87,22 @@ struct Bundle {
     return join_halves<W>(low, D::load(plain.vector + (std::size_t(plain.row_count) + row) * H));
   }
 };
+
+// The impulse p at the joint and the turning impulse t, on b, and their opposites on a.
+template <int W>
+GYRE_INLINE void push_joint(const Bundle<W>& bundle, const LaneNode& node, const LinkedJoint<W>& joint,
+                            Vec3W<W> p, Vec3W<W> t) {
+  if (bundle.moves(node.a)) {
+    LinkedBody<W>& a = bundle.bodies[node.a];
+    a.linear -= a.inverse_mass * p;
+    a.angular -= a.inverse * (cross(joint.from_a, p) + t);
+  }
+  if (bundle.moves(node.b)) {
+    LinkedBody<W>& b = bundle.bodies[node.b];
+    b.linear += b.inverse_mass * p;
+    b.angular += b.inverse * (cross(joint.from_b, p) + t);
+  }
+}
 
 // `Fours` times four floats of records of `stride` floats; of `none` where there is no record.
 template <int Fours, int W>

@@ -61,9 +61,9 @@ GYRE_INLINE void ask_lanes(const Bundle<W>& bundle, const LaneSettings& s, Error
     share = select(fastest > kMost, kMost / fastest, share);
     const Vec3W<W> bend = per_substep * (swing_of(b.turn, joint.from_b) - swing_of(a.turn, joint.from_a)) -
                           (cross(b.angular, joint.from_b) - cross(a.angular, joint.from_a));
-    joint.wanted = Wide<W>(-s.rate) * within(joint.error, bounds.point) - share * bend;
+    joint.wanted = Wide<W>(-s.rate) * within(joint.error, bounds.point, bounds.fades) - share * bend;
     if (node.kind != JointKind::hinge) continue;
-    const Vec3W<W> turn = Wide<W>(-s.rate) * within(joint.angular_error, bounds.turn) -
+    const Vec3W<W> turn = Wide<W>(-s.rate) * within(joint.angular_error, bounds.turn, bounds.fades) -
                           share * hinge_bend(joint, a, b, per_substep);
     joint.turn_wanted_1 = dot(turn, joint.perpendicular_1);
     joint.turn_wanted_2 = dot(turn, joint.perpendicular_2);
@@ -71,22 +71,6 @@ GYRE_INLINE void ask_lanes(const Bundle<W>& bundle, const LaneSettings& s, Error
 }
 
 // --------------------------------------------------------------------------------------------------------- equations
-
-// The impulse p at the joint and the turning impulse t, on b, and their opposites on a.
-template <int W>
-GYRE_INLINE void push_joint(const Bundle<W>& bundle, const LaneNode& node, const LinkedJoint<W>& joint,
-                            Vec3W<W> p, Vec3W<W> t) {
-  if (bundle.moves(node.a)) {
-    LinkedBody<W>& a = bundle.bodies[node.a];
-    a.linear -= a.inverse_mass * p;
-    a.angular -= a.inverse * (cross(joint.from_a, p) + t);
-  }
-  if (bundle.moves(node.b)) {
-    LinkedBody<W>& b = bundle.bodies[node.b];
-    b.linear += b.inverse_mass * p;
-    b.angular += b.inverse * (cross(joint.from_b, p) + t);
-  }
-}
 
 // Solves for the change of all impulses and applies it; Soft: what is wanted and the give count, otherwise only the speed.
 template <int W, bool Soft>
@@ -147,6 +131,16 @@ GYRE_INLINE void sum_stop(LinkedJoint<W>& joint, LinkedAxis<W>& axis) {
 }
 
 // ------------------------------------------------------------------------------------------------------------- stages
+
+// The rows where the bodies are now, and their matrix, factored.
+template <int W>
+void place_linkages(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
+  place_bundle<W>(plain, arrays, s);
+  if (plain.stop_count > 0) {
+    const Bundle<W> bundle(plain);
+    LaneStops<W>(bundle, s, kNoErrors).begin();
+  }
+}
 
 template <int W>
 void warm_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
@@ -211,7 +205,7 @@ constexpr LinkageKernels linkage_kernels() {
           sizeof(LinkedBody<W>),
           sizeof(LinkedJoint<W>),
           stop_room<W>,
-          place_bundle<W>,
+          place_linkages<W>,
           warm_bundle<W>,
           solve_bundle<W>,
           solve_bundle_again<W>,

@@ -198,7 +198,7 @@ void solve_side_by_side(Crowd& crowd, Shape& shape, int width) {
   const LinkageKernels& kernels = select_contact_kernels(width).linkages;
   const LinkageSolve solve = crowd.solve();
   const LaneArrays arrays{crowd.motion.data(), crowd.inertia.data(), crowd.orientation.data()};
-  LaneSettings settings{kSubstep, kSettings.softness.bias_rate, solve.give, raise_inertia};
+  const LaneSettings settings{kSubstep, kSettings.softness.bias_rate, solve.give, raise_inertia};
   for (std::size_t i = 0; i < kJoints; ++i) {
     ASSERT_TRUE(fits_lane(crowd.records[i], crowd.work[i], shape.nodes[i]));
   }
@@ -222,10 +222,11 @@ void solve_side_by_side(Crowd& crowd, Shape& shape, int width) {
                        arena.make<std::byte>(kJoints * kernels.joint_bytes).data(),
                        arena.make<double>(lanes * shape.plan.values).data(),
                        arena.make<double>(lanes * shape.plan.rows).data(),
-                       arena.make<double>(lanes * shape.plan.widest).data()};
+                       arena.make<double>(lanes * shape.plan.widest).data(),
+                       nullptr};
   for (const LaneNode& node : shape.nodes)
     bundle.stop_count += (node.has_twist ? 1 : 0) + (node.has_swing ? 1 : 0);
-  settings.room = arena.make<std::byte>(kernels.stop_room(bundle)).data();
+  bundle.stops = arena.make<std::byte>(kernels.stop_room(bundle)).data();
   for (int first = 0; first < kCopies; first += kernels.width) {
     const int used = std::min(kernels.width, kCopies - first);
     clear_lanes(bundle);

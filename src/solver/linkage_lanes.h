@@ -46,6 +46,9 @@ struct LaneJoint {
   float turn_give_1 = 0.0f, turn_give_2 = 0.0f, turn_wanted_1 = 0.0f, turn_wanted_2 = 0.0f;
 };
 
+// More stops than that are solved in turns (solver/linkage_stops.h), not in lanes.
+constexpr std::size_t kMostLaneStops = 64;
+
 // What the linkages of a bundle have in common.
 struct LaneNode {
   JointKind kind = JointKind::ball;
@@ -77,7 +80,8 @@ struct LinkageBundle {
   std::byte* joints = nullptr;
   double* values = nullptr;  // one half of the lanes after the other: math/wide_double.h
   double* vector = nullptr;
-  double* room = nullptr;  // of the widest column, for one half
+  double* room = nullptr;      // of the widest column, for one half
+  std::byte* stops = nullptr;  // what is known of them in a part of a sub-step: as much as stop_room() says
 };
 
 struct LaneArrays {
@@ -92,7 +96,6 @@ struct LaneSettings {
   float give = 0.0f;  // as LinkageSolve::give
   // The inverse of an inertia raised by `share` of what of `pull` holds back (six floats each, as Sym3).
   void (*raise)(const float* pull, const float* inertia, float share, float* inverse) = nullptr;
-  std::byte* room = nullptr;  // of the worker, as much as stop_room() says for any of the bundles
 };
 
 // The kernels of one CPU target. Each body is a block of `body_bytes` that begins with the lanes' body indices (kNoBody: none).

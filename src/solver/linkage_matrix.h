@@ -24,10 +24,15 @@ struct HalfMatrix {
   GYRE_INLINE void set_x(std::uint32_t row, WideDouble<H> v) const { v.store(vector + row * H); }
 };
 
+// With a vector of the bundle's rows, one half after the other.
+template <int H>
+GYRE_INLINE HalfMatrix<H> half_matrix(const LinkageBundle& bundle, int half, double* vector) {
+  return {bundle, bundle.values + std::size_t(half) * bundle.value_count * H,
+          vector + std::size_t(half) * bundle.row_count * H};
+}
 template <int H>
 GYRE_INLINE HalfMatrix<H> half_matrix(const LinkageBundle& bundle, int half) {
-  return {bundle, bundle.values + std::size_t(half) * bundle.value_count * H,
-          bundle.vector + std::size_t(half) * bundle.row_count * H};
+  return half_matrix<H>(bundle, half, bundle.vector);
 }
 
 // The inverse of a diagonal block of which the lower triangle is read, zero in the rows whose pivots were dropped.
@@ -200,6 +205,20 @@ void solve_column_down(const HalfMatrix<H>& m, const BlockColumn& column) {
   }
 }
 
+// out = D^-1 x, of the column's rows.
+template <int H, int C>
+GYRE_INLINE void scale_column(const HalfMatrix<H>& m, const BlockColumn& column, double* out) {
+  using D = WideDouble<H>;
+  const double* const diagonal = m.values + std::size_t(column.diagonal) * H;
+  const double* const x = m.vector + std::size_t(column.row) * H;
+  for (int r = 0; r < C; ++r) {
+    D sum = D::load(diagonal + r * C * H) * D::load(x);
+    GYRE_UNROLL
+    for (int c = 1; c < C; ++c) sum += D::load(diagonal + (r * C + c) * H) * D::load(x + c * H);
+    sum.store(out + (std::size_t(column.row) + std::size_t(r)) * H);
+  }
+}
+
 template <int H, int C>
 void solve_column_up(const HalfMatrix<H>& m, const BlockColumn& column) {
   using D = WideDouble<H>;
@@ -267,6 +286,67 @@ void solve_lanes(const LinkageBundle& bundle) {
       }
     }
   }
+}
+
+// ---------------------------------------------------------------------------------------------- right sides of few rows
+
+// Marks, beside the columns that are marked (by their first rows), those that elimination reaches from them, and clears their rows in x.
+template <int W>
+void reach_lanes(const LinkageBundle& bundle, std::uint8_t* reached, double* x) {
+  constexpr int H = kHalfLanes<W>;
+  for (std::uint32_t place = 0; place < bundle.column_count; ++place) {
+    const BlockColumn& column = bundle.columns[place];
+    if (reached[column.row] == 0) continue;
+    for (std::uint32_t i = column.begin; i < column.end; ++i) {
+      const BlockColumn& other = bundle.columns[bundle.entries[i].place];
+      if (reached[other.row] != 0) continue;
+      reached[other.row] = 1;
+      for (int half = 0; half < kHalves<W>; ++half) {
+        const HalfMatrix<H> m = half_matrix<H>(bundle, half, x);
+        for (std::uint32_t r = 0; r < other.size; ++r) m.set_x(other.row + r, WideDouble<H>(0.0));
+      }
+    }
+  }
+}
+
+// Replaces the right side x, of the columns that are reached, by y of L y = x, and finds D^-1 y.
+template <int W>
+void solve_reached_down(const LinkageBundle& bundle, const std::uint8_t* reached, double* x, double* scaled) {
+  constexpr int H = kHalfLanes<W>;
+  for (int half = 0; half < kHalves<W>; ++half) {
+    const HalfMatrix<H> m = half_matrix<H>(bundle, half, x);
+    double* const out = scaled + std::size_t(half) * bundle.row_count * H;
+    for (std::uint32_t place = 0; place < bundle.column_count; ++place) {
+      const BlockColumn& column = bundle.columns[place];
+      if (reached[column.row] == 0) continue;
+      if (column.size == 3) {
+        solve_column_down<H, 3>(m, column);
+        scale_column<H, 3>(m, column, out);
+      } else {
+        solve_column_down<H, 5>(m, column);
+        scale_column<H, 5>(m, column, out);
+      }
+    }
+  }
+}
+
+// The product of two vectors over the columns that both reach.
+template <int W>
+Wide<W> dot_reached(const LinkageBundle& bundle, const std::uint8_t* reached_a, const double* a,
+                    const std::uint8_t* reached_b, const double* b) {
+  using D = WideDouble<kHalfLanes<W>>;
+  constexpr int H = kHalfLanes<W>;
+  D sums[2] = {D(0.0), D(0.0)};
+  for (std::uint32_t place = 0; place < bundle.column_count; ++place) {
+    const BlockColumn& column = bundle.columns[place];
+    if ((reached_a[column.row] & reached_b[column.row]) == 0) continue;
+    for (int half = 0; half < kHalves<W>; ++half) {
+      const std::size_t first = (std::size_t(half) * bundle.row_count + column.row) * H;
+      for (std::size_t i = first; i < first + std::size_t(column.size) * H; i += H)
+        sums[half] += D::load(a + i) * D::load(b + i);
+    }
+  }
+  return join_halves<W>(sums[0], sums[1]);
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

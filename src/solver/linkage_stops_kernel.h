@@ -12,6 +12,9 @@ inline namespace GYRE_TARGET_NAMESPACE {
 constexpr float kLaneCalm = 1.0e-3f, kLaneSettled = 1.0e-5f;  // rad/s
 constexpr int kLaneRounds = 3, kLaneSweeps = 100;
 
+// What a stop may still give way by, of what it would if its two bodies were alone: less is only rounding.
+constexpr float kLeastWay = 1.0e-5f;
+
 // The stops at either end of an axis: x are the impulses found, beyond those that the axis has.
 template <int W>
 struct LinkedStop {
@@ -20,15 +23,21 @@ struct LinkedStop {
   LinkedAxis<W>* axis;
   const LaneNode* node;
   bool has_low;   // a swing has only the other one
-  bool is_known;  // what an impulse makes of the linkage
+  bool is_known;  // what an impulse makes of the linkage, in this part of the sub-step
+  bool is_in;     // in question, in any lane
 };
 
 template <int W>
 constexpr std::size_t stop_room(const LinkageBundle& bundle) {
   const std::size_t n = bundle.stop_count;
-  return n * sizeof(LinkedStop<W>) + n * (bundle.row_count + 6 * bundle.moving_count + n) * sizeof(Wide<W>);
+  if (n == 0) return 0;
+  return n * (sizeof(LinkedStop<W>) + n * sizeof(Wide<W>) + bundle.row_count * (2 * W * sizeof(double) + 1)) +
+         bundle.moving_count * sizeof(Vec3W<W>);
 }
 
+// With the equations' matrix as L D L^T, the way of stop i under an impulse at stop j is what it would be without equations less y_i . D^-1
+// y_j, where L y is what the impulse makes of the rows. Elimination reaches few of the rows from one stop, and what is found stands until
+// the joints are placed anew: three solutions have it in common. What the equations answer is found once for all impulses together.
 template <int W>
 class LaneStops {
  public:
@@ -36,47 +45,59 @@ class LaneStops {
       : b_(bundle),
         s_(settings),
         bounds_(bounds),
-        stops_(reinterpret_cast<LinkedStop<W>*>(settings.room)),
-        answers_(reinterpret_cast<Wide<W>*>(stops_ + bundle.plain.stop_count)),
-        changes_(answers_ + std::size_t(bundle.plain.stop_count) * bundle.plain.row_count),
-        matrix_(changes_ + std::size_t(bundle.plain.stop_count) * 6 * bundle.plain.moving_count) {}
+        stops_(reinterpret_cast<LinkedStop<W>*>(bundle.plain.stops)),
+        matrix_(reinterpret_cast<Wide<W>*>(stops_ + count())),
+        parts_(reinterpret_cast<double*>(matrix_ + std::size_t(count()) * count())),
+        turns_(reinterpret_cast<Vec3W<W>*>(parts_ + 2 * std::size_t(count()) * bundle.plain.row_count * W)),
+        reached_(reinterpret_cast<std::uint8_t*>(turns_ + bundle.plain.moving_count)) {}
+
+  // Nothing is known of joints that have just been placed.
+  GYRE_INLINE void begin() {
+    std::uint32_t next = 0;
+    for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) {
+      const LaneNode& node = b_.plain.nodes[n];
+      if (node.has_twist) list(stops_[next++], node, b_.joints[n].twist, true);
+      if (node.has_swing) list(stops_[next++], node, b_.joints[n].swing, false);
+    }
+  }
 
   GYRE_INLINE void solve() {
-    list();
+    for (std::uint32_t a = 0; a < count(); ++a) ask(stops_[a]);
     for (int round = 0; round < kLaneRounds; ++round) {
       const Mask<W> live = look(round == 0);
       if (none(live)) return;
-      for (std::uint32_t a = 0; a < count_; ++a)
-        if (!stops_[a].is_known && any(stops_[a].low_on | stops_[a].high_on)) find_response(a);
+      for (std::uint32_t a = 0; a < count(); ++a) {
+        LinkedStop<W>& stop = stops_[a];
+        stop.is_in = any(stop.low_on | stop.high_on);
+        if (stop.is_in && !stop.is_known) find_response(a);
+      }
       find_impulses(live);
       push();
     }
   }
 
  private:
-  GYRE_INLINE void list() {
-    for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) {
-      const LaneNode& node = b_.plain.nodes[n];
-      if (node.has_twist) add(node, b_.joints[n].twist, true);
-      if (node.has_swing) add(node, b_.joints[n].swing, false);
-    }
-  }
-  GYRE_INLINE void add(const LaneNode& node, LinkedAxis<W>& axis, bool has_low) {
-    LinkedStop<W>& stop = stops_[count_++];
+  GYRE_INLINE std::uint32_t count() const { return b_.plain.stop_count; }
+  GYRE_INLINE static void list(LinkedStop<W>& stop, const LaneNode& node, LinkedAxis<W>& axis, bool has_low) {
     stop.axis = &axis, stop.node = &node;
-    stop.low_on = stop.high_on = Mask<W>::splat(false);
     stop.has_low = has_low, stop.is_known = false;
-    stop.low_asked = asked(axis.low_gap), stop.high_asked = asked(axis.high_gap);
+  }
+  GYRE_INLINE void ask(LinkedStop<W>& stop) const {
+    stop.low_on = stop.high_on = Mask<W>::splat(false);
+    if (stop.has_low) stop.low_asked = asked(stop.axis->low_gap);
+    stop.high_asked = asked(stop.axis->high_gap);
   }
   GYRE_INLINE Wide<W> asked(Wide<W> gap) const {
     const Wide<W> rate = select(gap > 0.0f, Wide<W>(1.0f / s_.substep), Wide<W>(s_.rate));
-    return Wide<W>(0.0f) - rate * max(gap, Wide<W>(-bounds_.turn));
+    Wide<W> bounded = max(gap, Wide<W>(-bounds_.turn));
+    if (bounds_.fades) bounded = select(gap < -bounds_.turn, bounds_.turn * bounds_.turn / gap, bounded);
+    return Wide<W>(0.0f) - rate * bounded;
   }
 
   // Finds the stops that are passed or bear an impulse; returns the lanes in which there is something to do.
   GYRE_INLINE Mask<W> look(bool first) {
     Mask<W> live = Mask<W>::splat(false);
-    for (std::uint32_t a = 0; a < count_; ++a) {
+    for (std::uint32_t a = 0; a < count(); ++a) {
       LinkedStop<W>& stop = stops_[a];
       const LinkedAxis<W>& axis = *stop.axis;
       stop.speed = dot(axis.about, b_.bodies[stop.node->b].angular - b_.bodies[stop.node->a].angular);
@@ -94,144 +115,165 @@ class LaneStops {
     return live;
   }
 
-  GYRE_INLINE Wide<W>* answer_of(std::uint32_t a) const {
-    return answers_ + std::size_t(a) * b_.plain.row_count;
-  }
-  // Velocities of the bodies that move, six numbers each.
-  GYRE_INLINE Wide<W>* change_of(std::uint32_t a) const {
-    return changes_ + std::size_t(a) * 6 * b_.plain.moving_count;
-  }
-  GYRE_INLINE static Vec3W<W> at(const Wide<W>* change, std::uint32_t body, int part) {
-    const Wide<W>* const v = change + 6 * body + 3 * part;
-    return {v[0], v[1], v[2]};
-  }
-  GYRE_INLINE static void add(Wide<W>* change, std::uint32_t body, int part, Vec3W<W> by) {
-    Wide<W>* const v = change + 6 * body + 3 * part;
-    v[0] += by.x, v[1] += by.y, v[2] += by.z;
-  }
-  GYRE_INLINE Vec3W<W> moving(const Wide<W>* change, std::uint32_t body, int part) const {
-    if (b_.moves(body)) return at(change, body, part);
-    return {Wide<W>(0.0f), Wide<W>(0.0f), Wide<W>(0.0f)};
-  }
-  GYRE_INLINE Wide<W> speed_along(const LinkedStop<W>& stop, const Wide<W>* change) const {
-    return dot(stop.axis->about, moving(change, stop.node->b, 1) - moving(change, stop.node->a, 1));
-  }
+  // --------------------------------------------------------------------------------------------- what an impulse does
 
-  // What an impulse of one about the axis makes of all bodies, and what the equations answer.
-  void find_response(std::uint32_t index) {
-    LinkedStop<W>& stop = stops_[index];
-    Wide<W>* const change = change_of(index);
-    for (std::uint32_t i = 0; i < 6 * b_.plain.moving_count; ++i) change[i] = Wide<W>(0.0f);
-    const LaneNode& own = *stop.node;
-    if (b_.moves(own.a)) add(change, own.a, 1, -(b_.bodies[own.a].inverse * stop.axis->about));
-    if (b_.moves(own.b)) add(change, own.b, 1, b_.bodies[own.b].inverse * stop.axis->about);
-    for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) {
-      const LaneNode& node = b_.plain.nodes[n];
-      const LinkedJoint<W>& joint = b_.joints[n];
-      const Vec3W<W> turn_a = moving(change, node.a, 1), turn_b = moving(change, node.b, 1);
-      const Vec3W<W> missing = cross(turn_a, joint.from_a) - cross(turn_b, joint.from_b);
-      b_.set_row(node.row, missing.x);
-      b_.set_row(node.row + 1, missing.y);
-      b_.set_row(node.row + 2, missing.z);
-      if (node.kind != JointKind::hinge) continue;
-      b_.set_row(node.row + 3, dot(turn_a - turn_b, joint.perpendicular_1));
-      b_.set_row(node.row + 4, dot(turn_a - turn_b, joint.perpendicular_2));
-    }
-    solve_lanes<W>(b_.plain);
-    Wide<W>* const answer = answer_of(index);
-    for (std::uint32_t row = 0; row < b_.plain.row_count; ++row) answer[row] = b_.row(row);
-    for (std::uint32_t n = 0; n < b_.plain.node_count; ++n)
-      answer_joint(b_.plain.nodes[n], b_.joints[n], answer, change);
-    stop.is_known = true;
-    for (std::uint32_t a = 0; a < count_; ++a) {
-      if (!stops_[a].is_known) continue;
-      entry(a, index) = speed_along(stops_[a], change);
-      entry(index, a) = speed_along(stop, change_of(a));
-    }
+  GYRE_INLINE double* part_of(std::uint32_t a) const {
+    return parts_ + 2 * std::size_t(a) * b_.plain.row_count * W;
+  }
+  GYRE_INLINE double* scaled_of(std::uint32_t a) const {
+    return part_of(a) + std::size_t(b_.plain.row_count) * W;
+  }
+  GYRE_INLINE std::uint8_t* reached_of(std::uint32_t a) const {
+    return reached_ + std::size_t(a) * b_.plain.row_count;
   }
   GYRE_INLINE Wide<W>& entry(std::uint32_t row, std::uint32_t column) const {
-    return matrix_[std::size_t(row) * b_.plain.stop_count + column];
+    return matrix_[std::size_t(row) * count() + column];
   }
-  GYRE_INLINE static Vec3W<W> point_part(const LaneNode& node, const Wide<W>* rows) {
-    return {rows[node.row], rows[node.row + 1], rows[node.row + 2]};
-  }
-  GYRE_INLINE static Vec3W<W> turn_part(const LaneNode& node, const LinkedJoint<W>& joint,
-                                        const Wide<W>* rows) {
-    if (node.kind != JointKind::hinge) return {Wide<W>(0.0f), Wide<W>(0.0f), Wide<W>(0.0f)};
-    return rows[node.row + 3] * joint.perpendicular_1 + rows[node.row + 4] * joint.perpendicular_2;
-  }
-  GYRE_INLINE void answer_joint(const LaneNode& node, const LinkedJoint<W>& joint, const Wide<W>* rows,
-                                Wide<W>* change) const {
-    const Vec3W<W> p = point_part(node, rows), t = turn_part(node, joint, rows);
-    if (b_.moves(node.a)) {
-      const LinkedBody<W>& a = b_.bodies[node.a];
-      add(change, node.a, 0, -(a.inverse_mass * p));
-      add(change, node.a, 1, -(a.inverse * (cross(joint.from_a, p) + t)));
+  GYRE_INLINE static Vec3W<W> nothing() { return {Wide<W>(0.0f), Wide<W>(0.0f), Wide<W>(0.0f)}; }
+
+  // How an impulse of one about a stop's axis turns its two bodies.
+  struct Turns {
+    const LaneNode& node;
+    Vec3W<W> a, b;
+    GYRE_INLINE Vec3W<W> of(std::uint32_t body) const {
+      return body == node.a ? a : body == node.b ? b : nothing();
     }
-    if (b_.moves(node.b)) {
-      const LinkedBody<W>& b = b_.bodies[node.b];
-      add(change, node.b, 0, b.inverse_mass * p);
-      add(change, node.b, 1, b.inverse * (cross(joint.from_b, p) + t));
+    GYRE_INLINE bool touches(const LaneNode& other) const {
+      return other.a == node.a || other.a == node.b || other.b == node.a || other.b == node.b;
     }
+  };
+  GYRE_INLINE Turns turns_of(const LinkedStop<W>& stop) const {
+    const LaneNode& node = *stop.node;
+    const Vec3W<W> about = stop.axis->about;
+    return {node, b_.moves(node.a) ? -(b_.bodies[node.a].inverse * about) : nothing(),
+            b_.moves(node.b) ? b_.bodies[node.b].inverse * about : nothing()};
   }
 
-  // Projected Gauss-Seidel over the stops, in each lane until its impulses stand.
+  // What the rows of a joint miss where its bodies turn.
+  GYRE_INLINE void set_missing(double* vector, std::uint32_t n, Vec3W<W> turn_a, Vec3W<W> turn_b) const {
+    const LaneNode& node = b_.plain.nodes[n];
+    const LinkedJoint<W>& joint = b_.joints[n];
+    const Vec3W<W> missing = cross(turn_a, joint.from_a) - cross(turn_b, joint.from_b);
+    b_.set_row(vector, node.row, missing.x);
+    b_.set_row(vector, node.row + 1, missing.y);
+    b_.set_row(vector, node.row + 2, missing.z);
+    if (node.kind != JointKind::hinge) return;
+    b_.set_row(vector, node.row + 3, dot(turn_a - turn_b, joint.perpendicular_1));
+    b_.set_row(vector, node.row + 4, dot(turn_a - turn_b, joint.perpendicular_2));
+  }
+
+  void find_response(std::uint32_t index) {
+    LinkedStop<W>& stop = stops_[index];
+    const Turns turns = turns_of(stop);
+    std::uint8_t* const reached = reached_of(index);
+    double* const part = part_of(index);
+    for (std::uint32_t row = 0; row < b_.plain.row_count; ++row) reached[row] = 0;
+    for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) {
+      const LaneNode& node = b_.plain.nodes[n];
+      if (!turns.touches(node)) continue;
+      reached[node.row] = 1;
+      set_missing(part, n, turns.of(node.a), turns.of(node.b));
+    }
+    reach_lanes<W>(b_.plain, reached, part);
+    solve_reached_down<W>(b_.plain, reached, part, scaled_of(index));
+    stop.is_known = true;
+    for (std::uint32_t a = 0; a < count(); ++a)
+      if (stops_[a].is_known) a > index ? find_way(a, index) : find_way(index, a);
+  }
+  // The way at one stop under an impulse at another. Which was known first must not show in the bits: other lanes have a say in that.
+  void find_way(std::uint32_t a, std::uint32_t b) {
+    const Turns turns = turns_of(stops_[a]);
+    const LaneNode& node = *stops_[b].node;
+    const Wide<W> alone = dot(stops_[b].axis->about, turns.of(node.b) - turns.of(node.a));
+    const Wide<W> way =
+        alone - dot_reached<W>(b_.plain, reached_of(a), scaled_of(a), reached_of(b), part_of(b));
+    entry(a, b) = entry(b, a) = a == b ? keep(way > kLeastWay * alone, way) : way;
+  }
+
+  // Projected Gauss-Seidel over the stops in question, in each lane until its impulses stand.
   void find_impulses(Mask<W> live) {
-    for (std::uint32_t a = 0; a < count_; ++a) stops_[a].low_x = stops_[a].high_x = Wide<W>(0.0f);
+    std::uint32_t in[kMostLaneStops], in_count = 0;
+    Wide<W> speeds[kMostLaneStops];
+    for (std::uint32_t a = 0; a < count(); ++a) {
+      LinkedStop<W>& stop = stops_[a];
+      if (!stop.is_in) continue;
+      stop.low_x = stop.high_x = Wide<W>(0.0f);
+      speeds[in_count] = stop.speed;
+      in[in_count++] = a;
+    }
     for (int sweep = 0; sweep < kLaneSweeps && any(live); ++sweep) {
       Wide<W> most(0.0f);
-      for (std::uint32_t a = 0; a < count_; ++a) {
-        LinkedStop<W>& stop = stops_[a];
-        if (!stop.is_known) continue;
-        const Wide<W> own = entry(a, a);
+      for (std::uint32_t i = 0; i < in_count; ++i) {
+        LinkedStop<W>& stop = stops_[in[i]];
+        const Wide<W>* const ways = &entry(in[i], 0);
+        const Wide<W> own = ways[in[i]];
         const auto improve = [&](Wide<W> speed, Wide<W> impulse, Mask<W> on, Wide<W>& x, float sign) {
           const Wide<W> now = max(Wide<W>(0.0f) - impulse, x - speed / own);
           const Wide<W> by = keep(live & on & (own > 0.0f), now - x);
           if (!any(by != 0.0f)) return;
           x += by;
           most = max(most, max(by, Wide<W>(0.0f) - by) * own);
-          for (std::uint32_t e = 0; e < count_; ++e)
-            if (stops_[e].is_known) stops_[e].speed += (sign * by) * entry(e, a);
+          const Wide<W> push = sign * by;
+          for (std::uint32_t e = 0; e < in_count; ++e) speeds[e] += push * ways[in[e]];
         };
         if (stop.has_low)
-          improve(stop.speed - stop.low_asked, stop.axis->low_impulse, stop.low_on, stop.low_x, 1.0f);
-        improve(Wide<W>(0.0f) - stop.speed - stop.high_asked, stop.axis->high_impulse, stop.high_on,
+          improve(speeds[i] - stop.low_asked, stop.axis->low_impulse, stop.low_on, stop.low_x, 1.0f);
+        improve(Wide<W>(0.0f) - speeds[i] - stop.high_asked, stop.axis->high_impulse, stop.high_on,
                 stop.high_x, -1.0f);
       }
       live = live & (most > kLaneSettled);
     }
   }
 
+  // Applies them, and what the equations answer to all of them.
   void push() {
-    for (std::uint32_t a = 0; a < count_; ++a) {
+    for (std::uint32_t i = 0; i < b_.plain.moving_count; ++i) turns_[i] = nothing();
+    Mask<W> pushed = Mask<W>::splat(false);
+    for (std::uint32_t a = 0; a < count(); ++a) {
       LinkedStop<W>& stop = stops_[a];
-      if (!stop.is_known) continue;
+      if (!stop.is_in) continue;
       const Wide<W> x = stop.low_x - stop.high_x;
       stop.axis->low_impulse = max(stop.axis->low_impulse + stop.low_x, Wide<W>(0.0f));
       stop.axis->high_impulse = max(stop.axis->high_impulse + stop.high_x, Wide<W>(0.0f));
-      const Mask<W> pushed = x != 0.0f;
-      if (none(pushed)) continue;
-      const Wide<W>*const change = change_of(a), *const answer = answer_of(a);
-      for (std::uint32_t i = 0; i < b_.plain.moving_count; ++i) {
-        b_.bodies[i].linear += keep(pushed, x * at(change, i, 0));
-        b_.bodies[i].angular += keep(pushed, x * at(change, i, 1));
-      }
-      for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) {
-        const LaneNode& node = b_.plain.nodes[n];
-        LinkedJoint<W>& joint = b_.joints[n];
-        joint.linear_impulse += keep(pushed, x * point_part(node, answer));
-        if (node.kind == JointKind::hinge)
-          joint.angular_impulse += keep(pushed, x * turn_part(node, joint, answer));
-      }
+      const Mask<W> own = x != 0.0f;
+      if (none(own)) continue;
+      pushed = pushed | own;
+      const Turns turns = turns_of(stop);
+      if (b_.moves(turns.node.a)) turns_[turns.node.a] += x * turns.a;
+      if (b_.moves(turns.node.b)) turns_[turns.node.b] += x * turns.b;
     }
+    if (none(pushed)) return;
+    for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) {
+      const LaneNode& node = b_.plain.nodes[n];
+      set_missing(b_.plain.vector, n, b_.moves(node.a) ? turns_[node.a] : nothing(),
+                  b_.moves(node.b) ? turns_[node.b] : nothing());
+    }
+    solve_lanes<W>(b_.plain);
+    for (std::uint32_t i = 0; i < b_.plain.moving_count; ++i) b_.bodies[i].angular += keep(pushed, turns_[i]);
+    for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) answer(n, pushed);
+  }
+  GYRE_INLINE void answer(std::uint32_t n, Mask<W> pushed) const {
+    const LaneNode& node = b_.plain.nodes[n];
+    LinkedJoint<W>& joint = b_.joints[n];
+    const Vec3W<W> p = keep(pushed, Vec3W<W>{b_.row(node.row), b_.row(node.row + 1), b_.row(node.row + 2)});
+    Vec3W<W> t = nothing();
+    if (node.kind == JointKind::hinge) {
+      t = keep(pushed,
+               b_.row(node.row + 3) * joint.perpendicular_1 + b_.row(node.row + 4) * joint.perpendicular_2);
+      joint.angular_impulse += t;
+    }
+    push_joint(b_, node, joint, p, t);
+    joint.linear_impulse += p;
   }
 
   const Bundle<W>& b_;
   const LaneSettings& s_;
   ErrorBounds bounds_;
   LinkedStop<W>* stops_;
-  Wide<W>*answers_, *changes_, *matrix_;
-  std::uint32_t count_ = 0;
+  Wide<W>* matrix_;
+  double* parts_;  // y and D^-1 y, by stop
+  Vec3W<W>* turns_;
+  std::uint8_t* reached_;  // by stop and row
 };
 
 }  // namespace GYRE_TARGET_NAMESPACE
