@@ -28,6 +28,8 @@ constexpr float kRoundBias = 1.0e-6f;
 constexpr float kCoverSlack = 1.0e-3f;
 // Sine between directions that are one.
 constexpr float kParallel = 1.0e-3f;
+// A hull whose inner radius is less of its size is as thin as rounding: which of its edges' axes there are cannot be told.
+constexpr float kBlade = 1.0e-4f;
 // Cosines: contacts of one stretch of ground; normals that oppose each other; sharp edges.
 constexpr float kSameNormal = 0.9994f;
 constexpr float kOpposed = -0.1f;
@@ -53,7 +55,8 @@ class MeshCollider {
         convex_(b, a_from_b.orientation),
         position_(a_from_b.position),
         max_separation_(max_separation),
-        bias_((convex_.radius() > 0.0f ? kRoundBias : kAxisBias) * convex_.size()) {}
+        bias_((convex_.radius() > 0.0f ? kRoundBias : kAxisBias) * convex_.size()),
+        is_blade_(b.kind == ShapeKind::hull && b.hull->inner_radius < kBlade * convex_.size()) {}
 
   int run(LocalManifold* out) {
     find_candidates(surface_, convex_, position_, max_separation_, candidates_);
@@ -61,7 +64,7 @@ class MeshCollider {
     settle_waiting();
     settle_deep_patches();
     push_out();
-    if (groups_.empty() && convex_.vertex_count() > 2) look_for_corners();
+    if (convex_.vertex_count() > 2 && is_corner_missing()) look_for_corners();
     if (groups_.empty() && rim_separation_ < kUnbounded) add_rim();
     return groups_.finish(position_, out);
   }
@@ -72,9 +75,11 @@ class MeshCollider {
   void settle_deep_patches();
   bool runs_through(const NearTriangle& t) const;
   void note_overlap(const Waiting& found, float best);
-  bool overlaps_indeed(const Waiting& found);
   void push_out();
   void add_corner(const NearTriangle& t, float face_separation);
+  bool is_corner_missing() const {
+    return groups_.empty() || (nearest_ > 0.0f && nearest_ < groups_.deepest() - kAxisBias * convex_.size());
+  }
   void look_for_corners();
   void settle(const Waiting& waiting);
   bool is_ruled_out(const NearTriangle& t, bool behind) const;
@@ -102,6 +107,7 @@ class MeshCollider {
   Vec3 position_;
   float max_separation_;
   float bias_;
+  bool is_blade_;
 
   bool side_known_ = false;
   PlaneSide side_;
@@ -119,6 +125,8 @@ class MeshCollider {
   Vec3 on_rim_;
   // How deep the shape sits in the triangle that holds it most, by its best direction out, allowed or not.
   float overlap_ = 0.0f;
+  // How near the nearest triangle is at least, by its best direction.
+  float nearest_ = kUnbounded;
   MeshCandidates candidates_;
   MeshPoints points_;
   AxisScratch scratch_;
@@ -305,8 +313,13 @@ void MeshCollider::look_at(std::uint32_t id) {
     if (stand(t.normal, face)) add_deep_corners(t);
     return;
   }
-  const AxisSearch axes = search_axes(surface_, t, convex_, face, max_separation_, scratch_);
+  AxisSearch axes = search_axes(surface_, t, convex_, face, max_separation_, scratch_);
+  if (axes.best <= 0.0f && is_blade_) {
+    const AxisSearch nearest = search_nearest(surface_, t, convex_, face, max_separation_, scratch_);
+    if (nearest.best > 0.0f) axes = nearest;
+  }
   if (axes.best > max_separation_) return;
+  if (!behind) nearest_ = min(nearest_, axes.best);
   const Waiting found{id, face, behind, axes.best <= 0.0f};
   note_overlap(found, axes.best);
   const float allowed = max(face, axes.feature.separation);
@@ -408,25 +421,12 @@ void MeshCollider::note_overlap(const Waiting& found, float best) {
   if (better) exit_ = found;
 }
 
-// An axis search takes needles and plates for overlapping where the edges' axes are too short to be told from rounding.
-bool MeshCollider::overlaps_indeed(const Waiting& found) {
-  if (!found.overlaps || convex_.face_count() == 0) return found.overlaps;
-  const NearTriangle t = triangle(found.id);
-  return !(search_nearest(surface_, t, convex_, found.face_separation, max_separation_, scratch_).best >
-           0.0f);
-}
-
 // The shape overlaps triangles, but none of them lies under one of its corners, as when a blunt hull has sunk across a small
 // hill: it leaves through the front of one, pushed at its lowest point.
 void MeshCollider::push_out() {
   const bool in_question =
       overlap_ < -2.0f * kAxisBias * convex_.size() && groups_.deepest() > 0.1f * overlap_;
   if (!exit_.overlaps || !(in_question || groups_.empty())) return;
-  exit_.overlaps = overlaps_indeed(exit_);
-  for (int i = 0; i < waiting_count_ && !exit_.overlaps; ++i) {
-    if (overlaps_indeed(waiting_[i])) exit_ = waiting_[i];
-  }
-  if (!exit_.overlaps) return;
   const NearTriangle t = triangle(exit_.id);
   const Vec3 lowest = convex_.support(-t.normal);
   const float separation = dot(t.normal, lowest - t.v[0]) - convex_.radius();
@@ -449,7 +449,8 @@ void MeshCollider::add_corner(const NearTriangle& t, float face_separation) {
   points_ = kept;
 }
 
-// A polyhedron that comes near with a corner beside an edge: axis searches know faces and pairs of edges only.
+// A polyhedron that comes near with a corner beside an edge: axis searches know faces and pairs of edges only, so what they tell may be
+// nearer than any point that was found along their directions.
 void MeshCollider::look_for_corners() {
   for (int i = 0; i < candidates_.count; ++i) {
     NearTriangle t = place_triangle(surface_, candidates_.ids[i], position_, convex_);
@@ -459,7 +460,7 @@ void MeshCollider::look_for_corners() {
     if (behind || face > max_separation_) continue;
     measure_edges(t);
     const AxisSearch axes = search_nearest(surface_, t, convex_, face, max_separation_, scratch_);
-    if (axes.best > max_separation_ || axes.feature.separation < axes.best) continue;
+    if (axes.best > min(max_separation_, groups_.deepest()) || axes.feature.separation < axes.best) continue;
     add_feature(t, axes.feature);
   }
 }

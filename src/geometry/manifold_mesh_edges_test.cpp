@@ -346,11 +346,12 @@ TEST(CollideMeshEdges, WhatIsBelowAndBesideAFloorIsNotTouched) {
 }
 
 // A hull whose lowest corner hangs a little beside a ridge was told to be up to three times as far away: only points over the face
-// counted, and they lie higher. No contact may be farther than the shapes are, which are known from outside.
+// counted, and they lie higher. No contact may be farther than the shapes are, which are known from outside; it may be nearer, by the best
+// separating axis, but not overlap.
 TEST(CollideMeshEdges, ACornerBesideARidgeIsAsNearAsItIs) {
   Random random{83};
-  int apart = 0, too_far = 0;
-  for (int i = 0; i < 30000; ++i) {
+  int apart = 0, too_far = 0, overlapping = 0;
+  for (int i = 0; i < 60000; ++i) {
     const float left = random.between(-2.5f, 0), right = random.between(-2.5f, 0);
     Triangles roof;
     roof.quad({-1, left, -1}, {-1, left, 1}, {0, 0, 1}, {0, 0, -1});
@@ -374,11 +375,12 @@ TEST(CollideMeshEdges, ACornerBesideARidgeIsAsNearAsItIs) {
     if (near.overlap || near.distance > 0.009) continue;
     ++apart;
     const Manifolds found = collide(ground, *hull, pose, 0.012f);
-    too_far += found.count == 0 || double(found.deepest()) > near.distance + 2.0e-4;
+    too_far += found.count == 0 || double(found.deepest()) > near.distance + 3.0e-4;
+    overlapping += found.count > 0 && found.deepest() < 0.0f;
   }
-  EXPECT_GT(apart, 20000);
-  EXPECT_LE(too_far, 3) << "of " << apart
-                        << ": one is, and 25 are if corners beside edges are not asked about";
+  EXPECT_GT(apart, 50000);
+  EXPECT_EQ(too_far, 0) << "of " << apart;
+  EXPECT_EQ(overlapping, 0) << "of " << apart;
 }
 
 // Needles and plates over steps and slopes were taken for overlapping, and pushed out by decimetres.
@@ -409,7 +411,7 @@ TEST(CollideMeshEdges, ThinHullsThatAreApartAreNotPushed) {
     const Manifolds found = collide(ground, *hull, pose, 0.008f);
     pushed += found.count > 0 && found.deepest() < -4.0e-4f;
   }
-  EXPECT_LE(pushed, 1) << "of " << apart << ": one in ten thousand is still taken for overlapping";
+  EXPECT_EQ(pushed, 0) << "of " << apart;
   EXPECT_GT(apart, 5000);
 }
 

@@ -17,6 +17,8 @@ namespace {
 constexpr float kFaceAngle = 1.0e-3f;
 constexpr float kArcSlack = 1.0e-3f;
 constexpr float kLevelSlack = 1.0e-3f;
+// A sine too.
+constexpr float kParallelEdges = 1.0e-4f;
 
 using Floats = Wide<4>;
 
@@ -134,7 +136,7 @@ class Search {
   void polyhedron();
   void face_axes();
   void edge_axes();
-  void edge_axis(const HullEdge& edge, int i, float left_part, float right_part);
+  void edge_axis(const HullEdge& edge, int i);
   void segment_axes();
   bool is_pierced() const;
   void nearest_of_sphere();
@@ -195,24 +197,25 @@ void Search::edge_axes() {
     unsigned rest = to_bits(and_not(crosses & (dot(crossing, outward) < zero), worse));
     for (; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
-      edge_axis(edge, i, left_part[i], right_part[i]);
+      edge_axis(edge, i);
     }
     if (apart()) return;
   }
 }
 
-void Search::edge_axis(const HullEdge& edge, int i, float left_part, float right_part) {
-  const Vec3 crossing =
-      right_part * convex_.face_normal(edge.left) + left_part * convex_.face_normal(edge.right);
-  const float scaled = dot(crossing, t_.v[i] - convex_.vertex(edge.from));
+void Search::edge_axis(const HullEdge& edge, int i) {
   const bool active = t_.edge[i] == EdgeKind::convex || t_.edge[i] == EdgeKind::open;
   const float needed = active ? min(found_.best, useful()) : found_.best;
-  // Nearly along a face's normal (short and long edges, tiny angles) the face's own axis serves.
-  const float size = length(crossing);
-  if (!(size > 1.0e-4f)) return;
-  const float separation = scaled / size - convex_.radius();
+  // Not from the faces' normals, which all but cancel each other at the rim of a plate.
+  const Vec3 edge_along = convex_.vertex(edge.to) - convex_.vertex(edge.from);
+  Vec3 d = cross(edge_along, t_.along[i]);
+  const float size = length(d);
+  // Edges that are all but parallel: the nearest faces' axes serve.
+  if (!(size > kParallelEdges * length(edge_along))) return;
+  d = d / (dot(d, t_.outward[i]) < 0.0f ? -size : size);
+  const float separation = dot(d, convex_.vertex(edge.from) - t_.v[i]) - convex_.radius();
   if (separation <= needed) return;
-  if (offer(crossing / -size, separation, 1u << i | 1u << next_corner(i), AxisSource::shape_edge)) {
+  if (offer(d, separation, 1u << i | 1u << next_corner(i), AxisSource::shape_edge)) {
     found_.feature.from = edge.from;
     found_.feature.to = edge.to;
   }
