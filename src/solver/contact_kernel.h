@@ -21,10 +21,10 @@ inline namespace GYRE_TARGET_NAMESPACE {
 // The fastest that springs take overlap back, as a share of the speed with which it is pushed apart: unlike that, theirs is
 // momentum.
 constexpr float kSpringSpeed = 0.125f;
-// By how many slops a point of a linked body must be apart to have opened; then it bears nothing. Speeds alone would lower its impulse by
-// what its body weighs, while it pushes all that hangs on that body by joints: a wedged limb that slipped took the pressure along for
-// centimetres.
-constexpr float kOpenSlops = 4.0f;
+// By how many slops a point of a linked body must overlap (half of the smaller body's inner radius) to be lost, and what share of its
+// impulse it loses in a second then: a head on the wrong side of somebody's chest cannot get back without passing it, and the neck would
+// press it on the chest ever harder.
+constexpr float kLostSlops = 1250.0f, kLostLeak = 2.0f;
 // Projected sweeps over the points of a manifold in which some would pull.
 constexpr int kPullSweeps = 6;
 
@@ -270,7 +270,8 @@ GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W>& pair, const
   const NormalMotion<W> ways(block, moved, {a[11], a[12], a[13]}, {b[11], b[12], b[13]});
   const NormalMotion<W> speeds(block, pair.linear_b - pair.linear_a, pair.angular_a, pair.angular_b);
   const auto is_linked = Mask<W>::of_bits(block.linked);
-  const Wide<W> open = Wide<W>(kOpenSlops) * block.slop;
+  const Wide<W> lost = Wide<W>(-kLostSlops) * block.slop;
+  const Wide<W> leak(1.0f / (1.0f + kLostLeak * substep));
   Wide<W> residual[Count];  // speed that the row wants to lose
   Wide<W> kept[Count];      // the impulse as it stands, less what the spring gives way
   GYRE_UNROLL
@@ -289,7 +290,7 @@ GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W>& pair, const
       // A point that parts ceases to give way by degrees.
       const Wide<W> near = max(block.slop - max(separation, zero), zero);
       kept[i] = point.impulse - (block.give * near) * share * max(point.impulse - point.held, zero);
-      if (block.linked != 0) kept[i] = select(is_linked & (separation > open), zero, kept[i]);
+      if (block.linked != 0) kept[i] = select(is_linked & (separation < lost), leak * kept[i], kept[i]);
     } else {
       // A point that is apart may be let go, never be held back: that would brake whatever is about to land.
       const Wide<W> excess = select(point.impulse > zero, max(speed + separation * rate, zero), zero);

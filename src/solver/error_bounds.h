@@ -7,18 +7,13 @@ namespace gyre {
 struct ErrorBounds {
   float point;  // m
   float turn;   // rad
-  // The farther beyond, the less is taken back: an error that stays however long it is asked for winds up what stands in its way.
-  bool fades = false;
-
-  // Of an error of `size` beyond `most`: which share is taken back.
-  float share(float size, float most) const { return fades ? (most / size) * (most / size) : most / size; }
 };
 
 // Bodies that are joined, or let go by what held them, far from where the joint would have them do not strike out.
 constexpr ErrorBounds kMostErrors{0.1f, 0.2f};
 // Before contacts are solved: they answer what is taken back as if it were a load, and keep that answer. Of small errors they must,
 // or a rope would slip round a drum by what it gives; but limbs that are wedged in a heap pressed each other with tons.
-constexpr ErrorBounds kErrorsBeforeContacts{0.1e-3f, 1.0e-3f, true};
+constexpr ErrorBounds kErrorsBeforeContacts{0.5e-3f, 5.0e-3f};
 constexpr ErrorBounds kNoErrors{0.0f, 0.0f};
 
 }  // namespace gyre

@@ -116,17 +116,9 @@ inline Vec3 within(Vec3 v, float most) {
   const float size = length(v);
   return size > most ? (most / size) * v : v;
 }
-// Of an error, what is taken back.
-inline float within(float error, float most, ErrorBounds bounds) {
-  const float size = std::abs(error);
-  return size > most ? bounds.share(size, most) * error : error;
-}
-inline Vec3 within(Vec3 error, float most, ErrorBounds bounds) {
-  const float size = length(error);
-  return size > most ? bounds.share(size, most) * error : error;
-}
 inline float error_taken_back(const JointRow& row, ErrorBounds bounds = kMostErrors) {
-  return within(row.error, row.push == Vec3{} ? bounds.turn : bounds.point, bounds);
+  const float most = row.push == Vec3{} ? bounds.turn : bounds.point;
+  return clamp(row.error, -most, most);
 }
 
 // K restricted to the plane of two unit vectors, inverted there and zero along the rest: m = P (P^T K P)^-1 P^T.

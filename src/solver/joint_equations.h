@@ -86,10 +86,10 @@ inline void forget_kept(JointRecord& joint, const JointWork& work) {
 inline float error_of(const JointRecord& joint, const JointWork& work, const JointEquation& row, int i,
                       ErrorBounds bounds = kMostErrors) {
   if (work.rows != nullptr) return error_taken_back(work.rows->rows[i], bounds);
-  if (is_turn(row)) return dot(within(work.angular_error, bounds.turn, bounds), row.arm_a);
+  if (is_turn(row)) return dot(within(work.angular_error, bounds.turn), row.arm_a);
   if (joint.kind == JointKind::distance)
-    return within(work.position - joint.min_length, bounds.point, bounds);
-  return dot(within(work.error, bounds.point, bounds), row.push);
+    return clamp(work.position - joint.min_length, -bounds.point, bounds.point);
+  return dot(within(work.error, bounds.point), row.push);
 }
 
 }  // namespace gyre

@@ -61,9 +61,9 @@ GYRE_INLINE void ask_lanes(const Bundle<W>& bundle, const LaneSettings& s, Error
     share = select(fastest > kMost, kMost / fastest, share);
     const Vec3W<W> bend = per_substep * (swing_of(b.turn, joint.from_b) - swing_of(a.turn, joint.from_a)) -
                           (cross(b.angular, joint.from_b) - cross(a.angular, joint.from_a));
-    joint.wanted = Wide<W>(-s.rate) * within(joint.error, bounds.point, bounds.fades) - share * bend;
+    joint.wanted = Wide<W>(-s.rate) * within(joint.error, bounds.point) - share * bend;
     if (node.kind != JointKind::hinge) continue;
-    const Vec3W<W> turn = Wide<W>(-s.rate) * within(joint.angular_error, bounds.turn, bounds.fades) -
+    const Vec3W<W> turn = Wide<W>(-s.rate) * within(joint.angular_error, bounds.turn) -
                           share * hinge_bend(joint, a, b, per_substep);
     joint.turn_wanted_1 = dot(turn, joint.perpendicular_1);
     joint.turn_wanted_2 = dot(turn, joint.perpendicular_2);

@@ -12,12 +12,11 @@ inline namespace GYRE_TARGET_NAMESPACE {
 constexpr float kLanePull = 1.0f;
 
 template <int W>
-GYRE_INLINE Vec3W<W> within(Vec3W<W> v, float most, bool fades = false) {
+GYRE_INLINE Vec3W<W> within(Vec3W<W> v, float most) {
   const Wide<W> size = length(v);
   const Mask<W> beyond = size > most;
   if (!any(beyond)) return v;
-  const Wide<W> share = most / size;
-  return select(beyond, (fades ? share * share : share) * v, v);
+  return select(beyond, (most / size) * v, v);
 }
 
 // -------------------------------------------------------------------------------------------------------------- stops

@@ -80,18 +80,18 @@ class StopSolve {
       for (AxisWork& x : solve_.work[node.work].axes) {
         if (!has_hard_stop(x) || !(x.mass > 0.0f)) continue;
         const bool turns = x.row.push_b == Vec3{} && x.row.push_a == Vec3{};
-        const float most = turns ? bounds_.turn : bounds_.point;
-        if (x.has_low) consider({n, &x, 1.0f}, x.axis.position - x.axis.limits.low, most);
-        if (x.has_high) consider({n, &x, -1.0f}, x.axis.limits.high - x.axis.position, most);
+        const float least = turns ? -bounds_.turn : -bounds_.point;
+        if (x.has_low) consider({n, &x, 1.0f}, max(x.axis.position - x.axis.limits.low, least));
+        if (x.has_high) consider({n, &x, -1.0f}, max(x.axis.limits.high - x.axis.position, least));
       }
       if (count_ == kMostStops)
         first_ = n;  // those of its stops that found no room come first in the next round
     }
   }
-  void consider(Stop stop, float gap, float most) {
+  void consider(Stop stop, float gap) {
     if (count_ == kMostStops) return;
     const float rate = gap > 0.0f ? 1.0f / solve_.settings.substep : solve_.settings.softness.bias_rate;
-    stop.asked = -rate * (gap > 0.0f ? gap : within(gap, most, bounds_));
+    stop.asked = -rate * gap;
     if (!(stop.impulse() > 0.0f) && !(speed_of(stop) < -kCalm)) return;
     for (std::size_t c = 0; c < count_; ++c)
       if (stops_[c].axis == stop.axis && stops_[c].sign == stop.sign) return;

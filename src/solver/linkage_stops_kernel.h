@@ -89,9 +89,7 @@ class LaneStops {
   }
   GYRE_INLINE Wide<W> asked(Wide<W> gap) const {
     const Wide<W> rate = select(gap > 0.0f, Wide<W>(1.0f / s_.substep), Wide<W>(s_.rate));
-    Wide<W> bounded = max(gap, Wide<W>(-bounds_.turn));
-    if (bounds_.fades) bounded = select(gap < -bounds_.turn, bounds_.turn * bounds_.turn / gap, bounded);
-    return Wide<W>(0.0f) - rate * bounded;
+    return Wide<W>(0.0f) - rate * max(gap, Wide<W>(-bounds_.turn));
   }
 
   // Finds the stops that are passed or bear an impulse; returns the lanes in which there is something to do.

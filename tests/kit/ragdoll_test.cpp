@@ -245,10 +245,8 @@ TEST(Ragdoll, StabilisationKeepsTheMassAndItsWord) {
 // --------------------------------------------------------------------------------------------------------- the whole
 
 // Poses that no joint allows, bones through bones, at the ground and above it. Limbs that lie on the wrong side of others may
-// stay there; without contact between the bones all are taken back to within their limits. What the ground holds against a joint
-// closes by millimetres a second, and one of forty stands for some seconds before it topples.
+// stay there; without contact between the bones all are taken back to within their limits.
 TEST(Ragdoll, NoStartMakesItExplode) {
-  constexpr int kRestSteps = 720;
   for (const bool contacts : {true, false}) {
     std::mt19937 random(17);
     double fastest = 0, gap = 0, kinetic = 0;
@@ -263,7 +261,7 @@ TEST(Ragdoll, NoStartMakesItExplode) {
       RagdollPose start = rest_pose(def, {{0, k % 3 == 0 ? 0.5 : 3.0, 0}, random_turn(random)});
       for (Transform& bone : start.bones) bone.orientation = random_turn(random);
       Ragdoll ragdoll = add(world, def, start);
-      for (int i = 0; i < kRestSteps; ++i) {
+      for (int i = 0; i < 420; ++i) {
         ASSERT_TRUE(world.step(kStep));
         ASSERT_TRUE(world.problems().empty()) << world.problems()[0].message;
         for (const RagdollBone& bone : ragdoll.bones)
@@ -275,10 +273,10 @@ TEST(Ragdoll, NoStartMakesItExplode) {
     }
     std::sort(beyond.begin(), beyond.end());
     std::printf(
-        "[row] 40 impossible starts, bones %s: fastest %.1f m/s; after %d s joints open by %.2f mm, kinetic "
+        "[row] 40 impossible starts, bones %s: fastest %.1f m/s; after 7 s joints open by %.2f mm, kinetic "
         "energy %.4f J, beyond "
         "limits by %.1f degrees, half of them by less than %.2f\n",
-        contacts ? "touch" : "do not touch", fastest, kRestSteps / 60, 1e3 * gap, kinetic, beyond.back(), beyond[20]);
+        contacts ? "touch" : "do not touch", fastest, 1e3 * gap, kinetic, beyond.back(), beyond[20]);
     // A fall from 4 m is 9 m/s, and four limbs of 0.3 m in a row, each taken back by 8 rad/s against the one before, add 24.
     EXPECT_LT(fastest, contacts ? 50.0 : 33.0);
     EXPECT_LT(kinetic, 0.05);
