@@ -354,6 +354,9 @@ void prove_one(const Ground& ground, const Shape& shape, Transform pose, GroundP
   if (proof.wrong != nullptr) return;
   // A direction must be better by a two-thousandth of the size to be preferred to the face's, and an axis search takes
   // corners beside edges for about as much nearer than they are.
+  const DVec3 middle(pose * (shape.kind == ShapeKind::hull ? shape.hull->centroid : Vec3{}));
+  in_front = in_front && (ground.triangles.empty() || proof.near.overlap ||
+                          seen_from_front(ground, proof.near, middle, 1.0e-6 * ground.size));
   const double exact = 3.0e-3 * proof.thin() + 1.2e-3 * proof.long_way() + 2.0 * proof.rounding();
   if (!proof.near.overlap) {
     if (proof.near.distance > double(reach) + proof.rounding() && proof.count > 0)
@@ -389,6 +392,9 @@ void prove_one(const Ground& ground, const Shape& shape, Transform pose, GroundP
   if (after.near.overlap) proof.say("following the contacts does not lead out", 0);
 }
 
+// Points of contacts that are told nearer than they are lie between the shapes: there are too many to print them all.
+bool is_point(const char* reason) { return std::string(reason).starts_with("point"); }
+
 void prove(Kinds kinds, int pairs, unsigned seed) {
   Random random(seed + unsigned(kinds.shape * 4 + int(kinds.ground)));
   int wrong = 0, touching = 0, apart = 0;
@@ -421,7 +427,7 @@ void prove(Kinds kinds, int pairs, unsigned seed) {
       apart += !proof.near.overlap;
       if (proof.wrong == nullptr) continue;
       ++reasons[proof.wrong];
-      if (++wrong > 5) continue;
+      if (++wrong > 5 && is_point(proof.wrong)) continue;
       std::ostringstream text;
       text << proof.wrong << " by " << proof.by << ", pair " << i << ": " << describe(shape, pose)
            << ", nearest " << proof.near.distance << (proof.near.overlap ? " overlap" : "") << ", "
@@ -432,6 +438,11 @@ void prove(Kinds kinds, int pairs, unsigned seed) {
   std::printf("%d of %d pairs are not proven\n", wrong, pairs);
   for (const auto& [reason, times] : reasons) std::printf("  %d: %s\n", times, reason.c_str());
   EXPECT_LE(wrong, kinds.ground == GroundKind::plane ? 0 : max(pairs / 2000, 1)) << "of " << pairs;
+  // Without proof, yes; but nothing may be missed, and nothing touched that is not there.
+  for (const char* fault :
+       {"contact out of reach", "no contact within reach", "no contact although they overlap"})
+    EXPECT_EQ(reasons.count(fault), 0u) << fault;
+  EXPECT_LE(reasons["farther than it is"], pairs / 1000000);
   EXPECT_GT(touching, pairs / 6);
   EXPECT_GT(apart, pairs / 25);
 }

@@ -65,7 +65,7 @@ class MeshCollider {
     settle_deep_patches();
     push_out();
     if (convex_.vertex_count() > 2 && is_corner_missing()) look_for_corners();
-    if (groups_.empty() && rim_separation_ < kUnbounded) add_rim();
+    if (groups_.empty() && rim_separation_ < kUnbounded) add_over_face(triangle(rim_triangle_), on_rim_);
     return groups_.finish(position_, out);
   }
 
@@ -74,6 +74,7 @@ class MeshCollider {
   void settle_waiting();
   void settle_deep_patches();
   bool runs_through(const NearTriangle& t) const;
+  bool is_ground_between(const NearTriangle& t, Vec3 low, Vec3 high) const;
   void note_overlap(const Waiting& found, float best);
   void push_out();
   void add_corner(const NearTriangle& t, float face_separation);
@@ -96,9 +97,10 @@ class MeshCollider {
   bool stands_already(Vec3 normal) const;
   bool stand(Vec3 normal, float separation);
   void add_face(const NearTriangle& t, float deepest = -kUnbounded);
-  void add_rim();
+  void add_over_face(const NearTriangle& t, Vec3 on_core);
   bool add_deep_corners(const NearTriangle& t);
   void add_feature(const NearTriangle& t, const FeatureAxis& axis);
+  bool lie_at_sharp_edge(const NearTriangle& t, Vec3 direction) const;
   bool is_buried(const NearTriangle& t, Vec3 direction) const;
   bool covers(const NearTriangle& other, const NearTriangle& t, Vec3 direction) const;
 
@@ -205,13 +207,13 @@ bool MeshCollider::add_deep_corners(const NearTriangle& t) {
   return added;
 }
 
-// A cap is cut a little inside of its rim, and only that may lie over a triangle.
-void MeshCollider::add_rim() {
-  const NearTriangle t = triangle(rim_triangle_);
-  const float separation = dot(t.normal, on_rim_ - t.v[0]) - convex_.radius();
+// One point of the shape over a triangle, where its facing polygon has none: a cap is cut a little inside of its rim; the lowest corner may
+// hang beside the border while another one lies over the face.
+void MeshCollider::add_over_face(const NearTriangle& t, Vec3 on_core) {
+  const float separation = dot(t.normal, on_core - t.v[0]) - convex_.radius();
   if (separation > max_separation_) return;
   points_.count = 0;
-  points_.add(on_rim_ - (convex_.radius() + 0.5f * separation) * t.normal, separation, t.id);
+  points_.add(on_core - (convex_.radius() + 0.5f * separation) * t.normal, separation, t.id);
   groups_.add(t.normal, t.id, points_);
 }
 
@@ -247,14 +249,25 @@ bool MeshCollider::covers(const NearTriangle& other, const NearTriangle& t, Vec3
   return true;
 }
 
-bool MeshCollider::is_buried(const NearTriangle& t, Vec3 direction) const {
-  if (points_.count == 0) return false;
-  bool sharp = false;
+// Whether all points lie along one sharp or open edge of the triangle.
+bool MeshCollider::lie_at_sharp_edge(const NearTriangle& t, Vec3 direction) const {
+  const float slack = 2.0f * kCoverSlack * convex_.size();
   for (int i = 0; i < 3; ++i) {
-    sharp = sharp || t.edge[i] == EdgeKind::open ||
-            (t.edge[i] == EdgeKind::convex && dot(t.normal, t.neighbor_normal[i]) < kSharp);
+    if (t.edge[i] != EdgeKind::open &&
+        !(t.edge[i] == EdgeKind::convex && dot(t.normal, t.neighbor_normal[i]) < kSharp))
+      continue;
+    bool all = true;
+    for (int k = 0; k < points_.count; ++k) {
+      const Vec3 p = points_.points[k].position - 0.5f * points_.points[k].separation * direction;
+      all = all && dot(t.outward[i], p - t.v[i]) > -slack;
+    }
+    if (all) return true;
   }
-  if (!sharp) return false;
+  return false;
+}
+
+bool MeshCollider::is_buried(const NearTriangle& t, Vec3 direction) const {
+  if (points_.count == 0 || !lie_at_sharp_edge(t, direction)) return false;
   const Vec3 p = points_.points[0].position - 0.5f * points_.points[0].separation * direction + position_;
   const Aabb near = grow({p, p}, kCoverSlack * convex_.size());
   for (int i = 0; i < candidates_.count; ++i) {
@@ -382,10 +395,14 @@ void MeshCollider::settle_waiting() {
   for (int i = 0; i < waiting_count_; ++i) settle(waiting_[i]);
 }
 
-// Whether the shape, which lies mostly behind the triangle's plane, comes through the surface there, and not beside its
-// border: where the line from its lowest to its highest point crosses the plane there must be ground.
+// Whether the shape comes through the surface there, and not beside its border: where a line from its lowest point, to its highest or to
+// its middle if that lies in front, crosses the plane there must be ground.
 bool MeshCollider::runs_through(const NearTriangle& t) const {
-  const Vec3 low = convex_.support(-t.normal), high = convex_.support(t.normal);
+  const Vec3 low = convex_.support(-t.normal);
+  return is_ground_between(t, low, convex_.support(t.normal)) || is_ground_between(t, low, convex_.center());
+}
+
+bool MeshCollider::is_ground_between(const NearTriangle& t, Vec3 low, Vec3 high) const {
   const float below = dot(t.normal, t.v[0] - low), above = dot(t.normal, high - t.v[0]);
   if (!(below > 0.0f && above > 0.0f)) return false;
   const Vec3 crossing = lerp(low, high, below / (below + above)) + position_;
@@ -408,7 +425,7 @@ void MeshCollider::settle_deep_patches() {
     const NearTriangle t = triangle(candidates_.deep_patches[i]);
     know_side(t.normal);
     const bool behind = dot(t.normal, convex_.center() - t.v[0]) < 0.0f;
-    if (is_ruled_out(t, behind) || (behind && !runs_through(t))) continue;
+    if (is_ruled_out(t, behind) || !runs_through(t)) continue;
     if (add_deep_corners(t)) stand(t.normal, face_separation(t));
   }
 }
@@ -456,12 +473,12 @@ void MeshCollider::look_for_corners() {
     NearTriangle t = place_triangle(surface_, candidates_.ids[i], position_, convex_);
     know_side(t.normal);
     const float face = face_separation(t);
-    const bool behind = dot(t.normal, convex_.center() - t.v[0]) < 0.0f;
-    if (behind || face > max_separation_) continue;
+    if (face > max_separation_) continue;
     measure_edges(t);
     const AxisSearch axes = search_nearest(surface_, t, convex_, face, max_separation_, scratch_);
-    if (axes.best > min(max_separation_, groups_.deepest()) || axes.feature.separation < axes.best) continue;
-    add_feature(t, axes.feature);
+    if (axes.best > min(max_separation_, groups_.deepest())) continue;
+    if (axes.over_face && dot(t.normal, axes.on_core - t.v[0]) > 0.0f) add_over_face(t, axes.on_core);
+    if (axes.feature.separation >= axes.best - t.slack) add_feature(t, axes.feature);
   }
 }
 

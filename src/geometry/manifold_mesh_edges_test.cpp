@@ -383,6 +383,30 @@ TEST(CollideMeshEdges, ACornerBesideARidgeIsAsNearAsItIs) {
   EXPECT_EQ(overlapping, 0) << "of " << apart;
 }
 
+// A hull that hangs over the border of a slope, its lowest corner behind the slope's plane but beside it, was pushed out by half a metre.
+TEST(CollideMeshEdges, HullsBesideTheBorderOfASlopeAreNotPushed) {
+  Random random{84};
+  const Geometry ground = grid(0.2f, 0.1f, [](float x, float) { return x; }).cook();
+  int apart = 0, pushed = 0;
+  for (int i = 0; i < 20000; ++i) {
+    std::vector<Vec3> points;
+    for (int k = 0; k < 6 + i % 5 * 5; ++k) points.push_back(0.4f * random.direction());
+    const Result<Geometry> hull = cook_hull(points);
+    if (!hull) continue;
+    const Shape shape = make_shape(AnyShape(*hull));
+    const Transform pose{{random.between(0.0f, 0.7f), random.between(0.0f, 0.9f), random.between(-0.2f, 0.2f)},
+                         random.rotation()};
+    gyre::Nearest near;
+    const PlacedShape placed{&shape, DVec3(pose.position), to_double(pose.orientation)};
+    if (!find_nearest(make_shape(ground), placed, 10.0, near) || near.overlap || near.distance < 1.0e-3) continue;
+    ++apart;
+    const Manifolds found = collide(ground, *hull, pose, 0.01f);
+    pushed += found.count > 0 && found.deepest() < 0.0f;
+  }
+  EXPECT_EQ(pushed, 0) << "of " << apart;
+  EXPECT_GT(apart, 2000);
+}
+
 // Needles and plates over steps and slopes were taken for overlapping, and pushed out by decimetres.
 TEST(CollideMeshEdges, ThinHullsThatAreApartAreNotPushed) {
   Random random{82};
