@@ -19,6 +19,10 @@ constexpr float kArcSlack = 1.0e-3f;
 constexpr float kLevelSlack = 1.0e-3f;
 // A sine too.
 constexpr float kParallelEdges = 1.0e-4f;
+// Cosine between the normals at the rim of a plate; and how much farther than its edge, relative to its size, a plate may reach along an
+// axis of that edge.
+constexpr float kRim = -0.9f;
+constexpr float kOutermost = 1.0e-5f;
 
 using Floats = Wide<4>;
 
@@ -215,6 +219,10 @@ void Search::edge_axis(const HullEdge& edge, int i) {
   d = d / (dot(d, t_.outward[i]) < 0.0f ? -size : size);
   const float separation = dot(d, convex_.vertex(edge.from) - t_.v[i]) - convex_.radius();
   if (separation <= needed) return;
+  // At the rim of a plate normals all but oppose each other, so that whether arcs cross is of rounding.
+  if (dot(convex_.face_normal(edge.left), convex_.face_normal(edge.right)) < kRim &&
+      convex_.lowest(d) < dot(d, convex_.vertex(edge.from)) - kOutermost * convex_.size())
+    return;
   if (offer(d, separation, 1u << i | 1u << next_corner(i), AxisSource::shape_edge)) {
     found_.feature.from = edge.from;
     found_.feature.to = edge.to;
