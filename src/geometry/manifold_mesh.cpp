@@ -90,6 +90,7 @@ class MeshCollider {
   void know_face();
   bool is_beside(const NearTriangle& t) const;
   bool rests_inside(const NearTriangle& t, float face_separation);
+  bool comes_through(const NearTriangle& t, Vec3 corner) const;
   float face_separation(const NearTriangle& t) const {
     return side_.lowest - dot(t.normal, t.v[0]) - convex_.radius();
   }
@@ -278,7 +279,8 @@ bool MeshCollider::is_buried(const NearTriangle& t, Vec3 direction) const {
 }
 
 // Whether a lowest corner of the shape lies so far inside the triangle's sides that no direction but the face's normal can be
-// better: a disc around its foot, as wide as the corner is deep, belongs to the triangle.
+// better: a disc around its foot, as wide as the corner is deep, belongs to the triangle. A needle whose end is deep below may have come
+// there beside the triangle: on its way to the middle it must pass through.
 bool MeshCollider::rests_inside(const NearTriangle& t, float face_separation) {
   const float room = max(-face_separation - convex_.radius(), 0.0f) + t.slack;
   if (convex_.has_vertices() &&
@@ -290,9 +292,19 @@ bool MeshCollider::rests_inside(const NearTriangle& t, float face_separation) {
     if (dot(t.normal, corner) > side_.lowest + bias_) continue;
     bool inside = true;
     for (int i = 0; i < 3; ++i) inside = inside && dot(t.outward[i], corner - t.v[i]) < -room;
-    if (inside) return true;
+    if (inside && comes_through(t, corner)) return true;
   }
   return false;
+}
+
+bool MeshCollider::comes_through(const NearTriangle& t, Vec3 corner) const {
+  const float below = dot(t.normal, t.v[0] - corner);
+  if (below < kCoverSlack * convex_.size()) return true;
+  const float above = dot(t.normal, convex_.center() - t.v[0]);
+  const Vec3 crossing = lerp(corner, convex_.center(), below / (below + above));
+  bool inside = true;
+  for (int i = 0; i < 3; ++i) inside = inside && dot(t.outward[i], crossing - t.v[i]) <= t.slack;
+  return inside;
 }
 
 // Whether a ball or capsule lies certainly too far beyond one of the triangle's sides.
