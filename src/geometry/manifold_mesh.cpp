@@ -64,7 +64,7 @@ class MeshCollider {
     settle_waiting();
     settle_deep_patches();
     push_out();
-    if (convex_.vertex_count() > 2 && is_corner_missing()) look_for_corners();
+    if (is_corner_missing()) look_for_corners();
     if (groups_.empty() && rim_separation_ < kUnbounded) add_over_face(triangle(rim_triangle_), on_rim_);
     return groups_.finish(position_, out);
   }
@@ -79,7 +79,7 @@ class MeshCollider {
   void push_out();
   void add_corner(const NearTriangle& t, float face_separation);
   bool is_corner_missing() const {
-    return groups_.empty() || (nearest_ > 0.0f && nearest_ < groups_.deepest() - kAxisBias * convex_.size());
+    return groups_.empty() || (convex_.vertex_count() > 2 && nearest_ > 0.0f && nearest_ < groups_.deepest() - kAxisBias * convex_.size());
   }
   void look_for_corners();
   void settle(const Waiting& waiting);
@@ -478,8 +478,8 @@ void MeshCollider::add_corner(const NearTriangle& t, float face_separation) {
   points_ = kept;
 }
 
-// A polyhedron that comes near with a corner beside an edge: axis searches know faces and pairs of edges only, so what they tell may be
-// nearer than any point that was found along their directions.
+// What comes near where no contact was found, such as a polyhedron with a corner beside an edge: axis searches know faces and pairs
+// of edges only, so what they tell may be nearer than any point that was found along their directions.
 void MeshCollider::look_for_corners() {
   for (int i = 0; i < candidates_.count; ++i) {
     NearTriangle t = place_triangle(surface_, candidates_.ids[i], position_, convex_);

@@ -16,6 +16,7 @@ namespace {
 // much an edge or corner may lie lower than another and still belong to the supporting feature.
 constexpr float kFaceAngle = 1.0e-3f;
 constexpr float kArcSlack = 1.0e-3f;
+constexpr float kSliverSlack = 0.1f;
 constexpr float kLevelSlack = 1.0e-3f;
 // A sine too.
 constexpr float kParallelEdges = 1.0e-4f;
@@ -62,9 +63,17 @@ class Search {
   bool is_backwards(Vec3 d) const { return dot(d, t_.normal) < -0.99f; }
   bool is_face(Vec3 d) const { return length_squared(d - t_.normal) < kFaceAngle * kFaceAngle; }
 
+  // Of a sliver the normal, and with it where arcs begin, is as uncertain as its corners are beside its height.
+  float arc_slack() const {
+    const float longest = max(t_.length[0], max(t_.length[1], t_.length[2]));
+    const float double_area = t_.length[0] * length(cross(t_.along[0], t_.v[2] - t_.v[0]));
+    return max(kArcSlack, min(kSliverSlack, 4.0f * t_.slack * longest / max(double_area, 1.0e-30f)));
+  }
+
   bool edge_allows(int edge, Vec3 d) const {
     if (t_.edge[edge] != EdgeKind::convex && t_.edge[edge] != EdgeKind::open) return false;
-    if (dot(d, t_.outward[edge]) < -kArcSlack) return false;
+    const float outward = dot(d, t_.outward[edge]);
+    if (outward < -kArcSlack && outward < -arc_slack()) return false;
     const float front = dot(d, t_.normal);
     // The border of a surface that is solid from both sides is the rim of a plate.
     if (t_.edge[edge] == EdgeKind::open) return surface_.double_sided() || front >= -kArcSlack;
@@ -385,7 +394,8 @@ bool Search::nearest_by_gjk() {
   }
   const SimplexPoint near = closest_on_triangle(found.on_b, DVec3(t_.v[0]), DVec3(t_.v[1]), DVec3(t_.v[2]));
   const float separation = float(found.distance) - convex_.radius();
-  if (near.corners == 7) {
+  // Of parallel faces any points are nearest, also such over inner edges.
+  if (near.corners == 7 || is_face(to_float(found.normal))) {
     found_.over_face = true;
     found_.on_core = to_float(found.on_b);
   }
