@@ -129,14 +129,13 @@ class BodyNewton {
       double push_a[kLuBlock], push_b[kLuBlock];
       spread(row.gain_linear_a, row.gain_angular_a, push_a);
       spread(row.gain_linear_b, row.gain_angular_b, push_b);
-      if (row.body_a != kNoRowBody) {
-        add_product(push_a, gain, &lu_.lower[column_of(row.body_a).diagonal]);
-        add_times(push_a, constants_[i], at(row.body_a));
-      }
-      if (row.body_b != kNoRowBody) {
+      if (row.body_a != kNoRowBody) add_times(push_a, constants_[i], at(row.body_a));
+      if (row.body_b != kNoRowBody) add_times(push_b, constants_[i], at(row.body_b));
+      // Limits that are not reached, which are most rows of a crowd's joints.
+      if (is_idle(gain)) continue;
+      if (row.body_a != kNoRowBody) add_product(push_a, gain, &lu_.lower[column_of(row.body_a).diagonal]);
+      if (row.body_b != kNoRowBody)
         add_product(push_b, gain + kLuBlock, &lu_.lower[column_of(row.body_b).diagonal]);
-        add_times(push_b, constants_[i], at(row.body_b));
-      }
       if (row.body_a == kNoRowBody || row.body_b == kNoRowBody) continue;
       if (row.body_a != last_a || row.body_b != last_b) {
         last_a = row.body_a, last_b = row.body_b;
@@ -145,6 +144,12 @@ class BodyNewton {
       add_product(push_a, gain + kLuBlock, &(between.first_is_row ? lu_.lower : lu_.upper)[between.offset]);
       add_product(push_b, gain, &(between.first_is_row ? lu_.upper : lu_.lower)[between.offset]);
     }
+  }
+  static bool is_idle(const double* gain) {
+    for (std::size_t k = 0; k < kSeen; ++k) {
+      if (gain[k] != 0.0) return false;
+    }
+    return true;
   }
   static void add_product(const double* push, const double* gain, double* block) {
     for (int r = 0; r < kLuBlock; ++r) {
