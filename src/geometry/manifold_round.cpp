@@ -171,7 +171,7 @@ void collide_capsules(const Shape& a, const Shape& b, const Transform& a_from_b,
                       LocalManifold& out) {
   FacePolygon fa, fb;
   fa.count = fb.count = 2;
-  fa.ids[1] = fb.ids[1] = 1;
+  fa.ids[0] = fb.ids[0] = 0, fa.ids[1] = fb.ids[1] = 1;
   const Vec3 up{0, a.extents.y, 0}, up_b = rotate(a_from_b.orientation, {0, b.extents.y, 0}),
                                     t = a_from_b.position;
   fa.vertices[0] = -up, fa.vertices[1] = up;
