@@ -375,7 +375,7 @@ TEST(CollideMeshEdges, ACornerBesideARidgeIsAsNearAsItIs) {
     if (near.overlap || near.distance > 0.009) continue;
     ++apart;
     const Manifolds found = collide(ground, *hull, pose, 0.012f);
-    too_far += found.count == 0 || double(found.deepest()) > near.distance + 3.0e-4;
+    too_far += found.count == 0 || double(found.deepest()) > near.distance + 2.0e-4;
     overlapping += found.count > 0 && found.deepest() < 0.0f;
   }
   EXPECT_GT(apart, 50000);
