@@ -352,11 +352,12 @@ void prove_one(const Ground& ground, const Shape& shape, Transform pose, GroundP
   proof.look_nearest();
   proof.collide(reach);
   if (proof.wrong != nullptr) return;
-  // A direction must be better by a two-thousandth of the size to be preferred to the face's, and an axis search takes
-  // corners beside edges for about as much nearer than they are.
+  // Where it was brought near is not to a rounding where it is nearest now.
   const DVec3 middle(pose * (shape.kind == ShapeKind::hull ? shape.hull->centroid : Vec3{}));
   in_front = in_front && (ground.triangles.empty() || proof.near.overlap ||
                           seen_from_front(ground, proof.near, middle, 1.0e-6 * ground.size));
+  // A direction must be better by a two-thousandth of the size to be preferred to the face's, and an axis search takes
+  // corners beside edges for about as much nearer than they are.
   const double exact = 3.0e-3 * proof.thin() + 1.2e-3 * proof.long_way() + 2.0 * proof.rounding();
   if (!proof.near.overlap) {
     if (proof.near.distance > double(reach) + proof.rounding() && proof.count > 0)

@@ -78,9 +78,7 @@ class MeshCollider {
   void note_overlap(const Waiting& found, float best);
   void push_out();
   void add_corner(const NearTriangle& t, float face_separation);
-  bool is_corner_missing() const {
-    return groups_.empty() || (convex_.vertex_count() > 2 && nearest_ > 0.0f && nearest_ < groups_.deepest() - kAxisBias * convex_.size());
-  }
+  bool is_corner_missing() const;
   void look_for_corners();
   void settle(const Waiting& waiting);
   bool is_ruled_out(const NearTriangle& t, bool behind) const;
@@ -476,6 +474,13 @@ void MeshCollider::add_corner(const NearTriangle& t, float face_separation) {
   const MeshPoints kept = points_;
   add_feature(t, axes.feature);
   points_ = kept;
+}
+
+// Whether nothing was found, or the nearest triangle is nearer than all that was.
+bool MeshCollider::is_corner_missing() const {
+  if (groups_.empty()) return true;
+  return convex_.vertex_count() > 2 && nearest_ > 0.0f &&
+         nearest_ < groups_.deepest() - kAxisBias * convex_.size();
 }
 
 // What comes near where no contact was found, such as a polyhedron with a corner beside an edge: axis searches know faces and pairs

@@ -407,6 +407,24 @@ TEST(CollideMeshEdges, HullsBesideTheBorderOfASlopeAreNotPushed) {
   EXPECT_GT(apart, 2000);
 }
 
+// Each had no contact: a short capsule beside a border, a cap over the corner of a patch, a ball on a sliver.
+TEST(CollideMeshEdges, WhatIsNearHasAContact) {
+  const Geometry slope = grid(0.2f, 0.1f, [](float x, float) { return 0.2f + x; }).cook();
+  const Transform beside{{0.252823472f, 1.00780642f, -0.126857162f},
+                         {-0.653578222f, 0.422708601f, 0.192262322f, 0.597652256f}};
+  EXPECT_NEAR(collide(slope, Capsule{0.606344521f, 0.0173586588f}, beside, 0.0124741f).deepest(), 3.746e-3f, 1e-4f);
+  const Geometry patch = flat_grid(0.2f, 0.1f).cook();
+  const Transform over{{0.929088831f, 0.86321491f, -0.618770003f}, {}};
+  EXPECT_NEAR(collide(patch, Cylinder{0.894715488f, 0.845970392f}, over, 0.0246267f).deepest(), 0.0172445f, 1e-4f);
+  const Vec3 corners[] = {{0x1.433ed4p-5f, -0x1.4e468ep-7f, 0x1.2c9606p-5f},
+                          {-0x1.813234p-6f, 0x1.8a81cep-9f, -0x1.54010ep-5f},
+                          {0x1.9c55b6p-6f, -0x1.d81152p-8f, 0x1.366944p-6f}};
+  const std::uint32_t indices[] = {0, 1, 2};
+  const Geometry sliver = *cook_mesh({.vertices = corners, .indices = indices, .double_sided = true});
+  const Transform above{{-0.1380869f, 0.96522212f, 0.229076236f}, {}};
+  EXPECT_NEAR(collide(sliver, Sphere{1.0f}, above, 0.02f).deepest(), 6.005e-3f, 1e-4f);
+}
+
 // Needles and plates over steps and slopes were taken for overlapping, and pushed out by decimetres.
 TEST(CollideMeshEdges, ThinHullsThatAreApartAreNotPushed) {
   Random random{82};
