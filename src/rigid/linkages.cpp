@@ -132,6 +132,8 @@ class LinkageMaker {
   }
 
   bool make(std::span<const std::uint32_t> members, Linkage& linkage) {
+    const auto joint_at = [&](std::size_t i) { return net_joint(members[i]); };
+    if (dense_.holds(members.size(), joint_at)) return false;
     const std::size_t pairs = count_pairs(members);
     if (pairs > kMostPairsPerJoint * members.size()) return false;
     make_nodes(members, linkage);
@@ -148,9 +150,8 @@ class LinkageMaker {
       sizes[i] = std::uint8_t(linkage.nodes[i].count);
       rows += sizes[i];
     }
-    if (dense_.holds(sizes, edges)) return false;
     if (!plan_blocks(sizes, edges, kMostWorkPerRow * rows, arena_, linkage.plan)) {
-      dense_.add(sizes, edges);
+      dense_.add(members.size(), joint_at);
       return false;
     }
     for (std::size_t i = 0; i < pairs; ++i) {
@@ -176,6 +177,14 @@ class LinkageMaker {
  private:
   const JointRecord& record(std::uint32_t number) const {
     return w_.joints.records[batch_.joints[graph_.joints[number]]];
+  }
+  NetJoint net_joint(std::uint32_t number) const {
+    const JointRecord& joint = record(number);
+    const auto moving = [&](std::int32_t body) {
+      return body != kNoBody && is_active(w_, std::uint32_t(body)) ? body : kNoBody;
+    };
+    return {moving(joint.body_a), moving(joint.body_b),
+            count_equations(joint, detail_of(w_.joints, batch_.joints[graph_.joints[number]]))};
   }
   std::span<const std::uint32_t> at_body(std::uint32_t body) const {
     const std::uint32_t place = places_[body];
@@ -309,22 +318,20 @@ class LinkageMaker {
 
 }  // namespace
 
-bool DenseNets::holds(std::span<const std::uint8_t> sizes, std::span<const BlockEdge> edges) const {
+bool DenseNets::holds(std::size_t size, FunctionRef<NetJoint(std::size_t)> joint_at) const {
   for (const Net& net : nets_) {
-    if (net.sizes != sizes.size() || net.edges != edges.size()) continue;
-    const auto same = [](const BlockEdge& a, const BlockEdge& b) { return a.a == b.a && a.b == b.b; };
-    if (std::equal(sizes.begin(), sizes.end(), sizes_.data() + net.first_size) &&
-        std::equal(edges.begin(), edges.end(), edges_.data() + net.first_edge, same))
-      return true;
+    if (net.size != size) continue;
+    std::size_t same = 0;
+    while (same < size && joints_[net.first + same] == joint_at(same)) ++same;
+    if (same == size) return true;
   }
   return false;
 }
 
-void DenseNets::add(std::span<const std::uint8_t> sizes, std::span<const BlockEdge> edges) {
-  if (nets_.size() == kMost) nets_.clear(), sizes_.clear(), edges_.clear();
-  nets_.push_back({sizes_.size(), sizes.size(), edges_.size(), edges.size()});
-  for (const std::uint8_t size : sizes) sizes_.push_back(size);
-  for (const BlockEdge& edge : edges) edges_.push_back(edge);
+void DenseNets::add(std::size_t size, FunctionRef<NetJoint(std::size_t)> joint_at) {
+  if (nets_.size() == kMost) nets_.clear(), joints_.clear();
+  nets_.push_back({joints_.size(), size});
+  for (std::size_t i = 0; i < size; ++i) joints_.push_back(joint_at(i));
 }
 
 Linkages find_linkages(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,

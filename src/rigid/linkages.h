@@ -4,6 +4,7 @@
 
 #include "base/arena.h"
 #include "base/array.h"
+#include "base/function_ref.h"
 #include "rigid/rigid_world.h"
 #include "rigid/solve_batches.h"
 #include "solver/lane_records.h"
@@ -26,21 +27,28 @@ struct Linkages {
   std::span<const std::uint8_t> swept;  // by place in the batch's list of joints: 1 if it is in no linkage
 };
 
+// What a joint adds to the plan of its net: the bodies that it holds and that move (else kNoBody), and its equations.
+struct NetJoint {
+  std::int32_t body_a = kNoBody, body_b = kNoBody;
+  std::int32_t equations = 0;
+  bool operator==(const NetJoint&) const = default;
+};
+
 // Nets that were found too dense to be planned, by all that the plan is made of: whoever asks for the same again need not try. Kept
 // from step to step; what is in it never changes a result.
 class DenseNets {
  public:
-  bool holds(std::span<const std::uint8_t> sizes, std::span<const BlockEdge> edges) const;
-  void add(std::span<const std::uint8_t> sizes, std::span<const BlockEdge> edges);
+  // Whether a net of so many joints, in this order, was added before.
+  bool holds(std::size_t size, FunctionRef<NetJoint(std::size_t)> joint_at) const;
+  void add(std::size_t size, FunctionRef<NetJoint(std::size_t)> joint_at);
 
  private:
   static constexpr std::size_t kMost = 8;
   struct Net {
-    std::size_t first_size = 0, sizes = 0, first_edge = 0, edges = 0;
+    std::size_t first = 0, size = 0;
   };
   Array<Net> nets_;
-  Array<std::uint8_t> sizes_;  // of all nets, one after the other
-  Array<BlockEdge> edges_;
+  Array<NetJoint> joints_;  // of all nets, one after the other
 };
 
 // Of one batch; `places` are those of all (solve_batches.h), `work` that of the batch's joints.

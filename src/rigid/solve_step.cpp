@@ -293,10 +293,16 @@ void solve_joints_stage(void* context, int begin, int end, int) {
     solve_joint(joint, work, g.solve->joint_bodies, g.solve->joint_settings, true);
   });
 }
+// Balls are placed with what follows, while they are in the cache: nothing that one colour gives changes where the next one
+// stands, and no linkage has their bodies.
+void place_again_stage(void* context, int begin, int end, int worker) {
+  if (static_cast<Group*>(context)->ball_block < 0) place_joints_stage(context, begin, end, worker);
+}
 void relax_joints_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
   if (g.ball_block >= 0) {
     const Balls balls = balls_of(g, begin, end);
+    balls.kernels.place(balls.blocks, balls.begin, balls.end, balls.arrays);
     return balls.kernels.relax(balls.blocks, balls.begin, balls.end, balls.arrays);
   }
   for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
@@ -363,7 +369,9 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   // Joints act between forces and contacts: what they give is none of the contacts' work, and how they bend in the sub-step
   // is none of what contacts gave in the last one.
   const bool has_joints = linkages > 0 || bundles > 0 || !joints.empty();
-  const bool is_warm = !first && impacts == 0 && !has_joints;
+  const bool is_warm = !first && impacts == 0 && !has_joints && !contacts.empty();
+  // What contacts gave is looked at only where there are any.
+  const int watched = contacts.empty() ? 0 : bodies;
   const int fields = solve.fields.blocks();
   program.add(watch_fields_stage, &solve.fields, fields);
   program.add(watch_stage, &solve, impacts);
@@ -377,31 +385,31 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   program.add(linkage_stage<warm_linkage>, &solve, linkages);
   program.add(bundle_stage<&LinkageKernels::warm>, &solve, bundles);
   program.add_groups(warm_joints_stage, joints, kJointsPerBlock, 1);
-  if (!first && !is_warm) program.add(warm_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
+  if (!first && !is_warm) program.add(warm_motion_stage, &solve, watched, kMotionBlocksPerClaim);
   if (first) {
-    program.add(watch_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
+    program.add(watch_motion_stage, &solve, watched, kMotionBlocksPerClaim);
     program.add_groups(warm_contacts_stage, contacts, 1, kBlocksPerClaim);
-    program.add(note_stage, &solve, bodies, kMotionBlocksPerClaim);
+    program.add(note_stage, &solve, watched, kMotionBlocksPerClaim);
   }
   // What contacts and joints gave in the last part is in the velocities by now: a stream pulls at what really moves.
   program.add(apply_fields_stage, &solve.fields, fields);
-  if (fields > 0) program.add(watch_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
+  if (fields > 0) program.add(watch_motion_stage, &solve, watched, kMotionBlocksPerClaim);
   program.add_groups(solve_joints_stage, joints, kJointsPerBlock, 1);
   program.add(linkage_stage<solve_linkage>, &solve, linkages);
   program.add(bundle_stage<&LinkageKernels::solve>, &solve, bundles);
-  if (has_joints) program.add(watch_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
+  if (has_joints) program.add(watch_motion_stage, &solve, watched, kMotionBlocksPerClaim);
   program.add_groups(solve_contacts_stage, contacts, 1, kBlocksPerClaim);
   program.add(solve_trees_stage, &solve, trees, kTreesPerClaim);
   if (first) program.add(structures_stage<solve_structure_first>, &solve, structures);
   if (last) program.add(structures_stage<solve_structure_last>, &solve, structures);
-  if (has_joints) program.add(note_stage, &solve, bodies, kMotionBlocksPerClaim);
+  if (has_joints) program.add(note_stage, &solve, watched, kMotionBlocksPerClaim);
   program.add(linkage_stage<solve_linkage_again>, &solve, linkages);
   program.add(bundle_stage<&LinkageKernels::solve_again>, &solve, bundles);
-  if (has_joints) program.add(watch_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
+  if (has_joints) program.add(watch_motion_stage, &solve, watched, kMotionBlocksPerClaim);
   program.add(advance_stage, &solve, bodies, kMotionBlocksPerClaim);
   program.add(turn_alone_stage, &solve, count_blocks(int(solve.spinners.size()), kSpinnersPerClaim));
   program.add(release_stage, &solve, impacts);
-  program.add_groups(place_joints_stage, joints, kJointsPerBlock, 1);
+  program.add_groups(place_again_stage, joints, kJointsPerBlock, 1);
   program.add(linkage_stage<place_linkage>, &solve, linkages);
   if (!joints.empty()) program.add(bundle_stage<&LinkageKernels::place>, &solve, bundles);
   program.add_groups(relax_joints_stage, joints, kJointsPerBlock, 1);

@@ -6,8 +6,9 @@ namespace gyre {
 
 namespace {
 
-constexpr std::size_t kBallFloats = sizeof(LaneBall) / sizeof(float);
-static_assert(sizeof(LaneBall) == kBallFloats * sizeof(float));
+constexpr std::size_t kLocalA = offsetof(LaneBall, local_a) / sizeof(float);
+constexpr std::size_t kLocalB = offsetof(LaneBall, local_b) / sizeof(float);
+constexpr std::size_t kOffset = offsetof(LaneBall, offset) / sizeof(float);
 constexpr std::size_t kImpulse = offsetof(LaneBall, impulse) / sizeof(float);
 constexpr std::size_t kTotal = offsetof(LaneBall, total) / sizeof(float);
 
@@ -47,17 +48,18 @@ void begin_ball(const BallKernels& kernels, void* blocks, int block, int lane, c
   };
   set_bodies(kernels, blocks, block, lane,
              {joint.body_a, joint.body_b, writes(joint.body_a), writes(joint.body_b)});
-  LaneBall from;
-  from.local_a = joint.local_anchor_a;
-  from.local_b = joint.local_anchor_b;
-  from.offset = places.offset;
-  from.impulse = joint.linear_impulse;
-  from.total = joint.total_linear;
-  float floats[kBallFloats];
-  std::memcpy(floats, &from, sizeof from);
   std::byte* const first = static_cast<std::byte*>(blocks) + place_of(kernels, block) + kernels.first_float;
   float* const to = reinterpret_cast<float*>(first) + lane;
-  for (std::size_t i = 0; i < kBallFloats; ++i) to[i * std::size_t(kernels.width)] = floats[i];
+  const auto put = [&](std::size_t i, Vec3 v) {
+    const std::size_t width = std::size_t(kernels.width);
+    to[i * width] = v.x, to[(i + 1) * width] = v.y, to[(i + 2) * width] = v.z;
+  };
+  // What is left out is placed before it is read.
+  put(kLocalA, joint.local_anchor_a);
+  put(kLocalB, joint.local_anchor_b);
+  put(kOffset, places.offset);
+  put(kImpulse, joint.linear_impulse);
+  put(kTotal, joint.total_linear);
 }
 
 void finish_ball(const BallKernels& kernels, const void* blocks, int block, int lane, JointRecord& joint) {
