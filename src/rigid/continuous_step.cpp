@@ -87,8 +87,18 @@ class Blow {
   Vec3 lever_[2];
 };
 
-// What moves by itself runs over what stands in its way, however slow that is: such bodies are fast against it. Where one of the
-// two is a sensor and nothing can stop either, both are looked at for what they cross.
+// A bound on the way that the farthest points of a body go in the step as seen from another one: that of its middle, and what
+// its turning against the other adds. (A rotation differs from its first order by half the angle squared at most.)
+float way_against(const RigidWorld& w, std::uint32_t seen_from, const Sweep& frame, std::uint32_t body) {
+  const Sweep own = sweep_of_body(w, body);
+  const Vec3 apart = difference(w.bodies.places[body].center, w.bodies.places[seen_from].center);
+  return length(own.moved - frame.moved - cross(frame.turned, apart)) +
+         0.5f * length_squared(frame.turned) * length(apart) +
+         length(own.turned - frame.turned) * w.bodies.masses[body].reach;
+}
+
+// What moves by itself runs over what stands in its way, however slow that is: such bodies are fast against it, unless they go
+// along. Where one of the two is a sensor and nothing can stop either, both are looked at for what they cross.
 class Overrun {
  public:
   Overrun(const RigidWorld& w, ContinuousScratch& scratch) : w_(w), scratch_(scratch) {}
@@ -99,13 +109,12 @@ class Overrun {
     for (const std::uint32_t i : w_.bodies.awake) {
       if (w_.bodies.flags[i].type != BodyType::kinematic || w_.bodies.shapes[i].empty()) continue;
       const Sweep sweep = sweep_of_body(w_, i);
-      const float way = length(sweep.moved) + length(sweep.turned) * w_.bodies.masses[i].reach;
-      if (way > 0.0f) add_those_before(i, sweep, way);
+      if (sweep.moved != Vec3{} || sweep.turned != Vec3{}) add_those_before(i, sweep);
     }
   }
 
  private:
-  void add_those_before(std::uint32_t i, const Sweep& sweep, float way) {
+  void add_those_before(std::uint32_t i, const Sweep& sweep) {
     for (const ShapeId id : w_.bodies.shapes[i]) {
       const ColliderShape& shape = w_.shapes.colliders[id.index];
       if (shape.shape.kind == ShapeKind::plane) continue;
@@ -118,7 +127,8 @@ class Overrun {
         const bool surface = !is_convex(shape.shape.kind) && is_convex(w_.shapes.colliders[found].shape.kind);
         if (surface && own.sensor != other.sensor) scratch_.gates.push_back({found, id.index});
         if (moves) {
-          if (way > kFastShare * w_.bodies.masses[other.body].size) add(other.body, false);
+          if (way_against(w_, i, sweep, other.body) > kFastShare * w_.bodies.masses[other.body].size)
+            add(other.body, false);
         } else if (own.sensor != other.sensor) {
           add(other.body, true);
           add(i, true);
