@@ -23,7 +23,8 @@ struct SeamScratch {
     std::uint32_t slot;
     std::uint8_t manifolds;  // bits
   };
-  Bitset hidden;  // contacts
+  Array<std::uint8_t> beside;  // by shape: with how many resting shapes it has a contact; two stand for more
+  Bitset hidden;               // contacts
   Array<Found> found;
 };
 

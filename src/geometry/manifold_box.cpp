@@ -5,6 +5,9 @@
 #include "geometry/manifold_core.h"
 #include "geometry/manifold_crossing.h"
 #include "math/rotation.h"
+#include "math/wide.h"
+
+#include <bit>
 
 namespace gyre {
 namespace {
@@ -58,7 +61,7 @@ inline float face_b(const Boxes& x, int j) {
   return absolute(x.u[j]) - x.b[j] - (x.a[0] * x.c[0][j] + x.a[1] * x.c[1][j] + x.a[2] * x.c[2][j]);
 }
 
-// Separation times the length of the cross product.
+// Separation times the length of the cross product (the same, for three of them at once, in EdgeRow).
 inline float edge_product(const Boxes& x, int i, int j) {
   const int i1 = kNext[i], i2 = kAfter[i], j1 = kNext[j], j2 = kAfter[j];
   const float apart = absolute(x.t[i2] * x.r[i1][j] - x.t[i1] * x.r[i2][j]);
@@ -69,6 +72,28 @@ inline float edge_product(const Boxes& x, int i, int j) {
 inline float edge_length_squared(const Boxes& x, int i, int j) {
   return x.r[kNext[i]][j] * x.r[kNext[i]][j] + x.r[kAfter[i]][j] * x.r[kAfter[i]][j];
 }
+
+// The edges of A's axis i with all three of B's, side by side: as edge_product() and edge_length_squared().
+struct EdgeRow {
+  using Floats = Wide<4>;
+  Floats product, squared;
+
+  EdgeRow(const Boxes& x, int i) {
+    const int i1 = kNext[i], i2 = kAfter[i];
+    const Floats r1 = row(x.r[i1], 0), r2 = row(x.r[i2], 0), c1 = row(x.c[i1], 0), c2 = row(x.c[i2], 0);
+    const Floats apart = absolute(Floats(x.t[i2]) * r1 - Floats(x.t[i1]) * r2);
+    const Floats reach_a = Floats(x.a[i1]) * c2 + Floats(x.a[i2]) * c1;
+    const Floats reach_b = row(x.b, 1) * row(x.c[i], 2) + row(x.b, 2) * row(x.c[i], 1);
+    product = apart - reach_a - reach_b;
+    squared = r1 * r1 + r2 * r2;
+  }
+
+ private:
+  // Three numbers, from the k-th on.
+  static Floats row(const float* n, int k) {
+    return Floats::of(Floats::Float{n[k], n[(k + 1) % 3], n[(k + 2) % 3], 0.0f});
+  }
+};
 
 // Separation along the cross product of two nearly parallel edges, free of cancellation.
 float shallow_edge(const Boxes& x, const Transform& a_from_b, int i, int j) {
@@ -120,17 +145,20 @@ Axis search(const Boxes& x, const Transform& a_from_b, float max_separation, int
   float extent = 0.0f;
   for (int i = 0; i < 3; ++i) extent += x.a[i] + x.b[i] + absolute(x.t[i]);
   const float rounding = kRounding * extent;
+  const Wide<4> low(min(floor, 0.0f)), shallow(kShallow), parallel(kParallel);
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      const float squared = edge_length_squared(x, i, j);
-      const float product = edge_product(x, i, j);
+    const EdgeRow row(x, i);
+    // Without the root: a length is at most 1, so a product below a negative floor, or below 0, cannot win.
+    const Mask<4> steep = row.squared >= shallow;
+    const Mask<4> hopeless = (steep & (row.product <= low)) | and_not(row.squared <= parallel, steep);
+    for (std::uint32_t left = to_bits(~hopeless) & 7u; left != 0; left &= left - 1) {
+      const int j = std::countr_zero(left);
+      const float squared = row.squared[j], product = row.product[j];
       float separation;
       if (squared >= kShallow) {
-        // Without the root: a length is at most 1, so a product below a negative floor, or below 0, cannot win.
-        if (product <= min(floor, 0.0f)) continue;
         separation = product / std::sqrt(squared);
       } else {
-        if (squared <= kParallel || product + rounding <= floor * std::sqrt(squared)) continue;
+        if (product + rounding <= floor * std::sqrt(squared)) continue;
         separation = shallow_edge(x, a_from_b, i, j);
       }
       if (separation > edge.separation) edge = {kFirstEdge + 3 * i + j, separation};

@@ -321,14 +321,19 @@ GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W>& pair, const
       change[i] = tried[i] - kept[i];
     }
     for (int sweep = 0; sweep < kPullSweeps; ++sweep) {
+      auto stands = one > zero;
       GYRE_UNROLL
       for (int i = 0; i < Count; ++i) {
         Wide<W> speed = residual[i];
         GYRE_UNROLL
         for (int j = 0; j < Count; ++j) speed = speed + block.k[packed(i, j)] * change[j];
-        tried[i] = max(tried[i] - block.relief[i] * speed, zero);
-        change[i] = tried[i] - kept[i];
+        const Wide<W> now = max(tried[i] - block.relief[i] * speed, zero);
+        stands = stands & (now == tried[i]);
+        tried[i] = now;
+        change[i] = now - kept[i];
       }
+      // What all of them left as it was, as where no point bears anything, the next sweep would not change either.
+      if (all(stands)) break;
     }
     GYRE_UNROLL
     for (int i = 0; i < Count; ++i) next[i] = select(pulls, tried[i], next[i]);
