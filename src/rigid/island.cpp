@@ -24,6 +24,13 @@ bool is_asleep(const RigidWorld& w, std::uint32_t body) {
   return is_dynamic(w, body) && w.bodies.flags[body].awake == 0;
 }
 
+bool is_anybody_asleep(const RigidWorld& w) {
+  for (std::uint32_t i = 0; i < w.bodies.flags.size(); ++i) {
+    if (is_asleep(w, i)) return true;
+  }
+  return false;
+}
+
 // Union-find over bodies; the root of an island is its lowest body.
 class Islands {
  public:
@@ -172,6 +179,7 @@ void wake_neighbours(RigidWorld& w, std::uint32_t body) {
 }
 
 void wake_touched(RigidWorld& w) {
+  if (!is_anybody_asleep(w)) return;
   // Whoever wakes disturbs its own neighbours in turn, also those that an earlier link led to: nobody may sleep beside a
   // body that is solved, since colours and islands know only those that are awake.
   bool woken = true;

@@ -128,10 +128,11 @@ std::size_t find_pairs(RigidWorld& w, TaskSystem& tasks) {
   }
   w.clocks.changed.trim(w.shapes.changed, w.shapes.changed.size());
   w.shapes.changed.clear();
-  add_pairs(w.contacts, w.new_pairs, w.joints.blocked, [&](std::uint64_t key) { return describe_pair(w, key); });
   const std::size_t found = w.new_pairs.size();
+  drop_known_pairs(w.contacts, w.new_pairs, tasks);
+  add_pairs(w.contacts, w.new_pairs, w.joints.blocked, [&](std::uint64_t key) { return describe_pair(w, key); });
   w.broadphase->trim();
-  w.clocks.new_pairs.trim(w.new_pairs, w.new_pairs.size());
+  w.clocks.new_pairs.trim(w.new_pairs, found);
   w.clocks.sort_scratch.trim(w.sort_scratch, w.sort_scratch.size());
   w.new_pairs.clear();
   w.sort_scratch.clear();

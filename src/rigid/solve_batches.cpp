@@ -2,6 +2,10 @@
 // solve_batches.h.
 #include "rigid/solve_batches.h"
 
+#include "task/parallel.h"
+
+#include <bit>
+
 namespace gyre {
 
 namespace {
@@ -15,20 +19,41 @@ struct Constraints {
   std::size_t size = 0;  // manifolds and joints
 };
 
-Constraints list_constraints(const RigidWorld& w, Arena& arena) {
-  const std::span<std::uint32_t> contacts = arena.make<std::uint32_t>(w.contacts.live);
-  const std::span<std::uint32_t> joints = arena.make<std::uint32_t>(w.joints.ids.size());
-  std::size_t contact_count = 0, joint_count = 0, manifolds = 0;
-  for (std::uint32_t slot = 0; slot < w.contacts.contacts.size(); ++slot) {
-    const Contact& contact = w.contacts.contacts[slot];
-    if (!is_solved(w, contact)) continue;
-    contacts[contact_count++] = slot;
-    manifolds += contact.manifold_count;
+Constraints list_constraints(const RigidWorld& w, Arena& arena, TaskSystem& tasks) {
+  // Contacts are looked at in blocks of one word of bits each.
+  struct Count {
+    std::uint32_t contacts = 0, manifolds = 0;
+  };
+  const std::size_t slots = w.contacts.contacts.size();
+  const std::span<std::uint64_t> solved = arena.make<std::uint64_t>((slots + 63) / 64);
+  const auto look = [&](int begin, int end, int) {
+    Count count;
+    std::uint64_t bits = 0;
+    for (int slot = begin; slot < end; ++slot) {
+      const Contact& contact = w.contacts.contacts[std::size_t(slot)];
+      if (!is_solved(w, contact)) continue;
+      bits |= std::uint64_t{1} << (slot - begin);
+      ++count.contacts;
+      count.manifolds += contact.manifold_count;
+    }
+    solved[std::size_t(begin) / 64] = bits;
+    return count;
+  };
+  const Count count = reduce_blocks(tasks, int(slots), 64, Count{}, look, [](Count a, Count b) {
+    return Count{a.contacts + b.contacts, a.manifolds + b.manifolds};
+  });
+  const std::span<std::uint32_t> contacts = arena.make<std::uint32_t>(count.contacts);
+  std::size_t contact_count = 0;
+  for (std::size_t word = 0; word < solved.size(); ++word) {
+    for (std::uint64_t left = solved[word]; left != 0; left &= left - 1)
+      contacts[contact_count++] = std::uint32_t(64 * word) + std::uint32_t(std::countr_zero(left));
   }
+  const std::span<std::uint32_t> joints = arena.make<std::uint32_t>(w.joints.ids.size());
+  std::size_t joint_count = 0;
   w.joints.ids.for_each_live([&](std::uint32_t slot) {
     if (is_joint_solved(w, slot)) joints[joint_count++] = slot;
   });
-  return {contacts.first(contact_count), joints.first(joint_count), manifolds + joint_count};
+  return {contacts, joints.first(joint_count), count.manifolds + joint_count};
 }
 
 // Every constraint has a body that moves; its island is the constraint's.
@@ -142,10 +167,10 @@ bool is_joint_solved(const RigidWorld& w, std::uint32_t slot) {
          (joint.body_b != kNoBody && is_active(w, std::uint32_t(joint.body_b)));
 }
 
-SolveBatches find_batches(const RigidWorld& w, Arena& arena, std::uint32_t size) {
+SolveBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, std::uint32_t size) {
   const std::span<const std::uint32_t> awake = w.bodies.awake;
   const std::span<std::uint32_t> places = arena.make<std::uint32_t>(w.bodies.motion.size());
-  const Constraints constraints = list_constraints(w, arena);
+  const Constraints constraints = list_constraints(w, arena, tasks);
   if (constraints.size <= size) {
     for (std::uint32_t i = 0; i < awake.size(); ++i) places[awake[i]] = i;
     const std::span<SolveBatch> all = arena.make<SolveBatch>(awake.empty() ? 0 : 1);

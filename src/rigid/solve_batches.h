@@ -8,6 +8,7 @@
 
 #include "base/arena.h"
 #include "rigid/rigid_world.h"
+#include "task/task_system.h"
 
 namespace gyre {
 
@@ -39,6 +40,6 @@ bool is_solved(const RigidWorld& w, const Contact& contact);
 bool is_joint_solved(const RigidWorld& w, std::uint32_t slot);
 
 // All lists are of `arena`. `size`: batch_size().
-SolveBatches find_batches(const RigidWorld& w, Arena& arena, std::uint32_t size);
+SolveBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, std::uint32_t size);
 
 }  // namespace gyre

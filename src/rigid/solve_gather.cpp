@@ -4,6 +4,8 @@
 #include "rigid/hits.h"
 #include "rigid/surface_rules.h"
 #include "solver/ball_records.h"
+#include "solver/contact_structure.h"
+#include "task/parallel.h"
 
 namespace gyre {
 
@@ -14,6 +16,7 @@ namespace {
 constexpr float kPushShare = 0.4f;
 // Manifolds lie anywhere in memory: how many contacts before its turn one is asked for.
 constexpr std::size_t kAhead = 6;
+constexpr int kContactsPerBlock = 64;
 
 // A body as constraints know it: kNoBody if it never moves (its record is then never read).
 std::int32_t solver_body(const RigidWorld& w, std::uint32_t body) {
@@ -25,59 +28,139 @@ void touch_body(RigidWorld& w, std::uint32_t body, std::uint8_t touch) {
   std::uint8_t& touched = w.bodies.flags[body].touched;
   touched = max(touched, touch);
 }
+// The same, where others may touch it at once. (Not std::atomic_ref: Emscripten's library has none yet.)
+void touch_shared_body(RigidWorld& w, std::uint32_t body, std::uint8_t touch) {
+  std::uint8_t* const touched = &w.bodies.flags[body].touched;
+  std::uint8_t before = __atomic_load_n(touched, __ATOMIC_RELAXED);
+  while (before < touch && !__atomic_compare_exchange_n(touched, &before, touch, true, __ATOMIC_RELAXED,
+                                                        __ATOMIC_RELAXED)) {
+  }
+}
 
 void fetch_manifold(const ContactStore& store, std::uint32_t slot) {
   prefetch(&store.manifolds[store.contacts[slot].first_manifold], sizeof(Manifold));
 }
 
-}  // namespace
+// Writes the constraints of contacts to their places in the lists.
+class ContactGatherer {
+ public:
+  explicit ContactGatherer(Solve& solve)
+      : solve_(solve),
+        w_(solve.w),
+        fall_(std::sqrt(length(w_.settings.gravity))),
+        has_rules_(!w_.surface_rules.empty()) {}
 
-void gather_contacts(Solve& solve) {
-  RigidWorld& w = solve.w;
-  SolveScratch& s = solve.scratch;
-  s.constraints.clear();
-  s.constraint_contact.clear();
-  s.impacts.clear();
-  s.pairs.clear();
-  const float fall = std::sqrt(length(w.settings.gravity));
-  const bool has_rules = !w.surface_rules.empty(), some_wait = !w.waiting.empty();
-  for (std::size_t i = 0; i < solve.batch.contacts.size(); ++i) {
-    if (i + kAhead < solve.batch.contacts.size()) fetch_manifold(w.contacts, solve.batch.contacts[i + kAhead]);
-    const std::uint32_t slot = solve.batch.contacts[i];
-    if (some_wait && w.waiting[slot] != 0) continue;
-    const Contact& contact = w.contacts.contacts[slot];
-    const bool active_a = is_active(w, contact.body_a), active_b = is_active(w, contact.body_b);
+  // What was found among some contacts.
+  struct Found {
+    bool gaps = false;     // constraints without a manifold: nothing is asked of these
+    bool bouncy = false;
+  };
+
+  Found gather(std::uint32_t slot, std::size_t place) const {
+    const Contact& contact = w_.contacts.contacts[slot];
+    const bool active_a = is_active(w_, contact.body_a), active_b = is_active(w_, contact.body_b);
     const std::uint8_t touch = contact.surface.restitution > 0.0f ? kPlaceShown : kTouched;
-    touch_body(w, contact.body_a, touch);
-    touch_body(w, contact.body_b, touch);
+    touch_shared_body(w_, contact.body_a, touch);
+    touch_shared_body(w_, contact.body_b, touch);
+    const ColoringPair pair{active_a ? solve_.places[contact.body_a] : ColoringPair::kNone,
+                            active_b ? solve_.places[contact.body_b] : ColoringPair::kNone};
+    const ContactConstraint all = describe(contact, active_a, active_b);
+    SolveScratch& s = solve_.scratch;
+    Found found;
+    for (Manifold& manifold : manifolds_of(w_.contacts, contact)) {
+      ContactConstraint& constraint = s.constraints[place] = all;
+      s.pairs[place] = pair;
+      s.constraint_contact[place++] = slot;
+      if (!add_manifold(contact, manifold, constraint)) constraint.manifold = nullptr;
+      found.gaps = found.gaps || constraint.manifold == nullptr;
+      found.bouncy = found.bouncy || constraint.restitution > 0.0f;
+    }
+    return found;
+  }
+
+ private:
+  ContactConstraint describe(const Contact& contact, bool active_a, bool active_b) const {
     ContactConstraint constraint;
-    constraint.body_a = solver_body(w, contact.body_a);
-    constraint.body_b = solver_body(w, contact.body_b);
+    constraint.body_a = solver_body(w_, contact.body_a);
+    constraint.body_b = solver_body(w_, contact.body_b);
     constraint.static_friction = contact.surface.static_friction;
     constraint.dynamic_friction = contact.surface.dynamic_friction;
     constraint.rolling_friction = contact.surface.rolling_friction;
     constraint.spinning_friction = contact.surface.spinning_friction;
     constraint.restitution = contact.surface.restitution;
     constraint.size = contact.size;
-    constraint.linked = (active_a && !w.bodies.joints[contact.body_a].empty()) ||
-                        (active_b && !w.bodies.joints[contact.body_b].empty());
-    constraint.push_speed = kPushShare * (fall > 0.0f ? fall : 3.132f) * std::sqrt(contact.size);
-    for (Manifold& manifold : manifolds_of(w.contacts, contact)) {
-      if (manifold.count == 0) continue;
-      constraint.fast = note_approach(w, contact, manifold);
-      constraint.manifold = &manifold;
-      constraint.point_count = manifold.count;
-      s.constraints.push_back(constraint);
-      if (has_rules && !apply_surface_rules(w, contact, manifold, s.constraints.back())) {
-        s.constraints.pop_back();
-        continue;
-      }
-      s.constraints.back().spinning_friction += patch_friction(w, contact, s.constraints.back());
-      s.constraint_contact.push_back(slot);
-      s.pairs.push_back({active_a ? solve.places[contact.body_a] : ColoringPair::kNone,
-                         active_b ? solve.places[contact.body_b] : ColoringPair::kNone});
-      if (s.constraints.back().restitution > 0.0f) s.impacts.push_back(make_impact(s.constraints.back()));
+    constraint.linked = (active_a && !w_.bodies.joints[contact.body_a].empty()) ||
+                        (active_b && !w_.bodies.joints[contact.body_b].empty());
+    constraint.push_speed = kPushShare * (fall_ > 0.0f ? fall_ : 3.132f) * std::sqrt(contact.size);
+    return constraint;
+  }
+  bool add_manifold(const Contact& contact, Manifold& manifold, ContactConstraint& constraint) const {
+    if (manifold.count == 0) return false;
+    constraint.fast = note_approach(w_, contact, manifold);
+    constraint.manifold = &manifold;
+    constraint.point_count = manifold.count;
+    constraint.hold = manifold.age >= kHeldAge ? ContactHold::held
+                      : manifold.age > 0.0f    ? ContactHold::sprung
+                                               : ContactHold::none;
+    if (has_rules_ && !apply_surface_rules(w_, contact, manifold, constraint)) return false;
+    constraint.spinning_friction += patch_friction(w_, contact, constraint);
+    return true;
+  }
+
+  Solve& solve_;
+  RigidWorld& w_;
+  float fall_;
+  bool has_rules_;
+};
+
+void close_gaps(SolveScratch& s) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < s.constraints.size(); ++i) {
+    if (s.constraints[i].manifold == nullptr) continue;
+    s.constraints[kept] = s.constraints[i];
+    s.pairs[kept] = s.pairs[i];
+    s.constraint_contact[kept++] = s.constraint_contact[i];
+  }
+  s.constraints.resize_uninitialized(kept);
+  s.pairs.resize_uninitialized(kept);
+  s.constraint_contact.resize_uninitialized(kept);
+}
+
+}  // namespace
+
+void gather_contacts(Solve& solve, Arena& arena, TaskSystem& tasks) {
+  const ArenaScope scope(arena);
+  const RigidWorld& w = solve.w;
+  SolveScratch& s = solve.scratch;
+  const std::span<const std::uint32_t> slots = solve.batch.contacts;
+  const auto waits = [&](std::uint32_t slot) { return !w.waiting.empty() && w.waiting[slot] != 0; };
+  const std::span<std::uint32_t> places = arena.make<std::uint32_t>(slots.size());
+  std::uint32_t count = 0;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    places[i] = count;
+    if (!waits(slots[i])) count += w.contacts.contacts[slots[i]].manifold_count;
+  }
+  s.constraints.resize_uninitialized(count);
+  s.pairs.resize_uninitialized(count);
+  s.constraint_contact.resize_uninitialized(count);
+  using Found = ContactGatherer::Found;
+  const auto either = [](Found a, Found b) { return Found{a.gaps || b.gaps, a.bouncy || b.bouncy}; };
+  const ContactGatherer gatherer(solve);
+  const auto gather_block = [&](int begin, int end, int) {
+    Found found;
+    for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
+      if (i + kAhead < slots.size()) fetch_manifold(w.contacts, slots[i + kAhead]);
+      if (!waits(slots[i])) found = either(found, gatherer.gather(slots[i], places[i]));
     }
+    return found;
+  };
+  const Found found =
+      reduce_blocks(tasks, int(slots.size()), kContactsPerBlock, Found{}, gather_block, either);
+  if (found.gaps) close_gaps(s);
+  s.impacts.clear();
+  if (!found.bouncy) return;
+  for (const ContactConstraint& constraint : s.constraints) {
+    if (constraint.restitution > 0.0f) s.impacts.push_back(make_impact(constraint));
   }
 }
 

@@ -64,7 +64,7 @@ struct Group {
 };
 
 // The batch's contacts as constraints, and what colouring needs to know of them; marks the bodies as touched.
-void gather_contacts(Solve& solve);
+void gather_contacts(Solve& solve, Arena& arena, TaskSystem& tasks);
 // Those joints of the batch that are in no linkage; likewise.
 void gather_joints(Solve& solve);
 // Parts the bodies of a batch into those that constraints act on and those that fly.

@@ -449,7 +449,7 @@ void solve_batch_as_rows(Solve& solve, const SolverSettings& settings, Arena& ar
                          float warm_scale) {
   const ArenaScope scope(arena);
   SolveScratch& scratch = solve.scratch;
-  gather_contacts(solve);
+  gather_contacts(solve, arena, tasks);
   for (const ContactConstraint& constraint : scratch.constraints) constraint.manifold->total_friction = {};
   show_bodies(solve);
   solve.fields = find_field_bodies(solve.w, solve.batch.bodies, solve.h, arena);

@@ -481,7 +481,7 @@ void place_resting(Solve& solve, Arena& arena) {
 void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale) {
   const ArenaScope scope(arena);
   SolveScratch& scratch = solve.scratch;
-  gather_contacts(solve);
+  gather_contacts(solve, arena, tasks);
   const JointWorks works = begin_joints(solve.w, solve.batch, warm_scale, arena);
   solve.joint_work = works.work;
   solve.joint_places = works.places;
@@ -573,7 +573,7 @@ void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& 
   scratch.rows = {};
   scratch.hits.clear();
   const ArenaScope scope(arena);
-  const SolveBatches batches = find_batches(w, arena, batch_size(tasks.worker_count()));
+  const SolveBatches batches = find_batches(w, arena, tasks, batch_size(tasks.worker_count()));
   solve.places = batches.places;
   for (const SolveBatch& batch : batches.batches) {
     solve.batch = batch;

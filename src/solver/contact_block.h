@@ -16,6 +16,9 @@
 
 namespace gyre {
 
+// Whether a contact has borne load as a spring, or is held as part of a structure at rest (solver/contact_structure.h).
+enum class ContactHold : std::uint8_t { none, sprung, held };
+
 // One manifold to be solved. Plain data: the same for every width; the kernels read it four floats at a time.
 struct ContactConstraint {
   float static_friction = 0.0f;
@@ -32,8 +35,10 @@ struct ContactConstraint {
   bool rigid = false;              // no spring: part of a tree that is solved directly
   bool linked = false;             // one of the bodies hangs on a joint
   bool fast = false;               // closes so fast that it may be told as a hit
+  ContactHold hold = ContactHold::none;  // as the step began
   Manifold* manifold = nullptr;
 };
+static_assert(sizeof(ContactConstraint) <= 64 || sizeof(void*) != 8, "a cache line");
 
 // What is the same for all contacts of a step.
 struct ContactSettings {

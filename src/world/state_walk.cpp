@@ -237,7 +237,8 @@ bool are_all(const SolveBatches& batches, std::span<const std::uint32_t> SolveBa
 // smaller, so that there are several.
 Error Walk::everything_is_solved() const {
   Arena arena;
-  const SolveBatches batches = find_batches(w_, arena, 16);
+  TaskSystem alone;
+  const SolveBatches batches = find_batches(w_, arena, alone, 16);
   const auto acts = [&](std::uint32_t slot) { return is_solved(w_, w_.contacts.contacts[slot]); };
   if (!are_all(batches, &SolveBatch::contacts, w_.contacts.contacts.size(), acts))
     return broken("a contact with manifolds and an awake body is not in one batch");
