@@ -198,36 +198,40 @@ void take_out(ContactStore& store, std::uint32_t slot, std::uint8_t mask) {
 }
 static_assert(kMaxMeshManifolds <= 8);
 
-// A shape that lies on one alone has no seam below it: most lie so, and need not be asked.
-void count_neighbours(const ContactStore& store, const CollideInput& input, const Bitset& beside_resting,
-                      SeamScratch& scratch) {
-  scratch.beside.assign(input.proxies.size(), 0);
+// With how many resting shapes each shape has a contact; two stand for more. A shape that lies on one alone has no seam below it:
+// most lie so, and need not be asked.
+using NeighbourCounts = std::span<std::uint8_t>;
+
+NeighbourCounts count_neighbours(const ContactStore& store, const CollideInput& input,
+                                 const Bitset& beside_resting, Arena& arena) {
+  const NeighbourCounts counts = arena.make<std::uint8_t>(input.proxies.size());
+  for (std::uint8_t& count : counts) count = 0;
   beside_resting.for_each_set([&](std::size_t slot) {
     Side side;
-    if (!find_side(store, std::uint32_t(slot), input, side)) return;
-    std::uint8_t& count = scratch.beside[side.mover];
-    if (count < 2) ++count;
+    if (find_side(store, std::uint32_t(slot), input, side) && counts[side.mover] < 2) ++counts[side.mover];
   });
+  return counts;
 }
 bool has_neighbours(const ContactStore& store, std::uint32_t slot, const CollideInput& input,
-                    const SeamScratch& scratch) {
+                    NeighbourCounts counts) {
   Side side;
-  return find_side(store, slot, input, side) && scratch.beside[side.mover] > 1;
+  return find_side(store, slot, input, side) && counts[side.mover] > 1;
 }
 
 }  // namespace
 
-void hide_seams(ContactStore& store, const CollideInput& input, const Bitset& beside_resting, TaskSystem& tasks,
-                SeamScratch& scratch) {
+void hide_seams(ContactStore& store, const CollideInput& input, const Bitset& beside_resting, Arena& arena,
+                TaskSystem& tasks, SeamScratch& scratch) {
+  const ArenaScope scope(arena);
   const std::size_t count = store.contacts.size();
   if (scratch.hidden.size() < count) scratch.hidden.resize(count);
   scratch.hidden.reset_all();
-  count_neighbours(store, input, beside_resting, scratch);
+  const NeighbourCounts counts = count_neighbours(store, input, beside_resting, arena);
   // All are asked before any is changed: nobody is hidden by who is hidden earlier in the list.
   for_blocks(tasks, int(count), kBlock, [&](int begin, int end, int) {
     for (int slot = begin; slot < end; ++slot) {
       if (!beside_resting.test(std::size_t(slot))) continue;
-      if (!has_neighbours(store, std::uint32_t(slot), input, scratch)) continue;
+      if (!has_neighbours(store, std::uint32_t(slot), input, counts)) continue;
       if (hidden_manifolds(store, std::uint32_t(slot), input) != 0) scratch.hidden.set(std::size_t(slot));
     }
   });

@@ -10,6 +10,7 @@
 // normal leans, and of the other only the triangle that is touched must not rise.
 #pragma once
 
+#include "base/arena.h"
 #include "collision/collide.h"
 
 namespace gyre {
@@ -23,15 +24,14 @@ struct SeamScratch {
     std::uint32_t slot;
     std::uint8_t manifolds;  // bits
   };
-  Array<std::uint8_t> beside;  // by shape: with how many resting shapes it has a contact; two stand for more
-  Bitset hidden;               // contacts
+  Bitset hidden;  // contacts
   Array<Found> found;
 };
 
 // Takes those manifolds from every contact of a moving shape with a resting one that another resting shape, touched by it
 // too, hides. Such a contact is looked at anew in the next step.
 // `beside_resting`: see TouchChanges.
-void hide_seams(ContactStore& store, const CollideInput& input, const Bitset& beside_resting, TaskSystem& tasks,
-                SeamScratch& scratch);
+void hide_seams(ContactStore& store, const CollideInput& input, const Bitset& beside_resting, Arena& arena,
+                TaskSystem& tasks, SeamScratch& scratch);
 
 }  // namespace gyre

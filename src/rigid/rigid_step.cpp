@@ -168,7 +168,7 @@ void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds
   });
   const CollideInput input{w.shapes.colliders, looks, centers, w.shapes.proxies};
   collide(w.contacts, input, tasks, w.touches);
-  hide_seams(w.contacts, input, w.touches.beside_resting, tasks, w.seams);
+  hide_seams(w.contacts, input, w.touches.beside_resting, arena, tasks, w.seams);
 }
 
 void link_islands(RigidWorld& w) {
