@@ -370,6 +370,8 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   // is none of what contacts gave in the last one.
   const bool has_joints = linkages > 0 || bundles > 0 || !joints.empty();
   const bool is_warm = !first && impacts == 0 && !has_joints;
+  // What contacts gave is looked at only where there may be any. (Linkages leave negative zeros, which the look clears away.)
+  const int watched = contacts.empty() && linkages == 0 && bundles == 0 && has_joints ? 0 : bodies;
   const int fields = solve.fields.blocks();
   program.add(watch_fields_stage, &solve.fields, fields);
   program.add(watch_stage, &solve, impacts);
@@ -383,27 +385,27 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   program.add(linkage_stage<warm_linkage>, &solve, linkages);
   program.add(bundle_stage<&LinkageKernels::warm>, &solve, bundles);
   program.add_groups(warm_joints_stage, joints, kJointsPerBlock, 1);
-  if (!first && !is_warm) program.add(warm_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
+  if (!first && !is_warm) program.add(warm_motion_stage, &solve, watched, kMotionBlocksPerClaim);
   if (first) {
-    program.add(watch_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
+    program.add(watch_motion_stage, &solve, watched, kMotionBlocksPerClaim);
     program.add_groups(warm_contacts_stage, contacts, 1, kBlocksPerClaim);
-    program.add(note_stage, &solve, bodies, kMotionBlocksPerClaim);
+    program.add(note_stage, &solve, watched, kMotionBlocksPerClaim);
   }
   // What contacts and joints gave in the last part is in the velocities by now: a stream pulls at what really moves.
   program.add(apply_fields_stage, &solve.fields, fields);
-  if (fields > 0) program.add(watch_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
+  if (fields > 0) program.add(watch_motion_stage, &solve, watched, kMotionBlocksPerClaim);
   program.add_groups(solve_joints_stage, joints, kJointsPerBlock, 1);
   program.add(linkage_stage<solve_linkage>, &solve, linkages);
   program.add(bundle_stage<&LinkageKernels::solve>, &solve, bundles);
-  if (has_joints) program.add(watch_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
+  if (has_joints) program.add(watch_motion_stage, &solve, watched, kMotionBlocksPerClaim);
   program.add_groups(solve_contacts_stage, contacts, 1, kBlocksPerClaim);
   program.add(solve_trees_stage, &solve, trees, kTreesPerClaim);
   if (first) program.add(structures_stage<solve_structure_first>, &solve, structures);
   if (last) program.add(structures_stage<solve_structure_last>, &solve, structures);
-  if (has_joints) program.add(note_stage, &solve, bodies, kMotionBlocksPerClaim);
+  if (has_joints) program.add(note_stage, &solve, watched, kMotionBlocksPerClaim);
   program.add(linkage_stage<solve_linkage_again>, &solve, linkages);
   program.add(bundle_stage<&LinkageKernels::solve_again>, &solve, bundles);
-  if (has_joints) program.add(watch_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
+  if (has_joints) program.add(watch_motion_stage, &solve, watched, kMotionBlocksPerClaim);
   program.add(advance_stage, &solve, bodies, kMotionBlocksPerClaim);
   program.add(turn_alone_stage, &solve, count_blocks(int(solve.spinners.size()), kSpinnersPerClaim));
   program.add(release_stage, &solve, impacts);
