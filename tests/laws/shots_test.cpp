@@ -317,6 +317,29 @@ TEST(FastBodies, DoNotPassWalls) {
     }
   }
 }
+// What moves by itself runs over nothing, whether that rests or goes along more slowly.
+TEST(Overrun, APlateTakesAlongWhatItMeets) {
+  for (const float speed : {20.0f, 40.0f, 100.0f, 400.0f}) {
+    for (const float share : {0.0f, 0.3f}) {  // of the plate's speed: the ball's
+      for (int phase = 0; phase < 10; ++phase) {
+        World world = make_world({.gravity = {0, 0, 0}, .sleeping = false});
+        // Some steps away, where the broad phase knows the speed of the plate.
+        const double ahead = 0.2 + double(speed) / 60.0 * (3.0 + double(phase) / 10.0);
+        const BodyId plate = world.add_body({.type = BodyType::kinematic, .linear_velocity = {speed, 0, 0}},
+                                            {.geometry = Box{{0.01f, 5, 5}}});
+        const BodyId ball = world.add_body(
+            {.pose = {.position = {ahead, 0.1, 0.2}}, .linear_velocity = {share * speed, 0, 0}},
+            {.geometry = Sphere{0.05f}});
+        for (int step = 0; step < 20; ++step) {
+          world.step(kStep);
+          ASSERT_GT(world.pose(ball).position.x, world.pose(plate).position.x)
+              << speed << " m/s, ball at " << share << " of it, phase " << phase << ", step " << step;
+        }
+      }
+    }
+  }
+}
+
 TEST(FastBodies, DoNotPassAStack) {
   for (int phase = 0; phase < 5; ++phase) {
     World world = make_world({.sleeping = false});
