@@ -5,6 +5,7 @@
 #include "collision/fat_box.h"
 #include "collision/swept_surface.h"
 #include "geometry/nearest.h"
+#include "math/rotation.h"
 #include "task/parallel.h"
 
 namespace gyre {
@@ -190,16 +191,31 @@ double part_in_touch(const ContinuousInput& input, const BodyStop& stop, Pose po
   return low;
 }
 
-// A body that was stopped spends the rest of its step on what it met: on its way along it, and with it. It does not turn
-// meanwhile, so that what was between the two stays between them. Of a second obstacle it follows the crease.
+// How a body goes that keeps its place on something that moves and turns, from a time on.
+Sweep ride_on(const Sweep& carrier, const Pose& pose, Vec3 center, double from) {
+  const double rest = 1.0 - from;
+  Sweep ride{pose, center, float(rest) * carrier.moved, float(rest) * carrier.turned};
+  if (carrier.turned == Vec3{}) return ride;
+  const Pose start = pose_at(carrier, from);
+  const auto middle = [](const Pose& of, Vec3 at) { return of.position + DVec3(rotate(of.orientation, at)); };
+  const DVec3 beside = middle(pose, center) - middle(start, carrier.center);
+  const DQuat turn = normalized(to_double(from_rotation_vector(ride.turned)));
+  ride.moved += to_float(rotate(turn, beside) - beside);
+  return ride;
+}
+
+bool is_at_rest(const Sweep& sweep) { return sweep.moved == Vec3{} && sweep.turned == Vec3{}; }
+
+// A body that was stopped spends the rest of its step on what it met: on its way along it, and with it. By itself it does not
+// turn meanwhile, so that what was between the two stays between them. Of a second obstacle it follows the crease.
 class Slide {
  public:
   Slide(const ContinuousInput& input, const FastBody& fast, Array<std::uint32_t>& found,
         Array<std::uint64_t>& crossings, TriangleHull& triangle)
       : input_(input), fast_(fast), found_(found), crossings_(crossings), triangle_(triangle) {}
 
-  // How far the body's middle goes (m) after `stop`.
-  Vec3 run(const Sweep& sweep, const BodyStop& stop) {
+  // How far the body goes after `stop`: into kept.slide and kept.turn.
+  void run(const Sweep& sweep, const BodyStop& stop, KeptMotion& kept) {
     DVec3 normals[2];
     BodyStop last = stop;
     DVec3 way = (1.0 - stop.time) * DVec3(sweep.moved), gone;
@@ -207,13 +223,16 @@ class Slide {
     double from = stop.time;
     for (int k = 0; k < 2; ++k) {
       if (!may_slide(last)) break;
-      normals[k] = last.normal;
-      const DVec3 carried = is_pushed(last) ? DVec3{} : (1.0 - from) * DVec3(sweep_of(last).moved);
+      Sweep ride{pose, sweep.center, {}, {}};
+      if (!is_pushed(last)) ride = ride_on(sweep_of(last), pose, sweep.center, from);
+      const bool rides = !is_at_rest(ride);
+      const DVec3 carried(ride.moved);
+      normals[k] = rotate(normalized(to_double(from_rotation_vector(ride.turned))), last.normal);
       DVec3 drift = along(way - carried, normals, k);
       // Of what the core only is in the way the shape itself may be in, and need not stay in touch.
-      if (!stop.by_core) drift = part_in_touch(input_, last, moved(pose, carried), drift) * drift;
-      const Sweep next{pose, sweep.center, to_float(drift + carried), {}};
-      const Way rest{fast_, next, from, true, stop.by_core};
+      if (!stop.by_core) drift = part_in_touch(input_, last, pose_at(ride, 1.0), drift) * drift;
+      ride.moved = to_float(drift + carried);
+      const Way rest{fast_, ride, from, true, stop.by_core};
       const BodyStop second = first_stop(input_, rest, found_, triangle_);
       const double part = second.hit ? second.time : 1.0;
       if (second.near_gate) find_crossings(input_, rest, part, found_, crossings_, triangle_);
@@ -221,26 +240,23 @@ class Slide {
       const DVec3 step = part * drift + carried;
       gone += step;
       pose.position += step;
-      if (!second.hit || !(carried == DVec3{})) break;
+      kept.turn = ride.turned;
+      if (!second.hit || rides) break;
       way = (1.0 - part) * drift;
       from += part * (1.0 - from);
       last = second;
     }
-    return to_float(gone);
+    kept.slide = to_float(gone);
   }
 
  private:
   Sweep sweep_of(const BodyStop& stop) const { return input_.sweep_of(input_.proxies[stop.obstacle].body); }
   bool may_slide(const BodyStop& stop) const {
     if (!stop.hit || stop.time >= 1.0 || !(length_squared(stop.normal) > 0.5)) return false;
-    return stop.by_core || (!is_pushed(stop) && sweep_of(stop).turned == Vec3{});
+    return stop.by_core || !is_pushed(stop);
   }
   // Where what a sweep pushes will be, only its own sweep knows.
   bool is_pushed(const BodyStop& stop) const { return input_.proxies[stop.obstacle].pushes; }
-  static Pose moved(Pose pose, DVec3 way) {
-    pose.position += way;
-    return pose;
-  }
   // The way without what leads into the obstacles met so far (k + 1 of them).
   static DVec3 along(DVec3 way, const DVec3 (&normals)[2], int k) {
     way = way - max(dot(way, normals[k]), 0.0) * normals[k];
@@ -298,8 +314,8 @@ void ContinuousCollision::clamp_fast_bodies(const ContinuousInput& input, std::s
       // What lies on something already meets the next piece of it at an edge that is none: it is not to be lifted over that.
       const bool fresh = !(body.least > 0.0f) || stop.by_core;
       const bool slides = stop.hit && body.slides &&
-                          (fresh || !(input.sweep_of(input.proxies[stop.obstacle].body).moved == Vec3{}));
-      if (slides) out.slide = Slide(input, body, own.found, own.crossings, *own.triangle).run(sweep, stop);
+                          (fresh || !is_at_rest(input.sweep_of(input.proxies[stop.obstacle].body)));
+      if (slides) Slide(input, body, own.found, own.crossings, *own.triangle).run(sweep, stop, out);
     }
   });
   gather_crossings();

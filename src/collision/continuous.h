@@ -34,11 +34,12 @@ struct FastBody {
   bool only_crosses = false;  // nothing stops it: only what it crosses is told
 };
 
-// What a fast body keeps of its motion: a fraction of it (1 where nothing is in the way), and then, without turning, a way
-// along what it met.
+// What a fast body keeps of its motion: a fraction of it (1 where nothing is in the way), and then a way along what it met and
+// with it.
 struct KeptMotion {
   float fraction = 1.0f;
   Vec3 slide;  // m, of the centre of mass
+  Vec3 turn;   // rad, rotation vector, world: what it met turned it along
   // Where the core was in the way, although the shape was in touch already: the solver did not hold it there. Whoever moves
   // the body must take its speed into `other` at that point.
   Vec3 blow;                // unit, from the body to the other; zero: there was none
@@ -60,8 +61,7 @@ inline bool is_fast(Vec3 moved, Vec3 turned, float reach, float inner) {
 // A box around the whole way of a shape, turning included.
 Aabb box_of_way(const ColliderShape& shape, const Sweep& sweep);
 
-// A surface that moves by itself and a convex shape on its way, one of them a sensor: shapes. The surface is not swept itself,
-// and where it will be the broad phase does not know.
+// A surface that moves by itself and a convex shape on its way, one of them a sensor: shapes. The surface is not swept itself.
 struct GatePair {
   std::uint32_t convex = 0, surface = 0;
 };

@@ -71,12 +71,19 @@ Aabb fat_box(const WorldBox& needed, const BoxMotion& motion) {
   return round_outward({needed.low - all + min(ahead, Vec3{}), needed.high + all + max(ahead, Vec3{})});
 }
 
-bool needs_refit(const Aabb& fat, const WorldBox& needed, const BoxMotion& motion) {
+bool holds(const Aabb& fat, const WorldBox& needed) {
   const DVec3 low(fat.low);
   const DVec3 high(fat.high);
   for (int axis = 0; axis < 3; ++axis) {
-    if (low[axis] > needed.low[axis] || high[axis] < needed.high[axis]) return true;
+    if (low[axis] > needed.low[axis] || high[axis] < needed.high[axis]) return false;
   }
+  return true;
+}
+
+bool needs_refit(const Aabb& fat, const WorldBox& needed, const BoxMotion& motion) {
+  if (!holds(fat, needed)) return true;
+  const DVec3 low(fat.low);
+  const DVec3 high(fat.high);
   // Far from the origin, rounding alone makes a small shape's box large.
   const double size = margin_size(motion);
   for (int axis = 0; axis < 3; ++axis) {

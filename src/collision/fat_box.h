@@ -38,6 +38,8 @@ WorldBox needed_box(const WorldBox& tight, const BoxMotion& motion);
 // The box to be given to the broad phase: the needed one with a margin, longer in the direction of motion.
 Aabb fat_box(const WorldBox& needed, const BoxMotion& motion);
 
+bool holds(const Aabb& fat, const WorldBox& needed);
+
 // Whether a fat box must be made anew: it no longer holds what is needed, or is much too large.
 bool needs_refit(const Aabb& fat, const WorldBox& needed, const BoxMotion& motion);
 

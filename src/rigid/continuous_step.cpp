@@ -1,6 +1,7 @@
 // The stage that keeps fast bodies from passing through things: lists those that moved far against their size, lets
 // collision/continuous sweep them, and takes back what motion they may not keep.
 #include "collision/continuous.h"
+#include "math/rotation.h"
 #include "rigid/joint_closing.h"
 #include "rigid/rigid_step.h"
 #include "rigid/surface_rules.h"
@@ -250,9 +251,10 @@ std::span<const StoppedBody> take_back(RigidWorld& w, ContinuousScratch& scratch
     BodyMotion& motion = w.bodies.motion[i];
     if (!w.bodies.joints[i].empty())
       stopped[stopped_count++] = {i, kept.fraction, motion.moved, motion.turned};
-    w.bodies.orientations[i] = pose_at(sweep_of_body(w, i), double(kept.fraction)).orientation;
+    const Quat stopped_at = pose_at(sweep_of_body(w, i), double(kept.fraction)).orientation;
+    w.bodies.orientations[i] = kept.turn == Vec3{} ? stopped_at : integrate_rotation(stopped_at, kept.turn);
     motion.moved = kept.fraction * motion.moved + kept.slide;
-    motion.turned *= kept.fraction;
+    motion.turned = kept.fraction * motion.turned + kept.turn;
     w.bodies.inertia[i] = world_inertia(w.bodies.masses[i], w.bodies.flags[i], w.bodies.orientations[i]);
     if (!(kept.blow == Vec3{})) Blow(w, i, kept).take();
   }

@@ -58,6 +58,49 @@ bool finite_state(const BodyMotion& motion, Quat orientation) {
          is_finite(orientation);
 }
 
+void list_marked(RigidWorld& w) {
+  for (const std::uint32_t i : w.bodies.awake) {
+    for (const ShapeId id : w.bodies.shapes[i]) {
+      if (w.refit_marks[id.index] == 0) continue;
+      w.refit_marks[id.index] = 0;
+      w.shapes.changed.push_back(id.index);
+    }
+  }
+}
+
+// Whether the fat box did not hold its shape's way in the coming step, and is made anew.
+bool hold_way(RigidWorld& w, std::uint32_t shape, const Pose& origin, float seconds) {
+  const BoxMotion motion = box_motion(w, shape, seconds);
+  const WorldBox needed = needed_box_of(w, shape, origin, motion);
+  Proxy& proxy = w.shapes.proxies[shape];
+  if (holds(proxy.fat_box, needed)) return false;
+  proxy.fat_box = fat_box(needed, motion);
+  return true;
+}
+
+// The promise of collision/fat_box.h as a step begins.
+void hold_ways(RigidWorld& w, TaskSystem& tasks, float seconds) {
+  if (seconds > w.shapes.fit_for) {
+    w.refit_marks.resize(w.shapes.colliders.size(), 0);
+    for_blocks(tasks, int(w.bodies.awake.size()), kBodiesPerBlock, [&](int begin, int end, int) {
+      for (int n = begin; n < end; ++n) {
+        const std::uint32_t i = w.bodies.awake[n];
+        const Pose origin = origin_pose(w.bodies, i);
+        for (const ShapeId id : w.bodies.shapes[i]) w.refit_marks[id.index] = hold_way(w, id.index, origin, seconds);
+      }
+    });
+    list_marked(w);
+  } else {
+    for (const std::uint32_t shape : w.shapes.hurried) {
+      if (!w.shapes.ids.live(shape)) continue;
+      if (hold_way(w, shape, origin_pose(w.bodies, w.shapes.bodies[shape]), seconds)) w.shapes.changed.push_back(shape);
+    }
+  }
+  w.shapes.fit_for = seconds;
+  w.clocks.hurried.trim(w.shapes.hurried, w.shapes.hurried.size());
+  w.shapes.hurried.clear();
+}
+
 // Takes a body whose state went wrong back to where it last was and keeps it there. Impulses that are no numbers must not
 // stay with its contacts and joints: they would go over to the next body, and the bits of a NaN differ between processors.
 void freeze(RigidWorld& w, std::uint32_t body) {
@@ -99,6 +142,16 @@ void refit_shape(RigidWorld& w, std::uint32_t shape, float seconds) {
   w.shapes.changed.push_back(shape);
 }
 
+void hurry(RigidWorld& w, std::uint32_t shape) {
+  const BodyMotion& motion = w.bodies.motion[w.shapes.bodies[shape]];
+  if (motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{}) w.shapes.hurried.push_back(shape);
+}
+
+void place_box(RigidWorld& w, std::uint32_t shape) {
+  refit_shape(w, shape, 0.0f);
+  hurry(w, shape);
+}
+
 void report_end(RigidWorld& w, const Contact& contact) {
   if (contact.touching == 0) return;
   if (contact.sensor != 0) {
@@ -111,7 +164,8 @@ void report_end(RigidWorld& w, const Contact& contact) {
   w.events.ends.push_back({shape_id(w, contact.shape_a), shape_id(w, contact.shape_b)});
 }
 
-void refit(RigidWorld& w) {
+void refit(RigidWorld& w, TaskSystem& tasks, float seconds) {
+  hold_ways(w, tasks, seconds);
   sort_changed(w.shapes.changed, w.new_pairs, w.sort_scratch);
   if (w.broadphase_stale) {
     w.broadphase->rebuild(w.shapes.proxies);
@@ -212,13 +266,8 @@ void finish_bodies(RigidWorld& w, TaskSystem& tasks, float seconds, Array<std::u
       }
     }
   });
-  for (const std::uint32_t i : bodies.awake) {
-    for (const ShapeId id : bodies.shapes[i]) {
-      if (w.refit_marks[id.index] == 0) continue;
-      w.refit_marks[id.index] = 0;
-      w.shapes.changed.push_back(id.index);
-    }
-  }
+  list_marked(w);
+  w.shapes.fit_for = seconds;
 }
 
 void break_joints(RigidWorld& w, float seconds) {

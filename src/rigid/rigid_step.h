@@ -21,8 +21,9 @@ struct ContinuousScratch {
 
 // A list of changed proxies, ascending and without repeats; the other two are scratch.
 void sort_changed(Array<std::uint32_t>& changed, Array<std::uint64_t>& keys, Array<std::uint64_t>& scratch);
-// Tells the broad phase what came, went or moved its fat box since the last step.
-void refit(RigidWorld& w);
+// Tells the broad phase what came, went or moved its fat box since the last step. Commands do not know how long the step will be:
+// boxes of what they placed or set moving get its way here, and all do where the step is longer than the last.
+void refit(RigidWorld& w, TaskSystem& tasks, float seconds);
 // New pairs of fat boxes become contacts, in key order.
 // Returns how many pairs of boxes the broad phase named.
 std::size_t find_pairs(RigidWorld& w, TaskSystem& tasks);
@@ -42,8 +43,12 @@ void break_joints(RigidWorld& w, float seconds);
 // Sweeps bodies that moved far against what is in their way and takes them back to the first impact.
 void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, TaskSystem& tasks);
 
-// Fits a new fat box around one shape and lists it as changed.
+// Fits a new fat box around one shape, with its way in a step of this length, and lists it as changed.
 void refit_shape(RigidWorld& w, std::uint32_t shape, float seconds);
+// A command set the shape's body moving: the coming step sees to its box.
+void hurry(RigidWorld& w, std::uint32_t shape);
+// Fits a new fat box around what a command placed, with no way yet; the coming step sees to that.
+void place_box(RigidWorld& w, std::uint32_t shape);
 // Removes one contact's traces: its end-of-touch event.
 void report_end(RigidWorld& w, const Contact& contact);
 

@@ -62,7 +62,7 @@ struct RigidEvents {
 
 // When memory that only busy steps need was last needed.
 struct ScratchClocks {
-  IdleClock changed, new_pairs, sort_scratch;
+  IdleClock changed, hurried, new_pairs, sort_scratch;
   IdleClock begins, ends, hits, sensors, broken, sleep_changes;
 };
 

@@ -37,6 +37,9 @@ struct ShapeStore {
   Array<float> density;
   Array<std::uint64_t> user_data;
   Array<std::uint32_t> changed;     // proxies that the broad phase has not seen yet, in no order; derived
+  // The fat boxes of what is awake hold its way in a step of this length (s), but for those of `hurried`; derived.
+  float fit_for = 0.0f;
+  Array<std::uint32_t> hurried;     // shapes that commands placed or set moving since
 };
 
 IdPool::Slot add_shape_slot(ShapeStore& store);

@@ -131,8 +131,12 @@ ShapeId attach_shape(RigidWorld& w, std::uint32_t body, const ShapeDef& def) {
   return id;
 }
 
+void hurry_body(RigidWorld& w, std::uint32_t body) {
+  for (const ShapeId id : w.bodies.shapes[body]) hurry(w, id.index);
+}
+
 void refit_body(RigidWorld& w, std::uint32_t body) {
-  for (const ShapeId id : w.bodies.shapes[body]) refit_shape(w, id.index, 0.0f);
+  for (const ShapeId id : w.bodies.shapes[body]) place_box(w, id.index);
 }
 
 std::uint8_t bits(const bool (&axes)[3]) {
@@ -233,6 +237,7 @@ Submitted carry_out(WorldState& s, const SetVelocity& c) {
   stir(w, c.body.index);
   w.bodies.motion[c.body.index].linear_velocity = c.linear + Vec3{};
   w.bodies.motion[c.body.index].angular_velocity = c.angular + Vec3{};
+  hurry_body(w, c.body.index);
   return {true, {}, {}, {}};
 }
 
@@ -246,6 +251,7 @@ Submitted carry_out(WorldState& s, const MoveKinematic& c) {
   motion.linear_velocity = finite_or((1.0f / c.seconds) * difference(center, w.bodies.places[body].center) + Vec3{}, {});
   motion.angular_velocity =
       finite_or((1.0f / c.seconds) * rotation_between(w.bodies.places[body].orientation, orientation) + Vec3{}, {});
+  hurry_body(w, body);
   return {true, {}, {}, {}};
 }
 
@@ -339,7 +345,7 @@ Submitted carry_out(WorldState& s, const SetFilter& c) {
   wake_neighbours(w, w.shapes.bodies[shape]);
   drop_contacts(w, shape);
   w.shapes.proxies[shape].filter = c.filter;
-  refit_shape(w, shape, 0.0f);
+  place_box(w, shape);
   return {true, {}, {}, {}};
 }
 Submitted carry_out(WorldState& s, const SetMotor& c) {
@@ -424,6 +430,7 @@ Submitted carry_out(WorldState& s, const AddImpulse& c) {
   const BodyInertia& inertia = s.rigid.bodies.inertia[body];
   motion.linear_velocity = bounded(motion.linear_velocity + inertia.inverse_mass * c.impulse) + Vec3{};
   motion.angular_velocity = bounded(motion.angular_velocity + inertia.inverse * c.angular) + Vec3{};
+  hurry_body(s.rigid, body);
   return {true, {}, {}, {}};
 }
 Submitted carry_out(WorldState& s, const Step& c) {

@@ -121,7 +121,7 @@ void count_work(WorldState& s) {
 // Who touches whom, and where.
 void look(WorldState& s, float seconds) {
   RigidWorld& w = s.rigid;
-  run_stage(s, StageName::refit, [&] { refit(w); });
+  run_stage(s, StageName::refit, [&] { refit(w, *s.tasks, seconds); });
   count(s, CounterName::refitted_boxes, w.shapes.changed.size());
   run_stage(s, StageName::find_pairs, [&] { count(s, CounterName::new_pairs, find_pairs(w, *s.tasks)); });
   run_stage(s, StageName::collide, [&] { collide_pairs(w, s.arena, *s.tasks, seconds); });

@@ -168,6 +168,8 @@ void derive_state(RigidWorld& w) {
   // Which boxes the broad phase has not seen yet is not kept. All of them are shown to it: of the pairs that it then
   // finds, only those have no contact yet that it would have found anyway.
   w.shapes.changed.clear();
+  w.shapes.hurried.clear();
+  w.shapes.fit_for = 0.0f;
   w.shapes.ids.for_each_live([&](std::uint32_t shape) {
     refresh_collider(w.shapes, shape);
     bodies.shapes[w.shapes.bodies[shape]].push_back(shape_id(w, shape));

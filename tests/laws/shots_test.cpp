@@ -320,11 +320,11 @@ TEST(FastBodies, DoNotPassWalls) {
 // What moves by itself runs over nothing, whether that rests or goes along more slowly.
 TEST(Overrun, APlateTakesAlongWhatItMeets) {
   for (const float speed : {20.0f, 40.0f, 100.0f, 400.0f}) {
-    for (const float share : {0.0f, 0.3f}) {  // of the plate's speed: the ball's
-      for (int phase = 0; phase < 10; ++phase) {
+    for (const float share : {-0.5f, 0.0f, 0.3f}) {  // of the plate's speed: the ball's
+      // From the first step on, in which the broad phase does not yet know the speed of the plate, to some steps away.
+      for (int phase = 0; phase < 40; ++phase) {
         World world = make_world({.gravity = {0, 0, 0}, .sleeping = false});
-        // Some steps away, where the broad phase knows the speed of the plate.
-        const double ahead = 0.2 + double(speed) / 60.0 * (3.0 + double(phase) / 10.0);
+        const double ahead = 0.07 + double(speed) / 60.0 * double(phase) / 10.0;
         const BodyId plate = world.add_body({.type = BodyType::kinematic, .linear_velocity = {speed, 0, 0}},
                                             {.geometry = Box{{0.01f, 5, 5}}});
         const BodyId ball = world.add_body(
@@ -335,6 +335,64 @@ TEST(Overrun, APlateTakesAlongWhatItMeets) {
           ASSERT_GT(world.pose(ball).position.x, world.pose(plate).position.x)
               << speed << " m/s, ball at " << share << " of it, phase " << phase << ", step " << step;
         }
+      }
+    }
+  }
+}
+
+// Its far end is fast, its middle is not: what counts is how fast it passes what it meets, in the air or on the ground.
+void expect_arm_takes_along(const AnyShape& what, bool on_ground, float spin, double out, int phase) {
+  World world = make_world({.gravity = {0, 0, on_ground ? -9.81f : 0.0f}, .sleeping = false});
+  if (on_ground) world.add_body({.type = BodyType::fixed}, {.geometry = Plane{{0, 0, 1}, -0.05f}});
+  const BodyId arm = world.add_body({.type = BodyType::kinematic}, {.geometry = Box{{2, 0.01f, 0.5f}}});
+  const double ahead = 0.1 / out + double(spin) / 60.0 * double(phase) / 10.0;
+  const BodyId body = world.add_body(
+      {.pose = {.position = {out * std::cos(ahead), out * std::sin(ahead), 0.0}}}, {.geometry = what});
+  if (on_ground) world.step(kStep);  // so that it lies
+  world.set_velocity(arm, {}, {0, 0, spin});
+  for (int step = 0; step < 6; ++step) {
+    world.step(kStep);
+    const Pose frame = world.pose(arm);
+    const Vec3 seen = rotate_inverse(frame.orientation, difference(world.pose(body).position, frame.position));
+    if (seen.x > 2.0f) break;  // over its end
+    EXPECT_GT(seen.y, 0.0f) << (on_ground ? "on the ground, " : "in the air, ") << spin << " rad/s, " << out
+                            << " m out, phase " << phase << ", step " << step;
+  }
+}
+TEST(Overrun, AnArmTakesAlongWhatItMeets) {
+  for (const float spin : {10.0f, 30.0f}) {
+    for (const double out : {0.5, 1.0, 1.8}) {
+      for (int phase = 1; phase < 10; ++phase) {
+        for (const bool on_ground : {false, true}) {
+          expect_arm_takes_along(Sphere{0.05f}, on_ground, spin, out, phase);
+          expect_arm_takes_along(Box{{0.05f, 0.05f, 0.05f}}, on_ground, spin, out, phase);
+        }
+      }
+    }
+  }
+}
+
+// Where something will be in the step is known as the step begins, whatever its length and whatever was told between steps: its
+// start, a new velocity, a step longer than those before.
+TEST(Overrun, NothingPassesAfterACommand) {
+  for (const float speed : {20.0f, 100.0f}) {
+    for (int phase = 0; phase < 10; ++phase) {
+      for (const float long_step : {kStep, 3.0f * kStep}) {
+        World world = make_world({.gravity = {0, 0, 0}, .sleeping = false});
+        const BodyId plate = world.add_body({.type = BodyType::kinematic}, {.geometry = Box{{0.01f, 5, 5}}});
+        const double ahead = 0.07 + double(speed * long_step) * double(phase) / 10.0;
+        const BodyId ball = world.add_body({.pose = {.position = {ahead, 0, 0}}}, {.geometry = Sphere{0.05f}});
+        const BodyId behind = world.add_body({.pose = {.position = {-ahead, 0, 0}}}, {.geometry = Sphere{0.05f}});
+        for (int step = 0; step < 3; ++step) world.step(kStep);
+        world.set_velocity(plate, {speed, 0, 0}, {});
+        for (int step = 0; step < 2; ++step) {
+          world.step(long_step);
+          ASSERT_GT(world.pose(ball).position.x, world.pose(plate).position.x) << speed << " m/s, phase " << phase;
+        }
+        const Pose back{{world.pose(plate).position.x - double(speed * long_step) * 2.5, 0, 0}, {}};
+        world.move_kinematic(plate, back, long_step);
+        world.step(long_step);
+        ASSERT_LT(world.pose(behind).position.x, world.pose(plate).position.x) << speed << " m/s, phase " << phase;
       }
     }
   }
