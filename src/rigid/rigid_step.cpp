@@ -78,6 +78,11 @@ bool hold_way(RigidWorld& w, std::uint32_t shape, const Pose& origin, float seco
   return true;
 }
 
+void list_if_moving(RigidWorld& w, std::uint32_t shape) {
+  const BodyMotion& motion = w.bodies.motion[w.shapes.bodies[shape]];
+  if (motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{}) w.shapes.hurried.push_back(shape);
+}
+
 // The promise of collision/fat_box.h as a step begins.
 void hold_ways(RigidWorld& w, TaskSystem& tasks, float seconds) {
   if (seconds > w.shapes.fit_for) {
@@ -142,14 +147,13 @@ void refit_shape(RigidWorld& w, std::uint32_t shape, float seconds) {
   w.shapes.changed.push_back(shape);
 }
 
-void hurry(RigidWorld& w, std::uint32_t shape) {
-  const BodyMotion& motion = w.bodies.motion[w.shapes.bodies[shape]];
-  if (motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{}) w.shapes.hurried.push_back(shape);
+void hurry(RigidWorld& w, std::uint32_t body) {
+  for (const ShapeId id : w.bodies.shapes[body]) list_if_moving(w, id.index);
 }
 
 void place_box(RigidWorld& w, std::uint32_t shape) {
   refit_shape(w, shape, 0.0f);
-  hurry(w, shape);
+  list_if_moving(w, shape);
 }
 
 void report_end(RigidWorld& w, const Contact& contact) {

@@ -45,8 +45,8 @@ void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, 
 
 // Fits a new fat box around one shape, with its way in a step of this length, and lists it as changed.
 void refit_shape(RigidWorld& w, std::uint32_t shape, float seconds);
-// A command set the shape's body moving: the coming step sees to its box.
-void hurry(RigidWorld& w, std::uint32_t shape);
+// A command changed how the body moves: the coming step sees to its boxes.
+void hurry(RigidWorld& w, std::uint32_t body);
 // Fits a new fat box around what a command placed, with no way yet; the coming step sees to that.
 void place_box(RigidWorld& w, std::uint32_t shape);
 // Removes one contact's traces: its end-of-touch event.

@@ -93,6 +93,7 @@ void refresh_mass(RigidWorld& w, std::uint32_t body, const Pose& origin) {
   bodies.orientations[body] = origin.orientation;
   refresh_inertia(bodies, body);
   for_each_contact_of_body(w, body, [](Contact& contact) { forget_look(contact); });
+  hurry(w, body);
 }
 void refresh_mass(RigidWorld& w, std::uint32_t body) { refresh_mass(w, body, origin_pose(w.bodies, body)); }
 
@@ -129,10 +130,6 @@ ShapeId attach_shape(RigidWorld& w, std::uint32_t body, const ShapeDef& def) {
   const ShapeId id = shape_id(w, shape);
   insert_sorted(w.bodies.shapes[body], id);
   return id;
-}
-
-void hurry_body(RigidWorld& w, std::uint32_t body) {
-  for (const ShapeId id : w.bodies.shapes[body]) hurry(w, id.index);
 }
 
 void refit_body(RigidWorld& w, std::uint32_t body) {
@@ -237,7 +234,7 @@ Submitted carry_out(WorldState& s, const SetVelocity& c) {
   stir(w, c.body.index);
   w.bodies.motion[c.body.index].linear_velocity = c.linear + Vec3{};
   w.bodies.motion[c.body.index].angular_velocity = c.angular + Vec3{};
-  hurry_body(w, c.body.index);
+  hurry(w, c.body.index);
   return {true, {}, {}, {}};
 }
 
@@ -251,7 +248,7 @@ Submitted carry_out(WorldState& s, const MoveKinematic& c) {
   motion.linear_velocity = finite_or((1.0f / c.seconds) * difference(center, w.bodies.places[body].center) + Vec3{}, {});
   motion.angular_velocity =
       finite_or((1.0f / c.seconds) * rotation_between(w.bodies.places[body].orientation, orientation) + Vec3{}, {});
-  hurry_body(w, body);
+  hurry(w, body);
   return {true, {}, {}, {}};
 }
 
@@ -430,7 +427,7 @@ Submitted carry_out(WorldState& s, const AddImpulse& c) {
   const BodyInertia& inertia = s.rigid.bodies.inertia[body];
   motion.linear_velocity = bounded(motion.linear_velocity + inertia.inverse_mass * c.impulse) + Vec3{};
   motion.angular_velocity = bounded(motion.angular_velocity + inertia.inverse * c.angular) + Vec3{};
-  hurry_body(s.rigid, body);
+  hurry(s.rigid, body);
   return {true, {}, {}, {}};
 }
 Submitted carry_out(WorldState& s, const Step& c) {

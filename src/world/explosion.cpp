@@ -6,6 +6,7 @@
 #include "math/rotation.h"
 #include "math/trig.h"
 #include "rigid/island.h"
+#include "rigid/rigid_step.h"
 #include "world/field_commands.h"
 #include "world/query_sight.h"
 #include "world/world_state.h"
@@ -123,6 +124,7 @@ Submitted carry_out(WorldState& s, const Explode& c) {
     wake(w, body);
     motion.linear_velocity = linear + Vec3{};
     motion.angular_velocity = angular + Vec3{};
+    hurry(w, body);
   });
   return {true, {}, {}, {}};
 }
