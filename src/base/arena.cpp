@@ -54,22 +54,22 @@ void Arena::add_block(std::size_t capacity) {
 }
 
 void Arena::release(Mark mark) {
-  peak_ = step_peak();
+  peak_ = peak();
   while (current_ != mark.block) free_newest();
   GYRE_ASSERT(mark.used <= used_, "marks are gone back to in the order of a stack");
   used_ = mark.used;
 }
 
 void Arena::reset() {
-  const std::size_t peak = step_peak();
+  const std::size_t most = peak();
   high_water_ = high_water();
   peak_ = 0;
-  const bool too_small = peak > held_ || (current_ != nullptr && current_->previous != nullptr);
-  const bool too_large = clock_.rests(peak, held_);
+  const bool too_small = most > held_ || (current_ != nullptr && current_->previous != nullptr);
+  const bool too_large = clock_.rests(most, held_);
   used_ = 0;
   used_before_ = 0;
   if (!too_small && !too_large) return;
-  const std::size_t need = too_small ? peak : clock_.most_needed();
+  const std::size_t need = too_small ? most : clock_.most_needed();
   const std::size_t room = round_up(need + need / 16);
   free_blocks();
   add_block(room < kFirstBlock ? kFirstBlock : room);

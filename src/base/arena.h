@@ -38,6 +38,10 @@ class Arena {
 
   // Takes back all memory handed out.
   void reset();
+  // The most that was out at once since the last reset, and that at least so much will be needed after the next: for arenas of
+  // which any may be given the work of another.
+  std::size_t peak() const { return peak_ < bytes_used() ? bytes_used() : peak_; }
+  void expect(std::size_t bytes) { peak_ = peak_ < bytes ? bytes : peak_; }
 
   // A place to go back to: release() takes back what was handed out since then.
   struct Mark {
@@ -49,7 +53,7 @@ class Arena {
 
   // Bytes handed out and not taken back, with rounding to whole cache lines; the most that ever was; bytes held.
   std::size_t bytes_used() const { return used_before_ + used_; }
-  std::size_t high_water() const { return high_water_ < step_peak() ? step_peak() : high_water_; }
+  std::size_t high_water() const { return high_water_ < peak() ? peak() : high_water_; }
   std::size_t bytes_held() const { return held_; }
 
  private:
@@ -64,8 +68,6 @@ class Arena {
   void add_block(std::size_t capacity);
   void free_newest();
   void free_blocks();
-  // The most that was out at once since the last reset.
-  std::size_t step_peak() const { return peak_ < bytes_used() ? bytes_used() : peak_; }
 
   Block* current_ = nullptr;     // the newest; older ones hang behind it and are full
   std::size_t used_ = 0;         // of the current block

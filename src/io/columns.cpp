@@ -42,6 +42,11 @@ void clear_events(RigidEvents& events) {
   events.sensors.clear(), events.broken.clear(), events.sleep_changes.clear();
 }
 
+void forget_batch(BatchScratch& batch) {
+  batch.constraints.clear(), batch.constraint_contact.clear(), batch.pairs.clear();
+  batch.swept_joints.clear(), batch.joint_pairs.clear();
+}
+
 // What a world tells about its last step is of another history now.
 void forget_reports(WorldState& state) {
   clear_events(state.shown);
@@ -49,11 +54,10 @@ void forget_reports(WorldState& state) {
   state.problems.clear();
   state.frozen.clear();
   // What the solver had were constraints of the state that is replaced.
-  SolveScratch& solve = state.solve;
-  solve.constraints.clear(), solve.constraint_contact.clear(), solve.pairs.clear();
-  solve.swept_joints.clear(), solve.joint_pairs.clear();
-  solve.manifold_count = solve.joint_count = solve.swept_joint_count = 0;
-  solve.colors = 0;
+  forget_batch(state.solve.together);
+  for (const std::unique_ptr<LoneSolver>& lone : state.solve.lone) forget_batch(lone->scratch);
+  state.solve.counts = {};
+  state.solve.colors = 0;
 }
 
 bool equal(const Proxy& a, const Proxy& b) {

@@ -18,10 +18,18 @@ Vec3 point_velocity(const RigidWorld& w, std::uint32_t body, Vec3 from_center) {
 }
 
 // `struck`: the point that closed fastest.
-ContactHit make_hit(const RigidWorld& w, const Contact& contact, const Manifold& manifold, const ContactPointState& struck, float impulse) {
+ContactHit make_hit(const RigidWorld& w, const Contact& contact, const Manifold& manifold,
+                    const ContactPointState& struck, float impulse) {
   const DVec3 place = w.bodies.places[contact.body_a].center + struck.from_a;
-  return {shape_id(w, contact.shape_a), shape_id(w, contact.shape_b), body_id(w, contact.body_a), body_id(w, contact.body_b),
-          place,           manifold.normal,  struck.approach_speed,  impulse,     triangle_at(w, contact, place)};
+  return {shape_id(w, contact.shape_a),
+          shape_id(w, contact.shape_b),
+          body_id(w, contact.body_a),
+          body_id(w, contact.body_b),
+          place,
+          manifold.normal,
+          struck.approach_speed,
+          impulse,
+          triangle_at(w, contact, place)};
 }
 
 }  // namespace
@@ -39,7 +47,7 @@ bool note_approach(const RigidWorld& w, const Contact& contact, Manifold& manifo
   return fastest > 0.0f && fastest > hit_speed(contact);
 }
 
-void note_hits(const RigidWorld& w, SolveScratch& s) {
+void note_hits(const RigidWorld& w, BatchScratch& s) {
   for (std::size_t i = 0; i < s.constraints.size(); ++i) {
     if (!s.constraints[i].fast) continue;
     const Contact& contact = w.contacts.contacts[s.constraint_contact[i]];
@@ -68,11 +76,11 @@ void report_blow(RigidWorld& w, const Contact& contact, const Manifold& manifold
   if (struck != nullptr) w.events.hits.push_back(make_hit(w, contact, manifold, *struck, impulse));
 }
 
-void report_hits(RigidWorld& w, SolveScratch& s, Arena& arena) {
+void report_hits(RigidWorld& w, std::span<SlotHit> hits, Arena& arena) {
   const ArenaScope scope(arena);
-  merge_sort(s.hits.view(), arena.make<SlotHit>(s.hits.size()),
+  merge_sort(hits, arena.make<SlotHit>(hits.size()),
              [](const SlotHit& a, const SlotHit& b) { return a.slot < b.slot; });
-  for (const SlotHit& hit : s.hits) w.events.hits.push_back(hit.hit);
+  for (const SlotHit& hit : hits) w.events.hits.push_back(hit.hit);
 }
 
 }  // namespace gyre

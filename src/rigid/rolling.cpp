@@ -222,7 +222,7 @@ float patch_friction(const RigidWorld& w, const Contact& contact, const ContactC
   return constraint.dynamic_friction * kBallPatch * radius;
 }
 
-RollingContacts find_rolling_contacts(RigidWorld& w, const SolveScratch& scratch,
+RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch,
                                       std::span<const std::uint32_t> places, std::size_t bodies,
                                       float seconds, Arena& arena) {
   const std::span<const ContactConstraint> constraints = scratch.constraints;

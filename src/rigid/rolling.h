@@ -60,7 +60,7 @@ float patch_friction(const RigidWorld& w, const Contact& contact, const ContactC
 
 // Those among the constraints of the batch whose bodies turn against each other. `places`: of bodies in the batch, which has so
 // many. Marks the bodies as ones whose place others look at.
-RollingContacts find_rolling_contacts(RigidWorld& w, const SolveScratch& scratch,
+RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch,
                                       std::span<const std::uint32_t> places, std::size_t bodies,
                                       float seconds, Arena& arena);
 

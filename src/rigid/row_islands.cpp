@@ -65,7 +65,7 @@ struct Lists {
   }
 };
 
-DirectSize size_of(const RigidWorld& w, const SolveScratch& scratch, const SolveBatch& batch,
+DirectSize size_of(const RigidWorld& w, const BatchScratch& scratch, const SolveBatch& batch,
                    std::span<const JointWork> work, const RowIsland& island) {
   DirectSize size;
   for (const std::uint32_t i : island.constraints) {
@@ -85,7 +85,7 @@ DirectSize size_of(const RigidWorld& w, const SolveScratch& scratch, const Solve
 
 }  // namespace
 
-RowIslands find_row_islands(const RigidWorld& w, const SolveScratch& scratch, const SolveBatch& batch,
+RowIslands find_row_islands(const RigidWorld& w, const BatchScratch& scratch, const SolveBatch& batch,
                             std::span<const JointWork> work, Arena& arena) {
   const std::size_t bodies = w.bodies.motion.size();
   const std::span<std::int32_t> place = arena.make<std::int32_t>(bodies);
@@ -129,7 +129,7 @@ RowIslands find_row_islands(const RigidWorld& w, const SolveScratch& scratch, co
   return islands;
 }
 
-void plan_row_islands(const RigidWorld& w, const SolveScratch& scratch, const SolveBatch& batch,
+void plan_row_islands(const RigidWorld& w, const BatchScratch& scratch, const SolveBatch& batch,
                       std::uint64_t most_work, Arena& arena, RowIslands& islands) {
   for (RowIsland& island : islands.islands) {
     const std::span<std::uint8_t> sizes = arena.make<std::uint8_t>(island.bodies.size());

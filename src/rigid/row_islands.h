@@ -13,7 +13,7 @@ namespace gyre {
 
 struct RowIsland {
   std::span<const std::uint32_t> bodies;       // slots of those that rows move
-  std::span<const std::uint32_t> constraints;  // places in SolveScratch::constraints
+  std::span<const std::uint32_t> constraints;  // places in BatchScratch::constraints
   std::span<const std::uint32_t> joints;       // places in the batch's list
   DirectSize size;                             // of its rows, at most
   BlockPlan plan;                              // of its bodies, a node for each; empty if not planned
@@ -25,10 +25,10 @@ struct RowIslands {
 };
 
 // The pattern of an island's bodies, for Newton's method: planned where a factorisation takes at most `most_work` multiplications.
-void plan_row_islands(const RigidWorld& w, const SolveScratch& scratch, const SolveBatch& batch,
+void plan_row_islands(const RigidWorld& w, const BatchScratch& scratch, const SolveBatch& batch,
                       std::uint64_t most_work, Arena& arena, RowIslands& islands);
 
-RowIslands find_row_islands(const RigidWorld& w, const SolveScratch& scratch, const SolveBatch& batch,
+RowIslands find_row_islands(const RigidWorld& w, const BatchScratch& scratch, const SolveBatch& batch,
                             std::span<const JointWork> work, Arena& arena);
 
 }  // namespace gyre

@@ -11,6 +11,8 @@ namespace gyre {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
+// Manifolds and joints: what is less is not worth to be shared among workers.
+constexpr std::uint32_t kWorthSharing = 64;
 
 // What is solved in this step, ascending.
 struct Constraints {
@@ -127,30 +129,40 @@ class Lists {
   std::span<std::uint32_t> items_;
 };
 
-// Gives each island its batch, written for all its bodies to `batch_of`. Returns how many batches there are.
-std::uint32_t part_islands(const RigidWorld& w, const Constraints& constraints, Islands& islands,
-                           std::uint32_t most, Arena& arena, std::span<std::uint32_t> batch_of) {
-  const ArenaScope scope(arena);
-  const std::span<std::uint32_t> sizes = arena.make<std::uint32_t>(batch_of.size());  // constraints by root
-  for (std::uint32_t& count : sizes) count = 0;
+// Weights are in quarters of a constraint: each body is one.
+constexpr std::uint32_t kConstraint = 4;
+
+// How much the islands are, by root.
+std::span<const std::uint32_t> weigh_islands(const RigidWorld& w, const Constraints& constraints,
+                                             Islands& islands, std::size_t bodies, Arena& arena) {
+  const std::span<std::uint32_t> weights = arena.make<std::uint32_t>(bodies);
+  for (std::uint32_t& weight : weights) weight = 0;
   for (const std::uint32_t slot : constraints.contacts) {
     const Contact& contact = w.contacts.contacts[slot];
-    sizes[islands.root(owner(w, contact))] += contact.manifold_count;
+    weights[islands.root(owner(w, contact))] += kConstraint * contact.manifold_count;
   }
-  for (const std::uint32_t slot : constraints.joints) ++sizes[islands.root(owner(w, w.joints.records[slot]))];
-  std::uint32_t batch = 0, filled = 0;
+  for (const std::uint32_t slot : constraints.joints)
+    weights[islands.root(owner(w, w.joints.records[slot]))] += kConstraint;
+  for (const std::uint32_t body : w.bodies.awake) ++weights[islands.root(body)];
+  return weights;
+}
+
+// Gives each island its batch, written for all its bodies to `batch_of`. Returns the weights of the batches.
+std::span<const std::uint32_t> part_islands(const RigidWorld& w, Islands& islands,
+                                            std::span<const std::uint32_t> weights, std::uint32_t most,
+                                            Arena& arena, std::span<std::uint32_t> batch_of) {
+  const std::span<std::uint32_t> filled = arena.make<std::uint32_t>(w.bodies.awake.size());
+  std::uint32_t batch = 0;
+  filled[0] = 0;
   for (const std::uint32_t body : w.bodies.awake) {
     const std::uint32_t root = islands.root(body);
     if (root == body) {
-      if (filled > 0 && filled + sizes[body] > most) {
-        ++batch;
-        filled = 0;
-      }
-      filled += sizes[body];
+      if (filled[batch] > 0 && filled[batch] + weights[body] > most) filled[++batch] = 0;
+      filled[batch] += weights[body];
     }
     batch_of[body] = root == body ? batch : batch_of[root];
   }
-  return batch + 1;
+  return filled.first(batch + 1);
 }
 
 }  // namespace
@@ -167,11 +179,14 @@ bool is_joint_solved(const RigidWorld& w, std::uint32_t slot) {
          (joint.body_b != kNoBody && is_active(w, std::uint32_t(joint.body_b)));
 }
 
-SolveBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, std::uint32_t size) {
+SolveBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, BatchSize size) {
   const std::span<const std::uint32_t> awake = w.bodies.awake;
   const std::span<std::uint32_t> places = arena.make<std::uint32_t>(w.bodies.motion.size());
   const Constraints constraints = list_constraints(w, arena, tasks);
-  if (constraints.size <= size) {
+  const std::size_t all_weights = kConstraint * constraints.size + awake.size();
+  const auto share = std::uint32_t(all_weights / size.shares);
+  const std::uint32_t most = min(kConstraint * size.most, max(share, kConstraint * kWorthSharing));
+  if (all_weights <= most) {
     for (std::uint32_t i = 0; i < awake.size(); ++i) places[awake[i]] = i;
     const std::span<SolveBatch> all = arena.make<SolveBatch>(awake.empty() ? 0 : 1);
     if (!all.empty()) all[0] = {awake, constraints.contacts, constraints.joints};
@@ -179,7 +194,9 @@ SolveBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, 
   }
   const std::span<std::uint32_t> batch_of = arena.make<std::uint32_t>(places.size());
   Islands islands(w, constraints, places);
-  const std::uint32_t count = part_islands(w, constraints, islands, size, arena, batch_of);
+  const std::span<const std::uint32_t> weights = part_islands(
+      w, islands, weigh_islands(w, constraints, islands, places.size(), arena), most, arena, batch_of);
+  const std::size_t count = weights.size();
   const auto batch_of_contact = [&](std::uint32_t slot) {
     return batch_of[owner(w, w.contacts.contacts[slot])];
   };
@@ -193,8 +210,8 @@ SolveBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, 
   for (const std::uint32_t slot : constraints.contacts) contacts.add(batch_of_contact(slot), slot);
   for (const std::uint32_t slot : constraints.joints) joints.add(batch_of_joint(slot), slot);
   const std::span<SolveBatch> batches = arena.make<SolveBatch>(count);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    batches[i] = {bodies.of(i), contacts.of(i), joints.of(i)};
+  for (std::size_t i = 0; i < count; ++i) {
+    batches[i] = {bodies.of(i), contacts.of(i), joints.of(i), count > 1 && weights[i] <= most};
     for (std::uint32_t n = 0; n < batches[i].bodies.size(); ++n) places[batches[i].bodies[n]] = n;
   }
   return {batches, places};

@@ -12,15 +12,27 @@
 
 namespace gyre {
 
-// Manifolds and joints in a batch; an island that has more is a batch of its own. Workers that meet after each colour of a
-// batch need more of it to do in between.
-constexpr std::uint32_t batch_size(int workers) { return workers == 1 ? 512u : 2048u * std::uint32_t(workers); }
+// How much is in a batch. An island that has more than `most` is a batch of its own, and so is what is more than a share of all
+// where `shares` says in how many it is to be parted at least.
+struct BatchSize {
+  std::uint32_t most = 0;  // manifolds and joints, and a quarter of one for each body
+  std::uint32_t shares = 1;
+};
+
+// Alone a worker is as fast with twice as much, but a batch's memory stays. Workers that solve batches side by side come out even
+// if there are some for each; those that meet after each colour of one need more of it to do in between.
+constexpr BatchSize batch_size(int workers, bool side_by_side) {
+  if (workers == 1) return {512, 1};
+  return side_by_side ? BatchSize{1024, 4u * std::uint32_t(workers)}
+                      : BatchSize{2048u * std::uint32_t(workers), 1};
+}
 
 struct SolveBatch {
   std::span<const std::uint32_t> bodies;  // awake: dynamic, and kinematic ones
   std::span<const std::uint32_t>
       contacts;                           // slots; with manifolds, and one of the two bodies is moved by them
   std::span<const std::uint32_t> joints;  // slots
+  bool is_small = false;                  // not more than a batch is to be, and one of several
 };
 
 struct SolveBatches {
@@ -39,7 +51,7 @@ inline bool is_active(const RigidWorld& w, std::uint32_t body) {
 bool is_solved(const RigidWorld& w, const Contact& contact);
 bool is_joint_solved(const RigidWorld& w, std::uint32_t slot);
 
-// All lists are of `arena`. `size`: batch_size().
-SolveBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, std::uint32_t size);
+// All lists are of `arena`.
+SolveBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, BatchSize size);
 
 }  // namespace gyre

@@ -24,16 +24,12 @@ std::int32_t solver_body(const RigidWorld& w, std::uint32_t body) {
   return flags.type == BodyType::fixed || flags.frozen != 0 ? kNoBody : std::int32_t(body);
 }
 
+// Others may touch it at once: what is fixed is in many batches. (Not std::atomic_ref: Emscripten's library has none yet.)
 void touch_body(RigidWorld& w, std::uint32_t body, std::uint8_t touch) {
-  std::uint8_t& touched = w.bodies.flags[body].touched;
-  touched = max(touched, touch);
-}
-// The same, where others may touch it at once. (Not std::atomic_ref: Emscripten's library has none yet.)
-void touch_shared_body(RigidWorld& w, std::uint32_t body, std::uint8_t touch) {
   std::uint8_t* const touched = &w.bodies.flags[body].touched;
   std::uint8_t before = __atomic_load_n(touched, __ATOMIC_RELAXED);
-  while (before < touch && !__atomic_compare_exchange_n(touched, &before, touch, true, __ATOMIC_RELAXED,
-                                                        __ATOMIC_RELAXED)) {
+  while (before < touch &&
+         !__atomic_compare_exchange_n(touched, &before, touch, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
   }
 }
 
@@ -52,7 +48,7 @@ class ContactGatherer {
 
   // What was found among some contacts.
   struct Found {
-    bool gaps = false;     // constraints without a manifold: nothing is asked of these
+    bool gaps = false;  // constraints without a manifold: nothing is asked of these
     bool bouncy = false;
   };
 
@@ -60,12 +56,12 @@ class ContactGatherer {
     const Contact& contact = w_.contacts.contacts[slot];
     const bool active_a = is_active(w_, contact.body_a), active_b = is_active(w_, contact.body_b);
     const std::uint8_t touch = contact.surface.restitution > 0.0f ? kPlaceShown : kTouched;
-    touch_shared_body(w_, contact.body_a, touch);
-    touch_shared_body(w_, contact.body_b, touch);
+    touch_body(w_, contact.body_a, touch);
+    touch_body(w_, contact.body_b, touch);
     const ColoringPair pair{active_a ? solve_.places[contact.body_a] : ColoringPair::kNone,
                             active_b ? solve_.places[contact.body_b] : ColoringPair::kNone};
     const ContactConstraint all = describe(contact, active_a, active_b);
-    SolveScratch& s = solve_.scratch;
+    BatchScratch& s = solve_.scratch;
     Found found;
     for (Manifold& manifold : manifolds_of(w_.contacts, contact)) {
       ContactConstraint& constraint = s.constraints[place] = all;
@@ -113,7 +109,7 @@ class ContactGatherer {
   bool has_rules_;
 };
 
-void close_gaps(SolveScratch& s) {
+void close_gaps(BatchScratch& s) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < s.constraints.size(); ++i) {
     if (s.constraints[i].manifold == nullptr) continue;
@@ -131,7 +127,7 @@ void close_gaps(SolveScratch& s) {
 void gather_contacts(Solve& solve, Arena& arena, TaskSystem& tasks) {
   const ArenaScope scope(arena);
   const RigidWorld& w = solve.w;
-  SolveScratch& s = solve.scratch;
+  BatchScratch& s = solve.scratch;
   const std::span<const std::uint32_t> slots = solve.batch.contacts;
   const auto waits = [&](std::uint32_t slot) { return !w.waiting.empty() && w.waiting[slot] != 0; };
   const std::span<std::uint32_t> places = arena.make<std::uint32_t>(slots.size());
@@ -166,7 +162,7 @@ void gather_contacts(Solve& solve, Arena& arena, TaskSystem& tasks) {
 
 void gather_joints(Solve& solve) {
   RigidWorld& w = solve.w;
-  SolveScratch& s = solve.scratch;
+  BatchScratch& s = solve.scratch;
   s.swept_joints.clear();
   s.joint_pairs.clear();
   for (std::uint32_t i = 0; i < solve.batch.joints.size(); ++i) {
@@ -210,11 +206,12 @@ void gather_motion(Solve& solve, Arena& arena) {
   solve.flying = solve.flying.first(flying);
   solve.spinners = solve.spinners.first(spinners);
   const std::size_t width = std::size_t(solve.kernels.width);
-  solve.motion_blocks = arena.make<std::byte>((moved + width - 1) / width * solve.kernels.motion.block_bytes).data();
+  solve.motion_blocks =
+      arena.make<std::byte>((moved + width - 1) / width * solve.kernels.motion.block_bytes).data();
 }
 
 std::span<Group> lay_out_contacts(Solve& solve, Arena& arena) {
-  SolveScratch& s = solve.scratch;
+  BatchScratch& s = solve.scratch;
   const Coloring& colors = s.contact_colors;
   const std::uint32_t width = std::uint32_t(solve.kernels.width);
   const std::span<Group> groups = arena.make<Group>(std::size_t(colors.group_count()));
@@ -232,7 +229,7 @@ std::span<Group> lay_out_contacts(Solve& solve, Arena& arena) {
       }
     }
     groups[used++] = {&solve, first, block - first, g == colors.overflow_group()};
-    s.colors_used |= std::uint64_t{1} << g;
+    s.counts.colors_used |= std::uint64_t{1} << g;
   }
   solve.blocks = arena.make<std::byte>(std::size_t(block) * solve.kernels.block_bytes).data();
   return groups.first(used);

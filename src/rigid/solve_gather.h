@@ -19,7 +19,7 @@ namespace gyre {
 // What every stage of the program reads.
 struct Solve {
   RigidWorld& w;
-  SolveScratch& scratch;
+  BatchScratch& scratch;
   const ContactKernels& kernels;
   SolveBatch batch{};
   std::span<const std::uint32_t> places{};  // of bodies in their batches
@@ -37,13 +37,13 @@ struct Solve {
   std::span<std::span<double>> stop_rooms{};  // by worker, where a linkage has stops
   BundleSolve bundles{};
   std::span<std::uint32_t> joint_order{};  // places in the list of swept joints, by groups
-  void* balls = nullptr;  // joints side by side: solver/ball_lanes.h
+  void* balls = nullptr;                   // joints side by side: solver/ball_lanes.h
   Motions motions{};
-  std::span<MovedBody> moved{};            // the batch's bodies that constraints act on,
-  void* motion_blocks = nullptr;           // the same for the kernels,
-  std::span<Vec3> pushes{};                // and how overlap turned them
-  std::span<std::uint32_t> spinners{};     // those of them that turn alone
-  std::span<std::uint32_t> flying{};       // the others
+  std::span<MovedBody> moved{};         // the batch's bodies that constraints act on,
+  void* motion_blocks = nullptr;        // the same for the kernels,
+  std::span<Vec3> pushes{};             // and how overlap turned them
+  std::span<std::uint32_t> spinners{};  // those of them that turn alone
+  std::span<std::uint32_t> flying{};    // the others
   ContactForest forest{};
   TreeSolve tree_solve{};
   std::span<ContactStructure> structures{};
@@ -57,9 +57,9 @@ struct Solve {
 // A run of blocks of one colour.
 struct Group {
   Solve* solve = nullptr;
-  std::uint32_t first = 0;  // first block of contacts, or first place in the joint order
-  std::uint32_t count = 0;  // blocks or joints
-  bool serial = false;      // what is left over when the colours are used up: its members share bodies
+  std::uint32_t first = 0;       // first block of contacts, or first place in the joint order
+  std::uint32_t count = 0;       // blocks or joints
+  bool serial = false;           // what is left over when the colours are used up: its members share bodies
   std::int32_t ball_block = -1;  // joints that are solved side by side: their first block
 };
 

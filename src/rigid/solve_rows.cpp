@@ -448,7 +448,7 @@ void add_reports(RowReport& sum, std::span<const RowReport> reports) {
 void solve_batch_as_rows(Solve& solve, const SolverSettings& settings, Arena& arena, TaskSystem& tasks,
                          float warm_scale) {
   const ArenaScope scope(arena);
-  SolveScratch& scratch = solve.scratch;
+  BatchScratch& scratch = solve.scratch;
   gather_contacts(solve, arena, tasks);
   for (const ContactConstraint& constraint : scratch.constraints) constraint.manifold->total_friction = {};
   show_bodies(solve);
@@ -479,8 +479,8 @@ void solve_batch_as_rows(Solve& solve, const SolverSettings& settings, Arena& ar
   scratch.pairs.clear();
   scratch.joint_pairs.clear();
   note_hits(solve.w, scratch);
-  scratch.manifold_count += scratch.constraints.size();
-  scratch.joint_count += solve.batch.joints.size();
+  scratch.counts.manifolds += scratch.constraints.size();
+  scratch.counts.joints += solve.batch.joints.size();
 }
 
 }  // namespace gyre

@@ -1,14 +1,10 @@
 #include "rigid/solve_step.h"
 
-#include "base/check.h"
 #include "rigid/hits.h"
 #include "rigid/joint_works.h"
-#include "rigid/program_writer.h"
-#include "rigid/solve_gather.h"
+#include "rigid/solve_program.h"
 #include "rigid/solve_rows.h"
-#include "solver/ball_records.h"
 #include "task/parallel.h"
-#include "task/program.h"
 
 #include <bit>
 
@@ -37,423 +33,6 @@ constexpr float kBounceShare = 2.0f;
 // By how much impulses grow at most from one part of an adaptive step to the next.
 constexpr float kMostWarm = 4.0f;
 
-constexpr int kBodiesPerBlock = 64;
-constexpr int kMotionBlocksPerClaim = 8;
-constexpr int kSpinnersPerClaim = 8;
-constexpr int kJointsPerBlock = 16;  // whole blocks of lanes at every width
-constexpr int kBlocksPerClaim = 4;
-constexpr int kTreesPerClaim = 8;
-
-// --------------------------------------------------------------------------------------------------- stages' kernels
-
-// Bodies [begin, end) of a list in blocks of `size`.
-template <class T>
-std::span<T> block_of(std::span<T> list, int begin, int end, int size) {
-  const std::size_t first = std::size_t(begin) * std::size_t(size);
-  return list.subspan(first, min(std::size_t(end) * std::size_t(size), list.size()) - first);
-}
-
-void fly_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  fly(s.w.bodies, block_of(s.flying, begin, end, kBodiesPerBlock), s.motions);
-}
-void prepare_motion_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  s.kernels.motion.prepare(s.motion_blocks, begin, end, s.moved.data(), int(s.moved.size()),
-                           s.contact_bodies.inertia);
-}
-void predict_cold_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  s.kernels.motion.predict(s.motion_blocks, begin, end, s.contact_bodies.motion, false);
-}
-void predict_warm_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  s.kernels.motion.predict(s.motion_blocks, begin, end, s.contact_bodies.motion, true);
-}
-void warm_motion_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  s.kernels.motion.warm(s.motion_blocks, begin, end, s.contact_bodies.motion);
-}
-void watch_motion_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  s.kernels.motion.watch(s.motion_blocks, begin, end, s.contact_bodies.motion);
-}
-void note_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  s.kernels.motion.note(s.motion_blocks, begin, end, s.contact_bodies.motion);
-}
-void advance_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  BodyStore& bodies = s.w.bodies;
-  s.kernels.motion.advance(s.motion_blocks, begin, end,
-                           {bodies.motion.data(), bodies.inertia.data(), bodies.orientations.data()}, s.h);
-}
-void turn_alone_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  turn_alone(s.w.bodies, block_of(s.spinners, begin, end, kSpinnersPerClaim), s.h);
-}
-void finish_turns_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  finish_turns(s.w.bodies, block_of(s.moved, begin, end, kBodiesPerBlock),
-               block_of(s.pushes, begin, end, kBodiesPerBlock));
-}
-void watch_stage(void* context, int, int, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  watch_impacts(s.scratch.impacts, s.contact_bodies);
-}
-void strike_stage(void* context, int, int, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  strike_impacts(s.scratch.impacts, s.contact_bodies, s.impact_settings);
-}
-void release_stage(void* context, int, int, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  release_impacts(s.scratch.impacts, s.contact_bodies, s.impact_settings);
-}
-
-void solve_trees_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  for (int i = begin; i < end; ++i) solve_tree(s.forest.trees[std::size_t(i)], s.tree_solve);
-}
-
-// One after the other: they share the step's arena, which nobody else uses meanwhile.
-template <void (*kernel)(ContactStructure&, const StructureSolve&)>
-void structures_stage(void* context, int, int, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  for (ContactStructure& structure : s.structures) kernel(structure, s.structure_solve);
-}
-
-void prepare_contacts_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  s.kernels.prepare(s.blocks, begin, end, s.scratch.constraints.data(), s.scratch.order.data(),
-                    s.contact_bodies, s.contact_settings);
-}
-void finish_contacts_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  s.kernels.finish(s.blocks, begin, end, s.scratch.constraints.data(), s.scratch.order.data(),
-                   s.contact_settings);
-}
-void warm_contacts_stage(void* context, int begin, int end, int) {
-  const Group& g = *static_cast<Group*>(context);
-  g.solve->kernels.warm_start(g.solve->blocks, int(g.first) + begin, int(g.first) + end,
-                              g.solve->contact_bodies.motion);
-}
-// Calls fn(rolling, block, lane) for those contacts of the blocks that roll, which are few.
-template <class Fn>
-void for_each_rolling(const Group& g, int begin, int end, Fn&& fn) {
-  Solve& s = *g.solve;
-  if (s.rolling.contacts.empty()) return;
-  const int width = s.kernels.width;
-  for (int i = (int(g.first) + begin) * width; i < (int(g.first) + end) * width; ++i) {
-    const std::uint32_t constraint = s.scratch.order[std::size_t(i)];
-    const std::uint32_t place = constraint == 0xffffffffu ? kNotRolling : s.rolling.of_constraint[constraint];
-    if (place != kNotRolling) fn(s.rolling.contacts[place], i / width, i % width);
-  }
-}
-// Takes their points along, and their bodies to the velocities of the middle of the sub-step: no other contact bears these.
-void follow_contacts(const Group& g, int begin, int end) {
-  Solve& s = *g.solve;
-  for_each_rolling(g, begin, end, [&](RollingContact& rolling, int block, int lane) {
-    if (rolling.placed) return;
-    rolling.placed = rolling.once;
-    const Manifold& manifold = *s.scratch.constraints[rolling.constraint].manifold;
-    const float ahead = 0.5f * (rolling.once ? s.contact_settings.step : s.h);
-    const FollowedArms arms = follow_contact(s.w, rolling, manifold, ahead);
-    s.kernels.follow(s.blocks, block, lane, arms, s.contact_bodies.inertia, s.contact_bodies.motion);
-    Vec3& spin = s.contact_bodies.motion[rolling.body].angular_velocity;
-    spin = spin + rolling.drift;
-  });
-}
-void leave_middle(const Group& g, int begin, int end) {
-  for_each_rolling(g, begin, end, [&](const RollingContact& rolling, int, int) {
-    if (rolling.once) return;
-    Vec3& spin = g.solve->contact_bodies.motion[rolling.body].angular_velocity;
-    spin = spin - rolling.drift;
-  });
-}
-void solve_contacts_stage(void* context, int begin, int end, int) {
-  const Group& g = *static_cast<Group*>(context);
-  follow_contacts(g, begin, end);
-  g.solve->kernels.solve(g.solve->blocks, int(g.first) + begin, int(g.first) + end,
-                         g.solve->contact_bodies.motion, g.solve->h);
-  leave_middle(g, begin, end);
-}
-void relax_contacts_stage(void* context, int begin, int end, int) {
-  const Group& g = *static_cast<Group*>(context);
-  g.solve->kernels.relax(g.solve->blocks, int(g.first) + begin, int(g.first) + end,
-                         g.solve->contact_bodies.motion, g.solve->h);
-}
-void project_contacts_stage(void* context, int begin, int end, int) {
-  const Group& g = *static_cast<Group*>(context);
-  g.solve->kernels.project(g.solve->blocks, int(g.first) + begin, int(g.first) + end,
-                           g.solve->contact_bodies.motion, g.solve->contact_settings.step);
-}
-void begin_projection_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  s.kernels.motion.begin_projection(s.motion_blocks, begin, end, s.contact_bodies.motion);
-}
-void end_projection_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  s.kernels.motion.end_projection(s.motion_blocks, begin, end, s.contact_bodies.motion, s.pushes.data());
-}
-
-// Calls fn(record, work, places) for the joints of some blocks of a group.
-template <class Fn>
-void for_joints(const Group& g, int begin, int end, Fn&& fn) {
-  Solve& s = *g.solve;
-  const std::uint32_t last = min(std::uint32_t(end * kJointsPerBlock), g.count);
-  for (std::uint32_t n = std::uint32_t(begin * kJointsPerBlock); n < last; ++n) {
-    const std::uint32_t i = s.scratch.swept_joints[s.joint_order[g.first + n]];
-    fn(s.w.joints.records[s.batch.joints[i]], s.joint_work[i], s.joint_places[i]);
-  }
-}
-// The blocks of a group whose joints are solved side by side.
-struct Balls {
-  const BallKernels& kernels;
-  void* blocks;
-  BallArrays arrays;
-  BallSettings settings;
-  int begin, end;
-};
-Balls balls_of(const Group& g, int begin, int end) {
-  const Solve& s = *g.solve;
-  const Softness& softness = s.joint_settings.softness;
-  const int width = s.kernels.width, joints = min(end * kJointsPerBlock, int(g.count));
-  return {s.kernels.balls,
-          s.balls,
-          {s.joint_bodies.motion, s.joint_bodies.inertia, s.joint_bodies.orientation},
-          {s.h, softness.bias_rate, softness.mass_scale, softness.impulse_scale},
-          g.ball_block + begin * kJointsPerBlock / width,
-          g.ball_block + count_blocks(joints, width)};
-}
-// Calls fn(block, lane, joint) for the joints of such a group.
-template <class Fn>
-void for_balls(const Group& g, int begin, int end, Fn&& fn) {
-  const int width = g.solve->kernels.width;
-  int n = begin * kJointsPerBlock;
-  for_joints(g, begin, end, [&](JointRecord& joint, JointWork&, const JointPlaces& places) {
-    fn(g.ball_block + n / width, n % width, joint, places);
-    ++n;
-  });
-}
-void begin_balls_stage(void* context, int begin, int end, int) {
-  const Group& g = *static_cast<Group*>(context);
-  if (g.ball_block < 0) return;
-  const Balls balls = balls_of(g, begin, end);
-  // Lanes without a joint join nothing.
-  if (int(g.count) % balls.kernels.width != 0) clear_balls(balls.kernels, balls.blocks, balls.end - 1);
-  for_balls(g, begin, end, [&](int block, int lane, const JointRecord& joint, const JointPlaces& places) {
-    begin_ball(balls.kernels, balls.blocks, block, lane, joint, places, balls.arrays.inertia);
-  });
-}
-void finish_balls_stage(void* context, int begin, int end, int) {
-  const Group& g = *static_cast<Group*>(context);
-  if (g.ball_block < 0) return;
-  const Balls balls = balls_of(g, begin, end);
-  for_balls(g, begin, end, [&](int block, int lane, JointRecord& joint, const JointPlaces&) {
-    finish_ball(balls.kernels, balls.blocks, block, lane, joint);
-  });
-}
-void place_joints_stage(void* context, int begin, int end, int) {
-  const Group& g = *static_cast<Group*>(context);
-  if (g.ball_block >= 0) {
-    const Balls balls = balls_of(g, begin, end);
-    return balls.kernels.place(balls.blocks, balls.begin, balls.end, balls.arrays);
-  }
-  for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces& places) {
-    place_joint(joint, work, places, g.solve->joint_bodies, g.solve->joint_settings);
-  });
-}
-void bend_joints_stage(void* context, int begin, int end, int) {
-  const Group& g = *static_cast<Group*>(context);
-  if (g.ball_block >= 0) {
-    const Balls balls = balls_of(g, begin, end);
-    return balls.kernels.bend(balls.blocks, balls.begin, balls.end, balls.arrays, balls.settings);
-  }
-  for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
-    bend_joint(joint, work, g.solve->joint_bodies, g.solve->joint_settings);
-  });
-}
-void warm_joints_stage(void* context, int begin, int end, int) {
-  const Group& g = *static_cast<Group*>(context);
-  if (g.ball_block >= 0) {
-    const Balls balls = balls_of(g, begin, end);
-    return balls.kernels.warm(balls.blocks, balls.begin, balls.end, balls.arrays);
-  }
-  for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
-    warm_start_joint(joint, work, g.solve->joint_bodies);
-  });
-}
-void solve_joints_stage(void* context, int begin, int end, int) {
-  const Group& g = *static_cast<Group*>(context);
-  if (g.ball_block >= 0) {
-    const Balls balls = balls_of(g, begin, end);
-    return balls.kernels.solve(balls.blocks, balls.begin, balls.end, balls.arrays, balls.settings);
-  }
-  for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
-    solve_joint(joint, work, g.solve->joint_bodies, g.solve->joint_settings, true);
-  });
-}
-// Balls are placed with what follows, while they are in the cache: nothing that one colour gives changes where the next one
-// stands, and no linkage has their bodies.
-void place_again_stage(void* context, int begin, int end, int worker) {
-  if (static_cast<Group*>(context)->ball_block < 0) place_joints_stage(context, begin, end, worker);
-}
-void relax_joints_stage(void* context, int begin, int end, int) {
-  const Group& g = *static_cast<Group*>(context);
-  if (g.ball_block >= 0) {
-    const Balls balls = balls_of(g, begin, end);
-    balls.kernels.place(balls.blocks, balls.begin, balls.end, balls.arrays);
-    return balls.kernels.relax(balls.blocks, balls.begin, balls.end, balls.arrays);
-  }
-  for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
-    solve_joint(joint, work, g.solve->joint_bodies, g.solve->joint_settings, false);
-    sum_joint(joint, work, g.solve->joint_bodies);
-  });
-}
-
-void move_smooth(void* context, int begin, int end, int worker) {
-  move_smooth_stage(&static_cast<Solve*>(context)->smooth, begin, end, worker);
-}
-void move_carried(void* context, int begin, int end, int worker) {
-  move_carried_stage(&static_cast<Solve*>(context)->smooth, begin, end, worker);
-}
-void kick_carriers(void* context, int begin, int end, int worker) {
-  kick_carriers_stage(&static_cast<Solve*>(context)->smooth, begin, end, worker);
-}
-void finish_smooth(void* context, int begin, int end, int worker) {
-  finish_smooth_stage(&static_cast<Solve*>(context)->smooth, begin, end, worker);
-}
-
-// Of linkages [begin, end).
-template <void (*kernel)(const Linkage&, const LinkageSolve&)>
-void linkage_stage(void* context, int begin, int end, int worker) {
-  const Solve& s = *static_cast<Solve*>(context);
-  LinkageSolve own = s.linkage_solve;
-  if (!s.stop_rooms.empty()) own.room = s.stop_rooms[std::size_t(worker)];
-  for (int i = begin; i < end; ++i) kernel(s.linkages.linkages[std::size_t(i)], own);
-}
-
-// Of linkages side by side.
-void begin_bundles_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  begin_bundles(s.bundles, begin, end, s.linkage_solve);
-}
-void finish_bundles_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  finish_bundles(s.bundles, begin, end, s.linkage_solve);
-}
-using BundleKernel = void (*LinkageKernels::*)(const LinkageBundle&, const LaneArrays&, const LaneSettings&);
-template <BundleKernel... kernels>
-void bundle_stage(void* context, int begin, int end, int) {
-  const BundleSolve& s = static_cast<Solve*>(context)->bundles;
-  for (int i = begin; i < end; ++i) {
-    const LinkageBundle& bundle = s.bundles[std::size_t(i)].lanes;
-    ((bundle.kernels->*kernels)(bundle, s.arrays, s.settings), ...);
-  }
-}
-
-// ---------------------------------------------------------------------------------------------------------- program
-
-// The stages of one part of a sub-step. Impacts and joints are between forces, contacts and moves only where there are any.
-//
-// Stacks and structures at rest are solved directly after the first sweep, which gives them the loads of this step, and after
-// the last, which leaves them at rest: in between nothing is left for the sweeps to change.
-void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> contacts,
-              std::span<Group> joints) {
-  const bool first = part == 0, last = part + 1 == solve.motions.count;
-  const int bodies = count_blocks(int(solve.moved.size()), solve.kernels.width);
-  const int impacts = solve.scratch.impacts.empty() ? 0 : 1;
-  const int trees = first || last ? int(solve.forest.trees.size()) : 0;
-  const int structures = solve.structures.empty() ? 0 : 1;
-  const int linkages = int(solve.linkages.linkages.size()), bundles = int(solve.bundles.bundles.size());
-  // Joints act between forces and contacts: what they give is none of the contacts' work, and how they bend in the sub-step
-  // is none of what contacts gave in the last one.
-  const bool has_joints = linkages > 0 || bundles > 0 || !joints.empty();
-  const bool is_warm = !first && impacts == 0 && !has_joints;
-  // What contacts gave is looked at only where there may be any. (Linkages leave negative zeros, which the look clears away.)
-  const int watched = contacts.empty() && linkages == 0 && bundles == 0 && has_joints ? 0 : bodies;
-  const int fields = solve.fields.blocks();
-  program.add(watch_fields_stage, &solve.fields, fields);
-  program.add(watch_stage, &solve, impacts);
-  if (solve.smooth.any_carried) {
-    program.add(move_carried, &solve, solve.smooth.count());
-    program.add(kick_carriers, &solve, 1);
-  }
-  program.add(is_warm ? predict_warm_stage : predict_cold_stage, &solve, bodies, kMotionBlocksPerClaim);
-  program.add(strike_stage, &solve, impacts);
-  program.add_groups(bend_joints_stage, joints, kJointsPerBlock, 1);
-  program.add(linkage_stage<warm_linkage>, &solve, linkages);
-  program.add(bundle_stage<&LinkageKernels::warm>, &solve, bundles);
-  program.add_groups(warm_joints_stage, joints, kJointsPerBlock, 1);
-  if (!first && !is_warm) program.add(warm_motion_stage, &solve, watched, kMotionBlocksPerClaim);
-  if (first) {
-    program.add(watch_motion_stage, &solve, watched, kMotionBlocksPerClaim);
-    program.add_groups(warm_contacts_stage, contacts, 1, kBlocksPerClaim);
-    program.add(note_stage, &solve, watched, kMotionBlocksPerClaim);
-  }
-  // What contacts and joints gave in the last part is in the velocities by now: a stream pulls at what really moves.
-  program.add(apply_fields_stage, &solve.fields, fields);
-  if (fields > 0) program.add(watch_motion_stage, &solve, watched, kMotionBlocksPerClaim);
-  program.add_groups(solve_joints_stage, joints, kJointsPerBlock, 1);
-  program.add(linkage_stage<solve_linkage>, &solve, linkages);
-  program.add(bundle_stage<&LinkageKernels::solve>, &solve, bundles);
-  if (has_joints) program.add(watch_motion_stage, &solve, watched, kMotionBlocksPerClaim);
-  program.add_groups(solve_contacts_stage, contacts, 1, kBlocksPerClaim);
-  program.add(solve_trees_stage, &solve, trees, kTreesPerClaim);
-  if (first) program.add(structures_stage<solve_structure_first>, &solve, structures);
-  if (last) program.add(structures_stage<solve_structure_last>, &solve, structures);
-  if (has_joints) program.add(note_stage, &solve, watched, kMotionBlocksPerClaim);
-  program.add(linkage_stage<solve_linkage_again>, &solve, linkages);
-  program.add(bundle_stage<&LinkageKernels::solve_again>, &solve, bundles);
-  if (has_joints) program.add(watch_motion_stage, &solve, watched, kMotionBlocksPerClaim);
-  program.add(advance_stage, &solve, bodies, kMotionBlocksPerClaim);
-  program.add(turn_alone_stage, &solve, count_blocks(int(solve.spinners.size()), kSpinnersPerClaim));
-  program.add(release_stage, &solve, impacts);
-  program.add_groups(place_again_stage, joints, kJointsPerBlock, 1);
-  program.add(linkage_stage<place_linkage>, &solve, linkages);
-  if (!joints.empty()) program.add(bundle_stage<&LinkageKernels::place>, &solve, bundles);
-  program.add_groups(relax_joints_stage, joints, kJointsPerBlock, 1);
-  program.add(linkage_stage<relax_linkage>, &solve, linkages);
-  // Where no joint is swept in between, while their rows are still in the cache.
-  program.add(joints.empty() ? bundle_stage<&LinkageKernels::place, &LinkageKernels::relax>
-                             : bundle_stage<&LinkageKernels::relax>,
-              &solve, bundles);
-}
-
-void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> joints, Arena& arena,
-                  TaskSystem& tasks) {
-  const int parts = solve.motions.count;
-  const std::size_t per_part =
-      (solve.bundles.bundles.empty() ? 24 : 29) + 5 * joints.size() + 2 * contacts.size();
-  ProgramWriter program(
-      arena.make<Stage>(15 + std::size_t(parts) * per_part + 2 * contacts.size() + 3 * joints.size()));
-  std::uint32_t blocks = 0;
-  for (const Group& group : contacts) blocks += group.count;
-  const int bodies = count_blocks(int(solve.moved.size()), solve.kernels.width);
-  program.add(fly_stage, &solve, count_blocks(int(solve.flying.size()), kBodiesPerBlock));
-  program.add(move_smooth, &solve, solve.smooth.count());
-  program.add(prepare_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
-  program.add(prepare_fields_stage, &solve.fields, solve.fields.blocks());
-  program.add(prepare_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
-  program.add_groups(begin_balls_stage, joints, kJointsPerBlock, 1);
-  program.add_groups(place_joints_stage, joints, kJointsPerBlock, 1);
-  program.add(linkage_stage<place_linkage>, &solve, int(solve.linkages.linkages.size()));
-  const int bundles = int(solve.bundles.bundles.size());
-  program.add(begin_bundles_stage, &solve, bundles);
-  program.add(bundle_stage<&LinkageKernels::place>, &solve, bundles);
-  for (int i = 0; i < parts; ++i) add_part(program, solve, i, contacts, joints);
-  program.add_groups(relax_contacts_stage, contacts, 1, kBlocksPerClaim);
-  program.add(begin_projection_stage, &solve, bodies, kMotionBlocksPerClaim);
-  program.add_groups(project_contacts_stage, contacts, 1, kBlocksPerClaim);
-  program.add(end_projection_stage, &solve, bodies, kMotionBlocksPerClaim);
-  program.add(finish_turns_stage, &solve, count_blocks(int(solve.moved.size()), kBodiesPerBlock));
-  program.add(finish_smooth, &solve, solve.smooth.count());
-  program.add(finish_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
-  program.add(finish_bundles_stage, &solve, bundles);
-  program.add_groups(finish_balls_stage, joints, kJointsPerBlock, 1);
-  run_program(tasks, program.stages());
-}
-
 // The islands at rest, which are solved directly.
 void find_resting(Solve& solve, Arena& arena) {
   solve.forest = {};
@@ -466,7 +45,7 @@ void find_resting(Solve& solve, Arena& arena) {
 }
 void place_resting(Solve& solve, Arena& arena) {
   if (solve.forest.nodes.empty() && solve.structures.empty()) return;
-  const SolveScratch& scratch = solve.scratch;
+  const BatchScratch& scratch = solve.scratch;
   const int width = solve.kernels.width;
   const std::span<const std::uint32_t> places =
       find_kernel_places(scratch.order, scratch.constraints.size(), arena);
@@ -480,7 +59,7 @@ void place_resting(Solve& solve, Arena& arena) {
 
 void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale) {
   const ArenaScope scope(arena);
-  SolveScratch& scratch = solve.scratch;
+  BatchScratch& scratch = solve.scratch;
   gather_contacts(solve, arena, tasks);
   const JointWorks works = begin_joints(solve.w, solve.batch, warm_scale, arena);
   solve.joint_work = works.work;
@@ -515,9 +94,73 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   finish_joints(solve.w, solve.batch, solve.joint_work);
   if (solve.is_smooth) finish_springs(solve.w, solve.smooth, scratch.report);
   note_hits(solve.w, scratch);
-  scratch.manifold_count += scratch.constraints.size();
-  scratch.joint_count += solve.batch.joints.size();
-  scratch.swept_joint_count += scratch.swept_joints.size();
+  scratch.counts.manifolds += scratch.constraints.size();
+  scratch.counts.joints += solve.batch.joints.size();
+  scratch.counts.swept_joints += scratch.swept_joints.size();
+}
+
+// How the sub-steps of a step are.
+struct SubStepping {
+  int parts = 0;
+  float h = 0.0f;  // s, of a part
+  float warm_scale = 0.0f;
+};
+
+SubStepping plan_substeps(RigidWorld& w, float seconds, bool by_rows) {
+  SubStepping plan;
+  plan.parts = by_rows ? w.settings.substeps : kParts * w.settings.substeps;
+  plan.h = seconds / float(plan.parts);
+  plan.warm_scale = w.settings.last_substep > 0.0f ? plan.h / w.settings.last_substep : 0.0f;
+  // Parts of a step up to an impact may be as short as they like: what one of these leaves is mostly rounding.
+  if (!w.waiting.empty()) plan.warm_scale = min(plan.warm_scale, kMostWarm);
+  w.settings.last_substep = plan.h;
+  w.settings.last_step = seconds;
+  return plan;
+}
+
+// What is the same for all batches.
+Solve describe_solve(RigidWorld& w, BatchScratch& scratch, const ContactKernels& kernels, float seconds,
+                     const SubStepping& plan) {
+  const float h = plan.h;
+  Solve solve{w, scratch, kernels};
+  solve.h = h;
+  solve.motions = {plan.parts, h, w.settings.gravity};
+  solve.is_smooth = !w.motion_settings.empty();
+  const float pull = length(w.settings.gravity);
+  solve.contact_settings = {.substep = h,
+                            .step = seconds,
+                            .rate = min(kContactRate, 0.8f / h),
+                            .give = kContactLeak * h / (1.0f + kContactLeak * h),
+                            .aging = kContactAging,
+                            .warm_scale = plan.warm_scale,
+                            .up = pull > 0.0f ? (-1.0f / pull) * w.settings.gravity : Vec3{}};
+  // Long sub-steps take back no more than the whole error and give way by less than the whole impulse.
+  const float give = kJointLeak * h / (1.0f + kJointLeak * h);
+  solve.joint_settings = {h, {min(kJointRate, 0.8f / h), 1.0f - give, give}, row_solver_of(w) == nullptr};
+  solve.impact_settings = {h, kBounceShare * h * pull};
+  solve.contact_bodies = {w.bodies.motion.data(), w.bodies.inertia.data()};
+  solve.joint_bodies = {w.bodies.motion.data(), w.bodies.inertia.data(), w.bodies.orientations.data()};
+  return solve;
+}
+
+void begin_bodies(RigidWorld& w) {
+  for (const std::uint32_t body : w.bodies.awake) {
+    w.bodies.flags[body].touched = 0;
+    w.bodies.motion[body].moved = {};
+    w.bodies.motion[body].turned = {};
+    w.bodies.motion[body].pushed = 0.0f;
+  }
+  w.field_rest.clear();
+  if (!w.fields.empty()) w.field_rest.resize(w.bodies.motion.size());
+  if (motion_settings(w).integrator == IntegratorKind::verlet)
+    w.bodies.last_moves.resize(w.bodies.motion.size());
+}
+
+void begin_scratch(BatchScratch& scratch) {
+  scratch.hits.clear();
+  scratch.counts = {};
+  scratch.report = {};
+  scratch.rows = {};
 }
 
 // What constraints moved has its velocity from them.
@@ -527,65 +170,96 @@ void forget_moves(RigidWorld& w) {
   }
 }
 
+// Whether workers may solve batches side by side: what fields, other solvers and other schemes tell of a step is put together by
+// one only.
+bool may_part(const RigidWorld& w, const TaskSystem& tasks) {
+  return tasks.worker_count() > 1 && w.fields.empty() && w.motion_settings.empty() &&
+         row_solver_of(w) == nullptr;
+}
+
+void make_as_roomy(LoneSolver& lone, const LoneSolver& other) {
+  const auto even = [](auto& array, const auto& its) { array.reserve(its.capacity()); };
+  const auto even_colors = [&](Coloring& coloring, const Coloring& its) {
+    even(coloring.color, its.color), even(coloring.order, its.order);
+    even(coloring.offsets, its.offsets), even(coloring.masks, its.masks);
+  };
+  BatchScratch& to = lone.scratch;
+  const BatchScratch& from = other.scratch;
+  even(to.constraints, from.constraints), even(to.constraint_contact, from.constraint_contact);
+  even(to.impacts, from.impacts), even(to.pairs, from.pairs), even(to.order, from.order);
+  even_colors(to.contact_colors, from.contact_colors), even_colors(to.joint_colors, from.joint_colors);
+  even(to.swept_joints, from.swept_joints), even(to.joint_pairs, from.joint_pairs), even(to.hits, from.hits);
+  lone.arena.expect(other.arena.peak());
+}
+
+// Which worker solves which batch is chance: all have room for what any of them had, so that a world at its working size no
+// longer allocates.
+void begin_lone(SolveScratch& scratch, std::size_t workers) {
+  while (scratch.lone.size() > workers) scratch.lone.pop_back();
+  while (scratch.lone.size() < workers) scratch.lone.push_back(std::make_unique<LoneSolver>());
+  for (const std::unique_ptr<LoneSolver>& lone : scratch.lone) make_as_roomy(*scratch.lone[0], *lone);
+  for (const std::unique_ptr<LoneSolver>& lone : scratch.lone) {
+    make_as_roomy(*lone, *scratch.lone[0]);
+    begin_scratch(lone->scratch);
+    lone->arena.reset();
+  }
+}
+
+// Of all batches together.
+void sum_up(SolveScratch& scratch) {
+  scratch.hits.clear();
+  scratch.counts = {};
+  const auto add = [&](const BatchScratch& part) {
+    scratch.hits.append(part.hits);
+    scratch.counts.manifolds += part.counts.manifolds;
+    scratch.counts.joints += part.counts.joints;
+    scratch.counts.swept_joints += part.counts.swept_joints;
+    scratch.counts.colors_used |= part.counts.colors_used;
+  };
+  add(scratch.together);
+  for (const std::unique_ptr<LoneSolver>& lone : scratch.lone) add(lone->scratch);
+  scratch.colors = std::popcount(scratch.counts.colors_used);
+  scratch.report = scratch.together.report;
+  scratch.rows = scratch.together.rows;
+}
+
 }  // namespace
 
 void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& tasks,
                 const ContactKernels& kernels, float seconds) {
   const SolverSettings* const row_solver = row_solver_of(w);
-  const int parts = row_solver != nullptr ? w.settings.substeps : kParts * w.settings.substeps;
-  const float h = seconds / float(parts);
-  float warm_scale = w.settings.last_substep > 0.0f ? h / w.settings.last_substep : 0.0f;
-  // Parts of a step up to an impact may be as short as they like: what one of these leaves is mostly rounding.
-  if (!w.waiting.empty()) warm_scale = min(warm_scale, kMostWarm);
-  w.settings.last_substep = h;
-  w.settings.last_step = seconds;
-  for (const std::uint32_t body : w.bodies.awake) {
-    w.bodies.flags[body].touched = 0;
-    w.bodies.motion[body].moved = {};
-    w.bodies.motion[body].turned = {};
-    w.bodies.motion[body].pushed = 0.0f;
-  }
-  w.field_rest.clear();
-  if (!w.fields.empty()) w.field_rest.resize(w.bodies.motion.size());
-  const bool keeps_moves = motion_settings(w).integrator == IntegratorKind::verlet;
-  if (keeps_moves) w.bodies.last_moves.resize(w.bodies.motion.size());
-  Solve solve{w, scratch, kernels};
-  solve.h = h;
-  solve.motions = {parts, h, w.settings.gravity};
-  solve.is_smooth = !w.motion_settings.empty();
-  const float pull = length(w.settings.gravity);
-  solve.contact_settings = {.substep = h,
-                            .step = seconds,
-                            .rate = min(kContactRate, 0.8f / h),
-                            .give = kContactLeak * h / (1.0f + kContactLeak * h),
-                            .aging = kContactAging,
-                            .warm_scale = warm_scale,
-                            .up = pull > 0.0f ? (-1.0f / pull) * w.settings.gravity : Vec3{}};
-  // Long sub-steps take back no more than the whole error and give way by less than the whole impulse.
-  const float give = kJointLeak * h / (1.0f + kJointLeak * h);
-  solve.joint_settings = {h, {min(kJointRate, 0.8f / h), 1.0f - give, give}, row_solver == nullptr};
-  solve.impact_settings = {h, kBounceShare * h * pull};
-  solve.contact_bodies = {w.bodies.motion.data(), w.bodies.inertia.data()};
-  solve.joint_bodies = {w.bodies.motion.data(), w.bodies.inertia.data(), w.bodies.orientations.data()};
-  scratch.manifold_count = scratch.joint_count = scratch.swept_joint_count = 0;
-  scratch.colors_used = 0;
-  scratch.report = {};
-  scratch.rows = {};
-  scratch.hits.clear();
+  const SubStepping plan = plan_substeps(w, seconds, row_solver != nullptr);
+  begin_bodies(w);
+  begin_scratch(scratch.together);
+  const bool parted = may_part(w, tasks);
+  begin_lone(scratch, parted ? std::size_t(tasks.worker_count()) : 0);
   const ArenaScope scope(arena);
-  const SolveBatches batches = find_batches(w, arena, tasks, batch_size(tasks.worker_count()));
-  solve.places = batches.places;
-  for (const SolveBatch& batch : batches.batches) {
+  const SolveBatches all = find_batches(w, arena, tasks, batch_size(tasks.worker_count(), parted));
+  for (const SolveBatch& batch : all.batches) {
+    if (parted && batch.is_small) continue;
+    Solve solve = describe_solve(w, scratch.together, kernels, seconds, plan);
     solve.batch = batch;
+    solve.places = all.places;
     if (row_solver != nullptr) {
-      solve_batch_as_rows(solve, *row_solver, arena, tasks, warm_scale);
+      solve_batch_as_rows(solve, *row_solver, arena, tasks, plan.warm_scale);
     } else {
-      solve_batch(solve, arena, tasks, warm_scale);
+      solve_batch(solve, arena, tasks, plan.warm_scale);
     }
   }
-  scratch.colors = std::popcount(scratch.colors_used);
-  if (keeps_moves) forget_moves(w);
-  report_hits(w, scratch, arena);
+  if (parted) {
+    for_blocks(tasks, int(all.batches.size()), 1, [&](int i, int, int worker) {
+      const SolveBatch& batch = all.batches[std::size_t(i)];
+      if (!batch.is_small) return;
+      LoneSolver& lone = *scratch.lone[std::size_t(worker)];
+      Solve solve = describe_solve(w, lone.scratch, kernels, seconds, plan);
+      solve.batch = batch;
+      solve.places = all.places;
+      solve_batch(solve, lone.arena, lone.tasks, plan.warm_scale);
+    });
+  }
+  sum_up(scratch);
+  if (motion_settings(w).integrator == IntegratorKind::verlet) forget_moves(w);
+  report_hits(w, scratch.hits.view(), arena);
 }
 
 }  // namespace gyre

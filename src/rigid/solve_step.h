@@ -1,9 +1,6 @@
-// The sub-steps of a rigid step as a program, one for each batch of islands (solve_batches.h), one after the other:
-// constraints are gathered and coloured once, then for each sub-step
-//   watch impacts, predict, strike impacts, prepare joints, warm start, solve, advance, release impacts, relax joints
-// (docs/step.md has the table);
-// at the end contacts are relaxed and overlap is pushed apart.
-// Workers meet at a barrier between stages; within one, blocks share no moving body.
+// Solves what is awake in one step: batches of islands (solve_batches.h), each gathered, coloured and laid out once for all its
+// sub-steps (solve_gather.h), which are a program (solve_program.h). Small batches are solved side by side, each by one worker;
+// large ones one after the other by all workers. docs/step.md has the stages.
 #pragma once
 
 #include "base/arena.h"
@@ -14,6 +11,9 @@
 #include "task/coloring.h"
 #include "task/task_system.h"
 
+#include <memory>
+#include <vector>
+
 namespace gyre {
 
 // A hit, before those of all batches are put into the order of their contacts.
@@ -22,8 +22,16 @@ struct SlotHit {
   ContactHit hit;
 };
 
+// What is counted of the batches of a step.
+struct SolveCounts {
+  std::size_t manifolds = 0;
+  std::size_t joints = 0;
+  std::size_t swept_joints = 0;
+  std::uint64_t colors_used = 0;  // bits
+};
+
 // Of the present batch; kept from step to step only for its memory.
-struct SolveScratch {
+struct BatchScratch {
   Array<ContactConstraint> constraints;
   Array<std::uint32_t> constraint_contact;  // contact slot of each constraint
   Array<ImpactContact> impacts;
@@ -33,15 +41,29 @@ struct SolveScratch {
   Array<std::uint32_t> swept_joints;  // those of the batch's that are in no linkage: places in its list
   Array<ColoringPair> joint_pairs;    // theirs
   DenseNets dense_nets;
-  Array<std::uint32_t> order;         // constraint indices, W a block
-  Array<SlotHit> hits;                // of all batches
-  std::size_t manifold_count = 0;     // of all batches
-  std::size_t joint_count = 0;
-  std::size_t swept_joint_count = 0;
+  Array<std::uint32_t> order;  // constraint indices, W a block
+  // Of all batches that were solved with it in this step:
+  Array<SlotHit> hits;
+  SolveCounts counts;
   StepReport report;
-  std::uint64_t colors_used = 0;     // bits
+  RowReport rows;  // of solvers that work on rows
+};
+
+// What a worker needs that solves batches by itself.
+struct LoneSolver {
+  BatchScratch scratch;
+  Arena arena;
+  TaskSystem tasks;
+};
+
+struct SolveScratch {
+  BatchScratch together;                          // of batches that all workers solve together
+  std::vector<std::unique_ptr<LoneSolver>> lone;  // by worker; none where there is one worker
+  Array<SlotHit> hits;
+  SolveCounts counts;  // of all batches
+  StepReport report;
+  RowReport rows;
   int colors = 0;
-  RowReport rows;                    // of solvers that work on rows
 };
 
 // How constraints are shared among groups.
@@ -50,7 +72,7 @@ static_assert(kColoringOptions.max_colors < 64, "colors_used has a bit for each,
 
 // Solves one step of `seconds` in `substeps` sub-steps: velocities, `moved`, `turned` and orientations of awake bodies,
 // impulses in manifolds and joints.
-void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& tasks, const ContactKernels& kernels,
-                float seconds);
+void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& tasks,
+                const ContactKernels& kernels, float seconds);
 
 }  // namespace gyre

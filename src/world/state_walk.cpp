@@ -43,6 +43,7 @@ class Walk {
   Error contacts_have_pairs() const;
   Error pairs_have_contacts() const;
   Error groups_of_constraints() const;
+  Error groups_of_batch(const BatchScratch& solve) const;
   Error everything_is_solved() const;
   Error islands() const;
   Error nobody_sleeps_beside_motion() const;
@@ -206,7 +207,13 @@ Error Walk::pairs_have_contacts() const {
 // No group has a moving body twice, and each constraint is in one group. What is left of the last step is looked at
 // between steps, too.
 Error Walk::groups_of_constraints() const {
-  const SolveScratch& solve = s_.solve;
+  Error fault = groups_of_batch(s_.solve.together);
+  for (const std::unique_ptr<LoneSolver>& lone : s_.solve.lone) {
+    if (fault.code == ErrorCode::none) fault = groups_of_batch(lone->scratch);
+  }
+  return fault;
+}
+Error Walk::groups_of_batch(const BatchScratch& solve) const {
   const auto fits = [](std::span<const ColoringPair> pairs, const Coloring& colors) {
     return pairs.empty() ||
            validate_coloring(pairs, std::uint32_t(colors.masks.size()), {}, kColoringOptions, colors);
@@ -219,7 +226,8 @@ Error Walk::groups_of_constraints() const {
 
 // Whether the lists of all batches together are the slots for which acts(slot) holds, each once.
 template <class Acts>
-bool are_all(const SolveBatches& batches, std::span<const std::uint32_t> SolveBatch::*list, std::size_t slots, const Acts& acts) {
+bool are_all(const SolveBatches& batches, std::span<const std::uint32_t> SolveBatch::*list, std::size_t slots,
+             const Acts& acts) {
   std::vector<std::uint8_t> listed(slots);
   for (const SolveBatch& batch : batches.batches) {
     for (std::size_t i = 0; i < (batch.*list).size(); ++i) {
@@ -238,11 +246,13 @@ bool are_all(const SolveBatches& batches, std::span<const std::uint32_t> SolveBa
 Error Walk::everything_is_solved() const {
   Arena arena;
   TaskSystem alone;
-  const SolveBatches batches = find_batches(w_, arena, alone, 16);
+  const SolveBatches batches = find_batches(w_, arena, alone, {.most = 16});
   const auto acts = [&](std::uint32_t slot) { return is_solved(w_, w_.contacts.contacts[slot]); };
   if (!are_all(batches, &SolveBatch::contacts, w_.contacts.contacts.size(), acts))
     return broken("a contact with manifolds and an awake body is not in one batch");
-  const auto joint_acts = [&](std::uint32_t slot) { return w_.joints.ids.live(slot) && is_joint_solved(w_, slot); };
+  const auto joint_acts = [&](std::uint32_t slot) {
+    return w_.joints.ids.live(slot) && is_joint_solved(w_, slot);
+  };
   if (!are_all(batches, &SolveBatch::joints, w_.joints.ids.capacity(), joint_acts))
     return broken("a joint with an awake body is not in one batch");
   std::vector<std::uint32_t> batch_of(w_.bodies.motion.size(), 0xffffffffu);
@@ -254,18 +264,22 @@ Error Walk::everything_is_solved() const {
   }
   if (bodies != w_.bodies.awake.size()) return broken("the batches are not of all awake bodies");
   const auto is_elsewhere = [&](std::uint32_t body, std::uint32_t batch) {
-    return w_.bodies.flags[body].type != BodyType::fixed && batch_of[body] != 0xffffffffu && batch_of[body] != batch;
+    return w_.bodies.flags[body].type != BodyType::fixed && batch_of[body] != 0xffffffffu &&
+           batch_of[body] != batch;
   };
   for (std::uint32_t i = 0; i < batches.batches.size(); ++i) {
     for (const std::uint32_t slot : batches.batches[i].contacts) {
       const Contact& contact = w_.contacts.contacts[slot];
       if (is_elsewhere(contact.body_a, i) || is_elsewhere(contact.body_b, i))
         return broken("contact %u is in another batch than its bodies", slot);
-      for (const Manifold& manifold : manifolds_of(w_.contacts, contact)) manifolds += manifold.count > 0 ? 1 : 0;
+      for (const Manifold& manifold : manifolds_of(w_.contacts, contact))
+        manifolds += manifold.count > 0 ? 1 : 0;
     }
   }
-  if (manifolds != s_.solve.manifold_count) return broken("the solver has other manifolds than those that touch");
-  return joints == s_.solve.joint_count ? Error{} : broken("the solver has other joints than those that act");
+  if (manifolds != s_.solve.counts.manifolds)
+    return broken("the solver has other manifolds than those that touch");
+  return joints == s_.solve.counts.joints ? Error{}
+                                          : broken("the solver has other joints than those that act");
 }
 
 // The bodies of a sleeping group hang together, if they came to rest by themselves. Those that were put to sleep in full

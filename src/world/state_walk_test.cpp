@@ -199,16 +199,16 @@ TEST(Walk, FindsContactsWithoutPairsAndPairsWithoutContacts) {
 
 TEST(Walk, FindsGroupsThatShareABody) {
   EXPECT_TRUE(tells(fault_after([](WorldState& s) {
-                      ASSERT_GE(s.solve.pairs.size(), 2u);
+                      ASSERT_GE(s.solve.together.pairs.size(), 2u);
                       // Both in group 0, as if the second had not seen the first.
-                      s.solve.pairs[1] = s.solve.pairs[0];
-                      s.solve.contact_colors.color[1] = s.solve.contact_colors.color[0];
+                      s.solve.together.pairs[1] = s.solve.together.pairs[0];
+                      s.solve.together.contact_colors.color[1] = s.solve.together.contact_colors.color[0];
                     }),
                     "a group of contacts has a moving body twice"));
   EXPECT_TRUE(tells(fault_after([](WorldState& s) {
-                      ASSERT_EQ(s.solve.joint_pairs.size(), 2u);
-                      s.solve.joint_pairs[1] = s.solve.joint_pairs[0];
-                      s.solve.joint_colors.color[1] = s.solve.joint_colors.color[0];
+                      ASSERT_EQ(s.solve.together.joint_pairs.size(), 2u);
+                      s.solve.together.joint_pairs[1] = s.solve.together.joint_pairs[0];
+                      s.solve.together.joint_colors.color[1] = s.solve.together.joint_colors.color[0];
                     }),
                     "a group of joints has a moving body twice"));
 }
@@ -216,11 +216,11 @@ TEST(Walk, FindsGroupsThatShareABody) {
 TEST(Walk, FindsWhatTheSolverWasNotGiven) {
   // Right after the step nothing has changed since its stage `solve`.
   constexpr StageName kSolve = StageName::solve;
-  EXPECT_TRUE(tells(fault_after([](WorldState& s) { --s.solve.manifold_count; }, kSolve),
+  EXPECT_TRUE(tells(fault_after([](WorldState& s) { --s.solve.counts.manifolds; }, kSolve),
                     "the solver has other manifolds"));
   EXPECT_TRUE(tells(fault_after([](WorldState& s) { awake_contact(s).manifold_count = 0; }, kSolve),
                     "the solver has other manifolds than those that touch"));
-  EXPECT_TRUE(tells(fault_after([](WorldState& s) { ++s.solve.joint_count; }, kSolve),
+  EXPECT_TRUE(tells(fault_after([](WorldState& s) { ++s.solve.counts.joints; }, kSolve),
                     "the solver has other joints"));
   EXPECT_TRUE(tells(fault_after([](WorldState& s) { remove_joint_now(s, 1); }, kSolve),
                     "the solver has other joints than those that act"));

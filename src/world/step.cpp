@@ -88,8 +88,10 @@ void report_large_islands(WorldState& s) {
   const RowReport& rows = s.solve.rows;
   if (rows.too_large == 0) return;
   const SolverSettings& solver = s.rigid.solver[0];
-  report_problem(s, ErrorCode::unsupported, {}, "%d islands of up to %d rows are beyond direct_rows %d of %s: Newton's method solved them",
-                 rows.too_large, rows.largest, solver.options.direct_rows, to_string(solver.options.lcp_method));
+  report_problem(s, ErrorCode::unsupported, {},
+                 "%d islands of up to %d rows are beyond direct_rows %d of %s: Newton's method solved them",
+                 rows.too_large, rows.largest, solver.options.direct_rows,
+                 to_string(solver.options.lcp_method));
 }
 
 void count(WorldState& s, CounterName counter, std::size_t amount) { s.profile.count(int(counter), amount); }
@@ -110,10 +112,10 @@ void count_work(WorldState& s) {
   if (!s.profile.enabled()) return;
   const RigidWorld& w = s.rigid;
   count(s, CounterName::contacts, w.contacts.live);
-  count(s, CounterName::manifolds, s.solve.manifold_count);
+  count(s, CounterName::manifolds, s.solve.counts.manifolds);
   count(s, CounterName::colors, std::size_t(s.solve.colors));
-  count(s, CounterName::joints, s.solve.joint_count);
-  count(s, CounterName::swept_joints, s.solve.swept_joint_count);
+  count(s, CounterName::joints, s.solve.counts.joints);
+  count(s, CounterName::swept_joints, s.solve.counts.swept_joints);
   count(s, CounterName::awake_bodies, w.bodies.awake.size());
   count(s, CounterName::fast_bodies, s.continuous.fast.size());
 }
@@ -176,7 +178,8 @@ void step_at_once(WorldState& s, float seconds) {
   look(s, seconds);
   s.rigid.now = s.time;
   run_stage(s, StageName::solve, [&] {
-    if (motion_settings(s.rigid).time == TimeStepping::error_controlled) return solve_to_tolerance(s, seconds);
+    if (motion_settings(s.rigid).time == TimeStepping::error_controlled)
+      return solve_to_tolerance(s, seconds);
     solve_step(s.rigid, s.solve, s.arena, *s.tasks, *s.kernels, seconds);
   });
   finish(s, seconds, seconds, true);
@@ -196,7 +199,8 @@ double solve_to_impact(WorldState& s, double left, float seconds, bool& is_impac
   double length = left;
   is_impact = false;
   for (int n = 0;; ++n) {
-    w.settings.substeps = clamp(std::int32_t(std::ceil(double(substeps) * length / double(seconds))), 1, substeps);
+    w.settings.substeps =
+        clamp(std::int32_t(std::ceil(double(substeps) * length / double(seconds))), 1, substeps);
     solve_step(w, s.solve, s.arena, *s.tasks, *s.kernels, float(length));
     if (bounded || n + 1 == kMostTries) break;
     const FirstImpact first = find_first_impact(w, s.impacts.before, length);
@@ -279,8 +283,10 @@ void step_world(WorldState& s, float seconds) {
   s.rigid.steps = s.step_count;
   {
     const StageZone whole(s.profile, kWholeStep);
-    if (motion_settings(s.rigid).time == TimeStepping::adaptive) step_to_impacts(s, seconds);
-    else step_at_once(s, seconds);
+    if (motion_settings(s.rigid).time == TimeStepping::adaptive)
+      step_to_impacts(s, seconds);
+    else
+      step_at_once(s, seconds);
   }
   end_step(s, seconds);
   report_frozen(s);

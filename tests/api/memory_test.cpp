@@ -100,6 +100,18 @@ TEST(NoAllocation, InJointsAndThreads) {
   }
   expect_none(world, 2400, 120, "chain on two threads");  // it swings for long, and now and then links touch
 }
+// Which of the workers solves which pile is chance.
+TEST(NoAllocation, InPilesThatWorkersShare) {
+  World world = make_world({.threads = 3, .sleeping = false});
+  add_ground(world);
+  for (int pile = 0; pile < 24; ++pile) {
+    const int boxes = pile == 12 ? 60 : 2;
+    for (int i = 0; i < boxes; ++i)
+      world.add_body({.pose = {.position = {20.0 * pile + 1.01 * (i % 4), 0.51 + 1.01 * (i / 4), 0}}},
+                     {.geometry = Box{}});
+  }
+  expect_none(world, 20, 600, "piles on three threads");
+}
 TEST(NoAllocation, InFields) {
   World world = make_world({.threads = 2, .sleeping = false});
   world.add_field({.kind = FieldKind::buoyancy, .linear_drag = 0.5f});

@@ -1,0 +1,433 @@
+// The stages of sub-steps and their order. See solve_program.h.
+#include "rigid/solve_program.h"
+
+#include "rigid/joint_works.h"
+#include "rigid/program_writer.h"
+#include "solver/ball_records.h"
+#include "task/parallel.h"
+#include "task/program.h"
+
+namespace gyre {
+
+namespace {
+
+constexpr int kBodiesPerBlock = 64;
+constexpr int kMotionBlocksPerClaim = 8;
+constexpr int kSpinnersPerClaim = 8;
+constexpr int kJointsPerBlock = 16;  // whole blocks of lanes at every width
+constexpr int kBlocksPerClaim = 4;
+constexpr int kTreesPerClaim = 8;
+
+// --------------------------------------------------------------------------------------------------- stages' kernels
+
+// Bodies [begin, end) of a list in blocks of `size`.
+template <class T>
+std::span<T> block_of(std::span<T> list, int begin, int end, int size) {
+  const std::size_t first = std::size_t(begin) * std::size_t(size);
+  return list.subspan(first, min(std::size_t(end) * std::size_t(size), list.size()) - first);
+}
+
+void fly_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  fly(s.w.bodies, block_of(s.flying, begin, end, kBodiesPerBlock), s.motions);
+}
+void prepare_motion_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  s.kernels.motion.prepare(s.motion_blocks, begin, end, s.moved.data(), int(s.moved.size()),
+                           s.contact_bodies.inertia);
+}
+void predict_cold_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  s.kernels.motion.predict(s.motion_blocks, begin, end, s.contact_bodies.motion, false);
+}
+void predict_warm_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  s.kernels.motion.predict(s.motion_blocks, begin, end, s.contact_bodies.motion, true);
+}
+void warm_motion_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  s.kernels.motion.warm(s.motion_blocks, begin, end, s.contact_bodies.motion);
+}
+void watch_motion_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  s.kernels.motion.watch(s.motion_blocks, begin, end, s.contact_bodies.motion);
+}
+void note_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  s.kernels.motion.note(s.motion_blocks, begin, end, s.contact_bodies.motion);
+}
+void advance_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  BodyStore& bodies = s.w.bodies;
+  s.kernels.motion.advance(s.motion_blocks, begin, end,
+                           {bodies.motion.data(), bodies.inertia.data(), bodies.orientations.data()}, s.h);
+}
+void turn_alone_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  turn_alone(s.w.bodies, block_of(s.spinners, begin, end, kSpinnersPerClaim), s.h);
+}
+void finish_turns_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  finish_turns(s.w.bodies, block_of(s.moved, begin, end, kBodiesPerBlock),
+               block_of(s.pushes, begin, end, kBodiesPerBlock));
+}
+void watch_stage(void* context, int, int, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  watch_impacts(s.scratch.impacts, s.contact_bodies);
+}
+void strike_stage(void* context, int, int, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  strike_impacts(s.scratch.impacts, s.contact_bodies, s.impact_settings);
+}
+void release_stage(void* context, int, int, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  release_impacts(s.scratch.impacts, s.contact_bodies, s.impact_settings);
+}
+
+void solve_trees_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  for (int i = begin; i < end; ++i) solve_tree(s.forest.trees[std::size_t(i)], s.tree_solve);
+}
+
+// One after the other: they share the step's arena, which nobody else uses meanwhile.
+template <void (*kernel)(ContactStructure&, const StructureSolve&)>
+void structures_stage(void* context, int, int, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  for (ContactStructure& structure : s.structures) kernel(structure, s.structure_solve);
+}
+
+void prepare_contacts_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  s.kernels.prepare(s.blocks, begin, end, s.scratch.constraints.data(), s.scratch.order.data(),
+                    s.contact_bodies, s.contact_settings);
+}
+void finish_contacts_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  s.kernels.finish(s.blocks, begin, end, s.scratch.constraints.data(), s.scratch.order.data(),
+                   s.contact_settings);
+}
+void warm_contacts_stage(void* context, int begin, int end, int) {
+  const Group& g = *static_cast<Group*>(context);
+  g.solve->kernels.warm_start(g.solve->blocks, int(g.first) + begin, int(g.first) + end,
+                              g.solve->contact_bodies.motion);
+}
+// Calls fn(rolling, block, lane) for those contacts of the blocks that roll, which are few.
+template <class Fn>
+void for_each_rolling(const Group& g, int begin, int end, Fn&& fn) {
+  Solve& s = *g.solve;
+  if (s.rolling.contacts.empty()) return;
+  const int width = s.kernels.width;
+  for (int i = (int(g.first) + begin) * width; i < (int(g.first) + end) * width; ++i) {
+    const std::uint32_t constraint = s.scratch.order[std::size_t(i)];
+    const std::uint32_t place = constraint == 0xffffffffu ? kNotRolling : s.rolling.of_constraint[constraint];
+    if (place != kNotRolling) fn(s.rolling.contacts[place], i / width, i % width);
+  }
+}
+// Takes their points along, and their bodies to the velocities of the middle of the sub-step: no other contact bears these.
+void follow_contacts(const Group& g, int begin, int end) {
+  Solve& s = *g.solve;
+  for_each_rolling(g, begin, end, [&](RollingContact& rolling, int block, int lane) {
+    if (rolling.placed) return;
+    rolling.placed = rolling.once;
+    const Manifold& manifold = *s.scratch.constraints[rolling.constraint].manifold;
+    const float ahead = 0.5f * (rolling.once ? s.contact_settings.step : s.h);
+    const FollowedArms arms = follow_contact(s.w, rolling, manifold, ahead);
+    s.kernels.follow(s.blocks, block, lane, arms, s.contact_bodies.inertia, s.contact_bodies.motion);
+    Vec3& spin = s.contact_bodies.motion[rolling.body].angular_velocity;
+    spin = spin + rolling.drift;
+  });
+}
+void leave_middle(const Group& g, int begin, int end) {
+  for_each_rolling(g, begin, end, [&](const RollingContact& rolling, int, int) {
+    if (rolling.once) return;
+    Vec3& spin = g.solve->contact_bodies.motion[rolling.body].angular_velocity;
+    spin = spin - rolling.drift;
+  });
+}
+void solve_contacts_stage(void* context, int begin, int end, int) {
+  const Group& g = *static_cast<Group*>(context);
+  follow_contacts(g, begin, end);
+  g.solve->kernels.solve(g.solve->blocks, int(g.first) + begin, int(g.first) + end,
+                         g.solve->contact_bodies.motion, g.solve->h);
+  leave_middle(g, begin, end);
+}
+void relax_contacts_stage(void* context, int begin, int end, int) {
+  const Group& g = *static_cast<Group*>(context);
+  g.solve->kernels.relax(g.solve->blocks, int(g.first) + begin, int(g.first) + end,
+                         g.solve->contact_bodies.motion, g.solve->h);
+}
+void project_contacts_stage(void* context, int begin, int end, int) {
+  const Group& g = *static_cast<Group*>(context);
+  g.solve->kernels.project(g.solve->blocks, int(g.first) + begin, int(g.first) + end,
+                           g.solve->contact_bodies.motion, g.solve->contact_settings.step);
+}
+void begin_projection_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  s.kernels.motion.begin_projection(s.motion_blocks, begin, end, s.contact_bodies.motion);
+}
+void end_projection_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  s.kernels.motion.end_projection(s.motion_blocks, begin, end, s.contact_bodies.motion, s.pushes.data());
+}
+
+// Calls fn(record, work, places) for the joints of some blocks of a group.
+template <class Fn>
+void for_joints(const Group& g, int begin, int end, Fn&& fn) {
+  Solve& s = *g.solve;
+  const std::uint32_t last = min(std::uint32_t(end * kJointsPerBlock), g.count);
+  for (std::uint32_t n = std::uint32_t(begin * kJointsPerBlock); n < last; ++n) {
+    const std::uint32_t i = s.scratch.swept_joints[s.joint_order[g.first + n]];
+    fn(s.w.joints.records[s.batch.joints[i]], s.joint_work[i], s.joint_places[i]);
+  }
+}
+// The blocks of a group whose joints are solved side by side.
+struct Balls {
+  const BallKernels& kernels;
+  void* blocks;
+  BallArrays arrays;
+  BallSettings settings;
+  int begin, end;
+};
+Balls balls_of(const Group& g, int begin, int end) {
+  const Solve& s = *g.solve;
+  const Softness& softness = s.joint_settings.softness;
+  const int width = s.kernels.width, joints = min(end * kJointsPerBlock, int(g.count));
+  return {s.kernels.balls,
+          s.balls,
+          {s.joint_bodies.motion, s.joint_bodies.inertia, s.joint_bodies.orientation},
+          {s.h, softness.bias_rate, softness.mass_scale, softness.impulse_scale},
+          g.ball_block + begin * kJointsPerBlock / width,
+          g.ball_block + count_blocks(joints, width)};
+}
+// Calls fn(block, lane, joint) for the joints of such a group.
+template <class Fn>
+void for_balls(const Group& g, int begin, int end, Fn&& fn) {
+  const int width = g.solve->kernels.width;
+  int n = begin * kJointsPerBlock;
+  for_joints(g, begin, end, [&](JointRecord& joint, JointWork&, const JointPlaces& places) {
+    fn(g.ball_block + n / width, n % width, joint, places);
+    ++n;
+  });
+}
+void begin_balls_stage(void* context, int begin, int end, int) {
+  const Group& g = *static_cast<Group*>(context);
+  if (g.ball_block < 0) return;
+  const Balls balls = balls_of(g, begin, end);
+  // Lanes without a joint join nothing.
+  if (int(g.count) % balls.kernels.width != 0) clear_balls(balls.kernels, balls.blocks, balls.end - 1);
+  for_balls(g, begin, end, [&](int block, int lane, const JointRecord& joint, const JointPlaces& places) {
+    begin_ball(balls.kernels, balls.blocks, block, lane, joint, places, balls.arrays.inertia);
+  });
+}
+void finish_balls_stage(void* context, int begin, int end, int) {
+  const Group& g = *static_cast<Group*>(context);
+  if (g.ball_block < 0) return;
+  const Balls balls = balls_of(g, begin, end);
+  for_balls(g, begin, end, [&](int block, int lane, JointRecord& joint, const JointPlaces&) {
+    finish_ball(balls.kernels, balls.blocks, block, lane, joint);
+  });
+}
+void place_joints_stage(void* context, int begin, int end, int) {
+  const Group& g = *static_cast<Group*>(context);
+  if (g.ball_block >= 0) {
+    const Balls balls = balls_of(g, begin, end);
+    return balls.kernels.place(balls.blocks, balls.begin, balls.end, balls.arrays);
+  }
+  for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces& places) {
+    place_joint(joint, work, places, g.solve->joint_bodies, g.solve->joint_settings);
+  });
+}
+void bend_joints_stage(void* context, int begin, int end, int) {
+  const Group& g = *static_cast<Group*>(context);
+  if (g.ball_block >= 0) {
+    const Balls balls = balls_of(g, begin, end);
+    return balls.kernels.bend(balls.blocks, balls.begin, balls.end, balls.arrays, balls.settings);
+  }
+  for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
+    bend_joint(joint, work, g.solve->joint_bodies, g.solve->joint_settings);
+  });
+}
+void warm_joints_stage(void* context, int begin, int end, int) {
+  const Group& g = *static_cast<Group*>(context);
+  if (g.ball_block >= 0) {
+    const Balls balls = balls_of(g, begin, end);
+    return balls.kernels.warm(balls.blocks, balls.begin, balls.end, balls.arrays);
+  }
+  for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
+    warm_start_joint(joint, work, g.solve->joint_bodies);
+  });
+}
+void solve_joints_stage(void* context, int begin, int end, int) {
+  const Group& g = *static_cast<Group*>(context);
+  if (g.ball_block >= 0) {
+    const Balls balls = balls_of(g, begin, end);
+    return balls.kernels.solve(balls.blocks, balls.begin, balls.end, balls.arrays, balls.settings);
+  }
+  for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
+    solve_joint(joint, work, g.solve->joint_bodies, g.solve->joint_settings, true);
+  });
+}
+// Balls are placed with what follows, while they are in the cache: nothing that one colour gives changes where the next one
+// stands, and no linkage has their bodies.
+void place_again_stage(void* context, int begin, int end, int worker) {
+  if (static_cast<Group*>(context)->ball_block < 0) place_joints_stage(context, begin, end, worker);
+}
+void relax_joints_stage(void* context, int begin, int end, int) {
+  const Group& g = *static_cast<Group*>(context);
+  if (g.ball_block >= 0) {
+    const Balls balls = balls_of(g, begin, end);
+    balls.kernels.place(balls.blocks, balls.begin, balls.end, balls.arrays);
+    return balls.kernels.relax(balls.blocks, balls.begin, balls.end, balls.arrays);
+  }
+  for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
+    solve_joint(joint, work, g.solve->joint_bodies, g.solve->joint_settings, false);
+    sum_joint(joint, work, g.solve->joint_bodies);
+  });
+}
+
+void move_smooth(void* context, int begin, int end, int worker) {
+  move_smooth_stage(&static_cast<Solve*>(context)->smooth, begin, end, worker);
+}
+void move_carried(void* context, int begin, int end, int worker) {
+  move_carried_stage(&static_cast<Solve*>(context)->smooth, begin, end, worker);
+}
+void kick_carriers(void* context, int begin, int end, int worker) {
+  kick_carriers_stage(&static_cast<Solve*>(context)->smooth, begin, end, worker);
+}
+void finish_smooth(void* context, int begin, int end, int worker) {
+  finish_smooth_stage(&static_cast<Solve*>(context)->smooth, begin, end, worker);
+}
+
+// Of linkages [begin, end).
+template <void (*kernel)(const Linkage&, const LinkageSolve&)>
+void linkage_stage(void* context, int begin, int end, int worker) {
+  const Solve& s = *static_cast<Solve*>(context);
+  LinkageSolve own = s.linkage_solve;
+  if (!s.stop_rooms.empty()) own.room = s.stop_rooms[std::size_t(worker)];
+  for (int i = begin; i < end; ++i) kernel(s.linkages.linkages[std::size_t(i)], own);
+}
+
+// Of linkages side by side.
+void begin_bundles_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  begin_bundles(s.bundles, begin, end, s.linkage_solve);
+}
+void finish_bundles_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  finish_bundles(s.bundles, begin, end, s.linkage_solve);
+}
+using BundleKernel = void (*LinkageKernels::*)(const LinkageBundle&, const LaneArrays&, const LaneSettings&);
+template <BundleKernel... kernels>
+void bundle_stage(void* context, int begin, int end, int) {
+  const BundleSolve& s = static_cast<Solve*>(context)->bundles;
+  for (int i = begin; i < end; ++i) {
+    const LinkageBundle& bundle = s.bundles[std::size_t(i)].lanes;
+    ((bundle.kernels->*kernels)(bundle, s.arrays, s.settings), ...);
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------------- program
+
+// The stages of one part of a sub-step. Impacts and joints are between forces, contacts and moves only where there are any.
+//
+// Stacks and structures at rest are solved directly after the first sweep, which gives them the loads of this step, and after
+// the last, which leaves them at rest: in between nothing is left for the sweeps to change.
+void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> contacts,
+              std::span<Group> joints) {
+  const bool first = part == 0, last = part + 1 == solve.motions.count;
+  const int bodies = count_blocks(int(solve.moved.size()), solve.kernels.width);
+  const int impacts = solve.scratch.impacts.empty() ? 0 : 1;
+  const int trees = first || last ? int(solve.forest.trees.size()) : 0;
+  const int structures = solve.structures.empty() ? 0 : 1;
+  const int linkages = int(solve.linkages.linkages.size()), bundles = int(solve.bundles.bundles.size());
+  // Joints act between forces and contacts: what they give is none of the contacts' work, and how they bend in the sub-step
+  // is none of what contacts gave in the last one.
+  const bool has_joints = linkages > 0 || bundles > 0 || !joints.empty();
+  const bool is_warm = !first && impacts == 0 && !has_joints;
+  // What contacts gave is looked at only where there may be any. (Linkages leave negative zeros, which the look clears away.)
+  const int watched = contacts.empty() && linkages == 0 && bundles == 0 && has_joints ? 0 : bodies;
+  const int fields = solve.fields.blocks();
+  program.add(watch_fields_stage, &solve.fields, fields);
+  program.add(watch_stage, &solve, impacts);
+  if (solve.smooth.any_carried) {
+    program.add(move_carried, &solve, solve.smooth.count());
+    program.add(kick_carriers, &solve, 1);
+  }
+  program.add(is_warm ? predict_warm_stage : predict_cold_stage, &solve, bodies, kMotionBlocksPerClaim);
+  program.add(strike_stage, &solve, impacts);
+  program.add_groups(bend_joints_stage, joints, kJointsPerBlock, 1);
+  program.add(linkage_stage<warm_linkage>, &solve, linkages);
+  program.add(bundle_stage<&LinkageKernels::warm>, &solve, bundles);
+  program.add_groups(warm_joints_stage, joints, kJointsPerBlock, 1);
+  if (!first && !is_warm) program.add(warm_motion_stage, &solve, watched, kMotionBlocksPerClaim);
+  if (first) {
+    program.add(watch_motion_stage, &solve, watched, kMotionBlocksPerClaim);
+    program.add_groups(warm_contacts_stage, contacts, 1, kBlocksPerClaim);
+    program.add(note_stage, &solve, watched, kMotionBlocksPerClaim);
+  }
+  // What contacts and joints gave in the last part is in the velocities by now: a stream pulls at what really moves.
+  program.add(apply_fields_stage, &solve.fields, fields);
+  if (fields > 0) program.add(watch_motion_stage, &solve, watched, kMotionBlocksPerClaim);
+  program.add_groups(solve_joints_stage, joints, kJointsPerBlock, 1);
+  program.add(linkage_stage<solve_linkage>, &solve, linkages);
+  program.add(bundle_stage<&LinkageKernels::solve>, &solve, bundles);
+  if (has_joints) program.add(watch_motion_stage, &solve, watched, kMotionBlocksPerClaim);
+  program.add_groups(solve_contacts_stage, contacts, 1, kBlocksPerClaim);
+  program.add(solve_trees_stage, &solve, trees, kTreesPerClaim);
+  if (first) program.add(structures_stage<solve_structure_first>, &solve, structures);
+  if (last) program.add(structures_stage<solve_structure_last>, &solve, structures);
+  if (has_joints) program.add(note_stage, &solve, watched, kMotionBlocksPerClaim);
+  program.add(linkage_stage<solve_linkage_again>, &solve, linkages);
+  program.add(bundle_stage<&LinkageKernels::solve_again>, &solve, bundles);
+  if (has_joints) program.add(watch_motion_stage, &solve, watched, kMotionBlocksPerClaim);
+  program.add(advance_stage, &solve, bodies, kMotionBlocksPerClaim);
+  program.add(turn_alone_stage, &solve, count_blocks(int(solve.spinners.size()), kSpinnersPerClaim));
+  program.add(release_stage, &solve, impacts);
+  program.add_groups(place_again_stage, joints, kJointsPerBlock, 1);
+  program.add(linkage_stage<place_linkage>, &solve, linkages);
+  if (!joints.empty()) program.add(bundle_stage<&LinkageKernels::place>, &solve, bundles);
+  program.add_groups(relax_joints_stage, joints, kJointsPerBlock, 1);
+  program.add(linkage_stage<relax_linkage>, &solve, linkages);
+  // Where no joint is swept in between, while their rows are still in the cache.
+  program.add(joints.empty() ? bundle_stage<&LinkageKernels::place, &LinkageKernels::relax>
+                             : bundle_stage<&LinkageKernels::relax>,
+              &solve, bundles);
+}
+
+}  // namespace
+
+void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> joints, Arena& arena,
+                  TaskSystem& tasks) {
+  const int parts = solve.motions.count;
+  const std::size_t per_part =
+      (solve.bundles.bundles.empty() ? 24 : 29) + 5 * joints.size() + 2 * contacts.size();
+  ProgramWriter program(
+      arena.make<Stage>(15 + std::size_t(parts) * per_part + 2 * contacts.size() + 3 * joints.size()));
+  std::uint32_t blocks = 0;
+  for (const Group& group : contacts) blocks += group.count;
+  const int bodies = count_blocks(int(solve.moved.size()), solve.kernels.width);
+  program.add(fly_stage, &solve, count_blocks(int(solve.flying.size()), kBodiesPerBlock));
+  program.add(move_smooth, &solve, solve.smooth.count());
+  program.add(prepare_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
+  program.add(prepare_fields_stage, &solve.fields, solve.fields.blocks());
+  program.add(prepare_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
+  program.add_groups(begin_balls_stage, joints, kJointsPerBlock, 1);
+  program.add_groups(place_joints_stage, joints, kJointsPerBlock, 1);
+  program.add(linkage_stage<place_linkage>, &solve, int(solve.linkages.linkages.size()));
+  const int bundles = int(solve.bundles.bundles.size());
+  program.add(begin_bundles_stage, &solve, bundles);
+  program.add(bundle_stage<&LinkageKernels::place>, &solve, bundles);
+  for (int i = 0; i < parts; ++i) add_part(program, solve, i, contacts, joints);
+  program.add_groups(relax_contacts_stage, contacts, 1, kBlocksPerClaim);
+  program.add(begin_projection_stage, &solve, bodies, kMotionBlocksPerClaim);
+  program.add_groups(project_contacts_stage, contacts, 1, kBlocksPerClaim);
+  program.add(end_projection_stage, &solve, bodies, kMotionBlocksPerClaim);
+  program.add(finish_turns_stage, &solve, count_blocks(int(solve.moved.size()), kBodiesPerBlock));
+  program.add(finish_smooth, &solve, solve.smooth.count());
+  program.add(finish_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
+  program.add(finish_bundles_stage, &solve, bundles);
+  program.add_groups(finish_balls_stage, joints, kJointsPerBlock, 1);
+  run_program(tasks, program.stages());
+}
+
+}  // namespace gyre
