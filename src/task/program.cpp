@@ -27,11 +27,17 @@ void run_alone(const Stage& stage, int worker) {
   if (stage.block_count > 0) stage.kernel(stage.context, 0, stage.block_count, worker);
 }
 
-void run_claim(const Stage& stage, int claim, int worker) {
+void run_claims_of(const Stage& stage, int first, int count, int worker) {
   const int per_claim = stage.blocks_per_claim < 1 ? 1 : stage.blocks_per_claim;
-  const int begin = claim * per_claim;
+  const int begin = first * per_claim;
   const int left = stage.block_count - begin;
-  stage.kernel(stage.context, begin, begin + (left < per_claim ? left : per_claim), worker);
+  stage.kernel(stage.context, begin, begin + (left < count * per_claim ? left : count * per_claim), worker);
+}
+
+// How many claims are taken at once of so many. Small blocks are alike: half of them, so that a share is taken in few goes and
+// there is still something left for others if its worker is held up.
+std::uint64_t claims_at_once(const Stage& stage, std::uint64_t left) {
+  return stage.blocks_per_claim > 1 && left > 1 ? left / 2 : 1;
 }
 
 class Runner {
@@ -87,9 +93,10 @@ class Runner {
       const std::uint64_t end = pack(index, share_begin(claims, owner + 1));
       std::uint64_t now = next.load(std::memory_order_relaxed);
       while (now >> 32 == index && now < end) {
-        if (!next.compare_exchange_weak(now, now + 1, std::memory_order_relaxed)) continue;
-        run_claim(stage, static_cast<int>(now & 0xffffffff), worker);
-        ++done;
+        const std::uint64_t taken = claims_at_once(stage, end - now);
+        if (!next.compare_exchange_weak(now, now + taken, std::memory_order_relaxed)) continue;
+        run_claims_of(stage, static_cast<int>(now & 0xffffffff), static_cast<int>(taken), worker);
+        done += static_cast<int>(taken);
         now = next.load(std::memory_order_relaxed);
       }
     }

@@ -16,8 +16,9 @@ struct Stage {
   void (*kernel)(void* context, int block_begin, int block_end, int worker) = nullptr;
   void* context = nullptr;
   int block_count = 0;
-  int blocks_per_claim =
-      1;  // taken at once; what is not more than one claim runs on one worker without waking others
+  // What is not more than one claim runs on one worker without waking others. 1: blocks may differ much, and each is taken by
+  // itself. More: they are alike and small, and a worker takes several claims at once.
+  int blocks_per_claim = 1;
 };
 
 // Each worker starts with its own share of a stage's blocks and then takes from the others'. With one worker this is a
