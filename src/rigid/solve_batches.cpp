@@ -13,6 +13,14 @@ namespace {
 constexpr std::uint32_t kNone = 0xffffffffu;
 // Manifolds and joints: what is less is not worth to be shared among workers.
 constexpr std::uint32_t kWorthSharing = 64;
+constexpr int kTiesPerBlock = 256;
+
+// What islands and batches need to know of a contact or joint, so that its record is read once.
+struct Tie {
+  std::uint32_t owner = 0;      // a body that moves: its island is the constraint's
+  std::uint32_t other = kNone;  // may be one that does not
+  std::uint32_t size = 1;       // manifolds
+};
 
 // What is solved in this step, ascending.
 struct Constraints {
@@ -58,44 +66,58 @@ Constraints list_constraints(const RigidWorld& w, Arena& arena, TaskSystem& task
   return {contacts, joints.first(joint_count), count.manifolds + joint_count};
 }
 
-// Every constraint has a body that moves; its island is the constraint's.
-std::uint32_t owner(const RigidWorld& w, const Contact& contact) {
-  return is_active(w, contact.body_a) ? contact.body_a : contact.body_b;
+Tie tie_of(const RigidWorld& w, const Contact& contact) {
+  const bool by_a = is_active(w, contact.body_a);
+  return {by_a ? contact.body_a : contact.body_b, by_a ? contact.body_b : contact.body_a,
+          contact.manifold_count};
 }
-std::uint32_t owner(const RigidWorld& w, const JointRecord& joint) {
-  return joint.body_a != kNoBody && is_active(w, std::uint32_t(joint.body_a)) ? std::uint32_t(joint.body_a)
-                                                                              : std::uint32_t(joint.body_b);
+Tie tie_of(const RigidWorld& w, const JointRecord& joint) {
+  // As numbers without a sign, kNoBody is kNone.
+  const std::uint32_t a = std::uint32_t(joint.body_a), b = std::uint32_t(joint.body_b);
+  const bool by_a = a != kNone && is_active(w, a);
+  return {by_a ? a : b, by_a ? b : a};
+}
+
+// Of the contacts, then of the joints.
+std::span<const Tie> find_ties(const RigidWorld& w, const Constraints& constraints, Arena& arena,
+                               TaskSystem& tasks) {
+  const std::size_t contacts = constraints.contacts.size(), joints = constraints.joints.size();
+  const std::span<Tie> ties = arena.make<Tie>(contacts + joints);
+  for_blocks(tasks, int(contacts), kTiesPerBlock, [&](int begin, int end, int) {
+    for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i)
+      ties[i] = tie_of(w, w.contacts.contacts[constraints.contacts[i]]);
+  });
+  for_blocks(tasks, int(joints), kTiesPerBlock, [&](int begin, int end, int) {
+    for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i)
+      ties[contacts + i] = tie_of(w, w.joints.records[constraints.joints[i]]);
+  });
+  return ties;
 }
 
 // Union-find over bodies; the root of an island is its lowest body. A kinematic body belongs to the islands that it touches:
 // it moves from sub-step to sub-step, and all must see it where it is.
 class Islands {
  public:
-  Islands(const RigidWorld& w, const Constraints& constraints, std::span<std::uint32_t> parents)
+  Islands(const RigidWorld& w, std::span<const Tie> ties, std::span<std::uint32_t> parents)
       : parents_(parents) {
     for (std::uint32_t& parent : parents_) parent = kNone;
     for (const std::uint32_t body : w.bodies.awake) parents_[body] = body;
-    for (const std::uint32_t slot : constraints.contacts) {
-      const Contact& contact = w.contacts.contacts[slot];
-      unite(contact.body_a, contact.body_b);
-    }
-    for (const std::uint32_t slot : constraints.joints) {
-      const JointRecord& joint = w.joints.records[slot];
-      if (joint.body_a != kNoBody && joint.body_b != kNoBody)
-        unite(std::uint32_t(joint.body_a), std::uint32_t(joint.body_b));
-    }
+    for (const Tie& tie : ties) unite(tie.owner, tie.other);
+    // Who is lower has its root by now.
+    for (const std::uint32_t body : w.bodies.awake) parents_[body] = parents_[parents_[body]];
   }
-  std::uint32_t root(std::uint32_t i) {
-    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
-    return i;
-  }
+  std::uint32_t root(std::uint32_t body) const { return parents_[body]; }
 
  private:
   void unite(std::uint32_t a, std::uint32_t b) {
-    if (parents_[a] == kNone || parents_[b] == kNone) return;
-    a = root(a);
-    b = root(b);
+    if (b == kNone || parents_[b] == kNone) return;
+    a = find(a);
+    b = find(b);
     parents_[max(a, b)] = min(a, b);
+  }
+  std::uint32_t find(std::uint32_t i) {
+    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
+    return i;
   }
 
   std::span<std::uint32_t> parents_;
@@ -104,18 +126,19 @@ class Islands {
 // Lists of numbers by batch: first how many each gets, then the numbers themselves.
 class Lists {
  public:
-  Lists(Arena& arena, std::size_t batches) : ends_(arena.make<std::uint32_t>(batches)) {
+  Lists(Arena& arena, std::size_t batches, std::size_t items)
+      : ends_(arena.make<std::uint32_t>(batches)), items_(arena.make<std::uint32_t>(items)) {
     for (std::uint32_t& end : ends_) end = 0;
   }
   void count(std::uint32_t batch) { ++ends_[batch]; }
-  void make_room(Arena& arena) {
+  // After all were counted.
+  void make_room() {
     std::uint32_t sum = 0;
     for (std::uint32_t& end : ends_) {
       const std::uint32_t count = end;
       end = sum;
       sum += count;
     }
-    items_ = arena.make<std::uint32_t>(sum);
   }
   void add(std::uint32_t batch, std::uint32_t item) { items_[ends_[batch]++] = item; }
   // After all were added.
@@ -133,22 +156,17 @@ class Lists {
 constexpr std::uint32_t kConstraint = 4;
 
 // How much the islands are, by root.
-std::span<const std::uint32_t> weigh_islands(const RigidWorld& w, const Constraints& constraints,
-                                             Islands& islands, std::size_t bodies, Arena& arena) {
+std::span<const std::uint32_t> weigh_islands(const RigidWorld& w, std::span<const Tie> ties,
+                                             const Islands& islands, std::size_t bodies, Arena& arena) {
   const std::span<std::uint32_t> weights = arena.make<std::uint32_t>(bodies);
   for (std::uint32_t& weight : weights) weight = 0;
-  for (const std::uint32_t slot : constraints.contacts) {
-    const Contact& contact = w.contacts.contacts[slot];
-    weights[islands.root(owner(w, contact))] += kConstraint * contact.manifold_count;
-  }
-  for (const std::uint32_t slot : constraints.joints)
-    weights[islands.root(owner(w, w.joints.records[slot]))] += kConstraint;
+  for (const Tie& tie : ties) weights[islands.root(tie.owner)] += kConstraint * tie.size;
   for (const std::uint32_t body : w.bodies.awake) ++weights[islands.root(body)];
   return weights;
 }
 
 // Gives each island its batch, written for all its bodies to `batch_of`. Returns the weights of the batches.
-std::span<const std::uint32_t> part_islands(const RigidWorld& w, Islands& islands,
+std::span<const std::uint32_t> part_islands(const RigidWorld& w, const Islands& islands,
                                             std::span<const std::uint32_t> weights, std::uint32_t most,
                                             Arena& arena, std::span<std::uint32_t> batch_of) {
   const std::span<std::uint32_t> filled = arena.make<std::uint32_t>(w.bodies.awake.size());
@@ -192,29 +210,32 @@ SolveBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, 
     if (!all.empty()) all[0] = {awake, constraints.contacts, constraints.joints};
     return {all, places};
   }
+  // Any two batches that follow each other are more than one may be.
+  const std::size_t most_batches = 2 * all_weights / most + 1, contact_count = constraints.contacts.size();
+  Lists bodies(arena, most_batches, awake.size()), contacts(arena, most_batches, contact_count),
+      joints(arena, most_batches, constraints.joints.size());
+  const std::span<SolveBatch> batches = arena.make<SolveBatch>(most_batches);
+  const ArenaScope scope(arena);
   const std::span<std::uint32_t> batch_of = arena.make<std::uint32_t>(places.size());
-  Islands islands(w, constraints, places);
-  const std::span<const std::uint32_t> weights = part_islands(
-      w, islands, weigh_islands(w, constraints, islands, places.size(), arena), most, arena, batch_of);
+  const std::span<const Tie> ties = find_ties(w, constraints, arena, tasks);
+  const Islands islands(w, ties, places);
+  const std::span<const std::uint32_t> weights =
+      part_islands(w, islands, weigh_islands(w, ties, islands, places.size(), arena), most, arena, batch_of);
   const std::size_t count = weights.size();
-  const auto batch_of_contact = [&](std::uint32_t slot) {
-    return batch_of[owner(w, w.contacts.contacts[slot])];
-  };
-  const auto batch_of_joint = [&](std::uint32_t slot) { return batch_of[owner(w, w.joints.records[slot])]; };
-  Lists bodies(arena, count), contacts(arena, count), joints(arena, count);
   for (const std::uint32_t body : awake) bodies.count(batch_of[body]);
-  for (const std::uint32_t slot : constraints.contacts) contacts.count(batch_of_contact(slot));
-  for (const std::uint32_t slot : constraints.joints) joints.count(batch_of_joint(slot));
-  bodies.make_room(arena), contacts.make_room(arena), joints.make_room(arena);
+  for (std::size_t i = 0; i < ties.size(); ++i)
+    (i < contact_count ? contacts : joints).count(batch_of[ties[i].owner]);
+  bodies.make_room(), contacts.make_room(), joints.make_room();
   for (const std::uint32_t body : awake) bodies.add(batch_of[body], body);
-  for (const std::uint32_t slot : constraints.contacts) contacts.add(batch_of_contact(slot), slot);
-  for (const std::uint32_t slot : constraints.joints) joints.add(batch_of_joint(slot), slot);
-  const std::span<SolveBatch> batches = arena.make<SolveBatch>(count);
+  for (std::size_t i = 0; i < contact_count; ++i)
+    contacts.add(batch_of[ties[i].owner], constraints.contacts[i]);
+  for (std::size_t i = contact_count; i < ties.size(); ++i)
+    joints.add(batch_of[ties[i].owner], constraints.joints[i - contact_count]);
   for (std::size_t i = 0; i < count; ++i) {
     batches[i] = {bodies.of(i), contacts.of(i), joints.of(i), count > 1 && weights[i] <= most};
     for (std::uint32_t n = 0; n < batches[i].bodies.size(); ++n) places[batches[i].bodies[n]] = n;
   }
-  return {batches, places};
+  return {batches.first(count), places};
 }
 
 }  // namespace gyre
