@@ -17,6 +17,8 @@
 namespace gyre {
 
 // What every stage of the program reads.
+struct Group;
+
 struct Solve {
   RigidWorld& w;
   BatchScratch& scratch;
@@ -37,7 +39,8 @@ struct Solve {
   std::span<std::span<double>> stop_rooms{};  // by worker, where a linkage has stops
   BundleSolve bundles{};
   std::span<std::uint32_t> joint_order{};  // places in the list of swept joints, by groups
-  void* balls = nullptr;                   // joints side by side: solver/ball_lanes.h
+  std::span<Group> joint_groups{};
+  void* balls = nullptr;  // joints side by side: solver/ball_lanes.h
   Motions motions{};
   std::span<MovedBody> moved{};         // the batch's bodies that constraints act on,
   void* motion_blocks = nullptr;        // the same for the kernels,

@@ -15,6 +15,7 @@ constexpr int kBodiesPerBlock = 64;
 constexpr int kMotionBlocksPerClaim = 8;
 constexpr int kSpinnersPerClaim = 8;
 constexpr int kJointsPerBlock = 16;  // whole blocks of lanes at every width
+constexpr int kJointBlocksPerClaim = 2;
 constexpr int kBlocksPerClaim = 4;
 constexpr int kTreesPerClaim = 8;
 
@@ -285,6 +286,19 @@ void relax_joints_stage(void* context, int begin, int end, int) {
   });
 }
 
+// Of all groups in one stage: for kernels that write nothing but what is a joint's own. A slice is the same share of each group, so
+// that workers keep to the bodies that they have in the groups' own stages.
+constexpr int kJointSlices = 32;
+constexpr int kSlicesPerClaim = 2;
+template <void (*kernel)(void*, int, int, int)>
+void joint_slices_stage(void* context, int begin, int end, int worker) {
+  for (Group& g : static_cast<Solve*>(context)->joint_groups) {
+    const int blocks = count_blocks(int(g.count), kJointsPerBlock);
+    const int first = blocks * begin / kJointSlices, last = blocks * end / kJointSlices;
+    if (first < last) kernel(&g, first, last, worker);
+  }
+}
+
 void move_smooth(void* context, int begin, int end, int worker) {
   move_smooth_stage(&static_cast<Solve*>(context)->smooth, begin, end, worker);
 }
@@ -347,6 +361,7 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   // What contacts gave is looked at only where there may be any. (Linkages leave negative zeros, which the look clears away.)
   const int watched = contacts.empty() && linkages == 0 && bundles == 0 && has_joints ? 0 : bodies;
   const int fields = solve.fields.blocks();
+  const int slices = joints.empty() ? 0 : kJointSlices;
   program.add(watch_fields_stage, &solve.fields, fields);
   program.add(watch_stage, &solve, impacts);
   if (solve.smooth.any_carried) {
@@ -355,10 +370,10 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   }
   program.add(is_warm ? predict_warm_stage : predict_cold_stage, &solve, bodies, kMotionBlocksPerClaim);
   program.add(strike_stage, &solve, impacts);
-  program.add_groups(bend_joints_stage, joints, kJointsPerBlock, 1);
+  program.add(joint_slices_stage<bend_joints_stage>, &solve, slices, kSlicesPerClaim);
   program.add(linkage_stage<warm_linkage>, &solve, linkages);
   program.add(bundle_stage<&LinkageKernels::warm>, &solve, bundles);
-  program.add_groups(warm_joints_stage, joints, kJointsPerBlock, 1);
+  program.add_groups(warm_joints_stage, joints, kJointsPerBlock, kJointBlocksPerClaim);
   if (!first && !is_warm) program.add(warm_motion_stage, &solve, watched, kMotionBlocksPerClaim);
   if (first) {
     program.add(watch_motion_stage, &solve, watched, kMotionBlocksPerClaim);
@@ -368,7 +383,7 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   // What contacts and joints gave in the last part is in the velocities by now: a stream pulls at what really moves.
   program.add(apply_fields_stage, &solve.fields, fields);
   if (fields > 0) program.add(watch_motion_stage, &solve, watched, kMotionBlocksPerClaim);
-  program.add_groups(solve_joints_stage, joints, kJointsPerBlock, 1);
+  program.add_groups(solve_joints_stage, joints, kJointsPerBlock, kJointBlocksPerClaim);
   program.add(linkage_stage<solve_linkage>, &solve, linkages);
   program.add(bundle_stage<&LinkageKernels::solve>, &solve, bundles);
   if (has_joints) program.add(watch_motion_stage, &solve, watched, kMotionBlocksPerClaim);
@@ -383,10 +398,10 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   program.add(advance_stage, &solve, bodies, kMotionBlocksPerClaim);
   program.add(turn_alone_stage, &solve, count_blocks(int(solve.spinners.size()), kSpinnersPerClaim));
   program.add(release_stage, &solve, impacts);
-  program.add_groups(place_again_stage, joints, kJointsPerBlock, 1);
+  program.add(joint_slices_stage<place_again_stage>, &solve, slices, kSlicesPerClaim);
   program.add(linkage_stage<place_linkage>, &solve, linkages);
   if (!joints.empty()) program.add(bundle_stage<&LinkageKernels::place>, &solve, bundles);
-  program.add_groups(relax_joints_stage, joints, kJointsPerBlock, 1);
+  program.add_groups(relax_joints_stage, joints, kJointsPerBlock, kJointBlocksPerClaim);
   program.add(linkage_stage<relax_linkage>, &solve, linkages);
   // Where no joint is swept in between, while their rows are still in the cache.
   program.add(joints.empty() ? bundle_stage<&LinkageKernels::place, &LinkageKernels::relax>
@@ -400,9 +415,10 @@ void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> join
                   TaskSystem& tasks) {
   const int parts = solve.motions.count;
   const std::size_t per_part =
-      (solve.bundles.bundles.empty() ? 24 : 29) + 5 * joints.size() + 2 * contacts.size();
-  ProgramWriter program(
-      arena.make<Stage>(15 + std::size_t(parts) * per_part + 2 * contacts.size() + 3 * joints.size()));
+      (solve.bundles.bundles.empty() ? 26 : 31) + 3 * joints.size() + 2 * contacts.size();
+  ProgramWriter program(arena.make<Stage>(18 + std::size_t(parts) * per_part + 2 * contacts.size()));
+  solve.joint_groups = joints;
+  const int slices = joints.empty() ? 0 : kJointSlices;
   std::uint32_t blocks = 0;
   for (const Group& group : contacts) blocks += group.count;
   const int bodies = count_blocks(int(solve.moved.size()), solve.kernels.width);
@@ -411,8 +427,8 @@ void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> join
   program.add(prepare_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
   program.add(prepare_fields_stage, &solve.fields, solve.fields.blocks());
   program.add(prepare_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
-  program.add_groups(begin_balls_stage, joints, kJointsPerBlock, 1);
-  program.add_groups(place_joints_stage, joints, kJointsPerBlock, 1);
+  program.add(joint_slices_stage<begin_balls_stage>, &solve, slices, kSlicesPerClaim);
+  program.add(joint_slices_stage<place_joints_stage>, &solve, slices, kSlicesPerClaim);
   program.add(linkage_stage<place_linkage>, &solve, int(solve.linkages.linkages.size()));
   const int bundles = int(solve.bundles.bundles.size());
   program.add(begin_bundles_stage, &solve, bundles);
@@ -426,7 +442,7 @@ void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> join
   program.add(finish_smooth, &solve, solve.smooth.count());
   program.add(finish_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
   program.add(finish_bundles_stage, &solve, bundles);
-  program.add_groups(finish_balls_stage, joints, kJointsPerBlock, 1);
+  program.add(joint_slices_stage<finish_balls_stage>, &solve, slices, kSlicesPerClaim);
   run_program(tasks, program.stages());
 }
 
