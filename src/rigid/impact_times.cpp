@@ -91,7 +91,7 @@ ImpactContact make_blow(const RigidWorld& w, const Contact& contact, Manifold& m
   constraint.dynamic_friction = contact.surface.dynamic_friction;
   constraint.restitution = contact.surface.restitution;
   constraint.manifold = &manifold;
-  constraint.point_count = manifold.count;
+  constraint.point_count = std::int16_t(manifold.count);
   if (!w.surface_rules.empty() && !apply_surface_rules(w, contact, manifold, constraint))
     constraint.restitution = 0.0f;
   ImpactContact blow = make_impact(constraint);

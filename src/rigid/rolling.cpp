@@ -98,13 +98,6 @@ bool rolls(const RigidWorld& w, const Shape& shape, const RollingContact& rollin
          (other_spin != Vec3{} || w.bodies.inertia[std::size_t(rolling.other)].inverse_mass > 0.0f);
 }
 
-bool bears_load(const Manifold& manifold) {
-  for (int k = 0; k < manifold.count; ++k) {
-    if (manifold.points[k].normal_impulse > 0.0f) return true;
-  }
-  return false;
-}
-
 // Whether it bore load in the last step, or lies on already.
 bool may_bear(const Manifold& manifold) {
   for (int k = 0; k < manifold.count; ++k) {
@@ -126,14 +119,14 @@ class Bearers {
         if (!is_borne(body)) continue;
         Count& count = counts_[places_[std::size_t(body)]];
         count.all = std::uint8_t(count.all < 2 ? count.all + 1 : 2);
-        count.loaded = std::uint8_t(count.loaded < 2 ? count.loaded + bears_load(*constraint.manifold) : 2);
+        count.loaded = std::uint8_t(count.loaded < 2 ? count.loaded + constraint.loaded : 2);
       }
     }
   }
   bool is_alone(const ContactConstraint& constraint, std::int32_t body) const {
     if (!is_borne(body)) return false;
     const Count count = counts_[places_[std::size_t(body)]];
-    return bears_load(*constraint.manifold) ? count.loaded == 1 : count.loaded == 0 && count.all == 1;
+    return constraint.loaded ? count.loaded == 1 : count.loaded == 0 && count.all == 1;
   }
 
  private:
@@ -146,16 +139,6 @@ class Bearers {
   std::span<const std::uint32_t> places_;
   std::span<Count> counts_;
 };
-
-// Whether one of the two shapes is round and the other flat, and what holds them apart is looked at anew: of what is flat all
-// through no contact is, and nothing more is asked.
-bool may_roll(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint) {
-  if (contact.recycled != 0) return false;
-  const bool flat_a = is_flat(w.shapes.colliders[contact.shape_a].shape);
-  const bool flat_b = is_flat(w.shapes.colliders[contact.shape_b].shape);
-  if (flat_a == flat_b) return false;
-  return (flat_a ? constraint.body_b : constraint.body_a) != kNoBody && may_bear(*constraint.manifold);
-}
 
 // Which of the two bodies rolls, if one does.
 bool choose_body(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint,
@@ -222,6 +205,14 @@ float patch_friction(const RigidWorld& w, const Contact& contact, const ContactC
   return constraint.dynamic_friction * kBallPatch * radius;
 }
 
+bool may_roll(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint) {
+  if (contact.recycled != 0) return false;
+  const bool flat_a = is_flat(w.shapes.colliders[contact.shape_a].shape);
+  const bool flat_b = is_flat(w.shapes.colliders[contact.shape_b].shape);
+  if (flat_a == flat_b) return false;
+  return (flat_a ? constraint.body_b : constraint.body_a) != kNoBody && may_bear(*constraint.manifold);
+}
+
 RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch,
                                       std::span<const std::uint32_t> places, std::size_t bodies,
                                       float seconds, Arena& arena) {
@@ -234,7 +225,7 @@ RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch
   std::size_t count = 0;
   for (std::uint32_t i = 0; i < constraints.size(); ++i) {
     candidates[count] = i;
-    count += may_roll(w, contact_of(i), constraints[i]);
+    count += constraints[i].may_roll;
   }
   if (count == 0) return all;
   const Bearers bearers(w, constraints, places, bodies, arena);

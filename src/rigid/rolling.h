@@ -33,13 +33,12 @@ struct RollingContact {
   std::uint32_t constraint = 0;
   std::int32_t body = kNoBody;  // that is curved
   std::int32_t other = kNoBody;
-  float side = 1.0f;    // 1 if it is the constraint's b, else -1
-  bool once = false;    // held from several sides: it stays where it is in the middle of the step,
-  bool placed = false;  // once it was taken there
-  Vec3 center;          // of the shape from the body's centre of mass, body frame
-  Vec3 axis;            // body frame, unit: of symmetry
-  Vec3 outward;         // world axes: the normal, out of the curved shape
-  Vec3 offset;          // m, from the other body's centre of mass to the curved one's, as the step began
+  float side = 1.0f;  // 1 if it is the constraint's b, else -1
+  bool once = false;  // held from several sides: it stays where it is in the middle of the step
+  Vec3 center;        // of the shape from the body's centre of mass, body frame
+  Vec3 axis;          // body frame, unit: of symmetry
+  Vec3 outward;       // world axes: the normal, out of the curved shape
+  Vec3 offset;        // m, from the other body's centre of mass to the curved one's, as the step began
   RollingPoint points[kMaxManifoldPoints];
   PointArmPairs arms;  // as the last sub-step began
   Vec3
@@ -58,7 +57,11 @@ constexpr std::uint32_t kNotRolling = 0xffffffffu;
 // de pivotement dans la theorie de la toupie", 1963.
 float patch_friction(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint);
 
-// Those among the constraints of the batch whose bodies turn against each other. `places`: of bodies in the batch, which has so
+// Whether one of the two shapes is round and the other flat, and what holds them apart is looked at anew: of what is flat all
+// through no contact is, and nothing more is asked. `constraint` has its bodies and its manifold.
+bool may_roll(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint);
+
+// Those among the constraints of the batch that may roll and whose bodies turn against each other. `places`: of bodies in the batch, which has so
 // many. Marks the bodies as ones whose place others look at.
 RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch,
                                       std::span<const std::uint32_t> places, std::size_t bodies,

@@ -37,6 +37,13 @@ void fetch_manifold(const ContactStore& store, std::uint32_t slot) {
   prefetch(&store.manifolds[store.contacts[slot].first_manifold], sizeof(Manifold));
 }
 
+bool bears_load(const Manifold& manifold) {
+  for (int k = 0; k < manifold.count; ++k) {
+    if (manifold.points[k].normal_impulse > 0.0f) return true;
+  }
+  return false;
+}
+
 // Writes the constraints of contacts to their places in the lists.
 class ContactGatherer {
  public:
@@ -94,11 +101,13 @@ class ContactGatherer {
     if (manifold.count == 0) return false;
     constraint.fast = note_approach(w_, contact, manifold);
     constraint.manifold = &manifold;
-    constraint.point_count = manifold.count;
+    constraint.point_count = std::int16_t(manifold.count);
+    constraint.loaded = bears_load(manifold);
     constraint.hold = manifold.age >= kHeldAge ? ContactHold::held
                       : manifold.age > 0.0f    ? ContactHold::sprung
                                                : ContactHold::none;
     if (has_rules_ && !apply_surface_rules(w_, contact, manifold, constraint)) return false;
+    constraint.may_roll = may_roll(w_, contact, constraint);
     constraint.spinning_friction += patch_friction(w_, contact, constraint);
     return true;
   }
@@ -210,6 +219,24 @@ void gather_motion(Solve& solve, Arena& arena) {
       arena.make<std::byte>((moved + width - 1) / width * solve.kernels.motion.block_bytes).data();
 }
 
+namespace {
+
+void mark_rolling_lanes(Solve& solve, std::uint32_t blocks, Arena& arena) {
+  const std::uint32_t width = std::uint32_t(solve.kernels.width);
+  solve.rolling_lanes = arena.make<std::uint16_t>(blocks);
+  for (std::uint32_t block = 0; block < blocks; ++block) {
+    unsigned lanes = 0;
+    for (std::uint32_t lane = 0; lane < width; ++lane) {
+      const std::uint32_t constraint = solve.scratch.order[block * width + lane];
+      if (constraint != kNoPlace && solve.rolling.of_constraint[constraint] != kNotRolling)
+        lanes |= 1u << lane;
+    }
+    solve.rolling_lanes[block] = std::uint16_t(lanes);
+  }
+}
+
+}  // namespace
+
 std::span<Group> lay_out_contacts(Solve& solve, Arena& arena) {
   BatchScratch& s = solve.scratch;
   const Coloring& colors = s.contact_colors;
@@ -231,6 +258,7 @@ std::span<Group> lay_out_contacts(Solve& solve, Arena& arena) {
     groups[used++] = {&solve, first, block - first, g == colors.overflow_group()};
     s.counts.colors_used |= std::uint64_t{1} << g;
   }
+  if (!solve.rolling.contacts.empty()) mark_rolling_lanes(solve, block, arena);
   solve.blocks = arena.make<std::byte>(std::size_t(block) * solve.kernels.block_bytes).data();
   return groups.first(used);
 }

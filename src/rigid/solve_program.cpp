@@ -7,6 +7,8 @@
 #include "task/parallel.h"
 #include "task/program.h"
 
+#include <bit>
+
 namespace gyre {
 
 namespace {
@@ -117,19 +119,19 @@ template <class Fn>
 void for_each_rolling(const Group& g, int begin, int end, Fn&& fn) {
   Solve& s = *g.solve;
   if (s.rolling.contacts.empty()) return;
-  const int width = s.kernels.width;
-  for (int i = (int(g.first) + begin) * width; i < (int(g.first) + end) * width; ++i) {
-    const std::uint32_t constraint = s.scratch.order[std::size_t(i)];
-    const std::uint32_t place = constraint == 0xffffffffu ? kNotRolling : s.rolling.of_constraint[constraint];
-    if (place != kNotRolling) fn(s.rolling.contacts[place], i / width, i % width);
+  for (int block = int(g.first) + begin; block < int(g.first) + end; ++block) {
+    for (unsigned lanes = s.rolling_lanes[std::size_t(block)]; lanes != 0; lanes &= lanes - 1) {
+      const int lane = std::countr_zero(lanes);
+      const std::uint32_t constraint = s.scratch.order[std::size_t(block * s.kernels.width + lane)];
+      fn(s.rolling.contacts[s.rolling.of_constraint[constraint]], block, lane);
+    }
   }
 }
 // Takes their points along, and their bodies to the velocities of the middle of the sub-step: no other contact bears these.
 void follow_contacts(const Group& g, int begin, int end) {
   Solve& s = *g.solve;
   for_each_rolling(g, begin, end, [&](RollingContact& rolling, int block, int lane) {
-    if (rolling.placed) return;
-    rolling.placed = rolling.once;
+    if (rolling.once) s.rolling_lanes[std::size_t(block)] &= std::uint16_t(~(1u << lane));
     const Manifold& manifold = *s.scratch.constraints[rolling.constraint].manifold;
     const float ahead = 0.5f * (rolling.once ? s.contact_settings.step : s.h);
     const FollowedArms arms = follow_contact(s.w, rolling, manifold, ahead);
@@ -140,7 +142,6 @@ void follow_contacts(const Group& g, int begin, int end) {
 }
 void leave_middle(const Group& g, int begin, int end) {
   for_each_rolling(g, begin, end, [&](const RollingContact& rolling, int, int) {
-    if (rolling.once) return;
     Vec3& spin = g.solve->contact_bodies.motion[rolling.body].angular_velocity;
     spin = spin - rolling.drift;
   });

@@ -31,10 +31,12 @@ struct ContactConstraint {
   float restitution = 0.0f;
   std::int32_t body_a = kNoBody;  // index of the motion record; kNoBody for fixed bodies
   std::int32_t body_b = kNoBody;
-  std::int32_t point_count = 0;    // the manifold's
-  bool rigid = false;              // no spring: part of a tree that is solved directly
-  bool linked = false;             // one of the bodies hangs on a joint
-  bool fast = false;               // closes so fast that it may be told as a hit
+  std::int16_t point_count = 0;          // the manifold's
+  bool loaded = false;                   // it bore load in the last step
+  bool may_roll = false;                 // of a curved shape with a flat one
+  bool rigid = false;                    // no spring: part of a tree that is solved directly
+  bool linked = false;                   // one of the bodies hangs on a joint
+  bool fast = false;                     // closes so fast that it may be told as a hit
   ContactHold hold = ContactHold::none;  // as the step began
   Manifold* manifold = nullptr;
 };
@@ -60,10 +62,10 @@ struct ContactBodies {
 // The impulses of one manifold in a sub-step, for solvers that look at single contacts.
 struct ContactImpulse {
   float normal[kMaxManifoldPoints] = {};
-  Vec3 friction;          // on B, in the tangent plane
+  Vec3 friction;  // on B, in the tangent plane
   float twist = 0.0f;
   Vec3 rolling;
-  Vec3 friction_from_b;   // where the friction acts (read only)
+  Vec3 friction_from_b;           // where the friction acts (read only)
   float twist_per_normal = 0.0f;  // m, limit of the twist (read only)
 };
 
@@ -86,8 +88,8 @@ struct FollowedArms {
 struct ContactKernels {
   int width;
   std::size_t block_bytes;
-  void (*prepare)(void* blocks, int begin, int end, const ContactConstraint* constraints, const std::uint32_t* order,
-                  ContactBodies bodies, const ContactSettings& settings);
+  void (*prepare)(void* blocks, int begin, int end, const ContactConstraint* constraints,
+                  const std::uint32_t* order, ContactBodies bodies, const ContactSettings& settings);
   // Moves the points of one contact, and along with them the impulses that stand, which these velocities have.
   void (*follow)(void* blocks, int block, int lane, const FollowedArms& arms, const BodyInertia* inertia,
                  BodyMotion* motion);
@@ -100,8 +102,8 @@ struct ContactKernels {
   void (*write_impulse)(void* blocks, int block, int lane, const ContactImpulse& impulse);
   // From now on the contact is no spring in this step.
   void (*harden)(void* blocks, int block, int lane);
-  void (*finish)(void* blocks, int begin, int end, const ContactConstraint* constraints, const std::uint32_t* order,
-                 const ContactSettings& settings);
+  void (*finish)(void* blocks, int begin, int end, const ContactConstraint* constraints,
+                 const std::uint32_t* order, const ContactSettings& settings);
   MotionKernels motion;
   LinkageKernels linkages;
   BallKernels balls;
