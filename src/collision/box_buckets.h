@@ -83,9 +83,10 @@ class BoxBuckets {
   // Calls visit(item, place) for each whose box overlaps `box`.
   template <class Visit>
   void for_each_overlap(std::uint32_t head, const Aabb& box, Visit&& visit) const {
+    const OverlapTest test(box);
     for (std::uint32_t i = head; i != kNone; i = chunks_[i].next) {
       const Chunk& chunk = chunks_[i];
-      for (unsigned rest = overlap_mask(chunk, box); rest != 0; rest &= rest - 1) {
+      for (unsigned rest = test.mask(chunk); rest != 0; rest &= rest - 1) {
         const auto lane = std::uint32_t(std::countr_zero(rest));
         visit(chunk.item[lane], i * kWidth + lane);
       }

@@ -34,17 +34,32 @@ inline void clear_lane_box(BoxLanes& lanes, int lane) {
   set_lane_box(lanes, lane, {{kNever, kNever, kNever}, {-kNever, -kNever, -kNever}});
 }
 
-// Bit i: lane i's box overlaps `box`.
-inline unsigned overlap_mask(const BoxLanes& lanes, const Aabb& box) {
+// A box to be held against many lanes.
+class OverlapTest {
+ public:
+  GYRE_INLINE explicit OverlapTest(const Aabb& box)
+      : low_x_(box.low.x),
+        low_y_(box.low.y),
+        low_z_(box.low.z),
+        high_x_(box.high.x),
+        high_y_(box.high.y),
+        high_z_(box.high.z) {}
+
+  // Bit i: lane i's box overlaps.
+  GYRE_INLINE unsigned mask(const BoxLanes& lanes) const { return half(lanes, 0) | half(lanes, 4) << 4; }
+
+ private:
   using Half = Wide<4>;
-  const auto half = [&](int first) {
+
+  GYRE_INLINE unsigned half(const BoxLanes& lanes, int first) const {
     const auto load = [first](const float* from) { return Half::load(from + first); };
-    const Mask<4> x = (load(lanes.low[0]) <= Half(box.high.x)) & (load(lanes.high[0]) >= Half(box.low.x));
-    const Mask<4> y = (load(lanes.low[1]) <= Half(box.high.y)) & (load(lanes.high[1]) >= Half(box.low.y));
-    const Mask<4> z = (load(lanes.low[2]) <= Half(box.high.z)) & (load(lanes.high[2]) >= Half(box.low.z));
+    const Mask<4> x = (load(lanes.low[0]) <= high_x_) & (load(lanes.high[0]) >= low_x_);
+    const Mask<4> y = (load(lanes.low[1]) <= high_y_) & (load(lanes.high[1]) >= low_y_);
+    const Mask<4> z = (load(lanes.low[2]) <= high_z_) & (load(lanes.high[2]) >= low_z_);
     return to_bits(x & y & z);
-  };
-  return half(0) | half(4) << 4;
-}
+  }
+
+  Half low_x_, low_y_, low_z_, high_x_, high_y_, high_z_;
+};
 
 }  // namespace gyre

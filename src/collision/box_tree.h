@@ -66,12 +66,13 @@ class BoxTree {
   template <class Visit>
   void for_each_overlap(const Aabb& box, Visit&& visit) const {
     if (size_ == 0) return;
+    const OverlapTest test(box);
     std::uint32_t stack[kMaxLevels * kWidth];
     int depth = 0;
     stack[depth++] = root_;
     while (depth > 0) {
       const Node& node = nodes_[stack[--depth]];
-      const unsigned mask = overlap_mask(node, box);
+      const unsigned mask = test.mask(node);
       if (node.level == 0) {
         for (unsigned rest = mask; rest != 0; rest &= rest - 1) visit(node.child[std::countr_zero(rest)]);
       } else {

@@ -41,8 +41,9 @@ class SortedAxis {
 
   template <class Visit>
   void for_each_overlap(const Aabb& box, Visit&& visit) const {
+    const OverlapTest test(box);
     for_each_block_down(blocks_before(box.high[axis_]), box.low[axis_], [&](const Block& block) {
-      for (unsigned rest = overlap_mask(block, box); rest != 0; rest &= rest - 1)
+      for (unsigned rest = test.mask(block); rest != 0; rest &= rest - 1)
         visit(block.item[std::countr_zero(rest)]);
       return true;
     });
@@ -68,11 +69,12 @@ class SortedAxis {
   // For a sweep: calls visit(item) for each that stands behind `place` in the order and overlaps `box`, which is there.
   template <class Visit>
   void for_each_behind(std::size_t place, const Aabb& box, Visit&& visit) const {
+    const OverlapTest test(box);
     const float end = box.high[axis_];
     unsigned keep = ~0u << (place % kWidth) << 1;
     for (std::size_t i = place / kWidth; i < blocks_.size() && blocks_[i].low[axis_][0] <= end;
          ++i, keep = ~0u) {
-      for (unsigned rest = overlap_mask(blocks_[i], box) & keep; rest != 0; rest &= rest - 1)
+      for (unsigned rest = test.mask(blocks_[i]) & keep; rest != 0; rest &= rest - 1)
         visit(blocks_[i].item[std::countr_zero(rest)]);
     }
   }
