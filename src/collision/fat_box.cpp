@@ -8,8 +8,7 @@ namespace {
 
 // A fat box reaches ahead by the way of one more step, but never by more than this many sizes.
 constexpr float kLargestReach = 2.0f;
-// Larger than any fat box that fat_box() makes: 2 * kFatShare + kLargestReach, in sizes.
-constexpr double kTooLarge = 3.0;
+static_assert(kTooLarge > 2.0f * kFatShare + kLargestReach);
 constexpr float kSmallestNormal = 1.17549435e-38f;
 constexpr float kLargestFloat = 3.402823466e38f;
 
@@ -34,26 +33,27 @@ double margin_size(const BoxMotion& motion) {
 
 // The largest coordinate of a box, leaving out the sides of planes that have no end.
 float largest_coordinate(const Aabb& box) {
-  float scale = 0.0f;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const float value : {absolute(box.low[axis]), absolute(box.high[axis])}) {
-      if (value < kUnboundedSide) scale = max(scale, value);
-    }
-  }
-  return scale;
+  const auto bounded = [](Vec3 a) {
+    const auto part = [](float value) { return value < kUnboundedSide ? value : 0.0f; };
+    return Vec3{part(a.x), part(a.y), part(a.z)};
+  };
+  return largest(max(bounded(absolute(box.low)), bounded(absolute(box.high))));
 }
 
 }  // namespace
 
 WorldBox world_box(const Shape& shape, const Pose& world_from_shape) {
-  const Aabb box = bounds(shape, {{}, world_from_shape.orientation});
+  return world_box(shape, bounds(shape, {{}, world_from_shape.orientation}), world_from_shape.position);
+}
+
+WorldBox world_box(const Shape& shape, const Aabb& turned, DVec3 position) {
   // bounds() works in float: a few roundings of numbers no larger than the box's coordinates. A disc seen from the side
   // loses half of its digits: sqrt(1 - a^2) with a near 1.
   const bool has_disc = shape.kind == ShapeKind::cylinder || shape.kind == ShapeKind::cone;
   const double rounding =
-      2.0e-6 * double(largest_coordinate(box)) + (has_disc ? 6.0e-4 * double(shape.radius) : 0.0);
+      2.0e-6 * double(largest_coordinate(turned)) + (has_disc ? 6.0e-4 * double(shape.radius) : 0.0);
   const DVec3 slack{rounding, rounding, rounding};
-  return {world_from_shape.position + box.low - slack, world_from_shape.position + box.high + slack};
+  return {position + turned.low - slack, position + turned.high + slack};
 }
 
 WorldBox needed_box(const WorldBox& tight, const BoxMotion& motion) {
@@ -89,9 +89,16 @@ bool needs_refit(const Aabb& fat, const WorldBox& needed, const BoxMotion& motio
   for (int axis = 0; axis < 3; ++axis) {
     const double rounding = 4.0e-7 * (absolute(low[axis]) + absolute(high[axis]));
     const double excess = (high[axis] - low[axis]) - (needed.high[axis] - needed.low[axis]);
-    if (excess > kTooLarge * size + rounding) return true;
+    if (excess > double(kTooLarge) * size + rounding) return true;
   }
   return false;
+}
+
+bool refit_box(Aabb& fat, const WorldBox& tight, const BoxMotion& motion) {
+  const WorldBox needed = needed_box(tight, motion);
+  if (!needs_refit(fat, needed, motion)) return false;
+  fat = fat_box(needed, motion);
+  return true;
 }
 
 Aabb round_outward(const WorldBox& box) {

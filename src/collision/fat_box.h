@@ -15,6 +15,8 @@ namespace gyre {
 constexpr float kSpeculativeShare = 0.04f;
 // A fat box is larger than needed by this share of its shape's size.
 constexpr float kFatShare = 0.05f;
+// And made anew where it is larger by this many sizes: more than any is made.
+constexpr float kTooLarge = 3.0f;
 
 struct WorldBox {
   DVec3 low;
@@ -23,6 +25,8 @@ struct WorldBox {
 
 // Contains every point of the shape.
 WorldBox world_box(const Shape& shape, const Pose& world_from_shape);
+// The same where its bounds() at the origin, turned as it is, are known.
+WorldBox world_box(const Shape& shape, const Aabb& turned, DVec3 position);
 
 // How a shape moves: what its fat box must hold.
 struct BoxMotion {
@@ -42,6 +46,9 @@ bool holds(const Aabb& fat, const WorldBox& needed);
 
 // Whether a fat box must be made anew: it no longer holds what is needed, or is much too large.
 bool needs_refit(const Aabb& fat, const WorldBox& needed, const BoxMotion& motion);
+
+// Makes a fat box anew where that must be. Returns whether it was.
+bool refit_box(Aabb& fat, const WorldBox& tight, const BoxMotion& motion);
 
 // The smallest float box around `box`.
 Aabb round_outward(const WorldBox& box);

@@ -5,6 +5,7 @@
 #include "collision/pair_update.h"
 #include "collision/seam.h"
 #include "rigid/island.h"
+#include "rigid/shape_boxes.h"
 #include "task/parallel.h"
 
 namespace gyre {
@@ -12,19 +13,6 @@ namespace gyre {
 namespace {
 
 constexpr int kBodiesPerBlock = 64;
-
-BoxMotion box_motion(const RigidWorld& w, std::uint32_t shape, float seconds) {
-  const std::uint32_t body = w.shapes.bodies[shape];
-  const BodyMotion& motion = w.bodies.motion[body];
-  return {w.shapes.colliders[shape].size, seconds * motion.linear_velocity,
-          seconds * w.bodies.masses[body].reach * length(motion.angular_velocity)};
-}
-
-WorldBox needed_box_of(const RigidWorld& w, std::uint32_t shape, const Pose& origin, const BoxMotion& motion) {
-  const ColliderShape& collider = w.shapes.colliders[shape];
-  const Pose world_from_shape = origin * collider.body_from_shape;
-  return needed_box(world_box(collider.shape, world_from_shape), motion);
-}
 
 PairShapes describe_pair(const RigidWorld& w, std::uint64_t key) {
   const std::uint32_t a = std::uint32_t(key >> 32), b = std::uint32_t(key);
@@ -69,12 +57,12 @@ void list_marked(RigidWorld& w) {
 }
 
 // Whether the fat box did not hold its shape's way in the coming step, and is made anew.
-bool hold_way(RigidWorld& w, std::uint32_t shape, const Pose& origin, float seconds) {
-  const BoxMotion motion = box_motion(w, shape, seconds);
-  const WorldBox needed = needed_box_of(w, shape, origin, motion);
+bool hold_way(RigidWorld& w, std::uint32_t shape, float seconds) {
+  const ShapeBox box = find_box(w, shape, seconds);
+  const WorldBox needed = needed_box(box.tight, box.motion);
   Proxy& proxy = w.shapes.proxies[shape];
   if (holds(proxy.fat_box, needed)) return false;
-  proxy.fat_box = fat_box(needed, motion);
+  proxy.fat_box = fat_box(needed, box.motion);
   return true;
 }
 
@@ -90,15 +78,14 @@ void hold_ways(RigidWorld& w, TaskSystem& tasks, float seconds) {
     for_blocks(tasks, int(w.bodies.awake.size()), kBodiesPerBlock, [&](int begin, int end, int) {
       for (int n = begin; n < end; ++n) {
         const std::uint32_t i = w.bodies.awake[n];
-        const Pose origin = origin_pose(w.bodies, i);
-        for (const ShapeId id : w.bodies.shapes[i]) w.refit_marks[id.index] = hold_way(w, id.index, origin, seconds);
+        for (const ShapeId id : w.bodies.shapes[i]) w.refit_marks[id.index] = hold_way(w, id.index, seconds);
       }
     });
     list_marked(w);
   } else {
     for (const std::uint32_t shape : w.shapes.hurried) {
       if (!w.shapes.ids.live(shape)) continue;
-      if (hold_way(w, shape, origin_pose(w.bodies, w.shapes.bodies[shape]), seconds)) w.shapes.changed.push_back(shape);
+      if (hold_way(w, shape, seconds)) w.shapes.changed.push_back(shape);
     }
   }
   w.shapes.fit_for = seconds;
@@ -142,8 +129,8 @@ void sort_changed(Array<std::uint32_t>& changed, Array<std::uint64_t>& keys, Arr
 }
 
 void refit_shape(RigidWorld& w, std::uint32_t shape, float seconds) {
-  const BoxMotion motion = box_motion(w, shape, seconds);
-  w.shapes.proxies[shape].fat_box = fat_box(needed_box_of(w, shape, origin_pose(w.bodies, w.shapes.bodies[shape]), motion), motion);
+  const ShapeBox box = find_box(w, shape, seconds);
+  w.shapes.proxies[shape].fat_box = fat_box(needed_box(box.tight, box.motion), box.motion);
   w.shapes.changed.push_back(shape);
 }
 
@@ -255,20 +242,12 @@ void finish_bodies(RigidWorld& w, TaskSystem& tasks, float seconds, Array<std::u
       const std::uint32_t i = bodies.awake[n];
       bodies.places[i].center += bodies.motion[i].moved;
       bodies.places[i].orientation = bodies.orientations[i];
-      const Pose origin = origin_pose(bodies, i);
       if (last) {
         bodies.forces[i].force = {};
         bodies.forces[i].torque = {};
       }
-      for (const ShapeId id : bodies.shapes[i]) {
-        const BoxMotion motion = box_motion(w, id.index, seconds);
-        const WorldBox needed = needed_box_of(w, id.index, origin, motion);
-        Proxy& proxy = w.shapes.proxies[id.index];
-        if (!needs_refit(proxy.fat_box, needed, motion)) continue;
-        proxy.fat_box = fat_box(needed, motion);
-        w.refit_marks[id.index] = 1;
-      }
     }
+    refit_boxes(w, bodies.awake.view().subspan(std::size_t(begin), std::size_t(end - begin)), seconds);
   });
   list_marked(w);
   w.shapes.fit_for = seconds;

@@ -1,0 +1,166 @@
+// Boxes of shapes in lanes. See shape_boxes.h.
+#include "rigid/shape_boxes.h"
+
+#include "math/wide_vec.h"
+
+namespace gyre {
+
+namespace {
+
+constexpr int kLanes = 4;
+using Number = Wide<kLanes>;
+using Vector = Vec3W<kLanes>;
+using Rotation = QuatW<kLanes>;
+
+// Four numbers of each lane's record that lie in a row.
+struct FourEach {
+  Number value[4];
+  explicit FourEach(const float* const (&first)[kLanes]) { Rows<kLanes>::gather(first, 0, value); }
+  Vector vector(int first) const { return {value[first], value[first + 1], value[first + 2]}; }
+  Rotation rotation() const { return {value[0], value[1], value[2], value[3]}; }
+};
+static_assert(offsetof(Shape, extents) == offsetof(Shape, radius) + sizeof(float));
+static_assert(offsetof(Aabb, high) == offsetof(Aabb, low) + sizeof(Vec3));
+
+// Numbers that are taken one by one, too.
+struct Numbers {
+  alignas(16) float value[kLanes];
+  void operator=(Number n) { n.store(value); }
+  operator Number() const { return Number::load(value); }
+  float operator[](int lane) const { return value[lane]; }
+};
+struct Vectors {
+  Numbers x, y, z;
+  void operator=(const Vector& v) { x = v.x, y = v.y, z = v.z; }
+  operator Vector() const { return {x, y, z}; }
+  Vec3 operator[](int lane) const { return {x[lane], y[lane], z[lane]}; }
+};
+
+// Of the numbers that a side of a box is the sum of: more than rounding them to float, and what world_box() adds, can come to.
+constexpr float kRounding = 4.0e-6f;
+
+// Shapes whose box is as far to both sides: that of the inner box, turned, and the radius around it.
+bool is_rounded_box(ShapeKind kind) {
+  return kind == ShapeKind::sphere || kind == ShapeKind::box || kind == ShapeKind::capsule;
+}
+
+// Half sizes of the box of a box: |R| h, as bounds() has it.
+GYRE_INLINE Vector turned_extents(const Rotation& q, const Vector& half) {
+  const Mat3W<kLanes> r = to_matrix(q);
+  return half.x * absolute(r.x) + half.y * absolute(r.y) + half.z * absolute(r.z);
+}
+
+// From one to four shapes.
+class ShapeLanes {
+ public:
+  ShapeLanes(const RigidWorld& w, std::span<const std::uint32_t> shapes, float seconds) {
+    const float *turns[kLanes], *centers[kLanes], *linear[kLanes], *angular[kLanes];
+    const float *radii[kLanes], *places[kLanes], *place_turns[kLanes];
+    Numbers reaches;
+    for (int i = 0; i < kLanes; ++i) {
+      const std::uint32_t shape = shapes[min(std::size_t(i), shapes.size() - 1)],
+                          body = w.shapes.bodies[shape];
+      const BodyMass& mass = w.bodies.masses[body];
+      const ColliderShape& collider = w.shapes.colliders[shape];
+      colliders_[i] = &collider;
+      boxes_[i] = &w.shapes.proxies[shape].fat_box;
+      middles_[i] = w.bodies.places[body].center;
+      sizes_.value[i] = collider.size;
+      reaches.value[i] = mass.reach;
+      turns[i] = &w.bodies.places[body].orientation.x;
+      centers[i] = &mass.center.x;
+      linear[i] = &w.bodies.motion[body].linear_velocity.x;
+      angular[i] = &w.bodies.motion[body].angular_velocity.x;
+      radii[i] = &collider.shape.radius;
+      places[i] = &collider.body_from_shape.position.x;
+      place_turns[i] = &collider.body_from_shape.orientation.x;
+    }
+    const Rotation world_from_body = FourEach(turns).rotation();
+    to_origin_ = rotate(world_from_body, FourEach(centers).vector(0));
+    to_shape_ = rotate(world_from_body, FourEach(places).vector(0));
+    const Rotation turn = world_from_body * FourEach(place_turns).rotation();
+    turn_[0] = turn.x, turn_[1] = turn.y, turn_[2] = turn.z, turn_[3] = turn.w;
+    const FourEach radius_and_extents(radii);
+    const Number radius = radius_and_extents.value[0];
+    half_ = turned_extents(turn, radius_and_extents.vector(1)) + Vector{radius, radius, radius};
+    way_ = Number(seconds) * FourEach(linear).vector(0);
+    turning_ = Number(seconds) * reaches * length(FourEach(angular).vector(0));
+  }
+
+  ShapeBox box(int lane) const {
+    const ColliderShape& collider = *colliders_[lane];
+    const DVec3 position = middles_[lane] - to_origin_[lane] + to_shape_[lane];
+    const BoxMotion motion{collider.size, way_[lane], turning_[lane]};
+    if (is_rounded_box(collider.shape.kind))
+      return {world_box(collider.shape, {-half_[lane], half_[lane]}, position), motion};
+    const Quat turn{turn_[0][lane], turn_[1][lane], turn_[2][lane], turn_[3][lane]};
+    return {world_box(collider.shape, {position, turn}), motion};
+  }
+
+  // Bit i: refit_box() leaves the fat box of lane i as it is, for certain; most rest in theirs for many steps.
+  unsigned stay() const {
+    const float *lows[kLanes], *highs[kLanes];
+    Vectors middles;
+    unsigned known = 0;
+    for (int i = 0; i < kLanes; ++i) {
+      lows[i] = &boxes_[i]->low.x;
+      highs[i] = &boxes_[i]->low.z;
+      const Vec3 middle = to_float(middles_[i]);
+      middles.x.value[i] = middle.x, middles.y.value[i] = middle.y, middles.z.value[i] = middle.z;
+      known |= is_rounded_box(colliders_[i]->shape.kind) ? 1u << i : 0u;
+    }
+    const Vector low = FourEach(lows).vector(0), high = FourEach(highs).vector(1);
+    const Vector middle = middles, to_origin = to_origin_, to_shape = to_shape_, half = half_, way = way_;
+    const Number size = sizes_, margin = kSpeculativeShare * size + turning_, zero = 0.0f;
+    const Vector reach = half + Vector{margin, margin, margin}, position = middle - to_origin + to_shape;
+    const Number slack = kRounding * largest(absolute(middle) + absolute(to_origin) + absolute(to_shape) +
+                                             reach + absolute(way));
+    Mask<kLanes> stays = Mask<kLanes>::splat(true);
+    const auto look = [&](Number at, Number away, Number goes, Number inside, Number from, Number to) {
+      stays = stays & (at - away + min(goes, zero) - slack > from) &
+              (at + away + max(goes, zero) + slack < to) &
+              (to - from - (inside + inside) + slack < kTooLarge * size);
+    };
+    look(position.x, reach.x, way.x, half.x, low.x, high.x);
+    look(position.y, reach.y, way.y, half.y, low.y, high.y);
+    look(position.z, reach.z, way.z, half.z, low.z, high.z);
+    return to_bits(stays) & known;
+  }
+
+ private:
+  const ColliderShape* colliders_[kLanes];
+  const Aabb* boxes_[kLanes];
+  DVec3 middles_[kLanes];  // of the bodies' mass
+  Vectors to_origin_, to_shape_, half_, way_;
+  Numbers sizes_, turning_, turn_[4];
+};
+
+}  // namespace
+
+ShapeBox find_box(const RigidWorld& w, std::uint32_t shape, float seconds) {
+  return ShapeLanes(w, {&shape, 1}, seconds).box(0);
+}
+
+void refit_boxes(RigidWorld& w, std::span<const std::uint32_t> bodies, float seconds) {
+  std::uint32_t shapes[kLanes];
+  int count = 0;
+  const auto look = [&] {
+    const ShapeLanes lanes(w, {shapes, std::size_t(count)}, seconds);
+    const unsigned stay = lanes.stay();
+    for (int i = 0; i < count; ++i) {
+      if ((stay >> i & 1u) != 0) continue;
+      const ShapeBox box = lanes.box(i);
+      if (refit_box(w.shapes.proxies[shapes[i]].fat_box, box.tight, box.motion)) w.refit_marks[shapes[i]] = 1;
+    }
+    count = 0;
+  };
+  for (const std::uint32_t body : bodies) {
+    for (const ShapeId id : w.bodies.shapes[body]) {
+      shapes[count++] = id.index;
+      if (count == kLanes) look();
+    }
+  }
+  if (count > 0) look();
+}
+
+}  // namespace gyre
