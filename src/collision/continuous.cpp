@@ -8,6 +8,8 @@
 #include "math/rotation.h"
 #include "task/parallel.h"
 
+#include <optional>
+
 namespace gyre {
 namespace {
 
@@ -31,6 +33,26 @@ Aabb swept_box(const SweptShape& shape) {
   return round_outward({lower(start.low, end.low) - all, upper(start.high, end.high) + all});
 }
 
+// Whether swept_box() is inside a box, for certain: bounds from the shape's start and the farthest that a point of it goes.
+bool stays_inside(const SweptShape& shape, const Aabb& box) {
+  const Sweep& sweep = *shape.sweep;
+  const Pose start = sweep.pose * shape.body_from_shape;
+  const Aabb turned = bounds(*shape.shape, {{}, start.orientation});
+  const Vec3 position = to_float(start.position), from_center = shape.body_from_shape.position - sweep.center;
+  const float angle = length(sweep.turned);
+  const float turn = shape.radius * angle * (1.0f + 0.125f * angle);
+  // What world_box() adds at both ends, and more than all that rounding comes to.
+  const bool has_disc = shape.shape->kind == ShapeKind::cylinder || shape.shape->kind == ShapeKind::cone;
+  const float slack =
+      1.0e-5f * largest(absolute(position) + max(absolute(turned.low), absolute(turned.high)) +
+                        absolute(sweep.moved) + absolute(sweep.center) + absolute(from_center)) +
+      (has_disc ? 2.0e-3f * shape.shape->radius : 0.0f);
+  const float around = turn + slack;
+  const Vec3 all{around, around, around};
+  return contains(box, {position + turned.low + min(sweep.moved, Vec3{}) - all,
+                        position + turned.high + max(sweep.moved, Vec3{}) + all});
+}
+
 // Whether one of the two is a sensor that the other may visit.
 bool is_gate(const Proxy& self, const Proxy& other) {
   return self.sensor != other.sensor && may_pair(self, other);
@@ -48,10 +70,10 @@ struct Mover {
   SweptShape core_swept;
   ImpactScale scale;
 
-  Mover(const ColliderShape& shape, const Sweep& sweep, float least, bool slides)
-      : whole(make_swept_shape(shape.shape, shape.body_from_shape, sweep)),
+  Mover(const ColliderShape& shape, const SweptShape& on_its_way, float least, bool slides)
+      : whole(on_its_way),
         core(make_core(shape.shape, shape.body_from_shape)),
-        core_swept(make_swept_shape(core.shape, core.body_from_core, sweep)) {
+        core_swept(make_swept_shape(core.shape, core.body_from_core, *whole.sweep)) {
     const auto size = double(inner_radius(shape.shape));
     scale = {kTarget * size, kTouching * size, kCoreTarget * size, double(least), slides};
   }
@@ -101,6 +123,21 @@ struct Way {
   bool core_only = false;
 };
 
+// Whether nothing that is wanted can be in the way of a shape, for certain: it stays in its fat box, and in that it would have
+// a contact. So it is with most of what falls.
+template <class Wanted>
+bool is_free(const ContinuousInput& input, std::uint32_t index, const SweptShape& shape,
+             const Wanted& wanted) {
+  if (input.contacts == nullptr) return false;
+  bool any = false;
+  for_each_contact_of_shape(*input.contacts, index, [&](std::uint32_t slot) {
+    const Contact& contact = input.contacts->contacts[slot];
+    const std::uint32_t other = contact.shape_a == index ? contact.shape_b : contact.shape_a;
+    any = any || wanted(input.proxies[index], input.proxies[other]);
+  });
+  return !any && stays_inside(shape, input.proxies[index].fat_box);
+}
+
 // Calls visit(shape on its way, its index, the other's index, the other on its way) for all that the shapes of a fast body
 // may come near and that `wanted` says yes to. `found` is scratch.
 template <class Wanted, class Visit>
@@ -109,9 +146,11 @@ void for_each_in_the_way(const ContinuousInput& input, const Way& way, Array<std
   for (const std::uint32_t index : input.shapes_of(way.fast.body)) {
     const ColliderShape& shape = input.shapes[index];
     if (!is_convex(shape.shape.kind)) continue;
-    const Mover mover(shape, way.sweep, way.slides ? 0.0f : way.fast.least, way.slides);
+    const SweptShape whole = make_swept_shape(shape.shape, shape.body_from_shape, way.sweep);
+    if (is_free(input, index, whole, wanted)) continue;
     found.clear();
-    input.broadphase.query(input.proxies, swept_box(mover.whole), found);
+    input.broadphase.query(input.proxies, swept_box(whole), found);
+    std::optional<Mover> mover;  // made for the first that is in the way
     for (const std::uint32_t other : found) {
       if (!wanted(input.proxies[index], input.proxies[other])) continue;
       const ColliderShape& obstacle = input.shapes[other];
@@ -121,7 +160,8 @@ void for_each_in_the_way(const ContinuousInput& input, const Way& way, Array<std
       const Sweep all = input.sweep_of(input.proxies[other].body);
       if (!is_sound(all)) continue;
       const Sweep other_sweep = rest_of(all, way.from);
-      visit(mover, index, other, make_swept_shape(obstacle.shape, obstacle.body_from_shape, other_sweep));
+      if (!mover) mover.emplace(shape, whole, way.slides ? 0.0f : way.fast.least, way.slides);
+      visit(*mover, index, other, make_swept_shape(obstacle.shape, obstacle.body_from_shape, other_sweep));
     }
   }
 }
@@ -327,7 +367,7 @@ void ContinuousCollision::look_at_gates(const ContinuousInput& input) {
     const Sweep sweep = input.sweep_of(input.proxies[pair.convex].body);
     const Sweep other = input.sweep_of(input.proxies[pair.surface].body);
     if (!is_sound(sweep) || !is_sound(other)) continue;
-    const Mover mover(shape, sweep, 0.0f, false);
+    const Mover mover(shape, make_swept_shape(shape.shape, shape.body_from_shape, sweep), 0.0f, false);
     if (!mover.crosses(make_swept_shape(surface.shape, surface.body_from_shape, other), 1.0,
                        *workers_[0].triangle))
       continue;

@@ -78,6 +78,8 @@ struct ContinuousInput {
   // Whether the shape in the way lets pass what moves so against it; null: none does.
   const FunctionRef<bool(std::uint32_t shape, Vec3 way)>* lets_pass = nullptr;
   std::span<const GatePair> gates{};
+  // Of all pairs that the broad phase knows; null: not kept.
+  const ContactStore* contacts = nullptr;
 };
 
 class ContinuousCollision {

@@ -234,7 +234,8 @@ void sweep_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& a
                               sweep_of,
                               shapes_of,
                               w.surface_rules.empty() ? nullptr : &one_way,
-                              scratch.gates};
+                              scratch.gates,
+                              &w.contacts};
   scratch.kept.resize(scratch.fast.size());
   scratch.collision.clamp_fast_bodies(input, scratch.fast, tasks, scratch.kept);
 }
