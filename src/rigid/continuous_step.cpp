@@ -192,10 +192,10 @@ void stop_together(const RigidWorld& w, const ContinuousScratch& scratch, std::s
 void list_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch) {
   scratch.fast.clear();
   for (const std::uint32_t i : w.bodies.awake) {
-    if (!is_movable(w.bodies.flags[i]) || w.bodies.shapes[i].empty()) continue;
     const BodyMotion& motion = w.bodies.motion[i];
     const BodyMass& mass = w.bodies.masses[i];
     if (!is_fast(motion.moved, motion.turned, mass.reach, mass.size)) continue;
+    if (!is_movable(w.bodies.flags[i]) || w.bodies.shapes[i].empty()) continue;
     // What contacts already act on must not be held in the air by a sweep: it keeps a part of its way, and they answer.
     const float least = w.bodies.flags[i].touched != 0 ? kLeastProgress : 0.0f;
     scratch.fast.push_back({i, w.bodies.flags[i].continuous != 0, least, w.bodies.joints[i].empty(), false});
