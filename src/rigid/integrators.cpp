@@ -2,6 +2,7 @@
 
 #include "math/rotation.h"
 #include "math/trig.h"
+#include "math/wide_vec.h"
 #include "rigid/free_rotation.h"
 
 namespace gyre {
@@ -51,6 +52,56 @@ void refresh_world_inertia(BodyStore& bodies, std::uint32_t i) {
   if (mass.isotropic != 0 && flags.locked_angular == 0) return;
   bodies.inertia[i] = world_inertia(mass, flags, bodies.orientations[i]);
 }
+
+// The inertia of bodies whose orientation is known, four at once where it is plainly that of their frame, turned.
+class InertiaRefresh {
+ public:
+  explicit InertiaRefresh(BodyStore& bodies) : bodies_(bodies) {}
+
+  void add(std::uint32_t body) {
+    const BodyFlags& flags = bodies_.flags[body];
+    if (!is_movable(flags) || flags.locked_angular != 0 || bodies_.masses[body].isotropic != 0)
+      return refresh_world_inertia(bodies_, body);
+    waiting_[count_++] = body;
+    if (count_ == kLanes) turn_all();
+  }
+  void finish() {
+    for (int i = 0; i < count_; ++i) refresh_world_inertia(bodies_, waiting_[i]);
+    count_ = 0;
+  }
+
+ private:
+  static constexpr int kLanes = 4;
+  static_assert(offsetof(Sym3, xz) == 4 * sizeof(float) && offsetof(BodyInertia, inverse) == 0);
+
+  void turn_all() {
+    const float *turns[kLanes], *own[kLanes], *own_rest[kLanes];
+    float* turned[kLanes];
+    for (int i = 0; i < kLanes; ++i) {
+      const BodyMass& mass = bodies_.masses[waiting_[i]];
+      BodyInertia& inertia = bodies_.inertia[waiting_[i]];
+      inertia.inverse_mass = bodies_.flags[waiting_[i]].locked_linear == 7 ? 0.0f : mass.inverse_mass;
+      turns[i] = &bodies_.orientations[waiting_[i]].x;
+      own[i] = &mass.inverse_inertia.xx;
+      own_rest[i] = &mass.inverse_inertia.xz;
+      turned[i] = &inertia.inverse.xx;
+    }
+    Wide<kLanes> q[4], in[8];
+    Rows<kLanes>::gather(turns, 0, q);
+    Rows<kLanes>::gather(own, 0, in);
+    Rows<kLanes>::gather(own_rest, 0, in + 4);
+    const Sym3W<kLanes> inverse = rotate_inertia(to_matrix(QuatW<kLanes>{q[0], q[1], q[2], q[3]}),
+                                                 Sym3W<kLanes>{in[0], in[1], in[2], in[3], in[4], in[5]});
+    const Wide<kLanes> out[6] = {inverse.xx, inverse.yy, inverse.zz, inverse.xy, inverse.xz, inverse.yz};
+    Rows<kLanes>::scatter<4>(turned, 0, out);
+    Rows<kLanes>::scatter<2>(turned, 4, out + 4);
+    count_ = 0;
+  }
+
+  BodyStore& bodies_;
+  std::uint32_t waiting_[kLanes];
+  int count_ = 0;
+};
 
 // The turn of one body over `seconds` with the velocity that it has.
 void turn_body(BodyStore& bodies, std::uint32_t i, float seconds) {
@@ -174,6 +225,7 @@ void turn_alone(BodyStore& bodies, std::span<const std::uint32_t> list, float su
 }
 
 void finish_turns(BodyStore& bodies, std::span<const MovedBody> moved, std::span<const Vec3> pushes) {
+  InertiaRefresh refresh(bodies);
   for (std::size_t n = 0; n < moved.size(); ++n) {
     const std::uint32_t i = std::uint32_t(moved[n].body);
     if (bodies.flags[i].type != BodyType::dynamic) continue;
@@ -188,8 +240,9 @@ void finish_turns(BodyStore& bodies, std::span<const MovedBody> moved, std::span
     } else {
       orientation = integrate_rotation(moved[n].orientation, motion.turned);
     }
-    refresh_world_inertia(bodies, i);
+    refresh.add(i);
   }
+  refresh.finish();
 }
 
 }  // namespace gyre
