@@ -104,7 +104,7 @@ class InertiaRefresh {
 };
 
 // The turn of one body over `seconds` with the velocity that it has.
-void turn_body(BodyStore& bodies, std::uint32_t i, float seconds) {
+void turn_body(BodyStore& bodies, std::uint32_t i, float seconds, InertiaRefresh& refresh) {
   const BodyFlags& flags = bodies.flags[i];
   const BodyMass& mass = bodies.masses[i];
   BodyMotion& motion = bodies.motion[i];
@@ -116,7 +116,7 @@ void turn_body(BodyStore& bodies, std::uint32_t i, float seconds) {
     if (flags.locked_angular != 0 && flags.locked_angular != 7) refresh_world_inertia(bodies, i);
   } else {
     motion.turned += rotate_freely(orientation, motion.angular_velocity, mass.inertia, seconds);
-    refresh_world_inertia(bodies, i);
+    refresh.add(i);
   }
   motion.angular_velocity += Vec3{};
 }
@@ -162,7 +162,7 @@ void kick_and_move(BodyStore& bodies, std::uint32_t i, const Motions& motions) {
   }
 }
 
-void fly_body(BodyStore& bodies, std::uint32_t i, const Motions& motions) {
+void fly_body(BodyStore& bodies, std::uint32_t i, const Motions& motions, InertiaRefresh& refresh) {
   const BodyFlags& flags = bodies.flags[i];
   const BodyForces& forces = bodies.forces[i];
   BodyMotion& motion = bodies.motion[i];
@@ -171,15 +171,17 @@ void fly_body(BodyStore& bodies, std::uint32_t i, const Motions& motions) {
   const bool turns_freely = !is_kicked || (forces.torque == Vec3{} && forces.angular_damping == 0.0f);
   if (is_kicked && turns_freely) {
     kick_and_move(bodies, i, motions);
-    return turn_body(bodies, i, float(motions.count) * motions.substep);
+    return turn_body(bodies, i, float(motions.count) * motions.substep, refresh);
   }
   for (int part = 0; part < motions.count; ++part) {
     if (is_kicked) kick(bodies, i, motions);
     motion.linear_velocity = without_locked(motion.linear_velocity, flags.locked_linear);
     motion.moved += motions.substep * motion.linear_velocity;
-    if (!turns_freely) turn_body(bodies, i, motions.substep);
+    if (turns_freely) continue;
+    turn_body(bodies, i, motions.substep, refresh);
+    refresh.finish();  // the next kick reads it
   }
-  if (turns_freely) turn_body(bodies, i, float(motions.count) * motions.substep);
+  if (turns_freely) turn_body(bodies, i, float(motions.count) * motions.substep, refresh);
 }
 
 }  // namespace
@@ -217,11 +219,15 @@ MovedBody describe_motion(const BodyStore& bodies, std::uint32_t body, const Mot
 }
 
 void fly(BodyStore& bodies, std::span<const std::uint32_t> list, const Motions& motions) {
-  for (const std::uint32_t i : list) fly_body(bodies, i, motions);
+  InertiaRefresh refresh(bodies);
+  for (const std::uint32_t i : list) fly_body(bodies, i, motions, refresh);
+  refresh.finish();
 }
 
 void turn_alone(BodyStore& bodies, std::span<const std::uint32_t> list, float substep) {
-  for (const std::uint32_t i : list) turn_body(bodies, i, substep);
+  InertiaRefresh refresh(bodies);
+  for (const std::uint32_t i : list) turn_body(bodies, i, substep, refresh);
+  refresh.finish();
 }
 
 void finish_turns(BodyStore& bodies, std::span<const MovedBody> moved, std::span<const Vec3> pushes) {
