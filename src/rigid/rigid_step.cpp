@@ -29,6 +29,17 @@ PairShapes describe_pair(const RigidWorld& w, std::uint64_t key) {
   return pair;
 }
 
+// Bodies that a joint keeps from touching stay beside each other: their pairs are found whenever one moves.
+void drop_blocked_pairs(RigidWorld& w) {
+  if (w.joints.blocked.empty()) return;
+  std::size_t kept = 0;
+  for (const std::uint64_t key : w.new_pairs) {
+    const std::uint32_t a = w.shapes.bodies[std::uint32_t(key >> 32)], b = w.shapes.bodies[std::uint32_t(key)];
+    if (!w.joints.blocked.contains(pair_key(a, b))) w.new_pairs[kept++] = key;
+  }
+  w.new_pairs.resize_uninitialized(kept);
+}
+
 void report_begin(RigidWorld& w, const Contact& contact) {
   if (contact.sensor != 0) {
     const bool a_senses = w.shapes.proxies[contact.shape_a].sensor;
@@ -183,6 +194,7 @@ std::size_t find_pairs(RigidWorld& w, TaskSystem& tasks) {
   w.shapes.changed.clear();
   const std::size_t found = w.new_pairs.size();
   drop_known_pairs(w.contacts, w.new_pairs, tasks);
+  drop_blocked_pairs(w);
   add_pairs(w.contacts, w.new_pairs, w.joints.blocked, [&](std::uint64_t key) { return describe_pair(w, key); });
   w.broadphase->trim();
   w.clocks.new_pairs.trim(w.new_pairs, found);
