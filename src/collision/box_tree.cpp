@@ -355,7 +355,7 @@ std::uint32_t BoxTree::build_node(std::span<Entry> entries, int level, int lowes
 
 void BoxTree::improve(std::size_t changes) {
   if (root_ == kNowhere) return;
-  constexpr std::size_t kChangesPerNode = 128;
+  constexpr std::size_t kChangesPerNode = 256;
   int nodes = int(1 + changes / kChangesPerNode);
   // Most nodes lie on level 0 and have nothing to regroup: they are passed by, a bounded number of them.
   for (int passed = 0; nodes > 0 && passed < 16 * nodes + 64; ++passed) {
