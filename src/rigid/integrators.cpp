@@ -5,6 +5,8 @@
 #include "math/wide_vec.h"
 #include "rigid/free_rotation.h"
 
+#include <cstddef>
+
 namespace gyre {
 
 namespace {

@@ -3,6 +3,8 @@
 
 #include "math/wide_vec.h"
 
+#include <cstddef>
+
 namespace gyre {
 
 namespace {
