@@ -24,13 +24,10 @@ constexpr float kParallelEdges = 1.0e-4f;
 // axis of that edge.
 constexpr float kRim = -0.9f;
 constexpr float kOutermost = 1.0e-5f;
+// A sine that no rounding reaches.
+constexpr float kOutwardSlack = 1.0e-5f;
 
 using Floats = Wide<4>;
-
-Floats lanes(float a, float b, float c) {
-  const float row[4] = {a, b, c, 0.0f};
-  return Floats::load_unaligned(row);
-}
 
 class Search {
  public:
@@ -70,8 +67,32 @@ class Search {
     return max(kArcSlack, min(kSliverSlack, 4.0f * t_.slack * longest / max(double_area, 1.0e-30f)));
   }
 
+  bool is_active(int edge) const {
+    return t_.edge[edge] == EdgeKind::convex || t_.edge[edge] == EdgeKind::open;
+  }
+
+  // What the separation along a direction across an edge must be better than.
+  float needed_of(int edge) const { return is_active(edge) ? min(found_.best, useful()) : found_.best; }
+
+  // What that asks of pairs of edges: of the corner where the triangle's begins, that it lies so far before the faces that
+  // meet in the other, on a mean of the two. Vertices lie off the planes of their faces by far less than the part of the size
+  // here.
+  struct EdgeBar {
+    float needed[3];
+    float least_before[3];
+  };
+  EdgeBar edge_bar() const {
+    EdgeBar bar;
+    const float rounding = 20.0f * t_.slack + 0.2f * kAxisBias * convex_.size();
+    for (int i = 0; i < 3; ++i) {
+      bar.needed[i] = needed_of(i);
+      bar.least_before[i] = min(bar.needed[i] + convex_.radius(), 0.0f) - rounding;
+    }
+    return bar;
+  }
+
   bool edge_allows(int edge, Vec3 d) const {
-    if (t_.edge[edge] != EdgeKind::convex && t_.edge[edge] != EdgeKind::open) return false;
+    if (!is_active(edge)) return false;
     const float outward = dot(d, t_.outward[edge]);
     if (outward < -kArcSlack && outward < -arc_slack()) return false;
     const float front = dot(d, t_.normal);
@@ -149,6 +170,7 @@ class Search {
   void polyhedron();
   void face_axes();
   void edge_axes();
+  bool axes_across(const HullEdge& edge, unsigned rest, const EdgeBar& bar);
   void edge_axis(const HullEdge& edge, int i);
   void segment_axes();
   bool is_pierced() const;
@@ -177,48 +199,59 @@ void Search::face_axes() {
 }
 
 // An edge of the triangle and one of the polyhedron make a face of their Minkowski difference where their arcs on the
-// sphere of normals cross: the triangle's runs from its normal through `outward` to the other side. The triangle's three
-// edges are looked at side by side; what may be better than the best before this edge is looked at by itself.
+// sphere of normals cross: the triangle's runs from its normal through `outward` to the other side. The direction there
+// is a sum of the two faces' normals, and what it is worth, all but for rounding, the same sum of what the normals are
+// worth, which serve all edges of their faces. So most pairs are known to be in vain by their faces' marks.
 void Search::edge_axes() {
-  const auto across = [](const Vec3* v) {
-    return Vec3W<4>{lanes(v[0].x, v[1].x, v[2].x), lanes(v[0].y, v[1].y, v[2].y),
-                    lanes(v[0].z, v[1].z, v[2].z)};
-  };
-  const Vec3W<4> along = across(t_.along), outward = across(t_.outward), corner = across(t_.v);
-  const auto is_active = [&](int i) {
-    return t_.edge[i] == EdgeKind::convex || t_.edge[i] == EdgeKind::open ? 1.0f : 0.0f;
-  };
-  const Mask<4> active = lanes(is_active(0), is_active(1), is_active(2)) > Floats(0.0f);
-  const Floats radius(convex_.radius()), zero(0.0f);
-  // What each face's normal has along the triangle's edges: it serves all edges of the face.
-  alignas(16) float component[PlacedConvex::kMaxVertices][4];
-  for (int f = 0; f < convex_.face_count(); ++f)
-    dot(splat<4>(convex_.face_normal(f)), along).store(component[f]);
-  for (const HullEdge& edge : convex_.edges()) {
-    const Floats left = Floats::load(component[edge.left]), right = Floats::load(component[edge.right]);
-    const Mask<4> crosses = left * right < zero;
-    if (none(crosses)) continue;
-    const Floats left_part = absolute(left), right_part = absolute(right);
-    const Vec3W<4> crossing = right_part * splat<4>(convex_.face_normal(edge.left)) +
-                              left_part * splat<4>(convex_.face_normal(edge.right));
-    const Floats scaled = dot(crossing, corner - splat<4>(convex_.vertex(edge.from)));
-    const Floats needed = select(active, Floats(min(found_.best, useful())), Floats(found_.best));
-    // `crossing` is at most as long as the two parts together: most overlapping pairs are known to be no better without
-    // a root.
-    const Floats longest = left_part + right_part;
-    const Mask<4> worse = (scaled < zero) & (scaled - radius * longest < needed * longest);
-    unsigned rest = to_bits(and_not(crosses & (dot(crossing, outward) < zero), worse));
-    for (; rest != 0; rest &= rest - 1) {
-      const int i = std::countr_zero(rest);
-      edge_axis(edge, i);
+  float outward[3][PlacedConvex::kMaxVertices];
+  std::int32_t marks[PlacedConvex::kMaxVertices];
+  EdgeBar bar = edge_bar();
+  convex_.dot_faces(t_.along, scratch_.along);
+  convex_.dot_faces(t_.outward, outward);
+  for (int f = 0; f < convex_.face_count(); f += PlacedConvex::kLanes) {
+    WideInt<4> mark(0);
+    for (int i = 0; i < 3; ++i) {
+      const Mask<4> backwards = Floats::load_unaligned(scratch_.along[i] + f) < Floats(0.0f);
+      const Mask<4> beyond = Floats::load_unaligned(outward[i] + f) < Floats(kOutwardSlack);
+      const Mask<4> hopeless = Floats::load_unaligned(scratch_.before[i] + f) < Floats(bar.least_before[i]);
+      mark = mark | (to_int(backwards) & 1 << i) | (to_int(beyond) & 8 << i) | (to_int(~hopeless) & 64 << i);
     }
+    mark.store_unaligned(marks + f);
+  }
+  for (const HullEdge& edge : convex_.edges()) {
+    const std::int32_t left = marks[edge.left], right = marks[edge.right], either = left | right;
+    const unsigned rest = unsigned((left ^ right) & either >> 3 & either >> 6 & 7);
+    if (rest == 0 || !axes_across(edge, rest, bar)) continue;
     if (apart()) return;
+    bar = edge_bar();
   }
 }
 
+// The edges of the triangle in `rest` across one of the polyhedron. Returns whether any was worth a look.
+bool Search::axes_across(const HullEdge& edge, unsigned rest, const EdgeBar& bar) {
+  bool looked = false;
+  for (; rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    const float left = scratch_.along[i][edge.left], right = scratch_.along[i][edge.right];
+    const float left_part = absolute(left), right_part = absolute(right), longest = left_part + right_part;
+    const float before =
+        right_part * scratch_.before[i][edge.left] + left_part * scratch_.before[i][edge.right];
+    if (!(left * right < 0.0f) || before < bar.least_before[i] * longest) continue;
+    const Vec3 crossing =
+        right_part * convex_.face_normal(edge.left) + left_part * convex_.face_normal(edge.right);
+    if (!(dot(crossing, t_.outward[i]) < 0.0f)) continue;
+    // `crossing` is at most as long as the two parts together: most overlapping pairs are known to be no better without
+    // a root.
+    const float scaled = dot(crossing, t_.v[i] - convex_.vertex(edge.from));
+    if (scaled < 0.0f && scaled - convex_.radius() * longest < bar.needed[i] * longest) continue;
+    edge_axis(edge, i);
+    looked = true;
+  }
+  return looked;
+}
+
 void Search::edge_axis(const HullEdge& edge, int i) {
-  const bool active = t_.edge[i] == EdgeKind::convex || t_.edge[i] == EdgeKind::open;
-  const float needed = active ? min(found_.best, useful()) : found_.best;
+  const float needed = needed_of(i);
   // Not from the faces' normals, which all but cancel each other at the rim of a plate.
   const Vec3 edge_along = convex_.vertex(edge.to) - convex_.vertex(edge.from);
   Vec3 d = cross(edge_along, t_.along[i]);
@@ -445,7 +478,8 @@ void measure_edges(NearTriangle& t) {
 bool is_before_a_face(const TriangleView& triangle, const PlacedConvex& convex, float max_separation,
                       AxisScratch& scratch) {
   return convex.face_count() > 0 &&
-         convex.face_separations(triangle.v, scratch.before_face) - convex.radius() > max_separation;
+         convex.face_separations(triangle.v, scratch.before, scratch.before_face) - convex.radius() >
+             max_separation;
 }
 
 AxisSearch search_axes(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,

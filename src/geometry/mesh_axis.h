@@ -89,10 +89,12 @@ struct AxisSearch {
 };
 
 // Room for the triangle in the form that GJK takes, kept between triangles so that it is made once, and for how far the
-// triangle lies before each face of a polyhedron.
+// triangle lies before each face of a polyhedron: each of its corners, and the whole of it; and for what the faces' normals have
+// along its edges.
 struct AxisScratch {
   Hull triangle;
-  float before_face[PlacedConvex::kMaxVertices];
+  float before[3][PlacedConvex::kMaxVertices], before_face[PlacedConvex::kMaxVertices];
+  float along[3][PlacedConvex::kMaxVertices];
 };
 
 // Whether the triangle lies farther than `max_separation` before a face of the shape. Must be asked before search_axes,

@@ -140,13 +140,28 @@ void PlacedConvex::place_hull(const Hull& hull) {
   center_ = rotation_ * hull.centroid;
 }
 
-float PlacedConvex::face_separations(const Vec3* corners, float* out) const {
+void PlacedConvex::dot_faces(const Vec3* directions, float (*out)[kMaxVertices]) const {
+  const Vectors a = splat<4>(directions[0]), b = splat<4>(directions[1]), c = splat<4>(directions[2]);
+  for (int i = 0; i < face_count_; i += kLanes) {
+    const Vectors n = load(nx_, ny_, nz_, i);
+    dot(n, a).store_unaligned(out[0] + i);
+    dot(n, b).store_unaligned(out[1] + i);
+    dot(n, c).store_unaligned(out[2] + i);
+  }
+}
+
+float PlacedConvex::face_separations(const Vec3* corners, float (*each)[kMaxVertices], float* lowest) const {
   const Vectors a = splat<4>(corners[0]), b = splat<4>(corners[1]), c = splat<4>(corners[2]);
   Floats most(-__builtin_huge_valf());
   for (int i = 0; i < face_count_; i += kLanes) {
     const Vectors n = load(nx_, ny_, nz_, i);
-    const Floats separation = min(dot(n, a), min(dot(n, b), dot(n, c))) - Floats::load_unaligned(offset_ + i);
-    separation.store_unaligned(out + i);
+    const Floats offset = Floats::load_unaligned(offset_ + i);
+    const Floats of_a = dot(n, a), of_b = dot(n, b), of_c = dot(n, c);
+    (of_a - offset).store_unaligned(each[0] + i);
+    (of_b - offset).store_unaligned(each[1] + i);
+    (of_c - offset).store_unaligned(each[2] + i);
+    const Floats separation = min(of_a, min(of_b, of_c)) - offset;
+    separation.store_unaligned(lowest + i);
     most = max(most, separation);
   }
   return greatest(most);

@@ -34,8 +34,10 @@ class PlacedConvex {
   int face_count() const { return face_count_; }
   Vec3 face_normal(int i) const { return {nx_[i], ny_[i], nz_[i]}; }
   float face_offset(int i) const { return offset_[i]; }  // dot(normal, p) = offset on the face
-  // How far a triangle's lowest corner lies before each face, into padded(face_count()) floats; returns the greatest.
-  float face_separations(const Vec3* corners, float* out) const;
+  // What the faces' normals have along each of three directions, into padded(face_count()) floats.
+  void dot_faces(const Vec3* directions, float (*out)[kMaxVertices]) const;
+  // How far each corner of a triangle lies before each face, and how far the lowest does; returns the greatest of these.
+  float face_separations(const Vec3* corners, float (*each)[kMaxVertices], float* lowest) const;
   // Edges between two faces; empty for capsules, whose one edge has no faces (vertex 0 to vertex 1).
   std::span<const HullEdge> edges() const { return edges_; }
 
