@@ -31,8 +31,10 @@ class Gatherer {
       if (out_.count < MeshCandidates::kRoom) out_.ids[out_.count] = id;
       ++out_.count;
     });
-    if (out_.count > MeshCandidates::kRoom) keep_deepest();
-    sort();
+    const bool too_many = out_.count > MeshCandidates::kRoom;
+    if (too_many) keep_deepest();
+    // A mesh is walked in the order of its triangles.
+    if (too_many || surface_.mesh == nullptr) sort();
   }
 
  private:
@@ -47,10 +49,13 @@ class Gatherer {
   void walk_mesh(const Mesh& mesh, Add&& add) {
     const auto enter = [&](std::uint32_t index, int lane) {
       const StaticTree::Node& node = mesh.tree.nodes[index];
+      const bool flat = (mesh.flat_lanes[index] >> lane & 1) != 0;
+      std::uint32_t child = node.child[lane];
+      // Of a leaf each triangle is asked for itself.
+      if (!flat && is_leaf(child)) return true;
       const Aabb box = child_box(node, lane);
       if (!near(box)) return false;
-      if ((mesh.flat_lanes[index] >> lane & 1) == 0) return true;
-      std::uint32_t child = node.child[lane];
+      if (!flat) return true;
       while (!is_leaf(child)) child = mesh.tree.nodes[child].child[0];
       const std::uint32_t first = leaf_first(child);
       return look_at_patch(mesh.normals[first], mesh.vertices[mesh.indices[3 * std::size_t(first)]], box,
