@@ -17,6 +17,9 @@
 
 #include "base/sort.h"
 #include "geometry/mesh_candidates.h"
+#include "geometry/mesh_cull.h"
+
+#include <bit>
 
 namespace gyre {
 namespace {
@@ -43,6 +46,7 @@ struct Standing {
 
 struct Waiting {
   std::uint32_t id;
+  int number;  // in the order in which they were looked at
   float face_separation;
   bool behind;
   bool overlaps;
@@ -60,7 +64,7 @@ class MeshCollider {
 
   int run(LocalManifold* out) {
     find_candidates(surface_, convex_, position_, max_separation_, candidates_);
-    for (int i = 0; i < candidates_.count; ++i) look_at(candidates_.ids[i]);
+    look_at_candidates();
     settle_waiting();
     settle_deep_patches();
     push_out();
@@ -70,7 +74,8 @@ class MeshCollider {
   }
 
  private:
-  void look_at(std::uint32_t id);
+  void look_at_candidates();
+  void look_at(std::uint32_t id, PlacedConvex::Extent along_normal);
   void settle_waiting();
   void settle_deep_patches();
   bool runs_through(const NearTriangle& t) const;
@@ -81,12 +86,13 @@ class MeshCollider {
   bool is_corner_missing() const;
   void look_for_corners();
   void settle(const Waiting& waiting);
+  void settle(const Waiting& waiting, const NearTriangle& t);
   bool is_ruled_out(const NearTriangle& t, bool behind) const;
 
   NearTriangle triangle(std::uint32_t id) const { return near_triangle(surface_, id, position_, convex_); }
   void know_side(Vec3 normal);
+  void know_side(Vec3 normal, PlacedConvex::Extent along_normal);
   void know_face();
-  bool is_beside(const NearTriangle& t) const;
   bool rests_inside(const NearTriangle& t, float face_separation);
   bool comes_through(const NearTriangle& t, Vec3 corner) const;
   float face_separation(const NearTriangle& t) const {
@@ -114,12 +120,20 @@ class MeshCollider {
   PlaneSide side_;
   int standing_count_ = 0;
   static constexpr int kStandingRoom = 32;
-  Standing standing_[kStandingRoom];
+  // Not cleared, like those that wait: only the counted ones are ever read.
+  union {
+    Standing standing_[kStandingRoom];
+  };
   int waiting_count_ = 0;
   Waiting waiting_[MeshCandidates::kRoom];
+  // The first of those that wait, as they were placed when they were looked at.
+  static constexpr int kPlacedRoom = 32;
+  union {
+    NearTriangle placed_[kPlacedRoom];
+  };
   // Of the triangles that the shape certainly overlaps, the one through whose front it leaves first; those with the
   // shape's middle before them first of all.
-  Waiting exit_{0, -__builtin_huge_valf(), true, false};
+  Waiting exit_{0, 0, -__builtin_huge_valf(), true, false};
   // The nearest triangle over which a point of a curved shape lies, although none of its facing polygon's does.
   float rim_separation_ = kUnbounded;
   std::uint32_t rim_triangle_ = 0;
@@ -135,11 +149,14 @@ class MeshCollider {
 };
 
 void MeshCollider::know_side(Vec3 normal) {
+  if (!side_known_ || !(side_.normal == normal)) know_side(normal, convex_.extent(normal));
+}
+
+void MeshCollider::know_side(Vec3 normal, PlacedConvex::Extent along_normal) {
   if (side_known_ && side_.normal == normal) return;
   side_.normal = normal;
-  const PlacedConvex::Extent extent = convex_.extent(normal);
-  side_.lowest = extent.low;
-  side_.highest = extent.high;
+  side_.lowest = along_normal.low;
+  side_.highest = along_normal.high;
   side_.has_face = false;
   side_known_ = true;
 }
@@ -165,7 +182,8 @@ bool MeshCollider::stand(Vec3 normal, float separation) {
     return false;
   }
   if (standing_count_ == kStandingRoom) return false;
-  standing_[standing_count_++] = {normal, separation, convex_.lowest(normal)};
+  know_side(normal);
+  standing_[standing_count_++] = {normal, separation, side_.lowest};
   return true;
 }
 
@@ -183,16 +201,20 @@ void MeshCollider::add_face(const NearTriangle& t, float deepest) {
 // ground goes on there in the same plane. Returns whether any point was added.
 bool MeshCollider::add_deep_corners(const NearTriangle& t) {
   know_side(t.normal);
+  // No corner lies lower than the lowest.
+  const float height = dot(t.normal, t.v[0]), enough = -0.9f * max_separation_;
+  if (side_.lowest - height - convex_.radius() > enough + kCoverSlack * convex_.size() + t.slack)
+    return false;
   know_face();
   const FacePolygon face = side_.face;
-  const float reach = kCoverSlack * convex_.size(), height = dot(t.normal, t.v[0]);
+  const float reach = kCoverSlack * convex_.size();
   const Vec3 lowest = convex_.support(-t.normal);
   bool added = false;
   for (int k = -1; k < face.count; ++k) {
     const Vec3 corner = k < 0 ? lowest : face.vertices[k];
     const float above = dot(t.normal, corner) - height;
     // Triangles under less deep corners have all been looked at.
-    if (above - convex_.radius() > -0.9f * max_separation_) continue;
+    if (above - convex_.radius() > enough) continue;
     const Vec3 foot = corner - above * t.normal + position_;
     std::uint32_t ids[16];
     const int count = find_triangles(surface_, grow({foot, foot}, reach), ids);
@@ -305,27 +327,23 @@ bool MeshCollider::comes_through(const NearTriangle& t, Vec3 corner) const {
   return inside;
 }
 
-// Whether a ball or capsule lies certainly too far beyond one of the triangle's sides.
-bool MeshCollider::is_beside(const NearTriangle& t) const {
-  if (convex_.vertex_count() != 1 && convex_.vertex_count() != 2) return false;
-  const Vec3 first = convex_.vertex(0), last = convex_.vertex(convex_.vertex_count() - 1);
-  const float reach = 1.00001f * (convex_.radius() + max_separation_) + t.slack;
-  for (int i = 0; i < 3; ++i) {
-    const Vec3 edge = t.v[next_corner(i)] - t.v[i], outward = cross(edge, t.normal);
-    const float beyond = min(dot(outward, first - t.v[i]), dot(outward, last - t.v[i]));
-    if (beyond > 0.0f && square(beyond) > square(reach) * length_squared(edge)) return true;
+void MeshCollider::look_at_candidates() {
+  for (int i = 0; i < candidates_.count; i += MeshCull::kLanes) {
+    const std::uint32_t* ids = candidates_.ids + i;
+    const MeshCull cull = cull_triangles(surface_, ids, min(candidates_.count - i, MeshCull::kLanes),
+                                         position_, convex_, max_separation_);
+    for (unsigned rest = cull.touchable; rest != 0; rest &= rest - 1) {
+      const int lane = std::countr_zero(rest);
+      look_at(ids[lane], cull.extents[lane]);
+    }
   }
-  return false;
 }
 
-void MeshCollider::look_at(std::uint32_t id) {
-  NearTriangle t = place_triangle(surface_, id, position_, convex_);
-  know_side(t.normal);
+void MeshCollider::look_at(std::uint32_t id, PlacedConvex::Extent along_normal) {
+  const NearTriangle t = triangle(id);
+  know_side(t.normal, along_normal);
   const float height = dot(t.normal, t.v[0]);
   const float face = face_separation(t);
-  if (face > max_separation_ || side_.highest - height + convex_.radius() <= 0.0f) return;
-  if (is_before_a_face(t, convex_, max_separation_, scratch_) || is_beside(t)) return;
-  measure_edges(t);
   const bool inside_patch = t.flat_corners == 7 && t.edge[0] == EdgeKind::flat &&
                             t.edge[1] == EdgeKind::flat && t.edge[2] == EdgeKind::flat;
   // Ground that is known to carry the shape: no other direction can come of a triangle without real edges.
@@ -343,10 +361,11 @@ void MeshCollider::look_at(std::uint32_t id) {
   }
   if (axes.best > max_separation_) return;
   if (!behind) nearest_ = min(nearest_, axes.best);
-  const Waiting found{id, face, behind, axes.best <= 0.0f};
+  const Waiting found{id, waiting_count_, face, behind, axes.best <= 0.0f};
   note_overlap(found, axes.best);
   const float allowed = max(face, axes.feature.separation);
   if (behind || allowed < axes.best - kAxisBias * convex_.size()) {
+    if (waiting_count_ < kPlacedRoom) placed_[waiting_count_] = t;
     waiting_[waiting_count_++] = found;
     return;
   }
@@ -370,7 +389,11 @@ void MeshCollider::look_at(std::uint32_t id) {
 }
 
 void MeshCollider::settle(const Waiting& waiting) {
-  const NearTriangle t = triangle(waiting.id);
+  if (waiting.number < kPlacedRoom) return settle(waiting, placed_[waiting.number]);
+  settle(waiting, triangle(waiting.id));
+}
+
+void MeshCollider::settle(const Waiting& waiting, const NearTriangle& t) {
   for (int i = 0; i < standing_count_; ++i) {
     if (dot(standing_[i].normal, t.normal) > kSameNormal) return add_face(t);
   }

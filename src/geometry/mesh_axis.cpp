@@ -368,6 +368,7 @@ void Search::nearest_pair() {
 }
 
 void Search::polyhedron() {
+  if (convex_.face_count() > 0) convex_.face_separations(t_.v, scratch_.before, scratch_.before_face);
   face_axes();
   if (apart()) return;
   if (convex_.face_count() > 0) {
@@ -457,11 +458,11 @@ NearTriangle place_triangle(const Surface& surface, std::uint32_t id, Vec3 posit
     static_cast<TriangleView&>(t) = seen_from_behind(t);
     t.turned = true;
   }
-  float reach = largest(absolute(position));
-  for (int i = 0; i < 3; ++i) {
-    reach = max(reach, largest(absolute(t.v[i])));
-    t.v[i] = t.v[i] - position;
-  }
+  // The largest coordinate, from both its ends: cheaper than the size of each.
+  const Vec3 low = min(min(position, t.v[0]), min(t.v[1], t.v[2])),
+             high = max(max(position, t.v[0]), max(t.v[1], t.v[2]));
+  const float reach = max(largest(high), -smallest(low));
+  for (Vec3& corner : t.v) corner = corner - position;
   t.slack = 1.2e-7f * reach + 1.0e-6f * convex.size();
   return t;
 }
@@ -473,13 +474,6 @@ void measure_edges(NearTriangle& t) {
     t.along[i] = edge / t.length[i];
     t.outward[i] = cross(t.along[i], t.normal);
   }
-}
-
-bool is_before_a_face(const TriangleView& triangle, const PlacedConvex& convex, float max_separation,
-                      AxisScratch& scratch) {
-  return convex.face_count() > 0 &&
-         convex.face_separations(triangle.v, scratch.before, scratch.before_face) - convex.radius() >
-             max_separation;
 }
 
 AxisSearch search_axes(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,

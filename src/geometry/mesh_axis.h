@@ -97,11 +97,6 @@ struct AxisScratch {
   float along[3][PlacedConvex::kMaxVertices];
 };
 
-// Whether the triangle lies farther than `max_separation` before a face of the shape. Must be asked before search_axes,
-// which goes on from the faces' separations in `scratch`.
-bool is_before_a_face(const TriangleView& triangle, const PlacedConvex& convex, float max_separation,
-                      AxisScratch& scratch);
-
 // Looks at all directions but the face's normal, for which the caller knows the separation of the surfaces. Ends early once
 // one separation is above `max_separation`.
 AxisSearch search_axes(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,

@@ -1,8 +1,6 @@
 // Placing a convex shape beside a mesh. See placed_convex.h.
 #include "geometry/placed_convex.h"
 
-#include "math/wide_vec.h"
-
 namespace gyre {
 namespace {
 
@@ -150,9 +148,8 @@ void PlacedConvex::dot_faces(const Vec3* directions, float (*out)[kMaxVertices])
   }
 }
 
-float PlacedConvex::face_separations(const Vec3* corners, float (*each)[kMaxVertices], float* lowest) const {
+void PlacedConvex::face_separations(const Vec3* corners, float (*each)[kMaxVertices], float* lowest) const {
   const Vectors a = splat<4>(corners[0]), b = splat<4>(corners[1]), c = splat<4>(corners[2]);
-  Floats most(-__builtin_huge_valf());
   for (int i = 0; i < face_count_; i += kLanes) {
     const Vectors n = load(nx_, ny_, nz_, i);
     const Floats offset = Floats::load_unaligned(offset_ + i);
@@ -160,11 +157,18 @@ float PlacedConvex::face_separations(const Vec3* corners, float (*each)[kMaxVert
     (of_a - offset).store_unaligned(each[0] + i);
     (of_b - offset).store_unaligned(each[1] + i);
     (of_c - offset).store_unaligned(each[2] + i);
-    const Floats separation = min(of_a, min(of_b, of_c)) - offset;
-    separation.store_unaligned(lowest + i);
-    most = max(most, separation);
+    (min(of_a, min(of_b, of_c)) - offset).store_unaligned(lowest + i);
   }
-  return greatest(most);
+}
+
+Wide<PlacedConvex::kLanes> PlacedConvex::face_separations(const Vec3W<kLanes> (&corners)[3]) const {
+  const Vectors a = corners[0], b = corners[1], c = corners[2];
+  Floats most(-__builtin_huge_valf());
+  for (int i = 0; i < face_count_; ++i) {
+    const Vectors n = splat<kLanes>(face_normal(i));
+    most = max(most, min(dot(n, a), min(dot(n, b), dot(n, c))) - Floats(offset_[i]));
+  }
+  return most;
 }
 
 PlacedConvex::Extent PlacedConvex::extent(Vec3 direction) const {
@@ -177,6 +181,26 @@ PlacedConvex::Extent PlacedConvex::extent(Vec3 direction) const {
     high = max(high, height);
   }
   return {least(low), greatest(high)};
+}
+
+PlacedConvex::Extents PlacedConvex::extents(const Vec3W<kLanes>& directions) const {
+  const Vectors d = directions;
+  Extents out;
+  if (vertex_count_ == 0) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const Extent along = extent({d.x[lane], d.y[lane], d.z[lane]});
+      out.low.set(lane, along.low);
+      out.high.set(lane, along.high);
+    }
+    return out;
+  }
+  out.low = out.high = dot(splat<kLanes>(vertex(0)), d);
+  for (int i = 1; i < vertex_count_; ++i) {
+    const Floats height = dot(splat<kLanes>(vertex(i)), d);
+    out.low = min(out.low, height);
+    out.high = max(out.high, height);
+  }
+  return out;
 }
 
 Aabb PlacedConvex::box() const {

@@ -8,6 +8,7 @@
 
 #include "geometry/hull.h"
 #include "geometry/support.h"
+#include "math/wide_vec.h"
 
 #include <span>
 
@@ -16,6 +17,8 @@ namespace gyre {
 class PlacedConvex {
  public:
   static constexpr int kMaxVertices = 256;
+  // Columns are searched four at a time: behind the last of them its copies stand.
+  static constexpr int kLanes = 4;
 
   PlacedConvex(const Shape& shape, Quat orientation);
 
@@ -36,8 +39,10 @@ class PlacedConvex {
   float face_offset(int i) const { return offset_[i]; }  // dot(normal, p) = offset on the face
   // What the faces' normals have along each of three directions, into padded(face_count()) floats.
   void dot_faces(const Vec3* directions, float (*out)[kMaxVertices]) const;
-  // How far each corner of a triangle lies before each face, and how far the lowest does; returns the greatest of these.
-  float face_separations(const Vec3* corners, float (*each)[kMaxVertices], float* lowest) const;
+  // How far each corner of a triangle lies before each face, and how far the lowest does.
+  void face_separations(const Vec3* corners, float (*each)[kMaxVertices], float* lowest) const;
+  // Of as many triangles as there are lanes: the greatest distance at which all of one lies before a face.
+  Wide<kLanes> face_separations(const Vec3W<kLanes> (&corners)[3]) const;
   // Edges between two faces; empty for capsules, whose one edge has no faces (vertex 0 to vertex 1).
   std::span<const HullEdge> edges() const { return edges_; }
 
@@ -48,6 +53,12 @@ class PlacedConvex {
     float low, high;
   };
   Extent extent(Vec3 direction) const;
+  // The same for as many directions as there are lanes.
+  struct Extents {
+    Wide<kLanes> low, high;
+    Extent operator[](int lane) const { return {low[lane], high[lane]}; }
+  };
+  Extents extents(const Vec3W<kLanes>& directions) const;
   // The core's box in the mesh's axes.
   Aabb box() const;
   Vec3 support(Vec3 direction) const;
@@ -68,8 +79,6 @@ class PlacedConvex {
   Vec3 from_local(Vec3 v) const { return rotation_ * v; }
   const Aabb& local_box() const { return local_box_; }
 
-  // Columns are searched four at a time: behind the last of them its copies stand.
-  static constexpr int kLanes = 4;
   static constexpr int padded(int count) { return (count + kLanes - 1) / kLanes * kLanes; }
 
  private:
