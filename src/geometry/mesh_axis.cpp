@@ -35,8 +35,7 @@ class Search {
          float face_separation, float max_separation, AxisScratch& scratch)
       : surface_(surface), t_(triangle), convex_(convex), max_separation_(max_separation), scratch_(scratch) {
     found_.best = face_separation;
-    core_best_ = max(face_separation + convex.radius(),
-                     dot(triangle.normal, triangle.v[0]) - convex.highest(triangle.normal));
+    core_best_ = face_separation + convex.radius();
   }
 
   AxisSearch run_nearest() {
@@ -174,6 +173,7 @@ class Search {
   void edge_axis(const HullEdge& edge, int i);
   void segment_axes();
   bool is_pierced() const;
+  bool is_overlap() const;
   void nearest_of_sphere();
   void nearest_pair();
   void nearest_of_vertices(double& best, SimplexPoint& on_triangle, DVec3& on_convex) const;
@@ -190,11 +190,18 @@ class Search {
 };
 
 void Search::face_axes() {
-  for (int i = 0; i < convex_.face_count() && !apart(); ++i) {
-    const float separation = scratch_.before_face[i] - convex_.radius();
-    if (separation <= useful()) continue;
-    const Vec3 d = -convex_.face_normal(i);
-    offer(d, separation, supporting_corners(d), AxisSource::shape_face);
+  for (int first = 0; first < convex_.face_count(); first += PlacedConvex::kLanes) {
+    const Floats separations =
+        Floats::load_unaligned(scratch_.before_face + first) - Floats(convex_.radius());
+    // Behind the last face its copies stand: they are no better than it is.
+    for (unsigned rest = to_bits(separations > Floats(useful())); rest != 0; rest &= rest - 1) {
+      const int i = first + std::countr_zero(rest);
+      const float separation = scratch_.before_face[i] - convex_.radius();
+      if (separation <= useful()) continue;
+      const Vec3 d = -convex_.face_normal(i);
+      offer(d, separation, supporting_corners(d), AxisSource::shape_face);
+      if (apart()) return;
+    }
   }
 }
 
@@ -327,6 +334,12 @@ bool Search::is_pierced() const {
   return (ab >= 0.0 && bc >= 0.0 && ca >= 0.0) || (ab <= 0.0 && bc <= 0.0 && ca <= 0.0);
 }
 
+// Whether no direction that was looked at, the one from behind the triangle among them, parts it from the core.
+bool Search::is_overlap() const {
+  const float behind = dot(t_.normal, t_.v[0]) - convex_.highest(t_.normal);
+  return !(max(core_best_, behind) > 1.0e-6f * convex_.size());
+}
+
 // A segment that does not cross the triangle: the true direction is that between the nearest points.
 void Search::nearest_pair() {
   double best = __builtin_huge_val();
@@ -378,9 +391,7 @@ void Search::polyhedron() {
   }
   if (convex_.radius() == 0.0f || apart()) return;
   // The features of overlapping cores have distances too, but those mean nothing.
-  if (convex_.vertex_count() == 2 ? is_pierced()
-                                  : convex_.vertex_count() > 2 && !(core_best_ > 1.0e-6f * convex_.size()))
-    return;
+  if (convex_.vertex_count() == 2 ? is_pierced() : convex_.vertex_count() > 2 && is_overlap()) return;
   if (convex_.vertex_count() == 1) {
     nearest_of_sphere();
   } else if (convex_.vertex_count() == 2) {
