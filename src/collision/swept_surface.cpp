@@ -130,7 +130,7 @@ class SurfaceSweep {
   // Holds the shape all along the piece, in the surface's frame. A turn bulges out of the box around its two ends by
   // at most r (1 - cos(angle / 2)) < r angle^2 / 8.
   Aabb piece_box(double from, double to) const {
-    const Transform at_start = surface_from_a(from), at_end = surface_from_a(to);
+    const Transform &at_start = piece_start_, &at_end = piece_end_;
     const float share = float(to - from);
     const float angle_a = share * length(a_.sweep->turned), angle_b = share * length(b_.sweep->turned);
     const float lever = max(length(at_start.position), length(at_end.position)) +
@@ -148,9 +148,11 @@ class SurfaceSweep {
   // Calls fn(triangle) for those that the shape may come near between two times.
   template <class Fn>
   void for_each_triangle(double from, double to, const Fn& fn) {
+    piece_start_ = from == 0.0 ? start_ : surface_from_a(from);
+    piece_end_ = surface_from_a(to);
     const Aabb box = piece_box(from, to);
     // Triangles are moved near the origin of a frame of their own, so that floats stay small in a large mesh.
-    origin_ = surface_from_a(from).position;
+    origin_ = piece_start_.position;
     near_frame_ = b_;
     near_frame_.body_from_shape = b_.body_from_shape * Transform{origin_, {}};
     if (surface_.mesh != nullptr) {
@@ -196,7 +198,8 @@ class SurfaceSweep {
   }
 
   // Whether the shape, so high above a plane of the surface as the step begins, stays farther from it than `distance` until the
-  // piece ends. By the same advances as time_of_impact, but along the one normal, which needs no search.
+  // piece ends. Mostly where it ends tells: in between it comes nearer than at both ends by the bulge of its turn at most.
+  // Else by the same advances as time_of_impact, but along the one normal, which needs no search.
   bool stays_above(const SweptShape& shape, Vec3 normal, Vec3 corner, double height, double distance) const {
     if (!(b_.sweep->turned == Vec3{})) return false;
     const DVec3 up(rotate(b_.sweep->pose.orientation, rotate(b_.body_from_shape.orientation, normal)));
@@ -204,6 +207,10 @@ class SurfaceSweep {
                            length(cross(DVec3(shape.sweep->turned), up)) * double(shape.radius);
     const double rounding =
         4.0e-6 * double(largest(absolute(corner)) + largest(absolute(start_.position)) + a_.radius);
+    const double bulge = 0.125 * double(shape.radius * length_squared(shape.sweep->turned));
+    const double at_end = height_of(shape, piece_end_, normal, corner);
+    if (min(height, at_end) - bulge > distance + rounding) return true;
+    if (at_end <= distance) return false;
     double time = 0.0;
     for (int i = 0; i < kMostAdvances; ++i) {
       const double rest = height - distance - rounding;
@@ -258,6 +265,7 @@ class SurfaceSweep {
   const bool is_surface_still_;
   const Pose world_from_surface_;  // as the step begins
   const Transform start_;
+  Transform piece_start_, piece_end_;
   Vec3 origin_;
   SweptShape near_frame_;
   Stop stop_;
