@@ -100,7 +100,7 @@ class SurfaceSearch {
     box_ = outward(convex.position + DVec3(grown.low), convex.position + DVec3(grown.high));
   }
 
-  // In boxes that grow twofold, so that a near triangle is found without looking at all.
+  // In boxes that grow eightfold, so that a near triangle is found without looking at all.
   bool run(Nearest& out) {
     const Aabb& all = surface_.kind == ShapeKind::mesh ? surface_.mesh->tree.box : surface_.field->box;
     const auto least = double(box_gap(all, box_));
@@ -108,7 +108,7 @@ class SurfaceSearch {
     const double most = reach_;
     double look = least + double(largest(half_size(box_))) +
                   1.0e-6 * double(largest(max(absolute(all.low), absolute(all.high))));
-    for (;; look *= 2.0) {
+    for (;; look *= 8.0) {
       const bool last = look >= most;
       walk(last ? most : look);
       // What is found beyond the box that was looked at may not be the nearest.
