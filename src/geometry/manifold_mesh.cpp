@@ -48,6 +48,7 @@ struct Waiting {
   std::uint32_t id;
   int number;  // in the order in which they were looked at
   float face_separation;
+  float best;  // its separation along its best direction
   bool behind;
   bool overlaps;
 };
@@ -80,9 +81,9 @@ class MeshCollider {
   void settle_deep_patches();
   bool runs_through(const NearTriangle& t) const;
   bool is_ground_between(const NearTriangle& t, Vec3 low, Vec3 high) const;
-  void note_overlap(const Waiting& found, float best);
+  void note_overlap(const Waiting& found);
   void push_out();
-  void add_corner(const NearTriangle& t, float face_separation);
+  void add_corner(const NearTriangle& t, float face_separation, float best);
   bool is_corner_missing() const;
   void look_for_corners();
   void settle(const Waiting& waiting);
@@ -133,7 +134,7 @@ class MeshCollider {
   };
   // Of the triangles that the shape certainly overlaps, the one through whose front it leaves first; those with the
   // shape's middle before them first of all.
-  Waiting exit_{0, 0, -__builtin_huge_valf(), true, false};
+  Waiting exit_{0, 0, -__builtin_huge_valf(), 0.0f, true, false};
   // The nearest triangle over which a point of a curved shape lies, although none of its facing polygon's does.
   float rim_separation_ = kUnbounded;
   std::uint32_t rim_triangle_ = 0;
@@ -361,8 +362,8 @@ void MeshCollider::look_at(std::uint32_t id, PlacedConvex::Extent along_normal) 
   }
   if (axes.best > max_separation_) return;
   if (!behind) nearest_ = min(nearest_, axes.best);
-  const Waiting found{id, waiting_count_, face, behind, axes.best <= 0.0f};
-  note_overlap(found, axes.best);
+  const Waiting found{id, waiting_count_, face, axes.best, behind, axes.best <= 0.0f};
+  note_overlap(found);
   const float allowed = max(face, axes.feature.separation);
   if (behind || allowed < axes.best - kAxisBias * convex_.size()) {
     if (waiting_count_ < kPlacedRoom) placed_[waiting_count_] = t;
@@ -379,7 +380,7 @@ void MeshCollider::look_at(std::uint32_t id, PlacedConvex::Extent along_normal) 
     // Beside an edge the face alone may have no point, or none that is deep enough.
     const float wanted = axes.feature.separation + 0.1f * kAxisBias * convex_.size();
     if (axes.feature.separation < axes.best - kAxisBias * convex_.size() || points_.deepest() <= wanted) {
-      if (!inside_patch && axes.best > 0.0f) add_corner(t, face);
+      if (!inside_patch && axes.best > 0.0f) add_corner(t, face, axes.best);
       if (stand(t.normal, face)) add_deep_corners(t);
       return;
     }
@@ -400,7 +401,7 @@ void MeshCollider::settle(const Waiting& waiting, const NearTriangle& t) {
   if (is_ruled_out(t, waiting.behind)) return;
   // What is apart from the triangle may still reach below its plane, beside it or under its edge: nothing to be pushed out.
   add_face(t, waiting.overlaps ? -kUnbounded : -kCoverSlack * convex_.size());
-  if (!waiting.overlaps && !waiting.behind) add_corner(t, waiting.face_separation);
+  if (!waiting.overlaps && !waiting.behind) add_corner(t, waiting.face_separation, waiting.best);
   bool added = points_.count > 0;
   if ((added || waiting.overlaps) && add_deep_corners(t)) added = true;
   if (added) stand(t.normal, waiting.face_separation);
@@ -463,9 +464,9 @@ void MeshCollider::settle_deep_patches() {
   }
 }
 
-void MeshCollider::note_overlap(const Waiting& found, float best) {
+void MeshCollider::note_overlap(const Waiting& found) {
   if (!found.overlaps) return;
-  if (!found.behind) overlap_ = min(overlap_, best);
+  if (!found.behind) overlap_ = min(overlap_, found.best);
   const bool better =
       exit_.behind == found.behind ? found.face_separation > exit_.face_separation : exit_.behind;
   if (better) exit_ = found;
@@ -487,8 +488,10 @@ void MeshCollider::push_out() {
 
 // Where the lowest corner of a polyhedron lies a little beside the triangle, the points above its face are all farther than
 // the edge is, and an axis search does not know the direction between that corner and the edge. Keeps `points_`.
-void MeshCollider::add_corner(const NearTriangle& t, float face_separation) {
+void MeshCollider::add_corner(const NearTriangle& t, float face_separation, float best) {
   const float slack = kAxisBias * convex_.size();
+  // What lies apart along some direction is no nearer than that, so that no search need tell.
+  if (points_.deepest() <= best + 0.9f * slack) return;
   if (points_.count == 0 || convex_.face_count() == 0 || points_.deepest() <= face_separation + slack) return;
   const AxisSearch axes = search_nearest(surface_, t, convex_, face_separation, max_separation_, scratch_);
   if (axes.best > max_separation_ || axes.feature.separation < axes.best ||
