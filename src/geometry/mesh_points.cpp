@@ -54,8 +54,8 @@ struct Emitter {
 bool inside_polygon(const FacePolygon& face, Vec3 p, float slack) {
   for (int k = 0; k < face.count; ++k) {
     const Vec3 a = face.vertices[k], edge = face.vertices[k + 1 == face.count ? 0 : k + 1] - a;
-    const Vec3 inward = cross(face.normal, edge);
-    if (dot(inward, p - a) < -slack * length(edge)) return false;
+    const float inside = dot(cross(face.normal, edge), p - a);
+    if (inside < 0.0f && inside < -slack * length(edge)) return false;
   }
   return true;
 }
