@@ -16,6 +16,31 @@ static_assert(kCornerSlots >= 64);
 // So many parts of one flat patch stand for all of it.
 constexpr int kStandIns = 64;
 
+using Floats = Wide<4>;
+
+Floats axis_lanes(Vec3 v) {
+  // Not by way of an array: GCC would build that on the stack, part by part.
+  typedef float Quad __attribute__((vector_size(16)));
+  return Floats::of(Quad{v.x, v.y, v.z, 0.0f});
+}
+
+// The box of one triangle, an axis a lane: most of those in a leaf are left out by nothing else.
+class TriangleBox {
+ public:
+  TriangleBox(const Mesh& mesh, std::uint32_t triangle) {
+    const std::uint32_t* corner = mesh.indices.data() + 3 * std::size_t(triangle);
+    const Floats a = axis_lanes(mesh.vertices[corner[0]]), b = axis_lanes(mesh.vertices[corner[1]]),
+                 c = axis_lanes(mesh.vertices[corner[2]]);
+    low_ = min(a, min(b, c));
+    high_ = max(a, max(b, c));
+  }
+  bool overlaps(Floats low, Floats high) const { return all((low_ <= high) & (low <= high_)); }
+  Aabb box() const { return {{low_[0], low_[1], low_[2]}, {high_[0], high_[1], high_[2]}}; }
+
+ private:
+  Floats low_, high_;
+};
+
 class Gatherer {
  public:
   Gatherer(const Surface& surface, const PlacedConvex& convex, Vec3 position, float max_separation,
@@ -61,10 +86,13 @@ class Gatherer {
       return look_at_patch(mesh.normals[first], mesh.vertices[mesh.indices[3 * std::size_t(first)]], box,
                            first, add);
     };
+    const Floats low = axis_lanes(box_.low), high = axis_lanes(box_.high);
     const auto visit = [&](std::uint32_t first, std::uint32_t count) {
       for (std::uint32_t id = first; id < first + count; ++id) {
-        const Aabb box = triangle_box(mesh, id);
-        if (!overlap(box, box_) || !near(box)) continue;
+        const TriangleBox axes(mesh, id);
+        if (!axes.overlaps(low, high)) continue;
+        const Aabb box = axes.box();
+        if (!near(box)) continue;
         if ((mesh.flags[id] & kInsidePatch) != 0 &&
             !look_at_patch(mesh.normals[id], mesh.vertices[mesh.indices[3 * std::size_t(id)]], box, id,
                            add)) {
