@@ -202,15 +202,15 @@ class SurfaceSweep {
   // Else by the same advances as time_of_impact, but along the one normal, which needs no search.
   bool stays_above(const SweptShape& shape, Vec3 normal, Vec3 corner, double height, double distance) const {
     if (!(b_.sweep->turned == Vec3{})) return false;
-    const DVec3 up(rotate(b_.sweep->pose.orientation, rotate(b_.body_from_shape.orientation, normal)));
-    const double closing = -dot(DVec3(shape.sweep->moved) - DVec3(b_.sweep->moved), up) +
-                           length(cross(DVec3(shape.sweep->turned), up)) * double(shape.radius);
     const double rounding =
         4.0e-6 * double(largest(absolute(corner)) + largest(absolute(start_.position)) + a_.radius);
     const double bulge = 0.125 * double(shape.radius * length_squared(shape.sweep->turned));
     const double at_end = height_of(shape, piece_end_, normal, corner);
     if (min(height, at_end) - bulge > distance + rounding) return true;
     if (at_end <= distance) return false;
+    const DVec3 up(rotate(b_.sweep->pose.orientation, rotate(b_.body_from_shape.orientation, normal)));
+    const double closing = -dot(DVec3(shape.sweep->moved) - DVec3(b_.sweep->moved), up) +
+                           length(cross(DVec3(shape.sweep->turned), up)) * double(shape.radius);
     double time = 0.0;
     for (int i = 0; i < kMostAdvances; ++i) {
       const double rest = height - distance - rounding;
