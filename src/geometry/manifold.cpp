@@ -3,7 +3,6 @@
 
 #include "geometry/clip.h"
 #include "geometry/hull.h"
-#include "geometry/manifold_convex.h"
 #include "geometry/support.h"
 
 namespace gyre {
@@ -89,27 +88,23 @@ void collide_plane(const Shape& plane, const Shape& b, const Transform& a_from_b
 
 int collide_shapes(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
                    PairCache& cache, LocalManifold* out) {
-  const ContactMethod method = contact_method(a, b);
-  if (method == ContactMethod::none) return 0;
-  const bool swapped = is_convex(a.kind) && !is_convex(b.kind);
+  const bool convex_a = is_convex(a.kind), convex_b = is_convex(b.kind);
+  if (convex_a && convex_b) {
+    collide_convex(a, b, a_from_b, max_separation, cache, out[0]);
+    return out[0].count > 0 ? 1 : 0;
+  }
+  if (!convex_a && !convex_b) return 0;
   // The one that is not convex first.
+  const bool swapped = convex_a;
   const Shape& first = swapped ? b : a;
   const Shape& second = swapped ? a : b;
   const Transform first_from_second = swapped ? inverse(a_from_b) : a_from_b;
   int count = 0;
-  switch (method) {
-    case ContactMethod::plane:
-      collide_plane(first, second, first_from_second, max_separation, out[0]);
-      count = out[0].count > 0 ? 1 : 0;
-      break;
-    case ContactMethod::seven_features:
-    case ContactMethod::axes:
-    case ContactMethod::nearest:
-      count = collide_mesh(first, second, first_from_second, max_separation, out);
-      break;
-    default:
-      collide_convex(a, b, a_from_b, max_separation, cache, out[0]);
-      return out[0].count > 0 ? 1 : 0;
+  if (first.kind == ShapeKind::plane) {
+    collide_plane(first, second, first_from_second, max_separation, out[0]);
+    count = out[0].count > 0 ? 1 : 0;
+  } else {
+    count = collide_mesh(first, second, first_from_second, max_separation, out);
   }
   for (int i = 0; swapped && i < count; ++i) flip(out[i], a_from_b);
   return count;

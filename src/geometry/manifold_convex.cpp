@@ -5,11 +5,19 @@
 #include "geometry/manifold_core.h"
 #include "geometry/manifold_hull.h"
 #include "geometry/manifold_round.h"
+#include "math/wide.h"
 
 namespace gyre {
 namespace {
 
 bool is_rounded(const Shape& shape) { return shape.kind == ShapeKind::box && shape.radius > 0.0f; }
+
+// is_finite() for all seven numbers at once: what is finite less itself is 0.
+bool all_finite(const Transform& t) {
+  const Wide<4> place = Wide<4>::of(Wide<4>::Float{t.position.x, t.position.y, t.position.z, 0.0f});
+  const Wide<4> turn = Wide<4>::load_unaligned(&t.orientation.x);
+  return all((place - place) + (turn - turn) == 0.0f);
+}
 
 constexpr ContactMethod R = ContactMethod::round, B = ContactMethod::boxes, P = ContactMethod::polyhedra,
                         C = ContactMethod::cores;
@@ -49,7 +57,7 @@ void collide_convex(const Shape& a, const Shape& b, const Transform& a_from_b, f
                     PairCache& cache, LocalManifold& out) {
   out.count = 0;
   // Bodies that are about to be taken out of the world.
-  if (!is_finite(a_from_b)) return;
+  if (!all_finite(a_from_b)) return;
   switch (contact_method(a, b)) {
     case ContactMethod::round:
       return collide_round(a, b, a_from_b, max_separation, cache, out);
