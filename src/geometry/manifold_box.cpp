@@ -151,37 +151,40 @@ struct FloatEdges {
   using Real = float;
   using Vector = Vec3;
   Vector columns[3];  // B's axes in A's frame
-  FloatEdges(const Boxes& x, const Transform&)
-      : columns{to_vec3(Floats::load(x.s[0])), to_vec3(Floats::load(x.s[1])), to_vec3(Floats::load(x.s[2]))} {
-  }
-  static Vec3 unit(Vec3 v) { return normalized(v); }
+  Vector normal;      // along the cross product of both edges
+  FloatEdges(const Boxes& x, const Transform&, const Axis&, Vec3 n)
+      : columns{to_vec3(Floats::load(x.s[0])), to_vec3(Floats::load(x.s[1])), to_vec3(Floats::load(x.s[2]))},
+        normal(n) {}
   static Vec3 to_float(Vec3 v) { return v; }
 };
 struct DoubleEdges {
   using Real = double;
   using Vector = DVec3;
   Vector columns[3];
-  DoubleEdges(const Boxes&, const Transform& a_from_b) {
+  Vector normal;
+  DoubleEdges(const Boxes&, const Transform& a_from_b, const Axis& edges, Vec3) {
     const DQuat q = normalized(to_double(a_from_b.orientation));
-    for (int k = 0; k < 3; ++k)
-      columns[k] = rotate(q, DVec3{k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0});
+    const auto axis = [](int k) { return DVec3{k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0}; };
+    for (int k = 0; k < 3; ++k) columns[k] = rotate(q, axis(k));
+    const DVec3 across = cross(axis(edges.edge_a()), columns[edges.edge_b()]);
+    normal = across / length(across);
   }
-  static DVec3 unit(DVec3 v) { return v / length(v); }
   static Vec3 to_float(DVec3 v) { return gyre::to_float(v); }
 };
 
 // Leaves out.count at 0 when the edges pass beside each other: of boxes apart another feature is nearer, and of those that
 // overlap the faces beside nearly parallel edges were as good.
 template <class Edges>
-void collide_edges(const Boxes& x, const Transform& a_from_b, const Axis& found, LocalManifold& out) {
+void collide_edges(const Boxes& x, const Transform& a_from_b, const Axis& found, Vec3 along,
+                   LocalManifold& out) {
   using Real = typename Edges::Real;
   using Vector = typename Edges::Vector;
-  const Edges edges(x, a_from_b);
+  const Edges edges(x, a_from_b, found, along);
   const int i = found.edge_a(), j = found.edge_b();
   const Vector edge_a{Real(i == 0), Real(i == 1), Real(i == 2)};
   const Vector edge_b = edges.columns[j];
   const Vector across = cross(edge_a, edge_b);
-  Vector normal = Edges::unit(across);
+  Vector normal = edges.normal;
   const Vector t{Real(a_from_b.position.x), Real(a_from_b.position.y), Real(a_from_b.position.z)};
   if (dot(normal, t) < Real(0)) normal = -normal;
   // The edge of each box that is farthest along the normal towards the other.
@@ -218,11 +221,8 @@ void collide_edges(const Boxes& x, const Transform& a_from_b, const Axis& found,
   out.points[0].feature = feature_edges(edge_number(i, corner_a), edge_number(j, corner_b));
 }
 
-// The face whose normal is within kNearFace of the axis of two edges; none if there is none.
-Axis face_near_edges(const Boxes& x, const FaceAxes& faces, const Axis& edges) {
-  const int i = edges.edge_a(), j = edges.edge_b();
-  const Vec3 edge_a{i == 0 ? 1.0f : 0.0f, i == 1 ? 1.0f : 0.0f, i == 2 ? 1.0f : 0.0f};
-  const Vec3 normal = normalized(cross(edge_a, to_vec3(Floats::load(x.s[j]))));
+// The face whose normal is within kNearFace of the axis of two edges, `normal`; none if there is none.
+Axis face_near_edges(const Boxes& x, const FaceAxes& faces, Vec3 normal) {
   const Floats along_a = absolute(three(normal));
   const Floats along_b = absolute(normal.x * Floats::load(x.r[0]) + normal.y * Floats::load(x.r[1]) +
                                   normal.z * Floats::load(x.r[2]));
@@ -246,16 +246,19 @@ float deepest_of(const LocalManifold& manifold) {
 // See manifold_crossing.h.
 void collide_crossing(const Boxes& x, const FaceAxes& faces, const Transform& a_from_b, const Axis& edges,
                       float max_separation, LocalManifold& out) {
-  const Axis face = face_near_edges(x, faces, edges);
+  const int i = edges.edge_a();
+  const Vec3 edge_a{i == 0 ? 1.0f : 0.0f, i == 1 ? 1.0f : 0.0f, i == 2 ? 1.0f : 0.0f};
+  const Vec3 normal = normalized(cross(edge_a, to_vec3(Floats::load(x.s[edges.edge_b()]))));
+  const Axis face = face_near_edges(x, faces, normal);
   if (face.number != kNoAxis) {
     collide_face(x, face, max_separation, out);
     if (stands_for_crossing(out, edges.separation, thinnest(x))) return;
     out.count = 0;
   }
-  if (EdgeRow(x, edges.edge_a()).squared[edges.edge_b()] < kShallow) {
-    collide_edges<DoubleEdges>(x, a_from_b, edges, out);
+  if (EdgeRow(x, i).squared[edges.edge_b()] < kShallow) {
+    collide_edges<DoubleEdges>(x, a_from_b, edges, normal, out);
   } else {
-    collide_edges<FloatEdges>(x, a_from_b, edges, out);
+    collide_edges<FloatEdges>(x, a_from_b, edges, normal, out);
   }
 }
 
