@@ -41,7 +41,10 @@ class Lowest {
   Vec3 normal_;
   float offset_, radius_, max_separation_;
   int count_ = 0;
-  ManifoldPoint points_[kMaxClipPoints];
+  // Not cleared: only the counted ones are ever read.
+  union {
+    ManifoldPoint points_[kMaxClipPoints];
+  };
 };
 
 // From B to A instead of from A to B, in the other shape's frame.
