@@ -65,11 +65,17 @@ struct alignas(64) BodyLook {
 // `seconds`: length of the step, how far things may come.
 BodyLook make_body_look(const ColliderBody& body, float seconds);
 
+// How contacts are recycled: a kernel of contact_recycle.h.
+struct ContactPair;
+struct Recycled;
+using RecycleContacts = void (*)(const ContactPair* pairs, int count, bool may_recycle, Recycled& recycled);
+
 struct CollideInput {
   ColliderShapes shapes;
   std::span<const BodyLook> looks;  // by body
   std::span<const Vec3> centers;    // by body: centre of mass, body frame
   std::span<const Proxy> proxies;
+  RecycleContacts recycle_contacts;
   bool recycle = true;  // false: looks at every pair anew (tests compare with that)
 };
 

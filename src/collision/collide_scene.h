@@ -3,6 +3,7 @@
 
 #include "collision/broadphase.h"
 #include "collision/collide.h"
+#include "collision/contact_recycle.h"
 #include "collision/fat_box.h"
 #include "collision/pair_update.h"
 
@@ -77,7 +78,7 @@ class CollideScene {
       looks.push_back(make_body_look(body, seconds));
       centers.push_back(body.center);
     }
-    collide(store, {shapes, looks, centers, proxies, recycle}, tasks_, changes);
+    collide(store, {shapes, looks, centers, proxies, select_recycling(width), recycle}, tasks_, changes);
   }
 
   // The contact of two shapes; null if there is none.
@@ -99,6 +100,7 @@ class CollideScene {
   TouchChanges changes;
   float seconds = 1.0f / 60.0f;
   bool recycle = true;
+  int width = 0;  // of recycling
 
  private:
   TaskSystem tasks_;

@@ -1,7 +1,7 @@
 // Recycling: contacts whose two bodies have hardly moved against each other since the last full look (contact_update.h) get
-// their old points again, found from their anchors. Most contacts of a pile at rest are brought up to date so.
+// their old points again, found from their anchors. Most contacts of what rests are brought up to date so.
 //
-// In: contacts, side by side in the lanes of one register, their shapes and bodies. Out: which of them are up to date, with
+// In: contacts, their shapes and bodies; W of them are worked on side by side. Out: which of them are up to date, with
 // their manifolds in world axes; and how the pairs stand and move, for the full look at the others.
 //
 // Let T be the rigid motion of B in A's body frame since the last full look. The point of B at an anchor moves
@@ -17,13 +17,26 @@
 
 namespace gyre {
 
-// Surfaces nearer than this touch. In sizes of the pair (the smaller shape's inner radius), as all lengths here.
+// In sizes of the pair (the smaller shape's inner radius).
+// Surfaces nearer than this touch.
 constexpr float kTouch = 0.005f;
 // What comes faster than this in a step is left to the sweep (continuous.h).
 constexpr float kLargestApproach = 1.0f;
 
-// How many contacts are looked at side by side: as many as every processor has lanes.
-constexpr int kLookWidth = 4;
+// Contacts that are handed over together: one word of a bitset.
+constexpr int kContactBlock = 64;
+
+// A contact to be looked at, and its two sides.
+struct ContactPair {
+  Contact* contact;
+  Manifold* manifolds;  // of the contact, as many as its manifold_count
+  const ColliderShape* shape_a;
+  const ColliderShape* shape_b;
+  const BodyLook* look_a;
+  const BodyLook* look_b;
+  const Vec3* center_a;  // centres of mass, body frames
+  const Vec3* center_b;
+};
 
 // How a pair stands and moves, as far as every look needs it.
 struct View {
@@ -33,27 +46,18 @@ struct View {
   float speculative;  // m, how far contacts matter
 };
 
-// How a manifold follows the bodies. Its anchors lie in the frame of one of them, and the other one's points move there.
-// Where that one is a core swept by a ball on something flat, the points of its core are what counts: however it rolls,
-// it touches below them.
-struct Follow {
-  bool frame_is_b = false;  // else A's
-  bool flat = false;        // flat features on both sides
-  bool round = false;       // a swept core on something flat
-  float radius = 0.0f;      // of the swept core
-};
-Follow follow_of(const Shape& a, const Shape& b);
-
-// The smaller of two sizes, of those that are sizes at all (see ColliderShape::size).
-float smaller_size(float a, float b);
-
 struct Recycled {
-  unsigned contacts = 0;   // bits, by place in the group: up to date
-  unsigned touching = 0;   // bits: those of them whose shapes touch
-  View views[kLookWidth];  // of all; not set if all are up to date
+  std::uint64_t contacts = 0;  // bits, by place: up to date
+  std::uint64_t touching = 0;  // bits: those of them whose shapes touch
+  // Of the others. Not cleared: only theirs are ever read.
+  union {
+    View views[kContactBlock];
+  };
+  Recycled() {}
 };
-// Of at most kLookWidth contacts. `may_recycle` false: only the views.
-Recycled recycle_contacts(ContactStore& store, std::span<const std::uint32_t> slots,
-                          const CollideInput& input);
+
+// A kernel takes at most kContactBlock contacts, whose sizes must be known. `may_recycle` false: it tells only the views.
+// Here is the widest that this machine runs well; not wider than `width` if that is not 0.
+RecycleContacts select_recycling(int width);
 
 }  // namespace gyre

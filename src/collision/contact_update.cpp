@@ -1,9 +1,9 @@
 // Full looks, and the matching of new points with old ones. See contact_update.h.
 #include "collision/contact_update.h"
 
+#include "collision/contact_follow.h"
 #include "collision/fat_box.h"
 #include "geometry/manifold_mesh.h"
-#include "geometry/support.h"
 #include "geometry/surface_overlap.h"
 
 namespace gyre {
@@ -26,6 +26,14 @@ bool has_rim(const Shape& shape) {
 
 Pose pose_of(const BodyLook& look) { return {look.position, look.orientation}; }
 DVec3 center_of_mass(const BodyLook& look, Vec3 center) { return pose_of(look) * center; }
+std::span<Manifold> manifolds_of(const ContactPair& pair) {
+  return {pair.manifolds, pair.contact->manifold_count};
+}
+// Whether the anchors lie in the frame of B's body, else A's.
+bool frame_is_b(const Shape& a, const Shape& b) {
+  const Roundness<1> round_a{std::int32_t(a.kind), a.radius}, round_b{std::int32_t(b.kind), b.radius};
+  return any(Follow<1>(round_a, round_b).frame_is_b);
+}
 
 // ----------------------------------------------------------------------------------------------- what the shapes tell
 
@@ -181,12 +189,12 @@ void match_by_place(Former<kRoom>& former, Manifold& manifold, unsigned matched,
 
 // From the frame of shape A into world axes, and into the body frame for anchors. Impulses are zero.
 Manifold to_world(const LocalManifold& local, const Pose& frame, const ContactPair& pair) {
-  const Follow follow = follow_of(pair.shape_a->shape, pair.shape_b->shape);
-  const Quat frame_turn = (follow.frame_is_b ? pair.look_b : pair.look_a)->orientation;
-  const Vec3 frame_center = follow.frame_is_b ? pair.center_b : pair.center_a;
+  const bool in_b = frame_is_b(pair.shape_a->shape, pair.shape_b->shape);
+  const Quat frame_turn = (in_b ? pair.look_b : pair.look_a)->orientation;
+  const Vec3 frame_center = in_b ? *pair.center_b : *pair.center_a;
   // Each side by itself: one of the two may be far away (a plane's body), and floats with it.
-  const Vec3 frame_from_a = difference(frame.position, center_of_mass(*pair.look_a, pair.center_a));
-  const Vec3 frame_from_b = difference(frame.position, center_of_mass(*pair.look_b, pair.center_b));
+  const Vec3 frame_from_a = difference(frame.position, center_of_mass(*pair.look_a, *pair.center_a));
+  const Vec3 frame_from_b = difference(frame.position, center_of_mass(*pair.look_b, *pair.center_b));
   Manifold out;
   out.normal = rotate(frame.orientation, local.normal);
   out.count = local.count;
@@ -199,8 +207,7 @@ Manifold to_world(const LocalManifold& local, const Pose& frame, const ContactPa
     point.from_b = place + frame_from_b;
     point.separation = local.points[i].separation;
     point.feature = local.points[i].feature;
-    out.anchors[i].position =
-        rotate_inverse(frame_turn, follow.frame_is_b ? point.from_b : point.from_a) + frame_center;
+    out.anchors[i].position = rotate_inverse(frame_turn, in_b ? point.from_b : point.from_a) + frame_center;
     out.anchors[i].separation = point.separation;
   }
   return out;
@@ -227,11 +234,10 @@ void match_rolling(Former<kRoom>& former, Manifold& manifold, unsigned matched_b
 }
 
 template <int kRoom>
-void write_manifolds(ContactStore& store, Contact& contact, const Found<kRoom>& found,
-                     const ContactPair& pair, float size) {
-  Manifold* const out = &store.manifolds[contact.first_manifold];
+void write_manifolds(const Found<kRoom>& found, const ContactPair& pair, float size) {
+  Manifold* const out = pair.manifolds;
   Former<kRoom> former;
-  former.count = contact.manifold_count;
+  former.count = pair.contact->manifold_count;
   for (int m = 0; m < former.count; ++m) former.manifolds[m] = out[m];
   unsigned matched[kRoom] = {};
   for (int m = 0; m < found.count; ++m) {
@@ -247,7 +253,7 @@ void write_manifolds(ContactStore& store, Contact& contact, const Found<kRoom>& 
     match_rolling(former, out[0], matched[0]);
   // Nothing of the past stays behind in what is not in use.
   for (int m = found.count; m < former.count; ++m) out[m] = Manifold{};
-  contact.manifold_count = std::uint16_t(found.count);
+  pair.contact->manifold_count = std::uint16_t(found.count);
 }
 
 void note_look(Contact& contact, const View& view, float looked) {
@@ -264,7 +270,8 @@ bool is_clear_of_surface(const ContactPair& pair, const View& view, float reach)
 
 // kRoom is the contact's manifold_room.
 template <int kRoom>
-void look_in_room(ContactStore& store, Contact& contact, const ContactPair& pair, const View& view) {
+void look_in_room(const ContactPair& pair, const View& view) {
+  Contact& contact = *pair.contact;
   const float kept = view.speculative + kKept * view.size;
   float reach = view.speculative + kNearSlack * view.size;
   if (kRoom > 1 && contact.manifold_count == 0) {
@@ -282,7 +289,7 @@ void look_in_room(ContactStore& store, Contact& contact, const ContactPair& pair
   }
   if (!clear) ask_shapes(pair, reach, contact.cache, found);
   const float left_out = min(keep_near(found, kept), reach);
-  if (found.count > 0 || contact.manifold_count > 0) write_manifolds(store, contact, found, pair, view.size);
+  if (found.count > 0 || contact.manifold_count > 0) write_manifolds(found, pair, view.size);
   // Points measure separation along one normal, which is not always that of the nearest features: hence only a part.
   note_look(contact, view, left_out < reach ? kept + 0.75f * (left_out - kept) : reach);
 }
@@ -307,7 +314,13 @@ bool is_near(std::span<const Manifold> manifolds, float distance) {
 
 }  // namespace
 
-bool look_at_sensor(Contact& contact, const ContactPair& pair) {
+float smaller_size(float a, float b) {
+  const bool has_a = a > 0.0f && a < kUnboundedSide;
+  const bool has_b = b > 0.0f && b < kUnboundedSide;
+  return has_a && has_b ? min(a, b) : has_a ? a : has_b ? b : 0.0f;
+}
+
+bool look_at_sensor(const ContactPair& pair) {
   const Shape& a = pair.shape_a->shape;
   const Shape& b = pair.shape_b->shape;
   if (!is_convex(a.kind) && !is_convex(b.kind)) {
@@ -316,7 +329,7 @@ bool look_at_sensor(Contact& contact, const ContactPair& pair) {
                             inverse_times(frame_a, pose_of(*pair.look_b) * pair.shape_b->body_from_shape));
   }
   Found<kMaxMeshManifolds> found;
-  ask_shapes(pair, 0.0f, contact.cache, found);
+  ask_shapes(pair, 0.0f, pair.contact->cache, found);
   keep_near(found, 0.0f);
   return found.count > 0;
 }
@@ -332,15 +345,15 @@ BodyLook make_body_look(const ColliderBody& body, float seconds) {
   return look;
 }
 
-bool look_anew(ContactStore& store, Contact& contact, const ContactPair& pair, const View& view) {
-  const bool loaded = carried_load(manifolds_of(store, contact));
-  if (contact.manifold_room == 1) {
-    look_in_room<1>(store, contact, pair, view);
+bool look_anew(const ContactPair& pair, const View& view) {
+  const bool loaded = carried_load(manifolds_of(pair));
+  if (pair.contact->manifold_room == 1) {
+    look_in_room<1>(pair, view);
   } else {
-    look_in_room<kMaxMeshManifolds>(store, contact, pair, view);
+    look_in_room<kMaxMeshManifolds>(pair, view);
   }
-  if (contact.manifold_count == 0) return false;
-  return loaded || is_near(manifolds_of(store, contact), kTouch * view.size);
+  if (pair.contact->manifold_count == 0) return false;
+  return loaded || is_near(manifolds_of(pair), kTouch * view.size);
 }
 
 }  // namespace gyre

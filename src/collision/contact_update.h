@@ -9,19 +9,13 @@
 
 namespace gyre {
 
-// The two sides of a contact.
-struct ContactPair {
-  const ColliderShape* shape_a;
-  const ColliderShape* shape_b;
-  const BodyLook* look_a;
-  const BodyLook* look_b;
-  Vec3 center_a, center_b;  // centres of mass, body frames
-};
+// The smaller of two sizes, of those that are sizes at all (see ColliderShape::size).
+float smaller_size(float a, float b);
 
 // Full look of a sensor's contact: whether the two shapes overlap. Keeps no manifold.
-bool look_at_sensor(Contact& contact, const ContactPair& pair);
+bool look_at_sensor(const ContactPair& pair);
 
 // Full look of any other contact; returns whether its shapes touch.
-bool look_anew(ContactStore& store, Contact& contact, const ContactPair& pair, const View& view);
+bool look_anew(const ContactPair& pair, const View& view);
 
 }  // namespace gyre

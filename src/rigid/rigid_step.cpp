@@ -211,7 +211,8 @@ bool may_move(const RigidWorld& w, std::uint32_t body) {
   return flags.type == BodyType::dynamic || motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{};
 }
 
-void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds) {
+void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, RecycleContacts recycle_contacts,
+                   float seconds) {
   const ArenaScope scope(arena);
   const std::size_t count = w.bodies.motion.size();
   const std::span<BodyLook> looks = arena.make<BodyLook>(count);
@@ -231,7 +232,7 @@ void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds
   for_blocks(tasks, int(count), 4 * kBodiesPerBlock, [&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) fill(std::uint32_t(i));
   });
-  const CollideInput input{w.shapes.colliders, looks, centers, w.shapes.proxies};
+  const CollideInput input{w.shapes.colliders, looks, centers, w.shapes.proxies, recycle_contacts};
   collide(w.contacts, input, tasks, w.touches);
   hide_seams(w.contacts, input, w.touches.beside_resting, arena, tasks, w.seams);
 }

@@ -30,7 +30,8 @@ std::size_t find_pairs(RigidWorld& w, TaskSystem& tasks);
 // Whether the body may be elsewhere when the step ends: contacts between bodies that may not are not looked at.
 bool may_move(const RigidWorld& w, std::uint32_t body);
 // Looks at every contact that could have changed: manifolds in, touch changes out.
-void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds);
+void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, RecycleContacts recycle_contacts,
+                   float seconds);
 // Events of touches; removes pairs that came apart; wakes what was touched.
 void link_islands(RigidWorld& w);
 // New places, poses, inertia and fat boxes of awake bodies; freezes bodies whose state is not finite. Returns how many

@@ -126,7 +126,7 @@ void look(WorldState& s, float seconds) {
   run_stage(s, StageName::refit, [&] { refit(w, *s.tasks, seconds); });
   count(s, CounterName::refitted_boxes, w.shapes.changed.size());
   run_stage(s, StageName::find_pairs, [&] { count(s, CounterName::new_pairs, find_pairs(w, *s.tasks)); });
-  run_stage(s, StageName::collide, [&] { collide_pairs(w, s.arena, *s.tasks, seconds); });
+  run_stage(s, StageName::collide, [&] { collide_pairs(w, s.arena, *s.tasks, s.recycle_contacts, seconds); });
   count_full_looks(s);
   run_stage(s, StageName::link_islands, [&] { link_islands(w); });
 }

@@ -50,6 +50,7 @@ struct WorldState {
   WorldDef def;
   std::unique_ptr<TaskSystem> tasks;
   const ContactKernels* kernels = nullptr;
+  RecycleContacts recycle_contacts = nullptr;
   Arena arena;
   SolveScratch solve;
   ContinuousScratch continuous;

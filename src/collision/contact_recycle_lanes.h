@@ -1,0 +1,551 @@
+// Contacts in lanes: how they stand, whether their anchors still hold, and their points moved. See contact_recycle.h. One
+// template for every width: lane i computes exactly what a width of 1 would.
+#pragma once
+
+#include "base/prefetch.h"
+#include "collision/contact_follow.h"
+#include "collision/contact_recycle.h"
+#include "collision/fat_box.h"
+#include "math/wide_double.h"
+#include "math/wide_vec.h"
+
+#include <cstddef>
+
+namespace gyre {
+inline namespace GYRE_TARGET_NAMESPACE {
+
+// How far points may go against each other, and how far the pair may tilt (rad), before it is looked at anew: where flat
+// features meet, or a core swept by a ball and a flat feature; and where something else is round. There the contact goes on
+// while the bodies' points do not, and what lags behind would brake what rolls.
+constexpr float kFlatSlide = 3.0e-3f, kFlatTilt = 3.0e-3f;
+constexpr float kCurvedSlide = 1.0e-4f, kCurvedTilt = 1.0e-4f;
+// Where a float's rounding of the distance between the bodies is more than this, a recycled separation would rattle.
+constexpr float kRattle = 1.0e-4f;
+
+// ------------------------------------------------------------------------------------------- between records and lanes
+
+// Where in a record a member lies, in floats.
+#define GYRE_FLOATS_BEFORE(Record, member) int(offsetof(Record, member) / sizeof(float))
+
+// Records are read and written four floats at a time; these are the fours of a manifold and of one of its points.
+constexpr int kPointFloats = int(sizeof(ContactPointState) / sizeof(float));
+constexpr int kManifoldFloats = int(sizeof(Manifold) / sizeof(float));
+constexpr int kPoints = GYRE_FLOATS_BEFORE(Manifold, points);
+constexpr int kAge = GYRE_FLOATS_BEFORE(Manifold, age);              // and friction_impulse
+constexpr int kTwist = GYRE_FLOATS_BEFORE(Manifold, twist_impulse);  // and rolling_impulse
+constexpr int kTotalFriction = GYRE_FLOATS_BEFORE(Manifold, total_friction);
+constexpr int kSliding = GYRE_FLOATS_BEFORE(Manifold, sliding);  // and seen_normal
+constexpr int kAnchors = GYRE_FLOATS_BEFORE(Manifold, anchors);
+static_assert(GYRE_FLOATS_BEFORE(Manifold, normal) == 0 && GYRE_FLOATS_BEFORE(Manifold, count) == 3);
+static_assert(GYRE_FLOATS_BEFORE(Manifold, friction_impulse) == kAge + 1);
+static_assert(GYRE_FLOATS_BEFORE(Manifold, rolling_impulse) == kTwist + 1);
+static_assert(GYRE_FLOATS_BEFORE(Manifold, seen_normal) == kSliding + 1);
+static_assert(GYRE_FLOATS_BEFORE(ContactPointState, separation) == 3);
+static_assert(GYRE_FLOATS_BEFORE(ContactPointState, from_b) == 4);
+static_assert(GYRE_FLOATS_BEFORE(ContactPointState, normal_impulse) == 8);
+static_assert(GYRE_FLOATS_BEFORE(ContactPointState, total_impulse) == 9);
+static_assert(GYRE_FLOATS_BEFORE(ContactPointState, approach_speed) == 11);
+static_assert(GYRE_FLOATS_BEFORE(PointAnchor, separation) == 3 && sizeof(PointAnchor) == 4 * sizeof(float));
+
+template <int W>
+using Records = const float* [W];
+template <int W>
+using Targets = float* [W];
+
+template <class Record>
+GYRE_INLINE const float* floats(const Record* record) {
+  return reinterpret_cast<const float*>(record);
+}
+template <class Record>
+GYRE_INLINE float* floats(Record* record) {
+  return reinterpret_cast<float*>(record);
+}
+
+// Floats `first` to `first + 3` of each record, and the way back of the first `Count` of them.
+template <int W>
+GYRE_INLINE void read_four(const Records<W>& record, int first, Wide<W> (&out)[4]) {
+  if constexpr (W == 1) {
+    for (int c = 0; c < 4; ++c) out[c].v = record[0][first + c];
+  } else {
+    Rows<W>::gather(record, first, out);
+  }
+}
+template <int Count, int W>
+GYRE_INLINE void write_four(const Targets<W>& record, int first, const Wide<W> (&in)[4]) {
+  if constexpr (W == 1) {
+    for (int c = 0; c < Count; ++c) record[0][first + c] = in[c].v;
+  } else {
+    Rows<W>::template scatter<Count>(record, first, in);
+  }
+}
+// One float of each record.
+template <int W>
+GYRE_INLINE Wide<W> read_one(const Records<W>& record, int at) {
+  Wide<W> lanes;
+  GYRE_UNROLL
+  for (int i = 0; i < W; ++i) lanes.set(i, record[i][at]);
+  return lanes;
+}
+
+template <int W>
+struct Placement {
+  Vec3W<W> position;
+  QuatW<W> orientation;
+};
+template <int W>
+GYRE_INLINE Placement<W> inverse(const Placement<W>& t) {
+  return {rotate_inverse(t.orientation, -t.position), conjugate(t.orientation)};
+}
+template <int W>
+GYRE_INLINE Placement<W> select(Mask<W> mask, const Placement<W>& a, const Placement<W>& b) {
+  return {select(mask, a.position, b.position), select(mask, a.orientation, b.orientation)};
+}
+
+// Places in the world, each coordinate in halves of the lanes.
+template <int W>
+struct Places {
+  static constexpr int kLast = kHalves<W> - 1;
+  using Half = WideDouble<kHalfLanes<W>>;
+  Half x[kHalves<W>], y[kHalves<W>], z[kHalves<W>];
+};
+template <int W>
+GYRE_INLINE void load_halves(const BodyLook* const (&looks)[W], double DVec3::*axis,
+                             typename Places<W>::Half (&out)[kHalves<W>]) {
+  if constexpr (W == 1) {
+    out[0].v = looks[0]->position.*axis;
+  } else {
+    GYRE_UNROLL
+    for (int i = 0; i < W; ++i) out[2 * i / W].v[i % (W / 2)] = looks[i]->position.*axis;
+  }
+}
+template <int W>
+GYRE_INLINE void shift_half(typename Places<W>::Half (&place)[kHalves<W>], Wide<W> by) {
+  place[0] += half_of<0>(by);
+  if constexpr (W > 1) place[1] += half_of<1>(by);
+}
+template <int W>
+GYRE_INLINE Places<W> operator+(Places<W> place, Vec3W<W> by) {
+  shift_half<W>(place.x, by.x);
+  shift_half<W>(place.y, by.y);
+  shift_half<W>(place.z, by.z);
+  return place;
+}
+template <int W>
+GYRE_INLINE Vec3W<W> difference(const Places<W>& to, const Places<W>& from) {
+  constexpr int kLast = Places<W>::kLast;
+  return {join_halves<W>(to.x[0] - from.x[0], to.x[kLast] - from.x[kLast]),
+          join_halves<W>(to.y[0] - from.y[0], to.y[kLast] - from.y[kLast]),
+          join_halves<W>(to.z[0] - from.z[0], to.z[kLast] - from.z[kLast])};
+}
+
+// One of the two bodies of each contact.
+template <int W>
+struct Side {
+  Places<W> origin;
+  QuatW<W> orientation;
+  Vec3W<W> way;
+  Wide<W> spin, reach, extent;
+};
+
+template <int W>
+GYRE_INLINE Side<W> load_side(const BodyLook* const (&looks)[W]) {
+  static_assert(GYRE_FLOATS_BEFORE(BodyLook, orientation) == 6 && GYRE_FLOATS_BEFORE(BodyLook, way) == 10);
+  static_assert(GYRE_FLOATS_BEFORE(BodyLook, spin) == 13 && GYRE_FLOATS_BEFORE(BodyLook, extent) == 15);
+  Records<W> record;
+  GYRE_UNROLL
+  for (int i = 0; i < W; ++i) record[i] = floats(looks[i]);
+  Wide<W> xy[4], zw[4], rest[4];
+  read_four<W>(record, 4, xy);
+  read_four<W>(record, 8, zw);
+  read_four<W>(record, 12, rest);
+  Side<W> side;
+  load_halves<W>(looks, &DVec3::x, side.origin.x);
+  load_halves<W>(looks, &DVec3::y, side.origin.y);
+  load_halves<W>(looks, &DVec3::z, side.origin.z);
+  side.orientation = {xy[2], xy[3], zw[0], zw[1]};
+  side.way = {zw[2], zw[3], rest[0]};
+  side.spin = rest[1];
+  side.reach = rest[2];
+  side.extent = rest[3];
+  return side;
+}
+
+// The contacts of a group; lanes without one repeat the last.
+template <int W>
+struct Group {
+  const ContactPair* pairs[W];
+  Side<W> a, b;
+  Wide<W> size, looked;
+  Placement<W> seen, now;    // B's body frame in A's: at the last full look, and now
+  Wide<W> way, speculative;  // as in View
+};
+
+template <int W>
+GYRE_INLINE void load_group(const ContactPair* pairs, int count, Group<W>& group) {
+  constexpr int kLooked = GYRE_FLOATS_BEFORE(Contact, looked);
+  static_assert(GYRE_FLOATS_BEFORE(Contact, size) == kLooked + 1);
+  static_assert(GYRE_FLOATS_BEFORE(Contact, seen_a_from_b) == kLooked + 2);
+  static_assert(offsetof(Transform, orientation) == sizeof(Vec3));
+  const BodyLook *looks_a[W], *looks_b[W];
+  Records<W> record;
+  GYRE_UNROLL
+  for (int i = 0; i < W; ++i) {
+    const ContactPair& pair = pairs[i < count ? i : count - 1];
+    group.pairs[i] = &pair;
+    looks_a[i] = pair.look_a;
+    looks_b[i] = pair.look_b;
+    record[i] = floats(pair.contact);
+  }
+  group.a = load_side<W>(looks_a);
+  group.b = load_side<W>(looks_b);
+  Wide<W> first[4], second[4];
+  read_four<W>(record, kLooked, first);
+  read_four<W>(record, kLooked + 4, second);
+  group.looked = first[0];
+  group.size = first[1];
+  group.seen = {{first[2], first[3], second[0]},
+                {second[1], second[2], second[3], read_one<W>(record, kLooked + 8)}};
+}
+
+// ------------------------------------------------------------------------------------------------------------- the view
+
+template <int W>
+GYRE_INLINE void find_view(Group<W>& group) {
+  const Side<W>& a = group.a;
+  const Side<W>& b = group.b;
+  group.now = {rotate_inverse(a.orientation, difference(b.origin, a.origin)),
+               conjugate(a.orientation) * b.orientation};
+  // A body that is long beyond the other one turns no faster there.
+  const Wide<W> apart = length(group.now.position) + (a.extent - a.reach) + (b.extent - b.reach);
+  const Mask<W> differ = a.reach != b.reach;
+  const Wide<W> lever_a = select(differ, min(a.reach, apart + b.reach), a.reach);
+  const Wide<W> lever_b = select(differ, min(b.reach, apart + a.reach), b.reach);
+  const Wide<W> zero(0.0f);
+  group.way = length(b.way - a.way) + max(a.spin, zero) * lever_a + max(b.spin, zero) * lever_b;
+  group.speculative =
+      Wide<W>(kSpeculativeShare) * group.size + min(group.way, Wide<W>(kLargestApproach) * group.size);
+}
+
+template <int W>
+GYRE_INLINE void write_views(const Group<W>& group, int count, View* views) {
+  static_assert(GYRE_FLOATS_BEFORE(View, size) == 7 && sizeof(View) == 10 * sizeof(float));
+  Targets<W> to;
+  GYRE_UNROLL
+  for (int i = 0; i < W; ++i) to[i] = floats(views + (i < count ? i : count - 1));
+  const Vec3W<W> p = group.now.position;
+  const QuatW<W> q = group.now.orientation;
+  write_four<4, W>(to, 0, {p.x, p.y, p.z, q.x});
+  write_four<4, W>(to, 4, {q.y, q.z, q.w, group.size});
+  write_four<2, W>(to, 8, {group.way, group.speculative});
+}
+
+// ---------------------------------------------------------------------------------------------------------- the motion
+
+// The motion of B in A's body frame from `seen` to `now`, small or not.
+template <int W>
+struct Motion {
+  Vec3W<W> shift;   // of B's origin
+  Vec3W<W> origin;  // B's origin as seen
+  Vec3W<W> v;       // vector part of the turn's quaternion: half the rotation vector while it is small
+  Wide<W> w;
+
+  GYRE_INLINE Motion(const Placement<W>& seen, const Placement<W>& now) {
+    const QuatW<W> turn = now.orientation * conjugate(seen.orientation);
+    shift = now.position - seen.position;
+    origin = seen.position;
+    v = {turn.x, turn.y, turn.z};
+    w = turn.w;
+  }
+  // Of the angle, while it is small.
+  GYRE_INLINE Wide<W> twice_sine() const { return 2.0f * length(v); }
+
+  // How far a point of B goes that was at `p`; worked out as a difference, so that small motions keep their digits.
+  GYRE_INLINE Vec3W<W> of(Vec3W<W> p) const {
+    const Vec3W<W> t = 2.0f * cross(v, p - origin);
+    return shift + w * t + cross(v, t);
+  }
+
+  // A bound on how far surfaces of the one come towards the other: the way of one body's origin, and what its farthest
+  // point adds when it turns. Of the smaller body: its motion seen from the other is the smaller one. (A rigid motion
+  // moves A's origin as far as its inverse does.)
+  GYRE_INLINE Wide<W> bound(const Side<W>& a, const Side<W>& b) const {
+    const Vec3W<W> of_a = of({0.0f, 0.0f, 0.0f});
+    return select(b.extent <= a.extent, length(shift) + twice_sine() * b.extent,
+                  length(of_a) + twice_sine() * a.extent);
+  }
+};
+
+// The same as a matrix, for many points.
+template <int W>
+class PointMotion {
+ public:
+  GYRE_INLINE explicit PointMotion(const Motion<W>& motion) : shift_(motion.shift), origin_(motion.origin) {
+    less_one_ = {column(motion, {1.0f, 0.0f, 0.0f}), column(motion, {0.0f, 1.0f, 0.0f}),
+                 column(motion, {0.0f, 0.0f, 1.0f})};
+  }
+  GYRE_INLINE Vec3W<W> of(Vec3W<W> p) const { return shift_ + less_one_ * (p - origin_); }
+
+ private:
+  // Of R - 1.
+  static GYRE_INLINE Vec3W<W> column(const Motion<W>& motion, Vec3W<W> axis) {
+    const Vec3W<W> t = 2.0f * cross(motion.v, axis);
+    return motion.w * t + cross(motion.v, t);
+  }
+
+  Vec3W<W> shift_, origin_;
+  Mat3W<W> less_one_;
+};
+
+// ---------------------------------------------------------------------------------------------------------- the anchors
+
+template <int W>
+GYRE_INLINE Roundness<W> load_roundness(const Records<W>& shape) {
+  static_assert(offsetof(ColliderShape, shape) == 0 && sizeof(ShapeKind) == 1);
+  static_assert(GYRE_FLOATS_BEFORE(Shape, kind) == 0 && GYRE_FLOATS_BEFORE(Shape, radius) == 1);
+  Wide<W> column[4];
+  read_four<W>(shape, 0, column);
+  // The kind is one byte.
+  return {bit_pattern(column[0]) & WideInt<W>(0xff), column[1]};
+}
+
+template <int W>
+GYRE_INLINE Follow<W> find_follow(const Group<W>& group) {
+  Records<W> a, b;
+  GYRE_UNROLL
+  for (int i = 0; i < W; ++i) {
+    a[i] = floats(group.pairs[i]->shape_a);
+    b[i] = floats(group.pairs[i]->shape_b);
+  }
+  return Follow<W>(load_roundness<W>(a), load_roundness<W>(b));
+}
+
+// One point of each manifold as the last full look found it, and how far the moving body's point there has gone.
+template <int W>
+struct Anchor {
+  Vec3W<W> position;
+  Wide<W> separation;
+  Vec3W<W> way;
+};
+// One manifold of each contact; lanes without one have no points.
+template <int W>
+struct ManifoldLanes {
+  Records<W> record;
+  std::int32_t counts[W];
+  std::int32_t least, most;  // of the counts
+  WideInt<W> count;
+  Wide<W> side;  // of the moving body along the normal: 1 for B, -1 for A
+  Vec3W<W> seen_normal;
+  Anchor<W> anchors[kMaxManifoldPoints];
+};
+
+inline constexpr Manifold kNoManifold;
+
+// Manifold `m` of each contact.
+template <int W>
+GYRE_INLINE void load_manifold(const Group<W>& group, int m, ManifoldLanes<W>& manifold) {
+  manifold.least = kMaxManifoldPoints;
+  manifold.most = 0;
+  GYRE_UNROLL
+  for (int i = 0; i < W; ++i) {
+    const ContactPair& pair = *group.pairs[i];
+    const Manifold* const mine = m < pair.contact->manifold_count ? pair.manifolds + m : &kNoManifold;
+    manifold.record[i] = floats(mine);
+    manifold.counts[i] = mine->count;
+    manifold.least = mine->count < manifold.least ? mine->count : manifold.least;
+    manifold.most = mine->count > manifold.most ? mine->count : manifold.most;
+  }
+  Wide<W> column[4];
+  read_four<W>(manifold.record, 0, column);
+  manifold.count = bit_pattern(column[3]);
+  read_four<W>(manifold.record, kSliding, column);
+  manifold.seen_normal = {column[1], column[2], column[3]};
+}
+
+// Returns in which lanes the anchors of this manifold are still good.
+template <int W>
+GYRE_INLINE Mask<W> find_ways(const Group<W>& group, const Follow<W>& follow, const PointMotion<W>& motion,
+                              Wide<W> twice_sine, ManifoldLanes<W>& manifold) {
+  const Mask<W> curved = and_not(manifold.count < WideInt<W>(3), follow.flat | follow.round);
+  const Mask<W> tilts = twice_sine > select(curved, Wide<W>(kCurvedTilt), Wide<W>(kFlatTilt));
+  Mask<W> fails = tilts & (manifold.count > WideInt<W>(0));
+  const Wide<W> slide = select(curved, Wide<W>(kCurvedSlide), Wide<W>(kFlatSlide)) * group.size;
+  manifold.side = select(follow.frame_is_b, Wide<W>(-1.0f), Wide<W>(1.0f));
+  for (int i = 0; i < manifold.most; ++i) {
+    Wide<W> column[4];
+    read_four<W>(manifold.record, kAnchors + 4 * i, column);
+    Anchor<W>& anchor = manifold.anchors[i];
+    anchor.position = {column[0], column[1], column[2]};
+    anchor.separation = column[3];
+    const Wide<W> lift = manifold.side * (0.5f * anchor.separation + follow.radius);
+    anchor.way = motion.of(anchor.position + lift * manifold.seen_normal);
+    const Mask<W> slides = length_squared(anchor.way) > square(slide);
+    fails = fails | (slides & (WideInt<W>(i) < manifold.count));
+  }
+  return ~fails;
+}
+
+// ----------------------------------------------------------------------------------------------------------- the points
+
+// From the frame of the anchors into the world's axes.
+template <int W>
+struct WorldFrame {
+  Mat3W<W> turn;
+  Vec3W<W> center;  // of mass, of the body whose frame it is
+  Vec3W<W> other;   // the other body's centre of mass seen from that one's, world axes
+};
+
+template <int W>
+GYRE_INLINE WorldFrame<W> find_frame(const Group<W>& group, const Follow<W>& follow) {
+  Records<W> a, b;
+  GYRE_UNROLL
+  for (int i = 0; i < W; ++i) {
+    a[i] = floats(group.pairs[i]->center_a);
+    b[i] = floats(group.pairs[i]->center_b);
+  }
+  const Vec3W<W> center_a{read_one<W>(a, 0), read_one<W>(a, 1), read_one<W>(a, 2)};
+  const Vec3W<W> center_b{read_one<W>(b, 0), read_one<W>(b, 1), read_one<W>(b, 2)};
+  const QuatW<W> turn_a = group.a.orientation, turn_b = group.b.orientation;
+  const Vec3W<W> b_from_a =
+      difference(group.b.origin + rotate(turn_b, center_b), group.a.origin + rotate(turn_a, center_a));
+  return {to_matrix(select(follow.frame_is_b, turn_b, turn_a)), select(follow.frame_is_b, center_b, center_a),
+          select(follow.frame_is_b, -b_from_a, b_from_a)};
+}
+
+// Writes point `i` of each manifold. Returns in which lanes it carried load in the last step, or its surfaces touch.
+template <int W>
+GYRE_INLINE Mask<W> move_point(const Group<W>& group, const Follow<W>& follow, const WorldFrame<W>& frame,
+                               const ManifoldLanes<W>& manifold, int i, const Targets<W>& to) {
+  const Anchor<W>& anchor = manifold.anchors[i];
+  const Wide<W> share = select(follow.round, Wide<W>(1.0f), Wide<W>(0.5f));
+  const Vec3W<W> own = frame.turn * (anchor.position + share * anchor.way - frame.center);
+  const Vec3W<W> other = own - frame.other;
+  const Vec3W<W> from_a = select(follow.frame_is_b, other, own);
+  const Vec3W<W> from_b = select(follow.frame_is_b, own, other);
+  const Wide<W> separation = anchor.separation + manifold.side * dot(anchor.way, manifold.seen_normal);
+  const int first = kPoints + kPointFloats * i;
+  Wide<W> impulses[4];
+  read_four<W>(manifold.record, first + 8, impulses);
+  const Mask<W> loaded = impulses[1] > Wide<W>(0.0f);
+  const Wide<W> zero(0.0f);
+  write_four<4, W>(to, first, {from_a.x, from_a.y, from_a.z, separation});
+  write_four<3, W>(to, first + 4, {from_b.x, from_b.y, from_b.z});
+  // What is summed over a step, and the approach, begin anew.
+  write_four<4, W>(to, first + 8, {impulses[0], zero, impulses[2], zero});
+  return (loaded | (separation <= Wide<W>(kTouch) * group.size)) & (WideInt<W>(i) < manifold.count);
+}
+
+// What a manifold keeps from step to step, turned into the new tangent plane.
+template <int W>
+GYRE_INLINE void carry_friction(const ManifoldLanes<W>& manifold, int first, Vec3W<W> normal,
+                                const Targets<W>& to) {
+  Wide<W> column[4];
+  read_four<W>(manifold.record, first, column);
+  const Vec3W<W> before{column[1], column[2], column[3]};
+  const Vec3W<W> after = before - dot(before, normal) * normal;
+  write_four<4, W>(to, first, {column[0], after.x, after.y, after.z});
+}
+
+// Writes the manifolds of those lanes whose bits are set. Returns in which lanes the shapes touch.
+template <int W>
+GYRE_INLINE Mask<W> move_manifold(const Group<W>& group, const Follow<W>& follow, const WorldFrame<W>& frame,
+                                  const ManifoldLanes<W>& manifold, unsigned lanes) {
+  alignas(16) float nowhere[kManifoldFloats];
+  Targets<W> to;
+  GYRE_UNROLL
+  for (int i = 0; i < W; ++i)
+    to[i] = (lanes >> i & 1u) != 0 ? const_cast<float*>(manifold.record[i]) : nowhere;
+  const Vec3W<W> normal = frame.turn * manifold.seen_normal;
+  write_four<3, W>(to, 0, {normal.x, normal.y, normal.z});
+  carry_friction<W>(manifold, kAge, normal, to);
+  carry_friction<W>(manifold, kTwist, normal, to);
+  GYRE_UNROLL
+  for (int i = 0; i < W; ++i) {
+    float* const total_friction = to[i] + kTotalFriction;
+    total_friction[0] = total_friction[1] = total_friction[2] = 0.0f;
+  }
+  Mask<W> touching = Mask<W>::splat(false);
+  for (int i = 0; i < manifold.most; ++i) {
+    if (i >= manifold.least) {
+      GYRE_UNROLL
+      for (int lane = 0; lane < W; ++lane) to[lane] = i < manifold.counts[lane] ? to[lane] : nowhere;
+    }
+    touching = touching | move_point<W>(group, follow, frame, manifold, i, to);
+  }
+  return touching;
+}
+
+// Of the contacts in those lanes of a group whose bits are set in `near`, those whose anchors hold get their manifolds
+// written. Returns their bits, and sets the bits of those that touch.
+template <int W>
+unsigned move_contacts(const Group<W>& group, const Motion<W>& motion, unsigned near, unsigned& touching) {
+  const Follow<W> follow = find_follow<W>(group);
+  Motion<W> seen_from_frame = motion;
+  if (any(follow.frame_is_b)) {
+    const Placement<W> seen = select(follow.frame_is_b, inverse(group.seen), group.seen);
+    seen_from_frame = Motion<W>(seen, select(follow.frame_is_b, inverse(group.now), group.now));
+  }
+  const PointMotion<W> points(seen_from_frame);
+  const Wide<W> twice_sine = motion.twice_sine();
+  unsigned lanes_with[kMaxMeshManifolds + 1] = {};  // bits: contacts with a manifold m
+  for (int i = 0; i < W; ++i) {
+    for (int m = 0; m < group.pairs[i]->contact->manifold_count; ++m) lanes_with[m] |= 1u << i;
+  }
+  ManifoldLanes<W> manifolds[kMaxMeshManifolds];
+  unsigned held = near;
+  for (int m = 0; lanes_with[m] != 0; ++m) {
+    load_manifold<W>(group, m, manifolds[m]);
+    held &= to_bits(find_ways<W>(group, follow, points, twice_sine, manifolds[m]));
+    if (held == 0) return 0;
+  }
+  const WorldFrame<W> frame = find_frame<W>(group, follow);
+  for (int m = 0; lanes_with[m] != 0; ++m) {
+    const Mask<W> touch = move_manifold<W>(group, follow, frame, manifolds[m], held & lanes_with[m]);
+    touching |= held & to_bits(touch);
+  }
+  return held;
+}
+
+template <int W>
+unsigned recycle_group(const Group<W>& group, unsigned lanes, unsigned& touching) {
+  const Motion<W> motion(group.seen, group.now);
+  const Wide<W> reach = group.speculative + motion.bound(group.a, group.b);
+  const unsigned near = lanes & to_bits((group.looked >= Wide<W>(0.0f)) & (reach <= group.looked));
+  unsigned empty = 0;
+  for (int i = 0; i < W; ++i) empty |= unsigned(group.pairs[i]->contact->manifold_count == 0) << i;
+  const Wide<W> rounding = largest(absolute(group.now.position)) * Wide<W>(1.2e-7f);
+  const unsigned rattles = to_bits(rounding > Wide<W>(kRattle) * group.size);
+  const unsigned to_move = near & ~rattles & ~empty;
+  return (near & empty) | (to_move != 0 ? move_contacts<W>(group, motion, to_move, touching) : 0u);
+}
+
+// Manifolds lie anywhere in memory: how many contacts before its turn one is asked for.
+constexpr int kAhead = 8;
+
+GYRE_INLINE void fetch_manifolds(const ContactPair* pairs, int begin, int end) {
+  for (int i = begin; i < end; ++i) {
+    if (pairs[i].contact->manifold_count != 0) prefetch(pairs[i].manifolds, sizeof(Manifold));
+  }
+}
+
+// See RecycleContacts.
+template <int W>
+void recycle_contacts(const ContactPair* pairs, int count, bool may_recycle, Recycled& recycled) {
+  fetch_manifolds(pairs, 0, count < kAhead ? count : kAhead);
+  for (int first = 0; first < count; first += W) {
+    const int ahead = first + kAhead, left = count - first;
+    fetch_manifolds(pairs, ahead, ahead + W < count ? ahead + W : count);
+    const int used = left < W ? left : W;
+    const unsigned lanes = (1u << used) - 1u;
+    Group<W> group;
+    load_group<W>(pairs + first, used, group);
+    find_view<W>(group);
+    unsigned touching = 0;
+    const unsigned done = may_recycle ? recycle_group<W>(group, lanes, touching) : 0u;
+    recycled.contacts |= std::uint64_t(done) << first;
+    recycled.touching |= std::uint64_t(touching) << first;
+    if (done != lanes) write_views<W>(group, used, recycled.views + first);
+  }
+}
+
+}  // namespace GYRE_TARGET_NAMESPACE
+}  // namespace gyre
