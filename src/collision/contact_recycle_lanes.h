@@ -4,12 +4,10 @@
 
 #include "base/prefetch.h"
 #include "collision/contact_follow.h"
+#include "collision/contact_fours.h"
 #include "collision/contact_recycle.h"
 #include "collision/fat_box.h"
 #include "math/wide_double.h"
-#include "math/wide_vec.h"
-
-#include <cstddef>
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
@@ -23,69 +21,6 @@ constexpr float kCurvedSlide = 1.0e-4f, kCurvedTilt = 1.0e-4f;
 constexpr float kRattle = 1.0e-4f;
 
 // ------------------------------------------------------------------------------------------- between records and lanes
-
-// Where in a record a member lies, in floats.
-#define GYRE_FLOATS_BEFORE(Record, member) int(offsetof(Record, member) / sizeof(float))
-
-// Records are read and written four floats at a time; these are the fours of a manifold and of one of its points.
-constexpr int kPointFloats = int(sizeof(ContactPointState) / sizeof(float));
-constexpr int kManifoldFloats = int(sizeof(Manifold) / sizeof(float));
-constexpr int kPoints = GYRE_FLOATS_BEFORE(Manifold, points);
-constexpr int kAge = GYRE_FLOATS_BEFORE(Manifold, age);              // and friction_impulse
-constexpr int kTwist = GYRE_FLOATS_BEFORE(Manifold, twist_impulse);  // and rolling_impulse
-constexpr int kTotalFriction = GYRE_FLOATS_BEFORE(Manifold, total_friction);
-constexpr int kSliding = GYRE_FLOATS_BEFORE(Manifold, sliding);  // and seen_normal
-constexpr int kAnchors = GYRE_FLOATS_BEFORE(Manifold, anchors);
-static_assert(GYRE_FLOATS_BEFORE(Manifold, normal) == 0 && GYRE_FLOATS_BEFORE(Manifold, count) == 3);
-static_assert(GYRE_FLOATS_BEFORE(Manifold, friction_impulse) == kAge + 1);
-static_assert(GYRE_FLOATS_BEFORE(Manifold, rolling_impulse) == kTwist + 1);
-static_assert(GYRE_FLOATS_BEFORE(Manifold, seen_normal) == kSliding + 1);
-static_assert(GYRE_FLOATS_BEFORE(ContactPointState, separation) == 3);
-static_assert(GYRE_FLOATS_BEFORE(ContactPointState, from_b) == 4);
-static_assert(GYRE_FLOATS_BEFORE(ContactPointState, normal_impulse) == 8);
-static_assert(GYRE_FLOATS_BEFORE(ContactPointState, total_impulse) == 9);
-static_assert(GYRE_FLOATS_BEFORE(ContactPointState, approach_speed) == 11);
-static_assert(GYRE_FLOATS_BEFORE(PointAnchor, separation) == 3 && sizeof(PointAnchor) == 4 * sizeof(float));
-
-template <int W>
-using Records = const float* [W];
-template <int W>
-using Targets = float* [W];
-
-template <class Record>
-GYRE_INLINE const float* floats(const Record* record) {
-  return reinterpret_cast<const float*>(record);
-}
-template <class Record>
-GYRE_INLINE float* floats(Record* record) {
-  return reinterpret_cast<float*>(record);
-}
-
-// Floats `first` to `first + 3` of each record, and the way back of the first `Count` of them.
-template <int W>
-GYRE_INLINE void read_four(const Records<W>& record, int first, Wide<W> (&out)[4]) {
-  if constexpr (W == 1) {
-    for (int c = 0; c < 4; ++c) out[c].v = record[0][first + c];
-  } else {
-    Rows<W>::gather(record, first, out);
-  }
-}
-template <int Count, int W>
-GYRE_INLINE void write_four(const Targets<W>& record, int first, const Wide<W> (&in)[4]) {
-  if constexpr (W == 1) {
-    for (int c = 0; c < Count; ++c) record[0][first + c] = in[c].v;
-  } else {
-    Rows<W>::template scatter<Count>(record, first, in);
-  }
-}
-// One float of each record.
-template <int W>
-GYRE_INLINE Wide<W> read_one(const Records<W>& record, int at) {
-  Wide<W> lanes;
-  GYRE_UNROLL
-  for (int i = 0; i < W; ++i) lanes.set(i, record[i][at]);
-  return lanes;
-}
 
 template <int W>
 struct Placement {
@@ -174,6 +109,7 @@ GYRE_INLINE Side<W> load_side(const BodyLook* const (&looks)[W]) {
 template <int W>
 struct Group {
   const ContactPair* pairs[W];
+  std::int32_t counts[W];  // of manifolds
   Side<W> a, b;
   Wide<W> size, looked;
   Placement<W> seen, now;    // B's body frame in A's: at the last full look, and now
@@ -195,6 +131,7 @@ GYRE_INLINE void load_group(const ContactPair* pairs, int count, Group<W>& group
     looks_a[i] = pair.look_a;
     looks_b[i] = pair.look_b;
     record[i] = floats(pair.contact);
+    group.counts[i] = pair.contact->manifold_count;
   }
   group.a = load_side<W>(looks_a);
   group.b = load_side<W>(looks_b);
@@ -326,7 +263,7 @@ struct Anchor {
   Wide<W> separation;
   Vec3W<W> way;
 };
-// One manifold of each contact; lanes without one have no points.
+// One manifold of each contact; lanes without one have an empty one.
 template <int W>
 struct ManifoldLanes {
   Records<W> record;
@@ -338,17 +275,15 @@ struct ManifoldLanes {
   Anchor<W> anchors[kMaxManifoldPoints];
 };
 
-inline constexpr Manifold kNoManifold;
-
-// Manifold `m` of each contact.
+// Manifold `m` of each contact; `none` where there are not so many.
 template <int W>
-GYRE_INLINE void load_manifold(const Group<W>& group, int m, ManifoldLanes<W>& manifold) {
+GYRE_INLINE void load_manifold(const Group<W>& group, int m, Manifold& none, ManifoldLanes<W>& manifold) {
   manifold.least = kMaxManifoldPoints;
   manifold.most = 0;
   GYRE_UNROLL
   for (int i = 0; i < W; ++i) {
     const ContactPair& pair = *group.pairs[i];
-    const Manifold* const mine = m < pair.contact->manifold_count ? pair.manifolds + m : &kNoManifold;
+    Manifold* const mine = m < group.counts[i] ? pair.manifolds + m : &none;
     manifold.record[i] = floats(mine);
     manifold.counts[i] = mine->count;
     manifold.least = mine->count < manifold.least ? mine->count : manifold.least;
@@ -477,45 +412,45 @@ GYRE_INLINE Mask<W> move_manifold(const Group<W>& group, const Follow<W>& follow
 // Of the contacts in those lanes of a group whose bits are set in `near`, those whose anchors hold get their manifolds
 // written. Returns their bits, and sets the bits of those that touch.
 template <int W>
-unsigned move_contacts(const Group<W>& group, const Motion<W>& motion, unsigned near, unsigned& touching) {
+unsigned move_contacts(const Group<W>& group, const Motion<W>& motion, unsigned near, Manifold& none,
+                       unsigned& touching) {
   const Follow<W> follow = find_follow<W>(group);
-  Motion<W> seen_from_frame = motion;
+  Placement<W> seen = group.seen, now = group.now;
   if (any(follow.frame_is_b)) {
-    const Placement<W> seen = select(follow.frame_is_b, inverse(group.seen), group.seen);
-    seen_from_frame = Motion<W>(seen, select(follow.frame_is_b, inverse(group.now), group.now));
+    seen = select(follow.frame_is_b, inverse(seen), seen);
+    now = select(follow.frame_is_b, inverse(now), now);
   }
-  const PointMotion<W> points(seen_from_frame);
-  const Wide<W> twice_sine = motion.twice_sine();
-  unsigned lanes_with[kMaxMeshManifolds + 1] = {};  // bits: contacts with a manifold m
-  for (int i = 0; i < W; ++i) {
-    for (int m = 0; m < group.pairs[i]->contact->manifold_count; ++m) lanes_with[m] |= 1u << i;
-  }
+  const PointMotion<W> points(Motion<W>(seen, now));
+  int most = 0;
+  for (int i = 0; i < W; ++i) most = group.counts[i] > most ? group.counts[i] : most;
   ManifoldLanes<W> manifolds[kMaxMeshManifolds];
   unsigned held = near;
-  for (int m = 0; lanes_with[m] != 0; ++m) {
-    load_manifold<W>(group, m, manifolds[m]);
-    held &= to_bits(find_ways<W>(group, follow, points, twice_sine, manifolds[m]));
+  for (int m = 0; m < most; ++m) {
+    load_manifold<W>(group, m, none, manifolds[m]);
+    held &= to_bits(find_ways<W>(group, follow, points, motion.twice_sine(), manifolds[m]));
     if (held == 0) return 0;
   }
   const WorldFrame<W> frame = find_frame<W>(group, follow);
-  for (int m = 0; lanes_with[m] != 0; ++m) {
-    const Mask<W> touch = move_manifold<W>(group, follow, frame, manifolds[m], held & lanes_with[m]);
-    touching |= held & to_bits(touch);
+  for (int m = 0; m < most; ++m) {
+    touching |= held & to_bits(move_manifold<W>(group, follow, frame, manifolds[m], held));
   }
   return held;
 }
 
+// `none`: an empty manifold, which lanes without one use.
 template <int W>
-unsigned recycle_group(const Group<W>& group, unsigned lanes, unsigned& touching) {
+GYRE_INLINE unsigned recycle_group(const Group<W>& group, unsigned lanes, Manifold& none,
+                                   unsigned& touching) {
   const Motion<W> motion(group.seen, group.now);
   const Wide<W> reach = group.speculative + motion.bound(group.a, group.b);
   const unsigned near = lanes & to_bits((group.looked >= Wide<W>(0.0f)) & (reach <= group.looked));
   unsigned empty = 0;
-  for (int i = 0; i < W; ++i) empty |= unsigned(group.pairs[i]->contact->manifold_count == 0) << i;
+  GYRE_UNROLL
+  for (int i = 0; i < W; ++i) empty |= unsigned(group.counts[i] == 0) << i;
   const Wide<W> rounding = largest(absolute(group.now.position)) * Wide<W>(1.2e-7f);
   const unsigned rattles = to_bits(rounding > Wide<W>(kRattle) * group.size);
   const unsigned to_move = near & ~rattles & ~empty;
-  return (near & empty) | (to_move != 0 ? move_contacts<W>(group, motion, to_move, touching) : 0u);
+  return (near & empty) | (to_move != 0 ? move_contacts<W>(group, motion, to_move, none, touching) : 0u);
 }
 
 // Manifolds lie anywhere in memory: how many contacts before its turn one is asked for.
@@ -523,13 +458,17 @@ constexpr int kAhead = 8;
 
 GYRE_INLINE void fetch_manifolds(const ContactPair* pairs, int begin, int end) {
   for (int i = begin; i < end; ++i) {
-    if (pairs[i].contact->manifold_count != 0) prefetch(pairs[i].manifolds, sizeof(Manifold));
+    if (pairs[i].contact->manifold_count == 0) continue;
+    const char* const manifold = reinterpret_cast<const char*>(pairs[i].manifolds);
+    for (std::size_t line = 0; line < sizeof(Manifold); line += kCacheLine)
+      __builtin_prefetch(manifold + line);
   }
 }
 
 // See RecycleContacts.
 template <int W>
 void recycle_contacts(const ContactPair* pairs, int count, bool may_recycle, Recycled& recycled) {
+  Manifold none;
   fetch_manifolds(pairs, 0, count < kAhead ? count : kAhead);
   for (int first = 0; first < count; first += W) {
     const int ahead = first + kAhead, left = count - first;
@@ -540,7 +479,7 @@ void recycle_contacts(const ContactPair* pairs, int count, bool may_recycle, Rec
     load_group<W>(pairs + first, used, group);
     find_view<W>(group);
     unsigned touching = 0;
-    const unsigned done = may_recycle ? recycle_group<W>(group, lanes, touching) : 0u;
+    const unsigned done = may_recycle ? recycle_group<W>(group, lanes, none, touching) : 0u;
     recycled.contacts |= std::uint64_t(done) << first;
     recycled.touching |= std::uint64_t(touching) << first;
     if (done != lanes) write_views<W>(group, used, recycled.views + first);

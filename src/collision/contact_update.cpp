@@ -2,6 +2,7 @@
 #include "collision/contact_update.h"
 
 #include "collision/contact_follow.h"
+#include "collision/contact_fours.h"
 #include "collision/fat_box.h"
 #include "geometry/manifold_mesh.h"
 #include "geometry/surface_overlap.h"
@@ -74,13 +75,16 @@ float keep_near(Found<kRoom>& found, float reach) {
     int kept = 0;
     for (int i = 0; i < manifold.count; ++i) {
       if (manifold.points[i].separation <= reach) {
-        manifold.points[kept++] = manifold.points[i];
+        if (kept != i) manifold.points[kept] = manifold.points[i];
+        ++kept;
       } else {
         left_out = min(left_out, manifold.points[i].separation);
       }
     }
     manifold.count = kept;
-    if (kept > 0) found.manifolds[kept_manifolds++] = manifold;
+    if (kept == 0) continue;
+    if (kept_manifolds != m) found.manifolds[kept_manifolds] = manifold;
+    ++kept_manifolds;
   }
   found.count = kept_manifolds;
   return left_out;
@@ -187,30 +191,69 @@ void match_by_place(Former<kRoom>& former, Manifold& manifold, unsigned matched,
   }
 }
 
-// From the frame of shape A into world axes, and into the body frame for anchors. Impulses are zero.
-Manifold to_world(const LocalManifold& local, const Pose& frame, const ContactPair& pair) {
+// From the frame of the manifolds into world axes, and into the frame of the anchors.
+struct Placing {
+  Quat turn;  // of the manifolds' frame
+  // Its origin from either centre of mass. Each side by itself: one of the two may be far away (a plane's body), and floats
+  // with it.
+  Vec3 from_a, from_b;
+  bool anchors_in_b;  // B's body frame, else A's
+  Quat anchor_turn;
+  Vec3 anchor_center;
+};
+
+Placing find_placing(const ContactPair& pair, const Pose& frame) {
   const bool in_b = frame_is_b(pair.shape_a->shape, pair.shape_b->shape);
-  const Quat frame_turn = (in_b ? pair.look_b : pair.look_a)->orientation;
-  const Vec3 frame_center = in_b ? *pair.center_b : *pair.center_a;
-  // Each side by itself: one of the two may be far away (a plane's body), and floats with it.
-  const Vec3 frame_from_a = difference(frame.position, center_of_mass(*pair.look_a, *pair.center_a));
-  const Vec3 frame_from_b = difference(frame.position, center_of_mass(*pair.look_b, *pair.center_b));
-  Manifold out;
-  out.normal = rotate(frame.orientation, local.normal);
-  out.count = local.count;
-  out.triangle = local.triangle;
-  out.seen_normal = rotate_inverse(frame_turn, out.normal);
-  for (int i = 0; i < local.count; ++i) {
-    ContactPointState& point = out.points[i];
-    const Vec3 place = rotate(frame.orientation, local.points[i].position);
-    point.from_a = place + frame_from_a;
-    point.from_b = place + frame_from_b;
-    point.separation = local.points[i].separation;
-    point.feature = local.points[i].feature;
-    out.anchors[i].position = rotate_inverse(frame_turn, in_b ? point.from_b : point.from_a) + frame_center;
-    out.anchors[i].separation = point.separation;
+  return {frame.orientation,
+          difference(frame.position, center_of_mass(*pair.look_a, *pair.center_a)),
+          difference(frame.position, center_of_mass(*pair.look_b, *pair.center_b)),
+          in_b,
+          (in_b ? pair.look_b : pair.look_a)->orientation,
+          in_b ? *pair.center_b : *pair.center_a};
+}
+
+QuatW<4> splat(Quat q) { return {q.x, q.y, q.z, q.w}; }
+
+// The four points of a manifold side by side; those that are not in use become zero, as all impulses do.
+void write_points(const LocalManifold& local, const Placing& placing, Manifold& out) {
+  constexpr int W = kMaxManifoldPoints;
+  Records<W> from;
+  Targets<W> points, anchors;
+  WideInt<W> feature;
+  for (int i = 0; i < W; ++i) {
+    from[i] = floats(&local.points[i]);
+    feature.set(i, std::int32_t(local.points[i].feature));
+    points[i] = floats(&out.points[i]);
+    anchors[i] = floats(&out.anchors[i]);
   }
-  return out;
+  const Mask<W> used = Mask<W>::of_bits((1u << local.count) - 1u);
+  Wide<W> found[4];
+  read_four<W>(from, 0, found);
+  const Vec3W<W> place = rotate(splat(placing.turn), Vec3W<W>{found[0], found[1], found[2]});
+  const Vec3W<W> a = keep(used, place + splat<W>(placing.from_a));
+  const Vec3W<W> b = keep(used, place + splat<W>(placing.from_b));
+  const Vec3W<W> arm = rotate_inverse(splat(placing.anchor_turn), placing.anchors_in_b ? b : a);
+  const Vec3W<W> anchor = keep(used, arm + splat<W>(placing.anchor_center));
+  const Wide<W> separation = keep(used, found[3]), zero(0.0f);
+  write_four<4, W>(points, 0, {a.x, a.y, a.z, separation});
+  write_four<4, W>(points, 4, {b.x, b.y, b.z, from_bit_pattern(feature & to_int(used))});
+  write_four<4, W>(points, 8, {zero, zero, zero, zero});
+  write_four<4, W>(anchors, 0, {anchor.x, anchor.y, anchor.z, separation});
+}
+
+// All of a manifold, as if nothing had been there before.
+void write_manifold(const LocalManifold& local, const Placing& placing, Manifold& out) {
+  out.normal = rotate(placing.turn, local.normal);
+  out.count = local.count;
+  out.age = 0.0f;
+  out.friction_impulse = {};
+  out.twist_impulse = 0.0f;
+  out.rolling_impulse = {};
+  out.triangle = local.triangle;
+  out.total_friction = {};
+  out.sliding = 0;
+  out.seen_normal = rotate_inverse(placing.anchor_turn, out.normal);
+  write_points(local, placing, out);
 }
 
 // What rolls on a rim may go farther in a step than any point goes with its load, and the lowest point of a rim changes its name
@@ -239,9 +282,10 @@ void write_manifolds(const Found<kRoom>& found, const ContactPair& pair, float s
   Former<kRoom> former;
   former.count = pair.contact->manifold_count;
   for (int m = 0; m < former.count; ++m) former.manifolds[m] = out[m];
+  const Placing placing = find_placing(pair, found.frame);
   unsigned matched[kRoom] = {};
   for (int m = 0; m < found.count; ++m) {
-    out[m] = to_world(found.manifolds[m], found.frame, pair);
+    write_manifold(found.manifolds[m], placing, out[m]);
     const int old = find_former(former, out[m]);
     if (old < 0) continue;
     former.taken[old] = true;
