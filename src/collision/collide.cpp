@@ -29,7 +29,7 @@ void note_touch(Contact& contact, std::uint32_t slot, bool touches, TouchChanges
   contact.touching = touches ? 1 : 0;
 }
 
-// Which contacts are gone; of the others, which are not asleep. Sensors are looked at here.
+// Which contacts are gone; of the others, which are not asleep.
 void list_contacts(ContactStore& store, std::uint32_t begin, std::uint32_t end, const CollideInput& input,
                    TouchChanges& changes, LookList& list) {
   for (std::uint32_t slot = begin; slot < end; ++slot) {
@@ -54,11 +54,9 @@ void list_contacts(ContactStore& store, std::uint32_t begin, std::uint32_t end, 
                            &look_b,
                            &input.centers[contact.body_a],
                            &input.centers[contact.body_b]};
-    if (contact.sensor != 0) {
-      note_touch(contact, slot, look_at_sensor(pair), changes);
-      continue;
-    }
-    if (contact.looked < 0.0f) contact.size = smaller_size(pair.shape_a->size, pair.shape_b->size);
+    // A sensor's contact keeps nothing of its looks: each is the first.
+    if (contact.looked < 0.0f && contact.sensor == 0)
+      contact.size = smaller_size(pair.shape_a->size, pair.shape_b->size);
     list.pairs[list.count] = pair;
     list.slots[list.count++] = slot;
   }
@@ -74,8 +72,9 @@ void look_at_block(ContactStore& store, int begin, int end, const CollideInput& 
     const ContactPair& pair = list.pairs[i];
     Contact& contact = *pair.contact;
     contact.recycled = recycled.contacts >> i & 1u;
-    const bool touches =
-        contact.recycled != 0 ? (recycled.touching >> i & 1u) != 0 : look_anew(pair, recycled.views[i]);
+    const bool touches = contact.recycled != 0 ? (recycled.touching >> i & 1u) != 0
+                         : contact.sensor != 0 ? look_at_sensor(pair, recycled.views[i])
+                                               : look_anew(pair, recycled.views[i]);
     note_touch(contact, list.slots[i], touches, changes);
     if (contact.manifold_count != 0 &&
         input.proxies[contact.shape_a].pushes != input.proxies[contact.shape_b].pushes)

@@ -70,10 +70,15 @@ struct ContactPair;
 struct Recycled;
 using RecycleContacts = void (*)(const ContactPair* pairs, int count, bool may_recycle, Recycled& recycled);
 
+// A body's centre of mass in its frame. Four floats are read at a time.
+struct alignas(16) BodyCenter {
+  Vec3 position;
+};
+
 struct CollideInput {
   ColliderShapes shapes;
-  std::span<const BodyLook> looks;  // by body
-  std::span<const Vec3> centers;    // by body: centre of mass, body frame
+  std::span<const BodyLook> looks;      // by body
+  std::span<const BodyCenter> centers;  // by body
   std::span<const Proxy> proxies;
   RecycleContacts recycle_contacts;
   bool recycle = true;  // false: looks at every pair anew (tests compare with that)

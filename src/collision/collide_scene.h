@@ -73,10 +73,10 @@ class CollideScene {
 
   void look() {
     std::vector<BodyLook> looks;
-    std::vector<Vec3> centers;
+    std::vector<BodyCenter> centers;
     for (const ColliderBody& body : bodies) {
       looks.push_back(make_body_look(body, seconds));
-      centers.push_back(body.center);
+      centers.push_back({body.center});
     }
     collide(store, {shapes, looks, centers, proxies, select_recycling(width), recycle}, tasks_, changes);
   }

@@ -34,8 +34,8 @@ struct ContactPair {
   const ColliderShape* shape_b;
   const BodyLook* look_a;
   const BodyLook* look_b;
-  const Vec3* center_a;  // centres of mass, body frames
-  const Vec3* center_b;
+  const BodyCenter* center_a;
+  const BodyCenter* center_b;
 };
 
 // How a pair stands and moves, as far as every look needs it.
@@ -44,6 +44,13 @@ struct View {
   float size;
   float way;          // m, the most that surfaces can come towards each other in the step
   float speculative;  // m, how far contacts matter
+  // The frame in which manifolds are found, that of shape A; but a plane that meets a convex shape is taken to lie with its
+  // frame beside that one.
+  Transform shapes_a_from_b;  // of the shapes' frames
+  Quat frame_turn;            // world_from_frame
+  // Its origin from either centre of mass, world axes. Each side by itself: one of the two may be far away (a plane's body),
+  // and floats with it.
+  Vec3 frame_from_a, frame_from_b;
 };
 
 struct Recycled {

@@ -1,13 +1,10 @@
-// Contacts in lanes: how they stand, whether their anchors still hold, and their points moved. See contact_recycle.h. One
-// template for every width: lane i computes exactly what a width of 1 would.
+// Recycling in lanes: whether contacts' anchors still hold, and their points moved. See contact_recycle.h. One template for
+// every width: lane i computes exactly what a width of 1 would.
 #pragma once
 
 #include "base/prefetch.h"
 #include "collision/contact_follow.h"
-#include "collision/contact_fours.h"
-#include "collision/contact_recycle.h"
-#include "collision/fat_box.h"
-#include "math/wide_double.h"
+#include "collision/contact_lanes.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
@@ -19,162 +16,6 @@ constexpr float kFlatSlide = 3.0e-3f, kFlatTilt = 3.0e-3f;
 constexpr float kCurvedSlide = 1.0e-4f, kCurvedTilt = 1.0e-4f;
 // Where a float's rounding of the distance between the bodies is more than this, a recycled separation would rattle.
 constexpr float kRattle = 1.0e-4f;
-
-// ------------------------------------------------------------------------------------------- between records and lanes
-
-template <int W>
-struct Placement {
-  Vec3W<W> position;
-  QuatW<W> orientation;
-};
-template <int W>
-GYRE_INLINE Placement<W> inverse(const Placement<W>& t) {
-  return {rotate_inverse(t.orientation, -t.position), conjugate(t.orientation)};
-}
-template <int W>
-GYRE_INLINE Placement<W> select(Mask<W> mask, const Placement<W>& a, const Placement<W>& b) {
-  return {select(mask, a.position, b.position), select(mask, a.orientation, b.orientation)};
-}
-
-// Places in the world, each coordinate in halves of the lanes.
-template <int W>
-struct Places {
-  static constexpr int kLast = kHalves<W> - 1;
-  using Half = WideDouble<kHalfLanes<W>>;
-  Half x[kHalves<W>], y[kHalves<W>], z[kHalves<W>];
-};
-template <int W>
-GYRE_INLINE void load_halves(const BodyLook* const (&looks)[W], double DVec3::*axis,
-                             typename Places<W>::Half (&out)[kHalves<W>]) {
-  if constexpr (W == 1) {
-    out[0].v = looks[0]->position.*axis;
-  } else {
-    GYRE_UNROLL
-    for (int i = 0; i < W; ++i) out[2 * i / W].v[i % (W / 2)] = looks[i]->position.*axis;
-  }
-}
-template <int W>
-GYRE_INLINE void shift_half(typename Places<W>::Half (&place)[kHalves<W>], Wide<W> by) {
-  place[0] += half_of<0>(by);
-  if constexpr (W > 1) place[1] += half_of<1>(by);
-}
-template <int W>
-GYRE_INLINE Places<W> operator+(Places<W> place, Vec3W<W> by) {
-  shift_half<W>(place.x, by.x);
-  shift_half<W>(place.y, by.y);
-  shift_half<W>(place.z, by.z);
-  return place;
-}
-template <int W>
-GYRE_INLINE Vec3W<W> difference(const Places<W>& to, const Places<W>& from) {
-  constexpr int kLast = Places<W>::kLast;
-  return {join_halves<W>(to.x[0] - from.x[0], to.x[kLast] - from.x[kLast]),
-          join_halves<W>(to.y[0] - from.y[0], to.y[kLast] - from.y[kLast]),
-          join_halves<W>(to.z[0] - from.z[0], to.z[kLast] - from.z[kLast])};
-}
-
-// One of the two bodies of each contact.
-template <int W>
-struct Side {
-  Places<W> origin;
-  QuatW<W> orientation;
-  Vec3W<W> way;
-  Wide<W> spin, reach, extent;
-};
-
-template <int W>
-GYRE_INLINE Side<W> load_side(const BodyLook* const (&looks)[W]) {
-  static_assert(GYRE_FLOATS_BEFORE(BodyLook, orientation) == 6 && GYRE_FLOATS_BEFORE(BodyLook, way) == 10);
-  static_assert(GYRE_FLOATS_BEFORE(BodyLook, spin) == 13 && GYRE_FLOATS_BEFORE(BodyLook, extent) == 15);
-  Records<W> record;
-  GYRE_UNROLL
-  for (int i = 0; i < W; ++i) record[i] = floats(looks[i]);
-  Wide<W> xy[4], zw[4], rest[4];
-  read_four<W>(record, 4, xy);
-  read_four<W>(record, 8, zw);
-  read_four<W>(record, 12, rest);
-  Side<W> side;
-  load_halves<W>(looks, &DVec3::x, side.origin.x);
-  load_halves<W>(looks, &DVec3::y, side.origin.y);
-  load_halves<W>(looks, &DVec3::z, side.origin.z);
-  side.orientation = {xy[2], xy[3], zw[0], zw[1]};
-  side.way = {zw[2], zw[3], rest[0]};
-  side.spin = rest[1];
-  side.reach = rest[2];
-  side.extent = rest[3];
-  return side;
-}
-
-// The contacts of a group; lanes without one repeat the last.
-template <int W>
-struct Group {
-  const ContactPair* pairs[W];
-  std::int32_t counts[W];  // of manifolds
-  Side<W> a, b;
-  Wide<W> size, looked;
-  Placement<W> seen, now;    // B's body frame in A's: at the last full look, and now
-  Wide<W> way, speculative;  // as in View
-};
-
-template <int W>
-GYRE_INLINE void load_group(const ContactPair* pairs, int count, Group<W>& group) {
-  constexpr int kLooked = GYRE_FLOATS_BEFORE(Contact, looked);
-  static_assert(GYRE_FLOATS_BEFORE(Contact, size) == kLooked + 1);
-  static_assert(GYRE_FLOATS_BEFORE(Contact, seen_a_from_b) == kLooked + 2);
-  static_assert(offsetof(Transform, orientation) == sizeof(Vec3));
-  const BodyLook *looks_a[W], *looks_b[W];
-  Records<W> record;
-  GYRE_UNROLL
-  for (int i = 0; i < W; ++i) {
-    const ContactPair& pair = pairs[i < count ? i : count - 1];
-    group.pairs[i] = &pair;
-    looks_a[i] = pair.look_a;
-    looks_b[i] = pair.look_b;
-    record[i] = floats(pair.contact);
-    group.counts[i] = pair.contact->manifold_count;
-  }
-  group.a = load_side<W>(looks_a);
-  group.b = load_side<W>(looks_b);
-  Wide<W> first[4], second[4];
-  read_four<W>(record, kLooked, first);
-  read_four<W>(record, kLooked + 4, second);
-  group.looked = first[0];
-  group.size = first[1];
-  group.seen = {{first[2], first[3], second[0]},
-                {second[1], second[2], second[3], read_one<W>(record, kLooked + 8)}};
-}
-
-// ------------------------------------------------------------------------------------------------------------- the view
-
-template <int W>
-GYRE_INLINE void find_view(Group<W>& group) {
-  const Side<W>& a = group.a;
-  const Side<W>& b = group.b;
-  group.now = {rotate_inverse(a.orientation, difference(b.origin, a.origin)),
-               conjugate(a.orientation) * b.orientation};
-  // A body that is long beyond the other one turns no faster there.
-  const Wide<W> apart = length(group.now.position) + (a.extent - a.reach) + (b.extent - b.reach);
-  const Mask<W> differ = a.reach != b.reach;
-  const Wide<W> lever_a = select(differ, min(a.reach, apart + b.reach), a.reach);
-  const Wide<W> lever_b = select(differ, min(b.reach, apart + a.reach), b.reach);
-  const Wide<W> zero(0.0f);
-  group.way = length(b.way - a.way) + max(a.spin, zero) * lever_a + max(b.spin, zero) * lever_b;
-  group.speculative =
-      Wide<W>(kSpeculativeShare) * group.size + min(group.way, Wide<W>(kLargestApproach) * group.size);
-}
-
-template <int W>
-GYRE_INLINE void write_views(const Group<W>& group, int count, View* views) {
-  static_assert(GYRE_FLOATS_BEFORE(View, size) == 7 && sizeof(View) == 10 * sizeof(float));
-  Targets<W> to;
-  GYRE_UNROLL
-  for (int i = 0; i < W; ++i) to[i] = floats(views + (i < count ? i : count - 1));
-  const Vec3W<W> p = group.now.position;
-  const QuatW<W> q = group.now.orientation;
-  write_four<4, W>(to, 0, {p.x, p.y, p.z, q.x});
-  write_four<4, W>(to, 4, {q.y, q.z, q.w, group.size});
-  write_four<2, W>(to, 8, {group.way, group.speculative});
-}
 
 // ---------------------------------------------------------------------------------------------------------- the motion
 
@@ -330,20 +171,12 @@ struct WorldFrame {
 };
 
 template <int W>
-GYRE_INLINE WorldFrame<W> find_frame(const Group<W>& group, const Follow<W>& follow) {
-  Records<W> a, b;
-  GYRE_UNROLL
-  for (int i = 0; i < W; ++i) {
-    a[i] = floats(group.pairs[i]->center_a);
-    b[i] = floats(group.pairs[i]->center_b);
-  }
-  const Vec3W<W> center_a{read_one<W>(a, 0), read_one<W>(a, 1), read_one<W>(a, 2)};
-  const Vec3W<W> center_b{read_one<W>(b, 0), read_one<W>(b, 1), read_one<W>(b, 2)};
-  const QuatW<W> turn_a = group.a.orientation, turn_b = group.b.orientation;
-  const Vec3W<W> b_from_a =
-      difference(group.b.origin + rotate(turn_b, center_b), group.a.origin + rotate(turn_a, center_a));
-  return {to_matrix(select(follow.frame_is_b, turn_b, turn_a)), select(follow.frame_is_b, center_b, center_a),
-          select(follow.frame_is_b, -b_from_a, b_from_a)};
+GYRE_INLINE WorldFrame<W> find_world_frame(const Group<W>& group, const Follow<W>& follow) {
+  const Side<W>& a = group.a;
+  const Side<W>& b = group.b;
+  const Vec3W<W> b_from_a = difference(b.center_of_mass(), a.center_of_mass());
+  return {to_matrix(select(follow.frame_is_b, b.orientation, a.orientation)),
+          select(follow.frame_is_b, b.center, a.center), select(follow.frame_is_b, -b_from_a, b_from_a)};
 }
 
 // Writes point `i` of each manifold. Returns in which lanes it carried load in the last step, or its surfaces touch.
@@ -430,7 +263,7 @@ unsigned move_contacts(const Group<W>& group, const Motion<W>& motion, unsigned 
     held &= to_bits(find_ways<W>(group, follow, points, motion.twice_sine(), manifolds[m]));
     if (held == 0) return 0;
   }
-  const WorldFrame<W> frame = find_frame<W>(group, follow);
+  const WorldFrame<W> frame = find_world_frame<W>(group, follow);
   for (int m = 0; m < most; ++m) {
     touching |= held & to_bits(move_manifold<W>(group, follow, frame, manifolds[m], held));
   }

@@ -25,8 +25,6 @@ bool has_rim(const Shape& shape) {
   return shape.kind == ShapeKind::cylinder || shape.kind == ShapeKind::cone;
 }
 
-Pose pose_of(const BodyLook& look) { return {look.position, look.orientation}; }
-DVec3 center_of_mass(const BodyLook& look, Vec3 center) { return pose_of(look) * center; }
 std::span<Manifold> manifolds_of(const ContactPair& pair) {
   return {pair.manifolds, pair.contact->manifold_count};
 }
@@ -38,31 +36,29 @@ bool frame_is_b(const Shape& a, const Shape& b) {
 
 // ----------------------------------------------------------------------------------------------- what the shapes tell
 
-// A plane has no middle: its frame may lie where the other shape is, so that floats stay small and exact.
-void center_plane(Shape& shape, Pose& frame, DVec3 other) {
-  if (shape.kind != ShapeKind::plane) return;
-  const DVec3 normal(rotate(frame.orientation, shape.extents));
-  const double height = dot(normal, other - frame.position) - double(shape.offset);
-  frame.position = other - height * normal;
-  shape.offset = 0.0f;
-}
-
 template <int kRoom>
 struct Found {
   LocalManifold manifolds[kRoom];
   int count = 0;
-  Pose frame;  // world_from_a: of the manifolds
+};
+
+// A shape in the frame in which it is seen (View).
+struct SeenShape {
+  Shape moved;
+  const Shape* shape;
+  SeenShape(const Shape& own, const Shape& other) : shape(&own) {
+    if (own.kind != ShapeKind::plane || !is_convex(other.kind)) return;
+    moved = own;
+    moved.offset = 0.0f;
+    shape = &moved;
+  }
 };
 
 template <int kRoom>
-void ask_shapes(const ContactPair& pair, float reach, PairCache& cache, Found<kRoom>& found) {
-  Shape a = pair.shape_a->shape;
-  Shape b = pair.shape_b->shape;
-  found.frame = pose_of(*pair.look_a) * pair.shape_a->body_from_shape;
-  Pose frame_b = pose_of(*pair.look_b) * pair.shape_b->body_from_shape;
-  center_plane(a, found.frame, frame_b.position);
-  center_plane(b, frame_b, found.frame.position);
-  found.count = collide_shapes(a, b, inverse_times(found.frame, frame_b), reach, cache, found.manifolds);
+void ask_shapes(const ContactPair& pair, const View& view, float reach, Found<kRoom>& found) {
+  const SeenShape a(pair.shape_a->shape, pair.shape_b->shape), b(pair.shape_b->shape, pair.shape_a->shape);
+  found.count =
+      collide_shapes(*a.shape, *b.shape, view.shapes_a_from_b, reach, pair.contact->cache, found.manifolds);
 }
 
 // Leaves out what is farther apart than `reach`. Returns the smallest separation of what was left out.
@@ -191,26 +187,19 @@ void match_by_place(Former<kRoom>& former, Manifold& manifold, unsigned matched,
   }
 }
 
-// From the frame of the manifolds into world axes, and into the frame of the anchors.
+// Where a look's manifolds go from their frame: into world axes, and into the frame of the anchors.
 struct Placing {
-  Quat turn;  // of the manifolds' frame
-  // Its origin from either centre of mass. Each side by itself: one of the two may be far away (a plane's body), and floats
-  // with it.
-  Vec3 from_a, from_b;
+  const View& view;
   bool anchors_in_b;  // B's body frame, else A's
   Quat anchor_turn;
   Vec3 anchor_center;
-};
 
-Placing find_placing(const ContactPair& pair, const Pose& frame) {
-  const bool in_b = frame_is_b(pair.shape_a->shape, pair.shape_b->shape);
-  return {frame.orientation,
-          difference(frame.position, center_of_mass(*pair.look_a, *pair.center_a)),
-          difference(frame.position, center_of_mass(*pair.look_b, *pair.center_b)),
-          in_b,
-          (in_b ? pair.look_b : pair.look_a)->orientation,
-          in_b ? *pair.center_b : *pair.center_a};
-}
+  Placing(const ContactPair& pair, const View& seen) : view(seen) {
+    anchors_in_b = frame_is_b(pair.shape_a->shape, pair.shape_b->shape);
+    anchor_turn = (anchors_in_b ? pair.look_b : pair.look_a)->orientation;
+    anchor_center = (anchors_in_b ? pair.center_b : pair.center_a)->position;
+  }
+};
 
 QuatW<4> splat(Quat q) { return {q.x, q.y, q.z, q.w}; }
 
@@ -229,9 +218,9 @@ void write_points(const LocalManifold& local, const Placing& placing, Manifold& 
   const Mask<W> used = Mask<W>::of_bits((1u << local.count) - 1u);
   Wide<W> found[4];
   read_four<W>(from, 0, found);
-  const Vec3W<W> place = rotate(splat(placing.turn), Vec3W<W>{found[0], found[1], found[2]});
-  const Vec3W<W> a = keep(used, place + splat<W>(placing.from_a));
-  const Vec3W<W> b = keep(used, place + splat<W>(placing.from_b));
+  const Vec3W<W> place = rotate(splat(placing.view.frame_turn), Vec3W<W>{found[0], found[1], found[2]});
+  const Vec3W<W> a = keep(used, place + splat<W>(placing.view.frame_from_a));
+  const Vec3W<W> b = keep(used, place + splat<W>(placing.view.frame_from_b));
   const Vec3W<W> arm = rotate_inverse(splat(placing.anchor_turn), placing.anchors_in_b ? b : a);
   const Vec3W<W> anchor = keep(used, arm + splat<W>(placing.anchor_center));
   const Wide<W> separation = keep(used, found[3]), zero(0.0f);
@@ -243,7 +232,7 @@ void write_points(const LocalManifold& local, const Placing& placing, Manifold& 
 
 // All of a manifold, as if nothing had been there before.
 void write_manifold(const LocalManifold& local, const Placing& placing, Manifold& out) {
-  out.normal = rotate(placing.turn, local.normal);
+  out.normal = rotate(placing.view.frame_turn, local.normal);
   out.count = local.count;
   out.age = 0.0f;
   out.friction_impulse = {};
@@ -277,12 +266,12 @@ void match_rolling(Former<kRoom>& former, Manifold& manifold, unsigned matched_b
 }
 
 template <int kRoom>
-void write_manifolds(const Found<kRoom>& found, const ContactPair& pair, float size) {
+void write_manifolds(const Found<kRoom>& found, const ContactPair& pair, const View& view) {
   Manifold* const out = pair.manifolds;
   Former<kRoom> former;
   former.count = pair.contact->manifold_count;
   for (int m = 0; m < former.count; ++m) former.manifolds[m] = out[m];
-  const Placing placing = find_placing(pair, found.frame);
+  const Placing placing(pair, view);
   unsigned matched[kRoom] = {};
   for (int m = 0; m < found.count; ++m) {
     write_manifold(found.manifolds[m], placing, out[m]);
@@ -292,7 +281,7 @@ void write_manifolds(const Found<kRoom>& found, const ContactPair& pair, float s
     carry_friction(former.manifolds[old], out[m]);
     matched[m] = match_by_feature(former, old, out[m]);
   }
-  for (int m = 0; m < found.count; ++m) match_by_place(former, out[m], matched[m], kMatch * size);
+  for (int m = 0; m < found.count; ++m) match_by_place(former, out[m], matched[m], kMatch * view.size);
   if (found.count == 1 && (has_rim(pair.shape_a->shape) || has_rim(pair.shape_b->shape)))
     match_rolling(former, out[0], matched[0]);
   // Nothing of the past stays behind in what is not in use.
@@ -326,14 +315,14 @@ void look_in_room(const ContactPair& pair, const View& view) {
   bool clear = false;
   if (kRoom == 1 && contact.manifold_count == 0 && view.way < kSlow * view.size) {
     const float far_reach = view.speculative + kFarSlack * view.size;
-    ask_shapes(pair, far_reach, contact.cache, found);
+    ask_shapes(pair, view, far_reach, found);
     // Far points may have taken the places of near ones in the manifold: then it is no good.
     clear = is_beyond(found, kept);
     if (clear) reach = far_reach;
   }
-  if (!clear) ask_shapes(pair, reach, contact.cache, found);
+  if (!clear) ask_shapes(pair, view, reach, found);
   const float left_out = min(keep_near(found, kept), reach);
-  if (found.count > 0 || contact.manifold_count > 0) write_manifolds(found, pair, view.size);
+  if (found.count > 0 || contact.manifold_count > 0) write_manifolds(found, pair, view);
   // Points measure separation along one normal, which is not always that of the nearest features: hence only a part.
   note_look(contact, view, left_out < reach ? kept + 0.75f * (left_out - kept) : reach);
 }
@@ -364,16 +353,12 @@ float smaller_size(float a, float b) {
   return has_a && has_b ? min(a, b) : has_a ? a : has_b ? b : 0.0f;
 }
 
-bool look_at_sensor(const ContactPair& pair) {
+bool look_at_sensor(const ContactPair& pair, const View& view) {
   const Shape& a = pair.shape_a->shape;
   const Shape& b = pair.shape_b->shape;
-  if (!is_convex(a.kind) && !is_convex(b.kind)) {
-    const Pose frame_a = pose_of(*pair.look_a) * pair.shape_a->body_from_shape;
-    return surfaces_overlap(a, b,
-                            inverse_times(frame_a, pose_of(*pair.look_b) * pair.shape_b->body_from_shape));
-  }
+  if (!is_convex(a.kind) && !is_convex(b.kind)) return surfaces_overlap(a, b, view.shapes_a_from_b);
   Found<kMaxMeshManifolds> found;
-  ask_shapes(pair, 0.0f, pair.contact->cache, found);
+  ask_shapes(pair, view, 0.0f, found);
   keep_near(found, 0.0f);
   return found.count > 0;
 }

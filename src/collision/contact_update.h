@@ -13,7 +13,7 @@ namespace gyre {
 float smaller_size(float a, float b);
 
 // Full look of a sensor's contact: whether the two shapes overlap. Keeps no manifold.
-bool look_at_sensor(const ContactPair& pair);
+bool look_at_sensor(const ContactPair& pair, const View& view);
 
 // Full look of any other contact; returns whether its shapes touch.
 bool look_anew(const ContactPair& pair, const View& view);

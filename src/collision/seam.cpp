@@ -65,7 +65,7 @@ class PlacedShape {
   PlacedShape(const CollideInput& input, std::uint32_t shape, std::uint32_t body, std::uint32_t from_body)
       : shape_(input.shapes[shape]), look_(input.looks[body]) {
     const BodyLook& from = input.looks[from_body];
-    origin_ = difference(from.position, look_.position) + rotate(from.orientation, input.centers[from_body]);
+    origin_ = difference(from.position, look_.position) + rotate(from.orientation, input.centers[from_body].position);
   }
   const Shape& shape() const { return shape_.shape; }
   Vec3 point(Vec3 p) const {

@@ -216,7 +216,7 @@ void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, RecycleContac
   const ArenaScope scope(arena);
   const std::size_t count = w.bodies.motion.size();
   const std::span<BodyLook> looks = arena.make<BodyLook>(count);
-  const std::span<Vec3> centers = arena.make<Vec3>(count);
+  const std::span<BodyCenter> centers = arena.make<BodyCenter>(count);
   const auto fill = [&](std::uint32_t i) {
     const BodyMotion& motion = w.bodies.motion[i];
     ColliderBody body;
@@ -227,7 +227,7 @@ void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, RecycleContac
     body.reach = w.bodies.masses[i].reach;
     body.awake = may_move(w, i);
     looks[i] = make_body_look(body, seconds);
-    centers[i] = body.center;
+    centers[i].position = body.center;
   };
   for_blocks(tasks, int(count), 4 * kBodiesPerBlock, [&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) fill(std::uint32_t(i));

@@ -1,0 +1,259 @@
+// Contacts in lanes: their bodies and shapes, and how these stand and move. See contact_recycle.h. One template for every
+// width: lane i computes exactly what a width of 1 would.
+#pragma once
+
+#include "collision/contact_fours.h"
+#include "collision/contact_recycle.h"
+#include "collision/fat_box.h"
+#include "math/wide_double.h"
+
+namespace gyre {
+inline namespace GYRE_TARGET_NAMESPACE {
+
+// ------------------------------------------------------------------------------------------- between records and lanes
+
+template <int W>
+struct Placement {
+  Vec3W<W> position;
+  QuatW<W> orientation;
+};
+template <int W>
+GYRE_INLINE Placement<W> inverse(const Placement<W>& t) {
+  return {rotate_inverse(t.orientation, -t.position), conjugate(t.orientation)};
+}
+template <int W>
+GYRE_INLINE Placement<W> select(Mask<W> mask, const Placement<W>& a, const Placement<W>& b) {
+  return {select(mask, a.position, b.position), select(mask, a.orientation, b.orientation)};
+}
+
+// Places in the world, each coordinate in halves of the lanes.
+template <int W>
+struct Places {
+  static constexpr int kLast = kHalves<W> - 1;
+  using Half = WideDouble<kHalfLanes<W>>;
+  Half x[kHalves<W>], y[kHalves<W>], z[kHalves<W>];
+};
+template <int W>
+GYRE_INLINE void load_halves(const BodyLook* const (&looks)[W], double DVec3::*axis,
+                             typename Places<W>::Half (&out)[kHalves<W>]) {
+  if constexpr (W == 1) {
+    out[0].v = looks[0]->position.*axis;
+  } else {
+    GYRE_UNROLL
+    for (int i = 0; i < W; ++i) out[2 * i / W].v[i % (W / 2)] = looks[i]->position.*axis;
+  }
+}
+template <int W>
+GYRE_INLINE void shift_half(typename Places<W>::Half (&place)[kHalves<W>], Wide<W> by) {
+  place[0] += half_of<0>(by);
+  if constexpr (W > 1) place[1] += half_of<1>(by);
+}
+template <int W>
+GYRE_INLINE Places<W> operator+(Places<W> place, Vec3W<W> by) {
+  shift_half<W>(place.x, by.x);
+  shift_half<W>(place.y, by.y);
+  shift_half<W>(place.z, by.z);
+  return place;
+}
+template <int W>
+GYRE_INLINE Vec3W<W> difference(const Places<W>& to, const Places<W>& from) {
+  constexpr int kLast = Places<W>::kLast;
+  return {join_halves<W>(to.x[0] - from.x[0], to.x[kLast] - from.x[kLast]),
+          join_halves<W>(to.y[0] - from.y[0], to.y[kLast] - from.y[kLast]),
+          join_halves<W>(to.z[0] - from.z[0], to.z[kLast] - from.z[kLast])};
+}
+
+// One of the two bodies of each contact.
+template <int W>
+struct Side {
+  Places<W> origin;
+  QuatW<W> orientation;
+  Vec3W<W> way;
+  Wide<W> spin, reach, extent;
+  Vec3W<W> center;  // of mass, body frame
+
+  GYRE_INLINE Places<W> center_of_mass() const { return origin + rotate(orientation, center); }
+};
+
+template <int W>
+GYRE_INLINE Side<W> load_side(const BodyLook* const (&looks)[W], const Records<W>& centers) {
+  static_assert(GYRE_FLOATS_BEFORE(BodyLook, orientation) == 6 && GYRE_FLOATS_BEFORE(BodyLook, way) == 10);
+  static_assert(GYRE_FLOATS_BEFORE(BodyLook, spin) == 13 && GYRE_FLOATS_BEFORE(BodyLook, extent) == 15);
+  Records<W> record;
+  GYRE_UNROLL
+  for (int i = 0; i < W; ++i) record[i] = floats(looks[i]);
+  Wide<W> xy[4], zw[4], rest[4];
+  read_four<W>(record, 4, xy);
+  read_four<W>(record, 8, zw);
+  read_four<W>(record, 12, rest);
+  Side<W> side;
+  load_halves<W>(looks, &DVec3::x, side.origin.x);
+  load_halves<W>(looks, &DVec3::y, side.origin.y);
+  load_halves<W>(looks, &DVec3::z, side.origin.z);
+  side.orientation = {xy[2], xy[3], zw[0], zw[1]};
+  side.way = {zw[2], zw[3], rest[0]};
+  side.spin = rest[1];
+  side.reach = rest[2];
+  side.extent = rest[3];
+  Wide<W> center[4];
+  read_four<W>(centers, 0, center);
+  side.center = {center[0], center[1], center[2]};
+  return side;
+}
+
+// The contacts of a group; lanes without one repeat the last.
+template <int W>
+struct Group {
+  const ContactPair* pairs[W];
+  std::int32_t counts[W];  // of manifolds
+  Side<W> a, b;
+  Wide<W> size, looked;
+  Placement<W> seen, now;    // B's body frame in A's: at the last full look, and now
+  Wide<W> way, speculative;  // as in View
+};
+
+template <int W>
+GYRE_INLINE void load_group(const ContactPair* pairs, int count, Group<W>& group) {
+  constexpr int kLooked = GYRE_FLOATS_BEFORE(Contact, looked);
+  static_assert(GYRE_FLOATS_BEFORE(Contact, size) == kLooked + 1);
+  static_assert(GYRE_FLOATS_BEFORE(Contact, seen_a_from_b) == kLooked + 2);
+  static_assert(offsetof(Transform, orientation) == sizeof(Vec3));
+  const BodyLook *looks_a[W], *looks_b[W];
+  Records<W> record, centers_a, centers_b;
+  GYRE_UNROLL
+  for (int i = 0; i < W; ++i) {
+    const ContactPair& pair = pairs[i < count ? i : count - 1];
+    group.pairs[i] = &pair;
+    looks_a[i] = pair.look_a;
+    looks_b[i] = pair.look_b;
+    centers_a[i] = floats(pair.center_a);
+    centers_b[i] = floats(pair.center_b);
+    record[i] = floats(pair.contact);
+    group.counts[i] = pair.contact->manifold_count;
+  }
+  group.a = load_side<W>(looks_a, centers_a);
+  group.b = load_side<W>(looks_b, centers_b);
+  Wide<W> first[4], second[4];
+  read_four<W>(record, kLooked, first);
+  read_four<W>(record, kLooked + 4, second);
+  group.looked = first[0];
+  group.size = first[1];
+  group.seen = {{first[2], first[3], second[0]},
+                {second[1], second[2], second[3], read_one<W>(record, kLooked + 8)}};
+}
+
+// ------------------------------------------------------------------------------------------------------------- the view
+
+template <int W>
+GYRE_INLINE void find_view(Group<W>& group) {
+  const Side<W>& a = group.a;
+  const Side<W>& b = group.b;
+  group.now = {rotate_inverse(a.orientation, difference(b.origin, a.origin)),
+               conjugate(a.orientation) * b.orientation};
+  // A body that is long beyond the other one turns no faster there.
+  const Wide<W> apart = length(group.now.position) + (a.extent - a.reach) + (b.extent - b.reach);
+  const Mask<W> differ = a.reach != b.reach;
+  const Wide<W> lever_a = select(differ, min(a.reach, apart + b.reach), a.reach);
+  const Wide<W> lever_b = select(differ, min(b.reach, apart + a.reach), b.reach);
+  const Wide<W> zero(0.0f);
+  group.way = length(b.way - a.way) + max(a.spin, zero) * lever_a + max(b.spin, zero) * lever_b;
+  group.speculative =
+      Wide<W>(kSpeculativeShare) * group.size + min(group.way, Wide<W>(kLargestApproach) * group.size);
+}
+
+// ----------------------------------------------------------------------------------------------------------- the shapes
+
+template <int W>
+struct ShapeFrame {
+  Places<W> origin;
+  QuatW<W> orientation;
+};
+
+template <int W>
+GYRE_INLINE ShapeFrame<W> find_frame(const Side<W>& side, const Records<W>& shape) {
+  constexpr int kPlace = GYRE_FLOATS_BEFORE(ColliderShape, body_from_shape);
+  Wide<W> p[4], q[4];
+  read_four<W>(shape, kPlace, p);
+  read_four<W>(shape, kPlace + 3, q);
+  return {side.origin + rotate(side.orientation, Vec3W<W>{p[0], p[1], p[2]}),
+          side.orientation * QuatW<W>{q[0], q[1], q[2], q[3]}};
+}
+
+template <int W>
+GYRE_INLINE WideInt<W> load_kinds(const Records<W>& shape) {
+  static_assert(offsetof(ColliderShape, shape) == 0 && offsetof(Shape, kind) == 0 && sizeof(ShapeKind) == 1);
+  return bit_pattern(read_one<W>(shape, 0)) & WideInt<W>(0xff);
+}
+
+// Half `Half` of places beside `other` on planes with these normals and offsets, of which `place` is a point.
+template <int Half, int W>
+GYRE_INLINE void center_half(Vec3W<W> normal, Wide<W> offset, const Places<W>& other, Places<W>& place) {
+  const auto x = half_of<Half>(normal.x), y = half_of<Half>(normal.y), z = half_of<Half>(normal.z);
+  const auto height = x * (other.x[Half] - place.x[Half]) + y * (other.y[Half] - place.y[Half]) +
+                      z * (other.z[Half] - place.z[Half]) - half_of<Half>(offset);
+  place.x[Half] = other.x[Half] - height * x;
+  place.y[Half] = other.y[Half] - height * y;
+  place.z[Half] = other.z[Half] - height * z;
+}
+
+// A plane has no middle: its frame may lie where the other shape is, so that floats stay small and exact. Its offset in the
+// new frame is 0.
+template <int W>
+GYRE_INLINE void center_planes(Mask<W> planes, const Records<W>& shape, const Places<W>& other,
+                               ShapeFrame<W>& frame) {
+  static_assert(GYRE_FLOATS_BEFORE(Shape, offset) == GYRE_FLOATS_BEFORE(Shape, extents) + 3);
+  Wide<W> plane[4];
+  read_four<W>(shape, GYRE_FLOATS_BEFORE(Shape, extents), plane);
+  const Vec3W<W> normal = rotate(frame.orientation, Vec3W<W>{plane[0], plane[1], plane[2]});
+  Places<W> centered = frame.origin;
+  center_half<0, W>(normal, plane[3], other, centered);
+  if constexpr (W > 1) center_half<1, W>(normal, plane[3], other, centered);
+  for (int i = 0; i < W; ++i) {
+    if (!planes[i]) continue;
+    __builtin_memcpy(reinterpret_cast<double*>(frame.origin.x) + i, reinterpret_cast<double*>(centered.x) + i,
+                     8);
+    __builtin_memcpy(reinterpret_cast<double*>(frame.origin.y) + i, reinterpret_cast<double*>(centered.y) + i,
+                     8);
+    __builtin_memcpy(reinterpret_cast<double*>(frame.origin.z) + i, reinterpret_cast<double*>(centered.z) + i,
+                     8);
+  }
+}
+
+template <int W>
+GYRE_INLINE void write_views(const Group<W>& group, int count, View* views) {
+  static_assert(GYRE_FLOATS_BEFORE(View, size) == 7 && GYRE_FLOATS_BEFORE(View, shapes_a_from_b) == 10);
+  static_assert(GYRE_FLOATS_BEFORE(View, frame_turn) == 17 && GYRE_FLOATS_BEFORE(View, frame_from_a) == 21);
+  static_assert(GYRE_FLOATS_BEFORE(View, frame_from_b) == 24);
+  Records<W> shapes_a, shapes_b;
+  Targets<W> to;
+  GYRE_UNROLL
+  for (int i = 0; i < W; ++i) {
+    shapes_a[i] = floats(group.pairs[i]->shape_a);
+    shapes_b[i] = floats(group.pairs[i]->shape_b);
+    to[i] = floats(views + (i < count ? i : count - 1));
+  }
+  ShapeFrame<W> a = find_frame<W>(group.a, shapes_a), b = find_frame<W>(group.b, shapes_b);
+  const WideInt<W> kinds_a = load_kinds<W>(shapes_a), kinds_b = load_kinds<W>(shapes_b);
+  const WideInt<W> plane = std::int32_t(ShapeKind::plane);
+  const Mask<W> plane_a = (kinds_a == plane) & (kinds_b < plane);
+  const Mask<W> plane_b = (kinds_b == plane) & (kinds_a < plane);
+  if (any(plane_a)) center_planes<W>(plane_a, shapes_a, b.origin, a);
+  if (any(plane_b)) center_planes<W>(plane_b, shapes_b, a.origin, b);
+  const Vec3W<W> p = group.now.position;
+  const QuatW<W> q = group.now.orientation;
+  const Vec3W<W> shape_p = rotate_inverse(a.orientation, difference(b.origin, a.origin));
+  const QuatW<W> shape_q = conjugate(a.orientation) * b.orientation;
+  const QuatW<W> turn = a.orientation;
+  const Vec3W<W> from_a = difference(a.origin, group.a.center_of_mass());
+  const Vec3W<W> from_b = difference(a.origin, group.b.center_of_mass());
+  write_four<4, W>(to, 0, {p.x, p.y, p.z, q.x});
+  write_four<4, W>(to, 4, {q.y, q.z, q.w, group.size});
+  write_four<4, W>(to, 8, {group.way, group.speculative, shape_p.x, shape_p.y});
+  write_four<4, W>(to, 12, {shape_p.z, shape_q.x, shape_q.y, shape_q.z});
+  write_four<4, W>(to, 16, {shape_q.w, turn.x, turn.y, turn.z});
+  write_four<4, W>(to, 20, {turn.w, from_a.x, from_a.y, from_a.z});
+  write_four<3, W>(to, 24, {from_b.x, from_b.y, from_b.z});
+}
+
+}  // namespace GYRE_TARGET_NAMESPACE
+}  // namespace gyre
