@@ -454,25 +454,51 @@ struct Rows {
   }
 };
 
-// The first `Columns` floats (a multiple of four) of W records of 16 floats: out[c] lane i is base[16 indices[i] + c]. A
-// negative index means no record: its lanes are zero.
+// Columns first ... first + Columns - 1 (a multiple of four) of W records: out[c] lane i is record[i][first + c].
+template <int Columns, int W>
+GYRE_INLINE void gather_columns(const float* const (&record)[W], int first, Wide<W>* out) {
+  static_assert(Columns % 4 == 0 && Columns <= kRecordFloats);
+  if constexpr (W == 1) {
+    GYRE_UNROLL
+    for (int c = 0; c < Columns; ++c) out[c].v = record[0][first + c];
+  } else {
+    Rows<W>::gather(record, first, out);
+    if constexpr (Columns > 4) Rows<W>::gather(record, first + 4, out + 4);
+    if constexpr (Columns > 8) Rows<W>::gather(record, first + 8, out + 8);
+    if constexpr (Columns > 12) Rows<W>::gather(record, first + 12, out + 12);
+  }
+}
+
+// Writes columns in[0 ... Columns) to the records, from `first` on. No other float of a record is touched.
+template <int Columns, int W>
+GYRE_INLINE void scatter_columns(float* const (&record)[W], int first, const Wide<W>* in) {
+  static_assert(Columns >= 1 && Columns <= kRecordFloats);
+  if constexpr (W == 1) {
+    GYRE_UNROLL
+    for (int c = 0; c < Columns; ++c) record[0][first + c] = in[c].v;
+  } else {
+    Rows<W>::template scatter<(Columns < 4 ? Columns : 4)>(record, first, in);
+    if constexpr (Columns > 4) {
+      Rows<W>::template scatter<(Columns < 8 ? Columns - 4 : 4)>(record, first + 4, in + 4);
+    }
+    if constexpr (Columns > 8) {
+      Rows<W>::template scatter<(Columns < 12 ? Columns - 8 : 4)>(record, first + 8, in + 8);
+    }
+    if constexpr (Columns > 12) Rows<W>::template scatter<Columns - 12>(record, first + 12, in + 12);
+  }
+}
+
+// What lanes without a record read.
+alignas(64) constexpr float kNoRecord[kRecordFloats] = {};
+
+// The first `Columns` floats of W records of 16 floats: out[c] lane i is base[16 indices[i] + c]. A negative index means no
+// record: its lanes are zero.
 template <int Columns, int W>
 GYRE_INLINE void gather(const float* base, const std::int32_t* indices, Wide<W>* out) {
-  static_assert(Columns % 4 == 0 && Columns <= kRecordFloats);
-  alignas(64) static constexpr float kZeros[kRecordFloats] = {};
-  if constexpr (W == 1) {
-    const float* record = record_or(base, indices[0], kZeros);
-    GYRE_UNROLL
-    for (int c = 0; c < Columns; ++c) out[c].v = record[c];
-  } else {
-    const float* record[W];
-    GYRE_UNROLL
-    for (int i = 0; i < W; ++i) record[i] = record_or(base, indices[i], kZeros);
-    Rows<W>::gather(record, 0, out);
-    if constexpr (Columns > 4) Rows<W>::gather(record, 4, out + 4);
-    if constexpr (Columns > 8) Rows<W>::gather(record, 8, out + 8);
-    if constexpr (Columns > 12) Rows<W>::gather(record, 12, out + 12);
-  }
+  const float* record[W];
+  GYRE_UNROLL
+  for (int i = 0; i < W; ++i) record[i] = record_or(base, indices[i], kNoRecord);
+  gather_columns<Columns, W>(record, 0, out);
 }
 template <int W>
 GYRE_INLINE void gather16(const float* base, const std::int32_t* indices, Wide<W>* out) {
@@ -487,20 +513,16 @@ GYRE_INLINE void gather8(const float* base, const std::int32_t* indices, Wide<W>
 // name the same record. No float beyond the first `Columns` of a record is touched.
 template <int Columns, int W>
 GYRE_INLINE void scatter(float* base, const std::int32_t* indices, const Wide<W>* in) {
-  static_assert(Columns >= 1 && Columns <= kRecordFloats);
   if constexpr (W == 1) {
     if (indices[0] < 0) return;
-    float* record = base + kRecordFloats * std::int64_t(indices[0]);
-    for (int c = 0; c < Columns; ++c) record[c] = in[c].v;
+    float* const record[1] = {base + kRecordFloats * std::int64_t(indices[0])};
+    scatter_columns<Columns, W>(record, 0, in);
   } else {
     alignas(64) float nowhere[kRecordFloats];
     float* record[W];
     GYRE_UNROLL
     for (int i = 0; i < W; ++i) record[i] = record_or(base, indices[i], nowhere);
-    Rows<W>::template scatter<(Columns < 4 ? Columns : 4)>(record, 0, in);
-    if constexpr (Columns > 4) Rows<W>::template scatter<(Columns < 8 ? Columns - 4 : 4)>(record, 4, in + 4);
-    if constexpr (Columns > 8) Rows<W>::template scatter<(Columns < 12 ? Columns - 8 : 4)>(record, 8, in + 8);
-    if constexpr (Columns > 12) Rows<W>::template scatter<Columns - 12>(record, 12, in + 12);
+    scatter_columns<Columns, W>(record, 0, in);
   }
 }
 

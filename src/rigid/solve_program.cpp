@@ -111,8 +111,7 @@ void finish_contacts_stage(void* context, int begin, int end, int) {
 }
 void warm_contacts_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
-  g.solve->kernels.warm_start(g.solve->blocks, int(g.first) + begin, int(g.first) + end,
-                              g.solve->contact_bodies.motion);
+  g.solve->kernels.warm_start(g.solve->blocks, int(g.first) + begin, int(g.first) + end);
 }
 // Calls fn(rolling, block, lane) for those contacts of the blocks that roll, which are few.
 template <class Fn>
@@ -132,10 +131,13 @@ void follow_contacts(const Group& g, int begin, int end) {
   Solve& s = *g.solve;
   for_each_rolling(g, begin, end, [&](RollingContact& rolling, int block, int lane) {
     if (rolling.once) s.rolling_lanes[std::size_t(block)] &= std::uint16_t(~(1u << lane));
-    const Manifold& manifold = *s.scratch.constraints[rolling.constraint].manifold;
+    const ContactConstraint& constraint = s.scratch.constraints[rolling.constraint];
     const float ahead = 0.5f * (rolling.once ? s.contact_settings.step : s.h);
-    const FollowedArms arms = follow_contact(s.w, rolling, manifold, ahead);
-    s.kernels.follow(s.blocks, block, lane, arms, s.contact_bodies.inertia, s.contact_bodies.motion);
+    const FollowedArms arms = follow_contact(s.w, rolling, *constraint.manifold, ahead);
+    const auto inverse_of = [&](std::int32_t body) {
+      return body == kNoBody ? nullptr : &s.contact_bodies.inertia[body].inverse;
+    };
+    s.kernels.follow(s.blocks, block, lane, arms, inverse_of(constraint.body_a), inverse_of(constraint.body_b));
     Vec3& spin = s.contact_bodies.motion[rolling.body].angular_velocity;
     spin = spin + rolling.drift;
   });
@@ -149,19 +151,16 @@ void leave_middle(const Group& g, int begin, int end) {
 void solve_contacts_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
   follow_contacts(g, begin, end);
-  g.solve->kernels.solve(g.solve->blocks, int(g.first) + begin, int(g.first) + end,
-                         g.solve->contact_bodies.motion, g.solve->h);
+  g.solve->kernels.solve(g.solve->blocks, int(g.first) + begin, int(g.first) + end, g.solve->h);
   leave_middle(g, begin, end);
 }
 void relax_contacts_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
-  g.solve->kernels.relax(g.solve->blocks, int(g.first) + begin, int(g.first) + end,
-                         g.solve->contact_bodies.motion, g.solve->h);
+  g.solve->kernels.relax(g.solve->blocks, int(g.first) + begin, int(g.first) + end, g.solve->h);
 }
 void project_contacts_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
-  g.solve->kernels.project(g.solve->blocks, int(g.first) + begin, int(g.first) + end,
-                           g.solve->contact_bodies.motion, g.solve->contact_settings.step);
+  g.solve->kernels.project(g.solve->blocks, int(g.first) + begin, int(g.first) + end, g.solve->contact_settings.step);
 }
 void begin_projection_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);

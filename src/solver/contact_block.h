@@ -84,20 +84,22 @@ struct FollowedArms {
 };
 
 // The kernels of one CPU target: every function works on blocks [begin, end) of the array at `blocks`. `order` lists
-// constraint indices block by block, W a block; 0xffffffff marks an empty lane.
+// constraint indices block by block, W a block; 0xffffffff marks an empty lane. What is prepared knows where the motion records of its
+// bodies lie.
 struct ContactKernels {
   int width;
   std::size_t block_bytes;
   void (*prepare)(void* blocks, int begin, int end, const ContactConstraint* constraints,
                   const std::uint32_t* order, ContactBodies bodies, const ContactSettings& settings);
-  // Moves the points of one contact, and along with them the impulses that stand, which these velocities have.
-  void (*follow)(void* blocks, int block, int lane, const FollowedArms& arms, const BodyInertia* inertia,
-                 BodyMotion* motion);
-  void (*warm_start)(void* blocks, int begin, int end, BodyMotion* motion);
-  void (*solve)(void* blocks, int begin, int end, BodyMotion* motion, float substep);
-  void (*relax)(void* blocks, int begin, int end, BodyMotion* motion, float substep);
-  // Pushes what overlaps apart; `motion` holds displacements (m, rad) in the place of velocities.
-  void (*project)(void* blocks, int begin, int end, BodyMotion* motion, float step);
+  // Moves the points of one contact, and along with them the impulses that stand, which these velocities have. The present inverse
+  // inertia of its bodies: null where there is none.
+  void (*follow)(void* blocks, int block, int lane, const FollowedArms& arms, const Sym3* inverse_a,
+                 const Sym3* inverse_b);
+  void (*warm_start)(void* blocks, int begin, int end);
+  void (*solve)(void* blocks, int begin, int end, float substep);
+  void (*relax)(void* blocks, int begin, int end, float substep);
+  // Pushes what overlaps apart; motion records hold displacements (m, rad) in the place of velocities.
+  void (*project)(void* blocks, int begin, int end, float step);
   void (*read_impulse)(const void* blocks, int block, int lane, ContactImpulse& impulse);
   void (*write_impulse)(void* blocks, int block, int lane, const ContactImpulse& impulse);
   // From now on the contact is no spring in this step.

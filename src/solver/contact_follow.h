@@ -48,8 +48,7 @@ GYRE_INLINE void put_lane(Sym3W<W>& wide, int lane, const Sym3W<1>& m) {
 template <int W>
 void take_lane(const ContactBlock<W>& block, int lane, int count, ContactBlock<1>& one) {
   one.point_count = count;
-  one.read_a[0] = block.read_a[lane], one.read_b[0] = block.read_b[lane];
-  one.write_a[0] = block.write_a[lane], one.write_b[0] = block.write_b[lane];
+  one.has_a = block.has_a >> lane & 1u, one.has_b = block.has_b >> lane & 1u;
   one.normal = one_lane<W>(block.normal, lane);
   one.tangent_1 = one_lane<W>(block.tangent_1, lane);
   one.tangent_2 = one_lane<W>(block.tangent_2, lane);
@@ -131,24 +130,25 @@ inline LaneTorques torques_of(const ContactBlock<1>& one, const PointArmPairs& a
   return torques;
 }
 
-inline void turn_body(BodyMotion* motion, std::int32_t body, const Vec3W<1>& before, const Vec3W<1>& after) {
-  if (body == kNoBody) return;
-  const Vec3 change{after.x[0] - before.x[0], after.y[0] - before.y[0], after.z[0] - before.z[0]};
-  motion[body].angular_velocity = motion[body].angular_velocity + change;
+inline void turn_body(float* record, const Vec3W<1>& before, const Vec3W<1>& after) {
+  float* const spin = record + kMotionAngular;
+  spin[0] += after.x[0] - before.x[0];
+  spin[1] += after.y[0] - before.y[0];
+  spin[2] += after.z[0] - before.z[0];
 }
 
 template <int W>
-void follow_lane(void* memory, int index, int lane, const FollowedArms& arms, const BodyInertia* inertia,
-                 BodyMotion* motion) {
+void follow_lane(void* memory, int index, int lane, const FollowedArms& arms, const Sym3* inverse_a,
+                 const Sym3* inverse_b) {
   ContactBlock<W>& block = static_cast<ContactBlock<W>*>(memory)[index];
   ContactBlock<1> one{};
   take_lane<W>(block, lane, arms.count, one);
   const LaneTorques before = torques_of(one, arms.before, arms), now = torques_of(one, arms.now, arms);
   const Vec3W<1> before_a = one.inverse_inertia_a * before.a, before_b = one.inverse_inertia_b * before.b;
-  if (one.read_a[0] != kNoBody) one.inverse_inertia_a = one_lane(inertia[one.read_a[0]].inverse);
-  if (one.read_b[0] != kNoBody) one.inverse_inertia_b = one_lane(inertia[one.read_b[0]].inverse);
-  turn_body(motion, one.write_a[0], one.inverse_inertia_a * now.a, before_a);  // a gets the opposite
-  turn_body(motion, one.write_b[0], before_b, one.inverse_inertia_b * now.b);
+  if (inverse_a != nullptr) one.inverse_inertia_a = one_lane(*inverse_a);
+  if (inverse_b != nullptr) one.inverse_inertia_b = one_lane(*inverse_b);
+  turn_body(block.write_a[lane], one.inverse_inertia_a * now.a, before_a);  // a gets the opposite
+  turn_body(block.write_b[lane], before_b, one.inverse_inertia_b * now.b);
   Wide<1> exists[kMaxManifoldPoints];
   auto nearer_a = Wide<1>(0.0f) < Wide<1>(1.0f);
   for (int k = 0; k < kMaxManifoldPoints; ++k) {

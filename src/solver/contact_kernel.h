@@ -40,12 +40,16 @@ struct PointBlock {
 // In the order of use: what only some stages read comes last.
 template <int W>
 struct ContactBlock {
-  std::int32_t read_a[W], read_b[W];    // motion records, or kNoBody
-  std::int32_t write_a[W], write_b[W];  // the same, kNoBody for bodies that nothing pushes
+  // Motion records of the bodies: zeros for what has none; what nothing pushes is written to `nowhere`.
+  const float* read_a[W];
+  const float* read_b[W];
+  float* write_a[W];
+  float* write_b[W];
   std::int32_t point_count = 0;         // the most of any lane
   std::int32_t rolls = 0;               // any lane has rolling friction
   std::int32_t has_fresh = 0;           // any lane is fresh
-  std::uint32_t linked = 0;             // lanes, as bits, of which a body hangs on a joint
+  // Lanes, as bits: of which a body hangs on a joint; that have a body there; whose body is pushed.
+  std::uint32_t linked = 0, has_a = 0, has_b = 0, pushes_a = 0, pushes_b = 0;
   Vec3W<W> normal, tangent_1, tangent_2;
   Wide<W> inverse_mass_a, inverse_mass_b;
   Sym3W<W> inverse_inertia_a, inverse_inertia_b;
@@ -74,6 +78,7 @@ struct ContactBlock {
   // Rolling friction.
   Wide<W> rolling_friction, rolling_mass;
   Vec3W<W> rolling;
+  alignas(64) float nowhere[kRecordFloats];
 };
 
 // Place of row i, column j (either order) in a packed upper triangle.
@@ -89,27 +94,38 @@ struct PairMotion {
 };
 
 template <int W>
-GYRE_INLINE void load_pair(const ContactBlock<W>& block, const BodyMotion* motion, Wide<W>* a, Wide<W>* b) {
-  gather16<W>(&motion->linear_velocity.x, block.read_a, a);
-  gather16<W>(&motion->linear_velocity.x, block.read_b, b);
-}
-
-template <int W>
-GYRE_INLINE PairMotion<W> velocities(const Wide<W>* a, const Wide<W>* b) {
+GYRE_INLINE PairMotion<W> load_pair(const ContactBlock<W>& block) {
+  Wide<W> a[8], b[8];
+  gather_columns<8, W>(block.read_a, kMotionLinear, a);
+  gather_columns<8, W>(block.read_b, kMotionLinear, b);
   return {{a[0], a[1], a[2]}, {a[3], a[4], a[5]}, {b[0], b[1], b[2]}, {b[3], b[4], b[5]}};
 }
 
 template <int W>
-GYRE_INLINE void store_pair(const ContactBlock<W>& block, BodyMotion* motion, const PairMotion<W>& pair, Wide<W>* a,
-                            Wide<W>* b) {
+GYRE_INLINE void store_velocities(float* const (&records)[W], Vec3W<W> linear, Vec3W<W> angular) {
   // Adding zero keeps -0 out of the state: lanes that have fewer points than their block add zeros of either sign.
   const Wide<W> zero(0.0f);
-  a[0] = pair.linear_a.x + zero, a[1] = pair.linear_a.y + zero, a[2] = pair.linear_a.z + zero;
-  a[3] = pair.angular_a.x + zero, a[4] = pair.angular_a.y + zero, a[5] = pair.angular_a.z + zero;
-  b[0] = pair.linear_b.x + zero, b[1] = pair.linear_b.y + zero, b[2] = pair.linear_b.z + zero;
-  b[3] = pair.angular_b.x + zero, b[4] = pair.angular_b.y + zero, b[5] = pair.angular_b.z + zero;
-  scatter<8, W>(&motion->linear_velocity.x, block.write_a, a);
-  scatter<8, W>(&motion->linear_velocity.x, block.write_b, b);
+  const Wide<W> columns[6] = {linear.x + zero,  linear.y + zero,  linear.z + zero,
+                              angular.x + zero, angular.y + zero, angular.z + zero};
+  scatter_columns<6, W>(records, kMotionLinear, columns);
+}
+template <int W>
+GYRE_INLINE void store_pair(ContactBlock<W>& block, const PairMotion<W>& pair) {
+  store_velocities<W>(block.write_a, pair.linear_a, pair.angular_a);
+  store_velocities<W>(block.write_b, pair.linear_b, pair.angular_b);
+}
+
+// How far B has moved against A since the step began, and how far both have turned.
+template <int W>
+struct PairWay {
+  Vec3W<W> moved, turned_a, turned_b;
+};
+template <int W>
+GYRE_INLINE PairWay<W> load_way(const ContactBlock<W>& block) {
+  Wide<W> a[8], b[8];
+  gather_columns<8, W>(block.read_a, kMotionMoved, a);
+  gather_columns<8, W>(block.read_b, kMotionMoved, b);
+  return {{b[0] - a[0], b[1] - a[1], b[2] - a[2]}, {a[3], a[4], a[5]}, {b[3], b[4], b[5]}};
 }
 
 // Adds the impulse `p` on B at `from_b` (and -p on A at `from_a`), and the angular impulse `t` on B (and -t on A).
@@ -158,13 +174,11 @@ GYRE_INLINE Vec3W<W> relative_velocity(const PairMotion<W>& pair, Vec3W<W> from_
 }
 
 template <int W>
-void warm_start_blocks(void* memory, int begin, int end, BodyMotion* motion) {
+void warm_start_blocks(void* memory, int begin, int end) {
   auto* blocks = static_cast<ContactBlock<W>*>(memory);
   for (int i = begin; i < end; ++i) {
     ContactBlock<W>& block = blocks[i];
-    Wide<W> a[kMotionFloats], b[kMotionFloats];
-    load_pair<W>(block, motion, a, b);
-    PairMotion<W> pair = velocities<W>(a, b);
+    PairMotion<W> pair = load_pair<W>(block);
     Wide<W> total = block.points[0].impulse;
     Vec3W<W> turn_sum = total * block.points[0].arm;
     for (int k = 1; k < block.point_count; ++k) {
@@ -176,7 +190,7 @@ void warm_start_blocks(void* memory, int begin, int end, BodyMotion* motion) {
     push<W>(block, pair, block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2, block.friction_from_a,
             block.friction_from_b, block.twist * block.normal);
     if (block.rolls != 0) turn<W>(block, pair, block.rolling);
-    store_pair<W>(block, motion, pair, a, b);
+    store_pair<W>(block, pair);
   }
 }
 
@@ -263,11 +277,10 @@ GYRE_INLINE void solve_rolling(ContactBlock<W>& block, PairMotion<W>& pair) {
 // Sprung: the spring draws its points to an overlap of `slop`, in both directions, and gives way to what it is not used to.
 // Not sprung: only approach stops, and under load the speed with which springs pushed goes.
 template <int W, bool kSprung, int Count>
-GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W>& pair, const Wide<W>* a, const Wide<W>* b,
-                              float substep) {
+GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W>& pair, float substep) {
   const Wide<W> zero(0.0f), one(1.0f), rate(1.0f / substep);
-  const Vec3W<W> moved = Vec3W<W>{b[8], b[9], b[10]} - Vec3W<W>{a[8], a[9], a[10]};
-  const NormalMotion<W> ways(block, moved, {a[11], a[12], a[13]}, {b[11], b[12], b[13]});
+  const PairWay<W> way = load_way<W>(block);
+  const NormalMotion<W> ways(block, way.moved, way.turned_a, way.turned_b);
   const NormalMotion<W> speeds(block, pair.linear_b - pair.linear_a, pair.angular_a, pair.angular_b);
   const auto is_linked = Mask<W>::of_bits(block.linked);
   const Wide<W> lost = Wide<W>(-kLostSlops) * block.slop;
@@ -353,29 +366,28 @@ GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W>& pair, const
 }
 
 template <int W, bool kSprung>
-GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W>& pair, const Wide<W>* a, const Wide<W>* b,
-                               float substep) {
+GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W>& pair, float substep) {
   switch (block.point_count) {
     case 1:
-      return solve_points<W, kSprung, 1>(block, pair, a, b, substep);
+      return solve_points<W, kSprung, 1>(block, pair, substep);
     case 2:
-      return solve_points<W, kSprung, 2>(block, pair, a, b, substep);
+      return solve_points<W, kSprung, 2>(block, pair, substep);
     case 3:
-      return solve_points<W, kSprung, 3>(block, pair, a, b, substep);
+      return solve_points<W, kSprung, 3>(block, pair, substep);
     default:
-      return solve_points<W, kSprung, 4>(block, pair, a, b, substep);
+      return solve_points<W, kSprung, 4>(block, pair, substep);
   }
 }
 
 // Contacts that bore nothing yet: friction knows no load that limits it, so the normals have to come first once.
 template <int W>
-__attribute__((noinline)) void strike_fresh(ContactBlock<W>& block, PairMotion<W>& pair, const Wide<W>* a, const Wide<W>* b, float substep) {
+GYRE_INLINE void strike_fresh(ContactBlock<W>& block, PairMotion<W>& pair, float substep) {
   const auto fresh = block.fresh > Wide<W>(0.0f);
   const PairMotion<W> old = pair;
   Wide<W> impulses[kMaxManifoldPoints];
   for (int k = 0; k < block.point_count; ++k) impulses[k] = block.points[k].impulse;
   const Wide<W> friction_1 = block.friction_1, friction_2 = block.friction_2, twist = block.twist, sliding = block.sliding;
-  solve_normals<W, true>(block, pair, a, b, substep);
+  solve_normals<W, true>(block, pair, substep);
   solve_friction<W>(block, pair);
   for (int k = 0; k < block.point_count; ++k) {
     block.points[k].impulse = select(fresh, block.points[k].impulse, impulses[k]);
@@ -391,47 +403,52 @@ __attribute__((noinline)) void strike_fresh(ContactBlock<W>& block, PairMotion<W
   pair.angular_b = select<W>(fresh, pair.angular_b, old.angular_b);
 }
 
+// What comes before friction and normals. A function of its own, which reads the bodies itself, so that all others may keep them in
+// registers.
+template <int W>
+__attribute__((noinline)) PairMotion<W> begin_pair(ContactBlock<W>& block, float substep) {
+  PairMotion<W> pair = load_pair<W>(block);
+  if (block.has_fresh != 0) strike_fresh<W>(block, pair, substep);
+  if (block.rolls != 0) solve_rolling<W>(block, pair);
+  return pair;
+}
+
 // Normals last: what bodies move with then closes nowhere; an error of the slip does no harm.
 template <int W>
-void solve_blocks(void* memory, int begin, int end, BodyMotion* motion, float substep) {
+void solve_blocks(void* memory, int begin, int end, float substep) {
   auto* blocks = static_cast<ContactBlock<W>*>(memory);
   for (int i = begin; i < end; ++i) {
     ContactBlock<W>& block = blocks[i];
-    Wide<W> a[kMotionFloats], b[kMotionFloats];
-    load_pair<W>(block, motion, a, b);
-    PairMotion<W> pair = velocities<W>(a, b);
-    if (block.has_fresh != 0) strike_fresh<W>(block, pair, a, b, substep);
-    if (block.rolls != 0) solve_rolling<W>(block, pair);
+    PairMotion<W> pair =
+        (block.has_fresh | block.rolls) != 0 ? begin_pair<W>(block, substep) : load_pair<W>(block);
     solve_friction<W>(block, pair);
-    solve_normals<W, true>(block, pair, a, b, substep);
+    solve_normals<W, true>(block, pair, substep);
     for (int k = 0; k < block.point_count; ++k) block.points[k].total = block.points[k].total + block.points[k].impulse;
     block.total_1 = block.total_1 + block.friction_1;
     block.total_2 = block.total_2 + block.friction_2;
-    store_pair<W>(block, motion, pair, a, b);
+    store_pair<W>(block, pair);
   }
 }
 
 // Once, at the end of a step.
 template <int W>
-void relax_blocks(void* memory, int begin, int end, BodyMotion* motion, float substep) {
+void relax_blocks(void* memory, int begin, int end, float substep) {
   auto* blocks = static_cast<ContactBlock<W>*>(memory);
   for (int i = begin; i < end; ++i) {
     ContactBlock<W>& block = blocks[i];
-    Wide<W> a[kMotionFloats], b[kMotionFloats];
-    load_pair<W>(block, motion, a, b);
-    PairMotion<W> pair = velocities<W>(a, b);
+    PairMotion<W> pair = load_pair<W>(block);
     const Wide<W> friction_1 = block.friction_1, friction_2 = block.friction_2;
     Wide<W> impulses[kMaxManifoldPoints];
     for (int k = 0; k < block.point_count; ++k) impulses[k] = block.points[k].impulse;
     if (block.rolls != 0) solve_rolling<W>(block, pair);
     solve_friction<W>(block, pair);
-    solve_normals<W, false>(block, pair, a, b, substep);
+    solve_normals<W, false>(block, pair, substep);
     for (int k = 0; k < block.point_count; ++k) {
       block.points[k].total = block.points[k].total + (block.points[k].impulse - impulses[k]);
     }
     block.total_1 = block.total_1 + (block.friction_1 - friction_1);
     block.total_2 = block.total_2 + (block.friction_2 - friction_2);
-    store_pair<W>(block, motion, pair, a, b);
+    store_pair<W>(block, pair);
   }
 }
 

@@ -41,8 +41,8 @@ BodyMotion touch(int width, float load) {
   const ContactSettings settings{
       .substep = 1.0f / 240.0f, .step = 1.0f / 60.0f, .rate = 9.0f, .up = {0, 1, 0}};
   kernels.prepare(block, 0, 1, &constraint, order.data(), {&motion, &inertia}, settings);
-  kernels.warm_start(block, 0, 1, &motion);
-  kernels.solve(block, 0, 1, &motion, settings.substep);
+  kernels.warm_start(block, 0, 1);
+  kernels.solve(block, 0, 1, settings.substep);
   return motion;
 }
 

@@ -65,23 +65,6 @@ GYRE_INLINE void fetch_ahead(const ContactConstraint* constraints, const std::ui
   }
 }
 
-template <int W>
-GYRE_INLINE void load_four(const float* const (&record)[W], int first, Wide<W>* out) {
-  if constexpr (W == 1) {
-    for (int c = 0; c < 4; ++c) out[c].v = record[0][first + c];
-  } else {
-    Rows<W>::gather(record, first, out);
-  }
-}
-template <int W>
-GYRE_INLINE void store_four(float* const (&record)[W], int first, const Wide<W>* in) {
-  if constexpr (W == 1) {
-    for (int c = 0; c < 4; ++c) record[0][first + c] = in[c].v;
-  } else {
-    Rows<W>::template scatter<4>(record, first, in);
-  }
-}
-
 // `nowhere` is what lanes without a record read (zeros) and write.
 template <int W>
 LaneRecords<W> find_records(const ContactConstraint* constraints, const std::uint32_t* order, ContactBodies bodies,
@@ -326,18 +309,19 @@ template <int W>
 GYRE_INLINE void prepare_softness(ContactBlock<W>& block, const ContactConstraint* constraints, const std::uint32_t* order,
                                   Wide<W> age, Wide<W> size, const ContactSettings& settings) {
   const Wide<W> zero(0.0f), one(1.0f), aging(settings.aging);
-  Wide<W> yields, both;  // 1: not part of a tree; both bodies can be pushed
+  std::uint32_t rigid = 0;
   for (int lane = 0; lane < W; ++lane) {
-    yields.set(lane, order[lane] != 0xffffffffu && constraints[order[lane]].rigid ? 0.0f : 1.0f);
-    if (order[lane] != 0xffffffffu && constraints[order[lane]].linked) block.linked |= 1u << lane;
-    both.set(lane, block.write_a[lane] == kNoBody || block.write_b[lane] == kNoBody ? 0.0f : 1.0f);
+    if (order[lane] == 0xffffffffu) continue;
+    rigid |= std::uint32_t(constraints[order[lane]].rigid) << lane;
+    block.linked |= std::uint32_t(constraints[order[lane]].linked) << lane;
   }
+  const auto yields = ~Mask<W>::of_bits(rigid), both = Mask<W>::of_bits(block.pushes_a & block.pushes_b);
   const Wide<W> youth = aging / (aging + age);
-  block.rate = keep(yields > zero, youth * Wide<W>(settings.rate));
+  block.rate = keep(yields, youth * Wide<W>(settings.rate));
   block.slop = Wide<W>(kSpringSlop) * size;
   const auto has_slop = block.slop > zero;
-  block.give = keep((yields > zero) & has_slop, youth * Wide<W>(settings.give) / select(has_slop, block.slop, one));
-  const Wide<W> rise = keep(both > zero, Wide<W>(kLowerShare) * dot(block.normal, splat<W>(settings.up)));
+  block.give = keep(yields & has_slop, youth * Wide<W>(settings.give) / select(has_slop, block.slop, one));
+  const Wide<W> rise = keep(both, Wide<W>(kLowerShare) * dot(block.normal, splat<W>(settings.up)));
   block.mobility_a = one - max(rise, zero);
   block.mobility_b = one + min(rise, zero);
 }
@@ -348,12 +332,12 @@ GYRE_INLINE void prepare_impulses(ContactBlock<W>& block, const LaneRecords<W>& 
                                   const ContactSettings& settings, Wide<W>& age) {
   const Wide<W> zero(0.0f), one(1.0f), warm(settings.warm_scale);
   Wide<W> in[4];
-  load_four<W>(records.manifold, kManifoldFriction, in);
+  gather_columns<4, W>(records.manifold, kManifoldFriction, in);
   age = in[0];
   const Vec3W<W> friction = warm * Vec3W<W>{in[1], in[2], in[3]};
   block.friction_1 = dot(friction, block.tangent_1);
   block.friction_2 = dot(friction, block.tangent_2);
-  load_four<W>(records.manifold, kManifoldTwist, in);
+  gather_columns<4, W>(records.manifold, kManifoldTwist, in);
   block.twist = warm * in[0];
   block.rolling_friction = surface.rolling_friction;
   // A surface that ceased to brake rolling starts from nothing: otherwise it would depend on the lanes beside it whether
@@ -370,8 +354,8 @@ GYRE_INLINE void prepare_impulses(ContactBlock<W>& block, const LaneRecords<W>& 
 template <int W>
 GYRE_INLINE void load_inertia(const float* const (&record)[W], Wide<W>& inverse_mass, Sym3W<W>& inverse) {
   Wide<W> low[4], high[4];
-  load_four<W>(record, 0, low);
-  load_four<W>(record, kInertiaMass, high);
+  gather_columns<4, W>(record, 0, low);
+  gather_columns<4, W>(record, kInertiaMass, high);
   inverse = {low[0], low[1], low[2], low[3], high[0], high[1]};
   inverse_mass = high[2];
 }
@@ -379,24 +363,36 @@ GYRE_INLINE void load_inertia(const float* const (&record)[W], Wide<W>& inverse_
 // Lanes of whole numbers: bodies, and what is sliding.
 template <int W>
 void prepare_lanes(ContactBlock<W>& block, const LaneRecords<W>& records, const ContactConstraint* constraints,
-                   const std::uint32_t* order) {
+                   const std::uint32_t* order, BodyMotion* motion) {
   const Wide<W> zero(0.0f);
   const Sym3W<W>& a = block.inverse_inertia_a;
   const Sym3W<W>& b = block.inverse_inertia_b;
   // Whatever pushes a body turns or moves it by a diagonal element.
   const std::uint32_t moves_a = to_bits((block.inverse_mass_a > zero) | (a.xx != zero) | (a.yy != zero) | (a.zz != zero));
   const std::uint32_t moves_b = to_bits((block.inverse_mass_b > zero) | (b.xx != zero) | (b.yy != zero) | (b.zz != zero));
+  block.has_a = block.has_b = 0;
   for (int lane = 0; lane < W; ++lane) {
-    block.read_a[lane] = block.read_b[lane] = block.write_a[lane] = block.write_b[lane] = kNoBody;
+    block.read_a[lane] = block.read_b[lane] = kNoRecord;
+    block.write_a[lane] = block.write_b[lane] = block.nowhere;
     block.sliding.set(lane, 0.0f);
     if ((records.lanes >> lane & 1u) == 0) continue;
     const ContactConstraint& constraint = constraints[order[lane]];
-    block.read_a[lane] = constraint.body_a;
-    block.read_b[lane] = constraint.body_b;
-    if ((moves_a >> lane & 1u) != 0) block.write_a[lane] = constraint.body_a;
-    if ((moves_b >> lane & 1u) != 0) block.write_b[lane] = constraint.body_b;
+    if (constraint.body_a != kNoBody) {
+      float* const record = &motion[constraint.body_a].linear_velocity.x;
+      block.has_a |= 1u << lane;
+      block.read_a[lane] = record;
+      if ((moves_a >> lane & 1u) != 0) block.write_a[lane] = record;
+    }
+    if (constraint.body_b != kNoBody) {
+      float* const record = &motion[constraint.body_b].linear_velocity.x;
+      block.has_b |= 1u << lane;
+      block.read_b[lane] = record;
+      if ((moves_b >> lane & 1u) != 0) block.write_b[lane] = record;
+    }
     block.sliding.set(lane, float(constraint.manifold->sliding));
   }
+  block.pushes_a = block.has_a & moves_a;
+  block.pushes_b = block.has_b & moves_b;
 }
 
 // Which body's centre the arms are measured from, and by how much they differ on the other. From the nearer one: the other
@@ -405,12 +401,7 @@ template <int W>
 GYRE_INLINE Mask<W> place_arms(ContactBlock<W>& block, const PointArms<W>& first) {
   const Wide<W> zero(0.0f);
   const Vec3W<W> none{zero, zero, zero};
-  Wide<W> reads_a, reads_b;
-  for (int lane = 0; lane < W; ++lane) {
-    reads_a.set(lane, block.read_a[lane] == kNoBody ? 0.0f : 1.0f);
-    reads_b.set(lane, block.read_b[lane] == kNoBody ? 0.0f : 1.0f);
-  }
-  const auto has_a = reads_a > zero, has_b = reads_b > zero;
+  const auto has_a = Mask<W>::of_bits(block.has_a), has_b = Mask<W>::of_bits(block.has_b);
   const auto nearer_a = has_a & (~has_b | (length_squared(first.from_a) <= length_squared(first.from_b)));
   const Vec3W<W> shift = cross(first.from_b - first.from_a, block.normal);  // of arms from A to B
   block.arm_shift_a = select<W>(has_a & ~nearer_a, -shift, none);
@@ -428,35 +419,35 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
   block.rolls = block.has_fresh = 0;
   block.linked = 0;
   Wide<W> in[4];
-  load_four<W>(records.manifold, kManifoldNormal, in);
+  gather_columns<4, W>(records.manifold, kManifoldNormal, in);
   block.normal = {in[0], in[1], in[2]};
   block.tangent_1 = any_perpendicular<W>(block.normal);
   block.tangent_2 = cross(block.normal, block.tangent_1);
   load_inertia<W>(records.inertia_a, block.inverse_mass_a, block.inverse_inertia_a);
   load_inertia<W>(records.inertia_b, block.inverse_mass_b, block.inverse_inertia_b);
-  prepare_lanes<W>(block, records, constraints, order);
+  prepare_lanes<W>(block, records, constraints, order, bodies.motion);
   PointArms<W> arms[kMaxManifoldPoints];
   auto nearer_a = one > zero;
   for (int k = 0; k < block.point_count; ++k) {
     PointBlock<W>& point = block.points[k];
-    load_four<W>(records.point[k], kPointA, in);
+    gather_columns<4, W>(records.point[k], kPointA, in);
     arms[k].from_a = {in[0], in[1], in[2]};
     point.separation = in[3];
-    load_four<W>(records.point[k], kPointB, in);
+    gather_columns<4, W>(records.point[k], kPointB, in);
     arms[k].from_b = {in[0], in[1], in[2]};
     if (k == 0) nearer_a = place_arms<W>(block, arms[0]);
-    load_four<W>(records.point[k], kPointImpulse, in);
+    gather_columns<4, W>(records.point[k], kPointImpulse, in);
     point.impulse = warm * in[0];
     point.held = warm * in[2];
     point.total = zero;
     point.arm = cross(select<W>(nearer_a, arms[k].from_a, arms[k].from_b), block.normal);
   }
-  load_four<W>(records.constraint, kConstraintFriction, in);
+  gather_columns<4, W>(records.constraint, kConstraintFriction, in);
   const SurfaceLanes<W> surface{in[0], in[1], in[2], in[3]};
-  load_four<W>(records.constraint, kConstraintSize, in);
+  gather_columns<4, W>(records.constraint, kConstraintSize, in);
   const Wide<W> size = in[0];
   block.push_speed = in[1];
-  load_four<W>(records.constraint, kConstraintSize + 2, in);
+  gather_columns<4, W>(records.constraint, kConstraintSize + 2, in);
   const Vec3W<W> surface_velocity{in[0], in[1], in[2]};
   block.surface_1 = dot(surface_velocity, block.tangent_1);
   block.surface_2 = dot(surface_velocity, block.tangent_2);
@@ -490,7 +481,7 @@ void finish_block(const ContactBlock<W>& block, const ContactConstraint* constra
   alignas(64) float nowhere[80] = {};
   const LaneRecords<W> records = find_records<W>(constraints, order, {}, nowhere);
   Wide<W> row[4];
-  load_four<W>(records.manifold, kManifoldFriction, row);
+  gather_columns<4, W>(records.manifold, kManifoldFriction, row);
   // Of the whole step: what bore nothing just as it ended is no reason to forget all.
   Wide<W> load = zero;
   for (int k = 0; k < block.point_count; ++k) load = max(load, block.points[k].total);
@@ -502,9 +493,9 @@ void finish_block(const ContactBlock<W>& block, const ContactConstraint* constra
   const Vec3W<W> friction = block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2 + none;
   const Vec3W<W> total = block.total_1 * block.tangent_1 + block.total_2 * block.tangent_2 + none;
   const Wide<W> friction_row[4] = {age, friction.x, friction.y, friction.z};
-  store_four<W>(records.manifold, kManifoldFriction, friction_row);
+  scatter_columns<4, W>(records.manifold, kManifoldFriction, friction_row);
   const Wide<W> twist_row[4] = {block.twist + zero, block.rolling.x + zero, block.rolling.y + zero, block.rolling.z + zero};
-  store_four<W>(records.manifold, kManifoldTwist, twist_row);
+  scatter_columns<4, W>(records.manifold, kManifoldTwist, twist_row);
   for (int lane = 0; lane < W; ++lane) {
     if ((records.lanes >> lane & 1u) == 0) continue;
     Manifold& manifold = *constraints[order[lane]].manifold;
@@ -513,11 +504,11 @@ void finish_block(const ContactBlock<W>& block, const ContactConstraint* constra
   }
   for (int k = 0; k < block.point_count; ++k) {
     const PointBlock<W>& point = block.points[k];
-    load_four<W>(records.point[k], kPointImpulse, row);
+    gather_columns<4, W>(records.point[k], kPointImpulse, row);
     const Wide<W> impulse = point.impulse + zero;
     const Wide<W> held = keep(point.total > zero, row[2] + gain * (impulse - row[2]));
     const Wide<W> point_row[4] = {impulse, row[1] + (point.total + zero), held, row[3]};
-    store_four<W>(records.point[k], kPointImpulse, point_row);
+    scatter_columns<4, W>(records.point[k], kPointImpulse, point_row);
   }
 }
 

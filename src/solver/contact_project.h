@@ -19,18 +19,11 @@ constexpr int kProjectionSweeps = 8;
 
 // Displacements so far, without those of bodies that nothing pushes: their records hold velocities.
 template <int W>
-GYRE_INLINE PairMotion<W> displacements(const ContactBlock<W>& block, const Wide<W>* a, const Wide<W>* b) {
-  Wide<W> moves_a, moves_b;
-  for (int lane = 0; lane < W; ++lane) {
-    moves_a.set(lane, block.write_a[lane] == kNoBody ? 0.0f : 1.0f);
-    moves_b.set(lane, block.write_b[lane] == kNoBody ? 0.0f : 1.0f);
-  }
-  const Wide<W> zero(0.0f);
-  const auto in_a = moves_a > zero, in_b = moves_b > zero;
-  const PairMotion<W> pair = velocities<W>(a, b);
-  const Vec3W<W> none{zero, zero, zero};
-  return {select<W>(in_a, pair.linear_a, none), select<W>(in_a, pair.angular_a, none), select<W>(in_b, pair.linear_b, none),
-          select<W>(in_b, pair.angular_b, none)};
+GYRE_INLINE PairMotion<W> displacements(const ContactBlock<W>& block) {
+  const auto in_a = Mask<W>::of_bits(block.pushes_a), in_b = Mask<W>::of_bits(block.pushes_b);
+  const PairMotion<W> pair = load_pair<W>(block);
+  return {keep<W>(in_a, pair.linear_a), keep<W>(in_a, pair.angular_a), keep<W>(in_b, pair.linear_b),
+          keep<W>(in_b, pair.angular_b)};
 }
 
 // What a unit push at each point does to the two bodies, and to the separations of the points.
@@ -61,13 +54,12 @@ GYRE_INLINE PushResponse<W> push_response(const ContactBlock<W>& block) {
 
 // How far each point wants to be pushed; at least minus the way that it may close. False if no lane overlaps.
 template <int W>
-GYRE_INLINE bool wanted_pushes(const ContactBlock<W>& block, const PairMotion<W>& pair, const Wide<W>* a, const Wide<W>* b,
-                               float step, Wide<W>* wanted) {
+GYRE_INLINE bool wanted_pushes(const ContactBlock<W>& block, const PairMotion<W>& pair, float step, Wide<W>* wanted) {
   const Wide<W> zero(0.0f);
   // The way so far in the step, and what was pushed already.
-  const Vec3W<W> moved = (Vec3W<W>{b[8], b[9], b[10]} - Vec3W<W>{a[8], a[9], a[10]}) + (pair.linear_b - pair.linear_a);
-  const NormalMotion<W> ways(block, moved, Vec3W<W>{a[11], a[12], a[13]} + pair.angular_a,
-                             Vec3W<W>{b[11], b[12], b[13]} + pair.angular_b);
+  const PairWay<W> way = load_way<W>(block);
+  const NormalMotion<W> ways(block, way.moved + (pair.linear_b - pair.linear_a), way.turned_a + pair.angular_a,
+                             way.turned_b + pair.angular_b);
   const Wide<W> most = block.push_speed * Wide<W>(step);
   auto overlaps = zero < zero;
   for (int i = 0; i < block.point_count; ++i) {
@@ -82,16 +74,14 @@ GYRE_INLINE bool wanted_pushes(const ContactBlock<W>& block, const PairMotion<W>
 }
 
 template <int W>
-void project_blocks(void* memory, int begin, int end, BodyMotion* motion, float step) {
+void project_blocks(void* memory, int begin, int end, float step) {
   auto* blocks = static_cast<ContactBlock<W>*>(memory);
   const Wide<W> zero(0.0f);
   for (int n = begin; n < end; ++n) {
     ContactBlock<W>& block = blocks[n];
-    Wide<W> a[kMotionFloats], b[kMotionFloats];
-    load_pair<W>(block, motion, a, b);
-    PairMotion<W> pair = displacements<W>(block, a, b);
+    PairMotion<W> pair = displacements<W>(block);
     Wide<W> wanted[kMaxManifoldPoints];
-    if (!wanted_pushes<W>(block, pair, a, b, step, wanted)) continue;
+    if (!wanted_pushes<W>(block, pair, step, wanted)) continue;
     const PushResponse<W> response = push_response<W>(block);
     const int count = block.point_count;
     Wide<W> pushes[kMaxManifoldPoints], relief[kMaxManifoldPoints];
@@ -115,7 +105,7 @@ void project_blocks(void* memory, int begin, int end, BodyMotion* motion, float 
     }
     pair.linear_a = pair.linear_a - (response.inverse_mass_a * total) * block.normal;
     pair.linear_b = pair.linear_b + (response.inverse_mass_b * total) * block.normal;
-    store_pair<W>(block, motion, pair, a, b);
+    store_pair<W>(block, pair);
   }
 }
 
