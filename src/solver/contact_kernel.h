@@ -230,17 +230,22 @@ GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W>& pair) {
   const Wide<W> use = (f1 * f1 + f2 * f2) * (grip * grip) + (f3 * f3) * (twist_grip * twist_grip);
   const auto sticks = use <= one;
 
-  // Sliding: a step along the slip, alike in every direction, then onto the ellipsoid.
-  const Wide<W> g1 = block.friction_1 - block.slide_mass * v1;
-  const Wide<W> g2 = block.friction_2 - block.slide_mass * v2;
-  const Wide<W> g3 = block.twist - block.slide_mass * (block.twist_radius * block.twist_radius) * v3;
-  const Wide<W> slide_grip = block.dynamic_grip * per_load;
-  const Wide<W> slide_twist_grip = block.dynamic_twist_grip * per_load;
-  const Wide<W> reach = (g1 * g1 + g2 * g2) * (slide_grip * slide_grip) + (g3 * g3) * (slide_twist_grip * slide_twist_grip);
-  const Wide<W> scale = select(reach > one, one / sqrt(reach), one);
-  f1 = keep(grip > zero, select(sticks, f1, g1 * scale));
-  f2 = keep(grip > zero, select(sticks, f2, g2 * scale));
-  f3 = keep(twist_grip > zero, select(sticks, f3, g3 * scale));
+  if (!all(sticks)) {
+    // Sliding: a step along the slip, alike in every direction, then onto the ellipsoid.
+    const Wide<W> g1 = block.friction_1 - block.slide_mass * v1;
+    const Wide<W> g2 = block.friction_2 - block.slide_mass * v2;
+    const Wide<W> g3 = block.twist - block.slide_mass * (block.twist_radius * block.twist_radius) * v3;
+    const Wide<W> slide_grip = block.dynamic_grip * per_load;
+    const Wide<W> slide_twist_grip = block.dynamic_twist_grip * per_load;
+    const Wide<W> reach = (g1 * g1 + g2 * g2) * (slide_grip * slide_grip) + (g3 * g3) * (slide_twist_grip * slide_twist_grip);
+    const Wide<W> scale = select(reach > one, one / sqrt(reach), one);
+    f1 = select(sticks, f1, g1 * scale);
+    f2 = select(sticks, f2, g2 * scale);
+    f3 = select(sticks, f3, g3 * scale);
+  }
+  f1 = keep(grip > zero, f1);
+  f2 = keep(grip > zero, f2);
+  f3 = keep(twist_grip > zero, f3);
   block.sliding = select(sticks, zero, one);
 
   const Wide<W> d1 = f1 - block.friction_1;
