@@ -137,7 +137,8 @@ void follow_contacts(const Group& g, int begin, int end) {
     const auto inverse_of = [&](std::int32_t body) {
       return body == kNoBody ? nullptr : &s.contact_bodies.inertia[body].inverse;
     };
-    s.kernels.follow(s.blocks, block, lane, arms, inverse_of(constraint.body_a), inverse_of(constraint.body_b));
+    s.kernels.follow(s.blocks, block, lane, arms, inverse_of(constraint.body_a),
+                     inverse_of(constraint.body_b));
     Vec3& spin = s.contact_bodies.motion[rolling.body].angular_velocity;
     spin = spin + rolling.drift;
   });
@@ -160,7 +161,8 @@ void relax_contacts_stage(void* context, int begin, int end, int) {
 }
 void project_contacts_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
-  g.solve->kernels.project(g.solve->blocks, int(g.first) + begin, int(g.first) + end, g.solve->contact_settings.step);
+  g.solve->kernels.project(g.solve->blocks, int(g.first) + begin, int(g.first) + end,
+                           g.solve->contact_settings.step);
 }
 void begin_projection_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
