@@ -326,12 +326,27 @@ constexpr int kRecordFloats = 16;
 
 // Where record `index` lies, or `otherwise` for a negative index. With bit operations instead of a branch: which lanes of
 // a block have no record is hard to predict.
+GYRE_INLINE std::uintptr_t record_place(std::uintptr_t base, std::int32_t index) {
+  return base + std::uintptr_t(std::intptr_t(index)) * (kRecordFloats * 4u);
+}
 template <class Number>
 GYRE_INLINE Number* record_or(Number* base, std::int32_t index, Number* otherwise) {
-  const std::uintptr_t record =
-      std::uintptr_t(base) + std::uintptr_t(std::intptr_t(index)) * (kRecordFloats * 4u);
+  const std::uintptr_t record = record_place(std::uintptr_t(base), index);
   const std::uintptr_t none = std::uintptr_t(std::intptr_t(index) >> (8 * sizeof(std::intptr_t) - 1));
   return reinterpret_cast<Number*>(record ^ ((record ^ std::uintptr_t(otherwise)) & none));
+}
+// The same for each lane. Most blocks have a record in every lane, and their lanes need not be asked one by one.
+template <int W, class Number>
+GYRE_INLINE void locate_records(Number* base, const std::int32_t* indices, Number* otherwise,
+                                Number* (&record)[W]) {
+  if (none(WideInt<W>::load_unaligned(indices) < WideInt<W>(0))) {
+    GYRE_UNROLL
+    for (int i = 0; i < W; ++i)
+      record[i] = reinterpret_cast<Number*>(record_place(std::uintptr_t(base), indices[i]));
+  } else {
+    GYRE_UNROLL
+    for (int i = 0; i < W; ++i) record[i] = record_or(base, indices[i], otherwise);
+  }
 }
 
 // Blocks of four floats of W records. Loaded so that 128-bit lane l of row j is record 4 l + j, a transposition of rows
@@ -496,8 +511,7 @@ alignas(64) constexpr float kNoRecord[kRecordFloats] = {};
 template <int Columns, int W>
 GYRE_INLINE void gather(const float* base, const std::int32_t* indices, Wide<W>* out) {
   const float* record[W];
-  GYRE_UNROLL
-  for (int i = 0; i < W; ++i) record[i] = record_or(base, indices[i], kNoRecord);
+  locate_records<W>(base, indices, kNoRecord, record);
   gather_columns<Columns, W>(record, 0, out);
 }
 template <int W>
@@ -520,8 +534,7 @@ GYRE_INLINE void scatter(float* base, const std::int32_t* indices, const Wide<W>
   } else {
     alignas(64) float nowhere[kRecordFloats];
     float* record[W];
-    GYRE_UNROLL
-    for (int i = 0; i < W; ++i) record[i] = record_or(base, indices[i], nowhere);
+    locate_records<W>(base, indices, static_cast<float*>(nowhere), record);
     scatter_columns<Columns, W>(record, 0, in);
   }
 }
