@@ -22,24 +22,31 @@ JointPlaces joint_places(const RigidWorld& w, std::uint32_t slot) {
   return places;
 }
 
-JointWorks begin_joints(RigidWorld& w, const SolveBatch& batch, float warm_scale, Arena& arena) {
+void begin_joint(RigidWorld& w, const SolveBatch& batch, std::size_t i, float warm_scale,
+                 const JointWorks& works, Arena& arena) {
+  const std::uint32_t slot = batch.joints[i];
+  JointDetail* const detail = detail_of(w.joints, slot);
+  std::span<const PathPoint> path;
+  if (detail != nullptr) path = path_of(w.joints, *detail);
+  begin_joint(w.joints.records[slot], detail, path, works.work[i], warm_scale, arena);
+  works.places[i] = joint_places(w, slot);
+}
+
+JointWorks begin_joints(RigidWorld& w, const SolveBatch& batch, std::span<const std::uint8_t> elsewhere,
+                        float warm_scale, Arena& arena) {
   const std::size_t count = batch.joints.size();
   const JointWorks works{arena.make<JointWork>(count), arena.make<JointPlaces>(count)};
   for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t slot = batch.joints[i];
-    JointRecord& joint = w.joints.records[slot];
-    JointDetail* const detail = detail_of(w.joints, slot);
-    std::span<const PathPoint> path;
-    if (detail != nullptr) path = path_of(w.joints, *detail);
-    begin_joint(joint, detail, path, works.work[i], warm_scale, arena);
-    works.places[i] = joint_places(w, slot);
+    if (elsewhere.empty() || elsewhere[i] == 0) begin_joint(w, batch, i, warm_scale, works, arena);
   }
   return works;
 }
 
-void finish_joints(RigidWorld& w, const SolveBatch& batch, std::span<const JointWork> work) {
-  for (std::size_t i = 0; i < batch.joints.size(); ++i)
-    finish_joint(w.joints.records[batch.joints[i]], work[i]);
+void finish_joints(RigidWorld& w, const SolveBatch& batch, std::span<const std::uint8_t> elsewhere,
+                   std::span<const JointWork> work) {
+  for (std::size_t i = 0; i < batch.joints.size(); ++i) {
+    if (elsewhere.empty() || elsewhere[i] == 0) finish_joint(w.joints.records[batch.joints[i]], work[i]);
+  }
 }
 
 }  // namespace gyre

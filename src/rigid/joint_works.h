@@ -8,6 +8,19 @@
 
 namespace gyre {
 
+// What a joint adds to the plan of its net: the bodies that it holds and that move (else kNoBody), and its equations.
+struct NetJoint {
+  std::int32_t body_a = kNoBody, body_b = kNoBody;
+  std::int32_t equations = 0;
+  bool operator==(const NetJoint&) const = default;
+};
+// Calls fn(body) for those of its bodies that move.
+template <class Fn>
+void for_moving(const NetJoint& joint, Fn&& fn) {
+  if (joint.body_a != kNoBody) fn(std::uint32_t(joint.body_a));
+  if (joint.body_b != kNoBody) fn(std::uint32_t(joint.body_b));
+}
+
 struct JointWorks {
   std::span<JointWork> work;  // by place in the batch's list of joints
   std::span<JointPlaces> places;
@@ -15,8 +28,14 @@ struct JointWorks {
 
 // Where the ends of the joint stand as the step begins.
 JointPlaces joint_places(const RigidWorld& w, std::uint32_t slot);
-JointWorks begin_joints(RigidWorld& w, const SolveBatch& batch, float warm_scale, Arena& arena);
+// Of one joint, `i` in the batch's list.
+void begin_joint(RigidWorld& w, const SolveBatch& batch, std::size_t i, float warm_scale,
+                 const JointWorks& works, Arena& arena);
+// Of all but those that are begun elsewhere: `elsewhere` has 1 for these, or is empty.
+JointWorks begin_joints(RigidWorld& w, const SolveBatch& batch, std::span<const std::uint8_t> elsewhere,
+                        float warm_scale, Arena& arena);
 // What the work knows goes back into the joints.
-void finish_joints(RigidWorld& w, const SolveBatch& batch, std::span<const JointWork> work);
+void finish_joints(RigidWorld& w, const SolveBatch& batch, std::span<const std::uint8_t> elsewhere,
+                   std::span<const JointWork> work);
 
 }  // namespace gyre

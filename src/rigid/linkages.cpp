@@ -24,35 +24,26 @@ struct Graph {
   std::span<std::uint32_t> parent;   // by body's place
 };
 
-// Calls fn(body) for those of the joint's bodies that move.
-template <class Fn>
-void for_active(const RigidWorld& w, const JointRecord& joint, Fn&& fn) {
-  for (const std::int32_t body : {joint.body_a, joint.body_b}) {
-    if (body != kNoBody && is_active(w, std::uint32_t(body))) fn(std::uint32_t(body));
-  }
-}
-
 std::uint32_t root_of(const Graph& graph, std::uint32_t place) {
   const std::span<std::uint32_t> parent = graph.parent;
   while (parent[place] != place) place = parent[place] = parent[parent[place]];
   return place;
 }
 
-Graph make_graph(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
+Graph make_graph(std::span<const NetJoint> all, std::size_t bodies, std::span<const std::uint32_t> places,
                  Arena& arena) {
   Graph graph;
-  const std::span<std::uint32_t> joints = arena.make<std::uint32_t>(batch.joints.size());
-  graph.first = arena.make<std::uint32_t>(batch.bodies.size() + 1);
-  graph.parent = arena.make<std::uint32_t>(batch.bodies.size());
+  const std::span<std::uint32_t> joints = arena.make<std::uint32_t>(all.size());
+  graph.first = arena.make<std::uint32_t>(bodies + 1);
+  graph.parent = arena.make<std::uint32_t>(bodies);
   for (std::uint32_t& first : graph.first) first = 0;
   for (std::uint32_t place = 0; place < graph.parent.size(); ++place) graph.parent[place] = place;
   std::size_t count = 0, ends = 0;
-  for (std::uint32_t i = 0; i < batch.joints.size(); ++i) {
-    const JointRecord& joint = w.joints.records[batch.joints[i]];
-    if (count_equations(joint, detail_of(w.joints, batch.joints[i])) == 0) continue;
+  for (std::uint32_t i = 0; i < all.size(); ++i) {
+    if (all[i].equations == 0) continue;
     joints[count++] = i;
     std::uint32_t previous = kNone;
-    for_active(w, joint, [&](std::uint32_t body) {
+    for_moving(all[i], [&](std::uint32_t body) {
       ++graph.first[places[body] + 1];
       ++ends;
       if (previous != kNone) {
@@ -66,10 +57,10 @@ Graph make_graph(const RigidWorld& w, const SolveBatch& batch, std::span<const s
   for (std::size_t i = 1; i < graph.first.size(); ++i) graph.first[i] += graph.first[i - 1];
   graph.at_body = arena.make<std::uint32_t>(ends);
   const ArenaScope scope(arena);
-  const std::span<std::uint32_t> used = arena.make<std::uint32_t>(batch.bodies.size());
+  const std::span<std::uint32_t> used = arena.make<std::uint32_t>(bodies);
   for (std::uint32_t& n : used) n = 0;
   for (std::uint32_t n = 0; n < graph.joints.size(); ++n) {
-    for_active(w, w.joints.records[batch.joints[graph.joints[n]]], [&](std::uint32_t body) {
+    for_moving(all[graph.joints[n]], [&](std::uint32_t body) {
       const std::uint32_t place = places[body];
       graph.at_body[graph.first[place] + used[place]++] = n;
     });
@@ -83,19 +74,18 @@ struct Groups {
   std::span<std::uint32_t> ends;
   std::span<std::uint32_t> local;  // by number in graph.joints: which of its group it is
 };
-Groups group_joints(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
-                    const Graph& graph, Arena& arena) {
+Groups group_joints(std::span<const NetJoint> all, std::span<const std::uint32_t> places, const Graph& graph,
+                    Arena& arena) {
   Groups groups{arena.make<std::uint32_t>(graph.joints.size()),
                 arena.make<std::uint32_t>(graph.joints.size()),
                 arena.make<std::uint32_t>(graph.joints.size())};
-  const std::span<std::uint32_t> group_of_root = arena.make<std::uint32_t>(batch.bodies.size());
+  const std::span<std::uint32_t> group_of_root = arena.make<std::uint32_t>(graph.parent.size());
   const std::span<std::uint32_t> group_of = arena.make<std::uint32_t>(graph.joints.size());
   for (std::uint32_t& group : group_of_root) group = kNone;
   std::uint32_t count = 0;
   for (std::uint32_t n = 0; n < graph.joints.size(); ++n) {
     std::uint32_t place = kNone;
-    for_active(w, w.joints.records[batch.joints[graph.joints[n]]],
-               [&](std::uint32_t body) { place = places[body]; });
+    for_moving(all[graph.joints[n]], [&](std::uint32_t body) { place = places[body]; });
     std::uint32_t& group = group_of_root[root_of(graph, place)];
     if (group == kNone) {
       group = count;
@@ -116,11 +106,12 @@ Groups group_joints(const RigidWorld& w, const SolveBatch& batch, std::span<cons
 class LinkageMaker {
  public:
   LinkageMaker(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
-               std::span<const JointWork> work, const Graph& graph, std::span<const std::uint32_t> local,
-               std::size_t most, DenseNets& dense, Arena& arena)
+               std::span<const NetJoint> joints, std::span<const JointWork> work, const Graph& graph,
+               std::span<const std::uint32_t> local, std::size_t most, DenseNets& dense, Arena& arena)
       : w_(w),
         batch_(batch),
         places_(places),
+        joints_(joints),
         work_(work),
         graph_(graph),
         local_(local),
@@ -132,7 +123,7 @@ class LinkageMaker {
   }
 
   bool make(std::span<const std::uint32_t> members, Linkage& linkage) {
-    const auto joint_at = [&](std::size_t i) { return net_joint(members[i]); };
+    const auto joint_at = [&](std::size_t i) -> const NetJoint& { return net_joint(members[i]); };
     if (dense_.holds(members.size(), joint_at)) return false;
     const std::size_t pairs = count_pairs(members);
     if (pairs > kMostPairsPerJoint * members.size()) return false;
@@ -175,17 +166,7 @@ class LinkageMaker {
   std::span<LinkageShape> shapes() const { return shapes_.first(shape_count_); }
 
  private:
-  const JointRecord& record(std::uint32_t number) const {
-    return w_.joints.records[batch_.joints[graph_.joints[number]]];
-  }
-  NetJoint net_joint(std::uint32_t number) const {
-    const JointRecord& joint = record(number);
-    const auto moving = [&](std::int32_t body) {
-      return body != kNoBody && is_active(w_, std::uint32_t(body)) ? body : kNoBody;
-    };
-    return {moving(joint.body_a), moving(joint.body_b),
-            count_equations(joint, detail_of(w_.joints, batch_.joints[graph_.joints[number]]))};
-  }
+  const NetJoint& net_joint(std::uint32_t number) const { return joints_[graph_.joints[number]]; }
   std::span<const std::uint32_t> at_body(std::uint32_t body) const {
     const std::uint32_t place = places_[body];
     return graph_.at_body.subspan(graph_.first[place], graph_.first[place + 1] - graph_.first[place]);
@@ -193,7 +174,7 @@ class LinkageMaker {
   std::size_t count_pairs(std::span<const std::uint32_t> members) const {
     std::size_t twice = 0;
     for (const std::uint32_t n : members) {
-      for_active(w_, record(n), [&](std::uint32_t body) { twice += at_body(body).size() - 1; });
+      for_moving(net_joint(n), [&](std::uint32_t body) { twice += at_body(body).size() - 1; });
     }
     return twice / 2;
   }
@@ -205,7 +186,7 @@ class LinkageMaker {
       node.record = batch_.joints[node.work];
       node.body_a = w_.joints.records[node.record].body_a;
       node.body_b = w_.joints.records[node.record].body_b;
-      node.count = count_equations(w_.joints.records[node.record], detail_of(w_.joints, node.record));
+      node.count = joints_[node.work].equations;
     }
   }
   // The bodies that move, each once, in the order in which the joints name them.
@@ -233,7 +214,7 @@ class LinkageMaker {
                   std::span<LinkageCoupling> couplings, std::span<BlockEdge> edges) const {
     std::size_t used = 0;
     for (std::uint32_t i = 0; i < members.size(); ++i) {
-      for_active(w_, record(members[i]), [&](std::uint32_t body) {
+      for_moving(net_joint(members[i]), [&](std::uint32_t body) {
         for (const std::uint32_t n : at_body(body)) {
           const std::uint32_t other = local_[n];
           if (other >= i) break;  // in order
@@ -306,6 +287,7 @@ class LinkageMaker {
   const RigidWorld& w_;
   const SolveBatch& batch_;
   std::span<const std::uint32_t> places_;
+  std::span<const NetJoint> joints_;
   std::span<const JointWork> work_;
   const Graph& graph_;
   std::span<const std::uint32_t> local_;
@@ -318,7 +300,7 @@ class LinkageMaker {
 
 }  // namespace
 
-bool DenseNets::holds(std::size_t size, FunctionRef<NetJoint(std::size_t)> joint_at) const {
+bool DenseNets::holds(std::size_t size, FunctionRef<const NetJoint&(std::size_t)> joint_at) const {
   for (const Net& net : nets_) {
     if (net.size != size) continue;
     std::size_t same = 0;
@@ -327,23 +309,36 @@ bool DenseNets::holds(std::size_t size, FunctionRef<NetJoint(std::size_t)> joint
   }
   return false;
 }
+bool DenseNets::holds(std::span<const NetJoint> joints) const {
+  return holds(joints.size(), [&](std::size_t i) -> const NetJoint& { return joints[i]; });
+}
 
-void DenseNets::add(std::size_t size, FunctionRef<NetJoint(std::size_t)> joint_at) {
+void DenseNets::add(std::size_t size, FunctionRef<const NetJoint&(std::size_t)> joint_at) {
   if (nets_.size() == kMost) nets_.clear(), joints_.clear();
   nets_.push_back({joints_.size(), size});
   for (std::size_t i = 0; i < size; ++i) joints_.push_back(joint_at(i));
 }
+void DenseNets::add(std::span<const NetJoint> joints) {
+  add(joints.size(), [&](std::size_t i) -> const NetJoint& { return joints[i]; });
+}
+
+Linkages no_linkages(std::size_t joints, Arena& arena) {
+  const std::span<std::uint8_t> swept = arena.make<std::uint8_t>(joints);
+  for (std::uint8_t& flag : swept) flag = 1;
+  return {{}, {}, {}, swept};
+}
 
 Linkages find_linkages(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
-                       std::span<const JointWork> work, DenseNets& dense, Arena& arena) {
-  const std::span<std::uint8_t> swept = arena.make<std::uint8_t>(batch.joints.size());
-  for (std::uint8_t& flag : swept) flag = 1;
-  if (batch.joints.empty()) return {{}, {}, {}, swept};
-  const Graph graph = make_graph(w, batch, places, arena);
-  const Groups groups = group_joints(w, batch, places, graph, arena);
+                       std::span<const NetJoint> joints, std::span<const JointWork> work, DenseNets& dense,
+                       Arena& arena) {
+  if (joints.empty()) return {};
+  const Graph graph = make_graph(joints, batch.bodies.size(), places, arena);
+  const Groups groups = group_joints(joints, places, graph, arena);
   // Those of their own from the front, those alike from the back.
   const std::span<Linkage> linkages = arena.make<Linkage>(groups.ends.size());
-  LinkageMaker maker(w, batch, places, work, graph, groups.local, groups.ends.size(), dense, arena);
+  const std::span<std::uint8_t> swept = arena.make<std::uint8_t>(joints.size());
+  for (std::uint8_t& flag : swept) flag = 1;
+  LinkageMaker maker(w, batch, places, joints, work, graph, groups.local, groups.ends.size(), dense, arena);
   std::size_t own = 0, alike = linkages.size();
   for (std::size_t group = 0; group < groups.ends.size(); ++group) {
     const std::uint32_t begin = group == 0 ? 0 : groups.ends[group - 1];
@@ -353,6 +348,8 @@ Linkages find_linkages(const RigidWorld& w, const SolveBatch& batch, std::span<c
     for (const LinkageNode& node : linkage.nodes) swept[node.work] = 0;
     linkages[linkage.shape < 0 ? own++ : --alike] = linkage;
   }
+  const bool is_dense = !linkages.empty() && own == 0 && alike == linkages.size();
+  if (is_dense && !dense.holds(joints)) dense.add(joints);
   return {linkages.first(own), linkages.subspan(alike), maker.shapes(), swept};
 }
 

@@ -5,6 +5,7 @@
 #include "base/arena.h"
 #include "base/array.h"
 #include "base/function_ref.h"
+#include "rigid/joint_works.h"
 #include "rigid/rigid_world.h"
 #include "rigid/solve_batches.h"
 #include "solver/lane_records.h"
@@ -27,23 +28,18 @@ struct Linkages {
   std::span<const std::uint8_t> swept;  // by place in the batch's list of joints: 1 if it is in no linkage
 };
 
-// What a joint adds to the plan of its net: the bodies that it holds and that move (else kNoBody), and its equations.
-struct NetJoint {
-  std::int32_t body_a = kNoBody, body_b = kNoBody;
-  std::int32_t equations = 0;
-  bool operator==(const NetJoint&) const = default;
-};
-
-// Nets that were found too dense to be planned, by all that the plan is made of: whoever asks for the same again need not try. Kept
-// from step to step; what is in it never changes a result.
+// Nets that were found too dense to be planned, by all that the plan is made of: whoever asks for the same again need not try. Also
+// all joints of a batch together, where no net of it can be. Kept from step to step; what is in it never changes a result.
 class DenseNets {
  public:
   // Whether a net of so many joints, in this order, was added before.
-  bool holds(std::size_t size, FunctionRef<NetJoint(std::size_t)> joint_at) const;
-  void add(std::size_t size, FunctionRef<NetJoint(std::size_t)> joint_at);
+  bool holds(std::size_t size, FunctionRef<const NetJoint&(std::size_t)> joint_at) const;
+  bool holds(std::span<const NetJoint> joints) const;
+  void add(std::size_t size, FunctionRef<const NetJoint&(std::size_t)> joint_at);
+  void add(std::span<const NetJoint> joints);
 
  private:
-  static constexpr std::size_t kMost = 8;
+  static constexpr std::size_t kMost = 16;
   struct Net {
     std::size_t first = 0, size = 0;
   };
@@ -51,9 +47,12 @@ class DenseNets {
   Array<NetJoint> joints_;  // of all nets, one after the other
 };
 
-// Of one batch; `places` are those of all (solve_batches.h), `work` that of the batch's joints.
+// Of one batch; `places` are those of all (solve_batches.h), `joints` and `work` are of the batch's joints.
 Linkages find_linkages(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
-                       std::span<const JointWork> work, DenseNets& dense, Arena& arena);
+                       std::span<const NetJoint> joints, std::span<const JointWork> work, DenseNets& dense,
+                       Arena& arena);
+// Where all joints are swept.
+Linkages no_linkages(std::size_t joints, Arena& arena);
 
 // Notes which linkages that are solved alone have stops. Returns room to solve these in, by worker.
 std::span<std::span<double>> find_stops(const Linkages& linkages, std::span<const JointWork> work,

@@ -169,23 +169,39 @@ void gather_contacts(Solve& solve, Arena& arena, TaskSystem& tasks) {
   }
 }
 
-void gather_joints(Solve& solve) {
+void look_at_joints(Solve& solve, Arena& arena) {
   RigidWorld& w = solve.w;
+  solve.net_joints = arena.make<NetJoint>(solve.batch.joints.size());
+  solve.ball_lanes = arena.make<std::uint8_t>(solve.batch.joints.size());
+  const auto look = [&](std::int32_t body, bool is_spring) {
+    if (body == kNoBody) return kNoBody;
+    if (!is_spring) touch_body(w, std::uint32_t(body), kPlaceShown);
+    return is_active(w, std::uint32_t(body)) ? body : kNoBody;
+  };
+  for (std::size_t i = 0; i < solve.batch.joints.size(); ++i) {
+    const std::uint32_t slot = solve.batch.joints[i];
+    const JointRecord& joint = w.joints.records[slot];
+    const JointDetail* const detail = detail_of(w.joints, slot);
+    const bool is_spring = solve.is_smooth && is_explicit_spring(w, slot);
+    solve.net_joints[i] = {look(joint.body_a, is_spring), look(joint.body_b, is_spring),
+                           count_equations(joint, detail)};
+    solve.ball_lanes[i] = fits_ball_lane(joint, detail) ? 1 : 0;
+  }
+}
+
+void gather_joints(Solve& solve) {
   BatchScratch& s = solve.scratch;
   s.swept_joints.clear();
   s.joint_pairs.clear();
+  const auto place = [&](std::int32_t body) {
+    return body == kNoBody ? ColoringPair::kNone : solve.places[std::size_t(body)];
+  };
   for (std::uint32_t i = 0; i < solve.batch.joints.size(); ++i) {
-    const std::uint32_t slot = solve.batch.joints[i];
-    const JointRecord& joint = w.joints.records[slot];
-    const bool active_a = joint.body_a != kNoBody && is_active(w, std::uint32_t(joint.body_a));
-    const bool active_b = joint.body_b != kNoBody && is_active(w, std::uint32_t(joint.body_b));
-    if (solve.is_smooth && is_explicit_spring(w, slot)) continue;
-    if (joint.body_a != kNoBody) touch_body(w, std::uint32_t(joint.body_a), kPlaceShown);
-    if (joint.body_b != kNoBody) touch_body(w, std::uint32_t(joint.body_b), kPlaceShown);
     if (solve.linkages.swept[i] == 0) continue;
+    if (solve.is_smooth && is_explicit_spring(solve.w, solve.batch.joints[i])) continue;
+    const NetJoint& joint = solve.net_joints[i];
     s.swept_joints.push_back(i);
-    s.joint_pairs.push_back({active_a ? solve.places[std::size_t(joint.body_a)] : ColoringPair::kNone,
-                             active_b ? solve.places[std::size_t(joint.body_b)] : ColoringPair::kNone});
+    s.joint_pairs.push_back({place(joint.body_a), place(joint.body_b)});
   }
 }
 
@@ -281,6 +297,16 @@ std::span<Group> lay_out_contacts(Solve& solve, Arena& arena) {
   return groups.first(used);
 }
 
+namespace {
+
+// Of a group whose joints are solved one after the other.
+void begin_ball_alone(Solve& solve, std::uint32_t joint, Arena& arena) {
+  if (solve.is_net)
+    begin_joint(solve.w, solve.batch, joint, solve.warm_scale, {solve.joint_work, solve.joint_places}, arena);
+}
+
+}  // namespace
+
 std::span<Group> lay_out_joints(Solve& solve, Arena& arena) {
   if (solve.scratch.swept_joints.empty()) return {};
   const Coloring& colors = solve.scratch.joint_colors;
@@ -288,8 +314,7 @@ std::span<Group> lay_out_joints(Solve& solve, Arena& arena) {
   solve.joint_order = arena.make<std::uint32_t>(colors.order.size());
   const std::uint32_t width = std::uint32_t(solve.kernels.width);
   const auto is_ball = [&](std::uint32_t member) {
-    const std::uint32_t joint = solve.scratch.swept_joints[member];
-    return fits_ball_lane(solve.w.joints.records[solve.batch.joints[joint]], solve.joint_work[joint]);
+    return solve.ball_lanes[solve.scratch.swept_joints[member]] != 0;
   };
   std::size_t used = 0;
   std::uint32_t blocks = 0;
@@ -298,7 +323,10 @@ std::span<Group> lay_out_joints(Solve& solve, Arena& arena) {
     const std::uint32_t first = colors.offsets[g], count = std::uint32_t(members.size());
     const bool serial = g == colors.overflow_group();
     std::uint32_t balls = 0, others = 0;
-    for (const std::uint32_t member : members) balls += !serial && is_ball(member) ? 1 : 0;
+    for (const std::uint32_t member : members) {
+      if (serial && is_ball(member)) begin_ball_alone(solve, solve.scratch.swept_joints[member], arena);
+      balls += !serial && is_ball(member) ? 1 : 0;
+    }
     std::uint32_t placed = 0;
     for (const std::uint32_t member : members)
       solve.joint_order[first + (!serial && is_ball(member) ? placed++ : balls + others++)] = member;

@@ -32,6 +32,10 @@ struct Solve {
   ImpactSettings impact_settings{};
   ContactBodies contact_bodies{};
   JointBodies joint_bodies{};
+  std::span<NetJoint> net_joints{};      // the batch's joints
+  std::span<std::uint8_t> ball_lanes{};  // 1 for those that may be solved side by side
+  bool is_net = false;      // all are known to be swept: those of ball_lanes are begun in their lanes
+  float warm_scale = 0.0f;  // of impulses, if so
   std::span<JointWork> joint_work{};
   std::span<JointPlaces> joint_places{};
   Linkages linkages{};
@@ -70,7 +74,9 @@ struct Group {
 
 // The batch's contacts as constraints, and what colouring needs to know of them; marks the bodies as touched.
 void gather_contacts(Solve& solve, Arena& arena, TaskSystem& tasks);
-// Those joints of the batch that are in no linkage; likewise.
+// What all joints of the batch are; marks their bodies.
+void look_at_joints(Solve& solve, Arena& arena);
+// Those that are in no linkage, as contacts.
 void gather_joints(Solve& solve);
 // Parts the bodies of a batch into those that constraints act on and those that fly.
 void gather_motion(Solve& solve, Arena& arena);

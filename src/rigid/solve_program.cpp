@@ -173,15 +173,21 @@ void end_projection_stage(void* context, int begin, int end, int) {
   s.kernels.motion.end_projection(s.motion_blocks, begin, end, s.contact_bodies.motion, s.pushes.data());
 }
 
-// Calls fn(record, work, places) for the joints of some blocks of a group.
+// Calls fn(place in the batch's list) for the joints of some blocks of a group.
+template <class Fn>
+void for_members(const Group& g, int begin, int end, Fn&& fn) {
+  const Solve& s = *g.solve;
+  const std::uint32_t last = min(std::uint32_t(end * kJointsPerBlock), g.count);
+  for (std::uint32_t n = std::uint32_t(begin * kJointsPerBlock); n < last; ++n)
+    fn(s.scratch.swept_joints[s.joint_order[g.first + n]]);
+}
+// Calls fn(record, work, places) for them.
 template <class Fn>
 void for_joints(const Group& g, int begin, int end, Fn&& fn) {
   Solve& s = *g.solve;
-  const std::uint32_t last = min(std::uint32_t(end * kJointsPerBlock), g.count);
-  for (std::uint32_t n = std::uint32_t(begin * kJointsPerBlock); n < last; ++n) {
-    const std::uint32_t i = s.scratch.swept_joints[s.joint_order[g.first + n]];
+  for_members(g, begin, end, [&](std::uint32_t i) {
     fn(s.w.joints.records[s.batch.joints[i]], s.joint_work[i], s.joint_places[i]);
-  }
+  });
 }
 // The blocks of a group whose joints are solved side by side.
 struct Balls {
@@ -202,13 +208,13 @@ Balls balls_of(const Group& g, int begin, int end) {
           g.ball_block + begin * kJointsPerBlock / width,
           g.ball_block + count_blocks(joints, width)};
 }
-// Calls fn(block, lane, joint) for the joints of such a group.
+// Calls fn(block, lane, slot) for the joints of such a group.
 template <class Fn>
 void for_balls(const Group& g, int begin, int end, Fn&& fn) {
   const int width = g.solve->kernels.width;
   int n = begin * kJointsPerBlock;
-  for_joints(g, begin, end, [&](JointRecord& joint, JointWork&, const JointPlaces& places) {
-    fn(g.ball_block + n / width, n % width, joint, places);
+  for_members(g, begin, end, [&](std::uint32_t i) {
+    fn(g.ball_block + n / width, n % width, g.solve->batch.joints[i]);
     ++n;
   });
 }
@@ -218,16 +224,19 @@ void begin_balls_stage(void* context, int begin, int end, int) {
   const Balls balls = balls_of(g, begin, end);
   // Lanes without a joint join nothing.
   if (int(g.count) % balls.kernels.width != 0) clear_balls(balls.kernels, balls.blocks, balls.end - 1);
-  for_balls(g, begin, end, [&](int block, int lane, const JointRecord& joint, const JointPlaces& places) {
-    begin_ball(balls.kernels, balls.blocks, block, lane, joint, places, balls.arrays.inertia);
+  const Solve& s = *g.solve;
+  const float warm_scale = s.is_net ? s.warm_scale : 1.0f;
+  for_balls(g, begin, end, [&](int block, int lane, std::uint32_t slot) {
+    begin_ball(balls.kernels, balls.blocks, block, lane, s.w.joints.records[slot], joint_places(s.w, slot),
+               warm_scale, balls.arrays.inertia);
   });
 }
 void finish_balls_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
   if (g.ball_block < 0) return;
   const Balls balls = balls_of(g, begin, end);
-  for_balls(g, begin, end, [&](int block, int lane, JointRecord& joint, const JointPlaces&) {
-    finish_ball(balls.kernels, balls.blocks, block, lane, joint);
+  for_balls(g, begin, end, [&](int block, int lane, std::uint32_t slot) {
+    finish_ball(balls.kernels, balls.blocks, block, lane, g.solve->w.joints.records[slot]);
   });
 }
 void place_joints_stage(void* context, int begin, int end, int) {

@@ -453,7 +453,7 @@ void solve_batch_as_rows(Solve& solve, const SolverSettings& settings, Arena& ar
   for (const ContactConstraint& constraint : scratch.constraints) constraint.manifold->total_friction = {};
   show_bodies(solve);
   solve.fields = find_field_bodies(solve.w, solve.batch.bodies, solve.h, arena);
-  const JointWorks works = begin_joints(solve.w, solve.batch, warm_scale, arena);
+  const JointWorks works = begin_joints(solve.w, solve.batch, {}, warm_scale, arena);
   solve.joint_work = works.work;
   solve.joint_places = works.places;
   gather_motion(solve, arena);
@@ -474,7 +474,7 @@ void solve_batch_as_rows(Solve& solve, const SolverSettings& settings, Arena& ar
     for (int k = 0; k < constraint.manifold->count; ++k) load += constraint.manifold->points[k].total_impulse;
     constraint.manifold->age = load > 0.0f ? constraint.manifold->age + solve.contact_settings.step : 0.0f;
   }
-  finish_joints(solve.w, solve.batch, solve.joint_work);
+  finish_joints(solve.w, solve.batch, {}, solve.joint_work);
   // Rows have no colours: what says so looks at these.
   scratch.pairs.clear();
   scratch.joint_pairs.clear();

@@ -57,15 +57,31 @@ void place_resting(Solve& solve, Arena& arena) {
   solve.structure_solve = {scratch.constraints, motion, &solve.kernels, solve.blocks, &arena};
 }
 
+// Those joints that are begun and finished in their lanes.
+std::span<const std::uint8_t> begun_in_lanes(const Solve& solve) {
+  if (!solve.is_net) return {};
+  return solve.ball_lanes;
+}
+
+// Joints, and which of them are solved directly. Of a net that is known to be swept most need no work but a lane.
+void begin_joints(Solve& solve, float warm_scale, Arena& arena) {
+  look_at_joints(solve, arena);
+  DenseNets& nets = solve.scratch.dense_nets;
+  solve.is_net = !solve.net_joints.empty() && nets.holds(solve.net_joints);
+  solve.warm_scale = warm_scale;
+  const JointWorks works = begin_joints(solve.w, solve.batch, begun_in_lanes(solve), warm_scale, arena);
+  solve.joint_work = works.work;
+  solve.joint_places = works.places;
+  solve.linkages = solve.is_net ? no_linkages(solve.net_joints.size(), arena)
+                                : find_linkages(solve.w, solve.batch, solve.places, solve.net_joints,
+                                                solve.joint_work, nets, arena);
+}
+
 void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale) {
   const ArenaScope scope(arena);
   BatchScratch& scratch = solve.scratch;
   gather_contacts(solve, arena, tasks);
-  const JointWorks works = begin_joints(solve.w, solve.batch, warm_scale, arena);
-  solve.joint_work = works.work;
-  solve.joint_places = works.places;
-  solve.linkages =
-      find_linkages(solve.w, solve.batch, solve.places, solve.joint_work, scratch.dense_nets, arena);
+  begin_joints(solve, warm_scale, arena);
   gather_joints(solve);
   solve.rolling = find_rolling_contacts(solve.w, scratch, solve.places, solve.batch.bodies.size(),
                                         solve.contact_settings.step, arena);
@@ -91,7 +107,7 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   place_resting(solve, arena);
   const std::span<Group> joints = lay_out_joints(solve, arena);
   run_substeps(solve, contacts, joints, arena, tasks);
-  finish_joints(solve.w, solve.batch, solve.joint_work);
+  finish_joints(solve.w, solve.batch, begun_in_lanes(solve), solve.joint_work);
   if (solve.is_smooth) finish_springs(solve.w, solve.smooth, scratch.report);
   note_hits(solve.w, scratch);
   scratch.counts.manifolds += scratch.constraints.size();

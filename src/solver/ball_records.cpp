@@ -1,5 +1,7 @@
 #include "solver/ball_records.h"
 
+#include "solver/joint_drive.h"
+
 #include <cstring>
 
 namespace gyre {
@@ -25,15 +27,23 @@ void set_bodies(const BallKernels& kernels, void* blocks, int block, int lane, c
   }
 }
 
+// Whether anything acts beside the joint's equations.
+bool acts(const JointDetail& detail) {
+  for (const JointAxisRecord& axis : detail.axes) {
+    if (axis.motion != AxisMotion::locked && acts(axis)) return true;
+  }
+  return has_drive(detail);
+}
+
 bool is_movable(const BodyInertia& inertia) {
   return inertia.inverse_mass > 0.0f || inertia.inverse != Sym3{};
 }
 
 }  // namespace
 
-bool fits_ball_lane(const JointRecord& joint, const JointWork& work) {
-  return joint.kind == JointKind::ball && work.axes.empty() && work.drive == nullptr &&
-         work.rows == nullptr && joint.angular_impulse == Vec3{};
+bool fits_ball_lane(const JointRecord& joint, const JointDetail* detail) {
+  return joint.kind == JointKind::ball && joint.angular_impulse == Vec3{} &&
+         (detail == nullptr || !acts(*detail));
 }
 
 void clear_balls(const BallKernels& kernels, void* blocks, int block) {
@@ -42,7 +52,7 @@ void clear_balls(const BallKernels& kernels, void* blocks, int block) {
 }
 
 void begin_ball(const BallKernels& kernels, void* blocks, int block, int lane, const JointRecord& joint,
-                const JointPlaces& places, const BodyInertia* inertia) {
+                const JointPlaces& places, float warm_scale, const BodyInertia* inertia) {
   const auto writes = [&](std::int32_t body) {
     return body != kNoBody && is_movable(inertia[body]) ? body : kNoBody;
   };
@@ -58,8 +68,8 @@ void begin_ball(const BallKernels& kernels, void* blocks, int block, int lane, c
   put(kLocalA, joint.local_anchor_a);
   put(kLocalB, joint.local_anchor_b);
   put(kOffset, places.offset);
-  put(kImpulse, joint.linear_impulse);
-  put(kTotal, joint.total_linear);
+  put(kImpulse, warm_scale * joint.linear_impulse);
+  put(kTotal, {});
 }
 
 void finish_ball(const BallKernels& kernels, const void* blocks, int block, int lane, JointRecord& joint) {
@@ -72,6 +82,7 @@ void finish_ball(const BallKernels& kernels, const void* blocks, int block, int 
   };
   joint.linear_impulse = vector_at(kImpulse);
   joint.total_linear = vector_at(kTotal);
+  joint.total_angular = {};
 }
 
 }  // namespace gyre

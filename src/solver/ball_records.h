@@ -7,12 +7,13 @@
 namespace gyre {
 
 // Whether it is a ball joint on which nothing else acts.
-bool fits_ball_lane(const JointRecord& joint, const JointWork& work);
+bool fits_ball_lane(const JointRecord& joint, const JointDetail* detail);
 
 // A block whose lanes join nothing.
 void clear_balls(const BallKernels& kernels, void* blocks, int block);
+// `warm_scale`: of its impulse, if begin_joint() did not see to that.
 void begin_ball(const BallKernels& kernels, void* blocks, int block, int lane, const JointRecord& joint,
-                const JointPlaces& places, const BodyInertia* inertia);
+                const JointPlaces& places, float warm_scale, const BodyInertia* inertia);
 // Impulses and sums, back into the record.
 void finish_ball(const BallKernels& kernels, const void* blocks, int block, int lane, JointRecord& joint);
 
