@@ -24,6 +24,7 @@ struct MotionBlock {
   std::int32_t body[W];     // kNoBody in lanes without a body
   std::uint32_t shown = 0;  // bits of lanes
   std::int32_t any_locked = 0, any_torque = 0, any_lost = 0, any_gyroscopic = 0;
+  std::int32_t rested = 0;  // in the last sub-step nothing moved, nor had before: what depends on that is up to date
   Vec3W<W> kick, torque;
   Wide<W> linear_lost, angular_lost, reach;
   Vec3W<W> loose;                                 // 1 along world axes that are free, 0 along locked ones
@@ -272,6 +273,15 @@ GYRE_INLINE void turn_block(MotionBlock<W>& block, MotionW<W>& m, MotionArrays a
   if (block.shown != 0) show<W>(block, q, arrays);
 }
 
+// Whether nothing moves or has moved since the step began, to the bit.
+template <int W>
+GYRE_INLINE bool rests(const MotionW<W>& m) {
+  WideInt<W> bits(0);
+  for (int i = kMotionLinear; i < kMotionLinear + 6; ++i) bits = bits | bit_pattern(m.record[i]);
+  for (int i = kMotionMoved; i < kMotionMoved + 6; ++i) bits = bits | bit_pattern(m.record[i]);
+  return none(bits != WideInt<W>(0));
+}
+
 template <int W>
 void advance_motion(void* memory, int begin, int end, MotionArrays arrays, float substep) {
   auto* blocks = static_cast<MotionBlock<W>*>(memory);
@@ -280,9 +290,13 @@ void advance_motion(void* memory, int begin, int end, MotionArrays arrays, float
   for (int n = begin; n < end; ++n) {
     MotionBlock<W>& block = blocks[n];
     MotionW<W> m = load_motion<16, W>(block, arrays.motion);
+    const bool resting = rests<W>(m);
     if (block.any_locked != 0) m.set_linear(along_loose_axes<W>(block, m.linear()));
     block.given_linear = block.given_linear + (m.linear() - block.before_linear);
     block.given_angular = block.given_angular + (m.angular() - block.before_angular);
+    // Then all that follows gives what is there already.
+    if (resting && block.rested != 0) continue;
+    block.rested = resting ? 1 : 0;
     m.set_moved(m.moved() + Wide<W>(substep) * m.linear());
     turn_block<W>(block, m, arrays, substep);
     m.set_angular(m.angular() + none);
