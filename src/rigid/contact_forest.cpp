@@ -1,7 +1,5 @@
 #include "rigid/contact_forest.h"
 
-#include "math/rotation.h"
-
 namespace gyre {
 
 namespace {
@@ -12,8 +10,7 @@ bool hangs(const IslandCount& count) {
 }
 
 TreeNode make_node(const RigidWorld& w, std::int32_t body, std::int32_t parent, std::uint32_t constraint,
-                   bool is_b) {
-  const float pull = length(w.settings.gravity);
+                   bool is_b, float pull) {
   const BodyMass& mass = w.bodies.masses[body];
   TreeNode node;
   node.body = body;
@@ -24,14 +21,15 @@ TreeNode make_node(const RigidWorld& w, std::int32_t body, std::int32_t parent, 
   node.still = kStillShare * std::sqrt(pull * mass.reach);
   node.still_spin = mass.reach > 0.0f ? node.still / mass.reach : 0.0f;
   node.center = w.bodies.places[body].center;
-  node.inertia = rotate_inertia(w.bodies.places[body].orientation, mass.inertia);
+  node.orientation = w.bodies.places[body].orientation;
+  node.inertia = mass.inertia;
   return node;
 }
 
 }  // namespace
 
 ContactForest find_contact_trees(const RigidWorld& w, std::span<ContactConstraint> constraints,
-                                 const SolveBatch& batch, std::span<const std::uint32_t> places,
+                                 std::span<const ColoringPair> pairs, const SolveBatch& batch,
                                  const RestingIslands& islands, Arena& arena) {
   ContactForest forest;
   std::size_t trees = 0, nodes = 0;
@@ -47,26 +45,28 @@ ContactForest find_contact_trees(const RigidWorld& w, std::span<ContactConstrain
   forest.trees = arena.make<ContactTree>(trees);
   forest.nodes = arena.make<TreeNode>(nodes);
   forest.work = arena.make<TreeWork>(nodes);
-  const IncidentContacts links = link_incident_contacts(w, constraints, batch.bodies.size(), places, arena);
+  const IncidentContacts links = link_incident_contacts(pairs, batch.bodies.size(), arena);
+  const float pull = length(w.settings.gravity);
+  const auto body_at = [&](std::uint32_t place) { return std::int32_t(batch.bodies[place]); };
   std::uint32_t used = 0;
   std::size_t tree = 0;
   for (std::uint32_t root = 0; root < batch.bodies.size(); ++root) {
     if (!is_tree(root)) continue;
     const std::uint32_t first = islands.at_root(root).first;
-    const ContactConstraint& ground = constraints[first];
-    const bool is_b = is_active(w, ground.body_b);
+    const ColoringPair& ground = pairs[first];
+    const bool is_b = ground.b != ColoringPair::kNone;
     const std::uint32_t begin = used;
-    forest.nodes[used++] = make_node(w, is_b ? ground.body_b : ground.body_a, -1, first, is_b);
+    forest.nodes[used++] = make_node(w, body_at(is_b ? ground.b : ground.a), -1, first, is_b, pull);
     // Breadth first: every other contact of a body leads to a child, as there are no loops.
     for (std::uint32_t at = begin; at < used; ++at) {
-      const TreeNode node = forest.nodes[at];
-      for (std::uint32_t link = links.first[places[std::size_t(node.body)]]; link != kNoPlace;
-           link = links.next[link]) {
+      const std::uint32_t below = forest.nodes[at].constraint;
+      const std::uint32_t place = forest.nodes[at].sign > 0.0f ? pairs[below].b : pairs[below].a;
+      for (std::uint32_t link = links.first[place]; link != kNoPlace; link = links.next[link]) {
         const std::uint32_t i = link / 2;
-        if (i == node.constraint) continue;
+        if (i == below) continue;
         const bool child_is_b = link % 2 == 0;
-        const std::int32_t child = child_is_b ? constraints[i].body_b : constraints[i].body_a;
-        forest.nodes[used++] = make_node(w, child, std::int32_t(at), i, child_is_b);
+        const std::int32_t child = body_at(child_is_b ? pairs[i].b : pairs[i].a);
+        forest.nodes[used++] = make_node(w, child, std::int32_t(at), i, child_is_b, pull);
       }
     }
     for (std::uint32_t i = begin; i < used; ++i) constraints[forest.nodes[i].constraint].rigid = true;

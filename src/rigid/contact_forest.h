@@ -14,9 +14,9 @@ struct ContactForest {
   std::span<TreeWork> work;
 };
 
-// Of one batch; `places` are those of all (solve_batches.h). Marks the constraints that are in trees as rigid.
+// Of one batch; `pairs` are its constraints' bodies. Marks the constraints that are in trees as rigid.
 ContactForest find_contact_trees(const RigidWorld& w, std::span<ContactConstraint> constraints,
-                                 const SolveBatch& batch, std::span<const std::uint32_t> places,
+                                 std::span<const ColoringPair> pairs, const SolveBatch& batch,
                                  const RestingIslands& islands, Arena& arena);
 
 // Tells the nodes where the kernels of `width` lanes keep their contacts (find_kernel_places()).

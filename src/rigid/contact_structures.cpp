@@ -29,12 +29,11 @@ bool may_stand(const RigidWorld& w, const IslandCount& count) {
 
 class StructureMaker {
  public:
-  StructureMaker(const RigidWorld& w, std::span<const ContactConstraint> constraints, const SolveBatch& batch,
-                 std::span<const std::uint32_t> places, const RestingIslands& islands, Arena& arena)
+  StructureMaker(const RigidWorld& w, std::span<const ColoringPair> pairs, const SolveBatch& batch,
+                 const RestingIslands& islands, Arena& arena)
       : w_(w),
-        constraints_(constraints),
+        pairs_(pairs),
         batch_(batch),
-        places_(places),
         islands_(islands),
         arena_(arena),
         node_of_(arena.make<std::uint32_t>(batch.bodies.size())),
@@ -55,15 +54,14 @@ class StructureMaker {
       node_of_[place] = members.bodies;
       members.nodes[members.bodies++] = make_node(batch_.bodies[place]);
     }
-    for (std::uint32_t i = 0; i < constraints_.size(); ++i) {
-      const ContactConstraint& c = constraints_[i];
-      const std::int32_t body = is_active(w_, c.body_a) ? c.body_a : c.body_b;
-      Members& members = members_[islands_.root_of(places_[std::size_t(body)])];
+    for (std::uint32_t i = 0; i < pairs_.size(); ++i) {
+      const ColoringPair& pair = pairs_[i];
+      Members& members = members_[islands_.root_of(pair.a != ColoringPair::kNone ? pair.a : pair.b)];
       if (members.nodes.empty()) continue;
       StructureContact& contact = members.contacts[members.count++] = {};
       contact.constraint = i;
-      contact.node_a = node_at(c.body_a);
-      contact.node_b = node_at(c.body_b);
+      contact.node_a = node_at(pair.a);
+      contact.node_b = node_at(pair.b);
     }
   }
 
@@ -84,8 +82,8 @@ class StructureMaker {
     std::uint32_t bodies = 0, count = 0;
   };
 
-  std::uint32_t node_at(std::int32_t body) const {
-    return is_active(w_, body) ? node_of_[places_[std::size_t(body)]] : kNoNode;
+  std::uint32_t node_at(std::uint32_t place) const {
+    return place == ColoringPair::kNone ? kNoNode : node_of_[place];
   }
   StructureNode make_node(std::uint32_t body) const {
     const BodyMass& mass = w_.bodies.masses[body];
@@ -99,9 +97,8 @@ class StructureMaker {
   }
 
   const RigidWorld& w_;
-  std::span<const ContactConstraint> constraints_;
+  std::span<const ColoringPair> pairs_;
   const SolveBatch& batch_;
-  std::span<const std::uint32_t> places_;
   const RestingIslands& islands_;
   Arena& arena_;
   std::span<std::uint32_t> node_of_;  // by body's place
@@ -110,11 +107,9 @@ class StructureMaker {
 
 }  // namespace
 
-std::span<ContactStructure> find_contact_structures(const RigidWorld& w,
-                                                    std::span<const ContactConstraint> constraints,
-                                                    const SolveBatch& batch,
-                                                    std::span<const std::uint32_t> places,
-                                                    const RestingIslands& islands, Arena& arena) {
+std::span<ContactStructure> find_contact_structures(const RigidWorld& w, std::span<const ColoringPair> pairs,
+                                                    const SolveBatch& batch, const RestingIslands& islands,
+                                                    Arena& arena) {
   std::size_t count = 0;
   for (std::uint32_t place = 0; place < batch.bodies.size(); ++place) {
     if (islands.is_root(place) && may_stand(w, islands.at_root(place))) ++count;
@@ -125,7 +120,7 @@ std::span<ContactStructure> find_contact_structures(const RigidWorld& w,
   for (std::uint32_t place = 0; place < batch.bodies.size(); ++place) {
     if (islands.is_root(place) && may_stand(w, islands.at_root(place))) roots[count++] = place;
   }
-  StructureMaker maker(w, constraints, batch, places, islands, arena);
+  StructureMaker maker(w, pairs, batch, islands, arena);
   maker.list(roots);
   const std::span<ContactStructure> structures = arena.make<ContactStructure>(count);
   for (std::size_t i = 0; i < count; ++i) structures[i] = maker.make(roots[i]);

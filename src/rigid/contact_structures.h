@@ -8,12 +8,10 @@
 
 namespace gyre {
 
-// Of one batch. Large islands that did not hold in the last step are looked at only now and then.
-std::span<ContactStructure> find_contact_structures(const RigidWorld& w,
-                                                    std::span<const ContactConstraint> constraints,
-                                                    const SolveBatch& batch,
-                                                    std::span<const std::uint32_t> places,
-                                                    const RestingIslands& islands, Arena& arena);
+// Of one batch; `pairs` are its constraints' bodies. Large islands that did not hold in the last step are looked at only now and then.
+std::span<ContactStructure> find_contact_structures(const RigidWorld& w, std::span<const ColoringPair> pairs,
+                                                    const SolveBatch& batch, const RestingIslands& islands,
+                                                    Arena& arena);
 
 // Tells the contacts where the kernels of `width` lanes keep them (find_kernel_places()).
 void place_structure_contacts(std::span<ContactStructure> structures, std::span<const std::uint32_t> places,

@@ -244,6 +244,8 @@ void finish_turns(BodyStore& bodies, std::span<const MovedBody> moved, std::span
       if (turn == Vec3{}) continue;
       motion.turned += rotate_steadily(orientation, turn, 1.0f);
     } else if (motion.turned == Vec3{}) {
+      // Who was not shown has the orientation and inertia that it had.
+      if (!moved[n].shown) continue;
       orientation = moved[n].orientation;
     } else {
       orientation = integrate_rotation(moved[n].orientation, motion.turned);

@@ -7,13 +7,19 @@ namespace gyre {
 
 namespace {
 
-// What may be part of a resting island: not bound to axes, no faster than the share.
-bool is_slow(const RigidWorld& w, std::uint32_t body, float pull, float share) {
-  const BodyMotion& motion = w.bodies.motion[body];
-  const float reach = w.bodies.masses[body].reach;
-  const float speed = length(motion.linear_velocity) + reach * length(motion.angular_velocity);
-  return speed <= share * std::sqrt(pull * reach);
-}
+// What may be part of a resting island is no faster than a share of what it falls through its own size with,
+struct Slowness {
+  float speed, scale;
+
+  Slowness(const RigidWorld& w, std::uint32_t body, float pull) {
+    const BodyMotion& motion = w.bodies.motion[body];
+    const float reach = w.bodies.masses[body].reach;
+    speed = length(motion.linear_velocity) + reach * length(motion.angular_velocity);
+    scale = std::sqrt(pull * reach);
+  }
+  bool is_below(float share) const { return speed <= share * scale; }
+};
+// and bound to no axes.
 bool is_free(const RigidWorld& w, std::uint32_t body) {
   const BodyFlags& flags = w.bodies.flags[body];
   return !turns_alone(w.bodies, body, w.settings.last_substep) && flags.locked_linear == 0 &&
@@ -30,16 +36,17 @@ bool is_still(const RigidWorld& w, std::int32_t body) {
 }  // namespace
 
 RestingIslands::RestingIslands(const RigidWorld& w, std::span<const ContactConstraint> constraints,
-                               const SolveBatch& batch, std::span<const std::uint32_t> places, Arena& arena)
+                               std::span<const ColoringPair> pairs, const SolveBatch& batch,
+                               std::span<const std::uint32_t> places, Arena& arena)
     : w_(w),
       batch_(batch),
       places_(places),
       parent_(arena.make<std::uint32_t>(batch.bodies.size())),
       counts_(arena.make<IslandCount>(batch.bodies.size())) {
   for (std::uint32_t i = 0; i < parent_.size(); ++i) parent_[i] = i, counts_[i] = {};
-  unite_all(constraints, batch.joints);
+  unite_all(pairs);
   count_bodies();
-  count_contacts(constraints);
+  count_contacts(constraints, pairs);
   count_joints();
 }
 
@@ -47,54 +54,53 @@ bool RestingIslands::is_root(std::uint32_t place) const {
   return parent_[place] == place && is_movable(w_.bodies.flags[batch_.bodies[place]]);
 }
 
-std::uint32_t RestingIslands::root_of(std::uint32_t place) const {
-  while (parent_[place] != place) place = parent_[place];
-  return place;
-}
-
 std::uint32_t RestingIslands::root(std::uint32_t place) {
   while (parent_[place] != place) place = parent_[place] = parent_[parent_[place]];
   return place;
 }
 
-void RestingIslands::unite(std::int32_t body_a, std::int32_t body_b) {
-  const std::uint32_t a = root(places_[std::size_t(body_a)]);
-  const std::uint32_t b = root(places_[std::size_t(body_b)]);
+void RestingIslands::unite(std::uint32_t place_a, std::uint32_t place_b) {
+  const std::uint32_t a = root(place_a), b = root(place_b);
   parent_[max(a, b)] = min(a, b);
 }
 
-void RestingIslands::unite_all(std::span<const ContactConstraint> constraints,
-                               std::span<const std::uint32_t> joints) {
-  for (const ContactConstraint& c : constraints) {
-    if (is_active(w_, c.body_a) && is_active(w_, c.body_b)) unite(c.body_a, c.body_b);
+void RestingIslands::unite_all(std::span<const ColoringPair> pairs) {
+  for (const ColoringPair& pair : pairs) {
+    if (pair.a != ColoringPair::kNone && pair.b != ColoringPair::kNone) unite(pair.a, pair.b);
   }
-  for (const std::uint32_t slot : joints) {
+  for (const std::uint32_t slot : batch_.joints) {
     const JointRecord& joint = w_.joints.records[slot];
-    if (is_active(w_, joint.body_a) && is_active(w_, joint.body_b)) unite(joint.body_a, joint.body_b);
+    if (is_active(w_, joint.body_a) && is_active(w_, joint.body_b))
+      unite(place_of(joint.body_a), place_of(joint.body_b));
   }
+  // Who is lower has its root by now.
+  for (std::uint32_t& parent : parent_) parent = parent_[parent];
 }
 
 void RestingIslands::count_bodies() {
   const float pull = length(w_.settings.gravity);
-  for (const std::uint32_t body : batch_.bodies) {
+  for (std::uint32_t place = 0; place < batch_.bodies.size(); ++place) {
+    const std::uint32_t body = batch_.bodies[place];
     if (!is_movable(w_.bodies.flags[body])) continue;
-    IslandCount& count = of(std::int32_t(body));
+    IslandCount& count = counts_[parent_[place]];
+    const Slowness slowness(w_, body, pull);
     ++count.bodies;
-    if (!is_free(w_, body) || !is_slow(w_, body, pull, kRestShare)) {
+    if (!is_free(w_, body) || !slowness.is_below(kRestShare)) {
       count.refused = true;
-    } else if (!is_slow(w_, body, pull, kCalmShare)) {
+    } else if (!slowness.is_below(kCalmShare)) {
       count.stirring = true;
-    } else if (!is_slow(w_, body, pull, kSettledShare)) {
+    } else if (!slowness.is_below(kSettledShare)) {
       count.settling = true;
     }
   }
 }
 
-void RestingIslands::count_contacts(std::span<const ContactConstraint> constraints) {
+void RestingIslands::count_contacts(std::span<const ContactConstraint> constraints,
+                                    std::span<const ColoringPair> pairs) {
   for (std::uint32_t i = 0; i < constraints.size(); ++i) {
     const ContactConstraint& c = constraints[i];
-    const bool active_a = is_active(w_, c.body_a), active_b = is_active(w_, c.body_b);
-    IslandCount& count = of(active_a ? c.body_a : c.body_b);
+    const bool active_a = pairs[i].a != ColoringPair::kNone, active_b = pairs[i].b != ColoringPair::kNone;
+    IslandCount& count = counts_[parent_[active_a ? pairs[i].a : pairs[i].b]];
     ++count.contacts;
     if (!(c.static_friction > 0.0f) || c.surface_velocity != Vec3{}) count.refused = true;
     if (c.point_count < 3) count.balances = true;
@@ -111,22 +117,20 @@ void RestingIslands::count_joints() {
   for (const std::uint32_t slot : batch_.joints) {
     const JointRecord& joint = w_.joints.records[slot];
     for (const std::int32_t body : {joint.body_a, joint.body_b}) {
-      if (is_active(w_, body)) of(body).refused = true;
+      if (is_active(w_, body)) counts_[parent_[place_of(body)]].refused = true;
     }
   }
 }
 
-IncidentContacts link_incident_contacts(const RigidWorld& w, std::span<const ContactConstraint> constraints,
-                                        std::size_t bodies, std::span<const std::uint32_t> places,
+IncidentContacts link_incident_contacts(std::span<const ColoringPair> pairs, std::size_t bodies,
                                         Arena& arena) {
-  IncidentContacts links{arena.make<std::uint32_t>(bodies),
-                         arena.make<std::uint32_t>(2 * constraints.size())};
+  IncidentContacts links{arena.make<std::uint32_t>(bodies), arena.make<std::uint32_t>(2 * pairs.size())};
   for (std::uint32_t& f : links.first) f = kNoPlace;
-  for (std::uint32_t i = std::uint32_t(constraints.size()); i-- > 0;) {
-    const std::int32_t ends[2] = {constraints[i].body_a, constraints[i].body_b};
+  for (std::uint32_t i = std::uint32_t(pairs.size()); i-- > 0;) {
+    const std::uint32_t ends[2] = {pairs[i].a, pairs[i].b};
     for (std::uint32_t side = 0; side < 2; ++side) {
-      if (!is_active(w, ends[side])) continue;
-      std::uint32_t& first = links.first[places[std::size_t(ends[side])]];
+      if (ends[side] == ColoringPair::kNone) continue;
+      std::uint32_t& first = links.first[ends[side]];
       links.next[2 * i + side] = first;
       first = 2 * i + side;
     }

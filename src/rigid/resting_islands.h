@@ -6,6 +6,7 @@
 #include "rigid/rigid_world.h"
 #include "rigid/solve_batches.h"
 #include "solver/contact_block.h"
+#include "task/coloring.h"
 
 namespace gyre {
 
@@ -40,22 +41,23 @@ struct IslandCount {
 
 class RestingIslands {
  public:
-  // `constraints` and `places` as in find_contact_trees().
-  RestingIslands(const RigidWorld& w, std::span<const ContactConstraint> constraints, const SolveBatch& batch,
+  // `pairs`: places of the constraints' bodies in the batch, as far as these move. `places`: of all bodies (solve_batches.h).
+  RestingIslands(const RigidWorld& w, std::span<const ContactConstraint> constraints,
+                 std::span<const ColoringPair> pairs, const SolveBatch& batch,
                  std::span<const std::uint32_t> places, Arena& arena);
 
   // By place of a body in the batch. Only roots have counts.
   bool is_root(std::uint32_t place) const;
   const IslandCount& at_root(std::uint32_t place) const { return counts_[place]; }
-  std::uint32_t root_of(std::uint32_t place) const;
+  std::uint32_t root_of(std::uint32_t place) const { return parent_[place]; }
 
  private:
   std::uint32_t root(std::uint32_t place);
-  IslandCount& of(std::int32_t body) { return counts_[root(places_[std::size_t(body)])]; }
-  void unite(std::int32_t body_a, std::int32_t body_b);
-  void unite_all(std::span<const ContactConstraint> constraints, std::span<const std::uint32_t> joints);
+  std::uint32_t place_of(std::int32_t body) const { return places_[std::size_t(body)]; }
+  void unite(std::uint32_t place_a, std::uint32_t place_b);
+  void unite_all(std::span<const ColoringPair> pairs);
   void count_bodies();
-  void count_contacts(std::span<const ContactConstraint> constraints);
+  void count_contacts(std::span<const ContactConstraint> constraints, std::span<const ColoringPair> pairs);
   void count_joints();
 
   const RigidWorld& w_;
@@ -70,8 +72,7 @@ struct IncidentContacts {
   std::span<std::uint32_t> first;  // by the body's place
   std::span<std::uint32_t> next;   // by link
 };
-IncidentContacts link_incident_contacts(const RigidWorld& w, std::span<const ContactConstraint> constraints,
-                                        std::size_t bodies, std::span<const std::uint32_t> places,
+IncidentContacts link_incident_contacts(std::span<const ColoringPair> pairs, std::size_t bodies,
                                         Arena& arena);
 
 // Where the kernels keep each constraint: `order` has `width` constraint indices a block. By constraint: its place in `order`.

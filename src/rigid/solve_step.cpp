@@ -39,9 +39,10 @@ void find_resting(Solve& solve, Arena& arena) {
   solve.structures = {};
   const std::span<ContactConstraint> constraints = solve.scratch.constraints.view();
   if (constraints.empty() || !(length(solve.w.settings.gravity) > 0.0f)) return;
-  const RestingIslands islands(solve.w, constraints, solve.batch, solve.places, arena);
-  solve.forest = find_contact_trees(solve.w, constraints, solve.batch, solve.places, islands, arena);
-  solve.structures = find_contact_structures(solve.w, constraints, solve.batch, solve.places, islands, arena);
+  const std::span<const ColoringPair> pairs = solve.scratch.pairs;
+  const RestingIslands islands(solve.w, constraints, pairs, solve.batch, solve.places, arena);
+  solve.forest = find_contact_trees(solve.w, constraints, pairs, solve.batch, islands, arena);
+  solve.structures = find_contact_structures(solve.w, pairs, solve.batch, islands, arena);
 }
 void place_resting(Solve& solve, Arena& arena) {
   if (solve.forest.nodes.empty() && solve.structures.empty()) return;

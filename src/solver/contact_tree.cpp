@@ -1,5 +1,7 @@
 #include "solver/contact_tree.h"
 
+#include "math/rotation.h"
+
 namespace gyre {
 
 namespace {
@@ -180,7 +182,8 @@ void solve_tree(const ContactTree& tree, const TreeSolve& s) {
     const DVec3 arm(arm_of(node, constraint, 0));
     work.point = node.center - base + arm;
     work.momentum = double(node.mass) * DVec3(motion.linear_velocity);
-    work.spin = DVec3(node.inertia * motion.angular_velocity) - cross(arm, work.momentum);
+    const Sym3 inertia = rotate_inertia(node.orientation, node.inertia);
+    work.spin = DVec3(inertia * motion.angular_velocity) - cross(arm, work.momentum);
   }
   // Leaves to root: what lies beyond a contact, about that contact.
   for (std::uint32_t i = tree.end; i-- > tree.begin;) {

@@ -30,8 +30,9 @@ struct TreeNode {
   float still = 0.0f;             // m/s, rad/s: slower than this nothing is left to solve
   float still_spin = 0.0f;
   float mass = 0.0f;
-  DVec3 center;                   // as the step began
-  Sym3 inertia;                   // world axes, as the step began
+  DVec3 center;                   // as the step began, as is
+  Quat orientation;
+  Sym3 inertia;                   // body frame
 };
 
 // Nodes [begin, end) of one island.
