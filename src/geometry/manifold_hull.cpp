@@ -62,7 +62,7 @@ class FacePoints {
   // `separation` is that of the two along the face's normal.
   int find(float separation) {
     const Vec3 local = rotate_inverse(roles_.reference_from_incident.orientation, outward_);
-    const int first = opposing_face(roles_.incident, lowest_vertex(roles_.incident, local), local);
+    const int first = opposing_face(roles_.incident, lowest_vertex(roles_.incident, local).vertex, local);
     clip_with(first);
     if (separation > 0.0f) return count_;
     const float enough = separation + missed(roles_.reference, roles_.incident);

@@ -1,6 +1,8 @@
 // Boxes and hulls as polytopes, and searches over their columns. See polytope.h.
 #include "geometry/polytope.h"
 
+#include "math/wide_vec.h"
+
 namespace gyre {
 namespace {
 
@@ -31,10 +33,11 @@ Polytope make_polytope(const Hull& hull) {
           hull.edges.data(),
           int(hull.edges.size()),
           hull.centroid,
-          hull.inner_radius};
+          hull.inner_radius,
+          max(largest(absolute(hull.box.low)), largest(absolute(hull.box.high)))};
 }
 
-BoxPolytope::BoxPolytope(Vec3 h) : inner_radius_(smallest(h)) {
+BoxPolytope::BoxPolytope(Vec3 h) : inner_radius_(smallest(h)), size_(largest(h)) {
   for (int i = 0; i < 8; ++i) {
     vertices_[i] = {(i & 1) ? h.x : -h.x, (i & 2) ? h.y : -h.y, (i & 4) ? h.z : -h.z};
     x_[i] = vertices_[i].x;
@@ -50,7 +53,8 @@ BoxPolytope::BoxPolytope(Vec3 h) : inner_radius_(smallest(h)) {
 }
 
 Polytope BoxPolytope::view() const {
-  return {x_, y_, z_, 8, 8, vertices_, planes_, 6, kBoxOffsets, kBoxFaces, kBoxEdges, 12, {}, inner_radius_};
+  return {x_,          y_,        z_,        8,  8,  vertices_,     planes_, 6,
+          kBoxOffsets, kBoxFaces, kBoxEdges, 12, {}, inner_radius_, size_};
 }
 
 void face_polygon(const Polytope& polytope, int face, FacePolygon& out) {
@@ -69,17 +73,32 @@ void face_polygon(const Polytope& polytope, int face, FacePolygon& out) {
 
 float highest_along(const Polytope& p, Vec3 d) { return -lowest_along(p, -d); }
 
-int lowest_vertex(const Polytope& p, Vec3 d) {
-  int winner = 0;
-  float best = dot(p.vertices[0], d);
-  for (int i = 1; i < p.vertex_count; ++i) {
-    const float value = dot(p.vertices[i], d);
-    if (value < best) {
-      best = value;
-      winner = i;
-    }
+LowestVertex lowest_vertex(const Polytope& p, Vec3 d) {
+  constexpr int kLanes = 4;  // every x86-64, 64-bit ARM and WebAssembly has registers of four
+  using Floats = Wide<kLanes>;
+  using Ints = WideInt<kLanes>;
+  static_assert(Hull::kPad % kLanes == 0);
+  const Vec3W<kLanes> direction = splat<kLanes>(d);
+  const auto value_from = [&](int i) {
+    return dot(Vec3W<kLanes>{Floats::load_unaligned(p.x + i), Floats::load_unaligned(p.y + i),
+                             Floats::load_unaligned(p.z + i)},
+               direction);
+  };
+  constexpr std::int32_t kOwn[kLanes] = {0, 1, 2, 3};
+  Ints index = Ints::load_unaligned(kOwn), winner = index;
+  Floats best = value_from(0);
+  for (int i = kLanes; i < p.padded_count; i += kLanes) {
+    index = index + Ints(kLanes);
+    const Floats value = value_from(i);
+    winner = select(value < best, index, winner);
+    best = min(value, best);
   }
-  return winner;
+  int lane = 0;
+  for (int k = 1; k < kLanes; ++k) {
+    if (best[k] < best[lane] || (best[k] == best[lane] && winner[k] < winner[lane])) lane = k;
+  }
+  // The padding repeats the last vertex, behind it.
+  return {min(winner[lane], p.vertex_count - 1), best[lane]};
 }
 
 }  // namespace gyre

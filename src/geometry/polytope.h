@@ -21,6 +21,7 @@ struct Polytope {
   int edge_count;
   Vec3 centroid;
   float inner_radius;  // of a ball around the centroid
+  float size;          // the largest coordinate, without its sign
 };
 
 Polytope make_polytope(const Hull& hull);
@@ -38,7 +39,7 @@ class BoxPolytope {
   float x_[8], y_[8], z_[8];
   Vec3 vertices_[8];
   HullPlane planes_[6];
-  float inner_radius_;
+  float inner_radius_, size_;
 };
 
 // The face as a polygon in the polytope's frame; one with more than kMaxFaceVertices corners is thinned evenly.
@@ -61,7 +62,12 @@ inline float lowest_along(const Polytope& p, Vec3 d) {
   return best[0];
 }
 float highest_along(const Polytope& polytope, Vec3 direction);
-// The vertex of smallest dot(direction, vertex); the lowest index among equals.
-int lowest_vertex(const Polytope& polytope, Vec3 direction);
+
+struct LowestVertex {
+  int vertex;  // the lowest index among equals
+  float value;
+};
+// The vertex of smallest dot(direction, vertex), and how much that is.
+LowestVertex lowest_vertex(const Polytope& polytope, Vec3 direction);
 
 }  // namespace gyre

@@ -19,6 +19,8 @@ constexpr float kShallow = 1.0e-2f;
 constexpr float kReachMargin = 1.0e-4f;
 // How far a corner may lie beyond the edge that is outermost, of the largest coordinate.
 constexpr float kOutermost = 1.0e-5f;
+// What rounding, kOutermost and the corners of faces that lie off their plane add to a separation at most, of the sizes' sum.
+constexpr float kRounding = 3.0e-5f;
 constexpr int kMaxVertices = 255, kMaxFaces = 255, kMaxEdges = 510;
 
 // Separation of `other` above a plane of the reference polytope, the plane given in other's frame.
@@ -154,13 +156,6 @@ void near_edges(const Polytope& p, const float* heights, float limit, EdgeColumn
   out.count = count;
 }
 
-// Of the coordinates.
-float size_of(const Polytope& p) {
-  float size = 0.0f;
-  for (int i = 0; i < p.vertex_count; ++i) size = max(size, largest(absolute(p.vertices[i])));
-  return size;
-}
-
 struct BestFace {
   AxisKind kind;
   int face;
@@ -229,8 +224,8 @@ class EdgeCandidates {
     const Vec3 from_a = a_.vertices[a_.edges[arcs_a.index[i]].from];
     const Vec3 from_b = b_.vertices[b_.edges[arcs_b.index[k]].from];
     const Vec3 down = transpose_times(turn_, normal);
-    return highest_along(a_, normal) - dot(normal, from_a) <= kOutermost * size_of(a_) &&
-           dot(down, from_b) - lowest_along(b_, down) <= kOutermost * size_of(b_);
+    return highest_along(a_, normal) - dot(normal, from_a) <= kOutermost * a_.size &&
+           dot(down, from_b) - lowest_along(b_, down) <= kOutermost * b_.size;
   }
 
   EdgeColumns arcs_a, arcs_b;
@@ -271,18 +266,63 @@ EdgePair best_edges(const Polytope& a, const Polytope& b, const Transform& a_fro
   return best;
 }
 
-float face_separation(const Polytope& a, const Polytope& b, const Transform& a_from_b, AxisKind kind,
-                      int face, Vec3& normal) {
+void face_separation(const Polytope& a, const Polytope& b, const Transform& a_from_b, PolytopeAxis& axis) {
   const Mat3 turn = to_matrix(a_from_b.orientation);
-  if (kind == AxisKind::face_a) {
-    const HullPlane& plane = a.planes[face];
-    normal = plane.normal;
-    return above(b, transpose_times(turn, plane.normal), plane.offset - dot(plane.normal, a_from_b.position));
+  if (axis.kind == AxisKind::face_a) {
+    const HullPlane& plane = a.planes[axis.index_a];
+    const LowestVertex lowest = lowest_vertex(b, transpose_times(turn, plane.normal));
+    axis.normal = plane.normal;
+    axis.vertex = lowest.vertex;
+    axis.separation = lowest.value - (plane.offset - dot(plane.normal, a_from_b.position));
+    return;
   }
-  const HullPlane& plane = b.planes[face];
-  normal = normalized(-(turn * plane.normal));
+  const HullPlane& plane = b.planes[axis.index_b];
+  axis.normal = normalized(-(turn * plane.normal));
   // The plane dot(n, x) = offset of B holds the points x = turn^T (p - t) of A.
-  return above(a, -normal, plane.offset - dot(normal, a_from_b.position));
+  const LowestVertex lowest = lowest_vertex(a, -axis.normal);
+  axis.vertex = lowest.vertex;
+  axis.separation = lowest.value - (plane.offset - dot(axis.normal, a_from_b.position));
+}
+
+// By how much an axis must be better to take the place of one of this separation.
+float bias_of(const Polytope& a, const Polytope& b, float separation) {
+  return kDepthBias * absolute(separation) + kSizeBias * min(a.inner_radius, b.inner_radius);
+}
+
+// Whether `point` lies within the sides of a face by at least `margin`.
+bool lies_over(const Polytope& p, int face, Vec3 point, float margin) {
+  const Vec3 normal = p.planes[face].normal;
+  const std::uint8_t* const first = p.face_vertices + p.face_offsets[face];
+  const std::uint8_t* const last = p.face_vertices + p.face_offsets[face + 1] - 1;
+  Vec3 from = p.vertices[*last];
+  for (const std::uint8_t* corner = first; corner <= last; ++corner) {
+    const Vec3 to = p.vertices[*corner], outward = cross(to - from, normal);
+    const float inside = dot(outward, from - point);
+    if (!(inside >= 0.0f) || inside * inside < square(margin) * length_squared(outward)) return false;
+    from = to;
+  }
+  return true;
+}
+
+// Whether no axis parts the two by more than this face does, rounding aside. Let the nearest vertex lie over the face.
+// Apart, it and the point below it are as near to each other as the face says. Overlapping, let the face reach farther from
+// that point, by m, than the vertex lies deep, by d: along a direction that leans by t from the normal the vertex and the
+// rim of that circle overlap by d cos t + m sin t, not less than d; and along those that look the other way the balls in
+// the two overlap by that much, whose middles lie one before the other.
+bool is_unbeaten(const Polytope& a, const Polytope& b, const Transform& a_from_b, const PolytopeAxis& axis) {
+  const bool is_a = axis.kind == AxisKind::face_a;
+  const Mat3 turn = to_matrix(a_from_b.orientation);
+  const Vec3 shift = a_from_b.position;
+  const float depth = max(-axis.separation, 0.0f);
+  if (depth > 0.0f) {
+    const Vec3 between = turn * b.centroid + shift - a.centroid;
+    const float along = dot(between, axis.normal), room = a.inner_radius + b.inner_radius - depth;
+    if (!(along >= 0.0f) || !(room >= 0.0f) || length_squared(between - along * axis.normal) > square(room))
+      return false;
+  }
+  const Vec3 nearest =
+      is_a ? turn * b.vertices[axis.vertex] + shift : transpose_times(turn, a.vertices[axis.vertex] - shift);
+  return lies_over(is_a ? a : b, is_a ? axis.index_a : axis.index_b, nearest, depth);
 }
 
 }  // namespace
@@ -309,10 +349,8 @@ PolytopeAxis axis_of_name(std::uint32_t name, const Polytope& a, const Polytope&
 float separation_along(const Polytope& a, const Polytope& b, const Transform& a_from_b, PolytopeAxis& axis) {
   switch (axis.kind) {
     case AxisKind::face_a:
-      axis.separation = face_separation(a, b, a_from_b, axis.kind, axis.index_a, axis.normal);
-      break;
     case AxisKind::face_b:
-      axis.separation = face_separation(a, b, a_from_b, axis.kind, axis.index_b, axis.normal);
+      face_separation(a, b, a_from_b, axis);
       break;
     case AxisKind::edges: {
       // Whether or not the two edges still face each other, the supports along their cross product tell the truth.
@@ -337,24 +375,33 @@ float separation_along(const Polytope& a, const Polytope& b, const Transform& a_
 
 PolytopeAxis separating_axis(const Polytope& a, const Polytope& b, const Transform& a_from_b,
                              float max_separation, const PolytopeAxis& favoured) {
+  const bool favours_face = favoured.kind == AxisKind::face_a || favoured.kind == AxisKind::face_b;
+  const float rounding = kRounding * (a.size + b.size);
+  if (favours_face && 2.0f * rounding <= bias_of(a, b, favoured.separation) &&
+      favoured.separation + rounding <= max_separation && is_unbeaten(a, b, a_from_b, favoured))
+    return favoured;
   const FaceQuery qa =
       best_face(a, b, a_from_b, max_separation, favoured.kind == AxisKind::face_a ? favoured.index_a : -1);
-  PolytopeAxis face_a{AxisKind::face_a, qa.face, 0, a.planes[qa.face].normal, qa.separation};
+  PolytopeAxis face_a{AxisKind::face_a, qa.face, 0, 0, a.planes[qa.face].normal, qa.separation};
   if (qa.separation > max_separation) return face_a;
   const FaceQuery qb = best_face(b, a, inverse(a_from_b), max_separation,
                                  favoured.kind == AxisKind::face_b ? favoured.index_b : -1);
-  PolytopeAxis face_b{AxisKind::face_b, 0, qb.face, {}, qb.separation};
+  PolytopeAxis face_b{AxisKind::face_b, 0, qb.face, 0, {}, qb.separation};
   face_b.normal = normalized(-rotate(a_from_b.orientation, b.planes[qb.face].normal));
   if (qb.separation > max_separation) return face_b;
 
-  const float best = max(qa.separation, qb.separation);
-  const float bias = kDepthBias * absolute(best) + kSizeBias * min(a.inner_radius, b.inner_radius);
+  const float best = max(qa.separation, qb.separation), bias = bias_of(a, b, best);
   const PolytopeAxis& deciding = qb.separation > qa.separation ? face_b : face_a;
-  const BestFace plane{deciding.kind, deciding.kind == AxisKind::face_a ? qa.face : qb.face, deciding.normal,
-                       deciding.separation};
-  const EdgePair pair = best_edges(a, b, a_from_b, plane, max_separation, best + 0.5f * bias);
-  const PolytopeAxis edges{AxisKind::edges, max(pair.a, 0), max(pair.b, 0), pair.normal,
-                           pair.a < 0 ? -kUnbounded : pair.separation};
+  EdgePair pair;
+  if (PolytopeAxis face = deciding; separation_along(a, b, a_from_b, face) == -kUnbounded ||
+                                    2.0f * rounding > bias || !is_unbeaten(a, b, a_from_b, face)) {
+    const BestFace plane{deciding.kind, deciding.kind == AxisKind::face_a ? qa.face : qb.face,
+                         deciding.normal, deciding.separation};
+    pair = best_edges(a, b, a_from_b, plane, max_separation, best + 0.5f * bias);
+  }
+  const PolytopeAxis edges{AxisKind::edges, max(pair.a, 0),
+                           max(pair.b, 0),  0,
+                           pair.normal,     pair.a < 0 ? -kUnbounded : pair.separation};
   if (edges.separation > max_separation) return edges;
 
   // Among nearly equal ones: the favoured, then A's face, then B's, then edges.
@@ -362,10 +409,7 @@ PolytopeAxis separating_axis(const Polytope& a, const Polytope& b, const Transfo
       pair.separation > best + 0.5f * bias) {
     return edges;
   }
-  if (favoured.kind == AxisKind::face_a || favoured.kind == AxisKind::face_b) {
-    PolytopeAxis kept = favoured;
-    if (edges.separation <= best + bias && separation_along(a, b, a_from_b, kept) >= best - bias) return kept;
-  }
+  if (favours_face && edges.separation <= best + bias && favoured.separation >= best - bias) return favoured;
   if (edges.separation > best + bias) return edges;
   return qb.separation > qa.separation + 0.5f * bias ? face_b : face_a;
 }

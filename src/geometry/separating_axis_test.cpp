@@ -58,6 +58,12 @@ TEST(SeparatingAxis, EqualsBruteForceOverAllAxes) {
     const PolytopeAxis pruned = separating_axis(pa, pb, t, 0.0f, {});
     EXPECT_EQ(pruned.kind, axis.kind) << i;
     EXPECT_EQ(pruned.separation, axis.separation) << i;
+    // And once more with that axis as the favoured one.
+    PolytopeAxis favoured = axis;
+    separation_along(pa, pb, t, favoured);
+    const PolytopeAxis again = separating_axis(pa, pb, t, 0.0f, favoured);
+    EXPECT_EQ(axis_name(again), axis_name(axis)) << i;
+    EXPECT_NEAR(double(again.separation), double(axis.separation), 2.0e-6 * double(scale)) << i;
     ++overlapping;
     if (axis.kind == AxisKind::edges) ++by_edges;
     EXPECT_GE(double(axis.separation), best - bias) << i;
@@ -125,6 +131,7 @@ TEST(SeparatingAxis, TheFavouredAxisStaysWhenNearlyEqual) {
   favoured.kind = AxisKind::face_b;
   favoured.index_b = 2;
   EXPECT_EQ(separating_axis(view, view, t, 0.1f, {}).kind, AxisKind::face_a);
+  separation_along(view, view, t, favoured);
   EXPECT_EQ(separating_axis(view, view, t, 0.1f, favoured).kind, AxisKind::face_b);
 }
 
@@ -168,7 +175,7 @@ TEST(Polytope, LowestAndHighestAlongEqualAPlainSearch) {
     for (const Vec3& v : a.hull->vertices) low = min(low, dot(v, d)), high = max(high, dot(v, d));
     EXPECT_EQ(lowest_along(view, d), low);
     EXPECT_EQ(highest_along(view, d), high);
-    EXPECT_EQ(dot(view.vertices[lowest_vertex(view, d)], d), low);
+    EXPECT_EQ(dot(view.vertices[lowest_vertex(view, d).vertex], d), low);
   }
 }
 
