@@ -104,15 +104,10 @@ class Hulls {
     hulls_.push_back(hull);
     Hull& copy = hulls_.back();
     for (Vec3& v : copy.vertices) v = scale * v;
-    for (std::size_t i = 0; i < copy.x.size(); ++i) {
-      copy.x[i] = scale * copy.x[i];
-      copy.y[i] = scale * copy.y[i];
-      copy.z[i] = scale * copy.z[i];
-    }
     for (HullPlane& plane : copy.planes) plane.offset = scale * plane.offset;
-    copy.box = {scale * copy.box.low, scale * copy.box.high};
     copy.centroid = scale * copy.centroid;
     copy.inner_radius = scale * copy.inner_radius;
+    complete_hull(copy);
     Shape shape;
     shape.kind = ShapeKind::hull;
     shape.hull = &copy;

@@ -4,6 +4,19 @@
 
 namespace gyre {
 
+void complete_hull(Hull& hull) {
+  const std::size_t count = hull.vertices.size();
+  const std::size_t padded = (count + Hull::kPad - 1) / Hull::kPad * Hull::kPad;
+  hull.x.resize(padded), hull.y.resize(padded), hull.z.resize(padded);
+  hull.box = {hull.vertices[0], hull.vertices[0]};
+  for (std::size_t i = 0; i < padded; ++i) {
+    const Vec3 v = hull.vertices[i < count ? i : count - 1];
+    hull.x[i] = v.x, hull.y[i] = v.y, hull.z[i] = v.z;
+    hull.box = merge(hull.box, {v, v});
+  }
+  for (HullEdge& edge : hull.edges) edge.direction = hull.vertices[edge.to] - hull.vertices[edge.from];
+}
+
 int support_vertex(const Hull& hull, Vec3 direction) {
   constexpr int kLanes = Hull::kPad;
   const int count = int(hull.x.size());

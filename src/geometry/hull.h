@@ -17,7 +17,10 @@ struct HullPlane {
 struct HullEdge {
   std::uint8_t from, to;     // vertices, in the loop order of face `left`
   std::uint8_t left, right;  // the two faces
+  Vec3 direction{};          // from the one vertex to the other
 };
+
+static_assert(sizeof(HullPlane) == 16 && sizeof(HullEdge) == 16, "records that are read as four numbers");
 
 // At most 255 vertices, 255 faces and 510 edges (all indices but edge indices fit in a byte).
 struct Hull {
@@ -36,6 +39,9 @@ struct Hull {
   int vertex_count() const { return int(vertices.size()); }
   int face_count() const { return int(planes.size()); }
 };
+
+// Fills the columns and the box, and the directions of edges, from the vertices and the edges' ends.
+void complete_hull(Hull& hull);
 
 // The vertex farthest along `direction` (lowest index among equals).
 int support_vertex(const Hull& hull, Vec3 direction);

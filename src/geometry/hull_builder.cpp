@@ -247,7 +247,7 @@ void fill_edges(Hull& hull) {
         if (pass == 0) {
           face_of[std::size_t(from * 256 + to)] = f;
         } else if (const int other = face_of[std::size_t(to * 256 + from)]; f < other) {
-          hull.edges.push_back({from, to, std::uint8_t(f), std::uint8_t(other)});
+          hull.edges.push_back({from, to, std::uint8_t(f), std::uint8_t(other), {}});
         }
       }
     }
@@ -273,16 +273,6 @@ Hull make_hull(std::span<const Vec3> points, const Grid& grid, const Candidate& 
                const Polygons& polygons) {
   Hull hull;
   for (const int point : polygons.points) hull.vertices.push_back(points[std::size_t(point)]);
-  const std::size_t count = hull.vertices.size();
-  const std::size_t padded = (count + Hull::kPad - 1) / Hull::kPad * Hull::kPad;
-  hull.box = {hull.vertices[0], hull.vertices[0]};
-  for (std::size_t i = 0; i < padded; ++i) {
-    const Vec3 v = hull.vertices[i < count ? i : count - 1];
-    hull.x.push_back(v.x);
-    hull.y.push_back(v.y);
-    hull.z.push_back(v.z);
-    hull.box = merge(hull.box, {v, v});
-  }
   hull.centroid = volume_center(grid, body);
   hull.face_offsets.push_back(0);
   hull.inner_radius = kUnbounded;
@@ -295,6 +285,7 @@ Hull make_hull(std::span<const Vec3> points, const Grid& grid, const Candidate& 
   }
   hull.inner_radius = max(hull.inner_radius, 0.0f);
   fill_edges(hull);
+  complete_hull(hull);
   return hull;
 }
 

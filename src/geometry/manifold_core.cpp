@@ -30,6 +30,14 @@ struct CoreContact {
   float size = 0.0f;  // of the smaller shape
 };
 
+// Not cleared: only the counted ones are ever read.
+struct Candidates {
+  union {
+    ManifoldPoint points[kMaxClipPoints + 1];
+  };
+  Candidates() {}
+};
+
 void put_in_a(const Transform& a_from_b, FacePolygon& face) {
   for (int i = 0; i < face.count; ++i) face.vertices[i] = a_from_b * face.vertices[i];
   face.normal = rotate(a_from_b.orientation, face.normal);
@@ -102,7 +110,8 @@ ManifoldPoint nearest_point(const Shape& a, const Shape& b, const CoreContact& c
 
 void fill(const Shape& a, const Shape& b, const Transform& a_from_b, const CoreContact& contact,
           float max_separation, LocalManifold& out) {
-  ManifoldPoint points[kMaxClipPoints + 1];
+  Candidates candidates;
+  ManifoldPoint* const points = candidates.points;
   int count = facing_points(a, b, a_from_b, contact, max_separation, points);
   float deepest = kUnbounded;
   for (int i = 0; i < count; ++i) deepest = min(deepest, points[i].separation);

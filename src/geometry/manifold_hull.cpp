@@ -77,15 +77,24 @@ class FacePoints {
     const Polytope& incident = roles_.incident;
     const float height = dot(outward_, reference_.vertices[0] - roles_.reference_from_incident.position);
     float separations[kMaxVertices];
-    for (int i = 0; i < incident.vertex_count; ++i)
-      separations[i] = dot(local, incident.vertices[i]) - height;
-    for (int f = 0; f < incident.face_count; ++f) {
-      if (f == first || dot(incident.planes[f].normal, local) > -kLooksThisWay) continue;
-      face_polygon(incident, f, incident_);
-      float lowest = kUnbounded;
-      for (int i = 0; i < incident_.count; ++i) lowest = min(lowest, separations[incident_.ids[i]]);
-      if (lowest < deepest_) clip_with(f);
+    const Vec3W<kPolytopeLanes> direction = splat<kPolytopeLanes>(local);
+    for (int i = 0; i < incident.padded_count; i += kPolytopeLanes)
+      (values_along(incident, i, direction) - Wide<kPolytopeLanes>(height)).store_unaligned(separations + i);
+    for (int f = 0; f < incident.face_count; f += kPolytopeLanes) {
+      const Mask<kPolytopeLanes> aside =
+          dot(load_planes(incident, f).normal, direction) > Wide<kPolytopeLanes>(-kLooksThisWay);
+      const int end = min(f + kPolytopeLanes, incident.face_count);
+      for (int k = f; k < end; ++k) {
+        if (k != first && !aside[k - f] && lowest_of(k, separations) < deepest_) clip_with(k);
+      }
     }
+  }
+  // The smallest of the values of a face's corners.
+  float lowest_of(int face, const float* values) const {
+    const int count = face_corners(roles_.incident, face);
+    float lowest = kUnbounded;
+    for (int i = 0; i < count; ++i) lowest = min(lowest, values[face_corner(roles_.incident, face, i)]);
+    return lowest;
   }
   void clip_with(int face) {
     face_polygon(roles_.incident, face, incident_);
@@ -93,14 +102,13 @@ class FacePoints {
       incident_.vertices[i] = roles_.reference_from_incident * incident_.vertices[i];
     }
     ManifoldPoint* const found = points_ + count_;
-    ManifoldPoint clipped[kMaxClipPoints];
     const int room = kMaxClipPoints - count_,
-              count = min(clip_faces(pair_, roles_.reference_is_a, clipped), room);
+              count = min(clip_faces(pair_, roles_.reference_is_a, found), room);
     int kept = 0;
     for (int i = 0; i < count; ++i) {
-      if (is_known(clipped[i])) continue;
-      found[kept++] = clipped[i];
-      deepest_ = min(deepest_, clipped[i].separation);
+      if (is_known(found[i])) continue;
+      deepest_ = min(deepest_, found[i].separation);
+      found[kept++] = found[i];
     }
     count_ += kept;
   }
@@ -118,7 +126,10 @@ class FacePoints {
   FacePair pair_;
   float deepest_ = kUnbounded;
   int count_ = 0;
-  ManifoldPoint points_[kMaxClipPoints];
+  // The points kept, and behind them those of one more face. Not cleared: only the counted ones are ever read.
+  union {
+    ManifoldPoint points_[2 * kMaxClipPoints];
+  };
 };
 
 // None when the edges pass beside each other: of polytopes apart another feature is nearer, and of those that overlap the faces

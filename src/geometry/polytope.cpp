@@ -1,8 +1,6 @@
 // Boxes and hulls as polytopes, and searches over their columns. See polytope.h.
 #include "geometry/polytope.h"
 
-#include "math/wide_vec.h"
-
 namespace gyre {
 namespace {
 
@@ -13,9 +11,12 @@ constexpr std::uint32_t kBoxOffsets[7] = {0, 4, 8, 12, 16, 20, 24};
 constexpr std::uint8_t kBoxFaces[24] = {0, 4, 6, 2, 1, 3, 7, 5, 0, 1, 5, 4,
                                         2, 6, 7, 3, 0, 2, 3, 1, 4, 5, 7, 6};
 // Each edge in the loop order of its left face.
-constexpr HullEdge kBoxEdges[12] = {{0, 1, 2, 4}, {2, 3, 4, 3}, {6, 7, 3, 5}, {5, 4, 2, 5},
-                                    {0, 2, 4, 0}, {3, 1, 4, 1}, {7, 5, 1, 5}, {4, 6, 0, 5},
-                                    {0, 4, 0, 2}, {1, 5, 2, 1}, {3, 7, 1, 3}, {6, 2, 0, 3}};
+constexpr std::uint8_t kBoxEdges[12][4] = {{0, 1, 2, 4}, {2, 3, 4, 3}, {6, 7, 3, 5}, {5, 4, 2, 5},
+                                           {0, 2, 4, 0}, {3, 1, 4, 1}, {7, 5, 1, 5}, {4, 6, 0, 5},
+                                           {0, 4, 0, 2}, {1, 5, 2, 1}, {3, 7, 1, 3}, {6, 2, 0, 3}};
+
+constexpr int kLanes = kPolytopeLanes;
+using Floats = Wide<kLanes>;
 
 }  // namespace
 
@@ -44,6 +45,10 @@ BoxPolytope::BoxPolytope(Vec3 h) : inner_radius_(smallest(h)), size_(largest(h))
     y_[i] = vertices_[i].y;
     z_[i] = vertices_[i].z;
   }
+  for (int i = 0; i < 12; ++i) {
+    const std::uint8_t* const edge = kBoxEdges[i];
+    edges_[i] = {edge[0], edge[1], edge[2], edge[3], vertices_[edge[1]] - vertices_[edge[0]]};
+  }
   planes_[0] = {{-1, 0, 0}, h.x};
   planes_[1] = {{1, 0, 0}, h.x};
   planes_[2] = {{0, -1, 0}, h.y};
@@ -53,43 +58,38 @@ BoxPolytope::BoxPolytope(Vec3 h) : inner_radius_(smallest(h)), size_(largest(h))
 }
 
 Polytope BoxPolytope::view() const {
-  return {x_,          y_,        z_,        8,  8,  vertices_,     planes_, 6,
-          kBoxOffsets, kBoxFaces, kBoxEdges, 12, {}, inner_radius_, size_};
+  return {x_,          y_,        z_,     8,  8,  vertices_,     planes_, 6,
+          kBoxOffsets, kBoxFaces, edges_, 12, {}, inner_radius_, size_};
 }
 
 void face_polygon(const Polytope& polytope, int face, FacePolygon& out) {
-  const std::uint32_t begin = polytope.face_offsets[face];
-  const std::uint32_t count = polytope.face_offsets[face + 1] - begin;
   out.feature = std::uint32_t(face);
   out.normal = polytope.planes[face].normal;
-  out.count = int(min(count, std::uint32_t(kMaxFaceVertices)));
+  out.count = face_corners(polytope, face);
   for (int i = 0; i < out.count; ++i) {
-    const std::uint8_t vertex =
-        polytope.face_vertices[begin + std::uint32_t(i) * count / std::uint32_t(out.count)];
-    out.ids[i] = vertex;
+    const int vertex = face_corner(polytope, face, i);
+    out.ids[i] = std::uint8_t(vertex);
     out.vertices[i] = polytope.vertices[vertex];
   }
+}
+
+float lowest_along(const Polytope& p, Vec3 d) {
+  const Vec3W<kLanes> direction = splat<kLanes>(d);
+  Floats best = values_along(p, 0, direction);
+  for (int i = kLanes; i < p.padded_count; i += kLanes) best = min(values_along(p, i, direction), best);
+  return min(min(best[3], best[1]), min(best[2], best[0]));
 }
 
 float highest_along(const Polytope& p, Vec3 d) { return -lowest_along(p, -d); }
 
 LowestVertex lowest_vertex(const Polytope& p, Vec3 d) {
-  constexpr int kLanes = 4;  // every x86-64, 64-bit ARM and WebAssembly has registers of four
-  using Floats = Wide<kLanes>;
-  using Ints = WideInt<kLanes>;
-  static_assert(Hull::kPad % kLanes == 0);
   const Vec3W<kLanes> direction = splat<kLanes>(d);
-  const auto value_from = [&](int i) {
-    return dot(Vec3W<kLanes>{Floats::load_unaligned(p.x + i), Floats::load_unaligned(p.y + i),
-                             Floats::load_unaligned(p.z + i)},
-               direction);
-  };
   constexpr std::int32_t kOwn[kLanes] = {0, 1, 2, 3};
-  Ints index = Ints::load_unaligned(kOwn), winner = index;
-  Floats best = value_from(0);
+  WideInt<kLanes> index = WideInt<kLanes>::load_unaligned(kOwn), winner = index;
+  Floats best = values_along(p, 0, direction);
   for (int i = kLanes; i < p.padded_count; i += kLanes) {
-    index = index + Ints(kLanes);
-    const Floats value = value_from(i);
+    index = index + WideInt<kLanes>(kLanes);
+    const Floats value = values_along(p, i, direction);
     winner = select(value < best, index, winner);
     best = min(value, best);
   }

@@ -3,6 +3,7 @@
 
 #include "geometry/hull.h"
 #include "geometry/support.h"
+#include "math/wide_vec.h"
 
 namespace gyre {
 
@@ -39,28 +40,49 @@ class BoxPolytope {
   float x_[8], y_[8], z_[8];
   Vec3 vertices_[8];
   HullPlane planes_[6];
+  HullEdge edges_[12];
   float inner_radius_, size_;
 };
 
-// The face as a polygon in the polytope's frame; one with more than kMaxFaceVertices corners is thinned evenly.
+// How many of a face's corners a polygon takes, and which: one with more than kMaxFaceVertices corners is thinned evenly.
+inline int face_corners(const Polytope& p, int face) {
+  return min(int(p.face_offsets[face + 1] - p.face_offsets[face]), kMaxFaceVertices);
+}
+inline int face_corner(const Polytope& p, int face, int i) {
+  const int begin = int(p.face_offsets[face]), count = int(p.face_offsets[face + 1]) - begin;
+  return p.face_vertices[count <= kMaxFaceVertices ? begin + i : begin + i * count / kMaxFaceVertices];
+}
+// The face as a polygon in the polytope's frame.
 void face_polygon(const Polytope& polytope, int face, FacePolygon& out);
 
-// Smallest and largest dot(direction, vertex). Here, because the axis search calls it for every face.
-inline float lowest_along(const Polytope& p, Vec3 d) {
-  constexpr int kLanes = Hull::kPad;
-  float best[kLanes];
-  for (int lane = 0; lane < kLanes; ++lane) best[lane] = p.x[lane] * d.x + p.y[lane] * d.y + p.z[lane] * d.z;
-  for (int i = kLanes; i < p.padded_count; i += kLanes) {
-    for (int lane = 0; lane < kLanes; ++lane) {
-      const float value = p.x[i + lane] * d.x + p.y[i + lane] * d.y + p.z[i + lane] * d.z;
-      best[lane] = min(value, best[lane]);
-    }
-  }
-  for (int step = kLanes / 2; step > 0; step /= 2) {
-    for (int lane = 0; lane < step; ++lane) best[lane] = min(best[lane + step], best[lane]);
-  }
-  return best[0];
+// Vertices and planes are looked at four at a time: every x86-64, 64-bit ARM and WebAssembly has registers of four.
+constexpr int kPolytopeLanes = 4;
+static_assert(Hull::kPad % kPolytopeLanes == 0);
+
+// dot(direction, vertex) of four vertices.
+inline Wide<kPolytopeLanes> values_along(const Polytope& p, int first, Vec3W<kPolytopeLanes> direction) {
+  using Floats = Wide<kPolytopeLanes>;
+  return Floats::load_unaligned(p.x + first) * direction.x +
+         Floats::load_unaligned(p.y + first) * direction.y +
+         Floats::load_unaligned(p.z + first) * direction.z;
 }
+
+struct PlaneLanes {
+  Vec3W<kPolytopeLanes> normal;
+  Wide<kPolytopeLanes> offset;
+};
+// Four planes; the last one stands in for those behind it.
+inline PlaneLanes load_planes(const Polytope& p, int first) {
+  const float* plane[kPolytopeLanes];
+  for (int lane = 0; lane < kPolytopeLanes; ++lane)
+    plane[lane] = &p.planes[min(first + lane, p.face_count - 1)].normal.x;
+  Wide<kPolytopeLanes> columns[4];
+  Rows<kPolytopeLanes>::gather(plane, 0, columns);
+  return {{columns[0], columns[1], columns[2]}, columns[3]};
+}
+
+// Smallest and largest dot(direction, vertex).
+float lowest_along(const Polytope& polytope, Vec3 direction);
 float highest_along(const Polytope& polytope, Vec3 direction);
 
 struct LowestVertex {

@@ -23,8 +23,8 @@ constexpr float kOutermost = 1.0e-5f;
 constexpr float kRounding = 3.0e-5f;
 constexpr int kMaxVertices = 255, kMaxFaces = 255, kMaxEdges = 510;
 
-// Separation of `other` above a plane of the reference polytope, the plane given in other's frame.
-float above(const Polytope& other, Vec3 normal, float offset) { return lowest_along(other, normal) - offset; }
+constexpr int kLanes = kPolytopeLanes;
+using Floats = Wide<kLanes>;
 
 // The best face of `reference` against `other`, both in reference's frame except that other's columns stay its own.
 struct FaceQuery {
@@ -38,55 +38,64 @@ FaceQuery best_face(const Polytope& reference, const Polytope& other, const Tran
   const Vec3 shift = reference_from_other.position;
   const Vec3 center = turn * other.centroid + shift;
   // The other's inner ball bounds what a face can reach, so a good first face spares most of the rest.
-  float bound[kMaxFaces];
-  float largest_bound = -kUnbounded;
-  for (int f = 0; f < reference.face_count; ++f) {
-    const HullPlane& plane = reference.planes[f];
-    bound[f] = dot(plane.normal, center) - plane.offset - other.inner_radius;
-    largest_bound = max(bound[f], largest_bound);
+  float bound[kMaxFaces + 1];
+  const int count = reference.face_count;
+  Floats largest_bound(-kUnbounded);
+  for (int f = 0; f < count; f += kLanes) {
+    const PlaneLanes planes = load_planes(reference, f);
+    const Floats bounds =
+        dot(planes.normal, splat<kLanes>(center)) - planes.offset - Floats(other.inner_radius);
+    bounds.store_unaligned(bound + f);
+    largest_bound = max(bounds, largest_bound);
   }
+  for (int f = count; f % kLanes != 0; ++f) bound[f] = -kUnbounded;
   int first = favoured;
   if (first < 0) {
+    const float largest =
+        max(max(largest_bound[0], largest_bound[1]), max(largest_bound[2], largest_bound[3]));
     first = 0;
-    while (first + 1 < reference.face_count && bound[first] != largest_bound) ++first;
+    while (first + 1 < count && bound[first] != largest) ++first;
   }
   const auto look = [&](int f) {
-    if (bound[f] <= best.separation) return;
     const HullPlane& plane = reference.planes[f];
     const float separation =
-        above(other, transpose_times(turn, plane.normal), plane.offset - dot(plane.normal, shift));
+        lowest_along(other, transpose_times(turn, plane.normal)) - (plane.offset - dot(plane.normal, shift));
     if (separation > best.separation) best = {f, separation};
   };
   look(first);
-  for (int f = 0; f < reference.face_count && best.separation <= max_separation; ++f) look(f);
+  for (int f = 0; f < count; f += kLanes) {
+    const auto better = [&] { return to_bits(Floats::load_unaligned(bound + f) > Floats(best.separation)); };
+    // Those behind the last one looked at.
+    for (unsigned rest = better(), left = ~0u; rest != 0; rest = better() & left) {
+      if (best.separation > max_separation) return best;
+      const int lane = std::countr_zero(rest);
+      left = ~1u << lane;
+      look(f + lane);
+    }
+  }
   return best;
 }
 
-// Edges with the normals of their two faces, in A's frame, as columns. Plain arrays: most of them is never written.
-struct EdgeColumns {
-  static constexpr int kLanes = 8;
-  static constexpr int kRoom = 512;
+// An edge with the normals of its two faces, which end an arc on the unit sphere.
+template <class Vector>
+struct Arc {
+  Vector direction, left, right;
+};
+using ArcsW = Arc<Vec3W<kLanes>>;
+
+Arc<Vec3> arc_of(const Polytope& p, const HullEdge& edge) {
+  return {edge.direction, p.planes[edge.left].normal, p.planes[edge.right].normal};
+}
+ArcsW in_every_lane(const Arc<Vec3>& arc) {
+  return {splat<kLanes>(arc.direction), splat<kLanes>(arc.left), splat<kLanes>(arc.right)};
+}
+
+// Some edges of a polytope. Plain arrays: most of them is never written.
+struct EdgeList {
+  static constexpr int kRoom = (kMaxEdges + kLanes - 1) / kLanes * kLanes;
   int count = 0;
   std::uint16_t index[kRoom];
-  float x[kRoom], y[kRoom], z[kRoom];  // direction
-  float left_x[kRoom], left_y[kRoom], left_z[kRoom];
-  float right_x[kRoom], right_y[kRoom], right_z[kRoom];
-
-  void set(int i, Vec3 direction, Vec3 left, Vec3 right) {
-    x[i] = direction.x, y[i] = direction.y, z[i] = direction.z;
-    left_x[i] = left.x, left_y[i] = left.y, left_z[i] = left.z;
-    right_x[i] = right.x, right_y[i] = right.y, right_z[i] = right.z;
-  }
-  Vec3 direction(int i) const { return {x[i], y[i], z[i]}; }
-  Vec3 left(int i) const { return {left_x[i], left_y[i], left_z[i]}; }
-  Vec3 right(int i) const { return {right_x[i], right_y[i], right_z[i]}; }
-  // Edges without length behind the last: no arc crosses theirs.
-  void pad() {
-    for (int i = count; i % kLanes != 0; ++i) set(i, {}, {}, {});
-  }
 };
-static_assert(EdgeColumns::kRoom >=
-              kMaxEdges + EdgeColumns::kLanes - 1 - (kMaxEdges - 1) % EdgeColumns::kLanes);
 
 struct EdgePair {
   int a = -1, b = -1;
@@ -94,29 +103,13 @@ struct EdgePair {
   float separation = -kUnbounded;
 };
 
-// A bit for each of eight edges of b whose mirrored arc on the unit sphere crosses the arc of edge i of a.
-unsigned arcs_cross(const EdgeColumns& a, int i, const EdgeColumns& b, int first) {
-  constexpr int kHalf = 4;  // every x86-64, 64-bit ARM and WebAssembly has registers of four
-  using Floats = Wide<kHalf>;
-  const auto load = [](const float* x, const float* y, const float* z) {
-    return Vec3W<kHalf>{Floats::load_unaligned(x), Floats::load_unaligned(y), Floats::load_unaligned(z)};
-  };
-  const Vec3W<kHalf> d = splat<kHalf>(a.direction(i)), l = splat<kHalf>(a.left(i)),
-                     r = splat<kHalf>(a.right(i));
+// A bit for each of four edges of B whose mirrored arc on the unit sphere crosses the arc of an edge of A.
+GYRE_INLINE unsigned arcs_cross(const ArcsW& a, const ArcsW& b) {
+  const Floats left_b = dot(b.left, a.direction), right_b = dot(b.right, a.direction);
+  const Floats left_a = dot(b.direction, a.left), right_a = dot(b.direction, a.right);
+  // The ends of each arc lie on different sides of the other, and not on the far side of the sphere.
   const Floats zero(0.0f);
-  unsigned crossing = 0;
-  for (int half = 0; half < EdgeColumns::kLanes; half += kHalf) {
-    const int k = first + half;
-    const Vec3W<kHalf> along = load(b.x + k, b.y + k, b.z + k);
-    const Floats left_b = dot(load(b.left_x + k, b.left_y + k, b.left_z + k), d);
-    const Floats right_b = dot(load(b.right_x + k, b.right_y + k, b.right_z + k), d);
-    const Floats left_a = dot(along, l), right_a = dot(along, r);
-    // The ends of each arc lie on different sides of the other, and not on the far side of the sphere.
-    const Mask<kHalf> cross =
-        (left_b * right_b < zero) & (left_a * right_a < zero) & (left_b * right_a < zero);
-    crossing |= to_bits(cross) << half;
-  }
-  return crossing;
+  return to_bits((left_b * right_b < zero) & (left_a * right_a < zero) & (left_b * right_a < zero));
 }
 
 class EdgeSearch {
@@ -139,6 +132,21 @@ class EdgeSearch {
     return true;
   }
 
+  // Where the lines of two edges pass each other: how far from the nearest end of either, and the sine between them. The
+  // product of the smaller of the two and the sine; negative if they pass beyond an end.
+  float hold(int edge_a, int edge_b) const {
+    const HullEdge &ea = a_.edges[edge_a], &eb = b_.edges[edge_b];
+    const DVec3 pa(a_.vertices[ea.from]), pb = rotate(turn_, DVec3(b_.vertices[eb.from])) + shift_;
+    const DVec3 da(ea.direction), db = rotate(turn_, DVec3(eb.direction)), between = pb - pa;
+    const double aa = dot(da, da), bb = dot(db, db), ab = dot(da, db);
+    const double determinant = aa * bb - ab * ab;
+    if (!(determinant > double(kShallow) * aa * bb)) return -1.0f;
+    const double s = (dot(between, da) * bb - dot(between, db) * ab) / determinant;
+    const double t = (dot(between, da) * ab - dot(between, db) * aa) / determinant;
+    const double sine = std::sqrt(determinant / (aa * bb));
+    return float(sine * min(min(s, 1.0 - s) * std::sqrt(aa), min(t, 1.0 - t) * std::sqrt(bb)));
+  }
+
  private:
   const Polytope& a_;
   const Polytope& b_;
@@ -146,8 +154,20 @@ class EdgeSearch {
   DVec3 shift_;
 };
 
+// How high the vertices lie along a direction; returns the lowest of them.
+float find_heights(const Polytope& p, Vec3 up, float shift, float* heights) {
+  const Vec3W<kLanes> direction = splat<kLanes>(up);
+  Floats lowest(kUnbounded);
+  for (int i = 0; i < p.padded_count; i += kLanes) {
+    const Floats height = values_along(p, i, direction) + Floats(shift);
+    height.store_unaligned(heights + i);
+    lowest = min(height, lowest);
+  }
+  return min(min(lowest[0], lowest[1]), min(lowest[2], lowest[3]));
+}
+
 // Edges of which one end lies no higher than `limit`.
-void near_edges(const Polytope& p, const float* heights, float limit, EdgeColumns& out) {
+void near_edges(const Polytope& p, const float* heights, float limit, EdgeList& out) {
   int count = 0;
   for (int e = 0; e < p.edge_count; ++e) {
     out.index[count] = std::uint16_t(e);
@@ -174,67 +194,76 @@ class EdgeCandidates {
   void collect(const BestFace& face, float max_separation) {
     float heights_a[kMaxVertices + 1], heights_b[kMaxVertices + 1];
     // A's vertices upside down, so that low means near for both.
-    const Vec3 down_b = transpose_times(turn_, face.normal);
-    const float shift = dot(face.normal, shift_);
-    float top_a = -kUnbounded, bottom_b = kUnbounded;
-    for (int i = 0; i < a_.vertex_count; ++i) {
-      const float height = dot(face.normal, a_.vertices[i]);
-      heights_a[i] = -height;
-      top_a = max(top_a, height);
-    }
-    for (int i = 0; i < b_.vertex_count; ++i) {
-      heights_b[i] = dot(down_b, b_.vertices[i]) + shift;
-      bottom_b = min(bottom_b, heights_b[i]);
-    }
+    const float bottom_a = find_heights(a_, -face.normal, 0.0f, heights_a);
+    const float bottom_b =
+        find_heights(b_, transpose_times(turn_, face.normal), dot(face.normal, shift_), heights_b);
     // An edge of B must come within reach of A, so not higher than A's top by more than that; A's edges likewise.
     const float margin = kReachMargin * (a_.inner_radius + b_.inner_radius);
     const float reach = max(-face.separation, max_separation) + margin;
-    near_edges(a_, heights_a, reach - bottom_b, arcs_a);
-    near_edges(b_, heights_b, reach + top_a, arcs_b);
-    for (int i = 0; i < arcs_a.count; ++i) {
-      const HullEdge& edge = a_.edges[arcs_a.index[i]];
-      arcs_a.set(i, a_.vertices[edge.to] - a_.vertices[edge.from], a_.planes[edge.left].normal,
-                 a_.planes[edge.right].normal);
+    near_edges(a_, heights_a, reach - bottom_b, near_a);
+    near_edges(b_, heights_b, reach - bottom_a, near_b);
+    const Mat3W<kLanes> turn{splat<kLanes>(turn_.x), splat<kLanes>(turn_.y), splat<kLanes>(turn_.z)};
+    for (int first = 0; first < near_b.count; first += kLanes) {
+      const float *edges[kLanes], *left[kLanes], *right[kLanes];
+      Vec3W<kLanes> from;
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const HullEdge& edge = b_.edges[near_b.index[min(first + lane, near_b.count - 1)]];
+        edges[lane] = reinterpret_cast<const float*>(&edge);
+        left[lane] = &b_.planes[edge.left].normal.x;
+        right[lane] = &b_.planes[edge.right].normal.x;
+        from.x.set(lane, b_.x[edge.from]), from.y.set(lane, b_.y[edge.from]),
+            from.z.set(lane, b_.z[edge.from]);
+      }
+      Floats columns[4];
+      Rows<kLanes>::gather(edges, 0, columns);
+      ArcsW& arcs = arcs_b_[first / kLanes];
+      arcs.direction = turn * Vec3W<kLanes>{columns[1], columns[2], columns[3]};
+      Rows<kLanes>::gather(left, 0, columns);
+      arcs.left = turn * Vec3W<kLanes>{columns[0], columns[1], columns[2]};
+      Rows<kLanes>::gather(right, 0, columns);
+      arcs.right = turn * Vec3W<kLanes>{columns[0], columns[1], columns[2]};
+      from_b_[first / kLanes] = turn * from + splat<kLanes>(shift_);
     }
-    for (int i = 0; i < arcs_b.count; ++i) {
-      const HullEdge& edge = b_.edges[arcs_b.index[i]];
-      arcs_b.set(i, turn_ * (b_.vertices[edge.to] - b_.vertices[edge.from]),
-                 turn_ * b_.planes[edge.left].normal, turn_ * b_.planes[edge.right].normal);
-    }
-    arcs_b.pad();
   }
 
-  // Whether the separation along the cross product of two edges can be above `floor`: in float, without the root, and
-  // undecided (true) where the edges are nearly parallel.
-  bool may_exceed(int i, int k, float floor) const {
-    const Vec3 da = arcs_a.direction(i), db = arcs_b.direction(k), axis = cross(da, db);
-    const float squared = dot(axis, axis);
-    if (squared < kShallow * dot(da, da) * dot(db, db)) return true;
-    const Vec3 pa = a_.vertices[a_.edges[arcs_a.index[i]].from];
-    const Vec3 pb = turn_ * b_.vertices[b_.edges[arcs_b.index[k]].from] + shift_;
-    const float along = dot(axis, pb - pa);
-    const float product = dot(axis, arcs_a.left(i) + arcs_a.right(i)) < 0.0f ? -along : along;
-    const float bound = floor * absolute(floor) * squared;
-    return product * absolute(product) > bound;
+  // A bit for each of the four edges of B from `first` on whose arc crosses that of A's.
+  unsigned crossing(const ArcsW& arc, int first) const {
+    const unsigned bits = arcs_cross(arc, arcs_b_[first / kLanes]);
+    return near_b.count - first >= kLanes ? bits : bits & ((1u << (near_b.count - first)) - 1u);
+  }
+
+  // A bit for each of the four whose separation from A's edge, along the cross product of the two, can be above `floor`: in
+  // float, without the root, and undecided (set) where the edges are nearly parallel.
+  unsigned may_exceed(int i, const ArcsW& arc, int first, float floor) const {
+    const Vec3W<kLanes> da = arc.direction, db = arcs_b_[first / kLanes].direction, axis = cross(da, db);
+    const Floats squared = dot(axis, axis);
+    const Mask<kLanes> undecided = squared < Floats(kShallow) * dot(da, da) * dot(db, db);
+    const Vec3W<kLanes> from_a = splat<kLanes>(a_.vertices[a_.edges[near_a.index[i]].from]);
+    const Floats along = dot(axis, from_b_[first / kLanes] - from_a);
+    const Floats product = select(dot(axis, arc.left + arc.right) < Floats(0.0f), -along, along);
+    return to_bits(undecided | (product * absolute(product) > Floats(floor * absolute(floor)) * squared));
   }
 
   // Whether no corner of A lies beyond its edge along the axis, and none of B before its own. Beside an edge as sharp as a
   // knife two normals all but oppose each other, so that which way is out, and whether arcs cross, is of rounding.
   bool is_outermost(int i, int k, Vec3 normal) const {
-    const Vec3 from_a = a_.vertices[a_.edges[arcs_a.index[i]].from];
-    const Vec3 from_b = b_.vertices[b_.edges[arcs_b.index[k]].from];
+    const Vec3 from_a = a_.vertices[a_.edges[near_a.index[i]].from];
+    const Vec3 from_b = b_.vertices[b_.edges[near_b.index[k]].from];
     const Vec3 down = transpose_times(turn_, normal);
     return highest_along(a_, normal) - dot(normal, from_a) <= kOutermost * a_.size &&
            dot(down, from_b) - lowest_along(b_, down) <= kOutermost * b_.size;
   }
 
-  EdgeColumns arcs_a, arcs_b;
+  EdgeList near_a, near_b;
 
  private:
   const Polytope& a_;
   const Polytope& b_;
   Mat3 turn_;
   Vec3 shift_;
+  // Of B's near edges, in A's frame.
+  ArcsW arcs_b_[EdgeList::kRoom / kLanes];
+  Vec3W<kLanes> from_b_[EdgeList::kRoom / kLanes];
 };
 
 // The pair of edges of largest separation, if that is above `floor`; a = -1 if none is.
@@ -245,14 +274,18 @@ EdgePair best_edges(const Polytope& a, const Polytope& b, const Transform& a_fro
   const EdgeSearch search(a, b, a_from_b);
   EdgePair best;
   best.separation = floor;
-  for (int i = 0; i < near.arcs_a.count; ++i) {
-    for (int first = 0; first < near.arcs_b.count; first += EdgeColumns::kLanes) {
-      for (unsigned rest = arcs_cross(near.arcs_a, i, near.arcs_b, first); rest != 0; rest &= rest - 1) {
+  for (int i = 0; i < near.near_a.count; ++i) {
+    const Arc<Vec3> arc = arc_of(a, a.edges[near.near_a.index[i]]);
+    const ArcsW arcs = in_every_lane(arc);
+    for (int first = 0; first < near.near_b.count; first += kLanes) {
+      unsigned rest = near.crossing(arcs, first);
+      if (rest != 0) rest &= near.may_exceed(i, arcs, first, best.separation);
+      while (rest != 0) {
         const int k = first + std::countr_zero(rest);
-        if (!near.may_exceed(i, k, best.separation)) continue;
+        rest &= rest - 1;
         EdgePair pair;
-        const Vec3 outward = near.arcs_a.left(i) + near.arcs_a.right(i);
-        if (!search.evaluate(near.arcs_a.index[i], near.arcs_b.index[k], outward, pair)) continue;
+        if (!search.evaluate(near.near_a.index[i], near.near_b.index[k], arc.left + arc.right, pair))
+          continue;
         if (!(pair.separation > best.separation)) continue;
         if (!near.is_outermost(i, k, pair.normal)) {
           pair.normal = -pair.normal;
@@ -260,6 +293,7 @@ EdgePair best_edges(const Polytope& a, const Polytope& b, const Transform& a_fro
           if (!(pair.separation > best.separation) || !near.is_outermost(i, k, pair.normal)) continue;
         }
         best = pair;
+        if (rest != 0) rest &= near.may_exceed(i, arcs, first, best.separation);
       }
     }
   }
@@ -325,6 +359,63 @@ bool is_unbeaten(const Polytope& a, const Polytope& b, const Transform& a_from_b
   return lies_over(is_a ? a : b, is_a ? axis.index_a : axis.index_b, nearest, depth);
 }
 
+// The cosine between a direction and the normal of the face that is nearest to it.
+float nearest_normal(const Polytope& p, Vec3 direction) {
+  Floats nearest(-1.0f);
+  for (int f = 0; f < p.face_count; f += kLanes)
+    nearest = max(dot(load_planes(p, f).normal, splat<kLanes>(direction)), nearest);
+  return max(max(nearest[0], nearest[1]), max(nearest[2], nearest[3]));
+}
+
+// Whether the two ends of an edge lie lower along `up` than all other vertices by more than `gap`.
+bool is_lowest_alone(const Polytope& p, const HullEdge& edge, Vec3 up, float gap) {
+  const Floats limit(dot(p.vertices[edge.from], up) + gap);
+  const WideInt<kLanes> from(edge.from), to(edge.to), last(p.vertex_count - 1);
+  constexpr std::int32_t kOwn[kLanes] = {0, 1, 2, 3};
+  WideInt<kLanes> index = WideInt<kLanes>::load_unaligned(kOwn);
+  for (int i = 0; i < p.padded_count; i += kLanes) {
+    const WideInt<kLanes> vertex = min(index, last);
+    const Mask<kLanes> low = values_along(p, i, splat<kLanes>(up)) <= limit;
+    if (any(and_not(and_not(low, vertex == from), vertex == to))) return false;
+    index = index + WideInt<kLanes>(kLanes);
+  }
+  return true;
+}
+
+// Whether a search would come to the favoured edges: no face parts the two by nearly as much, and no other pair of edges
+// does as well. Let the two cross amid both, and `hold` be how far the edges reach beyond the crossing, h. Along a direction
+// that leans by t from their axis, of separation s, points of the two edges are apart by s cos t - h sin t at most; along
+// those that look the other way what is_unbeaten says of the balls holds. So faces are worse by what their normals lean.
+// Other edges are worse beyond rounding from some lean on, and none that leans less is outermost where all other vertices
+// lie lower.
+bool is_unbeaten_pair(const Polytope& a, const Polytope& b, const Transform& a_from_b,
+                      const PolytopeAxis& axis, float rounding) {
+  const float s = axis.of_edges, h = EdgeSearch(a, b, a_from_b).hold(axis.index_a, axis.index_b);
+  const float lean = 8.0f * rounding / h;
+  if (!(h > 0.0f) || !(lean <= 0.5f) || -s > h) return false;
+
+  const Mat3 turn = to_matrix(a_from_b.orientation);
+  const Vec3 between = turn * b.centroid + a_from_b.position - a.centroid;
+  const float along = dot(between, axis.normal);
+  if (!(along >= 0.0f)) return false;
+  const Vec3 down = transpose_times(turn, axis.normal);
+  const float cosine = max(nearest_normal(a, axis.normal), nearest_normal(b, -down));
+  const float sine = std::sqrt(max(1.0f - cosine * cosine - 1.0e-6f, 0.0f));
+  const float others = max(max(s * cosine - h * sine, -h),
+                           length(between - along * axis.normal) - a.inner_radius - b.inner_radius);
+  if (!(s > others + 0.5f * bias_of(a, b, others) + 2.0f * rounding)) return false;
+
+  const HullEdge &edge_a = a.edges[axis.index_a], &edge_b = b.edges[axis.index_b];
+  // The widest that a polytope can be for its size is 2 sqrt(3).
+  const float gap = kOutermost + 3.5f * lean;
+  if (!is_lowest_alone(a, edge_a, -axis.normal, gap * a.size) ||
+      !is_lowest_alone(b, edge_b, down, gap * b.size))
+    return false;
+  const Arc<Vec3> arc_b{turn * edge_b.direction, turn * b.planes[edge_b.left].normal,
+                        turn * b.planes[edge_b.right].normal};
+  return arcs_cross(in_every_lane(arc_of(a, edge_a)), in_every_lane(arc_b)) != 0;
+}
+
 }  // namespace
 
 std::uint32_t axis_name(const PolytopeAxis& axis) {
@@ -362,6 +453,7 @@ float separation_along(const Polytope& a, const Polytope& b, const Transform& a_
         break;
       }
       axis.normal = pair.normal;
+      axis.of_edges = pair.separation;
       axis.separation = lowest_along(b, rotate_inverse(a_from_b.orientation, pair.normal)) +
                         dot(pair.normal, a_from_b.position) - highest_along(a, pair.normal);
       break;
@@ -380,6 +472,12 @@ PolytopeAxis separating_axis(const Polytope& a, const Polytope& b, const Transfo
   if (favours_face && 2.0f * rounding <= bias_of(a, b, favoured.separation) &&
       favoured.separation + rounding <= max_separation && is_unbeaten(a, b, a_from_b, favoured))
     return favoured;
+  if (favoured.kind == AxisKind::edges && favoured.of_edges + rounding <= max_separation &&
+      is_unbeaten_pair(a, b, a_from_b, favoured, rounding)) {
+    PolytopeAxis edges = favoured;
+    edges.separation = favoured.of_edges;
+    return edges;
+  }
   const FaceQuery qa =
       best_face(a, b, a_from_b, max_separation, favoured.kind == AxisKind::face_a ? favoured.index_a : -1);
   PolytopeAxis face_a{AxisKind::face_a, qa.face, 0, 0, a.planes[qa.face].normal, qa.separation};

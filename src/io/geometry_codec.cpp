@@ -97,20 +97,6 @@ bool edges_fit(const Hull& hull) {
   return true;
 }
 
-// Columns that follow from the others.
-void complete_hull(Hull& hull) {
-  const std::size_t count = hull.vertices.size();
-  const std::size_t padded = (count + Hull::kPad - 1) / Hull::kPad * Hull::kPad;
-  hull.box = {hull.vertices[0], hull.vertices[0]};
-  for (std::size_t i = 0; i < padded; ++i) {
-    const Vec3 v = hull.vertices[i < count ? i : count - 1];
-    hull.x.push_back(v.x);
-    hull.y.push_back(v.y);
-    hull.z.push_back(v.z);
-    hull.box = merge(hull.box, {v, v});
-  }
-}
-
 Error read_hull(ByteReader& in, CookedGeometry& cooked) {
   auto hull = std::make_unique<Hull>();
   hull->vertices = get_vectors(in);
@@ -155,7 +141,8 @@ constexpr std::uint8_t kDoubleSided = 1, kHasMaterials = 2;
 
 void write_mesh(ByteWriter& out, const Mesh& mesh) {
   // The first byte was the double-sidedness alone once.
-  out.put(std::uint8_t((mesh.double_sided ? kDoubleSided : 0) | (mesh.materials.empty() ? 0 : kHasMaterials)));
+  out.put(
+      std::uint8_t((mesh.double_sided ? kDoubleSided : 0) | (mesh.materials.empty() ? 0 : kHasMaterials)));
   out.put_all(floats_of(mesh.vertices));
   out.put_all(std::span<const std::uint32_t>(mesh.indices));
   out.put_all(std::span<const std::uint32_t>(mesh.source));
