@@ -184,16 +184,15 @@ CoreDistance core_distance(const CorePair& pair, double max_distance, Vec3 guess
       for (int i = 0; i < count; ++i) known = known || same(simplex[i].way, w.way);
       if (known) break;
     }
-    DifferencePoint next[4] = {simplex[0], simplex[1], simplex[2], simplex[3]};
-    next[count] = w;
+    // Behind the simplex: what is not taken is not counted.
+    simplex[count] = w;
     int next_count = count + 1;
     // Where some direction parts them no simplex holds the origin, whatever rounding makes of it.
-    SimplexPoint next_near = nearest_to_origin(next, next_count, best_bound > touch);
+    SimplexPoint next_near = nearest_to_origin(simplex, next_count, best_bound > touch);
     const double next_squared = length_squared(next_near.point);
     // Rounding has the last word: what does not come nearer is as near as it gets.
     if (count > 0 && next_near.corners != 15 && next_squared >= squared) break;
-    keep_corners(next, next_count, next_near);
-    for (int i = 0; i < next_count; ++i) simplex[i] = next[i];
+    keep_corners(simplex, next_count, next_near);
     count = next_count;
     near = next_near;
     squared = next_squared;
