@@ -224,13 +224,15 @@ class EdgeCandidates {
       arcs.right = turn * Vec3W<kLanes>{columns[0], columns[1], columns[2]};
       from_b_[first / kLanes] = turn * from + splat<kLanes>(shift_);
     }
+    // No arc crosses that of an edge without length, which those behind the last are.
+    for (int i = near_b.count; i % kLanes != 0; ++i) {
+      Vec3W<kLanes>& direction = arcs_b_[i / kLanes].direction;
+      direction.x.set(i % kLanes, 0.0f), direction.y.set(i % kLanes, 0.0f), direction.z.set(i % kLanes, 0.0f);
+    }
   }
 
   // A bit for each of the four edges of B from `first` on whose arc crosses that of A's.
-  unsigned crossing(const ArcsW& arc, int first) const {
-    const unsigned bits = arcs_cross(arc, arcs_b_[first / kLanes]);
-    return near_b.count - first >= kLanes ? bits : bits & ((1u << (near_b.count - first)) - 1u);
-  }
+  unsigned crossing(const ArcsW& arc, int first) const { return arcs_cross(arc, arcs_b_[first / kLanes]); }
 
   // A bit for each of the four whose separation from A's edge, along the cross product of the two, can be above `floor`: in
   // float, without the root, and undecided (set) where the edges are nearly parallel.
