@@ -326,26 +326,28 @@ constexpr int kRecordFloats = 16;
 
 // Where record `index` lies, or `otherwise` for a negative index. With bit operations instead of a branch: which lanes of
 // a block have no record is hard to predict.
+template <int Stride>
 GYRE_INLINE std::uintptr_t record_place(std::uintptr_t base, std::int32_t index) {
-  return base + std::uintptr_t(std::intptr_t(index)) * (kRecordFloats * 4u);
+  return base + std::uintptr_t(std::intptr_t(index)) * (Stride * 4u);
 }
-template <class Number>
+template <int Stride = kRecordFloats, class Number>
 GYRE_INLINE Number* record_or(Number* base, std::int32_t index, Number* otherwise) {
-  const std::uintptr_t record = record_place(std::uintptr_t(base), index);
+  const std::uintptr_t record = record_place<Stride>(std::uintptr_t(base), index);
   const std::uintptr_t none = std::uintptr_t(std::intptr_t(index) >> (8 * sizeof(std::intptr_t) - 1));
   return reinterpret_cast<Number*>(record ^ ((record ^ std::uintptr_t(otherwise)) & none));
 }
-// The same for each lane. Most blocks have a record in every lane, and their lanes need not be asked one by one.
-template <int W, class Number>
+// The same for each lane, of records of `Stride` floats. Most blocks have a record in every lane, and their lanes need not be
+// asked one by one.
+template <int W, int Stride = kRecordFloats, class Number>
 GYRE_INLINE void locate_records(Number* base, const std::int32_t* indices, Number* otherwise,
                                 Number* (&record)[W]) {
   if (none(WideInt<W>::load_unaligned(indices) < WideInt<W>(0))) {
     GYRE_UNROLL
     for (int i = 0; i < W; ++i)
-      record[i] = reinterpret_cast<Number*>(record_place(std::uintptr_t(base), indices[i]));
+      record[i] = reinterpret_cast<Number*>(record_place<Stride>(std::uintptr_t(base), indices[i]));
   } else {
     GYRE_UNROLL
-    for (int i = 0; i < W; ++i) record[i] = record_or(base, indices[i], otherwise);
+    for (int i = 0; i < W; ++i) record[i] = record_or<Stride>(base, indices[i], otherwise);
   }
 }
 

@@ -115,6 +115,10 @@ inline Pose origin_pose(const BodyStore& store, std::uint32_t body) {
   return origin_pose(store.places[body], store.masses[body]);
 }
 void refresh_awake(BodyStore& store);
+// Whether the body's world inertia changes as it turns.
+inline bool inertia_turns(const BodyMass& mass, const BodyFlags& flags) {
+  return mass.isotropic == 0 || flags.locked_angular != 0;
+}
 inline bool is_movable(const BodyFlags& flags) { return flags.type == BodyType::dynamic && flags.frozen == 0; }
 
 }  // namespace gyre

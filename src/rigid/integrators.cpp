@@ -51,7 +51,7 @@ struct Damping {
 void refresh_world_inertia(BodyStore& bodies, std::uint32_t i) {
   const BodyMass& mass = bodies.masses[i];
   const BodyFlags& flags = bodies.flags[i];
-  if (mass.isotropic != 0 && flags.locked_angular == 0) return;
+  if (!inertia_turns(mass, flags)) return;
   bodies.inertia[i] = world_inertia(mass, flags, bodies.orientations[i]);
 }
 

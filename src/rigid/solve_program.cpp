@@ -226,9 +226,14 @@ void begin_balls_stage(void* context, int begin, int end, int) {
   if (int(g.count) % balls.kernels.width != 0) clear_balls(balls.kernels, balls.blocks, balls.end - 1);
   const Solve& s = *g.solve;
   const float warm_scale = s.is_net ? s.warm_scale : 1.0f;
+  const auto turns = [&](std::int32_t body) {
+    return body != kNoBody &&
+           inertia_turns(s.w.bodies.masses[std::size_t(body)], s.w.bodies.flags[std::size_t(body)]);
+  };
   for_balls(g, begin, end, [&](int block, int lane, std::uint32_t slot) {
-    begin_ball(balls.kernels, balls.blocks, block, lane, s.w.joints.records[slot], joint_places(s.w, slot),
-               warm_scale, balls.arrays.inertia);
+    const JointRecord& joint = s.w.joints.records[slot];
+    begin_ball(balls.kernels, balls.blocks, block, lane, joint, joint_places(s.w, slot), warm_scale,
+               turns(joint.body_a) || turns(joint.body_b), balls.arrays.inertia);
   });
 }
 void finish_balls_stage(void* context, int begin, int end, int) {

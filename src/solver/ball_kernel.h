@@ -9,7 +9,7 @@ inline namespace GYRE_TARGET_NAMESPACE {
 
 template <int W>
 struct BallBlock {
-  std::int32_t read_a[W], read_b[W], write_a[W], write_b[W];
+  std::int32_t read_a[W], read_b[W], write_a[W], write_b[W], inertia[W];
   // As LaneBall.
   Vec3W<W> local_a, local_b, offset, from_a, from_b, error, bend, impulse, total;
   // Of this sub-step.
@@ -50,28 +50,41 @@ struct BallMotion {
   }
 };
 
-// Pose and inertia of one side.
+alignas(64) constexpr float kNothing[kRecordFloats] = {};
+
+// Pose of one side.
 template <int W>
 struct BallSide {
   QuatW<W> orientation;
   Vec3W<W> moved;
-  Sym3W<W> inverse_inertia;
-  Wide<W> inverse_mass;
 
   GYRE_INLINE BallSide(const std::int32_t* indices, const BallArrays& arrays) {
-    alignas(64) static constexpr float kNothing[kRecordFloats] = {};
     alignas(16) static constexpr float kUnturned[4] = {0.0f, 0.0f, 0.0f, 1.0f};
-    constexpr int kInertiaFloats = int(sizeof(BodyInertia) / sizeof(float));
-    Wide<W> c[8];
-    gather_fours<1, W>(&arrays.orientation->x, 4, indices, kUnturned, 0, c);
+    Wide<W> c[4];
+    gather_fours<1, W, 4>(&arrays.orientation->x, indices, kUnturned, 0, c);
     orientation = {c[0], c[1], c[2], c[3]};
-    gather_fours<1, W>(&arrays.motion->linear_velocity.x, kMotionFloats, indices, kNothing, kMotionMoved, c);
+    gather_fours<1, W, kMotionFloats>(&arrays.motion->linear_velocity.x, indices, kNothing, kMotionMoved, c);
     moved = {c[0], c[1], c[2]};
-    gather_fours<2, W>(&arrays.inertia->inverse.xx, kInertiaFloats, indices, kNothing, 0, c);
-    inverse_inertia = {c[0], c[1], c[2], c[3], c[4], c[5]};
-    inverse_mass = c[6];
   }
 };
+
+template <int W>
+GYRE_INLINE void load_inertia(const std::int32_t* indices, const BallArrays& arrays, Wide<W>& inverse_mass,
+                              Sym3W<W>& inverse_inertia) {
+  constexpr int kInertiaFloats = int(sizeof(BodyInertia) / sizeof(float));
+  Wide<W> c[8];
+  gather_fours<2, W, kInertiaFloats>(&arrays.inertia->inverse.xx, indices, kNothing, 0, c);
+  inverse_inertia = {c[0], c[1], c[2], c[3], c[4], c[5]};
+  inverse_mass = c[6];
+}
+template <int W>
+GYRE_INLINE void load_inertia(BallBlock<W>& block, const BallArrays& arrays) {
+  const auto inertia = WideInt<W>::load_unaligned(block.inertia);
+  if (none(inertia != WideInt<W>(kInertiaKnown))) return;
+  load_inertia<W>(block.read_a, arrays, block.inverse_mass_a, block.inverse_inertia_a);
+  load_inertia<W>(block.read_b, arrays, block.inverse_mass_b, block.inverse_inertia_b);
+  (inertia & WideInt<W>(kInertiaTurns)).store_unaligned(block.inertia);
+}
 
 // As between_skews() and point_matrix() of solver/joint_blocks.h, and inverse() of a Mat3.
 template <int W>
@@ -94,14 +107,13 @@ void place_balls(void* blocks, int begin, int end, const BallArrays& arrays) {
   for (int i = begin; i < end; ++i) {
     BallBlock<W>& block = static_cast<BallBlock<W>*>(blocks)[i];
     const BallSide<W> a(block.read_a, arrays), b(block.read_b, arrays);
-    block.inverse_mass_a = a.inverse_mass, block.inverse_mass_b = b.inverse_mass;
-    block.inverse_inertia_a = a.inverse_inertia, block.inverse_inertia_b = b.inverse_inertia;
+    load_inertia<W>(block, arrays);
     block.from_a = rotate(a.orientation, block.local_a);
     block.from_b = rotate(b.orientation, block.local_b);
     block.error = block.offset + (b.moved - a.moved) + block.from_b - block.from_a;
-    const Wide<W> m = a.inverse_mass + b.inverse_mass, zero(0.0f);
-    const Mat3W<W> by_a = between_skews(block.from_a, a.inverse_inertia),
-                   by_b = between_skews(block.from_b, b.inverse_inertia);
+    const Wide<W> m = block.inverse_mass_a + block.inverse_mass_b, zero(0.0f);
+    const Mat3W<W> by_a = between_skews(block.from_a, block.inverse_inertia_a),
+                   by_b = between_skews(block.from_b, block.inverse_inertia_b);
     const Mat3W<W> k{Vec3W<W>{m, zero, zero} - by_a.x - by_b.x, Vec3W<W>{zero, m, zero} - by_a.y - by_b.y,
                      Vec3W<W>{zero, zero, m} - by_a.z - by_b.z};
     block.mass = inverse_by_cofactors(k);

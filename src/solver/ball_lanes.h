@@ -19,9 +19,13 @@ struct LaneBall {
   Vec3 impulse, total;    // linear
 };
 
+// What a lane has still to read of its bodies' inertia: nothing; once, as it stays; or each time, as it turns with them.
+constexpr std::int32_t kInertiaKnown = 0, kInertiaStays = 1, kInertiaTurns = 2;
+
 // Who it joins: motion records, or kNoBody; for writing kNoBody where nothing pushes the body.
 struct LaneBallBodies {
   std::int32_t read_a = kNoBody, read_b = kNoBody, write_a = kNoBody, write_b = kNoBody;
+  std::int32_t inertia = kInertiaStays;
 };
 
 struct BallArrays {
@@ -35,8 +39,8 @@ struct BallSettings {
   float rate = 0.0f, mass_scale = 1.0f, impulse_scale = 0.0f;
 };
 
-// The kernels of one CPU target, on blocks [begin, end). A block begins with the lanes' bodies (all read_a, all read_b, ...),
-// then come the floats of LaneBall, W of each, from `first_float` bytes on.
+// The kernels of one CPU target, on blocks [begin, end). A block begins with the lanes' LaneBallBodies (all read_a, all read_b,
+// ...), then come the floats of LaneBall, W of each, from `first_float` bytes on.
 struct BallKernels {
   int width;
   std::size_t block_bytes, first_float;

@@ -19,9 +19,10 @@ std::size_t place_of(const BallKernels& kernels, int block) {
 }
 
 void set_bodies(const BallKernels& kernels, void* blocks, int block, int lane, const LaneBallBodies& bodies) {
-  const std::int32_t records[] = {bodies.read_a, bodies.read_b, bodies.write_a, bodies.write_b};
+  const std::int32_t records[] = {bodies.read_a, bodies.read_b, bodies.write_a, bodies.write_b,
+                                  bodies.inertia};
   std::byte* const first = static_cast<std::byte*>(blocks) + place_of(kernels, block);
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 5; ++i) {
     const std::size_t at = std::size_t(i * kernels.width + lane) * sizeof(std::int32_t);
     std::memcpy(first + at, &records[i], sizeof(std::int32_t));
   }
@@ -52,12 +53,13 @@ void clear_balls(const BallKernels& kernels, void* blocks, int block) {
 }
 
 void begin_ball(const BallKernels& kernels, void* blocks, int block, int lane, const JointRecord& joint,
-                const JointPlaces& places, float warm_scale, const BodyInertia* inertia) {
+                const JointPlaces& places, float warm_scale, bool turns, const BodyInertia* inertia) {
   const auto writes = [&](std::int32_t body) {
     return body != kNoBody && is_movable(inertia[body]) ? body : kNoBody;
   };
   set_bodies(kernels, blocks, block, lane,
-             {joint.body_a, joint.body_b, writes(joint.body_a), writes(joint.body_b)});
+             {joint.body_a, joint.body_b, writes(joint.body_a), writes(joint.body_b),
+              turns ? kInertiaTurns : kInertiaStays});
   std::byte* const first = static_cast<std::byte*>(blocks) + place_of(kernels, block) + kernels.first_float;
   float* const to = reinterpret_cast<float*>(first) + lane;
   const auto put = [&](std::size_t i, Vec3 v) {

@@ -104,13 +104,12 @@ GYRE_INLINE void push_joint(const Bundle<W>& bundle, const LaneNode& node, const
   }
 }
 
-// `Fours` times four floats of records of `stride` floats; of `none` where there is no record.
-template <int Fours, int W>
-GYRE_INLINE void gather_fours(const float* base, int stride, const std::int32_t* indices, const float* none,
-                              int first, Wide<W>* out) {
+// `Fours` times four floats of records of `Stride` floats; of `none` where there is no record.
+template <int Fours, int W, int Stride>
+GYRE_INLINE void gather_fours(const float* base, const std::int32_t* indices, const float* none, int first,
+                              Wide<W>* out) {
   const float* record[W];
-  GYRE_UNROLL
-  for (int i = 0; i < W; ++i) record[i] = indices[i] < 0 ? none : base + std::ptrdiff_t(indices[i]) * stride;
+  locate_records<W, Stride>(base, indices, none, record);
   if constexpr (W == 1) {
     GYRE_UNROLL
     for (int c = 0; c < 4 * Fours; ++c) out[c] = Wide<W>(record[0][first + c]);
@@ -152,10 +151,10 @@ GYRE_INLINE void load_poses(const Bundle<W>& bundle, const LaneArrays& arrays) {
   for (std::uint32_t i = 0; i < bundle.plain.body_count; ++i) {
     LinkedBody<W>& body = bundle.bodies[i];
     Wide<W> c[8];
-    gather_fours<1, W>(&arrays.orientation->x, 4, body.record, kUnturned, 0, c);
+    gather_fours<1, W, 4>(&arrays.orientation->x, body.record, kUnturned, 0, c);
     body.orientation = {c[0], c[1], c[2], c[3]};
-    gather_fours<1, W>(&arrays.motion->linear_velocity.x, kMotionFloats, body.record, kZeros, kMotionMoved,
-                       c);
+    gather_fours<1, W, kMotionFloats>(&arrays.motion->linear_velocity.x, body.record, kZeros, kMotionMoved,
+                                      c);
     body.moved = {c[0], c[1], c[2]};
     const Wide<W> zero(0.0f);
     body.pull = {zero, zero, zero, zero, zero, zero};
@@ -164,7 +163,7 @@ GYRE_INLINE void load_poses(const Bundle<W>& bundle, const LaneArrays& arrays) {
       body.inverse = body.own_inverse = body.inertia = body.pull;
       continue;
     }
-    gather_fours<2, W>(&arrays.inertia->inverse.xx, kInertiaFloats, body.record, kZeros, 0, c);
+    gather_fours<2, W, kInertiaFloats>(&arrays.inertia->inverse.xx, body.record, kZeros, 0, c);
     body.own_inverse = {c[0], c[1], c[2], c[3], c[4], c[5]};
     body.inverse = body.own_inverse;
     body.inverse_mass = c[6];
