@@ -1,10 +1,39 @@
 #include "math/block_lu.h"
 
+#include "math/wide_double.h"
+
 namespace gyre {
 
 namespace {
 
 constexpr int N = kLuBlock;
+
+// C numbers of a row, two at a time.
+template <int C>
+struct RowPart {
+  static constexpr int kWidth = C == 1 ? 1 : 2, kCount = C / kWidth;
+  using D = WideDouble<kWidth>;
+  D v[kCount];
+
+  explicit RowPart(const double* from) {
+    GYRE_UNROLL
+    for (int i = 0; i < kCount; ++i) v[i] = D::load_loose(from + kWidth * i);
+  }
+  void store(double* to) const {
+    GYRE_UNROLL
+    for (int i = 0; i < kCount; ++i) v[i].store_loose(to + kWidth * i);
+  }
+  void subtract(double by, const double* row) {
+    const D wide(by);
+    GYRE_UNROLL
+    for (int i = 0; i < kCount; ++i) v[i] -= wide * D::load_loose(row + kWidth * i);
+  }
+  void divide(double by) {
+    const D wide(by);
+    GYRE_UNROLL
+    for (int i = 0; i < kCount; ++i) v[i] = v[i] / wide;
+  }
+};
 
 void exchange(double& a, double& b) {
   const double t = a;
@@ -43,28 +72,25 @@ void solve_block(const double* block, const double* pivots, double* x) {
     for (int c = 0; c < C; ++c) exchange(x[k * C + c], x[other * C + c]);
   }
   for (int r = 1; r < N; ++r) {
-    for (int k = 0; k < r; ++k) {
-      for (int c = 0; c < C; ++c) x[r * C + c] -= block[r * N + k] * x[k * C + c];
-    }
+    RowPart<C> row(x + r * C);
+    for (int k = 0; k < r; ++k) row.subtract(block[r * N + k], x + k * C);
+    row.store(x + r * C);
   }
   for (int r = N; r-- > 0;) {
-    for (int k = r + 1; k < N; ++k) {
-      for (int c = 0; c < C; ++c) x[r * C + c] -= block[r * N + k] * x[k * C + c];
-    }
-    for (int c = 0; c < C; ++c) x[r * C + c] /= block[r * N + r];
+    RowPart<C> row(x + r * C);
+    for (int k = r + 1; k < N; ++k) row.subtract(block[r * N + k], x + k * C);
+    row.divide(block[r * N + r]);
+    row.store(x + r * C);
   }
 }
 
 // out -= a b.
 void subtract_product(const double* a, const double* b, double* out) {
   for (int r = 0; r < N; ++r) {
-    double sum[N];
-    for (int c = 0; c < N; ++c) sum[c] = out[r * N + c];
-    for (int k = 0; k < N; ++k) {
-      const double by = a[r * N + k];
-      for (int c = 0; c < N; ++c) sum[c] -= by * b[k * N + c];
-    }
-    for (int c = 0; c < N; ++c) out[r * N + c] = sum[c];
+    RowPart<N> row(out + r * N);
+    GYRE_UNROLL
+    for (int k = 0; k < N; ++k) row.subtract(a[r * N + k], b + k * N);
+    row.store(out + r * N);
   }
 }
 

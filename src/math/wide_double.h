@@ -13,12 +13,14 @@ struct DoubleLanes {
   static_assert(H == 2 || H == 4 || H == 8);
   typedef double Double __attribute__((vector_size(8 * H)));
   typedef double AnyDouble __attribute__((vector_size(8 * H), may_alias));
+  typedef double LooseDouble __attribute__((vector_size(8 * H), may_alias, aligned(8)));
   typedef float HalfFloat __attribute__((vector_size(4 * H)));
 };
 template <>
 struct DoubleLanes<1> {
   using Double = double;
   using AnyDouble = double;
+  using LooseDouble = double;
   using HalfFloat = float;
 };
 
@@ -45,6 +47,13 @@ struct WideDouble {
     return of(*reinterpret_cast<const typename DoubleLanes<H>::AnyDouble*>(from));
   }
   GYRE_INLINE void store(double* to) const { *reinterpret_cast<typename DoubleLanes<H>::AnyDouble*>(to) = v; }
+  // Aligned as one double is.
+  static GYRE_INLINE WideDouble load_loose(const double* from) {
+    return of(*reinterpret_cast<const typename DoubleLanes<H>::LooseDouble*>(from));
+  }
+  GYRE_INLINE void store_loose(double* to) const {
+    *reinterpret_cast<typename DoubleLanes<H>::LooseDouble*>(to) = v;
+  }
 
   friend GYRE_INLINE WideDouble operator+(WideDouble a, WideDouble b) { return of(a.v + b.v); }
   friend GYRE_INLINE WideDouble operator-(WideDouble a, WideDouble b) { return of(a.v - b.v); }

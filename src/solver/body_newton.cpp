@@ -1,5 +1,6 @@
 #include "solver/body_newton.h"
 
+#include "math/wide_double.h"
 #include "solver/natural_map.h"
 
 namespace gyre {
@@ -7,11 +8,23 @@ namespace gyre {
 namespace {
 
 // A number for each of the velocities that a row sees: a's three and three of turning, then b's.
-constexpr std::size_t kSeen = 12;
+constexpr int kSeen = 12;
 
-void spread(const DVec3& linear, const DVec3& angular, double* to) {
-  to[0] = linear.x, to[1] = linear.y, to[2] = linear.z;
-  to[3] = angular.x, to[4] = angular.y, to[5] = angular.z;
+using Pair = WideDouble<2>;
+
+// to += by values, of C numbers.
+template <int C>
+void add_times(const double* values, double by, double* to) {
+  const Pair wide(by);
+  GYRE_UNROLL
+  for (int k = 0; k < C; k += 2)
+    (Pair::load_loose(to + k) + wide * Pair::load_loose(values + k)).store_loose(to + k);
+}
+
+// block += push gain^T.
+void add_product(const double* push, const double* gain, double* block) {
+  GYRE_UNROLL
+  for (int r = 0; r < kLuBlock; ++r) add_times<kLuBlock>(gain, push[r], block + r * kLuBlock);
 }
 
 class BodyNewton {
@@ -35,7 +48,8 @@ class BodyNewton {
   }
   void find_speeds(std::span<const double> x, std::span<double> w) const {
     for (std::size_t i = 0; i < p_.bodies.size(); ++i)
-      spread(p_.bodies[i].linear, p_.bodies[i].angular, &velocities_[kLuBlock * i]);
+      for (std::size_t k = 0; k < kLuBlock; ++k)
+        velocities_[kLuBlock * i + k] = velocities_of(p_.bodies[i])[k];
     push(x);
     for (std::size_t i = 0; i < rows(); ++i)
       w[i] = seen(p_.rows[i]) - p_.rows[i].wanted + p_.rows[i].give * x[i];
@@ -85,8 +99,12 @@ class BodyNewton {
     for (std::size_t r = 0; r < count; ++r) {
       for (std::size_t k = 0; k < count; ++k) own[r][k] = e.own[r][k] + e.speed[r][k] * p_.rows[i + k].give;
     }
-    const double d = own[0][0] * own[1][1] - own[0][1] * own[1][0];
-    const double inverse[2][2] = {{own[1][1] / d, -own[0][1] / d}, {-own[1][0] / d, own[0][0] / d}};
+    double inverse[2][2] = {{1.0 / own[0][0]}};
+    if (is_cone) {
+      const double d = own[0][0] * own[1][1] - own[0][1] * own[1][0];
+      inverse[0][0] = own[1][1] / d, inverse[0][1] = -own[0][1] / d;
+      inverse[1][0] = -own[1][0] / d, inverse[1][1] = own[0][0] / d;
+    }
     for (std::size_t r = 0; r < count; ++r) {
       double* const gain = &gains_[kSeen * (i + r)];
       for (std::size_t k = 0; k < kSeen; ++k) gain[k] = 0.0;
@@ -96,7 +114,7 @@ class BodyNewton {
         of_load += inverse[r][k] * e.load[k];
         double by = 0.0;
         for (std::size_t m = 0; m < count; ++m) by += inverse[r][m] * e.speed[m][k];
-        if (by != 0.0) add_seen(p_.rows[i + k], by, gain);
+        if (by != 0.0) add_times<kSeen>(seen_of(p_.rows[i + k]), by, gain);
       }
       for (std::int32_t k = 0; of_load != 0.0 && k < limits.load_count; ++k) {
         const std::size_t j = std::size_t(limits.load_first + k);
@@ -106,13 +124,6 @@ class BodyNewton {
       constants_[i + r] = constant;
     }
   }
-  static void add_seen(const Row& row, double by, double* gain) {
-    double all[kSeen];
-    spread(row.linear_a, row.angular_a, all);
-    spread(row.linear_b, row.angular_b, all + kLuBlock);
-    for (std::size_t k = 0; k < kSeen; ++k) gain[k] += by * all[k];
-  }
-
   // The matrix 1 + M^-1 J^T G, and its right side M^-1 J^T c.
   void assemble() {
     for (double& value : lu_.lower) value = 0.0;
@@ -126,11 +137,10 @@ class BodyNewton {
     for (std::size_t i = 0; i < rows(); ++i) {
       const Row& row = p_.rows[i];
       const double* const gain = &gains_[kSeen * i];
-      double push_a[kLuBlock], push_b[kLuBlock];
-      spread(row.gain_linear_a, row.gain_angular_a, push_a);
-      spread(row.gain_linear_b, row.gain_angular_b, push_b);
-      if (row.body_a != kNoRowBody) add_times(push_a, constants_[i], at(row.body_a));
-      if (row.body_b != kNoRowBody) add_times(push_b, constants_[i], at(row.body_b));
+      const double* const push_a = gains_of(row);
+      const double* const push_b = push_a + kLuBlock;
+      if (row.body_a != kNoRowBody) add_times<kLuBlock>(push_a, constants_[i], at(row.body_a));
+      if (row.body_b != kNoRowBody) add_times<kLuBlock>(push_b, constants_[i], at(row.body_b));
       // Limits that are not reached, which are most rows of a crowd's joints.
       if (is_idle(gain)) continue;
       if (row.body_a != kNoRowBody) add_product(push_a, gain, &lu_.lower[column_of(row.body_a).diagonal]);
@@ -151,14 +161,6 @@ class BodyNewton {
     }
     return true;
   }
-  static void add_product(const double* push, const double* gain, double* block) {
-    for (int r = 0; r < kLuBlock; ++r) {
-      for (int c = 0; c < kLuBlock; ++c) block[r * kLuBlock + c] += push[r] * gain[c];
-    }
-  }
-  static void add_times(const double* push, double by, double* to) {
-    for (int k = 0; k < kLuBlock; ++k) to[k] += by * push[k];
-  }
 
   const BlockColumn& column_of(std::int32_t body) const {
     return lu_.plan->columns[lu_.plan->place_of[std::size_t(body)]];
@@ -170,31 +172,21 @@ class BodyNewton {
   void push(std::span<const double> impulses) const {
     for (std::size_t i = 0; i < rows(); ++i) {
       const Row& row = p_.rows[i];
-      double push[kLuBlock];
-      if (row.body_a != kNoRowBody) {
-        spread(row.gain_linear_a, row.gain_angular_a, push);
-        add_times(push, impulses[i], &velocities_[kLuBlock * std::size_t(row.body_a)]);
-      }
-      if (row.body_b != kNoRowBody) {
-        spread(row.gain_linear_b, row.gain_angular_b, push);
-        add_times(push, impulses[i], &velocities_[kLuBlock * std::size_t(row.body_b)]);
-      }
+      const double* const gains = gains_of(row);
+      if (row.body_a != kNoRowBody)
+        add_times<kLuBlock>(gains, impulses[i], &velocities_[kLuBlock * std::size_t(row.body_a)]);
+      if (row.body_b != kNoRowBody)
+        add_times<kLuBlock>(gains + kLuBlock, impulses[i], &velocities_[kLuBlock * std::size_t(row.body_b)]);
     }
   }
   double seen(const Row& row) const {
-    double sum = 0.0, all[kLuBlock];
-    const auto add = [&](std::int32_t body) {
+    double sum = 0.0;
+    const auto add = [&](std::int32_t body, const double* all) {
       const double* const v = &velocities_[kLuBlock * std::size_t(body)];
       for (int k = 0; k < kLuBlock; ++k) sum += all[k] * v[k];
     };
-    if (row.body_a != kNoRowBody) {
-      spread(row.linear_a, row.angular_a, all);
-      add(row.body_a);
-    }
-    if (row.body_b != kNoRowBody) {
-      spread(row.linear_b, row.angular_b, all);
-      add(row.body_b);
-    }
+    if (row.body_a != kNoRowBody) add(row.body_a, seen_of(row));
+    if (row.body_b != kNoRowBody) add(row.body_b, seen_of(row) + kLuBlock);
     return sum;
   }
 

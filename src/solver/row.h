@@ -14,6 +14,7 @@
 
 #include <gyre/math.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -64,6 +65,14 @@ struct Row {
   double diagonal = 0.0;  // J M^-1 J^T + give
   double impulse = 0.0;
 };
+
+// A body's velocities are six numbers in a row, J and M^-1 J^T twelve each.
+static_assert(offsetof(RowBody, angular) == offsetof(RowBody, linear) + 3 * sizeof(double));
+static_assert(offsetof(Row, angular_b) == offsetof(Row, linear_a) + 9 * sizeof(double));
+static_assert(offsetof(Row, gain_angular_b) == offsetof(Row, gain_linear_a) + 9 * sizeof(double));
+inline const double* velocities_of(const RowBody& body) { return &body.linear.x; }
+inline const double* seen_of(const Row& row) { return &row.linear_a.x; }
+inline const double* gains_of(const Row& row) { return &row.gain_linear_a.x; }
 
 inline DVec3 along_inertia(const RowBody& body, DVec3 v) {
   const double* m = body.inverse_inertia;
