@@ -309,11 +309,14 @@ void reach_lanes(const LinkageBundle& bundle, std::uint8_t* reached, double* x) 
   }
 }
 
-// Replaces the right side x, of the columns that are reached, by y of L y = x, and finds D^-1 y.
+// Replaces the right side x, of the columns that are reached, by y of L y = x, and finds D^-1 y. Of the first half of the lanes where
+// bit 0 of `halves` is set, of the second where bit 1 is.
 template <int W>
-void solve_reached_down(const LinkageBundle& bundle, const std::uint8_t* reached, double* x, double* scaled) {
+void solve_reached_down(const LinkageBundle& bundle, std::uint32_t halves, const std::uint8_t* reached,
+                        double* x, double* scaled) {
   constexpr int H = kHalfLanes<W>;
   for (int half = 0; half < kHalves<W>; ++half) {
+    if ((halves >> half & 1u) == 0) continue;
     const HalfMatrix<H> m = half_matrix<H>(bundle, half, x);
     double* const out = scaled + std::size_t(half) * bundle.row_count * H;
     for (std::uint32_t place = 0; place < bundle.column_count; ++place) {
@@ -330,10 +333,10 @@ void solve_reached_down(const LinkageBundle& bundle, const std::uint8_t* reached
   }
 }
 
-// The product of two vectors over the columns that both reach.
+// The product of two vectors over the columns that both reach; zero in the other half.
 template <int W>
-Wide<W> dot_reached(const LinkageBundle& bundle, const std::uint8_t* reached_a, const double* a,
-                    const std::uint8_t* reached_b, const double* b) {
+Wide<W> dot_reached(const LinkageBundle& bundle, std::uint32_t halves, const std::uint8_t* reached_a,
+                    const double* a, const std::uint8_t* reached_b, const double* b) {
   using D = WideDouble<kHalfLanes<W>>;
   constexpr int H = kHalfLanes<W>;
   D sums[2] = {D(0.0), D(0.0)};
@@ -341,6 +344,7 @@ Wide<W> dot_reached(const LinkageBundle& bundle, const std::uint8_t* reached_a, 
     const BlockColumn& column = bundle.columns[place];
     if ((reached_a[column.row] & reached_b[column.row]) == 0) continue;
     for (int half = 0; half < kHalves<W>; ++half) {
+      if ((halves >> half & 1u) == 0) continue;
       const std::size_t first = (std::size_t(half) * bundle.row_count + column.row) * H;
       for (std::size_t i = first; i < first + std::size_t(column.size) * H; i += H)
         sums[half] += D::load(a + i) * D::load(b + i);

@@ -22,9 +22,16 @@ struct LinkedStop {
   Mask<W> low_on, high_on;
   LinkedAxis<W>* axis;
   const LaneNode* node;
-  bool has_low;   // a swing has only the other one
-  bool is_known;  // what an impulse makes of the linkage, in this part of the sub-step
-  bool is_in;     // in question, in any lane
+  bool has_low;  // a swing has only the other one
+  bool is_in;    // in question, in any lane
+  // Of which halves of the lanes (math/wide_double.h) it is known what an impulse makes of the linkage, in this part of the sub-step.
+  std::uint32_t known;
+};
+
+// One end of a stop, in each lane another.
+template <int W>
+struct StopSlot {
+  Wide<W> speed, asked, least, x;  // towards the inside; least: of x
 };
 
 template <int W>
@@ -32,7 +39,7 @@ constexpr std::size_t stop_room(const LinkageBundle& bundle) {
   const std::size_t n = bundle.stop_count;
   if (n == 0) return 0;
   return n * (sizeof(LinkedStop<W>) + n * sizeof(Wide<W>) + bundle.row_count * (2 * W * sizeof(double) + 1)) +
-         bundle.moving_count * sizeof(Vec3W<W>);
+         bundle.moving_count * sizeof(Vec3W<W>) + 2 * n * (sizeof(StopSlot<W>) + 2 * n * sizeof(Wide<W>) + W);
 }
 
 // With the equations' matrix as L D L^T, the way of stop i under an impulse at stop j is what it would be without equations less y_i . D^-1
@@ -49,7 +56,10 @@ class LaneStops {
         matrix_(reinterpret_cast<Wide<W>*>(stops_ + count())),
         parts_(reinterpret_cast<double*>(matrix_ + std::size_t(count()) * count())),
         turns_(reinterpret_cast<Vec3W<W>*>(parts_ + 2 * std::size_t(count()) * bundle.plain.row_count * W)),
-        reached_(reinterpret_cast<std::uint8_t*>(turns_ + bundle.plain.moving_count)) {}
+        slots_(reinterpret_cast<StopSlot<W>*>(turns_ + bundle.plain.moving_count)),
+        slot_ways_(reinterpret_cast<Wide<W>*>(slots_ + 2 * count())),
+        ends_(reinterpret_cast<std::uint8_t*>(slot_ways_ + 4 * std::size_t(count()) * count())),
+        reached_(ends_ + 2 * std::size_t(count()) * W) {}
 
   // Nothing is known of joints that have just been placed.
   GYRE_INLINE void begin() {
@@ -68,8 +78,9 @@ class LaneStops {
       if (none(live)) return;
       for (std::uint32_t a = 0; a < count(); ++a) {
         LinkedStop<W>& stop = stops_[a];
-        stop.is_in = any(stop.low_on | stop.high_on);
-        if (stop.is_in && !stop.is_known) find_response(a);
+        const std::uint32_t in = halves_of((stop.low_on | stop.high_on) & live);
+        stop.is_in = in != 0;
+        if ((in & ~stop.known) != 0) find_response(a, in & ~stop.known);
       }
       find_impulses(live);
       push();
@@ -80,7 +91,7 @@ class LaneStops {
   GYRE_INLINE std::uint32_t count() const { return b_.plain.stop_count; }
   GYRE_INLINE static void list(LinkedStop<W>& stop, const LaneNode& node, LinkedAxis<W>& axis, bool has_low) {
     stop.axis = &axis, stop.node = &node;
-    stop.has_low = has_low, stop.is_known = false;
+    stop.has_low = has_low, stop.known = 0;
   }
   GYRE_INLINE void ask(LinkedStop<W>& stop) const {
     stop.low_on = stop.high_on = Mask<W>::splat(false);
@@ -160,66 +171,128 @@ class LaneStops {
     b_.set_row(vector, node.row + 4, dot(turn_a - turn_b, joint.perpendicular_2));
   }
 
-  void find_response(std::uint32_t index) {
+  // Which halves of the lanes the mask has some of: bit 0 and bit 1.
+  GYRE_INLINE static std::uint32_t halves_of(Mask<W> mask) {
+    constexpr std::uint32_t kLow = (1u << kHalfLanes<W>)-1u;
+    const std::uint32_t bits = to_bits(mask);
+    return ((bits & kLow) != 0 ? 1u : 0u) | (bits > kLow ? 2u : 0u);
+  }
+
+  void find_response(std::uint32_t index, std::uint32_t halves) {
     LinkedStop<W>& stop = stops_[index];
-    const Turns turns = turns_of(stop);
     std::uint8_t* const reached = reached_of(index);
     double* const part = part_of(index);
-    for (std::uint32_t row = 0; row < b_.plain.row_count; ++row) reached[row] = 0;
-    for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) {
-      const LaneNode& node = b_.plain.nodes[n];
-      if (!turns.touches(node)) continue;
-      reached[node.row] = 1;
-      set_missing(part, n, turns.of(node.a), turns.of(node.b));
+    if (stop.known == 0) {
+      const Turns turns = turns_of(stop);
+      for (std::uint32_t row = 0; row < b_.plain.row_count; ++row) reached[row] = 0;
+      for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) {
+        const LaneNode& node = b_.plain.nodes[n];
+        if (!turns.touches(node)) continue;
+        reached[node.row] = 1;
+        set_missing(part, n, turns.of(node.a), turns.of(node.b));
+      }
+      reach_lanes<W>(b_.plain, reached, part);
     }
-    reach_lanes<W>(b_.plain, reached, part);
-    solve_reached_down<W>(b_.plain, reached, part, scaled_of(index));
-    stop.is_known = true;
-    for (std::uint32_t a = 0; a < count(); ++a)
-      if (stops_[a].is_known) a > index ? find_way(a, index) : find_way(index, a);
+    solve_reached_down<W>(b_.plain, halves, reached, part, scaled_of(index));
+    stop.known |= halves;
+    for (std::uint32_t a = 0; a < count(); ++a) {
+      const std::uint32_t both = stops_[a].known & halves;
+      if (both != 0) a > index ? find_way(a, index, both) : find_way(index, a, both);
+    }
   }
   // The way at one stop under an impulse at another. Which was known first must not show in the bits: other lanes have a say in that.
-  void find_way(std::uint32_t a, std::uint32_t b) {
+  void find_way(std::uint32_t a, std::uint32_t b, std::uint32_t halves) {
     const Turns turns = turns_of(stops_[a]);
     const LaneNode& node = *stops_[b].node;
     const Wide<W> alone = dot(stops_[b].axis->about, turns.of(node.b) - turns.of(node.a));
     const Wide<W> way =
-        alone - dot_reached<W>(b_.plain, reached_of(a), scaled_of(a), reached_of(b), part_of(b));
-    entry(a, b) = entry(b, a) = a == b ? keep(way > kLeastWay * alone, way) : way;
+        alone - dot_reached<W>(b_.plain, halves, reached_of(a), scaled_of(a), reached_of(b), part_of(b));
+    const Wide<W> bounded = a == b ? keep(way > kLeastWay * alone, way) : way;
+    entry(a, b) = entry(b, a) = select(lanes_of(halves), bounded, entry(a, b));
+  }
+  GYRE_INLINE static Mask<W> lanes_of(std::uint32_t halves) {
+    constexpr std::uint32_t kLow = (1u << kHalfLanes<W>)-1u;
+    return Mask<W>::of_bits(((halves & 1u) != 0 ? kLow : 0u) |
+                            ((halves & 2u) != 0 ? kLow << kHalfLanes<W> : 0u));
   }
 
-  // Projected Gauss-Seidel over the stops in question, in each lane until its impulses stand.
-  void find_impulses(Mask<W> live) {
-    std::uint32_t in[kMostLaneStops], in_count = 0;
-    Wide<W> speeds[kMostLaneStops];
+  // ------------------------------------------------------------------------------------------------------ impulses
+
+  // Each lane's ends of stops in question stand in slots from the first on, in their order: a lane has few of those that all
+  // lanes have between them. An end is twice the stop's number, one more at the high end.
+  std::uint32_t list_ends(Mask<W> live, std::uint32_t (&counts)[W]) {
+    for (std::uint32_t& n : counts) n = 0;
+    std::uint32_t most = 0;
+    const auto list = [&](Mask<W> on, std::uint32_t end) {
+      for (std::uint32_t bits = to_bits(on & live); bits != 0; bits &= bits - 1) {
+        const std::uint32_t lane = std::uint32_t(__builtin_ctz(bits));
+        ends_[counts[lane]++ * W + lane] = std::uint8_t(end);
+        if (counts[lane] > most) most = counts[lane];
+      }
+    };
     for (std::uint32_t a = 0; a < count(); ++a) {
       LinkedStop<W>& stop = stops_[a];
       if (!stop.is_in) continue;
       stop.low_x = stop.high_x = Wide<W>(0.0f);
-      speeds[in_count] = stop.speed;
-      in[in_count++] = a;
+      if (stop.has_low) list(stop.low_on, 2 * a);
+      list(stop.high_on, 2 * a + 1);
     }
+    return most;
+  }
+  GYRE_INLINE static float lane_of(const Wide<W>& from, std::uint32_t lane) {
+    return reinterpret_cast<const float*>(&from)[lane];
+  }
+  GYRE_INLINE static void set_lane(Wide<W>& to, std::uint32_t lane, float value) {
+    reinterpret_cast<float*>(&to)[lane] = value;
+  }
+  void fill_slots(std::uint32_t slots, const std::uint32_t (&counts)[W]) {
+    const Wide<W> none(0.0f);
+    for (std::uint32_t i = 0; i < slots; ++i) slots_[i] = {none, none, none, none};
+    for (std::uint32_t i = 0; i < slots * slots; ++i) slot_ways_[i] = none;
+    for (std::uint32_t lane = 0; lane < W; ++lane) {
+      for (std::uint32_t i = 0; i < counts[lane]; ++i) {
+        const std::uint32_t end = ends_[i * W + lane];
+        const LinkedStop<W>& stop = stops_[end / 2];
+        const bool is_high = (end & 1u) != 0;
+        const float speed = lane_of(stop.speed, lane);
+        set_lane(slots_[i].speed, lane, is_high ? -speed : speed);
+        set_lane(slots_[i].asked, lane, lane_of(is_high ? stop.high_asked : stop.low_asked, lane));
+        set_lane(slots_[i].least, lane,
+                 -lane_of(is_high ? stop.axis->high_impulse : stop.axis->low_impulse, lane));
+        for (std::uint32_t j = 0; j < counts[lane]; ++j) {
+          const std::uint32_t other = ends_[j * W + lane];
+          const float way = lane_of(entry(end / 2, other / 2), lane);
+          set_lane(slot_ways_[i * slots + j], lane, ((end ^ other) & 1u) != 0 ? -way : way);
+        }
+      }
+    }
+  }
+
+  // Projected Gauss-Seidel over the stops in question, in each lane until its impulses stand.
+  void find_impulses(Mask<W> live) {
+    std::uint32_t counts[W];
+    const std::uint32_t slots = list_ends(live, counts);
+    fill_slots(slots, counts);
     for (int sweep = 0; sweep < kLaneSweeps && any(live); ++sweep) {
       Wide<W> most(0.0f);
-      for (std::uint32_t i = 0; i < in_count; ++i) {
-        LinkedStop<W>& stop = stops_[in[i]];
-        const Wide<W>* const ways = &entry(in[i], 0);
-        const Wide<W> own = ways[in[i]];
-        const auto improve = [&](Wide<W> speed, Wide<W> impulse, Mask<W> on, Wide<W>& x, float sign) {
-          const Wide<W> now = max(Wide<W>(0.0f) - impulse, x - speed / own);
-          const Wide<W> by = keep(live & on & (own > 0.0f), now - x);
-          if (!any(by != 0.0f)) return;
-          x += by;
-          most = max(most, max(by, Wide<W>(0.0f) - by) * own);
-          const Wide<W> push = sign * by;
-          for (std::uint32_t e = 0; e < in_count; ++e) speeds[e] += push * ways[in[e]];
-        };
-        if (stop.has_low)
-          improve(speeds[i] - stop.low_asked, stop.axis->low_impulse, stop.low_on, stop.low_x, 1.0f);
-        improve(Wide<W>(0.0f) - speeds[i] - stop.high_asked, stop.axis->high_impulse, stop.high_on,
-                stop.high_x, -1.0f);
+      for (std::uint32_t i = 0; i < slots; ++i) {
+        StopSlot<W>& slot = slots_[i];
+        const Wide<W>* const ways = slot_ways_ + i * slots;
+        const Wide<W> own = ways[i];
+        const Wide<W> now = max(slot.least, slot.x - (slot.speed - slot.asked) / own);
+        const Wide<W> by = keep(live & (own > 0.0f), now - slot.x);
+        slot.x += by;
+        most = max(most, max(by, Wide<W>(0.0f) - by) * own);
+        for (std::uint32_t e = 0; e < slots; ++e) slots_[e].speed += by * ways[e];
       }
       live = live & (most > kLaneSettled);
+    }
+    for (std::uint32_t lane = 0; lane < W; ++lane) {
+      for (std::uint32_t i = 0; i < counts[lane]; ++i) {
+        const std::uint32_t end = ends_[i * W + lane];
+        LinkedStop<W>& stop = stops_[end / 2];
+        set_lane((end & 1u) != 0 ? stop.high_x : stop.low_x, lane, lane_of(slots_[i].x, lane));
+      }
     }
   }
 
@@ -271,6 +344,9 @@ class LaneStops {
   Wide<W>* matrix_;
   double* parts_;  // y and D^-1 y, by stop
   Vec3W<W>* turns_;
+  StopSlot<W>* slots_;
+  Wide<W>* slot_ways_;     // by two slots
+  std::uint8_t* ends_;     // by slot and lane
   std::uint8_t* reached_;  // by stop and row
 };
 
