@@ -81,11 +81,11 @@ void begin_bundles(const BundleSolve& bundles, int begin, int end, const Linkage
   for (int i = begin; i < end; ++i) {
     const Bundled& bundle = bundles.bundles[std::size_t(i)];
     if (int(bundle.linkages.size()) < bundle.lanes.kernels->width) clear_lanes(bundle.lanes);
-    for (std::size_t lane = 0; lane < bundle.linkages.size(); ++lane) {
-      const Linkage& linkage = *bundle.linkages[lane];
-      for (std::uint32_t n = 0; n < bundle.lanes.node_count; ++n) {
-        const LinkageNode& node = linkage.nodes[n];
-        const LaneNode& shape = bundle.lanes.nodes[n];
+    // Joint by joint, because its lanes lie in the same cache lines.
+    for (std::uint32_t n = 0; n < bundle.lanes.node_count; ++n) {
+      const LaneNode& shape = bundle.lanes.nodes[n];
+      for (std::size_t lane = 0; lane < bundle.linkages.size(); ++lane) {
+        const LinkageNode& node = bundle.linkages[lane]->nodes[n];
         set_lane_body(bundle.lanes, int(lane), shape.a, node.body_a);
         set_lane_body(bundle.lanes, int(lane), shape.b, node.body_b);
         begin_lane(bundle.lanes, int(lane), n, solve.records[node.record], solve.work[node.work],
@@ -98,8 +98,8 @@ void begin_bundles(const BundleSolve& bundles, int begin, int end, const Linkage
 void finish_bundles(const BundleSolve& bundles, int begin, int end, const LinkageSolve& solve) {
   for (int i = begin; i < end; ++i) {
     const Bundled& bundle = bundles.bundles[std::size_t(i)];
-    for (std::size_t lane = 0; lane < bundle.linkages.size(); ++lane) {
-      for (std::uint32_t n = 0; n < bundle.lanes.node_count; ++n) {
+    for (std::uint32_t n = 0; n < bundle.lanes.node_count; ++n) {
+      for (std::size_t lane = 0; lane < bundle.linkages.size(); ++lane) {
         const LinkageNode& node = bundle.linkages[lane]->nodes[n];
         finish_lane(bundle.lanes, int(lane), n, solve.records[node.record], solve.work[node.work]);
       }

@@ -8,12 +8,15 @@ namespace gyre {
 
 namespace {
 
-// Floats of a lane that balls have, that all others have too, and of an axis, which go in and come out.
-constexpr std::size_t kBallFloats = offsetof(LaneJoint, local_frame_a) / sizeof(float);
-constexpr std::size_t kFrameFloats = offsetof(LaneJoint, twist) / sizeof(float);
-constexpr std::size_t kAxisFloats = offsetof(LaneAxis, low_gap) / sizeof(float) + 1;
 constexpr std::size_t kTwist = offsetof(LaneJoint, twist) / sizeof(float);
 constexpr std::size_t kSwing = offsetof(LaneJoint, swing) / sizeof(float);
+// Floats of a lane that go in: that balls have, that all others have too, and of an axis.
+constexpr std::size_t kBallFloats = offsetof(LaneJoint, local_frame_a) / sizeof(float);
+constexpr std::size_t kFrameFloats = kTwist;
+constexpr std::size_t kAxisFloats = offsetof(LaneAxis, low_gap) / sizeof(float);
+// Those that come out: the impulses, of an axis them and how far it is to the low stop.
+constexpr std::size_t kImpulses = offsetof(LaneJoint, linear_impulse) / sizeof(float);
+constexpr std::size_t kAxisImpulses = offsetof(LaneAxis, low_impulse) / sizeof(float);
 
 // A joint's lane of a bundle, and ranges of its floats.
 class Lane {
@@ -55,7 +58,7 @@ void begin_axis(const Lane& lane, std::size_t at, const AxisWork& x) {
 }
 LaneAxis finish_axis(const Lane& lane, std::size_t at, AxisWork& x) {
   LaneAxis to;
-  lane.read(&to, at, kAxisFloats);
+  lane.read(&to.low_impulse, at + kAxisImpulses, kAxisFloats + 1 - kAxisImpulses);
   x.axis.low_impulse = to.low_impulse;
   x.axis.high_impulse = to.high_impulse;
   x.axis.total = to.total;
@@ -124,14 +127,14 @@ void begin_lane(const LinkageBundle& bundle, int lane, std::uint32_t node, const
 void finish_lane(const LinkageBundle& bundle, int lane, std::uint32_t node, JointRecord& joint,
                  const JointWork& work) {
   const Lane from(bundle, lane, node);
-  const bool is_ball = joint.kind == JointKind::ball;
   LaneJoint to;
-  from.read(&to, 0, is_ball ? kBallFloats : kFrameFloats);
+  from.read(&to.linear_impulse, kImpulses, kBallFloats - kImpulses);
   joint.linear_impulse = to.linear_impulse;
   joint.angular_impulse = to.angular_impulse;
   joint.total_linear = to.total_linear;
   joint.total_angular = to.total_angular;
-  if (is_ball) return;
+  if (joint.kind == JointKind::ball) return;
+  from.read(&to.position, offsetof(LaneJoint, position) / sizeof(float), 1);
   joint.position = to.position;
   if (joint.kind == JointKind::cone && work.detail != nullptr) work.detail->axes[3].position = to.position;
   if (AxisWork* const x = axis_at(work, JointAxis::angular_x)) {
