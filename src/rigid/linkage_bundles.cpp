@@ -30,6 +30,7 @@ LinkageBundle make_bundle(const LinkageShape& shape, const LinkageKernels& kerne
   b.column_count = std::uint32_t(shape.plan.columns.size());
   b.value_count = shape.plan.values;
   b.row_count = shape.plan.rows;
+  b.has_fill = shape.has_fill;
   for (const LaneNode& node : shape.nodes)
     b.stop_count += (node.has_twist ? 1 : 0) + (node.has_swing ? 1 : 0);
   const std::size_t width = std::size_t(kernels.width);

@@ -277,11 +277,26 @@ class LinkageMaker {
     for (std::size_t i = 0; i < linkage.couplings.size(); ++i) {
       const LinkageCoupling& c = linkage.couplings[i];
       const LaneNode& row = shape.nodes[c.row];
-      shape.couplings[i] = {c.row,       c.column,      c.offset, c.row_has_b ? row.b : row.a,
-                            c.row_has_b, c.column_has_b};
+      shape.couplings[i] = {c.row,       c.column,       c.offset, c.row_has_b ? row.b : row.a,
+                            c.row_has_b, c.column_has_b, false};
     }
+    mark_first(shape);
     linkage.shape = std::int32_t(shape_count_);
     shapes_[shape_count_++] = shape;
+  }
+
+  // Which couplings are the first in their blocks, and whether that is all blocks below the diagonal.
+  void mark_first(LinkageShape& shape) {
+    const ArenaScope scope(arena_);
+    const std::span<std::uint8_t> is_begun = arena_.make<std::uint8_t>(shape.plan.values);
+    for (std::uint8_t& begun : is_begun) begun = 0;
+    std::size_t blocks = 0;
+    for (LaneCoupling& coupling : shape.couplings) {
+      coupling.is_first = is_begun[coupling.offset] == 0;
+      is_begun[coupling.offset] = 1;
+      blocks += coupling.is_first ? 1 : 0;
+    }
+    shape.has_fill = blocks < shape.plan.entries.size();
   }
 
   const RigidWorld& w_;

@@ -19,6 +19,7 @@ struct LinkageShape {
   std::span<LaneCoupling> couplings;
   BlockPlan plan;
   std::uint32_t body_count = 0, moving_count = 0;
+  bool has_fill = false;  // as LinkageBundle::has_fill
 };
 
 struct Linkages {

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <vector>
@@ -148,8 +149,10 @@ struct Shape {
       const BlockPlace block = find_block(plan, c.row, c.column);
       if (!block.first_is_row) c = {c.column, c.row, 0, c.body, c.column_has_b, c.row_has_b};
       c.offset = block.offset;
+      const bool is_first = std::none_of(lane_couplings.begin(), lane_couplings.end(),
+                                         [&](const LaneCoupling& other) { return other.offset == c.offset; });
       lane_couplings.push_back(
-          {c.row, c.column, c.offset, std::uint32_t(c.body), c.row_has_b, c.column_has_b});
+          {c.row, c.column, c.offset, std::uint32_t(c.body), c.row_has_b, c.column_has_b, is_first});
     }
     for (std::size_t i = 0; i < kJoints; ++i) {
       LaneNode& node = nodes[i];
@@ -217,6 +220,7 @@ void solve_side_by_side(Crowd& crowd, Shape& shape, int width) {
                        kJoints,
                        shape.plan.values,
                        shape.plan.rows,
+                       true,
                        0,
                        arena.make<std::byte>((kBodies + 1) * kernels.body_bytes).data(),
                        arena.make<std::byte>(kJoints * kernels.joint_bytes).data(),

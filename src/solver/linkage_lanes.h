@@ -61,6 +61,7 @@ struct LaneCoupling {
   std::uint32_t offset = 0;
   std::uint32_t body = 0;
   bool row_has_b = false, column_has_b = false;
+  bool is_first = false;  // of those with this block
 };
 
 struct LinkageKernels;
@@ -75,6 +76,7 @@ struct LinkageBundle {
   const BlockEntry* entries = nullptr;
   const std::uint32_t* targets = nullptr;
   std::uint32_t column_count = 0, value_count = 0, row_count = 0;
+  bool has_fill = false;         // blocks of the plan in which nothing stands before elimination
   std::uint32_t stop_count = 0;  // axes with stops
   std::byte* bodies = nullptr;
   std::byte* joints = nullptr;

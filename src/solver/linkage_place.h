@@ -180,20 +180,23 @@ GYRE_INLINE void make_own_block(const Bundle<W>& bundle, const LaneNode& node, f
 
 // One row of what a shared body couples: by the spin that the row's impulse of one gives it.
 template <int W>
-GYRE_INLINE void add_coupled_row(const Bundle<W>& bundle, std::uint32_t at, Vec3W<W> push, Vec3W<W> spin,
-                                 Vec3W<W> r, const LinkedJoint<W>& column, bool turns) {
+GYRE_INLINE void put_coupled_row(const Bundle<W>& bundle, std::uint32_t at, Vec3W<W> push, Vec3W<W> spin,
+                                 Vec3W<W> r, const LinkedJoint<W>& column, bool turns, bool is_first) {
+  const auto put = [&](std::uint32_t i, Wide<W> v) {
+    is_first ? bundle.set_value(i, v) : bundle.add_value(i, v);
+  };
   const Vec3W<W> k = push + cross(spin, r);
-  bundle.add_value(at, k.x);
-  bundle.add_value(at + 1, k.y);
-  bundle.add_value(at + 2, k.z);
+  put(at, k.x);
+  put(at + 1, k.y);
+  put(at + 2, k.z);
   if (!turns) return;
-  bundle.add_value(at + 3, dot(spin, column.perpendicular_1));
-  bundle.add_value(at + 4, dot(spin, column.perpendicular_2));
+  put(at + 3, dot(spin, column.perpendicular_1));
+  put(at + 4, dot(spin, column.perpendicular_2));
 }
 
 // Signs, because a feels the opposite of what b does.
 template <int W>
-GYRE_INLINE void add_coupling(const Bundle<W>& bundle, const LaneCoupling& coupling) {
+GYRE_INLINE void put_coupling(const Bundle<W>& bundle, const LaneCoupling& coupling) {
   const LinkedJoint<W>&row = bundle.joints[coupling.row], &column = bundle.joints[coupling.column];
   const LinkedBody<W>& body = bundle.bodies[coupling.body];
   const float sign = coupling.row_has_b == coupling.column_has_b ? 1.0f : -1.0f;
@@ -202,13 +205,21 @@ GYRE_INLINE void add_coupling(const Bundle<W>& bundle, const LaneCoupling& coupl
   const Mat3W<W> spins = spins_at(inverse, coupling.row_has_b ? row.from_b : row.from_a);
   const Vec3W<W> r = coupling.column_has_b ? column.from_b : column.from_a;
   const std::uint32_t n = bundle.plain.nodes[coupling.column].rows, at = coupling.offset;
-  add_coupled_row(bundle, at, {mass, none, none}, spins.x, r, column, n == 5);
-  add_coupled_row(bundle, at + n, {none, mass, none}, spins.y, r, column, n == 5);
-  add_coupled_row(bundle, at + 2 * n, {none, none, mass}, spins.z, r, column, n == 5);
+  const bool first = coupling.is_first;
+  put_coupled_row(bundle, at, {mass, none, none}, spins.x, r, column, n == 5, first);
+  put_coupled_row(bundle, at + n, {none, mass, none}, spins.y, r, column, n == 5, first);
+  put_coupled_row(bundle, at + 2 * n, {none, none, mass}, spins.z, r, column, n == 5, first);
   if (bundle.plain.nodes[coupling.row].rows == 3) return;
   const Vec3W<W> nothing{none, none, none};
-  add_coupled_row(bundle, at + 3 * n, nothing, inverse * row.perpendicular_1, r, column, n == 5);
-  add_coupled_row(bundle, at + 4 * n, nothing, inverse * row.perpendicular_2, r, column, n == 5);
+  put_coupled_row(bundle, at + 3 * n, nothing, inverse * row.perpendicular_1, r, column, n == 5, first);
+  put_coupled_row(bundle, at + 4 * n, nothing, inverse * row.perpendicular_2, r, column, n == 5, first);
+}
+
+template <int W>
+void clear_values(const LinkageBundle& plain) {
+  using D = WideDouble<kHalfLanes<W>>;
+  const std::size_t values = std::size_t(plain.value_count) * W;
+  for (std::size_t i = 0; i < values; i += kHalfLanes<W>) D(0.0).store(plain.values + i);
 }
 
 // The rows where the bodies are now, and their matrix, factored.
@@ -227,11 +238,9 @@ void place_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const La
     if (bundle.moves(node.b)) add_pull(b, joint.from_b, force);
   }
   for (std::uint32_t i = 0; i < plain.moving_count; ++i) raise_body(bundle.bodies[i], s);
-  const std::size_t values = std::size_t(plain.value_count) * W;
-  for (std::size_t i = 0; i < values; i += kHalfLanes<W>)
-    WideDouble<kHalfLanes<W>>(0.0).store(plain.values + i);
+  if (plain.has_fill) clear_values<W>(plain);
   for (std::uint32_t n = 0; n < plain.node_count; ++n) make_own_block(bundle, plain.nodes[n], s.give);
-  for (std::uint32_t i = 0; i < plain.coupling_count; ++i) add_coupling(bundle, plain.couplings[i]);
+  for (std::uint32_t i = 0; i < plain.coupling_count; ++i) put_coupling(bundle, plain.couplings[i]);
   factor_lanes<W>(plain);
 }
 

@@ -140,15 +140,15 @@ class LaneStops {
   }
   GYRE_INLINE static Vec3W<W> nothing() { return {Wide<W>(0.0f), Wide<W>(0.0f), Wide<W>(0.0f)}; }
 
+  GYRE_INLINE static bool share_body(const LaneNode& node, const LaneNode& other) {
+    return other.a == node.a || other.a == node.b || other.b == node.a || other.b == node.b;
+  }
   // How an impulse of one about a stop's axis turns its two bodies.
   struct Turns {
     const LaneNode& node;
     Vec3W<W> a, b;
     GYRE_INLINE Vec3W<W> of(std::uint32_t body) const {
       return body == node.a ? a : body == node.b ? b : nothing();
-    }
-    GYRE_INLINE bool touches(const LaneNode& other) const {
-      return other.a == node.a || other.a == node.b || other.b == node.a || other.b == node.b;
     }
   };
   GYRE_INLINE Turns turns_of(const LinkedStop<W>& stop) const {
@@ -187,7 +187,7 @@ class LaneStops {
       for (std::uint32_t row = 0; row < b_.plain.row_count; ++row) reached[row] = 0;
       for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) {
         const LaneNode& node = b_.plain.nodes[n];
-        if (!turns.touches(node)) continue;
+        if (!share_body(turns.node, node)) continue;
         reached[node.row] = 1;
         set_missing(part, n, turns.of(node.a), turns.of(node.b));
       }
@@ -202,9 +202,12 @@ class LaneStops {
   }
   // The way at one stop under an impulse at another. Which was known first must not show in the bits: other lanes have a say in that.
   void find_way(std::uint32_t a, std::uint32_t b, std::uint32_t halves) {
-    const Turns turns = turns_of(stops_[a]);
-    const LaneNode& node = *stops_[b].node;
-    const Wide<W> alone = dot(stops_[b].axis->about, turns.of(node.b) - turns.of(node.a));
+    const LaneNode &pushed = *stops_[a].node, &node = *stops_[b].node;
+    Wide<W> alone(0.0f);
+    if (share_body(pushed, node)) {
+      const Turns turns = turns_of(stops_[a]);
+      alone = dot(stops_[b].axis->about, turns.of(node.b) - turns.of(node.a));
+    }
     const Wide<W> way =
         alone - dot_reached<W>(b_.plain, halves, reached_of(a), scaled_of(a), reached_of(b), part_of(b));
     const Wide<W> bounded = a == b ? keep(way > kLeastWay * alone, way) : way;
