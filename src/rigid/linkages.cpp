@@ -233,18 +233,14 @@ class LinkageMaker {
   // The linkage as lanes have it; false if they cannot bear it. Bodies that cannot be pushed come last, one for each joint's end.
   bool describe(const Linkage& linkage, LinkageShape& shape) {
     std::size_t stops = 0;
-    for (const LinkageNode& node : linkage.nodes) {
-      LaneNode lane;
-      if (!fits_lane(w_.joints.records[node.record], work_[node.work], lane)) return false;
-      stops += (lane.has_twist ? 1 : 0) + (lane.has_swing ? 1 : 0);
-    }
-    if (stops > kMostLaneStops) return false;
     shape.nodes = arena_.make<LaneNode>(linkage.nodes.size());
     shape.body_count = shape.moving_count = std::uint32_t(linkage.bodies.size());
     for (std::size_t i = 0; i < linkage.nodes.size(); ++i) {
       const LinkageNode& node = linkage.nodes[i];
       LaneNode& lane = shape.nodes[i] = LaneNode{};
-      fits_lane(w_.joints.records[node.record], work_[node.work], lane);
+      if (!fits_lane(w_.joints.records[node.record], work_[node.work], lane)) return false;
+      stops += (lane.has_twist ? 1 : 0) + (lane.has_swing ? 1 : 0);
+      if (stops > kMostLaneStops) return false;
       lane.rows = std::uint32_t(node.count);
       lane.a = node.side_a < 0 ? shape.body_count++ : std::uint32_t(node.side_a);
       lane.b = node.side_b < 0 ? shape.body_count++ : std::uint32_t(node.side_b);

@@ -73,6 +73,8 @@ class BodyNewton {
     solve_lu(lu_, step_);
     for (std::size_t i = 0; i < rows(); ++i) {
       const double* const gain = &gains_[kSeen * i];
+      dx[i] = constants_[i];
+      if (is_idle(gain)) continue;
       double sum = constants_[i];
       const double* const a = at(p_.rows[i].body_a);
       const double* const b = at(p_.rows[i].body_b);
@@ -139,8 +141,10 @@ class BodyNewton {
       const double* const gain = &gains_[kSeen * i];
       const double* const push_a = gains_of(row);
       const double* const push_b = push_a + kLuBlock;
-      if (row.body_a != kNoRowBody) add_times<kLuBlock>(push_a, constants_[i], at(row.body_a));
-      if (row.body_b != kNoRowBody) add_times<kLuBlock>(push_b, constants_[i], at(row.body_b));
+      if (constants_[i] != 0.0) {
+        if (row.body_a != kNoRowBody) add_times<kLuBlock>(push_a, constants_[i], at(row.body_a));
+        if (row.body_b != kNoRowBody) add_times<kLuBlock>(push_b, constants_[i], at(row.body_b));
+      }
       // Limits that are not reached, which are most rows of a crowd's joints.
       if (is_idle(gain)) continue;
       if (row.body_a != kNoRowBody) add_product(push_a, gain, &lu_.lower[column_of(row.body_a).diagonal]);
@@ -171,6 +175,7 @@ class BodyNewton {
   // Adds what impulses do to the velocities.
   void push(std::span<const double> impulses) const {
     for (std::size_t i = 0; i < rows(); ++i) {
+      if (impulses[i] == 0.0) continue;
       const Row& row = p_.rows[i];
       const double* const gains = gains_of(row);
       if (row.body_a != kNoRowBody)
