@@ -9,8 +9,14 @@ namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
 // As in solver/linkage_stops.cpp.
-constexpr float kLaneCalm = 1.0e-3f, kLaneSettled = 1.0e-5f;  // rad/s
+constexpr float kLaneCalm = 1.0e-3f;  // rad/s
 constexpr int kLaneRounds = 3, kLaneSweeps = 100;
+
+// Impulses that change speeds by less stand.
+constexpr float kLaneSettled = 1.0e-4f;  // rad/s
+
+// Of the way to where a stop's own speed is as asked, how far each sweep goes (successive over-relaxation).
+constexpr float kLaneReach = 1.15f;
 
 // What a stop may still give way by, of what it would if its two bodies were alone: less is only rounding.
 constexpr float kLeastWay = 1.0e-5f;
@@ -31,7 +37,9 @@ struct LinkedStop {
 // One end of a stop, in each lane another.
 template <int W>
 struct StopSlot {
-  Wide<W> speed, asked, least, x;  // towards the inside; least: of x
+  Wide<W> excess;       // rad/s: by how much its speed towards the inside is more than what is asked
+  Wide<W> share;        // impulse for each rad/s of that, not positive
+  Wide<W> least, room;  // least: of the impulse, room: from there to where it is, both not positive
 };
 
 template <int W>
@@ -258,10 +266,11 @@ class LaneStops {
         const LinkedStop<W>& stop = stops_[end / 2];
         const bool is_high = (end & 1u) != 0;
         const float speed = lane_of(stop.speed, lane);
-        set_lane(slots_[i].speed, lane, is_high ? -speed : speed);
-        set_lane(slots_[i].asked, lane, lane_of(is_high ? stop.high_asked : stop.low_asked, lane));
-        set_lane(slots_[i].least, lane,
-                 -lane_of(is_high ? stop.axis->high_impulse : stop.axis->low_impulse, lane));
+        const float asked = lane_of(is_high ? stop.high_asked : stop.low_asked, lane);
+        const float least = -lane_of(is_high ? stop.axis->high_impulse : stop.axis->low_impulse, lane);
+        set_lane(slots_[i].excess, lane, (is_high ? -speed : speed) - asked);
+        set_lane(slots_[i].least, lane, least);
+        set_lane(slots_[i].room, lane, least);
         for (std::uint32_t j = 0; j < counts[lane]; ++j) {
           const std::uint32_t other = ends_[j * W + lane];
           const float way = lane_of(entry(end / 2, other / 2), lane);
@@ -276,17 +285,19 @@ class LaneStops {
     std::uint32_t counts[W];
     const std::uint32_t slots = list_ends(live, counts);
     fill_slots(slots, counts);
+    for (std::uint32_t i = 0; i < slots; ++i) {
+      const Wide<W> own = slot_ways_[i * slots + i];
+      slots_[i].share = keep(own > 0.0f, -kLaneReach / own);
+    }
     for (int sweep = 0; sweep < kLaneSweeps && any(live); ++sweep) {
       Wide<W> most(0.0f);
       for (std::uint32_t i = 0; i < slots; ++i) {
         StopSlot<W>& slot = slots_[i];
         const Wide<W>* const ways = slot_ways_ + i * slots;
-        const Wide<W> own = ways[i];
-        const Wide<W> now = max(slot.least, slot.x - (slot.speed - slot.asked) / own);
-        const Wide<W> by = keep(live & (own > 0.0f), now - slot.x);
-        slot.x += by;
-        most = max(most, max(by, Wide<W>(0.0f) - by) * own);
-        for (std::uint32_t e = 0; e < slots; ++e) slots_[e].speed += by * ways[e];
+        const Wide<W> by = keep(live, max(slot.room, slot.share * slot.excess));
+        slot.room -= by;
+        most = max(most, max(by, Wide<W>(0.0f) - by) * ways[i]);
+        for (std::uint32_t e = 0; e < slots; ++e) slots_[e].excess += by * ways[e];
       }
       live = live & (most > kLaneSettled);
     }
@@ -294,7 +305,8 @@ class LaneStops {
       for (std::uint32_t i = 0; i < counts[lane]; ++i) {
         const std::uint32_t end = ends_[i * W + lane];
         LinkedStop<W>& stop = stops_[end / 2];
-        set_lane((end & 1u) != 0 ? stop.high_x : stop.low_x, lane, lane_of(slots_[i].x, lane));
+        set_lane((end & 1u) != 0 ? stop.high_x : stop.low_x, lane,
+                 lane_of(slots_[i].least, lane) - lane_of(slots_[i].room, lane));
       }
     }
   }
