@@ -28,8 +28,8 @@ struct LinkedStop {
   Mask<W> low_on, high_on;
   LinkedAxis<W>* axis;
   const LaneNode* node;
-  bool has_low;  // a swing has only the other one
-  bool is_in;    // in question, in any lane
+  bool has_low;      // a swing has only the other one
+  std::uint32_t in;  // the lanes that have it in question, a bit for each
   // Of which halves of the lanes (math/wide_double.h) it is known what an impulse makes of the linkage, in this part of the sub-step.
   std::uint32_t known;
 };
@@ -46,7 +46,8 @@ template <int W>
 constexpr std::size_t stop_room(const LinkageBundle& bundle) {
   const std::size_t n = bundle.stop_count;
   if (n == 0) return 0;
-  return n * (sizeof(LinkedStop<W>) + n * sizeof(Wide<W>) + bundle.row_count * (2 * W * sizeof(double) + 1)) +
+  return n * (sizeof(LinkedStop<W>) + n * (sizeof(Wide<W>) + 1) +
+              bundle.row_count * (2 * W * sizeof(double) + 1)) +
          bundle.moving_count * sizeof(Vec3W<W>) + 2 * n * (sizeof(StopSlot<W>) + 2 * n * sizeof(Wide<W>) + W);
 }
 
@@ -67,7 +68,8 @@ class LaneStops {
         slots_(reinterpret_cast<StopSlot<W>*>(turns_ + bundle.plain.moving_count)),
         slot_ways_(reinterpret_cast<Wide<W>*>(slots_ + 2 * count())),
         ends_(reinterpret_cast<std::uint8_t*>(slot_ways_ + 4 * std::size_t(count()) * count())),
-        reached_(ends_ + 2 * std::size_t(count()) * W) {}
+        reached_(ends_ + 2 * std::size_t(count()) * W),
+        found_(reached_ + std::size_t(count()) * bundle.plain.row_count) {}
 
   // Nothing is known of joints that have just been placed.
   GYRE_INLINE void begin() {
@@ -77,6 +79,7 @@ class LaneStops {
       if (node.has_twist) list(stops_[next++], node, b_.joints[n].twist, true);
       if (node.has_swing) list(stops_[next++], node, b_.joints[n].swing, false);
     }
+    for (std::size_t i = 0; i < std::size_t(count()) * count(); ++i) found_[i] = 0;
   }
 
   GYRE_INLINE void solve() {
@@ -86,10 +89,11 @@ class LaneStops {
       if (none(live)) return;
       for (std::uint32_t a = 0; a < count(); ++a) {
         LinkedStop<W>& stop = stops_[a];
-        const std::uint32_t in = halves_of((stop.low_on | stop.high_on) & live);
-        stop.is_in = in != 0;
-        if ((in & ~stop.known) != 0) find_response(a, in & ~stop.known);
+        stop.in = to_bits((stop.low_on | stop.high_on) & live);
+        const std::uint32_t asked = halves_of(stop.in) & ~stop.known;
+        if (asked != 0) find_response(a, asked);
       }
+      find_ways();
       find_impulses(live);
       push();
     }
@@ -179,10 +183,10 @@ class LaneStops {
     b_.set_row(vector, node.row + 4, dot(turn_a - turn_b, joint.perpendicular_2));
   }
 
-  // Which halves of the lanes the mask has some of: bit 0 and bit 1.
-  GYRE_INLINE static std::uint32_t halves_of(Mask<W> mask) {
-    constexpr std::uint32_t kLow = (1u << kHalfLanes<W>)-1u;
-    const std::uint32_t bits = to_bits(mask);
+  // In which halves of the lanes there are some of these: bit 0 and bit 1.
+  GYRE_INLINE static std::uint32_t halves_of(std::uint32_t bits) {
+    constexpr int kHalf = kHalfLanes<W>;
+    constexpr std::uint32_t kLow = (1u << kHalf) - 1u;
     return ((bits & kLow) != 0 ? 1u : 0u) | (bits > kLow ? 2u : 0u);
   }
 
@@ -203,12 +207,20 @@ class LaneStops {
     }
     solve_reached_down<W>(b_.plain, halves, reached, part, scaled_of(index));
     stop.known |= halves;
+  }
+  // Between all stops that some lane has in question together.
+  void find_ways() {
     for (std::uint32_t a = 0; a < count(); ++a) {
-      const std::uint32_t both = stops_[a].known & halves;
-      if (both != 0) a > index ? find_way(a, index, both) : find_way(index, a, both);
+      for (std::uint32_t b = 0; stops_[a].in != 0 && b <= a; ++b) {
+        std::uint8_t& found = found_[std::size_t(a) * count() + b];
+        const std::uint32_t asked = halves_of(stops_[a].in & stops_[b].in) & ~std::uint32_t(found);
+        if (asked == 0) continue;
+        find_way(a, b, asked);
+        found = std::uint8_t(found | asked);
+      }
     }
   }
-  // The way at one stop under an impulse at another. Which was known first must not show in the bits: other lanes have a say in that.
+  // The way at one stop under an impulse at another.
   void find_way(std::uint32_t a, std::uint32_t b, std::uint32_t halves) {
     const LaneNode &pushed = *stops_[a].node, &node = *stops_[b].node;
     Wide<W> alone(0.0f);
@@ -222,9 +234,9 @@ class LaneStops {
     entry(a, b) = entry(b, a) = select(lanes_of(halves), bounded, entry(a, b));
   }
   GYRE_INLINE static Mask<W> lanes_of(std::uint32_t halves) {
-    constexpr std::uint32_t kLow = (1u << kHalfLanes<W>)-1u;
-    return Mask<W>::of_bits(((halves & 1u) != 0 ? kLow : 0u) |
-                            ((halves & 2u) != 0 ? kLow << kHalfLanes<W> : 0u));
+    constexpr int kHalf = kHalfLanes<W>;
+    constexpr std::uint32_t kLow = (1u << kHalf) - 1u;
+    return Mask<W>::of_bits(((halves & 1u) != 0 ? kLow : 0u) | ((halves & 2u) != 0 ? kLow << kHalf : 0u));
   }
 
   // ------------------------------------------------------------------------------------------------------ impulses
@@ -243,7 +255,7 @@ class LaneStops {
     };
     for (std::uint32_t a = 0; a < count(); ++a) {
       LinkedStop<W>& stop = stops_[a];
-      if (!stop.is_in) continue;
+      if (stop.in == 0) continue;
       stop.low_x = stop.high_x = Wide<W>(0.0f);
       if (stop.has_low) list(stop.low_on, 2 * a);
       list(stop.high_on, 2 * a + 1);
@@ -317,7 +329,7 @@ class LaneStops {
     Mask<W> pushed = Mask<W>::splat(false);
     for (std::uint32_t a = 0; a < count(); ++a) {
       LinkedStop<W>& stop = stops_[a];
-      if (!stop.is_in) continue;
+      if (stop.in == 0) continue;
       const Wide<W> x = stop.low_x - stop.high_x;
       stop.axis->low_impulse = max(stop.axis->low_impulse + stop.low_x, Wide<W>(0.0f));
       stop.axis->high_impulse = max(stop.axis->high_impulse + stop.high_x, Wide<W>(0.0f));
@@ -363,6 +375,7 @@ class LaneStops {
   Wide<W>* slot_ways_;     // by two slots
   std::uint8_t* ends_;     // by slot and lane
   std::uint8_t* reached_;  // by stop and row
+  std::uint8_t* found_;    // by two stops, the later first: in which halves of the lanes their way is known
 };
 
 }  // namespace GYRE_TARGET_NAMESPACE
