@@ -252,17 +252,25 @@ void mark_rolling_lanes(Solve& solve, std::uint32_t blocks, Arena& arena) {
 }
 
 // A block takes as long as the lane with the most points, and is swept again where some point would pull, as those do that bear
-// nothing: so contacts that are alike lie side by side. Those of one colour do not notice each other.
+// nothing: so contacts that are alike lie side by side. Those of one colour do not notice each other. Those without a body A come last.
+constexpr int kWithA = 2 * kMaxManifoldPoints;
 int likeness(const ContactConstraint& constraint) {
-  return 2 * (kMaxManifoldPoints - constraint.point_count) + (constraint.loaded ? 0 : 1);
+  return (constraint.body_a == kNoBody ? kWithA : 0) + 2 * (kMaxManifoldPoints - constraint.point_count) +
+         (constraint.loaded ? 0 : 1);
 }
 
+// Appends the members of a colour to the order, in whole blocks.
 void order_alike(std::span<const ContactConstraint> constraints, std::span<const std::uint32_t> members,
-                 std::uint32_t* order) {
-  std::uint32_t starts[2 * kMaxManifoldPoints + 1] = {};
+                 std::uint32_t width, Array<std::uint32_t>& order) {
+  std::uint32_t starts[2 * kWithA + 1] = {};
   for (const std::uint32_t member : members) ++starts[likeness(constraints[member]) + 1];
   for (std::size_t i = 1; i < std::size(starts); ++i) starts[i] += starts[i - 1];
-  for (const std::uint32_t member : members) order[starts[likeness(constraints[member])]++] = member;
+  // No block has contacts of both kinds.
+  const std::uint32_t gap = (width - starts[kWithA] % width) % width;
+  for (int i = kWithA; i < 2 * kWithA; ++i) starts[i] += gap;
+  const std::size_t first = order.size(), count = gap + members.size();
+  order.resize(first + (count + width - 1) / width * width, kNoPlace);
+  for (const std::uint32_t member : members) order[first + starts[likeness(constraints[member])]++] = member;
 }
 
 }  // namespace
@@ -279,17 +287,15 @@ std::span<Group> lay_out_contacts(Solve& solve, Arena& arena) {
     const std::span<const std::uint32_t> members = colors.group(g);
     if (members.empty()) continue;
     const bool serial = g == colors.overflow_group();
-    const std::uint32_t size = std::uint32_t(members.size());
-    const std::uint32_t count = serial ? size : (size + width - 1) / width;
-    s.order.resize(std::size_t(blocks + count) * width, kNoPlace);
-    std::uint32_t* const order = s.order.data() + std::size_t(blocks) * width;
     if (serial) {
-      for (std::uint32_t i = 0; i < size; ++i) order[i * width] = members[i];
+      s.order.resize(s.order.size() + members.size() * width, kNoPlace);
+      for (std::size_t i = 0; i < members.size(); ++i) s.order[(blocks + i) * width] = members[i];
     } else {
-      order_alike(s.constraints.view(), members, order);
+      order_alike(s.constraints.view(), members, width, s.order);
     }
-    groups[used++] = {&solve, blocks, count, serial};
-    blocks += count;
+    const std::uint32_t end = std::uint32_t(s.order.size()) / width;
+    groups[used++] = {&solve, blocks, end - blocks, serial};
+    blocks = end;
     s.counts.colors_used |= std::uint64_t{1} << g;
   }
   if (!solve.rolling.contacts.empty()) mark_rolling_lanes(solve, blocks, arena);

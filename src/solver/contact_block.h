@@ -84,7 +84,9 @@ struct FollowedArms {
 };
 
 // The kernels of one CPU target: every function works on blocks [begin, end) of the array at `blocks`. `order` lists
-// constraint indices block by block, W a block; 0xffffffff marks an empty lane. What is prepared knows where the motion records of its
+// constraint indices block by block, W a block; 0xffffffff marks an empty lane. Of a block either all
+// contacts have a body A or none has: the latter have steps of their own, and whether a number leaves a float's range on the way must
+// not depend on the lanes beside it. What is prepared knows where the motion records of its
 // bodies lie.
 struct ContactKernels {
   int width;

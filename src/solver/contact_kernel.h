@@ -87,18 +87,30 @@ constexpr int packed(int i, int j) {
   return i <= j ? kStart[i] + j : kStart[j] + i;
 }
 
-// Velocities of the two bodies of each lane.
-template <int W>
+// Velocities of the two bodies of each lane; of B alone where kHasA is false: in such a block no lane has an A, as where all lie on
+// the ground.
+template <int W, bool kHasA = true>
 struct PairMotion {
   Vec3W<W> linear_a, angular_a, linear_b, angular_b;
 };
+template <int W>
+struct PairMotion<W, false> {
+  Vec3W<W> linear_b, angular_b;
+};
 
 template <int W>
-GYRE_INLINE PairMotion<W> load_pair(const ContactBlock<W>& block) {
-  Wide<W> a[8], b[8];
-  gather_columns<8, W>(block.read_a, kMotionLinear, a);
-  gather_columns<8, W>(block.read_b, kMotionLinear, b);
-  return {{a[0], a[1], a[2]}, {a[3], a[4], a[5]}, {b[0], b[1], b[2]}, {b[3], b[4], b[5]}};
+GYRE_INLINE void load_velocities(const float* const (&records)[W], Vec3W<W>& linear, Vec3W<W>& angular) {
+  Wide<W> columns[8];
+  gather_columns<8, W>(records, kMotionLinear, columns);
+  linear = {columns[0], columns[1], columns[2]};
+  angular = {columns[3], columns[4], columns[5]};
+}
+template <int W, bool kHasA = true>
+GYRE_INLINE PairMotion<W, kHasA> load_pair(const ContactBlock<W>& block) {
+  PairMotion<W, kHasA> pair;
+  if constexpr (kHasA) load_velocities<W>(block.read_a, pair.linear_a, pair.angular_a);
+  load_velocities<W>(block.read_b, pair.linear_b, pair.angular_b);
+  return pair;
 }
 
 template <int W>
@@ -109,40 +121,31 @@ GYRE_INLINE void store_velocities(float* const (&records)[W], Vec3W<W> linear, V
                               angular.x + zero, angular.y + zero, angular.z + zero};
   scatter_columns<6, W>(records, kMotionLinear, columns);
 }
-template <int W>
-GYRE_INLINE void store_pair(ContactBlock<W>& block, const PairMotion<W>& pair) {
-  store_velocities<W>(block.write_a, pair.linear_a, pair.angular_a);
+template <int W, bool kHasA>
+GYRE_INLINE void store_pair(ContactBlock<W>& block, const PairMotion<W, kHasA>& pair) {
+  if constexpr (kHasA) store_velocities<W>(block.write_a, pair.linear_a, pair.angular_a);
   store_velocities<W>(block.write_b, pair.linear_b, pair.angular_b);
 }
 
-// How far B has moved against A since the step began, and how far both have turned.
-template <int W>
-struct PairWay {
-  Vec3W<W> moved, turned_a, turned_b;
-};
-template <int W>
-GYRE_INLINE PairWay<W> load_way(const ContactBlock<W>& block) {
-  Wide<W> a[8], b[8];
-  gather_columns<8, W>(block.read_a, kMotionMoved, a);
-  gather_columns<8, W>(block.read_b, kMotionMoved, b);
-  return {{b[0] - a[0], b[1] - a[1], b[2] - a[2]}, {a[3], a[4], a[5]}, {b[3], b[4], b[5]}};
-}
-
 // Adds the impulse `p` on B at `from_b` (and -p on A at `from_a`), and the angular impulse `t` on B (and -t on A).
-template <int W>
-GYRE_INLINE void push(const ContactBlock<W>& block, PairMotion<W>& pair, Vec3W<W> p, Vec3W<W> from_a, Vec3W<W> from_b,
-                      Vec3W<W> t) {
-  pair.linear_a = pair.linear_a - block.inverse_mass_a * p;
-  pair.angular_a = pair.angular_a - block.inverse_inertia_a * (cross(from_a, p) + t);
+template <int W, bool kHasA>
+GYRE_INLINE void push(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair, Vec3W<W> p, Vec3W<W> from_a,
+                      Vec3W<W> from_b, Vec3W<W> t) {
+  if constexpr (kHasA) {
+    pair.linear_a = pair.linear_a - block.inverse_mass_a * p;
+    pair.angular_a = pair.angular_a - block.inverse_inertia_a * (cross(from_a, p) + t);
+  }
   pair.linear_b = pair.linear_b + block.inverse_mass_b * p;
   pair.angular_b = pair.angular_b + block.inverse_inertia_b * (cross(from_b, p) + t);
 }
 
 // Adds an impulse `p` along the normal; `turn` is the sum of its parts times the arms of their points.
-template <int W>
-GYRE_INLINE void push_normal(const ContactBlock<W>& block, PairMotion<W>& pair, Wide<W> p, Vec3W<W> turn) {
-  pair.linear_a = pair.linear_a - (block.inverse_mass_a * p) * block.normal;
-  pair.angular_a = pair.angular_a - block.inverse_inertia_a * (turn + p * block.arm_shift_a);
+template <int W, bool kHasA>
+GYRE_INLINE void push_normal(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair, Wide<W> p, Vec3W<W> turn) {
+  if constexpr (kHasA) {
+    pair.linear_a = pair.linear_a - (block.inverse_mass_a * p) * block.normal;
+    pair.angular_a = pair.angular_a - block.inverse_inertia_a * (turn + p * block.arm_shift_a);
+  }
   pair.linear_b = pair.linear_b + (block.inverse_mass_b * p) * block.normal;
   pair.angular_b = pair.angular_b + block.inverse_inertia_b * (turn + p * block.arm_shift_b);
 }
@@ -153,24 +156,67 @@ struct NormalMotion {
   Wide<W> common;
   Vec3W<W> turn;
 
-  GYRE_INLINE NormalMotion(const ContactBlock<W>& block, Vec3W<W> way, Vec3W<W> turn_a, Vec3W<W> turn_b) {
-    common = dot(way, block.normal) + (dot(turn_b, block.arm_shift_b) - dot(turn_a, block.arm_shift_a));
-    turn = turn_b - turn_a;
-  }
   GYRE_INLINE Wide<W> at(const PointBlock<W>& point) const { return common + dot(turn, point.arm); }
 };
+// Of two bodies, and of one on what is not there.
+template <int W>
+GYRE_INLINE NormalMotion<W> normal_motion(const ContactBlock<W>& block, Vec3W<W> way, Vec3W<W> turn_a, Vec3W<W> turn_b) {
+  return {dot(way, block.normal) + (dot(turn_b, block.arm_shift_b) - dot(turn_a, block.arm_shift_a)), turn_b - turn_a};
+}
+template <int W>
+GYRE_INLINE NormalMotion<W> normal_motion(const ContactBlock<W>& block, Vec3W<W> way, Vec3W<W> turn_b) {
+  return {dot(way, block.normal) + dot(turn_b, block.arm_shift_b), turn_b};
+}
+template <int W, bool kHasA>
+GYRE_INLINE NormalMotion<W> normal_speeds(const ContactBlock<W>& block, const PairMotion<W, kHasA>& pair) {
+  if constexpr (kHasA) {
+    return normal_motion<W>(block, pair.linear_b - pair.linear_a, pair.angular_a, pair.angular_b);
+  } else {
+    return normal_motion<W>(block, pair.linear_b, pair.angular_b);
+  }
+}
+
+// How far a body has moved and turned since the step began.
+template <int W>
+struct BodyWay {
+  Vec3W<W> moved, turned;
+  GYRE_INLINE explicit BodyWay(const float* const (&records)[W]) {
+    Wide<W> columns[8];
+    gather_columns<8, W>(records, kMotionMoved, columns);
+    moved = {columns[0], columns[1], columns[2]};
+    turned = {columns[3], columns[4], columns[5]};
+  }
+};
+template <int W, bool kHasA>
+GYRE_INLINE NormalMotion<W> normal_ways(const ContactBlock<W>& block) {
+  const BodyWay<W> b(block.read_b);
+  if constexpr (kHasA) {
+    const BodyWay<W> a(block.read_a);
+    return normal_motion<W>(block, b.moved - a.moved, a.turned, b.turned);
+  } else {
+    return normal_motion<W>(block, b.moved, b.turned);
+  }
+}
 
 // Adds the angular impulse `t` on B (and -t on A).
-template <int W>
-GYRE_INLINE void turn(const ContactBlock<W>& block, PairMotion<W>& pair, Vec3W<W> t) {
-  pair.angular_a = pair.angular_a - block.inverse_inertia_a * t;
+template <int W, bool kHasA>
+GYRE_INLINE void turn(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair, Vec3W<W> t) {
+  if constexpr (kHasA) pair.angular_a = pair.angular_a - block.inverse_inertia_a * t;
   pair.angular_b = pair.angular_b + block.inverse_inertia_b * t;
 }
 
 // Velocity of B's material against A's at a point.
-template <int W>
-GYRE_INLINE Vec3W<W> relative_velocity(const PairMotion<W>& pair, Vec3W<W> from_a, Vec3W<W> from_b) {
-  return (pair.linear_b + cross(pair.angular_b, from_b)) - (pair.linear_a + cross(pair.angular_a, from_a));
+template <int W, bool kHasA>
+GYRE_INLINE Vec3W<W> relative_velocity(const PairMotion<W, kHasA>& pair, Vec3W<W> from_a, Vec3W<W> from_b) {
+  const Vec3W<W> velocity = pair.linear_b + cross(pair.angular_b, from_b);
+  if constexpr (kHasA) return velocity - (pair.linear_a + cross(pair.angular_a, from_a));
+  return velocity;
+}
+// How fast B turns against A.
+template <int W, bool kHasA>
+GYRE_INLINE Vec3W<W> relative_spin(const PairMotion<W, kHasA>& pair) {
+  if constexpr (kHasA) return pair.angular_b - pair.angular_a;
+  return pair.angular_b;
 }
 
 template <int W>
@@ -206,15 +252,20 @@ GYRE_INLINE Wide<W> normal_load(const ContactBlock<W>& block) {
 }
 
 // Friction: the impulse that would stop the slip, pulled back into the ellipsoid of what the load allows.
-template <int W>
-GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W>& pair) {
+template <int W, bool kHasA>
+GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W, kHasA>& pair) {
   const Wide<W> zero = Wide<W>(0.0f);
   const Wide<W> one = Wide<W>(1.0f);
   const Wide<W> load = normal_load<W>(block);
+  const auto loaded = load > Wide<W>(kLeastLoad);
+  if (none(loaded) && none((block.friction_1 != zero) | (block.friction_2 != zero) | (block.twist != zero))) {
+    block.sliding = zero;
+    return;
+  }
   const Vec3W<W> slip = relative_velocity<W>(pair, block.friction_from_a, block.friction_from_b);
   const Wide<W> v1 = dot(slip, block.tangent_1) - block.surface_1;
   const Wide<W> v2 = dot(slip, block.tangent_2) - block.surface_2;
-  const Wide<W> v3 = dot(pair.angular_b - pair.angular_a, block.normal);
+  const Wide<W> v3 = dot(relative_spin<W>(pair), block.normal);
 
   // Sticking: all three rows at once.
   Wide<W> f1 = block.friction_1 - (block.inverse_k11 * v1 + block.inverse_k12 * v2 + block.inverse_k13 * v3);
@@ -223,12 +274,11 @@ GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W>& pair) {
 
   // Where on its limit the impulse is: 1 on the ellipsoid. No load, no friction.
   const auto was_sliding = block.sliding > zero;
-  const auto loaded = load > Wide<W>(kLeastLoad);
   const Wide<W> per_load = select(loaded, one / select(loaded, load, one), zero);
   const Wide<W> grip = select(was_sliding, block.dynamic_grip, block.static_grip) * per_load;
   const Wide<W> twist_grip = select(was_sliding, block.dynamic_twist_grip, block.static_twist_grip) * per_load;
   const Wide<W> use = (f1 * f1 + f2 * f2) * (grip * grip) + (f3 * f3) * (twist_grip * twist_grip);
-  const auto sticks = use <= one;
+  const auto sticks = (use <= one) | ~loaded;
 
   if (!all(sticks)) {
     // Sliding: a step along the slip, alike in every direction, then onto the ellipsoid.
@@ -259,11 +309,11 @@ GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W>& pair) {
 }
 
 // Rolling friction: a torque against the relative turning, at most rolling_friction times the load.
-template <int W>
-GYRE_INLINE void solve_rolling(ContactBlock<W>& block, PairMotion<W>& pair) {
+template <int W, bool kHasA>
+GYRE_INLINE void solve_rolling(ContactBlock<W>& block, PairMotion<W, kHasA>& pair) {
   const Wide<W> zero = Wide<W>(0.0f);
   const Wide<W> one = Wide<W>(1.0f);
-  const Vec3W<W> spin = pair.angular_b - pair.angular_a;
+  const Vec3W<W> spin = relative_spin<W>(pair);
   const Vec3W<W> roll = spin - dot(spin, block.normal) * block.normal;
   const Vec3W<W> wanted = block.rolling - block.rolling_mass * roll;
   const Wide<W> limit = block.rolling_friction * normal_load<W>(block);
@@ -281,13 +331,10 @@ GYRE_INLINE void solve_rolling(ContactBlock<W>& block, PairMotion<W>& pair) {
 // treats them alike: no order, no rocking), then, where some would pull, by projected sweeps in the space of impulses.
 // Sprung: the spring draws its points to an overlap of `slop`, in both directions, and gives way to what it is not used to.
 // Not sprung: only approach stops, and under load the speed with which springs pushed goes.
-template <int W, bool kSprung, int Count>
-GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W>& pair, float substep) {
+template <int W, bool kSprung, int Count, bool kHasA>
+GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W, kHasA>& pair, float substep) {
   const Wide<W> zero(0.0f), one(1.0f), rate(1.0f / substep);
-  const PairWay<W> way = load_way<W>(block);
-  const NormalMotion<W> ways(block, way.moved, way.turned_a, way.turned_b);
-  const NormalMotion<W> speeds(block, pair.linear_b - pair.linear_a, pair.angular_a, pair.angular_b);
-  const auto is_linked = Mask<W>::of_bits(block.linked);
+  const NormalMotion<W> ways = normal_ways<W, kHasA>(block), speeds = normal_speeds<W>(block, pair);
   const Wide<W> lost = Wide<W>(-kLostSlops) * block.slop;
   const Wide<W> leak(1.0f / (1.0f + kLostLeak * substep));
   Wide<W> residual[Count];  // speed that the row wants to lose
@@ -308,7 +355,9 @@ GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W>& pair, float
       // A point that parts ceases to give way by degrees.
       const Wide<W> near = max(block.slop - max(separation, zero), zero);
       kept[i] = point.impulse - (block.give * near) * share * max(point.impulse - point.held, zero);
-      if (block.linked != 0) kept[i] = select(is_linked & (separation < lost), leak * kept[i], kept[i]);
+      if (block.linked != 0) {
+        kept[i] = select(Mask<W>::of_bits(block.linked) & (separation < lost), leak * kept[i], kept[i]);
+      }
     } else {
       // A point that is apart may be let go, never be held back: that would brake whatever is about to land.
       const Wide<W> excess = select(point.impulse > zero, max(speed + separation * rate, zero), zero);
@@ -370,8 +419,8 @@ GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W>& pair, float
   push_normal<W>(block, pair, total, turn_sum);
 }
 
-template <int W, bool kSprung>
-GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W>& pair, float substep) {
+template <int W, bool kSprung, bool kHasA>
+GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W, kHasA>& pair, float substep) {
   switch (block.point_count) {
     case 1:
       return solve_points<W, kSprung, 1>(block, pair, substep);
@@ -385,10 +434,10 @@ GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W>& pair, floa
 }
 
 // Contacts that bore nothing yet: friction knows no load that limits it, so the normals have to come first once.
-template <int W>
-GYRE_INLINE void strike_fresh(ContactBlock<W>& block, PairMotion<W>& pair, float substep) {
+template <int W, bool kHasA>
+GYRE_INLINE void strike_fresh(ContactBlock<W>& block, PairMotion<W, kHasA>& pair, float substep) {
   const auto fresh = block.fresh > Wide<W>(0.0f);
-  const PairMotion<W> old = pair;
+  const PairMotion<W, kHasA> old = pair;
   Wide<W> impulses[kMaxManifoldPoints];
   for (int k = 0; k < block.point_count; ++k) impulses[k] = block.points[k].impulse;
   const Wide<W> friction_1 = block.friction_1, friction_2 = block.friction_2, twist = block.twist, sliding = block.sliding;
@@ -402,36 +451,42 @@ GYRE_INLINE void strike_fresh(ContactBlock<W>& block, PairMotion<W>& pair, float
   block.twist = select(fresh, block.twist, twist);
   block.sliding = select(fresh, block.sliding, sliding);
   block.has_fresh = 0;
-  pair.linear_a = select<W>(fresh, pair.linear_a, old.linear_a);
-  pair.angular_a = select<W>(fresh, pair.angular_a, old.angular_a);
+  if constexpr (kHasA) {
+    pair.linear_a = select<W>(fresh, pair.linear_a, old.linear_a);
+    pair.angular_a = select<W>(fresh, pair.angular_a, old.angular_a);
+  }
   pair.linear_b = select<W>(fresh, pair.linear_b, old.linear_b);
   pair.angular_b = select<W>(fresh, pair.angular_b, old.angular_b);
 }
 
 // What comes before friction and normals. A function of its own, which reads the bodies itself, so that all others may keep them in
 // registers.
-template <int W>
-__attribute__((noinline)) PairMotion<W> begin_pair(ContactBlock<W>& block, float substep) {
-  PairMotion<W> pair = load_pair<W>(block);
+template <int W, bool kHasA>
+__attribute__((noinline)) PairMotion<W, kHasA> begin_pair(ContactBlock<W>& block, float substep) {
+  PairMotion<W, kHasA> pair = load_pair<W, kHasA>(block);
   if (block.has_fresh != 0) strike_fresh<W>(block, pair, substep);
   if (block.rolls != 0) solve_rolling<W>(block, pair);
   return pair;
 }
 
 // Normals last: what bodies move with then closes nowhere; an error of the slip does no harm.
+template <int W, bool kHasA>
+GYRE_INLINE void solve_block(ContactBlock<W>& block, float substep) {
+  const bool begins = (block.has_fresh | block.rolls) != 0;
+  PairMotion<W, kHasA> pair = begins ? begin_pair<W, kHasA>(block, substep) : load_pair<W, kHasA>(block);
+  solve_friction<W>(block, pair);
+  solve_normals<W, true>(block, pair, substep);
+  for (int k = 0; k < block.point_count; ++k) block.points[k].total = block.points[k].total + block.points[k].impulse;
+  block.total_1 = block.total_1 + block.friction_1;
+  block.total_2 = block.total_2 + block.friction_2;
+  store_pair<W>(block, pair);
+}
+
 template <int W>
 void solve_blocks(void* memory, int begin, int end, float substep) {
   auto* blocks = static_cast<ContactBlock<W>*>(memory);
   for (int i = begin; i < end; ++i) {
-    ContactBlock<W>& block = blocks[i];
-    PairMotion<W> pair =
-        (block.has_fresh | block.rolls) != 0 ? begin_pair<W>(block, substep) : load_pair<W>(block);
-    solve_friction<W>(block, pair);
-    solve_normals<W, true>(block, pair, substep);
-    for (int k = 0; k < block.point_count; ++k) block.points[k].total = block.points[k].total + block.points[k].impulse;
-    block.total_1 = block.total_1 + block.friction_1;
-    block.total_2 = block.total_2 + block.friction_2;
-    store_pair<W>(block, pair);
+    blocks[i].has_a != 0 ? solve_block<W, true>(blocks[i], substep) : solve_block<W, false>(blocks[i], substep);
   }
 }
 

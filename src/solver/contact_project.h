@@ -21,9 +21,10 @@ constexpr int kProjectionSweeps = 8;
 template <int W>
 GYRE_INLINE PairMotion<W> displacements(const ContactBlock<W>& block) {
   const auto in_a = Mask<W>::of_bits(block.pushes_a), in_b = Mask<W>::of_bits(block.pushes_b);
-  const PairMotion<W> pair = load_pair<W>(block);
-  return {keep<W>(in_a, pair.linear_a), keep<W>(in_a, pair.angular_a), keep<W>(in_b, pair.linear_b),
-          keep<W>(in_b, pair.angular_b)};
+  PairMotion<W> pair = load_pair<W>(block);
+  pair.linear_a = keep<W>(in_a, pair.linear_a), pair.angular_a = keep<W>(in_a, pair.angular_a);
+  pair.linear_b = keep<W>(in_b, pair.linear_b), pair.angular_b = keep<W>(in_b, pair.angular_b);
+  return pair;
 }
 
 // What a unit push at each point does to the two bodies, and to the separations of the points.
@@ -57,9 +58,9 @@ template <int W>
 GYRE_INLINE bool wanted_pushes(const ContactBlock<W>& block, const PairMotion<W>& pair, float step, Wide<W>* wanted) {
   const Wide<W> zero(0.0f);
   // The way so far in the step, and what was pushed already.
-  const PairWay<W> way = load_way<W>(block);
-  const NormalMotion<W> ways(block, way.moved + (pair.linear_b - pair.linear_a), way.turned_a + pair.angular_a,
-                             way.turned_b + pair.angular_b);
+  const BodyWay<W> a(block.read_a), b(block.read_b);
+  const NormalMotion<W> ways = normal_motion<W>(block, (b.moved - a.moved) + (pair.linear_b - pair.linear_a),
+                                                a.turned + pair.angular_a, b.turned + pair.angular_b);
   const Wide<W> most = block.push_speed * Wide<W>(step);
   auto overlaps = zero < zero;
   for (int i = 0; i < block.point_count; ++i) {
