@@ -29,41 +29,54 @@ struct Constraints {
   std::size_t size = 0;  // manifolds and joints
 };
 
-Constraints list_constraints(const RigidWorld& w, Arena& arena, TaskSystem& tasks) {
-  // Contacts are looked at in blocks of one word of bits each.
+// The slots of which `size_of` tells that there is something to solve, ascending.
+struct Slots {
+  std::span<const std::uint32_t> list;
+  std::size_t size = 0;  // the sum of what it told
+};
+template <class SizeOf>
+Slots list_slots(std::size_t slots, Arena& arena, TaskSystem& tasks, SizeOf&& size_of) {
+  // They are looked at in blocks of one word of bits each.
   struct Count {
-    std::uint32_t contacts = 0, manifolds = 0;
+    std::uint32_t slots = 0, size = 0;
   };
-  const std::size_t slots = w.contacts.contacts.size();
   const std::span<std::uint64_t> solved = arena.make<std::uint64_t>((slots + 63) / 64);
   const auto look = [&](int begin, int end, int) {
     Count count;
     std::uint64_t bits = 0;
     for (int slot = begin; slot < end; ++slot) {
-      const Contact& contact = w.contacts.contacts[std::size_t(slot)];
-      if (!is_solved(w, contact)) continue;
+      const std::uint32_t size = size_of(std::uint32_t(slot));
+      if (size == 0) continue;
       bits |= std::uint64_t{1} << (slot - begin);
-      ++count.contacts;
-      count.manifolds += contact.manifold_count;
+      ++count.slots;
+      count.size += size;
     }
     solved[std::size_t(begin) / 64] = bits;
     return count;
   };
   const Count count = reduce_blocks(tasks, int(slots), 64, Count{}, look, [](Count a, Count b) {
-    return Count{a.contacts + b.contacts, a.manifolds + b.manifolds};
+    return Count{a.slots + b.slots, a.size + b.size};
   });
-  const std::span<std::uint32_t> contacts = arena.make<std::uint32_t>(count.contacts);
-  std::size_t contact_count = 0;
+  const std::span<std::uint32_t> list = arena.make<std::uint32_t>(count.slots);
+  std::size_t used = 0;
   for (std::size_t word = 0; word < solved.size(); ++word) {
     for (std::uint64_t left = solved[word]; left != 0; left &= left - 1)
-      contacts[contact_count++] = std::uint32_t(64 * word) + std::uint32_t(std::countr_zero(left));
+      list[used++] = std::uint32_t(64 * word) + std::uint32_t(std::countr_zero(left));
   }
-  const std::span<std::uint32_t> joints = arena.make<std::uint32_t>(w.joints.ids.size());
-  std::size_t joint_count = 0;
-  w.joints.ids.for_each_live([&](std::uint32_t slot) {
-    if (is_joint_solved(w, slot)) joints[joint_count++] = slot;
-  });
-  return {contacts, joints.first(joint_count), count.manifolds + joint_count};
+  return {list, count.size};
+}
+
+Constraints list_constraints(const RigidWorld& w, Arena& arena, TaskSystem& tasks) {
+  const auto manifolds = [&](std::uint32_t slot) {
+    const Contact& contact = w.contacts.contacts[slot];
+    return is_solved(w, contact) ? std::uint32_t(contact.manifold_count) : 0u;
+  };
+  const auto one = [&](std::uint32_t slot) {
+    return w.joints.ids.live(slot) && is_joint_solved(w, slot) ? 1u : 0u;
+  };
+  const Slots contacts = list_slots(w.contacts.contacts.size(), arena, tasks, manifolds);
+  const Slots joints = list_slots(w.joints.ids.capacity(), arena, tasks, one);
+  return {contacts.list, joints.list, contacts.size + joints.size};
 }
 
 Tie tie_of(const RigidWorld& w, const Contact& contact) {
@@ -204,12 +217,12 @@ SolveBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, 
   const std::size_t all_weights = kConstraint * constraints.size + awake.size();
   const auto share = std::uint32_t(all_weights / size.shares);
   const std::uint32_t most = min(kConstraint * size.most, max(share, kConstraint * kWorthSharing));
-  if (all_weights <= most) {
+  const auto all_in_one = [&](std::span<SolveBatch> batches) {
     for (std::uint32_t i = 0; i < awake.size(); ++i) places[awake[i]] = i;
-    const std::span<SolveBatch> all = arena.make<SolveBatch>(awake.empty() ? 0 : 1);
-    if (!all.empty()) all[0] = {awake, constraints.contacts, constraints.joints};
-    return {all, places};
-  }
+    if (!batches.empty()) batches[0] = {awake, constraints.contacts, constraints.joints};
+    return SolveBatches{batches, places};
+  };
+  if (all_weights <= most) return all_in_one(arena.make<SolveBatch>(awake.empty() ? 0 : 1));
   // Any two batches that follow each other are more than one may be.
   const std::size_t most_batches = 2 * all_weights / most + 1, contact_count = constraints.contacts.size();
   Lists bodies(arena, most_batches, awake.size()), contacts(arena, most_batches, contact_count),
@@ -222,6 +235,7 @@ SolveBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, 
   const std::span<const std::uint32_t> weights =
       part_islands(w, islands, weigh_islands(w, ties, islands, places.size(), arena), most, arena, batch_of);
   const std::size_t count = weights.size();
+  if (count == 1) return all_in_one(batches.first(1));
   for (const std::uint32_t body : awake) bodies.count(batch_of[body]);
   for (std::size_t i = 0; i < ties.size(); ++i)
     (i < contact_count ? contacts : joints).count(batch_of[ties[i].owner]);
@@ -232,7 +246,7 @@ SolveBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, 
   for (std::size_t i = contact_count; i < ties.size(); ++i)
     joints.add(batch_of[ties[i].owner], constraints.joints[i - contact_count]);
   for (std::size_t i = 0; i < count; ++i) {
-    batches[i] = {bodies.of(i), contacts.of(i), joints.of(i), count > 1 && weights[i] <= most};
+    batches[i] = {bodies.of(i), contacts.of(i), joints.of(i), weights[i] <= most};
     for (std::uint32_t n = 0; n < batches[i].bodies.size(); ++n) places[batches[i].bodies[n]] = n;
   }
   return {batches.first(count), places};
