@@ -45,9 +45,9 @@ RestingIslands::RestingIslands(const RigidWorld& w, std::span<const ContactConst
       counts_(arena.make<IslandCount>(batch.bodies.size())) {
   for (std::uint32_t i = 0; i < parent_.size(); ++i) parent_[i] = i, counts_[i] = {};
   unite_all(pairs);
+  refuse_jointed();
   count_bodies();
   count_contacts(constraints, pairs);
-  count_joints();
 }
 
 bool RestingIslands::is_root(std::uint32_t place) const {
@@ -83,6 +83,7 @@ void RestingIslands::count_bodies() {
     const std::uint32_t body = batch_.bodies[place];
     if (!is_movable(w_.bodies.flags[body])) continue;
     IslandCount& count = counts_[parent_[place]];
+    if (count.refused) continue;
     const Slowness slowness(w_, body, pull);
     ++count.bodies;
     if (!is_free(w_, body) || !slowness.is_below(kRestShare)) {
@@ -98,9 +99,10 @@ void RestingIslands::count_bodies() {
 void RestingIslands::count_contacts(std::span<const ContactConstraint> constraints,
                                     std::span<const ColoringPair> pairs) {
   for (std::uint32_t i = 0; i < constraints.size(); ++i) {
-    const ContactConstraint& c = constraints[i];
     const bool active_a = pairs[i].a != ColoringPair::kNone, active_b = pairs[i].b != ColoringPair::kNone;
     IslandCount& count = counts_[parent_[active_a ? pairs[i].a : pairs[i].b]];
+    if (count.refused) continue;
+    const ContactConstraint& c = constraints[i];
     ++count.contacts;
     if (!(c.static_friction > 0.0f) || c.surface_velocity != Vec3{}) count.refused = true;
     if (c.point_count < 3) count.balances = true;
@@ -113,7 +115,7 @@ void RestingIslands::count_contacts(std::span<const ContactConstraint> constrain
   }
 }
 
-void RestingIslands::count_joints() {
+void RestingIslands::refuse_jointed() {
   for (const std::uint32_t slot : batch_.joints) {
     const JointRecord& joint = w_.joints.records[slot];
     for (const std::int32_t body : {joint.body_a, joint.body_b}) {

@@ -27,7 +27,7 @@ inline bool is_active(const RigidWorld& w, std::int32_t body) {
   return body != kNoBody && is_active(w, std::uint32_t(body));
 }
 
-// What is counted about an island.
+// What is counted about an island, as long as it is not refused.
 struct IslandCount {
   std::uint32_t bodies = 0, contacts = 0, grounded = 0;
   std::uint32_t first = kNoPlace;  // its last contact with the fixed world
@@ -56,9 +56,9 @@ class RestingIslands {
   std::uint32_t place_of(std::int32_t body) const { return places_[std::size_t(body)]; }
   void unite(std::uint32_t place_a, std::uint32_t place_b);
   void unite_all(std::span<const ColoringPair> pairs);
+  void refuse_jointed();
   void count_bodies();
   void count_contacts(std::span<const ContactConstraint> constraints, std::span<const ColoringPair> pairs);
-  void count_joints();
 
   const RigidWorld& w_;
   const SolveBatch& batch_;
