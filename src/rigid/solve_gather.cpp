@@ -17,6 +17,8 @@ constexpr float kPushShare = 0.4f;
 // Manifolds lie anywhere in memory: how many contacts before its turn one is asked for.
 constexpr std::size_t kAhead = 6;
 constexpr int kContactsPerBlock = 64;
+constexpr int kJointsPerBlock = 128;
+constexpr int kBodiesPerBlock = 64;
 
 // A body as constraints know it: kNoBody if it never moves (its record is then never read).
 std::int32_t solver_body(const RigidWorld& w, std::uint32_t body) {
@@ -169,7 +171,7 @@ void gather_contacts(Solve& solve, Arena& arena, TaskSystem& tasks) {
   }
 }
 
-void look_at_joints(Solve& solve, Arena& arena) {
+void look_at_joints(Solve& solve, Arena& arena, TaskSystem& tasks) {
   RigidWorld& w = solve.w;
   solve.net_joints = arena.make<NetJoint>(solve.batch.joints.size());
   solve.ball_lanes = arena.make<std::uint8_t>(solve.batch.joints.size());
@@ -178,34 +180,41 @@ void look_at_joints(Solve& solve, Arena& arena) {
     if (!is_spring) touch_body(w, std::uint32_t(body), kPlaceShown);
     return is_active(w, std::uint32_t(body)) ? body : kNoBody;
   };
-  for (std::size_t i = 0; i < solve.batch.joints.size(); ++i) {
-    const std::uint32_t slot = solve.batch.joints[i];
-    const JointRecord& joint = w.joints.records[slot];
-    const JointDetail* const detail = detail_of(w.joints, slot);
-    const bool is_spring = solve.is_smooth && is_explicit_spring(w, slot);
-    solve.net_joints[i] = {look(joint.body_a, is_spring), look(joint.body_b, is_spring),
-                           count_equations(joint, detail)};
-    solve.ball_lanes[i] = fits_ball_lane(joint, detail) ? 1 : 0;
-  }
+  const int count = int(solve.batch.joints.size());
+  for_blocks(tasks, count, kJointsPerBlock, [&](int begin, int end, int) {
+    for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
+      const std::uint32_t slot = solve.batch.joints[i];
+      const JointRecord& joint = w.joints.records[slot];
+      const JointDetail* const detail = detail_of(w.joints, slot);
+      const bool is_spring = solve.is_smooth && is_explicit_spring(w, slot);
+      solve.net_joints[i] = {look(joint.body_a, is_spring), look(joint.body_b, is_spring),
+                             count_equations(joint, detail)};
+      solve.ball_lanes[i] = fits_ball_lane(joint, detail) ? 1 : 0;
+    }
+  });
 }
 
 void gather_joints(Solve& solve) {
   BatchScratch& s = solve.scratch;
-  s.swept_joints.clear();
-  s.joint_pairs.clear();
+  const std::size_t most = solve.batch.joints.size();
+  s.swept_joints.resize_uninitialized(most);
+  s.joint_pairs.resize_uninitialized(most);
+  std::size_t count = 0;
   const auto place = [&](std::int32_t body) {
     return body == kNoBody ? ColoringPair::kNone : solve.places[std::size_t(body)];
   };
-  for (std::uint32_t i = 0; i < solve.batch.joints.size(); ++i) {
+  for (std::uint32_t i = 0; i < most; ++i) {
     if (solve.linkages.swept[i] == 0) continue;
     if (solve.is_smooth && is_explicit_spring(solve.w, solve.batch.joints[i])) continue;
     const NetJoint& joint = solve.net_joints[i];
-    s.swept_joints.push_back(i);
-    s.joint_pairs.push_back({place(joint.body_a), place(joint.body_b)});
+    s.swept_joints[count] = i;
+    s.joint_pairs[count++] = {place(joint.body_a), place(joint.body_b)};
   }
+  s.swept_joints.resize_uninitialized(count);
+  s.joint_pairs.resize_uninitialized(count);
 }
 
-void gather_motion(Solve& solve, Arena& arena) {
+void gather_motion(Solve& solve, Arena& arena, TaskSystem& tasks) {
   RigidWorld& w = solve.w;
   const std::size_t count = solve.batch.bodies.size();
   solve.moved = arena.make<MovedBody>(count);
@@ -214,17 +223,28 @@ void gather_motion(Solve& solve, Arena& arena) {
   solve.spinners = arena.make<std::uint32_t>(count);
   std::size_t moved = 0, flying = 0, spinners = 0;
   for (const std::uint32_t body : solve.batch.bodies) {
-    const std::uint8_t touched = w.bodies.flags[body].touched;
-    if (touched == kUntouched) {
-      if (solve.is_smooth && is_movable(w.bodies.flags[body])) continue;
+    if (w.bodies.flags[body].touched != kUntouched) {
+      solve.moved[moved++].body = std::int32_t(body);
+    } else if (!solve.is_smooth || !is_movable(w.bodies.flags[body])) {
       solve.flying[flying++] = body;
-      continue;
     }
-    solve.moved[moved] = describe_motion(w.bodies, body, solve.motions, touched == kPlaceShown);
-    // A field may spin a light body up within the step, beyond what the kernels turn.
-    if (!w.field_rest.empty() && w.field_rest[body].acts != kNoFields) solve.moved[moved].turns_alone = true;
-    if (solve.moved[moved].turns_alone) solve.spinners[spinners++] = body;
-    ++moved;
+  }
+  const auto describe = [&](int begin, int end, int) {
+    bool any_spins = false;
+    for (MovedBody& each : solve.moved.subspan(std::size_t(begin), std::size_t(end - begin))) {
+      const std::uint32_t body = std::uint32_t(each.body);
+      each = describe_motion(w.bodies, body, solve.motions, w.bodies.flags[body].touched == kPlaceShown);
+      // A field may spin a light body up within the step, beyond what the kernels turn.
+      if (!w.field_rest.empty() && w.field_rest[body].acts != kNoFields) each.turns_alone = true;
+      any_spins = any_spins || each.turns_alone;
+    }
+    return any_spins;
+  };
+  const auto either = [](bool a, bool b) { return a || b; };
+  if (reduce_blocks(tasks, int(moved), kBodiesPerBlock, false, describe, either)) {
+    for (const MovedBody& each : solve.moved.first(moved)) {
+      if (each.turns_alone) solve.spinners[spinners++] = std::uint32_t(each.body);
+    }
   }
   solve.moved = solve.moved.first(moved);
   solve.pushes = solve.pushes.first(moved);

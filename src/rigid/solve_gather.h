@@ -75,11 +75,11 @@ struct Group {
 // The batch's contacts as constraints, and what colouring needs to know of them; marks the bodies as touched.
 void gather_contacts(Solve& solve, Arena& arena, TaskSystem& tasks);
 // What all joints of the batch are; marks their bodies.
-void look_at_joints(Solve& solve, Arena& arena);
+void look_at_joints(Solve& solve, Arena& arena, TaskSystem& tasks);
 // Those that are in no linkage, as contacts.
 void gather_joints(Solve& solve);
 // Parts the bodies of a batch into those that constraints act on and those that fly.
-void gather_motion(Solve& solve, Arena& arena);
+void gather_motion(Solve& solve, Arena& arena, TaskSystem& tasks);
 
 // Lays the coloured constraints out in blocks of W lanes. A group starts a new block; constraints of the overflow group
 // get a block each, so that they are solved one after the other at every width.

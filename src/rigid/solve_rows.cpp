@@ -456,7 +456,7 @@ void solve_batch_as_rows(Solve& solve, const SolverSettings& settings, Arena& ar
   const JointWorks works = begin_joints(solve.w, solve.batch, {}, warm_scale, arena);
   solve.joint_work = works.work;
   solve.joint_places = works.places;
-  gather_motion(solve, arena);
+  gather_motion(solve, arena, tasks);
   RowSolve rows{solve, settings, make_friction_set(settings.options.friction_sides), {}};
   rows.polygon = settings.options.friction_sides == 0 ? make_friction_set(kLeadingSides) : rows.friction;
   if (settings.options.lcp_method == LcpMethod::lemke) rows.method = DirectMethod::lemke;

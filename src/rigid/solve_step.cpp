@@ -65,8 +65,8 @@ std::span<const std::uint8_t> begun_in_lanes(const Solve& solve) {
 }
 
 // Joints, and which of them are solved directly. Of a net that is known to be swept most need no work but a lane.
-void begin_joints(Solve& solve, float warm_scale, Arena& arena) {
-  look_at_joints(solve, arena);
+void begin_joints(Solve& solve, float warm_scale, Arena& arena, TaskSystem& tasks) {
+  look_at_joints(solve, arena, tasks);
   DenseNets& nets = solve.scratch.dense_nets;
   solve.is_net = !solve.net_joints.empty() && nets.holds(solve.net_joints);
   solve.warm_scale = warm_scale;
@@ -82,7 +82,7 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   const ArenaScope scope(arena);
   BatchScratch& scratch = solve.scratch;
   gather_contacts(solve, arena, tasks);
-  begin_joints(solve, warm_scale, arena);
+  begin_joints(solve, warm_scale, arena, tasks);
   gather_joints(solve);
   solve.rolling = find_rolling_contacts(solve.w, scratch, solve.places, solve.batch.bodies.size(),
                                         solve.contact_settings.step, arena);
@@ -102,7 +102,7 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   solve.linkage_solve.settings.swept = false;
   solve.stop_rooms = find_stops(solve.linkages, solve.joint_work, std::size_t(tasks.worker_count()), arena);
   solve.bundles = lay_out_bundles(solve.linkages, solve.kernels, solve.linkage_solve, arena);
-  gather_motion(solve, arena);
+  gather_motion(solve, arena, tasks);
   find_resting(solve, arena);
   const std::span<Group> contacts = lay_out_contacts(solve, arena);
   place_resting(solve, arena);
