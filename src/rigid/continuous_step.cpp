@@ -5,6 +5,7 @@
 #include "rigid/joint_closing.h"
 #include "rigid/rigid_step.h"
 #include "rigid/surface_rules.h"
+#include "task/choose.h"
 
 namespace gyre {
 
@@ -189,13 +190,18 @@ void stop_together(const RigidWorld& w, const ContinuousScratch& scratch, std::s
   }
 }
 
-void list_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch) {
+void list_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& arena, TaskSystem& tasks) {
+  const ArenaScope scope(arena);
   scratch.fast.clear();
-  for (const std::uint32_t i : w.bodies.awake) {
+  const auto goes_fast = [&](std::uint32_t n) {
+    const std::uint32_t i = w.bodies.awake[n];
     const BodyMotion& motion = w.bodies.motion[i];
     const BodyMass& mass = w.bodies.masses[i];
-    if (!is_fast(motion.moved, motion.turned, mass.reach, mass.size)) continue;
-    if (!is_movable(w.bodies.flags[i]) || w.bodies.shapes[i].empty()) continue;
+    return is_fast(motion.moved, motion.turned, mass.reach, mass.size) && is_movable(w.bodies.flags[i]) &&
+           !w.bodies.shapes[i].empty();
+  };
+  for (const std::uint32_t n : choose(tasks, arena, w.bodies.awake.size(), goes_fast).list) {
+    const std::uint32_t i = w.bodies.awake[n];
     // What contacts already act on must not be held in the air by a sweep: it keeps a part of its way, and they answer.
     const float least = w.bodies.flags[i].touched != 0 ? kLeastProgress : 0.0f;
     scratch.fast.push_back({i, w.bodies.flags[i].continuous != 0, least, w.bodies.joints[i].empty(), false});
@@ -265,7 +271,7 @@ std::span<const StoppedBody> take_back(RigidWorld& w, ContinuousScratch& scratch
 }  // namespace
 
 void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, TaskSystem& tasks) {
-  list_fast_bodies(w, scratch);
+  list_fast_bodies(w, scratch, arena, tasks);
   if (scratch.fast.empty() && scratch.gates.empty()) return;
   for (int round = 1; round <= kMostRounds; ++round) {
     sweep_fast_bodies(w, scratch, arena, tasks);

@@ -6,6 +6,7 @@
 #include "collision/seam.h"
 #include "rigid/island.h"
 #include "rigid/shape_boxes.h"
+#include "task/choose.h"
 #include "task/parallel.h"
 
 namespace gyre {
@@ -61,8 +62,8 @@ bool finite_state(const BodyMotion& motion, Quat orientation) {
   return nothing.x + nothing.y + nothing.z + turn == 0.0f;
 }
 
-void list_marked(RigidWorld& w) {
-  for (const std::uint32_t i : w.bodies.awake) {
+void list_marked(RigidWorld& w, std::span<const std::uint32_t> bodies) {
+  for (const std::uint32_t i : bodies) {
     for (const ShapeId id : w.bodies.shapes[i]) {
       if (w.refit_marks[id.index] == 0) continue;
       w.refit_marks[id.index] = 0;
@@ -96,7 +97,7 @@ void hold_ways(RigidWorld& w, TaskSystem& tasks, float seconds) {
         for (const ShapeId id : w.bodies.shapes[i]) w.refit_marks[id.index] = hold_way(w, id.index, seconds);
       }
     });
-    list_marked(w);
+    list_marked(w, w.bodies.awake);
   } else {
     for (const std::uint32_t shape : w.shapes.hurried) {
       if (!w.shapes.ids.live(shape)) continue;
@@ -250,17 +251,28 @@ void link_islands(RigidWorld& w) {
   refresh_awake(w.bodies);
 }
 
-void finish_bodies(RigidWorld& w, TaskSystem& tasks, float seconds, Array<std::uint32_t>& frozen, bool last) {
+void finish_bodies(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds, Array<std::uint32_t>& frozen,
+                   bool last) {
+  const ArenaScope scope(arena);
   BodyStore& bodies = w.bodies;
-  for (const std::uint32_t i : bodies.awake) {
-    if (!finite_state(bodies.motion[i], bodies.orientations[i])) frozen.push_back(i);
-  }
+  const auto went_wrong = [&](std::uint32_t n) {
+    const std::uint32_t i = bodies.awake[n];
+    return !finite_state(bodies.motion[i], bodies.orientations[i]);
+  };
+  for (const std::uint32_t n : choose(tasks, arena, bodies.awake.size(), went_wrong).list)
+    frozen.push_back(bodies.awake[n]);
   for (const std::uint32_t i : frozen) freeze(w, i);
   refresh_awake(bodies);
   w.refit_marks.resize(w.shapes.colliders.size(), 0);
-  for_blocks(tasks, int(bodies.awake.size()), kBodiesPerBlock, [&](int begin, int end, int) {
-    for (int n = begin; n < end; ++n) {
-      const std::uint32_t i = bodies.awake[n];
+  const std::span<const std::uint32_t> awake = bodies.awake;
+  const auto block_at = [&](std::size_t begin) {
+    return awake.subspan(begin, min(awake.size() - begin, std::size_t(kBodiesPerBlock)));
+  };
+  const std::span<bool> marked =
+      arena.make<bool>(std::size_t(count_blocks(int(awake.size()), kBodiesPerBlock)));
+  for_blocks(tasks, int(awake.size()), kBodiesPerBlock, [&](int begin, int, int) {
+    const std::span<const std::uint32_t> block = block_at(std::size_t(begin));
+    for (const std::uint32_t i : block) {
       bodies.places[i].center += bodies.motion[i].moved;
       bodies.places[i].orientation = bodies.orientations[i];
       if (last) {
@@ -268,9 +280,11 @@ void finish_bodies(RigidWorld& w, TaskSystem& tasks, float seconds, Array<std::u
         bodies.forces[i].torque = {};
       }
     }
-    refit_boxes(w, bodies.awake.view().subspan(std::size_t(begin), std::size_t(end - begin)), seconds);
+    marked[std::size_t(begin / kBodiesPerBlock)] = refit_boxes(w, block, seconds);
   });
-  list_marked(w);
+  for (std::size_t i = 0; i < marked.size(); ++i) {
+    if (marked[i]) list_marked(w, block_at(i * kBodiesPerBlock));
+  }
   w.shapes.fit_for = seconds;
 }
 

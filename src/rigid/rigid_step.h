@@ -37,7 +37,8 @@ void link_islands(RigidWorld& w);
 // New places, poses, inertia and fat boxes of awake bodies; freezes bodies whose state is not finite. Returns how many
 // were frozen (their slots are appended to `frozen`).
 // `last`: forces that the user gave end with the step; false where only a part of it is done.
-void finish_bodies(RigidWorld& w, TaskSystem& tasks, float seconds, Array<std::uint32_t>& frozen, bool last = true);
+void finish_bodies(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds, Array<std::uint32_t>& frozen,
+                   bool last = true);
 // Joints that bore more than they can break.
 void break_joints(RigidWorld& w, float seconds);
 

@@ -143,16 +143,19 @@ ShapeBox find_box(const RigidWorld& w, std::uint32_t shape, float seconds) {
   return ShapeLanes(w, {&shape, 1}, seconds).box(0);
 }
 
-void refit_boxes(RigidWorld& w, std::span<const std::uint32_t> bodies, float seconds) {
+bool refit_boxes(RigidWorld& w, std::span<const std::uint32_t> bodies, float seconds) {
   std::uint32_t shapes[kLanes];
   int count = 0;
+  bool any = false;
   const auto look = [&] {
     const ShapeLanes lanes(w, {shapes, std::size_t(count)}, seconds);
     const unsigned stay = lanes.stay();
     for (int i = 0; i < count; ++i) {
       if ((stay >> i & 1u) != 0) continue;
       const ShapeBox box = lanes.box(i);
-      if (refit_box(w.shapes.proxies[shapes[i]].fat_box, box.tight, box.motion)) w.refit_marks[shapes[i]] = 1;
+      if (!refit_box(w.shapes.proxies[shapes[i]].fat_box, box.tight, box.motion)) continue;
+      w.refit_marks[shapes[i]] = 1;
+      any = true;
     }
     count = 0;
   };
@@ -163,6 +166,7 @@ void refit_boxes(RigidWorld& w, std::span<const std::uint32_t> bodies, float sec
     }
   }
   if (count > 0) look();
+  return any;
 }
 
 }  // namespace gyre

@@ -15,7 +15,7 @@ struct ShapeBox {
 };
 ShapeBox find_box(const RigidWorld& w, std::uint32_t shape, float seconds);
 
-// Makes the fat boxes of the bodies' shapes anew where that must be, and marks these in refit_marks.
-void refit_boxes(RigidWorld& w, std::span<const std::uint32_t> bodies, float seconds);
+// Makes the fat boxes of the bodies' shapes anew where that must be, and marks these in refit_marks; whether there are any.
+bool refit_boxes(RigidWorld& w, std::span<const std::uint32_t> bodies, float seconds);
 
 }  // namespace gyre

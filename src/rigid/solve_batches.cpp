@@ -2,9 +2,8 @@
 // solve_batches.h.
 #include "rigid/solve_batches.h"
 
+#include "task/choose.h"
 #include "task/parallel.h"
-
-#include <bit>
 
 namespace gyre {
 
@@ -29,53 +28,16 @@ struct Constraints {
   std::size_t size = 0;  // manifolds and joints
 };
 
-// The slots of which `size_of` tells that there is something to solve, ascending.
-struct Slots {
-  std::span<const std::uint32_t> list;
-  std::size_t size = 0;  // the sum of what it told
-};
-template <class SizeOf>
-Slots list_slots(std::size_t slots, Arena& arena, TaskSystem& tasks, SizeOf&& size_of) {
-  // They are looked at in blocks of one word of bits each.
-  struct Count {
-    std::uint32_t slots = 0, size = 0;
-  };
-  const std::span<std::uint64_t> solved = arena.make<std::uint64_t>((slots + 63) / 64);
-  const auto look = [&](int begin, int end, int) {
-    Count count;
-    std::uint64_t bits = 0;
-    for (int slot = begin; slot < end; ++slot) {
-      const std::uint32_t size = size_of(std::uint32_t(slot));
-      if (size == 0) continue;
-      bits |= std::uint64_t{1} << (slot - begin);
-      ++count.slots;
-      count.size += size;
-    }
-    solved[std::size_t(begin) / 64] = bits;
-    return count;
-  };
-  const Count count = reduce_blocks(tasks, int(slots), 64, Count{}, look, [](Count a, Count b) {
-    return Count{a.slots + b.slots, a.size + b.size};
-  });
-  const std::span<std::uint32_t> list = arena.make<std::uint32_t>(count.slots);
-  std::size_t used = 0;
-  for (std::size_t word = 0; word < solved.size(); ++word) {
-    for (std::uint64_t left = solved[word]; left != 0; left &= left - 1)
-      list[used++] = std::uint32_t(64 * word) + std::uint32_t(std::countr_zero(left));
-  }
-  return {list, count.size};
-}
-
 Constraints list_constraints(const RigidWorld& w, Arena& arena, TaskSystem& tasks) {
   const auto manifolds = [&](std::uint32_t slot) {
     const Contact& contact = w.contacts.contacts[slot];
-    return is_solved(w, contact) ? std::uint32_t(contact.manifold_count) : 0u;
+    return is_solved(w, contact) ? std::uint32_t(contact.manifold_count) : 0;
   };
-  const auto one = [&](std::uint32_t slot) {
-    return w.joints.ids.live(slot) && is_joint_solved(w, slot) ? 1u : 0u;
+  const auto works = [&](std::uint32_t slot) {
+    return w.joints.ids.live(slot) && is_joint_solved(w, slot);
   };
-  const Slots contacts = list_slots(w.contacts.contacts.size(), arena, tasks, manifolds);
-  const Slots joints = list_slots(w.joints.ids.capacity(), arena, tasks, one);
+  const Chosen contacts = choose(tasks, arena, w.contacts.contacts.size(), manifolds);
+  const Chosen joints = choose(tasks, arena, w.joints.ids.capacity(), works);
   return {contacts.list, joints.list, contacts.size + joints.size};
 }
 
