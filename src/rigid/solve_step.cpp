@@ -44,6 +44,12 @@ void find_resting(Solve& solve, Arena& arena) {
   solve.forest = find_contact_trees(solve.w, constraints, pairs, solve.batch, islands, arena);
   solve.structures = find_contact_structures(solve.w, pairs, solve.batch, islands, arena);
 }
+void color_all(Solve& solve) {
+  BatchScratch& scratch = solve.scratch;
+  const std::uint32_t bodies = std::uint32_t(solve.batch.bodies.size());
+  color_constraints(scratch.pairs, bodies, {}, kColoringOptions, scratch.contact_colors);
+  color_constraints(scratch.joint_pairs, bodies, {}, kColoringOptions, scratch.joint_colors);
+}
 void place_resting(Solve& solve, Arena& arena) {
   if (solve.forest.nodes.empty() && solve.structures.empty()) return;
   const BatchScratch& scratch = solve.scratch;
@@ -90,9 +96,6 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
     solve.smooth =
         find_smooth_motion(solve.w, solve.batch, solve.places, solve.motions.count, solve.h, arena);
   solve.fields = find_field_bodies(solve.w, solve.batch.bodies, solve.h, arena, !solve.is_smooth);
-  const std::uint32_t bodies = std::uint32_t(solve.batch.bodies.size());
-  color_constraints(scratch.pairs, bodies, {}, kColoringOptions, scratch.contact_colors);
-  color_constraints(scratch.joint_pairs, bodies, {}, kColoringOptions, scratch.joint_colors);
   solve.linkage_solve = {.records = solve.w.joints.records,
                          .work = solve.joint_work,
                          .places = solve.joint_places,
@@ -103,7 +106,8 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   solve.stop_rooms = find_stops(solve.linkages, solve.joint_work, std::size_t(tasks.worker_count()), arena);
   solve.bundles = lay_out_bundles(solve.linkages, solve.kernels, solve.linkage_solve, arena);
   gather_motion(solve, arena, tasks);
-  find_resting(solve, arena);
+  side_by_side(
+      tasks, [&] { find_resting(solve, arena); }, [&] { color_all(solve); });
   const std::span<Group> contacts = lay_out_contacts(solve, arena);
   place_resting(solve, arena);
   const std::span<Group> joints = lay_out_joints(solve, arena);

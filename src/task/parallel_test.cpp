@@ -55,6 +55,18 @@ TEST(ForBlocks, PlainWritesAreSeenAfterwards) {
   }
 }
 
+TEST(SideBySide, DoesEachPieceOnce) {
+  for (const int workers : {1, 2, 4}) {
+    TaskSystem tasks(workers);
+    int done[3] = {};
+    side_by_side(
+        tasks, [&] { ++done[0]; }, [&] { ++done[1]; }, [&] { ++done[2]; });
+    EXPECT_EQ(done[0], 1);
+    EXPECT_EQ(done[1], 1);
+    EXPECT_EQ(done[2], 1);
+  }
+}
+
 float sum_of(TaskSystem& tasks, const std::vector<float>& values) {
   return reduce_blocks(
       tasks, static_cast<int>(values.size()), 50, 0.0f,
