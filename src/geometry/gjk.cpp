@@ -45,8 +45,10 @@ void keep_corners(DifferencePoint* simplex, int& count, SimplexPoint& near) {
   int kept = 0;
   for (int i = 0; i < count; ++i) {
     if (!(near.corners & (1u << i))) continue;
-    simplex[kept] = simplex[i];
-    near.weights[kept] = near.weights[i];
+    if (kept != i) {
+      simplex[kept] = simplex[i];
+      near.weights[kept] = near.weights[i];
+    }
     ++kept;
   }
   count = kept;
@@ -186,14 +188,13 @@ CoreDistance core_distance(const CorePair& pair, double max_distance, Vec3 guess
     }
     // Behind the simplex: what is not taken is not counted.
     simplex[count] = w;
-    int next_count = count + 1;
     // Where some direction parts them no simplex holds the origin, whatever rounding makes of it.
-    SimplexPoint next_near = nearest_to_origin(simplex, next_count, best_bound > touch);
+    SimplexPoint next_near = nearest_to_origin(simplex, count + 1, best_bound > touch);
     const double next_squared = length_squared(next_near.point);
     // Rounding has the last word: what does not come nearer is as near as it gets.
     if (count > 0 && next_near.corners != 15 && next_squared >= squared) break;
-    keep_corners(simplex, next_count, next_near);
-    count = next_count;
+    ++count;
+    keep_corners(simplex, count, next_near);
     near = next_near;
     squared = next_squared;
     if (count == 4 || squared <= touch * touch) {
