@@ -72,6 +72,10 @@ void look_at_block(ContactStore& store, int begin, int end, const CollideInput& 
     const ContactPair& pair = list.pairs[i];
     Contact& contact = *pair.contact;
     contact.recycled = recycled.contacts >> i & 1u;
+    if ((recycled.apart >> i & 1u) != 0) {
+      note_touch(contact, list.slots[i], false, changes);
+      continue;
+    }
     const bool touches = contact.recycled != 0 ? (recycled.touching >> i & 1u) != 0
                          : contact.sensor != 0 ? look_at_sensor(pair, recycled.views[i])
                                                : look_anew(pair, recycled.views[i]);

@@ -101,6 +101,9 @@ GYRE_INLINE Side<W> load_side(const BodyLook* const (&looks)[W], const Records<W
   return side;
 }
 
+// In a contact, what its last full look saw begins here.
+constexpr int kLooked = GYRE_FLOATS_BEFORE(Contact, looked);
+
 // The contacts of a group; lanes without one repeat the last.
 template <int W>
 struct Group {
@@ -114,7 +117,6 @@ struct Group {
 
 template <int W>
 GYRE_INLINE void load_group(const ContactPair* pairs, int count, Group<W>& group) {
-  constexpr int kLooked = GYRE_FLOATS_BEFORE(Contact, looked);
   static_assert(GYRE_FLOATS_BEFORE(Contact, size) == kLooked + 1);
   static_assert(GYRE_FLOATS_BEFORE(Contact, seen_a_from_b) == kLooked + 2);
   static_assert(offsetof(Transform, orientation) == sizeof(Vec3));
@@ -219,18 +221,22 @@ GYRE_INLINE void center_planes(Mask<W> planes, const Records<W>& shape, const Pl
   }
 }
 
+// The shapes of a group in the frame in which manifolds are found (View).
 template <int W>
-GYRE_INLINE void write_views(const Group<W>& group, int count, View* views) {
-  static_assert(GYRE_FLOATS_BEFORE(View, size) == 7 && GYRE_FLOATS_BEFORE(View, shapes_a_from_b) == 10);
-  static_assert(GYRE_FLOATS_BEFORE(View, frame_turn) == 17 && GYRE_FLOATS_BEFORE(View, frame_from_a) == 21);
-  static_assert(GYRE_FLOATS_BEFORE(View, frame_from_b) == 24);
-  Records<W> shapes_a, shapes_b;
-  Targets<W> to;
+struct ShapesInView {
+  Records<W> records_a, records_b;  // ColliderShape
+  ShapeFrame<W> frame;
+  Placement<W> a_from_b;
+};
+
+template <int W>
+GYRE_INLINE void find_shapes(const Group<W>& group, ShapesInView<W>& shapes) {
+  Records<W>& shapes_a = shapes.records_a;
+  Records<W>& shapes_b = shapes.records_b;
   GYRE_UNROLL
   for (int i = 0; i < W; ++i) {
     shapes_a[i] = floats(group.pairs[i]->shape_a);
     shapes_b[i] = floats(group.pairs[i]->shape_b);
-    to[i] = floats(views + (i < count ? i : count - 1));
   }
   ShapeFrame<W> a = find_frame<W>(group.a, shapes_a), b = find_frame<W>(group.b, shapes_b);
   const WideInt<W> kinds_a = load_kinds<W>(shapes_a), kinds_b = load_kinds<W>(shapes_b);
@@ -239,13 +245,24 @@ GYRE_INLINE void write_views(const Group<W>& group, int count, View* views) {
   const Mask<W> plane_b = (kinds_b == plane) & (kinds_a < plane);
   if (any(plane_a)) center_planes<W>(plane_a, shapes_a, b.origin, a);
   if (any(plane_b)) center_planes<W>(plane_b, shapes_b, a.origin, b);
-  const Vec3W<W> p = group.now.position;
-  const QuatW<W> q = group.now.orientation;
-  const Vec3W<W> shape_p = rotate_inverse(a.orientation, difference(b.origin, a.origin));
-  const QuatW<W> shape_q = conjugate(a.orientation) * b.orientation;
-  const QuatW<W> turn = a.orientation;
-  const Vec3W<W> from_a = difference(a.origin, group.a.center_of_mass());
-  const Vec3W<W> from_b = difference(a.origin, group.b.center_of_mass());
+  shapes.frame = a;
+  shapes.a_from_b = {rotate_inverse(a.orientation, difference(b.origin, a.origin)),
+                     conjugate(a.orientation) * b.orientation};
+}
+
+template <int W>
+GYRE_INLINE void write_views(const Group<W>& group, const ShapesInView<W>& shapes, int count, View* views) {
+  static_assert(GYRE_FLOATS_BEFORE(View, size) == 7 && GYRE_FLOATS_BEFORE(View, shapes_a_from_b) == 10);
+  static_assert(GYRE_FLOATS_BEFORE(View, frame_turn) == 17 && GYRE_FLOATS_BEFORE(View, frame_from_a) == 21);
+  static_assert(GYRE_FLOATS_BEFORE(View, frame_from_b) == 24);
+  Targets<W> to;
+  GYRE_UNROLL
+  for (int i = 0; i < W; ++i) to[i] = floats(views + (i < count ? i : count - 1));
+  const Vec3W<W> p = group.now.position, shape_p = shapes.a_from_b.position;
+  const QuatW<W> q = group.now.orientation, shape_q = shapes.a_from_b.orientation;
+  const QuatW<W> turn = shapes.frame.orientation;
+  const Vec3W<W> from_a = difference(shapes.frame.origin, group.a.center_of_mass());
+  const Vec3W<W> from_b = difference(shapes.frame.origin, group.b.center_of_mass());
   write_four<4, W>(to, 0, {p.x, p.y, p.z, q.x});
   write_four<4, W>(to, 4, {q.y, q.z, q.w, group.size});
   write_four<4, W>(to, 8, {group.way, group.speculative, shape_p.x, shape_p.y});

@@ -23,6 +23,11 @@ constexpr float kTouch = 0.005f;
 // What comes faster than this in a step is left to the sweep (continuous.h).
 constexpr float kLargestApproach = 1.0f;
 
+// How far a full look reaches beyond the speculative distance: farther than needed, so that the contact may be recycled while
+// the pair moves a little. Where nothing touches, and the pair goes less than kSlow in a step, it reaches far: it is cheaper
+// to look once than to look in every step.
+constexpr float kNearSlack = 0.03f, kFarSlack = 0.25f, kSlow = 0.02f;
+
 // Contacts that are handed over together: one word of a bitset.
 constexpr int kContactBlock = 64;
 
@@ -56,7 +61,9 @@ struct View {
 struct Recycled {
   std::uint64_t contacts = 0;  // bits, by place: up to date
   std::uint64_t touching = 0;  // bits: those of them whose shapes touch
-  // Of the others. Not cleared: only theirs are ever read.
+  std::uint64_t apart =
+      0;  // bits, of the others: those that a full look would find nothing of, and it is noted
+  // Of what is left. Not cleared: only theirs are ever read.
   union {
     View views[kContactBlock];
   };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/prefetch.h"
+#include "collision/contact_apart_lanes.h"
 #include "collision/contact_follow.h"
 #include "collision/contact_lanes.h"
 
@@ -315,7 +316,12 @@ void recycle_contacts(const ContactPair* pairs, int count, bool may_recycle, Rec
     const unsigned done = may_recycle ? recycle_group<W>(group, lanes, none, touching) : 0u;
     recycled.contacts |= std::uint64_t(done) << first;
     recycled.touching |= std::uint64_t(touching) << first;
-    if (done != lanes) write_views<W>(group, used, recycled.views + first);
+    if (done == lanes) continue;
+    ShapesInView<W> shapes;
+    find_shapes<W>(group, shapes);
+    const unsigned apart = may_recycle ? part_boxes<W>(group, shapes, lanes & ~done) : 0u;
+    recycled.apart |= std::uint64_t(apart) << first;
+    if ((done | apart) != lanes) write_views<W>(group, shapes, used, recycled.views + first);
   }
 }
 

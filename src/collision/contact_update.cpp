@@ -11,10 +11,8 @@ namespace gyre {
 namespace {
 
 // All lengths in sizes of the pair (the smaller shape's inner radius).
-// A full look reaches farther than needed, so that the contact may be recycled while the pair moves a little. Points farther
-// apart than kKept beyond the speculative distance are not kept, only how near they were. Where nothing touches, and the
-// pair goes less than kSlow in a step, the look reaches far: it is cheaper to look once than to look in every step.
-constexpr float kKept = 0.005f, kNearSlack = 0.03f, kFarSlack = 0.25f, kSlow = 0.02f;
+// Points farther apart than kKept beyond the speculative distance are not kept, only how near they were.
+constexpr float kKept = 0.005f;
 // Above a mesh a look at boxes alone comes first, as far as the pair goes in some steps: what falls need not look in each.
 constexpr float kClearSteps = 4.0f;
 // A new point takes over from an old one this near, whatever its feature is called, if the cosine between their normals is

@@ -2,13 +2,13 @@
 // centres, with the three numbers of each side by side, so that an operation serves all three axes.
 #pragma once
 
-#include "geometry/shape.h"
+#include "geometry/manifold_box.h"
 #include "math/wide.h"
 
 namespace gyre::boxes {
 
 // Axes by number: 0 to 2 A's face normals, 3 to 5 B's, 6 + 3 i + j the cross product of A's axis i and B's axis j.
-constexpr int kFirstB = 3, kFirstEdge = 6, kAxisCount = 15, kNoAxis = -1;
+constexpr int kFirstB = 3, kFirstEdge = int(kBoxFaceAxes), kAxisCount = 15, kNoAxis = -1;
 constexpr int kNext[3] = {1, 2, 0}, kAfter[3] = {2, 0, 1};
 
 // Three numbers side by side, one for each axis. The fourth lane means nothing: what compares leaves it out by kThree.

@@ -11,6 +11,10 @@
 
 namespace gyre {
 
+// What the pair's cache holds first is 1 more than the number of the axis that decided last. The lowest are face normals: 0 to 2
+// of A, 3 to 5 of B.
+constexpr std::uint32_t kBoxFaceAxes = 6;
+
 // Two boxes of rounding 0, as collide_convex.
 void collide_boxes(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
                    PairCache& cache, LocalManifold& out);

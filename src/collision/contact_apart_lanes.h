@@ -1,0 +1,99 @@
+// Boxes that still lie apart, in lanes: a contact without manifolds whose two boxes are parted by the face that decided at
+// their last look is seen to be so by that face alone, before a full look (contact_update.h) would begin with the same
+// question. Lane i says so exactly where the full look would, of the same bits.
+#pragma once
+
+#include "collision/contact_lanes.h"
+#include "geometry/manifold_box.h"
+
+namespace gyre {
+inline namespace GYRE_TARGET_NAMESPACE {
+
+template <int W>
+GYRE_INLINE Wide<W> pick(WideInt<W> axis, Vec3W<W> v) {
+  return select(axis == WideInt<W>(0), v.x, select(axis == WideInt<W>(1), v.y, v.z));
+}
+template <int W>
+GYRE_INLINE Vec3W<W> pick(WideInt<W> axis, const Mat3W<W>& columns) {
+  return select(axis == WideInt<W>(0), columns.x, select(axis == WideInt<W>(1), columns.y, columns.z));
+}
+
+// Along the normal of face axis `axis` (0 to 2: of A, 3 to 5: of B) of boxes with half extents `a` and `b`, in the order of
+// roundings of collide_boxes.
+template <int W>
+GYRE_INLINE Wide<W> face_separation(WideInt<W> axis, Vec3W<W> a, Vec3W<W> b, const Placement<W>& a_from_b) {
+  const Mask<W> of_b = axis > WideInt<W>(2);
+  const WideInt<W> own_axis = select(of_b, axis - WideInt<W>(3), axis);
+  const Mat3W<W> turn = to_matrix(a_from_b.orientation), back = transpose(turn);
+  // In the other box's axes.
+  const Vec3W<W> normal = select(of_b, pick(own_axis, turn), pick(own_axis, back));
+  const Wide<W> way = select(of_b, dot(normal, a_from_b.position), pick(own_axis, a_from_b.position));
+  const Wide<W> own = pick(own_axis, select(of_b, b, a));
+  return absolute(way) - own - dot(select(of_b, a, b), absolute(normal));
+}
+
+// Kind, rounding and half extents of a box.
+template <int W>
+struct BoxLanes {
+  Mask<W> sharp;  // a box, and without rounding
+  Vec3W<W> half;
+
+  GYRE_INLINE explicit BoxLanes(const Records<W>& shape) {
+    static_assert(GYRE_FLOATS_BEFORE(Shape, radius) == 1 && GYRE_FLOATS_BEFORE(Shape, extents) == 2);
+    Wide<W> column[4];
+    read_four<W>(shape, 0, column);
+    half = {column[2], column[3], read_one<W>(shape, 4)};
+    const WideInt<W> kind = bit_pattern(column[0]) & WideInt<W>(0xff);
+    sharp = (kind == WideInt<W>(std::int32_t(ShapeKind::box))) & (column[1] == Wide<W>(0.0f));
+  }
+};
+
+// Notes in the contacts of those lanes whose bits are set what a full look would that found nothing as far as `reach`.
+template <int W>
+GYRE_INLINE void note_nothing(const Group<W>& group, Wide<W> reach, unsigned lanes) {
+  alignas(16) float nowhere[sizeof(Contact) / sizeof(float)];
+  Targets<W> to;
+  GYRE_UNROLL
+  for (int i = 0; i < W; ++i) to[i] = (lanes >> i & 1u) != 0 ? floats(group.pairs[i]->contact) : nowhere;
+  const Vec3W<W> p = group.now.position;
+  const QuatW<W> q = group.now.orientation;
+  write_four<4, W>(to, kLooked, {reach, group.size, p.x, p.y});
+  write_four<4, W>(to, kLooked + 4, {p.z, q.x, q.y, q.z});
+  GYRE_UNROLL
+  for (int i = 0; i < W; ++i) to[i][kLooked + 8] = q.w[i];
+}
+
+// How far a full look reaches at what has no manifolds.
+template <int W>
+GYRE_INLINE Wide<W> look_reach(const Group<W>& group) {
+  const Mask<W> slow = group.way < Wide<W>(kSlow) * group.size;
+  return group.speculative + select(slow, Wide<W>(kFarSlack), Wide<W>(kNearSlack)) * group.size;
+}
+
+// Of the contacts in those lanes of a group whose bits are set, those of boxes that the face of their last look parts by
+// more than a full look would reach. Returns their bits.
+template <int W>
+GYRE_INLINE unsigned part_boxes(const Group<W>& group, const ShapesInView<W>& shapes, unsigned lanes) {
+  static_assert(offsetof(Contact, manifold_room) == 20 && offsetof(Contact, manifold_count) == 22);
+  constexpr int kCache = GYRE_FLOATS_BEFORE(Contact, cache);
+  unsigned may = 0;
+  Records<W> record;
+  GYRE_UNROLL
+  for (int i = 0; i < W; ++i) {
+    const Contact& contact = *group.pairs[i]->contact;
+    record[i] = floats(&contact);
+    const bool empty = contact.manifold_count == 0 && contact.manifold_room == 1 && contact.sensor == 0;
+    may |= unsigned(empty && contact.cache.words[0] - 1u < kBoxFaceAxes) << i;
+  }
+  if ((may & lanes) == 0) return 0;
+  const BoxLanes<W> a(shapes.records_a), b(shapes.records_b);
+  const WideInt<W> axis = bit_pattern(read_one<W>(record, kCache)) - WideInt<W>(1);
+  const Wide<W> reach = look_reach<W>(group);
+  const Wide<W> separation = face_separation<W>(axis, a.half, b.half, shapes.a_from_b);
+  const unsigned apart = may & lanes & to_bits(a.sharp & b.sharp & (separation > reach));
+  if (apart != 0) note_nothing<W>(group, reach, apart);
+  return apart;
+}
+
+}  // namespace GYRE_TARGET_NAMESPACE
+}  // namespace gyre
