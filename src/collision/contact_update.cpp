@@ -36,8 +36,16 @@ bool frame_is_b(const Shape& a, const Shape& b) {
 
 template <int kRoom>
 struct Found {
-  LocalManifold manifolds[kRoom];
+  // Not cleared: only the counted ones are ever read. Who finds them says everything of them but the triangle, which only
+  // surfaces have.
+  union {
+    LocalManifold manifolds[kRoom];
+  };
   int count = 0;
+
+  Found() {
+    for (LocalManifold& manifold : manifolds) manifold.triangle = 0;
+  }
 };
 
 // A shape in the frame in which it is seen (View).
@@ -115,7 +123,26 @@ struct Former {
   bool taken[kRoom] = {};
   bool point_taken[kRoom][kMaxManifoldPoints] = {};
 
-  Former() {}
+  explicit Former(std::span<const Manifold> before) : count(int(before.size())) {
+    for (int m = 0; m < count; ++m) copy_used(before[std::size_t(m)], manifolds[m]);
+  }
+
+ private:
+  // What matching needs: no points but the counted ones.
+  static void copy_used(const Manifold& from, Manifold& to) {
+    to.normal = from.normal;
+    to.count = from.count;
+    to.triangle = from.triangle;
+    to.age = from.age;
+    to.friction_impulse = from.friction_impulse;
+    to.twist_impulse = from.twist_impulse;
+    to.rolling_impulse = from.rolling_impulse;
+    to.sliding = from.sliding;
+    for (int i = 0; i < from.count; ++i) {
+      to.points[i] = from.points[i];
+      to.anchors[i] = from.anchors[i];
+    }
+  }
 };
 
 // The former manifold that goes on in the new one; -1 if none does. A single manifold always goes on.
@@ -266,9 +293,7 @@ void match_rolling(Former<kRoom>& former, Manifold& manifold, unsigned matched_b
 template <int kRoom>
 void write_manifolds(const Found<kRoom>& found, const ContactPair& pair, const View& view) {
   Manifold* const out = pair.manifolds;
-  Former<kRoom> former;
-  former.count = pair.contact->manifold_count;
-  for (int m = 0; m < former.count; ++m) former.manifolds[m] = out[m];
+  Former<kRoom> former(manifolds_of(pair));
   const Placing placing(pair, view);
   unsigned matched[kRoom] = {};
   for (int m = 0; m < found.count; ++m) {
