@@ -59,8 +59,31 @@ struct WideDouble {
   friend GYRE_INLINE WideDouble operator-(WideDouble a, WideDouble b) { return of(a.v - b.v); }
   friend GYRE_INLINE WideDouble operator*(WideDouble a, WideDouble b) { return of(a.v * b.v); }
   friend GYRE_INLINE WideDouble operator/(WideDouble a, WideDouble b) { return of(a.v / b.v); }
+  friend GYRE_INLINE WideDouble operator-(WideDouble a) { return of(-a.v); }
   friend GYRE_INLINE WideDouble& operator+=(WideDouble& a, WideDouble b) { return a = a + b; }
   friend GYRE_INLINE WideDouble& operator-=(WideDouble& a, WideDouble b) { return a = a - b; }
+  // Correctly rounded; NaN below zero.
+  friend GYRE_INLINE WideDouble sqrt(WideDouble a) {
+    if constexpr (H == 1) {
+      return of(__builtin_sqrt(a.v));
+    } else {
+#if defined(__SSE2__)
+      if constexpr (H == 2) return of((Double)_mm_sqrt_pd((__m128d)a.v));
+#endif
+      WideDouble result = a;
+      for (int i = 0; i < H; ++i) result.v[i] = __builtin_sqrt(a.v[i]);
+      return result;
+    }
+  }
+  // `then` where a == b or a > b, `otherwise` elsewhere.
+  friend GYRE_INLINE WideDouble select_equal(WideDouble a, WideDouble b, WideDouble then,
+                                             WideDouble otherwise) {
+    return of(a.v == b.v ? then.v : otherwise.v);
+  }
+  friend GYRE_INLINE WideDouble select_above(WideDouble a, WideDouble b, WideDouble then,
+                                             WideDouble otherwise) {
+    return of(a.v > b.v ? then.v : otherwise.v);
+  }
   // `value` where a > b, +0 elsewhere.
   friend GYRE_INLINE WideDouble keep_where_above(WideDouble a, WideDouble b, WideDouble value) {
     if constexpr (H == 1) {

@@ -1,6 +1,7 @@
 #include "rigid/free_rotation.h"
 
 #include "math/rotation.h"
+#include "math/wide_double_vec.h"
 
 namespace gyre {
 
@@ -19,32 +20,55 @@ constexpr float kEqual = 1.0e-6f;
 // An angular velocity this near to parallel with the momentum (relative) spins about a principal axis.
 constexpr float kSteady = 1.0e-7f;
 
+// Tensors side by side.
+template <int H>
+struct TensorW {
+  WideDouble<H> xx, yy, zz, xy, xz, yz;
+};
+template <int H>
+GYRE_INLINE DVec3W<H> times(const TensorW<H>& m, DVec3W<H> v) {
+  return {m.xx * v.x + m.xy * v.y + m.xz * v.z, m.xy * v.x + m.yy * v.y + m.yz * v.z,
+          m.xz * v.x + m.yz * v.y + m.zz * v.z};
+}
+
 // Angular velocity in the body's frame of a body with world momentum `momentum`.
-DVec3 body_velocity(const DQuat& q, DVec3 momentum, const Tensor& inverse_inertia) {
+template <int H>
+GYRE_INLINE DVec3W<H> body_velocity(DQuatW<H> q, DVec3W<H> momentum, const TensorW<H>& inverse_inertia) {
   return times(inverse_inertia, rotate_inverse(q, momentum));
 }
 
-DQuat derivative(const DQuat& q, DVec3 momentum, const Tensor& inverse_inertia) {
-  const DVec3 w = body_velocity(q, momentum, inverse_inertia);
-  const DQuat p = q * DQuat{w.x, w.y, w.z, 0.0};
-  return {0.5 * p.x, 0.5 * p.y, 0.5 * p.z, 0.5 * p.w};
-}
-
-DQuat along(const DQuat& q, const DQuat& d, double h) {
-  return {q.x + h * d.x, q.y + h * d.y, q.z + h * d.z, q.w + h * d.w};
+template <int H>
+GYRE_INLINE DQuatW<H> derivative(DQuatW<H> q, DVec3W<H> momentum, const TensorW<H>& inverse_inertia) {
+  const DVec3W<H> w = body_velocity(q, momentum, inverse_inertia);
+  return WideDouble<H>(0.5) * (q * DQuatW<H>{w.x, w.y, w.z, WideDouble<H>(0.0)});
 }
 
 // One Runge-Kutta step of the orientation with the momentum held fixed. Intermediate quaternions drift from length 1 by
 // the order of the step only; the result is scaled back.
-DQuat runge_kutta_4(const DQuat& q, DVec3 momentum, const Tensor& inverse_inertia, double h) {
-  const DQuat k1 = derivative(q, momentum, inverse_inertia);
-  const DQuat k2 = derivative(normalized(along(q, k1, 0.5 * h)), momentum, inverse_inertia);
-  const DQuat k3 = derivative(normalized(along(q, k2, 0.5 * h)), momentum, inverse_inertia);
-  const DQuat k4 = derivative(normalized(along(q, k3, h)), momentum, inverse_inertia);
-  const double s = h / 6.0;
-  return normalized(
-      DQuat{q.x + s * (k1.x + 2.0 * (k2.x + k3.x) + k4.x), q.y + s * (k1.y + 2.0 * (k2.y + k3.y) + k4.y),
-            q.z + s * (k1.z + 2.0 * (k2.z + k3.z) + k4.z), q.w + s * (k1.w + 2.0 * (k2.w + k3.w) + k4.w)});
+template <int H>
+GYRE_INLINE DQuatW<H> runge_kutta_4(DQuatW<H> q, DVec3W<H> momentum, const TensorW<H>& inverse_inertia,
+                                    WideDouble<H> h) {
+  const WideDouble<H> half(0.5), two(2.0);
+  const DQuatW<H> k1 = derivative(q, momentum, inverse_inertia);
+  const DQuatW<H> k2 = derivative(normalized(q + half * h * k1), momentum, inverse_inertia);
+  const DQuatW<H> k3 = derivative(normalized(q + half * h * k2), momentum, inverse_inertia);
+  const DQuatW<H> k4 = derivative(normalized(q + h * k3), momentum, inverse_inertia);
+  return normalized(q + h / WideDouble<H>(6.0) * (k1 + two * (k2 + k3) + k4));
+}
+
+// Inner steps of a turn by `angle`.
+double count_steps(double angle) { return double(1 + int(min(angle / kInnerAngle, kMostInnerSteps))); }
+
+// The orientations after `seconds` at constant angular momentum, in each lane's number of steps.
+template <int H>
+GYRE_INLINE DQuatW<H> turn_in_steps(DQuatW<H> q, DVec3W<H> momentum, const TensorW<H>& inverse_inertia,
+                                    WideDouble<H> seconds, WideDouble<H> steps, double most_steps) {
+  const WideDouble<H> h = seconds / steps;
+  for (double i = 0.0; i < most_steps; i += 1.0) {
+    const DQuatW<H> next = runge_kutta_4(q, momentum, inverse_inertia, h);
+    q = select_above(steps, WideDouble<H>(i), next, q);
+  }
+  return q;
 }
 
 // A body of revolution: its axis (body frame), and its moments about that axis and across it.
@@ -74,6 +98,24 @@ DQuat turn_top(const DQuat& start, DVec3 momentum, const Top& top, double second
                     exponential_map((seconds * spin) * top.axis));
 }
 
+// Of those that turn in no steps: bodies of revolution, and turns so small that the velocity of their middle tells.
+struct BodyState {
+  DVec3 velocity, momentum;  // in the body's frame
+};
+DQuat turn_at_once(const DQuat& start, const BodyState& own, DVec3 momentum, const Sym3& inertia,
+                   const Tensor& inverse_tensor, double seconds) {
+  Top top;
+  if (find_top(inertia, top)) return turn_top(start, momentum, top, seconds);
+  const DVec3 middle =
+      own.velocity + 0.5 * seconds * times(inverse_tensor, cross(own.momentum, own.velocity));
+  return normalized(start * exponential_map(seconds * middle));
+}
+
+DQuat lane_of(const DQuatW<kFreeTurns>& q, int lane) {
+  return {q.x.v[lane], q.y.v[lane], q.z.v[lane], q.w.v[lane]};
+}
+DVec3 lane_of(const DVec3W<kFreeTurns>& v, int lane) { return {v.x.v[lane], v.y.v[lane], v.z.v[lane]}; }
+
 }  // namespace
 
 Tensor to_double(const Sym3& m) {
@@ -91,11 +133,12 @@ Tensor inverse(const Tensor& m) {
 
 DQuat turn_at_momentum(DQuat start, DVec3 momentum, const Tensor& inverse_inertia, double seconds,
                        double angle) {
-  const int steps = 1 + int(min(angle / kInnerAngle, kMostInnerSteps));
-  const double h = seconds / double(steps);
-  DQuat q = start;
-  for (int i = 0; i < steps; ++i) q = runge_kutta_4(q, momentum, inverse_inertia, h);
-  return q;
+  const Tensor& m = inverse_inertia;
+  const double steps = count_steps(angle);
+  const DQuatW<1> q = turn_in_steps(
+      DQuatW<1>{start.x, start.y, start.z, start.w}, DVec3W<1>{momentum.x, momentum.y, momentum.z},
+      TensorW<1>{m.xx, m.yy, m.zz, m.xy, m.xz, m.yz}, WideDouble<1>(seconds), WideDouble<1>(steps), steps);
+  return {q.x.v, q.y.v, q.z.v, q.w.v};
 }
 
 Vec3 rotate_steadily(Quat& orientation, Vec3 angular_velocity, float seconds) {
@@ -105,35 +148,64 @@ Vec3 rotate_steadily(Quat& orientation, Vec3 angular_velocity, float seconds) {
   return turn;
 }
 
-Vec3 rotate_freely(Quat& orientation, Vec3& angular_velocity, const Sym3& inertia, float seconds) {
+FreeTurnKind kind_of_turn(Quat orientation, Vec3 angular_velocity, const Sym3& inertia, float seconds) {
   const Vec3 w = rotate_inverse(orientation, angular_velocity);  // body frame
   const Vec3 momentum = inertia * w;                             // body frame
   const Vec3 torque = cross(momentum, w);
   const float angle = seconds * length(angular_velocity);
   if (angle < kNoAngle ||
       length_squared(torque) <= square(kSteady) * length_squared(momentum) * length_squared(w)) {
-    return rotate_steadily(orientation, angular_velocity, seconds);
+    return FreeTurnKind::steady;
   }
-  const Tensor tensor = to_double(inertia);
-  const Tensor inverse_tensor = inverse(tensor);
-  const DQuat start = normalized(to_double(orientation));
-  const DVec3 start_velocity = rotate_inverse(start, DVec3(angular_velocity));
-  const DVec3 start_momentum = times(tensor, start_velocity);
-  const DVec3 world_momentum = rotate(start, start_momentum);
-  DQuat q = start;
   Top top;
-  if (find_top(inertia, top)) {
-    q = turn_top(start, world_momentum, top, double(seconds));
-  } else if (angle < kTinyAngle) {
-    const DVec3 middle =
-        start_velocity + 0.5 * double(seconds) * times(inverse_tensor, cross(start_momentum, start_velocity));
-    q = normalized(start * exponential_map(double(seconds) * middle));
+  return angle < kTinyAngle || find_top(inertia, top) ? FreeTurnKind::closed : FreeTurnKind::stepped;
+}
+
+void rotate_freely(const FreeTurn (&turns)[kFreeTurns], FreeTurnKind kind, float seconds) {
+  using Doubles = WideDouble<kFreeTurns>;
+  const FreeTurn &a = turns[0], &b = turns[1];
+  const auto both = [](double first, double second) { return Doubles::of(Doubles::Double{first, second}); };
+  const auto lanes = [&](const Tensor& m, const Tensor& n) {
+    return TensorW<kFreeTurns>{both(m.xx, n.xx), both(m.yy, n.yy), both(m.zz, n.zz),
+                               both(m.xy, n.xy), both(m.xz, n.xz), both(m.yz, n.yz)};
+  };
+  const Tensor tensors[] = {to_double(*a.inertia), to_double(*b.inertia)};
+  const Tensor inverses[] = {inverse(tensors[0]), inverse(tensors[1])};
+  const TensorW<kFreeTurns> inverse_tensor = lanes(inverses[0], inverses[1]);
+  const DQuat from_a = to_double(*a.orientation), from_b = to_double(*b.orientation);
+  const DVec3 spin_a(*a.angular_velocity), spin_b(*b.angular_velocity);
+  const DQuatW<kFreeTurns> start =
+      normalized(DQuatW<kFreeTurns>{both(from_a.x, from_b.x), both(from_a.y, from_b.y),
+                                    both(from_a.z, from_b.z), both(from_a.w, from_b.w)});
+  const DVec3W<kFreeTurns> velocity = rotate_inverse(
+      start,
+      DVec3W<kFreeTurns>{both(spin_a.x, spin_b.x), both(spin_a.y, spin_b.y), both(spin_a.z, spin_b.z)});
+  const DVec3W<kFreeTurns> own_momentum = times(lanes(tensors[0], tensors[1]), velocity);
+  const DVec3W<kFreeTurns> momentum = rotate(start, own_momentum);
+  DQuatW<kFreeTurns> q;
+  if (kind == FreeTurnKind::stepped) {
+    const auto steps = [&](const FreeTurn& turn) {
+      return count_steps(double(seconds * length(*turn.angular_velocity)));
+    };
+    const double steps_a = steps(a), steps_b = steps(b);
+    q = turn_in_steps(start, momentum, inverse_tensor, Doubles(double(seconds)), both(steps_a, steps_b),
+                      max(steps_a, steps_b));
   } else {
-    q = turn_at_momentum(start, world_momentum, inverse_tensor, double(seconds), double(angle));
+    DQuat turned[kFreeTurns];
+    for (int i = 0; i < kFreeTurns; ++i) {
+      turned[i] = turn_at_once(lane_of(start, i), {lane_of(velocity, i), lane_of(own_momentum, i)},
+                               lane_of(momentum, i), *turns[i].inertia, inverses[i], double(seconds));
+    }
+    q = {both(turned[0].x, turned[1].x), both(turned[0].y, turned[1].y), both(turned[0].z, turned[1].z),
+         both(turned[0].w, turned[1].w)};
   }
-  angular_velocity = to_float(rotate(q, body_velocity(q, world_momentum, inverse_tensor)));
-  orientation = to_float(q);
-  return to_float(logarithm_map(q * conjugate(start)));
+  const DVec3W<kFreeTurns> spin = rotate(q, body_velocity(q, momentum, inverse_tensor));
+  const DQuatW<kFreeTurns> turn = q * conjugate(start);
+  for (int i = 0; i < kFreeTurns; ++i) {
+    *turns[i].angular_velocity = to_float(lane_of(spin, i));
+    *turns[i].orientation = to_float(lane_of(q, i));
+    *turns[i].turned = to_float(logarithm_map(lane_of(turn, i)));
+  }
 }
 
 }  // namespace gyre

@@ -30,11 +30,23 @@ constexpr DVec3 times(const Tensor& m, DVec3 v) {
 DQuat turn_at_momentum(DQuat start, DVec3 momentum, const Tensor& inverse_inertia, double seconds,
                        double angle);
 
-// Moves the orientation and angular velocity (world frame, rad/s) on by `seconds`. `inertia` is in the
-// body's frame and can be inverted. Returns the rotation vector by which the body turned (world frame, rad).
-Vec3 rotate_freely(Quat& orientation, Vec3& angular_velocity, const Sym3& inertia, float seconds);
+// How a free rotation is worked out: at constant velocity, in closed form, or in inner steps.
+enum class FreeTurnKind : std::uint8_t { steady, closed, stepped };
+FreeTurnKind kind_of_turn(Quat orientation, Vec3 angular_velocity, const Sym3& inertia, float seconds);
 
-// The same at constant angular velocity: bodies with equal principal moments, kinematic bodies.
+// A body that turns freely: its orientation and angular velocity (world frame, rad/s) are moved on. `inertia` is in the body's
+// frame and can be inverted. `turned` becomes the rotation vector by which the body turned (world frame, rad).
+struct FreeTurn {
+  Quat* orientation = nullptr;
+  Vec3* angular_velocity = nullptr;
+  const Sym3* inertia = nullptr;
+  Vec3* turned = nullptr;
+};
+// So many side by side, all of a kind (not steady). A body may stand for its neighbour too.
+constexpr int kFreeTurns = 2;
+void rotate_freely(const FreeTurn (&turns)[kFreeTurns], FreeTurnKind kind, float seconds);
+
+// Moves the orientation on at constant angular velocity: bodies with equal principal moments, kinematic bodies.
 Vec3 rotate_steadily(Quat& orientation, Vec3 angular_velocity, float seconds);
 
 }  // namespace gyre

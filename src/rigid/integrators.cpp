@@ -105,23 +105,70 @@ class InertiaRefresh {
   int count_ = 0;
 };
 
-// The turn of one body over `seconds` with the velocity that it has.
-void turn_body(BodyStore& bodies, std::uint32_t i, float seconds, InertiaRefresh& refresh) {
-  const BodyFlags& flags = bodies.flags[i];
-  const BodyMass& mass = bodies.masses[i];
-  BodyMotion& motion = bodies.motion[i];
-  Quat& orientation = bodies.orientations[i];
-  if (flags.locked_angular != 0)
-    motion.angular_velocity = without_locked(motion.angular_velocity, flags.locked_angular);
-  if (flags.type == BodyType::kinematic || mass.isotropic != 0 || flags.locked_angular != 0) {
-    motion.turned += rotate_steadily(orientation, motion.angular_velocity, seconds);
-    if (flags.locked_angular != 0 && flags.locked_angular != 7) refresh_world_inertia(bodies, i);
-  } else {
-    motion.turned += rotate_freely(orientation, motion.angular_velocity, mass.inertia, seconds);
-    refresh.add(i);
+// Turns bodies with the velocities that they have: those that turn freely wait for others of their kind, to be turned side by
+// side.
+class BodyTurns {
+ public:
+  BodyTurns(BodyStore& bodies, float seconds) : bodies_(bodies), seconds_(seconds), refresh_(bodies) {}
+
+  void add(std::uint32_t i) {
+    const BodyFlags& flags = bodies_.flags[i];
+    const BodyMass& mass = bodies_.masses[i];
+    BodyMotion& motion = bodies_.motion[i];
+    Quat& orientation = bodies_.orientations[i];
+    if (flags.locked_angular != 0)
+      motion.angular_velocity = without_locked(motion.angular_velocity, flags.locked_angular);
+    if (flags.type == BodyType::kinematic || mass.isotropic != 0 || flags.locked_angular != 0) {
+      motion.turned += rotate_steadily(orientation, motion.angular_velocity, seconds_);
+      if (flags.locked_angular != 0 && flags.locked_angular != 7) refresh_world_inertia(bodies_, i);
+      motion.angular_velocity += Vec3{};
+      return;
+    }
+    const FreeTurnKind kind = kind_of_turn(orientation, motion.angular_velocity, mass.inertia, seconds_);
+    if (kind == FreeTurnKind::steady)
+      return end(i, rotate_steadily(orientation, motion.angular_velocity, seconds_));
+    Waiting& waiting = kind == FreeTurnKind::stepped ? stepped_ : closed_;
+    waiting.bodies[waiting.count++] = i;
+    if (waiting.count == kFreeTurns) turn(waiting, kind);
   }
-  motion.angular_velocity += Vec3{};
-}
+  void finish() {
+    turn(closed_, FreeTurnKind::closed);
+    turn(stepped_, FreeTurnKind::stepped);
+    refresh_.finish();
+  }
+
+ private:
+  struct Waiting {
+    std::uint32_t bodies[kFreeTurns];
+    int count = 0;
+  };
+
+  void turn(Waiting& waiting, FreeTurnKind kind) {
+    if (waiting.count == 0) return;
+    FreeTurn turns[kFreeTurns];
+    Vec3 turned[kFreeTurns];
+    for (int lane = 0; lane < kFreeTurns; ++lane) {
+      const int place = min(lane, waiting.count - 1);
+      const std::uint32_t i = waiting.bodies[place];
+      turns[lane] = {&bodies_.orientations[i], &bodies_.motion[i].angular_velocity,
+                     &bodies_.masses[i].inertia, &turned[place]};
+    }
+    rotate_freely(turns, kind, seconds_);
+    for (int place = 0; place < waiting.count; ++place) end(waiting.bodies[place], turned[place]);
+    waiting.count = 0;
+  }
+  void end(std::uint32_t i, Vec3 turned) {
+    BodyMotion& motion = bodies_.motion[i];
+    motion.turned += turned;
+    motion.angular_velocity += Vec3{};
+    refresh_.add(i);
+  }
+
+  BodyStore& bodies_;
+  float seconds_;
+  InertiaRefresh refresh_;
+  Waiting closed_, stepped_;
+};
 
 // Velocity by the forces of a sub-step.
 void kick(BodyStore& bodies, std::uint32_t i, const Motions& motions) {
@@ -164,7 +211,8 @@ void kick_and_move(BodyStore& bodies, std::uint32_t i, const Motions& motions) {
   }
 }
 
-void fly_body(BodyStore& bodies, std::uint32_t i, const Motions& motions, InertiaRefresh& refresh) {
+// `turns`: over the whole step.
+void fly_body(BodyStore& bodies, std::uint32_t i, const Motions& motions, BodyTurns& turns) {
   const BodyFlags& flags = bodies.flags[i];
   const BodyForces& forces = bodies.forces[i];
   BodyMotion& motion = bodies.motion[i];
@@ -173,17 +221,18 @@ void fly_body(BodyStore& bodies, std::uint32_t i, const Motions& motions, Inerti
   const bool turns_freely = !is_kicked || (forces.torque == Vec3{} && forces.angular_damping == 0.0f);
   if (is_kicked && turns_freely) {
     kick_and_move(bodies, i, motions);
-    return turn_body(bodies, i, float(motions.count) * motions.substep, refresh);
+    return turns.add(i);
   }
+  BodyTurns parts(bodies, motions.substep);
   for (int part = 0; part < motions.count; ++part) {
     if (is_kicked) kick(bodies, i, motions);
     motion.linear_velocity = without_locked(motion.linear_velocity, flags.locked_linear);
     motion.moved += motions.substep * motion.linear_velocity;
     if (turns_freely) continue;
-    turn_body(bodies, i, motions.substep, refresh);
-    refresh.finish();  // the next kick reads it
+    parts.add(i);
+    parts.finish();  // the next kick reads it
   }
-  if (turns_freely) turn_body(bodies, i, float(motions.count) * motions.substep, refresh);
+  if (turns_freely) turns.add(i);
 }
 
 }  // namespace
@@ -221,15 +270,15 @@ MovedBody describe_motion(const BodyStore& bodies, std::uint32_t body, const Mot
 }
 
 void fly(BodyStore& bodies, std::span<const std::uint32_t> list, const Motions& motions) {
-  InertiaRefresh refresh(bodies);
-  for (const std::uint32_t i : list) fly_body(bodies, i, motions, refresh);
-  refresh.finish();
+  BodyTurns turns(bodies, float(motions.count) * motions.substep);
+  for (const std::uint32_t i : list) fly_body(bodies, i, motions, turns);
+  turns.finish();
 }
 
 void turn_alone(BodyStore& bodies, std::span<const std::uint32_t> list, float substep) {
-  InertiaRefresh refresh(bodies);
-  for (const std::uint32_t i : list) turn_body(bodies, i, substep, refresh);
-  refresh.finish();
+  BodyTurns turns(bodies, substep);
+  for (const std::uint32_t i : list) turns.add(i);
+  turns.finish();
 }
 
 void finish_turns(BodyStore& bodies, std::span<const MovedBody> moved, std::span<const Vec3> pushes) {

@@ -1,0 +1,82 @@
+// Vectors and quaternions of doubles side by side, as DVec3 and DQuat: for integrators that follow spinning bodies. Lane i has
+// the bits of those.
+#pragma once
+
+#include "math/wide_double.h"
+
+namespace gyre {
+inline namespace GYRE_TARGET_NAMESPACE {
+
+template <int H>
+struct DVec3W {
+  WideDouble<H> x, y, z;
+};
+
+template <int H>
+GYRE_INLINE DVec3W<H> operator+(DVec3W<H> a, DVec3W<H> b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <int H>
+GYRE_INLINE DVec3W<H> operator*(WideDouble<H> s, DVec3W<H> a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
+template <int H>
+GYRE_INLINE DVec3W<H> cross(DVec3W<H> a, DVec3W<H> b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+template <int H>
+struct DQuatW {
+  WideDouble<H> x, y, z, w;
+};
+
+template <int H>
+GYRE_INLINE DQuatW<H> operator+(DQuatW<H> a, DQuatW<H> b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z, a.w + b.w};
+}
+template <int H>
+GYRE_INLINE DQuatW<H> operator*(WideDouble<H> s, DQuatW<H> q) {
+  return {s * q.x, s * q.y, s * q.z, s * q.w};
+}
+template <int H>
+GYRE_INLINE DQuatW<H> operator*(DQuatW<H> a, DQuatW<H> b) {
+  return {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+          a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
+}
+template <int H>
+GYRE_INLINE DQuatW<H> conjugate(DQuatW<H> q) {
+  return {-q.x, -q.y, -q.z, q.w};
+}
+template <int H>
+GYRE_INLINE WideDouble<H> dot(DQuatW<H> a, DQuatW<H> b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w;
+}
+// `a` where the lane's number is above the other, `b` elsewhere.
+template <int H>
+GYRE_INLINE DQuatW<H> select_above(WideDouble<H> number, WideDouble<H> other, DQuatW<H> a, DQuatW<H> b) {
+  return {select_above(number, other, a.x, b.x), select_above(number, other, a.y, b.y),
+          select_above(number, other, a.z, b.z), select_above(number, other, a.w, b.w)};
+}
+// `q` scaled to length 1; no rotation where `q` is zero.
+template <int H>
+GYRE_INLINE DQuatW<H> normalized(DQuatW<H> q) {
+  const WideDouble<H> zero(0.0), one(1.0);
+  const WideDouble<H> square = dot(q, q), scale = one / sqrt(square);
+  const auto scaled = [&](WideDouble<H> part, WideDouble<H> none) {
+    return select_equal(square, zero, none, part * scale);
+  };
+  return {scaled(q.x, zero), scaled(q.y, zero), scaled(q.z, zero), scaled(q.w, one)};
+}
+template <int H>
+GYRE_INLINE DVec3W<H> rotate(DQuatW<H> q, DVec3W<H> v) {
+  const DVec3W<H> u{q.x, q.y, q.z};
+  const DVec3W<H> t = WideDouble<H>(2.0) * cross(u, v);
+  return v + q.w * t + cross(u, t);
+}
+template <int H>
+GYRE_INLINE DVec3W<H> rotate_inverse(DQuatW<H> q, DVec3W<H> v) {
+  return rotate(conjugate(q), v);
+}
+
+}  // namespace GYRE_TARGET_NAMESPACE
+}  // namespace gyre
