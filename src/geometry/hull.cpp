@@ -14,7 +14,14 @@ void complete_hull(Hull& hull) {
     hull.x[i] = v.x, hull.y[i] = v.y, hull.z[i] = v.z;
     hull.box = merge(hull.box, {v, v});
   }
-  for (HullEdge& edge : hull.edges) edge.direction = hull.vertices[edge.to] - hull.vertices[edge.from];
+  const std::size_t words = std::size_t(hull.edge_words());
+  hull.edges_of.assign(count * words, 0);
+  for (std::size_t e = 0; e < hull.edges.size(); ++e) {
+    HullEdge& edge = hull.edges[e];
+    edge.direction = hull.vertices[edge.to] - hull.vertices[edge.from];
+    for (const std::size_t end : {std::size_t(edge.from), std::size_t(edge.to)})
+      hull.edges_of[end * words + e / 64] |= std::uint64_t(1) << (e % 64);
+  }
 }
 
 int support_vertex(const Hull& hull, Vec3 direction) {

@@ -32,15 +32,19 @@ struct Hull {
   std::vector<std::uint32_t> face_offsets;  // faces + 1, into face_vertices
   std::vector<std::uint8_t> face_vertices;  // loops, counter-clockwise seen from outside
   std::vector<HullEdge> edges;
+  // Which edges end in each vertex: a bit for each edge, in edge_words() words a vertex.
+  std::vector<std::uint64_t> edges_of;
   Aabb box;
   Vec3 centroid;              // of the volume
   float inner_radius = 0.0f;  // smallest distance from the centroid to a face plane
 
   int vertex_count() const { return int(vertices.size()); }
   int face_count() const { return int(planes.size()); }
+  int edge_words() const { return int(edges.size() + 63) / 64; }
 };
 
-// Fills the columns and the box, and the directions of edges, from the vertices and the edges' ends.
+// Fills the columns and the box, and which way edges run and which of them end in a vertex, from the vertices and the
+// edges' ends.
 void complete_hull(Hull& hull);
 
 // The vertex farthest along `direction` (lowest index among equals).

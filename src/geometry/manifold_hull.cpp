@@ -21,11 +21,11 @@ int opposing_face(const Polytope& polytope, int vertex, Vec3 direction) {
       best = face;
     }
   };
-  for (int e = 0; e < polytope.edge_count; ++e) {
-    const HullEdge& edge = polytope.edges[e];
-    if (edge.from != vertex && edge.to != vertex) continue;
-    look(edge.left);
-    look(edge.right);
+  for (int word = 0; word < polytope.edge_words; ++word) {
+    for_each_edge(polytope.edges_of[vertex * polytope.edge_words + word], word, [&](int e) {
+      look(polytope.edges[e].left);
+      look(polytope.edges[e].right);
+    });
   }
   return best;
 }

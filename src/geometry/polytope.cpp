@@ -15,6 +15,17 @@ constexpr std::uint8_t kBoxEdges[12][4] = {{0, 1, 2, 4}, {2, 3, 4, 3}, {6, 7, 3,
                                            {0, 2, 4, 0}, {3, 1, 4, 1}, {7, 5, 1, 5}, {4, 6, 0, 5},
                                            {0, 4, 0, 2}, {1, 5, 2, 1}, {3, 7, 1, 3}, {6, 2, 0, 3}};
 
+struct EdgesOfCorners {
+  std::uint64_t of[8] = {};
+};
+constexpr EdgesOfCorners kEdgesOf = [] {
+  EdgesOfCorners edges;
+  for (int e = 0; e < 12; ++e) {
+    for (int end = 0; end < 2; ++end) edges.of[kBoxEdges[e][end]] |= std::uint64_t(1) << e;
+  }
+  return edges;
+}();
+
 constexpr int kLanes = kPolytopeLanes;
 using Floats = Wide<kLanes>;
 
@@ -33,6 +44,8 @@ Polytope make_polytope(const Hull& hull) {
           hull.face_vertices.data(),
           hull.edges.data(),
           int(hull.edges.size()),
+          hull.edges_of.data(),
+          hull.edge_words(),
           hull.centroid,
           hull.inner_radius,
           max(largest(absolute(hull.box.low)), largest(absolute(hull.box.high)))};
@@ -58,8 +71,8 @@ BoxPolytope::BoxPolytope(Vec3 h) : inner_radius_(smallest(h)), size_(largest(h))
 }
 
 Polytope BoxPolytope::view() const {
-  return {x_,          y_,        z_,     8,  8,  vertices_,     planes_, 6,
-          kBoxOffsets, kBoxFaces, edges_, 12, {}, inner_radius_, size_};
+  return {x_,        y_,     z_, 8,           8, vertices_, planes_,       6,    kBoxOffsets,
+          kBoxFaces, edges_, 12, kEdgesOf.of, 1, {},        inner_radius_, size_};
 }
 
 void face_polygon(const Polytope& polytope, int face, FacePolygon& out) {

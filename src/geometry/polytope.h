@@ -5,6 +5,8 @@
 #include "geometry/support.h"
 #include "math/wide_vec.h"
 
+#include <bit>
+
 namespace gyre {
 
 struct Polytope {
@@ -20,6 +22,8 @@ struct Polytope {
   const std::uint8_t* face_vertices;
   const HullEdge* edges;
   int edge_count;
+  const std::uint64_t* edges_of;  // as in Hull
+  int edge_words;
   Vec3 centroid;
   float inner_radius;  // of a ball around the centroid
   float size;          // the largest coordinate, without its sign
@@ -51,6 +55,11 @@ inline int face_corners(const Polytope& p, int face) {
 inline int face_corner(const Polytope& p, int face, int i) {
   const int begin = int(p.face_offsets[face]), count = int(p.face_offsets[face + 1]) - begin;
   return p.face_vertices[count <= kMaxFaceVertices ? begin + i : begin + i * count / kMaxFaceVertices];
+}
+// Calls `look` with the edges that bits name, from the lowest on.
+template <class Look>
+void for_each_edge(std::uint64_t bits, int word, Look&& look) {
+  for (; bits != 0; bits &= bits - 1) look(64 * word + std::countr_zero(bits));
 }
 // The face as a polygon in the polytope's frame.
 void face_polygon(const Polytope& polytope, int face, FacePolygon& out);

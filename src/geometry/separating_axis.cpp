@@ -168,12 +168,18 @@ float find_heights(const Polytope& p, Vec3 up, float shift, float* heights) {
 
 // Edges of which one end lies no higher than `limit`.
 void near_edges(const Polytope& p, const float* heights, float limit, EdgeList& out) {
-  int count = 0;
-  for (int e = 0; e < p.edge_count; ++e) {
-    out.index[count] = std::uint16_t(e);
-    count += min(heights[p.edges[e].from], heights[p.edges[e].to]) <= limit ? 1 : 0;
+  std::uint64_t near[(kMaxEdges + 63) / 64] = {};
+  for (int i = 0; i < p.padded_count; i += kLanes) {
+    unsigned low = to_bits(Floats::load_unaligned(heights + i) <= Floats(limit));
+    for (; low != 0; low &= low - 1) {
+      // The padding repeats the last vertex.
+      const int vertex = min(i + std::countr_zero(low), p.vertex_count - 1);
+      for (int word = 0; word < p.edge_words; ++word) near[word] |= p.edges_of[vertex * p.edge_words + word];
+    }
   }
-  out.count = count;
+  out.count = 0;
+  for (int word = 0; word < p.edge_words; ++word)
+    for_each_edge(near[word], word, [&](int e) { out.index[out.count++] = std::uint16_t(e); });
 }
 
 struct BestFace {
