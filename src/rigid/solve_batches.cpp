@@ -140,18 +140,28 @@ std::span<const std::uint32_t> weigh_islands(const RigidWorld& w, std::span<cons
   return weights;
 }
 
+// Islands that weigh the same and follow each other are mostly alike (a crowd), so what is in them is solved side by side: their
+// batch ends where lanes are full, if they would not be again. Such a batch is more than half of what it may be.
+constexpr std::uint32_t kLanes = 8;
+
 // Gives each island its batch, written for all its bodies to `batch_of`. Returns the weights of the batches.
 std::span<const std::uint32_t> part_islands(const RigidWorld& w, const Islands& islands,
                                             std::span<const std::uint32_t> weights, std::uint32_t most,
                                             Arena& arena, std::span<std::uint32_t> batch_of) {
   const std::span<std::uint32_t> filled = arena.make<std::uint32_t>(w.bodies.awake.size());
-  std::uint32_t batch = 0;
+  // `alike`: how many islands, the last of the batch, weigh `last` each.
+  std::uint32_t batch = 0, alike = 0, last = 0;
   filled[0] = 0;
   for (const std::uint32_t body : w.bodies.awake) {
     const std::uint32_t root = islands.root(body);
     if (root == body) {
-      if (filled[batch] > 0 && filled[batch] + weights[body] > most) filled[++batch] = 0;
-      filled[batch] += weights[body];
+      const std::uint32_t weight = weights[body];
+      const bool lanes_are_full = weight == last && alike > 0 && alike % kLanes == 0;
+      if (filled[batch] > 0 && filled[batch] + (lanes_are_full ? kLanes : 1) * weight > most)
+        filled[++batch] = alike = 0;
+      filled[batch] += weight;
+      alike = weight == last ? alike + 1 : 1;
+      last = weight;
     }
     batch_of[body] = root == body ? batch : batch_of[root];
   }
@@ -185,7 +195,7 @@ SolveBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, 
     return SolveBatches{batches, places};
   };
   if (all_weights <= most) return all_in_one(arena.make<SolveBatch>(awake.empty() ? 0 : 1));
-  // Any two batches that follow each other are more than one may be.
+  // A batch is more than half of what it may be, or more than all of it with the next one.
   const std::size_t most_batches = 2 * all_weights / most + 1, contact_count = constraints.contacts.size();
   Lists bodies(arena, most_batches, awake.size()), contacts(arena, most_batches, contact_count),
       joints(arena, most_batches, constraints.joints.size());
