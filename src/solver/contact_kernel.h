@@ -219,24 +219,28 @@ GYRE_INLINE Vec3W<W> relative_spin(const PairMotion<W, kHasA>& pair) {
   return pair.angular_b;
 }
 
+template <int W, bool kHasA>
+GYRE_INLINE void warm_start_block(ContactBlock<W>& block) {
+  PairMotion<W, kHasA> pair = load_pair<W, kHasA>(block);
+  Wide<W> total = block.points[0].impulse;
+  Vec3W<W> turn_sum = total * block.points[0].arm;
+  for (int k = 1; k < block.point_count; ++k) {
+    const PointBlock<W>& point = block.points[k];
+    total = total + point.impulse;
+    turn_sum = turn_sum + point.impulse * point.arm;
+  }
+  push_normal<W>(block, pair, total, turn_sum);
+  push<W>(block, pair, block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2, block.friction_from_a,
+          block.friction_from_b, block.twist * block.normal);
+  if (block.rolls != 0) turn<W>(block, pair, block.rolling);
+  store_pair<W>(block, pair);
+}
+
 template <int W>
 void warm_start_blocks(void* memory, int begin, int end) {
   auto* blocks = static_cast<ContactBlock<W>*>(memory);
   for (int i = begin; i < end; ++i) {
-    ContactBlock<W>& block = blocks[i];
-    PairMotion<W> pair = load_pair<W>(block);
-    Wide<W> total = block.points[0].impulse;
-    Vec3W<W> turn_sum = total * block.points[0].arm;
-    for (int k = 1; k < block.point_count; ++k) {
-      const PointBlock<W>& point = block.points[k];
-      total = total + point.impulse;
-      turn_sum = turn_sum + point.impulse * point.arm;
-    }
-    push_normal<W>(block, pair, total, turn_sum);
-    push<W>(block, pair, block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2, block.friction_from_a,
-            block.friction_from_b, block.twist * block.normal);
-    if (block.rolls != 0) turn<W>(block, pair, block.rolling);
-    store_pair<W>(block, pair);
+    blocks[i].has_a != 0 ? warm_start_block<W, true>(blocks[i]) : warm_start_block<W, false>(blocks[i]);
   }
 }
 
@@ -491,24 +495,28 @@ void solve_blocks(void* memory, int begin, int end, float substep) {
 }
 
 // Once, at the end of a step.
+template <int W, bool kHasA>
+GYRE_INLINE void relax_block(ContactBlock<W>& block, float substep) {
+  PairMotion<W, kHasA> pair = load_pair<W, kHasA>(block);
+  const Wide<W> friction_1 = block.friction_1, friction_2 = block.friction_2;
+  Wide<W> impulses[kMaxManifoldPoints];
+  for (int k = 0; k < block.point_count; ++k) impulses[k] = block.points[k].impulse;
+  if (block.rolls != 0) solve_rolling<W>(block, pair);
+  solve_friction<W>(block, pair);
+  solve_normals<W, false>(block, pair, substep);
+  for (int k = 0; k < block.point_count; ++k) {
+    block.points[k].total = block.points[k].total + (block.points[k].impulse - impulses[k]);
+  }
+  block.total_1 = block.total_1 + (block.friction_1 - friction_1);
+  block.total_2 = block.total_2 + (block.friction_2 - friction_2);
+  store_pair<W>(block, pair);
+}
+
 template <int W>
 void relax_blocks(void* memory, int begin, int end, float substep) {
   auto* blocks = static_cast<ContactBlock<W>*>(memory);
   for (int i = begin; i < end; ++i) {
-    ContactBlock<W>& block = blocks[i];
-    PairMotion<W> pair = load_pair<W>(block);
-    const Wide<W> friction_1 = block.friction_1, friction_2 = block.friction_2;
-    Wide<W> impulses[kMaxManifoldPoints];
-    for (int k = 0; k < block.point_count; ++k) impulses[k] = block.points[k].impulse;
-    if (block.rolls != 0) solve_rolling<W>(block, pair);
-    solve_friction<W>(block, pair);
-    solve_normals<W, false>(block, pair, substep);
-    for (int k = 0; k < block.point_count; ++k) {
-      block.points[k].total = block.points[k].total + (block.points[k].impulse - impulses[k]);
-    }
-    block.total_1 = block.total_1 + (block.friction_1 - friction_1);
-    block.total_2 = block.total_2 + (block.friction_2 - friction_2);
-    store_pair<W>(block, pair);
+    blocks[i].has_a != 0 ? relax_block<W, true>(blocks[i], substep) : relax_block<W, false>(blocks[i], substep);
   }
 }
 
