@@ -165,6 +165,7 @@ void follow_lane(void* memory, int index, int lane, const FollowedArms& arms, co
   prepare_friction_masses<1>(one, one.twist_radius > Wide<1>(0.0f), twists);
   prepare_normals<1>(one, exists);
   put_lane_back<W>(block, lane, one, arms);
+  block.idles = 0;
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

@@ -48,6 +48,7 @@ struct ContactBlock {
   std::int32_t point_count = 0;         // the most of any lane
   std::int32_t rolls = 0;               // any lane has rolling friction
   std::int32_t has_fresh = 0;           // any lane is fresh
+  std::int32_t idles = 0;               // solved where nothing moves, nor has in the step, it came out as it was: it will again
   // Lanes, as bits: of which a body hangs on a joint; that have a body there; whose body is pushed.
   std::uint32_t linked = 0, has_a = 0, has_b = 0, pushes_a = 0, pushes_b = 0;
   Vec3W<W> normal, tangent_1, tangent_2;
@@ -473,17 +474,65 @@ __attribute__((noinline)) PairMotion<W, kHasA> begin_pair(ContactBlock<W>& block
   return pair;
 }
 
+// Whether nothing moves: to the bit, so that a block has one answer.
+template <int W>
+GYRE_INLINE WideInt<W> all_bits(Vec3W<W> v) {
+  return bit_pattern(v.x) | bit_pattern(v.y) | bit_pattern(v.z);
+}
+template <int W, bool kHasA>
+GYRE_INLINE bool is_still(const PairMotion<W, kHasA>& pair) {
+  WideInt<W> bits = all_bits<W>(pair.linear_b) | all_bits<W>(pair.angular_b);
+  if constexpr (kHasA) bits = bits | all_bits<W>(pair.linear_a) | all_bits<W>(pair.angular_a);
+  return all(bits == WideInt<W>(0));
+}
+// Nor has moved since the step began.
+template <int W, bool kHasA>
+GYRE_INLINE bool has_stayed(const ContactBlock<W>& block) {
+  const BodyWay<W> b(block.read_b);
+  WideInt<W> bits = all_bits<W>(b.moved) | all_bits<W>(b.turned);
+  if constexpr (kHasA) {
+    const BodyWay<W> a(block.read_a);
+    bits = bits | all_bits<W>(a.moved) | all_bits<W>(a.turned);
+  }
+  return all(bits == WideInt<W>(0));
+}
+
+// What a block without rolling friction carries from one sub-step to the next.
+template <int W>
+struct StandingImpulses {
+  Wide<W> points[kMaxManifoldPoints], friction_1, friction_2, twist, sliding;
+
+  GYRE_INLINE void take(const ContactBlock<W>& block) {
+    for (int k = 0; k < block.point_count; ++k) points[k] = block.points[k].impulse;
+    friction_1 = block.friction_1, friction_2 = block.friction_2, twist = block.twist, sliding = block.sliding;
+  }
+  // To the bit.
+  GYRE_INLINE bool stand(const ContactBlock<W>& block) const {
+    const auto change = [](Wide<W> a, Wide<W> b) { return bit_pattern(a) ^ bit_pattern(b); };
+    WideInt<W> bits = change(friction_1, block.friction_1) | change(friction_2, block.friction_2) |
+                      change(twist, block.twist) | change(sliding, block.sliding);
+    for (int k = 0; k < block.point_count; ++k) bits = bits | change(points[k], block.points[k].impulse);
+    return all(bits == WideInt<W>(0));
+  }
+};
+
 // Normals last: what bodies move with then closes nowhere; an error of the slip does no harm.
 template <int W, bool kHasA>
 GYRE_INLINE void solve_block(ContactBlock<W>& block, float substep) {
   const bool begins = (block.has_fresh | block.rolls) != 0;
   PairMotion<W, kHasA> pair = begins ? begin_pair<W, kHasA>(block, substep) : load_pair<W, kHasA>(block);
-  solve_friction<W>(block, pair);
-  solve_normals<W, true>(block, pair, substep);
+  const bool still = !begins && is_still<W>(pair) && has_stayed<W, kHasA>(block);
+  if (!still || block.idles == 0) {
+    StandingImpulses<W> standing;
+    if (still) standing.take(block);
+    solve_friction<W>(block, pair);
+    solve_normals<W, true>(block, pair, substep);
+    store_pair<W>(block, pair);
+    block.idles = still && is_still<W>(pair) && standing.stand(block) ? 1 : 0;
+  }
   for (int k = 0; k < block.point_count; ++k) block.points[k].total = block.points[k].total + block.points[k].impulse;
   block.total_1 = block.total_1 + block.friction_1;
   block.total_2 = block.total_2 + block.friction_2;
-  store_pair<W>(block, pair);
 }
 
 template <int W>

@@ -416,7 +416,7 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
   alignas(64) float nowhere[80] = {};
   const LaneRecords<W> records = find_records<W>(constraints, order, bodies, nowhere);
   block.point_count = records.point_count;
-  block.rolls = block.has_fresh = 0;
+  block.rolls = block.has_fresh = block.idles = 0;
   block.linked = 0;
   Wide<W> in[4];
   gather_columns<4, W>(records.manifold, kManifoldNormal, in);
@@ -545,6 +545,7 @@ void write_block_impulse(void* memory, int index, int lane, const ContactImpulse
     set_lane(total, lane, get_lane(total, lane) + (value - get_lane(present, lane)));
     set_lane(present, lane, value);
   };
+  block.idles = 0;
   for (int k = 0; k < kMaxManifoldPoints; ++k) replace(block.points[k].impulse, block.points[k].total, impulse.normal[k]);
   replace(block.friction_1, block.total_1, dot(impulse.friction, get_lane(block.tangent_1, lane)));
   replace(block.friction_2, block.total_2, dot(impulse.friction, get_lane(block.tangent_2, lane)));
@@ -558,6 +559,7 @@ void harden_block(void* memory, int index, int lane) {
   ContactBlock<W>& block = static_cast<ContactBlock<W>*>(memory)[index];
   set_lane(block.rate, lane, 0.0f);
   set_lane(block.give, lane, 0.0f);
+  block.idles = 0;
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE
