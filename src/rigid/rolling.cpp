@@ -167,8 +167,8 @@ void describe(const RigidWorld& w, const Contact& contact, const Manifold& manif
     rolling.points[k] =
         describe_point(collider.shape, rolling, w.bodies.orientations[std::size_t(rolling.body)],
                        is_b ? point.from_b : point.from_a, point.separation);
-    rolling.arms.from_a[k] = point.from_a;
-    rolling.arms.from_b[k] = point.from_b;
+    rolling.arms.now.from_a[k] = point.from_a;
+    rolling.arms.now.from_b[k] = point.from_b;
   }
 }
 
@@ -255,8 +255,7 @@ RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch
   return all;
 }
 
-FollowedArms follow_contact(const RigidWorld& w, RollingContact& rolling, const Manifold& manifold,
-                            float ahead) {
+void follow_contact(const RigidWorld& w, RollingContact& rolling, const Manifold& manifold, float ahead) {
   const std::size_t body = std::size_t(rolling.body);
   const BodyMotion still;
   const BodyMotion& motion = w.bodies.motion[body];
@@ -269,9 +268,9 @@ FollowedArms follow_contact(const RigidWorld& w, RollingContact& rolling, const 
     pairs.from_a[k] = rolling.side > 0.0f ? arm + apart : arm;
     pairs.from_b[k] = rolling.side > 0.0f ? arm : arm + apart;
   };
-  FollowedArms arms;
+  FollowedArms& arms = rolling.arms;
   arms.count = manifold.count;
-  arms.before = rolling.arms;
+  arms.before = arms.now;
   for (int k = 0; k < manifold.count; ++k) {
     const ContactPointState& point = manifold.points[k];
     const Vec3 at_first = rolling.side > 0.0f ? point.from_b : point.from_a;
@@ -288,8 +287,6 @@ FollowedArms follow_contact(const RigidWorld& w, RollingContact& rolling, const 
                          dot(cross(motion.turned, middle_arm), rolling.outward);
   }
   if (!rolling.once) rolling.drift = free_change(w, body, now, ahead);
-  rolling.arms = arms.now;
-  return arms;
 }
 
 }  // namespace gyre

@@ -40,7 +40,7 @@ struct RollingContact {
   Vec3 outward;       // world axes: the normal, out of the curved shape
   Vec3 offset;        // m, from the other body's centre of mass to the curved one's, as the step began
   RollingPoint points[kMaxManifoldPoints];
-  PointArmPairs arms;  // as the last sub-step began
+  FollowedArms arms;  // as last followed
   Vec3
       drift;  // rad/s: what free rotation adds to the body's angular velocity until the middle of the sub-step
 };
@@ -67,8 +67,7 @@ RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch
                                       std::span<const std::uint32_t> places, std::size_t bodies,
                                       float seconds, Arena& arena);
 
-// Where the contact is in a sub-step that begins now, with its middle in `ahead` seconds.
-FollowedArms follow_contact(const RigidWorld& w, RollingContact& rolling, const Manifold& manifold,
-                            float ahead);
+// Into its arms: where the contact is in a sub-step that begins now, with its middle in `ahead` seconds.
+void follow_contact(const RigidWorld& w, RollingContact& rolling, const Manifold& manifold, float ahead);
 
 }  // namespace gyre

@@ -113,6 +113,9 @@ void warm_contacts_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
   g.solve->kernels.warm_start(g.solve->blocks, int(g.first) + begin, int(g.first) + end);
 }
+// Of the widest kernels.
+constexpr int kMostLanes = 16;
+
 // Calls fn(rolling, block, lane) for those contacts of the blocks that roll, which are few.
 template <class Fn>
 void for_each_rolling(const Group& g, int begin, int end, Fn&& fn) {
@@ -129,19 +132,31 @@ void for_each_rolling(const Group& g, int begin, int end, Fn&& fn) {
 // Takes their points along, and their bodies to the velocities of the middle of the sub-step: no other contact bears these.
 void follow_contacts(const Group& g, int begin, int end) {
   Solve& s = *g.solve;
+  FollowedLane lanes[kMostLanes];
+  RollingContact* contacts[kMostLanes];
+  int present = 0, count = 0;
+  const auto inverse_of = [&](std::int32_t body) {
+    return body == kNoBody ? nullptr : &s.contact_bodies.inertia[body].inverse;
+  };
+  const auto follow_block = [&] {
+    if (count == 0) return;
+    s.kernels.follow(s.blocks, present, lanes, count);
+    for (int i = 0; i < count; ++i) {
+      Vec3& spin = s.contact_bodies.motion[contacts[i]->body].angular_velocity;
+      spin = spin + contacts[i]->drift;
+    }
+    count = 0;
+  };
   for_each_rolling(g, begin, end, [&](RollingContact& rolling, int block, int lane) {
+    if (block != present) follow_block();
+    present = block;
     if (rolling.once) s.rolling_lanes[std::size_t(block)] &= std::uint16_t(~(1u << lane));
     const ContactConstraint& constraint = s.scratch.constraints[rolling.constraint];
-    const float ahead = 0.5f * (rolling.once ? s.contact_settings.step : s.h);
-    const FollowedArms arms = follow_contact(s.w, rolling, *constraint.manifold, ahead);
-    const auto inverse_of = [&](std::int32_t body) {
-      return body == kNoBody ? nullptr : &s.contact_bodies.inertia[body].inverse;
-    };
-    s.kernels.follow(s.blocks, block, lane, arms, inverse_of(constraint.body_a),
-                     inverse_of(constraint.body_b));
-    Vec3& spin = s.contact_bodies.motion[rolling.body].angular_velocity;
-    spin = spin + rolling.drift;
+    follow_contact(s.w, rolling, *constraint.manifold, 0.5f * (rolling.once ? s.contact_settings.step : s.h));
+    contacts[count] = &rolling;
+    lanes[count++] = {lane, &rolling.arms, inverse_of(constraint.body_a), inverse_of(constraint.body_b)};
   });
+  follow_block();
 }
 void leave_middle(const Group& g, int begin, int end) {
   for_each_rolling(g, begin, end, [&](const RollingContact& rolling, int, int) {

@@ -77,10 +77,17 @@ struct PointArmPairs {
 // Where the points of a contact are in a sub-step, if not where they were as the step began: in its middle, where speeds are
 // taken, and as it begins, where impulses act.
 struct FollowedArms {
-  int count = 0;
   PointArmPairs middle, before, now;  // `before`: as the last sub-step began
   // m, less what the bodies' motion since the step began makes of it with the arms of the middle.
   float separation[kMaxManifoldPoints] = {};
+  int count = 0;
+};
+
+// A contact that is followed: its lane in the block, and the present inverse inertia of its bodies, null where there is none.
+struct FollowedLane {
+  int lane;
+  const FollowedArms* arms;
+  const Sym3 *inverse_a, *inverse_b;
 };
 
 // The kernels of one CPU target: every function works on blocks [begin, end) of the array at `blocks`. `order` lists
@@ -93,10 +100,8 @@ struct ContactKernels {
   std::size_t block_bytes;
   void (*prepare)(void* blocks, int begin, int end, const ContactConstraint* constraints,
                   const std::uint32_t* order, ContactBodies bodies, const ContactSettings& settings);
-  // Moves the points of one contact, and along with them the impulses that stand, which these velocities have. The present inverse
-  // inertia of its bodies: null where there is none.
-  void (*follow)(void* blocks, int block, int lane, const FollowedArms& arms, const Sym3* inverse_a,
-                 const Sym3* inverse_b);
+  // Moves the points of contacts of a block, and along with them the impulses that stand, which these velocities have.
+  void (*follow)(void* blocks, int block, const FollowedLane* lanes, int count);
   void (*warm_start)(void* blocks, int begin, int end);
   void (*solve)(void* blocks, int begin, int end, float substep);
   void (*relax)(void* blocks, int begin, int end, float substep);

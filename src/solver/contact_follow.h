@@ -1,5 +1,5 @@
 // Takes the points of a contact along within the step: what rolls touches elsewhere in each sub-step, and what it weighs on
-// follows (rigid/rolling.h says where). One lane at a time, the same operations for every width. Part of the kernels.
+// follows (rigid/rolling.h says where). The lanes of a block that roll side by side. Part of the kernels.
 //
 // The impulses that stand go on acting, but at the new place: what they turn changes by
 //   I'^-1 (r' x p) - I^-1 (r x p)
@@ -10,161 +10,212 @@
 
 #include "solver/contact_prepare.h"
 
+#include <cstddef>
+
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-GYRE_INLINE Vec3W<1> one_lane(Vec3 v) { return {Wide<1>(v.x), Wide<1>(v.y), Wide<1>(v.z)}; }
-GYRE_INLINE Sym3W<1> one_lane(const Sym3& m) {
-  return {Wide<1>(m.xx), Wide<1>(m.yy), Wide<1>(m.zz), Wide<1>(m.xy), Wide<1>(m.xz), Wide<1>(m.yz)};
-}
-template <int W>
-GYRE_INLINE Wide<1> one_lane(const Wide<W>& wide, int lane) {
-  return Wide<1>(wide[lane]);
-}
-template <int W>
-GYRE_INLINE Vec3W<1> one_lane(const Vec3W<W>& v, int lane) {
-  return {one_lane<W>(v.x, lane), one_lane<W>(v.y, lane), one_lane<W>(v.z, lane)};
-}
-template <int W>
-GYRE_INLINE Sym3W<1> one_lane(const Sym3W<W>& m, int lane) {
-  return {one_lane<W>(m.xx, lane), one_lane<W>(m.yy, lane), one_lane<W>(m.zz, lane),
-          one_lane<W>(m.xy, lane), one_lane<W>(m.xz, lane), one_lane<W>(m.yz, lane)};
-}
-template <int W>
-GYRE_INLINE void put_lane(Wide<W>& wide, int lane, const Wide<1>& value) {
-  wide.set(lane, value[0]);
-}
-template <int W>
-GYRE_INLINE void put_lane(Vec3W<W>& wide, int lane, const Vec3W<1>& v) {
-  put_lane<W>(wide.x, lane, v.x), put_lane<W>(wide.y, lane, v.y), put_lane<W>(wide.z, lane, v.z);
-}
-template <int W>
-GYRE_INLINE void put_lane(Sym3W<W>& wide, int lane, const Sym3W<1>& m) {
-  put_lane<W>(wide.xx, lane, m.xx), put_lane<W>(wide.yy, lane, m.yy), put_lane<W>(wide.zz, lane, m.zz);
-  put_lane<W>(wide.xy, lane, m.xy), put_lane<W>(wide.xz, lane, m.xz), put_lane<W>(wide.yz, lane, m.yz);
-}
+// Where the arms lie in FollowedArms, in floats.
+constexpr int kArmsMiddle = 0, kArmsBefore = 24, kArmsNow = 48, kArmsSeparation = 72;
+static_assert(offsetof(FollowedArms, before) == 4 * kArmsBefore && offsetof(FollowedArms, now) == 4 * kArmsNow);
+static_assert(offsetof(FollowedArms, middle) == 0 && offsetof(FollowedArms, separation) == 4 * kArmsSeparation);
+static_assert(sizeof(PointArmPairs) == 4 * kArmsBefore && offsetof(PointArmPairs, from_b) == 48);
 
-// What a lane has that does not depend on where its points are.
+// The lanes of a block that are followed. The others read zeros, and what is worked out for them is not kept.
 template <int W>
-void take_lane(const ContactBlock<W>& block, int lane, int count, ContactBlock<1>& one) {
-  one.point_count = count;
-  one.has_a = block.has_a >> lane & 1u, one.has_b = block.has_b >> lane & 1u;
-  one.normal = one_lane<W>(block.normal, lane);
-  one.tangent_1 = one_lane<W>(block.tangent_1, lane);
-  one.tangent_2 = one_lane<W>(block.tangent_2, lane);
-  one.inverse_mass_a = one_lane<W>(block.inverse_mass_a, lane);
-  one.inverse_mass_b = one_lane<W>(block.inverse_mass_b, lane);
-  one.inverse_inertia_a = one_lane<W>(block.inverse_inertia_a, lane);
-  one.inverse_inertia_b = one_lane<W>(block.inverse_inertia_b, lane);
-  one.friction_1 = one_lane<W>(block.friction_1, lane);
-  one.friction_2 = one_lane<W>(block.friction_2, lane);
-  one.twist = one_lane<W>(block.twist, lane);
-  one.twist_radius = one_lane<W>(block.twist_radius, lane);
-  one.rolling = one_lane<W>(block.rolling, lane);
-  for (int k = 0; k < count; ++k) one.points[k].impulse = one_lane<W>(block.points[k].impulse, lane);
-}
+struct FollowedLanes {
+  const float* arms[W];
+  const float* inverse_a[W];
+  const float* inverse_b[W];
+  std::uint32_t bits = 0, has_a = 0, has_b = 0;  // has_a: whose inertia is known
+  Wide<W> counts{0.0f};
+  int point_count = 0;  // the most of any
 
-template <int W>
-void put_lane_back(ContactBlock<W>& block, int lane, const ContactBlock<1>& one, const FollowedArms& arms) {
-  put_lane<W>(block.inverse_inertia_a, lane, one.inverse_inertia_a);
-  put_lane<W>(block.inverse_inertia_b, lane, one.inverse_inertia_b);
-  put_lane<W>(block.friction_from_a, lane, one.friction_from_a);
-  put_lane<W>(block.friction_from_b, lane, one.friction_from_b);
-  put_lane<W>(block.inverse_k11, lane, one.inverse_k11),
-      put_lane<W>(block.inverse_k12, lane, one.inverse_k12);
-  put_lane<W>(block.inverse_k13, lane, one.inverse_k13),
-      put_lane<W>(block.inverse_k22, lane, one.inverse_k22);
-  put_lane<W>(block.inverse_k23, lane, one.inverse_k23),
-      put_lane<W>(block.inverse_k33, lane, one.inverse_k33);
-  put_lane<W>(block.arm_shift_a, lane, one.arm_shift_a);
-  put_lane<W>(block.arm_shift_b, lane, one.arm_shift_b);
-  for (int i = 0; i < arms.count; ++i) {
-    put_lane<W>(block.points[i].arm, lane, one.points[i].arm);
-    block.points[i].separation.set(lane, arms.separation[i]);
-    put_lane<W>(block.relief[i], lane, one.relief[i]);
-    for (int j = i; j < arms.count; ++j) {
-      put_lane<W>(block.k[packed(i, j)], lane, one.k[packed(i, j)]);
-      put_lane<W>(block.inverse_k[packed(i, j)], lane, one.inverse_k[packed(i, j)]);
+  GYRE_INLINE FollowedLanes(const FollowedLane* lanes, int count) {
+    alignas(64) static constexpr float kNoArms[sizeof(FollowedArms) / sizeof(float)] = {};
+    for (int i = 0; i < W; ++i) arms[i] = inverse_a[i] = inverse_b[i] = kNoArms;
+    for (int i = 0; i < count; ++i) {
+      const FollowedLane& followed = lanes[i];
+      const int lane = followed.lane;
+      bits |= 1u << lane;
+      arms[lane] = &followed.arms->middle.from_a[0].x;
+      if (followed.inverse_a != nullptr) inverse_a[lane] = &followed.inverse_a->xx, has_a |= 1u << lane;
+      if (followed.inverse_b != nullptr) inverse_b[lane] = &followed.inverse_b->xx, has_b |= 1u << lane;
+      counts.set(lane, float(followed.arms->count));
+      if (followed.arms->count > point_count) point_count = followed.arms->count;
     }
   }
+  GYRE_INLINE Mask<W> has_point(int k) const { return counts > Wide<W>(float(k)); }
+};
+
+template <int W>
+GYRE_INLINE Vec3W<W> gather_vector(const float* const (&records)[W], int first) {
+  Wide<W> in[4];
+  gather_columns<4, W>(records, first, in);
+  return {in[0], in[1], in[2]};
+}
+template <int W>
+GYRE_INLINE Sym3W<W> gather_tensor(const float* const (&records)[W]) {
+  Wide<W> in[8];
+  gather_columns<4, W>(records, 0, in);
+  gather_columns<4, W>(records, 2, in + 4);
+  return {in[0], in[1], in[2], in[3], in[6], in[7]};
+}
+template <int W>
+GYRE_INLINE PointArms<W> gather_arms(const FollowedLanes<W>& lanes, int set, int k) {
+  return {gather_vector<W>(lanes.arms, set + 3 * k), gather_vector<W>(lanes.arms, set + 12 + 3 * k)};
 }
 
-// Where friction acts: where the load does, or at the lowest point where nothing bears any.
-struct FrictionArms {
-  Vec3 from_a, from_b;
+// How the load is shared among the points: friction acts where the load does, or at the lowest point where nothing bears any.
+template <int W>
+struct LoadShares {
+  Mask<W> exists[kMaxManifoldPoints], lowest[kMaxManifoldPoints];  // the last of these that is set counts
+  Wide<W> shares[kMaxManifoldPoints];
+  Mask<W> bears;
+
+  GYRE_INLINE LoadShares(const ContactBlock<W>& block, const FollowedLanes<W>& lanes) {
+    const Wide<W> zero(0.0f), one(1.0f);
+    Wide<W> separations[kMaxManifoldPoints], load = zero;
+    gather_columns<4, W>(lanes.arms, kArmsSeparation, separations);
+    Wide<W> least = separations[0];
+    for (int k = 0; k < lanes.point_count; ++k) {
+      exists[k] = lanes.has_point(k);
+      lowest[k] = exists[k] & (separations[k] < least);
+      least = select(lowest[k], separations[k], least);
+      load = load + keep(exists[k], block.points[k].impulse);
+    }
+    bears = load > zero;
+    const Wide<W> divisor = select(bears, load, one);
+    for (int k = 0; k < lanes.point_count; ++k) shares[k] = block.points[k].impulse / divisor;
+  }
 };
-inline FrictionArms friction_arms(const ContactBlock<1>& one, const PointArmPairs& arms,
-                                  const FollowedArms& followed) {
-  int lowest = 0;
-  float load = 0.0f;
-  for (int k = 0; k < followed.count; ++k) {
-    load += one.points[k].impulse[0];
-    if (followed.separation[k] < followed.separation[lowest]) lowest = k;
+
+// Where friction acts, added up point by point.
+template <int W>
+struct FrictionArms {
+  Vec3W<W> from_a, from_b;
+
+  GYRE_INLINE FrictionArms(const LoadShares<W>& load, const PointArms<W>& first) {
+    const Vec3W<W> none{Wide<W>(0.0f), Wide<W>(0.0f), Wide<W>(0.0f)};
+    from_a = select<W>(load.bears, none + load.shares[0] * first.from_a, first.from_a);
+    from_b = select<W>(load.bears, none + load.shares[0] * first.from_b, first.from_b);
   }
-  if (!(load > 0.0f)) return {arms.from_a[lowest], arms.from_b[lowest]};
-  FrictionArms at;
-  for (int k = 0; k < followed.count; ++k) {
-    const float share = one.points[k].impulse[0] / load;
-    at.from_a += share * arms.from_a[k];
-    at.from_b += share * arms.from_b[k];
+  GYRE_INLINE void add(const LoadShares<W>& load, int k, const PointArms<W>& arms) {
+    const auto added = [&](Vec3W<W> sum, Vec3W<W> arm) {
+      const Vec3W<W> shared = select<W>(load.exists[k], sum + load.shares[k] * arm, sum);
+      return select<W>(load.bears, shared, select<W>(load.lowest[k], arm, sum));
+    };
+    from_a = added(from_a, arms.from_a);
+    from_b = added(from_b, arms.from_b);
   }
-  return at;
-}
+};
 
 // How the impulses that stand turn the two bodies about their centres of mass (N m s) with these arms.
+template <int W>
 struct LaneTorques {
-  Vec3W<1> a, b;
+  Vec3W<W> a, b;
 };
-inline LaneTorques torques_of(const ContactBlock<1>& one, const PointArmPairs& arms,
-                              const FollowedArms& followed) {
-  const FrictionArms friction = friction_arms(one, arms, followed);
-  const Vec3W<1> slide = one.friction_1 * one.tangent_1 + one.friction_2 * one.tangent_2;
-  const Vec3W<1> turn = one.twist * one.normal + one.rolling;
-  LaneTorques torques{cross(one_lane(friction.from_a), slide) + turn,
-                      cross(one_lane(friction.from_b), slide) + turn};
-  for (int k = 0; k < followed.count; ++k) {
-    const Vec3W<1> push = one.points[k].impulse * one.normal;
-    torques.a = torques.a + cross(one_lane(arms.from_a[k]), push);
-    torques.b = torques.b + cross(one_lane(arms.from_b[k]), push);
+template <int W>
+GYRE_INLINE LaneTorques<W> torques_of(const ContactBlock<W>& block, const FollowedLanes<W>& lanes,
+                                      const LoadShares<W>& load, int set) {
+  PointArms<W> arms[kMaxManifoldPoints];
+  FrictionArms<W> friction(load, arms[0] = gather_arms<W>(lanes, set, 0));
+  for (int k = 1; k < lanes.point_count; ++k) friction.add(load, k, arms[k] = gather_arms<W>(lanes, set, k));
+  const Vec3W<W> slide = block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2;
+  const Vec3W<W> turn = block.twist * block.normal + block.rolling;
+  LaneTorques<W> torques{cross(friction.from_a, slide) + turn, cross(friction.from_b, slide) + turn};
+  for (int k = 0; k < lanes.point_count; ++k) {
+    const Vec3W<W> push = block.points[k].impulse * block.normal;
+    torques.a = select<W>(load.exists[k], torques.a + cross(arms[k].from_a, push), torques.a);
+    torques.b = select<W>(load.exists[k], torques.b + cross(arms[k].from_b, push), torques.b);
   }
   return torques;
 }
 
-inline void turn_body(float* record, const Vec3W<1>& before, const Vec3W<1>& after) {
+template <int W>
+GYRE_INLINE void turn_body(float* record, int lane, const Vec3W<W>& change) {
   float* const spin = record + kMotionAngular;
-  spin[0] += after.x[0] - before.x[0];
-  spin[1] += after.y[0] - before.y[0];
-  spin[2] += after.z[0] - before.z[0];
+  spin[0] += change.x[lane];
+  spin[1] += change.y[lane];
+  spin[2] += change.z[lane];
+}
+
+// What decides the masses, for all lanes of a block.
+template <int W>
+GYRE_INLINE void copy_bodies(const ContactBlock<W>& from, ContactBlock<W>& to) {
+  to.has_a = from.has_a, to.has_b = from.has_b;
+  to.normal = from.normal, to.tangent_1 = from.tangent_1, to.tangent_2 = from.tangent_2;
+  to.inverse_mass_a = from.inverse_mass_a, to.inverse_mass_b = from.inverse_mass_b;
+}
+
+// Takes over what became of the lanes that are followed.
+template <int W>
+GYRE_INLINE void put_back(ContactBlock<W>& block, const ContactBlock<W>& moved, const FollowedLanes<W>& lanes,
+                          const LoadShares<W>& load) {
+  const auto followed = Mask<W>::of_bits(lanes.bits);
+  const auto put = [](Mask<W> where, auto& to, const auto& from) { to = select(where, from, to); };
+  const auto put_vector = [](Mask<W> where, Vec3W<W>& to, const Vec3W<W>& from) { to = select<W>(where, from, to); };
+  put_vector(followed, block.friction_from_a, moved.friction_from_a);
+  put_vector(followed, block.friction_from_b, moved.friction_from_b);
+  put(followed, block.inverse_k11, moved.inverse_k11), put(followed, block.inverse_k12, moved.inverse_k12);
+  put(followed, block.inverse_k13, moved.inverse_k13), put(followed, block.inverse_k22, moved.inverse_k22);
+  put(followed, block.inverse_k23, moved.inverse_k23), put(followed, block.inverse_k33, moved.inverse_k33);
+  put_vector(followed, block.arm_shift_a, moved.arm_shift_a);
+  put_vector(followed, block.arm_shift_b, moved.arm_shift_b);
+  Wide<W> separations[kMaxManifoldPoints];
+  gather_columns<4, W>(lanes.arms, kArmsSeparation, separations);
+  for (int i = 0; i < lanes.point_count; ++i) {
+    put_vector(load.exists[i], block.points[i].arm, moved.points[i].arm);
+    put(load.exists[i], block.points[i].separation, separations[i]);
+    put(load.exists[i], block.relief[i], moved.relief[i]);
+    for (int j = i; j < lanes.point_count; ++j) {
+      put(load.exists[j], block.k[packed(i, j)], moved.k[packed(i, j)]);
+      put(load.exists[j], block.inverse_k[packed(i, j)], moved.inverse_k[packed(i, j)]);
+    }
+  }
 }
 
 template <int W>
-void follow_lane(void* memory, int index, int lane, const FollowedArms& arms, const Sym3* inverse_a,
-                 const Sym3* inverse_b) {
+void follow_lanes(void* memory, int index, const FollowedLane* followed, int count) {
   ContactBlock<W>& block = static_cast<ContactBlock<W>*>(memory)[index];
-  ContactBlock<1> one{};
-  take_lane<W>(block, lane, arms.count, one);
-  const LaneTorques before = torques_of(one, arms.before, arms), now = torques_of(one, arms.now, arms);
-  const Vec3W<1> before_a = one.inverse_inertia_a * before.a, before_b = one.inverse_inertia_b * before.b;
-  if (inverse_a != nullptr) one.inverse_inertia_a = one_lane(*inverse_a);
-  if (inverse_b != nullptr) one.inverse_inertia_b = one_lane(*inverse_b);
-  turn_body(block.write_a[lane], one.inverse_inertia_a * now.a, before_a);  // a gets the opposite
-  turn_body(block.write_b[lane], before_b, one.inverse_inertia_b * now.b);
-  Wide<1> exists[kMaxManifoldPoints];
-  auto nearer_a = Wide<1>(0.0f) < Wide<1>(1.0f);
-  for (int k = 0; k < kMaxManifoldPoints; ++k) {
-    exists[k] = Wide<1>(k < arms.count ? 1.0f : 0.0f);
-    if (k >= arms.count) continue;
-    const PointArms<1> point{one_lane(arms.middle.from_a[k]), one_lane(arms.middle.from_b[k])};
-    if (k == 0) nearer_a = place_arms<1>(one, point);
-    one.points[k].arm = cross(select<1>(nearer_a, point.from_a, point.from_b), one.normal);
+  const FollowedLanes<W> lanes(followed, count);
+  const LoadShares<W> load(block, lanes);
+  const LaneTorques<W> before = torques_of<W>(block, lanes, load, kArmsBefore),
+                       now = torques_of<W>(block, lanes, load, kArmsNow);
+  const Vec3W<W> before_a = block.inverse_inertia_a * before.a, before_b = block.inverse_inertia_b * before.b;
+  const auto refresh = [](std::uint32_t bits, const Sym3W<W>& present, Sym3W<W>& old) {
+    const auto known = Mask<W>::of_bits(bits);
+    old = {select(known, present.xx, old.xx), select(known, present.yy, old.yy), select(known, present.zz, old.zz),
+           select(known, present.xy, old.xy), select(known, present.xz, old.xz), select(known, present.yz, old.yz)};
+  };
+  refresh(lanes.has_a, gather_tensor<W>(lanes.inverse_a), block.inverse_inertia_a);
+  refresh(lanes.has_b, gather_tensor<W>(lanes.inverse_b), block.inverse_inertia_b);
+  const Vec3W<W> change_a = before_a - block.inverse_inertia_a * now.a,  // a gets the opposite
+                 change_b = block.inverse_inertia_b * now.b - before_b;
+  for (int i = 0; i < count; ++i) {
+    const int lane = followed[i].lane;
+    turn_body<W>(block.write_a[lane], lane, change_a);
+    turn_body<W>(block.write_b[lane], lane, change_b);
   }
-  const FrictionArms friction = friction_arms(one, arms.middle, arms);
-  one.friction_from_a = one_lane(friction.from_a);
-  one.friction_from_b = one_lane(friction.from_b);
+  ContactBlock<W> moved;
+  copy_bodies<W>(block, moved);
+  moved.inverse_inertia_a = block.inverse_inertia_a, moved.inverse_inertia_b = block.inverse_inertia_b;
+  moved.point_count = lanes.point_count;
+  const PointArms<W> first = gather_arms<W>(lanes, kArmsMiddle, 0);
+  const auto nearer_a = place_arms<W>(moved, first);
+  FrictionArms<W> friction(load, first);
+  Wide<W> exists[kMaxManifoldPoints];
+  for (int k = 0; k < lanes.point_count; ++k) {
+    exists[k] = keep(load.exists[k], Wide<W>(1.0f));
+    const PointArms<W> arms = k == 0 ? first : gather_arms<W>(lanes, kArmsMiddle, k);
+    if (k > 0) friction.add(load, k, arms);
+    moved.points[k].arm = cross(select<W>(nearer_a, arms.from_a, arms.from_b), block.normal);
+  }
+  moved.friction_from_a = friction.from_a, moved.friction_from_b = friction.from_b;
   auto twists = nearer_a;
-  prepare_friction_masses<1>(one, one.twist_radius > Wide<1>(0.0f), twists);
-  prepare_normals<1>(one, exists);
-  put_lane_back<W>(block, lane, one, arms);
+  prepare_friction_masses<W>(moved, block.twist_radius > Wide<W>(0.0f), twists);
+  prepare_normals<W>(moved, exists);
+  put_back<W>(block, moved, lanes, load);
   block.idles = 0;
 }
 

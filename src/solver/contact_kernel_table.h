@@ -16,7 +16,7 @@ constexpr ContactKernels contact_kernels() {
   return {W,
           sizeof(ContactBlock<W>),
           prepare_blocks<W>,
-          follow_lane<W>,
+          follow_lanes<W>,
           warm_start_blocks<W>,
           solve_blocks<W>,
           relax_blocks<W>,
