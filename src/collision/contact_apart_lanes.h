@@ -32,21 +32,24 @@ GYRE_INLINE Wide<W> face_separation(WideInt<W> axis, Vec3W<W> a, Vec3W<W> b, con
   return absolute(way) - own - dot(select(of_b, a, b), absolute(normal));
 }
 
-// Kind, rounding and half extents of a box.
 template <int W>
-struct BoxLanes {
-  Mask<W> sharp;  // a box, and without rounding
-  Vec3W<W> half;
+GYRE_INLINE Vec3W<W> load_half_extents(const Records<W>& shape) {
+  static_assert(offsetof(ColliderShape, shape) == 0);
+  Wide<W> column[4];
+  read_four<W>(shape, GYRE_FLOATS_BEFORE(Shape, extents), column);
+  return {column[0], column[1], column[2]};
+}
 
-  GYRE_INLINE explicit BoxLanes(const Records<W>& shape) {
-    static_assert(GYRE_FLOATS_BEFORE(Shape, radius) == 1 && GYRE_FLOATS_BEFORE(Shape, extents) == 2);
-    Wide<W> column[4];
-    read_four<W>(shape, 0, column);
-    half = {column[2], column[3], read_one<W>(shape, 4)};
-    const WideInt<W> kind = bit_pattern(column[0]) & WideInt<W>(0xff);
-    sharp = (kind == WideInt<W>(std::int32_t(ShapeKind::box))) & (column[1] == Wide<W>(0.0f));
-  }
-};
+GYRE_INLINE bool is_sharp_box(const Shape& shape) {
+  return shape.kind == ShapeKind::box && shape.radius == 0.0f;
+}
+
+// Whether the full look at a contact would begin with the face of two boxes, and no manifold is there to be cleared.
+GYRE_INLINE bool begins_with_face(const ContactPair& pair) {
+  const Contact& contact = *pair.contact;
+  return contact.manifold_count == 0 && contact.cache.words[0] - 1u < kBoxFaceAxes && contact.sensor == 0 &&
+         is_sharp_box(pair.shape_a->shape) && is_sharp_box(pair.shape_b->shape);
+}
 
 // Notes in the contacts of those lanes whose bits are set what a full look would that found nothing as far as `reach`.
 template <int W>
@@ -74,23 +77,20 @@ GYRE_INLINE Wide<W> look_reach(const Group<W>& group) {
 // more than a full look would reach. Returns their bits.
 template <int W>
 GYRE_INLINE unsigned part_boxes(const Group<W>& group, const ShapesInView<W>& shapes, unsigned lanes) {
-  static_assert(offsetof(Contact, manifold_room) == 20 && offsetof(Contact, manifold_count) == 22);
-  constexpr int kCache = GYRE_FLOATS_BEFORE(Contact, cache);
+  Records<W> contact;
   unsigned may = 0;
-  Records<W> record;
   GYRE_UNROLL
   for (int i = 0; i < W; ++i) {
-    const Contact& contact = *group.pairs[i]->contact;
-    record[i] = floats(&contact);
-    const bool empty = contact.manifold_count == 0 && contact.manifold_room == 1 && contact.sensor == 0;
-    may |= unsigned(empty && contact.cache.words[0] - 1u < kBoxFaceAxes) << i;
+    contact[i] = floats(group.pairs[i]->contact);
+    may |= unsigned(begins_with_face(*group.pairs[i])) << i;
   }
   if ((may & lanes) == 0) return 0;
-  const BoxLanes<W> a(shapes.records_a), b(shapes.records_b);
-  const WideInt<W> axis = bit_pattern(read_one<W>(record, kCache)) - WideInt<W>(1);
+  const WideInt<W> axis =
+      bit_pattern(read_one<W>(contact, GYRE_FLOATS_BEFORE(Contact, cache))) - WideInt<W>(1);
   const Wide<W> reach = look_reach<W>(group);
-  const Wide<W> separation = face_separation<W>(axis, a.half, b.half, shapes.a_from_b);
-  const unsigned apart = may & lanes & to_bits(a.sharp & b.sharp & (separation > reach));
+  const Wide<W> separation = face_separation<W>(axis, load_half_extents<W>(shapes.records_a),
+                                                load_half_extents<W>(shapes.records_b), shapes.a_from_b);
+  const unsigned apart = may & lanes & to_bits(separation > reach);
   if (apart != 0) note_nothing<W>(group, reach, apart);
   return apart;
 }
