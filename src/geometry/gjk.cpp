@@ -4,6 +4,7 @@
 #include "geometry/closest.h"
 #include "geometry/hull.h"
 #include "math/rotation.h"
+#include "math/wide.h"
 
 namespace gyre {
 namespace {
@@ -81,11 +82,8 @@ SimplexPoint nearest_to_origin(const DifferencePoint* s, int count, bool outside
   }
 }
 
-double largest_part(DVec3 v) { return max(absolute(v.x), max(absolute(v.y), absolute(v.z))); }
-
-}  // namespace
-
-DVec3 core_support(const Shape& shape, DVec3 d) {
+// In place of a call: it is asked twice in every round.
+GYRE_INLINE DVec3 support_of(const Shape& shape, DVec3 d) {
   const double h = double(shape.extents.y);
   switch (shape.kind) {
     case ShapeKind::box: {
@@ -109,6 +107,12 @@ DVec3 core_support(const Shape& shape, DVec3 d) {
       return {};
   }
 }
+
+double largest_part(DVec3 v) { return max(absolute(v.x), max(absolute(v.y), absolute(v.z))); }
+
+}  // namespace
+
+DVec3 core_support(const Shape& shape, DVec3 d) { return support_of(shape, d); }
 
 // In double, from a quaternion brought to length 1: B stays the rigid body that the float quaternion means.
 CorePair::CorePair(const Shape& a, const Shape& b, const Transform& a_from_b)
@@ -143,8 +147,8 @@ DVec3 CorePair::from_b(DVec3 d) const { return d.x * x_ + d.y * y_ + d.z * z_; }
 
 DifferencePoint CorePair::support(DVec3 direction) const {
   DifferencePoint out;
-  out.on_a = a_ != nullptr ? core_support(*a_, -direction) : farthest_corner(triangle_, -direction);
-  out.on_b = from_b(core_support(*b_, to_b(direction))) + position_;
+  out.on_a = a_ != nullptr ? support_of(*a_, -direction) : farthest_corner(triangle_, -direction);
+  out.on_b = from_b(support_of(*b_, to_b(direction))) + position_;
   out.way = out.on_b - out.on_a;
   return out;
 }

@@ -67,12 +67,13 @@ struct CoreDistance {
   double distance = 0.0;
   DVec3 normal;      // unit, from A to B; the last direction looked at when they overlap
   DVec3 on_a, on_b;  // closest points, A's frame
-  int simplex_count = 0;
-  int iterations = 0;
   // Simplex around (or nearest to) the origin, where EPA starts. Not cleared: only the counted ones are ever read.
   union {
     DifferencePoint simplex[4];
   };
+  int simplex_count = 0;
+  int iterations = 0;
+
   CoreDistance() {}
 };
 
