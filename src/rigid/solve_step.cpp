@@ -219,8 +219,9 @@ void begin_lone(SolveScratch& scratch, std::size_t workers) {
   while (scratch.lone.size() > workers) scratch.lone.pop_back();
   while (scratch.lone.size() < workers) scratch.lone.push_back(std::make_unique<LoneSolver>());
   for (const std::unique_ptr<LoneSolver>& lone : scratch.lone) make_as_roomy(*scratch.lone[0], *lone);
+  for (const std::unique_ptr<LoneSolver>& lone : scratch.lone) make_as_roomy(*lone, *scratch.lone[0]);
+  // After all have heard of it: an arena that starts over forgets what it needed.
   for (const std::unique_ptr<LoneSolver>& lone : scratch.lone) {
-    make_as_roomy(*lone, *scratch.lone[0]);
     begin_scratch(lone->scratch);
     lone->arena.reset();
   }

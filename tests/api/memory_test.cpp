@@ -100,9 +100,7 @@ TEST(NoAllocation, InJointsAndThreads) {
   }
   expect_none(world, 2400, 120, "chain on two threads");  // it swings for long, and now and then links touch
 }
-// Which of the workers solves which pile is chance.
-TEST(NoAllocation, InPilesThatWorkersShare) {
-  World world = make_world({.threads = 3, .sleeping = false});
+void add_piles(World& world) {
   add_ground(world);
   for (int pile = 0; pile < 24; ++pile) {
     const int boxes = pile == 12 ? 60 : 2;
@@ -110,8 +108,29 @@ TEST(NoAllocation, InPilesThatWorkersShare) {
       world.add_body({.pose = {.position = {20.0 * pile + 1.01 * (i % 4), 0.51 + 1.01 * (i / 4), 0}}},
                      {.geometry = Box{}});
   }
+}
+
+// Which of the workers solves which pile is chance.
+TEST(NoAllocation, InPilesThatWorkersShare) {
+  World world = make_world({.threads = 3, .sleeping = false});
+  add_piles(world);
   expect_none(world, 20, 600, "piles on three threads");
 }
+
+// Whoever comes first does all there is: others have room for it before they ever had any of it.
+TEST(NoAllocation, WhenAnotherWorkerTakesOver) {
+  static int first = 0;
+  WorldDef def{.sleeping = false};
+  def.host_tasks.worker_count = 3;
+  def.host_tasks.run = [](void*, int count, void (*task)(void*, int), void* context) {
+    for (int i = 0; i < count; ++i) task(context, (first + i) % count);
+  };
+  World world = make_world(def);
+  add_piles(world);
+  expect_none(world, 20, 20, "the first worker");
+  for (first = 1; first < 3; ++first) expect_none(world, 0, 20, "another worker");
+}
+
 TEST(NoAllocation, InFields) {
   World world = make_world({.threads = 2, .sleeping = false});
   world.add_field({.kind = FieldKind::buoyancy, .linear_drag = 0.5f});
