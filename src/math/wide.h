@@ -35,11 +35,14 @@
 // Compilers note that vectors wider than the CPU's registers have no stable calling convention; here nothing is called.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
-// Before a short loop over lanes or columns whose arrays must become registers.
+// Before a short loop over lanes or columns whose arrays must become registers; and before one whose body is long enough already, of
+// which a compiler would make several copies one after the other.
 #if defined(__clang__)
 #define GYRE_UNROLL _Pragma("clang loop unroll(full)")
+#define GYRE_ROLLED _Pragma("clang loop unroll(disable)")
 #else
 #define GYRE_UNROLL _Pragma("GCC unroll 16")
+#define GYRE_ROLLED _Pragma("GCC unroll 1")
 #endif
 
 namespace gyre {

@@ -392,6 +392,7 @@ GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W, kHasA>& pair
       tried[i] = max(kept[i], zero);
       change[i] = tried[i] - kept[i];
     }
+    GYRE_ROLLED
     for (int sweep = 0; sweep < kPullSweeps; ++sweep) {
       auto stands = one > zero;
       GYRE_UNROLL
@@ -439,10 +440,10 @@ GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W, kHasA>& pai
 }
 
 // Contacts that bore nothing yet: friction knows no load that limits it, so the normals have to come first once.
-template <int W, bool kHasA>
-GYRE_INLINE void strike_fresh(ContactBlock<W>& block, PairMotion<W, kHasA>& pair, float substep) {
+template <int W>
+GYRE_INLINE void strike_fresh(ContactBlock<W>& block, PairMotion<W>& pair, float substep) {
   const auto fresh = block.fresh > Wide<W>(0.0f);
-  const PairMotion<W, kHasA> old = pair;
+  const PairMotion<W> old = pair;
   Wide<W> impulses[kMaxManifoldPoints];
   for (int k = 0; k < block.point_count; ++k) impulses[k] = block.points[k].impulse;
   const Wide<W> friction_1 = block.friction_1, friction_2 = block.friction_2, twist = block.twist, sliding = block.sliding;
@@ -456,22 +457,30 @@ GYRE_INLINE void strike_fresh(ContactBlock<W>& block, PairMotion<W, kHasA>& pair
   block.twist = select(fresh, block.twist, twist);
   block.sliding = select(fresh, block.sliding, sliding);
   block.has_fresh = 0;
-  if constexpr (kHasA) {
-    pair.linear_a = select<W>(fresh, pair.linear_a, old.linear_a);
-    pair.angular_a = select<W>(fresh, pair.angular_a, old.angular_a);
-  }
+  pair.linear_a = select<W>(fresh, pair.linear_a, old.linear_a);
+  pair.angular_a = select<W>(fresh, pair.angular_a, old.angular_a);
   pair.linear_b = select<W>(fresh, pair.linear_b, old.linear_b);
   pair.angular_b = select<W>(fresh, pair.angular_b, old.angular_b);
 }
 
 // What comes before friction and normals. A function of its own, which reads the bodies itself, so that all others may keep them in
-// registers.
-template <int W, bool kHasA>
-__attribute__((noinline)) PairMotion<W, kHasA> begin_pair(ContactBlock<W>& block, float substep) {
-  PairMotion<W, kHasA> pair = load_pair<W, kHasA>(block);
+// registers. Few contacts come here, so those without a body A do so as if it were there.
+template <int W>
+__attribute__((noinline)) PairMotion<W> begin_pair(ContactBlock<W>& block, float substep) {
+  PairMotion<W> pair = load_pair<W>(block);
   if (block.has_fresh != 0) strike_fresh<W>(block, pair, substep);
   if (block.rolls != 0) solve_rolling<W>(block, pair);
   return pair;
+}
+
+// What of it a block has in which no lane has a body A.
+template <bool kHasA, int W>
+GYRE_INLINE PairMotion<W, kHasA> part_of(const PairMotion<W>& pair) {
+  if constexpr (kHasA) {
+    return pair;
+  } else {
+    return {pair.linear_b, pair.angular_b};
+  }
 }
 
 // Whether nothing moves: to the bit, so that a block has one answer.
@@ -520,7 +529,7 @@ struct StandingImpulses {
 template <int W, bool kHasA>
 GYRE_INLINE void solve_block(ContactBlock<W>& block, float substep) {
   const bool begins = (block.has_fresh | block.rolls) != 0;
-  PairMotion<W, kHasA> pair = begins ? begin_pair<W, kHasA>(block, substep) : load_pair<W, kHasA>(block);
+  PairMotion<W, kHasA> pair = begins ? part_of<kHasA>(begin_pair<W>(block, substep)) : load_pair<W, kHasA>(block);
   const bool still = !begins && is_still<W>(pair) && has_stayed<W, kHasA>(block);
   if (!still || block.idles == 0) {
     StandingImpulses<W> standing;

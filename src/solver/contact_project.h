@@ -111,6 +111,7 @@ GYRE_INLINE void project_block(ContactBlock<W>& block, float step) {
     relief[i] = select((k > zero) & (block.relief[i] > zero),
                        Wide<W>(1.0f) / select(k > zero, k, Wide<W>(1.0f)), zero);
   }
+  GYRE_ROLLED
   for (int sweep = 0; sweep < kProjectionSweeps; ++sweep) {
     auto stands = zero == zero;
     for (int i = 0; i < count; ++i) {
