@@ -26,32 +26,44 @@ constexpr float kMostFriction = 1.0e6f;
 // ----------------------------------------------------------------------------------------------- records, side by side
 
 // Where the fours begin in the records, in floats.
-constexpr int kManifoldNormal = 0, kManifoldPoints = 4, kManifoldFriction = 52, kManifoldTwist = 56, kManifoldTotals = 60,
-              kManifoldSliding = 64, kPointA = 0, kPointB = 4, kPointImpulse = 8, kPointFloats = 12, kInertiaMass = 4,
-              kConstraintFriction = 0, kConstraintSize = 4;
+constexpr int kManifoldNormal = 0, kManifoldPoints = 4, kManifoldFriction = 52, kManifoldTwist = 56, kManifoldTotals = 61,
+              kPointA = 0, kPointB = 4, kPointImpulse = 8, kPointFloats = 12, kInertiaMass = 4, kConstraintFriction = 0,
+              kConstraintSize = 4, kConstraintVelocity = 6, kConstraintKinds = 10;
 static_assert(offsetof(Manifold, normal) == 4 * kManifoldNormal && offsetof(Manifold, points) == 4 * kManifoldPoints);
 static_assert(offsetof(Manifold, age) == 4 * kManifoldFriction && offsetof(Manifold, friction_impulse) == 4 * kManifoldFriction + 4);
 static_assert(offsetof(Manifold, twist_impulse) == 4 * kManifoldTwist && offsetof(Manifold, rolling_impulse) == 4 * kManifoldTwist + 4);
-static_assert(offsetof(Manifold, total_friction) == 4 * kManifoldTotals + 4 && offsetof(Manifold, sliding) == 4 * kManifoldSliding);
+static_assert(offsetof(Manifold, count) == 4 * kManifoldNormal + 12);
+static_assert(offsetof(Manifold, total_friction) == 4 * kManifoldTotals && offsetof(Manifold, sliding) == 4 * kManifoldTotals + 12);
 static_assert(sizeof(ContactPointState) == 4 * kPointFloats && offsetof(ContactPointState, from_b) == 4 * kPointB);
 static_assert(offsetof(ContactPointState, normal_impulse) == 4 * kPointImpulse && offsetof(ContactPointState, separation) == 12);
 static_assert(offsetof(ContactPointState, total_impulse) == 4 * kPointImpulse + 4 && offsetof(ContactPointState, held) == 4 * kPointImpulse + 8);
 static_assert(offsetof(BodyInertia, inverse_mass) == 4 * kInertiaMass + 8);
 static_assert(offsetof(ContactConstraint, static_friction) == 4 * kConstraintFriction);
-static_assert(offsetof(ContactConstraint, size) == 4 * kConstraintSize);
+static_assert(offsetof(ContactConstraint, size) == 4 * kConstraintSize && offsetof(ContactConstraint, push_speed) == 4 * kConstraintSize + 4);
+static_assert(offsetof(ContactConstraint, surface_velocity) == 4 * kConstraintVelocity);
+// Bytes of one four: of the last float.
+static_assert(offsetof(ContactConstraint, rigid) == 4 * kConstraintKinds + 12 && offsetof(ContactConstraint, linked) == 4 * kConstraintKinds + 13);
 
-// The manifolds, points and bodies of a block's lanes. Lanes without a contact, and points that a lane does not have, read
-// zeros and are not written.
+// The constraints and manifolds of a block's lanes. Lanes without a contact, and points that a lane does not have, read zeros
+// and are not written.
 template <int W>
 struct LaneRecords {
   const float* constraint[W];
   float* manifold[W];
-  float* point[kMaxManifoldPoints][W];
-  const float* inertia_a[W];
-  const float* inertia_b[W];
-  std::uint32_t lanes = 0;  // bits
-  int point_count = 0;      // the most of any lane
+  float* point[W];  // the manifold, where a lane has the point that is worked on
+  float* nowhere;
+  std::uint32_t lanes = 0;                  // bits
+  std::uint32_t has_point[kMaxManifoldPoints];  // bits
+  int point_count = 0;                      // the most of any lane
+  Vec3W<W> normal;
   Wide<W> exists[kMaxManifoldPoints];  // 1 or 0
+
+  // Where the fours of point k begin in `point`. Points are worked on in rising order.
+  GYRE_INLINE int begin_point(int k) {
+    for (std::uint32_t without = lanes & ~has_point[k]; without != 0; without &= without - 1)
+      point[__builtin_ctz(without)] = nowhere;
+    return kManifoldPoints + k * kPointFloats;
+  }
 };
 
 // Manifolds lie anywhere in memory: those of the next block come while this one is worked on.
@@ -67,30 +79,27 @@ GYRE_INLINE void fetch_ahead(const ContactConstraint* constraints, const std::ui
 
 // `nowhere` is what lanes without a record read (zeros) and write.
 template <int W>
-LaneRecords<W> find_records(const ContactConstraint* constraints, const std::uint32_t* order, ContactBodies bodies,
-                            float (&nowhere)[80]) {
-  alignas(64) static constexpr float kImmovable[8] = {};
+GYRE_INLINE LaneRecords<W> find_records(const ContactConstraint* constraints, const std::uint32_t* order,
+                                        float (&nowhere)[80]) {
   LaneRecords<W> records;
-  for (int k = 0; k < kMaxManifoldPoints; ++k) records.exists[k] = Wide<W>(0.0f);
+  records.nowhere = nowhere;
   for (int lane = 0; lane < W; ++lane) {
-    records.constraint[lane] = records.manifold[lane] = nowhere;
-    records.inertia_a[lane] = records.inertia_b[lane] = kImmovable;
-    for (int k = 0; k < kMaxManifoldPoints; ++k) records.point[k][lane] = nowhere;
+    records.constraint[lane] = records.manifold[lane] = records.point[lane] = nowhere;
     if (order[lane] == 0xffffffffu) continue;
     const ContactConstraint& constraint = constraints[order[lane]];
-    Manifold& manifold = *constraint.manifold;
     records.lanes |= 1u << lane;
     records.constraint[lane] = reinterpret_cast<const float*>(&constraint);
-    records.manifold[lane] = &manifold.normal.x;
-    if (bodies.inertia != nullptr) {
-      if (constraint.body_a != kNoBody) records.inertia_a[lane] = &bodies.inertia[constraint.body_a].inverse.xx;
-      if (constraint.body_b != kNoBody) records.inertia_b[lane] = &bodies.inertia[constraint.body_b].inverse.xx;
-    }
-    for (int k = 0; k < manifold.count; ++k) {
-      records.point[k][lane] = &manifold.points[k].from_a.x;
-      records.exists[k].set(lane, 1.0f);
-    }
-    if (manifold.count > records.point_count) records.point_count = manifold.count;
+    records.manifold[lane] = records.point[lane] = &constraint.manifold->normal.x;
+  }
+  Wide<W> in[4];
+  gather_columns<4, W>(records.manifold, kManifoldNormal, in);
+  records.normal = {in[0], in[1], in[2]};
+  GYRE_UNROLL
+  for (int k = 0; k < kMaxManifoldPoints; ++k) {
+    const Mask<W> has = bit_pattern(in[3]) > WideInt<W>(k);
+    records.has_point[k] = to_bits(has);
+    records.exists[k] = keep(has, Wide<W>(1.0f));
+    if (records.has_point[k] != 0) records.point_count = k + 1;
   }
   return records;
 }
@@ -306,16 +315,10 @@ GYRE_INLINE void prepare_normals(ContactBlock<W>& block, const Wide<W> (&point_e
 // faces up. So a heap is freed from below in few passes, as if the lower body were much heavier (E. Guendelman, R. Bridson,
 // R. Fedkiw, "Nonconvex Rigid Bodies with Stacking", 2003, calls it shock propagation).
 template <int W>
-GYRE_INLINE void prepare_softness(ContactBlock<W>& block, const ContactConstraint* constraints, const std::uint32_t* order,
-                                  Wide<W> age, Wide<W> size, const ContactSettings& settings) {
+GYRE_INLINE void prepare_softness(ContactBlock<W>& block, Mask<W> rigid, Wide<W> age, Wide<W> size,
+                                  const ContactSettings& settings) {
   const Wide<W> zero(0.0f), one(1.0f), aging(settings.aging);
-  std::uint32_t rigid = 0;
-  for (int lane = 0; lane < W; ++lane) {
-    if (order[lane] == 0xffffffffu) continue;
-    rigid |= std::uint32_t(constraints[order[lane]].rigid) << lane;
-    block.linked |= std::uint32_t(constraints[order[lane]].linked) << lane;
-  }
-  const auto yields = ~Mask<W>::of_bits(rigid), both = Mask<W>::of_bits(block.pushes_a & block.pushes_b);
+  const auto yields = ~rigid, both = Mask<W>::of_bits(block.pushes_a & block.pushes_b);
   const Wide<W> youth = aging / (aging + age);
   block.rate = keep(yields, youth * Wide<W>(settings.rate));
   block.slop = Wide<W>(kSpringSlop) * size;
@@ -337,6 +340,8 @@ GYRE_INLINE void prepare_impulses(ContactBlock<W>& block, const LaneRecords<W>& 
   const Vec3W<W> friction = warm * Vec3W<W>{in[1], in[2], in[3]};
   block.friction_1 = dot(friction, block.tangent_1);
   block.friction_2 = dot(friction, block.tangent_2);
+  gather_columns<4, W>(records.manifold, kManifoldTotals, in);
+  block.sliding = to_float(bit_pattern(in[3]));
   gather_columns<4, W>(records.manifold, kManifoldTwist, in);
   block.twist = warm * in[0];
   block.rolling_friction = surface.rolling_friction;
@@ -360,39 +365,47 @@ GYRE_INLINE void load_inertia(const float* const (&record)[W], Wide<W>& inverse_
   inverse_mass = high[2];
 }
 
-// Lanes of whole numbers: bodies, and what is sliding.
+// The records of one side's bodies: their motion, and their mass into the block. Returns which lanes have one, as bits.
 template <int W>
-void prepare_lanes(ContactBlock<W>& block, const LaneRecords<W>& records, const ContactConstraint* constraints,
-                   const std::uint32_t* order, BodyMotion* motion) {
-  const Wide<W> zero(0.0f);
-  const Sym3W<W>& a = block.inverse_inertia_a;
-  const Sym3W<W>& b = block.inverse_inertia_b;
-  // Whatever pushes a body turns or moves it by a diagonal element.
-  const std::uint32_t moves_a = to_bits((block.inverse_mass_a > zero) | (a.xx != zero) | (a.yy != zero) | (a.zz != zero));
-  const std::uint32_t moves_b = to_bits((block.inverse_mass_b > zero) | (b.xx != zero) | (b.yy != zero) | (b.zz != zero));
-  block.has_a = block.has_b = 0;
+GYRE_INLINE std::uint32_t find_side(const LaneRecords<W>& records, std::int32_t ContactConstraint::* body,
+                                    ContactBodies bodies, const float* (&motion)[W], Wide<W>& inverse_mass,
+                                    Sym3W<W>& inverse_inertia) {
+  const float* inertia[W];
+  std::uint32_t has = 0;
   for (int lane = 0; lane < W; ++lane) {
-    block.read_a[lane] = block.read_b[lane] = kNoRecord;
-    block.write_a[lane] = block.write_b[lane] = block.nowhere;
-    block.sliding.set(lane, 0.0f);
+    motion[lane] = inertia[lane] = kNoRecord;
     if ((records.lanes >> lane & 1u) == 0) continue;
-    const ContactConstraint& constraint = constraints[order[lane]];
-    if (constraint.body_a != kNoBody) {
-      float* const record = &motion[constraint.body_a].linear_velocity.x;
-      block.has_a |= 1u << lane;
-      block.read_a[lane] = record;
-      if ((moves_a >> lane & 1u) != 0) block.write_a[lane] = record;
-    }
-    if (constraint.body_b != kNoBody) {
-      float* const record = &motion[constraint.body_b].linear_velocity.x;
-      block.has_b |= 1u << lane;
-      block.read_b[lane] = record;
-      if ((moves_b >> lane & 1u) != 0) block.write_b[lane] = record;
-    }
-    block.sliding.set(lane, float(constraint.manifold->sliding));
+    const std::int32_t place = reinterpret_cast<const ContactConstraint*>(records.constraint[lane])->*body;
+    if (place == kNoBody) continue;
+    has |= 1u << lane;
+    motion[lane] = &bodies.motion[place].linear_velocity.x;
+    inertia[lane] = &bodies.inertia[place].inverse.xx;
   }
-  block.pushes_a = block.has_a & moves_a;
-  block.pushes_b = block.has_b & moves_b;
+  load_inertia<W>(inertia, inverse_mass, inverse_inertia);
+  return has;
+}
+
+// Where the velocities of the bodies that are pushed go.
+template <int W>
+GYRE_INLINE void find_pushed(std::uint32_t pushes, const float* const (&read)[W], float* nowhere, float* (&write)[W]) {
+  for (int lane = 0; lane < W; ++lane)
+    write[lane] = (pushes >> lane & 1u) != 0 ? const_cast<float*>(read[lane]) : nowhere;
+}
+
+template <int W>
+GYRE_INLINE void prepare_bodies(ContactBlock<W>& block, const LaneRecords<W>& records, ContactBodies bodies) {
+  const Wide<W> zero(0.0f);
+  Sym3W<W>& a = block.inverse_inertia_a;
+  Sym3W<W>& b = block.inverse_inertia_b;
+  block.has_a = find_side<W>(records, &ContactConstraint::body_a, bodies, block.read_a, block.inverse_mass_a, a);
+  block.has_b = find_side<W>(records, &ContactConstraint::body_b, bodies, block.read_b, block.inverse_mass_b, b);
+  // Whatever pushes a body turns or moves it by a diagonal element.
+  block.pushes_a =
+      block.has_a & to_bits((block.inverse_mass_a > zero) | (a.xx != zero) | (a.yy != zero) | (a.zz != zero));
+  block.pushes_b =
+      block.has_b & to_bits((block.inverse_mass_b > zero) | (b.xx != zero) | (b.yy != zero) | (b.zz != zero));
+  find_pushed<W>(block.pushes_a, block.read_a, block.nowhere, block.write_a);
+  find_pushed<W>(block.pushes_b, block.read_b, block.nowhere, block.write_b);
 }
 
 // Which body's centre the arms are measured from, and by how much they differ on the other. From the nearer one: the other
@@ -414,29 +427,26 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
                    ContactBodies bodies, const ContactSettings& settings) {
   const Wide<W> zero(0.0f), one(1.0f), warm(settings.warm_scale);
   alignas(64) float nowhere[80] = {};
-  const LaneRecords<W> records = find_records<W>(constraints, order, bodies, nowhere);
+  LaneRecords<W> records = find_records<W>(constraints, order, nowhere);
   block.point_count = records.point_count;
   block.rolls = block.has_fresh = block.idles = 0;
-  block.linked = 0;
   Wide<W> in[4];
-  gather_columns<4, W>(records.manifold, kManifoldNormal, in);
-  block.normal = {in[0], in[1], in[2]};
+  block.normal = records.normal;
   block.tangent_1 = any_perpendicular<W>(block.normal);
   block.tangent_2 = cross(block.normal, block.tangent_1);
-  load_inertia<W>(records.inertia_a, block.inverse_mass_a, block.inverse_inertia_a);
-  load_inertia<W>(records.inertia_b, block.inverse_mass_b, block.inverse_inertia_b);
-  prepare_lanes<W>(block, records, constraints, order, bodies.motion);
+  prepare_bodies<W>(block, records, bodies);
   PointArms<W> arms[kMaxManifoldPoints];
   auto nearer_a = one > zero;
   for (int k = 0; k < block.point_count; ++k) {
     PointBlock<W>& point = block.points[k];
-    gather_columns<4, W>(records.point[k], kPointA, in);
+    const int first = records.begin_point(k);
+    gather_columns<4, W>(records.point, first + kPointA, in);
     arms[k].from_a = {in[0], in[1], in[2]};
     point.separation = in[3];
-    gather_columns<4, W>(records.point[k], kPointB, in);
+    gather_columns<4, W>(records.point, first + kPointB, in);
     arms[k].from_b = {in[0], in[1], in[2]};
     if (k == 0) nearer_a = place_arms<W>(block, arms[0]);
-    gather_columns<4, W>(records.point[k], kPointImpulse, in);
+    gather_columns<4, W>(records.point, first + kPointImpulse, in);
     point.impulse = warm * in[0];
     point.held = warm * in[2];
     point.total = zero;
@@ -447,16 +457,20 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
   gather_columns<4, W>(records.constraint, kConstraintSize, in);
   const Wide<W> size = in[0];
   block.push_speed = in[1];
-  gather_columns<4, W>(records.constraint, kConstraintSize + 2, in);
+  gather_columns<4, W>(records.constraint, kConstraintVelocity, in);
   const Vec3W<W> surface_velocity{in[0], in[1], in[2]};
   block.surface_1 = dot(surface_velocity, block.tangent_1);
   block.surface_2 = dot(surface_velocity, block.tangent_2);
   block.total_1 = block.total_2 = zero;
+  gather_columns<4, W>(records.constraint, kConstraintKinds, in);
+  const WideInt<W> none(0), kinds = bit_pattern(in[3]);
+  const Mask<W> rigid = (kinds & WideInt<W>(0xff)) != none;
+  block.linked = to_bits((kinds & WideInt<W>(0xff00)) != none);
   Wide<W> age;
   prepare_impulses<W>(block, records, surface, settings, age);
   block.fresh = select(age > zero, zero, one);
   if ((to_bits(block.fresh > zero) & records.lanes) != 0) block.has_fresh = 1;
-  prepare_softness<W>(block, constraints, order, age, size, settings);
+  prepare_softness<W>(block, rigid, age, size, settings);
   prepare_friction<W>(block, surface, pressure_patch<W>(block, records, arms), size);
   prepare_normals<W>(block, records.exists);
 }
@@ -479,7 +493,7 @@ void finish_block(const ContactBlock<W>& block, const ContactConstraint* constra
                   const ContactSettings& settings) {
   const Wide<W> zero(0.0f), one(1.0f);
   alignas(64) float nowhere[80] = {};
-  const LaneRecords<W> records = find_records<W>(constraints, order, {}, nowhere);
+  LaneRecords<W> records = find_records<W>(constraints, order, nowhere);
   Wide<W> row[4];
   gather_columns<4, W>(records.manifold, kManifoldFriction, row);
   // Of the whole step: what bore nothing just as it ended is no reason to forget all.
@@ -496,19 +510,17 @@ void finish_block(const ContactBlock<W>& block, const ContactConstraint* constra
   scatter_columns<4, W>(records.manifold, kManifoldFriction, friction_row);
   const Wide<W> twist_row[4] = {block.twist + zero, block.rolling.x + zero, block.rolling.y + zero, block.rolling.z + zero};
   scatter_columns<4, W>(records.manifold, kManifoldTwist, twist_row);
-  for (int lane = 0; lane < W; ++lane) {
-    if ((records.lanes >> lane & 1u) == 0) continue;
-    Manifold& manifold = *constraints[order[lane]].manifold;
-    manifold.total_friction = {total.x[lane], total.y[lane], total.z[lane]};
-    manifold.sliding = block.sliding[lane] > 0.0f ? 1u : 0u;
-  }
+  const Wide<W> slides = from_bit_pattern(to_int(block.sliding > zero) & WideInt<W>(1));
+  const Wide<W> totals_row[4] = {total.x, total.y, total.z, slides};
+  scatter_columns<4, W>(records.manifold, kManifoldTotals, totals_row);
   for (int k = 0; k < block.point_count; ++k) {
     const PointBlock<W>& point = block.points[k];
-    gather_columns<4, W>(records.point[k], kPointImpulse, row);
+    const int first = records.begin_point(k) + kPointImpulse;
+    gather_columns<4, W>(records.point, first, row);
     const Wide<W> impulse = point.impulse + zero;
     const Wide<W> held = keep(point.total > zero, row[2] + gain * (impulse - row[2]));
     const Wide<W> point_row[4] = {impulse, row[1] + (point.total + zero), held, row[3]};
-    scatter_columns<4, W>(records.point[k], kPointImpulse, point_row);
+    scatter_columns<4, W>(records.point, first, point_row);
   }
 }
 
