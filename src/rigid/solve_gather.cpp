@@ -27,7 +27,7 @@ std::int32_t solver_body(const RigidWorld& w, std::uint32_t body) {
 }
 
 // Others may touch it at once: what is fixed is in many batches. (Not std::atomic_ref: Emscripten's library has none yet.)
-void touch_body(RigidWorld& w, std::uint32_t body, std::uint8_t touch) {
+void touch_shared(RigidWorld& w, std::uint32_t body, std::uint8_t touch) {
   std::uint8_t* const touched = &w.bodies.flags[body].touched;
   std::uint8_t before = __atomic_load_n(touched, __ATOMIC_RELAXED);
   while (before < touch &&
@@ -39,21 +39,29 @@ void fetch_manifold(const ContactStore& store, std::uint32_t slot) {
   prefetch(&store.manifolds[store.contacts[slot].first_manifold], sizeof(Manifold));
 }
 
-bool bears_load(const Manifold& manifold) {
-  for (int k = 0; k < manifold.count; ++k) {
-    if (manifold.points[k].normal_impulse > 0.0f) return true;
+// Which points of a manifold bore load in the last step.
+struct Loads {
+  bool any = false, all = true;
+
+  explicit Loads(const Manifold& manifold) {
+    for (int k = 0; k < manifold.count; ++k) {
+      const bool bears = manifold.points[k].normal_impulse > 0.0f;
+      any |= bears;
+      all &= bears;
+    }
   }
-  return false;
-}
+};
 
 // Writes the constraints of contacts to their places in the lists.
 class ContactGatherer {
  public:
-  explicit ContactGatherer(Solve& solve)
+  // `is_alone`: no other worker gathers contacts of the same batch.
+  ContactGatherer(Solve& solve, bool is_alone)
       : solve_(solve),
         w_(solve.w),
         fall_(std::sqrt(length(w_.settings.gravity))),
-        has_rules_(!w_.surface_rules.empty()) {}
+        has_rules_(!w_.surface_rules.empty()),
+        is_alone_(is_alone) {}
 
   // What was found among some contacts.
   struct Found {
@@ -63,19 +71,19 @@ class ContactGatherer {
 
   Found gather(std::uint32_t slot, std::size_t place) const {
     const Contact& contact = w_.contacts.contacts[slot];
-    const bool active_a = is_active(w_, contact.body_a), active_b = is_active(w_, contact.body_b);
+    const Ends ends = find_ends(contact);
     const std::uint8_t touch = contact.surface.restitution > 0.0f ? kPlaceShown : kTouched;
-    touch_body(w_, contact.body_a, touch);
-    touch_body(w_, contact.body_b, touch);
-    const ColoringPair pair{active_a ? solve_.places[contact.body_a] : ColoringPair::kNone,
-                            active_b ? solve_.places[contact.body_b] : ColoringPair::kNone};
-    const ContactConstraint all = describe(contact, active_a, active_b);
+    touch_body(contact.body_a, ends.active_a, touch);
+    touch_body(contact.body_b, ends.active_b, touch);
+    const ColoringPair pair{ends.active_a ? solve_.places[contact.body_a] : ColoringPair::kNone,
+                            ends.active_b ? solve_.places[contact.body_b] : ColoringPair::kNone};
     BatchScratch& s = solve_.scratch;
     Found found;
     for (Manifold& manifold : manifolds_of(w_.contacts, contact)) {
-      ContactConstraint& constraint = s.constraints[place] = all;
+      ContactConstraint& constraint = s.constraints[place];
       s.pairs[place] = pair;
       s.constraint_contact[place++] = slot;
+      describe(contact, ends, constraint);
       if (!add_manifold(contact, manifold, constraint)) constraint.manifold = nullptr;
       found.gaps = found.gaps || constraint.manifold == nullptr;
       found.bouncy = found.bouncy || constraint.restitution > 0.0f;
@@ -84,33 +92,65 @@ class ContactGatherer {
   }
 
  private:
-  ContactConstraint describe(const Contact& contact, bool active_a, bool active_b) const {
-    ContactConstraint constraint;
-    constraint.body_a = solver_body(w_, contact.body_a);
-    constraint.body_b = solver_body(w_, contact.body_b);
+  // What follows from the two bodies of a contact, and its size.
+  struct Ends {
+    bool active_a, active_b, linked;
+    std::int32_t body_a, body_b;
+    float push_speed;
+  };
+
+  Ends find_ends(const Contact& contact) const {
+    Ends ends;
+    ends.active_a = is_active(w_, contact.body_a);
+    ends.active_b = is_active(w_, contact.body_b);
+    ends.linked = (ends.active_a && !w_.bodies.joints[contact.body_a].empty()) ||
+                  (ends.active_b && !w_.bodies.joints[contact.body_b].empty());
+    ends.body_a = ends.active_a ? std::int32_t(contact.body_a) : solver_body(w_, contact.body_a);
+    ends.body_b = ends.active_b ? std::int32_t(contact.body_b) : solver_body(w_, contact.body_b);
+    ends.push_speed = kPushShare * (fall_ > 0.0f ? fall_ : 3.132f) * std::sqrt(contact.size);
+    return ends;
+  }
+  // A body that is active is in one batch only.
+  void touch_body(std::uint32_t body, bool active, std::uint8_t touch) const {
+    if (!is_alone_ || !active) return touch_shared(w_, body, touch);
+    std::uint8_t& touched = w_.bodies.flags[body].touched;
+    touched = max(touched, touch);
+  }
+  // Every member is written, at its place: what is built elsewhere and copied in wider pieces waits for the smaller ones.
+  static void describe(const Contact& contact, const Ends& ends, ContactConstraint& constraint) {
     constraint.static_friction = contact.surface.static_friction;
     constraint.dynamic_friction = contact.surface.dynamic_friction;
     constraint.rolling_friction = contact.surface.rolling_friction;
     constraint.spinning_friction = contact.surface.spinning_friction;
-    constraint.restitution = contact.surface.restitution;
     constraint.size = contact.size;
-    constraint.linked = (active_a && !w_.bodies.joints[contact.body_a].empty()) ||
-                        (active_b && !w_.bodies.joints[contact.body_b].empty());
-    constraint.push_speed = kPushShare * (fall_ > 0.0f ? fall_ : 3.132f) * std::sqrt(contact.size);
-    return constraint;
+    constraint.push_speed = ends.push_speed;
+    constraint.surface_velocity = {};
+    constraint.restitution = contact.surface.restitution;
+    constraint.body_a = ends.body_a;
+    constraint.body_b = ends.body_b;
+    constraint.rigid = false;
+    constraint.linked = ends.linked;
   }
+  // The rest of the members.
   bool add_manifold(const Contact& contact, Manifold& manifold, ContactConstraint& constraint) const {
-    if (manifold.count == 0) return false;
-    constraint.fast = note_approach(w_, contact, manifold);
+    const Loads loads(manifold);
     constraint.manifold = &manifold;
     constraint.point_count = std::int16_t(manifold.count);
-    constraint.loaded = bears_load(manifold);
+    constraint.loaded = loads.any;
+    constraint.may_roll = false;
     constraint.hold = manifold.age >= kHeldAge ? ContactHold::held
                       : manifold.age > 0.0f    ? ContactHold::sprung
                                                : ContactHold::none;
+    if (loads.all) {
+      constraint.fast = false;
+      for (int k = 0; k < manifold.count; ++k) manifold.points[k].approach_speed = 0.0f;
+    } else {
+      constraint.fast = note_approach(w_, contact, manifold);
+    }
+    if (manifold.count == 0) return false;
     if (has_rules_ && !apply_surface_rules(w_, contact, manifold, constraint)) return false;
-    constraint.may_roll = may_roll(w_, contact, constraint);
-    constraint.spinning_friction += patch_friction(w_, contact, constraint);
+    if (contact.recycled == 0) constraint.may_roll = may_roll(w_, contact, constraint);
+    constraint.spinning_friction += manifold.count == 1 ? patch_friction(w_, contact, constraint) : 0.0f;
     return true;
   }
 
@@ -118,6 +158,7 @@ class ContactGatherer {
   RigidWorld& w_;
   float fall_;
   bool has_rules_;
+  bool is_alone_;
 };
 
 void close_gaps(BatchScratch& s) {
@@ -152,7 +193,7 @@ void gather_contacts(Solve& solve, Arena& arena, TaskSystem& tasks) {
   s.constraint_contact.resize_uninitialized(count);
   using Found = ContactGatherer::Found;
   const auto either = [](Found a, Found b) { return Found{a.gaps || b.gaps, a.bouncy || b.bouncy}; };
-  const ContactGatherer gatherer(solve);
+  const ContactGatherer gatherer(solve, tasks.worker_count() == 1);
   const auto gather_block = [&](int begin, int end, int) {
     Found found;
     for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
@@ -177,7 +218,7 @@ void look_at_joints(Solve& solve, Arena& arena, TaskSystem& tasks) {
   solve.ball_lanes = arena.make<std::uint8_t>(solve.batch.joints.size());
   const auto look = [&](std::int32_t body, bool is_spring) {
     if (body == kNoBody) return kNoBody;
-    if (!is_spring) touch_body(w, std::uint32_t(body), kPlaceShown);
+    if (!is_spring) touch_shared(w, std::uint32_t(body), kPlaceShown);
     return is_active(w, std::uint32_t(body)) ? body : kNoBody;
   };
   const int count = int(solve.batch.joints.size());
