@@ -2,7 +2,10 @@
 #include "collision/collide.h"
 
 #include "collision/contact_update.h"
+#include "math/wide.h"
 #include "task/parallel.h"
+
+#include <cstddef>
 
 namespace gyre {
 namespace {
@@ -20,24 +23,35 @@ struct LookList {
   };
   std::uint32_t slots[kContactBlock];
   int count = 0;
+  std::uint64_t one_resting = 0;  // bits, by place: only one of the two is moved by contacts
   LookList() {}
 };
 
 void note_touch(Contact& contact, std::uint32_t slot, bool touches, TouchChanges& changes) {
-  if (touches && contact.touching == 0) changes.began.set(slot);
-  if (!touches && contact.touching != 0) changes.ended.set(slot);
+  if (touches == (contact.touching != 0)) return;
+  (touches ? changes.began : changes.ended).set(slot);
   contact.touching = touches ? 1 : 0;
+}
+
+// As overlap(); four floats at a time.
+bool boxes_overlap(const Proxy& a, const Proxy& b) {
+  static_assert(offsetof(Aabb, high) == sizeof(Vec3) && sizeof(Proxy) >= sizeof(Aabb) + sizeof(float));
+  const auto load = [](const Vec3& corner) { return Wide<4>::load_unaligned(&corner.x); };
+  const Mask<4> meets =
+      (load(a.fat_box.low) <= load(b.fat_box.high)) & (load(b.fat_box.low) <= load(a.fat_box.high));
+  return (to_bits(meets) & 7u) == 7u;
 }
 
 // Which contacts are gone; of the others, which are not asleep.
 void list_contacts(ContactStore& store, std::uint32_t begin, std::uint32_t end, const CollideInput& input,
                    TouchChanges& changes, LookList& list) {
+  int count = 0;
   for (std::uint32_t slot = begin; slot < end; ++slot) {
     Contact& contact = store.contacts[slot];
     if (contact.manifold_room == 0) continue;
     const Proxy& proxy_a = input.proxies[contact.shape_a];
     const Proxy& proxy_b = input.proxies[contact.shape_b];
-    if (!overlap(proxy_a.fat_box, proxy_b.fat_box) || !may_pair(proxy_a, proxy_b)) {
+    if (!boxes_overlap(proxy_a, proxy_b) || !may_pair(proxy_a, proxy_b)) {
       contact.ended = 1;
       changes.gone.set(slot);
       note_touch(contact, slot, false, changes);
@@ -46,20 +60,22 @@ void list_contacts(ContactStore& store, std::uint32_t begin, std::uint32_t end, 
     const BodyLook& look_a = input.looks[contact.body_a];
     const BodyLook& look_b = input.looks[contact.body_b];
     if (look_a.spin < 0.0f && look_b.spin < 0.0f) continue;
-    const ContactPair pair{&contact,
-                           &store.manifolds[contact.first_manifold],
-                           &input.shapes[contact.shape_a],
-                           &input.shapes[contact.shape_b],
-                           &look_a,
-                           &look_b,
-                           &input.centers[contact.body_a],
-                           &input.centers[contact.body_b]};
+    ContactPair& pair = list.pairs[count];
+    pair.contact = &contact;
+    pair.manifolds = &store.manifolds[contact.first_manifold];
+    pair.shape_a = &input.shapes[contact.shape_a];
+    pair.shape_b = &input.shapes[contact.shape_b];
+    pair.look_a = &look_a;
+    pair.look_b = &look_b;
+    pair.center_a = &input.centers[contact.body_a];
+    pair.center_b = &input.centers[contact.body_b];
     // A sensor's contact keeps nothing of its looks: each is the first.
     if (contact.looked < 0.0f && contact.sensor == 0)
       contact.size = smaller_size(pair.shape_a->size, pair.shape_b->size);
-    list.pairs[list.count] = pair;
-    list.slots[list.count++] = slot;
+    list.one_resting |= std::uint64_t(proxy_a.pushes != proxy_b.pushes) << count;
+    list.slots[count++] = slot;
   }
+  list.count = count;
 }
 
 void look_at_block(ContactStore& store, int begin, int end, const CollideInput& input,
@@ -71,17 +87,17 @@ void look_at_block(ContactStore& store, int begin, int end, const CollideInput& 
   for (int i = 0; i < list.count; ++i) {
     const ContactPair& pair = list.pairs[i];
     Contact& contact = *pair.contact;
-    contact.recycled = recycled.contacts >> i & 1u;
-    if ((recycled.apart >> i & 1u) != 0) {
+    const std::uint64_t own = std::uint64_t{1} << i;
+    contact.recycled = (recycled.contacts & own) != 0 ? 1 : 0;
+    if ((recycled.apart & own) != 0) {
       note_touch(contact, list.slots[i], false, changes);
       continue;
     }
-    const bool touches = contact.recycled != 0 ? (recycled.touching >> i & 1u) != 0
+    const bool touches = contact.recycled != 0 ? (recycled.touching & own) != 0
                          : contact.sensor != 0 ? look_at_sensor(pair, recycled.views[i])
                                                : look_anew(pair, recycled.views[i]);
     note_touch(contact, list.slots[i], touches, changes);
-    if (contact.manifold_count != 0 &&
-        input.proxies[contact.shape_a].pushes != input.proxies[contact.shape_b].pushes)
+    if ((list.one_resting & own) != 0 && contact.manifold_count != 0)
       changes.beside_resting.set(list.slots[i]);
   }
 }

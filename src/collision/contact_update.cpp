@@ -7,6 +7,8 @@
 #include "geometry/manifold_mesh.h"
 #include "geometry/surface_overlap.h"
 
+#include <bit>
+
 namespace gyre {
 namespace {
 
@@ -103,8 +105,48 @@ bool is_beyond(const Found<kRoom>& found, float reach) {
   return true;
 }
 
+// What goes on of a manifold that was there before this look; its points side by side. Those that it had not are zero.
+struct FormerManifold {
+  Vec3 normal, friction_impulse, rolling_impulse;
+  float twist_impulse, age;
+  std::uint32_t triangle, sliding;
+  unsigned left;  // bits, by point: it has found no heir yet
+  WideInt<kMaxManifoldPoints> feature;
+  float normal_impulse[kMaxManifoldPoints], held[kMaxManifoldPoints];
+  Vec3W<kMaxManifoldPoints> anchor;
+};
+
+void read_points(const Manifold& from, FormerManifold& to) {
+  constexpr int W = kMaxManifoldPoints;
+  Records<W> points, anchors;
+  for (int k = 0; k < W; ++k) {
+    points[k] = floats(&from.points[k]);
+    anchors[k] = floats(&from.anchors[k]);
+  }
+  Wide<W> names[4], impulses[4], places[4];
+  read_four<W>(points, 4, names);
+  read_four<W>(points, 8, impulses);
+  read_four<W>(anchors, 0, places);
+  to.feature = bit_pattern(names[3]);
+  impulses[0].store_unaligned(to.normal_impulse);
+  impulses[2].store_unaligned(to.held);
+  to.anchor = {places[0], places[1], places[2]};
+}
+
+void read_former(const Manifold& from, FormerManifold& to) {
+  to.normal = from.normal;
+  to.friction_impulse = from.friction_impulse;
+  to.rolling_impulse = from.rolling_impulse;
+  to.twist_impulse = from.twist_impulse;
+  to.age = from.age;
+  to.triangle = from.triangle;
+  to.sliding = from.sliding;
+  to.left = (1u << from.count) - 1u;
+  read_points(from, to);
+}
+
 // What a manifold keeps from step to step, turned into the new tangent plane.
-void carry_friction(const Manifold& from, Manifold& to) {
+void carry_friction(const FormerManifold& from, Manifold& to) {
   to.friction_impulse = from.friction_impulse - dot(from.friction_impulse, to.normal) * to.normal;
   to.rolling_impulse = from.rolling_impulse - dot(from.rolling_impulse, to.normal) * to.normal;
   to.twist_impulse = from.twist_impulse;
@@ -112,36 +154,17 @@ void carry_friction(const Manifold& from, Manifold& to) {
   to.sliding = from.sliding;
 }
 
-// The manifolds before this look, and which of their points have found a heir.
 template <int kRoom>
 struct Former {
   // Not cleared: only the counted ones are ever read.
   union {
-    Manifold manifolds[kRoom];
+    FormerManifold manifolds[kRoom];
   };
   int count = 0;
   bool taken[kRoom] = {};
-  bool point_taken[kRoom][kMaxManifoldPoints] = {};
 
   explicit Former(std::span<const Manifold> before) : count(int(before.size())) {
-    for (int m = 0; m < count; ++m) copy_used(before[std::size_t(m)], manifolds[m]);
-  }
-
- private:
-  // What matching needs: no points but the counted ones.
-  static void copy_used(const Manifold& from, Manifold& to) {
-    to.normal = from.normal;
-    to.count = from.count;
-    to.triangle = from.triangle;
-    to.age = from.age;
-    to.friction_impulse = from.friction_impulse;
-    to.twist_impulse = from.twist_impulse;
-    to.rolling_impulse = from.rolling_impulse;
-    to.sliding = from.sliding;
-    for (int i = 0; i < from.count; ++i) {
-      to.points[i] = from.points[i];
-      to.anchors[i] = from.anchors[i];
-    }
+    for (int m = 0; m < count; ++m) read_former(before[std::size_t(m)], manifolds[m]);
   }
 };
 
@@ -163,26 +186,21 @@ int find_former(const Former<kRoom>& former, const Manifold& manifold) {
   return best;
 }
 
-template <int kRoom>
-void take_over(Former<kRoom>& former, int m, int i, ContactPointState& point) {
-  const ContactPointState& old = former.manifolds[m].points[i];
-  former.point_taken[m][i] = true;
-  point.normal_impulse = old.normal_impulse;
-  point.held = old.held;
+void take_over(FormerManifold& former, int k, ContactPointState& point) {
+  former.left &= ~(1u << k);
+  point.normal_impulse = former.normal_impulse[k];
+  point.held = former.held[k];
 }
 
 // By name within the former manifold; bit i of the result is set for each point that found its own.
-template <int kRoom>
-unsigned match_by_feature(Former<kRoom>& former, int m, Manifold& manifold) {
+unsigned match_by_feature(FormerManifold& former, Manifold& manifold) {
   unsigned matched = 0;
   for (int i = 0; i < manifold.count; ++i) {
-    for (int k = 0; k < former.manifolds[m].count; ++k) {
-      if (former.point_taken[m][k] || former.manifolds[m].points[k].feature != manifold.points[i].feature)
-        continue;
-      take_over(former, m, k, manifold.points[i]);
-      matched |= 1u << i;
-      break;
-    }
+    const WideInt<kMaxManifoldPoints> name(std::int32_t(manifold.points[i].feature));
+    const unsigned same = to_bits(former.feature == name) & former.left;
+    if (same == 0) continue;
+    take_over(former, std::countr_zero(same), manifold.points[i]);
+    matched |= 1u << i;
   }
   return matched;
 }
@@ -196,19 +214,20 @@ void match_by_place(Former<kRoom>& former, Manifold& manifold, unsigned matched,
     int best_m = -1, best_k = -1;
     float nearest = square(radius);
     for (int m = 0; m < former.count; ++m) {
-      if (dot(former.manifolds[m].normal, manifold.normal) < kSameSide) continue;
-      for (int k = 0; k < former.manifolds[m].count; ++k) {
-        if (former.point_taken[m][k]) continue;
-        const float d =
-            length_squared(former.manifolds[m].anchors[k].position - manifold.anchors[i].position);
-        if (d < nearest) {
-          nearest = d;
-          best_m = m;
-          best_k = k;
-        }
+      const FormerManifold& old = former.manifolds[m];
+      if (old.left == 0 || dot(old.normal, manifold.normal) < kSameSide) continue;
+      const Wide<kMaxManifoldPoints> away =
+          length_squared(old.anchor - splat<kMaxManifoldPoints>(manifold.anchors[i].position));
+      unsigned near = to_bits(away < Wide<kMaxManifoldPoints>(nearest)) & old.left;
+      for (; near != 0; near &= near - 1) {
+        const int k = std::countr_zero(near);
+        if (!(away[k] < nearest)) continue;
+        nearest = away[k];
+        best_m = m;
+        best_k = k;
       }
     }
-    if (best_m >= 0) take_over(former, best_m, best_k, manifold.points[i]);
+    if (best_m >= 0) take_over(former.manifolds[best_m], best_k, manifold.points[i]);
   }
 }
 
@@ -281,13 +300,14 @@ void match_rolling(Former<kRoom>& former, Manifold& manifold, unsigned matched_b
     if (lonely >= 0) return;
     lonely = i;
   }
-  for (int k = 0; k < former.manifolds[0].count; ++k) {
-    if (former.point_taken[0][k] || former.manifolds[0].points[k].normal_impulse == 0.0f) continue;
+  FormerManifold& old = former.manifolds[0];
+  for (int k = 0; k < kMaxManifoldPoints; ++k) {
+    if ((old.left >> k & 1u) == 0 || old.normal_impulse[k] == 0.0f) continue;
     if (orphan >= 0) return;
     orphan = k;
   }
-  if (lonely >= 0 && orphan >= 0 && dot(former.manifolds[0].normal, manifold.normal) >= kSameSide)
-    take_over(former, 0, orphan, manifold.points[lonely]);
+  if (lonely >= 0 && orphan >= 0 && dot(old.normal, manifold.normal) >= kSameSide)
+    take_over(old, orphan, manifold.points[lonely]);
 }
 
 template <int kRoom>
@@ -302,7 +322,7 @@ void write_manifolds(const Found<kRoom>& found, const ContactPair& pair, const V
     if (old < 0) continue;
     former.taken[old] = true;
     carry_friction(former.manifolds[old], out[m]);
-    matched[m] = match_by_feature(former, old, out[m]);
+    matched[m] = match_by_feature(former.manifolds[old], out[m]);
   }
   for (int m = 0; m < found.count; ++m) match_by_place(former, out[m], matched[m], kMatch * view.size);
   if (found.count == 1 && (has_rim(pair.shape_a->shape) || has_rim(pair.shape_b->shape)))
