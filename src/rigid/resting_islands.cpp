@@ -60,6 +60,8 @@ std::uint32_t RestingIslands::root(std::uint32_t place) {
 }
 
 void RestingIslands::unite(std::uint32_t place_a, std::uint32_t place_b) {
+  // Most are in one island by the time they are asked.
+  if (parent_[place_a] == parent_[place_b]) return;
   const std::uint32_t a = root(place_a), b = root(place_b);
   parent_[max(a, b)] = min(a, b);
 }

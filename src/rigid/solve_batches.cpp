@@ -12,72 +12,77 @@ namespace {
 constexpr std::uint32_t kNone = 0xffffffffu;
 // Manifolds and joints: what is less is not worth to be shared among workers.
 constexpr std::uint32_t kWorthSharing = 64;
-constexpr int kTiesPerBlock = 256;
 
 // What islands and batches need to know of a contact or joint, so that its record is read once.
 struct Tie {
-  std::uint32_t owner = 0;      // a body that moves: its island is the constraint's
-  std::uint32_t other = kNone;  // may be one that does not
-  std::uint32_t size = 1;       // manifolds
+  std::uint32_t owner;  // a body that moves: its island is the constraint's
+  std::uint32_t other;  // may be one that does not, or kNone
+  std::uint32_t size;   // manifolds
 };
 
-// What is solved in this step, ascending.
+// What is solved in this step, ascending, and what it ties: by slot, of others nothing is known.
 struct Constraints {
   std::span<const std::uint32_t> contacts;
   std::span<const std::uint32_t> joints;
+  std::span<const Tie> contact_ties;
+  std::span<const Tie> joint_ties;
   std::size_t size = 0;  // manifolds and joints
+
+  // Of the contacts, then of the joints.
+  template <class Fn>
+  void for_each_tie(Fn&& fn) const {
+    for (const std::uint32_t slot : contacts) fn(contact_ties[slot]);
+    for (const std::uint32_t slot : joints) fn(joint_ties[slot]);
+  }
 };
 
+// Returns whether constraints move one of the bodies; kNone is none.
+bool tie(const RigidWorld& w, std::uint32_t a, std::uint32_t b, std::uint32_t size, Tie& to) {
+  if (a != kNone && is_active(w, a)) {
+    to = {a, b, size};
+    return true;
+  }
+  if (b == kNone || !is_active(w, b)) return false;
+  to = {b, a, size};
+  return true;
+}
+
+bool may_act(const Contact& contact) {
+  return contact.manifold_room != 0 && contact.manifold_count != 0 && contact.sensor == 0;
+}
+bool may_act(const RigidWorld& w, std::uint32_t joint) {
+  const JointDetail* const detail = detail_of(w.joints, joint);
+  return detail == nullptr || !detail->disabled;
+}
+
 Constraints list_constraints(const RigidWorld& w, Arena& arena, TaskSystem& tasks) {
+  const std::span<Tie> contact_ties = arena.make<Tie>(w.contacts.contacts.size());
+  const std::span<Tie> joint_ties = arena.make<Tie>(w.joints.ids.capacity());
   const auto manifolds = [&](std::uint32_t slot) {
     const Contact& contact = w.contacts.contacts[slot];
-    return is_solved(w, contact) ? std::uint32_t(contact.manifold_count) : 0;
+    const std::uint32_t count = contact.manifold_count;
+    return may_act(contact) && tie(w, contact.body_a, contact.body_b, count, contact_ties[slot]) ? count : 0;
   };
   const auto works = [&](std::uint32_t slot) {
-    return w.joints.ids.live(slot) && is_joint_solved(w, slot);
+    if (!w.joints.ids.live(slot) || !may_act(w, slot)) return false;
+    const JointRecord& joint = w.joints.records[slot];
+    // As numbers without a sign, kNoBody is kNone.
+    return tie(w, std::uint32_t(joint.body_a), std::uint32_t(joint.body_b), 1, joint_ties[slot]);
   };
-  const Chosen contacts = choose(tasks, arena, w.contacts.contacts.size(), manifolds);
-  const Chosen joints = choose(tasks, arena, w.joints.ids.capacity(), works);
-  return {contacts.list, joints.list, contacts.size + joints.size};
-}
-
-Tie tie_of(const RigidWorld& w, const Contact& contact) {
-  const bool by_a = is_active(w, contact.body_a);
-  return {by_a ? contact.body_a : contact.body_b, by_a ? contact.body_b : contact.body_a,
-          contact.manifold_count};
-}
-Tie tie_of(const RigidWorld& w, const JointRecord& joint) {
-  // As numbers without a sign, kNoBody is kNone.
-  const std::uint32_t a = std::uint32_t(joint.body_a), b = std::uint32_t(joint.body_b);
-  const bool by_a = a != kNone && is_active(w, a);
-  return {by_a ? a : b, by_a ? b : a};
-}
-
-// Of the contacts, then of the joints.
-std::span<const Tie> find_ties(const RigidWorld& w, const Constraints& constraints, Arena& arena,
-                               TaskSystem& tasks) {
-  const std::size_t contacts = constraints.contacts.size(), joints = constraints.joints.size();
-  const std::span<Tie> ties = arena.make<Tie>(contacts + joints);
-  for_blocks(tasks, int(contacts), kTiesPerBlock, [&](int begin, int end, int) {
-    for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i)
-      ties[i] = tie_of(w, w.contacts.contacts[constraints.contacts[i]]);
-  });
-  for_blocks(tasks, int(joints), kTiesPerBlock, [&](int begin, int end, int) {
-    for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i)
-      ties[contacts + i] = tie_of(w, w.joints.records[constraints.joints[i]]);
-  });
-  return ties;
+  const Chosen contacts = choose(tasks, arena, contact_ties.size(), manifolds);
+  const Chosen joints = choose(tasks, arena, joint_ties.size(), works);
+  return {contacts.list, joints.list, contact_ties, joint_ties, contacts.size + joints.size};
 }
 
 // Union-find over bodies; the root of an island is its lowest body. A kinematic body belongs to the islands that it touches:
 // it moves from sub-step to sub-step, and all must see it where it is.
 class Islands {
  public:
-  Islands(const RigidWorld& w, std::span<const Tie> ties, std::span<std::uint32_t> parents)
+  Islands(const RigidWorld& w, const Constraints& constraints, std::span<std::uint32_t> parents)
       : parents_(parents) {
     for (std::uint32_t& parent : parents_) parent = kNone;
     for (const std::uint32_t body : w.bodies.awake) parents_[body] = body;
-    for (const Tie& tie : ties) unite(tie.owner, tie.other);
+    constraints.for_each_tie([&](const Tie& tie) { unite(tie.owner, tie.other); });
     // Who is lower has its root by now.
     for (const std::uint32_t body : w.bodies.awake) parents_[body] = parents_[parents_[body]];
   }
@@ -85,7 +90,8 @@ class Islands {
 
  private:
   void unite(std::uint32_t a, std::uint32_t b) {
-    if (b == kNone || parents_[b] == kNone) return;
+    // Most are in one island by the time they are asked.
+    if (b == kNone || parents_[b] == kNone || parents_[a] == parents_[b]) return;
     a = find(a);
     b = find(b);
     parents_[max(a, b)] = min(a, b);
@@ -131,11 +137,12 @@ class Lists {
 constexpr std::uint32_t kConstraint = 4;
 
 // How much the islands are, by root.
-std::span<const std::uint32_t> weigh_islands(const RigidWorld& w, std::span<const Tie> ties,
+std::span<const std::uint32_t> weigh_islands(const RigidWorld& w, const Constraints& constraints,
                                              const Islands& islands, std::size_t bodies, Arena& arena) {
   const std::span<std::uint32_t> weights = arena.make<std::uint32_t>(bodies);
   for (std::uint32_t& weight : weights) weight = 0;
-  for (const Tie& tie : ties) weights[islands.root(tie.owner)] += kConstraint * tie.size;
+  constraints.for_each_tie(
+      [&](const Tie& tie) { weights[islands.root(tie.owner)] += kConstraint * tie.size; });
   for (const std::uint32_t body : w.bodies.awake) ++weights[islands.root(body)];
   return weights;
 }
@@ -171,15 +178,12 @@ std::span<const std::uint32_t> part_islands(const RigidWorld& w, const Islands& 
 }  // namespace
 
 bool is_solved(const RigidWorld& w, const Contact& contact) {
-  if (contact.manifold_room == 0 || contact.manifold_count == 0 || contact.sensor != 0) return false;
-  return is_active(w, contact.body_a) || is_active(w, contact.body_b);
+  return may_act(contact) && (is_active(w, contact.body_a) || is_active(w, contact.body_b));
 }
 bool is_joint_solved(const RigidWorld& w, std::uint32_t slot) {
   const JointRecord& joint = w.joints.records[slot];
-  const JointDetail* const detail = detail_of(w.joints, slot);
-  if (detail != nullptr && detail->disabled) return false;
-  return (joint.body_a != kNoBody && is_active(w, std::uint32_t(joint.body_a))) ||
-         (joint.body_b != kNoBody && is_active(w, std::uint32_t(joint.body_b)));
+  return may_act(w, slot) && ((joint.body_a != kNoBody && is_active(w, std::uint32_t(joint.body_a))) ||
+                              (joint.body_b != kNoBody && is_active(w, std::uint32_t(joint.body_b))));
 }
 
 SolveBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, BatchSize size) {
@@ -196,27 +200,28 @@ SolveBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, 
   };
   if (all_weights <= most) return all_in_one(arena.make<SolveBatch>(awake.empty() ? 0 : 1));
   // A batch is more than half of what it may be, or more than all of it with the next one.
-  const std::size_t most_batches = 2 * all_weights / most + 1, contact_count = constraints.contacts.size();
-  Lists bodies(arena, most_batches, awake.size()), contacts(arena, most_batches, contact_count),
+  const std::size_t most_batches = 2 * all_weights / most + 1;
+  Lists bodies(arena, most_batches, awake.size()), contacts(arena, most_batches, constraints.contacts.size()),
       joints(arena, most_batches, constraints.joints.size());
   const std::span<SolveBatch> batches = arena.make<SolveBatch>(most_batches);
   const ArenaScope scope(arena);
   const std::span<std::uint32_t> batch_of = arena.make<std::uint32_t>(places.size());
-  const std::span<const Tie> ties = find_ties(w, constraints, arena, tasks);
-  const Islands islands(w, ties, places);
-  const std::span<const std::uint32_t> weights =
-      part_islands(w, islands, weigh_islands(w, ties, islands, places.size(), arena), most, arena, batch_of);
+  const Islands islands(w, constraints, places);
+  const std::span<const std::uint32_t> weights = part_islands(
+      w, islands, weigh_islands(w, constraints, islands, places.size(), arena), most, arena, batch_of);
   const std::size_t count = weights.size();
   if (count == 1) return all_in_one(batches.first(1));
   for (const std::uint32_t body : awake) bodies.count(batch_of[body]);
-  for (std::size_t i = 0; i < ties.size(); ++i)
-    (i < contact_count ? contacts : joints).count(batch_of[ties[i].owner]);
+  const auto contact_batch = [&](std::uint32_t slot) {
+    return batch_of[constraints.contact_ties[slot].owner];
+  };
+  const auto joint_batch = [&](std::uint32_t slot) { return batch_of[constraints.joint_ties[slot].owner]; };
+  for (const std::uint32_t slot : constraints.contacts) contacts.count(contact_batch(slot));
+  for (const std::uint32_t slot : constraints.joints) joints.count(joint_batch(slot));
   bodies.make_room(), contacts.make_room(), joints.make_room();
   for (const std::uint32_t body : awake) bodies.add(batch_of[body], body);
-  for (std::size_t i = 0; i < contact_count; ++i)
-    contacts.add(batch_of[ties[i].owner], constraints.contacts[i]);
-  for (std::size_t i = contact_count; i < ties.size(); ++i)
-    joints.add(batch_of[ties[i].owner], constraints.joints[i - contact_count]);
+  for (const std::uint32_t slot : constraints.contacts) contacts.add(contact_batch(slot), slot);
+  for (const std::uint32_t slot : constraints.joints) joints.add(joint_batch(slot), slot);
   for (std::size_t i = 0; i < count; ++i) {
     batches[i] = {bodies.of(i), contacts.of(i), joints.of(i), weights[i] <= most};
     for (std::uint32_t n = 0; n < batches[i].bodies.size(); ++n) places[batches[i].bodies[n]] = n;
