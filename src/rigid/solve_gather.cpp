@@ -313,25 +313,31 @@ void mark_rolling_lanes(Solve& solve, std::uint32_t blocks, Arena& arena) {
 }
 
 // A block takes as long as the lane with the most points, and is swept again where some point would pull, as those do that bear
-// nothing: so contacts that are alike lie side by side. Those of one colour do not notice each other. Those without a body A come last.
-constexpr int kWithA = 2 * kMaxManifoldPoints;
-int likeness(const ContactConstraint& constraint) {
-  return (constraint.body_a == kNoBody ? kWithA : 0) + 2 * (kMaxManifoldPoints - constraint.point_count) +
-         (constraint.loaded ? 0 : 1);
+// nothing; where some lanes roll, the whole block is taken along, in each part or once: so contacts that are alike lie side by
+// side. Those of one colour do not notice each other. Those without a body A come last.
+constexpr int kWaysToRoll = 3;
+constexpr int kWithA = 2 * kWaysToRoll * kMaxManifoldPoints;
+int likeness(const Solve& solve, std::uint32_t member) {
+  const ContactConstraint& constraint = solve.scratch.constraints[member];
+  const int points = kMaxManifoldPoints - constraint.point_count, load = constraint.loaded ? 0 : 1;
+  const RollingContacts& rolling = solve.rolling;
+  const std::uint32_t place = rolling.contacts.empty() ? kNotRolling : rolling.of_constraint[member];
+  const int roll = place == kNotRolling ? 2 : rolling.contacts[place].once ? 1 : 0;
+  return (constraint.body_a == kNoBody ? kWithA : 0) + kWaysToRoll * (2 * points + load) + roll;
 }
 
 // Appends the members of a colour to the order, in whole blocks.
-void order_alike(std::span<const ContactConstraint> constraints, std::span<const std::uint32_t> members,
-                 std::uint32_t width, Array<std::uint32_t>& order) {
+void order_alike(const Solve& solve, std::span<const std::uint32_t> members, Array<std::uint32_t>& order) {
   std::uint32_t starts[2 * kWithA + 1] = {};
-  for (const std::uint32_t member : members) ++starts[likeness(constraints[member]) + 1];
+  for (const std::uint32_t member : members) ++starts[likeness(solve, member) + 1];
   for (std::size_t i = 1; i < std::size(starts); ++i) starts[i] += starts[i - 1];
   // No block has contacts of both kinds.
+  const std::uint32_t width = std::uint32_t(solve.kernels.width);
   const std::uint32_t gap = (width - starts[kWithA] % width) % width;
   for (int i = kWithA; i < 2 * kWithA; ++i) starts[i] += gap;
   const std::size_t first = order.size(), count = gap + members.size();
   order.resize(first + (count + width - 1) / width * width, kNoPlace);
-  for (const std::uint32_t member : members) order[first + starts[likeness(constraints[member])]++] = member;
+  for (const std::uint32_t member : members) order[first + starts[likeness(solve, member)]++] = member;
 }
 
 }  // namespace
@@ -352,7 +358,7 @@ std::span<Group> lay_out_contacts(Solve& solve, Arena& arena) {
       s.order.resize(s.order.size() + members.size() * width, kNoPlace);
       for (std::size_t i = 0; i < members.size(); ++i) s.order[(blocks + i) * width] = members[i];
     } else {
-      order_alike(s.constraints.view(), members, width, s.order);
+      order_alike(solve, members, s.order);
     }
     const std::uint32_t end = std::uint32_t(s.order.size()) / width;
     groups[used++] = {&solve, blocks, end - blocks, serial};
