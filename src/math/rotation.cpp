@@ -4,6 +4,7 @@
 #include "math/rotation.h"
 
 #include "math/trig.h"
+#include "math/wide_double_angle.h"
 
 namespace gyre {
 namespace {
@@ -62,20 +63,10 @@ double within_half_turn(double angle) {
 
 DQuat exponential_map(DVec3 v) {
   const double square = 0.25 * length_squared(v);  // of the half angle
-  if (square <= 0.25) {
-    // sin(a)/a and cos(a) by their series in a^2, a <= 1/2: no division, no root, nothing special at zero.
-    const double z = square;
-    const double sine_over_angle =
-        1.0 +
-        z * (-1.0 / 6.0 +
-             z * (1.0 / 120.0 + z * (-1.0 / 5040.0 + z * (1.0 / 362880.0 + z * (-1.0 / 39916800.0 +
-                                                                                z * (1.0 / 6227020800.0))))));
-    const double cosine =
-        1.0 + z * (-0.5 + z * (1.0 / 24.0 +
-                               z * (-1.0 / 720.0 +
-                                    z * (1.0 / 40320.0 + z * (-1.0 / 3628800.0 + z * (1.0 / 479001600.0))))));
-    const double s = 0.5 * sine_over_angle;
-    return {s * v.x, s * v.y, s * v.z, cosine};
+  if (square <= kMostHalfAngleSquare) {
+    const HalfAngle<1> half = half_angle_of(WideDouble<1>(square));
+    const double s = 0.5 * half.sine_over_angle.v;
+    return {s * v.x, s * v.y, s * v.z, half.cosine.v};
   }
   const double half_angle = std::sqrt(square);
   const SinCosD half = sin_cos(half_angle);

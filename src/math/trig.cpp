@@ -2,6 +2,8 @@
 // and sources. Each function is: special values, reduction to a small argument, Taylor polynomial, reassembly.
 #include "math/trig.h"
 
+#include "math/wide_double_angle.h"
+
 #include <limits>
 
 namespace gyre {
@@ -208,44 +210,9 @@ double atan2(double y, double x) {
   rise *= scale;
   run *= scale;
 
-  // atan(t) = atan(c) + atan((t - c) / (1 + t c)) with c the nearest of 0, 1/8, ... 1: the rest is at most 1/16.
-  constexpr Sum kArcTangent[9] = {{0.0, 0.0},
-                                  {0x1.fd5ba9aac2f6ep-4, -0x1.cd37686760c17p-59},
-                                  {0x1.f5b75f92c80ddp-3, 0x1.8ab6e3cf7afbdp-57},
-                                  {0x1.6f61941e4def1p-2, -0x1.c63aae6f6e918p-56},
-                                  {0x1.dac670561bb4fp-2, 0x1.a2b7f222f65e2p-56},
-                                  {0x1.1e00babdefeb4p-1, -0x1.928df287a668fp-58},
-                                  {0x1.4978fa3269ee1p-1, 0x1.2419a87f2a458p-56},
-                                  {0x1.700a7c5784634p-1, -0x1.8c34d25aadef6p-56},
-                                  {0x1.921fb54442d18p-1, 0x1.1a62633145c07p-55}};
-  const double high = max(rise, run), low = min(rise, run);
-  const double t = low / high;
-  const int eighth = int(8.0 * t + 0.5);
-  const double c = 0.125 * double(eighth);
-  const double u = eighth == 0 ? t : (low - c * high) / (high + c * low);
-  const double z = u * u;
-  const double tail =
-      -1.0 / 3.0 +
-      z * (1.0 / 5.0 + z * (-1.0 / 7.0 + z * (1.0 / 9.0 + z * (-1.0 / 11.0 + z * (1.0 / 13.0)))));
-  const Sum base = kArcTangent[eighth];
-  const Sum angle = exact_sum(base.high, u);
-  double rest = angle.low + (base.low + u * z * tail);
-  double head = angle.high;
-
-  // Mirrored out of the first eighth of the circle, into the half and the side of the point.
-  constexpr Sum kHalfPi{0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
-  constexpr Sum kWholePi{0x1.921fb54442d18p+1, 0x1.1a62633145c07p-53};
-  if (rise > run) {
-    const Sum turned = exact_sum(kHalfPi.high, -head);
-    head = turned.high;
-    rest = turned.low + (kHalfPi.low - rest);
-  }
-  if (x < 0.0) {
-    const Sum turned = exact_sum(kWholePi.high, -head);
-    head = turned.high;
-    rest = turned.low + (kWholePi.low - rest);
-  }
-  const double result = head + rest;
+  AngleSum<1> angle = angle_in_quadrant(WideDouble<1>(rise), WideDouble<1>(run));
+  if (x < 0.0) angle = mirrored({0x1.921fb54442d18p+1, 0x1.1a62633145c07p-53}, angle);
+  const double result = (angle.head + angle.rest).v;
   return y < 0.0 ? -result : result;
 }
 

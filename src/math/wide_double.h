@@ -10,7 +10,8 @@ inline namespace GYRE_TARGET_NAMESPACE {
 
 template <int H>
 struct DoubleLanes {
-  static_assert(H == 2 || H == 4 || H == 8);
+  static_assert(H == 2 || H == 4 || H == 8 ||
+                H == 16);  // 16: where a call that names its lanes looks for its function
   typedef double Double __attribute__((vector_size(8 * H)));
   typedef double AnyDouble __attribute__((vector_size(8 * H), may_alias));
   typedef double LooseDouble __attribute__((vector_size(8 * H), may_alias, aligned(8)));
@@ -55,6 +56,41 @@ struct WideDouble {
     *reinterpret_cast<typename DoubleLanes<H>::LooseDouble*>(to) = v;
   }
 
+  // From and to H floats in a row, anywhere; rounded on the way to memory.
+  static GYRE_INLINE WideDouble load_floats(const void* from) {
+    typename DoubleLanes<H>::HalfFloat part;
+    __builtin_memcpy(&part, from, sizeof part);
+    if constexpr (H == 1) {
+      return of(double(part));
+    } else {
+      return of(__builtin_convertvector(part, Double));
+    }
+  }
+  GYRE_INLINE void store_floats(void* to) const {
+    typename DoubleLanes<H>::HalfFloat part;
+    if constexpr (H == 1) {
+      part = float(v);
+    } else {
+      part = __builtin_convertvector(v, typename DoubleLanes<H>::HalfFloat);
+    }
+    __builtin_memcpy(to, &part, sizeof part);
+  }
+  // One lane; not for what is done often.
+  GYRE_INLINE double operator[](int lane) const {
+    if constexpr (H == 1) {
+      return (void)lane, v;
+    } else {
+      return v[lane];
+    }
+  }
+  GYRE_INLINE void set(int lane, double value) {
+    if constexpr (H == 1) {
+      (void)lane, v = value;
+    } else {
+      __builtin_memcpy(reinterpret_cast<char*>(&v) + 8 * lane, &value, sizeof value);
+    }
+  }
+
   friend GYRE_INLINE WideDouble operator+(WideDouble a, WideDouble b) { return of(a.v + b.v); }
   friend GYRE_INLINE WideDouble operator-(WideDouble a, WideDouble b) { return of(a.v - b.v); }
   friend GYRE_INLINE WideDouble operator*(WideDouble a, WideDouble b) { return of(a.v * b.v); }
@@ -67,8 +103,19 @@ struct WideDouble {
     if constexpr (H == 1) {
       return of(__builtin_sqrt(a.v));
     } else {
+#if defined(__AVX512F__)
+      // With a mask that takes all: as for floats.
+      if constexpr (H == 8) return of((Double)_mm512_maskz_sqrt_pd(__mmask8(0xff), (__m512d)a.v));
+#endif
+#if defined(__AVX__)
+      if constexpr (H == 4) return of((Double)_mm256_sqrt_pd((__m256d)a.v));
+#endif
 #if defined(__SSE2__)
       if constexpr (H == 2) return of((Double)_mm_sqrt_pd((__m128d)a.v));
+#elif defined(__aarch64__)
+      if constexpr (H == 2) return of((Double)vsqrtq_f64((float64x2_t)a.v));
+#elif defined(__wasm_simd128__)
+      if constexpr (H == 2) return of((Double)wasm_f64x2_sqrt((v128_t)a.v));
 #endif
       WideDouble result = a;
       for (int i = 0; i < H; ++i) result.v[i] = __builtin_sqrt(a.v[i]);
@@ -83,6 +130,35 @@ struct WideDouble {
   friend GYRE_INLINE WideDouble select_above(WideDouble a, WideDouble b, WideDouble then,
                                              WideDouble otherwise) {
     return of(a.v > b.v ? then.v : otherwise.v);
+  }
+  // a < b ? a : b and a > b ? a : b.
+  friend GYRE_INLINE WideDouble min(WideDouble a, WideDouble b) { return of(a.v < b.v ? a.v : b.v); }
+  friend GYRE_INLINE WideDouble max(WideDouble a, WideDouble b) { return of(a.v > b.v ? a.v : b.v); }
+  // Whether a <= b in each lane.
+  friend GYRE_INLINE bool all_at_most(WideDouble a, WideDouble b) {
+    if constexpr (H == 1) {
+      return a.v <= b.v;
+    } else {
+      const auto is = a.v <= b.v;
+#if defined(__AVX__)
+      if constexpr (H == 4) return _mm256_movemask_pd((__m256d)is) == 15;
+#endif
+#if defined(__SSE2__)
+      if constexpr (H == 2) return _mm_movemask_pd((__m128d)is) == 3;
+#endif
+      bool all = true;
+      for (int i = 0; i < H; ++i) all = all && is[i] != 0;
+      return all;
+    }
+  }
+  // The integer part of numbers that fit into an int.
+  friend GYRE_INLINE WideDouble whole_part(WideDouble a) {
+    if constexpr (H == 1) {
+      return of(double(int(a.v)));
+    } else {
+      typedef std::int32_t Whole __attribute__((vector_size(4 * H)));
+      return of(__builtin_convertvector(__builtin_convertvector(a.v, Whole), Double));
+    }
   }
   // `value` where a > b, +0 elsewhere.
   friend GYRE_INLINE WideDouble keep_where_above(WideDouble a, WideDouble b, WideDouble value) {

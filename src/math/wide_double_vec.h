@@ -2,7 +2,8 @@
 // the bits of those.
 #pragma once
 
-#include "math/wide_double.h"
+#include "math/rotation.h"
+#include "math/wide_double_angle.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
@@ -23,6 +24,11 @@ GYRE_INLINE DVec3W<H> operator*(WideDouble<H> s, DVec3W<H> a) {
 template <int H>
 GYRE_INLINE DVec3W<H> cross(DVec3W<H> a, DVec3W<H> b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+template <int H>
+GYRE_INLINE WideDouble<H> dot(DVec3W<H> a, DVec3W<H> b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
 template <int H>
@@ -76,6 +82,55 @@ GYRE_INLINE DVec3W<H> rotate(DQuatW<H> q, DVec3W<H> v) {
 template <int H>
 GYRE_INLINE DVec3W<H> rotate_inverse(DQuatW<H> q, DVec3W<H> v) {
   return rotate(conjugate(q), v);
+}
+
+// The same one lane at a time, for what is seldom out of the ordinary.
+template <int H>
+__attribute__((noinline)) void exponential_map_by_lanes(const DVec3W<H>& v, DQuatW<H>& q) {
+  GYRE_ROLLED
+  for (int i = 0; i < H; ++i) {
+    const DQuat one = exponential_map(DVec3{v.x[i], v.y[i], v.z[i]});
+    q.x.set(i, one.x), q.y.set(i, one.y), q.z.set(i, one.z), q.w.set(i, one.w);
+  }
+}
+template <int H>
+__attribute__((noinline)) void logarithm_map_by_lanes(const DQuatW<H>& q, DVec3W<H>& v) {
+  GYRE_ROLLED
+  for (int i = 0; i < H; ++i) {
+    const DVec3 one = logarithm_map(DQuat{q.x[i], q.y[i], q.z[i], q.w[i]});
+    v.x.set(i, one.x), v.y.set(i, one.y), v.z.set(i, one.z);
+  }
+}
+
+// As exponential_map of math/rotation.h: side by side where no lane turns by more than a radian.
+template <int H>
+GYRE_INLINE DQuatW<H> exponential_map(DVec3W<H> v) {
+  DQuatW<H> q;
+  const WideDouble<H> square = 0.25 * dot(v, v);
+  if (H > 1 && all_at_most(square, kMostHalfAngleSquare)) {
+    const HalfAngle<H> half = half_angle_of(square);
+    const WideDouble<H> s = 0.5 * half.sine_over_angle;
+    q = {s * v.x, s * v.y, s * v.z, half.cosine};
+  } else {
+    exponential_map_by_lanes(v, q);
+  }
+  return q;
+}
+// As logarithm_map of math/rotation.h: side by side where every lane turns, and none is out of the ordinary.
+template <int H>
+GYRE_INLINE DVec3W<H> logarithm_map(DQuatW<H> q) {
+  DVec3W<H> v{q.x, q.y, q.z};
+  const WideDouble<H> sine = sqrt(dot(v, v));
+  const WideDouble<H> sign = select_above(WideDouble<H>(0.0), q.w, WideDouble<H>(-1.0), WideDouble<H>(1.0));
+  const WideDouble<H> w = sign * q.w;
+  if (H > 1 && all_at_most(WideDouble<H>(1.0e-9), sine) && all_at_most(1.0e-9 * w, sine) &&
+      all_at_most(sine, 2.0) && all_at_most(w, 2.0)) {
+    const AngleSum<H> angle = angle_in_quadrant(sine, w);
+    v = (sign * 2.0 * (angle.head + angle.rest) / sine) * v;
+  } else {
+    logarithm_map_by_lanes(q, v);
+  }
+  return v;
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

@@ -1,13 +1,4 @@
-// Torque-free rotation of a rigid body: the exact drift between two kicks.
-//
-// The angular momentum L in the world frame is constant, so the only unknown is the orientation: q' = 1/2 w q with
-// w = R I^-1 R^T L. L is kept exactly (to rounding) by construction and the energy to the order of the scheme, for any
-// inertia tensor and any speed; bodies that spin about a principal axis turn by the exponential map, and bodies of
-// revolution by two of them (the axis goes round L, the body about its axis), which is exact.
-//
-// Method: Runge-Kutta 4 on the orientation with L fixed, in inner steps of at most kInnerAngle; one midpoint step (error
-// of order angle^3) where the angle is so small that it is exact in float. Source of the idea: E. Hairer, C. Lubich,
-// G. Wanner, "Geometric Numerical Integration", VII.5; L as the variable: J. C. Simo, K. K. Wong, 1991.
+// Turns of single bodies: the plain forms of what the kernels do for many (solver/free_turn.h tells how and why).
 #pragma once
 
 #include "math/rotation.h"
@@ -29,22 +20,6 @@ constexpr DVec3 times(const Tensor& m, DVec3 v) {
 // The orientation after `seconds` at a constant angular momentum (world frame, kg m^2/s); `angle`: about how far it turns, rad.
 DQuat turn_at_momentum(DQuat start, DVec3 momentum, const Tensor& inverse_inertia, double seconds,
                        double angle);
-
-// How a free rotation is worked out: at constant velocity, in closed form, or in inner steps.
-enum class FreeTurnKind : std::uint8_t { steady, closed, stepped };
-FreeTurnKind kind_of_turn(Quat orientation, Vec3 angular_velocity, const Sym3& inertia, float seconds);
-
-// A body that turns freely: its orientation and angular velocity (world frame, rad/s) are moved on. `inertia` is in the body's
-// frame and can be inverted. `turned` becomes the rotation vector by which the body turned (world frame, rad).
-struct FreeTurn {
-  Quat* orientation = nullptr;
-  Vec3* angular_velocity = nullptr;
-  const Sym3* inertia = nullptr;
-  Vec3* turned = nullptr;
-};
-// So many side by side, all of a kind (not steady). A body may stand for its neighbour too.
-constexpr int kFreeTurns = 2;
-void rotate_freely(const FreeTurn (&turns)[kFreeTurns], FreeTurnKind kind, float seconds);
 
 // Moves the orientation on at constant angular velocity: bodies with equal principal moments, kinematic bodies.
 Vec3 rotate_steadily(Quat& orientation, Vec3 angular_velocity, float seconds);

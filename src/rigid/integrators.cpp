@@ -105,11 +105,11 @@ class InertiaRefresh {
   int count_ = 0;
 };
 
-// Turns bodies with the velocities that they have: those that turn freely wait for others of their kind, to be turned side by
-// side.
+// Turns bodies with the velocities that they have: those that turn freely wait for others, to be turned side by side.
 class BodyTurns {
  public:
-  BodyTurns(BodyStore& bodies, float seconds) : bodies_(bodies), seconds_(seconds), refresh_(bodies) {}
+  BodyTurns(BodyStore& bodies, const TurnKernels& kernels, float seconds)
+      : bodies_(bodies), kernels_(kernels), seconds_(seconds) {}
 
   void add(std::uint32_t i) {
     const BodyFlags& flags = bodies_.flags[i];
@@ -124,50 +124,26 @@ class BodyTurns {
       motion.angular_velocity += Vec3{};
       return;
     }
-    const FreeTurnKind kind = kind_of_turn(orientation, motion.angular_velocity, mass.inertia, seconds_);
-    if (kind == FreeTurnKind::steady)
-      return end(i, rotate_steadily(orientation, motion.angular_velocity, seconds_));
-    Waiting& waiting = kind == FreeTurnKind::stepped ? stepped_ : closed_;
-    waiting.bodies[waiting.count++] = i;
-    if (waiting.count == kFreeTurns) turn(waiting, kind);
+    free_[count_] = i;
+    turns_[count_++] = {&motion, &orientation, &mass.inertia};
+    if (count_ == kMostFreeTurns) finish();
   }
   void finish() {
-    turn(closed_, FreeTurnKind::closed);
-    turn(stepped_, FreeTurnKind::stepped);
-    refresh_.finish();
+    if (count_ == 0) return;
+    kernels_.turn_freely(turns_, count_, seconds_);
+    InertiaRefresh refresh(bodies_);
+    for (int i = 0; i < count_; ++i) refresh.add(free_[i]);
+    refresh.finish();
+    count_ = 0;
   }
 
  private:
-  struct Waiting {
-    std::uint32_t bodies[kFreeTurns];
-    int count = 0;
-  };
-
-  void turn(Waiting& waiting, FreeTurnKind kind) {
-    if (waiting.count == 0) return;
-    FreeTurn turns[kFreeTurns];
-    Vec3 turned[kFreeTurns];
-    for (int lane = 0; lane < kFreeTurns; ++lane) {
-      const int place = min(lane, waiting.count - 1);
-      const std::uint32_t i = waiting.bodies[place];
-      turns[lane] = {&bodies_.orientations[i], &bodies_.motion[i].angular_velocity,
-                     &bodies_.masses[i].inertia, &turned[place]};
-    }
-    rotate_freely(turns, kind, seconds_);
-    for (int place = 0; place < waiting.count; ++place) end(waiting.bodies[place], turned[place]);
-    waiting.count = 0;
-  }
-  void end(std::uint32_t i, Vec3 turned) {
-    BodyMotion& motion = bodies_.motion[i];
-    motion.turned += turned;
-    motion.angular_velocity += Vec3{};
-    refresh_.add(i);
-  }
-
   BodyStore& bodies_;
+  const TurnKernels& kernels_;
   float seconds_;
-  InertiaRefresh refresh_;
-  Waiting closed_, stepped_;
+  std::uint32_t free_[kMostFreeTurns];
+  FreeTurn turns_[kMostFreeTurns];
+  int count_ = 0;
 };
 
 // Velocity by the forces of a sub-step.
@@ -212,7 +188,8 @@ void kick_and_move(BodyStore& bodies, std::uint32_t i, const Motions& motions) {
 }
 
 // `turns`: over the whole step.
-void fly_body(BodyStore& bodies, std::uint32_t i, const Motions& motions, BodyTurns& turns) {
+void fly_body(BodyStore& bodies, std::uint32_t i, const Motions& motions, const TurnKernels& kernels,
+              BodyTurns& turns) {
   const BodyFlags& flags = bodies.flags[i];
   const BodyForces& forces = bodies.forces[i];
   BodyMotion& motion = bodies.motion[i];
@@ -223,7 +200,7 @@ void fly_body(BodyStore& bodies, std::uint32_t i, const Motions& motions, BodyTu
     kick_and_move(bodies, i, motions);
     return turns.add(i);
   }
-  BodyTurns parts(bodies, motions.substep);
+  BodyTurns parts(bodies, kernels, motions.substep);
   for (int part = 0; part < motions.count; ++part) {
     if (is_kicked) kick(bodies, i, motions);
     motion.linear_velocity = without_locked(motion.linear_velocity, flags.locked_linear);
@@ -269,14 +246,16 @@ MovedBody describe_motion(const BodyStore& bodies, std::uint32_t body, const Mot
   return moved;
 }
 
-void fly(BodyStore& bodies, std::span<const std::uint32_t> list, const Motions& motions) {
-  BodyTurns turns(bodies, float(motions.count) * motions.substep);
-  for (const std::uint32_t i : list) fly_body(bodies, i, motions, turns);
+void fly(BodyStore& bodies, std::span<const std::uint32_t> list, const Motions& motions,
+         const TurnKernels& kernels) {
+  BodyTurns turns(bodies, kernels, float(motions.count) * motions.substep);
+  for (const std::uint32_t i : list) fly_body(bodies, i, motions, kernels, turns);
   turns.finish();
 }
 
-void turn_alone(BodyStore& bodies, std::span<const std::uint32_t> list, float substep) {
-  BodyTurns turns(bodies, substep);
+void turn_alone(BodyStore& bodies, std::span<const std::uint32_t> list, float substep,
+                const TurnKernels& kernels) {
+  BodyTurns turns(bodies, kernels, substep);
   for (const std::uint32_t i : list) turns.add(i);
   turns.finish();
 }

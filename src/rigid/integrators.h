@@ -9,6 +9,7 @@
 
 #include "rigid/body_store.h"
 #include "solver/motion_block.h"
+#include "solver/turn_block.h"
 
 #include <span>
 
@@ -28,10 +29,12 @@ bool turns_alone(const BodyStore& bodies, std::uint32_t body, float substep);
 MovedBody describe_motion(const BodyStore& bodies, std::uint32_t body, const Motions& motions, bool shown);
 
 // A whole step of bodies that no constraint acts on, kinematic ones among them.
-void fly(BodyStore& bodies, std::span<const std::uint32_t> list, const Motions& motions);
+void fly(BodyStore& bodies, std::span<const std::uint32_t> list, const Motions& motions,
+         const TurnKernels& kernels);
 
 // The rotation of a sub-step of bodies that turn alone.
-void turn_alone(BodyStore& bodies, std::span<const std::uint32_t> list, float substep);
+void turn_alone(BodyStore& bodies, std::span<const std::uint32_t> list, float substep,
+                const TurnKernels& kernels);
 
 // At the end of a step: orientations and world inertia of the bodies of which constraints were made. `pushes` (rotation
 // vectors, one for each of `moved`) are the turns by which overlap was pushed apart.

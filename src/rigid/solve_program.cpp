@@ -32,7 +32,7 @@ std::span<T> block_of(std::span<T> list, int begin, int end, int size) {
 
 void fly_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
-  fly(s.w.bodies, block_of(s.flying, begin, end, kBodiesPerBlock), s.motions);
+  fly(s.w.bodies, block_of(s.flying, begin, end, kBodiesPerBlock), s.motions, s.kernels.turns);
 }
 void prepare_motion_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
@@ -67,7 +67,7 @@ void advance_stage(void* context, int begin, int end, int) {
 }
 void turn_alone_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
-  turn_alone(s.w.bodies, block_of(s.spinners, begin, end, kSpinnersPerClaim), s.h);
+  turn_alone(s.w.bodies, block_of(s.spinners, begin, end, kSpinnersPerClaim), s.h, s.kernels.turns);
 }
 void finish_turns_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);

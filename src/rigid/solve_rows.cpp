@@ -303,7 +303,7 @@ std::span<T> block_of(std::span<T> list, int begin, int end, int size) {
 }
 void fly_stage(void* context, int begin, int end, int) {
   const Solve& s = static_cast<RowSolve*>(context)->solve;
-  fly(s.w.bodies, block_of(s.flying, begin, end, kBodiesPerBlock), s.motions);
+  fly(s.w.bodies, block_of(s.flying, begin, end, kBodiesPerBlock), s.motions, s.kernels.turns);
 }
 void prepare_motion_stage(void* context, int begin, int end, int) {
   const Solve& s = static_cast<RowSolve*>(context)->solve;
@@ -322,7 +322,7 @@ void advance_stage(void* context, int begin, int end, int) {
 }
 void turn_alone_stage(void* context, int begin, int end, int) {
   const Solve& s = static_cast<RowSolve*>(context)->solve;
-  turn_alone(s.w.bodies, block_of(s.spinners, begin, end, kSpinnersPerClaim), s.h);
+  turn_alone(s.w.bodies, block_of(s.spinners, begin, end, kSpinnersPerClaim), s.h, s.kernels.turns);
 }
 void finish_turns_stage(void* context, int begin, int end, int) {
   const Solve& s = static_cast<RowSolve*>(context)->solve;

@@ -10,6 +10,7 @@
 #include "solver/body_motion.h"
 #include "solver/linkage_lanes.h"
 #include "solver/motion_block.h"
+#include "solver/turn_block.h"
 
 #include <cstdint>
 #include <span>
@@ -114,6 +115,7 @@ struct ContactKernels {
   void (*finish)(void* blocks, int begin, int end, const ContactConstraint* constraints,
                  const std::uint32_t* order, const ContactSettings& settings);
   MotionKernels motion;
+  TurnKernels turns;
   LinkageKernels linkages;
   BallKernels balls;
 };

@@ -7,6 +7,7 @@
 #include "solver/contact_project.h"
 #include "solver/linkage_kernel.h"
 #include "solver/motion_kernel.h"
+#include "solver/turn_kernel.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
@@ -26,6 +27,7 @@ constexpr ContactKernels contact_kernels() {
           harden_block<W>,
           finish_blocks<W>,
           motion_kernels<W>(),
+          turn_kernels<W>(),
           linkage_kernels<W>(),
           ball_kernels<W>()};
 }

@@ -7,7 +7,7 @@
 //
 // Free rotation: the angular momentum is what stays constant in the world frame. The body turns with the angular velocity
 // of the middle of the sub-step, and has at its end the one that its momentum asks for in its new orientation (the error is
-// of order angle^3; faster bodies turn alone). Sources as in rigid/free_rotation.h.
+// of order angle^3; faster bodies turn alone). Sources as in solver/free_turn.h.
 //
 // Contacts do the same work at the beginning of each sub-step as they did in the last one (warm start). Instead of walking
 // over all contacts, each body remembers what they gave it.
