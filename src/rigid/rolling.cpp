@@ -74,7 +74,7 @@ RollingPoint describe_point(const Shape& shape, const RollingContact& rolling, Q
 }
 
 // Whether it runs so far round a rim in a step that the middle of its way says little of the rest.
-bool runs_far(const RigidWorld& w, const ColliderShape& collider, const RollingContact& rolling, Vec3 outward,
+bool runs_far(const RigidWorld& w, const ColliderShape& collider, const RollingSides& rolling, Vec3 outward,
               float seconds) {
   if (core_radius(collider.shape) > 0.0f) return false;
   const BodyMotion still;
@@ -87,7 +87,7 @@ bool runs_far(const RigidWorld& w, const ColliderShape& collider, const RollingC
 }
 
 // Whether it matters where the contact goes.
-bool rolls(const RigidWorld& w, const Shape& shape, const RollingContact& rolling, float seconds) {
+bool rolls(const RigidWorld& w, const Shape& shape, const RollingSides& rolling, float seconds) {
   const Vec3 spin = w.bodies.motion[std::size_t(rolling.body)].angular_velocity;
   const Vec3 other_spin =
       rolling.other == kNoBody ? Vec3{} : w.bodies.motion[std::size_t(rolling.other)].angular_velocity;
@@ -110,22 +110,23 @@ bool may_bear(const Manifold& manifold) {
 // held from several sides does not run round its rim, and there may be thousands of those.
 class Bearers {
  public:
-  Bearers(const RigidWorld& w, std::span<const ContactConstraint> constraints,
-          std::span<const std::uint32_t> places, std::size_t bodies, Arena& arena)
-      : w_(w), places_(places), counts_(arena.make<Count>(bodies)) {
+  // `pairs`: the places of the constraints' bodies in the batch, which has so many.
+  Bearers(std::span<const ContactConstraint> constraints, std::span<const ColoringPair> pairs,
+          std::size_t bodies, Arena& arena)
+      : counts_(arena.make<Count>(bodies)) {
     for (Count& count : counts_) count = {};
-    for (const ContactConstraint& constraint : constraints) {
-      for (const std::int32_t body : {constraint.body_a, constraint.body_b}) {
-        if (!is_borne(body)) continue;
-        Count& count = counts_[places_[std::size_t(body)]];
+    for (std::size_t i = 0; i < constraints.size(); ++i) {
+      for (const std::uint32_t place : {pairs[i].a, pairs[i].b}) {
+        if (place == ColoringPair::kNone) continue;
+        Count& count = counts_[place];
         count.all = std::uint8_t(count.all < 2 ? count.all + 1 : 2);
-        count.loaded = std::uint8_t(count.loaded < 2 ? count.loaded + constraint.loaded : 2);
+        count.loaded = std::uint8_t(count.loaded < 2 ? count.loaded + constraints[i].loaded : 2);
       }
     }
   }
-  bool is_alone(const ContactConstraint& constraint, std::int32_t body) const {
-    if (!is_borne(body)) return false;
-    const Count count = counts_[places_[std::size_t(body)]];
+  bool is_alone(const ContactConstraint& constraint, std::uint32_t place) const {
+    if (place == ColoringPair::kNone) return false;
+    const Count count = counts_[place];
     return constraint.loaded ? count.loaded == 1 : count.loaded == 0 && count.all == 1;
   }
 
@@ -133,26 +134,23 @@ class Bearers {
   struct Count {
     std::uint8_t all = 0, loaded = 0;  // constraints, at most 2
   };
-  bool is_borne(std::int32_t body) const { return body != kNoBody && is_active(w_, std::uint32_t(body)); }
-
-  const RigidWorld& w_;
-  std::span<const std::uint32_t> places_;
   std::span<Count> counts_;
 };
 
 // Which of the two bodies rolls, if one does.
 bool choose_body(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint,
-                 const Bearers& bearers, float seconds, RollingContact& rolling) {
+                 ColoringPair places, const Bearers& bearers, float seconds, RollingSides& rolling) {
   const bool flat_a = is_flat(w.shapes.colliders[contact.shape_a].shape);
   rolling.body = flat_a ? constraint.body_b : constraint.body_a;
   rolling.other = flat_a ? constraint.body_a : constraint.body_b;
   rolling.side = flat_a ? 1.0f : -1.0f;
   const ColliderShape& collider = w.shapes.colliders[flat_a ? contact.shape_b : contact.shape_a];
-  const Vec3 outward = -rolling.side * constraint.manifold->normal;
-  rolling.once =
-      !bearers.is_alone(constraint, rolling.body) && !runs_far(w, collider, rolling, outward, seconds);
   rolling.center = collider.body_from_shape.position - w.bodies.masses[std::size_t(rolling.body)].center;
-  return rolls(w, collider.shape, rolling, seconds);
+  if (!rolls(w, collider.shape, rolling, seconds)) return false;
+  const Vec3 outward = -rolling.side * constraint.manifold->normal;
+  rolling.once = !bearers.is_alone(constraint, flat_a ? places.b : places.a) &&
+                 !runs_far(w, collider, rolling, outward, seconds);
+  return true;
 }
 
 void describe(const RigidWorld& w, const Contact& contact, const Manifold& manifold,
@@ -213,8 +211,7 @@ bool may_roll(const RigidWorld& w, const Contact& contact, const ContactConstrai
   return (flat_a ? constraint.body_b : constraint.body_a) != kNoBody && may_bear(*constraint.manifold);
 }
 
-RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch,
-                                      std::span<const std::uint32_t> places, std::size_t bodies,
+RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch, std::size_t bodies,
                                       float seconds, Arena& arena) {
   const std::span<const ContactConstraint> constraints = scratch.constraints;
   const auto contact_of = [&](std::uint32_t i) -> const Contact& {
@@ -228,29 +225,25 @@ RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch
     count += constraints[i].may_roll;
   }
   if (count == 0) return all;
-  const Bearers bearers(w, constraints, places, bodies, arena);
+  const Bearers bearers(constraints, scratch.pairs, bodies, arena);
+  const std::span<RollingSides> sides = arena.make<RollingSides>(count);
   std::uint32_t found = 0;
-  RollingContact rolling;
-  const auto chosen = [&](std::uint32_t i) {
-    return choose_body(w, contact_of(i), constraints[i], bearers, seconds, rolling);
-  };
-  for (std::size_t n = 0; n < count; ++n) {
-    if (chosen(candidates[n])) candidates[found++] = candidates[n];
+  for (const std::uint32_t i : candidates.first(count)) {
+    sides[found].constraint = i;
+    found += choose_body(w, contact_of(i), constraints[i], scratch.pairs[i], bearers, seconds, sides[found]);
   }
   if (found == 0) return all;
   all.contacts = arena.make<RollingContact>(found);
   all.of_constraint = arena.make<std::uint32_t>(constraints.size());
   for (std::uint32_t& place : all.of_constraint) place = kNotRolling;
   for (std::uint32_t n = 0; n < found; ++n) {
-    const std::uint32_t i = candidates[n];
-    chosen(i);
-    rolling.constraint = i;
-    describe(w, contact_of(i), *constraints[i].manifold, rolling);
+    RollingContact& rolling = all.contacts[n] = {};
+    static_cast<RollingSides&>(rolling) = sides[n];
+    describe(w, contact_of(rolling.constraint), *constraints[rolling.constraint].manifold, rolling);
     for (const std::int32_t body : {rolling.body, rolling.other}) {
       if (body != kNoBody) w.bodies.flags[std::size_t(body)].touched = 2;
     }
-    all.contacts[n] = rolling;
-    all.of_constraint[i] = n;
+    all.of_constraint[rolling.constraint] = n;
   }
   return all;
 }

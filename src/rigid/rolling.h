@@ -28,17 +28,19 @@ struct RollingPoint {
   bool on_rim = false;
 };
 
-// A contact of a curved shape with a flat one.
-struct RollingContact {
+// Who rolls on whom in a contact of a curved shape with a flat one.
+struct RollingSides {
   std::uint32_t constraint = 0;
   std::int32_t body = kNoBody;  // that is curved
   std::int32_t other = kNoBody;
   float side = 1.0f;  // 1 if it is the constraint's b, else -1
   bool once = false;  // held from several sides: it stays where it is in the middle of the step
   Vec3 center;        // of the shape from the body's centre of mass, body frame
-  Vec3 axis;          // body frame, unit: of symmetry
-  Vec3 outward;       // world axes: the normal, out of the curved shape
-  Vec3 offset;        // m, from the other body's centre of mass to the curved one's, as the step began
+};
+struct RollingContact : RollingSides {
+  Vec3 axis;     // body frame, unit: of symmetry
+  Vec3 outward;  // world axes: the normal, out of the curved shape
+  Vec3 offset;   // m, from the other body's centre of mass to the curved one's, as the step began
   RollingPoint points[kMaxManifoldPoints];
   FollowedArms arms;  // as last followed
   Vec3
@@ -61,10 +63,9 @@ float patch_friction(const RigidWorld& w, const Contact& contact, const ContactC
 // through no contact is, and nothing more is asked. `constraint` has its bodies and its manifold.
 bool may_roll(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint);
 
-// Those among the constraints of the batch that may roll and whose bodies turn against each other. `places`: of bodies in the batch, which has so
-// many. Marks the bodies as ones whose place others look at.
-RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch,
-                                      std::span<const std::uint32_t> places, std::size_t bodies,
+// Those among the constraints of the batch, which has so many bodies, that may roll and whose bodies turn against each other. Marks
+// these bodies as ones whose place others look at.
+RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch, std::size_t bodies,
                                       float seconds, Arena& arena);
 
 // Into its arms: where the contact is in a sub-step that begins now, with its middle in `ahead` seconds.

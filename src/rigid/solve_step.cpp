@@ -90,8 +90,8 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   gather_contacts(solve, arena, tasks);
   begin_joints(solve, warm_scale, arena, tasks);
   gather_joints(solve);
-  solve.rolling = find_rolling_contacts(solve.w, scratch, solve.places, solve.batch.bodies.size(),
-                                        solve.contact_settings.step, arena);
+  solve.rolling =
+      find_rolling_contacts(solve.w, scratch, solve.batch.bodies.size(), solve.contact_settings.step, arena);
   if (solve.is_smooth)
     solve.smooth =
         find_smooth_motion(solve.w, solve.batch, solve.places, solve.motions.count, solve.h, arena);
