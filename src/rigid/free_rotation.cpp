@@ -27,11 +27,4 @@ DQuat turn_at_momentum(DQuat start, DVec3 momentum, const Tensor& inverse_inerti
   return {q.x.v, q.y.v, q.z.v, q.w.v};
 }
 
-Vec3 rotate_steadily(Quat& orientation, Vec3 angular_velocity, float seconds) {
-  const Vec3 turn = seconds * angular_velocity;
-  if (turn == Vec3{}) return {};
-  orientation = integrate_rotation(orientation, turn);
-  return turn;
-}
-
 }  // namespace gyre

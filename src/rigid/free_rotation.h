@@ -1,4 +1,4 @@
-// Turns of single bodies: the plain forms of what the kernels do for many (solver/free_turn.h tells how and why).
+// The turn of a single body at constant momentum (solver/free_turn.h tells how and why).
 #pragma once
 
 #include "math/rotation.h"
@@ -20,8 +20,5 @@ constexpr DVec3 times(const Tensor& m, DVec3 v) {
 // The orientation after `seconds` at a constant angular momentum (world frame, kg m^2/s); `angle`: about how far it turns, rad.
 DQuat turn_at_momentum(DQuat start, DVec3 momentum, const Tensor& inverse_inertia, double seconds,
                        double angle);
-
-// Moves the orientation on at constant angular velocity: bodies with equal principal moments, kinematic bodies.
-Vec3 rotate_steadily(Quat& orientation, Vec3 angular_velocity, float seconds);
 
 }  // namespace gyre

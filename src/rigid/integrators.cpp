@@ -105,30 +105,78 @@ class InertiaRefresh {
   int count_ = 0;
 };
 
-// Turns bodies with the velocities that they have: those that turn freely wait for others, to be turned side by side.
+// Turns by rotation vectors wait for others, to be made side by side.
+class SteadyTurns {
+ public:
+  SteadyTurns(BodyStore& bodies, const TurnKernels& kernels) : bodies_(bodies), kernels_(kernels) {}
+
+  // From an orientation, which need not be the present one.
+  void add(std::uint32_t body, Quat from, Vec3 turn) {
+    turns_[count_] = {from, turn};
+    waiting_[count_++] = body;
+  }
+  bool is_full() const { return count_ == kMostTurns; }
+  // Calls then(body) for each that is turned.
+  template <class Then>
+  void finish(Then&& then) {
+    kernels_.turn_steadily(turns_, count_);
+    for (int i = 0; i < count_; ++i) {
+      bodies_.orientations[waiting_[i]] = turns_[i].orientation;
+      then(waiting_[i]);
+    }
+    count_ = 0;
+  }
+
+ private:
+  BodyStore& bodies_;
+  const TurnKernels& kernels_;
+  SteadyTurn turns_[kMostTurns];
+  std::uint32_t waiting_[kMostTurns];
+  int count_ = 0;
+};
+
+// Turns bodies with the velocities that they have: they wait for others, to be turned side by side.
 class BodyTurns {
  public:
   BodyTurns(BodyStore& bodies, const TurnKernels& kernels, float seconds)
-      : bodies_(bodies), kernels_(kernels), seconds_(seconds) {}
+      : bodies_(bodies), kernels_(kernels), seconds_(seconds), steady_(bodies, kernels) {}
 
   void add(std::uint32_t i) {
     const BodyFlags& flags = bodies_.flags[i];
     const BodyMass& mass = bodies_.masses[i];
-    BodyMotion& motion = bodies_.motion[i];
-    Quat& orientation = bodies_.orientations[i];
-    if (flags.locked_angular != 0)
-      motion.angular_velocity = without_locked(motion.angular_velocity, flags.locked_angular);
-    if (flags.type == BodyType::kinematic || mass.isotropic != 0 || flags.locked_angular != 0) {
-      motion.turned += rotate_steadily(orientation, motion.angular_velocity, seconds_);
-      if (flags.locked_angular != 0 && flags.locked_angular != 7) refresh_world_inertia(bodies_, i);
-      motion.angular_velocity += Vec3{};
-      return;
-    }
+    if (flags.type == BodyType::kinematic || mass.isotropic != 0 || flags.locked_angular != 0)
+      return add_steady(i, flags.locked_angular);
     free_[count_] = i;
-    turns_[count_++] = {&motion, &orientation, &mass.inertia};
-    if (count_ == kMostFreeTurns) finish();
+    turns_[count_++] = {&bodies_.motion[i], &bodies_.orientations[i], &mass.inertia};
+    if (count_ == kMostTurns) turn_freely();
   }
   void finish() {
+    turn_freely();
+    turn_steadily();
+  }
+
+ private:
+  void add_steady(std::uint32_t i, std::uint8_t locked) {
+    BodyMotion& motion = bodies_.motion[i];
+    if (locked != 0) motion.angular_velocity = without_locked(motion.angular_velocity, locked);
+    const Vec3 turn = seconds_ * motion.angular_velocity;
+    motion.angular_velocity += Vec3{};
+    if (turn == Vec3{}) {
+      motion.turned += Vec3{};
+      if (locked != 0 && locked != 7) refresh_world_inertia(bodies_, i);
+      return;
+    }
+    motion.turned += turn;
+    steady_.add(i, bodies_.orientations[i], turn);
+    if (steady_.is_full()) turn_steadily();
+  }
+  void turn_steadily() {
+    steady_.finish([&](std::uint32_t i) {
+      const std::uint8_t locked = bodies_.flags[i].locked_angular;
+      if (locked != 0 && locked != 7) refresh_world_inertia(bodies_, i);
+    });
+  }
+  void turn_freely() {
     if (count_ == 0) return;
     kernels_.turn_freely(turns_, count_, seconds_);
     InertiaRefresh refresh(bodies_);
@@ -137,12 +185,12 @@ class BodyTurns {
     count_ = 0;
   }
 
- private:
   BodyStore& bodies_;
   const TurnKernels& kernels_;
   float seconds_;
-  std::uint32_t free_[kMostFreeTurns];
-  FreeTurn turns_[kMostFreeTurns];
+  SteadyTurns steady_;
+  std::uint32_t free_[kMostTurns];
+  FreeTurn turns_[kMostTurns];
   int count_ = 0;
 };
 
@@ -260,8 +308,11 @@ void turn_alone(BodyStore& bodies, std::span<const std::uint32_t> list, float su
   turns.finish();
 }
 
-void finish_turns(BodyStore& bodies, std::span<const MovedBody> moved, std::span<const Vec3> pushes) {
+void finish_turns(BodyStore& bodies, std::span<const MovedBody> moved, std::span<const Vec3> pushes,
+                  const TurnKernels& kernels) {
   InertiaRefresh refresh(bodies);
+  SteadyTurns turns(bodies, kernels);
+  const auto turn_all = [&] { turns.finish([&](std::uint32_t i) { refresh.add(i); }); };
   for (std::size_t n = 0; n < moved.size(); ++n) {
     const std::uint32_t i = std::uint32_t(moved[n].body);
     if (bodies.flags[i].type != BodyType::dynamic) continue;
@@ -270,16 +321,17 @@ void finish_turns(BodyStore& bodies, std::span<const MovedBody> moved, std::span
     if (moved[n].turns_alone) {
       const Vec3 turn = without_locked(pushes[n], bodies.flags[i].locked_angular);
       if (turn == Vec3{}) continue;
-      motion.turned += rotate_steadily(orientation, turn, 1.0f);
-    } else if (motion.turned == Vec3{}) {
-      // Who was not shown has the orientation and inertia that it had.
-      if (!moved[n].shown) continue;
+      motion.turned += turn;
+      turns.add(i, orientation, turn);
+    } else if (motion.turned != Vec3{}) {
+      turns.add(i, moved[n].orientation, motion.turned);
+    } else if (moved[n].shown) {
       orientation = moved[n].orientation;
-    } else {
-      orientation = integrate_rotation(moved[n].orientation, motion.turned);
-    }
-    refresh.add(i);
+      refresh.add(i);
+    }  // who was not shown has the orientation and inertia that it had
+    if (turns.is_full()) turn_all();
   }
+  turn_all();
   refresh.finish();
 }
 

@@ -38,6 +38,7 @@ void turn_alone(BodyStore& bodies, std::span<const std::uint32_t> list, float su
 
 // At the end of a step: orientations and world inertia of the bodies of which constraints were made. `pushes` (rotation
 // vectors, one for each of `moved`) are the turns by which overlap was pushed apart.
-void finish_turns(BodyStore& bodies, std::span<const MovedBody> moved, std::span<const Vec3> pushes);
+void finish_turns(BodyStore& bodies, std::span<const MovedBody> moved, std::span<const Vec3> pushes,
+                  const TurnKernels& kernels);
 
 }  // namespace gyre

@@ -72,7 +72,7 @@ void turn_alone_stage(void* context, int begin, int end, int) {
 void finish_turns_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
   finish_turns(s.w.bodies, block_of(s.moved, begin, end, kBodiesPerBlock),
-               block_of(s.pushes, begin, end, kBodiesPerBlock));
+               block_of(s.pushes, begin, end, kBodiesPerBlock), s.kernels.turns);
 }
 void watch_stage(void* context, int, int, int) {
   const Solve& s = *static_cast<Solve*>(context);

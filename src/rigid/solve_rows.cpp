@@ -327,7 +327,7 @@ void turn_alone_stage(void* context, int begin, int end, int) {
 void finish_turns_stage(void* context, int begin, int end, int) {
   const Solve& s = static_cast<RowSolve*>(context)->solve;
   finish_turns(s.w.bodies, block_of(s.moved, begin, end, kBodiesPerBlock),
-               block_of(s.pushes, begin, end, kBodiesPerBlock));
+               block_of(s.pushes, begin, end, kBodiesPerBlock), s.kernels.turns);
 }
 void begin_projection_stage(void* context, int begin, int end, int) {
   const Solve& s = static_cast<RowSolve*>(context)->solve;

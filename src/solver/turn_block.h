@@ -12,12 +12,20 @@ struct FreeTurn {
   Quat* orientation = nullptr;
   const Sym3* inertia = nullptr;  // body frame; can be inverted
 };
+// An orientation that is turned by a rotation vector (rad, world frame).
+struct SteadyTurn {
+  Quat orientation;
+  Vec3 turn;
+  float spare = 0.0f;  // kernels read eight floats
+};
 // So many at once.
-constexpr int kMostFreeTurns = 64;
+constexpr int kMostTurns = 64;
 
 struct TurnKernels {
-  // At most kMostFreeTurns, of different bodies.
+  // At most kMostTurns, of different bodies.
   void (*turn_freely)(const FreeTurn* turns, int count, float seconds);
+  // As integrate_rotation of math/rotation.h.
+  void (*turn_steadily)(SteadyTurn* turns, int count);
 };
 
 }  // namespace gyre

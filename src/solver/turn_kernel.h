@@ -108,7 +108,7 @@ template <int H>
 struct TurnHalf {
   DQuatW<H> orientation;  // in and out
   DVec3W<H> spin;         // in and out, rad/s
-  DVec3W<H> turned;       // rad: of steady ones in, of the others out
+  DVec3W<H> turned;       // out, rad
   WideDouble<H> angle;    // about how far it turns
   TensorW<H> inertia;
   TopW<H> top;
@@ -117,10 +117,6 @@ struct TurnHalf {
 // Not inlined: it would be part of the loop over both halves.
 template <int H>
 __attribute__((noinline)) void turn_half(TurnHalf<H>& t, TurnWay way, double seconds) {
-  if (way == TurnWay::steady) {
-    t.orientation = normalized(exponential_map(t.turned) * t.orientation);
-    return;
-  }
   const WideDouble<H> time(seconds);
   const TensorW<H> inverse_inertia = inverse(t.inertia);
   const DQuatW<H> start = normalized(t.orientation);
@@ -169,11 +165,33 @@ class HalfView {
   std::size_t first_;
 };
 
-// Turns the bodies of the columns, all in one way.
+// Turns the first `count` orientations by rotation vectors: in double, so that turns far below a float's resolution still add up
+// without bias.
 template <int W>
-void turn_columns(TurnColumns<W>& columns, TurnWay way, float seconds) {
-  const Wide<W> zero(0.0f), one(1.0f);
-  const Vec3W<W> none{zero, zero, zero};
+__attribute__((noinline)) void turn_by_vectors(QuatW<W>& orientation, const Vec3W<W>& turn, int count) {
+  for (int half = 0; half < kHalves<W> && half * kHalfLanes<W> < count; ++half) {
+    const HalfView<W> view(half);
+    view.store(normalized(exponential_map(view.load(turn)) * view.load(orientation)), orientation);
+  }
+}
+
+// Turns the bodies of the columns, which turn at constant velocity.
+template <int W>
+GYRE_INLINE void turn_steady_columns(TurnColumns<W>& columns, float seconds) {
+  const Wide<W> zero(0.0f);
+  const Vec3W<W> turn = Wide<W>(seconds) * columns.spin;
+  const Mask<W> turns = (turn.x != zero) | (turn.y != zero) | (turn.z != zero);
+  QuatW<W> orientation = columns.orientation;
+  turn_by_vectors<W>(orientation, turn, columns.count);
+  // What stands still keeps its orientation, however long that is.
+  columns.orientation = select(turns, orientation, columns.orientation);
+  columns.turned = columns.turned + keep(turns, turn);
+}
+
+// Turns the bodies of the columns, all in one of the other ways.
+template <int W>
+GYRE_INLINE void turn_free_columns(TurnColumns<W>& columns, TurnWay way, float seconds) {
+  const Wide<W> one(1.0f);
   const Sym3W<W>& m = columns.inertia;
   const TopMasks<W> top(m);
   const Vec3W<W> axis{keep(top.about_x, one), keep(top.about_y, one), keep(top.about_z, one)};
@@ -181,35 +199,28 @@ void turn_columns(TurnColumns<W>& columns, TurnWay way, float seconds) {
   const Wide<W> across_1 = select(top.about_x, m.yy, select(top.about_y, m.zz, m.xx));
   const Wide<W> across_2 = select(top.about_x, m.zz, select(top.about_y, m.xx, m.yy));
   const Wide<W> angle = seconds * length(columns.spin);
-  const Vec3W<W> steadily = Wide<W>(seconds) * columns.spin;
-  const Mask<W> turns = (steadily.x != zero) | (steadily.y != zero) | (steadily.z != zero);
-  Vec3W<W> turned = keep(turns, steadily);
-  QuatW<W> orientation = columns.orientation;
+  Vec3W<W> turned{Wide<W>(0.0f), Wide<W>(0.0f), Wide<W>(0.0f)};
   constexpr int H = kHalfLanes<W>;
   for (int half = 0; half * H < columns.count; ++half) {
     const HalfView<W> view(half);
-    TurnHalf<H> t{view.load(orientation),
-                  view.load(columns.spin),
-                  view.load(turned),
-                  view.load(angle),
-                  view.load(m),
-                  {view.load(axis), view.load(along), 0.5 * (view.load(across_1) + view.load(across_2))}};
+    TurnHalf<H> t;
+    t.orientation = view.load(columns.orientation);
+    t.spin = view.load(columns.spin);
+    t.angle = view.load(angle);
+    t.inertia = view.load(m);
+    t.top = {view.load(axis), view.load(along), 0.5 * (view.load(across_1) + view.load(across_2))};
     turn_half<H>(t, way, double(seconds));
-    view.store(t.orientation, orientation);
+    view.store(t.orientation, columns.orientation);
     view.store(t.spin, columns.spin);
     view.store(t.turned, turned);
   }
-  // What stands still has no steady turn.
-  if (way == TurnWay::steady) orientation = select(turns, orientation, columns.orientation);
-  columns.orientation = orientation;
   columns.turned = columns.turned + turned;
-  columns.spin = columns.spin + none;
 }
 
 template <int W>
 void turn_freely(const FreeTurn* turns, int count, float seconds) {
   TurnColumns<W> columns;
-  std::uint8_t all[kMostFreeTurns], lists[kTurnWays][kMostFreeTurns];
+  std::uint8_t all[kMostTurns], lists[kTurnWays][kMostTurns];
   int counts[kTurnWays] = {};
   for (int n = 0; n < count; ++n) all[n] = std::uint8_t(n);
   for (int n = 0; n < count; n += W) {
@@ -224,16 +235,41 @@ void turn_freely(const FreeTurn* turns, int count, float seconds) {
   for (int way = 0; way < kTurnWays; ++way) {
     for (int n = 0; n < counts[way]; n += W) {
       gather_turns<W>(turns, lists[way] + n, counts[way] - n, columns);
-      turn_columns<W>(columns, TurnWay(way), seconds);
+      if (TurnWay(way) == TurnWay::steady) {
+        turn_steady_columns<W>(columns, seconds);
+      } else {
+        turn_free_columns<W>(columns, TurnWay(way), seconds);
+      }
+      // Adding zero keeps -0 out of the state.
+      const Wide<W> zero(0.0f);
+      columns.spin = columns.spin + Vec3W<W>{zero, zero, zero};
       scatter_turns<W>(columns);
     }
+  }
+}
+
+template <int W>
+void turn_steadily(SteadyTurn* turns, int count) {
+  static_assert(sizeof(SteadyTurn) == 8 * sizeof(float));
+  float nowhere[sizeof(SteadyTurn) / sizeof(float)] = {};
+  for (int n = 0; n < count; n += W) {
+    const float* from[W];
+    float* to[W];
+    for (int lane = 0; lane < W; ++lane)
+      from[lane] = to[lane] = n + lane < count ? &turns[n + lane].orientation.x : nowhere;
+    Wide<W> in[8];
+    gather_columns<8, W>(from, 0, in);
+    QuatW<W> q{in[0], in[1], in[2], in[3]};
+    turn_by_vectors<W>(q, Vec3W<W>{in[4], in[5], in[6]}, count - n);
+    const Wide<W> out[] = {q.x, q.y, q.z, q.w};
+    scatter_columns<4, W>(to, 0, out);
   }
 }
 
 // The table that a kernel file exports.
 template <int W>
 constexpr TurnKernels turn_kernels() {
-  return {turn_freely<W>};
+  return {turn_freely<W>, turn_steadily<W>};
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

@@ -140,16 +140,33 @@ TEST(TurnKernel, TurnsManyBodiesAsEachAlone) {
   for (int round = 0; round < 200; ++round) {
     const float seconds = round % 2 == 0 ? 1.0f / 60.0f : 1.0f / 480.0f;
     std::vector<Spinner> bodies;
-    for (int i = 0; i <= round % kMostFreeTurns; ++i) bodies.push_back(make_spinner(random));
+    for (int i = 0; i <= round % kMostTurns; ++i) bodies.push_back(make_spinner(random));
     std::vector<Spinner> plain = bodies;
     for (Spinner& body : plain) turn_plainly(body, seconds);
     for (const int width : {1, 4, 8, 16}) {
       std::vector<Spinner> turned = bodies;
-      FreeTurn turns[kMostFreeTurns];
+      FreeTurn turns[kMostTurns];
       for (std::size_t i = 0; i < turned.size(); ++i)
         turns[i] = {&turned[i].motion, &turned[i].orientation, &turned[i].inertia};
       select_contact_kernels(width).turns.turn_freely(turns, int(turned.size()), seconds);
       for (std::size_t i = 0; i < turned.size(); ++i) expect_same(turned[i], plain[i], width);
+    }
+  }
+}
+
+TEST(TurnKernel, TurnsByVectorsAsEachAlone) {
+  Random random;
+  for (int count = 0; count <= kMostTurns; ++count) {
+    std::vector<SteadyTurn> turns;
+    for (int i = 0; i < count; ++i) {
+      const Spinner body = make_spinner(random);
+      turns.push_back({body.orientation, 0.1f * body.motion.angular_velocity});
+    }
+    for (const int width : {1, 4, 8, 16}) {
+      std::vector<SteadyTurn> turned = turns;
+      select_contact_kernels(width).turns.turn_steadily(turned.data(), count);
+      for (std::size_t i = 0; i < turns.size(); ++i)
+        EXPECT_EQ(turned[i].orientation, integrate_rotation(turns[i].orientation, turns[i].turn)) << width;
     }
   }
 }
