@@ -221,10 +221,20 @@ void kick_and_move(BodyStore& bodies, std::uint32_t i, const Motions& motions) {
   const Vec3 kick =
       damping.gain * (forces.gravity_scale * motions.gravity + bodies.inertia[i].inverse_mass * forces.force);
   Vec3 v = motion.linear_velocity, moved = motion.moved;
-  for (int part = 0; part < motions.count; ++part) {
-    v = v + (kick - damping.lost * v);
-    v = within_length(without_locked(v, flags.locked_linear), kMaxSpeed) + Vec3{};
-    moved += motions.substep * v;
+  // Neither a lock nor the bound on speed is met in any part: nor is -0, once v has none.
+  const float fastest = largest(absolute(v)) + float(motions.count) * largest(absolute(kick));
+  if (flags.locked_linear == 0 && fastest <= 0.25f * kMaxSpeed) {
+    v += Vec3{};
+    for (int part = 0; part < motions.count; ++part) {
+      v = v + (kick - damping.lost * v);
+      moved += motions.substep * v;
+    }
+  } else {
+    for (int part = 0; part < motions.count; ++part) {
+      v = v + (kick - damping.lost * v);
+      v = within_length(without_locked(v, flags.locked_linear), kMaxSpeed) + Vec3{};
+      moved += motions.substep * v;
+    }
   }
   motion.linear_velocity = v;
   motion.moved = moved;
