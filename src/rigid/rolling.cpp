@@ -165,6 +165,7 @@ void describe(const RigidWorld& w, const Contact& contact, const Manifold& manif
     rolling.points[k] =
         describe_point(collider.shape, rolling, w.bodies.orientations[std::size_t(rolling.body)],
                        is_b ? point.from_b : point.from_a, point.separation);
+    rolling.on_rim = rolling.on_rim || rolling.points[k].on_rim;
     rolling.arms.now.from_a[k] = point.from_a;
     rolling.arms.now.from_b[k] = point.from_b;
   }
@@ -185,10 +186,26 @@ Vec3 free_change(const RigidWorld& w, std::size_t body, Quat orientation, float 
   return rotate(orientation, (share * seconds) * (mass.inverse_inertia * cross(mass.inertia * spin, spin)));
 }
 
-Vec3 arm_of(const RollingContact& rolling, const RollingPoint& point, Quat orientation) {
-  const Vec3 direction =
-      point.on_rim ? Lowest(rolling.outward, rotate(orientation, rolling.axis)).direction : rolling.outward;
-  return rotate(orientation, point.core) + point.reach * direction + point.rest;
+// A contact's points at an orientation of the curved body.
+struct PointsPlace {
+  const RollingContact& rolling;
+  Quat orientation;
+  Vec3 lowest;  // of rims
+
+  PointsPlace(const RollingContact& rolls, Quat q) : rolling(rolls), orientation(q) {
+    if (rolls.on_rim) lowest = Lowest(rolls.outward, rotate(q, rolls.axis)).direction;
+  }
+  Vec3 arm_of(const RollingPoint& point) const {
+    const Vec3 direction = point.on_rim ? lowest : rolling.outward;
+    return rotate(orientation, point.core) + point.reach * direction + point.rest;
+  }
+};
+
+// How far towards the middle of the sub-step impulses act. Where the contact runs far in a sub-step the leapfrog scheme would gain
+// energy at times; impulses that act where speeds are taken lose it.
+float share_of_run(Vec3 arm, Vec3 middle_arm) {
+  const float run = 2.0f * length(middle_arm - arm), most = kLargestRun * length(arm);
+  return run > most ? min(run / most - 1.0f, 1.0f) : 0.0f;
 }
 
 }  // namespace
@@ -254,7 +271,8 @@ void follow_contact(const RigidWorld& w, RollingContact& rolling, const Manifold
   const BodyMotion& motion = w.bodies.motion[body];
   const BodyMotion& other = rolling.other == kNoBody ? still : w.bodies.motion[std::size_t(rolling.other)];
   const Quat now = w.bodies.orientations[body];
-  const Quat middle = turned_on(now, ahead * motion.angular_velocity);
+  const PointsPlace place(rolling, now),
+      middle_place(rolling, turned_on(now, ahead * motion.angular_velocity));
   const Vec3 offset = rolling.offset + (motion.moved - other.moved);
   const Vec3 middle_offset = offset + ahead * (motion.linear_velocity - other.linear_velocity);
   const auto put = [&](PointArmPairs& pairs, int k, Vec3 arm, Vec3 apart) {
@@ -267,12 +285,8 @@ void follow_contact(const RigidWorld& w, RollingContact& rolling, const Manifold
   for (int k = 0; k < manifold.count; ++k) {
     const ContactPointState& point = manifold.points[k];
     const Vec3 at_first = rolling.side > 0.0f ? point.from_b : point.from_a;
-    const Vec3 arm = arm_of(rolling, rolling.points[k], now),
-               middle_arm = arm_of(rolling, rolling.points[k], middle);
-    // Where the contact runs far in a sub-step the leapfrog scheme would gain energy at times. Impulses that act where speeds
-    // are taken lose it.
-    const float run = 2.0f * length(middle_arm - arm), most = kLargestRun * length(arm);
-    const float share = rolling.once ? 1.0f : run > most ? min(run / most - 1.0f, 1.0f) : 0.0f;
+    const Vec3 arm = place.arm_of(rolling.points[k]), middle_arm = middle_place.arm_of(rolling.points[k]);
+    const float share = rolling.once ? 1.0f : share_of_run(arm, middle_arm);
     put(arms.now, k, arm + share * (middle_arm - arm), offset + share * (middle_offset - offset));
     put(arms.middle, k, middle_arm, middle_offset);
     // Surfaces come nearer by what the arm grows outward; what turning the body makes of it is taken off again.

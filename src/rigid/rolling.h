@@ -42,7 +42,8 @@ struct RollingContact : RollingSides {
   Vec3 outward;  // world axes: the normal, out of the curved shape
   Vec3 offset;   // m, from the other body's centre of mass to the curved one's, as the step began
   RollingPoint points[kMaxManifoldPoints];
-  FollowedArms arms;  // as last followed
+  bool on_rim = false;  // some of them
+  FollowedArms arms;    // as last followed
   Vec3
       drift;  // rad/s: what free rotation adds to the body's angular velocity until the middle of the sub-step
 };
