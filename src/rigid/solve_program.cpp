@@ -250,6 +250,7 @@ void begin_balls_stage(void* context, int begin, int end, int) {
     begin_ball(balls.kernels, balls.blocks, block, lane, joint, joint_places(s.w, slot), warm_scale,
                turns(joint.body_a) || turns(joint.body_b), balls.arrays.inertia);
   });
+  balls.kernels.locate(balls.blocks, balls.begin, balls.end, balls.arrays);
 }
 void finish_balls_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
@@ -273,7 +274,7 @@ void bend_joints_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
   if (g.ball_block >= 0) {
     const Balls balls = balls_of(g, begin, end);
-    return balls.kernels.bend(balls.blocks, balls.begin, balls.end, balls.arrays, balls.settings);
+    return balls.kernels.bend(balls.blocks, balls.begin, balls.end, balls.settings);
   }
   for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
     bend_joint(joint, work, g.solve->joint_bodies, g.solve->joint_settings);
@@ -283,7 +284,7 @@ void warm_joints_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
   if (g.ball_block >= 0) {
     const Balls balls = balls_of(g, begin, end);
-    return balls.kernels.warm(balls.blocks, balls.begin, balls.end, balls.arrays);
+    return balls.kernels.warm(balls.blocks, balls.begin, balls.end);
   }
   for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
     warm_start_joint(joint, work, g.solve->joint_bodies);
@@ -293,7 +294,7 @@ void solve_joints_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
   if (g.ball_block >= 0) {
     const Balls balls = balls_of(g, begin, end);
-    return balls.kernels.solve(balls.blocks, balls.begin, balls.end, balls.arrays, balls.settings);
+    return balls.kernels.solve(balls.blocks, balls.begin, balls.end, balls.settings);
   }
   for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
     solve_joint(joint, work, g.solve->joint_bodies, g.solve->joint_settings, true);
@@ -309,7 +310,7 @@ void relax_joints_stage(void* context, int begin, int end, int) {
   if (g.ball_block >= 0) {
     const Balls balls = balls_of(g, begin, end);
     balls.kernels.place(balls.blocks, balls.begin, balls.end, balls.arrays);
-    return balls.kernels.relax(balls.blocks, balls.begin, balls.end, balls.arrays);
+    return balls.kernels.relax(balls.blocks, balls.begin, balls.end);
   }
   for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
     solve_joint(joint, work, g.solve->joint_bodies, g.solve->joint_settings, false);

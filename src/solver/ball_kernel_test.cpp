@@ -85,11 +85,12 @@ void solve_side_by_side(Pairs& pairs, int width) {
     begin_ball(kernels, memory, i / kernels.width, i % kernels.width, pairs.records[std::size_t(i)],
                pairs.places[std::size_t(i)], 1.0f, true, pairs.inertia.data());
   }
+  kernels.locate(memory, 0, blocks, arrays);
   kernels.place(memory, 0, blocks, arrays);
-  kernels.bend(memory, 0, blocks, arrays, settings);
-  kernels.warm(memory, 0, blocks, arrays);
-  kernels.solve(memory, 0, blocks, arrays, settings);
-  kernels.relax(memory, 0, blocks, arrays);
+  kernels.bend(memory, 0, blocks, settings);
+  kernels.warm(memory, 0, blocks);
+  kernels.solve(memory, 0, blocks, settings);
+  kernels.relax(memory, 0, blocks);
   for (int i = 0; i < kJoints; ++i)
     finish_ball(kernels, memory, i / kernels.width, i % kernels.width, pairs.records[std::size_t(i)]);
 }

@@ -14,9 +14,10 @@ namespace gyre {
 struct LaneBall {
   Vec3 local_a, local_b;  // anchors from the centres of mass, body frames
   Vec3 offset;            // JointPlaces::offset
+  Vec3 total;             // linear impulse, summed over the step
   Vec3 from_a, from_b;    // of this sub-step: anchors from the centres of mass, world axes
+  Vec3 impulse;           // linear
   Vec3 error, bend;       // as JointWork
-  Vec3 impulse, total;    // linear
 };
 
 // What a lane has still to read of its bodies' inertia: nothing; once, as it stays; or each time, as it turns with them.
@@ -44,12 +45,14 @@ struct BallSettings {
 struct BallKernels {
   int width;
   std::size_t block_bytes, first_float;
+  // Finds the motion records of all lanes, which then stay where they are. Comes first.
+  void (*locate)(void* blocks, int begin, int end, const BallArrays& arrays);
   void (*place)(void* blocks, int begin, int end, const BallArrays& arrays);
-  void (*bend)(void* blocks, int begin, int end, const BallArrays& arrays, const BallSettings& settings);
-  void (*warm)(void* blocks, int begin, int end, const BallArrays& arrays);
-  void (*solve)(void* blocks, int begin, int end, const BallArrays& arrays, const BallSettings& settings);
+  void (*bend)(void* blocks, int begin, int end, const BallSettings& settings);
+  void (*warm)(void* blocks, int begin, int end);
+  void (*solve)(void* blocks, int begin, int end, const BallSettings& settings);
   // Takes all speed away, and sums the impulses.
-  void (*relax)(void* blocks, int begin, int end, const BallArrays& arrays);
+  void (*relax)(void* blocks, int begin, int end);
 };
 
 }  // namespace gyre
