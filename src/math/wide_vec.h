@@ -336,15 +336,19 @@ GYRE_INLINE Number* record_or(Number* base, std::int32_t index, Number* otherwis
   const std::uintptr_t none = std::uintptr_t(std::intptr_t(index) >> (8 * sizeof(std::intptr_t) - 1));
   return reinterpret_cast<Number*>(record ^ ((record ^ std::uintptr_t(otherwise)) & none));
 }
-// The same for each lane, of records of `Stride` floats. Most blocks have a record in every lane, and their lanes need not be
-// asked one by one.
+// The same for each lane, of records of `Stride` floats: where every lane has one, and where some may have none. Most blocks have a
+// record in every lane, and their lanes need not be asked one by one.
+template <int W, int Stride = kRecordFloats, class Number>
+GYRE_INLINE void locate_records(Number* base, const std::int32_t* indices, Number* (&record)[W]) {
+  GYRE_UNROLL
+  for (int i = 0; i < W; ++i)
+    record[i] = reinterpret_cast<Number*>(record_place<Stride>(std::uintptr_t(base), indices[i]));
+}
 template <int W, int Stride = kRecordFloats, class Number>
 GYRE_INLINE void locate_records(Number* base, const std::int32_t* indices, Number* otherwise,
                                 Number* (&record)[W]) {
   if (none(WideInt<W>::load_unaligned(indices) < WideInt<W>(0))) {
-    GYRE_UNROLL
-    for (int i = 0; i < W; ++i)
-      record[i] = reinterpret_cast<Number*>(record_place<Stride>(std::uintptr_t(base), indices[i]));
+    locate_records<W, Stride>(base, indices, record);
   } else {
     GYRE_UNROLL
     for (int i = 0; i < W; ++i) record[i] = record_or<Stride>(base, indices[i], otherwise);

@@ -50,6 +50,7 @@ struct Solve {
   void* motion_blocks = nullptr;        // the same for the kernels,
   std::span<Vec3> pushes{};             // and how overlap turned them
   std::span<std::uint32_t> spinners{};  // those of them that turn alone
+  bool is_watched = false;              // whether anybody asks what contacts gave them
   std::span<std::uint32_t> flying{};    // the others
   ContactForest forest{};
   TreeSolve tree_solve{};

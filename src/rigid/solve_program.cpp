@@ -41,11 +41,11 @@ void prepare_motion_stage(void* context, int begin, int end, int) {
 }
 void predict_cold_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
-  s.kernels.motion.predict(s.motion_blocks, begin, end, s.contact_bodies.motion, false);
+  s.kernels.motion.predict(s.motion_blocks, begin, end, s.contact_bodies.motion, false, s.is_watched);
 }
 void predict_warm_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
-  s.kernels.motion.predict(s.motion_blocks, begin, end, s.contact_bodies.motion, true);
+  s.kernels.motion.predict(s.motion_blocks, begin, end, s.contact_bodies.motion, true, s.is_watched);
 }
 void warm_motion_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
@@ -63,7 +63,8 @@ void advance_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
   BodyStore& bodies = s.w.bodies;
   s.kernels.motion.advance(s.motion_blocks, begin, end,
-                           {bodies.motion.data(), bodies.inertia.data(), bodies.orientations.data()}, s.h);
+                           {bodies.motion.data(), bodies.inertia.data(), bodies.orientations.data()}, s.h,
+                           s.is_watched);
 }
 void turn_alone_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
@@ -223,15 +224,26 @@ Balls balls_of(const Group& g, int begin, int end) {
           g.ball_block + begin * kJointsPerBlock / width,
           g.ball_block + count_blocks(joints, width)};
 }
+// Records of joints are large, and lie in the order of their slots, not of colours: what is needed of them comes while others are
+// worked on.
+constexpr int kJointsAhead = 6;
+void fetch_ahead(const JointRecord& joint) {
+  __builtin_prefetch(&joint);
+  __builtin_prefetch(&joint.linear_impulse);
+  __builtin_prefetch(&joint.total_linear);
+}
 // Calls fn(block, lane, slot) for the joints of such a group.
 template <class Fn>
 void for_balls(const Group& g, int begin, int end, Fn&& fn) {
-  const int width = g.solve->kernels.width;
-  int n = begin * kJointsPerBlock;
-  for_members(g, begin, end, [&](std::uint32_t i) {
-    fn(g.ball_block + n / width, n % width, g.solve->batch.joints[i]);
-    ++n;
-  });
+  const Solve& s = *g.solve;
+  const int width = s.kernels.width, last = min(end * kJointsPerBlock, int(g.count));
+  const auto slot_of = [&](int n) {
+    return s.batch.joints[s.scratch.swept_joints[s.joint_order[g.first + std::uint32_t(n)]]];
+  };
+  for (int n = begin * kJointsPerBlock; n < last; ++n) {
+    if (n + kJointsAhead < last) fetch_ahead(s.w.joints.records[slot_of(n + kJointsAhead)]);
+    fn(g.ball_block + n / width, n % width, slot_of(n));
+  }
 }
 void begin_balls_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
@@ -391,7 +403,8 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   const bool has_joints = linkages > 0 || bundles > 0 || !joints.empty();
   const bool is_warm = !first && impacts == 0 && !has_joints;
   // What contacts gave is looked at only where there may be any. (Linkages leave negative zeros, which the look clears away.)
-  const int watched = contacts.empty() && linkages == 0 && bundles == 0 && has_joints ? 0 : bodies;
+  solve.is_watched = !contacts.empty() || linkages > 0 || bundles > 0 || !has_joints;
+  const int watched = solve.is_watched ? bodies : 0;
   const int fields = solve.fields.blocks();
   const int slices = joints.empty() ? 0 : kJointSlices;
   program.add(watch_fields_stage, &solve.fields, fields);

@@ -312,13 +312,14 @@ void prepare_motion_stage(void* context, int begin, int end, int) {
 }
 void predict_stage(void* context, int begin, int end, int) {
   const Solve& s = static_cast<RowSolve*>(context)->solve;
-  s.kernels.motion.predict(s.motion_blocks, begin, end, s.contact_bodies.motion, false);
+  s.kernels.motion.predict(s.motion_blocks, begin, end, s.contact_bodies.motion, false, false);
 }
 void advance_stage(void* context, int begin, int end, int) {
   const Solve& s = static_cast<RowSolve*>(context)->solve;
   BodyStore& bodies = s.w.bodies;
   s.kernels.motion.advance(s.motion_blocks, begin, end,
-                           {bodies.motion.data(), bodies.inertia.data(), bodies.orientations.data()}, s.h);
+                           {bodies.motion.data(), bodies.inertia.data(), bodies.orientations.data()}, s.h,
+                           false);
 }
 void turn_alone_stage(void* context, int begin, int end, int) {
   const Solve& s = static_cast<RowSolve*>(context)->solve;

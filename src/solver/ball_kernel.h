@@ -28,9 +28,11 @@ struct BallBlock {
   // The bodies' records, to be read (zeros for what has none), and where they are written: most blocks push all that they read, and
   // have one list for both.
   RecordList<W> record_a, record_b;
-  const RecordList<W>*written_a, *written_b;
+  const RecordList<W>* written_a;
+  const RecordList<W>* written_b;
   // Those of the block itself, or of another that has the same: nets are mostly of equal bodies, and then one stays in the cache.
-  const BallInertia<W>*inertia_a, *inertia_b;
+  const BallInertia<W>* inertia_a;
+  const BallInertia<W>* inertia_b;
 
   BallInertia<W> own_inertia_a, own_inertia_b;
   RecordList<W> pushed_a, pushed_b;  // what nothing pushes is written to `nowhere`

@@ -48,16 +48,17 @@ struct MotionKernels {
   // Blocks of bodies [0, count).
   void (*prepare)(void* blocks, int begin, int end, const MovedBody* bodies, int count,
                   const BodyInertia* inertia);
-  // Velocities from forces and damping; with `warm`, then from the impulses of the contacts in the last sub-step.
-  void (*predict)(void* blocks, int begin, int end, BodyMotion* motion, bool warm);
+  // Velocities from forces and damping; with `warm`, then from the impulses of the contacts in the last sub-step. With `watched`, what
+  // they gain from here on is the work of contacts.
+  void (*predict)(void* blocks, int begin, int end, BodyMotion* motion, bool warm, bool watched);
   // The second half of that alone.
   void (*warm)(void* blocks, int begin, int end, BodyMotion* motion);
   // What velocities gain from here on is the work of contacts.
   void (*watch)(void* blocks, int begin, int end, const BodyMotion* motion);
-  // What they gained since was; and from here on again. (`advance` does the same where nothing comes between.)
+  // What they gained since was; and from here on again. (`advance` does the same of what is watched where nothing comes between.)
   void (*note)(void* blocks, int begin, int end, const BodyMotion* motion);
   // Displacement, rotation and gyroscopic torque over a sub-step.
-  void (*advance)(void* blocks, int begin, int end, MotionArrays arrays, float substep);
+  void (*advance)(void* blocks, int begin, int end, MotionArrays arrays, float substep, bool watched);
   // Puts velocities by and clears them: overlap is pushed apart by displacements in their place.
   void (*begin_projection)(void* blocks, int begin, int end, BodyMotion* motion);
   // Makes these displacements and puts the velocities back. Turns go to `turns` too (one for each body of prepare): those

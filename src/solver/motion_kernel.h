@@ -165,8 +165,15 @@ GYRE_INLINE void remember(MotionBlock<W>& block, const MotionW<W>& m) {
   block.before_angular = m.angular();
 }
 
+// What velocities gained since they were remembered.
 template <int W>
-void predict_motion(void* memory, int begin, int end, BodyMotion* motion, bool warm) {
+GYRE_INLINE void add_gain(MotionBlock<W>& block, const MotionW<W>& m) {
+  block.given_linear = block.given_linear + (m.linear() - block.before_linear);
+  block.given_angular = block.given_angular + (m.angular() - block.before_angular);
+}
+
+template <int W>
+void predict_motion(void* memory, int begin, int end, BodyMotion* motion, bool warm, bool watched) {
   auto* blocks = static_cast<MotionBlock<W>*>(memory);
   const Wide<W> zero(0.0f);
   const Vec3W<W> none{zero, zero, zero};
@@ -189,7 +196,7 @@ void predict_motion(void* memory, int begin, int end, BodyMotion* motion, bool w
     m.set_linear(within_length<W>(v, kMaxSpeed) + none);
     m.set_angular(within_length<W>(w, kMaxSpin) + none);
     if (warm) add_given<W>(block, m);
-    remember<W>(block, m);
+    if (watched) remember<W>(block, m);
     store_motion<6, W>(block, motion, m);
   }
 }
@@ -217,20 +224,30 @@ void note_motion(void* memory, int begin, int end, const BodyMotion* motion) {
   for (int n = begin; n < end; ++n) {
     MotionBlock<W>& block = blocks[n];
     const MotionW<W> m = load_motion<8, W>(block, motion);
-    block.given_linear = block.given_linear + (m.linear() - block.before_linear);
-    block.given_angular = block.given_angular + (m.angular() - block.before_angular);
+    add_gain<W>(block, m);
     remember<W>(block, m);
   }
 }
 
-// Shows the place of some lanes to joints and impacts.
+// Shows the place of some lanes to joints and impacts: mostly of all. Inertia that no torque turns is what it was as the step began.
 template <int W>
 GYRE_INLINE void show(const MotionBlock<W>& block, const QuatW<W>& q, MotionArrays arrays) {
+  const Sym3W<W>& i = block.world_inverse_inertia;
+  if (block.shown == (1u << W) - 1u) {
+    const Wide<W> pose[4] = {q.x, q.y, q.z, q.w}, inverse[6] = {i.xx, i.yy, i.zz, i.xy, i.xz, i.yz};
+    float* records[W];
+    locate_records<W, 4>(&arrays.orientation->x, block.body, records);
+    scatter_columns<4, W>(records, 0, pose);
+    if (block.any_gyroscopic == 0) return;
+    locate_records<W, int(sizeof(BodyInertia) / sizeof(float))>(&arrays.inertia->inverse.xx, block.body, records);
+    scatter_columns<6, W>(records, 0, inverse);
+    return;
+  }
   for (int lane = 0; lane < W; ++lane) {
     if ((block.shown >> lane & 1u) == 0) continue;
     const std::int32_t body = block.body[lane];
     arrays.orientation[body] = {q.x[lane], q.y[lane], q.z[lane], q.w[lane]};
-    const Sym3W<W>& i = block.world_inverse_inertia;
+    if (block.any_gyroscopic == 0) continue;
     arrays.inertia[body].inverse = {i.xx[lane], i.yy[lane], i.zz[lane], i.xy[lane], i.xz[lane], i.yz[lane]};
   }
 }
@@ -283,7 +300,7 @@ GYRE_INLINE bool rests(const MotionW<W>& m) {
 }
 
 template <int W>
-void advance_motion(void* memory, int begin, int end, MotionArrays arrays, float substep) {
+void advance_motion(void* memory, int begin, int end, MotionArrays arrays, float substep, bool watched) {
   auto* blocks = static_cast<MotionBlock<W>*>(memory);
   const Wide<W> zero(0.0f);
   const Vec3W<W> none{zero, zero, zero};
@@ -292,8 +309,7 @@ void advance_motion(void* memory, int begin, int end, MotionArrays arrays, float
     MotionW<W> m = load_motion<16, W>(block, arrays.motion);
     const bool resting = rests<W>(m);
     if (block.any_locked != 0) m.set_linear(along_loose_axes<W>(block, m.linear()));
-    block.given_linear = block.given_linear + (m.linear() - block.before_linear);
-    block.given_angular = block.given_angular + (m.angular() - block.before_angular);
+    if (watched) add_gain<W>(block, m);
     // Then all that follows gives what is there already.
     if (resting && block.rested != 0) continue;
     block.rested = resting ? 1 : 0;

@@ -65,11 +65,11 @@ struct Crowd {
     std::size_t room = memory.size() * sizeof(std::max_align_t);
     return std::align(64, 1, at, room);
   }
-  void predict(bool warm) { kernels->predict(place(), 0, blocks, motion.data(), warm); }
+  void predict(bool warm) { kernels->predict(place(), 0, blocks, motion.data(), warm, true); }
   void note() { kernels->note(place(), 0, blocks, motion.data()); }
   void warm() { kernels->warm(place(), 0, blocks, motion.data()); }
   void advance(float h) {
-    kernels->advance(place(), 0, blocks, {motion.data(), inertia.data(), orientations.data()}, h);
+    kernels->advance(place(), 0, blocks, {motion.data(), inertia.data(), orientations.data()}, h, true);
   }
   void begin_projection() { kernels->begin_projection(place(), 0, blocks, motion.data()); }
   void end_projection() { kernels->end_projection(place(), 0, blocks, motion.data(), turns.data()); }
