@@ -28,6 +28,8 @@ struct JointWorks {
 
 // Where the ends of the joint stand as the step begins.
 JointPlaces joint_places(const RigidWorld& w, std::uint32_t slot);
+// JointPlaces::offset alone.
+Vec3 joint_offset(const RigidWorld& w, const JointRecord& joint);
 // Of one joint, `i` in the batch's list.
 void begin_joint(RigidWorld& w, const SolveBatch& batch, std::size_t i, float warm_scale,
                  const JointWorks& works, Arena& arena);

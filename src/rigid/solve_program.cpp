@@ -259,7 +259,7 @@ void begin_balls_stage(void* context, int begin, int end, int) {
   };
   for_balls(g, begin, end, [&](int block, int lane, std::uint32_t slot) {
     const JointRecord& joint = s.w.joints.records[slot];
-    begin_ball(balls.kernels, balls.blocks, block, lane, joint, joint_places(s.w, slot), warm_scale,
+    begin_ball(balls.kernels, balls.blocks, block, lane, joint, joint_offset(s.w, joint), warm_scale,
                turns(joint.body_a) || turns(joint.body_b), balls.arrays.inertia);
   });
   balls.kernels.locate(balls.blocks, balls.begin, balls.end, balls.arrays);

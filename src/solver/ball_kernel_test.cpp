@@ -83,7 +83,7 @@ void solve_side_by_side(Pairs& pairs, int width) {
   for (int i = 0; i < kJoints; ++i) {
     ASSERT_TRUE(fits_ball_lane(pairs.records[std::size_t(i)], nullptr));
     begin_ball(kernels, memory, i / kernels.width, i % kernels.width, pairs.records[std::size_t(i)],
-               pairs.places[std::size_t(i)], 1.0f, true, pairs.inertia.data());
+               pairs.places[std::size_t(i)].offset, 1.0f, true, pairs.inertia.data());
   }
   kernels.locate(memory, 0, blocks, arrays);
   kernels.place(memory, 0, blocks, arrays);

@@ -53,7 +53,7 @@ void clear_balls(const BallKernels& kernels, void* blocks, int block) {
 }
 
 void begin_ball(const BallKernels& kernels, void* blocks, int block, int lane, const JointRecord& joint,
-                const JointPlaces& places, float warm_scale, bool turns, const BodyInertia* inertia) {
+                Vec3 offset, float warm_scale, bool turns, const BodyInertia* inertia) {
   const auto writes = [&](std::int32_t body) {
     return body != kNoBody && is_movable(inertia[body]) ? body : kNoBody;
   };
@@ -69,7 +69,7 @@ void begin_ball(const BallKernels& kernels, void* blocks, int block, int lane, c
   // What is left out is placed before it is read.
   put(kLocalA, joint.local_anchor_a);
   put(kLocalB, joint.local_anchor_b);
-  put(kOffset, places.offset);
+  put(kOffset, offset);
   put(kImpulse, warm_scale * joint.linear_impulse);
   put(kTotal, {});
 }

@@ -11,9 +11,9 @@ bool fits_ball_lane(const JointRecord& joint, const JointDetail* detail);
 
 // A block whose lanes join nothing.
 void clear_balls(const BallKernels& kernels, void* blocks, int block);
-// `warm_scale`: of its impulse, if begin_joint() did not see to that. `turns`: the inertia of one of its bodies turns with it.
+// `offset`: as in JointPlaces. `warm_scale`: of its impulse, if begin_joint() did not see to that. `turns`: the inertia of one of its bodies turns with it.
 void begin_ball(const BallKernels& kernels, void* blocks, int block, int lane, const JointRecord& joint,
-                const JointPlaces& places, float warm_scale, bool turns, const BodyInertia* inertia);
+                Vec3 offset, float warm_scale, bool turns, const BodyInertia* inertia);
 // Impulses and sums, back into the record.
 void finish_ball(const BallKernels& kernels, const void* blocks, int block, int lane, JointRecord& joint);
 
