@@ -405,8 +405,9 @@ GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W, kHasA>& pair
         tried[i] = now;
         change[i] = now - kept[i];
       }
-      // What all of them left as it was, as where no point bears anything, the next sweep would not change either.
-      if (all(stands)) break;
+      // What all of them left as it was, as where no point bears anything, the next sweep would not change either. What the others
+      // come to is not asked.
+      if (none(and_not(pulls, stands))) break;
     }
     GYRE_UNROLL
     for (int i = 0; i < Count; ++i) next[i] = select(pulls, tried[i], next[i]);
