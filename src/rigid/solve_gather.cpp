@@ -342,11 +342,10 @@ void order_alike(const Solve& solve, std::span<const std::uint32_t> members, Arr
 
 }  // namespace
 
-std::span<Group> lay_out_contacts(Solve& solve, Arena& arena) {
+std::span<Group> lay_out_contacts(Solve& solve, std::span<Group> groups) {
   BatchScratch& s = solve.scratch;
   const Coloring& colors = s.contact_colors;
   const std::uint32_t width = std::uint32_t(solve.kernels.width);
-  const std::span<Group> groups = arena.make<Group>(std::size_t(colors.group_count()));
   s.order.clear();
   std::size_t used = 0;
   std::uint32_t blocks = 0;
@@ -365,9 +364,13 @@ std::span<Group> lay_out_contacts(Solve& solve, Arena& arena) {
     blocks = end;
     s.counts.colors_used |= std::uint64_t{1} << g;
   }
+  return groups.first(used);
+}
+
+void make_contact_blocks(Solve& solve, std::span<const Group> groups, Arena& arena) {
+  const std::uint32_t blocks = groups.empty() ? 0 : groups.back().first + groups.back().count;
   if (!solve.rolling.contacts.empty()) mark_rolling_lanes(solve, blocks, arena);
   solve.blocks = arena.make<std::byte>(std::size_t(blocks) * solve.kernels.block_bytes).data();
-  return groups.first(used);
 }
 
 namespace {

@@ -82,9 +82,12 @@ void gather_joints(Solve& solve);
 // Parts the bodies of a batch into those that constraints act on and those that fly.
 void gather_motion(Solve& solve, Arena& arena, TaskSystem& tasks);
 
-// Lays the coloured constraints out in blocks of W lanes. A group starts a new block; constraints of the overflow group
-// get a block each, so that they are solved one after the other at every width.
-std::span<Group> lay_out_contacts(Solve& solve, Arena& arena);
+// Lays the coloured constraints out in blocks of W lanes, in groups of which there is room for kMostGroups. A group starts a new
+// block; constraints of the overflow group get a block each, so that they are solved one after the other at every width.
+constexpr std::size_t kMostGroups = ColoringOptions::kMostColors + 1;
+std::span<Group> lay_out_contacts(Solve& solve, std::span<Group> room);
+// Memory for these blocks.
+void make_contact_blocks(Solve& solve, std::span<const Group> groups, Arena& arena);
 // Of each colour first those joints that are solved side by side, then the others.
 std::span<Group> lay_out_joints(Solve& solve, Arena& arena);
 

@@ -44,11 +44,13 @@ void find_resting(Solve& solve, Arena& arena) {
   solve.forest = find_contact_trees(solve.w, constraints, pairs, solve.batch, islands, arena);
   solve.structures = find_contact_structures(solve.w, pairs, solve.batch, islands, arena);
 }
-void color_all(Solve& solve) {
+// Colours of contacts and joints, and the order of the former by them.
+std::span<Group> color_all(Solve& solve, std::span<Group> room) {
   BatchScratch& scratch = solve.scratch;
   const std::uint32_t bodies = std::uint32_t(solve.batch.bodies.size());
   color_constraints(scratch.pairs, bodies, {}, kColoringOptions, scratch.contact_colors);
   color_constraints(scratch.joint_pairs, bodies, {}, kColoringOptions, scratch.joint_colors);
+  return lay_out_contacts(solve, room);
 }
 void place_resting(Solve& solve, Arena& arena) {
   if (solve.forest.nodes.empty() && solve.structures.empty()) return;
@@ -106,9 +108,11 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   solve.stop_rooms = find_stops(solve.linkages, solve.joint_work, std::size_t(tasks.worker_count()), arena);
   solve.bundles = lay_out_bundles(solve.linkages, solve.kernels, solve.linkage_solve, arena);
   gather_motion(solve, arena, tasks);
+  const std::span<Group> room = arena.make<Group>(kMostGroups);
+  std::span<Group> contacts;
   side_by_side(
-      tasks, [&] { find_resting(solve, arena); }, [&] { color_all(solve); });
-  const std::span<Group> contacts = lay_out_contacts(solve, arena);
+      tasks, [&] { find_resting(solve, arena); }, [&] { contacts = color_all(solve, room); });
+  make_contact_blocks(solve, contacts, arena);
   place_resting(solve, arena);
   const std::span<Group> joints = lay_out_joints(solve, arena);
   run_substeps(solve, contacts, joints, arena, tasks);
