@@ -86,7 +86,12 @@ class SurfaceSweep {
         hull_(hull),
         is_surface_still_(b.sweep->turned == Vec3{} && b.sweep->moved == Vec3{}),
         world_from_surface_(b.sweep->pose * b.body_from_shape),
-        start_(surface_from_a(0.0)) {}
+        start_(surface_from_a(0.0)),
+        whole_{a, inverse_times(a.body_from_shape, a.body_from_shape), {}, {}},
+        inner_{core, inverse_times(a.body_from_shape, core.body_from_shape), {}, {}},
+        middle_(start_ * inverse_times(a.body_from_shape, core.body_from_shape.position)) {
+    inner_.start = start_ * inner_.from_shape;
+  }
 
   Stop first_stop(double end) {
     const int wanted = pieces();
@@ -104,7 +109,7 @@ class SurfaceSweep {
   bool crosses(double end, double clear) {
     bool met = false;
     for_each_triangle(end, end, [&](std::uint32_t id) {
-      place(surface_.triangle(id));
+      place(surface_.bare_triangle(id));
       met = met || find_gap(a_, near_frame_, end, scale_.target).distance <= clear;
     });
     if (met) return false;
@@ -113,7 +118,7 @@ class SurfaceSweep {
       const double from = double(piece) / double(wanted), to = min(double(piece + 1) / double(wanted), end);
       if (from >= end) break;
       for_each_triangle(from, to, [&](std::uint32_t id) {
-        place(surface_.triangle(id));
+        place(surface_.bare_triangle(id));
         met = met || meets(from, to);
       });
     }
@@ -121,6 +126,13 @@ class SurfaceSweep {
   }
 
  private:
+  // The shape or its core in the surface's frame, as far as every triangle asks for it.
+  struct Part {
+    const SweptShape& swept;
+    Transform from_shape;  // into the frame of the whole shape
+    Transform start, end;  // surface_from_shape as the step begins (of the core), and as the piece ends
+  };
+
   Transform surface_from_a(double time) const {
     return inverse_times(
         is_surface_still_ ? world_from_surface_ : pose_at(*b_.sweep, time) * b_.body_from_shape,
@@ -150,6 +162,8 @@ class SurfaceSweep {
   void for_each_triangle(double from, double to, const Fn& fn) {
     piece_start_ = from == 0.0 ? start_ : surface_from_a(from);
     piece_end_ = surface_from_a(to);
+    whole_.end = piece_end_ * whole_.from_shape;
+    inner_.end = piece_end_ * inner_.from_shape;
     const Aabb box = piece_box(from, to);
     // Triangles are moved near the origin of a frame of their own, so that floats stay small in a large mesh.
     origin_ = piece_start_.position;
@@ -175,7 +189,7 @@ class SurfaceSweep {
         });
   }
 
-  void place(const TriangleView& view) {
+  void place(const BareTriangle& view) {
     hull_.set(view.v[0] - origin_, view.v[1] - origin_, view.v[2] - origin_);
     near_frame_.shape = &hull_.shape();
     near_frame_.radius =
@@ -191,21 +205,22 @@ class SurfaceSweep {
   }
 
   // How far the shape, or its core, lies above a plane of the surface.
-  double height_of(const SweptShape& shape, const Transform& surface_from_a, Vec3 normal, Vec3 corner) const {
-    const Transform from_shape = surface_from_a * inverse_times(a_.body_from_shape, shape.body_from_shape);
-    const Vec3 lowest = from_shape * support(*shape.shape, rotate_inverse(from_shape.orientation, -normal));
-    return double(dot(normal, lowest - corner)) - double(core_radius(*shape.shape));
+  static double height_of(const Shape& shape, const Transform& surface_from_shape, Vec3 normal, Vec3 corner) {
+    const Vec3 lowest =
+        surface_from_shape * support(shape, rotate_inverse(surface_from_shape.orientation, -normal));
+    return double(dot(normal, lowest - corner)) - double(core_radius(shape));
   }
 
   // Whether the shape, so high above a plane of the surface as the step begins, stays farther from it than `distance` until the
   // piece ends. Mostly where it ends tells: in between it comes nearer than at both ends by the bulge of its turn at most.
   // Else by the same advances as time_of_impact, but along the one normal, which needs no search.
-  bool stays_above(const SweptShape& shape, Vec3 normal, Vec3 corner, double height, double distance) const {
+  bool stays_above(const Part& part, Vec3 normal, Vec3 corner, double height, double distance) const {
+    const SweptShape& shape = part.swept;
     if (!(b_.sweep->turned == Vec3{})) return false;
     const double rounding =
         4.0e-6 * double(largest(absolute(corner)) + largest(absolute(start_.position)) + a_.radius);
     const double bulge = 0.125 * double(shape.radius * length_squared(shape.sweep->turned));
-    const double at_end = height_of(shape, piece_end_, normal, corner);
+    const double at_end = height_of(*shape.shape, part.end, normal, corner);
     if (min(height, at_end) - bulge > distance + rounding) return true;
     if (at_end <= distance) return false;
     const DVec3 up(rotate(b_.sweep->pose.orientation, rotate(b_.body_from_shape.orientation, normal)));
@@ -217,33 +232,31 @@ class SurfaceSweep {
       if (rest > max(closing, 0.0) * (stop_.time - time)) return true;
       if (!(rest > kLeastAdvance * distance)) return false;
       time += rest / closing;
-      height = height_of(shape, surface_from_a(time), normal, corner);
+      height = height_of(*shape.shape, surface_from_a(time) * part.from_shape, normal, corner);
     }
     return false;
   }
 
   // Whether nothing can stop the shape, `height` above the triangle as the step begins, before the piece ends: most of what
   // comes near a triangle's box flies past or lies on it already.
-  bool stays_clear_of(const TriangleView& view, Vec3 normal, double height) const {
-    const Vec3 corner = view.v[0];
-    if (height > scale_.touching) return stays_above(a_, normal, corner, height, 2.0 * scale_.target);
+  bool stays_clear_of(Vec3 corner, Vec3 normal, double height) const {
+    if (height > scale_.touching) return stays_above(whole_, normal, corner, height, 2.0 * scale_.target);
     if (scale_.slides) return false;
-    return stays_above(core_, normal, corner, height_of(core_, start_, normal, corner),
+    return stays_above(inner_, normal, corner, height_of(*core_.shape, inner_.start, normal, corner),
                        2.0 * scale_.core_target);
   }
 
   void look_at(std::uint32_t id, double from) {
-    const TriangleView view = surface_.triangle(id);
+    const BareTriangle view = surface_.bare_triangle(id);
     Vec3 normal = view.normal;
     // Which side of the plane the middle is on when the step begins decides; along a straight way it cannot come back.
-    const Vec3 middle = start_ * inverse_times(a_.body_from_shape, core_.body_from_shape.position);
-    if (dot(normal, middle - view.v[0]) < 0.0f) {
+    if (dot(normal, middle_ - view.v[0]) < 0.0f) {
       if (!surface_.double_sided()) return;
       normal = -normal;
     }
     const Vec3 lowest = start_ * support(*a_.shape, rotate_inverse(start_.orientation, -normal));
     const double height = double(dot(normal, lowest - view.v[0])) - double(core_radius(*a_.shape));
-    if (stays_clear_of(view, normal, height)) return;
+    if (stays_clear_of(view.v[0], normal, height)) return;
     place(view);
     Stop found;
     if (scale_.slides) {
@@ -265,6 +278,8 @@ class SurfaceSweep {
   const bool is_surface_still_;
   const Pose world_from_surface_;  // as the step begins
   const Transform start_;
+  Part whole_, inner_;
+  const Vec3 middle_;
   Transform piece_start_, piece_end_;
   Vec3 origin_;
   SweptShape near_frame_;

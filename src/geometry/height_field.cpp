@@ -42,11 +42,11 @@ bool is_solid_cell(const HeightField& field, std::int64_t column, std::int64_t r
                    field.height(c + 1, r + 1));
 }
 
-FieldTriangle field_triangle(const HeightField& field, std::uint32_t triangle) {
+BareTriangle bare_triangle(const HeightField& field, std::uint32_t triangle) {
   const std::uint32_t cell = triangle / 2;
   const int half = int(triangle & 1);
   const std::uint32_t column = cell % field.cell_columns(), row = cell / field.cell_columns();
-  FieldTriangle out;
+  BareTriangle out;
   for (int i = 0; i < 3; ++i)
     out.v[i] = field.sample(column + kCornerColumn[half][i], row + kCornerRow[half][i]);
   out.normal = cell_normal(field, column, row, half);

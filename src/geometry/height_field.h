@@ -53,11 +53,7 @@ struct HeightField {
 // Whether the cell exists and is no hole.
 bool is_solid_cell(const HeightField& field, std::int64_t column, std::int64_t row);
 // A triangle by itself, and with its surroundings, in the field's frame. Its cell must not be a hole.
-struct FieldTriangle {
-  Vec3 v[3];
-  Vec3 normal;
-};
-FieldTriangle field_triangle(const HeightField& field, std::uint32_t triangle);
+BareTriangle bare_triangle(const HeightField& field, std::uint32_t triangle);
 TriangleView view_triangle(const HeightField& field, std::uint32_t triangle);
 // As for a mesh: whether no edge around this corner of the triangle climbs along `direction` (unit) by more than the sine
 // `tolerance`.

@@ -42,6 +42,13 @@ constexpr EdgeKind edge_kind(std::uint16_t flags, int edge) { return EdgeKind(fl
 TriangleView view_triangle(const Mesh& mesh, std::uint32_t triangle);
 void view_triangle(const Mesh& mesh, std::uint32_t triangle, TriangleView& out);
 
+// Without its surroundings.
+inline BareTriangle bare_triangle(const Mesh& mesh, std::uint32_t triangle) {
+  const std::uint32_t* corner = mesh.indices.data() + 3 * std::size_t(triangle);
+  return {{mesh.vertices[corner[0]], mesh.vertices[corner[1]], mesh.vertices[corner[2]]},
+          mesh.normals[triangle]};
+}
+
 inline Aabb triangle_box(const Mesh& mesh, std::uint32_t triangle) {
   const std::uint32_t* corner = mesh.indices.data() + 3 * std::size_t(triangle);
   const Vec3 a = mesh.vertices[corner[0]], b = mesh.vertices[corner[1]], c = mesh.vertices[corner[2]];

@@ -27,6 +27,9 @@ struct Surface {
     const std::uint32_t cell = id / 2;
     return block_box(*field, {-1, cell % field->cell_columns(), cell / field->cell_columns()});
   }
+  BareTriangle bare_triangle(std::uint32_t id) const {
+    return mesh != nullptr ? gyre::bare_triangle(*mesh, id) : gyre::bare_triangle(*field, id);
+  }
   bool double_sided() const { return mesh != nullptr && mesh->double_sided; }
   TriangleView triangle(std::uint32_t id) const {
     return mesh != nullptr ? view_triangle(*mesh, id) : view_triangle(*field, id);

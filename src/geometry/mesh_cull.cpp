@@ -38,8 +38,8 @@ TriangleLanes gather(const Mesh& mesh, const std::uint32_t (&ids)[kLanes]) {
 
 TriangleLanes gather(const HeightField& field, const std::uint32_t (&ids)[kLanes]) {
   TriangleLanes out;
-  const FieldTriangle a = field_triangle(field, ids[0]), b = field_triangle(field, ids[1]),
-                      c = field_triangle(field, ids[2]), d = field_triangle(field, ids[3]);
+  const BareTriangle a = bare_triangle(field, ids[0]), b = bare_triangle(field, ids[1]),
+                      c = bare_triangle(field, ids[2]), d = bare_triangle(field, ids[3]);
   out.normal = side_by_side(a.normal, b.normal, c.normal, d.normal);
   for (int i = 0; i < 3; ++i) out.corner[i] = side_by_side(a.v[i], b.v[i], c.v[i], d.v[i]);
   return out;

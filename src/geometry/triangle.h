@@ -30,6 +30,12 @@ struct TriangleView {
   std::uint32_t edge_id[3] = {};    // names the edge, the same from both sides
 };
 
+// Of the same nothing but itself.
+struct BareTriangle {
+  Vec3 v[3];
+  Vec3 normal;
+};
+
 constexpr int next_corner(int i) { return i == 2 ? 0 : i + 1; }
 
 constexpr Aabb bounds(const TriangleView& t) {
