@@ -144,6 +144,8 @@ class MeshCollider {
   // How near the nearest triangle is at least, by its best direction.
   float nearest_ = kUnbounded;
   MeshCandidates candidates_;
+  // By groups of candidates: bits of those that are known to be out of reach.
+  std::uint8_t apart_[(MeshCandidates::kRoom + MeshCull::kLanes - 1) / MeshCull::kLanes];
   MeshPoints points_;
   AxisScratch scratch_;
   ManifoldGroups groups_;
@@ -333,6 +335,7 @@ void MeshCollider::look_at_candidates() {
     const std::uint32_t* ids = candidates_.ids + i;
     const MeshCull cull = cull_triangles(surface_, ids, min(candidates_.count - i, MeshCull::kLanes),
                                          position_, convex_, max_separation_);
+    apart_[i / MeshCull::kLanes] = std::uint8_t(cull.apart);
     for (unsigned rest = cull.touchable; rest != 0; rest &= rest - 1) {
       const int lane = std::countr_zero(rest);
       look_at(ids[lane], cull.extents[lane]);
@@ -513,6 +516,7 @@ bool MeshCollider::is_corner_missing() const {
 // of edges only, so what they tell may be nearer than any point that was found along their directions.
 void MeshCollider::look_for_corners() {
   for (int i = 0; i < candidates_.count; ++i) {
+    if ((apart_[i / MeshCull::kLanes] >> i % MeshCull::kLanes & 1) != 0) continue;
     NearTriangle t = place_triangle(surface_, candidates_.ids[i], position_, convex_);
     know_side(t.normal);
     const float face = face_separation(t);

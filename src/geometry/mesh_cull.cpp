@@ -1,25 +1,14 @@
 // Triangles side by side. See mesh_cull.h. Numbers are rounded as place_triangle and what follows it rounds them.
 #include "geometry/mesh_cull.h"
 
+#include "geometry/mesh_apart.h"
+
 namespace gyre {
 namespace {
 
 constexpr int kLanes = MeshCull::kLanes;
 using Floats = Wide<kLanes>;
 using Vectors = Vec3W<kLanes>;
-
-// Seen from the shape's origin; of a double-sided surface the side on which the shape's middle lies.
-struct TriangleLanes {
-  Vectors corner[3], normal;
-  Floats reach;  // the largest coordinate in the surface's frame, of corners and shape
-};
-
-Vectors side_by_side(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
-  // Not by way of an array: GCC would build that on the stack, part by part.
-  typedef float Quad __attribute__((vector_size(16)));
-  return {Floats::of(Quad{a.x, b.x, c.x, d.x}), Floats::of(Quad{a.y, b.y, c.y, d.y}),
-          Floats::of(Quad{a.z, b.z, c.z, d.z})};
-}
 
 TriangleLanes gather(const Mesh& mesh, const std::uint32_t (&ids)[kLanes]) {
   TriangleLanes out;
@@ -39,7 +28,7 @@ TriangleLanes gather(const Mesh& mesh, const std::uint32_t (&ids)[kLanes]) {
 TriangleLanes gather(const HeightField& field, const std::uint32_t (&ids)[kLanes]) {
   TriangleLanes out;
   const BareTriangle a = bare_triangle(field, ids[0]), b = bare_triangle(field, ids[1]),
-                      c = bare_triangle(field, ids[2]), d = bare_triangle(field, ids[3]);
+                     c = bare_triangle(field, ids[2]), d = bare_triangle(field, ids[3]);
   out.normal = side_by_side(a.normal, b.normal, c.normal, d.normal);
   for (int i = 0; i < 3; ++i) out.corner[i] = side_by_side(a.v[i], b.v[i], c.v[i], d.v[i]);
   return out;
@@ -64,21 +53,6 @@ TriangleLanes place(const Surface& surface, const std::uint32_t (&ids)[kLanes], 
   return t;
 }
 
-// Whether a ball or capsule lies certainly too far beyond one of the triangle's sides.
-Mask<kLanes> is_beside(const TriangleLanes& t, const PlacedConvex& convex, float max_separation) {
-  const Vectors first = splat<kLanes>(convex.vertex(0)),
-                last = splat<kLanes>(convex.vertex(convex.vertex_count() - 1));
-  const Floats slack = Floats(1.2e-7f) * t.reach + Floats(1.0e-6f * convex.size());
-  const Floats reach = Floats(1.00001f * (convex.radius() + max_separation)) + slack;
-  Mask<kLanes> beside = Mask<kLanes>::splat(false);
-  for (int i = 0; i < 3; ++i) {
-    const Vectors edge = t.corner[next_corner(i)] - t.corner[i], outward = cross(edge, t.normal);
-    const Floats beyond = min(dot(outward, first - t.corner[i]), dot(outward, last - t.corner[i]));
-    beside = beside | ((beyond > Floats(0.0f)) & (square(beyond) > square(reach) * length_squared(edge)));
-  }
-  return beside;
-}
-
 }  // namespace
 
 MeshCull cull_triangles(const Surface& surface, const std::uint32_t* ids, int count, Vec3 position,
@@ -89,13 +63,16 @@ MeshCull cull_triangles(const Surface& surface, const std::uint32_t* ids, int co
   MeshCull out;
   out.extents = convex.extents(t.normal);
   const Floats height = dot(t.normal, t.corner[0]), radius(convex.radius());
-  Mask<kLanes> away = (out.extents.low - height - radius > Floats(max_separation)) |
-                      (out.extents.high - height + radius <= Floats(0.0f));
-  if (convex.face_count() > 0)
-    away = away | (convex.face_separations(t.corner) - radius > Floats(max_separation));
-  if (convex.vertex_count() == 1 || convex.vertex_count() == 2)
-    away = away | is_beside(t, convex, max_separation);
-  out.touchable = to_bits(~away) & ((1u << count) - 1u);
+  const Floats before = out.extents.low - height - radius;
+  const Mask<kLanes> behind = out.extents.high - height + radius <= Floats(0.0f);
+  const unsigned counted = (1u << count) - 1u;
+  out.touchable = to_bits(~(behind | (before > Floats(max_separation)))) & counted;
+  out.apart = to_bits(before > Floats(max_separation) + apart_slack(t, convex)) & counted;
+  if (out.touchable == 0) return out;
+  const unsigned apart = to_bits(is_apart(t, convex, max_separation));
+  // Only of lanes that were still in question, so that none depends on its neighbours.
+  out.apart |= apart & out.touchable;
+  out.touchable &= ~apart;
   return out;
 }
 

@@ -2,7 +2,7 @@
 // any is looked at by itself.
 //
 // Left out is what has all of the shape behind its plane or farther before it than asked, what lies farther before one of the
-// shape's faces, and what a ball or capsule passes beside.
+// shape's faces, and what mesh_apart.h knows to be apart.
 #pragma once
 
 #include "geometry/mesh_axis.h"
@@ -11,7 +11,9 @@ namespace gyre {
 
 struct MeshCull {
   static constexpr int kLanes = PlacedConvex::kLanes;
-  unsigned touchable = 0;         // bits of the triangles that are not left out
+  unsigned touchable = 0;  // bits of the triangles that are not left out
+  unsigned apart =
+      0;  // bits of those that are out of reach of the nearest points too, whatever lies before or behind
   PlacedConvex::Extents extents;  // of the shape's core along the triangles' normals
 };
 

@@ -22,6 +22,14 @@ bool is_out_of_reach(const NearTriangle& t, const PlacedConvex& convex) {
   return !found.overlap && found.distance - double(convex.radius()) > double(kReach) - 1.0e-5;
 }
 
+// Whether both searches find what is known to be apart out of reach, and so have no say in any contact.
+bool is_apart_to_searches(const Surface& surface, const NearTriangle& t, const PlacedConvex& convex) {
+  AxisScratch scratch;
+  const float face = convex.lowest(t.normal) - convex.radius() - dot(t.normal, t.v[0]);
+  return search_axes(surface, t, convex, face, kReach, scratch).best > kReach &&
+         search_nearest(surface, t, convex, face, kReach, scratch).best > kReach;
+}
+
 void check(const Geometry& ground, Random& random) {
   const Shape shape = make_shape(ground);
   const Surface surface(shape);
@@ -42,7 +50,10 @@ void check(const Geometry& ground, Random& random) {
           const bool touchable = (cull.touchable >> lane & 1u) != 0;
           const MeshCull alone = cull_triangles(surface, ids + lane, 1, position, convex, kReach);
           ASSERT_EQ(alone.touchable, touchable ? 1u : 0u);
+          ASSERT_EQ(alone.apart, cull.apart >> lane & 1u);
           ASSERT_TRUE(touchable || is_out_of_reach(t, convex));
+          const bool apart = (cull.apart >> lane & 1u) != 0;
+          ASSERT_TRUE(!apart || is_apart_to_searches(surface, t, convex));
           ++(touchable ? kept : left_out);
         }
       }

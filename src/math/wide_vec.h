@@ -23,6 +23,14 @@ template <int W, class Vector>
 GYRE_INLINE Vec3W<W> splat(const Vector& v) {
   return {v.x, v.y, v.z};
 }
+// Four vectors, one a lane.
+template <class Vector>
+GYRE_INLINE Vec3W<4> side_by_side(const Vector& a, const Vector& b, const Vector& c, const Vector& d) {
+  // Not by way of an array: GCC would build that on the stack, part by part.
+  typedef float Quad __attribute__((vector_size(16)));
+  return {Wide<4>::of(Quad{a.x, b.x, c.x, d.x}), Wide<4>::of(Quad{a.y, b.y, c.y, d.y}),
+          Wide<4>::of(Quad{a.z, b.z, c.z, d.z})};
+}
 template <int W>
 GYRE_INLINE Vec3W<W> operator+(Vec3W<W> a, Vec3W<W> b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
