@@ -16,36 +16,34 @@ static_assert(kCornerSlots >= 64);
 // So many parts of one flat patch stand for all of it.
 constexpr int kStandIns = 64;
 
-using Floats = Wide<4>;
-
-Floats axis_lanes(Vec3 v) {
-  // Not by way of an array: GCC would build that on the stack, part by part.
-  typedef float Quad __attribute__((vector_size(16)));
-  return Floats::of(Quad{v.x, v.y, v.z, 0.0f});
+// Most triangles in a leaf are left out by nothing else.
+AxisBox axis_box(const Mesh& mesh, std::uint32_t triangle) {
+  const std::uint32_t* corner = mesh.indices.data() + 3 * std::size_t(triangle);
+  const Wide<4> a = AxisBox::lanes(mesh.vertices[corner[0]]), b = AxisBox::lanes(mesh.vertices[corner[1]]),
+                c = AxisBox::lanes(mesh.vertices[corner[2]]);
+  return {min(a, min(b, c)), max(a, max(b, c))};
 }
 
-// The box of one triangle, an axis a lane: most of those in a leaf are left out by nothing else.
-class TriangleBox {
- public:
-  TriangleBox(const Mesh& mesh, std::uint32_t triangle) {
-    const std::uint32_t* corner = mesh.indices.data() + 3 * std::size_t(triangle);
-    const Floats a = axis_lanes(mesh.vertices[corner[0]]), b = axis_lanes(mesh.vertices[corner[1]]),
-                 c = axis_lanes(mesh.vertices[corner[2]]);
-    low_ = min(a, min(b, c));
-    high_ = max(a, max(b, c));
-  }
-  bool overlaps(Floats low, Floats high) const { return all((low_ <= high) & (low <= high_)); }
-  Aabb box() const { return {{low_[0], low_[1], low_[2]}, {high_[0], high_[1], high_[2]}}; }
-
- private:
-  Floats low_, high_;
-};
+// A cube well inside of what a shape reaches, in the surface's frame: what overlaps it need not be asked for more.
+AxisBox inner_cube(const PlacedConvex& convex, Vec3 position, float max_separation) {
+  constexpr float kInBall = 0.57f;  // a cube's half side in a ball of radius 1
+  const Aabb& local = convex.local_box();
+  const float half =
+      kInBall * (smallest(half_size(local)) + max_separation) - 1.0e-6f * largest(absolute(position));
+  const Vec3 middle = convex.from_local(center(local)) + position;
+  return AxisBox(grow({middle, middle}, max(half, 0.0f)));
+}
 
 class Gatherer {
  public:
   Gatherer(const Surface& surface, const PlacedConvex& convex, Vec3 position, float max_separation,
            MeshCandidates& out)
-      : surface_(surface), convex_(convex), position_(position), max_separation_(max_separation), out_(out) {
+      : surface_(surface),
+        convex_(convex),
+        position_(position),
+        max_separation_(max_separation),
+        out_(out),
+        inner_(inner_cube(convex, position, max_separation)) {
     const float rounding = 1.2e-7f * largest(absolute(position));
     box_ = grow(convex.box(), convex.radius() + max_separation + rounding);
     box_ = {box_.low + position, box_.high + position};
@@ -79,22 +77,20 @@ class Gatherer {
       // Of a leaf each triangle is asked for itself.
       if (!flat && is_leaf(child)) return true;
       const Aabb box = child_box(node, lane);
-      if (!near(box)) return false;
+      if (const AxisBox axes(box); !axes.overlaps(inner_) && !near(axes)) return false;
       if (!flat) return true;
       while (!is_leaf(child)) child = mesh.tree.nodes[child].child[0];
       const std::uint32_t first = leaf_first(child);
       return look_at_patch(mesh.normals[first], mesh.vertices[mesh.indices[3 * std::size_t(first)]], box,
                            first, add);
     };
-    const Floats low = axis_lanes(box_.low), high = axis_lanes(box_.high);
+    const AxisBox outer(box_);
     const auto visit = [&](std::uint32_t first, std::uint32_t count) {
       for (std::uint32_t id = first; id < first + count; ++id) {
-        const TriangleBox axes(mesh, id);
-        if (!axes.overlaps(low, high)) continue;
-        const Aabb box = axes.box();
-        if (!near(box)) continue;
+        const AxisBox box = axis_box(mesh, id);
+        if (!box.overlaps(outer) || (!box.overlaps(inner_) && !near(box))) continue;
         if ((mesh.flags[id] & kInsidePatch) != 0 &&
-            !look_at_patch(mesh.normals[id], mesh.vertices[mesh.indices[3 * std::size_t(id)]], box, id,
+            !look_at_patch(mesh.normals[id], mesh.vertices[mesh.indices[3 * std::size_t(id)]], box.box(), id,
                            add)) {
           continue;
         }
@@ -108,7 +104,7 @@ class Gatherer {
   void walk_field(const HeightField& field, Add&& add) {
     const auto enter = [&](HeightBlock block) {
       const Aabb box = block_box(field, block);
-      if (!near(box)) return false;
+      if (!near(AxisBox(box))) return false;
       if (!is_flat(field, block)) return true;
       const std::uint32_t first = first_triangle(field, block);
       const TriangleView triangle = view_triangle(field, first);
@@ -117,7 +113,7 @@ class Gatherer {
     const auto visit = [&](std::uint32_t column, std::uint32_t row) {
       if (!is_solid_cell(field, column, row)) return;
       const Aabb box = block_box(field, {-1, column, row});
-      if (!overlap(box, box_) || !near(box)) return;
+      if (!overlap(box, box_) || !near(AxisBox(box))) return;
       const std::uint32_t id = 2 * (row * field.cell_columns() + column);
       if (is_flat_cell(field, column, row)) {
         const TriangleView triangle = view_triangle(field, id);
@@ -138,9 +134,7 @@ class Gatherer {
     return flat(column, row) && flat(column + 1, row) && flat(column, row + 1) && flat(column + 1, row + 1);
   }
 
-  bool near(const Aabb& box) const {
-    return convex_.may_touch({box.low - position_, box.high - position_}, max_separation_);
-  }
+  bool near(const AxisBox& box) const { return convex_.may_touch(box - position_, max_separation_); }
 
   // A part that lies inside one flat patch. True if it must be entered: a corner of the shape's face may lie above it.
   template <class Add>
@@ -178,9 +172,7 @@ class Gatherer {
     return convex_.has_vertices() && above(convex_.vertex(convex_.lowest_vertex(side_.normal)));
   }
 
-  bool near_patch(const Aabb& box) const {
-    return convex_.may_touch({box.low - position_, box.high - position_}, 0.0f);
-  }
+  bool near_patch(const Aabb& box) const { return convex_.may_touch(AxisBox(box) - position_, 0.0f); }
 
   void note_deep(std::uint32_t id, Vec3 normal) {
     const float height = dot(normal, surface_.triangle(id).v[0] - position_);
@@ -265,6 +257,7 @@ class Gatherer {
   float max_separation_;
   MeshCandidates& out_;
   Aabb box_;
+  AxisBox inner_;
   bool side_known_ = false;
   PlaneSide side_;
   int stand_ins_ = 0;  // for the plane in side_

@@ -1,6 +1,8 @@
 // Placing a convex shape beside a mesh. See placed_convex.h.
 #include "geometry/placed_convex.h"
 
+#include <bit>
+
 namespace gyre {
 namespace {
 
@@ -124,16 +126,21 @@ void PlacedConvex::place_faces(const float* x, const float* y, const float* z, c
 
 void PlacedConvex::place_hull(const Hull& hull) {
   place_vertices(hull.x.data(), hull.y.data(), hull.z.data(), hull.vertex_count());
-  float x[kMaxVertices], y[kMaxVertices], z[kMaxVertices], offsets[kMaxVertices];
-  const int count = hull.face_count();
-  for (int i = 0; i < padded(count); ++i) {
-    const HullPlane& plane = hull.planes[std::size_t(min(i, count - 1))];
-    x[i] = plane.normal.x;
-    y[i] = plane.normal.y;
-    z[i] = plane.normal.z;
-    offsets[i] = plane.offset;
+  const Vectors a = splat<4>(rotation_.x), b = splat<4>(rotation_.y), c = splat<4>(rotation_.z);
+  const HullPlane* const planes = hull.planes.data();
+  face_count_ = hull.face_count();
+  for (int i = 0; i < face_count_; i += kLanes) {
+    const float* record[kLanes];
+    for (int k = 0; k < kLanes; ++k)
+      record[k] = reinterpret_cast<const float*>(planes + min(i + k, face_count_ - 1));
+    Floats plane[4];
+    Rows<kLanes>::gather(record, 0, plane);
+    const Vectors turned = plane[0] * a + plane[1] * b + plane[2] * c;
+    turned.x.store_unaligned(nx_ + i);
+    turned.y.store_unaligned(ny_ + i);
+    turned.z.store_unaligned(nz_ + i);
+    plane[3].store_unaligned(offset_ + i);
   }
-  place_faces(x, y, z, offsets, count);
   edges_ = hull.edges;
   center_ = rotation_ * hull.centroid;
 }
@@ -232,16 +239,23 @@ bool PlacedConvex::has_low_vertex_inside(Vec3 direction, float height, const Vec
 }
 
 int PlacedConvex::lowest_vertex(Vec3 direction) const {
-  int winner = 0;
-  float low = dot(vertex(0), direction);
-  for (int i = 1; i < vertex_count_; ++i) {
-    const float value = dot(vertex(i), direction);
-    if (value < low) {
-      low = value;
-      winner = i;
-    }
+  const Vectors d = splat<4>(direction);
+  const auto height = [&](int i) { return dot(load(x_, y_, z_, i), d); };
+  Floats low = height(0);
+  for (int i = kLanes; i < vertex_count_; i += kLanes) low = min(low, height(i));
+  const Floats lowest(least(low));
+  for (int i = 0; i < vertex_count_; i += kLanes) {
+    if (const unsigned bits = to_bits(height(i) <= lowest); bits != 0) return i + std::countr_zero(bits);
   }
-  return winner;
+  return 0;
+}
+
+bool PlacedConvex::lies_outside(Vec3 outward, Vec3 point, float room) const {
+  const Vectors d = splat<4>(outward), p = splat<4>(point);
+  for (int i = 0; i < vertex_count_; i += kLanes) {
+    if (!all(dot(d, load(x_, y_, z_, i) - p) > Floats(room))) return false;
+  }
+  return has_vertices();
 }
 
 Vec3 PlacedConvex::support(Vec3 direction) const {
@@ -254,17 +268,21 @@ void PlacedConvex::face_towards(Vec3 direction, FacePolygon& out) const {
   for (int i = 0; i < out.count; ++i) out.vertices[i] = rotation_ * out.vertices[i];
 }
 
-bool PlacedConvex::may_touch(const Aabb& box, float reach) const {
-  const Vec3 middle = gyre::center(box), half = half_size(box);
+bool PlacedConvex::may_touch(const AxisBox& box, float reach) const {
+  const Floats middle = Floats(0.5f) * (box.low() + box.high()),
+               half = Floats(0.5f) * (box.high() - box.low());
+  const Floats size = absolute(middle);
   if (shape_->kind == ShapeKind::sphere) {
-    const Vec3 outside = max(absolute(middle) - half, {0, 0, 0});
-    return length_squared(outside) <= square(radius_ + reach) * 1.0001f;
+    const Floats outside = max(size - half, Floats(0.0f));
+    const Floats squared = outside * outside;
+    return squared[0] + squared[1] + squared[2] <= square(radius_ + reach) * 1.0001f;
   }
-  const Floats x(middle.x), y(middle.y), z(middle.z);
-  const Floats along = Floats::load(row_[0]) * x + Floats::load(row_[1]) * y + Floats::load(row_[2]) * z;
-  const Floats spread =
-      Floats::load(row_size_[0]) * Floats(half.x) + Floats::load(row_size_[1]) * Floats(half.y) +
-      Floats::load(row_size_[2]) * Floats(half.z) + Floats(reach + 1.0e-6f * largest(absolute(middle)));
+  const Floats along = Floats::load(row_[0]) * Floats(middle[0]) + Floats::load(row_[1]) * Floats(middle[1]) +
+                       Floats::load(row_[2]) * Floats(middle[2]);
+  const Floats spread = Floats::load(row_size_[0]) * Floats(half[0]) +
+                        Floats::load(row_size_[1]) * Floats(half[1]) +
+                        Floats::load(row_size_[2]) * Floats(half[2]) +
+                        Floats(reach + 1.0e-6f * max(size[0], max(size[1], size[2])));
   return none((along - spread > Floats::load(local_high_)) | (along + spread < Floats::load(local_low_)));
 }
 

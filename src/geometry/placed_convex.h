@@ -14,6 +14,27 @@
 
 namespace gyre {
 
+// A box with an axis a lane, and one lane that is not used.
+class AxisBox {
+ public:
+  AxisBox(Wide<4> low, Wide<4> high) : low_(low), high_(high) {}
+  explicit AxisBox(const Aabb& box) : low_(lanes(box.low)), high_(lanes(box.high)) {}
+  Wide<4> low() const { return low_; }
+  Wide<4> high() const { return high_; }
+  bool overlaps(const AxisBox& other) const { return all((low_ <= other.high_) & (other.low_ <= high_)); }
+  AxisBox operator-(Vec3 way) const { return {low_ - lanes(way), high_ - lanes(way)}; }
+  Aabb box() const { return {{low_[0], low_[1], low_[2]}, {high_[0], high_[1], high_[2]}}; }
+
+  static Wide<4> lanes(Vec3 v) {
+    // Not by way of an array: GCC would build that on the stack, part by part.
+    typedef float Quad __attribute__((vector_size(16)));
+    return Wide<4>::of(Quad{v.x, v.y, v.z, 0.0f});
+  }
+
+ private:
+  Wide<4> low_, high_;
+};
+
 class PlacedConvex {
  public:
   static constexpr int kMaxVertices = 256;
@@ -66,13 +87,15 @@ class PlacedConvex {
   void face_towards(Vec3 direction, FacePolygon& out) const;
   // The vertex of the core farthest against `direction`; only if has_vertices().
   int lowest_vertex(Vec3 direction) const;
+  // Whether all vertices lie more than `room` outside of a plane through a point; false without vertices.
+  bool lies_outside(Vec3 outward, Vec3 point, float room) const;
   // Whether any vertex not higher than `height` along `direction` lies more than `room` inside of each of three planes
   // through points; only if has_vertices().
   bool has_low_vertex_inside(Vec3 direction, float height, const Vec3* outward, const Vec3* points,
                              float room) const;
 
   // Whether anything within `reach` of the surface may lie in the box: false only if certainly nothing does.
-  bool may_touch(const Aabb& box, float reach) const;
+  bool may_touch(const AxisBox& box, float reach) const;
   // How far a point lies outside the shape's local box; negative inside. And the local box itself.
   float box_distance(Vec3 point) const;
   Vec3 to_local(Vec3 v) const { return transpose_times(rotation_, v); }
