@@ -191,9 +191,12 @@ bool MeshCollider::stand(Vec3 normal, float separation) {
 }
 
 void MeshCollider::add_face(const NearTriangle& t, float deepest) {
+  points_.count = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (convex_.lies_outside(t.outward[i], t.v[i], t.slack)) return;
+  }
   know_side(t.normal);
   know_face();
-  points_.count = 0;
   face_points(t, convex_, side_, max_separation_, points_);
   points_.drop_below(deepest);
   if (is_buried(t, t.normal)) points_.count = 0;

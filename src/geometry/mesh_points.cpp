@@ -3,6 +3,9 @@
 
 #include "base/hash.h"
 #include "geometry/closest.h"
+#include "math/wide_vec.h"
+
+#include <bit>
 
 namespace gyre {
 namespace {
@@ -13,6 +16,9 @@ constexpr float kFlush = 0.985f;
 constexpr float kParallel = 0.05f;
 // How far two edges may pass beside each other and still cross, of the longer one's length.
 constexpr float kBeside = 1.0e-3f;
+
+using Floats = Wide<4>;
+using Vectors = Vec3W<4>;
 
 // The kinds in the order in which a reduction prefers equally good points: corners of the shape keep a manifold steadiest.
 enum class PointKind : std::uint32_t { shape_corner, surface_corner, edges, nearest };
@@ -50,6 +56,15 @@ struct Emitter {
   }
 };
 
+// Bits of the corners of a face; and, from bits of some of them, of the edges that run between those and the others.
+static_assert(kMaxFaceVertices <= 32);
+unsigned all_of(const FacePolygon& face) { return ~0u >> (32 - face.count); }
+unsigned edges_across(const FacePolygon& face, unsigned corners) {
+  if (face.count < 2) return 0;
+  const unsigned next = corners >> 1 | (corners & 1u) << (face.count - 1);
+  return (corners ^ next) & (face.count == 2 ? 1u : ~0u);
+}
+
 // Is `p` inside the polygon, seen along its normal?
 bool inside_polygon(const FacePolygon& face, Vec3 p, float slack) {
   for (int k = 0; k < face.count; ++k) {
@@ -75,17 +90,49 @@ void add_lowest_vertex(const NearTriangle& t, const PlacedConvex& convex, const 
   emit.core_point(p, point_name(PointKind::shape_corner, normal_name(t.normal), std::uint32_t(lowest)));
 }
 
+// Which corners of the triangle lie under the polygon, seen along the triangle's normal: bits.
+unsigned find_corners_under(const NearTriangle& t, const FacePolygon& face, float facing,
+                            float (&heights)[4]) {
+  unsigned under = ~unsigned(t.flat_corners) & 7u;
+  const Vectors corners = side_by_side(t.v[0], t.v[1], t.v[2], t.v[2]), normal = splat<4>(face.normal);
+  // Up along the triangle's normal to the face's plane.
+  const Floats height = dot(normal, splat<4>(face.vertices[0]) - corners) / Floats(facing);
+  height.store_unaligned(heights);
+  const Vectors p = corners + height * splat<4>(t.normal);
+  for (int k = 0; k < face.count && under != 0; ++k) {
+    const Vec3 a = face.vertices[k], edge = face.vertices[k + 1 == face.count ? 0 : k + 1] - a;
+    const Floats inside = dot(splat<4>(cross(face.normal, edge)), p - splat<4>(a));
+    const unsigned beyond = to_bits(inside < Floats(0.0f)) & under;
+    if (beyond != 0) under &= ~(beyond & to_bits(inside < Floats(-t.slack * length(edge))));
+  }
+  return under;
+}
+
 void corners_under_face(const NearTriangle& t, const FacePolygon& face, const Emitter& emit) {
   const float facing = dot(face.normal, t.normal);
   if (face.count < 3 || facing > -0.1f) return;
-  for (int i = 0; i < 3; ++i) {
-    if ((t.flat_corners >> i & 1) != 0) continue;
-    // Up along the triangle's normal to the face's plane.
-    const float height = dot(face.normal, face.vertices[0] - t.v[i]) / facing;
-    const Vec3 p = t.v[i] + height * t.normal;
-    if (!inside_polygon(face, p, t.slack)) continue;
-    emit.pair(p, height - emit.radius, point_name(PointKind::surface_corner, t.corner_id[i], face.feature));
+  float heights[4];
+  for (unsigned rest = find_corners_under(t, face, facing, heights); rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    const Vec3 p = t.v[i] + heights[i] * t.normal;
+    emit.pair(p, heights[i] - emit.radius,
+              point_name(PointKind::surface_corner, t.corner_id[i], face.feature));
   }
+}
+
+// How far each corner of the face lies outside of one of the triangle's sides, and which lie so for certain: bits.
+unsigned find_outside(const NearTriangle& t, int side, const FacePolygon& face,
+                      float (&outside)[kMaxFaceVertices]) {
+  const Vectors outward = splat<4>(t.outward[side]), start = splat<4>(t.v[side]);
+  const auto vertex = [&](int k) { return face.vertices[min(k, face.count - 1)]; };
+  unsigned bits = 0;
+  for (int k = 0; k < face.count; k += 4) {
+    const Floats out =
+        dot(outward, side_by_side(vertex(k), vertex(k + 1), vertex(k + 2), vertex(k + 3)) - start);
+    out.store_unaligned(outside + k);
+    bits |= to_bits(out > Floats(t.slack)) << k;
+  }
+  return bits & all_of(face);
 }
 
 }  // namespace
@@ -95,29 +142,23 @@ void face_points(const NearTriangle& t, const PlacedConvex& convex, const PlaneS
   const FacePolygon& face = side.face;
   const Emitter emit{t.normal, t.v[0], convex.radius(), max_separation, out};
   add_lowest_vertex(t, convex, side, emit);
-  // How far each corner of the face lies outside of each of the triangle's sides.
   float outside[3][kMaxFaceVertices];
-  bool beyond[3] = {true, true, true};
+  unsigned beyond[3];
   for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < face.count; ++k) {
-      outside[i][k] = dot(t.outward[i], face.vertices[k] - t.v[i]);
-      beyond[i] = beyond[i] && outside[i][k] > t.slack;
-    }
-    if (beyond[i]) return;
+    beyond[i] = find_outside(t, i, face, outside[i]);
+    if (beyond[i] == all_of(face)) return;
   }
   const std::uint32_t normal = normal_name(t.normal);
-  for (int k = 0; k < face.count; ++k) {
-    if (outside[0][k] > t.slack || outside[1][k] > t.slack || outside[2][k] > t.slack) continue;
+  for (unsigned rest = all_of(face) & ~(beyond[0] | beyond[1] | beyond[2]); rest != 0; rest &= rest - 1) {
+    const int k = std::countr_zero(rest);
     emit.core_point(face.vertices[k], point_name(PointKind::shape_corner, normal, face.ids[k]));
   }
-  const int edges = face.count == 2 ? 1 : (face.count < 2 ? 0 : face.count);
   for (int i = 0; i < 3; ++i) {
     if (t.edge[i] == EdgeKind::flat) continue;
     const int j = next_corner(i), l = next_corner(j);
-    for (int k = 0; k < edges; ++k) {
-      const int next = k + 1 == face.count ? 0 : k + 1;
+    for (unsigned rest = edges_across(face, beyond[i]); rest != 0; rest &= rest - 1) {
+      const int k = std::countr_zero(rest), next = k + 1 == face.count ? 0 : k + 1;
       const float from = outside[i][k], to = outside[i][next];
-      if ((from > t.slack) == (to > t.slack)) continue;
       const Vec3 p = lerp(face.vertices[k], face.vertices[next], clamp(from / (from - to), 0.0f, 1.0f));
       if (dot(t.outward[j], p - t.v[j]) > t.slack || dot(t.outward[l], p - t.v[l]) > t.slack) continue;
       emit.core_point(p, point_name(PointKind::edges, t.edge_id[i], edge_name(face, k)));

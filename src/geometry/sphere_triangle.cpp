@@ -42,11 +42,11 @@ SphereTriangle sphere_triangle(DVec3 middle, double radius, DVec3 a, DVec3 b, DV
   const DVec3 way = middle - nearest.point;
   out.distance = length(way);
   out.separation = out.distance - radius;
-  const DVec3 front = cross(b - a, c - a);
-  const double area = length(front);
   if (out.distance > 0.0) {
     out.normal = way / out.distance;
   } else {
+    const DVec3 front = cross(b - a, c - a);
+    const double area = length(front);
     out.normal = area > 0.0 ? front / area : DVec3{0, 1, 0};
   }
   return out;
