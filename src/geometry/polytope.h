@@ -80,14 +80,17 @@ struct PlaneLanes {
   Vec3W<kPolytopeLanes> normal;
   Wide<kPolytopeLanes> offset;
 };
+inline PlaneLanes gather_planes(const float* const (&planes)[kPolytopeLanes]) {
+  Wide<kPolytopeLanes> columns[4];
+  Rows<kPolytopeLanes>::gather(planes, 0, columns);
+  return {{columns[0], columns[1], columns[2]}, columns[3]};
+}
 // Four planes; the last one stands in for those behind it.
 inline PlaneLanes load_planes(const Polytope& p, int first) {
-  const float* plane[kPolytopeLanes];
+  const float* planes[kPolytopeLanes];
   for (int lane = 0; lane < kPolytopeLanes; ++lane)
-    plane[lane] = &p.planes[min(first + lane, p.face_count - 1)].normal.x;
-  Wide<kPolytopeLanes> columns[4];
-  Rows<kPolytopeLanes>::gather(plane, 0, columns);
-  return {{columns[0], columns[1], columns[2]}, columns[3]};
+    planes[lane] = &p.planes[min(first + lane, p.face_count - 1)].normal.x;
+  return gather_planes(planes);
 }
 
 // Smallest and largest dot(direction, vertex).

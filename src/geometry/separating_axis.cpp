@@ -182,6 +182,34 @@ void near_edges(const Polytope& p, const float* heights, float limit, EdgeList& 
     for_each_edge(near[word], word, [&](int e) { out.index[out.count++] = std::uint16_t(e); });
 }
 
+// Of these edges the ones along whose axes a body with a ball of this radius around `center`, in the polytope's frame, can be
+// farther away than `floor`: some normal between those of the edge's two faces sees the near side of the ball that high above
+// the edge. It sees the middle as high as the one face or the other does, or, where the middle lies between the two normals,
+// as far as it is from the edge.
+void keep_reaching(const Polytope& p, Vec3 center, float radius, float floor, EdgeList& list) {
+  const Floats least(floor + radius), zero(0.0f), one(1.0f);
+  int kept = 0;
+  for (int first = 0; first < list.count; first += kLanes) {
+    const float *left[kLanes], *right[kLanes];
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const HullEdge& edge = p.edges[list.index[min(first + lane, list.count - 1)]];
+      left[lane] = &p.planes[edge.left].normal.x;
+      right[lane] = &p.planes[edge.right].normal.x;
+    }
+    const PlaneLanes a = gather_planes(left), b = gather_planes(right);
+    const Floats over_a = dot(a.normal, splat<kLanes>(center)) - a.offset;
+    const Floats over_b = dot(b.normal, splat<kLanes>(center)) - b.offset;
+    const Floats cosine = dot(a.normal, b.normal);
+    const Mask<kLanes> between = (over_a > over_b * cosine) & (over_b > over_a * cosine);
+    const Floats squared = over_a * over_a + over_b * over_b - Floats(2.0f) * over_a * over_b * cosine;
+    const Mask<kLanes> far = (least < zero) | (squared > least * least * (one - cosine * cosine));
+    unsigned rest = to_bits((max(over_a, over_b) > least) | (between & far));
+    rest &= list.count - first < kLanes ? (1u << (list.count - first)) - 1u : ~0u;
+    for (; rest != 0; rest &= rest - 1) list.index[kept++] = list.index[first + std::countr_zero(rest)];
+  }
+  list.count = kept;
+}
+
 struct BestFace {
   AxisKind kind;
   int face;
@@ -197,7 +225,7 @@ class EdgeCandidates {
     shift_ = a_from_b.position;
   }
 
-  void collect(const BestFace& face, float max_separation) {
+  void collect(const BestFace& face, float max_separation, float floor) {
     float heights_a[kMaxVertices + 1], heights_b[kMaxVertices + 1];
     // A's vertices upside down, so that low means near for both.
     const float bottom_a = find_heights(a_, -face.normal, 0.0f, heights_a);
@@ -208,6 +236,10 @@ class EdgeCandidates {
     const float reach = max(-face.separation, max_separation) + margin;
     near_edges(a_, heights_a, reach - bottom_b, near_a);
     near_edges(b_, heights_b, reach - bottom_a, near_b);
+    const float certain = floor - kRounding * (a_.size + b_.size);
+    keep_reaching(a_, turn_ * b_.centroid + shift_, b_.inner_radius, certain, near_a);
+    if (near_a.count == 0) return;
+    keep_reaching(b_, transpose_times(turn_, a_.centroid - shift_), a_.inner_radius, certain, near_b);
     const Mat3W<kLanes> turn{splat<kLanes>(turn_.x), splat<kLanes>(turn_.y), splat<kLanes>(turn_.z)};
     for (int first = 0; first < near_b.count; first += kLanes) {
       const float *edges[kLanes], *left[kLanes], *right[kLanes];
@@ -278,7 +310,7 @@ class EdgeCandidates {
 EdgePair best_edges(const Polytope& a, const Polytope& b, const Transform& a_from_b, const BestFace& face,
                     float max_separation, float floor) {
   EdgeCandidates near(a, b, a_from_b);
-  near.collect(face, max_separation);
+  near.collect(face, max_separation, floor);
   const EdgeSearch search(a, b, a_from_b);
   EdgePair best;
   best.separation = floor;
