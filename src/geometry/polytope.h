@@ -87,10 +87,12 @@ inline PlaneLanes gather_planes(const float* const (&planes)[kPolytopeLanes]) {
 }
 // Four planes; the last one stands in for those behind it.
 inline PlaneLanes load_planes(const Polytope& p, int first) {
-  const float* planes[kPolytopeLanes];
-  for (int lane = 0; lane < kPolytopeLanes; ++lane)
-    planes[lane] = &p.planes[min(first + lane, p.face_count - 1)].normal.x;
-  return gather_planes(planes);
+  const HullPlane* const four = p.planes + first;
+  if (first + kPolytopeLanes <= p.face_count)
+    return gather_planes({&four[0].normal.x, &four[1].normal.x, &four[2].normal.x, &four[3].normal.x});
+  const int last = p.face_count - 1 - first;
+  return gather_planes(
+      {&four[0].normal.x, &four[min(1, last)].normal.x, &four[min(2, last)].normal.x, &four[last].normal.x});
 }
 
 // Smallest and largest dot(direction, vertex).

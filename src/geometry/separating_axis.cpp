@@ -26,14 +26,15 @@ constexpr int kMaxVertices = 255, kMaxFaces = 255, kMaxEdges = 510;
 constexpr int kLanes = kPolytopeLanes;
 using Floats = Wide<kLanes>;
 
-// The best face of `reference` against `other`, both in reference's frame except that other's columns stay its own.
+// The best face of `reference` against `other`, both in reference's frame except that other's columns stay its own. None but
+// those above `floor` count: where there are none that is what comes back.
 struct FaceQuery {
   int face = 0;
   float separation = -kUnbounded;
 };
 FaceQuery best_face(const Polytope& reference, const Polytope& other, const Transform& reference_from_other,
-                    float max_separation, int favoured) {
-  FaceQuery best;
+                    float max_separation, int favoured, float floor) {
+  FaceQuery best{0, floor};
   const Mat3 turn = to_matrix(reference_from_other.orientation);
   const Vec3 shift = reference_from_other.position;
   const Vec3 center = turn * other.centroid + shift;
@@ -518,12 +519,12 @@ PolytopeAxis separating_axis(const Polytope& a, const Polytope& b, const Transfo
     edges.separation = favoured.of_edges;
     return edges;
   }
-  const FaceQuery qa =
-      best_face(a, b, a_from_b, max_separation, favoured.kind == AxisKind::face_a ? favoured.index_a : -1);
+  const FaceQuery qa = best_face(a, b, a_from_b, max_separation,
+                                 favoured.kind == AxisKind::face_a ? favoured.index_a : -1, -kUnbounded);
   PolytopeAxis face_a{AxisKind::face_a, qa.face, 0, 0, a.planes[qa.face].normal, qa.separation};
   if (qa.separation > max_separation) return face_a;
   const FaceQuery qb = best_face(b, a, inverse(a_from_b), max_separation,
-                                 favoured.kind == AxisKind::face_b ? favoured.index_b : -1);
+                                 favoured.kind == AxisKind::face_b ? favoured.index_b : -1, qa.separation);
   PolytopeAxis face_b{AxisKind::face_b, 0, qb.face, 0, {}, qb.separation};
   face_b.normal = normalized(-rotate(a_from_b.orientation, b.planes[qb.face].normal));
   if (qb.separation > max_separation) return face_b;
