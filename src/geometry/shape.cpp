@@ -5,6 +5,7 @@
 #include "geometry/height_field.h"
 #include "geometry/hull.h"
 #include "geometry/mesh.h"
+#include "math/wide_vec.h"
 
 namespace gyre {
 namespace {
@@ -145,15 +146,26 @@ Aabb cone_bounds(const Shape& shape, const Transform& t) {
   return {min(apex, base - e), max(apex, base + e)};
 }
 
+// Four vertices side by side: every processor has registers of four.
 Aabb hull_bounds(const Hull& hull, const Transform& t) {
+  constexpr int W = 4;
   const Mat3 r = to_matrix(t.orientation);
-  Aabb box{r * hull.vertices[0], r * hull.vertices[0]};
-  for (const Vec3& vertex : hull.vertices) {
-    const Vec3 p = r * vertex;
-    box.low = min(box.low, p);
-    box.high = max(box.high, p);
+  const Mat3W<W> turn{splat<W>(r.x), splat<W>(r.y), splat<W>(r.z)};
+  const auto turned = [&](std::size_t first) {
+    return turn * Vec3W<W>{Wide<W>::load_unaligned(&hull.x[first]), Wide<W>::load_unaligned(&hull.y[first]),
+                           Wide<W>::load_unaligned(&hull.z[first])};
+  };
+  Vec3W<W> low = turned(0), high = low;
+  // The padding repeats the last vertex.
+  for (std::size_t i = W; i < hull.x.size(); i += W) {
+    const Vec3W<W> p = turned(i);
+    low = min(low, p);
+    high = max(high, p);
   }
-  return {box.low + t.position, box.high + t.position};
+  const auto least = [](Wide<W> v) { return min(min(v[0], v[1]), min(v[2], v[3])); };
+  const auto most = [](Wide<W> v) { return max(max(v[0], v[1]), max(v[2], v[3])); };
+  return {Vec3{least(low.x), least(low.y), least(low.z)} + t.position,
+          Vec3{most(high.x), most(high.y), most(high.z)} + t.position};
 }
 
 // Unbounded but where the surface is exactly at a right angle to an axis: the slightest tilt reaches anywhere.
