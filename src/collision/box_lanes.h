@@ -34,10 +34,13 @@ inline void clear_lane_box(BoxLanes& lanes, int lane) {
   set_lane_box(lanes, lane, {{kNever, kNever, kNever}, {-kNever, -kNever, -kNever}});
 }
 
-// A box to be held against many lanes.
-class OverlapTest {
+inline namespace GYRE_TARGET_NAMESPACE {
+
+// A box to be held against many lanes, W of them at once.
+template <int W>
+class OverlapLanes {
  public:
-  GYRE_INLINE explicit OverlapTest(const Aabb& box)
+  GYRE_INLINE explicit OverlapLanes(const Aabb& box)
       : low_x_(box.low.x),
         low_y_(box.low.y),
         low_z_(box.low.z),
@@ -46,20 +49,25 @@ class OverlapTest {
         high_z_(box.high.z) {}
 
   // Bit i: lane i's box overlaps.
-  GYRE_INLINE unsigned mask(const BoxLanes& lanes) const { return half(lanes, 0) | half(lanes, 4) << 4; }
+  GYRE_INLINE unsigned mask(const BoxLanes& lanes) const {
+    unsigned bits = 0;
+    GYRE_UNROLL
+    for (int first = 0; first < BoxLanes::kWidth; first += W) bits |= part(lanes, first) << first;
+    return bits;
+  }
 
  private:
-  using Half = Wide<4>;
-
-  GYRE_INLINE unsigned half(const BoxLanes& lanes, int first) const {
-    const auto load = [first](const float* from) { return Half::load(from + first); };
-    const Mask<4> x = (load(lanes.low[0]) <= high_x_) & (load(lanes.high[0]) >= low_x_);
-    const Mask<4> y = (load(lanes.low[1]) <= high_y_) & (load(lanes.high[1]) >= low_y_);
-    const Mask<4> z = (load(lanes.low[2]) <= high_z_) & (load(lanes.high[2]) >= low_z_);
+  GYRE_INLINE unsigned part(const BoxLanes& lanes, int first) const {
+    const auto load = [first](const float* from) { return Wide<W>::load(from + first); };
+    const Mask<W> x = (load(lanes.low[0]) <= high_x_) & (load(lanes.high[0]) >= low_x_);
+    const Mask<W> y = (load(lanes.low[1]) <= high_y_) & (load(lanes.high[1]) >= low_y_);
+    const Mask<W> z = (load(lanes.low[2]) <= high_z_) & (load(lanes.high[2]) >= low_z_);
     return to_bits(x & y & z);
   }
 
-  Half low_x_, low_y_, low_z_, high_x_, high_y_, high_z_;
+  Wide<W> low_x_, low_y_, low_z_, high_x_, high_y_, high_z_;
 };
+using OverlapTest = OverlapLanes<4>;
 
+}  // namespace GYRE_TARGET_NAMESPACE
 }  // namespace gyre

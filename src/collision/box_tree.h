@@ -17,6 +17,7 @@
 #include "base/idle_clock.h"
 #include "collision/box_lanes.h"
 #include "collision/box_sweep.h"
+#include "collision/box_walk.h"
 
 #include <gyre/math.h>
 
@@ -66,20 +67,11 @@ class BoxTree {
   template <class Visit>
   void for_each_overlap(const Aabb& box, Visit&& visit) const {
     if (size_ == 0) return;
-    const OverlapTest test(box);
-    std::uint32_t stack[kMaxLevels * kWidth];
-    int depth = 0;
-    stack[depth++] = root_;
-    while (depth > 0) {
-      const Node& node = nodes_[stack[--depth]];
-      const unsigned mask = test.mask(node);
-      if (node.level == 0) {
-        for (unsigned rest = mask; rest != 0; rest &= rest - 1) visit(node.child[std::countr_zero(rest)]);
-      } else {
-        for (unsigned rest = mask; rest != 0; rest &= rest - 1)
-          stack[depth++] = node.child[std::countr_zero(rest)];
-      }
-    }
+    BoxWalk walk(box, root_);
+    do {
+      walk_boxes_(nodes_.data(), walk);
+      for (int i = 0; i < walk.found_count; ++i) visit(walk.found[i]);
+    } while (walk.depth > 0);
   }
 
   // Calls visit(item, reach) for each item whose box the sweep may touch from t = 0 to `reach`, roughly from near to far; it
@@ -145,19 +137,10 @@ class BoxTree {
 
  private:
   static constexpr std::uint32_t kNowhere = 0xffffffffu;
-  static constexpr int kMaxLevels =
-      24;  // nodes hold three or more children when they are made, so 3^24 items at least
+  static constexpr int kMaxLevels = BoxWalk::kMaxLevels;
   static constexpr int kLeastInHalf = 3;
 
-  // Lanes from `count` on have a box that nothing overlaps.
-  struct alignas(64) Node : BoxLanes {
-    std::uint32_t child[kWidth];  // nodes; on level 0, items
-    std::uint32_t parent;
-    std::uint8_t lane;  // in the parent
-    std::uint8_t count;
-    std::uint8_t level;  // 0: the children are items
-    std::uint8_t used;   // 0: the node is on the free list
-  };
+  using Node = BoxTreeNode;
 
   // A child on its way from node to node.
   struct Entry {
@@ -182,6 +165,7 @@ class BoxTree {
   std::uint32_t build_node(std::span<Entry> entries, int level, int lowest);
   const char* find_fault(std::uint32_t node, std::size_t& items) const;
 
+  WalkBoxes walk_boxes_ = select_box_walk();
   Array<Node> nodes_;
   Array<std::uint32_t> free_;
   Array<std::uint32_t> places_;  // by item: kWidth * node + lane, or kNowhere

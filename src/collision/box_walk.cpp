@@ -1,0 +1,19 @@
+// Chooses how many boxes are tested side by side on this machine.
+#include "collision/box_walk.h"
+
+#include "collision/box_walk_lanes.h"
+
+namespace gyre {
+
+#if defined(__x86_64__)
+extern const WalkBoxes kWalkBoxes_avx2;
+#endif
+
+WalkBoxes select_box_walk() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2")) return kWalkBoxes_avx2;
+#endif
+  return walk_boxes<4>;
+}
+
+}  // namespace gyre
