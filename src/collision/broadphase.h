@@ -21,6 +21,9 @@ struct NodeBox {
   bool fixed = false;  // of the tree over what never moves
 };
 
+// Takes out what is of no use among keys, from place `from` on. Asked by several workers at once.
+using PairFilter = FunctionRef<void(Array<std::uint64_t>& keys, std::size_t from)>;
+
 // What a cast does with a candidate: returns how far along the sweep it is still to look, at most `reach`; below 0 ends it.
 using CastVisit = FunctionRef<float(std::uint32_t index, float reach)>;
 
@@ -36,9 +39,15 @@ class Broadphase {
   virtual void update(std::span<const Proxy> proxies, std::span<const std::uint32_t> changed) = 0;
 
   // Appends pair_key of every pair whose fat boxes overlap, that may_pair, and of which at least one is in `moved`
-  // (ascending, without repeats); sorted, without repeats. Parallel over `moved`.
+  // (ascending, without repeats), and that `filter` leaves; sorted, without repeats. Parallel over `moved`.
   virtual void find_pairs(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved,
-                          TaskSystem& tasks, Array<std::uint64_t>& pairs) = 0;
+                          PairFilter filter, TaskSystem& tasks, Array<std::uint64_t>& pairs) = 0;
+  // All of them.
+  void find_pairs(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved, TaskSystem& tasks,
+                  Array<std::uint64_t>& pairs) {
+    find_pairs(
+        proxies, moved, [](Array<std::uint64_t>&, std::size_t) {}, tasks, pairs);
+  }
 
   // Appends the index of every proxy in use whose fat box overlaps `box`; ascending.
   virtual void query(std::span<const Proxy> proxies, const Aabb& box, Array<std::uint32_t>& found) const = 0;

@@ -8,8 +8,8 @@ void BroadphaseBrute::rebuild(std::span<const Proxy>) {}
 void BroadphaseBrute::update(std::span<const Proxy>, std::span<const std::uint32_t>) {}
 
 void BroadphaseBrute::find_pairs(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved,
-                                 TaskSystem& tasks, Array<std::uint64_t>& pairs) {
-  collector_.collect(proxies, moved, tasks, pairs, [&](std::uint32_t, const auto& visit) {
+                                 PairFilter filter, TaskSystem& tasks, Array<std::uint64_t>& pairs) {
+  collector_.collect(proxies, moved, filter, tasks, pairs, [&](std::uint32_t, const auto& visit) {
     for (std::uint32_t other = 0; other < proxies.size(); ++other) visit(other);
   });
 }

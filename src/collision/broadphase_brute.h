@@ -10,8 +10,8 @@ class BroadphaseBrute final : public Broadphase {
  public:
   void rebuild(std::span<const Proxy> proxies) override;
   void update(std::span<const Proxy> proxies, std::span<const std::uint32_t> changed) override;
-  void find_pairs(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved, TaskSystem& tasks,
-                  Array<std::uint64_t>& pairs) override;
+  void find_pairs(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved, PairFilter filter,
+                  TaskSystem& tasks, Array<std::uint64_t>& pairs) override;
   void query(std::span<const Proxy> proxies, const Aabb& box, Array<std::uint32_t>& found) const override;
   float cast(std::span<const Proxy> proxies, const BoxSweep& sweep, float reach,
              CastVisit visit) const override;

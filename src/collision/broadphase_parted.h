@@ -24,8 +24,8 @@ class BroadphaseParted : public Broadphase {
  public:
   void rebuild(std::span<const Proxy> proxies) override;
   void update(std::span<const Proxy> proxies, std::span<const std::uint32_t> changed) override;
-  void find_pairs(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved, TaskSystem& tasks,
-                  Array<std::uint64_t>& pairs) override;
+  void find_pairs(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved, PairFilter filter,
+                  TaskSystem& tasks, Array<std::uint64_t>& pairs) override;
   void query(std::span<const Proxy> proxies, const Aabb& box, Array<std::uint32_t>& found) const override;
   float cast(std::span<const Proxy> proxies, const BoxSweep& sweep, float reach,
              CastVisit visit) const override;
@@ -192,8 +192,8 @@ void BroadphaseParted<Index>::update(std::span<const Proxy> proxies, std::span<c
 
 template <class Index>
 void BroadphaseParted<Index>::find_pairs(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved,
-                                         TaskSystem& tasks, Array<std::uint64_t>& pairs) {
-  collector_.collect(proxies, moved, tasks, pairs, [&](std::uint32_t self, const auto& visit) {
+                                         PairFilter filter, TaskSystem& tasks, Array<std::uint64_t>& pairs) {
+  collector_.collect(proxies, moved, filter, tasks, pairs, [&](std::uint32_t self, const auto& visit) {
     const Proxy& proxy = proxies[self];
     if (homes_[self] == kUnboundedList) {
       for (std::uint32_t other = 0; other < proxies.size(); ++other) visit(other);

@@ -181,7 +181,7 @@ const char* SortedAxis::find_fault() const {
 }
 
 void BroadphaseSweep::find_pairs(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved,
-                                 TaskSystem& tasks, Array<std::uint64_t>& pairs) {
+                                 PairFilter filter, TaskSystem& tasks, Array<std::uint64_t>& pairs) {
   const SortedAxis& order = indices_[kMoving];
   const SortedAxis& fixed = indices_[kFixed];
   // A sweep looks at all that can move, whether it did or not.
@@ -192,12 +192,12 @@ void BroadphaseSweep::find_pairs(std::span<const Proxy> proxies, std::span<const
     if (homes_[index] == kFixed) moved_fixed_.push_back(index);
   }
   if (!sweeps) {
-    BroadphaseParted::find_pairs(proxies, moved, tasks, pairs);
+    BroadphaseParted::find_pairs(proxies, moved, filter, tasks, pairs);
     return;
   }
   const auto is_moved = [&](std::uint32_t index) { return collector_.is_moved(index); };
   const int count = int(order.size() + moved_fixed_.size());
-  collector_.collect_from(proxies, moved, count, tasks, pairs, [&](int i, const auto& emit) {
+  collector_.collect_from(proxies, moved, count, filter, tasks, pairs, [&](int i, const auto& emit) {
     const auto place = std::size_t(i);
     if (place >= order.size()) {
       const std::uint32_t self = moved_fixed_[place - order.size()];

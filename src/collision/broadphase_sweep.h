@@ -134,8 +134,8 @@ class SortedAxis {
 
 class BroadphaseSweep final : public BroadphaseParted<SortedAxis> {
  public:
-  void find_pairs(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved, TaskSystem& tasks,
-                  Array<std::uint64_t>& pairs) override;
+  void find_pairs(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved, PairFilter filter,
+                  TaskSystem& tasks, Array<std::uint64_t>& pairs) override;
 
  private:
   Array<std::uint32_t> moved_fixed_;

@@ -2,21 +2,14 @@
 #include "collision/pair_update.h"
 
 #include "base/sort.h"
-#include "task/parallel.h"
 
 namespace gyre {
 
-void drop_known_pairs(const ContactStore& store, Array<std::uint64_t>& keys, TaskSystem& tasks) {
-  constexpr int kKeysPerBlock = 128;
-  constexpr std::uint64_t kKnown = ~std::uint64_t{0};  // of no pair: a shape is none with itself
-  for_blocks(tasks, int(keys.size()), kKeysPerBlock, [&](int begin, int end, int) {
-    for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
-      if (find_contact(store, keys[i]) != SlotTable::kNone) keys[i] = kKnown;
-    }
-  });
-  std::size_t kept = 0;
-  for (const std::uint64_t key : keys) {
-    if (key != kKnown) keys[kept++] = key;
+void drop_known_pairs(const ContactStore& store, Array<std::uint64_t>& keys, std::size_t from) {
+  std::size_t kept = from;
+  for (std::size_t i = from; i < keys.size(); ++i) {
+    const std::uint64_t key = keys[i];
+    if (find_contact(store, key) == SlotTable::kNone) keys[kept++] = key;
   }
   keys.resize_uninitialized(kept);
 }

@@ -9,7 +9,6 @@
 #include "base/flat_map.h"
 #include "base/function_ref.h"
 #include "collision/contact_store.h"
-#include "task/task_system.h"
 
 #include <cstdint>
 #include <span>
@@ -19,8 +18,8 @@ namespace gyre {
 // Pairs of bodies that must not touch, with the number of reasons (joints) for each: keyed by pair_key of the bodies.
 using BlockedBodies = FlatMap<std::uint32_t>;
 
-// Takes the keys out that have a contact: most that a broad phase finds have.
-void drop_known_pairs(const ContactStore& store, Array<std::uint64_t>& keys, TaskSystem& tasks);
+// Takes the keys from place `from` on out that have a contact: most that a broad phase finds have.
+void drop_known_pairs(const ContactStore& store, Array<std::uint64_t>& keys, std::size_t from);
 
 // Adds a contact for each key that has none yet, unless its two bodies are blocked. `keys` ascending, without repeats;
 // describe(key) tells what there is to know about the pair. Appends the slots of the new contacts, in key order, to `added`

@@ -31,14 +31,16 @@ PairShapes describe_pair(const RigidWorld& w, std::uint64_t key) {
 }
 
 // Bodies that a joint keeps from touching stay beside each other: their pairs are found whenever one moves.
-void drop_blocked_pairs(RigidWorld& w) {
+void drop_blocked_pairs(const RigidWorld& w, Array<std::uint64_t>& keys, std::size_t from) {
   if (w.joints.blocked.empty()) return;
-  std::size_t kept = 0;
-  for (const std::uint64_t key : w.new_pairs) {
-    const std::uint32_t a = w.shapes.bodies[std::uint32_t(key >> 32)], b = w.shapes.bodies[std::uint32_t(key)];
-    if (!w.joints.blocked.contains(pair_key(a, b))) w.new_pairs[kept++] = key;
+  std::size_t kept = from;
+  for (std::size_t i = from; i < keys.size(); ++i) {
+    const std::uint64_t key = keys[i];
+    const std::uint32_t a = w.shapes.bodies[std::uint32_t(key >> 32)],
+                        b = w.shapes.bodies[std::uint32_t(key)];
+    if (!w.joints.blocked.contains(pair_key(a, b))) keys[kept++] = key;
   }
-  w.new_pairs.resize_uninitialized(kept);
+  keys.resize_uninitialized(kept);
 }
 
 void report_begin(RigidWorld& w, const Contact& contact) {
@@ -49,8 +51,8 @@ void report_begin(RigidWorld& w, const Contact& contact) {
     w.events.sensors.push_back({shape_id(w, sensor), shape_id(w, visitor), true});
     return;
   }
-  w.events.begins.push_back({shape_id(w, contact.shape_a), shape_id(w, contact.shape_b), body_id(w, contact.body_a),
-                             body_id(w, contact.body_b)});
+  w.events.begins.push_back({shape_id(w, contact.shape_a), shape_id(w, contact.shape_b),
+                             body_id(w, contact.body_a), body_id(w, contact.body_b)});
 }
 
 bool finite_state(const BodyMotion& motion, Quat orientation) {
@@ -84,7 +86,8 @@ bool hold_way(RigidWorld& w, std::uint32_t shape, float seconds) {
 
 void list_if_moving(RigidWorld& w, std::uint32_t shape) {
   const BodyMotion& motion = w.bodies.motion[w.shapes.bodies[shape]];
-  if (motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{}) w.shapes.hurried.push_back(shape);
+  if (motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{})
+    w.shapes.hurried.push_back(shape);
 }
 
 // The promise of collision/fat_box.h as a step begins.
@@ -189,14 +192,17 @@ void refit(RigidWorld& w, TaskSystem& tasks, float seconds) {
 std::size_t find_pairs(RigidWorld& w, TaskSystem& tasks) {
   w.new_pairs.clear();
   if (!w.shapes.changed.empty()) {
-    w.broadphase->find_pairs(w.shapes.proxies, w.shapes.changed, tasks, w.new_pairs);
+    const auto keep_new = [&](Array<std::uint64_t>& keys, std::size_t from) {
+      drop_known_pairs(w.contacts, keys, from);
+      drop_blocked_pairs(w, keys, from);
+    };
+    w.broadphase->find_pairs(w.shapes.proxies, w.shapes.changed, keep_new, tasks, w.new_pairs);
   }
   w.clocks.changed.trim(w.shapes.changed, w.shapes.changed.size());
   w.shapes.changed.clear();
   const std::size_t found = w.new_pairs.size();
-  drop_known_pairs(w.contacts, w.new_pairs, tasks);
-  drop_blocked_pairs(w);
-  add_pairs(w.contacts, w.new_pairs, w.joints.blocked, [&](std::uint64_t key) { return describe_pair(w, key); });
+  add_pairs(w.contacts, w.new_pairs, w.joints.blocked,
+            [&](std::uint64_t key) { return describe_pair(w, key); });
   w.broadphase->trim();
   w.clocks.new_pairs.trim(w.new_pairs, found);
   w.clocks.sort_scratch.trim(w.sort_scratch, w.sort_scratch.size());
@@ -209,7 +215,8 @@ bool may_move(const RigidWorld& w, std::uint32_t body) {
   const BodyFlags& flags = w.bodies.flags[body];
   if (flags.awake == 0 || flags.frozen != 0 || flags.type == BodyType::fixed) return false;
   const BodyMotion& motion = w.bodies.motion[body];
-  return flags.type == BodyType::dynamic || motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{};
+  return flags.type == BodyType::dynamic || motion.linear_velocity != Vec3{} ||
+         motion.angular_velocity != Vec3{};
 }
 
 void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, RecycleContacts recycle_contacts,
@@ -251,8 +258,8 @@ void link_islands(RigidWorld& w) {
   refresh_awake(w.bodies);
 }
 
-void finish_bodies(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds, Array<std::uint32_t>& frozen,
-                   bool last) {
+void finish_bodies(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds,
+                   Array<std::uint32_t>& frozen, bool last) {
   const ArenaScope scope(arena);
   BodyStore& bodies = w.bodies;
   const auto went_wrong = [&](std::uint32_t n) {
