@@ -65,7 +65,8 @@ class PlacedShape {
   PlacedShape(const CollideInput& input, std::uint32_t shape, std::uint32_t body, std::uint32_t from_body)
       : shape_(input.shapes[shape]), look_(input.looks[body]) {
     const BodyLook& from = input.looks[from_body];
-    origin_ = difference(from.position, look_.position) + rotate(from.orientation, input.centers[from_body].position);
+    origin_ = difference(from.position, look_.position) +
+              rotate(from.orientation, input.centers[from_body].position);
   }
   const Shape& shape() const { return shape_.shape; }
   Vec3 point(Vec3 p) const {
@@ -131,46 +132,72 @@ struct Patch {
   Vec3 out() const { return side.out * manifold.normal; }
 };
 
-// Which points of a manifold (bits) are hidden by the neighbour with which the mover has one too: they lie in it, it goes on
-// beyond them, and the manifold's own shape does not rise out of it.
-unsigned hidden_points(const CollideInput& input, const Patch& own, const Patch& neighbour) {
-  const Vec3 out = own.out(), up = neighbour.out();
-  const PlacedShape its(input, own.side.other, own.side.other_body, own.contact.body_a);
-  const PlacedShape by(input, neighbour.side.other, neighbour.side.other_body, own.contact.body_a);
-  const float slack = kFlush * own.contact.size;
-  unsigned hidden = 0;
-  for (int i = 0; i < own.manifold.count; ++i) {
-    const ContactPointState& state = own.manifold.points[i];
+// Which points of a manifold are hidden by the neighbour with which the mover has one too: those that lie in it where it goes on
+// beyond them, and where the manifold's own shape does not rise out of it.
+class Cover {
+ public:
+  Cover(const CollideInput& input, const Patch& own, const Patch& neighbour)
+      : input_(input),
+        own_(own),
+        neighbour_(neighbour),
+        its_(input, own.side.other, own.side.other_body, own.contact.body_a),
+        out_(own.out()),
+        up_(its_.direction(neighbour.out())),
+        slack_(kFlush * own.contact.size) {}
+
+  bool hides(int i) const {
+    const ContactPointState& state = own_.manifold.points[i];
     // The point midway, and from there half the separation back to the surface.
-    const Vec3 point = state.from_a - 0.5f * state.separation * out;
-    if (rises(its.shape(), own.manifold.triangle, its.point(point), its.direction(up)) > 2.0f * slack)
-      continue;
-    if (goes_beyond(by.shape(), by.point(point), by.direction(out), slack)) hidden |= 1u << i;
+    const Vec3 point = state.from_a - 0.5f * state.separation * out_;
+    if (rises(its_.shape(), own_.manifold.triangle, its_.point(point), up_) > 2.0f * slack_) return false;
+    const PlacedShape by(input_, neighbour_.side.other, neighbour_.side.other_body, own_.contact.body_a);
+    return goes_beyond(by.shape(), by.point(point), by.direction(out_), slack_);
   }
+  bool hides_all() const {
+    for (int i = 0; i < own_.manifold.count; ++i) {
+      if (!hides(i)) return false;
+    }
+    return true;
+  }
+
+ private:
+  const CollideInput& input_;
+  const Patch& own_;
+  const Patch& neighbour_;
+  const PlacedShape its_;
+  const Vec3 out_, up_;
+  const float slack_;
+};
+
+// Whether some neighbour hides a point of the patch.
+bool is_point_hidden(const ContactStore& store, std::uint32_t slot, const Patch& own, int point,
+                     const CollideInput& input) {
+  bool hidden = false;
+  for_each_contact_of_shape(store, own.side.mover, [&](std::uint32_t other_slot) {
+    Side side;
+    if (hidden || other_slot == slot || !find_side(store, other_slot, input, side)) return;
+    if (side.mover != own.side.mover || !rest_together(input, own.side.other_body, side.other_body)) return;
+    const Contact& other = store.contacts[other_slot];
+    for (std::uint32_t m = 0; m < other.manifold_count && !hidden; ++m) {
+      const Patch by{other, side, store.manifolds[other.first_manifold + m]};
+      if (dot(own.out(), by.out()) > kSameFace) continue;
+      // Two that hide each other both stay: better a bump than a hole.
+      hidden = Cover(input, own, by).hides(point) && !Cover(input, by, own).hides_all();
+    }
+  });
   return hidden;
 }
 
+// Whether all points are: mostly the first is not, and nothing else is asked.
 bool is_hidden(const ContactStore& store, std::uint32_t slot, int index, const CollideInput& input) {
   Side side;
   if (!find_side(store, slot, input, side) || input.looks[side.mover_body].spin < 0.0f) return false;
   const Contact& contact = store.contacts[slot];
   const Patch own{contact, side, store.manifolds[contact.first_manifold + std::uint32_t(index)]};
-  const unsigned all = (1u << own.manifold.count) - 1u;
-  unsigned hidden = 0;
-  for_each_contact_of_shape(store, side.mover, [&](std::uint32_t other_slot) {
-    Side neighbour;
-    if (hidden == all || other_slot == slot || !find_side(store, other_slot, input, neighbour)) return;
-    if (neighbour.mover != side.mover || !rest_together(input, side.other_body, neighbour.other_body)) return;
-    const Contact& other = store.contacts[other_slot];
-    for (std::uint32_t m = 0; m < other.manifold_count && hidden != all; ++m) {
-      const Patch by{other, neighbour, store.manifolds[other.first_manifold + m]};
-      if (dot(own.out(), by.out()) > kSameFace) continue;
-      const unsigned found = hidden_points(input, own, by);
-      // Two that hide each other both stay: better a bump than a hole.
-      if (found != 0 && hidden_points(input, by, own) != (1u << by.manifold.count) - 1u) hidden |= found;
-    }
-  });
-  return hidden == all;
+  for (int i = 0; i < own.manifold.count; ++i) {
+    if (!is_point_hidden(store, slot, own, i, input)) return false;
+  }
+  return true;
 }
 
 // Bits of the manifolds of a contact that are hidden.
