@@ -264,10 +264,12 @@ void factor_lanes(const LinkageBundle& bundle) {
   }
 }
 
+// Of the first half of the lanes where bit 0 of `halves` is set, of the second where bit 1 is.
 template <int W>
-void solve_lanes(const LinkageBundle& bundle) {
+void solve_lanes(const LinkageBundle& bundle, std::uint32_t halves = 3u) {
   constexpr int H = kHalfLanes<W>;
   for (int half = 0; half < kHalves<W>; ++half) {
+    if ((halves >> half & 1u) == 0) continue;
     const HalfMatrix<H> m = half_matrix<H>(bundle, half);
     for (std::uint32_t place = 0; place < bundle.column_count; ++place) {
       const BlockColumn& column = bundle.columns[place];
@@ -290,17 +292,26 @@ void solve_lanes(const LinkageBundle& bundle) {
 
 // ---------------------------------------------------------------------------------------------- right sides of few rows
 
-// Marks, beside the columns that are marked (by their first rows), those that elimination reaches from them, and clears their rows in x.
+// The columns that elimination reaches from such a right side: their places in order, and a mark for each at its first row.
+struct ReachedColumns {
+  std::uint32_t* places;
+  std::uint8_t* marks;
+  std::uint32_t count;
+};
+
+// Finds, beside the columns that are marked, those that elimination reaches from them, and clears their rows in x.
 template <int W>
-void reach_lanes(const LinkageBundle& bundle, std::uint8_t* reached, double* x) {
+void reach_lanes(const LinkageBundle& bundle, ReachedColumns& reached, double* x) {
   constexpr int H = kHalfLanes<W>;
+  reached.count = 0;
   for (std::uint32_t place = 0; place < bundle.column_count; ++place) {
     const BlockColumn& column = bundle.columns[place];
-    if (reached[column.row] == 0) continue;
+    if (reached.marks[column.row] == 0) continue;
+    reached.places[reached.count++] = place;
     for (std::uint32_t i = column.begin; i < column.end; ++i) {
       const BlockColumn& other = bundle.columns[bundle.entries[i].place];
-      if (reached[other.row] != 0) continue;
-      reached[other.row] = 1;
+      if (reached.marks[other.row] != 0) continue;
+      reached.marks[other.row] = 1;
       for (int half = 0; half < kHalves<W>; ++half) {
         const HalfMatrix<H> m = half_matrix<H>(bundle, half, x);
         for (std::uint32_t r = 0; r < other.size; ++r) m.set_x(other.row + r, WideDouble<H>(0.0));
@@ -309,19 +320,18 @@ void reach_lanes(const LinkageBundle& bundle, std::uint8_t* reached, double* x) 
   }
 }
 
-// Replaces the right side x, of the columns that are reached, by y of L y = x, and finds D^-1 y. Of the first half of the lanes where
-// bit 0 of `halves` is set, of the second where bit 1 is.
+// Replaces the right side x, of the columns that are reached, by y of L y = x, and finds D^-1 y. Of the halves of the lanes as
+// solve_lanes().
 template <int W>
-void solve_reached_down(const LinkageBundle& bundle, std::uint32_t halves, const std::uint8_t* reached,
+void solve_reached_down(const LinkageBundle& bundle, std::uint32_t halves, const ReachedColumns& reached,
                         double* x, double* scaled) {
   constexpr int H = kHalfLanes<W>;
   for (int half = 0; half < kHalves<W>; ++half) {
     if ((halves >> half & 1u) == 0) continue;
     const HalfMatrix<H> m = half_matrix<H>(bundle, half, x);
     double* const out = scaled + std::size_t(half) * bundle.row_count * H;
-    for (std::uint32_t place = 0; place < bundle.column_count; ++place) {
-      const BlockColumn& column = bundle.columns[place];
-      if (reached[column.row] == 0) continue;
+    for (std::uint32_t i = 0; i < reached.count; ++i) {
+      const BlockColumn& column = bundle.columns[reached.places[i]];
       if (column.size == 3) {
         solve_column_down<H, 3>(m, column);
         scale_column<H, 3>(m, column, out);
@@ -333,22 +343,34 @@ void solve_reached_down(const LinkageBundle& bundle, std::uint32_t halves, const
   }
 }
 
+template <int H, int N>
+GYRE_INLINE void add_products(const double* a, const double* b, WideDouble<H>& sum) {
+  using D = WideDouble<H>;
+  GYRE_UNROLL
+  for (int i = 0; i < N; ++i) sum += D::load(a + i * H) * D::load(b + i * H);
+}
+
 // The product of two vectors over the columns that both reach; zero in the other half.
 template <int W>
-Wide<W> dot_reached(const LinkageBundle& bundle, std::uint32_t halves, const std::uint8_t* reached_a,
-                    const double* a, const std::uint8_t* reached_b, const double* b) {
+Wide<W> dot_reached(const LinkageBundle& bundle, std::uint32_t halves, const ReachedColumns& reached_a,
+                    const double* a, const ReachedColumns& reached_b, const double* b) {
   using D = WideDouble<kHalfLanes<W>>;
   constexpr int H = kHalfLanes<W>;
   D sums[2] = {D(0.0), D(0.0)};
-  for (std::uint32_t place = 0; place < bundle.column_count; ++place) {
-    const BlockColumn& column = bundle.columns[place];
-    if ((reached_a[column.row] & reached_b[column.row]) == 0) continue;
-    for (int half = 0; half < kHalves<W>; ++half) {
-      if ((halves >> half & 1u) == 0) continue;
+  for (int half = 0; half < kHalves<W>; ++half) {
+    if ((halves >> half & 1u) == 0) continue;
+    D sum(0.0);
+    for (std::uint32_t i = 0; i < reached_a.count; ++i) {
+      const BlockColumn& column = bundle.columns[reached_a.places[i]];
+      if (reached_b.marks[column.row] == 0) continue;
       const std::size_t first = (std::size_t(half) * bundle.row_count + column.row) * H;
-      for (std::size_t i = first; i < first + std::size_t(column.size) * H; i += H)
-        sums[half] += D::load(a + i) * D::load(b + i);
+      if (column.size == 3) {
+        add_products<H, 3>(a + first, b + first, sum);
+      } else {
+        add_products<H, 5>(a + first, b + first, sum);
+      }
     }
+    sums[half] = sum;
   }
   return join_halves<W>(sums[0], sums[1]);
 }

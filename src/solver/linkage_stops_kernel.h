@@ -32,6 +32,7 @@ struct LinkedStop {
   std::uint32_t in;  // the lanes that have it in question, a bit for each
   // Of which halves of the lanes (math/wide_double.h) it is known what an impulse makes of the linkage, in this part of the sub-step.
   std::uint32_t known;
+  std::uint32_t reach;  // how many columns that impulse reaches
 };
 
 // One end of a stop, in each lane another.
@@ -42,13 +43,21 @@ struct StopSlot {
   Wide<W> least, room;  // least: of the impulse, room: from there to where it is, both not positive
 };
 
+// As many slots stand in registers while they are swept; their ways are laid out in rows of that length.
+constexpr std::uint32_t kFewSlots = 8;
+
+template <int W>
+constexpr std::size_t most_slots(const LinkageBundle& bundle) {
+  return bundle.stop_count > kFewSlots / 2 ? 2 * std::size_t(bundle.stop_count) : kFewSlots;
+}
+
 template <int W>
 constexpr std::size_t stop_room(const LinkageBundle& bundle) {
-  const std::size_t n = bundle.stop_count;
+  const std::size_t n = bundle.stop_count, slots = most_slots<W>(bundle);
   if (n == 0) return 0;
   return n * (sizeof(LinkedStop<W>) + n * (sizeof(Wide<W>) + 1) +
-              bundle.row_count * (2 * W * sizeof(double) + 1)) +
-         bundle.moving_count * sizeof(Vec3W<W>) + 2 * n * (sizeof(StopSlot<W>) + 2 * n * sizeof(Wide<W>) + W);
+              bundle.row_count * (2 * W * sizeof(double) + 1) + bundle.column_count * sizeof(std::uint32_t)) +
+         bundle.moving_count * sizeof(Vec3W<W>) + slots * (sizeof(StopSlot<W>) + slots * sizeof(Wide<W>) + W);
 }
 
 // With the equations' matrix as L D L^T, the way of stop i under an impulse at stop j is what it would be without equations less y_i . D^-1
@@ -66,9 +75,11 @@ class LaneStops {
         parts_(reinterpret_cast<double*>(matrix_ + std::size_t(count()) * count())),
         turns_(reinterpret_cast<Vec3W<W>*>(parts_ + 2 * std::size_t(count()) * bundle.plain.row_count * W)),
         slots_(reinterpret_cast<StopSlot<W>*>(turns_ + bundle.plain.moving_count)),
-        slot_ways_(reinterpret_cast<Wide<W>*>(slots_ + 2 * count())),
-        ends_(reinterpret_cast<std::uint8_t*>(slot_ways_ + 4 * std::size_t(count()) * count())),
-        reached_(ends_ + 2 * std::size_t(count()) * W),
+        slot_ways_(reinterpret_cast<Wide<W>*>(slots_ + most_slots<W>(bundle.plain))),
+        columns_(reinterpret_cast<std::uint32_t*>(slot_ways_ +
+                                                  most_slots<W>(bundle.plain) * most_slots<W>(bundle.plain))),
+        ends_(reinterpret_cast<std::uint8_t*>(columns_ + std::size_t(count()) * bundle.plain.column_count)),
+        reached_(ends_ + most_slots<W>(bundle.plain) * W),
         found_(reached_ + std::size_t(count()) * bundle.plain.row_count) {}
 
   // Nothing is known of joints that have just been placed.
@@ -144,8 +155,9 @@ class LaneStops {
   GYRE_INLINE double* scaled_of(std::uint32_t a) const {
     return part_of(a) + std::size_t(b_.plain.row_count) * W;
   }
-  GYRE_INLINE std::uint8_t* reached_of(std::uint32_t a) const {
-    return reached_ + std::size_t(a) * b_.plain.row_count;
+  GYRE_INLINE ReachedColumns reached_of(std::uint32_t a) const {
+    return {columns_ + std::size_t(a) * b_.plain.column_count, reached_ + std::size_t(a) * b_.plain.row_count,
+            stops_[a].reach};
   }
   GYRE_INLINE Wide<W>& entry(std::uint32_t row, std::uint32_t column) const {
     return matrix_[std::size_t(row) * count() + column];
@@ -192,18 +204,19 @@ class LaneStops {
 
   void find_response(std::uint32_t index, std::uint32_t halves) {
     LinkedStop<W>& stop = stops_[index];
-    std::uint8_t* const reached = reached_of(index);
+    ReachedColumns reached = reached_of(index);
     double* const part = part_of(index);
     if (stop.known == 0) {
       const Turns turns = turns_of(stop);
-      for (std::uint32_t row = 0; row < b_.plain.row_count; ++row) reached[row] = 0;
+      for (std::uint32_t row = 0; row < b_.plain.row_count; ++row) reached.marks[row] = 0;
       for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) {
         const LaneNode& node = b_.plain.nodes[n];
         if (!share_body(turns.node, node)) continue;
-        reached[node.row] = 1;
+        reached.marks[node.row] = 1;
         set_missing(part, n, turns.of(node.a), turns.of(node.b));
       }
       reach_lanes<W>(b_.plain, reached, part);
+      stop.reach = reached.count;
     }
     solve_reached_down<W>(b_.plain, halves, reached, part, scaled_of(index));
     stop.known |= halves;
@@ -270,8 +283,9 @@ class LaneStops {
   }
   void fill_slots(std::uint32_t slots, const std::uint32_t (&counts)[W]) {
     const Wide<W> none(0.0f);
-    for (std::uint32_t i = 0; i < slots; ++i) slots_[i] = {none, none, none, none};
-    for (std::uint32_t i = 0; i < slots * slots; ++i) slot_ways_[i] = none;
+    const std::uint32_t length = row_length(slots);
+    for (std::uint32_t i = 0; i < length; ++i) slots_[i] = {none, none, none, none};
+    for (std::uint32_t i = 0; i < slots * length; ++i) slot_ways_[i] = none;
     for (std::uint32_t lane = 0; lane < W; ++lane) {
       for (std::uint32_t i = 0; i < counts[lane]; ++i) {
         const std::uint32_t end = ends_[i * W + lane];
@@ -283,12 +297,54 @@ class LaneStops {
         set_lane(slots_[i].excess, lane, (is_high ? -speed : speed) - asked);
         set_lane(slots_[i].least, lane, least);
         set_lane(slots_[i].room, lane, least);
-        for (std::uint32_t j = 0; j < counts[lane]; ++j) {
+        for (std::uint32_t j = 0; j <= i; ++j) {
           const std::uint32_t other = ends_[j * W + lane];
-          const float way = lane_of(entry(end / 2, other / 2), lane);
-          set_lane(slot_ways_[i * slots + j], lane, ((end ^ other) & 1u) != 0 ? -way : way);
+          const float size = lane_of(entry(end / 2, other / 2), lane);
+          const float way = ((end ^ other) & 1u) != 0 ? -size : size;
+          set_lane(slot_ways_[i * length + j], lane, way);
+          set_lane(slot_ways_[j * length + i], lane, way);
         }
       }
+    }
+  }
+
+  GYRE_INLINE static std::uint32_t row_length(std::uint32_t slots) {
+    return slots <= kFewSlots ? kFewSlots : slots;
+  }
+  // How far a sweep takes the impulse of a slot; `most`: the most that any of them has changed a speed.
+  GYRE_INLINE static Wide<W> step_of(StopSlot<W>& slot, Wide<W> excess, Wide<W> own, Mask<W> live,
+                                     Wide<W>& most) {
+    const Wide<W> by = keep(live, max(slot.room, slot.share * excess));
+    slot.room -= by;
+    most = max(most, max(by, Wide<W>(0.0f) - by) * own);
+    return by;
+  }
+  void sweep_few(std::uint32_t slots, Mask<W> live) const {
+    Wide<W> excess[kFewSlots];
+    GYRE_UNROLL
+    for (std::uint32_t e = 0; e < kFewSlots; ++e) excess[e] = slots_[e].excess;
+    for (int sweep = 0; sweep < kLaneSweeps && any(live); ++sweep) {
+      Wide<W> most(0.0f);
+      GYRE_UNROLL
+      for (std::uint32_t i = 0; i < kFewSlots; ++i) {
+        if (i >= slots) break;
+        const Wide<W>* const ways = slot_ways_ + i * kFewSlots;
+        const Wide<W> by = step_of(slots_[i], excess[i], ways[i], live, most);
+        GYRE_UNROLL
+        for (std::uint32_t e = 0; e < kFewSlots; ++e) excess[e] += by * ways[e];
+      }
+      live = live & (most > kLaneSettled);
+    }
+  }
+  void sweep_many(std::uint32_t slots, Mask<W> live) const {
+    for (int sweep = 0; sweep < kLaneSweeps && any(live); ++sweep) {
+      Wide<W> most(0.0f);
+      for (std::uint32_t i = 0; i < slots; ++i) {
+        const Wide<W>* const ways = slot_ways_ + i * slots;
+        const Wide<W> by = step_of(slots_[i], slots_[i].excess, ways[i], live, most);
+        for (std::uint32_t e = 0; e < slots; ++e) slots_[e].excess += by * ways[e];
+      }
+      live = live & (most > kLaneSettled);
     }
   }
 
@@ -298,21 +354,10 @@ class LaneStops {
     const std::uint32_t slots = list_ends(live, counts);
     fill_slots(slots, counts);
     for (std::uint32_t i = 0; i < slots; ++i) {
-      const Wide<W> own = slot_ways_[i * slots + i];
+      const Wide<W> own = slot_ways_[i * row_length(slots) + i];
       slots_[i].share = keep(own > 0.0f, -kLaneReach / own);
     }
-    for (int sweep = 0; sweep < kLaneSweeps && any(live); ++sweep) {
-      Wide<W> most(0.0f);
-      for (std::uint32_t i = 0; i < slots; ++i) {
-        StopSlot<W>& slot = slots_[i];
-        const Wide<W>* const ways = slot_ways_ + i * slots;
-        const Wide<W> by = keep(live, max(slot.room, slot.share * slot.excess));
-        slot.room -= by;
-        most = max(most, max(by, Wide<W>(0.0f) - by) * ways[i]);
-        for (std::uint32_t e = 0; e < slots; ++e) slots_[e].excess += by * ways[e];
-      }
-      live = live & (most > kLaneSettled);
-    }
+    slots <= kFewSlots ? sweep_few(slots, live) : sweep_many(slots, live);
     for (std::uint32_t lane = 0; lane < W; ++lane) {
       for (std::uint32_t i = 0; i < counts[lane]; ++i) {
         const std::uint32_t end = ends_[i * W + lane];
@@ -346,7 +391,7 @@ class LaneStops {
       set_missing(b_.plain.vector, n, b_.moves(node.a) ? turns_[node.a] : nothing(),
                   b_.moves(node.b) ? turns_[node.b] : nothing());
     }
-    solve_lanes<W>(b_.plain);
+    solve_lanes<W>(b_.plain, halves_of(to_bits(pushed)));
     for (std::uint32_t i = 0; i < b_.plain.moving_count; ++i) b_.bodies[i].angular += keep(pushed, turns_[i]);
     for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) answer(n, pushed);
   }
@@ -372,10 +417,11 @@ class LaneStops {
   double* parts_;  // y and D^-1 y, by stop
   Vec3W<W>* turns_;
   StopSlot<W>* slots_;
-  Wide<W>* slot_ways_;     // by two slots
-  std::uint8_t* ends_;     // by slot and lane
-  std::uint8_t* reached_;  // by stop and row
-  std::uint8_t* found_;    // by two stops, the later first: in which halves of the lanes their way is known
+  Wide<W>* slot_ways_;      // by two slots
+  std::uint32_t* columns_;  // by stop: those that it reaches
+  std::uint8_t* ends_;      // by slot and lane
+  std::uint8_t* reached_;   // by stop and row
+  std::uint8_t* found_;     // by two stops, the later first: in which halves of the lanes their way is known
 };
 
 }  // namespace GYRE_TARGET_NAMESPACE
