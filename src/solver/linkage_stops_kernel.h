@@ -32,7 +32,8 @@ struct LinkedStop {
   std::uint32_t in;  // the lanes that have it in question, a bit for each
   // Of which halves of the lanes (math/wide_double.h) it is known what an impulse makes of the linkage, in this part of the sub-step.
   std::uint32_t known;
-  std::uint32_t reach;  // how many columns that impulse reaches
+  std::uint32_t reach;      // how many columns that impulse reaches
+  Vec3W<W> turn_a, turn_b;  // how an impulse of one turns its two bodies
 };
 
 // One end of a stop, in each lane another.
@@ -167,19 +168,14 @@ class LaneStops {
   GYRE_INLINE static bool share_body(const LaneNode& node, const LaneNode& other) {
     return other.a == node.a || other.a == node.b || other.b == node.a || other.b == node.b;
   }
-  // How an impulse of one about a stop's axis turns its two bodies.
-  struct Turns {
-    const LaneNode& node;
-    Vec3W<W> a, b;
-    GYRE_INLINE Vec3W<W> of(std::uint32_t body) const {
-      return body == node.a ? a : body == node.b ? b : nothing();
-    }
-  };
-  GYRE_INLINE Turns turns_of(const LinkedStop<W>& stop) const {
+  GYRE_INLINE void find_turns(LinkedStop<W>& stop) const {
     const LaneNode& node = *stop.node;
     const Vec3W<W> about = stop.axis->about;
-    return {node, b_.moves(node.a) ? -(b_.bodies[node.a].inverse * about) : nothing(),
-            b_.moves(node.b) ? b_.bodies[node.b].inverse * about : nothing()};
+    stop.turn_a = b_.moves(node.a) ? -(b_.bodies[node.a].inverse * about) : nothing();
+    stop.turn_b = b_.moves(node.b) ? b_.bodies[node.b].inverse * about : nothing();
+  }
+  GYRE_INLINE static Vec3W<W> turn_of(const LinkedStop<W>& stop, std::uint32_t body) {
+    return body == stop.node->a ? stop.turn_a : body == stop.node->b ? stop.turn_b : nothing();
   }
 
   // What the rows of a joint miss where its bodies turn.
@@ -207,13 +203,13 @@ class LaneStops {
     ReachedColumns reached = reached_of(index);
     double* const part = part_of(index);
     if (stop.known == 0) {
-      const Turns turns = turns_of(stop);
+      find_turns(stop);
       for (std::uint32_t row = 0; row < b_.plain.row_count; ++row) reached.marks[row] = 0;
       for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) {
         const LaneNode& node = b_.plain.nodes[n];
-        if (!share_body(turns.node, node)) continue;
+        if (!share_body(*stop.node, node)) continue;
         reached.marks[node.row] = 1;
-        set_missing(part, n, turns.of(node.a), turns.of(node.b));
+        set_missing(part, n, turn_of(stop, node.a), turn_of(stop, node.b));
       }
       reach_lanes<W>(b_.plain, reached, part);
       stop.reach = reached.count;
@@ -237,10 +233,8 @@ class LaneStops {
   void find_way(std::uint32_t a, std::uint32_t b, std::uint32_t halves) {
     const LaneNode &pushed = *stops_[a].node, &node = *stops_[b].node;
     Wide<W> alone(0.0f);
-    if (share_body(pushed, node)) {
-      const Turns turns = turns_of(stops_[a]);
-      alone = dot(stops_[b].axis->about, turns.of(node.b) - turns.of(node.a));
-    }
+    if (share_body(pushed, node))
+      alone = dot(stops_[b].axis->about, turn_of(stops_[a], node.b) - turn_of(stops_[a], node.a));
     const Wide<W> way =
         alone - dot_reached<W>(b_.plain, halves, reached_of(a), scaled_of(a), reached_of(b), part_of(b));
     const Wide<W> bounded = a == b ? keep(way > kLeastWay * alone, way) : way;
@@ -381,9 +375,9 @@ class LaneStops {
       const Mask<W> own = x != 0.0f;
       if (none(own)) continue;
       pushed = pushed | own;
-      const Turns turns = turns_of(stop);
-      if (b_.moves(turns.node.a)) turns_[turns.node.a] += x * turns.a;
-      if (b_.moves(turns.node.b)) turns_[turns.node.b] += x * turns.b;
+      const LaneNode& node = *stop.node;
+      if (b_.moves(node.a)) turns_[node.a] += x * stop.turn_a;
+      if (b_.moves(node.b)) turns_[node.b] += x * stop.turn_b;
     }
     if (none(pushed)) return;
     for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) {
