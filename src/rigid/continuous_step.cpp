@@ -270,7 +270,8 @@ std::span<const StoppedBody> take_back(RigidWorld& w, ContinuousScratch& scratch
 
 }  // namespace
 
-void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, TaskSystem& tasks) {
+void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, const ContactKernels& kernels, Arena& arena,
+                       TaskSystem& tasks) {
   list_fast_bodies(w, scratch, arena, tasks);
   if (scratch.fast.empty() && scratch.gates.empty()) return;
   for (int round = 1; round <= kMostRounds; ++round) {
@@ -280,7 +281,7 @@ void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, 
     if (stopped.empty()) return;
     // What hangs on those that were stopped comes after, on ways that have not been looked at.
     scratch.moved.clear();
-    close_joints(w, stopped, round == kMostRounds, scratch.moved, arena);
+    close_joints(w, stopped, round == kMostRounds, kernels, tasks, scratch.moved, arena);
     list_moved_bodies(w, scratch);
     if (scratch.fast.empty()) return;
   }

@@ -3,18 +3,11 @@
 
 #include "base/arena.h"
 #include "base/array.h"
-#include "rigid/rigid_world.h"
-
-#include <span>
+#include "rigid/closing_groups.h"
+#include "solver/contact_block.h"
+#include "task/task_system.h"
 
 namespace gyre {
-
-// A fast body that goes only a part of its way in this step.
-struct StoppedBody {
-  std::uint32_t body = 0;
-  float fraction = 1.0f;  // of its way, up to where it met something
-  Vec3 moved, turned;     // the whole way, as BodyMotion has it
-};
 
 // Whether the joint holds a point of its bodies together: two stopped bodies that it joins stop as one.
 bool holds_point(const RigidWorld& w, std::uint32_t joint);
@@ -23,6 +16,7 @@ bool holds_point(const RigidWorld& w, std::uint32_t joint);
 // `stays`: nothing goes on beyond where the first that it hangs together with was stopped. Adds to `moved` what ends far, against its
 // size, from where it would have ended: it was not swept on that way.
 void close_joints(RigidWorld& w, std::span<const StoppedBody> stopped, bool stays,
-                  Array<std::uint32_t>& moved, Arena& arena);
+                  const ContactKernels& kernels, TaskSystem& tasks, Array<std::uint32_t>& moved,
+                  Arena& arena);
 
 }  // namespace gyre

@@ -4,6 +4,7 @@
 #include "base/arena.h"
 #include "collision/continuous.h"
 #include "rigid/rigid_world.h"
+#include "solver/contact_block.h"
 #include "task/task_system.h"
 
 namespace gyre {
@@ -43,7 +44,8 @@ void finish_bodies(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds
 void break_joints(RigidWorld& w, float seconds);
 
 // Sweeps bodies that moved far against what is in their way and takes them back to the first impact.
-void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, Arena& arena, TaskSystem& tasks);
+void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, const ContactKernels& kernels, Arena& arena,
+                       TaskSystem& tasks);
 
 // Fits a new fat box around one shape, with its way in a step of this length, and lists it as changed.
 void refit_shape(RigidWorld& w, std::uint32_t shape, float seconds);

@@ -16,6 +16,9 @@ constexpr std::size_t kFrameFloats = kTwist;
 constexpr std::size_t kAxisFloats = offsetof(LaneAxis, low_gap) / sizeof(float);
 // Those that come out: the impulses, of an axis them and how far it is to the low stop.
 constexpr std::size_t kImpulses = offsetof(LaneJoint, linear_impulse) / sizeof(float);
+constexpr std::size_t kError = offsetof(LaneJoint, error) / sizeof(float);
+constexpr std::size_t kAngularError = offsetof(LaneJoint, angular_error) / sizeof(float);
+constexpr std::size_t kVectorFloats = sizeof(Vec3) / sizeof(float);
 constexpr std::size_t kAxisImpulses = offsetof(LaneAxis, low_impulse) / sizeof(float);
 
 // A joint's lane of a bundle, and ranges of its floats.
@@ -122,6 +125,41 @@ void begin_lane(const LinkageBundle& bundle, int lane, std::uint32_t node, const
     from.swing_grip_z = 1.0f / max(work.detail->swing_z, kLeastSwing);
   }
   to.write(&from, 0, is_ball ? kBallFloats : kFrameFloats);
+}
+
+void forget_lane_impulses(const LinkageBundle& bundle) {
+  constexpr std::size_t kFloats =
+      sizeof(LaneJoint::linear_impulse) / sizeof(float) + sizeof(LaneJoint::angular_impulse) / sizeof(float);
+  const std::size_t width = std::size_t(bundle.kernels->width);
+  for (std::uint32_t n = 0; n < bundle.node_count; ++n) {
+    std::byte* const joint = bundle.joints + n * bundle.kernels->joint_bytes;
+    std::memset(joint + kImpulses * sizeof(float) * width, 0, kFloats * sizeof(float) * width);
+  }
+}
+
+float find_lane_error(const LinkageBundle& bundle, int lane) {
+  float most = 0.0f;
+  const auto add = [&](Vec3 v) { most = max(most, largest(absolute(v))); };
+  for (std::uint32_t n = 0; n < bundle.node_count; ++n) {
+    const LaneNode& node = bundle.nodes[n];
+    const Lane from(bundle, lane, n);
+    LaneJoint joint;
+    from.read(&joint.error, kError, kVectorFloats);
+    add(joint.error);
+    if (node.kind == JointKind::hinge) {
+      from.read(&joint.angular_error, kAngularError, kVectorFloats);
+      add(joint.angular_error);
+    }
+    if (node.has_twist) {
+      from.read(&joint.twist.low_gap, kTwist + kAxisFloats, 2);
+      most = max(most, max(-joint.twist.low_gap, -joint.twist.high_gap));
+    }
+    if (node.has_swing) {
+      from.read(&joint.swing.high_gap, kSwing + kAxisFloats + 1, 1);
+      most = max(most, -joint.swing.high_gap);
+    }
+  }
+  return most;
 }
 
 void finish_lane(const LinkageBundle& bundle, int lane, std::uint32_t node, JointRecord& joint,

@@ -15,6 +15,10 @@ void clear_lanes(const LinkageBundle& bundle);
 void set_lane_body(const LinkageBundle& bundle, int lane, std::uint32_t body, std::int32_t record);
 void begin_lane(const LinkageBundle& bundle, int lane, std::uint32_t node, const JointRecord& joint,
                 const JointWork& work, const JointPlaces& places);
+// As if all joints were new: none bears an impulse.
+void forget_lane_impulses(const LinkageBundle& bundle);
+// Of joints that have just been placed: m or rad, the farthest that a joint or a stop of the lane is off.
+float find_lane_error(const LinkageBundle& bundle, int lane);
 // Impulses, sums and positions, back into the record, or into the work where finish_joint() looks for them.
 void finish_lane(const LinkageBundle& bundle, int lane, std::uint32_t node, JointRecord& joint,
                  const JointWork& work);

@@ -48,7 +48,7 @@ GYRE_INLINE void ask_lanes(const Bundle<W>& bundle, const LaneSettings& s, Error
     LinkedBody<W>& body = bundle.bodies[i];
     const Vec3W<W> w = body.angular;
     const Vec3W<W> swerve = body.own_inverse * cross(body.inertia * w, w);  // free rotation
-    body.turn = small_rotation(h * (w + (0.5f * h) * swerve));
+    body.turn = small_rotation(h * (w + (0.5f * h * s.swerves) * swerve));
   }
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
     const LaneNode& node = bundle.plain.nodes[n];
@@ -147,7 +147,7 @@ void warm_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const Lan
   const Bundle<W> bundle(plain);
   load_velocities(bundle, arrays);
   // Before the impulses of the last sub-step: after a blow these are not of this one, and the bend of such speeds is none.
-  ask_lanes(bundle, s, kErrorsBeforeContacts);
+  ask_lanes(bundle, s, s.first_errors);
   for (std::uint32_t n = 0; n < plain.node_count; ++n) {
     const LaneNode& node = plain.nodes[n];
     LinkedJoint<W>& joint = bundle.joints[n];
@@ -167,7 +167,7 @@ void solve_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const La
   const Bundle<W> bundle(plain);
   load_velocities(bundle, arrays);
   solve_rows<W, true>(bundle);
-  solve_stops(bundle, s, kErrorsBeforeContacts);
+  solve_stops(bundle, s, s.first_errors);
   ask_lanes(bundle, s, kMostErrors);  // now with velocities that agree with the joints
   store_velocities(bundle, arrays);
 }

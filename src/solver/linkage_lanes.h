@@ -98,6 +98,10 @@ struct LaneSettings {
   float give = 0.0f;  // as LinkageSolve::give
   // The inverse of an inertia raised by `share` of what of `pull` holds back (six floats each, as Sym3).
   void (*raise)(const float* pull, const float* inertia, float share, float* inverse) = nullptr;
+  // What the first of two solutions takes back.
+  ErrorBounds first_errors = kErrorsBeforeContacts;
+  // Of the way that free rotation swerves in a sub-step, how much is asked for; none where speeds stand for displacements.
+  float swerves = 1.0f;
 };
 
 // The kernels of one CPU target. Each body is a block of `body_bytes` that begins with the lanes' body indices (kNoBody: none).

@@ -134,7 +134,8 @@ void look(WorldState& s, float seconds) {
 // What follows on the motion of `seconds`, the last of a step of `whole` or not.
 void finish(WorldState& s, float seconds, float whole, bool last) {
   RigidWorld& w = s.rigid;
-  run_stage(s, StageName::clamp_fast_bodies, [&] { clamp_fast_bodies(w, s.continuous, s.arena, *s.tasks); });
+  run_stage(s, StageName::clamp_fast_bodies,
+            [&] { clamp_fast_bodies(w, s.continuous, *s.kernels, s.arena, *s.tasks); });
   run_stage(s, StageName::finish_bodies, [&] { finish_bodies(w, s.arena, *s.tasks, whole, s.frozen, last); });
   run_stage(s, StageName::break_joints, [&] { break_joints(w, seconds); });
   run_stage(s, StageName::put_to_sleep, [&] { put_to_sleep(w, s.arena, seconds); });
