@@ -16,15 +16,17 @@ class SolverColors {
  public:
   explicit SolverColors(const RigidWorld& w) {
     Array<ColoringPair> pairs;
-    for (const Contact& contact : w.contacts.contacts) {
+    Array<std::uint32_t> slots;
+    for (std::uint32_t slot = 0; slot < w.contacts.contacts.size(); ++slot) {
+      const Contact& contact = w.contacts.contacts[slot];
       if (!is_solved(w, contact)) continue;
       const ColoringPair pair{is_active(w, contact.body_a) ? contact.body_a : ColoringPair::kNone,
                               is_active(w, contact.body_b) ? contact.body_b : ColoringPair::kNone};
       for (const Manifold& manifold : manifolds_of(w.contacts, contact)) {
-        if (manifold.count > 0) pairs.push_back(pair);
+        if (manifold.count > 0) pairs.push_back(pair), slots.push_back(slot);
       }
     }
-    color_constraints(pairs, std::uint32_t(w.bodies.motion.size()), {}, kColoringOptions, coloring_);
+    color_constraints(pairs, slots, std::uint32_t(w.bodies.motion.size()), {}, kColoringOptions, coloring_);
   }
 
   // To be asked in the order of the contacts, for each manifold with points.

@@ -48,8 +48,9 @@ void find_resting(Solve& solve, Arena& arena) {
 std::span<Group> color_all(Solve& solve, std::span<Group> room) {
   BatchScratch& scratch = solve.scratch;
   const std::uint32_t bodies = std::uint32_t(solve.batch.bodies.size());
-  color_constraints(scratch.pairs, bodies, {}, kColoringOptions, scratch.contact_colors);
-  color_constraints(scratch.joint_pairs, bodies, {}, kColoringOptions, scratch.joint_colors);
+  color_constraints(scratch.pairs, scratch.constraint_contact, bodies, {}, kColoringOptions,
+                    scratch.contact_colors);
+  color_constraints(scratch.joint_pairs, {}, bodies, {}, kColoringOptions, scratch.joint_colors);
   return lay_out_contacts(solve, room);
 }
 void place_resting(Solve& solve, Arena& arena) {

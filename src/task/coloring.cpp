@@ -2,7 +2,9 @@
 #include "task/coloring.h"
 
 #include "base/check.h"
+#include "base/hash.h"
 
+#include <algorithm>
 #include <bit>
 
 namespace gyre {
@@ -21,24 +23,35 @@ constexpr std::uint64_t all_colors(int count) { return count >= 64 ? ~std::uint6
 int lowest(std::uint64_t free) { return std::countr_zero(free); }
 int highest(std::uint64_t free) { return 63 - std::countl_zero(free); }
 
-void choose_colors(std::span<const ColoringPair> pairs, std::span<const std::uint64_t> is_static,
-                   const ColoringOptions& options, Coloring& out) {
-  const std::uint64_t allowed = all_colors(options.max_colors);
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const auto [a, b] = pairs[i];
-    const bool a_moves = moves(a, is_static);
-    const bool b_moves = moves(b, is_static);
-    const std::uint64_t used = (a_moves ? out.masks[a] : 0) | (b_moves ? out.masks[b] : 0);
-    const std::uint64_t free = allowed & ~used;
-    if (free == 0) {
-      out.color[i] = static_cast<std::uint8_t>(options.max_colors);
-      continue;
-    }
-    const bool from_top = options.statics_last && !(a_moves && b_moves);
-    const int color = from_top ? highest(free) : lowest(free);
-    out.color[i] = static_cast<std::uint8_t>(color);
-    if (a_moves) out.masks[a] |= bit(color);
-    if (b_moves) out.masks[b] |= bit(color);
+void choose_color(std::span<const ColoringPair> pairs, std::span<const std::uint64_t> is_static,
+                  const ColoringOptions& options, std::size_t i, Coloring& out) {
+  const auto [a, b] = pairs[i];
+  const bool a_moves = moves(a, is_static);
+  const bool b_moves = moves(b, is_static);
+  const std::uint64_t used = (a_moves ? out.masks[a] : 0) | (b_moves ? out.masks[b] : 0);
+  const std::uint64_t free = all_colors(options.max_colors) & ~used;
+  if (free == 0) {
+    out.color[i] = static_cast<std::uint8_t>(options.max_colors);
+    return;
+  }
+  const bool from_top = options.statics_last && !(a_moves && b_moves);
+  const int color = from_top ? highest(free) : lowest(free);
+  out.color[i] = static_cast<std::uint8_t>(color);
+  if (a_moves) out.masks[a] |= bit(color);
+  if (b_moves) out.masks[b] |= bit(color);
+}
+
+// Neighbours by name that choose one after the other.
+constexpr std::uint32_t kRun = 32;
+
+// The order in which constraints choose: ascending, but in half of the runs, by lot, descending.
+void turn_runs(std::span<const std::uint32_t> names, std::span<std::uint32_t> order) {
+  for (std::size_t begin = 0; begin < names.size();) {
+    const std::uint32_t run = names[begin] / kRun;
+    std::size_t end = begin;
+    for (; end < names.size() && names[end] / kRun == run; ++end) order[end] = static_cast<std::uint32_t>(end);
+    if ((mix_bits(run) & 1) != 0) std::reverse(order.begin() + begin, order.begin() + end);
+    begin = end;
   }
 }
 
@@ -49,7 +62,6 @@ void group_by_color(int group_count, Coloring& out) {
 
   std::uint32_t next[ColoringOptions::kMostColors + 1];
   for (int g = 0; g < group_count; ++g) next[g] = out.offsets[g];
-  out.order.resize_uninitialized(out.color.size());
   for (std::size_t i = 0; i < out.color.size(); ++i) {
     out.order[next[out.color[i]]++] = static_cast<std::uint32_t>(i);
   }
@@ -57,14 +69,21 @@ void group_by_color(int group_count, Coloring& out) {
 
 }  // namespace
 
-void color_constraints(std::span<const ColoringPair> pairs, std::uint32_t body_count,
-                       std::span<const std::uint64_t> is_static, const ColoringOptions& options,
+void color_constraints(std::span<const ColoringPair> pairs, std::span<const std::uint32_t> names,
+                       std::uint32_t body_count, std::span<const std::uint64_t> is_static, const ColoringOptions& options,
                        Coloring& out) {
+  GYRE_ASSERT(names.empty() || names.size() == pairs.size(), "each constraint has a name, or none has");
   GYRE_ASSERT(options.max_colors >= 1 && options.max_colors <= ColoringOptions::kMostColors,
               "a body's used colours fit in 64 bits");
   out.masks.assign(body_count, std::uint64_t{0});
   out.color.resize_uninitialized(pairs.size());
-  choose_colors(pairs, is_static, options, out);
+  out.order.resize_uninitialized(pairs.size());
+  if (names.empty()) {
+    for (std::uint32_t i = 0; i < pairs.size(); ++i) choose_color(pairs, is_static, options, i, out);
+  } else {
+    turn_runs(names, out.order);
+    for (const std::uint32_t i : out.order) choose_color(pairs, is_static, options, i, out);
+  }
   group_by_color(options.max_colors + 1, out);
 }
 

@@ -1,5 +1,5 @@
 // Graph colouring: puts constraints into groups in which no two share a moving body, so that a group can be solved by
-// many lanes and workers at once without their order mattering. Greedy, in input order, with one 64-bit mask of used
+// many lanes and workers at once without their order mattering. Greedy, with one 64-bit mask of used
 // colours a body; a pure function of its input, nothing is kept from step to step.
 //
 // Greedy colouring needs at most one colour more than the two bodies have other constraints together. Constraints that
@@ -49,9 +49,15 @@ struct Coloring {
 
 // `is_static`: bits by body, 64 to a word (Bitset::words()); bodies beyond its end move. Every body that is not kNone is
 // below body_count.
-void color_constraints(std::span<const ColoringPair> pairs, std::uint32_t body_count,
-                       std::span<const std::uint64_t> is_static, const ColoringOptions& options,
-                       Coloring& out);
+//
+// `names`: an ascending number for each constraint; none: constraints choose in input order. Colours are solved one after the other, and
+// what comes first bears a little more. In the order in which a wall was built each brick's left neighbour comes before its right one, and
+// the whole wall leans. So runs of neighbours by name choose forward or backward by lot (the first forward), which favours no direction,
+// and still goes from the ground up. A name must stay from step to step: impulses are carried over, and if their order changes they drive
+// what they should hold.
+void color_constraints(std::span<const ColoringPair> pairs, std::span<const std::uint32_t> names,
+                       std::uint32_t body_count, std::span<const std::uint64_t> is_static,
+                       const ColoringOptions& options, Coloring& out);
 
 // Whether each constraint is in one group, groups are ascending, and no colour has a moving body twice.
 bool validate_coloring(std::span<const ColoringPair> pairs, std::uint32_t body_count,
