@@ -321,11 +321,12 @@ class LaneStops {
       Wide<W> most(0.0f);
       GYRE_UNROLL
       for (std::uint32_t i = 0; i < kFewSlots; ++i) {
-        if (i >= slots) break;
-        const Wide<W>* const ways = slot_ways_ + i * kFewSlots;
-        const Wide<W> by = step_of(slots_[i], excess[i], ways[i], live, most);
-        GYRE_UNROLL
-        for (std::uint32_t e = 0; e < kFewSlots; ++e) excess[e] += by * ways[e];
+        if (i < slots) {
+          const Wide<W>* const ways = slot_ways_ + i * kFewSlots;
+          const Wide<W> by = step_of(slots_[i], excess[i], ways[i], live, most);
+          GYRE_UNROLL
+          for (std::uint32_t e = 0; e < kFewSlots; ++e) excess[e] += by * ways[e];
+        }
       }
       live = live & (most > kLaneSettled);
     }

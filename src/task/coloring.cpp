@@ -50,7 +50,8 @@ void turn_runs(std::span<const std::uint32_t> names, std::span<std::uint32_t> or
     const std::uint32_t run = names[begin] / kRun;
     std::size_t end = begin;
     for (; end < names.size() && names[end] / kRun == run; ++end) order[end] = static_cast<std::uint32_t>(end);
-    if ((mix_bits(run) & 1) != 0) std::reverse(order.begin() + begin, order.begin() + end);
+    const std::span<std::uint32_t> chosen = order.subspan(begin, end - begin);
+    if ((mix_bits(run) & 1) != 0) std::reverse(chosen.begin(), chosen.end());
     begin = end;
   }
 }
