@@ -30,7 +30,7 @@ class SlotTable {
   // The key must be new, and key_of must tell the slot's key already.
   template <class KeyOf>
   void insert(std::uint64_t key, std::uint32_t slot, const KeyOf& key_of) {
-    if (size_ + 1 > cells_.size() / 2) enlarge(cells_.empty() ? kLeastCells : 2 * cells_.size(), key_of);
+    if (size_ + 1 > cells_.size() / 4 * 3) enlarge(cells_.empty() ? kLeastCells : 2 * cells_.size(), key_of);
     place(key, slot);
     ++size_;
   }
@@ -82,9 +82,7 @@ class SlotTable {
     }
   }
 
-  // A power of two, or none. At most half full: each cell that is passed is a record to be read, two on the way to a key that is
-  // not there, and eight in a table that is three quarters full.
-  Array<std::uint32_t> cells_;
+  Array<std::uint32_t> cells_;  // a power of two, at most three quarters full, or none
   std::size_t size_ = 0;
 };
 

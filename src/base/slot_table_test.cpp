@@ -48,7 +48,7 @@ TEST(SlotTable, ASlotCostsFewBytes) {
     keys.push_back(std::uint64_t{slot} << 32 | (slot + 1));
     table.insert(keys.back(), slot, [&](std::uint32_t s) { return keys[s]; });
     if (slot > 100) {
-      ASSERT_LE(table.bytes(), 16 * table.size());
+      ASSERT_LE(table.bytes(), 11 * table.size());
     }
   }
 }
