@@ -45,7 +45,7 @@ struct ContactBlock {
   const float* read_b[W];
   float* write_a[W];
   float* write_b[W];
-  std::int32_t point_count = 0;         // the most of any lane
+  std::int32_t point_count = 0;         // the most of any lane; three are prepared as four, for each number is a kernel of its own
   std::int32_t rolls = 0;               // any lane has rolling friction
   std::int32_t has_fresh = 0;           // any lane is fresh
   std::int32_t idles = 0;               // solved where nothing moves, nor has in the step, it came out as it was: it will again
@@ -433,8 +433,6 @@ GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W, kHasA>& pai
       return solve_points<W, kSprung, 1>(block, pair, substep);
     case 2:
       return solve_points<W, kSprung, 2>(block, pair, substep);
-    case 3:
-      return solve_points<W, kSprung, 3>(block, pair, substep);
     default:
       return solve_points<W, kSprung, 4>(block, pair, substep);
   }
@@ -549,14 +547,19 @@ template <int W>
 void solve_blocks(void* memory, int begin, int end, float substep) {
   auto* blocks = static_cast<ContactBlock<W>*>(memory);
   for (int i = begin; i < end; ++i) {
-    blocks[i].has_a != 0 ? solve_block<W, true>(blocks[i], substep) : solve_block<W, false>(blocks[i], substep);
+    // A lane by itself saves too little for code of its own.
+    if (W == 1 || blocks[i].has_a != 0) {
+      solve_block<W, true>(blocks[i], substep);
+    } else if constexpr (W > 1) {
+      solve_block<W, false>(blocks[i], substep);
+    }
   }
 }
 
-// Once, at the end of a step.
-template <int W, bool kHasA>
+// Once, at the end of a step: so seldom that what has no body A is relaxed as if it were there.
+template <int W>
 GYRE_INLINE void relax_block(ContactBlock<W>& block, float substep) {
-  PairMotion<W, kHasA> pair = load_pair<W, kHasA>(block);
+  PairMotion<W> pair = load_pair<W>(block);
   const Wide<W> friction_1 = block.friction_1, friction_2 = block.friction_2;
   Wide<W> impulses[kMaxManifoldPoints];
   for (int k = 0; k < block.point_count; ++k) impulses[k] = block.points[k].impulse;
@@ -574,9 +577,7 @@ GYRE_INLINE void relax_block(ContactBlock<W>& block, float substep) {
 template <int W>
 void relax_blocks(void* memory, int begin, int end, float substep) {
   auto* blocks = static_cast<ContactBlock<W>*>(memory);
-  for (int i = begin; i < end; ++i) {
-    blocks[i].has_a != 0 ? relax_block<W, true>(blocks[i], substep) : relax_block<W, false>(blocks[i], substep);
-  }
+  for (int i = begin; i < end; ++i) relax_block<W>(blocks[i], substep);
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

@@ -428,7 +428,7 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
   const Wide<W> zero(0.0f), one(1.0f), warm(settings.warm_scale);
   alignas(64) float nowhere[80] = {};
   LaneRecords<W> records = find_records<W>(constraints, order, nowhere);
-  block.point_count = records.point_count;
+  block.point_count = records.point_count == 3 ? 4 : records.point_count;
   block.rolls = block.has_fresh = block.idles = 0;
   Wide<W> in[4];
   block.normal = records.normal;
