@@ -68,6 +68,7 @@ class ChainsFollow : public ::testing::Test {
   }
 
   RigidWorld world_;
+  float spread_ = 0.0f;  // by how much of the first's way each chain goes farther than the one before
   std::vector<StoppedBody> stopped_;
   ClosingBodies bodies_;
   TaskSystem tasks_{1};
@@ -86,8 +87,9 @@ class ChainsFollow : public ::testing::Test {
     mass.reach = kHalf, mass.size = 0.05f;
     store.masses.set(body, mass);
     store.places[body] = {at, {}};
-    store.motion[body].moved = {0, 0.1f + 0.002f * float(body % kLinks), 0.01f};
-    store.motion[body].turned = {0.05f, 0, 0};
+    const float share = 1.0f + spread_ * float(body / kLinks);
+    store.motion[body].moved = share * Vec3{0, 0.1f + 0.002f * float(body % kLinks), 0.01f};
+    store.motion[body].turned = share * Vec3{0.05f, 0, 0};
     store.orientations[body] = from_rotation_vector(store.motion[body].turned);
   }
   void add_joint(JointKind kind, std::int32_t a, Quat frame) {
@@ -132,6 +134,7 @@ TEST_F(ChainsFollow, WhereJointsAndLimitsHoldAndAsRowsDo) {
 }
 
 TEST_F(ChainsFollow, WithTheSameBitsWhateverStandsBeside) {
+  spread_ = 1.0f;  // so that lanes end after each other
   for (int i = 0; i < 5; ++i) add_chain();
   follow_in_lanes(1);
   const ClosingBodies alone = bodies_;
