@@ -40,5 +40,10 @@ struct Mixed {
   double between(double low, double high) { return low + (high - low) * unit(); }
   float single(float low, float high) { return float(between(double(low), double(high))); }
 };
+// For tests of kernels, which work on floats.
+struct MixedSingles : Mixed {
+  float between(float low, float high) { return single(low, high); }
+  Vec3 vector(float most) { return {between(-most, most), between(-most, most), between(-most, most)}; }
+};
 
 }  // namespace gyre::testing_random

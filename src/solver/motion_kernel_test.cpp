@@ -15,10 +15,8 @@
 namespace gyre {
 namespace {
 
-struct Random : testing_random::Mixed {
-  Random() : Mixed{0x94d049bb133111ebu} {}
-  float between(float low, float high) { return single(low, high); }
-  Vec3 vector(float most) { return {between(-most, most), between(-most, most), between(-most, most)}; }
+struct Random : testing_random::MixedSingles {
+  Random() : MixedSingles{{0x94d049bb133111ebu}} {}
 };
 
 // Bodies, and the blocks of one width that move them.

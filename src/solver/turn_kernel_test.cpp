@@ -11,10 +11,8 @@
 namespace gyre {
 namespace {
 
-struct Random : testing_random::Mixed {
-  Random() : Mixed{0x2545f4914f6cdd1du} {}
-  float between(float low, float high) { return single(low, high); }
-  Vec3 vector(float most) { return {between(-most, most), between(-most, most), between(-most, most)}; }
+struct Random : testing_random::MixedSingles {
+  Random() : MixedSingles{{0x2545f4914f6cdd1du}} {}
 };
 
 struct Spinner {
