@@ -154,7 +154,9 @@ TEST(RagdollsOnStairs, TwentyComeToRest) {
   EXPECT_GE(asleep, 4);
 }
 
-TEST(LongRagdollsOnStairs, TwoHundredComeToRest) { judge(200, fall({.count = 200, .seconds = 60, .threads = 2})); }
+TEST(LongRagdollsOnStairs, TwoHundredComeToRest) {
+  judge(200, fall({.count = 200, .seconds = 60, .threads = 2}));
+}
 
 // scenes/joints/ragdolls_on_stairs.gyre.json is what examples/ragdoll_scene.cpp writes, to the last digit.
 TEST(RagdollsOnStairs, TheSceneIsWhatTheExampleWrites) {
