@@ -19,17 +19,17 @@ struct Triangle {
   DVec3 a, b, c;
 };
 
-Triangle triangle_at(const Surface& surface, std::uint32_t i) {
+Triangle triangle_at(const TriangleSurface& surface, std::uint32_t i) {
   return {surface.corner(i, 0), surface.corner(i, 1), surface.corner(i, 2)};
 }
 
 // The directed edge `half` = 3 * triangle + corner.
-std::uint32_t edge_start(const Surface& s, std::uint32_t half) { return s.welded[s.indices[half]]; }
-std::uint32_t edge_end(const Surface& s, std::uint32_t half) {
+std::uint32_t edge_start(const TriangleSurface& s, std::uint32_t half) { return s.welded[s.indices[half]]; }
+std::uint32_t edge_end(const TriangleSurface& s, std::uint32_t half) {
   return s.welded[s.indices[half % 3 == 2 ? half - 2 : half + 1]];
 }
 
-Error edge_error(const Surface& s, std::uint32_t half, bool open) {
+Error edge_error(const TriangleSurface& s, std::uint32_t half, bool open) {
   const std::uint32_t from = edge_start(s, half), to = edge_end(s, half);
   if (open) {
     return make_error(
@@ -45,7 +45,7 @@ Error edge_error(const Surface& s, std::uint32_t half, bool open) {
       from, to, s.name(half / 3));
 }
 
-bool share_vertex(const Surface& s, std::uint32_t a, std::uint32_t b) {
+bool share_vertex(const TriangleSurface& s, std::uint32_t a, std::uint32_t b) {
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       if (s.welded[s.indices[3 * std::size_t(a) + i]] == s.welded[s.indices[3 * std::size_t(b) + j]])
@@ -81,7 +81,7 @@ bool cross_each_other(const Triangle& a, const Triangle& b, double slack) {
 
 class CoverCheck {
  public:
-  explicit CoverCheck(const Surface& surface);
+  explicit CoverCheck(const TriangleSurface& surface);
   Error check();
 
  private:
@@ -89,14 +89,14 @@ class CoverCheck {
   Error check_sides(std::uint32_t i);
   bool count_crossings(std::uint32_t self, DVec3 from, DVec3 direction, int& count) const;
 
-  const Surface& surface_;
+  const TriangleSurface& surface_;
   std::vector<Aabb> boxes_;
   StaticTree tree_;
   double slack_ = 0.0;
   float reach_ = 0.0f;
 };
 
-CoverCheck::CoverCheck(const Surface& surface) : surface_(surface) {
+CoverCheck::CoverCheck(const TriangleSurface& surface) : surface_(surface) {
   Aabb all{surface.vertices[surface.indices[0]], surface.vertices[surface.indices[0]]};
   for (std::uint32_t i = 0; i < surface.triangle_count(); ++i) {
     const Triangle t = triangle_at(surface, i);
@@ -205,7 +205,7 @@ Error CoverCheck::check() {
 
 }  // namespace
 
-Error check_surface_data(const Surface& surface) {
+Error check_surface_data(const TriangleSurface& surface) {
   const std::size_t count = surface.indices.size();
   if (count == 0 || count % 3 != 0 || count / 3 > StaticTree::kMaxItems) {
     return make_error(ErrorCode::invalid_geometry,
@@ -229,7 +229,7 @@ Error check_surface_data(const Surface& surface) {
   return {};
 }
 
-Error check_edges(const Surface& surface) {
+Error check_edges(const TriangleSurface& surface) {
   std::vector<std::uint64_t> keys, key_scratch(surface.indices.size());
   std::vector<std::uint32_t> halves, half_scratch(surface.indices.size());
   for (std::uint32_t half = 0; half < std::uint32_t(surface.indices.size()); ++half) {
@@ -255,6 +255,6 @@ Error check_edges(const Surface& surface) {
   return found ? edge_error(surface, worst, open) : Error{};
 }
 
-Error check_covered_once(const Surface& surface) { return CoverCheck(surface).check(); }
+Error check_covered_once(const TriangleSurface& surface) { return CoverCheck(surface).check(); }
 
 }  // namespace gyre

@@ -12,7 +12,7 @@
 
 namespace gyre {
 
-struct Surface {
+struct TriangleSurface {
   std::span<const Vec3> vertices;
   std::span<const std::uint32_t> indices;
   std::span<const std::uint32_t> source;  // numbers by which triangles are named; if empty, their place
@@ -26,11 +26,11 @@ struct Surface {
 };
 
 // Indices in range and in threes, finite vertices; needs no `welded`.
-Error check_surface_data(const Surface& surface);
+Error check_surface_data(const TriangleSurface& surface);
 // Each edge is run through as often one way as the other.
-Error check_edges(const Surface& surface);
+Error check_edges(const TriangleSurface& surface);
 // No edge passes through a triangle, and the space on the two sides of each triangle is covered once inside and not at all
 // outside.
-Error check_covered_once(const Surface& surface);
+Error check_covered_once(const TriangleSurface& surface);
 
 }  // namespace gyre

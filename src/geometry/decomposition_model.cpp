@@ -57,7 +57,7 @@ class Unions {
 };
 
 Error check_input(const DecompositionDef& def) {
-  const Surface surface{def.vertices, def.indices, {}, {}};
+  const TriangleSurface surface{def.vertices, def.indices, {}, {}};
   if (const Error error = check_surface_data(surface); error.code != ErrorCode::none) return error;
   for (std::size_t i = 0; i < def.vertices.size(); ++i) {
     const Vec3 p = def.vertices[i];

@@ -9,7 +9,7 @@
 namespace gyre {
 namespace {
 
-DVec3 middle_of(const Surface& surface) {
+DVec3 middle_of(const TriangleSurface& surface) {
   Vec3 low = surface.vertices[surface.indices[0]], high = low;
   for (const std::uint32_t i : surface.indices) {
     low = min(low, surface.vertices[i]);
@@ -22,7 +22,7 @@ DVec3 middle_of(const Surface& surface) {
 
 Result<Solid> closed_mesh_solid(std::span<const Vec3> vertices, std::span<const std::uint32_t> indices,
                                 std::span<const std::uint32_t> source, double density) {
-  Surface surface{vertices, indices, source, {}};
+  TriangleSurface surface{vertices, indices, source, {}};
   if (const Error error = check_surface_data(surface); error.code != ErrorCode::none) return error;
   const std::vector<std::uint32_t> welded = weld_vertices(vertices, indices);
   surface.welded = welded;

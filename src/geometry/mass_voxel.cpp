@@ -31,7 +31,7 @@ struct VoxelGrid {
   std::size_t total() const { return std::size_t(count[0]) * std::size_t(count[1]) * std::size_t(count[2]); }
 };
 
-VoxelGrid make_grid(const Surface& surface, int resolution) {
+VoxelGrid make_grid(const TriangleSurface& surface, int resolution) {
   Vec3 low = surface.vertices[surface.indices[0]], high = low;
   for (const std::uint32_t i : surface.indices) {
     low = min(low, surface.vertices[i]);
@@ -74,7 +74,7 @@ struct Crossing {
 
 class RayVotes {
  public:
-  RayVotes(const Surface& surface, const VoxelGrid& grid, std::vector<signed char>& votes)
+  RayVotes(const TriangleSurface& surface, const VoxelGrid& grid, std::vector<signed char>& votes)
       : surface_(surface), grid_(grid), votes_(votes) {}
   void cast_along(int axis);
 
@@ -82,7 +82,7 @@ class RayVotes {
   void cross_triangle(std::uint32_t triangle);
   void vote(std::size_t begin, std::size_t end);
 
-  const Surface& surface_;
+  const TriangleSurface& surface_;
   const VoxelGrid& grid_;
   std::vector<signed char>& votes_;
   std::vector<Crossing> crossings_;
@@ -207,7 +207,7 @@ Result<MassProperties> voxel_mass(std::span<const Vec3> vertices, std::span<cons
     return make_error(ErrorCode::invalid_argument, "resolution is %d voxels; allowed are %d to %d",
                       resolution, kSmallestResolution, kLargestResolution);
   }
-  const Surface surface{vertices, indices, {}, {}};
+  const TriangleSurface surface{vertices, indices, {}, {}};
   if (const Error error = check_surface_data(surface); error.code != ErrorCode::none) return error;
   const VoxelGrid grid = make_grid(surface, resolution);
   std::vector<signed char> votes(grid.total(), 0);
