@@ -4,6 +4,7 @@
 #pragma once
 
 #include "base/check.h"
+#include "base/cold.h"
 #include "base/memory.h"
 
 #include <cstddef>
@@ -126,15 +127,8 @@ class Array {
   // The arguments may refer into this array: the new element is made before the old ones move.
   template <class... Args>
   T& emplace_back(Args&&... args) {
-    if (size_ < capacity_) {
-      T* const made = new (data_ + size_) T(std::forward<Args>(args)...);
-      ++size_;
-      return *made;
-    }
-    const std::size_t room = next_capacity(size_ + 1);
-    T* const storage = make_storage(room);
-    T* const made = new (storage + size_) T(std::forward<Args>(args)...);
-    move_to(storage, room);
+    if (size_ == capacity_) return emplace_in_larger(std::forward<Args>(args)...);
+    T* const made = new (data_ + size_) T(std::forward<Args>(args)...);
     ++size_;
     return *made;
   }
@@ -220,11 +214,22 @@ class Array {
     return wanted < needed ? needed : wanted;
   }
 
+  template <class... Args>
+  GYRE_COLD T& emplace_in_larger(Args&&... args) {
+    const std::size_t room = next_capacity(size_ + 1);
+    T* const storage = make_storage(room);
+    T* const made = new (storage + size_) T(std::forward<Args>(args)...);
+    move_to(storage, room);
+    ++size_;
+    return *made;
+  }
+
   void grow_to(std::size_t count) {
-    if (count > capacity_) {
-      const std::size_t room = next_capacity(count);
-      move_to(make_storage(room), room);
-    }
+    if (count > capacity_) enlarge(count);
+  }
+  GYRE_COLD void enlarge(std::size_t count) {
+    const std::size_t room = next_capacity(count);
+    move_to(make_storage(room), room);
   }
 
   void shrink_to(std::size_t count) {
