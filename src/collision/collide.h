@@ -63,7 +63,16 @@ struct alignas(64) BodyLook {
 };
 
 // `seconds`: length of the step, how far things may come.
-BodyLook make_body_look(const ColliderBody& body, float seconds);
+inline BodyLook make_body_look(const ColliderBody& body, float seconds) {
+  BodyLook look;
+  look.position = body.pose.position;
+  look.orientation = body.pose.orientation;
+  look.way = seconds * body.linear_velocity;
+  look.spin = body.awake ? seconds * length(body.angular_velocity) : -1.0f;
+  look.reach = body.reach;
+  look.extent = body.reach + length(body.center);
+  return look;
+}
 
 // How contacts are recycled: a kernel of contact_recycle.h.
 struct ContactPair;

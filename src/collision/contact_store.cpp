@@ -50,13 +50,6 @@ void give_manifolds(ContactStore& store, std::uint32_t first, std::uint16_t room
   }
 }
 
-// How the table of pairs reads the key of a slot.
-auto key_reader(const ContactStore& store) {
-  return [&store](std::uint32_t slot) {
-    return std::uint64_t(store.contacts[slot].shape_a) << 32 | store.contacts[slot].shape_b;
-  };
-}
-
 void link(ContactStore& store, std::uint32_t slot) {
   const Contact& contact = store.contacts[slot];
   if (store.first_of_shape.size() <= contact.shape_b) {
@@ -103,10 +96,6 @@ std::uint32_t FreePlaces::lowest() {
   const std::size_t found = free_.find_next(hint_);
   hint_ = std::uint32_t(found);
   return found == free_.size() ? kNone : hint_;
-}
-
-std::uint32_t find_contact(const ContactStore& store, std::uint64_t key) {
-  return store.slot_of_pair.find(key, key_reader(store));
 }
 
 std::uint32_t add_contact(ContactStore& store, std::uint64_t key, const PairShapes& shapes) {

@@ -96,8 +96,16 @@ struct PairShapes {
   ContactSurface surface;
 };
 
+// How the table of pairs reads the key of a slot.
+inline auto key_reader(const ContactStore& store) {
+  return [&store](std::uint32_t slot) {
+    return std::uint64_t(store.contacts[slot].shape_a) << 32 | store.contacts[slot].shape_b;
+  };
+}
 // The slot of a pair's contact; SlotTable::kNone if it has none.
-std::uint32_t find_contact(const ContactStore& store, std::uint64_t key);
+inline std::uint32_t find_contact(const ContactStore& store, std::uint64_t key) {
+  return store.slot_of_pair.find(key, key_reader(store));
+}
 // Adds a contact (the pair must be new) / removes one; the manifolds' impulses go with it.
 std::uint32_t add_contact(ContactStore& store, std::uint64_t key, const PairShapes& shapes);
 void remove_contact(ContactStore& store, std::uint32_t slot);

@@ -406,17 +406,6 @@ bool look_at_sensor(const ContactPair& pair, const View& view) {
   return found.count > 0;
 }
 
-BodyLook make_body_look(const ColliderBody& body, float seconds) {
-  BodyLook look;
-  look.position = body.pose.position;
-  look.orientation = body.pose.orientation;
-  look.way = seconds * body.linear_velocity;
-  look.spin = body.awake ? seconds * length(body.angular_velocity) : -1.0f;
-  look.reach = body.reach;
-  look.extent = body.reach + length(body.center);
-  return look;
-}
-
 bool look_anew(const ContactPair& pair, const View& view) {
   const bool loaded = carried_load(manifolds_of(pair));
   if (pair.contact->manifold_room == 1) {

@@ -26,11 +26,6 @@ float round_up(double a) {
 }
 float round_down(double a) { return -round_up(-a); }
 
-// Planes and meshes have no size of their own; what they meet decides.
-double margin_size(const BoxMotion& motion) {
-  return motion.size < kUnboundedSide ? double(motion.size) : 0.0;
-}
-
 // The largest coordinate of a box, leaving out the sides of planes that have no end.
 float largest_coordinate(const Aabb& box) {
   const auto bounded = [](Vec3 a) {
@@ -56,12 +51,6 @@ WorldBox world_box(const Shape& shape, const Aabb& turned, DVec3 position) {
   return {position + turned.low - slack, position + turned.high + slack};
 }
 
-WorldBox needed_box(const WorldBox& tight, const BoxMotion& motion) {
-  const double margin = double(kSpeculativeShare) * margin_size(motion) + double(motion.turn);
-  const DVec3 all{margin, margin, margin};
-  return {tight.low - all + min(motion.way, Vec3{}), tight.high + all + max(motion.way, Vec3{})};
-}
-
 Aabb fat_box(const WorldBox& needed, const BoxMotion& motion) {
   const double size = margin_size(motion);
   const double margin = double(kFatShare) * size;
@@ -69,36 +58,6 @@ Aabb fat_box(const WorldBox& needed, const BoxMotion& motion) {
   const float reach = kLargestReach * float(size);
   const Vec3 ahead = max(min(motion.way, Vec3{reach, reach, reach}), Vec3{-reach, -reach, -reach});
   return round_outward({needed.low - all + min(ahead, Vec3{}), needed.high + all + max(ahead, Vec3{})});
-}
-
-bool holds(const Aabb& fat, const WorldBox& needed) {
-  const DVec3 low(fat.low);
-  const DVec3 high(fat.high);
-  for (int axis = 0; axis < 3; ++axis) {
-    if (low[axis] > needed.low[axis] || high[axis] < needed.high[axis]) return false;
-  }
-  return true;
-}
-
-bool needs_refit(const Aabb& fat, const WorldBox& needed, const BoxMotion& motion) {
-  if (!holds(fat, needed)) return true;
-  const DVec3 low(fat.low);
-  const DVec3 high(fat.high);
-  // Far from the origin, rounding alone makes a small shape's box large.
-  const double size = margin_size(motion);
-  for (int axis = 0; axis < 3; ++axis) {
-    const double rounding = 4.0e-7 * (absolute(low[axis]) + absolute(high[axis]));
-    const double excess = (high[axis] - low[axis]) - (needed.high[axis] - needed.low[axis]);
-    if (excess > double(kTooLarge) * size + rounding) return true;
-  }
-  return false;
-}
-
-bool refit_box(Aabb& fat, const WorldBox& tight, const BoxMotion& motion) {
-  const WorldBox needed = needed_box(tight, motion);
-  if (!needs_refit(fat, needed, motion)) return false;
-  fat = fat_box(needed, motion);
-  return true;
 }
 
 Aabb round_outward(const WorldBox& box) {

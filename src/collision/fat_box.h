@@ -17,6 +17,9 @@ constexpr float kSpeculativeShare = 0.04f;
 constexpr float kFatShare = 0.05f;
 // And made anew where it is larger by this many sizes: more than any is made.
 constexpr float kTooLarge = 3.0f;
+// A box with a side this long belongs to a plane or the like; trees keep such boxes apart.
+constexpr float kUnboundedSide = 1.0e17f;
+constexpr bool is_unbounded(const Aabb& box) { return !(largest(box.high - box.low) < kUnboundedSide); }
 
 struct WorldBox {
   DVec3 low;
@@ -36,25 +39,54 @@ struct BoxMotion {
       0.0f;  // m, how far its points go because the body turns (angle times distance from the centre of mass)
 };
 
+// Planes and meshes have no size of their own; what they meet decides.
+inline double margin_size(const BoxMotion& motion) {
+  return motion.size < kUnboundedSide ? double(motion.size) : 0.0;
+}
+
 // The box that the coming step needs.
-WorldBox needed_box(const WorldBox& tight, const BoxMotion& motion);
+inline WorldBox needed_box(const WorldBox& tight, const BoxMotion& motion) {
+  const double margin = double(kSpeculativeShare) * margin_size(motion) + double(motion.turn);
+  const DVec3 all{margin, margin, margin};
+  return {tight.low - all + min(motion.way, Vec3{}), tight.high + all + max(motion.way, Vec3{})};
+}
 
 // The box to be given to the broad phase: the needed one with a margin, longer in the direction of motion.
 Aabb fat_box(const WorldBox& needed, const BoxMotion& motion);
 
-bool holds(const Aabb& fat, const WorldBox& needed);
+inline bool holds(const Aabb& fat, const WorldBox& needed) {
+  const DVec3 low(fat.low);
+  const DVec3 high(fat.high);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (low[axis] > needed.low[axis] || high[axis] < needed.high[axis]) return false;
+  }
+  return true;
+}
 
 // Whether a fat box must be made anew: it no longer holds what is needed, or is much too large.
-bool needs_refit(const Aabb& fat, const WorldBox& needed, const BoxMotion& motion);
+inline bool needs_refit(const Aabb& fat, const WorldBox& needed, const BoxMotion& motion) {
+  if (!holds(fat, needed)) return true;
+  const DVec3 low(fat.low);
+  const DVec3 high(fat.high);
+  // Far from the origin, rounding alone makes a small shape's box large.
+  const double size = margin_size(motion);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double rounding = 4.0e-7 * (absolute(low[axis]) + absolute(high[axis]));
+    const double excess = (high[axis] - low[axis]) - (needed.high[axis] - needed.low[axis]);
+    if (excess > double(kTooLarge) * size + rounding) return true;
+  }
+  return false;
+}
 
 // Makes a fat box anew where that must be. Returns whether it was.
-bool refit_box(Aabb& fat, const WorldBox& tight, const BoxMotion& motion);
+inline bool refit_box(Aabb& fat, const WorldBox& tight, const BoxMotion& motion) {
+  const WorldBox needed = needed_box(tight, motion);
+  if (!needs_refit(fat, needed, motion)) return false;
+  fat = fat_box(needed, motion);
+  return true;
+}
 
 // The smallest float box around `box`.
 Aabb round_outward(const WorldBox& box);
-
-// A box with a side this long belongs to a plane or the like; trees keep such boxes apart.
-constexpr float kUnboundedSide = 1.0e17f;
-constexpr bool is_unbounded(const Aabb& box) { return !(largest(box.high - box.low) < kUnboundedSide); }
 
 }  // namespace gyre

@@ -86,13 +86,6 @@ void face_polygon(const Polytope& polytope, int face, FacePolygon& out) {
   }
 }
 
-float lowest_along(const Polytope& p, Vec3 d) {
-  const Vec3W<kLanes> direction = splat<kLanes>(d);
-  Floats best = values_along(p, 0, direction);
-  for (int i = kLanes; i < p.padded_count; i += kLanes) best = min(values_along(p, i, direction), best);
-  return min(min(best[3], best[1]), min(best[2], best[0]));
-}
-
 float highest_along(const Polytope& p, Vec3 d) { return -lowest_along(p, -d); }
 
 LowestVertex lowest_vertex(const Polytope& p, Vec3 d) {

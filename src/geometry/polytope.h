@@ -96,7 +96,13 @@ inline PlaneLanes load_planes(const Polytope& p, int first) {
 }
 
 // Smallest and largest dot(direction, vertex).
-float lowest_along(const Polytope& polytope, Vec3 direction);
+inline float lowest_along(const Polytope& p, Vec3 d) {
+  const Vec3W<kPolytopeLanes> direction = splat<kPolytopeLanes>(d);
+  Wide<kPolytopeLanes> best = values_along(p, 0, direction);
+  for (int i = kPolytopeLanes; i < p.padded_count; i += kPolytopeLanes)
+    best = min(values_along(p, i, direction), best);
+  return min(min(best[3], best[1]), min(best[2], best[0]));
+}
 float highest_along(const Polytope& polytope, Vec3 direction);
 
 struct LowestVertex {

@@ -207,12 +207,6 @@ void hull_face(const Hull& hull, Vec3 d, FacePolygon& out) {
 
 }  // namespace
 
-float core_radius(const Shape& shape) {
-  return shape.kind == ShapeKind::sphere || shape.kind == ShapeKind::capsule || shape.kind == ShapeKind::box
-             ? shape.radius
-             : 0.0f;
-}
-
 Vec3 support(const Shape& shape, Vec3 direction) {
   switch (shape.kind) {
     case ShapeKind::box:

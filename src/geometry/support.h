@@ -35,7 +35,11 @@ struct FacePolygon {
 };
 
 // The radius of the ball that sweeps the core: sphere and capsule radius, box rounding, else 0.
-float core_radius(const Shape& shape);
+inline float core_radius(const Shape& shape) {
+  return shape.kind == ShapeKind::sphere || shape.kind == ShapeKind::capsule || shape.kind == ShapeKind::box
+             ? shape.radius
+             : 0.0f;
+}
 
 // The core's farthest point along `direction` (any length; any extreme point if it is zero). Convex kinds only.
 Vec3 support(const Shape& shape, Vec3 direction);

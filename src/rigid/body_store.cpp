@@ -86,10 +86,6 @@ void refresh_inertia(BodyStore& store, std::uint32_t body) {
   store.motion[body].inverse_mass = store.inertia[body].inverse_mass;
 }
 
-Pose origin_pose(const BodyPlace& place, const BodyMass& mass) {
-  return {place.center - rotate(place.orientation, mass.center), place.orientation};
-}
-
 void refresh_awake(BodyStore& store) {
   if (!store.awake_stale) return;
   store.awake_stale = false;

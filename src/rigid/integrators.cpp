@@ -11,11 +11,6 @@ namespace gyre {
 
 namespace {
 
-// The fastest turn in a sub-step (rad) that the kernels make. Their error is of order angle^3 / 12 where there is a
-// gyroscopic torque: below a float's resolution. Without one it is that of how fast the axis itself turns.
-constexpr float kKernelAngle = 0.01f;
-constexpr float kKernelAngleIsotropic = 0.1f;
-
 Vec3 shortened(Vec3 v, float top, float most) {
   // In units of the largest component: the length itself may be beyond all floats.
   const float size = length(v / top), limit = most / top;
@@ -271,13 +266,6 @@ void fly_body(BodyStore& bodies, std::uint32_t i, const Motions& motions, const 
 }
 
 }  // namespace
-
-bool turns_alone(const BodyStore& bodies, std::uint32_t body, float substep) {
-  const BodyFlags& flags = bodies.flags[body];
-  if (flags.type != BodyType::dynamic || flags.locked_angular != 0) return true;
-  const float most = bodies.masses[body].isotropic != 0 ? kKernelAngleIsotropic : kKernelAngle;
-  return !(substep * length(bodies.motion[body].angular_velocity) <= most);
-}
 
 MovedBody describe_motion(const BodyStore& bodies, std::uint32_t body, const Motions& motions, bool shown) {
   const BodyFlags& flags = bodies.flags[body];

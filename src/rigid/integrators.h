@@ -22,8 +22,18 @@ struct Motions {
   Vec3 gravity;
 };
 
+// The fastest turn in a sub-step (rad) that the kernels make. Their error is of order angle^3 / 12 where there is a
+// gyroscopic torque: below a float's resolution. Without one it is that of how fast the axis itself turns.
+constexpr float kKernelAngle = 0.01f;
+constexpr float kKernelAngleIsotropic = 0.1f;
+
 // Whether a body spins so fast, or is so bound, that the motion kernels leave its rotation to turn_alone.
-bool turns_alone(const BodyStore& bodies, std::uint32_t body, float substep);
+inline bool turns_alone(const BodyStore& bodies, std::uint32_t body, float substep) {
+  const BodyFlags& flags = bodies.flags[body];
+  if (flags.type != BodyType::dynamic || flags.locked_angular != 0) return true;
+  const float most = bodies.masses[body].isotropic != 0 ? kKernelAngleIsotropic : kKernelAngle;
+  return !(substep * length(bodies.motion[body].angular_velocity) <= most);
+}
 
 // A body of which constraints are made, as the motion kernels want it. `shown`: somebody looks at its place in each sub-step.
 MovedBody describe_motion(const BodyStore& bodies, std::uint32_t body, const Motions& motions, bool shown);

@@ -50,10 +50,6 @@ RestingIslands::RestingIslands(const RigidWorld& w, std::span<const ContactConst
   count_contacts(constraints, pairs);
 }
 
-bool RestingIslands::is_root(std::uint32_t place) const {
-  return parent_[place] == place && is_movable(w_.bodies.flags[batch_.bodies[place]]);
-}
-
 std::uint32_t RestingIslands::root(std::uint32_t place) {
   while (parent_[place] != place) place = parent_[place] = parent_[parent_[place]];
   return place;

@@ -47,7 +47,9 @@ class RestingIslands {
                  std::span<const std::uint32_t> places, Arena& arena);
 
   // By place of a body in the batch. Only roots have counts.
-  bool is_root(std::uint32_t place) const;
+  bool is_root(std::uint32_t place) const {
+    return parent_[place] == place && is_movable(w_.bodies.flags[batch_.bodies[place]]);
+  }
   const IslandCount& at_root(std::uint32_t place) const { return counts_[place]; }
   std::uint32_t root_of(std::uint32_t place) const { return parent_[place]; }
 

@@ -211,14 +211,6 @@ std::size_t find_pairs(RigidWorld& w, TaskSystem& tasks) {
   return found;
 }
 
-bool may_move(const RigidWorld& w, std::uint32_t body) {
-  const BodyFlags& flags = w.bodies.flags[body];
-  if (flags.awake == 0 || flags.frozen != 0 || flags.type == BodyType::fixed) return false;
-  const BodyMotion& motion = w.bodies.motion[body];
-  return flags.type == BodyType::dynamic || motion.linear_velocity != Vec3{} ||
-         motion.angular_velocity != Vec3{};
-}
-
 void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, RecycleContacts recycle_contacts,
                    float seconds) {
   const ArenaScope scope(arena);

@@ -29,7 +29,13 @@ void refit(RigidWorld& w, TaskSystem& tasks, float seconds);
 // Returns how many pairs of boxes the broad phase named.
 std::size_t find_pairs(RigidWorld& w, TaskSystem& tasks);
 // Whether the body may be elsewhere when the step ends: contacts between bodies that may not are not looked at.
-bool may_move(const RigidWorld& w, std::uint32_t body);
+inline bool may_move(const RigidWorld& w, std::uint32_t body) {
+  const BodyFlags& flags = w.bodies.flags[body];
+  if (flags.awake == 0 || flags.frozen != 0 || flags.type == BodyType::fixed) return false;
+  const BodyMotion& motion = w.bodies.motion[body];
+  return flags.type == BodyType::dynamic || motion.linear_velocity != Vec3{} ||
+         motion.angular_velocity != Vec3{};
+}
 // Looks at every contact that could have changed: manifolds in, touch changes out.
 void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, RecycleContacts recycle_contacts,
                    float seconds);
@@ -38,8 +44,8 @@ void link_islands(RigidWorld& w);
 // New places, poses, inertia and fat boxes of awake bodies; freezes bodies whose state is not finite. Returns how many
 // were frozen (their slots are appended to `frozen`).
 // `last`: forces that the user gave end with the step; false where only a part of it is done.
-void finish_bodies(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds, Array<std::uint32_t>& frozen,
-                   bool last = true);
+void finish_bodies(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds,
+                   Array<std::uint32_t>& frozen, bool last = true);
 // Joints that bore more than they can break.
 void break_joints(RigidWorld& w, float seconds);
 
