@@ -5,6 +5,7 @@
 #include "collision/contact_fours.h"
 #include "collision/contact_recycle.h"
 #include "collision/fat_box.h"
+#include "geometry/box_search_lanes.h"
 #include "math/wide_double.h"
 
 namespace gyre {
@@ -251,10 +252,12 @@ GYRE_INLINE void find_shapes(const Group<W>& group, ShapesInView<W>& shapes) {
 }
 
 template <int W>
-GYRE_INLINE void write_views(const Group<W>& group, const ShapesInView<W>& shapes, int count, View* views) {
+GYRE_INLINE void write_views(const Group<W>& group, const ShapesInView<W>& shapes, const AxisLanes<W>& axis,
+                             int count, View* views) {
   static_assert(GYRE_FLOATS_BEFORE(View, size) == 7 && GYRE_FLOATS_BEFORE(View, shapes_a_from_b) == 10);
   static_assert(GYRE_FLOATS_BEFORE(View, frame_turn) == 17 && GYRE_FLOATS_BEFORE(View, frame_from_a) == 21);
-  static_assert(GYRE_FLOATS_BEFORE(View, frame_from_b) == 24);
+  static_assert(GYRE_FLOATS_BEFORE(View, frame_from_b) == 24 && GYRE_FLOATS_BEFORE(View, axis) == 27);
+  static_assert(offsetof(boxes::Axis, number) == 0 && offsetof(boxes::Axis, separation) == 4);
   Targets<W> to;
   GYRE_UNROLL
   for (int i = 0; i < W; ++i) to[i] = floats(views + (i < count ? i : count - 1));
@@ -269,7 +272,9 @@ GYRE_INLINE void write_views(const Group<W>& group, const ShapesInView<W>& shape
   write_four<4, W>(to, 12, {shape_p.z, shape_q.x, shape_q.y, shape_q.z});
   write_four<4, W>(to, 16, {shape_q.w, turn.x, turn.y, turn.z});
   write_four<4, W>(to, 20, {turn.w, from_a.x, from_a.y, from_a.z});
-  write_four<3, W>(to, 24, {from_b.x, from_b.y, from_b.z});
+  write_four<4, W>(to, 24, {from_b.x, from_b.y, from_b.z, from_bit_pattern(axis.number)});
+  GYRE_UNROLL
+  for (int i = 0; i < W; ++i) to[i][28] = axis.separation[i];
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

@@ -14,6 +14,7 @@
 
 #include "collision/collide.h"
 #include "collision/contact_store.h"
+#include "geometry/box_axes.h"
 
 namespace gyre {
 
@@ -56,6 +57,8 @@ struct View {
   // Its origin from either centre of mass, world axes. Each side by itself: one of the two may be far away (a plane's body),
   // and floats with it.
   Vec3 frame_from_a, frame_from_b;
+  // Of two boxes, the axis that decides at this look; kNoAxis where it is still to be found, and of everything else.
+  boxes::Axis axis;
 };
 
 struct Recycled {

@@ -283,7 +283,9 @@ GYRE_INLINE unsigned recycle_group(const Group<W>& group, unsigned lanes, Manifo
   for (int i = 0; i < W; ++i) empty |= unsigned(group.counts[i] == 0) << i;
   const Wide<W> rounding = largest(absolute(group.now.position)) * Wide<W>(1.2e-7f);
   const unsigned rattles = to_bits(rounding > Wide<W>(kRattle) * group.size);
-  const unsigned to_move = near & ~rattles & ~empty;
+  // More than any manifold may tilt: no need to read them.
+  const unsigned tilts = to_bits(motion.twice_sine() > Wide<W>(kFlatTilt));
+  const unsigned to_move = near & ~(rattles | tilts | empty);
   return (near & empty) | (to_move != 0 ? move_contacts<W>(group, motion, to_move, none, touching) : 0u);
 }
 
@@ -319,9 +321,10 @@ void recycle_contacts(const ContactPair* pairs, int count, bool may_recycle, Rec
     if (done == lanes) continue;
     ShapesInView<W> shapes;
     find_shapes<W>(group, shapes);
-    const unsigned apart = may_recycle ? part_boxes<W>(group, shapes, lanes & ~done) : 0u;
+    AxisLanes<W> axis{boxes::kNoAxis, 0.0f, Mask<W>::splat(false)};
+    const unsigned apart = may_recycle ? part_boxes<W>(group, shapes, lanes & ~done, axis) : 0u;
     recycled.apart |= std::uint64_t(apart) << first;
-    if ((done | apart) != lanes) write_views<W>(group, shapes, used, recycled.views + first);
+    if ((done | apart) != lanes) write_views<W>(group, shapes, axis, used, recycled.views + first);
   }
 }
 

@@ -4,6 +4,7 @@
 #include "collision/contact_follow.h"
 #include "collision/contact_fours.h"
 #include "collision/fat_box.h"
+#include "geometry/manifold_box.h"
 #include "geometry/manifold_mesh.h"
 #include "geometry/surface_overlap.h"
 
@@ -64,6 +65,12 @@ struct SeenShape {
 
 template <int kRoom>
 void ask_shapes(const ContactPair& pair, const View& view, float reach, Found<kRoom>& found) {
+  if (view.axis.number != boxes::kNoAxis) {
+    collide_boxes_along(view.axis, pair.shape_a->shape, pair.shape_b->shape, view.shapes_a_from_b, reach,
+                        pair.contact->cache, found.manifolds[0]);
+    found.count = found.manifolds[0].count > 0 ? 1 : 0;
+    return;
+  }
   const SeenShape a(pair.shape_a->shape, pair.shape_b->shape), b(pair.shape_b->shape, pair.shape_a->shape);
   found.count =
       collide_shapes(*a.shape, *b.shape, view.shapes_a_from_b, reach, pair.contact->cache, found.manifolds);

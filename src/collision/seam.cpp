@@ -169,42 +169,85 @@ class Cover {
   const float slack_;
 };
 
-// Whether some neighbour hides a point of the patch.
-bool is_point_hidden(const ContactStore& store, std::uint32_t slot, const Patch& own, int point,
-                     const CollideInput& input) {
-  bool hidden = false;
-  for_each_contact_of_shape(store, own.side.mover, [&](std::uint32_t other_slot) {
-    Side side;
-    if (hidden || other_slot == slot || !find_side(store, other_slot, input, side)) return;
-    if (side.mover != own.side.mover || !rest_together(input, own.side.other_body, side.other_body)) return;
-    const Contact& other = store.contacts[other_slot];
-    for (std::uint32_t m = 0; m < other.manifold_count && !hidden; ++m) {
-      const Patch by{other, side, store.manifolds[other.first_manifold + m]};
-      if (dot(own.out(), by.out()) > kSameFace) continue;
-      // Two that hide each other both stay: better a bump than a hole.
-      hidden = Cover(input, own, by).hides(point) && !Cover(input, by, own).hides_all();
+// The contacts of each mover with what rests, as lists.
+class RestingContacts {
+ public:
+  RestingContacts(const ContactStore& store, const CollideInput& input, const Bitset& beside_resting,
+                  Arena& arena)
+      : first_(arena.make<std::uint32_t>(input.proxies.size())),
+        next_(arena.make<std::uint32_t>(store.contacts.size())) {
+    for (std::uint32_t& slot : first_) slot = kNone;
+    beside_resting.for_each_set([&](std::size_t slot) {
+      Side side;
+      if (!find_side(store, std::uint32_t(slot), input, side)) return;
+      next_[slot] = first_[side.mover];
+      first_[side.mover] = std::uint32_t(slot);
+    });
+  }
+
+  // What lies on one shape alone has no seam below it: most lie so, and need not be asked.
+  bool has_two(std::uint32_t mover) const { return first_[mover] != kNone && next_[first_[mover]] != kNone; }
+  // Whether `ask` says yes to one of a mover's contacts, by slot.
+  template <class Ask>
+  bool any(std::uint32_t mover, Ask&& ask) const {
+    for (std::uint32_t slot = first_[mover]; slot != kNone; slot = next_[slot]) {
+      if (ask(slot)) return true;
     }
+    return false;
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  std::span<std::uint32_t> first_;  // by shape
+  std::span<std::uint32_t> next_;   // by slot
+};
+
+// What questions are asked of.
+struct Scene {
+  const ContactStore& store;
+  const CollideInput& input;
+  const RestingContacts& resting;
+};
+
+bool hides(const CollideInput& input, const Patch& neighbour, const Patch& own, int point) {
+  if (dot(own.out(), neighbour.out()) > kSameFace) return false;
+  // Two that hide each other both stay: better a bump than a hole.
+  return Cover(input, own, neighbour).hides(point) && !Cover(input, neighbour, own).hides_all();
+}
+
+// Whether some neighbour hides a point of the patch.
+bool is_point_hidden(const Scene& scene, std::uint32_t slot, const Patch& own, int point) {
+  return scene.resting.any(own.side.mover, [&](std::uint32_t other_slot) {
+    Side side;
+    if (other_slot == slot || !find_side(scene.store, other_slot, scene.input, side)) return false;
+    if (!rest_together(scene.input, own.side.other_body, side.other_body)) return false;
+    const Contact& other = scene.store.contacts[other_slot];
+    for (std::uint32_t m = 0; m < other.manifold_count; ++m) {
+      const Patch by{other, side, scene.store.manifolds[other.first_manifold + m]};
+      if (hides(scene.input, by, own, point)) return true;
+    }
+    return false;
   });
-  return hidden;
 }
 
 // Whether all points are: mostly the first is not, and nothing else is asked.
-bool is_hidden(const ContactStore& store, std::uint32_t slot, int index, const CollideInput& input) {
-  Side side;
-  if (!find_side(store, slot, input, side) || input.looks[side.mover_body].spin < 0.0f) return false;
-  const Contact& contact = store.contacts[slot];
-  const Patch own{contact, side, store.manifolds[contact.first_manifold + std::uint32_t(index)]};
+bool is_hidden(const Scene& scene, std::uint32_t slot, const Side& side, int index) {
+  const Contact& contact = scene.store.contacts[slot];
+  const Patch own{contact, side, scene.store.manifolds[contact.first_manifold + std::uint32_t(index)]};
   for (int i = 0; i < own.manifold.count; ++i) {
-    if (!is_point_hidden(store, slot, own, i, input)) return false;
+    if (!is_point_hidden(scene, slot, own, i)) return false;
   }
   return true;
 }
 
 // Bits of the manifolds of a contact that are hidden.
-std::uint8_t hidden_manifolds(const ContactStore& store, std::uint32_t slot, const CollideInput& input) {
+std::uint8_t hidden_manifolds(const Scene& scene, std::uint32_t slot) {
+  Side side;
+  if (!find_side(scene.store, slot, scene.input, side)) return 0;
+  if (!scene.resting.has_two(side.mover) || scene.input.looks[side.mover_body].spin < 0.0f) return 0;
   unsigned mask = 0;
-  for (int i = 0; i < store.contacts[slot].manifold_count; ++i) {
-    if (is_hidden(store, slot, i, input)) mask |= 1u << i;
+  for (int i = 0; i < scene.store.contacts[slot].manifold_count; ++i) {
+    if (is_hidden(scene, slot, side, i)) mask |= 1u << i;
   }
   return std::uint8_t(mask);
 }
@@ -225,26 +268,6 @@ void take_out(ContactStore& store, std::uint32_t slot, std::uint8_t mask) {
 }
 static_assert(kMaxMeshManifolds <= 8);
 
-// With how many resting shapes each shape has a contact; two stand for more. A shape that lies on one alone has no seam below it:
-// most lie so, and need not be asked.
-using NeighbourCounts = std::span<std::uint8_t>;
-
-NeighbourCounts count_neighbours(const ContactStore& store, const CollideInput& input,
-                                 const Bitset& beside_resting, Arena& arena) {
-  const NeighbourCounts counts = arena.make<std::uint8_t>(input.proxies.size());
-  for (std::uint8_t& count : counts) count = 0;
-  beside_resting.for_each_set([&](std::size_t slot) {
-    Side side;
-    if (find_side(store, std::uint32_t(slot), input, side) && counts[side.mover] < 2) ++counts[side.mover];
-  });
-  return counts;
-}
-bool has_neighbours(const ContactStore& store, std::uint32_t slot, const CollideInput& input,
-                    NeighbourCounts counts) {
-  Side side;
-  return find_side(store, slot, input, side) && counts[side.mover] > 1;
-}
-
 }  // namespace
 
 void hide_seams(ContactStore& store, const CollideInput& input, const Bitset& beside_resting, Arena& arena,
@@ -253,19 +276,19 @@ void hide_seams(ContactStore& store, const CollideInput& input, const Bitset& be
   const std::size_t count = store.contacts.size();
   if (scratch.hidden.size() < count) scratch.hidden.resize(count);
   scratch.hidden.reset_all();
-  const NeighbourCounts counts = count_neighbours(store, input, beside_resting, arena);
+  const RestingContacts resting(store, input, beside_resting, arena);
+  const Scene scene{store, input, resting};
   // All are asked before any is changed: nobody is hidden by who is hidden earlier in the list.
   for_blocks(tasks, int(count), kBlock, [&](int begin, int end, int) {
     for (int slot = begin; slot < end; ++slot) {
       if (!beside_resting.test(std::size_t(slot))) continue;
-      if (!has_neighbours(store, std::uint32_t(slot), input, counts)) continue;
-      if (hidden_manifolds(store, std::uint32_t(slot), input) != 0) scratch.hidden.set(std::size_t(slot));
+      if (hidden_manifolds(scene, std::uint32_t(slot)) != 0) scratch.hidden.set(std::size_t(slot));
     }
   });
   // Which of their manifolds: asked again, for the few there are.
   scratch.found.clear();
   scratch.hidden.for_each_set([&](std::size_t slot) {
-    scratch.found.push_back({std::uint32_t(slot), hidden_manifolds(store, std::uint32_t(slot), input)});
+    scratch.found.push_back({std::uint32_t(slot), hidden_manifolds(scene, std::uint32_t(slot))});
   });
   for (const SeamScratch::Found& found : scratch.found) take_out(store, found.slot, found.manifolds);
 }

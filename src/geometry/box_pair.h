@@ -2,14 +2,10 @@
 // centres, with the three numbers of each side by side, so that an operation serves all three axes.
 #pragma once
 
-#include "geometry/manifold_box.h"
+#include "geometry/box_axes.h"
 #include "math/wide.h"
 
 namespace gyre::boxes {
-
-// Axes by number: 0 to 2 A's face normals, 3 to 5 B's, 6 + 3 i + j the cross product of A's axis i and B's axis j.
-constexpr int kFirstB = 3, kFirstEdge = int(kBoxFaceAxes), kAxisCount = 15, kNoAxis = -1;
-constexpr int kNext[3] = {1, 2, 0}, kAfter[3] = {2, 0, 1};
 
 // Three numbers side by side, one for each axis. The fourth lane means nothing: what compares leaves it out by kThree.
 using Floats = Wide<4>;
@@ -67,15 +63,6 @@ inline Boxes::Boxes(const Shape& box_a, const Shape& box_b, const Transform& a_f
 
 // The smallest half extent of both.
 inline float thinnest(const Boxes& x) { return lowest(min(Floats::load(x.a), Floats::load(x.b))); }
-
-struct Axis {
-  int number = kNoAxis;
-  float separation = -kUnbounded;
-
-  // Of an axis of two edges: which of A's, and which of B's.
-  int edge_a() const { return (number - kFirstEdge) / 3; }
-  int edge_b() const { return (number - kFirstEdge) % 3; }
-};
 
 // Corners are numbered by the signs of their coordinates (bit 0: x positive ...), edges by the axis they follow and the
 // signs of the two others.

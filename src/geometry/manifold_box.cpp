@@ -15,17 +15,9 @@ namespace {
 
 using namespace boxes;
 
-// How much better an axis must be to replace the favoured one: a part of the depth and of the thinnest half extent.
-constexpr float kDepthBias = 0.05f, kSizeBias = 1.0e-3f;
-// Squared sine between two edges below which they have no axis of their own (the faces' axes serve), and below which
-// float rounding would show, so that the axis is worked out again in double.
-constexpr float kParallel = 1.0e-8f, kShallow = 1.0e-2f;
 // A face's points stand for the contact if the deepest of them is within this part of the thinnest half extent, and of an
 // overlap within that part of the depth too.
 constexpr float kMissed = 1.0e-3f, kLost = 0.1f;
-// Error of a separation times a cross product's length, relative to the sum of all lengths in it.
-constexpr float kRounding = 4.0e-7f;
-
 // Separations along the face normals of the box with half extents `own`, in whose frame the other one's middle is `way` and
 // its axes are `axes`.
 inline Floats face_separations(const float* own, const float* other, const float* way,
@@ -222,13 +214,14 @@ void collide_edges(const Boxes& x, const Transform& a_from_b, const Axis& found,
 }
 
 // The face whose normal is within kNearFace of the axis of two edges, `normal`; none if there is none.
-Axis face_near_edges(const Boxes& x, const FaceAxes& faces, Vec3 normal) {
+Axis face_near_edges(const Boxes& x, Vec3 normal) {
   const Floats along_a = absolute(three(normal));
   const Floats along_b = absolute(normal.x * Floats::load(x.r[0]) + normal.y * Floats::load(x.r[1]) +
                                   normal.z * Floats::load(x.r[2]));
   Axis best;
   const Floats nearest_of_all(kNearFace);
   if (((to_bits(along_a > nearest_of_all) | to_bits(along_b > nearest_of_all)) & kThree) == 0) return best;
+  const FaceAxes faces(x);
   float nearest = kNearFace;
   for (int k = 0; k < 3; ++k) {
     if (along_a[k] > nearest) nearest = along_a[k], best = {k, faces.of_a[k]};
@@ -244,12 +237,12 @@ float deepest_of(const LocalManifold& manifold) {
 }
 
 // See manifold_crossing.h.
-void collide_crossing(const Boxes& x, const FaceAxes& faces, const Transform& a_from_b, const Axis& edges,
-                      float max_separation, LocalManifold& out) {
+void collide_crossing(const Boxes& x, const Transform& a_from_b, const Axis& edges, float max_separation,
+                      LocalManifold& out) {
   const int i = edges.edge_a();
   const Vec3 edge_a{i == 0 ? 1.0f : 0.0f, i == 1 ? 1.0f : 0.0f, i == 2 ? 1.0f : 0.0f};
   const Vec3 normal = normalized(cross(edge_a, to_vec3(Floats::load(x.s[edges.edge_b()]))));
-  const Axis face = face_near_edges(x, faces, normal);
+  const Axis face = face_near_edges(x, normal);
   if (face.number != kNoAxis) {
     collide_face(x, face, max_separation, out);
     if (stands_for_crossing(out, edges.separation, thinnest(x))) return;
@@ -260,6 +253,28 @@ void collide_crossing(const Boxes& x, const FaceAxes& faces, const Transform& a_
   } else {
     collide_edges<FloatEdges>(x, a_from_b, edges, normal, out);
   }
+}
+
+struct Pair {
+  const Shape& a;
+  const Shape& b;
+  const Transform& a_from_b;
+  float max_separation;
+};
+
+// The manifold along the axis that decides, which parts the boxes by no more than allowed. out.count is 0.
+void collide_along(const Boxes& x, const Axis& found, const Pair& pair, PairCache& cache,
+                   LocalManifold& out) {
+  if (found.number >= kFirstEdge) {
+    collide_crossing(x, pair.a_from_b, found, pair.max_separation, out);
+  } else {
+    collide_face(x, found, pair.max_separation, out);
+    // Nearest, or deepest, beside the face.
+    const float lost = deepest_of(out) - found.separation;
+    if (lost > kMissed * thinnest(x) + kLost * max(-found.separation, 0.0f)) out.count = 0;
+  }
+  // Near, or even overlapping, but beside each other's faces.
+  if (out.count == 0) collide_cores(pair.a, pair.b, pair.a_from_b, pair.max_separation, cache, out);
 }
 
 }  // namespace
@@ -280,17 +295,16 @@ void collide_boxes(const Shape& a, const Shape& b, const Transform& a_from_b, fl
   }
   const Axis found = search(x, faces, a_from_b, max_separation, favoured);
   cache.words[0] = std::uint32_t(found.number + 1);
-  if (found.separation > max_separation) return;
-  if (found.number >= kFirstEdge) {
-    collide_crossing(x, faces, a_from_b, found, max_separation, out);
-  } else {
-    collide_face(x, found, max_separation, out);
-    // Nearest, or deepest, beside the face.
-    const float lost = deepest_of(out) - found.separation;
-    if (lost > kMissed * thinnest(x) + kLost * max(-found.separation, 0.0f)) out.count = 0;
-  }
-  // Near, or even overlapping, but beside each other's faces.
-  if (out.count == 0) collide_cores(a, b, a_from_b, max_separation, cache, out);
+  if (found.separation <= max_separation)
+    collide_along(x, found, Pair{a, b, a_from_b, max_separation}, cache, out);
+}
+
+void collide_boxes_along(const Axis& axis, const Shape& a, const Shape& b, const Transform& a_from_b,
+                         float max_separation, PairCache& cache, LocalManifold& out) {
+  out.count = 0;
+  cache.words[0] = std::uint32_t(axis.number + 1);
+  if (axis.separation <= max_separation)
+    collide_along(Boxes(a, b, a_from_b), axis, Pair{a, b, a_from_b, max_separation}, cache, out);
 }
 
 }  // namespace gyre

@@ -7,16 +7,16 @@
 // Sources: S. Gottschalk, M. Lin, D. Manocha, "OBBTree", 1996 (the 15 axes); geometry/clip.h for clipping and names.
 #pragma once
 
+#include "geometry/box_axes.h"
 #include "geometry/manifold.h"
 
 namespace gyre {
 
-// What the pair's cache holds first is 1 more than the number of the axis that decided last. The lowest are face normals: 0 to 2
-// of A, 3 to 5 of B.
-constexpr std::uint32_t kBoxFaceAxes = 6;
-
-// Two boxes of rounding 0, as collide_convex.
+// Two boxes of rounding 0, as collide_convex. What the cache holds first is 1 more than the number of the axis that decided last.
 void collide_boxes(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
                    PairCache& cache, LocalManifold& out);
+// The same where the axis that decides is known: what search_axes (box_search_lanes) tells for this `max_separation`.
+void collide_boxes_along(const boxes::Axis& axis, const Shape& a, const Shape& b, const Transform& a_from_b,
+                         float max_separation, PairCache& cache, LocalManifold& out);
 
 }  // namespace gyre
