@@ -63,10 +63,11 @@ struct SeenShape {
 };
 
 template <int kRoom>
-void ask_shapes(const ContactPair& pair, const View& view, float reach, Found<kRoom>& found) {
+void ask_shapes(const ContactPair& pair, const View& view, float reach, KeptTriangles* kept,
+                Found<kRoom>& found) {
   const SeenShape a(pair.shape_a->shape, pair.shape_b->shape), b(pair.shape_b->shape, pair.shape_a->shape);
-  found.count =
-      collide_shapes(*a.shape, *b.shape, view.shapes_a_from_b, reach, pair.contact->cache, found.manifolds);
+  found.count = collide_shapes(*a.shape, *b.shape, view.shapes_a_from_b, reach, pair.contact->cache,
+                               found.manifolds, kept);
 }
 
 // Leaves out what is farther apart than `reach`. Returns the smallest separation of what was left out.
@@ -346,7 +347,7 @@ bool is_clear_of_surface(const ContactPair& pair, const View& view, float reach)
 
 // kRoom is the contact's manifold_room.
 template <int kRoom>
-void look_in_room(const ContactPair& pair, const View& view) {
+void look_in_room(const ContactPair& pair, const View& view, KeptTriangles* kept_triangles) {
   Contact& contact = *pair.contact;
   const float kept = view.speculative + kKept * view.size;
   float reach = view.speculative + kNearSlack * view.size;
@@ -358,12 +359,12 @@ void look_in_room(const ContactPair& pair, const View& view) {
   bool clear = false;
   if (kRoom == 1 && contact.manifold_count == 0 && view.way < kSlow * view.size) {
     const float far_reach = view.speculative + kFarSlack * view.size;
-    ask_shapes(pair, view, far_reach, found);
+    ask_shapes(pair, view, far_reach, kept_triangles, found);
     // Far points may have taken the places of near ones in the manifold: then it is no good.
     clear = is_beyond(found, kept);
     if (clear) reach = far_reach;
   }
-  if (!clear) ask_shapes(pair, view, reach, found);
+  if (!clear) ask_shapes(pair, view, reach, kept_triangles, found);
   const float left_out = min(keep_near(found, kept), reach);
   if (found.count > 0 || contact.manifold_count > 0) write_manifolds(found, pair, view);
   // Points measure separation along one normal, which is not always that of the nearest features: hence only a part.
@@ -401,7 +402,7 @@ bool look_at_sensor(const ContactPair& pair, const View& view) {
   const Shape& b = pair.shape_b->shape;
   if (!is_convex(a.kind) && !is_convex(b.kind)) return surfaces_overlap(a, b, view.shapes_a_from_b);
   Found<kMaxMeshManifolds> found;
-  ask_shapes(pair, view, 0.0f, found);
+  ask_shapes(pair, view, 0.0f, nullptr, found);
   keep_near(found, 0.0f);
   return found.count > 0;
 }
@@ -417,12 +418,12 @@ BodyLook make_body_look(const ColliderBody& body, float seconds) {
   return look;
 }
 
-bool look_anew(const ContactPair& pair, const View& view) {
+bool look_anew(const ContactPair& pair, const View& view, KeptTriangles* kept) {
   const bool loaded = carried_load(manifolds_of(pair));
   if (pair.contact->manifold_room == 1) {
-    look_in_room<1>(pair, view);
+    look_in_room<1>(pair, view, kept);
   } else {
-    look_in_room<kMaxMeshManifolds>(pair, view);
+    look_in_room<kMaxMeshManifolds>(pair, view, kept);
   }
   if (pair.contact->manifold_count == 0) return false;
   return loaded || is_near(manifolds_of(pair), kTouch * view.size);
