@@ -1,10 +1,12 @@
 // The stage: which contacts are gone, which sleep, and what the others say about touching. See collide.h.
 #include "collision/collide.h"
 
+#include "base/prefetch.h"
 #include "collision/contact_update.h"
 #include "math/wide.h"
 #include "task/parallel.h"
 
+#include <bit>
 #include <cstddef>
 
 namespace gyre {
@@ -78,14 +80,48 @@ void list_contacts(ContactStore& store, std::uint32_t begin, std::uint32_t end, 
   list.count = count;
 }
 
+// What the full looks at mesh contacts of a list will read lies anywhere in memory, and is asked for one look ahead.
+class MeshesAhead {
+ public:
+  MeshesAhead(ContactStore& store, const LookList& list, const Recycled& recycled)
+      : store_(store), list_(list) {
+    for (int i = 0; i < list.count; ++i) {
+      if ((recycled.contacts >> i & 1) != 0) continue;
+      const KeptTriangles* const kept = kept_triangles_of(store, *list.pairs[i].contact);
+      if (kept == nullptr) continue;
+      prefetch(kept, sizeof(KeptTriangles));
+      left_ |= std::uint64_t{1} << i;
+    }
+  }
+
+  // Before the look at the contact in this place of the list.
+  void ask_beyond(int place) {
+    if ((left_ >> place & 1) == 0) return;
+    left_ &= ~(std::uint64_t{1} << place);
+    if (left_ == 0) return;
+    const ContactPair& next = list_.pairs[std::countr_zero(left_)];
+    const Shape& a = next.shape_a->shape;
+    const Shape& mesh = a.kind == ShapeKind::mesh ? a : next.shape_b->shape;
+    if (mesh.kind == ShapeKind::mesh)
+      prefetch_triangles(*mesh.mesh, *kept_triangles_of(store_, *next.contact));
+  }
+
+ private:
+  ContactStore& store_;
+  const LookList& list_;
+  std::uint64_t left_ = 0;  // bits, by place
+};
+
 void look_at_block(ContactStore& store, int begin, int end, const CollideInput& input,
                    TouchChanges& changes) {
   LookList list;
   list_contacts(store, std::uint32_t(begin), std::uint32_t(end), input, changes, list);
   Recycled recycled;
   input.recycle_contacts(list.pairs, list.count, input.recycle, recycled);
+  MeshesAhead meshes(store, list, recycled);
   for (int i = 0; i < list.count; ++i) {
     const ContactPair& pair = list.pairs[i];
+    meshes.ask_beyond(i);
     Contact& contact = *pair.contact;
     const std::uint64_t own = std::uint64_t{1} << i;
     contact.recycled = (recycled.contacts & own) != 0 ? 1 : 0;
@@ -94,8 +130,9 @@ void look_at_block(ContactStore& store, int begin, int end, const CollideInput& 
       continue;
     }
     const bool touches = contact.recycled != 0 ? (recycled.touching & own) != 0
-                         : contact.sensor != 0 ? look_at_sensor(pair, recycled.views[i])
-                                               : look_anew(pair, recycled.views[i]);
+                         : contact.sensor != 0
+                             ? look_at_sensor(pair, recycled.views[i])
+                             : look_anew(pair, recycled.views[i], kept_triangles_of(store, contact));
     note_touch(contact, list.slots[i], touches, changes);
     if ((list.one_resting & own) != 0 && contact.manifold_count != 0)
       changes.beside_resting.set(list.slots[i]);

@@ -50,6 +50,13 @@ void give_manifolds(ContactStore& store, std::uint32_t first, std::uint16_t room
   }
 }
 
+// Of a mesh contact: nothing is kept yet.
+void clear_kept_triangles(ContactStore& store, const Contact& contact) {
+  const std::size_t chunk = contact.first_manifold / kChunk;
+  if (store.kept_triangles.size() <= chunk) store.kept_triangles.resize(chunk + 1);
+  store.kept_triangles[chunk].count = KeptTriangles::kUnknown;
+}
+
 void link(ContactStore& store, std::uint32_t slot) {
   const Contact& contact = store.contacts[slot];
   if (store.first_of_shape.size() <= contact.shape_b) {
@@ -118,6 +125,7 @@ std::uint32_t add_contact(ContactStore& store, std::uint64_t key, const PairShap
   contact.sensor = shapes.sensor ? 1 : 0;
   contact.surface = shapes.surface;
   store.contacts[slot] = contact;
+  if (shapes.against_mesh) clear_kept_triangles(store, contact);
   // Nothing of a former owner may leak into hashes and snapshots.
   for (std::uint32_t i = 0; i < contact.manifold_room; ++i)
     store.manifolds[contact.first_manifold + i] = Manifold{};
@@ -149,6 +157,7 @@ void rebuild_index(ContactStore& store) {
   store.free_contacts.clear();
   store.free_chunks.clear();
   store.partial_chunks.clear();
+  store.kept_triangles.clear();
   store.chunk_used.assign(store.manifolds.size() / kChunk, 0);
   store.live = 0;
   for (std::uint32_t slot = 0; slot < count; ++slot) {
@@ -160,6 +169,7 @@ void rebuild_index(ContactStore& store) {
     store.slot_of_pair.insert(pair_key(contact.shape_a, contact.shape_b), slot, key_reader(store));
     link(store, slot);
     ++store.live;
+    if (contact.manifold_room > 1) clear_kept_triangles(store, contact);
     std::uint8_t& used = store.chunk_used[contact.first_manifold / kChunk];
     used =
         contact.manifold_room == 1 ? std::uint8_t(used | 1u << contact.first_manifold % kChunk) : kWholeChunk;

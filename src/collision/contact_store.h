@@ -11,6 +11,7 @@
 #include "base/paged_array.h"
 #include "base/slot_table.h"
 #include "collision/proxy.h"
+#include "geometry/kept_triangles.h"
 #include "geometry/manifold.h"
 
 #include <cstdint>
@@ -86,6 +87,8 @@ struct ContactStore {
   Array<std::uint8_t> chunk_used;  // bit i: manifold i of the chunk is in use
   FreePlaces free_chunks;          // chunks of which nothing is in use
   FreePlaces partial_chunks;       // chunks of which some singles are in use and some are free
+  // By chunk, of those that belong to mesh contacts: what their looks keep of the mesh. As long as the last of these needs.
+  Array<KeptTriangles> kept_triangles;
 };
 
 // What a new pair needs to know about its shapes.
@@ -122,6 +125,12 @@ void for_each_contact_of_shape(const ContactStore& store, std::uint32_t shape, F
        link = store.links[link / 2].next[link % 2]) {
     fn(link / 2);
   }
+}
+
+// Null for a contact without a mesh.
+inline KeptTriangles* kept_triangles_of(ContactStore& store, const Contact& contact) {
+  return contact.manifold_room > 1 ? &store.kept_triangles[contact.first_manifold / kMaxMeshManifolds]
+                                   : nullptr;
 }
 
 // Whether indices, lists and free places agree with the contacts. Walks everything; for tests and debug builds. Null if

@@ -64,7 +64,8 @@ struct SeenShape {
 };
 
 template <int kRoom>
-void ask_shapes(const ContactPair& pair, const View& view, float reach, Found<kRoom>& found) {
+void ask_shapes(const ContactPair& pair, const View& view, float reach, KeptTriangles* kept,
+                Found<kRoom>& found) {
   if (view.axis.number != boxes::kNoAxis) {
     collide_boxes_along(view.axis, pair.shape_a->shape, pair.shape_b->shape, view.shapes_a_from_b, reach,
                         pair.contact->cache, found.manifolds[0]);
@@ -72,8 +73,8 @@ void ask_shapes(const ContactPair& pair, const View& view, float reach, Found<kR
     return;
   }
   const SeenShape a(pair.shape_a->shape, pair.shape_b->shape), b(pair.shape_b->shape, pair.shape_a->shape);
-  found.count =
-      collide_shapes(*a.shape, *b.shape, view.shapes_a_from_b, reach, pair.contact->cache, found.manifolds);
+  found.count = collide_shapes(*a.shape, *b.shape, view.shapes_a_from_b, reach, pair.contact->cache,
+                               found.manifolds, kept);
 }
 
 // Leaves out what is farther apart than `reach`. Returns the smallest separation of what was left out.
@@ -353,7 +354,7 @@ bool is_clear_of_surface(const ContactPair& pair, const View& view, float reach)
 
 // kRoom is the contact's manifold_room.
 template <int kRoom>
-void look_in_room(const ContactPair& pair, const View& view) {
+void look_in_room(const ContactPair& pair, const View& view, KeptTriangles* kept_triangles) {
   Contact& contact = *pair.contact;
   const float kept = view.speculative + kKept * view.size;
   float reach = view.speculative + kNearSlack * view.size;
@@ -365,12 +366,12 @@ void look_in_room(const ContactPair& pair, const View& view) {
   bool clear = false;
   if (kRoom == 1 && contact.manifold_count == 0 && view.way < kSlow * view.size) {
     const float far_reach = view.speculative + kFarSlack * view.size;
-    ask_shapes(pair, view, far_reach, found);
+    ask_shapes(pair, view, far_reach, kept_triangles, found);
     // Far points may have taken the places of near ones in the manifold: then it is no good.
     clear = is_beyond(found, kept);
     if (clear) reach = far_reach;
   }
-  if (!clear) ask_shapes(pair, view, reach, found);
+  if (!clear) ask_shapes(pair, view, reach, kept_triangles, found);
   const float left_out = min(keep_near(found, kept), reach);
   if (found.count > 0 || contact.manifold_count > 0) write_manifolds(found, pair, view);
   // Points measure separation along one normal, which is not always that of the nearest features: hence only a part.
@@ -408,17 +409,17 @@ bool look_at_sensor(const ContactPair& pair, const View& view) {
   const Shape& b = pair.shape_b->shape;
   if (!is_convex(a.kind) && !is_convex(b.kind)) return surfaces_overlap(a, b, view.shapes_a_from_b);
   Found<kMaxMeshManifolds> found;
-  ask_shapes(pair, view, 0.0f, found);
+  ask_shapes(pair, view, 0.0f, nullptr, found);
   keep_near(found, 0.0f);
   return found.count > 0;
 }
 
-bool look_anew(const ContactPair& pair, const View& view) {
+bool look_anew(const ContactPair& pair, const View& view, KeptTriangles* kept) {
   const bool loaded = carried_load(manifolds_of(pair));
   if (pair.contact->manifold_room == 1) {
-    look_in_room<1>(pair, view);
+    look_in_room<1>(pair, view, kept);
   } else {
-    look_in_room<kMaxMeshManifolds>(pair, view);
+    look_in_room<kMaxMeshManifolds>(pair, view, kept);
   }
   if (pair.contact->manifold_count == 0) return false;
   return loaded || is_near(manifolds_of(pair), kTouch * view.size);

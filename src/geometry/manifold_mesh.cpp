@@ -55,16 +55,18 @@ struct Waiting {
 
 class MeshCollider {
  public:
-  MeshCollider(const Shape& mesh, const Shape& b, const Transform& a_from_b, float max_separation)
+  MeshCollider(const Shape& mesh, const Shape& b, const Transform& a_from_b, float max_separation,
+               KeptTriangles* kept)
       : surface_(mesh),
         convex_(b, a_from_b.orientation),
         position_(a_from_b.position),
         max_separation_(max_separation),
+        kept_(kept),
         bias_((convex_.radius() > 0.0f ? kRoundBias : kAxisBias) * convex_.size()),
         is_blade_(b.kind == ShapeKind::hull && b.hull->inner_radius < kBlade * convex_.size()) {}
 
   int run(LocalManifold* out) {
-    find_candidates(surface_, convex_, position_, max_separation_, candidates_);
+    find_candidates(surface_, convex_, position_, max_separation_, kept_, candidates_);
     look_at_candidates();
     settle_waiting();
     settle_deep_patches();
@@ -114,6 +116,7 @@ class MeshCollider {
   PlacedConvex convex_;
   Vec3 position_;
   float max_separation_;
+  KeptTriangles* kept_;
   float bias_;
   bool is_blade_;
 
@@ -535,9 +538,9 @@ void MeshCollider::look_for_corners() {
 }  // namespace
 
 int collide_mesh(const Shape& mesh, const Shape& b, const Transform& a_from_b, float max_separation,
-                 LocalManifold* out) {
+                 LocalManifold* out, KeptTriangles* kept) {
   if (!is_convex(b.kind)) return 0;
-  return MeshCollider(mesh, b, a_from_b, max_separation).run(out);
+  return MeshCollider(mesh, b, a_from_b, max_separation, kept).run(out);
 }
 
 bool is_clear_of_surface(const Shape& a, const Shape& b, const Transform& a_from_b, float reach) {

@@ -13,6 +13,8 @@ constexpr int kKeptSlots = kCells * kCells * kCells * kKept;
 // Of flat ground, those under corners of the shape in any case.
 constexpr int kCornerSlots = MeshCandidates::kRoom - kKeptSlots;
 static_assert(kCornerSlots >= 64);
+// How far around a shape triangles are kept, by its size.
+constexpr float kKeptMargin = 0.5f;
 // So many parts of one flat patch stand for all of it.
 constexpr int kStandIns = 64;
 
@@ -37,11 +39,12 @@ AxisBox inner_cube(const PlacedConvex& convex, Vec3 position, float max_separati
 class Gatherer {
  public:
   Gatherer(const Surface& surface, const PlacedConvex& convex, Vec3 position, float max_separation,
-           MeshCandidates& out)
+           KeptTriangles* kept, MeshCandidates& out)
       : surface_(surface),
         convex_(convex),
         position_(position),
         max_separation_(max_separation),
+        kept_(kept),
         out_(out),
         inner_(inner_cube(convex, position, max_separation)) {
     const float rounding = 1.2e-7f * largest(absolute(position));
@@ -77,7 +80,7 @@ class Gatherer {
       // Of a leaf each triangle is asked for itself.
       if (!flat && is_leaf(child)) return true;
       const Aabb box = child_box(node, lane);
-      if (const AxisBox axes(box); !axes.overlaps(inner_) && !near(axes)) return false;
+      if (const AxisBox axes(box); !axes.overlaps(inner_) && !near_any(axes)) return false;
       if (!flat) return true;
       while (!is_leaf(child)) child = mesh.tree.nodes[child].child[0];
       const std::uint32_t first = leaf_first(child);
@@ -85,10 +88,19 @@ class Gatherer {
                            first, add);
     };
     const AxisBox outer(box_);
+    const auto overlaps = [&](const AxisBox& box) {
+      return box.overlaps(outer) && (box.overlaps(inner_) || near(box));
+    };
+    if (kept_ != nullptr && keep_triangles(mesh, box_, kKeptMargin * convex_.size(), *kept_)) {
+      for (int i = 0; i < kept_->count; ++i) {
+        if (overlaps(axis_box(mesh, kept_->ids[i]))) add(kept_->ids[i]);
+      }
+      return;
+    }
     const auto visit = [&](std::uint32_t first, std::uint32_t count) {
       for (std::uint32_t id = first; id < first + count; ++id) {
         const AxisBox box = axis_box(mesh, id);
-        if (!box.overlaps(outer) || (!box.overlaps(inner_) && !near(box))) continue;
+        if (!overlaps(box)) continue;
         if ((mesh.flags[id] & kInsidePatch) != 0 &&
             !look_at_patch(mesh.normals[id], mesh.vertices[mesh.indices[3 * std::size_t(id)]], box.box(), id,
                            add)) {
@@ -135,6 +147,13 @@ class Gatherer {
   }
 
   bool near(const AxisBox& box) const { return convex_.may_touch(box - position_, max_separation_); }
+  // Whether that may be said of any box inside, however it is rounded there.
+  bool near_any(const AxisBox& box) const {
+    const AxisBox placed = box - position_;
+    const Wide<4> farthest = max(-placed.low(), placed.high());
+    const float rounding = 2.0e-6f * max(farthest[0], max(farthest[1], farthest[2]));
+    return convex_.may_touch(placed, max_separation_ + rounding);
+  }
 
   // A part that lies inside one flat patch. True if it must be entered: a corner of the shape's face may lie above it.
   template <class Add>
@@ -255,6 +274,7 @@ class Gatherer {
   const PlacedConvex& convex_;
   Vec3 position_;
   float max_separation_;
+  KeptTriangles* kept_;
   MeshCandidates& out_;
   Aabb box_;
   AxisBox inner_;
@@ -266,10 +286,10 @@ class Gatherer {
 }  // namespace
 
 void find_candidates(const Surface& surface, const PlacedConvex& convex, Vec3 position, float max_separation,
-                     MeshCandidates& out) {
+                     KeptTriangles* kept, MeshCandidates& out) {
   out.count = 0;
   out.deep_patch_count = 0;
-  Gatherer(surface, convex, position, max_separation, out).run();
+  Gatherer(surface, convex, position, max_separation, kept, out).run();
 }
 
 int find_triangles(const Surface& surface, const Aabb& box, std::span<std::uint32_t> out) {

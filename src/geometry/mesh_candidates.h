@@ -6,6 +6,7 @@
 // cell keeps its deepest.
 #pragma once
 
+#include "geometry/kept_triangles.h"
 #include "geometry/mesh_axis.h"
 
 namespace gyre {
@@ -20,9 +21,10 @@ struct MeshCandidates {
   std::uint32_t deep_patches[kPatchRoom];
 };
 
-// `position` is the place of the convex shape's origin in the surface's frame.
+// `position` is the place of the convex shape's origin in the surface's frame. `kept`, if it is not null: what is kept of a mesh
+// from one look of this shape at it to the next. What is found is the same with it and without it.
 void find_candidates(const Surface& surface, const PlacedConvex& convex, Vec3 position, float max_separation,
-                     MeshCandidates& out);
+                     KeptTriangles* kept, MeshCandidates& out);
 
 // The triangles whose boxes overlap a box in the surface's frame, ascending by their place in the tree or pyramid; those
 // that do not fit into `out` are left out. Returns how many were written.
