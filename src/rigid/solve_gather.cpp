@@ -378,7 +378,8 @@ namespace {
 // Of a group whose joints are solved one after the other.
 void begin_ball_alone(Solve& solve, std::uint32_t joint, Arena& arena) {
   if (solve.is_net)
-    begin_joint(solve.w, solve.batch, joint, solve.warm_scale, {solve.joint_work, solve.joint_places}, arena);
+    begin_joint(solve.w, solve.batch, joint, solve.lane_start.warm_scale,
+                {solve.joint_work, solve.joint_places}, arena);
 }
 
 }  // namespace

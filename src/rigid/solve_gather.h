@@ -34,8 +34,8 @@ struct Solve {
   JointBodies joint_bodies{};
   std::span<NetJoint> net_joints{};      // the batch's joints
   std::span<std::uint8_t> ball_lanes{};  // 1 for those that may be solved side by side
-  bool is_net = false;      // all are known to be swept: those of ball_lanes are begun in their lanes
-  float warm_scale = 0.0f;  // of impulses, if so
+  bool is_net = false;     // all are known to be swept: those of ball_lanes are begun in their lanes
+  LaneStart lane_start{};  // of joints that are begun in lanes
   std::span<JointWork> joint_work{};
   std::span<JointPlaces> joint_places{};
   Linkages linkages{};

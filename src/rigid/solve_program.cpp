@@ -252,7 +252,7 @@ void begin_balls_stage(void* context, int begin, int end, int) {
   // Lanes without a joint join nothing.
   if (int(g.count) % balls.kernels.width != 0) clear_balls(balls.kernels, balls.blocks, balls.end - 1);
   const Solve& s = *g.solve;
-  const float warm_scale = s.is_net ? s.warm_scale : 1.0f;
+  const float warm_scale = s.is_net ? s.lane_start.warm_scale : 1.0f;
   const auto turns = [&](std::int32_t body) {
     return body != kNoBody &&
            inertia_turns(s.w.bodies.masses[std::size_t(body)], s.w.bodies.flags[std::size_t(body)]);
@@ -368,11 +368,11 @@ void linkage_stage(void* context, int begin, int end, int worker) {
 // Of linkages side by side.
 void begin_bundles_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
-  begin_bundles(s.bundles, begin, end, s.linkage_solve);
+  begin_bundles(s.bundles, begin, end, s.w, s.lane_start);
 }
 void finish_bundles_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
-  finish_bundles(s.bundles, begin, end, s.linkage_solve);
+  finish_bundles(s.bundles, begin, end, s.w);
 }
 using BundleKernel = void (*LinkageKernels::*)(const LinkageBundle&, const LaneArrays&, const LaneSettings&);
 template <BundleKernel... kernels>
