@@ -57,8 +57,8 @@ struct Solve {
   std::span<ContactStructure> structures{};
   StructureSolve structure_solve{};
   RollingContacts rolling{};
-  std::span<std::uint16_t>
-      rolling_lanes{};  // by block of contacts: bits of lanes that are still to be taken along
+  std::span<std::uint16_t> rolling_lanes{};   // by block of contacts: bits of those still to be taken along
+  std::span<std::uint32_t> rolling_places{};  // by lane: which of those that roll it is
   FieldSolve fields{};
   bool is_smooth = false;  // free bodies are moved by the schemes of rigid/smooth_schemes.h
   SmoothMotion smooth{};
