@@ -27,6 +27,9 @@ class SlotTable {
     }
   }
 
+  // The slot where the search for a key begins, often the one that is found; kNone if none is there.
+  std::uint32_t first_tried(std::uint64_t key) const { return cells_.empty() ? kNone : cells_[home(key)]; }
+
   // The key must be new, and key_of must tell the slot's key already.
   template <class KeyOf>
   void insert(std::uint64_t key, std::uint32_t slot, const KeyOf& key_of) {

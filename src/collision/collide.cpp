@@ -44,11 +44,24 @@ bool boxes_overlap(const Proxy& a, const Proxy& b) {
   return (to_bits(meets) & 7u) == 7u;
 }
 
+// How many contacts before its turn one is asked for, and the proxies of one.
+constexpr std::uint32_t kContactsAhead = 8, kProxiesAhead = 4;
+void fetch_ahead(const ContactStore& store, std::uint32_t slot, const CollideInput& input) {
+  const std::size_t count = store.contacts.size();
+  if (slot + kContactsAhead < count) prefetch(&store.contacts[slot + kContactsAhead], sizeof(Contact));
+  if (slot + kProxiesAhead >= count) return;
+  const Contact& contact = store.contacts[slot + kProxiesAhead];
+  if (contact.manifold_room == 0) return;
+  __builtin_prefetch(&input.proxies[contact.shape_a]);
+  __builtin_prefetch(&input.proxies[contact.shape_b]);
+}
+
 // Which contacts are gone; of the others, which are not asleep.
 void list_contacts(ContactStore& store, std::uint32_t begin, std::uint32_t end, const CollideInput& input,
                    TouchChanges& changes, LookList& list) {
   int count = 0;
   for (std::uint32_t slot = begin; slot < end; ++slot) {
+    fetch_ahead(store, slot, input);
     Contact& contact = store.contacts[slot];
     if (contact.manifold_room == 0) continue;
     const Proxy& proxy_a = input.proxies[contact.shape_a];

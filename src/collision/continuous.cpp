@@ -129,13 +129,13 @@ template <class Wanted>
 bool is_free(const ContinuousInput& input, std::uint32_t index, const SweptShape& shape,
              const Wanted& wanted) {
   if (input.contacts == nullptr) return false;
-  bool any = false;
-  for_each_contact_of_shape(*input.contacts, index, [&](std::uint32_t slot) {
+  const auto is_wanted = [&](std::uint32_t slot) {
     const Contact& contact = input.contacts->contacts[slot];
     const std::uint32_t other = contact.shape_a == index ? contact.shape_b : contact.shape_a;
-    any = any || wanted(input.proxies[index], input.proxies[other]);
-  });
-  return !any && stays_inside(shape, input.proxies[index].fat_box);
+    return wanted(input.proxies[index], input.proxies[other]);
+  };
+  return !any_contact_of_shape(*input.contacts, index, is_wanted) &&
+         stays_inside(shape, input.proxies[index].fat_box);
 }
 
 // Calls visit(shape on its way, its index, the other's index, the other on its way) for all that the shapes of a fast body

@@ -41,28 +41,21 @@ class LaneClosing {
   std::span<const std::uint8_t> follow(bool stays, const ContactKernels& kernels, TaskSystem& tasks) {
     list();
     if (batch_.joints.empty()) return is_led_;
-    const ClosingJoints joints = copy_closing_joints(w_, batch_.joints, arena_);
+    const LaneStart start{.limits_only = true};
     DenseNets dense;
-    const Linkages linkages =
-        find_linkages(w_, batch_, places_, net_joints_, joints.works.work, dense, arena_);
-    const LinkageSolve solve{
-        .records = w_.joints.records,
-        .work = joints.works.work,
-        .places = joints.works.places,
-        .bodies = {bodies_.motion.data(), bodies_.inertia.data(), bodies_.orientations.data()},
-        .settings = kClosingSettings,
-        .give = kGive};
-    bundles_ = lay_out_bundles(linkages, kernels, solve, arena_);
-    bundles_.settings.first_errors = kMostErrors;
-    bundles_.settings.swerves = 0.0f;
+    const Linkages linkages = find_linkages(w_, batch_, places_, net_joints_, start, dense, arena_);
+    const LaneArrays arrays{bodies_.motion.data(), bodies_.inertia.data(), bodies_.orientations.data()};
+    const LaneSettings settings{
+        kClosingStep, kClosingSettings.softness.bias_rate, kGive, raise_inertia, kMostErrors, 0.0f};
+    bundles_ = lay_out_bundles(linkages, kernels, arrays, settings, arena_);
     ways_ = arena_.make<ClosingWay>(groups_.size());
-    for (const Linkage& linkage : linkages.alike) {
+    for (const LaneLinkage& linkage : linkages.alike) {
       const std::uint32_t group = group_of(linkage);
       is_led_[group] = 1;
       ways_[group] = ClosingWay(w_, groups_[group], bodies_, stays);
     }
     for_blocks(tasks, int(bundles_.bundles.size()), 1, [&](int begin, int end, int) {
-      begin_bundles(bundles_, begin, end, solve);
+      begin_bundles(bundles_, begin, end, w_, start);
       for (int i = begin; i < end; ++i) follow_bundle(bundles_.bundles[std::size_t(i)]);
     });
     return is_led_;
@@ -102,7 +95,9 @@ class LaneClosing {
     const JointRecord& joint = w_.joints.records[slot];
     return {moving(joint.body_a), moving(joint.body_b), count_equations(joint, detail_of(w_.joints, slot))};
   }
-  std::uint32_t group_of(const Linkage& linkage) const { return group_of_joint_[linkage.nodes[0].work]; }
+  std::uint32_t group_of(const LaneLinkage& linkage) const {
+    return group_of_joint_[linkage.joints[0].place];
+  }
 
   // All lanes step by step, until the last has come to its end.
   void follow_bundle(const Bundled& bundle) const {

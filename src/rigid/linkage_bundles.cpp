@@ -45,22 +45,18 @@ LinkageBundle make_bundle(const LinkageShape& shape, const LinkageKernels& kerne
 
 }  // namespace
 
-BundleSolve lay_out_bundles(const Linkages& linkages, const ContactKernels& kernels,
-                            const LinkageSolve& solve, Arena& arena) {
-  BundleSolve result;
-  result.arrays = {solve.bodies.motion, solve.bodies.inertia, solve.bodies.orientation};
-  const Softness& softness = solve.settings.softness;
-  result.settings = {solve.settings.substep, softness.bias_rate, solve.give, raise_inertia};
+BundleSolve lay_out_bundles(const Linkages& linkages, const ContactKernels& kernels, const LaneArrays& arrays,
+                            const LaneSettings& settings, Arena& arena) {
+  BundleSolve result{{}, arrays, settings};
   const std::size_t count = linkages.alike.size();
   if (count == 0) return result;
-  // Sorted by shape, those of a shape in the order of their first joints (they were listed from the back).
-  const std::span<const Linkage*> sorted = arena.make<const Linkage*>(count);
+  // Sorted by shape, those of a shape in the order of their first joints.
+  const std::span<const LaneLinkage*> sorted = arena.make<const LaneLinkage*>(count);
   const std::span<std::size_t> ends = arena.make<std::size_t>(linkages.shapes.size() + 1);
   for (std::size_t& end : ends) end = 0;
-  for (const Linkage& linkage : linkages.alike) ++ends[std::size_t(linkage.shape) + 1];
+  for (const LaneLinkage& linkage : linkages.alike) ++ends[linkage.shape + 1];
   for (std::size_t i = 1; i < ends.size(); ++i) ends[i] += ends[i - 1];
-  for (std::size_t i = count; i-- > 0;)
-    sorted[ends[std::size_t(linkages.alike[i].shape)]++] = &linkages.alike[i];
+  for (const LaneLinkage& linkage : linkages.alike) sorted[ends[linkage.shape]++] = &linkage;
   result.bundles = arena.make<Bundled>(count);
   const LinkageKernels& wide = kernels.linkages;
   const LinkageKernels& single = select_contact_kernels(1).linkages;
@@ -78,7 +74,8 @@ BundleSolve lay_out_bundles(const Linkages& linkages, const ContactKernels& kern
   return result;
 }
 
-void begin_bundles(const BundleSolve& bundles, int begin, int end, const LinkageSolve& solve) {
+void begin_bundles(const BundleSolve& bundles, int begin, int end, const RigidWorld& w,
+                   const LaneStart& start) {
   for (int i = begin; i < end; ++i) {
     const Bundled& bundle = bundles.bundles[std::size_t(i)];
     if (int(bundle.linkages.size()) < bundle.lanes.kernels->width) clear_lanes(bundle.lanes);
@@ -86,23 +83,24 @@ void begin_bundles(const BundleSolve& bundles, int begin, int end, const Linkage
     for (std::uint32_t n = 0; n < bundle.lanes.node_count; ++n) {
       const LaneNode& shape = bundle.lanes.nodes[n];
       for (std::size_t lane = 0; lane < bundle.linkages.size(); ++lane) {
-        const LinkageNode& node = bundle.linkages[lane]->nodes[n];
-        set_lane_body(bundle.lanes, int(lane), shape.a, node.body_a);
-        set_lane_body(bundle.lanes, int(lane), shape.b, node.body_b);
-        begin_lane(bundle.lanes, int(lane), n, solve.records[node.record], solve.work[node.work],
-                   solve.places[node.work]);
+        const LinkedJoint& linked = bundle.linkages[lane]->joints[n];
+        const JointRecord& joint = w.joints.records[linked.record];
+        set_lane_body(bundle.lanes, int(lane), shape.a, linked.body_a);
+        set_lane_body(bundle.lanes, int(lane), shape.b, linked.body_b);
+        begin_lane(bundle.lanes, int(lane), n, joint, detail_of(w.joints, linked.record),
+                   joint_offset(w, joint), start);
       }
     }
   }
 }
 
-void finish_bundles(const BundleSolve& bundles, int begin, int end, const LinkageSolve& solve) {
+void finish_bundles(const BundleSolve& bundles, int begin, int end, RigidWorld& w) {
   for (int i = begin; i < end; ++i) {
     const Bundled& bundle = bundles.bundles[std::size_t(i)];
     for (std::uint32_t n = 0; n < bundle.lanes.node_count; ++n) {
       for (std::size_t lane = 0; lane < bundle.linkages.size(); ++lane) {
-        const LinkageNode& node = bundle.linkages[lane]->nodes[n];
-        finish_lane(bundle.lanes, int(lane), n, solve.records[node.record], solve.work[node.work]);
+        const std::uint32_t slot = bundle.linkages[lane]->joints[n].record;
+        finish_lane(bundle.lanes, int(lane), n, w.joints.records[slot], detail_of(w.joints, slot));
       }
     }
   }

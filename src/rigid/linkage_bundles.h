@@ -11,7 +11,7 @@ namespace gyre {
 
 struct Bundled {
   LinkageBundle lanes;
-  std::span<const Linkage*> linkages;  // by lane
+  std::span<const LaneLinkage*> linkages;  // by lane
 };
 
 struct BundleSolve {
@@ -20,10 +20,11 @@ struct BundleSolve {
   LaneSettings settings;
 };
 
-BundleSolve lay_out_bundles(const Linkages& linkages, const ContactKernels& kernels,
-                            const LinkageSolve& solve, Arena& arena);
+BundleSolve lay_out_bundles(const Linkages& linkages, const ContactKernels& kernels, const LaneArrays& arrays,
+                            const LaneSettings& settings, Arena& arena);
 // Of bundles [begin, end).
-void begin_bundles(const BundleSolve& bundles, int begin, int end, const LinkageSolve& solve);
-void finish_bundles(const BundleSolve& bundles, int begin, int end, const LinkageSolve& solve);
+void begin_bundles(const BundleSolve& bundles, int begin, int end, const RigidWorld& w,
+                   const LaneStart& start);
+void finish_bundles(const BundleSolve& bundles, int begin, int end, RigidWorld& w);
 
 }  // namespace gyre

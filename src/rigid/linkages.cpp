@@ -106,13 +106,13 @@ Groups group_joints(std::span<const NetJoint> all, std::span<const std::uint32_t
 class LinkageMaker {
  public:
   LinkageMaker(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
-               std::span<const NetJoint> joints, std::span<const JointWork> work, const Graph& graph,
+               std::span<const NetJoint> joints, const LaneStart& start, const Graph& graph,
                std::span<const std::uint32_t> local, std::size_t most, DenseNets& dense, Arena& arena)
       : w_(w),
         batch_(batch),
         places_(places),
         joints_(joints),
-        work_(work),
+        start_(start),
         graph_(graph),
         local_(local),
         dense_(dense),
@@ -122,44 +122,43 @@ class LinkageMaker {
     for (std::uint32_t& side : sides_) side = kNone;
   }
 
-  bool make(std::span<const std::uint32_t> members, Linkage& linkage) {
+  // Makes one of the two, `alone` where lanes cannot bear it; false: neither.
+  bool make(std::span<const std::uint32_t> members, Linkage& alone, LaneLinkage& in_lanes) {
     const auto joint_at = [&](std::size_t i) -> const NetJoint& { return net_joint(members[i]); };
     if (dense_.holds(members.size(), joint_at)) return false;
     const std::size_t pairs = count_pairs(members);
     if (pairs > kMostPairsPerJoint * members.size()) return false;
-    make_nodes(members, linkage);
-    make_bodies(linkage);
+    const Draft draft = make_draft(members);
     LinkageShape shape;
-    const bool in_lanes = describe(linkage, shape);
-    if (in_lanes && find_shape(shape, linkage)) return true;
+    const bool fits = describe(draft, shape);
+    if (fits) in_lanes.joints = draft.joints;
+    if (fits && find_shape(shape, in_lanes)) return true;
     const std::span<LinkageCoupling> couplings = arena_.make<LinkageCoupling>(pairs);
     const std::span<BlockEdge> edges = arena_.make<BlockEdge>(pairs);
-    list_pairs(members, linkage, couplings, edges);
+    list_pairs(members, draft, couplings, edges);
     const std::span<std::uint8_t> sizes = arena_.make<std::uint8_t>(members.size());
     std::uint64_t rows = 0;
     for (std::size_t i = 0; i < members.size(); ++i) {
-      sizes[i] = std::uint8_t(linkage.nodes[i].count);
+      sizes[i] = std::uint8_t(joint_at(i).equations);
       rows += sizes[i];
     }
-    if (!plan_blocks(sizes, edges, kMostWorkPerRow * rows, arena_, linkage.plan)) {
+    BlockPlan plan;
+    if (!plan_blocks(sizes, edges, kMostWorkPerRow * rows, arena_, plan)) {
       dense_.add(members.size(), joint_at);
       return false;
     }
     for (std::size_t i = 0; i < pairs; ++i) {
-      const BlockPlace block = find_block(linkage.plan, edges[i].a, edges[i].b);
+      const BlockPlace block = find_block(plan, edges[i].a, edges[i].b);
       LinkageCoupling& c = couplings[i];
       c.offset = block.offset;
       if (block.first_is_row) continue;
       c = {c.column, c.row, c.offset, c.body, c.column_has_b, c.row_has_b};
     }
-    linkage.couplings = couplings;
-    if (in_lanes) {
-      add_shape(shape, linkage);
-      return true;
+    if (fits) {
+      in_lanes.shape = add_shape(shape, plan, couplings);
+    } else {
+      finish(alone, draft, plan, couplings);
     }
-    linkage.values = arena_.make<double>(linkage.plan.values);
-    linkage.room = arena_.make<double>(linkage.plan.widest);
-    linkage.vector = arena_.make<double>(linkage.plan.rows);
     return true;
   }
 
@@ -178,39 +177,62 @@ class LinkageMaker {
     }
     return twice / 2;
   }
-  void make_nodes(std::span<const std::uint32_t> members, Linkage& linkage) {
-    linkage.nodes = arena_.make<LinkageNode>(members.size());
-    for (std::size_t i = 0; i < members.size(); ++i) {
-      LinkageNode& node = linkage.nodes[i] = LinkageNode{};
-      node.work = graph_.joints[members[i]];
-      node.record = batch_.joints[node.work];
-      node.body_a = w_.joints.records[node.record].body_a;
-      node.body_b = w_.joints.records[node.record].body_b;
-      node.count = joints_[node.work].equations;
-    }
-  }
-  // The bodies that move, each once, in the order in which the joints name them.
-  void make_bodies(Linkage& linkage) {
-    linkage.bodies = arena_.make<LinkageBody>(2 * linkage.nodes.size());
+  // The joints of a linkage and the bodies that move, each once, in the order in which the joints name them.
+  struct Draft {
+    std::span<LinkedJoint> joints;
+    std::span<std::int32_t> side_a,
+        side_b;  // by joint: which of the bodies they are; -1: it cannot be pushed
+    std::span<std::int32_t> bodies;
+  };
+  Draft make_draft(std::span<const std::uint32_t> members) {
+    const std::size_t count = members.size();
+    Draft draft{arena_.make<LinkedJoint>(count), arena_.make<std::int32_t>(count),
+                arena_.make<std::int32_t>(count), arena_.make<std::int32_t>(2 * count)};
     std::size_t used = 0;
     const auto side_of = [&](std::int32_t body) -> std::int32_t {
       if (body == kNoBody || !is_active(w_, std::uint32_t(body))) return -1;
       std::uint32_t& side = sides_[places_[std::size_t(body)]];
       if (side == kNone) {
         side = std::uint32_t(used);
-        linkage.bodies[used] = LinkageBody{};
-        linkage.bodies[used++].body = body;
+        draft.bodies[used++] = body;
       }
       return std::int32_t(side);
     };
-    for (LinkageNode& node : linkage.nodes) {
-      node.side_a = side_of(node.body_a);
-      node.side_b = side_of(node.body_b);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t place = graph_.joints[members[i]];
+      const std::uint32_t slot = batch_.joints[place];
+      const JointRecord& joint = w_.joints.records[slot];
+      draft.joints[i] = {slot, place, joint.body_a, joint.body_b};
+      draft.side_a[i] = side_of(joint.body_a);
+      draft.side_b[i] = side_of(joint.body_b);
     }
-    linkage.bodies = linkage.bodies.first(used);
+    draft.bodies = draft.bodies.first(used);
+    return draft;
+  }
+  void finish(Linkage& linkage, const Draft& draft, const BlockPlan& plan,
+              std::span<const LinkageCoupling> couplings) const {
+    linkage.nodes = arena_.make<LinkageNode>(draft.joints.size());
+    for (std::size_t i = 0; i < draft.joints.size(); ++i) {
+      const LinkedJoint& joint = draft.joints[i];
+      LinkageNode& node = linkage.nodes[i] = LinkageNode{};
+      node.record = joint.record, node.work = joint.place;
+      node.body_a = joint.body_a, node.body_b = joint.body_b;
+      node.side_a = draft.side_a[i], node.side_b = draft.side_b[i];
+      node.count = joints_[joint.place].equations;
+    }
+    linkage.bodies = arena_.make<LinkageBody>(draft.bodies.size());
+    for (std::size_t i = 0; i < draft.bodies.size(); ++i) {
+      linkage.bodies[i] = LinkageBody{};
+      linkage.bodies[i].body = draft.bodies[i];
+    }
+    linkage.couplings = couplings;
+    linkage.plan = plan;
+    linkage.values = arena_.make<double>(plan.values);
+    linkage.room = arena_.make<double>(plan.widest);
+    linkage.vector = arena_.make<double>(plan.rows);
   }
   // Every pair of joints that share a body that moves, once for each such body.
-  void list_pairs(std::span<const std::uint32_t> members, const Linkage& linkage,
+  void list_pairs(std::span<const std::uint32_t> members, const Draft& draft,
                   std::span<LinkageCoupling> couplings, std::span<BlockEdge> edges) const {
     std::size_t used = 0;
     for (std::uint32_t i = 0; i < members.size(); ++i) {
@@ -223,31 +245,32 @@ class LinkageMaker {
                                other,
                                0,
                                std::int32_t(body),
-                               linkage.nodes[i].body_b == std::int32_t(body),
-                               linkage.nodes[other].body_b == std::int32_t(body)};
+                               draft.joints[i].body_b == std::int32_t(body),
+                               draft.joints[other].body_b == std::int32_t(body)};
         }
       });
     }
   }
 
   // The linkage as lanes have it; false if they cannot bear it. Bodies that cannot be pushed come last, one for each joint's end.
-  bool describe(const Linkage& linkage, LinkageShape& shape) {
+  bool describe(const Draft& draft, LinkageShape& shape) {
     std::size_t stops = 0;
-    shape.nodes = arena_.make<LaneNode>(linkage.nodes.size());
-    shape.body_count = shape.moving_count = std::uint32_t(linkage.bodies.size());
-    for (std::size_t i = 0; i < linkage.nodes.size(); ++i) {
-      const LinkageNode& node = linkage.nodes[i];
+    shape.nodes = arena_.make<LaneNode>(draft.joints.size());
+    shape.body_count = shape.moving_count = std::uint32_t(draft.bodies.size());
+    for (std::size_t i = 0; i < draft.joints.size(); ++i) {
+      const LinkedJoint& joint = draft.joints[i];
       LaneNode& lane = shape.nodes[i] = LaneNode{};
-      if (!fits_lane(w_.joints.records[node.record], work_[node.work], lane)) return false;
+      if (!fits_lane(w_.joints.records[joint.record], detail_of(w_.joints, joint.record), start_, lane))
+        return false;
       stops += (lane.has_twist ? 1 : 0) + (lane.has_swing ? 1 : 0);
       if (stops > kMostLaneStops) return false;
-      lane.rows = std::uint32_t(node.count);
-      lane.a = node.side_a < 0 ? shape.body_count++ : std::uint32_t(node.side_a);
-      lane.b = node.side_b < 0 ? shape.body_count++ : std::uint32_t(node.side_b);
+      lane.rows = std::uint32_t(joints_[joint.place].equations);
+      lane.a = draft.side_a[i] < 0 ? shape.body_count++ : std::uint32_t(draft.side_a[i]);
+      lane.b = draft.side_b[i] < 0 ? shape.body_count++ : std::uint32_t(draft.side_b[i]);
     }
     return true;
   }
-  bool find_shape(const LinkageShape& shape, Linkage& linkage) const {
+  bool find_shape(const LinkageShape& shape, LaneLinkage& linkage) const {
     const auto same = [](const LaneNode& a, const LaneNode& b) {
       return a.kind == b.kind && a.has_twist == b.has_twist && a.has_swing == b.has_swing && a.a == b.a &&
              a.b == b.b;
@@ -257,28 +280,30 @@ class LinkageMaker {
       const LinkageShape& other = shapes_[i];
       if (other.moving_count != shape.moving_count || other.nodes.size() != shape.nodes.size()) continue;
       if (!std::equal(shape.nodes.begin(), shape.nodes.end(), other.nodes.begin(), same)) continue;
-      linkage.shape = std::int32_t(i);
+      linkage.shape = std::uint32_t(i);
       return true;
     }
     return false;
   }
-  void add_shape(LinkageShape& shape, Linkage& linkage) {
-    shape.plan = linkage.plan;
+  // Returns which it is.
+  std::uint32_t add_shape(LinkageShape& shape, const BlockPlan& plan,
+                          std::span<const LinkageCoupling> couplings) {
+    shape.plan = plan;
     for (std::size_t i = 0; i < shape.nodes.size(); ++i) {
-      const BlockColumn& column = shape.plan.columns[shape.plan.place_of[i]];
+      const BlockColumn& column = plan.columns[plan.place_of[i]];
       shape.nodes[i].row = column.row;
       shape.nodes[i].diagonal = column.diagonal;
     }
-    shape.couplings = arena_.make<LaneCoupling>(linkage.couplings.size());
-    for (std::size_t i = 0; i < linkage.couplings.size(); ++i) {
-      const LinkageCoupling& c = linkage.couplings[i];
+    shape.couplings = arena_.make<LaneCoupling>(couplings.size());
+    for (std::size_t i = 0; i < couplings.size(); ++i) {
+      const LinkageCoupling& c = couplings[i];
       const LaneNode& row = shape.nodes[c.row];
       shape.couplings[i] = {c.row,       c.column,       c.offset, c.row_has_b ? row.b : row.a,
                             c.row_has_b, c.column_has_b, false};
     }
     mark_first(shape);
-    linkage.shape = std::int32_t(shape_count_);
-    shapes_[shape_count_++] = shape;
+    shapes_[shape_count_] = shape;
+    return std::uint32_t(shape_count_++);
   }
 
   // Which couplings are the first in their blocks, and whether that is all blocks below the diagonal.
@@ -299,7 +324,7 @@ class LinkageMaker {
   const SolveBatch& batch_;
   std::span<const std::uint32_t> places_;
   std::span<const NetJoint> joints_;
-  std::span<const JointWork> work_;
+  LaneStart start_;
   const Graph& graph_;
   std::span<const std::uint32_t> local_;
   DenseNets& dense_;
@@ -336,32 +361,41 @@ void DenseNets::add(std::span<const NetJoint> joints) {
 Linkages no_linkages(std::size_t joints, Arena& arena) {
   const std::span<std::uint8_t> swept = arena.make<std::uint8_t>(joints);
   for (std::uint8_t& flag : swept) flag = 1;
-  return {{}, {}, {}, swept};
+  return {{}, {}, {}, swept, {}};
 }
 
 Linkages find_linkages(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
-                       std::span<const NetJoint> joints, std::span<const JointWork> work, DenseNets& dense,
+                       std::span<const NetJoint> joints, const LaneStart& start, DenseNets& dense,
                        Arena& arena) {
   if (joints.empty()) return {};
   const Graph graph = make_graph(joints, batch.bodies.size(), places, arena);
   const Groups groups = group_joints(joints, places, graph, arena);
-  // Those of their own from the front, those alike from the back.
-  const std::span<Linkage> linkages = arena.make<Linkage>(groups.ends.size());
+  const std::size_t most = groups.ends.size();
+  const std::span<Linkage> alone = arena.make<Linkage>(most);
+  const std::span<LaneLinkage> alike = arena.make<LaneLinkage>(most);
   const std::span<std::uint8_t> swept = arena.make<std::uint8_t>(joints.size());
+  const std::span<std::uint8_t> in_lanes = arena.make<std::uint8_t>(joints.size());
   for (std::uint8_t& flag : swept) flag = 1;
-  LinkageMaker maker(w, batch, places, joints, work, graph, groups.local, groups.ends.size(), dense, arena);
-  std::size_t own = 0, alike = linkages.size();
-  for (std::size_t group = 0; group < groups.ends.size(); ++group) {
+  for (std::uint8_t& flag : in_lanes) flag = 0;
+  LinkageMaker maker(w, batch, places, joints, start, graph, groups.local, most, dense, arena);
+  std::size_t alone_count = 0, alike_count = 0;
+  for (std::size_t group = 0; group < most; ++group) {
     const std::uint32_t begin = group == 0 ? 0 : groups.ends[group - 1];
     const std::span<const std::uint32_t> members = groups.members.subspan(begin, groups.ends[group] - begin);
     Linkage linkage;
-    if (!maker.make(members, linkage)) continue;
-    for (const LinkageNode& node : linkage.nodes) swept[node.work] = 0;
-    linkages[linkage.shape < 0 ? own++ : --alike] = linkage;
+    LaneLinkage lanes;
+    if (!maker.make(members, linkage, lanes)) continue;
+    for (const std::uint32_t member : members) swept[graph.joints[member]] = 0;
+    if (lanes.joints.empty()) {
+      alone[alone_count++] = linkage;
+      continue;
+    }
+    for (const LinkedJoint& joint : lanes.joints) in_lanes[joint.place] = 1;
+    alike[alike_count++] = lanes;
   }
-  const bool is_dense = !linkages.empty() && own == 0 && alike == linkages.size();
+  const bool is_dense = most > 0 && alone_count == 0 && alike_count == 0;
   if (is_dense && !dense.holds(joints)) dense.add(joints);
-  return {linkages.first(own), linkages.subspan(alike), maker.shapes(), swept};
+  return {alone.first(alone_count), alike.first(alike_count), maker.shapes(), swept, in_lanes};
 }
 
 std::span<std::span<double>> find_stops(const Linkages& linkages, std::span<const JointWork> work,

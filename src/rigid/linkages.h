@@ -22,11 +22,24 @@ struct LinkageShape {
   bool has_fill = false;  // as LinkageBundle::has_fill
 };
 
+// A joint of a linkage.
+struct LinkedJoint {
+  std::uint32_t record = 0;  // slot
+  std::uint32_t place = 0;   // in the batch's list of joints
+  std::int32_t body_a = kNoBody, body_b = kNoBody;
+};
+// A linkage that is solved beside others.
+struct LaneLinkage {
+  std::span<const LinkedJoint> joints;  // in the order of the shape's nodes
+  std::uint32_t shape = 0;              // which it is like
+};
+
 struct Linkages {
-  std::span<Linkage> linkages;          // each solved by itself
-  std::span<Linkage> alike;             // those that are solved side by side,
-  std::span<LinkageShape> shapes;       // and what they are like
-  std::span<const std::uint8_t> swept;  // by place in the batch's list of joints: 1 if it is in no linkage
+  std::span<Linkage> linkages;     // each solved by itself
+  std::span<LaneLinkage> alike;    // those that are solved side by side,
+  std::span<LinkageShape> shapes;  // and what they are like
+  // By place in the batch's list of joints: 1 if it is in no linkage; 1 if it is in one that is solved side by side.
+  std::span<const std::uint8_t> swept, in_lanes;
 };
 
 // Nets that were found too dense to be planned, by all that the plan is made of: whoever asks for the same again need not try. Also
@@ -48,9 +61,9 @@ class DenseNets {
   Array<NetJoint> joints_;  // of all nets, one after the other
 };
 
-// Of one batch; `places` are those of all (solve_batches.h), `joints` and `work` are of the batch's joints.
+// Of one batch; `places` are those of all (solve_batches.h), `joints` are the batch's. `start`: how lanes will be begun.
 Linkages find_linkages(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
-                       std::span<const NetJoint> joints, std::span<const JointWork> work, DenseNets& dense,
+                       std::span<const NetJoint> joints, const LaneStart& start, DenseNets& dense,
                        Arena& arena);
 // Where all joints are swept.
 Linkages no_linkages(std::size_t joints, Arena& arena);

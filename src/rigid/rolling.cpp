@@ -46,6 +46,8 @@ struct Lowest {
 RollingPoint describe_point(const Shape& shape, const RollingContact& rolling, Quat orientation, Vec3 arm,
                             float separation) {
   RollingPoint point;
+  point.first_arm = arm;
+  point.first_separation = separation;
   const Vec3 half_gap = (0.5f * separation) * rolling.outward;
   const Vec3 on_surface = arm - half_gap;
   if (core_radius(shape) > 0.0f) {
@@ -160,6 +162,7 @@ void describe(const RigidWorld& w, const Contact& contact, const Manifold& manif
   rolling.axis = rotate(collider.body_from_shape.orientation, Vec3{0, 1, 0});
   rolling.outward = -rolling.side * manifold.normal;
   rolling.offset = rolling.side * (manifold.points[0].from_a - manifold.points[0].from_b);
+  rolling.count = manifold.count;
   for (int k = 0; k < manifold.count; ++k) {
     const ContactPointState& point = manifold.points[k];
     rolling.points[k] =
@@ -265,7 +268,8 @@ RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch
   return all;
 }
 
-void follow_contact(const RigidWorld& w, RollingContact& rolling, const Manifold& manifold, float ahead) {
+// All that is asked of the manifold stands in the contact by now: manifolds lie far apart.
+void follow_contact(const RigidWorld& w, RollingContact& rolling, float ahead) {
   const std::size_t body = std::size_t(rolling.body);
   const BodyMotion still;
   const BodyMotion& motion = w.bodies.motion[body];
@@ -280,17 +284,16 @@ void follow_contact(const RigidWorld& w, RollingContact& rolling, const Manifold
     pairs.from_b[k] = rolling.side > 0.0f ? arm : arm + apart;
   };
   FollowedArms& arms = rolling.arms;
-  arms.count = manifold.count;
+  arms.count = rolling.count;
   arms.before = arms.now;
-  for (int k = 0; k < manifold.count; ++k) {
-    const ContactPointState& point = manifold.points[k];
-    const Vec3 at_first = rolling.side > 0.0f ? point.from_b : point.from_a;
-    const Vec3 arm = place.arm_of(rolling.points[k]), middle_arm = middle_place.arm_of(rolling.points[k]);
+  for (int k = 0; k < rolling.count; ++k) {
+    const RollingPoint& point = rolling.points[k];
+    const Vec3 arm = place.arm_of(point), middle_arm = middle_place.arm_of(point);
     const float share = rolling.once ? 1.0f : share_of_run(arm, middle_arm);
     put(arms.now, k, arm + share * (middle_arm - arm), offset + share * (middle_offset - offset));
     put(arms.middle, k, middle_arm, middle_offset);
     // Surfaces come nearer by what the arm grows outward; what turning the body makes of it is taken off again.
-    arms.separation[k] = point.separation - dot(arm - at_first, rolling.outward) +
+    arms.separation[k] = point.first_separation - dot(arm - point.first_arm, rolling.outward) +
                          dot(cross(motion.turned, middle_arm), rolling.outward);
   }
   if (!rolling.once) rolling.drift = free_change(w, body, now, ahead);

@@ -22,7 +22,9 @@
 namespace gyre {
 
 struct RollingPoint {
-  Vec3 core;  // m, body frame
+  Vec3 first_arm;                 // m, as the step began: of the curved body,
+  float first_separation = 0.0f;  // and how far the point was from the other one
+  Vec3 core;                      // m, body frame
   float reach = 0.0f;
   Vec3 rest;  // m, world axes: half the gap, and rounding
   bool on_rim = false;
@@ -42,11 +44,20 @@ struct RollingContact : RollingSides {
   Vec3 outward;  // world axes: the normal, out of the curved shape
   Vec3 offset;   // m, from the other body's centre of mass to the curved one's, as the step began
   RollingPoint points[kMaxManifoldPoints];
+  int count = 0;        // of them
   bool on_rim = false;  // some of them
   FollowedArms arms;    // as last followed
   Vec3
       drift;  // rad/s: what free rotation adds to the body's angular velocity until the middle of the sub-step
 };
+
+// Whose the constraint's two sides are.
+inline std::int32_t body_a_of(const RollingSides& rolling) {
+  return rolling.side > 0.0f ? rolling.other : rolling.body;
+}
+inline std::int32_t body_b_of(const RollingSides& rolling) {
+  return rolling.side > 0.0f ? rolling.body : rolling.other;
+}
 
 struct RollingContacts {
   std::span<RollingContact> contacts;
@@ -70,6 +81,6 @@ RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch
                                       float seconds, Arena& arena);
 
 // Into its arms: where the contact is in a sub-step that begins now, with its middle in `ahead` seconds.
-void follow_contact(const RigidWorld& w, RollingContact& rolling, const Manifold& manifold, float ahead);
+void follow_contact(const RigidWorld& w, RollingContact& rolling, float ahead);
 
 }  // namespace gyre

@@ -301,12 +301,15 @@ namespace {
 void mark_rolling_lanes(Solve& solve, std::uint32_t blocks, Arena& arena) {
   const std::uint32_t width = std::uint32_t(solve.kernels.width);
   solve.rolling_lanes = arena.make<std::uint16_t>(blocks);
+  solve.rolling_places = arena.make<std::uint32_t>(std::size_t(blocks) * width);
   for (std::uint32_t block = 0; block < blocks; ++block) {
     unsigned lanes = 0;
     for (std::uint32_t lane = 0; lane < width; ++lane) {
       const std::uint32_t constraint = solve.scratch.order[block * width + lane];
-      if (constraint != kNoPlace && solve.rolling.of_constraint[constraint] != kNotRolling)
-        lanes |= 1u << lane;
+      const std::uint32_t place =
+          constraint == kNoPlace ? kNotRolling : solve.rolling.of_constraint[constraint];
+      solve.rolling_places[block * width + lane] = place;
+      if (place != kNotRolling) lanes |= 1u << lane;
     }
     solve.rolling_lanes[block] = std::uint16_t(lanes);
   }
@@ -378,7 +381,8 @@ namespace {
 // Of a group whose joints are solved one after the other.
 void begin_ball_alone(Solve& solve, std::uint32_t joint, Arena& arena) {
   if (solve.is_net)
-    begin_joint(solve.w, solve.batch, joint, solve.warm_scale, {solve.joint_work, solve.joint_places}, arena);
+    begin_joint(solve.w, solve.batch, joint, solve.lane_start.warm_scale,
+                {solve.joint_work, solve.joint_places}, arena);
 }
 
 }  // namespace

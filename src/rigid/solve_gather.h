@@ -34,8 +34,8 @@ struct Solve {
   JointBodies joint_bodies{};
   std::span<NetJoint> net_joints{};      // the batch's joints
   std::span<std::uint8_t> ball_lanes{};  // 1 for those that may be solved side by side
-  bool is_net = false;      // all are known to be swept: those of ball_lanes are begun in their lanes
-  float warm_scale = 0.0f;  // of impulses, if so
+  bool is_net = false;     // all are known to be swept: those of ball_lanes are begun in their lanes
+  LaneStart lane_start{};  // of joints that are begun in lanes
   std::span<JointWork> joint_work{};
   std::span<JointPlaces> joint_places{};
   Linkages linkages{};
@@ -57,8 +57,8 @@ struct Solve {
   std::span<ContactStructure> structures{};
   StructureSolve structure_solve{};
   RollingContacts rolling{};
-  std::span<std::uint16_t>
-      rolling_lanes{};  // by block of contacts: bits of lanes that are still to be taken along
+  std::span<std::uint16_t> rolling_lanes{};   // by block of contacts: bits of those still to be taken along
+  std::span<std::uint32_t> rolling_places{};  // by lane: which of those that roll it is
   FieldSolve fields{};
   bool is_smooth = false;  // free bodies are moved by the schemes of rigid/smooth_schemes.h
   SmoothMotion smooth{};

@@ -125,8 +125,7 @@ void for_each_rolling(const Group& g, int begin, int end, Fn&& fn) {
   for (int block = int(g.first) + begin; block < int(g.first) + end; ++block) {
     for (unsigned lanes = s.rolling_lanes[std::size_t(block)]; lanes != 0; lanes &= lanes - 1) {
       const int lane = std::countr_zero(lanes);
-      const std::uint32_t constraint = s.scratch.order[std::size_t(block * s.kernels.width + lane)];
-      fn(s.rolling.contacts[s.rolling.of_constraint[constraint]], block, lane);
+      fn(s.rolling.contacts[s.rolling_places[std::size_t(block * s.kernels.width + lane)]], block, lane);
     }
   }
 }
@@ -152,10 +151,9 @@ void follow_contacts(const Group& g, int begin, int end) {
     if (block != present) follow_block();
     present = block;
     if (rolling.once) s.rolling_lanes[std::size_t(block)] &= std::uint16_t(~(1u << lane));
-    const ContactConstraint& constraint = s.scratch.constraints[rolling.constraint];
-    follow_contact(s.w, rolling, *constraint.manifold, 0.5f * (rolling.once ? s.contact_settings.step : s.h));
+    follow_contact(s.w, rolling, 0.5f * (rolling.once ? s.contact_settings.step : s.h));
     contacts[count] = &rolling;
-    lanes[count++] = {lane, &rolling.arms, inverse_of(constraint.body_a), inverse_of(constraint.body_b)};
+    lanes[count++] = {lane, &rolling.arms, inverse_of(body_a_of(rolling)), inverse_of(body_b_of(rolling))};
   });
   follow_block();
 }
@@ -252,7 +250,7 @@ void begin_balls_stage(void* context, int begin, int end, int) {
   // Lanes without a joint join nothing.
   if (int(g.count) % balls.kernels.width != 0) clear_balls(balls.kernels, balls.blocks, balls.end - 1);
   const Solve& s = *g.solve;
-  const float warm_scale = s.is_net ? s.warm_scale : 1.0f;
+  const float warm_scale = s.is_net ? s.lane_start.warm_scale : 1.0f;
   const auto turns = [&](std::int32_t body) {
     return body != kNoBody &&
            inertia_turns(s.w.bodies.masses[std::size_t(body)], s.w.bodies.flags[std::size_t(body)]);
@@ -368,11 +366,11 @@ void linkage_stage(void* context, int begin, int end, int worker) {
 // Of linkages side by side.
 void begin_bundles_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
-  begin_bundles(s.bundles, begin, end, s.linkage_solve);
+  begin_bundles(s.bundles, begin, end, s.w, s.lane_start);
 }
 void finish_bundles_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
-  finish_bundles(s.bundles, begin, end, s.linkage_solve);
+  finish_bundles(s.bundles, begin, end, s.w);
 }
 using BundleKernel = void (*LinkageKernels::*)(const LinkageBundle&, const LaneArrays&, const LaneSettings&);
 template <BundleKernel... kernels>

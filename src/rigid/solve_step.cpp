@@ -69,22 +69,22 @@ void place_resting(Solve& solve, Arena& arena) {
 
 // Those joints that are begun and finished in their lanes.
 std::span<const std::uint8_t> begun_in_lanes(const Solve& solve) {
-  if (!solve.is_net) return {};
-  return solve.ball_lanes;
+  return solve.is_net ? solve.ball_lanes : solve.linkages.in_lanes;
 }
 
-// Joints, and which of them are solved directly. Of a net that is known to be swept most need no work but a lane.
+// Joints, and which of them are solved directly. Most of those in linkages, and of a net that is known to be swept, need no work
+// but a lane.
 void begin_joints(Solve& solve, float warm_scale, Arena& arena, TaskSystem& tasks) {
   look_at_joints(solve, arena, tasks);
   DenseNets& nets = solve.scratch.dense_nets;
   solve.is_net = !solve.net_joints.empty() && nets.holds(solve.net_joints);
-  solve.warm_scale = warm_scale;
+  solve.lane_start.warm_scale = warm_scale;
+  solve.linkages = solve.is_net ? no_linkages(solve.net_joints.size(), arena)
+                                : find_linkages(solve.w, solve.batch, solve.places, solve.net_joints,
+                                                solve.lane_start, nets, arena);
   const JointWorks works = begin_joints(solve.w, solve.batch, begun_in_lanes(solve), warm_scale, arena);
   solve.joint_work = works.work;
   solve.joint_places = works.places;
-  solve.linkages = solve.is_net ? no_linkages(solve.net_joints.size(), arena)
-                                : find_linkages(solve.w, solve.batch, solve.places, solve.net_joints,
-                                                solve.joint_work, nets, arena);
 }
 
 void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale) {
@@ -107,7 +107,10 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
                          .give = kLinkageGive};
   solve.linkage_solve.settings.swept = false;
   solve.stop_rooms = find_stops(solve.linkages, solve.joint_work, std::size_t(tasks.worker_count()), arena);
-  solve.bundles = lay_out_bundles(solve.linkages, solve.kernels, solve.linkage_solve, arena);
+  const JointBodies& bodies = solve.joint_bodies;
+  solve.bundles =
+      lay_out_bundles(solve.linkages, solve.kernels, {bodies.motion, bodies.inertia, bodies.orientation},
+                      {solve.h, solve.joint_settings.softness.bias_rate, kLinkageGive, raise_inertia}, arena);
   gather_motion(solve, arena, tasks);
   const std::span<Group> room = arena.make<Group>(kMostGroups);
   std::span<Group> contacts;

@@ -118,34 +118,6 @@ void solve_point_rows(JointRecord& joint, const JointWork& work, JointPair& pair
   joint.linear_impulse += change;
 }
 
-// The axis of kinds whose record has all that acts there; details may add to it.
-JointAxisRecord axis_of_record(const JointRecord& joint, const JointDetail* detail, JointAxis index) {
-  JointAxisRecord axis;
-  if (detail != nullptr) axis = detail->axes[int(index)];
-  axis.motion = joint.has_limits ? AxisMotion::limited : AxisMotion::free;
-  axis.limits = joint.limits;
-  axis.has_motor_target = joint.has_motor_target;
-  axis.motor_velocity = joint.motor_velocity;
-  axis.motor_position = joint.motor_position;
-  axis.motor_force = joint.motor_force;
-  axis.motor_frequency = joint.motor_frequency;
-  axis.motor_damping = joint.motor_damping;
-  if (joint.kind == JointKind::distance) {
-    axis.motion = AxisMotion::limited;
-    axis.limits = {joint.min_length, joint.max_length};
-    axis.motor_force = 0.0f;
-    axis.stiffness = joint.is_spring ? joint.stiffness : 0.0f;
-    axis.damping = joint.is_spring ? joint.damping : 0.0f;
-    axis.rest_position = joint.rest_length;
-  }
-  axis.low_impulse = joint.low_impulse;
-  axis.high_impulse = joint.high_impulse;
-  axis.motor_impulse = joint.motor_impulse;
-  axis.spring_impulse = joint.spring_impulse;
-  axis.position = joint.position;
-  return axis;
-}
-
 bool keeps_axis_in_record(JointKind kind) {
   return kind == JointKind::hinge || kind == JointKind::slider || kind == JointKind::distance;
 }
@@ -238,6 +210,33 @@ JointAxis main_axis(JointKind kind) {
     case JointKind::wheel: return JointAxis::angular_z;
     default: return JointAxis::linear_x;
   }
+}
+
+JointAxisRecord axis_of_record(const JointRecord& joint, const JointDetail* detail, JointAxis index) {
+  JointAxisRecord axis;
+  if (detail != nullptr) axis = detail->axes[int(index)];
+  axis.motion = joint.has_limits ? AxisMotion::limited : AxisMotion::free;
+  axis.limits = joint.limits;
+  axis.has_motor_target = joint.has_motor_target;
+  axis.motor_velocity = joint.motor_velocity;
+  axis.motor_position = joint.motor_position;
+  axis.motor_force = joint.motor_force;
+  axis.motor_frequency = joint.motor_frequency;
+  axis.motor_damping = joint.motor_damping;
+  if (joint.kind == JointKind::distance) {
+    axis.motion = AxisMotion::limited;
+    axis.limits = {joint.min_length, joint.max_length};
+    axis.motor_force = 0.0f;
+    axis.stiffness = joint.is_spring ? joint.stiffness : 0.0f;
+    axis.damping = joint.is_spring ? joint.damping : 0.0f;
+    axis.rest_position = joint.rest_length;
+  }
+  axis.low_impulse = joint.low_impulse;
+  axis.high_impulse = joint.high_impulse;
+  axis.motor_impulse = joint.motor_impulse;
+  axis.spring_impulse = joint.spring_impulse;
+  axis.position = joint.position;
+  return axis;
 }
 
 bool has_rows(JointKind kind) {

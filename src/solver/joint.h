@@ -99,6 +99,8 @@ void finish_joint(JointRecord& joint, const JointWork& work);
 JointAxis main_axis(JointKind kind);
 // Whether the kind's equations are in JointWork::rows rather than blocks of a point and a turn.
 bool has_rows(JointKind kind);
+// The axis of kinds whose record has all that acts there (hinges, sliders, rods, ropes, springs); details may add to it.
+JointAxisRecord axis_of_record(const JointRecord& joint, const JointDetail* detail, JointAxis index);
 // How many rows of the joint are equations: 0 to 6.
 int count_equations(const JointRecord& joint, const JointDetail* detail);
 

@@ -87,15 +87,16 @@ struct JointDetail {
   bool path_closed = false;
   bool has_swing = false;
   PathOrientation path_orientation = PathOrientation::free;
+  // What is asked of most joints in each step lies together.
+  float friction = 0.0f;  // N m, against all turning: ball, cone
+  float swing_y = 0.0f;   // rad
+  float swing_z = 0.0f;
+  PoseDrive drive;
   JointAxisRecord axes[kJointAxisCount];
   float row_impulses[kJointAxisCount] = {};  // of the rows of kinds that have only these
-  PoseDrive drive;
   Vec3 drive_force_impulse;
   Vec3 drive_torque_impulse;
-  float friction = 0.0f;  // N m, against all turning: ball, cone
   Vec3 friction_impulse;
-  float swing_y = 0.0f;  // rad
-  float swing_z = 0.0f;
   float ratio = 1.0f;
   Quat reference_a;  // world_from_joint when the joint was added
   Quat reference_b;

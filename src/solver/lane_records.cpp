@@ -1,6 +1,6 @@
 #include "solver/lane_records.h"
 
-#include "solver/joint_blocks.h"
+#include "solver/joint_drive.h"
 
 #include <cstring>
 
@@ -10,9 +10,8 @@ namespace {
 
 constexpr std::size_t kTwist = offsetof(LaneJoint, twist) / sizeof(float);
 constexpr std::size_t kSwing = offsetof(LaneJoint, swing) / sizeof(float);
-// Floats of a lane that go in: that balls have, that all others have too, and of an axis.
+// Floats of a lane that balls have, and those of an axis that go in.
 constexpr std::size_t kBallFloats = offsetof(LaneJoint, local_frame_a) / sizeof(float);
-constexpr std::size_t kFrameFloats = kTwist;
 constexpr std::size_t kAxisFloats = offsetof(LaneAxis, low_gap) / sizeof(float);
 // Those that come out: the impulses, of an axis them and how far it is to the low stop.
 constexpr std::size_t kImpulses = offsetof(LaneJoint, linear_impulse) / sizeof(float);
@@ -27,11 +26,8 @@ class Lane {
   Lane(const LinkageBundle& bundle, int lane, std::uint32_t node)
       : first_(reinterpret_cast<float*>(bundle.joints + node * bundle.kernels->joint_bytes) + lane),
         width_(std::size_t(bundle.kernels->width)) {}
-  void write(const void* from, std::size_t begin, std::size_t count) const {
-    for (std::size_t i = 0; i < count; ++i)
-      std::memcpy(first_ + (begin + i) * width_, static_cast<const std::byte*>(from) + i * sizeof(float),
-                  sizeof(float));
-  }
+  float* at(std::size_t number) const { return first_ + number * width_; }
+  std::size_t width() const { return width_; }
   void read(void* to, std::size_t begin, std::size_t count) const {
     for (std::size_t i = 0; i < count; ++i)
       std::memcpy(static_cast<std::byte*>(to) + i * sizeof(float), first_ + (begin + i) * width_,
@@ -43,49 +39,75 @@ class Lane {
   std::size_t width_;
 };
 
-AxisWork* axis_at(const JointWork& work, JointAxis index) {
-  for (AxisWork& x : work.axes) {
-    if (x.index == index) return &x;
+// A lane in the order of its floats.
+class LaneWriter {
+ public:
+  LaneWriter(const Lane& lane, std::size_t begin) : to_(lane.at(begin)), width_(lane.width()) {}
+  LaneWriter& operator<<(float value) {
+    *to_ = value;
+    to_ += width_;
+    return *this;
   }
-  return nullptr;
+  LaneWriter& operator<<(Vec3 v) { return *this << v.x << v.y << v.z; }
+  LaneWriter& operator<<(Quat q) { return *this << q.x << q.y << q.z << q.w; }
+
+ private:
+  float* to_;
+  std::size_t width_;
+};
+
+// Whether anything acts on the axis, and if so whether that is no more than a hard stop.
+enum class Acts : std::uint8_t { nothing, stop, more };
+Acts what_acts(const JointAxisRecord& axis, const LaneStart& start) {
+  const bool is_limited = axis.motion == AxisMotion::limited;
+  if (start.limits_only ? !is_limited : !acts(axis)) return Acts::nothing;
+  if (!is_limited || axis.limit_frequency > 0.0f) return Acts::more;
+  const bool is_driven = axis.motor_force > 0.0f || axis.friction > 0.0f || has_spring(axis);
+  return is_driven && !start.limits_only ? Acts::more : Acts::stop;
 }
 
-void begin_axis(const Lane& lane, std::size_t at, const AxisWork& x) {
-  LaneAxis from;
-  from.low = x.axis.limits.low;
-  from.high = x.axis.limits.high;
-  from.low_impulse = x.axis.low_impulse;
-  from.high_impulse = x.axis.high_impulse;
-  from.total = x.axis.total;
-  lane.write(&from, at, kAxisFloats);
+void begin_stop(const Lane& lane, std::size_t at, const Limits& limits, float low_impulse, float high_impulse,
+                const LaneStart& start) {
+  const bool is_new = start.limits_only;
+  LaneWriter(lane, at) << limits.low << limits.high << (is_new ? 0.0f : start.warm_scale * low_impulse)
+                       << (is_new ? 0.0f : start.warm_scale * high_impulse) << 0.0f;
 }
-LaneAxis finish_axis(const Lane& lane, std::size_t at, AxisWork& x) {
+LaneAxis finish_stop(const Lane& lane, std::size_t at) {
   LaneAxis to;
   lane.read(&to.low_impulse, at + kAxisImpulses, kAxisFloats + 1 - kAxisImpulses);
-  x.axis.low_impulse = to.low_impulse;
-  x.axis.high_impulse = to.high_impulse;
-  x.axis.total = to.total;
+  return to;
+}
+LaneAxis finish_stop(const Lane& lane, std::size_t at, JointAxisRecord& axis) {
+  const LaneAxis to = finish_stop(lane, at);
+  axis.low_impulse = to.low_impulse;
+  axis.high_impulse = to.high_impulse;
+  axis.total = to.total;
   return to;
 }
 
 }  // namespace
 
-bool fits_lane(const JointRecord& joint, const JointWork& work, LaneNode& node) {
+bool fits_lane(const JointRecord& joint, const JointDetail* detail, const LaneStart& start, LaneNode& node) {
   if (joint.kind != JointKind::ball && joint.kind != JointKind::cone && joint.kind != JointKind::hinge)
     return false;
-  if (work.drive != nullptr || work.rows != nullptr) return false;
+  if (detail != nullptr && !start.limits_only && has_drive(*detail)) return false;
   node.kind = joint.kind;
   node.has_twist = node.has_swing = false;
-  for (const AxisWork& x : work.axes) {
-    const bool is_stop = x.axis.motion == AxisMotion::limited && !(x.axis.limit_frequency > 0.0f);
-    if (!is_stop || x.axis.motor_force > 0.0f || x.axis.friction > 0.0f || has_spring(x.axis)) return false;
-    if (x.index == JointAxis::angular_x && joint.kind != JointKind::ball) {
-      node.has_twist = true;
-    } else if (x.index == JointAxis::angular_y && joint.kind == JointKind::cone) {
-      node.has_swing = true;
-    } else {
-      return false;
-    }
+  if (joint.kind == JointKind::hinge) {
+    const Acts all = what_acts(axis_of_record(joint, detail, JointAxis::angular_x), start);
+    node.has_twist = all == Acts::stop;
+    return all != Acts::more;
+  }
+  if (detail == nullptr) return true;
+  for (int i = 0; i < kJointAxisCount; ++i) {
+    const JointAxisRecord& axis = detail->axes[i];
+    if (axis.motion == AxisMotion::locked) continue;
+    const Acts all = what_acts(axis, start);
+    if (all == Acts::nothing) continue;
+    bool& stop = JointAxis(i) == JointAxis::angular_x ? node.has_twist : node.has_swing;
+    const bool turns = JointAxis(i) == JointAxis::angular_x || JointAxis(i) == JointAxis::angular_y;
+    if (all == Acts::more || !turns || joint.kind != JointKind::cone) return false;
+    stop = true;
   }
   return true;
 }
@@ -103,28 +125,29 @@ void set_lane_body(const LinkageBundle& bundle, int lane, std::uint32_t body, st
 }
 
 void begin_lane(const LinkageBundle& bundle, int lane, std::uint32_t node, const JointRecord& joint,
-                const JointWork& work, const JointPlaces& places) {
+                const JointDetail* detail, Vec3 offset, const LaneStart& start) {
   const Lane to(bundle, lane, node);
-  const bool is_ball = joint.kind == JointKind::ball;
-  LaneJoint from;
-  from.local_a = joint.local_anchor_a;
-  from.local_b = joint.local_anchor_b;
-  from.offset = places.offset;
-  from.linear_impulse = joint.linear_impulse;
-  from.total_linear = joint.total_linear;
-  from.total_angular = joint.total_angular;
-  from.local_frame_a = joint.local_frame_a;
-  from.local_frame_b = joint.local_frame_b;
-  from.position = joint.position;
-  if (joint.kind == JointKind::hinge) from.angular_impulse = joint.angular_impulse;
-  if (const AxisWork* const x = axis_at(work, JointAxis::angular_x)) begin_axis(to, kTwist, *x);
-  if (const AxisWork* const x = axis_at(work, JointAxis::angular_y)) {
+  const LaneNode& shape = bundle.nodes[node];
+  const bool is_hinge = joint.kind == JointKind::hinge;
+  LaneWriter writer(to, 0);
+  writer << joint.local_anchor_a << joint.local_anchor_b << offset;
+  writer << start.warm_scale * joint.linear_impulse;
+  writer << (is_hinge ? start.warm_scale * joint.angular_impulse : Vec3{});
+  writer << Vec3{} << Vec3{};  // the sums
+  if (joint.kind == JointKind::ball) return;
+  writer << joint.local_frame_a << joint.local_frame_b << joint.position;
+  if (!shape.has_swing) {
+    writer << 0.0f << 0.0f;
+  } else {
     constexpr float kLeastSwing = 1.0e-3f;  // rad
-    begin_axis(to, kSwing, *x);
-    from.swing_grip_y = 1.0f / max(work.detail->swing_y, kLeastSwing);
-    from.swing_grip_z = 1.0f / max(work.detail->swing_z, kLeastSwing);
+    const JointAxisRecord& swing = detail->axes[int(JointAxis::angular_y)];
+    writer << 1.0f / max(detail->swing_y, kLeastSwing) << 1.0f / max(detail->swing_z, kLeastSwing);
+    begin_stop(to, kSwing, swing.limits, swing.low_impulse, swing.high_impulse, start);
   }
-  to.write(&from, 0, is_ball ? kBallFloats : kFrameFloats);
+  if (!shape.has_twist) return;
+  if (is_hinge) return begin_stop(to, kTwist, joint.limits, joint.low_impulse, joint.high_impulse, start);
+  const JointAxisRecord& twist = detail->axes[int(JointAxis::angular_x)];
+  begin_stop(to, kTwist, twist.limits, twist.low_impulse, twist.high_impulse, start);
 }
 
 void forget_lane_impulses(const LinkageBundle& bundle) {
@@ -163,8 +186,9 @@ float find_lane_error(const LinkageBundle& bundle, int lane) {
 }
 
 void finish_lane(const LinkageBundle& bundle, int lane, std::uint32_t node, JointRecord& joint,
-                 const JointWork& work) {
+                 JointDetail* detail) {
   const Lane from(bundle, lane, node);
+  const LaneNode& shape = bundle.nodes[node];
   LaneJoint to;
   from.read(&to.linear_impulse, kImpulses, kBallFloats - kImpulses);
   joint.linear_impulse = to.linear_impulse;
@@ -174,16 +198,25 @@ void finish_lane(const LinkageBundle& bundle, int lane, std::uint32_t node, Join
   if (joint.kind == JointKind::ball) return;
   from.read(&to.position, offsetof(LaneJoint, position) / sizeof(float), 1);
   joint.position = to.position;
-  if (joint.kind == JointKind::cone && work.detail != nullptr) work.detail->axes[3].position = to.position;
-  if (AxisWork* const x = axis_at(work, JointAxis::angular_x)) {
-    finish_axis(from, kTwist, *x);
-    x->axis.position = to.position;
+  if (joint.kind == JointKind::hinge) {
+    if (!shape.has_twist) return;
+    const LaneAxis twist = finish_stop(from, kTwist);
+    joint.low_impulse = twist.low_impulse;
+    joint.high_impulse = twist.high_impulse;
+    if (detail == nullptr) return;
+    JointAxisRecord& axis = detail->axes[int(JointAxis::angular_x)];
+    axis = axis_of_record(joint, detail, JointAxis::angular_x);
+    axis.total = twist.total;
+    return;
   }
-  if (AxisWork* const x = axis_at(work, JointAxis::angular_y)) {
-    const LaneAxis swing = finish_axis(from, kSwing, *x);
-    x->axis.limits = {};
-    x->axis.position = -swing.low_gap;
-  }
+  if (detail == nullptr) return;
+  JointAxisRecord &twist = detail->axes[int(JointAxis::angular_x)],
+                  &swing = detail->axes[int(JointAxis::angular_y)];
+  twist.position = to.position;
+  if (shape.has_twist) finish_stop(from, kTwist, twist);
+  if (!shape.has_swing) return;
+  swing.position = -finish_stop(from, kSwing, swing).low_gap;
+  swing.limits = {};
 }
 
 }  // namespace gyre

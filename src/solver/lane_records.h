@@ -7,20 +7,28 @@
 
 namespace gyre {
 
-// Whether it is a ball, cone or hinge joint on which nothing acts but hard stops. Says which these are in `node`.
-bool fits_lane(const JointRecord& joint, const JointWork& work, LaneNode& node);
+// How joints go in. `limits_only`: as if each were new and nothing acted on it but limits.
+struct LaneStart {
+  float warm_scale = 1.0f;  // of impulses
+  bool limits_only = false;
+};
+
+// Whether it is a ball, cone or hinge joint on which nothing acts but hard stops. Says which these are in `node`. `detail` here and
+// below: null if the joint has none.
+bool fits_lane(const JointRecord& joint, const JointDetail* detail, const LaneStart& start, LaneNode& node);
 
 // Clears all lanes of a bundle: those that are never set have no bodies.
 void clear_lanes(const LinkageBundle& bundle);
 void set_lane_body(const LinkageBundle& bundle, int lane, std::uint32_t body, std::int32_t record);
+// `offset`: as in JointPlaces.
 void begin_lane(const LinkageBundle& bundle, int lane, std::uint32_t node, const JointRecord& joint,
-                const JointWork& work, const JointPlaces& places);
+                const JointDetail* detail, Vec3 offset, const LaneStart& start);
 // As if all joints were new: none bears an impulse.
 void forget_lane_impulses(const LinkageBundle& bundle);
 // Of joints that have just been placed: m or rad, the farthest that a joint or a stop of the lane is off.
 float find_lane_error(const LinkageBundle& bundle, int lane);
-// Impulses, sums and positions, back into the record, or into the work where finish_joint() looks for them.
+// Impulses, sums and positions, back into the joint.
 void finish_lane(const LinkageBundle& bundle, int lane, std::uint32_t node, JointRecord& joint,
-                 const JointWork& work);
+                 JointDetail* detail);
 
 }  // namespace gyre

@@ -66,8 +66,6 @@ struct Linkage {
   std::span<LinkageBody> bodies;
   std::span<const LinkageCoupling> couplings;
   BlockPlan plan;
-  std::int32_t shape =
-      -1;  // of the linkages that are solved side by side (solver/linkage_lanes.h): which it is like
   std::span<double> values;  // of the matrix, then of its factors
   std::span<double> room;
   std::span<double> vector;

@@ -95,7 +95,7 @@ struct Crowd {
     places[i].offset =
         rotate(a, joint.local_anchor_a) - rotate(b, joint.local_anchor_b) - moved + random.vector(0.002f);
     if (!member.stops) {
-      begin_joint(joint, nullptr, {}, work[i], 1.0f, arena);
+      begin_joint(joint, detail_of(i), {}, work[i], 1.0f, arena);
       return;
     }
     joint.has_limits = true;
@@ -110,7 +110,11 @@ struct Crowd {
       detail.axes[int(axis)].limits = joint.limits;
       detail.axes[int(axis)].high_impulse = 0.002f;
     }
-    begin_joint(joint, joint.kind == JointKind::hinge ? nullptr : &detail, {}, work[i], 1.0f, arena);
+    begin_joint(joint, detail_of(i), {}, work[i], 1.0f, arena);
+  }
+  JointDetail* detail_of(std::size_t i) {
+    const Member& member = kMembers[i % kJoints];
+    return member.stops && member.kind != JointKind::hinge ? &details[i] : nullptr;
   }
 
   LinkageSolve solve() {
@@ -185,7 +189,7 @@ void solve_one_by_one(Crowd& crowd, const Shape& shape) {
       node.side_b = kMembers[i].b;
       node.count = int(shape.nodes[std::size_t(i)].rows);
     }
-    const Linkage linkage{nodes, bodies, couplings, shape.plan, -1, values, room, vector, true};
+    const Linkage linkage{nodes, bodies, couplings, shape.plan, values, room, vector, true};
     for (int part = 0; part < 2; ++part) {
       place_linkage(linkage, solve);
       warm_linkage(linkage, solve);
@@ -203,7 +207,7 @@ void solve_side_by_side(Crowd& crowd, Shape& shape, int width) {
   const LaneArrays arrays{crowd.motion.data(), crowd.inertia.data(), crowd.orientation.data()};
   const LaneSettings settings{kSubstep, kSettings.softness.bias_rate, solve.give, raise_inertia};
   for (std::size_t i = 0; i < kJoints; ++i) {
-    ASSERT_TRUE(fits_lane(crowd.records[i], crowd.work[i], shape.nodes[i]));
+    ASSERT_TRUE(fits_lane(crowd.records[i], crowd.detail_of(i), {}, shape.nodes[i]));
   }
   Arena arena;
   const std::size_t lanes = std::size_t(kernels.width);
@@ -240,7 +244,7 @@ void solve_side_by_side(Crowd& crowd, Shape& shape, int width) {
       }
     };
     for_each_joint([&](int lane, std::uint32_t n, std::size_t i) {
-      begin_lane(bundle, lane, n, crowd.records[i], crowd.work[i], crowd.places[i]);
+      begin_lane(bundle, lane, n, crowd.records[i], crowd.detail_of(i), crowd.places[i].offset, {});
       set_lane_body(bundle, lane, shape.nodes[n].a, crowd.records[i].body_a);
       set_lane_body(bundle, lane, shape.nodes[n].b, crowd.records[i].body_b);
     });
@@ -252,10 +256,9 @@ void solve_side_by_side(Crowd& crowd, Shape& shape, int width) {
     }
     kernels.relax(bundle, arrays, settings);
     for_each_joint([&](int lane, std::uint32_t n, std::size_t i) {
-      finish_lane(bundle, lane, n, crowd.records[i], crowd.work[i]);
+      finish_lane(bundle, lane, n, crowd.records[i], crowd.detail_of(i));
     });
   }
-  for (std::size_t i = 0; i < crowd.records.size(); ++i) finish_joint(crowd.records[i], crowd.work[i]);
 }
 
 double apart(Vec3 a, Vec3 b) { return double(length(a - b)); }
