@@ -68,7 +68,7 @@ struct Chosen {
 int main(int count, char** arguments) {
   if (count != 5) {
     std::fprintf(stderr,
-                 "usage: %s SCENE STEPS "
+                 "usage: %s SCENE WARM_UP STEPS "
                  "plain|events|persisting|poses|counts|timing|commands|track|recording|rollback\n",
                  arguments[0]);
     return 2;

@@ -118,6 +118,7 @@ bool Simulation::open_outputs() {
     what.poses = options_.record_as != "commands";
     what.frame_interval = options_.record_every;
     what.pose_accuracy = options_.record_accuracy;
+    what.hash_interval = options_.record_hash_every;
     recorder_ = std::make_unique<Recorder>(runner_.world(), sink_, what);
     label_bodies(*recorder_, runner_);
   }

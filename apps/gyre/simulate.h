@@ -28,6 +28,7 @@ struct SimulateOptions {
   std::string record_as = "all";  // or poses, commands
   std::uint32_t record_every = 1;
   float record_accuracy = 1.0e-4f;  // m
+  std::uint32_t record_hash_every = 128;
   std::uint64_t trace_every = 1;
   std::vector<std::string> explain;  // names of bodies
   bool times = false, hash = false, json = false, quiet = false;

@@ -121,6 +121,12 @@ void add_output_options(CLI::App& command, SimulateOptions& options) {
       ->type_name("M")
       ->check(number_between(1e-12, false, 1e5, "a number from 1e-12 to 1e5"))
       ->needs(record);
+  command
+      .add_option("--record-hash-every", options.record_hash_every,
+                  "A hash of the whole state after every Nth step, 128 if not given, and the last; one of what moves after the others")
+      ->type_name("N")
+      ->check(number_between(1, false, 1e9, "an integer from 1 to 1e9"))
+      ->needs(record);
   command.add_option("--trace", options.trace, "Write a table of the motion of every body")
       ->type_name("FILE.csv");
   command.add_option("--trace-every", options.trace_every, "Trace only every Nth step")

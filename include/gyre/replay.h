@@ -52,10 +52,13 @@ class ByteSink {
 
 // What a recording holds. Both parts may stand in one file; at least one must.
 struct RecordOptions {
-  bool commands = true;  // a snapshot, every command, a state hash after each step: for Replay, which plays it to the bit
+  bool commands = true;  // a snapshot, every command, a hash after each step: for Replay, which plays it to the bit
   bool poses = true;     // a pose track: for PoseTrack, which looks at it without simulating, in any later version
   std::uint32_t frame_interval = 1;  // steps between two frames of the track, from 1; the last step always has one
   float pose_accuracy = 1.0e-4f;     // m, from 1e-12 to 1e5: the most by which a coordinate of the track may be off
+  // Steps between two hashes of the whole state, from 1; the last step always has one. The hashes of the other steps are of what
+  // moves: far cheaper, and a replay that moves otherwise is told in the very step.
+  std::uint32_t hash_interval = 128;
 };
 
 // Records `world` until destroyed or finished, beginning with its present state. The world must still be there then. A second
@@ -101,7 +104,8 @@ class Replay {
   std::uint64_t step_count() const;   // whole steps in the recording
   std::uint64_t position() const;     // steps played
   bool truncated() const;             // the file ended without its closing chunk
-  // Plays one step; false at the end. `matches` tells whether the hash is the recorded one.
+  // Plays one step; false at the end. `matches` tells whether the hash is the recorded one: of the whole state, or of what moves
+  // (RecordOptions::hash_interval).
   bool step(bool* matches = nullptr);
   // Goes to the state after `step` steps, forward or back (by keyframes kept while playing).
   Error seek(std::uint64_t step);
@@ -116,8 +120,9 @@ class Replay {
 // `seconds`, hashing every column after every stage; the first difference, or step = UINT64_MAX if there is none.
 Result<Difference> first_difference(std::span<const std::byte> snapshot, const WorldDef& a, const WorldDef& b, int steps,
                                     float seconds);
-// The same for a recording: replays it and compares with the recorded hashes; when a step differs, it is played again
-// beside a single-threaded, width-1 world to name stage, column and row (no column if these two agree with each other).
+// The same for a recording: replays it and compares with the recorded hashes; when a step differs, the steps since the last hash
+// of the whole state are played again beside a single-threaded, width-1 world to name step, stage, column and row (no column if
+// these two agree with each other; `step` is then the first whose hash differs).
 Result<Difference> first_difference(std::span<const std::byte> recording, const WorldDef& def);
 
 }  // namespace gyre

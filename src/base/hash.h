@@ -50,12 +50,15 @@ struct Lanes {
   constexpr explicit Lanes(std::uint64_t seed)
       : a(seed + kPrime1 + kPrime2), b(seed + kPrime2), c(seed), d(seed - kPrime1) {}
 
+  constexpr void eat(std::uint64_t w, std::uint64_t x, std::uint64_t y, std::uint64_t z) {
+    a = round(a, w);
+    b = round(b, x);
+    c = round(c, y);
+    d = round(d, z);
+  }
   template <class Byte>
   constexpr void eat(const Byte* block) {
-    a = round(a, read_64(block));
-    b = round(b, read_64(block + 8));
-    c = round(c, read_64(block + 16));
-    d = round(d, read_64(block + 24));
+    eat(read_64(block), read_64(block + 8), read_64(block + 16), read_64(block + 24));
   }
 
   constexpr std::uint64_t merge() const {
@@ -137,7 +140,9 @@ class Hasher {
       p += missing;
       left -= missing;
     }
-    for (; left >= 32; left -= 32, p += 32) lanes_.eat(p);
+    hash_detail::Lanes lanes = lanes_;  // in registers: for all that compilers know, the bytes might be those of `lanes_`
+    for (; left >= 32; left -= 32, p += 32) lanes.eat(p);
+    lanes_ = lanes;
     if (left != 0) std::memcpy(buffer_, p, left);
     waiting_ = left;
   }

@@ -5,10 +5,13 @@
 // The reader is for bytes from outside: past their end it gives zeros and is failed from then on.
 #pragma once
 
+#include "io/bytes.h"
+
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace gyre {
@@ -26,16 +29,17 @@ class BitWriter {
       put(value, count);
     }
   }
+  // How many bits there are.
+  std::size_t size() const { return 8 * used_ + std::size_t(filled_); }
   // Fills the last byte with zeros and gives all bytes; the writer is empty again.
   std::vector<std::byte> take() {
-    while (filled_ > 0) {
-      bytes_.push_back(std::byte(word_ & 0xff));
-      word_ >>= 8;
-      filled_ -= 8;
-    }
+    const std::size_t size = used_ + (std::size_t(filled_) + 7) / 8;
+    spill();
+    bytes_.resize(size);
     word_ = 0;
     filled_ = 0;
-    return std::move(bytes_);
+    used_ = 0;
+    return std::exchange(bytes_, {});
   }
   bool failed() const { return false; }
 
@@ -43,15 +47,23 @@ class BitWriter {
   void put(std::uint64_t value, int count) {
     word_ |= value << filled_;
     filled_ += count;
-    for (; filled_ >= 8; filled_ -= 8) {
-      bytes_.push_back(std::byte(word_ & 0xff));
-      word_ >>= 8;
-    }
+    if (filled_ < 32) return;
+    spill();
+    used_ += 4;
+    word_ >>= 32;
+    filled_ -= 32;
+  }
+  // Four bytes of the word to where the next ones belong.
+  void spill() {
+    constexpr std::size_t kLeastRoom = 256;
+    if (used_ + 4 > bytes_.size()) bytes_.resize(2 * used_ + kLeastRoom);
+    store_little(bytes_.data() + used_, std::uint32_t(word_));
   }
 
-  std::vector<std::byte> bytes_;
+  std::vector<std::byte> bytes_;  // and room for more
+  std::size_t used_ = 0;
   std::uint64_t word_ = 0;
-  int filled_ = 0;  // bits of `word_` in use, fewer than 8 between calls
+  int filled_ = 0;  // bits of `word_` in use, fewer than 32 between calls
 };
 
 class BitReader {

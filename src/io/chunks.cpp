@@ -3,6 +3,7 @@
 
 #include "base/hash.h"
 #include "io/command_codec.h"
+#include "io/motion_hash.h"
 #include "io/snapshot.h"
 
 #include <cstring>
@@ -27,13 +28,16 @@ std::uint64_t checksum_of(const std::byte* chunk, std::size_t payload_bytes) {
 
 }  // namespace
 
-std::uint64_t recording_layout() { return mix_bits(state_layout() + kCommandLayout); }
+std::uint64_t recording_layout(bool motion_hashes) {
+  const std::uint64_t layout = mix_bits(state_layout() + kCommandLayout);
+  return motion_hashes ? mix_bits(layout + kMotionHashLayout) : layout;
+}
 
-void write_recording_header(ByteWriter& out) {
+void write_recording_header(ByteWriter& out, std::uint64_t layout) {
   out.put_bytes(std::as_bytes(std::span<const char>(kMagic, sizeof kMagic - 1)));
   out.put(kRecordingVersion);
   out.put(std::uint32_t(0));
-  out.put(recording_layout());
+  out.put(layout);
 }
 
 void write_chunk(ByteWriter& out, ChunkKind kind, std::uint32_t number, std::span<const std::byte> payload) {

@@ -5,7 +5,7 @@
 //   chunk: kind (u32), number of the chunk (u32), length (u64), checksum of all that and the payload (u64), payload
 //
 // To be played, a recording begins with a snapshot. Then, for each step: geometry that is new, commands of which the last is
-// the step itself, and the hash of the state after it. Another snapshot may stand where the world was put back to one. To be
+// the step itself, and a hash after it: of the state, or in most steps of what moves. Another snapshot may stand where the world was put back to one. To be
 // looked at, it has a track beside or instead of that (track_format.h), whose chunks have kinds from 256 on. An end chunk
 // closes the file. docs/recording.md has it byte by byte.
 #pragma once
@@ -18,8 +18,9 @@ namespace gyre {
 
 constexpr std::uint32_t kRecordingVersion = 1;
 
-// Of state and commands together: only builds with the same one play each other's recordings.
-std::uint64_t recording_layout();
+// Of state and commands together, and of the hash of motions where a recording has any: only builds with the same ones play
+// each other's recordings.
+std::uint64_t recording_layout(bool motion_hashes);
 
 enum class ChunkKind : std::uint32_t {
   snapshot = 1,
@@ -35,6 +36,8 @@ enum class ChunkKind : std::uint32_t {
   track_frame = 260,
   track_label = 261,
   track_note = 262,
+
+  motion_hash = 263,  // step count of the world (u64), hash of what moves (u64); instead of a step hash
 };
 
 // Kinds from here on are passed over by who does not know them: a later version may add some.
@@ -46,7 +49,7 @@ struct Chunk {
   std::span<const std::byte> payload;
 };
 
-void write_recording_header(ByteWriter& out);
+void write_recording_header(ByteWriter& out, std::uint64_t layout);
 // Appends a whole chunk.
 void write_chunk(ByteWriter& out, ChunkKind kind, std::uint32_t number, std::span<const std::byte> payload);
 

@@ -150,15 +150,19 @@ Difference no_difference() {
   return none;
 }
 
-// A step of a recording whose hash differed, played beside the simplest world there is.
-Difference explain_step(const Recording& recording, std::uint64_t position, WorldState& suspect,
-                        WorldState& plain) {
+// The steps from `first` to `last`, whose hash differed, played beside the simplest world there is. The hashes of the others may have
+// been of what moves only, so what differed may have begun with any of them.
+Difference explain_steps(const Recording& recording, std::uint64_t first, std::uint64_t last,
+                         WorldState& suspect, WorldState& plain) {
   Difference found;
-  found.step = position;
-  const RecordedStep& step = recording.steps[std::size_t(position)];
-  const float seconds = play_commands(recording, step, suspect);
-  play_commands(recording, step, plain);
-  if (!step_and_compare(suspect, plain, seconds, found)) copy_name(found.stage, kOnlyRecorded);
+  for (found.step = first;; ++found.step) {
+    const RecordedStep& step = recording.steps[std::size_t(found.step)];
+    const float seconds = play_commands(recording, step, suspect);
+    play_commands(recording, step, plain);
+    if (step_and_compare(suspect, plain, seconds, found)) return found;
+    if (found.step == last) break;
+  }
+  copy_name(found.stage, kOnlyRecorded);
   return found;
 }
 
@@ -204,17 +208,23 @@ Result<Difference> first_difference(std::span<const std::byte> recording, const 
   if (!suspect) return suspect.error();
   Result<World> plain = make_recorded_world(*opened, plain_def);
   if (!plain) return plain.error();
-  KeptState before;
+  KeptState before;  // the last state that is known to be the recorded one
+  std::uint64_t first = 0;
+  before.keep(suspect->state());
   for (std::uint64_t i = 0; i < opened->steps.size(); ++i) {
     WorldState& state = suspect->state();
-    before.keep(state);
     const RecordedStep& step = opened->steps[std::size_t(i)];
     const float seconds = play_commands(*opened, step, state);
     submit(state, Step{seconds});
-    if (hash_state(state) == step.hash) continue;
+    if (has_recorded_hash(step, state)) {
+      if (!step.is_whole) continue;
+      before.keep(state);
+      first = i + 1;
+      continue;
+    }
     before.put_back(state);
     before.put_back(plain->state());
-    return explain_step(*opened, i, state, plain->state());
+    return explain_steps(*opened, first, i, state, plain->state());
   }
   return no_difference();
 }

@@ -10,7 +10,12 @@ namespace {
 // 2^bits, exactly.
 double power_of_two(int bits) { return __builtin_bit_cast(double, std::uint64_t(1023 + bits) << 52); }
 
-std::int64_t nearest(double value) { return std::int64_t(std::floor(value + 0.5)); }
+// The floor of value + 0.5. Not by std::floor, which is a call where processors need not have it.
+std::int64_t nearest(double value) {
+  const double above = value + 0.5;
+  const auto whole = std::int64_t(above);
+  return whole - (double(whole) > above ? 1 : 0);
+}
 
 std::int64_t magnitude(std::int64_t value) { return value < 0 ? -value : value; }
 

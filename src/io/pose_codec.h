@@ -66,38 +66,42 @@ void code_difference(Bits& bits, std::int64_t& difference, std::int64_t& size) {
   constexpr int kMostBits = 57;
   const bool first = size < 0;
   // The fewest low bits k with 1.5 * 2^k >= size / 16.
-  int low_bits = kFirstLowBits;
-  if (!first) {
-    low_bits = size > 24 ? int(std::bit_width(std::uint64_t(size - 1) / 12)) - 1 : 0;
-    if ((std::int64_t(12) << low_bits) < size) ++low_bits;
-  }
-  std::uint64_t folded = Bits::kReads ? 0 : fold_sign(difference);
-  std::uint64_t high = folded >> low_bits;
-  for (std::uint64_t ones = 0;; ++ones) {
-    std::uint64_t more = ones < high;
-    if (ones == kMostHigh) {
-      if constexpr (Bits::kReads) high = kMostHigh;
-      break;
-    }
-    bits.code_bits(more, 1);
-    if constexpr (Bits::kReads) high = more ? ones + 1 : ones;
-    if (!more) break;
-  }
-  if (high >= kMostHigh) {
-    std::uint64_t width = Bits::kReads ? 0 : std::uint64_t(std::bit_width(folded));
-    bits.code_bits(width, 6);
-    if constexpr (Bits::kReads) {
-      if (width > kMostBits) bits.fail(), width = 0;
-    }
-    bits.code_bits(folded, int(width));
-  } else {
-    std::uint64_t low = folded & ((std::uint64_t(1) << low_bits) - 1);
-    bits.code_bits(low, low_bits);
-    if constexpr (Bits::kReads) folded = high << low_bits | low;
-  }
+  const int low_bits = first ? kFirstLowBits : int(std::bit_width(std::uint64_t((size - 1) / 12)));
   if constexpr (Bits::kReads) {
+    std::uint64_t folded = 0, high = 0, more = 1;
+    while (high < kMostHigh) {
+      bits.code_bits(more, 1);
+      if (!more) break;
+      ++high;
+    }
+    if (high >= kMostHigh) {
+      std::uint64_t width = 0;
+      bits.code_bits(width, 6);
+      if (width > kMostBits) bits.fail(), width = 0;
+      bits.code_bits(folded, int(width));
+    } else {
+      bits.code_bits(folded, low_bits);
+      folded |= high << low_bits;
+    }
     if (bits.failed() || folded >> kMostBits != 0) bits.fail(), folded = 0;
     difference = unfold_sign(folded);
+  } else {
+    const std::uint64_t folded = fold_sign(difference), high = folded >> low_bits;
+    if (high < kMostHigh) {
+      constexpr int kMostAtOnce = 64 - int(kMostHigh);
+      const std::uint64_t ones = (std::uint64_t(1) << high) - 1, low = folded & ((std::uint64_t(1) << low_bits) - 1);
+      const int unary = int(high) + 1;
+      if (low_bits <= kMostAtOnce) {
+        bits.code_bits(low << unary | ones, unary + low_bits);
+      } else {
+        bits.code_bits(ones, unary);
+        bits.code_bits(low, low_bits);
+      }
+    } else {
+      bits.code_bits((std::uint64_t(1) << kMostHigh) - 1, int(kMostHigh));
+      bits.code_bits(std::uint64_t(std::bit_width(folded)), 6);
+      bits.code_bits(folded, int(std::bit_width(folded)));
+    }
   }
   const std::int64_t newest = 16 * (difference < 0 ? -difference : difference);
   size = first ? kSecondSize : size + ((newest - size + 1) >> 1);

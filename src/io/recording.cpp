@@ -1,6 +1,7 @@
 // The recorder: sees every command at the world's one door, and writes chunks (chunks.h).
 #include "io/chunks.h"
 #include "io/command_codec.h"
+#include "io/motion_hash.h"
 #include "io/snapshot.h"
 #include "io/track_writer.h"
 
@@ -14,7 +15,7 @@ namespace {
 
 bool can_record(const RecordOptions& options) {
   return (options.commands || options.poses) && options.frame_interval > 0 &&
-         options.pose_accuracy >= 1.0e-12f && options.pose_accuracy <= 1.0e5f;
+         options.hash_interval > 0 && options.pose_accuracy >= 1.0e-12f && options.pose_accuracy <= 1.0e5f;
 }
 
 // Whether bodies that exist may look different afterwards.
@@ -33,6 +34,7 @@ struct Recorder::Log final : CommandLog {
       : state(&recorded), sink(to), options(wanted) {}
 
   void on_command(const Command& command) override {
+    whole_hash_due = false;
     if (track && changes_models(command)) track->models_changed();
     if (!options.commands) return;
     for_each_shape(command, [&](const AnyShape& shape) {
@@ -47,22 +49,34 @@ struct Recorder::Log final : CommandLog {
   }
 
   void on_step_done(WorldState& done) override {
-    if (options.commands) {
-      ByteWriter payload;
-      payload.put(done.step_count);
-      payload.put(hash_state(done));
-      emit(ChunkKind::step_hash, payload.view());
-    }
     ++steps;
+    if (options.commands) hash(done);
     frame_due = true;
     if (steps % options.frame_interval == 0) frame();
   }
 
   void on_restored(WorldState&) override {
+    whole_hash_due = false;
     if (track) track->jumped();
     if (!options.commands) return;
     flush();
     snapshot();
+  }
+
+  void hash(const WorldState& done) {
+    whole_hash_due = steps % options.hash_interval != 0;
+    if (whole_hash_due) {
+      emit_hash(ChunkKind::motion_hash, hash_motion(done));
+    } else {
+      emit_hash(ChunkKind::step_hash, hash_state(done));
+    }
+  }
+
+  void emit_hash(ChunkKind kind, std::uint64_t hash) {
+    ByteWriter payload;
+    payload.put(state->step_count);
+    payload.put(hash);
+    emit(kind, payload.view());
   }
 
   // The state as a frame of the track.
@@ -75,7 +89,7 @@ struct Recorder::Log final : CommandLog {
 
   void begin() {
     ByteWriter header;
-    write_recording_header(header);
+    write_recording_header(header, recording_layout(options.commands && options.hash_interval > 1));
     write(header.view());
     if (options.commands) snapshot();
     if (!options.poses) return;
@@ -122,6 +136,7 @@ struct Recorder::Log final : CommandLog {
   std::uint32_t chunks = 0;
   std::uint64_t steps = 0;
   bool frame_due = false;  // a step was done since the last frame
+  bool whole_hash_due = false;  // the state is still that after a step of which only what moves was hashed
   bool failed = false;
 };
 
@@ -158,6 +173,7 @@ bool Recorder::finish() {
   Log& log = *log_;
   if (log.state == nullptr) return !log.failed;
   log.flush();
+  if (log.whole_hash_due) log.emit_hash(ChunkKind::step_hash, hash_state(*log.state));
   if (log.frame_due) log.frame();
   ByteWriter payload;
   payload.put(log.steps);

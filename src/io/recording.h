@@ -14,7 +14,8 @@ namespace gyre {
 struct RecordedStep {
   std::size_t first_chunk = 0;  // into Recording::chunks
   std::size_t chunk_count = 0;
-  std::uint64_t hash = 0;  // of the state after it
+  std::uint64_t hash = 0;  // of the state after it, or of what moves
+  bool is_whole = false;   // of the state
 };
 
 struct Recording {
@@ -36,6 +37,9 @@ Result<Recording> open_recording(std::vector<std::byte> bytes);
 
 // A world in the recording's first state.
 Result<World> make_recorded_world(const Recording& recording, const WorldDef& def);
+
+// Whether the state right after a step is the recorded one, as far as the step's hash tells.
+bool has_recorded_hash(const RecordedStep& step, const WorldState& state);
 
 // Plays the commands of a step but not the step itself, whose length it returns.
 float play_commands(const Recording& recording, const RecordedStep& step, WorldState& state);

@@ -1,6 +1,8 @@
 // Opening a recording. See recording.h.
 #include "io/recording.h"
 
+#include "io/motion_hash.h"
+
 namespace gyre {
 
 namespace {
@@ -26,7 +28,6 @@ class Opener {
   // False ends the reading: what came before can be played.
   bool take(const Chunk& chunk) {
     if (recording_.closed) return false;
-    if (is_optional(chunk.kind)) return true;
     switch (chunk.kind) {
       case ChunkKind::snapshot:
         return take_snapshot(chunk);
@@ -35,12 +36,14 @@ class Opener {
       case ChunkKind::commands:
         return take_commands(chunk);
       case ChunkKind::step_hash:
-        return take_hash(chunk);
+        return take_hash(chunk, true);
+      case ChunkKind::motion_hash:
+        return take_hash(chunk, false);
       case ChunkKind::end:
         recording_.closed = true;
         return true;
       default:
-        return false;
+        return is_optional(chunk.kind);
     }
   }
 
@@ -70,15 +73,26 @@ class Opener {
     });
     return whole && in_order && keep(chunk);
   }
-  bool take_hash(const Chunk& chunk) {
+  bool take_hash(const Chunk& chunk, bool is_whole) {
     ByteReader in(chunk.payload);
     in.get<std::uint64_t>();
     const auto hash = in.get<std::uint64_t>();
-    if (!in.finished() || !step_seen_) return false;
-    recording_.steps.push_back({first_chunk_, recording_.chunks.size() - first_chunk_, hash});
+    if (!in.finished()) return false;
+    if (is_whole && follows_motion_hash()) {
+      recording_.steps.back().hash = hash;
+      recording_.steps.back().is_whole = true;
+      return true;
+    }
+    if (!step_seen_) return false;
+    recording_.steps.push_back({first_chunk_, recording_.chunks.size() - first_chunk_, hash, is_whole});
     first_chunk_ = recording_.chunks.size();
     step_seen_ = false;
     return true;
+  }
+  // With nothing between: the last step of a recording has both.
+  bool follows_motion_hash() const {
+    return !recording_.steps.empty() && !recording_.steps.back().is_whole &&
+           first_chunk_ == recording_.chunks.size();
   }
   bool keep(const Chunk& chunk) {
     if (recording_.first_snapshot.empty()) return false;
@@ -99,7 +113,7 @@ Result<Recording> open_recording(std::vector<std::byte> bytes) {
   ChunkReader reader(recording.bytes);
   const Error e = reader.read_header();
   if (e.code != ErrorCode::none) return e;
-  if (reader.layout() != recording_layout()) {
+  if (reader.layout() != recording_layout(false) && reader.layout() != recording_layout(true)) {
     return make_error(
         ErrorCode::unsupported,
         "recording: it was made by a version whose worlds have another state, so it cannot be played; its "
@@ -127,6 +141,10 @@ Result<World> make_recorded_world(const Recording& recording, const WorldDef& de
   if (e.code != ErrorCode::none) return e;
   adopt_columns(*state, std::move(columns));
   return World(std::move(state));
+}
+
+bool has_recorded_hash(const RecordedStep& step, const WorldState& state) {
+  return step.hash == (step.is_whole ? hash_state(state) : hash_motion(state));
 }
 
 float play_commands(const Recording& recording, const RecordedStep& step, WorldState& state) {

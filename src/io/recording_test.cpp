@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
+#include <iterator>
 
 namespace gyre {
 namespace {
@@ -105,6 +107,108 @@ TEST(Recording, GoesOnWhenTheWorldIsPutBack) {
   bool matches = true;
   while (replay->step(&matches)) EXPECT_TRUE(matches) << replay->position();
   EXPECT_EQ(replay->world().hash(), world.hash());
+}
+
+// -------------------------------------------------------------------------------------------- when a replay differs
+
+// Steps that match, up to the first that does not; all of them if every one does.
+std::uint64_t steps_that_match(std::vector<std::byte> bytes) {
+  Result<Replay> replay = Replay::open(std::move(bytes));
+  EXPECT_TRUE(replay) << replay.error().message;
+  bool matches = true;
+  while (replay->step(&matches)) {
+    if (!matches) return replay->position() - 1;
+  }
+  return replay->step_count();
+}
+
+// A pile of which `change` is made before step 20 behind the recorder's back.
+template <class Change>
+std::vector<std::byte> record_with_fault(int steps, const RecordOptions& options, Change&& change) {
+  World world = *World::create();
+  kScenes[1].build(world);
+  MemorySink sink;
+  Recorder recorder(world, sink, options);
+  for (int i = 0; i < steps; ++i) {
+    if (i == 20) change(world);
+    world.step(scenes::kStepSeconds);
+  }
+  EXPECT_TRUE(recorder.finish());
+  return sink.bytes;
+}
+
+void change_velocity(World& world) {
+  float& value = world.state().rigid.bodies.motion[world.state().rigid.bodies.awake.back()].linear_velocity.x;
+  value = __builtin_bit_cast(float, __builtin_bit_cast(std::uint32_t, value) ^ 1u);
+}
+// Nothing moves otherwise for it.
+void change_hidden(World& world) { world.state().rigid.bodies.user_data[3] ^= 1; }
+
+TEST(Replay, TellsAnotherMotionInTheVeryStep) {
+  for (const std::uint32_t interval : {1u, 16u, 1000u})
+    EXPECT_EQ(steps_that_match(record_with_fault(60, {.hash_interval = interval}, change_velocity)), 20u);
+}
+
+TEST(Replay, TellsAnAlteredCommandInTheStepItIsOf) {
+  World world = *World::create();
+  const BodyId body = scenes::add_moving(world, {0, 5, 0}, Sphere{});
+  MemorySink sink;
+  Recorder recorder(world, sink);
+  const float given = 1.8046875f, other = 1.8046876f;
+  for (int i = 0; i < 30; ++i) {
+    if (i == 17) world.set_velocity(body, {given, 0, 0}, {});
+    world.step(scenes::kStepSeconds);
+  }
+  EXPECT_TRUE(recorder.finish());
+  EXPECT_EQ(steps_that_match(sink.bytes), 30u);
+  std::byte was[4], becomes[4];
+  store_little(was, to_bits(given)), store_little(becomes, to_bits(other));
+  const auto place = std::search(sink.bytes.begin(), sink.bytes.end(), std::begin(was), std::end(was));
+  ASSERT_NE(place, sink.bytes.end());
+  std::copy(std::begin(becomes), std::end(becomes), place);
+  reseal_recording(sink.bytes);
+  EXPECT_EQ(steps_that_match(sink.bytes), 17u);
+}
+
+TEST(Replay, TellsAnotherHiddenStateAtTheNextWholeHash) {
+  EXPECT_EQ(steps_that_match(record_with_fault(60, {.hash_interval = 1}, change_hidden)), 20u);
+  EXPECT_EQ(steps_that_match(record_with_fault(60, {.hash_interval = 16}, change_hidden)), 31u);
+  // Of the last step there is one always.
+  EXPECT_EQ(steps_that_match(record_with_fault(60, {.hash_interval = 1000}, change_hidden)), 59u);
+}
+
+TEST(Recording, CommandsAfterTheLastStepLeaveItItsHash) {
+  World world = *World::create();
+  const BodyId body = scenes::add_moving(world, {0, 5, 0}, Sphere{});
+  MemorySink sink;
+  Recorder recorder(world, sink);
+  for (int i = 0; i < 5; ++i) world.step(scenes::kStepSeconds);
+  world.set_velocity(body, {1, 0, 0}, {});
+  EXPECT_TRUE(recorder.finish());
+  EXPECT_EQ(steps_that_match(sink.bytes), 5u);
+}
+
+// As all were before there was a choice.
+TEST(Recording, WithWholeHashesAloneIsOfTheFirstLayout) {
+  const auto kinds = [](const RecordOptions& options, std::uint64_t layout) {
+    const std::vector<std::byte> bytes = record_with_fault(30, options, [](World&) {});
+    ChunkReader reader(bytes);
+    EXPECT_EQ(reader.read_header().code, ErrorCode::none);
+    EXPECT_EQ(reader.layout(), layout);
+    std::pair<int, int> counts;
+    Chunk chunk;
+    while (reader.next(chunk)) {
+      if (chunk.kind == ChunkKind::step_hash) ++counts.first;
+      if (chunk.kind == ChunkKind::motion_hash) ++counts.second;
+    }
+    EXPECT_EQ(steps_that_match(bytes), 30u);
+    return counts;
+  };
+  const std::uint64_t first_layout = mix_bits(state_layout() + kCommandLayout);
+  EXPECT_EQ(kinds({.hash_interval = 1}, first_layout), std::pair(30, 0));
+  EXPECT_EQ(kinds({.hash_interval = 10}, recording_layout(true)), std::pair(3, 27));
+  EXPECT_EQ(kinds({}, recording_layout(true)), std::pair(1, 30));
+  EXPECT_NE(first_layout, recording_layout(true));
 }
 
 TEST(Recording, OneRecorderAtATime) {

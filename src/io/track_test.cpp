@@ -105,6 +105,19 @@ TEST_P(TrackOfScene, HasTheSameBytesForAnyThreadsAndWidth) {
 INSTANTIATE_TEST_SUITE_P(Scenes, TrackOfScene, testing::ValuesIn(kScenes),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
+// What only trembles is not rounded anew in each frame, and its bits are those of before; nobody may see that.
+TEST(Track, ShowsEachPoseRoundedByItselfWhileAPileComesToRest) {
+  const Recorded recorded = record(kScenes[1], 500, kPosesOnly, {.sleeping = false});
+  Result<PoseTrack> track = PoseTrack::open(recorded.bytes);
+  ASSERT_TRUE(track);
+  ASSERT_EQ(track->frame_count(), recorded.looks.size());
+  for (std::size_t f = 0; f < recorded.looks.size(); ++f) {
+    ASSERT_EQ(track->seek(f).code, ErrorCode::none);
+    for (std::size_t i = 0; i < recorded.looks[f].poses.size(); ++i)
+      ASSERT_EQ(track->frame().poses[i], unrounded(round_pose(recorded.looks[f].poses[i], {}), {})) << f << ' ' << i;
+  }
+}
+
 // A thousand boxes fall into a pit.
 void build_pile(World& world) {
   scenes::add_fixed(world, {}, Plane{});
@@ -318,6 +331,7 @@ TEST(Track, MayHaveFewerFramesThanStepsAndAnotherAccuracy) {
   EXPECT_LE(std::abs(track->frame().poses[0].position.y - 0.123456789), 1e-7);
   for (const RecordOptions& wrong :
        {RecordOptions{.commands = false, .poses = false}, RecordOptions{.frame_interval = 0},
+        RecordOptions{.hash_interval = 0},
         RecordOptions{.pose_accuracy = 0}, RecordOptions{.pose_accuracy = __builtin_nanf("")}}) {
     MemorySink nothing;
     Recorder refused(world, nothing, wrong);
@@ -456,7 +470,7 @@ TEST(Track, WrittenByVersionOneIsStillRead) {
 TEST(Track, PassesOverChunksItDoesNotKnow) {
   const Recorded recorded = record(kScenes[1], 10);
   ByteWriter longer;
-  write_recording_header(longer);
+  write_recording_header(longer, recording_layout(true));
   ChunkReader chunks(recorded.bytes);
   ASSERT_EQ(chunks.read_header().code, ErrorCode::none);
   Chunk chunk;

@@ -3,6 +3,9 @@
 
 #include "base/hash.h"
 
+#include <algorithm>
+#include <array>
+
 namespace gyre {
 
 namespace {
@@ -52,16 +55,32 @@ std::uint32_t TrackWriter::model_of(const RigidWorld& w, std::uint32_t body, Emi
   return number;
 }
 
-void TrackWriter::look_at_known(const WorldState& state, WrittenBody& written) {
-  const std::uint32_t index = written.body.index;
-  const Pose pose = origin_pose(state.rigid.bodies, index);
-  const bool awake = is_awake(state.rigid.bodies.flags[index]);
-  written.moved = awake;
-  if (awake || !(pose == written.seen)) {
-    if (is_finite(pose)) written.next = round_pose(pose, start_.steps);
-    written.moved = awake || !(written.next == written.body.pose.now);
-    written.seen = pose;
+void TrackWriter::round_again(const BodyPlace& place, const BodyMass& mass, WrittenBody& written) {
+  constexpr int kSameToStay = 8;  // frames; what is still on its way, slowly, would have to be rounded soon all the same
+  const Pose pose = origin_pose(place, mass);
+  if (is_finite(pose)) {
+    const RoundedPose next = round_pose(pose, start_.steps);
+    if (!(next == written.next)) {
+      written.next = next;
+      written.same = 0;
+      written.settled = false;
+    }
   }
+  written.slack = written.same < kSameToStay ? RoundingSlack{} : find_slack(place, mass.center, start_.steps);
+  written.seen = place;
+  written.seen_mass_center = mass.center;
+}
+
+void TrackWriter::look_at_known(const WorldState& state, WrittenBody& written) {
+  const BodyStore& bodies = state.rigid.bodies;
+  const std::uint32_t index = written.body.index;
+  const BodyPlace& place = bodies.places[index];
+  const BodyMass& mass = bodies.masses[index];
+  const bool awake = is_awake(bodies.flags[index]);
+  ++written.same;
+  if (!is_within(place, written.seen, written.slack) || !(mass.center == written.seen_mass_center))
+    round_again(place, mass, written);
+  written.moved = awake || written.same == 0;
   if (awake == written.body.awake && written.moved == written.body.active) return;
   written.body.awake = awake;
   written.body.active = written.moved;
@@ -90,9 +109,12 @@ void TrackWriter::look_at(const WorldState& state, std::uint32_t index, bool key
     return;
   }
   written.present = true;
-  written.seen = origin_pose(bodies, index);
-  if (is_finite(written.seen)) {
-    written.next = round_pose(written.seen, start_.steps);
+  written.same = 0;
+  written.settled = false;
+  written.slack = {};
+  const Pose pose = origin_pose(bodies, index);
+  if (is_finite(pose)) {
+    written.next = round_pose(pose, start_.steps);
   } else if (!known) {
     written.next = round_pose({}, start_.steps);
   }
@@ -102,6 +124,33 @@ void TrackWriter::look_at(const WorldState& state, std::uint32_t index, bool key
   written.body.awake = written.body.active = is_awake(bodies.flags[index]);
   written.body.pose = begin_history(written.next);
   changes_.push_back({index, BodyChange::put});
+}
+
+// Where neither the pose nor what is known of it changes any more, the bits will be the same as long as the pose is.
+void TrackWriter::settle(WrittenBody& written) const {
+  BitWriter bits;
+  PoseHistory history = written.body.pose;
+  code_next_pose(bits, written.next, history, start_.steps);
+  written.rest_size = int(bits.size());
+  if (written.rest_size > 64) return;
+  std::byte room[8] = {};
+  const std::vector<std::byte> bytes = bits.take();
+  std::copy(bytes.begin(), bytes.end(), room);
+  written.rest = load_little<std::uint64_t>(room);
+  written.settled = true;
+}
+
+void TrackWriter::write_next(BitWriter& bits, WrittenBody& written) {
+  if (written.settled) {
+    bits.code_bits(written.rest, written.rest_size);
+    return;
+  }
+  PoseHistory& history = written.body.pose;
+  const bool rests = written.same > 0 && history.before == history.now;
+  const std::array sizes = std::to_array(history.sizes);
+  code_next_pose(bits, written.next, history, start_.steps);
+  advance(history, written.next, start_.steps);
+  if (rests && sizes == std::to_array(history.sizes)) settle(written);
 }
 
 std::vector<std::byte> TrackWriter::frame_bits() {
@@ -118,9 +167,7 @@ std::vector<std::byte> TrackWriter::frame_bits() {
     if (change.kind == BodyChange::flags) code_flags(bits, written.body);
   }
   for (WrittenBody& written : bodies_) {
-    if (!written.moved) continue;
-    code_next_pose(bits, written.next, written.body.pose, start_.steps);
-    advance(written.body.pose, written.next, start_.steps);
+    if (written.moved) write_next(bits, written);
   }
   return bits.take();
 }

@@ -5,6 +5,7 @@
 #include "base/flat_map.h"
 #include "base/function_ref.h"
 #include "io/chunks.h"
+#include "io/rounding_slack.h"
 #include "io/track_coder.h"
 #include "io/track_format.h"
 #include "world/world_state.h"
@@ -28,9 +29,16 @@ class TrackWriter {
   struct WrittenBody {
     TrackedBody body;
     bool present = false;
-    bool moved = false;  // `next` is to be written
-    Pose seen;           // as the world had it in the last frame
+    bool moved = false;    // `next` is to be written
+    int same = 0;          // frames since `next` was another
+    bool settled = false;  // and so are its bits, `rest`, until it is not
+    int rest_size = 0;
+    std::uint64_t rest = 0;
     RoundedPose next;
+    // `next` is the rounded pose wherever the body is so near to where it was seen.
+    RoundingSlack slack;
+    BodyPlace seen{};
+    Vec3 seen_mass_center{};
   };
   struct Change {
     std::uint32_t index;
@@ -39,6 +47,9 @@ class TrackWriter {
 
   void look_at(const WorldState& state, std::uint32_t index, bool key, EmitChunk emit);
   void look_at_known(const WorldState& state, WrittenBody& written);
+  void round_again(const BodyPlace& place, const BodyMass& mass, WrittenBody& written);
+  void write_next(BitWriter& bits, WrittenBody& written);
+  void settle(WrittenBody& written) const;
   std::vector<std::byte> frame_bits();
   std::uint32_t model_of(const RigidWorld& w, std::uint32_t body, EmitChunk emit);
   std::uint32_t geometry_number(const AnyShape& shape, EmitChunk emit);

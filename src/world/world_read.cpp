@@ -22,6 +22,8 @@ bool lives(const WorldState& s, BodyId id) { return lives(s, s.rigid.bodies.ids,
 bool lives(const WorldState& s, ShapeId id) { return lives(s, s.rigid.shapes.ids, id); }
 bool lives(const WorldState& s, JointId id) { return lives(s, s.rigid.joints.ids, id); }
 
+bool moves(const BodyFlags& flags) { return flags.awake != 0 && flags.type != BodyType::fixed && flags.frozen == 0; }
+
 void read_body(const WorldState& s, std::uint32_t body) {
   const BodyStore& bodies = s.rigid.bodies;
   s.read_ids.push_back(body_id(s.rigid, body));
@@ -69,8 +71,7 @@ Vec3 World::velocity_at(BodyId body, DVec3 point) const {
 BodyType World::type(BodyId body) const { return exists(body) ? state_->rigid.bodies.flags[body.index].type : BodyType::fixed; }
 bool World::is_awake(BodyId body) const {
   if (!exists(body)) return false;
-  const BodyFlags& flags = state_->rigid.bodies.flags[body.index];
-  return flags.awake != 0 && flags.type != BodyType::fixed && flags.frozen == 0;
+  return moves(state_->rigid.bodies.flags[body.index]);
 }
 std::uint64_t World::user_data(BodyId body) const { return exists(body) ? state_->rigid.bodies.user_data[body.index] : 0; }
 MassProperties World::mass_properties(BodyId body) const {
@@ -203,13 +204,11 @@ WorldCounts World::counts() const {
   counts.shapes = int(w.shapes.ids.size());
   counts.joints = int(w.joints.ids.size());
   counts.colors = state_->solve.colors;
-  w.bodies.ids.for_each_live([&](std::uint32_t body) {
-    if (is_awake(body_id(w, body))) ++counts.awake_bodies;
-  });
+  counts.pairs = int(w.contacts.live);
+  // Slots that are free have the flags of fixed bodies, and contacts that touch nothing and have no manifolds.
+  for (const BodyFlags& flags : w.bodies.flags) counts.awake_bodies += moves(flags) ? 1 : 0;
   for (const Contact& contact : w.contacts.contacts) {
-    if (contact.manifold_room == 0) continue;
-    ++counts.pairs;
-    if (contact.touching != 0) ++counts.touching;
+    counts.touching += contact.touching != 0 ? 1 : 0;
     for (const Manifold& manifold : manifolds_of(w.contacts, contact)) counts.contact_points += manifold.count;
   }
   return counts;

@@ -111,6 +111,7 @@ TEST_F(CommandLine, WrongUsageIsStatusTwoAndOneLine) {
                "found film, expected one of all");
   expect_usage({"simulate", "s.gyre.json", "--record", "r.gyrec", "--record-every", "0"}, "1 to");
   expect_usage({"simulate", "s.gyre.json", "--record", "r.gyrec", "--record-accuracy", "0"}, "1e-12 to");
+  expect_usage({"simulate", "s.gyre.json", "--record", "r.gyrec", "--record-hash-every", "0"}, "from 1");
   expect_usage({"info"}, "SCENE");
   expect_usage({"schema", "more"}, "more");
 }
@@ -407,6 +408,7 @@ TEST_F(CommandLine, ARecordingHoldsWhatWasAskedFor) {
   const std::size_t commands = size({"--record-as", "commands"});
   EXPECT_TRUE(open_recording("r.gyrec"));
   EXPECT_FALSE(track());
+  EXPECT_LT(size({"--record-as", "commands", "--record-hash-every", "1"}), commands) << "one hash after the last step";
   EXPECT_GT(all, poses);
   EXPECT_GT(all, commands);
   EXPECT_LT(size({"--record-as", "poses", "--record-every", "4"}), poses / 2);

@@ -167,8 +167,8 @@ EMSCRIPTEN_KEEPALIVE int gyre_recorder_start(Host* host) {
   recorder->world_number = world.world_number;
   if (recorder->recorder.failed()) {
     return answer.checked(make_error(ErrorCode::invalid_argument,
-                                     "record: commands or poses must be recorded, frame_interval is at least 1, and pose_accuracy "
-                                     "from 1e-12 to 1e5 m"));
+                                     "record: commands or poses must be recorded, frame_interval and hash_interval are at least 1, "
+                                     "and pose_accuracy from 1e-12 to 1e5 m"));
   }
   world.recorder = std::move(recorder);
   answer.pointer(static_cast<Host*>(world.recorder.get()));
