@@ -79,6 +79,7 @@ void begin_bundles(const BundleSolve& bundles, int begin, int end, const RigidWo
   for (int i = begin; i < end; ++i) {
     const Bundled& bundle = bundles.bundles[std::size_t(i)];
     if (int(bundle.linkages.size()) < bundle.lanes.kernels->width) clear_lanes(bundle.lanes);
+    bundle.lanes.kernels->begin(bundle.lanes);
     // Joint by joint, because its lanes lie in the same cache lines.
     for (std::uint32_t n = 0; n < bundle.lanes.node_count; ++n) {
       const LaneNode& shape = bundle.lanes.nodes[n];

@@ -156,7 +156,11 @@ void forget_lane_impulses(const LinkageBundle& bundle) {
   const std::size_t width = std::size_t(bundle.kernels->width);
   for (std::uint32_t n = 0; n < bundle.node_count; ++n) {
     std::byte* const joint = bundle.joints + n * bundle.kernels->joint_bytes;
-    std::memset(joint + kImpulses * sizeof(float) * width, 0, kFloats * sizeof(float) * width);
+    const auto clear = [&](std::size_t first, std::size_t count) {
+      std::memset(joint + first * sizeof(float) * width, 0, count * sizeof(float) * width);
+    };
+    clear(kImpulses, kFloats);
+    for (const std::size_t axis : {kTwist, kSwing}) clear(axis + kAxisImpulses, 2);  // of both stops
   }
 }
 

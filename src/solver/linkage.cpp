@@ -412,7 +412,6 @@ void warm_linkage(const Linkage& linkage, const LinkageSolve& s) {
   for (const LinkageNode& node : linkage.nodes) {
     JointRecord& joint = s.records[node.record];
     const JointWork& work = s.work[node.work];
-    forget_stops(work);
     warm_start_joint_axes(joint, work, s.bodies);
     // What was kept, along the rows as they are now.
     float kept[kMostBlockRows];

@@ -111,11 +111,13 @@ GYRE_INLINE void solve_rows(const Bundle<W>& bundle) {
 
 // -------------------------------------------------------------------------------------------------------------- stops
 
-// They are found anew each time: an impulse that is kept would be none the better for it.
+// What a stop bore in the last part of the step, along its axis as it is now; what nothing can turn bears nothing.
 template <int W>
-GYRE_INLINE void forget_stops(LinkedJoint<W>& joint) {
-  joint.twist.low_impulse = joint.twist.high_impulse = Wide<W>(0.0f);
-  joint.swing.low_impulse = joint.swing.high_impulse = Wide<W>(0.0f);
+GYRE_INLINE Vec3W<W> kept_impulse(LinkedAxis<W>& axis) {
+  const Mask<W> turns = axis.mass > 0.0f;
+  axis.low_impulse = keep(turns, axis.low_impulse);
+  axis.high_impulse = keep(turns, axis.high_impulse);
+  return (axis.low_impulse - axis.high_impulse) * axis.about;
 }
 
 template <int W>
@@ -131,6 +133,14 @@ GYRE_INLINE void sum_stop(LinkedJoint<W>& joint, LinkedAxis<W>& axis) {
 }
 
 // ------------------------------------------------------------------------------------------------------------- stages
+
+// Before the first part of a step.
+template <int W>
+void begin_linkages(const LinkageBundle& plain) {
+  if (plain.stop_count == 0) return;
+  const Bundle<W> bundle(plain);
+  LaneStops<W>(bundle, {}, kNoErrors).clear();
+}
 
 // The rows where the bodies are now, and their matrix, factored.
 template <int W>
@@ -151,13 +161,15 @@ void warm_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const Lan
   for (std::uint32_t n = 0; n < plain.node_count; ++n) {
     const LaneNode& node = plain.nodes[n];
     LinkedJoint<W>& joint = bundle.joints[n];
-    forget_stops(joint);
     // What was kept, along the rows as they are now.
     if (node.kind == JointKind::hinge) {
       joint.angular_impulse = dot(joint.angular_impulse, joint.perpendicular_1) * joint.perpendicular_1 +
                               dot(joint.angular_impulse, joint.perpendicular_2) * joint.perpendicular_2;
     }
-    push_joint(bundle, node, joint, joint.linear_impulse, joint.angular_impulse);
+    Vec3W<W> turn = joint.angular_impulse;
+    if (node.has_twist) turn += kept_impulse(joint.twist);
+    if (node.has_swing) turn += kept_impulse(joint.swing);
+    push_joint(bundle, node, joint, joint.linear_impulse, turn);
   }
   store_velocities(bundle, arrays);
 }
@@ -205,6 +217,7 @@ constexpr LinkageKernels linkage_kernels() {
           sizeof(LinkedBody<W>),
           sizeof(LinkedJoint<W>),
           stop_room<W>,
+          begin_linkages<W>,
           place_linkages<W>,
           warm_bundle<W>,
           solve_bundle<W>,

@@ -238,6 +238,7 @@ void solve_side_by_side(Crowd& crowd, Shape& shape, int width) {
   for (int first = 0; first < kCopies; first += kernels.width) {
     const int used = std::min(kernels.width, kCopies - first);
     clear_lanes(bundle);
+    kernels.begin(bundle);
     const auto for_each_joint = [&](auto&& call) {
       for (int lane = 0; lane < used; ++lane) {
         for (std::uint32_t n = 0; n < kJoints; ++n) call(lane, n, std::size_t(first + lane) * kJoints + n);

@@ -109,6 +109,7 @@ struct LinkageKernels {
   int width;
   std::size_t body_bytes, joint_bytes;
   std::size_t (*stop_room)(const LinkageBundle& bundle);  // bytes
+  void (*begin)(const LinkageBundle& bundle);             // before it is placed for the first time in a step
   void (*place)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
   void (*warm)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
   void (*solve)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);

@@ -245,11 +245,6 @@ std::size_t stops_room(std::size_t rows, std::size_t bodies) {
   return kMostStops * (rows + 6 * bodies) + 6 * bodies;
 }
 
-void forget_stops(const JointWork& work) {
-  for (AxisWork& x : work.axes)
-    if (has_hard_stop(x)) x.axis.low_impulse = x.axis.high_impulse = 0.0f;
-}
-
 void solve_stops(const Linkage& linkage, const LinkageSolve& solve, ErrorBounds bounds) {
   if (!linkage.has_stops) return;
   StopSolve(linkage, solve, bounds).solve();

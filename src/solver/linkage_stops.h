@@ -21,8 +21,6 @@ inline bool has_hard_stop(const AxisWork& axis) {
 // How many numbers solve_stops() needs for a linkage.
 std::size_t stops_room(std::size_t rows, std::size_t bodies);
 
-// They are found anew each time: an impulse that is kept would be none the better for it.
-void forget_stops(const JointWork& work);
 // Changes velocities and impulses, so that stops hold and equations hold as they did. `bounds`: none where only the speed counts, not how they bend either.
 void solve_stops(const Linkage& linkage, const LinkageSolve& solve, ErrorBounds bounds);
 

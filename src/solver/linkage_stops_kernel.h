@@ -9,7 +9,7 @@ namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
 // As in solver/linkage_stops.cpp.
-constexpr float kLaneCalm = 1.0e-3f;  // rad/s
+constexpr float kLaneCalm = 1.0e-4f;  // rad/s
 constexpr int kLaneRounds = 3, kLaneSweeps = 100;
 
 // Impulses that change speeds by less stand.
@@ -17,6 +17,9 @@ constexpr float kLaneSettled = 1.0e-4f;  // rad/s
 
 // Of the way to where a stop's own speed is as asked, how far each sweep goes (successive over-relaxation).
 constexpr float kLaneReach = 1.15f;
+
+// How far a joint may turn before what its linkage's stops do to each other is found anew.
+constexpr float kKeptTurn = 0.1f;  // rad
 
 // What a stop may still give way by, of what it would if its two bodies were alone: less is only rounding.
 constexpr float kLeastWay = 1.0e-5f;
@@ -28,11 +31,13 @@ struct LinkedStop {
   Mask<W> low_on, high_on;
   LinkedAxis<W>* axis;
   const LaneNode* node;
-  bool has_low;      // a swing has only the other one
-  std::uint32_t in;  // the lanes that have it in question, a bit for each
+  bool has_low;  // a swing has only the other one
+  // Lanes, a bit for each: that have it in question, and in which the ways between it and all others so marked are kept.
+  std::uint32_t in, kept;
   // Of which halves of the lanes (math/wide_double.h) it is known what an impulse makes of the linkage, in this part of the sub-step.
   std::uint32_t known;
   std::uint32_t reach;      // how many columns that impulse reaches
+  bool has_turns;           // the next are known, in this part of the sub-step
   Vec3W<W> turn_a, turn_b;  // how an impulse of one turns its two bodies
 };
 
@@ -44,7 +49,15 @@ struct StopSlot {
   Wide<W> least, room;  // least: of the impulse, room: from there to where it is, both not positive
 };
 
-// As many slots stand in registers while they are swept; their ways are laid out in rows of that length.
+// For which slots of each lane the ways are laid out, and lanes, a bit for each, in which they have been found anew since. Up to
+// `cleared` slots there is nothing else.
+template <int W>
+struct LaidWays {
+  alignas(Wide<W>) std::uint32_t counts[W];
+  std::uint32_t renewed, cleared;
+};
+
+// As many slots stand in registers while they are swept.
 constexpr std::uint32_t kFewSlots = 8;
 
 template <int W>
@@ -56,9 +69,10 @@ template <int W>
 constexpr std::size_t stop_room(const LinkageBundle& bundle) {
   const std::size_t n = bundle.stop_count, slots = most_slots<W>(bundle);
   if (n == 0) return 0;
-  return n * (sizeof(LinkedStop<W>) + n * (sizeof(Wide<W>) + 1) +
+  return n * (sizeof(LinkedStop<W>) + n * (sizeof(Wide<W>) + sizeof(std::uint32_t)) +
               bundle.row_count * (2 * W * sizeof(double) + 1) + bundle.column_count * sizeof(std::uint32_t)) +
-         bundle.moving_count * sizeof(Vec3W<W>) + slots * (sizeof(StopSlot<W>) + slots * sizeof(Wide<W>) + W);
+         bundle.node_count * sizeof(QuatW<W>) + bundle.moving_count * sizeof(Vec3W<W>) + sizeof(LaidWays<W>) +
+         slots * (sizeof(StopSlot<W>) + slots * sizeof(Wide<W>) + 2 * W);
 }
 
 // With the equations' matrix as L D L^T, the way of stop i under an impulse at stop j is what it would be without equations less y_i . D^-1
@@ -74,22 +88,38 @@ class LaneStops {
         stops_(reinterpret_cast<LinkedStop<W>*>(bundle.plain.stops)),
         matrix_(reinterpret_cast<Wide<W>*>(stops_ + count())),
         parts_(reinterpret_cast<double*>(matrix_ + std::size_t(count()) * count())),
-        turns_(reinterpret_cast<Vec3W<W>*>(parts_ + 2 * std::size_t(count()) * bundle.plain.row_count * W)),
-        slots_(reinterpret_cast<StopSlot<W>*>(turns_ + bundle.plain.moving_count)),
-        slot_ways_(reinterpret_cast<Wide<W>*>(slots_ + most_slots<W>(bundle.plain))),
-        columns_(reinterpret_cast<std::uint32_t*>(slot_ways_ +
-                                                  most_slots<W>(bundle.plain) * most_slots<W>(bundle.plain))),
-        ends_(reinterpret_cast<std::uint8_t*>(columns_ + std::size_t(count()) * bundle.plain.column_count)),
-        reached_(ends_ + most_slots<W>(bundle.plain) * W),
-        found_(reached_ + std::size_t(count()) * bundle.plain.row_count) {}
+        poses_(reinterpret_cast<QuatW<W>*>(parts_ + 2 * std::size_t(count()) * bundle.plain.row_count * W)),
+        turns_(reinterpret_cast<Vec3W<W>*>(poses_ + bundle.plain.node_count)),
+        laid_(reinterpret_cast<LaidWays<W>*>(turns_ + bundle.plain.moving_count)),
+        slots_(reinterpret_cast<StopSlot<W>*>(laid_ + 1)),
+        slot_ways_(reinterpret_cast<Wide<W>*>(slots_ + row_length())),
+        columns_(reinterpret_cast<std::uint32_t*>(slot_ways_ + row_length() * row_length())),
+        found_(columns_ + std::size_t(count()) * bundle.plain.column_count),
+        ends_(reinterpret_cast<std::uint8_t*>(found_ + std::size_t(count()) * count())),
+        laid_ends_(ends_ + row_length() * W),
+        reached_(laid_ends_ + row_length() * W) {}
 
-  // Nothing is known of joints that have just been placed.
-  GYRE_INLINE void begin() {
+  // Before the first part of a step: nothing is known.
+  GYRE_INLINE void clear() {
     std::uint32_t next = 0;
     for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) {
       const LaneNode& node = b_.plain.nodes[n];
       if (node.has_twist) list(stops_[next++], node, b_.joints[n].twist, true);
       if (node.has_swing) list(stops_[next++], node, b_.joints[n].swing, false);
+    }
+    const Wide<W> none(0.0f);
+    for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) poses_[n] = {none, none, none, none};
+    for (std::uint32_t& laid : laid_->counts) laid = 0;
+    laid_->renewed = laid_->cleared = 0;
+  }
+
+  // The joints have been placed.
+  GYRE_INLINE void begin() {
+    const std::uint32_t stands = to_bits(find_calm());
+    for (std::uint32_t a = 0; a < count(); ++a) {
+      stops_[a].kept &= stands;
+      stops_[a].known = 0;
+      stops_[a].has_turns = false;
     }
     for (std::size_t i = 0; i < std::size_t(count()) * count(); ++i) found_[i] = 0;
   }
@@ -102,8 +132,7 @@ class LaneStops {
       for (std::uint32_t a = 0; a < count(); ++a) {
         LinkedStop<W>& stop = stops_[a];
         stop.in = to_bits((stop.low_on | stop.high_on) & live);
-        const std::uint32_t asked = halves_of(stop.in) & ~stop.known;
-        if (asked != 0) find_response(a, asked);
+        if (stop.in != 0 && !stop.has_turns) find_turns(stop);
       }
       find_ways();
       find_impulses(live);
@@ -115,7 +144,7 @@ class LaneStops {
   GYRE_INLINE std::uint32_t count() const { return b_.plain.stop_count; }
   GYRE_INLINE static void list(LinkedStop<W>& stop, const LaneNode& node, LinkedAxis<W>& axis, bool has_low) {
     stop.axis = &axis, stop.node = &node;
-    stop.has_low = has_low, stop.known = 0;
+    stop.has_low = has_low, stop.kept = 0;
   }
   GYRE_INLINE void ask(LinkedStop<W>& stop) const {
     stop.low_on = stop.high_on = Mask<W>::splat(false);
@@ -168,7 +197,31 @@ class LaneStops {
   GYRE_INLINE static bool share_body(const LaneNode& node, const LaneNode& other) {
     return other.a == node.a || other.a == node.b || other.b == node.a || other.b == node.b;
   }
+  // Those lanes in which no joint has turned far since the ways that are kept were found; of the others it notes how they are now.
+  Mask<W> find_calm() const {
+    constexpr float kLeast = 1.0f - 0.125f * kKeptTurn * kKeptTurn;  // the cosine of half of that
+    Mask<W> calm = Mask<W>::splat(true);
+    for (std::uint32_t i = 0; i < b_.plain.moving_count; ++i)
+      calm = calm & (b_.bodies[i].inverse.xx == b_.bodies[i].own_inverse.xx);
+    const Mask<W> raised = ~calm;
+    const auto pose_of = [&](std::uint32_t n) {
+      const LaneNode& node = b_.plain.nodes[n];
+      return conjugate(b_.bodies[node.a].orientation) * b_.bodies[node.b].orientation;
+    };
+    for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) {
+      const QuatW<W> now = pose_of(n), then = poses_[n];
+      calm = calm & (now.x * then.x + now.y * then.y + now.z * then.z + now.w * then.w > kLeast);
+    }
+    if (!any(~calm)) return calm;
+    const Wide<W> none(0.0f);
+    const QuatW<W> nowhere{none, none, none, none};  // of raised inertias nothing is kept
+    for (std::uint32_t n = 0; n < b_.plain.node_count; ++n)
+      poses_[n] = select(calm, poses_[n], select(raised, nowhere, pose_of(n)));
+    return calm;
+  }
+
   GYRE_INLINE void find_turns(LinkedStop<W>& stop) const {
+    stop.has_turns = true;
     const LaneNode& node = *stop.node;
     const Vec3W<W> about = stop.axis->about;
     stop.turn_a = b_.moves(node.a) ? -(b_.bodies[node.a].inverse * about) : nothing();
@@ -200,10 +253,12 @@ class LaneStops {
 
   void find_response(std::uint32_t index, std::uint32_t halves) {
     LinkedStop<W>& stop = stops_[index];
+    halves &= ~stop.known;
+    if (halves == 0) return;
+    if (!stop.has_turns) find_turns(stop);
     ReachedColumns reached = reached_of(index);
     double* const part = part_of(index);
     if (stop.known == 0) {
-      find_turns(stop);
       for (std::uint32_t row = 0; row < b_.plain.row_count; ++row) reached.marks[row] = 0;
       for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) {
         const LaneNode& node = b_.plain.nodes[n];
@@ -217,20 +272,28 @@ class LaneStops {
     solve_reached_down<W>(b_.plain, halves, reached, part, scaled_of(index));
     stop.known |= halves;
   }
-  // Between all stops that some lane has in question together.
+  // Between all stops that a lane has in question, anew in lanes that have one of which nothing is kept.
   void find_ways() {
+    std::uint32_t lanes = 0;
+    for (std::uint32_t a = 0; a < count(); ++a) lanes |= stops_[a].in & ~stops_[a].kept;
+    if (lanes == 0) return;
+    laid_->renewed |= lanes;
+    for (std::uint32_t a = 0; a < count(); ++a) stops_[a].kept |= stops_[a].in & lanes;
     for (std::uint32_t a = 0; a < count(); ++a) {
-      for (std::uint32_t b = 0; stops_[a].in != 0 && b <= a; ++b) {
-        std::uint8_t& found = found_[std::size_t(a) * count() + b];
-        const std::uint32_t asked = halves_of(stops_[a].in & stops_[b].in) & ~std::uint32_t(found);
+      for (std::uint32_t b = 0; b <= a; ++b) {
+        std::uint32_t& found = found_[std::size_t(a) * count() + b];
+        const std::uint32_t asked = stops_[a].kept & stops_[b].kept & lanes & ~found;
         if (asked == 0) continue;
         find_way(a, b, asked);
-        found = std::uint8_t(found | asked);
+        found |= asked;
       }
     }
   }
   // The way at one stop under an impulse at another.
-  void find_way(std::uint32_t a, std::uint32_t b, std::uint32_t halves) {
+  void find_way(std::uint32_t a, std::uint32_t b, std::uint32_t lanes) {
+    const std::uint32_t halves = halves_of(lanes);
+    find_response(a, halves);
+    find_response(b, halves);
     const LaneNode &pushed = *stops_[a].node, &node = *stops_[b].node;
     Wide<W> alone(0.0f);
     if (share_body(pushed, node))
@@ -238,12 +301,7 @@ class LaneStops {
     const Wide<W> way =
         alone - dot_reached<W>(b_.plain, halves, reached_of(a), scaled_of(a), reached_of(b), part_of(b));
     const Wide<W> bounded = a == b ? keep(way > kLeastWay * alone, way) : way;
-    entry(a, b) = entry(b, a) = select(lanes_of(halves), bounded, entry(a, b));
-  }
-  GYRE_INLINE static Mask<W> lanes_of(std::uint32_t halves) {
-    constexpr int kHalf = kHalfLanes<W>;
-    constexpr std::uint32_t kLow = (1u << kHalf) - 1u;
-    return Mask<W>::of_bits(((halves & 1u) != 0 ? kLow : 0u) | ((halves & 2u) != 0 ? kLow << kHalf : 0u));
+    entry(a, b) = entry(b, a) = select(Mask<W>::of_bits(lanes), bounded, entry(a, b));
   }
 
   // ------------------------------------------------------------------------------------------------------ impulses
@@ -275,12 +333,46 @@ class LaneStops {
   GYRE_INLINE static void set_lane(Wide<W>& to, std::uint32_t lane, float value) {
     reinterpret_cast<float*>(&to)[lane] = value;
   }
+  GYRE_INLINE std::size_t row_length() const { return most_slots<W>(b_.plain); }
+  GYRE_INLINE bool is_laid(std::uint32_t lane, std::uint32_t count) const {
+    if (count != laid_->counts[lane] || (laid_->renewed >> lane & 1u) != 0) return false;
+    for (std::uint32_t i = 0; i < count; ++i)
+      if (ends_[i * W + lane] != laid_ends_[i * W + lane]) return false;
+    return true;
+  }
+  void lay_ways(std::uint32_t lane, std::uint32_t count) {
+    const std::uint32_t laid = laid_->counts[lane];
+    const auto set = [&](std::uint32_t i, std::uint32_t j, float way) {
+      set_lane(slot_ways_[i * row_length() + j], lane, way);
+      set_lane(slot_ways_[j * row_length() + i], lane, way);
+    };
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t end = laid_ends_[i * W + lane] = ends_[i * W + lane];
+      for (std::uint32_t j = 0; j <= i; ++j) {
+        const std::uint32_t other = ends_[j * W + lane];
+        const float size = lane_of(entry(end / 2, other / 2), lane);
+        set(i, j, ((end ^ other) & 1u) != 0 ? -size : size);
+      }
+    }
+    for (std::uint32_t i = count; i < laid; ++i)
+      for (std::uint32_t j = 0; j <= i; ++j) set(i, j, 0.0f);
+    laid_->counts[lane] = count;
+    laid_->renewed &= ~(1u << lane);
+  }
+  void clear_ways(std::uint32_t slots) {
+    const std::uint32_t before = laid_->cleared, now = slots < kFewSlots ? kFewSlots : slots;
+    if (now <= before) return;
+    for (std::uint32_t i = 0; i < now; ++i)
+      for (std::uint32_t j = i < before ? before : 0; j < now; ++j)
+        slot_ways_[i * row_length() + j] = Wide<W>(0.0f);
+    laid_->cleared = now;
+  }
   void fill_slots(std::uint32_t slots, const std::uint32_t (&counts)[W]) {
     const Wide<W> none(0.0f);
-    const std::uint32_t length = row_length(slots);
-    for (std::uint32_t i = 0; i < length; ++i) slots_[i] = {none, none, none, none};
-    for (std::uint32_t i = 0; i < slots * length; ++i) slot_ways_[i] = none;
+    for (std::uint32_t i = 0; i < slots || i < kFewSlots; ++i) slots_[i] = {none, none, none, none};
+    clear_ways(slots);
     for (std::uint32_t lane = 0; lane < W; ++lane) {
+      if (counts[lane] != 0 && !is_laid(lane, counts[lane])) lay_ways(lane, counts[lane]);
       for (std::uint32_t i = 0; i < counts[lane]; ++i) {
         const std::uint32_t end = ends_[i * W + lane];
         const LinkedStop<W>& stop = stops_[end / 2];
@@ -291,20 +383,10 @@ class LaneStops {
         set_lane(slots_[i].excess, lane, (is_high ? -speed : speed) - asked);
         set_lane(slots_[i].least, lane, least);
         set_lane(slots_[i].room, lane, least);
-        for (std::uint32_t j = 0; j <= i; ++j) {
-          const std::uint32_t other = ends_[j * W + lane];
-          const float size = lane_of(entry(end / 2, other / 2), lane);
-          const float way = ((end ^ other) & 1u) != 0 ? -size : size;
-          set_lane(slot_ways_[i * length + j], lane, way);
-          set_lane(slot_ways_[j * length + i], lane, way);
-        }
       }
     }
   }
 
-  GYRE_INLINE static std::uint32_t row_length(std::uint32_t slots) {
-    return slots <= kFewSlots ? kFewSlots : slots;
-  }
   // How far a sweep takes the impulse of a slot; `most`: the most that any of them has changed a speed.
   GYRE_INLINE static Wide<W> step_of(StopSlot<W>& slot, Wide<W> excess, Wide<W> own, Mask<W> live,
                                      Wide<W>& most) {
@@ -322,7 +404,7 @@ class LaneStops {
       GYRE_UNROLL
       for (std::uint32_t i = 0; i < kFewSlots; ++i) {
         if (i < slots) {
-          const Wide<W>* const ways = slot_ways_ + i * kFewSlots;
+          const Wide<W>* const ways = slot_ways_ + i * row_length();
           const Wide<W> by = step_of(slots_[i], excess[i], ways[i], live, most);
           GYRE_UNROLL
           for (std::uint32_t e = 0; e < kFewSlots; ++e) excess[e] += by * ways[e];
@@ -335,7 +417,7 @@ class LaneStops {
     for (int sweep = 0; sweep < kLaneSweeps && any(live); ++sweep) {
       Wide<W> most(0.0f);
       for (std::uint32_t i = 0; i < slots; ++i) {
-        const Wide<W>* const ways = slot_ways_ + i * slots;
+        const Wide<W>* const ways = slot_ways_ + i * row_length();
         const Wide<W> by = step_of(slots_[i], slots_[i].excess, ways[i], live, most);
         for (std::uint32_t e = 0; e < slots; ++e) slots_[e].excess += by * ways[e];
       }
@@ -349,7 +431,7 @@ class LaneStops {
     const std::uint32_t slots = list_ends(live, counts);
     fill_slots(slots, counts);
     for (std::uint32_t i = 0; i < slots; ++i) {
-      const Wide<W> own = slot_ways_[i * row_length(slots) + i];
+      const Wide<W> own = slot_ways_[i * row_length() + i];
       slots_[i].share = keep(own > 0.0f, -kLaneReach / own);
     }
     slots <= kFewSlots ? sweep_few(slots, live) : sweep_many(slots, live);
@@ -409,14 +491,18 @@ class LaneStops {
   ErrorBounds bounds_;
   LinkedStop<W>* stops_;
   Wide<W>* matrix_;
-  double* parts_;  // y and D^-1 y, by stop
+  double* parts_;    // y and D^-1 y, by stop
+  QuatW<W>* poses_;  // of b seen from a, by joint: since when ways are kept
   Vec3W<W>* turns_;
+  LaidWays<W>* laid_;
   StopSlot<W>* slots_;
   Wide<W>* slot_ways_;      // by two slots
   std::uint32_t* columns_;  // by stop: those that it reaches
-  std::uint8_t* ends_;      // by slot and lane
-  std::uint8_t* reached_;   // by stop and row
-  std::uint8_t* found_;     // by two stops, the later first: in which halves of the lanes their way is known
+  std::uint32_t*
+      found_;  // by two stops, the later first: lanes in which their way was found in this part of the sub-step
+  std::uint8_t* ends_;       // by slot and lane
+  std::uint8_t* laid_ends_;  // those to which the ways of slots belong
+  std::uint8_t* reached_;    // by stop and row
 };
 
 }  // namespace GYRE_TARGET_NAMESPACE
