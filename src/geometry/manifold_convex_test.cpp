@@ -334,6 +334,37 @@ TEST(ManifoldConvex, ACapsuleOrCylinderAlongAnEdgeTouchesTwice) {
   }
 }
 
+TEST(ManifoldConvex, ARoundedEdgeAlongAnEdgeTouchesTwiceHoweverItLeans) {
+  // A hand over the edge of a stair: the normal goes all the way from one face of the edge to the other, and no end may be left free.
+  const Shape stair = make_box({0.5f, 0.5f, 2}), hand = make_box({0.094f, 0.04f, 0.018f}, 0.015f);
+  const Vec3 edge{0.5f, 0.5f, 0};
+  for (int degrees = 5; degrees <= 85; degrees += 5) {
+    const float angle = float(degrees) * kPi / 180.0f;
+    const Vec3 normal{std::cos(angle), std::sin(angle), 0};
+    for (float lean : {0.0f, 0.02f, -0.02f}) {
+      // Beside a face that the hand leans towards, a part of it lies over that face.
+      if (lean != 0.0f && (degrees < 15 || degrees > 75)) continue;
+      // Its edge at -x and -z lies along the stair's, one end lower by the lean.
+      const Vec3 across{-normal.y, normal.x, 0};
+      const Quat turn = from_axis_angle(across, lean) * from_axis_angle({0, 0, 1}, angle + 0.25f * kPi) *
+                        from_axis_angle({1, 0, 0}, 0.5f * kPi);
+      const Vec3 middle = edge + 0.014f * normal;
+      const Transform at{middle - rotate(turn, {-0.079f, 0, -0.003f}), turn};
+      const LocalManifold m = collide(stair, hand, at, 0.02f);
+      ASSERT_GE(m.count, 2) << degrees << " leans " << lean;
+      EXPECT_GT(dot(m.normal, normal), 0.999f) << degrees;
+      float low = kUnbounded, high = -kUnbounded;
+      for (int i = 0; i < m.count; ++i) {
+        if (m.points[i].separation > 0.0f) continue;  // the rest of the hand, beside a face
+        low = min(low, m.points[i].position.z), high = max(high, m.points[i].position.z);
+        EXPECT_NEAR(m.points[i].separation, -0.001f, 0.6e-3f) << degrees;
+      }
+      EXPECT_NEAR(low, -0.025f, 1.0e-3f) << degrees;
+      EXPECT_NEAR(high, 0.025f, 1.0e-3f) << degrees;
+    }
+  }
+}
+
 TEST(ManifoldConvex, ConesStandOnTheirBaseAndLieOnTheirSide) {
   const Shape box = make_box({2, 0.5f, 2}), cone = make_along_y(ShapeKind::cone, 0.4f, 0.5f);
   const LocalManifold standing = collide(box, cone, {{0, 0.995f, 0}, {}}, 0.02f);

@@ -89,11 +89,14 @@ int facing_points(const Shape& a, const Shape& b, const Transform& a_from_b, con
                       sideways(a, b)};
   const float facing_a = fa.count > 2 ? dot(fa.normal, contact.normal) : -1.0f;
   const float facing_b = fb.count > 2 ? -dot(fb.normal, contact.normal) : -1.0f;
-  if (facing_a >= kFacing && facing_a >= facing_b - kPreferA) return clip_faces(pair, true, points);
-  if (facing_b >= kFacing) return clip_faces(pair, false, points);
-  // A segment along an edge: a capsule or cylinder that lies in a groove.
-  if (fa.count > 2 && fb.count == 2) keep_leading_edge(fa, contact.normal);
-  if (fb.count > 2 && fa.count == 2) keep_leading_edge(fb, -contact.normal);
+  const bool refer_to_a = facing_a >= kFacing && facing_a >= facing_b - kPreferA;
+  if (refer_to_a || facing_b >= kFacing) {
+    const int count = clip_faces(pair, refer_to_a, points);
+    if (count > 0) return count;
+  }
+  // Edge along edge, a capsule along one, or what hangs over the edge of the face.
+  if (fa.count > 2) keep_leading_edge(fa, contact.normal);
+  if (fb.count > 2) keep_leading_edge(fb, -contact.normal);
   if (fa.count == 2 && fb.count == 2 && side_by_side(fa, fb)) return clip_segments(pair, points);
   return 0;
 }

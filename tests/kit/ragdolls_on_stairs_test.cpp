@@ -140,18 +140,12 @@ void judge(int count, Judged j) {
   EXPECT_LT(j.gained, 0.5 * count);
 }
 
-// A hand that hangs over an edge may rattle there for long: of a hundred that fall in five crowds one may be awake after half a minute.
 TEST(RagdollsOnStairs, TwentyComeToRest) {
-  const int bones = int(make_humanoid().bones.size());
-  int asleep = 0;
   for (int draw = 0; draw < 5; ++draw) {
     const Judged j = fall({.count = 20, .seconds = 30, .push = 1.5f + 0.001f * float(draw)});
     judge(20, j);
-    asleep += j.awake == 0 ? 1 : 0;
-    EXPECT_LE(j.awake, bones);
-    EXPECT_LT(j.kinetic, 0.01) << "that of a hand that falls by two millimetres";
+    EXPECT_EQ(j.awake, 0) << "fall " << draw;
   }
-  EXPECT_GE(asleep, 4);
 }
 
 TEST(LongRagdollsOnStairs, TwoHundredComeToRest) {
