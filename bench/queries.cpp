@@ -3,7 +3,7 @@
 // where BOX3D_ROOT names a folder with its headers (include/) and its library (libbox3d.a), and by Jolt where GYRE_JOLT names its
 // built source (bench/peers).
 //
-//   bench/queries [rounds]
+//   bench/queries [rounds [question]]      question: the first letters of those to be asked, such as 'moving'
 //
 // Everything is measured in turn, round after round, so that what else the machine does falls on all alike. Printed are the
 // median of the rounds, and ratios to Gyre's single queries as the median of the ratios within a round, with half the distance
@@ -322,7 +322,7 @@ bench::JoltQueries make_jolt(const Scene& scene) {
 // The rows of one question: asked one by one, in batches, by brute force, and of others.
 class Bench {
  public:
-  explicit Bench(int rounds) : rounds_(rounds) {}
+  Bench(int rounds, std::string wanted) : rounds_(rounds), wanted_(std::move(wanted)) {}
   void run() {
     const std::size_t n = scene_.places.size();
     ask(
@@ -459,8 +459,9 @@ class Bench {
     rows_.push_back({name, double(count), [all] { all(); }, {}, {}});
   }
   void finish() {
-    measure(what_, rows_, rounds_);
-    if (!found_.empty()) {
+    const bool asked = std::string(what_).starts_with(wanted_);
+    if (asked) measure(what_, rows_, rounds_);
+    if (asked && !found_.empty()) {
       // That all answer the same question: how much each of them met.
       const std::size_t before = sink;
       rows_[0].work();
@@ -472,6 +473,7 @@ class Bench {
   }
 
   int rounds_;
+  std::string wanted_;
   const Scene scene_ = make_scene();
   const World one_ = make_world(scene_, BroadPhaseKind::bvh, 1),
               two_ = make_world(scene_, BroadPhaseKind::bvh, 2),
@@ -504,4 +506,6 @@ class Bench {
 
 }  // namespace
 
-int main(int count, char** arguments) { Bench(count > 1 ? std::max(1, std::atoi(arguments[1])) : 15).run(); }
+int main(int count, char** arguments) {
+  Bench(count > 1 ? std::max(1, std::atoi(arguments[1])) : 15, count > 2 ? arguments[2] : "").run();
+}

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "collision/box_lanes.h"
+#include "geometry/line_walk.h"
 
 #include <gyre/math.h>
 
@@ -48,7 +49,7 @@ struct SweepRange {
 
 class SweepTest {
  public:
-  explicit SweepTest(const BoxSweep& sweep) {
+  explicit SweepTest(const BoxSweep& sweep) : line_(sweep.start, DVec3(sweep.way), sweep.half_extents) {
     for (int axis = 0; axis < 3; ++axis) {
       origin_[axis] = float(sweep.start[axis]);
       way_[axis] = sweep.way[axis];
@@ -62,6 +63,8 @@ class SweepTest {
   }
 
   float way(int axis) const { return way_[axis]; }
+  // The same for walks over trees.
+  const BoxLine& line() const { return line_; }
 
   // Where the sweep's box lies from t = range.enter to range.leave, rounded outward.
   Aabb box_of(const SweepRange& range) const {
@@ -140,6 +143,7 @@ class SweepTest {
     return to_bits(inside & (from <= to * Half(1.00001f)));
   }
 
+  BoxLine line_;
   float origin_[3], way_[3], inverse_[3], extent_[3];
   bool still_[3];
 };

@@ -21,7 +21,6 @@
 
 #include <gyre/math.h>
 
-#include <bit>
 #include <cstdint>
 #include <span>
 
@@ -79,35 +78,12 @@ class BoxTree {
   template <class Visit>
   float for_each_along(const SweepTest& sweep, float reach, Visit&& visit) const {
     if (size_ == 0) return reach;
-    struct Waiting {
-      std::uint32_t node;
-      float enter;
-    };
-    Waiting stack[kMaxLevels * kWidth];
-    int depth = 0;
-    stack[depth++] = {root_, 0.0f};
-    while (depth > 0) {
-      const Waiting next = stack[--depth];
-      if (!(next.enter <= reach * 1.00001f)) continue;
-      const Node& node = nodes_[next.node];
-      float enter[kWidth];
-      const unsigned mask = sweep.mask(node, reach, enter);
-      const int bottom = depth;
-      for (unsigned rest = mask; rest != 0; rest &= rest - 1) {
-        const int lane = std::countr_zero(rest);
-        if (node.level == 0) {
-          reach = visit(node.child[lane], reach);
-          if (reach < 0.0f) return reach;
-          continue;
-        }
-        // Nearest on top; lanes that start together keep their order.
-        int place = depth++;
-        for (; place > bottom && stack[place - 1].enter <= enter[lane]; --place)
-          stack[place] = stack[place - 1];
-        stack[place] = {node.child[lane], enter[lane]};
-      }
+    LineWalk walk(sweep.line(), root_, reach);
+    while (walk_line_(nodes_.data(), walk)) {
+      walk.reach = visit(walk.leaf, walk.reach);
+      if (walk.reach < 0.0f) break;
     }
-    return reach;
+    return walk.reach;
   }
 
   // The box of an item that is in the tree.
@@ -166,6 +142,7 @@ class BoxTree {
   const char* find_fault(std::uint32_t node, std::size_t& items) const;
 
   WalkBoxes walk_boxes_ = select_box_walk();
+  WalkLine<BoxTreeNode> walk_line_ = select_box_line_walk();
   Array<Node> nodes_;
   Array<std::uint32_t> free_;
   Array<std::uint32_t> places_;  // by item: kWidth * node + lane, or kNowhere

@@ -7,6 +7,7 @@ namespace gyre {
 
 #if defined(__x86_64__)
 extern const WalkBoxes kWalkBoxes_avx2;
+extern const WalkLine<BoxTreeNode> kWalkBoxLine_avx2;
 #endif
 
 WalkBoxes select_box_walk() {
@@ -14,6 +15,13 @@ WalkBoxes select_box_walk() {
   if (__builtin_cpu_supports("avx2")) return kWalkBoxes_avx2;
 #endif
   return walk_boxes<4>;
+}
+
+WalkLine<BoxTreeNode> select_box_line_walk() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2")) return kWalkBoxLine_avx2;
+#endif
+  return walk_line<4, BoxTreeNode>;
 }
 
 }  // namespace gyre

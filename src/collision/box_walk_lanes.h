@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/box_walk.h"
+#include "geometry/line_walk_lanes.h"
 
 #include <bit>
 
@@ -12,6 +13,10 @@ inline namespace GYRE_TARGET_NAMESPACE {
 GYRE_INLINE std::uint32_t* append_children(const BoxTreeNode& node, unsigned lanes, std::uint32_t* to) {
   for (; lanes != 0; lanes &= lanes - 1) *to++ = node.child[std::countr_zero(lanes)];
   return to;
+}
+
+GYRE_INLINE std::uint32_t leaf_mark(const BoxTreeNode& node) {
+  return node.level == 0 ? StaticNode::kLeafBit : 0;
 }
 
 template <int W>

@@ -232,8 +232,17 @@ float BroadphaseParted<Index>::cast(std::span<const Proxy> proxies, const BoxSwe
   for (const std::uint32_t index : unbounded_) {
     if (reach >= 0.0f) reach = look_at(index, reach);
   }
+  const bool still = sweep.way == Vec3{};
   for (const Home home : {kMoving, kFixed}) {
-    if (reach >= 0.0f) reach = indices_[home].for_each_along(test, reach, look_at);
+    if (reach < 0.0f) return reach;
+    if (still) {
+      // What a box meets that goes nowhere is what it overlaps.
+      indices_[home].for_each_overlap(test.box_of({}), [&](std::uint32_t index) {
+        if (reach >= 0.0f) reach = look_at(index, reach);
+      });
+    } else {
+      reach = indices_[home].for_each_along(test, reach, look_at);
+    }
   }
   return reach;
 }

@@ -95,12 +95,31 @@ void cast_shape(const QueryInput& input, const WorldShape& shape, HitVisit found
 
 namespace {
 
-// Tells of every shape within `reach` of those whose boxes come within `look`; `found` returns the new reach.
+// How far two boxes are apart at least.
+double gap_of(const BoxSweep& place, const Aabb& box) {
+  DVec3 gap;
+  gap.x = max(absolute(0.5 * (double(box.low.x) + double(box.high.x)) - place.start.x) -
+                  0.5 * (double(box.high.x) - double(box.low.x)) - double(place.half_extents.x),
+              0.0);
+  gap.y = max(absolute(0.5 * (double(box.low.y) + double(box.high.y)) - place.start.y) -
+                  0.5 * (double(box.high.y) - double(box.low.y)) - double(place.half_extents.y),
+              0.0);
+  gap.z = max(absolute(0.5 * (double(box.low.z) + double(box.high.z)) - place.start.z) -
+                  0.5 * (double(box.high.z) - double(box.low.z)) - double(place.half_extents.z),
+              0.0);
+  return length(gap);
+}
+
+// Tells of every shape within `reach` of those whose boxes come within `look`, but not within `seen`, where one has looked before
+// (below 0: nowhere); `found` returns the new reach.
 template <class Found>
-void look_around(const QueryInput& input, const WorldShape& shape, const BoxSweep& place, double look,
-                 double reach, Found&& found) {
+void look_around(const QueryInput& input, const WorldShape& shape, const BoxSweep& place, double seen,
+                 double look, double reach, Found&& found) {
   const DQuat orientation = normalized(to_double(shape.pose.orientation));
+  const BoxSweep before = grown(place, max(seen, 0.0));
   input.broadphase.cast(input.proxies, grown(place, look), 1.0f, [&](std::uint32_t target, float) {
+    const Aabb& box = input.proxies[target].fat_box;
+    if (gap_of(place, box) * (1.0 - 1.0e-6) > reach || (seen >= 0.0 && meets(before, 1.0f, box))) return 1.0f;
     if (!input.accepts(target)) return 1.0f;
     const Frame frame(input.pose_of(target));
     const PlacedShape convex{&shape.shape, frame.to_local(shape.pose.position),
@@ -117,7 +136,7 @@ void look_around(const QueryInput& input, const WorldShape& shape, const BoxSwee
 
 void find_near(const QueryInput& input, const WorldShape& shape, double max_distance,
                FunctionRef<bool(const ShapeNear& near)> found) {
-  look_around(input, shape, sweep_of(shape), max_distance, max_distance,
+  look_around(input, shape, sweep_of(shape), -1.0, max_distance, max_distance,
               [&](const ShapeNear& near) { return found(near) ? max_distance : -1.0; });
 }
 
@@ -127,9 +146,10 @@ bool find_nearest_shape(const QueryInput& input, const WorldShape& shape, double
   double look = min(double(largest(place.half_extents)), max_distance);
   const double far_away = kManySizes * look;
   bool any = false;
-  for (;; look *= 2.0) {
+  double seen = -1.0;
+  for (;; seen = look, look *= 2.0) {
     const bool last = look >= max_distance || look > far_away;
-    look_around(input, shape, place, last ? max_distance : look, any ? nearest.distance : max_distance,
+    look_around(input, shape, place, seen, last ? max_distance : look, any ? nearest.distance : max_distance,
                 [&](const ShapeNear& near) {
                   const bool equal = any && near.distance == nearest.distance;
                   if (!any || near.distance < nearest.distance || (equal && near.shape < nearest.shape))

@@ -1,6 +1,7 @@
 // Moving shapes: Newton's method on the distance along the way. See cast.h.
 #include "geometry/cast.h"
 
+#include "geometry/cast_ball.h"
 #include "geometry/cast_surface.h"
 #include "geometry/penetration.h"
 #include "geometry/support.h"
@@ -49,8 +50,7 @@ bool first_impact(CorePair& pair, const MovingShape& moving, DVec3 start, double
   DVec3 normal;
   for (int step = 0; step < kMaxSteps; ++step) {
     pair.move_b(start + time * moving.way);
-    CoreDistance near =
-        core_distance(pair, radii + touching + (reach - time) * way, to_float(normal));
+    CoreDistance near = core_distance(pair, radii + touching + (reach - time) * way, to_float(normal));
     if (near.beyond) return false;
     const double gap = near.overlap ? -radii : near.distance * (1.0 - kDistanceError) - radii;
     const double closing = -dot(moving.way, near.normal);
@@ -77,6 +77,23 @@ bool first_impact(CorePair& pair, const MovingShape& moving, DVec3 start, double
     normal = near.normal;
   }
   return false;
+}
+
+void fill_impact(const BallImpact& impact, double radius_a, LocalHit& hit) {
+  hit = {};
+  hit.fraction = impact.fraction;
+  hit.normal = impact.normal;
+  hit.point = impact.on_core + radius_a * impact.normal;
+}
+
+// A moving ball against a convex shape whose core is a box, a segment or a point.
+BallCast cast_ball_at_convex(const Shape& target, const MovingShape& ball, double reach, LocalHit& hit) {
+  if (!has_box_core(target)) return BallCast::unknown;
+  BallImpact impact;
+  const BallCast cast = cast_ball_at_box(box_core(target), double(target.radius) + double(ball.shape->radius),
+                                         {ball.position, ball.way}, reach, impact);
+  if (cast == BallCast::hits) fill_impact(impact, double(target.radius), hit);
+  return cast;
 }
 
 bool cast_at_plane(const Shape& plane, const MovingShape& moving, double reach, LocalHit& hit) {
@@ -116,6 +133,18 @@ bool cast_at_triangle(const Shape& surface, const SurfaceTriangle& triangle, con
   const DVec3 facing = cross(corners[1], corners[2]);
   const bool still = moving.way == DVec3{};
   if (!both_sides && !still && dot(facing, moving.way) >= 0.0) return false;
+  if (moving.shape->kind == ShapeKind::sphere) {
+    BallImpact impact;
+    const BallCast cast = cast_ball_at_triangle(corners, double(moving.shape->radius),
+                                                {moving.position - pivot, moving.way}, reach, impact);
+    if (cast == BallCast::misses) return false;
+    if (cast == BallCast::hits) {
+      impact.on_core += pivot;
+      fill_impact(impact, 0.0, hit);
+      hit.triangle = public_triangle(surface, triangle.id);
+      return true;
+    }
+  }
   MovingShape seen = moving;
   seen.position = moving.position - pivot;
   seen.skin = 0.0f;  // judged below, by the way out that counts
@@ -158,6 +187,10 @@ bool cast_shape(const Shape& target, const MovingShape& moving, double reach, bo
                 LocalHit& hit) {
   if (target.kind == ShapeKind::plane) return cast_at_plane(target, moving, reach, hit);
   if (!is_convex(target.kind)) return cast_at_surface(target, moving, reach, back_faces, hit);
+  if (moving.shape->kind == ShapeKind::sphere) {
+    const BallCast cast = cast_ball_at_convex(target, moving, reach, hit);
+    if (cast != BallCast::unknown) return cast == BallCast::hits;
+  }
   CorePair pair(target, *moving.shape, moving.position, moving.orientation);
   return first_impact(pair, moving, moving.position, double(core_radius(target)), reach, hit);
 }

@@ -1,6 +1,7 @@
 // GJK against convex shapes, planes and triangles. See nearest.h.
 #include "geometry/nearest.h"
 
+#include "geometry/cast_ball.h"
 #include "geometry/cast_surface.h"
 #include "geometry/closest.h"
 #include "geometry/support.h"
@@ -13,12 +14,8 @@ constexpr double kRounding = 1.0e-6;
 constexpr float kBoxSlack = 1.0e-3f;  // bounds() of a disc seen from the side loses half of a float's digits
 
 // From the distance of two cores to that of two surfaces.
-bool finish(const CorePair& pair, double radius_a, double radius_b, double max_distance, Nearest& out) {
+void fill(const CoreDistance& near, double radius_a, double radius_b, Nearest& out) {
   const double radii = radius_a + radius_b;
-  // Looks a little farther than asked: hulls choose their support points in float.
-  const double reach = (max_distance + radii) * (1.0 + kRounding) + kRounding * pair.size();
-  const CoreDistance near = core_distance(pair, reach, {});
-  if (near.beyond || near.distance - radii > max_distance) return false;
   out.normal = near.normal;
   out.overlap = near.overlap || near.distance <= radii;
   out.distance = out.overlap ? 0.0 : near.distance - radii;
@@ -29,6 +26,32 @@ bool finish(const CorePair& pair, double radius_a, double radius_b, double max_d
   } else if (out.overlap) {
     out.on_target = out.on_convex = 0.5 * (out.on_target + out.on_convex);
   }
+}
+
+bool finish(const CorePair& pair, double radius_a, double radius_b, double max_distance, Nearest& out) {
+  const double radii = radius_a + radius_b;
+  // Looks a little farther than asked: hulls choose their support points in float.
+  const double reach = (max_distance + radii) * (1.0 + kRounding) + kRounding * pair.size();
+  const CoreDistance near = core_distance(pair, reach, {});
+  if (near.beyond || near.distance - radii > max_distance) return false;
+  fill(near, radius_a, radius_b, out);
+  return true;
+}
+
+// A ball beside a shape whose core is a point, a segment or a box; false if its middle lies in that core.
+bool nearest_of_ball(const Shape& target, const PlacedShape& ball, double max_distance, Nearest& out,
+                     bool& within) {
+  const DVec3 core = box_core(target), p = ball.position;
+  CoreDistance near;
+  near.on_a = {clamp(p.x, -core.x, core.x), clamp(p.y, -core.y, core.y), clamp(p.z, -core.z, core.z)};
+  near.on_b = p;
+  const DVec3 way = p - near.on_a;
+  near.distance = length(way);
+  if (!(near.distance > kRounding * length(p))) return false;
+  const double radius_a = double(target.radius), radius_b = double(ball.shape->radius);
+  within = near.distance - (radius_a + radius_b) <= max_distance;
+  near.normal = way / near.distance;
+  if (within) fill(near, radius_a, radius_b, out);
   return true;
 }
 
@@ -175,6 +198,10 @@ bool find_nearest(const Shape& target, const PlacedShape& convex, double max_dis
   out = {};
   if (target.kind == ShapeKind::plane) return nearest_of_plane(target, convex, max_distance, out);
   if (!is_convex(target.kind)) return SurfaceSearch(target, convex, max_distance).run(out);
+  if (convex.shape->kind == ShapeKind::sphere && has_box_core(target)) {
+    bool within;
+    if (nearest_of_ball(target, convex, max_distance, out, within)) return within;
+  }
   const CorePair pair(target, *convex.shape, convex.position, convex.orientation);
   const auto radius_a = double(core_radius(target)), radius_b = double(core_radius(*convex.shape));
   return finish(pair, radius_a, radius_b, max_distance, out);

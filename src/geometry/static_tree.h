@@ -8,6 +8,7 @@
 // 2007 (binned surface area heuristic); H. Dammertz, J. Hanika, A. Keller, "Shallow Bounding Volume Hierarchies", 2008.
 #pragma once
 
+#include "geometry/static_node.h"
 #include "math/wide.h"
 
 #include <gyre/math.h>
@@ -20,33 +21,23 @@
 namespace gyre {
 
 struct StaticTree {
-  static constexpr int kWidth = 8;
+  using Node = StaticNode;
+  static constexpr int kWidth = Node::kWidth;
   static constexpr std::uint32_t kMaxLeaf = 4;
-  static constexpr std::uint32_t kMaxItems = 1u << 28;
+  static constexpr std::uint32_t kMaxItems = Node::kMaxItems;
   // Nodes above this depth split where the heuristic says, those below by halves: the depth is bounded for any input.
   static constexpr int kHeuristicDepth = 20;
   static constexpr int kMaxDepth = kHeuristicDepth + 12;
   static constexpr int kStackSize = kMaxDepth * (kWidth - 1) + kWidth;
 
-  // A child is a node's index, or a leaf: kLeafBit, then its number of items less one (3 bits), then its first position.
-  // Unused lanes have a box that nothing overlaps.
-  static constexpr std::uint32_t kLeafBit = 1u << 31;
-  static constexpr std::uint32_t kNoChild = 0xffffffffu;
-
-  struct Node {
-    float low[3][kWidth];
-    float high[3][kWidth];
-    std::uint32_t child[kWidth];
-  };
+  static constexpr std::uint32_t kLeafBit = Node::kLeafBit;
+  static constexpr std::uint32_t kNoChild = Node::kNoChild;
 
   std::vector<Node> nodes;           // the root is the first
   std::vector<std::uint32_t> items;  // by position: the item's index in the input
   Aabb box;
 };
 
-constexpr bool is_leaf(std::uint32_t child) { return (child & StaticTree::kLeafBit) != 0; }
-constexpr std::uint32_t leaf_first(std::uint32_t child) { return child & (StaticTree::kMaxItems - 1); }
-constexpr std::uint32_t leaf_count(std::uint32_t child) { return ((child >> 28) & 7u) + 1; }
 constexpr Aabb child_box(const StaticTree::Node& node, int lane) {
   return {{node.low[0][lane], node.low[1][lane], node.low[2][lane]},
           {node.high[0][lane], node.high[1][lane], node.high[2][lane]}};

@@ -1,0 +1,19 @@
+// Chooses how many boxes are tested side by side on this machine.
+#include "geometry/line_walk.h"
+
+#include "geometry/line_walk_lanes.h"
+
+namespace gyre {
+
+#if defined(__x86_64__)
+extern const WalkLine<StaticNode> kWalkStaticLine_avx2;
+#endif
+
+WalkLine<StaticNode> select_static_line_walk() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2")) return kWalkStaticLine_avx2;
+#endif
+  return walk_line<4, StaticNode>;
+}
+
+}  // namespace gyre
