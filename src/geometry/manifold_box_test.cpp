@@ -179,6 +179,20 @@ TEST(ManifoldBox, DepthEqualsBruteForceOverFifteenAxes) {
   }
 }
 
+// The axis of two edges beside a face's normal: the face's manifold stood for it although it was an eighth deeper.
+TEST(ManifoldBox, DeepCrossingsLeaveAlongTheEdges) {
+  const Shape a = make_box({0.225729233f, 0.588535706f, 0.978316895f}),
+              b = make_box({0.520826904f, 0.202335876f, 0.939002441f});
+  const Transform t{{0, 0.683471191f, 0}, {0.535391867f, -0.465324163f, -0.427920938f, -0.560100555f}};
+  const LocalManifold m = collide(a, b, t, 0.02f);
+  ASSERT_GE(m.count, 1);
+  float deepest = kUnbounded;
+  for (int i = 0; i < m.count; ++i) deepest = min(deepest, m.points[i].separation);
+  const double depth = -signed_distance(a, b, t);
+  EXPECT_NEAR(depth, 0.52243, 1e-5);
+  EXPECT_NEAR(double(-deepest), depth, 0.09 * depth);
+}
+
 TEST(ManifoldBox, TheNormalIsContinuousThroughTouch) {
   Random random(64);
   for (int i = 0; i < 300; ++i) {

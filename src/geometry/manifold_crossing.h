@@ -13,14 +13,18 @@ namespace gyre {
 // Cosine between the axis of the edges and a face's normal above which the face is asked (3.6 degrees).
 constexpr float kNearFace = 0.998f;
 
+// What rests on another is sunk by no more than this part of `thin`.
+constexpr float kResting = 0.1f;
+
 // Whether the manifold of the face says what the edges say, `separation`, and not a quite different depth. `thin` is the
-// smallest half extent of the two.
+// smallest half extent of the two. Of what rests the face may be twice as deep; from deep overlaps the edges lead out sooner.
 inline bool stands_for_crossing(const LocalManifold& face, float separation, float thin) {
   if (face.count < 2) return false;
   float low = face.points[0].separation;
   for (int i = 1; i < face.count; ++i) low = min(low, face.points[i].separation);
+  const float depth = max(-separation, 0.0f);
   const float slack = 0.02f * absolute(separation) + 1.0e-3f * thin;
-  return low <= separation + slack && low >= 2.0f * min(separation, 0.0f) - 0.05f * thin;
+  return low <= separation + slack && low >= -depth - min(depth, kResting * thin) - 0.05f * thin;
 }
 
 }  // namespace gyre

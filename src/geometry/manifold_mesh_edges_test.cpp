@@ -425,6 +425,61 @@ TEST(CollideMeshEdges, WhatIsNearHasAContact) {
   EXPECT_NEAR(collide(sliver, Sphere{1.0f}, above, 0.02f).deepest(), 6.005e-3f, 1e-4f);
 }
 
+// Seen from beside, a sliver is an edge: discs whose rim meets it had no contact, and a cylinder that it cuts was pushed along the
+// sliver's normal, four times as far, at a point beyond its end.
+TEST(CollideMeshEdges, CylindersTouchSliversAsEdges) {
+  struct Case {
+    Vec3 corners[3];  // both ends first
+    Cylinder cylinder;
+    Transform at;
+    float separation;
+  };
+  const Case cases[] = {
+      {{{0.564962149f, -0.428625584f, -0.176342726f},
+        {-0.730284572f, -0.376855731f, 0.388075709f},
+        {0.0507825315f, -0.399270326f, 0.0441740751f}},
+       {0.959837675f, 0.0104458416f},
+       {{-0.0627072155f, -0.0872581378f, 1.00810111f}, {0, 0, 0.707106829f, 0.707106829f}},
+       0.0f},
+      {{{0.54585886f, 0.590730309f, 0.337666988f},
+        {-1.16465676f, -1.13869619f, 0.597917855f},
+        {-0.619287848f, -0.587333798f, 0.514888287f}},
+       {0.909708142f, 0.01079854f},
+       {{-0.241531715f, -0.0143020088f, -0.187197387f},
+        {0.278234512f, -0.402354479f, -0.182925984f, 0.852780461f}},
+       0.0f},
+      {{{-0.661617875f, 0.66235745f, -0.688928723f},
+        {-0.950810313f, 0.0570253134f, 0.812283874f},
+        {-0.729453504f, 0.52035284f, -0.336804092f}},
+       {0.326767147f, 0.0101593286f},
+       {{-0.618286073f, 0.338948905f, -0.175800562f}, {}},
+       0.0f},
+      {{{0.696284294f, 0.32273066f, 0.771111965f},
+        {-0.770915747f, 0.276883602f, -0.99601078f},
+        {-0.348062783f, 0.290079862f, -0.486741632f}},
+       {0.632780969f, 0.932773471f},
+       {{0.975222647f, 0.11822854f, -0.232839614f},
+        {0.0645337328f, 0.556564212f, 0.819416046f, 0.120950654f}},
+       -0.0631749f},
+  };
+  const std::uint32_t indices[] = {0, 1, 2};
+  for (const Case& c : cases) {
+    const Geometry sliver = *cook_mesh({.vertices = c.corners, .indices = indices, .double_sided = true});
+    const Manifolds found = collide(sliver, c.cylinder, c.at, 0.02f * c.cylinder.radius);
+    EXPECT_EQ(found.count, 1);
+    EXPECT_NEAR(found.deepest(), c.separation, 1e-5f);
+    // The points on the sliver lie between its ends.
+    const Vec3 along = c.corners[1] - c.corners[0];
+    const LocalManifold& m = found.all[0];
+    for (int i = 0; i < m.count; ++i) {
+      const Vec3 way = m.points[i].position - 0.5f * m.points[i].separation * m.normal - c.corners[0];
+      EXPECT_LT(length(cross(way, along)), 0.01f * length_squared(along));
+      EXPECT_GT(dot(way, along), 0.0f);
+      EXPECT_LT(dot(way, along), length_squared(along));
+    }
+  }
+}
+
 // Needles and plates over steps and slopes were taken for overlapping, and pushed out by decimetres.
 TEST(CollideMeshEdges, ThinHullsThatAreApartAreNotPushed) {
   Random random{82};

@@ -18,6 +18,8 @@ constexpr float kFaceAngle = 1.0e-3f;
 constexpr float kArcSlack = 1.0e-3f;
 constexpr float kSliverSlack = 0.1f;
 constexpr float kLevelSlack = 1.0e-3f;
+// A triangle all of whose corners are level along a direction farther than this from its normal is a sliver, seen from beside.
+constexpr float kBesideFace = 5.0e-3f;
 // A sine too.
 constexpr float kParallelEdges = 1.0e-4f;
 // Cosine between the normals at the rim of a plate; and how much farther than its edge, relative to its size, a plate may reach along an
@@ -141,6 +143,21 @@ class Search {
     unsigned corners = 1u << top;
     if (height[top] - height[after] <= kLevelSlack * t_.length[top]) corners |= 1u << after;
     if (height[top] - height[before] <= kLevelSlack * t_.length[before]) corners |= 1u << before;
+    return corners;
+  }
+
+  // Of a sliver seen from beside, which is no more than an edge: the edge that looks along `d`; of two the one nearer to
+  // `p`.
+  unsigned supporting_edge(Vec3 d, Vec3 p) const {
+    unsigned corners = 7;
+    float least = __builtin_huge_valf();
+    for (int i = 0; i < 3; ++i) {
+      if (!(dot(d, t_.outward[i]) > 0.0f)) continue;
+      const Vec3 way = p - t_.v[i];
+      const float squared =
+          length_squared(way - clamp(dot(way, t_.along[i]), 0.0f, t_.length[i]) * t_.along[i]);
+      if (squared < least) least = squared, corners = 1u << i | 1u << next_corner(i);
+    }
     return corners;
   }
 
@@ -405,7 +422,10 @@ void Search::polyhedron() {
 void Search::deepest_way_out(const CorePair& pair, const CoreDistance& found) {
   const CorePenetration out = core_penetration(pair, found);
   const Vec3 d = to_float(out.normal);
-  if (offer(d, float(-out.depth), supporting_corners(d), AxisSource::nearest_pair)) {
+  unsigned corners = supporting_corners(d);
+  if (corners == 7 && length_squared(d - t_.normal) > kBesideFace * kBesideFace)
+    corners = supporting_edge(d, to_float(out.on_a));
+  if (offer(d, float(-out.depth), corners, AxisSource::nearest_pair)) {
     found_.feature.on_core = to_float(out.on_b);
   }
 }
