@@ -1,10 +1,13 @@
 // Which contacts are hidden by a flush neighbour. See seam.h.
 #include "collision/seam.h"
 
+#include "base/sort.h"
 #include "geometry/gjk.h"
 #include "geometry/mesh_candidates.h"
 #include "geometry/support.h"
 #include "task/parallel.h"
+
+#include <algorithm>
 
 namespace gyre {
 namespace {
@@ -169,37 +172,47 @@ class Cover {
   const float slack_;
 };
 
-// The contacts of each mover with what rests, as lists.
+// The contacts with what rests of each mover that has several. What lies on one shape alone has no seam below it: most lie so, and of
+// them only the number is kept.
 class RestingContacts {
  public:
   RestingContacts(const ContactStore& store, const CollideInput& input, const Bitset& beside_resting,
                   Arena& arena)
-      : first_(arena.make<std::uint32_t>(input.proxies.size())),
-        next_(arena.make<std::uint32_t>(store.contacts.size())) {
-    for (std::uint32_t& slot : first_) slot = kNone;
-    beside_resting.for_each_set([&](std::size_t slot) {
-      Side side;
-      if (!find_side(store, std::uint32_t(slot), input, side)) return;
-      next_[slot] = first_[side.mover];
-      first_[side.mover] = std::uint32_t(slot);
+      : counts_(arena.make<std::uint8_t>(input.proxies.size())) {
+    for (std::uint8_t& count : counts_) count = 0;
+    const auto for_each = [&](auto&& fn) {
+      beside_resting.for_each_set([&](std::size_t slot) {
+        Side side;
+        if (find_side(store, std::uint32_t(slot), input, side)) fn(std::uint32_t(slot), side.mover);
+      });
+    };
+    std::size_t listed = 0;
+    for_each([&](std::uint32_t, std::uint32_t mover) {
+      // With the second the first is to be listed too.
+      if (counts_[mover] > 0) listed += counts_[mover] == 1 ? 2 : 1;
+      if (counts_[mover] < 2) ++counts_[mover];
     });
+    const std::span<std::uint64_t> keys = arena.make<std::uint64_t>(listed);
+    std::size_t next = 0;
+    for_each([&](std::uint32_t slot, std::uint32_t mover) {
+      if (has_several(mover)) keys[next++] = std::uint64_t(mover) << 32 | slot;
+    });
+    radix_sort_u64(keys, arena.make<std::uint64_t>(listed));
+    keys_ = keys;
   }
 
-  // What lies on one shape alone has no seam below it: most lie so, and need not be asked.
-  bool has_two(std::uint32_t mover) const { return first_[mover] != kNone && next_[first_[mover]] != kNone; }
-  // Whether `ask` says yes to one of a mover's contacts, by slot.
-  template <class Ask>
-  bool any(std::uint32_t mover, Ask&& ask) const {
-    for (std::uint32_t slot = first_[mover]; slot != kNone; slot = next_[slot]) {
-      if (ask(slot)) return true;
-    }
-    return false;
+  bool has_several(std::uint32_t mover) const { return counts_[mover] > 1; }
+  // Of one that has; the lower half of each is the slot.
+  std::span<const std::uint64_t> of(std::uint32_t mover) const {
+    const auto begin = std::lower_bound(keys_.begin(), keys_.end(), std::uint64_t(mover) << 32);
+    auto end = begin;
+    while (end != keys_.end() && *end >> 32 == mover) ++end;
+    return {begin, end};
   }
 
  private:
-  static constexpr std::uint32_t kNone = 0xffffffffu;
-  std::span<std::uint32_t> first_;  // by shape
-  std::span<std::uint32_t> next_;   // by slot
+  std::span<std::uint8_t> counts_;       // by shape; two stand for more
+  std::span<const std::uint64_t> keys_;  // mover and slot, ascending
 };
 
 // What questions are asked of.
@@ -215,27 +228,36 @@ bool hides(const CollideInput& input, const Patch& neighbour, const Patch& own, 
   return Cover(input, own, neighbour).hides(point) && !Cover(input, neighbour, own).hides_all();
 }
 
+// The contact that is asked about, and those of the same mover.
+struct Asked {
+  std::uint32_t slot;
+  Side side;
+  std::span<const std::uint64_t> neighbours;
+};
+
 // Whether some neighbour hides a point of the patch.
-bool is_point_hidden(const Scene& scene, std::uint32_t slot, const Patch& own, int point) {
-  return scene.resting.any(own.side.mover, [&](std::uint32_t other_slot) {
+bool is_point_hidden(const Scene& scene, const Asked& asked, const Patch& own, int point) {
+  for (const std::uint64_t key : asked.neighbours) {
+    const auto slot = std::uint32_t(key);
     Side side;
-    if (other_slot == slot || !find_side(scene.store, other_slot, scene.input, side)) return false;
-    if (!rest_together(scene.input, own.side.other_body, side.other_body)) return false;
-    const Contact& other = scene.store.contacts[other_slot];
+    if (slot == asked.slot || !find_side(scene.store, slot, scene.input, side)) continue;
+    if (!rest_together(scene.input, own.side.other_body, side.other_body)) continue;
+    const Contact& other = scene.store.contacts[slot];
     for (std::uint32_t m = 0; m < other.manifold_count; ++m) {
       const Patch by{other, side, scene.store.manifolds[other.first_manifold + m]};
       if (hides(scene.input, by, own, point)) return true;
     }
-    return false;
-  });
+  }
+  return false;
 }
 
 // Whether all points are: mostly the first is not, and nothing else is asked.
-bool is_hidden(const Scene& scene, std::uint32_t slot, const Side& side, int index) {
-  const Contact& contact = scene.store.contacts[slot];
-  const Patch own{contact, side, scene.store.manifolds[contact.first_manifold + std::uint32_t(index)]};
+bool is_hidden(const Scene& scene, const Asked& asked, int index) {
+  const Contact& contact = scene.store.contacts[asked.slot];
+  const Patch own{contact, asked.side,
+                  scene.store.manifolds[contact.first_manifold + std::uint32_t(index)]};
   for (int i = 0; i < own.manifold.count; ++i) {
-    if (!is_point_hidden(scene, slot, own, i)) return false;
+    if (!is_point_hidden(scene, asked, own, i)) return false;
   }
   return true;
 }
@@ -244,10 +266,11 @@ bool is_hidden(const Scene& scene, std::uint32_t slot, const Side& side, int ind
 std::uint8_t hidden_manifolds(const Scene& scene, std::uint32_t slot) {
   Side side;
   if (!find_side(scene.store, slot, scene.input, side)) return 0;
-  if (!scene.resting.has_two(side.mover) || scene.input.looks[side.mover_body].spin < 0.0f) return 0;
+  if (!scene.resting.has_several(side.mover) || scene.input.looks[side.mover_body].spin < 0.0f) return 0;
+  const Asked asked{slot, side, scene.resting.of(side.mover)};
   unsigned mask = 0;
   for (int i = 0; i < scene.store.contacts[slot].manifold_count; ++i) {
-    if (is_hidden(scene, slot, side, i)) mask |= 1u << i;
+    if (is_hidden(scene, asked, i)) mask |= 1u << i;
   }
   return std::uint8_t(mask);
 }
