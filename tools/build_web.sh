@@ -7,7 +7,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . tools/setup.sh
 
-need_packages emscripten cmake ninja-build python3 nlohmann-json3-dev zopfli
+need_packages emscripten binaryen cmake ninja-build python3 nlohmann-json3-dev zopfli
 for program in node npm; do
   command -v $program >/dev/null || { say "No $program: install Node.js 18 or newer."; exit 1; }
 done
