@@ -201,7 +201,13 @@ void solve_one_by_one(Crowd& crowd, const Shape& shape) {
   for (std::size_t i = 0; i < crowd.records.size(); ++i) finish_joint(crowd.records[i], crowd.work[i]);
 }
 
-void solve_side_by_side(Crowd& crowd, Shape& shape, int width) {
+// What happens between the two parts of solve_side_by_side.
+struct Between {
+  float turn = 0.0f;    // rad: how far the second body of every other copy turns
+  bool forget = false;  // nothing of the first part is kept but impulses
+};
+
+void solve_side_by_side(Crowd& crowd, Shape& shape, int width, const Between& between = {}) {
   const LinkageKernels& kernels = select_contact_kernels(width).linkages;
   const LinkageSolve solve = crowd.solve();
   const LaneArrays arrays{crowd.motion.data(), crowd.inertia.data(), crowd.orientation.data()};
@@ -250,6 +256,13 @@ void solve_side_by_side(Crowd& crowd, Shape& shape, int width) {
       set_lane_body(bundle, lane, shape.nodes[n].b, crowd.records[i].body_b);
     });
     for (int part = 0; part < 2; ++part) {
+      if (part == 1) {
+        for (int copy = first + (first + 1) % 2; copy < first + used; copy += 2) {
+          Quat& body = crowd.orientation[std::size_t(copy * kBodies + 1)];
+          body = from_rotation_vector({between.turn, 0, 0}) * body;
+        }
+        if (between.forget) kernels.begin(bundle);
+      }
       kernels.place(bundle, arrays, settings);
       kernels.warm(bundle, arrays, settings);
       kernels.solve(bundle, arrays, settings);
@@ -326,6 +339,31 @@ TEST(LinkageKernel, EveryWidthHasTheSameBits) {
         EXPECT_TRUE(same(crowd.records[i], reference.records[i])) << "width " << width << ", joint " << i;
     }
   }
+}
+
+bool same_motion(const Crowd& a, const Crowd& b, int copy) {
+  const std::size_t first = std::size_t(copy * kBodies);
+  return std::memcmp(&a.motion[first], &b.motion[first], kBodies * sizeof(BodyMotion)) == 0;
+}
+
+TEST(LinkageKernel, WaysOfStopsAreKeptUntilAJointHasTurnedFar) {
+  Shape shape;
+  Crowd kept(0.05f), forgotten(0.05f), still(0.05f);
+  solve_side_by_side(kept, shape, 0, {.turn = 0.4f});
+  solve_side_by_side(forgotten, shape, 0, {.turn = 0.4f, .forget = true});
+  solve_side_by_side(still, shape, 0);
+  for (int copy = 0; copy < kCopies; ++copy) {
+    const bool turned = copy % 2 != 0;
+    EXPECT_EQ(same_motion(kept, still, copy), !turned) << "of its neighbours' turns a lane notices nothing, " << copy;
+    if (turned) {
+      EXPECT_TRUE(same_motion(kept, forgotten, copy)) << "copy " << copy;
+    }
+  }
+  // Those that hardly turn go on with what they have: to rounding as with what would be found anew.
+  Crowd nearly_kept(0.05f), nearly_forgotten(0.05f);
+  solve_side_by_side(nearly_kept, shape, 0, {.turn = 0.02f});
+  solve_side_by_side(nearly_forgotten, shape, 0, {.turn = 0.02f, .forget = true});
+  expect_same(nearly_kept, nearly_forgotten);
 }
 
 }  // namespace
