@@ -26,11 +26,11 @@ struct BodyPlace {
 struct BodyMass {
   float mass = 0.0f;
   float inverse_mass = 0.0f;
-  Vec3 center;                  // body frame
-  Sym3 inertia;                 // kg m^2
-  Sym3 inverse_inertia;         // locked axes are taken off in the world frame, not here
-  float reach = 0.0f;           // m, farthest point of any shape from the centre of mass
-  float size = 0.0f;            // m, inner radius of its thinnest shape: the scale of tolerances
+  Vec3 center;              // body frame
+  Sym3 inertia;             // kg m^2
+  Sym3 inverse_inertia;     // locked axes are taken off in the world frame, not here
+  float reach = 0.0f;       // m, farthest point of any shape from the centre of mass
+  float size = 0.0f;        // m, inner radius of its thinnest shape: the scale of tolerances
   std::uint32_t isotropic = 0;  // 1 when all principal moments are equal: no gyroscopic effect
 };
 
@@ -51,18 +51,18 @@ struct BodyFlags {
   std::uint8_t awake = 0;
   std::uint8_t can_sleep = 1;
   std::uint8_t continuous = 0;
-  std::uint8_t frozen = 0;         // quarantined: its state stopped being finite
-  std::uint8_t locked_linear = 0;  // bits 0 to 2: world x, y, z
+  std::uint8_t frozen = 0;        // quarantined: its state stopped being finite
+  std::uint8_t locked_linear = 0;   // bits 0 to 2: world x, y, z
   std::uint8_t locked_angular = 0;
-  std::uint8_t touched = 0;  // a constraint row acted on it in the last step
+  std::uint8_t touched = 0;       // a constraint row acted on it in the last step
 };
 
 constexpr std::uint32_t kNoGroup = 0xffffffffu;
 
 struct BodySleep {
-  float still_time = 0.0f;          // s, for which it has hardly moved
-  std::uint32_t group = kNoGroup;   // lowest body of the sleeping island; kNoGroup: awake or fixed
-  std::uint32_t next_in_group = 0;  // the group as a ring
+  float still_time = 0.0f;             // s, for which it has hardly moved
+  std::uint32_t group = kNoGroup;      // lowest body of the sleeping island; kNoGroup: awake or fixed
+  std::uint32_t next_in_group = 0;     // the group as a ring
 };
 
 // Mass properties given by the user instead of by the shapes.
@@ -75,34 +75,31 @@ struct BodyOverrides {
 
 inline auto shared_bits(const BodyMass& m) {
   static_assert(sizeof(BodyMass) == 80, "every field is among the bits");
-  return words_of(m.mass, m.inverse_mass, m.center, m.inertia, m.inverse_inertia, m.reach, m.size,
-                  m.isotropic);
+  return words_of(m.mass, m.inverse_mass, m.center, m.inertia, m.inverse_inertia, m.reach, m.size, m.isotropic);
 }
 inline auto shared_bits(const BodyOverrides& o) {
   static_assert(sizeof(BodyOverrides) == 44, "every field is among the bits");
-  const std::uint32_t has =
-      std::uint32_t(o.has_mass) | std::uint32_t(o.has_center) << 8 | std::uint32_t(o.has_inertia) << 16;
+  const std::uint32_t has = std::uint32_t(o.has_mass) | std::uint32_t(o.has_center) << 8 | std::uint32_t(o.has_inertia) << 16;
   return words_of(has, o.mass, o.center, o.inertia);
 }
 
 struct BodyStore {
   IdPool ids;
   Array<BodyMotion> motion;
-  Array<BodyInertia> inertia;  // world axes, of the present orientation; can be rebuilt
+  Array<BodyInertia> inertia;       // world axes, of the present orientation; can be rebuilt
   Array<BodyPlace> places;
-  Array<Quat>
-      orientations;  // beside `places` for the solver's gathers; equal to places[i].orientation between steps
+  Array<Quat> orientations;         // beside `places` for the solver's gathers; equal to places[i].orientation between steps
   SharedColumn<BodyMass> masses;
   Array<BodyForces> forces;
   Array<BodyFlags> flags;
   Array<BodySleep> sleep;
   SharedColumn<BodyOverrides> overrides;
   Array<std::uint64_t> user_data;
-  Array<LastMove> last_moves;                  // by slot, in worlds with the integrator verlet; else empty
-  Array<SmallArray<ShapeId, 1>> shapes;        // by body, ascending index; derived
-  Array<SmallArray<std::uint32_t, 2>> joints;  // by body, ascending index; derived
-  Array<std::uint32_t> awake;  // dynamic bodies that are awake and kinematic ones, ascending; derived
-  bool awake_stale = false;    // `awake` must be rebuilt before use
+  Array<LastMove> last_moves;       // by slot, in worlds with the integrator verlet; else empty
+  Array<SmallArray<ShapeId, 1>> shapes;         // by body, ascending index; derived
+  Array<SmallArray<std::uint32_t, 2>> joints;   // by body, ascending index; derived
+  Array<std::uint32_t> awake;       // dynamic bodies that are awake and kinematic ones, ascending; derived
+  bool awake_stale = false;         // `awake` must be rebuilt before use
 };
 
 // Makes room for a body in a fresh slot and returns the slot.
@@ -124,8 +121,6 @@ void refresh_awake(BodyStore& store);
 inline bool inertia_turns(const BodyMass& mass, const BodyFlags& flags) {
   return mass.isotropic == 0 || flags.locked_angular != 0;
 }
-inline bool is_movable(const BodyFlags& flags) {
-  return flags.type == BodyType::dynamic && flags.frozen == 0;
-}
+inline bool is_movable(const BodyFlags& flags) { return flags.type == BodyType::dynamic && flags.frozen == 0; }
 
 }  // namespace gyre

@@ -23,9 +23,8 @@ inline namespace GYRE_TARGET_NAMESPACE {
 constexpr float kSpringSpeed = 0.125f;
 // By how many slops a point of a linked body must overlap (a fifth of the smaller body's inner radius) to be lost, and what share of its
 // impulse it loses in a second then: a head on the wrong side of somebody's chest cannot get back without passing it, and the neck would
-// press it on the chest ever harder. On what is not pushed it must overlap by three tenths: the ground is in nobody's way, and what a
-// crowd presses into it is to come out again.
-constexpr float kLostSlops = 500.0f, kLostInGroundSlops = 750.0f, kLostLeak = 2.0f;
+// press it on the chest ever harder.
+constexpr float kLostSlops = 500.0f, kLostLeak = 2.0f;
 // Projected sweeps over the points of a manifold in which some would pull.
 constexpr int kPullSweeps = 6;
 
@@ -341,8 +340,7 @@ template <int W, bool kSprung, int Count, bool kHasA>
 GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W, kHasA>& pair, float substep) {
   const Wide<W> zero(0.0f), one(1.0f), rate(1.0f / substep);
   const NormalMotion<W> ways = normal_ways<W, kHasA>(block), speeds = normal_speeds<W>(block, pair);
-  const auto in_another = Mask<W>::of_bits(block.pushes_a & block.pushes_b);
-  const Wide<W> lost = select(in_another, Wide<W>(-kLostSlops), Wide<W>(-kLostInGroundSlops)) * block.slop;
+  const Wide<W> lost = Wide<W>(-kLostSlops) * block.slop;
   const Wide<W> leak(1.0f / (1.0f + kLostLeak * substep));
   Wide<W> residual[Count];  // speed that the row wants to lose
   Wide<W> kept[Count];      // the impulse as it stands, less what the spring gives way
