@@ -56,6 +56,23 @@ TEST(KeptTriangles, TooManyAndFlatPatchesAreForTheTree) {
   }
 }
 
+TEST(KeptTriangles, TheInsideOfAPatchAmongHillsIsForTheTree) {
+  // So small that few lanes of the tree are all of one patch: the triangles themselves tell.
+  const Geometry ground =
+      grid(6.0f, 1.0f, [](float x, float z) {
+        return std::fabs(x) <= 2.0f && std::fabs(z) <= 2.0f ? 0.0f : 0.3f + 0.2f * std::sin(x + 2.0f * z);
+      }).cook();
+  const Mesh& mesh = *make_shape(ground).mesh;
+  int inside = 0;
+  for (std::uint32_t id = 0; id < mesh.triangle_count(); ++id) {
+    if ((mesh.flags[id] & kInsidePatch) == 0) continue;
+    ++inside;
+    KeptTriangles kept;
+    EXPECT_FALSE(keep_triangles(mesh, triangle_box(mesh, id), 0.01f, kept)) << id;
+  }
+  EXPECT_GT(inside, 0);
+}
+
 TEST(KeptTriangles, ChangeNothingOfALook) {
   const Geometry ground = hills();
   const Shape mesh = make_shape(ground);

@@ -180,8 +180,7 @@ class LinkageMaker {
   // The joints of a linkage and the bodies that move, each once, in the order in which the joints name them.
   struct Draft {
     std::span<LinkedJoint> joints;
-    std::span<std::int32_t> side_a,
-        side_b;  // by joint: which of the bodies they are; -1: it cannot be pushed
+    std::span<std::int32_t> side_a, side_b;  // by joint: which of `bodies`; -1: it cannot be pushed
     std::span<std::int32_t> bodies;
   };
   Draft make_draft(std::span<const std::uint32_t> members) {

@@ -498,8 +498,8 @@ class LaneStops {
   StopSlot<W>* slots_;
   Wide<W>* slot_ways_;      // by two slots
   std::uint32_t* columns_;  // by stop: those that it reaches
-  std::uint32_t*
-      found_;  // by two stops, the later first: lanes in which their way was found in this part of the sub-step
+  // By two stops, the later first: lanes in which their way was found in this part of the sub-step.
+  std::uint32_t* found_;
   std::uint8_t* ends_;       // by slot and lane
   std::uint8_t* laid_ends_;  // those to which the ways of slots belong
   std::uint8_t* reached_;    // by stop and row
