@@ -21,10 +21,10 @@ inline namespace GYRE_TARGET_NAMESPACE {
 // The fastest that springs take overlap back, as a share of the speed with which it is pushed apart: unlike that, theirs is
 // momentum.
 constexpr float kSpringSpeed = 0.125f;
-// By how many slops a point of a linked body must overlap (a fifth of the smaller body's inner radius) to be lost, and what share of its
+// By how many slops a point of a linked body must overlap (three tenths of the smaller body's inner radius) to be lost, and what share of its
 // impulse it loses in a second then: a head on the wrong side of somebody's chest cannot get back without passing it, and the neck would
 // press it on the chest ever harder.
-constexpr float kLostSlops = 500.0f, kLostLeak = 2.0f;
+constexpr float kLostSlops = 750.0f, kLostLeak = 2.0f;
 // Projected sweeps over the points of a manifold in which some would pull.
 constexpr int kPullSweeps = 6;
 

@@ -83,7 +83,7 @@ struct LinkageBundle {
   double* values = nullptr;  // one half of the lanes after the other: math/wide_double.h
   double* vector = nullptr;
   double* room = nullptr;      // of the widest column, for one half
-  std::byte* stops = nullptr;  // what is known of them in a part of a sub-step: as much as stop_room() says
+  std::byte* stops = nullptr;  // what is known of them in this step: as much as stop_room() says
 };
 
 struct LaneArrays {

@@ -6,7 +6,7 @@ namespace gyre {
 
 namespace {
 
-constexpr float kCalm = 1.0e-3f;     // m/s or rad/s: less is left as it is
+constexpr float kCalm = 1.0e-4f;     // m/s or rad/s: less is left as it is
 constexpr int kRounds = 3;           // each looks for stops that were passed because others hold
 constexpr double kSettled = 1.0e-5;  // m/s or rad/s: impulses that change speeds by less stand
 constexpr int kSweeps = 100;

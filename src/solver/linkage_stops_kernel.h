@@ -201,8 +201,10 @@ class LaneStops {
   Mask<W> find_calm() const {
     constexpr float kLeast = 1.0f - 0.125f * kKeptTurn * kKeptTurn;  // the cosine of half of that
     Mask<W> calm = Mask<W>::splat(true);
-    for (std::uint32_t i = 0; i < b_.plain.moving_count; ++i)
-      calm = calm & (b_.bodies[i].inverse.xx == b_.bodies[i].own_inverse.xx);
+    for (std::uint32_t i = 0; i < b_.plain.moving_count; ++i) {
+      const Sym3W<W>&now = b_.bodies[i].inverse, &own = b_.bodies[i].own_inverse;
+      calm = calm & (now.xx == own.xx) & (now.yy == own.yy) & (now.zz == own.zz);
+    }
     const Mask<W> raised = ~calm;
     const auto pose_of = [&](std::uint32_t n) {
       const LaneNode& node = b_.plain.nodes[n];

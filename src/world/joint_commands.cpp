@@ -445,9 +445,13 @@ void set_joint_axis(RigidWorld& w, std::uint32_t slot, JointAxis axis, const Joi
   const bool was_locked = to.motion == AxisMotion::locked;
   set_axis_of(to, may_lock ? def : freed(def));
   if (to.motion == AxisMotion::locked && !was_locked) to.hold = to.position;
+  // Stops begin a step with what they bore in the last: those that are no more bear nothing when they come back.
+  const bool is_limited = to.motion == AxisMotion::limited;
+  if (!is_limited) to.low_impulse = to.high_impulse = 0.0f;
   if (joint.kind == JointKind::hinge || joint.kind == JointKind::slider) {
-    joint.has_limits = def.motion == AxisMotion::limited;
+    joint.has_limits = is_limited;
     joint.limits = def.limits;
+    if (!is_limited) joint.low_impulse = joint.high_impulse = 0.0f;
     set_motor_of(joint, def.motor);
   }
   stir_ends(w, joint);
