@@ -100,7 +100,8 @@ class MeshesAhead {
       : store_(store), list_(list) {
     for (int i = 0; i < list.count; ++i) {
       if ((recycled.contacts >> i & 1) != 0) continue;
-      const KeptTriangles* const kept = kept_triangles_of(store, *list.pairs[i].contact);
+      const Contact& contact = *list.pairs[i].contact;
+      const KeptTriangles* const kept = contact.sensor != 0 ? nullptr : kept_triangles_of(store, contact);
       if (kept == nullptr) continue;
       prefetch(kept, sizeof(KeptTriangles));
       left_ |= std::uint64_t{1} << i;

@@ -74,10 +74,7 @@ GYRE_INLINE void note_nothing(const Group<W>& group, Wide<W> reach, unsigned lan
 // In which lanes a full look reaches far (look_in_room), and how far it reaches.
 template <int W>
 GYRE_INLINE Mask<W> looks_far(const Group<W>& group) {
-  unsigned empty = 0;
-  GYRE_UNROLL
-  for (int i = 0; i < W; ++i) empty |= unsigned(group.counts[i] == 0) << i;
-  return (group.way < Wide<W>(kSlow) * group.size) & Mask<W>::of_bits(empty);
+  return (group.way < Wide<W>(kSlow) * group.size) & Mask<W>::of_bits(empty_lanes<W>(group));
 }
 template <int W>
 GYRE_INLINE Wide<W> look_reach(const Group<W>& group, Mask<W> far) {
@@ -115,12 +112,9 @@ GYRE_INLINE unsigned part_by_last_face(const Group<W>& group, const ShapesInView
 template <int W>
 GYRE_INLINE unsigned search_boxes(const Group<W>& group, const ShapesInView<W>& shapes, unsigned lanes,
                                   AxisLanes<W>& axis) {
-  unsigned boxes = 0, empty = 0;
+  unsigned boxes = 0;
   GYRE_UNROLL
-  for (int i = 0; i < W; ++i) {
-    boxes |= unsigned(are_sharp_boxes(*group.pairs[i])) << i;
-    empty |= unsigned(group.counts[i] == 0) << i;
-  }
+  for (int i = 0; i < W; ++i) boxes |= unsigned(are_sharp_boxes(*group.pairs[i])) << i;
   boxes &= lanes;
   if (boxes == 0) return 0;
   const WideInt<W> last = last_axis<W>(group), none(boxes::kNoAxis);
@@ -131,7 +125,7 @@ GYRE_INLINE unsigned search_boxes(const Group<W>& group, const ShapesInView<W>& 
                              shapes.a_from_b.position, shapes.a_from_b.orientation);
   const AxisLanes<W> found = search_axes<W>(pair, reach, select(is_axis, last, none));
   const unsigned known = boxes & to_bits(found.known);
-  const unsigned apart = known & empty & to_bits(found.separation > reach);
+  const unsigned apart = known & empty_lanes<W>(group) & to_bits(found.separation > reach);
   if (apart != 0) note_nothing<W>(group, reach, apart);
   for (int i = 0; i < W; ++i) {
     if ((apart >> i & 1u) != 0) group.pairs[i]->contact->cache.words[0] = std::uint32_t(found.number[i] + 1);

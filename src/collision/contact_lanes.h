@@ -222,6 +222,15 @@ GYRE_INLINE void center_planes(Mask<W> planes, const Records<W>& shape, const Pl
   }
 }
 
+// Bits of the lanes whose contacts have no manifold.
+template <int W>
+GYRE_INLINE unsigned empty_lanes(const Group<W>& group) {
+  unsigned empty = 0;
+  GYRE_UNROLL
+  for (int i = 0; i < W; ++i) empty |= unsigned(group.counts[i] == 0) << i;
+  return empty;
+}
+
 // The shapes of a group in the frame in which manifolds are found (View).
 template <int W>
 struct ShapesInView {
@@ -272,9 +281,12 @@ GYRE_INLINE void write_views(const Group<W>& group, const ShapesInView<W>& shape
   write_four<4, W>(to, 12, {shape_p.z, shape_q.x, shape_q.y, shape_q.z});
   write_four<4, W>(to, 16, {shape_q.w, turn.x, turn.y, turn.z});
   write_four<4, W>(to, 20, {turn.w, from_a.x, from_a.y, from_a.z});
-  write_four<4, W>(to, 24, {from_b.x, from_b.y, from_b.z, from_bit_pattern(axis.number)});
-  GYRE_UNROLL
-  for (int i = 0; i < W; ++i) to[i][28] = axis.separation[i];
+  write_four<3, W>(to, 24, {from_b.x, from_b.y, from_b.z, Wide<W>(0.0f)});
+  // Lanes that only repeat the last contact know no axis.
+  for (int i = 0; i < count; ++i) {
+    to[i][27] = __builtin_bit_cast(float, axis.number[i]);
+    to[i][28] = axis.separation[i];
+  }
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

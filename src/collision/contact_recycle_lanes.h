@@ -278,9 +278,7 @@ GYRE_INLINE unsigned recycle_group(const Group<W>& group, unsigned lanes, Manifo
   const Motion<W> motion(group.seen, group.now);
   const Wide<W> reach = group.speculative + motion.bound(group.a, group.b);
   const unsigned near = lanes & to_bits((group.looked >= Wide<W>(0.0f)) & (reach <= group.looked));
-  unsigned empty = 0;
-  GYRE_UNROLL
-  for (int i = 0; i < W; ++i) empty |= unsigned(group.counts[i] == 0) << i;
+  const unsigned empty = empty_lanes<W>(group);
   const Wide<W> rounding = largest(absolute(group.now.position)) * Wide<W>(1.2e-7f);
   const unsigned rattles = to_bits(rounding > Wide<W>(kRattle) * group.size);
   // More than any manifold may tilt: no need to read them.

@@ -127,7 +127,7 @@ void for_each_contact_of_shape(const ContactStore& store, std::uint32_t shape, F
   }
 }
 
-// Null for a contact without a mesh.
+// Null for a contact without a mesh or height field; of fields nothing is ever known.
 inline KeptTriangles* kept_triangles_of(ContactStore& store, const Contact& contact) {
   return contact.manifold_room > 1 ? &store.kept_triangles[contact.first_manifold / kMaxMeshManifolds]
                                    : nullptr;

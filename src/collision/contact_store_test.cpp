@@ -54,6 +54,25 @@ TEST(ContactStore, RemovedContactsLeaveNothingBehind) {
   EXPECT_EQ(store.manifolds[store.contacts[slot].first_manifold].points[0].normal_impulse, 0.0f);
 }
 
+// Triangles are those of one mesh: whoever takes their place over knows none.
+TEST(ContactStore, TrianglesOfAMeshAreForgottenWithItsContact) {
+  ContactStore store;
+  PairShapes on_mesh;
+  on_mesh.against_mesh = true;
+  const auto add = [&](std::uint32_t shape) { return add_contact(store, pair_key(0, shape), on_mesh); };
+  const std::uint32_t slot = add(1), other = add(2);
+  const std::uint32_t chunk = store.contacts[slot].first_manifold;
+  kept_triangles_of(store, store.contacts[slot])->count = 3;
+  kept_triangles_of(store, store.contacts[other])->count = 5;
+  remove_contact(store, slot);
+  const std::uint32_t next = add(3);
+  ASSERT_EQ(store.contacts[next].first_manifold, chunk) << "it takes the same place";
+  EXPECT_EQ(kept_triangles_of(store, store.contacts[next])->count, KeptTriangles::kUnknown);
+  EXPECT_EQ(kept_triangles_of(store, store.contacts[other])->count, 5);
+  rebuild_index(store);
+  EXPECT_EQ(kept_triangles_of(store, store.contacts[other])->count, KeptTriangles::kUnknown);
+}
+
 TEST(ContactStore, ChurnKeepsIndicesRightAndMemoryLevel) {
   ContactStore store;
   Random random;

@@ -97,17 +97,12 @@ namespace {
 
 // How far two boxes are apart at least.
 double gap_of(const BoxSweep& place, const Aabb& box) {
-  DVec3 gap;
-  gap.x = max(absolute(0.5 * (double(box.low.x) + double(box.high.x)) - place.start.x) -
-                  0.5 * (double(box.high.x) - double(box.low.x)) - double(place.half_extents.x),
-              0.0);
-  gap.y = max(absolute(0.5 * (double(box.low.y) + double(box.high.y)) - place.start.y) -
-                  0.5 * (double(box.high.y) - double(box.low.y)) - double(place.half_extents.y),
-              0.0);
-  gap.z = max(absolute(0.5 * (double(box.low.z) + double(box.high.z)) - place.start.z) -
-                  0.5 * (double(box.high.z) - double(box.low.z)) - double(place.half_extents.z),
-              0.0);
-  return length(gap);
+  const auto gap = [&](int axis) {
+    const double low = double(box.low[axis]), high = double(box.high[axis]);
+    const double way = absolute(0.5 * (low + high) - place.start[axis]);
+    return max(way - 0.5 * (high - low) - double(place.half_extents[axis]), 0.0);
+  };
+  return length(DVec3{gap(0), gap(1), gap(2)});
 }
 
 // Tells of every shape within `reach` of those whose boxes come within `look`, but not within `seen`, where one has looked before

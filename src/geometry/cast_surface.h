@@ -71,7 +71,7 @@ void walk_triangles(const Shape& surface, const LocalRay& ray, Vec3 half, double
   const double piece = to - from;
   const BoxLine line(ray.origin + from * ray.way, piece * ray.way, half);
   const auto piece_reach = [&](double whole) {
-    return piece > 0.0 ? float(min((whole - from) / piece, 1.0)) * 1.000001f + 1.0e-30f : 1.0f;
+    return piece > 0.0 ? float(clamp((whole - from) / piece, 0.0, 1.0)) * 1.000001f + 1.0e-30f : 1.0f;
   };
   if (surface.kind == ShapeKind::mesh) {
     walk_cast(surface.mesh->tree, line, 1.0f, [&](std::uint32_t first, std::uint32_t count, float walked) {

@@ -24,8 +24,8 @@ class LineLanes {
     }
   }
 
-  // Bit i: lane i's box is met at a fraction from 0 to `reach`, and first at enter[i]. Boxes with low > high never are, nor
-  // those of NaN: a maximum takes its second operand where one of the two is NaN.
+  // Bit i: lane i's box is met at a fraction from 0 to `reach`, and first at enter[i]. Boxes with low > high never are; none
+  // may have NaN.
   GYRE_INLINE unsigned meets(const Node& node, float reach, float* enter) const {
     unsigned bits = 0;
     GYRE_UNROLL

@@ -105,9 +105,14 @@ TEST(LineWalk, EndsWhereWhoeverWalksSays) {
   LineWalk walk(BoxLine({-1, 0.5, 0.5}, {101, 0, 0}, {}), 0, 1.0f);
   int leaves = 0;
   while (walk_line<4>(tree.nodes.data(), walk)) {
-    ++leaves;
+    if (++leaves == 1) {
+      const std::uint32_t* const first = tree.items.data() + leaf_first(walk.leaf);
+      EXPECT_NE(std::find(first, first + leaf_count(walk.leaf), 0u), first + leaf_count(walk.leaf))
+          << "the nearest box first";
+    }
     walk.reach = 3.5f / 101.0f;  // all but the first three
   }
+  EXPECT_GE(leaves, 1);
   EXPECT_LE(leaves, 3);
 }
 

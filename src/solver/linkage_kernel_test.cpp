@@ -323,11 +323,12 @@ TEST(LinkageKernel, LanesDoWhatOneLinkageDoes) {
 TEST(LinkageKernel, EveryWidthHasTheSameBits) {
   for (const float tension : {0.05f, 50.0f}) {
     Shape shape;
+    const Between turned{.turn = 0.4f};  // some lanes keep what others find anew
     Crowd reference(tension);
-    solve_side_by_side(reference, shape, 1);
+    solve_side_by_side(reference, shape, 1, turned);
     for (const int width : {4, 8, 16}) {
       Crowd crowd(tension);
-      solve_side_by_side(crowd, shape, width);
+      solve_side_by_side(crowd, shape, width, turned);
       const std::size_t motions = crowd.motion.size() * sizeof(BodyMotion);
       EXPECT_EQ(std::memcmp(crowd.motion.data(), reference.motion.data(), motions), 0) << "width " << width;
       const auto same = [](const JointRecord& a, const JointRecord& b) {
@@ -364,6 +365,8 @@ TEST(LinkageKernel, WaysOfStopsAreKeptUntilAJointHasTurnedFar) {
   solve_side_by_side(nearly_kept, shape, 0, {.turn = 0.02f});
   solve_side_by_side(nearly_forgotten, shape, 0, {.turn = 0.02f, .forget = true});
   expect_same(nearly_kept, nearly_forgotten);
+  for (int copy = 1; copy < kCopies; copy += 2)
+    EXPECT_FALSE(same_motion(nearly_kept, nearly_forgotten, copy)) << "nothing is kept, copy " << copy;
 }
 
 }  // namespace
