@@ -56,8 +56,8 @@ struct RecordOptions {
   bool poses = true;     // a pose track: for PoseTrack, which looks at it without simulating, in any later version
   std::uint32_t frame_interval = 1;  // steps between two frames of the track, from 1; the last step always has one
   float pose_accuracy = 1.0e-4f;     // m, from 1e-12 to 1e5: the most by which a coordinate of the track may be off
-  // Steps between two hashes of the whole state, from 1; the last step always has one. The hashes of the other steps are of what
-  // moves: far cheaper, and a replay that moves otherwise is told in the very step.
+  // Steps between two hashes of the whole state, from 1; the last step has one too if the recorder ends right after it. The hashes of
+  // the other steps are of what moves: far cheaper, and a replay that moves otherwise is told in the very step.
   std::uint32_t hash_interval = 128;
 };
 

@@ -1,6 +1,6 @@
 // A box on its way along a line, or a ray: what casts look for candidates with.
 //
-// meets() is the test that decides, in double. SweepTest is for nodes of trees and the like: the same in float, made a
+// meets() is the test that decides, in double. SweepTest is for what stands before that, line() for trees: the same in float, made a
 // little larger, so that it never leaves out what meets() would take.
 //
 // Source: A. Williams, S. Barrus, R. Morley, P. Shirley, "An Efficient and Robust Ray-Box Intersection Algorithm", 2005.

@@ -78,6 +78,7 @@ class BoxTree {
   template <class Visit>
   float for_each_along(const SweepTest& sweep, float reach, Visit&& visit) const {
     if (size_ == 0) return reach;
+    static_assert(kMaxLevels * kWidth <= LineWalk::kRoom);
     LineWalk walk(sweep.line(), root_, reach);
     while (walk_line_(nodes_.data(), walk)) {
       walk.reach = visit(walk.leaf, walk.reach);

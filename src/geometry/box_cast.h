@@ -49,6 +49,7 @@ void push_near_last(WaitingPlace<Place>* stack, int& depth, unsigned mask, const
 // near to far. visit returns the new reach, never more than the old one.
 template <class Visit>
 void walk_cast(const StaticTree& tree, const BoxLine& line, float reach, Visit&& visit) {
+  static_assert(StaticTree::kStackSize <= LineWalk::kRoom);
   if (tree.nodes.empty()) return;
   const WalkLine<StaticNode> walk_on = select_static_line_walk();
   LineWalk walk(line, 0, reach);

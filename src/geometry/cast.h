@@ -14,7 +14,8 @@
 // Sources: rays on quadrics and polyhedra as intervals: E. Haines, "Essential Ray Tracing Algorithms", in "An Introduction
 // to Ray Tracing", 1989; triangles: S. Woop, C. Benthin, I. Wald, "Watertight Ray/Triangle Intersection", 2013; moving
 // shapes: Newton's method on the distance as a function of the way, which is convex, so that it never passes the impact
-// (B. Mirtich, "Impulse-based Dynamic Simulation of Rigid Body Systems", 1996, calls it conservative advancement).
+// (B. Mirtich, "Impulse-based Dynamic Simulation of Rigid Body Systems", 1996, calls it conservative advancement); balls
+// against balls, capsules, boxes and triangles: cast_ball.h.
 #pragma once
 
 #include "geometry/gjk.h"

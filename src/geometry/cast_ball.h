@@ -1,7 +1,7 @@
 // A moving ball against a ball, capsule, box or triangle in closed form: its middle is a ray, and the other shape is a core (a
 // point, segment, box or triangle) swept by both radii.
 //
-// In: the core, the sum of the radii, the way of the ball's middle. Out: the first fraction at which it is as near as that to the
+// In: the core, the sum of the radii (above 0), the way of the ball's middle. Out: the first fraction at which it is as near as that to the
 // core, where on the core, and the direction from there to the middle.
 //
 // Source: C. Ericson, "Real-Time Collision Detection", 2005, 5.3.7 and 5.5.7, with all parts of space about a box that the

@@ -1,4 +1,4 @@
-// Moving shapes: Newton's method on the distance along the way. See cast.h.
+// Moving shapes: Newton's method on the distance along the way; balls where they can in closed form (cast_ball.h). See cast.h.
 #include "geometry/cast.h"
 
 #include "geometry/cast_ball.h"

@@ -1,4 +1,4 @@
-// GJK against convex shapes, planes and triangles. See nearest.h.
+// GJK against convex shapes, planes and triangles; balls beside balls, capsules and boxes in closed form. See nearest.h.
 #include "geometry/nearest.h"
 
 #include "geometry/cast_ball.h"

@@ -125,8 +125,8 @@ TEST(FirstDifference, OfARecordingMadeWithAFault) {
   EXPECT_STREQ(found->stage, "none: only the recorded hash differs");
 }
 
-// What differed first is hidden at first: the steps since the last hash of the whole state are looked at.
-TEST(FirstDifference, OfHiddenStateIsFoundWhereItBegan) {
+// What moves does not show it: the next hash of the whole state does.
+TEST(FirstDifference, OfHiddenStateIsToldByTheNextWholeHash) {
   World world = *World::create();
   MemorySink sink;
   Recorder recorder(world, sink, {.hash_interval = 8});

@@ -7,9 +7,6 @@ namespace gyre {
 
 namespace {
 
-// 2^bits, exactly.
-double power_of_two(int bits) { return __builtin_bit_cast(double, std::uint64_t(1023 + bits) << 52); }
-
 // The floor of value + 0.5. Not by std::floor, which is a call where processors need not have it.
 std::int64_t nearest(double value) {
   const double above = value + 0.5;

@@ -21,6 +21,8 @@ struct PoseSteps {
   int position_bits = 13;
   int orientation_bits = 16;
 };
+// 2^bits, exactly.
+inline double power_of_two(int bits) { return __builtin_bit_cast(double, std::uint64_t(1023 + bits) << 52); }
 // What a file may say.
 constexpr int kMostPositionBits = 40;
 constexpr int kLeastPositionBits = -20;

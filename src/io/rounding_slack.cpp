@@ -5,8 +5,6 @@ namespace gyre {
 
 namespace {
 
-double power_of_two(int bits) { return __builtin_bit_cast(double, std::uint64_t(1023 + bits) << 52); }
-
 // From a number, in steps, to where it would be rounded to another integer; less what arithmetic may be off by.
 double to_next(double value) {
   return 0.5 - std::fabs(value - std::floor(value + 0.5)) - 1.0e-5 - 1.0e-15 * std::fabs(value);
@@ -14,9 +12,10 @@ double to_next(double value) {
 
 }  // namespace
 
-RoundingSlack find_slack(const BodyPlace& place, Vec3 mass_center, PoseSteps steps) {
+RoundingSlack find_slack(const BodyPlace& place, const BodyMass& mass, PoseSteps steps) {
   const Quat q = place.orientation;
-  const Pose pose = {place.center - rotate(q, mass_center), q};
+  const Vec3 mass_center = mass.center;
+  const Pose pose = origin_pose(place, mass);
   if (!is_finite(pose)) return {};
   const double parts[4] = {double(q.x), double(q.y), double(q.z), double(q.w)};
   double square = 0.0;

@@ -15,14 +15,16 @@ struct RoundingSlack {
 };
 
 // None where it is too near to tell.
-RoundingSlack find_slack(const BodyPlace& place, Vec3 mass_center, PoseSteps steps);
+RoundingSlack find_slack(const BodyPlace& place, const BodyMass& mass, PoseSteps steps);
 
+// With no slack, only if it has not moved at all.
 inline bool is_within(const BodyPlace& now, const BodyPlace& seen, RoundingSlack slack) {
-  if (slack.center < 0.0) return false;
   const DVec3 way = now.center - seen.center;
   const Quat a = now.orientation, b = seen.orientation;
-  const float turn = max(max(std::fabs(a.x - b.x), std::fabs(a.y - b.y)), max(std::fabs(a.z - b.z), std::fabs(a.w - b.w)));
-  return max(std::fabs(way.x), max(std::fabs(way.y), std::fabs(way.z))) <= slack.center && turn <= slack.turn;
+  const float turn =
+      max(max(std::fabs(a.x - b.x), std::fabs(a.y - b.y)), max(std::fabs(a.z - b.z), std::fabs(a.w - b.w)));
+  const double far = max(std::fabs(way.x), max(std::fabs(way.y), std::fabs(way.z)));
+  return far <= max(slack.center, 0.0) && turn <= max(slack.turn, 0.0f);
 }
 
 }  // namespace gyre

@@ -10,11 +10,12 @@ namespace {
 
 using testing_random::Random;
 
-Pose origin_of(const BodyPlace& place, Vec3 mass_center) {
+BodyMass mass_at(Vec3 center) {
   BodyMass mass;
-  mass.center = mass_center;
-  return origin_pose(place, mass);
+  mass.center = center;
+  return mass;
 }
+Pose origin_of(const BodyPlace& place, Vec3 mass_center) { return origin_pose(place, mass_at(mass_center)); }
 
 // As far as the slack allows, each part to a random side.
 BodyPlace moved(Random& random, const BodyPlace& place, RoundingSlack slack) {
@@ -34,7 +35,7 @@ TEST(RoundingSlack, KeepsTheRoundedPose) {
       const double far = i % 3 == 0 ? 1.0 : i % 3 == 1 ? 100.0 : 1.0e4;
       const BodyPlace place{far * DVec3(random.vector(-1, 1)), random.turn(3)};
       const Vec3 mass_center = i % 2 == 0 ? Vec3{} : random.vector(-1, 1);
-      const RoundingSlack slack = find_slack(place, mass_center, steps);
+      const RoundingSlack slack = find_slack(place, mass_at(mass_center), steps);
       if (slack.center < 0) continue;
       ++found;
       const RoundedPose rounded = round_pose(origin_of(place, mass_center), steps);
@@ -49,12 +50,15 @@ TEST(RoundingSlack, KeepsTheRoundedPose) {
 }
 
 TEST(RoundingSlack, IsNoneForWhatCannotBeTold) {
-  EXPECT_LT(find_slack({{}, {0, 0, 0, 0}}, {}, {}).center, 0.0);
-  EXPECT_LT(find_slack({{__builtin_nan(""), 0, 0}, Quat{}}, {}, {}).center, 0.0);
-  EXPECT_LT(find_slack({{__builtin_inf(), 0, 0}, Quat{}}, {}, {}).center, 0.0);
-  EXPECT_LT(find_slack({{1e300, 0, 0}, Quat{}}, {}, {}).center, 0.0);
-  EXPECT_LT(find_slack({{}, {0, 0, 0, __builtin_nanf("")}}, {}, {}).center, 0.0);
-  EXPECT_FALSE(is_within({}, {}, {}));
+  EXPECT_LT(find_slack({{}, {0, 0, 0, 0}}, BodyMass{}, {}).center, 0.0);
+  EXPECT_LT(find_slack({{__builtin_nan(""), 0, 0}, Quat{}}, BodyMass{}, {}).center, 0.0);
+  EXPECT_LT(find_slack({{__builtin_inf(), 0, 0}, Quat{}}, BodyMass{}, {}).center, 0.0);
+  EXPECT_LT(find_slack({{1e300, 0, 0}, Quat{}}, BodyMass{}, {}).center, 0.0);
+  EXPECT_LT(find_slack({{}, {0, 0, 0, __builtin_nanf("")}}, BodyMass{}, {}).center, 0.0);
+  // Then nothing may have moved at all.
+  EXPECT_TRUE(is_within({}, {}, {}));
+  EXPECT_FALSE(is_within({{1.0e-300, 0, 0}, {}}, {}, {}));
+  EXPECT_FALSE(is_within({{}, {1.0e-38f, 0, 0, 1}}, {}, {}));
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ void TrackWriter::round_again(const BodyPlace& place, const BodyMass& mass, Writ
       written.settled = false;
     }
   }
-  written.slack = written.same < kSameToStay ? RoundingSlack{} : find_slack(place, mass.center, start_.steps);
+  written.slack = written.same < kSameToStay ? RoundingSlack{} : find_slack(place, mass, start_.steps);
   written.seen = place;
   written.seen_mass_center = mass.center;
 }
@@ -112,6 +112,8 @@ void TrackWriter::look_at(const WorldState& state, std::uint32_t index, bool key
   written.same = 0;
   written.settled = false;
   written.slack = {};
+  written.seen = bodies.places[index];
+  written.seen_mass_center = bodies.masses[index].center;
   const Pose pose = origin_pose(bodies, index);
   if (is_finite(pose)) {
     written.next = round_pose(pose, start_.steps);

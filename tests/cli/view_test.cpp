@@ -282,7 +282,7 @@ TEST_F(View, ServesRecordingsAndSaysWhatIsWrongWithThem) {
     EXPECT_EQ(view.address, "http://127.0.0.1:" + std::to_string(view.port) + "/?file=/files/a%20run.gyrec");
     EXPECT_EQ(body_of(view.get("/files/a%20run.gyrec")), recording);
   }
-  // Behind the last frame stand two hashes of 40 bytes and the end, of 32.
+  // Behind the last frame stand the hash of the whole state, 40 bytes, and the end, 32.
   write("cut.gyrec", recording.substr(0, recording.size() - 130));
   {
     RunningView view(arguments({"cut.gyrec"}), folder_);
