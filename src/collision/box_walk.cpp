@@ -1,6 +1,7 @@
 // Chooses how many boxes are tested side by side on this machine.
 #include "collision/box_walk.h"
 
+#include "base/processor.h"
 #include "collision/box_walk_lanes.h"
 
 namespace gyre {
@@ -12,14 +13,14 @@ extern const WalkLine<BoxTreeNode> kWalkBoxLine_avx2;
 
 WalkBoxes select_box_walk() {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) return kWalkBoxes_avx2;
+  if (most_lanes() >= 8) return kWalkBoxes_avx2;
 #endif
   return walk_boxes<4>;
 }
 
 WalkLine<BoxTreeNode> select_box_line_walk() {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) return kWalkBoxLine_avx2;
+  if (most_lanes() >= 8) return kWalkBoxLine_avx2;
 #endif
   return walk_line<4, BoxTreeNode>;
 }

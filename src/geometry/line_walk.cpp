@@ -1,6 +1,7 @@
 // Chooses how many boxes are tested side by side on this machine.
 #include "geometry/line_walk.h"
 
+#include "base/processor.h"
 #include "geometry/line_walk_lanes.h"
 
 namespace gyre {
@@ -11,7 +12,7 @@ extern const WalkLine<StaticNode> kWalkStaticLine_avx2;
 
 WalkLine<StaticNode> select_static_line_walk() {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) return kWalkStaticLine_avx2;
+  if (most_lanes() >= 8) return kWalkStaticLine_avx2;
 #endif
   return walk_line<4, StaticNode>;
 }

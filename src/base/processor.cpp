@@ -1,0 +1,60 @@
+#include "base/processor.h"
+
+#if defined(__x86_64__)
+#include <cpuid.h>
+
+#include <cstring>
+#endif
+
+namespace gyre {
+
+namespace {
+
+#if defined(__x86_64__)
+bool is_by_amd() {
+  unsigned most = 0, b = 0, c = 0, d = 0;
+  if (__get_cpuid(0, &most, &b, &c, &d) == 0) return false;
+  char name[12];
+  std::memcpy(name, &b, 4), std::memcpy(name + 4, &d, 4), std::memcpy(name + 8, &c, 4);
+  return std::memcmp(name, "AuthenticAMD", 12) == 0;
+}
+
+// As processors number themselves: the extended family counts on from 15.
+unsigned family() {
+  unsigned a = 0, b = 0, c = 0, d = 0;
+  if (__get_cpuid(1, &a, &b, &c, &d) == 0) return 0;
+  const unsigned base = a >> 8 & 0xfu;
+  return base == 0xfu ? base + (a >> 20 & 0xffu) : base;
+}
+
+int find_most() {
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw")) {
+    return 16;
+  }
+  return __builtin_cpu_supports("avx2") ? 8 : kLanesOfAll;
+}
+
+int find_best() {
+  constexpr unsigned kZen5 = 0x1a;
+  const int most = find_most();
+  return most < 16 || (is_by_amd() && family() >= kZen5) ? most : 8;
+}
+#else
+int find_most() { return kLanesOfAll; }
+int find_best() { return kLanesOfAll; }
+#endif
+
+}  // namespace
+
+int most_lanes() {
+  static const int lanes = find_most();
+  return lanes;
+}
+
+int best_lanes() {
+  static const int lanes = find_best();
+  return lanes;
+}
+
+}  // namespace gyre

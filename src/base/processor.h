@@ -1,0 +1,31 @@
+// How many floats this machine's processor works on side by side: for those who choose kernels when a program or a world begins. A choice
+// never changes a bit of a result.
+#pragma once
+
+namespace gyre {
+
+// Lanes that kernels have on every processor for which this program is built. (WebAssembly without SIMD would have every lane's code one
+// after the other.)
+#if defined(__wasm__) && !defined(__wasm_simd128__)
+inline constexpr int kLanesOfAll = 1;
+#else
+inline constexpr int kLanesOfAll = 4;
+#endif
+
+// Lanes that the processor has instructions for: 16 (AVX-512 with what the kernels use of it), 8 (AVX2), or
+// kLanesOfAll.
+int most_lanes();
+
+// Lanes with which kernels run fastest, at most most_lanes(). 16 only where registers of 512 bits are as wide within: on AMD's from family
+// 1Ah on (Zen 5), where they were measured to pay. Elsewhere what they save in instructions is lost again on the way
+// (docs/performance.md).
+int best_lanes();
+
+// What somebody asked for, 0 being the best, as far as the processor has it.
+inline int lanes_for(int asked) {
+  if (asked == 0) return best_lanes();
+  const int most = most_lanes();
+  return asked < most ? asked : most;
+}
+
+}  // namespace gyre
