@@ -4,6 +4,7 @@
 #include "geometry/closed_surface.h"
 
 #include "base/sort.h"
+#include "geometry/box_cast.h"
 #include "geometry/shape.h"
 #include "geometry/static_tree.h"
 
@@ -138,34 +139,33 @@ Error CoverCheck::check_crossings(std::uint32_t i) {
 bool CoverCheck::count_crossings(std::uint32_t self, DVec3 from, DVec3 direction, int& count) const {
   bool certain = true;
   count = 0;
-  walk_ray(tree_, to_float(from), to_float(direction), reach_,
-           [&](std::uint32_t first, std::uint32_t leaf_size, float reach) {
-             for (std::uint32_t k = first; k < first + leaf_size; ++k) {
-               const std::uint32_t j = tree_.items[k];
-               if (j == self) continue;
-               const Triangle t = triangle_at(surface_, j);
-               const DVec3 a = t.a - from, b = t.b - from, c = t.c - from;
-               const double u = dot(direction, cross(b, c)), v = dot(direction, cross(c, a)),
-                            w = dot(direction, cross(a, b));
-               const double whole = u + v + w;  // direction . normal
-               const DVec3 n = cross(b - a, c - a);
-               // An almost parallel triangle counts as hit by its edge.
-               const double unsure = 1.0e-9 * (absolute(u) + absolute(v) + absolute(w));
-               const bool in =
-                   (u > unsure && v > unsure && w > unsure) || (u < -unsure && v < -unsure && w < -unsure);
-               const bool out =
-                   (u < -unsure || v < -unsure || w < -unsure) && (u > unsure || v > unsure || w > unsure);
-               if (out || !(length(n) > 0.0)) continue;
-               if (!in) {
-                 certain = false;
-                 continue;
-               }
-               const double distance = dot(n, a) / dot(n, direction);
-               if (absolute(distance) <= slack_) certain = false;
-               if (distance > 0.0) count += whole > 0.0 ? 1 : -1;
-             }
-             return reach;
-           });
+  const BoxLine ray(from, double(reach_) * direction, Vec3{});
+  walk_cast(tree_, ray, 1.0f, [&](std::uint32_t first, std::uint32_t leaf_size, float reach) {
+    for (std::uint32_t k = first; k < first + leaf_size; ++k) {
+      const std::uint32_t j = tree_.items[k];
+      if (j == self) continue;
+      const Triangle t = triangle_at(surface_, j);
+      const DVec3 a = t.a - from, b = t.b - from, c = t.c - from;
+      const double u = dot(direction, cross(b, c)), v = dot(direction, cross(c, a)),
+                   w = dot(direction, cross(a, b));
+      const double whole = u + v + w;  // direction . normal
+      const DVec3 n = cross(b - a, c - a);
+      // An almost parallel triangle counts as hit by its edge.
+      const double unsure = 1.0e-9 * (absolute(u) + absolute(v) + absolute(w));
+      const bool in = (u > unsure && v > unsure && w > unsure) || (u < -unsure && v < -unsure && w < -unsure);
+      const bool out =
+          (u < -unsure || v < -unsure || w < -unsure) && (u > unsure || v > unsure || w > unsure);
+      if (out || !(length(n) > 0.0)) continue;
+      if (!in) {
+        certain = false;
+        continue;
+      }
+      const double distance = dot(n, a) / dot(n, direction);
+      if (absolute(distance) <= slack_) certain = false;
+      if (distance > 0.0) count += whole > 0.0 ? 1 : -1;
+    }
+    return reach;
+  });
   return certain;
 }
 

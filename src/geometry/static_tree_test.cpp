@@ -1,6 +1,7 @@
 // The static tree against brute force.
 #include "geometry/static_tree.h"
 
+#include "geometry/box_cast.h"
 #include "geometry/mesh_test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -153,12 +154,12 @@ TEST(StaticTree, RaysMeetTheNearestBox) {
     float nearest = reach;
     for (const Aabb& box : boxes) nearest = min(nearest, entry(box, origin, direction, reach));
     float found = reach;
-    walk_ray(tree, origin, direction, reach, [&](std::uint32_t first, std::uint32_t count, float best) {
+    const BoxLine ray(DVec3(origin), DVec3(reach * direction), Vec3{});
+    walk_cast(tree, ray, 1.0f, [&](std::uint32_t first, std::uint32_t count, float) {
       for (std::uint32_t k = first; k < first + count; ++k) {
-        best = min(best, entry(boxes[tree.items[k]], origin, direction, reach));
+        found = min(found, entry(boxes[tree.items[k]], origin, direction, reach));
       }
-      found = min(found, best);
-      return best;
+      return found / reach;
     });
     EXPECT_EQ(found, nearest);
   }

@@ -332,6 +332,39 @@ GYRE_INLINE void solve_rolling(ContactBlock<W>& block, PairMotion<W, kHasA>& pai
   block.rolling = next;
 }
 
+// The impulses of lanes in which some points would pull, by projected sweeps: into `next`, of the others nothing.
+// From the impulses that stand, not from the block's answer with its pulls cut off: that is too strong, and piles shake.
+template <int W, int Count>
+GYRE_INLINE void sweep_pulls(const ContactBlock<W>& block, const Wide<W>* residual, const Wide<W>* kept, Mask<W> pulls,
+                             Wide<W>* next) {
+  const Wide<W> zero(0.0f), one(1.0f);
+  Wide<W> tried[Count], change[Count];
+  GYRE_UNROLL
+  for (int i = 0; i < Count; ++i) {
+    tried[i] = max(kept[i], zero);
+    change[i] = tried[i] - kept[i];
+  }
+  GYRE_ROLLED
+  for (int sweep = 0; sweep < kPullSweeps; ++sweep) {
+    auto stands = one > zero;
+    GYRE_UNROLL
+    for (int i = 0; i < Count; ++i) {
+      Wide<W> speed = residual[i];
+      GYRE_UNROLL
+      for (int j = 0; j < Count; ++j) speed = speed + block.k[packed(i, j)] * change[j];
+      const Wide<W> now = max(tried[i] - block.relief[i] * speed, zero);
+      stands = stands & (now == tried[i]);
+      tried[i] = now;
+      change[i] = now - kept[i];
+    }
+    // What all of them left as it was, as where no point bears anything, the next sweep would not change either. What the others
+    // come to is not asked.
+    if (none(and_not(pulls, stands))) break;
+  }
+  GYRE_UNROLL
+  for (int i = 0; i < Count; ++i) next[i] = select(pulls, tried[i], next[i]);
+}
+
 // The normal rows of a manifold, solved together as a small complementarity problem: first as if all points pushed (which
 // treats them alike: no order, no rocking), then, where some would pull, by projected sweeps in the space of impulses.
 // Sprung: the spring draws its points to an overlap of `slop`, in both directions, and gives way to what it is not used to.
@@ -384,34 +417,7 @@ GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W, kHasA>& pair
     pulls = pulls | (wanted < zero);
     next[i] = max(wanted, zero);
   }
-  if (Count > 1 && any(pulls)) {
-    // From the impulses that stand, not from the block's answer with its pulls cut off: that is too strong, and piles shake.
-    Wide<W> tried[Count], change[Count];
-    GYRE_UNROLL
-    for (int i = 0; i < Count; ++i) {
-      tried[i] = max(kept[i], zero);
-      change[i] = tried[i] - kept[i];
-    }
-    GYRE_ROLLED
-    for (int sweep = 0; sweep < kPullSweeps; ++sweep) {
-      auto stands = one > zero;
-      GYRE_UNROLL
-      for (int i = 0; i < Count; ++i) {
-        Wide<W> speed = residual[i];
-        GYRE_UNROLL
-        for (int j = 0; j < Count; ++j) speed = speed + block.k[packed(i, j)] * change[j];
-        const Wide<W> now = max(tried[i] - block.relief[i] * speed, zero);
-        stands = stands & (now == tried[i]);
-        tried[i] = now;
-        change[i] = now - kept[i];
-      }
-      // What all of them left as it was, as where no point bears anything, the next sweep would not change either. What the others
-      // come to is not asked.
-      if (none(and_not(pulls, stands))) break;
-    }
-    GYRE_UNROLL
-    for (int i = 0; i < Count; ++i) next[i] = select(pulls, tried[i], next[i]);
-  }
+  if (Count > 1 && any(pulls)) sweep_pulls<W, Count>(block, residual, kept, pulls, next);
   Wide<W> total = next[0] - block.points[0].impulse;
   Vec3W<W> turn_sum = total * block.points[0].arm;
   block.points[0].impulse = next[0];
