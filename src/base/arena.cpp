@@ -11,6 +11,9 @@ namespace {
 
 constexpr std::size_t kHeader = kMemoryAlign;
 constexpr std::size_t kFirstBlock = 16 * 1024;
+// What a block has to spare, as a share of what was needed. Where the last one did not do either, more will be needed soon, and
+// taking a larger one means touching all of its memory for the first time.
+constexpr std::size_t kShare = 16, kShareOfGrowing = 2;
 
 constexpr std::size_t round_up(std::size_t bytes) { return (bytes + kMemoryAlign - 1) & ~(kMemoryAlign - 1); }
 
@@ -28,6 +31,7 @@ Arena& Arena::operator=(Arena&& other) noexcept {
   peak_ = std::exchange(other.peak_, 0);
   high_water_ = std::exchange(other.high_water_, 0);
   clock_ = other.clock_;
+  grew_ = std::exchange(other.grew_, false);
   return *this;
 }
 
@@ -70,7 +74,9 @@ void Arena::reset() {
   used_before_ = 0;
   if (!too_small && !too_large) return;
   const std::size_t need = too_small ? most : clock_.most_needed();
-  const std::size_t room = round_up(need + need / 16);
+  const std::size_t spare = need / (too_small && grew_ ? kShareOfGrowing : kShare);
+  grew_ = too_small;
+  const std::size_t room = round_up(need + spare);
   free_blocks();
   add_block(room < kFirstBlock ? kFirstBlock : room);
 }

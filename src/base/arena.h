@@ -1,6 +1,6 @@
 // Arena: bump memory that lives for one step or less. make() hands out uninitialised arrays; reset() takes all of them back
-// at once and keeps the memory, as one block large enough for what the last step needed, so that after the first steps
-// nothing is allocated any more. A part of a step may take back what it used by itself (ArenaScope), so that the parts use
+// at once and keeps the memory, as one block large enough for what the last step needed and some more, so that after the first
+// steps nothing is allocated any more. A part of a step may take back what it used by itself (ArenaScope), so that the parts use
 // the same memory one after the other. What was not needed for long is given back. One per worker: nothing here is shared
 // between threads.
 #pragma once
@@ -76,6 +76,7 @@ class Arena {
   std::size_t peak_ = 0;         // of this step, at the last release
   std::size_t high_water_ = 0;
   IdleClock clock_;
+  bool grew_ = false;  // when it last took another block
 };
 
 // Takes back, at the end of a block of code, what was handed out in it.

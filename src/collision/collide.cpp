@@ -72,6 +72,7 @@ void list_contacts(ContactStore& store, std::uint32_t begin, std::uint32_t end, 
       note_touch(contact, slot, false, changes);
       continue;
     }
+    if (!proxy_a.pushes || !proxy_b.pushes || contact.sensor != 0) changes.may_stop.set(slot);
     const BodyLook& look_a = input.looks[contact.body_a];
     const BodyLook& look_b = input.looks[contact.body_b];
     if (look_a.spin < 0.0f && look_b.spin < 0.0f) continue;
@@ -161,6 +162,7 @@ void collide(ContactStore& store, const CollideInput& input, TaskSystem& tasks, 
   prepare_bits(changes.ended, count);
   prepare_bits(changes.gone, count);
   prepare_bits(changes.beside_resting, count);
+  prepare_bits(changes.may_stop, count);
   for_blocks(tasks, int(count), kContactBlock,
              [&](int begin, int end, int) { look_at_block(store, begin, end, input, changes); });
 }

@@ -99,6 +99,7 @@ struct TouchChanges {
   Bitset ended;  // the other way round
   Bitset gone;   // fat boxes no longer overlap: remove the contact (`ended` is set too if it was touching)
   Bitset beside_resting;  // looked at, has points, and only one of the two is moved by contacts (for seam.h)
+  Bitset may_stop;  // not gone, and one of the two is not pushed or is a sensor: what is fast may have to stop (for continuous.h)
 };
 
 // Brings all contacts up to date. A contact with no awake body is left exactly as it is, unless it is gone.

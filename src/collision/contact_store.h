@@ -133,17 +133,6 @@ inline KeptTriangles* kept_triangles_of(ContactStore& store, const Contact& cont
                                    : nullptr;
 }
 
-// Whether pred(slot) says yes to one of them; those after it are not asked.
-template <class Pred>
-bool any_contact_of_shape(const ContactStore& store, std::uint32_t shape, Pred&& pred) {
-  if (shape >= store.first_of_shape.size()) return false;
-  for (std::uint32_t link = store.first_of_shape[shape]; link != kNoLink;
-       link = store.links[link / 2].next[link % 2]) {
-    if (pred(link / 2)) return true;
-  }
-  return false;
-}
-
 // Whether indices, lists and free places agree with the contacts. Walks everything; for tests and debug builds. Null if
 // all is well, otherwise what is not, in words.
 const char* find_fault(const ContactStore& store);

@@ -123,19 +123,23 @@ struct Way {
   bool core_only = false;
 };
 
-// Whether nothing that is wanted can be in the way of a shape, for certain: it stays in its fat box, and in that it would have
-// a contact. So it is with most of what falls.
+// Whether a shape can have a contact with something that is wanted.
+bool may_be_near(const ContinuousInput& input, const FastBody& fast, std::uint32_t index) {
+  return fast.continuous || input.near_stops == nullptr || input.near_stops->test(index);
+}
+
+// Of the contacts of a shape: the others that are wanted. In a box within its fat box there are no more.
 template <class Wanted>
-bool is_free(const ContinuousInput& input, std::uint32_t index, const SweptShape& shape,
-             const Wanted& wanted) {
-  if (input.contacts == nullptr) return false;
-  const auto is_wanted = [&](std::uint32_t slot) {
+void list_contacts(const ContinuousInput& input, std::uint32_t index, const Wanted& wanted,
+                   Array<std::uint32_t>& found) {
+  for_each_contact_of_shape(*input.contacts, index, [&](std::uint32_t slot) {
     const Contact& contact = input.contacts->contacts[slot];
     const std::uint32_t other = contact.shape_a == index ? contact.shape_b : contact.shape_a;
-    return wanted(input.proxies[index], input.proxies[other]);
-  };
-  return !any_contact_of_shape(*input.contacts, index, is_wanted) &&
-         stays_inside(shape, input.proxies[index].fat_box);
+    if (!wanted(input.proxies[index], input.proxies[other])) return;
+    std::size_t place = found.size();
+    while (place > 0 && found[place - 1] > other) --place;
+    found.insert_at(place, other);
+  });
 }
 
 // Calls visit(shape on its way, its index, the other's index, the other on its way) for all that the shapes of a fast body
@@ -147,11 +151,16 @@ void for_each_in_the_way(const ContinuousInput& input, const Way& way, Array<std
     const ColliderShape& shape = input.shapes[index];
     if (!is_convex(shape.shape.kind)) continue;
     const SweptShape whole = make_swept_shape(shape.shape, shape.body_from_shape, way.sweep);
-    if (is_free(input, index, whole, wanted)) continue;
     found.clear();
-    input.broadphase.query(input.proxies, swept_box(whole), found);
+    // What stays in its fat box may meet only what it has a contact with: mostly nothing, of what falls.
+    const bool stays = input.contacts != nullptr && stays_inside(whole, input.proxies[index].fat_box);
+    if (stays && may_be_near(input, way.fast, index)) list_contacts(input, index, wanted, found);
+    if (stays && found.empty()) continue;
+    const Aabb box = swept_box(whole);
+    if (!stays) input.broadphase.query(input.proxies, box, found);
     std::optional<Mover> mover;  // made for the first that is in the way
     for (const std::uint32_t other : found) {
+      if (!overlap(box, input.proxies[other].fat_box)) continue;
       if (!wanted(input.proxies[index], input.proxies[other])) continue;
       const ColliderShape& obstacle = input.shapes[other];
       if (!input.blocked.empty() &&

@@ -14,6 +14,7 @@
 // would see it.
 #pragma once
 
+#include "base/bitset.h"
 #include "base/function_ref.h"
 #include "collision/broadphase.h"
 #include "collision/collide.h"
@@ -80,6 +81,8 @@ struct ContinuousInput {
   std::span<const GatePair> gates{};
   // Of all pairs that the broad phase knows; null: not kept.
   const ContactStore* contacts = nullptr;
+  // By shape: has one with what is not pushed, or with a sensor; null: not known.
+  const Bitset* near_stops = nullptr;
 };
 
 class ContinuousCollision {

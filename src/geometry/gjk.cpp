@@ -153,10 +153,77 @@ DifferencePoint CorePair::support(DVec3 direction) const {
   return out;
 }
 
+namespace {
+
+// A core over a face of a box, in the box's frame.
+struct OverFace {
+  DVec3 normal;  // of the face above which the core's middle lies highest
+  DVec3 lowest;  // the core's lowest point above it,
+  DVec3 foot;    // and what is below that in the face's plane
+  double height = 0.0;
+  bool is_within = false;  // the foot is in the face
+};
+
+// `farthest(direction)`: of the core. False if its middle is above no face.
+template <class Farthest>
+bool look_over_face(DVec3 half, DVec3 middle, const Farthest& farthest, OverFace& over) {
+  const double x = absolute(middle.x) - half.x, y = absolute(middle.y) - half.y,
+               z = absolute(middle.z) - half.z;
+  if (!(max(x, max(y, z)) > 0.0)) return false;
+  const bool is_x = x >= y && x >= z, is_y = !is_x && y >= z, is_z = !is_x && !is_y;
+  const auto side = [](double at) { return at < 0.0 ? -1.0 : 1.0; };
+  over.normal = {is_x ? side(middle.x) : 0.0, is_y ? side(middle.y) : 0.0, is_z ? side(middle.z) : 0.0};
+  const DVec3 p = over.lowest = farthest(-over.normal);
+  over.foot = {is_x ? over.normal.x * half.x : p.x, is_y ? over.normal.y * half.y : p.y,
+               is_z ? over.normal.z * half.z : p.z};
+  over.height = dot(over.normal, p - over.foot);
+  over.is_within = (is_x || absolute(p.x) <= half.x) && (is_y || absolute(p.y) <= half.y) &&
+                   (is_z || absolute(p.z) <= half.z);
+  return true;
+}
+
+// Of a hull, what is farthest is found in float.
+bool has_exact_support(const Shape& shape) { return shape.kind != ShapeKind::hull; }
+
+}  // namespace
+
+bool CorePair::find_over_face(double max_distance, CoreDistance& out) const {
+  const double least = kTouch * size_;
+  const auto tells = [&](const OverFace& over) {
+    out.beyond = over.height > max_distance;
+    out.distance = over.height;
+    return out.beyond || (over.is_within && over.height > least);
+  };
+  if (a_ == nullptr) return false;
+  OverFace over;
+  if (b_->kind == ShapeKind::box && has_exact_support(*a_)) {
+    const auto farthest = [&](DVec3 d) { return to_b(support_of(*a_, from_b(d)) - position_); };
+    if (look_over_face(DVec3(b_->extents), to_b(-position_), farthest, over) && tells(over)) {
+      out.normal = DVec3{} - from_b(over.normal);  // no -0
+      out.on_a = from_b(over.lowest) + position_;
+      out.on_b = from_b(over.foot) + position_;
+      return true;
+    }
+  }
+  if (a_->kind == ShapeKind::box && has_exact_support(*b_)) {
+    const auto farthest = [&](DVec3 d) { return from_b(support_of(*b_, to_b(d))) + position_; };
+    if (look_over_face(DVec3(a_->extents), position_, farthest, over) && tells(over)) {
+      out.normal = over.normal;
+      out.on_a = over.foot;
+      out.on_b = over.lowest;
+      return true;
+    }
+  }
+  out.beyond = false;
+  out.distance = 0.0;
+  return false;
+}
+
 double CorePair::separation(DVec3 direction) const { return dot(support(-direction).way, direction); }
 
 CoreDistance core_distance(const CorePair& pair, double max_distance, Vec3 guess) {
   CoreDistance out;
+  if (pair.find_over_face(max_distance, out)) return out;
   DVec3 n{guess};
   if (!(length_squared(n) > 0.0)) n = pair.center_of_b();
   double n_length = length(n);

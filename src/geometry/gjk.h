@@ -26,6 +26,8 @@ struct DifferencePoint {
   DVec3 on_a, on_b;
 };
 
+struct CoreDistance;
+
 // Two cores as GJK and EPA see them: a support function of B - A.
 class CorePair {
  public:
@@ -42,6 +44,9 @@ class CorePair {
   // How far the cores are apart along `direction` (unit, from A to B); negative when they overlap along it. Never more
   // than their distance.
   double separation(DVec3 direction) const;
+  // Where one core is a box and the other stands over one of its faces, with its lowest point within that face: their distance,
+  // exactly. Or that they are `beyond`. False: a search must tell.
+  bool find_over_face(double max_distance, CoreDistance& out) const;
   // A length that is as large as the shapes: what tolerances are relative to.
   double size() const { return size_; }
   DVec3 to_b(DVec3 direction) const;    // a direction of A's frame in B's

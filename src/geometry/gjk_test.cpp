@@ -94,6 +94,34 @@ TEST(Gjk, ClosedForms) {
   }
 }
 
+TEST(Gjk, WhatStandsOverAFaceOfABoxNeedsNoSearch) {
+  Random random(17);
+  const Shape box = make_box({60, 1, 60});
+  int beside = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Shape capsule = make_along_y(ShapeKind::capsule, 0.1f, random(0.1f, 1));
+    const Transform t{{random(-61, 61), random(1.9f, 3), random(-61, 61)}, random.turn()};
+    const DQuat back = conjugate(normalized(to_double(t.orientation)));
+    const CorePair pair(box, capsule, t), other_way(capsule, box, -rotate(back, DVec3(t.position)), back);
+    const DVec3 along = pair.from_b({0, double(capsule.extents.y), 0}), c = pair.center_of_b();
+    const DVec3 low = c - (along.y < 0.0 ? -1.0 : 1.0) * along;
+    const bool over = absolute(low.x) <= 60.0 && absolute(low.z) <= 60.0;
+    if (low.y <= 1.0) continue;
+    const CoreDistance found = core_distance(pair, 1.0e30, {}), turned = core_distance(other_way, 1.0e30, {});
+    EXPECT_EQ(found.iterations == 0, over) << i;
+    beside += over ? 0 : 1;
+    if (!over) continue;
+    EXPECT_DOUBLE_EQ(found.distance, low.y - 1.0) << i;
+    EXPECT_EQ(found.normal, (DVec3{0, 1, 0})) << i;
+    EXPECT_LT(length(found.on_b - low) + length(found.on_a - DVec3{low.x, 1.0, low.z}), 1.0e-12) << i;
+    EXPECT_NEAR(turned.distance, found.distance, 1.0e-12) << i;
+    EXPECT_LT(length(other_way.to_b(turned.normal) + found.normal), 1.0e-12) << i;
+    // Nearer than the lowest point no other comes, so that what is farther than asked for needs no face below it.
+    EXPECT_TRUE(core_distance(pair, 0.9 * found.distance, {}).beyond) << i;
+  }
+  EXPECT_GT(beside, 10);
+}
+
 TEST(Gjk, DenseSamplingNeverComesNearer) {
   Random random(13);
   const Shape cylinder = make_along_y(ShapeKind::cylinder, 0.6f, 0.4f),

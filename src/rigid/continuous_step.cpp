@@ -4,8 +4,10 @@
 #include "math/rotation.h"
 #include "rigid/joint_closing.h"
 #include "rigid/rigid_step.h"
+#include "rigid/shape_boxes.h"
 #include "rigid/surface_rules.h"
 #include "task/choose.h"
+#include "task/parallel.h"
 
 namespace gyre {
 
@@ -15,6 +17,7 @@ namespace {
 constexpr float kLeastProgress = 0.2f;
 // How often bodies that follow others by joints are swept in turn.
 constexpr int kMostRounds = 4;
+constexpr int kBodiesPerBlock = 64;
 
 Sweep sweep_of_body(const RigidWorld& w, std::uint32_t body) {
   const BodyMotion& motion = w.bodies.motion[body];
@@ -209,6 +212,41 @@ void list_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& ar
   Overrun(w, scratch).add_all();
 }
 
+// By shape: whether a contact may stop it.
+void mark_near_stops(const RigidWorld& w, Bitset& near) {
+  near.resize(w.shapes.colliders.size());
+  near.reset_all();
+  w.touches.may_stop.for_each_set([&](std::size_t slot) {
+    const Contact& contact = w.contacts.contacts[slot];
+    if (contact.manifold_room == 0) return;
+    near.set(contact.shape_a);
+    near.set(contact.shape_b);
+  });
+}
+
+// Leaves those out that stay in their fat boxes, in which nothing is that may stop them: most of what falls.
+void leave_out_free(const RigidWorld& w, ContinuousScratch& scratch, Arena& arena, TaskSystem& tasks) {
+  const ArenaScope scope(arena);
+  Array<FastBody>& fast = scratch.fast;
+  const std::span<std::uint32_t> bodies = arena.make<std::uint32_t>(fast.size());
+  const std::span<bool> stay = arena.make<bool>(fast.size());
+  for (std::size_t k = 0; k < fast.size(); ++k) bodies[k] = fast[k].body;
+  for_blocks(tasks, int(fast.size()), kBodiesPerBlock, [&](int begin, int end, int) {
+    const std::size_t first = std::size_t(begin), count = std::size_t(end - begin);
+    find_staying(w, bodies.subspan(first, count), stay.subspan(first, count));
+  });
+  const auto is_free = [&](std::size_t k) {
+    if (!stay[k] || fast[k].continuous || fast[k].only_crosses) return false;
+    for (const ShapeId id : w.bodies.shapes[fast[k].body])
+      if (scratch.near_stops.test(id.index)) return false;
+    return true;
+  };
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < fast.size(); ++k)
+    if (!is_free(k)) fast[kept++] = fast[k];
+  fast.resize(kept);
+}
+
 void list_moved_bodies(const RigidWorld& w, ContinuousScratch& scratch) {
   scratch.fast.clear();
   scratch.gates.clear();
@@ -241,7 +279,8 @@ void sweep_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& a
                               shapes_of,
                               w.surface_rules.empty() ? nullptr : &one_way,
                               scratch.gates,
-                              &w.contacts};
+                              &w.contacts,
+                              &scratch.near_stops};
   scratch.kept.resize(scratch.fast.size());
   scratch.collision.clamp_fast_bodies(input, scratch.fast, tasks, scratch.kept);
 }
@@ -273,6 +312,10 @@ std::span<const StoppedBody> take_back(RigidWorld& w, ContinuousScratch& scratch
 void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, const ContactKernels& kernels, Arena& arena,
                        TaskSystem& tasks) {
   list_fast_bodies(w, scratch, arena, tasks);
+  if (!scratch.fast.empty()) {
+    mark_near_stops(w, scratch.near_stops);
+    leave_out_free(w, scratch, arena, tasks);
+  }
   if (scratch.fast.empty() && scratch.gates.empty()) return;
   for (int round = 1; round <= kMostRounds; ++round) {
     sweep_fast_bodies(w, scratch, arena, tasks);

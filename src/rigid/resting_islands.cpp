@@ -36,16 +36,16 @@ bool is_still(const RigidWorld& w, std::int32_t body) {
 }  // namespace
 
 RestingIslands::RestingIslands(const RigidWorld& w, std::span<const ContactConstraint> constraints,
-                               std::span<const ColoringPair> pairs, const SolveBatch& batch,
-                               std::span<const std::uint32_t> places, Arena& arena)
+                               std::span<const ColoringPair> pairs, std::span<const NetJoint> joints,
+                               const SolveBatch& batch, std::span<const std::uint32_t> places, Arena& arena)
     : w_(w),
       batch_(batch),
       places_(places),
       parent_(arena.make<std::uint32_t>(batch.bodies.size())),
       counts_(arena.make<IslandCount>(batch.bodies.size())) {
   for (std::uint32_t i = 0; i < parent_.size(); ++i) parent_[i] = i, counts_[i] = {};
-  unite_all(pairs);
-  refuse_jointed();
+  unite_all(pairs, joints);
+  refuse_jointed(joints);
   count_bodies();
   count_contacts(constraints, pairs);
 }
@@ -62,14 +62,13 @@ void RestingIslands::unite(std::uint32_t place_a, std::uint32_t place_b) {
   parent_[max(a, b)] = min(a, b);
 }
 
-void RestingIslands::unite_all(std::span<const ColoringPair> pairs) {
+void RestingIslands::unite_all(std::span<const ColoringPair> pairs, std::span<const NetJoint> joints) {
   for (const ColoringPair& pair : pairs) {
     if (pair.a != ColoringPair::kNone && pair.b != ColoringPair::kNone) unite(pair.a, pair.b);
   }
-  for (const std::uint32_t slot : batch_.joints) {
-    const JointRecord& joint = w_.joints.records[slot];
-    if (is_active(w_, joint.body_a) && is_active(w_, joint.body_b))
-      unite(place_of(joint.body_a), place_of(joint.body_b));
+  for (const NetJoint& joint : joints) {
+    if (joint.body_a != kNoBody && joint.body_b != kNoBody)
+      unite(places_[std::size_t(joint.body_a)], places_[std::size_t(joint.body_b)]);
   }
   // Who is lower has its root by now.
   for (std::uint32_t& parent : parent_) parent = parent_[parent];
@@ -113,13 +112,9 @@ void RestingIslands::count_contacts(std::span<const ContactConstraint> constrain
   }
 }
 
-void RestingIslands::refuse_jointed() {
-  for (const std::uint32_t slot : batch_.joints) {
-    const JointRecord& joint = w_.joints.records[slot];
-    for (const std::int32_t body : {joint.body_a, joint.body_b}) {
-      if (is_active(w_, body)) counts_[parent_[place_of(body)]].refused = true;
-    }
-  }
+void RestingIslands::refuse_jointed(std::span<const NetJoint> joints) {
+  for (const NetJoint& joint : joints)
+    for_moving(joint, [&](std::uint32_t body) { counts_[parent_[places_[body]]].refused = true; });
 }
 
 IncidentContacts link_incident_contacts(std::span<const ColoringPair> pairs, std::size_t bodies,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/arena.h"
+#include "rigid/joint_works.h"
 #include "rigid/rigid_world.h"
 #include "rigid/solve_batches.h"
 #include "solver/contact_block.h"
@@ -23,10 +24,6 @@ constexpr float kStructureStillShare = 1.0e-6f;
 // An island with loops that is slower than this as a step begins has nothing to lose but what the step's forces give it.
 constexpr float kSettledShare = 1.0e-4f;
 
-inline bool is_active(const RigidWorld& w, std::int32_t body) {
-  return body != kNoBody && is_active(w, std::uint32_t(body));
-}
-
 // What is counted about an island, as long as it is not refused.
 struct IslandCount {
   std::uint32_t bodies = 0, contacts = 0, grounded = 0;
@@ -41,10 +38,11 @@ struct IslandCount {
 
 class RestingIslands {
  public:
-  // `pairs`: places of the constraints' bodies in the batch, as far as these move. `places`: of all bodies (solve_batches.h).
+  // `pairs`: places of the constraints' bodies in the batch, as far as these move. `joints`: those of the batch. `places`: of all
+  // bodies (solve_batches.h).
   RestingIslands(const RigidWorld& w, std::span<const ContactConstraint> constraints,
-                 std::span<const ColoringPair> pairs, const SolveBatch& batch,
-                 std::span<const std::uint32_t> places, Arena& arena);
+                 std::span<const ColoringPair> pairs, std::span<const NetJoint> joints,
+                 const SolveBatch& batch, std::span<const std::uint32_t> places, Arena& arena);
 
   // By place of a body in the batch. Only roots have counts.
   bool is_root(std::uint32_t place) const {
@@ -55,10 +53,9 @@ class RestingIslands {
 
  private:
   std::uint32_t root(std::uint32_t place);
-  std::uint32_t place_of(std::int32_t body) const { return places_[std::size_t(body)]; }
   void unite(std::uint32_t place_a, std::uint32_t place_b);
-  void unite_all(std::span<const ColoringPair> pairs);
-  void refuse_jointed();
+  void unite_all(std::span<const ColoringPair> pairs, std::span<const NetJoint> joints);
+  void refuse_jointed(std::span<const NetJoint> joints);
   void count_bodies();
   void count_contacts(std::span<const ContactConstraint> constraints, std::span<const ColoringPair> pairs);
 

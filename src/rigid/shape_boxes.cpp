@@ -40,6 +40,8 @@ struct Vectors {
 
 // Of the numbers that a side of a box is the sum of: more than rounding them to float, and what world_box() adds, can come to.
 constexpr float kRounding = 4.0e-6f;
+// The same of what a sweep adds, whose ends are boxes of their own.
+constexpr float kWayRounding = 1.0e-5f;
 
 // Shapes whose box is as far to both sides: that of the inner box, turned, and the radius around it.
 bool is_rounded_box(ShapeKind kind) {
@@ -52,10 +54,21 @@ GYRE_INLINE Vector turned_extents(const Rotation& q, const Vector& half) {
   return half.x * absolute(r.x) + half.y * absolute(r.y) + half.z * absolute(r.z);
 }
 
+// How bodies go: at their velocities for some seconds, or as far as they went in this step.
+struct Going {
+  Vec3 BodyMotion::*linear;
+  Vec3 BodyMotion::*angular;
+  float seconds;
+};
+constexpr Going coming(float seconds) {
+  return {&BodyMotion::linear_velocity, &BodyMotion::angular_velocity, seconds};
+}
+constexpr Going kGone{&BodyMotion::moved, &BodyMotion::turned, 1.0f};
+
 // From one to four shapes.
 class ShapeLanes {
  public:
-  ShapeLanes(const RigidWorld& w, std::span<const std::uint32_t> shapes, float seconds) {
+  ShapeLanes(const RigidWorld& w, std::span<const std::uint32_t> shapes, const Going& going) {
     const float *turns[kLanes], *centers[kLanes], *linear[kLanes], *angular[kLanes];
     const float *radii[kLanes], *places[kLanes], *place_turns[kLanes];
     Numbers reaches;
@@ -71,8 +84,8 @@ class ShapeLanes {
       reaches.value[i] = mass.reach;
       turns[i] = &w.bodies.places[body].orientation.x;
       centers[i] = &mass.center.x;
-      linear[i] = &w.bodies.motion[body].linear_velocity.x;
-      angular[i] = &w.bodies.motion[body].angular_velocity.x;
+      linear[i] = &(w.bodies.motion[body].*going.linear).x;
+      angular[i] = &(w.bodies.motion[body].*going.angular).x;
       radii[i] = &collider.shape.radius;
       places[i] = &collider.body_from_shape.position.x;
       place_turns[i] = &collider.body_from_shape.orientation.x;
@@ -85,8 +98,10 @@ class ShapeLanes {
     const FourEach radius_and_extents(radii);
     const Number radius = radius_and_extents.value[0];
     half_ = turned_extents(turn, radius_and_extents.vector(1)) + Vector{radius, radius, radius};
-    way_ = Number(seconds) * FourEach(linear).vector(0);
-    turning_ = Number(seconds) * reaches * length(FourEach(angular).vector(0));
+    way_ = Number(going.seconds) * FourEach(linear).vector(0);
+    const Number spin = length(FourEach(angular).vector(0));
+    turning_ = Number(going.seconds) * reaches * spin;
+    angle_ = Number(going.seconds) * spin;
   }
 
   ShapeBox box(int lane) const {
@@ -101,6 +116,28 @@ class ShapeLanes {
 
   // Bit i: refit_box() leaves the fat box of lane i as it is, for certain; most rest in theirs for many steps.
   unsigned stay() const {
+    const Number size = sizes_;
+    Mask<kLanes> fits = Mask<kLanes>::splat(true);
+    const auto fit = [&](Number inside, Number from, Number to, Number slack) {
+      fits = fits & (to - from - (inside + inside) + slack < kTooLarge * size);
+    };
+    const unsigned inside = stay_within(kSpeculativeShare * size + turning_, kRounding, fit);
+    return inside & to_bits(fits);
+  }
+
+  // Bit i: the whole way of lane i is inside its fat box, for certain.
+  unsigned stay_on_way() const {
+    const Number turning = turning_, angle = angle_;
+    // Its end, and as far as its turn bulges between start and end.
+    return stay_within(turning + 0.125f * turning * angle, kWayRounding,
+                       [](Number, Number, Number, Number) {});
+  }
+
+ private:
+  // Bit i: the shape and a margin around it, and both after their way, are inside the fat box of lane i. Calls
+  // also(half of the shape's side, box's low and high, slack) for each axis.
+  template <class Also>
+  unsigned stay_within(Number margin, float rounding, const Also& also) const {
     const float *lows[kLanes], *highs[kLanes];
     Vectors middles;
     unsigned known = 0;
@@ -113,15 +150,15 @@ class ShapeLanes {
     }
     const Vector low = FourEach(lows).vector(0), high = FourEach(highs).vector(1);
     const Vector middle = middles, to_origin = to_origin_, to_shape = to_shape_, half = half_, way = way_;
-    const Number size = sizes_, margin = kSpeculativeShare * size + turning_, zero = 0.0f;
+    const Number zero = 0.0f;
     const Vector reach = half + Vector{margin, margin, margin}, position = middle - to_origin + to_shape;
-    const Number slack = kRounding * largest(absolute(middle) + absolute(to_origin) + absolute(to_shape) +
-                                             reach + absolute(way));
+    const Number slack = rounding * largest(absolute(middle) + absolute(to_origin) + absolute(to_shape) +
+                                            reach + absolute(way));
     Mask<kLanes> stays = Mask<kLanes>::splat(true);
     const auto look = [&](Number at, Number away, Number goes, Number inside, Number from, Number to) {
-      stays = stays & (at - away + min(goes, zero) - slack > from) &
-              (at + away + max(goes, zero) + slack < to) &
-              (to - from - (inside + inside) + slack < kTooLarge * size);
+      stays =
+          stays & (at - away + min(goes, zero) - slack > from) & (at + away + max(goes, zero) + slack < to);
+      also(inside, from, to, slack);
     };
     look(position.x, reach.x, way.x, half.x, low.x, high.x);
     look(position.y, reach.y, way.y, half.y, low.y, high.y);
@@ -129,44 +166,63 @@ class ShapeLanes {
     return to_bits(stays) & known;
   }
 
- private:
   const ColliderShape* colliders_[kLanes];
   const Aabb* boxes_[kLanes];
   DVec3 middles_[kLanes];  // of the bodies' mass
   Vectors to_origin_, to_shape_, half_, way_;
-  Numbers sizes_, turning_, turn_[4];
+  Numbers sizes_, turning_, angle_, turn_[4];
 };
 
 }  // namespace
 
 ShapeBox find_box(const RigidWorld& w, std::uint32_t shape, float seconds) {
-  return ShapeLanes(w, {&shape, 1}, seconds).box(0);
+  return ShapeLanes(w, {&shape, 1}, coming(seconds)).box(0);
 }
 
+namespace {
+
+// Calls look(shapes, their number, places of their bodies in the list) for the bodies' shapes, so many at once.
+template <class Look>
+void for_lanes(const RigidWorld& w, std::span<const std::uint32_t> bodies, const Look& look) {
+  std::uint32_t shapes[kLanes], owners[kLanes];
+  std::size_t count = 0;
+  for (std::uint32_t place = 0; place < bodies.size(); ++place) {
+    for (const ShapeId id : w.bodies.shapes[bodies[place]]) {
+      shapes[count] = id.index;
+      owners[count++] = place;
+      if (count < kLanes) continue;
+      look(std::span<const std::uint32_t>(shapes, count), owners);
+      count = 0;
+    }
+  }
+  if (count > 0) look(std::span<const std::uint32_t>(shapes, count), owners);
+}
+
+}  // namespace
+
 bool refit_boxes(RigidWorld& w, std::span<const std::uint32_t> bodies, float seconds) {
-  std::uint32_t shapes[kLanes];
-  int count = 0;
   bool any = false;
-  const auto look = [&] {
-    const ShapeLanes lanes(w, {shapes, std::size_t(count)}, seconds);
+  for_lanes(w, bodies, [&](std::span<const std::uint32_t> shapes, const std::uint32_t*) {
+    const ShapeLanes lanes(w, shapes, coming(seconds));
     const unsigned stay = lanes.stay();
-    for (int i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
       if ((stay >> i & 1u) != 0) continue;
-      const ShapeBox box = lanes.box(i);
+      const ShapeBox box = lanes.box(int(i));
       if (!refit_box(w.shapes.proxies[shapes[i]].fat_box, box.tight, box.motion)) continue;
       w.refit_marks[shapes[i]] = 1;
       any = true;
     }
-    count = 0;
-  };
-  for (const std::uint32_t body : bodies) {
-    for (const ShapeId id : w.bodies.shapes[body]) {
-      shapes[count++] = id.index;
-      if (count == kLanes) look();
-    }
-  }
-  if (count > 0) look();
+  });
   return any;
+}
+
+void find_staying(const RigidWorld& w, std::span<const std::uint32_t> bodies, std::span<bool> stay) {
+  for (bool& one : stay) one = true;
+  for_lanes(w, bodies, [&](std::span<const std::uint32_t> shapes, const std::uint32_t* owners) {
+    const unsigned known = ShapeLanes(w, shapes, kGone).stay_on_way();
+    for (std::size_t i = 0; i < shapes.size(); ++i)
+      stay[owners[i]] = stay[owners[i]] && (known >> i & 1u) != 0;
+  });
 }
 
 }  // namespace gyre

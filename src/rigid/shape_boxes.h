@@ -18,4 +18,7 @@ ShapeBox find_box(const RigidWorld& w, std::uint32_t shape, float seconds);
 // Makes the fat boxes of the bodies' shapes anew where that must be, and marks these in refit_marks; whether there are any.
 bool refit_boxes(RigidWorld& w, std::span<const std::uint32_t> bodies, float seconds);
 
+// For each of the bodies, which move: whether all its shapes stay in their fat boxes on their way in this step. True is certain.
+void find_staying(const RigidWorld& w, std::span<const std::uint32_t> bodies, std::span<bool> stay);
+
 }  // namespace gyre

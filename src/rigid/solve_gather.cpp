@@ -255,21 +255,59 @@ void gather_joints(Solve& solve) {
   s.joint_pairs.resize_uninitialized(count);
 }
 
+namespace {
+
+// The kernels leave out what no body of a block needs: those that turn by another way lie apart.
+constexpr std::uint8_t kTurnsAlone = 0, kNeverSwerves = 1, kSwerves = 2, kWaysToTurn = 3;
+std::uint8_t way_to_turn(const Solve& solve, std::uint32_t body) {
+  if (turns_alone(solve.w.bodies, body, solve.motions.substep)) return kTurnsAlone;
+  return solve.w.bodies.masses[body].isotropic != 0 ? kNeverSwerves : kSwerves;
+}
+
+// Lists the bodies that constraints act on, and the others.
+void part_bodies(Solve& solve, Arena& arena) {
+  const RigidWorld& w = solve.w;
+  const std::span<const std::uint32_t> bodies = solve.batch.bodies;
+  solve.moved = arena.make<MovedBody>(bodies.size());
+  solve.flying = arena.make<std::uint32_t>(bodies.size());
+  const ArenaScope scope(arena);
+  // Where a body belongs: those in contact first, each by the way in which it turns.
+  constexpr std::uint8_t kNotMoved = 2 * kWaysToTurn, kApart = kWaysToTurn;
+  const std::span<std::uint8_t> kinds = arena.make<std::uint8_t>(bodies.size());
+  for (std::uint8_t& kind : kinds) kind = kApart;
+  for (const ColoringPair& pair : solve.scratch.pairs) {
+    if (pair.a != ColoringPair::kNone) kinds[pair.a] = 0;
+    if (pair.b != ColoringPair::kNone) kinds[pair.b] = 0;
+  }
+  std::size_t starts[kNotMoved + 2] = {}, flying = 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const std::uint32_t body = bodies[i];
+    if (w.bodies.flags[body].touched != kUntouched) {
+      kinds[i] = std::uint8_t(kinds[i] + way_to_turn(solve, body));
+    } else {
+      kinds[i] = kNotMoved;
+      if (!solve.is_smooth || !is_movable(w.bodies.flags[body])) solve.flying[flying++] = body;
+    }
+    ++starts[kinds[i] + 1];
+  }
+  for (std::size_t kind = 0; kind <= kNotMoved; ++kind) starts[kind + 1] += starts[kind];
+  const std::size_t moved = starts[kNotMoved];
+  solve.moved_in_contact = starts[kApart];
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (kinds[i] != kNotMoved) solve.moved[starts[kinds[i]]++].body = std::int32_t(bodies[i]);
+  solve.moved = solve.moved.first(moved);
+  solve.flying = solve.flying.first(flying);
+}
+
+}  // namespace
+
 void gather_motion(Solve& solve, Arena& arena, TaskSystem& tasks) {
   RigidWorld& w = solve.w;
-  const std::size_t count = solve.batch.bodies.size();
-  solve.moved = arena.make<MovedBody>(count);
-  solve.pushes = arena.make<Vec3>(count);
-  solve.flying = arena.make<std::uint32_t>(count);
-  solve.spinners = arena.make<std::uint32_t>(count);
-  std::size_t moved = 0, flying = 0, spinners = 0;
-  for (const std::uint32_t body : solve.batch.bodies) {
-    if (w.bodies.flags[body].touched != kUntouched) {
-      solve.moved[moved++].body = std::int32_t(body);
-    } else if (!solve.is_smooth || !is_movable(w.bodies.flags[body])) {
-      solve.flying[flying++] = body;
-    }
-  }
+  part_bodies(solve, arena);
+  const std::size_t moved = solve.moved.size();
+  solve.pushes = arena.make<Vec3>(moved);
+  solve.spinners = arena.make<std::uint32_t>(moved);
+  std::size_t spinners = 0;
   const auto describe = [&](int begin, int end, int) {
     bool any_spins = false;
     for (MovedBody& each : solve.moved.subspan(std::size_t(begin), std::size_t(end - begin))) {
@@ -283,13 +321,10 @@ void gather_motion(Solve& solve, Arena& arena, TaskSystem& tasks) {
   };
   const auto either = [](bool a, bool b) { return a || b; };
   if (reduce_blocks(tasks, int(moved), kBodiesPerBlock, false, describe, either)) {
-    for (const MovedBody& each : solve.moved.first(moved)) {
+    for (const MovedBody& each : solve.moved) {
       if (each.turns_alone) solve.spinners[spinners++] = std::uint32_t(each.body);
     }
   }
-  solve.moved = solve.moved.first(moved);
-  solve.pushes = solve.pushes.first(moved);
-  solve.flying = solve.flying.first(flying);
   solve.spinners = solve.spinners.first(spinners);
   const std::size_t width = std::size_t(solve.kernels.width);
   solve.motion_blocks =

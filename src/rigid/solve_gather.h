@@ -50,7 +50,8 @@ struct Solve {
   void* motion_blocks = nullptr;        // the same for the kernels,
   std::span<Vec3> pushes{};             // and how overlap turned them
   std::span<std::uint32_t> spinners{};  // those of them that turn alone
-  bool is_watched = false;              // whether anybody asks what contacts gave them
+  std::size_t moved_in_contact = 0;     // of these, the first: contacts act on them
+  int watched_blocks = 0;               // the first: of these somebody asks what contacts gave the bodies
   std::span<std::uint32_t> flying{};    // the others
   ContactForest forest{};
   TreeSolve tree_solve{};
@@ -79,7 +80,8 @@ void gather_contacts(Solve& solve, Arena& arena, TaskSystem& tasks);
 void look_at_joints(Solve& solve, Arena& arena, TaskSystem& tasks);
 // Those that are in no linkage, as contacts.
 void gather_joints(Solve& solve);
-// Parts the bodies of a batch into those that constraints act on and those that fly.
+// Parts the bodies of a batch into those that constraints act on and those that fly. Of the former those in contact come first;
+// those that turn alike lie side by side.
 void gather_motion(Solve& solve, Arena& arena, TaskSystem& tasks);
 
 // Lays the coloured constraints out in blocks of W lanes, in groups of which there is room for kMostGroups. A group starts a new

@@ -39,13 +39,19 @@ void prepare_motion_stage(void* context, int begin, int end, int) {
   s.kernels.motion.prepare(s.motion_blocks, begin, end, s.moved.data(), int(s.moved.size()),
                            s.contact_bodies.inertia);
 }
-void predict_cold_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  s.kernels.motion.predict(s.motion_blocks, begin, end, s.contact_bodies.motion, false, s.is_watched);
+// Calls run(first, last, whether they are watched) for blocks [begin, end) of bodies.
+template <class Run>
+void part_watched(const Solve& s, int begin, int end, Run&& run) {
+  const int middle = max(begin, min(end, s.watched_blocks));
+  if (begin < middle) run(begin, middle, true);
+  if (middle < end) run(middle, end, false);
 }
-void predict_warm_stage(void* context, int begin, int end, int) {
+template <bool kWarm>
+void predict_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
-  s.kernels.motion.predict(s.motion_blocks, begin, end, s.contact_bodies.motion, true, s.is_watched);
+  part_watched(s, begin, end, [&](int first, int last, bool watched) {
+    s.kernels.motion.predict(s.motion_blocks, first, last, s.contact_bodies.motion, kWarm, watched);
+  });
 }
 void warm_motion_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
@@ -62,9 +68,10 @@ void note_stage(void* context, int begin, int end, int) {
 void advance_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
   BodyStore& bodies = s.w.bodies;
-  s.kernels.motion.advance(s.motion_blocks, begin, end,
-                           {bodies.motion.data(), bodies.inertia.data(), bodies.orientations.data()}, s.h,
-                           s.is_watched);
+  const MotionArrays arrays{bodies.motion.data(), bodies.inertia.data(), bodies.orientations.data()};
+  part_watched(s, begin, end, [&](int first, int last, bool watched) {
+    s.kernels.motion.advance(s.motion_blocks, first, last, arrays, s.h, watched);
+  });
 }
 void turn_alone_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
@@ -341,17 +348,9 @@ void joint_slices_stage(void* context, int begin, int end, int worker) {
   }
 }
 
-void move_smooth(void* context, int begin, int end, int worker) {
-  move_smooth_stage(&static_cast<Solve*>(context)->smooth, begin, end, worker);
-}
-void move_carried(void* context, int begin, int end, int worker) {
-  move_carried_stage(&static_cast<Solve*>(context)->smooth, begin, end, worker);
-}
-void kick_carriers(void* context, int begin, int end, int worker) {
-  kick_carriers_stage(&static_cast<Solve*>(context)->smooth, begin, end, worker);
-}
-void finish_smooth(void* context, int begin, int end, int worker) {
-  finish_smooth_stage(&static_cast<Solve*>(context)->smooth, begin, end, worker);
+template <void (*kernel)(void*, int, int, int)>
+void smooth_stage(void* context, int begin, int end, int worker) {
+  kernel(&static_cast<Solve*>(context)->smooth, begin, end, worker);
 }
 
 // Of linkages [begin, end).
@@ -384,6 +383,14 @@ void bundle_stage(void* context, int begin, int end, int) {
 
 // ---------------------------------------------------------------------------------------------------------- program
 
+// Of how many bodies, the first, somebody asks what contacts gave them: where there may be any. (The look clears negative zeros
+// away, too, which joints that are not in lanes leave.)
+std::size_t count_watched(const Solve& s, bool has_contacts) {
+  const bool has_lanes = !s.bundles.bundles.empty(), has_linkages = !s.linkages.linkages.empty();
+  if (s.joint_groups.empty() && !has_linkages) return has_lanes ? s.moved_in_contact : s.moved.size();
+  return has_contacts || has_lanes || has_linkages ? s.moved.size() : 0;
+}
+
 // The stages of one part of a sub-step. Impacts and joints are between forces, contacts and moves only where there are any.
 //
 // Stacks and structures at rest are solved directly after the first sweep, which gives them the loads of this step, and after
@@ -400,18 +407,16 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   // is none of what contacts gave in the last one.
   const bool has_joints = linkages > 0 || bundles > 0 || !joints.empty();
   const bool is_warm = !first && impacts == 0 && !has_joints;
-  // What contacts gave is looked at only where there may be any. (Linkages leave negative zeros, which the look clears away.)
-  solve.is_watched = !contacts.empty() || linkages > 0 || bundles > 0 || !has_joints;
-  const int watched = solve.is_watched ? bodies : 0;
+  const int watched = solve.watched_blocks;
   const int fields = solve.fields.blocks();
   const int slices = joints.empty() ? 0 : kJointSlices;
   program.add(watch_fields_stage, &solve.fields, fields);
   program.add(watch_stage, &solve, impacts);
   if (solve.smooth.any_carried) {
-    program.add(move_carried, &solve, solve.smooth.count());
-    program.add(kick_carriers, &solve, 1);
+    program.add(smooth_stage<move_carried_stage>, &solve, solve.smooth.count());
+    program.add(smooth_stage<kick_carriers_stage>, &solve, 1);
   }
-  program.add(is_warm ? predict_warm_stage : predict_cold_stage, &solve, bodies, kMotionBlocksPerClaim);
+  program.add(is_warm ? predict_stage<true> : predict_stage<false>, &solve, bodies, kMotionBlocksPerClaim);
   program.add(strike_stage, &solve, impacts);
   program.add(joint_slices_stage<bend_joints_stage>, &solve, slices, kSlicesPerClaim);
   program.add(linkage_stage<warm_linkage>, &solve, linkages);
@@ -461,12 +466,13 @@ void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> join
       (solve.bundles.bundles.empty() ? 26 : 31) + 3 * joints.size() + 2 * contacts.size();
   ProgramWriter program(arena.make<Stage>(18 + std::size_t(parts) * per_part + 2 * contacts.size()));
   solve.joint_groups = joints;
+  solve.watched_blocks = count_blocks(int(count_watched(solve, !contacts.empty())), solve.kernels.width);
   const int slices = joints.empty() ? 0 : kJointSlices;
   std::uint32_t blocks = 0;
   for (const Group& group : contacts) blocks += group.count;
   const int bodies = count_blocks(int(solve.moved.size()), solve.kernels.width);
   program.add(fly_stage, &solve, count_blocks(int(solve.flying.size()), kBodiesPerBlock));
-  program.add(move_smooth, &solve, solve.smooth.count());
+  program.add(smooth_stage<move_smooth_stage>, &solve, solve.smooth.count());
   program.add(prepare_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
   program.add(prepare_fields_stage, &solve.fields, solve.fields.blocks());
   program.add(prepare_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
@@ -482,7 +488,7 @@ void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> join
   program.add_groups(project_contacts_stage, contacts, 1, kBlocksPerClaim);
   program.add(end_projection_stage, &solve, bodies, kMotionBlocksPerClaim);
   program.add(finish_turns_stage, &solve, count_blocks(int(solve.moved.size()), kBodiesPerBlock));
-  program.add(finish_smooth, &solve, solve.smooth.count());
+  program.add(smooth_stage<finish_smooth_stage>, &solve, solve.smooth.count());
   program.add(finish_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
   program.add(finish_bundles_stage, &solve, bundles);
   program.add(joint_slices_stage<finish_balls_stage>, &solve, slices, kSlicesPerClaim);

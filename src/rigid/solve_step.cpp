@@ -33,14 +33,31 @@ constexpr float kBounceShare = 2.0f;
 // By how much impulses grow at most from one part of an adaptive step to the next.
 constexpr float kMostWarm = 4.0f;
 
+// Whether all that is in contact hangs on joints. None of these islands counts as one at rest.
+bool all_contacts_hang(const Solve& solve, Arena& arena) {
+  if (solve.net_joints.empty()) return false;
+  const ArenaScope scope(arena);
+  const std::span<std::uint8_t> hangs = arena.make<std::uint8_t>(solve.batch.bodies.size());
+  for (std::uint8_t& one : hangs) one = 0;
+  for (const NetJoint& joint : solve.net_joints)
+    for_moving(joint, [&](std::uint32_t body) { hangs[solve.places[body]] = 1; });
+  const auto hangs_at = [&](std::uint32_t place) {
+    return place != ColoringPair::kNone && hangs[place] != 0;
+  };
+  for (const ColoringPair& pair : solve.scratch.pairs)
+    if (!hangs_at(pair.a) && !hangs_at(pair.b)) return false;
+  return true;
+}
 // The islands at rest, which are solved directly.
 void find_resting(Solve& solve, Arena& arena) {
   solve.forest = {};
   solve.structures = {};
   const std::span<ContactConstraint> constraints = solve.scratch.constraints.view();
   if (constraints.empty() || !(length(solve.w.settings.gravity) > 0.0f)) return;
+  if (all_contacts_hang(solve, arena)) return;
   const std::span<const ColoringPair> pairs = solve.scratch.pairs;
-  const RestingIslands islands(solve.w, constraints, pairs, solve.batch, solve.places, arena);
+  const RestingIslands islands(solve.w, constraints, pairs, solve.net_joints, solve.batch, solve.places,
+                               arena);
   solve.forest = find_contact_trees(solve.w, constraints, pairs, solve.batch, islands, arena);
   solve.structures = find_contact_structures(solve.w, pairs, solve.batch, islands, arena);
 }
