@@ -367,7 +367,7 @@ void MeshCollider::look_at(const NearTriangle& t, PlacedConvex::Extent along_nor
     if (stand(t.normal, face)) add_deep_corners(t);
     return;
   }
-  if (!behind && convex_.vertex_count() == 1 && is_ball_beside(surface_, t, convex_, face)) return;
+  if (!behind && is_round_beside(surface_, t, convex_, face)) return;
   AxisSearch axes = search_axes(surface_, t, convex_, face, max_separation_, scratch_);
   if (axes.best <= 0.0f && is_blade_) {
     const AxisSearch nearest = search_nearest(surface_, t, convex_, face, max_separation_, scratch_);
