@@ -86,8 +86,8 @@ TEST(KeptTriangles, ChangeNothingOfALook) {
       middle = 0.98f * (middle + random.in_box(0.2f));
       const PlacedConvex convex(shape, random.rotation());
       MeshCandidates with, without;
-      find_candidates(surface, convex, middle, 0.1f, &kept, with);
-      find_candidates(surface, convex, middle, 0.1f, nullptr, without);
+      find_candidates(select_mesh_kernels(), surface, convex, middle, 0.1f, &kept, with);
+      find_candidates(select_mesh_kernels(), surface, convex, middle, 0.1f, nullptr, without);
       ASSERT_EQ(with.count, without.count);
       for (int i = 0; i < with.count; ++i) ASSERT_EQ(with.ids[i], without.ids[i]);
     }

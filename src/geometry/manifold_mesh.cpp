@@ -16,6 +16,7 @@
 #include "geometry/manifold_mesh.h"
 
 #include "base/sort.h"
+#include "geometry/mesh_beside.h"
 #include "geometry/mesh_candidates.h"
 #include "geometry/mesh_cull.h"
 
@@ -66,7 +67,7 @@ class MeshCollider {
         is_blade_(b.kind == ShapeKind::hull && b.hull->inner_radius < kBlade * convex_.size()) {}
 
   int run(LocalManifold* out) {
-    find_candidates(surface_, convex_, position_, max_separation_, kept_, candidates_);
+    find_candidates(kernels_, surface_, convex_, position_, max_separation_, kept_, candidates_);
     look_at_candidates();
     settle_waiting();
     settle_deep_patches();
@@ -78,7 +79,7 @@ class MeshCollider {
 
  private:
   void look_at_candidates();
-  void look_at(std::uint32_t id, PlacedConvex::Extent along_normal);
+  void look_at(const NearTriangle& t, PlacedConvex::Extent along_normal);
   void settle_waiting();
   void settle_deep_patches();
   bool runs_through(const NearTriangle& t) const;
@@ -112,6 +113,7 @@ class MeshCollider {
   bool is_buried(const NearTriangle& t, Vec3 direction) const;
   bool covers(const NearTriangle& other, const NearTriangle& t, Vec3 direction) const;
 
+  const MeshKernels& kernels_ = select_mesh_kernels();
   Surface surface_;
   PlacedConvex convex_;
   Vec3 position_;
@@ -148,7 +150,8 @@ class MeshCollider {
   float nearest_ = kUnbounded;
   MeshCandidates candidates_;
   // By groups of candidates: bits of those that are known to be out of reach.
-  std::uint8_t apart_[(MeshCandidates::kRoom + MeshCull::kLanes - 1) / MeshCull::kLanes];
+  static_assert(MeshCandidates::kRoom % PlacedTriangles::kCount == 0 && PlacedTriangles::kCount == 8);
+  std::uint8_t apart_[MeshCandidates::kRoom / PlacedTriangles::kCount];
   MeshPoints points_;
   AxisScratch scratch_;
   ManifoldGroups groups_;
@@ -337,20 +340,20 @@ bool MeshCollider::comes_through(const NearTriangle& t, Vec3 corner) const {
 }
 
 void MeshCollider::look_at_candidates() {
-  for (int i = 0; i < candidates_.count; i += MeshCull::kLanes) {
+  PlacedTriangles placed;
+  for (int i = 0; i < candidates_.count; i += PlacedTriangles::kCount) {
     const std::uint32_t* ids = candidates_.ids + i;
-    const MeshCull cull = cull_triangles(surface_, ids, min(candidates_.count - i, MeshCull::kLanes),
-                                         position_, convex_, max_separation_);
-    apart_[i / MeshCull::kLanes] = std::uint8_t(cull.apart);
-    for (unsigned rest = cull.touchable; rest != 0; rest &= rest - 1) {
+    const int count = min(candidates_.count - i, PlacedTriangles::kCount);
+    place_triangles(kernels_, surface_, ids, count, position_, convex_, max_separation_, placed);
+    apart_[i / PlacedTriangles::kCount] = std::uint8_t(placed.apart);
+    for (unsigned rest = placed.touchable; rest != 0; rest &= rest - 1) {
       const int lane = std::countr_zero(rest);
-      look_at(ids[lane], cull.extents[lane]);
+      look_at(take_triangle(surface_, ids[lane], placed, lane), {placed.low[lane], placed.high[lane]});
     }
   }
 }
 
-void MeshCollider::look_at(std::uint32_t id, PlacedConvex::Extent along_normal) {
-  const NearTriangle t = triangle(id);
+void MeshCollider::look_at(const NearTriangle& t, PlacedConvex::Extent along_normal) {
   know_side(t.normal, along_normal);
   const float height = dot(t.normal, t.v[0]);
   const float face = face_separation(t);
@@ -364,6 +367,7 @@ void MeshCollider::look_at(std::uint32_t id, PlacedConvex::Extent along_normal) 
     if (stand(t.normal, face)) add_deep_corners(t);
     return;
   }
+  if (!behind && is_round_beside(surface_, t, convex_, face)) return;
   AxisSearch axes = search_axes(surface_, t, convex_, face, max_separation_, scratch_);
   if (axes.best <= 0.0f && is_blade_) {
     const AxisSearch nearest = search_nearest(surface_, t, convex_, face, max_separation_, scratch_);
@@ -371,7 +375,7 @@ void MeshCollider::look_at(std::uint32_t id, PlacedConvex::Extent along_normal) 
   }
   if (axes.best > max_separation_) return;
   if (!behind) nearest_ = min(nearest_, axes.best);
-  const Waiting found{id, waiting_count_, face, axes.best, behind, axes.best <= 0.0f};
+  const Waiting found{t.id, waiting_count_, face, axes.best, behind, axes.best <= 0.0f};
   note_overlap(found);
   const float allowed = max(face, axes.feature.separation);
   if (behind || allowed < axes.best - kAxisBias * convex_.size()) {
@@ -383,7 +387,7 @@ void MeshCollider::look_at(std::uint32_t id, PlacedConvex::Extent along_normal) 
     add_face(t);
     if (points_.count == 0 && axes.over_face && face < rim_separation_) {
       rim_separation_ = face;
-      rim_triangle_ = id;
+      rim_triangle_ = t.id;
       on_rim_ = axes.on_core;
     }
     // Beside an edge the face alone may have no point, or none that is deep enough.
@@ -522,7 +526,7 @@ bool MeshCollider::is_corner_missing() const {
 // of edges only, so what they tell may be nearer than any point that was found along their directions.
 void MeshCollider::look_for_corners() {
   for (int i = 0; i < candidates_.count; ++i) {
-    if ((apart_[i / MeshCull::kLanes] >> i % MeshCull::kLanes & 1) != 0) continue;
+    if ((apart_[i / PlacedTriangles::kCount] >> i % PlacedTriangles::kCount & 1) != 0) continue;
     NearTriangle t = place_triangle(surface_, candidates_.ids[i], position_, convex_);
     know_side(t.normal);
     const float face = face_separation(t);

@@ -171,7 +171,7 @@ int candidate_count(const Geometry& ground, const AnyShape& any, const Transform
   const Surface surface(mesh);
   const PlacedConvex convex(shape, pose.orientation);
   MeshCandidates candidates;
-  find_candidates(surface, convex, pose.position, kMargin, nullptr, candidates);
+  find_candidates(select_mesh_kernels(), surface, convex, pose.position, kMargin, nullptr, candidates);
   return candidates.count;
 }
 

@@ -10,18 +10,22 @@ TriangleView view_triangle(const Mesh& mesh, std::uint32_t triangle) {
 }
 
 void view_triangle(const Mesh& mesh, std::uint32_t triangle, TriangleView& view) {
-  view.id = triangle;
+  view_surroundings(mesh, triangle, view);
   view.normal = mesh.normals[triangle];
+  for (int i = 0; i < 3; ++i) view.v[i] = mesh.vertices[view.corner_id[i]];
+}
+
+void view_surroundings(const Mesh& mesh, std::uint32_t triangle, TriangleView& view) {
+  view.id = triangle;
   const std::uint16_t flags = mesh.flags[triangle];
   view.flat_corners = std::uint8_t(flags >> kFlatCornerShift & 7);
   for (int i = 0; i < 3; ++i) {
     const std::uint32_t half_edge = 3 * triangle + std::uint32_t(i);
     view.corner_id[i] = mesh.indices[half_edge];
-    view.v[i] = mesh.vertices[view.corner_id[i]];
     const std::uint32_t twin = mesh.twins[half_edge];
     view.edge[i] = edge_kind(flags, i);
     view.edge_id[i] = twin == Mesh::kNoTwin ? half_edge : min(half_edge, twin);
-    view.neighbor_normal[i] = twin == Mesh::kNoTwin ? view.normal : mesh.normals[twin / 3];
+    view.neighbor_normal[i] = mesh.normals[twin == Mesh::kNoTwin ? triangle : twin / 3];
   }
 }
 

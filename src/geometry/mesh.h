@@ -41,6 +41,8 @@ constexpr EdgeKind edge_kind(std::uint16_t flags, int edge) { return EdgeKind(fl
 // The triangle with its surroundings, in the mesh's frame; or written to where it is wanted.
 TriangleView view_triangle(const Mesh& mesh, std::uint32_t triangle);
 void view_triangle(const Mesh& mesh, std::uint32_t triangle, TriangleView& out);
+// All of that but its own corners and normal.
+void view_surroundings(const Mesh& mesh, std::uint32_t triangle, TriangleView& out);
 
 // Without its surroundings.
 inline BareTriangle bare_triangle(const Mesh& mesh, std::uint32_t triangle) {

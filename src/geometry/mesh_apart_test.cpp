@@ -1,6 +1,7 @@
 // What is told apart is apart to the searches too, for triangles of all sizes and thin ones.
-#include "geometry/mesh_apart.h"
+#include "geometry/mesh_apart_lanes.h"
 
+#include "geometry/mesh_axis.h"
 #include "geometry/mesh_contact_test.h"
 
 #include <gtest/gtest.h>
@@ -12,8 +13,8 @@ using namespace test;
 
 constexpr float kReach = 0.1f;
 
-TriangleLanes lanes_of(const NearTriangle& t, Vec3 position) {
-  TriangleLanes lanes;
+TriangleLanes<4> lanes_of(const NearTriangle& t, Vec3 position) {
+  TriangleLanes<4> lanes;
   float reach = largest(absolute(position));
   for (int i = 0; i < 3; ++i) {
     lanes.corner[i] = splat<4>(t.v[i]);
@@ -53,7 +54,7 @@ TEST(MeshApart, WhatIsApartIsFoundApart) {
         if (face > kReach) continue;
         AxisScratch scratch;
         const bool found = search_axes(surface, t, convex, face, kReach, scratch).best > kReach;
-        const bool told = to_bits(is_apart(lanes_of(t, position), convex, kReach)) != 0;
+        const bool told = to_bits(is_apart<4>(lanes_of(t, position), convex.columns(), kReach)) != 0;
         ASSERT_TRUE(!told || found);
         ASSERT_TRUE(!told || search_nearest(surface, t, convex, face, kReach, scratch).best > kReach);
         if (!convex.has_vertices()) continue;

@@ -108,8 +108,7 @@ class Search {
     if ((t_.flat_corners >> corner & 1) != 0) return false;
     if (!surface_.double_sided() && dot(d, t_.normal) < -kArcSlack) return false;
     const int own = t_.turned && corner != 0 ? 3 - corner : corner;
-    return surface_.mesh != nullptr ? in_normal_cone(*surface_.mesh, t_.id, own, d, kArcSlack)
-                                    : in_normal_cone(*surface_.field, t_.id, own, d, kArcSlack);
+    return surface_.in_normal_cone(t_.id, own, d, kArcSlack);
   }
 
   bool allows(unsigned corners, Vec3 d) const {

@@ -30,6 +30,10 @@ struct Surface {
   BareTriangle bare_triangle(std::uint32_t id) const {
     return mesh != nullptr ? gyre::bare_triangle(*mesh, id) : gyre::bare_triangle(*field, id);
   }
+  bool in_normal_cone(std::uint32_t id, int corner, Vec3 direction, float tolerance) const {
+    return mesh != nullptr ? gyre::in_normal_cone(*mesh, id, corner, direction, tolerance)
+                           : gyre::in_normal_cone(*field, id, corner, direction, tolerance);
+  }
   bool double_sided() const { return mesh != nullptr && mesh->double_sided; }
   TriangleView triangle(std::uint32_t id) const {
     return mesh != nullptr ? view_triangle(*mesh, id) : view_triangle(*field, id);

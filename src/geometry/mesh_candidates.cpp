@@ -2,6 +2,9 @@
 #include "geometry/mesh_candidates.h"
 
 #include "base/sort.h"
+#include "geometry/mesh_cull.h"
+
+#include <bit>
 
 namespace gyre {
 namespace {
@@ -38,9 +41,10 @@ AxisBox inner_cube(const PlacedConvex& convex, Vec3 position, float max_separati
 
 class Gatherer {
  public:
-  Gatherer(const Surface& surface, const PlacedConvex& convex, Vec3 position, float max_separation,
-           KeptTriangles* kept, MeshCandidates& out)
-      : surface_(surface),
+  Gatherer(const MeshKernels& kernels, const Surface& surface, const PlacedConvex& convex, Vec3 position,
+           float max_separation, KeptTriangles* kept, MeshCandidates& out)
+      : kernels_(kernels),
+        surface_(surface),
         convex_(convex),
         position_(position),
         max_separation_(max_separation),
@@ -92,9 +96,11 @@ class Gatherer {
       return box.overlaps(outer) && (box.overlaps(inner_) || near(box));
     };
     if (kept_ != nullptr && keep_triangles(mesh, box_, kKeptMargin * convex_.size(), *kept_)) {
-      for (int i = 0; i < kept_->count; ++i) {
-        if (overlaps(axis_box(mesh, kept_->ids[i]))) add(kept_->ids[i]);
-      }
+      const NearBoxes boxes{box_, inner_.box(), position_, max_separation_};
+      static_assert(KeptTriangles::kRoom <= 32);
+      std::uint32_t near =
+          kernels_.find_near(columns_of(mesh), kept_->ids, kept_->count, convex_.columns(), boxes);
+      for (; near != 0; near &= near - 1) add(kept_->ids[std::countr_zero(near)]);
       return;
     }
     const auto visit = [&](std::uint32_t first, std::uint32_t count) {
@@ -270,6 +276,7 @@ class Gatherer {
                less);
   }
 
+  const MeshKernels& kernels_;
   const Surface& surface_;
   const PlacedConvex& convex_;
   Vec3 position_;
@@ -285,11 +292,11 @@ class Gatherer {
 
 }  // namespace
 
-void find_candidates(const Surface& surface, const PlacedConvex& convex, Vec3 position, float max_separation,
-                     KeptTriangles* kept, MeshCandidates& out) {
+void find_candidates(const MeshKernels& kernels, const Surface& surface, const PlacedConvex& convex,
+                     Vec3 position, float max_separation, KeptTriangles* kept, MeshCandidates& out) {
   out.count = 0;
   out.deep_patch_count = 0;
-  Gatherer(surface, convex, position, max_separation, kept, out).run();
+  Gatherer(kernels, surface, convex, position, max_separation, kept, out).run();
 }
 
 int find_triangles(const Surface& surface, const Aabb& box, std::span<std::uint32_t> out) {

@@ -1,79 +1,72 @@
-// Triangles side by side. See mesh_cull.h. Numbers are rounded as place_triangle and what follows it rounds them.
+// What kernels are given of surfaces, and what is taken from them. See mesh_cull.h.
 #include "geometry/mesh_cull.h"
-
-#include "geometry/mesh_apart.h"
 
 namespace gyre {
 namespace {
 
-constexpr int kLanes = MeshCull::kLanes;
-using Floats = Wide<kLanes>;
-using Vectors = Vec3W<kLanes>;
+constexpr int kCount = PlacedTriangles::kCount;
 
-TriangleLanes gather(const Mesh& mesh, const std::uint32_t (&ids)[kLanes]) {
-  TriangleLanes out;
-  const Vec3* const normals = mesh.normals.data();
-  const Vec3* const vertices = mesh.vertices.data();
-  const std::uint32_t* index[kLanes];
-  for (int k = 0; k < kLanes; ++k) index[k] = mesh.indices.data() + 3 * std::size_t(ids[k]);
-  out.normal = side_by_side(normals[ids[0]], normals[ids[1]], normals[ids[2]], normals[ids[3]]);
-  GYRE_UNROLL
-  for (int i = 0; i < 3; ++i) {
-    out.corner[i] = side_by_side(vertices[index[0][i]], vertices[index[1][i]], vertices[index[2][i]],
-                                 vertices[index[3][i]]);
+// A curved core has no columns: it is asked by itself.
+void find_extents(const TriangleColumns& triangles, const std::uint32_t* ids, int count, Vec3 position,
+                  const PlacedConvex& convex, PlacedTriangles& out) {
+  for (int k = 0; k < kCount; ++k) {
+    const std::size_t id = ids[min(k, count - 1)];
+    const Vec3 normal = triangles.normals[id], corner = triangles.vertices[triangles.indices[3 * id]];
+    const bool turned = triangles.double_sided && dot(normal, convex.center() + position - corner) < 0.0f;
+    const PlacedConvex::Extent extent = convex.extent(turned ? -normal : normal);
+    out.low[k] = extent.low;
+    out.high[k] = extent.high;
   }
-  return out;
 }
 
-TriangleLanes gather(const HeightField& field, const std::uint32_t (&ids)[kLanes]) {
-  TriangleLanes out;
-  const BareTriangle a = bare_triangle(field, ids[0]), b = bare_triangle(field, ids[1]),
-                     c = bare_triangle(field, ids[2]), d = bare_triangle(field, ids[3]);
-  out.normal = side_by_side(a.normal, b.normal, c.normal, d.normal);
-  for (int i = 0; i < 3; ++i) out.corner[i] = side_by_side(a.v[i], b.v[i], c.v[i], d.v[i]);
-  return out;
-}
-
-TriangleLanes place(const Surface& surface, const std::uint32_t (&ids)[kLanes], Vec3 position,
-                    const PlacedConvex& convex) {
-  TriangleLanes t = surface.mesh != nullptr ? gather(*surface.mesh, ids) : gather(*surface.field, ids);
-  if (surface.double_sided()) {
-    const Vectors middle = splat<kLanes>(convex.center() + position);
-    const Mask<kLanes> turned = dot(t.normal, middle - t.corner[0]) < Floats(0.0f);
-    const Vectors second = t.corner[1];
-    t.corner[1] = select(turned, t.corner[2], second);
-    t.corner[2] = select(turned, second, t.corner[2]);
-    t.normal = select(turned, -t.normal, t.normal);
-  }
-  t.reach = largest(absolute(position));
-  for (Vectors& corner : t.corner) {
-    t.reach = max(t.reach, largest(absolute(corner)));
-    corner = corner - splat<kLanes>(position);
-  }
-  return t;
+void place(const MeshKernels& kernels, const TriangleColumns& triangles, const std::uint32_t* ids, int count,
+           Vec3 position, const PlacedConvex& convex, float max_separation, PlacedTriangles& out) {
+  if (!convex.has_vertices()) find_extents(triangles, ids, count, position, convex, out);
+  kernels.place(triangles, ids, count, convex.columns(), position, max_separation, out);
 }
 
 }  // namespace
 
-MeshCull cull_triangles(const Surface& surface, const std::uint32_t* ids, int count, Vec3 position,
-                        const PlacedConvex& convex, float max_separation) {
-  std::uint32_t lane_ids[kLanes];
-  for (int k = 0; k < kLanes; ++k) lane_ids[k] = ids[min(k, count - 1)];
-  const TriangleLanes t = place(surface, lane_ids, position, convex);
-  MeshCull out;
-  out.extents = convex.extents(t.normal);
-  const Floats height = dot(t.normal, t.corner[0]), radius(convex.radius());
-  const Floats before = out.extents.low - height - radius;
-  const Mask<kLanes> behind = out.extents.high - height + radius <= Floats(0.0f);
-  const unsigned counted = (1u << count) - 1u;
-  out.touchable = to_bits(~(behind | (before > Floats(max_separation)))) & counted;
-  out.apart = to_bits(before > Floats(max_separation) + apart_slack(t, convex)) & counted;
-  if (out.touchable == 0) return out;
-  const unsigned apart = to_bits(is_apart(t, convex, max_separation));
-  // Only of lanes that were still in question, so that none depends on its neighbours.
-  out.apart |= apart & out.touchable;
-  out.touchable &= ~apart;
-  return out;
+TriangleColumns columns_of(const Mesh& mesh) {
+  return {mesh.vertices.data(), mesh.indices.data(), mesh.normals.data(), mesh.double_sided};
+}
+
+void place_triangles(const MeshKernels& kernels, const Surface& surface, const std::uint32_t* ids, int count,
+                     Vec3 position, const PlacedConvex& convex, float max_separation, PlacedTriangles& out) {
+  if (surface.mesh != nullptr)
+    return place(kernels, columns_of(*surface.mesh), ids, count, position, convex, max_separation, out);
+  // A field has no such columns: they are made.
+  static constexpr std::uint32_t kNumbers[3 * kCount] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11,
+                                                         12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23};
+  Vec3 corners[3 * kCount], normals[kCount];
+  for (int k = 0; k < count; ++k) {
+    const BareTriangle t = bare_triangle(*surface.field, ids[k]);
+    normals[k] = t.normal;
+    for (int i = 0; i < 3; ++i) corners[3 * k + i] = t.v[i];
+  }
+  place(kernels, {corners, kNumbers, normals, false}, kNumbers, count, position, convex, max_separation, out);
+}
+
+NearTriangle take_triangle(const Surface& surface, std::uint32_t id, const PlacedTriangles& placed,
+                           int lane) {
+  NearTriangle t;
+  t.turned = (placed.turned >> lane & 1u) != 0;
+  if (t.turned) {
+    static_cast<TriangleView&>(t) = seen_from_behind(surface.triangle(id));
+  } else if (surface.mesh != nullptr) {
+    view_surroundings(*surface.mesh, id, t);
+  } else {
+    static_cast<TriangleView&>(t) = view_triangle(*surface.field, id);
+  }
+  t.normal = placed.normal[lane];
+  t.slack = placed.slack[lane];
+  for (int i = 0; i < 3; ++i) {
+    t.v[i] = placed.corner[i][lane];
+    t.along[i] = placed.along[i][lane];
+    t.outward[i] = placed.outward[i][lane];
+    t.length[i] = placed.length[i][lane];
+  }
+  return t;
 }
 
 }  // namespace gyre

@@ -1,24 +1,19 @@
-// Which triangles near a convex shape it may touch, four at a time: most of those whose boxes come near are left out here, before
-// any is looked at by itself.
-//
-// Left out is what has all of the shape behind its plane or farther before it than asked, what lies farther before one of the
-// shape's faces, and what mesh_apart.h knows to be apart.
+// Which triangles of a surface a convex shape may touch, several at a time: most of those whose boxes come near are left out here,
+// before any is looked at by itself; the others are placed. What is done is told in mesh_kernels.h.
 #pragma once
 
 #include "geometry/mesh_axis.h"
+#include "geometry/mesh_kernels.h"
 
 namespace gyre {
 
-struct MeshCull {
-  static constexpr int kLanes = PlacedConvex::kLanes;
-  unsigned touchable = 0;  // bits of the triangles that are not left out
-  unsigned apart =
-      0;  // bits of those that are out of reach of the nearest points too, whatever lies before or behind
-  PlacedConvex::Extents extents;  // of the shape's core along the triangles' normals
-};
+TriangleColumns columns_of(const Mesh& mesh);
 
-// Of `count` triangles, 1 to MeshCull::kLanes. `position` is the place of the convex shape's origin in the surface's frame.
-MeshCull cull_triangles(const Surface& surface, const std::uint32_t* ids, int count, Vec3 position,
-                        const PlacedConvex& convex, float max_separation);
+// Of `count` triangles, 1 to PlacedTriangles::kCount. `position` is the place of the convex shape's origin in the surface's frame.
+void place_triangles(const MeshKernels& kernels, const Surface& surface, const std::uint32_t* ids, int count,
+                     Vec3 position, const PlacedConvex& convex, float max_separation, PlacedTriangles& out);
+
+// One of them that may be touched, as near_triangle() tells it.
+NearTriangle take_triangle(const Surface& surface, std::uint32_t id, const PlacedTriangles& placed, int lane);
 
 }  // namespace gyre

@@ -110,6 +110,7 @@ PlacedConvex::PlacedConvex(const Shape& shape, Quat orientation)
     local_low_[i] = i < 3 ? local_box_.low[i] : 0.0f;
     local_high_[i] = i < 3 ? local_box_.high[i] : 0.0f;
   }
+  show_columns();
 }
 
 void PlacedConvex::place_vertices(const float* x, const float* y, const float* z, int count) {
@@ -168,16 +169,6 @@ void PlacedConvex::face_separations(const Vec3* corners, float (*each)[kMaxVerti
   }
 }
 
-Wide<PlacedConvex::kLanes> PlacedConvex::face_separations(const Vec3W<kLanes> (&corners)[3]) const {
-  const Vectors a = corners[0], b = corners[1], c = corners[2];
-  Floats most(-__builtin_huge_valf());
-  for (int i = 0; i < face_count_; ++i) {
-    const Vectors n = splat<kLanes>(face_normal(i));
-    most = max(most, min(dot(n, a), min(dot(n, b), dot(n, c))) - Floats(offset_[i]));
-  }
-  return most;
-}
-
 PlacedConvex::Extent PlacedConvex::extent(Vec3 direction) const {
   if (vertex_count_ == 0) return {dot(direction, support(-direction)), dot(direction, support(direction))};
   const Vectors d = splat<4>(direction);
@@ -188,26 +179,6 @@ PlacedConvex::Extent PlacedConvex::extent(Vec3 direction) const {
     high = max(high, height);
   }
   return {least(low), greatest(high)};
-}
-
-PlacedConvex::Extents PlacedConvex::extents(const Vec3W<kLanes>& directions) const {
-  const Vectors d = directions;
-  Extents out;
-  if (vertex_count_ == 0) {
-    for (int lane = 0; lane < kLanes; ++lane) {
-      const Extent along = extent({d.x[lane], d.y[lane], d.z[lane]});
-      out.low.set(lane, along.low);
-      out.high.set(lane, along.high);
-    }
-    return out;
-  }
-  out.low = out.high = dot(splat<kLanes>(vertex(0)), d);
-  for (int i = 1; i < vertex_count_; ++i) {
-    const Floats height = dot(splat<kLanes>(vertex(i)), d);
-    out.low = min(out.low, height);
-    out.high = max(out.high, height);
-  }
-  return out;
 }
 
 Aabb PlacedConvex::box() const {
@@ -284,6 +255,31 @@ bool PlacedConvex::may_touch(const AxisBox& box, float reach) const {
                         Floats::load(row_size_[2]) * Floats(half[2]) +
                         Floats(reach + 1.0e-6f * max(size[0], max(size[1], size[2])));
   return none((along - spread > Floats::load(local_high_)) | (along + spread < Floats::load(local_low_)));
+}
+
+void PlacedConvex::show_columns() {
+  using Core = ConvexColumns::Core;
+  const Core core = shape_->kind == ShapeKind::box ? Core::box
+                    : face_count_ > 0              ? Core::polyhedron
+                    : vertex_count_ == 1           ? Core::ball
+                    : vertex_count_ == 2           ? Core::segment
+                                                   : Core::curved;
+  columns_ = {core,
+              vertex_count_,
+              face_count_,
+              x_,
+              y_,
+              z_,
+              nx_,
+              ny_,
+              nz_,
+              offset_,
+              {rotation_.x, rotation_.y, rotation_.z},
+              local_box_,
+              shape_->extents,
+              center_,
+              radius_,
+              size_};
 }
 
 float PlacedConvex::box_distance(Vec3 point) const {

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "geometry/hull.h"
+#include "geometry/mesh_kernels.h"
 #include "geometry/support.h"
 #include "math/wide_vec.h"
 
@@ -42,6 +43,8 @@ class PlacedConvex {
   static constexpr int kLanes = 4;
 
   PlacedConvex(const Shape& shape, Quat orientation);
+  PlacedConvex(const PlacedConvex&) = delete;
+  PlacedConvex& operator=(const PlacedConvex&) = delete;
 
   const Shape& shape() const { return *shape_; }
   Quat orientation() const { return orientation_; }
@@ -62,8 +65,6 @@ class PlacedConvex {
   void dot_faces(const Vec3* directions, float (*out)[kMaxVertices]) const;
   // How far each corner of a triangle lies before each face, and how far the lowest does.
   void face_separations(const Vec3* corners, float (*each)[kMaxVertices], float* lowest) const;
-  // Of as many triangles as there are lanes: the greatest distance at which all of one lies before a face.
-  Wide<kLanes> face_separations(const Vec3W<kLanes> (&corners)[3]) const;
   // Edges between two faces; empty for capsules, whose one edge has no faces (vertex 0 to vertex 1).
   std::span<const HullEdge> edges() const { return edges_; }
 
@@ -74,12 +75,6 @@ class PlacedConvex {
     float low, high;
   };
   Extent extent(Vec3 direction) const;
-  // The same for as many directions as there are lanes.
-  struct Extents {
-    Wide<kLanes> low, high;
-    Extent operator[](int lane) const { return {low[lane], high[lane]}; }
-  };
-  Extents extents(const Vec3W<kLanes>& directions) const;
   // The core's box in the mesh's axes.
   Aabb box() const;
   Vec3 support(Vec3 direction) const;
@@ -101,6 +96,7 @@ class PlacedConvex {
   Vec3 to_local(Vec3 v) const { return transpose_times(rotation_, v); }
   Vec3 from_local(Vec3 v) const { return rotation_ * v; }
   const Aabb& local_box() const { return local_box_; }
+  const ConvexColumns& columns() const { return columns_; }
 
   static constexpr int padded(int count) { return (count + kLanes - 1) / kLanes * kLanes; }
 
@@ -108,6 +104,7 @@ class PlacedConvex {
   void place_vertices(const float* x, const float* y, const float* z, int count);
   void place_faces(const float* x, const float* y, const float* z, const float* offsets, int count);
   void place_hull(const Hull& hull);
+  void show_columns();
 
   const Shape* shape_;
   Quat orientation_;
@@ -120,6 +117,7 @@ class PlacedConvex {
   alignas(16) float local_low_[4], local_high_[4];
   int vertex_count_ = 0, face_count_ = 0;
   std::span<const HullEdge> edges_;
+  ConvexColumns columns_;
   // Columns, not cleared: only the counted ones are ever read.
   alignas(16) float x_[kMaxVertices], y_[kMaxVertices], z_[kMaxVertices];
   alignas(16) float nx_[kMaxVertices], ny_[kMaxVertices], nz_[kMaxVertices], offset_[kMaxVertices];

@@ -31,6 +31,13 @@ GYRE_INLINE Vec3W<4> side_by_side(const Vector& a, const Vector& b, const Vector
   return {Wide<4>::of(Quad{a.x, b.x, c.x, d.x}), Wide<4>::of(Quad{a.y, b.y, c.y, d.y}),
           Wide<4>::of(Quad{a.z, b.z, c.z, d.z})};
 }
+// Four lanes and four more.
+GYRE_INLINE Wide<8> join(Wide<4> low, Wide<4> high) {
+  return Wide<8>::of(__builtin_shufflevector(low.v, high.v, 0, 1, 2, 3, 4, 5, 6, 7));
+}
+GYRE_INLINE Vec3W<8> join(Vec3W<4> low, Vec3W<4> high) {
+  return {join(low.x, high.x), join(low.y, high.y), join(low.z, high.z)};
+}
 template <int W>
 GYRE_INLINE Vec3W<W> operator+(Vec3W<W> a, Vec3W<W> b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
