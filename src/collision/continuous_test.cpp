@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace gyre {
@@ -134,13 +135,32 @@ class Scene {
     const auto shapes_of = [&](std::uint32_t body) {
       return std::span<const std::uint32_t>(&indices_[body], 1);
     };
-    stage_.clamp_fast_bodies({shapes, proxies, *broadphase_, blocked, sweep_of, shapes_of}, fast, tasks_,
-                             kept_);
+    stage_.clamp_fast_bodies(
+        {shapes, proxies, *broadphase_, blocked, sweep_of, shapes_of, nullptr, {}, contacts_, near_stops_},
+        fast, tasks_, kept_);
     std::vector<float> fractions;
     for (const KeptMotion& kept : kept_) fractions.push_back(kept.fraction);
     return fractions;
   }
   float clamp_as_is(std::uint32_t body) { return clamp_as_is({{body, false}})[0]; }
+  // The same where all pairs of boxes have contacts, and it is known which may stop a shape.
+  std::vector<float> clamp_by_contacts(const std::vector<FastBody>& fast) {
+    ContactStore store;
+    Bitset near_stops(proxies.size());
+    for (std::uint32_t a = 0; a < proxies.size(); ++a) {
+      for (std::uint32_t b = a + 1; b < proxies.size(); ++b) {
+        if (!overlap(proxies[a].fat_box, proxies[b].fat_box) || !may_pair(proxies[a], proxies[b])) continue;
+        add_contact(store, pair_key(a, b), {a, b, false, false, {}});
+        if (proxies[a].pushes && proxies[b].pushes && !proxies[a].sensor && !proxies[b].sensor) continue;
+        near_stops.set(a), near_stops.set(b);
+      }
+    }
+    contacts_ = &store, near_stops_ = &near_stops;
+    const std::vector<float> fractions = clamp_as_is(fast);
+    contacts_ = nullptr, near_stops_ = nullptr;
+    return fractions;
+  }
+  std::span<const std::uint64_t> crossings() const { return stage_.crossings(); }
 
   Gap gap(std::uint32_t a, std::uint32_t b, double time) const {
     return find_gap(make_swept_shape(shapes[a].shape, {}, sweeps[a]),
@@ -159,6 +179,8 @@ class Scene {
   std::vector<KeptMotion> kept_;
   std::vector<std::uint32_t> indices_;
   std::vector<AnyShape> geometries_;  // keeps cooked data alive
+  const ContactStore* contacts_ = nullptr;
+  const Bitset* near_stops_ = nullptr;
 };
 
 Geometry hull_of_cube(float h) {
@@ -345,6 +367,41 @@ TEST(Continuous, WhoIsInTheWay) {
     scene.proxies[ball].filter.collides_with = 1;
     EXPECT_EQ(scene.clamp(ball, false), 1.0f) << "filters hold here too";
   }
+}
+
+// What stays in its box, what leaves it, sensors and what moves by itself: contacts tell what a walk over all boxes tells.
+TEST(Continuous, ContactsTellWhatIsInTheWay) {
+  Random random{23};
+  std::size_t stopped = 0, crossed = 0;
+  for (int round = 0; round < 20; ++round) {
+    Scene scene;
+    scene.add_fixed(Box{{20, 1, 20}}, {{0, -1, 0}});
+    for (int i = 0; i < 4; ++i) {
+      const Vec3 at = random.in_box(3.0f) + Vec3{0, 3, 0};
+      const bool sensor = i < 2;
+      const std::uint32_t body =
+          scene.add(Box{{0.5f, 0.5f, 0.05f}}, {{DVec3(at), random.rotation()}, {}, random.in_box(0.3f), {}},
+                    ProxyMotion::moving, false);
+      scene.proxies[body].sensor = sensor;
+    }
+    std::vector<FastBody> fast;
+    for (int i = 0; i < 40; ++i) {
+      const Vec3 at = random.in_box(3.0f) + Vec3{0, 3.2f, 0};
+      const std::uint32_t body = scene.add_mover(random_convex(random), {DVec3(at), random.rotation()},
+                                                 random.in_box(1.0f), random.in_box(0.5f));
+      fast.push_back({body, i % 8 == 0});
+    }
+    scene.clamp(fast);  // fits the boxes
+    for (std::size_t k = 0; k < fast.size(); k += 2) scene.sweeps[fast[k].body].moved *= 4.0f;
+    const std::vector<float> all = scene.clamp_as_is(fast);
+    const std::vector<std::uint64_t> passed(scene.crossings().begin(), scene.crossings().end());
+    EXPECT_EQ(scene.clamp_by_contacts(fast), all) << round;
+    EXPECT_TRUE(std::equal(passed.begin(), passed.end(), scene.crossings().begin(), scene.crossings().end()));
+    for (const float fraction : all) stopped += fraction < 1.0f ? 1 : 0;
+    crossed += passed.size();
+  }
+  EXPECT_GT(stopped, 100u);
+  EXPECT_GT(crossed, 5u);
 }
 
 TEST(Continuous, WhatIsNotFiniteIsLeftAlone) {
