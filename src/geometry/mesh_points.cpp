@@ -120,20 +120,24 @@ void corners_under_face(const NearTriangle& t, const FacePolygon& face, const Em
   }
 }
 
-// How far each corner of the face lies outside of one of the triangle's sides, and which lie so for certain: bits.
-unsigned find_outside(const NearTriangle& t, int side, const FacePolygon& face,
-                      float (&outside)[kMaxFaceVertices]) {
-  const Vectors outward = splat<4>(t.outward[side]), start = splat<4>(t.v[side]);
-  const auto vertex = [&](int k) { return face.vertices[min(k, face.count - 1)]; };
-  unsigned bits = 0;
-  for (int k = 0; k < face.count; k += 4) {
-    const Floats out =
-        dot(outward, side_by_side(vertex(k), vertex(k + 1), vertex(k + 2), vertex(k + 3)) - start);
-    out.store_unaligned(outside + k);
-    bits |= to_bits(out > Floats(t.slack)) << k;
+// How far each corner of a face lies outside of each of a triangle's sides; and, as bits, which lie so for certain.
+struct CornersOutside {
+  float way[3][kMaxFaceVertices];
+  unsigned beyond[3] = {0, 0, 0};
+
+  CornersOutside(const NearTriangle& t, const FacePolygon& face) {
+    const auto vertex = [&](int k) { return face.vertices[min(k, face.count - 1)]; };
+    for (int k = 0; k < face.count; k += 4) {
+      const Vectors corners = side_by_side(vertex(k), vertex(k + 1), vertex(k + 2), vertex(k + 3));
+      for (int side = 0; side < 3; ++side) {
+        const Floats out = dot(splat<4>(t.outward[side]), corners - splat<4>(t.v[side]));
+        out.store_unaligned(way[side] + k);
+        beyond[side] |= to_bits(out > Floats(t.slack)) << k;
+      }
+    }
+    for (unsigned& bits : beyond) bits &= all_of(face);
   }
-  return bits & all_of(face);
-}
+};
 
 }  // namespace
 
@@ -142,11 +146,10 @@ void face_points(const NearTriangle& t, const PlacedConvex& convex, const PlaneS
   const FacePolygon& face = side.face;
   const Emitter emit{t.normal, t.v[0], convex.radius(), max_separation, out};
   add_lowest_vertex(t, convex, side, emit);
-  float outside[3][kMaxFaceVertices];
-  unsigned beyond[3];
-  for (int i = 0; i < 3; ++i) {
-    beyond[i] = find_outside(t, i, face, outside[i]);
-    if (beyond[i] == all_of(face)) return;
+  const CornersOutside outside(t, face);
+  const unsigned(&beyond)[3] = outside.beyond;
+  for (const unsigned bits : beyond) {
+    if (bits == all_of(face)) return;
   }
   const std::uint32_t normal = normal_name(t.normal);
   for (unsigned rest = all_of(face) & ~(beyond[0] | beyond[1] | beyond[2]); rest != 0; rest &= rest - 1) {
@@ -158,7 +161,7 @@ void face_points(const NearTriangle& t, const PlacedConvex& convex, const PlaneS
     const int j = next_corner(i), l = next_corner(j);
     for (unsigned rest = edges_across(face, beyond[i]); rest != 0; rest &= rest - 1) {
       const int k = std::countr_zero(rest), next = k + 1 == face.count ? 0 : k + 1;
-      const float from = outside[i][k], to = outside[i][next];
+      const float from = outside.way[i][k], to = outside.way[i][next];
       const Vec3 p = lerp(face.vertices[k], face.vertices[next], clamp(from / (from - to), 0.0f, 1.0f));
       if (dot(t.outward[j], p - t.v[j]) > t.slack || dot(t.outward[l], p - t.v[l]) > t.slack) continue;
       emit.core_point(p, point_name(PointKind::edges, t.edge_id[i], edge_name(face, k)));
