@@ -3,6 +3,7 @@
 
 #include "base/prefetch.h"
 #include "collision/contact_update.h"
+#include "collision/fat_box.h"
 #include "math/wide.h"
 #include "task/parallel.h"
 
@@ -44,6 +45,16 @@ bool boxes_overlap(const Proxy& a, const Proxy& b) {
   return (to_bits(meets) & 7u) == 7u;
 }
 
+// Whether the balls around two bodies that hold them stay farther apart in the step than a full look at shapes of this size reaches.
+// However the bodies turn, their balls only go along.
+bool bodies_apart(const CollideInput& input, const Contact& contact) {
+  const BodyLook& a = input.looks[contact.body_a];
+  const BodyLook& b = input.looks[contact.body_b];
+  const float extents = input.outlines[contact.body_a].extent + input.outlines[contact.body_b].extent;
+  const float reach = extents + (kSpeculativeShare + kNearSlack) * contact.size + length(b.way - a.way);
+  return length_squared(difference(b.position, a.position)) > square(reach);
+}
+
 // How many contacts before its turn one is asked for, and the proxies of one.
 constexpr std::uint32_t kContactsAhead = 8, kProxiesAhead = 4;
 void fetch_ahead(const ContactStore& store, std::uint32_t slot, const CollideInput& input) {
@@ -73,21 +84,25 @@ void list_contacts(ContactStore& store, std::uint32_t begin, std::uint32_t end, 
       continue;
     }
     if (!proxy_a.pushes || !proxy_b.pushes || contact.sensor != 0) changes.may_stop.set(slot);
-    const BodyLook& look_a = input.looks[contact.body_a];
-    const BodyLook& look_b = input.looks[contact.body_b];
-    if (look_a.spin < 0.0f && look_b.spin < 0.0f) continue;
+    if (!input.outlines[contact.body_a].awake && !input.outlines[contact.body_b].awake) continue;
+    const ColliderShape& shape_a = input.shapes[contact.shape_a];
+    const ColliderShape& shape_b = input.shapes[contact.shape_b];
+    // A sensor's contact keeps nothing of its looks: each is the first.
+    if (contact.looked < 0.0f && contact.sensor == 0) contact.size = smaller_size(shape_a.size, shape_b.size);
+    if (contact.manifold_count == 0 && contact.sensor == 0 && bodies_apart(input, contact)) {
+      contact.recycled = 1;
+      note_touch(contact, slot, false, changes);
+      continue;
+    }
     ContactPair& pair = list.pairs[count];
     pair.contact = &contact;
     pair.manifolds = &store.manifolds[contact.first_manifold];
-    pair.shape_a = &input.shapes[contact.shape_a];
-    pair.shape_b = &input.shapes[contact.shape_b];
-    pair.look_a = &look_a;
-    pair.look_b = &look_b;
+    pair.shape_a = &shape_a;
+    pair.shape_b = &shape_b;
+    pair.look_a = &input.looks[contact.body_a];
+    pair.look_b = &input.looks[contact.body_b];
     pair.center_a = &input.centers[contact.body_a];
     pair.center_b = &input.centers[contact.body_b];
-    // A sensor's contact keeps nothing of its looks: each is the first.
-    if (contact.looked < 0.0f && contact.sensor == 0)
-      contact.size = smaller_size(pair.shape_a->size, pair.shape_b->size);
     list.one_resting |= std::uint64_t(proxy_a.pushes != proxy_b.pushes) << count;
     list.slots[count++] = slot;
   }

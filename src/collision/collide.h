@@ -56,10 +56,8 @@ struct ColliderBody {
 struct alignas(64) BodyLook {
   DVec3 position;  // of the origin
   Quat orientation;
-  Vec3 way;             // m, how far the centre of mass goes in the step
-  float spin = -1.0f;   // rad, how far the body turns in the step; below zero: not awake
-  float reach = 0.0f;   // m, farthest point from the centre of mass
-  float extent = 0.0f;  // m, a bound of the farthest point from the origin
+  Vec3 way;   // m, how far the centre of mass goes in the step
+  Vec3 turn;  // rad, how far the body turns in the step
 };
 
 // `seconds`: length of the step, how far things may come.
@@ -68,9 +66,7 @@ inline BodyLook make_body_look(const ColliderBody& body, float seconds) {
   look.position = body.pose.position;
   look.orientation = body.pose.orientation;
   look.way = seconds * body.linear_velocity;
-  look.spin = body.awake ? seconds * length(body.angular_velocity) : -1.0f;
-  look.reach = body.reach;
-  look.extent = body.reach + length(body.center);
+  if (body.awake) look.turn = seconds * body.angular_velocity;
   return look;
 }
 
@@ -79,15 +75,23 @@ struct ContactPair;
 struct Recycled;
 using RecycleContacts = void (*)(const ContactPair* pairs, int count, bool may_recycle, Recycled& recycled);
 
-// A body's centre of mass in its frame. Four floats are read at a time.
+// A body's centre of mass in its frame, and how far its farthest point is from there. Four floats are read at a time.
 struct alignas(16) BodyCenter {
   Vec3 position;
+  float reach = 0.0f;  // m
+};
+
+// What is asked of a body before its contacts are looked at.
+struct BodyOutline {
+  float extent = 0.0f;  // m, a bound of the farthest point from the origin
+  bool awake = false;   // awake and not fixed
 };
 
 struct CollideInput {
   ColliderShapes shapes;
-  std::span<const BodyLook> looks;      // by body
-  std::span<const BodyCenter> centers;  // by body
+  std::span<const BodyLook> looks;        // by body
+  std::span<const BodyCenter> centers;    // by body
+  std::span<const BodyOutline> outlines;  // by body
   std::span<const Proxy> proxies;
   RecycleContacts recycle_contacts;
   bool recycle = true;  // false: looks at every pair anew (tests compare with that)

@@ -74,11 +74,13 @@ class CollideScene {
   void look() {
     std::vector<BodyLook> looks;
     std::vector<BodyCenter> centers;
+    std::vector<BodyOutline> outlines;
     for (const ColliderBody& body : bodies) {
       looks.push_back(make_body_look(body, seconds));
-      centers.push_back({body.center});
+      centers.push_back({body.center, body.reach});
+      outlines.push_back({body.reach + length(body.center), body.awake});
     }
-    collide(store, {shapes, looks, centers, proxies, select_recycling(width), recycle}, tasks_, changes);
+    collide(store, {shapes, looks, centers, outlines, proxies, select_recycling(width), recycle}, tasks_, changes);
   }
 
   // The contact of two shapes; null if there is none.

@@ -69,9 +69,9 @@ template <int W>
 struct Side {
   Places<W> origin;
   QuatW<W> orientation;
-  Vec3W<W> way;
-  Wide<W> spin, reach, extent;
-  Vec3W<W> center;  // of mass, body frame
+  Vec3W<W> way, turn;
+  Vec3W<W> center;        // of mass, body frame
+  Wide<W> reach, extent;  // m, of the farthest point from there, and from the origin (a bound)
 
   GYRE_INLINE Places<W> center_of_mass() const { return origin + rotate(orientation, center); }
 };
@@ -79,7 +79,7 @@ struct Side {
 template <int W>
 GYRE_INLINE Side<W> load_side(const BodyLook* const (&looks)[W], const Records<W>& centers) {
   static_assert(GYRE_FLOATS_BEFORE(BodyLook, orientation) == 6 && GYRE_FLOATS_BEFORE(BodyLook, way) == 10);
-  static_assert(GYRE_FLOATS_BEFORE(BodyLook, spin) == 13 && GYRE_FLOATS_BEFORE(BodyLook, extent) == 15);
+  static_assert(GYRE_FLOATS_BEFORE(BodyLook, turn) == 13 && GYRE_FLOATS_BEFORE(BodyCenter, reach) == 3);
   Records<W> record;
   GYRE_UNROLL
   for (int i = 0; i < W; ++i) record[i] = floats(looks[i]);
@@ -93,12 +93,12 @@ GYRE_INLINE Side<W> load_side(const BodyLook* const (&looks)[W], const Records<W
   load_halves<W>(looks, &DVec3::z, side.origin.z);
   side.orientation = {xy[2], xy[3], zw[0], zw[1]};
   side.way = {zw[2], zw[3], rest[0]};
-  side.spin = rest[1];
-  side.reach = rest[2];
-  side.extent = rest[3];
+  side.turn = {rest[1], rest[2], rest[3]};
   Wide<W> center[4];
   read_four<W>(centers, 0, center);
   side.center = {center[0], center[1], center[2]};
+  side.reach = center[3];
+  side.extent = side.reach + length(side.center);
   return side;
 }
 
@@ -114,6 +114,9 @@ struct Group {
   Wide<W> size, looked;
   Placement<W> seen, now;    // B's body frame in A's: at the last full look, and now
   Wide<W> way, speculative;  // as in View
+  // As in Closing, in world axes.
+  Vec3W<W> closing_way, closing_turn;
+  Wide<W> lever, bend;
 };
 
 template <int W>
@@ -147,21 +150,59 @@ GYRE_INLINE void load_group(const ContactPair* pairs, int count, Group<W>& group
 
 // ------------------------------------------------------------------------------------------------------------- the view
 
+// m^2: below the square of any distance between bodies that is one.
+constexpr float kSmallestLength = 1.0e-30f;
+
+// The most that surfaces of the two come towards each other in the step, by how each turns about its own centre of mass. A
+// body that is long beyond the other one turns no faster there.
 template <int W>
-GYRE_INLINE void find_view(Group<W>& group) {
+GYRE_INLINE Wide<W> way_by_each(const Group<W>& group, Wide<W> spin_a, Wide<W> spin_b) {
   const Side<W>& a = group.a;
   const Side<W>& b = group.b;
-  group.now = {rotate_inverse(a.orientation, difference(b.origin, a.origin)),
-               conjugate(a.orientation) * b.orientation};
-  // A body that is long beyond the other one turns no faster there.
   const Wide<W> apart = length(group.now.position) + (a.extent - a.reach) + (b.extent - b.reach);
   const Mask<W> differ = a.reach != b.reach;
   const Wide<W> lever_a = select(differ, min(a.reach, apart + b.reach), a.reach);
   const Wide<W> lever_b = select(differ, min(b.reach, apart + a.reach), b.reach);
-  const Wide<W> zero(0.0f);
-  group.way = length(b.way - a.way) + max(a.spin, zero) * lever_a + max(b.spin, zero) * lever_b;
-  group.speculative =
-      Wide<W>(kSpeculativeShare) * group.size + min(group.way, Wide<W>(kLargestApproach) * group.size);
+  return length(b.way - a.way) + spin_a * lever_a + spin_b * lever_b;
+}
+
+// How the two go against each other where they can meet: in both balls around their centres of mass that hold them and what is
+// between them, by no more than `gap`. Of the points that both balls share none is farther from the middle than `lever`. Each
+// point's way is taken to be straight, of the velocity there; it is bent by no more than half the angle's square for each
+// length.
+template <int W>
+GYRE_INLINE void find_closing(Vec3W<W> b_from_a, Wide<W> gap, Wide<W> spin_a, Wide<W> spin_b,
+                              Group<W>& group) {
+  const Side<W>& a = group.a;
+  const Side<W>& b = group.b;
+  const Wide<W> zero(0.0f), one(1.0f), radius_a = a.reach + 0.5f * gap, radius_b = b.reach + 0.5f * gap;
+  const Wide<W> squared = length_squared(b_from_a), apart = sqrt(squared);
+  // Where the plane through the circle that both balls share lies between the centres.
+  const Wide<W> share = min(max((squared + (radius_a - radius_b) * (radius_a + radius_b)) /
+                                    (2.0f * squared + Wide<W>(kSmallestLength)),
+                                zero),
+                            one);
+  const Wide<W> from_a = share * apart, from_b = (one - share) * apart;
+  group.lever = min(sqrt(max((radius_a - from_a) * (radius_a + from_a), zero)), min(radius_a, radius_b));
+  group.closing_turn = b.turn - a.turn;
+  group.closing_way = b.way - a.way - cross(share * a.turn + (one - share) * b.turn, b_from_a);
+  group.bend = 0.5f * (square(spin_a) * (from_a + group.lever) + square(spin_b) * (from_b + group.lever));
+}
+
+template <int W>
+GYRE_INLINE void find_view(Group<W>& group) {
+  const Side<W>& a = group.a;
+  const Side<W>& b = group.b;
+  const Vec3W<W> way = difference(b.origin, a.origin);
+  group.now = {rotate_inverse(a.orientation, way), conjugate(a.orientation) * b.orientation};
+  const Wide<W> spin_a = length(a.turn), spin_b = length(b.turn);
+  const Vec3W<W> b_from_a = way + rotate(b.orientation, b.center) - rotate(a.orientation, a.center);
+  const Wide<W> by_each = way_by_each<W>(group, spin_a, spin_b);
+  const Wide<W> margin = Wide<W>(kSpeculativeShare) * group.size,
+                largest_approach = Wide<W>(kLargestApproach) * group.size;
+  find_closing<W>(b_from_a, margin + min(by_each, largest_approach), spin_a, spin_b, group);
+  group.way = min(by_each, length(group.closing_way) + length(group.closing_turn) * group.lever + group.bend);
+  group.speculative = margin + min(group.way, largest_approach);
 }
 
 // ----------------------------------------------------------------------------------------------------------- the shapes
@@ -265,7 +306,8 @@ GYRE_INLINE void write_views(const Group<W>& group, const ShapesInView<W>& shape
                              int count, View* views) {
   static_assert(GYRE_FLOATS_BEFORE(View, size) == 7 && GYRE_FLOATS_BEFORE(View, shapes_a_from_b) == 10);
   static_assert(GYRE_FLOATS_BEFORE(View, frame_turn) == 17 && GYRE_FLOATS_BEFORE(View, frame_from_a) == 21);
-  static_assert(GYRE_FLOATS_BEFORE(View, frame_from_b) == 24 && GYRE_FLOATS_BEFORE(View, axis) == 27);
+  static_assert(GYRE_FLOATS_BEFORE(View, frame_from_b) == 24 && GYRE_FLOATS_BEFORE(View, closing) == 27);
+  static_assert(GYRE_FLOATS_BEFORE(Closing, turn) == 4 && GYRE_FLOATS_BEFORE(View, axis) == 35);
   static_assert(offsetof(boxes::Axis, number) == 0 && offsetof(boxes::Axis, separation) == 4);
   Targets<W> to;
   GYRE_UNROLL
@@ -275,17 +317,21 @@ GYRE_INLINE void write_views(const Group<W>& group, const ShapesInView<W>& shape
   const QuatW<W> turn = shapes.frame.orientation;
   const Vec3W<W> from_a = difference(shapes.frame.origin, group.a.center_of_mass());
   const Vec3W<W> from_b = difference(shapes.frame.origin, group.b.center_of_mass());
+  const Vec3W<W> closing_way = rotate_inverse(turn, group.closing_way),
+                 closing_turn = rotate_inverse(turn, group.closing_turn);
   write_four<4, W>(to, 0, {p.x, p.y, p.z, q.x});
   write_four<4, W>(to, 4, {q.y, q.z, q.w, group.size});
   write_four<4, W>(to, 8, {group.way, group.speculative, shape_p.x, shape_p.y});
   write_four<4, W>(to, 12, {shape_p.z, shape_q.x, shape_q.y, shape_q.z});
   write_four<4, W>(to, 16, {shape_q.w, turn.x, turn.y, turn.z});
   write_four<4, W>(to, 20, {turn.w, from_a.x, from_a.y, from_a.z});
-  write_four<3, W>(to, 24, {from_b.x, from_b.y, from_b.z, Wide<W>(0.0f)});
+  write_four<4, W>(to, 24, {from_b.x, from_b.y, from_b.z, closing_way.x});
+  write_four<4, W>(to, 28, {closing_way.y, closing_way.z, group.lever, closing_turn.x});
+  write_four<3, W>(to, 32, {closing_turn.y, closing_turn.z, group.bend, Wide<W>(0.0f)});
   // Lanes that only repeat the last contact know no axis.
   for (int i = 0; i < count; ++i) {
-    to[i][27] = __builtin_bit_cast(float, axis.number[i]);
-    to[i][28] = axis.separation[i];
+    to[i][35] = __builtin_bit_cast(float, axis.number[i]);
+    to[i][36] = axis.separation[i];
   }
 }
 

@@ -44,6 +44,19 @@ struct ContactPair {
   const BodyCenter* center_b;
 };
 
+// How B goes in the step, seen from A that turns along, near where the two can meet. What goes round together does not close.
+struct Closing {
+  Vec3 way;     // m, in the middle of where they can meet, in the frame of View
+  float lever;  // m, how far from there they can meet
+  Vec3 turn;    // rad, in the same frame
+  float bend;   // m, the most that ways are longer than straight ones
+
+  // How far surfaces can come towards each other along a unit normal from A to B.
+  float along(Vec3 normal) const {
+    return max(-dot(way, normal), 0.0f) + lever * length(cross(turn, normal)) + bend;
+  }
+};
+
 // How a pair stands and moves, as far as every look needs it.
 struct View {
   Transform a_from_b;  // body frames
@@ -57,6 +70,7 @@ struct View {
   // Its origin from either centre of mass, world axes. Each side by itself: one of the two may be far away (a plane's body),
   // and floats with it.
   Vec3 frame_from_a, frame_from_b;
+  Closing closing;
   // Of two boxes, the axis that decides at this look; kNoAxis where it is still to be found, and of everything else.
   boxes::Axis axis;
 };

@@ -1,6 +1,7 @@
 // Full looks, and the matching of new points with old ones. See contact_update.h.
 #include "collision/contact_update.h"
 
+#include "collision/contact_apart_lanes.h"
 #include "collision/contact_follow.h"
 #include "collision/contact_fours.h"
 #include "collision/fat_box.h"
@@ -66,15 +67,35 @@ struct SeenShape {
 template <int kRoom>
 void ask_shapes(const ContactPair& pair, const View& view, float reach, KeptTriangles* kept,
                 Found<kRoom>& found) {
-  if (view.axis.number != boxes::kNoAxis) {
-    collide_boxes_along(view.axis, pair.shape_a->shape, pair.shape_b->shape, view.shapes_a_from_b, reach,
-                        pair.contact->cache, found.manifolds[0]);
-    found.count = found.manifolds[0].count > 0 ? 1 : 0;
-    return;
-  }
   const SeenShape a(pair.shape_a->shape, pair.shape_b->shape), b(pair.shape_b->shape, pair.shape_a->shape);
   found.count = collide_shapes(*a.shape, *b.shape, view.shapes_a_from_b, reach, pair.contact->cache,
                                found.manifolds, kept);
+}
+
+// How near surfaces must be for contacts along a normal to matter. What is no farther apart than `least_near` always does.
+float least_near(const View& view) { return (kSpeculativeShare + kKept) * view.size; }
+float near_along(const View& view, Vec3 normal) {
+  return least_near(view) + min(min(view.closing.along(normal), view.way), kLargestApproach * view.size);
+}
+
+// As ask_shapes, of two sharp boxes; but nothing is found where they do not come near enough along the axis that parts them most.
+// Then nothing is nearer than they are along that axis, and that is what is returned.
+float ask_boxes(const ContactPair& pair, const View& view, float reach, Found<1>& found) {
+  const Shape& a = pair.shape_a->shape;
+  const Shape& b = pair.shape_b->shape;
+  PairCache& cache = pair.contact->cache;
+  const boxes::Axis axis = view.axis.number != boxes::kNoAxis
+                               ? view.axis
+                               : find_box_axis(a, b, view.shapes_a_from_b, reach, cache);
+  if (axis.separation > least_near(view) &&
+      axis.separation > near_along(view, box_axis_normal(axis, view.shapes_a_from_b))) {
+    cache.words[0] = std::uint32_t(axis.number + 1);
+    found.count = 0;
+    return min(axis.separation, reach);
+  }
+  collide_boxes_along(axis, a, b, view.shapes_a_from_b, reach, cache, found.manifolds[0]);
+  found.count = found.manifolds[0].count > 0 ? 1 : 0;
+  return reach;
 }
 
 // Leaves out what is farther apart than `reach`. Returns the smallest separation of what was left out.
@@ -100,6 +121,12 @@ float keep_near(Found<kRoom>& found, float reach) {
   }
   found.count = kept_manifolds;
   return left_out;
+}
+
+float farthest_of(const LocalManifold& manifold) {
+  float most = -kUnbounded;
+  for (int i = 0; i < manifold.count; ++i) most = max(most, manifold.points[i].separation);
+  return most;
 }
 
 // Whether no point is as near as `reach`.
@@ -352,30 +379,56 @@ bool is_clear_of_surface(const ContactPair& pair, const View& view, float reach)
   return is_clear_of_surface(pair.shape_a->shape, pair.shape_b->shape, a_from_b, reach);
 }
 
+// How far a look reached that left out everything beyond `kept`, of which the nearest is `left_out` away. Points measure separation
+// along one normal, which is not always that of the nearest features: hence only a part.
+float looked_as_far(float reach, float kept, float left_out) {
+  return left_out < reach ? kept + 0.75f * (left_out - kept) : reach;
+}
+
+// A look at what is no mesh. Returns how far it reached.
+float look_at_convex(const ContactPair& pair, const View& view, Found<1>& found) {
+  float kept = view.speculative + kKept * view.size;
+  if (pair.contact->manifold_count == 0 && view.way < kSlow * view.size) {
+    const float far_reach = view.speculative + kFarSlack * view.size;
+    ask_shapes(pair, view, far_reach, nullptr, found);
+    // Far points may have taken the places of near ones in the manifold: then it is no good.
+    if (is_beyond(found, kept)) return looked_as_far(far_reach, kept, keep_near(found, kept));
+  }
+  float reach = view.speculative + kNearSlack * view.size;
+  if (is_sharp_box(pair.shape_a->shape) && is_sharp_box(pair.shape_b->shape)) {
+    reach = ask_boxes(pair, view, reach, found);
+  } else {
+    ask_shapes(pair, view, reach, nullptr, found);
+  }
+  if (found.count > 0 && farthest_of(found.manifolds[0]) > least_near(view))
+    kept = near_along(view, found.manifolds[0].normal);
+  return looked_as_far(reach, kept, keep_near(found, kept));
+}
+
+// A look at a mesh or height field.
+float look_at_surface(const ContactPair& pair, const View& view, KeptTriangles* kept_triangles,
+                      Found<kMaxMeshManifolds>& found) {
+  if (pair.contact->manifold_count == 0) {
+    const float far_reach = view.speculative + kClearSteps * view.way + kFarSlack * view.size;
+    if (is_clear_of_surface(pair, view, far_reach)) return far_reach;
+  }
+  const float kept = view.speculative + kKept * view.size, reach = view.speculative + kNearSlack * view.size;
+  ask_shapes(pair, view, reach, kept_triangles, found);
+  return looked_as_far(reach, kept, keep_near(found, kept));
+}
+
 // kRoom is the contact's manifold_room.
 template <int kRoom>
 void look_in_room(const ContactPair& pair, const View& view, KeptTriangles* kept_triangles) {
-  Contact& contact = *pair.contact;
-  const float kept = view.speculative + kKept * view.size;
-  float reach = view.speculative + kNearSlack * view.size;
-  if (kRoom > 1 && contact.manifold_count == 0) {
-    const float far_reach = view.speculative + kClearSteps * view.way + kFarSlack * view.size;
-    if (is_clear_of_surface(pair, view, far_reach)) return note_look(contact, view, far_reach);
-  }
   Found<kRoom> found;
-  bool clear = false;
-  if (kRoom == 1 && contact.manifold_count == 0 && view.way < kSlow * view.size) {
-    const float far_reach = view.speculative + kFarSlack * view.size;
-    ask_shapes(pair, view, far_reach, kept_triangles, found);
-    // Far points may have taken the places of near ones in the manifold: then it is no good.
-    clear = is_beyond(found, kept);
-    if (clear) reach = far_reach;
+  float looked = 0.0f;
+  if constexpr (kRoom == 1) {
+    looked = look_at_convex(pair, view, found);
+  } else {
+    looked = look_at_surface(pair, view, kept_triangles, found);
   }
-  if (!clear) ask_shapes(pair, view, reach, kept_triangles, found);
-  const float left_out = min(keep_near(found, kept), reach);
-  if (found.count > 0 || contact.manifold_count > 0) write_manifolds(found, pair, view);
-  // Points measure separation along one normal, which is not always that of the nearest features: hence only a part.
-  note_look(contact, view, left_out < reach ? kept + 0.75f * (left_out - kept) : reach);
+  if (found.count > 0 || pair.contact->manifold_count > 0) write_manifolds(found, pair, view);
+  note_look(*pair.contact, view, looked);
 }
 
 bool carried_load(std::span<const Manifold> manifolds) {

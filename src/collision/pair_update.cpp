@@ -8,7 +8,7 @@ namespace gyre {
 namespace {
 
 // Contacts lie in the order of their slots, keys come in another: how many keys before its turn a contact is asked for.
-constexpr std::size_t kAhead = 8;
+constexpr std::size_t kAhead = 24;
 void fetch_contact(const ContactStore& store, std::uint64_t key) {
   const std::uint32_t slot = store.slot_of_pair.first_tried(key);
   if (slot != SlotTable::kNone) __builtin_prefetch(&store.contacts[slot]);
@@ -18,6 +18,7 @@ void fetch_contact(const ContactStore& store, std::uint64_t key) {
 
 void drop_known_pairs(const ContactStore& store, Array<std::uint64_t>& keys, std::size_t from) {
   std::size_t kept = from;
+  for (std::size_t i = from; i < keys.size() && i < from + kAhead; ++i) fetch_contact(store, keys[i]);
   for (std::size_t i = from; i < keys.size(); ++i) {
     if (i + kAhead < keys.size()) fetch_contact(store, keys[i + kAhead]);
     const std::uint64_t key = keys[i];

@@ -41,7 +41,7 @@ bool rest_together(const CollideInput& input, std::uint32_t a, std::uint32_t b) 
   if (a == b) return true;
   const BodyLook& look_a = input.looks[a];
   const BodyLook& look_b = input.looks[b];
-  return look_a.way == look_b.way && look_a.spin <= 0.0f && look_b.spin <= 0.0f;
+  return look_a.way == look_b.way && look_a.turn == Vec3{} && look_b.turn == Vec3{};
 }
 
 // How far the shape reaches beyond a point along a unit direction, in the frame of the shape.
@@ -266,7 +266,7 @@ bool is_hidden(const Scene& scene, const Asked& asked, int index) {
 std::uint8_t hidden_manifolds(const Scene& scene, std::uint32_t slot) {
   Side side;
   if (!find_side(scene.store, slot, scene.input, side)) return 0;
-  if (!scene.resting.has_several(side.mover) || scene.input.looks[side.mover_body].spin < 0.0f) return 0;
+  if (!scene.resting.has_several(side.mover) || !scene.input.outlines[side.mover_body].awake) return 0;
   const Asked asked{slot, side, scene.resting.of(side.mover)};
   unsigned mask = 0;
   for (int i = 0; i < scene.store.contacts[slot].manifold_count; ++i) {

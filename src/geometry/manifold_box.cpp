@@ -255,6 +255,21 @@ void collide_crossing(const Boxes& x, const Transform& a_from_b, const Axis& edg
   }
 }
 
+// The axis that decides, or the one that decided last if it parts the boxes by more than allowed: most pairs that did not touch
+// then do not touch now.
+Axis find_axis(const Boxes& x, const Transform& a_from_b, float max_separation, const PairCache& cache) {
+  const FaceAxes faces(x);
+  Axis favoured;
+  if (cache.words[0] - 1u < std::uint32_t(kAxisCount)) {
+    favoured.number = int(cache.words[0]) - 1;
+    favoured.separation = favoured.number < kFirstEdge
+                              ? faces[favoured.number]
+                              : edge_separation(x, a_from_b, favoured.edge_a(), favoured.edge_b());
+    if (favoured.separation > max_separation) return favoured;
+  }
+  return search(x, faces, a_from_b, max_separation, favoured);
+}
+
 struct Pair {
   const Shape& a;
   const Shape& b;
@@ -279,21 +294,31 @@ void collide_along(const Boxes& x, const Axis& found, const Pair& pair, PairCach
 
 }  // namespace
 
+Axis find_box_axis(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
+                   const PairCache& cache) {
+  // Bodies that are about to be taken out of the world.
+  if (!is_finite(a_from_b.position) || !is_finite(a_from_b.orientation)) return {0, kUnbounded};
+  return find_axis(Boxes(a, b, a_from_b), a_from_b, max_separation, cache);
+}
+
+Vec3 box_axis_normal(const Axis& axis, const Transform& a_from_b) {
+  const Mat3 turn = to_matrix(a_from_b.orientation);
+  const Vec3 columns[3] = {turn.x, turn.y, turn.z};
+  const auto own = [](int k) {
+    return Vec3{k == 0 ? 1.0f : 0.0f, k == 1 ? 1.0f : 0.0f, k == 2 ? 1.0f : 0.0f};
+  };
+  const Vec3 normal = axis.number < kFirstB ? own(axis.number)
+                      : axis.number < kFirstEdge
+                          ? columns[axis.number - kFirstB]
+                          : normalized(cross(own(axis.edge_a()), columns[axis.edge_b()]));
+  return dot(normal, a_from_b.position) < 0.0f ? -normal : normal;
+}
+
 void collide_boxes(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
                    PairCache& cache, LocalManifold& out) {
   out.count = 0;
   const Boxes x(a, b, a_from_b);
-  const FaceAxes faces(x);
-  // The axis that decided last time: most pairs that did not touch then do not touch now.
-  Axis favoured;
-  if (cache.words[0] - 1u < std::uint32_t(kAxisCount)) {
-    favoured.number = int(cache.words[0]) - 1;
-    favoured.separation = favoured.number < kFirstEdge
-                              ? faces[favoured.number]
-                              : edge_separation(x, a_from_b, favoured.edge_a(), favoured.edge_b());
-    if (favoured.separation > max_separation) return;
-  }
-  const Axis found = search(x, faces, a_from_b, max_separation, favoured);
+  const Axis found = find_axis(x, a_from_b, max_separation, cache);
   cache.words[0] = std::uint32_t(found.number + 1);
   if (found.separation <= max_separation)
     collide_along(x, found, Pair{a, b, a_from_b, max_separation}, cache, out);
