@@ -260,54 +260,75 @@ GYRE_INLINE void prepare_friction(ContactBlock<W>& block, const SurfaceLanes<W>&
 // K of the normal rows and its inverse. Four points of a plane give rank 3 at most, so the inverse is of K with its
 // diagonal raised by a share: the impulses that no motion can tell apart then change least. Rows of points that a lane does
 // not have are those of the identity while Cholesky's factor is made, and 0 after.
-template <int W>
-GYRE_INLINE void prepare_normals(ContactBlock<W>& block, const Wide<W> (&point_exists)[kMaxManifoldPoints]) {
+template <int W, int Count>
+GYRE_INLINE void prepare_rows(ContactBlock<W>& block, const Wide<W> (&point_exists)[kMaxManifoldPoints]) {
   constexpr float kRegular = 0.02f;
   const Wide<W> zero(0.0f), one(1.0f);
-  const int count = block.point_count;
   const Wide<W> inverse_masses = block.inverse_mass_a + block.inverse_mass_b;
-  Wide<W> l[10], inverse_diagonal[kMaxManifoldPoints];  // Cholesky factor of the regularised K
-  for (int i = 0; i < count; ++i) {
+  Wide<W> l[10], inverse_diagonal[Count];  // Cholesky factor of the regularised K
+  GYRE_UNROLL
+  for (int i = 0; i < Count; ++i) {
     const PointBlock<W>& point = block.points[i];
     const Vec3W<W> ia = block.inverse_inertia_a * (point.arm + block.arm_shift_a);
     const Vec3W<W> ib = block.inverse_inertia_b * (point.arm + block.arm_shift_b);
     const Vec3W<W> turn = ia + ib;
     const Wide<W> common = inverse_masses + (dot(block.arm_shift_a, ia) + dot(block.arm_shift_b, ib));
     const auto exists = point_exists[i] > zero;
+    Wide<W> row[Count];
+    GYRE_UNROLL
     for (int j = 0; j <= i; ++j) {
       const Wide<W> k = common + dot(block.points[j].arm, turn);
-      block.k[packed(j, i)] = keep(exists & (point_exists[j] > zero), k);
+      block.k[packed(j, i)] = row[j] = keep(exists & (point_exists[j] > zero), k);
     }
-    const Wide<W> own = block.k[packed(i, i)];
+    const Wide<W> own = row[i];
     block.relief[i] = keep(own > zero, one / select(own > zero, own, one));
+    GYRE_UNROLL
     for (int j = 0; j < i; ++j) {
-      Wide<W> sum = block.k[packed(j, i)];
+      Wide<W> sum = row[j];
+      GYRE_UNROLL
       for (int m = 0; m < j; ++m) sum = sum - l[packed(m, i)] * l[packed(m, j)];
       l[packed(j, i)] = sum * inverse_diagonal[j];
     }
     Wide<W> sum = own * Wide<W>(1.0f + kRegular);
+    GYRE_UNROLL
     for (int m = 0; m < i; ++m) sum = sum - l[packed(m, i)] * l[packed(m, i)];
     inverse_diagonal[i] = one / select(sum > zero, sqrt(sum), one);
   }
   // Columns of the inverse, by forward and back substitution.
-  for (int column = 0; column < count; ++column) {
-    Wide<W> x[kMaxManifoldPoints];
-    for (int i = 0; i < count; ++i) {
-      if (i < column) {
-        x[i] = zero;
-        continue;
-      }
+  GYRE_UNROLL
+  for (int column = 0; column < Count; ++column) {
+    Wide<W> x[Count];
+    GYRE_UNROLL
+    for (int i = column; i < Count; ++i) {
       Wide<W> sum = i == column ? one : zero;
+      GYRE_UNROLL
       for (int m = column; m < i; ++m) sum = sum - l[packed(m, i)] * x[m];
       x[i] = sum * inverse_diagonal[i];
     }
     const auto exists = point_exists[column] > zero;
-    for (int i = count - 1; i >= 0; --i) {
-      Wide<W> sum = x[i];
-      for (int m = i + 1; m < count; ++m) sum = sum - l[packed(i, m)] * x[m];
+    GYRE_UNROLL
+    for (int i = Count - 1; i >= 0; --i) {
+      Wide<W> sum = i < column ? zero : x[i];
+      GYRE_UNROLL
+      for (int m = i + 1; m < Count; ++m) sum = sum - l[packed(i, m)] * x[m];
       x[i] = sum * inverse_diagonal[i];
       if (i <= column) block.inverse_k[packed(i, column)] = keep(exists, x[i]);
     }
+  }
+}
+template <int W>
+GYRE_INLINE void prepare_normals(ContactBlock<W>& block, const Wide<W> (&point_exists)[kMaxManifoldPoints]) {
+  switch (block.point_count) {
+    case 0:
+      return;
+    case 1:
+      return prepare_rows<W, 1>(block, point_exists);
+    case 2:
+      return prepare_rows<W, 2>(block, point_exists);
+    case 3:  // of contacts that are followed
+      return prepare_rows<W, 3>(block, point_exists);
+    default:
+      return prepare_rows<W, 4>(block, point_exists);
   }
 }
 
