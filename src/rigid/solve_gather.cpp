@@ -409,6 +409,7 @@ void make_contact_blocks(Solve& solve, std::span<const Group> groups, Arena& are
   const std::uint32_t blocks = groups.empty() ? 0 : groups.back().first + groups.back().count;
   if (!solve.rolling.contacts.empty()) mark_rolling_lanes(solve, blocks, arena);
   solve.blocks = arena.make<std::byte>(std::size_t(blocks) * solve.kernels.block_bytes).data();
+  solve.asides = arena.make<std::byte>(std::size_t(blocks) * solve.kernels.aside_bytes).data();
 }
 
 namespace {

@@ -25,7 +25,7 @@ struct Solve {
   const ContactKernels& kernels;
   SolveBatch batch{};
   std::span<const std::uint32_t> places{};  // of bodies in their batches
-  void* blocks = nullptr;
+  void *blocks = nullptr, *asides = nullptr;  // of contacts
   float h = 0.0f;
   ContactSettings contact_settings{};
   JointSettings joint_settings{};

@@ -109,7 +109,7 @@ void structures_stage(void* context, int, int, int) {
 
 void prepare_contacts_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
-  s.kernels.prepare(s.blocks, begin, end, s.scratch.constraints.data(), s.scratch.order.data(),
+  s.kernels.prepare(s.blocks, s.asides, begin, end, s.scratch.constraints.data(), s.scratch.order.data(),
                     s.contact_bodies, s.contact_settings);
 }
 void finish_contacts_stage(void* context, int begin, int end, int) {

@@ -91,15 +91,16 @@ struct FollowedLane {
   const Sym3 *inverse_a, *inverse_b;
 };
 
-// The kernels of one CPU target: every function works on blocks [begin, end) of the array at `blocks`. `order` lists
-// constraint indices block by block, W a block; 0xffffffff marks an empty lane. Of a block either all
+// The kernels of one CPU target: every function works on blocks [begin, end) of the array at `blocks`. What only some stages or lanes need
+// of them is in another array, at `asides`: prepared blocks know their part of it. `order` lists constraint indices block by block, W a block;
+// 0xffffffff marks an empty lane. Of a block either all
 // contacts have a body A or none has: the latter have steps of their own, and whether a number leaves a float's range on the way must
 // not depend on the lanes beside it. What is prepared knows where the motion records of its
 // bodies lie.
 struct ContactKernels {
   int width;
-  std::size_t block_bytes;
-  void (*prepare)(void* blocks, int begin, int end, const ContactConstraint* constraints,
+  std::size_t block_bytes, aside_bytes;
+  void (*prepare)(void* blocks, void* asides, int begin, int end, const ContactConstraint* constraints,
                   const std::uint32_t* order, ContactBodies bodies, const ContactSettings& settings);
   // Moves the points of contacts of a block, and along with them the impulses that stand, which these velocities have.
   void (*follow)(void* blocks, int block, const FollowedLane* lanes, int count);

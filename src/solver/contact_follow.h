@@ -82,11 +82,11 @@ struct LoadShares {
       exists[k] = lanes.has_point(k);
       lowest[k] = exists[k] & (separations[k] < least);
       least = select(lowest[k], separations[k], least);
-      load = load + keep(exists[k], block.points[k].impulse);
+      load = load + keep(exists[k], block.impulses[k]);
     }
     bears = load > zero;
     const Wide<W> divisor = select(bears, load, one);
-    for (int k = 0; k < lanes.point_count; ++k) shares[k] = block.points[k].impulse / divisor;
+    for (int k = 0; k < lanes.point_count; ++k) shares[k] = block.impulses[k] / divisor;
   }
 };
 
@@ -122,10 +122,10 @@ GYRE_INLINE LaneTorques<W> torques_of(const ContactBlock<W>& block, const Follow
   FrictionArms<W> friction(load, arms[0] = gather_arms<W>(lanes, set, 0));
   for (int k = 1; k < lanes.point_count; ++k) friction.add(load, k, arms[k] = gather_arms<W>(lanes, set, k));
   const Vec3W<W> slide = block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2;
-  const Vec3W<W> turn = block.twist * block.normal + block.rolling;
+  const Vec3W<W> turn = block.twist * block.normal + block.aside->rolling;
   LaneTorques<W> torques{cross(friction.from_a, slide) + turn, cross(friction.from_b, slide) + turn};
   for (int k = 0; k < lanes.point_count; ++k) {
-    const Vec3W<W> push = block.points[k].impulse * block.normal;
+    const Vec3W<W> push = block.impulses[k] * block.normal;
     torques.a = select<W>(load.exists[k], torques.a + cross(arms[k].from_a, push), torques.a);
     torques.b = select<W>(load.exists[k], torques.b + cross(arms[k].from_b, push), torques.b);
   }
@@ -167,9 +167,10 @@ GYRE_INLINE void put_back(ContactBlock<W>& block, const ContactBlock<W>& moved, 
   for (int i = 0; i < lanes.point_count; ++i) {
     put_vector(load.exists[i], block.points[i].arm, moved.points[i].arm);
     put(load.exists[i], block.points[i].separation, separations[i]);
-    put(load.exists[i], block.relief[i], moved.relief[i]);
+    put(load.exists[i], block.aside->relief[i], moved.aside->relief[i]);
+    block.rows[i] = lane_bits<W>(block.aside->relief[i] > Wide<W>(0.0f));
     for (int j = i; j < lanes.point_count; ++j) {
-      put(load.exists[j], block.k[packed(i, j)], moved.k[packed(i, j)]);
+      put(load.exists[j], block.aside->k[packed(i, j)], moved.aside->k[packed(i, j)]);
       put(load.exists[j], block.inverse_k[packed(i, j)], moved.inverse_k[packed(i, j)]);
     }
   }
@@ -194,10 +195,12 @@ void follow_lanes(void* memory, int index, const FollowedLane* followed, int cou
                  change_b = block.inverse_inertia_b * now.b - before_b;
   for (int i = 0; i < count; ++i) {
     const int lane = followed[i].lane;
-    turn_body<W>(block.write_a[lane], lane, change_a);
-    turn_body<W>(block.write_b[lane], lane, change_b);
+    turn_body<W>(block.aside->write_a[lane], lane, change_a);
+    turn_body<W>(block.aside->write_b[lane], lane, change_b);
   }
+  ContactAside<W> aside;
   ContactBlock<W> moved;
+  moved.aside = &aside;
   copy_bodies<W>(block, moved);
   moved.inverse_inertia_a = block.inverse_inertia_a, moved.inverse_inertia_b = block.inverse_inertia_b;
   moved.point_count = lanes.point_count;
@@ -213,9 +216,10 @@ void follow_lanes(void* memory, int index, const FollowedLane* followed, int cou
   }
   moved.friction_from_a = friction.from_a, moved.friction_from_b = friction.from_b;
   auto twists = nearer_a;
-  prepare_friction_masses<W>(moved, block.twist_radius > Wide<W>(0.0f), twists);
+  prepare_friction_masses<W>(moved, block.aside->twist_radius > Wide<W>(0.0f), twists);
   prepare_normals<W>(moved, exists);
   put_back<W>(block, moved, lanes, load);
+  note_ragged<W>(block);
   block.idles = 0;
 }
 

@@ -32,48 +32,27 @@ template <int W>
 struct PointBlock {
   Vec3W<W> arm;           // from a centre of mass to the point, times the normal: what a push along it turns
   Wide<W> separation;     // as the step began
-  Wide<W> impulse;        // accumulated in this sub-step
   Wide<W> held;           // the load it is used to
-  Wide<W> total;          // summed over the step
 };
 
-// In the order of use: what only some stages read comes last.
+// Place of row i, column j (either order) in a packed upper triangle, column by column (00 01 11 02 12 22 03 13 23 33): that of fewer
+// points is its beginning.
+constexpr int packed(int i, int j) { return i <= j ? j * (j + 1) / 2 + i : i * (i + 1) / 2 + j; }
+
+// What of a block only some stages or lanes need.
 template <int W>
-struct ContactBlock {
-  // Motion records of the bodies: zeros for what has none; what nothing pushes is written to `nowhere`.
-  const float* read_a[W];
-  const float* read_b[W];
-  float* write_a[W];
-  float* write_b[W];
-  std::int32_t point_count = 0;         // the most of any lane; three are prepared as four, for each number is a kernel of its own
-  std::int32_t rolls = 0;               // any lane has rolling friction
-  std::int32_t has_fresh = 0;           // any lane is fresh
-  std::int32_t idles = 0;               // solved where nothing moves, nor has in the step, it came out as it was: it will again
-  // Lanes, as bits: of which a body hangs on a joint; that have a body there; whose body is pushed.
-  std::uint32_t linked = 0, has_a = 0, has_b = 0, pushes_a = 0, pushes_b = 0;
-  Vec3W<W> normal, tangent_1, tangent_2;
-  Wide<W> inverse_mass_a, inverse_mass_b;
-  Sym3W<W> inverse_inertia_a, inverse_inertia_b;
-  // Friction at the centre of pressure.
-  Vec3W<W> friction_from_a, friction_from_b;
-  // Inverse friction coefficients, static and dynamic, and the same of the twist (1/m): 0 where there is no friction.
-  Wide<W> static_grip, dynamic_grip, static_twist_grip, dynamic_twist_grip;
-  Wide<W> inverse_k11, inverse_k12, inverse_k13, inverse_k22, inverse_k23, inverse_k33;  // of (tangent_1, tangent_2, twist)
+struct ContactAside {
+  // Where something slides, or surfaces do.
   Wide<W> slide_mass;     // scalar step for sliding, so that friction opposes the slip in every direction alike
   Wide<W> twist_radius;   // m: scale of the twist row beside the tangents
   Wide<W> surface_1, surface_2;
-  Wide<W> friction_1, friction_2, twist;
-  Wide<W> sliding;        // 1 where friction was at its limit
-  Wide<W> total_1, total_2;
-  // Inverse of the regularised K = J M^-1 J^T of the normal rows, upper triangle by rows (00 01 02 03 11 12 13 22 23 33); it and
-  // `relief` are 0 in rows of points that a lane does not have.
-  Wide<W> inverse_k[10];
-  Wide<W> relief[kMaxManifoldPoints];  // 1 / K_ii
-  Wide<W> rate, give, slop, push_speed;
-  // All points' arms on a body differ from `arm` by the same: one of these is zero, that of the body whose centre is nearer.
-  Vec3W<W> arm_shift_a, arm_shift_b;
-  PointBlock<W> points[kMaxManifoldPoints];
+  // Where points would pull: K = J M^-1 J^T of the normal rows, upper triangle; it and `relief` are 0 in rows of points that a lane does
+  // not have.
   Wide<W> k[10];
+  Wide<W> relief[kMaxManifoldPoints];  // 1 / K_ii
+  // Where velocities go if not all bodies of a side are pushed: `nowhere` for those that are not.
+  float* write_a[W];
+  float* write_b[W];
   Wide<W> fresh;                   // 1 where no load is known yet
   Wide<W> mobility_a, mobility_b;  // shares of the inverse masses that a push apart sees
   // Rolling friction.
@@ -82,10 +61,43 @@ struct ContactBlock {
   alignas(64) float nowhere[kRecordFloats];
 };
 
-// Place of row i, column j (either order) in a packed upper triangle.
-constexpr int packed(int i, int j) {
-  constexpr int kStart[4] = {0, 3, 5, 6};
-  return i <= j ? kStart[i] + j : kStart[j] + i;
+// What all parts of a step read. Blocks of a large island do not fit into the caches and come anew in each part, as fast as the processor
+// foresees which lines will be asked for: three times as fast where there are no gaps between them.
+template <int W>
+struct alignas(64) ContactBlock {
+  // Motion records of the bodies: zeros for what has none.
+  float* read_a[W];
+  float* read_b[W];
+  ContactAside<W>* aside;
+  std::int32_t point_count = 0;  // the most of any lane; three are prepared as four, for each number is a kernel of its own
+  // Any lane has rolling friction; is fresh; has a surface that moves by itself; lacks a row that others have.
+  std::uint8_t rolls = 0, has_fresh = 0, slips = 0, is_ragged = 0;
+  std::int32_t idles = 0;        // solved where nothing moves, nor has in the step, it came out as it was: it will again
+  // Lanes, as bits: of which a body hangs on a joint; that have a body there; whose body is pushed; where friction was at its limit;
+  // that have a row for a point.
+  std::uint16_t linked = 0, has_a = 0, has_b = 0, pushes_a = 0, pushes_b = 0, slides = 0, rows[kMaxManifoldPoints] = {};
+  Vec3W<W> normal, tangent_1, tangent_2;
+  // Friction at the centre of pressure.
+  Vec3W<W> friction_from_a, friction_from_b;
+  Wide<W> inverse_k11, inverse_k12, inverse_k13, inverse_k22, inverse_k23, inverse_k33;  // of (tangent_1, tangent_2, twist)
+  // Inverse friction coefficients, static and dynamic, and the same of the twist (1/m): 0 where there is no friction.
+  Wide<W> static_grip, dynamic_grip, static_twist_grip, dynamic_twist_grip;
+  Wide<W> inverse_mass_a, inverse_mass_b;
+  Sym3W<W> inverse_inertia_a, inverse_inertia_b;
+  Wide<W> rate, give, slop, push_speed;
+  // All points' arms on a body differ from `arm` by the same: one of these is zero, that of the body whose centre is nearer.
+  Vec3W<W> arm_shift_a, arm_shift_b;
+  // Accumulated in this sub-step, and summed over the step.
+  Wide<W> friction_1, friction_2, twist, total_1, total_2;
+  Wide<W> impulses[kMaxManifoldPoints], totals[kMaxManifoldPoints];
+  PointBlock<W> points[kMaxManifoldPoints];
+  Wide<W> inverse_k[10];  // of K, regularised
+};
+constexpr std::uint16_t all_lanes(int width) { return static_cast<std::uint16_t>((1u << width) - 1u); }
+
+template <int W>
+GYRE_INLINE std::uint16_t lane_bits(Mask<W> mask) {
+  return static_cast<std::uint16_t>(to_bits(mask));
 }
 
 // Velocities of the two bodies of each lane; of B alone where kHasA is false: in such a block no lane has an A, as where all lie on
@@ -100,7 +112,7 @@ struct PairMotion<W, false> {
 };
 
 template <int W>
-GYRE_INLINE void load_velocities(const float* const (&records)[W], Vec3W<W>& linear, Vec3W<W>& angular) {
+GYRE_INLINE void load_velocities(float* const (&records)[W], Vec3W<W>& linear, Vec3W<W>& angular) {
   Wide<W> columns[8];
   gather_columns<8, W>(records, kMotionLinear, columns);
   linear = {columns[0], columns[1], columns[2]};
@@ -124,8 +136,9 @@ GYRE_INLINE void store_velocities(float* const (&records)[W], Vec3W<W> linear, V
 }
 template <int W, bool kHasA>
 GYRE_INLINE void store_pair(ContactBlock<W>& block, const PairMotion<W, kHasA>& pair) {
-  if constexpr (kHasA) store_velocities<W>(block.write_a, pair.linear_a, pair.angular_a);
-  store_velocities<W>(block.write_b, pair.linear_b, pair.angular_b);
+  if constexpr (kHasA)
+    store_velocities<W>(block.pushes_a == all_lanes(W) ? block.read_a : block.aside->write_a, pair.linear_a, pair.angular_a);
+  store_velocities<W>(block.pushes_b == all_lanes(W) ? block.read_b : block.aside->write_b, pair.linear_b, pair.angular_b);
 }
 
 // Adds the impulse `p` on B at `from_b` (and -p on A at `from_a`), and the angular impulse `t` on B (and -t on A).
@@ -181,7 +194,7 @@ GYRE_INLINE NormalMotion<W> normal_speeds(const ContactBlock<W>& block, const Pa
 template <int W>
 struct BodyWay {
   Vec3W<W> moved, turned;
-  GYRE_INLINE explicit BodyWay(const float* const (&records)[W]) {
+  GYRE_INLINE explicit BodyWay(float* const (&records)[W]) {
     Wide<W> columns[8];
     gather_columns<8, W>(records, kMotionMoved, columns);
     moved = {columns[0], columns[1], columns[2]};
@@ -223,17 +236,16 @@ GYRE_INLINE Vec3W<W> relative_spin(const PairMotion<W, kHasA>& pair) {
 template <int W, bool kHasA>
 GYRE_INLINE void warm_start_block(ContactBlock<W>& block) {
   PairMotion<W, kHasA> pair = load_pair<W, kHasA>(block);
-  Wide<W> total = block.points[0].impulse;
+  Wide<W> total = block.impulses[0];
   Vec3W<W> turn_sum = total * block.points[0].arm;
   for (int k = 1; k < block.point_count; ++k) {
-    const PointBlock<W>& point = block.points[k];
-    total = total + point.impulse;
-    turn_sum = turn_sum + point.impulse * point.arm;
+    total = total + block.impulses[k];
+    turn_sum = turn_sum + block.impulses[k] * block.points[k].arm;
   }
   push_normal<W>(block, pair, total, turn_sum);
   push<W>(block, pair, block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2, block.friction_from_a,
           block.friction_from_b, block.twist * block.normal);
-  if (block.rolls != 0) turn<W>(block, pair, block.rolling);
+  if (block.rolls != 0) turn<W>(block, pair, block.aside->rolling);
   store_pair<W>(block, pair);
 }
 
@@ -251,8 +263,8 @@ constexpr float kLeastLoad = 1.0e-18f;
 // Sum of the normal impulses of a manifold.
 template <int W>
 GYRE_INLINE Wide<W> normal_load(const ContactBlock<W>& block) {
-  Wide<W> load = block.points[0].impulse;
-  for (int k = 1; k < block.point_count; ++k) load = load + block.points[k].impulse;
+  Wide<W> load = block.impulses[0];
+  for (int k = 1; k < block.point_count; ++k) load = load + block.impulses[k];
   return load;
 }
 
@@ -264,12 +276,12 @@ GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W, kHasA>& pa
   const Wide<W> load = normal_load<W>(block);
   const auto loaded = load > Wide<W>(kLeastLoad);
   if (none(loaded) && none((block.friction_1 != zero) | (block.friction_2 != zero) | (block.twist != zero))) {
-    block.sliding = zero;
+    block.slides = 0;
     return;
   }
   const Vec3W<W> slip = relative_velocity<W>(pair, block.friction_from_a, block.friction_from_b);
-  const Wide<W> v1 = dot(slip, block.tangent_1) - block.surface_1;
-  const Wide<W> v2 = dot(slip, block.tangent_2) - block.surface_2;
+  Wide<W> v1 = dot(slip, block.tangent_1), v2 = dot(slip, block.tangent_2);
+  if (block.slips != 0) v1 = v1 - block.aside->surface_1, v2 = v2 - block.aside->surface_2;
   const Wide<W> v3 = dot(relative_spin<W>(pair), block.normal);
 
   // Sticking: all three rows at once.
@@ -278,7 +290,7 @@ GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W, kHasA>& pa
   Wide<W> f3 = block.twist - (block.inverse_k13 * v1 + block.inverse_k23 * v2 + block.inverse_k33 * v3);
 
   // Where on its limit the impulse is: 1 on the ellipsoid. No load, no friction.
-  const auto was_sliding = block.sliding > zero;
+  const auto was_sliding = Mask<W>::of_bits(block.slides);
   const Wide<W> per_load = select(loaded, one / select(loaded, load, one), zero);
   const Wide<W> grip = select(was_sliding, block.dynamic_grip, block.static_grip) * per_load;
   const Wide<W> twist_grip = select(was_sliding, block.dynamic_twist_grip, block.static_twist_grip) * per_load;
@@ -287,9 +299,9 @@ GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W, kHasA>& pa
 
   if (!all(sticks)) {
     // Sliding: a step along the slip, alike in every direction, then onto the ellipsoid.
-    const Wide<W> g1 = block.friction_1 - block.slide_mass * v1;
-    const Wide<W> g2 = block.friction_2 - block.slide_mass * v2;
-    const Wide<W> g3 = block.twist - block.slide_mass * (block.twist_radius * block.twist_radius) * v3;
+    const Wide<W> g1 = block.friction_1 - block.aside->slide_mass * v1;
+    const Wide<W> g2 = block.friction_2 - block.aside->slide_mass * v2;
+    const Wide<W> g3 = block.twist - block.aside->slide_mass * (block.aside->twist_radius * block.aside->twist_radius) * v3;
     const Wide<W> slide_grip = block.dynamic_grip * per_load;
     const Wide<W> slide_twist_grip = block.dynamic_twist_grip * per_load;
     const Wide<W> reach = (g1 * g1 + g2 * g2) * (slide_grip * slide_grip) + (g3 * g3) * (slide_twist_grip * slide_twist_grip);
@@ -301,7 +313,7 @@ GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W, kHasA>& pa
   f1 = keep(grip > zero, f1);
   f2 = keep(grip > zero, f2);
   f3 = keep(twist_grip > zero, f3);
-  block.sliding = select(sticks, zero, one);
+  block.slides = lane_bits<W>(~sticks);
 
   const Wide<W> d1 = f1 - block.friction_1;
   const Wide<W> d2 = f2 - block.friction_2;
@@ -320,22 +332,22 @@ GYRE_INLINE void solve_rolling(ContactBlock<W>& block, PairMotion<W, kHasA>& pai
   const Wide<W> one = Wide<W>(1.0f);
   const Vec3W<W> spin = relative_spin<W>(pair);
   const Vec3W<W> roll = spin - dot(spin, block.normal) * block.normal;
-  const Vec3W<W> wanted = block.rolling - block.rolling_mass * roll;
-  const Wide<W> limit = block.rolling_friction * normal_load<W>(block);
+  const Vec3W<W> wanted = block.aside->rolling - block.aside->rolling_mass * roll;
+  const Wide<W> limit = block.aside->rolling_friction * normal_load<W>(block);
   const Wide<W> size = sqrt(dot(wanted, wanted));
   const Wide<W> scale = select(size > limit, limit / select(size > zero, size, one), one);
   // A lane that does not roll must come out as from a block without this: also where `wanted` leaves a float's range.
-  const auto rolls = block.rolling_friction > zero;
+  const auto rolls = block.aside->rolling_friction > zero;
   const Vec3W<W> bounded = scale * wanted;
   const Vec3W<W> next{select(rolls, bounded.x, zero), select(rolls, bounded.y, zero), select(rolls, bounded.z, zero)};
-  turn<W>(block, pair, next - block.rolling);
-  block.rolling = next;
+  turn<W>(block, pair, next - block.aside->rolling);
+  block.aside->rolling = next;
 }
 
 // The impulses of lanes in which some points would pull, by projected sweeps: into `next`, of the others nothing.
 // From the impulses that stand, not from the block's answer with its pulls cut off: that is too strong, and piles shake.
 template <int W, int Count>
-GYRE_INLINE void sweep_pulls(const ContactBlock<W>& block, const Wide<W>* residual, const Wide<W>* kept, Mask<W> pulls,
+GYRE_INLINE void sweep_pulls(const ContactAside<W>& aside, const Wide<W>* residual, const Wide<W>* kept, Mask<W> pulls,
                              Wide<W>* next) {
   const Wide<W> zero(0.0f), one(1.0f);
   Wide<W> tried[Count], change[Count];
@@ -351,8 +363,8 @@ GYRE_INLINE void sweep_pulls(const ContactBlock<W>& block, const Wide<W>* residu
     for (int i = 0; i < Count; ++i) {
       Wide<W> speed = residual[i];
       GYRE_UNROLL
-      for (int j = 0; j < Count; ++j) speed = speed + block.k[packed(i, j)] * change[j];
-      const Wide<W> now = max(tried[i] - block.relief[i] * speed, zero);
+      for (int j = 0; j < Count; ++j) speed = speed + aside.k[packed(i, j)] * change[j];
+      const Wide<W> now = max(tried[i] - aside.relief[i] * speed, zero);
       stands = stands & (now == tried[i]);
       tried[i] = now;
       change[i] = now - kept[i];
@@ -392,19 +404,19 @@ GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W, kHasA>& pair
       const Wide<W> share = any(is_capped) ? select(is_capped, fastest / select(is_capped, asked, one), one) : one;
       // A point that parts ceases to give way by degrees.
       const Wide<W> near = max(block.slop - max(separation, zero), zero);
-      kept[i] = point.impulse - (block.give * near) * share * max(point.impulse - point.held, zero);
+      kept[i] = block.impulses[i] - (block.give * near) * share * max(block.impulses[i] - point.held, zero);
       if (block.linked != 0) {
         kept[i] = select(Mask<W>::of_bits(block.linked) & (separation < lost), leak * kept[i], kept[i]);
       }
     } else {
       // A point that is apart may be let go, never be held back: that would brake whatever is about to land.
-      const Wide<W> excess = select(point.impulse > zero, max(speed + separation * rate, zero), zero);
+      const Wide<W> excess = select(block.impulses[i] > zero, max(speed + separation * rate, zero), zero);
       residual[i] = select(apart, excess, speed);
-      kept[i] = point.impulse;
+      kept[i] = block.impulses[i];
     }
     // A point that the lane does not have must stay out of the sums even where speeds leave a float's range: 0 times that
     // would be no number, and a block of the lane's own would not have it.
-    residual[i] = keep(block.relief[i] > zero, residual[i]);
+    if (block.is_ragged != 0) residual[i] = keep(Mask<W>::of_bits(block.rows[i]), residual[i]);
   }
   Wide<W> next[Count];
   auto pulls = one < zero;
@@ -417,17 +429,16 @@ GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W, kHasA>& pair
     pulls = pulls | (wanted < zero);
     next[i] = max(wanted, zero);
   }
-  if (Count > 1 && any(pulls)) sweep_pulls<W, Count>(block, residual, kept, pulls, next);
-  Wide<W> total = next[0] - block.points[0].impulse;
+  if (Count > 1 && any(pulls)) sweep_pulls<W, Count>(*block.aside, residual, kept, pulls, next);
+  Wide<W> total = next[0] - block.impulses[0];
   Vec3W<W> turn_sum = total * block.points[0].arm;
-  block.points[0].impulse = next[0];
+  block.impulses[0] = next[0];
   GYRE_UNROLL
   for (int i = 1; i < Count; ++i) {
-    PointBlock<W>& point = block.points[i];
-    const Wide<W> change = next[i] - point.impulse;
-    point.impulse = next[i];
+    const Wide<W> change = next[i] - block.impulses[i];
+    block.impulses[i] = next[i];
     total = total + change;
-    turn_sum = turn_sum + change * point.arm;
+    turn_sum = turn_sum + change * block.points[i].arm;
   }
   push_normal<W>(block, pair, total, turn_sum);
 }
@@ -447,20 +458,21 @@ GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W, kHasA>& pai
 // Contacts that bore nothing yet: friction knows no load that limits it, so the normals have to come first once.
 template <int W>
 GYRE_INLINE void strike_fresh(ContactBlock<W>& block, PairMotion<W>& pair, float substep) {
-  const auto fresh = block.fresh > Wide<W>(0.0f);
+  const auto fresh = block.aside->fresh > Wide<W>(0.0f);
   const PairMotion<W> old = pair;
   Wide<W> impulses[kMaxManifoldPoints];
-  for (int k = 0; k < block.point_count; ++k) impulses[k] = block.points[k].impulse;
-  const Wide<W> friction_1 = block.friction_1, friction_2 = block.friction_2, twist = block.twist, sliding = block.sliding;
+  for (int k = 0; k < block.point_count; ++k) impulses[k] = block.impulses[k];
+  const Wide<W> friction_1 = block.friction_1, friction_2 = block.friction_2, twist = block.twist;
+  const std::uint32_t slides = block.slides;
   solve_normals<W, true>(block, pair, substep);
   solve_friction<W>(block, pair);
   for (int k = 0; k < block.point_count; ++k) {
-    block.points[k].impulse = select(fresh, block.points[k].impulse, impulses[k]);
+    block.impulses[k] = select(fresh, block.impulses[k], impulses[k]);
   }
   block.friction_1 = select(fresh, block.friction_1, friction_1);
   block.friction_2 = select(fresh, block.friction_2, friction_2);
   block.twist = select(fresh, block.twist, twist);
-  block.sliding = select(fresh, block.sliding, sliding);
+  block.slides = static_cast<std::uint16_t>((block.slides & to_bits(fresh)) | (slides & ~to_bits(fresh)));
   block.has_fresh = 0;
   pair.linear_a = select<W>(fresh, pair.linear_a, old.linear_a);
   pair.angular_a = select<W>(fresh, pair.angular_a, old.angular_a);
@@ -514,19 +526,20 @@ GYRE_INLINE bool has_stayed(const ContactBlock<W>& block) {
 // What a block without rolling friction carries from one sub-step to the next.
 template <int W>
 struct StandingImpulses {
-  Wide<W> points[kMaxManifoldPoints], friction_1, friction_2, twist, sliding;
+  Wide<W> points[kMaxManifoldPoints], friction_1, friction_2, twist;
+  std::uint32_t slides;
 
   GYRE_INLINE void take(const ContactBlock<W>& block) {
-    for (int k = 0; k < block.point_count; ++k) points[k] = block.points[k].impulse;
-    friction_1 = block.friction_1, friction_2 = block.friction_2, twist = block.twist, sliding = block.sliding;
+    for (int k = 0; k < block.point_count; ++k) points[k] = block.impulses[k];
+    friction_1 = block.friction_1, friction_2 = block.friction_2, twist = block.twist, slides = block.slides;
   }
   // To the bit.
   GYRE_INLINE bool stand(const ContactBlock<W>& block) const {
     const auto change = [](Wide<W> a, Wide<W> b) { return bit_pattern(a) ^ bit_pattern(b); };
     WideInt<W> bits = change(friction_1, block.friction_1) | change(friction_2, block.friction_2) |
-                      change(twist, block.twist) | change(sliding, block.sliding);
-    for (int k = 0; k < block.point_count; ++k) bits = bits | change(points[k], block.points[k].impulse);
-    return all(bits == WideInt<W>(0));
+                      change(twist, block.twist);
+    for (int k = 0; k < block.point_count; ++k) bits = bits | change(points[k], block.impulses[k]);
+    return slides == block.slides && all(bits == WideInt<W>(0));
   }
 };
 
@@ -544,7 +557,7 @@ GYRE_INLINE void solve_block(ContactBlock<W>& block, float substep) {
     store_pair<W>(block, pair);
     block.idles = still && is_still<W>(pair) && standing.stand(block) ? 1 : 0;
   }
-  for (int k = 0; k < block.point_count; ++k) block.points[k].total = block.points[k].total + block.points[k].impulse;
+  for (int k = 0; k < block.point_count; ++k) block.totals[k] = block.totals[k] + block.impulses[k];
   block.total_1 = block.total_1 + block.friction_1;
   block.total_2 = block.total_2 + block.friction_2;
 }
@@ -568,12 +581,12 @@ GYRE_INLINE void relax_block(ContactBlock<W>& block, float substep) {
   PairMotion<W> pair = load_pair<W>(block);
   const Wide<W> friction_1 = block.friction_1, friction_2 = block.friction_2;
   Wide<W> impulses[kMaxManifoldPoints];
-  for (int k = 0; k < block.point_count; ++k) impulses[k] = block.points[k].impulse;
+  for (int k = 0; k < block.point_count; ++k) impulses[k] = block.impulses[k];
   if (block.rolls != 0) solve_rolling<W>(block, pair);
   solve_friction<W>(block, pair);
   solve_normals<W, false>(block, pair, substep);
   for (int k = 0; k < block.point_count; ++k) {
-    block.points[k].total = block.points[k].total + (block.points[k].impulse - impulses[k]);
+    block.totals[k] = block.totals[k] + (block.impulses[k] - impulses[k]);
   }
   block.total_1 = block.total_1 + (block.friction_1 - friction_1);
   block.total_2 = block.total_2 + (block.friction_2 - friction_2);

@@ -16,6 +16,7 @@ template <int W>
 constexpr ContactKernels contact_kernels() {
   return {W,
           sizeof(ContactBlock<W>),
+          sizeof(ContactAside<W>),
           prepare_blocks<W>,
           follow_lanes<W>,
           warm_start_blocks<W>,

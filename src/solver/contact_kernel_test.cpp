@@ -1,11 +1,11 @@
 // The contact kernels at the edge of what floats can say.
+#include "base/arena.h"
 #include "solver/contact_block.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstddef>
-#include <memory>
 #include <vector>
 
 namespace gyre {
@@ -34,13 +34,12 @@ BodyMotion touch(int width, float load) {
   inertia.inverse_mass = 1.0f;
   std::vector<std::uint32_t> order(std::size_t(kernels.width), 0xffffffffu);
   order[0] = 0;
-  std::vector<std::byte> memory(kernels.block_bytes + 64);
-  void* block = memory.data();
-  std::size_t room = memory.size();
-  block = std::align(64, kernels.block_bytes, block, room);
+  Arena arena;
+  void* const block = arena.make<std::byte>(kernels.block_bytes).data();
+  void* const aside = arena.make<std::byte>(kernels.aside_bytes).data();
   const ContactSettings settings{
       .substep = 1.0f / 240.0f, .step = 1.0f / 60.0f, .rate = 9.0f, .up = {0, 1, 0}};
-  kernels.prepare(block, 0, 1, &constraint, order.data(), {&motion, &inertia}, settings);
+  kernels.prepare(block, aside, 0, 1, &constraint, order.data(), {&motion, &inertia}, settings);
   kernels.warm_start(block, 0, 1);
   kernels.solve(block, 0, 1, settings.substep);
   return motion;

@@ -153,7 +153,7 @@ GYRE_INLINE Wide<W> pressure_patch(ContactBlock<W>& block, const LaneRecords<W>&
   const int count = block.point_count;
   Wide<W> weights[kMaxManifoldPoints];
   Wide<W> sum = zero;
-  for (int k = 0; k < count; ++k) sum = sum + (weights[k] = block.points[k].impulse);
+  for (int k = 0; k < count; ++k) sum = sum + (weights[k] = block.impulses[k]);
   const auto bears = sum > Wide<W>(kLeastLoad);
   if (!all(bears)) {
     // A point counts less the farther it is above the lowest, in units of the manifold's extent.
@@ -242,8 +242,8 @@ GYRE_INLINE void prepare_friction(ContactBlock<W>& block, const SurfaceLanes<W>&
   const auto slides = surface.dynamic_friction > zero;
   const Wide<W> scale = select(twists & slides, twist_dynamic / select(slides, surface.dynamic_friction, one), radius);
   const Wide<W> bound = max(max(k.xx, k.yy) + absolute(k.xy), keep(twists, scale * scale * k.zz));
-  block.twist_radius = keep(twists, scale);
-  block.slide_mass = keep(bound > zero, one / select(bound > zero, bound, one));
+  block.aside->twist_radius = keep(twists, scale);
+  block.aside->slide_mass = keep(bound > zero, one / select(bound > zero, bound, one));
   const auto grip = [&](Wide<W> friction) {
     return keep(friction > zero, one / select(friction > zero, min(friction, Wide<W>(kMostFriction)), one));
   };
@@ -255,6 +255,13 @@ GYRE_INLINE void prepare_friction(ContactBlock<W>& block, const SurfaceLanes<W>&
   // friction it would take that with it.
   const Wide<W> most = twist_static * normal_load<W>(block);
   block.twist = keep(twists, clamp(block.twist, zero - most, most));
+}
+
+template <int W>
+GYRE_INLINE void note_ragged(ContactBlock<W>& block) {
+  std::uint32_t missing = 0;
+  for (int i = 0; i < block.point_count; ++i) missing |= block.rows[i] ^ all_lanes(W);
+  block.is_ragged = missing != 0 ? 1 : 0;
 }
 
 // K of the normal rows and its inverse. Four points of a plane give rank 3 at most, so the inverse is of K with its
@@ -278,10 +285,11 @@ GYRE_INLINE void prepare_rows(ContactBlock<W>& block, const Wide<W> (&point_exis
     GYRE_UNROLL
     for (int j = 0; j <= i; ++j) {
       const Wide<W> k = common + dot(block.points[j].arm, turn);
-      block.k[packed(j, i)] = row[j] = keep(exists & (point_exists[j] > zero), k);
+      block.aside->k[packed(j, i)] = row[j] = keep(exists & (point_exists[j] > zero), k);
     }
     const Wide<W> own = row[i];
-    block.relief[i] = keep(own > zero, one / select(own > zero, own, one));
+    block.aside->relief[i] = keep(own > zero, one / select(own > zero, own, one));
+    block.rows[i] = lane_bits<W>(block.aside->relief[i] > zero);
     GYRE_UNROLL
     for (int j = 0; j < i; ++j) {
       Wide<W> sum = row[j];
@@ -320,16 +328,21 @@ template <int W>
 GYRE_INLINE void prepare_normals(ContactBlock<W>& block, const Wide<W> (&point_exists)[kMaxManifoldPoints]) {
   switch (block.point_count) {
     case 0:
-      return;
+      break;
     case 1:
-      return prepare_rows<W, 1>(block, point_exists);
+      prepare_rows<W, 1>(block, point_exists);
+      break;
     case 2:
-      return prepare_rows<W, 2>(block, point_exists);
+      prepare_rows<W, 2>(block, point_exists);
+      break;
     case 3:  // of contacts that are followed
-      return prepare_rows<W, 3>(block, point_exists);
+      prepare_rows<W, 3>(block, point_exists);
+      break;
     default:
-      return prepare_rows<W, 4>(block, point_exists);
+      prepare_rows<W, 4>(block, point_exists);
+      break;
   }
+  note_ragged<W>(block);
 }
 
 // How soft the lanes' contacts are, and who gives way when overlap is pushed apart: what lies on top, as far as the contact
@@ -346,8 +359,8 @@ GYRE_INLINE void prepare_softness(ContactBlock<W>& block, Mask<W> rigid, Wide<W>
   const auto has_slop = block.slop > zero;
   block.give = keep(yields & has_slop, youth * Wide<W>(settings.give) / select(has_slop, block.slop, one));
   const Wide<W> rise = keep(both, Wide<W>(kLowerShare) * dot(block.normal, splat<W>(settings.up)));
-  block.mobility_a = one - max(rise, zero);
-  block.mobility_b = one + min(rise, zero);
+  block.aside->mobility_a = one - max(rise, zero);
+  block.aside->mobility_b = one + min(rise, zero);
 }
 
 // What friction, twist and rolling begin with.
@@ -362,19 +375,19 @@ GYRE_INLINE void prepare_impulses(ContactBlock<W>& block, const LaneRecords<W>& 
   block.friction_1 = dot(friction, block.tangent_1);
   block.friction_2 = dot(friction, block.tangent_2);
   gather_columns<4, W>(records.manifold, kManifoldTotals, in);
-  block.sliding = to_float(bit_pattern(in[3]));
+  block.slides = lane_bits<W>(bit_pattern(in[3]) != WideInt<W>(0));
   gather_columns<4, W>(records.manifold, kManifoldTwist, in);
   block.twist = warm * in[0];
-  block.rolling_friction = surface.rolling_friction;
+  block.aside->rolling_friction = surface.rolling_friction;
   // A surface that ceased to brake rolling starts from nothing: otherwise it would depend on the lanes beside it whether
   // the old impulse acts once more.
   const auto rolls = surface.rolling_friction > zero;
-  block.rolling = keep<W>(rolls, warm * Vec3W<W>{in[1], in[2], in[3]});
+  block.aside->rolling = keep<W>(rolls, warm * Vec3W<W>{in[1], in[2], in[3]});
   if (any(rolls)) block.rolls = 1;
   const Sym3W<W>& a = block.inverse_inertia_a;
   const Sym3W<W>& b = block.inverse_inertia_b;
   const Wide<W> turning = (a.xx + a.yy + a.zz) + (b.xx + b.yy + b.zz);
-  block.rolling_mass = keep(turning > zero, one / select(turning > zero, turning, one));
+  block.aside->rolling_mass = keep(turning > zero, one / select(turning > zero, turning, one));
 }
 
 template <int W>
@@ -388,13 +401,15 @@ GYRE_INLINE void load_inertia(const float* const (&record)[W], Wide<W>& inverse_
 
 // The records of one side's bodies: their motion, and their mass into the block. Returns which lanes have one, as bits.
 template <int W>
-GYRE_INLINE std::uint32_t find_side(const LaneRecords<W>& records, std::int32_t ContactConstraint::* body,
-                                    ContactBodies bodies, const float* (&motion)[W], Wide<W>& inverse_mass,
+GYRE_INLINE std::uint16_t find_side(const LaneRecords<W>& records, std::int32_t ContactConstraint::* body,
+                                    ContactBodies bodies, float* (&motion)[W], Wide<W>& inverse_mass,
                                     Sym3W<W>& inverse_inertia) {
   const float* inertia[W];
   std::uint32_t has = 0;
   for (int lane = 0; lane < W; ++lane) {
-    motion[lane] = inertia[lane] = kNoRecord;
+    // Never written: who has no record is not pushed.
+    motion[lane] = const_cast<float*>(kNoRecord);
+    inertia[lane] = kNoRecord;
     if ((records.lanes >> lane & 1u) == 0) continue;
     const std::int32_t place = reinterpret_cast<const ContactConstraint*>(records.constraint[lane])->*body;
     if (place == kNoBody) continue;
@@ -403,14 +418,14 @@ GYRE_INLINE std::uint32_t find_side(const LaneRecords<W>& records, std::int32_t 
     inertia[lane] = &bodies.inertia[place].inverse.xx;
   }
   load_inertia<W>(inertia, inverse_mass, inverse_inertia);
-  return has;
+  return static_cast<std::uint16_t>(has);
 }
 
 // Where the velocities of the bodies that are pushed go.
 template <int W>
-GYRE_INLINE void find_pushed(std::uint32_t pushes, const float* const (&read)[W], float* nowhere, float* (&write)[W]) {
+GYRE_INLINE void find_pushed(std::uint32_t pushes, float* const (&read)[W], float* nowhere, float* (&write)[W]) {
   for (int lane = 0; lane < W; ++lane)
-    write[lane] = (pushes >> lane & 1u) != 0 ? const_cast<float*>(read[lane]) : nowhere;
+    write[lane] = (pushes >> lane & 1u) != 0 ? read[lane] : nowhere;
 }
 
 template <int W>
@@ -422,11 +437,11 @@ GYRE_INLINE void prepare_bodies(ContactBlock<W>& block, const LaneRecords<W>& re
   block.has_b = find_side<W>(records, &ContactConstraint::body_b, bodies, block.read_b, block.inverse_mass_b, b);
   // Whatever pushes a body turns or moves it by a diagonal element.
   block.pushes_a =
-      block.has_a & to_bits((block.inverse_mass_a > zero) | (a.xx != zero) | (a.yy != zero) | (a.zz != zero));
+      block.has_a & lane_bits<W>((block.inverse_mass_a > zero) | (a.xx != zero) | (a.yy != zero) | (a.zz != zero));
   block.pushes_b =
-      block.has_b & to_bits((block.inverse_mass_b > zero) | (b.xx != zero) | (b.yy != zero) | (b.zz != zero));
-  find_pushed<W>(block.pushes_a, block.read_a, block.nowhere, block.write_a);
-  find_pushed<W>(block.pushes_b, block.read_b, block.nowhere, block.write_b);
+      block.has_b & lane_bits<W>((block.inverse_mass_b > zero) | (b.xx != zero) | (b.yy != zero) | (b.zz != zero));
+  find_pushed<W>(block.pushes_a, block.read_a, block.aside->nowhere, block.aside->write_a);
+  find_pushed<W>(block.pushes_b, block.read_b, block.aside->nowhere, block.aside->write_b);
 }
 
 // Which body's centre the arms are measured from, and by how much they differ on the other. From the nearer one: the other
@@ -450,7 +465,8 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
   alignas(64) float nowhere[80] = {};
   LaneRecords<W> records = find_records<W>(constraints, order, nowhere);
   block.point_count = records.point_count == 3 ? 4 : records.point_count;
-  block.rolls = block.has_fresh = block.idles = 0;
+  block.rolls = block.has_fresh = 0;
+  block.idles = 0;
   Wide<W> in[4];
   block.normal = records.normal;
   block.tangent_1 = any_perpendicular<W>(block.normal);
@@ -468,9 +484,9 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
     arms[k].from_b = {in[0], in[1], in[2]};
     if (k == 0) nearer_a = place_arms<W>(block, arms[0]);
     gather_columns<4, W>(records.point, first + kPointImpulse, in);
-    point.impulse = warm * in[0];
+    block.impulses[k] = warm * in[0];
     point.held = warm * in[2];
-    point.total = zero;
+    block.totals[k] = zero;
     point.arm = cross(select<W>(nearer_a, arms[k].from_a, arms[k].from_b), block.normal);
   }
   gather_columns<4, W>(records.constraint, kConstraintFriction, in);
@@ -480,28 +496,31 @@ void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints,
   block.push_speed = in[1];
   gather_columns<4, W>(records.constraint, kConstraintVelocity, in);
   const Vec3W<W> surface_velocity{in[0], in[1], in[2]};
-  block.surface_1 = dot(surface_velocity, block.tangent_1);
-  block.surface_2 = dot(surface_velocity, block.tangent_2);
+  // Not -0: what does not move by itself is left out, and that must be the same.
+  block.aside->surface_1 = dot(surface_velocity, block.tangent_1) + zero;
+  block.aside->surface_2 = dot(surface_velocity, block.tangent_2) + zero;
+  block.slips = any((block.aside->surface_1 != zero) | (block.aside->surface_2 != zero)) ? 1 : 0;
   block.total_1 = block.total_2 = zero;
   gather_columns<4, W>(records.constraint, kConstraintKinds, in);
   const WideInt<W> none(0), kinds = bit_pattern(in[3]);
   const Mask<W> rigid = (kinds & WideInt<W>(0xff)) != none;
-  block.linked = to_bits((kinds & WideInt<W>(0xff00)) != none);
+  block.linked = lane_bits<W>((kinds & WideInt<W>(0xff00)) != none);
   Wide<W> age;
   prepare_impulses<W>(block, records, surface, settings, age);
-  block.fresh = select(age > zero, zero, one);
-  if ((to_bits(block.fresh > zero) & records.lanes) != 0) block.has_fresh = 1;
+  block.aside->fresh = select(age > zero, zero, one);
+  if ((to_bits(block.aside->fresh > zero) & records.lanes) != 0) block.has_fresh = 1;
   prepare_softness<W>(block, rigid, age, size, settings);
   prepare_friction<W>(block, surface, pressure_patch<W>(block, records, arms), size);
   prepare_normals<W>(block, records.exists);
 }
 
 template <int W>
-void prepare_blocks(void* memory, int begin, int end, const ContactConstraint* constraints, const std::uint32_t* order,
-                    ContactBodies bodies, const ContactSettings& settings) {
+void prepare_blocks(void* memory, void* asides, int begin, int end, const ContactConstraint* constraints,
+                    const std::uint32_t* order, ContactBodies bodies, const ContactSettings& settings) {
   auto* blocks = static_cast<ContactBlock<W>*>(memory);
   for (int i = begin; i < end; ++i) {
     if (i + 1 < end) fetch_ahead<W>(constraints, order + (i + 1) * W);
+    blocks[i].aside = static_cast<ContactAside<W>*>(asides) + i;
     prepare_block<W>(blocks[i], constraints, order + i * W, bodies, settings);
   }
 }
@@ -519,7 +538,7 @@ void finish_block(const ContactBlock<W>& block, const ContactConstraint* constra
   gather_columns<4, W>(records.manifold, kManifoldFriction, row);
   // Of the whole step: what bore nothing just as it ended is no reason to forget all.
   Wide<W> load = zero;
-  for (int k = 0; k < block.point_count; ++k) load = max(load, block.points[k].total);
+  for (int k = 0; k < block.point_count; ++k) load = max(load, block.totals[k]);
   const Wide<W> age = keep(load > zero, row[0] + Wide<W>(settings.step));
   const Wide<W> mean = min(max(age, Wide<W>(kShortestMean)), Wide<W>(kLongestMean));
   const Wide<W> gain = min(Wide<W>(settings.step) / mean, one);
@@ -529,18 +548,18 @@ void finish_block(const ContactBlock<W>& block, const ContactConstraint* constra
   const Vec3W<W> total = block.total_1 * block.tangent_1 + block.total_2 * block.tangent_2 + none;
   const Wide<W> friction_row[4] = {age, friction.x, friction.y, friction.z};
   scatter_columns<4, W>(records.manifold, kManifoldFriction, friction_row);
-  const Wide<W> twist_row[4] = {block.twist + zero, block.rolling.x + zero, block.rolling.y + zero, block.rolling.z + zero};
+  const Vec3W<W> rolling = block.aside->rolling + none;
+  const Wide<W> twist_row[4] = {block.twist + zero, rolling.x, rolling.y, rolling.z};
   scatter_columns<4, W>(records.manifold, kManifoldTwist, twist_row);
-  const Wide<W> slides = from_bit_pattern(to_int(block.sliding > zero) & WideInt<W>(1));
+  const Wide<W> slides = from_bit_pattern(to_int(Mask<W>::of_bits(block.slides)) & WideInt<W>(1));
   const Wide<W> totals_row[4] = {total.x, total.y, total.z, slides};
   scatter_columns<4, W>(records.manifold, kManifoldTotals, totals_row);
   for (int k = 0; k < block.point_count; ++k) {
-    const PointBlock<W>& point = block.points[k];
     const int first = records.begin_point(k) + kPointImpulse;
     gather_columns<4, W>(records.point, first, row);
-    const Wide<W> impulse = point.impulse + zero;
-    const Wide<W> held = keep(point.total > zero, row[2] + gain * (impulse - row[2]));
-    const Wide<W> point_row[4] = {impulse, row[1] + (point.total + zero), held, row[3]};
+    const Wide<W> impulse = block.impulses[k] + zero;
+    const Wide<W> held = keep(block.totals[k] > zero, row[2] + gain * (impulse - row[2]));
+    const Wide<W> point_row[4] = {impulse, row[1] + (block.totals[k] + zero), held, row[3]};
     scatter_columns<4, W>(records.point, first, point_row);
   }
 }
@@ -560,11 +579,11 @@ void finish_blocks(void* memory, int begin, int end, const ContactConstraint* co
 template <int W>
 void read_block_impulse(const void* memory, int index, int lane, ContactImpulse& impulse) {
   const ContactBlock<W>& block = static_cast<const ContactBlock<W>*>(memory)[index];
-  for (int k = 0; k < kMaxManifoldPoints; ++k) impulse.normal[k] = get_lane(block.points[k].impulse, lane);
+  for (int k = 0; k < kMaxManifoldPoints; ++k) impulse.normal[k] = get_lane(block.impulses[k], lane);
   impulse.friction = get_lane(block.friction_1, lane) * get_lane(block.tangent_1, lane) +
                      get_lane(block.friction_2, lane) * get_lane(block.tangent_2, lane);
   impulse.twist = get_lane(block.twist, lane);
-  impulse.rolling = get_lane(block.rolling, lane);
+  impulse.rolling = get_lane(block.aside->rolling, lane);
   impulse.friction_from_b = get_lane(block.friction_from_b, lane);
   const float twist_grip = get_lane(block.static_twist_grip, lane);
   impulse.twist_per_normal = twist_grip > 0.0f ? 1.0f / twist_grip : 0.0f;
@@ -579,12 +598,12 @@ void write_block_impulse(void* memory, int index, int lane, const ContactImpulse
     set_lane(present, lane, value);
   };
   block.idles = 0;
-  for (int k = 0; k < kMaxManifoldPoints; ++k) replace(block.points[k].impulse, block.points[k].total, impulse.normal[k]);
+  for (int k = 0; k < kMaxManifoldPoints; ++k) replace(block.impulses[k], block.totals[k], impulse.normal[k]);
   replace(block.friction_1, block.total_1, dot(impulse.friction, get_lane(block.tangent_1, lane)));
   replace(block.friction_2, block.total_2, dot(impulse.friction, get_lane(block.tangent_2, lane)));
   set_lane(block.twist, lane, impulse.twist);
-  set_lane(block.rolling, lane, impulse.rolling);
-  set_lane(block.sliding, lane, 0.0f);
+  set_lane(block.aside->rolling, lane, impulse.rolling);
+  block.slides = static_cast<std::uint16_t>(block.slides & ~(1u << lane));
 }
 
 template <int W>

@@ -41,19 +41,19 @@ struct PushResponse {
 template <int W, bool kHasA>
 GYRE_INLINE PushResponse<W> push_response(const ContactBlock<W>& block) {
   PushResponse<W> response;
-  response.inverse_mass_b = block.mobility_b * block.inverse_mass_b;
+  response.inverse_mass_b = block.aside->mobility_b * block.inverse_mass_b;
   Wide<W> masses = response.inverse_mass_b;
   if constexpr (kHasA) {
-    response.inverse_mass_a = block.mobility_a * block.inverse_mass_a;
+    response.inverse_mass_a = block.aside->mobility_a * block.inverse_mass_a;
     masses = response.inverse_mass_a + masses;
   }
   for (int i = 0; i < block.point_count; ++i) {
     const PointBlock<W>& point = block.points[i];
     Vec3W<W> turn = response.turn_b[i] =
-        block.mobility_b * (block.inverse_inertia_b * (point.arm + block.arm_shift_b));
+        block.aside->mobility_b * (block.inverse_inertia_b * (point.arm + block.arm_shift_b));
     Wide<W> shifted = dot(block.arm_shift_b, turn);
     if constexpr (kHasA) {
-      response.turn_a[i] = block.mobility_a * (block.inverse_inertia_a * (point.arm + block.arm_shift_a));
+      response.turn_a[i] = block.aside->mobility_a * (block.inverse_inertia_a * (point.arm + block.arm_shift_a));
       turn = response.turn_a[i] + turn;
       shifted = dot(block.arm_shift_a, response.turn_a[i]) + shifted;
     }
@@ -88,7 +88,7 @@ GYRE_INLINE bool wanted_pushes(const ContactBlock<W>& block, const PairMotion<W,
   for (int i = 0; i < block.point_count; ++i) {
     const PointBlock<W>& point = block.points[i];
     const Wide<W> over = zero - (point.separation + ways.at(point) + Wide<W>(kProjectionSlop) * block.slop);
-    const auto exists = block.relief[i] > zero;
+    const auto exists = Mask<W>::of_bits(block.rows[i]);
     const auto deep = (over > zero) & exists;
     overlaps = overlaps | deep;
     wanted[i] = select(exists, select(deep, min(Wide<W>(kProjectedShare) * over, most), over), zero);
@@ -108,7 +108,7 @@ GYRE_INLINE void project_block(ContactBlock<W>& block, float step) {
   for (int i = 0; i < count; ++i) {
     pushes[i] = zero;
     const Wide<W> k = response.k[packed(i, i)];
-    relief[i] = select((k > zero) & (block.relief[i] > zero),
+    relief[i] = select((k > zero) & Mask<W>::of_bits(block.rows[i]),
                        Wide<W>(1.0f) / select(k > zero, k, Wide<W>(1.0f)), zero);
   }
   GYRE_ROLLED
