@@ -10,6 +10,8 @@ namespace {
 
 // Enough to tell redundant rows apart.
 constexpr float kGive = 1.0e-4f;
+// Bends are for speeds that stay; of a way to a pose, in which errors are measured anew, little helps.
+constexpr float kMostTurn = 0.15f;  // rad
 
 // Whether lanes may bear the group, as far as that shows before its joints are looked at.
 bool may_fit(const RigidWorld& w, const ClosingGroup& group) {
@@ -46,7 +48,8 @@ class LaneClosing {
     const Linkages linkages = find_linkages(w_, batch_, places_, net_joints_, start, dense, arena_);
     const LaneArrays arrays{bodies_.motion.data(), bodies_.inertia.data(), bodies_.orientations.data()};
     const LaneSettings settings{
-        kClosingStep, kClosingSettings.softness.bias_rate, kGive, raise_inertia, kMostErrors, 0.0f};
+        kClosingStep, kClosingSettings.softness.bias_rate, kGive, raise_inertia, kMostErrors, 0.0f,
+        kMostTurn};
     bundles_ = lay_out_bundles(linkages, kernels, arrays, settings, arena_);
     ways_ = arena_.make<ClosingWay>(groups_.size());
     for (const LaneLinkage& linkage : linkages.alike) {

@@ -12,7 +12,10 @@ namespace {
 // Bodies that turn by less than this in a sub-step (rad) do so along a straight line; of those that turn by more than that,
 // the rows ask for less and less of the bend: a whip's end then loses energy instead of gaining it.
 constexpr float kLeastTurn = 1.0e-4f;
-constexpr float kMostTurn = 0.15f;
+constexpr float kMostTurn = 0.3f;
+// Bend that is not asked for, or that two solutions do not find, opens the joint in each sub-step anew. Errors of joints whose bodies
+// turn by more than this (rad) are taken back the faster for it: wholly in a sub-step where they turn by far more.
+constexpr float kCalmTurn = 0.15f;
 // h^2 k / I up to which tension is left alone; kick and drift are stable up to 4.
 constexpr float kMostPull = 1.0f;
 
@@ -313,6 +316,9 @@ void ask_rows(const Linkage& linkage, const LinkageSolve& s, ErrorBounds bounds)
     const float fastest = square(h) * max(max(length_squared(a.angular), length_squared(b.angular)),
                                           rod_rate(joint, work, a, b));
     const float share = fastest > square(kMostTurn) ? square(kMostTurn) / fastest : 1.0f;
+    const float at_once = fastest > square(kCalmTurn) ? 1.0f - square(kCalmTurn) / fastest : 0.0f;
+    const float rate = s.settings.softness.bias_rate;
+    const float back = -rate - (1.0f / h - rate) * at_once;
     Bend bend;
     float bends[kJointAxisCount] = {};
     if (fastest > square(kLeastTurn) || joint.kind == JointKind::path) {
@@ -328,8 +334,7 @@ void ask_rows(const Linkage& linkage, const LinkageSolve& s, ErrorBounds bounds)
     }
     for (int i = 0; i < node.count; ++i) {
       LinkageRows& rows = node.rows;
-      rows.wanted[i] =
-          -s.settings.softness.bias_rate * error_of(joint, work, equation_at(rows, i), i, bounds);
+      rows.wanted[i] = back * error_of(joint, work, equation_at(rows, i), i, bounds);
       rows.wanted[i] -= work.rows != nullptr            ? share * bends[i]
                         : is_turn(equation_at(rows, i)) ? dot(bend.turn, rows.arm_a.at(i))
                                                         : dot(bend.point, rows.push.at(i));

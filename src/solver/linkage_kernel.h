@@ -9,7 +9,7 @@ inline namespace GYRE_TARGET_NAMESPACE {
 
 // As in solver/linkage.cpp.
 constexpr float kLaneLeastTurn = 1.0e-4f;  // rad
-constexpr float kLaneMostTurn = 0.15f;
+constexpr float kLaneCalmTurn = 0.15f;
 
 // -------------------------------------------------------------------------------------------------- what is asked for
 
@@ -55,16 +55,19 @@ GYRE_INLINE void ask_lanes(const Bundle<W>& bundle, const LaneSettings& s, Error
     LinkedJoint<W>& joint = bundle.joints[n];
     const LinkedBody<W>&a = bundle.bodies[node.a], &b = bundle.bodies[node.b];
     const Wide<W> fastest = (h * h) * max(length_squared(a.angular), length_squared(b.angular));
-    // Of those that hardly turn nothing is asked; of those that turn far, less.
-    constexpr float kMost = kLaneMostTurn * kLaneMostTurn, kLeast = kLaneLeastTurn * kLaneLeastTurn;
+    // Of those that hardly turn nothing is asked; of those that turn far, less, and what that opened is taken back at once.
+    constexpr float kLeast = kLaneLeastTurn * kLaneLeastTurn, kCalm = kLaneCalmTurn * kLaneCalmTurn;
+    const float most = s.most_turn * s.most_turn;
     Wide<W> share = keep(fastest > kLeast, Wide<W>(1.0f));
-    share = select(fastest > kMost, kMost / fastest, share);
+    share = select(fastest > most, most / fastest, share);
+    const Wide<W> at_once = keep(fastest > kCalm, 1.0f - kCalm / fastest);
+    const Wide<W> back = Wide<W>(-s.rate) - (per_substep - s.rate) * at_once;
     const Vec3W<W> bend = per_substep * (swing_of(b.turn, joint.from_b) - swing_of(a.turn, joint.from_a)) -
                           (cross(b.angular, joint.from_b) - cross(a.angular, joint.from_a));
-    joint.wanted = Wide<W>(-s.rate) * within(joint.error, bounds.point) - share * bend;
+    joint.wanted = back * within(joint.error, bounds.point) - share * bend;
     if (node.kind != JointKind::hinge) continue;
-    const Vec3W<W> turn = Wide<W>(-s.rate) * within(joint.angular_error, bounds.turn) -
-                          share * hinge_bend(joint, a, b, per_substep);
+    const Vec3W<W> turn =
+        back * within(joint.angular_error, bounds.turn) - share * hinge_bend(joint, a, b, per_substep);
     joint.turn_wanted_1 = dot(turn, joint.perpendicular_1);
     joint.turn_wanted_2 = dot(turn, joint.perpendicular_2);
   }

@@ -19,9 +19,11 @@ class Assembly {
         body, {.geometry = shape, .density = density, .filter = {.layer = 2, .collides_with = 1}}));
     return bodies.back();
   }
-  JointId join(JointKind kind, BodyId a, BodyId b, DVec3 anchor, Vec3 axis = {0, 0, 1}) {
+  JointId join(JointKind kind, BodyId a, BodyId b, DVec3 anchor, Vec3 axis = {0, 0, 1},
+               float friction = 0.0f) {
     anchors_.push_back({a, b, from_world(a, anchor), from_world(b, anchor)});
-    joints.push_back(world.add_joint({.kind = kind, .a = a, .b = b, .anchor = anchor, .axis = axis}));
+    joints.push_back(world.add_joint(
+        {.kind = kind, .a = a, .b = b, .anchor = anchor, .axis = axis, .friction = friction}));
     return joints.back();
   }
   double largest_gap() const {
