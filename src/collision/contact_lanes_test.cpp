@@ -70,6 +70,16 @@ TEST(Closing, ALookThatFoundNothingAlongTheAxisReachedToTheGap) {
   }
 }
 
+// A beam of 2 m lies level 12 cm above a floor and turns by 0.15 rad in the step: its end, 1 m away, goes that far down.
+TEST(Closing, ABeamThatTiltsIsSeenByItsEnd) {
+  CollideScene scene;
+  const std::uint32_t floor = scene.add(Box{{5, 0.5f, 5}}, {{0, -0.5, 0}, {}}, false);
+  const std::uint32_t beam = scene.add(Box{{1, 0.2f, 0.2f}}, {{0, 0.32, 0}, {}});
+  scene.bodies[beam].angular_velocity = {0, 0, 9};
+  scene.step();
+  EXPECT_GT(scene.manifold(floor, beam).count, 0);
+}
+
 struct Pair {
   AnyShape shapes[2];
   ColliderBody bodies[2];
