@@ -50,7 +50,7 @@ bool boxes_overlap(const Proxy& a, const Proxy& b) {
 bool bodies_apart(const CollideInput& input, const Contact& contact) {
   const BodyLook& a = input.looks[contact.body_a];
   const BodyLook& b = input.looks[contact.body_b];
-  const float extents = input.outlines[contact.body_a].extent + input.outlines[contact.body_b].extent;
+  const float extents = extent_of(input.centers[contact.body_a]) + extent_of(input.centers[contact.body_b]);
   const float reach = extents + (kSpeculativeShare + kNearSlack) * contact.size + length(b.way - a.way);
   return length_squared(difference(b.position, a.position)) > square(reach);
 }
@@ -84,7 +84,7 @@ void list_contacts(ContactStore& store, std::uint32_t begin, std::uint32_t end, 
       continue;
     }
     if (!proxy_a.pushes || !proxy_b.pushes || contact.sensor != 0) changes.may_stop.set(slot);
-    if (!input.outlines[contact.body_a].awake && !input.outlines[contact.body_b].awake) continue;
+    if (input.awake[contact.body_a] == 0 && input.awake[contact.body_b] == 0) continue;
     const ColliderShape& shape_a = input.shapes[contact.shape_a];
     const ColliderShape& shape_b = input.shapes[contact.shape_b];
     // A sensor's contact keeps nothing of its looks: each is the first.

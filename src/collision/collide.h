@@ -80,18 +80,14 @@ struct alignas(16) BodyCenter {
   Vec3 position;
   float reach = 0.0f;  // m
 };
-
-// What is asked of a body before its contacts are looked at.
-struct BodyOutline {
-  float extent = 0.0f;  // m, a bound of the farthest point from the origin
-  bool awake = false;   // awake and not fixed
-};
+// A bound of the farthest point from the body's origin, m.
+inline float extent_of(const BodyCenter& center) { return center.reach + length(center.position); }
 
 struct CollideInput {
   ColliderShapes shapes;
-  std::span<const BodyLook> looks;        // by body
-  std::span<const BodyCenter> centers;    // by body
-  std::span<const BodyOutline> outlines;  // by body
+  std::span<const BodyLook> looks;      // by body
+  std::span<const BodyCenter> centers;  // by body
+  std::span<const std::uint8_t> awake;  // by body: 1 for those that are, and not fixed
   std::span<const Proxy> proxies;
   RecycleContacts recycle_contacts;
   bool recycle = true;  // false: looks at every pair anew (tests compare with that)

@@ -74,13 +74,13 @@ class CollideScene {
   void look() {
     std::vector<BodyLook> looks;
     std::vector<BodyCenter> centers;
-    std::vector<BodyOutline> outlines;
+    std::vector<std::uint8_t> awake;
     for (const ColliderBody& body : bodies) {
       looks.push_back(make_body_look(body, seconds));
       centers.push_back({body.center, body.reach});
-      outlines.push_back({body.reach + length(body.center), body.awake});
+      awake.push_back(body.awake ? 1 : 0);
     }
-    collide(store, {shapes, looks, centers, outlines, proxies, select_recycling(width), recycle}, tasks_, changes);
+    collide(store, {shapes, looks, centers, awake, proxies, select_recycling(width), recycle}, tasks_, changes);
   }
 
   // The contact of two shapes; null if there is none.

@@ -38,6 +38,48 @@ TEST(Closing, WhatComesOrTiltsDoes) {
 }
 TEST(Closing, WhatLeavesDoesNot) { EXPECT_EQ(Turntable({0, 6, -12}, {0, 3, 0}).points(), 0); }
 
+// Two balls of 0.5 m that stand 0.1 m apart and close by 0.15 in the step, the second `aside` from its body's origin.
+int points_of_balls(float aside) {
+  CollideScene scene;
+  scene.add(Sphere{0.5f}, {});
+  scene.add(Sphere{0.5f}, {{1.1 + double(aside), 0, 0}, {}}, true, {{-aside, 0, 0}, {}});
+  scene.bodies[1].linear_velocity = {-9, 0, 0};
+  scene.step();
+  return scene.manifold(0, 1).count;
+}
+TEST(Closing, BodiesWhoseBallsComeTogetherInTheStepAreLookedAt) {
+  EXPECT_EQ(points_of_balls(0.0f), 1);
+  EXPECT_EQ(points_of_balls(1.0f), 1);
+}
+
+// What slides far above a table needs no points; but the look reached no farther than the gap, and when it falls the next must see it.
+TEST(Closing, ALookThatFoundNothingAlongTheAxisReachedToTheGap) {
+  for (const int width : {1, 0}) {
+    CollideScene scene;
+    scene.width = width;
+    const std::uint32_t table = scene.add(Box{{5, 0.5f, 5}}, {{0, -0.5, 0}, {}}, false);
+    const std::uint32_t cube = scene.add(kCube, {{0, 0.53, 0}, {}});
+    scene.bodies[cube].linear_velocity = {6, 0, 0};
+    scene.step();
+    ASSERT_NE(scene.contact(table, cube), nullptr);
+    EXPECT_EQ(scene.manifold(table, cube).count, 0);
+    scene.bodies[cube].pose.position.x = 0.1;
+    scene.bodies[cube].linear_velocity = {0, -0.84f, 0};
+    scene.step();
+    EXPECT_EQ(scene.manifold(table, cube).count, 4);
+  }
+}
+
+// A beam of 2 m lies level 12 cm above a floor and turns by 0.15 rad in the step: its end, 1 m away, goes that far down.
+TEST(Closing, ABeamThatTiltsIsSeenByItsEnd) {
+  CollideScene scene;
+  const std::uint32_t floor = scene.add(Box{{5, 0.5f, 5}}, {{0, -0.5, 0}, {}}, false);
+  const std::uint32_t beam = scene.add(Box{{1, 0.2f, 0.2f}}, {{0, 0.32, 0}, {}});
+  scene.bodies[beam].angular_velocity = {0, 0, 9};
+  scene.step();
+  EXPECT_GT(scene.manifold(floor, beam).count, 0);
+}
+
 struct Pair {
   AnyShape shapes[2];
   ColliderBody bodies[2];

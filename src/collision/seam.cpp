@@ -266,7 +266,7 @@ bool is_hidden(const Scene& scene, const Asked& asked, int index) {
 std::uint8_t hidden_manifolds(const Scene& scene, std::uint32_t slot) {
   Side side;
   if (!find_side(scene.store, slot, scene.input, side)) return 0;
-  if (!scene.resting.has_several(side.mover) || !scene.input.outlines[side.mover_body].awake) return 0;
+  if (!scene.resting.has_several(side.mover) || scene.input.awake[side.mover_body] == 0) return 0;
   const Asked asked{slot, side, scene.resting.of(side.mover)};
   unsigned mask = 0;
   for (int i = 0; i < scene.store.contacts[slot].manifold_count; ++i) {

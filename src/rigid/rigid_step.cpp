@@ -217,7 +217,7 @@ void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, RecycleContac
   const std::size_t count = w.bodies.motion.size();
   const std::span<BodyLook> looks = arena.make<BodyLook>(count);
   const std::span<BodyCenter> centers = arena.make<BodyCenter>(count);
-  const std::span<BodyOutline> outlines = arena.make<BodyOutline>(count);
+  const std::span<std::uint8_t> awake = arena.make<std::uint8_t>(count);
   const auto fill = [&](std::uint32_t i) {
     const BodyMotion& motion = w.bodies.motion[i];
     ColliderBody body;
@@ -229,12 +229,12 @@ void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, RecycleContac
     body.awake = may_move(w, i);
     looks[i] = make_body_look(body, seconds);
     centers[i] = {body.center, body.reach};
-    outlines[i] = {body.reach + length(body.center), body.awake};
+    awake[i] = body.awake ? 1 : 0;
   };
   for_blocks(tasks, int(count), 4 * kBodiesPerBlock, [&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) fill(std::uint32_t(i));
   });
-  const CollideInput input{w.shapes.colliders, looks, centers, outlines, w.shapes.proxies, recycle_contacts};
+  const CollideInput input{w.shapes.colliders, looks, centers, awake, w.shapes.proxies, recycle_contacts};
   collide(w.contacts, input, tasks, w.touches);
   hide_seams(w.contacts, input, w.touches.beside_resting, arena, tasks, w.seams);
 }

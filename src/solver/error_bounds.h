@@ -1,4 +1,5 @@
-// How much of what is wrong with a joint is taken back at once.
+// How much of what is wrong with a joint is taken back at once, and how much of its bend is asked for: of linkages one by one and side by
+// side alike.
 #pragma once
 
 namespace gyre {
@@ -15,5 +16,12 @@ constexpr ErrorBounds kMostErrors{0.1f, 0.2f};
 // or a rope would slip round a drum by what it gives; but limbs that are wedged in a heap pressed each other with tons.
 constexpr ErrorBounds kErrorsBeforeContacts{0.5e-3f, 5.0e-3f};
 constexpr ErrorBounds kNoErrors{0.0f, 0.0f};
+
+// rad. Bodies that turn by less than the first in a sub-step do so along a straight line; of those that turn by more than the second, the
+// rows ask for less and less of the bend: a whip's end then loses energy instead of gaining it.
+constexpr float kLeastBendTurn = 1.0e-4f, kMostBendTurn = 0.3f;
+// Bend that is not asked for, or that two solutions do not find, opens the joint in each sub-step anew. Errors of joints whose bodies
+// turn by more than this (rad) are taken back the faster for it: wholly in a sub-step where they turn by far more.
+constexpr float kCalmTurn = 0.15f;
 
 }  // namespace gyre

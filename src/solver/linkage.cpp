@@ -9,13 +9,6 @@ namespace gyre {
 
 namespace {
 
-// Bodies that turn by less than this in a sub-step (rad) do so along a straight line; of those that turn by more than that,
-// the rows ask for less and less of the bend: a whip's end then loses energy instead of gaining it.
-constexpr float kLeastTurn = 1.0e-4f;
-constexpr float kMostTurn = 0.3f;
-// Bend that is not asked for, or that two solutions do not find, opens the joint in each sub-step anew. Errors of joints whose bodies
-// turn by more than this (rad) are taken back the faster for it: wholly in a sub-step where they turn by far more.
-constexpr float kCalmTurn = 0.15f;
 // h^2 k / I up to which tension is left alone; kick and drift are stable up to 4.
 constexpr float kMostPull = 1.0f;
 
@@ -202,7 +195,7 @@ class NodeBodies {
   Side a_, b_;
 };
 
-// As from_rotation_vector, by series: turns of a sub-step are small, and of those that are not kMostTurn leaves little.
+// As from_rotation_vector, by series: turns of a sub-step are small, and of those that are not kMostBendTurn leaves little.
 Quat small_rotation(Vec3 v) {
   const float a = min(length_squared(v), 1.0f);
   const Vec3 u = (0.5f - a * (1.0f / 48.0f - a / 3840.0f)) * v;
@@ -315,13 +308,13 @@ void ask_rows(const Linkage& linkage, const LinkageSolve& s, ErrorBounds bounds)
     const Course b = course_of(linkage, s, node.body_b, node.side_b);
     const float fastest = square(h) * max(max(length_squared(a.angular), length_squared(b.angular)),
                                           rod_rate(joint, work, a, b));
-    const float share = fastest > square(kMostTurn) ? square(kMostTurn) / fastest : 1.0f;
+    const float share = fastest > square(kMostBendTurn) ? square(kMostBendTurn) / fastest : 1.0f;
     const float at_once = fastest > square(kCalmTurn) ? 1.0f - square(kCalmTurn) / fastest : 0.0f;
     const float rate = s.settings.softness.bias_rate;
     const float back = -rate - (1.0f / h - rate) * at_once;
     Bend bend;
     float bends[kJointAxisCount] = {};
-    if (fastest > square(kLeastTurn) || joint.kind == JointKind::path) {
+    if (fastest > square(kLeastBendTurn) || joint.kind == JointKind::path) {
       if (work.rows != nullptr) {
         rows_bend(joint, work, node, a, b, h, bends);
       } else {

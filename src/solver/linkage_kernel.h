@@ -7,10 +7,6 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// As in solver/linkage.cpp.
-constexpr float kLaneLeastTurn = 1.0e-4f;  // rad
-constexpr float kLaneCalmTurn = 0.15f;
-
 // -------------------------------------------------------------------------------------------------- what is asked for
 
 template <int W>
@@ -56,7 +52,7 @@ GYRE_INLINE void ask_lanes(const Bundle<W>& bundle, const LaneSettings& s, Error
     const LinkedBody<W>&a = bundle.bodies[node.a], &b = bundle.bodies[node.b];
     const Wide<W> fastest = (h * h) * max(length_squared(a.angular), length_squared(b.angular));
     // Of those that hardly turn nothing is asked; of those that turn far, less, and what that opened is taken back at once.
-    constexpr float kLeast = kLaneLeastTurn * kLaneLeastTurn, kCalm = kLaneCalmTurn * kLaneCalmTurn;
+    constexpr float kLeast = kLeastBendTurn * kLeastBendTurn, kCalm = kCalmTurn * kCalmTurn;
     const float most = s.most_turn * s.most_turn;
     Wide<W> share = keep(fastest > kLeast, Wide<W>(1.0f));
     share = select(fastest > most, most / fastest, share);

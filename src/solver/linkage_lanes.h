@@ -103,7 +103,7 @@ struct LaneSettings {
   // Of the way that free rotation swerves in a sub-step, how much is asked for; none where speeds stand for displacements.
   float swerves = 1.0f;
   // Where a body turns by more than that in a sub-step, less of the bend is asked for.
-  float most_turn = 0.3f;  // rad
+  float most_turn = kMostBendTurn;  // rad
 };
 
 // The kernels of one CPU target. Each body is a block of `body_bytes` that begins with the lanes' body indices (kNoBody: none).
