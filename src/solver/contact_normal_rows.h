@@ -22,7 +22,6 @@ GYRE_INLINE void prepare_rows(ContactBlock<W>& block, const Wide<W> (&point_exis
   const Wide<W> zero(0.0f), one(1.0f);
   const Wide<W> inverse_masses = block.inverse_mass_a + block.inverse_mass_b;
   Wide<W> l[10], inverse_diagonal[Count];  // Cholesky factor of the regularised K
-  GYRE_UNROLL
   for (int i = 0; i < Count; ++i) {
     const PointBlock<W>& point = block.points[i];
     const Vec3W<W> ia = block.inverse_inertia_a * (point.arm + block.arm_shift_a);
@@ -31,7 +30,6 @@ GYRE_INLINE void prepare_rows(ContactBlock<W>& block, const Wide<W> (&point_exis
     const Wide<W> common = inverse_masses + (dot(block.arm_shift_a, ia) + dot(block.arm_shift_b, ib));
     const auto exists = point_exists[i] > zero;
     Wide<W> row[Count];
-    GYRE_UNROLL
     for (int j = 0; j <= i; ++j) {
       const Wide<W> k = common + dot(block.points[j].arm, turn);
       block.aside->k[packed(j, i)] = row[j] = keep(exists & (point_exists[j] > zero), k);
@@ -39,34 +37,26 @@ GYRE_INLINE void prepare_rows(ContactBlock<W>& block, const Wide<W> (&point_exis
     const Wide<W> own = row[i];
     block.aside->relief[i] = keep(own > zero, one / select(own > zero, own, one));
     block.rows[i] = lane_bits<W>(block.aside->relief[i] > zero);
-    GYRE_UNROLL
     for (int j = 0; j < i; ++j) {
       Wide<W> sum = row[j];
-      GYRE_UNROLL
       for (int m = 0; m < j; ++m) sum = sum - l[packed(m, i)] * l[packed(m, j)];
       l[packed(j, i)] = sum * inverse_diagonal[j];
     }
     Wide<W> sum = own * Wide<W>(1.0f + kRegular);
-    GYRE_UNROLL
     for (int m = 0; m < i; ++m) sum = sum - l[packed(m, i)] * l[packed(m, i)];
     inverse_diagonal[i] = one / select(sum > zero, sqrt(sum), one);
   }
   // Columns of the inverse, by forward and back substitution.
-  GYRE_UNROLL
   for (int column = 0; column < Count; ++column) {
     Wide<W> x[Count];
-    GYRE_UNROLL
     for (int i = column; i < Count; ++i) {
       Wide<W> sum = i == column ? one : zero;
-      GYRE_UNROLL
       for (int m = column; m < i; ++m) sum = sum - l[packed(m, i)] * x[m];
       x[i] = sum * inverse_diagonal[i];
     }
     const auto exists = point_exists[column] > zero;
-    GYRE_UNROLL
     for (int i = Count - 1; i >= 0; --i) {
       Wide<W> sum = i < column ? zero : x[i];
-      GYRE_UNROLL
       for (int m = i + 1; m < Count; ++m) sum = sum - l[packed(i, m)] * x[m];
       x[i] = sum * inverse_diagonal[i];
       if (i <= column) block.inverse_k[packed(i, column)] = keep(exists, x[i]);
