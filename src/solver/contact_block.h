@@ -81,13 +81,15 @@ struct FollowedArms {
   PointArmPairs middle, before, now;  // `before`: as the last sub-step began
   // m, less what the bodies' motion since the step began makes of it with the arms of the middle.
   float separation[kMaxManifoldPoints] = {};
+  // Of the friction that stands, how much acts at each point: kernels note it. Zeros where the step has just begun.
+  float friction_shares[kMaxManifoldPoints] = {};
   int count = 0;
 };
 
 // A contact that is followed: its lane in the block, and the present inverse inertia of its bodies, null where there is none.
 struct FollowedLane {
   int lane;
-  const FollowedArms* arms;
+  FollowedArms* arms;
   const Sym3 *inverse_a, *inverse_b;
 };
 

@@ -3,7 +3,8 @@
 //
 // The impulses that stand go on acting, but at the new place: what they turn changes by
 //   I'^-1 (r' x p) - I^-1 (r x p)
-// without which they would turn the bodies as if the contact had stayed behind. They act where the contact is as the sub-step
+// without which they would turn the bodies as if the contact had stayed behind, or what friction was given at one end of a bone would be
+// taken back at the other, once the load lies there. They act where the contact is as the sub-step
 // begins, but the speeds that they bring about are those of its middle: so what the contact's own motion takes at the one end
 // it gives back at the other, as in the leapfrog scheme. With one arm for both, rolling would lose energy to the first order.
 #pragma once
@@ -16,9 +17,10 @@ namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
 // Where the arms lie in FollowedArms, in floats.
-constexpr int kArmsMiddle = 0, kArmsBefore = 24, kArmsNow = 48, kArmsSeparation = 72;
+constexpr int kArmsMiddle = 0, kArmsBefore = 24, kArmsNow = 48, kArmsSeparation = 72, kArmsShares = 76;
 static_assert(offsetof(FollowedArms, before) == 4 * kArmsBefore && offsetof(FollowedArms, now) == 4 * kArmsNow);
 static_assert(offsetof(FollowedArms, middle) == 0 && offsetof(FollowedArms, separation) == 4 * kArmsSeparation);
+static_assert(offsetof(FollowedArms, friction_shares) == 4 * kArmsShares);
 static_assert(sizeof(PointArmPairs) == 4 * kArmsBefore && offsetof(PointArmPairs, from_b) == 48);
 
 // The lanes of a block that are followed. The others read zeros, and what is worked out for them is not kept.
@@ -69,9 +71,8 @@ GYRE_INLINE PointArms<W> gather_arms(const FollowedLanes<W>& lanes, int set, int
 // How the load is shared among the points: friction acts where the load does, or at the lowest point where nothing bears any.
 template <int W>
 struct LoadShares {
-  Mask<W> exists[kMaxManifoldPoints], lowest[kMaxManifoldPoints];  // the last of these that is set counts
+  Mask<W> exists[kMaxManifoldPoints];
   Wide<W> shares[kMaxManifoldPoints];
-  Mask<W> bears;
 
   GYRE_INLINE LoadShares(const ContactBlock<W>& block, const FollowedLanes<W>& lanes) {
     const Wide<W> zero(0.0f), one(1.0f);
@@ -80,33 +81,38 @@ struct LoadShares {
     Wide<W> least = separations[0];
     for (int k = 0; k < lanes.point_count; ++k) {
       exists[k] = lanes.has_point(k);
-      lowest[k] = exists[k] & (separations[k] < least);
-      least = select(lowest[k], separations[k], least);
+      least = select(exists[k], min(least, separations[k]), least);
       load = load + keep(exists[k], block.impulses[k]);
     }
-    bears = load > zero;
+    const auto bears = load > zero;
     const Wide<W> divisor = select(bears, load, one);
-    for (int k = 0; k < lanes.point_count; ++k) shares[k] = block.impulses[k] / divisor;
+    auto left = ~bears;
+    for (int k = 0; k < lanes.point_count; ++k) {
+      const auto lowest = left & exists[k] & (separations[k] <= least);
+      left = left & ~lowest;
+      shares[k] = select(bears, keep(exists[k], block.impulses[k] / divisor), keep(lowest, one));
+    }
   }
 };
+
+// By which shares the friction that stands came to act; as the step begins it acts where the load does.
+template <int W>
+GYRE_INLINE void shares_before(const FollowedLanes<W>& lanes, const LoadShares<W>& now, Wide<W> (&before)[kMaxManifoldPoints]) {
+  Wide<W> noted[kMaxManifoldPoints], sum(0.0f);
+  gather_columns<4, W>(lanes.arms, kArmsShares, noted);
+  for (int k = 0; k < lanes.point_count; ++k) sum = sum + noted[k];
+  for (int k = 0; k < lanes.point_count; ++k)
+    before[k] = select(sum > Wide<W>(0.0f), noted[k], now.shares[k]);
+}
 
 // Where friction acts, added up point by point.
 template <int W>
 struct FrictionArms {
-  Vec3W<W> from_a, from_b;
+  Vec3W<W> from_a{Wide<W>(0.0f), Wide<W>(0.0f), Wide<W>(0.0f)}, from_b = from_a;
 
-  GYRE_INLINE FrictionArms(const LoadShares<W>& load, const PointArms<W>& first) {
-    const Vec3W<W> none{Wide<W>(0.0f), Wide<W>(0.0f), Wide<W>(0.0f)};
-    from_a = select<W>(load.bears, none + load.shares[0] * first.from_a, first.from_a);
-    from_b = select<W>(load.bears, none + load.shares[0] * first.from_b, first.from_b);
-  }
-  GYRE_INLINE void add(const LoadShares<W>& load, int k, const PointArms<W>& arms) {
-    const auto added = [&](Vec3W<W> sum, Vec3W<W> arm) {
-      const Vec3W<W> shared = select<W>(load.exists[k], sum + load.shares[k] * arm, sum);
-      return select<W>(load.bears, shared, select<W>(load.lowest[k], arm, sum));
-    };
-    from_a = added(from_a, arms.from_a);
-    from_b = added(from_b, arms.from_b);
+  GYRE_INLINE void add(Wide<W> share, const PointArms<W>& arms) {
+    from_a = from_a + share * arms.from_a;
+    from_b = from_b + share * arms.from_b;
   }
 };
 
@@ -117,10 +123,11 @@ struct LaneTorques {
 };
 template <int W>
 GYRE_INLINE LaneTorques<W> torques_of(const ContactBlock<W>& block, const FollowedLanes<W>& lanes,
-                                      const LoadShares<W>& load, int set) {
+                                      const LoadShares<W>& load, const Wide<W> (&friction_shares)[kMaxManifoldPoints],
+                                      int set) {
   PointArms<W> arms[kMaxManifoldPoints];
-  FrictionArms<W> friction(load, arms[0] = gather_arms<W>(lanes, set, 0));
-  for (int k = 1; k < lanes.point_count; ++k) friction.add(load, k, arms[k] = gather_arms<W>(lanes, set, k));
+  FrictionArms<W> friction;
+  for (int k = 0; k < lanes.point_count; ++k) friction.add(friction_shares[k], arms[k] = gather_arms<W>(lanes, set, k));
   const Vec3W<W> slide = block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2;
   const Vec3W<W> turn = block.twist * block.normal + block.aside->rolling;
   LaneTorques<W> torques{cross(friction.from_a, slide) + turn, cross(friction.from_b, slide) + turn};
@@ -181,8 +188,10 @@ void follow_lanes(void* memory, int index, const FollowedLane* followed, int cou
   ContactBlock<W>& block = static_cast<ContactBlock<W>*>(memory)[index];
   const FollowedLanes<W> lanes(followed, count);
   const LoadShares<W> load(block, lanes);
-  const LaneTorques<W> before = torques_of<W>(block, lanes, load, kArmsBefore),
-                       now = torques_of<W>(block, lanes, load, kArmsNow);
+  Wide<W> friction_before[kMaxManifoldPoints];
+  shares_before<W>(lanes, load, friction_before);
+  const LaneTorques<W> before = torques_of<W>(block, lanes, load, friction_before, kArmsBefore),
+                       now = torques_of<W>(block, lanes, load, load.shares, kArmsNow);
   const Vec3W<W> before_a = block.inverse_inertia_a * before.a, before_b = block.inverse_inertia_b * before.b;
   const auto refresh = [](std::uint32_t bits, const Sym3W<W>& present, Sym3W<W>& old) {
     const auto known = Mask<W>::of_bits(bits);
@@ -197,6 +206,7 @@ void follow_lanes(void* memory, int index, const FollowedLane* followed, int cou
     const int lane = followed[i].lane;
     turn_body<W>(block.aside->write_a[lane], lane, change_a);
     turn_body<W>(block.aside->write_b[lane], lane, change_b);
+    for (int k = 0; k < lanes.point_count; ++k) followed[i].arms->friction_shares[k] = load.shares[k][lane];
   }
   ContactAside<W> aside;
   ContactBlock<W> moved;
@@ -206,12 +216,12 @@ void follow_lanes(void* memory, int index, const FollowedLane* followed, int cou
   moved.point_count = lanes.point_count;
   const PointArms<W> first = gather_arms<W>(lanes, kArmsMiddle, 0);
   const auto nearer_a = place_arms<W>(moved, first);
-  FrictionArms<W> friction(load, first);
+  FrictionArms<W> friction;
   Wide<W> exists[kMaxManifoldPoints];
   for (int k = 0; k < lanes.point_count; ++k) {
     exists[k] = keep(load.exists[k], Wide<W>(1.0f));
     const PointArms<W> arms = k == 0 ? first : gather_arms<W>(lanes, kArmsMiddle, k);
-    if (k > 0) friction.add(load, k, arms);
+    friction.add(load.shares[k], arms);
     moved.points[k].arm = cross(select<W>(nearer_a, arms.from_a, arms.from_b), block.normal);
   }
   moved.friction_from_a = friction.from_a, moved.friction_from_b = friction.from_b;

@@ -63,5 +63,63 @@ TEST(ContactKernel, TakesAnyLoadThatAFloatCanHold) {
   }
 }
 
+// A bone of 0.4 m on fixed ground, which its left end bears and where friction holds it. Then its right end does.
+struct Bone {
+  BodyMotion motion;
+  BodyInertia inertia{.inverse = {.xx = 100.0f, .yy = 80.0f, .zz = 90.0f}, .inverse_mass = 1.0f};
+  Arena arena;
+  const ContactKernels& kernels;
+  void* const block;
+  void* const aside;
+  FollowedArms arms;
+
+  explicit Bone(int width)
+      : kernels(select_contact_kernels(width)),
+        block(arena.make<std::byte>(kernels.block_bytes).data()),
+        aside(arena.make<std::byte>(kernels.aside_bytes).data()) {
+    motion.inverse_mass = 1.0f;
+    Manifold manifold;
+    manifold.count = arms.count = 2;
+    for (int k = 0; k < 2; ++k) {
+      manifold.points[k].from_b = {k == 0 ? -0.2f : 0.2f, -0.05f, 0};
+      arms.now.from_a[k] = manifold.points[k].from_a;
+      arms.now.from_b[k] = manifold.points[k].from_b;
+    }
+    arms.before = arms.middle = arms.now;
+    manifold.points[0].normal_impulse = 3.0f;
+    manifold.friction_impulse = kFriction;
+    ContactConstraint constraint;
+    constraint.static_friction = constraint.dynamic_friction = 0.5f;
+    constraint.size = 0.05f;
+    constraint.body_b = 0;
+    constraint.manifold = &manifold;
+    std::vector<std::uint32_t> order(std::size_t(kernels.width), 0xffffffffu);
+    order[0] = 0;
+    const ContactSettings settings{
+        .substep = 1.0f / 240.0f, .step = 1.0f / 60.0f, .rate = 9.0f, .up = {0, 1, 0}};
+    kernels.prepare(block, aside, 0, 1, &constraint, order.data(), {&motion, &inertia}, settings);
+    kernels.warm_start(block, 0, 1);
+  }
+  void follow() {
+    const FollowedLane lane{0, &arms, nullptr, &inertia.inverse};
+    kernels.follow(block, 0, &lane, 1);
+  }
+  static constexpr Vec3 kFriction{0, 0, 1.2f};
+};
+
+// The same was given at one end and taken back at the other: a bone thrown on the ground left it with six times its energy.
+TEST(ContactKernel, FrictionGoesWhereTheLoadGoes) {
+  for (const int width : {1, 4, 8, 16}) {
+    Bone bone(width);
+    bone.follow();
+    const Vec3 before = bone.motion.angular_velocity;
+    ContactImpulse right{.normal = {0, 3.0f}, .friction = Bone::kFriction};
+    bone.kernels.write_impulse(bone.block, 0, 0, right);
+    bone.follow();
+    const Vec3 expected = bone.inertia.inverse * cross(Vec3{0.4f, 0, 0}, Bone::kFriction);
+    EXPECT_LT(length(bone.motion.angular_velocity - before - expected), 1e-5f * length(expected)) << width;
+  }
+}
+
 }  // namespace
 }  // namespace gyre
