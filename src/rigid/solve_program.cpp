@@ -59,12 +59,19 @@ void note_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
   s.kernels.motion.note(s.motion_blocks, begin, end, s.contact_bodies.motion);
 }
-void advance_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
+void advance(const Solve& s, int begin, int end, bool is_watched) {
   BodyStore& bodies = s.w.bodies;
   s.kernels.motion.advance(s.motion_blocks, begin, end,
                            {bodies.motion.data(), bodies.inertia.data(), bodies.orientations.data()}, s.h,
-                           s.is_watched);
+                           is_watched);
+}
+void advance_stage(void* context, int begin, int end, int) {
+  const Solve& s = *static_cast<Solve*>(context);
+  advance(s, begin, end, s.is_watched);
+}
+// Where what contacts gave has been noted.
+void advance_noted_stage(void* context, int begin, int end, int) {
+  advance(*static_cast<Solve*>(context), begin, end, false);
 }
 void turn_alone_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
@@ -399,7 +406,7 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   // Joints act between forces and contacts: what they give is none of the contacts' work, and how they bend in the sub-step
   // is none of what contacts gave in the last one.
   const bool has_joints = linkages > 0 || bundles > 0 || !joints.empty();
-  const bool is_warm = !first && impacts == 0 && !has_joints;
+  const bool is_warm = !first && impacts == 0 && linkages == 0 && joints.empty();
   // What contacts gave is looked at only where there may be any. (Linkages leave negative zeros, which the look clears away.)
   solve.is_watched = !contacts.empty() || linkages > 0 || bundles > 0 || !has_joints;
   const int watched = solve.is_watched ? bodies : 0;
@@ -415,7 +422,8 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   program.add(strike_stage, &solve, impacts);
   program.add(joint_slices_stage<bend_joints_stage>, &solve, slices, kSlicesPerClaim);
   program.add(linkage_stage<warm_linkage>, &solve, linkages);
-  program.add(bundle_stage<&LinkageKernels::warm>, &solve, bundles);
+  // Others have been asked as the last part ended: velocities are as they were but for what turns no joint.
+  if (first || impacts > 0) program.add(bundle_stage<&LinkageKernels::ask>, &solve, bundles);
   program.add_groups(warm_joints_stage, joints, kJointsPerBlock, kJointBlocksPerClaim);
   if (!first && !is_warm) program.add(warm_motion_stage, &solve, watched, kMotionBlocksPerClaim);
   if (first) {
@@ -437,8 +445,7 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   if (has_joints) program.add(note_stage, &solve, watched, kMotionBlocksPerClaim);
   program.add(linkage_stage<solve_linkage_again>, &solve, linkages);
   program.add(bundle_stage<&LinkageKernels::solve_again>, &solve, bundles);
-  if (has_joints) program.add(watch_motion_stage, &solve, watched, kMotionBlocksPerClaim);
-  program.add(advance_stage, &solve, bodies, kMotionBlocksPerClaim);
+  program.add(has_joints ? advance_noted_stage : advance_stage, &solve, bodies, kMotionBlocksPerClaim);
   program.add(turn_alone_stage, &solve, count_blocks(int(solve.spinners.size()), kSpinnersPerClaim));
   program.add(release_stage, &solve, impacts);
   program.add(joint_slices_stage<place_again_stage>, &solve, slices, kSlicesPerClaim);
@@ -447,9 +454,13 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   program.add_groups(relax_joints_stage, joints, kJointsPerBlock, kJointBlocksPerClaim);
   program.add(linkage_stage<relax_linkage>, &solve, linkages);
   // Where no joint is swept in between, while their rows are still in the cache.
-  program.add(joints.empty() ? bundle_stage<&LinkageKernels::place, &LinkageKernels::relax>
-                             : bundle_stage<&LinkageKernels::relax>,
-              &solve, bundles);
+  if (!joints.empty())
+    program.add(last ? bundle_stage<&LinkageKernels::finish> : bundle_stage<&LinkageKernels::relax>, &solve,
+                bundles);
+  else
+    program.add(last ? bundle_stage<&LinkageKernels::place, &LinkageKernels::finish>
+                     : bundle_stage<&LinkageKernels::place, &LinkageKernels::relax>,
+                &solve, bundles);
 }
 
 }  // namespace
