@@ -117,7 +117,7 @@ class LaneClosing {
         if (next == ClosingWay::Next::done) going &= ~(1u << lane);
       }
       if (solved == 0) continue;
-      kernels.warm(bundle.lanes, bundles_.arrays, bundles_.settings);
+      kernels.ask(bundle.lanes, bundles_.arrays, bundles_.settings);
       kernels.solve(bundle.lanes, bundles_.arrays, bundles_.settings);
       kernels.solve_again(bundle.lanes, bundles_.arrays, bundles_.settings);
       for (std::size_t lane = 0; lane < bundle.linkages.size(); ++lane)

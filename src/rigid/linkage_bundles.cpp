@@ -39,6 +39,7 @@ LinkageBundle make_bundle(const LinkageShape& shape, const LinkageKernels& kerne
   b.values = arena.make<double>(b.value_count * width).data();
   b.vector = arena.make<double>(b.row_count * width).data();
   b.room = arena.make<double>(shape.plan.widest * width).data();
+  b.is_factored = arena.make<bool>(1).data();
   b.stops = arena.make<std::byte>(kernels.stop_room(b)).data();
   return b;
 }

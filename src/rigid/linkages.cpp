@@ -1,5 +1,6 @@
 #include "rigid/linkages.h"
 
+#include "base/prefetch.h"
 #include "solver/linkage_stops.h"
 
 #include <algorithm>
@@ -201,6 +202,9 @@ class LinkageMaker {
       const std::uint32_t place = graph_.joints[members[i]];
       const std::uint32_t slot = batch_.joints[place];
       const JointRecord& joint = w_.joints.records[slot];
+      // What describe() asks of it.
+      if (const JointDetail* const detail = detail_of(w_.joints, slot))
+        prefetch(detail, offsetof(JointDetail, row_impulses));
       draft.joints[i] = {slot, place, joint.body_a, joint.body_b};
       draft.side_a[i] = side_of(joint.body_a);
       draft.side_b[i] = side_of(joint.body_b);

@@ -50,7 +50,7 @@ template <bool kWarm>
 void predict_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
   part_watched(s, begin, end, [&](int first, int last, bool watched) {
-    s.kernels.motion.predict(s.motion_blocks, first, last, s.contact_bodies.motion, kWarm, watched);
+    s.kernels.motion.predict(s.motion_blocks, first, last, s.contact_bodies.motion, kWarm && watched, watched);
   });
 }
 void warm_motion_stage(void* context, int begin, int end, int) {
@@ -65,12 +65,14 @@ void note_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
   s.kernels.motion.note(s.motion_blocks, begin, end, s.contact_bodies.motion);
 }
+// Noted: what contacts gave has been noted by now.
+template <bool kNoted>
 void advance_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
   BodyStore& bodies = s.w.bodies;
   const MotionArrays arrays{bodies.motion.data(), bodies.inertia.data(), bodies.orientations.data()};
   part_watched(s, begin, end, [&](int first, int last, bool watched) {
-    s.kernels.motion.advance(s.motion_blocks, first, last, arrays, s.h, watched);
+    s.kernels.motion.advance(s.motion_blocks, first, last, arrays, s.h, watched && !kNoted);
   });
 }
 void turn_alone_stage(void* context, int begin, int end, int) {
@@ -406,7 +408,7 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   // Joints act between forces and contacts: what they give is none of the contacts' work, and how they bend in the sub-step
   // is none of what contacts gave in the last one.
   const bool has_joints = linkages > 0 || bundles > 0 || !joints.empty();
-  const bool is_warm = !first && impacts == 0 && !has_joints;
+  const bool is_warm = !first && impacts == 0 && linkages == 0 && joints.empty();
   const int watched = solve.watched_blocks;
   const int fields = solve.fields.blocks();
   const int slices = joints.empty() ? 0 : kJointSlices;
@@ -420,7 +422,9 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   program.add(strike_stage, &solve, impacts);
   program.add(joint_slices_stage<bend_joints_stage>, &solve, slices, kSlicesPerClaim);
   program.add(linkage_stage<warm_linkage>, &solve, linkages);
-  program.add(bundle_stage<&LinkageKernels::warm>, &solve, bundles);
+  // Later they have been asked as the last part ended: velocities are as they were but for what turns no joint. (Blows of the batch must
+  // not be a reason to ask again: they may be another island's.)
+  if (first) program.add(bundle_stage<&LinkageKernels::ask>, &solve, bundles);
   program.add_groups(warm_joints_stage, joints, kJointsPerBlock, kJointBlocksPerClaim);
   if (!first && !is_warm) program.add(warm_motion_stage, &solve, watched, kMotionBlocksPerClaim);
   if (first) {
@@ -442,8 +446,7 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   if (has_joints) program.add(note_stage, &solve, watched, kMotionBlocksPerClaim);
   program.add(linkage_stage<solve_linkage_again>, &solve, linkages);
   program.add(bundle_stage<&LinkageKernels::solve_again>, &solve, bundles);
-  if (has_joints) program.add(watch_motion_stage, &solve, watched, kMotionBlocksPerClaim);
-  program.add(advance_stage, &solve, bodies, kMotionBlocksPerClaim);
+  program.add(has_joints ? advance_stage<true> : advance_stage<false>, &solve, bodies, kMotionBlocksPerClaim);
   program.add(turn_alone_stage, &solve, count_blocks(int(solve.spinners.size()), kSpinnersPerClaim));
   program.add(release_stage, &solve, impacts);
   program.add(joint_slices_stage<place_again_stage>, &solve, slices, kSlicesPerClaim);
@@ -452,9 +455,13 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   program.add_groups(relax_joints_stage, joints, kJointsPerBlock, kJointBlocksPerClaim);
   program.add(linkage_stage<relax_linkage>, &solve, linkages);
   // Where no joint is swept in between, while their rows are still in the cache.
-  program.add(joints.empty() ? bundle_stage<&LinkageKernels::place, &LinkageKernels::relax>
-                             : bundle_stage<&LinkageKernels::relax>,
-              &solve, bundles);
+  if (!joints.empty())
+    program.add(last ? bundle_stage<&LinkageKernels::finish> : bundle_stage<&LinkageKernels::relax>, &solve,
+                bundles);
+  else
+    program.add(last ? bundle_stage<&LinkageKernels::place, &LinkageKernels::finish>
+                     : bundle_stage<&LinkageKernels::place, &LinkageKernels::relax>,
+                &solve, bundles);
 }
 
 }  // namespace

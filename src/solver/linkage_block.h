@@ -86,6 +86,9 @@ struct Bundle {
     if constexpr (W == 1) return join_halves<W>(low, low);
     return join_halves<W>(low, D::load(plain.vector + (std::size_t(plain.row_count) + row) * H));
   }
+  GYRE_INLINE Vec3W<W> rows3(std::uint32_t first) const {
+    return {row(first), row(first + 1), row(first + 2)};
+  }
 };
 
 // The impulse p at the joint and the turning impulse t, on b, and their opposites on a.

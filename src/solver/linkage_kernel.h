@@ -7,6 +7,10 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
+// As in solver/linkage.cpp.
+constexpr float kLaneLeastTurn = 1.0e-4f;  // rad
+constexpr float kLaneCalmTurn = 0.15f;
+
 // -------------------------------------------------------------------------------------------------- what is asked for
 
 template <int W>
@@ -36,6 +40,42 @@ GYRE_INLINE Vec3W<W> hinge_bend(const LinkedJoint<W>& joint, const LinkedBody<W>
          (b.angular - a.angular);
 }
 
+// How their bodies turn makes joints bend: by how much of it they are asked for more. `turns`: the square of how far the faster of a
+// joint's bodies turns in the sub-step.
+template <int W>
+GYRE_INLINE Wide<W> bend_share(Wide<W> turns, float most_turn) {
+  // Of those that hardly turn nothing is asked; of those that turn far, less.
+  constexpr float kLeast = kLaneLeastTurn * kLaneLeastTurn;
+  const float most = most_turn * most_turn;
+  const Wide<W> share = keep(turns > kLeast, Wide<W>(1.0f));
+  return select(turns > most, most / turns, share);
+}
+
+// How fast errors are taken back: what bend that was not asked for opened, at once.
+template <int W>
+GYRE_INLINE Wide<W> take_back(Wide<W> turns, float rate, float per_substep) {
+  constexpr float kCalm = kLaneCalmTurn * kLaneCalmTurn;
+  const Mask<W> fast = turns > kCalm;
+  const Wide<W> back(-rate);
+  if (none(fast)) return back;
+  return back - (per_substep - rate) * keep(fast, 1.0f - kCalm / turns);
+}
+
+template <int W>
+GYRE_INLINE void ask_bend(const LaneNode& node, LinkedJoint<W>& joint, const LinkedBody<W>& a,
+                          const LinkedBody<W>& b, Wide<W> share, float per_substep) {
+  const Vec3W<W> bend = per_substep * (swing_of(b.turn, joint.from_b) - swing_of(a.turn, joint.from_a)) -
+                        (cross(b.angular, joint.from_b) - cross(a.angular, joint.from_a));
+  const Mask<W> bends = share > 0.0f;
+  joint.wanted = select(bends, joint.wanted - share * bend, joint.wanted);
+  if (node.kind != JointKind::hinge) return;
+  const Vec3W<W> turn = share * hinge_bend(joint, a, b, per_substep);
+  joint.turn_wanted_1 =
+      select(bends, joint.turn_wanted_1 - dot(turn, joint.perpendicular_1), joint.turn_wanted_1);
+  joint.turn_wanted_2 =
+      select(bends, joint.turn_wanted_2 - dot(turn, joint.perpendicular_2), joint.turn_wanted_2);
+}
+
 // That the end of the sub-step, not its beginning, meets the joints.
 template <int W>
 GYRE_INLINE void ask_lanes(const Bundle<W>& bundle, const LaneSettings& s, ErrorBounds bounds) {
@@ -50,61 +90,89 @@ GYRE_INLINE void ask_lanes(const Bundle<W>& bundle, const LaneSettings& s, Error
     const LaneNode& node = bundle.plain.nodes[n];
     LinkedJoint<W>& joint = bundle.joints[n];
     const LinkedBody<W>&a = bundle.bodies[node.a], &b = bundle.bodies[node.b];
-    const Wide<W> fastest = (h * h) * max(length_squared(a.angular), length_squared(b.angular));
-    // Of those that hardly turn nothing is asked; of those that turn far, less, and what that opened is taken back at once.
-    constexpr float kLeast = kLeastBendTurn * kLeastBendTurn, kCalm = kCalmTurn * kCalmTurn;
-    const float most = s.most_turn * s.most_turn;
-    Wide<W> share = keep(fastest > kLeast, Wide<W>(1.0f));
-    share = select(fastest > most, most / fastest, share);
-    const Wide<W> at_once = keep(fastest > kCalm, 1.0f - kCalm / fastest);
-    const Wide<W> back = Wide<W>(-s.rate) - (per_substep - s.rate) * at_once;
-    const Vec3W<W> bend = per_substep * (swing_of(b.turn, joint.from_b) - swing_of(a.turn, joint.from_a)) -
-                          (cross(b.angular, joint.from_b) - cross(a.angular, joint.from_a));
-    joint.wanted = back * within(joint.error, bounds.point) - share * bend;
-    if (node.kind != JointKind::hinge) continue;
-    const Vec3W<W> turn =
-        back * within(joint.angular_error, bounds.turn) - share * hinge_bend(joint, a, b, per_substep);
-    joint.turn_wanted_1 = dot(turn, joint.perpendicular_1);
-    joint.turn_wanted_2 = dot(turn, joint.perpendicular_2);
+    const Wide<W> turns = (h * h) * max(length_squared(a.angular), length_squared(b.angular));
+    const Wide<W> back = take_back(turns, s.rate, per_substep);
+    joint.wanted = back * within(joint.error, bounds.point);
+    if (node.kind == JointKind::hinge) {
+      const Vec3W<W> turn = back * within(joint.angular_error, bounds.turn);
+      joint.turn_wanted_1 = dot(turn, joint.perpendicular_1);
+      joint.turn_wanted_2 = dot(turn, joint.perpendicular_2);
+    }
+    const Wide<W> share = bend_share(turns, s.most_turn);
+    if (any(share > 0.0f)) ask_bend(node, joint, a, b, share, per_substep);
   }
 }
 
 // --------------------------------------------------------------------------------------------------------- equations
 
-// Solves for the change of all impulses and applies it; Soft: what is wanted and the give count, otherwise only the speed.
-template <int W, bool Soft>
-GYRE_INLINE void solve_rows(const Bundle<W>& bundle) {
+// What a solution of the equations is for.
+enum class Asks : std::uint8_t {
+  first,  // what is wanted; nothing has been given yet
+  again,  // what is wanted, and what gives way by what has been given
+  relax,  // no speed along the rows
+};
+
+// Where no row misses more, the equations hold to the rounding of velocities: nothing is solved.
+constexpr float kQuiet = 1.0e-5f;  // m/s or rad/s
+
+// Sets the right side: what each row misses. Returns the lanes in which that is more than rounding.
+template <int W, Asks asks>
+GYRE_INLINE Mask<W> set_missing(const Bundle<W>& bundle) {
+  Wide<W> most(0.0f);
+  const auto set = [&](std::uint32_t row, Wide<W> v) {
+    bundle.set_row(row, v);
+    most = max(most, max(v, Wide<W>(0.0f) - v));
+  };
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
     const LaneNode& node = bundle.plain.nodes[n];
     const LinkedJoint<W>& joint = bundle.joints[n];
     const LinkedBody<W>&a = bundle.bodies[node.a], &b = bundle.bodies[node.b];
     Vec3W<W> missing = a.linear + cross(a.angular, joint.from_a) - b.linear - cross(b.angular, joint.from_b);
-    if constexpr (Soft) missing += joint.wanted - multiply_each(joint.give, joint.linear_impulse);
-    bundle.set_row(node.row, missing.x);
-    bundle.set_row(node.row + 1, missing.y);
-    bundle.set_row(node.row + 2, missing.z);
+    if constexpr (asks == Asks::first) missing += joint.wanted;
+    if constexpr (asks == Asks::again)
+      missing += joint.wanted - multiply_each(joint.give, joint.linear_impulse);
+    set(node.row, missing.x);
+    set(node.row + 1, missing.y);
+    set(node.row + 2, missing.z);
     if (node.kind != JointKind::hinge) continue;
     const Vec3W<W> turning = a.angular - b.angular;
     Wide<W> first = dot(turning, joint.perpendicular_1), second = dot(turning, joint.perpendicular_2);
-    if constexpr (Soft) {
+    if constexpr (asks == Asks::first) {
+      first += joint.turn_wanted_1;
+      second += joint.turn_wanted_2;
+    }
+    if constexpr (asks == Asks::again) {
       first += joint.turn_wanted_1 - joint.turn_give_1 * dot(joint.angular_impulse, joint.perpendicular_1);
       second += joint.turn_wanted_2 - joint.turn_give_2 * dot(joint.angular_impulse, joint.perpendicular_2);
     }
-    bundle.set_row(node.row + 3, first);
-    bundle.set_row(node.row + 4, second);
+    set(node.row + 3, first);
+    set(node.row + 4, second);
   }
-  solve_lanes<W>(bundle.plain);
+  return most > kQuiet;
+}
+
+// Solves for the change of all impulses and applies it.
+template <int W, Asks asks>
+GYRE_INLINE void solve_rows(const Bundle<W>& bundle) {
+  const Mask<W> live = set_missing<W, asks>(bundle);
+  if (any(live)) {
+    factor_bundle(bundle);
+    solve_lanes<W>(bundle.plain, halves_of<W>(to_bits(live)));
+  } else if (asks != Asks::first) {
+    return;  // nothing is added to what has been given
+  }
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
     const LaneNode& node = bundle.plain.nodes[n];
     LinkedJoint<W>& joint = bundle.joints[n];
-    const Vec3W<W> p{bundle.row(node.row), bundle.row(node.row + 1), bundle.row(node.row + 2)};
+    const Vec3W<W> p = keep(live, bundle.rows3(node.row));
     Vec3W<W> t{Wide<W>(0.0f), Wide<W>(0.0f), Wide<W>(0.0f)};
     if (node.kind == JointKind::hinge) {
-      t = bundle.row(node.row + 3) * joint.perpendicular_1 + bundle.row(node.row + 4) * joint.perpendicular_2;
-      joint.angular_impulse += t;
+      t = keep(live, bundle.row(node.row + 3) * joint.perpendicular_1 +
+                         bundle.row(node.row + 4) * joint.perpendicular_2);
+      joint.angular_impulse = asks == Asks::first ? t : joint.angular_impulse + t;
     }
     push_joint(bundle, node, joint, p, t);
-    joint.linear_impulse += p;
+    joint.linear_impulse = asks == Asks::first ? p : joint.linear_impulse + p;
   }
 }
 
@@ -120,8 +188,28 @@ GYRE_INLINE Vec3W<W> kept_impulse(LinkedAxis<W>& axis) {
 }
 
 template <int W>
+GYRE_INLINE void push_kept(const Bundle<W>& bundle) {
+  for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
+    const LaneNode& node = bundle.plain.nodes[n];
+    LinkedJoint<W>& joint = bundle.joints[n];
+    if (!node.has_twist && !node.has_swing) continue;
+    const Wide<W> zero(0.0f);
+    Vec3W<W> turn{zero, zero, zero};
+    if (node.has_twist) turn += kept_impulse(joint.twist);
+    if (node.has_swing) turn += kept_impulse(joint.swing);
+    if (bundle.moves(node.a)) bundle.bodies[node.a].angular -= bundle.bodies[node.a].inverse * turn;
+    if (bundle.moves(node.b)) bundle.bodies[node.b].angular += bundle.bodies[node.b].inverse * turn;
+  }
+}
+
+template <int W>
 GYRE_INLINE void solve_stops(const Bundle<W>& bundle, const LaneSettings& s, ErrorBounds bounds) {
   if (bundle.plain.stop_count > 0) LaneStops<W>(bundle, s, bounds).solve();
+}
+// What the equations answer is left to the solution that comes next.
+template <int W>
+GYRE_INLINE void solve_stops_alone(const Bundle<W>& bundle, const LaneSettings& s) {
+  if (bundle.plain.stop_count > 0) LaneStops<W>(bundle, s, kNoErrors).solve_alone();
 }
 
 template <int W>
@@ -151,33 +239,22 @@ void place_linkages(const LinkageBundle& plain, const LaneArrays& arrays, const 
   }
 }
 
+// Before what is kept of the last sub-step is given again: after a blow these impulses are not of this one, and the bend of such
+// speeds is none.
 template <int W>
-void warm_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
+void ask_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const Bundle<W> bundle(plain);
   load_velocities(bundle, arrays);
-  // Before the impulses of the last sub-step: after a blow these are not of this one, and the bend of such speeds is none.
   ask_lanes(bundle, s, s.first_errors);
-  for (std::uint32_t n = 0; n < plain.node_count; ++n) {
-    const LaneNode& node = plain.nodes[n];
-    LinkedJoint<W>& joint = bundle.joints[n];
-    // What was kept, along the rows as they are now.
-    if (node.kind == JointKind::hinge) {
-      joint.angular_impulse = dot(joint.angular_impulse, joint.perpendicular_1) * joint.perpendicular_1 +
-                              dot(joint.angular_impulse, joint.perpendicular_2) * joint.perpendicular_2;
-    }
-    Vec3W<W> turn = joint.angular_impulse;
-    if (node.has_twist) turn += kept_impulse(joint.twist);
-    if (node.has_swing) turn += kept_impulse(joint.swing);
-    push_joint(bundle, node, joint, joint.linear_impulse, turn);
-  }
-  store_velocities(bundle, arrays);
 }
 
+// The impulses of equations are found from nothing, those of stops from what they were.
 template <int W>
 void solve_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const Bundle<W> bundle(plain);
   load_velocities(bundle, arrays);
-  solve_rows<W, true>(bundle);
+  push_kept(bundle);
+  solve_rows<W, Asks::first>(bundle);
   solve_stops(bundle, s, s.first_errors);
   ask_lanes(bundle, s, kMostErrors);  // now with velocities that agree with the joints
   store_velocities(bundle, arrays);
@@ -187,26 +264,42 @@ template <int W>
 void solve_bundle_again(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const Bundle<W> bundle(plain);
   load_velocities(bundle, arrays);
-  solve_rows<W, true>(bundle);
+  solve_rows<W, Asks::again>(bundle);
   solve_stops(bundle, s, kMostErrors);
   store_velocities(bundle, arrays);
 }
 
-// After the move: takes away all speed along the rows, and sums the impulses.
 template <int W>
-void relax_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
-  const Bundle<W> bundle(plain);
-  load_velocities(bundle, arrays);
-  solve_rows<W, false>(bundle);
-  solve_stops(bundle, s, kNoErrors);
-  for (std::uint32_t n = 0; n < plain.node_count; ++n) {
-    const LaneNode& node = plain.nodes[n];
+GYRE_INLINE void sum_impulses(const Bundle<W>& bundle) {
+  for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
+    const LaneNode& node = bundle.plain.nodes[n];
     LinkedJoint<W>& joint = bundle.joints[n];
     joint.total_linear += joint.linear_impulse;
     joint.total_angular += joint.angular_impulse;
     if (node.has_twist) sum_stop(joint, joint.twist);
     if (node.has_swing) sum_stop(joint, joint.swing);
   }
+}
+
+// After the move: takes away all speed along the rows, sums the impulses, and asks for what the next part begins with.
+template <int W>
+void relax_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
+  const Bundle<W> bundle(plain);
+  load_velocities(bundle, arrays);
+  solve_rows<W, Asks::relax>(bundle);
+  ask_lanes(bundle, s, s.first_errors);
+  solve_stops_alone(bundle, s);
+  sum_impulses(bundle);
+  store_velocities(bundle, arrays);
+}
+// After the last move.
+template <int W>
+void finish_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
+  const Bundle<W> bundle(plain);
+  load_velocities(bundle, arrays);
+  solve_rows<W, Asks::relax>(bundle);
+  solve_stops(bundle, s, kNoErrors);
+  sum_impulses(bundle);
   store_velocities(bundle, arrays);
 }
 
@@ -218,10 +311,11 @@ constexpr LinkageKernels linkage_kernels() {
           stop_room<W>,
           begin_linkages<W>,
           place_linkages<W>,
-          warm_bundle<W>,
+          ask_bundle<W>,
           solve_bundle<W>,
           solve_bundle_again<W>,
-          relax_bundle<W>};
+          relax_bundle<W>,
+          finish_bundle<W>};
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

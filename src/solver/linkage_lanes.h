@@ -82,8 +82,9 @@ struct LinkageBundle {
   std::byte* joints = nullptr;
   double* values = nullptr;  // one half of the lanes after the other: math/wide_double.h
   double* vector = nullptr;
-  double* room = nullptr;      // of the widest column, for one half
-  std::byte* stops = nullptr;  // what is known of them in this step: as much as stop_room() says
+  double* room = nullptr;       // of the widest column, for one half
+  bool* is_factored = nullptr;  // whether `values` are factors by now
+  std::byte* stops = nullptr;   // what is known of them in this step: as much as stop_room() says
 };
 
 struct LaneArrays {
@@ -113,10 +114,13 @@ struct LinkageKernels {
   std::size_t (*stop_room)(const LinkageBundle& bundle);  // bytes
   void (*begin)(const LinkageBundle& bundle);             // before it is placed for the first time in a step
   void (*place)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
-  void (*warm)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  void (*ask)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
   void (*solve)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
   void (*solve_again)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  // After each move but the last: as finish(), and what is asked as the next part begins. What the equations answer to stops is left
+  // to its first solution.
   void (*relax)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  void (*finish)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
 };
 
 }  // namespace gyre

@@ -24,6 +24,14 @@ struct HalfMatrix {
   GYRE_INLINE void set_x(std::uint32_t row, WideDouble<H> v) const { v.store(vector + row * H); }
 };
 
+// In which halves of the lanes there are some of these: bit 0 and bit 1.
+template <int W>
+GYRE_INLINE std::uint32_t halves_of(std::uint32_t bits) {
+  constexpr int kHalf = kHalfLanes<W>;
+  constexpr std::uint32_t kLow = (1u << kHalf) - 1u;
+  return ((bits & kLow) != 0 ? 1u : 0u) | (bits > kLow ? 2u : 0u);
+}
+
 // With a vector of the bundle's rows, one half after the other.
 template <int H>
 GYRE_INLINE HalfMatrix<H> half_matrix(const LinkageBundle& bundle, int half, double* vector) {

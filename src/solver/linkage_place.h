@@ -222,7 +222,7 @@ void clear_values(const LinkageBundle& plain) {
   for (std::size_t i = 0; i < values; i += kHalfLanes<W>) D(0.0).store(plain.values + i);
 }
 
-// The rows where the bodies are now, and their matrix, factored.
+// The rows where the bodies are now, and their own blocks of the matrix.
 template <int W>
 void place_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const Bundle<W> bundle(plain);
@@ -240,8 +240,17 @@ void place_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const La
   for (std::uint32_t i = 0; i < plain.moving_count; ++i) raise_body(bundle.bodies[i], s);
   if (plain.has_fill) clear_values<W>(plain);
   for (std::uint32_t n = 0; n < plain.node_count; ++n) make_own_block(bundle, plain.nodes[n], s.give);
+  *plain.is_factored = false;
+}
+
+// The rest of the matrix, and its factors: once something is to be solved with it. Of linkages that fall freely nothing is.
+template <int W>
+GYRE_INLINE void factor_bundle(const Bundle<W>& bundle) {
+  const LinkageBundle& plain = bundle.plain;
+  if (*plain.is_factored) return;
   for (std::uint32_t i = 0; i < plain.coupling_count; ++i) put_coupling(bundle, plain.couplings[i]);
   factor_lanes<W>(plain);
+  *plain.is_factored = true;
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

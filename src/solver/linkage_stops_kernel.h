@@ -129,15 +129,17 @@ class LaneStops {
     for (int round = 0; round < kLaneRounds; ++round) {
       const Mask<W> live = look(round == 0);
       if (none(live)) return;
-      for (std::uint32_t a = 0; a < count(); ++a) {
-        LinkedStop<W>& stop = stops_[a];
-        stop.in = to_bits((stop.low_on | stop.high_on) & live);
-        if (stop.in != 0 && !stop.has_turns) find_turns(stop);
-      }
-      find_ways();
-      find_impulses(live);
-      push();
+      find(live);
+      push(true);
     }
+  }
+  // Once, and the equations do not answer.
+  GYRE_INLINE void solve_alone() {
+    for (std::uint32_t a = 0; a < count(); ++a) ask(stops_[a]);
+    const Mask<W> live = look(true);
+    if (none(live)) return;
+    find(live);
+    push(false);
   }
 
  private:
@@ -156,6 +158,15 @@ class LaneStops {
     return Wide<W>(0.0f) - rate * max(gap, Wide<W>(-bounds_.turn));
   }
 
+  GYRE_INLINE void find(Mask<W> live) {
+    for (std::uint32_t a = 0; a < count(); ++a) {
+      LinkedStop<W>& stop = stops_[a];
+      stop.in = to_bits((stop.low_on | stop.high_on) & live);
+      if (stop.in != 0 && !stop.has_turns) find_turns(stop);
+    }
+    find_ways();
+    find_impulses(live);
+  }
   // Finds the stops that are passed or bear an impulse; returns the lanes in which there is something to do.
   GYRE_INLINE Mask<W> look(bool first) {
     Mask<W> live = Mask<W>::splat(false);
@@ -246,17 +257,11 @@ class LaneStops {
     b_.set_row(vector, node.row + 4, dot(turn_a - turn_b, joint.perpendicular_2));
   }
 
-  // In which halves of the lanes there are some of these: bit 0 and bit 1.
-  GYRE_INLINE static std::uint32_t halves_of(std::uint32_t bits) {
-    constexpr int kHalf = kHalfLanes<W>;
-    constexpr std::uint32_t kLow = (1u << kHalf) - 1u;
-    return ((bits & kLow) != 0 ? 1u : 0u) | (bits > kLow ? 2u : 0u);
-  }
-
   void find_response(std::uint32_t index, std::uint32_t halves) {
     LinkedStop<W>& stop = stops_[index];
     halves &= ~stop.known;
     if (halves == 0) return;
+    factor_bundle(b_);
     if (!stop.has_turns) find_turns(stop);
     ReachedColumns reached = reached_of(index);
     double* const part = part_of(index);
@@ -293,7 +298,7 @@ class LaneStops {
   }
   // The way at one stop under an impulse at another.
   void find_way(std::uint32_t a, std::uint32_t b, std::uint32_t lanes) {
-    const std::uint32_t halves = halves_of(lanes);
+    const std::uint32_t halves = halves_of<W>(lanes);
     find_response(a, halves);
     find_response(b, halves);
     const LaneNode &pushed = *stops_[a].node, &node = *stops_[b].node;
@@ -416,11 +421,15 @@ class LaneStops {
     }
   }
   void sweep_many(std::uint32_t slots, Mask<W> live) const {
+    // Of the slot that comes next also in a register: each step waits for it.
+    Wide<W> excess = slots_[0].excess;
     for (int sweep = 0; sweep < kLaneSweeps && any(live); ++sweep) {
       Wide<W> most(0.0f);
       for (std::uint32_t i = 0; i < slots; ++i) {
         const Wide<W>* const ways = slot_ways_ + i * row_length();
-        const Wide<W> by = step_of(slots_[i], slots_[i].excess, ways[i], live, most);
+        const Wide<W> by = step_of(slots_[i], excess, ways[i], live, most);
+        const std::uint32_t next = i + 1 < slots ? i + 1 : 0;
+        excess = slots_[next].excess + by * ways[next];
         for (std::uint32_t e = 0; e < slots; ++e) slots_[e].excess += by * ways[e];
       }
       live = live & (most > kLaneSettled);
@@ -447,8 +456,8 @@ class LaneStops {
     }
   }
 
-  // Applies them, and what the equations answer to all of them.
-  void push() {
+  // Applies them, and if asked for what the equations answer to all of them.
+  void push(bool answered) {
     for (std::uint32_t i = 0; i < b_.plain.moving_count; ++i) turns_[i] = nothing();
     Mask<W> pushed = Mask<W>::splat(false);
     for (std::uint32_t a = 0; a < count(); ++a) {
@@ -465,19 +474,21 @@ class LaneStops {
       if (b_.moves(node.b)) turns_[node.b] += x * stop.turn_b;
     }
     if (none(pushed)) return;
+    for (std::uint32_t i = 0; i < b_.plain.moving_count; ++i) b_.bodies[i].angular += keep(pushed, turns_[i]);
+    if (!answered) return;
+    factor_bundle(b_);
     for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) {
       const LaneNode& node = b_.plain.nodes[n];
       set_missing(b_.plain.vector, n, b_.moves(node.a) ? turns_[node.a] : nothing(),
                   b_.moves(node.b) ? turns_[node.b] : nothing());
     }
-    solve_lanes<W>(b_.plain, halves_of(to_bits(pushed)));
-    for (std::uint32_t i = 0; i < b_.plain.moving_count; ++i) b_.bodies[i].angular += keep(pushed, turns_[i]);
+    solve_lanes<W>(b_.plain, halves_of<W>(to_bits(pushed)));
     for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) answer(n, pushed);
   }
   GYRE_INLINE void answer(std::uint32_t n, Mask<W> pushed) const {
     const LaneNode& node = b_.plain.nodes[n];
     LinkedJoint<W>& joint = b_.joints[n];
-    const Vec3W<W> p = keep(pushed, Vec3W<W>{b_.row(node.row), b_.row(node.row + 1), b_.row(node.row + 2)});
+    const Vec3W<W> p = keep(pushed, b_.rows3(node.row));
     Vec3W<W> t = nothing();
     if (node.kind == JointKind::hinge) {
       t = keep(pushed,
