@@ -74,12 +74,14 @@ class MeshCollider {
     push_out();
     if (is_corner_missing()) look_for_corners();
     if (groups_.empty() && rim_separation_ < kUnbounded) add_over_face(triangle(rim_triangle_), on_rim_);
+    add_by_valleys();
     return groups_.finish(position_, out);
   }
 
  private:
   void look_at_candidates();
   void look_at(const NearTriangle& t, PlacedConvex::Extent along_normal);
+  void wait(const Waiting& found, const NearTriangle& t);
   void settle_waiting();
   void settle_deep_patches();
   bool runs_through(const NearTriangle& t) const;
@@ -107,6 +109,8 @@ class MeshCollider {
   bool stand(Vec3 normal, float separation);
   void add_face(const NearTriangle& t, float deepest = -kUnbounded);
   void add_over_face(const NearTriangle& t, Vec3 on_core);
+  void note_valley(const NearTriangle& t);
+  void add_by_valleys();
   bool add_deep_corners(const NearTriangle& t);
   void add_feature(const NearTriangle& t, const FeatureAxis& axis);
   bool lie_at_sharp_edge(const NearTriangle& t, Vec3 direction) const;
@@ -140,6 +144,10 @@ class MeshCollider {
   // Of the triangles that the shape certainly overlaps, the one through whose front it leaves first; those with the
   // shape's middle before them first of all.
   Waiting exit_{0, 0, -__builtin_huge_valf(), 0.0f, true, false};
+  // Triangles beyond valleys that the shape may reach; of more the last, which are the deepest.
+  static constexpr int kValleyRoom = 8;
+  int valley_count_ = 0;
+  std::uint32_t valleys_[kValleyRoom];
   // The nearest triangle over which a point of a curved shape lies, although none of its facing polygon's does.
   float rim_separation_ = kUnbounded;
   std::uint32_t rim_triangle_ = 0;
@@ -199,7 +207,7 @@ bool MeshCollider::stand(Vec3 normal, float separation) {
 void MeshCollider::add_face(const NearTriangle& t, float deepest) {
   points_.count = 0;
   for (int i = 0; i < 3; ++i) {
-    if (convex_.lies_outside(t.outward[i], t.v[i], t.slack)) return;
+    if (convex_.lies_outside(t.outward[i], t.v[i], t.slack)) return note_valley(t);
   }
   know_side(t.normal);
   know_face();
@@ -367,7 +375,11 @@ void MeshCollider::look_at(const NearTriangle& t, PlacedConvex::Extent along_nor
     if (stand(t.normal, face)) add_deep_corners(t);
     return;
   }
-  if (!behind && is_round_beside(surface_, t, convex_, face)) return;
+  if (!behind && is_round_beside(surface_, t, convex_, face)) {
+    if (comes_by_valleys(t, convex_, max_separation_))
+      wait({t.id, waiting_count_, face, face, behind, false}, t);
+    return;
+  }
   AxisSearch axes = search_axes(surface_, t, convex_, face, max_separation_, scratch_);
   if (axes.best <= 0.0f && is_blade_) {
     const AxisSearch nearest = search_nearest(surface_, t, convex_, face, max_separation_, scratch_);
@@ -378,11 +390,7 @@ void MeshCollider::look_at(const NearTriangle& t, PlacedConvex::Extent along_nor
   const Waiting found{t.id, waiting_count_, face, axes.best, behind, axes.best <= 0.0f};
   note_overlap(found);
   const float allowed = max(face, axes.feature.separation);
-  if (behind || allowed < axes.best - kAxisBias * convex_.size()) {
-    if (waiting_count_ < kPlacedRoom) placed_[waiting_count_] = t;
-    waiting_[waiting_count_++] = found;
-    return;
-  }
+  if (behind || allowed < axes.best - kAxisBias * convex_.size()) return wait(found, t);
   if (face >= axes.feature.separation - bias_) {
     add_face(t);
     if (points_.count == 0 && axes.over_face && face < rim_separation_) {
@@ -400,6 +408,28 @@ void MeshCollider::look_at(const NearTriangle& t, PlacedConvex::Extent along_nor
   }
   stand(axes.feature.direction, axes.feature.separation);
   add_feature(t, axes.feature);
+}
+
+void MeshCollider::note_valley(const NearTriangle& t) {
+  if (comes_by_valleys(t, convex_, max_separation_)) valleys_[valley_count_++ % kValleyRoom] = t.id;
+}
+
+// What rolls comes from one slope onto the next within a step, and would sink into it before it lies over it. After all others, and never
+// nearer than they are: such points are no nearest ones.
+void MeshCollider::add_by_valleys() {
+  const float nearest = groups_.deepest();
+  for (int i = 0; i < min(valley_count_, kValleyRoom); ++i) {
+    const NearTriangle t = triangle(valleys_[i]);
+    points_.count = 0;
+    points_by_valleys(t, convex_, max_separation_, points_);
+    points_.drop_below(nearest);
+    groups_.add(t.normal, t.id, points_);
+  }
+}
+
+void MeshCollider::wait(const Waiting& found, const NearTriangle& t) {
+  if (waiting_count_ < kPlacedRoom) placed_[waiting_count_] = t;
+  waiting_[waiting_count_++] = found;
 }
 
 void MeshCollider::settle(const Waiting& waiting) {

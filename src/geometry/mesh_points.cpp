@@ -172,6 +172,44 @@ void face_points(const NearTriangle& t, const PlacedConvex& convex, const PlaneS
 
 namespace {
 
+// The way goes both down to the plane and along it to the triangle.
+bool comes_by_valleys(const NearTriangle& t, Vec3 p, float separation, float reach) {
+  if (separation < 0.0f || separation > reach) return false;
+  const float farthest = square(reach) - square(separation);
+  bool beside = false;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 from_start = p - t.v[i];
+    const float beyond = dot(t.outward[i], from_start);
+    if (beyond <= t.slack) continue;
+    const float along = dot(t.along[i], from_start), past = along - clamp(along, 0.0f, t.length[i]);
+    if (t.edge[i] != EdgeKind::concave || square(beyond) + square(past) > farthest) return false;
+    beside = true;
+  }
+  return beside;
+}
+
+}  // namespace
+
+void points_by_valleys(const NearTriangle& t, const PlacedConvex& convex, float max_separation,
+                       MeshPoints& out) {
+  if (convex.vertex_count() > 2) return;
+  const Emitter emit{t.normal, t.v[0], convex.radius(), max_separation, out};
+  for (int k = 0; k < convex.vertex_count(); ++k) {
+    const Vec3 p = convex.vertex(k);
+    const float separation = dot(t.normal, p - t.v[0]) - convex.radius();
+    if (comes_by_valleys(t, p, separation, max_separation))
+      emit.pair(p, separation, point_name(PointKind::shape_corner, normal_name(t.normal), std::uint32_t(k)));
+  }
+}
+
+bool comes_by_valleys(const NearTriangle& t, const PlacedConvex& convex, float reach) {
+  MeshPoints found;
+  points_by_valleys(t, convex, reach, found);
+  return found.count > 0;
+}
+
+namespace {
+
 // One edge of the triangle, and what of the shape faces it.
 struct EdgeContact {
   const NearTriangle& t;

@@ -7,10 +7,6 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// As in solver/linkage.cpp.
-constexpr float kLaneLeastTurn = 1.0e-4f;  // rad
-constexpr float kLaneCalmTurn = 0.15f;
-
 // -------------------------------------------------------------------------------------------------- what is asked for
 
 template <int W>
@@ -45,7 +41,7 @@ GYRE_INLINE Vec3W<W> hinge_bend(const LinkedJoint<W>& joint, const LinkedBody<W>
 template <int W>
 GYRE_INLINE Wide<W> bend_share(Wide<W> turns, float most_turn) {
   // Of those that hardly turn nothing is asked; of those that turn far, less.
-  constexpr float kLeast = kLaneLeastTurn * kLaneLeastTurn;
+  constexpr float kLeast = kLeastBendTurn * kLeastBendTurn;
   const float most = most_turn * most_turn;
   const Wide<W> share = keep(turns > kLeast, Wide<W>(1.0f));
   return select(turns > most, most / turns, share);
@@ -54,7 +50,7 @@ GYRE_INLINE Wide<W> bend_share(Wide<W> turns, float most_turn) {
 // How fast errors are taken back: what bend that was not asked for opened, at once.
 template <int W>
 GYRE_INLINE Wide<W> take_back(Wide<W> turns, float rate, float per_substep) {
-  constexpr float kCalm = kLaneCalmTurn * kLaneCalmTurn;
+  constexpr float kCalm = kCalmTurn * kCalmTurn;
   const Mask<W> fast = turns > kCalm;
   const Wide<W> back(-rate);
   if (none(fast)) return back;
