@@ -63,8 +63,9 @@ GYRE_INLINE void prepare_rows(ContactBlock<W>& block, const Wide<W> (&point_exis
     }
   }
 }
+// In one place: it is as long as all the rest that asks for it.
 template <int W>
-GYRE_INLINE void prepare_normals(ContactBlock<W>& block, const Wide<W> (&point_exists)[kMaxManifoldPoints]) {
+__attribute__((noinline)) void prepare_normals(ContactBlock<W>& block, const Wide<W> (&point_exists)[kMaxManifoldPoints]) {
   switch (block.point_count) {
     case 0:
       break;
