@@ -72,9 +72,9 @@ GYRE_INLINE void ask_bend(const LaneNode& node, LinkedJoint<W>& joint, const Lin
       select(bends, joint.turn_wanted_2 - dot(turn, joint.perpendicular_2), joint.turn_wanted_2);
 }
 
-// That the end of the sub-step, not its beginning, meets the joints.
+// That the end of the sub-step, not its beginning, meets the joints. (In one place, as stops are: all that solves asks.)
 template <int W>
-GYRE_INLINE void ask_lanes(const Bundle<W>& bundle, const LaneSettings& s, ErrorBounds bounds) {
+__attribute__((noinline)) void ask_lanes(const Bundle<W>& bundle, const LaneSettings& s, ErrorBounds bounds) {
   const float h = s.substep, per_substep = 1.0f / s.substep;
   for (std::uint32_t i = 0; i < bundle.plain.body_count; ++i) {
     LinkedBody<W>& body = bundle.bodies[i];
@@ -199,7 +199,7 @@ GYRE_INLINE void push_kept(const Bundle<W>& bundle) {
 }
 
 template <int W>
-GYRE_INLINE void solve_stops(const Bundle<W>& bundle, const LaneSettings& s, ErrorBounds bounds) {
+__attribute__((noinline)) void solve_stops(const Bundle<W>& bundle, const LaneSettings& s, ErrorBounds bounds) {
   if (bundle.plain.stop_count > 0) LaneStops<W>(bundle, s, bounds).solve();
 }
 // What the equations answer is left to the solution that comes next.

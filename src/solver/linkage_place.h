@@ -243,14 +243,18 @@ void place_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const La
   *plain.is_factored = false;
 }
 
-// The rest of the matrix, and its factors: once something is to be solved with it. Of linkages that fall freely nothing is.
+// The rest of the matrix, and its factors: in one place, for it is long and asked for from many.
 template <int W>
-GYRE_INLINE void factor_bundle(const Bundle<W>& bundle) {
+__attribute__((noinline)) void make_factors(const Bundle<W>& bundle) {
   const LinkageBundle& plain = bundle.plain;
-  if (*plain.is_factored) return;
   for (std::uint32_t i = 0; i < plain.coupling_count; ++i) put_coupling(bundle, plain.couplings[i]);
   factor_lanes<W>(plain);
   *plain.is_factored = true;
+}
+// Once something is to be solved with them. Of linkages that fall freely nothing is.
+template <int W>
+GYRE_INLINE void factor_bundle(const Bundle<W>& bundle) {
+  if (!*bundle.plain.is_factored) make_factors<W>(bundle);
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE
