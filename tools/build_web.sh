@@ -28,6 +28,7 @@ install_node_packages() {
 for part in "${parts[@]}"; do
   case $part in
     simd | threads | plain)
+      install_node_packages
       build "web-$part" gyre_web
       node $package/tools/pack.mjs "$part" "build/web-$part/web" $package/dist/engine
       ;;
