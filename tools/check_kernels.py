@@ -11,7 +11,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-KERNEL = re.compile(r"_kernels_(avx2|avx512)\.cpp\.(o|obj)$")
+KERNEL = re.compile(r"_kernels_(avx2|avx512|avx512vl)\.cpp\.(o|obj)$")
 
 
 def main():

@@ -18,7 +18,7 @@ int most_lanes();
 
 // Lanes with which kernels run fastest, at most most_lanes(). 16 only where registers of 512 bits are as wide within: on AMD's from family
 // 1Ah on (Zen 5), where they were measured to pay. Elsewhere what they save in instructions is lost again on the way
-// (docs/performance.md).
+// (docs/performance.md): there eight lanes have kernels that use the 32 registers.
 int best_lanes();
 
 // What somebody asked for, 0 being the best, as far as the processor has it.

@@ -102,7 +102,7 @@ TEST(BallKernel, LanesHaveTheBitsOfJointsAlone) {
   EXPECT_NE(std::memcmp(alone.motion.data(), untouched.motion.data(), sizeof(BodyMotion)), 0);
   EXPECT_EQ(std::memcmp(&alone.motion[4], &untouched.motion[4], sizeof(BodyMotion)), 0)
       << "nothing pushes it";
-  for (const int width : {1, 4, 8, 16}) {
+  for (const int width : {0, 1, 4, 8, 16}) {
     Pairs pairs;
     solve_side_by_side(pairs, width);
     const std::size_t bytes = pairs.motion.size() * sizeof(BodyMotion);

@@ -334,7 +334,7 @@ TEST(LinkageKernel, EveryWidthHasTheSameBits) {
     const Between turned{.turn = 0.4f};  // some lanes keep what others find anew
     Crowd reference(tension);
     solve_side_by_side(reference, shape, 1, turned);
-    for (const int width : {4, 8, 16}) {
+    for (const int width : {0, 4, 8, 16}) {
       Crowd crowd(tension);
       solve_side_by_side(crowd, shape, width, turned);
       const std::size_t motions = crowd.motion.size() * sizeof(BodyMotion);
@@ -405,7 +405,7 @@ TEST(LinkageKernel, WhatMissesNothingButRoundingIsLeftAsItIs) {
   };
   Crowd before(0.05f);
   calm_every_other(before);
-  for (const int width : {1, 4, 8, 16}) {
+  for (const int width : {0, 1, 4, 8, 16}) {
     Crowd after(0.05f);
     calm_every_other(after);
     solve_side_by_side(after, shape, width);

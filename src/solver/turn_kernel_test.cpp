@@ -141,7 +141,7 @@ TEST(TurnKernel, TurnsManyBodiesAsEachAlone) {
     for (int i = 0; i <= round % kMostTurns; ++i) bodies.push_back(make_spinner(random));
     std::vector<Spinner> plain = bodies;
     for (Spinner& body : plain) turn_plainly(body, seconds);
-    for (const int width : {1, 4, 8, 16}) {
+    for (const int width : {0, 1, 4, 8, 16}) {
       std::vector<Spinner> turned = bodies;
       FreeTurn turns[kMostTurns];
       for (std::size_t i = 0; i < turned.size(); ++i)
@@ -160,7 +160,7 @@ TEST(TurnKernel, TurnsByVectorsAsEachAlone) {
       const Spinner body = make_spinner(random);
       turns.push_back({body.orientation, 0.1f * body.motion.angular_velocity});
     }
-    for (const int width : {1, 4, 8, 16}) {
+    for (const int width : {0, 1, 4, 8, 16}) {
       std::vector<SteadyTurn> turned = turns;
       select_contact_kernels(width).turns.turn_steadily(turned.data(), count);
       for (std::size_t i = 0; i < turns.size(); ++i)
