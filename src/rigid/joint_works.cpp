@@ -2,19 +2,6 @@
 
 namespace gyre {
 
-namespace {
-
-DVec3 joint_place(const BodyStore& bodies, std::int32_t body, DVec3 world_anchor) {
-  return body == kNoBody ? world_anchor : bodies.places[std::size_t(body)].center;
-}
-
-}  // namespace
-
-Vec3 joint_offset(const RigidWorld& w, const JointRecord& joint) {
-  return difference(joint_place(w.bodies, joint.body_b, joint.world_anchor_b),
-                    joint_place(w.bodies, joint.body_a, joint.world_anchor_a));
-}
-
 JointPlaces joint_places(const RigidWorld& w, std::uint32_t slot) {
   const JointRecord& joint = w.joints.records[slot];
   const JointDetail* const detail = detail_of(w.joints, slot);

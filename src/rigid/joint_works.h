@@ -28,8 +28,15 @@ struct JointWorks {
 
 // Where the ends of the joint stand as the step begins.
 JointPlaces joint_places(const RigidWorld& w, std::uint32_t slot);
+// Where a body's end of a joint hangs: its centre of mass, or a point of the world.
+inline const DVec3& joint_place(const BodyStore& bodies, std::int32_t body, const DVec3& world_anchor) {
+  return body == kNoBody ? world_anchor : bodies.places[std::size_t(body)].center;
+}
 // JointPlaces::offset alone.
-Vec3 joint_offset(const RigidWorld& w, const JointRecord& joint);
+inline Vec3 joint_offset(const RigidWorld& w, const JointRecord& joint) {
+  return difference(joint_place(w.bodies, joint.body_b, joint.world_anchor_b),
+                    joint_place(w.bodies, joint.body_a, joint.world_anchor_a));
+}
 // Of one joint, `i` in the batch's list.
 void begin_joint(RigidWorld& w, const SolveBatch& batch, std::size_t i, float warm_scale,
                  const JointWorks& works, Arena& arena);

@@ -10,15 +10,19 @@ namespace {
 
 constexpr std::size_t kTwist = offsetof(LaneJoint, twist) / sizeof(float);
 constexpr std::size_t kSwing = offsetof(LaneJoint, swing) / sizeof(float);
-// Floats of a lane that balls have, and those of an axis that go in.
-constexpr std::size_t kBallFloats = offsetof(LaneJoint, local_frame_a) / sizeof(float);
-constexpr std::size_t kAxisFloats = offsetof(LaneAxis, low_gap) / sizeof(float);
-// Those that come out: the impulses, of an axis them and how far it is to the low stop.
+// Floats of a lane that come out, and those of an axis.
 constexpr std::size_t kImpulses = offsetof(LaneJoint, linear_impulse) / sizeof(float);
+constexpr std::size_t kAngularImpulse = offsetof(LaneJoint, angular_impulse) / sizeof(float);
+constexpr std::size_t kTotalLinear = offsetof(LaneJoint, total_linear) / sizeof(float);
+constexpr std::size_t kTotalAngular = offsetof(LaneJoint, total_angular) / sizeof(float);
+constexpr std::size_t kPosition = offsetof(LaneJoint, position) / sizeof(float);
 constexpr std::size_t kError = offsetof(LaneJoint, error) / sizeof(float);
 constexpr std::size_t kAngularError = offsetof(LaneJoint, angular_error) / sizeof(float);
-constexpr std::size_t kVectorFloats = sizeof(Vec3) / sizeof(float);
 constexpr std::size_t kAxisImpulses = offsetof(LaneAxis, low_impulse) / sizeof(float);
+constexpr std::size_t kHighImpulse = offsetof(LaneAxis, high_impulse) / sizeof(float);
+constexpr std::size_t kAxisTotal = offsetof(LaneAxis, total) / sizeof(float);
+constexpr std::size_t kLowGap = offsetof(LaneAxis, low_gap) / sizeof(float);
+constexpr std::size_t kHighGap = offsetof(LaneAxis, high_gap) / sizeof(float);
 
 // A joint's lane of a bundle, and ranges of its floats.
 class Lane {
@@ -28,11 +32,9 @@ class Lane {
         width_(std::size_t(bundle.kernels->width)) {}
   float* at(std::size_t number) const { return first_ + number * width_; }
   std::size_t width() const { return width_; }
-  void read(void* to, std::size_t begin, std::size_t count) const {
-    for (std::size_t i = 0; i < count; ++i)
-      std::memcpy(static_cast<std::byte*>(to) + i * sizeof(float), first_ + (begin + i) * width_,
-                  sizeof(float));
-  }
+  // Each float by itself: what is written to memory in pieces and read from there as one waits for the pieces.
+  float number(std::size_t begin) const { return first_[begin * width_]; }
+  Vec3 vector(std::size_t begin) const { return {number(begin), number(begin + 1), number(begin + 2)}; }
 
  private:
   float* first_;
@@ -72,17 +74,13 @@ void begin_stop(const Lane& lane, std::size_t at, const Limits& limits, float lo
   LaneWriter(lane, at) << limits.low << limits.high << (is_new ? 0.0f : start.warm_scale * low_impulse)
                        << (is_new ? 0.0f : start.warm_scale * high_impulse) << 0.0f;
 }
-LaneAxis finish_stop(const Lane& lane, std::size_t at) {
-  LaneAxis to;
-  lane.read(&to.low_impulse, at + kAxisImpulses, kAxisFloats + 1 - kAxisImpulses);
-  return to;
+void finish_stop(const Lane& lane, std::size_t at, float& low_impulse, float& high_impulse) {
+  low_impulse = lane.number(at + kAxisImpulses);
+  high_impulse = lane.number(at + kHighImpulse);
 }
-LaneAxis finish_stop(const Lane& lane, std::size_t at, JointAxisRecord& axis) {
-  const LaneAxis to = finish_stop(lane, at);
-  axis.low_impulse = to.low_impulse;
-  axis.high_impulse = to.high_impulse;
-  axis.total = to.total;
-  return to;
+void finish_stop(const Lane& lane, std::size_t at, JointAxisRecord& axis) {
+  finish_stop(lane, at, axis.low_impulse, axis.high_impulse);
+  axis.total = lane.number(at + kAxisTotal);
 }
 
 }  // namespace
@@ -170,21 +168,10 @@ float find_lane_error(const LinkageBundle& bundle, int lane) {
   for (std::uint32_t n = 0; n < bundle.node_count; ++n) {
     const LaneNode& node = bundle.nodes[n];
     const Lane from(bundle, lane, n);
-    LaneJoint joint;
-    from.read(&joint.error, kError, kVectorFloats);
-    add(joint.error);
-    if (node.kind == JointKind::hinge) {
-      from.read(&joint.angular_error, kAngularError, kVectorFloats);
-      add(joint.angular_error);
-    }
-    if (node.has_twist) {
-      from.read(&joint.twist.low_gap, kTwist + kAxisFloats, 2);
-      most = max(most, max(-joint.twist.low_gap, -joint.twist.high_gap));
-    }
-    if (node.has_swing) {
-      from.read(&joint.swing.high_gap, kSwing + kAxisFloats + 1, 1);
-      most = max(most, -joint.swing.high_gap);
-    }
+    add(from.vector(kError));
+    if (node.kind == JointKind::hinge) add(from.vector(kAngularError));
+    if (node.has_twist) most = max(most, max(-from.number(kTwist + kLowGap), -from.number(kTwist + kHighGap)));
+    if (node.has_swing) most = max(most, -from.number(kSwing + kHighGap));
   }
   return most;
 }
@@ -193,33 +180,29 @@ void finish_lane(const LinkageBundle& bundle, int lane, std::uint32_t node, Join
                  JointDetail* detail) {
   const Lane from(bundle, lane, node);
   const LaneNode& shape = bundle.nodes[node];
-  LaneJoint to;
-  from.read(&to.linear_impulse, kImpulses, kBallFloats - kImpulses);
-  joint.linear_impulse = to.linear_impulse;
-  joint.angular_impulse = to.angular_impulse;
-  joint.total_linear = to.total_linear;
-  joint.total_angular = to.total_angular;
+  joint.linear_impulse = from.vector(kImpulses);
+  joint.angular_impulse = from.vector(kAngularImpulse);
+  joint.total_linear = from.vector(kTotalLinear);
+  joint.total_angular = from.vector(kTotalAngular);
   if (joint.kind == JointKind::ball) return;
-  from.read(&to.position, offsetof(LaneJoint, position) / sizeof(float), 1);
-  joint.position = to.position;
+  joint.position = from.number(kPosition);
   if (joint.kind == JointKind::hinge) {
     if (!shape.has_twist) return;
-    const LaneAxis twist = finish_stop(from, kTwist);
-    joint.low_impulse = twist.low_impulse;
-    joint.high_impulse = twist.high_impulse;
+    finish_stop(from, kTwist, joint.low_impulse, joint.high_impulse);
     if (detail == nullptr) return;
     JointAxisRecord& axis = detail->axes[int(JointAxis::angular_x)];
     axis = axis_of_record(joint, detail, JointAxis::angular_x);
-    axis.total = twist.total;
+    axis.total = from.number(kTwist + kAxisTotal);
     return;
   }
   if (detail == nullptr) return;
   JointAxisRecord &twist = detail->axes[int(JointAxis::angular_x)],
                   &swing = detail->axes[int(JointAxis::angular_y)];
-  twist.position = to.position;
+  twist.position = joint.position;
   if (shape.has_twist) finish_stop(from, kTwist, twist);
   if (!shape.has_swing) return;
-  swing.position = -finish_stop(from, kSwing, swing).low_gap;
+  finish_stop(from, kSwing, swing);
+  swing.position = -from.number(kSwing + kLowGap);
   swing.limits = {};
 }
 
