@@ -86,9 +86,10 @@ class LaneStops {
         s_(settings),
         bounds_(bounds),
         stops_(reinterpret_cast<LinkedStop<W>*>(bundle.plain.stops)),
-        matrix_(reinterpret_cast<Wide<W>*>(stops_ + count())),
-        parts_(reinterpret_cast<double*>(matrix_ + std::size_t(count()) * count())),
-        poses_(reinterpret_cast<QuatW<W>*>(parts_ + 2 * std::size_t(count()) * bundle.plain.row_count * W)),
+        // Before floats, which may be single ones.
+        parts_(reinterpret_cast<double*>(stops_ + count())),
+        matrix_(reinterpret_cast<Wide<W>*>(parts_ + 2 * std::size_t(count()) * bundle.plain.row_count * W)),
+        poses_(reinterpret_cast<QuatW<W>*>(matrix_ + std::size_t(count()) * count())),
         turns_(reinterpret_cast<Vec3W<W>*>(poses_ + bundle.plain.node_count)),
         laid_(reinterpret_cast<LaidWays<W>*>(turns_ + bundle.plain.moving_count)),
         slots_(reinterpret_cast<StopSlot<W>*>(laid_ + 1)),
@@ -503,8 +504,8 @@ class LaneStops {
   const LaneSettings& s_;
   ErrorBounds bounds_;
   LinkedStop<W>* stops_;
+  double* parts_;  // y and D^-1 y, by stop
   Wide<W>* matrix_;
-  double* parts_;    // y and D^-1 y, by stop
   QuatW<W>* poses_;  // of b seen from a, by joint: since when ways are kept
   Vec3W<W>* turns_;
   LaidWays<W>* laid_;
