@@ -35,6 +35,33 @@ TEST(Bullet, NeverPassesAThinDynamicWallWhenContinuous) {
   }
 }
 
+// One ball of a dumb-bell is struck: the other, which touches nothing, is pushed farther than the box that it was given to move in.
+TEST(Struck, FliesThroughNoWall) {
+  for (const float speed : {50.0f, 300.0f, 1000.0f}) {
+    for (int k = 0; k < 20; ++k) {
+      World world = make_world({.gravity = {0, 0, 0}, .sleeping = false});
+      const double wall = 0.8 + double(speed) / 60.0 * double(k) / 50.0;
+      world.add_body({.type = BodyType::fixed, .pose = {.position = {wall, 0, 0}}},
+                     {.geometry = Box{{0.005f, 2, 2}}});
+      const BodyId back = world.add_body({.mass = 0.1f}, {.geometry = Sphere{0.05f}});
+      const BodyId front =
+          world.add_body({.pose = {.position = {0.5, 0, 0}}, .mass = 0.1f}, {.geometry = Sphere{0.05f}});
+      world.add_joint({.kind = JointKind::fixed, .a = back, .b = front, .anchor = {0.25, 0, 0}});
+      run(world, 0.1);
+      world.add_body({.pose = {.position = {-0.2, 0, 0}},
+                      .linear_velocity = {speed, 0, 0},
+                      .continuous = true,
+                      .mass = 1},
+                     {.geometry = Sphere{0.05f}});
+      for (int i = 0; i < 3; ++i) {
+        world.step(kStep);
+        EXPECT_LT(world.pose(front).position.x, wall) << speed << " m/s, " << k << ", step " << i;
+      }
+      EXPECT_GT(world.pose(front).position.x, 0.6);
+    }
+  }
+}
+
 TEST(Blade, StrikesAPostAtAnySpin) {
   for (const float rate : {10.0f, 40.0f, 160.0f, 600.0f}) {
     for (int phase = 0; phase < 8; ++phase) {

@@ -113,6 +113,45 @@ TEST(Invariance, OfTheDirection) {
   }
 }
 
+// What hangs together by joints, lies on the ground and touches nothing else changes nothing of what is beside it: stacks at
+// rest and arms on the ground are solved as they are alone.
+std::vector<DVec3> stack_and_arms(int arms) {
+  World world = make_world({.sleeping = false});
+  add_ground(world);
+  std::vector<BodyId> watched;
+  for (int i = 0; i < 8; ++i) {
+    const double aside = i % 2 == 0 ? 0.0 : 0.15;
+    watched.push_back(world.add_body({.pose = {.position = {aside, 0.5 + i, 0}}},
+                                     {.geometry = Box{{0.5f, 0.5f, 0.5f}}, .density = i == 7 ? 1e5f : 1e3f}));
+  }
+  for (int arm = 0; arm < arms; ++arm) {
+    BodyId last{};
+    for (int i = 0; i < 4; ++i) {
+      const double x = 5.0 + 3.0 * arm + 0.4 * i;
+      const BodyId limb =
+          world.add_body({.pose = {.position = {x, 0.3 + 0.05 * i, 4}}, .linear_velocity = {0, -1, 0.5f}},
+                         {.geometry = Box{{0.18f, 0.05f, 0.04f}}});
+      if (i > 0)
+        world.add_joint(
+            {.kind = JointKind::ball, .a = last, .b = limb, .anchor = {x - 0.2, 0.3 + 0.05 * i, 4}});
+      if (arm == 0) watched.push_back(limb);
+      last = limb;
+    }
+  }
+  run(world, 2.0);
+  std::vector<DVec3> places;
+  for (const BodyId body : watched) places.push_back(world.pose(body).position);
+  return places;
+}
+TEST(Invariance, OfWhatHangsTogetherBeside) {
+  const std::vector<DVec3> stack = stack_and_arms(0), arm = stack_and_arms(1);
+  for (const int arms : {1, 2, 4}) {
+    const std::vector<DVec3> beside = stack_and_arms(arms);
+    for (std::size_t i = 0; i < beside.size(); ++i)
+      EXPECT_EQ(beside[i], i < stack.size() ? stack[i] : arm[i]) << arms << " arms, body " << i;
+  }
+}
+
 // Boxes that tumble, roll and hang on a joint at any size: their inertia's determinant once left a float's range, and they were
 // frozen as no longer finite.
 TEST(Tumbling, StaysFiniteAtEverySize) {
