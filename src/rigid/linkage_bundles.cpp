@@ -60,13 +60,17 @@ BundleSolve lay_out_bundles(const Linkages& linkages, const ContactKernels& kern
   for (const LaneLinkage& linkage : linkages.alike) sorted[ends[linkage.shape]++] = &linkage;
   result.bundles = arena.make<Bundled>(count);
   const LinkageKernels& wide = kernels.linkages;
+  const LinkageKernels& narrow = narrower_kernels(kernels).linkages;
   const LinkageKernels& single = select_contact_kernels(1).linkages;
+  const auto kernels_of = [&](std::size_t lanes) -> const LinkageKernels& {
+    return lanes == 1 ? single : lanes <= std::size_t(narrow.width) ? narrow : wide;
+  };
   std::size_t used = 0, first = 0;
   for (std::size_t shape = 0; shape < linkages.shapes.size(); ++shape) {
     while (first < ends[shape]) {
       const std::size_t lanes =
           lanes_of(ends[shape] - first, linkages.shapes[shape], std::size_t(wide.width));
-      result.bundles[used++] = {make_bundle(linkages.shapes[shape], lanes > 1 ? wide : single, arena),
+      result.bundles[used++] = {make_bundle(linkages.shapes[shape], kernels_of(lanes), arena),
                                 sorted.subspan(first, lanes)};
       first += lanes;
     }

@@ -2,6 +2,7 @@
 
 #include "geometry/support.h"
 #include "rigid/solve_batches.h"
+#include "task/parallel.h"
 
 namespace gyre {
 
@@ -9,6 +10,7 @@ namespace {
 
 // A contact whose bodies turn against each other by less than this in a step (rad) stays where it is.
 constexpr float kLeastTurn = 1.0e-4f;
+constexpr int kContactsPerBlock = 32;
 // Half a sub-step's turn (rad) beyond which the change of the axis is not followed to the full.
 constexpr float kLargestTurn = 0.2f;
 // How far a contact may run round its rim in a step (rad) to be taken along once.
@@ -232,7 +234,7 @@ bool may_roll(const RigidWorld& w, const Contact& contact, const ContactConstrai
 }
 
 RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch, std::size_t bodies,
-                                      float seconds, Arena& arena) {
+                                      float seconds, Arena& arena, TaskSystem& tasks) {
   const std::span<const ContactConstraint> constraints = scratch.constraints;
   const auto contact_of = [&](std::uint32_t i) -> const Contact& {
     return w.contacts.contacts[scratch.constraint_contact[i]];
@@ -247,24 +249,33 @@ RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch
   if (count == 0) return all;
   const Bearers bearers(constraints, scratch.pairs, bodies, arena);
   const std::span<RollingSides> sides = arena.make<RollingSides>(count);
+  for_blocks(tasks, int(count), kContactsPerBlock, [&](int begin, int end, int) {
+    for (std::size_t k = std::size_t(begin); k < std::size_t(end); ++k) {
+      const std::uint32_t i = candidates[k];
+      const bool chosen =
+          choose_body(w, contact_of(i), constraints[i], scratch.pairs[i], bearers, seconds, sides[k]);
+      sides[k].constraint = chosen ? i : kNotRolling;
+    }
+  });
   std::uint32_t found = 0;
-  for (const std::uint32_t i : candidates.first(count)) {
-    sides[found].constraint = i;
-    found += choose_body(w, contact_of(i), constraints[i], scratch.pairs[i], bearers, seconds, sides[found]);
-  }
+  for (const RollingSides& each : sides)
+    if (each.constraint != kNotRolling) sides[found++] = each;
   if (found == 0) return all;
   all.contacts = arena.make<RollingContact>(found);
   all.of_constraint = arena.make<std::uint32_t>(constraints.size());
   for (std::uint32_t& place : all.of_constraint) place = kNotRolling;
   for (std::uint32_t n = 0; n < found; ++n) {
-    RollingContact& rolling = all.contacts[n] = {};
-    static_cast<RollingSides&>(rolling) = sides[n];
-    describe(w, contact_of(rolling.constraint), *constraints[rolling.constraint].manifold, rolling);
-    for (const std::int32_t body : {rolling.body, rolling.other}) {
-      if (body != kNoBody) w.bodies.flags[std::size_t(body)].touched = 2;
-    }
-    all.of_constraint[rolling.constraint] = n;
+    for (const std::int32_t body : {sides[n].body, sides[n].other})
+      if (body != kNoBody) w.bodies.flags[std::size_t(body)].touched = kPlaceShown;
+    all.of_constraint[sides[n].constraint] = n;
   }
+  for_blocks(tasks, int(found), kContactsPerBlock, [&](int begin, int end, int) {
+    for (std::size_t n = std::size_t(begin); n < std::size_t(end); ++n) {
+      RollingContact& rolling = all.contacts[n] = {};
+      static_cast<RollingSides&>(rolling) = sides[n];
+      describe(w, contact_of(rolling.constraint), *constraints[rolling.constraint].manifold, rolling);
+    }
+  });
   return all;
 }
 

@@ -78,7 +78,7 @@ bool may_roll(const RigidWorld& w, const Contact& contact, const ContactConstrai
 // Those among the constraints of the batch, which has so many bodies, that may roll and whose bodies turn against each other. Marks
 // these bodies as ones whose place others look at.
 RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch, std::size_t bodies,
-                                      float seconds, Arena& arena);
+                                      float seconds, Arena& arena, TaskSystem& tasks);
 
 // Into its arms: where the contact is in a sub-step that begins now, with its middle in `ahead` seconds.
 void follow_contact(const RigidWorld& w, RollingContact& rolling, float ahead);

@@ -5,6 +5,8 @@
 #include "task/choose.h"
 #include "task/parallel.h"
 
+#include <algorithm>
+
 namespace gyre {
 
 namespace {
@@ -152,27 +154,57 @@ std::span<const std::uint32_t> weigh_islands(const RigidWorld& w, const Constrai
 constexpr std::uint32_t kLanes = 8;
 
 // Gives each island its batch, written for all its bodies to `batch_of`. Returns the weights of the batches.
-std::span<const std::uint32_t> part_islands(const RigidWorld& w, const Islands& islands,
-                                            std::span<const std::uint32_t> weights, std::uint32_t most,
-                                            Arena& arena, std::span<std::uint32_t> batch_of) {
+std::span<std::uint32_t> part_islands(const RigidWorld& w, const Islands& islands,
+                                      std::span<const std::uint32_t> weights, std::uint32_t most,
+                                      Arena& arena, std::span<std::uint32_t> batch_of) {
   const std::span<std::uint32_t> filled = arena.make<std::uint32_t>(w.bodies.awake.size());
-  // `alike`: how many islands, the last of the batch, weigh `last` each.
-  std::uint32_t batch = 0, alike = 0, last = 0;
-  filled[0] = 0;
+  // `open`: the batch that others may join; `alike`: how many islands, the last of it, weigh `last` each.
+  std::uint32_t count = 0, open = kNone, alike = 0, last = 0;
+  const auto begin_batch = [&] {
+    filled[count] = 0;
+    return count++;
+  };
+  const auto choose_batch = [&](std::uint32_t weight) {
+    if (weight > most) return begin_batch();
+    const bool lanes_are_full = weight == last && alike > 0 && alike % kLanes == 0;
+    if (open == kNone || filled[open] + (lanes_are_full ? kLanes : 1) * weight > most) {
+      open = begin_batch();
+      alike = 0;
+    }
+    alike = weight == last ? alike + 1 : 1;
+    last = weight;
+    return open;
+  };
   for (const std::uint32_t body : w.bodies.awake) {
     const std::uint32_t root = islands.root(body);
     if (root == body) {
-      const std::uint32_t weight = weights[body];
-      const bool lanes_are_full = weight == last && alike > 0 && alike % kLanes == 0;
-      if (filled[batch] > 0 && filled[batch] + (lanes_are_full ? kLanes : 1) * weight > most)
-        filled[++batch] = alike = 0;
-      filled[batch] += weight;
-      alike = weight == last ? alike + 1 : 1;
-      last = weight;
+      batch_of[body] = choose_batch(weights[body]);
+      filled[batch_of[body]] += weights[body];
+    } else {
+      batch_of[body] = batch_of[root];
     }
-    batch_of[body] = root == body ? batch : batch_of[root];
   }
-  return filled.first(batch + 1);
+  return filled.first(count);
+}
+
+// Where few batches are beside islands that have more than `most`, the largest of these takes them in. Returns the weights again.
+std::span<std::uint32_t> join_few(const RigidWorld& w, std::span<std::uint32_t> weights, std::uint32_t most,
+                                  std::uint32_t fewest, Arena& arena, std::span<std::uint32_t> batch_of) {
+  const auto is_small = [most](std::uint32_t weight) { return weight <= most; };
+  const auto few = std::uint32_t(std::count_if(weights.begin(), weights.end(), is_small));
+  if (few == 0 || few >= fewest || few == weights.size()) return weights;
+  const auto host = std::uint32_t(std::max_element(weights.begin(), weights.end()) - weights.begin());
+  const std::span<std::uint32_t> joined = arena.make<std::uint32_t>(weights.size());
+  std::uint32_t kept = 0;
+  for (std::size_t batch = 0; batch < weights.size(); ++batch)
+    if (!is_small(weights[batch])) joined[batch] = kept++;
+  for (std::size_t batch = 0; batch < weights.size(); ++batch)
+    if (is_small(weights[batch])) joined[batch] = joined[host];
+  for (const std::uint32_t body : w.bodies.awake) batch_of[body] = joined[batch_of[body]];
+  // The others come first in their order: what is written here was read before.
+  for (std::size_t batch = 0; batch < weights.size(); ++batch)
+    if (!is_small(weights[batch])) weights[joined[batch]] = weights[batch];
+  return weights.first(kept);
 }
 
 }  // namespace
@@ -207,8 +239,11 @@ SolveBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, 
   const ArenaScope scope(arena);
   const std::span<std::uint32_t> batch_of = arena.make<std::uint32_t>(places.size());
   const Islands islands(w, constraints, places);
-  const std::span<const std::uint32_t> weights = part_islands(
-      w, islands, weigh_islands(w, constraints, islands, places.size(), arena), most, arena, batch_of);
+  const std::span<const std::uint32_t> weights =
+      join_few(w,
+               part_islands(w, islands, weigh_islands(w, constraints, islands, places.size(), arena), most,
+                            arena, batch_of),
+               most, size.fewest, arena, batch_of);
   const std::size_t count = weights.size();
   if (count == 1) return all_in_one(batches.first(1));
   for (const std::uint32_t body : awake) bodies.count(batch_of[body]);

@@ -13,18 +13,20 @@
 namespace gyre {
 
 // How much is in a batch. An island that has more than `most` is a batch of its own, and so is what is more than a share of all
-// where `shares` says in how many it is to be parted at least.
+// where `shares` says in how many it is to be parted at least. Where there are fewer than `fewest` others beside such an island, they
+// go along with it: what is alike fills the same lanes, and no worker waits for another's batch.
 struct BatchSize {
   std::uint32_t most = 0;  // manifolds and joints, and a quarter of one for each body
   std::uint32_t shares = 1;
+  std::uint32_t fewest = 0;
 };
 
 // Alone a worker is as fast with twice as much, but a batch's memory stays. Workers that solve batches side by side come out even
 // if there are some for each; those that meet after each colour of one need more of it to do in between.
 constexpr BatchSize batch_size(int workers, bool side_by_side) {
-  if (workers == 1) return {512, 1};
-  return side_by_side ? BatchSize{1024, 4u * std::uint32_t(workers)}
-                      : BatchSize{2048u * std::uint32_t(workers), 1};
+  if (workers == 1) return {512, 1, 2};
+  const std::uint32_t count = std::uint32_t(workers);
+  return side_by_side ? BatchSize{1024, 4 * count, count} : BatchSize{2048 * count, 1, 2};
 }
 
 struct SolveBatch {

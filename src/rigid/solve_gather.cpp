@@ -265,36 +265,38 @@ std::uint8_t way_to_turn(const Solve& solve, std::uint32_t body) {
 }
 
 // Lists the bodies that constraints act on, and the others.
-void part_bodies(Solve& solve, Arena& arena) {
+void part_bodies(Solve& solve, Arena& arena, TaskSystem& tasks) {
   const RigidWorld& w = solve.w;
   const std::span<const std::uint32_t> bodies = solve.batch.bodies;
   solve.moved = arena.make<MovedBody>(bodies.size());
   solve.flying = arena.make<std::uint32_t>(bodies.size());
   const ArenaScope scope(arena);
   // Where a body belongs: those in contact first, each by the way in which it turns.
-  constexpr std::uint8_t kNotMoved = 2 * kWaysToTurn, kApart = kWaysToTurn;
+  constexpr std::uint8_t kApart = kWaysToTurn, kFlies = 2 * kWaysToTurn, kStays = kFlies + 1;
   const std::span<std::uint8_t> kinds = arena.make<std::uint8_t>(bodies.size());
   for (std::uint8_t& kind : kinds) kind = kApart;
   for (const ColoringPair& pair : solve.scratch.pairs) {
     if (pair.a != ColoringPair::kNone) kinds[pair.a] = 0;
     if (pair.b != ColoringPair::kNone) kinds[pair.b] = 0;
   }
-  std::size_t starts[kNotMoved + 2] = {}, flying = 0;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const std::uint32_t body = bodies[i];
-    if (w.bodies.flags[body].touched != kUntouched) {
-      kinds[i] = std::uint8_t(kinds[i] + way_to_turn(solve, body));
-    } else {
-      kinds[i] = kNotMoved;
-      if (!solve.is_smooth || !is_movable(w.bodies.flags[body])) solve.flying[flying++] = body;
+  for_blocks(tasks, int(bodies.size()), kBodiesPerBlock, [&](int begin, int end, int) {
+    for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
+      const BodyFlags& flags = w.bodies.flags[bodies[i]];
+      kinds[i] = flags.touched != kUntouched ? std::uint8_t(kinds[i] + way_to_turn(solve, bodies[i]))
+                 : !solve.is_smooth || !is_movable(flags) ? kFlies
+                                                          : kStays;
     }
-    ++starts[kinds[i] + 1];
-  }
-  for (std::size_t kind = 0; kind <= kNotMoved; ++kind) starts[kind + 1] += starts[kind];
-  const std::size_t moved = starts[kNotMoved];
+  });
+  std::size_t starts[kStays + 2] = {};
+  for (const std::uint8_t kind : kinds) ++starts[kind + 1];
+  for (std::size_t kind = 0; kind <= kStays; ++kind) starts[kind + 1] += starts[kind];
+  const std::size_t moved = starts[kFlies], flying = starts[kStays] - moved;
   solve.moved_in_contact = starts[kApart];
-  for (std::size_t i = 0; i < bodies.size(); ++i)
-    if (kinds[i] != kNotMoved) solve.moved[starts[kinds[i]]++].body = std::int32_t(bodies[i]);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const std::size_t place = starts[kinds[i]]++;
+    if (kinds[i] < kFlies) solve.moved[place].body = std::int32_t(bodies[i]);
+    if (kinds[i] == kFlies) solve.flying[place - moved] = bodies[i];
+  }
   solve.moved = solve.moved.first(moved);
   solve.flying = solve.flying.first(flying);
 }
@@ -303,7 +305,7 @@ void part_bodies(Solve& solve, Arena& arena) {
 
 void gather_motion(Solve& solve, Arena& arena, TaskSystem& tasks) {
   RigidWorld& w = solve.w;
-  part_bodies(solve, arena);
+  part_bodies(solve, arena, tasks);
   const std::size_t moved = solve.moved.size();
   solve.pushes = arena.make<Vec3>(moved);
   solve.spinners = arena.make<std::uint32_t>(moved);

@@ -61,15 +61,6 @@ void find_resting(Solve& solve, Arena& arena) {
   solve.forest = find_contact_trees(solve.w, constraints, pairs, solve.batch, islands, arena);
   solve.structures = find_contact_structures(solve.w, pairs, solve.batch, islands, arena);
 }
-// Colours of contacts and joints, and the order of the former by them.
-std::span<Group> color_all(Solve& solve, std::span<Group> room) {
-  BatchScratch& scratch = solve.scratch;
-  const std::uint32_t bodies = std::uint32_t(solve.batch.bodies.size());
-  color_constraints(scratch.pairs, scratch.constraint_contact, bodies, {}, kColoringOptions,
-                    scratch.contact_colors);
-  color_constraints(scratch.joint_pairs, {}, bodies, {}, kColoringOptions, scratch.joint_colors);
-  return lay_out_contacts(solve, room);
-}
 void place_resting(Solve& solve, Arena& arena) {
   if (solve.forest.nodes.empty() && solve.structures.empty()) return;
   const BatchScratch& scratch = solve.scratch;
@@ -91,8 +82,7 @@ std::span<const std::uint8_t> begun_in_lanes(const Solve& solve) {
 
 // Joints, and which of them are solved directly. Most of those in linkages, and of a net that is known to be swept, need no work
 // but a lane.
-void begin_joints(Solve& solve, float warm_scale, Arena& arena, TaskSystem& tasks) {
-  look_at_joints(solve, arena, tasks);
+void begin_joints(Solve& solve, float warm_scale, Arena& arena) {
   DenseNets& nets = solve.scratch.dense_nets;
   solve.is_net = !solve.net_joints.empty() && nets.holds(solve.net_joints);
   solve.lane_start.warm_scale = warm_scale;
@@ -104,14 +94,40 @@ void begin_joints(Solve& solve, float warm_scale, Arena& arena, TaskSystem& task
   solve.joint_places = works.places;
 }
 
+void color(const Solve& solve, std::span<const ColoringPair> pairs, std::span<const std::uint32_t> names,
+           Coloring& colors) {
+  color_constraints(pairs, names, std::uint32_t(solve.batch.bodies.size()), {}, kColoringOptions, colors);
+}
+
+// How the constraints will be solved: directly or swept, in which colours, and in which lanes. Joints and islands at rest are looked at
+// beside the contacts.
+std::span<Group> arrange(Solve& solve, float warm_scale, Arena& arena, TaskSystem& tasks) {
+  BatchScratch& scratch = solve.scratch;
+  const std::span<Group> room = arena.make<Group>(kMostGroups);
+  std::span<Group> contacts;
+  side_by_side(
+      tasks,
+      [&] {
+        begin_joints(solve, warm_scale, arena);
+        gather_joints(solve);
+        color(solve, scratch.joint_pairs, {}, scratch.joint_colors);
+        find_resting(solve, arena);
+      },
+      [&] {
+        color(solve, scratch.pairs, scratch.constraint_contact, scratch.contact_colors);
+        contacts = lay_out_contacts(solve, room);
+      });
+  return contacts;
+}
+
 void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale) {
   const ArenaScope scope(arena);
   BatchScratch& scratch = solve.scratch;
   gather_contacts(solve, arena, tasks);
-  begin_joints(solve, warm_scale, arena, tasks);
-  gather_joints(solve);
-  solve.rolling =
-      find_rolling_contacts(solve.w, scratch, solve.batch.bodies.size(), solve.contact_settings.step, arena);
+  look_at_joints(solve, arena, tasks);
+  solve.rolling = find_rolling_contacts(solve.w, scratch, solve.batch.bodies.size(),
+                                        solve.contact_settings.step, arena, tasks);
+  const std::span<Group> contacts = arrange(solve, warm_scale, arena, tasks);
   if (solve.is_smooth)
     solve.smooth =
         find_smooth_motion(solve.w, solve.batch, solve.places, solve.motions.count, solve.h, arena);
@@ -129,10 +145,6 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
       lay_out_bundles(solve.linkages, solve.kernels, {bodies.motion, bodies.inertia, bodies.orientation},
                       {solve.h, solve.joint_settings.softness.bias_rate, kLinkageGive, raise_inertia}, arena);
   gather_motion(solve, arena, tasks);
-  const std::span<Group> room = arena.make<Group>(kMostGroups);
-  std::span<Group> contacts;
-  side_by_side(
-      tasks, [&] { find_resting(solve, arena); }, [&] { contacts = color_all(solve, room); });
   make_contact_blocks(solve, contacts, arena);
   place_resting(solve, arena);
   const std::span<Group> joints = lay_out_joints(solve, arena);

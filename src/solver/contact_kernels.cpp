@@ -27,4 +27,12 @@ const ContactKernels& select_contact_kernels(int width) {
   return kContactKernels_w1;
 }
 
+const ContactKernels& narrower_kernels(const ContactKernels& kernels) {
+#if defined(__x86_64__)
+  // Sixteen lanes are two registers of doubles, eight are one. (Four with the instructions of all are two again.)
+  if (&kernels == &kContactKernels_avx512) return kContactKernels_avx512vl;
+#endif
+  return kernels;
+}
+
 }  // namespace gyre
