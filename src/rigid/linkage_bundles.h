@@ -1,5 +1,5 @@
-// Lays linkages that hang together alike side by side (solver/linkage_lanes.h): the kernels' W to a bundle, those that are left
-// over one by one.
+// Lays linkages that hang together alike side by side (solver/linkage_lanes.h): the kernels' W to a bundle, what is left over
+// in kernels of fewer lanes.
 //
 // In: the linkages of a batch (rigid/linkages.h). Out: bundles in the step's arena; as the step ends, impulses in the joints.
 #pragma once

@@ -8,9 +8,10 @@ namespace gyre {
 
 namespace {
 
+constexpr int kContactsPerBlock = 32;
+
 // A contact whose bodies turn against each other by less than this in a step (rad) stays where it is.
 constexpr float kLeastTurn = 1.0e-4f;
-constexpr int kContactsPerBlock = 32;
 // Half a sub-step's turn (rad) beyond which the change of the axis is not followed to the full.
 constexpr float kLargestTurn = 0.2f;
 // How far a contact may run round its rim in a step (rad) to be taken along once.

@@ -153,7 +153,8 @@ std::span<const std::uint32_t> weigh_islands(const RigidWorld& w, const Constrai
 // batch ends where lanes are full, if they would not be again. Such a batch is more than half of what it may be.
 constexpr std::uint32_t kLanes = 8;
 
-// Gives each island its batch, written for all its bodies to `batch_of`. Returns the weights of the batches.
+// Gives each island its batch, written for all its bodies to `batch_of`: small ones fill one after the other, those that have more than
+// `most` are alone in theirs. Returns the weights of the batches.
 std::span<std::uint32_t> part_islands(const RigidWorld& w, const Islands& islands,
                                       std::span<const std::uint32_t> weights, std::uint32_t most,
                                       Arena& arena, std::span<std::uint32_t> batch_of) {
@@ -187,24 +188,27 @@ std::span<std::uint32_t> part_islands(const RigidWorld& w, const Islands& island
   return filled.first(count);
 }
 
-// Where few batches are beside islands that have more than `most`, the largest of these takes them in. Returns the weights again.
+// Where few batches are beside islands that have more than `most`, the largest of these takes them in. Returns the weights of those that
+// are left.
 std::span<std::uint32_t> join_few(const RigidWorld& w, std::span<std::uint32_t> weights, std::uint32_t most,
                                   std::uint32_t fewest, Arena& arena, std::span<std::uint32_t> batch_of) {
   const auto is_small = [most](std::uint32_t weight) { return weight <= most; };
-  const auto few = std::uint32_t(std::count_if(weights.begin(), weights.end(), is_small));
-  if (few == 0 || few >= fewest || few == weights.size()) return weights;
-  const auto host = std::uint32_t(std::max_element(weights.begin(), weights.end()) - weights.begin());
-  const std::span<std::uint32_t> joined = arena.make<std::uint32_t>(weights.size());
-  std::uint32_t kept = 0;
-  for (std::size_t batch = 0; batch < weights.size(); ++batch)
-    if (!is_small(weights[batch])) joined[batch] = kept++;
-  for (std::size_t batch = 0; batch < weights.size(); ++batch)
-    if (is_small(weights[batch])) joined[batch] = joined[host];
-  for (const std::uint32_t body : w.bodies.awake) batch_of[body] = joined[batch_of[body]];
-  // The others come first in their order: what is written here was read before.
-  for (std::size_t batch = 0; batch < weights.size(); ++batch)
-    if (!is_small(weights[batch])) weights[joined[batch]] = weights[batch];
-  return weights.first(kept);
+  const auto small = std::size_t(std::count_if(weights.begin(), weights.end(), is_small));
+  if (small == 0 || small >= fewest || small == weights.size()) return weights;
+  const auto host = std::max_element(weights.begin(), weights.end()) - weights.begin();
+  const std::span<std::uint32_t> numbers = arena.make<std::uint32_t>(weights.size());
+  std::uint32_t left = 0;
+  for (std::size_t batch = 0; batch < weights.size(); ++batch) {
+    numbers[batch] = kNone;
+    if (is_small(weights[batch])) continue;
+    numbers[batch] = left;
+    weights[left++] = weights[batch];
+  }
+  for (const std::uint32_t body : w.bodies.awake) {
+    const std::uint32_t number = numbers[batch_of[body]];
+    batch_of[body] = number != kNone ? number : numbers[std::size_t(host)];
+  }
+  return weights.first(left);
 }
 
 }  // namespace
@@ -231,7 +235,7 @@ SolveBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, 
     return SolveBatches{batches, places};
   };
   if (all_weights <= most) return all_in_one(arena.make<SolveBatch>(awake.empty() ? 0 : 1));
-  // A batch is more than half of what it may be, or more than all of it with the next one.
+  // An island alone is more than a batch may be, and of the others a batch and the next one together are.
   const std::size_t most_batches = 2 * all_weights / most + 1;
   Lists bodies(arena, most_batches, awake.size()), contacts(arena, most_batches, constraints.contacts.size()),
       joints(arena, most_batches, constraints.joints.size());
@@ -239,11 +243,10 @@ SolveBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, 
   const ArenaScope scope(arena);
   const std::span<std::uint32_t> batch_of = arena.make<std::uint32_t>(places.size());
   const Islands islands(w, constraints, places);
-  const std::span<const std::uint32_t> weights =
-      join_few(w,
-               part_islands(w, islands, weigh_islands(w, constraints, islands, places.size(), arena), most,
-                            arena, batch_of),
-               most, size.fewest, arena, batch_of);
+  const std::span<const std::uint32_t> island_weights =
+      weigh_islands(w, constraints, islands, places.size(), arena);
+  const std::span<std::uint32_t> parts = part_islands(w, islands, island_weights, most, arena, batch_of);
+  const std::span<const std::uint32_t> weights = join_few(w, parts, most, size.fewest, arena, batch_of);
   const std::size_t count = weights.size();
   if (count == 1) return all_in_one(batches.first(1));
   for (const std::uint32_t body : awake) bodies.count(batch_of[body]);

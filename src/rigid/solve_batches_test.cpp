@@ -77,6 +77,13 @@ TEST_F(ChainsInBatches, AreFilledInTheirOrder) {
   for (const bool is_small : found.is_small) EXPECT_TRUE(is_small);
 }
 
+TEST_F(ChainsInBatches, EndWhereLanesAreFull) {
+  for (int i = 0; i < 100; ++i) add_chain(2);  // 6 quarters each
+  const Found found = find({.most = 64, .shares = 1, .fewest = 2});
+  // Forty-two of them would be 252 of 256, and the last two alone in their lanes.
+  for (std::uint32_t chain = 0; chain < 100; ++chain) EXPECT_EQ(found.batch_of_chain[chain], chain / 40);
+}
+
 TEST_F(ChainsInBatches, FewGoAlongWithTheLargest) {
   add_chain(17);
   add_chain(100);

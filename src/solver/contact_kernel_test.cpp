@@ -1,5 +1,6 @@
 // The contact kernels at the edge of what floats can say.
 #include "base/arena.h"
+#include "base/processor.h"
 #include "solver/contact_block.h"
 
 #include <gtest/gtest.h>
@@ -61,6 +62,19 @@ TEST(ContactKernel, TakesAnyLoadThatAFloatCanHold) {
       ASSERT_LE(change, 0.51f * (1e-3f + 2.0f * load)) << "width " << width << ", load " << load;
     }
   }
+}
+
+// Eight lanes that nobody asked for, on a processor that has sixteen, use its registers; asked for, they are those of any with AVX2.
+TEST(ContactKernel, EightLanesUseTheRegistersOfSixteenWhereNobodyAsksForThem) {
+  const ContactKernels &best = select_contact_kernels(0), &asked = select_contact_kernels(8);
+  if (most_lanes() < 16) {
+    EXPECT_EQ(&best, &select_contact_kernels(best.width));
+    return;
+  }
+  EXPECT_EQ(asked.width, 8);
+  const ContactKernels& eight = best.width == 8 ? best : narrower_kernels(best);
+  EXPECT_EQ(eight.width, 8);
+  EXPECT_NE(&eight, &asked);
 }
 
 // A bone of 0.4 m on fixed ground, which its left end bears and where friction holds it. Then its right end does.

@@ -209,8 +209,7 @@ struct Between {
   enum class Relaxes : std::uint8_t { no, hands_over, finishes } relaxes = Relaxes::no;
 };
 
-void solve_side_by_side(Crowd& crowd, Shape& shape, int width, const Between& between = {}) {
-  const LinkageKernels& kernels = select_contact_kernels(width).linkages;
+void solve_side_by_side(Crowd& crowd, Shape& shape, const LinkageKernels& kernels, const Between& between) {
   const LinkageSolve solve = crowd.solve();
   const LaneArrays arrays{crowd.motion.data(), crowd.inertia.data(), crowd.orientation.data()};
   const LaneSettings settings{kSubstep, kSettings.softness.bias_rate, solve.give, raise_inertia};
@@ -279,6 +278,9 @@ void solve_side_by_side(Crowd& crowd, Shape& shape, int width, const Between& be
     });
   }
 }
+void solve_side_by_side(Crowd& crowd, Shape& shape, int width, const Between& between = {}) {
+  solve_side_by_side(crowd, shape, select_contact_kernels(width).linkages, between);
+}
 
 double apart(Vec3 a, Vec3 b) { return double(length(a - b)); }
 
@@ -334,9 +336,12 @@ TEST(LinkageKernel, EveryWidthHasTheSameBits) {
     const Between turned{.turn = 0.4f};  // some lanes keep what others find anew
     Crowd reference(tension);
     solve_side_by_side(reference, shape, 1, turned);
-    for (const int width : {0, 4, 8, 16}) {
+    const ContactKernels &widest = select_contact_kernels(0), &narrower = narrower_kernels(widest);
+    for (const ContactKernels* kernels : {&widest, &narrower, &select_contact_kernels(4),
+                                          &select_contact_kernels(8), &select_contact_kernels(16)}) {
+      const int width = kernels->width;
       Crowd crowd(tension);
-      solve_side_by_side(crowd, shape, width, turned);
+      solve_side_by_side(crowd, shape, kernels->linkages, turned);
       const std::size_t motions = crowd.motion.size() * sizeof(BodyMotion);
       EXPECT_EQ(std::memcmp(crowd.motion.data(), reference.motion.data(), motions), 0) << "width " << width;
       const auto same = [](const JointRecord& a, const JointRecord& b) {
