@@ -36,7 +36,7 @@ struct BoxWalk {
     std::uint32_t found[kRoom];
   };
   union {
-    std::uint32_t waiting[kMaxLevels * BoxLanes::kWidth];  // nodes
+    std::uint32_t waiting[2 * kMaxLevels * BoxLanes::kWidth];  // nodes, the higher ones first
   };
 
   BoxWalk(const Aabb& of, std::uint32_t root) : box(of) { waiting[0] = root; }

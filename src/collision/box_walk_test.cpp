@@ -18,12 +18,16 @@ struct Tree {
   std::vector<BoxTreeNode> nodes;
   std::vector<Aabb> boxes;
 
-  explicit Tree(Random& random) { nodes.resize(1), fill(0, 3, random); }
+  explicit Tree(Random& random, std::uint32_t least = 1) : least_(least) {
+    nodes.resize(1), fill(0, kLevel, random);
+  }
+
+  static constexpr int kLevel = 3;  // of the root
 
  private:
   // Some of the node's lanes, and all below them; returns the box around these.
   Aabb fill(std::size_t index, int level, Random& random) {
-    const std::uint32_t count = 1 + random.next(BoxLanes::kWidth);
+    const std::uint32_t count = least_ + random.next(BoxLanes::kWidth + 1 - least_);
     nodes[index].level = std::uint8_t(level);
     for (int lane = 0; lane < BoxLanes::kWidth; ++lane) clear_lane_box(nodes[index], lane);
     Aabb around;
@@ -45,14 +49,19 @@ struct Tree {
     }
     return around;
   }
+
+  std::uint32_t least_;  // children of a node
 };
 
 std::vector<std::uint32_t> walk_all(WalkBoxes walk_boxes, const Tree& tree, const Aabb& box) {
+  // Of each level below the root no more than the children of two nodes.
+  constexpr int kMostWaiting = 2 * Tree::kLevel * BoxLanes::kWidth;
   std::vector<std::uint32_t> all;
   BoxWalk walk(box, 0);
   do {
     walk_boxes(tree.nodes.data(), walk);
     EXPECT_LE(walk.found_count, BoxWalk::kRoom);
+    EXPECT_LE(walk.depth, kMostWaiting);
     all.insert(all.end(), walk.found, walk.found + walk.found_count);
   } while (walk.depth > 0);
   std::sort(all.begin(), all.end());
@@ -77,6 +86,18 @@ TEST(BoxWalk, FindsWhatOverlaps) {
     most = std::max(most, expected.size());
   }
   EXPECT_GT(most, std::size_t(BoxWalk::kRoom)) << "no walk went on after its room was full";
+}
+
+TEST(BoxWalk, FindsAllOfFullNodes) {
+  Random random(8);
+  const Tree tree(random, BoxLanes::kWidth);
+  ASSERT_EQ(tree.boxes.size(), std::size_t(8 * 8 * 8 * 8));
+  const Aabb everything = {{-10, -10, -10}, {10, 10, 10}};
+  for (const WalkBoxes walk : {WalkBoxes(walk_boxes<1>), WalkBoxes(walk_boxes<8>), select_box_walk()}) {
+    const std::vector<std::uint32_t> found = walk_all(walk, tree, everything);
+    ASSERT_EQ(found.size(), tree.boxes.size());
+    for (std::uint32_t i = 0; i < found.size(); ++i) ASSERT_EQ(found[i], i);
+  }
 }
 
 }  // namespace
