@@ -4,6 +4,7 @@
 #include "base/check.h"
 
 #include <bit>
+#include <cstring>
 
 namespace gyre {
 namespace {
@@ -126,10 +127,7 @@ std::uint32_t add_contact(ContactStore& store, std::uint64_t key, const PairShap
   contact.surface = shapes.surface;
   store.contacts[slot] = contact;
   if (shapes.against_mesh) clear_kept_triangles(store, contact);
-  // Nothing of a former owner may leak into hashes and snapshots.
-  for (std::uint32_t i = 0; i < contact.manifold_room; ++i)
-    store.manifolds[contact.first_manifold + i] = Manifold{};
-  store.slot_of_pair.insert(key, slot, key_reader(store));
+  store.slot_of_pair.insert(key, slot);
   link(store, slot);
   ++store.live;
   return slot;
@@ -139,9 +137,9 @@ void remove_contact(ContactStore& store, std::uint32_t slot) {
   const Contact contact = store.contacts[slot];
   GYRE_ASSERT(contact.manifold_room != 0, "the contact exists");
   unlink(store, slot);
-  store.slot_of_pair.erase(pair_key(contact.shape_a, contact.shape_b), key_reader(store));
-  for (std::uint32_t i = 0; i < contact.manifold_room; ++i)
-    store.manifolds[contact.first_manifold + i] = Manifold{};
+  store.slot_of_pair.erase(pair_key(contact.shape_a, contact.shape_b), slot);
+  // Of manifolds that are not in use nothing is left to hide from hashes and snapshots.
+  for (Manifold& manifold : manifolds_of(store, contact)) manifold = Manifold{};
   give_manifolds(store, contact.first_manifold, contact.manifold_room);
   store.contacts[slot] = Contact{};
   store.free_contacts.give(slot);
@@ -166,7 +164,7 @@ void rebuild_index(ContactStore& store) {
       store.free_contacts.give(slot);
       continue;
     }
-    store.slot_of_pair.insert(pair_key(contact.shape_a, contact.shape_b), slot, key_reader(store));
+    store.slot_of_pair.insert(pair_key(contact.shape_a, contact.shape_b), slot);
     link(store, slot);
     ++store.live;
     if (contact.manifold_room > 1) clear_kept_triangles(store, contact);
@@ -183,6 +181,11 @@ void rebuild_index(ContactStore& store) {
 
 namespace {
 
+bool is_clear(const Manifold& manifold) {
+  const Manifold clear{};
+  return std::memcmp(&manifold, &clear, sizeof clear) == 0;
+}
+
 const char* find_fault(const ContactStore& store, std::uint32_t slot, Array<std::uint8_t>& used) {
   const Contact& contact = store.contacts[slot];
   if (contact.shape_a >= contact.shape_b) return "a contact's first shape is not the lower one";
@@ -196,6 +199,8 @@ const char* find_fault(const ContactStore& store, std::uint32_t slot, Array<std:
     if ((used[i / kChunk] & bit) != 0) return "two contacts own one manifold";
     used[i / kChunk] = std::uint8_t(used[i / kChunk] | bit);
   }
+  for (std::uint32_t i = contact.first_manifold + contact.manifold_count; i < end; ++i)
+    if (!is_clear(store.manifolds[i])) return "a contact has something in a manifold that it does not use";
   if (find_contact(store, pair_key(contact.shape_a, contact.shape_b)) != slot)
     return "the index does not lead to the contact";
   const std::uint32_t shapes[2] = {contact.shape_a, contact.shape_b};
@@ -234,6 +239,9 @@ const char* find_fault(const ContactStore& store) {
     const bool partial = used[chunk] != 0 && used[chunk] != kWholeChunk;
     if (store.partial_chunks.contains(chunk) != partial)
       return "partial chunks are not those with some in use";
+    for (std::uint32_t i = 0; i < kChunk; ++i)
+      if ((used[chunk] >> i & 1u) == 0 && !is_clear(store.manifolds[chunk * kChunk + i]))
+        return "a manifold of no contact is not clear";
   }
   return nullptr;
 }

@@ -183,6 +183,15 @@ TEST(ContactStore, FaultsAreFound) {
   broken = store;
   broken.live = 7;
   EXPECT_NE(find_fault(broken), nullptr);
+  broken = store;
+  broken.manifolds[broken.contacts[4].first_manifold].age = 1.0f;
+  EXPECT_STREQ(find_fault(broken), "a contact has something in a manifold that it does not use");
+  broken.contacts[4].manifold_count = 1;
+  EXPECT_EQ(find_fault(broken), nullptr);
+  remove_contact(broken, 4);
+  EXPECT_EQ(find_fault(broken), nullptr);
+  broken.manifolds[store.contacts[4].first_manifold].age = 1.0f;
+  EXPECT_STREQ(find_fault(broken), "a manifold of no contact is not clear");
 }
 
 TEST(PairUpdate, AddsInKeyOrderWhatIsNewAndNotBlocked) {
