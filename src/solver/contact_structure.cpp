@@ -19,6 +19,7 @@ constexpr double kTrace = 1.0e-6;
 // The longest step, in Newton's, and how finely it is found.
 constexpr double kLongestStep = 1.0e3;
 constexpr int kCuts = 40;
+static_assert(kCuts % 2 == 0);
 // Contacts begin this stiff sideways, as elastic bodies are (R. Mindlin, 1949: 2 (1 - nu) / (2 - nu) = 0.82 for nu = 0.3), and
 // what is softer than this bears nothing sideways.
 constexpr float kShear = 0.8f;
@@ -59,19 +60,10 @@ struct Rows {
   bool rubs = false;
 };
 
-Rows rows_of(const ContactConstraint& constraint, const StructureWork& work) {
+// Those of friction and twist, as stiff as the contact is sideways now.
+void place_friction(const ContactConstraint& constraint, const StructureWork& work, Rows& rows) {
   const Manifold& manifold = *constraint.manifold;
-  const Vec3 n = manifold.normal;
-  Rows rows;
-  for (int k = 0; k < manifold.count; ++k) {
-    rows.normal[k] =
-        make_row(n, manifold.points[k].from_a, manifold.points[k].from_b, 1.0, work.before.normal[k]);
-  }
-  rows.u = any_perpendicular(n);
-  rows.v = cross(n, rows.u);
-  rows.rubs = constraint.static_friction > 0.0f && work.touching != 0;
-  if (!rows.rubs) return rows;
-  const Vec3 from_b = work.impulse.friction_from_b;
+  const Vec3 n = manifold.normal, from_b = work.impulse.friction_from_b;
   const Vec3 from_a = from_b + (manifold.points[0].from_a - manifold.points[0].from_b);
   const double shear = double(work.shear) * double(std::popcount(work.touching));
   rows.tangent[0] = make_row(rows.u, from_a, from_b, shear, dot(work.before.friction, rows.u));
@@ -81,7 +73,19 @@ Rows rows_of(const ContactConstraint& constraint, const StructureWork& work) {
                 {0, 0, 0, double(n.x), double(n.y), double(n.z)},
                 shear * arm * arm,
                 double(work.before.twist)};
-  return rows;
+}
+
+void place_rows(const ContactConstraint& constraint, const StructureWork& work, Rows& rows) {
+  const Manifold& manifold = *constraint.manifold;
+  const Vec3 n = manifold.normal;
+  for (int k = 0; k < manifold.count; ++k) {
+    rows.normal[k] =
+        make_row(n, manifold.points[k].from_a, manifold.points[k].from_b, 1.0, work.before.normal[k]);
+  }
+  rows.u = any_perpendicular(n);
+  rows.v = cross(n, rows.u);
+  rows.rubs = constraint.static_friction > 0.0f && work.touching != 0;
+  if (rows.rubs) place_friction(constraint, work, rows);
 }
 
 void add_outer(double* block, const double* rows, const double* columns, double factor) {
@@ -181,6 +185,8 @@ class Solver {
     loads_ = arena.make<double>(plan_.rows);
     place_ = arena.make<double>(plan_.rows);
     way_ = arena.make<double>(plan_.rows);
+    rows_ = arena.make<Rows>(s_.contacts.size());
+    presses_ = arena.make<Press>(s_.contacts.size() * kMaxManifoldPoints);
     return true;
   }
 
@@ -242,6 +248,7 @@ class Solver {
       }
       work.pressed = loaded != 0 ? loaded : work.touching;
       work.impulse = work.before;
+      place_rows(constraint(i), work, rows_[i]);
     }
   }
 
@@ -278,7 +285,7 @@ class Solver {
     for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
       const StructureContact& contact = s_.contacts[i];
       const StructureWork& work = s_.work[i];
-      const Rows rows = rows_of(constraint(i), work);
+      const Rows& rows = rows_[i];
       for (int k = 0; k < constraint(i).manifold->count; ++k) {
         if ((work.touching >> k & 1) == 0) continue;
         add_row(contact, rows.normal[k], (work.pressed >> k & 1) != 0 ? 1.0 : kTrace);
@@ -331,7 +338,7 @@ class Solver {
     for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
       const StructureContact& contact = s_.contacts[i];
       const StructureWork& work = s_.work[i];
-      const Rows rows = rows_of(constraint(i), work);
+      const Rows& rows = rows_[i];
       for (int k = 0; k < constraint(i).manifold->count; ++k) {
         if ((work.touching >> k & 1) == 0) continue;
         add_to(way_, contact, rows.normal[k], -max(borne(contact, rows.normal[k]), 0.0));
@@ -346,16 +353,18 @@ class Solver {
   // How far to go along `way_`: to where the energy is least. Its derivative grows, so it is bracketed and cut in parts.
   double find_step() {
     slope_ = curve_ = 0.0;
+    press_count_ = 0;
     for (std::size_t j = 0; j < way_.size(); ++j) slope_ -= loads_[j] * way_[j];
     for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
       const StructureContact& contact = s_.contacts[i];
       StructureWork& work = s_.work[i];
-      const Rows rows = rows_of(constraint(i), work);
+      const Rows& rows = rows_[i];
       for (int k = 0; k < constraint(i).manifold->count; ++k) {
         work.at[k] = work.ahead[k] = 0.0;
         if ((work.touching >> k & 1) == 0) continue;
         work.at[k] = borne(contact, rows.normal[k]);
         work.ahead[k] = along(contact, rows.normal[k], way_);
+        presses_[press_count_++] = {work.at[k], work.ahead[k]};
       }
       if (!rows.rubs) continue;
       for (const Row* row : {&rows.tangent[0], &rows.tangent[1], &rows.twist}) {
@@ -367,19 +376,31 @@ class Solver {
     if (absolute(slope_at(1.0)) <= 1.0e-9 * absolute(slope_at(0.0))) return 1.0;
     double low = 0.0, high = 1.0;
     while (slope_at(high) < 0.0 && high < kLongestStep) low = high, high *= 2.0;
-    for (int cut = 0; cut < kCuts; ++cut) {
+    // Each cut with the one after it, whichever half that is in: a slope is a long sum, and three take as long as one.
+    for (int cut = 0; cut < kCuts; cut += 2) {
       const double middle = 0.5 * (low + high);
-      (slope_at(middle) < 0.0 ? low : high) = middle;
+      const double places[3] = {0.5 * (low + middle), middle, 0.5 * (middle + high)};
+      double slopes[3];
+      find_slopes(places, slopes);
+      const int next = slopes[1] < 0.0 ? 2 : 0;
+      (next == 2 ? low : high) = middle;
+      (slopes[next] < 0.0 ? low : high) = places[next];
     }
     return 0.5 * (low + high);
   }
-  double slope_at(double t) const {
-    double slope = slope_ + t * curve_;
-    for (const StructureWork& work : s_.work) {
-      for (int k = 0; k < kMaxManifoldPoints; ++k)
-        slope += max(work.at[k] + t * work.ahead[k], 0.0) * work.ahead[k];
+  template <std::size_t kCount>
+  void find_slopes(const double (&t)[kCount], double (&slopes)[kCount]) const {
+    for (std::size_t i = 0; i < kCount; ++i) slopes[i] = slope_ + t[i] * curve_;
+    for (const Press& press : presses_.first(press_count_)) {
+      for (std::size_t i = 0; i < kCount; ++i)
+        slopes[i] += max(press.at + t[i] * press.ahead, 0.0) * press.ahead;
     }
-    return slope;
+  }
+  double slope_at(double t) const {
+    const double places[1] = {t};
+    double slopes[1];
+    find_slopes(places, slopes);
+    return slopes[0];
   }
 
   void go(double t) {
@@ -401,7 +422,7 @@ class Solver {
       const StructureContact& contact = s_.contacts[i];
       const ContactConstraint& c = constraint(i);
       StructureWork& work = s_.work[i];
-      const Rows rows = rows_of(c, work);
+      Rows& rows = rows_[i];
       ContactImpulse& impulse = work.impulse;
       impulse.friction = impulse.rolling = {};
       impulse.twist = 0.0f;
@@ -422,6 +443,7 @@ class Solver {
       work.shear = max(work.shear * rest, kLeastShear);
       work.before.friction *= rest;
       work.before.twist *= rest;
+      place_friction(c, work, rows);
     }
   }
 
@@ -446,11 +468,19 @@ class Solver {
   }
   static double length_of(const double* v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
+  // How far a point is pressed, and how that changes along the way.
+  struct Press {
+    double at, ahead;
+  };
+
   ContactStructure& s_;
   const StructureSolve& solve_;
   BlockPlan plan_;
   double slope_ = 0.0, curve_ = 0.0;  // of the energy along the way, without its points
   std::span<double> values_, room_, loads_, place_, way_;
+  std::span<Rows> rows_;      // by contact
+  std::span<Press> presses_;  // of points that may bear
+  std::size_t press_count_ = 0;
 };
 
 // Brings the structure to rest; false if its contacts cannot.
