@@ -33,8 +33,8 @@ Aabb swept_box(const SweptShape& shape) {
   return round_outward({lower(start.low, end.low) - all, upper(start.high, end.high) + all});
 }
 
-// Whether swept_box() is inside a box, for certain: bounds from the shape's start and the farthest that a point of it goes.
-bool stays_inside(const SweptShape& shape, const Aabb& box) {
+// A box around swept_box(), sooner found: bounds from the shape's start and the farthest that a point of it goes.
+Aabb box_around(const SweptShape& shape) {
   const Sweep& sweep = *shape.sweep;
   const Pose start = sweep.pose * shape.body_from_shape;
   const Aabb turned = bounds(*shape.shape, {{}, start.orientation});
@@ -49,8 +49,8 @@ bool stays_inside(const SweptShape& shape, const Aabb& box) {
       (has_disc ? 2.0e-3f * shape.shape->radius : 0.0f);
   const float around = turn + slack;
   const Vec3 all{around, around, around};
-  return contains(box, {position + turned.low + min(sweep.moved, Vec3{}) - all,
-                        position + turned.high + max(sweep.moved, Vec3{}) + all});
+  return {position + turned.low + min(sweep.moved, Vec3{}) - all,
+          position + turned.high + max(sweep.moved, Vec3{}) + all};
 }
 
 // Whether one of the two is a sensor that the other may visit.
@@ -128,14 +128,28 @@ bool may_be_near(const ContinuousInput& input, const FastBody& fast, std::uint32
   return fast.continuous || input.near_stops == nullptr || input.near_stops->test(index);
 }
 
-// Of the contacts of a shape: the others that are wanted. In a box within its fat box there are no more.
+// What a shape may meet inside of a box, in rising order: of that which is wanted. In a box within its fat box it may meet only what
+// it has a contact with: mostly nothing, of what falls.
 template <class Wanted>
-void list_contacts(const ContinuousInput& input, std::uint32_t index, const Wanted& wanted,
-                   Array<std::uint32_t>& found) {
+void list_in_box(const ContinuousInput& input, const FastBody& fast, std::uint32_t index, const Aabb& box,
+                 const Wanted& wanted, Array<std::uint32_t>& found) {
+  found.clear();
+  const Proxy& own = input.proxies[index];
+  if (input.contacts == nullptr || !contains(own.fat_box, box)) {
+    input.broadphase.query(input.proxies, box, found);
+    std::size_t kept = 0;
+    for (const std::uint32_t other : found)
+      if (wanted(own, input.proxies[other])) found[kept++] = other;
+    found.resize_uninitialized(kept);
+    return;
+  }
+  if (!may_be_near(input, fast, index)) return;
   for_each_contact_of_shape(*input.contacts, index, [&](std::uint32_t slot) {
+    // Most are with what is pushed. That is known without looking at them, and they lie anywhere in memory.
+    if (!fast.continuous && input.may_stop != nullptr && !input.may_stop->test(slot)) return;
     const Contact& contact = input.contacts->contacts[slot];
     const std::uint32_t other = contact.shape_a == index ? contact.shape_b : contact.shape_a;
-    if (!wanted(input.proxies[index], input.proxies[other])) return;
+    if (!wanted(own, input.proxies[other])) return;
     std::size_t place = found.size();
     while (place > 0 && found[place - 1] > other) --place;
     found.insert_at(place, other);
@@ -151,17 +165,12 @@ void for_each_in_the_way(const ContinuousInput& input, const Way& way, Array<std
     const ColliderShape& shape = input.shapes[index];
     if (!is_convex(shape.shape.kind)) continue;
     const SweptShape whole = make_swept_shape(shape.shape, shape.body_from_shape, way.sweep);
-    found.clear();
-    // What stays in its fat box may meet only what it has a contact with: mostly nothing, of what falls.
-    const bool stays = input.contacts != nullptr && stays_inside(whole, input.proxies[index].fat_box);
-    if (stays && may_be_near(input, way.fast, index)) list_contacts(input, index, wanted, found);
-    if (stays && found.empty()) continue;
+    list_in_box(input, way.fast, index, box_around(whole), wanted, found);
+    if (found.empty()) continue;
     const Aabb box = swept_box(whole);
-    if (!stays) input.broadphase.query(input.proxies, box, found);
     std::optional<Mover> mover;  // made for the first that is in the way
     for (const std::uint32_t other : found) {
       if (!overlap(box, input.proxies[other].fat_box)) continue;
-      if (!wanted(input.proxies[index], input.proxies[other])) continue;
       const ColliderShape& obstacle = input.shapes[other];
       if (!input.blocked.empty() &&
           input.blocked.contains(pair_key(way.fast.body, input.proxies[other].body)))

@@ -81,7 +81,8 @@ struct ContinuousInput {
   std::span<const GatePair> gates{};
   // Of all pairs that the broad phase knows; null: not kept.
   const ContactStore* contacts = nullptr;
-  // By shape: has one with what is not pushed, or with a sensor; null: not known.
+  // Which of them are with what is not pushed, or with a sensor (TouchChanges::may_stop), and which shapes have one; null: not known.
+  const Bitset* may_stop = nullptr;
   const Bitset* near_stops = nullptr;
 };
 

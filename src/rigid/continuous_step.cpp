@@ -280,6 +280,7 @@ void sweep_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& a
                               w.surface_rules.empty() ? nullptr : &one_way,
                               scratch.gates,
                               &w.contacts,
+                              &w.touches.may_stop,
                               &scratch.near_stops};
   scratch.kept.resize(scratch.fast.size());
   scratch.collision.clamp_fast_bodies(input, scratch.fast, tasks, scratch.kept);
