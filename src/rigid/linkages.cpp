@@ -295,6 +295,7 @@ class LinkageMaker {
     for (std::size_t i = 0; i < shape.nodes.size(); ++i) {
       const BlockColumn& column = plan.columns[plan.place_of[i]];
       shape.nodes[i].row = column.row;
+      shape.nodes[i].column = plan.place_of[i];
       shape.nodes[i].diagonal = column.diagonal;
     }
     shape.couplings = arena_.make<LaneCoupling>(couplings.size());

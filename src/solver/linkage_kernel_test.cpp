@@ -6,6 +6,7 @@
 #include "solver/contact_block.h"
 #include "solver/lane_records.h"
 #include "solver/linkage.h"
+#include "solver/linkage_matrix.h"
 #include "solver/linkage_stops.h"
 
 #include <gtest/gtest.h>
@@ -164,6 +165,7 @@ struct Shape {
       node.b = std::uint32_t(kMembers[i].b);
       node.rows = sizes[i];
       node.row = plan.columns[plan.place_of[i]].row;
+      node.column = plan.place_of[i];
       node.diagonal = plan.columns[plan.place_of[i]].diagonal;
     }
   }
@@ -448,6 +450,57 @@ TEST(LinkageKernel, WhatEquationsAnswerToStopsMayBeLeftToTheNextPart) {
     EXPECT_LT(apart(now, answered.motion[i].linear_velocity), kLeftOver) << "body " << i;
     EXPECT_LT(apart(left.motion[i].angular_velocity, answered.motion[i].angular_velocity), kLeftOver)
         << "body " << i;
+  }
+}
+
+// More columns than a word has bits. Two branches of a tree, every other column each, that meet where the last of them is.
+TEST(LinkageMatrix, WhatEliminationReachesHasABitForEachColumn) {
+  constexpr std::uint32_t kColumns = 151, kMeet = 140;
+  std::vector<BlockColumn> columns(kColumns);
+  std::vector<BlockEntry> entries(kColumns - 1);
+  std::uint32_t rows = 0;
+  for (std::uint32_t i = 0; i < kColumns; ++i) {
+    columns[i].size = i % 3 == 0 ? 5 : 3;
+    columns[i].row = rows;
+    columns[i].begin = i;
+    columns[i].end = i + 1 < kColumns ? i + 1 : i;
+    rows += columns[i].size;
+    if (i + 1 < kColumns) entries[i].place = i + (i < kMeet - 1 ? 2 : 1);
+  }
+  LinkageBundle bundle;
+  bundle.columns = columns.data(), bundle.entries = entries.data();
+  bundle.column_count = kColumns, bundle.row_count = rows;
+  std::vector<std::uint64_t> even(reach_words(kColumns)), odd(reach_words(kColumns));
+  ASSERT_EQ(even.size(), 3u);
+  even[0] = 1u << 20;
+  odd[1] = 1u << 3;  // column 67
+  reach_columns(bundle, even.data());
+  reach_columns(bundle, odd.data());
+  const auto expect = [&](const std::vector<std::uint64_t>& words, std::uint32_t first) {
+    std::vector<const BlockColumn*> found;
+    for_columns(
+        bundle, [&](std::uint32_t i) { return words[i]; },
+        [&](const BlockColumn& c) { found.push_back(&c); });
+    std::vector<const BlockColumn*> expected;
+    for (std::uint32_t i = first; i < kColumns; i += i < kMeet - 1 ? 2 : 1) expected.push_back(&columns[i]);
+    EXPECT_EQ(found, expected);
+  };
+  expect(even, 20);
+  expect(odd, 67);
+  // Their product is over the columns from the meeting on.
+  std::vector<double> a(rows), b(rows);
+  double sum = 0.0;
+  for (std::uint32_t row = 0; row < rows; ++row) {
+    a[row] = 1.0 + row, b[row] = 0.5 * row;
+    if (row >= columns[kMeet].row) sum += a[row] * b[row];
+  }
+  const Wide<1> product = dot_reached<1>(bundle, 1u, even.data(), a.data(), odd.data(), b.data());
+  EXPECT_EQ(product[0], float(sum));
+  clear_reached<1>(bundle, odd.data(), a.data());
+  for (std::uint32_t i = 0; i < kColumns; ++i) {
+    const bool is_reached = (odd[i / 64] >> i % 64 & 1u) != 0;
+    for (std::uint32_t row = columns[i].row; row < columns[i].row + columns[i].size; ++row)
+      EXPECT_EQ(a[row], is_reached ? 0.0 : 1.0 + row);
   }
 }
 

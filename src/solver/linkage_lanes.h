@@ -55,6 +55,7 @@ struct LaneNode {
   bool has_twist = false, has_swing = false;      // stops
   std::uint32_t a = 0, b = 0;                     // entries of the bundle's bodies
   std::uint32_t rows = 0, row = 0, diagonal = 0;  // in the plan
+  std::uint32_t column = 0;                       // there: its place
 };
 struct LaneCoupling {
   std::uint32_t row = 0, column = 0;  // nodes

@@ -300,46 +300,56 @@ void solve_lanes(const LinkageBundle& bundle, std::uint32_t halves = 3u) {
 
 // ---------------------------------------------------------------------------------------------- right sides of few rows
 
-// The columns that elimination reaches from such a right side: their places in order, and a mark for each at its first row.
-struct ReachedColumns {
-  std::uint32_t* places;
-  std::uint8_t* marks;
-  std::uint32_t count;
-};
+// The columns that elimination reaches from such a right side: a bit for each, by its place.
+using ReachedColumns = std::uint64_t*;
+constexpr std::uint32_t reach_words(std::uint32_t columns) { return (columns + 63) / 64; }
 
-// Finds, beside the columns that are marked, those that elimination reaches from them, and clears their rows in x.
-template <int W>
-void reach_lanes(const LinkageBundle& bundle, ReachedColumns& reached, double* x) {
-  constexpr int H = kHalfLanes<W>;
-  reached.count = 0;
+// Calls run(column) for those of the bundle's columns whose bits are set, in their order; word(i) tells the bits from 64 i on.
+template <class Word, class Run>
+GYRE_INLINE void for_columns(const LinkageBundle& bundle, const Word& word, const Run& run) {
+  const std::uint32_t words = reach_words(bundle.column_count);
+  for (std::uint32_t i = 0; i < words; ++i)
+    for (std::uint64_t left = word(i); left != 0; left &= left - 1)
+      run(bundle.columns[64 * i + std::uint32_t(__builtin_ctzll(left))]);
+}
+
+// Marks, beside the columns that are marked, those that elimination reaches from them: all come later.
+inline void reach_columns(const LinkageBundle& bundle, ReachedColumns reached) {
   for (std::uint32_t place = 0; place < bundle.column_count; ++place) {
+    if ((reached[place / 64] >> place % 64 & 1u) == 0) continue;
     const BlockColumn& column = bundle.columns[place];
-    if (reached.marks[column.row] == 0) continue;
-    reached.places[reached.count++] = place;
     for (std::uint32_t i = column.begin; i < column.end; ++i) {
-      const BlockColumn& other = bundle.columns[bundle.entries[i].place];
-      if (reached.marks[other.row] != 0) continue;
-      reached.marks[other.row] = 1;
-      for (int half = 0; half < kHalves<W>; ++half) {
-        const HalfMatrix<H> m = half_matrix<H>(bundle, half, x);
-        for (std::uint32_t r = 0; r < other.size; ++r) m.set_x(other.row + r, WideDouble<H>(0.0));
-      }
+      const std::uint32_t other = bundle.entries[i].place;
+      reached[other / 64] |= std::uint64_t{1} << other % 64;
     }
   }
+}
+
+// Clears their rows in x.
+template <int W>
+void clear_reached(const LinkageBundle& bundle, const ReachedColumns reached, double* x) {
+  constexpr int H = kHalfLanes<W>;
+  const auto own = [&](std::uint32_t i) { return reached[i]; };
+  for_columns(bundle, own, [&](const BlockColumn& column) {
+    for (int half = 0; half < kHalves<W>; ++half) {
+      const HalfMatrix<H> m = half_matrix<H>(bundle, half, x);
+      for (std::uint32_t r = 0; r < column.size; ++r) m.set_x(column.row + r, WideDouble<H>(0.0));
+    }
+  });
 }
 
 // Replaces the right side x, of the columns that are reached, by y of L y = x, and finds D^-1 y. Of the halves of the lanes as
 // solve_lanes().
 template <int W>
-void solve_reached_down(const LinkageBundle& bundle, std::uint32_t halves, const ReachedColumns& reached,
+void solve_reached_down(const LinkageBundle& bundle, std::uint32_t halves, const ReachedColumns reached,
                         double* x, double* scaled) {
   constexpr int H = kHalfLanes<W>;
+  const auto own = [&](std::uint32_t i) { return reached[i]; };
   for (int half = 0; half < kHalves<W>; ++half) {
     if ((halves >> half & 1u) == 0) continue;
     const HalfMatrix<H> m = half_matrix<H>(bundle, half, x);
     double* const out = scaled + std::size_t(half) * bundle.row_count * H;
-    for (std::uint32_t i = 0; i < reached.count; ++i) {
-      const BlockColumn& column = bundle.columns[reached.places[i]];
+    for_columns(bundle, own, [&](const BlockColumn& column) {
       if (column.size == 3) {
         solve_column_down<H, 3>(m, column);
         scale_column<H, 3>(m, column, out);
@@ -347,7 +357,7 @@ void solve_reached_down(const LinkageBundle& bundle, std::uint32_t halves, const
         solve_column_down<H, 5>(m, column);
         scale_column<H, 5>(m, column, out);
       }
-    }
+    });
   }
 }
 
@@ -360,24 +370,23 @@ GYRE_INLINE void add_products(const double* a, const double* b, WideDouble<H>& s
 
 // The product of two vectors over the columns that both reach; zero in the other half.
 template <int W>
-Wide<W> dot_reached(const LinkageBundle& bundle, std::uint32_t halves, const ReachedColumns& reached_a,
-                    const double* a, const ReachedColumns& reached_b, const double* b) {
+Wide<W> dot_reached(const LinkageBundle& bundle, std::uint32_t halves, const ReachedColumns reached_a,
+                    const double* a, const ReachedColumns reached_b, const double* b) {
   using D = WideDouble<kHalfLanes<W>>;
   constexpr int H = kHalfLanes<W>;
+  const auto common = [&](std::uint32_t i) { return reached_a[i] & reached_b[i]; };
   D sums[2] = {D(0.0), D(0.0)};
   for (int half = 0; half < kHalves<W>; ++half) {
     if ((halves >> half & 1u) == 0) continue;
     D sum(0.0);
-    for (std::uint32_t i = 0; i < reached_a.count; ++i) {
-      const BlockColumn& column = bundle.columns[reached_a.places[i]];
-      if (reached_b.marks[column.row] == 0) continue;
+    for_columns(bundle, common, [&](const BlockColumn& column) {
       const std::size_t first = (std::size_t(half) * bundle.row_count + column.row) * H;
       if (column.size == 3) {
         add_products<H, 3>(a + first, b + first, sum);
       } else {
         add_products<H, 5>(a + first, b + first, sum);
       }
-    }
+    });
     sums[half] = sum;
   }
   return join_halves<W>(sums[0], sums[1]);

@@ -36,7 +36,7 @@ struct LinkedStop {
   std::uint32_t in, kept;
   // Of which halves of the lanes (math/wide_double.h) it is known what an impulse makes of the linkage, in this part of the sub-step.
   std::uint32_t known;
-  std::uint32_t reach;      // how many columns that impulse reaches
+  bool has_reach;           // it is known which columns that impulse reaches
   bool has_turns;           // the next are known, in this part of the sub-step
   Vec3W<W> turn_a, turn_b;  // how an impulse of one turns its two bodies
 };
@@ -65,13 +65,20 @@ constexpr std::size_t most_slots(const LinkageBundle& bundle) {
   return bundle.stop_count > kFewSlots / 2 ? 2 * std::size_t(bundle.stop_count) : kFewSlots;
 }
 
+// Of all stops together; what lies behind these words is aligned as vectors are.
+constexpr std::size_t all_reach_words(const LinkageBundle& bundle) {
+  constexpr std::size_t kWords = 64 / sizeof(std::uint64_t);
+  return (bundle.stop_count * reach_words(bundle.column_count) + kWords - 1) / kWords * kWords;
+}
+
 template <int W>
 constexpr std::size_t stop_room(const LinkageBundle& bundle) {
   const std::size_t n = bundle.stop_count, slots = most_slots<W>(bundle);
   if (n == 0) return 0;
   return n * (sizeof(LinkedStop<W>) + n * (sizeof(Wide<W>) + sizeof(std::uint32_t)) +
-              bundle.row_count * (2 * W * sizeof(double) + 1) + bundle.column_count * sizeof(std::uint32_t)) +
-         bundle.node_count * sizeof(QuatW<W>) + bundle.moving_count * sizeof(Vec3W<W>) + sizeof(LaidWays<W>) +
+              bundle.row_count * 2 * W * sizeof(double)) +
+         all_reach_words(bundle) * sizeof(std::uint64_t) + bundle.node_count * sizeof(QuatW<W>) +
+         bundle.moving_count * sizeof(Vec3W<W>) + sizeof(LaidWays<W>) +
          slots * (sizeof(StopSlot<W>) + slots * sizeof(Wide<W>) + 2 * W);
 }
 
@@ -88,17 +95,17 @@ class LaneStops {
         stops_(reinterpret_cast<LinkedStop<W>*>(bundle.plain.stops)),
         // Before floats, which may be single ones.
         parts_(reinterpret_cast<double*>(stops_ + count())),
-        matrix_(reinterpret_cast<Wide<W>*>(parts_ + 2 * std::size_t(count()) * bundle.plain.row_count * W)),
+        reached_(
+            reinterpret_cast<std::uint64_t*>(parts_ + 2 * std::size_t(count()) * bundle.plain.row_count * W)),
+        matrix_(reinterpret_cast<Wide<W>*>(reached_ + all_reach_words(bundle.plain))),
         poses_(reinterpret_cast<QuatW<W>*>(matrix_ + std::size_t(count()) * count())),
         turns_(reinterpret_cast<Vec3W<W>*>(poses_ + bundle.plain.node_count)),
         laid_(reinterpret_cast<LaidWays<W>*>(turns_ + bundle.plain.moving_count)),
         slots_(reinterpret_cast<StopSlot<W>*>(laid_ + 1)),
         slot_ways_(reinterpret_cast<Wide<W>*>(slots_ + row_length())),
-        columns_(reinterpret_cast<std::uint32_t*>(slot_ways_ + row_length() * row_length())),
-        found_(columns_ + std::size_t(count()) * bundle.plain.column_count),
+        found_(reinterpret_cast<std::uint32_t*>(slot_ways_ + row_length() * row_length())),
         ends_(reinterpret_cast<std::uint8_t*>(found_ + std::size_t(count()) * count())),
-        laid_ends_(ends_ + row_length() * W),
-        reached_(laid_ends_ + row_length() * W) {}
+        laid_ends_(ends_ + row_length() * W) {}
 
   // Before the first part of a step: nothing is known.
   GYRE_INLINE void clear() {
@@ -145,9 +152,10 @@ class LaneStops {
 
  private:
   GYRE_INLINE std::uint32_t count() const { return b_.plain.stop_count; }
+  GYRE_INLINE std::uint32_t words() const { return reach_words(b_.plain.column_count); }
   GYRE_INLINE static void list(LinkedStop<W>& stop, const LaneNode& node, LinkedAxis<W>& axis, bool has_low) {
     stop.axis = &axis, stop.node = &node;
-    stop.has_low = has_low, stop.kept = 0;
+    stop.has_low = has_low, stop.has_reach = false, stop.kept = 0;
   }
   GYRE_INLINE void ask(LinkedStop<W>& stop) const {
     stop.low_on = stop.high_on = Mask<W>::splat(false);
@@ -197,10 +205,7 @@ class LaneStops {
   GYRE_INLINE double* scaled_of(std::uint32_t a) const {
     return part_of(a) + std::size_t(b_.plain.row_count) * W;
   }
-  GYRE_INLINE ReachedColumns reached_of(std::uint32_t a) const {
-    return {columns_ + std::size_t(a) * b_.plain.column_count, reached_ + std::size_t(a) * b_.plain.row_count,
-            stops_[a].reach};
-  }
+  GYRE_INLINE ReachedColumns reached_of(std::uint32_t a) const { return reached_ + std::size_t(a) * words(); }
   GYRE_INLINE Wide<W>& entry(std::uint32_t row, std::uint32_t column) const {
     return matrix_[std::size_t(row) * count() + column];
   }
@@ -258,26 +263,34 @@ class LaneStops {
     b_.set_row(vector, node.row + 4, dot(turn_a - turn_b, joint.perpendicular_2));
   }
 
+  // Which columns an impulse at a stop reaches: those of joints that share a body with it, and what elimination makes of them.
+  void find_reach(std::uint32_t index) {
+    LinkedStop<W>& stop = stops_[index];
+    stop.has_reach = true;
+    const ReachedColumns reached = reached_of(index);
+    for (std::uint32_t i = 0; i < words(); ++i) reached[i] = 0;
+    for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) {
+      const LaneNode& node = b_.plain.nodes[n];
+      if (share_body(*stop.node, node)) reached[node.column / 64] |= std::uint64_t{1} << node.column % 64;
+    }
+    reach_columns(b_.plain, reached);
+  }
   void find_response(std::uint32_t index, std::uint32_t halves) {
     LinkedStop<W>& stop = stops_[index];
     halves &= ~stop.known;
     if (halves == 0) return;
     factor_bundle(b_);
     if (!stop.has_turns) find_turns(stop);
-    ReachedColumns reached = reached_of(index);
+    if (!stop.has_reach) find_reach(index);
     double* const part = part_of(index);
     if (stop.known == 0) {
-      for (std::uint32_t row = 0; row < b_.plain.row_count; ++row) reached.marks[row] = 0;
+      clear_reached<W>(b_.plain, reached_of(index), part);
       for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) {
         const LaneNode& node = b_.plain.nodes[n];
-        if (!share_body(*stop.node, node)) continue;
-        reached.marks[node.row] = 1;
-        set_missing(part, n, turn_of(stop, node.a), turn_of(stop, node.b));
+        if (share_body(*stop.node, node)) set_missing(part, n, turn_of(stop, node.a), turn_of(stop, node.b));
       }
-      reach_lanes<W>(b_.plain, reached, part);
-      stop.reach = reached.count;
     }
-    solve_reached_down<W>(b_.plain, halves, reached, part, scaled_of(index));
+    solve_reached_down<W>(b_.plain, halves, reached_of(index), part, scaled_of(index));
     stop.known |= halves;
   }
   // Between all stops that a lane has in question, anew in lanes that have one of which nothing is kept.
@@ -504,19 +517,18 @@ class LaneStops {
   const LaneSettings& s_;
   ErrorBounds bounds_;
   LinkedStop<W>* stops_;
-  double* parts_;  // y and D^-1 y, by stop
+  double* parts_;           // y and D^-1 y, by stop
+  std::uint64_t* reached_;  // by stop: the columns that it reaches
   Wide<W>* matrix_;
   QuatW<W>* poses_;  // of b seen from a, by joint: since when ways are kept
   Vec3W<W>* turns_;
   LaidWays<W>* laid_;
   StopSlot<W>* slots_;
-  Wide<W>* slot_ways_;      // by two slots
-  std::uint32_t* columns_;  // by stop: those that it reaches
+  Wide<W>* slot_ways_;  // by two slots
   // By two stops, the later first: lanes in which their way was found in this part of the sub-step.
   std::uint32_t* found_;
   std::uint8_t* ends_;       // by slot and lane
   std::uint8_t* laid_ends_;  // those to which the ways of slots belong
-  std::uint8_t* reached_;    // by stop and row
 };
 
 }  // namespace GYRE_TARGET_NAMESPACE
