@@ -16,10 +16,11 @@ constexpr int kMostStuck = 5;  // rounds in turn after which no less was left ov
 constexpr std::uint64_t kMostWork = 6'000'000;
 // What a point that lets go keeps of its stiffness in the second derivative, but not in what it bears.
 constexpr double kTrace = 1.0e-6;
-// The longest step, in Newton's, and how finely it is found.
+// The longest step, in Newton's, and after how many tries it is taken as it is.
 constexpr double kLongestStep = 1.0e3;
 constexpr int kCuts = 40;
-static_assert(kCuts % 2 == 0);
+// A slope counts as none below this share of what it is where the step begins, if that is Newton's own step; if not, below the next.
+constexpr double kFlat = 1.0e-9, kRounding = 1.0e-13;
 // Contacts begin this stiff sideways, as elastic bodies are (R. Mindlin, 1949: 2 (1 - nu) / (2 - nu) = 0.82 for nu = 0.3), and
 // what is softer than this bears nothing sideways.
 constexpr float kShear = 0.8f;
@@ -350,7 +351,7 @@ class Solver {
     }
   }
 
-  // How far to go along `way_`: to where the energy is least. Its derivative grows, so it is bracketed and cut in parts.
+  // How far to go along `way_`: to where the energy is least. Its derivative grows, in straight pieces.
   double find_step() {
     slope_ = curve_ = 0.0;
     press_count_ = 0;
@@ -373,34 +374,36 @@ class Solver {
         curve_ += row->stiffness * ahead * ahead;
       }
     }
-    if (absolute(slope_at(1.0)) <= 1.0e-9 * absolute(slope_at(0.0))) return 1.0;
+    const double start = absolute(slope_at(0.0).value);
     double low = 0.0, high = 1.0;
-    while (slope_at(high) < 0.0 && high < kLongestStep) low = high, high *= 2.0;
-    // Each cut with the one after it, whichever half that is in: a slope is a long sum, and three take as long as one.
-    for (int cut = 0; cut < kCuts; cut += 2) {
-      const double middle = 0.5 * (low + high);
-      const double places[3] = {0.5 * (low + middle), middle, 0.5 * (middle + high)};
-      double slopes[3];
-      find_slopes(places, slopes);
-      const int next = slopes[1] < 0.0 ? 2 : 0;
-      (next == 2 ? low : high) = middle;
-      (slopes[next] < 0.0 ? low : high) = places[next];
+    Slope here = slope_at(high);
+    if (absolute(here.value) <= kFlat * start) return high;
+    while (here.value < 0.0 && high < kLongestStep) {
+      low = high, high *= 2.0;
+      here = slope_at(high);
     }
-    return 0.5 * (low + high);
+    // Newton's method ends as soon as it meets the right piece; where it leads out of the bracket, that is halved.
+    double t = high;
+    for (int cut = 0; cut < kCuts && absolute(here.value) > kRounding * start; ++cut) {
+      (here.value < 0.0 ? low : high) = t;
+      const double next = t - here.value / here.growth;
+      t = next > low && next < high ? next : 0.5 * (low + high);
+      here = slope_at(t);
+    }
+    return t;
   }
-  template <std::size_t kCount>
-  void find_slopes(const double (&t)[kCount], double (&slopes)[kCount]) const {
-    for (std::size_t i = 0; i < kCount; ++i) slopes[i] = slope_ + t[i] * curve_;
+  // The energy's derivative along the way, and how fast that grows.
+  struct Slope {
+    double value, growth;
+  };
+  Slope slope_at(double t) const {
+    Slope slope{slope_ + t * curve_, curve_};
     for (const Press& press : presses_.first(press_count_)) {
-      for (std::size_t i = 0; i < kCount; ++i)
-        slopes[i] += max(press.at + t[i] * press.ahead, 0.0) * press.ahead;
+      const double pressed = press.at + t * press.ahead;
+      slope.value += pressed > 0.0 ? pressed * press.ahead : 0.0;
+      slope.growth += pressed > 0.0 ? press.ahead * press.ahead : 0.0;
     }
-  }
-  double slope_at(double t) const {
-    const double places[1] = {t};
-    double slopes[1];
-    find_slopes(places, slopes);
-    return slopes[0];
+    return slope;
   }
 
   void go(double t) {
