@@ -70,7 +70,7 @@ class SharedColumn {
       records_[place] = record;
       keys_[place] = key;
       users_[place] = 0;
-      table_.insert(key, place);
+      table_.insert(key, place, key_of);
     }
     ++users_[place];
     return place;
@@ -78,7 +78,7 @@ class SharedColumn {
 
   void give(std::uint32_t place) {
     if (--users_[place] > 0) return;
-    table_.erase(keys_[place], place);
+    table_.erase(keys_[place], [this](std::uint32_t other) { return keys_[other]; });
     free_.push_back(place);
   }
 

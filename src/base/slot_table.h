@@ -1,6 +1,6 @@
-// SlotTable: finds the slot of a record by the record's 64-bit key. The keys stay in the records, and whoever asks tells how to read
-// them: key_of(slot). Half of a key's hash stands beside the slot, so that only the record that is found is read, which lies
-// anywhere in memory. Open addressing with linear probing; there is no order to walk, so none can leak into a result.
+// SlotTable: finds the slot of a record by the record's 64-bit key. Only slots are kept, four bytes each; the keys stay in
+// the records, and whoever calls tells how to read them: key_of(slot). Open addressing with linear probing; there is no
+// order to walk, so none can leak into a result.
 #pragma once
 
 #include "base/array.h"
@@ -22,76 +22,70 @@ class SlotTable {
   template <class KeyOf>
   std::uint32_t find(std::uint64_t key, const KeyOf& key_of) const {
     if (cells_.empty()) return kNone;
-    const std::uint32_t hash = hash_of(key);
-    for (std::size_t i = hash & mask();; i = next(i)) {
-      const Cell& cell = cells_[i];
-      if (cell.slot == kNone || (cell.hash == hash && key_of(cell.slot) == key)) return cell.slot;
+    for (std::size_t i = home(key);; i = next(i)) {
+      if (cells_[i] == kNone || key_of(cells_[i]) == key) return cells_[i];
     }
   }
 
-  // The slot of a key, or of another one with the same hash; kNone if it is not there. Reads no key.
-  std::uint32_t likely_slot(std::uint64_t key) const {
-    return find(key, [key](std::uint32_t) { return key; });
-  }
+  // The slot where the search for a key begins, often the one that is found; kNone if none is there.
+  std::uint32_t first_tried(std::uint64_t key) const { return cells_.empty() ? kNone : cells_[home(key)]; }
 
-  // The key must be new.
-  void insert(std::uint64_t key, std::uint32_t slot) {
-    if (size_ + 1 > cells_.size() / 4 * 3) enlarge(cells_.empty() ? kLeastCells : 2 * cells_.size());
-    place({hash_of(key), slot});
+  // The key must be new, and key_of must tell the slot's key already.
+  template <class KeyOf>
+  void insert(std::uint64_t key, std::uint32_t slot, const KeyOf& key_of) {
+    if (size_ + 1 > cells_.size() / 4 * 3) enlarge(cells_.empty() ? kLeastCells : 2 * cells_.size(), key_of);
+    place(key, slot);
     ++size_;
   }
 
-  // It must be there, with this key.
-  void erase(std::uint64_t key, std::uint32_t slot) {
-    std::size_t gap = hash_of(key) & mask();
-    while (cells_[gap].slot != slot) gap = next(gap);
+  // The key must be there, and key_of must tell it still.
+  template <class KeyOf>
+  void erase(std::uint64_t key, const KeyOf& key_of) {
+    std::size_t gap = home(key);
+    while (key_of(cells_[gap]) != key) gap = next(gap);
     // Each later one of the run that could stand nearer its home moves into the gap (Knuth, The Art of Computer
     // Programming 3, 6.4, algorithm R).
-    for (std::size_t i = next(gap); cells_[i].slot != kNone; i = next(i)) {
-      const std::size_t from_home = (i - cells_[i].hash) & mask();
+    for (std::size_t i = next(gap); cells_[i] != kNone; i = next(i)) {
+      const std::size_t from_home = (i - home(key_of(cells_[i]))) & mask();
       if (from_home < ((i - gap) & mask())) continue;
       cells_[gap] = cells_[i];
       gap = i;
     }
-    cells_[gap] = Cell{};
+    cells_[gap] = kNone;
     --size_;
   }
 
   // Forgets all slots and keeps the memory.
   void clear() {
-    for (Cell& cell : cells_) cell = Cell{};
+    for (std::uint32_t& cell : cells_) cell = kNone;
     size_ = 0;
   }
 
  private:
   static constexpr std::size_t kLeastCells = 16;
 
-  struct Cell {
-    std::uint32_t hash = 0;
-    std::uint32_t slot = kNone;
-  };
-
-  static std::uint32_t hash_of(std::uint64_t key) { return static_cast<std::uint32_t>(mix_bits(key) >> 32); }
   std::size_t mask() const { return cells_.size() - 1; }
+  std::size_t home(std::uint64_t key) const { return static_cast<std::size_t>(mix_bits(key) >> 32) & mask(); }
   std::size_t next(std::size_t i) const { return (i + 1) & mask(); }
 
-  void place(Cell cell) {
-    std::size_t i = cell.hash & mask();
-    while (cells_[i].slot != kNone) i = next(i);
-    cells_[i] = cell;
+  void place(std::uint64_t key, std::uint32_t slot) {
+    std::size_t i = home(key);
+    while (cells_[i] != kNone) i = next(i);
+    cells_[i] = slot;
   }
 
-  void enlarge(std::size_t count) {
-    Array<Cell> old = std::move(cells_);
-    cells_ = Array<Cell>();
+  template <class KeyOf>
+  void enlarge(std::size_t count, const KeyOf& key_of) {
+    Array<std::uint32_t> old = std::move(cells_);
+    cells_ = Array<std::uint32_t>();
     cells_.reserve(count);
-    cells_.resize(count, Cell{});
-    for (const Cell& cell : old) {
-      if (cell.slot != kNone) place(cell);
+    cells_.resize(count, kNone);
+    for (const std::uint32_t slot : old) {
+      if (slot != kNone) place(key_of(slot), slot);
     }
   }
 
-  Array<Cell> cells_;  // a power of two, at most three quarters full, or none
+  Array<std::uint32_t> cells_;  // a power of two, at most three quarters full, or none
   std::size_t size_ = 0;
 };
 

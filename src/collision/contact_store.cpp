@@ -127,7 +127,7 @@ std::uint32_t add_contact(ContactStore& store, std::uint64_t key, const PairShap
   contact.surface = shapes.surface;
   store.contacts[slot] = contact;
   if (shapes.against_mesh) clear_kept_triangles(store, contact);
-  store.slot_of_pair.insert(key, slot);
+  store.slot_of_pair.insert(key, slot, key_reader(store));
   link(store, slot);
   ++store.live;
   return slot;
@@ -137,7 +137,7 @@ void remove_contact(ContactStore& store, std::uint32_t slot) {
   const Contact contact = store.contacts[slot];
   GYRE_ASSERT(contact.manifold_room != 0, "the contact exists");
   unlink(store, slot);
-  store.slot_of_pair.erase(pair_key(contact.shape_a, contact.shape_b), slot);
+  store.slot_of_pair.erase(pair_key(contact.shape_a, contact.shape_b), key_reader(store));
   // Of manifolds that are not in use nothing is left to hide from hashes and snapshots.
   for (Manifold& manifold : manifolds_of(store, contact)) manifold = Manifold{};
   give_manifolds(store, contact.first_manifold, contact.manifold_room);
@@ -164,7 +164,7 @@ void rebuild_index(ContactStore& store) {
       store.free_contacts.give(slot);
       continue;
     }
-    store.slot_of_pair.insert(pair_key(contact.shape_a, contact.shape_b), slot);
+    store.slot_of_pair.insert(pair_key(contact.shape_a, contact.shape_b), slot, key_reader(store));
     link(store, slot);
     ++store.live;
     if (contact.manifold_room > 1) clear_kept_triangles(store, contact);

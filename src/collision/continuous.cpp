@@ -49,8 +49,10 @@ Aabb box_around(const SweptShape& shape) {
       (has_disc ? 2.0e-3f * shape.shape->radius : 0.0f);
   const float around = turn + slack;
   const Vec3 all{around, around, around};
-  return {position + turned.low + min(sweep.moved, Vec3{}) - all,
-          position + turned.high + max(sweep.moved, Vec3{}) + all};
+  const Aabb box{position + turned.low + min(sweep.moved, Vec3{}) - all,
+                 position + turned.high + max(sweep.moved, Vec3{}) + all};
+  // Trees rely on finite boxes, and that one ends where floats do.
+  return is_finite(box.low) && is_finite(box.high) ? box : swept_box(shape);
 }
 
 // Whether one of the two is a sensor that the other may visit.

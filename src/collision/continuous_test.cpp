@@ -135,9 +135,18 @@ class Scene {
     const auto shapes_of = [&](std::uint32_t body) {
       return std::span<const std::uint32_t>(&indices_[body], 1);
     };
-    stage_.clamp_fast_bodies(
-        {shapes, proxies, *broadphase_, blocked, sweep_of, shapes_of, nullptr, {}, contacts_, near_stops_},
-        fast, tasks_, kept_);
+    stage_.clamp_fast_bodies({shapes,
+                              proxies,
+                              *broadphase_,
+                              blocked,
+                              sweep_of,
+                              shapes_of,
+                              nullptr,
+                              {},
+                              contacts_,
+                              may_stop_,
+                              near_stops_},
+                             fast, tasks_, kept_);
     std::vector<float> fractions;
     for (const KeptMotion& kept : kept_) fractions.push_back(kept.fraction);
     return fractions;
@@ -146,18 +155,18 @@ class Scene {
   // The same where all pairs of boxes have contacts, and it is known which may stop a shape.
   std::vector<float> clamp_by_contacts(const std::vector<FastBody>& fast) {
     ContactStore store;
-    Bitset near_stops(proxies.size());
+    Bitset may_stop(proxies.size() * proxies.size()), near_stops(proxies.size());
     for (std::uint32_t a = 0; a < proxies.size(); ++a) {
       for (std::uint32_t b = a + 1; b < proxies.size(); ++b) {
         if (!overlap(proxies[a].fat_box, proxies[b].fat_box) || !may_pair(proxies[a], proxies[b])) continue;
-        add_contact(store, pair_key(a, b), {a, b, false, false, {}});
+        const std::uint32_t slot = add_contact(store, pair_key(a, b), {a, b, false, false, {}});
         if (proxies[a].pushes && proxies[b].pushes && !proxies[a].sensor && !proxies[b].sensor) continue;
-        near_stops.set(a), near_stops.set(b);
+        may_stop.set(slot), near_stops.set(a), near_stops.set(b);
       }
     }
-    contacts_ = &store, near_stops_ = &near_stops;
+    contacts_ = &store, may_stop_ = &may_stop, near_stops_ = &near_stops;
     const std::vector<float> fractions = clamp_as_is(fast);
-    contacts_ = nullptr, near_stops_ = nullptr;
+    contacts_ = nullptr, may_stop_ = nullptr, near_stops_ = nullptr;
     return fractions;
   }
   std::span<const std::uint64_t> crossings() const { return stage_.crossings(); }
@@ -180,7 +189,7 @@ class Scene {
   std::vector<std::uint32_t> indices_;
   std::vector<AnyShape> geometries_;  // keeps cooked data alive
   const ContactStore* contacts_ = nullptr;
-  const Bitset* near_stops_ = nullptr;
+  const Bitset *may_stop_ = nullptr, *near_stops_ = nullptr;
 };
 
 Geometry hull_of_cube(float h) {
@@ -268,6 +277,21 @@ TEST(Continuous, MissesAreLeftAlone) {
   const auto away = scene.add_mover(Sphere{0.1f}, {{1, 0, 0}, {}}, {20, 0, 0});
   const auto short_of = scene.add_mover(Sphere{0.1f}, {{-10, 0, 0}, {}}, {9, 0, 0});
   EXPECT_EQ(scene.clamp({{above, false}, {away, false}, {short_of, false}}), (std::vector<float>{1, 1, 1}));
+}
+
+// Boxes of ways are asked of trees, whose empty lanes would overlap one without end.
+TEST(Continuous, WaysBeyondFloatsAreLookedAt) {
+  Scene scene;
+  scene.add_fixed(Box{{0.5f, 0.5f, 0.5f}}, {{5, 0, 0}, {}});
+  std::vector<FastBody> fast;
+  for (const float way : {1.0e30f, 3.0e38f, 3.4e38f})
+    for (const float turn : {0.0f, 1.0e30f, 3.0e38f})
+      fast.push_back(
+          {scene.add_mover(Box{{0.1f, 0.1f, 0.1f}}, {{0, 0, 0}, {}}, {-way, way, 0}, {0, turn, 0}), false});
+  for (const float fraction : scene.clamp(fast)) {
+    EXPECT_GE(fraction, 0.0f);
+    EXPECT_LE(fraction, 1.0f);
+  }
 }
 
 TEST(Continuous, SpinningBladesStopAtAPost) {

@@ -10,7 +10,7 @@ namespace {
 // Contacts lie in the order of their slots, keys come in another: how many keys before its turn a contact is asked for.
 constexpr std::size_t kAhead = 24;
 void fetch_contact(const ContactStore& store, std::uint64_t key) {
-  const std::uint32_t slot = store.slot_of_pair.likely_slot(key);
+  const std::uint32_t slot = store.slot_of_pair.first_tried(key);
   if (slot != SlotTable::kNone) __builtin_prefetch(&store.contacts[slot]);
 }
 

@@ -135,6 +135,10 @@ Contact& awake_contact(WorldState& s) {
   ADD_FAILURE() << "nothing touches";
   return s.rigid.contacts.contacts[0];
 }
+void take_manifolds(WorldState& s, Contact& contact) {
+  for (Manifold& manifold : manifolds_of(s.rigid.contacts, contact)) manifold = {};
+  contact.manifold_count = 0;
+}
 
 TEST(Walk, FindsListsThatDisagree) {
   EXPECT_TRUE(tells(fault_after([](WorldState& s) { s.rigid.bodies.shapes[1].clear(); }),
@@ -218,7 +222,7 @@ TEST(Walk, FindsWhatTheSolverWasNotGiven) {
   constexpr StageName kSolve = StageName::solve;
   EXPECT_TRUE(tells(fault_after([](WorldState& s) { --s.solve.counts.manifolds; }, kSolve),
                     "the solver has other manifolds"));
-  EXPECT_TRUE(tells(fault_after([](WorldState& s) { awake_contact(s).manifold_count = 0; }, kSolve),
+  EXPECT_TRUE(tells(fault_after([](WorldState& s) { take_manifolds(s, awake_contact(s)); }, kSolve),
                     "the solver has other manifolds than those that touch"));
   EXPECT_TRUE(tells(fault_after([](WorldState& s) { ++s.solve.counts.joints; }, kSolve),
                     "the solver has other joints"));
