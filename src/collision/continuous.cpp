@@ -127,7 +127,7 @@ struct Way {
 
 // Whether a shape can have a contact with something that is wanted.
 bool may_be_near(const ContinuousInput& input, const FastBody& fast, std::uint32_t index) {
-  return fast.continuous || input.near_stops == nullptr || input.near_stops->test(index);
+  return fast.continuous || input.contacts->near_stops.test(index);
 }
 
 // What a shape may meet inside of a box, in rising order: of that which is wanted. In a box within its fat box it may meet only what
@@ -146,10 +146,10 @@ void list_in_box(const ContinuousInput& input, const FastBody& fast, std::uint32
     return;
   }
   if (!may_be_near(input, fast, index)) return;
-  for_each_contact_of_shape(*input.contacts, index, [&](std::uint32_t slot) {
+  for_each_contact_of_shape(input.contacts->store, index, [&](std::uint32_t slot) {
     // Most are with what is pushed. That is known without looking at them, and they lie anywhere in memory.
-    if (!fast.continuous && input.may_stop != nullptr && !input.may_stop->test(slot)) return;
-    const Contact& contact = input.contacts->contacts[slot];
+    if (!fast.continuous && !input.contacts->may_stop.test(slot)) return;
+    const Contact& contact = input.contacts->store.contacts[slot];
     const std::uint32_t other = contact.shape_a == index ? contact.shape_b : contact.shape_a;
     if (!wanted(own, input.proxies[other])) return;
     std::size_t place = found.size();

@@ -67,6 +67,14 @@ struct GatePair {
   std::uint32_t convex = 0, surface = 0;
 };
 
+// What contacts tell of what is near.
+struct KnownContacts {
+  const ContactStore& store;  // of all pairs that the broad phase knows
+  // Which of them are with what is not pushed, or with a sensor (TouchChanges::may_stop), and which shapes have one.
+  const Bitset& may_stop;
+  const Bitset& near_stops;
+};
+
 struct ContinuousInput {
   ColliderShapes shapes;
   std::span<const Proxy> proxies;  // as the broad phase last saw them
@@ -79,11 +87,7 @@ struct ContinuousInput {
   // Whether the shape in the way lets pass what moves so against it; null: none does.
   const FunctionRef<bool(std::uint32_t shape, Vec3 way)>* lets_pass = nullptr;
   std::span<const GatePair> gates{};
-  // Of all pairs that the broad phase knows; null: not kept.
-  const ContactStore* contacts = nullptr;
-  // Which of them are with what is not pushed, or with a sensor (TouchChanges::may_stop), and which shapes have one; null: not known.
-  const Bitset* may_stop = nullptr;
-  const Bitset* near_stops = nullptr;
+  const KnownContacts* contacts = nullptr;  // null: not kept
 };
 
 class ContinuousCollision {

@@ -135,18 +135,9 @@ class Scene {
     const auto shapes_of = [&](std::uint32_t body) {
       return std::span<const std::uint32_t>(&indices_[body], 1);
     };
-    stage_.clamp_fast_bodies({shapes,
-                              proxies,
-                              *broadphase_,
-                              blocked,
-                              sweep_of,
-                              shapes_of,
-                              nullptr,
-                              {},
-                              contacts_,
-                              may_stop_,
-                              near_stops_},
-                             fast, tasks_, kept_);
+    stage_.clamp_fast_bodies(
+        {shapes, proxies, *broadphase_, blocked, sweep_of, shapes_of, nullptr, {}, contacts_}, fast, tasks_,
+        kept_);
     std::vector<float> fractions;
     for (const KeptMotion& kept : kept_) fractions.push_back(kept.fraction);
     return fractions;
@@ -164,9 +155,10 @@ class Scene {
         may_stop.set(slot), near_stops.set(a), near_stops.set(b);
       }
     }
-    contacts_ = &store, may_stop_ = &may_stop, near_stops_ = &near_stops;
+    const KnownContacts contacts{store, may_stop, near_stops};
+    contacts_ = &contacts;
     const std::vector<float> fractions = clamp_as_is(fast);
-    contacts_ = nullptr, may_stop_ = nullptr, near_stops_ = nullptr;
+    contacts_ = nullptr;
     return fractions;
   }
   std::span<const std::uint64_t> crossings() const { return stage_.crossings(); }
@@ -188,8 +180,7 @@ class Scene {
   std::vector<KeptMotion> kept_;
   std::vector<std::uint32_t> indices_;
   std::vector<AnyShape> geometries_;  // keeps cooked data alive
-  const ContactStore* contacts_ = nullptr;
-  const Bitset *may_stop_ = nullptr, *near_stops_ = nullptr;
+  const KnownContacts* contacts_ = nullptr;
 };
 
 Geometry hull_of_cube(float h) {

@@ -271,6 +271,7 @@ void sweep_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& a
   const auto shapes_of = [&](std::uint32_t body) { return shapes[body]; };
   const auto passes = [&](std::uint32_t shape, Vec3 way) { return lets_pass(w, shape, way); };
   const FunctionRef<bool(std::uint32_t shape, Vec3 way)> one_way(passes);
+  const KnownContacts contacts{w.contacts, w.touches.may_stop, scratch.near_stops};
   const ContinuousInput input{w.shapes.colliders,
                               w.shapes.proxies,
                               *w.broadphase,
@@ -279,9 +280,7 @@ void sweep_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& a
                               shapes_of,
                               w.surface_rules.empty() ? nullptr : &one_way,
                               scratch.gates,
-                              &w.contacts,
-                              &w.touches.may_stop,
-                              &scratch.near_stops};
+                              &contacts};
   scratch.kept.resize(scratch.fast.size());
   scratch.collision.clamp_fast_bodies(input, scratch.fast, tasks, scratch.kept);
 }

@@ -187,7 +187,6 @@ class Solver {
     place_ = arena.make<double>(plan_.rows);
     way_ = arena.make<double>(plan_.rows);
     rows_ = arena.make<Rows>(s_.contacts.size());
-    presses_ = arena.make<Press>(s_.contacts.size() * kMaxManifoldPoints);
     return true;
   }
 
@@ -354,7 +353,6 @@ class Solver {
   // How far to go along `way_`: to where the energy is least. Its derivative grows, in straight pieces.
   double find_step() {
     slope_ = curve_ = 0.0;
-    press_count_ = 0;
     for (std::size_t j = 0; j < way_.size(); ++j) slope_ -= loads_[j] * way_[j];
     for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
       const StructureContact& contact = s_.contacts[i];
@@ -365,7 +363,6 @@ class Solver {
         if ((work.touching >> k & 1) == 0) continue;
         work.at[k] = borne(contact, rows.normal[k]);
         work.ahead[k] = along(contact, rows.normal[k], way_);
-        presses_[press_count_++] = {work.at[k], work.ahead[k]};
       }
       if (!rows.rubs) continue;
       for (const Row* row : {&rows.tangent[0], &rows.tangent[1], &rows.twist}) {
@@ -384,7 +381,7 @@ class Solver {
     }
     // Newton's method ends as soon as it meets the right piece; where it leads out of the bracket, that is halved.
     double t = high;
-    for (int cut = 0; cut < kCuts && absolute(here.value) > kRounding * start; ++cut) {
+    for (int cut = 0; cut < kCuts && low < high && absolute(here.value) > kRounding * start; ++cut) {
       (here.value < 0.0 ? low : high) = t;
       const double next = t - here.value / here.growth;
       t = next > low && next < high ? next : 0.5 * (low + high);
@@ -398,10 +395,12 @@ class Solver {
   };
   Slope slope_at(double t) const {
     Slope slope{slope_ + t * curve_, curve_};
-    for (const Press& press : presses_.first(press_count_)) {
-      const double pressed = press.at + t * press.ahead;
-      slope.value += pressed > 0.0 ? pressed * press.ahead : 0.0;
-      slope.growth += pressed > 0.0 ? press.ahead * press.ahead : 0.0;
+    for (const StructureWork& work : s_.work) {
+      for (int k = 0; k < kMaxManifoldPoints; ++k) {
+        const double press = work.at[k] + t * work.ahead[k];
+        slope.value += press > 0.0 ? press * work.ahead[k] : 0.0;
+        slope.growth += press > 0.0 ? square(work.ahead[k]) : 0.0;
+      }
     }
     return slope;
   }
@@ -471,19 +470,12 @@ class Solver {
   }
   static double length_of(const double* v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
-  // How far a point is pressed, and how that changes along the way.
-  struct Press {
-    double at, ahead;
-  };
-
   ContactStructure& s_;
   const StructureSolve& solve_;
   BlockPlan plan_;
   double slope_ = 0.0, curve_ = 0.0;  // of the energy along the way, without its points
   std::span<double> values_, room_, loads_, place_, way_;
-  std::span<Rows> rows_;      // by contact
-  std::span<Press> presses_;  // of points that may bear
-  std::size_t press_count_ = 0;
+  std::span<Rows> rows_;  // by contact
 };
 
 // Brings the structure to rest; false if its contacts cannot.
