@@ -160,14 +160,6 @@ struct WideDouble {
       return of(__builtin_convertvector(__builtin_convertvector(a.v, Whole), Double));
     }
   }
-  // `value` where a > b, +0 elsewhere.
-  friend GYRE_INLINE WideDouble keep_where_above(WideDouble a, WideDouble b, WideDouble value) {
-    if constexpr (H == 1) {
-      return a.v > b.v ? value : WideDouble(0.0);
-    } else {
-      return of(a.v > b.v ? value.v : Double{});
-    }
-  }
 };
 
 // Half `Half` of the lanes as doubles, and two halves as floats, rounded.

@@ -36,9 +36,9 @@ LinkageBundle make_bundle(const LinkageShape& shape, const LinkageKernels& kerne
   const std::size_t width = std::size_t(kernels.width);
   b.bodies = arena.make<std::byte>(b.body_count * kernels.body_bytes).data();
   b.joints = arena.make<std::byte>(b.node_count * kernels.joint_bytes).data();
-  b.values = arena.make<double>(b.value_count * width).data();
-  b.vector = arena.make<double>(b.row_count * width).data();
-  b.room = arena.make<double>(shape.plan.widest * width).data();
+  b.values = arena.make<float>(b.value_count * width).data();
+  b.vector = arena.make<float>(b.row_count * width).data();
+  b.room = arena.make<float>(shape.plan.widest * width).data();
   b.is_factored = arena.make<bool>(1).data();
   b.stops = arena.make<std::byte>(kernels.stop_room(b)).data();
   return b;

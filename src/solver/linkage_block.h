@@ -57,35 +57,15 @@ struct Bundle {
         joints(reinterpret_cast<LinkedJoint<W>*>(bundle.joints)) {}
   GYRE_INLINE bool moves(std::uint32_t body) const { return body < plain.moving_count; }
 
-  // Floats as doubles of the matrix and of the vector, and back.
-  GYRE_INLINE void set_value(std::uint32_t i, Wide<W> v) const {
-    constexpr int H = kHalfLanes<W>;
-    half_of<0>(v).store(plain.values + i * H);
-    if constexpr (W > 1) half_of<1>(v).store(plain.values + (std::size_t(plain.value_count) + i) * H);
-  }
+  // Of the matrix.
+  GYRE_INLINE void set_value(std::uint32_t i, Wide<W> v) const { v.store(plain.values + i * W); }
   GYRE_INLINE void add_value(std::uint32_t i, Wide<W> v) const {
-    using D = WideDouble<kHalfLanes<W>>;
-    constexpr int H = kHalfLanes<W>;
-    double* const low = plain.values + i * H;
-    (D::load(low) + half_of<0>(v)).store(low);
-    if constexpr (W > 1) {
-      double* const high = plain.values + (std::size_t(plain.value_count) + i) * H;
-      (D::load(high) + half_of<1>(v)).store(high);
-    }
+    set_value(i, Wide<W>::load(plain.values + i * W) + v);
   }
+  // Of the vector, or of one like it.
   GYRE_INLINE void set_row(std::uint32_t row, Wide<W> v) const { set_row(plain.vector, row, v); }
-  GYRE_INLINE void set_row(double* vector, std::uint32_t row, Wide<W> v) const {
-    constexpr int H = kHalfLanes<W>;
-    half_of<0>(v).store(vector + row * H);
-    if constexpr (W > 1) half_of<1>(v).store(vector + (std::size_t(plain.row_count) + row) * H);
-  }
-  GYRE_INLINE Wide<W> row(std::uint32_t row) const {
-    using D = WideDouble<kHalfLanes<W>>;
-    constexpr int H = kHalfLanes<W>;
-    const D low = D::load(plain.vector + row * H);
-    if constexpr (W == 1) return join_halves<W>(low, low);
-    return join_halves<W>(low, D::load(plain.vector + (std::size_t(plain.row_count) + row) * H));
-  }
+  GYRE_INLINE static void set_row(float* vector, std::uint32_t row, Wide<W> v) { v.store(vector + row * W); }
+  GYRE_INLINE Wide<W> row(std::uint32_t row) const { return Wide<W>::load(plain.vector + row * W); }
   GYRE_INLINE Vec3W<W> rows3(std::uint32_t first) const {
     return {row(first), row(first + 1), row(first + 2)};
   }

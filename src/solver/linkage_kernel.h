@@ -153,7 +153,7 @@ GYRE_INLINE void solve_rows(const Bundle<W>& bundle) {
   const Mask<W> live = set_missing<W, asks>(bundle);
   if (any(live)) {
     factor_bundle(bundle);
-    solve_lanes<W>(bundle.plain, halves_of<W>(to_bits(live)));
+    solve_lanes<W>(bundle.plain);
   } else if (asks != Asks::first) {
     return;  // nothing is added to what has been given
   }

@@ -237,9 +237,9 @@ void solve_side_by_side(Crowd& crowd, Shape& shape, const LinkageKernels& kernel
                        0,
                        arena.make<std::byte>((kBodies + 1) * kernels.body_bytes).data(),
                        arena.make<std::byte>(kJoints * kernels.joint_bytes).data(),
-                       arena.make<double>(lanes * shape.plan.values).data(),
-                       arena.make<double>(lanes * shape.plan.rows).data(),
-                       arena.make<double>(lanes * shape.plan.widest).data(),
+                       arena.make<float>(lanes * shape.plan.values).data(),
+                       arena.make<float>(lanes * shape.plan.rows).data(),
+                       arena.make<float>(lanes * shape.plan.widest).data(),
                        arena.make<bool>(1).data(),
                        nullptr};
   for (const LaneNode& node : shape.nodes)
@@ -487,20 +487,20 @@ TEST(LinkageMatrix, WhatEliminationReachesHasABitForEachColumn) {
   };
   expect(even, 20);
   expect(odd, 67);
-  // Their product is over the columns from the meeting on.
-  std::vector<double> a(rows), b(rows);
-  double sum = 0.0;
+  // Their product is over the columns from the meeting on. (Of numbers that floats hold, sums included.)
+  std::vector<float> a(rows), b(rows);
+  float sum = 0.0f;
   for (std::uint32_t row = 0; row < rows; ++row) {
-    a[row] = 1.0 + row, b[row] = 0.5 * row;
+    a[row] = float(1 + row), b[row] = 0.5f * float(row);
     if (row >= columns[kMeet].row) sum += a[row] * b[row];
   }
-  const Wide<1> product = dot_reached<1>(bundle, 1u, even.data(), a.data(), odd.data(), b.data());
-  EXPECT_EQ(product[0], float(sum));
+  const Wide<1> product = dot_reached<1>(bundle, even.data(), a.data(), odd.data(), b.data());
+  EXPECT_EQ(product[0], sum);
   clear_reached<1>(bundle, odd.data(), a.data());
   for (std::uint32_t i = 0; i < kColumns; ++i) {
     const bool is_reached = (odd[i / 64] >> i % 64 & 1u) != 0;
     for (std::uint32_t row = columns[i].row; row < columns[i].row + columns[i].size; ++row)
-      EXPECT_EQ(a[row], is_reached ? 0.0 : 1.0 + row);
+      EXPECT_EQ(a[row], is_reached ? 0.0f : float(1 + row));
   }
 }
 

@@ -81,9 +81,9 @@ struct LinkageBundle {
   std::uint32_t stop_count = 0;  // axes with stops
   std::byte* bodies = nullptr;
   std::byte* joints = nullptr;
-  double* values = nullptr;  // one half of the lanes after the other: math/wide_double.h
-  double* vector = nullptr;
-  double* room = nullptr;       // of the widest column, for one half
+  float* values = nullptr;  // of the matrix
+  float* vector = nullptr;
+  float* room = nullptr;        // of the widest column
   bool* is_factored = nullptr;  // whether `values` are factors by now
   std::byte* stops = nullptr;   // what is known of them in this step: as much as stop_room() says
 };

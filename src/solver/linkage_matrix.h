@@ -1,299 +1,260 @@
-// Factors and solves the matrices of a bundle of linkages: the elimination of math/block_ldlt.cpp with a lane for each linkage,
-// half a register of floats at a time. Blocks have three rows (a point) or five (a hinge).
+// Factors and solves the matrices of a bundle of linkages: the elimination of math/block_ldlt.cpp with a lane for each linkage. Blocks
+// have three rows (a point) or five (a hinge).
+//
+// In floats, where that of a linkage alone is in doubles: rows give way by a share of their own diagonal (LaneSettings::give), so no
+// pivot falls below that share, and what floats leave out, some 1e-6 of the matrix (N. Higham, "Accuracy and Stability of Numerical
+// Algorithms", 2002, chapter 10), is a hundredth of what rows are made to give way anyway. Speeds are measured anew for each solution.
 #pragma once
 
-#include "math/wide_double.h"
+#include "math/wide.h"
 #include "solver/linkage_lanes.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
 // A pivot below this share of its own diagonal element is only rounding, as in math/dense.h.
-constexpr double kLeastPivot = 1.0e-13;
-
-// The values of one half.
-template <int H>
-struct HalfMatrix {
-  const LinkageBundle& bundle;
-  double* values;
-  double* vector;
-
-  GYRE_INLINE WideDouble<H> at(std::uint32_t i) const { return WideDouble<H>::load(values + i * H); }
-  GYRE_INLINE void set(std::uint32_t i, WideDouble<H> v) const { v.store(values + i * H); }
-  GYRE_INLINE WideDouble<H> x(std::uint32_t row) const { return WideDouble<H>::load(vector + row * H); }
-  GYRE_INLINE void set_x(std::uint32_t row, WideDouble<H> v) const { v.store(vector + row * H); }
-};
-
-// In which halves of the lanes there are some of these: bit 0 and bit 1.
-template <int W>
-GYRE_INLINE std::uint32_t halves_of(std::uint32_t bits) {
-  constexpr int kHalf = kHalfLanes<W>;
-  constexpr std::uint32_t kLow = (1u << kHalf) - 1u;
-  return ((bits & kLow) != 0 ? 1u : 0u) | (bits > kLow ? 2u : 0u);
-}
-
-// With a vector of the bundle's rows, one half after the other.
-template <int H>
-GYRE_INLINE HalfMatrix<H> half_matrix(const LinkageBundle& bundle, int half, double* vector) {
-  return {bundle, bundle.values + std::size_t(half) * bundle.value_count * H,
-          vector + std::size_t(half) * bundle.row_count * H};
-}
-template <int H>
-GYRE_INLINE HalfMatrix<H> half_matrix(const LinkageBundle& bundle, int half) {
-  return half_matrix<H>(bundle, half, bundle.vector);
-}
+constexpr float kLeastPivot = 1.0e-6f;
 
 // The inverse of a diagonal block of which the lower triangle is read, zero in the rows whose pivots were dropped.
-template <int H, int N>
-void invert_diagonal(double* block) {
-  using D = WideDouble<H>;
-  D lower[N][N], pivots[N], inverse[N][N];
+template <int W, int N>
+void invert_diagonal(float* block) {
+  using V = Wide<W>;
+  V lower[N][N], pivots[N], inverse[N][N];
   GYRE_UNROLL
   for (int j = 0; j < N; ++j) {
-    D scaled[N];
-    const D own = D::load(block + (j * N + j) * H);
-    D pivot = own;
+    V scaled[N];
+    const V own = V::load(block + (j * N + j) * W);
+    V pivot = own;
     GYRE_UNROLL
     for (int k = 0; k < j; ++k) {
       scaled[k] = lower[j][k];
       lower[j][k] = scaled[k] * pivots[k];
       pivot -= lower[j][k] * scaled[k];
     }
-    const D least = D(kLeastPivot) * own;
-    pivots[j] = keep_where_above(pivot, least, D(1.0) / pivot);
+    const V least = kLeastPivot * own;
+    pivots[j] = keep(pivot > least, 1.0f / pivot);
     GYRE_UNROLL
     for (int i = j + 1; i < N; ++i) {
-      D sum = D::load(block + (i * N + j) * H);
+      V sum = V::load(block + (i * N + j) * W);
       GYRE_UNROLL
       for (int k = 0; k < j; ++k) sum -= lower[i][k] * lower[j][k];
-      lower[i][j] = keep_where_above(pivot, least, sum);
+      lower[i][j] = keep(pivot > least, sum);
     }
   }
   GYRE_UNROLL
   for (int c = 0; c < N; ++c) {
-    inverse[c][c] = D(1.0);
+    inverse[c][c] = V(1.0f);
     GYRE_UNROLL
     for (int r = c + 1; r < N; ++r) {
-      D sum = lower[r][c];
+      V sum = lower[r][c];
       GYRE_UNROLL
       for (int k = c + 1; k < r; ++k) sum += lower[r][k] * inverse[k][c];
-      inverse[r][c] = D(0.0) - sum;
+      inverse[r][c] = V(0.0f) - sum;
     }
   }
   GYRE_UNROLL
   for (int r = 0; r < N; ++r) {
     GYRE_UNROLL
     for (int c = 0; c <= r; ++c) {
-      D sum = pivots[r] * inverse[r][c];
+      V sum = pivots[r] * inverse[r][c];
       GYRE_UNROLL
       for (int k = r + 1; k < N; ++k) sum += inverse[k][r] * pivots[k] * inverse[k][c];
-      sum.store(block + (r * N + c) * H);
-      sum.store(block + (c * N + r) * H);
+      sum.store(block + (r * N + c) * W);
+      sum.store(block + (c * N + r) * W);
     }
   }
 }
 
 // out = B D, with B of R by C.
-template <int H, int R, int C>
-void scale_block(const double* b, const double* d, double* out) {
-  using D = WideDouble<H>;
+template <int W, int R, int C>
+void scale_block(const float* b, const float* d, float* out) {
+  using V = Wide<W>;
   for (int r = 0; r < R; ++r) {
-    D row[C];
+    V row[C];
     GYRE_UNROLL
-    for (int k = 0; k < C; ++k) row[k] = D::load(b + (r * C + k) * H);
+    for (int k = 0; k < C; ++k) row[k] = V::load(b + (r * C + k) * W);
     GYRE_UNROLL
     for (int c = 0; c < C; ++c) {
-      D sum = row[0] * D::load(d + c * H);
+      V sum = row[0] * V::load(d + c * W);
       GYRE_UNROLL
-      for (int k = 1; k < C; ++k) sum += row[k] * D::load(d + (k * C + c) * H);
-      sum.store(out + (r * C + c) * H);
+      for (int k = 1; k < C; ++k) sum += row[k] * V::load(d + (k * C + c) * W);
+      sum.store(out + (r * C + c) * W);
     }
   }
 }
 
 // out -= S B^T, with S of R by C and B of Q by C; of a diagonal block only the lower triangle.
-template <int H, int R, int Q, int C>
-void subtract_product(const double* s, const double* b, double* out, bool lower_only) {
-  using D = WideDouble<H>;
+template <int W, int R, int Q, int C>
+void subtract_product(const float* s, const float* b, float* out, bool lower_only) {
+  using V = Wide<W>;
   for (int r = 0; r < R; ++r) {
-    D row[C];
+    V row[C];
     GYRE_UNROLL
-    for (int k = 0; k < C; ++k) row[k] = D::load(s + (r * C + k) * H);
+    for (int k = 0; k < C; ++k) row[k] = V::load(s + (r * C + k) * W);
     const int last = lower_only ? r + 1 : Q;
     for (int q = 0; q < last; ++q) {
-      D sum = row[0] * D::load(b + q * C * H);
+      V sum = row[0] * V::load(b + q * C * W);
       GYRE_UNROLL
-      for (int k = 1; k < C; ++k) sum += row[k] * D::load(b + (q * C + k) * H);
-      double* const to = out + (r * Q + q) * H;
-      (D::load(to) - sum).store(to);
+      for (int k = 1; k < C; ++k) sum += row[k] * V::load(b + (q * C + k) * W);
+      float* const to = out + (r * Q + q) * W;
+      (V::load(to) - sum).store(to);
     }
   }
 }
 
-template <int H, int R, int C>
-void eliminate_entry(const HalfMatrix<H>& m, const BlockColumn& column, std::uint32_t i,
-                     const std::uint32_t* targets, double* scaled) {
-  const LinkageBundle& bundle = m.bundle;
-  scale_block<H, R, C>(m.values + std::size_t(bundle.entries[i].offset) * H,
-                       m.values + std::size_t(column.diagonal) * H, scaled);
+template <int W, int R, int C>
+void eliminate_entry(const LinkageBundle& bundle, const BlockColumn& column, std::uint32_t i,
+                     const std::uint32_t* targets, float* scaled) {
+  scale_block<W, R, C>(bundle.values + std::size_t(bundle.entries[i].offset) * W,
+                       bundle.values + std::size_t(column.diagonal) * W, scaled);
   for (std::uint32_t j = column.begin; j <= i; ++j) {
     const BlockEntry& other = bundle.entries[j];
-    const double* const b = m.values + std::size_t(other.offset) * H;
-    double* const out = m.values + std::size_t(*targets++) * H;
+    const float* const b = bundle.values + std::size_t(other.offset) * W;
+    float* const out = bundle.values + std::size_t(*targets++) * W;
     if (bundle.columns[other.place].size == 3) {
-      subtract_product<H, R, 3, C>(scaled, b, out, j == i);
+      subtract_product<W, R, 3, C>(scaled, b, out, j == i);
     } else {
-      subtract_product<H, R, 5, C>(scaled, b, out, j == i);
+      subtract_product<W, R, 5, C>(scaled, b, out, j == i);
     }
   }
 }
 
-template <int H, int C>
-void eliminate_column(const HalfMatrix<H>& m, const BlockColumn& column) {
-  const LinkageBundle& bundle = m.bundle;
-  invert_diagonal<H, C>(m.values + std::size_t(column.diagonal) * H);
+template <int W, int C>
+void eliminate_column(const LinkageBundle& bundle, const BlockColumn& column) {
+  invert_diagonal<W, C>(bundle.values + std::size_t(column.diagonal) * W);
   const std::uint32_t* targets = bundle.targets + column.targets;
-  double* scaled = bundle.room;
+  float* scaled = bundle.room;
   for (std::uint32_t i = column.begin; i < column.end; ++i) {
     const std::uint32_t rows = bundle.columns[bundle.entries[i].place].size;
     if (rows == 3) {
-      eliminate_entry<H, 3, C>(m, column, i, targets, scaled);
+      eliminate_entry<W, 3, C>(bundle, column, i, targets, scaled);
     } else {
-      eliminate_entry<H, 5, C>(m, column, i, targets, scaled);
+      eliminate_entry<W, 5, C>(bundle, column, i, targets, scaled);
     }
     targets += i + 1 - column.begin;
-    scaled += std::size_t(rows) * C * H;
+    scaled += std::size_t(rows) * C * W;
   }
   if (column.begin == column.end) return;
-  double* const to = m.values + std::size_t(bundle.entries[column.begin].offset) * H;
+  float* const to = bundle.values + std::size_t(bundle.entries[column.begin].offset) * W;
   const std::ptrdiff_t count = scaled - bundle.room;
-  for (std::ptrdiff_t i = 0; i < count; i += H) WideDouble<H>::load(bundle.room + i).store(to + i);
+  for (std::ptrdiff_t i = 0; i < count; i += W) Wide<W>::load(bundle.room + i).store(to + i);
 }
 
 // y -= B x, with B of R by C.
-template <int H, int R, int C>
-void push_down(const double* b, const double* x, double* y) {
-  using D = WideDouble<H>;
-  D known[C];
+template <int W, int R, int C>
+void push_down(const float* b, const float* x, float* y) {
+  using V = Wide<W>;
+  V known[C];
   GYRE_UNROLL
-  for (int c = 0; c < C; ++c) known[c] = D::load(x + c * H);
+  for (int c = 0; c < C; ++c) known[c] = V::load(x + c * W);
   GYRE_UNROLL
   for (int r = 0; r < R; ++r) {
-    D sum = D::load(b + r * C * H) * known[0];
+    V sum = V::load(b + r * C * W) * known[0];
     GYRE_UNROLL
-    for (int c = 1; c < C; ++c) sum += D::load(b + (r * C + c) * H) * known[c];
-    (D::load(y + r * H) - sum).store(y + r * H);
+    for (int c = 1; c < C; ++c) sum += V::load(b + (r * C + c) * W) * known[c];
+    (V::load(y + r * W) - sum).store(y + r * W);
   }
 }
 // own -= B^T x.
-template <int H, int R, int C>
-GYRE_INLINE void pull_up(const double* b, const double* x, WideDouble<H> (&own)[C]) {
-  using D = WideDouble<H>;
+template <int W, int R, int C>
+GYRE_INLINE void pull_up(const float* b, const float* x, Wide<W> (&own)[C]) {
+  using V = Wide<W>;
   GYRE_UNROLL
   for (int r = 0; r < R; ++r) {
-    const D known = D::load(x + r * H);
+    const V known = V::load(x + r * W);
     GYRE_UNROLL
-    for (int c = 0; c < C; ++c) own[c] -= D::load(b + (r * C + c) * H) * known;
+    for (int c = 0; c < C; ++c) own[c] -= V::load(b + (r * C + c) * W) * known;
   }
 }
 
-template <int H, int C>
-void solve_column_down(const HalfMatrix<H>& m, const BlockColumn& column) {
+template <int W, int C>
+void solve_column_down(const LinkageBundle& bundle, const BlockColumn& column, float* vector) {
   for (std::uint32_t i = column.begin; i < column.end; ++i) {
-    const BlockEntry& entry = m.bundle.entries[i];
-    const BlockColumn& row = m.bundle.columns[entry.place];
-    const double* const b = m.values + std::size_t(entry.offset) * H;
-    const double* const x = m.vector + std::size_t(column.row) * H;
-    double* const y = m.vector + std::size_t(row.row) * H;
+    const BlockEntry& entry = bundle.entries[i];
+    const BlockColumn& row = bundle.columns[entry.place];
+    const float* const b = bundle.values + std::size_t(entry.offset) * W;
+    const float* const x = vector + std::size_t(column.row) * W;
+    float* const y = vector + std::size_t(row.row) * W;
     if (row.size == 3) {
-      push_down<H, 3, C>(b, x, y);
+      push_down<W, 3, C>(b, x, y);
     } else {
-      push_down<H, 5, C>(b, x, y);
+      push_down<W, 5, C>(b, x, y);
     }
   }
 }
 
 // out = D^-1 x, of the column's rows.
-template <int H, int C>
-GYRE_INLINE void scale_column(const HalfMatrix<H>& m, const BlockColumn& column, double* out) {
-  using D = WideDouble<H>;
-  const double* const diagonal = m.values + std::size_t(column.diagonal) * H;
-  const double* const x = m.vector + std::size_t(column.row) * H;
+template <int W, int C>
+GYRE_INLINE void scale_column(const LinkageBundle& bundle, const BlockColumn& column, const float* vector,
+                              float* out) {
+  using V = Wide<W>;
+  const float* const diagonal = bundle.values + std::size_t(column.diagonal) * W;
+  const float* const x = vector + std::size_t(column.row) * W;
   for (int r = 0; r < C; ++r) {
-    D sum = D::load(diagonal + r * C * H) * D::load(x);
+    V sum = V::load(diagonal + r * C * W) * V::load(x);
     GYRE_UNROLL
-    for (int c = 1; c < C; ++c) sum += D::load(diagonal + (r * C + c) * H) * D::load(x + c * H);
-    sum.store(out + (std::size_t(column.row) + std::size_t(r)) * H);
+    for (int c = 1; c < C; ++c) sum += V::load(diagonal + (r * C + c) * W) * V::load(x + c * W);
+    sum.store(out + (std::size_t(column.row) + std::size_t(r)) * W);
   }
 }
 
-template <int H, int C>
-void solve_column_up(const HalfMatrix<H>& m, const BlockColumn& column) {
-  using D = WideDouble<H>;
-  const double* const diagonal = m.values + std::size_t(column.diagonal) * H;
-  double* const x = m.vector + std::size_t(column.row) * H;
-  D own[C];
+template <int W, int C>
+void solve_column_up(const LinkageBundle& bundle, const BlockColumn& column, float* vector) {
+  using V = Wide<W>;
+  const float* const diagonal = bundle.values + std::size_t(column.diagonal) * W;
+  float* const x = vector + std::size_t(column.row) * W;
+  V own[C];
   GYRE_UNROLL
-  for (int r = 0; r < C; ++r) own[r] = D::load(diagonal + r * C * H) * D::load(x);
+  for (int r = 0; r < C; ++r) own[r] = V::load(diagonal + r * C * W) * V::load(x);
   GYRE_UNROLL
   for (int c = 1; c < C; ++c) {
-    const D known = D::load(x + c * H);
+    const V known = V::load(x + c * W);
     GYRE_UNROLL
-    for (int r = 0; r < C; ++r) own[r] += D::load(diagonal + (r * C + c) * H) * known;
+    for (int r = 0; r < C; ++r) own[r] += V::load(diagonal + (r * C + c) * W) * known;
   }
   for (std::uint32_t i = column.begin; i < column.end; ++i) {
-    const BlockEntry& entry = m.bundle.entries[i];
-    const BlockColumn& row = m.bundle.columns[entry.place];
-    const double* const b = m.values + std::size_t(entry.offset) * H;
-    const double* const known = m.vector + std::size_t(row.row) * H;
+    const BlockEntry& entry = bundle.entries[i];
+    const BlockColumn& row = bundle.columns[entry.place];
+    const float* const b = bundle.values + std::size_t(entry.offset) * W;
+    const float* const known = vector + std::size_t(row.row) * W;
     if (row.size == 3) {
-      pull_up<H, 3, C>(b, known, own);
+      pull_up<W, 3, C>(b, known, own);
     } else {
-      pull_up<H, 5, C>(b, known, own);
+      pull_up<W, 5, C>(b, known, own);
     }
   }
   GYRE_UNROLL
-  for (int r = 0; r < C; ++r) own[r].store(x + r * H);
+  for (int r = 0; r < C; ++r) own[r].store(x + r * W);
 }
 
 template <int W>
 void factor_lanes(const LinkageBundle& bundle) {
-  constexpr int H = kHalfLanes<W>;
-  for (int half = 0; half < kHalves<W>; ++half) {
-    const HalfMatrix<H> m = half_matrix<H>(bundle, half);
-    for (std::uint32_t place = 0; place < bundle.column_count; ++place) {
-      const BlockColumn& column = bundle.columns[place];
-      if (column.size == 3) {
-        eliminate_column<H, 3>(m, column);
-      } else {
-        eliminate_column<H, 5>(m, column);
-      }
+  for (std::uint32_t place = 0; place < bundle.column_count; ++place) {
+    const BlockColumn& column = bundle.columns[place];
+    if (column.size == 3) {
+      eliminate_column<W, 3>(bundle, column);
+    } else {
+      eliminate_column<W, 5>(bundle, column);
     }
   }
 }
 
-// Of the first half of the lanes where bit 0 of `halves` is set, of the second where bit 1 is.
 template <int W>
-void solve_lanes(const LinkageBundle& bundle, std::uint32_t halves = 3u) {
-  constexpr int H = kHalfLanes<W>;
-  for (int half = 0; half < kHalves<W>; ++half) {
-    if ((halves >> half & 1u) == 0) continue;
-    const HalfMatrix<H> m = half_matrix<H>(bundle, half);
-    for (std::uint32_t place = 0; place < bundle.column_count; ++place) {
-      const BlockColumn& column = bundle.columns[place];
-      if (column.size == 3) {
-        solve_column_down<H, 3>(m, column);
-      } else {
-        solve_column_down<H, 5>(m, column);
-      }
+void solve_lanes(const LinkageBundle& bundle) {
+  for (std::uint32_t place = 0; place < bundle.column_count; ++place) {
+    const BlockColumn& column = bundle.columns[place];
+    if (column.size == 3) {
+      solve_column_down<W, 3>(bundle, column, bundle.vector);
+    } else {
+      solve_column_down<W, 5>(bundle, column, bundle.vector);
     }
-    for (std::uint32_t place = bundle.column_count; place-- > 0;) {
-      const BlockColumn& column = bundle.columns[place];
-      if (column.size == 3) {
-        solve_column_up<H, 3>(m, column);
-      } else {
-        solve_column_up<H, 5>(m, column);
-      }
+  }
+  for (std::uint32_t place = bundle.column_count; place-- > 0;) {
+    const BlockColumn& column = bundle.columns[place];
+    if (column.size == 3) {
+      solve_column_up<W, 3>(bundle, column, bundle.vector);
+    } else {
+      solve_column_up<W, 5>(bundle, column, bundle.vector);
     }
   }
 }
@@ -327,69 +288,50 @@ inline void reach_columns(const LinkageBundle& bundle, ReachedColumns reached) {
 
 // Clears their rows in x.
 template <int W>
-void clear_reached(const LinkageBundle& bundle, const ReachedColumns reached, double* x) {
-  constexpr int H = kHalfLanes<W>;
+void clear_reached(const LinkageBundle& bundle, const ReachedColumns reached, float* x) {
   const auto own = [&](std::uint32_t i) { return reached[i]; };
   for_columns(bundle, own, [&](const BlockColumn& column) {
-    for (int half = 0; half < kHalves<W>; ++half) {
-      const HalfMatrix<H> m = half_matrix<H>(bundle, half, x);
-      for (std::uint32_t r = 0; r < column.size; ++r) m.set_x(column.row + r, WideDouble<H>(0.0));
+    for (std::uint32_t r = 0; r < column.size; ++r) Wide<W>(0.0f).store(x + (column.row + r) * W);
+  });
+}
+
+// Replaces the right side x, of the columns that are reached, by y of L y = x, and finds D^-1 y.
+template <int W>
+void solve_reached_down(const LinkageBundle& bundle, const ReachedColumns reached, float* x, float* scaled) {
+  const auto own = [&](std::uint32_t i) { return reached[i]; };
+  for_columns(bundle, own, [&](const BlockColumn& column) {
+    if (column.size == 3) {
+      solve_column_down<W, 3>(bundle, column, x);
+      scale_column<W, 3>(bundle, column, x, scaled);
+    } else {
+      solve_column_down<W, 5>(bundle, column, x);
+      scale_column<W, 5>(bundle, column, x, scaled);
     }
   });
 }
 
-// Replaces the right side x, of the columns that are reached, by y of L y = x, and finds D^-1 y. Of the halves of the lanes as
-// solve_lanes().
-template <int W>
-void solve_reached_down(const LinkageBundle& bundle, std::uint32_t halves, const ReachedColumns reached,
-                        double* x, double* scaled) {
-  constexpr int H = kHalfLanes<W>;
-  const auto own = [&](std::uint32_t i) { return reached[i]; };
-  for (int half = 0; half < kHalves<W>; ++half) {
-    if ((halves >> half & 1u) == 0) continue;
-    const HalfMatrix<H> m = half_matrix<H>(bundle, half, x);
-    double* const out = scaled + std::size_t(half) * bundle.row_count * H;
-    for_columns(bundle, own, [&](const BlockColumn& column) {
-      if (column.size == 3) {
-        solve_column_down<H, 3>(m, column);
-        scale_column<H, 3>(m, column, out);
-      } else {
-        solve_column_down<H, 5>(m, column);
-        scale_column<H, 5>(m, column, out);
-      }
-    });
-  }
-}
-
-template <int H, int N>
-GYRE_INLINE void add_products(const double* a, const double* b, WideDouble<H>& sum) {
-  using D = WideDouble<H>;
+template <int W, int N>
+GYRE_INLINE void add_products(const float* a, const float* b, Wide<W>& sum) {
+  using V = Wide<W>;
   GYRE_UNROLL
-  for (int i = 0; i < N; ++i) sum += D::load(a + i * H) * D::load(b + i * H);
+  for (int i = 0; i < N; ++i) sum += V::load(a + i * W) * V::load(b + i * W);
 }
 
-// The product of two vectors over the columns that both reach; zero in the other half.
+// The product of two vectors over the columns that both reach.
 template <int W>
-Wide<W> dot_reached(const LinkageBundle& bundle, std::uint32_t halves, const ReachedColumns reached_a,
-                    const double* a, const ReachedColumns reached_b, const double* b) {
-  using D = WideDouble<kHalfLanes<W>>;
-  constexpr int H = kHalfLanes<W>;
+Wide<W> dot_reached(const LinkageBundle& bundle, const ReachedColumns reached_a, const float* a,
+                    const ReachedColumns reached_b, const float* b) {
   const auto common = [&](std::uint32_t i) { return reached_a[i] & reached_b[i]; };
-  D sums[2] = {D(0.0), D(0.0)};
-  for (int half = 0; half < kHalves<W>; ++half) {
-    if ((halves >> half & 1u) == 0) continue;
-    D sum(0.0);
-    for_columns(bundle, common, [&](const BlockColumn& column) {
-      const std::size_t first = (std::size_t(half) * bundle.row_count + column.row) * H;
-      if (column.size == 3) {
-        add_products<H, 3>(a + first, b + first, sum);
-      } else {
-        add_products<H, 5>(a + first, b + first, sum);
-      }
-    });
-    sums[half] = sum;
-  }
-  return join_halves<W>(sums[0], sums[1]);
+  Wide<W> sum(0.0f);
+  for_columns(bundle, common, [&](const BlockColumn& column) {
+    const std::size_t first = std::size_t(column.row) * W;
+    if (column.size == 3) {
+      add_products<W, 3>(a + first, b + first, sum);
+    } else {
+      add_products<W, 5>(a + first, b + first, sum);
+    }
+  });
+  return sum;
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

@@ -217,9 +217,7 @@ GYRE_INLINE void put_coupling(const Bundle<W>& bundle, const LaneCoupling& coupl
 
 template <int W>
 void clear_values(const LinkageBundle& plain) {
-  using D = WideDouble<kHalfLanes<W>>;
-  const std::size_t values = std::size_t(plain.value_count) * W;
-  for (std::size_t i = 0; i < values; i += kHalfLanes<W>) D(0.0).store(plain.values + i);
+  for (std::uint32_t i = 0; i < plain.value_count; ++i) Wide<W>(0.0f).store(plain.values + i * W);
 }
 
 // The rows where the bodies are now, and their own blocks of the matrix.

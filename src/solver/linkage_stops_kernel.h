@@ -34,8 +34,7 @@ struct LinkedStop {
   bool has_low;  // a swing has only the other one
   // Lanes, a bit for each: that have it in question, and in which the ways between it and all others so marked are kept.
   std::uint32_t in, kept;
-  // Of which halves of the lanes (math/wide_double.h) it is known what an impulse makes of the linkage, in this part of the sub-step.
-  std::uint32_t known;
+  bool has_response;        // it is known what an impulse makes of the linkage, in this part of the sub-step
   bool has_reach;           // it is known which columns that impulse reaches
   bool has_turns;           // the next are known, in this part of the sub-step
   Vec3W<W> turn_a, turn_b;  // how an impulse of one turns its two bodies
@@ -76,7 +75,7 @@ constexpr std::size_t stop_room(const LinkageBundle& bundle) {
   const std::size_t n = bundle.stop_count, slots = most_slots<W>(bundle);
   if (n == 0) return 0;
   return n * (sizeof(LinkedStop<W>) + n * (sizeof(Wide<W>) + sizeof(std::uint32_t)) +
-              bundle.row_count * 2 * W * sizeof(double)) +
+              bundle.row_count * 2 * W * sizeof(float)) +
          all_reach_words(bundle) * sizeof(std::uint64_t) + bundle.node_count * sizeof(QuatW<W>) +
          bundle.moving_count * sizeof(Vec3W<W>) + sizeof(LaidWays<W>) +
          slots * (sizeof(StopSlot<W>) + slots * sizeof(Wide<W>) + 2 * W);
@@ -93,10 +92,10 @@ class LaneStops {
         s_(settings),
         bounds_(bounds),
         stops_(reinterpret_cast<LinkedStop<W>*>(bundle.plain.stops)),
-        // Before floats, which may be single ones.
-        parts_(reinterpret_cast<double*>(stops_ + count())),
-        reached_(
-            reinterpret_cast<std::uint64_t*>(parts_ + 2 * std::size_t(count()) * bundle.plain.row_count * W)),
+        responses_(reinterpret_cast<float*>(stops_ + count())),
+        // Before floats of which there may be an odd number.
+        reached_(reinterpret_cast<std::uint64_t*>(responses_ +
+                                                  2 * std::size_t(count()) * bundle.plain.row_count * W)),
         matrix_(reinterpret_cast<Wide<W>*>(reached_ + all_reach_words(bundle.plain))),
         poses_(reinterpret_cast<QuatW<W>*>(matrix_ + std::size_t(count()) * count())),
         turns_(reinterpret_cast<Vec3W<W>*>(poses_ + bundle.plain.node_count)),
@@ -126,7 +125,7 @@ class LaneStops {
     const std::uint32_t stands = to_bits(find_calm());
     for (std::uint32_t a = 0; a < count(); ++a) {
       stops_[a].kept &= stands;
-      stops_[a].known = 0;
+      stops_[a].has_response = false;
       stops_[a].has_turns = false;
     }
     for (std::size_t i = 0; i < std::size_t(count()) * count(); ++i) found_[i] = 0;
@@ -199,11 +198,11 @@ class LaneStops {
 
   // --------------------------------------------------------------------------------------------- what an impulse does
 
-  GYRE_INLINE double* part_of(std::uint32_t a) const {
-    return parts_ + 2 * std::size_t(a) * b_.plain.row_count * W;
+  GYRE_INLINE float* response_of(std::uint32_t a) const {
+    return responses_ + 2 * std::size_t(a) * b_.plain.row_count * W;
   }
-  GYRE_INLINE double* scaled_of(std::uint32_t a) const {
-    return part_of(a) + std::size_t(b_.plain.row_count) * W;
+  GYRE_INLINE float* scaled_of(std::uint32_t a) const {
+    return response_of(a) + std::size_t(b_.plain.row_count) * W;
   }
   GYRE_INLINE ReachedColumns reached_of(std::uint32_t a) const { return reached_ + std::size_t(a) * words(); }
   GYRE_INLINE Wide<W>& entry(std::uint32_t row, std::uint32_t column) const {
@@ -251,7 +250,7 @@ class LaneStops {
   }
 
   // What the rows of a joint miss where its bodies turn.
-  GYRE_INLINE void set_missing(double* vector, std::uint32_t n, Vec3W<W> turn_a, Vec3W<W> turn_b) const {
+  GYRE_INLINE void set_missing(float* vector, std::uint32_t n, Vec3W<W> turn_a, Vec3W<W> turn_b) const {
     const LaneNode& node = b_.plain.nodes[n];
     const LinkedJoint<W>& joint = b_.joints[n];
     const Vec3W<W> missing = cross(turn_a, joint.from_a) - cross(turn_b, joint.from_b);
@@ -275,23 +274,21 @@ class LaneStops {
     }
     reach_columns(b_.plain, reached);
   }
-  void find_response(std::uint32_t index, std::uint32_t halves) {
+  void find_response(std::uint32_t index) {
     LinkedStop<W>& stop = stops_[index];
-    halves &= ~stop.known;
-    if (halves == 0) return;
+    if (stop.has_response) return;
+    stop.has_response = true;
     factor_bundle(b_);
     if (!stop.has_turns) find_turns(stop);
     if (!stop.has_reach) find_reach(index);
-    double* const part = part_of(index);
-    if (stop.known == 0) {
-      clear_reached<W>(b_.plain, reached_of(index), part);
-      for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) {
-        const LaneNode& node = b_.plain.nodes[n];
-        if (share_body(*stop.node, node)) set_missing(part, n, turn_of(stop, node.a), turn_of(stop, node.b));
-      }
+    float* const response = response_of(index);
+    clear_reached<W>(b_.plain, reached_of(index), response);
+    for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) {
+      const LaneNode& node = b_.plain.nodes[n];
+      if (share_body(*stop.node, node))
+        set_missing(response, n, turn_of(stop, node.a), turn_of(stop, node.b));
     }
-    solve_reached_down<W>(b_.plain, halves, reached_of(index), part, scaled_of(index));
-    stop.known |= halves;
+    solve_reached_down<W>(b_.plain, reached_of(index), response, scaled_of(index));
   }
   // Between all stops that a lane has in question, anew in lanes that have one of which nothing is kept.
   void find_ways() {
@@ -312,15 +309,14 @@ class LaneStops {
   }
   // The way at one stop under an impulse at another.
   void find_way(std::uint32_t a, std::uint32_t b, std::uint32_t lanes) {
-    const std::uint32_t halves = halves_of<W>(lanes);
-    find_response(a, halves);
-    find_response(b, halves);
+    find_response(a);
+    find_response(b);
     const LaneNode &pushed = *stops_[a].node, &node = *stops_[b].node;
     Wide<W> alone(0.0f);
     if (share_body(pushed, node))
       alone = dot(stops_[b].axis->about, turn_of(stops_[a], node.b) - turn_of(stops_[a], node.a));
     const Wide<W> way =
-        alone - dot_reached<W>(b_.plain, halves, reached_of(a), scaled_of(a), reached_of(b), part_of(b));
+        alone - dot_reached<W>(b_.plain, reached_of(a), scaled_of(a), reached_of(b), response_of(b));
     const Wide<W> bounded = a == b ? keep(way > kLeastWay * alone, way) : way;
     entry(a, b) = entry(b, a) = select(Mask<W>::of_bits(lanes), bounded, entry(a, b));
   }
@@ -496,7 +492,7 @@ class LaneStops {
       set_missing(b_.plain.vector, n, b_.moves(node.a) ? turns_[node.a] : nothing(),
                   b_.moves(node.b) ? turns_[node.b] : nothing());
     }
-    solve_lanes<W>(b_.plain, halves_of<W>(to_bits(pushed)));
+    solve_lanes<W>(b_.plain);
     for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) answer(n, pushed);
   }
   GYRE_INLINE void answer(std::uint32_t n, Mask<W> pushed) const {
@@ -517,7 +513,7 @@ class LaneStops {
   const LaneSettings& s_;
   ErrorBounds bounds_;
   LinkedStop<W>* stops_;
-  double* parts_;           // y and D^-1 y, by stop
+  float* responses_;        // y and D^-1 y, by stop
   std::uint64_t* reached_;  // by stop: the columns that it reaches
   Wide<W>* matrix_;
   QuatW<W>* poses_;  // of b seen from a, by joint: since when ways are kept
