@@ -27,6 +27,12 @@ unsigned family() {
   return base == 0xfu ? base + (a >> 20 & 0xffu) : base;
 }
 
+bool has_half_floats() {
+  constexpr unsigned kFp16 = 1u << 23;
+  unsigned a = 0, b = 0, c = 0, d = 0;
+  return __get_cpuid_count(7, 0, &a, &b, &c, &d) != 0 && (d & kFp16) != 0;
+}
+
 int find_most() {
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw")) {
@@ -38,7 +44,8 @@ int find_most() {
 int find_best() {
   constexpr unsigned kZen5 = 0x1a;
   const int most = find_most();
-  return most < 16 || (is_by_amd() && family() >= kZen5) ? most : 8;
+  if (most < 16) return most;
+  return (is_by_amd() ? family() >= kZen5 : has_half_floats()) ? 16 : 8;
 }
 #else
 int find_most() { return kLanesOfAll; }

@@ -16,9 +16,10 @@ inline constexpr int kLanesOfAll = 4;
 // kLanesOfAll.
 int most_lanes();
 
-// Lanes with which kernels run fastest, at most most_lanes(). 16 only where registers of 512 bits are as wide within: on AMD's from family
-// 1Ah on (Zen 5), where they were measured to pay. Elsewhere what they save in instructions is lost again on the way
-// (docs/performance.md): there eight lanes have kernels that use the 32 registers.
+// Lanes with which kernels run fastest, at most most_lanes(). 16 only where they were measured to pay: on AMD's from family 1Ah on (Zen 5),
+// where registers of 512 bits are as wide within, and on Intel's from Sapphire Rapids on, which do not slow down for them and are known by
+// their arithmetic of half floats. Elsewhere what they save in instructions is lost again on the way (docs/performance.md): there eight
+// lanes have kernels that use the 32 registers.
 int best_lanes();
 
 // What somebody asked for, 0 being the best, as far as the processor has it.
