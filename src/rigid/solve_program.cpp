@@ -50,7 +50,8 @@ template <bool kWarm>
 void predict_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
   part_watched(s, begin, end, [&](int first, int last, bool watched) {
-    s.kernels.motion.predict(s.motion_blocks, first, last, s.contact_bodies.motion, kWarm && watched, watched);
+    s.kernels.motion.predict(s.motion_blocks, first, last, s.contact_bodies.motion, kWarm && watched,
+                             watched);
   });
 }
 void warm_motion_stage(void* context, int begin, int end, int) {
@@ -456,11 +457,11 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   program.add(linkage_stage<relax_linkage>, &solve, linkages);
   // Where no joint is swept in between, while their rows are still in the cache.
   if (!joints.empty())
-    program.add(last ? bundle_stage<&LinkageKernels::finish> : bundle_stage<&LinkageKernels::relax>, &solve,
+    program.add(last ? bundle_stage<&LinkageKernels::finish> : bundle_stage<&LinkageKernels::pass>, &solve,
                 bundles);
   else
     program.add(last ? bundle_stage<&LinkageKernels::place, &LinkageKernels::finish>
-                     : bundle_stage<&LinkageKernels::place, &LinkageKernels::relax>,
+                     : bundle_stage<&LinkageKernels::place, &LinkageKernels::pass>,
                 &solve, bundles);
 }
 

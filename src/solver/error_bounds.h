@@ -23,5 +23,7 @@ constexpr float kLeastBendTurn = 1.0e-4f, kMostBendTurn = 0.3f;
 // Bend that is not asked for, or that two solutions do not find, opens the joint in each sub-step anew. Errors of joints whose bodies
 // turn by more than this (rad) are taken back the faster for it: wholly in a sub-step where they turn by far more.
 constexpr float kCalmTurn = 0.15f;
+// Bodies that turn by less than this in a part need not have lost what speed errors gave them before the next part asks for their bend.
+constexpr float kStraightTurn = 0.05f;
 
 }  // namespace gyre

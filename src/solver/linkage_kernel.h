@@ -147,10 +147,10 @@ GYRE_INLINE Mask<W> set_missing(const Bundle<W>& bundle) {
   return most > kQuiet;
 }
 
-// Solves for the change of all impulses and applies it.
+// Solves for the change of all impulses and applies it, in these lanes.
 template <int W, Asks asks>
-GYRE_INLINE void solve_rows(const Bundle<W>& bundle) {
-  const Mask<W> live = set_missing<W, asks>(bundle);
+GYRE_INLINE void solve_rows(const Bundle<W>& bundle, Mask<W> lanes = Mask<W>::splat(true)) {
+  const Mask<W> live = set_missing<W, asks>(bundle) & lanes;
   if (any(live)) {
     factor_bundle(bundle);
     solve_lanes<W>(bundle.plain);
@@ -199,15 +199,10 @@ GYRE_INLINE void push_kept(const Bundle<W>& bundle) {
 }
 
 template <int W>
-__attribute__((noinline)) void solve_stops(const Bundle<W>& bundle, const LaneSettings& s, ErrorBounds bounds) {
+__attribute__((noinline)) void solve_stops(const Bundle<W>& bundle, const LaneSettings& s,
+                                           ErrorBounds bounds) {
   if (bundle.plain.stop_count > 0) LaneStops<W>(bundle, s, bounds).solve();
 }
-// What the equations answer is left to the solution that comes next.
-template <int W>
-GYRE_INLINE void solve_stops_alone(const Bundle<W>& bundle, const LaneSettings& s) {
-  if (bundle.plain.stop_count > 0) LaneStops<W>(bundle, s, kNoErrors).solve_alone();
-}
-
 template <int W>
 GYRE_INLINE void sum_stop(LinkedJoint<W>& joint, LinkedAxis<W>& axis) {
   const Wide<W> along = axis.low_impulse - axis.high_impulse;
@@ -277,18 +272,31 @@ GYRE_INLINE void sum_impulses(const Bundle<W>& bundle) {
   }
 }
 
-// After the move: takes away all speed along the rows, sums the impulses, and asks for what the next part begins with.
+// Those in which a body turns so far in a part that the bend shows in its velocities.
 template <int W>
-void relax_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
+GYRE_INLINE Mask<W> find_fast(const Bundle<W>& bundle, float substep) {
+  Wide<W> most(0.0f);
+  for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i)
+    most = max(most, length_squared(bundle.bodies[i].angular));
+  return (substep * substep) * most > kStraightTurn * kStraightTurn;
+}
+
+// After a move that is not the last: sums the impulses, and asks for what the next part begins with. What speed came from taking errors
+// back stays for now: only forces come before the next solution, which leaves J v as wanted whatever it was. Where bodies turn far it is
+// taken away, since the bend is asked for of these velocities.
+template <int W>
+void pass_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const Bundle<W> bundle(plain);
   load_velocities(bundle, arrays);
-  solve_rows<W, Asks::relax>(bundle);
+  const Mask<W> fast = find_fast(bundle, s.substep);
+  if (any(fast)) {
+    solve_rows<W, Asks::relax>(bundle, fast);
+    store_velocities(bundle, arrays);
+  }
   ask_lanes(bundle, s, s.first_errors);
-  solve_stops_alone(bundle, s);
   sum_impulses(bundle);
-  store_velocities(bundle, arrays);
 }
-// After the last move.
+// After the last move: takes away all speed along the rows and into stops, and sums the impulses.
 template <int W>
 void finish_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const Bundle<W> bundle(plain);
@@ -310,7 +318,7 @@ constexpr LinkageKernels linkage_kernels() {
           ask_bundle<W>,
           solve_bundle<W>,
           solve_bundle_again<W>,
-          relax_bundle<W>,
+          pass_bundle<W>,
           finish_bundle<W>};
 }
 

@@ -118,9 +118,8 @@ struct LinkageKernels {
   void (*ask)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
   void (*solve)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
   void (*solve_again)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
-  // After each move but the last: as finish(), and what is asked as the next part begins. What the equations answer to stops is left
-  // to its first solution.
-  void (*relax)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  // After each move but the last, and after that.
+  void (*pass)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
   void (*finish)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
 };
 

@@ -137,16 +137,8 @@ class LaneStops {
       const Mask<W> live = look(round == 0);
       if (none(live)) return;
       find(live);
-      push(true);
+      push();
     }
-  }
-  // Once, and the equations do not answer.
-  GYRE_INLINE void solve_alone() {
-    for (std::uint32_t a = 0; a < count(); ++a) ask(stops_[a]);
-    const Mask<W> live = look(true);
-    if (none(live)) return;
-    find(live);
-    push(false);
   }
 
  private:
@@ -466,8 +458,8 @@ class LaneStops {
     }
   }
 
-  // Applies them, and if asked for what the equations answer to all of them.
-  void push(bool answered) {
+  // Applies them, and what the equations answer to all of them.
+  void push() {
     for (std::uint32_t i = 0; i < b_.plain.moving_count; ++i) turns_[i] = nothing();
     Mask<W> pushed = Mask<W>::splat(false);
     for (std::uint32_t a = 0; a < count(); ++a) {
@@ -485,7 +477,6 @@ class LaneStops {
     }
     if (none(pushed)) return;
     for (std::uint32_t i = 0; i < b_.plain.moving_count; ++i) b_.bodies[i].angular += keep(pushed, turns_[i]);
-    if (!answered) return;
     factor_bundle(b_);
     for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) {
       const LaneNode& node = b_.plain.nodes[n];
