@@ -128,7 +128,8 @@ class LaneStops {
       stops_[a].has_response = false;
       stops_[a].has_turns = false;
     }
-    for (std::size_t i = 0; i < std::size_t(count()) * count(); ++i) found_[i] = 0;
+    const std::size_t pairs = std::size_t(count()) * count();
+    for (std::size_t i = 0; i < pairs; ++i) found_[i] = 0;
   }
 
   GYRE_INLINE void solve() {
@@ -288,19 +289,20 @@ class LaneStops {
     for (std::uint32_t a = 0; a < count(); ++a) lanes |= stops_[a].in & ~stops_[a].kept;
     if (lanes == 0) return;
     laid_->renewed |= lanes;
-    for (std::uint32_t a = 0; a < count(); ++a) stops_[a].kept |= stops_[a].in & lanes;
+    std::uint32_t asked[kMostLaneStops], used = 0;
     for (std::uint32_t a = 0; a < count(); ++a) {
-      for (std::uint32_t b = 0; b <= a; ++b) {
-        std::uint32_t& found = found_[std::size_t(a) * count() + b];
-        const std::uint32_t asked = stops_[a].kept & stops_[b].kept & lanes & ~found;
-        if (asked == 0) continue;
-        find_way(a, b, asked);
-        found |= asked;
-      }
+      stops_[a].kept |= stops_[a].in & lanes;
+      if ((stops_[a].kept & lanes) != 0) asked[used++] = a;
     }
+    for (std::uint32_t i = 0; i < used; ++i)
+      for (std::uint32_t j = 0; j <= i; ++j) find_way(asked[i], asked[j], lanes);
   }
-  // The way at one stop under an impulse at another.
+  // The way at one stop under an impulse at another, in those of `lanes` that ask for it.
   void find_way(std::uint32_t a, std::uint32_t b, std::uint32_t lanes) {
+    std::uint32_t& found = found_[std::size_t(a) * count() + b];
+    lanes &= stops_[a].kept & stops_[b].kept & ~found;
+    if (lanes == 0) return;
+    found |= lanes;
     find_response(a);
     find_response(b);
     const LaneNode &pushed = *stops_[a].node, &node = *stops_[b].node;
