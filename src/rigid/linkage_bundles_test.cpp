@@ -71,7 +71,7 @@ TEST(LinkageBundles, LeaveNoHalfOfTheLanesIdleWhereFewerWouldDo) {
   }
 }
 
-// Where sixteen lanes are two registers of doubles, eight of them are one.
+// Sixteen lanes have eight of the same instructions beside them.
 TEST(LinkageBundles, SixteenLanesHaveKernelsOfHalfAsMany) {
   const ContactKernels& kernels = select_contact_kernels(16);
   if (kernels.width < 16) GTEST_SKIP() << "this processor has none of sixteen lanes";

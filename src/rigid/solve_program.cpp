@@ -50,8 +50,7 @@ template <bool kWarm>
 void predict_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
   part_watched(s, begin, end, [&](int first, int last, bool watched) {
-    s.kernels.motion.predict(s.motion_blocks, first, last, s.contact_bodies.motion, kWarm && watched,
-                             watched);
+    s.kernels.motion.predict(s.motion_blocks, first, last, s.contact_bodies.motion, kWarm && watched, watched);
   });
 }
 void warm_motion_stage(void* context, int begin, int end, int) {

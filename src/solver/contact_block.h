@@ -125,7 +125,7 @@ struct ContactKernels {
 
 // The widest kernels that this machine runs well and that have at most `width` lanes (0: any). Same bits whichever.
 const ContactKernels& select_contact_kernels(int width);
-// Those of half as many lanes, for what would leave the others idle; `kernels` itself where half of its lanes cost as much as all.
+// Those of half as many lanes, for what would leave the others idle; `kernels` itself where there are none of the same instructions.
 const ContactKernels& narrower_kernels(const ContactKernels& kernels);
 
 }  // namespace gyre

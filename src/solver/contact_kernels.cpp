@@ -29,7 +29,7 @@ const ContactKernels& select_contact_kernels(int width) {
 
 const ContactKernels& narrower_kernels(const ContactKernels& kernels) {
 #if defined(__x86_64__)
-  // Sixteen lanes are two registers of doubles, eight are one. (Four with the instructions of all are two again.)
+  // Eight lanes keep half as much, and turn bodies in one register of doubles for two. (Four have other instructions.)
   if (&kernels == &kContactKernels_avx512) return kContactKernels_avx512vl;
 #endif
   return kernels;

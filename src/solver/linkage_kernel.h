@@ -199,10 +199,10 @@ GYRE_INLINE void push_kept(const Bundle<W>& bundle) {
 }
 
 template <int W>
-__attribute__((noinline)) void solve_stops(const Bundle<W>& bundle, const LaneSettings& s,
-                                           ErrorBounds bounds) {
+__attribute__((noinline)) void solve_stops(const Bundle<W>& bundle, const LaneSettings& s, ErrorBounds bounds) {
   if (bundle.plain.stop_count > 0) LaneStops<W>(bundle, s, bounds).solve();
 }
+
 template <int W>
 GYRE_INLINE void sum_stop(LinkedJoint<W>& joint, LinkedAxis<W>& axis) {
   const Wide<W> along = axis.low_impulse - axis.high_impulse;
@@ -281,9 +281,9 @@ GYRE_INLINE Mask<W> find_fast(const Bundle<W>& bundle, float substep) {
   return (substep * substep) * most > kStraightTurn * kStraightTurn;
 }
 
-// After a move that is not the last: sums the impulses, and asks for what the next part begins with. What speed came from taking errors
-// back stays for now: only forces come before the next solution, which leaves J v as wanted whatever it was. Where bodies turn far it is
-// taken away, since the bend is asked for of these velocities.
+// After a move that is not the last: sums the impulses, and asks for what the next part begins with. The speed that took errors back is
+// left to that part: only forces come before its first solution, which leaves J v as wanted whatever it was. Where bodies turn far the
+// speed is taken away here, since the bend is asked for of these velocities.
 template <int W>
 void pass_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const Bundle<W> bundle(plain);

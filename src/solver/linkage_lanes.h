@@ -97,7 +97,8 @@ struct LaneArrays {
 struct LaneSettings {
   float substep = 0.0f;
   float rate = 0.0f;  // 1/s, at which errors are taken back
-  float give = 0.0f;  // as LinkageSolve::give
+  // As LinkageSolve::give, 1e-4 or so: far above the rounding of floats, in which the matrix is eliminated.
+  float give = 0.0f;
   // The inverse of an inertia raised by `share` of what of `pull` holds back (six floats each, as Sym3).
   void (*raise)(const float* pull, const float* inertia, float share, float* inverse) = nullptr;
   // What the first of two solutions takes back.
@@ -118,8 +119,9 @@ struct LinkageKernels {
   void (*ask)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
   void (*solve)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
   void (*solve_again)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
-  // After each move but the last, and after that.
+  // After each move but the last: sums impulses, and asks for what the next part begins with.
   void (*pass)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  // After the last move: no speed is left along the rows or into stops; sums impulses.
   void (*finish)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
 };
 
