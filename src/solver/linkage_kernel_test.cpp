@@ -217,6 +217,7 @@ struct Between {
   bool forget = false;  // nothing of the first part is kept but impulses
   // What speed came from taking errors back is left to the second part, or not.
   enum class Ends : std::uint8_t { no, passes, finishes } ends = Ends::no;
+  bool asks = true;  // what the second part begins with is asked for by itself too
 };
 
 void solve_side_by_side(Crowd& crowd, Shape& shape, const LinkageKernels& kernels, const Between& between) {
@@ -269,7 +270,10 @@ void solve_side_by_side(Crowd& crowd, Shape& shape, const LinkageKernels& kernel
     });
     for (int part = 0; part < 2; ++part) {
       if (part == 1) {
-        if (between.ends == Between::Ends::passes) kernels.pass(bundle, arrays, settings);
+        if (between.ends == Between::Ends::passes) {
+          kernels.place(bundle, arrays, settings);
+          kernels.pass(bundle, arrays, settings);
+        }
         if (between.ends == Between::Ends::finishes) kernels.finish(bundle, arrays, settings);
         for (int copy = first + (first + 1) % 2; copy < first + used; copy += 2) {
           Quat& body = crowd.orientation[std::size_t(copy * kBodies + 1)];
@@ -277,8 +281,10 @@ void solve_side_by_side(Crowd& crowd, Shape& shape, const LinkageKernels& kernel
         }
         if (between.forget) kernels.begin(bundle);
       }
-      kernels.place(bundle, arrays, settings);
-      kernels.ask(bundle, arrays, settings);
+      // Passing on comes after placing, and asks.
+      const bool passed = part == 1 && between.ends == Between::Ends::passes;
+      if (!passed) kernels.place(bundle, arrays, settings);
+      if (!passed || between.asks) kernels.ask(bundle, arrays, settings);
       kernels.solve(bundle, arrays, settings);
       kernels.solve_again(bundle, arrays, settings);
     }
@@ -472,6 +478,14 @@ TEST(LinkageKernel, WhatCameFromErrorsMayBeLeftToTheNextPart) {
     EXPECT_LT(apart(left.motion[i].angular_velocity, taken.motion[i].angular_velocity), kLeftOver)
         << "body " << i;
   }
+}
+
+TEST(LinkageKernel, PassingOnAsksForWhatTheNextPartBeginsWith) {
+  Shape shape;
+  Crowd passed(0.05f), asked(0.05f);
+  solve_side_by_side(passed, shape, 0, {.ends = Between::Ends::passes, .asks = false});
+  solve_side_by_side(asked, shape, 0, {.ends = Between::Ends::passes});
+  for (int copy = 0; copy < kCopies; ++copy) EXPECT_TRUE(same_motion(passed, asked, copy)) << "copy " << copy;
 }
 
 // More columns than a word has bits. Two branches of a tree, every other column each, that meet where the last of them is.
