@@ -1,7 +1,8 @@
-// Angles of W vectors in the plane side by side, in float: the wide twins of atan2 in math/trig.h, with fewer digits.
+// Angles of W vectors in the plane and of W rotations side by side, in float: the wide twins of atan2 in math/trig.h and of
+// to_rotation_vector in math/rotation.h, with fewer digits.
 #pragma once
 
-#include "math/wide.h"
+#include "math/wide_vec.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
@@ -32,6 +33,16 @@ GYRE_INLINE Wide<W> unwrapped(Wide<W> angle, Wide<W> near) {
   // Adding 1.5 * 2^23 rounds to the nearest integer.
   const Wide<W> turns = ((near - angle) * (0.5f / kWidePi) + 12582912.0f) - 12582912.0f;
   return angle + (2.0f * kWidePi) * turns;
+}
+
+// Axis times angle (at most pi) of a unit quaternion.
+template <int W>
+GYRE_INLINE Vec3W<W> to_rotation_vector(QuatW<W> q) {
+  const Vec3W<W> v{q.x, q.y, q.z};
+  const Wide<W> sine = length(v);
+  const Mask<W> turns = sine > 1.0e-18f;
+  const Wide<W> share = select(turns, 2.0f * atan2(sine, absolute(q.w)) / sine, Wide<W>(2.0f));
+  return copy_sign(share, q.w) * v;
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

@@ -258,6 +258,7 @@ class LinkageMaker {
   // The linkage as lanes have it; false if they cannot bear it. Bodies that cannot be pushed come last, one for each joint's end.
   bool describe(const Draft& draft, LinkageShape& shape) {
     std::size_t stops = 0;
+    std::uint32_t driven = 0;
     shape.nodes = arena_.make<LaneNode>(draft.joints.size());
     shape.body_count = shape.moving_count = std::uint32_t(draft.bodies.size());
     for (std::size_t i = 0; i < draft.joints.size(); ++i) {
@@ -267,6 +268,7 @@ class LinkageMaker {
         return false;
       stops += (lane.has_twist ? 1 : 0) + (lane.has_swing ? 1 : 0);
       if (stops > kMostLaneStops) return false;
+      if (lane.is_driven()) lane.drives = driven++;
       lane.rows = std::uint32_t(joints_[joint.place].equations);
       lane.a = draft.side_a[i] < 0 ? shape.body_count++ : std::uint32_t(draft.side_a[i]);
       lane.b = draft.side_b[i] < 0 ? shape.body_count++ : std::uint32_t(draft.side_b[i]);
@@ -275,8 +277,8 @@ class LinkageMaker {
   }
   bool find_shape(const LinkageShape& shape, LaneLinkage& linkage) const {
     const auto same = [](const LaneNode& a, const LaneNode& b) {
-      return a.kind == b.kind && a.has_twist == b.has_twist && a.has_swing == b.has_swing && a.a == b.a &&
-             a.b == b.b;
+      return a.kind == b.kind && a.has_twist == b.has_twist && a.has_swing == b.has_swing &&
+             a.has_drive == b.has_drive && a.has_friction == b.has_friction && a.a == b.a && a.b == b.b;
     };
     const std::size_t oldest = shape_count_ > kShapesCompared ? shape_count_ - kShapesCompared : 0;
     for (std::size_t i = shape_count_; i-- > oldest;) {

@@ -23,13 +23,17 @@ constexpr std::size_t kHighImpulse = offsetof(LaneAxis, high_impulse) / sizeof(f
 constexpr std::size_t kAxisTotal = offsetof(LaneAxis, total) / sizeof(float);
 constexpr std::size_t kLowGap = offsetof(LaneAxis, low_gap) / sizeof(float);
 constexpr std::size_t kHighGap = offsetof(LaneAxis, high_gap) / sizeof(float);
+constexpr std::size_t kFrictionImpulse = offsetof(LaneDrives, friction_impulse) / sizeof(float);
+constexpr std::size_t kDrivesTotal = offsetof(LaneDrives, total) / sizeof(float);
 
-// A joint's lane of a bundle, and ranges of its floats.
+// A lane of a joint of a bundle, or of what drives it, and ranges of its floats.
 class Lane {
  public:
   Lane(const LinkageBundle& bundle, int lane, std::uint32_t node)
-      : first_(reinterpret_cast<float*>(bundle.joints + node * bundle.kernels->joint_bytes) + lane),
-        width_(std::size_t(bundle.kernels->width)) {}
+      : Lane(bundle, lane, bundle.joints + node * bundle.kernels->joint_bytes) {}
+  static Lane of_drives(const LinkageBundle& bundle, int lane, const LaneNode& node) {
+    return Lane(bundle, lane, bundle.drives + node.drives * bundle.kernels->drives_bytes);
+  }
   float* at(std::size_t number) const { return first_ + number * width_; }
   std::size_t width() const { return width_; }
   // Each float by itself: what is written to memory in pieces and read from there as one waits for the pieces.
@@ -37,6 +41,8 @@ class Lane {
   Vec3 vector(std::size_t begin) const { return {number(begin), number(begin + 1), number(begin + 2)}; }
 
  private:
+  Lane(const LinkageBundle& bundle, int lane, std::byte* block)
+      : first_(reinterpret_cast<float*>(block) + lane), width_(std::size_t(bundle.kernels->width)) {}
   float* first_;
   std::size_t width_;
 };
@@ -58,14 +64,37 @@ class LaneWriter {
   std::size_t width_;
 };
 
-// Whether anything acts on the axis, and if so whether that is no more than a hard stop.
-enum class Acts : std::uint8_t { nothing, stop, more };
-Acts what_acts(const JointAxisRecord& axis, const LaneStart& start) {
+bool gives_way(const JointAxisRecord& axis) {
+  return axis.motion == AxisMotion::limited && axis.limit_frequency > 0.0f;
+}
+
+bool fits_hinge(const JointRecord& joint, const JointDetail* detail, const LaneStart& start, LaneNode& node) {
+  const JointAxisRecord axis = axis_of_record(joint, detail, JointAxis::angular_x);
+  node.has_twist = axis.motion == AxisMotion::limited;
+  if (gives_way(axis)) return false;
+  if (start.limits_only) return true;
+  node.has_drive = axis.motor_force > 0.0f;
+  node.has_friction = axis.friction > 0.0f;
+  return !has_spring(axis) && (detail == nullptr || !has_drive(*detail));
+}
+
+// Drives that push, and those of balls, have no lanes.
+bool fits_drives(JointKind kind, const JointDetail& detail, LaneNode& node) {
+  node.has_drive = detail.drive.max_torque > 0.0f;
+  node.has_friction = detail.friction > 0.0f;
+  return !(detail.drive.max_force > 0.0f) && (kind == JointKind::cone || !node.has_drive);
+}
+
+// Stops of a cone about its twist and its swing; nothing else acts on an axis.
+bool fits_axis(const JointAxisRecord& axis, JointAxis index, const LaneStart& start, LaneNode& node) {
   const bool is_limited = axis.motion == AxisMotion::limited;
-  if (start.limits_only ? !is_limited : !acts(axis)) return Acts::nothing;
-  if (!is_limited || axis.limit_frequency > 0.0f) return Acts::more;
+  if (axis.motion == AxisMotion::locked || (start.limits_only ? !is_limited : !acts(axis))) return true;
+  if (!is_limited || gives_way(axis) || node.kind != JointKind::cone) return false;
   const bool is_driven = axis.motor_force > 0.0f || axis.friction > 0.0f || has_spring(axis);
-  return is_driven && !start.limits_only ? Acts::more : Acts::stop;
+  if (is_driven && !start.limits_only) return false;
+  if (index != JointAxis::angular_x && index != JointAxis::angular_y) return false;
+  (index == JointAxis::angular_x ? node.has_twist : node.has_swing) = true;
+  return true;
 }
 
 void begin_stop(const Lane& lane, std::size_t at, const Limits& limits, float low_impulse, float high_impulse,
@@ -83,35 +112,63 @@ void finish_stop(const Lane& lane, std::size_t at, JointAxisRecord& axis) {
   axis.total = lane.number(at + kAxisTotal);
 }
 
+void begin_drives(const Lane& lane, const LaneNode& node, const JointRecord& joint, const JointDetail* detail,
+                  const LaneStart& start) {
+  const auto soft = [&](float frequency, float damping) {
+    return frequency > 0.0f ? make_softness(frequency, damping, start.substep) : start.softness;
+  };
+  const auto write = [&](Vec3 drive, Vec3 friction, float most_drive, float most_friction, Vec3 target_speed,
+                         Quat target, const Softness& softness) {
+    LaneWriter(lane, 0) << start.warm_scale * drive << start.warm_scale * friction << 0.0f
+                        << start.substep * most_drive << start.substep * most_friction << target_speed
+                        << target << softness.bias_rate << softness.mass_scale << softness.impulse_scale;
+  };
+  if (node.kind == JointKind::hinge) {
+    const JointAxisRecord axis = axis_of_record(joint, detail, JointAxis::angular_x);
+    const Softness softness =
+        axis.has_motor_target ? soft(axis.motor_frequency, axis.motor_damping) : Softness{};
+    return write({axis.motor_impulse, 0.0f, 0.0f}, {axis.friction_impulse, 0.0f, 0.0f}, axis.motor_force,
+                 axis.friction, {axis.motor_velocity, 0.0f, 0.0f}, {axis.motor_position, 0.0f, 0.0f, 0.0f},
+                 softness);
+  }
+  const PoseDrive& drive = detail->drive;
+  write(detail->drive_torque_impulse, detail->friction_impulse, drive.max_torque, detail->friction,
+        drive.angular_velocity, normalized(drive.orientation), soft(drive.frequency, drive.damping_ratio));
+}
+
+// Where a hinge's limits are in a detail too, so is what else acts on its axis.
+void finish_hinge(const Lane& from, const LaneNode& shape, const Lane* drives, JointRecord& joint,
+                  JointDetail* detail) {
+  if (shape.has_twist) finish_stop(from, kTwist, joint.low_impulse, joint.high_impulse);
+  if (drives != nullptr && shape.has_drive) joint.motor_impulse = drives->number(0);
+  if (detail == nullptr || (!shape.has_twist && drives == nullptr)) return;
+  JointAxisRecord& axis = detail->axes[int(JointAxis::angular_x)];
+  axis = axis_of_record(joint, detail, JointAxis::angular_x);
+  axis.total = shape.has_twist ? from.number(kTwist + kAxisTotal) : 0.0f;
+  if (drives == nullptr) return;
+  if (shape.has_friction) axis.friction_impulse = drives->number(kFrictionImpulse);
+  axis.total += drives->number(kDrivesTotal);
+}
+
 }  // namespace
 
 bool fits_lane(const JointRecord& joint, const JointDetail* detail, const LaneStart& start, LaneNode& node) {
   if (joint.kind != JointKind::ball && joint.kind != JointKind::cone && joint.kind != JointKind::hinge)
     return false;
-  if (detail != nullptr && !start.limits_only && has_drive(*detail)) return false;
   node.kind = joint.kind;
-  node.has_twist = node.has_swing = false;
-  if (joint.kind == JointKind::hinge) {
-    const Acts all = what_acts(axis_of_record(joint, detail, JointAxis::angular_x), start);
-    node.has_twist = all == Acts::stop;
-    return all != Acts::more;
-  }
+  node.has_twist = node.has_swing = node.has_drive = node.has_friction = false;
+  if (joint.kind == JointKind::hinge) return fits_hinge(joint, detail, start, node);
   if (detail == nullptr) return true;
-  for (int i = 0; i < kJointAxisCount; ++i) {
-    const JointAxisRecord& axis = detail->axes[i];
-    if (axis.motion == AxisMotion::locked) continue;
-    const Acts all = what_acts(axis, start);
-    if (all == Acts::nothing) continue;
-    bool& stop = JointAxis(i) == JointAxis::angular_x ? node.has_twist : node.has_swing;
-    const bool turns = JointAxis(i) == JointAxis::angular_x || JointAxis(i) == JointAxis::angular_y;
-    if (all == Acts::more || !turns || joint.kind != JointKind::cone) return false;
-    stop = true;
-  }
+  if (!start.limits_only && !fits_drives(joint.kind, *detail, node)) return false;
+  for (int i = 0; i < kJointAxisCount; ++i)
+    if (!fits_axis(detail->axes[i], JointAxis(i), start, node)) return false;
   return true;
 }
 
 void clear_lanes(const LinkageBundle& bundle) {
   std::memset(static_cast<void*>(bundle.joints), 0, bundle.node_count * bundle.kernels->joint_bytes);
+  if (bundle.drive_count > 0)
+    std::memset(static_cast<void*>(bundle.drives), 0, bundle.drive_count * bundle.kernels->drives_bytes);
   for (std::uint32_t body = 0; body < bundle.body_count; ++body) {
     for (int lane = 0; lane < bundle.kernels->width; ++lane) set_lane_body(bundle, lane, body, kNoBody);
   }
@@ -132,6 +189,7 @@ void begin_lane(const LinkageBundle& bundle, int lane, std::uint32_t node, const
   writer << start.warm_scale * joint.linear_impulse;
   writer << (is_hinge ? start.warm_scale * joint.angular_impulse : Vec3{});
   writer << Vec3{} << Vec3{};  // the sums
+  if (shape.is_driven()) begin_drives(Lane::of_drives(bundle, lane, shape), shape, joint, detail, start);
   if (joint.kind == JointKind::ball) return;
   writer << joint.local_frame_a << joint.local_frame_b << joint.position;
   if (!shape.has_swing) {
@@ -170,7 +228,8 @@ float find_lane_error(const LinkageBundle& bundle, int lane) {
     const Lane from(bundle, lane, n);
     add(from.vector(kError));
     if (node.kind == JointKind::hinge) add(from.vector(kAngularError));
-    if (node.has_twist) most = max(most, max(-from.number(kTwist + kLowGap), -from.number(kTwist + kHighGap)));
+    if (node.has_twist)
+      most = max(most, max(-from.number(kTwist + kLowGap), -from.number(kTwist + kHighGap)));
     if (node.has_swing) most = max(most, -from.number(kSwing + kHighGap));
   }
   return most;
@@ -184,17 +243,16 @@ void finish_lane(const LinkageBundle& bundle, int lane, std::uint32_t node, Join
   joint.angular_impulse = from.vector(kAngularImpulse);
   joint.total_linear = from.vector(kTotalLinear);
   joint.total_angular = from.vector(kTotalAngular);
+  const Lane drives = Lane::of_drives(bundle, lane, shape);
+  const bool is_driven = shape.is_driven();
+  if (is_driven && joint.kind != JointKind::hinge) {
+    if (shape.has_drive) detail->drive_torque_impulse = drives.vector(0);
+    if (shape.has_friction) detail->friction_impulse = drives.vector(kFrictionImpulse);
+  }
   if (joint.kind == JointKind::ball) return;
   joint.position = from.number(kPosition);
-  if (joint.kind == JointKind::hinge) {
-    if (!shape.has_twist) return;
-    finish_stop(from, kTwist, joint.low_impulse, joint.high_impulse);
-    if (detail == nullptr) return;
-    JointAxisRecord& axis = detail->axes[int(JointAxis::angular_x)];
-    axis = axis_of_record(joint, detail, JointAxis::angular_x);
-    axis.total = from.number(kTwist + kAxisTotal);
-    return;
-  }
+  if (joint.kind == JointKind::hinge)
+    return finish_hinge(from, shape, is_driven ? &drives : nullptr, joint, detail);
   if (detail == nullptr) return;
   JointAxisRecord &twist = detail->axes[int(JointAxis::angular_x)],
                   &swing = detail->axes[int(JointAxis::angular_y)];

@@ -11,9 +11,12 @@ namespace gyre {
 struct LaneStart {
   float warm_scale = 1.0f;  // of impulses
   bool limits_only = false;
+  // Of drives: the sub-step, and how soft those are that do not say so.
+  float substep = 0.0f;
+  Softness softness{};
 };
 
-// Whether it is a ball, cone or hinge joint on which nothing acts but hard stops. Says which these are in `node`. `detail` here and
+// Whether it is a ball, cone or hinge joint on which nothing acts but what lanes have. Says what that is in `node`. `detail` here and
 // below: null if the joint has none.
 bool fits_lane(const JointRecord& joint, const JointDetail* detail, const LaneStart& start, LaneNode& node);
 

@@ -23,7 +23,7 @@ struct LinkedBody {
   Sym3W<W> pull;
 };
 
-// As LaneAxis and LaneJoint.
+// As LaneAxis, LaneJoint and LaneDrives.
 template <int W>
 struct LinkedAxis {
   Wide<W> low, high, low_impulse, high_impulse, total, low_gap, high_gap;
@@ -40,6 +40,17 @@ struct LinkedJoint {
   Vec3W<W> axis, perpendicular_1, perpendicular_2, angular_error;
   Wide<W> turn_give_1, turn_give_2, turn_wanted_1, turn_wanted_2;
 };
+template <int W>
+struct LinkedDrives {
+  Vec3W<W> drive_impulse, friction_impulse;
+  Wide<W> total, most_drive, most_friction;
+  Vec3W<W> target_speed;
+  QuatW<W> target;
+  Wide<W> rate, mass_scale, impulse_scale;
+  Vec3W<W> error, speed;
+  Sym3W<W> mass;
+};
+static_assert(sizeof(LinkedDrives<1>) == sizeof(LaneDrives));
 static_assert(sizeof(LinkedAxis<1>) == sizeof(LaneAxis) && sizeof(LinkedJoint<1>) == sizeof(LaneJoint));
 static_assert(offsetof(LinkedJoint<1>, swing) == offsetof(LaneJoint, swing));
 static_assert(offsetof(LinkedJoint<1>, from_a) == offsetof(LaneJoint, from_a));
@@ -50,11 +61,13 @@ struct Bundle {
   const LinkageBundle& plain;
   LinkedBody<W>* bodies;
   LinkedJoint<W>* joints;
+  LinkedDrives<W>* drives;
 
   GYRE_INLINE explicit Bundle(const LinkageBundle& bundle)
       : plain(bundle),
         bodies(reinterpret_cast<LinkedBody<W>*>(bundle.bodies)),
-        joints(reinterpret_cast<LinkedJoint<W>*>(bundle.joints)) {}
+        joints(reinterpret_cast<LinkedJoint<W>*>(bundle.joints)),
+        drives(reinterpret_cast<LinkedDrives<W>*>(bundle.drives)) {}
   GYRE_INLINE bool moves(std::uint32_t body) const { return body < plain.moving_count; }
 
   // Of the matrix.

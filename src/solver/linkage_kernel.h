@@ -2,6 +2,7 @@
 // one alone. A ball joint's three rows are one vector here, and an impulse goes to a body as a force at its arm.
 #pragma once
 
+#include "solver/linkage_drives_kernel.h"
 #include "solver/linkage_stops_kernel.h"
 
 namespace gyre {
@@ -199,8 +200,18 @@ GYRE_INLINE void push_kept(const Bundle<W>& bundle) {
 }
 
 template <int W>
-__attribute__((noinline)) void solve_stops(const Bundle<W>& bundle, const LaneSettings& s, ErrorBounds bounds) {
-  if (bundle.plain.stop_count > 0) LaneStops<W>(bundle, s, bounds).solve();
+__attribute__((noinline)) void solve_stops(const Bundle<W>& bundle, const LaneSettings& s, ErrorBounds bounds,
+                                           Mask<W> lanes = Mask<W>::splat(true)) {
+  if (bundle.plain.stop_count > 0) LaneStops<W>(bundle, s, bounds).solve(lanes);
+}
+
+// --------------------------------------------------------------------------------------------------------------- drives
+
+// What is driven or rubs is swept, then the equations are solved. (In one place, as stops are.)
+template <int W>
+__attribute__((noinline)) void solve_driven(const Bundle<W>& bundle) {
+  sweep_drives(bundle);
+  solve_rows<W, Asks::again>(bundle);
 }
 
 template <int W>
@@ -224,10 +235,9 @@ void begin_linkages(const LinkageBundle& plain) {
 template <int W>
 void place_linkages(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   place_bundle<W>(plain, arrays, s);
-  if (plain.stop_count > 0) {
-    const Bundle<W> bundle(plain);
-    LaneStops<W>(bundle, s, kNoErrors).begin();
-  }
+  const Bundle<W> bundle(plain);
+  if (plain.drive_count > 0) place_drives(bundle);
+  if (plain.stop_count > 0) LaneStops<W>(bundle, s, kNoErrors).begin();
 }
 
 // Before what is kept of the last sub-step is given again: after a blow these impulses are not of this one, and the bend of such
@@ -239,13 +249,18 @@ void ask_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const Lane
   ask_lanes(bundle, s, s.first_errors);
 }
 
-// The impulses of equations are found from nothing, those of stops from what they were.
+// The impulses of equations are found from nothing, those of stops from what they were; where something is swept, all from what they were.
 template <int W>
 void solve_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const Bundle<W> bundle(plain);
   load_velocities(bundle, arrays);
   push_kept(bundle);
-  solve_rows<W, Asks::first>(bundle);
+  if (plain.drive_count > 0) {
+    push_driven(bundle);
+    solve_driven(bundle);
+  } else {
+    solve_rows<W, Asks::first>(bundle);
+  }
   solve_stops(bundle, s, s.first_errors);
   ask_lanes(bundle, s, kMostErrors);  // now with velocities that agree with the joints
   store_velocities(bundle, arrays);
@@ -255,7 +270,10 @@ template <int W>
 void solve_bundle_again(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const Bundle<W> bundle(plain);
   load_velocities(bundle, arrays);
-  solve_rows<W, Asks::again>(bundle);
+  if (plain.drive_count > 0)
+    solve_driven(bundle);
+  else
+    solve_rows<W, Asks::again>(bundle);
   solve_stops(bundle, s, kMostErrors);
   store_velocities(bundle, arrays);
 }
@@ -269,6 +287,7 @@ GYRE_INLINE void sum_impulses(const Bundle<W>& bundle) {
     joint.total_angular += joint.angular_impulse;
     if (node.has_twist) sum_stop(joint, joint.twist);
     if (node.has_swing) sum_stop(joint, joint.swing);
+    if (node.is_driven()) sum_drives(node, joint, bundle.drives[node.drives]);
   }
 }
 
@@ -283,14 +302,18 @@ GYRE_INLINE Mask<W> find_fast(const Bundle<W>& bundle, float substep) {
 
 // After a move that is not the last: sums the impulses, and asks for what the next part begins with. The speed that took errors back is
 // left to that part: only forces come before its first solution, which leaves J v as wanted whatever it was. Where bodies turn far the
-// speed is taken away here, since the bend is asked for of these velocities.
+// speed is taken away here, since the bend is asked for of these velocities, and limbs that start out of their limits would be flung;
+// also where something is swept, which would hold against it.
 template <int W>
 void pass_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const Bundle<W> bundle(plain);
   load_velocities(bundle, arrays);
-  const Mask<W> fast = find_fast(bundle, s.substep);
-  if (any(fast)) {
-    solve_rows<W, Asks::relax>(bundle, fast);
+  const bool is_driven = plain.drive_count > 0;
+  const Mask<W> fast = find_fast(bundle, s.substep), relaxed = is_driven ? Mask<W>::splat(true) : fast;
+  if (is_driven) sweep_drives(bundle);
+  if (any(relaxed)) {
+    solve_rows<W, Asks::relax>(bundle, relaxed);
+    if (any(fast)) solve_stops(bundle, s, kNoErrors, fast);
     store_velocities(bundle, arrays);
   }
   ask_lanes(bundle, s, s.first_errors);
@@ -301,6 +324,7 @@ template <int W>
 void finish_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const Bundle<W> bundle(plain);
   load_velocities(bundle, arrays);
+  if (plain.drive_count > 0) sweep_drives(bundle);
   solve_rows<W, Asks::relax>(bundle);
   solve_stops(bundle, s, kNoErrors);
   sum_impulses(bundle);
@@ -312,6 +336,7 @@ constexpr LinkageKernels linkage_kernels() {
   return {W,
           sizeof(LinkedBody<W>),
           sizeof(LinkedJoint<W>),
+          sizeof(LinkedDrives<W>),
           stop_room<W>,
           begin_linkages<W>,
           place_linkages<W>,

@@ -1,6 +1,7 @@
 // Linkages side by side: where several hang together alike (the ragdolls of a heap, the chains of a curtain), lane i of a
 // bundle is the i-th of them, and kernels (solver/linkage_kernel.h) solve W at once in the time of one. The equations are those
-// of solver/linkage.h; this is the form of linkages of ball, cone and hinge joints on which nothing acts but hard stops.
+// of solver/linkage.h; this is the form of linkages of ball, cone and hinge joints on which nothing acts but hard stops, drives that
+// turn, and dry friction.
 //
 // A lane never sees its neighbours, so its bits do not depend on them, on W, or on which bundle a linkage is in.
 #pragma once
@@ -46,16 +47,34 @@ struct LaneJoint {
   float turn_give_1 = 0.0f, turn_give_2 = 0.0f, turn_wanted_1 = 0.0f, turn_wanted_2 = 0.0f;
 };
 
+// What turns a joint, or holds its turning up: a drive towards a pose, or a motor, and dry friction, each up to a bound. Vectors are in
+// world axes; of hinges what is about the axis stands in x.
+struct LaneDrives {
+  Vec3 drive_impulse, friction_impulse;
+  float total = 0.0f;                                          // hinges: of the impulses over the step
+  float most_drive = 0.0f, most_friction = 0.0f;               // N m s: impulses of a sub-step
+  Vec3 target_speed;                                           // rad/s, in the joint's frame on a
+  Quat target;                                                 // a from b; of hinges x is an angle
+  float rate = 0.0f, mass_scale = 1.0f, impulse_scale = 0.0f;  // how soft the drive is: Softness
+  // Of this sub-step.
+  Vec3 error, speed;  // of the drive: from the target, and that asked for
+  Sym3 mass;          // effective
+};
+
 // More stops than that are solved in turns (solver/linkage_stops.h), not in lanes.
 constexpr std::size_t kMostLaneStops = 64;
 
 // What the linkages of a bundle have in common.
 struct LaneNode {
   JointKind kind = JointKind::ball;
-  bool has_twist = false, has_swing = false;      // stops
+  bool has_twist = false, has_swing = false;  // stops
+  bool has_drive = false, has_friction = false;
   std::uint32_t a = 0, b = 0;                     // entries of the bundle's bodies
   std::uint32_t rows = 0, row = 0, diagonal = 0;  // in the plan
   std::uint32_t column = 0;                       // there: its place
+  std::uint32_t drives = 0;                       // which of the bundle's, if it has any
+
+  bool is_driven() const { return has_drive || has_friction; }
 };
 struct LaneCoupling {
   std::uint32_t row = 0, column = 0;  // nodes
@@ -77,10 +96,12 @@ struct LinkageBundle {
   const BlockEntry* entries = nullptr;
   const std::uint32_t* targets = nullptr;
   std::uint32_t column_count = 0, value_count = 0, row_count = 0;
-  bool has_fill = false;         // blocks of the plan in which nothing stands before elimination
-  std::uint32_t stop_count = 0;  // axes with stops
+  bool has_fill = false;          // blocks of the plan in which nothing stands before elimination
+  std::uint32_t stop_count = 0;   // axes with stops
+  std::uint32_t drive_count = 0;  // joints with drives or friction
   std::byte* bodies = nullptr;
   std::byte* joints = nullptr;
+  std::byte* drives = nullptr;
   float* values = nullptr;  // of the matrix
   float* vector = nullptr;
   float* room = nullptr;        // of the widest column
@@ -112,7 +133,7 @@ struct LaneSettings {
 // The kernels of one CPU target. Each body is a block of `body_bytes` that begins with the lanes' body indices (kNoBody: none).
 struct LinkageKernels {
   int width;
-  std::size_t body_bytes, joint_bytes;
+  std::size_t body_bytes, joint_bytes, drives_bytes;
   std::size_t (*stop_room)(const LinkageBundle& bundle);  // bytes
   void (*begin)(const LinkageBundle& bundle);             // before it is placed for the first time in a step
   void (*place)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);

@@ -2,8 +2,10 @@
 // have three rows (a point) or five (a hinge).
 //
 // In floats, where that of a linkage alone is in doubles: rows give way by a share of their own diagonal (LaneSettings::give), so no
-// pivot falls below that share, and what floats leave out, some 1e-6 of the matrix (N. Higham, "Accuracy and Stability of Numerical
-// Algorithms", 2002, chapter 10), is a hundredth of what rows are made to give way anyway. Speeds are measured anew for each solution.
+// pivot falls below that share, and the factors are those of a matrix that differs by some 1e-6 of its diagonal, a hundredth of what
+// rows are made to give way anyway (N. Higham, "Accuracy and Stability of Numerical Algorithms", 2002, chapter 10). That holds of
+// elimination row by row; with the inverses of whole blocks it does not: a block's condition goes into all that comes later, and limbs
+// thrown together at random flew apart. Speeds are measured anew for each solution.
 #pragma once
 
 #include "math/wide.h"
@@ -15,70 +17,44 @@ inline namespace GYRE_TARGET_NAMESPACE {
 // A pivot below this share of its own diagonal element is only rounding, as in math/dense.h.
 constexpr float kLeastPivot = 1.0e-6f;
 
-// The inverse of a diagonal block of which the lower triangle is read, zero in the rows whose pivots were dropped.
+// A diagonal block of which the lower triangle is read, as L P L^T: L below the diagonal, and on it the inverses of the pivots, zero
+// where one was dropped.
 template <int W, int N>
-void invert_diagonal(float* block) {
+void factor_diagonal(float* block) {
   using V = Wide<W>;
-  V lower[N][N], pivots[N], inverse[N][N];
+  V lower[N][N], unscaled[N][N];
   GYRE_UNROLL
   for (int j = 0; j < N; ++j) {
-    V scaled[N];
-    const V own = V::load(block + (j * N + j) * W);
-    V pivot = own;
     GYRE_UNROLL
-    for (int k = 0; k < j; ++k) {
-      scaled[k] = lower[j][k];
-      lower[j][k] = scaled[k] * pivots[k];
-      pivot -= lower[j][k] * scaled[k];
+    for (int i = j; i < N; ++i) {
+      unscaled[i][j] = V::load(block + (i * N + j) * W);
+      GYRE_UNROLL
+      for (int k = 0; k < j; ++k) unscaled[i][j] -= unscaled[i][k] * lower[j][k];
     }
-    const V least = kLeastPivot * own;
-    pivots[j] = keep(pivot > least, 1.0f / pivot);
+    const V pivot = unscaled[j][j];
+    const V inverse = keep(pivot > kLeastPivot * V::load(block + (j * N + j) * W), 1.0f / pivot);
+    inverse.store(block + (j * N + j) * W);
     GYRE_UNROLL
     for (int i = j + 1; i < N; ++i) {
-      V sum = V::load(block + (i * N + j) * W);
-      GYRE_UNROLL
-      for (int k = 0; k < j; ++k) sum -= lower[i][k] * lower[j][k];
-      lower[i][j] = keep(pivot > least, sum);
-    }
-  }
-  GYRE_UNROLL
-  for (int c = 0; c < N; ++c) {
-    inverse[c][c] = V(1.0f);
-    GYRE_UNROLL
-    for (int r = c + 1; r < N; ++r) {
-      V sum = lower[r][c];
-      GYRE_UNROLL
-      for (int k = c + 1; k < r; ++k) sum += lower[r][k] * inverse[k][c];
-      inverse[r][c] = V(0.0f) - sum;
-    }
-  }
-  GYRE_UNROLL
-  for (int r = 0; r < N; ++r) {
-    GYRE_UNROLL
-    for (int c = 0; c <= r; ++c) {
-      V sum = pivots[r] * inverse[r][c];
-      GYRE_UNROLL
-      for (int k = r + 1; k < N; ++k) sum += inverse[k][r] * pivots[k] * inverse[k][c];
-      sum.store(block + (r * N + c) * W);
-      sum.store(block + (c * N + r) * W);
+      lower[i][j] = unscaled[i][j] * inverse;
+      lower[i][j].store(block + (i * N + j) * W);
     }
   }
 }
 
-// out = B D, with B of R by C.
-template <int W, int R, int C>
-void scale_block(const float* b, const float* d, float* out) {
+// b L^-T in place of b, with b of R by N, and that times the inverse pivots in `scaled`.
+template <int W, int R, int N>
+void scale_block(const float* diagonal, float* b, float* scaled) {
   using V = Wide<W>;
   for (int r = 0; r < R; ++r) {
-    V row[C];
+    V row[N];
     GYRE_UNROLL
-    for (int k = 0; k < C; ++k) row[k] = V::load(b + (r * C + k) * W);
-    GYRE_UNROLL
-    for (int c = 0; c < C; ++c) {
-      V sum = row[0] * V::load(d + c * W);
+    for (int c = 0; c < N; ++c) {
+      row[c] = V::load(b + (r * N + c) * W);
       GYRE_UNROLL
-      for (int k = 1; k < C; ++k) sum += row[k] * V::load(d + (k * C + c) * W);
-      sum.store(out + (r * C + c) * W);
+      for (int k = 0; k < c; ++k) row[c] -= row[k] * V::load(diagonal + (c * N + k) * W);
+      row[c].store(b + (r * N + c) * W);
+      (row[c] * V::load(diagonal + (c * N + c) * W)).store(scaled + (r * N + c) * W);
     }
   }
 }
@@ -105,8 +81,8 @@ void subtract_product(const float* s, const float* b, float* out, bool lower_onl
 template <int W, int R, int C>
 void eliminate_entry(const LinkageBundle& bundle, const BlockColumn& column, std::uint32_t i,
                      const std::uint32_t* targets, float* scaled) {
-  scale_block<W, R, C>(bundle.values + std::size_t(bundle.entries[i].offset) * W,
-                       bundle.values + std::size_t(column.diagonal) * W, scaled);
+  scale_block<W, R, C>(bundle.values + std::size_t(column.diagonal) * W,
+                       bundle.values + std::size_t(bundle.entries[i].offset) * W, scaled);
   for (std::uint32_t j = column.begin; j <= i; ++j) {
     const BlockEntry& other = bundle.entries[j];
     const float* const b = bundle.values + std::size_t(other.offset) * W;
@@ -121,7 +97,7 @@ void eliminate_entry(const LinkageBundle& bundle, const BlockColumn& column, std
 
 template <int W, int C>
 void eliminate_column(const LinkageBundle& bundle, const BlockColumn& column) {
-  invert_diagonal<W, C>(bundle.values + std::size_t(column.diagonal) * W);
+  factor_diagonal<W, C>(bundle.values + std::size_t(column.diagonal) * W);
   const std::uint32_t* targets = bundle.targets + column.targets;
   float* scaled = bundle.room;
   for (std::uint32_t i = column.begin; i < column.end; ++i) {
@@ -142,16 +118,13 @@ void eliminate_column(const LinkageBundle& bundle, const BlockColumn& column) {
 
 // y -= B x, with B of R by C.
 template <int W, int R, int C>
-void push_down(const float* b, const float* x, float* y) {
+GYRE_INLINE void push_down(const float* b, const Wide<W> (&x)[C], float* y) {
   using V = Wide<W>;
-  V known[C];
-  GYRE_UNROLL
-  for (int c = 0; c < C; ++c) known[c] = V::load(x + c * W);
   GYRE_UNROLL
   for (int r = 0; r < R; ++r) {
-    V sum = V::load(b + r * C * W) * known[0];
+    V sum = V::load(b + r * C * W) * x[0];
     GYRE_UNROLL
-    for (int c = 1; c < C; ++c) sum += V::load(b + (r * C + c) * W) * known[c];
+    for (int c = 1; c < C; ++c) sum += V::load(b + (r * C + c) * W) * x[c];
     (V::load(y + r * W) - sum).store(y + r * W);
   }
 }
@@ -169,33 +142,42 @@ GYRE_INLINE void pull_up(const float* b, const float* x, Wide<W> (&own)[C]) {
 
 template <int W, int C>
 void solve_column_down(const LinkageBundle& bundle, const BlockColumn& column, float* vector) {
+  using V = Wide<W>;
+  const float* const diagonal = bundle.values + std::size_t(column.diagonal) * W;
+  float* const x = vector + std::size_t(column.row) * W;
+  V own[C];
+  GYRE_UNROLL
+  for (int r = 0; r < C; ++r) own[r] = V::load(x + r * W);
+  GYRE_UNROLL
+  for (int c = 0; c < C; ++c) {
+    GYRE_UNROLL
+    for (int r = c + 1; r < C; ++r) own[r] -= V::load(diagonal + (r * C + c) * W) * own[c];
+  }
+  GYRE_UNROLL
+  for (int r = 1; r < C; ++r) own[r].store(x + r * W);
   for (std::uint32_t i = column.begin; i < column.end; ++i) {
     const BlockEntry& entry = bundle.entries[i];
     const BlockColumn& row = bundle.columns[entry.place];
     const float* const b = bundle.values + std::size_t(entry.offset) * W;
-    const float* const x = vector + std::size_t(column.row) * W;
     float* const y = vector + std::size_t(row.row) * W;
     if (row.size == 3) {
-      push_down<W, 3, C>(b, x, y);
+      push_down<W, 3, C>(b, own, y);
     } else {
-      push_down<W, 5, C>(b, x, y);
+      push_down<W, 5, C>(b, own, y);
     }
   }
 }
 
-// out = D^-1 x, of the column's rows.
+// out = P^-1 x, of the column's rows.
 template <int W, int C>
 GYRE_INLINE void scale_column(const LinkageBundle& bundle, const BlockColumn& column, const float* vector,
                               float* out) {
   using V = Wide<W>;
   const float* const diagonal = bundle.values + std::size_t(column.diagonal) * W;
-  const float* const x = vector + std::size_t(column.row) * W;
-  for (int r = 0; r < C; ++r) {
-    V sum = V::load(diagonal + r * C * W) * V::load(x);
-    GYRE_UNROLL
-    for (int c = 1; c < C; ++c) sum += V::load(diagonal + (r * C + c) * W) * V::load(x + c * W);
-    sum.store(out + (std::size_t(column.row) + std::size_t(r)) * W);
-  }
+  const std::size_t first = std::size_t(column.row) * W;
+  GYRE_UNROLL
+  for (int r = 0; r < C; ++r)
+    (V::load(diagonal + (r * C + r) * W) * V::load(vector + first + r * W)).store(out + first + r * W);
 }
 
 template <int W, int C>
@@ -205,13 +187,7 @@ void solve_column_up(const LinkageBundle& bundle, const BlockColumn& column, flo
   float* const x = vector + std::size_t(column.row) * W;
   V own[C];
   GYRE_UNROLL
-  for (int r = 0; r < C; ++r) own[r] = V::load(diagonal + r * C * W) * V::load(x);
-  GYRE_UNROLL
-  for (int c = 1; c < C; ++c) {
-    const V known = V::load(x + c * W);
-    GYRE_UNROLL
-    for (int r = 0; r < C; ++r) own[r] += V::load(diagonal + (r * C + c) * W) * known;
-  }
+  for (int r = 0; r < C; ++r) own[r] = V::load(diagonal + (r * C + r) * W) * V::load(x + r * W);
   for (std::uint32_t i = column.begin; i < column.end; ++i) {
     const BlockEntry& entry = bundle.entries[i];
     const BlockColumn& row = bundle.columns[entry.place];
@@ -222,6 +198,11 @@ void solve_column_up(const LinkageBundle& bundle, const BlockColumn& column, flo
     } else {
       pull_up<W, 5, C>(b, known, own);
     }
+  }
+  GYRE_UNROLL
+  for (int c = C - 1; c > 0; --c) {
+    GYRE_UNROLL
+    for (int r = 0; r < c; ++r) own[r] -= V::load(diagonal + (c * C + r) * W) * own[c];
   }
   GYRE_UNROLL
   for (int r = 0; r < C; ++r) own[r].store(x + r * W);
@@ -295,7 +276,7 @@ void clear_reached(const LinkageBundle& bundle, const ReachedColumns reached, fl
   });
 }
 
-// Replaces the right side x, of the columns that are reached, by y of L y = x, and finds D^-1 y.
+// Replaces the right side x, of the columns that are reached, by y of L y = x, and finds P^-1 y.
 template <int W>
 void solve_reached_down(const LinkageBundle& bundle, const ReachedColumns reached, float* x, float* scaled) {
   const auto own = [&](std::uint32_t i) { return reached[i]; };

@@ -5,6 +5,8 @@
 #include "math/wide_angle.h"
 #include "solver/linkage_block.h"
 
+#include <type_traits>
+
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
@@ -12,7 +14,7 @@ inline namespace GYRE_TARGET_NAMESPACE {
 constexpr float kLanePull = 1.0f;
 
 template <int W>
-GYRE_INLINE Vec3W<W> within(Vec3W<W> v, float most) {
+GYRE_INLINE Vec3W<W> within(Vec3W<W> v, std::type_identity_t<Wide<W>> most) {
   const Wide<W> size = length(v);
   const Mask<W> beyond = size > most;
   if (!any(beyond)) return v;

@@ -18,7 +18,7 @@ constexpr float kLaneSettled = 1.0e-4f;  // rad/s
 // Of the way to where a stop's own speed is as asked, how far each sweep goes (successive over-relaxation).
 constexpr float kLaneReach = 1.15f;
 
-// How far a joint may turn before what its linkage's stops do to each other is found anew.
+// How far a joint, or the axis of its stop, may turn before what its linkage's stops do to each other is found anew.
 constexpr float kKeptTurn = 0.1f;  // rad
 
 // What a stop may still give way by, of what it would if its two bodies were alone: less is only rounding.
@@ -38,6 +38,7 @@ struct LinkedStop {
   bool has_reach;           // it is known which columns that impulse reaches
   bool has_turns;           // the next are known, in this part of the sub-step
   Vec3W<W> turn_a, turn_b;  // how an impulse of one turns its two bodies
+  Vec3W<W> kept_about;      // in a's axes: the axis for which ways are kept
 };
 
 // One end of a stop, in each lane another.
@@ -125,6 +126,7 @@ class LaneStops {
     const std::uint32_t stands = to_bits(find_calm());
     for (std::uint32_t a = 0; a < count(); ++a) {
       stops_[a].kept &= stands;
+      if (stops_[a].kept != 0) stops_[a].kept &= to_bits(has_same_axis(stops_[a]));
       stops_[a].has_response = false;
       stops_[a].has_turns = false;
     }
@@ -132,10 +134,10 @@ class LaneStops {
     for (std::size_t i = 0; i < pairs; ++i) found_[i] = 0;
   }
 
-  GYRE_INLINE void solve() {
+  GYRE_INLINE void solve(Mask<W> lanes) {
     for (std::uint32_t a = 0; a < count(); ++a) ask(stops_[a]);
     for (int round = 0; round < kLaneRounds; ++round) {
-      const Mask<W> live = look(round == 0);
+      const Mask<W> live = look(round == 0) & lanes;
       if (none(live)) return;
       find(live);
       push();
@@ -231,6 +233,16 @@ class LaneStops {
     return calm;
   }
 
+  // In the axes of the joint's first body.
+  GYRE_INLINE Vec3W<W> axis_of(const LinkedStop<W>& stop) const {
+    return rotate_inverse(b_.bodies[stop.node->a].orientation, stop.axis->about);
+  }
+  // Where a limb points straight back, the way to a cone's nearest stop goes over to the other side at once.
+  GYRE_INLINE Mask<W> has_same_axis(const LinkedStop<W>& stop) const {
+    return length_squared(axis_of(stop) - stop.kept_about) <
+           (kKeptTurn * kKeptTurn) * length_squared(stop.kept_about);
+  }
+
   GYRE_INLINE void find_turns(LinkedStop<W>& stop) const {
     stop.has_turns = true;
     const LaneNode& node = *stop.node;
@@ -292,7 +304,9 @@ class LaneStops {
     std::uint32_t asked[kMostLaneStops], used = 0;
     for (std::uint32_t a = 0; a < count(); ++a) {
       stops_[a].kept |= stops_[a].in & lanes;
-      if ((stops_[a].kept & lanes) != 0) asked[used++] = a;
+      if ((stops_[a].kept & lanes) == 0) continue;
+      stops_[a].kept_about = select(Mask<W>::of_bits(lanes), axis_of(stops_[a]), stops_[a].kept_about);
+      asked[used++] = a;
     }
     for (std::uint32_t i = 0; i < used; ++i)
       for (std::uint32_t j = 0; j <= i; ++j) find_way(asked[i], asked[j], lanes);
