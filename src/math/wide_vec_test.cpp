@@ -6,12 +6,14 @@
 #include <gtest/gtest.h>
 #include <gyre/math.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <vector>
 
 #include "math/rotation.h"
+#include "math/wide_angle.h"
 
 namespace gyre {
 namespace {
@@ -26,6 +28,28 @@ Vec3 lane(const Vec3W<4>& v, int i) { return {v.x[i], v.y[i], v.z[i]}; }
 Quat lane(const QuatW<4>& q, int i) { return {q.x[i], q.y[i], q.z[i], q.w[i]}; }
 Sym3 lane(const Sym3W<4>& m, int i) { return {m.xx[i], m.yy[i], m.zz[i], m.xy[i], m.xz[i], m.yz[i]}; }
 Mat3 lane(const Mat3W<4>& m, int i) { return {lane(m.x, i), lane(m.y, i), lane(m.z, i)}; }
+
+// Within the error of the wide atan2, 3e-7 of at most pi, and rounding.
+TEST(WideVec, RotationVectorsAreThoseOfTheQuaternions) {
+  Random random;
+  const auto expect_same = [](Quat q) {
+    const Vec3 wide = lane(to_rotation_vector(QuatW<4>{q.x, q.y, q.z, q.w}), 3), one = to_rotation_vector(q);
+    // Half a turn one way is half a turn the other way.
+    const bool is_half = std::abs(q.w) < 1.0e-6f;
+    const float apart = is_half ? std::min(length(wide - one), length(wide + one)) : length(wide - one);
+    EXPECT_LT(apart, 2.0e-6f + 1.0e-6f * length(one)) << q.x << " " << q.y << " " << q.z << " " << q.w;
+  };
+  for (int round = 0; round < 2000; ++round) {
+    const Vec3 axis = normalized(random.vector());
+    for (const float angle : {random.between(-kPi, kPi), 1.0e-4f, 1.0e-20f, 0.0f, kPi, 3.1415f})
+      for (const float sign : {1.0f, -1.0f}) {
+        const Quat q = from_axis_angle(axis, angle);
+        expect_same({sign * q.x, sign * q.y, sign * q.z, sign * q.w});
+      }
+  }
+  EXPECT_EQ(lane(to_rotation_vector(QuatW<4>{1.0e-9f, 0.0f, 0.0f, 1.0f}), 0), (Vec3{2.0e-9f, 0, 0}))
+      << "small turns are told to their last bits";
+}
 
 TEST(WideVec, LanesHaveTheBitsOfTheScalarOperations) {
   Random random;
