@@ -26,4 +26,8 @@ constexpr float kCalmTurn = 0.15f;
 // Bodies that turn by less than this in a part need not have lost what speed errors gave them before the next part asks for their bend.
 constexpr float kStraightTurn = 0.05f;
 
+// Stops of a cone's twist rest where 1 + cos(swing) is less, from 143 degrees on: a limb that points straight back has no twist, and near
+// there it changes by any amount at once.
+constexpr float kLeastTwistTold = 0.2f;
+
 }  // namespace gyre

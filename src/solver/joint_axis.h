@@ -34,6 +34,7 @@ struct AxisWork {
   JointAxis index = JointAxis::linear_x;
   bool has_low = false, has_high = false;
   bool is_rod = false;  // one two-sided stop at limits.low, its impulse in low_impulse
+  float slack = 0.0f;   // by how much farther than the limits both stops are
   AxisRow row;
   float mass = 0.0f;          // effective
   float bend = 0.0f;          // m/s: how far the position changes in the sub-step beyond what the row sees
@@ -48,6 +49,10 @@ inline bool acts(const JointAxisRecord& axis) {
   return axis.motion == AxisMotion::limited || axis.motor_force > 0.0f || axis.friction > 0.0f ||
          has_spring(axis);
 }
+
+// How far it is to the stops.
+inline float low_gap(const AxisWork& x) { return x.axis.position - x.axis.limits.low + x.slack; }
+inline float high_gap(const AxisWork& x) { return x.axis.limits.high - x.axis.position + x.slack; }
 
 float axis_speed(const AxisRow& row, const JointPair& pair);
 void push_axis(const AxisRow& row, float impulse, JointPair& pair);

@@ -8,6 +8,16 @@ namespace gyre {
 
 namespace {
 
+// Of stops that cannot be reached.
+constexpr float kAway = 1.0e9f;  // rad
+
+// The twist of a cone the nearer way round to its stops, if these are less than a turn apart.
+float near_stops(const JointAxisRecord& axis, float position) {
+  const Limits& l = axis.limits;
+  const bool is_near = axis.motion == AxisMotion::limited && l.high - l.low < 2.0f * kPi;
+  return is_near ? unwrapped(position, 0.5f * (l.low + l.high)) : position;
+}
+
 // ------------------------------------------------------------------------------------------------------ Cardan angles
 
 // The rotation from a's frame to b's as turns about x, then y, then z: the axes about which they turn, world, and the angles.
@@ -234,7 +244,9 @@ void place_cone(JointRecord& joint, JointWork& work, const JointPair& pair, cons
   for (AxisWork& x : work.axes) {
     if (x.index == JointAxis::angular_x) {
       const Vec3 about = twist_axis(work.frame_a, work.frame_b);
-      place_axis_work(x, {{}, {}, about, about}, joint.position, pair, settings);
+      const Vec3 x_a = rotate(work.frame_a, {1, 0, 0}), x_b = rotate(work.frame_b, {1, 0, 0});
+      x.slack = 1.0f + dot(x_a, x_b) < kLeastTwistTold ? kAway : 0.0f;
+      place_axis_work(x, {{}, {}, about, about}, near_stops(x.axis, joint.position), pair, settings);
     } else {
       const SwingStop stop = find_swing_stop(*work.detail, work.frame_a, work.frame_b);
       x.axis.limits = {};

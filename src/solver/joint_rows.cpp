@@ -82,8 +82,8 @@ class AxisRows {
     if (x_.is_rod) return;  // an equation
     const bool turns = x_.row.push_b == Vec3{} && x_.row.push_a == Vec3{};
     const float least = turns ? -kMostErrors.turn : -1.0e30f;
-    if (x_.has_low) add_stop(axis.low_impulse, max(axis.position - axis.limits.low, least), 1.0f);
-    if (x_.has_high) add_stop(axis.high_impulse, max(axis.limits.high - axis.position, least), -1.0f);
+    if (x_.has_low) add_stop(axis.low_impulse, max(low_gap(x_), least), 1.0f);
+    if (x_.has_high) add_stop(axis.high_impulse, max(high_gap(x_), least), -1.0f);
   }
 
  private:

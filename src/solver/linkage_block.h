@@ -115,8 +115,9 @@ GYRE_INLINE void gather_fours(const float* base, const std::int32_t* indices, co
   }
 }
 
+// (These two are not inline: every stage has them.)
 template <int W>
-GYRE_INLINE void load_velocities(const Bundle<W>& bundle, const LaneArrays& arrays) {
+__attribute__((noinline)) void load_velocities(const Bundle<W>& bundle, const LaneArrays& arrays) {
   for (std::uint32_t i = 0; i < bundle.plain.body_count; ++i) {
     LinkedBody<W>& body = bundle.bodies[i];
     Wide<W> c[8];
@@ -127,7 +128,7 @@ GYRE_INLINE void load_velocities(const Bundle<W>& bundle, const LaneArrays& arra
 }
 
 template <int W>
-GYRE_INLINE void store_velocities(const Bundle<W>& bundle, const LaneArrays& arrays) {
+__attribute__((noinline)) void store_velocities(const Bundle<W>& bundle, const LaneArrays& arrays) {
   // Adding zero keeps -0 out of the state.
   const Wide<W> zero(0.0f);
   for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i) {

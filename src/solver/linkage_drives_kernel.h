@@ -19,7 +19,7 @@ GYRE_INLINE void place_hinge_drives(const LinkedJoint<W>& joint, LinkedDrives<W>
 }
 
 template <int W>
-GYRE_INLINE void place_drives(const Bundle<W>& bundle) {
+__attribute__((noinline)) void place_drives(const Bundle<W>& bundle) {
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
     const LaneNode& node = bundle.plain.nodes[n];
     if (!node.is_driven()) continue;
@@ -41,9 +41,9 @@ GYRE_INLINE void place_drives(const Bundle<W>& bundle) {
 
 // -------------------------------------------------------------------------------------------------------------- sweep
 
-// Turns b by an impulse, and a by its opposite; inertias as they are.
+// Turns b by an impulse, and a by its opposite; inertias as they are. (Not inline: it is asked for in many places.)
 template <int W>
-GYRE_INLINE void turn_joint(const Bundle<W>& bundle, const LaneNode& node, Vec3W<W> t) {
+__attribute__((noinline)) void turn_joint(const Bundle<W>& bundle, const LaneNode& node, Vec3W<W> t) {
   if (bundle.moves(node.a)) bundle.bodies[node.a].angular -= bundle.bodies[node.a].own_inverse * t;
   if (bundle.moves(node.b)) bundle.bodies[node.b].angular += bundle.bodies[node.b].own_inverse * t;
 }
@@ -73,7 +73,7 @@ GYRE_INLINE void sweep_hinge(const Bundle<W>& bundle, const LaneNode& node, Vec3
 }
 
 template <int W>
-GYRE_INLINE void sweep_drives(const Bundle<W>& bundle) {
+__attribute__((noinline)) void sweep_drives(const Bundle<W>& bundle) {
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
     const LaneNode& node = bundle.plain.nodes[n];
     if (!node.is_driven()) continue;

@@ -173,6 +173,18 @@ GYRE_INLINE void solve_rows(const Bundle<W>& bundle, Mask<W> lanes = Mask<W>::sp
   }
 }
 
+// What is driven or rubs is swept, then the equations have the last word. (In one place each, as stops are: all that is long.)
+template <int W>
+__attribute__((noinline)) void solve_again(const Bundle<W>& bundle) {
+  if (bundle.plain.drive_count > 0) sweep_drives(bundle);
+  solve_rows<W, Asks::again>(bundle);
+}
+template <int W>
+__attribute__((noinline)) void relax(const Bundle<W>& bundle, Mask<W> lanes) {
+  if (bundle.plain.drive_count > 0) sweep_drives(bundle);
+  if (any(lanes)) solve_rows<W, Asks::relax>(bundle, lanes);
+}
+
 // -------------------------------------------------------------------------------------------------------------- stops
 
 // What a stop bore in the last part of the step, along its axis as it is now; what nothing can turn bears nothing.
@@ -203,15 +215,6 @@ template <int W>
 __attribute__((noinline)) void solve_stops(const Bundle<W>& bundle, const LaneSettings& s, ErrorBounds bounds,
                                            Mask<W> lanes = Mask<W>::splat(true)) {
   if (bundle.plain.stop_count > 0) LaneStops<W>(bundle, s, bounds).solve(lanes);
-}
-
-// --------------------------------------------------------------------------------------------------------------- drives
-
-// What is driven or rubs is swept, then the equations are solved. (In one place, as stops are.)
-template <int W>
-__attribute__((noinline)) void solve_driven(const Bundle<W>& bundle) {
-  sweep_drives(bundle);
-  solve_rows<W, Asks::again>(bundle);
 }
 
 template <int W>
@@ -257,7 +260,7 @@ void solve_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const La
   push_kept(bundle);
   if (plain.drive_count > 0) {
     push_driven(bundle);
-    solve_driven(bundle);
+    solve_again(bundle);
   } else {
     solve_rows<W, Asks::first>(bundle);
   }
@@ -270,16 +273,13 @@ template <int W>
 void solve_bundle_again(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const Bundle<W> bundle(plain);
   load_velocities(bundle, arrays);
-  if (plain.drive_count > 0)
-    solve_driven(bundle);
-  else
-    solve_rows<W, Asks::again>(bundle);
+  solve_again(bundle);
   solve_stops(bundle, s, kMostErrors);
   store_velocities(bundle, arrays);
 }
 
 template <int W>
-GYRE_INLINE void sum_impulses(const Bundle<W>& bundle) {
+__attribute__((noinline)) void sum_impulses(const Bundle<W>& bundle) {
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
     const LaneNode& node = bundle.plain.nodes[n];
     LinkedJoint<W>& joint = bundle.joints[n];
@@ -300,6 +300,23 @@ GYRE_INLINE Mask<W> find_fast(const Bundle<W>& bundle, float substep) {
   return (substep * substep) * most > kStraightTurn * kStraightTurn;
 }
 
+// Those in which a stop that is passed by more than a little takes that back. What it gives for it is taken away at once: a stop only pushes,
+// so the next part does not ask the speed back, and the limb would keep it.
+template <int W>
+GYRE_INLINE Mask<W> find_taken_back(const Bundle<W>& bundle) {
+  constexpr float kLittle = 5.0e-3f;  // rad
+  Mask<W> any_back = Mask<W>::splat(false);
+  const auto look = [&](const LinkedAxis<W>& axis) {
+    any_back = any_back | ((axis.low_impulse > 0.0f) & (axis.low_gap < -kLittle)) |
+               ((axis.high_impulse > 0.0f) & (axis.high_gap < -kLittle));
+  };
+  for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
+    if (bundle.plain.nodes[n].has_twist) look(bundle.joints[n].twist);
+    if (bundle.plain.nodes[n].has_swing) look(bundle.joints[n].swing);
+  }
+  return any_back;
+}
+
 // After a move that is not the last: sums the impulses, and asks for what the next part begins with. The speed that took errors back is
 // left to that part: only forces come before its first solution, which leaves J v as wanted whatever it was. Where bodies turn far the
 // speed is taken away here, since the bend is asked for of these velocities, and limbs that start out of their limits would be flung;
@@ -310,12 +327,10 @@ void pass_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const Lan
   load_velocities(bundle, arrays);
   const bool is_driven = plain.drive_count > 0;
   const Mask<W> fast = find_fast(bundle, s.substep), relaxed = is_driven ? Mask<W>::splat(true) : fast;
-  if (is_driven) sweep_drives(bundle);
-  if (any(relaxed)) {
-    solve_rows<W, Asks::relax>(bundle, relaxed);
-    if (any(fast)) solve_stops(bundle, s, kNoErrors, fast);
-    store_velocities(bundle, arrays);
-  }
+  const Mask<W> stopped = fast | find_taken_back(bundle);
+  relax(bundle, relaxed);
+  if (any(stopped)) solve_stops(bundle, s, kNoErrors, stopped);
+  if (any(relaxed | stopped)) store_velocities(bundle, arrays);
   ask_lanes(bundle, s, s.first_errors);
   sum_impulses(bundle);
 }
@@ -324,8 +339,7 @@ template <int W>
 void finish_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const Bundle<W> bundle(plain);
   load_velocities(bundle, arrays);
-  if (plain.drive_count > 0) sweep_drives(bundle);
-  solve_rows<W, Asks::relax>(bundle);
+  relax(bundle, Mask<W>::splat(true));
   solve_stops(bundle, s, kNoErrors);
   sum_impulses(bundle);
   store_velocities(bundle, arrays);

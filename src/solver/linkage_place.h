@@ -10,6 +10,9 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
+// Of stops that cannot be reached.
+constexpr float kAway = 1.0e9f;  // rad
+
 // As in solver/linkage.cpp.
 constexpr float kLanePull = 1.0f;
 
@@ -31,10 +34,18 @@ GYRE_INLINE void place_axis(LinkedAxis<W>& axis, Vec3W<W> about, const LinkedBod
   axis.mass = keep(k > 0.0f, 1.0f / k);
 }
 
+// `slack`: by how much farther both stops are.
 template <int W>
-GYRE_INLINE void place_twist(LinkedAxis<W>& axis, Wide<W> position) {
-  axis.low_gap = max(position - axis.low, Wide<W>(-kMostErrors.turn));
-  axis.high_gap = max(axis.high - position, Wide<W>(-kMostErrors.turn));
+GYRE_INLINE void place_twist(LinkedAxis<W>& axis, Wide<W> position, Wide<W> slack = Wide<W>(0.0f)) {
+  axis.low_gap = max(position - axis.low + slack, Wide<W>(-kMostErrors.turn));
+  axis.high_gap = max(axis.high - position + slack, Wide<W>(-kMostErrors.turn));
+}
+
+// The twist of a cone the nearer way round to its stops, if these are less than a turn apart.
+template <int W>
+GYRE_INLINE Wide<W> near_stops(const LinkedAxis<W>& axis, Wide<W> position) {
+  const Wide<W> near = unwrapped(position, 0.5f * (axis.low + axis.high));
+  return select(axis.high - axis.low < 2.0f * kWidePi, near, position);
 }
 
 // How far b's axis may still lean out of a's, and the axis about which the stop is nearest: find_swing_stop() of
@@ -58,7 +69,7 @@ GYRE_INLINE void place_swing(LinkedJoint<W>& joint, const Mat3W<W>& frame_a, Vec
   const Wide<W> smallest = 1.0f / max(joint.swing_grip_y, joint.swing_grip_z);
   Vec3W<W> about = keep(opposite, frame_a.y);
   about = select(leans, raw / size, about);
-  Wide<W> gap = select(opposite, smallest - angle, Wide<W>(1.0e9f));
+  Wide<W> gap = select(opposite, smallest - angle, Wide<W>(kAway));
   gap = select(leans, (1.0f - share * angle) / size, gap);
   place_axis(joint.swing, about, a, b);
   joint.swing.low_gap = gap;  // as it is
@@ -80,18 +91,23 @@ GYRE_INLINE void place_lane_joint(const LaneNode& node, LinkedJoint<W>& joint, c
   const Vec3W<W> x_b = rotate(turned_b, Vec3W<W>{1.0f, 0.0f, 0.0f});
   const QuatW<W> twist = conjugate(turned_a) * turned_b;
   joint.position = unwrapped(2.0f * atan2(twist.x, twist.w), joint.position);
-  if (node.has_twist) place_twist(joint.twist, joint.position);
   if (node.kind == JointKind::hinge) {
     joint.axis = frame_a.x;
     joint.perpendicular_1 = frame_a.y;
     joint.perpendicular_2 = frame_a.z;
     joint.angular_error = within(cross(frame_a.x, x_b), kMostErrors.turn);
-    if (node.has_twist) place_axis(joint.twist, frame_a.x, a, b);
+    if (!node.has_twist) return;
+    place_twist(joint.twist, joint.position);
+    place_axis(joint.twist, frame_a.x, a, b);
     return;
   }
   // Half-way between the axes of a and b.
-  if (node.has_twist)
-    place_axis(joint.twist, (frame_a.x + x_b) / max(1.0f + dot(frame_a.x, x_b), Wide<W>(0.05f)), a, b);
+  if (node.has_twist) {
+    const Wide<W> told = 1.0f + dot(frame_a.x, x_b);
+    place_twist(joint.twist, near_stops(joint.twist, joint.position),
+                keep(told < kLeastTwistTold, Wide<W>(kAway)));
+    place_axis(joint.twist, (frame_a.x + x_b) / max(told, Wide<W>(0.05f)), a, b);
+  }
   if (node.has_swing) place_swing(joint, frame_a, x_b, a, b);
 }
 

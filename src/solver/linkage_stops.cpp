@@ -81,8 +81,8 @@ class StopSolve {
         if (!has_hard_stop(x) || !(x.mass > 0.0f)) continue;
         const bool turns = x.row.push_b == Vec3{} && x.row.push_a == Vec3{};
         const float least = turns ? -bounds_.turn : -bounds_.point;
-        if (x.has_low) consider({n, &x, 1.0f}, max(x.axis.position - x.axis.limits.low, least));
-        if (x.has_high) consider({n, &x, -1.0f}, max(x.axis.limits.high - x.axis.position, least));
+        if (x.has_low) consider({n, &x, 1.0f}, max(low_gap(x), least));
+        if (x.has_high) consider({n, &x, -1.0f}, max(high_gap(x), least));
       }
       if (count_ == kMostStops)
         first_ = n;  // those of its stops that found no room come first in the next round

@@ -463,7 +463,11 @@ class LaneStops {
       const Wide<W> own = slot_ways_[i * row_length() + i];
       slots_[i].share = keep(own > 0.0f, -kLaneReach / own);
     }
-    slots <= kFewSlots ? sweep_few(slots, live) : sweep_many(slots, live);
+    // One lane has no use for the registers, and the few slots' code is long.
+    if (W > 1 && slots <= kFewSlots)
+      sweep_few(slots, live);
+    else
+      sweep_many(slots, live);
     for (std::uint32_t lane = 0; lane < W; ++lane) {
       for (std::uint32_t i = 0; i < counts[lane]; ++i) {
         const std::uint32_t end = ends_[i * W + lane];
