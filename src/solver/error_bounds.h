@@ -16,6 +16,9 @@ constexpr ErrorBounds kMostErrors{0.1f, 0.2f};
 // or a rope would slip round a drum by what it gives; but limbs that are wedged in a heap pressed each other with tons.
 constexpr ErrorBounds kErrorsBeforeContacts{0.5e-3f, 5.0e-3f};
 constexpr ErrorBounds kNoErrors{0.0f, 0.0f};
+// rad. What a stop that turns is passed by is taken back as if it were no more than this: slower than what joints do not allow, since its axis
+// turns meanwhile, and of what it gives some is kept then.
+constexpr float kMostStopError = 0.1f;
 
 // rad. Bodies that turn by less than the first in a sub-step do so along a straight line; of those that turn by more than the second, the
 // rows ask for less and less of the bend: a whip's end then loses energy instead of gaining it.

@@ -160,7 +160,7 @@ void solve_axis(AxisWork& x, JointPair& pair, const JointSettings& settings, boo
     return;
   }
   if (!settings.swept && !(axis.limit_frequency > 0.0f)) return;
-  const float least = x.row.push_b == Vec3{} && x.row.push_a == Vec3{} ? -kMostErrors.turn : -1.0e30f;
+  const float least = x.row.push_b == Vec3{} && x.row.push_a == Vec3{} ? -kMostStopError : -1.0e30f;
   if (x.has_low) {
     const float gap = max(low_gap(x), least);
     change(axis.low_impulse, end_change(x, speed(), gap, axis.low_impulse, settings, soft), 1.0f);

@@ -81,7 +81,7 @@ class AxisRows {
     }
     if (x_.is_rod) return;  // an equation
     const bool turns = x_.row.push_b == Vec3{} && x_.row.push_a == Vec3{};
-    const float least = turns ? -kMostErrors.turn : -1.0e30f;
+    const float least = turns ? -kMostStopError : -1.0e30f;
     if (x_.has_low) add_stop(axis.low_impulse, max(low_gap(x_), least), 1.0f);
     if (x_.has_high) add_stop(axis.high_impulse, max(high_gap(x_), least), -1.0f);
   }

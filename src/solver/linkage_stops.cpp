@@ -80,7 +80,7 @@ class StopSolve {
       for (AxisWork& x : solve_.work[node.work].axes) {
         if (!has_hard_stop(x) || !(x.mass > 0.0f)) continue;
         const bool turns = x.row.push_b == Vec3{} && x.row.push_a == Vec3{};
-        const float least = turns ? -bounds_.turn : -bounds_.point;
+        const float least = turns ? -min(bounds_.turn, kMostStopError) : -bounds_.point;
         if (x.has_low) consider({n, &x, 1.0f}, max(low_gap(x), least));
         if (x.has_high) consider({n, &x, -1.0f}, max(high_gap(x), least));
       }

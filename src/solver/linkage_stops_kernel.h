@@ -158,7 +158,7 @@ class LaneStops {
   }
   GYRE_INLINE Wide<W> asked(Wide<W> gap) const {
     const Wide<W> rate = select(gap > 0.0f, Wide<W>(1.0f / s_.substep), Wide<W>(s_.rate));
-    return Wide<W>(0.0f) - rate * max(gap, Wide<W>(-bounds_.turn));
+    return Wide<W>(0.0f) - rate * max(max(gap, Wide<W>(-bounds_.turn)), Wide<W>(-kMostStopError));
   }
 
   GYRE_INLINE void find(Mask<W> live) {

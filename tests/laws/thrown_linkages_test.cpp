@@ -59,7 +59,7 @@ void throw_tree(std::uint32_t seed, const Throw& how, double& most) {
 }
 
 // Bends of joints, which sub-steps find to some percent of what a fast limb has, may give a little. Where cones may point straight back, their twist is told by
-// nothing there: a limb that comes back from there out of its limits is taken back at up to 8 rad/s, and may keep of that what its own
+// nothing there: a limb that comes back from there out of its limits is taken back at up to 4 rad/s, and may keep of that what its own
 // energy is.
 TEST(ThrownLinkages, GainNothingFromStops) {
   constexpr std::uint32_t kTrees = 60;
