@@ -85,7 +85,8 @@ std::span<const std::uint8_t> begun_in_lanes(const Solve& solve) {
 void begin_joints(Solve& solve, float warm_scale, Arena& arena) {
   DenseNets& nets = solve.scratch.dense_nets;
   solve.is_net = !solve.net_joints.empty() && nets.holds(solve.net_joints);
-  solve.lane_start = {warm_scale, false, solve.h, solve.joint_settings.softness};
+  solve.lane_start = {
+      .warm_scale = warm_scale, .substep = solve.h, .softness = solve.joint_settings.softness};
   solve.linkages = solve.is_net ? no_linkages(solve.net_joints.size(), arena)
                                 : find_linkages(solve.w, solve.batch, solve.places, solve.net_joints,
                                                 solve.lane_start, nets, arena);

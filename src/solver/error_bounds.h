@@ -32,5 +32,7 @@ constexpr float kStraightTurn = 0.05f;
 // Stops of a cone's twist rest where 1 + cos(swing) is less, from 143 degrees on: a limb that points straight back has no twist, and near
 // there it changes by any amount at once.
 constexpr float kLeastTwistTold = 0.2f;
+// Of stops that cannot be reached.
+constexpr float kAway = 1.0e9f;  // rad
 
 }  // namespace gyre

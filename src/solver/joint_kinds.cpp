@@ -8,14 +8,18 @@ namespace gyre {
 
 namespace {
 
-// Of stops that cannot be reached.
-constexpr float kAway = 1.0e9f;  // rad
-
-// The twist of a cone the nearer way round to its stops, if these are less than a turn apart.
-float near_stops(const JointAxisRecord& axis, float position) {
+// Near what the twist of a cone is told: the nearer way round to its stops, if these are less than a turn apart; otherwise as it was last.
+float near_twist(const JointRecord& joint, const JointDetail* detail) {
+  if (detail == nullptr) return joint.position;
+  const JointAxisRecord& axis = detail->axes[int(JointAxis::angular_x)];
   const Limits& l = axis.limits;
   const bool is_near = axis.motion == AxisMotion::limited && l.high - l.low < 2.0f * kPi;
-  return is_near ? unwrapped(position, 0.5f * (l.low + l.high)) : position;
+  return is_near ? 0.5f * (l.low + l.high) : joint.position;
+}
+
+// 1 + cos(swing): how well the twist of a cone is told from its swing.
+float twist_told(Quat frame_a, Quat frame_b) {
+  return 1.0f + dot(rotate(frame_a, {1, 0, 0}), rotate(frame_b, {1, 0, 0}));
 }
 
 // ------------------------------------------------------------------------------------------------------ Cardan angles
@@ -238,15 +242,14 @@ void place_six_axes(JointRecord& joint, JointWork& work, const JointPair& pair,
 
 void place_cone(JointRecord& joint, JointWork& work, const JointPair& pair, const JointSettings& settings) {
   const Quat twist = conjugate(work.frame_a) * work.frame_b;
-  work.position = joint.position = unwrapped(2.0f * atan2(twist.x, twist.w), joint.position);
+  work.position = joint.position = unwrapped(2.0f * atan2(twist.x, twist.w), near_twist(joint, work.detail));
   if (work.detail == nullptr) return;
   work.detail->axes[3].position = joint.position;
   for (AxisWork& x : work.axes) {
     if (x.index == JointAxis::angular_x) {
       const Vec3 about = twist_axis(work.frame_a, work.frame_b);
-      const Vec3 x_a = rotate(work.frame_a, {1, 0, 0}), x_b = rotate(work.frame_b, {1, 0, 0});
-      x.slack = 1.0f + dot(x_a, x_b) < kLeastTwistTold ? kAway : 0.0f;
-      place_axis_work(x, {{}, {}, about, about}, near_stops(x.axis, joint.position), pair, settings);
+      x.slack = twist_told(work.frame_a, work.frame_b) < kLeastTwistTold ? kAway : 0.0f;
+      place_axis_work(x, {{}, {}, about, about}, joint.position, pair, settings);
     } else {
       const SwingStop stop = find_swing_stop(*work.detail, work.frame_a, work.frame_b);
       x.axis.limits = {};

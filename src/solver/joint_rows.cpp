@@ -80,6 +80,10 @@ class AxisRows {
       end_row(row, joint_.body_a, joint_.body_b, frame_);
     }
     if (x_.is_rod) return;  // an equation
+    if (x_.slack > 0.0f) {  // no rows for what cannot be reached
+      axis.low_impulse = axis.high_impulse = 0.0f;
+      return;
+    }
     const bool turns = x_.row.push_b == Vec3{} && x_.row.push_a == Vec3{};
     const float least = turns ? -kMostStopError : -1.0e30f;
     if (x_.has_low) add_stop(axis.low_impulse, max(low_gap(x_), least), 1.0f);

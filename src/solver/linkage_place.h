@@ -10,9 +10,6 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// Of stops that cannot be reached.
-constexpr float kAway = 1.0e9f;  // rad
-
 // As in solver/linkage.cpp.
 constexpr float kLanePull = 1.0f;
 
@@ -41,11 +38,13 @@ GYRE_INLINE void place_twist(LinkedAxis<W>& axis, Wide<W> position, Wide<W> slac
   axis.high_gap = max(axis.high - position + slack, Wide<W>(-kMostErrors.turn));
 }
 
-// The twist of a cone the nearer way round to its stops, if these are less than a turn apart.
+// Near what the twist of a joint is told: of a cone the nearer way round to its stops, if these are less than a turn apart; otherwise as
+// it was last.
 template <int W>
-GYRE_INLINE Wide<W> near_stops(const LinkedAxis<W>& axis, Wide<W> position) {
-  const Wide<W> near = unwrapped(position, 0.5f * (axis.low + axis.high));
-  return select(axis.high - axis.low < 2.0f * kWidePi, near, position);
+GYRE_INLINE Wide<W> near_twist(const LaneNode& node, const LinkedJoint<W>& joint) {
+  if (node.kind == JointKind::hinge || !node.has_twist) return joint.position;
+  const LinkedAxis<W>& axis = joint.twist;
+  return select(axis.high - axis.low < 2.0f * kWidePi, 0.5f * (axis.low + axis.high), joint.position);
 }
 
 // How far b's axis may still lean out of a's, and the axis about which the stop is nearest: find_swing_stop() of
@@ -90,7 +89,7 @@ GYRE_INLINE void place_lane_joint(const LaneNode& node, LinkedJoint<W>& joint, c
   const Mat3W<W> frame_a = to_matrix(turned_a);
   const Vec3W<W> x_b = rotate(turned_b, Vec3W<W>{1.0f, 0.0f, 0.0f});
   const QuatW<W> twist = conjugate(turned_a) * turned_b;
-  joint.position = unwrapped(2.0f * atan2(twist.x, twist.w), joint.position);
+  joint.position = unwrapped(2.0f * atan2(twist.x, twist.w), near_twist(node, joint));
   if (node.kind == JointKind::hinge) {
     joint.axis = frame_a.x;
     joint.perpendicular_1 = frame_a.y;
@@ -104,8 +103,7 @@ GYRE_INLINE void place_lane_joint(const LaneNode& node, LinkedJoint<W>& joint, c
   // Half-way between the axes of a and b.
   if (node.has_twist) {
     const Wide<W> told = 1.0f + dot(frame_a.x, x_b);
-    place_twist(joint.twist, near_stops(joint.twist, joint.position),
-                keep(told < kLeastTwistTold, Wide<W>(kAway)));
+    place_twist(joint.twist, joint.position, keep(told < kLeastTwistTold, Wide<W>(kAway)));
     place_axis(joint.twist, (frame_a.x + x_b) / max(told, Wide<W>(0.05f)), a, b);
   }
   if (node.has_swing) place_swing(joint, frame_a, x_b, a, b);
