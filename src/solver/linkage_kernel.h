@@ -300,19 +300,23 @@ GYRE_INLINE Mask<W> find_fast(const Bundle<W>& bundle, float substep) {
   return (substep * substep) * most > kStraightTurn * kStraightTurn;
 }
 
-// Those in which a stop that is passed by more than a little takes that back. What it gives for it is taken away at once: a stop only pushes,
-// so the next part does not ask the speed back, and the limb would keep it.
+// Those in which a stop pushes a limb back faster than it may stay. What it gives for that is taken away at once: a stop only pushes, so
+// the next part, whose stops begin with what they gave, does not take it all back.
 template <int W>
 GYRE_INLINE Mask<W> find_taken_back(const Bundle<W>& bundle) {
-  constexpr float kLittle = 5.0e-3f;  // rad
+  constexpr float kMostKept = 0.01f;  // rad/s
   Mask<W> any_back = Mask<W>::splat(false);
-  const auto look = [&](const LinkedAxis<W>& axis) {
-    any_back = any_back | ((axis.low_impulse > 0.0f) & (axis.low_gap < -kLittle)) |
-               ((axis.high_impulse > 0.0f) & (axis.high_gap < -kLittle));
-  };
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
-    if (bundle.plain.nodes[n].has_twist) look(bundle.joints[n].twist);
-    if (bundle.plain.nodes[n].has_swing) look(bundle.joints[n].swing);
+    const LaneNode& node = bundle.plain.nodes[n];
+    if (!node.has_twist && !node.has_swing) continue;
+    const Vec3W<W> turning = turning_of(bundle, node);
+    const auto look = [&](const LinkedAxis<W>& axis) {
+      const Wide<W> speed = dot(axis.about, turning);
+      any_back = any_back | ((axis.low_impulse > 0.0f) & (speed > kMostKept)) |
+                 ((axis.high_impulse > 0.0f) & (speed < -kMostKept));
+    };
+    if (node.has_twist) look(bundle.joints[n].twist);
+    if (node.has_swing) look(bundle.joints[n].swing);
   }
   return any_back;
 }

@@ -78,5 +78,26 @@ TEST(ThrownLinkages, GainNothingFromStops) {
   }
 }
 
+// Beyond its stop and at rest, a limb is brought back within it and stays there: what brought it, at up to 4 rad/s, is not its own.
+TEST(ThrownLinkages, KeepNothingOfWhatTookThemBack) {
+  for (const JointKind kind : {JointKind::hinge, JointKind::cone}) {
+    for (const float beyond : {0.003f, 0.05f, 0.2f, 0.6f}) {
+      World world = make_world({.gravity = {0, 0, 0}, .sleeping = false});
+      const BodyId limb = world.add_body(point_body(1.0, {0.01f, 0.02f, 0.02f}, {0.5, 0, 0}));
+      ASSERT_TRUE(
+          world.add_joint({.kind = kind, .b = limb, .axis = {0, 0, 1}, .limits = Limits{-0.3f, 0.3f}}));
+      const Quat turn = from_axis_angle({0, 0, 1}, 0.3f + beyond);
+      ASSERT_TRUE(world.set_pose(limb, {DVec3(rotate(turn, {0.5f, 0, 0})), turn}));
+      run(world, 1.0);
+      const Quat now = world.pose(limb).orientation;
+      const float angle = 2.0f * std::atan2(now.z, now.w);
+      EXPECT_LT(angle, 0.3f + 1.0e-3f);
+      EXPECT_GT(angle, 0.3f - 0.02f) << "it drifted away from its stop";
+      EXPECT_TRUE(limit_row("speed of a limb that was taken back (rad/s)",
+                            double(length(world.angular_velocity(limb))), 0.02, 0.001));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace gyre::laws
