@@ -12,164 +12,10 @@
 // copy of a function for another's. Such a file includes nothing but this, wide_vec.h and headers of its own kind.
 #pragma once
 
-#include <cstdint>
-
-#if defined(__AVX__)
-#include <immintrin.h>
-#elif defined(__SSE2__)
-#include <emmintrin.h>
-#elif defined(__aarch64__)
-#include <arm_neon.h>
-#elif defined(__wasm_simd128__)
-#include <wasm_simd128.h>
-#endif
-
-// Functions must be inlined even in debug builds: a call would pass vectors through memory, and an emitted copy is what
-// the namespace above guards against.
-#define GYRE_INLINE inline __attribute__((always_inline))
-
-#ifndef GYRE_TARGET_NAMESPACE
-#define GYRE_TARGET_NAMESPACE w_default
-#endif
-
-// Compilers note that vectors wider than the CPU's registers have no stable calling convention; here nothing is called.
-#pragma GCC diagnostic ignored "-Wpsabi"
-
-// Before a short loop over lanes or columns whose arrays must become registers; and before one whose body is long enough already, of
-// which a compiler would make several copies one after the other.
-#if defined(__clang__)
-#define GYRE_UNROLL _Pragma("clang loop unroll(full)")
-#define GYRE_ROLLED _Pragma("clang loop unroll(disable)")
-#else
-#define GYRE_UNROLL _Pragma("GCC unroll 16")
-#define GYRE_ROLLED _Pragma("GCC unroll 1")
-#endif
+#include "math/wide_mask.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
-
-// The compiler's vector types for W lanes; plain numbers for one lane. The loose ones may lie anywhere in memory.
-template <int W>
-struct Lanes {
-  static_assert(W == 4 || W == 8 || W == 16);
-  typedef float Float __attribute__((vector_size(4 * W)));
-  typedef std::int32_t Int __attribute__((vector_size(4 * W)));
-  typedef std::uint32_t Unsigned __attribute__((vector_size(4 * W)));
-  typedef float AnyFloat __attribute__((vector_size(4 * W), may_alias));
-  typedef float LooseFloat __attribute__((vector_size(4 * W), aligned(4), may_alias));
-  typedef std::int32_t AnyInt __attribute__((vector_size(4 * W), may_alias));
-  typedef std::int32_t LooseInt __attribute__((vector_size(4 * W), aligned(4), may_alias));
-};
-template <>
-struct Lanes<1> {
-  using Float = float;
-  using Int = std::int32_t;
-  using Unsigned = std::uint32_t;
-  using AnyFloat = float;
-  using LooseFloat = float;
-  using AnyInt = std::int32_t;
-  using LooseInt = std::int32_t;
-};
-
-// --------------------------------------------------------------------------------------------------------------- masks
-
-// A truth value for each lane: all bits set or none.
-template <int W>
-struct Mask {
-  using Int = typename Lanes<W>::Int;
-  Int v;
-
-  static GYRE_INLINE Mask of(Int lanes) {
-    Mask mask;
-    mask.v = lanes;
-    return mask;
-  }
-  static GYRE_INLINE Mask splat(bool value) { return of((value ? -1 : 0) - Int{}); }
-  // Of the result of a comparison: a vector of 0 and -1, or a bool.
-  template <class T>
-  static GYRE_INLINE Mask from(T compared) {
-    if constexpr (W == 1) {
-      return of(compared ? -1 : 0);
-    } else {
-      return of((Int)compared);
-    }
-  }
-
-  // The inverse of to_bits.
-  static GYRE_INLINE Mask of_bits(std::uint32_t bits) {
-    if constexpr (W == 1) {
-      return splat((bits & 1u) != 0u);
-    } else {
-      Int own{};
-      for (int i = 0; i < W; ++i) own[i] = 1 << i;
-      return from(((int(bits) - Int{}) & own) != Int{});
-    }
-  }
-
-  GYRE_INLINE bool operator[](int lane) const {
-    if constexpr (W == 1) {
-      return (void)lane, v != 0;
-    } else {
-      return v[lane] != 0;
-    }
-  }
-
-  friend GYRE_INLINE Mask operator&(Mask a, Mask b) { return of(a.v & b.v); }
-  friend GYRE_INLINE Mask operator|(Mask a, Mask b) { return of(a.v | b.v); }
-  friend GYRE_INLINE Mask operator^(Mask a, Mask b) { return of(a.v ^ b.v); }
-  friend GYRE_INLINE Mask operator~(Mask a) { return of(~a.v); }
-  // a and not b
-  friend GYRE_INLINE Mask and_not(Mask a, Mask b) { return of(a.v & ~b.v); }
-
-  // One bit for each lane, lane 0 the lowest.
-  friend GYRE_INLINE std::uint32_t to_bits(Mask mask) {
-    if constexpr (W == 1) {
-      return mask.v != 0 ? 1u : 0u;
-    } else {
-#if defined(__AVX512F__) && defined(__AVX512DQ__)
-      if constexpr (W == 16) return std::uint32_t(_mm512_movepi32_mask((__m512i)mask.v));
-#endif
-#if defined(__AVX__)
-      if constexpr (W == 8) return std::uint32_t(_mm256_movemask_ps((__m256)mask.v));
-#endif
-#if defined(__SSE2__)
-      if constexpr (W == 4) return std::uint32_t(_mm_movemask_ps((__m128)mask.v));
-#elif defined(__wasm_simd128__)
-      if constexpr (W == 4) return std::uint32_t(wasm_i32x4_bitmask((v128_t)mask.v));
-#endif
-      std::uint32_t bits = 0;
-      for (int i = 0; i < W; ++i) bits |= mask.v[i] != 0 ? 1u << i : 0u;
-      return bits;
-    }
-  }
-  friend GYRE_INLINE bool any(Mask mask) {
-#if defined(__aarch64__)
-    if constexpr (W == 4) return vmaxvq_u32((uint32x4_t)mask.v) != 0;
-#elif defined(__wasm_simd128__)
-    if constexpr (W == 4) return wasm_v128_any_true((v128_t)mask.v);
-#endif
-    return to_bits(mask) != 0u;
-  }
-  friend GYRE_INLINE bool all(Mask mask) {
-#if defined(__aarch64__)
-    if constexpr (W == 4) return vminvq_u32((uint32x4_t)mask.v) != 0;
-#elif defined(__wasm_simd128__)
-    if constexpr (W == 4) return wasm_i32x4_all_true((v128_t)mask.v);
-#endif
-    return to_bits(mask) == (1u << W) - 1u;
-  }
-  friend GYRE_INLINE bool none(Mask mask) { return !any(mask); }
-};
-
-// `mask ? a : b` on the lanes of either type.
-template <int W, class Vector>
-GYRE_INLINE Vector select_lanes(typename Lanes<W>::Int mask, Vector a, Vector b) {
-  if constexpr (W == 1) {
-    return mask != 0 ? a : b;
-  } else {
-    return mask ? a : b;
-  }
-}
 
 // -------------------------------------------------------------------------------------------------------------- floats
 
@@ -225,19 +71,20 @@ struct Wide {
   friend GYRE_INLINE Wide& operator-=(Wide& a, Wide b) { return a = a - b; }
   friend GYRE_INLINE Wide& operator*=(Wide& a, Wide b) { return a = a * b; }
 
-  friend GYRE_INLINE Mask<W> operator<(Wide a, Wide b) { return Mask<W>::from(a.v < b.v); }
-  friend GYRE_INLINE Mask<W> operator<=(Wide a, Wide b) { return Mask<W>::from(a.v <= b.v); }
-  friend GYRE_INLINE Mask<W> operator>(Wide a, Wide b) { return Mask<W>::from(a.v > b.v); }
-  friend GYRE_INLINE Mask<W> operator>=(Wide a, Wide b) { return Mask<W>::from(a.v >= b.v); }
-  friend GYRE_INLINE Mask<W> operator==(Wide a, Wide b) { return Mask<W>::from(a.v == b.v); }
-  friend GYRE_INLINE Mask<W> operator!=(Wide a, Wide b) { return Mask<W>::from(a.v != b.v); }
+  friend GYRE_INLINE Mask<W> operator<(Wide a, Wide b) { return compare<W, Order::less>(a.v, b.v); }
+  friend GYRE_INLINE Mask<W> operator<=(Wide a, Wide b) { return compare<W, Order::at_most>(a.v, b.v); }
+  friend GYRE_INLINE Mask<W> operator>(Wide a, Wide b) { return compare<W, Order::more>(a.v, b.v); }
+  friend GYRE_INLINE Mask<W> operator>=(Wide a, Wide b) { return compare<W, Order::at_least>(a.v, b.v); }
+  friend GYRE_INLINE Mask<W> operator==(Wide a, Wide b) { return compare<W, Order::equal>(a.v, b.v); }
+  friend GYRE_INLINE Mask<W> operator!=(Wide a, Wide b) { return compare<W, Order::unequal>(a.v, b.v); }
 
-  friend GYRE_INLINE Wide select(Mask<W> mask, Wide a, Wide b) {
-    return of(select_lanes<W>(mask.v, a.v, b.v));
-  }
+  friend GYRE_INLINE Wide select(Mask<W> mask, Wide a, Wide b) { return of(select_lanes(mask, a.v, b.v)); }
   // a < b ? a : b and a > b ? a : b; where an instruction does exactly that, it is named, since GCC does not find it when
   // one side is zero.
   friend GYRE_INLINE Wide min(Wide a, Wide b) {
+#if defined(__AVX512F__)
+    if constexpr (W == 16) return of((Float)_mm512_maskz_min_ps(__mmask16(0xffff), (__m512)a.v, (__m512)b.v));
+#endif
 #if defined(__AVX__)
     if constexpr (W == 8) return of((Float)_mm256_min_ps((__m256)a.v, (__m256)b.v));
 #endif
@@ -249,6 +96,9 @@ struct Wide {
     return select(a < b, a, b);
   }
   friend GYRE_INLINE Wide max(Wide a, Wide b) {
+#if defined(__AVX512F__)
+    if constexpr (W == 16) return of((Float)_mm512_maskz_max_ps(__mmask16(0xffff), (__m512)a.v, (__m512)b.v));
+#endif
 #if defined(__AVX__)
     if constexpr (W == 8) return of((Float)_mm256_max_ps((__m256)a.v, (__m256)b.v));
 #endif
@@ -261,7 +111,13 @@ struct Wide {
   }
   friend GYRE_INLINE Wide clamp(Wide value, Wide low, Wide high) { return min(max(value, low), high); }
   // `a` where the mask is set, +0 elsewhere: one operation less than select.
-  friend GYRE_INLINE Wide keep(Mask<W> mask, Wide a) { return from_bits(bits_of(a) & mask.v); }
+  friend GYRE_INLINE Wide keep(Mask<W> mask, Wide a) {
+    if constexpr (kMasksAreBits<W>) {
+      return select(mask, a, Wide(0.0f));
+    } else {
+      return from_bits(bits_of(a) & mask.v);
+    }
+  }
   // Without its sign: also -0 and NaN lose it.
   friend GYRE_INLINE Wide absolute(Wide a) { return from_bits(bits_of(a) & (0x7fffffff - Int{})); }
   // `magnitude` with the sign of `sign`.
@@ -375,15 +231,17 @@ struct WideInt {
     return of((Int)((Unsigned)a.v >> count));
   }
 
-  friend GYRE_INLINE Mask<W> operator<(WideInt a, WideInt b) { return Mask<W>::from(a.v < b.v); }
-  friend GYRE_INLINE Mask<W> operator<=(WideInt a, WideInt b) { return Mask<W>::from(a.v <= b.v); }
-  friend GYRE_INLINE Mask<W> operator>(WideInt a, WideInt b) { return Mask<W>::from(a.v > b.v); }
-  friend GYRE_INLINE Mask<W> operator>=(WideInt a, WideInt b) { return Mask<W>::from(a.v >= b.v); }
-  friend GYRE_INLINE Mask<W> operator==(WideInt a, WideInt b) { return Mask<W>::from(a.v == b.v); }
-  friend GYRE_INLINE Mask<W> operator!=(WideInt a, WideInt b) { return Mask<W>::from(a.v != b.v); }
+  friend GYRE_INLINE Mask<W> operator<(WideInt a, WideInt b) { return compare<W, Order::less>(a.v, b.v); }
+  friend GYRE_INLINE Mask<W> operator<=(WideInt a, WideInt b) { return compare<W, Order::at_most>(a.v, b.v); }
+  friend GYRE_INLINE Mask<W> operator>(WideInt a, WideInt b) { return compare<W, Order::more>(a.v, b.v); }
+  friend GYRE_INLINE Mask<W> operator>=(WideInt a, WideInt b) {
+    return compare<W, Order::at_least>(a.v, b.v);
+  }
+  friend GYRE_INLINE Mask<W> operator==(WideInt a, WideInt b) { return compare<W, Order::equal>(a.v, b.v); }
+  friend GYRE_INLINE Mask<W> operator!=(WideInt a, WideInt b) { return compare<W, Order::unequal>(a.v, b.v); }
 
   friend GYRE_INLINE WideInt select(Mask<W> mask, WideInt a, WideInt b) {
-    return of(select_lanes<W>(mask.v, a.v, b.v));
+    return of(select_lanes(mask, a.v, b.v));
   }
   friend GYRE_INLINE WideInt min(WideInt a, WideInt b) { return select(a < b, a, b); }
   friend GYRE_INLINE WideInt max(WideInt a, WideInt b) { return select(a > b, a, b); }
@@ -418,7 +276,7 @@ GYRE_INLINE Wide<W> from_bit_pattern(WideInt<W> a) {
 // A mask as integers 0 and -1, and the lanes of integers that are not zero.
 template <int W>
 GYRE_INLINE WideInt<W> to_int(Mask<W> mask) {
-  return WideInt<W>::of(mask.v);
+  return WideInt<W>::of(to_lanes(mask));
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

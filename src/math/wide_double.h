@@ -139,6 +139,9 @@ struct WideDouble {
     if constexpr (H == 1) {
       return a.v <= b.v;
     } else {
+#if defined(__AVX512F__)
+      if constexpr (H == 8) return _mm512_cmp_pd_mask((__m512d)a.v, (__m512d)b.v, _CMP_LE_OS) == 0xff;
+#endif
       const auto is = a.v <= b.v;
 #if defined(__AVX__)
       if constexpr (H == 4) return _mm256_movemask_pd((__m256d)is) == 15;

@@ -384,24 +384,29 @@ struct Rows {
     } else if constexpr (W == 8) {
       return join(quad(record[j] + first), quad(record[4 + j] + first));
     } else {
-      const auto low = join(quad(record[j] + first), quad(record[4 + j] + first));
-      const auto high = join(quad(record[8 + j] + first), quad(record[12 + j] + first));
-      return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+      const Quad q0 = quad(record[j] + first), q1 = quad(record[4 + j] + first);
+      const Quad q2 = quad(record[8 + j] + first), q3 = quad(record[12 + j] + first);
+#if defined(__AVX512F__)
+      // As they come from memory: that takes no shuffle.
+      __m512 row = _mm512_castps128_ps512((__m128)q0);
+      row = _mm512_insertf32x4(row, (__m128)q1, 1);
+      row = _mm512_insertf32x4(row, (__m128)q2, 2);
+      return (Float)_mm512_insertf32x4(row, (__m128)q3, 3);
+#else
+      return __builtin_shufflevector(join(q0, q1), join(q2, q3), 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13,
+                                     14, 15);
+#endif
     }
   }
 
   // Writes the first `Count` (1 to 4) floats of row j.
   template <int Count>
   static GYRE_INLINE void store(Float row, float* const (&record)[W], int j, int first) {
-    if constexpr (W == 4) {
-      put<Count>(record[j] + first, row);
-    } else {
-      put<Count>(record[j] + first, __builtin_shufflevector(row, row, 0, 1, 2, 3));
-      put<Count>(record[4 + j] + first, __builtin_shufflevector(row, row, 4, 5, 6, 7));
-    }
+    put<Count>(record[j] + first, part<0>(row));
+    if constexpr (W >= 8) put<Count>(record[4 + j] + first, part<1>(row));
     if constexpr (W == 16) {
-      put<Count>(record[8 + j] + first, __builtin_shufflevector(row, row, 8, 9, 10, 11));
-      put<Count>(record[12 + j] + first, __builtin_shufflevector(row, row, 12, 13, 14, 15));
+      put<Count>(record[8 + j] + first, part<2>(row));
+      put<Count>(record[12 + j] + first, part<3>(row));
     }
   }
 
@@ -441,6 +446,22 @@ struct Rows {
   static GYRE_INLINE Quad quad(const float* from) { return *reinterpret_cast<const LooseQuad*>(from); }
   static GYRE_INLINE typename Lanes<8>::Float join(Quad low, Quad high) {
     return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+  }
+  // 128-bit lane l of a row. Extractions are named, since what GCC makes of a shuffle does not go to memory at once.
+  template <int l>
+  static GYRE_INLINE Quad part(Float row) {
+    if constexpr (W == 4) {
+      return row;
+    } else {
+#if defined(__AVX512F__)
+      if constexpr (W == 16 && l > 0)
+        return (Quad)_mm512_maskz_extractf32x4_ps(__mmask8(0xf), (__m512)row, l);
+#endif
+#if defined(__AVX__)
+      if constexpr (W == 8 && l > 0) return (Quad)_mm256_extractf128_ps((__m256)row, l);
+#endif
+      return __builtin_shufflevector(row, row, 4 * l, 4 * l + 1, 4 * l + 2, 4 * l + 3);
+    }
   }
   template <int Count>
   static GYRE_INLINE void put(float* to, Quad part) {
