@@ -15,7 +15,7 @@
 #endif
 
 // Functions must be inlined even in debug builds: a call would pass vectors through memory, and an emitted copy is what
-// the namespace above guards against.
+// the namespace of a CPU kind (math/wide.h) guards against.
 #define GYRE_INLINE inline __attribute__((always_inline))
 
 #ifndef GYRE_TARGET_NAMESPACE

@@ -13,7 +13,7 @@
 namespace gyre {
 
 constexpr int kWideTestInputs = 7;
-constexpr int kWideTestResults = 178;
+constexpr int kWideTestResults = 181;
 constexpr int kWideTestRecords = 400;  // fit into the inputs of 1024 lanes and more
 
 using WideTest = void (*)(int width, const float* inputs, int count, std::uint32_t* results);
@@ -27,6 +27,17 @@ void run_wide_test_wasm(int width, const float* inputs, int count, std::uint32_t
 inline namespace GYRE_TARGET_NAMESPACE {
 
 // Writes results of one block of W numbers into its place of each row.
+// Whether all that a mask tells agrees with its bits, in every lane.
+template <int W>
+GYRE_INLINE Mask<W> tells_its_bits(Mask<W> mask) {
+  const std::uint32_t bits = to_bits(mask), all_bits = to_bits(Mask<W>::splat(true));
+  bool agrees = any(mask) == (bits != 0) && none(mask) == (bits == 0) && all(mask) == (bits == all_bits) &&
+                all(Mask<W>::splat(true)) && none(Mask<W>::splat(false)) &&
+                to_bits(Mask<W>::of_bits(bits)) == bits;
+  for (int i = 0; i < W; ++i) agrees = agrees && mask[i] == ((bits >> i & 1u) != 0);
+  return Mask<W>::splat(agrees);
+}
+
 template <int W>
 struct WideTestRows {
   std::uint32_t* next;
@@ -103,6 +114,9 @@ inline __attribute__((noinline)) void wide_test_numbers(WideTestRows<W>& out, Wi
   out.put(~(a < b));
   out.put(and_not(a < b, b < c));
   out.put_bits(to_bits(a < c));
+  out.put(tells_its_bits(a < c));
+  out.put(Mask<W>::splat(true));
+  out.put(Mask<W>::splat(false));
   out.put(select(a < b, b, c));
   out.put(select((a < b) & (c < b), a * c, b));
   out.put(min(a, b));

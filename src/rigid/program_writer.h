@@ -14,17 +14,19 @@ class ProgramWriter {
  public:
   explicit ProgramWriter(std::span<Stage> room) : room_(room) {}
 
-  void add(void (*kernel)(void*, int, int, int), void* context, int blocks, int per_claim = 1) {
+  void add(void (*kernel)(void*, int, int, int), void* context, int blocks, int per_claim = 1,
+           const int* bounds = nullptr) {
     if (blocks == 0) return;
     GYRE_ASSERT(used_ < room_.size(), "the program has more stages than were counted");
-    room_[used_++] = {kernel, context, blocks, per_claim};
+    room_[used_++] = {kernel, context, blocks, per_claim, bounds};
   }
   // A line for each group: what a group holds, `items_per_block` in a block; those that are serial in one go.
   template <class Group>
-  void add_groups(void (*kernel)(void*, int, int, int), std::span<Group> groups, std::uint32_t items_per_block, int per_claim) {
+  void add_groups(void (*kernel)(void*, int, int, int), std::span<Group> groups,
+                  std::uint32_t items_per_block, int per_claim) {
     for (Group& group : groups) {
       const int blocks = int((group.count + items_per_block - 1) / items_per_block);
-      add(kernel, &group, blocks, group.serial ? blocks : per_claim);
+      add(kernel, &group, blocks, group.serial ? blocks : per_claim, group.bounds);
     }
   }
   std::span<const Stage> stages() const { return room_.first(used_); }

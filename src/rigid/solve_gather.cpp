@@ -270,32 +270,43 @@ void part_bodies(Solve& solve, Arena& arena, TaskSystem& tasks) {
   const std::span<const std::uint32_t> bodies = solve.batch.bodies;
   solve.moved = arena.make<MovedBody>(bodies.size());
   solve.flying = arena.make<std::uint32_t>(bodies.size());
+  const std::span<int> bounds = arena.make<int>(std::size_t(solve.domains.count + 1));
   const ArenaScope scope(arena);
-  // Where a body belongs: those in contact first, each by the way in which it turns.
-  constexpr std::uint8_t kApart = kWaysToTurn, kFlies = 2 * kWaysToTurn, kStays = kFlies + 1;
+  // Where a body belongs: those in contact first, by domain and the way in which they turn.
+  static_assert((TaskSystem::kMaxWorkers + 1) * kWaysToTurn + 2 < 256, "kinds are bytes");
+  const int domains = solve.domains.count;
+  const std::uint8_t apart = std::uint8_t(domains * kWaysToTurn), flies = std::uint8_t(apart + kWaysToTurn),
+                     stays = std::uint8_t(flies + 1);
   const std::span<std::uint8_t> kinds = arena.make<std::uint8_t>(bodies.size());
-  for (std::uint8_t& kind : kinds) kind = kApart;
-  for (const ColoringPair& pair : solve.scratch.pairs) {
-    if (pair.a != ColoringPair::kNone) kinds[pair.a] = 0;
-    if (pair.b != ColoringPair::kNone) kinds[pair.b] = 0;
-  }
+  for (std::uint8_t& kind : kinds) kind = apart;
+  const auto touch = [&](std::uint32_t body) {
+    if (body != ColoringPair::kNone) kinds[body] = std::uint8_t(solve.domains.of(body) * kWaysToTurn);
+  };
+  for (const ColoringPair& pair : solve.scratch.pairs) touch(pair.a), touch(pair.b);
   for_blocks(tasks, int(bodies.size()), kBodiesPerBlock, [&](int begin, int end, int) {
     for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
       const BodyFlags& flags = w.bodies.flags[bodies[i]];
       kinds[i] = flags.touched != kUntouched ? std::uint8_t(kinds[i] + way_to_turn(solve, bodies[i]))
-                 : !solve.is_smooth || !is_movable(flags) ? kFlies
-                                                          : kStays;
+                 : !solve.is_smooth || !is_movable(flags) ? flies
+                                                          : stays;
     }
   });
-  std::size_t starts[kStays + 2] = {};
+  std::uint32_t starts[(TaskSystem::kMaxWorkers + 1) * kWaysToTurn + 3] = {};
   for (const std::uint8_t kind : kinds) ++starts[kind + 1];
-  for (std::size_t kind = 0; kind <= kStays; ++kind) starts[kind + 1] += starts[kind];
-  const std::size_t moved = starts[kFlies], flying = starts[kStays] - moved;
-  solve.moved_in_contact = starts[kApart];
+  for (std::size_t kind = 0; kind <= stays; ++kind) starts[kind + 1] += starts[kind];
+  const std::size_t moved = starts[flies], flying = starts[stays] - moved;
+  solve.moved_in_contact = starts[apart];
+  if (domains > 1 && moved - solve.moved_in_contact <= moved / 8) {
+    std::uint32_t firsts[TaskSystem::kMaxWorkers];
+    for (int i = 0; i < domains; ++i) firsts[i] = starts[i * kWaysToTurn];
+    set_bounds(std::span(firsts).first(std::size_t(domains)), std::uint32_t(moved),
+               std::uint32_t(solve.kernels.width), bounds.data());
+    solve.moved_bounds = bounds.data();
+  }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const std::size_t place = starts[kinds[i]]++;
-    if (kinds[i] < kFlies) solve.moved[place].body = std::int32_t(bodies[i]);
-    if (kinds[i] == kFlies) solve.flying[place - moved] = bodies[i];
+    if (kinds[i] < flies) solve.moved[place].body = std::int32_t(bodies[i]);
+    if (kinds[i] == flies) solve.flying[place - moved] = bodies[i];
   }
   solve.moved = solve.moved.first(moved);
   solve.flying = solve.flying.first(flying);
@@ -366,18 +377,40 @@ int likeness(const Solve& solve, std::uint32_t member) {
   return (constraint.body_a == kNoBody ? kWithA : 0) + kWaysToRoll * (2 * points + load) + roll;
 }
 
-// Appends the members of a colour to the order, in whole blocks.
-void order_alike(const Solve& solve, std::span<const std::uint32_t> members, Array<std::uint32_t>& order) {
-  std::uint32_t starts[2 * kWithA + 1] = {};
-  for (const std::uint32_t member : members) ++starts[likeness(solve, member) + 1];
-  for (std::size_t i = 1; i < std::size(starts); ++i) starts[i] += starts[i - 1];
-  // No block has contacts of both kinds.
+// Appends the members of a colour to the order, in whole blocks, domain by domain; `bounds` of these, if there are several.
+void order_alike(const Solve& solve, std::span<const std::uint32_t> members, Array<std::uint32_t>& order,
+                 int* bounds) {
+  constexpr int kKinds = 2 * kWithA;
+  const std::size_t domains = std::size_t(solve.domains.count);
+  const auto kind_of = [&](std::uint32_t member) {
+    return std::size_t(solve.domains.of(solve.scratch.pairs[member]) * kKinds + likeness(solve, member));
+  };
+  std::uint32_t starts[TaskSystem::kMaxWorkers * kKinds], firsts[TaskSystem::kMaxWorkers];
+  for (std::size_t i = 0; i < domains * kKinds; ++i) starts[i] = 0;
+  for (const std::uint32_t member : members) ++starts[kind_of(member)];
+  // No block has contacts with and without a body A.
   const std::uint32_t width = std::uint32_t(solve.kernels.width);
-  const std::uint32_t gap = (width - starts[kWithA] % width) % width;
-  for (int i = kWithA; i < 2 * kWithA; ++i) starts[i] += gap;
-  const std::size_t first = order.size(), count = gap + members.size();
-  order.resize(first + (count + width - 1) / width * width, kNoPlace);
-  for (const std::uint32_t member : members) order[first + starts[likeness(solve, member)]++] = member;
+  std::uint32_t place = 0;
+  bool had_a = true;
+  for (std::size_t half = 0; half < 2 * domains; ++half) {
+    const bool has_a = half % 2 == 0;
+    if (has_a) firsts[half / 2] = place;
+    for (std::uint32_t& start : std::span(starts).subspan(half * kWithA, kWithA)) {
+      const std::uint32_t count = start;
+      if (count > 0 && has_a != had_a) {
+        const std::uint32_t whole = (place + width - 1) / width * width;
+        if (firsts[half / 2] == place) firsts[half / 2] = whole;
+        place = whole;
+        had_a = has_a;
+      }
+      start = place;
+      place += count;
+    }
+  }
+  const std::size_t first = order.size();
+  order.resize(first + (place + width - 1) / width * width, kNoPlace);
+  for (const std::uint32_t member : members) order[first + starts[kind_of(member)]++] = member;
+  if (bounds != nullptr) set_bounds(std::span(firsts).first(domains), place, width, bounds);
 }
 
 }  // namespace
@@ -393,14 +426,18 @@ std::span<Group> lay_out_contacts(Solve& solve, std::span<Group> groups) {
     const std::span<const std::uint32_t> members = colors.group(g);
     if (members.empty()) continue;
     const bool serial = g == colors.overflow_group();
+    int* const bounds = serial || solve.group_bounds.empty()
+                            ? nullptr
+                            : &solve.group_bounds[used * std::size_t(solve.domains.count + 1)];
     if (serial) {
       s.order.resize(s.order.size() + members.size() * width, kNoPlace);
       for (std::size_t i = 0; i < members.size(); ++i) s.order[(blocks + i) * width] = members[i];
     } else {
-      order_alike(solve, members, s.order);
+      order_alike(solve, members, s.order, bounds);
     }
     const std::uint32_t end = std::uint32_t(s.order.size()) / width;
-    groups[used++] = {&solve, blocks, end - blocks, serial};
+    groups[used++] = {
+        .solve = &solve, .first = blocks, .count = end - blocks, .serial = serial, .bounds = bounds};
     blocks = end;
     s.counts.colors_used |= std::uint64_t{1} << g;
   }

@@ -12,6 +12,7 @@
 #include "rigid/rolling.h"
 #include "rigid/smooth_motion.h"
 #include "rigid/solve_batches.h"
+#include "rigid/solve_domains.h"
 #include "rigid/solve_step.h"
 
 namespace gyre {
@@ -25,6 +26,8 @@ struct Solve {
   const ContactKernels& kernels;
   SolveBatch batch{};
   std::span<const std::uint32_t> places{};  // of bodies in their batches
+  Domains domains{};
+  std::span<int> group_bounds{};              // where there are several: for kMostGroups
   void *blocks = nullptr, *asides = nullptr;  // of contacts
   float h = 0.0f;
   ContactSettings contact_settings{};
@@ -51,6 +54,7 @@ struct Solve {
   std::span<Vec3> pushes{};             // and how overlap turned them
   std::span<std::uint32_t> spinners{};  // those of them that turn alone
   std::size_t moved_in_contact = 0;     // of these, the first: contacts act on them
+  const int* moved_bounds = nullptr;    // of the blocks, by domain: where contacts act on nearly all
   int watched_blocks = 0;               // the first: of these somebody asks what contacts gave the bodies
   std::span<std::uint32_t> flying{};    // the others
   ContactForest forest{};
@@ -72,6 +76,7 @@ struct Group {
   std::uint32_t count = 0;       // blocks or joints
   bool serial = false;           // what is left over when the colours are used up: its members share bodies
   std::int32_t ball_block = -1;  // joints that are solved side by side: their first block
+  const int* bounds = nullptr;   // of blocks of contacts, by domain
 };
 
 // The batch's contacts as constraints, and what colouring needs to know of them; marks the bodies as touched.
@@ -81,7 +86,7 @@ void look_at_joints(Solve& solve, Arena& arena, TaskSystem& tasks);
 // Those that are in no linkage, as contacts.
 void gather_joints(Solve& solve);
 // Parts the bodies of a batch into those that constraints act on and those that fly. Of the former those in contact come first;
-// those that turn alike lie side by side.
+// those of a domain and those that turn alike lie side by side.
 void gather_motion(Solve& solve, Arena& arena, TaskSystem& tasks);
 
 // Lays the coloured constraints out in blocks of W lanes, in groups of which there is room for kMostGroups. A group starts a new

@@ -14,11 +14,11 @@ namespace gyre {
 namespace {
 
 constexpr int kBodiesPerBlock = 64;
-constexpr int kMotionBlocksPerClaim = 8;
+constexpr int kMotionBlocksPerClaim = 4;
 constexpr int kSpinnersPerClaim = 8;
 constexpr int kJointsPerBlock = 16;  // whole blocks of lanes at every width
 constexpr int kJointBlocksPerClaim = 2;
-constexpr int kBlocksPerClaim = 4;
+constexpr int kBlocksPerClaim = 2;
 constexpr int kTreesPerClaim = 8;
 
 // --------------------------------------------------------------------------------------------------- stages' kernels
@@ -50,7 +50,8 @@ template <bool kWarm>
 void predict_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
   part_watched(s, begin, end, [&](int first, int last, bool watched) {
-    s.kernels.motion.predict(s.motion_blocks, first, last, s.contact_bodies.motion, kWarm && watched, watched);
+    s.kernels.motion.predict(s.motion_blocks, first, last, s.contact_bodies.motion, kWarm && watched,
+                             watched);
   });
 }
 void warm_motion_stage(void* context, int begin, int end, int) {
@@ -393,6 +394,12 @@ std::size_t count_watched(const Solve& s, bool has_contacts) {
   return has_contacts || has_lanes || has_linkages ? s.moved.size() : 0;
 }
 
+// A line for the first blocks of bodies that are moved: `blocks` of them.
+void add_motion(ProgramWriter& program, Solve& solve, void (*kernel)(void*, int, int, int), int blocks) {
+  const int all = count_blocks(int(solve.moved.size()), solve.kernels.width);
+  program.add(kernel, &solve, blocks, kMotionBlocksPerClaim, blocks == all ? solve.moved_bounds : nullptr);
+}
+
 // The stages of one part of a sub-step. Impacts and joints are between forces, contacts and moves only where there are any.
 //
 // Stacks and structures at rest are solved directly after the first sweep, which gives them the loads of this step, and after
@@ -418,7 +425,7 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
     program.add(smooth_stage<move_carried_stage>, &solve, solve.smooth.count());
     program.add(smooth_stage<kick_carriers_stage>, &solve, 1);
   }
-  program.add(is_warm ? predict_stage<true> : predict_stage<false>, &solve, bodies, kMotionBlocksPerClaim);
+  add_motion(program, solve, is_warm ? predict_stage<true> : predict_stage<false>, bodies);
   program.add(strike_stage, &solve, impacts);
   program.add(joint_slices_stage<bend_joints_stage>, &solve, slices, kSlicesPerClaim);
   program.add(linkage_stage<warm_linkage>, &solve, linkages);
@@ -426,27 +433,27 @@ void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> c
   // not be a reason to ask again: they may be another island's.)
   if (first) program.add(bundle_stage<&LinkageKernels::ask>, &solve, bundles);
   program.add_groups(warm_joints_stage, joints, kJointsPerBlock, kJointBlocksPerClaim);
-  if (!first && !is_warm) program.add(warm_motion_stage, &solve, watched, kMotionBlocksPerClaim);
+  if (!first && !is_warm) add_motion(program, solve, warm_motion_stage, watched);
   if (first) {
-    program.add(watch_motion_stage, &solve, watched, kMotionBlocksPerClaim);
+    add_motion(program, solve, watch_motion_stage, watched);
     program.add_groups(warm_contacts_stage, contacts, 1, kBlocksPerClaim);
-    program.add(note_stage, &solve, watched, kMotionBlocksPerClaim);
+    add_motion(program, solve, note_stage, watched);
   }
   // What contacts and joints gave in the last part is in the velocities by now: a stream pulls at what really moves.
   program.add(apply_fields_stage, &solve.fields, fields);
-  if (fields > 0) program.add(watch_motion_stage, &solve, watched, kMotionBlocksPerClaim);
+  if (fields > 0) add_motion(program, solve, watch_motion_stage, watched);
   program.add_groups(solve_joints_stage, joints, kJointsPerBlock, kJointBlocksPerClaim);
   program.add(linkage_stage<solve_linkage>, &solve, linkages);
   program.add(bundle_stage<&LinkageKernels::solve>, &solve, bundles);
-  if (has_joints) program.add(watch_motion_stage, &solve, watched, kMotionBlocksPerClaim);
+  if (has_joints) add_motion(program, solve, watch_motion_stage, watched);
   program.add_groups(solve_contacts_stage, contacts, 1, kBlocksPerClaim);
   program.add(solve_trees_stage, &solve, trees, kTreesPerClaim);
   if (first) program.add(structures_stage<solve_structure_first>, &solve, structures);
   if (last) program.add(structures_stage<solve_structure_last>, &solve, structures);
-  if (has_joints) program.add(note_stage, &solve, watched, kMotionBlocksPerClaim);
+  if (has_joints) add_motion(program, solve, note_stage, watched);
   program.add(linkage_stage<solve_linkage_again>, &solve, linkages);
   program.add(bundle_stage<&LinkageKernels::solve_again>, &solve, bundles);
-  program.add(has_joints ? advance_stage<true> : advance_stage<false>, &solve, bodies, kMotionBlocksPerClaim);
+  add_motion(program, solve, has_joints ? advance_stage<true> : advance_stage<false>, bodies);
   program.add(turn_alone_stage, &solve, count_blocks(int(solve.spinners.size()), kSpinnersPerClaim));
   program.add(release_stage, &solve, impacts);
   program.add(joint_slices_stage<place_again_stage>, &solve, slices, kSlicesPerClaim);
@@ -480,7 +487,7 @@ void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> join
   const int bodies = count_blocks(int(solve.moved.size()), solve.kernels.width);
   program.add(fly_stage, &solve, count_blocks(int(solve.flying.size()), kBodiesPerBlock));
   program.add(smooth_stage<move_smooth_stage>, &solve, solve.smooth.count());
-  program.add(prepare_motion_stage, &solve, bodies, kMotionBlocksPerClaim);
+  add_motion(program, solve, prepare_motion_stage, bodies);
   program.add(prepare_fields_stage, &solve.fields, solve.fields.blocks());
   program.add(prepare_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
   program.add(joint_slices_stage<begin_balls_stage>, &solve, slices, kSlicesPerClaim);
@@ -491,9 +498,9 @@ void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> join
   program.add(bundle_stage<&LinkageKernels::place>, &solve, bundles);
   for (int i = 0; i < parts; ++i) add_part(program, solve, i, contacts, joints);
   program.add_groups(relax_contacts_stage, contacts, 1, kBlocksPerClaim);
-  program.add(begin_projection_stage, &solve, bodies, kMotionBlocksPerClaim);
+  add_motion(program, solve, begin_projection_stage, bodies);
   program.add_groups(project_contacts_stage, contacts, 1, kBlocksPerClaim);
-  program.add(end_projection_stage, &solve, bodies, kMotionBlocksPerClaim);
+  add_motion(program, solve, end_projection_stage, bodies);
   program.add(finish_turns_stage, &solve, count_blocks(int(solve.moved.size()), kBodiesPerBlock));
   program.add(smooth_stage<finish_smooth_stage>, &solve, solve.smooth.count());
   program.add(finish_contacts_stage, &solve, int(blocks), kBlocksPerClaim);

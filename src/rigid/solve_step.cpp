@@ -105,6 +105,8 @@ void color(const Solve& solve, std::span<const ColoringPair> pairs, std::span<co
 std::span<Group> arrange(Solve& solve, float warm_scale, Arena& arena, TaskSystem& tasks) {
   BatchScratch& scratch = solve.scratch;
   const std::span<Group> room = arena.make<Group>(kMostGroups);
+  if (solve.domains.count > 1)
+    solve.group_bounds = arena.make<int>(kMostGroups * std::size_t(solve.domains.count + 1));
   std::span<Group> contacts;
   side_by_side(
       tasks,
@@ -128,6 +130,7 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   look_at_joints(solve, arena, tasks);
   solve.rolling = find_rolling_contacts(solve.w, scratch, solve.batch.bodies.size(),
                                         solve.contact_settings.step, arena, tasks);
+  solve.domains = find_domains(scratch.pairs, solve.batch.bodies.size(), tasks.worker_count(), arena);
   const std::span<Group> contacts = arrange(solve, warm_scale, arena, tasks);
   if (solve.is_smooth)
     solve.smooth =

@@ -1,8 +1,11 @@
 // The stage runner. The blocks of a stage are cut into one share per worker. A share is one atomic word: the stage it
-// belongs to and the next claim of it; a worker that comes late to a stage sees by the stage number that the share is
-// not for it any more. Whoever finishes the last block of a stage does the small stages that follow alone, deals the
-// shares of the next large one, and lets the others go on. A barrier therefore waits for blocks, never for workers: one
+// belongs to and the next claim of it; what is left of an earlier stage is a share that nobody has begun, and a worker that comes
+// late to a stage sees by the number that the share is not for it any more. Whoever finishes the last block of a stage does the
+// small stages that follow alone and lets the others go on. A barrier therefore waits for blocks, never for workers: one
 // that was not woken yet, or has lost its core between blocks, holds up nobody.
+//
+// A line that another core wrote takes longer to come than a small block takes to do. So a stage's end is one word, which who comes last
+// changes and who waits sees, and a share's own worker finds it in its own cache.
 #include "task/program.h"
 
 #include "base/float_mode.h"
@@ -16,28 +19,21 @@ namespace gyre {
 
 namespace {
 
-int claim_count(const Stage& stage) {
-  const int per_claim = stage.blocks_per_claim < 1 ? 1 : stage.blocks_per_claim;
-  return stage.block_count / per_claim + (stage.block_count % per_claim != 0 ? 1 : 0);
-}
+int claim_of(const Stage& stage) { return stage.blocks_per_claim < 1 ? 1 : stage.blocks_per_claim; }
 
-bool is_small(const Stage& stage) { return claim_count(stage) <= 1; }
+bool is_small(const Stage& stage) { return stage.block_count <= claim_of(stage); }
 
 void run_alone(const Stage& stage, int worker) {
   if (stage.block_count > 0) stage.kernel(stage.context, 0, stage.block_count, worker);
 }
 
-void run_claims_of(const Stage& stage, int first, int count, int worker) {
-  const int per_claim = stage.blocks_per_claim < 1 ? 1 : stage.blocks_per_claim;
-  const int begin = first * per_claim;
-  const int left = stage.block_count - begin;
-  stage.kernel(stage.context, begin, begin + (left < count * per_claim ? left : count * per_claim), worker);
-}
-
-// How many claims are taken at once of so many. Small blocks are alike: half of them, so that a share is taken in few goes and
+// How many blocks are taken at once of so many. Small ones are alike: half of them, so that a share is taken in few goes and
 // there is still something left for others if its worker is held up.
-std::uint64_t claims_at_once(const Stage& stage, std::uint64_t left) {
-  return stage.blocks_per_claim > 1 && left > 1 ? left / 2 : 1;
+std::uint64_t blocks_at_once(const Stage& stage, std::uint64_t left) {
+  const std::uint64_t claim = static_cast<std::uint64_t>(claim_of(stage));
+  if (claim == 1) return 1;
+  const std::uint64_t half = left / (2 * claim) * claim;
+  return half > 0 ? half : left < claim ? left : claim;
 }
 
 class Runner {
@@ -45,87 +41,89 @@ class Runner {
   // The first and the last stage are not small.
   Runner(std::span<const Stage> stages, const TaskSystem& tasks)
       : stages_(stages), worker_count_(tasks.worker_count()), patience_(tasks.spin_patience()) {
-    deal(0);
-    current_.store(0, std::memory_order_relaxed);
+    for (int w = 0; w < worker_count_; ++w)
+      shares_[w].next.store(pack(0, share_begin(stages_[0], w)), std::memory_order_relaxed);
+    begin(0);
   }
 
   void work(int worker) {
-    std::uint32_t index = current_.load(std::memory_order_acquire);
+    std::uint32_t index = stage_of(state_.load(std::memory_order_acquire));
     while (index < stages_.size()) {
-      const int done = run_claims(index, worker);
-      const bool last = done > 0 && left_.fetch_sub(done, std::memory_order_acq_rel) == done;
-      index = last ? advance(index, worker) : wait_after(index);
+      int done = 0;
+      for (int i = 0; i < worker_count_; ++i)
+        done +=
+            run_share(index, worker + i < worker_count_ ? worker + i : worker + i - worker_count_, worker);
+      if (!finish(index, done, worker)) wait_after(index);
+      index = stage_of(state_.load(std::memory_order_acquire));
     }
   }
 
  private:
-  // A share on a cache line of its own: stage number in the high half, next claim in the low one.
+  // On a cache line of its own: stage number in the high half, next block in the low one.
   struct alignas(64) Share {
     std::atomic<std::uint64_t> next;
   };
 
-  static constexpr std::uint64_t pack(std::uint32_t stage, int claim) {
-    return std::uint64_t{stage} << 32 | static_cast<std::uint32_t>(claim);
+  static constexpr std::uint64_t pack(std::uint32_t stage, int blocks) {
+    return std::uint64_t{stage} << 32 | static_cast<std::uint32_t>(blocks);
+  }
+  static constexpr std::uint32_t stage_of(std::uint64_t word) {
+    return static_cast<std::uint32_t>(word >> 32);
   }
 
-  int share_begin(int claims, int worker) const {
-    return static_cast<int>(std::int64_t{claims} * worker / worker_count_);
+  int share_begin(const Stage& stage, int worker) const {
+    if (stage.bounds != nullptr) return stage.bounds[worker];
+    return static_cast<int>(std::int64_t{stage.block_count} * worker / worker_count_);
   }
 
-  // Makes a stage ready for claims. Workers still looking through the shares of the one before see a number that is not
-  // theirs, and take none until current_ says so.
-  void deal(std::uint32_t index) {
-    const int claims = claim_count(stages_[index]);
-    left_.store(claims, std::memory_order_relaxed);
-    for (int w = 0; w < worker_count_; ++w) {
-      shares_[w].next.store(pack(index, share_begin(claims, w)), std::memory_order_relaxed);
-    }
+  void begin(std::uint32_t index) {
+    const int blocks = index < stages_.size() ? stages_[index].block_count : 0;
+    state_.store(pack(index, blocks), std::memory_order_release);
   }
 
-  // Takes claims until there are none, from the own share on; the number taken.
-  int run_claims(std::uint32_t index, int worker) {
+  // Takes blocks of a share until there are none; the number taken.
+  int run_share(std::uint32_t index, int owner, int worker) {
     const Stage& stage = stages_[index];
-    const int claims = claim_count(stage);
+    const std::uint64_t first = pack(index, share_begin(stage, owner)),
+                        end = pack(index, share_begin(stage, owner + 1));
+    std::atomic<std::uint64_t>& next = shares_[owner].next;
+    std::uint64_t now = next.load(std::memory_order_relaxed);
     int done = 0;
-    for (int i = 0; i < worker_count_; ++i) {
-      const int owner = worker + i < worker_count_ ? worker + i : worker + i - worker_count_;
-      std::atomic<std::uint64_t>& next = shares_[owner].next;
-      const std::uint64_t end = pack(index, share_begin(claims, owner + 1));
-      std::uint64_t now = next.load(std::memory_order_relaxed);
-      while (now >> 32 == index && now < end) {
-        const std::uint64_t taken = claims_at_once(stage, end - now);
-        if (!next.compare_exchange_weak(now, now + taken, std::memory_order_relaxed)) continue;
-        run_claims_of(stage, static_cast<int>(now & 0xffffffff), static_cast<int>(taken), worker);
-        done += static_cast<int>(taken);
-        now = next.load(std::memory_order_relaxed);
-      }
+    for (;;) {
+      const std::uint64_t from = now < first ? first : now;  // nobody has begun it
+      if (from >= end) return done;
+      const std::uint64_t taken = blocks_at_once(stage, end - from);
+      if (!next.compare_exchange_weak(now, from + taken, std::memory_order_relaxed)) continue;
+      const int block = static_cast<int>(from & 0xffffffff);
+      stage.kernel(stage.context, block, block + static_cast<int>(taken), worker);
+      done += static_cast<int>(taken);
+      now = next.load(std::memory_order_relaxed);
     }
-    return done;
   }
-
-  // After the last block of a stage: on to the next that is worth sharing.
-  std::uint32_t advance(std::uint32_t index, int worker) {
+  // So many blocks are done. Whether they were the last: then the small stages that follow are, too, and the next large one has begun.
+  bool finish(std::uint32_t index, int done, int worker) {
+    if (done == 0) return false;
+    const std::uint64_t before =
+        state_.fetch_sub(static_cast<std::uint64_t>(done), std::memory_order_acq_rel);
+    if (before != pack(index, done)) return false;
     ++index;
     while (index < stages_.size() && is_small(stages_[index])) run_alone(stages_[index++], worker);
-    if (index < stages_.size()) deal(index);
-    current_.store(index, std::memory_order_release);
-    return index;
+    begin(index);
+    return true;
   }
 
-  std::uint32_t wait_after(std::uint32_t index) const {
-    Spin spin(patience_);
-    for (;;) {
-      const std::uint32_t now = current_.load(std::memory_order_acquire);
-      if (now != index) return now;
-      spin.pause();
-    }
+  bool is_over(std::uint32_t index) const {
+    return stage_of(state_.load(std::memory_order_acquire)) != index;
+  }
+  void wait_after(std::uint32_t index) const {
+    for (Spin spin(patience_); !is_over(index);) spin.pause();
   }
 
   std::span<const Stage> stages_;
   int worker_count_;
   int patience_;
-  alignas(64) std::atomic<std::uint32_t> current_{0};  // the stage that is being done
-  alignas(64) std::atomic<int> left_{0};               // its claims that are not done
+  // The stage that is being done, and its blocks that are not done.
+  alignas(64) std::atomic<std::uint64_t> state_{0};
   Share shares_[TaskSystem::kMaxWorkers];
 };
 

@@ -19,10 +19,14 @@ struct Stage {
   // What is not more than one claim runs on one worker without waking others. 1: blocks may differ much, and each is taken by
   // itself. More: they are alike and small, and a worker takes several claims at once.
   int blocks_per_claim = 1;
+  // The first block of each worker's share, ascending from 0, and then block_count. Not set: the shares are equal. Whoever works on
+  // the same things in one stage after the other finds them in its cache, so shares that cut where few things are shared are
+  // faster than equal ones.
+  const int* bounds = nullptr;
 };
 
-// Each worker starts with its own share of a stage's blocks and then takes from the others'. With one worker this is a
-// plain loop, one kernel call a stage. Nothing is allocated, and no worker is waited for that has not come.
+// Each worker starts with its own share of a stage's blocks and takes from the others' where these keep it waiting. With one worker
+// this is a plain loop, one kernel call a stage. Nothing is allocated, and no worker is waited for that has not come.
 void run_program(TaskSystem& tasks, std::span<const Stage> stages);
 
 }  // namespace gyre

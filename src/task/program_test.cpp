@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cfenv>
 #include <random>
@@ -39,14 +40,15 @@ void turn(void* context, int, int, int) {
   ++wave.salt;
 }
 
-std::vector<std::uint32_t> run_wave(TaskSystem& tasks, int items, int per_block, int per_claim, int rounds) {
+std::vector<std::uint32_t> run_wave(TaskSystem& tasks, int items, int per_block, int per_claim, int rounds,
+                                    const int* bounds = nullptr) {
   Wave wave;
   wave.items_per_block = per_block;
   for (int i = 0; i < items; ++i) wave.from.push_back(static_cast<std::uint32_t>(i));
   wave.to.resize(wave.from.size());
   std::vector<Stage> stages;
   for (int round = 0; round < rounds; ++round) {
-    stages.push_back({spread, &wave, (items + per_block - 1) / per_block, per_claim});
+    stages.push_back({spread, &wave, (items + per_block - 1) / per_block, per_claim, bounds});
     stages.push_back({turn, &wave, 1});
   }
   run_program(tasks, stages);
@@ -68,6 +70,43 @@ TEST(Program, SameResultForAnyWorkers) {
       }
     }
   }
+}
+
+TEST(Program, SameResultForAnyShares) {
+  std::mt19937 random(5);
+  TaskSystem one(1);
+  const auto expected = run_wave(one, 400, 3, 2, 40);
+  const int blocks = 134;
+  for (int workers = 2; workers <= 5; ++workers) {
+    TaskSystem tasks(workers);
+    for (int repeat = 0; repeat < 10; ++repeat) {
+      std::vector<int> bounds{0, blocks};
+      // Also shares without a block.
+      while (int(bounds.size()) <= workers)
+        bounds.push_back(repeat == 0 ? blocks : int(random() % (blocks + 1)));
+      std::sort(bounds.begin(), bounds.end());
+      ASSERT_EQ(run_wave(tasks, 400, 3, 2, 40, bounds.data()), expected)
+          << workers << " workers, repeat " << repeat;
+    }
+  }
+}
+
+// A host that calls its workers one after the other shows which blocks each begins with: the first does its own share, then the others'.
+TEST(Program, SharesBeginWhereTheirBoundsSay) {
+  const HostTasks host{
+      .run = [](void*, int, void (*task)(void*, int), void* context) { task(context, 1), task(context, 0); },
+      .worker_count = 2};
+  TaskSystem tasks(host);
+  std::vector<int> begun;
+  const int bounds[] = {0, 90, 100};
+  const Stage stages[] = {{[](void* context, int begin, int, int worker) {
+                             EXPECT_EQ(worker, 1) << "it was there first and alone";
+                             static_cast<std::vector<int>*>(context)->push_back(begin);
+                           },
+                           &begun, 100, 1, bounds}};
+  run_program(tasks, stages);
+  ASSERT_EQ(begun.size(), 100u);
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(begun[std::size_t(i)], i < 10 ? 90 + i : i - 10);
 }
 
 TEST(Program, HostThatRunsOneAfterTheOther) {

@@ -91,6 +91,34 @@ TEST(Threads, DoNotShowWhereABodyHasMoreConstraintsThanThereAreColors) {
   for (int again = 0; again < 4; ++again) EXPECT_EQ(expected, outcome(2 + again)) << again;
 }
 
+// Large enough for shares that are cut where bodies are (rigid/solve_domains): those of one kind in contact, others that hang on joints
+// only, some without a body A.
+TEST(Threads, DoNotShowInALargePile) {
+  const auto outcome = [](int threads, int width) {
+    World world = make_world({.threads = threads, .simd_width = width});
+    add_fixed(world, {}, Plane{});
+    for (int i = 0; i < 600; ++i) {
+      const DVec3 place{1.0 * (i % 10) - 5 + 0.25 * (i / 100), 0.5 + 1.0 * (i / 100), 1.0 * (i / 10 % 10) - 5};
+      const BodyId body = i % 3 == 0 ? add_moving(world, place, Sphere{0.5f}, {.rolling_friction = 0.02f})
+                          : i % 7 == 0
+                              ? add_moving(world, place, Capsule{.radius = 0.25f, .half_height = 0.25f})
+                              : add_moving(world, place, Box{{0.5f, 0.5f, 0.5f}});
+      world.set_velocity(body, {0.25f * float(i % 5), 0, 0.25f * float(i % 3)}, {0, float(i % 4), 0});
+      if (i % 50 == 0) {
+        const BodyId bob = add_moving(world, place + DVec3{0, 12, 0}, Sphere{0.125f});
+        scenes::join(world, JointKind::ball, body, bob, place + DVec3{0, 11, 0});
+      }
+    }
+    for (int step = 0; step < 25; ++step) world.step(kStepSeconds);
+    EXPECT_GT(world.counts().touching, 600);  // of one island: all lie side by side
+    return world.hash();
+  };
+  const std::uint64_t expected = outcome(1, 1);
+  for (const int threads : {1, 2, 3, 8})
+    for (const int width : {4, 16})
+      EXPECT_EQ(expected, outcome(threads, width)) << threads << " threads, " << width << " lanes";
+}
+
 // Ends of contacts were told in the order of a list that a loaded world builds anew.
 TEST(Events, OfALoadedWorldComeInTheSameOrder) {
   World world = make_world();
