@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/check.h"
+#include "base/cold.h"
 #include "task/program.h"
 
 #include <cstdint>
@@ -14,8 +15,9 @@ class ProgramWriter {
  public:
   explicit ProgramWriter(std::span<Stage> room) : room_(room) {}
 
-  void add(void (*kernel)(void*, int, int, int), void* context, int blocks, int per_claim = 1,
-           const int* bounds = nullptr) {
+  // (Out of line: it is called in fifty places.)
+  GYRE_COLD void add(void (*kernel)(void*, int, int, int), void* context, int blocks, int per_claim = 1,
+                     const int* bounds = nullptr) {
     if (blocks == 0) return;
     GYRE_ASSERT(used_ < room_.size(), "the program has more stages than were counted");
     room_[used_++] = {kernel, context, blocks, per_claim, bounds};

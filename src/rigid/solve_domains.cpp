@@ -1,14 +1,12 @@
 // Where the work of a batch is cut between workers. See solve_domains.h.
 #include "rigid/solve_domains.h"
 
-#include "task/task_system.h"
-
 namespace gyre {
 
 Domains find_domains(std::span<const ColoringPair> pairs, std::size_t bodies, int workers, Arena& arena) {
-  static_assert(TaskSystem::kMaxWorkers <= 256, "domains are bytes");
+  static_assert(kMostDomains <= 256, "domains are bytes");
   constexpr std::size_t kFewest = 256;  // with fewer contacts it is not worth while
-  if (workers == 1 || pairs.size() < kFewest) return {};
+  if (kMostDomains == 1 || workers == 1 || pairs.size() < kFewest) return {};
   const std::span<std::uint8_t> domains = arena.make<std::uint8_t>(bodies);
   const ArenaScope scope(arena);
   const std::span<std::uint32_t> contacts = arena.make<std::uint32_t>(bodies);

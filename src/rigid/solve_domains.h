@@ -10,18 +10,24 @@
 
 #include "base/arena.h"
 #include "task/coloring.h"
+#include "task/spin.h"
+#include "task/task_system.h"
 
 #include <cstdint>
 #include <span>
 
 namespace gyre {
 
+// Without threads there is one, which compilers see.
+constexpr int kMostDomains = GYRE_HAS_THREADS ? TaskSystem::kMaxWorkers : 1;
+
 struct Domains {
-  int count = 1;
+  int workers = 1;
   std::span<const std::uint8_t>
       of_body;  // by place in the batch, ascending; empty where there is one domain only
 
-  int of(std::uint32_t place) const { return of_body.empty() ? 0 : int(of_body[place]); }
+  int count() const { return kMostDomains == 1 ? 1 : workers; }
+  int of(std::uint32_t place) const { return count() == 1 ? 0 : int(of_body[place]); }
   int of(const ColoringPair& pair) const { return of(second_of(pair)); }
   static std::uint32_t second_of(const ColoringPair& pair) {
     return pair.b != ColoringPair::kNone ? pair.b : pair.a;

@@ -17,9 +17,9 @@ constexpr std::uint32_t kNone = ColoringPair::kNone;
 TEST(SolveDomains, OneWorkerOrFewContactsAreOneDomain) {
   Arena arena;
   const std::vector<ColoringPair> many(1000, ColoringPair{0, 1}), few(20, ColoringPair{0, 1});
-  EXPECT_EQ(find_domains(many, 2, 1, arena).count, 1);
+  EXPECT_EQ(find_domains(many, 2, 1, arena).count(), 1);
   const Domains one = find_domains(few, 2, 4, arena);
-  EXPECT_EQ(one.count, 1);
+  EXPECT_EQ(one.count(), 1);
   EXPECT_EQ(one.of(1u), 0);
   EXPECT_EQ(one.of(ColoringPair{kNone, 1}), 0);
 }
@@ -40,7 +40,7 @@ TEST(SolveDomains, AreRunsOfBodiesWithAsManyContacts) {
       ++of_body[Domains::second_of(pairs.back())];
     }
     const Domains domains = find_domains(pairs, bodies, workers, arena);
-    ASSERT_EQ(domains.count, workers);
+    ASSERT_EQ(domains.count(), workers);
     ASSERT_EQ(domains.of_body.size(), bodies);
     for (std::uint32_t i = 0; i < bodies; ++i) {
       ASSERT_LT(domains.of(i), workers);

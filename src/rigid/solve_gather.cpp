@@ -270,11 +270,11 @@ void part_bodies(Solve& solve, Arena& arena, TaskSystem& tasks) {
   const std::span<const std::uint32_t> bodies = solve.batch.bodies;
   solve.moved = arena.make<MovedBody>(bodies.size());
   solve.flying = arena.make<std::uint32_t>(bodies.size());
-  const std::span<int> bounds = arena.make<int>(std::size_t(solve.domains.count + 1));
+  const std::span<int> bounds = arena.make<int>(std::size_t(solve.domains.count() + 1));
   const ArenaScope scope(arena);
   // Where a body belongs: those in contact first, by domain and the way in which they turn.
-  static_assert((TaskSystem::kMaxWorkers + 1) * kWaysToTurn + 2 < 256, "kinds are bytes");
-  const int domains = solve.domains.count;
+  static_assert((kMostDomains + 1) * kWaysToTurn + 2 < 256, "kinds are bytes");
+  const int domains = solve.domains.count();
   const std::uint8_t apart = std::uint8_t(domains * kWaysToTurn), flies = std::uint8_t(apart + kWaysToTurn),
                      stays = std::uint8_t(flies + 1);
   const std::span<std::uint8_t> kinds = arena.make<std::uint8_t>(bodies.size());
@@ -291,13 +291,13 @@ void part_bodies(Solve& solve, Arena& arena, TaskSystem& tasks) {
                                                           : stays;
     }
   });
-  std::uint32_t starts[(TaskSystem::kMaxWorkers + 1) * kWaysToTurn + 3] = {};
+  std::uint32_t starts[(kMostDomains + 1) * kWaysToTurn + 3] = {};
   for (const std::uint8_t kind : kinds) ++starts[kind + 1];
   for (std::size_t kind = 0; kind <= stays; ++kind) starts[kind + 1] += starts[kind];
   const std::size_t moved = starts[flies], flying = starts[stays] - moved;
   solve.moved_in_contact = starts[apart];
   if (domains > 1 && moved - solve.moved_in_contact <= moved / 8) {
-    std::uint32_t firsts[TaskSystem::kMaxWorkers];
+    std::uint32_t firsts[kMostDomains];
     for (int i = 0; i < domains; ++i) firsts[i] = starts[i * kWaysToTurn];
     set_bounds(std::span(firsts).first(std::size_t(domains)), std::uint32_t(moved),
                std::uint32_t(solve.kernels.width), bounds.data());
@@ -381,11 +381,11 @@ int likeness(const Solve& solve, std::uint32_t member) {
 void order_alike(const Solve& solve, std::span<const std::uint32_t> members, Array<std::uint32_t>& order,
                  int* bounds) {
   constexpr int kKinds = 2 * kWithA;
-  const std::size_t domains = std::size_t(solve.domains.count);
+  const std::size_t domains = std::size_t(solve.domains.count());
   const auto kind_of = [&](std::uint32_t member) {
     return std::size_t(solve.domains.of(solve.scratch.pairs[member]) * kKinds + likeness(solve, member));
   };
-  std::uint32_t starts[TaskSystem::kMaxWorkers * kKinds], firsts[TaskSystem::kMaxWorkers];
+  std::uint32_t starts[kMostDomains * kKinds], firsts[kMostDomains];
   for (std::size_t i = 0; i < domains * kKinds; ++i) starts[i] = 0;
   for (const std::uint32_t member : members) ++starts[kind_of(member)];
   // No block has contacts with and without a body A.
@@ -410,7 +410,7 @@ void order_alike(const Solve& solve, std::span<const std::uint32_t> members, Arr
   const std::size_t first = order.size();
   order.resize(first + (place + width - 1) / width * width, kNoPlace);
   for (const std::uint32_t member : members) order[first + starts[kind_of(member)]++] = member;
-  if (bounds != nullptr) set_bounds(std::span(firsts).first(domains), place, width, bounds);
+  if (domains > 1 && bounds != nullptr) set_bounds(std::span(firsts).first(domains), place, width, bounds);
 }
 
 }  // namespace
@@ -428,7 +428,7 @@ std::span<Group> lay_out_contacts(Solve& solve, std::span<Group> groups) {
     const bool serial = g == colors.overflow_group();
     int* const bounds = serial || solve.group_bounds.empty()
                             ? nullptr
-                            : &solve.group_bounds[used * std::size_t(solve.domains.count + 1)];
+                            : &solve.group_bounds[used * std::size_t(solve.domains.count() + 1)];
     if (serial) {
       s.order.resize(s.order.size() + members.size() * width, kNoPlace);
       for (std::size_t i = 0; i < members.size(); ++i) s.order[(blocks + i) * width] = members[i];

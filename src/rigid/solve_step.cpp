@@ -105,8 +105,8 @@ void color(const Solve& solve, std::span<const ColoringPair> pairs, std::span<co
 std::span<Group> arrange(Solve& solve, float warm_scale, Arena& arena, TaskSystem& tasks) {
   BatchScratch& scratch = solve.scratch;
   const std::span<Group> room = arena.make<Group>(kMostGroups);
-  if (solve.domains.count > 1)
-    solve.group_bounds = arena.make<int>(kMostGroups * std::size_t(solve.domains.count + 1));
+  if (solve.domains.count() > 1)
+    solve.group_bounds = arena.make<int>(kMostGroups * std::size_t(solve.domains.count() + 1));
   std::span<Group> contacts;
   side_by_side(
       tasks,
