@@ -1,5 +1,5 @@
 // The stage runner. The blocks of a stage are cut into one share per worker. A share is one atomic word: the stage it
-// belongs to and the next claim of it; what is left of an earlier stage is a share that nobody has begun, and a worker that comes
+// belongs to and the next block of it; what is left of an earlier stage is a share that nobody has begun, and a worker that comes
 // late to a stage sees by the number that the share is not for it any more. Whoever finishes the last block of a stage does the
 // small stages that follow alone and lets the others go on. A barrier therefore waits for blocks, never for workers: one
 // that was not woken yet, or has lost its core between blocks, holds up nobody.

@@ -25,8 +25,8 @@ struct Stage {
   const int* bounds = nullptr;
 };
 
-// Each worker starts with its own share of a stage's blocks and takes from the others' where these keep it waiting. With one worker
-// this is a plain loop, one kernel call a stage. Nothing is allocated, and no worker is waited for that has not come.
+// Each worker starts with its own share of a stage's blocks and then takes from the others'. With one worker this is a plain loop,
+// one kernel call a stage. Nothing is allocated, and no worker is waited for that has not come.
 void run_program(TaskSystem& tasks, std::span<const Stage> stages);
 
 }  // namespace gyre
