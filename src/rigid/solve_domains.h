@@ -23,8 +23,8 @@ constexpr int kMostDomains = GYRE_HAS_THREADS ? TaskSystem::kMaxWorkers : 1;
 
 struct Domains {
   int workers = 1;
-  std::span<const std::uint8_t>
-      of_body;  // by place in the batch, ascending; empty where there is one domain only
+  // By place in the batch, ascending. Empty where there is one domain only.
+  std::span<const std::uint8_t> of_body;
 
   int count() const { return kMostDomains == 1 ? 1 : workers; }
   int of(std::uint32_t place) const { return count() == 1 ? 0 : int(of_body[place]); }
