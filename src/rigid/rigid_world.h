@@ -35,6 +35,11 @@ inline const JointDetail* detail_of(const JointStore& joints, std::uint32_t slot
 inline JointDetail* detail_of(JointStore& joints, std::uint32_t slot) {
   return slot < joints.details.size() && joints.details[slot].used ? &joints.details[slot] : nullptr;
 }
+// Asks for what is looked at first of a joint that comes soon: records are long, and there are many.
+inline void fetch_joint(const JointStore& joints, std::uint32_t slot) {
+  if (slot < joints.records.size()) __builtin_prefetch(&joints.records[slot]);
+  if (slot < joints.details.size()) __builtin_prefetch(&joints.details[slot]);
+}
 inline std::span<const PathPoint> path_of(const JointStore& joints, const JointDetail& detail) {
   return joints.path_points.view().subspan(detail.path_first, detail.path_count);
 }

@@ -57,15 +57,21 @@ bool may_act(const RigidWorld& w, std::uint32_t joint) {
   return detail == nullptr || !detail->disabled;
 }
 
+// How many are asked for before they are looked at.
+constexpr std::uint32_t kContactsAhead = 8, kJointsAhead = 8;
+
 Constraints list_constraints(const RigidWorld& w, Arena& arena, TaskSystem& tasks) {
   const std::span<Tie> contact_ties = arena.make<Tie>(w.contacts.contacts.size());
   const std::span<Tie> joint_ties = arena.make<Tie>(w.joints.ids.capacity());
   const auto manifolds = [&](std::uint32_t slot) {
+    if (slot + kContactsAhead < contact_ties.size())
+      __builtin_prefetch(&w.contacts.contacts[slot + kContactsAhead]);
     const Contact& contact = w.contacts.contacts[slot];
     const std::uint32_t count = contact.manifold_count;
     return may_act(contact) && tie(w, contact.body_a, contact.body_b, count, contact_ties[slot]) ? count : 0;
   };
   const auto works = [&](std::uint32_t slot) {
+    fetch_joint(w.joints, slot + kJointsAhead);
     if (!w.joints.ids.live(slot) || !may_act(w, slot)) return false;
     const JointRecord& joint = w.joints.records[slot];
     // As numbers without a sign, kNoBody is kNone.

@@ -14,7 +14,7 @@ namespace {
 // The fastest that overlap is taken back, as a share of sqrt(gravity * size): falling its own size is a body's natural
 // scale of speed, so the rule holds from millimetres to kilometres.
 constexpr float kPushShare = 0.4f;
-// Manifolds lie anywhere in memory: how many contacts before its turn one is asked for.
+// Manifolds and joints lie anywhere in memory: how many places before its turn one is asked for.
 constexpr std::size_t kAhead = 6;
 constexpr int kContactsPerBlock = 64;
 constexpr int kJointsPerBlock = 128;
@@ -224,6 +224,7 @@ void look_at_joints(Solve& solve, Arena& arena, TaskSystem& tasks) {
   const int count = int(solve.batch.joints.size());
   for_blocks(tasks, count, kJointsPerBlock, [&](int begin, int end, int) {
     for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
+      if (i + kAhead < solve.batch.joints.size()) fetch_joint(w.joints, solve.batch.joints[i + kAhead]);
       const std::uint32_t slot = solve.batch.joints[i];
       const JointRecord& joint = w.joints.records[slot];
       const JointDetail* const detail = detail_of(w.joints, slot);
