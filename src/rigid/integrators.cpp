@@ -312,6 +312,7 @@ void finish_turns(BodyStore& bodies, std::span<const MovedBody> moved, std::span
   SteadyTurns turns(bodies, kernels);
   const auto turn_all = [&] { turns.finish([&](std::uint32_t i) { refresh.add(i); }); };
   for (std::size_t n = 0; n < moved.size(); ++n) {
+    if (moved[n].body == kNoBody) continue;
     const std::uint32_t i = std::uint32_t(moved[n].body);
     if (bodies.flags[i].type != BodyType::dynamic) continue;
     BodyMotion& motion = bodies.motion[i];

@@ -3,11 +3,11 @@
 // In: a batch of whole islands (rigid/solve_batches.h). Out: Solve, and groups of constraints by colour.
 #pragma once
 
+#include "rigid/bundle_runs.h"
 #include "rigid/contact_forest.h"
 #include "rigid/contact_structures.h"
 #include "rigid/fields.h"
 #include "rigid/integrators.h"
-#include "rigid/linkage_bundles.h"
 #include "rigid/linkages.h"
 #include "rigid/rolling.h"
 #include "rigid/smooth_motion.h"
@@ -49,14 +49,16 @@ struct Solve {
   std::span<Group> joint_groups{};
   void* balls = nullptr;  // joints side by side: solver/ball_lanes.h
   Motions motions{};
-  std::span<MovedBody> moved{};         // the batch's bodies that constraints act on,
-  void* motion_blocks = nullptr;        // the same for the kernels,
-  std::span<Vec3> pushes{};             // and how overlap turned them
-  std::span<std::uint32_t> spinners{};  // those of them that turn alone
-  std::size_t moved_in_contact = 0;     // of these, the first: contacts act on them
-  const int* moved_bounds = nullptr;    // of the blocks, by domain: where contacts act on nearly all
-  int watched_blocks = 0;               // the first: of these somebody asks what contacts gave the bodies
-  std::span<std::uint32_t> flying{};    // the others
+  std::span<MovedBody> moved{};               // the batch's bodies that constraints act on,
+  void* motion_blocks = nullptr;              // the same for the kernels,
+  std::span<Vec3> pushes{};                   // and how overlap turned them
+  std::span<std::uint32_t> spinners{};        // those of them that turn alone
+  std::span<std::uint32_t> spinner_starts{};  // by block of moved bodies: its first; one more
+  std::span<BundleRun> runs{};                // all blocks of moved bodies, if they are moved run by run
+  std::size_t moved_in_contact = 0;           // of these, the first: contacts act on them
+  const int* moved_bounds = nullptr;          // of the blocks, by domain: where contacts act on nearly all
+  int watched_blocks = 0;             // the first: of these somebody asks what contacts gave the bodies
+  std::span<std::uint32_t> flying{};  // the others
   ContactForest forest{};
   TreeSolve tree_solve{};
   std::span<ContactStructure> structures{};

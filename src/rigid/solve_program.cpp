@@ -2,7 +2,7 @@
 #include "rigid/solve_program.h"
 
 #include "rigid/joint_works.h"
-#include "rigid/program_writer.h"
+#include "rigid/motion_stages.h"
 #include "solver/ball_records.h"
 #include "task/parallel.h"
 #include "task/program.h"
@@ -13,9 +13,6 @@ namespace gyre {
 
 namespace {
 
-constexpr int kBodiesPerBlock = 64;
-constexpr int kMotionBlocksPerClaim = 4;
-constexpr int kSpinnersPerClaim = 8;
 constexpr int kJointsPerBlock = 16;  // whole blocks of lanes at every width
 constexpr int kJointBlocksPerClaim = 2;
 constexpr int kBlocksPerClaim = 2;
@@ -23,68 +20,6 @@ constexpr int kTreesPerClaim = 8;
 
 // --------------------------------------------------------------------------------------------------- stages' kernels
 
-// Bodies [begin, end) of a list in blocks of `size`.
-template <class T>
-std::span<T> block_of(std::span<T> list, int begin, int end, int size) {
-  const std::size_t first = std::size_t(begin) * std::size_t(size);
-  return list.subspan(first, min(std::size_t(end) * std::size_t(size), list.size()) - first);
-}
-
-void fly_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  fly(s.w.bodies, block_of(s.flying, begin, end, kBodiesPerBlock), s.motions, s.kernels.turns);
-}
-void prepare_motion_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  s.kernels.motion.prepare(s.motion_blocks, begin, end, s.moved.data(), int(s.moved.size()),
-                           s.contact_bodies.inertia);
-}
-// Calls run(first, last, whether they are watched) for blocks [begin, end) of bodies.
-template <class Run>
-void part_watched(const Solve& s, int begin, int end, Run&& run) {
-  const int middle = max(begin, min(end, s.watched_blocks));
-  if (begin < middle) run(begin, middle, true);
-  if (middle < end) run(middle, end, false);
-}
-template <bool kWarm>
-void predict_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  part_watched(s, begin, end, [&](int first, int last, bool watched) {
-    s.kernels.motion.predict(s.motion_blocks, first, last, s.contact_bodies.motion, kWarm && watched,
-                             watched);
-  });
-}
-void warm_motion_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  s.kernels.motion.warm(s.motion_blocks, begin, end, s.contact_bodies.motion);
-}
-void watch_motion_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  s.kernels.motion.watch(s.motion_blocks, begin, end, s.contact_bodies.motion);
-}
-void note_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  s.kernels.motion.note(s.motion_blocks, begin, end, s.contact_bodies.motion);
-}
-// Noted: what contacts gave has been noted by now.
-template <bool kNoted>
-void advance_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  BodyStore& bodies = s.w.bodies;
-  const MotionArrays arrays{bodies.motion.data(), bodies.inertia.data(), bodies.orientations.data()};
-  part_watched(s, begin, end, [&](int first, int last, bool watched) {
-    s.kernels.motion.advance(s.motion_blocks, first, last, arrays, s.h, watched && !kNoted);
-  });
-}
-void turn_alone_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  turn_alone(s.w.bodies, block_of(s.spinners, begin, end, kSpinnersPerClaim), s.h, s.kernels.turns);
-}
-void finish_turns_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  finish_turns(s.w.bodies, block_of(s.moved, begin, end, kBodiesPerBlock),
-               block_of(s.pushes, begin, end, kBodiesPerBlock), s.kernels.turns);
-}
 void watch_stage(void* context, int, int, int) {
   const Solve& s = *static_cast<Solve*>(context);
   watch_impacts(s.scratch.impacts, s.contact_bodies);
@@ -188,15 +123,6 @@ void project_contacts_stage(void* context, int begin, int end, int) {
   g.solve->kernels.project(g.solve->blocks, int(g.first) + begin, int(g.first) + end,
                            g.solve->contact_settings.step);
 }
-void begin_projection_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  s.kernels.motion.begin_projection(s.motion_blocks, begin, end, s.contact_bodies.motion);
-}
-void end_projection_stage(void* context, int begin, int end, int) {
-  const Solve& s = *static_cast<Solve*>(context);
-  s.kernels.motion.end_projection(s.motion_blocks, begin, end, s.contact_bodies.motion, s.pushes.data());
-}
-
 // Calls fn(place in the batch's list) for the joints of some blocks of a group.
 template <class Fn>
 void for_members(const Group& g, int begin, int end, Fn&& fn) {
@@ -390,85 +316,124 @@ void bundle_stage(void* context, int begin, int end, int) {
 // away, too, which joints that are not in lanes leave.)
 std::size_t count_watched(const Solve& s, bool has_contacts) {
   const bool has_lanes = !s.bundles.bundles.empty(), has_linkages = !s.linkages.linkages.empty();
-  if (s.joint_groups.empty() && !has_linkages) return has_lanes ? s.moved_in_contact : s.moved.size();
+  if (s.joint_groups.empty() && !has_linkages) {
+    if (has_lanes) return has_contacts ? s.moved_in_contact : 0;
+    return s.moved.size();
+  }
   return has_contacts || has_lanes || has_linkages ? s.moved.size() : 0;
 }
 
-// A line for the first blocks of bodies that are moved: `blocks` of them.
-void add_motion(ProgramWriter& program, Solve& solve, void (*kernel)(void*, int, int, int), int blocks) {
-  const int all = count_blocks(int(solve.moved.size()), solve.kernels.width);
-  program.add(kernel, &solve, blocks, kMotionBlocksPerClaim, blocks == all ? solve.moved_bounds : nullptr);
-}
-
-// The stages of one part of a sub-step. Impacts and joints are between forces, contacts and moves only where there are any.
-//
-// Stacks and structures at rest are solved directly after the first sweep, which gives them the loads of this step, and after
-// the last, which leaves them at rest: in between nothing is left for the sweeps to change.
-void add_part(ProgramWriter& program, Solve& solve, int part, std::span<Group> contacts,
-              std::span<Group> joints) {
-  const bool first = part == 0, last = part + 1 == solve.motions.count;
-  const int bodies = count_blocks(int(solve.moved.size()), solve.kernels.width);
-  const int impacts = solve.scratch.impacts.empty() ? 0 : 1;
-  const int trees = first || last ? int(solve.forest.trees.size()) : 0;
-  const int structures = solve.structures.empty() ? 0 : 1;
-  const int linkages = int(solve.linkages.linkages.size()), bundles = int(solve.bundles.bundles.size());
+// A part of a sub-step: how many blocks its stages have.
+struct Part {
+  bool first, last;
+  std::span<Group> contacts, joints;
+  int bodies, watched, impacts, linkages, bundles, fields, slices;
   // Joints act between forces and contacts: what they give is none of the contacts' work, and how they bend in the sub-step
   // is none of what contacts gave in the last one.
-  const bool has_joints = linkages > 0 || bundles > 0 || !joints.empty();
-  const bool is_warm = !first && impacts == 0 && linkages == 0 && joints.empty();
-  const int watched = solve.watched_blocks;
-  const int fields = solve.fields.blocks();
-  const int slices = joints.empty() ? 0 : kJointSlices;
-  program.add(watch_fields_stage, &solve.fields, fields);
-  program.add(watch_stage, &solve, impacts);
+  bool has_joints;
+
+  Part(const Solve& solve, int part, std::span<Group> contact_groups, std::span<Group> joint_groups)
+      : first(part == 0),
+        last(part + 1 == solve.motions.count),
+        contacts(contact_groups),
+        joints(joint_groups),
+        bodies(count_blocks(int(solve.moved.size()), solve.kernels.width)),
+        watched(solve.watched_blocks),
+        impacts(solve.scratch.impacts.empty() ? 0 : 1),
+        linkages(int(solve.linkages.linkages.size())),
+        bundles(int(solve.bundles.bundles.size())),
+        fields(solve.fields.blocks()),
+        slices(joints.empty() ? 0 : kJointSlices),
+        has_joints(linkages > 0 || bundles > 0 || !joints.empty()) {}
+};
+
+// Forces, impacts and joints, these only where there are any.
+void add_before_contacts(ProgramWriter& program, Solve& solve, const Part& part) {
+  const bool first = part.first;
+  const bool is_warm = !first && part.impacts == 0 && part.linkages == 0 && part.joints.empty();
+  program.add(watch_fields_stage, &solve.fields, part.fields);
+  program.add(watch_stage, &solve, part.impacts);
   if (solve.smooth.any_carried) {
     program.add(smooth_stage<move_carried_stage>, &solve, solve.smooth.count());
     program.add(smooth_stage<kick_carriers_stage>, &solve, 1);
   }
-  add_motion(program, solve, is_warm ? predict_stage<true> : predict_stage<false>, bodies);
-  program.add(strike_stage, &solve, impacts);
-  program.add(joint_slices_stage<bend_joints_stage>, &solve, slices, kSlicesPerClaim);
-  program.add(linkage_stage<warm_linkage>, &solve, linkages);
+  add_motion(program, solve, is_warm ? predict_warm_stage : predict_stage, part.bodies);
+  program.add(strike_stage, &solve, part.impacts);
+  program.add(joint_slices_stage<bend_joints_stage>, &solve, part.slices, kSlicesPerClaim);
+  program.add(linkage_stage<warm_linkage>, &solve, part.linkages);
   // Later they have been asked as the last part ended: velocities are as they were but for what turns no joint. (Blows of the batch must
   // not be a reason to ask again: they may be another island's.)
-  if (first) program.add(bundle_stage<&LinkageKernels::ask>, &solve, bundles);
-  program.add_groups(warm_joints_stage, joints, kJointsPerBlock, kJointBlocksPerClaim);
-  if (!first && !is_warm) add_motion(program, solve, warm_motion_stage, watched);
+  if (first) program.add(bundle_stage<&LinkageKernels::ask>, &solve, part.bundles);
+  program.add_groups(warm_joints_stage, part.joints, kJointsPerBlock, kJointBlocksPerClaim);
+  if (!first && !is_warm) add_motion(program, solve, warm_motion_stage, part.watched);
   if (first) {
-    add_motion(program, solve, watch_motion_stage, watched);
-    program.add_groups(warm_contacts_stage, contacts, 1, kBlocksPerClaim);
-    add_motion(program, solve, note_stage, watched);
+    add_motion(program, solve, watch_motion_stage, part.watched);
+    program.add_groups(warm_contacts_stage, part.contacts, 1, kBlocksPerClaim);
+    add_motion(program, solve, note_motion_stage, part.watched);
   }
   // What contacts and joints gave in the last part is in the velocities by now: a stream pulls at what really moves.
-  program.add(apply_fields_stage, &solve.fields, fields);
-  if (fields > 0) add_motion(program, solve, watch_motion_stage, watched);
-  program.add_groups(solve_joints_stage, joints, kJointsPerBlock, kJointBlocksPerClaim);
-  program.add(linkage_stage<solve_linkage>, &solve, linkages);
-  program.add(bundle_stage<&LinkageKernels::solve>, &solve, bundles);
-  if (has_joints) add_motion(program, solve, watch_motion_stage, watched);
-  program.add_groups(solve_contacts_stage, contacts, 1, kBlocksPerClaim);
+  program.add(apply_fields_stage, &solve.fields, part.fields);
+  if (part.fields > 0) add_motion(program, solve, watch_motion_stage, part.watched);
+  program.add_groups(solve_joints_stage, part.joints, kJointsPerBlock, kJointBlocksPerClaim);
+  program.add(linkage_stage<solve_linkage>, &solve, part.linkages);
+  program.add(bundle_stage<&LinkageKernels::solve>, &solve, part.bundles);
+  if (part.has_joints) add_motion(program, solve, watch_motion_stage, part.watched);
+}
+
+// Stacks and structures at rest are solved directly after the first sweep, which gives them the loads of this step, and after
+// the last, which leaves them at rest: in between nothing is left for the sweeps to change.
+void add_contacts(ProgramWriter& program, Solve& solve, const Part& part) {
+  const int trees = part.first || part.last ? int(solve.forest.trees.size()) : 0;
+  const int structures = solve.structures.empty() ? 0 : 1;
+  program.add_groups(solve_contacts_stage, part.contacts, 1, kBlocksPerClaim);
   program.add(solve_trees_stage, &solve, trees, kTreesPerClaim);
-  if (first) program.add(structures_stage<solve_structure_first>, &solve, structures);
-  if (last) program.add(structures_stage<solve_structure_last>, &solve, structures);
-  if (has_joints) add_motion(program, solve, note_stage, watched);
-  program.add(linkage_stage<solve_linkage_again>, &solve, linkages);
-  program.add(bundle_stage<&LinkageKernels::solve_again>, &solve, bundles);
-  add_motion(program, solve, has_joints ? advance_stage<true> : advance_stage<false>, bodies);
-  program.add(turn_alone_stage, &solve, count_blocks(int(solve.spinners.size()), kSpinnersPerClaim));
-  program.add(release_stage, &solve, impacts);
-  program.add(joint_slices_stage<place_again_stage>, &solve, slices, kSlicesPerClaim);
-  program.add(linkage_stage<place_linkage>, &solve, linkages);
-  if (!joints.empty()) program.add(bundle_stage<&LinkageKernels::place>, &solve, bundles);
-  program.add_groups(relax_joints_stage, joints, kJointsPerBlock, kJointBlocksPerClaim);
-  program.add(linkage_stage<relax_linkage>, &solve, linkages);
+  if (part.first) program.add(structures_stage<solve_structure_first>, &solve, structures);
+  if (part.last) program.add(structures_stage<solve_structure_last>, &solve, structures);
+}
+
+// Joints as contacts have left them, moves, and what is left of speed along the joints.
+void add_after_contacts(ProgramWriter& program, Solve& solve, const Part& part) {
+  const bool last = part.last;
+  if (part.has_joints) add_motion(program, solve, note_motion_stage, part.watched);
+  program.add(linkage_stage<solve_linkage_again>, &solve, part.linkages);
+  program.add(bundle_stage<&LinkageKernels::solve_again>, &solve, part.bundles);
+  add_motion(program, solve, part.has_joints ? advance_noted_stage : advance_stage, part.bodies);
+  add_turn_alone(program, solve);
+  program.add(release_stage, &solve, part.impacts);
+  program.add(joint_slices_stage<place_again_stage>, &solve, part.slices, kSlicesPerClaim);
+  program.add(linkage_stage<place_linkage>, &solve, part.linkages);
+  if (!part.joints.empty()) program.add(bundle_stage<&LinkageKernels::place>, &solve, part.bundles);
+  program.add_groups(relax_joints_stage, part.joints, kJointsPerBlock, kJointBlocksPerClaim);
+  program.add(linkage_stage<relax_linkage>, &solve, part.linkages);
   // Where no joint is swept in between, while their rows are still in the cache.
-  if (!joints.empty())
+  if (!part.joints.empty())
     program.add(last ? bundle_stage<&LinkageKernels::finish> : bundle_stage<&LinkageKernels::pass>, &solve,
-                bundles);
+                part.bundles);
   else
     program.add(last ? bundle_stage<&LinkageKernels::place, &LinkageKernels::finish>
                      : bundle_stage<&LinkageKernels::place, &LinkageKernels::pass>,
-                &solve, bundles);
+                &solve, part.bundles);
+}
+
+// Of a batch that goes in runs: all that bundles and moves do between the contacts of one part and those of the next is one line.
+void add_runs(ProgramWriter& program, Solve& solve, void (*kernel)(void*, int, int, int)) {
+  program.add(kernel, &solve, int(solve.runs.size()));
+}
+void add_part_in_runs(ProgramWriter& program, Solve& solve, const Part& part) {
+  if (part.first) {
+    add_runs(program, solve, begin_runs_stage);
+    program.add_groups(warm_contacts_stage, part.contacts, 1, kBlocksPerClaim);
+    add_runs(program, solve, first_runs_stage);
+  }
+  add_contacts(program, solve, part);
+  add_runs(program, solve, part.last ? end_runs_stage : turn_over_runs_stage);
+}
+
+void add_part(ProgramWriter& program, Solve& solve, const Part& part) {
+  if (!solve.runs.empty()) return add_part_in_runs(program, solve, part);
+  add_before_contacts(program, solve, part);
+  add_contacts(program, solve, part);
+  add_after_contacts(program, solve, part);
 }
 
 }  // namespace
@@ -485,23 +450,25 @@ void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> join
   std::uint32_t blocks = 0;
   for (const Group& group : contacts) blocks += group.count;
   const int bodies = count_blocks(int(solve.moved.size()), solve.kernels.width);
-  program.add(fly_stage, &solve, count_blocks(int(solve.flying.size()), kBodiesPerBlock));
+  add_flying(program, solve);
   program.add(smooth_stage<move_smooth_stage>, &solve, solve.smooth.count());
-  add_motion(program, solve, prepare_motion_stage, bodies);
+  const bool in_runs = !solve.runs.empty();
+  if (!in_runs) add_motion(program, solve, prepare_motion_stage, bodies);
   program.add(prepare_fields_stage, &solve.fields, solve.fields.blocks());
   program.add(prepare_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
   program.add(joint_slices_stage<begin_balls_stage>, &solve, slices, kSlicesPerClaim);
   program.add(joint_slices_stage<place_joints_stage>, &solve, slices, kSlicesPerClaim);
   program.add(linkage_stage<place_linkage>, &solve, int(solve.linkages.linkages.size()));
-  const int bundles = int(solve.bundles.bundles.size());
+  const int bundles = in_runs ? 0 : int(solve.bundles.bundles.size());
   program.add(begin_bundles_stage, &solve, bundles);
   program.add(bundle_stage<&LinkageKernels::place>, &solve, bundles);
-  for (int i = 0; i < parts; ++i) add_part(program, solve, i, contacts, joints);
+  for (int i = 0; i < parts; ++i)
+    add_part(program, solve, Part(solve, i, contacts, joints));
   program.add_groups(relax_contacts_stage, contacts, 1, kBlocksPerClaim);
   add_motion(program, solve, begin_projection_stage, bodies);
   program.add_groups(project_contacts_stage, contacts, 1, kBlocksPerClaim);
   add_motion(program, solve, end_projection_stage, bodies);
-  program.add(finish_turns_stage, &solve, count_blocks(int(solve.moved.size()), kBodiesPerBlock));
+  add_finish_turns(program, solve);
   program.add(smooth_stage<finish_smooth_stage>, &solve, solve.smooth.count());
   program.add(finish_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
   program.add(finish_bundles_stage, &solve, bundles);

@@ -2,7 +2,7 @@
 
 #include "rigid/hits.h"
 #include "rigid/joint_works.h"
-#include "rigid/program_writer.h"
+#include "rigid/motion_stages.h"
 #include "rigid/row_islands.h"
 #include "solver/body_newton.h"
 #include "solver/constraint_rows.h"
@@ -14,9 +14,6 @@ namespace gyre {
 
 namespace {
 
-constexpr int kBodiesPerBlock = 64;
-constexpr int kMotionBlocksPerClaim = 8;
-constexpr int kSpinnersPerClaim = 8;
 // Sides of the polygon by which pivoting leads to Coulomb's disc.
 constexpr int kLeadingSides = 8;
 // Impulses are found to this share of the largest that stops a row alone, and to this many N s where that is less.
@@ -296,48 +293,6 @@ void sum_joints_stage(void* context, int begin, int end, int) {
   }
 }
 
-template <class T>
-std::span<T> block_of(std::span<T> list, int begin, int end, int size) {
-  const std::size_t first = std::size_t(begin) * std::size_t(size);
-  return list.subspan(first, min(std::size_t(end) * std::size_t(size), list.size()) - first);
-}
-void fly_stage(void* context, int begin, int end, int) {
-  const Solve& s = static_cast<RowSolve*>(context)->solve;
-  fly(s.w.bodies, block_of(s.flying, begin, end, kBodiesPerBlock), s.motions, s.kernels.turns);
-}
-void prepare_motion_stage(void* context, int begin, int end, int) {
-  const Solve& s = static_cast<RowSolve*>(context)->solve;
-  s.kernels.motion.prepare(s.motion_blocks, begin, end, s.moved.data(), int(s.moved.size()),
-                           s.contact_bodies.inertia);
-}
-void predict_stage(void* context, int begin, int end, int) {
-  const Solve& s = static_cast<RowSolve*>(context)->solve;
-  s.kernels.motion.predict(s.motion_blocks, begin, end, s.contact_bodies.motion, false, false);
-}
-void advance_stage(void* context, int begin, int end, int) {
-  const Solve& s = static_cast<RowSolve*>(context)->solve;
-  BodyStore& bodies = s.w.bodies;
-  s.kernels.motion.advance(s.motion_blocks, begin, end,
-                           {bodies.motion.data(), bodies.inertia.data(), bodies.orientations.data()}, s.h,
-                           false);
-}
-void turn_alone_stage(void* context, int begin, int end, int) {
-  const Solve& s = static_cast<RowSolve*>(context)->solve;
-  turn_alone(s.w.bodies, block_of(s.spinners, begin, end, kSpinnersPerClaim), s.h, s.kernels.turns);
-}
-void finish_turns_stage(void* context, int begin, int end, int) {
-  const Solve& s = static_cast<RowSolve*>(context)->solve;
-  finish_turns(s.w.bodies, block_of(s.moved, begin, end, kBodiesPerBlock),
-               block_of(s.pushes, begin, end, kBodiesPerBlock), s.kernels.turns);
-}
-void begin_projection_stage(void* context, int begin, int end, int) {
-  const Solve& s = static_cast<RowSolve*>(context)->solve;
-  s.kernels.motion.begin_projection(s.motion_blocks, begin, end, s.contact_bodies.motion);
-}
-void end_projection_stage(void* context, int begin, int end, int) {
-  const Solve& s = static_cast<RowSolve*>(context)->solve;
-  s.kernels.motion.end_projection(s.motion_blocks, begin, end, s.contact_bodies.motion, s.pushes.data());
-}
 void watch_stage(void* context, int, int, int) {
   const Solve& s = static_cast<RowSolve*>(context)->solve;
   watch_impacts(s.scratch.impacts, s.contact_bodies);
@@ -360,27 +315,27 @@ void run_substeps(RowSolve& s, Arena& arena, TaskSystem& tasks) {
   const int impacts = solve.scratch.impacts.empty() ? 0 : 1;
   const int fields = solve.fields.blocks();
   ProgramWriter program(arena.make<Stage>(8 + 11 * std::size_t(solve.motions.count)));
-  program.add(fly_stage, &s, count_blocks(int(solve.flying.size()), kBodiesPerBlock));
-  program.add(prepare_motion_stage, &s, bodies, kMotionBlocksPerClaim);
+  add_flying(program, solve);
+  add_motion(program, solve, prepare_motion_stage, bodies);
   program.add(prepare_fields_stage, &solve.fields, fields);
   program.add(place_joints_stage, &s, islands);
   for (int i = 0; i < solve.motions.count; ++i) {
     program.add(watch_fields_stage, &solve.fields, fields);
     program.add(watch_stage, &s, impacts);
-    program.add(predict_stage, &s, bodies, kMotionBlocksPerClaim);
+    add_motion(program, solve, predict_stage, bodies);
     program.add(strike_stage, &s, impacts);
     program.add(apply_fields_stage, &solve.fields, fields);
     program.add(i == 0 ? solve_islands_stage<true> : solve_islands_stage<false>, &s, islands);
-    program.add(advance_stage, &s, bodies, kMotionBlocksPerClaim);
-    program.add(turn_alone_stage, &s, count_blocks(int(solve.spinners.size()), kSpinnersPerClaim));
+    add_motion(program, solve, advance_stage, bodies);
+    add_turn_alone(program, solve);
     program.add(release_stage, &s, impacts);
     program.add(place_joints_stage, &s, islands);
     program.add(sum_joints_stage, &s, islands);
   }
-  program.add(begin_projection_stage, &s, bodies, kMotionBlocksPerClaim);
+  add_motion(program, solve, begin_projection_stage, bodies);
   program.add(push_apart_stage, &s, islands);
-  program.add(end_projection_stage, &s, bodies, kMotionBlocksPerClaim);
-  program.add(finish_turns_stage, &s, count_blocks(int(solve.moved.size()), kBodiesPerBlock));
+  add_motion(program, solve, end_projection_stage, bodies);
+  add_finish_turns(program, solve);
   run_program(tasks, program.stages());
 }
 

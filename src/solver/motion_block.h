@@ -19,7 +19,7 @@ constexpr float kMaxSpin = 2.0e4f;   // rad/s
 
 // A body that constraints act on. Plain data: the same for every width.
 struct MovedBody {
-  std::int32_t body = kNoBody;  // index of its records
+  std::int32_t body = kNoBody;  // index of its records; none: the lane stays empty
   // The exact step of dv/dt = a - damping v:  v += gain a - lost v.
   Vec3 kick;  // m/s: gain times the acceleration by forces
   float linear_lost = 0.0f;

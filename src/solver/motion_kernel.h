@@ -119,7 +119,7 @@ void prepare_motion(void* memory, int begin, int end, const MovedBody* bodies, i
     block = MotionBlock<W>{};
     for (int lane = 0; lane < W; ++lane) {
       block.body[lane] = kNoBody;
-      if (n * W + lane >= count) {
+      if (n * W + lane >= count || bodies[n * W + lane].body == kNoBody) {
         block.start.w.set(lane, 1.0f);
         continue;
       }

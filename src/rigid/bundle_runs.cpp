@@ -1,0 +1,138 @@
+#include "rigid/bundle_runs.h"
+
+#include "rigid/motion_stages.h"
+#include "task/parallel.h"
+
+namespace gyre {
+
+namespace {
+
+// Bodies are moved in whole blocks: with as many in a run, few lanes of the last one are empty.
+constexpr std::size_t kFewestBodies = 96;
+// Of other bodies.
+constexpr int kBlocksAlone = 4;
+
+using BundleKernel = void (*LinkageKernels::*)(const LinkageBundle&, const LaneArrays&, const LaneSettings&);
+
+// A run while a stage works on it.
+class Run {
+ public:
+  Run(Solve& solve, const BundleRun& run)
+      : s_(solve),
+        first_(run.first_bundle),
+        last_(run.first_bundle + run.bundles),
+        begin_(run.first_block),
+        end_(run.first_block + run.blocks) {}
+
+  void begin() const {
+    prepare_motion(s_, begin_, end_);
+    begin_bundles(s_.bundles, first_, last_, s_.w, s_.lane_start);
+    for_bundles(&LinkageKernels::place);
+    predict_motion(s_, begin_, end_, false);
+    for_bundles(&LinkageKernels::ask);
+  }
+  void solve_first() const {
+    note_motion(s_, begin_, end_);
+    solve();
+  }
+  void turn_over() const {
+    finish_part();
+    for_bundles(&LinkageKernels::place);
+    for_bundles(&LinkageKernels::pass);
+    predict_motion(s_, begin_, end_, true);
+    solve();
+  }
+  void end() const {
+    finish_part();
+    for_bundles(&LinkageKernels::place);
+    for_bundles(&LinkageKernels::finish);
+    finish_bundles(s_.bundles, first_, last_, s_.w);
+  }
+
+ private:
+  void for_bundles(BundleKernel kernel) const {
+    for (int i = first_; i < last_; ++i) {
+      const LinkageBundle& bundle = s_.bundles.bundles[std::size_t(i)].lanes;
+      (bundle.kernels->*kernel)(bundle, s_.bundles.arrays, s_.bundles.settings);
+    }
+  }
+  void solve() const {
+    if (first_ == last_) return;
+    for_bundles(&LinkageKernels::solve);
+    watch_motion(s_, begin_, end_);
+  }
+  void finish_part() const {
+    note_motion(s_, begin_, end_);
+    for_bundles(&LinkageKernels::solve_again);
+    advance_motion(s_, begin_, end_, true);
+    turn_spinners(s_, begin_, end_);
+  }
+
+  Solve& s_;
+  int first_, last_, begin_, end_;
+};
+
+template <class Do>
+void for_runs(void* context, int begin, int end, Do&& run) {
+  Solve& solve = *static_cast<Solve*>(context);
+  for (int i = begin; i < end; ++i) run(Run(solve, solve.runs[std::size_t(i)]));
+}
+
+}  // namespace
+
+BundleRuns::BundleRuns(const BundleSolve& bundles, std::size_t bodies, int width, Arena& arena)
+    : runs_(arena.make<BundleRun>(bundles.bundles.size() + bodies / std::size_t(kBlocksAlone * width) + 1)) {
+  std::size_t filled = 0;
+  for (std::size_t i = 0; i < bundles.bundles.size(); ++i) {
+    const Bundled& bundle = bundles.bundles[i];
+    if (filled == 0) add({int(i), 0, count_blocks(), 0});
+    BundleRun& run = runs_[used_ - 1];
+    ++run.bundles;
+    filled += bundle.lanes.moving_count * bundle.linkages.size();
+    run.blocks = gyre::count_blocks(int(filled), width);
+    if (filled >= kFewestBodies) filled = 0;
+  }
+}
+
+void BundleRuns::add_blocks(int blocks) {
+  for (int end = count_blocks() + blocks; count_blocks() < end;) {
+    const int first = count_blocks();
+    add({0, 0, first, min(kBlocksAlone, end - first)});
+  }
+}
+
+void list_pushed(const BundleSolve& bundles, const BundleRun& run, std::span<std::int32_t> bodies) {
+  for (std::int32_t& body : bodies) body = kNoBody;
+  std::size_t first = 0;
+  for (int i = run.first_bundle; i < run.first_bundle + run.bundles; ++i) {
+    const Bundled& bundle = bundles.bundles[std::size_t(i)];
+    const LinkageBundle& shape = bundle.lanes;
+    const std::size_t lanes = bundle.linkages.size();
+    for (std::uint32_t n = 0; n < shape.node_count; ++n) {
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        const LinkedJoint& joint = bundle.linkages[lane]->joints[n];
+        const auto list = [&](std::uint32_t place, std::int32_t body) {
+          if (place < shape.moving_count) bodies[first + place * lanes + lane] = body;
+        };
+        list(shape.nodes[n].a, joint.body_a);
+        list(shape.nodes[n].b, joint.body_b);
+      }
+    }
+    first += shape.moving_count * lanes;
+  }
+}
+
+void begin_runs_stage(void* context, int begin, int end, int) {
+  for_runs(context, begin, end, [](const Run& run) { run.begin(); });
+}
+void first_runs_stage(void* context, int begin, int end, int) {
+  for_runs(context, begin, end, [](const Run& run) { run.solve_first(); });
+}
+void turn_over_runs_stage(void* context, int begin, int end, int) {
+  for_runs(context, begin, end, [](const Run& run) { run.turn_over(); });
+}
+void end_runs_stage(void* context, int begin, int end, int) {
+  for_runs(context, begin, end, [](const Run& run) { run.end(); });
+}
+
+}  // namespace gyre
