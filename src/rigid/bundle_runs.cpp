@@ -1,5 +1,6 @@
 #include "rigid/bundle_runs.h"
 
+#include "base/cold.h"
 #include "rigid/motion_stages.h"
 #include "task/parallel.h"
 
@@ -50,18 +51,18 @@ class Run {
   }
 
  private:
-  void for_bundles(BundleKernel kernel) const {
+  GYRE_COLD void for_bundles(BundleKernel kernel) const {  // (what it calls is long)
     for (int i = first_; i < last_; ++i) {
       const LinkageBundle& bundle = s_.bundles.bundles[std::size_t(i)].lanes;
       (bundle.kernels->*kernel)(bundle, s_.bundles.arrays, s_.bundles.settings);
     }
   }
-  void solve() const {
+  GYRE_COLD void solve() const {
     if (first_ == last_) return;
     for_bundles(&LinkageKernels::solve);
     watch_motion(s_, begin_, end_);
   }
-  void finish_part() const {
+  GYRE_COLD void finish_part() const {
     note_motion(s_, begin_, end_);
     for_bundles(&LinkageKernels::solve_again);
     advance_motion(s_, begin_, end_, true);
@@ -80,7 +81,7 @@ void for_runs(void* context, int begin, int end, Do&& run) {
 
 }  // namespace
 
-BundleRuns::BundleRuns(const BundleSolve& bundles, std::size_t bodies, int width, Arena& arena)
+GYRE_COLD BundleRuns::BundleRuns(const BundleSolve& bundles, std::size_t bodies, int width, Arena& arena)
     : runs_(arena.make<BundleRun>(bundles.bundles.size() + bodies / std::size_t(kBlocksAlone * width) + 1)) {
   std::size_t filled = 0;
   for (std::size_t i = 0; i < bundles.bundles.size(); ++i) {
@@ -94,14 +95,14 @@ BundleRuns::BundleRuns(const BundleSolve& bundles, std::size_t bodies, int width
   }
 }
 
-void BundleRuns::add_blocks(int blocks) {
+GYRE_COLD void BundleRuns::add_blocks(int blocks) {
   for (int end = count_blocks() + blocks; count_blocks() < end;) {
     const int first = count_blocks();
     add({0, 0, first, min(kBlocksAlone, end - first)});
   }
 }
 
-void list_pushed(const BundleSolve& bundles, const BundleRun& run, std::span<std::int32_t> bodies) {
+GYRE_COLD void list_pushed(const BundleSolve& bundles, const BundleRun& run, std::span<std::int32_t> bodies) {
   for (std::int32_t& body : bodies) body = kNoBody;
   std::size_t first = 0;
   for (int i = run.first_bundle; i < run.first_bundle + run.bundles; ++i) {

@@ -1,5 +1,6 @@
 #include "rigid/solve_gather.h"
 
+#include "base/cold.h"
 #include "base/prefetch.h"
 #include "rigid/hits.h"
 #include "rigid/surface_rules.h"
@@ -273,8 +274,8 @@ bool goes_in_runs(const Solve& solve) {
 }
 
 // The bodies of runs of bundles come first, run by run. Marks them in `kinds`, by place in the batch.
-void list_runs(Solve& solve, const BundleRuns& runs, std::span<std::uint8_t> kinds, std::uint8_t mark,
-               Arena& arena) {
+GYRE_COLD void list_runs(Solve& solve, const BundleRuns& runs, std::span<std::uint8_t> kinds,
+                         std::uint8_t mark, Arena& arena) {
   const ArenaScope scope(arena);
   const std::size_t width = std::size_t(solve.kernels.width);
   for (const BundleRun& run : runs.all()) {
