@@ -81,6 +81,19 @@ void for_runs(void* context, int begin, int end, Do&& run) {
 
 }  // namespace
 
+GYRE_COLD bool hangs_on_kinematic(const BundleSolve& bundles, const RigidWorld& w) {
+  const auto is_kinematic = [&](std::int32_t body) {
+    return body != kNoBody && w.bodies.flags[std::size_t(body)].type == BodyType::kinematic;
+  };
+  for (const Bundled& bundle : bundles.bundles) {
+    if (bundle.lanes.body_count == bundle.lanes.moving_count) continue;
+    for (const LaneLinkage* linkage : bundle.linkages)
+      for (const LinkedJoint& joint : linkage->joints)
+        if (is_kinematic(joint.body_a) || is_kinematic(joint.body_b)) return true;
+  }
+  return false;
+}
+
 GYRE_COLD BundleRuns::BundleRuns(const BundleSolve& bundles, std::size_t bodies, int width, Arena& arena)
     : runs_(arena.make<BundleRun>(bundles.bundles.size() + bodies / std::size_t(kBlocksAlone * width) + 1)) {
   std::size_t filled = 0;

@@ -17,6 +17,9 @@ struct BundleRun {
   int first_block = 0, blocks = 0;
 };
 
+// Whether a linkage hangs on a body that it does not push and that moves all the same: then it asks after others between contacts.
+bool hangs_on_kinematic(const BundleSolve& bundles, const RigidWorld& w);
+
 class BundleRuns {
  public:
   // All bundles, in runs that fill most of their blocks of `width` bodies; with room for blocks of as many other bodies.

@@ -270,7 +270,8 @@ std::uint8_t way_to_turn(const Solve& solve, std::uint32_t body) {
 bool goes_in_runs(const Solve& solve) {
   const BatchScratch& s = solve.scratch;
   return !solve.bundles.bundles.empty() && !solve.is_smooth && s.impacts.empty() && s.swept_joints.empty() &&
-         solve.linkages.linkages.empty() && solve.fields.blocks() == 0;
+         solve.linkages.linkages.empty() && solve.fields.blocks() == 0 &&
+         !hangs_on_kinematic(solve.bundles, solve.w);
 }
 
 // The bodies of runs of bundles come first, run by run. Marks them in `kinds`, by place in the batch.

@@ -6,13 +6,41 @@ namespace {
 
 using namespace ragdoll_test;
 
-// Linkages of three shapes, more than fill the lanes of one, and boxes, of which some spin so fast that they turn alone. `slack`: two of
-// the boxes hang on a rope that is never taut. Such a joint is swept, so bodies are moved stage by stage.
-std::vector<float> outcome(bool slack, int threads, int width) {
-  WorldDef world_def;
-  world_def.threads = threads;
-  world_def.simd_width = width;
-  World world = std::move(*World::create(world_def));
+World make_world_of(int threads, int width) {
+  WorldDef def;
+  def.threads = threads;
+  def.simd_width = width;
+  return std::move(*World::create(def));
+}
+// Where all bodies are and how they move, to the bit.
+std::vector<float> read_bodies(const World& world) {
+  std::vector<float> all;
+  const auto list = [&](Vec3 v) { all.insert(all.end(), {v.x, v.y, v.z}); };
+  const BodyColumns bodies = world.bodies();
+  for (std::size_t i = 0; i < bodies.ids.size(); ++i) {
+    const Quat q = bodies.poses[i].orientation;
+    list(to_float(bodies.poses[i].position)), list({q.x, q.y, q.z}), all.push_back(q.w);
+    list(bodies.linear_velocities[i]), list(bodies.angular_velocities[i]);
+  }
+  return all;
+}
+// A rope that is never taut. Such a joint is swept, so bodies are moved stage by stage.
+void add_slack(World& world, BodyId a, BodyId b) {
+  world.add_joint(
+      {.kind = JointKind::distance, .a = a, .b = b, .max_length = 1000.0f, .collide_connected = true});
+}
+void expect_the_same(std::vector<float> (*outcome)(bool slack, int threads, int width)) {
+  const std::vector<float> expected = outcome(true, 1, 1);
+  for (const bool slack : {false, true})
+    for (const int threads : {1, 2, 3})
+      for (const int width : {4, 16})
+        EXPECT_TRUE(expected == outcome(slack, threads, width))
+            << slack << ", " << threads << " threads, " << width << " lanes";
+}
+
+// Linkages of three shapes, more than fill the lanes of one, and boxes, of which some spin so fast that they turn alone.
+std::vector<float> heap(bool slack, int threads, int width) {
+  World world = make_world_of(threads, width);
   add_ground(world);
   const RagdollDef limp = free_humanoid(), stiff = make_humanoid();
   std::mt19937 random(5);
@@ -37,33 +65,42 @@ std::vector<float> outcome(bool slack, int threads, int width) {
                        .collide_connected = true});
     }
   }
-  if (slack)
-    world.add_joint({.kind = JointKind::distance,
-                     .a = boxes[2],
-                     .b = boxes[5],
-                     .max_length = 1000.0f,
-                     .collide_connected = true});
+  if (slack) add_slack(world, boxes[2], boxes[5]);
   for (int step = 0; step < 90; ++step) EXPECT_TRUE(world.step(kStep));
   EXPECT_GT(world.counts().touching, 150);
-  std::vector<float> all;
-  const auto list = [&](Vec3 v) { all.insert(all.end(), {v.x, v.y, v.z}); };
-  const BodyColumns bodies = world.bodies();
-  for (std::size_t i = 0; i < bodies.ids.size(); ++i) {
-    const Quat q = bodies.poses[i].orientation;
-    list(to_float(bodies.poses[i].position)), list({q.x, q.y, q.z}), all.push_back(q.w);
-    list(bodies.linear_velocities[i]), list(bodies.angular_velocities[i]);
-  }
-  return all;
+  return read_bodies(world);
 }
 
-TEST(RagdollHeap, IsTheSameRunByRunAndStageByStage) {
-  const auto expected = outcome(true, 1, 1);
-  for (const bool slack : {false, true})
-    for (const int threads : {1, 2, 3})
-      for (const int width : {4, 16})
-        EXPECT_TRUE(expected == outcome(slack, threads, width))
-            << slack << ", " << threads << " threads, " << width << " lanes";
+TEST(RagdollHeap, IsTheSameRunByRunAndStageByStage) { expect_the_same(heap); }
+
+// What is kinematic moves between contacts, too: nobody may ask after it before, or meanwhile. (Boxes: what a slack rope needs.)
+std::vector<float> on_a_swing(bool slack, int threads, int width) {
+  World world = make_world_of(threads, width);
+  const RagdollDef limp = free_humanoid();
+  std::vector<BodyId> swings;
+  for (int i = 0; i < 20; ++i) {
+    const DVec3 place{2.0 * (i % 5), 6.0, 2.0 * (i / 5)};
+    swings.push_back(world.add_body({.type = BodyType::kinematic, .pose = {.position = place}},
+                                    {.geometry = Box{{0.2f, 0.1f, 0.2f}}}));
+    world.set_velocity(swings.back(), {0.5f, 0.25f * float(i % 3), 0}, {0, 2.0f, 1.0f});
+    const Ragdoll ragdoll = add(world, limp, rest_pose(limp, {place - DVec3{0, 2.5, 0}, {}}));
+    world.add_joint({.kind = JointKind::ball,
+                     .a = swings.back(),
+                     .b = ragdoll.bones[0].body,
+                     .anchor = place - DVec3{0, 0.5, 0}});
+  }
+  std::vector<BodyId> boxes;
+  for (const BodyId swing : swings) {
+    const DVec3 place = world.pose(swing).position + DVec3{0, 20, 0};
+    boxes.push_back(world.add_body({.pose = {.position = place}}, {.geometry = Box{{0.1f, 0.1f, 0.1f}}}));
+    if (slack) add_slack(world, swing, boxes.back());
+  }
+  for (int step = 0; step < 60; ++step) EXPECT_TRUE(world.step(kStep));
+  for (const BodyId box : boxes) EXPECT_TRUE(world.remove_body(box));
+  return read_bodies(world);
 }
+
+TEST(RagdollHeap, HangsOnWhatMovesByItselfAlike) { expect_the_same(on_a_swing); }
 
 }  // namespace
 }  // namespace gyre::kit
