@@ -13,8 +13,6 @@ constexpr std::size_t kFewestBodies = 96;
 // Of other bodies.
 constexpr int kBlocksAlone = 4;
 
-using BundleKernel = void (*LinkageKernels::*)(const LinkageBundle&, const LaneArrays&, const LaneSettings&);
-
 // A run while a stage works on it.
 class Run {
  public:
@@ -75,24 +73,11 @@ class Run {
 
 template <class Do>
 void for_runs(void* context, int begin, int end, Do&& run) {
-  Solve& solve = *static_cast<Solve*>(context);
-  for (int i = begin; i < end; ++i) run(Run(solve, solve.runs[std::size_t(i)]));
+  const RunLine& line = *static_cast<RunLine*>(context);
+  for (int i = begin; i < end; ++i) run(Run(*line.solve, line.runs[std::size_t(i)]));
 }
 
 }  // namespace
-
-GYRE_COLD bool hangs_on_kinematic(const BundleSolve& bundles, const RigidWorld& w) {
-  const auto is_kinematic = [&](std::int32_t body) {
-    return body != kNoBody && w.bodies.flags[std::size_t(body)].type == BodyType::kinematic;
-  };
-  for (const Bundled& bundle : bundles.bundles) {
-    if (bundle.lanes.body_count == bundle.lanes.moving_count) continue;
-    for (const LaneLinkage* linkage : bundle.linkages)
-      for (const LinkedJoint& joint : linkage->joints)
-        if (is_kinematic(joint.body_a) || is_kinematic(joint.body_b)) return true;
-  }
-  return false;
-}
 
 GYRE_COLD BundleRuns::BundleRuns(const BundleSolve& bundles, std::size_t bodies, int width, Arena& arena)
     : runs_(arena.make<BundleRun>(bundles.bundles.size() + bodies / std::size_t(kBlocksAlone * width) + 1)) {
@@ -106,6 +91,7 @@ GYRE_COLD BundleRuns::BundleRuns(const BundleSolve& bundles, std::size_t bodies,
     run.blocks = gyre::count_blocks(int(filled), width);
     if (filled >= kFewestBodies) filled = 0;
   }
+  bundle_runs_ = used_;
 }
 
 GYRE_COLD void BundleRuns::add_blocks(int blocks) {

@@ -17,8 +17,13 @@ struct BundleRun {
   int first_block = 0, blocks = 0;
 };
 
-// Whether a linkage hangs on a body that it does not push and that moves all the same: then it asks after others between contacts.
-bool hangs_on_kinematic(const BundleSolve& bundles, const RigidWorld& w);
+// A line of the program has either the runs of bundles or those of other bodies. The latter come first: linkages may hang on kinematic
+// bodies, which they do not push and which move all the same.
+struct Solve;
+struct RunLine {
+  Solve* solve = nullptr;
+  std::span<BundleRun> runs{};
+};
 
 class BundleRuns {
  public:
@@ -28,18 +33,19 @@ class BundleRuns {
   void add_blocks(int blocks);
 
   int count_blocks() const { return used_ == 0 ? 0 : runs_[used_ - 1].first_block + runs_[used_ - 1].blocks; }
-  std::span<BundleRun> all() const { return runs_.first(used_); }
+  std::span<BundleRun> of_bundles() const { return runs_.first(bundle_runs_); }
+  std::span<BundleRun> of_others() const { return runs_.subspan(bundle_runs_, used_ - bundle_runs_); }
 
  private:
   void add(const BundleRun& run) { runs_[used_++] = run; }
 
   std::span<BundleRun> runs_;
-  std::size_t used_ = 0;
+  std::size_t used_ = 0, bundle_runs_ = 0;
 };
 // The bodies of a run, block by block: those of a bundle in the order of its shape, of each all lanes. Where blocks have room left, kNoBody.
 void list_pushed(const BundleSolve& bundles, const BundleRun& run, std::span<std::int32_t> bodies);
 
-// Stages, whose blocks are runs. Their context is the batch's Solve.
+// Stages, whose blocks are runs. Their context is a RunLine.
 // Up to the warm start of contacts; from there to the contacts of the first part;
 void begin_runs_stage(void* context, int begin, int end, int worker);
 void first_runs_stage(void* context, int begin, int end, int worker);

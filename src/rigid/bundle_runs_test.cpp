@@ -47,23 +47,24 @@ TEST(BundleRuns, HaveEachBundleAndEachPushedBodyOnce) {
       runs.add_blocks(kOthers);
       int bundle = 0, block = 0;
       std::vector<std::int32_t> pushed;
-      for (const BundleRun& run : runs.all()) {
-        EXPECT_EQ(run.first_block, block);
-        EXPECT_GT(run.blocks, 0);
-        block += run.blocks;
-        if (run.bundles == 0) {
-          EXPECT_GE(run.first_block, led);
-          continue;
+      for (const std::span<BundleRun> part : {runs.of_bundles(), runs.of_others()})
+        for (const BundleRun& run : part) {
+          EXPECT_EQ(run.first_block, block);
+          EXPECT_GT(run.blocks, 0);
+          block += run.blocks;
+          if (run.bundles == 0) {
+            EXPECT_GE(run.first_block, led);
+            continue;
+          }
+          EXPECT_EQ(run.first_bundle, bundle);
+          bundle += run.bundles;
+          std::vector<std::int32_t> bodies(std::size_t(run.blocks * width));
+          list_pushed(bundles, run, bodies);
+          const auto empty = std::count(bodies.begin(), bodies.end(), kNoBody);
+          EXPECT_LT(empty, width) << "a block of nothing";
+          std::copy_if(bodies.begin(), bodies.end(), std::back_inserter(pushed),
+                       [](std::int32_t body) { return body != kNoBody; });
         }
-        EXPECT_EQ(run.first_bundle, bundle);
-        bundle += run.bundles;
-        std::vector<std::int32_t> bodies(std::size_t(run.blocks * width));
-        list_pushed(bundles, run, bodies);
-        const auto empty = std::count(bodies.begin(), bodies.end(), kNoBody);
-        EXPECT_LT(empty, width) << "a block of nothing";
-        std::copy_if(bodies.begin(), bodies.end(), std::back_inserter(pushed),
-                     [](std::int32_t body) { return body != kNoBody; });
-      }
       EXPECT_EQ(bundle, int(bundles.bundles.size()));
       EXPECT_EQ(block, led + kOthers);
       std::sort(pushed.begin(), pushed.end());
@@ -82,9 +83,9 @@ TEST(BundleRuns, ListTheBodiesOfAFullBundleLaneByLane) {
   Arena arena;
   const BundleSolve bundles = crowd.lay_out(kWidth, arena);
   const BundleRuns runs(bundles, 0, kWidth, arena);
-  ASSERT_EQ(runs.all().size(), 1u);
+  ASSERT_EQ(runs.of_bundles().size(), 1u);
   std::vector<std::int32_t> bodies(std::size_t(runs.count_blocks() * kWidth));
-  list_pushed(bundles, runs.all()[0], bodies);
+  list_pushed(bundles, runs.of_bundles()[0], bodies);
   EXPECT_EQ(bodies, (std::vector<std::int32_t>{0, 10, 20, 30, 1, 11, 21, 31, 2, 12, 22, 32}));
 }
 
@@ -92,7 +93,7 @@ TEST(BundleRuns, OfNothingAreNone) {
   Arena arena;
   const BundleRuns runs(BundleSolve{}, 100, 8, arena);
   EXPECT_EQ(runs.count_blocks(), 0);
-  EXPECT_TRUE(runs.all().empty());
+  EXPECT_TRUE(runs.of_bundles().empty());
 }
 
 }  // namespace

@@ -20,6 +20,9 @@ struct BundleSolve {
   LaneSettings settings;
 };
 
+// One of the kernels that work on velocities or places.
+using BundleKernel = void (*LinkageKernels::*)(const LinkageBundle&, const LaneArrays&, const LaneSettings&);
+
 BundleSolve lay_out_bundles(const Linkages& linkages, const ContactKernels& kernels, const LaneArrays& arrays,
                             const LaneSettings& settings, Arena& arena);
 // Of bundles [begin, end).

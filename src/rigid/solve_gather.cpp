@@ -270,8 +270,7 @@ std::uint8_t way_to_turn(const Solve& solve, std::uint32_t body) {
 bool goes_in_runs(const Solve& solve) {
   const BatchScratch& s = solve.scratch;
   return !solve.bundles.bundles.empty() && !solve.is_smooth && s.impacts.empty() && s.swept_joints.empty() &&
-         solve.linkages.linkages.empty() && solve.fields.blocks() == 0 &&
-         !hangs_on_kinematic(solve.bundles, solve.w);
+         solve.linkages.linkages.empty() && solve.fields.blocks() == 0;
 }
 
 // The bodies of runs of bundles come first, run by run. Marks them in `kinds`, by place in the batch.
@@ -279,7 +278,7 @@ GYRE_COLD void list_runs(Solve& solve, const BundleRuns& runs, std::span<std::ui
                          std::uint8_t mark, Arena& arena) {
   const ArenaScope scope(arena);
   const std::size_t width = std::size_t(solve.kernels.width);
-  for (const BundleRun& run : runs.all()) {
+  for (const BundleRun& run : runs.of_bundles()) {
     const std::span<std::int32_t> bodies = arena.make<std::int32_t>(std::size_t(run.blocks) * width);
     list_pushed(solve.bundles, run, bodies);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -340,7 +339,8 @@ void part_bodies(Solve& solve, Arena& arena, TaskSystem& tasks) {
   }
   if (led > 0) {
     runs.add_blocks(count_blocks(int(moved), width));
-    solve.runs = runs.all();
+    solve.run_lines[0] = {&solve, runs.of_others()};
+    solve.run_lines[1] = {&solve, runs.of_bundles()};
   }
   solve.moved = solve.moved.first(led + moved);
   solve.flying = solve.flying.first(flying);

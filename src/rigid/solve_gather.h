@@ -54,7 +54,7 @@ struct Solve {
   std::span<Vec3> pushes{};                   // and how overlap turned them
   std::span<std::uint32_t> spinners{};        // those of them that turn alone
   std::span<std::uint32_t> spinner_starts{};  // by block of moved bodies: its first; one more
-  std::span<BundleRun> runs{};                // all blocks of moved bodies, if they are moved run by run
+  RunLine run_lines[2] = {};                  // if bodies are moved run by run: of others, and of bundles
   std::size_t moved_in_contact = 0;           // of these, the first: contacts act on them
   const int* moved_bounds = nullptr;          // of the blocks, by domain: where contacts act on nearly all
   int watched_blocks = 0;             // the first: of these somebody asks what contacts gave the bodies

@@ -300,7 +300,6 @@ void finish_bundles_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
   finish_bundles(s.bundles, begin, end, s.w);
 }
-using BundleKernel = void (*LinkageKernels::*)(const LinkageBundle&, const LaneArrays&, const LaneSettings&);
 template <BundleKernel... kernels>
 void bundle_stage(void* context, int begin, int end, int) {
   const BundleSolve& s = static_cast<Solve*>(context)->bundles;
@@ -415,9 +414,11 @@ void add_after_contacts(ProgramWriter& program, Solve& solve, const Part& part) 
                 &solve, part.bundles);
 }
 
-// Of a batch that goes in runs: all that bundles and moves do between the contacts of one part and those of the next is one line.
+// Of a batch that goes in runs: all that bundles and moves do between the contacts of one part and those of the next is one line, and one
+// before it for bodies that are in none.
+bool goes_in_runs(const Solve& solve) { return !solve.run_lines[1].runs.empty(); }
 void add_runs(ProgramWriter& program, Solve& solve, void (*kernel)(void*, int, int, int)) {
-  program.add(kernel, &solve, int(solve.runs.size()));
+  for (RunLine& line : solve.run_lines) program.add(kernel, &line, int(line.runs.size()));
 }
 void add_part_in_runs(ProgramWriter& program, Solve& solve, const Part& part) {
   if (part.first) {
@@ -430,7 +431,7 @@ void add_part_in_runs(ProgramWriter& program, Solve& solve, const Part& part) {
 }
 
 void add_part(ProgramWriter& program, Solve& solve, const Part& part) {
-  if (!solve.runs.empty()) return add_part_in_runs(program, solve, part);
+  if (goes_in_runs(solve)) return add_part_in_runs(program, solve, part);
   add_before_contacts(program, solve, part);
   add_contacts(program, solve, part);
   add_after_contacts(program, solve, part);
@@ -452,7 +453,7 @@ void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> join
   const int bodies = count_blocks(int(solve.moved.size()), solve.kernels.width);
   add_flying(program, solve);
   program.add(smooth_stage<move_smooth_stage>, &solve, solve.smooth.count());
-  const bool in_runs = !solve.runs.empty();
+  const bool in_runs = goes_in_runs(solve);
   if (!in_runs) add_motion(program, solve, prepare_motion_stage, bodies);
   program.add(prepare_fields_stage, &solve.fields, solve.fields.blocks());
   program.add(prepare_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
