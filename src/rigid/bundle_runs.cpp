@@ -21,7 +21,10 @@ class Run {
         first_(run.first_bundle),
         last_(run.first_bundle + run.bundles),
         begin_(run.first_block),
-        end_(run.first_block + run.blocks) {}
+        end_(run.first_block + run.blocks),
+        lanes_(find_lanes(run)),
+        spins_(!solve.spinners.empty() &&
+               solve.spinner_starts[std::size_t(begin_)] != solve.spinner_starts[std::size_t(end_)]) {}
 
   void begin() const {
     prepare_motion(s_, begin_, end_);
@@ -32,43 +35,64 @@ class Run {
   }
   void solve_first() const {
     note_motion(s_, begin_, end_);
-    solve();
+    solve(true);
   }
   void turn_over() const {
     finish_part();
     for_bundles(&LinkageKernels::place);
-    for_bundles(&LinkageKernels::pass);
-    predict_motion(s_, begin_, end_, true);
-    solve();
+    for_bundles(&LinkageKernels::pass, is_apart() || spins_, is_apart());
+    predict_motion(s_, begin_, end_, true, lanes_);
+    solve(is_apart());
   }
   void end() const {
     finish_part();
     for_bundles(&LinkageKernels::place);
-    for_bundles(&LinkageKernels::finish);
+    for_bundles(&LinkageKernels::finish, is_apart() || spins_, true);
     finish_bundles(s_.bundles, first_, last_, s_.w);
   }
 
  private:
-  GYRE_COLD void for_bundles(BundleKernel kernel) const {  // (what it calls is long)
+  // Where blocks have the same bodies in the same lanes as the only bundle of the run, velocities stay in its lanes from contacts to
+  // contacts. (Bodies that turn alone are turned by their records.)
+  LaneVelocities find_lanes(const BundleRun& run) const {
+    if (run.bundles != 1) return {};
+    const Bundled& bundle = s_.bundles.bundles[std::size_t(first_)];
+    const LinkageKernels& kernels = *bundle.lanes.kernels;
+    const bool is_full = kernels.width == s_.kernels.width && int(bundle.linkages.size()) == kernels.width;
+    if (!is_full || s_.kernels.motion.predict_in_lanes == nullptr) return {};
+    return {reinterpret_cast<float*>(bundle.lanes.bodies + kernels.velocities_at),
+            kernels.body_bytes / sizeof(float), begin_};
+  }
+
+  // Velocities go from hand to hand by the records.
+  bool is_apart() const { return !lanes_.is_given(); }
+
+  // `loads`, `stores`: as LaneArrays. (Cold: what it calls is long.)
+  GYRE_COLD void for_bundles(BundleKernel kernel, bool loads = true, bool stores = true) const {
+    LaneArrays arrays = s_.bundles.arrays;
+    arrays.loads = loads, arrays.stores = stores;
     for (int i = first_; i < last_; ++i) {
       const LinkageBundle& bundle = s_.bundles.bundles[std::size_t(i)].lanes;
-      (bundle.kernels->*kernel)(bundle, s_.bundles.arrays, s_.bundles.settings);
+      (bundle.kernels->*kernel)(bundle, arrays, s_.bundles.settings);
     }
   }
-  GYRE_COLD void solve() const {
+  GYRE_COLD void solve(bool loads) const {
     if (first_ == last_) return;
-    for_bundles(&LinkageKernels::solve);
-    watch_motion(s_, begin_, end_);
+    for_bundles(&LinkageKernels::solve, loads, true);
+    watch_motion(s_, begin_, end_, lanes_);
   }
+  // Since solve() only contacts have changed velocities in the records, and only of bodies that are watched: lanes have the others'.
   GYRE_COLD void finish_part() const {
-    note_motion(s_, begin_, end_);
-    for_bundles(&LinkageKernels::solve_again);
-    advance_motion(s_, begin_, end_, true);
+    note_motion(s_, begin_, end_, lanes_);
+    for_bundles(&LinkageKernels::solve_again, is_apart(), is_apart() || spins_);
+    advance_motion(s_, begin_, end_, true, spins_ ? LaneVelocities{} : lanes_);
     turn_spinners(s_, begin_, end_);
   }
 
   Solve& s_;
   int first_, last_, begin_, end_;
+  LaneVelocities lanes_;
+  bool spins_;  // some turn alone
 };
 
 template <class Do>

@@ -47,23 +47,33 @@ void prepare_motion(const Solve& s, int begin, int end) {
   s.kernels.motion.prepare(s.motion_blocks, begin, end, s.moved.data(), int(s.moved.size()),
                            s.contact_bodies.inertia);
 }
-void predict_motion(const Solve& s, int begin, int end, bool warm) {
+void predict_motion(const Solve& s, int begin, int end, bool warm, const LaneVelocities& lanes) {
   part_watched(s, begin, end, [&](int first, int last, bool watched) {
+    if (lanes.is_given())
+      return s.kernels.motion.predict_in_lanes(s.motion_blocks, first, last, lanes, warm && watched, watched);
     s.kernels.motion.predict(s.motion_blocks, first, last, s.contact_bodies.motion, warm && watched, watched);
   });
 }
-void watch_motion(const Solve& s, int begin, int end) {
+void watch_motion(const Solve& s, int begin, int end, const LaneVelocities& lanes) {
   const int last = min(end, s.watched_blocks);
-  if (begin < last) s.kernels.motion.watch(s.motion_blocks, begin, last, s.contact_bodies.motion);
+  if (begin >= last) return;
+  if (lanes.is_given()) return s.kernels.motion.watch_in_lanes(s.motion_blocks, begin, last, lanes);
+  s.kernels.motion.watch(s.motion_blocks, begin, last, s.contact_bodies.motion);
 }
-void note_motion(const Solve& s, int begin, int end) {
+void note_motion(const Solve& s, int begin, int end, const LaneVelocities& lanes) {
   const int last = min(end, s.watched_blocks);
-  if (begin < last) s.kernels.motion.note(s.motion_blocks, begin, last, s.contact_bodies.motion);
+  if (begin >= last) return;
+  if (lanes.is_given())
+    return s.kernels.motion.note_in_lanes(s.motion_blocks, begin, last, s.contact_bodies.motion, lanes);
+  s.kernels.motion.note(s.motion_blocks, begin, last, s.contact_bodies.motion);
 }
-void advance_motion(const Solve& s, int begin, int end, bool noted) {
+void advance_motion(const Solve& s, int begin, int end, bool noted, const LaneVelocities& lanes) {
   BodyStore& bodies = s.w.bodies;
   const MotionArrays arrays{bodies.motion.data(), bodies.inertia.data(), bodies.orientations.data()};
   part_watched(s, begin, end, [&](int first, int last, bool watched) {
+    if (lanes.is_given())
+      return s.kernels.motion.advance_in_lanes(s.motion_blocks, first, last, arrays, lanes, s.h,
+                                               watched && !noted);
     s.kernels.motion.advance(s.motion_blocks, first, last, arrays, s.h, watched && !noted);
   });
 }

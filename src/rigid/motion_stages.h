@@ -11,11 +11,11 @@ namespace gyre {
 // (Solve::watched_blocks).
 void prepare_motion(const Solve& s, int begin, int end);
 // By forces; warm: and by what contacts gave in the last part.
-void predict_motion(const Solve& s, int begin, int end, bool warm);
-void watch_motion(const Solve& s, int begin, int end);
-void note_motion(const Solve& s, int begin, int end);
+void predict_motion(const Solve& s, int begin, int end, bool warm, const LaneVelocities& lanes = {});
+void watch_motion(const Solve& s, int begin, int end, const LaneVelocities& lanes = {});
+void note_motion(const Solve& s, int begin, int end, const LaneVelocities& lanes = {});
 // Noted: what contacts gave has been noted by now.
-void advance_motion(const Solve& s, int begin, int end, bool noted);
+void advance_motion(const Solve& s, int begin, int end, bool noted, const LaneVelocities& lanes = {});
 // The rotation of those in these blocks that turn alone.
 void turn_spinners(const Solve& s, int begin, int end);
 

@@ -118,7 +118,7 @@ GYRE_INLINE void gather_fours(const float* base, const std::int32_t* indices, co
 // (These two are not inline: every stage has them.)
 template <int W>
 __attribute__((noinline)) void load_velocities(const Bundle<W>& bundle, const LaneArrays& arrays) {
-  for (std::uint32_t i = 0; i < bundle.plain.body_count; ++i) {
+  for (std::uint32_t i = arrays.loads ? 0 : bundle.plain.moving_count; i < bundle.plain.body_count; ++i) {
     LinkedBody<W>& body = bundle.bodies[i];
     Wide<W> c[8];
     gather8<W>(&arrays.motion->linear_velocity.x, body.record, c);
@@ -132,9 +132,12 @@ __attribute__((noinline)) void store_velocities(const Bundle<W>& bundle, const L
   // Adding zero keeps -0 out of the state.
   const Wide<W> zero(0.0f);
   for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i) {
-    const LinkedBody<W>& body = bundle.bodies[i];
-    const Wide<W> c[6] = {body.linear.x + zero,  body.linear.y + zero,  body.linear.z + zero,
-                          body.angular.x + zero, body.angular.y + zero, body.angular.z + zero};
+    LinkedBody<W>& body = bundle.bodies[i];
+    body.linear = {body.linear.x + zero, body.linear.y + zero, body.linear.z + zero};
+    body.angular = {body.angular.x + zero, body.angular.y + zero, body.angular.z + zero};
+    if (!arrays.stores) continue;
+    const Wide<W> c[6] = {body.linear.x,  body.linear.y,  body.linear.z,
+                          body.angular.x, body.angular.y, body.angular.z};
     scatter<6, W>(&arrays.motion->linear_velocity.x, body.record, c);
   }
 }

@@ -355,6 +355,7 @@ constexpr LinkageKernels linkage_kernels() {
           sizeof(LinkedBody<W>),
           sizeof(LinkedJoint<W>),
           sizeof(LinkedDrives<W>),
+          offsetof(LinkedBody<W>, linear),
           stop_room<W>,
           begin_linkages<W>,
           place_linkages<W>,

@@ -113,6 +113,8 @@ struct LaneArrays {
   BodyMotion* motion = nullptr;
   const BodyInertia* inertia = nullptr;
   const Quat* orientation = nullptr;
+  // Whether a stage takes the velocities of what it may push from the records, and leaves them there: else they stay in the lanes.
+  bool loads = true, stores = true;
 };
 
 struct LaneSettings {
@@ -134,6 +136,7 @@ struct LaneSettings {
 struct LinkageKernels {
   int width;
   std::size_t body_bytes, joint_bytes, drives_bytes;
+  std::size_t velocities_at;  // bytes: where a body's block has them, as LaneVelocities
   std::size_t (*stop_room)(const LinkageBundle& bundle);  // bytes
   void (*begin)(const LinkageBundle& bundle);             // before it is placed for the first time in a step
   void (*place)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);

@@ -42,6 +42,16 @@ struct MotionArrays {
   Quat* orientation = nullptr;
 };
 
+// Velocities that stand side by side where others have laid them: of each block from `first_block` on six vectors, linear, then angular.
+struct LaneVelocities {
+  float* first = nullptr;  // none: the motion records have them
+  std::size_t stride = 0;  // floats from block to block
+  int first_block = 0;
+
+  bool is_given() const { return first != nullptr; }
+  float* of(int block) const { return first + std::size_t(block - first_block) * stride; }
+};
+
 // The kernels of one CPU target: every function works on blocks [begin, end) of the array at `blocks`.
 struct MotionKernels {
   std::size_t block_bytes;
@@ -64,6 +74,16 @@ struct MotionKernels {
   // Makes these displacements and puts the velocities back. Turns go to `turns` too (one for each body of prepare): those
   // of bodies that turn alone are still to be made.
   void (*end_projection)(void* blocks, int begin, int end, BodyMotion* motion, Vec3* turns);
+
+  // The same as those above, but velocities are taken from lanes and go there, of `note` from the records to there. None where kernels
+  // have few lanes, and the way through records costs little.
+  void (*predict_in_lanes)(void* blocks, int begin, int end, const LaneVelocities& lanes, bool warm,
+                           bool watched);
+  void (*watch_in_lanes)(void* blocks, int begin, int end, const LaneVelocities& lanes);
+  void (*note_in_lanes)(void* blocks, int begin, int end, const BodyMotion* motion,
+                        const LaneVelocities& lanes);
+  void (*advance_in_lanes)(void* blocks, int begin, int end, MotionArrays arrays, const LaneVelocities& lanes,
+                           float substep, bool watched);
 };
 
 }  // namespace gyre

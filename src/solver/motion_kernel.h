@@ -63,6 +63,45 @@ GYRE_INLINE void store_motion(const MotionBlock<W>& block, BodyMotion* motion, c
   scatter<Columns, W>(&motion->linear_velocity.x, block.body, m.record);
 }
 
+// Where the velocities of blocks are while a kernel works on these: in the records, with all the rest,
+template <int W>
+struct InRecords {
+  BodyMotion* motion;
+
+  template <int Columns>
+  GYRE_INLINE MotionW<W> load(const MotionBlock<W>& block, int) const {
+    return load_motion<Columns, W>(block, motion);
+  }
+  template <int Columns>
+  GYRE_INLINE void store(const MotionBlock<W>& block, int, const MotionW<W>& m) const {
+    store_motion<Columns, W>(block, motion, m);
+  }
+};
+// or in lanes beside them.
+template <int W>
+struct InLanes {
+  const LaneVelocities& lanes;
+  BodyMotion* motion = nullptr;  // what only needs velocities does without
+
+  template <int Columns>
+  GYRE_INLINE MotionW<W> load(const MotionBlock<W>& block, int n) const {
+    MotionW<W> m;
+    const float* const from = lanes.of(n);
+    GYRE_UNROLL
+    for (int i = 0; i < 6; ++i) m.record[i] = Wide<W>::load(from + i * W);
+    if constexpr (Columns > kMotionMoved) gather8<W>(&motion->moved.x, block.body, m.record + kMotionMoved);
+    return m;
+  }
+  template <int Columns>
+  GYRE_INLINE void store(const MotionBlock<W>& block, int n, const MotionW<W>& m) const {
+    float* const to = lanes.of(n);
+    GYRE_UNROLL
+    for (int i = 0; i < 6; ++i) m.record[i].store(to + i * W);
+    if constexpr (Columns > kMotionMoved)
+      scatter<Columns - kMotionMoved, W>(&motion->moved.x, block.body, m.record + kMotionMoved);
+  }
+};
+
 template <int W>
 GYRE_INLINE Vec3W<W> along_loose_axes(const MotionBlock<W>& block, Vec3W<W> v) {
   const Wide<W> zero(0.0f);
@@ -172,14 +211,14 @@ GYRE_INLINE void add_gain(MotionBlock<W>& block, const MotionW<W>& m) {
   block.given_angular = block.given_angular + (m.angular() - block.before_angular);
 }
 
-template <int W>
-void predict_motion(void* memory, int begin, int end, BodyMotion* motion, bool warm, bool watched) {
+template <int W, class Where>
+GYRE_INLINE void predict_blocks(void* memory, int begin, int end, const Where& where, bool warm, bool watched) {
   auto* blocks = static_cast<MotionBlock<W>*>(memory);
   const Wide<W> zero(0.0f);
   const Vec3W<W> none{zero, zero, zero};
   for (int n = begin; n < end; ++n) {
     MotionBlock<W>& block = blocks[n];
-    MotionW<W> m = load_motion<8, W>(block, motion);
+    MotionW<W> m = where.template load<8>(block, n);
     Vec3W<W> v = m.linear(), w = m.angular();
     Vec3W<W> push = block.kick;
     Vec3W<W> twist = none;
@@ -197,8 +236,16 @@ void predict_motion(void* memory, int begin, int end, BodyMotion* motion, bool w
     m.set_angular(within_length<W>(w, kMaxSpin) + none);
     if (warm) add_given<W>(block, m);
     if (watched) remember<W>(block, m);
-    store_motion<6, W>(block, motion, m);
+    where.template store<6>(block, n, m);
   }
+}
+template <int W>
+void predict_motion(void* memory, int begin, int end, BodyMotion* motion, bool warm, bool watched) {
+  predict_blocks<W>(memory, begin, end, InRecords<W>{motion}, warm, watched);
+}
+template <int W>
+void predict_in_lanes(void* memory, int begin, int end, const LaneVelocities& lanes, bool warm, bool watched) {
+  predict_blocks<W>(memory, begin, end, InLanes<W>{lanes}, warm, watched);
 }
 
 template <int W>
@@ -217,16 +264,34 @@ void watch_motion(void* memory, int begin, int end, const BodyMotion* motion) {
   auto* blocks = static_cast<MotionBlock<W>*>(memory);
   for (int n = begin; n < end; ++n) remember<W>(blocks[n], load_motion<8, W>(blocks[n], motion));
 }
-
 template <int W>
-void note_motion(void* memory, int begin, int end, const BodyMotion* motion) {
+void watch_in_lanes(void* memory, int begin, int end, const LaneVelocities& lanes) {
+  auto* blocks = static_cast<MotionBlock<W>*>(memory);
+  for (int n = begin; n < end; ++n) remember<W>(blocks[n], InLanes<W>{lanes}.template load<6>(blocks[n], n));
+}
+
+// Calls `then` with the number of a block and what its records hold.
+template <int W, class Then>
+GYRE_INLINE void note_blocks(void* memory, int begin, int end, const BodyMotion* motion, const Then& then) {
   auto* blocks = static_cast<MotionBlock<W>*>(memory);
   for (int n = begin; n < end; ++n) {
     MotionBlock<W>& block = blocks[n];
     const MotionW<W> m = load_motion<8, W>(block, motion);
     add_gain<W>(block, m);
     remember<W>(block, m);
+    then(n, m);
   }
+}
+template <int W>
+void note_motion(void* memory, int begin, int end, const BodyMotion* motion) {
+  note_blocks<W>(memory, begin, end, motion, [](int, const MotionW<W>&) {});
+}
+template <int W>
+void note_in_lanes(void* memory, int begin, int end, const BodyMotion* motion, const LaneVelocities& lanes) {
+  const auto* blocks = static_cast<const MotionBlock<W>*>(memory);
+  note_blocks<W>(memory, begin, end, motion, [&](int n, const MotionW<W>& m) {
+    InLanes<W>{lanes}.template store<6>(blocks[n], n, m);
+  });
 }
 
 // Shows the place of some lanes to joints and impacts: mostly of all. Inertia that no torque turns is what it was as the step began.
@@ -299,14 +364,15 @@ GYRE_INLINE bool rests(const MotionW<W>& m) {
   return none(bits != WideInt<W>(0));
 }
 
-template <int W>
-void advance_motion(void* memory, int begin, int end, MotionArrays arrays, float substep, bool watched) {
+template <int W, class Where>
+GYRE_INLINE void advance_blocks(void* memory, int begin, int end, MotionArrays arrays, const Where& where,
+                                float substep, bool watched) {
   auto* blocks = static_cast<MotionBlock<W>*>(memory);
   const Wide<W> zero(0.0f);
   const Vec3W<W> none{zero, zero, zero};
   for (int n = begin; n < end; ++n) {
     MotionBlock<W>& block = blocks[n];
-    MotionW<W> m = load_motion<16, W>(block, arrays.motion);
+    MotionW<W> m = where.template load<16>(block, n);
     const bool resting = rests<W>(m);
     if (block.any_locked != 0) m.set_linear(along_loose_axes<W>(block, m.linear()));
     if (watched) add_gain<W>(block, m);
@@ -316,8 +382,17 @@ void advance_motion(void* memory, int begin, int end, MotionArrays arrays, float
     m.set_moved(m.moved() + Wide<W>(substep) * m.linear());
     turn_block<W>(block, m, arrays, substep);
     m.set_angular(m.angular() + none);
-    store_motion<14, W>(block, arrays.motion, m);
+    where.template store<14>(block, n, m);
   }
+}
+template <int W>
+void advance_motion(void* memory, int begin, int end, MotionArrays arrays, float substep, bool watched) {
+  advance_blocks<W>(memory, begin, end, arrays, InRecords<W>{arrays.motion}, substep, watched);
+}
+template <int W>
+void advance_in_lanes(void* memory, int begin, int end, MotionArrays arrays, const LaneVelocities& lanes,
+                      float substep, bool watched) {
+  advance_blocks<W>(memory, begin, end, arrays, InLanes<W>{lanes, arrays.motion}, substep, watched);
 }
 
 template <int W>
@@ -356,8 +431,23 @@ void end_projection(void* memory, int begin, int end, BodyMotion* motion, Vec3* 
 // The table that a kernel file exports.
 template <int W>
 constexpr MotionKernels motion_kernels() {
-  return {sizeof(MotionBlock<W>), prepare_motion<W>, predict_motion<W>,   warm_motion<W>,   watch_motion<W>,
-          note_motion<W>,    advance_motion<W>, begin_projection<W>, end_projection<W>};
+  MotionKernels kernels{};
+  kernels.block_bytes = sizeof(MotionBlock<W>);
+  kernels.prepare = prepare_motion<W>;
+  kernels.predict = predict_motion<W>;
+  kernels.warm = warm_motion<W>;
+  kernels.watch = watch_motion<W>;
+  kernels.note = note_motion<W>;
+  kernels.advance = advance_motion<W>;
+  kernels.begin_projection = begin_projection<W>;
+  kernels.end_projection = end_projection<W>;
+  if constexpr (W >= 8) {
+    kernels.predict_in_lanes = predict_in_lanes<W>;
+    kernels.watch_in_lanes = watch_in_lanes<W>;
+    kernels.note_in_lanes = note_in_lanes<W>;
+    kernels.advance_in_lanes = advance_in_lanes<W>;
+  }
+  return kernels;
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

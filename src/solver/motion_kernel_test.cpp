@@ -198,9 +198,8 @@ TEST(MotionKernel, ProjectionMovesWithoutTouchingVelocities) {
   EXPECT_EQ(crowd.turns[0], (Vec3{0, 0, 0.125f}));
 }
 
-// Bodies of every sort, whole sub-steps: as blocks of `width`.
-Crowd move_crowd(int width) {
-  Random random;
+// Bodies of every sort.
+Crowd make_crowd(Random& random) {
   Crowd crowd;
   for (int i = 0; i < 37; ++i) {
     const float moment = random.between(0.5f, 2.0f);
@@ -219,6 +218,12 @@ Crowd move_crowd(int width) {
     crowd.motion[std::size_t(i)].linear_velocity = random.vector(10.0f);
     crowd.motion[std::size_t(i)].angular_velocity = random.vector(20.0f);
   }
+  return crowd;
+}
+// Whole sub-steps: as blocks of `width`.
+Crowd move_crowd(int width) {
+  Random random;
+  Crowd crowd = make_crowd(random);
   crowd.prepare(width);
   for (int substep = 0; substep < 4; ++substep) {
     crowd.predict(true);
@@ -232,19 +237,85 @@ Crowd move_crowd(int width) {
   return crowd;
 }
 
+void expect_same_bits(const Crowd& a, const Crowd& b, int width) {
+  EXPECT_EQ(std::memcmp(a.motion.data(), b.motion.data(), b.motion.size() * sizeof(BodyMotion)), 0) << width;
+  EXPECT_EQ(std::memcmp(a.inertia.data(), b.inertia.data(), b.inertia.size() * sizeof(BodyInertia)), 0)
+      << width;
+  EXPECT_EQ(a.orientations, b.orientations) << width;
+  EXPECT_EQ(a.turns, b.turns) << width;
+}
+
 TEST(MotionKernel, EveryWidthHasTheBitsOfWidthOne) {
   const Crowd narrow = move_crowd(1);
-  for (const int width : {4, 8, 16}) {
-    const Crowd wide = move_crowd(width);
-    EXPECT_EQ(
-        std::memcmp(wide.motion.data(), narrow.motion.data(), narrow.motion.size() * sizeof(BodyMotion)), 0)
-        << width;
-    EXPECT_EQ(
-        std::memcmp(wide.inertia.data(), narrow.inertia.data(), narrow.inertia.size() * sizeof(BodyInertia)),
-        0)
-        << width;
-    EXPECT_EQ(wide.orientations, narrow.orientations) << width;
-    EXPECT_EQ(wide.turns, narrow.turns) << width;
+  for (const int width : {4, 8, 16}) expect_same_bits(move_crowd(width), narrow, width);
+}
+
+// Lanes with room of one vector between those of two blocks; what contacts do goes by the records.
+class Lanes {
+ public:
+  Lanes(Crowd& crowd, int width)
+      : crowd_(crowd),
+        width_(width),
+        floats_(std::size_t((7 * crowd.blocks + 1) * width)),
+        velocities_(make()) {}
+
+  const LaneVelocities& velocities() const { return velocities_; }
+  void store() const {
+    for (std::size_t i = 0; i < crowd_.motion.size(); ++i) {
+      const float* const from = velocities_.of(int(i) / width_) + int(i) % width_;
+      float* const to = &crowd_.motion[i].linear_velocity.x;
+      for (int component = 0; component < 6; ++component) to[component] = from[component * width_];
+    }
+  }
+
+ private:
+  LaneVelocities make() {
+    void* at = floats_.data();
+    std::size_t room = floats_.size() * sizeof(float);
+    return {static_cast<float*>(std::align(std::size_t(width_) * sizeof(float), 1, at, room)),
+            std::size_t(7 * width_), 0};
+  }
+
+  Crowd& crowd_;
+  int width_;
+  std::vector<float> floats_;
+  LaneVelocities velocities_;
+};
+
+// From contacts to contacts, velocities in lanes or in records.
+Crowd pass_parts(int width, bool in_lanes) {
+  Random random;
+  Crowd crowd = make_crowd(random);
+  crowd.prepare(width);
+  const Lanes lanes(crowd, width);
+  const MotionKernels& kernels = *crowd.kernels;
+  const MotionArrays arrays{crowd.motion.data(), crowd.inertia.data(), crowd.orientations.data()};
+  kernels.watch(crowd.place(), 0, crowd.blocks, arrays.motion);
+  for (int part = 0; part < 5; ++part) {
+    const float h = 1.0f / 240.0f;
+    for (BodyMotion& m : crowd.motion) m.linear_velocity = m.linear_velocity + random.vector(0.1f);
+    if (in_lanes) {
+      kernels.note_in_lanes(crowd.place(), 0, crowd.blocks, arrays.motion, lanes.velocities());
+      kernels.advance_in_lanes(crowd.place(), 0, crowd.blocks, arrays, lanes.velocities(), h, false);
+      kernels.predict_in_lanes(crowd.place(), 0, crowd.blocks, lanes.velocities(), true, false);
+      kernels.watch_in_lanes(crowd.place(), 0, crowd.blocks, lanes.velocities());
+      lanes.store();
+    } else {
+      kernels.note(crowd.place(), 0, crowd.blocks, arrays.motion);
+      kernels.advance(crowd.place(), 0, crowd.blocks, arrays, h, false);
+      kernels.predict(crowd.place(), 0, crowd.blocks, arrays.motion, true, false);
+      kernels.watch(crowd.place(), 0, crowd.blocks, arrays.motion);
+    }
+  }
+  return crowd;
+}
+
+TEST(MotionKernel, VelocitiesInLanesHaveTheBitsOfThoseInRecords) {
+  for (const int width : {8, 16}) {
+    const ContactKernels& kernels = select_contact_kernels(width);
+    if (kernels.width != width) GTEST_SKIP() << "this processor has " << kernels.width << " lanes";
+    ASSERT_NE(kernels.motion.predict_in_lanes, nullptr);
+    expect_same_bits(pass_parts(width, true), pass_parts(width, false), width);
   }
 }
 

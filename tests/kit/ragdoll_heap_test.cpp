@@ -33,7 +33,7 @@ void expect_the_same(std::vector<float> (*outcome)(bool slack, int threads, int 
   const std::vector<float> expected = outcome(true, 1, 1);
   for (const bool slack : {false, true})
     for (const int threads : {1, 2, 3})
-      for (const int width : {4, 16})
+      for (const int width : {4, 8, 16})
         EXPECT_TRUE(expected == outcome(slack, threads, width))
             << slack << ", " << threads << " threads, " << width << " lanes";
 }
