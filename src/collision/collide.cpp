@@ -19,15 +19,24 @@ void prepare_bits(Bitset& bits, std::size_t count) {
 }
 
 // Contacts of a block that are to be looked at. A block is one word of a bitset, so that no two write to the same one.
+// Those with manifolds have the first places and the others the last ones, so that lanes full of these need not ask for any.
 struct LookList {
-  // Not cleared: only the counted ones are ever read.
+  // Not cleared: only places in use are ever read.
   union {
     ContactPair pairs[kContactBlock];
   };
   std::uint32_t slots[kContactBlock];
-  int count = 0;
   std::uint64_t one_resting = 0;  // bits, by place: only one of the two is moved by contacts
+  int first_end = 0, last_begin = kContactBlock;
   LookList() {}
+
+  int add(bool has_manifolds) { return has_manifolds ? first_end++ : --last_begin; }
+
+  template <class Do>
+  void for_each_place(Do&& run) const {
+    for (int i = 0; i < first_end; ++i) run(i);
+    for (int i = last_begin; i < kContactBlock; ++i) run(i);
+  }
 };
 
 void note_touch(Contact& contact, std::uint32_t slot, bool touches, TouchChanges& changes) {
@@ -70,7 +79,6 @@ void fetch_ahead(const ContactStore& store, std::uint32_t slot, const CollideInp
 // Which contacts are gone; of the others, which are not asleep.
 void list_contacts(ContactStore& store, std::uint32_t begin, std::uint32_t end, const CollideInput& input,
                    TouchChanges& changes, LookList& list) {
-  int count = 0;
   for (std::uint32_t slot = begin; slot < end; ++slot) {
     fetch_ahead(store, slot, input);
     Contact& contact = store.contacts[slot];
@@ -94,7 +102,8 @@ void list_contacts(ContactStore& store, std::uint32_t begin, std::uint32_t end, 
       note_touch(contact, slot, false, changes);
       continue;
     }
-    ContactPair& pair = list.pairs[count];
+    const int place = list.add(contact.manifold_count != 0);
+    ContactPair& pair = list.pairs[place];
     pair.contact = &contact;
     pair.manifolds = &store.manifolds[contact.first_manifold];
     pair.shape_a = &shape_a;
@@ -103,10 +112,9 @@ void list_contacts(ContactStore& store, std::uint32_t begin, std::uint32_t end, 
     pair.look_b = &input.looks[contact.body_b];
     pair.center_a = &input.centers[contact.body_a];
     pair.center_b = &input.centers[contact.body_b];
-    list.one_resting |= std::uint64_t(proxy_a.pushes != proxy_b.pushes) << count;
-    list.slots[count++] = slot;
+    list.one_resting |= std::uint64_t(proxy_a.pushes != proxy_b.pushes) << place;
+    list.slots[place] = slot;
   }
-  list.count = count;
 }
 
 // What the full looks at mesh contacts of a list will read lies anywhere in memory, and is asked for one look ahead.
@@ -114,14 +122,14 @@ class MeshesAhead {
  public:
   MeshesAhead(ContactStore& store, const LookList& list, const Recycled& recycled)
       : store_(store), list_(list) {
-    for (int i = 0; i < list.count; ++i) {
-      if ((recycled.contacts >> i & 1) != 0) continue;
+    list.for_each_place([&](int i) {
+      if ((recycled.contacts >> i & 1) != 0) return;
       const Contact& contact = *list.pairs[i].contact;
       const KeptTriangles* const kept = contact.sensor != 0 ? nullptr : kept_triangles_of(store, contact);
-      if (kept == nullptr) continue;
+      if (kept == nullptr) return;
       prefetch(kept, sizeof(KeptTriangles));
       left_ |= std::uint64_t{1} << i;
-    }
+    });
   }
 
   // Before the look at the contact in this place of the list.
@@ -147,18 +155,16 @@ void look_at_block(ContactStore& store, int begin, int end, const CollideInput& 
   LookList list;
   list_contacts(store, std::uint32_t(begin), std::uint32_t(end), input, changes, list);
   Recycled recycled;
-  input.recycle_contacts(list.pairs, list.count, input.recycle, recycled);
+  input.recycle_contacts(list.pairs, 0, list.first_end, input.recycle, recycled);
+  input.recycle_contacts(list.pairs, list.last_begin, kContactBlock, input.recycle, recycled);
   MeshesAhead meshes(store, list, recycled);
-  for (int i = 0; i < list.count; ++i) {
+  list.for_each_place([&](int i) {
     const ContactPair& pair = list.pairs[i];
     meshes.ask_beyond(i);
     Contact& contact = *pair.contact;
     const std::uint64_t own = std::uint64_t{1} << i;
     contact.recycled = (recycled.contacts & own) != 0 ? 1 : 0;
-    if ((recycled.apart & own) != 0) {
-      note_touch(contact, list.slots[i], false, changes);
-      continue;
-    }
+    if ((recycled.apart & own) != 0) return note_touch(contact, list.slots[i], false, changes);
     const bool touches = contact.recycled != 0 ? (recycled.touching & own) != 0
                          : contact.sensor != 0
                              ? look_at_sensor(pair, recycled.views[i])
@@ -166,7 +172,7 @@ void look_at_block(ContactStore& store, int begin, int end, const CollideInput& 
     note_touch(contact, list.slots[i], touches, changes);
     if ((list.one_resting & own) != 0 && contact.manifold_count != 0)
       changes.beside_resting.set(list.slots[i]);
-  }
+  });
 }
 
 }  // namespace

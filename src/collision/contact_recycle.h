@@ -87,8 +87,8 @@ struct Recycled {
   Recycled() {}
 };
 
-// A kernel takes at most kContactBlock contacts, whose sizes must be known. `may_recycle` false: it tells only the views.
-// Here is the widest that this machine runs well; not wider than `width` if that is not 0.
+// A kernel takes the contacts in places [begin, end), none beyond kContactBlock, whose sizes must be known. `may_recycle` false: it tells
+// only the views. Here is the widest that this machine runs well; not wider than `width` if that is not 0.
 RecycleContacts select_recycling(int width);
 
 }  // namespace gyre

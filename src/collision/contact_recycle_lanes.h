@@ -301,12 +301,12 @@ GYRE_INLINE void fetch_manifolds(const ContactPair* pairs, int begin, int end) {
 
 // See RecycleContacts.
 template <int W>
-void recycle_contacts(const ContactPair* pairs, int count, bool may_recycle, Recycled& recycled) {
+void recycle_contacts(const ContactPair* pairs, int begin, int end, bool may_recycle, Recycled& recycled) {
   Manifold none;
-  fetch_manifolds(pairs, 0, count < kAhead ? count : kAhead);
-  for (int first = 0; first < count; first += W) {
-    const int ahead = first + kAhead, left = count - first;
-    fetch_manifolds(pairs, ahead, ahead + W < count ? ahead + W : count);
+  fetch_manifolds(pairs, begin, begin + kAhead < end ? begin + kAhead : end);
+  for (int first = begin; first < end; first += W) {
+    const int ahead = first + kAhead, left = end - first;
+    fetch_manifolds(pairs, ahead, ahead + W < end ? ahead + W : end);
     const int used = left < W ? left : W;
     const unsigned lanes = (1u << used) - 1u;
     Group<W> group;
