@@ -19,7 +19,7 @@ void prepare_bits(Bitset& bits, std::size_t count) {
 }
 
 // Contacts of a block that are to be looked at. A block is one word of a bitset, so that no two write to the same one.
-// Those with manifolds have the first places and the others the last ones, so that lanes full of these need not ask for any.
+// Those with manifolds have the first places and the others the last ones, so that whole groups of lanes have none to move.
 struct LookList {
   // Not cleared: only places in use are ever read.
   union {
@@ -31,6 +31,16 @@ struct LookList {
   LookList() {}
 
   int add(bool has_manifolds) { return has_manifolds ? first_end++ : --last_begin; }
+  // A group of lanes that is not full takes some of the others in.
+  void fill_lanes() {
+    constexpr int kLanes = 8;
+    for (; first_end % kLanes != 0 && last_begin < kContactBlock; ++first_end, ++last_begin) {
+      pairs[first_end] = pairs[last_begin];
+      slots[first_end] = slots[last_begin];
+      const std::uint64_t rests = one_resting >> last_begin & 1;
+      one_resting = (one_resting & ~(std::uint64_t{1} << first_end)) | rests << first_end;
+    }
+  }
 
   template <class Do>
   void for_each_place(Do&& run) const {
@@ -115,6 +125,7 @@ void list_contacts(ContactStore& store, std::uint32_t begin, std::uint32_t end, 
     list.one_resting |= std::uint64_t(proxy_a.pushes != proxy_b.pushes) << place;
     list.slots[place] = slot;
   }
+  list.fill_lanes();
 }
 
 // What the full looks at mesh contacts of a list will read lies anywhere in memory, and is asked for one look ahead.
@@ -156,7 +167,8 @@ void look_at_block(ContactStore& store, int begin, int end, const CollideInput& 
   list_contacts(store, std::uint32_t(begin), std::uint32_t(end), input, changes, list);
   Recycled recycled;
   input.recycle_contacts(list.pairs, 0, list.first_end, input.recycle, recycled);
-  input.recycle_contacts(list.pairs, list.last_begin, kContactBlock, input.recycle, recycled);
+  if (list.last_begin < kContactBlock)
+    input.recycle_contacts(list.pairs, list.last_begin, kContactBlock, input.recycle, recycled);
   MeshesAhead meshes(store, list, recycled);
   list.for_each_place([&](int i) {
     const ContactPair& pair = list.pairs[i];

@@ -88,7 +88,7 @@ struct Recycled {
 };
 
 // A kernel takes the contacts in places [begin, end), none beyond kContactBlock, whose sizes must be known. `may_recycle` false: it tells
-// only the views. Here is the widest that this machine runs well; not wider than `width` if that is not 0.
+// only the views. What it finds is added to `recycled`. Here is the widest that this machine runs well; not wider than `width` if that is not 0.
 RecycleContacts select_recycling(int width);
 
 }  // namespace gyre

@@ -72,8 +72,7 @@ void advance_motion(const Solve& s, int begin, int end, bool noted, const LaneVe
   const MotionArrays arrays{bodies.motion.data(), bodies.inertia.data(), bodies.orientations.data()};
   part_watched(s, begin, end, [&](int first, int last, bool watched) {
     if (lanes.is_given())
-      return s.kernels.motion.advance_in_lanes(s.motion_blocks, first, last, arrays, lanes, s.h,
-                                               watched && !noted);
+      return s.kernels.motion.advance_in_lanes(s.motion_blocks, first, last, arrays, lanes, s.h);
     s.kernels.motion.advance(s.motion_blocks, first, last, arrays, s.h, watched && !noted);
   });
 }

@@ -14,7 +14,7 @@ void prepare_motion(const Solve& s, int begin, int end);
 void predict_motion(const Solve& s, int begin, int end, bool warm, const LaneVelocities& lanes = {});
 void watch_motion(const Solve& s, int begin, int end, const LaneVelocities& lanes = {});
 void note_motion(const Solve& s, int begin, int end, const LaneVelocities& lanes = {});
-// Noted: what contacts gave has been noted by now.
+// Noted: what contacts gave has been noted by now. (In lanes it must have been.)
 void advance_motion(const Solve& s, int begin, int end, bool noted, const LaneVelocities& lanes = {});
 // The rotation of those in these blocks that turn alone.
 void turn_spinners(const Solve& s, int begin, int end);

@@ -11,7 +11,8 @@ inline namespace GYRE_TARGET_NAMESPACE {
 template <int W>
 struct LinkedBody {
   std::int32_t record[W];
-  Vec3W<W> linear, angular;  // velocities, while a stage works on them
+  Vec3W<W> linear,
+      angular;  // velocities, while a stage works on them, or from contacts to contacts (LaneVelocities)
   Wide<W> inverse_mass;
   Sym3W<W> inverse;      // of the inertia, raised to what a sub-step can bear
   Sym3W<W> own_inverse;  // of the inertia as it is
@@ -22,6 +23,8 @@ struct LinkedBody {
   Vec3W<W> moved;
   Sym3W<W> pull;
 };
+
+static_assert(offsetof(LinkedBody<4>, angular) == offsetof(LinkedBody<4>, linear) + sizeof(Vec3W<4>));
 
 // As LaneAxis, LaneJoint and LaneDrives.
 template <int W>

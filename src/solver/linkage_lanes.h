@@ -113,7 +113,8 @@ struct LaneArrays {
   BodyMotion* motion = nullptr;
   const BodyInertia* inertia = nullptr;
   const Quat* orientation = nullptr;
-  // Whether a stage takes the velocities of what it may push from the records, and leaves them there: else they stay in the lanes.
+  // Whether a stage takes the velocities of what it may push from the records, and leaves them there: else they stay in the lanes, without -0
+  // there, too.
   bool loads = true, stores = true;
 };
 

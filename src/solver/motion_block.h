@@ -43,6 +43,7 @@ struct MotionArrays {
 };
 
 // Velocities that stand side by side where others have laid them: of each block from `first_block` on six vectors, linear, then angular.
+// Aligned as vectors are, from block to block too.
 struct LaneVelocities {
   float* first = nullptr;  // none: the motion records have them
   std::size_t stride = 0;  // floats from block to block
@@ -82,8 +83,9 @@ struct MotionKernels {
   void (*watch_in_lanes)(void* blocks, int begin, int end, const LaneVelocities& lanes);
   void (*note_in_lanes)(void* blocks, int begin, int end, const BodyMotion* motion,
                         const LaneVelocities& lanes);
+  // What contacts gave has been noted by now.
   void (*advance_in_lanes)(void* blocks, int begin, int end, MotionArrays arrays, const LaneVelocities& lanes,
-                           float substep, bool watched);
+                           float substep);
 };
 
 }  // namespace gyre

@@ -391,8 +391,8 @@ void advance_motion(void* memory, int begin, int end, MotionArrays arrays, float
 }
 template <int W>
 void advance_in_lanes(void* memory, int begin, int end, MotionArrays arrays, const LaneVelocities& lanes,
-                      float substep, bool watched) {
-  advance_blocks<W>(memory, begin, end, arrays, InLanes<W>{lanes, arrays.motion}, substep, watched);
+                      float substep) {
+  advance_blocks<W>(memory, begin, end, arrays, InLanes<W>{lanes, arrays.motion}, substep, false);
 }
 
 template <int W>

@@ -296,25 +296,24 @@ Crowd pass_parts(int width, bool in_lanes) {
     for (BodyMotion& m : crowd.motion) m.linear_velocity = m.linear_velocity + random.vector(0.1f);
     if (in_lanes) {
       kernels.note_in_lanes(crowd.place(), 0, crowd.blocks, arrays.motion, lanes.velocities());
-      kernels.advance_in_lanes(crowd.place(), 0, crowd.blocks, arrays, lanes.velocities(), h, false);
-      kernels.predict_in_lanes(crowd.place(), 0, crowd.blocks, lanes.velocities(), true, false);
-      kernels.watch_in_lanes(crowd.place(), 0, crowd.blocks, lanes.velocities());
+      kernels.advance_in_lanes(crowd.place(), 0, crowd.blocks, arrays, lanes.velocities(), h);
+      kernels.predict_in_lanes(crowd.place(), 0, crowd.blocks, lanes.velocities(), true, part % 2 == 0);
+      if (part % 2 != 0) kernels.watch_in_lanes(crowd.place(), 0, crowd.blocks, lanes.velocities());
       lanes.store();
     } else {
       kernels.note(crowd.place(), 0, crowd.blocks, arrays.motion);
       kernels.advance(crowd.place(), 0, crowd.blocks, arrays, h, false);
-      kernels.predict(crowd.place(), 0, crowd.blocks, arrays.motion, true, false);
-      kernels.watch(crowd.place(), 0, crowd.blocks, arrays.motion);
+      kernels.predict(crowd.place(), 0, crowd.blocks, arrays.motion, true, part % 2 == 0);
+      if (part % 2 != 0) kernels.watch(crowd.place(), 0, crowd.blocks, arrays.motion);
     }
   }
   return crowd;
 }
 
 TEST(MotionKernel, VelocitiesInLanesHaveTheBitsOfThoseInRecords) {
-  for (const int width : {8, 16}) {
-    const ContactKernels& kernels = select_contact_kernels(width);
-    if (kernels.width != width) GTEST_SKIP() << "this processor has " << kernels.width << " lanes";
-    ASSERT_NE(kernels.motion.predict_in_lanes, nullptr);
+  if (select_contact_kernels(8).width < 8) GTEST_SKIP() << "this processor has fewer than eight lanes";
+  for (const int asked : {8, 16}) {
+    const int width = select_contact_kernels(asked).width;
     expect_same_bits(pass_parts(width, true), pass_parts(width, false), width);
   }
 }
