@@ -16,26 +16,40 @@ namespace {
 
 template <class Tag>
 bool lives(const WorldState& s, const IdPool& ids, Id<Tag> id) {
-  return id && id.world == s.number && ids.live(id.index) && std::uint16_t(ids.generation(id.index)) == id.generation;
+  return id && id.world == s.number && ids.live(id.index) &&
+         std::uint16_t(ids.generation(id.index)) == id.generation;
 }
 bool lives(const WorldState& s, BodyId id) { return lives(s, s.rigid.bodies.ids, id); }
 bool lives(const WorldState& s, ShapeId id) { return lives(s, s.rigid.shapes.ids, id); }
 bool lives(const WorldState& s, JointId id) { return lives(s, s.rigid.joints.ids, id); }
 
-bool moves(const BodyFlags& flags) { return flags.awake != 0 && flags.type != BodyType::fixed && flags.frozen == 0; }
-
-void read_body(const WorldState& s, std::uint32_t body) {
-  const BodyStore& bodies = s.rigid.bodies;
-  s.read_ids.push_back(body_id(s.rigid, body));
-  s.read_poses.push_back(origin_pose(bodies, body));
-  s.read_linear.push_back(bodies.motion[body].linear_velocity);
-  s.read_angular.push_back(bodies.motion[body].angular_velocity);
+bool moves(const BodyFlags& flags) {
+  return flags.awake != 0 && flags.type != BodyType::fixed && flags.frozen == 0;
 }
-void clear_read(const WorldState& s) {
-  s.read_ids.clear();
-  s.read_poses.clear();
-  s.read_linear.clear();
-  s.read_angular.clear();
+
+void make_room(const WorldState& s, std::size_t bodies) {
+  s.read_ids.resize(bodies);
+  s.read_poses.resize(bodies);
+  s.read_linear.resize(bodies);
+  s.read_angular.resize(bodies);
+}
+// The bodies that `wanted` says yes to, by ascending index.
+template <class Wanted>
+BodyColumns read_bodies(const WorldState& s, const Wanted& wanted) {
+  const FloatMode mode;
+  const BodyStore& bodies = s.rigid.bodies;
+  make_room(s, bodies.ids.capacity());
+  std::size_t count = 0;
+  bodies.ids.for_each_live([&](std::uint32_t body) {
+    if (!wanted(body)) return;
+    s.read_ids[count] = body_id(s.rigid, body);
+    s.read_poses[count] = origin_pose(bodies, body);
+    s.read_linear[count] = bodies.motion[body].linear_velocity;
+    s.read_angular[count] = bodies.motion[body].angular_velocity;
+    ++count;
+  });
+  make_room(s, count);
+  return {s.read_ids, s.read_poses, s.read_linear, s.read_angular};
 }
 
 // Angular momentum about the centre of mass, world frame, in double.
@@ -68,12 +82,16 @@ Vec3 World::velocity_at(BodyId body, DVec3 point) const {
   const FloatMode mode;
   return linear_velocity(body) + cross(angular_velocity(body), difference(point, center_of_mass(body)));
 }
-BodyType World::type(BodyId body) const { return exists(body) ? state_->rigid.bodies.flags[body.index].type : BodyType::fixed; }
+BodyType World::type(BodyId body) const {
+  return exists(body) ? state_->rigid.bodies.flags[body.index].type : BodyType::fixed;
+}
 bool World::is_awake(BodyId body) const {
   if (!exists(body)) return false;
   return moves(state_->rigid.bodies.flags[body.index]);
 }
-std::uint64_t World::user_data(BodyId body) const { return exists(body) ? state_->rigid.bodies.user_data[body.index] : 0; }
+std::uint64_t World::user_data(BodyId body) const {
+  return exists(body) ? state_->rigid.bodies.user_data[body.index] : 0;
+}
 MassProperties World::mass_properties(BodyId body) const {
   if (!exists(body)) return {};
   const BodyMass& mass = state_->rigid.bodies.masses[body.index];
@@ -128,18 +146,10 @@ bool World::joint_enabled(JointId id) const {
 }
 
 BodyColumns World::bodies() const {
-  const FloatMode mode;
-  clear_read(*state_);
-  state_->rigid.bodies.ids.for_each_live([&](std::uint32_t body) { read_body(*state_, body); });
-  return {state_->read_ids, state_->read_poses, state_->read_linear, state_->read_angular};
+  return read_bodies(*state_, [](std::uint32_t) { return true; });
 }
 BodyColumns World::awake_bodies() const {
-  const FloatMode mode;
-  clear_read(*state_);
-  state_->rigid.bodies.ids.for_each_live([&](std::uint32_t body) {
-    if (is_awake(body_id(state_->rigid, body))) read_body(*state_, body);
-  });
-  return {state_->read_ids, state_->read_poses, state_->read_linear, state_->read_angular};
+  return read_bodies(*state_, [&](std::uint32_t body) { return is_awake(body_id(state_->rigid, body)); });
 }
 
 std::size_t World::contacts(std::span<ContactPoint> out) const {
@@ -167,8 +177,8 @@ std::size_t World::contacts(std::span<ContactPoint> out) const {
         point.friction_impulse = k == 0 ? manifold.total_friction : Vec3{};
         const BodyMotion& a = w.bodies.motion[contact.body_a];
         const BodyMotion& b = w.bodies.motion[contact.body_b];
-        point.relative_velocity = b.linear_velocity + cross(b.angular_velocity, from.from_b) - a.linear_velocity -
-                                  cross(a.angular_velocity, from.from_a);
+        point.relative_velocity = b.linear_velocity + cross(b.angular_velocity, from.from_b) -
+                                  a.linear_velocity - cross(a.angular_velocity, from.from_a);
       }
     }
   }
@@ -209,7 +219,8 @@ WorldCounts World::counts() const {
   for (const BodyFlags& flags : w.bodies.flags) counts.awake_bodies += moves(flags) ? 1 : 0;
   for (const Contact& contact : w.contacts.contacts) {
     counts.touching += contact.touching != 0 ? 1 : 0;
-    for (const Manifold& manifold : manifolds_of(w.contacts, contact)) counts.contact_points += manifold.count;
+    for (const Manifold& manifold : manifolds_of(w.contacts, contact))
+      counts.contact_points += manifold.count;
   }
   return counts;
 }
@@ -276,7 +287,8 @@ Energy World::energy() const {
     const BodyMotion& motion = w.bodies.motion[i];
     energy.kinetic += 0.5 * mass * length_squared(DVec3(motion.linear_velocity)) +
                       0.5 * dot(spin_momentum(w.bodies, i), DVec3(motion.angular_velocity));
-    energy.potential -= mass * double(w.bodies.forces[i].gravity_scale) * dot(gravity, w.bodies.places[i].center);
+    energy.potential -=
+        mass * double(w.bodies.forces[i].gravity_scale) * dot(gravity, w.bodies.places[i].center);
   });
   w.joints.ids.for_each_live([&](std::uint32_t slot) { energy.elastic += spring_energy(w, slot); });
   return energy;
