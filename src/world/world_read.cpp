@@ -33,15 +33,14 @@ void make_room(const WorldState& s, std::size_t bodies) {
   s.read_linear.resize(bodies);
   s.read_angular.resize(bodies);
 }
-// The bodies that `wanted` says yes to, by ascending index.
-template <class Wanted>
-BodyColumns read_bodies(const WorldState& s, const Wanted& wanted) {
+// By ascending index. (In one place for both: code counts on the web.)
+BodyColumns read_bodies(const WorldState& s, bool only_awake) {
   const FloatMode mode;
   const BodyStore& bodies = s.rigid.bodies;
   make_room(s, bodies.ids.capacity());
   std::size_t count = 0;
   bodies.ids.for_each_live([&](std::uint32_t body) {
-    if (!wanted(body)) return;
+    if (only_awake && !moves(bodies.flags[body])) return;
     s.read_ids[count] = body_id(s.rigid, body);
     s.read_poses[count] = origin_pose(bodies, body);
     s.read_linear[count] = bodies.motion[body].linear_velocity;
@@ -145,12 +144,8 @@ bool World::joint_enabled(JointId id) const {
   return detail == nullptr || !detail->disabled;
 }
 
-BodyColumns World::bodies() const {
-  return read_bodies(*state_, [](std::uint32_t) { return true; });
-}
-BodyColumns World::awake_bodies() const {
-  return read_bodies(*state_, [&](std::uint32_t body) { return is_awake(body_id(state_->rigid, body)); });
-}
+BodyColumns World::bodies() const { return read_bodies(*state_, false); }
+BodyColumns World::awake_bodies() const { return read_bodies(*state_, true); }
 
 std::size_t World::contacts(std::span<ContactPoint> out) const {
   const FloatMode mode;
