@@ -23,8 +23,7 @@ class Run {
         begin_(run.first_block),
         end_(run.first_block + run.blocks),
         lanes_(find_lanes(run)),
-        spins_(!solve.spinners.empty() &&
-               solve.spinner_starts[std::size_t(begin_)] != solve.spinner_starts[std::size_t(end_)]) {}
+        spins_(has_spinners(solve, begin_, end_)) {}
 
   void begin() const {
     prepare_motion(s_, begin_, end_);

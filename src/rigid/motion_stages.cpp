@@ -76,10 +76,13 @@ void advance_motion(const Solve& s, int begin, int end, bool noted, const LaneVe
     s.kernels.motion.advance(s.motion_blocks, first, last, arrays, s.h, watched && !noted);
   });
 }
+bool has_spinners(const Solve& s, int begin, int end) {
+  return !s.spinners.empty() && s.spinner_starts[std::size_t(begin)] != s.spinner_starts[std::size_t(end)];
+}
 void turn_spinners(const Solve& s, int begin, int end) {
-  if (s.spinners.empty()) return;
+  if (!has_spinners(s, begin, end)) return;
   const std::uint32_t first = s.spinner_starts[std::size_t(begin)], last = s.spinner_starts[std::size_t(end)];
-  if (first < last) turn_alone(s.w.bodies, s.spinners.subspan(first, last - first), s.h, s.kernels.turns);
+  turn_alone(s.w.bodies, s.spinners.subspan(first, last - first), s.h, s.kernels.turns);
 }
 
 void prepare_motion_stage(void* context, int begin, int end, int) {

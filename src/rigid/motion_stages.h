@@ -16,7 +16,8 @@ void watch_motion(const Solve& s, int begin, int end, const LaneVelocities& lane
 void note_motion(const Solve& s, int begin, int end, const LaneVelocities& lanes = {});
 // Noted: what contacts gave has been noted by now. (In lanes it must have been.)
 void advance_motion(const Solve& s, int begin, int end, bool noted, const LaneVelocities& lanes = {});
-// The rotation of those in these blocks that turn alone.
+// Whether some in these blocks turn alone, and their rotation.
+bool has_spinners(const Solve& s, int begin, int end);
 void turn_spinners(const Solve& s, int begin, int end);
 
 void prepare_motion_stage(void* context, int begin, int end, int worker);
