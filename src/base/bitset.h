@@ -37,6 +37,9 @@ class Bitset {
   // False beyond the size, so that a set need not grow before it is asked.
   bool test(std::size_t i) const { return i < size_ && (words_[i / 64] >> i % 64 & 1) != 0; }
 
+  // Bits 64 * word to 64 * word + 63 at once; those beyond the size must be clear. Words may be written side by side.
+  void put_word(std::size_t word, std::uint64_t bits) { words_[word] = bits; }
+
   // Clears all bits; the size stays.
   void reset_all() {
     for (std::uint64_t& word : words_) word = 0;

@@ -26,11 +26,15 @@ struct LookList {
     ContactPair pairs[kContactBlock];
   };
   std::uint32_t slots[kContactBlock];
-  std::uint64_t one_resting = 0;  // bits, by place: only one of the two is moved by contacts
+  std::uint64_t with_manifolds = 0;  // bits, by number in the block
+  std::uint64_t one_resting = 0;     // bits, by place: only one of the two is moved by contacts
   int first_end = 0, last_begin = kContactBlock;
   LookList() {}
 
   int add(bool has_manifolds) { return has_manifolds ? first_end++ : --last_begin; }
+  void note_manifolds(std::uint32_t slot, const Contact& contact) {
+    with_manifolds |= std::uint64_t(contact.manifold_count != 0) << slot % kContactBlock;
+  }
   // A group of lanes that is not full takes some of the others in.
   void fill_lanes() {
     constexpr int kLanes = 8;
@@ -99,10 +103,14 @@ void list_contacts(ContactStore& store, std::uint32_t begin, std::uint32_t end, 
       contact.ended = 1;
       changes.gone.set(slot);
       note_touch(contact, slot, false, changes);
+      list.note_manifolds(slot, contact);
       continue;
     }
     if (!proxy_a.pushes || !proxy_b.pushes || contact.sensor != 0) changes.may_stop.set(slot);
-    if (input.awake[contact.body_a] == 0 && input.awake[contact.body_b] == 0) continue;
+    if (input.awake[contact.body_a] == 0 && input.awake[contact.body_b] == 0) {
+      list.note_manifolds(slot, contact);
+      continue;
+    }
     const ColliderShape& shape_a = input.shapes[contact.shape_a];
     const ColliderShape& shape_b = input.shapes[contact.shape_b];
     // A sensor's contact keeps nothing of its looks: each is the first.
@@ -182,9 +190,11 @@ void look_at_block(ContactStore& store, int begin, int end, const CollideInput& 
                              ? look_at_sensor(pair, recycled.views[i])
                              : look_anew(pair, recycled.views[i], kept_triangles_of(store, contact));
     note_touch(contact, list.slots[i], touches, changes);
+    list.note_manifolds(list.slots[i], contact);
     if ((list.one_resting & own) != 0 && contact.manifold_count != 0)
       changes.beside_resting.set(list.slots[i]);
   });
+  store.with_manifolds.put_word(std::size_t(begin / kContactBlock), list.with_manifolds);
 }
 
 }  // namespace

@@ -113,6 +113,7 @@ std::uint32_t add_contact(ContactStore& store, std::uint64_t key, const PairShap
     slot = std::uint32_t(store.contacts.size());
     store.contacts.emplace_back();
     store.links.emplace_back();
+    store.with_manifolds.resize(store.contacts.size());
   } else {
     store.free_contacts.drop(slot);
   }
@@ -142,6 +143,7 @@ void remove_contact(ContactStore& store, std::uint32_t slot) {
   for (Manifold& manifold : manifolds_of(store, contact)) manifold = Manifold{};
   give_manifolds(store, contact.first_manifold, contact.manifold_room);
   store.contacts[slot] = Contact{};
+  store.with_manifolds.clear(slot);
   store.free_contacts.give(slot);
   --store.live;
 }
@@ -152,6 +154,8 @@ void rebuild_index(ContactStore& store) {
   store.first_of_shape.clear();
   store.links.clear();
   store.links.resize(count);
+  store.with_manifolds.resize(count);
+  store.with_manifolds.reset_all();
   store.free_contacts.clear();
   store.free_chunks.clear();
   store.partial_chunks.clear();
@@ -167,6 +171,7 @@ void rebuild_index(ContactStore& store) {
     store.slot_of_pair.insert(pair_key(contact.shape_a, contact.shape_b), slot, key_reader(store));
     link(store, slot);
     ++store.live;
+    store.with_manifolds.assign(slot, contact.manifold_count != 0);
     if (contact.manifold_room > 1) clear_kept_triangles(store, contact);
     std::uint8_t& used = store.chunk_used[contact.first_manifold / kChunk];
     used =
@@ -230,6 +235,8 @@ const char* find_fault(const ContactStore& store) {
     if (store.free_contacts.contains(slot) != empty) return "free slots are not the empty ones";
     if (empty) continue;
     ++live;
+    if (store.contacts[slot].manifold_count != 0 && !store.with_manifolds.test(slot))
+      return "a contact with manifolds is not known to have some";
     if (const char* const fault = find_fault(store, slot, used)) return fault;
   }
   if (live != store.live || live != store.slot_of_pair.size()) return "the number of contacts is wrong";

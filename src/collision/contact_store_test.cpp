@@ -187,6 +187,8 @@ TEST(ContactStore, FaultsAreFound) {
   broken.manifolds[broken.contacts[4].first_manifold].age = 1.0f;
   EXPECT_STREQ(find_fault(broken), "a contact has something in a manifold that it does not use");
   broken.contacts[4].manifold_count = 1;
+  EXPECT_STREQ(find_fault(broken), "a contact with manifolds is not known to have some");
+  broken.with_manifolds.set(4);
   EXPECT_EQ(find_fault(broken), nullptr);
   remove_contact(broken, 4);
   EXPECT_EQ(find_fault(broken), nullptr);

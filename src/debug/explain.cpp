@@ -123,7 +123,7 @@ void Inquiry::find_touching(Explanation& out) const {
 }
 
 void Inquiry::find_joints(Explanation& out) const {
-  for (const std::uint32_t slot : w_.bodies.joints[body_]) {
+  for (const std::uint32_t slot : joints_of(w_.bodies, body_)) {
     const JointRecord& joint = w_.joints.records[slot];
     const std::int32_t other = joint.body_a == std::int32_t(body_) ? joint.body_b : joint.body_a;
     PullingJoint pulling;

@@ -20,7 +20,6 @@ IdPool::Slot add_body_slot(BodyStore& store) {
     store.overrides.resize(count);
     store.user_data.resize(count);
     store.shapes.resize(count);
-    store.joints.resize(count);
   }
   store.motion[i] = {};
   store.inertia[i] = {};
@@ -34,7 +33,7 @@ IdPool::Slot add_body_slot(BodyStore& store) {
   store.user_data[i] = 0;
   if (i < store.last_moves.size()) store.last_moves[i] = {};
   store.shapes[i].clear();
-  store.joints[i].clear();
+  if (i < store.joints.size()) store.joints[i].clear();
   store.awake_stale = true;
   return slot;
 }
@@ -45,7 +44,7 @@ void remove_body_slot(BodyStore& store, std::uint32_t body) {
   store.motion[body] = {};
   store.inertia[body] = {};
   store.shapes[body].clear();
-  store.joints[body].clear();
+  if (body < store.joints.size()) store.joints[body].clear();
   store.awake_stale = true;
 }
 

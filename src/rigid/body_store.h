@@ -14,6 +14,8 @@
 
 #include <gyre/defs.h>
 
+#include <span>
+
 namespace gyre {
 
 // Where a body is: its centre of mass and how it is turned.
@@ -97,10 +99,19 @@ struct BodyStore {
   Array<std::uint64_t> user_data;
   Array<LastMove> last_moves;       // by slot, in worlds with the integrator verlet; else empty
   Array<SmallArray<ShapeId, 1>> shapes;         // by body, ascending index; derived
-  Array<SmallArray<std::uint32_t, 2>> joints;   // by body, ascending index; derived
+  // By body, as far as one needed it (most worlds have no joints): joints_of(); ascending index; derived.
+  Array<SmallArray<std::uint32_t, 2>> joints;
   Array<std::uint32_t> awake;       // dynamic bodies that are awake and kinematic ones, ascending; derived
   bool awake_stale = false;         // `awake` must be rebuilt before use
 };
+
+inline std::span<const std::uint32_t> joints_of(const BodyStore& store, std::uint32_t body) {
+  return body < store.joints.size() ? store.joints[body] : std::span<const std::uint32_t>{};
+}
+inline SmallArray<std::uint32_t, 2>& make_joints_of(BodyStore& store, std::uint32_t body) {
+  if (body >= store.joints.size()) store.joints.resize(store.motion.size());
+  return store.joints[body];
+}
 
 // Makes room for a body in a fresh slot and returns the slot.
 IdPool::Slot add_body_slot(BodyStore& store);

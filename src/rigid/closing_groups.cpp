@@ -42,7 +42,7 @@ class GroupFinder {
 
  private:
   bool is_in_groups(std::uint32_t body) const {
-    for (const std::uint32_t slot : w_.bodies.joints[body])
+    for (const std::uint32_t slot : joints_of(w_.bodies, body))
       if (is_closed(w_, slot) && group_of_joint_[slot] == 0) return false;
     return true;
   }
@@ -59,7 +59,7 @@ class GroupFinder {
 
   // Body by body, nearest first, each with all of its joints.
   ClosingGroup find(std::uint32_t first) {
-    const std::size_t most = max(kMostJoints, std::size_t(w_.bodies.joints[first].size()));
+    const std::size_t most = max(kMostJoints, joints_of(w_.bodies, first).size());
     ClosingGroup group{arena_.make<std::uint32_t>(most), arena_.make<ClosingMember>(most + 1), true};
     std::size_t joints = 0, members = 0;
     add_body(std::int32_t(first), group.members, members);
@@ -67,11 +67,11 @@ class GroupFinder {
       ClosingMember& member = group.members[next];
       if (!is_active(w_, member.body)) continue;
       std::size_t fresh = 0;
-      for (const std::uint32_t slot : w_.bodies.joints[member.body]) fresh += is_fresh(slot) ? 1 : 0;
+      for (const std::uint32_t slot : joints_of(w_.bodies, member.body)) fresh += is_fresh(slot) ? 1 : 0;
       member.moves = joints + fresh <= most;
       group.is_whole = group.is_whole && member.moves;
       if (!member.moves) continue;
-      for (const std::uint32_t slot : w_.bodies.joints[member.body]) {
+      for (const std::uint32_t slot : joints_of(w_.bodies, member.body)) {
         if (!is_fresh(slot)) continue;
         group_of_joint_[slot] = number_ + 1;
         group.joints[joints++] = slot;

@@ -150,7 +150,7 @@ class Overrun {
     if (scratch_.listed.test(body)) return;
     scratch_.listed.set(body);
     scratch_.fast.push_back(
-        {body, w_.bodies.flags[body].continuous != 0, 0.0f, w_.bodies.joints[body].empty(), only_crosses});
+        {body, w_.bodies.flags[body].continuous != 0, 0.0f, joints_of(w_.bodies, body).empty(), only_crosses});
   }
 
   const RigidWorld& w_;
@@ -161,7 +161,7 @@ class Overrun {
 std::size_t count_stopped_with_joints(const RigidWorld& w, const ContinuousScratch& scratch) {
   std::size_t count = 0;
   for (std::size_t k = 0; k < scratch.fast.size(); ++k)
-    count += scratch.kept[k].fraction < 1.0f && !w.bodies.joints[scratch.fast[k].body].empty() ? 1 : 0;
+    count += scratch.kept[k].fraction < 1.0f && !joints_of(w.bodies, scratch.fast[k].body).empty() ? 1 : 0;
   return count;
 }
 
@@ -181,7 +181,7 @@ void stop_together(const RigidWorld& w, const ContinuousScratch& scratch, std::s
     for (std::size_t k = 0; k < kept.size(); ++k) {
       if (!(kept[k].fraction < 1.0f)) continue;
       const std::int32_t body = std::int32_t(scratch.fast[k].body);
-      for (const std::uint32_t slot : w.bodies.joints[std::size_t(body)]) {
+      for (const std::uint32_t slot : joints_of(w.bodies, std::uint32_t(body))) {
         const JointRecord& joint = w.joints.records[slot];
         const std::int32_t other = joint.body_a == body ? joint.body_b : joint.body_a;
         if (other == kNoBody || place[std::size_t(other)] == kNone || !holds_point(w, slot)) continue;
@@ -207,7 +207,7 @@ void list_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& ar
     const std::uint32_t i = w.bodies.awake[n];
     // What contacts already act on must not be held in the air by a sweep: it keeps a part of its way, and they answer.
     const float least = w.bodies.flags[i].touched != 0 ? kLeastProgress : 0.0f;
-    scratch.fast.push_back({i, w.bodies.flags[i].continuous != 0, least, w.bodies.joints[i].empty(), false});
+    scratch.fast.push_back({i, w.bodies.flags[i].continuous != 0, least, joints_of(w.bodies, i).empty(), false});
   }
   Overrun(w, scratch).add_all();
 }
@@ -295,7 +295,7 @@ std::span<const StoppedBody> take_back(RigidWorld& w, ContinuousScratch& scratch
     const KeptMotion& kept = scratch.kept[k];
     if (!(kept.fraction < 1.0f)) continue;
     BodyMotion& motion = w.bodies.motion[i];
-    if (!w.bodies.joints[i].empty())
+    if (!joints_of(w.bodies, i).empty())
       stopped[stopped_count++] = {i, kept.fraction, motion.moved, motion.turned};
     const Quat stopped_at = pose_at(sweep_of_body(w, i), double(kept.fraction)).orientation;
     w.bodies.orientations[i] = kept.turn == Vec3{} ? stopped_at : integrate_rotation(stopped_at, kept.turn);

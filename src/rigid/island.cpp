@@ -13,7 +13,7 @@ bool is_dynamic(const RigidWorld& w, std::uint32_t body) { return is_movable(w.b
 constexpr float kSpringRest = 0.1f;
 
 bool is_on_spring(const RigidWorld& w, std::uint32_t body) {
-  for (const std::uint32_t slot : w.bodies.joints[body]) {
+  for (const std::uint32_t slot : joints_of(w.bodies, body)) {
     const JointRecord& joint = w.joints.records[slot];
     if (joint.is_spring || joint.stiffness > 0.0f) return true;
   }
@@ -169,7 +169,7 @@ void wake_neighbours(RigidWorld& w, std::uint32_t body) {
       if (contact.manifold_count > 0 && is_dynamic(w, other)) wake(w, other);
     }
   }
-  for (const std::uint32_t slot : w.bodies.joints[body]) {
+  for (const std::uint32_t slot : joints_of(w.bodies, body)) {
     const JointRecord& joint = w.joints.records[slot];
     for (const std::int32_t end : {joint.body_a, joint.body_b}) {
       if (end != kNoBody && std::uint32_t(end) != body && is_dynamic(w, std::uint32_t(end)))

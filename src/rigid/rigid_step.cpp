@@ -128,7 +128,7 @@ void freeze(RigidWorld& w, std::uint32_t body) {
       forget_look(contact);
     });
   }
-  for (const std::uint32_t slot : w.bodies.joints[body]) {
+  for (const std::uint32_t slot : joints_of(w.bodies, body)) {
     forget_impulses(w.joints.records[slot]);
     if (JointDetail* const detail = detail_of(w.joints, slot)) forget_impulses(*detail);
   }

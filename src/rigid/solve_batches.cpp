@@ -64,11 +64,11 @@ Constraints list_constraints(const RigidWorld& w, Arena& arena, TaskSystem& task
   const std::span<Tie> contact_ties = arena.make<Tie>(w.contacts.contacts.size());
   const std::span<Tie> joint_ties = arena.make<Tie>(w.joints.ids.capacity());
   const auto manifolds = [&](std::uint32_t slot) {
-    if (slot + kContactsAhead < contact_ties.size())
+    if (w.contacts.with_manifolds.test(slot + kContactsAhead))
       __builtin_prefetch(&w.contacts.contacts[slot + kContactsAhead]);
     const Contact& contact = w.contacts.contacts[slot];
     const std::uint32_t count = contact.manifold_count;
-    return may_act(contact) && tie(w, contact.body_a, contact.body_b, count, contact_ties[slot]) ? count : 0;
+    return may_act(contact) && tie(w, contact.body_a, contact.body_b, count, contact_ties[slot]) ? count : 0u;
   };
   const auto works = [&](std::uint32_t slot) {
     fetch_joint(w.joints, slot + kJointsAhead);
@@ -77,7 +77,7 @@ Constraints list_constraints(const RigidWorld& w, Arena& arena, TaskSystem& task
     // As numbers without a sign, kNoBody is kNone.
     return tie(w, std::uint32_t(joint.body_a), std::uint32_t(joint.body_b), 1, joint_ties[slot]);
   };
-  const Chosen contacts = choose(tasks, arena, contact_ties.size(), manifolds);
+  const Chosen contacts = choose_among(tasks, arena, w.contacts.with_manifolds, manifolds);
   const Chosen joints = choose(tasks, arena, joint_ties.size(), works);
   return {contacts.list, joints.list, contact_ties, joint_ties, contacts.size + joints.size};
 }
@@ -115,8 +115,9 @@ class Islands {
 // Lists of numbers by batch: first how many each gets, then the numbers themselves.
 class Lists {
  public:
-  Lists(Arena& arena, std::size_t batches, std::size_t items)
-      : ends_(arena.make<std::uint32_t>(batches)), items_(arena.make<std::uint32_t>(items)) {
+  // `items`: room for all of them.
+  Lists(Arena& arena, std::size_t batches, std::span<std::uint32_t> items)
+      : ends_(arena.make<std::uint32_t>(batches)), items_(items) {
     for (std::uint32_t& end : ends_) end = 0;
   }
   void count(std::uint32_t batch) { ++ends_[batch]; }
@@ -217,6 +218,30 @@ std::span<std::uint32_t> join_few(const RigidWorld& w, std::span<std::uint32_t> 
   return weights.first(left);
 }
 
+// Room for all that find_batches() returns, before it is known how much that is.
+struct BatchRoom {
+  std::span<std::uint32_t> places, bodies, contacts, joints;
+  std::span<SolveBatch> batches;
+
+  BatchRoom(const RigidWorld& w, Arena& arena, BatchSize size) {
+    const std::size_t awake = w.bodies.awake.size(), with_manifolds = w.contacts.with_manifolds.count();
+    const std::size_t manifolds = min(with_manifolds * kMaxMeshManifolds, w.contacts.manifolds.size());
+    places = arena.make<std::uint32_t>(w.bodies.motion.size());
+    bodies = arena.make<std::uint32_t>(awake);
+    contacts = arena.make<std::uint32_t>(with_manifolds);
+    joints = arena.make<std::uint32_t>(w.joints.ids.capacity());
+    // An island alone is more than a batch may be, and of the others a batch and the next one together are.
+    const std::uint32_t worth = size.shares == 1 ? size.most : min(size.most, kWorthSharing);
+    const std::size_t weight = kConstraint * (manifolds + joints.size()) + awake;
+    batches = arena.make<SolveBatch>(2 * weight / (kConstraint * worth) + 1);
+  }
+};
+
+std::span<const std::uint32_t> copy_to(std::span<std::uint32_t> room, std::span<const std::uint32_t> list) {
+  std::copy(list.begin(), list.end(), room.begin());
+  return room.first(list.size());
+}
+
 }  // namespace
 
 bool is_solved(const RigidWorld& w, const Contact& contact) {
@@ -230,23 +255,25 @@ bool is_joint_solved(const RigidWorld& w, std::uint32_t slot) {
 
 SolveBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, BatchSize size) {
   const std::span<const std::uint32_t> awake = w.bodies.awake;
-  const std::span<std::uint32_t> places = arena.make<std::uint32_t>(w.bodies.motion.size());
+  // What is returned comes first: the rest is not needed while batches are solved.
+  const BatchRoom room(w, arena, size);
+  const std::span<std::uint32_t> places = room.places;
+  const ArenaScope scope(arena);
   const Constraints constraints = list_constraints(w, arena, tasks);
   const std::size_t all_weights = kConstraint * constraints.size + awake.size();
   const auto share = std::uint32_t(all_weights / size.shares);
   const std::uint32_t most = min(kConstraint * size.most, max(share, kConstraint * kWorthSharing));
   const auto all_in_one = [&](std::span<SolveBatch> batches) {
     for (std::uint32_t i = 0; i < awake.size(); ++i) places[awake[i]] = i;
-    if (!batches.empty()) batches[0] = {awake, constraints.contacts, constraints.joints};
+    if (!batches.empty())
+      batches[0] = {awake, copy_to(room.contacts, constraints.contacts),
+                    copy_to(room.joints, constraints.joints)};
     return SolveBatches{batches, places};
   };
-  if (all_weights <= most) return all_in_one(arena.make<SolveBatch>(awake.empty() ? 0 : 1));
-  // An island alone is more than a batch may be, and of the others a batch and the next one together are.
-  const std::size_t most_batches = 2 * all_weights / most + 1;
-  Lists bodies(arena, most_batches, awake.size()), contacts(arena, most_batches, constraints.contacts.size()),
-      joints(arena, most_batches, constraints.joints.size());
-  const std::span<SolveBatch> batches = arena.make<SolveBatch>(most_batches);
-  const ArenaScope scope(arena);
+  if (all_weights <= most) return all_in_one(room.batches.first(awake.empty() ? 0 : 1));
+  const std::span<SolveBatch> batches = room.batches;
+  Lists bodies(arena, batches.size(), room.bodies), contacts(arena, batches.size(), room.contacts),
+      joints(arena, batches.size(), room.joints);
   const std::span<std::uint32_t> batch_of = arena.make<std::uint32_t>(places.size());
   const Islands islands(w, constraints, places);
   const std::span<const std::uint32_t> island_weights =

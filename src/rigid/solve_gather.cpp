@@ -104,8 +104,8 @@ class ContactGatherer {
     Ends ends;
     ends.active_a = is_active(w_, contact.body_a);
     ends.active_b = is_active(w_, contact.body_b);
-    ends.linked = (ends.active_a && !w_.bodies.joints[contact.body_a].empty()) ||
-                  (ends.active_b && !w_.bodies.joints[contact.body_b].empty());
+    ends.linked = (ends.active_a && !joints_of(w_.bodies, contact.body_a).empty()) ||
+                  (ends.active_b && !joints_of(w_.bodies, contact.body_b).empty());
     ends.body_a = ends.active_a ? std::int32_t(contact.body_a) : solver_body(w_, contact.body_a);
     ends.body_b = ends.active_b ? std::int32_t(contact.body_b) : solver_body(w_, contact.body_b);
     ends.push_speed = kPushShare * (fall_ > 0.0f ? fall_ : 3.132f) * std::sqrt(contact.size);

@@ -2,7 +2,9 @@
 #pragma once
 
 #include "base/arena.h"
-#include "task/parallel.h"
+#include "base/bitset.h"
+#include "base/function_ref.h"
+#include "task/task_system.h"
 
 #include <bit>
 #include <span>
@@ -14,40 +16,44 @@ struct Chosen {
   std::size_t size = 0;                 // of all of them
 };
 
+// In blocks of one word of bits each: which numbers of a block were chosen, and how large they are together.
+struct ChosenInBlock {
+  std::uint64_t bits = 0;
+  std::uint32_t numbers = 0, size = 0;
+
+  void add(int bit, std::uint32_t how_large) {
+    if (how_large == 0) return;
+    bits |= std::uint64_t{1} << bit;
+    ++numbers;
+    size += how_large;
+  }
+};
+
+// choose_block(begin, end) tells which of a block's numbers are chosen. The list is of `arena`.
+Chosen choose_by_blocks(TaskSystem& tasks, Arena& arena, std::size_t count,
+                        FunctionRef<ChosenInBlock(std::uint32_t, std::uint32_t)> choose_block);
+
 // Those numbers below `count` whose size is not zero: size_of(number), asked of each once, may tell yes or no only. The list is of
 // `arena`.
 template <class SizeOf>
 Chosen choose(TaskSystem& tasks, Arena& arena, std::size_t count, SizeOf&& size_of) {
-  // In blocks of one word of bits each.
-  constexpr int kBits = 64;
-  struct Sum {
-    std::uint32_t numbers = 0, size = 0;
-  };
-  const std::span<std::uint64_t> words = arena.make<std::uint64_t>((count + kBits - 1) / kBits);
-  const auto look = [&](int begin, int end, int) {
-    Sum sum;
-    std::uint64_t bits = 0;
-    for (int i = begin; i < end; ++i) {
-      const std::uint32_t size = size_of(static_cast<std::uint32_t>(i));
-      if (size == 0) continue;
-      bits |= std::uint64_t{1} << (i - begin);
-      ++sum.numbers;
-      sum.size += size;
-    }
-    words[static_cast<std::size_t>(begin / kBits)] = bits;
-    return sum;
-  };
-  const Sum sum = reduce_blocks(tasks, static_cast<int>(count), kBits, Sum{}, look, [](Sum a, Sum b) {
-    return Sum{a.numbers + b.numbers, a.size + b.size};
+  return choose_by_blocks(tasks, arena, count, [&](std::uint32_t begin, std::uint32_t end) {
+    ChosenInBlock chosen;
+    for (std::uint32_t i = begin; i < end; ++i) chosen.add(int(i - begin), size_of(i));
+    return chosen;
   });
-  const std::span<std::uint32_t> list = arena.make<std::uint32_t>(sum.numbers);
-  std::size_t used = 0;
-  for (std::size_t word = 0; used < list.size(); ++word) {
-    for (std::uint64_t left = words[word]; left != 0; left &= left - 1)
-      list[used++] =
-          static_cast<std::uint32_t>(kBits * word) + static_cast<std::uint32_t>(std::countr_zero(left));
-  }
-  return {list, sum.size};
+}
+// The same, of those in a set; only they are asked.
+template <class SizeOf>
+Chosen choose_among(TaskSystem& tasks, Arena& arena, const Bitset& set, SizeOf&& size_of) {
+  return choose_by_blocks(tasks, arena, set.size(), [&](std::uint32_t begin, std::uint32_t) {
+    ChosenInBlock chosen;
+    for (std::uint64_t left = set.words()[begin / 64]; left != 0; left &= left - 1) {
+      const int bit = std::countr_zero(left);
+      chosen.add(bit, size_of(begin + std::uint32_t(bit)));
+    }
+    return chosen;
+  });
 }
 
 }  // namespace gyre

@@ -176,7 +176,7 @@ Submitted carry_out(WorldState& s, const RemoveBody& c) {
   const std::uint32_t body = c.body.index;
   stir(w, body);
   wake_neighbours(w, body);
-  while (!w.bodies.joints[body].empty()) remove_joint(w, w.bodies.joints[body].front());
+  while (!joints_of(w.bodies, body).empty()) remove_joint(w, joints_of(w.bodies, body).front());
   for (const ShapeId id : w.bodies.shapes[body]) {
     drop_contacts(w, id.index);
     remove_shape_slot(w.shapes, id.index);

@@ -401,7 +401,7 @@ JointId add_joint(RigidWorld& w, const JointDef& def) {
   if (needs_detail(def)) fill_detail(w, joint, make_detail(w.joints, slot), def, a, b, frames);
   stir_ends(w, joint);
   for (const std::int32_t body : {joint.body_a, joint.body_b}) {
-    if (body != kNoBody) insert_sorted(w.bodies.joints[std::size_t(body)], slot);
+    if (body != kNoBody) insert_sorted(make_joints_of(w.bodies, std::uint32_t(body)), slot);
   }
   if (blocks(joint)) block_pair(w, joint);
   return joint_id(w, slot);
@@ -411,7 +411,7 @@ void remove_joint(RigidWorld& w, std::uint32_t slot) {
   const JointRecord joint = w.joints.records[slot];
   stir_ends(w, joint);
   for (const std::int32_t body : {joint.body_a, joint.body_b}) {
-    if (body != kNoBody) erase_slot(w.bodies.joints[std::size_t(body)], slot);
+    if (body != kNoBody) erase_slot(make_joints_of(w.bodies, std::uint32_t(body)), slot);
   }
   if (blocks(joint)) {
     std::uint32_t* count = w.joints.blocked.find(block_key(joint));
@@ -468,7 +468,7 @@ void set_drive(RigidWorld& w, std::uint32_t slot, const PoseDrive& drive) {
 
 void shift_joint_ends(RigidWorld& w, std::uint32_t body, Vec3 by) {
   if (by == Vec3{}) return;
-  for (const std::uint32_t slot : w.bodies.joints[body]) {
+  for (const std::uint32_t slot : joints_of(w.bodies, body)) {
     JointRecord& joint = w.joints.records[slot];
     const bool is_a = joint.body_a == std::int32_t(body);
     Vec3& anchor = is_a ? joint.local_anchor_a : joint.local_anchor_b;

@@ -70,7 +70,7 @@ Error Walk::lists_of_bodies() const {
   std::size_t listed_shapes = 0, listed_joints = 0, joint_ends = 0;
   for (std::uint32_t body = 0; body < w_.bodies.ids.capacity(); ++body) {
     const std::span<const ShapeId> shapes = w_.bodies.shapes[body];
-    const std::span<const std::uint32_t> joints = w_.bodies.joints[body];
+    const std::span<const std::uint32_t> joints = joints_of(w_.bodies, body);
     if (!w_.bodies.ids.live(body) && (!shapes.empty() || !joints.empty()))
       return broken("body %u was removed but has shapes or joints", body);
     for (std::size_t i = 0; i < shapes.size(); ++i) {

@@ -157,12 +157,11 @@ void derive_state(RigidWorld& w) {
   bodies.inertia.resize(count);
   bodies.orientations.resize(count);
   bodies.shapes.resize(count);
-  bodies.joints.resize(count);
+  bodies.joints.clear();
   for (std::uint32_t i = 0; i < count; ++i) {
     bodies.orientations[i] = bodies.places[i].orientation;
     refresh_inertia(bodies, i);
     bodies.shapes[i].clear();
-    bodies.joints[i].clear();
   }
   bodies.awake_stale = true;
   refresh_awake(bodies);
@@ -180,8 +179,8 @@ void derive_state(RigidWorld& w) {
   w.joints.blocked.clear();
   w.joints.ids.for_each_live([&](std::uint32_t slot) {
     const JointRecord& joint = w.joints.records[slot];
-    if (joint.body_a != kNoBody) bodies.joints[std::size_t(joint.body_a)].push_back(slot);
-    if (joint.body_b != kNoBody) bodies.joints[std::size_t(joint.body_b)].push_back(slot);
+    if (joint.body_a != kNoBody) make_joints_of(bodies, std::uint32_t(joint.body_a)).push_back(slot);
+    if (joint.body_b != kNoBody) make_joints_of(bodies, std::uint32_t(joint.body_b)).push_back(slot);
     if (!joint.collide_connected && joint.body_a != kNoBody && joint.body_b != kNoBody) {
       w.joints.blocked.find_or_insert(pair_key(std::uint32_t(joint.body_a), std::uint32_t(joint.body_b)), 0u)++;
     }
