@@ -82,7 +82,7 @@ struct ContactStore {
   Array<std::uint32_t>
       first_of_shape;         // by shape: the first link of its list, in no particular order; may be short
   Array<ContactLinks> links;  // by slot
-  Bitset with_manifolds;  // by slot: clear where a contact has no manifold, for certain
+  Bitset with_manifolds;      // by slot: clear where a contact has no manifold, for certain
   FreePlaces free_contacts;
   // Manifolds are handed out in chunks of kMaxMeshManifolds: a chunk is one run for a mesh contact, or singles.
   Array<std::uint8_t> chunk_used;  // bit i: manifold i of the chunk is in use

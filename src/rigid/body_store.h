@@ -105,6 +105,7 @@ struct BodyStore {
   bool awake_stale = false;         // `awake` must be rebuilt before use
 };
 
+// The slots of a body's joints; and its list to be changed, which makes room for those of all bodies.
 inline std::span<const std::uint32_t> joints_of(const BodyStore& store, std::uint32_t body) {
   return body < store.joints.size() ? store.joints[body] : std::span<const std::uint32_t>{};
 }

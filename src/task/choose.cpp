@@ -1,3 +1,4 @@
+// Blocks are looked at by all workers, each writes a word of bits; the list is then read off them in order. See choose.h.
 #include "task/choose.h"
 
 #include "task/parallel.h"
