@@ -5,15 +5,18 @@
 
 #include "base/check.h"
 #include "base/float_mode.h"
+#include "base/function_ref.h"
 #include "task/task_system.h"
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <new>
 #include <type_traits>
 
 namespace gyre {
+
+// Calls run_block(block, worker) for every block in [0, blocks).
+void run_blocks(TaskSystem& tasks, int blocks, FunctionRef<void(int block, int worker)> run_block);
 
 constexpr int count_blocks(int count, int block_size) {
   return count / block_size + (count % block_size != 0 ? 1 : 0);
@@ -35,15 +38,7 @@ void for_blocks(TaskSystem& tasks, int count, int block_size, Fn&& fn) {
     for (int block = 0; block < blocks; ++block) run_block(block, 0);
     return;
   }
-  // On a line of its own. Unsigned, since each worker overshoots the end once.
-  alignas(64) std::atomic<std::uint32_t> next{0};
-  tasks.run_claiming([&](int worker) {
-    for (;;) {
-      const std::uint32_t block = next.fetch_add(1, std::memory_order_relaxed);
-      if (block >= static_cast<std::uint32_t>(blocks)) return;
-      run_block(static_cast<int>(block), worker);
-    }
-  });
+  run_blocks(tasks, blocks, run_block);
 }
 
 // Does pieces of work that have nothing to do with each other, and of which at most one uses what belongs to the thread that

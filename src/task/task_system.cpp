@@ -77,8 +77,9 @@ struct TaskSystem::Pool {
 
   // The owner: opens a job, takes part, closes it and waits for those inside.
   void run(const WorkerFn& fn, bool all) {
-    job = &fn;
-    finished.store(0, std::memory_order_relaxed);
+    job = fn;
+    all_needed = all;
+    if (all) finished.store(0, std::memory_order_relaxed);
     bool somebody_sleeps = false;
     {
       // Under the lock, so that nobody falls asleep between looking at the gate and waiting.
@@ -97,6 +98,8 @@ struct TaskSystem::Pool {
     while ((gate.load(std::memory_order_acquire) & kInside) != 0) spin.pause();
   }
 
+  static void no_work(int) {}
+
   // A helper's whole life.
   void serve(int worker) {
     std::uint64_t seen = 0;
@@ -106,15 +109,15 @@ struct TaskSystem::Pool {
       if (!enter(seen)) continue;
       {
         const FloatMode mode;
-        (*job)(worker);
+        job(worker);
       }
-      finished.fetch_add(1, std::memory_order_release);
+      if (all_needed) finished.fetch_add(1, std::memory_order_release);
       gate.fetch_sub(1, std::memory_order_release);
     }
   }
 
   std::uint64_t wait_for_job(std::uint64_t seen) {
-    for (Spin spin(patience); spin.patient(); spin.pause()) {
+    for (Spin spin(patience); spin.patient() || stay_awake.load(std::memory_order_relaxed); spin.pause()) {
       const std::uint64_t number = job_of(gate.load(std::memory_order_acquire));
       if (number != seen) return number;
     }
@@ -139,9 +142,12 @@ struct TaskSystem::Pool {
     return false;
   }
 
+  // Side by side, since a line that another core wrote takes longer to come than much of the work takes to do.
   alignas(64) std::atomic<std::uint64_t> gate{0};
-  alignas(64) std::atomic<int> finished{0};  // helpers that have done the current job
-  const WorkerFn* job = nullptr;             // written before the gate opens, read inside
+  WorkerFn job = no_work;   // written before the gate opens, read inside
+  bool all_needed = false;  // as the job
+  alignas(64) std::atomic<int> finished{0};  // helpers that have done a job which all are needed for
+  alignas(64) std::atomic<bool> stay_awake{false};
   std::atomic<bool> stopping{false};
   const int patience;
   const int helpers;
@@ -172,6 +178,15 @@ TaskSystem::TaskSystem(const HostTasks& host) : host_(host) {
 }
 
 TaskSystem::~TaskSystem() = default;
+
+void TaskSystem::stay_awake(bool yes) {
+#if GYRE_HAS_THREADS
+  if (pool_ != nullptr && worker_count_ <= machine_cores())
+    pool_->stay_awake.store(yes, std::memory_order_relaxed);
+#else
+  (void)yes;
+#endif
+}
 
 void TaskSystem::run_workers(WorkerFn fn) { run(fn, true); }
 

@@ -45,9 +45,23 @@ class TaskSystem {
   // the thread that starts work, outside of it.
   std::byte* scratch(std::size_t bytes);
 
+  // While one of these lives, workers that have come once wait for more work without going to sleep: waking one takes as long as
+  // many stages of a step. Where workers outnumber cores they sleep as ever.
+  class Busy {
+   public:
+    explicit Busy(TaskSystem& tasks) : tasks_(tasks) { tasks_.stay_awake(true); }
+    ~Busy() { tasks_.stay_awake(false); }
+    Busy(const Busy&) = delete;
+    Busy& operator=(const Busy&) = delete;
+
+   private:
+    TaskSystem& tasks_;
+  };
+
  private:
   struct Pool;
 
+  void stay_awake(bool yes);
   void run(FunctionRef<void(int worker)> fn, bool all);
   void run_on_host(FunctionRef<void(int worker)> fn);
 

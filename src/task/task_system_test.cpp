@@ -173,5 +173,21 @@ TEST(TaskSystem, ScratchIsKept) {
   EXPECT_EQ(tasks.scratch(500), first);
 }
 
+TEST(TaskSystem, BusyWorkersTakeJobsThatComeAfterPauses) {
+  for (const int workers : {2, 64}) {
+    TaskSystem tasks(workers);
+    std::atomic<int> calls{0};
+    for (int step = 0; step < 3; ++step) {
+      const TaskSystem::Busy busy(tasks);
+      for (int job = 0; job < 3; ++job) {
+        tasks.run_workers([&](int) { ++calls; });
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));  // beyond a worker's patience
+      }
+    }
+    tasks.run_workers([&](int) { ++calls; });
+    EXPECT_EQ(calls, 10 * workers);
+  }
+}
+
 }  // namespace
 }  // namespace gyre

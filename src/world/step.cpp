@@ -284,6 +284,7 @@ void step_world(WorldState& s, float seconds) {
   s.rigid.steps = s.step_count;
   {
     const StageZone whole(s.profile, kWholeStep);
+    const TaskSystem::Busy busy(*s.tasks);
     if (motion_settings(s.rigid).time == TimeStepping::adaptive)
       step_to_impacts(s, seconds);
     else

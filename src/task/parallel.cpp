@@ -1,0 +1,38 @@
+// Each worker has a share of the blocks, the same part of them in every loop: what it has written in one loop over bodies or contacts
+// it finds in its own cache in the next, and takes its blocks from a counter that seldom leaves its core. Whoever is done takes
+// from the others' shares. See parallel.h.
+#include "task/parallel.h"
+
+#include <atomic>
+
+namespace gyre {
+
+void run_blocks(TaskSystem& tasks, int blocks, FunctionRef<void(int block, int worker)> run_block) {
+  // Unsigned, since each worker overshoots the end once.
+  struct alignas(64) Share {
+    std::atomic<std::uint32_t> next;
+    std::uint32_t end;
+  };
+  const int workers = tasks.worker_count();
+  const auto share_begin = [&](int worker) {
+    return static_cast<std::uint32_t>(std::int64_t{blocks} * worker / workers);
+  };
+  Share shares[TaskSystem::kMaxWorkers];
+  for (int worker = 0; worker < workers; ++worker) {
+    shares[worker].next.store(share_begin(worker), std::memory_order_relaxed);
+    shares[worker].end = share_begin(worker + 1);
+  }
+  tasks.run_claiming([&](int worker) {
+    for (int i = 0; i < workers; ++i) {
+      Share& share = shares[worker + i < workers ? worker + i : worker + i - workers];
+      // Looked at before it is written to: shares of others are mostly done.
+      while (share.next.load(std::memory_order_relaxed) < share.end) {
+        const std::uint32_t block = share.next.fetch_add(1, std::memory_order_relaxed);
+        if (block >= share.end) break;
+        run_block(static_cast<int>(block), worker);
+      }
+    }
+  });
+}
+
+}  // namespace gyre
