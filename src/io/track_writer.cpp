@@ -8,14 +8,6 @@
 
 namespace gyre {
 
-namespace {
-
-bool is_awake(const BodyFlags& flags) {
-  return flags.awake != 0 && flags.type != BodyType::fixed && flags.frozen == 0;
-}
-
-}  // namespace
-
 void TrackWriter::begin(EmitChunk emit) const {
   ByteWriter payload;
   write_track_start(payload, start_);
@@ -76,7 +68,7 @@ void TrackWriter::look_at_known(const WorldState& state, WrittenBody& written) {
   const std::uint32_t index = written.body.index;
   const BodyPlace& place = bodies.places[index];
   const BodyMass& mass = bodies.masses[index];
-  const bool awake = is_awake(bodies.flags[index]);
+  const bool awake = goes_along(bodies.flags[index]);
   ++written.same;
   if (!is_within(place, written.seen, written.slack) || !(mass.center == written.seen_mass_center))
     round_again(place, mass, written);
@@ -123,7 +115,7 @@ void TrackWriter::look_at(const WorldState& state, std::uint32_t index, bool key
   written.body.index = index;
   written.body.generation = generation;
   written.body.model = model;
-  written.body.awake = written.body.active = is_awake(bodies.flags[index]);
+  written.body.awake = written.body.active = goes_along(bodies.flags[index]);
   written.body.pose = begin_history(written.next);
   changes_.push_back({index, BodyChange::put});
 }

@@ -90,8 +90,7 @@ void refresh_awake(BodyStore& store) {
   store.awake_stale = false;
   store.awake.clear();
   store.ids.for_each_live([&](std::uint32_t body) {
-    const BodyFlags& flags = store.flags[body];
-    if (flags.type != BodyType::fixed && flags.awake != 0 && flags.frozen == 0) store.awake.push_back(body);
+    if (goes_along(store.flags[body])) store.awake.push_back(body);
   });
 }
 

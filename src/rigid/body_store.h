@@ -134,5 +134,11 @@ inline bool inertia_turns(const BodyMass& mass, const BodyFlags& flags) {
   return mass.isotropic == 0 || flags.locked_angular != 0;
 }
 inline bool is_movable(const BodyFlags& flags) { return flags.type == BodyType::dynamic && flags.frozen == 0; }
+// Whether a step takes it along, by itself or as its velocity says. What does not may still hold the way of an earlier step.
+inline bool goes_along(const BodyFlags& flags) {
+  return flags.awake != 0 && flags.type != BodyType::fixed && flags.frozen == 0;
+}
+// What loops over bodies take at once.
+constexpr int kBodiesPerBlock = 64;
 
 }  // namespace gyre

@@ -37,9 +37,7 @@ void ClosingWay::find_ways() const {
     if (member.stopped != nullptr) first = min(first, member.stopped->fraction);
   for (ClosingMember& member : members_) {
     const BodyMotion& motion = w_->bodies.motion[member.body];
-    // What does not move may still hold the way of an earlier step.
-    const BodyFlags& flags = w_->bodies.flags[member.body];
-    const bool goes = flags.type != BodyType::fixed && flags.awake != 0 && flags.frozen == 0;
+    const bool goes = goes_along(w_->bodies.flags[member.body]);
     const StoppedBody* const stop = member.stopped;
     const Vec3 moved = stop != nullptr ? stop->moved : goes ? motion.moved : Vec3{};
     const Vec3 turned = stop != nullptr ? stop->turned : goes ? motion.turned : Vec3{};

@@ -17,12 +17,10 @@ namespace {
 constexpr float kLeastProgress = 0.2f;
 // How often bodies that follow others by joints are swept in turn.
 constexpr int kMostRounds = 4;
-constexpr int kBodiesPerBlock = 64;
 
 Sweep sweep_of_body(const RigidWorld& w, std::uint32_t body) {
   const BodyMotion& motion = w.bodies.motion[body];
-  const BodyFlags& flags = w.bodies.flags[body];
-  const bool moves = flags.type != BodyType::fixed && flags.awake != 0 && flags.frozen == 0;
+  const bool moves = goes_along(w.bodies.flags[body]);
   return {origin_pose(w.bodies, body), w.bodies.masses[body].center, moves ? motion.moved : Vec3{},
           moves ? motion.turned : Vec3{}};
 }

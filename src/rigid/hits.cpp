@@ -2,6 +2,7 @@
 
 #include "base/sort.h"
 #include "rigid/surface_rules.h"
+#include "task/choose.h"
 
 namespace gyre {
 
@@ -47,9 +48,10 @@ bool note_approach(const RigidWorld& w, const Contact& contact, Manifold& manifo
   return fastest > 0.0f && fastest > hit_speed(contact);
 }
 
-void note_hits(const RigidWorld& w, BatchScratch& s) {
-  for (std::size_t i = 0; i < s.constraints.size(); ++i) {
-    if (!s.constraints[i].fast) continue;
+void note_hits(const RigidWorld& w, BatchScratch& s, Arena& arena, TaskSystem& tasks) {
+  const ArenaScope scope(arena);
+  const auto came_fast = [&](std::uint32_t i) { return s.constraints[i].fast; };
+  for (const std::uint32_t i : choose(tasks, arena, s.constraints.size(), came_fast).list) {
     const Contact& contact = w.contacts.contacts[s.constraint_contact[i]];
     const Manifold& manifold = *s.constraints[i].manifold;
     float fastest = hit_speed(contact);

@@ -10,7 +10,7 @@ namespace gyre {
 // one of them is fast enough to be told.
 bool note_approach(const RigidWorld& w, const Contact& contact, Manifold& manifold);
 // Those contacts of a batch that were struck hard in this step.
-void note_hits(const RigidWorld& w, BatchScratch& s);
+void note_hits(const RigidWorld& w, BatchScratch& s, Arena& arena, TaskSystem& tasks);
 // A blow outside of the solve, whose points' approach was noted before it.
 void report_blow(RigidWorld& w, const Contact& contact, const Manifold& manifold, float impulse);
 // The events of all batches, in contact order.

@@ -26,8 +26,7 @@ bool is_considered(const RigidWorld& w, const Contact& contact) {
 }
 
 Sweep sweep_of(const RigidWorld& w, std::uint32_t body, bool moved) {
-  const BodyFlags& flags = w.bodies.flags[body];
-  const bool moves = moved && flags.type != BodyType::fixed && flags.awake != 0 && flags.frozen == 0;
+  const bool moves = moved && goes_along(w.bodies.flags[body]);
   const BodyMotion& motion = w.bodies.motion[body];
   return {origin_pose(w.bodies, body), w.bodies.masses[body].center, moves ? motion.moved : Vec3{},
           moves ? motion.turned : Vec3{}};

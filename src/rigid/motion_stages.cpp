@@ -6,7 +6,6 @@ namespace gyre {
 
 namespace {
 
-constexpr int kBodiesPerBlock = 64;
 constexpr int kBlocksPerClaim = 4;
 constexpr int kSpinnersPerClaim = 8;
 

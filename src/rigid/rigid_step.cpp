@@ -13,8 +13,6 @@ namespace gyre {
 
 namespace {
 
-constexpr int kBodiesPerBlock = 64;
-
 PairShapes describe_pair(const RigidWorld& w, std::uint64_t key) {
   const std::uint32_t a = std::uint32_t(key >> 32), b = std::uint32_t(key);
   PairShapes pair;

@@ -2,6 +2,7 @@
 
 #include "geometry/support.h"
 #include "rigid/solve_batches.h"
+#include "task/choose.h"
 #include "task/parallel.h"
 
 namespace gyre {
@@ -241,12 +242,9 @@ RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch
     return w.contacts.contacts[scratch.constraint_contact[i]];
   };
   RollingContacts all;
-  const std::span<std::uint32_t> candidates = arena.make<std::uint32_t>(constraints.size());
-  std::size_t count = 0;
-  for (std::uint32_t i = 0; i < constraints.size(); ++i) {
-    candidates[count] = i;
-    count += constraints[i].may_roll;
-  }
+  const auto may_roll = [&](std::uint32_t i) { return constraints[i].may_roll; };
+  const std::span<const std::uint32_t> candidates = choose(tasks, arena, constraints.size(), may_roll).list;
+  const std::size_t count = candidates.size();
   if (count == 0) return all;
   const Bearers bearers(constraints, scratch.pairs, bodies, arena);
   const std::span<RollingSides> sides = arena.make<RollingSides>(count);

@@ -8,6 +8,8 @@
 #include "solver/contact_structure.h"
 #include "task/parallel.h"
 
+#include <utility>
+
 namespace gyre {
 
 namespace {
@@ -19,7 +21,6 @@ constexpr float kPushShare = 0.4f;
 constexpr std::size_t kAhead = 6;
 constexpr int kContactsPerBlock = 64;
 constexpr int kJointsPerBlock = 128;
-constexpr int kBodiesPerBlock = 64;
 
 // A body as constraints know it: kNoBody if it never moves (its record is then never read).
 std::int32_t solver_body(const RigidWorld& w, std::uint32_t body) {
@@ -183,12 +184,22 @@ void gather_contacts(Solve& solve, Arena& arena, TaskSystem& tasks) {
   BatchScratch& s = solve.scratch;
   const std::span<const std::uint32_t> slots = solve.batch.contacts;
   const auto waits = [&](std::uint32_t slot) { return !w.waiting.empty() && w.waiting[slot] != 0; };
-  const std::span<std::uint32_t> places = arena.make<std::uint32_t>(slots.size());
+  const auto for_each_block = [&](auto&& run) {
+    for_blocks(tasks, int(slots.size()), kContactsPerBlock,
+               [&](int begin, int end, int) { run(std::size_t(begin), std::size_t(end)); });
+  };
+  // Where the constraints of a block of contacts begin.
+  const auto block_of = [](std::size_t begin) { return begin / std::size_t(kContactsPerBlock); };
+  const std::span<std::uint32_t> firsts =
+      arena.make<std::uint32_t>(std::size_t(count_blocks(int(slots.size()), kContactsPerBlock)));
+  for_each_block([&](std::size_t begin, std::size_t end) {
+    std::uint32_t manifolds = 0;
+    for (const std::uint32_t slot : slots.subspan(begin, end - begin))
+      if (!waits(slot)) manifolds += w.contacts.contacts[slot].manifold_count;
+    firsts[block_of(begin)] = manifolds;
+  });
   std::uint32_t count = 0;
-  for (std::size_t i = 0; i < slots.size(); ++i) {
-    places[i] = count;
-    if (!waits(slots[i])) count += w.contacts.contacts[slots[i]].manifold_count;
-  }
+  for (std::uint32_t& first : firsts) count += std::exchange(first, count);
   s.constraints.resize_uninitialized(count);
   s.pairs.resize_uninitialized(count);
   s.constraint_contact.resize_uninitialized(count);
@@ -197,9 +208,12 @@ void gather_contacts(Solve& solve, Arena& arena, TaskSystem& tasks) {
   const ContactGatherer gatherer(solve, tasks.worker_count() == 1);
   const auto gather_block = [&](int begin, int end, int) {
     Found found;
+    std::uint32_t place = firsts[block_of(std::size_t(begin))];
     for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
       if (i + kAhead < slots.size()) fetch_manifold(w.contacts, slots[i + kAhead]);
-      if (!waits(slots[i])) found = either(found, gatherer.gather(slots[i], places[i]));
+      if (waits(slots[i])) continue;
+      found = either(found, gatherer.gather(slots[i], place));
+      place += w.contacts.contacts[slots[i]].manifold_count;
     }
     return found;
   };

@@ -434,7 +434,7 @@ void solve_batch_as_rows(Solve& solve, const SolverSettings& settings, Arena& ar
   // Rows have no colours: what says so looks at these.
   scratch.pairs.clear();
   scratch.joint_pairs.clear();
-  note_hits(solve.w, scratch);
+  note_hits(solve.w, scratch, arena, tasks);
   scratch.counts.manifolds += scratch.constraints.size();
   scratch.counts.joints += solve.batch.joints.size();
 }

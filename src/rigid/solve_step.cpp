@@ -155,7 +155,7 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   run_substeps(solve, contacts, joints, arena, tasks);
   finish_joints(solve.w, solve.batch, begun_in_lanes(solve), solve.joint_work);
   if (solve.is_smooth) finish_springs(solve.w, solve.smooth, scratch.report);
-  note_hits(solve.w, scratch);
+  note_hits(solve.w, scratch, arena, tasks);
   scratch.counts.manifolds += scratch.constraints.size();
   scratch.counts.joints += solve.batch.joints.size();
   scratch.counts.swept_joints += scratch.swept_joints.size();
@@ -205,13 +205,16 @@ Solve describe_solve(RigidWorld& w, BatchScratch& scratch, const ContactKernels&
   return solve;
 }
 
-void begin_bodies(RigidWorld& w) {
-  for (const std::uint32_t body : w.bodies.awake) {
-    w.bodies.flags[body].touched = 0;
-    w.bodies.motion[body].moved = {};
-    w.bodies.motion[body].turned = {};
-    w.bodies.motion[body].pushed = 0.0f;
-  }
+void begin_bodies(RigidWorld& w, TaskSystem& tasks) {
+  for_blocks(tasks, int(w.bodies.awake.size()), kBodiesPerBlock, [&](int begin, int end, int) {
+    for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
+      const std::uint32_t body = w.bodies.awake[i];
+      w.bodies.flags[body].touched = 0;
+      w.bodies.motion[body].moved = {};
+      w.bodies.motion[body].turned = {};
+      w.bodies.motion[body].pushed = 0.0f;
+    }
+  });
   w.field_rest.clear();
   if (!w.fields.empty()) w.field_rest.resize(w.bodies.motion.size());
   if (motion_settings(w).integrator == IntegratorKind::verlet)
@@ -292,7 +295,7 @@ void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& 
                 const ContactKernels& kernels, float seconds) {
   const SolverSettings* const row_solver = row_solver_of(w);
   const SubStepping plan = plan_substeps(w, seconds, row_solver != nullptr);
-  begin_bodies(w);
+  begin_bodies(w, tasks);
   begin_scratch(scratch.together);
   const bool parted = may_part(w, tasks);
   begin_lone(scratch, parted ? std::size_t(tasks.worker_count()) : 0);

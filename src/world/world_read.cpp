@@ -23,10 +23,6 @@ bool lives(const WorldState& s, BodyId id) { return lives(s, s.rigid.bodies.ids,
 bool lives(const WorldState& s, ShapeId id) { return lives(s, s.rigid.shapes.ids, id); }
 bool lives(const WorldState& s, JointId id) { return lives(s, s.rigid.joints.ids, id); }
 
-bool moves(const BodyFlags& flags) {
-  return flags.awake != 0 && flags.type != BodyType::fixed && flags.frozen == 0;
-}
-
 void make_room(const WorldState& s, std::size_t bodies) {
   s.read_ids.resize(bodies);
   s.read_poses.resize(bodies);
@@ -40,7 +36,7 @@ BodyColumns read_bodies(const WorldState& s, bool only_awake) {
   make_room(s, bodies.ids.capacity());
   std::size_t count = 0;
   bodies.ids.for_each_live([&](std::uint32_t body) {
-    if (only_awake && !moves(bodies.flags[body])) return;
+    if (only_awake && !goes_along(bodies.flags[body])) return;
     s.read_ids[count] = body_id(s.rigid, body);
     s.read_poses[count] = origin_pose(bodies, body);
     s.read_linear[count] = bodies.motion[body].linear_velocity;
@@ -86,7 +82,7 @@ BodyType World::type(BodyId body) const {
 }
 bool World::is_awake(BodyId body) const {
   if (!exists(body)) return false;
-  return moves(state_->rigid.bodies.flags[body.index]);
+  return goes_along(state_->rigid.bodies.flags[body.index]);
 }
 std::uint64_t World::user_data(BodyId body) const {
   return exists(body) ? state_->rigid.bodies.user_data[body.index] : 0;
@@ -211,7 +207,7 @@ WorldCounts World::counts() const {
   counts.colors = state_->solve.colors;
   counts.pairs = int(w.contacts.live);
   // Slots that are free have the flags of fixed bodies, and contacts that touch nothing and have no manifolds.
-  for (const BodyFlags& flags : w.bodies.flags) counts.awake_bodies += moves(flags) ? 1 : 0;
+  for (const BodyFlags& flags : w.bodies.flags) counts.awake_bodies += goes_along(flags) ? 1 : 0;
   for (const Contact& contact : w.contacts.contacts) {
     counts.touching += contact.touching != 0 ? 1 : 0;
     for (const Manifold& manifold : manifolds_of(w.contacts, contact))
