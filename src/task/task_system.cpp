@@ -10,6 +10,7 @@
 #include <cstdint>
 
 #if GYRE_HAS_THREADS
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
@@ -47,6 +48,9 @@ int patience_of(int worker_count) { return worker_count <= machine_cores() ? kPa
 #if GYRE_HAS_THREADS
 
 namespace {
+
+// A core that is offered comes back at once, or later than this.
+constexpr std::chrono::microseconds kTaken{20};
 
 // The gate: job number, open flag, workers inside.
 constexpr std::uint64_t kJob = std::uint64_t{1} << 32;
@@ -117,10 +121,12 @@ struct TaskSystem::Pool {
   }
 
   std::uint64_t wait_for_job(std::uint64_t seen) {
-    for (Spin spin(patience); spin.patient() || stay_awake.load(std::memory_order_relaxed); spin.pause()) {
+    Spin spin(patience);
+    do {
       const std::uint64_t number = job_of(gate.load(std::memory_order_acquire));
       if (number != seen) return number;
-    }
+      if (spin.patient()) spin.pause();
+    } while (spin.patient() || may_wait_on());
     std::unique_lock<std::mutex> lock(mutex);
     ++sleepers;
     std::uint64_t number = job_of(gate.load(std::memory_order_acquire));
@@ -130,6 +136,15 @@ struct TaskSystem::Pool {
     }
     --sleepers;
     return number;
+  }
+
+  // Whether a worker that lost its patience stays awake: within a step, and while nobody else wants its core, for who does has it for
+  // a while if it is offered.
+  bool may_wait_on() const {
+    if (!stay_awake.load(std::memory_order_relaxed)) return false;
+    const auto offered = std::chrono::steady_clock::now();
+    std::this_thread::yield();
+    return std::chrono::steady_clock::now() - offered < kTaken;
   }
 
   // One more inside, unless the job has been closed meanwhile.
