@@ -55,6 +55,24 @@ TEST(ForBlocks, PlainWritesAreSeenAfterwards) {
   }
 }
 
+// A host that has one thread, and begins with the last worker: it does its own share first, then those of the others.
+TEST(ForBlocks, WorkersBeginWithTheirShareInEveryLoop) {
+  const HostTasks host{.run =
+                           [](void*, int count, void (*task)(void*, int), void* context) {
+                             for (int i = count - 1; i >= 0; --i) task(context, i);
+                           },
+                       .worker_count = 3};
+  TaskSystem tasks(host);
+  for (const int block_size : {1, 10, 64}) {
+    std::vector<int> order;
+    for_blocks(tasks, 9 * block_size, block_size, [&](int begin, int, int worker) {
+      EXPECT_EQ(worker, 2);
+      order.push_back(begin / block_size);
+    });
+    EXPECT_EQ(order, (std::vector<int>{6, 7, 8, 0, 1, 2, 3, 4, 5}));
+  }
+}
+
 TEST(SideBySide, DoesEachPieceOnce) {
   for (const int workers : {1, 2, 4}) {
     TaskSystem tasks(workers);
