@@ -196,7 +196,7 @@ TaskSystem::~TaskSystem() = default;
 
 void TaskSystem::stay_awake(bool yes) {
 #if GYRE_HAS_THREADS
-  if (pool_ != nullptr && worker_count_ <= machine_cores())
+  if (pool_ != nullptr && spin_patience_ == kPatient)
     pool_->stay_awake.store(yes, std::memory_order_relaxed);
 #else
   (void)yes;
