@@ -14,13 +14,11 @@ void run_blocks(TaskSystem& tasks, int blocks, FunctionRef<void(int block, int w
     std::uint32_t end;
   };
   const int workers = tasks.worker_count();
-  const auto share_begin = [&](int worker) {
-    return static_cast<std::uint32_t>(std::int64_t{blocks} * worker / workers);
-  };
   Share shares[TaskSystem::kMaxWorkers];
   for (int worker = 0; worker < workers; ++worker) {
-    shares[worker].next.store(share_begin(worker), std::memory_order_relaxed);
-    shares[worker].end = share_begin(worker + 1);
+    const auto begin = static_cast<std::uint32_t>(share_begin(blocks, worker, workers));
+    shares[worker].next.store(begin, std::memory_order_relaxed);
+    shares[worker].end = static_cast<std::uint32_t>(share_begin(blocks, worker + 1, workers));
   }
   tasks.run_claiming([&](int worker) {
     for (int i = 0; i < workers; ++i) {

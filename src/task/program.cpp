@@ -42,7 +42,7 @@ class Runner {
   Runner(std::span<const Stage> stages, const TaskSystem& tasks)
       : stages_(stages), worker_count_(tasks.worker_count()), patience_(tasks.spin_patience()) {
     for (int w = 0; w < worker_count_; ++w)
-      shares_[w].next.store(pack(0, share_begin(stages_[0], w)), std::memory_order_relaxed);
+      shares_[w].next.store(pack(0, begin_of(stages_[0], w)), std::memory_order_relaxed);
     begin(0);
   }
 
@@ -71,9 +71,9 @@ class Runner {
     return static_cast<std::uint32_t>(word >> 32);
   }
 
-  int share_begin(const Stage& stage, int worker) const {
+  int begin_of(const Stage& stage, int worker) const {
     if (stage.bounds != nullptr) return stage.bounds[worker];
-    return static_cast<int>(std::int64_t{stage.block_count} * worker / worker_count_);
+    return share_begin(stage.block_count, worker, worker_count_);
   }
 
   void begin(std::uint32_t index) {
@@ -84,8 +84,8 @@ class Runner {
   // Takes blocks of a share until there are none; the number taken.
   int run_share(std::uint32_t index, int owner, int worker) {
     const Stage& stage = stages_[index];
-    const std::uint64_t first = pack(index, share_begin(stage, owner)),
-                        end = pack(index, share_begin(stage, owner + 1));
+    const std::uint64_t first = pack(index, begin_of(stage, owner)),
+                        end = pack(index, begin_of(stage, owner + 1));
     std::atomic<std::uint64_t>& next = shares_[owner].next;
     std::uint64_t now = next.load(std::memory_order_relaxed);
     int done = 0;

@@ -73,4 +73,9 @@ class TaskSystem {
   Array<std::byte> scratch_;
 };
 
+// Where a worker's share of `count` things begins, if shares are equal; that of the worker behind the last is `count`.
+constexpr int share_begin(int count, int worker, int workers) {
+  return static_cast<int>(static_cast<long long>(count) * worker / workers);
+}
+
 }  // namespace gyre
