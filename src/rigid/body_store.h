@@ -9,6 +9,7 @@
 #include "base/shared_column.h"
 #include "base/slot_map.h"
 #include "base/small_array.h"
+#include "collision/time_of_impact.h"
 #include "rigid/motion_settings.h"
 #include "solver/body_motion.h"
 
@@ -137,6 +138,12 @@ inline bool is_movable(const BodyFlags& flags) { return flags.type == BodyType::
 // Whether a step takes it along, by itself or as its velocity says. What does not may still hold the way of an earlier step.
 inline bool goes_along(const BodyFlags& flags) {
   return flags.awake != 0 && flags.type != BodyType::fixed && flags.frozen == 0;
+}
+// How the body moves over the step, as far as that is known.
+inline Sweep sweep_of_body(const BodyStore& store, std::uint32_t body) {
+  const BodyMotion& motion = store.motion[body];
+  const bool moves = goes_along(store.flags[body]);
+  return {origin_pose(store, body), store.masses[body].center, moves ? motion.moved : Vec3{}, moves ? motion.turned : Vec3{}};
 }
 // What loops over bodies take at once.
 constexpr int kBodiesPerBlock = 64;

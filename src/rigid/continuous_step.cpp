@@ -18,13 +18,6 @@ constexpr float kLeastProgress = 0.2f;
 // How often bodies that follow others by joints are swept in turn.
 constexpr int kMostRounds = 4;
 
-Sweep sweep_of_body(const RigidWorld& w, std::uint32_t body) {
-  const BodyMotion& motion = w.bodies.motion[body];
-  const bool moves = goes_along(w.bodies.flags[body]);
-  return {origin_pose(w.bodies, body), w.bodies.masses[body].center, moves ? motion.moved : Vec3{},
-          moves ? motion.turned : Vec3{}};
-}
-
 // What was inside as the step began has been told to begin, and its end is seen when the contact is looked at again.
 void report_crossings(RigidWorld& w, std::span<const std::uint64_t> crossings) {
   for (const std::uint64_t key : crossings) {
@@ -93,7 +86,7 @@ class Blow {
 // A bound on the way that the farthest points of a body go in the step as seen from another one: that of its middle, and what
 // its turning against the other adds. (A rotation differs from its first order by half the angle squared at most.)
 float way_against(const RigidWorld& w, std::uint32_t seen_from, const Sweep& frame, std::uint32_t body) {
-  const Sweep own = sweep_of_body(w, body);
+  const Sweep own = sweep_of_body(w.bodies, body);
   const Vec3 apart = difference(w.bodies.places[body].center, w.bodies.places[seen_from].center);
   return length(own.moved - frame.moved - cross(frame.turned, apart)) +
          0.5f * length_squared(frame.turned) * length(apart) +
@@ -111,7 +104,7 @@ class Overrun {
     scratch_.listed.resize(w_.bodies.motion.size());
     for (const std::uint32_t i : w_.bodies.awake) {
       if (w_.bodies.flags[i].type != BodyType::kinematic || w_.bodies.shapes[i].empty()) continue;
-      const Sweep sweep = sweep_of_body(w_, i);
+      const Sweep sweep = sweep_of_body(w_.bodies, i);
       if (sweep.moved != Vec3{} || sweep.turned != Vec3{}) add_those_before(i, sweep);
     }
   }
@@ -265,7 +258,7 @@ void sweep_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& a
     for (std::size_t k = 0; k < ids.size(); ++k) list[k] = ids[k].index;
     shapes[fast.body] = list;
   }
-  const auto sweep_of = [&](std::uint32_t body) { return sweep_of_body(w, body); };
+  const auto sweep_of = [&](std::uint32_t body) { return sweep_of_body(w.bodies, body); };
   const auto shapes_of = [&](std::uint32_t body) { return shapes[body]; };
   const auto passes = [&](std::uint32_t shape, Vec3 way) { return lets_pass(w, shape, way); };
   const FunctionRef<bool(std::uint32_t shape, Vec3 way)> one_way(passes);
@@ -295,7 +288,7 @@ std::span<const StoppedBody> take_back(RigidWorld& w, ContinuousScratch& scratch
     BodyMotion& motion = w.bodies.motion[i];
     if (!joints_of(w.bodies, i).empty())
       stopped[stopped_count++] = {i, kept.fraction, motion.moved, motion.turned};
-    const Quat stopped_at = pose_at(sweep_of_body(w, i), double(kept.fraction)).orientation;
+    const Quat stopped_at = pose_at(sweep_of_body(w.bodies, i), double(kept.fraction)).orientation;
     w.bodies.orientations[i] = kept.turn == Vec3{} ? stopped_at : integrate_rotation(stopped_at, kept.turn);
     motion.moved = kept.fraction * motion.moved + kept.slide;
     motion.turned = kept.fraction * motion.turned + kept.turn;

@@ -25,20 +25,15 @@ bool is_considered(const RigidWorld& w, const Contact& contact) {
          (is_active(w, contact.body_a) || is_active(w, contact.body_b)) && has_gap(w, contact);
 }
 
-Sweep sweep_of(const RigidWorld& w, std::uint32_t body, bool moved) {
-  const bool moves = moved && goes_along(w.bodies.flags[body]);
-  const BodyMotion& motion = w.bodies.motion[body];
-  return {origin_pose(w.bodies, body), w.bodies.masses[body].center, moves ? motion.moved : Vec3{},
-          moves ? motion.turned : Vec3{}};
-}
-
 // The two shapes of a contact on their way.
 struct SweptPair {
   Sweep sweep_a, sweep_b;
   SweptShape a, b;
 
+  // `moved`: on their way; else where they are as the step begins.
   SweptPair(const RigidWorld& w, const Contact& contact, bool moved)
-      : sweep_a(sweep_of(w, contact.body_a, moved)), sweep_b(sweep_of(w, contact.body_b, moved)) {
+      : sweep_a(sweep_of_body(w.bodies, contact.body_a)), sweep_b(sweep_of_body(w.bodies, contact.body_b)) {
+    if (!moved) sweep_a.moved = sweep_a.turned = sweep_b.moved = sweep_b.turned = {};
     const ColliderShape &shape_a = w.shapes.colliders[contact.shape_a],
                         &shape_b = w.shapes.colliders[contact.shape_b];
     a = make_swept_shape(shape_a.shape, shape_a.body_from_shape, sweep_a);

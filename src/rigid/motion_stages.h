@@ -3,7 +3,7 @@
 #pragma once
 
 #include "rigid/program_writer.h"
-#include "rigid/solve_gather.h"
+#include "rigid/solve.h"
 
 namespace gyre {
 

@@ -1,85 +1,11 @@
-// What the program of a batch works on, and how it is gathered: constraints, bodies, and both laid out as the kernels want them.
+// Gathers the constraints of a batch.
 //
-// In: a batch of whole islands (rigid/solve_batches.h). Out: Solve, and groups of constraints by colour.
+// In: a batch of whole islands (rigid/solve_batches.h). Out: its contacts and joints in lists, and between which bodies they are.
 #pragma once
 
-#include "rigid/bundle_runs.h"
-#include "rigid/contact_forest.h"
-#include "rigid/contact_structures.h"
-#include "rigid/fields.h"
-#include "rigid/integrators.h"
-#include "rigid/linkages.h"
-#include "rigid/rolling.h"
-#include "rigid/smooth_motion.h"
-#include "rigid/solve_batches.h"
-#include "rigid/solve_domains.h"
-#include "rigid/solve_step.h"
+#include "rigid/solve.h"
 
 namespace gyre {
-
-// What every stage of the program reads.
-struct Group;
-
-struct Solve {
-  RigidWorld& w;
-  BatchScratch& scratch;
-  const ContactKernels& kernels;
-  SolveBatch batch{};
-  std::span<const std::uint32_t> places{};  // of bodies in their batches
-  Domains domains{};
-  std::span<int> group_bounds{};              // where there are several: for kMostGroups
-  void *blocks = nullptr, *asides = nullptr;  // of contacts
-  float h = 0.0f;
-  ContactSettings contact_settings{};
-  JointSettings joint_settings{};
-  ImpactSettings impact_settings{};
-  ContactBodies contact_bodies{};
-  JointBodies joint_bodies{};
-  std::span<NetJoint> net_joints{};      // the batch's joints
-  std::span<std::uint8_t> ball_lanes{};  // 1 for those that may be solved side by side
-  bool is_net = false;     // all are known to be swept: those of ball_lanes are begun in their lanes
-  LaneStart lane_start{};  // of joints that are begun in lanes
-  std::span<JointWork> joint_work{};
-  std::span<JointPlaces> joint_places{};
-  Linkages linkages{};
-  LinkageSolve linkage_solve{};
-  std::span<std::span<double>> stop_rooms{};  // by worker, where a linkage has stops
-  BundleSolve bundles{};
-  std::span<std::uint32_t> joint_order{};  // places in the list of swept joints, by groups
-  std::span<Group> joint_groups{};
-  void* balls = nullptr;  // joints side by side: solver/ball_lanes.h
-  Motions motions{};
-  std::span<MovedBody> moved{};               // the batch's bodies that constraints act on,
-  void* motion_blocks = nullptr;              // the same for the kernels,
-  std::span<Vec3> pushes{};                   // and how overlap turned them
-  std::span<std::uint32_t> spinners{};        // those of them that turn alone
-  std::span<std::uint32_t> spinner_starts{};  // by block of moved bodies: its first; one more
-  RunLine run_lines[2] = {};                  // if bodies are moved run by run: of others, and of bundles
-  std::size_t moved_in_contact = 0;           // of these, the first: contacts act on them
-  const int* moved_bounds = nullptr;          // of the blocks, by domain: where contacts act on nearly all
-  int watched_blocks = 0;             // the first: of these somebody asks what contacts gave the bodies
-  std::span<std::uint32_t> flying{};  // the others
-  ContactForest forest{};
-  TreeSolve tree_solve{};
-  std::span<ContactStructure> structures{};
-  StructureSolve structure_solve{};
-  RollingContacts rolling{};
-  std::span<std::uint16_t> rolling_lanes{};   // by block of contacts: bits of those still to be taken along
-  std::span<std::uint32_t> rolling_places{};  // by lane: which of those that roll it is
-  FieldSolve fields{};
-  bool is_smooth = false;  // free bodies are moved by the schemes of rigid/smooth_schemes.h
-  SmoothMotion smooth{};
-};
-
-// A run of blocks of one colour.
-struct Group {
-  Solve* solve = nullptr;
-  std::uint32_t first = 0;       // first block of contacts, or first place in the joint order
-  std::uint32_t count = 0;       // blocks or joints
-  bool serial = false;           // what is left over when the colours are used up: its members share bodies
-  std::int32_t ball_block = -1;  // joints that are solved side by side: their first block
-  const int* bounds = nullptr;   // of blocks of contacts, by domain
-};
 
 // The batch's contacts as constraints, and what colouring needs to know of them; marks the bodies as touched.
 void gather_contacts(Solve& solve, Arena& arena, TaskSystem& tasks);
@@ -87,17 +13,5 @@ void gather_contacts(Solve& solve, Arena& arena, TaskSystem& tasks);
 void look_at_joints(Solve& solve, Arena& arena, TaskSystem& tasks);
 // Those that are in no linkage, as contacts.
 void gather_joints(Solve& solve);
-// Parts the bodies of a batch into those that constraints act on and those that fly. Of the former those in contact come first;
-// those of a domain and those that turn alike lie side by side.
-void gather_motion(Solve& solve, Arena& arena, TaskSystem& tasks);
-
-// Lays the coloured constraints out in blocks of W lanes, in groups of which there is room for kMostGroups. A group starts a new
-// block; constraints of the overflow group get a block each, so that they are solved one after the other at every width.
-constexpr std::size_t kMostGroups = ColoringOptions::kMostColors + 1;
-std::span<Group> lay_out_contacts(Solve& solve, std::span<Group> room);
-// Memory for these blocks.
-void make_contact_blocks(Solve& solve, std::span<const Group> groups, Arena& arena);
-// Of each colour first those joints that are solved side by side, then the others.
-std::span<Group> lay_out_joints(Solve& solve, Arena& arena);
 
 }  // namespace gyre

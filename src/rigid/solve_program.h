@@ -1,10 +1,10 @@
 // The program of a batch: its sub-steps as a table of stages (task/program.h).
 //
-// In: a batch, gathered and laid out (solve_gather.h). Out: velocities, `moved`, `turned` and orientations of its bodies, impulses
+// In: a batch, gathered and laid out (solve.h). Out: velocities, `moved`, `turned` and orientations of its bodies, impulses
 // of its manifolds and joints.
 #pragma once
 
-#include "rigid/solve_gather.h"
+#include "rigid/solve.h"
 
 namespace gyre {
 

@@ -4,6 +4,8 @@
 #include "rigid/joint_works.h"
 #include "rigid/motion_stages.h"
 #include "rigid/row_islands.h"
+#include "rigid/solve_bodies.h"
+#include "rigid/solve_gather.h"
 #include "solver/body_newton.h"
 #include "solver/constraint_rows.h"
 #include "solver/delassus.h"

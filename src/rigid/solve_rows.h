@@ -6,7 +6,7 @@
 // A sub-step is one part, not two. When the step is over overlap is pushed apart in displacements, by the same solver.
 #pragma once
 
-#include "rigid/solve_gather.h"
+#include "rigid/solve.h"
 #include "rigid/solver_settings.h"
 
 namespace gyre {

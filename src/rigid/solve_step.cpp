@@ -2,6 +2,9 @@
 
 #include "rigid/hits.h"
 #include "rigid/joint_works.h"
+#include "rigid/solve_bodies.h"
+#include "rigid/solve_gather.h"
+#include "rigid/solve_layout.h"
 #include "rigid/solve_program.h"
 #include "rigid/solve_rows.h"
 #include "task/parallel.h"

@@ -1,5 +1,5 @@
-// Solves what is awake in one step: batches of islands (solve_batches.h), each gathered, coloured and laid out once for all its
-// sub-steps (solve_gather.h), which are a program (solve_program.h). Small batches are solved side by side, each by one worker;
+// Solves what is awake in one step: batches of islands (solve_batches.h), each gathered (solve_gather.h, solve_bodies.h), coloured and
+// laid out (solve_layout.h) once for all its sub-steps, which are a program (solve_program.h). Small batches are solved side by side, each by one worker;
 // large ones one after the other by all workers. docs/step.md has the stages.
 #pragma once
 

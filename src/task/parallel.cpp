@@ -22,7 +22,7 @@ void run_blocks(TaskSystem& tasks, int blocks, FunctionRef<void(int block, int w
   }
   tasks.run_claiming([&](int worker) {
     for (int i = 0; i < workers; ++i) {
-      Share& share = shares[worker + i < workers ? worker + i : worker + i - workers];
+      Share& share = shares[share_to_visit(worker, i, workers)];
       // Looked at before it is written to: shares of others are mostly done.
       while (share.next.load(std::memory_order_relaxed) < share.end) {
         const std::uint32_t block = share.next.fetch_add(1, std::memory_order_relaxed);

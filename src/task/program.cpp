@@ -51,8 +51,7 @@ class Runner {
     while (index < stages_.size()) {
       int done = 0;
       for (int i = 0; i < worker_count_; ++i)
-        done +=
-            run_share(index, worker + i < worker_count_ ? worker + i : worker + i - worker_count_, worker);
+        done += run_share(index, share_to_visit(worker, i, worker_count_), worker);
       if (!finish(index, done, worker)) wait_after(index);
       index = stage_of(state_.load(std::memory_order_acquire));
     }

@@ -77,5 +77,9 @@ class TaskSystem {
 constexpr int share_begin(int count, int worker, int workers) {
   return static_cast<int>(static_cast<long long>(count) * worker / workers);
 }
+// Whose share a worker takes from when it has been through `visited` of them: first its own, then those of the workers after it.
+constexpr int share_to_visit(int worker, int visited, int workers) {
+  return worker + visited < workers ? worker + visited : worker + visited - workers;
+}
 
 }  // namespace gyre
