@@ -52,8 +52,11 @@ struct Chosen {
     for (const SleepChange& e : events.sleep_changes) chosen.sum += double(e.body.index);
   }
   if (chosen.persisting) {
-    chosen.room.resize(std::size_t(world.counts().touching));
-    const std::size_t found = std::min(world.persisting(chosen.room), chosen.room.size());
+    std::size_t found = world.persisting(chosen.room);
+    if (found > chosen.room.size()) {
+      chosen.room.resize(found + found / 4);
+      found = world.persisting(chosen.room);
+    }
     for (std::size_t i = 0; i < found; ++i) chosen.sum += double(chosen.room[i].impulse);
   }
   if (chosen.poses) {

@@ -181,16 +181,16 @@ std::size_t World::persisting(std::span<ContactPersist> out) const {
   const RigidWorld& w = state_->rigid;
   std::size_t count = 0;
   for (std::uint32_t slot = 0; slot < w.contacts.contacts.size(); ++slot) {
-    const Contact& contact = w.contacts.contacts[slot];
-    if (contact.manifold_room == 0 || contact.touching == 0 || contact.sensor != 0) continue;
+    const Contact& contact = w.contacts.contacts[slot];  // of an empty slot: it touches nothing
+    if (contact.touching == 0 || contact.sensor != 0) continue;
     if (slot < w.touches.began.size() && w.touches.began.test(slot)) continue;
     if (count++ >= out.size()) continue;
-    ContactPersist& pair = out[count - 1];
-    pair = {shape_id(w, contact.shape_a), shape_id(w, contact.shape_b), body_id(w, contact.body_a),
-            body_id(w, contact.body_b), 0.0f};
+    float impulse = 0.0f;
     for (const Manifold& manifold : manifolds_of(w.contacts, contact)) {
-      for (int k = 0; k < manifold.count; ++k) pair.impulse += manifold.points[k].total_impulse;
+      for (int k = 0; k < manifold.count; ++k) impulse += manifold.points[k].total_impulse;
     }
+    out[count - 1] = {shape_id(w, contact.shape_a), shape_id(w, contact.shape_b), body_id(w, contact.body_a),
+                      body_id(w, contact.body_b), impulse};
   }
   return count;
 }
