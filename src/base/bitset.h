@@ -40,6 +40,11 @@ class Bitset {
   // Bits 64 * word to 64 * word + 63 at once; those beyond the size must be clear. Words may be written side by side.
   void put_word(std::size_t word, std::uint64_t bits) { words_[word] = bits; }
 
+  // Sets all bits up to the size.
+  void set_all() {
+    for (std::uint64_t& word : words_) word = ~std::uint64_t{0};
+    if (size_ % 64 != 0) words_.back() = (std::uint64_t{1} << size_ % 64) - 1;
+  }
   // Clears all bits; the size stays.
   void reset_all() {
     for (std::uint64_t& word : words_) word = 0;

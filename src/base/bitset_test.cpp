@@ -96,6 +96,10 @@ TEST(Bitset, BehavesLikeBools) {
   }
   bits.reset_all();
   EXPECT_EQ(bits, Bitset(777));
+  bits.set_all();
+  EXPECT_EQ(bits.count(), 777u);
+  bits.resize(778);
+  EXPECT_FALSE(bits.test(777)) << "nothing beyond the size was set";
 }
 
 }  // namespace

@@ -90,10 +90,11 @@ void fetch_ahead(const ContactStore& store, std::uint32_t slot, const CollideInp
   __builtin_prefetch(&input.proxies[contact.shape_b]);
 }
 
-// Which contacts are gone; of the others, which are not asleep.
-void list_contacts(ContactStore& store, std::uint32_t begin, std::uint32_t end, const CollideInput& input,
+// Which of the contacts that are asked (bits) are gone; of the others, which are not asleep.
+void list_contacts(ContactStore& store, std::uint32_t begin, std::uint64_t asked, const CollideInput& input,
                    TouchChanges& changes, LookList& list) {
-  for (std::uint32_t slot = begin; slot < end; ++slot) {
+  for (; asked != 0; asked &= asked - 1) {
+    const std::uint32_t slot = begin + std::uint32_t(std::countr_zero(asked));
     fetch_ahead(store, slot, input);
     Contact& contact = store.contacts[slot];
     if (contact.manifold_room == 0) continue;
@@ -106,7 +107,7 @@ void list_contacts(ContactStore& store, std::uint32_t begin, std::uint32_t end, 
       list.note_manifolds(slot, contact);
       continue;
     }
-    if (!proxy_a.pushes || !proxy_b.pushes || contact.sensor != 0) changes.may_stop.set(slot);
+    if (stops_others(contact, input.proxies)) changes.may_stop.set(slot);
     if (input.awake[contact.body_a] == 0 && input.awake[contact.body_b] == 0) {
       list.note_manifolds(slot, contact);
       continue;
@@ -169,10 +170,12 @@ class MeshesAhead {
   std::uint64_t left_ = 0;  // bits, by place
 };
 
-void look_at_block(ContactStore& store, int begin, int end, const CollideInput& input,
-                   TouchChanges& changes) {
+void look_at_block(ContactStore& store, int begin, const CollideInput& input, TouchChanges& changes) {
+  const std::size_t word = std::size_t(begin / kContactBlock);
+  const std::uint64_t asked = input.asked.words()[word];
+  if (asked == 0) return;
   LookList list;
-  list_contacts(store, std::uint32_t(begin), std::uint32_t(end), input, changes, list);
+  list_contacts(store, std::uint32_t(begin), asked, input, changes, list);
   Recycled recycled;
   input.recycle_contacts(list.pairs, 0, list.first_end, input.recycle, recycled);
   if (list.last_begin < kContactBlock)
@@ -194,20 +197,21 @@ void look_at_block(ContactStore& store, int begin, int end, const CollideInput& 
     if ((list.one_resting & own) != 0 && contact.manifold_count != 0)
       changes.beside_resting.set(list.slots[i]);
   });
-  store.with_manifolds.put_word(std::size_t(begin / kContactBlock), list.with_manifolds);
+  store.with_manifolds.put_word(word, (store.with_manifolds.words()[word] & ~asked) | list.with_manifolds);
 }
 
 }  // namespace
 
 void collide(ContactStore& store, const CollideInput& input, TaskSystem& tasks, TouchChanges& changes) {
   const std::size_t count = store.contacts.size();
+  GYRE_ASSERT(input.asked.size() == count, "every contact is asked or not");
   prepare_bits(changes.began, count);
   prepare_bits(changes.ended, count);
   prepare_bits(changes.gone, count);
   prepare_bits(changes.beside_resting, count);
   prepare_bits(changes.may_stop, count);
   for_blocks(tasks, int(count), kContactBlock,
-             [&](int begin, int end, int) { look_at_block(store, begin, end, input, changes); });
+             [&](int begin, int, int) { look_at_block(store, begin, input, changes); });
 }
 
 }  // namespace gyre

@@ -90,6 +90,9 @@ struct CollideInput {
   std::span<const BodyCenter> centers;  // by body
   std::span<const std::uint8_t> awake;  // by body: 1 for those that are, and not fixed
   std::span<const Proxy> proxies;
+  // Contacts, by slot: of the others both bodies sleep and the boxes are as they were, so nothing is to be done. Only bodies of these
+  // need a look.
+  const Bitset& asked;
   RecycleContacts recycle_contacts;
   bool recycle = true;  // false: looks at every pair anew (tests compare with that)
 };
@@ -100,10 +103,15 @@ struct TouchChanges {
   Bitset ended;  // the other way round
   Bitset gone;   // fat boxes no longer overlap: remove the contact (`ended` is set too if it was touching)
   Bitset beside_resting;  // looked at, has points, and only one of the two is moved by contacts (for seam.h)
-  Bitset may_stop;  // not gone, and one of the two is not pushed or is a sensor: what is fast may have to stop (for continuous.h)
+  Bitset may_stop;  // asked, not gone, and stops_others(): what is fast may have to stop (for continuous.h)
 };
 
-// Brings all contacts up to date. A contact with no awake body is left exactly as it is, unless it is gone.
+// Whether one of the two is not pushed, or is a sensor.
+inline bool stops_others(const Contact& contact, std::span<const Proxy> proxies) {
+  return !proxies[contact.shape_a].pushes || !proxies[contact.shape_b].pushes || contact.sensor != 0;
+}
+
+// Brings the contacts that are asked up to date. One with no awake body is left exactly as it is, unless it is gone.
 // In manifolds of contacts that were looked at, what solvers report over a step (total_impulse, total_friction,
 // approach_speed) is zero again; impulses to start from are carried over.
 void collide(ContactStore& store, const CollideInput& input, TaskSystem& tasks, TouchChanges& changes);

@@ -80,7 +80,9 @@ class CollideScene {
       centers.push_back({body.center, body.reach});
       awake.push_back(body.awake ? 1 : 0);
     }
-    collide(store, {shapes, looks, centers, awake, proxies, select_recycling(width), recycle}, tasks_, changes);
+    all_.resize(store.contacts.size());
+    all_.set_all();
+    collide(store, {shapes, looks, centers, awake, proxies, all_, select_recycling(width), recycle}, tasks_, changes);
   }
 
   // The contact of two shapes; null if there is none.
@@ -109,6 +111,7 @@ class CollideScene {
   std::unique_ptr<Broadphase> broadphase_ = make_broadphase(BroadPhaseKind::bvh);
   BlockedBodies blocked_;
   Array<std::uint64_t> keys_;
+  Bitset all_;  // contacts
   bool fresh_ = true;
 };
 

@@ -302,10 +302,10 @@ void hide_seams(ContactStore& store, const CollideInput& input, const Bitset& be
   const RestingContacts resting(store, input, beside_resting, arena);
   const Scene scene{store, input, resting};
   // All are asked before any is changed: nobody is hidden by who is hidden earlier in the list.
-  for_blocks(tasks, int(count), kBlock, [&](int begin, int end, int) {
-    for (int slot = begin; slot < end; ++slot) {
-      if (!beside_resting.test(std::size_t(slot))) continue;
-      if (hidden_manifolds(scene, std::uint32_t(slot)) != 0) scratch.hidden.set(std::size_t(slot));
+  for_blocks(tasks, int(count), kBlock, [&](int begin, int, int) {
+    for (std::uint64_t left = beside_resting.words()[std::size_t(begin / kBlock)]; left != 0; left &= left - 1) {
+      const auto slot = std::uint32_t(begin + std::countr_zero(left));
+      if (hidden_manifolds(scene, slot) != 0) scratch.hidden.set(slot);
     }
   });
   // Which of their manifolds: asked again, for the few there are.

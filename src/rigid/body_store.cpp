@@ -89,8 +89,11 @@ void refresh_awake(BodyStore& store) {
   if (!store.awake_stale) return;
   store.awake_stale = false;
   store.awake.clear();
+  store.sleepers = 0;
   store.ids.for_each_live([&](std::uint32_t body) {
-    if (goes_along(store.flags[body])) store.awake.push_back(body);
+    const BodyFlags& flags = store.flags[body];
+    if (goes_along(flags)) store.awake.push_back(body);
+    if (is_movable(flags) && flags.awake == 0) ++store.sleepers;
   });
 }
 

@@ -103,7 +103,8 @@ struct BodyStore {
   // By body, as far as one needed it (most worlds have no joints): joints_of(); ascending index; derived.
   Array<SmallArray<std::uint32_t, 2>> joints;
   Array<std::uint32_t> awake;       // dynamic bodies that are awake and kinematic ones, ascending; derived
-  bool awake_stale = false;         // `awake` must be rebuilt before use
+  std::size_t sleepers = 0;         // dynamic bodies that are not, and not frozen; derived
+  bool awake_stale = false;         // the two must be found anew before use
 };
 
 // The slots of a body's joints; and its list to be changed, which makes room for those of all bodies.

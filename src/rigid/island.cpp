@@ -24,21 +24,19 @@ bool is_asleep(const RigidWorld& w, std::uint32_t body) {
   return is_dynamic(w, body) && w.bodies.flags[body].awake == 0;
 }
 
-bool is_anybody_asleep(const RigidWorld& w) {
-  for (std::uint32_t i = 0; i < w.bodies.flags.size(); ++i) {
-    if (is_asleep(w, i)) return true;
-  }
-  return false;
-}
-
 // Union-find over bodies; the root of an island is its lowest body.
 class Islands {
  public:
-  Islands(RigidWorld& w, Arena& arena) : parent_(arena.make<std::uint32_t>(w.bodies.motion.size())) {
-    for (std::uint32_t i = 0; i < parent_.size(); ++i) parent_[i] = i;
-    for_each_link(w, [&](std::uint32_t a, std::uint32_t b) {
-      if (is_dynamic(w, a) && is_dynamic(w, b)) unite(a, b);
-    });
+  // Of those that are awake, in a step that has woken all who lie beside them: nobody sleeps in one.
+  static Islands awake(const RigidWorld& w, Arena& arena) {
+    Islands islands(w, arena);
+    for_each_awake_link(w, [&](std::uint32_t a, std::uint32_t b) { islands.link(w, a, b); });
+    return islands;
+  }
+  static Islands all(const RigidWorld& w, Arena& arena) {
+    Islands islands(w, arena);
+    for_each_link(w, [&](std::uint32_t a, std::uint32_t b) { islands.link(w, a, b); });
+    return islands;
   }
   std::uint32_t root(std::uint32_t i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
@@ -46,7 +44,11 @@ class Islands {
   }
 
  private:
-  void unite(std::uint32_t a, std::uint32_t b) {
+  Islands(const RigidWorld& w, Arena& arena) : parent_(arena.make<std::uint32_t>(w.bodies.motion.size())) {
+    for (std::uint32_t i = 0; i < parent_.size(); ++i) parent_[i] = i;
+  }
+  void link(const RigidWorld& w, std::uint32_t a, std::uint32_t b) {
+    if (!is_dynamic(w, a) || !is_dynamic(w, b)) return;
     a = root(a);
     b = root(b);
     if (a < b) {
@@ -149,6 +151,7 @@ void wake(RigidWorld& w, std::uint32_t body) {
     const std::uint32_t next = sleep.group == kNoGroup ? first : sleep.next_in_group;
     sleep = {};
     w.bodies.flags[i].awake = 1;
+    add_awake_links(w, i);
     w.events.sleep_changes.push_back({body_id(w, i), false});
     i = next;
   } while (i != first);
@@ -179,7 +182,8 @@ void wake_neighbours(RigidWorld& w, std::uint32_t body) {
 }
 
 void wake_touched(RigidWorld& w) {
-  if (!is_anybody_asleep(w)) return;
+  refresh_awake(w.bodies);
+  if (w.bodies.sleepers == 0) return;
   // Whoever wakes disturbs its own neighbours in turn, also those that an earlier link led to: nobody may sleep beside a
   // body that is solved, since colours and islands know only those that are awake.
   bool woken = true;
@@ -190,7 +194,7 @@ void wake_touched(RigidWorld& w) {
       wake(w, sleeper);
       woken = true;
     };
-    for_each_link(w, [&](std::uint32_t a, std::uint32_t b) { disturb(a, b), disturb(b, a); });
+    for_each_awake_link(w, [&](std::uint32_t a, std::uint32_t b) { disturb(a, b), disturb(b, a); });
   }
 }
 
@@ -199,13 +203,13 @@ void put_to_sleep(RigidWorld& w, Arena& arena, float seconds) {
   bool somebody = false;
   update_rest_timers(w, seconds, somebody);
   if (!somebody) return;
-  Islands islands(w, arena);
+  Islands islands = Islands::awake(w, arena);
   const std::span<std::uint8_t> restless = arena.make<std::uint8_t>(w.bodies.motion.size());
   for (std::uint8_t& r : restless) r = 0;
   for (const std::uint32_t i : w.bodies.awake) {
     if (is_dynamic(w, i) && w.bodies.sleep[i].still_time < kTimeToSleep) restless[islands.root(i)] = 1;
   }
-  for_each_link(w, [&](std::uint32_t a, std::uint32_t b) {
+  for_each_awake_link(w, [&](std::uint32_t a, std::uint32_t b) {
     // Who lies on something that moves does not rest.
     if (is_dynamic(w, a) && !is_dynamic(w, b) && disturbs(w, b)) restless[islands.root(a)] = 1;
     if (is_dynamic(w, b) && !is_dynamic(w, a) && disturbs(w, a)) restless[islands.root(b)] = 1;
@@ -220,7 +224,7 @@ void put_to_sleep(RigidWorld& w, Arena& arena, float seconds) {
 void force_sleep(RigidWorld& w, Arena& arena, std::uint32_t body) {
   if (!is_dynamic(w, body) || is_asleep(w, body)) return;
   refresh_awake(w.bodies);
-  Islands islands(w, arena);
+  Islands islands = Islands::all(w, arena);
   const std::uint32_t root = islands.root(body);
   for (const std::uint32_t i : w.bodies.awake) {
     if (is_dynamic(w, i) && islands.root(i) == root) fall_asleep(w, i, root);

@@ -19,17 +19,32 @@ constexpr float kRestShare = 0.015f;
 // Being pushed apart counts as faster motion than it is: a heap that falls asleep keeps the overlap that it has then.
 constexpr float kPushWeight = 4.0f;
 
-// Calls fn(body_a, body_b) for every contact and joint that binds two bodies; either may be one that nothing moves.
+// Calls fn(body_a, body_b) where a contact or joint binds two bodies; either may be one that nothing moves.
+template <class Fn>
+void follow_contact_link(const Contact& contact, Fn&& fn) {
+  if (contact.manifold_room == 0 || contact.manifold_count == 0 || contact.sensor != 0) return;
+  fn(contact.body_a, contact.body_b);
+}
+template <class Fn>
+void follow_joint_link(const JointRecord& joint, Fn&& fn) {
+  if (joint.body_a != kNoBody && joint.body_b != kNoBody) fn(std::uint32_t(joint.body_a), std::uint32_t(joint.body_b));
+}
+
+// Of every contact and joint.
 template <class Fn>
 void for_each_link(const RigidWorld& w, Fn&& fn) {
-  for (const Contact& contact : w.contacts.contacts) {
-    if (contact.manifold_room == 0 || contact.manifold_count == 0 || contact.sensor != 0) continue;
-    fn(contact.body_a, contact.body_b);
-  }
-  w.joints.ids.for_each_live([&](std::uint32_t slot) {
-    const JointRecord& joint = w.joints.records[slot];
-    if (joint.body_a != kNoBody && joint.body_b != kNoBody) fn(std::uint32_t(joint.body_a), std::uint32_t(joint.body_b));
-  });
+  for (const Contact& contact : w.contacts.contacts) follow_contact_link(contact, fn);
+  w.joints.ids.for_each_live([&](std::uint32_t slot) { follow_joint_link(w.joints.records[slot], fn); });
+}
+// The same, in the same order, of those of which a body goes along in the step: of others that sleep, or of some of them, too. Where fn
+// wakes a body, those of its contacts and joints that are yet to come are among them.
+template <class Fn>
+void for_each_awake_link(const RigidWorld& w, Fn&& fn) {
+  const AwakeLinks& links = w.awake_links;
+  for (std::size_t slot = links.contacts.find_next(0); slot < links.contacts.size(); slot = links.contacts.find_next(slot + 1))
+    follow_contact_link(w.contacts.contacts[slot], fn);
+  for (std::size_t slot = links.joints.find_next(0); slot < links.joints.size(); slot = links.joints.find_next(slot + 1))
+    if (w.joints.ids.live(std::uint32_t(slot))) follow_joint_link(w.joints.records[slot], fn);
 }
 
 // Whether the body can disturb a sleeping one: it is awake and dynamic, or kinematic and moving.

@@ -132,6 +132,77 @@ void freeze(RigidWorld& w, std::uint32_t body) {
   }
 }
 
+// What contacts need to know of bodies, by body: of those that a contact which is asked has, and of some others.
+class BodyLooks {
+ public:
+  BodyLooks(const RigidWorld& w, Arena& arena, float seconds)
+      : w_(w), seconds_(seconds), looks_(arena.make<BodyLook>(count())), centers_(arena.make<BodyCenter>(count())),
+        awake_(arena.make<std::uint8_t>(count())) {}
+
+  // Where most bodies rest only those that are needed are looked at.
+  void make(TaskSystem& tasks, Arena& arena) {
+    if (2 * w_.bodies.awake.size() >= count()) {
+      for_blocks(tasks, int(count()), 4 * kBodiesPerBlock, [&](int begin, int end, int) {
+        for (int i = begin; i < end; ++i) look_at(std::uint32_t(i));
+      });
+      return;
+    }
+    const std::span<std::uint64_t> needed = find_needed(arena);
+    for_blocks(tasks, int(needed.size()), kWordsAtOnce, [&](int begin, int end, int) {
+      for (int word = begin; word < end; ++word)
+        for (std::uint64_t left = needed[std::size_t(word)]; left != 0; left &= left - 1)
+          look_at(std::uint32_t(64 * word + std::countr_zero(left)));
+    });
+  }
+
+  std::span<const BodyLook> looks() const { return looks_; }
+  std::span<const BodyCenter> centers() const { return centers_; }
+  std::span<const std::uint8_t> awake() const { return awake_; }
+
+ private:
+  static constexpr int kWordsAtOnce = 16;
+
+  std::size_t count() const { return w_.bodies.motion.size(); }
+  std::span<std::uint64_t> find_needed(Arena& arena) const {
+    const std::span<std::uint64_t> needed = arena.make<std::uint64_t>((count() + 63) / 64);
+    for (std::uint64_t& word : needed) word = 0;
+    w_.awake_links.contacts.for_each_set([&](std::size_t slot) {
+      const Contact& contact = w_.contacts.contacts[slot];
+      for (const std::uint32_t body : {contact.body_a, contact.body_b}) needed[body / 64] |= std::uint64_t{1} << body % 64;
+    });
+    return needed;
+  }
+  void look_at(std::uint32_t i) {
+    const BodyMotion& motion = w_.bodies.motion[i];
+    const BodyMass& mass = w_.bodies.masses[i];
+    ColliderBody body;
+    body.pose = origin_pose(w_.bodies, i);
+    body.center = mass.center;
+    body.linear_velocity = motion.linear_velocity;
+    body.angular_velocity = motion.angular_velocity;
+    body.reach = mass.reach;
+    body.awake = may_move(w_, i);
+    looks_[i] = make_body_look(body, seconds_);
+    centers_[i] = {body.center, body.reach};
+    awake_[i] = body.awake ? 1 : 0;
+  }
+
+  const RigidWorld& w_;
+  float seconds_;
+  std::span<BodyLook> looks_;
+  std::span<BodyCenter> centers_;
+  std::span<std::uint8_t> awake_;
+};
+
+// Contacts of a body that woke after they were asked: what may stop it there.
+void note_stops(RigidWorld& w, std::uint32_t body) {
+  for (const ShapeId id : w.bodies.shapes[body]) {
+    for_each_contact_of_shape(w.contacts, id.index, [&](std::uint32_t slot) {
+      if (stops_others(w.contacts.contacts[slot], w.shapes.proxies)) w.touches.may_stop.set(slot);
+    });
+  }
+}
+
 }  // namespace
 
 void sort_changed(Array<std::uint32_t>& changed, Array<std::uint64_t>& keys, Array<std::uint64_t>& scratch) {
@@ -196,11 +267,12 @@ std::size_t find_pairs(RigidWorld& w, TaskSystem& tasks) {
     };
     w.broadphase->find_pairs(w.shapes.proxies, w.shapes.changed, keep_new, tasks, w.new_pairs);
   }
-  w.clocks.changed.trim(w.shapes.changed, w.shapes.changed.size());
-  w.shapes.changed.clear();
   const std::size_t found = w.new_pairs.size();
   add_pairs(w.contacts, w.new_pairs, w.joints.blocked,
             [&](std::uint64_t key) { return describe_pair(w, key); });
+  find_awake_links(w);
+  w.clocks.changed.trim(w.shapes.changed, w.shapes.changed.size());
+  w.shapes.changed.clear();
   w.broadphase->trim();
   w.clocks.new_pairs.trim(w.new_pairs, found);
   w.clocks.sort_scratch.trim(w.sort_scratch, w.sort_scratch.size());
@@ -212,27 +284,10 @@ std::size_t find_pairs(RigidWorld& w, TaskSystem& tasks) {
 void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, RecycleContacts recycle_contacts,
                    float seconds) {
   const ArenaScope scope(arena);
-  const std::size_t count = w.bodies.motion.size();
-  const std::span<BodyLook> looks = arena.make<BodyLook>(count);
-  const std::span<BodyCenter> centers = arena.make<BodyCenter>(count);
-  const std::span<std::uint8_t> awake = arena.make<std::uint8_t>(count);
-  const auto fill = [&](std::uint32_t i) {
-    const BodyMotion& motion = w.bodies.motion[i];
-    ColliderBody body;
-    body.pose = origin_pose(w.bodies, i);
-    body.center = w.bodies.masses[i].center;
-    body.linear_velocity = motion.linear_velocity;
-    body.angular_velocity = motion.angular_velocity;
-    body.reach = w.bodies.masses[i].reach;
-    body.awake = may_move(w, i);
-    looks[i] = make_body_look(body, seconds);
-    centers[i] = {body.center, body.reach};
-    awake[i] = body.awake ? 1 : 0;
-  };
-  for_blocks(tasks, int(count), 4 * kBodiesPerBlock, [&](int begin, int end, int) {
-    for (int i = begin; i < end; ++i) fill(std::uint32_t(i));
-  });
-  const CollideInput input{w.shapes.colliders, looks, centers, awake, w.shapes.proxies, recycle_contacts};
+  BodyLooks bodies(w, arena, seconds);
+  bodies.make(tasks, arena);
+  const CollideInput input{w.shapes.colliders, bodies.looks(), bodies.centers(), bodies.awake(), w.shapes.proxies,
+                           w.awake_links.contacts, recycle_contacts};
   collide(w.contacts, input, tasks, w.touches);
   hide_seams(w.contacts, input, w.touches.beside_resting, arena, tasks, w.seams);
 }
@@ -246,8 +301,10 @@ void link_islands(RigidWorld& w) {
   });
   w.touches.began.for_each_set([&](std::size_t slot) { report_begin(w, w.contacts.contacts[slot]); });
   remove_gone(w.contacts, w.touches.gone, [](std::uint32_t, const Contact&) {});
+  const std::size_t told = w.events.sleep_changes.size();
   wake_touched(w);
   refresh_awake(w.bodies);
+  for (std::size_t i = told; i < w.events.sleep_changes.size(); ++i) note_stops(w, w.events.sleep_changes[i].body.index);
 }
 
 void finish_bodies(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds,
@@ -288,9 +345,14 @@ void finish_bodies(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds
 }
 
 void break_joints(RigidWorld& w, float seconds) {
-  w.joints.ids.for_each_live([&](std::uint32_t slot) {
+  const auto goes = [&](std::int32_t body) { return body != kNoBody && goes_along(w.bodies.flags[std::size_t(body)]); };
+  w.awake_links.joints.for_each_set([&](std::size_t number) {
+    const auto slot = std::uint32_t(number);
+    if (!w.joints.ids.live(slot)) return;
     const JointRecord& joint = w.joints.records[slot];
     if (joint.break_force <= 0.0f && joint.break_torque <= 0.0f) return;
+    // What sleeps still has the impulses of the step in which it fell asleep, which it withstood.
+    if (!goes(joint.body_a) && !goes(joint.body_b)) return;
     const float force = length(joint.total_linear) / seconds;
     const float torque = length(joint.total_angular) / seconds;
     if ((joint.break_force > 0.0f && force > joint.break_force) ||

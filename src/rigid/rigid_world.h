@@ -8,6 +8,7 @@
 #include "collision/collide.h"
 #include "collision/contact_store.h"
 #include "collision/seam.h"
+#include "rigid/awake_links.h"
 #include "rigid/body_store.h"
 #include "rigid/field_record.h"
 #include "rigid/shape_store.h"
@@ -94,6 +95,7 @@ struct RigidWorld {
   // Not state: can be rebuilt or lives for one step.
   std::unique_ptr<Broadphase> broadphase;
   bool broadphase_stale = true;        // must be rebuilt from all proxies
+  AwakeLinks awake_links;
   TouchChanges touches;
   SeamScratch seams;  // contacts at flush edges, in the last step
   Array<std::uint64_t> new_pairs;

@@ -77,8 +77,8 @@ Constraints list_constraints(const RigidWorld& w, Arena& arena, TaskSystem& task
     // As numbers without a sign, kNoBody is kNone.
     return tie(w, std::uint32_t(joint.body_a), std::uint32_t(joint.body_b), 1, joint_ties[slot]);
   };
-  const Chosen contacts = choose_among(tasks, arena, w.contacts.with_manifolds, manifolds);
-  const Chosen joints = choose(tasks, arena, joint_ties.size(), works);
+  const Chosen contacts = choose_among(tasks, arena, manifolds, w.contacts.with_manifolds, w.awake_links.contacts);
+  const Chosen joints = choose_among(tasks, arena, works, w.awake_links.joints);
   return {contacts.list, joints.list, contact_ties, joint_ties, contacts.size + joints.size};
 }
 

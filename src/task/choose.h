@@ -43,12 +43,14 @@ Chosen choose(TaskSystem& tasks, Arena& arena, std::size_t count, SizeOf&& size_
     return chosen;
   });
 }
-// The same, of those in a set; only they are asked.
-template <class SizeOf>
-Chosen choose_among(TaskSystem& tasks, Arena& arena, const Bitset& set, SizeOf&& size_of) {
-  return choose_by_blocks(tasks, arena, set.size(), [&](std::uint32_t begin, std::uint32_t) {
+// The same, of those in all of the sets; only they are asked.
+template <class SizeOf, class... More>
+Chosen choose_among(TaskSystem& tasks, Arena& arena, SizeOf&& size_of, const Bitset& set, const More&... more) {
+  std::size_t size = set.size();
+  ((size = more.size() < size ? more.size() : size), ...);
+  return choose_by_blocks(tasks, arena, size, [&](std::uint32_t begin, std::uint32_t) {
     ChosenInBlock chosen;
-    for (std::uint64_t left = set.words()[begin / 64]; left != 0; left &= left - 1) {
+    for (std::uint64_t left = (set.words()[begin / 64] & ... & more.words()[begin / 64]); left != 0; left &= left - 1) {
       const int bit = std::countr_zero(left);
       chosen.add(bit, size_of(begin + std::uint32_t(bit)));
     }

@@ -261,6 +261,7 @@ Submitted carry_out(WorldState& s, const SetType& c) {
   for (const ShapeId id : w.bodies.shapes[body]) drop_contacts(w, id.index);
   w.bodies.flags[body].type = c.type;
   w.bodies.flags[body].awake = 1;
+  add_awake_links(w, body);
   w.bodies.flags[body].frozen = 0;
   w.bodies.sleep[body] = {};
   if (c.type == BodyType::fixed) stop(w.bodies.motion[body]);

@@ -377,6 +377,7 @@ bool has_pose_drive(JointKind kind) {
 
 JointId add_joint(RigidWorld& w, const JointDef& def) {
   const std::uint32_t slot = w.joints.ids.acquire().index;
+  add_awake_joint(w, slot);
   if (slot >= w.joints.records.size()) w.joints.records.resize(slot + 1);
   JointRecord joint;
   joint.kind = def.kind;

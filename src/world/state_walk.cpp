@@ -37,6 +37,7 @@ class Walk {
   void list_changed();
   Error lists_of_bodies() const;
   Error list_of_awake() const;
+  Error awake_links() const;
   Error blocked_bodies() const;
   Error places() const;
   Error fat_boxes() const;
@@ -103,22 +104,41 @@ Error Walk::lists_of_bodies() const {
 
 Error Walk::list_of_awake() const {
   if (w_.bodies.awake_stale) return {};
-  std::size_t next = 0;
+  std::size_t next = 0, sleepers = 0;
   for (std::uint32_t body = 0; body < w_.bodies.ids.capacity(); ++body) {
     const BodyFlags& flags = w_.bodies.flags[body];
     const bool awake =
         w_.bodies.ids.live(body) && flags.type != BodyType::fixed && flags.awake != 0 && flags.frozen == 0;
+    sleepers += w_.bodies.ids.live(body) && is_movable(flags) && flags.awake == 0 ? 1 : 0;
     const bool listed = next < w_.bodies.awake.size() && w_.bodies.awake[next] == body;
     if (awake != listed)
       return broken("body %u is %s but %s listed so", body, awake ? "awake" : "not awake",
                     listed ? "is" : "is not");
     if (listed) ++next;
   }
+  if (sleepers != w_.bodies.sleepers) return broken("%zu bodies sleep, not %zu", sleepers, w_.bodies.sleepers);
   return next == w_.bodies.awake.size() ? Error{}
                                         : broken("the list of awake bodies has more than there are");
 }
 
 // Bodies that a joint keeps from colliding are known as such, as often as there are such joints.
+// Whatever has a body that goes along is asked; that others are too costs time only.
+Error Walk::awake_links() const {
+  const auto goes = [&](std::uint32_t body) { return goes_along(w_.bodies.flags[body]); };
+  for (std::uint32_t slot = 0; slot < w_.contacts.contacts.size(); ++slot) {
+    const Contact& contact = w_.contacts.contacts[slot];
+    if (contact.manifold_room == 0 || w_.awake_links.contacts.test(slot)) continue;
+    if (goes(contact.body_a) || goes(contact.body_b)) return broken("contact %u has an awake body, but nobody asks it", slot);
+  }
+  for (std::uint32_t slot = 0; slot < w_.joints.ids.capacity(); ++slot) {
+    if (!w_.joints.ids.live(slot) || w_.awake_links.joints.test(slot)) continue;
+    const JointRecord& joint = w_.joints.records[slot];
+    if ((joint.body_a != kNoBody && goes(std::uint32_t(joint.body_a))) || (joint.body_b != kNoBody && goes(std::uint32_t(joint.body_b))))
+      return broken("joint %u has an awake body, but nobody asks it", slot);
+  }
+  return {};
+}
+
 Error Walk::blocked_bodies() const {
   std::size_t joints = 0, counted = 0;
   Error error;
@@ -341,6 +361,7 @@ Error Walk::run() {
   next(&Walk::groups_of_constraints);
   next(&Walk::islands);
   next(&Walk::nobody_sleeps_beside_motion, is_right_after(StageName::link_islands));
+  next(&Walk::awake_links);
   next(&Walk::everything_is_solved, is_right_after(StageName::solve));
   return error;
 }

@@ -186,6 +186,7 @@ void derive_state(RigidWorld& w) {
     }
   });
   rebuild_index(w.contacts);
+  add_all_links(w);
   w.broadphase_stale = true;
 }
 
