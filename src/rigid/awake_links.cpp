@@ -30,9 +30,7 @@ void add_awake_links(RigidWorld& w, std::uint32_t body) {
   for (const std::uint32_t slot : joints_of(w.bodies, body)) add_awake_joint(w, slot);
 }
 
-void add_awake_joint(RigidWorld& w, std::uint32_t joint) {
-  add(w.awake_links.joints, joint);
-}
+void add_awake_joint(RigidWorld& w, std::uint32_t joint) { add(w.awake_links.joints, joint); }
 
 void add_all_links(RigidWorld& w) {
   fit_all(w);
@@ -42,6 +40,8 @@ void add_all_links(RigidWorld& w) {
 
 void find_awake_links(RigidWorld& w) {
   const BodyStore& bodies = w.bodies;
+  // Between the parts of a step some may have fallen asleep.
+  refresh_awake(w.bodies);
   if (w.awake_links.all || kAwakeForOneAsleep * bodies.sleepers < bodies.awake.size()) return add_all_links(w);
   fit_all(w);
   w.awake_links.contacts.reset_all();
