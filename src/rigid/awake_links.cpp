@@ -14,10 +14,6 @@ void add(Bitset& set, std::uint32_t slot) {
   set.set(slot);
 }
 
-void add_contacts_of_shape(RigidWorld& w, std::uint32_t shape) {
-  for_each_contact_of_shape(w.contacts, shape, [&](std::uint32_t slot) { add(w.awake_links.contacts, slot); });
-}
-
 void fit_all(RigidWorld& w) {
   w.awake_links.contacts.resize(w.contacts.contacts.size());
   w.awake_links.joints.resize(w.joints.ids.capacity());
@@ -26,7 +22,7 @@ void fit_all(RigidWorld& w) {
 }  // namespace
 
 void add_awake_links(RigidWorld& w, std::uint32_t body) {
-  for (const ShapeId id : w.bodies.shapes[body]) add_contacts_of_shape(w, id.index);
+  for_each_contact_of_body(w, body, [&](std::uint32_t slot) { add(w.awake_links.contacts, slot); });
   for (const std::uint32_t slot : joints_of(w.bodies, body)) add_awake_joint(w, slot);
 }
 
@@ -47,7 +43,8 @@ void find_awake_links(RigidWorld& w) {
   w.awake_links.contacts.reset_all();
   w.awake_links.joints.reset_all();
   for (const std::uint32_t body : bodies.awake) add_awake_links(w, body);
-  for (const std::uint32_t shape : w.shapes.changed) add_contacts_of_shape(w, shape);
+  for (const std::uint32_t shape : w.shapes.changed)
+    for_each_contact_of_shape(w.contacts, shape, [&](std::uint32_t slot) { add(w.awake_links.contacts, slot); });
 }
 
 }  // namespace gyre

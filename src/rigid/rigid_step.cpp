@@ -118,14 +118,12 @@ void freeze(RigidWorld& w, std::uint32_t body) {
   w.bodies.flags[body].frozen = 1;
   w.bodies.inertia[body] = {};
   w.bodies.awake_stale = true;
-  for (const ShapeId id : w.bodies.shapes[body]) {
-    for_each_contact_of_shape(w.contacts, id.index, [&](std::uint32_t slot) {
-      Contact& contact = w.contacts.contacts[slot];
-      for (Manifold& manifold : manifolds_of(w.contacts, contact)) manifold = {};
-      contact.manifold_count = 0;
-      forget_look(contact);
-    });
-  }
+  for_each_contact_of_body(w, body, [&](std::uint32_t slot) {
+    Contact& contact = w.contacts.contacts[slot];
+    for (Manifold& manifold : manifolds_of(w.contacts, contact)) manifold = {};
+    contact.manifold_count = 0;
+    forget_look(contact);
+  });
   for (const std::uint32_t slot : joints_of(w.bodies, body)) {
     forget_impulses(w.joints.records[slot]);
     if (JointDetail* const detail = detail_of(w.joints, slot)) forget_impulses(*detail);
@@ -196,11 +194,9 @@ class BodyLooks {
 
 // Contacts of a body that woke after they were asked: what may stop it there.
 void note_stops(RigidWorld& w, std::uint32_t body) {
-  for (const ShapeId id : w.bodies.shapes[body]) {
-    for_each_contact_of_shape(w.contacts, id.index, [&](std::uint32_t slot) {
-      if (stops_others(w.contacts.contacts[slot], w.shapes.proxies)) w.touches.may_stop.set(slot);
-    });
-  }
+  for_each_contact_of_body(w, body, [&](std::uint32_t slot) {
+    if (stops_others(w.contacts.contacts[slot], w.shapes.proxies)) w.touches.may_stop.set(slot);
+  });
 }
 
 }  // namespace

@@ -118,6 +118,11 @@ inline MotionSettings motion_settings(const RigidWorld& w) {
 inline BodyId body_id(const RigidWorld& w, std::uint32_t body) {
   return {body, std::uint16_t(w.bodies.ids.generation(body)), w.world_number};
 }
+// Calls fn(slot) for each contact of a body, in no particular order; fn must not add or remove contacts.
+template <class Fn>
+void for_each_contact_of_body(const RigidWorld& w, std::uint32_t body, Fn&& fn) {
+  for (const ShapeId id : w.bodies.shapes[body]) for_each_contact_of_shape(w.contacts, id.index, fn);
+}
 inline ShapeId shape_id(const RigidWorld& w, std::uint32_t shape) {
   return {shape, std::uint16_t(w.shapes.ids.generation(shape)), w.world_number};
 }

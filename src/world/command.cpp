@@ -22,13 +22,6 @@ void stir(RigidWorld& w, std::uint32_t body) {
   if (is_movable(w.bodies.flags[body])) wake(w, body);
 }
 
-template <class Fn>
-void for_each_contact_of_body(RigidWorld& w, std::uint32_t body, Fn&& fn) {
-  for (const ShapeId id : w.bodies.shapes[body]) {
-    for_each_contact_of_shape(w.contacts, id.index, [&](std::uint32_t slot) { fn(w.contacts.contacts[slot]); });
-  }
-}
-
 // Takes all contacts of a shape away, with end events.
 void drop_contacts(RigidWorld& w, std::uint32_t shape) {
   remove_contacts_of_shape(w.contacts, shape, [&](std::uint32_t, const Contact& contact) { report_end(w, contact); }, w.listed);
@@ -92,7 +85,7 @@ void refresh_mass(RigidWorld& w, std::uint32_t body, const Pose& origin) {
   shift_joint_ends(w, body, mass.center - old_center);
   bodies.orientations[body] = origin.orientation;
   refresh_inertia(bodies, body);
-  for_each_contact_of_body(w, body, [](Contact& contact) { forget_look(contact); });
+  for_each_contact_of_body(w, body, [&](std::uint32_t slot) { forget_look(w.contacts.contacts[slot]); });
   hurry(w, body);
 }
 void refresh_mass(RigidWorld& w, std::uint32_t body) { refresh_mass(w, body, origin_pose(w.bodies, body)); }
