@@ -27,7 +27,7 @@ LAYERS = {
     "io": ["world"],
     "debug": ["world"],
 }
-VALUE_HEADERS = {"ids", "math", "result", "geometry", "bounds", "decomposition", "defs", "events", "fields"}
+VALUE_HEADERS = {"ids", "math", "result", "geometry", "bounds", "decomposition", "defs", "events", "fields", "memory"}
 SEES_WHOLE_API = {"world", "io", "debug"}
 
 # Folders outside src/: the project's own folders that they may include besides include/gyre.

@@ -7,6 +7,7 @@
 #include <gyre/geometry.h>
 #include <gyre/ids.h>
 #include <gyre/math.h>
+#include <gyre/memory.h>
 #include <gyre/queries.h>
 #include <gyre/result.h>
 #include <gyre/world.h>

@@ -1,5 +1,5 @@
-// Blocks of an arena: each new one is as large as all before it together, and reset() melts them into one that is as large
-// as the step needed, and a little more.
+// Blocks of an arena: each new one is as large as all before it together, and reset() makes the oldest as large as the step
+// needed, and a little more, and gives the others back.
 #include "base/arena.h"
 
 #include <cstring>
@@ -71,14 +71,22 @@ void Arena::reset() {
   const bool too_small = most > held_ || (current_ != nullptr && current_->previous != nullptr);
   const bool too_large = clock_.rests(most, held_);
   used_ = 0;
-  used_before_ = 0;
   if (!too_small && !too_large) return;
   const std::size_t need = too_small ? most : clock_.most_needed();
   const std::size_t spare = need / (too_small && grew_ ? kShareOfGrowing : kShare);
   grew_ = too_small;
   const std::size_t room = round_up(need + spare);
-  free_blocks();
-  add_block(room < kFirstBlock ? kFirstBlock : room);
+  resize_to(room < kFirstBlock ? kFirstBlock : room);
+}
+
+// The oldest block stays: most of it has been touched.
+void Arena::resize_to(std::size_t capacity) {
+  while (current_ != nullptr && current_->previous != nullptr) free_newest();
+  const std::size_t held = current_ == nullptr ? 0 : current_->capacity + kHeader;
+  current_ = new (reallocate(current_, held, capacity + kHeader, 0)) Block{nullptr, 0, capacity};
+  used_ = 0;
+  used_before_ = 0;
+  held_ = capacity;
 }
 
 void Arena::free_newest() {

@@ -66,6 +66,7 @@ class Arena {
 
   void* take(std::size_t bytes);
   void add_block(std::size_t capacity);
+  void resize_to(std::size_t capacity);
   void free_newest();
   void free_blocks();
 

@@ -1,6 +1,6 @@
 // Array<T>: the growable array everything is kept in. Storage is aligned to 64 bytes so that wide loads never straddle
-// a line at its start, counted by base/memory, doubled when full, and kept by clear(), so that a world at its working
-// size no longer allocates. Elements are moved by memcpy where they may be.
+// a line at its start, counted by base/memory, and kept by clear(), so that a world at its working size no longer
+// allocates. Where elements may be moved as bytes a large array keeps its pages when it grows.
 #pragma once
 
 #include "base/check.h"
@@ -89,7 +89,15 @@ class Array {
 
   // Makes room for `count` elements in all.
   void reserve(std::size_t count) {
-    if (count > capacity_) move_to(make_storage(count), count);
+    if (count > capacity_) change_room(count);
+  }
+  // Before elements are added one by one until there are about `count`: if that takes more memory, it is taken at once, and an
+  // eighth more as ever.
+  void expect(std::size_t count) { grow_to(count); }
+  // Gives back what is held beyond room for `count` elements, which must be no fewer than there are.
+  void trim(std::size_t count) {
+    GYRE_ASSERT(count >= size_, "there is room for all elements");
+    if (count < capacity_) change_room(count);
   }
 
   // New elements are value-initialised: zero for plain numbers.
@@ -192,9 +200,9 @@ class Array {
   }
 
  private:
-  static T* make_storage(std::size_t count) {
+  static std::size_t bytes_of(std::size_t count) {
     if (count > SIZE_MAX / sizeof(T)) out_of_memory(SIZE_MAX);
-    return static_cast<T*>(allocate(count * sizeof(T)));
+    return count * sizeof(T);
   }
 
   static void destroy([[maybe_unused]] T* items, [[maybe_unused]] std::size_t count) {
@@ -216,37 +224,35 @@ class Array {
 
   template <class... Args>
   GYRE_COLD T& emplace_in_larger(Args&&... args) {
-    const std::size_t room = next_capacity(size_ + 1);
-    T* const storage = make_storage(room);
-    T* const made = new (storage + size_) T(std::forward<Args>(args)...);
-    move_to(storage, room);
+    T made(std::forward<Args>(args)...);
+    change_room(next_capacity(size_ + 1));
+    T* const placed = new (data_ + size_) T(std::move(made));
     ++size_;
-    return *made;
+    return *placed;
   }
 
   void grow_to(std::size_t count) {
     if (count > capacity_) enlarge(count);
   }
-  GYRE_COLD void enlarge(std::size_t count) {
-    const std::size_t room = next_capacity(count);
-    move_to(make_storage(room), room);
-  }
+  GYRE_COLD void enlarge(std::size_t count) { change_room(next_capacity(count)); }
 
   void shrink_to(std::size_t count) {
     if (count < size_) destroy(data_ + count, size_ - count);
   }
 
-  void move_to(T* storage, std::size_t room) {
+  void change_room(std::size_t room) {
+    const std::size_t wanted = bytes_of(room);
     if constexpr (std::is_trivially_copyable_v<T>) {
-      if (size_ != 0) std::memcpy(static_cast<void*>(storage), data_, size_ * sizeof(T));
+      data_ = static_cast<T*>(reallocate(data_, bytes(), wanted, size_ * sizeof(T)));
     } else {
+      T* const storage = static_cast<T*>(allocate(wanted));
       for (std::size_t i = 0; i < size_; ++i) {
         new (storage + i) T(std::move(data_[i]));
         data_[i].~T();
       }
+      deallocate(data_, bytes());
+      data_ = storage;
     }
-    deallocate(data_, bytes());
-    data_ = storage;
     capacity_ = room;
   }
 

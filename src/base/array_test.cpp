@@ -70,12 +70,50 @@ TEST(Array, TakesItsOwnElements) {
   Array<std::string> names{"a long enough name to be on the heap"};
   for (int i = 0; i < 100; ++i) names.push_back(names[0]);
   for (const std::string& name : names) ASSERT_EQ(name, names[0]);
+  Array<std::uint64_t> numbers{7};  // plain ones, through the sizes at which the heap changes the block
+  for (int i = 0; i < 100'000; ++i) numbers.push_back(numbers[0]);
+  for (const std::uint64_t number : numbers) ASSERT_EQ(number, 7u);
   names.resize(names.capacity() + 1, names[0]);
   EXPECT_EQ(names.back(), names[0]);
   names.assign(3, names.back());
   EXPECT_EQ(names[2], "a long enough name to be on the heap");
   names.insert_at(1, names[2]);
   EXPECT_EQ(names[1], names[0]);
+}
+
+TEST(Array, ExpectsManyAtOnce) {
+  Array<std::uint64_t> numbers;
+  const std::uint64_t before = allocation_count();
+  numbers.expect(100'000);
+  for (std::uint64_t i = 0; i < 100'000; ++i) numbers.push_back(i);
+  EXPECT_EQ(allocation_count(), before + 1);
+  numbers.expect(100'001);
+  EXPECT_GE(numbers.capacity(), 112'500u) << "an eighth more, so that the next few find room";
+  numbers.expect(10);
+  EXPECT_EQ(allocation_count(), before + 2);
+  EXPECT_EQ(numbers.size(), 100'000u);
+}
+
+TEST(Array, GivesBackWhatItDoesNotNeed) {
+  const auto trims = [](auto& items, std::size_t kept) {
+    const auto last = items[kept - 1];
+    items.resize(kept);
+    items.trim(kept + 10);
+    EXPECT_EQ(items.capacity(), kept + 10);
+    items.trim(kept + 20);
+    EXPECT_EQ(items.capacity(), kept + 10) << "it never takes more";
+    EXPECT_EQ(items.size(), kept);
+    EXPECT_EQ(items.back(), last);
+    items.clear();
+    items.trim(0);
+    EXPECT_EQ(items.bytes(), 0u);
+  };
+  Array<std::uint64_t> numbers;
+  for (std::uint64_t i = 0; i < 100'000; ++i) numbers.push_back(i);
+  trims(numbers, 40'000);
+  Array<std::string> names;
+  for (int i = 0; i < 1000; ++i) names.push_back("name " + std::to_string(i));
+  trims(names, 300);
 }
 
 TEST(Array, ConvertsToSpans) {

@@ -27,12 +27,11 @@ class IdleClock {
   // Bytes; of the steps that the last rests() looked back on.
   std::size_t most_needed() const { return most_; }
 
-  // The same for an array that held `needed` elements in this step and is empty now: takes a smaller one in its place.
+  // The same for an array that held `needed` elements in this step and is empty now: it gives back what it does not need.
   template <class T>
   void trim(Array<T>& array, std::size_t needed) {
     if (!rests(needed * sizeof(T), array.bytes())) return;
-    array = Array<T>();
-    array.reserve(2 * most_ / sizeof(T));
+    array.trim(2 * most_ / sizeof(T));
   }
 
   // The same for two arrays that change places every step, of which `next` is empty.

@@ -1,25 +1,61 @@
-// Counts blocks and hands them through to the hooks; the default is the language's own aligned operator new.
+// Counts blocks and hands them through to the hooks; the default is C's heap, which changes the size of large blocks without a copy
+// where the system can (operator new cannot).
 #include "base/memory.h"
 
 #include "base/check.h"
 
 #include <atomic>
 #include <cstdlib>
-#include <new>
+#include <cstring>
+#if defined(_WIN32)
+#include <malloc.h>
+#endif
 
 namespace gyre {
 
 namespace {
 
+// Less than this is copied: heaps move what is small, and forget its alignment.
+constexpr std::size_t kLargeBlock = 128 * 1024;  // bytes
+
+bool is_aligned(const void* memory, std::size_t align) {
+  return reinterpret_cast<std::uintptr_t>(memory) % align == 0;
+}
+
+#if defined(_WIN32)
+
+void* default_allocate(std::size_t bytes, std::size_t align, void*) { return _aligned_malloc(bytes, align); }
+
+void default_deallocate(void* memory, std::size_t, void*) { _aligned_free(memory); }
+
+void* default_reallocate(void* memory, std::size_t, std::size_t bytes, std::size_t align, void*) {
+  return _aligned_realloc(memory, bytes, align);
+}
+
+#else
+
+// In whole alignments, as C asks; null where that is more than there are numbers for.
 void* default_allocate(std::size_t bytes, std::size_t align, void*) {
-  return ::operator new (bytes, std::align_val_t{align}, std::nothrow);
+  if (bytes > SIZE_MAX - align) return nullptr;
+  return std::aligned_alloc(align, (bytes + align - 1) / align * align);
 }
 
-void default_deallocate(void* memory, std::size_t, void*) {
-  ::operator delete (memory, std::align_val_t{kMemoryAlign});
+void default_deallocate(void* memory, std::size_t, void*) { std::free(memory); }
+
+void* default_reallocate(void* memory, std::size_t old_bytes, std::size_t bytes, std::size_t align,
+                         void* user) {
+  void* const moved = std::realloc(memory, bytes);
+  if (moved == nullptr || is_aligned(moved, align)) return moved;
+  void* const again = default_allocate(bytes, align, user);
+  if (again != nullptr) std::memcpy(again, moved, old_bytes < bytes ? old_bytes : bytes);
+  std::free(moved);
+  return again;
 }
 
-AllocatorHooks hooks{default_allocate, default_deallocate, nullptr};
+#endif
+
+constexpr AllocatorHooks kDefaultHooks{default_allocate, default_deallocate, default_reallocate, nullptr};
+AllocatorHooks hooks = kDefaultHooks;
 
 // Statistics only: nothing is ordered by them.
 std::atomic<std::uint64_t> bytes_out{0};
@@ -30,7 +66,7 @@ std::atomic<std::uint64_t> blocks_ever{0};
 bool set_allocator(const AllocatorHooks& wanted) {
   if (total_bytes() != 0) return false;
   const bool complete = wanted.allocate != nullptr && wanted.deallocate != nullptr;
-  hooks = complete ? wanted : AllocatorHooks{default_allocate, default_deallocate, nullptr};
+  hooks = complete ? wanted : kDefaultHooks;
   return true;
 }
 
@@ -41,8 +77,7 @@ void* allocate(std::size_t bytes, std::size_t align) {
   if (bytes == 0) return nullptr;
   void* const memory = hooks.allocate(bytes, kMemoryAlign, hooks.user);
   if (memory == nullptr) out_of_memory(bytes);
-  GYRE_ASSERT(reinterpret_cast<std::uintptr_t>(memory) % kMemoryAlign == 0,
-              "the allocator hook honours the alignment asked for");
+  GYRE_ASSERT(is_aligned(memory, kMemoryAlign), "the allocator hook honours the alignment asked for");
   bytes_out.fetch_add(bytes, std::memory_order_relaxed);
   blocks_ever.fetch_add(1, std::memory_order_relaxed);
   return memory;
@@ -52,6 +87,25 @@ void deallocate(void* memory, std::size_t bytes) {
   if (memory == nullptr) return;
   bytes_out.fetch_sub(bytes, std::memory_order_relaxed);
   hooks.deallocate(memory, bytes, hooks.user);
+}
+
+void* reallocate(void* memory, std::size_t old_bytes, std::size_t bytes, std::size_t kept) {
+  GYRE_ASSERT(kept <= old_bytes && kept <= bytes, "what is kept is in both");
+  if (hooks.reallocate == nullptr || old_bytes < kLargeBlock || bytes < kLargeBlock) {
+    // Never both at once where there is nothing to copy.
+    if (kept == 0) deallocate(memory, old_bytes);
+    void* const moved = allocate(bytes);
+    if (kept == 0) return moved;
+    std::memcpy(moved, memory, kept);
+    deallocate(memory, old_bytes);
+    return moved;
+  }
+  void* const moved = hooks.reallocate(memory, old_bytes, bytes, kMemoryAlign, hooks.user);
+  if (moved == nullptr) out_of_memory(bytes);
+  GYRE_ASSERT(is_aligned(moved, kMemoryAlign), "the allocator hook honours the alignment asked for");
+  bytes_out.fetch_add(bytes - old_bytes, std::memory_order_relaxed);
+  blocks_ever.fetch_add(1, std::memory_order_relaxed);
+  return moved;
 }
 
 void out_of_memory(std::size_t bytes) {

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 
@@ -32,10 +33,48 @@ TEST(Memory, NothingForNothing) {
   EXPECT_EQ(allocation_count(), count_before);
 }
 
+unsigned char pattern(std::size_t i) { return static_cast<unsigned char>(i * 7 % 251); }
+void fill(void* memory, std::size_t bytes) {
+  for (std::size_t i = 0; i < bytes; ++i) static_cast<unsigned char*>(memory)[i] = pattern(i);
+}
+bool holds(const void* memory, std::size_t bytes) {
+  for (std::size_t i = 0; i < bytes; ++i) {
+    if (static_cast<const unsigned char*>(memory)[i] != pattern(i)) return false;
+  }
+  return true;
+}
+
+// From and to sizes that are copied and sizes that the heap changes.
+TEST(Memory, AnotherSizeKeepsWhatItHeld) {
+  const std::uint64_t bytes_before = total_bytes();
+  std::size_t bytes = 1;
+  void* memory = allocate(bytes);
+  fill(memory, bytes);
+  void* const between = allocate(100'000);  // what follows in the heap is not free
+  for (const std::size_t wanted :
+       {100u, 5000u, 200'001u, 3'000'000u, 150'000u, 1'000'064u, 64u, 700'000u, 700'000u}) {
+    const std::size_t kept = std::min(bytes, wanted);
+    memory = reallocate(memory, bytes, wanted, kept);
+    bytes = wanted;
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(memory) % kMemoryAlign, 0u) << wanted;
+    EXPECT_TRUE(holds(memory, kept)) << wanted;
+    EXPECT_EQ(total_bytes(), bytes_before + 100'000 + bytes);
+    fill(memory, bytes);
+  }
+  memory = reallocate(memory, bytes, 0, 0);
+  EXPECT_EQ(memory, nullptr);
+  memory = reallocate(memory, 0, 640, 0);
+  EXPECT_NE(memory, nullptr);
+  deallocate(memory, 640);
+  deallocate(between, 100'000);
+  EXPECT_EQ(total_bytes(), bytes_before);
+}
+
 struct Meter {
   std::size_t out = 0;
   int taken = 0;
   int returned = 0;
+  int changed = 0;
 };
 
 AllocatorHooks metered(Meter& meter) {
@@ -75,6 +114,39 @@ TEST(Memory, HooksSeeEveryBlock) {
   const int taken = meter.taken;
   Array<int> more{1, 2, 3};
   EXPECT_EQ(meter.taken, taken) << "the default heap is back";
+}
+
+// A hook that changes sizes is asked for large blocks alone; without one they are taken, copied and given back.
+TEST(Memory, HooksMayChangeSizes) {
+  for (const bool changes : {false, true}) {
+    Meter meter;
+    AllocatorHooks hooks = metered(meter);
+    if (changes) {
+      hooks.reallocate = [](void* memory, std::size_t old_bytes, std::size_t bytes, std::size_t align,
+                            void* user) {
+        EXPECT_GE(std::min(old_bytes, bytes), 128u * 1024u);
+        Meter& m = *static_cast<Meter*>(user);
+        ++m.changed;
+        m.out += bytes - old_bytes;
+        void* moved = nullptr;
+        if (posix_memalign(&moved, align, bytes) != 0) return moved;
+        std::memcpy(moved, memory, std::min(old_bytes, bytes));
+        std::free(memory);
+        return moved;
+      };
+    }
+    ASSERT_TRUE(set_allocator(hooks));
+    {
+      Array<int> numbers;
+      for (int i = 0; i < 200'000; ++i) numbers.push_back(i);
+      EXPECT_EQ(meter.out, numbers.bytes());
+      EXPECT_EQ(meter.changed > 0, changes);
+      for (int i = 0; i < 200'000; ++i) ASSERT_EQ(numbers[i], i);
+    }
+    EXPECT_EQ(meter.out, 0u);
+    EXPECT_EQ(meter.taken, meter.returned);
+    ASSERT_TRUE(set_allocator({}));
+  }
 }
 
 TEST(MemoryDeath, RunningOutEndsTheProgram) {

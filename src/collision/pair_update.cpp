@@ -29,6 +29,9 @@ void drop_known_pairs(const ContactStore& store, Array<std::uint64_t>& keys, std
 
 void add_pairs(ContactStore& store, std::span<const std::uint64_t> keys, const BlockedBodies& blocked,
                FunctionRef<PairShapes(std::uint64_t key)> describe, Array<std::uint32_t>* added) {
+  // Where much comes together at once, arrays that grow bit by bit are moved again and again.
+  store.contacts.expect(store.live + keys.size());
+  store.links.expect(store.live + keys.size());
   for (const std::uint64_t key : keys) {
     if (find_contact(store, key) != SlotTable::kNone) continue;
     const PairShapes shapes = describe(key);

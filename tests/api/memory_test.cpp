@@ -6,6 +6,7 @@
 
 #include <gyre/debug.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdlib>
@@ -54,6 +55,9 @@ void operator delete(void* p, std::size_t, std::align_val_t align) noexcept { gi
 namespace gyre::laws {
 namespace {
 
+// By the engine's door and by operator new.
+long long bytes_held() { return bytes_out.load() + (long long)(total_bytes()); }
+
 struct Taken {
   long news;
   std::uint64_t blocks;
@@ -72,6 +76,62 @@ void expect_none(World& world, int warm_up, int steps, const char* name) {
               (unsigned long long)(t.blocks), steps);
   EXPECT_EQ(t.news, 0) << name;
   EXPECT_EQ(t.blocks, 0u) << name;
+}
+
+// What a host's allocator was asked for.
+struct HostMemory {
+  std::atomic<long long> out{0};
+  std::atomic<int> taken{0}, returned{0}, changed{0};
+};
+AllocatorHooks hooks_of(HostMemory& memory) {
+  return {.allocate =
+              [](std::size_t bytes, std::size_t align, void* user) {
+                auto& m = *static_cast<HostMemory*>(user);
+                m.out += (long long)(bytes);
+                ++m.taken;
+                return std::aligned_alloc(align, (bytes + align - 1) / align * align);
+              },
+          .deallocate =
+              [](void* block, std::size_t bytes, void* user) {
+                auto& m = *static_cast<HostMemory*>(user);
+                m.out -= (long long)(bytes);
+                ++m.returned;
+                std::free(block);
+              },
+          .reallocate =
+              [](void* block, std::size_t old_bytes, std::size_t bytes, std::size_t align, void* user) {
+                auto& m = *static_cast<HostMemory*>(user);
+                m.out += (long long)(bytes) - (long long)(old_bytes);
+                ++m.changed;
+                void* const moved = std::aligned_alloc(align, (bytes + align - 1) / align * align);
+                if (moved != nullptr) std::memcpy(moved, block, std::min(old_bytes, bytes));
+                std::free(block);
+                return moved;
+              },
+          .user = &memory};
+}
+// Large enough for blocks that change their size.
+std::uint64_t hash_of_a_heap() {
+  World world = make_world({.threads = 2, .sleeping = false});
+  add_ground(world);
+  for (int i = 0; i < 2000; ++i) {
+    world.add_body({.pose = {.position = {1.1 * (i % 10), 1.0 + 1.1 * (i / 100), 1.1 * (i / 10 % 10)}}},
+                   {.geometry = Box{}});
+  }
+  for (int i = 0; i < 60; ++i) world.step(kStep);
+  return world.hash();
+}
+
+TEST(HostAllocator, ServesAWholeWorld) {
+  const std::uint64_t expected = hash_of_a_heap();
+  HostMemory memory;
+  ASSERT_EQ(total_bytes(), 0u) << "a test before this one leaked";
+  ASSERT_TRUE(set_allocator(hooks_of(memory)));
+  EXPECT_EQ(hash_of_a_heap(), expected);
+  EXPECT_GT(memory.changed, 0);
+  EXPECT_EQ(memory.taken, memory.returned);
+  EXPECT_EQ(memory.out, 0);
+  ASSERT_TRUE(set_allocator({}));
 }
 
 TEST(NoAllocation, InAStackAtRest) {
@@ -285,7 +345,7 @@ void add_walls(World& world, int boxes) {
 
 // Everything that the world allocates, by box, once what only its first steps needed is given back.
 double bytes_a_box(void (*add)(World&, int), int boxes, bool sleeping) {
-  const long long before = bytes_out.load();
+  const long long before = bytes_held();
   World world = make_world({.threads = 1, .sleeping = sleeping});
   add_ground(world);
   add(world, boxes);
@@ -293,7 +353,7 @@ double bytes_a_box(void (*add)(World&, int), int boxes, bool sleeping) {
   if (!sleeping) {
     EXPECT_EQ(world.counts().awake_bodies, boxes);
   }
-  return double(bytes_out.load() - before) / boxes;
+  return double(bytes_held() - before) / boxes;
 }
 void expect_small(const char* name, void (*add)(World&, int), double most) {
   if (kAssertsActive) GTEST_SKIP() << "too slow in a build that checks itself; the bytes are the same";
@@ -317,7 +377,7 @@ TEST(LongBytesOfARestingBox, AreTheSameForAHundredThousand) {
 
 // B-28, for as long as a test may take: ten minutes in which something comes and something goes in every step.
 TEST(LongChurn, MemoryStaysBounded) {
-  const long long before = bytes_out.load();
+  const long long before = bytes_held();
   World world = make_world();
   add_ground(world);
   std::vector<BodyId> bodies(300);
@@ -337,7 +397,7 @@ TEST(LongChurn, MemoryStaysBounded) {
           next(2) == 0 ? AnyShape(Box{{0.4f, 0.3f + 0.01f * float(next(40)), 0.4f}}) : AnyShape(Sphere{0.4f});
       body = world.add_body({.pose = {.position = place}}, {.geometry = geometry});
       world.step(kStep);
-      most[minute] = std::max(most[minute], bytes_out.load() - before);
+      most[minute] = std::max(most[minute], bytes_held() - before);
     }
   }
   std::printf("[row] churn: %.0f kB at most in the first minute, %.0f kB in the last\n",

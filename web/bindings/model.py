@@ -13,7 +13,8 @@ ROOT = Path(__file__).resolve().parents[2]
 HEADERS = ["math", "ids", "result", "geometry", "queries", "defs", "events", "fields", "world", "replay", "debug", "track"]
 # Public headers that are not bound, and why.
 NOT_BOUND = {"gyre": "includes the others", "decomposition": "seconds of work on a mesh, done before a page is made; its hulls come as hulls",
-             "bounds": "measures meshes before they are cooked; a page does not choose volumes"}
+             "bounds": "measures meshes before they are cooked; a page does not choose volumes",
+             "memory": "a page has one memory, and the browser hands it out"}
 
 LEFT_OUT = {
     "World::state": "the inside of the engine",
