@@ -54,7 +54,15 @@ void* default_reallocate(void* memory, std::size_t old_bytes, std::size_t bytes,
 
 #endif
 
-constexpr AllocatorHooks kDefaultHooks{default_allocate, default_deallocate, default_reallocate, nullptr};
+// WebAssembly has one flat memory without pages: there every move is a copy, and realloc() would only make modules larger.
+#if defined(__wasm__)
+constexpr bool kMovesPages = false;
+#else
+constexpr bool kMovesPages = true;
+#endif
+
+constexpr AllocatorHooks kDefaultHooks{default_allocate, default_deallocate,
+                                       kMovesPages ? default_reallocate : nullptr, nullptr};
 AllocatorHooks hooks = kDefaultHooks;
 
 // Statistics only: nothing is ordered by them.
