@@ -4,6 +4,7 @@
 #include "collision/fat_box.h"
 #include "collision/pair_update.h"
 #include "collision/seam.h"
+#include "rigid/body_looks.h"
 #include "rigid/island.h"
 #include "rigid/shape_boxes.h"
 #include "task/choose.h"
@@ -130,68 +131,6 @@ void freeze(RigidWorld& w, std::uint32_t body) {
   }
 }
 
-// What contacts need to know of bodies, by body: of those that a contact which is asked has, and of some others.
-class BodyLooks {
- public:
-  BodyLooks(const RigidWorld& w, Arena& arena, float seconds)
-      : w_(w), seconds_(seconds), looks_(arena.make<BodyLook>(count())), centers_(arena.make<BodyCenter>(count())),
-        awake_(arena.make<std::uint8_t>(count())) {}
-
-  // Where most bodies rest only those that are needed are looked at.
-  void make(TaskSystem& tasks, Arena& arena) {
-    if (2 * w_.bodies.awake.size() >= count()) {
-      for_blocks(tasks, int(count()), 4 * kBodiesPerBlock, [&](int begin, int end, int) {
-        for (int i = begin; i < end; ++i) look_at(std::uint32_t(i));
-      });
-      return;
-    }
-    const std::span<std::uint64_t> needed = find_needed(arena);
-    for_blocks(tasks, int(needed.size()), kWordsAtOnce, [&](int begin, int end, int) {
-      for (int word = begin; word < end; ++word)
-        for (std::uint64_t left = needed[std::size_t(word)]; left != 0; left &= left - 1)
-          look_at(std::uint32_t(64 * word + std::countr_zero(left)));
-    });
-  }
-
-  std::span<const BodyLook> looks() const { return looks_; }
-  std::span<const BodyCenter> centers() const { return centers_; }
-  std::span<const std::uint8_t> awake() const { return awake_; }
-
- private:
-  static constexpr int kWordsAtOnce = 16;
-
-  std::size_t count() const { return w_.bodies.motion.size(); }
-  std::span<std::uint64_t> find_needed(Arena& arena) const {
-    const std::span<std::uint64_t> needed = arena.make<std::uint64_t>((count() + 63) / 64);
-    for (std::uint64_t& word : needed) word = 0;
-    w_.awake_links.contacts.for_each_set([&](std::size_t slot) {
-      const Contact& contact = w_.contacts.contacts[slot];
-      for (const std::uint32_t body : {contact.body_a, contact.body_b}) needed[body / 64] |= std::uint64_t{1} << body % 64;
-    });
-    return needed;
-  }
-  void look_at(std::uint32_t i) {
-    const BodyMotion& motion = w_.bodies.motion[i];
-    const BodyMass& mass = w_.bodies.masses[i];
-    ColliderBody body;
-    body.pose = origin_pose(w_.bodies, i);
-    body.center = mass.center;
-    body.linear_velocity = motion.linear_velocity;
-    body.angular_velocity = motion.angular_velocity;
-    body.reach = mass.reach;
-    body.awake = may_move(w_, i);
-    looks_[i] = make_body_look(body, seconds_);
-    centers_[i] = {body.center, body.reach};
-    awake_[i] = body.awake ? 1 : 0;
-  }
-
-  const RigidWorld& w_;
-  float seconds_;
-  std::span<BodyLook> looks_;
-  std::span<BodyCenter> centers_;
-  std::span<std::uint8_t> awake_;
-};
-
 // Contacts of a body that woke after they were asked: what may stop it there.
 void note_stops(RigidWorld& w, std::uint32_t body) {
   for_each_contact_of_body(w, body, [&](std::uint32_t slot) {
@@ -282,8 +221,8 @@ void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, RecycleContac
   const ArenaScope scope(arena);
   BodyLooks bodies(w, arena, seconds);
   bodies.make(tasks, arena);
-  const CollideInput input{w.shapes.colliders, bodies.looks(), bodies.centers(), bodies.awake(), w.shapes.proxies,
-                           w.awake_links.contacts, recycle_contacts};
+  const CollideInput input{w.shapes.colliders, bodies.looks(),         bodies.centers(), bodies.awake(),
+                           w.shapes.proxies,   w.awake_links.contacts, recycle_contacts};
   collide(w.contacts, input, tasks, w.touches);
   hide_seams(w.contacts, input, w.touches.beside_resting, arena, tasks, w.seams);
 }
@@ -300,7 +239,8 @@ void link_islands(RigidWorld& w) {
   const std::size_t told = w.events.sleep_changes.size();
   wake_touched(w);
   refresh_awake(w.bodies);
-  for (std::size_t i = told; i < w.events.sleep_changes.size(); ++i) note_stops(w, w.events.sleep_changes[i].body.index);
+  for (std::size_t i = told; i < w.events.sleep_changes.size(); ++i)
+    note_stops(w, w.events.sleep_changes[i].body.index);
 }
 
 void finish_bodies(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds,
@@ -341,7 +281,9 @@ void finish_bodies(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds
 }
 
 void break_joints(RigidWorld& w, float seconds) {
-  const auto goes = [&](std::int32_t body) { return body != kNoBody && goes_along(w.bodies.flags[std::size_t(body)]); };
+  const auto goes = [&](std::int32_t body) {
+    return body != kNoBody && goes_along(w.bodies.flags[std::size_t(body)]);
+  };
   w.awake_links.joints.for_each_set([&](std::size_t number) {
     const auto slot = std::uint32_t(number);
     if (!w.joints.ids.live(slot)) return;

@@ -29,14 +29,6 @@ void refit(RigidWorld& w, TaskSystem& tasks, float seconds);
 // New pairs of fat boxes become contacts, in key order.
 // Returns how many pairs of boxes the broad phase named.
 std::size_t find_pairs(RigidWorld& w, TaskSystem& tasks);
-// Whether the body may be elsewhere when the step ends: contacts between bodies that may not are not looked at.
-inline bool may_move(const RigidWorld& w, std::uint32_t body) {
-  const BodyFlags& flags = w.bodies.flags[body];
-  if (flags.awake == 0 || flags.frozen != 0 || flags.type == BodyType::fixed) return false;
-  const BodyMotion& motion = w.bodies.motion[body];
-  return flags.type == BodyType::dynamic || motion.linear_velocity != Vec3{} ||
-         motion.angular_velocity != Vec3{};
-}
 // Looks at every contact that could have changed: manifolds in, touch changes out.
 void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, RecycleContacts recycle_contacts,
                    float seconds);

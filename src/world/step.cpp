@@ -1,5 +1,6 @@
 // One step of the world, as the list of its stages. Each is a function from arrays to arrays in the folders below.
 #include "base/check.h"
+#include "rigid/body_looks.h"
 #include "rigid/doubled_steps.h"
 #include "rigid/island.h"
 #include "rigid/rigid_step.h"
