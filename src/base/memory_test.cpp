@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <vector>
 
 namespace gyre {
 namespace {
@@ -67,6 +68,29 @@ TEST(Memory, AnotherSizeKeepsWhatItHeld) {
   EXPECT_NE(memory, nullptr);
   deallocate(memory, 640);
   deallocate(between, 100'000);
+  EXPECT_EQ(total_bytes(), bytes_before);
+}
+
+// A heap that has given back something large keeps what is smaller in one piece of memory, moves it there byte by byte, and
+// knows nothing of alignment. What lies between and behind the blocks is of odd sizes and stays.
+TEST(Memory, StaysAlignedWhereTheHeapMovesIt) {
+  const std::uint64_t bytes_before = total_bytes();
+  deallocate(allocate(24'000'000), 24'000'000);
+  std::vector<void*> between, blocks;
+  constexpr std::size_t kBytes = 150'000, kMore = 400'000;
+  for (std::size_t i = 0; i < 16; ++i) {
+    blocks.push_back(allocate(kBytes));
+    fill(blocks.back(), kBytes);
+    between.push_back(std::malloc(1000 + 16 * i));
+  }
+  for (void*& block : blocks) {
+    block = reallocate(block, kBytes, kMore, kBytes);
+    between.push_back(std::malloc(1008 + 16 * between.size()));
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(block) % kMemoryAlign, 0u);
+    EXPECT_TRUE(holds(block, kBytes));
+  }
+  for (void* const block : blocks) deallocate(block, kMore);
+  for (void* const block : between) std::free(block);
   EXPECT_EQ(total_bytes(), bytes_before);
 }
 
