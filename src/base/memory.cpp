@@ -18,6 +18,13 @@ namespace {
 // Less than this is copied: heaps move what is small, and forget its alignment.
 constexpr std::size_t kLargeBlock = 128 * 1024;  // bytes
 
+// WebAssembly has one flat memory without pages: there every move is a copy, and realloc() would only make modules larger.
+#if defined(__wasm__)
+constexpr bool kMovesPages = false;
+#else
+constexpr bool kMovesPages = true;
+#endif
+
 bool is_aligned(const void* memory, std::size_t align) {
   return reinterpret_cast<std::uintptr_t>(memory) % align == 0;
 }
@@ -52,13 +59,6 @@ void* default_reallocate(void* memory, std::size_t old_bytes, std::size_t bytes,
   return again;
 }
 
-#endif
-
-// WebAssembly has one flat memory without pages: there every move is a copy, and realloc() would only make modules larger.
-#if defined(__wasm__)
-constexpr bool kMovesPages = false;
-#else
-constexpr bool kMovesPages = true;
 #endif
 
 constexpr AllocatorHooks kDefaultHooks{default_allocate, default_deallocate,
@@ -99,7 +99,7 @@ void deallocate(void* memory, std::size_t bytes) {
 
 void* reallocate(void* memory, std::size_t old_bytes, std::size_t bytes, std::size_t kept) {
   GYRE_ASSERT(kept <= old_bytes && kept <= bytes, "what is kept is in both");
-  if (hooks.reallocate == nullptr || old_bytes < kLargeBlock || bytes < kLargeBlock) {
+  if (!kMovesPages || hooks.reallocate == nullptr || old_bytes < kLargeBlock || bytes < kLargeBlock) {
     // Never both at once where there is nothing to copy.
     if (kept == 0) deallocate(memory, old_bytes);
     void* const moved = allocate(bytes);
