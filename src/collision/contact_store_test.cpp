@@ -214,6 +214,21 @@ TEST(PairUpdate, AddsInKeyOrderWhatIsNewAndNotBlocked) {
   EXPECT_EQ(store.contacts[3].surface.static_friction, 4.0f);
 }
 
+// Where much comes together at once no array is moved again and again: room is for all of them, without an eighth more.
+TEST(PairUpdate, MakesRoomForAllAtOnce) {
+  ContactStore store;
+  const auto keys_of = [](std::uint32_t first, std::uint32_t count) {
+    std::vector<std::uint64_t> keys;
+    for (std::uint32_t i = first; i < first + count; ++i) keys.push_back(pair_key(i, i + 1));
+    return keys;
+  };
+  add_pairs(store, keys_of(0, 5000), {}, describe, nullptr);
+  add_pairs(store, keys_of(5000, 7001), {}, describe, nullptr);
+  EXPECT_EQ(store.live, 12001u);
+  EXPECT_EQ(store.contacts.capacity(), 12001u);
+  EXPECT_EQ(store.links.capacity(), 12001u);
+}
+
 TEST(PairUpdate, RemovesInSlotOrder) {
   ContactStore store;
   for (std::uint32_t i = 1; i < 70; ++i) add_contact(store, pair_key(0, i), {});
