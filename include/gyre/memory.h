@@ -16,7 +16,8 @@ struct AllocatorHooks {
   void (*deallocate)(void* memory, std::size_t bytes, void* user) = nullptr;
   // May be left out: blocks are then taken, copied and given back. Makes a block of 128 KiB or more, and that stays as large, larger or
   // smaller, where it is or elsewhere, aligned to `align`, with what it held as far as both sizes go; null when there is no more.
-  // A heap that moves pages and not bytes (`mremap`) shortens steps in which much comes into contact.
+  // A heap that moves pages and not bytes (`mremap`) shortens steps in which much comes into contact. Never called in WebAssembly, whose
+  // memory has no pages.
   void* (*reallocate)(void* memory, std::size_t old_bytes, std::size_t bytes, std::size_t align,
                       void* user) = nullptr;
   void* user = nullptr;  // handed to the functions
