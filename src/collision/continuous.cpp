@@ -379,6 +379,7 @@ void ContinuousCollision::clamp_fast_bodies(const ContinuousInput& input, std::s
     }
   });
   gather_crossings();
+  even_out_room();
 }
 
 void ContinuousCollision::look_at_gates(const ContinuousInput& input) {
@@ -410,6 +411,17 @@ void ContinuousCollision::gather_crossings() {
     if (crossings_[i] != crossings_[kept - 1]) crossings_[kept++] = crossings_[i];
   }
   crossings_.resize(kept);
+}
+
+// Which worker looks at which body changes from run to run: each gets the room that any of them needed, and for all crossings,
+// so that none grows once warm.
+void ContinuousCollision::even_out_room() {
+  std::size_t most = 0;
+  for (const Worker& worker : workers_) most = max(most, worker.found.capacity());
+  for (Worker& worker : workers_) {
+    worker.found.reserve(most);
+    worker.crossings.reserve(crossings_.capacity());
+  }
 }
 
 }  // namespace gyre

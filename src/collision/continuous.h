@@ -106,6 +106,7 @@ class ContinuousCollision {
     std::unique_ptr<TriangleHull> triangle = std::make_unique<TriangleHull>();
   };
   void gather_crossings();
+  void even_out_room();
   void look_at_gates(const ContinuousInput& input);
 
   Array<Worker> workers_;

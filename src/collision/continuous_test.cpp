@@ -93,6 +93,7 @@ TEST(TimeOfImpact, PoseAtTurnsAboutTheCentreOfMass) {
 class Scene {
  public:
   explicit Scene(int threads = 1) : tasks_(threads) {}
+  explicit Scene(const HostTasks& host) : tasks_(host) {}
 
   std::uint32_t add(const AnyShape& geometry, const Sweep& sweep, ProxyMotion motion, bool pushes = true) {
     const auto index = std::uint32_t(shapes.size());
@@ -268,6 +269,29 @@ TEST(Continuous, MissesAreLeftAlone) {
   const auto away = scene.add_mover(Sphere{0.1f}, {{1, 0, 0}, {}}, {20, 0, 0});
   const auto short_of = scene.add_mover(Sphere{0.1f}, {{-10, 0, 0}, {}}, {9, 0, 0});
   EXPECT_EQ(scene.clamp({{above, false}, {away, false}, {short_of, false}}), (std::vector<float>{1, 1, 1}));
+}
+
+// Whoever comes first does all there is: the other has room for it before it ever had any of it.
+TEST(Continuous, AnotherWorkerTakesNoMemory) {
+  static int first;
+  first = 0;
+  HostTasks host{.worker_count = 2};
+  host.run = [](void*, int count, void (*task)(void*, int), void* context) {
+    for (int i = 0; i < count; ++i) task(context, (first + i) % count);
+  };
+  Scene scene(host);
+  std::vector<FastBody> fast;
+  for (int i = 0; i < 40; ++i) scene.add_fixed(Box{{0.005f, 30, 30}}, {{0.1 * i, 0, 0}, {}});
+  for (Proxy& proxy : scene.proxies) proxy.sensor = true;
+  for (int i = 0; i < 8; ++i)
+    fast.push_back({scene.add_mover(Sphere{0.1f}, {{-1, double(i), 0}, {}}, {10, 0, 0}), false});
+  scene.clamp(fast);
+  ASSERT_EQ(scene.crossings().size(), 320u);
+  const std::uint64_t before = allocation_count();
+  first = 1;
+  scene.clamp_as_is(fast);
+  EXPECT_EQ(scene.crossings().size(), 320u);
+  EXPECT_EQ(allocation_count(), before);
 }
 
 // Boxes of ways are asked of trees, whose empty lanes would overlap one without end.
