@@ -6,7 +6,7 @@
 namespace gyre {
 namespace {
 
-constexpr std::size_t kSample = 24;
+constexpr std::size_t kPlaneSample = 24;
 // A box that a plane cuts costs so much against one that it leaves on the larger side.
 constexpr float kCutCost = 1.5f;
 constexpr float kNoCost = 1.0e9f;
@@ -24,7 +24,7 @@ struct Choice {
 
 // The best plane across one direction: just beyond where one of the sample ends.
 void choose_along(int direction, std::span<const BoxEntry> sample, Choice& best) {
-  float lows[kSample], highs[kSample];
+  float lows[kPlaneSample], highs[kPlaneSample];
   for (std::size_t i = 0; i < sample.size(); ++i) {
     insert_sorted(lows, i, SplitDirections::low(sample[i].box, direction));
     insert_sorted(highs, i, SplitDirections::high(sample[i].box, direction));
@@ -47,8 +47,8 @@ void choose_along(int direction, std::span<const BoxEntry> sample, Choice& best)
 }  // namespace
 
 bool BspSplitter::choose(std::span<BoxEntry> entries, Split& split) {
-  BoxEntry sample[kSample];
-  const std::size_t stride = (entries.size() + kSample - 1) / kSample;
+  BoxEntry sample[kPlaneSample];
+  const std::size_t stride = (entries.size() + kPlaneSample - 1) / kPlaneSample;
   std::size_t count = 0;
   for (std::size_t i = 0; i < entries.size(); i += stride) sample[count++] = entries[i];
   Choice best{{}, kNoCost};

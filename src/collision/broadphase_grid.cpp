@@ -11,7 +11,7 @@ namespace {
 // Cells are this many times as large as a box that three quarters of all do not exceed: larger ones hold too many boxes,
 // smaller ones make boxes lie in too many cells.
 constexpr float kCellsPerBox = 2.5f;
-constexpr std::size_t kSample = 512;
+constexpr std::size_t kSideSample = 512;
 // The grid is built anew when it holds this many times as much, or as little, as when it was built.
 constexpr std::size_t kOutgrown = 4;
 constexpr std::size_t kSmall = 64;
@@ -43,8 +43,8 @@ void HashedGrid::clear() {
 
 // From a sample of the entries.
 void HashedGrid::choose_cell_size() {
-  float sides[kSample], scratch[kSample];
-  const std::size_t stride = (entries_.size() + kSample - 1) / kSample;
+  float sides[kSideSample], scratch[kSideSample];
+  const std::size_t stride = (entries_.size() + kSideSample - 1) / kSideSample;
   std::size_t count = 0;
   for (std::size_t i = 0; i < entries_.size(); i += stride) {
     sides[count++] = largest(entries_[i].box.high - entries_[i].box.low);

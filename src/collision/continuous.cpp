@@ -13,7 +13,7 @@
 namespace gyre {
 namespace {
 
-constexpr int kBlock = 4;  // bodies: each is work enough
+constexpr int kBodiesPerBlock = 4;  // bodies: each is work enough
 // In inner radii of the moving shape. What is left must lie within what collide() looks for, and so near that it counts as
 // touching there.
 constexpr double kTarget = 0.0025;
@@ -346,7 +346,7 @@ void ContinuousCollision::clamp_fast_bodies(const ContinuousInput& input, std::s
   workers_.resize(std::size_t(tasks.worker_count()));
   for (Worker& worker : workers_) worker.crossings.clear();
   look_at_gates(input);
-  for_blocks(tasks, int(fast.size()), kBlock, [&](int begin, int end, int worker) {
+  for_blocks(tasks, int(fast.size()), kBodiesPerBlock, [&](int begin, int end, int worker) {
     Worker& own = workers_[worker];
     for (int i = begin; i < end; ++i) {
       const FastBody& body = fast[std::size_t(i)];

@@ -26,17 +26,17 @@ struct Frame {
 constexpr double kManySizes = 1.0e5;
 
 // The next float that is not smaller; what is looked at must not end before what was found.
-float round_up(double reach) { return reach >= 1.0 ? 1.0f : float(reach * (1.0 + 1.0e-6)); }
+float wider_reach(double reach) { return reach >= 1.0 ? 1.0f : float(reach * (1.0 + 1.0e-6)); }
 
 // Calls look(shape, reach, hit) for every candidate along the way, and tells of those that it finds to be met.
 template <class Look>
 void for_each_along(const QueryInput& input, const BoxSweep& sweep, HitVisit found, Look&& look) {
   double reach = 1.0;
   input.broadphase.cast(input.proxies, sweep, 1.0f, [&](std::uint32_t shape, float) {
-    if (!input.accepts(shape)) return round_up(reach);
+    if (!input.accepts(shape)) return wider_reach(reach);
     const Frame frame(input.pose_of(shape));
     LocalHit local;
-    if (!look(input.shapes[shape].shape, frame, reach, local)) return round_up(reach);
+    if (!look(input.shapes[shape].shape, frame, reach, local)) return wider_reach(reach);
     ShapeHit hit;
     hit.shape = shape;
     hit.triangle = local.triangle;
@@ -46,7 +46,7 @@ void for_each_along(const QueryInput& input, const BoxSweep& sweep, HitVisit fou
     hit.inside = local.inside;
     hit.depth = float(local.depth);
     reach = min(reach, found(hit));
-    return reach < 0.0 ? -1.0f : round_up(reach);
+    return reach < 0.0 ? -1.0f : wider_reach(reach);
   });
 }
 

@@ -12,7 +12,7 @@
 namespace gyre {
 namespace {
 
-constexpr int kBlock = 64;  // contacts: one word of the bits
+constexpr int kContactsPerBlock = 64;  // contacts: one word of the bits
 // Normals nearer than this are of one face.
 constexpr float kSameFace = 0.99999f;
 // Sine of the least lean of a normal out of a triangle's.
@@ -302,8 +302,9 @@ void hide_seams(ContactStore& store, const CollideInput& input, const Bitset& be
   const RestingContacts resting(store, input, beside_resting, arena);
   const Scene scene{store, input, resting};
   // All are asked before any is changed: nobody is hidden by who is hidden earlier in the list.
-  for_blocks(tasks, int(count), kBlock, [&](int begin, int, int) {
-    for (std::uint64_t left = beside_resting.words()[std::size_t(begin / kBlock)]; left != 0; left &= left - 1) {
+  for_blocks(tasks, int(count), kContactsPerBlock, [&](int begin, int, int) {
+    for (std::uint64_t left = beside_resting.words()[std::size_t(begin / kContactsPerBlock)]; left != 0;
+         left &= left - 1) {
       const auto slot = std::uint32_t(begin + std::countr_zero(left));
       if (hidden_manifolds(scene, slot) != 0) scratch.hidden.set(slot);
     }

@@ -34,7 +34,7 @@ void plane_hull(std::vector<Point2>& points, std::vector<Point2>& scratch, std::
   if (hull.size() > 1) hull.pop_back();
 }
 
-struct Candidate {
+struct BoxCandidate {
   DAxes axes;
   double cost;
 };
@@ -66,11 +66,11 @@ class BoxSearch {
     extents = {along(axes.x), along(axes.y), along(axes.z)};
     return extents;
   }
-  Candidate candidate(const DAxes& axes) const { return {axes, cost_of(extents_along(axes), size_)}; }
+  BoxCandidate candidate(const DAxes& axes) const { return {axes, cost_of(extents_along(axes), size_)}; }
 
   // The best box that has `axis` as one of its axes: exact. One of its sides then holds an edge of the outline seen along
   // the axis.
-  Candidate best_about(DVec3 axis) {
+  BoxCandidate best_about(DVec3 axis) {
     const DVec3 u = some_perpendicular(axis), v = gyre::cross(axis, u);
     flat_.clear();
     double low = dot(axis, points_[0]), high = low;
@@ -81,7 +81,7 @@ class BoxSearch {
       high = max(high, dot(axis, p));
     }
     plane_hull(flat_, scratch_, hull_);
-    Candidate best{{u, v, axis}, 0.0};
+    BoxCandidate best{{u, v, axis}, 0.0};
     bool found = false;
     for (std::size_t i = 0; i < hull_.size() || !found; ++i) {
       const Point2 a = hull_[i % hull_.size()], b = hull_[(i + 1) % hull_.size()];
@@ -106,11 +106,11 @@ class BoxSearch {
   }
 
   // Turned about each of its own axes in turn, as long as that makes it smaller.
-  Candidate descended(Candidate start) {
+  BoxCandidate descended(BoxCandidate start) {
     int kept = 0;
     for (int turn = 0; turn < kMostTurns && kept < 3; ++turn) {
       const DVec3 axis = turn % 3 == 0 ? start.axes.x : turn % 3 == 1 ? start.axes.y : start.axes.z;
-      const Candidate turned = best_about(axis);
+      const BoxCandidate turned = best_about(axis);
       if (turned.cost < start.cost * (1.0 - kLeastGain)) {
         // Its axes in the order that the next turns take others first.
         start = turned;
@@ -143,7 +143,7 @@ std::vector<DVec3> main_directions(const std::vector<DVec3>& edges) {
   return directions;
 }
 
-void keep_best(std::vector<Candidate>& best, const Candidate& candidate) {
+void keep_best(std::vector<BoxCandidate>& best, const BoxCandidate& candidate) {
   std::size_t place = best.size();
   while (place > 0 && candidate.cost < best[place - 1].cost) --place;
   if (place >= kMostStarts) return;
@@ -153,7 +153,7 @@ void keep_best(std::vector<Candidate>& best, const Candidate& candidate) {
 
 DAxes smallest_axes(const Outline& outline) {
   BoxSearch search(outline.points);
-  std::vector<Candidate> best;
+  std::vector<BoxCandidate> best;
   for (const DVec3& axis :
        {DVec3(1, 0, 0), DVec3(0, 1, 0), DVec3(0, 0, 1), outline.axes.x, outline.axes.y, outline.axes.z})
     keep_best(best, search.best_about(axis));
@@ -164,9 +164,9 @@ DAxes smallest_axes(const Outline& outline) {
       keep_best(best, search.best_about(unit(gyre::cross(directions[i], directions[k]))));
     }
   }
-  Candidate smallest = best[0];
-  for (const Candidate& start : best) {
-    const Candidate end = search.descended(start);
+  BoxCandidate smallest = best[0];
+  for (const BoxCandidate& start : best) {
+    const BoxCandidate end = search.descended(start);
     if (end.cost < smallest.cost) smallest = end;
   }
   return smallest.axes;

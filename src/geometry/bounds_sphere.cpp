@@ -46,7 +46,7 @@ Ball ball_through(const DVec3* points, int count) {
 
 // Welzl's recursion with moves to the front: the smallest ball around list[0 .. end) that has `count` given points on its
 // surface.
-struct Search {
+struct BallSearch {
   std::span<const DVec3> points;
   std::vector<std::size_t> list;
 
@@ -71,7 +71,7 @@ struct Search {
 }  // namespace
 
 Ball smallest_ball(std::span<const DVec3> points) {
-  Search search{points, {}};
+  BallSearch search{points, {}};
   Ball ball{points[0], 0.0};
   search.list.push_back(0);
   // Each round takes in the point that lies farthest outside; the ball grows until none does.

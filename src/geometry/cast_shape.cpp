@@ -14,8 +14,6 @@ constexpr int kMaxSteps = 64;
 constexpr double kDistanceError = 2.0e-9;
 // Ways that lead deeper by less than this part of their length slide: they keep a shape that starts within its skin.
 constexpr double kSliding = 1.0e-3;
-// bounds() of a disc seen from the side loses half of a float's digits.
-constexpr float kBoxSlack = 1.0e-3f;
 
 DVec3 surface_on_a(const CoreDistance& near, double radius_a) { return near.on_a + radius_a * near.normal; }
 
@@ -164,7 +162,7 @@ bool cast_at_surface(const Shape& surface, const MovingShape& moving, double rea
   const bool both_sides = back_faces || is_double_sided(surface);
   const Aabb box = bounds(*moving.shape, {{}, to_float(moving.orientation)});
   const Vec3 middle = center(box), half = half_size(box);
-  const float slack = kBoxSlack * outer_radius(*moving.shape, {});
+  const float slack = kBoundsSlack * outer_radius(*moving.shape, {});
   const LocalRay ray{moving.position + DVec3(middle), moving.way};
   bool found = false;
   walk_triangles(surface, ray, half + Vec3{slack, slack, slack}, reach,

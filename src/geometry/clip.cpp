@@ -14,7 +14,7 @@ constexpr float kEqualSpan = 1.0e-3f;
 
 // A corner while a polygon is cut, and the edge that leaves it: an edge of the incident face (below kSide), or one that
 // runs along a side of the reference face.
-struct Corner {
+struct ClipCorner {
   float x, y, z;   // plain numbers: a Vec3 would fill both buffers with zeros in every call
   float distance;  // outside the side being cut
   std::uint32_t feature;
@@ -78,12 +78,12 @@ struct Clipper {
   }
 };
 
-Corner cut(const Clipper& clipper, const Corner& from, const Corner& to, int side) {
-  Corner out;
+ClipCorner cut(const Clipper& clipper, const ClipCorner& from, const ClipCorner& to, int side) {
+  ClipCorner out;
   // From the inner to the outer end, so that both directions of an edge are cut at the same bits.
   const bool inward = from.distance > 0.0f;
-  const Corner& inner = inward ? to : from;
-  const Corner& outer = inward ? from : to;
+  const ClipCorner& inner = inward ? to : from;
+  const ClipCorner& outer = inward ? from : to;
   const float t = inner.distance / (inner.distance - outer.distance);
   out.place(lerp(inner.point(), outer.point(), t));
   out.distance = 0.0f;
@@ -93,9 +93,9 @@ Corner cut(const Clipper& clipper, const Corner& from, const Corner& to, int sid
 }
 
 int clip_polygon(const Clipper& clipper, ManifoldPoint* out) {
-  Corner buffers[2][kMaxClipPoints];
-  Corner* polygon = buffers[0];
-  Corner* next = buffers[1];
+  ClipCorner buffers[2][kMaxClipPoints];
+  ClipCorner* polygon = buffers[0];
+  ClipCorner* next = buffers[1];
   int count = clipper.incident.count;
   for (int i = 0; i < count; ++i) {
     polygon[i].place(clipper.incident.vertices[i]);
@@ -113,14 +113,14 @@ int clip_polygon(const Clipper& clipper, ManifoldPoint* out) {
     if (!any_outside) continue;
     int kept = 0;
     for (int i = 0; i < count; ++i) {
-      const Corner& from = polygon[i];
-      const Corner& to = polygon[i + 1 == count ? 0 : i + 1];
+      const ClipCorner& from = polygon[i];
+      const ClipCorner& to = polygon[i + 1 == count ? 0 : i + 1];
       const bool from_inside = from.distance <= 0.0f, to_inside = to.distance <= 0.0f;
       if (from_inside) next[kept++] = from;
       // A convex polygon grows by at most one corner a side; the bound guards against rounding only.
       if (from_inside != to_inside && kept < kMaxClipPoints - 1) next[kept++] = cut(clipper, from, to, side);
     }
-    Corner* swap = polygon;
+    ClipCorner* swap = polygon;
     polygon = next;
     next = swap;
     count = kept;

@@ -32,6 +32,11 @@ struct FacePair {
 // kMaxClipPoints.
 int clip_faces(const FacePair& pair, bool reference_is_a, ManifoldPoint* out);
 
+// Segments that lean less than this sine (6 degrees) against each other touch in two points,
+constexpr float kSideBySide = 0.1f;
+// ... while they lie over each other within this part of the smaller radius: the separation is then within 0.5 % of it.
+constexpr float kSideways = 0.1f;
+
 // Two segments over each other: the two ends of the stretch that both share, seen along the normal. 0 if they share none,
 // or if they lie more than `sideways` beside each other at an end of it.
 int clip_segments(const FacePair& pair, ManifoldPoint* out);

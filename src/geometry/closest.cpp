@@ -6,11 +6,11 @@ namespace {
 
 // Squared sine below which two segments count as parallel: double keeps the crossing of anything steeper to 1e-4 of
 // their length, and what is flatter is better served by its ends.
-constexpr double kParallel = 1.0e-12;
+constexpr double kParallelSegments = 1.0e-12;
 // Squared sine of the smallest angle of a triangle that still has a plane.
-constexpr double kFlat = 1.0e-24;
+constexpr double kFlatTriangle = 1.0e-24;
 // And of one that needs care: the cross product of its sides has lost the digits that tell where its plane leans.
-constexpr double kSliver = 1.0e-8;
+constexpr double kSliverTriangle = 1.0e-8;
 
 SimplexPoint at_corner(DVec3 a, int corner) {
   SimplexPoint out;
@@ -84,7 +84,7 @@ SimplexPoint closest_on_sliver(DVec3 p, DVec3 a, DVec3 b, DVec3 c) {
 }
 
 // Faces of a tetrahedron: three corners, opposite one.
-constexpr int kFaces[4][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {0, 2, 3, 1}, {1, 3, 2, 0}};
+constexpr int kTetrahedronFaces[4][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {0, 2, 3, 1}, {1, 3, 2, 0}};
 
 }  // namespace
 
@@ -103,7 +103,7 @@ SegmentPair closest_of_segments(DVec3 a0, DVec3 a1, DVec3 b0, DVec3 b1) {
   const double scale = aa * bb;
   const double det = scale - ab * ab;
   SegmentPair out;
-  out.parallel = !(det > kParallel * scale);
+  out.parallel = !(det > kParallelSegments * scale);
   double s = 0.0;
   if (!out.parallel) {
     s = clamp((dot(between, da) * bb - dot(between, db) * ab) / det, 0.0, 1.0);
@@ -126,8 +126,8 @@ SimplexPoint closest_on_triangle(DVec3 p, DVec3 a, DVec3 b, DVec3 c) {
   const DVec3 ab = b - a, ac = c - a, normal = cross(ab, ac);
   const double nn = dot(normal, normal);
   const double longest = max(dot(ab, ab), max(dot(ac, ac), length_squared(c - b)));
-  if (!(nn > kFlat * longest * longest)) return best_edge(p, a, b, c);
-  if (!(nn > kSliver * longest * longest)) return closest_on_sliver(p, a, b, c);
+  if (!(nn > kFlatTriangle * longest * longest)) return best_edge(p, a, b, c);
+  if (!(nn > kSliverTriangle * longest * longest)) return closest_on_sliver(p, a, b, c);
   // Signed areas of the three triangles that p's projection makes with the edges.
   const DVec3 pa = a - p, pb = b - p, pc = c - p;
   const double wa = dot(cross(pb, pc), normal), wb = dot(cross(pc, pa), normal),
@@ -164,8 +164,9 @@ SimplexPoint closest_on_tetrahedron(DVec3 p, DVec3 a, DVec3 b, DVec3 c, DVec3 d)
   int outside_count = 0;
   bool is_outside[4];
   for (int f = 0; f < 4; ++f) {
-    const DVec3 origin = q[kFaces[f][0]];
-    const DVec3 u = q[kFaces[f][1]] - origin, v = q[kFaces[f][2]] - origin, w = q[kFaces[f][3]] - origin;
+    const DVec3 origin = q[kTetrahedronFaces[f][0]];
+    const DVec3 u = q[kTetrahedronFaces[f][1]] - origin, v = q[kTetrahedronFaces[f][2]] - origin,
+                w = q[kTetrahedronFaces[f][3]] - origin;
     const DVec3 normal = cross(u, v);
     const double opposite = dot(w, normal);
     side[f] = dot(p - origin, normal);
@@ -173,7 +174,7 @@ SimplexPoint closest_on_tetrahedron(DVec3 p, DVec3 a, DVec3 b, DVec3 c, DVec3 d)
     if (opposite * opposite <= 1.0e-26 * dot(normal, normal) * dot(w, w)) flat = true;
     is_outside[f] = opposite > 0.0 ? side[f] <= 0.0 : side[f] >= 0.0;
     outside_count += is_outside[f] ? 1 : 0;
-    inside.weights[kFaces[f][3]] = absolute(side[f]);
+    inside.weights[kTetrahedronFaces[f][3]] = absolute(side[f]);
     weight_sum += absolute(side[f]);
   }
   if (outside_count == 0 && !flat) {
@@ -186,7 +187,8 @@ SimplexPoint closest_on_tetrahedron(DVec3 p, DVec3 a, DVec3 b, DVec3 c, DVec3 d)
   bool found = false;
   for (int f = 0; f < 4; ++f) {
     if (!is_outside[f] && !flat) continue;
-    const SimplexPoint candidate = on_face(p, q, kFaces[f][0], kFaces[f][1], kFaces[f][2]);
+    const SimplexPoint candidate =
+        on_face(p, q, kTetrahedronFaces[f][0], kTetrahedronFaces[f][1], kTetrahedronFaces[f][2]);
     best = found ? nearer(p, best, candidate) : candidate;
     found = true;
   }
@@ -195,8 +197,11 @@ SimplexPoint closest_on_tetrahedron(DVec3 p, DVec3 a, DVec3 b, DVec3 c, DVec3 d)
 
 SimplexPoint closest_on_tetrahedron_surface(DVec3 p, DVec3 a, DVec3 b, DVec3 c, DVec3 d) {
   const DVec3 q[4] = {a, b, c, d};
-  SimplexPoint best = on_face(p, q, kFaces[0][0], kFaces[0][1], kFaces[0][2]);
-  for (int f = 1; f < 4; ++f) best = nearer(p, best, on_face(p, q, kFaces[f][0], kFaces[f][1], kFaces[f][2]));
+  SimplexPoint best =
+      on_face(p, q, kTetrahedronFaces[0][0], kTetrahedronFaces[0][1], kTetrahedronFaces[0][2]);
+  for (int f = 1; f < 4; ++f)
+    best = nearer(p, best,
+                  on_face(p, q, kTetrahedronFaces[f][0], kTetrahedronFaces[f][1], kTetrahedronFaces[f][2]));
   return best;
 }
 

@@ -8,7 +8,7 @@ namespace {
 
 // Nearer to a plane than this is on it.
 constexpr double kOnPlane = kFloatNoise;
-constexpr std::uint32_t kNone = 0xffffffffu;
+constexpr std::uint32_t kUnset = 0xffffffffu;
 
 // The edges of the polytope that the cell's planes bound.
 std::vector<CellEdge> find_cell_edges(std::span<const HalfSpace> cell) {
@@ -44,7 +44,7 @@ std::vector<CellEdge> find_cell_edges(std::span<const HalfSpace> cell) {
 class Side {
  public:
   Side(const Part& from, std::span<const double> heights, double sign)
-      : from_(from), heights_(heights), sign_(sign), number_(from.vertices.size(), kNone) {}
+      : from_(from), heights_(heights), sign_(sign), number_(from.vertices.size(), kUnset) {}
 
   // The part of the triangle on this side; `i` is where its indices begin.
   void clip(std::size_t i) {
@@ -69,14 +69,14 @@ class Side {
     return std::uint32_t(out.vertices.size() - 1);
   }
   std::uint32_t keep(std::uint32_t v) {
-    if (number_[v] == kNone) number_[v] = add(from_.vertices[v]);
+    if (number_[v] == kUnset) number_[v] = add(from_.vertices[v]);
     return number_[v];
   }
   // Computed from the lower vertex on, so that both sides and both triangles get the same point.
   std::uint32_t crossing(std::uint32_t v, std::uint32_t w) {
     const std::uint32_t a = min(v, w), b = max(v, w);
-    std::uint32_t& slot = crossings_.find_or_insert(std::uint64_t(a) << 32 | b, kNone);
-    if (slot == kNone) {
+    std::uint32_t& slot = crossings_.find_or_insert(std::uint64_t(a) << 32 | b, kUnset);
+    if (slot == kUnset) {
       const double t = heights_[a] / (heights_[a] - heights_[b]);
       slot = add(from_.vertices[a] + t * (from_.vertices[b] - from_.vertices[a]));
     }
@@ -129,7 +129,7 @@ std::vector<Part> make_parts(const Solid3& solid) {
   constexpr double kLow = -0.5, kHigh = 2.0;
   const HalfSpace box[6] = {{{1, 0, 0}, kHigh},  {{-1, 0, 0}, -kLow}, {{0, 1, 0}, kHigh},
                             {{0, -1, 0}, -kLow}, {{0, 0, 1}, kHigh},  {{0, 0, -1}, -kLow}};
-  std::vector<std::uint32_t> number(model.vertices.size(), kNone), owner(model.vertices.size(), kNone);
+  std::vector<std::uint32_t> number(model.vertices.size(), kUnset), owner(model.vertices.size(), kUnset);
   for (std::uint32_t g = 0; g < model.group_count; ++g) parts[g].cell.assign(box, box + 6);
   for (std::size_t i = 0; i < model.indices.size(); ++i) {
     const std::uint32_t v = model.indices[i], g = model.group[i / 3];

@@ -10,7 +10,7 @@ constexpr double kBeside = 1.0e-5;
 // A winding number farther than this from a whole one is of a place near a hole; dipoles alone are off by much less.
 constexpr double kBroken = 0.1;
 
-struct Candidate {
+struct SampleCandidate {
   SurfaceSample sample;
   DVec3 normal;
   bool open = false;  // the solid is behind it and not before it
@@ -21,9 +21,9 @@ double fraction(double x) { return x - double(std::int64_t(x)); }
 
 // One for each spacing * spacing of area, spread by a sequence that fills triangles evenly.
 // M. Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018 (the plastic number's powers).
-std::vector<Candidate> spread_points(const Model& model, double spacing) {
+std::vector<SampleCandidate> spread_points(const Model& model, double spacing) {
   constexpr double kStepU = 0.7548776662466927, kStepV = 0.5698402909980532;
-  std::vector<Candidate> out;
+  std::vector<SampleCandidate> out;
   double waiting = 0.5;
   for (std::size_t t = 0; t < model.triangle_count(); ++t) {
     const DVec3 a = model.place(t, 0), b = model.place(t, 1), c = model.place(t, 2);
@@ -48,11 +48,11 @@ std::vector<Candidate> spread_points(const Model& model, double spacing) {
 
 std::vector<SurfaceSample> sample_surface(const Model& model, const SurfaceField& field, TaskSystem& tasks,
                                           double spacing, double& openness) {
-  std::vector<Candidate> candidates = spread_points(model, spacing);
+  std::vector<SampleCandidate> candidates = spread_points(model, spacing);
   const double beside = kBeside * model.size;
   for_blocks(tasks, int(candidates.size()), 64, [&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
-      Candidate& candidate = candidates[std::size_t(i)];
+      SampleCandidate& candidate = candidates[std::size_t(i)];
       const double before = field.winding(candidate.sample.point + beside * candidate.normal);
       const double behind = field.winding(candidate.sample.point - beside * candidate.normal);
       candidate.open = before < kInsideWinding && behind > kInsideWinding;
@@ -62,7 +62,7 @@ std::vector<SurfaceSample> sample_surface(const Model& model, const SurfaceField
   });
   std::vector<SurfaceSample> samples;
   std::size_t broken = 0;
-  for (const Candidate& candidate : candidates) {
+  for (const SampleCandidate& candidate : candidates) {
     if (candidate.open) samples.push_back(candidate.sample);
     broken += candidate.broken ? 1 : 0;
   }

@@ -8,8 +8,6 @@ namespace gyre {
 namespace {
 
 constexpr std::uint64_t kMaxSamples = 1u << 28;
-// Metres, as for meshes.
-constexpr float kMaxCoordinate = 1.0e9f;
 // What rounding leaves of a plane, relative to the largest height: some units in the last place.
 constexpr float kFlatTolerance = 4.0e-7f;
 
@@ -30,18 +28,18 @@ Error check_field(const HeightFieldDef& def) {
                       def.columns, def.rows, static_cast<unsigned long long>(samples));
   }
   const float extent = def.spacing * float(max(def.columns, def.rows));
-  if (!(def.spacing > 0.0f) || !(extent <= kMaxCoordinate)) {
+  if (!(def.spacing > 0.0f) || !(extent <= kMaxSurfaceCoordinate)) {
     return make_error(ErrorCode::invalid_geometry,
                       "height field: spacing is %g m; must be positive and span at most %g m",
-                      double(def.spacing), double(kMaxCoordinate));
+                      double(def.spacing), double(kMaxSurfaceCoordinate));
   }
   for (std::size_t i = 0; i < def.heights.size(); ++i) {
     const float h = def.heights[i];
-    if (h != h || absolute(h) <= kMaxCoordinate) continue;
+    if (h != h || absolute(h) <= kMaxSurfaceCoordinate) continue;
     return make_error(
         ErrorCode::invalid_geometry,
         "height field: the height at column %zu, row %zu is %g m; allowed is up to %g m, or NaN for a hole",
-        i % def.columns, i / def.columns, double(h), double(kMaxCoordinate));
+        i % def.columns, i / def.columns, double(h), double(kMaxSurfaceCoordinate));
   }
   return {};
 }

@@ -22,7 +22,11 @@ struct HullEdge {
 
 static_assert(sizeof(HullPlane) == 16 && sizeof(HullEdge) == 16, "records that are read as four numbers");
 
-// At most 255 vertices, 255 faces and 510 edges (all indices but edge indices fit in a byte).
+// The most that a hull has: all indices but edge indices fit in a byte.
+constexpr int kMaxHullVertices = 255;
+constexpr int kMaxHullFaces = 255;
+constexpr int kMaxHullEdges = 510;
+
 struct Hull {
   // x, y and z of all vertices, each padded with copies of the last vertex to a multiple of kPad.
   static constexpr int kPad = 8;

@@ -70,7 +70,7 @@ Error span_error(GridSpan span, std::size_t count, double within) {
 
 // A hull of few points: `chosen` are their numbers in the input, the best first; all are vertices of `hull`, which counts
 // within `points`.
-struct Candidate {
+struct HullCandidate {
   std::vector<int> chosen;
   std::vector<GridPoint> points;
   GridHull hull;
@@ -79,8 +79,8 @@ struct Candidate {
 DVec3 place(const GridPoint& p) { return {double(p.x), double(p.y), double(p.z)}; }
 
 // The hull of some points of the grid; `hull.span` says if they span none.
-Candidate make_candidate(std::span<const GridPoint> all, std::span<const int> chosen, double flat) {
-  Candidate out;
+HullCandidate make_candidate(std::span<const GridPoint> all, std::span<const int> chosen, double flat) {
+  HullCandidate out;
   std::vector<int> order;
   for (const int i : chosen) {
     order.push_back(int(order.size()));
@@ -99,7 +99,7 @@ Candidate make_candidate(std::span<const GridPoint> all, std::span<const int> ch
 
 // A lower bound of how far each vertex sticks out of the hull of the others: along the mean normal of its faces, where
 // the next best vertex is one of its neighbours. Cheap, and nearly always enough to keep the vertex.
-std::vector<double> stick_out_bounds(const Candidate& body) {
+std::vector<double> stick_out_bounds(const HullCandidate& body) {
   const auto at = [&](int i) { return place(body.points[std::size_t(i)]); };
   std::vector<DVec3> normals(body.points.size());
   for (const GridTriangle& t : body.hull.triangles) {
@@ -121,7 +121,7 @@ std::vector<double> stick_out_bounds(const Candidate& body) {
 
 // How far a vertex sticks out of the hull of the others. What appears where it was is spanned by its neighbours alone, so
 // that is its distance from their triangles: of all of them, or, when they are many, of those of their hull.
-double stick_out(std::span<const GridPoint> all, const Candidate& body, int vertex, double flat) {
+double stick_out(std::span<const GridPoint> all, const HullCandidate& body, int vertex, double flat) {
   std::vector<int> neighbors;
   for (const GridTriangle& t : body.hull.triangles) {
     for (int e = 0; e < 3; ++e) {
@@ -133,7 +133,7 @@ double stick_out(std::span<const GridPoint> all, const Candidate& body, int vert
   if (count > kFew) {
     std::vector<int> others = body.chosen;
     others.erase(others.begin() + vertex);
-    const Candidate rest = make_candidate(all, others, flat);
+    const HullCandidate rest = make_candidate(all, others, flat);
     if (rest.hull.span != GridSpan::volume) return 1.0e300;
     return distance_outside(rest.points, rest.hull.triangles, body.points[std::size_t(vertex)]);
   }
@@ -151,7 +151,7 @@ double stick_out(std::span<const GridPoint> all, const Candidate& body, int vert
 
 // Takes out vertices that stick out of the hull of the others by at most `tolerance`, youngest first, until none does.
 // Returns whether any was taken.
-bool thin(std::span<const GridPoint> all, Candidate& body, double tolerance, double flat) {
+bool thin(std::span<const GridPoint> all, HullCandidate& body, double tolerance, double flat) {
   bool any = false;
   for (bool changed = true; changed;) {
     changed = false;
@@ -160,7 +160,7 @@ bool thin(std::span<const GridPoint> all, Candidate& body, double tolerance, dou
       if (bounds[i] > tolerance || stick_out(all, body, int(i), flat) > tolerance) continue;
       std::vector<int> others = body.chosen;
       others.erase(others.begin() + std::ptrdiff_t(i));
-      Candidate rest = make_candidate(all, others, flat);
+      HullCandidate rest = make_candidate(all, others, flat);
       if (rest.hull.span != GridSpan::volume) continue;
       body = std::move(rest);
       bounds = stick_out_bounds(body);
@@ -172,10 +172,10 @@ bool thin(std::span<const GridPoint> all, Candidate& body, double tolerance, dou
 }
 
 // The thinned hull of at most `limit` vertices.
-Candidate thin_hull(const Grid& grid, int limit, double flat) {
+HullCandidate thin_hull(const Grid& grid, int limit, double flat) {
   // Half of the tolerance for points left out, half for vertices taken out.
   const QuickhullLimits limits{.tolerance = 0.5 * grid.tolerance, .flat = flat, .vertices = limit};
-  Candidate body;
+  HullCandidate body;
   for (int round = 0; round < 4; ++round) {
     const GridHull hull = quickhull(grid.points, body.chosen, limits);
     if (hull.span != GridSpan::volume) {
@@ -199,7 +199,7 @@ struct Polygons {
   std::vector<FaceLoop> loops;
 };
 
-Polygons make_polygons(const Grid& grid, const Candidate& body) {
+Polygons make_polygons(const Grid& grid, const HullCandidate& body) {
   Polygons out;
   const std::size_t count = body.chosen.size();
   std::vector<std::uint8_t> vertex_of(count);
@@ -255,7 +255,7 @@ void fill_edges(Hull& hull) {
 }
 
 // Centre of the volume, by tetrahedra from a vertex.
-Vec3 volume_center(const Grid& grid, const Candidate& body) {
+Vec3 volume_center(const Grid& grid, const HullCandidate& body) {
   const DVec3 apex = place(body.points[0]);
   const auto at = [&](int i) { return place(body.points[std::size_t(i)]) - apex; };
   double volume = 0.0;
@@ -269,7 +269,7 @@ Vec3 volume_center(const Grid& grid, const Candidate& body) {
   return to_float(grid.origin + grid.step * (apex + moment / volume));
 }
 
-Hull make_hull(std::span<const Vec3> points, const Grid& grid, const Candidate& body,
+Hull make_hull(std::span<const Vec3> points, const Grid& grid, const HullCandidate& body,
                const Polygons& polygons) {
   Hull hull;
   for (const int point : polygons.points) hull.vertices.push_back(points[std::size_t(point)]);
@@ -314,7 +314,7 @@ Result<Hull> build_hull(std::span<const Vec3> points) {
   if (grid.points.empty()) return span_error(GridSpan::point, points.size(), double(kSmallestLength));
   const double flat = 4.0 * grid.tolerance;
 
-  Candidate body = thin_hull(grid, kMaxHullVertices, flat);
+  HullCandidate body = thin_hull(grid, kMaxHullVertices, flat);
   if (body.hull.span != GridSpan::volume) return span_error(body.hull.span, points.size(), flat * grid.step);
   Polygons polygons = make_polygons(grid, body);
   // Too many faces: fewer vertices, from the beginning of the list, which is the best of its length. At most 2 V - 4

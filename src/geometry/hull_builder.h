@@ -17,8 +17,6 @@ namespace gyre {
 
 // What a hull may lose, relative to its largest extent.
 constexpr double kHullTolerance = 1.0e-6;
-constexpr int kMaxHullVertices = 255;
-constexpr int kMaxHullFaces = 255;
 
 Result<Hull> build_hull(std::span<const Vec3> points);
 

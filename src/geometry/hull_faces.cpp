@@ -6,7 +6,7 @@
 namespace gyre {
 namespace {
 
-constexpr int kNone = -1;
+constexpr int kNoFace = -1;
 
 struct JoinEdge {
   int from, to;
@@ -17,7 +17,7 @@ class Joiner {
  public:
   Joiner(std::span<const DVec3> vertices, std::span<const FaceLoop> triangles, double tolerance)
       : vertices_(vertices), loops_(triangles.begin(), triangles.end()), tolerance_(tolerance) {
-    face_of_.assign(256 * 256, kNone);
+    face_of_.assign(256 * 256, kNoFace);
     faces_at_.assign(vertices.size(), 0);
     for (int f = 0; f < int(loops_.size()); ++f) {
       claim_edges(f);
@@ -104,7 +104,7 @@ bool Joiner::try_join(int from, int to) {
   if (!(dot(loop_normal(vertices_, loops_[std::size_t(right)]), n) > 0.0)) return false;
   if (!is_convex(loop, n)) return false;
 
-  face_of(from, to) = face_of(to, from) = kNone;
+  face_of(from, to) = face_of(to, from) = kNoFace;
   loops_[std::size_t(left)] = loop;
   loops_[std::size_t(right)].clear();
   claim_edges(left);
@@ -117,7 +117,7 @@ void Joiner::join_all() {
   std::vector<JoinEdge> edges;
   for (int from = 0; from < int(vertices_.size()); ++from) {
     for (int to = from + 1; to < int(vertices_.size()); ++to) {
-      if (face_of(from, to) == kNone) continue;
+      if (face_of(from, to) == kNoFace) continue;
       const double height = bend(joined(from, to));
       if (height <= tolerance_) edges.push_back({from, to, height});
     }
@@ -129,7 +129,7 @@ void Joiner::join_all() {
   for (bool changed = true; changed;) {
     changed = false;
     for (const JoinEdge& edge : edges) {
-      if (face_of(edge.from, edge.to) != kNone && try_join(edge.from, edge.to)) changed = true;
+      if (face_of(edge.from, edge.to) != kNoFace && try_join(edge.from, edge.to)) changed = true;
     }
   }
 }

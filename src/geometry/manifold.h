@@ -25,6 +25,13 @@ struct LocalManifold {
   ManifoldPoint points[kMaxManifoldPoints];
 };
 
+// The least separation; kUnbounded if there are no points.
+inline float deepest_of(const LocalManifold& manifold) {
+  float least = kUnbounded;
+  for (int i = 0; i < manifold.count; ++i) least = min(least, manifold.points[i].separation);
+  return least;
+}
+
 // A manifold as it lives in the contact store from step to step: in world axes, anchored at both bodies' centres of mass,
 // with the impulses that the solver left there. `count` 0 means that nothing is near enough to matter. The solver reads and
 // writes both records four floats at a time: what belongs together lies together.

@@ -11,13 +11,9 @@
 #include <bit>
 
 namespace gyre {
+namespace boxes {
 namespace {
 
-using namespace boxes;
-
-// A face's points stand for the contact if the deepest of them is within this part of the thinnest half extent, and of an
-// overlap within that part of the depth too.
-constexpr float kMissed = 1.0e-3f, kLost = 0.1f;
 // Separations along the face normals of the box with half extents `own`, in whose frame the other one's middle is `way` and
 // its axes are `axes`.
 inline Floats face_separations(const float* own, const float* other, const float* way,
@@ -230,12 +226,6 @@ Axis face_near_edges(const Boxes& x, Vec3 normal) {
   return best;
 }
 
-float deepest_of(const LocalManifold& manifold) {
-  float least = kUnbounded;
-  for (int i = 0; i < manifold.count; ++i) least = min(least, manifold.points[i].separation);
-  return least;
-}
-
 // See manifold_crossing.h.
 void collide_crossing(const Boxes& x, const Transform& a_from_b, const Axis& edges, float max_separation,
                       LocalManifold& out) {
@@ -293,23 +283,24 @@ void collide_along(const Boxes& x, const Axis& found, const Pair& pair, PairCach
 }
 
 }  // namespace
+}  // namespace boxes
 
-Axis find_box_axis(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
-                   const PairCache& cache) {
+boxes::Axis find_box_axis(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
+                          const PairCache& cache) {
   // Bodies that are about to be taken out of the world.
   if (!is_finite(a_from_b.position) || !is_finite(a_from_b.orientation)) return {0, kUnbounded};
-  return find_axis(Boxes(a, b, a_from_b), a_from_b, max_separation, cache);
+  return boxes::find_axis(boxes::Boxes(a, b, a_from_b), a_from_b, max_separation, cache);
 }
 
-Vec3 box_axis_normal(const Axis& axis, const Transform& a_from_b) {
+Vec3 box_axis_normal(const boxes::Axis& axis, const Transform& a_from_b) {
   const Mat3 turn = to_matrix(a_from_b.orientation);
   const Vec3 columns[3] = {turn.x, turn.y, turn.z};
   const auto own = [](int k) {
     return Vec3{k == 0 ? 1.0f : 0.0f, k == 1 ? 1.0f : 0.0f, k == 2 ? 1.0f : 0.0f};
   };
-  const Vec3 normal = axis.number < kFirstB ? own(axis.number)
-                      : axis.number < kFirstEdge
-                          ? columns[axis.number - kFirstB]
+  const Vec3 normal = axis.number < boxes::kFirstB ? own(axis.number)
+                      : axis.number < boxes::kFirstEdge
+                          ? columns[axis.number - boxes::kFirstB]
                           : normalized(cross(own(axis.edge_a()), columns[axis.edge_b()]));
   return dot(normal, a_from_b.position) < 0.0f ? -normal : normal;
 }
@@ -317,19 +308,20 @@ Vec3 box_axis_normal(const Axis& axis, const Transform& a_from_b) {
 void collide_boxes(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
                    PairCache& cache, LocalManifold& out) {
   out.count = 0;
-  const Boxes x(a, b, a_from_b);
-  const Axis found = find_axis(x, a_from_b, max_separation, cache);
+  const boxes::Boxes x(a, b, a_from_b);
+  const boxes::Axis found = boxes::find_axis(x, a_from_b, max_separation, cache);
   cache.words[0] = std::uint32_t(found.number + 1);
   if (found.separation <= max_separation)
-    collide_along(x, found, Pair{a, b, a_from_b, max_separation}, cache, out);
+    boxes::collide_along(x, found, boxes::Pair{a, b, a_from_b, max_separation}, cache, out);
 }
 
-void collide_boxes_along(const Axis& axis, const Shape& a, const Shape& b, const Transform& a_from_b,
+void collide_boxes_along(const boxes::Axis& axis, const Shape& a, const Shape& b, const Transform& a_from_b,
                          float max_separation, PairCache& cache, LocalManifold& out) {
   out.count = 0;
   cache.words[0] = std::uint32_t(axis.number + 1);
   if (axis.separation <= max_separation)
-    collide_along(Boxes(a, b, a_from_b), axis, Pair{a, b, a_from_b, max_separation}, cache, out);
+    boxes::collide_along(boxes::Boxes(a, b, a_from_b), axis, boxes::Pair{a, b, a_from_b, max_separation},
+                         cache, out);
 }
 
 }  // namespace gyre

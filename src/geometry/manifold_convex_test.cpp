@@ -28,12 +28,6 @@ double outside(const Shape& shape, Vec3 p) {
   return found.distance - double(core_radius(shape));
 }
 
-float deepest_of(const LocalManifold& m) {
-  float deepest = kUnbounded;
-  for (int i = 0; i < m.count; ++i) deepest = min(deepest, m.points[i].separation);
-  return deepest;
-}
-
 // Capsules, cylinders, cones, and boxes so round that their cores are flat.
 bool may_face_with_a_segment(const Shape& shape) {
   return shape.radius > 0.0f && shape.kind != ShapeKind::sphere;

@@ -12,15 +12,10 @@ namespace {
 // A face takes part if the contact normal leans less than this cosine (10 degrees) from its own: its points keep their
 // exact distance along the contact normal, so nothing jumps when a face comes in or drops out.
 constexpr float kFacing = 0.985f;
-// Segments that lean less than this sine (6 degrees) against each other touch in two points.
-constexpr float kSideBySide = 0.1f;
-// ... while they lie over each other within this part of the smaller radius; of cones, which taper, within less.
-constexpr float kSideways = 0.1f, kSidewaysCone = 0.01f;
+// kSideways of cones, which taper.
+constexpr float kSidewaysCone = 0.01f;
 // B's face becomes the reference only if it faces the normal better than A's by this much: no flipping.
 constexpr float kPreferA = 1.0e-3f;
-// If the clipped points miss the nearest pair of points by this part of the smaller shape's inner radius, that pair is
-// added.
-constexpr float kMissed = 1.0e-3f;
 
 // Where two cores are nearest or deepest.
 struct CoreContact {

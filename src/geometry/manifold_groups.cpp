@@ -2,12 +2,6 @@
 #include "geometry/manifold_mesh.h"
 
 namespace gyre {
-namespace {
-
-// Cosine of two degrees.
-constexpr float kSameNormal = 0.9994f;
-
-}  // namespace
 
 void ManifoldGroups::add_point(Group& group, const ManifoldPoint& point) {
   for (int i = 0; i < group.count; ++i) {

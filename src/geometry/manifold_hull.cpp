@@ -37,13 +37,8 @@ struct Roles {
   bool reference_is_a;
 };
 
-// In inner radii of the thinner: a face's points stand for the contact if the deepest of them is within this part of it.
-constexpr float kMissed = 1.0e-3f;
-// ... and of an overlap within this part of the depth too: what is lost again and again would never come free.
-constexpr float kLost = 0.1f;
 // Faces that look this way by less than this cosine are sides.
 constexpr float kLooksThisWay = 1.0e-4f;
-constexpr int kMaxVertices = 256;
 
 float missed(const Polytope& a, const Polytope& b) { return kMissed * min(a.inner_radius, b.inner_radius); }
 
@@ -76,7 +71,8 @@ class FacePoints {
   void clip_with_others(int first, Vec3 local) {
     const Polytope& incident = roles_.incident;
     const float height = dot(outward_, reference_.vertices[0] - roles_.reference_from_incident.position);
-    float separations[kMaxVertices];
+    constexpr int kMaxPaddedVertices = 256;
+    float separations[kMaxPaddedVertices];
     const Vec3W<kPolytopeLanes> direction = splat<kPolytopeLanes>(local);
     for (int i = 0; i < incident.padded_count; i += kPolytopeLanes)
       (values_along(incident, i, direction) - Wide<kPolytopeLanes>(height)).store_unaligned(separations + i);
@@ -164,12 +160,6 @@ void face_manifold(const Polytope& a, const Polytope& b, const Transform& a_from
     out.points[i] = points[i];
     if (!is_a) out.points[i].position = a_from_b * points[i].position;
   }
-}
-
-float deepest_of(const LocalManifold& manifold) {
-  float least = kUnbounded;
-  for (int i = 0; i < manifold.count; ++i) least = min(least, manifold.points[i].separation);
-  return least;
 }
 
 // The face whose normal is within kNearFace of a normal from A to B; none if there is none.

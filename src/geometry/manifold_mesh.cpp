@@ -31,11 +31,10 @@ constexpr float kRoundBias = 1.0e-6f;
 // ... and how much deeper than a contact a triangle may lie and still be covered by it.
 constexpr float kCoverSlack = 1.0e-3f;
 // Sine between directions that are one.
-constexpr float kParallel = 1.0e-3f;
+constexpr float kOneDirection = 1.0e-3f;
 // A hull whose inner radius is less of its size is as thin as rounding: which of its edges' axes there are cannot be told.
 constexpr float kBlade = 1.0e-4f;
-// Cosines: contacts of one stretch of ground; normals that oppose each other; sharp edges.
-constexpr float kSameNormal = 0.9994f;
+// Cosines: normals that oppose each other; sharp edges.
 constexpr float kOpposed = -0.1f;
 constexpr float kSharp = 0.7f;
 
@@ -270,7 +269,7 @@ void MeshCollider::add_feature(const NearTriangle& t, const FeatureAxis& axis) {
 bool MeshCollider::covers(const NearTriangle& other, const NearTriangle& t, Vec3 direction) const {
   const float slack = kCoverSlack * convex_.size();
   const Vec3 sideways = direction - dot(direction, other.normal) * other.normal;
-  if (length_squared(sideways) < kParallel * kParallel ||
+  if (length_squared(sideways) < kOneDirection * kOneDirection ||
       dot(other.normal, convex_.center() - other.v[0]) < 0.0f)
     return false;
   for (int i = 0; i < 3; ++i) {

@@ -9,6 +9,9 @@
 
 namespace gyre {
 
+// Cosine (of two degrees) between the normals of contacts that belong to one stretch of ground.
+constexpr float kSameNormal = 0.9994f;
+
 class ManifoldGroups {
  public:
   static constexpr int kRoom = 16;

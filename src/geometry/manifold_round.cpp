@@ -9,12 +9,8 @@
 namespace gyre {
 namespace {
 
-// Capsules that lean less than this sine against each other (6 degrees) touch in two points.
-constexpr float kSideBySide = 0.1f;
-// ... while they lie over each other within this part of the smaller radius: the separation is then within 0.5 % of it.
-constexpr float kSideways = 0.1f;
 // Two points stand for a contact if the nearer is within this part of the smaller radius of the nearest pair of points.
-constexpr float kMissed = 0.01f;
+constexpr float kMissedByEnds = 0.01f;
 
 // Worked in double: where a ball's middle all but lies on the surface, the way between the two is of rounding in float, and
 // with it the normal.
@@ -196,7 +192,7 @@ void collide_capsules(const Shape& a, const Shape& b, const Transform& a_from_b,
   if (sine_squared <= square(kSideBySide * a.extents.y * b.extents.y)) {
     out.count = clip_segments(pair, out.points);
     // One behind the other, end to end, they share no stretch but what rounding makes of one.
-    const float slack = kMissed * min(a.radius, b.radius);
+    const float slack = kMissedByEnds * min(a.radius, b.radius);
     if (out.count == 2 && min(out.points[0].separation, out.points[1].separation) <= nearest + slack) return;
   }
   out.count = 1;

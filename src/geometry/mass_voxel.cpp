@@ -50,18 +50,18 @@ VoxelGrid make_grid(const TriangleSurface& surface, int resolution) {
 
 // A point of the plane that rays cross at right angles. Rays are moved from voxel centres by about a thousandth of a voxel
 // so that they meet no edge of a model that is aligned with its axes.
-struct Point2 {
+struct PlanePoint {
   double u, v;
 };
 constexpr double kAsideU = 1.3127e-3, kAsideV = 0.9241e-3;
 
-bool comes_before(Point2 a, Point2 b) { return a.u != b.u ? a.u < b.u : a.v < b.v; }
+bool comes_before(PlanePoint a, PlanePoint b) { return a.u != b.u ? a.u < b.u : a.v < b.v; }
 
 // Which side of the edge the point is on: the same number, but for its sign, from both triangles of an edge, so that no ray
 // slips between them.
-double side_of(Point2 a, Point2 b, Point2 p) {
+double side_of(PlanePoint a, PlanePoint b, PlanePoint p) {
   const bool swap = comes_before(b, a);
-  const Point2 from = swap ? b : a, to = swap ? a : b;
+  const PlanePoint from = swap ? b : a, to = swap ? a : b;
   const double side = (to.u - from.u) * (p.v - from.v) - (to.v - from.v) * (p.u - from.u);
   const double decided = side != 0.0 ? side : 1.0e-300;
   return swap ? -decided : decided;
@@ -91,7 +91,7 @@ class RayVotes {
 
 void RayVotes::cross_triangle(std::uint32_t triangle) {
   DVec3 corners[3];
-  Point2 p[3];
+  PlanePoint p[3];
   double low[2] = {1e300, 1e300}, high[2] = {-1e300, -1e300};
   for (int i = 0; i < 3; ++i) {
     corners[i] = surface_.corner(triangle, i);
@@ -109,8 +109,8 @@ void RayVotes::cross_triangle(std::uint32_t triangle) {
   };
   for (int j = first(1, v_); j <= last(1, v_); ++j) {
     for (int i = first(0, u_); i <= last(0, u_); ++i) {
-      const Point2 ray{grid_.center(u_, i) + kAsideU * grid_.size,
-                       grid_.center(v_, j) + kAsideV * grid_.size};
+      const PlanePoint ray{grid_.center(u_, i) + kAsideU * grid_.size,
+                           grid_.center(v_, j) + kAsideV * grid_.size};
       const double c = side_of(p[0], p[1], ray), a = side_of(p[1], p[2], ray), b = side_of(p[2], p[0], ray);
       if (!((a > 0.0 && b > 0.0 && c > 0.0) || (a < 0.0 && b < 0.0 && c < 0.0))) continue;
       const double place =

@@ -25,16 +25,16 @@ constexpr float kParallelEdges = 1.0e-4f;
 // Cosine between the normals at the rim of a plate; and how much farther than its edge, relative to its size, a plate may reach along an
 // axis of that edge.
 constexpr float kRim = -0.9f;
-constexpr float kOutermost = 1.0e-5f;
+constexpr float kRimSlack = 1.0e-5f;
 // A sine that no rounding reaches.
 constexpr float kOutwardSlack = 1.0e-5f;
 
 using Floats = Wide<4>;
 
-class Search {
+class DirectionSearch {
  public:
-  Search(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,
-         float face_separation, float max_separation, AxisScratch& scratch)
+  DirectionSearch(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,
+                  float face_separation, float max_separation, AxisScratch& scratch)
       : surface_(surface), t_(triangle), convex_(convex), max_separation_(max_separation), scratch_(scratch) {
     found_.best = face_separation;
     core_best_ = face_separation + convex.radius();
@@ -205,7 +205,7 @@ class Search {
   AxisSearch found_;
 };
 
-void Search::face_axes() {
+void DirectionSearch::face_axes() {
   for (int first = 0; first < convex_.face_count(); first += PlacedConvex::kLanes) {
     const Floats separations =
         Floats::load_unaligned(scratch_.before_face + first) - Floats(convex_.radius());
@@ -225,7 +225,7 @@ void Search::face_axes() {
 // sphere of normals cross: the triangle's runs from its normal through `outward` to the other side. The direction there
 // is a sum of the two faces' normals, and what it is worth, all but for rounding, the same sum of what the normals are
 // worth, which serve all edges of their faces. So most pairs are known to be in vain by their faces' marks.
-void Search::edge_axes() {
+void DirectionSearch::edge_axes() {
   float outward[3][PlacedConvex::kMaxVertices];
   std::int32_t marks[PlacedConvex::kMaxVertices];
   EdgeBar bar = edge_bar();
@@ -251,7 +251,7 @@ void Search::edge_axes() {
 }
 
 // The edges of the triangle in `rest` across one of the polyhedron. Returns whether any was worth a look.
-bool Search::axes_across(const HullEdge& edge, unsigned rest, const EdgeBar& bar) {
+bool DirectionSearch::axes_across(const HullEdge& edge, unsigned rest, const EdgeBar& bar) {
   bool looked = false;
   for (; rest != 0; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
@@ -273,7 +273,7 @@ bool Search::axes_across(const HullEdge& edge, unsigned rest, const EdgeBar& bar
   return looked;
 }
 
-void Search::edge_axis(const HullEdge& edge, int i) {
+void DirectionSearch::edge_axis(const HullEdge& edge, int i) {
   const float needed = needed_of(i);
   // Not from the faces' normals, which all but cancel each other at the rim of a plate.
   const Vec3 edge_along = convex_.vertex(edge.to) - convex_.vertex(edge.from);
@@ -286,7 +286,7 @@ void Search::edge_axis(const HullEdge& edge, int i) {
   if (separation <= needed) return;
   // At the rim of a plate normals all but oppose each other, so that whether arcs cross is of rounding.
   if (dot(convex_.face_normal(edge.left), convex_.face_normal(edge.right)) < kRim &&
-      convex_.lowest(d) < dot(d, convex_.vertex(edge.from)) - kOutermost * convex_.size())
+      convex_.lowest(d) < dot(d, convex_.vertex(edge.from)) - kRimSlack * convex_.size())
     return;
   if (offer(d, separation, 1u << i | 1u << next_corner(i), AxisSource::shape_edge)) {
     found_.feature.from = edge.from;
@@ -295,7 +295,7 @@ void Search::edge_axis(const HullEdge& edge, int i) {
 }
 
 // The one edge of a capsule has normals all around it.
-void Search::segment_axes() {
+void DirectionSearch::segment_axes() {
   const Vec3 axis = convex_.vertex(1) - convex_.vertex(0);
   const float length_of_axis = length(axis);
   for (int i = 0; i < 3; ++i) {
@@ -312,7 +312,7 @@ void Search::segment_axes() {
   }
 }
 
-void Search::nearest_of_vertices(double& best, SimplexPoint& on_triangle, DVec3& on_convex) const {
+void DirectionSearch::nearest_of_vertices(double& best, SimplexPoint& on_triangle, DVec3& on_convex) const {
   const DVec3 a(t_.v[0]), b(t_.v[1]), c(t_.v[2]);
   for (int i = 0; i < convex_.vertex_count(); ++i) {
     const DVec3 p(convex_.vertex(i));
@@ -325,7 +325,7 @@ void Search::nearest_of_vertices(double& best, SimplexPoint& on_triangle, DVec3&
   }
 }
 
-void Search::nearest_of_sphere() {
+void DirectionSearch::nearest_of_sphere() {
   const DVec3 middle(convex_.vertex(0));
   const SphereTriangle found =
       sphere_triangle(middle, double(convex_.radius()), DVec3(t_.v[0]), DVec3(t_.v[1]), DVec3(t_.v[2]));
@@ -338,7 +338,7 @@ void Search::nearest_of_sphere() {
 
 // Whether the segment runs through the triangle. (All cross products of a sliver's edges may lie too near to each other for
 // an axis search to tell.)
-bool Search::is_pierced() const {
+bool DirectionSearch::is_pierced() const {
   const DVec3 a(t_.v[0]), b(t_.v[1]), c(t_.v[2]), from(convex_.vertex(0)), to(convex_.vertex(1));
   const DVec3 front = cross(b - a, c - a);
   const double start = dot(front, from - a), end = dot(front, to - a);
@@ -351,13 +351,13 @@ bool Search::is_pierced() const {
 }
 
 // Whether no direction that was looked at, the one from behind the triangle among them, parts it from the core.
-bool Search::is_overlap() const {
+bool DirectionSearch::is_overlap() const {
   const float behind = dot(t_.normal, t_.v[0]) - convex_.highest(t_.normal);
   return !(max(core_best_, behind) > 1.0e-6f * convex_.size());
 }
 
 // A segment that does not cross the triangle: the true direction is that between the nearest points.
-void Search::nearest_pair() {
+void DirectionSearch::nearest_pair() {
   double best = __builtin_huge_val();
   SimplexPoint on_triangle;
   DVec3 on_convex;
@@ -396,7 +396,7 @@ void Search::nearest_pair() {
   }
 }
 
-void Search::polyhedron() {
+void DirectionSearch::polyhedron() {
   if (convex_.face_count() > 0) convex_.face_separations(t_.v, scratch_.before, scratch_.before_face);
   face_axes();
   if (apart()) return;
@@ -418,7 +418,7 @@ void Search::polyhedron() {
 }
 
 // Out of an overlap with a curved shape, by EPA.
-void Search::deepest_way_out(const CorePair& pair, const CoreDistance& found) {
+void DirectionSearch::deepest_way_out(const CorePair& pair, const CoreDistance& found) {
   const CorePenetration out = core_penetration(pair, found);
   const Vec3 d = to_float(out.normal);
   unsigned corners = supporting_corners(d);
@@ -430,7 +430,7 @@ void Search::deepest_way_out(const CorePair& pair, const CoreDistance& found) {
 }
 
 // Whether triangle and core are apart: then GJK knows the direction.
-bool Search::nearest_by_gjk() {
+bool DirectionSearch::nearest_by_gjk() {
   Hull& hull = scratch_.triangle;
   hull.vertices.assign(t_.v, t_.v + 3);
   hull.x.resize(Hull::kPad);
@@ -508,12 +508,12 @@ void measure_edges(NearTriangle& t) {
 
 AxisSearch search_axes(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,
                        float face_separation, float max_separation, AxisScratch& scratch) {
-  return Search(surface, triangle, convex, face_separation, max_separation, scratch).run();
+  return DirectionSearch(surface, triangle, convex, face_separation, max_separation, scratch).run();
 }
 
 AxisSearch search_nearest(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,
                           float face_separation, float max_separation, AxisScratch& scratch) {
-  return Search(surface, triangle, convex, face_separation, max_separation, scratch).run_nearest();
+  return DirectionSearch(surface, triangle, convex, face_separation, max_separation, scratch).run_nearest();
 }
 
 }  // namespace gyre

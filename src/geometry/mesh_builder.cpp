@@ -13,9 +13,6 @@
 namespace gyre {
 namespace {
 
-// Metres. Beyond it, products of three coordinates would leave the range of a float.
-constexpr float kMaxCoordinate = 1.0e9f;
-
 Error check_mesh(const MeshDef& def) {
   if (def.indices.size() % 3 != 0) {
     return make_error(ErrorCode::invalid_geometry,
@@ -36,10 +33,10 @@ Error check_mesh(const MeshDef& def) {
       return make_error(ErrorCode::invalid_geometry, "mesh: vertex %zu is not finite (%g, %g, %g)", i,
                         double(v.x), double(v.y), double(v.z));
     }
-    if (largest(absolute(v)) > kMaxCoordinate) {
+    if (largest(absolute(v)) > kMaxSurfaceCoordinate) {
       return make_error(ErrorCode::invalid_geometry,
                         "mesh: vertex %zu (%g, %g, %g) is farther than %g m from the origin", i, double(v.x),
-                        double(v.y), double(v.z), double(kMaxCoordinate));
+                        double(v.y), double(v.z), double(kMaxSurfaceCoordinate));
     }
   }
   for (std::size_t i = 0; i < def.indices.size(); ++i) {

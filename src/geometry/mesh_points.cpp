@@ -13,9 +13,9 @@ namespace {
 // A face of the shape leans less than this (cosine) against the contact's direction, or it does not lie on the edge.
 constexpr float kFlush = 0.985f;
 // Sine between two edges that run side by side and touch in two points.
-constexpr float kParallel = 0.05f;
+constexpr float kSideBySideEdges = 0.05f;
 // How far two edges may pass beside each other and still cross, of the longer one's length.
-constexpr float kBeside = 1.0e-3f;
+constexpr float kCrossingSlack = 1.0e-3f;
 
 using Floats = Wide<4>;
 using Vectors = Vec3W<4>;
@@ -286,7 +286,7 @@ void EdgeContact::nearest() const {
   const Vec3 p = to_float(pair.on_a), q = to_float(pair.on_b);
   // Apart, and not across each other: what is nearest is found elsewhere.
   const float along = dot(direction, q - p);
-  const float beside = kBeside * max(t.length[edge], length(last - face.vertices[0])) + t.slack;
+  const float beside = kCrossingSlack * max(t.length[edge], length(last - face.vertices[0])) + t.slack;
   if (along > emit.radius && length_squared(q - p) > square(along) + square(beside)) return;
   const std::uint32_t name = face.count == 1 ? face.ids[0] : edge_name(face, 0);
   emit.pair(q, along - emit.radius, point_name(PointKind::edges, t.edge_id[edge], name));
@@ -371,7 +371,7 @@ void feature_points(const NearTriangle& t, const PlacedConvex& convex, const Fea
   const EdgeContact contact{t, edge, narrow, d, emit};
   if (narrow.count == 2) {
     const Vec3 segment = narrow.vertices[1] - narrow.vertices[0];
-    if (length(cross(segment, t.along[edge])) <= kParallel * length(segment)) {
+    if (length(cross(segment, t.along[edge])) <= kSideBySideEdges * length(segment)) {
       contact.beside_segment();
       if (out.count > 0) return;
     }

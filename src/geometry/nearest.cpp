@@ -10,8 +10,7 @@ namespace gyre {
 namespace {
 
 // The least distance, less rounding, at which a search in growing boxes may stop.
-constexpr double kRounding = 1.0e-6;
-constexpr float kBoxSlack = 1.0e-3f;  // bounds() of a disc seen from the side loses half of a float's digits
+constexpr double kDistanceRounding = 1.0e-6;
 
 // From the distance of two cores to that of two surfaces.
 void fill(const CoreDistance& near, double radius_a, double radius_b, Nearest& out) {
@@ -31,7 +30,7 @@ void fill(const CoreDistance& near, double radius_a, double radius_b, Nearest& o
 bool finish(const CorePair& pair, double radius_a, double radius_b, double max_distance, Nearest& out) {
   const double radii = radius_a + radius_b;
   // Looks a little farther than asked: hulls choose their support points in float.
-  const double reach = (max_distance + radii) * (1.0 + kRounding) + kRounding * pair.size();
+  const double reach = (max_distance + radii) * (1.0 + kDistanceRounding) + kDistanceRounding * pair.size();
   const CoreDistance near = core_distance(pair, reach, {});
   if (near.beyond || near.distance - radii > max_distance) return false;
   fill(near, radius_a, radius_b, out);
@@ -47,7 +46,7 @@ bool nearest_of_ball(const Shape& target, const PlacedShape& ball, double max_di
   near.on_b = p;
   const DVec3 way = p - near.on_a;
   near.distance = length(way);
-  if (!(near.distance > kRounding * length(p))) return false;
+  if (!(near.distance > kDistanceRounding * length(p))) return false;
   const double radius_a = double(target.radius), radius_b = double(ball.shape->radius);
   within = near.distance - (radius_a + radius_b) <= max_distance;
   near.normal = way / near.distance;
@@ -80,7 +79,7 @@ bool nearest_of_triangle(const SurfaceTriangle& triangle, const PlacedShape& con
     const double apart = length(way), gap = apart - double(convex.shape->radius);
     if (gap > max_distance) return false;
     // One that its middle lies in is a case for the search below.
-    if (gap > 0.0 && apart > kRounding * length(middle)) {
+    if (gap > 0.0 && apart > kDistanceRounding * length(middle)) {
       out.normal = way / apart;
       out.overlap = false;
       out.distance = gap;
@@ -118,7 +117,7 @@ class SurfaceSearch {
   SurfaceSearch(const Shape& surface, const PlacedShape& convex, double max_distance)
       : surface_(surface), convex_(convex), reach_(max_distance) {
     const Aabb box = bounds(*convex.shape, {{}, to_float(convex.orientation)});
-    const float slack = kBoxSlack * outer_radius(*convex.shape, {});
+    const float slack = kBoundsSlack * outer_radius(*convex.shape, {});
     const Aabb grown = grow(box, slack);
     box_ = outward(convex.position + DVec3(grown.low), convex.position + DVec3(grown.high));
   }
@@ -127,7 +126,7 @@ class SurfaceSearch {
   bool run(Nearest& out) {
     const Aabb& all = surface_.kind == ShapeKind::mesh ? surface_.mesh->tree.box : surface_.field->box;
     const auto least = double(box_gap(all, box_));
-    if (least * (1.0 - kRounding) > reach_) return false;
+    if (least * (1.0 - kDistanceRounding) > reach_) return false;
     const double most = reach_;
     double look = least + double(largest(half_size(box_))) +
                   1.0e-6 * double(largest(max(absolute(all.low), absolute(all.high))));
@@ -135,7 +134,7 @@ class SurfaceSearch {
       const bool last = look >= most;
       walk(last ? most : look);
       // What is found beyond the box that was looked at may not be the nearest.
-      if (last || (found_ && reach_ <= look * (1.0 - kRounding))) break;
+      if (last || (found_ && reach_ <= look * (1.0 - kDistanceRounding))) break;
     }
     out = best_;
     return found_;
@@ -143,7 +142,8 @@ class SurfaceSearch {
 
  private:
   void walk(double distance) {
-    const float margin = distance < double(kUnbounded) ? float(distance * (1.0 + kRounding)) : kUnbounded;
+    const float margin =
+        distance < double(kUnbounded) ? float(distance * (1.0 + kDistanceRounding)) : kUnbounded;
     const Aabb box = grow(box_, margin);
     if (surface_.kind == ShapeKind::mesh) {
       const StaticTree& tree = surface_.mesh->tree;
@@ -169,7 +169,7 @@ class SurfaceSearch {
   }
 
   bool may_be_nearer(const Aabb& box) const {
-    return double(box_gap(box, box_)) * (1.0 - kRounding) <= reach_;
+    return double(box_gap(box, box_)) * (1.0 - kDistanceRounding) <= reach_;
   }
 
   void look_at(const SurfaceTriangle& triangle) {

@@ -8,11 +8,11 @@
 namespace gyre {
 namespace {
 
-constexpr int kMaxVertices = 100;
-constexpr int kMaxFaces = 2 * kMaxVertices;
+constexpr int kMaxPolytopeVertices = 100;
+constexpr int kMaxPolytopeFaces = 2 * kMaxPolytopeVertices;
 // The search ends when the best face moves out by less than this part of the shapes' size: on curved shapes the normal is
 // then within about 5e-5 rad.
-constexpr double kGap = 1.0e-9;
+constexpr double kDepthGap = 1.0e-9;
 // What is thinner than this part of the size counts as flat.
 constexpr double kFlat = 1.0e-9;
 
@@ -24,7 +24,7 @@ struct Face {
   DVec3 normal;     // outward, unit
   double distance;  // of the plane from the origin; negative when the origin lies outside
 };
-static_assert(kMaxFaces <= 256 && kMaxVertices <= 256);
+static_assert(kMaxPolytopeFaces <= 256 && kMaxPolytopeVertices <= 256);
 
 // Cosine to the found normal of faces that may hold the witness points.
 constexpr double kSameSide = 0.999;
@@ -32,11 +32,11 @@ constexpr double kSameSide = 0.999;
 constexpr double kNearBest = 0.9;
 
 // A face without area: it closes the surface but says nothing about the distance.
-constexpr double kNever = 1.0e300;
+constexpr double kNoDistance = 1.0e300;
 
-class Polytope {
+class ExpandingPolytope {
  public:
-  explicit Polytope(const CorePair& pair) : pair_(pair) {}
+  explicit ExpandingPolytope(const CorePair& pair) : pair_(pair) {}
 
   // A tetrahedron from the points of `start` and of the shapes' extreme points. False if B - A is flat; then `flat_normal`
   // is a direction across it.
@@ -57,15 +57,15 @@ class Polytope {
   bool take_farther(DVec3 direction, int count, double threshold);
 
   const CorePair& pair_;
-  DifferencePoint vertices_[kMaxVertices];
-  Face faces_[kMaxFaces];
+  DifferencePoint vertices_[kMaxPolytopeVertices];
+  Face faces_[kMaxPolytopeFaces];
   int vertex_count_ = 0;
   int face_count_ = 0;
-  int free_[kMaxFaces];
+  int free_[kMaxPolytopeFaces];
   int free_count_ = 0;
 };
 
-int Polytope::new_face(int a, int b, int c) {
+int ExpandingPolytope::new_face(int a, int b, int c) {
   const int i = free_count_ > 0 ? free_[--free_count_] : face_count_++;
   Face& face = faces_[i];
   face.v[0] = std::uint8_t(a), face.v[1] = std::uint8_t(b), face.v[2] = std::uint8_t(c);
@@ -83,14 +83,14 @@ int Polytope::new_face(int a, int b, int c) {
     face.distance = dot(face.normal, corner);
   } else {
     face.normal = {};
-    face.distance = kNever;
+    face.distance = kNoDistance;
   }
   return i;
 }
 
 // Puts the extreme point along +-direction behind the first `count` ones if it is farther than `threshold` from vertex 0
 // along it.
-bool Polytope::take_farther(DVec3 direction, int count, double threshold) {
+bool ExpandingPolytope::take_farther(DVec3 direction, int count, double threshold) {
   const DVec3 origin = vertices_[0].way;
   const DifferencePoint up = pair_.support(direction), down = pair_.support(-direction);
   const double far_up = dot(up.way - origin, direction), far_down = dot(origin - down.way, direction);
@@ -100,7 +100,7 @@ bool Polytope::take_farther(DVec3 direction, int count, double threshold) {
 }
 
 // From `known` points that span a point, line or plane to four that span a volume.
-bool Polytope::extend(int known, DVec3& flat_normal) {
+bool ExpandingPolytope::extend(int known, DVec3& flat_normal) {
   const double thin = kFlat * pair_.size();
   const DVec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   if (known < 2) {
@@ -126,7 +126,7 @@ bool Polytope::extend(int known, DVec3& flat_normal) {
   return take_farther(normal, 3, thin);
 }
 
-bool Polytope::start(const CoreDistance& start, DVec3& flat_normal) {
+bool ExpandingPolytope::start(const CoreDistance& start, DVec3& flat_normal) {
   // Take over the corners of GJK's simplex that are well apart.
   const double thin = 1.0e-6 * pair_.size();
   int known = 0;
@@ -167,7 +167,7 @@ bool Polytope::start(const CoreDistance& start, DVec3& flat_normal) {
   return true;
 }
 
-int Polytope::nearest(DVec3 outward, double cosine) const {
+int ExpandingPolytope::nearest(DVec3 outward, double cosine) const {
   int best = -1;
   for (int i = 0; i < face_count_; ++i) {
     if (!faces_[i].alive || dot(faces_[i].normal, outward) < cosine) continue;
@@ -176,17 +176,17 @@ int Polytope::nearest(DVec3 outward, double cosine) const {
   return best;
 }
 
-bool Polytope::add(const DifferencePoint& point, int first) {
-  if (vertex_count_ == kMaxVertices) return false;
+bool ExpandingPolytope::add(const DifferencePoint& point, int first) {
+  if (vertex_count_ == kMaxPolytopeVertices) return false;
   const int apex = vertex_count_;
   vertices_[vertex_count_++] = point;
   // Flood over the faces that the point lies above; what they border on is the horizon.
-  std::uint8_t seen[kMaxFaces];
+  std::uint8_t seen[kMaxPolytopeFaces];
   int seen_count = 0;
   struct Edge {
     std::uint8_t from, to, outside;
   };
-  Edge horizon[kMaxFaces];
+  Edge horizon[kMaxPolytopeFaces];
   int horizon_count = 0;
   faces_[first].visible = true;
   seen[seen_count++] = std::uint8_t(first);
@@ -196,7 +196,7 @@ bool Polytope::add(const DifferencePoint& point, int first) {
       Face& other = faces_[beyond];
       if (other.visible) continue;
       // A face without area goes with whatever surrounds it.
-      if (other.distance == kNever || dot(other.normal, point.way) > other.distance) {
+      if (other.distance == kNoDistance || dot(other.normal, point.way) > other.distance) {
         other.visible = true;
         seen[seen_count++] = std::uint8_t(beyond);
       }
@@ -215,19 +215,19 @@ bool Polytope::add(const DifferencePoint& point, int first) {
     return false;
   };
   // Each corner of the horizon must be left once and reached once, or the surface would fold.
-  std::int16_t leaves[kMaxVertices], reaches[kMaxVertices];
+  std::int16_t leaves[kMaxPolytopeVertices], reaches[kMaxPolytopeVertices];
   for (int i = 0; i < vertex_count_; ++i) leaves[i] = reaches[i] = -1;
   for (int k = 0; k < horizon_count; ++k) {
     if (leaves[horizon[k].from] >= 0 || reaches[horizon[k].to] >= 0) return refuse();
     leaves[horizon[k].from] = std::int16_t(k);
     reaches[horizon[k].to] = std::int16_t(k);
   }
-  if (horizon_count < 3 || face_count_ + horizon_count - free_count_ > kMaxFaces) return refuse();
+  if (horizon_count < 3 || face_count_ + horizon_count - free_count_ > kMaxPolytopeFaces) return refuse();
   for (int k = 0; k < seen_count; ++k) {
     faces_[seen[k]].alive = false;
     free_[free_count_++] = seen[k];
   }
-  std::uint8_t made[kMaxFaces];
+  std::uint8_t made[kMaxPolytopeFaces];
   for (int k = 0; k < horizon_count; ++k)
     made[k] = std::uint8_t(new_face(horizon[k].from, horizon[k].to, apex));
   for (int k = 0; k < horizon_count; ++k) {
@@ -244,19 +244,19 @@ bool Polytope::add(const DifferencePoint& point, int first) {
   return true;
 }
 
-void Polytope::witness(DVec3 target, DVec3 outward, DVec3& on_a, DVec3& on_b) const {
-  double least = kNever;
+void ExpandingPolytope::witness(DVec3 target, DVec3 outward, DVec3& on_a, DVec3& on_b) const {
+  double least = kNoDistance;
   // A flat side of the difference is many triangles: the one under which the target lies holds the pair. A face that looks
   // the other way may be as near (the way out is as long on both sides) but holds other points; it serves only when the
   // face that gave the direction has been worked on since.
   double side = -2.0;
   for (int i = 0; i < face_count_; ++i) {
-    if (faces_[i].alive && faces_[i].distance < kNever) side = max(side, dot(faces_[i].normal, outward));
+    if (faces_[i].alive && faces_[i].distance < kNoDistance) side = max(side, dot(faces_[i].normal, outward));
   }
   side = min(side, kSameSide);
   for (int i = 0; i < face_count_; ++i) {
     const Face& face = faces_[i];
-    if (!face.alive || face.distance == kNever || dot(face.normal, outward) < side) continue;
+    if (!face.alive || face.distance == kNoDistance || dot(face.normal, outward) < side) continue;
     const DifferencePoint &a = vertices_[face.v[0]], &b = vertices_[face.v[1]], &c = vertices_[face.v[2]];
     const SimplexPoint near = closest_on_triangle(target, a.way, b.way, c.way);
     const double squared = length_squared(near.point - target);
@@ -283,21 +283,21 @@ CorePenetration across(const CorePair& pair, const CoreDistance& start, DVec3 no
 }  // namespace
 
 CorePenetration core_penetration(const CorePair& pair, const CoreDistance& start) {
-  Polytope polytope(pair);
+  ExpandingPolytope polytope(pair);
   DVec3 flat_normal;
   if (!polytope.start(start, flat_normal)) return across(pair, start, flat_normal);
   CorePenetration best;
-  best.depth = kNever;
-  const double gap = kGap * pair.size();
+  best.depth = kNoDistance;
+  const double gap = kDepthGap * pair.size();
   while (true) {
     ++best.iterations;
     // Where a whole ring of directions is equally good (a capsule inside a cone, on one axis) the search would spread over
     // all of it. Past half of the memory it stays near the best direction found.
-    const bool everywhere = polytope.vertex_count() < kMaxVertices / 2;
+    const bool everywhere = polytope.vertex_count() < kMaxPolytopeVertices / 2;
     const int i = polytope.nearest(-best.normal, everywhere ? -2.0 : kNearBest);
     if (i < 0) break;
     const Face face = polytope.face(i);
-    if (face.distance == kNever) break;
+    if (face.distance == kNoDistance) break;
     const DifferencePoint w = pair.support(face.normal);
     const double reach = dot(w.way, face.normal);
     // `reach` is the depth along this normal whatever else the polytope looks like.

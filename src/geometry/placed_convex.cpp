@@ -8,7 +8,7 @@ namespace {
 
 // Faces of a box as in support.h: 2 * axis + (1 on the positive side); corners by the bits of their signs. Which of an edge's
 // two faces is left and which is right makes no difference to a search for axes.
-constexpr HullEdge kBoxEdges[12] = {
+constexpr HullEdge kBoxHullEdges[12] = {
     {0, 1, 4, 2}, {2, 3, 3, 4}, {4, 5, 2, 5}, {6, 7, 5, 3},  // along x
     {0, 2, 0, 4}, {1, 3, 4, 1}, {4, 6, 5, 0}, {5, 7, 1, 5},  // along y
     {0, 4, 2, 0}, {1, 5, 1, 2}, {2, 6, 0, 3}, {3, 7, 3, 1},  // along z
@@ -90,7 +90,7 @@ PlacedConvex::PlacedConvex(const Shape& shape, Quat orientation)
       place_vertices(x, y, z, 8);
       const float offsets[8] = {e.x, e.x, e.y, e.y, e.z, e.z, e.z, e.z};
       place_faces(kBoxNormalX, kBoxNormalY, kBoxNormalZ, offsets, 6);
-      edges_ = kBoxEdges;
+      edges_ = kBoxHullEdges;
       break;
     }
     case ShapeKind::hull:

@@ -26,8 +26,7 @@ constexpr EdgesOfCorners kEdgesOf = [] {
   return edges;
 }();
 
-constexpr int kLanes = kPolytopeLanes;
-using Floats = Wide<kLanes>;
+using Floats = Wide<kPolytopeLanes>;
 
 }  // namespace
 
@@ -89,18 +88,18 @@ void face_polygon(const Polytope& polytope, int face, FacePolygon& out) {
 float highest_along(const Polytope& p, Vec3 d) { return -lowest_along(p, -d); }
 
 LowestVertex lowest_vertex(const Polytope& p, Vec3 d) {
-  const Vec3W<kLanes> direction = splat<kLanes>(d);
-  constexpr std::int32_t kOwn[kLanes] = {0, 1, 2, 3};
-  WideInt<kLanes> index = WideInt<kLanes>::load_unaligned(kOwn), winner = index;
+  const Vec3W<kPolytopeLanes> direction = splat<kPolytopeLanes>(d);
+  constexpr std::int32_t kOwn[kPolytopeLanes] = {0, 1, 2, 3};
+  WideInt<kPolytopeLanes> index = WideInt<kPolytopeLanes>::load_unaligned(kOwn), winner = index;
   Floats best = values_along(p, 0, direction);
-  for (int i = kLanes; i < p.padded_count; i += kLanes) {
-    index = index + WideInt<kLanes>(kLanes);
+  for (int i = kPolytopeLanes; i < p.padded_count; i += kPolytopeLanes) {
+    index = index + WideInt<kPolytopeLanes>(kPolytopeLanes);
     const Floats value = values_along(p, i, direction);
     winner = select(value < best, index, winner);
     best = min(value, best);
   }
   int lane = 0;
-  for (int k = 1; k < kLanes; ++k) {
+  for (int k = 1; k < kPolytopeLanes; ++k) {
     if (best[k] < best[lane] || (best[k] == best[lane] && winner[k] < winner[lane])) lane = k;
   }
   // The padding repeats the last vertex, behind it.

@@ -8,7 +8,7 @@ using Int = std::int64_t;
 
 constexpr int kNone = -1;
 
-struct Triangle {
+struct HullFace {
   int vertex[3];
   int neighbor[3];  // across the edge from vertex[i] to the next
   Int normal[3];    // exact: each part is below 2^53
@@ -44,9 +44,9 @@ int exact_sign(const Int n[3], const Int d[3]) {
   return low != 0 ? 1 : 0;
 }
 
-class Builder {
+class GridHullBuilder {
  public:
-  Builder(std::span<const GridPoint> points, const QuickhullLimits& limits)
+  GridHullBuilder(std::span<const GridPoint> points, const QuickhullLimits& limits)
       : points_(points), limits_(limits), next_(points.size(), kNone), start_at_(points.size(), kNone) {}
 
   GridSpan start(std::span<const int> candidates);
@@ -58,10 +58,10 @@ class Builder {
   int count(std::span<const int> some) const { return some.empty() ? int(points_.size()) : int(some.size()); }
   static int pick(std::span<const int> some, int i) { return some.empty() ? i : some[std::size_t(i)]; }
   const GridPoint& at(int point) const { return points_[std::size_t(point)]; }
-  Triangle& face(int i) { return faces_[std::size_t(i)]; }
-  const Triangle& face(int i) const { return faces_[std::size_t(i)]; }
+  HullFace& face(int i) { return faces_[std::size_t(i)]; }
+  const HullFace& face(int i) const { return faces_[std::size_t(i)]; }
 
-  int side(const Triangle& t, int point, double& distance) const;
+  int side(const HullFace& t, int point, double& distance) const;
   int add_face(int a, int b, int c);
   void assign(int point, std::span<const int> faces);
   int find_visible(int point) const;
@@ -74,7 +74,7 @@ class Builder {
 
   std::span<const GridPoint> points_;
   QuickhullLimits limits_;
-  std::vector<Triangle> faces_;
+  std::vector<HullFace> faces_;
   std::vector<int> free_;
   std::vector<int> order_;
   std::vector<int> next_;      // list of waiting points of a face
@@ -88,7 +88,7 @@ class Builder {
 };
 
 // Which side of the triangle's plane the point is on, and how far (rounded; of no use for the sign).
-int Builder::side(const Triangle& t, int point, double& distance) const {
+int GridHullBuilder::side(const HullFace& t, int point, double& distance) const {
   const GridPoint& p = at(point);
   const GridPoint& a = at(t.vertex[0]);
   const Int d[3] = {Int(p.x) - a.x, Int(p.y) - a.y, Int(p.z) - a.z};
@@ -102,8 +102,8 @@ int Builder::side(const Triangle& t, int point, double& distance) const {
   return exact_sign(t.normal, d);
 }
 
-int Builder::add_face(int a, int b, int c) {
-  Triangle t{};
+int GridHullBuilder::add_face(int a, int b, int c) {
+  HullFace t{};
   t.vertex[0] = a;
   t.vertex[1] = b;
   t.vertex[2] = c;
@@ -129,7 +129,7 @@ int Builder::add_face(int a, int b, int c) {
 }
 
 // Puts the point on the list of that of `faces` from which it is farthest; it is inside if it sees none.
-void Builder::assign(int point, std::span<const int> faces) {
+void GridHullBuilder::assign(int point, std::span<const int> faces) {
   int best = kNone;
   double best_distance = 0.0;
   for (const int f : faces) {
@@ -141,7 +141,7 @@ void Builder::assign(int point, std::span<const int> faces) {
     }
   }
   if (best == kNone) return;
-  Triangle& t = face(best);
+  HullFace& t = face(best);
   next_[std::size_t(point)] = t.first_outside;
   t.first_outside = point;
   // Of equally far points the last in order, which is a corner of what they span.
@@ -154,7 +154,7 @@ void Builder::assign(int point, std::span<const int> faces) {
 
 // The first tetrahedron: the ends along the longest axis, the point farthest from their line, the one farthest from the
 // plane of the three.
-GridSpan Builder::start(std::span<const int> candidates) {
+GridSpan GridHullBuilder::start(std::span<const int> candidates) {
   const int n = count(candidates);
   int low[3], high[3];
   const auto axis_of = [&](int point, int axis) {
@@ -215,7 +215,7 @@ GridSpan Builder::start(std::span<const int> candidates) {
   return GridSpan::volume;
 }
 
-int Builder::find_visible(int point) const {
+int GridHullBuilder::find_visible(int point) const {
   int best = kNone;
   double best_distance = 0.0;
   for (int f = 0; f < int(faces_.size()); ++f) {
@@ -230,7 +230,7 @@ int Builder::find_visible(int point) const {
 }
 
 // Inserts the points of `first`, then hands all others to the faces they see.
-void Builder::insert_all(std::span<const int> first) {
+void GridHullBuilder::insert_all(std::span<const int> first) {
   for (const int p : first) {
     const int visible = find_visible(p);
     if (visible != kNone) insert(p, visible);
@@ -244,14 +244,14 @@ void Builder::insert_all(std::span<const int> first) {
 }
 
 // Collects the faces that see `point` (they hang together) in removed_, and the edges around them in horizon_.
-void Builder::find_horizon(int point, int visible) {
+void GridHullBuilder::find_horizon(int point, int visible) {
   removed_.assign(1, visible);
   horizon_.clear();
   face(visible).seen = true;
   for (std::size_t i = 0; i < removed_.size(); ++i) {
-    const Triangle& t = face(removed_[i]);
+    const HullFace& t = face(removed_[i]);
     for (int e = 0; e < 3; ++e) {
-      Triangle& other = face(t.neighbor[e]);
+      HullFace& other = face(t.neighbor[e]);
       if (other.seen) continue;
       double distance;
       if (side(other, point, distance) > 0) {
@@ -264,7 +264,7 @@ void Builder::find_horizon(int point, int visible) {
   }
 }
 
-void Builder::insert(int point, int visible) {
+void GridHullBuilder::insert(int point, int visible) {
   find_horizon(point, visible);
   orphans_.clear();
   for (const int f : removed_) {
@@ -279,7 +279,7 @@ void Builder::insert(int point, int visible) {
     const int f = add_face(edge.from, edge.to, point);
     fresh_.push_back(f);
     face(f).neighbor[0] = edge.beyond;
-    Triangle& beyond = face(edge.beyond);
+    HullFace& beyond = face(edge.beyond);
     for (int e = 0; e < 3; ++e) {
       if (beyond.vertex[e] == edge.to) beyond.neighbor[e] = f;
     }
@@ -296,11 +296,11 @@ void Builder::insert(int point, int visible) {
 }
 
 // The point that is farthest outside any plane.
-bool Builder::find_far_plane(int& point, int& visible) const {
+bool GridHullBuilder::find_far_plane(int& point, int& visible) const {
   double best = limits_.tolerance;
   visible = kNone;
   for (int f = 0; f < int(faces_.size()); ++f) {
-    const Triangle& t = face(f);
+    const HullFace& t = face(f);
     if (!t.alive || t.farthest == kNone || !(t.farthest_distance > best)) continue;
     best = t.farthest_distance;
     visible = f;
@@ -309,14 +309,14 @@ bool Builder::find_far_plane(int& point, int& visible) const {
   return visible != kNone;
 }
 
-double Builder::distance_to(int point, int f) const {
-  const Triangle& t = face(f);
+double GridHullBuilder::distance_to(int point, int f) const {
+  const HullFace& t = face(f);
   return distance_to_triangle(to_double(at(point)), to_double(at(t.vertex[0])), to_double(at(t.vertex[1])),
                               to_double(at(t.vertex[2])));
 }
 
 // Distance of an outside point from the hull, walking from face to face as long as it falls; never too small.
-double Builder::descend(int point, int from) const {
+double GridHullBuilder::descend(int point, int from) const {
   double best = distance_to(point, from);
   for (int current = from, before = kNone; current != before;) {
     before = current;
@@ -333,11 +333,11 @@ double Builder::descend(int point, int from) const {
 
 // Beyond a sharp edge a point can be near all planes and yet far from the hull: when no plane is exceeded, looks at the
 // true distances. Points that are near enough are dropped: the hull only grows.
-bool Builder::find_far_point(int& point, int& visible) {
+bool GridHullBuilder::find_far_point(int& point, int& visible) {
   double best = limits_.tolerance;
   visible = kNone;
   for (int f = 0; f < int(faces_.size()); ++f) {
-    Triangle& t = face(f);
+    HullFace& t = face(f);
     if (!t.alive) continue;
     int kept = kNone;
     for (int p = t.first_outside, following; p != kNone; p = following) {
@@ -359,7 +359,7 @@ bool Builder::find_far_point(int& point, int& visible) {
 }
 
 // Inserts farthest points until none is outside (true) or no vertex is left (false).
-bool Builder::grow() {
+bool GridHullBuilder::grow() {
   int point = kNone, visible = kNone;
   while (find_far_plane(point, visible) || find_far_point(point, visible)) {
     if (int(order_.size()) >= limits_.vertices) return false;
@@ -368,12 +368,12 @@ bool Builder::grow() {
   return true;
 }
 
-GridHull Builder::result(GridSpan span, bool complete) const {
+GridHull GridHullBuilder::result(GridSpan span, bool complete) const {
   GridHull out;
   out.span = span;
   out.complete = complete;
   std::vector<bool> used(points_.size(), false);
-  for (const Triangle& t : faces_) {
+  for (const HullFace& t : faces_) {
     if (!t.alive) continue;
     out.triangles.push_back({{t.vertex[0], t.vertex[1], t.vertex[2]}});
     for (const int v : t.vertex) used[std::size_t(v)] = true;
@@ -417,7 +417,7 @@ double distance_to_triangle(DVec3 p, DVec3 a, DVec3 b, DVec3 c) {
 
 GridHull quickhull(std::span<const GridPoint> points, std::span<const int> first,
                    const QuickhullLimits& limits) {
-  Builder builder(points, limits);
+  GridHullBuilder builder(points, limits);
   const GridSpan span = builder.start(first);
   if (span != GridSpan::volume) return builder.result(span, false);
   builder.insert_all(first);

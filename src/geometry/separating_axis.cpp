@@ -21,7 +21,6 @@ constexpr float kReachMargin = 1.0e-4f;
 constexpr float kOutermost = 1.0e-5f;
 // What rounding, kOutermost and the corners of faces that lie off their plane add to a separation at most, of the sizes' sum.
 constexpr float kRounding = 3.0e-5f;
-constexpr int kMaxVertices = 255, kMaxFaces = 255, kMaxEdges = 510;
 
 constexpr int kLanes = kPolytopeLanes;
 using Floats = Wide<kLanes>;
@@ -39,7 +38,7 @@ FaceQuery best_face(const Polytope& reference, const Polytope& other, const Tran
   const Vec3 shift = reference_from_other.position;
   const Vec3 center = turn * other.centroid + shift;
   // The other's inner ball bounds what a face can reach, so a good first face spares most of the rest.
-  float bound[kMaxFaces + 1];
+  float bound[kMaxHullFaces + 1];
   const int count = reference.face_count;
   Floats largest_bound(-kUnbounded);
   for (int f = 0; f < count; f += kLanes) {
@@ -93,7 +92,7 @@ ArcsW in_every_lane(const Arc<Vec3>& arc) {
 
 // Some edges of a polytope. Plain arrays: most of them is never written.
 struct EdgeList {
-  static constexpr int kRoom = (kMaxEdges + kLanes - 1) / kLanes * kLanes;
+  static constexpr int kRoom = (kMaxHullEdges + kLanes - 1) / kLanes * kLanes;
   int count = 0;
   std::uint16_t index[kRoom];
 };
@@ -169,7 +168,7 @@ float find_heights(const Polytope& p, Vec3 up, float shift, float* heights) {
 
 // Edges of which one end lies no higher than `limit`.
 void near_edges(const Polytope& p, const float* heights, float limit, EdgeList& out) {
-  std::uint64_t near[(kMaxEdges + 63) / 64] = {};
+  std::uint64_t near[(kMaxHullEdges + 63) / 64] = {};
   for (int i = 0; i < p.padded_count; i += kLanes) {
     unsigned low = to_bits(Floats::load_unaligned(heights + i) <= Floats(limit));
     for (; low != 0; low &= low - 1) {
@@ -227,7 +226,7 @@ class EdgeCandidates {
   }
 
   void collect(const BestFace& face, float max_separation, float floor) {
-    float heights_a[kMaxVertices + 1], heights_b[kMaxVertices + 1];
+    float heights_a[kMaxHullVertices + 1], heights_b[kMaxHullVertices + 1];
     // A's vertices upside down, so that low means near for both.
     const float bottom_a = find_heights(a_, -face.normal, 0.0f, heights_a);
     const float bottom_b =

@@ -43,6 +43,9 @@ constexpr bool is_convex(ShapeKind kind) { return kind <= ShapeKind::hull; }
 // it does not bound.
 Aabb bounds(const Shape& shape, const Transform& t);
 constexpr float kUnbounded = 1.0e18f;
+// How much too tight the box may be, of outer_radius(): that of a disc seen from the side loses half of a float's
+// digits.
+constexpr float kBoundsSlack = 1.0e-3f;
 
 // Radius of the largest ball around the shape's middle (the origin; a hull's centroid) that lies inside, a measure of how
 // far the body may move before it can pass through something: 0 for meshes and height fields, which have no inside, and

@@ -24,7 +24,7 @@ struct Split {
   float low = 0.0f, scale = 0.0f;
 };
 
-struct Builder {
+struct TreeBuilder {
   std::span<const Aabb> boxes;
   std::vector<std::uint32_t>& items;
   std::vector<std::uint32_t> scratch;
@@ -78,7 +78,7 @@ void try_planes(const Bins& bins, Split candidate, float& best_cost, Split& best
   }
 }
 
-Split Builder::best_split(const Range& range) const {
+Split TreeBuilder::best_split(const Range& range) const {
   Aabb middles = kEmptyBox;
   for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
     const Vec3 m = middle(items[i]);
@@ -107,7 +107,7 @@ Split Builder::best_split(const Range& range) const {
 }
 
 // Moves the left items to the front, both sides in their old order. Returns how many are left.
-std::uint32_t Builder::partition(const Range& range, const Split& split) {
+std::uint32_t TreeBuilder::partition(const Range& range, const Split& split) {
   std::uint32_t left = 0, right = 0;
   for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
     const std::uint32_t item = items[i];
@@ -121,7 +121,7 @@ std::uint32_t Builder::partition(const Range& range, const Split& split) {
   return left;
 }
 
-void Builder::divide(const Range& range, bool by_halves, Range& left, Range& right) {
+void TreeBuilder::divide(const Range& range, bool by_halves, Range& left, Range& right) {
   const Split split = by_halves ? Split{} : best_split(range);
   std::uint32_t left_count = split.axis < 0 ? range.count / 2 : partition(range, split);
   left = {range.first, left_count, bounds(range.first, left_count)};
@@ -130,7 +130,7 @@ void Builder::divide(const Range& range, bool by_halves, Range& left, Range& rig
 }
 
 // Splits a node's run into at most eight, always the one with the largest surface that is still too long for a leaf.
-int split_children(Builder& builder, const Range& whole, bool by_halves, Range* children) {
+int split_children(TreeBuilder& builder, const Range& whole, bool by_halves, Range* children) {
   children[0] = whole;
   int count = 1;
   while (count < StaticTree::kWidth) {
@@ -171,7 +171,7 @@ void build_static_tree(std::span<const Aabb> boxes, StaticTree& tree) {
   for (std::uint32_t i = 0; i < total; ++i) tree.items[i] = i;
   tree.box = {};
   if (total == 0) return;
-  Builder builder{boxes, tree.items, std::vector<std::uint32_t>(total)};
+  TreeBuilder builder{boxes, tree.items, std::vector<std::uint32_t>(total)};
   struct Task {
     Range range;
     std::uint32_t node;

@@ -93,12 +93,12 @@ class PolyhedronCut {
 };
 
 // Corners by the signs of their coordinates (bit 0: x positive ...), counter-clockwise seen from outside.
-constexpr std::uint8_t kBoxFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                                          {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+constexpr std::uint8_t kBoxFaceCorners[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                                {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
 
 SubmergedPart box_part(DVec3 half, DVec3 normal, double level) {
   PolyhedronCut cut(normal, level);
-  for (const auto& face : kBoxFaces) {
+  for (const auto& face : kBoxFaceCorners) {
     cut.begin_face();
     for (int i = 0; i <= 4; ++i) {
       const std::uint8_t corner = face[i % 4];

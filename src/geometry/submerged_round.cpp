@@ -1,5 +1,6 @@
 #include "geometry/submerged_round.h"
 
+#include "geometry/quadrature.h"
 #include "math/trig.h"
 
 namespace gyre {
@@ -7,10 +8,7 @@ namespace gyre {
 namespace {
 
 // Nodes and weights of Gauss and Legendre on [0, 1].
-struct Node {
-  double at, weight;
-};
-constexpr Node kNodes[12] = {
+constexpr QuadratureNode kNodes[12] = {
     {0.0092196828766403748, 0.023587668193255914}, {0.047941371814762573, 0.053469662997659213},
     {0.11504866290284765, 0.080039164271673111},   {0.20634102285669129, 0.10158371336153296},
     {0.31608425050090988, 0.1167462682691774},     {0.43738329574426554, 0.12457352290670139},
@@ -106,7 +104,7 @@ class SliceSum {
     const bool is_cut = t * t < r2;
     if (!is_cut && t <= 0.0) return;
     const double width = high - low;
-    for (const Node& node : kNodes) {
+    for (const QuadratureNode& node : kNodes) {
       if (!is_cut) {
         const double y = low + width * node.at;
         add_disc(y, section.radius_squared(y), width * node.weight);

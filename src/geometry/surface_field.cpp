@@ -8,7 +8,7 @@ namespace gyre {
 namespace {
 
 // A group of triangles is one dipole from this many of its radii on: off by a few hundredths at most there.
-constexpr double kFar = 2.0;
+constexpr double kDipoleRadii = 2.0;
 
 // A sum of angles as one complex number and whole turns, so that one arc tangent does for all of them.
 class AngleSum {
@@ -121,7 +121,7 @@ double SurfaceField::winding(DVec3 p) const {
       const Dipole& dipole = dipoles_[at * StaticTree::kWidth + std::uint32_t(lane)];
       const DVec3 way = dipole.center - p;
       const double square = dot(way, way);
-      if (square > kFar * kFar * dipole.radius * dipole.radius) {
+      if (square > kDipoleRadii * kDipoleRadii * dipole.radius * dipole.radius) {
         far += dot(way, dipole.normal) / (square * std::sqrt(square));
       } else if (is_leaf(below)) {
         for (std::uint32_t i = leaf_first(below); i < leaf_first(below) + leaf_count(below); ++i)

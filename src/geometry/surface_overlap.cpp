@@ -7,7 +7,7 @@
 namespace gyre {
 namespace {
 
-constexpr float kBoxSlack = 1.0e-5f;  // of a box's size: more than turning it in float loses
+constexpr float kTurningSlack = 1.0e-5f;  // of a box's size: more than turning it in float loses
 // Half-spaces whose normals are opposite to within this sine are apart only if their planes are.
 constexpr float kOpposite = 1.0e-6f;
 
@@ -64,7 +64,7 @@ bool any_triangle(const Shape& surface, const Aabb& box, Test&& test) {
 }
 
 Aabb grown(const Aabb& box) {
-  const float slack = kBoxSlack * largest(max(box.high, -box.low));
+  const float slack = kTurningSlack * largest(max(box.high, -box.low));
   return {box.low - Vec3{slack, slack, slack}, box.high + Vec3{slack, slack, slack}};
 }
 

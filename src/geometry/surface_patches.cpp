@@ -1,6 +1,7 @@
 #include "geometry/surface_patches.h"
 
 #include "geometry/hull.h"
+#include "geometry/quadrature.h"
 #include "math/trig.h"
 
 namespace gyre {
@@ -14,7 +15,7 @@ using PatchFn = FunctionRef<void(const SurfacePatch&)>;
 constexpr int kMostCorners = 256;  // of a face and one more for each edge that the plane cuts
 
 // Corners stay as they are until they are set: most faces have four.
-struct Corner {
+struct PolygonCorner {
   double x, y, z;
 
   operator DVec3() const { return {x, y, z}; }
@@ -25,7 +26,7 @@ struct Polygon {
   void add(DVec3 p) { corners[count++] = {p.x, p.y, p.z}; }
 
   int count;
-  Corner corners[kMostCorners + 2];
+  PolygonCorner corners[kMostCorners + 2];
 };
 
 // Sutherland and Hodgman, for one plane.
@@ -115,14 +116,11 @@ DVec3 around(int i) {
   }
 }
 
-struct Node {
-  double at, weight;
-};
 // Gauss and Legendre on [0, 1].
-constexpr Node kFour[4] = {{0.069431844202973713, 0.17392742256872693},
-                           {0.33000947820757187, 0.32607257743127307},
-                           {0.66999052179242813, 0.32607257743127307},
-                           {0.93056815579702629, 0.17392742256872693}};
+constexpr QuadratureNode kFour[4] = {{0.069431844202973713, 0.17392742256872693},
+                                     {0.33000947820757187, 0.32607257743127307},
+                                     {0.66999052179242813, 0.32607257743127307},
+                                     {0.93056815579702629, 0.17392742256872693}};
 
 // Rings of patches, each counted by its share below the plane.
 class Rings {
@@ -148,7 +146,7 @@ class Rings {
   }
   // Half a ball or a whole one: equal heights have equal areas (Archimedes).
   void show_ball(double middle, double radius, double low, double high) const {
-    for (const Node& node : kFour) {
+    for (const QuadratureNode& node : kFour) {
       const double z = low + node.at * (high - low);
       const double across = std::sqrt(radius * radius - z * z);
       show(middle + z, across, across / radius, z / radius,
@@ -159,7 +157,7 @@ class Rings {
   void show_side(double low, double radius_low, double high, double radius_high) const {
     const double rise = high - low, narrow = radius_low - radius_high;
     const double slant = std::sqrt(rise * rise + narrow * narrow);
-    for (const Node& node : kFour) {
+    for (const QuadratureNode& node : kFour) {
       const double radius = radius_low - node.at * narrow;
       show(low + node.at * rise, radius, rise / slant, narrow / slant,
            2.0 * kPiDouble * radius * slant * node.weight);

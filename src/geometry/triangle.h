@@ -11,6 +11,9 @@
 
 namespace gyre {
 
+// m, of meshes and height fields. Beyond it, products of three coordinates would leave the range of a float.
+constexpr float kMaxSurfaceCoordinate = 1.0e9f;
+
 enum class EdgeKind : std::uint8_t {
   open,     // no neighbour: the border of the surface, or a seam that cannot be paired
   convex,   // a ridge, seen from the front

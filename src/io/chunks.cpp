@@ -12,16 +12,16 @@ namespace gyre {
 
 namespace {
 
-constexpr char kMagic[9] = "GYREPLAY";
-constexpr std::size_t kHeaderBytes = 8 + 4 + 4 + 8;
+constexpr char kRecordingMagic[9] = "GYREPLAY";
+constexpr std::size_t kFileHeaderBytes = 8 + 4 + 4 + 8;
 constexpr std::size_t kChunkHeaderBytes = 4 + 4 + 8 + 8;
-constexpr std::size_t kLengthPlace = 8;
-constexpr std::size_t kChecksumPlace = 16;
+constexpr std::size_t kChunkLengthPlace = 8;
+constexpr std::size_t kChunkChecksumPlace = 16;
 
 // Of the chunk's head up to the checksum, and the payload.
 std::uint64_t checksum_of(const std::byte* chunk, std::size_t payload_bytes) {
   Hasher hasher;
-  hasher.add(std::span<const std::byte>(chunk, kChecksumPlace));
+  hasher.add(std::span<const std::byte>(chunk, kChunkChecksumPlace));
   hasher.add(std::span<const std::byte>(chunk + kChunkHeaderBytes, payload_bytes));
   return hasher.value();
 }
@@ -34,7 +34,7 @@ std::uint64_t recording_layout(bool motion_hashes) {
 }
 
 void write_recording_header(ByteWriter& out, std::uint64_t layout) {
-  out.put_bytes(std::as_bytes(std::span<const char>(kMagic, sizeof kMagic - 1)));
+  out.put_bytes(std::as_bytes(std::span<const char>(kRecordingMagic, sizeof kRecordingMagic - 1)));
   out.put(kRecordingVersion);
   out.put(std::uint32_t(0));
   out.put(layout);
@@ -47,13 +47,13 @@ void write_chunk(ByteWriter& out, ChunkKind kind, std::uint32_t number, std::spa
   out.put(std::uint64_t(payload.size()));
   out.put(std::uint64_t(0));
   out.put_bytes(payload);
-  out.patch(start + kChecksumPlace, checksum_of(out.view().data() + start, payload.size()));
+  out.patch(start + kChunkChecksumPlace, checksum_of(out.view().data() + start, payload.size()));
 }
 
 Error ChunkReader::read_header() {
   ByteReader in(bytes_);
-  const std::span<const std::byte> magic = in.get_bytes(sizeof kMagic - 1);
-  if (in.failed() || std::memcmp(magic.data(), kMagic, magic.size()) != 0) {
+  const std::span<const std::byte> magic = in.get_bytes(sizeof kRecordingMagic - 1);
+  if (in.failed() || std::memcmp(magic.data(), kRecordingMagic, magic.size()) != 0) {
     return make_error(ErrorCode::invalid_data, "recording: these bytes are none");
   }
   const auto version = in.get<std::uint32_t>();
@@ -64,7 +64,7 @@ Error ChunkReader::read_header() {
     return make_error(ErrorCode::unsupported, "recording: it is of format %u; this version reads format %u",
                       version, kRecordingVersion);
   }
-  place_ = kHeaderBytes;
+  place_ = kFileHeaderBytes;
   return {};
 }
 
@@ -89,18 +89,18 @@ bool ChunkReader::next(Chunk& chunk) {
 }
 
 void reseal_recording(std::span<std::byte> bytes) {
-  std::size_t place = kHeaderBytes;
+  std::size_t place = kFileHeaderBytes;
   for (std::uint32_t number = 0; place + kChunkHeaderBytes <= bytes.size(); ++number) {
     std::byte* const start = bytes.data() + place;
     const std::size_t left = bytes.size() - place - kChunkHeaderBytes;
-    auto length = load_little<std::uint64_t>(start + kLengthPlace);
+    auto length = load_little<std::uint64_t>(start + kChunkLengthPlace);
     if (length > left) length = left;
     const std::span<std::byte> payload(start + kChunkHeaderBytes, std::size_t(length));
     const std::uint32_t kind = load_little<std::uint32_t>(start);
     if (kind == std::uint32_t(ChunkKind::snapshot)) reseal_snapshot(payload);
     store_little(start + 4, number);
-    store_little(start + kLengthPlace, length);
-    store_little(start + kChecksumPlace, checksum_of(start, payload.size()));
+    store_little(start + kChunkLengthPlace, length);
+    store_little(start + kChunkChecksumPlace, checksum_of(start, payload.size()));
     place += kChunkHeaderBytes + payload.size();
   }
 }

@@ -10,7 +10,9 @@ namespace {
 
 constexpr std::uint64_t kMark = 0x31'50'4d'43'44'52'59'47u;  // "GYRDCMP1"
 
-Error bad(const char* what) { return make_error(ErrorCode::invalid_data, "decomposition: %s", what); }
+Error bad_decomposition(const char* what) {
+  return make_error(ErrorCode::invalid_data, "decomposition: %s", what);
+}
 
 // Calls visit(field) for every number of the report, in the order of the file.
 template <class Report, class Visit>
@@ -50,14 +52,15 @@ std::vector<std::byte> save_decomposition(const Decomposition& decomposition, st
 
 Result<Decomposition> load_decomposition(std::span<const std::byte> bytes, std::uint64_t key) {
   constexpr std::size_t kHash = 8;
-  if (bytes.size() < 3 * kHash) return bad("the bytes end too soon");
+  if (bytes.size() < 3 * kHash) return bad_decomposition("the bytes end too soon");
   const std::span<const std::byte> content = bytes.first(bytes.size() - kHash);
   ByteReader in(content);
-  if (in.get<std::uint64_t>() != kMark) return bad("these bytes are none, or of another version");
+  if (in.get<std::uint64_t>() != kMark)
+    return bad_decomposition("these bytes are none, or of another version");
   if (in.get<std::uint64_t>() != key)
-    return bad("these bytes are of another mesh, other settings or another version");
+    return bad_decomposition("these bytes are of another mesh, other settings or another version");
   if (load_little<std::uint64_t>(bytes.data() + content.size()) != hash_bytes(content.data(), content.size()))
-    return bad("the bytes are damaged");
+    return bad_decomposition("the bytes are damaged");
   Decomposition out;
   each_field(out.report, [&](auto& field) { field = in.get<std::remove_reference_t<decltype(field)>>(); });
   const std::size_t count = in.get_count(1 + 2 * sizeof(std::uint64_t));
@@ -65,10 +68,10 @@ Result<Decomposition> load_decomposition(std::span<const std::byte> bytes, std::
   for (std::size_t i = 0; i < count; ++i) {
     const Result<Geometry> hull = read_geometry(in, none);
     if (!hull) return hull.error();
-    if (hull->kind() != ShapeKind::hull) return bad("something in it is no hull");
+    if (hull->kind() != ShapeKind::hull) return bad_decomposition("something in it is no hull");
     out.hulls.push_back(*hull);
   }
-  if (in.failed() || !in.finished()) return bad("the bytes are not what they say");
+  if (in.failed() || !in.finished()) return bad_decomposition("the bytes are not what they say");
   return out;
 }
 

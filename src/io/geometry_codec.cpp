@@ -8,20 +8,22 @@
 #include "geometry/hull.h"
 #include "geometry/mesh.h"
 #include "geometry/mesh_topology.h"
+#include "geometry/triangle.h"
 #include "io/enum_counts.h"
 
 namespace gyre {
 
 namespace {
 
-Error bad(const char* what) { return make_error(ErrorCode::invalid_data, "cooked geometry: %s", what); }
+Error bad_geometry(const char* what) {
+  return make_error(ErrorCode::invalid_data, "cooked geometry: %s", what);
+}
 
 std::span<const float> floats_of(std::span<const Vec3> vectors) {
   static_assert(sizeof(Vec3) == 3 * sizeof(float));
   return {vectors.empty() ? nullptr : &vectors.front().x, 3 * vectors.size()};
 }
 
-void put_vector(ByteWriter& out, Vec3 v) { out.put(v.x), out.put(v.y), out.put(v.z); }
 Vec3 get_vector(ByteReader& in) {
   Vec3 v;
   v.x = in.get<float>(), v.y = in.get<float>(), v.z = in.get<float>();
@@ -104,7 +106,7 @@ Error read_hull(ByteReader& in, CookedGeometry& cooked) {
   hull->face_vertices = in.get_all<std::uint8_t>();
   const std::size_t faces = hull->face_offsets.empty() ? 0 : hull->face_offsets.size() - 1;
   if (in.failed() || hull->vertices.size() < 4 || hull->vertices.size() > 255 || faces < 4 || faces > 255) {
-    return bad("a hull of an impossible size");
+    return bad_geometry("a hull of an impossible size");
   }
   for (std::size_t f = 0; f < faces; ++f) {
     const Vec3 normal = get_vector(in);
@@ -119,16 +121,17 @@ Error read_hull(ByteReader& in, CookedGeometry& cooked) {
   }
   hull->centroid = get_vector(in);
   hull->inner_radius = in.get<float>();
-  if (in.failed() || !faces_fit(*hull) || !edges_fit(*hull)) return bad("a hull whose faces do not close");
+  if (in.failed() || !faces_fit(*hull) || !edges_fit(*hull))
+    return bad_geometry("a hull whose faces do not close");
   for (const HullPlane& plane : hull->planes) {
     if (!is_finite(plane.normal) || !is_finite(plane.offset))
-      return bad("a hull with a plane that is not finite");
+      return bad_geometry("a hull with a plane that is not finite");
     if (absolute(length_squared(plane.normal) - 1.0f) > 1.0e-3f)
-      return bad("a hull with a normal that is not a unit");
+      return bad_geometry("a hull with a normal that is not a unit");
   }
   if (!all_finite(hull->vertices) || !is_finite(hull->centroid) || !(hull->inner_radius >= 0.0f) ||
       !is_finite(hull->inner_radius)) {
-    return bad("a hull that is not finite");
+    return bad_geometry("a hull that is not finite");
   }
   complete_hull(*hull);
   cooked.hull = std::move(hull);
@@ -165,22 +168,22 @@ bool order_by_source(std::span<const std::uint32_t> source, std::vector<std::uin
 // The tree over the triangles as they were given puts them into the very order in which they are stored.
 Error rebuild_tree(Mesh& mesh) {
   std::vector<std::uint32_t> order;
-  if (!order_by_source(mesh.source, order)) return bad("a mesh with two triangles of one number");
+  if (!order_by_source(mesh.source, order)) return bad_geometry("a mesh with two triangles of one number");
   std::vector<Aabb> boxes(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) boxes[i] = triangle_box(mesh, order[i]);
   build_static_tree(boxes, mesh.tree);
   for (std::size_t i = 0; i < order.size(); ++i) {
-    if (order[mesh.tree.items[i]] != i) return bad("a mesh whose triangles are not in the order of its tree");
+    if (order[mesh.tree.items[i]] != i)
+      return bad_geometry("a mesh whose triangles are not in the order of its tree");
   }
   mesh.tree.items = {};
   return {};
 }
 
 Error read_mesh(ByteReader& in, CookedGeometry& cooked) {
-  constexpr float kMaxCoordinate = 1.0e9f;  // m, as cook_mesh has it
   auto mesh = std::make_unique<Mesh>();
   const auto bits = in.get<std::uint8_t>();
-  if (bits > (kDoubleSided | kHasMaterials)) return bad("a mesh of an unknown kind");
+  if (bits > (kDoubleSided | kHasMaterials)) return bad_geometry("a mesh of an unknown kind");
   mesh->double_sided = (bits & kDoubleSided) != 0;
   mesh->vertices = get_vectors(in);
   mesh->indices = in.get_all<std::uint32_t>();
@@ -189,25 +192,25 @@ Error read_mesh(ByteReader& in, CookedGeometry& cooked) {
   if ((bits & kHasMaterials) != 0) {
     mesh->materials = in.get_all<std::uint16_t>();
     for (const std::uint32_t triangle : mesh->source) {
-      if (triangle >= mesh->materials.size()) return bad("a mesh with a triangle without material");
+      if (triangle >= mesh->materials.size()) return bad_geometry("a mesh with a triangle without material");
     }
   }
   if (in.failed() || triangles == 0 || triangles > StaticTree::kMaxItems ||
       mesh->indices.size() != 3 * triangles) {
-    return bad("a mesh of an impossible size");
+    return bad_geometry("a mesh of an impossible size");
   }
   for (const Vec3& v : mesh->vertices) {
-    if (!is_finite(v) || largest(absolute(v)) > kMaxCoordinate)
-      return bad("a mesh with a vertex out of range");
+    if (!is_finite(v) || largest(absolute(v)) > kMaxSurfaceCoordinate)
+      return bad_geometry("a mesh with a vertex out of range");
   }
   for (const std::uint32_t index : mesh->indices) {
-    if (index >= mesh->vertices.size()) return bad("a mesh with an index out of range");
+    if (index >= mesh->vertices.size()) return bad_geometry("a mesh with an index out of range");
   }
   for (std::size_t i = 0; i < mesh->indices.size(); i += 3) {
     const std::uint32_t* corner = mesh->indices.data() + i;
     if (triangle_normal(mesh->vertices[corner[0]], mesh->vertices[corner[1]], mesh->vertices[corner[2]]) ==
         Vec3{}) {
-      return bad("a mesh with a triangle without area");
+      return bad_geometry("a mesh with a triangle without area");
     }
   }
   mesh->normals.resize(triangles);
@@ -234,7 +237,7 @@ Result<Geometry> read_field(ByteReader& in) {
   def.spacing = in.get<float>();
   const std::vector<float> heights = in.get_all<float>();
   if (in.failed() || std::uint64_t(def.columns) * def.rows != heights.size()) {
-    return bad("a height field of an impossible size");
+    return bad_geometry("a height field of an impossible size");
   }
   def.heights = heights;
   return cook_height_field(def);
@@ -276,23 +279,23 @@ Result<Geometry> read_geometry(ByteReader& in, const GeometryTable& known) {
   const auto kind = in.get<ShapeKind>();
   const auto hash = in.get<std::uint64_t>();
   ByteReader body(in.get_bytes(in.get<std::uint64_t>()));
-  if (in.failed()) return bad("it ends too soon");
+  if (in.failed()) return bad_geometry("it ends too soon");
   if (const Geometry* const found = known.find(hash); found != nullptr && found->kind() == kind)
     return *found;
   if (kind == ShapeKind::height_field) {
     const Result<Geometry> field = read_field(body);
     if (field && (!body.finished() || field->content_hash() != hash))
-      return bad("a height field that is not what it says");
+      return bad_geometry("a height field that is not what it says");
     return field;
   }
   auto cooked = std::make_shared<CookedGeometry>();
   cooked->kind = kind;
   cooked->content_hash = hash;
-  Error e = bad("it is of no kind that is cooked");
+  Error e = bad_geometry("it is of no kind that is cooked");
   if (kind == ShapeKind::hull) e = read_hull(body, *cooked);
   if (kind == ShapeKind::mesh) e = read_mesh(body, *cooked);
   if (e.code != ErrorCode::none) return e;
-  if (!body.finished()) return bad("there is more than its parts take");
+  if (!body.finished()) return bad_geometry("there is more than its parts take");
   return Geometry(std::shared_ptr<const CookedGeometry>(std::move(cooked)));
 }
 
@@ -308,7 +311,7 @@ Error read_geometry_table(ByteReader& in, GeometryTable& table) {
     if (!geometry) return geometry.error();
     table.add(*geometry);
   }
-  return in.failed() ? bad("the table ends too soon") : Error{};
+  return in.failed() ? bad_geometry("the table ends too soon") : Error{};
 }
 
 void write_shape(ByteWriter& out, const AnyShape& shape) {

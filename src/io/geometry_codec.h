@@ -29,6 +29,8 @@ class GeometryTable {
   FlatMap<std::uint32_t> place_of_;
 };
 
+inline void put_vector(ByteWriter& out, Vec3 v) { out.put(v.x), out.put(v.y), out.put(v.z); }
+
 // One cooked hull, mesh or height field.
 void write_geometry(ByteWriter& out, const Geometry& geometry);
 // `known` may hold it already: then it is shared instead of built. The error says what is wrong with the bytes.

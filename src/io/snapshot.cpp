@@ -13,12 +13,12 @@ namespace gyre {
 
 namespace {
 
-constexpr char kMagic[9] = "GYRESNAP";
-constexpr std::size_t kHeaderBytes = 8 + 4 + 4 + 8 + 8;
-constexpr std::size_t kLengthPlace = 16;
-constexpr std::size_t kChecksumPlace = 24;
+constexpr char kSnapshotMagic[9] = "GYRESNAP";
+constexpr std::size_t kSnapshotHeaderBytes = 8 + 4 + 4 + 8 + 8;
+constexpr std::size_t kBodyLengthPlace = 16;
+constexpr std::size_t kBodyChecksumPlace = 24;
 
-Error bad(const char* what) { return make_error(ErrorCode::invalid_data, "snapshot: %s", what); }
+Error bad_snapshot(const char* what) { return make_error(ErrorCode::invalid_data, "snapshot: %s", what); }
 
 // -------------------------------------------------------------------------------------------------------- the columns
 
@@ -117,7 +117,7 @@ struct StoredColumn {
 Error list_columns(ByteReader& in, std::vector<StoredColumn>& columns) {
   const auto count = in.get<std::uint32_t>();
   constexpr std::uint32_t kMostColumns = 1024;
-  if (in.failed() || count > kMostColumns) return bad("it ends before its columns");
+  if (in.failed() || count > kMostColumns) return bad_snapshot("it ends before its columns");
   for (std::uint32_t i = 0; i < count; ++i) {
     StoredColumn column;
     const std::span<const std::byte> name = in.get_bytes(in.get<std::uint8_t>());
@@ -125,10 +125,10 @@ Error list_columns(ByteReader& in, std::vector<StoredColumn>& columns) {
     column.layout = in.get<std::uint64_t>();
     column.count = in.get<std::uint64_t>();
     column.payload = in.get_bytes(in.get<std::uint64_t>());
-    if (in.failed()) return bad("it ends within a column");
+    if (in.failed()) return bad_snapshot("it ends within a column");
     columns.push_back(column);
   }
-  return in.finished() ? Error{} : bad("there is more than its columns take");
+  return in.finished() ? Error{} : bad_snapshot("there is more than its columns take");
 }
 
 class ColumnReader {
@@ -236,20 +236,22 @@ Error read_columns(ByteReader& in, const GeometryTable& geometry, StateColumns& 
 }
 
 Error read_header(ByteReader& in, std::span<const std::byte>& body) {
-  const std::span<const std::byte> magic = in.get_bytes(sizeof kMagic - 1);
-  if (in.failed() || std::memcmp(magic.data(), kMagic, magic.size()) != 0) return bad("these bytes are none");
+  const std::span<const std::byte> magic = in.get_bytes(sizeof kSnapshotMagic - 1);
+  if (in.failed() || std::memcmp(magic.data(), kSnapshotMagic, magic.size()) != 0)
+    return bad_snapshot("these bytes are none");
   const auto version = in.get<std::uint32_t>();
   in.get<std::uint32_t>();
   const auto length = in.get<std::uint64_t>();
   const auto checksum = in.get<std::uint64_t>();
-  if (in.failed()) return bad("it ends within its header");
+  if (in.failed()) return bad_snapshot("it ends within its header");
   if (version != kSnapshotVersion) {
     return make_error(ErrorCode::unsupported, "snapshot: it is of format %u; this version reads format %u",
                       version, kSnapshotVersion);
   }
-  if (length != in.left()) return bad("it is not as long as it says");
+  if (length != in.left()) return bad_snapshot("it is not as long as it says");
   body = in.get_bytes(length);
-  if (hash_bytes(body.data(), body.size()) != checksum) return bad("it is damaged: the checksum differs");
+  if (hash_bytes(body.data(), body.size()) != checksum)
+    return bad_snapshot("it is damaged: the checksum differs");
   return {};
 }
 
@@ -261,7 +263,7 @@ void collect_geometry(const WorldState& state, GeometryTable& geometry) {
 
 void write_snapshot(ByteWriter& out, const WorldState& state, GeometryTable& geometry) {
   const std::size_t start = out.size();
-  out.put_bytes(std::as_bytes(std::span<const char>(kMagic, sizeof kMagic - 1)));
+  out.put_bytes(std::as_bytes(std::span<const char>(kSnapshotMagic, sizeof kSnapshotMagic - 1)));
   out.put(kSnapshotVersion);
   out.put(std::uint32_t(0));
   out.put(std::uint64_t(0));
@@ -275,9 +277,9 @@ void write_snapshot(ByteWriter& out, const WorldState& state, GeometryTable& geo
   ColumnWriter writer(out);
   for_each_column(state, writer);
   out.patch(count_place, writer.count);
-  const std::span<const std::byte> body = out.view().subspan(start + kHeaderBytes);
-  out.patch(start + kLengthPlace, std::uint64_t(body.size()));
-  out.patch(start + kChecksumPlace, hash_bytes(body.data(), body.size()));
+  const std::span<const std::byte> body = out.view().subspan(start + kSnapshotHeaderBytes);
+  out.patch(start + kBodyLengthPlace, std::uint64_t(body.size()));
+  out.patch(start + kBodyChecksumPlace, hash_bytes(body.data(), body.size()));
 }
 
 Error read_snapshot(std::span<const std::byte> bytes, std::uint16_t world_number, GeometryTable& geometry,
@@ -305,10 +307,10 @@ std::uint64_t state_layout() {
 }
 
 void reseal_snapshot(std::span<std::byte> bytes) {
-  if (bytes.size() < kHeaderBytes) return;
-  const std::span<std::byte> body = bytes.subspan(kHeaderBytes);
-  store_little(bytes.data() + kLengthPlace, std::uint64_t(body.size()));
-  store_little(bytes.data() + kChecksumPlace, hash_bytes(body.data(), body.size()));
+  if (bytes.size() < kSnapshotHeaderBytes) return;
+  const std::span<std::byte> body = bytes.subspan(kSnapshotHeaderBytes);
+  store_little(bytes.data() + kBodyLengthPlace, std::uint64_t(body.size()));
+  store_little(bytes.data() + kBodyChecksumPlace, hash_bytes(body.data(), body.size()));
 }
 
 std::vector<std::byte> save_snapshot(const World& world) {

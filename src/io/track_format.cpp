@@ -2,14 +2,13 @@
 #include "io/track_format.h"
 
 #include "io/enum_counts.h"
+#include "io/geometry_codec.h"
 
 namespace gyre {
 
 namespace {
 
-Error bad(const char* what) { return make_error(ErrorCode::invalid_data, "recording: %s", what); }
-
-void put_vector(ByteWriter& out, Vec3 v) { out.put(v.x), out.put(v.y), out.put(v.z); }
+Error bad_recording(const char* what) { return make_error(ErrorCode::invalid_data, "recording: %s", what); }
 
 // Fails the reader on what no shape can have.
 float get_finite(ByteReader& in) {
@@ -22,7 +21,7 @@ float get_size(ByteReader& in) {
   if (value < 0.0f) in.fail();
   return value;
 }
-Vec3 get_vector(ByteReader& in) {
+Vec3 get_finite_vector(ByteReader& in) {
   Vec3 v;
   v.x = get_finite(in), v.y = get_finite(in), v.z = get_finite(in);
   return v;
@@ -32,9 +31,9 @@ void put_vectors(ByteWriter& out, std::span<const Vec3> vectors) {
   out.put(std::uint64_t(vectors.size()));
   for (const Vec3& v : vectors) put_vector(out, v);
 }
-std::vector<Vec3> get_vectors(ByteReader& in) {
+std::vector<Vec3> get_finite_vectors(ByteReader& in) {
   std::vector<Vec3> vectors(in.get_count(3 * sizeof(float)));
-  for (Vec3& v : vectors) v = get_vector(in);
+  for (Vec3& v : vectors) v = get_finite_vector(in);
   return vectors;
 }
 
@@ -72,7 +71,7 @@ Error read_track_start(std::span<const std::byte> payload, TrackStart& start) {
   if (!in.finished() || start.steps.position_bits < kLeastPositionBits ||
       start.steps.position_bits > kMostPositionBits || start.steps.orientation_bits < kLeastOrientationBits ||
       start.steps.orientation_bits > kMostOrientationBits) {
-    return bad("its track has an accuracy that cannot be");
+    return bad_recording("its track has an accuracy that cannot be");
   }
   return {};
 }
@@ -99,11 +98,11 @@ Result<Geometry> read_track_geometry(std::span<const std::byte> payload) {
   ByteReader in(payload);
   const auto kind = in.get<ShapeKind>();
   if (kind == ShapeKind::hull) {
-    const std::vector<Vec3> points = get_vectors(in);
+    const std::vector<Vec3> points = get_finite_vectors(in);
     if (in.finished()) return cook_hull(points);
   }
   if (kind == ShapeKind::mesh) {
-    const std::vector<Vec3> vertices = get_vectors(in);
+    const std::vector<Vec3> vertices = get_finite_vectors(in);
     const std::vector<std::uint32_t> indices = in.get_all<std::uint32_t>();
     if (in.finished()) return cook_mesh({vertices, indices, false});
   }
@@ -116,7 +115,7 @@ Result<Geometry> read_track_geometry(std::span<const std::byte> payload) {
     def.heights = heights;
     if (in.finished()) return cook_height_field(def);
   }
-  return bad("a geometry of its track cannot be read");
+  return bad_recording("a geometry of its track cannot be read");
 }
 
 void write_track_shape(ByteWriter& out, const TrackShape& shape, std::uint32_t geometry_number) {
@@ -171,7 +170,7 @@ AnyShape get_geometry(ByteReader& in, std::span<const Geometry> geometry) {
       return get_round<Cone>(in);
     case 5: {
       Plane plane;
-      plane.normal = get_vector(in);
+      plane.normal = get_finite_vector(in);
       plane.offset = get_finite(in);
       return plane;
     }
@@ -204,7 +203,7 @@ bool read_track_model(std::span<const std::byte> payload, std::span<const Geomet
   for (std::uint32_t i = 0; i < count && !in.failed(); ++i) {
     TrackShape shape;
     shape.geometry = get_geometry(in, geometry);
-    shape.local.position = get_vector(in);
+    shape.local.position = get_finite_vector(in);
     Quat& q = shape.local.orientation;
     q.x = get_finite(in), q.y = get_finite(in), q.z = get_finite(in), q.w = get_finite(in);
     shape.material_id = in.get<std::uint16_t>();

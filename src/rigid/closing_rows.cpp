@@ -9,9 +9,9 @@ namespace gyre {
 
 namespace {
 
-constexpr int kNewtonSteps = 20;
+constexpr int kClosingSteps = 20;
 constexpr double kNewtonShare = 1.0e-4;  // of the largest impulse that closes one row alone
-constexpr std::uint64_t kMostFactorWork = 20'000'000;
+constexpr std::uint64_t kMostClosingWork = 20'000'000;
 
 class ClosingRows {
  public:
@@ -44,7 +44,7 @@ class ClosingRows {
         edges[edge_count++] = {std::uint32_t(a), std::uint32_t(b)};
     }
     if (rows == 0 || row_bodies_.empty()) return false;
-    if (!plan_blocks(sizes, edges.first(edge_count), kMostFactorWork, arena, plan_)) return false;
+    if (!plan_blocks(sizes, edges.first(edge_count), kMostClosingWork, arena, plan_)) return false;
     rows_ = arena.make<Row>(rows);
     kept_ = arena.make<float*>(rows);
     impulses_ = arena.make<double>(rows);
@@ -68,7 +68,7 @@ class ClosingRows {
     }
     if (!(most > 0.0)) return;
     const FrictionSet none;
-    solve_body_newton({rows, row_bodies_, &none, &plan_}, kNewtonShare * most, kNewtonSteps, impulses_,
+    solve_body_newton({rows, row_bodies_, &none, &plan_}, kNewtonShare * most, kClosingSteps, impulses_,
                       NumberRoom(numbers_));
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i].impulse = impulses_[i];
     warm_start_rows(rows, row_bodies_);

@@ -8,7 +8,7 @@ namespace {
 
 constexpr float kPlay = 0.25f;          // of the size of a stopped body: its core stays where it was held
 constexpr float kStoppedShare = 0.01f;  // of its inverse mass, with which it is moved
-constexpr int kParts = 2;               // of the rest of the way
+constexpr int kPartsOfRest = 2;         // of the rest of the way
 constexpr float kShortTurn = 0.2f;      // rad: where nothing turns further, one is enough
 constexpr int kCorrections = 4;         // at the end of each
 constexpr float kOpen = 3.0e-4f;        // m or rad: less is left to the next step
@@ -57,7 +57,7 @@ void ClosingWay::find_ways() const {
 int ClosingWay::count_parts() const {
   float most = 0.0f;
   for (const ClosingMember& member : members_) most = max(most, length_squared(member.rest_turned));
-  return most < kShortTurn * kShortTurn ? 1 : kParts;
+  return most < kShortTurn * kShortTurn ? 1 : kPartsOfRest;
 }
 
 ClosingWay::Next ClosingWay::next(float open) {

@@ -159,10 +159,9 @@ std::size_t count_stopped_with_joints(const RigidWorld& w, const ContinuousScrat
 // Of two stopped bodies with a joint between them both keep what the one that is stopped first keeps.
 void stop_together(const RigidWorld& w, const ContinuousScratch& scratch, std::span<KeptMotion> kept,
                    Arena& arena) {
-  constexpr std::uint32_t kNone = 0xffffffffu;
   constexpr int kMostPasses = 16;
   const std::span<std::uint32_t> place = arena.make<std::uint32_t>(w.bodies.motion.size());
-  for (std::uint32_t& p : place) p = kNone;
+  for (std::uint32_t& p : place) p = kNoIndex;
   for (std::uint32_t k = 0; k < kept.size(); ++k) {
     if (kept[k].fraction < 1.0f) place[scratch.fast[k].body] = k;
   }
@@ -175,7 +174,7 @@ void stop_together(const RigidWorld& w, const ContinuousScratch& scratch, std::s
       for (const std::uint32_t slot : joints_of(w.bodies, std::uint32_t(body))) {
         const JointRecord& joint = w.joints.records[slot];
         const std::int32_t other = joint.body_a == body ? joint.body_b : joint.body_a;
-        if (other == kNoBody || place[std::size_t(other)] == kNone || !holds_point(w, slot)) continue;
+        if (other == kNoBody || place[std::size_t(other)] == kNoIndex || !holds_point(w, slot)) continue;
         const float others = kept[place[std::size_t(other)]].fraction;
         changed = changed || others < kept[k].fraction;
         kept[k].fraction = min(kept[k].fraction, others);

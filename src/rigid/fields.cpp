@@ -112,12 +112,6 @@ double filter_of(const Six2& mass, const Six2& stiffness, double h) {
   return 0.25 + 4.0 * most / (1.0 + most);
 }
 
-// Pulls may grow with the distance: speeds end where they do everywhere.
-Vec3 within(DVec3 v, double most) {
-  const double size = length(v);
-  return to_float(size > most ? (most / size) * v : v);
-}
-
 // What the streams would give a body at rest.
 Six find_drive(const RigidWorld& w, const FieldBody& from, const BodyStance& stance, double time) {
   Six sum;
@@ -156,8 +150,9 @@ void apply_fields(RigidWorld& w, const FieldBody& from, double h) {
   lock(w.bodies.flags[from.body], matrix, right);
   // Masses and moments may differ by many orders: pivots are judged against their own row only.
   solve_ldlt(factor_ldlt(matrix.m, 1.0e-300), right.v);
-  const Vec3 v = within(stance.velocity + right.linear(), double(kMaxSpeed));
-  const Vec3 a = within(stance.spin + right.angular(), double(kMaxSpin));
+  // Pulls may grow with the distance: speeds end where they do everywhere.
+  const Vec3 v = to_float(within(stance.velocity + right.linear(), double(kMaxSpeed)));
+  const Vec3 a = to_float(within(stance.spin + right.angular(), double(kMaxSpin)));
   if (!is_finite(v) || !is_finite(a)) return;
   motion.linear_velocity = v + Vec3{};
   motion.angular_velocity = a + Vec3{};

@@ -13,11 +13,6 @@ constexpr float kHitShare = 0.3f;
 
 float hit_speed(const Contact& contact) { return kHitShare * std::sqrt(9.81f * contact.size); }
 
-Vec3 point_velocity(const RigidWorld& w, std::uint32_t body, Vec3 from_center) {
-  const BodyMotion& motion = w.bodies.motion[body];
-  return motion.linear_velocity + cross(motion.angular_velocity, from_center);
-}
-
 // `struck`: the point that closed fastest.
 ContactHit make_hit(const RigidWorld& w, const Contact& contact, const Manifold& manifold,
                     const ContactPointState& struck, float impulse) {
@@ -41,8 +36,9 @@ bool note_approach(const RigidWorld& w, const Contact& contact, Manifold& manifo
     ContactPointState& point = manifold.points[k];
     point.approach_speed = 0.0f;
     if (point.normal_impulse > 0.0f) continue;
-    point.approach_speed = dot(manifold.normal, point_velocity(w, contact.body_a, point.from_a) -
-                                                    point_velocity(w, contact.body_b, point.from_b));
+    point.approach_speed =
+        dot(manifold.normal, point_velocity(w.bodies.motion[contact.body_a], point.from_a) -
+                                 point_velocity(w.bodies.motion[contact.body_b], point.from_b));
     fastest = max(fastest, point.approach_speed);
   }
   return fastest > 0.0f && fastest > hit_speed(contact);

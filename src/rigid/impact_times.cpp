@@ -45,10 +45,6 @@ struct SweptPair {
   Gap gap(double time, double reach) const { return find_gap(a, b, time, reach); }
 };
 
-DVec3 point_velocity(const BodyMotion& motion, Vec3 from_center) {
-  return DVec3(motion.linear_velocity + cross(motion.angular_velocity, from_center));
-}
-
 // The slowest that points of the contact part which touch, m/s; closing is below 0. `near`: m.
 float parting_speed(const RigidWorld& w, const Contact& contact, float near) {
   float slowest = 1.0e30f;
@@ -56,8 +52,8 @@ float parting_speed(const RigidWorld& w, const Contact& contact, float near) {
     for (int k = 0; k < manifold.count; ++k) {
       const ContactPointState& point = manifold.points[k];
       if (point.separation > near) continue;
-      const DVec3 v = point_velocity(w.bodies.motion[contact.body_b], point.from_b) -
-                      point_velocity(w.bodies.motion[contact.body_a], point.from_a);
+      const DVec3 v = DVec3(point_velocity(w.bodies.motion[contact.body_b], point.from_b)) -
+                      DVec3(point_velocity(w.bodies.motion[contact.body_a], point.from_a));
       slowest = min(slowest, float(dot(v, DVec3(manifold.normal))));
     }
   }

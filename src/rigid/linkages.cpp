@@ -9,7 +9,6 @@ namespace gyre {
 
 namespace {
 
-constexpr std::uint32_t kNone = 0xffffffffu;
 // A linkage is solved directly if a factorisation takes no more multiplications than this for each row.
 constexpr std::uint64_t kMostWorkPerRow = 400;
 // and if no more pairs of joints share a body than this for each joint.
@@ -43,11 +42,11 @@ Graph make_graph(std::span<const NetJoint> all, std::size_t bodies, std::span<co
   for (std::uint32_t i = 0; i < all.size(); ++i) {
     if (all[i].equations == 0) continue;
     joints[count++] = i;
-    std::uint32_t previous = kNone;
+    std::uint32_t previous = kNoIndex;
     for_moving(all[i], [&](std::uint32_t body) {
       ++graph.first[places[body] + 1];
       ++ends;
-      if (previous != kNone) {
+      if (previous != kNoIndex) {
         const std::uint32_t a = root_of(graph, previous), b = root_of(graph, places[body]);
         graph.parent[max(a, b)] = min(a, b);
       }
@@ -82,13 +81,13 @@ Groups group_joints(std::span<const NetJoint> all, std::span<const std::uint32_t
                 arena.make<std::uint32_t>(graph.joints.size())};
   const std::span<std::uint32_t> group_of_root = arena.make<std::uint32_t>(graph.parent.size());
   const std::span<std::uint32_t> group_of = arena.make<std::uint32_t>(graph.joints.size());
-  for (std::uint32_t& group : group_of_root) group = kNone;
+  for (std::uint32_t& group : group_of_root) group = kNoIndex;
   std::uint32_t count = 0;
   for (std::uint32_t n = 0; n < graph.joints.size(); ++n) {
-    std::uint32_t place = kNone;
+    std::uint32_t place = kNoIndex;
     for_moving(all[graph.joints[n]], [&](std::uint32_t body) { place = places[body]; });
     std::uint32_t& group = group_of_root[root_of(graph, place)];
-    if (group == kNone) {
+    if (group == kNoIndex) {
       group = count;
       groups.ends[count++] = 0;
     }
@@ -120,7 +119,7 @@ class LinkageMaker {
         arena_(arena),
         shapes_(arena.make<LinkageShape>(most)),
         sides_(arena.make<std::uint32_t>(batch.bodies.size())) {
-    for (std::uint32_t& side : sides_) side = kNone;
+    for (std::uint32_t& side : sides_) side = kNoIndex;
   }
 
   // Makes one of the two, `alone` where lanes cannot bear it; false: neither.
@@ -192,7 +191,7 @@ class LinkageMaker {
     const auto side_of = [&](std::int32_t body) -> std::int32_t {
       if (body == kNoBody || !is_active(w_, std::uint32_t(body))) return -1;
       std::uint32_t& side = sides_[places_[std::size_t(body)]];
-      if (side == kNone) {
+      if (side == kNoIndex) {
         side = std::uint32_t(used);
         draft.bodies[used++] = body;
       }

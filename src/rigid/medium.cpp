@@ -19,14 +19,14 @@ struct Gust {
   double weight;  // of the square of the speed
 };
 // Three sizes with energies as the 2/3 power of the size (A. N. Kolmogorov, 1941), two waves each; weights sum to 1.
-constexpr double kLarge = 0.24657, kMiddle = 0.15533, kSmall = 0.09810;
+constexpr double kLargeWave = 0.24657, kMiddleWave = 0.15533, kSmallWave = 0.09810;
 constexpr Gust kGusts[6] = {
-    {{0.80, 0.00, 0.60}, {-0.36, 0.80, 0.48}, 0.3, 1.0, kLarge},
-    {{0.60, 0.00, -0.80}, {0.48, 0.80, 0.36}, 2.1, 1.0, kLarge},
-    {{0.64, 0.60, 0.48}, {0.60, 0.00, -0.80}, 4.4, 2.0, kMiddle},
-    {{0.48, -0.80, 0.36}, {0.64, 0.60, 0.48}, 1.2, 2.0, kMiddle},
-    {{0.36, 0.48, 0.80}, {0.80, -0.60, 0.00}, 5.7, 4.0, kSmall},
-    {{-0.28, 0.96, 0.00}, {0.00, 0.00, 1.00}, 3.3, 4.0, kSmall},
+    {{0.80, 0.00, 0.60}, {-0.36, 0.80, 0.48}, 0.3, 1.0, kLargeWave},
+    {{0.60, 0.00, -0.80}, {0.48, 0.80, 0.36}, 2.1, 1.0, kLargeWave},
+    {{0.64, 0.60, 0.48}, {0.60, 0.00, -0.80}, 4.4, 2.0, kMiddleWave},
+    {{0.48, -0.80, 0.36}, {0.64, 0.60, 0.48}, 1.2, 2.0, kMiddleWave},
+    {{0.36, 0.48, 0.80}, {0.80, -0.60, 0.00}, 5.7, 4.0, kSmallWave},
+    {{-0.28, 0.96, 0.00}, {0.00, 0.00, 1.00}, 3.3, 4.0, kSmallWave},
 };
 
 DVec3 gusts_at(const FieldRecord& field, DVec3 place, double time) {

@@ -6,7 +6,7 @@ namespace gyre {
 
 namespace {
 
-constexpr int kBlocksPerClaim = 4;
+constexpr int kMotionsPerClaim = 4;
 constexpr int kSpinnersPerClaim = 8;
 
 // Bodies [begin, end) of a list in blocks of `size`.
@@ -118,7 +118,7 @@ void end_projection_stage(void* context, int begin, int end, int) {
 
 void add_motion(ProgramWriter& program, Solve& solve, void (*kernel)(void*, int, int, int), int blocks) {
   const int all = count_blocks(int(solve.moved.size()), solve.kernels.width);
-  program.add(kernel, &solve, blocks, kBlocksPerClaim, blocks == all ? solve.moved_bounds : nullptr);
+  program.add(kernel, &solve, blocks, kMotionsPerClaim, blocks == all ? solve.moved_bounds : nullptr);
 }
 void add_flying(ProgramWriter& program, Solve& solve) {
   program.add(fly_stage, &solve, count_blocks(int(solve.flying.size()), kBodiesPerBlock));

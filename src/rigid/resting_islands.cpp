@@ -20,7 +20,7 @@ struct Slowness {
   bool is_below(float share) const { return speed <= share * scale; }
 };
 // and bound to no axes.
-bool is_free(const RigidWorld& w, std::uint32_t body) {
+bool is_unbound(const RigidWorld& w, std::uint32_t body) {
   const BodyFlags& flags = w.bodies.flags[body];
   return !turns_alone(w.bodies, body, w.settings.last_substep) && flags.locked_linear == 0 &&
          flags.locked_angular == 0;
@@ -83,7 +83,7 @@ void RestingIslands::count_bodies() {
     if (count.refused) continue;
     const Slowness slowness(w_, body, pull);
     ++count.bodies;
-    if (!is_free(w_, body) || !slowness.is_below(kRestShare)) {
+    if (!is_unbound(w_, body) || !slowness.is_below(kSlowShare)) {
       count.refused = true;
     } else if (!slowness.is_below(kCalmShare)) {
       count.stirring = true;

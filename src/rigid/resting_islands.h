@@ -14,7 +14,7 @@ namespace gyre {
 constexpr std::uint32_t kNoPlace = 0xffffffffu;
 
 // Slower than this share of sqrt(gravity * reach) counts as at rest.
-constexpr float kRestShare = 0.1f;
+constexpr float kSlowShare = 0.1f;
 // and slower than this one as all but at rest: what has loops is looked at only then.
 constexpr float kCalmShare = 0.02f;
 // Slower than this share of it a sweep has left nothing to solve.

@@ -9,7 +9,7 @@ namespace gyre {
 
 namespace {
 
-constexpr int kContactsPerBlock = 32;
+constexpr int kRollersPerBlock = 32;
 
 // A contact whose bodies turn against each other by less than this in a step (rad) stays where it is.
 constexpr float kLeastTurn = 1.0e-4f;
@@ -248,7 +248,7 @@ RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch
   if (count == 0) return all;
   const Bearers bearers(constraints, scratch.pairs, bodies, arena);
   const std::span<RollingSides> sides = arena.make<RollingSides>(count);
-  for_blocks(tasks, int(count), kContactsPerBlock, [&](int begin, int end, int) {
+  for_blocks(tasks, int(count), kRollersPerBlock, [&](int begin, int end, int) {
     for (std::size_t k = std::size_t(begin); k < std::size_t(end); ++k) {
       const std::uint32_t i = candidates[k];
       const bool chosen =
@@ -268,7 +268,7 @@ RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch
       if (body != kNoBody) w.bodies.flags[std::size_t(body)].touched = kPlaceShown;
     all.of_constraint[sides[n].constraint] = n;
   }
-  for_blocks(tasks, int(found), kContactsPerBlock, [&](int begin, int end, int) {
+  for_blocks(tasks, int(found), kRollersPerBlock, [&](int begin, int end, int) {
     for (std::size_t n = std::size_t(begin); n < std::size_t(end); ++n) {
       RollingContact& rolling = all.contacts[n] = {};
       static_cast<RollingSides&>(rolling) = sides[n];

@@ -1,13 +1,12 @@
 #include "rigid/row_islands.h"
 
+#include "base/counted_lists.h"
 #include "math/block_lu.h"
 #include "solver/constraint_rows.h"
 
 namespace gyre {
 
 namespace {
-
-constexpr std::uint32_t kNone = 0xffffffffu;
 
 // Sets of bodies; the root of a set is its lowest.
 class BodySets {
@@ -30,40 +29,17 @@ class BodySets {
 };
 
 std::uint32_t active(const RigidWorld& w, std::int32_t body) {
-  return body != kNoBody && is_active(w, std::uint32_t(body)) ? std::uint32_t(body) : kNone;
+  return body != kNoBody && is_active(w, std::uint32_t(body)) ? std::uint32_t(body) : kNoIndex;
 }
 
 struct Ends {
   std::uint32_t a, b;
-  std::uint32_t any() const { return a != kNone ? a : b; }
+  std::uint32_t any() const { return a != kNoIndex ? a : b; }
 };
 Ends ends_of(const RigidWorld& w, const ContactConstraint& c) {
   return {active(w, c.body_a), active(w, c.body_b)};
 }
 Ends ends_of(const RigidWorld& w, const JointRecord& j) { return {active(w, j.body_a), active(w, j.body_b)}; }
-
-// Numbers by island: counted, then filled in.
-struct Lists {
-  std::span<std::uint32_t> ends, items;
-
-  Lists(std::size_t islands, Arena& arena) : ends(arena.make<std::uint32_t>(islands)) {
-    for (std::uint32_t& end : ends) end = 0;
-  }
-  void make_room(Arena& arena) {
-    std::uint32_t sum = 0;
-    for (std::uint32_t& end : ends) {
-      const std::uint32_t count = end;
-      end = sum;
-      sum += count;
-    }
-    items = arena.make<std::uint32_t>(sum);
-  }
-  void add(std::uint32_t island, std::uint32_t item) { items[ends[island]++] = item; }
-  std::span<const std::uint32_t> of(std::size_t island) const {
-    const std::uint32_t begin = island == 0 ? 0 : ends[island - 1];
-    return items.subspan(begin, ends[island] - begin);
-  }
-};
 
 DirectSize size_of(const RigidWorld& w, const BatchScratch& scratch, const SolveBatch& batch,
                    std::span<const JointWork> work, const RowIsland& island) {
@@ -90,12 +66,12 @@ RowIslands find_row_islands(const RigidWorld& w, const BatchScratch& scratch, co
   const std::size_t bodies = w.bodies.motion.size();
   const std::span<std::int32_t> place = arena.make<std::int32_t>(bodies);
   const std::span<std::uint32_t> island_of = arena.make<std::uint32_t>(bodies);
-  for (std::size_t i = 0; i < bodies; ++i) place[i] = kNoRowBody, island_of[i] = kNone;
+  for (std::size_t i = 0; i < bodies; ++i) place[i] = kNoRowBody, island_of[i] = kNoIndex;
   BodySets sets(bodies, arena);
   const auto join = [&](Ends ends) {
-    if (ends.a != kNone) place[ends.a] = 0;
-    if (ends.b != kNone) place[ends.b] = 0;
-    if (ends.a != kNone && ends.b != kNone) sets.unite(ends.a, ends.b);
+    if (ends.a != kNoIndex) place[ends.a] = 0;
+    if (ends.b != kNoIndex) place[ends.b] = 0;
+    if (ends.a != kNoIndex && ends.b != kNoIndex) sets.unite(ends.a, ends.b);
   };
   for (const ContactConstraint& constraint : scratch.constraints) join(ends_of(w, constraint));
   for (const std::uint32_t slot : batch.joints) join(ends_of(w, w.joints.records[slot]));
@@ -105,13 +81,13 @@ RowIslands find_row_islands(const RigidWorld& w, const BatchScratch& scratch, co
     const std::uint32_t root = sets.root(body);
     island_of[body] = root == body ? count++ : island_of[root];
   }
-  Lists own(count, arena), contacts(count, arena), joints(count, arena);
+  CountedLists own(count, arena), contacts(count, arena), joints(count, arena);
   for (const std::uint32_t body : batch.bodies)
-    if (place[body] != kNoRowBody) ++own.ends[island_of[body]];
+    if (place[body] != kNoRowBody) own.count(island_of[body]);
   for (const ContactConstraint& constraint : scratch.constraints)
-    ++contacts.ends[island_of[ends_of(w, constraint).any()]];
+    contacts.count(island_of[ends_of(w, constraint).any()]);
   for (const std::uint32_t slot : batch.joints)
-    ++joints.ends[island_of[ends_of(w, w.joints.records[slot]).any()]];
+    joints.count(island_of[ends_of(w, w.joints.records[slot]).any()]);
   own.make_room(arena), contacts.make_room(arena), joints.make_room(arena);
   for (const std::uint32_t body : batch.bodies)
     if (place[body] != kNoRowBody) own.add(island_of[body], body);
@@ -138,7 +114,7 @@ void plan_row_islands(const RigidWorld& w, const BatchScratch& scratch, const So
         arena.make<BlockEdge>(island.constraints.size() + island.joints.size());
     std::size_t count = 0;
     const auto add = [&](Ends ends) {
-      if (ends.a == kNone || ends.b == kNone || ends.a == ends.b) return;
+      if (ends.a == kNoIndex || ends.b == kNoIndex || ends.a == ends.b) return;
       edges[count++] = {std::uint32_t(islands.place[ends.a]), std::uint32_t(islands.place[ends.b])};
     };
     for (const std::uint32_t i : island.constraints) add(ends_of(w, scratch.constraints[i]));

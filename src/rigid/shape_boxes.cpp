@@ -9,15 +9,15 @@ namespace gyre {
 
 namespace {
 
-constexpr int kLanes = 4;
-using Number = Wide<kLanes>;
-using Vector = Vec3W<kLanes>;
-using Rotation = QuatW<kLanes>;
+constexpr int kBoxLanes = 4;
+using Number = Wide<kBoxLanes>;
+using Vector = Vec3W<kBoxLanes>;
+using Rotation = QuatW<kBoxLanes>;
 
 // Four numbers of each lane's record that lie in a row.
 struct FourEach {
   Number value[4];
-  explicit FourEach(const float* const (&first)[kLanes]) { Rows<kLanes>::gather(first, 0, value); }
+  explicit FourEach(const float* const (&first)[kBoxLanes]) { Rows<kBoxLanes>::gather(first, 0, value); }
   Vector vector(int first) const { return {value[first], value[first + 1], value[first + 2]}; }
   Rotation rotation() const { return {value[0], value[1], value[2], value[3]}; }
 };
@@ -26,7 +26,7 @@ static_assert(offsetof(Aabb, high) == offsetof(Aabb, low) + sizeof(Vec3));
 
 // Numbers that are taken one by one, too.
 struct Numbers {
-  alignas(16) float value[kLanes];
+  alignas(16) float value[kBoxLanes];
   void operator=(Number n) { n.store(value); }
   operator Number() const { return Number::load(value); }
   float operator[](int lane) const { return value[lane]; }
@@ -39,7 +39,7 @@ struct Vectors {
 };
 
 // Of the numbers that a side of a box is the sum of: more than rounding them to float, and what world_box() adds, can come to.
-constexpr float kRounding = 4.0e-6f;
+constexpr float kSideRounding = 4.0e-6f;
 // The same of what a sweep adds, whose ends are boxes of their own.
 constexpr float kWayRounding = 1.0e-5f;
 
@@ -50,7 +50,7 @@ bool is_rounded_box(ShapeKind kind) {
 
 // Half sizes of the box of a box: |R| h, as bounds() has it.
 GYRE_INLINE Vector turned_extents(const Rotation& q, const Vector& half) {
-  const Mat3W<kLanes> r = to_matrix(q);
+  const Mat3W<kBoxLanes> r = to_matrix(q);
   return half.x * absolute(r.x) + half.y * absolute(r.y) + half.z * absolute(r.z);
 }
 
@@ -69,10 +69,10 @@ constexpr Going kGone{&BodyMotion::moved, &BodyMotion::turned, 1.0f};
 class ShapeLanes {
  public:
   ShapeLanes(const RigidWorld& w, std::span<const std::uint32_t> shapes, const Going& going) {
-    const float *turns[kLanes], *centers[kLanes], *linear[kLanes], *angular[kLanes];
-    const float *radii[kLanes], *places[kLanes], *place_turns[kLanes];
+    const float *turns[kBoxLanes], *centers[kBoxLanes], *linear[kBoxLanes], *angular[kBoxLanes];
+    const float *radii[kBoxLanes], *places[kBoxLanes], *place_turns[kBoxLanes];
     Numbers reaches;
-    for (int i = 0; i < kLanes; ++i) {
+    for (int i = 0; i < kBoxLanes; ++i) {
       const std::uint32_t shape = shapes[min(std::size_t(i), shapes.size() - 1)],
                           body = w.shapes.bodies[shape];
       const BodyMass& mass = w.bodies.masses[body];
@@ -117,11 +117,11 @@ class ShapeLanes {
   // Bit i: refit_box() leaves the fat box of lane i as it is, for certain; most rest in theirs for many steps.
   unsigned stay() const {
     const Number size = sizes_;
-    Mask<kLanes> fits = Mask<kLanes>::splat(true);
+    Mask<kBoxLanes> fits = Mask<kBoxLanes>::splat(true);
     const auto fit = [&](Number inside, Number from, Number to, Number slack) {
       fits = fits & (to - from - (inside + inside) + slack < kTooLarge * size);
     };
-    const unsigned inside = stay_within(kSpeculativeShare * size + turning_, kRounding, fit);
+    const unsigned inside = stay_within(kSpeculativeShare * size + turning_, kSideRounding, fit);
     return inside & to_bits(fits);
   }
 
@@ -138,10 +138,10 @@ class ShapeLanes {
   // also(half of the shape's side, box's low and high, slack) for each axis.
   template <class Also>
   unsigned stay_within(Number margin, float rounding, const Also& also) const {
-    const float *lows[kLanes], *highs[kLanes];
+    const float *lows[kBoxLanes], *highs[kBoxLanes];
     Vectors middles;
     unsigned known = 0;
-    for (int i = 0; i < kLanes; ++i) {
+    for (int i = 0; i < kBoxLanes; ++i) {
       lows[i] = &boxes_[i]->low.x;
       highs[i] = &boxes_[i]->low.z;
       const Vec3 middle = to_float(middles_[i]);
@@ -154,7 +154,7 @@ class ShapeLanes {
     const Vector reach = half + Vector{margin, margin, margin}, position = middle - to_origin + to_shape;
     const Number slack = rounding * largest(absolute(middle) + absolute(to_origin) + absolute(to_shape) +
                                             reach + absolute(way));
-    Mask<kLanes> stays = Mask<kLanes>::splat(true);
+    Mask<kBoxLanes> stays = Mask<kBoxLanes>::splat(true);
     const auto look = [&](Number at, Number away, Number goes, Number inside, Number from, Number to) {
       stays =
           stays & (at - away + min(goes, zero) - slack > from) & (at + away + max(goes, zero) + slack < to);
@@ -166,9 +166,9 @@ class ShapeLanes {
     return to_bits(stays) & known;
   }
 
-  const ColliderShape* colliders_[kLanes];
-  const Aabb* boxes_[kLanes];
-  DVec3 middles_[kLanes];  // of the bodies' mass
+  const ColliderShape* colliders_[kBoxLanes];
+  const Aabb* boxes_[kBoxLanes];
+  DVec3 middles_[kBoxLanes];  // of the bodies' mass
   Vectors to_origin_, to_shape_, half_, way_;
   Numbers sizes_, turning_, angle_, turn_[4];
 };
@@ -184,13 +184,13 @@ namespace {
 // Calls look(shapes, their number, places of their bodies in the list) for the bodies' shapes, so many at once.
 template <class Look>
 void for_lanes(const RigidWorld& w, std::span<const std::uint32_t> bodies, const Look& look) {
-  std::uint32_t shapes[kLanes], owners[kLanes];
+  std::uint32_t shapes[kBoxLanes], owners[kBoxLanes];
   std::size_t count = 0;
   for (std::uint32_t place = 0; place < bodies.size(); ++place) {
     for (const ShapeId id : w.bodies.shapes[bodies[place]]) {
       shapes[count] = id.index;
       owners[count++] = place;
-      if (count < kLanes) continue;
+      if (count < kBoxLanes) continue;
       look(std::span<const std::uint32_t>(shapes, count), owners);
       count = 0;
     }

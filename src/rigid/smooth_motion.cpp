@@ -6,11 +6,10 @@ namespace gyre {
 
 namespace {
 
-constexpr std::uint32_t kNone = 0xffffffffu;
 // As many parts as a step is ever cut into for the sake of its error.
 constexpr int kMostParts = 8192;
 
-bool is_free(const RigidWorld& w, std::uint32_t body) {
+bool is_untouched(const RigidWorld& w, std::uint32_t body) {
   return is_active(w, body) && w.bodies.flags[body].touched == kUntouched;
 }
 
@@ -27,11 +26,6 @@ struct Roots {
     parents[max(a, b)] = min(a, b);
   }
 };
-
-DVec3 within(DVec3 v, double most) {
-  const double size = length(v);
-  return size > most ? (most / size) * v : v;
-}
 
 SmoothBody describe(const RigidWorld& w, std::uint32_t i, Arena& arena) {
   const BodyMass& mass = w.bodies.masses[i];
@@ -99,7 +93,7 @@ SpringEnd make_end(const RigidWorld& w, std::int32_t body, Vec3 local_anchor, DV
   end.body = body;
   end.arm = DVec3(local_anchor);
   end.point = world_anchor;
-  if (body != kNoBody && is_free(w, std::uint32_t(body)))
+  if (body != kNoBody && is_untouched(w, std::uint32_t(body)))
     end.place = int(place_in_system[places[std::size_t(body)]]);
   return end;
 }
@@ -222,14 +216,14 @@ Members part_bodies(const RigidWorld& w, const SolveBatch& batch, std::span<cons
     const JointRecord& joint = w.joints.records[slot];
     if (joint.body_a == kNoBody || joint.body_b == kNoBody) continue;
     const std::uint32_t a = std::uint32_t(joint.body_a), b = std::uint32_t(joint.body_b);
-    if (is_free(w, a) && is_free(w, b)) roots.unite(places[a], places[b]);
+    if (is_untouched(w, a) && is_untouched(w, b)) roots.unite(places[a], places[b]);
   }
   Members members{arena.make<std::uint32_t>(count), arena.make<std::uint32_t>(count),
                   arena.make<std::uint32_t>(count)};
   std::uint32_t systems = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
-    members.system_of[i] = kNone;
-    if (!is_free(w, batch.bodies[i])) continue;
+    members.system_of[i] = kNoIndex;
+    if (!is_untouched(w, batch.bodies[i])) continue;
     const std::uint32_t root = roots.of(i);
     if (root == i) {
       members.sizes[systems] = 0;
@@ -271,7 +265,7 @@ void make_systems(SmoothMotion& motion, const SolveBatch& batch, const Members& 
     motion.errors[n] = 0.0;
   }
   for (std::size_t i = 0; i < batch.bodies.size(); ++i) {
-    if (members.system_of[i] == kNone) continue;
+    if (members.system_of[i] == kNoIndex) continue;
     const std::uint32_t body = batch.bodies[i];
     SmoothSystem& system = motion.systems[members.system_of[i]];
     SmoothBody& made = system.bodies[members.in_system[i]];
@@ -293,17 +287,17 @@ void share_springs(SmoothMotion& motion, const Members& members, std::span<const
   const auto system_of = [&](std::uint32_t slot) {
     const JointRecord& joint = w.joints.records[slot];
     for (const std::int32_t body : {joint.body_a, joint.body_b}) {
-      if (body != kNoBody && is_free(w, std::uint32_t(body)))
+      if (body != kNoBody && is_untouched(w, std::uint32_t(body)))
         return members.system_of[places[std::size_t(body)]];
     }
-    return kNone;
+    return kNoIndex;
   };
   const std::span<std::uint32_t> counts = arena.make<std::uint32_t>(motion.systems.size());
   for (std::uint32_t& count : counts) count = 0;
   std::size_t loose = 0;
   for (const std::uint32_t slot : springs) {
     const std::uint32_t system = system_of(slot);
-    if (system == kNone)
+    if (system == kNoIndex)
       ++loose;
     else
       ++counts[system];
@@ -317,7 +311,7 @@ void share_springs(SmoothMotion& motion, const Members& members, std::span<const
   for (const std::uint32_t slot : springs) {
     const std::uint32_t n = system_of(slot);
     SmoothSpring spring = make_spring(w, slot, members.in_system, places);
-    if (n == kNone) {
+    if (n == kNoIndex) {
       motion.loose[loose++] = spring;
       continue;
     }

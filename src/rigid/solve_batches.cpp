@@ -2,6 +2,7 @@
 // solve_batches.h.
 #include "rigid/solve_batches.h"
 
+#include "base/counted_lists.h"
 #include "task/choose.h"
 #include "task/parallel.h"
 
@@ -11,14 +12,13 @@ namespace gyre {
 
 namespace {
 
-constexpr std::uint32_t kNone = 0xffffffffu;
 // Manifolds and joints: what is less is not worth to be shared among workers.
 constexpr std::uint32_t kWorthSharing = 64;
 
 // What islands and batches need to know of a contact or joint, so that its record is read once.
 struct Tie {
   std::uint32_t owner;  // a body that moves: its island is the constraint's
-  std::uint32_t other;  // may be one that does not, or kNone
+  std::uint32_t other;  // may be one that does not, or kNoIndex
   std::uint32_t size;   // manifolds
 };
 
@@ -38,13 +38,13 @@ struct Constraints {
   }
 };
 
-// Returns whether constraints move one of the bodies; kNone is none.
+// Returns whether constraints move one of the bodies; kNoIndex is none.
 bool tie(const RigidWorld& w, std::uint32_t a, std::uint32_t b, std::uint32_t size, Tie& to) {
-  if (a != kNone && is_active(w, a)) {
+  if (a != kNoIndex && is_active(w, a)) {
     to = {a, b, size};
     return true;
   }
-  if (b == kNone || !is_active(w, b)) return false;
+  if (b == kNoIndex || !is_active(w, b)) return false;
   to = {b, a, size};
   return true;
 }
@@ -58,23 +58,23 @@ bool may_act(const RigidWorld& w, std::uint32_t joint) {
 }
 
 // How many are asked for before they are looked at.
-constexpr std::uint32_t kContactsAhead = 8, kJointsAhead = 8;
+constexpr std::uint32_t kContactsFetched = 8, kJointsFetched = 8;
 
 Constraints list_constraints(const RigidWorld& w, Arena& arena, TaskSystem& tasks) {
   const std::span<Tie> contact_ties = arena.make<Tie>(w.contacts.contacts.size());
   const std::span<Tie> joint_ties = arena.make<Tie>(w.joints.ids.capacity());
   const auto manifolds = [&](std::uint32_t slot) {
-    if (w.contacts.with_manifolds.test(slot + kContactsAhead))
-      __builtin_prefetch(&w.contacts.contacts[slot + kContactsAhead]);
+    if (w.contacts.with_manifolds.test(slot + kContactsFetched))
+      __builtin_prefetch(&w.contacts.contacts[slot + kContactsFetched]);
     const Contact& contact = w.contacts.contacts[slot];
     const std::uint32_t count = contact.manifold_count;
     return may_act(contact) && tie(w, contact.body_a, contact.body_b, count, contact_ties[slot]) ? count : 0u;
   };
   const auto works = [&](std::uint32_t slot) {
-    fetch_joint(w.joints, slot + kJointsAhead);
+    fetch_joint(w.joints, slot + kJointsFetched);
     if (!w.joints.ids.live(slot) || !may_act(w, slot)) return false;
     const JointRecord& joint = w.joints.records[slot];
-    // As numbers without a sign, kNoBody is kNone.
+    // As numbers without a sign, kNoBody is kNoIndex.
     return tie(w, std::uint32_t(joint.body_a), std::uint32_t(joint.body_b), 1, joint_ties[slot]);
   };
   const Chosen contacts = choose_among(tasks, arena, manifolds, w.contacts.with_manifolds, w.awake_links.contacts);
@@ -84,11 +84,11 @@ Constraints list_constraints(const RigidWorld& w, Arena& arena, TaskSystem& task
 
 // Union-find over bodies; the root of an island is its lowest body. A kinematic body belongs to the islands that it touches:
 // it moves from sub-step to sub-step, and all must see it where it is.
-class Islands {
+class BatchIslands {
  public:
-  Islands(const RigidWorld& w, const Constraints& constraints, std::span<std::uint32_t> parents)
+  BatchIslands(const RigidWorld& w, const Constraints& constraints, std::span<std::uint32_t> parents)
       : parents_(parents) {
-    for (std::uint32_t& parent : parents_) parent = kNone;
+    for (std::uint32_t& parent : parents_) parent = kNoIndex;
     for (const std::uint32_t body : w.bodies.awake) parents_[body] = body;
     constraints.for_each_tie([&](const Tie& tie) { unite(tie.owner, tie.other); });
     // Who is lower has its root by now.
@@ -99,7 +99,7 @@ class Islands {
  private:
   void unite(std::uint32_t a, std::uint32_t b) {
     // Most are in one island by the time they are asked.
-    if (b == kNone || parents_[b] == kNone || parents_[a] == parents_[b]) return;
+    if (b == kNoIndex || parents_[b] == kNoIndex || parents_[a] == parents_[b]) return;
     a = find(a);
     b = find(b);
     parents_[max(a, b)] = min(a, b);
@@ -112,42 +112,12 @@ class Islands {
   std::span<std::uint32_t> parents_;
 };
 
-// Lists of numbers by batch: first how many each gets, then the numbers themselves.
-class Lists {
- public:
-  // `items`: room for all of them.
-  Lists(Arena& arena, std::size_t batches, std::span<std::uint32_t> items)
-      : ends_(arena.make<std::uint32_t>(batches)), items_(items) {
-    for (std::uint32_t& end : ends_) end = 0;
-  }
-  void count(std::uint32_t batch) { ++ends_[batch]; }
-  // After all were counted.
-  void make_room() {
-    std::uint32_t sum = 0;
-    for (std::uint32_t& end : ends_) {
-      const std::uint32_t count = end;
-      end = sum;
-      sum += count;
-    }
-  }
-  void add(std::uint32_t batch, std::uint32_t item) { items_[ends_[batch]++] = item; }
-  // After all were added.
-  std::span<const std::uint32_t> of(std::size_t batch) const {
-    const std::uint32_t begin = batch == 0 ? 0 : ends_[batch - 1];
-    return items_.subspan(begin, ends_[batch] - begin);
-  }
-
- private:
-  std::span<std::uint32_t> ends_;
-  std::span<std::uint32_t> items_;
-};
-
 // Weights are in quarters of a constraint: each body is one.
 constexpr std::uint32_t kConstraint = 4;
 
 // How much the islands are, by root.
 std::span<const std::uint32_t> weigh_islands(const RigidWorld& w, const Constraints& constraints,
-                                             const Islands& islands, std::size_t bodies, Arena& arena) {
+                                             const BatchIslands& islands, std::size_t bodies, Arena& arena) {
   const std::span<std::uint32_t> weights = arena.make<std::uint32_t>(bodies);
   for (std::uint32_t& weight : weights) weight = 0;
   constraints.for_each_tie(
@@ -156,26 +126,26 @@ std::span<const std::uint32_t> weigh_islands(const RigidWorld& w, const Constrai
   return weights;
 }
 
-// Islands that weigh the same and follow each other are mostly alike (a crowd), so what is in them is solved side by side: their
+// BatchIslands that weigh the same and follow each other are mostly alike (a crowd), so what is in them is solved side by side: their
 // batch ends where lanes are full, if they would not be again. Such a batch is more than half of what it may be.
-constexpr std::uint32_t kLanes = 8;
+constexpr std::uint32_t kIslandLanes = 8;
 
 // Gives each island its batch, written for all its bodies to `batch_of`: small ones fill one after the other, those that have more than
 // `most` are alone in theirs. Returns the weights of the batches.
-std::span<std::uint32_t> part_islands(const RigidWorld& w, const Islands& islands,
+std::span<std::uint32_t> part_islands(const RigidWorld& w, const BatchIslands& islands,
                                       std::span<const std::uint32_t> weights, std::uint32_t most,
                                       Arena& arena, std::span<std::uint32_t> batch_of) {
   const std::span<std::uint32_t> filled = arena.make<std::uint32_t>(w.bodies.awake.size());
   // `open`: the batch that others may join; `alike`: how many islands, the last of it, weigh `last` each.
-  std::uint32_t count = 0, open = kNone, alike = 0, last = 0;
+  std::uint32_t count = 0, open = kNoIndex, alike = 0, last = 0;
   const auto begin_batch = [&] {
     filled[count] = 0;
     return count++;
   };
   const auto choose_batch = [&](std::uint32_t weight) {
     if (weight > most) return begin_batch();
-    const bool lanes_are_full = weight == last && alike > 0 && alike % kLanes == 0;
-    if (open == kNone || filled[open] + (lanes_are_full ? kLanes : 1) * weight > most) {
+    const bool lanes_are_full = weight == last && alike > 0 && alike % kIslandLanes == 0;
+    if (open == kNoIndex || filled[open] + (lanes_are_full ? kIslandLanes : 1) * weight > most) {
       open = begin_batch();
       alike = 0;
     }
@@ -206,14 +176,14 @@ std::span<std::uint32_t> join_few(const RigidWorld& w, std::span<std::uint32_t> 
   const std::span<std::uint32_t> numbers = arena.make<std::uint32_t>(weights.size());
   std::uint32_t left = 0;
   for (std::size_t batch = 0; batch < weights.size(); ++batch) {
-    numbers[batch] = kNone;
+    numbers[batch] = kNoIndex;
     if (is_small(weights[batch])) continue;
     numbers[batch] = left;
     weights[left++] = weights[batch];
   }
   for (const std::uint32_t body : w.bodies.awake) {
     const std::uint32_t number = numbers[batch_of[body]];
-    batch_of[body] = number != kNone ? number : numbers[std::size_t(host)];
+    batch_of[body] = number != kNoIndex ? number : numbers[std::size_t(host)];
   }
   return weights.first(left);
 }
@@ -272,10 +242,9 @@ SolveBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, 
   };
   if (all_weights <= most) return all_in_one(room.batches.first(awake.empty() ? 0 : 1));
   const std::span<SolveBatch> batches = room.batches;
-  Lists bodies(arena, batches.size(), room.bodies), contacts(arena, batches.size(), room.contacts),
-      joints(arena, batches.size(), room.joints);
+  CountedLists bodies(batches.size(), arena), contacts(batches.size(), arena), joints(batches.size(), arena);
   const std::span<std::uint32_t> batch_of = arena.make<std::uint32_t>(places.size());
-  const Islands islands(w, constraints, places);
+  const BatchIslands islands(w, constraints, places);
   const std::span<const std::uint32_t> island_weights =
       weigh_islands(w, constraints, islands, places.size(), arena);
   const std::span<std::uint32_t> parts = part_islands(w, islands, island_weights, most, arena, batch_of);
@@ -289,7 +258,7 @@ SolveBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, 
   const auto joint_batch = [&](std::uint32_t slot) { return batch_of[constraints.joint_ties[slot].owner]; };
   for (const std::uint32_t slot : constraints.contacts) contacts.count(contact_batch(slot));
   for (const std::uint32_t slot : constraints.joints) joints.count(joint_batch(slot));
-  bodies.make_room(), contacts.make_room(), joints.make_room();
+  bodies.make_room(room.bodies), contacts.make_room(room.contacts), joints.make_room(room.joints);
   for (const std::uint32_t body : awake) bodies.add(batch_of[body], body);
   for (const std::uint32_t slot : constraints.contacts) contacts.add(contact_batch(slot), slot);
   for (const std::uint32_t slot : constraints.joints) joints.add(joint_batch(slot), slot);

@@ -15,7 +15,7 @@ std::uint8_t way_to_turn(const Solve& solve, std::uint32_t body) {
 }
 
 // Whether there are bundles, and nothing but they and contacts comes between the moves of bodies.
-bool goes_in_runs(const Solve& solve) {
+bool may_go_in_runs(const Solve& solve) {
   const BatchScratch& s = solve.scratch;
   return !solve.bundles.bundles.empty() && !solve.is_smooth && s.impacts.empty() && s.swept_joints.empty() &&
          solve.linkages.linkages.empty() && solve.fields.blocks() == 0;
@@ -41,7 +41,7 @@ void part_bodies(Solve& solve, Arena& arena, TaskSystem& tasks) {
   const RigidWorld& w = solve.w;
   const std::span<const std::uint32_t> bodies = solve.batch.bodies;
   const int width = solve.kernels.width;
-  BundleRuns runs(goes_in_runs(solve) ? solve.bundles : BundleSolve{}, bodies.size(), width, arena);
+  BundleRuns runs(may_go_in_runs(solve) ? solve.bundles : BundleSolve{}, bodies.size(), width, arena);
   const std::size_t led = std::size_t(runs.count_blocks() * width);
   solve.moved = arena.make<MovedBody>(led + bodies.size());
   solve.flying = arena.make<std::uint32_t>(bodies.size());

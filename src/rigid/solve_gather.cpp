@@ -18,8 +18,8 @@ namespace {
 constexpr float kPushShare = 0.4f;
 // Manifolds and joints lie anywhere in memory: how many places before its turn one is asked for.
 constexpr std::size_t kAhead = 6;
-constexpr int kContactsPerBlock = 64;
-constexpr int kJointsPerBlock = 128;
+constexpr int kContactsPerGather = 64;
+constexpr int kJointsPerGather = 128;
 
 // A body as constraints know it: kNoBody if it never moves (its record is then never read).
 std::int32_t solver_body(const RigidWorld& w, std::uint32_t body) {
@@ -184,13 +184,13 @@ void gather_contacts(Solve& solve, Arena& arena, TaskSystem& tasks) {
   const std::span<const std::uint32_t> slots = solve.batch.contacts;
   const auto waits = [&](std::uint32_t slot) { return !w.waiting.empty() && w.waiting[slot] != 0; };
   const auto for_each_block = [&](auto&& run) {
-    for_blocks(tasks, int(slots.size()), kContactsPerBlock,
+    for_blocks(tasks, int(slots.size()), kContactsPerGather,
                [&](int begin, int end, int) { run(std::size_t(begin), std::size_t(end)); });
   };
   // Where the constraints of a block of contacts begin.
-  const auto block_of = [](std::size_t begin) { return begin / std::size_t(kContactsPerBlock); };
+  const auto block_of = [](std::size_t begin) { return begin / std::size_t(kContactsPerGather); };
   const std::span<std::uint32_t> firsts =
-      arena.make<std::uint32_t>(std::size_t(count_blocks(int(slots.size()), kContactsPerBlock)));
+      arena.make<std::uint32_t>(std::size_t(count_blocks(int(slots.size()), kContactsPerGather)));
   for_each_block([&](std::size_t begin, std::size_t end) {
     std::uint32_t manifolds = 0;
     for (const std::uint32_t slot : slots.subspan(begin, end - begin))
@@ -217,7 +217,7 @@ void gather_contacts(Solve& solve, Arena& arena, TaskSystem& tasks) {
     return found;
   };
   const Found found =
-      reduce_blocks(tasks, int(slots.size()), kContactsPerBlock, Found{}, gather_block, either);
+      reduce_blocks(tasks, int(slots.size()), kContactsPerGather, Found{}, gather_block, either);
   if (found.gaps) close_gaps(s);
   s.impacts.clear();
   if (!found.bouncy) return;
@@ -236,7 +236,7 @@ void look_at_joints(Solve& solve, Arena& arena, TaskSystem& tasks) {
     return is_active(w, std::uint32_t(body)) ? body : kNoBody;
   };
   const int count = int(solve.batch.joints.size());
-  for_blocks(tasks, count, kJointsPerBlock, [&](int begin, int end, int) {
+  for_blocks(tasks, count, kJointsPerGather, [&](int begin, int end, int) {
     for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
       if (i + kAhead < solve.batch.joints.size()) fetch_joint(w.joints, solve.batch.joints[i + kAhead]);
       const std::uint32_t slot = solve.batch.joints[i];

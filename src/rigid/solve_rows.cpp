@@ -277,7 +277,7 @@ void push_apart_stage(void* context, int begin, int end, int worker) {
   }
 }
 
-void place_joints_stage(void* context, int begin, int end, int) {
+void place_row_joints_stage(void* context, int begin, int end, int) {
   const RowSolve& s = *static_cast<RowSolve*>(context);
   Solve& solve = s.solve;
   for (int i = begin; i < end; ++i) {
@@ -295,15 +295,15 @@ void sum_joints_stage(void* context, int begin, int end, int) {
   }
 }
 
-void watch_stage(void* context, int, int, int) {
+void watch_rows_stage(void* context, int, int, int) {
   const Solve& s = static_cast<RowSolve*>(context)->solve;
   watch_impacts(s.scratch.impacts, s.contact_bodies);
 }
-void strike_stage(void* context, int, int, int) {
+void strike_rows_stage(void* context, int, int, int) {
   const Solve& s = static_cast<RowSolve*>(context)->solve;
   strike_impacts(s.scratch.impacts, s.contact_bodies, s.impact_settings);
 }
-void release_stage(void* context, int, int, int) {
+void release_rows_stage(void* context, int, int, int) {
   const Solve& s = static_cast<RowSolve*>(context)->solve;
   release_impacts(s.scratch.impacts, s.contact_bodies, s.impact_settings);
 }
@@ -320,18 +320,18 @@ void run_substeps(RowSolve& s, Arena& arena, TaskSystem& tasks) {
   add_flying(program, solve);
   add_motion(program, solve, prepare_motion_stage, bodies);
   program.add(prepare_fields_stage, &solve.fields, fields);
-  program.add(place_joints_stage, &s, islands);
+  program.add(place_row_joints_stage, &s, islands);
   for (int i = 0; i < solve.motions.count; ++i) {
     program.add(watch_fields_stage, &solve.fields, fields);
-    program.add(watch_stage, &s, impacts);
+    program.add(watch_rows_stage, &s, impacts);
     add_motion(program, solve, predict_stage, bodies);
-    program.add(strike_stage, &s, impacts);
+    program.add(strike_rows_stage, &s, impacts);
     program.add(apply_fields_stage, &solve.fields, fields);
     program.add(i == 0 ? solve_islands_stage<true> : solve_islands_stage<false>, &s, islands);
     add_motion(program, solve, advance_stage, bodies);
     add_turn_alone(program, solve);
-    program.add(release_stage, &s, impacts);
-    program.add(place_joints_stage, &s, islands);
+    program.add(release_rows_stage, &s, impacts);
+    program.add(place_row_joints_stage, &s, islands);
     program.add(sum_joints_stage, &s, islands);
   }
   add_motion(program, solve, begin_projection_stage, bodies);

@@ -22,7 +22,7 @@ constexpr float kContactLeak = 44.0f;
 constexpr float kContactAging = 0.25f;
 // A sub-step is solved in parts: one sweep over the constraints, then everything moves. Two short parts hold four times
 // as stiff as two sweeps in one place.
-constexpr int kParts = 2;
+constexpr int kPartsPerSubstep = 2;
 // Joints: errors are taken back at this rate (1/s), and impulses give way at this one, a little more than half of it, as
 // sweeps that lag behind need (the same page). Neither depends on the sub-step.
 constexpr float kJointRate = 40.0f;
@@ -173,7 +173,7 @@ struct SubStepping {
 
 SubStepping plan_substeps(RigidWorld& w, float seconds, bool by_rows) {
   SubStepping plan;
-  plan.parts = by_rows ? w.settings.substeps : kParts * w.settings.substeps;
+  plan.parts = by_rows ? w.settings.substeps : kPartsPerSubstep * w.settings.substeps;
   plan.h = seconds / float(plan.parts);
   plan.warm_scale = w.settings.last_substep > 0.0f ? plan.h / w.settings.last_substep : 0.0f;
   // Parts of a step up to an impact may be as short as they like: what one of these leaves is mostly rounding.

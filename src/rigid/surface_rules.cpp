@@ -73,11 +73,6 @@ Vec3 turn_to_world(const RigidWorld& w, std::uint32_t body, Vec3 v) {
   return rotate(w.bodies.places[body].orientation, v);
 }
 
-Vec3 point_velocity(const RigidWorld& w, std::uint32_t body, Vec3 from_center) {
-  const BodyMotion& motion = w.bodies.motion[body];
-  return motion.linear_velocity + cross(motion.angular_velocity, from_center);
-}
-
 float size_of(const RigidWorld& w, std::uint32_t shape, const Contact& contact) {
   const float size = w.shapes.colliders[shape].size;
   return size > 0.0f && size < kUnbounded ? size : contact.size;
@@ -113,8 +108,8 @@ bool apply_surface_rules(const RigidWorld& w, const Contact& contact, Manifold& 
   const Side a = side_of(w, contact.shape_a, contact, manifold);
   const Side b = side_of(w, contact.shape_b, contact, manifold);
   if (a.rule == nullptr && b.rule == nullptr) return true;
-  const Vec3 speed = point_velocity(w, contact.body_b, manifold.points[0].from_b) -
-                     point_velocity(w, contact.body_a, manifold.points[0].from_a);
+  const Vec3 speed = point_velocity(w.bodies.motion[contact.body_b], manifold.points[0].from_b) -
+                     point_velocity(w.bodies.motion[contact.body_a], manifold.points[0].from_a);
   Vec3 running;
   if (a.rule != nullptr) {
     const Vec3 one_way = turn_to_world(w, contact.body_a, a.rule->one_way);

@@ -28,6 +28,11 @@ inline void stop(BodyMotion& motion) {
   motion.pushed = 0.0f;
 }
 
+// m/s, world frame, of the point of the body that is at `from_center` from its centre of mass (world axes).
+inline Vec3 point_velocity(const BodyMotion& motion, Vec3 from_center) {
+  return motion.linear_velocity + cross(motion.angular_velocity, from_center);
+}
+
 // Columns of the record, as wide kernels see them.
 constexpr int kMotionFloats = 16;
 constexpr int kMotionLinear = 0;
@@ -46,5 +51,7 @@ static_assert(sizeof(BodyInertia) == 32);
 
 // "No body": the fixed world, which has no record.
 constexpr std::int32_t kNoBody = -1;
+// None of things that are numbered without a sign; of bodies, kNoBody.
+constexpr std::uint32_t kNoIndex = 0xffffffffu;
 
 }  // namespace gyre

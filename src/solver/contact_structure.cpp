@@ -38,12 +38,12 @@ constexpr double kResidual = 100.0;
 
 // A row of a contact: what it is about, on either body, and what it bears before anything moves. The structure's rows are those
 // of bodies: place, then rotation.
-struct Row {
+struct ContactRow {
   double a[6], b[6];
   double stiffness = 0.0, before = 0.0;
 };
 
-Row make_row(Vec3 direction, Vec3 from_a, Vec3 from_b, double stiffness, float before) {
+ContactRow make_row(Vec3 direction, Vec3 from_a, Vec3 from_b, double stiffness, float before) {
   const Vec3 turn_a = cross(from_a, direction), turn_b = cross(from_b, direction);
   return {{-double(direction.x), -double(direction.y), -double(direction.z), -double(turn_a.x),
            -double(turn_a.y), -double(turn_a.z)},
@@ -54,15 +54,15 @@ Row make_row(Vec3 direction, Vec3 from_a, Vec3 from_b, double stiffness, float b
 }
 
 // The rows of a contact: one for each point, two of friction and one of twist where the load gives them any.
-struct Rows {
-  Row normal[kMaxManifoldPoints];
-  Row tangent[2], twist;
+struct ContactRows {
+  ContactRow normal[kMaxManifoldPoints];
+  ContactRow tangent[2], twist;
   Vec3 u, v;
   bool rubs = false;
 };
 
 // Those of friction and twist, as stiff as the contact is sideways now.
-void place_friction(const ContactConstraint& constraint, const StructureWork& work, Rows& rows) {
+void place_friction(const ContactConstraint& constraint, const StructureWork& work, ContactRows& rows) {
   const Manifold& manifold = *constraint.manifold;
   const Vec3 n = manifold.normal, from_b = work.impulse.friction_from_b;
   const Vec3 from_a = from_b + (manifold.points[0].from_a - manifold.points[0].from_b);
@@ -76,7 +76,7 @@ void place_friction(const ContactConstraint& constraint, const StructureWork& wo
                 double(work.before.twist)};
 }
 
-void place_rows(const ContactConstraint& constraint, const StructureWork& work, Rows& rows) {
+void place_rows(const ContactConstraint& constraint, const StructureWork& work, ContactRows& rows) {
   const Manifold& manifold = *constraint.manifold;
   const Vec3 n = manifold.normal;
   for (int k = 0; k < manifold.count; ++k) {
@@ -186,7 +186,7 @@ class Solver {
     loads_ = arena.make<double>(plan_.rows);
     place_ = arena.make<double>(plan_.rows);
     way_ = arena.make<double>(plan_.rows);
-    rows_ = arena.make<Rows>(s_.contacts.size());
+    rows_ = arena.make<ContactRows>(s_.contacts.size());
     return true;
   }
 
@@ -257,7 +257,7 @@ class Solver {
                   double factor, std::span<double> x) const {
     const Manifold& manifold = *c.manifold;
     const auto add = [&](Vec3 direction, Vec3 from_a, Vec3 from_b, float value) {
-      const Row row = make_row(direction, from_a, from_b, 1.0, 0.0f);
+      const ContactRow row = make_row(direction, from_a, from_b, 1.0, 0.0f);
       const double amount = factor * double(value);
       if (contact.node_a != kNoNode) {
         for (int j = 0; j < 6; ++j) rows_at(x, contact.node_a)[j] += amount * row.a[j];
@@ -285,17 +285,17 @@ class Solver {
     for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
       const StructureContact& contact = s_.contacts[i];
       const StructureWork& work = s_.work[i];
-      const Rows& rows = rows_[i];
+      const ContactRows& rows = rows_[i];
       for (int k = 0; k < constraint(i).manifold->count; ++k) {
         if ((work.touching >> k & 1) == 0) continue;
         add_row(contact, rows.normal[k], (work.pressed >> k & 1) != 0 ? 1.0 : kTrace);
       }
       if (!rows.rubs) continue;
-      for (const Row* row : {&rows.tangent[0], &rows.tangent[1], &rows.twist})
+      for (const ContactRow* row : {&rows.tangent[0], &rows.tangent[1], &rows.twist})
         add_row(contact, *row, row->stiffness);
     }
   }
-  void add_row(const StructureContact& contact, const Row& row, double stiffness) {
+  void add_row(const StructureContact& contact, const ContactRow& row, double stiffness) {
     double* values = values_.data();
     if (contact.node_a != kNoNode)
       add_outer(values + column(contact.node_a).diagonal, row.a, row.a, stiffness);
@@ -307,7 +307,7 @@ class Solver {
   }
 
   // How far the bodies' moves `x` press the row together.
-  double along(const StructureContact& contact, const Row& row, std::span<double> x) const {
+  double along(const StructureContact& contact, const ContactRow& row, std::span<double> x) const {
     double sum = 0.0;
     if (contact.node_a != kNoNode) {
       const double* moves = rows_at(x, contact.node_a);
@@ -320,10 +320,11 @@ class Solver {
     return sum;
   }
   // What the row bears where the bodies are now.
-  double borne(const StructureContact& contact, const Row& row) const {
+  double borne(const StructureContact& contact, const ContactRow& row) const {
     return row.before + row.stiffness * along(contact, row, place_);
   }
-  void add_to(std::span<double> x, const StructureContact& contact, const Row& row, double amount) const {
+  void add_to(std::span<double> x, const StructureContact& contact, const ContactRow& row,
+              double amount) const {
     if (contact.node_a != kNoNode) {
       for (int j = 0; j < 6; ++j) rows_at(x, contact.node_a)[j] += amount * row.a[j];
     }
@@ -338,13 +339,13 @@ class Solver {
     for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
       const StructureContact& contact = s_.contacts[i];
       const StructureWork& work = s_.work[i];
-      const Rows& rows = rows_[i];
+      const ContactRows& rows = rows_[i];
       for (int k = 0; k < constraint(i).manifold->count; ++k) {
         if ((work.touching >> k & 1) == 0) continue;
         add_to(way_, contact, rows.normal[k], -max(borne(contact, rows.normal[k]), 0.0));
       }
       if (!rows.rubs) continue;
-      for (const Row* row : {&rows.tangent[0], &rows.tangent[1], &rows.twist}) {
+      for (const ContactRow* row : {&rows.tangent[0], &rows.tangent[1], &rows.twist}) {
         add_to(way_, contact, *row, -borne(contact, *row));
       }
     }
@@ -357,7 +358,7 @@ class Solver {
     for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
       const StructureContact& contact = s_.contacts[i];
       StructureWork& work = s_.work[i];
-      const Rows& rows = rows_[i];
+      const ContactRows& rows = rows_[i];
       for (int k = 0; k < constraint(i).manifold->count; ++k) {
         work.at[k] = work.ahead[k] = 0.0;
         if ((work.touching >> k & 1) == 0) continue;
@@ -365,7 +366,7 @@ class Solver {
         work.ahead[k] = along(contact, rows.normal[k], way_);
       }
       if (!rows.rubs) continue;
-      for (const Row* row : {&rows.tangent[0], &rows.tangent[1], &rows.twist}) {
+      for (const ContactRow* row : {&rows.tangent[0], &rows.tangent[1], &rows.twist}) {
         const double ahead = along(contact, *row, way_);
         slope_ += borne(contact, *row) * ahead;
         curve_ += row->stiffness * ahead * ahead;
@@ -424,7 +425,7 @@ class Solver {
       const StructureContact& contact = s_.contacts[i];
       const ContactConstraint& c = constraint(i);
       StructureWork& work = s_.work[i];
-      Rows& rows = rows_[i];
+      ContactRows& rows = rows_[i];
       ContactImpulse& impulse = work.impulse;
       impulse.friction = impulse.rolling = {};
       impulse.twist = 0.0f;
@@ -475,7 +476,7 @@ class Solver {
   BlockPlan plan_;
   double slope_ = 0.0, curve_ = 0.0;  // of the energy along the way, without its points
   std::span<double> values_, room_, loads_, place_, way_;
-  std::span<Rows> rows_;  // by contact
+  std::span<ContactRows> rows_;  // by contact
 };
 
 // Brings the structure to rest; false if its contacts cannot.

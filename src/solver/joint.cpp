@@ -87,7 +87,7 @@ void prepare_fixed(const JointPair& pair, JointWork& work, bool swept) {
 }
 
 void prepare_distance(JointRecord& joint, const JointPair& pair, JointWork& work, const JointSettings& settings) {
-  work.axis = normalized(work.error, rotate({}, {0, 1, 0}));
+  work.axis = normalized(work.error, rotate(Quat{}, {0, 1, 0}));
   work.position = joint.position = length(work.error);
   place_line_axis(work, pair, settings);
 }

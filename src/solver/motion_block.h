@@ -16,6 +16,10 @@ namespace gyre {
 // Beyond these nothing is simulated faithfully; speeds are clamped to them and the clamping is reported.
 constexpr float kMaxSpeed = 1.0e7f;  // m/s
 constexpr float kMaxSpin = 2.0e4f;   // rad/s
+inline DVec3 within(DVec3 v, double most) {
+  const double size = length(v);
+  return size > most ? (most / size) * v : v;
+}
 
 // A body that constraints act on. Plain data: the same for every width.
 struct MovedBody {

@@ -12,7 +12,7 @@ namespace {
 // Share by which diagonals are raised for pivoting: redundant rows then have one solution. Newton's method takes it back.
 constexpr double kGive = 1.0e-9;
 constexpr double kParting = 1.0e-10;
-constexpr int kRounds = 20;
+constexpr int kDantzigRounds = 20;
 constexpr int kRoundSteps = 8, kPolishSteps = 30;
 
 // A variable of a method in terms of the problem's rows: x_row and, of a cone, x_(row + 1) get its value times these.
@@ -86,7 +86,7 @@ void run_dantzig(const DenseProblem& p, const FrictionSet& polygon, double toler
   }
   Dantzig dantzig(a, q, kGive, room);
   const std::span<double> best = room.take(std::size_t(p.size));
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kDantzigRounds; ++round) {
     for (std::size_t i = 0; i < most; ++i) {
       const RowLimits& limits = p.limits[std::size_t(parts.at(i).row)];
       double high = limits.high, low = limits.low;

@@ -1,6 +1,7 @@
 // What every command must hold before it is carried out. The message names object, field, value and allowed range.
 #include "world/field_commands.h"
 #include "world/joint_commands.h"
+#include "world/refusal.h"
 #include "world/world_state.h"
 
 #include <cstdio>
@@ -9,15 +10,7 @@ namespace gyre {
 
 namespace {
 
-constexpr float kMostPlace = 1.0e12f;  // m: positions beyond this are refused
-
 Error ok() { return {}; }
-
-Error refuse(const char* words) { return make_error(ErrorCode::invalid_argument, "%s", words); }
-template <class... Args>
-Error refuse(const char* format, Args... args) {
-  return make_error(ErrorCode::invalid_argument, format, args...);
-}
 
 Error check_body(const WorldState& s, BodyId id, const char* what) {
   const IdPool& ids = s.rigid.bodies.ids;
@@ -48,8 +41,8 @@ Error check_range(const char* field, float value, float low, float high) {
 }
 Error check_pose(const char* field, const Pose& pose) {
   const DVec3 p = pose.position;
-  if (!is_finite(p) || absolute(p.x) > double(kMostPlace) || absolute(p.y) > double(kMostPlace) ||
-      absolute(p.z) > double(kMostPlace)) {
+  if (!is_finite(p) || absolute(p.x) > kMostPlace || absolute(p.y) > kMostPlace ||
+      absolute(p.z) > kMostPlace) {
     return refuse("%s.position is (%g, %g, %g); every component must be finite and within 1e12 m", field, p.x, p.y, p.z);
   }
   const Quat q = pose.orientation;
@@ -97,7 +90,7 @@ Error check_mass_overrides(const BodyDef& def) {
   if (def.center_of_mass) {
     Error e = check_finite("body.center_of_mass", *def.center_of_mass);
     const float farthest = largest(absolute(*def.center_of_mass));
-    if (e.code == ErrorCode::none) e = check_range("body.center_of_mass", farthest, 0.0f, kMostPlace);
+    if (e.code == ErrorCode::none) e = check_range("body.center_of_mass", farthest, 0.0f, float(kMostPlace));
     if (e.code != ErrorCode::none) return e;
   }
   if (def.inertia) return check_inertia(*def.inertia);

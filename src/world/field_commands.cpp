@@ -1,6 +1,7 @@
 #include "world/field_commands.h"
 
 #include "rigid/island.h"
+#include "world/refusal.h"
 #include "world/world_state.h"
 
 #include <cstdio>
@@ -9,26 +10,19 @@ namespace gyre {
 
 namespace {
 
-constexpr double kFarthest = 1.0e12;  // m
 constexpr std::size_t kMostFields = 65536;
-
-bool is_fine(const Error& error) { return error.code == ErrorCode::none; }
-
-template <class... Args>
-Error refuse(const char* format, Args... args) {
-  return make_error(ErrorCode::invalid_argument, format, args...);
-}
 
 Error check_number(const char* field, double value, double low, double high) {
   if (is_finite(value) && value >= low && value <= high) return {};
   return refuse("%s is %g; it must lie within %g and %g", field, value, low, high);
 }
 Error check_place(const char* field, DVec3 p) {
-  if (is_finite(p) && absolute(p.x) <= kFarthest && absolute(p.y) <= kFarthest && absolute(p.z) <= kFarthest)
+  if (is_finite(p) && absolute(p.x) <= kMostPlace && absolute(p.y) <= kMostPlace &&
+      absolute(p.z) <= kMostPlace)
     return {};
   return refuse("%s is (%g, %g, %g); every component must be finite and within 1e12 m", field, p.x, p.y, p.z);
 }
-Error check_direction(const char* field, Vec3 v) {
+Error check_field_direction(const char* field, Vec3 v) {
   if (!is_finite(v))
     return refuse("%s is (%g, %g, %g); every component must be finite", field, double(v.x), double(v.y),
                   double(v.z));
@@ -66,15 +60,15 @@ Error check_def(const FieldDef& d) {
       {"field.radius", double(d.radius), 1.0e-6, 1.0e9},
       {"field.falloff", double(d.falloff), -4.0, 4.0},
       {"field.core", double(d.core), 0.0, 1.0e9},
-      {"field.offset", d.offset, -kFarthest, kFarthest},
+      {"field.offset", d.offset, -kMostPlace, kMostPlace},
   };
   for (const NamedNumber& n : numbers) {
     e = check_number(n.name, n.value, n.low, n.high);
     if (!is_fine(e)) return e;
   }
   e = check_place("field.center", d.center);
-  if (is_fine(e)) e = check_direction("field.axis", d.axis);
-  return is_fine(e) ? check_direction("field.normal", d.normal) : e;
+  if (is_fine(e)) e = check_field_direction("field.axis", d.axis);
+  return is_fine(e) ? check_field_direction("field.normal", d.normal) : e;
 }
 
 FieldId field_id(const WorldState& s, std::uint32_t slot) {

@@ -6,18 +6,16 @@
 #include "collision/query.h"
 #include "task/parallel.h"
 #include "world/query_sight.h"
+#include "world/refusal.h"
 #include "world/world_state.h"
 
 namespace gyre {
 
 namespace {
 
-constexpr double kMostPlace = 1.0e12;  // m, as for bodies
-constexpr int kBlock = 32;             // questions that one worker takes at a time
+constexpr int kBlock = 32;  // questions that one worker takes at a time
 
 // ---------------------------------------------------------------------------------------------------------------- checks
-
-bool is_fine(const Error& error) { return error.code == ErrorCode::none; }
 
 Error check_vector(const char* what, const char* field, DVec3 p) {
   if (absolute(p.x) <= kMostPlace && absolute(p.y) <= kMostPlace && absolute(p.z) <= kMostPlace) return {};

@@ -1,0 +1,18 @@
+// What the checks of all that users pass in share.
+#pragma once
+
+#include <gyre/result.h>
+
+namespace gyre {
+
+constexpr double kMostPlace = 1.0e12;  // m: places beyond this are refused
+
+inline bool is_fine(const Error& error) { return error.code == ErrorCode::none; }
+
+inline Error refuse(const char* words) { return make_error(ErrorCode::invalid_argument, "%s", words); }
+template <class... Args>
+Error refuse(const char* format, Args... args) {
+  return make_error(ErrorCode::invalid_argument, format, args...);
+}
+
+}  // namespace gyre
