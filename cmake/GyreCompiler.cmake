@@ -3,6 +3,7 @@
 #   gyre_target_defaults(target)  language level, warnings, floating point: everything of ours
 #   gyre_core_flags(target)       the core library alone: no exceptions, no RTTI
 #   gyre_kernel_flags()           per-file instruction sets of the SIMD kernels
+#   gyre_unity_folders(target sources)  what CMAKE_UNITY_BUILD compiles at once
 
 set(gyre_gnu_like OFF)
 if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
@@ -35,7 +36,7 @@ endif()
 
 function(gyre_target_defaults target)
   target_compile_features(${target} PUBLIC cxx_std_20)
-  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF UNITY_BUILD OFF)
   if(NOT EMSCRIPTEN)  # a WebAssembly module is not shared, and indirect addresses cost time there
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   endif()
@@ -149,4 +150,25 @@ function(gyre_kernel_flags sources_variable)
     endif()
   endforeach()
   set(${sources_variable} ${kept} PARENT_SCOPE)
+endfunction()
+
+# With CMAKE_UNITY_BUILD a folder is one unit: headers, most of the work, are then read once by folder. So names without linkage are
+# unique within their folder. Kernels stay apart, each with its flags.
+function(gyre_unity_folders target sources)
+  set(unity OFF)
+  if(CMAKE_UNITY_BUILD)
+    set(unity ON)
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${unity} UNITY_BUILD_MODE GROUP)
+  foreach(source IN LISTS sources)
+    if(NOT source MATCHES "_kernels_[a-z0-9]+\\.cpp$")
+      get_filename_component(folder "${source}" DIRECTORY)
+      get_filename_component(folder "${folder}" NAME)
+      set_source_files_properties("${source}" PROPERTIES UNITY_GROUP ${folder})
+    endif()
+  endforeach()
+  if(unity AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # GCC takes every file but the first of a unit for a header.
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+  endif()
 endfunction()

@@ -1,4 +1,5 @@
-# Each header must compile alone: one generated source per header that includes it and nothing else.
+# Each header must compile alone. One that a source of its name includes before all else does so there; for each other one a source
+# is generated that includes it and nothing else.
 option(GYRE_CHECK_HEADERS "Compile each header alone" ON)
 if(NOT GYRE_CHECK_HEADERS OR GYRE_SANITIZE OR GYRE_COVERAGE)
   return()
@@ -9,6 +10,14 @@ file(GLOB_RECURSE headers CONFIGURE_DEPENDS
 set(sources)
 foreach(header IN LISTS headers)
   file(RELATIVE_PATH name ${PROJECT_SOURCE_DIR} ${header})
+  string(REGEX REPLACE "\\.h$" ".cpp" own_source ${header})
+  if(EXISTS ${own_source} AND NOT CMAKE_UNITY_BUILD)
+    file(STRINGS ${own_source} first_include REGEX "^#include" LIMIT_COUNT 1)
+    string(REGEX REPLACE "^src/" "" included_as ${name})
+    if(first_include STREQUAL "#include \"${included_as}\"")
+      continue()
+    endif()
+  endif()
   string(MAKE_C_IDENTIFIER ${name} plain)
   set(source ${PROJECT_BINARY_DIR}/header_check/${plain}.cpp)
   file(CONFIGURE OUTPUT ${source} CONTENT "#include \"${header}\"\n")
