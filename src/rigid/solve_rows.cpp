@@ -19,7 +19,7 @@ namespace {
 // Sides of the polygon by which pivoting leads to Coulomb's disc.
 constexpr int kLeadingSides = 8;
 // Impulses are found to this share of the largest that stops a row alone, and to this many N s where that is less.
-constexpr double kDirectShare = 1.0e-7, kDirectImpulse = 1.0e-7, kRounding = 1.0e-11;
+constexpr double kDirectShare = 1.0e-7, kDirectImpulse = 1.0e-7, kRoundedImpulse = 1.0e-11;
 constexpr double kAccepted = 5.0;  // what Newton's method may leave of these where it gets no further
 constexpr double kNncgShare = 1.0e-5;
 // Newton's steps from where the impulses stand, and from where so many sweeps lead where that does not end; rows up to
@@ -111,7 +111,7 @@ void sweep_island(const RowSolve& s, const IslandRows& island, NumberRoom room, 
 }
 
 double direct_tolerance(double scale) {
-  return max(kRounding * scale, min(kDirectImpulse, kDirectShare * scale));
+  return max(kRoundedImpulse * scale, min(kDirectImpulse, kDirectShare * scale));
 }
 
 // False if it left more than it should; the rows' impulses are then the best that it found.
