@@ -1,6 +1,7 @@
 // Wrong calls and bad numbers: each is refused with words, or contained to the body that it befell.
 #include "laws/kit.h"
 
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -61,6 +62,27 @@ TEST(Misuse, NumbersThatAreNoneAreRefusedAndChangeNothing) {
   EXPECT_FALSE(h.world.set_substeps(65));
   EXPECT_FALSE(h.world.set_damping(b, -1, 0));
   EXPECT_EQ(h.world.hash(), before);
+}
+
+// The farthest that a message allows is allowed, to bodies, fields and questions alike.
+TEST(Misuse, PlacesAreTakenUpToTheirLimit) {
+  World world = make_world();
+  const double beyond = std::nextafter(1.0e12, 2.0e12);
+  for (const double sign : {-1.0, 1.0}) {
+    for (const DVec3 axis : {DVec3{1, 0, 0}, DVec3{0, 1, 0}, DVec3{0, 0, 1}}) {
+      const DVec3 last = sign * 1.0e12 * axis, first_refused = sign * beyond * axis;
+      const BodyId body = world.add_body({.pose = {.position = last}}, {.geometry = Box{}});
+      EXPECT_TRUE(body);
+      EXPECT_FALSE(world.set_pose(body, {.position = first_refused}));
+      expect_refused(world, ErrorCode::invalid_argument, "within 1e12 m");
+      EXPECT_TRUE(world.add_field({.kind = FieldKind::radial, .center = last}));
+      EXPECT_FALSE(world.add_field({.kind = FieldKind::radial, .center = first_refused}));
+      expect_refused(world, ErrorCode::invalid_argument, "within 1e12 m");
+      EXPECT_EQ(check_ray({.origin = last, .way = {1, 0, 0}}).code, ErrorCode::none);
+      EXPECT_EQ(check_ray({.origin = first_refused, .way = {1, 0, 0}}).code, ErrorCode::invalid_argument);
+    }
+  }
+  EXPECT_TRUE(world.step(kStep));
 }
 
 TEST(Misuse, BadBodiesAreRefused) {
