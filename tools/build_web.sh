@@ -13,6 +13,8 @@ for program in node npm; do
 done
 # Emscripten's optimiser is a Node program; a Node that is not Debian's does not look where Debian keeps its modules.
 export NODE_PATH=${NODE_PATH:-/usr/share/nodejs}
+# And each compilation starts Python: Debian's own has emscripten's programs compiled, and no manager of versions before it.
+if [ -x /usr/bin/python3 ]; then export EMSDK_PYTHON=${EMSDK_PYTHON:-/usr/bin/python3}; fi
 
 package=web/gyre-physics
 parts=("$@")
