@@ -23,9 +23,10 @@ struct AllocatorHooks {
   void* user = nullptr;  // handed to the functions
 };
 
-// Replaces the heap (C's) for the whole process; without allocate or deallocate the default comes back. Only while no block is out
-// (total_bytes() is 0: before the first world and shape, or after the last), since blocks must go back where they came from:
-// otherwise nothing changes, and the answer is false. Not to be called while another thread uses the engine.
+// Replaces the heap for the whole process: C's, and on Linux for blocks of 512 KiB or more the system's pages of 2 MB. Without allocate or
+// deallocate the default comes back. Only while no block is out (total_bytes() is 0: before the first world and shape, or after the
+// last), since blocks must go back where they came from: otherwise nothing changes, and the answer is false. Not to be called while
+// another thread uses the engine.
 bool set_allocator(const AllocatorHooks& hooks);
 
 // Bytes in blocks that are out now, and how many blocks were ever handed out or changed in size. From any thread.

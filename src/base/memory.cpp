@@ -1,8 +1,9 @@
 // Counts blocks and hands them through to the hooks; the default is C's heap, which changes the size of large blocks without a copy
-// where the system can (operator new cannot).
+// where the system can (operator new cannot), and for the largest the system itself (large_pages.h).
 #include "base/memory.h"
 
 #include "base/check.h"
+#include "base/large_pages.h"
 
 #include <atomic>
 #include <cstdlib>
@@ -41,22 +42,39 @@ void* default_reallocate(void* memory, std::size_t, std::size_t bytes, std::size
 
 #else
 
+// From here on a block has large pages of its own. Why not half or twice as much: docs/decisions/memory.md.
+constexpr std::size_t kPagedBlock = kLargePage / 4;  // bytes
+
+bool is_paged(std::size_t bytes) { return kHasLargePages && bytes >= kPagedBlock; }
+
 // In whole alignments, as C asks; null where that is more than there are numbers for.
 void* default_allocate(std::size_t bytes, std::size_t align, void*) {
+  if (is_paged(bytes)) return map_large_pages(bytes);
   if (bytes > SIZE_MAX - align) return nullptr;
   return std::aligned_alloc(align, (bytes + align - 1) / align * align);
 }
 
-void default_deallocate(void* memory, std::size_t, void*) { std::free(memory); }
+void default_deallocate(void* memory, std::size_t bytes, void*) {
+  if (is_paged(bytes)) {
+    unmap_large_pages(memory, bytes);
+  } else {
+    std::free(memory);
+  }
+}
 
 void* default_reallocate(void* memory, std::size_t old_bytes, std::size_t bytes, std::size_t align,
                          void* user) {
-  void* const moved = std::realloc(memory, bytes);
-  if (moved == nullptr || is_aligned(moved, align)) return moved;
-  void* const again = default_allocate(bytes, align, user);
-  if (again != nullptr) std::memcpy(again, moved, old_bytes < bytes ? old_bytes : bytes);
-  std::free(moved);
-  return again;
+  if (is_paged(old_bytes) && is_paged(bytes)) return remap_large_pages(memory, old_bytes, bytes);
+  if (!is_paged(old_bytes) && !is_paged(bytes)) {
+    memory = std::realloc(memory, bytes);
+    if (memory == nullptr || is_aligned(memory, align)) return memory;
+    old_bytes = bytes;
+  }
+  void* const moved = default_allocate(bytes, align, user);
+  if (moved == nullptr) return nullptr;
+  std::memcpy(moved, memory, old_bytes < bytes ? old_bytes : bytes);
+  default_deallocate(memory, old_bytes, user);
+  return moved;
 }
 
 #endif

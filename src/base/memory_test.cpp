@@ -45,15 +45,15 @@ bool holds(const void* memory, std::size_t bytes) {
   return true;
 }
 
-// From and to sizes that are copied and sizes that the heap changes.
+// From and to sizes that are copied, sizes that the heap changes and sizes in large pages.
 TEST(Memory, AnotherSizeKeepsWhatItHeld) {
   const std::uint64_t bytes_before = total_bytes();
   std::size_t bytes = 1;
   void* memory = allocate(bytes);
   fill(memory, bytes);
   void* const between = allocate(100'000);  // what follows in the heap is not free
-  for (const std::size_t wanted :
-       {100u, 5000u, 200'001u, 3'000'000u, 150'000u, 1'000'064u, 64u, 700'000u, 700'000u}) {
+  for (const std::size_t wanted : {100u, 5000u, 200'001u, 3'000'000u, 150'000u, 1'000'064u, 9'000'000u,
+                                   5'000'000u, 64u, 700'000u, 700'000u}) {
     const std::size_t kept = std::min(bytes, wanted);
     memory = reallocate(memory, bytes, wanted, kept);
     bytes = wanted;
@@ -75,7 +75,8 @@ TEST(Memory, AnotherSizeKeepsWhatItHeld) {
 // knows nothing of alignment. What lies between and behind the blocks is of odd sizes and stays.
 TEST(Memory, StaysAlignedWhereTheHeapMovesIt) {
   const std::uint64_t bytes_before = total_bytes();
-  deallocate(allocate(24'000'000), 24'000'000);
+  void* volatile large = std::malloc(24'000'000);
+  std::free(large);
   std::vector<void*> between, blocks;
   constexpr std::size_t kBytes = 150'000, kMore = 400'000;
   for (std::size_t i = 0; i < 16; ++i) {
