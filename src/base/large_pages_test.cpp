@@ -84,6 +84,31 @@ TEST_F(LargePages, MoreThanThereIsIsRefusedAndNothingLost) {
   unmap_large_pages(block, kLargePage);
 }
 
+// What the process has mapped, used or not, in small pages; 0 where the system does not tell.
+std::size_t mapped_pages() {
+  std::size_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return pages;
+}
+
+// Places are cut out of larger ones, and moves leave one behind.
+TEST_F(LargePages, NothingStaysMapped) {
+  if (mapped_pages() == 0) GTEST_SKIP() << "this system does not tell";
+  const std::size_t before = mapped_pages();
+  constexpr std::size_t kRounds = 50;
+  for (std::size_t i = 0; i < kRounds; ++i) {
+    void* block = map_large_pages(1);
+    void* const in_the_way = map_large_pages(1);
+    block = remap_large_pages(block, 1, 4 * kLargePage);
+    block = remap_large_pages(block, 4 * kLargePage, 2 * kLargePage);
+    ASSERT_NE(block, nullptr);
+    unmap_large_pages(block, 2 * kLargePage);
+    unmap_large_pages(in_the_way, 1);
+  }
+  // Less than a large page a round: the test's own heap may grow meanwhile.
+  EXPECT_LT(mapped_pages(), before + kRounds * kLargePage / 4096 / 4);
+}
+
 // The first line of the place in the system's list that begins with `memory`, and its flags; empty if there is none.
 std::string flags_of_place(const void* memory) {
   char begin[32];
