@@ -25,7 +25,7 @@ function replace(text, what, by) {
 
 let glue = readFileSync(join(from, 'gyre_web.mjs'), 'utf8');
 // Twice more, for size: 1.4 % of a packed module, where -Oz, here or for emscripten's link, leaves fewer bytes that pack worse. Nothing
-// lies in the first 1,024 bytes (emscripten's GLOBAL_BASE), so what is added to an address can go into the access: another 1.2 %.
+// lies in the first 1,024 bytes (GLOBAL_BASE, ../../bindings), so what is added to an address can go into the access: another 1.2 %.
 const module = join(from, 'gyre_web.small.wasm');
 const features = { simd: ['--enable-simd'], threads: ['--enable-simd', '--enable-threads', '--enable-bulk-memory', '--enable-sign-ext'], plain: [] }[build];
 execFileSync('wasm-opt', ['--enable-mutable-globals', ...features, '--low-memory-unused', '-Os', '-Os', join(from, 'gyre_web.wasm'), '-o', module]);
