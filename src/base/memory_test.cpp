@@ -2,6 +2,7 @@
 #include "base/memory.h"
 
 #include "base/array.h"
+#include "base/large_pages.h"
 
 #include <gtest/gtest.h>
 
@@ -69,6 +70,28 @@ TEST(Memory, AnotherSizeKeepsWhatItHeld) {
   deallocate(memory, 640);
   deallocate(between, 100'000);
   EXPECT_EQ(total_bytes(), bytes_before);
+}
+
+// A block of the heap's own begins a large page by chance alone.
+TEST(Memory, LargeBlocksBeginALargePageAndSmallOnesDoNot) {
+  if (!kHasLargePages) GTEST_SKIP() << "no large pages here";
+  const auto begins_a_page = [](void* memory) {
+    return reinterpret_cast<std::uintptr_t>(memory) % kLargePage == 0;
+  };
+  constexpr std::size_t kFrom = 512 * 1024;  // as gyre/memory.h says
+  std::vector<void*> small;
+  for (int i = 0; i < 8; ++i) small.push_back(allocate(kFrom - 1));
+  EXPECT_FALSE(std::all_of(small.begin(), small.end(), begins_a_page));
+  std::size_t bytes = kFrom;
+  void* memory = allocate(bytes);
+  EXPECT_TRUE(begins_a_page(memory));
+  for (const std::size_t wanted : {kFrom * 9, kFrom * 2, kFrom - 1, kFrom, kFrom * 5}) {
+    memory = reallocate(memory, bytes, wanted, std::min(bytes, wanted));
+    bytes = wanted;
+    EXPECT_TRUE(begins_a_page(memory) || bytes < kFrom) << bytes;
+  }
+  deallocate(memory, bytes);
+  for (void* const block : small) deallocate(block, kFrom - 1);
 }
 
 // A heap that has given back something large keeps what is smaller in one piece of memory, moves it there byte by byte, and
