@@ -191,6 +191,14 @@ bool is_clear(const Manifold& manifold) {
   return std::memcmp(&manifold, &clear, sizeof clear) == 0;
 }
 
+// Whether the manifold is as a new one beyond its points.
+bool ends_with_its_points(const Manifold& manifold) {
+  const Manifold clear{};
+  const auto unused = std::size_t(kMaxManifoldPoints - manifold.count);
+  return std::memcmp(manifold.points + manifold.count, clear.points, unused * sizeof clear.points[0]) == 0 &&
+         std::memcmp(manifold.anchors + manifold.count, clear.anchors, unused * sizeof clear.anchors[0]) == 0;
+}
+
 const char* find_fault(const ContactStore& store, std::uint32_t slot, Array<std::uint8_t>& used) {
   const Contact& contact = store.contacts[slot];
   if (contact.shape_a >= contact.shape_b) return "a contact's first shape is not the lower one";
@@ -204,6 +212,8 @@ const char* find_fault(const ContactStore& store, std::uint32_t slot, Array<std:
     if ((used[i / kChunk] & bit) != 0) return "two contacts own one manifold";
     used[i / kChunk] = std::uint8_t(used[i / kChunk] | bit);
   }
+  for (const Manifold& manifold : manifolds_of(store, contact))
+    if (!ends_with_its_points(manifold)) return "a manifold has something in a point that it does not have";
   for (std::uint32_t i = contact.first_manifold + contact.manifold_count; i < end; ++i)
     if (!is_clear(store.manifolds[i])) return "a contact has something in a manifold that it does not use";
   if (find_contact(store, pair_key(contact.shape_a, contact.shape_b)) != slot)

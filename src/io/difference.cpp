@@ -5,6 +5,7 @@
 #include "io/difference.h"
 
 #include "base/hash.h"
+#include "io/kept_state.h"
 #include "io/recording.h"
 
 #include <cstdio>

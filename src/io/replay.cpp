@@ -1,4 +1,5 @@
 // The player. Going back is restoring the nearest keyframe before, which were kept while playing, and playing on from it.
+#include "io/kept_state.h"
 #include "io/recording.h"
 
 namespace gyre {

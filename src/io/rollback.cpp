@@ -1,5 +1,5 @@
 // The ring of snapshots in memory.
-#include "io/columns.h"
+#include "io/kept_state.h"
 
 #include <gyre/replay.h>
 
