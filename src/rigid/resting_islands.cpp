@@ -103,6 +103,7 @@ void RestingIslands::count_contacts(std::span<const ContactConstraint> constrain
     ++count.contacts;
     if (!(c.static_friction > 0.0f) || c.surface_velocity != Vec3{}) count.refused = true;
     if (c.point_count < 3) count.balances = true;
+    if (c.point_count == 1) ++count.corners;
     if (c.hold == ContactHold::held) count.held = true;
     if (c.hold == ContactHold::sprung) count.springs = true;
     if (active_a && active_b) continue;

@@ -27,6 +27,7 @@ constexpr float kSettledShare = 1.0e-4f;
 // What is counted about an island, as long as it is not refused.
 struct IslandCount {
   std::uint32_t bodies = 0, contacts = 0, grounded = 0;
+  std::uint32_t corners = 0;       // contacts of a single point
   std::uint32_t first = kNoPlace;  // its last contact with the fixed world
   bool refused = false;   // cannot be at rest: fast or bound bodies, joints, moving ground, no friction
   bool stirring = false;  // a body at rest is not calm

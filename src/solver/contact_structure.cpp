@@ -14,6 +14,10 @@ constexpr int kMostRounds = 30;
 constexpr int kLeastRounds = 12;
 constexpr int kMostStuck = 5;  // rounds in turn after which no less was left over
 constexpr std::uint64_t kMostWork = 6'000'000;
+// Where a round is so many multiplications they have to bring more: what holds goes straight there.
+constexpr std::uint64_t kDear = 250'000;
+constexpr int kMostStuckIfDear = 2;  // rounds in turn after which more than this share was left over
+constexpr double kProgressIfDear = 0.7;
 // What a point that lets go keeps of its stiffness in the second derivative, but not in what it bears.
 constexpr double kTrace = 1.0e-6;
 // The longest step, in Newton's, and after how many tries it is taken as it is.
@@ -142,9 +146,12 @@ class Solver {
     for (double& x : place_) x = 0.0;
     const std::uint64_t affordable = kMostWork / (plan_.work + 1);
     const int rounds = int(min(std::uint64_t(kMostRounds), max(std::uint64_t(kLeastRounds), affordable)));
+    const bool is_dear = plan_.work > kDear;
+    const double progress = is_dear ? kProgressIfDear : 1.0;
+    const int most_stuck = is_dear ? kMostStuckIfDear : kMostStuck;
     double least = kEndless;
     int stuck = 0;
-    for (int round = 0; round < rounds && stuck < kMostStuck; ++round) {
+    for (int round = 0; round < rounds && stuck < most_stuck; ++round) {
       assemble();
       factor_blocks(plan_, values_, room_);
       find_way();
@@ -153,7 +160,7 @@ class Solver {
       give_friction();
       const double left = left_over();
       if (left <= 1.0) return true;
-      stuck = left < least ? 0 : stuck + 1;
+      stuck = left < progress * least ? 0 : stuck + 1;
       least = min(least, left);
     }
     return false;
