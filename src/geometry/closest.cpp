@@ -83,6 +83,15 @@ SimplexPoint closest_on_sliver(DVec3 p, DVec3 a, DVec3 b, DVec3 c) {
   return out;
 }
 
+// Whether the triangle's plane is farther than a distance, in spite of rounding. False where it has no plane to speak of.
+bool has_plane_beyond(DVec3 p, DVec3 a, DVec3 b, DVec3 c, double squared) {
+  constexpr double kSurelyFarther = 1.001;
+  const DVec3 ab = b - a, ac = c - a, normal = cross(ab, ac);
+  const double nn = dot(normal, normal);
+  const double longest = max(dot(ab, ab), max(dot(ac, ac), length_squared(c - b)));
+  return nn > kSliverTriangle * longest * longest && square(dot(a - p, normal)) > kSurelyFarther * squared * nn;
+}
+
 // Faces of a tetrahedron: three corners, opposite one.
 constexpr int kTetrahedronFaces[4][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {0, 2, 3, 1}, {1, 3, 2, 0}};
 
@@ -199,9 +208,11 @@ SimplexPoint closest_on_tetrahedron_surface(DVec3 p, DVec3 a, DVec3 b, DVec3 c, 
   const DVec3 q[4] = {a, b, c, d};
   SimplexPoint best =
       on_face(p, q, kTetrahedronFaces[0][0], kTetrahedronFaces[0][1], kTetrahedronFaces[0][2]);
-  for (int f = 1; f < 4; ++f)
-    best = nearer(p, best,
-                  on_face(p, q, kTetrahedronFaces[f][0], kTetrahedronFaces[f][1], kTetrahedronFaces[f][2]));
+  for (int f = 1; f < 4; ++f) {
+    const int i = kTetrahedronFaces[f][0], j = kTetrahedronFaces[f][1], k = kTetrahedronFaces[f][2];
+    if (!has_plane_beyond(p, q[i], q[j], q[k], length_squared(best.point - p)))
+      best = nearer(p, best, on_face(p, q, i, j, k));
+  }
   return best;
 }
 

@@ -31,6 +31,9 @@ constexpr double kSameSide = 0.999;
 // Cosine to the best normal of faces that are still worked on when memory runs short.
 constexpr double kNearBest = 0.9;
 
+// What is farther by this factor is so in spite of rounding.
+constexpr double kSurelyFarther = 1.001;
+
 // A face without area: it closes the surface but says nothing about the distance.
 constexpr double kNoDistance = 1.0e300;
 
@@ -41,7 +44,8 @@ class ExpandingPolytope {
   // A tetrahedron from the points of `start` and of the shapes' extreme points. False if B - A is flat; then `flat_normal`
   // is a direction across it.
   bool start(const CoreDistance& start, DVec3& flat_normal);
-  // The live face nearest to the origin, of those that look along `outward` within the cosine; -1 if there is none.
+  // The live face nearest to the origin; and of those that look along `outward` within the cosine. -1 if there is none.
+  int nearest() const;
   int nearest(DVec3 outward, double cosine) const;
   int vertex_count() const { return vertex_count_; }
   // Adds a point outside `face`. False when the surface cannot take it (memory, or rounding broke the horizon).
@@ -57,8 +61,14 @@ class ExpandingPolytope {
   bool take_farther(DVec3 direction, int count, double threshold);
 
   const CorePair& pair_;
-  DifferencePoint vertices_[kMaxPolytopeVertices];
-  Face faces_[kMaxPolytopeFaces];
+  // Not cleared: only the counted ones are ever read.
+  union {
+    DifferencePoint vertices_[kMaxPolytopeVertices];
+  };
+  union {
+    Face faces_[kMaxPolytopeFaces];
+  };
+  double distances_[kMaxPolytopeFaces];  // of live faces; kNoDistance where there is none
   int vertex_count_ = 0;
   int face_count_ = 0;
   int free_[kMaxPolytopeFaces];
@@ -85,6 +95,7 @@ int ExpandingPolytope::new_face(int a, int b, int c) {
     face.normal = {};
     face.distance = kNoDistance;
   }
+  distances_[i] = face.distance;
   return i;
 }
 
@@ -167,6 +178,15 @@ bool ExpandingPolytope::start(const CoreDistance& start, DVec3& flat_normal) {
   return true;
 }
 
+int ExpandingPolytope::nearest() const {
+  double least = kNoDistance;
+  for (int i = 0; i < face_count_; ++i) least = min(least, distances_[i]);
+  for (int i = 0; i < face_count_; ++i) {
+    if (distances_[i] == least && faces_[i].alive) return i;
+  }
+  return -1;
+}
+
 int ExpandingPolytope::nearest(DVec3 outward, double cosine) const {
   int best = -1;
   for (int i = 0; i < face_count_; ++i) {
@@ -225,6 +245,7 @@ bool ExpandingPolytope::add(const DifferencePoint& point, int first) {
   if (horizon_count < 3 || face_count_ + horizon_count - free_count_ > kMaxPolytopeFaces) return refuse();
   for (int k = 0; k < seen_count; ++k) {
     faces_[seen[k]].alive = false;
+    distances_[seen[k]] = kNoDistance;
     free_[free_count_++] = seen[k];
   }
   std::uint8_t made[kMaxPolytopeFaces];
@@ -257,6 +278,8 @@ void ExpandingPolytope::witness(DVec3 target, DVec3 outward, DVec3& on_a, DVec3&
   for (int i = 0; i < face_count_; ++i) {
     const Face& face = faces_[i];
     if (!face.alive || face.distance == kNoDistance || dot(face.normal, outward) < side) continue;
+    // No point of a face is nearer than its plane.
+    if (square(dot(face.normal, target) - face.distance) > kSurelyFarther * least) continue;
     const DifferencePoint &a = vertices_[face.v[0]], &b = vertices_[face.v[1]], &c = vertices_[face.v[2]];
     const SimplexPoint near = closest_on_triangle(target, a.way, b.way, c.way);
     const double squared = length_squared(near.point - target);
@@ -294,7 +317,7 @@ CorePenetration core_penetration(const CorePair& pair, const CoreDistance& start
     // Where a whole ring of directions is equally good (a capsule inside a cone, on one axis) the search would spread over
     // all of it. Past half of the memory it stays near the best direction found.
     const bool everywhere = polytope.vertex_count() < kMaxPolytopeVertices / 2;
-    const int i = polytope.nearest(-best.normal, everywhere ? -2.0 : kNearBest);
+    const int i = everywhere ? polytope.nearest() : polytope.nearest(-best.normal, kNearBest);
     if (i < 0) break;
     const Face face = polytope.face(i);
     if (face.distance == kNoDistance) break;
