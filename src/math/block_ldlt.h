@@ -56,4 +56,8 @@ void factor_blocks(const BlockPlan& plan, std::span<double> values, std::span<do
 // Solves in place: the right side before, the solution after, rows in the order of the plan.
 void solve_blocks(const BlockPlan& plan, std::span<const double> values, std::span<double> x);
 
+// The same, bit for bit and faster, where every node has six rows. `room` holds twice as many.
+void factor_six_blocks(const BlockPlan& plan, std::span<double> values, std::span<double> room);
+void solve_six_blocks(const BlockPlan& plan, std::span<const double> values, std::span<double> x);
+
 }  // namespace gyre

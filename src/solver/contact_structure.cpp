@@ -1,5 +1,7 @@
 #include "solver/contact_structure.h"
 
+#include "math/block_six.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -93,13 +95,6 @@ void place_rows(const ContactConstraint& constraint, const StructureWork& work, 
   if (rows.rubs) place_friction(constraint, work, rows);
 }
 
-void add_outer(double* block, const double* rows, const double* columns, double factor) {
-  for (int i = 0; i < 6; ++i) {
-    const double scaled = factor * rows[i];
-    for (int j = 0; j < 6; ++j) block[6 * i + j] += scaled * columns[j];
-  }
-}
-
 // Whether the sweeps left every body as good as at rest.
 bool is_still(const ContactStructure& s, const StructureSolve& solve) {
   for (const StructureNode& node : s.nodes) {
@@ -153,9 +148,9 @@ class Solver {
     int stuck = 0;
     for (int round = 0; round < rounds && stuck < most_stuck; ++round) {
       assemble();
-      factor_blocks(plan_, values_, room_);
+      factor_six_blocks(plan_, values_, room_);
       find_way();
-      solve_blocks(plan_, values_, way_);
+      solve_six_blocks(plan_, values_, way_);
       go(find_step());
       give_friction();
       const double left = left_over();
@@ -189,7 +184,7 @@ class Solver {
       if (contact.is_between()) contact.coupling = find_block(plan_, contact.node_a, contact.node_b);
     }
     values_ = arena.make<double>(plan_.values);
-    room_ = arena.make<double>(plan_.widest);
+    room_ = arena.make<double>(2 * plan_.widest);
     loads_ = arena.make<double>(plan_.rows);
     place_ = arena.make<double>(plan_.rows);
     way_ = arena.make<double>(plan_.rows);
@@ -305,12 +300,12 @@ class Solver {
   void add_row(const StructureContact& contact, const ContactRow& row, double stiffness) {
     double* values = values_.data();
     if (contact.node_a != kNoNode)
-      add_outer(values + column(contact.node_a).diagonal, row.a, row.a, stiffness);
+      add_outer_six(values + column(contact.node_a).diagonal, row.a, row.a, stiffness);
     if (contact.node_b != kNoNode)
-      add_outer(values + column(contact.node_b).diagonal, row.b, row.b, stiffness);
+      add_outer_six(values + column(contact.node_b).diagonal, row.b, row.b, stiffness);
     if (!contact.is_between()) return;
     const bool a_first = contact.coupling.first_is_row;
-    add_outer(values + contact.coupling.offset, a_first ? row.a : row.b, a_first ? row.b : row.a, stiffness);
+    add_outer_six(values + contact.coupling.offset, a_first ? row.a : row.b, a_first ? row.b : row.a, stiffness);
   }
 
   // How far the bodies' moves `x` press the row together.
