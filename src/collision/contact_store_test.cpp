@@ -188,6 +188,17 @@ TEST(ContactStore, FaultsAreFound) {
   EXPECT_STREQ(find_fault(broken), "a contact has something in a manifold that it does not use");
   broken.contacts[4].manifold_count = 1;
   EXPECT_STREQ(find_fault(broken), "a contact with manifolds is not known to have some");
+  for (const bool anchor : {false, true}) {
+    ContactStore loaded = store;
+    loaded.contacts[4].manifold_count = 1;
+    loaded.with_manifolds.set(4);
+    Manifold& manifold = loaded.manifolds[loaded.contacts[4].first_manifold];
+    manifold.count = 2;
+    manifold.points[1].held = manifold.anchors[1].separation = 1.0f;
+    EXPECT_STREQ(find_fault(loaded), nullptr);
+    (anchor ? manifold.anchors[2].separation : manifold.points[2].held) = 1.0f;
+    EXPECT_STREQ(find_fault(loaded), "a manifold has something in a point that it does not have");
+  }
   broken.with_manifolds.set(4);
   EXPECT_EQ(find_fault(broken), nullptr);
   remove_contact(broken, 4);
