@@ -1,8 +1,7 @@
 #include "math/block_ldlt.h"
 
 #include "base/check.h"
-#include "math/block_six.h"
-#include "math/dense.h"
+#include "math/block_inverse.h"
 
 #include <algorithm>
 #include <type_traits>
@@ -190,47 +189,20 @@ void with_constant(std::uint32_t rows, Fn&& fn) {
   fn(std::integral_constant<int, 0>());
 }
 
-// The inverse of a block, zero in the rows whose pivots were dropped.
-template <int N>
-void invert(double* block) {
-  double a[N][N];
-  for (int r = 0; r < N; ++r) {
-    for (int c = 0; c < N; ++c) a[r][c] = block[r * N + c];
-  }
-  const Ldlt<N, double> f = factor_ldlt(a);
-  // The inverse of L, below its diagonal; of a dropped pivot's column only the pivot's own row would remain, as zero.
-  double inverse[N][N] = {};
-  for (int c = 0; c < N; ++c) {
-    inverse[c][c] = 1.0;
-    for (int r = c + 1; r < N; ++r) {
-      double sum = 0.0;
-      for (int k = c; k < r; ++k) sum += f.lower[r][k] * inverse[k][c];
-      inverse[r][c] = -sum;
-    }
-  }
-  for (int r = 0; r < N; ++r) {
-    for (int c = 0; c <= r; ++c) {
-      double sum = 0.0;
-      for (int k = r; k < N; ++k) sum += inverse[k][r] * f.inverse_pivot[k] * inverse[k][c];
-      block[r * N + c] = block[c * N + r] = sum;
-    }
-  }
-}
-
 void invert(double* block, std::uint32_t size) {
   switch (size) {
     case 1:
-      return invert<1>(block);
+      return invert_block<1>(block);
     case 2:
-      return invert<2>(block);
+      return invert_block<2>(block);
     case 3:
-      return invert<3>(block);
+      return invert_block<3>(block);
     case 4:
-      return invert<4>(block);
+      return invert_block<4>(block);
     case 5:
-      return invert<5>(block);
+      return invert_block<5>(block);
     default:
-      return invert<6>(block);
+      return invert_block<6>(block);
   }
 }
 
@@ -399,47 +371,6 @@ void solve_blocks(const BlockPlan& plan, std::span<const double> values, std::sp
   for (std::size_t place = plan.columns.size(); place-- > 0;) {
     const BlockColumn& column = plan.columns[place];
     with_constant(column.size, [&](auto c) { solve_up<c()>(plan, column, values.data(), x.data()); });
-  }
-}
-
-void factor_six_blocks(const BlockPlan& plan, std::span<double> values, std::span<double> room) {
-  for (const BlockColumn& column : plan.columns) {
-    double* const diagonal = &values[column.diagonal];
-    invert<kSix>(diagonal);
-    if (column.begin == column.end) continue;
-    const std::size_t count = column.end - column.begin;
-    double* const below = &values[plan.entries[column.begin].offset];  // one block after the other
-    double *const turned = room.data(), *const scaled = turned + count * kSixBlock;
-    const std::uint32_t* target = plan.targets.data() + column.targets;
-    for (std::size_t i = 0; i < count; ++i) {
-      double* const own = scaled + i * kSixBlock;
-      transpose_six(below + i * kSixBlock, turned + i * kSixBlock);
-      multiply_six(below + i * kSixBlock, diagonal, own);
-      for (std::size_t j = 0; j <= i; ++j)
-        subtract_product_six(own, turned + j * kSixBlock, &values[*target++]);
-    }
-    std::copy(scaled, scaled + count * kSixBlock, below);
-  }
-}
-
-void solve_six_blocks(const BlockPlan& plan, std::span<const double> values, std::span<double> x) {
-  for (const BlockColumn& column : plan.columns) {
-    for (std::uint32_t i = column.begin; i < column.end; ++i) {
-      const BlockEntry& entry = plan.entries[i];
-      subtract_times_six(&values[entry.offset], &x[column.row], &x[plan.columns[entry.place].row]);
-    }
-  }
-  for (std::size_t place = plan.columns.size(); place-- > 0;) {
-    const BlockColumn& column = plan.columns[place];
-    double own[kSix] = {};
-    for (int r = 0; r < kSix; ++r) {
-      for (int c = 0; c < kSix; ++c) own[r] += values[column.diagonal + std::uint32_t(kSix * r + c)] * x[column.row + std::uint32_t(c)];
-    }
-    for (std::uint32_t i = column.begin; i < column.end; ++i) {
-      const BlockEntry& entry = plan.entries[i];
-      subtract_transposed_six(&values[entry.offset], &x[plan.columns[entry.place].row], own);
-    }
-    std::copy(own, own + kSix, &x[column.row]);
   }
 }
 

@@ -14,14 +14,22 @@ constexpr std::uint32_t kMostContactsPerBody = 4;
 // more often than not, and a look at a heap of 300 takes forty times as long as a step of it.
 constexpr std::uint32_t kMostInHeap = 32;
 constexpr std::uint32_t kContactsPerCorner = 8;
-// What did not hold in the last step is looked at once in so many steps, by its bodies: looking is dear where there are many.
+// What did not hold in the last step is looked at once in so many steps, by its bodies: looking is dear where there are many. Large
+// islands are looked at once in a while that their smallest body takes to fall a few times its own size: sooner they cannot be lost.
 constexpr std::uint32_t kSmall = 4, kLarge = 128;
-constexpr std::uint64_t kPatience = 8, kMostPatience = 16;
+constexpr std::uint64_t kPatience = 8, kLeastPatienceIfLarge = 16;
+constexpr float kFallsIfLarge = 4.0f, kMostPatienceIfLarge = 1024.0f;
 
-bool is_its_turn(const RigidWorld& w, std::uint32_t bodies) {
-  if (bodies <= kSmall) return true;
-  return w.steps % (bodies <= kLarge ? kPatience : kMostPatience) == 0;
+bool is_its_turn(const RigidWorld& w, const IslandCount& count) {
+  if (count.bodies <= kSmall) return true;
+  if (count.bodies <= kLarge) return w.steps % kPatience == 0;
+  const float fall = std::sqrt(count.smallest / length(w.settings.gravity));  // s
+  const float patience = min(kFallsIfLarge * fall / w.settings.last_step, kMostPatienceIfLarge);
+  return w.steps % max(std::uint64_t(patience), kLeastPatienceIfLarge) == 0;
 }
+
+// Whether all that bore load in the last step was solved directly.
+bool is_held(const IslandCount& count) { return count.held && !count.springs; }
 
 bool may_stand(const RigidWorld& w, const IslandCount& count) {
   if (count.refused || count.stirring || count.grounded == 0) return false;
@@ -29,7 +37,7 @@ bool may_stand(const RigidWorld& w, const IslandCount& count) {
   if (!count.balances && count.grounded == 1 && count.contacts == count.bodies) return false;
   if (count.bodies > kMostBodies || count.contacts > kMostContactsPerBody * count.bodies) return false;
   if (count.bodies > kMostInHeap && kContactsPerCorner * count.corners > count.contacts) return false;
-  return (count.held && !count.springs) || is_its_turn(w, count.bodies);
+  return is_held(count) || is_its_turn(w, count);
 }
 
 class StructureMaker {
@@ -73,7 +81,9 @@ class StructureMaker {
   ContactStructure make(std::uint32_t root) const {
     const Members& members = members_[root];
     ContactStructure structure;
-    structure.settling = islands_.at_root(root).settling;
+    const IslandCount& count = islands_.at_root(root);
+    structure.settling = count.settling;
+    structure.held = is_held(count);
     structure.nodes = members.nodes;
     structure.contacts = members.contacts;
     structure.work = arena_.make<StructureWork>(members.contacts.size());

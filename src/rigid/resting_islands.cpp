@@ -82,6 +82,8 @@ void RestingIslands::count_bodies() {
     IslandCount& count = counts_[parent_[place]];
     if (count.refused) continue;
     const Slowness slowness(w_, body, pull);
+    const float reach = w_.bodies.masses[body].reach;
+    count.smallest = count.bodies == 0 ? reach : min(count.smallest, reach);
     ++count.bodies;
     if (!is_unbound(w_, body) || !slowness.is_below(kSlowShare)) {
       count.refused = true;

@@ -29,6 +29,7 @@ struct IslandCount {
   std::uint32_t bodies = 0, contacts = 0, grounded = 0;
   std::uint32_t corners = 0;       // contacts of a single point
   std::uint32_t first = kNoPlace;  // its last contact with the fixed world
+  float smallest = 0.0f;           // m: the least reach of its bodies
   bool refused = false;   // cannot be at rest: fast or bound bodies, joints, moving ground, no friction
   bool stirring = false;  // a body at rest is not calm
   bool settling = false;  // one is not settled

@@ -53,6 +53,7 @@ struct ContactStructure {
   std::span<StructureContact> contacts;
   std::span<StructureWork> work;
   bool settling = false;  // it still moved as the step began
+  bool held = false;      // it was solved in the last step
   bool begun = false;     // `work` is that of this step
   bool solved = false;    // in the first part of the step
 };
