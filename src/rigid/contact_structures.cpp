@@ -84,6 +84,7 @@ class StructureMaker {
     const IslandCount& count = islands_.at_root(root);
     structure.settling = count.settling;
     structure.held = is_held(count);
+    structure.fresh = !count.held && !count.springs;
     structure.nodes = members.nodes;
     structure.contacts = members.contacts;
     structure.work = arena_.make<StructureWork>(members.contacts.size());

@@ -20,6 +20,7 @@ constexpr std::uint64_t kMostWork = 6'000'000;
 constexpr std::uint64_t kDear = 250'000;
 constexpr int kMostStuckIfDear = 2;  // rounds in turn after which more than this share was left over
 constexpr double kProgressIfDear = 0.7;
+constexpr int kMostRoundsIfFresh = 1;  // and dear: what was put as it lies holds at once, what has yet to settle does not
 // What a point that lets go keeps of its stiffness in the second derivative, but not in what it bears.
 constexpr double kTrace = 1.0e-6;
 // The longest step, in Newton's, and after how many tries it is taken as it is.
@@ -141,11 +142,9 @@ class Solver {
     if (!touches_all()) return false;
     gather_loads();
     for (double& x : place_) x = 0.0;
-    const std::uint64_t affordable = kMostWork / (plan_.work + 1);
-    const int rounds = int(min(std::uint64_t(kMostRounds), max(std::uint64_t(kLeastRounds), affordable)));
     const bool is_dear = plan_.work > kDear;
     const double progress = is_dear ? kProgressIfDear : 1.0;
-    const int most_stuck = is_dear ? kMostStuckIfDear : kMostStuck;
+    const int rounds = most_rounds(), most_stuck = is_dear ? kMostStuckIfDear : kMostStuck;
     double least = kEndless;
     int stuck = 0;
     for (int round = 0; round < rounds && stuck < most_stuck; ++round) {
@@ -171,6 +170,11 @@ class Solver {
   }
 
  private:
+  int most_rounds() const {
+    if (s_.fresh && plan_.work > kDear) return kMostRoundsIfFresh;
+    const std::uint64_t affordable = kMostWork / (plan_.work + 1);
+    return int(min(std::uint64_t(kMostRounds), max(std::uint64_t(kLeastRounds), affordable)));
+  }
   bool plan() {
     Arena& arena = *solve_.arena;
     const std::span<std::uint8_t> sizes = arena.make<std::uint8_t>(s_.nodes.size());

@@ -54,6 +54,7 @@ struct ContactStructure {
   std::span<StructureWork> work;
   bool settling = false;  // it still moved as the step began
   bool held = false;      // it was solved in the last step
+  bool fresh = false;     // its contacts bore nothing in the last step
   bool begun = false;     // `work` is that of this step
   bool solved = false;    // in the first part of the step
 };
