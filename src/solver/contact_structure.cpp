@@ -20,7 +20,7 @@ constexpr std::uint64_t kMostWork = 6'000'000;
 constexpr std::uint64_t kDear = 250'000;
 constexpr int kMostStuckIfDear = 2;  // rounds in turn after which more than this share was left over
 constexpr double kProgressIfDear = 0.7;
-constexpr int kMostRoundsIfFresh = 1;  // and dear: what was put as it lies holds at once, what has yet to settle does not
+constexpr int kMostRoundsIfFresh = 2;  // and dear: what was put as it lies holds at once, what has yet to settle does not
 // What a point that lets go keeps of its stiffness in the second derivative, but not in what it bears.
 constexpr double kTrace = 1.0e-6;
 // The longest step, in Newton's, and after how many tries it is taken as it is.
@@ -40,8 +40,13 @@ constexpr float kReleasedAge = 2.0f;
 // Points further apart than this share of the size do not touch.
 constexpr float kTouchingGap = 1.0e-3f;
 constexpr double kEndless = 1.0e30;
-// What an answer may leave of a body's speed, over what counts as still: rounding.
+// What an answer may leave of a body's speed, over what counts as still: rounding. Of one that leaves more than the next share of
+// that a round more is made.
 constexpr double kResidual = 100.0;
+constexpr double kExactShare = 0.01;
+// What a structure that was held may move by, over what counts as still: what thirty rows of boxes weigh rounds to more than that, and
+// solving would but round it anew. It may grow as the structure buckles, and then takes one round.
+constexpr float kHeldStill = 30.0f;
 
 // A row of a contact: what it is about, on either body, and what it bears before anything moves. The structure's rows are those
 // of bodies: place, then rotation.
@@ -96,10 +101,9 @@ void place_rows(const ContactConstraint& constraint, const StructureWork& work, 
   if (rows.rubs) place_friction(constraint, work, rows);
 }
 
-// Whether the sweeps left every body as good as at rest: where the last step's answer holds, as much as an answer may leave. Rounding
-// of what thirty rows of boxes weigh is more than what counts as still, and solving would but round anew.
+// Whether the sweeps left every body as good as at rest.
 bool is_still(const ContactStructure& s, const StructureSolve& solve) {
-  const float factor = s.held ? float(kResidual) : 1.0f;
+  const float factor = s.held ? kHeldStill : 1.0f;
   for (const StructureNode& node : s.nodes) {
     const BodyMotion& motion = solve.motion[node.body];
     if (largest(absolute(motion.linear_velocity)) > factor * node.still) return false;
@@ -147,6 +151,7 @@ class Solver {
     const int rounds = most_rounds(), most_stuck = is_dear ? kMostStuckIfDear : kMostStuck;
     double least = kEndless;
     int stuck = 0;
+    bool holds = false;
     for (int round = 0; round < rounds && stuck < most_stuck; ++round) {
       assemble();
       factor_six_blocks(plan_, values_, room_);
@@ -155,11 +160,12 @@ class Solver {
       go(find_step());
       give_friction();
       const double left = left_over();
-      if (left <= 1.0) return true;
+      if (left <= kExactShare || (holds && left <= 1.0)) return true;
+      holds = left <= 1.0;
       stuck = left < progress * least ? 0 : stuck + 1;
       least = min(least, left);
     }
-    return false;
+    return holds;
   }
 
   void write() const {
