@@ -198,9 +198,8 @@ bool choose_scenes(const BenchOptions& options, std::vector<bench::Scene>& scene
       std::string all;
       for (const char* known : bench::scene_names()) all += std::string(" ") + known;
       std::fprintf(stderr,
-                   "gyre bench: no scene '%s' to be stepped; there are:%s, and box_pile:N, mesh_rain:N with "
-                   "N bodies\n",
-                   name.c_str(), all.c_str());
+                   "gyre bench: no scene '%s' to be stepped; there are:%s, and with N bodies (rows): %s\n",
+                   name.c_str(), all.c_str(), bench::numbered_scene_names().c_str());
       return false;
     }
     if (!scene->rays) scenes.push_back(*std::move(scene));
@@ -235,7 +234,7 @@ void add_bench(CLI::App& app, int& exit_code) {
       app.add_subcommand("bench", "Run the benchmark scenes: times, and figures of quality beside them");
   auto options = std::make_shared<BenchOptions>();
   command->add_option("SCENE", options->scenes,
-                      "Their names; none: all. box_pile:N and mesh_rain:N have N bodies");
+                      "Their names; none: all. With N bodies, or rows: " + bench::numbered_scene_names());
   command->add_option("--threads", options->threads, "Threads, 0 = all")
       ->check(CLI::Range(0, 256))
       ->capture_default_str();

@@ -96,6 +96,8 @@ struct Ray {
 std::vector<Ray> ray_list();  // of the scene "rays"
 
 const std::vector<const char*>& scene_names();
+// Those that can be had in any size: bodies, about; of a pyramid its rows.
+std::string numbered_scene_names();
 std::optional<Scene> find_scene(const std::string& name);
 
 // Of one shape, so that a driver whose engine does not take densities can set the mass.

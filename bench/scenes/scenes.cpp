@@ -16,11 +16,11 @@ void pyramid_at(Scene& sc, int base, V3 at, double step = 1.1) {
     }
 }
 
-Scene pyramid() {
+Scene pyramid(int base) {
   Scene sc;
   sc.steps = 300;
   ground(sc, 100);
-  pyramid_at(sc, 60, {});
+  pyramid_at(sc, base, {});
   return sc;
 }
 
@@ -33,8 +33,8 @@ Scene many_pyramids() {
   return sc;
 }
 
-// So many boxes as deep as 4,000 of them in a pit of 15 m half width.
-Scene box_pile(int count) {
+// So many bodies as deep as 4,000 of them in a pit of 15 m half width.
+Scene heap(int count, Shape (*shape)(Lcg&, int)) {
   Scene sc;
   sc.steps = 500;
   const double scale = std::sqrt(count / 4000.0);
@@ -43,9 +43,47 @@ Scene box_pile(int count) {
   Lcg g(1);
   for (int i = 0; i < count; ++i) {
     const int l = i / layer, r = i % layer;
-    const V3 h{g.range(0.35, 0.5), g.range(0.35, 0.5), g.range(0.35, 0.5)};
+    const Shape one = shape(g, i);
     const double middle = 0.5 * (side - 1);
-    add(sc, box(h), {(r % side - middle) * 1.8, 1.5 + 1.8 * l, (r / side - middle) * 1.8}, g.rotation());
+    add(sc, one, {(r % side - middle) * 1.8, 1.5 + 1.8 * l, (r / side - middle) * 1.8}, g.rotation());
+  }
+  return sc;
+}
+Shape any_box(Lcg& g, int) { return box({g.range(0.35, 0.5), g.range(0.35, 0.5), g.range(0.35, 0.5)}); }
+Shape any_plank(Lcg& g, int) { return box({g.range(0.5, 0.7), g.range(0.08, 0.15), g.range(0.2, 0.3)}); }
+Shape any_sphere(Lcg& g, int) { return sphere(g.range(0.3, 0.5)); }
+Shape any_capsule(Lcg& g, int) { return capsule(g.range(0.2, 0.3), g.range(0.2, 0.4)); }
+Scene hull_heap(int count) {
+  Scene sc = heap(count, [](Lcg&, int i) { return hull(i % 32); });
+  add_hulls(sc, 32, 16, 0.5, 2);
+  return sc;
+}
+
+// A wall of about so many bricks in running bond, and a ball of 8 t/m^3 that hits it after 0.8 s.
+Scene wall(int count) {
+  Scene sc;
+  sc.steps = 400;
+  ground(sc, 100);
+  const int rows = std::max(2, int(std::sqrt(0.5 * count))), columns = 2 * rows;
+  for (int row = 0; row < rows; ++row) {
+    for (int i = 0; i < columns; ++i)
+      add(sc, box({0.49, 0.25, 0.25}), {i - 0.5 * columns + 0.5 * (row % 2), 0.25 + 0.5 * row, 0});
+  }
+  Body& ball = sc.bodies[std::size_t(add(sc, sphere(0.4), {0.3, 1.5, -12}))];
+  ball.density = 8000;
+  ball.vel = {0, 2, 14};
+  return sc;
+}
+
+// Stacks of ten boxes, about so many in all.
+Scene stacks(int count) {
+  Scene sc;
+  sc.steps = 400;
+  ground(sc, 200);
+  const int side = std::max(1, int(std::sqrt(0.1 * count)));
+  for (int i = 0; i < side * side; ++i) {
+    for (int k = 0; k < 10; ++k)
+      add(sc, box({0.5, 0.5, 0.5}), {2.0 * (i % side - side / 2), 0.5 + k, 2.0 * (i / side - side / 2)});
   }
   return sc;
 }
@@ -266,13 +304,13 @@ namespace {
 
 struct NamedScene {
   const char* name;
-  Scene (*make)();  // none: only with a number of bodies
-  Scene (*make_of)(int bodies) = nullptr;
+  Scene (*make)();  // none: only with a number
+  Scene (*make_of)(int number) = nullptr;
 };
 const NamedScene kScenes[] = {
-    {"pyramid", pyramid},
+    {"pyramid", [] { return pyramid(60); }, pyramid},
     {"many_pyramids", many_pyramids},
-    {"box_pile", [] { return box_pile(4000); }, box_pile},
+    {"box_pile", [] { return heap(4000, any_box); }, [](int n) { return heap(n, any_box); }},
     {"hull_pile", hull_pile},
     {"mixed_pile", mixed_pile},
     {"mesh_rain", [] { return mesh_rain(2000); }, mesh_rain},
@@ -286,6 +324,12 @@ const NamedScene kScenes[] = {
     {"heavy_stack", heavy_stack},
     {"rays", ray_field},
     {"field", nullptr, field},
+    {"planks", nullptr, [](int n) { return heap(n, any_plank); }},
+    {"spheres", nullptr, [](int n) { return heap(n, any_sphere); }},
+    {"capsules", nullptr, [](int n) { return heap(n, any_capsule); }},
+    {"hulls", nullptr, hull_heap},
+    {"wall", nullptr, wall},
+    {"stacks", nullptr, stacks},
 };
 
 }  // namespace
@@ -301,6 +345,14 @@ const std::vector<const char*>& scene_names() {
   return names;
 }
 
+std::string numbered_scene_names() {
+  std::string all;
+  for (const NamedScene& scene : kScenes) {
+    if (scene.make_of != nullptr) all += (all.empty() ? "" : ", ") + std::string(scene.name) + ":N";
+  }
+  return all;
+}
+
 std::optional<Scene> find_scene(const std::string& name) {
   const std::size_t colon = name.find(':');
   for (const NamedScene& named : kScenes) {
@@ -308,9 +360,9 @@ std::optional<Scene> find_scene(const std::string& name) {
     std::optional<Scene> scene;
     if (colon == std::string::npos) {
       if (named.make != nullptr) scene = named.make();
-    } else if (const int bodies = std::atoi(name.c_str() + colon + 1);
-               named.make_of != nullptr && bodies > 0) {
-      scene = named.make_of(bodies);
+    } else if (const int number = std::atoi(name.c_str() + colon + 1);
+               named.make_of != nullptr && number > 0) {
+      scene = named.make_of(number);
     }
     if (scene) scene->name = name;
     return scene;
