@@ -18,6 +18,12 @@ namespace gyre {
 
 struct Group;
 
+// A body of which joints ask more than a sub-step resolves (rigid/pulled_bodies.h).
+struct PulledBody {
+  std::uint32_t body = 0;
+  float raise = 0.0f;  // kg m^2, about every axis
+};
+
 // What every stage of the program reads.
 struct Solve {
   RigidWorld& w;
@@ -47,6 +53,7 @@ struct Solve {
   std::span<std::uint32_t> joint_order{};  // places in the list of swept joints, by groups
   std::span<Group> joint_groups{};
   void* balls = nullptr;  // joints side by side: solver/ball_lanes.h
+  std::span<const PulledBody> pulled{};
   Motions motions{};
   std::span<MovedBody> moved{};               // the batch's bodies that constraints act on,
   void* motion_blocks = nullptr;              // the same for the kernels,

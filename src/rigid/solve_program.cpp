@@ -3,6 +3,7 @@
 
 #include "rigid/joint_works.h"
 #include "rigid/motion_stages.h"
+#include "rigid/pulled_bodies.h"
 #include "solver/ball_records.h"
 #include "task/parallel.h"
 #include "task/program.h"
@@ -32,6 +33,8 @@ void release_stage(void* context, int, int, int) {
   const Solve& s = *static_cast<Solve*>(context);
   release_impacts(s.scratch.impacts, s.contact_bodies, s.impact_settings);
 }
+
+void raise_pulled_stage(void* context, int, int, int) { raise_pulled(*static_cast<Solve*>(context)); }
 
 void solve_trees_stage(void* context, int begin, int end, int) {
   const Solve& s = *static_cast<Solve*>(context);
@@ -326,7 +329,7 @@ std::size_t count_watched(const Solve& s, bool has_contacts) {
 struct Part {
   bool first, last;
   std::span<Group> contacts, joints;
-  int bodies, watched, impacts, linkages, bundles, fields, slices;
+  int bodies, watched, impacts, linkages, bundles, fields, slices, pulled;
   // Joints act between forces and contacts: what they give is none of the contacts' work, and how they bend in the sub-step
   // is none of what contacts gave in the last one.
   bool has_joints;
@@ -343,6 +346,7 @@ struct Part {
         bundles(int(solve.bundles.bundles.size())),
         fields(solve.fields.blocks()),
         slices(joints.empty() ? 0 : kJointSlices),
+        pulled(solve.pulled.empty() ? 0 : 1),
         has_joints(linkages > 0 || bundles > 0 || !joints.empty()) {}
 };
 
@@ -399,6 +403,7 @@ void add_after_contacts(ProgramWriter& program, Solve& solve, const Part& part) 
   add_motion(program, solve, part.has_joints ? advance_noted_stage : advance_stage, part.bodies);
   add_turn_alone(program, solve);
   program.add(release_stage, &solve, part.impacts);
+  program.add(raise_pulled_stage, &solve, part.pulled);
   program.add(joint_slices_stage<place_again_stage>, &solve, part.slices, kSlicesPerClaim);
   program.add(linkage_stage<place_linkage>, &solve, part.linkages);
   if (!part.joints.empty()) program.add(bundle_stage<&LinkageKernels::place>, &solve, part.bundles);
@@ -443,8 +448,8 @@ void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> join
                   TaskSystem& tasks) {
   const int parts = solve.motions.count;
   const std::size_t per_part =
-      (solve.bundles.bundles.empty() ? 26 : 31) + 3 * joints.size() + 2 * contacts.size();
-  ProgramWriter program(arena.make<Stage>(18 + std::size_t(parts) * per_part + 2 * contacts.size()));
+      (solve.bundles.bundles.empty() ? 27 : 32) + 3 * joints.size() + 2 * contacts.size();
+  ProgramWriter program(arena.make<Stage>(19 + std::size_t(parts) * per_part + 2 * contacts.size()));
   solve.joint_groups = joints;
   solve.watched_blocks = count_blocks(int(count_watched(solve, !contacts.empty())), solve.kernels.width);
   const int slices = joints.empty() ? 0 : kJointSlices;
@@ -455,6 +460,7 @@ void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> join
   program.add(smooth_stage<move_smooth_stage>, &solve, solve.smooth.count());
   const bool in_runs = goes_in_runs(solve);
   if (!in_runs) add_motion(program, solve, prepare_motion_stage, bodies);
+  program.add(raise_pulled_stage, &solve, solve.pulled.empty() ? 0 : 1);
   program.add(prepare_fields_stage, &solve.fields, solve.fields.blocks());
   program.add(prepare_contacts_stage, &solve, int(blocks), kBlocksPerClaim);
   program.add(joint_slices_stage<begin_balls_stage>, &solve, slices, kSlicesPerClaim);

@@ -2,6 +2,7 @@
 
 #include "rigid/hits.h"
 #include "rigid/joint_works.h"
+#include "rigid/pulled_bodies.h"
 #include "rigid/solve_bodies.h"
 #include "rigid/solve_gather.h"
 #include "rigid/solve_layout.h"
@@ -151,11 +152,14 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   solve.bundles =
       lay_out_bundles(solve.linkages, solve.kernels, {bodies.motion, bodies.inertia, bodies.orientation},
                       {solve.h, solve.joint_settings.softness.bias_rate, kLinkageGive, raise_inertia}, arena);
+  solve.pulled = find_pulled_bodies(solve, arena);
   gather_motion(solve, arena, tasks);
+  calm_pulled(solve, arena);
   make_contact_blocks(solve, contacts, arena);
   place_resting(solve, arena);
   const std::span<Group> joints = lay_out_joints(solve, arena);
   run_substeps(solve, contacts, joints, arena, tasks);
+  restore_pulled(solve);
   finish_joints(solve.w, solve.batch, begun_in_lanes(solve), solve.joint_work);
   if (solve.is_smooth) finish_springs(solve.w, solve.smooth, scratch.report);
   note_hits(solve.w, scratch, arena, tasks);
