@@ -23,9 +23,11 @@ std::span<const float> add_up_pulls(const Solve& solve, Arena& arena) {
   };
   for (const std::uint32_t i : solve.scratch.swept_joints) {
     const JointRecord& joint = solve.w.joints.records[solve.batch.joints[i]];
-    const bool begins_in_lanes = solve.is_net && solve.ball_lanes[i] != 0;
-    const Vec3 force =
-        ((begins_in_lanes ? solve.lane_start.warm_scale : 1.0f) / solve.h) * joint.linear_impulse;
+    // As it will be begun with: some batches have scaled it by now, and others scale it in their lanes.
+    const bool is_scaled = !(solve.is_net && solve.ball_lanes[i] != 0);
+    const Vec3 impulse =
+        is_scaled ? joint.linear_impulse : solve.lane_start.warm_scale * joint.linear_impulse;
+    const Vec3 force = (1.0f / solve.h) * impulse;
     add(joint.body_a, joint.local_anchor_a, -force);
     add(joint.body_b, joint.local_anchor_b, force);
   }
