@@ -8,6 +8,8 @@ namespace {
 
 // h^2 k / I up to which pull is left alone: kick and drift are stable up to 4, and what pulls grows in a step.
 constexpr float kMostPull = 0.1f;
+// Of bodies whose turning other joints hold, too: less than anything adds up to.
+constexpr float kNeverPulled = -1.0e30f;
 
 // How stiffly joints hold each body of the batch back as it turns, or drive it on (N m/rad), by its place. A force f at arm r turns with
 // the body like a spring of stiffness (r . f) 1 - sym(r f^T); of forces along their arms the sum of r . f is as much about every axis, or
@@ -16,13 +18,23 @@ std::span<const float> add_up_pulls(const Solve& solve, Arena& arena) {
   const BodyStore& bodies = solve.w.bodies;
   const std::span<float> pulls = arena.make<float>(solve.batch.bodies.size());
   for (float& pull : pulls) pull = 0.0f;
+  const auto is_moved = [&](std::int32_t body) {
+    return body != kNoBody && is_movable(bodies.flags[std::size_t(body)]);
+  };
   const auto add = [&](std::int32_t body, Vec3 anchor, Vec3 force) {
-    if (body == kNoBody || !is_movable(bodies.flags[std::size_t(body)])) return;
+    if (!is_moved(body)) return;
     const Vec3 arm = rotate(bodies.orientations[std::size_t(body)], anchor);
     pulls[solve.places[std::size_t(body)]] += absolute(dot(arm, force));
   };
+  const auto leave_out = [&](std::int32_t body) {
+    if (is_moved(body)) pulls[solve.places[std::size_t(body)]] = kNeverPulled;
+  };
   for (const std::uint32_t i : solve.scratch.swept_joints) {
     const JointRecord& joint = solve.w.joints.records[solve.batch.joints[i]];
+    if (joint.kind != JointKind::ball) {
+      leave_out(joint.body_a), leave_out(joint.body_b);
+      continue;
+    }
     // As it will be begun with: some batches have scaled it by now, and others scale it in their lanes.
     const bool is_scaled = !(solve.is_net && solve.ball_lanes[i] != 0);
     const Vec3 impulse =

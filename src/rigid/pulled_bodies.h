@@ -11,7 +11,7 @@
 
 namespace gyre {
 
-// Of the batch's swept joints, by the impulses that they begin with.
+// Of the batch's swept ball joints, by the impulses that they begin with.
 std::span<const PulledBody> find_pulled_bodies(const Solve& solve, Arena& arena);
 
 // Of the bodies that will be moved these get no gyroscopic torque: joints take it back with an inertia that it knows nothing of, many times
