@@ -15,7 +15,7 @@ constexpr std::uint32_t kMostContactsPerBody = 4;
 constexpr std::uint32_t kMostInHeap = 32;
 constexpr std::uint32_t kContactsPerCorner = 8;
 // What did not hold in the last step is looked at once in so many steps, by its bodies: looking is dear where there are many. Large
-// islands are looked at once in a while that their smallest body takes to fall a few times its own size: sooner they cannot be lost.
+// islands are looked at once in a while by how fast their smallest body could fall through its own size: sooner it cannot fall far.
 constexpr std::uint32_t kSmall = 4, kLarge = 128;
 constexpr std::uint64_t kPatience = 8, kLeastPatienceIfLarge = 16;
 constexpr float kFallsIfLarge = 4.0f, kMostPatienceIfLarge = 1024.0f;
