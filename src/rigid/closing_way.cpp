@@ -65,15 +65,28 @@ ClosingWay::Next ClosingWay::next(float open) {
     was_put_back_ = false;
     return begin_part();
   }
+  if (!goes_ && corrections_ == 0) {
+    first_open_ = open;
+    keep();
+  }
   if (!(open < kOpen) && corrections_ < kCorrections) return correct();
-  if (goes_) return end_part(open);
-  // What was off as the step began is no fault of the way.
-  least_ = max(kClosed, 1.1f * open);
+  return goes_ ? end_part(open) : end_start(open);
+}
+
+// What was off as the step began is no fault of the way. It may be more than the group alone can close, of a net that is stretched for
+// one: then all begin as far off as they were.
+ClosingWay::Next ClosingWay::end_start(float open) {
+  const bool is_closer = open <= first_open_;
+  if (!is_closer) put_back();
+  least_ = max(kClosed, 1.1f * min(open, first_open_));
   keep();
   goes_ = true;
-  if (!stays_) return begin_part();
+  if (is_closer && !stays_) return begin_part();
   set_velocities(0.0f);
-  return Next::done;
+  if (stays_) return Next::done;
+  was_put_back_ = true;
+  place_inertia();
+  return Next::look;
 }
 
 ClosingWay::Next ClosingWay::correct() {

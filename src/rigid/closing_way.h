@@ -45,6 +45,7 @@ class ClosingWay {
   int count_parts() const;
   void set_velocities(float share) const;
   Next correct();
+  Next end_start(float open);
   Next begin_part();
   Next end_part(float open);
   bool hold_those_moved_far() const;
@@ -56,7 +57,8 @@ class ClosingWay {
   ClosingBodies bodies_;
   bool stays_ = false, goes_ = false, was_put_back_ = false;
   int part_ = 0, parts_ = 0, corrections_ = 0;
-  float least_ = 0.0f;  // what is off by less is closed
+  float first_open_ = 0.0f;  // m or rad, as the step began
+  float least_ = 0.0f;       // what is off by less is closed
 };
 
 }  // namespace gyre
