@@ -7,7 +7,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . tools/setup.sh
 
-need_packages emscripten binaryen cmake ninja-build python3 nlohmann-json3-dev zopfli
+need_packages emscripten binaryen cmake ninja-build python3 nlohmann-json3-dev zstd
 for program in node npm; do
   command -v $program >/dev/null || { say "No $program: install Node.js 18 or newer."; exit 1; }
 done
@@ -39,9 +39,9 @@ for part in "${parts[@]}"; do
       python3 web/bindings/generate.py --typescript $package/src/generated.ts
       $package/node_modules/.bin/tsc -p $package
       cp LICENSE $package/LICENSE
-      # Of fflate only what unpacks: 2 kB packed for 23.
-      inflate=$(cd $package && echo "export { gunzipSync } from 'fflate';" | node_modules/.bin/esbuild --bundle --minify --format=esm --target=es2020)
-      { echo '/*'; cat $package/node_modules/fflate/LICENSE; echo '*/'; echo "$inflate"; } > $package/dist/inflate.js
+      # Of fzstd only what unpacks all at once.
+      unzstd=$(cd $package && echo "export { decompress } from 'fzstd';" | node_modules/.bin/esbuild --bundle --minify --format=esm --target=es2020)
+      { echo '/*'; cat $package/node_modules/fzstd/LICENSE; echo '*/'; echo "$unzstd"; } > $package/dist/unzstd.js
       # A bundler wants every file that is named; a build that was not made, or of other headers, is an empty one, which load()
       # passes over.
       version=$(sed -n 's/^export const bindingsVersion = \([0-9]*\);$/\1/p' $package/src/generated.ts)

@@ -2,6 +2,7 @@
 // address that a bundler or a server could get wrong.
 import { bindingsVersion } from './generated.js';
 import type { Build, Engine, EngineExports } from './runtime.js';
+import { decompress } from './unzstd.js';
 
 export interface LoadOptions {
   /**
@@ -55,14 +56,11 @@ const variants: Record<Build, () => Promise<Variant>> = {
   plain: () => import('./engine/plain.js'),
 };
 
-async function unpack(variant: Variant): Promise<Uint8Array<ArrayBuffer>> {
+function unpack(variant: Variant): Uint8Array<ArrayBuffer> {
   const text = atob(variant.wasm);
   const bytes = new Uint8Array(text.length);
   for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
-  // Browsers of before 2023 cannot unpack by themselves.
-  if (typeof DecompressionStream === 'undefined') return (await import('./inflate.js')).gunzipSync(bytes);
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
+  return decompress(bytes);
 }
 
 interface ThreadWorker {
@@ -84,7 +82,7 @@ async function start(build: Build, workers: number): Promise<Engine> {
   const variant = await variants[build]();
   if (variant.wasm === '') throw new Error(`load: the build '${build}' was left out of this copy of the package`);
   const module: Record<string, unknown> = {
-    wasmBinary: await unpack(variant),
+    wasmBinary: unpack(variant),
     print: (text: string) => console.log(text),
     printErr: (text: string) => {
       // Said of the thread that waits for a world's workers to end. They do so at once.

@@ -3,7 +3,7 @@
 /** Emscripten's loader. */
 declare const create: (module: Record<string, unknown>) => Promise<Record<string, unknown>>;
 export default create;
-/** The WebAssembly module, packed with gzip, in base64. */
+/** The WebAssembly module, packed with zstd, in base64. */
 export declare const wasm: string;
 /** With threads: the code of a worker; otherwise empty. */
 export declare const worker: string;
