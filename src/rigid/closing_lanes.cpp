@@ -45,11 +45,11 @@ class LaneClosing {
     if (batch_.joints.empty()) return is_led_;
     const LaneStart start{.limits_only = true};
     DenseNets dense;
-    const Linkages linkages = find_linkages(w_, batch_, places_, net_joints_, start, dense, arena_);
+    const Linkages linkages = find_linkages(w_, batch_, places_, net_joints_, {}, start, dense, arena_);
     const LaneArrays arrays{bodies_.motion.data(), bodies_.inertia.data(), bodies_.orientations.data()};
     const LaneSettings settings{
         kClosingStep, kClosingSettings.softness.bias_rate, kGive, raise_inertia, kMostErrors, 0.0f,
-        kMostTurn};
+        kMostTurn,    false};
     bundles_ = lay_out_bundles(linkages, kernels, arrays, settings, arena_);
     ways_ = arena_.make<ClosingWay>(groups_.size());
     for (const LaneLinkage& linkage : linkages.alike) {

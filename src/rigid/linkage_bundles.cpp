@@ -20,6 +20,7 @@ LinkageBundle make_bundle(const LinkageShape& shape, const LinkageKernels& kerne
   b.kernels = &kernels;
   b.nodes = shape.nodes.data();
   b.couplings = shape.couplings.data();
+  b.walk = shape.walk.data();
   b.node_count = std::uint32_t(shape.nodes.size());
   b.coupling_count = std::uint32_t(shape.couplings.size());
   b.body_count = shape.body_count;
@@ -34,6 +35,7 @@ LinkageBundle make_bundle(const LinkageShape& shape, const LinkageKernels& kerne
   for (const LaneNode& node : shape.nodes) {
     b.stop_count += (node.has_twist ? 1 : 0) + (node.has_swing ? 1 : 0);
     b.drive_count += node.is_driven() ? 1 : 0;
+    b.has_drives = b.has_drives || node.has_drive;
   }
   const std::size_t width = std::size_t(kernels.width);
   b.bodies = arena.make<std::byte>(b.body_count * kernels.body_bytes).data();
@@ -42,6 +44,7 @@ LinkageBundle make_bundle(const LinkageShape& shape, const LinkageKernels& kerne
   b.values = arena.make<float>(b.value_count * width).data();
   b.vector = arena.make<float>(b.row_count * width).data();
   b.room = arena.make<float>(shape.plan.widest * width).data();
+  b.gained = arena.make<float>(2 * width).data();
   b.is_factored = arena.make<bool>(1).data();
   b.stops = arena.make<std::byte>(kernels.stop_room(b)).data();
   return b;
@@ -94,8 +97,8 @@ void begin_bundles(const BundleSolve& bundles, int begin, int end, const RigidWo
       for (std::size_t lane = 0; lane < bundle.linkages.size(); ++lane) {
         const LinkedJoint& linked = bundle.linkages[lane]->joints[n];
         const JointRecord& joint = w.joints.records[linked.record];
-        set_lane_body(bundle.lanes, int(lane), shape.a, linked.body_a);
-        set_lane_body(bundle.lanes, int(lane), shape.b, linked.body_b);
+        set_lane_body(bundle.lanes, int(lane), shape.a, linked.body_a, linked.pressed_a);
+        set_lane_body(bundle.lanes, int(lane), shape.b, linked.body_b, linked.pressed_b);
         begin_lane(bundle.lanes, int(lane), n, joint, detail_of(w.joints, linked.record),
                    joint_offset(w, joint), start);
       }

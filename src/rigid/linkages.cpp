@@ -106,12 +106,14 @@ Groups group_joints(std::span<const NetJoint> all, std::span<const std::uint32_t
 class LinkageMaker {
  public:
   LinkageMaker(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
-               std::span<const NetJoint> joints, const LaneStart& start, const Graph& graph,
-               std::span<const std::uint32_t> local, std::size_t most, DenseNets& dense, Arena& arena)
+               std::span<const NetJoint> joints, std::span<const std::uint8_t> pressed,
+               const LaneStart& start, const Graph& graph, std::span<const std::uint32_t> local,
+               std::size_t most, DenseNets& dense, Arena& arena)
       : w_(w),
         batch_(batch),
         places_(places),
         joints_(joints),
+        pressed_(pressed),
         start_(start),
         graph_(graph),
         local_(local),
@@ -170,6 +172,10 @@ class LinkageMaker {
     const std::uint32_t place = places_[body];
     return graph_.at_body.subspan(graph_.first[place], graph_.first[place + 1] - graph_.first[place]);
   }
+  bool is_pressed(std::int32_t body) const {
+    return !pressed_.empty() && body != kNoBody && is_active(w_, std::uint32_t(body)) &&
+           pressed_[places_[std::size_t(body)]] != 0;
+  }
   std::size_t count_pairs(std::span<const std::uint32_t> members) const {
     std::size_t twice = 0;
     for (const std::uint32_t n : members) {
@@ -204,7 +210,8 @@ class LinkageMaker {
       // What describe() asks of it.
       if (const JointDetail* const detail = detail_of(w_.joints, slot))
         prefetch(detail, offsetof(JointDetail, row_impulses));
-      draft.joints[i] = {slot, place, joint.body_a, joint.body_b};
+      draft.joints[i] = {
+          slot, place, joint.body_a, joint.body_b, is_pressed(joint.body_a), is_pressed(joint.body_b)};
       draft.side_a[i] = side_of(joint.body_a);
       draft.side_b[i] = side_of(joint.body_b);
     }
@@ -226,6 +233,7 @@ class LinkageMaker {
     for (std::size_t i = 0; i < draft.bodies.size(); ++i) {
       linkage.bodies[i] = LinkageBody{};
       linkage.bodies[i].body = draft.bodies[i];
+      linkage.bodies[i].is_pressed = is_pressed(draft.bodies[i]);
     }
     linkage.couplings = couplings;
     linkage.plan = plan;
@@ -307,8 +315,28 @@ class LinkageMaker {
                             c.row_has_b, c.column_has_b, false};
     }
     mark_first(shape);
+    if (shape.moving_count == shape.body_count) find_walk(shape);
     shapes_[shape_count_] = shape;
     return std::uint32_t(shape_count_++);
+  }
+
+  // Joint after joint, forwards and backwards, until all bodies are reached.
+  void find_walk(LinkageShape& shape) const {
+    shape.walk = arena_.make<LaneStep>(shape.body_count - 1);
+    const std::span<std::uint8_t> is_reached = arena_.make<std::uint8_t>(shape.body_count);
+    for (std::uint8_t& reached : is_reached) reached = 0;
+    is_reached[0] = 1;
+    const std::size_t count = shape.nodes.size();
+    std::size_t used = 0;
+    for (std::size_t pass = 0; used < shape.walk.size(); ++pass) {
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t n = pass % 2 == 0 ? i : count - 1 - i;
+        const LaneNode& node = shape.nodes[n];
+        if (is_reached[node.a] == is_reached[node.b]) continue;
+        shape.walk[used++] = {std::uint32_t(n), is_reached[node.a] != 0};
+        is_reached[node.a] = is_reached[node.b] = 1;
+      }
+    }
   }
 
   // Which couplings are the first in their blocks, and whether that is all blocks below the diagonal.
@@ -329,6 +357,7 @@ class LinkageMaker {
   const SolveBatch& batch_;
   std::span<const std::uint32_t> places_;
   std::span<const NetJoint> joints_;
+  std::span<const std::uint8_t> pressed_;
   LaneStart start_;
   const Graph& graph_;
   std::span<const std::uint32_t> local_;
@@ -370,8 +399,8 @@ Linkages no_linkages(std::size_t joints, Arena& arena) {
 }
 
 Linkages find_linkages(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
-                       std::span<const NetJoint> joints, const LaneStart& start, DenseNets& dense,
-                       Arena& arena) {
+                       std::span<const NetJoint> joints, std::span<const std::uint8_t> pressed,
+                       const LaneStart& start, DenseNets& dense, Arena& arena) {
   if (joints.empty()) return {};
   const Graph graph = make_graph(joints, batch.bodies.size(), places, arena);
   const Groups groups = group_joints(joints, places, graph, arena);
@@ -382,7 +411,7 @@ Linkages find_linkages(const RigidWorld& w, const SolveBatch& batch, std::span<c
   const std::span<std::uint8_t> in_lanes = arena.make<std::uint8_t>(joints.size());
   for (std::uint8_t& flag : swept) flag = 1;
   for (std::uint8_t& flag : in_lanes) flag = 0;
-  LinkageMaker maker(w, batch, places, joints, start, graph, groups.local, most, dense, arena);
+  LinkageMaker maker(w, batch, places, joints, pressed, start, graph, groups.local, most, dense, arena);
   std::size_t alone_count = 0, alike_count = 0;
   for (std::size_t group = 0; group < most; ++group) {
     const std::uint32_t begin = group == 0 ? 0 : groups.ends[group - 1];

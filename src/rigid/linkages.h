@@ -17,6 +17,7 @@ namespace gyre {
 struct LinkageShape {
   std::span<LaneNode> nodes;
   std::span<LaneCoupling> couplings;
+  std::span<LaneStep> walk;  // as LinkageBundle::walk
   BlockPlan plan;
   std::uint32_t body_count = 0, moving_count = 0;
   bool has_fill = false;  // as LinkageBundle::has_fill
@@ -27,6 +28,7 @@ struct LinkedJoint {
   std::uint32_t record = 0;  // slot
   std::uint32_t place = 0;   // in the batch's list of joints
   std::int32_t body_a = kNoBody, body_b = kNoBody;
+  bool pressed_a = false, pressed_b = false;  // contacts act on them
 };
 // A linkage that is solved beside others.
 struct LaneLinkage {
@@ -61,10 +63,11 @@ class DenseNets {
   Array<NetJoint> joints_;  // of all nets, one after the other
 };
 
-// Of one batch; `places` are those of all (solve_batches.h), `joints` are the batch's. `start`: how lanes will be begun.
+// Of one batch; `places` are those of all (solve_batches.h), `joints` are the batch's. `pressed`: by place, 1 of bodies on which contacts
+// act; or empty. `start`: how lanes will be begun.
 Linkages find_linkages(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
-                       std::span<const NetJoint> joints, const LaneStart& start, DenseNets& dense,
-                       Arena& arena);
+                       std::span<const NetJoint> joints, std::span<const std::uint8_t> pressed,
+                       const LaneStart& start, DenseNets& dense, Arena& arena);
 // Where all joints are swept.
 Linkages no_linkages(std::size_t joints, Arena& arena);
 

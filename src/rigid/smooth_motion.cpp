@@ -1,5 +1,6 @@
 #include "rigid/smooth_motion.h"
 
+#include "base/disjoint_sets.h"
 #include "solver/motion_block.h"
 
 namespace gyre {
@@ -12,20 +13,6 @@ constexpr int kMostParts = 8192;
 bool is_untouched(const RigidWorld& w, std::uint32_t body) {
   return is_active(w, body) && w.bodies.flags[body].touched == kUntouched;
 }
-
-// Union-find over places in the batch.
-struct Roots {
-  std::span<std::uint32_t> parents;
-
-  std::uint32_t of(std::uint32_t i) const {
-    while (parents[i] != i) i = parents[i] = parents[parents[i]];
-    return i;
-  }
-  void unite(std::uint32_t a, std::uint32_t b) const {
-    a = of(a), b = of(b);
-    parents[max(a, b)] = min(a, b);
-  }
-};
 
 SmoothBody describe(const RigidWorld& w, std::uint32_t i, Arena& arena) {
   const BodyMass& mass = w.bodies.masses[i];
@@ -210,8 +197,7 @@ struct Members {
 Members part_bodies(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
                     std::span<const std::uint32_t> springs, Arena& arena) {
   const std::size_t count = batch.bodies.size();
-  const Roots roots{arena.make<std::uint32_t>(count)};
-  for (std::uint32_t i = 0; i < count; ++i) roots.parents[i] = i;
+  const DisjointSets roots(arena.make<std::uint32_t>(count));
   for (const std::uint32_t slot : springs) {
     const JointRecord& joint = w.joints.records[slot];
     if (joint.body_a == kNoBody || joint.body_b == kNoBody) continue;

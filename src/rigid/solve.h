@@ -24,6 +24,16 @@ struct PulledBody {
   float raise = 0.0f;  // kg m^2, about every axis
 };
 
+// Bodies that hang together by joints that should do no work (rigid/joint_energy.h).
+struct JointIsland {
+  std::span<const std::uint32_t> bodies, joints;
+  bool is_held = false;     // by what does not move
+  bool is_fast = false;     // some body turned far as the step began
+  bool is_bounded = false;  // joints gave more than is borne before bodies move
+  double gained = 0.0;      // J, in this sub-step, by what joints changed of velocities,
+  double before = 0.0;      // and what there was before they last did
+};
+
 // What every stage of the program reads.
 struct Solve {
   RigidWorld& w;
@@ -54,6 +64,7 @@ struct Solve {
   std::span<Group> joint_groups{};
   void* balls = nullptr;  // joints side by side: solver/ball_lanes.h
   std::span<const PulledBody> pulled{};
+  std::span<JointIsland> joint_islands{};
   Motions motions{};
   std::span<MovedBody> moved{};               // the batch's bodies that constraints act on,
   void* motion_blocks = nullptr;              // the same for the kernels,

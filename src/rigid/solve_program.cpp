@@ -1,6 +1,7 @@
 // The stages of sub-steps and their order. See solve_program.h.
 #include "rigid/solve_program.h"
 
+#include "rigid/joint_energy.h"
 #include "rigid/joint_works.h"
 #include "rigid/motion_stages.h"
 #include "rigid/pulled_bodies.h"
@@ -34,6 +35,10 @@ void release_stage(void* context, int, int, int) {
   release_impacts(s.scratch.impacts, s.contact_bodies, s.impact_settings);
 }
 
+template <void (*kernel)(const Solve&, int, int)>
+void joint_islands_stage(void* context, int begin, int end, int) {
+  kernel(*static_cast<Solve*>(context), begin, end);
+}
 void raise_pulled_stage(void* context, int, int, int) { raise_pulled(*static_cast<Solve*>(context)); }
 
 void solve_trees_stage(void* context, int begin, int end, int) {
@@ -329,7 +334,7 @@ std::size_t count_watched(const Solve& s, bool has_contacts) {
 struct Part {
   bool first, last;
   std::span<Group> contacts, joints;
-  int bodies, watched, impacts, linkages, bundles, fields, slices, pulled;
+  int bodies, watched, impacts, linkages, bundles, fields, slices, pulled, islands;
   // Joints act between forces and contacts: what they give is none of the contacts' work, and how they bend in the sub-step
   // is none of what contacts gave in the last one.
   bool has_joints;
@@ -347,6 +352,7 @@ struct Part {
         fields(solve.fields.blocks()),
         slices(joints.empty() ? 0 : kJointSlices),
         pulled(solve.pulled.empty() ? 0 : 1),
+        islands(int(solve.joint_islands.size())),
         has_joints(linkages > 0 || bundles > 0 || !joints.empty()) {}
 };
 
@@ -363,11 +369,14 @@ void add_before_contacts(ProgramWriter& program, Solve& solve, const Part& part)
   add_motion(program, solve, is_warm ? predict_warm_stage : predict_stage, part.bodies);
   program.add(strike_stage, &solve, part.impacts);
   program.add(joint_slices_stage<bend_joints_stage>, &solve, part.slices, kSlicesPerClaim);
+  program.add(joint_islands_stage<begin_joint_work>, &solve, part.islands);
   program.add(linkage_stage<warm_linkage>, &solve, part.linkages);
   // Later they have been asked as the last part ended: velocities are as they were but for what turns no joint. (Blows of the batch must
   // not be a reason to ask again: they may be another island's.)
   if (first) program.add(bundle_stage<&LinkageKernels::ask>, &solve, part.bundles);
   program.add_groups(warm_joints_stage, part.joints, kJointsPerBlock, kJointBlocksPerClaim);
+  program.add(joint_islands_stage<end_joint_work>, &solve, part.islands);
+  program.add(joint_islands_stage<bound_gains>, &solve, part.islands);
   if (!first && !is_warm) add_motion(program, solve, warm_motion_stage, part.watched);
   if (first) {
     add_motion(program, solve, watch_motion_stage, part.watched);
@@ -377,8 +386,11 @@ void add_before_contacts(ProgramWriter& program, Solve& solve, const Part& part)
   // What contacts and joints gave in the last part is in the velocities by now: a stream pulls at what really moves.
   program.add(apply_fields_stage, &solve.fields, part.fields);
   if (part.fields > 0) add_motion(program, solve, watch_motion_stage, part.watched);
+  program.add(joint_islands_stage<begin_joint_work>, &solve, part.islands);
   program.add_groups(solve_joints_stage, part.joints, kJointsPerBlock, kJointBlocksPerClaim);
   program.add(linkage_stage<solve_linkage>, &solve, part.linkages);
+  program.add(joint_islands_stage<end_joint_work>, &solve, part.islands);
+  program.add(joint_islands_stage<bound_gains>, &solve, part.islands);
   program.add(bundle_stage<&LinkageKernels::solve>, &solve, part.bundles);
   if (part.has_joints) add_motion(program, solve, watch_motion_stage, part.watched);
 }
@@ -398,7 +410,10 @@ void add_contacts(ProgramWriter& program, Solve& solve, const Part& part) {
 void add_after_contacts(ProgramWriter& program, Solve& solve, const Part& part) {
   const bool last = part.last;
   if (part.has_joints) add_motion(program, solve, note_motion_stage, part.watched);
+  program.add(joint_islands_stage<begin_joint_work>, &solve, part.islands);
   program.add(linkage_stage<solve_linkage_again>, &solve, part.linkages);
+  program.add(joint_islands_stage<end_joint_work>, &solve, part.islands);
+  program.add(joint_islands_stage<bound_gains>, &solve, part.islands);
   program.add(bundle_stage<&LinkageKernels::solve_again>, &solve, part.bundles);
   add_motion(program, solve, part.has_joints ? advance_noted_stage : advance_stage, part.bodies);
   add_turn_alone(program, solve);
@@ -407,8 +422,11 @@ void add_after_contacts(ProgramWriter& program, Solve& solve, const Part& part) 
   program.add(joint_slices_stage<place_again_stage>, &solve, part.slices, kSlicesPerClaim);
   program.add(linkage_stage<place_linkage>, &solve, part.linkages);
   if (!part.joints.empty()) program.add(bundle_stage<&LinkageKernels::place>, &solve, part.bundles);
+  program.add(joint_islands_stage<begin_joint_work>, &solve, part.islands);
   program.add_groups(relax_joints_stage, part.joints, kJointsPerBlock, kJointBlocksPerClaim);
   program.add(linkage_stage<relax_linkage>, &solve, part.linkages);
+  program.add(joint_islands_stage<end_joint_work>, &solve, part.islands);
+  program.add(joint_islands_stage<take_gains_away>, &solve, part.islands);
   // Where no joint is swept in between, while their rows are still in the cache.
   if (!part.joints.empty())
     program.add(last ? bundle_stage<&LinkageKernels::finish> : bundle_stage<&LinkageKernels::pass>, &solve,
@@ -448,7 +466,7 @@ void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> join
                   TaskSystem& tasks) {
   const int parts = solve.motions.count;
   const std::size_t per_part =
-      (solve.bundles.bundles.empty() ? 27 : 32) + 3 * joints.size() + 2 * contacts.size();
+      (solve.bundles.bundles.empty() ? 40 : 45) + 3 * joints.size() + 2 * contacts.size();
   ProgramWriter program(arena.make<Stage>(19 + std::size_t(parts) * per_part + 2 * contacts.size()));
   solve.joint_groups = joints;
   solve.watched_blocks = count_blocks(int(count_watched(solve, !contacts.empty())), solve.kernels.width);

@@ -1,6 +1,7 @@
 #include "rigid/solve_step.h"
 
 #include "rigid/hits.h"
+#include "rigid/joint_energy.h"
 #include "rigid/joint_works.h"
 #include "rigid/pulled_bodies.h"
 #include "rigid/solve_bodies.h"
@@ -84,6 +85,19 @@ std::span<const std::uint8_t> begun_in_lanes(const Solve& solve) {
   return solve.is_net ? solve.ball_lanes : solve.linkages.in_lanes;
 }
 
+// By place in the batch: 1 of bodies on which contacts act.
+std::span<const std::uint8_t> find_pressed(const Solve& solve, Arena& arena) {
+  const std::span<const ColoringPair> pairs = solve.scratch.pairs;
+  if (pairs.empty() || solve.net_joints.empty()) return {};
+  const std::span<std::uint8_t> pressed = arena.make<std::uint8_t>(solve.batch.bodies.size());
+  for (std::uint8_t& one : pressed) one = 0;
+  for (const ColoringPair& pair : pairs) {
+    if (pair.a != ColoringPair::kNone) pressed[pair.a] = 1;
+    if (pair.b != ColoringPair::kNone) pressed[pair.b] = 1;
+  }
+  return pressed;
+}
+
 // Joints, and which of them are solved directly. Most of those in linkages, and of a net that is known to be swept, need no work
 // but a lane.
 void begin_joints(Solve& solve, float warm_scale, Arena& arena) {
@@ -93,7 +107,7 @@ void begin_joints(Solve& solve, float warm_scale, Arena& arena) {
       .warm_scale = warm_scale, .substep = solve.h, .softness = solve.joint_settings.softness};
   solve.linkages = solve.is_net ? no_linkages(solve.net_joints.size(), arena)
                                 : find_linkages(solve.w, solve.batch, solve.places, solve.net_joints,
-                                                solve.lane_start, nets, arena);
+                                                find_pressed(solve, arena), solve.lane_start, nets, arena);
   const JointWorks works = begin_joints(solve.w, solve.batch, begun_in_lanes(solve), warm_scale, arena);
   solve.joint_work = works.work;
   solve.joint_places = works.places;
@@ -153,6 +167,7 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
       lay_out_bundles(solve.linkages, solve.kernels, {bodies.motion, bodies.inertia, bodies.orientation},
                       {solve.h, solve.joint_settings.softness.bias_rate, kLinkageGive, raise_inertia}, arena);
   solve.pulled = find_pulled_bodies(solve, arena);
+  solve.joint_islands = find_joint_islands(solve, arena);
   gather_motion(solve, arena, tasks);
   calm_pulled(solve, arena);
   make_contact_blocks(solve, contacts, arena);
@@ -161,6 +176,7 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   run_substeps(solve, contacts, joints, arena, tasks);
   restore_pulled(solve);
   finish_joints(solve.w, solve.batch, begun_in_lanes(solve), solve.joint_work);
+  forget_bounded(solve);
   if (solve.is_smooth) finish_springs(solve.w, solve.smooth, scratch.report);
   note_hits(solve.w, scratch, arena, tasks);
   scratch.counts.manifolds += scratch.constraints.size();

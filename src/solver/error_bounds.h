@@ -29,6 +29,11 @@ constexpr float kCalmTurn = 0.15f;
 // Bodies that turn by less than this in a part need not have lost what speed errors gave them before the next part asks for their bend.
 constexpr float kStraightTurn = 0.05f;
 
+// What joints that do no work may give in a sub-step, of the energy of motion that there was, before all of it is taken away: what the bend
+// beyond the second order gives and takes in turn in a smooth swing is less. Until bodies have moved it may be more, since what the bend
+// asks for goes away after that.
+constexpr float kMostGain = 1.0e-2f, kMostGainAhead = 1.0f;
+
 // Stops of a cone's twist rest where 1 + cos(swing) is less, from 143 degrees on: a limb that points straight back has no twist, and near
 // there it changes by any amount at once.
 constexpr float kLeastTwistTold = 0.2f;

@@ -170,13 +170,18 @@ void clear_lanes(const LinkageBundle& bundle) {
   if (bundle.drive_count > 0)
     std::memset(static_cast<void*>(bundle.drives), 0, bundle.drive_count * bundle.kernels->drives_bytes);
   for (std::uint32_t body = 0; body < bundle.body_count; ++body) {
-    for (int lane = 0; lane < bundle.kernels->width; ++lane) set_lane_body(bundle, lane, body, kNoBody);
+    for (int lane = 0; lane < bundle.kernels->width; ++lane)
+      set_lane_body(bundle, lane, body, kNoBody, false);
   }
 }
 
-void set_lane_body(const LinkageBundle& bundle, int lane, std::uint32_t body, std::int32_t record) {
+void set_lane_body(const LinkageBundle& bundle, int lane, std::uint32_t body, std::int32_t record,
+                   bool is_pressed) {
   std::byte* const records = bundle.bodies + body * bundle.kernels->body_bytes;
+  const std::int32_t pressed = is_pressed ? 1 : 0;
+  const std::size_t width = std::size_t(bundle.kernels->width);
   std::memcpy(records + std::size_t(lane) * sizeof record, &record, sizeof record);
+  std::memcpy(records + (width + std::size_t(lane)) * sizeof record, &pressed, sizeof record);
 }
 
 void begin_lane(const LinkageBundle& bundle, int lane, std::uint32_t node, const JointRecord& joint,

@@ -22,7 +22,9 @@ bool fits_lane(const JointRecord& joint, const JointDetail* detail, const LaneSt
 
 // Clears all lanes of a bundle: those that are never set have no bodies.
 void clear_lanes(const LinkageBundle& bundle);
-void set_lane_body(const LinkageBundle& bundle, int lane, std::uint32_t body, std::int32_t record);
+// `is_pressed`: contacts act on it.
+void set_lane_body(const LinkageBundle& bundle, int lane, std::uint32_t body, std::int32_t record,
+                   bool is_pressed);
 // `offset`: as in JointPlaces.
 void begin_lane(const LinkageBundle& bundle, int lane, std::uint32_t node, const JointRecord& joint,
                 const JointDetail* detail, Vec3 offset, const LaneStart& start);

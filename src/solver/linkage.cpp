@@ -72,7 +72,7 @@ void raise_inertias(const Linkage& linkage, const LinkageSolve& s) {
     body.inertia = inverse(body.inverse);
     const Mat3 spin = to_matrix(body.inverse) * to_matrix(body.pull);
     const float unresolved = h * h * 0.5f * (spin.x.x + spin.y.y + spin.z.z);
-    if (!(unresolved > kMostPull)) continue;
+    if (!(unresolved > kMostPull) || body.is_pressed) continue;
     const float share = h * h * (1.0f - kMostPull / unresolved);
     body.inverse = inverse(body.inertia + share * positive_part(body.pull));
   }

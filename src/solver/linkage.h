@@ -47,10 +47,11 @@ static_assert(kMostBlockRows <= kRowLanes);
 // A body of a linkage that moves.
 struct LinkageBody {
   std::int32_t body = kNoBody;
-  Sym3 pull;     // by how much tension holds its orientation: N m / rad
-  Sym3 inverse;  // inertia, raised to what a sub-step can bear
-  Sym3 inertia;  // as it is
-  Quat turn;     // what its velocities make of a sub-step
+  bool is_pressed = false;  // contacts act on it
+  Sym3 pull;                // by how much tension holds its orientation: N m / rad
+  Sym3 inverse;             // inertia, raised to what a sub-step can bear
+  Sym3 inertia;             // as it is
+  Quat turn;                // what its velocities make of a sub-step
 };
 
 // Two joints that share a body that moves, and where their block lies.

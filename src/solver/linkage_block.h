@@ -11,6 +11,7 @@ inline namespace GYRE_TARGET_NAMESPACE {
 template <int W>
 struct LinkedBody {
   std::int32_t record[W];
+  std::int32_t pressed[W];  // 1: contacts act on it
   Vec3W<W> linear,
       angular;  // velocities, while a stage works on them, or from contacts to contacts (LaneVelocities)
   Wide<W> inverse_mass;
@@ -22,6 +23,7 @@ struct LinkedBody {
   QuatW<W> orientation;
   Vec3W<W> moved;
   Sym3W<W> pull;
+  Vec3W<W> center;  // while inner motion is slowed: from that of the first body
 };
 
 static_assert(offsetof(LinkedBody<4>, angular) == offsetof(LinkedBody<4>, linear) + sizeof(Vec3W<4>));

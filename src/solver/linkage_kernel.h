@@ -3,6 +3,7 @@
 #pragma once
 
 #include "solver/linkage_drives_kernel.h"
+#include "solver/linkage_energy_kernel.h"
 #include "solver/linkage_stops_kernel.h"
 
 namespace gyre {
@@ -252,11 +253,22 @@ void ask_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const Lane
   ask_lanes(bundle, s, s.first_errors);
 }
 
+// Those in which a body turns so far in a part that the bend shows in its velocities.
+template <int W>
+GYRE_INLINE Mask<W> find_fast(const Bundle<W>& bundle, float substep) {
+  Wide<W> most(0.0f);
+  for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i)
+    most = max(most, length_squared(bundle.bodies[i].angular));
+  return (substep * substep) * most > kStraightTurn * kStraightTurn;
+}
+
 // The impulses of equations are found from nothing, those of stops from what they were; where something is swept, all from what they were.
 template <int W>
 void solve_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const Bundle<W> bundle(plain);
   load_velocities(bundle, arrays);
+  const Mask<W> nowhere = Mask<W>::splat(false);
+  const EnergyWatch<W> watch(bundle, s.keeps_energy ? find_fast(bundle, s.substep) : nowhere);
   push_kept(bundle);
   if (plain.drive_count > 0) {
     push_driven(bundle);
@@ -265,6 +277,7 @@ void solve_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const La
     solve_rows<W, Asks::first>(bundle);
   }
   solve_stops(bundle, s, s.first_errors);
+  watch.note();
   ask_lanes(bundle, s, kMostErrors);  // now with velocities that agree with the joints
   store_velocities(bundle, arrays);
 }
@@ -273,8 +286,11 @@ template <int W>
 void solve_bundle_again(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const Bundle<W> bundle(plain);
   load_velocities(bundle, arrays);
+  const EnergyWatch<W> watch(bundle);
   solve_again(bundle);
   solve_stops(bundle, s, kMostErrors);
+  watch.note();
+  bound_gain(bundle, kMostGainAhead, kMostGainAhead);
   store_velocities(bundle, arrays);
 }
 
@@ -289,15 +305,6 @@ __attribute__((noinline)) void sum_impulses(const Bundle<W>& bundle) {
     if (node.has_swing) sum_stop(joint, joint.swing);
     if (node.is_driven()) sum_drives(node, joint, bundle.drives[node.drives]);
   }
-}
-
-// Those in which a body turns so far in a part that the bend shows in its velocities.
-template <int W>
-GYRE_INLINE Mask<W> find_fast(const Bundle<W>& bundle, float substep) {
-  Wide<W> most(0.0f);
-  for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i)
-    most = max(most, length_squared(bundle.bodies[i].angular));
-  return (substep * substep) * most > kStraightTurn * kStraightTurn;
 }
 
 // Those in which a stop pushes a limb back faster than it may stay. What it gives for that is taken away at once: a stop only pushes, so
@@ -332,9 +339,12 @@ void pass_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const Lan
   const bool is_driven = plain.drive_count > 0;
   const Mask<W> fast = find_fast(bundle, s.substep), relaxed = is_driven ? Mask<W>::splat(true) : fast;
   const Mask<W> stopped = fast | find_taken_back(bundle);
+  const EnergyWatch<W> watch(bundle);
   relax(bundle, relaxed);
   if (any(stopped)) solve_stops(bundle, s, kNoErrors, stopped);
-  if (any(relaxed | stopped)) store_velocities(bundle, arrays);
+  watch.note();
+  const Mask<W> slowed = bound_gain(bundle, kMostGain, 0.0f);
+  if (any(relaxed | stopped | slowed)) store_velocities(bundle, arrays);
   ask_lanes(bundle, s, s.first_errors);
   sum_impulses(bundle);
 }
@@ -343,8 +353,11 @@ template <int W>
 void finish_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const Bundle<W> bundle(plain);
   load_velocities(bundle, arrays);
+  const EnergyWatch<W> watch(bundle);
   relax(bundle, Mask<W>::splat(true));
   solve_stops(bundle, s, kNoErrors);
+  watch.note();
+  bound_gain(bundle, kMostGain, 0.0f);
   sum_impulses(bundle);
   store_velocities(bundle, arrays);
 }

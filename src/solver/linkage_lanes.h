@@ -76,6 +76,11 @@ struct LaneNode {
 
   bool is_driven() const { return has_drive || has_friction; }
 };
+// From a body whose place is known to one that a joint ties to it.
+struct LaneStep {
+  std::uint32_t node = 0;
+  bool to_b = false;
+};
 struct LaneCoupling {
   std::uint32_t row = 0, column = 0;  // nodes
   std::uint32_t offset = 0;
@@ -89,6 +94,7 @@ struct LinkageBundle {
   const LinkageKernels* kernels = nullptr;
   const LaneNode* nodes = nullptr;
   const LaneCoupling* couplings = nullptr;
+  const LaneStep* walk = nullptr;  // from the first body to all others; of those that hang on nothing
   std::uint32_t node_count = 0, coupling_count = 0;
   std::uint32_t body_count = 0, moving_count = 0;  // those that can be pushed come first
   // The plan of elimination, the same for all lanes.
@@ -99,12 +105,14 @@ struct LinkageBundle {
   bool has_fill = false;          // blocks of the plan in which nothing stands before elimination
   std::uint32_t stop_count = 0;   // axes with stops
   std::uint32_t drive_count = 0;  // joints with drives or friction
+  bool has_drives = false;        // of these, with drives
   std::byte* bodies = nullptr;
   std::byte* joints = nullptr;
   std::byte* drives = nullptr;
   float* values = nullptr;  // of the matrix
   float* vector = nullptr;
   float* room = nullptr;        // of the widest column
+  float* gained = nullptr;      // J, by lane: what joints gave in this sub-step
   bool* is_factored = nullptr;  // whether `values` are factors by now
   std::byte* stops = nullptr;   // what is known of them in this step: as much as stop_room() says
 };
@@ -131,6 +139,8 @@ struct LaneSettings {
   float swerves = 1.0f;
   // Where a body turns by more than that in a sub-step, less of the bend is asked for.
   float most_turn = kMostBendTurn;  // rad
+  // Whether joints that do work are answered for; not where speeds stand for displacements.
+  bool keeps_energy = true;
 };
 
 // The kernels of one CPU target. Each body is a block of `body_bytes` that begins with the lanes' body indices (kNoBody: none).

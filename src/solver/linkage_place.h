@@ -130,7 +130,8 @@ GYRE_INLINE void raise_body(LinkedBody<W>& body, const LaneSettings& s) {
   const Wide<W> trace =
       i.xx * p.xx + i.yy * p.yy + i.zz * p.zz + 2.0f * (i.xy * p.xy + i.xz * p.xz + i.yz * p.yz);
   const Wide<W> unresolved = (0.5f * s.substep * s.substep) * trace;
-  const Mask<W> raised = unresolved > kLanePull;
+  const Mask<W> raised =
+      (unresolved > kLanePull) & (WideInt<W>::load_unaligned(body.pressed) == WideInt<W>(0));
   if (!any(raised)) return;
   const Wide<W> pulls[6] = {p.xx, p.yy, p.zz, p.xy, p.xz, p.yz};
   const Wide<W> inertias[6] = {body.inertia.xx, body.inertia.yy, body.inertia.zz,

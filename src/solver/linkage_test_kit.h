@@ -277,11 +277,13 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, const LinkageKernels&
   for (LaneNode& node : shape.nodes) {
     bundle.stop_count += (node.has_twist ? 1 : 0) + (node.has_swing ? 1 : 0);
     if (node.is_driven()) node.drives = bundle.drive_count++;
+    bundle.has_drives = bundle.has_drives || node.has_drive;
   }
   bundle.bodies = arena.make<std::byte>((kBodies + 1) * kernels.body_bytes).data();
   bundle.joints = arena.make<std::byte>(kJoints * kernels.joint_bytes).data();
   bundle.drives = arena.make<std::byte>(bundle.drive_count * kernels.drives_bytes).data();
   bundle.values = arena.make<float>(lanes * shape.plan.values).data();
+  bundle.gained = arena.make<float>(2 * lanes).data();
   bundle.vector = arena.make<float>(lanes * shape.plan.rows).data();
   bundle.room = arena.make<float>(lanes * shape.plan.widest).data();
   bundle.is_factored = arena.make<bool>(1).data();
@@ -297,8 +299,8 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, const LinkageKernels&
     };
     for_each_joint([&](int lane, std::uint32_t n, std::size_t i) {
       begin_lane(bundle, lane, n, crowd.records[i], crowd.detail_of(i), crowd.places[i].offset, start);
-      set_lane_body(bundle, lane, shape.nodes[n].a, crowd.records[i].body_a);
-      set_lane_body(bundle, lane, shape.nodes[n].b, crowd.records[i].body_b);
+      set_lane_body(bundle, lane, shape.nodes[n].a, crowd.records[i].body_a, false);
+      set_lane_body(bundle, lane, shape.nodes[n].b, crowd.records[i].body_b, false);
     });
     for (int part = 0; part < 2; ++part) {
       if (part == 1) {

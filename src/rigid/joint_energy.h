@@ -1,0 +1,25 @@
+// What joints that are swept, or in linkages that are solved alone, give of energy. Joints that only tie do no work; where bodies turn far
+// within a sub-step their rows, linear in what turns, do all the same, and what they give in one they give again in the next: nets of
+// rods went faster without end. As solver/linkage_energy_kernel.h does it for linkages side by side, what joints have given in a
+// sub-step is taken away as it ends, by slowing all inner motion alike (docs/decisions/joint-trees.md).
+#pragma once
+
+#include "rigid/solve.h"
+
+namespace gyre {
+
+// Those of the batch in which a body turns far: bodies that hang together by joints none of which drives, springs or drags anything along.
+std::span<JointIsland> find_joint_islands(const Solve& solve, Arena& arena);
+
+// Stages, whose blocks are islands: before what joints change of velocities, and after it.
+void begin_joint_work(const Solve& solve, int begin, int end);
+void end_joint_work(const Solve& solve, int begin, int end);
+// Before bodies move.
+void bound_gains(const Solve& solve, int begin, int end);
+// After each part.
+void take_gains_away(const Solve& solve, int begin, int end);
+
+// As the step ends: where speeds were bounded before bodies moved, the next one does not begin with the impulses that gave them.
+void forget_bounded(const Solve& solve);
+
+}  // namespace gyre

@@ -1,0 +1,163 @@
+// Joints do no work, and those of a linkage must do none either (solver/linkage_lanes.h). Where limbs turn far within a sub-step its
+// equations, whose bend is asked for to second order, may give energy, and what they give in one they give again in the next: small nets
+// of light knots that whipped gained fifty times what they could fall by, thousands with more of the bend asked for. So what they gave
+// in a sub-step, beside what forces and contacts did, is taken away as it ends, by slowing all inner motion alike: joints that keep
+// to their rows at two velocities do so in between, and what hangs on nothing keeps its momentum and angular momentum.
+// docs/decisions/joint-trees.md has the figures.
+#pragma once
+
+#include "solver/linkage_block.h"
+
+namespace gyre {
+inline namespace GYRE_TARGET_NAMESPACE {
+
+// J, of what can be pushed. (In one place, as what follows: it is asked for rarely, from many.)
+template <int W>
+__attribute__((noinline)) Wide<W> kinetic_energy(const Bundle<W>& bundle) {
+  Wide<W> twice(0.0f);
+  for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i) {
+    const LinkedBody<W>& body = bundle.bodies[i];
+    twice += keep(body.inverse_mass > 0.0f, length_squared(body.linear) / body.inverse_mass);
+    twice += dot(body.angular, body.inertia * body.angular);
+  }
+  return 0.5f * twice;
+}
+
+// Those lanes whose joints should do no work: of bodies that turn about all axes, that hang on nothing that moves.
+template <int W>
+__attribute__((noinline)) Mask<W> are_workless(const Bundle<W>& bundle) {
+  Mask<W> workless = Mask<W>::splat(!bundle.plain.has_drives);
+  for (std::uint32_t i = 0; i < bundle.plain.body_count; ++i) {
+    const LinkedBody<W>& body = bundle.bodies[i];
+    const Wide<W> zero(0.0f);
+    workless = workless &
+               (bundle.moves(i) ? body.inertia.xx > zero
+                                : (max(length_squared(body.linear), length_squared(body.angular)) <= zero));
+  }
+  return workless;
+}
+
+// How energy is watched while a stage changes velocities, from its making to note().
+template <int W>
+class EnergyWatch {
+ public:
+  // As a sub-step begins: of `lanes` alone.
+  __attribute__((noinline)) EnergyWatch(const Bundle<W>& bundle, Mask<W> lanes) : bundle_(bundle) {
+    Wide<W>(0.0f).store(bundle.plain.gained);
+    watches_ = any(lanes);
+    const Mask<W> watched = watches_ ? lanes & are_workless(bundle) : lanes;
+    keep(watched, Wide<W>(1.0f)).store(watched_lanes());
+    if (watches_) before_ = kinetic_energy(bundle);
+  }
+  // Later.
+  __attribute__((noinline)) explicit EnergyWatch(const Bundle<W>& bundle) : bundle_(bundle) {
+    watches_ = any(Wide<W>::load(watched_lanes()) > Wide<W>(0.0f));
+    if (watches_) before_ = kinetic_energy(bundle);
+  }
+  __attribute__((noinline)) void note() const {
+    if (!watches_) return;
+    const Wide<W> gained = Wide<W>::load(bundle_.plain.gained);
+    select(Wide<W>::load(watched_lanes()) > Wide<W>(0.0f), gained + (kinetic_energy(bundle_) - before_),
+           gained)
+        .store(bundle_.plain.gained);
+  }
+
+ private:
+  float* watched_lanes() const { return bundle_.plain.gained + W; }
+  const Bundle<W>& bundle_;
+  bool watches_;
+  Wide<W> before_{0.0f};
+};
+
+// The motion that a linkage would have as one rigid body, with the momenta that it has; of what hangs on something, none.
+template <int W>
+struct RigidMotion {
+  Vec3W<W> center, linear, angular;
+  Wide<W> energy;
+};
+
+// Where bodies are, as seen from the first.
+template <int W>
+GYRE_INLINE void place_centers(const Bundle<W>& bundle) {
+  const Wide<W> zero(0.0f);
+  bundle.bodies[0].center = {zero, zero, zero};
+  for (std::uint32_t i = 0; i + 1 < bundle.plain.moving_count; ++i) {
+    const LaneStep& step = bundle.plain.walk[i];
+    const LaneNode& node = bundle.plain.nodes[step.node];
+    const LinkedJoint<W>& joint = bundle.joints[step.node];
+    const Vec3W<W> way = joint.from_a + joint.error - joint.from_b;
+    if (step.to_b)
+      bundle.bodies[node.b].center = bundle.bodies[node.a].center + way;
+    else
+      bundle.bodies[node.a].center = bundle.bodies[node.b].center - way;
+  }
+}
+
+template <int W>
+GYRE_INLINE RigidMotion<W> rigid_motion(const Bundle<W>& bundle) {
+  const Wide<W> zero(0.0f);
+  const Vec3W<W> none{zero, zero, zero};
+  if (bundle.plain.moving_count < bundle.plain.body_count) return {none, none, none, zero};
+  place_centers(bundle);
+  Wide<W> mass = zero;
+  Vec3W<W> moment = none, momentum = none;
+  const auto mass_of = [&](const LinkedBody<W>& body) {
+    return keep(body.inverse_mass > zero, 1.0f / body.inverse_mass);
+  };
+  for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i) {
+    const LinkedBody<W>& body = bundle.bodies[i];
+    const Wide<W> m = mass_of(body);
+    mass += m;
+    moment += m * body.center;
+    momentum += m * body.linear;
+  }
+  const Vec3W<W> center = keep(mass > zero, (1.0f / mass) * moment),
+                 linear = keep(mass > zero, (1.0f / mass) * momentum);
+  Vec3W<W> spin = none;
+  Sym3W<W> inertia{zero, zero, zero, zero, zero, zero};
+  for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i) {
+    const LinkedBody<W>& body = bundle.bodies[i];
+    const Wide<W> m = mass_of(body);
+    const Vec3W<W> r = body.center - center;
+    spin += m * cross(r, body.linear - linear) + body.inertia * body.angular;
+    const Wide<W> square = length_squared(r);
+    inertia =
+        inertia + body.inertia + m * Sym3W<W>{square - r.x * r.x, square - r.y * r.y, square - r.z * r.z,
+                                              zero - r.x * r.y,   zero - r.x * r.z,   zero - r.y * r.z};
+  }
+  const Vec3W<W> angular = inverse(inertia) * spin;
+  return {center, linear, angular, 0.5f * (mass * length_squared(linear) + dot(angular, spin))};
+}
+
+// Takes so much (J) of inner motion away, in these lanes.
+template <int W>
+GYRE_INLINE void slow_down(const Bundle<W>& bundle, Mask<W> lanes, Wide<W> energy, Wide<W> taken) {
+  const RigidMotion<W> rigid = rigid_motion(bundle);
+  const Wide<W> inner = energy - rigid.energy;
+  const Wide<W> share = sqrt(keep(inner > taken, (inner - taken) / inner));
+  for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i) {
+    LinkedBody<W>& body = bundle.bodies[i];
+    Vec3W<W> linear = rigid.linear;
+    if (bundle.plain.moving_count == bundle.plain.body_count)
+      linear += cross(rigid.angular, body.center - rigid.center);
+    body.linear = select<W>(lanes, linear + share * (body.linear - linear), body.linear);
+    body.angular = select<W>(lanes, rigid.angular + share * (body.angular - rigid.angular), body.angular);
+  }
+}
+
+// Where joints have given more than `most` of what there was: leaves them what `left` says of that, and takes the rest away. Returns the
+// lanes of which motion was changed. (In one place: hardly anything is ever to be taken away.)
+template <int W>
+__attribute__((noinline)) Mask<W> bound_gain(const Bundle<W>& bundle, float most, float left) {
+  const Wide<W> gained = Wide<W>::load(bundle.plain.gained), zero(0.0f);
+  if (none(gained > zero)) return Mask<W>::splat(false);
+  const Wide<W> energy = kinetic_energy(bundle), before = max(energy - gained, zero), kept = left * before;
+  const Mask<W> slowed = (gained > zero) & (gained > most * before);
+  if (none(slowed)) return slowed;
+  slow_down(bundle, slowed, energy, gained - kept);
+  select(slowed, kept, gained).store(bundle.plain.gained);
+  return slowed;
+}
+
+}  // namespace GYRE_TARGET_NAMESPACE
+}  // namespace gyre
