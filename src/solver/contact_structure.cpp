@@ -44,6 +44,10 @@ constexpr double kEndless = 1.0e30;
 // that a round more is made.
 constexpr double kResidual = 100.0;
 constexpr double kExactShare = 0.01;
+// The most that a point of an answer may bear, over all that the structure weighs. What is wedged between two walls would hold by a thrust
+// that is large enough, though nothing presses it: a thousand times its weight, even by the little friction that a point has about
+// its normal. Flat arches and wedges bear up to ten.
+constexpr double kMostThrust = 30.0;
 // What a structure that was held may move by, over what counts as still: what thirty rows of boxes weigh rounds to more than that, and
 // solving would but round it anew. It may grow as the structure buckles, and then takes one round.
 constexpr float kHeldStill = 30.0f;
@@ -160,12 +164,12 @@ class Solver {
       go(find_step());
       give_friction();
       const double left = left_over();
-      if (left <= kExactShare || (holds && left <= 1.0)) return true;
+      if (left <= kExactShare || (holds && left <= 1.0)) return is_thrust_borne();
       holds = left <= 1.0;
       stuck = left < progress * least ? 0 : stuck + 1;
       least = min(least, left);
     }
-    return holds;
+    return holds && is_thrust_borne();
   }
 
   void write() const {
@@ -482,6 +486,13 @@ class Solver {
       most = max(most, left);
     }
     return most;
+  }
+  bool is_thrust_borne() const {
+    double weight = 0.0, most = 0.0;
+    for (std::uint32_t i = 0; i < s_.nodes.size(); ++i) weight += length_of(rows_at(loads_, i));
+    for (const StructureWork& work : s_.work)
+      for (const float normal : work.impulse.normal) most = max(most, double(normal));
+    return most <= kMostThrust * weight;
   }
   static double length_of(const double* v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 

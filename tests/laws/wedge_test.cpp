@@ -2,6 +2,8 @@
 // tan(angle) < 2 mu / (1 - mu^2).
 #include "laws/kit.h"
 
+#include "random.h"
+
 namespace gyre::laws {
 namespace {
 
@@ -55,6 +57,36 @@ TEST(Wedge, LocksBelowTwiceTheAngleOfFriction) {
     EXPECT_LT(below.last, 1e-3) << mu;
     EXPECT_LT(below.all, 0.3) << mu;
     EXPECT_GT(above.all, 0.5) << mu;
+  }
+}
+
+// Discs that fall into the groove between a wall and a slope and come to rest in it at every angle. Across the groove two points of friction
+// would hold a disc by any thrust, the larger the better, also against what turns it about the line between them: an answer of thousands of
+// times its weight was taken for how it is held, and the next steps let go of it.
+TEST(Wedge, DiscsInAGrooveAreNotPressedByNothing) {
+  for (const float friction : {0.6f, 0.9f, 1.2f}) {
+    World world = make_world({.sleeping = false});
+    const Material rough = surface(friction);
+    world.add_body({.type = BodyType::fixed}, {.geometry = Plane{{0, 0, -1}, 0.0f}, .material = rough});
+    world.add_body({.type = BodyType::fixed},
+                   {.geometry = Plane{{0, 0.99f, 0.14f}, 0.0f}, .material = rough});
+    testing_random::Random random;
+    std::vector<BodyId> discs;
+    for (int i = 0; i < 100; ++i) {
+      const float radius = random.real(0.02f, 0.06f);
+      const BodyDef def{.pose = {{0.5 * i, 0.1, -0.08}, random.turn(3.0f)}};
+      discs.push_back(world.add_body(def, {.geometry = Cylinder{radius, radius * random.real(0.2f, 0.5f)},
+                                           .density = 100.0f,
+                                           .material = rough}));
+    }
+    run(world, 0.5);
+    double fastest = 0.0;
+    for (int i = 0; i < 600; ++i) {
+      ASSERT_TRUE(world.step(kStep));
+      for (const BodyId disc : discs)
+        fastest = std::max(fastest, double(length(world.linear_velocity(disc))));
+    }
+    EXPECT_TRUE(limit_row("fastest disc in a groove (m/s)", fastest, 1.0, 0.6));
   }
 }
 
