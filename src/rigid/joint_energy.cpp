@@ -44,17 +44,25 @@ bool turns_far(const BodyMotion& motion, float h) {
   return square(h) * length_squared(motion.angular_velocity) > square(kStraightTurn);
 }
 
-// Calls fn(slot) for the joints that are looked at.
+// Calls fn(place in the batch's list) for the joints that are looked at: those that are swept, of linkages solved alone, and of those
+// side by side.
 template <class Fn>
-void for_each_slot(const Solve& solve, Fn&& fn) {
-  for (const std::uint32_t i : solve.scratch.swept_joints) fn(solve.batch.joints[i]);
+void for_each_swept(const Solve& solve, Fn&& fn) {
+  for (const std::uint32_t place : solve.scratch.swept_joints) fn(place);
+}
+template <class Fn>
+void for_each_joint(const Solve& solve, Fn&& fn) {
+  for_each_swept(solve, fn);
   for (const Linkage& linkage : solve.linkages.linkages)
-    for (const LinkageNode& node : linkage.nodes) fn(node.record);
+    for (const LinkageNode& node : linkage.nodes) fn(node.work);
+  for (const LaneLinkage& linkage : solve.linkages.alike)
+    for (const LinkedJoint& joint : linkage.joints) fn(joint.place);
 }
 
 // What is known of an island while it is gathered, at its lowest place.
 struct Draft {
-  bool has_joints = false, is_alone = false, is_fast = false, is_held = false, is_worked = false;
+  bool has_joints = false, is_swept = false, is_alone = false, is_fast = false, is_held = false,
+       is_worked = false;
   std::uint32_t bodies = 0, joints = 0, next_body = 0, next_joint = 0;
 };
 
@@ -70,8 +78,7 @@ class IslandFinder {
   std::span<JointIsland> find() {
     for (Draft& draft : drafts_) draft = Draft{};
     unite();
-    find_alone();
-    find_lanes();
+    find_kinds();
     describe();
     return list();
   }
@@ -81,36 +88,32 @@ class IslandFinder {
   std::uint32_t place(std::int32_t body) const { return solve_.places[std::size_t(body)]; }
 
   void unite() {
-    for_each_slot(solve_, [&](std::uint32_t slot) {
-      const JointRecord& joint = w_.joints.records[slot];
+    for_each_joint(solve_, [&](std::uint32_t at) {
+      const JointRecord& joint = w_.joints.records[solve_.batch.joints[at]];
       const bool a = is_pushed(joint.body_a), b = is_pushed(joint.body_b);
       if (a) drafts_[place(joint.body_a)].has_joints = true;
       if (b) drafts_[place(joint.body_b)].has_joints = true;
       if (a && b) sets_.unite(place(joint.body_a), place(joint.body_b));
     });
   }
-  // What it costs to watch them is little of what it costs to solve them.
-  void find_alone() {
+  void find_kinds() {
     for (const Linkage& linkage : solve_.linkages.linkages)
       drafts_[sets_.of(place(linkage.bodies[0].body))].is_alone = true;
-  }
-  // What is in lanes, too, is slowed there, with all that hangs on it.
-  void find_lanes() {
-    const auto mark = [&](std::int32_t body) {
-      if (is_pushed(body)) drafts_[sets_.of(place(body))].is_worked = true;
-    };
-    for (const LaneLinkage& linkage : solve_.linkages.alike)
-      for (const LinkedJoint& joint : linkage.joints) mark(joint.body_a), mark(joint.body_b);
+    for_each_swept(solve_, [&](std::uint32_t at) {
+      const JointRecord& joint = w_.joints.records[solve_.batch.joints[at]];
+      for (const std::int32_t body : {joint.body_a, joint.body_b})
+        if (is_pushed(body)) drafts_[sets_.of(place(body))].is_swept = true;
+    });
   }
   void describe() {
-    for_each_slot(solve_, [&](std::uint32_t slot) {
-      const JointRecord& joint = w_.joints.records[slot];
+    for_each_joint(solve_, [&](std::uint32_t at) {
+      const JointRecord& joint = w_.joints.records[solve_.batch.joints[at]];
       const bool a = is_pushed(joint.body_a), b = is_pushed(joint.body_b);
       if (!a && !b) return;
       Draft& draft = drafts_[sets_.of(place(a ? joint.body_a : joint.body_b))];
       ++draft.joints;
       if (!a || !b) hold(draft, a ? joint.body_b : joint.body_a);
-      if (!is_workless(joint, detail_of(w_.joints, slot))) draft.is_worked = true;
+      if (!is_workless(joint, detail_of(w_.joints, solve_.batch.joints[at]))) draft.is_worked = true;
     });
     for (std::uint32_t i = 0; i < drafts_.size(); ++i) {
       if (!drafts_[i].has_joints) continue;
@@ -131,8 +134,10 @@ class IslandFinder {
   }
 
   std::span<JointIsland> list() {
+    // What it costs to watch a linkage that is solved alone is little of what it costs to solve it. What is in lanes by itself is watched
+    // there.
     const auto is_watched = [](const Draft& draft) {
-      return draft.bodies > 0 && (draft.is_fast || draft.is_alone) && !draft.is_worked;
+      return draft.bodies > 0 && (draft.is_alone || (draft.is_swept && draft.is_fast)) && !draft.is_worked;
     };
     std::size_t count = 0, bodies = 0, joints = 0;
     for (const Draft& draft : drafts_)
@@ -145,7 +150,7 @@ class IslandFinder {
     for (Draft& draft : drafts_) {
       if (!is_watched(draft)) continue;
       islands[count++] = {members.subspan(bodies, draft.bodies), ties.subspan(joints, draft.joints),
-                          draft.is_held, draft.is_fast};
+                          draft.is_held};
       draft.next_body = std::uint32_t(bodies), draft.next_joint = std::uint32_t(joints);
       bodies += draft.bodies, joints += draft.joints;
     }
@@ -153,12 +158,12 @@ class IslandFinder {
       Draft& draft = drafts_[sets_.of(i)];
       if (drafts_[i].has_joints && is_watched(draft)) members[draft.next_body++] = solve_.batch.bodies[i];
     }
-    for_each_slot(solve_, [&](std::uint32_t slot) {
-      const JointRecord& joint = w_.joints.records[slot];
+    for_each_joint(solve_, [&](std::uint32_t at) {
+      const JointRecord& joint = w_.joints.records[solve_.batch.joints[at]];
       const bool a = is_pushed(joint.body_a);
       if (!a && !is_pushed(joint.body_b)) return;
       Draft& draft = drafts_[sets_.of(place(a ? joint.body_a : joint.body_b))];
-      if (is_watched(draft)) ties[draft.next_joint++] = slot;
+      if (is_watched(draft)) ties[draft.next_joint++] = at;
     });
     return islands;
   }
@@ -169,6 +174,9 @@ class IslandFinder {
   DisjointSets sets_;  // of places in the batch
   std::span<Draft> drafts_;
 };
+
+// Share of an angular momentum below which it counts as kept.
+constexpr double kSpinRounding = 1.0e-4;
 
 // World axes.
 Sym3 inertia_of(const BodyStore& bodies, std::uint32_t body) {
@@ -188,46 +196,82 @@ double kinetic_energy(const BodyStore& bodies, const JointIsland& island) {
   return 0.5 * twice;
 }
 
-// The motion that an island would have as one rigid body, with the momenta that it has; of what hangs on something, none.
+DVec3 center_of(const BodyStore& bodies, std::uint32_t body) {
+  return bodies.places[body].center + DVec3(bodies.motion[body].moved);
+}
+
+// kg m^2/s, about a point.
+DVec3 angular_momentum(const BodyStore& bodies, const JointIsland& island, DVec3 point) {
+  DVec3 sum;
+  for (const std::uint32_t body : island.bodies) {
+    const BodyMotion& motion = bodies.motion[body];
+    sum += double(bodies.masses[body].mass) *
+           cross(center_of(bodies, body) - point, DVec3(motion.linear_velocity));
+    sum += DVec3(inertia_of(bodies, body) * motion.angular_velocity);
+  }
+  return sum;
+}
+
+// An island as one rigid body.
+struct RigidBody {
+  DVec3 center;
+  double mass = 0.0;
+  Sym3 inertia;
+};
+RigidBody as_one(const BodyStore& bodies, const JointIsland& island) {
+  RigidBody one;
+  const DVec3 origin = center_of(bodies, island.bodies[0]);
+  DVec3 moment;
+  for (const std::uint32_t body : island.bodies) {
+    const double m = double(bodies.masses[body].mass);
+    one.mass += m;
+    moment += m * (center_of(bodies, body) - origin);
+  }
+  one.center = origin + (1.0 / one.mass) * moment;
+  for (const std::uint32_t body : island.bodies) {
+    const float m = bodies.masses[body].mass;
+    const Vec3 r = to_float(center_of(bodies, body) - one.center);
+    const float square_r = length_squared(r);
+    one.inertia = one.inertia + inertia_of(bodies, body) +
+                  m * Sym3{square_r - r.x * r.x, square_r - r.y * r.y, square_r - r.z * r.z,
+                           -r.x * r.y,           -r.x * r.z,           -r.y * r.z};
+  }
+  return one;
+}
+
+// The motion that it would have as one, with the momenta that it has; of what hangs on something, none.
 struct RigidMotion {
   DVec3 center;
   Vec3 linear, angular;
   double energy = 0.0;
 };
-
-DVec3 center_of(const BodyStore& bodies, std::uint32_t body) {
-  return bodies.places[body].center + DVec3(bodies.motion[body].moved);
-}
-
 RigidMotion rigid_motion(const BodyStore& bodies, const JointIsland& island) {
   RigidMotion rigid;
   if (island.is_held) return rigid;
-  const DVec3 origin = center_of(bodies, island.bodies[0]);
-  double mass = 0.0;
-  DVec3 moment, momentum;
-  for (const std::uint32_t body : island.bodies) {
-    const double m = double(bodies.masses[body].mass);
-    mass += m;
-    moment += m * (center_of(bodies, body) - origin);
-    momentum += m * DVec3(bodies.motion[body].linear_velocity);
-  }
-  rigid.center = origin + (1.0 / mass) * moment;
-  rigid.linear = to_float((1.0 / mass) * momentum);
-  Vec3 spin;
-  Sym3 inertia;
-  for (const std::uint32_t body : island.bodies) {
-    const float m = bodies.masses[body].mass;
-    const Vec3 r = to_float(center_of(bodies, body) - rigid.center);
-    const Sym3 own = inertia_of(bodies, body);
-    const BodyMotion& motion = bodies.motion[body];
-    spin += m * cross(r, motion.linear_velocity - rigid.linear) + own * motion.angular_velocity;
-    const float square_r = length_squared(r);
-    inertia = inertia + own + m * Sym3{square_r - r.x * r.x, square_r - r.y * r.y, square_r - r.z * r.z,
-                                       -r.x * r.y,           -r.x * r.z,           -r.y * r.z};
-  }
-  rigid.angular = inverse(inertia) * spin;
-  rigid.energy = 0.5 * (mass * double(length_squared(rigid.linear)) + double(dot(rigid.angular, spin)));
+  const RigidBody one = as_one(bodies, island);
+  rigid.center = one.center;
+  DVec3 momentum;
+  for (const std::uint32_t body : island.bodies)
+    momentum += double(bodies.masses[body].mass) * DVec3(bodies.motion[body].linear_velocity);
+  rigid.linear = to_float((1.0 / one.mass) * momentum);
+  const Vec3 spin = to_float(angular_momentum(bodies, island, one.center));
+  rigid.angular = inverse(one.inertia) * spin;
+  rigid.energy = 0.5 * (one.mass * double(length_squared(rigid.linear)) + double(dot(rigid.angular, spin)));
   return rigid;
+}
+
+// What joints give each other they take from each other. Where inertia against them is raised (solver/linkage.cpp), a spin is less than what
+// was given; the rest goes to all together, as to one rigid body.
+void keep_angular_momentum(BodyStore& bodies, const JointIsland& island) {
+  const DVec3 lost = island.spin - angular_momentum(bodies, island, center_of(bodies, island.bodies[0]));
+  if (!(length_squared(lost) > square(kSpinRounding) * length_squared(island.spin))) return;
+  const RigidBody one = as_one(bodies, island);
+  const Vec3 turn = inverse(one.inertia) * to_float(lost);
+  for (const std::uint32_t body : island.bodies) {
+    BodyMotion& motion = bodies.motion[body];
+    motion.linear_velocity += cross(turn, to_float(center_of(bodies, body) - one.center)) + Vec3{};
+    motion.angular_velocity += turn + Vec3{};
+  }
 }
 
 // Takes so much (J) of inner motion away.
@@ -255,16 +299,37 @@ double energy_of_errors(const BodyStore& bodies, const JointIsland& island, floa
   return 0.5 * square(double(rate)) * sum;
 }
 
-// Where joints have given more than `most` of what there was, or of `least`: leaves them what `left` says of that, and takes the rest
-// away.
-void bound_gain(BodyStore& bodies, JointIsland& island, float most, float left, double least = 0.0) {
-  if (!(island.gained > 0.0)) return;
+// Where joints have given more than `most` of what there was, or of `least`: leaves them what `left` says of that, takes the rest away,
+// and says so.
+bool bound_gain(BodyStore& bodies, JointIsland& island, float most, float left, double least = 0.0) {
+  if (!(island.gained > 0.0)) return false;
   const double energy = kinetic_energy(bodies, island), before = max(energy - island.gained, least);
-  if (!(island.gained > double(most) * before)) return;
+  if (!(island.gained > double(most) * before)) return false;
   const double kept = double(left) * before;
   slow_down(bodies, island, energy, island.gained - kept);
   island.gained = kept;
-  if (left > 0.0f) island.is_bounded = true;
+  return true;
+}
+
+// What follows does not begin with the impulses that gave too much.
+void forget_impulses(const Solve& solve, const JointIsland& island) {
+  JointStore& joints = solve.w.joints;
+  const std::span<const std::uint8_t> in_lanes = begun_in_lanes(solve);
+  for (const std::uint32_t at : island.joints) {
+    JointRecord& joint = joints.records[solve.batch.joints[at]];
+    joint.linear_impulse = joint.angular_impulse = {};
+    joint.low_impulse = joint.high_impulse = 0.0f;
+    if (JointDetail* const detail = detail_of(joints, solve.batch.joints[at]))
+      for (float& impulse : detail->row_impulses) impulse = 0.0f;
+    if (!in_lanes.empty() && in_lanes[at] != 0) continue;
+    for (AxisWork& x : solve.joint_work[at].axes) x.axis.low_impulse = x.axis.high_impulse = 0.0f;
+  }
+}
+
+bool any_turns_far(const Solve& solve, const JointIsland& island) {
+  for (const std::uint32_t body : island.bodies)
+    if (turns_far(solve.w.bodies.motion[body], solve.h)) return true;
+  return false;
 }
 
 }  // namespace
@@ -285,36 +350,36 @@ std::span<JointIsland> find_joint_islands(const Solve& solve, Arena& arena) {
 }
 
 void begin_joint_work(const Solve& solve, int begin, int end) {
-  for (JointIsland& island : solve.joint_islands.subspan(std::size_t(begin), std::size_t(end - begin)))
+  for (JointIsland& island : solve.joint_islands.subspan(std::size_t(begin), std::size_t(end - begin))) {
     island.before = kinetic_energy(solve.w.bodies, island);
+    if (!island.is_held)
+      island.spin = angular_momentum(solve.w.bodies, island, center_of(solve.w.bodies, island.bodies[0]));
+  }
 }
 void end_joint_work(const Solve& solve, int begin, int end) {
-  for (JointIsland& island : solve.joint_islands.subspan(std::size_t(begin), std::size_t(end - begin)))
+  for (JointIsland& island : solve.joint_islands.subspan(std::size_t(begin), std::size_t(end - begin))) {
+    if (!island.is_held) keep_angular_momentum(solve.w.bodies, island);
     island.gained += kinetic_energy(solve.w.bodies, island) - island.before;
+  }
 }
 void bound_gains(const Solve& solve, int begin, int end) {
-  for (JointIsland& island : solve.joint_islands.subspan(std::size_t(begin), std::size_t(end - begin)))
-    bound_gain(solve.w.bodies, island, kMostGainAhead, kMostGainAhead,
-               energy_of_errors(solve.w.bodies, island, solve.joint_settings.softness.bias_rate));
+  for (JointIsland& island : solve.joint_islands.subspan(std::size_t(begin), std::size_t(end - begin))) {
+    const double least = energy_of_errors(solve.w.bodies, island, solve.joint_settings.softness.bias_rate);
+    if (!bound_gain(solve.w.bodies, island, kMostGainAhead, kMostGainAhead, least)) continue;
+    island.is_bounded = true;
+    forget_impulses(solve, island);
+  }
 }
 void take_gains_away(const Solve& solve, int begin, int end) {
   for (JointIsland& island : solve.joint_islands.subspan(std::size_t(begin), std::size_t(end - begin))) {
-    if (island.is_fast || island.is_bounded) bound_gain(solve.w.bodies, island, kMostGain, 0.0f);
+    if (island.is_bounded || any_turns_far(solve, island))
+      bound_gain(solve.w.bodies, island, kMostGain, 0.0f);
     island.gained = 0.0;
   }
 }
 void forget_bounded(const Solve& solve) {
-  JointStore& joints = solve.w.joints;
-  for (const JointIsland& island : solve.joint_islands) {
-    if (!island.is_bounded) continue;
-    for (const std::uint32_t slot : island.joints) {
-      JointRecord& joint = joints.records[slot];
-      joint.linear_impulse = joint.angular_impulse = {};
-      joint.low_impulse = joint.high_impulse = 0.0f;
-      if (JointDetail* const detail = detail_of(joints, slot))
-        for (float& impulse : detail->row_impulses) impulse = 0.0f;
-    }
-  }
+  for (const JointIsland& island : solve.joint_islands)
+    if (island.is_bounded) forget_impulses(solve, island);
 }
 
 }  // namespace gyre

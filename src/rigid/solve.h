@@ -26,12 +26,13 @@ struct PulledBody {
 
 // Bodies that hang together by joints that should do no work (rigid/joint_energy.h).
 struct JointIsland {
-  std::span<const std::uint32_t> bodies, joints;
-  bool is_held = false;     // by what does not move
-  bool is_fast = false;     // some body turned far as the step began
-  bool is_bounded = false;  // joints gave more than is borne before bodies move
-  double gained = 0.0;      // J, in this sub-step, by what joints changed of velocities,
-  double before = 0.0;      // and what there was before they last did
+  std::span<const std::uint32_t> bodies;
+  std::span<const std::uint32_t> joints;  // places in the batch
+  bool is_held = false;                   // by what does not move
+  bool is_bounded = false;                // joints gave more than is borne before bodies move
+  double gained = 0.0;                    // J, in this sub-step, by what joints changed of velocities,
+  double before = 0.0;                    // and what there was before they last did;
+  DVec3 spin{};  // kg m^2/s: the angular momentum then, about the first body's centre of mass
 };
 
 // What every stage of the program reads.
@@ -97,5 +98,10 @@ struct Group {
   std::int32_t ball_block = -1;  // joints that are solved side by side: their first block
   const int* bounds = nullptr;   // of blocks of contacts, by domain
 };
+
+// By place in the batch: those joints that are begun and finished in their lanes, and have no work.
+inline std::span<const std::uint8_t> begun_in_lanes(const Solve& solve) {
+  return solve.is_net ? solve.ball_lanes : solve.linkages.in_lanes;
+}
 
 }  // namespace gyre

@@ -389,9 +389,9 @@ void add_before_contacts(ProgramWriter& program, Solve& solve, const Part& part)
   program.add(joint_islands_stage<begin_joint_work>, &solve, part.islands);
   program.add_groups(solve_joints_stage, part.joints, kJointsPerBlock, kJointBlocksPerClaim);
   program.add(linkage_stage<solve_linkage>, &solve, part.linkages);
+  program.add(bundle_stage<&LinkageKernels::solve>, &solve, part.bundles);
   program.add(joint_islands_stage<end_joint_work>, &solve, part.islands);
   program.add(joint_islands_stage<bound_gains>, &solve, part.islands);
-  program.add(bundle_stage<&LinkageKernels::solve>, &solve, part.bundles);
   if (part.has_joints) add_motion(program, solve, watch_motion_stage, part.watched);
 }
 
@@ -412,9 +412,9 @@ void add_after_contacts(ProgramWriter& program, Solve& solve, const Part& part) 
   if (part.has_joints) add_motion(program, solve, note_motion_stage, part.watched);
   program.add(joint_islands_stage<begin_joint_work>, &solve, part.islands);
   program.add(linkage_stage<solve_linkage_again>, &solve, part.linkages);
+  program.add(bundle_stage<&LinkageKernels::solve_again>, &solve, part.bundles);
   program.add(joint_islands_stage<end_joint_work>, &solve, part.islands);
   program.add(joint_islands_stage<bound_gains>, &solve, part.islands);
-  program.add(bundle_stage<&LinkageKernels::solve_again>, &solve, part.bundles);
   add_motion(program, solve, part.has_joints ? advance_noted_stage : advance_stage, part.bodies);
   add_turn_alone(program, solve);
   program.add(release_stage, &solve, part.impacts);
@@ -425,8 +425,6 @@ void add_after_contacts(ProgramWriter& program, Solve& solve, const Part& part) 
   program.add(joint_islands_stage<begin_joint_work>, &solve, part.islands);
   program.add_groups(relax_joints_stage, part.joints, kJointsPerBlock, kJointBlocksPerClaim);
   program.add(linkage_stage<relax_linkage>, &solve, part.linkages);
-  program.add(joint_islands_stage<end_joint_work>, &solve, part.islands);
-  program.add(joint_islands_stage<take_gains_away>, &solve, part.islands);
   // Where no joint is swept in between, while their rows are still in the cache.
   if (!part.joints.empty())
     program.add(last ? bundle_stage<&LinkageKernels::finish> : bundle_stage<&LinkageKernels::pass>, &solve,
@@ -435,6 +433,8 @@ void add_after_contacts(ProgramWriter& program, Solve& solve, const Part& part) 
     program.add(last ? bundle_stage<&LinkageKernels::place, &LinkageKernels::finish>
                      : bundle_stage<&LinkageKernels::place, &LinkageKernels::pass>,
                 &solve, part.bundles);
+  program.add(joint_islands_stage<end_joint_work>, &solve, part.islands);
+  program.add(joint_islands_stage<take_gains_away>, &solve, part.islands);
 }
 
 // Of a batch that goes in runs: all that bundles and moves do between the contacts of one part and those of the next is one line, and one

@@ -80,11 +80,6 @@ void place_resting(Solve& solve, Arena& arena) {
   solve.structure_solve = {scratch.constraints, motion, &solve.kernels, solve.blocks, &arena};
 }
 
-// Those joints that are begun and finished in their lanes.
-std::span<const std::uint8_t> begun_in_lanes(const Solve& solve) {
-  return solve.is_net ? solve.ball_lanes : solve.linkages.in_lanes;
-}
-
 // By place in the batch: 1 of bodies on which contacts act.
 std::span<const std::uint8_t> find_pressed(const Solve& solve, Arena& arena) {
   const std::span<const ColoringPair> pairs = solve.scratch.pairs;
