@@ -362,9 +362,14 @@ void feature_points(const NearTriangle& t, const PlacedConvex& convex, const Fea
     if (axis.corners == 1u << i) return corner_points(t, i, convex, axis, face, emit);
   }
   const int edge = axis.corners == 3 ? 0 : (axis.corners == 6 ? 1 : 2);
-  if (axis.source != AxisSource::shape_edge && face.count >= 3 && dot(face.normal, d) < -kFlush) {
+  if (face.count >= 3 && dot(face.normal, d) < -kFlush) {
+    // Also where an edge of the shape is in touch: that face's other end lies over the triangle's edge, too, and a shape that had only
+    // one of the two ends would rock on it, from step to step.
     EdgeContact{t, edge, face, d, emit}.under_polygon();
-    if (out.count > 0) return;
+    const bool is_nearest = axis.source != AxisSource::shape_edge ||
+                            out.deepest() <= axis.separation + kAxisBias * convex.size();
+    if (out.count > 0 && is_nearest) return;
+    out.count = 0;
   }
   FacePolygon narrow;
   narrow_feature(convex, axis, face, narrow);

@@ -2,6 +2,8 @@
 // turns. What rolls and slides does so as on one whole plane.
 #include "laws/kit.h"
 
+#include "random.h"
+
 #include <chrono>
 
 namespace gyre::laws {
@@ -195,6 +197,33 @@ TEST(CreationOrder, DoesNotShowInAHeapsStatistics) {
     EXPECT_TRUE(
         relative_row("A-173 spread of heights, shuffled (m)", after.spread, before.spread, 1e-2, 2e-3));
   }
+}
+
+// Boxes of all proportions thrown onto rough ground, whose edges lie under their faces anyhow: where such an edge ran under a face and one
+// edge of the box was nearest, only that end of it was known, and the box rocked from one end to the other in every step, for ever.
+TEST(Ground, BoxesComeToRestOnRoughGround) {
+  constexpr std::uint32_t kSamples = 24;
+  int awake = 0;
+  for (std::uint32_t seed = 0; seed < 12; ++seed) {
+    testing_random::Random random;
+    random.state += seed * 0x9e3779b97f4a7c15u;
+    World world = make_world();
+    std::vector<float> heights(kSamples * kSamples);
+    for (float& height : heights) height = random.real(-0.1f, 0.1f);
+    const Result<Geometry> ground =
+        cook_height_field({.heights = heights, .columns = kSamples, .rows = kSamples, .spacing = 0.4f});
+    world.add_body({.type = BodyType::fixed}, {.geometry = *ground, .material = surface(0.6f)});
+    for (int i = 0; i < 36; ++i) {
+      const BodyDef def{.pose = {{1.2 * (i % 6) - 3.0, 0.8, 1.2 * (i / 6) - 3.0}, random.turn(3.0f)},
+                        .linear_velocity = random.vector(-1, 1),
+                        .angular_velocity = random.vector(-3, 3)};
+      const Vec3 half{random.real(0.06f, 0.3f), random.real(0.06f, 0.3f), random.real(0.06f, 0.3f)};
+      world.add_body(def, {.geometry = Box{half}, .material = surface(0.6f)});
+    }
+    run(world, 15.0);
+    awake += world.counts().awake_bodies;
+  }
+  EXPECT_TRUE(limit_row("boxes of 432 on rough ground that move after 15 s", awake, 3, 0));
 }
 
 }  // namespace
