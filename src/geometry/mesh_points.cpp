@@ -366,8 +366,8 @@ void feature_points(const NearTriangle& t, const PlacedConvex& convex, const Fea
     // Also where an edge of the shape is in touch: that face's other end lies over the triangle's edge, too, and a shape that had only
     // one of the two ends would rock on it, from step to step.
     EdgeContact{t, edge, face, d, emit}.under_polygon();
-    const bool is_nearest = axis.source != AxisSource::shape_edge ||
-                            out.deepest() <= axis.separation + kAxisBias * convex.size();
+    const bool is_nearest =
+        axis.source != AxisSource::shape_edge || out.deepest() <= axis.separation + kAxisBias * convex.size();
     if (out.count > 0 && is_nearest) return;
     out.count = 0;
   }
