@@ -36,6 +36,7 @@ for part in "${parts[@]}"; do
       ;;
     typescript)
       install_node_packages
+      rm -f $package/dist/*.js $package/dist/*.d.ts  # what an earlier version left would be delivered, too
       python3 web/bindings/generate.py --typescript $package/src/generated.ts
       $package/node_modules/.bin/tsc -p $package
       cp LICENSE $package/LICENSE
