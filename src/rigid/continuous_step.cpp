@@ -9,6 +9,8 @@
 #include "task/choose.h"
 #include "task/parallel.h"
 
+#include <cmath>
+
 namespace gyre {
 
 namespace {
@@ -275,6 +277,19 @@ void sweep_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& a
   scratch.collision.clamp_fast_bodies(input, scratch.fast, tasks, scratch.kept);
 }
 
+// The angular velocity of a body that is turned back on its way, as its angular momentum asks for there: of what turns freely that is the one
+// that it had. It never is more than its energy allows: what contacts gave on the way would turn a slender body much faster where it was
+// before, and a stick that whirls along the ground would gain energy each time that it is stopped.
+Vec3 spin_at(const BodyMass& mass, const BodyFlags& flags, Quat from, Quat to, Vec3 spin) {
+  if (mass.isotropic != 0 || flags.locked_angular != 0 || spin == Vec3{}) return spin;
+  const Vec3 own_spin = rotate_inverse(from, spin), own_momentum = mass.inertia * own_spin;
+  const Vec3 momentum = rotate_inverse(to, rotate(from, own_momentum)),
+             turned = mass.inverse_inertia * momentum;
+  const float had = dot(own_spin, own_momentum), has = dot(turned, momentum);
+  const float share = has > had ? std::sqrt(had / has) : 1.0f;
+  return rotate(to, share * turned);
+}
+
 // Puts the listed bodies where they stay. Returns those that were stopped and hang on joints.
 std::span<const StoppedBody> take_back(RigidWorld& w, ContinuousScratch& scratch, Arena& arena) {
   const std::span<StoppedBody> stopped = arena.make<StoppedBody>(count_stopped_with_joints(w, scratch));
@@ -288,7 +303,10 @@ std::span<const StoppedBody> take_back(RigidWorld& w, ContinuousScratch& scratch
     if (!joints_of(w.bodies, i).empty())
       stopped[stopped_count++] = {i, kept.fraction, motion.moved, motion.turned};
     const Quat stopped_at = pose_at(sweep_of_body(w.bodies, i), double(kept.fraction)).orientation;
+    const Quat end = w.bodies.orientations[i];
     w.bodies.orientations[i] = kept.turn == Vec3{} ? stopped_at : integrate_rotation(stopped_at, kept.turn);
+    motion.angular_velocity = spin_at(w.bodies.masses[i], w.bodies.flags[i], end, w.bodies.orientations[i],
+                                      motion.angular_velocity);
     motion.moved = kept.fraction * motion.moved + kept.slide;
     motion.turned = kept.fraction * motion.turned + kept.turn;
     w.bodies.inertia[i] = world_inertia(w.bodies.masses[i], w.bodies.flags[i], w.bodies.orientations[i]);

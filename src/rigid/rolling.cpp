@@ -19,6 +19,8 @@ constexpr float kLargestTurn = 0.2f;
 constexpr float kLargestRound = 0.3f;
 // How far a contact may run in a sub-step, as a share of its arm, before it loses energy on its way.
 constexpr float kLargestRun = 0.02f;
+// A body that turns by more than this in a step (rad) takes the points of its contacts along whatever its shape.
+constexpr float kWhirl = 0.5f;
 // Mean distance of the load from the middle of a ball's patch, as a share of the radius.
 constexpr float kBallPatch = 5.0e-3f;
 // A point belongs to the rim where it lies in the direction of the lowest one (cosine), as far out as the surface is (share of
@@ -58,6 +60,10 @@ RollingPoint describe_point(const Shape& shape, const RollingContact& rolling, Q
     point.reach = core_radius(shape);
     point.core = rotate_inverse(orientation, on_surface - point.reach * rolling.outward);
     point.rest = half_gap;
+    return point;
+  }
+  if (shape.kind != ShapeKind::cylinder && shape.kind != ShapeKind::cone) {
+    point.core = rotate_inverse(orientation, arm);
     return point;
   }
   const Vec3 axis = rotate(orientation, rolling.axis);
@@ -143,15 +149,69 @@ class Bearers {
   std::span<Count> counts_;
 };
 
-// Which of the two bodies rolls, if one does.
-bool choose_body(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint,
-                 ColoringPair places, const Bearers& bearers, float seconds, RollingSides& rolling) {
-  const bool flat_a = is_flat(w.shapes.colliders[contact.shape_a].shape);
-  rolling.body = flat_a ? constraint.body_b : constraint.body_a;
-  rolling.other = flat_a ? constraint.body_a : constraint.body_b;
-  rolling.side = flat_a ? 1.0f : -1.0f;
-  const ColliderShape& collider = w.shapes.colliders[flat_a ? contact.shape_b : contact.shape_a];
+// Which bodies of a batch whirl, by their places. Not those beside something that turns by itself: it sweeps them along, and its surface
+// is not where it was.
+class Whirls {
+ public:
+  Whirls(const RigidWorld& w, const BatchScratch& scratch, std::span<const std::uint32_t> bodies,
+         float seconds, Arena& arena)
+      : whirls_(arena.make<bool>(bodies.size())) {
+    const auto spin = [&](std::size_t body) {
+      return length_squared(w.bodies.motion[body].angular_velocity);
+    };
+    const float most = kWhirl / seconds;  // rad/s
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      whirls_[i] = spin(bodies[i]) > most * most;
+      any_ = any_ || whirls_[i];
+    }
+    if (!any_) return;
+    for (std::size_t i = 0; i < scratch.constraints.size(); ++i) {
+      const ColoringPair places = scratch.pairs[i];
+      const auto look = [&](std::uint32_t place, std::uint32_t other_place, std::int32_t other) {
+        if (has(place) && other_place == ColoringPair::kNone && other != kNoBody &&
+            spin(std::size_t(other)) > 0.0f)
+          whirls_[place] = false;
+      };
+      look(places.a, places.b, scratch.constraints[i].body_b);
+      look(places.b, places.a, scratch.constraints[i].body_a);
+    }
+  }
+  bool has(std::uint32_t place) const { return any_ && place != ColoringPair::kNone && whirls_[place]; }
+  bool has(ColoringPair places) const { return has(places.a) || has(places.b); }
+
+ private:
+  std::span<bool> whirls_;
+  bool any_ = false;
+};
+
+// The one of the two bodies that takes the points along. Returns its shape.
+const ColliderShape& set_sides(const RigidWorld& w, const Contact& contact,
+                               const ContactConstraint& constraint, bool is_b, RollingSides& rolling) {
+  rolling.body = is_b ? constraint.body_b : constraint.body_a;
+  rolling.other = is_b ? constraint.body_a : constraint.body_b;
+  rolling.side = is_b ? 1.0f : -1.0f;
+  const ColliderShape& collider = w.shapes.colliders[is_b ? contact.shape_b : contact.shape_a];
   rolling.center = collider.body_from_shape.position - w.bodies.masses[std::size_t(rolling.body)].center;
+  return collider;
+}
+
+// Of two that whirl the faster one.
+void choose_whirling(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint,
+                     ColoringPair places, const Whirls& whirls, RollingSides& rolling) {
+  const auto spin = [&](std::int32_t body) {
+    return length_squared(w.bodies.motion[std::size_t(body)].angular_velocity);
+  };
+  const bool is_b =
+      whirls.has(places.b) && (!whirls.has(places.a) || spin(constraint.body_b) >= spin(constraint.body_a));
+  set_sides(w, contact, constraint, is_b, rolling);
+  rolling.once = false;
+}
+
+// Which of the two bodies rolls, if one does.
+bool choose_rolling(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint,
+                    ColoringPair places, const Bearers& bearers, float seconds, RollingSides& rolling) {
+  const bool flat_a = is_flat(w.shapes.colliders[contact.shape_a].shape);
+  const ColliderShape& collider = set_sides(w, contact, constraint, flat_a, rolling);
   if (!rolls(w, collider.shape, rolling, seconds)) return false;
   const Vec3 outward = -rolling.side * constraint.manifold->normal;
   rolling.once = !bearers.is_alone(constraint, flat_a ? places.b : places.a) &&
@@ -235,24 +295,32 @@ bool may_roll(const RigidWorld& w, const Contact& contact, const ContactConstrai
   return (flat_a ? constraint.body_b : constraint.body_a) != kNoBody && may_bear(*constraint.manifold);
 }
 
-RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch, std::size_t bodies,
-                                      float seconds, Arena& arena, TaskSystem& tasks) {
+RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch,
+                                      std::span<const std::uint32_t> bodies, float seconds, Arena& arena,
+                                      TaskSystem& tasks) {
   const std::span<const ContactConstraint> constraints = scratch.constraints;
   const auto contact_of = [&](std::uint32_t i) -> const Contact& {
     return w.contacts.contacts[scratch.constraint_contact[i]];
   };
   RollingContacts all;
-  const auto may_roll = [&](std::uint32_t i) { return constraints[i].may_roll; };
+  const Whirls whirls(w, scratch, bodies, seconds, arena);
+  const auto may_roll = [&](std::uint32_t i) {
+    return constraints[i].may_roll || whirls.has(scratch.pairs[i]);
+  };
   const std::span<const std::uint32_t> candidates = choose(tasks, arena, constraints.size(), may_roll).list;
   const std::size_t count = candidates.size();
   if (count == 0) return all;
-  const Bearers bearers(constraints, scratch.pairs, bodies, arena);
+  const Bearers bearers(constraints, scratch.pairs, bodies.size(), arena);
   const std::span<RollingSides> sides = arena.make<RollingSides>(count);
   for_blocks(tasks, int(count), kRollersPerBlock, [&](int begin, int end, int) {
     for (std::size_t k = std::size_t(begin); k < std::size_t(end); ++k) {
       const std::uint32_t i = candidates[k];
-      const bool chosen =
-          choose_body(w, contact_of(i), constraints[i], scratch.pairs[i], bearers, seconds, sides[k]);
+      bool chosen = whirls.has(scratch.pairs[i]);
+      if (chosen)
+        choose_whirling(w, contact_of(i), constraints[i], scratch.pairs[i], whirls, sides[k]);
+      else
+        chosen =
+            choose_rolling(w, contact_of(i), constraints[i], scratch.pairs[i], bearers, seconds, sides[k]);
       sides[k].constraint = chosen ? i : kNotRolling;
     }
   });

@@ -14,6 +14,8 @@
 // What one contact bears alone is followed in each part of a step: there every share of its energy counts, for a coin rolls on for
 // minutes. What is held from several sides, and there may be thousands of those, is taken along once, to where its contact is in
 // the middle of the step: of the second order too, at an eighth of the cost. To leave these where they were keeps heaps awake.
+// What whirls, by a good part of a turn in a step, is followed in each part whatever its shape: a corner goes with the body, and the inertia
+// that it meets is that of by then. Where the step began, both were another body's, and what stopped it there could speed it up.
 // Source of the idea: the rolling equations of D. Montana, "The kinematics of contact and grasp", 1988.
 #pragma once
 
@@ -77,8 +79,9 @@ bool may_roll(const RigidWorld& w, const Contact& contact, const ContactConstrai
 
 // Those among the constraints of the batch, which has so many bodies, that may roll and whose bodies turn against each other. Marks
 // these bodies as ones whose place others look at.
-RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch, std::size_t bodies,
-                                      float seconds, Arena& arena, TaskSystem& tasks);
+RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch,
+                                      std::span<const std::uint32_t> bodies, float seconds, Arena& arena,
+                                      TaskSystem& tasks);
 
 // Into its arms: where the contact is in a sub-step that begins now, with its middle in `ahead` seconds.
 void follow_contact(const RigidWorld& w, RollingContact& rolling, float ahead);

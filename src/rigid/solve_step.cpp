@@ -141,8 +141,8 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
   BatchScratch& scratch = solve.scratch;
   gather_contacts(solve, arena, tasks);
   look_at_joints(solve, arena, tasks);
-  solve.rolling = find_rolling_contacts(solve.w, scratch, solve.batch.bodies.size(),
-                                        solve.contact_settings.step, arena, tasks);
+  solve.rolling =
+      find_rolling_contacts(solve.w, scratch, solve.batch.bodies, solve.contact_settings.step, arena, tasks);
   solve.domains = find_domains(scratch.pairs, solve.batch.bodies.size(), tasks.worker_count(), arena);
   const std::span<Group> contacts = arrange(solve, warm_scale, arena, tasks);
   if (solve.is_smooth)
