@@ -45,9 +45,31 @@ LinkageBundle make_bundle(const LinkageShape& shape, const LinkageKernels& kerne
   b.vector = arena.make<float>(b.row_count * width).data();
   b.room = arena.make<float>(shape.plan.widest * width).data();
   b.gained = arena.make<float>(2 * width).data();
+  b.light = arena.make<float>(width).data();
   b.is_factored = arena.make<bool>(1).data();
   b.stops = arena.make<std::byte>(kernels.stop_room(b)).data();
   return b;
+}
+
+// How far a push at a joint moves a body there, a middle of all directions (1/kg).
+float mobility(const BodyMass& mass, Vec3 arm) {
+  const Sym3& i = mass.inverse_inertia;
+  const float turning = (i.xx + i.yy + i.zz) * length_squared(arm) - dot(arm, i * arm);
+  return mass.inverse_mass + (1.0f / 3.0f) * turning;
+}
+// Whether one of two bodies, held by yet another joint, is so easily moved beside the other that how it bends between them is not resolved:
+// it may be as fast as can be after any solution.
+bool has_light_link(const RigidWorld& w, const JointRecord& joint) {
+  constexpr float kLighter = 3.0f, kMoreMobile = 50.0f;
+  if (joint.body_a == kNoBody || joint.body_b == kNoBody) return false;
+  const auto is_light = [&](std::int32_t body, Vec3 arm, std::int32_t other, Vec3 other_arm) {
+    const BodyMass &own = w.bodies.masses[std::size_t(body)], &others = w.bodies.masses[std::size_t(other)];
+    return others.inverse_mass > 0.0f && own.inverse_mass > kLighter * others.inverse_mass &&
+           joints_of(w.bodies, std::uint32_t(body)).size() > 1 &&
+           mobility(own, arm) > kMoreMobile * mobility(others, other_arm);
+  };
+  return is_light(joint.body_a, joint.local_anchor_a, joint.body_b, joint.local_anchor_b) ||
+         is_light(joint.body_b, joint.local_anchor_b, joint.body_a, joint.local_anchor_a);
 }
 
 }  // namespace
@@ -91,12 +113,14 @@ void begin_bundles(const BundleSolve& bundles, int begin, int end, const RigidWo
     const Bundled& bundle = bundles.bundles[std::size_t(i)];
     if (int(bundle.linkages.size()) < bundle.lanes.kernels->width) clear_lanes(bundle.lanes);
     bundle.lanes.kernels->begin(bundle.lanes);
+    for (int lane = 0; lane < bundle.lanes.kernels->width; ++lane) bundle.lanes.light[lane] = 0.0f;
     // Joint by joint, because its lanes lie in the same cache lines.
     for (std::uint32_t n = 0; n < bundle.lanes.node_count; ++n) {
       const LaneNode& shape = bundle.lanes.nodes[n];
       for (std::size_t lane = 0; lane < bundle.linkages.size(); ++lane) {
         const LinkedJoint& linked = bundle.linkages[lane]->joints[n];
         const JointRecord& joint = w.joints.records[linked.record];
+        if (has_light_link(w, joint)) bundle.lanes.light[lane] = 1.0f;
         set_lane_body(bundle.lanes, int(lane), shape.a, linked.body_a, linked.pressed_a);
         set_lane_body(bundle.lanes, int(lane), shape.b, linked.body_b, linked.pressed_b);
         begin_lane(bundle.lanes, int(lane), n, joint, detail_of(w.joints, linked.record),

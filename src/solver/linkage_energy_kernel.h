@@ -37,38 +37,6 @@ __attribute__((noinline)) Mask<W> are_workless(const Bundle<W>& bundle) {
   return workless;
 }
 
-// How energy is watched while a stage changes velocities, from its making to note().
-template <int W>
-class EnergyWatch {
- public:
-  // As a sub-step begins: of `lanes` alone.
-  __attribute__((noinline)) EnergyWatch(const Bundle<W>& bundle, Mask<W> lanes) : bundle_(bundle) {
-    Wide<W>(0.0f).store(bundle.plain.gained);
-    watches_ = any(lanes);
-    const Mask<W> watched = watches_ ? lanes & are_workless(bundle) : lanes;
-    keep(watched, Wide<W>(1.0f)).store(watched_lanes());
-    if (watches_) before_ = kinetic_energy(bundle);
-  }
-  // Later.
-  __attribute__((noinline)) explicit EnergyWatch(const Bundle<W>& bundle) : bundle_(bundle) {
-    watches_ = any(Wide<W>::load(watched_lanes()) > Wide<W>(0.0f));
-    if (watches_) before_ = kinetic_energy(bundle);
-  }
-  __attribute__((noinline)) void note() const {
-    if (!watches_) return;
-    const Wide<W> gained = Wide<W>::load(bundle_.plain.gained);
-    select(Wide<W>::load(watched_lanes()) > Wide<W>(0.0f), gained + (kinetic_energy(bundle_) - before_),
-           gained)
-        .store(bundle_.plain.gained);
-  }
-
- private:
-  float* watched_lanes() const { return bundle_.plain.gained + W; }
-  const Bundle<W>& bundle_;
-  bool watches_;
-  Wide<W> before_{0.0f};
-};
-
 // The motion that a linkage would have as one rigid body, with the momenta that it has; of what hangs on something, none.
 template <int W>
 struct RigidMotion {
@@ -129,12 +97,12 @@ GYRE_INLINE RigidMotion<W> rigid_motion(const Bundle<W>& bundle) {
   return {center, linear, angular, 0.5f * (mass * length_squared(linear) + dot(angular, spin))};
 }
 
-// Takes so much (J) of inner motion away, in these lanes.
+// Slows inner motion until no more than `left` (J) is there, in these lanes, and forgets what stops gave.
 template <int W>
-GYRE_INLINE void slow_down(const Bundle<W>& bundle, Mask<W> lanes, Wide<W> energy, Wide<W> taken) {
-  const RigidMotion<W> rigid = rigid_motion(bundle);
-  const Wide<W> inner = energy - rigid.energy;
-  const Wide<W> share = sqrt(keep(inner > taken, (inner - taken) / inner));
+GYRE_INLINE void slow_down(const Bundle<W>& bundle, const RigidMotion<W>& rigid, Mask<W> lanes,
+                           Wide<W> energy, Wide<W> left) {
+  const Wide<W> inner = energy - rigid.energy, kept = left - rigid.energy, zero(0.0f);
+  const Wide<W> share = sqrt(keep((inner > zero) & (kept > zero), kept / inner));
   for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i) {
     LinkedBody<W>& body = bundle.bodies[i];
     Vec3W<W> linear = rigid.linear;
@@ -143,21 +111,69 @@ GYRE_INLINE void slow_down(const Bundle<W>& bundle, Mask<W> lanes, Wide<W> energ
     body.linear = select<W>(lanes, linear + share * (body.linear - linear), body.linear);
     body.angular = select<W>(lanes, rigid.angular + share * (body.angular - rigid.angular), body.angular);
   }
+  for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
+    const auto forget = [&](LinkedAxis<W>& axis) {
+      axis.low_impulse = keep(~lanes, axis.low_impulse), axis.high_impulse = keep(~lanes, axis.high_impulse);
+    };
+    if (bundle.plain.nodes[n].has_twist) forget(bundle.joints[n].twist);
+    if (bundle.plain.nodes[n].has_swing) forget(bundle.joints[n].swing);
+  }
 }
 
-// Where joints have given more than `most` of what there was: leaves them what `left` says of that, and takes the rest away. Returns the
-// lanes of which motion was changed. (In one place: hardly anything is ever to be taken away.)
+// Those in which a link is so light between others that it may be as fast as can be after any solution.
 template <int W>
-__attribute__((noinline)) Mask<W> bound_gain(const Bundle<W>& bundle, float most, float left) {
-  const Wide<W> gained = Wide<W>::load(bundle.plain.gained), zero(0.0f);
-  if (none(gained > zero)) return Mask<W>::splat(false);
-  const Wide<W> energy = kinetic_energy(bundle), before = max(energy - gained, zero), kept = left * before;
-  const Mask<W> slowed = (gained > zero) & (gained > most * before);
-  if (none(slowed)) return slowed;
-  slow_down(bundle, slowed, energy, gained - kept);
-  select(slowed, kept, gained).store(bundle.plain.gained);
-  return slowed;
+GYRE_INLINE Mask<W> light_lanes(const Bundle<W>& bundle) {
+  return Wide<W>::load(bundle.plain.light) > Wide<W>(0.0f);
 }
+
+// How energy is watched while a stage changes velocities, from its making to bound(). What joints gave in the sub-step so far is kept from
+// stage to stage. What they do not change, a linkage's motion as one rigid body, is told before where a link is light: of what has a billion
+// times its energy floats cannot tell it any more.
+template <int W>
+class EnergyWatch {
+ public:
+  // Of the first stage of a sub-step: in `lanes`.
+  __attribute__((noinline)) EnergyWatch(const Bundle<W>& bundle, Mask<W> lanes)
+      : bundle_(bundle), watched_(any(lanes) ? lanes & are_workless(bundle) : lanes) {
+    Wide<W>(0.0f).store(bundle.plain.gained);
+    keep(watched_, Wide<W>(1.0f)).store(bundle.plain.gained + W);
+    tell();
+  }
+  // Of a later one.
+  __attribute__((noinline)) explicit EnergyWatch(const Bundle<W>& bundle)
+      : bundle_(bundle), watched_(Wide<W>::load(bundle.plain.gained + W) > Wide<W>(0.0f)) {
+    tell();
+  }
+  // Where joints have given more than `most` of what there was: leaves them what `left` says of that, and takes the rest away. Returns the
+  // lanes of which motion was changed. (In one place: hardly anything is ever to be taken away.)
+  __attribute__((noinline)) Mask<W> bound(float most, float left) const {
+    if (none(watched_)) return watched_;
+    const Wide<W> zero(0.0f), own = max(energy_ - Wide<W>::load(bundle_.plain.gained), zero);
+    const Wide<W> energy = kinetic_energy(bundle_), gained = energy - own, kept = left * own;
+    const Mask<W> slowed = watched_ & (gained > zero) & (gained > most * own);
+    if (any(slowed)) slow_down(bundle_, rigid_in(light_lanes(bundle_)), slowed, energy, own + kept);
+    keep(watched_, select(slowed, kept, gained)).store(bundle_.plain.gained);
+    return slowed;
+  }
+
+ private:
+  void tell() {
+    if (none(watched_)) return;
+    energy_ = kinetic_energy(bundle_);
+    if (any(watched_ & light_lanes(bundle_))) rigid_ = rigid_motion(bundle_);
+  }
+  // As it was before in these lanes, as it is in the others.
+  RigidMotion<W> rigid_in(Mask<W> before) const {
+    const RigidMotion<W> now = rigid_motion(bundle_);
+    return {select<W>(before, rigid_.center, now.center), select<W>(before, rigid_.linear, now.linear),
+            select<W>(before, rigid_.angular, now.angular), select(before, rigid_.energy, now.energy)};
+  }
+
+  const Bundle<W>& bundle_;
+  Mask<W> watched_;
+  Wide<W> energy_{0.0f};
+  RigidMotion<W> rigid_{};
+};
 
 }  // namespace GYRE_TARGET_NAMESPACE
 }  // namespace gyre

@@ -267,8 +267,8 @@ template <int W>
 void solve_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
   const Bundle<W> bundle(plain);
   load_velocities(bundle, arrays);
-  const Mask<W> nowhere = Mask<W>::splat(false);
-  const EnergyWatch<W> watch(bundle, s.keeps_energy ? find_fast(bundle, s.substep) : nowhere);
+  const EnergyWatch<W> watch(
+      bundle, Mask<W>::splat(s.keeps_energy) & (light_lanes(bundle) | find_fast(bundle, s.substep)));
   push_kept(bundle);
   if (plain.drive_count > 0) {
     push_driven(bundle);
@@ -277,7 +277,7 @@ void solve_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const La
     solve_rows<W, Asks::first>(bundle);
   }
   solve_stops(bundle, s, s.first_errors);
-  watch.note();
+  watch.bound(kMostGainAhead, kMostGainAhead);  // before contacts answer it
   ask_lanes(bundle, s, kMostErrors);  // now with velocities that agree with the joints
   store_velocities(bundle, arrays);
 }
@@ -289,8 +289,7 @@ void solve_bundle_again(const LinkageBundle& plain, const LaneArrays& arrays, co
   const EnergyWatch<W> watch(bundle);
   solve_again(bundle);
   solve_stops(bundle, s, kMostErrors);
-  watch.note();
-  bound_gain(bundle, kMostGainAhead, kMostGainAhead);
+  watch.bound(kMostGainAhead, kMostGainAhead);
   store_velocities(bundle, arrays);
 }
 
@@ -342,8 +341,7 @@ void pass_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const Lan
   const EnergyWatch<W> watch(bundle);
   relax(bundle, relaxed);
   if (any(stopped)) solve_stops(bundle, s, kNoErrors, stopped);
-  watch.note();
-  const Mask<W> slowed = bound_gain(bundle, kMostGain, 0.0f);
+  const Mask<W> slowed = watch.bound(kMostGain, 0.0f);
   if (any(relaxed | stopped | slowed)) store_velocities(bundle, arrays);
   ask_lanes(bundle, s, s.first_errors);
   sum_impulses(bundle);
@@ -356,8 +354,7 @@ void finish_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const L
   const EnergyWatch<W> watch(bundle);
   relax(bundle, Mask<W>::splat(true));
   solve_stops(bundle, s, kNoErrors);
-  watch.note();
-  bound_gain(bundle, kMostGain, 0.0f);
+  watch.bound(kMostGain, 0.0f);
   sum_impulses(bundle);
   store_velocities(bundle, arrays);
 }

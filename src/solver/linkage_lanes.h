@@ -112,7 +112,8 @@ struct LinkageBundle {
   float* values = nullptr;  // of the matrix
   float* vector = nullptr;
   float* room = nullptr;        // of the widest column
-  float* gained = nullptr;      // J, by lane: what joints gave in this sub-step
+  float* gained = nullptr;  // J, by lane: what joints gave in this sub-step; then 1 in lanes that are watched
+  float* light = nullptr;   // 1 in lanes with a link so light that it is always watched
   bool* is_factored = nullptr;  // whether `values` are factors by now
   std::byte* stops = nullptr;   // what is known of them in this step: as much as stop_room() says
 };

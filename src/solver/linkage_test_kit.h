@@ -284,6 +284,8 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, const LinkageKernels&
   bundle.drives = arena.make<std::byte>(bundle.drive_count * kernels.drives_bytes).data();
   bundle.values = arena.make<float>(lanes * shape.plan.values).data();
   bundle.gained = arena.make<float>(2 * lanes).data();
+  bundle.light = arena.make<float>(lanes).data();
+  for (int lane = 0; lane < kernels.width; ++lane) bundle.light[lane] = 0.0f;
   bundle.vector = arena.make<float>(lanes * shape.plan.rows).data();
   bundle.room = arena.make<float>(lanes * shape.plan.widest).data();
   bundle.is_factored = arena.make<bool>(1).data();
