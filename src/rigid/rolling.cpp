@@ -21,6 +21,8 @@ constexpr float kLargestRound = 0.3f;
 constexpr float kLargestRun = 0.02f;
 // A body that turns by more than this in a step (rad) takes the points of its contacts along whatever its shape.
 constexpr float kWhirl = 0.5f;
+// Not beside something kinematic that turns by more than this (rad).
+constexpr float kCarried = 0.05f;
 // Mean distance of the load from the middle of a ball's patch, as a share of the radius.
 constexpr float kBallPatch = 5.0e-3f;
 // A point belongs to the rim where it lies in the direction of the lowest one (cosine), as far out as the surface is (share of
@@ -149,7 +151,7 @@ class Bearers {
   std::span<Count> counts_;
 };
 
-// Which bodies of a batch whirl, by their places. Not those beside something that turns by itself: it sweeps them along, and its surface
+// Which bodies of a batch whirl, by their places. Not those beside something kinematic that turns: it sweeps them along, and its surface
 // is not where it was.
 class Whirls {
  public:
@@ -159,7 +161,7 @@ class Whirls {
     const auto spin = [&](std::size_t body) {
       return length_squared(w.bodies.motion[body].angular_velocity);
     };
-    const float most = kWhirl / seconds;  // rad/s
+    const float most = kWhirl / seconds, carried = kCarried / seconds;  // rad/s
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       whirls_[i] = spin(bodies[i]) > most * most;
       any_ = any_ || whirls_[i];
@@ -169,7 +171,7 @@ class Whirls {
       const ColoringPair places = scratch.pairs[i];
       const auto look = [&](std::uint32_t place, std::uint32_t other_place, std::int32_t other) {
         if (has(place) && other_place == ColoringPair::kNone && other != kNoBody &&
-            spin(std::size_t(other)) > 0.0f)
+            spin(std::size_t(other)) > carried * carried)
           whirls_[place] = false;
       };
       look(places.a, places.b, scratch.constraints[i].body_b);
@@ -195,16 +197,16 @@ const ColliderShape& set_sides(const RigidWorld& w, const Contact& contact,
   return collider;
 }
 
-// Of two that whirl the faster one.
-void choose_whirling(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint,
-                     ColoringPair places, const Whirls& whirls, RollingSides& rolling) {
+// Of two that whirl the faster one, if it matters. What is round on a flat one that whirls rolls there, as on any other.
+bool choose_whirling(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint,
+                     ColoringPair places, const Whirls& whirls, float seconds, RollingSides& rolling) {
   const auto spin = [&](std::int32_t body) {
     return length_squared(w.bodies.motion[std::size_t(body)].angular_velocity);
   };
   const bool is_b =
       whirls.has(places.b) && (!whirls.has(places.a) || spin(constraint.body_b) >= spin(constraint.body_a));
-  set_sides(w, contact, constraint, is_b, rolling);
   rolling.once = false;
+  return rolls(w, set_sides(w, contact, constraint, is_b, rolling).shape, rolling, seconds);
 }
 
 // Which of the two bodies rolls, if one does.
@@ -315,12 +317,15 @@ RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch
   for_blocks(tasks, int(count), kRollersPerBlock, [&](int begin, int end, int) {
     for (std::size_t k = std::size_t(begin); k < std::size_t(end); ++k) {
       const std::uint32_t i = candidates[k];
-      bool chosen = whirls.has(scratch.pairs[i]);
-      if (chosen)
-        choose_whirling(w, contact_of(i), constraints[i], scratch.pairs[i], whirls, sides[k]);
-      else
-        chosen =
-            choose_rolling(w, contact_of(i), constraints[i], scratch.pairs[i], bearers, seconds, sides[k]);
+      const Contact& contact = contact_of(i);
+      const ColoringPair places = scratch.pairs[i];
+      const bool flat_a = constraints[i].may_roll && is_flat(w.shapes.colliders[contact.shape_a].shape);
+      const bool whirls_here =
+          !constraints[i].may_roll ? whirls.has(places) : whirls.has(flat_a ? places.b : places.a);
+      const bool chosen =
+          whirls_here ? choose_whirling(w, contact, constraints[i], places, whirls, seconds, sides[k])
+                      : constraints[i].may_roll &&
+                            choose_rolling(w, contact, constraints[i], places, bearers, seconds, sides[k]);
       sides[k].constraint = chosen ? i : kNotRolling;
     }
   });

@@ -32,10 +32,10 @@ struct RollingPoint {
   bool on_rim = false;
 };
 
-// Who rolls on whom in a contact of a curved shape with a flat one.
+// Who rolls on whom in a contact of a curved shape with a flat one, or whirls beside what.
 struct RollingSides {
   std::uint32_t constraint = 0;
-  std::int32_t body = kNoBody;  // that is curved
+  std::int32_t body = kNoBody;  // that is curved, or whirls
   std::int32_t other = kNoBody;
   float side = 1.0f;  // 1 if it is the constraint's b, else -1
   bool once = false;  // held from several sides: it stays where it is in the middle of the step
@@ -77,8 +77,8 @@ float patch_friction(const RigidWorld& w, const Contact& contact, const ContactC
 // through no contact is, and nothing more is asked. `constraint` has its bodies and its manifold.
 bool may_roll(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint);
 
-// Those among the constraints of the batch, which has so many bodies, that may roll and whose bodies turn against each other. Marks
-// these bodies as ones whose place others look at.
+// Those among the constraints of the batch, which has these bodies, that may roll and whose bodies turn against each other, and all of what
+// whirls. Marks these bodies as ones whose place others look at.
 RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch,
                                       std::span<const std::uint32_t> bodies, float seconds, Arena& arena,
                                       TaskSystem& tasks);

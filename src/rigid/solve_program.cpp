@@ -82,7 +82,7 @@ void for_each_rolling(const Group& g, int begin, int end, Fn&& fn) {
     }
   }
 }
-// Takes their points along, and their bodies to the velocities of the middle of the sub-step: no other contact bears these.
+// Takes their points along, and their bodies to the velocities of the middle of the sub-step, until these contacts are solved.
 void follow_contacts(const Group& g, int begin, int end) {
   Solve& s = *g.solve;
   FollowedLane lanes[kMostLanes];
@@ -118,9 +118,13 @@ void leave_middle(const Group& g, int begin, int end) {
 }
 void solve_contacts_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);
-  follow_contacts(g, begin, end);
-  g.solve->kernels.solve(g.solve->blocks, int(g.first) + begin, int(g.first) + end, g.solve->h);
-  leave_middle(g, begin, end);
+  // What is left over when the colours are used up shares bodies: each of them goes to its middle once.
+  const int blocks = g.serial && !g.solve->rolling.contacts.empty() ? 1 : end - begin;
+  for (; begin < end; begin += blocks) {
+    follow_contacts(g, begin, begin + blocks);
+    g.solve->kernels.solve(g.solve->blocks, int(g.first) + begin, int(g.first) + begin + blocks, g.solve->h);
+    leave_middle(g, begin, begin + blocks);
+  }
 }
 void relax_contacts_stage(void* context, int begin, int end, int) {
   const Group& g = *static_cast<Group*>(context);

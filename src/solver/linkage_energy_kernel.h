@@ -97,7 +97,7 @@ GYRE_INLINE RigidMotion<W> rigid_motion(const Bundle<W>& bundle) {
   return {center, linear, angular, 0.5f * (mass * length_squared(linear) + dot(angular, spin))};
 }
 
-// Slows inner motion until no more than `left` (J) is there, in these lanes, and forgets what stops gave.
+// Slows inner motion until no more than `left` (J) is there, in these lanes.
 template <int W>
 GYRE_INLINE void slow_down(const Bundle<W>& bundle, const RigidMotion<W>& rigid, Mask<W> lanes,
                            Wide<W> energy, Wide<W> left) {
@@ -111,13 +111,37 @@ GYRE_INLINE void slow_down(const Bundle<W>& bundle, const RigidMotion<W>& rigid,
     body.linear = select<W>(lanes, linear + share * (body.linear - linear), body.linear);
     body.angular = select<W>(lanes, rigid.angular + share * (body.angular - rigid.angular), body.angular);
   }
+}
+
+// What follows does not begin with the impulses that gave too much, nor gives way under them.
+template <int W>
+GYRE_INLINE void forget_impulses(const Bundle<W>& bundle, Mask<W> lanes) {
+  const Wide<W> zero(0.0f);
+  const Vec3W<W> none{zero, zero, zero};
+  const auto forget = [&](LinkedAxis<W>& axis) {
+    axis.low_impulse = keep(~lanes, axis.low_impulse);
+    axis.high_impulse = keep(~lanes, axis.high_impulse);
+  };
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
-    const auto forget = [&](LinkedAxis<W>& axis) {
-      axis.low_impulse = keep(~lanes, axis.low_impulse), axis.high_impulse = keep(~lanes, axis.high_impulse);
-    };
-    if (bundle.plain.nodes[n].has_twist) forget(bundle.joints[n].twist);
-    if (bundle.plain.nodes[n].has_swing) forget(bundle.joints[n].swing);
+    LinkedJoint<W>& joint = bundle.joints[n];
+    joint.linear_impulse = select<W>(lanes, none, joint.linear_impulse);
+    joint.angular_impulse = select<W>(lanes, none, joint.angular_impulse);
+    if (bundle.plain.nodes[n].has_twist) forget(joint.twist);
+    if (bundle.plain.nodes[n].has_swing) forget(joint.swing);
   }
+}
+
+// J: with which all bodies go back to where joints would have them, if they are far off and errors are taken back at `rate` (1/s).
+template <int W>
+GYRE_INLINE Wide<W> energy_of_errors(const Bundle<W>& bundle, float rate) {
+  Wide<W> sum(0.0f);
+  for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i) {
+    const LinkedBody<W>& body = bundle.bodies[i];
+    const Wide<W> most = max(body.inertia.xx, max(body.inertia.yy, body.inertia.zz));
+    sum += keep(body.inverse_mass > 0.0f, (kMostErrors.point * kMostErrors.point) / body.inverse_mass);
+    sum += (kMostErrors.turn * kMostErrors.turn) * most;
+  }
+  return (0.5f * rate * rate) * sum;
 }
 
 // Those in which a link is so light between others that it may be as fast as can be after any solution.
@@ -144,19 +168,32 @@ class EnergyWatch {
       : bundle_(bundle), watched_(Wide<W>::load(bundle.plain.gained + W) > Wide<W>(0.0f)) {
     tell();
   }
-  // Where joints have given more than `most` of what there was: leaves them what `left` says of that, and takes the rest away. Returns the
-  // lanes of which motion was changed. (In one place: hardly anything is ever to be taken away.)
-  __attribute__((noinline)) Mask<W> bound(float most, float left) const {
+  // Before bodies move: leaves joints as much as there was, or as errors are taken back with at `rate` (1/s), and takes the rest away.
+  void bound(float rate) const { bound(kMostGainAhead, kMostGainAhead, rate); }
+  // Once they have: takes away what joints have given, if it is more than a little. Returns the lanes of which motion was changed.
+  Mask<W> take_away() const { return bound(kMostGain, 0.0f, 0.0f); }
+
+ private:
+  // Where joints have given more than `most` of what there was, leaves them what `left` says of that. (In one place: hardly anything is
+  // ever to be taken away.)
+  __attribute__((noinline)) Mask<W> bound(float most, float left, float rate) const {
     if (none(watched_)) return watched_;
     const Wide<W> zero(0.0f), own = max(energy_ - Wide<W>::load(bundle_.plain.gained), zero);
-    const Wide<W> energy = kinetic_energy(bundle_), gained = energy - own, kept = left * own;
-    const Mask<W> slowed = watched_ & (gained > zero) & (gained > most * own);
-    if (any(slowed)) slow_down(bundle_, rigid_in(light_lanes(bundle_)), slowed, energy, own + kept);
+    const Wide<W> energy = kinetic_energy(bundle_), gained = energy - own;
+    Mask<W> slowed = watched_ & (gained > zero) & (gained > most * own);
+    Wide<W> kept = left * own;
+    if (any(slowed) && rate > 0.0f) {
+      const Wide<W> least = energy_of_errors(bundle_, rate);
+      slowed = slowed & (gained > most * least);
+      kept = left * max(own, least);
+    }
+    if (any(slowed)) {
+      slow_down(bundle_, rigid_in(light_lanes(bundle_)), slowed, energy, own + kept);
+      if (rate > 0.0f) forget_impulses(bundle_, slowed);
+    }
     keep(watched_, select(slowed, kept, gained)).store(bundle_.plain.gained);
     return slowed;
   }
-
- private:
   void tell() {
     if (none(watched_)) return;
     energy_ = kinetic_energy(bundle_);

@@ -277,7 +277,7 @@ void solve_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const La
     solve_rows<W, Asks::first>(bundle);
   }
   solve_stops(bundle, s, s.first_errors);
-  watch.bound(kMostGainAhead, kMostGainAhead);  // before contacts answer it
+  watch.bound(s.rate);                // before contacts answer it
   ask_lanes(bundle, s, kMostErrors);  // now with velocities that agree with the joints
   store_velocities(bundle, arrays);
 }
@@ -289,7 +289,7 @@ void solve_bundle_again(const LinkageBundle& plain, const LaneArrays& arrays, co
   const EnergyWatch<W> watch(bundle);
   solve_again(bundle);
   solve_stops(bundle, s, kMostErrors);
-  watch.bound(kMostGainAhead, kMostGainAhead);
+  watch.bound(s.rate);
   store_velocities(bundle, arrays);
 }
 
@@ -341,7 +341,7 @@ void pass_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const Lan
   const EnergyWatch<W> watch(bundle);
   relax(bundle, relaxed);
   if (any(stopped)) solve_stops(bundle, s, kNoErrors, stopped);
-  const Mask<W> slowed = watch.bound(kMostGain, 0.0f);
+  const Mask<W> slowed = watch.take_away();
   if (any(relaxed | stopped | slowed)) store_velocities(bundle, arrays);
   ask_lanes(bundle, s, s.first_errors);
   sum_impulses(bundle);
@@ -354,7 +354,7 @@ void finish_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const L
   const EnergyWatch<W> watch(bundle);
   relax(bundle, Mask<W>::splat(true));
   solve_stops(bundle, s, kNoErrors);
-  watch.bound(kMostGain, 0.0f);
+  watch.take_away();
   sum_impulses(bundle);
   store_velocities(bundle, arrays);
 }

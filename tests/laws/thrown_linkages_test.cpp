@@ -172,9 +172,9 @@ TEST(ThrownLinkages, KeepMomentaWhateverTheyWeigh) {
   EXPECT_TRUE(limit_row("the same: angular momentum lost, over that of 1 m/s", mixed.turned, 0.02, 0.001));
 }
 
-// Chains of balls and sticks between which a light one hangs now and then, on the ground. How that one is held by the joints at its ends is
-// not resolved, and the first solution of a part may give it a billion times what there was: taken away again as the bodies move, that
-// has meanwhile been answered by the ground, which goes on in the next part.
+// Chains of balls and sticks on the ground, with a light one between heavy ones now and then. How that one is held by the joints at its
+// ends is not resolved, and the first solution of a part may give it a billion times what there was. It was taken away only once bodies
+// had moved; the ground had answered it by then, and that answer went on in the next part.
 double drop_chain(std::uint32_t seed) {
   testing_random::Random random;
   random.state += seed * 0x9e3779b97f4a7c15u;
