@@ -1,8 +1,9 @@
 // Joints do no work, and those of a linkage must do none either (solver/linkage_lanes.h). Where limbs turn far within a sub-step its
 // equations, whose bend is asked for to second order, may give energy, and what they give in one they give again in the next: small nets
 // of light knots that whipped gained fifty times what they could fall by, thousands with more of the bend asked for. So what they gave
-// in a sub-step, beside what forces and contacts did, is taken away as it ends, by slowing all inner motion alike: joints that keep
-// to their rows at two velocities do so in between, and what hangs on nothing keeps its momentum and angular momentum.
+// in a sub-step, beside what forces and contacts did, is taken away as it ends, and what is more than there was at once, by slowing all
+// inner motion alike: joints that keep to their rows at two velocities do so in between, and what hangs on nothing keeps its momentum and
+// angular momentum.
 // docs/decisions/joint-trees.md has the figures.
 #pragma once
 

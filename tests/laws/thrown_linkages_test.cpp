@@ -217,5 +217,24 @@ TEST(ThrownLinkages, GainNothingFromTheGround) {
   EXPECT_TRUE(limit_row("chains with light limbs on the ground: energy gained in a step", most, 0.1, 0.01));
 }
 
+// What rests has no energy, and a light link is always watched: joints may still give what errors are taken back with.
+TEST(ThrownLinkages, CloseAtRestWithALightLink) {
+  Assembly chain({.gravity = {0, 0, 0}, .sleeping = false});
+  for (const double x : {0.0, 0.3, 0.6}) {
+    BodyDef def{.pose = {{x, 0, 0}, {}}};
+    def.mass = x == 0.3 ? 0.002f : 1.0f;
+    chain.add(def, Sphere{0.05f});
+  }
+  for (int i = 1; i < 3; ++i)
+    chain.join(JointKind::ball, chain.bodies[std::size_t(i) - 1], chain.bodies[std::size_t(i)],
+               {0.3 * i - 0.15, 0, 0});
+  ASSERT_TRUE(chain.world.set_pose(chain.bodies[2], {{0.62, 0.03, 0}, {}}));
+  const double opened = chain.largest_gap();
+  run(chain.world, 1.0);
+  EXPECT_GT(opened, 0.03);
+  EXPECT_TRUE(limit_row("gap of a joint that was opened at rest, after a second (m)", chain.largest_gap(),
+                        1.0e-3, 1.0e-5));
+}
+
 }  // namespace
 }  // namespace gyre::laws
