@@ -2,9 +2,8 @@
 
 #include "base/disjoint_sets.h"
 #include "math/rotation.h"
+#include "rigid/worked_rows.h"
 #include "solver/error_bounds.h"
-#include "solver/joint_axis.h"
-#include "solver/joint_drive.h"
 
 #include <cmath>
 
@@ -12,32 +11,17 @@ namespace gyre {
 
 namespace {
 
-// Of those whose rows see nothing of the motion of all together as one rigid body.
-bool is_inner(JointKind kind) {
+// What motion of all together the rows of a kind see nothing of.
+IslandFrame frame_of(JointKind kind) {
   switch (kind) {
-    case JointKind::ball:
-    case JointKind::hinge:
-    case JointKind::slider:
-    case JointKind::fixed:
-    case JointKind::distance:
-    case JointKind::cone:
-    case JointKind::universal:
-    case JointKind::six_dof:
-      return true;
+    case JointKind::gear:
+      return IslandFrame::parallel;
+    case JointKind::rack_and_pinion:
+    case JointKind::pulley:
+      return IslandFrame::still;
     default:
-      return false;
+      return IslandFrame::rigid;
   }
-}
-
-bool is_workless(const JointRecord& joint, const JointDetail* detail) {
-  if (!is_inner(joint.kind) || joint.is_spring || joint.motor_force > 0.0f || joint.stiffness > 0.0f ||
-      joint.damping > 0.0f)
-    return false;
-  if (detail == nullptr) return true;
-  if (has_drive(*detail)) return false;
-  for (const JointAxisRecord& axis : detail->axes)
-    if (axis.motor_force > 0.0f || has_spring(axis) || axis.limit_frequency > 0.0f) return false;
-  return true;
 }
 
 bool turns_far(const BodyMotion& motion, float h) {
@@ -61,9 +45,11 @@ void for_each_joint(const Solve& solve, Fn&& fn) {
 
 // What is known of an island while it is gathered, at its lowest place.
 struct Draft {
-  bool has_joints = false, is_swept = false, is_alone = false, is_fast = false, is_held = false,
-       is_worked = false;
-  std::uint32_t bodies = 0, joints = 0, next_body = 0, next_joint = 0;
+  bool has_joints = false, is_swept = false, is_alone = false, is_fast = false;
+  bool is_dragged = false;  // by what cannot be told
+  IslandFrame frame = IslandFrame::rigid;
+  std::uint32_t bodies = 0, joints = 0, worked = 0;
+  JointIsland* island = nullptr;
 };
 
 class IslandFinder {
@@ -72,6 +58,7 @@ class IslandFinder {
       : solve_(solve),
         w_(solve.w),
         arena_(arena),
+        in_lanes_(begun_in_lanes(solve)),
         sets_(arena.make<std::uint32_t>(solve.batch.bodies.size())),
         drafts_(arena.make<Draft>(solve.batch.bodies.size())) {}
 
@@ -84,6 +71,7 @@ class IslandFinder {
   }
 
  private:
+  bool is_in_lanes(std::uint32_t at) const { return !in_lanes_.empty() && in_lanes_[at] != 0; }
   bool is_pushed(std::int32_t body) const { return body != kNoBody && is_active(w_, std::uint32_t(body)); }
   std::uint32_t place(std::int32_t body) const { return solve_.places[std::size_t(body)]; }
 
@@ -112,8 +100,12 @@ class IslandFinder {
       if (!a && !b) return;
       Draft& draft = drafts_[sets_.of(place(a ? joint.body_a : joint.body_b))];
       ++draft.joints;
+      draft.frame = max(draft.frame, frame_of(joint.kind));
       if (!a || !b) hold(draft, a ? joint.body_b : joint.body_a);
-      if (!is_workless(joint, detail_of(w_.joints, solve_.batch.joints[at]))) draft.is_worked = true;
+      if (!is_in_lanes(at))
+        draft.worked += std::uint32_t(count_worked_rows(solve_, at));
+      else if (may_work(joint, detail_of(w_.joints, solve_.batch.joints[at])))
+        draft.is_dragged = true;
     });
     for (std::uint32_t i = 0; i < drafts_.size(); ++i) {
       if (!drafts_[i].has_joints) continue;
@@ -122,55 +114,64 @@ class IslandFinder {
       const BodyFlags& flags = w_.bodies.flags[body];
       ++draft.bodies;
       if (turns_far(w_.bodies.motion[body], solve_.h)) draft.is_fast = true;
-      if (flags.locked_linear != 0 || flags.locked_angular != 0) draft.is_worked = true;
+      if (flags.locked_linear != 0 || flags.locked_angular != 0) draft.is_dragged = true;
     }
   }
   // What moves by itself does work.
   void hold(Draft& draft, std::int32_t body) const {
-    draft.is_held = true;
+    draft.frame = IslandFrame::still;
     if (body == kNoBody) return;
     const BodyMotion& motion = w_.bodies.motion[std::size_t(body)];
-    if (motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{}) draft.is_worked = true;
+    if (motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{}) draft.is_dragged = true;
   }
 
   std::span<JointIsland> list() {
     // What it costs to watch a linkage that is solved alone is little of what it costs to solve it. What is in lanes by itself is watched
     // there.
     const auto is_watched = [](const Draft& draft) {
-      return draft.bodies > 0 && (draft.is_alone || (draft.is_swept && draft.is_fast)) && !draft.is_worked;
+      return draft.bodies > 0 && (draft.is_alone || (draft.is_swept && draft.is_fast)) && !draft.is_dragged;
     };
-    std::size_t count = 0, bodies = 0, joints = 0;
+    std::size_t count = 0;
     for (const Draft& draft : drafts_)
-      if (is_watched(draft)) ++count, bodies += draft.bodies, joints += draft.joints;
+      if (is_watched(draft)) ++count;
     if (count == 0) return {};
     const std::span<JointIsland> islands = arena_.make<JointIsland>(count);
-    const std::span<std::uint32_t> members = arena_.make<std::uint32_t>(bodies),
-                                   ties = arena_.make<std::uint32_t>(joints);
-    count = bodies = joints = 0;
-    for (Draft& draft : drafts_) {
-      if (!is_watched(draft)) continue;
-      islands[count++] = {members.subspan(bodies, draft.bodies), ties.subspan(joints, draft.joints),
-                          draft.is_held};
-      draft.next_body = std::uint32_t(bodies), draft.next_joint = std::uint32_t(joints);
-      bodies += draft.bodies, joints += draft.joints;
-    }
+    count = 0;
+    for (Draft& draft : drafts_)
+      if (is_watched(draft)) begin_island(draft, islands[count++]);
+    fill();
+    return islands;
+  }
+  // With room for all that belongs to it.
+  void begin_island(Draft& draft, JointIsland& island) {
+    island = {arena_.make<std::uint32_t>(draft.bodies), arena_.make<std::uint32_t>(draft.joints),
+              arena_.make<WorkedRow>(draft.worked), draft.frame};
+    draft.island = &island;
+    draft.bodies = draft.joints = draft.worked = 0;
+  }
+  void fill() {
     for (std::uint32_t i = 0; i < drafts_.size(); ++i) {
       Draft& draft = drafts_[sets_.of(i)];
-      if (drafts_[i].has_joints && is_watched(draft)) members[draft.next_body++] = solve_.batch.bodies[i];
+      if (drafts_[i].has_joints && draft.island != nullptr)
+        draft.island->bodies[draft.bodies++] = solve_.batch.bodies[i];
     }
     for_each_joint(solve_, [&](std::uint32_t at) {
       const JointRecord& joint = w_.joints.records[solve_.batch.joints[at]];
       const bool a = is_pushed(joint.body_a);
       if (!a && !is_pushed(joint.body_b)) return;
       Draft& draft = drafts_[sets_.of(place(a ? joint.body_a : joint.body_b))];
-      if (is_watched(draft)) ties[draft.next_joint++] = at;
+      if (draft.island == nullptr) return;
+      draft.island->joints[draft.joints++] = at;
+      if (is_in_lanes(at)) return;
+      list_worked_rows(solve_, at, draft.island->worked.subspan(draft.worked));
+      draft.worked += std::uint32_t(count_worked_rows(solve_, at));
     });
-    return islands;
   }
 
   const Solve& solve_;
   const RigidWorld& w_;
   Arena& arena_;
+  std::span<const std::uint8_t> in_lanes_;
   DisjointSets sets_;  // of places in the batch
   std::span<Draft> drafts_;
 };
@@ -239,7 +240,7 @@ RigidBody as_one(const BodyStore& bodies, const JointIsland& island) {
   return one;
 }
 
-// The motion that it would have as one, with the momenta that it has; of what hangs on something, none.
+// The motion that it would have as one, with the momenta that it has, as far as joints see nothing of it.
 struct RigidMotion {
   DVec3 center;
   Vec3 linear, angular;
@@ -247,16 +248,18 @@ struct RigidMotion {
 };
 RigidMotion rigid_motion(const BodyStore& bodies, const JointIsland& island) {
   RigidMotion rigid;
-  if (island.is_held) return rigid;
+  if (island.frame == IslandFrame::still) return rigid;
   const RigidBody one = as_one(bodies, island);
   rigid.center = one.center;
   DVec3 momentum;
   for (const std::uint32_t body : island.bodies)
     momentum += double(bodies.masses[body].mass) * DVec3(bodies.motion[body].linear_velocity);
   rigid.linear = to_float((1.0 / one.mass) * momentum);
+  rigid.energy = 0.5 * one.mass * double(length_squared(rigid.linear));
+  if (island.frame == IslandFrame::parallel) return rigid;
   const Vec3 spin = to_float(angular_momentum(bodies, island, one.center));
   rigid.angular = inverse(one.inertia) * spin;
-  rigid.energy = 0.5 * (one.mass * double(length_squared(rigid.linear)) + double(dot(rigid.angular, spin)));
+  rigid.energy += 0.5 * double(dot(rigid.angular, spin));
   return rigid;
 }
 
@@ -282,7 +285,7 @@ void slow_down(BodyStore& bodies, const JointIsland& island, double energy, doub
   for (const std::uint32_t body : island.bodies) {
     BodyMotion& motion = bodies.motion[body];
     Vec3 linear = rigid.linear;
-    if (!island.is_held) linear += cross(rigid.angular, to_float(center_of(bodies, body) - rigid.center));
+    if (island.frame == IslandFrame::rigid) linear += cross(rigid.angular, to_float(center_of(bodies, body) - rigid.center));
     motion.linear_velocity = linear + share * (motion.linear_velocity - linear) + Vec3{};
     motion.angular_velocity = rigid.angular + share * (motion.angular_velocity - rigid.angular) + Vec3{};
   }
@@ -349,17 +352,30 @@ std::span<JointIsland> find_joint_islands(const Solve& solve, Arena& arena) {
   return IslandFinder(solve, arena).find();
 }
 
+namespace {
+
+void begin_work(const Solve& solve, JointIsland& island, bool is_warm) {
+  begin_worked_rows(solve, island.worked, is_warm);
+  island.before = kinetic_energy(solve.w.bodies, island);
+  if (island.frame == IslandFrame::rigid)
+    island.spin = angular_momentum(solve.w.bodies, island, center_of(solve.w.bodies, island.bodies[0]));
+}
+
+}  // namespace
+
+void begin_warm_work(const Solve& solve, int begin, int end) {
+  for (JointIsland& island : solve.joint_islands.subspan(std::size_t(begin), std::size_t(end - begin)))
+    begin_work(solve, island, true);
+}
 void begin_joint_work(const Solve& solve, int begin, int end) {
-  for (JointIsland& island : solve.joint_islands.subspan(std::size_t(begin), std::size_t(end - begin))) {
-    island.before = kinetic_energy(solve.w.bodies, island);
-    if (!island.is_held)
-      island.spin = angular_momentum(solve.w.bodies, island, center_of(solve.w.bodies, island.bodies[0]));
-  }
+  for (JointIsland& island : solve.joint_islands.subspan(std::size_t(begin), std::size_t(end - begin)))
+    begin_work(solve, island, false);
 }
 void end_joint_work(const Solve& solve, int begin, int end) {
   for (JointIsland& island : solve.joint_islands.subspan(std::size_t(begin), std::size_t(end - begin))) {
-    if (!island.is_held) keep_angular_momentum(solve.w.bodies, island);
-    island.gained += kinetic_energy(solve.w.bodies, island) - island.before;
+    const double worked = work_of(solve, island.worked);
+    if (island.frame == IslandFrame::rigid) keep_angular_momentum(solve.w.bodies, island);
+    island.gained += kinetic_energy(solve.w.bodies, island) - island.before - worked;
   }
 }
 void bound_gains(const Solve& solve, int begin, int end) {

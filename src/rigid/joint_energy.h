@@ -10,11 +10,13 @@
 
 namespace gyre {
 
-// Those of the batch: bodies that hang together by joints none of which drives, springs or drags anything along, some of them swept or
-// in linkages that are solved alone; of those that are swept, where a body turns far.
+// Those of the batch: bodies that hang together by joints, some of them swept or in linkages that are solved alone; of those that are
+// swept, where a body turns far. What springs, motors and drives do is told apart (rigid/worked_rows.h). Not where something kinematic
+// moves them, where a body is bound to axes of the world, or where a linkage in lanes is driven.
 std::span<JointIsland> find_joint_islands(const Solve& solve, Arena& arena);
 
-// Stages, whose blocks are islands: before what joints change of velocities, and after it.
+// Stages, whose blocks are islands: before what joints change of velocities, and after it. Warm: where impulses are given once more.
+void begin_warm_work(const Solve& solve, int begin, int end);
 void begin_joint_work(const Solve& solve, int begin, int end);
 void end_joint_work(const Solve& solve, int begin, int end);
 // Before bodies move.

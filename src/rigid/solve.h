@@ -24,13 +24,23 @@ struct PulledBody {
   float raise = 0.0f;  // kg m^2, about every axis
 };
 
-// Bodies that hang together by joints that should do no work (rigid/joint_energy.h).
+struct WorkedRow;
+
+// What motion of all bodies together the joints of an island see nothing of.
+enum class IslandFrame : std::uint8_t {
+  rigid,     // any as one rigid body
+  parallel,  // without turning: gears count turns
+  still,     // none: something does not move
+};
+
+// Bodies that hang together by joints that should do no work, but for some of their rows (rigid/joint_energy.h).
 struct JointIsland {
-  std::span<const std::uint32_t> bodies;
-  std::span<const std::uint32_t> joints;  // places in the batch
-  bool is_held = false;                   // by what does not move
+  std::span<std::uint32_t> bodies;
+  std::span<std::uint32_t> joints;  // places in the batch
+  std::span<WorkedRow> worked;
+  IslandFrame frame = IslandFrame::rigid;
   bool is_bounded = false;                // joints gave more than is borne before bodies move
-  double gained = 0.0;                    // J, in this sub-step, by what joints changed of velocities,
+  double gained = 0.0;                    // J, in this sub-step, by what rows that do no work changed of velocities,
   double before = 0.0;                    // and what there was before they last did;
   DVec3 spin{};  // kg m^2/s: the angular momentum then, about the first body's centre of mass
 };

@@ -373,7 +373,7 @@ void add_before_contacts(ProgramWriter& program, Solve& solve, const Part& part)
   add_motion(program, solve, is_warm ? predict_warm_stage : predict_stage, part.bodies);
   program.add(strike_stage, &solve, part.impacts);
   program.add(joint_slices_stage<bend_joints_stage>, &solve, part.slices, kSlicesPerClaim);
-  program.add(joint_islands_stage<begin_joint_work>, &solve, part.islands);
+  program.add(joint_islands_stage<begin_warm_work>, &solve, part.islands);
   program.add(linkage_stage<warm_linkage>, &solve, part.linkages);
   // Later they have been asked as the last part ended: velocities are as they were but for what turns no joint. (Blows of the batch must
   // not be a reason to ask again: they may be another island's.)
