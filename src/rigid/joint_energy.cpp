@@ -285,7 +285,8 @@ void slow_down(BodyStore& bodies, const JointIsland& island, double energy, doub
   for (const std::uint32_t body : island.bodies) {
     BodyMotion& motion = bodies.motion[body];
     Vec3 linear = rigid.linear;
-    if (island.frame == IslandFrame::rigid) linear += cross(rigid.angular, to_float(center_of(bodies, body) - rigid.center));
+    if (island.frame == IslandFrame::rigid)
+      linear += cross(rigid.angular, to_float(center_of(bodies, body) - rigid.center));
     motion.linear_velocity = linear + share * (motion.linear_velocity - linear) + Vec3{};
     motion.angular_velocity = rigid.angular + share * (motion.angular_velocity - rigid.angular) + Vec3{};
   }

@@ -1,6 +1,7 @@
 #include "rigid/linkages.h"
 
 #include "base/prefetch.h"
+#include "solver/linkage_axes.h"
 #include "solver/linkage_stops.h"
 
 #include <algorithm>
@@ -430,6 +431,24 @@ Linkages find_linkages(const RigidWorld& w, const SolveBatch& batch, std::span<c
   const bool is_dense = most > 0 && alone_count == 0 && alike_count == 0;
   if (is_dense && !dense.holds(joints)) dense.add(joints);
   return {alone.first(alone_count), alike.first(alike_count), maker.shapes(), swept, in_lanes};
+}
+
+void link_axes(const Linkages& linkages, std::span<JointWork> work, Arena& arena) {
+  for (Linkage& linkage : linkages.linkages) {
+    std::size_t count = 0;
+    for (const LinkageNode& node : linkage.nodes)
+      for (const AxisWork& axis : work[node.work].axes) count += acts_softly(axis) ? 1 : 0;
+    if (count == 0) continue;
+    linkage.axes = arena.make<LinkedAxis>(min(count, kMostLinkedAxes));
+    linkage.axis_room = arena.make<double>(linked_axes_room(linkage, linkage.axes.size()));
+    count = 0;
+    for (std::uint32_t n = 0; n < linkage.nodes.size(); ++n)
+      for (AxisWork& axis : work[linkage.nodes[n].work].axes) {
+        if (!acts_softly(axis) || count == linkage.axes.size()) continue;
+        axis.is_linked = true;
+        linkage.axes[count++] = {n, &axis};
+      }
+  }
 }
 
 std::span<std::span<double>> find_stops(const Linkages& linkages, std::span<const JointWork> work,

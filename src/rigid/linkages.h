@@ -71,6 +71,9 @@ Linkages find_linkages(const RigidWorld& w, const SolveBatch& batch, std::span<c
 // Where all joints are swept.
 Linkages no_linkages(std::size_t joints, Arena& arena);
 
+// Gives linkages that are solved alone the axes along which more acts than hard stops.
+void link_axes(const Linkages& linkages, std::span<JointWork> work, Arena& arena);
+
 // Notes which linkages that are solved alone have stops. Returns room to solve these in, by worker.
 std::span<std::span<double>> find_stops(const Linkages& linkages, std::span<const JointWork> work,
                                         std::size_t workers, Arena& arena);

@@ -40,7 +40,7 @@ struct JointIsland {
   std::span<WorkedRow> worked;
   IslandFrame frame = IslandFrame::rigid;
   bool is_bounded = false;                // joints gave more than is borne before bodies move
-  double gained = 0.0;                    // J, in this sub-step, by what rows that do no work changed of velocities,
+  double gained = 0.0;  // J, in this sub-step, by what rows that do no work changed of velocities,
   double before = 0.0;                    // and what there was before they last did;
   DVec3 spin{};  // kg m^2/s: the angular momentum then, about the first body's centre of mass
 };

@@ -156,6 +156,7 @@ void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale
                          .settings = solve.joint_settings,
                          .give = kLinkageGive};
   solve.linkage_solve.settings.swept = false;
+  link_axes(solve.linkages, solve.joint_work, arena);
   solve.stop_rooms = find_stops(solve.linkages, solve.joint_work, std::size_t(tasks.worker_count()), arena);
   const JointBodies& bodies = solve.joint_bodies;
   solve.bundles =

@@ -12,6 +12,8 @@ bool may_work(const JointAxisRecord& axis) {
   return axis.motor_force > 0.0f || has_spring(axis) || axis.limit_frequency > 0.0f;
 }
 
+bool is_listed(const AxisWork& x) { return x.is_linked || may_work(x.axis); }
+
 // Dry friction only takes.
 float worked_impulse(const JointAxisRecord& axis) {
   const float stops = axis.limit_frequency > 0.0f ? axis.low_impulse - axis.high_impulse : 0.0f;
@@ -23,16 +25,18 @@ RowState state_of(const Solve& solve, const WorkedRow& row) {
   const JointPair pair(solve.w.joints.records[solve.batch.joints[row.place]], solve.joint_bodies);
   if (row.axis != kDriveRow) {
     const AxisWork& x = work.axes[std::size_t(row.axis)];
-    return {{worked_impulse(x.axis), 0, 0}, {axis_speed(x.row, pair), 0, 0}, {}, {}};
+    if (x.is_linked) return {{}, {}, {}, {}, x.worked};
+    return {{worked_impulse(x.axis), 0, 0}, {axis_speed(x.row, pair), 0, 0}, {}, {}, 0.0};
   }
   return {work.detail->drive_force_impulse, pair.point_velocity(work.drive->from_a, work.from_b),
-          work.detail->drive_torque_impulse, pair.turning()};
+          work.detail->drive_torque_impulse, pair.turning(), 0.0};
 }
 
 }  // namespace
 
 bool may_work(const JointRecord& joint, const JointDetail* detail) {
-  if (joint.is_spring || joint.motor_force > 0.0f || joint.stiffness > 0.0f || joint.damping > 0.0f) return true;
+  if (joint.is_spring || joint.motor_force > 0.0f || joint.stiffness > 0.0f || joint.damping > 0.0f)
+    return true;
   if (detail == nullptr) return false;
   if (has_drive(*detail)) return true;
   for (const JointAxisRecord& axis : detail->axes)
@@ -43,7 +47,7 @@ bool may_work(const JointRecord& joint, const JointDetail* detail) {
 std::size_t count_worked_rows(const Solve& solve, std::uint32_t place) {
   const JointWork& work = solve.joint_work[place];
   std::size_t count = work.drive != nullptr ? 1 : 0;
-  for (const AxisWork& x : work.axes) count += may_work(x.axis) ? 1 : 0;
+  for (const AxisWork& x : work.axes) count += is_listed(x) ? 1 : 0;
   return count;
 }
 
@@ -52,7 +56,7 @@ void list_worked_rows(const Solve& solve, std::uint32_t place, std::span<WorkedR
   std::size_t count = 0;
   if (work.drive != nullptr) rows[count++] = {place, kDriveRow, {}};
   for (std::size_t i = 0; i < work.axes.size(); ++i)
-    if (may_work(work.axes[i].axis)) rows[count++] = {place, std::int32_t(i), {}};
+    if (is_listed(work.axes[i])) rows[count++] = {place, std::int32_t(i), {}};
 }
 
 void begin_worked_rows(const Solve& solve, std::span<WorkedRow> rows, bool is_warm) {
@@ -66,6 +70,7 @@ double work_of(const Solve& solve, std::span<const WorkedRow> rows) {
   double twice = 0.0;
   for (const WorkedRow& row : rows) {
     const RowState now = state_of(solve, row);
+    twice += 2.0 * (now.worked - row.begun.worked);
     twice += double(dot(now.push - row.begun.push, now.speed + row.begun.speed));
     twice += double(dot(now.turn - row.begun.turn, now.turning + row.begun.turning));
   }

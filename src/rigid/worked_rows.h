@@ -7,10 +7,12 @@
 
 namespace gyre {
 
-// What a row had given as a stage began, and what it saw. Of an axis the numbers stand in x of the first two.
+// What a row had given as a stage began, and what it saw. Of an axis the numbers stand in x of the first two; of one that is solved with the
+// equations of its linkage (solver/linkage_axes.h), which knows what it did, in `worked`.
 struct RowState {
   Vec3 push, speed;    // N s, m/s (or N m s, rad/s)
   Vec3 turn, turning;  // N m s, rad/s: of drives
+  double worked = 0.0;
 };
 
 struct WorkedRow {

@@ -121,11 +121,10 @@ void prepare_axis(AxisWork& x, const JointPair& pair, const JointSettings& setti
                   pair.inverse_mass_b() * length_squared(row.push_b) +
                   dot(row.arm_a, pair.inverse_inertia_a() * row.arm_a) +
                   dot(row.arm_b, pair.inverse_inertia_b() * row.arm_b);
-  x.mass = inverse_or_zero(k);
   x.bend = 0.0f;
   x.speed_before = axis_speed(row, pair);
   const JointAxisRecord& axis = x.axis;
-  if (has_spring(axis)) x.spring = make_spring(axis, x.mass, settings.substep);
+  prepare_axis_mass(x, inverse_or_zero(k), settings);
   x.drive = axis.motor_frequency > 0.0f
                 ? make_softness(axis.motor_frequency, axis.motor_damping, settings.substep)
                 : settings.softness;
@@ -133,7 +132,16 @@ void prepare_axis(AxisWork& x, const JointPair& pair, const JointSettings& setti
     x.stop = make_softness(axis.limit_frequency, axis.limit_damping, settings.substep);
 }
 
-void solve_axis(AxisWork& x, JointPair& pair, const JointSettings& settings, bool soft) {
+void prepare_axis_mass(AxisWork& x, float mass, const JointSettings& settings) {
+  x.mass = mass;
+  if (has_spring(x.axis)) x.spring = make_spring(x.axis, mass, settings.substep);
+}
+
+namespace {
+
+// Calls push(impulse) for each that changes, and see() for what the row sees then.
+template <class See, class Push>
+void solve_axis_by(AxisWork& x, const JointSettings& settings, bool soft, See&& see, Push&& push) {
   if (!(x.mass > 0.0f)) return;
   JointAxisRecord& axis = x.axis;
   const float bend = soft ? x.bend : 0.0f;
@@ -142,12 +150,12 @@ void solve_axis(AxisWork& x, JointPair& pair, const JointSettings& settings, boo
   bool is_known = false;
   const auto change = [&](float& kept, float by, float sign) {
     if (by == 0.0f) return;
-    push_axis(x.row, sign * by, pair);
+    push(sign * by);
     kept += by;
     is_known = false;
   };
   const auto speed = [&] {
-    if (!is_known) speed_now = axis_speed(x.row, pair) + bend;
+    if (!is_known) speed_now = see() + bend;
     is_known = true;
     return speed_now;
   };
@@ -169,6 +177,22 @@ void solve_axis(AxisWork& x, JointPair& pair, const JointSettings& settings, boo
     const float gap = max(high_gap(x), least);
     change(axis.high_impulse, end_change(x, -speed(), gap, axis.high_impulse, settings, soft), -1.0f);
   }
+}
+
+}  // namespace
+
+void solve_axis(AxisWork& x, JointPair& pair, const JointSettings& settings, bool soft) {
+  if (x.is_linked) return;
+  solve_axis_by(
+      x, settings, soft, [&] { return axis_speed(x.row, pair); },
+      [&](float impulse) { push_axis(x.row, impulse, pair); });
+}
+
+float solve_axis(AxisWork& x, float speed, float k, const JointSettings& settings, bool soft) {
+  float sum = 0.0f;
+  solve_axis_by(
+      x, settings, soft, [&] { return speed + k * sum; }, [&](float impulse) { sum += impulse; });
+  return sum;
 }
 
 }  // namespace gyre

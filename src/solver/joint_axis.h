@@ -33,7 +33,9 @@ struct AxisWork {
   JointAxisRecord axis;  // settings and impulses; goes back into the joint when the step is over
   JointAxis index = JointAxis::linear_x;
   bool has_low = false, has_high = false;
+  bool is_linked = false;  // solved with the equations of its linkage (solver/linkage_axes.h)
   bool is_rod = false;  // one two-sided stop at limits.low, its impulse in low_impulse
+  double worked = 0.0;  // J, by all impulses since the step began; kept if it is linked
   float slack = 0.0f;   // by how much farther than the limits both stops are
   AxisRow row;
   float mass = 0.0f;          // effective
@@ -59,8 +61,12 @@ void push_axis(const AxisRow& row, float impulse, JointPair& pair);
 // Impulse of everything along the axis together.
 float axis_impulse(const JointAxisRecord& axis);
 
-// Once the row and the position are known.
+// Once the row and the position are known: as if the two bodies were alone.
 void prepare_axis(AxisWork& axis, const JointPair& pair, const JointSettings& settings);
+// What depends on the effective mass.
+void prepare_axis_mass(AxisWork& axis, float mass, const JointSettings& settings);
 void solve_axis(AxisWork& axis, JointPair& pair, const JointSettings& settings, bool soft);
+// Where the row sees `speed` and an impulse of one changes that by k: the impulse of all that acts.
+float solve_axis(AxisWork& axis, float speed, float k, const JointSettings& settings, bool soft);
 
 }  // namespace gyre

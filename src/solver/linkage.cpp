@@ -3,6 +3,7 @@
 #include "math/dense.h"
 #include "math/wide_vec.h"
 #include "solver/joint_equations.h"
+#include "solver/linkage_axes.h"
 #include "solver/linkage_stops.h"
 
 namespace gyre {
@@ -402,11 +403,13 @@ void place_linkage(const Linkage& linkage, const LinkageSolve& s) {
                  s.bodies.inertia[coupling.body], &linkage.values[coupling.offset]);
   }
   factor_blocks(linkage.plan, linkage.values, linkage.room);
+  place_linked_axes(linkage, s);
 }
 
 void warm_linkage(const Linkage& linkage, const LinkageSolve& s) {
   // Before the impulses of the last sub-step: after a blow these are not of this one, and the bend of such speeds is none.
   ask_rows(linkage, s, kErrorsBeforeContacts);
+  note_warm_work(linkage, s);
   for (const LinkageNode& node : linkage.nodes) {
     JointRecord& joint = s.records[node.record];
     const JointWork& work = s.work[node.work];
@@ -427,6 +430,7 @@ void warm_linkage(const Linkage& linkage, const LinkageSolve& s) {
 void solve_linkage(const Linkage& linkage, const LinkageSolve& s) {
   sweep_axes(linkage, s, true);
   solve_rows(linkage, s, true);
+  solve_linked_axes(linkage, s, true);
   solve_stops(linkage, s, kErrorsBeforeContacts);
   ask_rows(linkage, s, kMostErrors);  // now with velocities that agree with the joints
 }
@@ -434,12 +438,14 @@ void solve_linkage(const Linkage& linkage, const LinkageSolve& s) {
 void solve_linkage_again(const Linkage& linkage, const LinkageSolve& s) {
   sweep_axes(linkage, s, true);
   solve_rows(linkage, s, true);
+  solve_linked_axes(linkage, s, true);
   solve_stops(linkage, s, kMostErrors);
 }
 
 void relax_linkage(const Linkage& linkage, const LinkageSolve& s) {
   sweep_axes(linkage, s, false);
   solve_rows(linkage, s, false);
+  solve_linked_axes(linkage, s, false);
   solve_stops(linkage, s, kNoErrors);
   for (const LinkageNode& node : linkage.nodes)
     sum_joint(s.records[node.record], s.work[node.work], s.bodies);

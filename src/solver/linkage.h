@@ -62,6 +62,12 @@ struct LinkageCoupling {
   bool row_has_b = false, column_has_b = false;  // the body is b of the joint
 };
 
+// An axis along which more acts than hard stops (solver/linkage_axes.h).
+struct LinkedAxis {
+  std::uint32_t node = 0;
+  AxisWork* axis = nullptr;
+};
+
 struct Linkage {
   std::span<LinkageNode> nodes;
   std::span<LinkageBody> bodies;
@@ -71,6 +77,8 @@ struct Linkage {
   std::span<double> room;
   std::span<double> vector;
   bool has_stops = false;  // limits that do not give way (solver/linkage_stops.h)
+  std::span<LinkedAxis> axes{};
+  std::span<double> axis_room{};
 };
 
 struct LinkageSolve {

@@ -1,6 +1,6 @@
 #include "solver/linkage_stops.h"
 
-#include "solver/joint_equations.h"
+#include "solver/linkage_response.h"
 
 namespace gyre {
 
@@ -27,15 +27,15 @@ class StopSolve {
         solve_(solve),
         bounds_(bounds),
         rows_(linkage.plan.rows),
-        speeds_(6 * linkage.bodies.size()) {
-    double* room = solve.room.data();
+        speeds_(response_speeds(linkage)) {
+    std::span<double> room = solve.room;
     const auto take = [&](std::size_t count) {
-      double* const part = room;
-      room += count;
+      const std::span<double> part = room.first(count);
+      room = room.subspan(count);
       return part;
     };
-    equations_ = take(kMostStops * rows_);
-    changes_ = take(kMostStops * speeds_);
+    columns_.answers = take(kMostStops * rows_);
+    columns_.speeds = take(kMostStops * speeds_);
     sum_ = take(speeds_);
   }
 
@@ -45,10 +45,11 @@ class StopSolve {
       const std::size_t known = count_;
       list_passed();
       if (count_ == known && (round > 0 || !is_any_off())) return;
-      for (std::size_t c = known; c < count_; ++c) find_response(c);
+      for (std::size_t c = known; c < count_; ++c)
+        find_response(linkage_, solve_, stops_[c].node, stops_[c].axis->row, stops_[c].sign, column(c));
       for (std::size_t c = 0; c < count_; ++c)
         for (std::size_t d = 0; d < count_; ++d)
-          if (c >= known || d >= known) matrix_[c][d] = axis_speed(stops_[c], changes_ + d * speeds_);
+          if (c >= known || d >= known) matrix_[c][d] = seen(stops_[c], column(d).speeds);
       find_impulses();
       push();
     }
@@ -57,17 +58,8 @@ class StopSolve {
  private:
   // By how much the stop's speed is above what is asked.
   float speed_of(const Stop& stop) const {
-    const LinkageNode& node = linkage_.nodes[stop.node];
-    const AxisRow& row = stop.axis->row;
-    float speed = bounds_.turn > 0.0f ? stop.axis->bend : 0.0f;
-    if (node.body_a != kNoBody) {
-      const BodyMotion& a = solve_.bodies.motion[node.body_a];
-      speed -= dot(row.push_a, a.linear_velocity) + dot(row.arm_a, a.angular_velocity);
-    }
-    if (node.body_b != kNoBody) {
-      const BodyMotion& b = solve_.bodies.motion[node.body_b];
-      speed += dot(row.push_b, b.linear_velocity) + dot(row.arm_b, b.angular_velocity);
-    }
+    const float bend = bounds_.turn > 0.0f ? stop.axis->bend : 0.0f;
+    const float speed = bend + axis_speed(linkage_.nodes[stop.node], stop.axis->row, solve_.bodies);
     return stop.sign * speed - stop.asked;
   }
 
@@ -105,80 +97,6 @@ class StopSolve {
     return false;
   }
 
-  // ------------------------------------------------------- velocities of the linkage's bodies, six numbers each
-
-  static DVec3 at(const double* speeds, std::int32_t side, int part) {
-    const double* const v = speeds + 6 * side + 3 * part;
-    return {v[0], v[1], v[2]};
-  }
-  static void add(double* speeds, std::int32_t side, DVec3 linear, DVec3 angular) {
-    double* const v = speeds + 6 * side;
-    v[0] += linear.x, v[1] += linear.y, v[2] += linear.z;
-    v[3] += angular.x, v[4] += angular.y, v[5] += angular.z;
-  }
-  double axis_speed(const Stop& stop, const double* speeds) const {
-    const LinkageNode& node = linkage_.nodes[stop.node];
-    const AxisRow& row = stop.axis->row;
-    double speed = 0.0;
-    if (node.side_a >= 0)
-      speed -= dot(DVec3(row.push_a), at(speeds, node.side_a, 0)) +
-               dot(DVec3(row.arm_a), at(speeds, node.side_a, 1));
-    if (node.side_b >= 0)
-      speed += dot(DVec3(row.push_b), at(speeds, node.side_b, 0)) +
-               dot(DVec3(row.arm_b), at(speeds, node.side_b, 1));
-    return double(stop.sign) * speed;
-  }
-  float inverse_mass(std::int32_t body) const { return solve_.bodies.inertia[body].inverse_mass; }
-
-  // What an impulse of one at the stop makes of all bodies, and what the equations answer.
-  void find_response(std::size_t c) {
-    const Stop& stop = stops_[c];
-    const LinkageNode& own = linkage_.nodes[stop.node];
-    const AxisRow& row = stop.axis->row;
-    double* const change = changes_ + c * speeds_;
-    double* const answer = equations_ + c * rows_;
-    for (std::size_t i = 0; i < speeds_; ++i) change[i] = 0.0;
-    if (own.side_a >= 0)
-      add(change, own.side_a, DVec3((-stop.sign * inverse_mass(own.body_a)) * row.push_a),
-          DVec3(linkage_.bodies[std::size_t(own.side_a)].inverse * (-stop.sign * row.arm_a)));
-    if (own.side_b >= 0)
-      add(change, own.side_b, DVec3((stop.sign * inverse_mass(own.body_b)) * row.push_b),
-          DVec3(linkage_.bodies[std::size_t(own.side_b)].inverse * (stop.sign * row.arm_b)));
-    for (std::size_t n = 0; n < linkage_.nodes.size(); ++n) {
-      const LinkageNode& node = linkage_.nodes[n];
-      double* const x = answer + first_row(n);
-      for (int i = 0; i < node.count; ++i) x[i] = -row_speed_of(node, i, change);
-    }
-    solve_blocks(linkage_.plan, linkage_.values, {answer, rows_});
-    for (std::size_t n = 0; n < linkage_.nodes.size(); ++n) {
-      const LinkageNode& node = linkage_.nodes[n];
-      const double* const x = answer + first_row(n);
-      for (int i = 0; i < node.count; ++i) {
-        const DVec3 push = DVec3(node.rows.push.at(i));
-        if (node.side_a >= 0)
-          add(change, node.side_a, (-x[i] * double(inverse_mass(node.body_a))) * push,
-              -x[i] * DVec3(node.rows.spin_a.at(i)));
-        if (node.side_b >= 0)
-          add(change, node.side_b, (x[i] * double(inverse_mass(node.body_b))) * push,
-              x[i] * DVec3(node.rows.spin_b.at(i)));
-      }
-    }
-  }
-  std::size_t first_row(std::size_t node) const {
-    return linkage_.plan.columns[linkage_.plan.place_of[node]].row;
-  }
-  static double row_speed_of(const LinkageNode& node, int i, const double* speeds) {
-    const DVec3 push = DVec3(node.rows.push.at(i));
-    double speed = 0.0;
-    if (node.side_a >= 0)
-      speed -= dot(push, at(speeds, node.side_a, 0)) +
-               dot(DVec3(node.rows.arm_a.at(i)), at(speeds, node.side_a, 1));
-    if (node.side_b >= 0)
-      speed += dot(push, at(speeds, node.side_b, 0)) +
-               dot(DVec3(node.rows.arm_b.at(i)), at(speeds, node.side_b, 1));
-    return speed;
-  }
-
   void find_impulses() {
     double speed[kMostStops], low[kMostStops];
     for (std::size_t c = 0; c < count_; ++c) {
@@ -201,37 +119,21 @@ class StopSolve {
   }
 
   void push() {
-    for (std::size_t i = 0; i < speeds_; ++i) sum_[i] = 0.0;
-    for (std::size_t c = 0; c < count_; ++c) {
-      if (impulses_[c] == 0.0) continue;
-      for (std::size_t i = 0; i < speeds_; ++i) sum_[i] += impulses_[c] * changes_[c * speeds_ + i];
-      stops_[c].impulse() = max(0.0f, stops_[c].impulse() + float(impulses_[c]));
-    }
-    // Adding zero keeps -0 out of the state.
-    for (std::size_t b = 0; b < linkage_.bodies.size(); ++b) {
-      BodyMotion& motion = solve_.bodies.motion[linkage_.bodies[b].body];
-      motion.linear_velocity += to_float(at(sum_, std::int32_t(b), 0)) + Vec3{};
-      motion.angular_velocity += to_float(at(sum_, std::int32_t(b), 1)) + Vec3{};
-    }
-    for (std::size_t n = 0; n < linkage_.nodes.size(); ++n) {
-      const LinkageNode& node = linkage_.nodes[n];
-      for (int i = 0; i < node.count; ++i) {
-        double impulse = 0.0;
-        for (std::size_t c = 0; c < count_; ++c)
-          impulse += impulses_[c] * equations_[c * rows_ + first_row(n) + std::size_t(i)];
-        keep_impulse(solve_.records[node.record], solve_.work[node.work],
-                     {node.rows.push.at(i), node.rows.arm_a.at(i), node.rows.arm_b.at(i)}, i,
-                     float(impulse) + 0.0f);
-      }
-    }
+    push_columns(linkage_, solve_, {impulses_, count_}, columns_, sum_);
+    for (std::size_t c = 0; c < count_; ++c)
+      if (impulses_[c] != 0.0) stops_[c].impulse() = max(0.0f, stops_[c].impulse() + float(impulses_[c]));
+  }
+  ResponseColumn column(std::size_t c) const { return columns_.at(c, speeds_, rows_); }
+  double seen(const Stop& stop, std::span<const double> speeds) const {
+    return double(stop.sign) * axis_speed(linkage_.nodes[stop.node], stop.axis->row, speeds);
   }
 
   const Linkage& linkage_;
   const LinkageSolve& solve_;
   ErrorBounds bounds_;
   std::size_t rows_, speeds_;
-  double *equations_, *changes_,
-      *sum_;  // by stop: impulses that the equations answer with; velocities of all bodies
+  ResponseColumns columns_;  // by stop
+  std::span<double> sum_;
   std::size_t count_ = 0;
   std::uint32_t first_ = 0;  // node
   Stop stops_[kMostStops];
