@@ -15,8 +15,8 @@ namespace {
 IslandFrame frame_of(JointKind kind) {
   switch (kind) {
     case JointKind::gear:
-      return IslandFrame::parallel;
     case JointKind::rack_and_pinion:
+      return IslandFrame::parallel;
     case JointKind::pulley:
       return IslandFrame::still;
     default:
@@ -46,7 +46,8 @@ void for_each_joint(const Solve& solve, Fn&& fn) {
 // What is known of an island while it is gathered, at its lowest place.
 struct Draft {
   bool has_joints = false, is_swept = false, is_alone = false, is_fast = false;
-  bool is_dragged = false;  // by what cannot be told
+  bool is_untold =
+      false;  // what works on it is not known: kinematic bodies, axes of the world, drives in lanes
   IslandFrame frame = IslandFrame::rigid;
   std::uint32_t bodies = 0, joints = 0, worked = 0;
   JointIsland* island = nullptr;
@@ -105,7 +106,7 @@ class IslandFinder {
       if (!is_in_lanes(at))
         draft.worked += std::uint32_t(count_worked_rows(solve_, at));
       else if (may_work(joint, detail_of(w_.joints, solve_.batch.joints[at])))
-        draft.is_dragged = true;
+        draft.is_untold = true;
     });
     for (std::uint32_t i = 0; i < drafts_.size(); ++i) {
       if (!drafts_[i].has_joints) continue;
@@ -114,7 +115,7 @@ class IslandFinder {
       const BodyFlags& flags = w_.bodies.flags[body];
       ++draft.bodies;
       if (turns_far(w_.bodies.motion[body], solve_.h)) draft.is_fast = true;
-      if (flags.locked_linear != 0 || flags.locked_angular != 0) draft.is_dragged = true;
+      if (flags.locked_linear != 0 || flags.locked_angular != 0) draft.is_untold = true;
     }
   }
   // What moves by itself does work.
@@ -122,14 +123,14 @@ class IslandFinder {
     draft.frame = IslandFrame::still;
     if (body == kNoBody) return;
     const BodyMotion& motion = w_.bodies.motion[std::size_t(body)];
-    if (motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{}) draft.is_dragged = true;
+    if (motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{}) draft.is_untold = true;
   }
 
   std::span<JointIsland> list() {
     // What it costs to watch a linkage that is solved alone is little of what it costs to solve it. What is in lanes by itself is watched
     // there.
     const auto is_watched = [](const Draft& draft) {
-      return draft.bodies > 0 && (draft.is_alone || (draft.is_swept && draft.is_fast)) && !draft.is_dragged;
+      return draft.bodies > 0 && (draft.is_alone || (draft.is_swept && draft.is_fast)) && !draft.is_untold;
     };
     std::size_t count = 0;
     for (const Draft& draft : drafts_)
@@ -315,18 +316,26 @@ bool bound_gain(BodyStore& bodies, JointIsland& island, float most, float left, 
   return true;
 }
 
-// What follows does not begin with the impulses that gave too much.
+void forget_impulses(JointAxisRecord& axis) {
+  axis.low_impulse = axis.high_impulse = axis.motor_impulse = axis.spring_impulse = axis.friction_impulse =
+      0.0f;
+}
+// What follows does not begin with the impulses that gave too much, nor with those of springs and motors that they answered. In the middle
+// of a step axes are in the joints' work, as it ends in what persists.
 void forget_impulses(const Solve& solve, const JointIsland& island) {
   JointStore& joints = solve.w.joints;
   const std::span<const std::uint8_t> in_lanes = begun_in_lanes(solve);
   for (const std::uint32_t at : island.joints) {
     JointRecord& joint = joints.records[solve.batch.joints[at]];
     joint.linear_impulse = joint.angular_impulse = {};
-    joint.low_impulse = joint.high_impulse = 0.0f;
-    if (JointDetail* const detail = detail_of(joints, solve.batch.joints[at]))
+    joint.low_impulse = joint.high_impulse = joint.motor_impulse = joint.spring_impulse = 0.0f;
+    if (JointDetail* const detail = detail_of(joints, solve.batch.joints[at])) {
       for (float& impulse : detail->row_impulses) impulse = 0.0f;
+      for (JointAxisRecord& axis : detail->axes) forget_impulses(axis);
+      detail->drive_force_impulse = detail->drive_torque_impulse = detail->friction_impulse = {};
+    }
     if (!in_lanes.empty() && in_lanes[at] != 0) continue;
-    for (AxisWork& x : solve.joint_work[at].axes) x.axis.low_impulse = x.axis.high_impulse = 0.0f;
+    for (AxisWork& x : solve.joint_work[at].axes) forget_impulses(x.axis);
   }
 }
 

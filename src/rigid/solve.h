@@ -29,7 +29,7 @@ struct WorkedRow;
 // What motion of all bodies together the joints of an island see nothing of.
 enum class IslandFrame : std::uint8_t {
   rigid,     // any as one rigid body
-  parallel,  // without turning: gears count turns
+  parallel,  // any without turning: gears and racks count turns
   still,     // none: something does not move
 };
 

@@ -131,10 +131,24 @@ void scale_impulses(JointAxisRecord& axis, float scale) {
   axis.total = 0.0f;
 }
 
+// What acts no longer gives nothing: its last impulse must not go on.
+void forget_what_ended(JointAxisRecord& axis) {
+  if (!(axis.motor_force > 0.0f)) axis.motor_impulse = 0.0f;
+  if (!has_spring(axis)) axis.spring_impulse = 0.0f;
+  if (!(axis.friction > 0.0f)) axis.friction_impulse = 0.0f;
+  if (axis.motion != AxisMotion::limited) axis.low_impulse = axis.high_impulse = 0.0f;
+}
+void forget_what_ended(JointDetail& detail) {
+  if (!(detail.drive.max_force > 0.0f)) detail.drive_force_impulse = {};
+  if (!(detail.drive.max_torque > 0.0f)) detail.drive_torque_impulse = {};
+  if (!(detail.friction > 0.0f)) detail.friction_impulse = {};
+}
+
 // An axis on which something acts.
 void begin_axis(AxisWork& x, JointAxis index, const JointAxisRecord& axis, float warm_scale) {
   x = {};
   x.axis = axis;
+  forget_what_ended(x.axis);
   scale_impulses(x.axis, warm_scale);
   x.index = index;
   x.has_low = x.has_high = axis.motion == AxisMotion::limited;
@@ -280,6 +294,7 @@ void begin_joint(JointRecord& joint, JointDetail* detail, std::span<const PathPo
   work.path = path;
   begin_axes(joint, work, warm_scale, arena);
   if (detail == nullptr) return;
+  forget_what_ended(*detail);
   for (float& impulse : detail->row_impulses) impulse *= warm_scale;
   if (has_rows(joint.kind)) {
     work.rows = arena.make<JointRows>(1).data();

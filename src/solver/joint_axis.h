@@ -35,7 +35,7 @@ struct AxisWork {
   bool has_low = false, has_high = false;
   bool is_linked = false;  // solved with the equations of its linkage (solver/linkage_axes.h)
   bool is_rod = false;  // one two-sided stop at limits.low, its impulse in low_impulse
-  double worked = 0.0;  // J, by all impulses since the step began; kept if it is linked
+  double worked = 0.0;  // J since the step began, if it is linked: by all but hard stops
   float slack = 0.0f;   // by how much farther than the limits both stops are
   AxisRow row;
   float mass = 0.0f;          // effective

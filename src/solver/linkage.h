@@ -2,8 +2,9 @@
 //
 // The rows of a joint that hold always (a common point, a common axis, the length of a rod) are equations. Those of a whole
 // linkage are solved together: (J M^-1 J^T + give) p = -(J v + errors), a sparse matrix of one block a joint, factored in an
-// order found once a step (math/block_ldlt.h); for a tree that is elimination from the leaves to the root. What may stop
-// acting (limits, motors) is swept over first, the equations have the last word. The rows, softness excepted, are those of
+// order found once a step (math/block_ldlt.h); for a tree that is elimination from the leaves to the root. What acts
+// along axes (springs, motors, stops) is solved along what the equations make of it, after them (solver/linkage_axes.h, linkage_stops.h);
+// drives to a pose are swept over first. The rows, softness excepted, are those of
 // solver/joint.h; docs/derive/joints.md has the equations, docs/decisions/joint-trees.md the figures.
 //
 // Sources: D. Baraff, "Linear-Time Dynamics using Lagrange Multipliers", SIGGRAPH 1996; R. Featherstone, "Rigid Body Dynamics

@@ -1,15 +1,19 @@
 #include "solver/linkage_axes.h"
 
 #include "solver/linkage_response.h"
+#include "solver/linkage_stops.h"
+
+#include <cmath>
 
 namespace gyre {
 
 namespace {
 
-constexpr int kSweeps = 50;
-constexpr float kSettled = 1.0e-5f;  // m/s or rad/s: impulses that change speeds by less stand
-// An axis that the equations hold to this share of what its bodies alone would move moves by rounding.
-constexpr double kLeastShare = 1.0e-5;
+constexpr int kAxisSweeps = 50;
+constexpr float kAxesSettled = 1.0e-5f;  // m/s or rad/s: impulses that change speeds by less stand
+// An axis that moves by no more than this share of what it would if its bodies were alone is held by the equations, which give way by half
+// of that.
+constexpr double kLeastAxisShare = 2.0e-4;
 
 // The parts of the room, by axis.
 struct AxisRoom {
@@ -20,16 +24,11 @@ struct AxisRoom {
 AxisRoom room_of(const Linkage& linkage) {
   const std::size_t count = linkage.axes.size(), speeds = response_speeds(linkage);
   std::span<double> room = linkage.axis_room;
-  const auto take = [&](std::size_t numbers) {
-    const std::span<double> part = room.first(numbers);
-    room = room.subspan(numbers);
-    return part;
-  };
   AxisRoom parts;
-  parts.columns = {take(count * speeds), take(count * linkage.plan.rows)};
-  parts.matrix = take(count * count);
-  parts.impulses = take(count);
-  parts.sum = take(speeds);
+  parts.columns = {take_room(room, count * speeds), take_room(room, count * linkage.plan.rows)};
+  parts.matrix = take_room(room, count * count);
+  parts.impulses = take_room(room, count);
+  parts.sum = take_room(room, speeds);
   return parts;
 }
 
@@ -61,18 +60,27 @@ void place_linked_axes(const Linkage& linkage, const LinkageSolve& solve) {
       room.matrix[c * count + d] =
           axis_speed(linkage.nodes[linkage.axes[c].node], x.row, column(d).speeds);
     const double k = room.matrix[c * count + c];
-    if (x.mass > 0.0f && k * double(x.mass) > kLeastShare)
+    if (x.mass > 0.0f && k * double(x.mass) > kLeastAxisShare)
       prepare_axis_mass(x, float(1.0 / k), solve.settings);
   }
 }
 
 void note_warm_work(const Linkage& linkage, const LinkageSolve& solve) {
-  for (const LinkedAxis& linked : linkage.axes) {
-    AxisWork& x = *linked.axis;
-    if (!(x.mass > 0.0f)) continue;
-    const float impulse = axis_impulse(x.axis);
-    const float speed = axis_speed(linkage.nodes[linked.node], x.row, solve.bodies);
-    x.worked += double(impulse) * (double(speed) + 0.5 * double(impulse / x.mass));
+  const std::size_t count = linkage.axes.size();
+  if (count == 0) return;
+  const AxisRoom room = room_of(linkage);
+  for (std::size_t c = 0; c < count; ++c) {
+    // Hard stops tie.
+    const AxisWork& x = *linkage.axes[c].axis;
+    room.impulses[c] = double(axis_impulse(x.axis));
+    if (has_hard_stop(x)) room.impulses[c] -= double(x.axis.low_impulse - x.axis.high_impulse);
+  }
+  for (std::size_t c = 0; c < count; ++c) {
+    AxisWork& x = *linkage.axes[c].axis;
+    double gained = 0.0;
+    for (std::size_t d = 0; d < count; ++d) gained += room.matrix[c * count + d] * room.impulses[d];
+    const double before = double(axis_speed(linkage.nodes[linkage.axes[c].node], x.row, solve.bodies));
+    x.worked += room.impulses[c] * (before + 0.5 * gained);
   }
 }
 
@@ -88,7 +96,7 @@ void solve_linked_axes(const Linkage& linkage, const LinkageSolve& solve, bool s
   float before[kMostLinkedAxes];
   for (std::size_t c = 0; c < count; ++c) before[c] = speeds[c];
   bool is_any = false;
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+  for (int sweep = 0; sweep < kAxisSweeps; ++sweep) {
     float most = 0.0f;
     for (std::size_t c = 0; c < count; ++c) {
       const float k = float(room.matrix[c * count + c]);
@@ -99,7 +107,7 @@ void solve_linked_axes(const Linkage& linkage, const LinkageSolve& solve, bool s
       for (std::size_t d = 0; d < count; ++d) speeds[d] += float(room.matrix[d * count + c]) * impulse;
       most = max(most, std::abs(k * impulse));
     }
-    if (most < kSettled) break;
+    if (most < kAxesSettled) break;
   }
   if (!is_any) return;
   for (std::size_t c = 0; c < count; ++c)

@@ -11,12 +11,12 @@
 namespace gyre {
 
 // Axes that are solved together, at most; others of the linkage are swept as if two bodies were alone.
-constexpr std::size_t kMostLinkedAxes = 32;
+constexpr std::size_t kMostLinkedAxes = 96;
 
 // Whether anything acts along an axis besides hard stops.
 bool acts_softly(const AxisWork& axis);
 
-// How many numbers LinkedAxes::room holds.
+// How many numbers Linkage::axis_room holds.
 std::size_t linked_axes_room(const Linkage& linkage, std::size_t axes);
 
 // Once equations are placed and factored: responses, effective masses, what springs make of a sub-step.

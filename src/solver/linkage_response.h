@@ -10,6 +10,13 @@ namespace gyre {
 // Velocities of a linkage's bodies are six numbers each, one body after the other.
 std::size_t response_speeds(const Linkage& linkage);
 
+// Takes the first numbers of a room for one purpose.
+inline std::span<double> take_room(std::span<double>& room, std::size_t count) {
+  const std::span<double> part = room.first(count);
+  room = room.subspan(count);
+  return part;
+}
+
 // The column of an impulse of `sign` along the row of an axis of node `node`: by `speeds` what it changes of velocities, by `answers` what
 // the equations give (as many as plan.rows).
 struct ResponseColumn {

@@ -29,14 +29,9 @@ class StopSolve {
         rows_(linkage.plan.rows),
         speeds_(response_speeds(linkage)) {
     std::span<double> room = solve.room;
-    const auto take = [&](std::size_t count) {
-      const std::span<double> part = room.first(count);
-      room = room.subspan(count);
-      return part;
-    };
-    columns_.answers = take(kMostStops * rows_);
-    columns_.speeds = take(kMostStops * speeds_);
-    sum_ = take(speeds_);
+    columns_.answers = take_room(room, kMostStops * rows_);
+    columns_.speeds = take_room(room, kMostStops * speeds_);
+    sum_ = take_room(room, speeds_);
   }
 
   void solve() {

@@ -80,6 +80,32 @@ TEST(JointChanges, HoldsWhereItDidWhenABodyGetsAShape) {
   EXPECT_LT(bars.gap(1), 2e-5);
 }
 
+// What a motor, a spring or a drive gave last must not go on once it is taken away: where limits or friction stay on the axis, a lift hung in the air.
+TEST(JointChanges, LetsGoOfWhatAMotorHeld) {
+  for (int way = 0; way < 3; ++way) {
+    World world = std::move(*World::create({.sleeping = false}));
+    const BodyId lift = world.add_body({.pose = {{0, 5, 0}, {}}}, {.geometry = Box{{0.2f, 0.2f, 0.2f}}});
+    JointDef def{.kind = way == 2 ? JointKind::motor : JointKind::slider, .b = lift, .anchor = {0, 5, 0}};
+    def.axis = {0, 1, 0};
+    if (way < 2) def.limits = Limits{-4.0f, 4.0f};
+    if (way == 0) def.motor = {.target_velocity = 0.0f, .max_force = 1.0e4f};
+    if (way == 1) def.stiffness = 1.0e5f;
+    if (way == 2) def.drive = {.frequency = 5.0f, .max_force = 1.0e4f, .max_torque = 1.0e4f};
+    const JointId joint = world.add_joint(def);
+    for (int i = 0; i < 30; ++i) ASSERT_TRUE(world.step(kStep));
+    ASSERT_GT(world.pose(lift).position.y, 4.9);
+    const JointAxisDef stops{.motion = AxisMotion::limited, .limits = {-4.0f, 4.0f}};
+    ASSERT_TRUE(way == 0   ? world.set_motor(joint, {})
+                : way == 1 ? world.set_joint_axis(joint, JointAxis::linear_x, stops)
+                           : world.set_drive(joint, {.frequency = 5.0f, .max_torque = 1.0e4f}));
+    ASSERT_TRUE(world.set_velocity(lift, {}, {}));
+    const double y = world.pose(lift).position.y;
+    for (int i = 0; i < 30; ++i) ASSERT_TRUE(world.step(kStep));
+    // Half of 9.81 m/s^2 for half a second, squared; sub-steps add an eighth of a step's fall.
+    EXPECT_NEAR(y - world.pose(lift).position.y, 0.5 * 9.81 * 0.25, 0.03) << way;
+  }
+}
+
 // A rack counts its way from centre to centre: it is not pushed on by a weight that is put on it.
 TEST(JointChanges, ARackStaysWhereItIs) {
   WorldDef def;

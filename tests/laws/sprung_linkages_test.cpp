@@ -53,6 +53,10 @@ const Tie kTies[] = {
        for (int i = 0; i < 6; ++i)  // not the middle angle, which a quarter turn makes of no meaning
          if (i != 4 && random.next(2) == 0) *axes[i] = sprung(random, i < 3 ? mass : kSquareArm * mass);
      }},
+};
+
+// Their errors are taken back whatever bodies weigh, so these may still gain; see below.
+const Tie kGeared[] = {
     {"gears on hinges", 3.0,
      [](testing_random::Random& random, double, JointDef& joint) {
        joint.kind = JointKind::gear;
@@ -103,19 +107,24 @@ double drop(std::uint32_t seed, const Tie& tie) {
   return most;
 }
 
+void drop_all(const Tie& tie) {
+  double most = 0.0;
+  for (std::uint32_t seed = 0; seed < 100; ++seed) most = std::max(most, drop(seed, tie));
+  EXPECT_TRUE(limit_row((std::string(tie.name) + ", light and heavy, on the ground: energy gained").c_str(),
+                        most, tie.gain, 0.1 * tie.gain));
+}
+
 // What they lose they lose, but together with what springs hold they never have more than they began with. Springs that count on the mass
 // of two light bodies alone find their force some steps late, which feeds them; and what rows that only tie gave was not told from what
-// springs did: sliders gained 49 times what there was, six axes 3,000 times, gears 130. (Gears of a thousandth of what they are geared to
-// still gain where they are taken back.)
+// springs did: sliders gained 49 times what there was, six axes 3,000 times.
 TEST(SprungLinkages, HaveNoMoreThanTheyBeganWith) {
-  for (const Tie& tie : kTies) {
-    double most = 0.0;
-    for (std::uint32_t seed = 0; seed < 100; ++seed) {
-      most = std::max(most, drop(seed, tie));
-    }
-    EXPECT_TRUE(limit_row((std::string(tie.name) + ", light and heavy, on the ground: energy gained").c_str(),
-                          most, tie.gain, 0.1 * tie.gain));
-  }
+  for (const Tie& tie : kTies) drop_all(tie);
+}
+
+// These have no energy of their own, and gained 134 and 5.9 times what there was. What is left are errors that are taken back, at up to 8 rad/s
+// and 4 m/s whatever a body weighs: twice what there was in seven of a hundred chains of gears, 0.14 in one of curves.
+TEST(SprungLinkages, GainLittleFromGearsAndCurves) {
+  for (const Tie& tie : kGeared) drop_all(tie);
 }
 
 // Two bodies of 1 kg on a spring of 5 Hz, whose slider joins two carriages of a gram that are fixed to them. A sub-step resolves that, though
