@@ -18,7 +18,7 @@ IslandFrame frame_of(JointKind kind) {
     case JointKind::rack_and_pinion:
       return IslandFrame::parallel;
     case JointKind::pulley:
-      return IslandFrame::still;
+      return IslandFrame::held;
     default:
       return IslandFrame::rigid;
   }
@@ -47,7 +47,9 @@ void for_each_joint(const Solve& solve, Fn&& fn) {
 struct Draft {
   bool has_joints = false, is_swept = false, is_alone = false, is_fast = false;
   bool is_untold =
-      false;  // what works on it is not known: kinematic bodies, axes of the world, drives in lanes
+      false;  // what works on it is not known: several that move, axes of the world, drives in lanes
+  bool is_held = false;
+  std::int32_t carrier = kNoBody;  // the first that holds it
   IslandFrame frame = IslandFrame::rigid;
   std::uint32_t bodies = 0, joints = 0, worked = 0;
   JointIsland* island = nullptr;
@@ -118,15 +120,29 @@ class IslandFinder {
       if (flags.locked_linear != 0 || flags.locked_angular != 0) draft.is_untold = true;
     }
   }
-  // What moves by itself does work.
+  // Seen from what moves by itself it does no work, if that is one body and nothing asks for more than motion against it.
   void hold(Draft& draft, std::int32_t body) const {
-    draft.frame = IslandFrame::still;
-    if (body == kNoBody) return;
+    if (draft.is_held && body != draft.carrier && (moves(body) || moves(draft.carrier)))
+      draft.is_untold = true;
+    if (!draft.is_held) draft.carrier = body;
+    draft.is_held = true;
+  }
+  bool moves(std::int32_t body) const {
+    if (body == kNoBody) return false;
     const BodyMotion& motion = w_.bodies.motion[std::size_t(body)];
-    if (motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{}) draft.is_untold = true;
+    return motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{};
+  }
+  void end_hold(Draft& draft) const {
+    if (!draft.is_held) return;
+    if (!moves(draft.carrier))
+      draft.carrier = kNoBody;
+    else if (draft.frame != IslandFrame::rigid)
+      draft.is_untold = true;
+    draft.frame = IslandFrame::held;
   }
 
   std::span<JointIsland> list() {
+    for (Draft& draft : drafts_) end_hold(draft);
     // What it costs to watch a linkage that is solved alone is little of what it costs to solve it. What is in lanes by itself is watched
     // there.
     const auto is_watched = [](const Draft& draft) {
@@ -146,7 +162,7 @@ class IslandFinder {
   // With room for all that belongs to it.
   void begin_island(Draft& draft, JointIsland& island) {
     island = {arena_.make<std::uint32_t>(draft.bodies), arena_.make<std::uint32_t>(draft.joints),
-              arena_.make<WorkedRow>(draft.worked), draft.frame};
+              arena_.make<WorkedRow>(draft.worked), draft.frame, draft.carrier};
     draft.island = &island;
     draft.bodies = draft.joints = draft.worked = 0;
   }
@@ -186,20 +202,37 @@ Sym3 inertia_of(const BodyStore& bodies, std::uint32_t body) {
   return mass.isotropic != 0 ? mass.inertia : rotate_inertia(bodies.orientations[body], mass.inertia);
 }
 
-// J
+DVec3 center_of(const BodyStore& bodies, std::uint32_t body) {
+  return bodies.places[body].center + DVec3(bodies.motion[body].moved);
+}
+
+// The motion of what holds an island, as that of all its bodies: none, if it does not move.
+struct Carriage {
+  DVec3 center;
+  Vec3 linear, angular;
+  Vec3 at(DVec3 point) const { return linear + cross(angular, to_float(point - center)); }
+};
+Carriage carriage_of(const BodyStore& bodies, const JointIsland& island) {
+  if (island.carrier == kNoBody) return {};
+  const BodyMotion& motion = bodies.motion[std::size_t(island.carrier)];
+  return {center_of(bodies, std::uint32_t(island.carrier)), motion.linear_velocity, motion.angular_velocity};
+}
+
+// J, as seen from what holds the island.
 double kinetic_energy(const BodyStore& bodies, const JointIsland& island) {
+  const Carriage carriage = carriage_of(bodies, island);
   double twice = 0.0;
   for (const std::uint32_t body : island.bodies) {
     const BodyMotion& motion = bodies.motion[body];
-    const Vec3 spin = motion.angular_velocity;
-    twice += double(bodies.masses[body].mass) * double(length_squared(motion.linear_velocity));
+    Vec3 speed = motion.linear_velocity, spin = motion.angular_velocity;
+    if (island.carrier != kNoBody) {
+      speed -= carriage.at(center_of(bodies, body));
+      spin -= carriage.angular;
+    }
+    twice += double(bodies.masses[body].mass) * double(length_squared(speed));
     twice += double(dot(spin, inertia_of(bodies, body) * spin));
   }
   return 0.5 * twice;
-}
-
-DVec3 center_of(const BodyStore& bodies, std::uint32_t body) {
-  return bodies.places[body].center + DVec3(bodies.motion[body].moved);
 }
 
 // kg m^2/s, about a point.
@@ -249,7 +282,10 @@ struct RigidMotion {
 };
 RigidMotion rigid_motion(const BodyStore& bodies, const JointIsland& island) {
   RigidMotion rigid;
-  if (island.frame == IslandFrame::still) return rigid;
+  if (island.frame == IslandFrame::held) {
+    const Carriage carriage = carriage_of(bodies, island);
+    return {carriage.center, carriage.linear, carriage.angular, 0.0};
+  }
   const RigidBody one = as_one(bodies, island);
   rigid.center = one.center;
   DVec3 momentum;
@@ -286,22 +322,28 @@ void slow_down(BodyStore& bodies, const JointIsland& island, double energy, doub
   for (const std::uint32_t body : island.bodies) {
     BodyMotion& motion = bodies.motion[body];
     Vec3 linear = rigid.linear;
-    if (island.frame == IslandFrame::rigid)
+    if (island.frame != IslandFrame::parallel)
       linear += cross(rigid.angular, to_float(center_of(bodies, body) - rigid.center));
     motion.linear_velocity = linear + share * (motion.linear_velocity - linear) + Vec3{};
     motion.angular_velocity = rigid.angular + share * (motion.angular_velocity - rigid.angular) + Vec3{};
   }
 }
 
-// J: with which all bodies go back to where joints would have them, if they are far off.
-double energy_of_errors(const BodyStore& bodies, const JointIsland& island, float rate) {
-  double sum = 0.0;
+// J: with which all bodies go back to where joints would have them, if they are far off; and of what turns with a holder, what its way bends
+// by in a sub-step of `h`.
+double energy_of_errors(const BodyStore& bodies, const JointIsland& island, float rate, float h) {
+  const Carriage carriage = carriage_of(bodies, island);
+  double sum = 0.0, bent = 0.0;
   for (const std::uint32_t body : island.bodies) {
     const Sym3& inertia = bodies.masses[body].inertia;
+    if (carriage.angular != Vec3{}) {
+      const Vec3 pull = cross(carriage.angular, carriage.at(center_of(bodies, body)) - carriage.linear);
+      bent += double(bodies.masses[body].mass) * double(length_squared(h * pull));
+    }
     sum += double(bodies.masses[body].mass) * square(double(kMostErrors.point));
     sum += double(max(inertia.xx, max(inertia.yy, inertia.zz))) * square(double(kMostErrors.turn));
   }
-  return 0.5 * square(double(rate)) * sum;
+  return 0.5 * (square(double(rate)) * sum + bent);
 }
 
 // Where joints have given more than `most` of what there was, or of `least`: leaves them what `left` says of that, takes the rest away,
@@ -390,7 +432,8 @@ void end_joint_work(const Solve& solve, int begin, int end) {
 }
 void bound_gains(const Solve& solve, int begin, int end) {
   for (JointIsland& island : solve.joint_islands.subspan(std::size_t(begin), std::size_t(end - begin))) {
-    const double least = energy_of_errors(solve.w.bodies, island, solve.joint_settings.softness.bias_rate);
+    const double least =
+        energy_of_errors(solve.w.bodies, island, solve.joint_settings.softness.bias_rate, solve.h);
     if (!bound_gain(solve.w.bodies, island, kMostGainAhead, kMostGainAhead, least)) continue;
     island.is_bounded = true;
     forget_impulses(solve, island);

@@ -316,7 +316,7 @@ class LinkageMaker {
                             c.row_has_b, c.column_has_b, false};
     }
     mark_first(shape);
-    if (shape.moving_count == shape.body_count) find_walk(shape);
+    if (shape.body_count <= shape.moving_count + 1) find_walk(shape);
     shapes_[shape_count_] = shape;
     return std::uint32_t(shape_count_++);
   }

@@ -30,7 +30,7 @@ struct WorkedRow;
 enum class IslandFrame : std::uint8_t {
   rigid,     // any as one rigid body
   parallel,  // any without turning: gears and racks count turns
-  still,     // none: something does not move
+  held,      // none but that of what holds them
 };
 
 // Bodies that hang together by joints that should do no work, but for some of their rows (rigid/joint_energy.h).
@@ -39,6 +39,7 @@ struct JointIsland {
   std::span<std::uint32_t> joints;  // places in the batch
   std::span<WorkedRow> worked;
   IslandFrame frame = IslandFrame::rigid;
+  std::int32_t carrier = kNoBody;         // what holds them, if that moves
   bool is_bounded = false;                // joints gave more than is borne before bodies move
   double gained = 0.0;  // J, in this sub-step, by what rows that do no work changed of velocities,
   double before = 0.0;                    // and what there was before they last did;

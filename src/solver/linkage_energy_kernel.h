@@ -12,45 +12,12 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// J, of what can be pushed. (In one place, as what follows: it is asked for rarely, from many.)
-template <int W>
-__attribute__((noinline)) Wide<W> kinetic_energy(const Bundle<W>& bundle) {
-  Wide<W> twice(0.0f);
-  for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i) {
-    const LinkedBody<W>& body = bundle.bodies[i];
-    twice += keep(body.inverse_mass > 0.0f, length_squared(body.linear) / body.inverse_mass);
-    twice += dot(body.angular, body.inertia * body.angular);
-  }
-  return 0.5f * twice;
-}
-
-// Those lanes whose joints should do no work: of bodies that turn about all axes, that hang on nothing that moves.
-template <int W>
-__attribute__((noinline)) Mask<W> are_workless(const Bundle<W>& bundle) {
-  Mask<W> workless = Mask<W>::splat(!bundle.plain.has_drives);
-  for (std::uint32_t i = 0; i < bundle.plain.body_count; ++i) {
-    const LinkedBody<W>& body = bundle.bodies[i];
-    const Wide<W> zero(0.0f);
-    workless = workless &
-               (bundle.moves(i) ? body.inertia.xx > zero
-                                : (max(length_squared(body.linear), length_squared(body.angular)) <= zero));
-  }
-  return workless;
-}
-
-// The motion that a linkage would have as one rigid body, with the momenta that it has; of what hangs on something, none.
-template <int W>
-struct RigidMotion {
-  Vec3W<W> center, linear, angular;
-  Wide<W> energy;
-};
-
 // Where bodies are, as seen from the first.
 template <int W>
 GYRE_INLINE void place_centers(const Bundle<W>& bundle) {
   const Wide<W> zero(0.0f);
   bundle.bodies[0].center = {zero, zero, zero};
-  for (std::uint32_t i = 0; i + 1 < bundle.plain.moving_count; ++i) {
+  for (std::uint32_t i = 0; i + 1 < bundle.plain.body_count; ++i) {
     const LaneStep& step = bundle.plain.walk[i];
     const LaneNode& node = bundle.plain.nodes[step.node];
     const LinkedJoint<W>& joint = bundle.joints[step.node];
@@ -62,11 +29,74 @@ GYRE_INLINE void place_centers(const Bundle<W>& bundle) {
   }
 }
 
+// The motion of what holds a linkage, as that of all its bodies, where one body does and it moves.
 template <int W>
-GYRE_INLINE RigidMotion<W> rigid_motion(const Bundle<W>& bundle) {
+struct Carriage {
+  bool moves = false;  // in any lane
+  Vec3W<W> center, linear, angular;
+  Vec3W<W> at(const LinkedBody<W>& body) const { return linear + cross(angular, body.center - center); }
+};
+template <int W>
+bool has_one_holder(const Bundle<W>& bundle) {
+  return bundle.plain.moving_count + 1 == bundle.plain.body_count;
+}
+template <int W>
+__attribute__((noinline)) Carriage<W> carriage_of(const Bundle<W>& bundle) {
   const Wide<W> zero(0.0f);
   const Vec3W<W> none{zero, zero, zero};
-  if (bundle.plain.moving_count < bundle.plain.body_count) return {none, none, none, zero};
+  Carriage<W> carriage{false, none, none, none};
+  if (!has_one_holder(bundle)) return carriage;
+  const LinkedBody<W>& held_by = bundle.bodies[bundle.plain.moving_count];
+  carriage.moves = any(max(length_squared(held_by.linear), length_squared(held_by.angular)) > zero);
+  if (!carriage.moves) return carriage;
+  carriage.linear = held_by.linear, carriage.angular = held_by.angular;
+  place_centers(bundle);
+  carriage.center = held_by.center;
+  return carriage;
+}
+
+// J, of what can be pushed, as seen from what holds it. (In one place, as what follows: it is asked for rarely, from many.)
+template <int W>
+__attribute__((noinline)) Wide<W> kinetic_energy(const Bundle<W>& bundle, const Carriage<W>& carriage) {
+  Wide<W> twice(0.0f);
+  for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i) {
+    const LinkedBody<W>& body = bundle.bodies[i];
+    Vec3W<W> linear = body.linear, angular = body.angular;
+    if (carriage.moves) linear = linear - carriage.at(body), angular = angular - carriage.angular;
+    twice += keep(body.inverse_mass > 0.0f, length_squared(linear) / body.inverse_mass);
+    twice += dot(angular, body.inertia * angular);
+  }
+  return 0.5f * twice;
+}
+
+// Those lanes whose joints should do no work: of bodies that turn about all axes, that hang on nothing that moves, or on one body.
+template <int W>
+__attribute__((noinline)) Mask<W> are_workless(const Bundle<W>& bundle) {
+  Mask<W> workless = Mask<W>::splat(!bundle.plain.has_drives);
+  for (std::uint32_t i = 0; i < bundle.plain.body_count; ++i) {
+    const LinkedBody<W>& body = bundle.bodies[i];
+    const Wide<W> zero(0.0f);
+    if (bundle.moves(i))
+      workless = workless & (body.inertia.xx > zero);
+    else if (!has_one_holder(bundle))
+      workless = workless & (max(length_squared(body.linear), length_squared(body.angular)) <= zero);
+  }
+  return workless;
+}
+
+// The motion that a linkage would have as one rigid body, with the momenta that it has; of what hangs on something, that of this.
+template <int W>
+struct RigidMotion {
+  Vec3W<W> center, linear, angular;
+  Wide<W> energy;
+};
+
+template <int W>
+GYRE_INLINE RigidMotion<W> rigid_motion(const Bundle<W>& bundle, const Carriage<W>& carriage) {
+  const Wide<W> zero(0.0f);
+  const Vec3W<W> none{zero, zero, zero};
+  if (bundle.plain.moving_count < bundle.plain.body_count)
+    return {carriage.center, carriage.linear, carriage.angular, zero};
   place_centers(bundle);
   Wide<W> mass = zero;
   Vec3W<W> moment = none, momentum = none;
@@ -98,17 +128,16 @@ GYRE_INLINE RigidMotion<W> rigid_motion(const Bundle<W>& bundle) {
   return {center, linear, angular, 0.5f * (mass * length_squared(linear) + dot(angular, spin))};
 }
 
-// Slows inner motion until no more than `left` (J) is there, in these lanes.
+// Slows inner motion until no more than `left` (J) is there, in these lanes. `turns`: whether the rigid motion may.
 template <int W>
-GYRE_INLINE void slow_down(const Bundle<W>& bundle, const RigidMotion<W>& rigid, Mask<W> lanes,
+GYRE_INLINE void slow_down(const Bundle<W>& bundle, const RigidMotion<W>& rigid, bool turns, Mask<W> lanes,
                            Wide<W> energy, Wide<W> left) {
   const Wide<W> inner = energy - rigid.energy, kept = left - rigid.energy, zero(0.0f);
   const Wide<W> share = sqrt(keep((inner > zero) & (kept > zero), kept / inner));
   for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i) {
     LinkedBody<W>& body = bundle.bodies[i];
     Vec3W<W> linear = rigid.linear;
-    if (bundle.plain.moving_count == bundle.plain.body_count)
-      linear += cross(rigid.angular, body.center - rigid.center);
+    if (turns) linear += cross(rigid.angular, body.center - rigid.center);
     body.linear = select<W>(lanes, linear + share * (body.linear - linear), body.linear);
     body.angular = select<W>(lanes, rigid.angular + share * (body.angular - rigid.angular), body.angular);
   }
@@ -132,17 +161,22 @@ GYRE_INLINE void forget_impulses(const Bundle<W>& bundle, Mask<W> lanes) {
   }
 }
 
-// J: with which all bodies go back to where joints would have them, if they are far off and errors are taken back at `rate` (1/s).
+// J: with which all bodies go back to where joints would have them, if they are far off and errors are taken back at `rate` (1/s); and of
+// what turns with a holder, what its way bends by in a sub-step of `h`.
 template <int W>
-GYRE_INLINE Wide<W> energy_of_errors(const Bundle<W>& bundle, float rate) {
-  Wide<W> sum(0.0f);
+GYRE_INLINE Wide<W> energy_of_errors(const Bundle<W>& bundle, const Carriage<W>& carriage, float rate,
+                                     float h) {
+  Wide<W> sum(0.0f), bent(0.0f);
   for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i) {
     const LinkedBody<W>& body = bundle.bodies[i];
     const Wide<W> most = max(body.inertia.xx, max(body.inertia.yy, body.inertia.zz));
     sum += keep(body.inverse_mass > 0.0f, (kMostErrors.point * kMostErrors.point) / body.inverse_mass);
     sum += (kMostErrors.turn * kMostErrors.turn) * most;
+    if (!carriage.moves) continue;
+    const Vec3W<W> pull = h * cross(carriage.angular, carriage.at(body) - carriage.linear);
+    bent += keep(body.inverse_mass > 0.0f, length_squared(pull) / body.inverse_mass);
   }
-  return (0.5f * rate * rate) * sum;
+  return (0.5f * rate * rate) * sum + 0.5f * bent;
 }
 
 // Those in which a link is so light between others that it may be as fast as can be after any solution.
@@ -169,27 +203,29 @@ class EnergyWatch {
       : bundle_(bundle), watched_(Wide<W>::load(bundle.plain.gained + W) > Wide<W>(0.0f)) {
     tell();
   }
-  // Before bodies move: leaves joints as much as there was, or as errors are taken back with at `rate` (1/s), and takes the rest away.
-  void bound(float rate) const { bound(kMostGainAhead, kMostGainAhead, rate); }
+  // Before bodies move: leaves joints as much as there was, or as errors are taken back with at `rate` (1/s) in a sub-step of `h`, and
+  // takes the rest away.
+  void bound(float rate, float h) const { bound(kMostGainAhead, kMostGainAhead, rate, h); }
   // Once they have: takes away what joints have given, if it is more than a little. Returns the lanes of which motion was changed.
-  Mask<W> take_away() const { return bound(kMostGain, 0.0f, 0.0f); }
+  Mask<W> take_away() const { return bound(kMostGain, 0.0f, 0.0f, 0.0f); }
 
  private:
   // Where joints have given more than `most` of what there was, leaves them what `left` says of that. (In one place: hardly anything is
   // ever to be taken away.)
-  __attribute__((noinline)) Mask<W> bound(float most, float left, float rate) const {
+  __attribute__((noinline)) Mask<W> bound(float most, float left, float rate, float h) const {
     if (none(watched_)) return watched_;
     const Wide<W> zero(0.0f), own = max(energy_ - Wide<W>::load(bundle_.plain.gained), zero);
-    const Wide<W> energy = kinetic_energy(bundle_), gained = energy - own;
+    const Wide<W> energy = kinetic_energy(bundle_, carriage_), gained = energy - own;
     Mask<W> slowed = watched_ & (gained > zero) & (gained > most * own);
     Wide<W> kept = left * own;
     if (any(slowed) && rate > 0.0f) {
-      const Wide<W> least = energy_of_errors(bundle_, rate);
+      const Wide<W> least = energy_of_errors(bundle_, carriage_, rate, h);
       slowed = slowed & (gained > most * least);
       kept = left * max(own, least);
     }
     if (any(slowed)) {
-      slow_down(bundle_, rigid_in(light_lanes(bundle_)), slowed, energy, own + kept);
+      const bool turns = carriage_.moves || bundle_.plain.moving_count == bundle_.plain.body_count;
+      slow_down(bundle_, rigid_in(light_lanes(bundle_)), turns, slowed, energy, own + kept);
       if (rate > 0.0f) forget_impulses(bundle_, slowed);
     }
     keep(watched_, select(slowed, kept, gained)).store(bundle_.plain.gained);
@@ -197,12 +233,13 @@ class EnergyWatch {
   }
   void tell() {
     if (none(watched_)) return;
-    energy_ = kinetic_energy(bundle_);
-    if (any(watched_ & light_lanes(bundle_))) rigid_ = rigid_motion(bundle_);
+    carriage_ = carriage_of(bundle_);
+    energy_ = kinetic_energy(bundle_, carriage_);
+    if (any(watched_ & light_lanes(bundle_))) rigid_ = rigid_motion(bundle_, carriage_);
   }
   // As it was before in these lanes, as it is in the others.
   RigidMotion<W> rigid_in(Mask<W> before) const {
-    const RigidMotion<W> now = rigid_motion(bundle_);
+    const RigidMotion<W> now = rigid_motion(bundle_, carriage_);
     return {select<W>(before, rigid_.center, now.center), select<W>(before, rigid_.linear, now.linear),
             select<W>(before, rigid_.angular, now.angular), select(before, rigid_.energy, now.energy)};
   }
@@ -211,6 +248,7 @@ class EnergyWatch {
   Mask<W> watched_;
   Wide<W> energy_{0.0f};
   RigidMotion<W> rigid_{};
+  Carriage<W> carriage_{};
 };
 
 }  // namespace GYRE_TARGET_NAMESPACE

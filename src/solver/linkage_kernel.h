@@ -277,7 +277,7 @@ void solve_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const La
     solve_rows<W, Asks::first>(bundle);
   }
   solve_stops(bundle, s, s.first_errors);
-  watch.bound(s.rate);                // before contacts answer it
+  watch.bound(s.rate, s.substep);     // before contacts answer it
   ask_lanes(bundle, s, kMostErrors);  // now with velocities that agree with the joints
   store_velocities(bundle, arrays);
 }
@@ -289,7 +289,7 @@ void solve_bundle_again(const LinkageBundle& plain, const LaneArrays& arrays, co
   const EnergyWatch<W> watch(bundle);
   solve_again(bundle);
   solve_stops(bundle, s, kMostErrors);
-  watch.bound(s.rate);
+  watch.bound(s.rate, s.substep);
   store_velocities(bundle, arrays);
 }
 

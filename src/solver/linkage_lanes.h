@@ -94,7 +94,8 @@ struct LinkageBundle {
   const LinkageKernels* kernels = nullptr;
   const LaneNode* nodes = nullptr;
   const LaneCoupling* couplings = nullptr;
-  const LaneStep* walk = nullptr;  // from the first body to all others; of those that hang on nothing
+  const LaneStep* walk =
+      nullptr;  // from the first body to all others; of those that hang on one body at most
   std::uint32_t node_count = 0, coupling_count = 0;
   std::uint32_t body_count = 0, moving_count = 0;  // those that can be pushed come first
   // The plan of elimination, the same for all lanes.
