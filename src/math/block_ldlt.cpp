@@ -261,14 +261,29 @@ void solve_down(const BlockPlan& plan, const BlockColumn& column, const double* 
   }
 }
 
+bool is_zero(const double* x, std::uint32_t count) {
+  for (std::uint32_t i = 0; i < count; ++i)
+    if (x[i] != 0.0) return false;
+  return true;
+}
+
+// D^-1 times a column's part of a vector; D^-1 is what its diagonal block holds.
+template <int C>
+void scale_column(const BlockColumn& column, const double* values, const double* x, double* out) {
+  const int size = C > 0 ? C : int(column.size);
+  const double* const inverse = values + column.diagonal;
+  for (int r = 0; r < size; ++r) {
+    double sum = 0.0;
+    for (int c = 0; c < size; ++c) sum += inverse[r * size + c] * x[c];
+    out[r] = sum;
+  }
+}
+
 template <int C>
 void solve_up(const BlockPlan& plan, const BlockColumn& column, const double* values, double* x) {
   const int size = C > 0 ? C : int(column.size);
-  double own[kMostBlockRows] = {};
-  for (int r = 0; r < size; ++r) {
-    for (int c = 0; c < size; ++c)
-      own[r] += values[column.diagonal + std::uint32_t(r * size + c)] * x[column.row + std::uint32_t(c)];
-  }
+  double own[kMostBlockRows];
+  scale_column<C>(column, values, x + column.row, own);
   for (std::uint32_t i = column.begin; i < column.end; ++i) {
     const BlockColumn& row = plan.columns[plan.entries[i].place];
     with_constant(row.size, [&](auto r) {
@@ -317,9 +332,11 @@ bool plan_blocks(std::span<const std::uint8_t> sizes, std::span<const BlockEdge>
   const std::span<BlockColumn> columns = arena.make<BlockColumn>(count);
   const std::span<BlockEntry> entries = arena.make<BlockEntry>(entry_count);
   std::uint32_t used = 0;
+  plan.is_six = true;
   for (std::uint32_t place = 0; place < count; ++place) {
     BlockColumn& column = columns[place];
     column.size = sizes[node_at[place]];
+    plan.is_six = plan.is_six && column.size == kMostBlockRows;
     column.row = plan.rows;
     plan.rows += column.size;
     column.diagonal = plan.values;
@@ -357,6 +374,7 @@ BlockPlace find_block(const BlockPlan& plan, std::uint32_t a, std::uint32_t b) {
 }
 
 void factor_blocks(const BlockPlan& plan, std::span<double> values, std::span<double> room) {
+  if (plan.is_six) return factor_six_blocks(plan, values, room);
   for (const BlockColumn& column : plan.columns) {
     invert(&values[column.diagonal], column.size);
     with_constant(column.size,
@@ -365,12 +383,28 @@ void factor_blocks(const BlockPlan& plan, std::span<double> values, std::span<do
 }
 
 void solve_blocks(const BlockPlan& plan, std::span<const double> values, std::span<double> x) {
+  if (plan.is_six) return solve_six_blocks(plan, values, x);
   for (const BlockColumn& column : plan.columns) {
     with_constant(column.size, [&](auto c) { solve_down<c()>(plan, column, values.data(), x.data()); });
   }
   for (std::size_t place = plan.columns.size(); place-- > 0;) {
     const BlockColumn& column = plan.columns[place];
     with_constant(column.size, [&](auto c) { solve_up<c()>(plan, column, values.data(), x.data()); });
+  }
+}
+
+void solve_blocks_down(const BlockPlan& plan, std::span<const double> values, std::span<double> x,
+                       std::span<double> scaled) {
+  for (const BlockColumn& column : plan.columns) {
+    double* const out = scaled.data() + column.row;
+    if (is_zero(x.data() + column.row, column.size)) {
+      std::fill(out, out + column.size, 0.0);
+      continue;
+    }
+    with_constant(column.size, [&](auto c) {
+      solve_down<c()>(plan, column, values.data(), x.data());
+      scale_column<c()>(column, values.data(), x.data() + column.row, out);
+    });
   }
 }
 

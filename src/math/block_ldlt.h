@@ -36,6 +36,7 @@ struct BlockPlan {
   std::uint32_t rows = 0;                  // how many a vector takes
   std::uint32_t widest = 0;                // values of the largest column below its diagonal
   std::uint64_t work = 0;                  // multiplications in one factorisation
+  bool is_six = false;                     // every node has six rows
 };
 
 // Plans the elimination of nodes with `sizes` rows (1 to 6). False, and no plan, once it would take more than `most_work`
@@ -51,12 +52,20 @@ struct BlockPlace {
 BlockPlace find_block(const BlockPlan& plan, std::uint32_t a, std::uint32_t b);
 
 // Replaces the values of the matrix (lower triangle of blocks; diagonal blocks whole) by those of its factors. Pivots that
-// are only rounding are dropped, as in math/dense.h. `room` holds plan.widest doubles.
+// are only rounding are dropped, as in math/dense.h. `room` holds factor_room() doubles.
+constexpr std::size_t factor_room(const BlockPlan& plan) {
+  return (plan.is_six ? 2 : 1) * std::size_t(plan.widest);
+}
 void factor_blocks(const BlockPlan& plan, std::span<double> values, std::span<double> room);
 // Solves in place: the right side before, the solution after, rows in the order of the plan.
 void solve_blocks(const BlockPlan& plan, std::span<const double> values, std::span<double> x);
 
-// The same, bit for bit and faster, where every node has six rows. `room` holds twice as many.
+// The first half of a solution, L y = x in place: cheap where few rows of x are not zero. `scaled`: D^-1 y. Of two solutions, a . A^-1 b is
+// then y_a . scaled_b.
+void solve_blocks_down(const BlockPlan& plan, std::span<const double> values, std::span<double> x,
+                       std::span<double> scaled);
+
+// What these two do where every node has six rows: the same bits, sooner (math/block_ldlt_six.cpp).
 void factor_six_blocks(const BlockPlan& plan, std::span<double> values, std::span<double> room);
 void solve_six_blocks(const BlockPlan& plan, std::span<const double> values, std::span<double> x);
 

@@ -93,9 +93,19 @@ Matrix random_matrix(const Graph& graph, int own) {
   return m;
 }
 
-std::vector<double> sparse_solution(const Graph& graph, const Matrix& m, const std::vector<double>& b,
-                                    const BlockPlan& plan, bool as_six = false) {
-  std::vector<double> values(plan.values), room(2 * plan.widest + 1), x(plan.rows);
+// Goes from the matrix' rows to those of the plan.
+std::vector<double> in_order(const Graph& graph, const Matrix& m, const std::vector<double>& b,
+                             const BlockPlan& plan) {
+  std::vector<double> x(plan.rows);
+  for (std::uint32_t node = 0; node < graph.sizes.size(); ++node) {
+    const BlockColumn& column = plan.columns[plan.place_of[node]];
+    for (std::uint32_t r = 0; r < graph.sizes[node]; ++r) x[column.row + r] = b[m.first[node] + r];
+  }
+  return x;
+}
+
+std::vector<double> factored(const Graph& graph, const Matrix& m, const BlockPlan& plan) {
+  std::vector<double> values(plan.values), room(factor_room(plan) + 1);
   const auto copy = [&](std::uint32_t row, std::uint32_t column, std::uint32_t offset) {
     for (std::uint32_t r = 0; r < graph.sizes[row]; ++r) {
       for (std::uint32_t c = 0; c < graph.sizes[column]; ++c)
@@ -103,28 +113,32 @@ std::vector<double> sparse_solution(const Graph& graph, const Matrix& m, const s
             m.dense[(m.first[row] + r) * m.rows + m.first[column] + c];
     }
   };
-  for (std::uint32_t node = 0; node < graph.sizes.size(); ++node) {
-    const BlockColumn& column = plan.columns[plan.place_of[node]];
-    copy(node, node, column.diagonal);
-    for (std::uint32_t r = 0; r < graph.sizes[node]; ++r) x[column.row + r] = b[m.first[node] + r];
-  }
+  for (std::uint32_t node = 0; node < graph.sizes.size(); ++node)
+    copy(node, node, plan.columns[plan.place_of[node]].diagonal);
   for (const BlockEdge& edge : graph.edges) {
     const BlockPlace place = find_block(plan, edge.a, edge.b);
     copy(place.first_is_row ? edge.a : edge.b, place.first_is_row ? edge.b : edge.a, place.offset);
   }
-  if (as_six) {
-    factor_six_blocks(plan, values, room);
-    solve_six_blocks(plan, values, x);
-  } else {
-    factor_blocks(plan, values, room);
-    solve_blocks(plan, values, x);
-  }
+  factor_blocks(plan, values, room);
+  return values;
+}
+
+std::vector<double> sparse_solution(const Graph& graph, const Matrix& m, const std::vector<double>& b,
+                                    const BlockPlan& plan) {
+  std::vector<double> x = in_order(graph, m, b, plan);
+  solve_blocks(plan, factored(graph, m, plan), x);
   std::vector<double> result(m.rows);
   for (std::uint32_t node = 0; node < graph.sizes.size(); ++node) {
     const BlockColumn& column = plan.columns[plan.place_of[node]];
     for (std::uint32_t r = 0; r < graph.sizes[node]; ++r) result[m.first[node] + r] = x[column.row + r];
   }
   return result;
+}
+
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
 }
 
 // |A x - b| over |b|.
@@ -165,12 +179,44 @@ TEST(BlockLdlt, BlocksOfSixAreSolvedBitForBitAlike) {
     Arena arena;
     BlockPlan plan;
     ASSERT_TRUE(plan_blocks(graph.sizes, graph.edges, std::uint64_t{1} << 40, arena, plan));
+    ASSERT_TRUE(plan.is_six);
+    BlockPlan any_size = plan;
+    any_size.is_six = false;
     for (const int own : {7, 1}) {
       const Matrix m = random_matrix(graph, own);
       Random random;
       std::vector<double> b(m.rows);
       for (double& value : b) value = random.next();
-      EXPECT_EQ(sparse_solution(graph, m, b, plan, true), sparse_solution(graph, m, b, plan)) << graph.sizes.size() << " nodes";
+      EXPECT_EQ(sparse_solution(graph, m, b, plan), sparse_solution(graph, m, b, any_size))
+          << graph.sizes.size() << " nodes";
+    }
+  }
+}
+
+// Of right sides that are zero but for one node, as an impulse at a joint makes them.
+TEST(BlockLdlt, HalfASolutionOfEachTellsWhatOneIsToAnother) {
+  Graph mixed = tree(40, 3);
+  for (std::size_t i = 0; i < mixed.sizes.size(); ++i) mixed.sizes[i] = std::uint8_t(1 + i % kMostBlockRows);
+  for (const Graph& graph : {chain(12, 5), chain(17, 6, true), grid(5), mixed}) {
+    Arena arena;
+    BlockPlan plan;
+    ASSERT_TRUE(plan_blocks(graph.sizes, graph.edges, std::uint64_t{1} << 40, arena, plan));
+    const Matrix m = random_matrix(graph, 7);
+    const std::vector<double> values = factored(graph, m, plan);
+    Random random;
+    const std::size_t nodes = graph.sizes.size();
+    std::vector<std::vector<double>> sides, down, scaled;
+    for (const std::size_t node : {std::size_t{0}, nodes / 2, nodes - 1}) {
+      std::vector<double>& b = sides.emplace_back(m.rows);
+      for (std::uint32_t r = 0; r < graph.sizes[node]; ++r) b[m.first[node] + r] = random.next();
+      down.push_back(in_order(graph, m, b, plan));
+      solve_blocks_down(plan, values, down.back(), scaled.emplace_back(plan.rows, 7.0));
+    }
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      for (std::size_t j = 0; j < sides.size(); ++j) {
+        const double whole = dot(sides[i], sparse_solution(graph, m, sides[j], plan));
+        EXPECT_NEAR(dot(down[i], scaled[j]), whole, 1e-10 * std::abs(whole) + 1e-12) << nodes << " nodes";
+      }
     }
   }
 }

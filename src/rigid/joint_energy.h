@@ -1,9 +1,9 @@
 // What joints that are swept, or in linkages that are solved alone, give of energy and of angular momentum. Joints that only tie do no work;
 // where bodies turn far within a sub-step their rows, linear in what turns, do all the same, and what they give in one they give again in
-// the next: nets of rods went faster without end. As solver/linkage_energy_kernel.h does it for linkages side by side, what joints have
-// given in a sub-step is taken away as it ends, by slowing all inner motion alike. And where inertia against joints is raised
-// (solver/linkage.cpp, rigid/pulled_bodies.h) a body does not take all of a turn that others gave: what hangs on nothing gets it
-// back, as one rigid body (docs/decisions/joint-trees.md).
+// the next: nets of rods went faster without end; where a light body with long arms strikes a stop between heavy ones, at once. As
+// solver/linkage_energy_kernel.h does it for linkages side by side, what joints have given in a sub-step is taken away as it ends,
+// by slowing all inner motion alike. And where inertia against joints is raised (solver/linkage.cpp, rigid/pulled_bodies.h) a body does not
+// take all of a turn that others gave: what hangs on nothing gets it back, as one rigid body (docs/decisions/joint-trees.md).
 #pragma once
 
 #include "rigid/solve.h"

@@ -239,7 +239,7 @@ class LinkageMaker {
     linkage.couplings = couplings;
     linkage.plan = plan;
     linkage.values = arena_.make<double>(plan.values);
-    linkage.room = arena_.make<double>(plan.widest);
+    linkage.room = arena_.make<double>(factor_room(plan));
     linkage.vector = arena_.make<double>(plan.rows);
   }
   // Every pair of joints that share a body that moves, once for each such body.

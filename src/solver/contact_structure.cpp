@@ -158,9 +158,9 @@ class Solver {
     bool holds = false;
     for (int round = 0; round < rounds && stuck < most_stuck; ++round) {
       assemble();
-      factor_six_blocks(plan_, values_, room_);
+      factor_blocks(plan_, values_, room_);
       find_way();
-      solve_six_blocks(plan_, values_, way_);
+      solve_blocks(plan_, values_, way_);
       go(find_step());
       give_friction();
       const double left = left_over();
@@ -200,7 +200,7 @@ class Solver {
       if (contact.is_between()) contact.coupling = find_block(plan_, contact.node_a, contact.node_b);
     }
     values_ = arena.make<double>(plan_.values);
-    room_ = arena.make<double>(2 * plan_.widest);
+    room_ = arena.make<double>(factor_room(plan_));
     loads_ = arena.make<double>(plan_.rows);
     place_ = arena.make<double>(plan_.rows);
     way_ = arena.make<double>(plan_.rows);

@@ -18,19 +18,33 @@ constexpr double kLeastAxisShare = 2.0e-4;
 // The parts of the room, by axis.
 struct AxisRoom {
   ResponseColumns columns;
-  std::span<double> matrix, impulses, sum;
+  std::span<double> matrix, impulses, speeds;
+  double way(std::size_t seen, std::size_t pushed) const { return matrix[seen * impulses.size() + pushed]; }
 };
 
 AxisRoom room_of(const Linkage& linkage) {
-  const std::size_t count = linkage.axes.size(), speeds = response_speeds(linkage);
+  const std::size_t count = linkage.axes.size();
   std::span<double> room = linkage.axis_room;
   AxisRoom parts;
-  parts.columns = {take_room(room, count * speeds), take_room(room, count * linkage.plan.rows)};
+  parts.columns = {take_room(room, response_room(count, linkage.plan.rows))};
   parts.matrix = take_room(room, count * count);
   parts.impulses = take_room(room, count);
-  parts.sum = take_room(room, speeds);
+  parts.speeds = take_room(room, 6 * linkage.bodies.size());
   return parts;
 }
+
+// The rows of the axes.
+class AxisRows {
+ public:
+  explicit AxisRows(const Linkage& linkage) : count_(linkage.axes.size()) {
+    for (std::size_t c = 0; c < count_; ++c) rows_[c] = {linkage.axes[c].node, &linkage.axes[c].axis->row};
+  }
+  std::span<const ResponseRow> list() const { return {rows_, count_}; }
+
+ private:
+  std::size_t count_;
+  ResponseRow rows_[kMostLinkedAxes];
+};
 
 }  // namespace
 
@@ -41,27 +55,26 @@ bool acts_softly(const AxisWork& axis) {
 }
 
 std::size_t linked_axes_room(const Linkage& linkage, std::size_t axes) {
-  const std::size_t speeds = response_speeds(linkage);
-  return axes * (speeds + linkage.plan.rows + axes + 1) + speeds;
+  return response_room(axes, linkage.plan.rows) + axes * (axes + 1) + 6 * linkage.bodies.size();
 }
 
 void place_linked_axes(const Linkage& linkage, const LinkageSolve& solve) {
   const std::size_t count = linkage.axes.size();
   if (count == 0) return;
   const AxisRoom room = room_of(linkage);
-  const auto column = [&](std::size_t c) {
-    return room.columns.at(c, response_speeds(linkage), linkage.plan.rows);
-  };
+  const AxisRows rows(linkage);
   for (std::size_t c = 0; c < count; ++c)
-    find_response(linkage, solve, linkage.axes[c].node, linkage.axes[c].axis->row, 1.0f, column(c));
+    find_response(linkage, solve, rows.list()[c], room.columns.at(c, linkage.plan.rows));
+  find_ways(linkage, solve, rows.list(), room.columns, 0, room.matrix.data(), count);
   for (std::size_t c = 0; c < count; ++c) {
     AxisWork& x = *linkage.axes[c].axis;
-    for (std::size_t d = 0; d < count; ++d)
-      room.matrix[c * count + d] =
-          axis_speed(linkage.nodes[linkage.axes[c].node], x.row, column(d).speeds);
-    const double k = room.matrix[c * count + c];
-    if (x.mass > 0.0f && k * double(x.mass) > kLeastAxisShare)
-      prepare_axis_mass(x, float(1.0 / k), solve.settings);
+    const double k = room.way(c, c);
+    if (!(x.mass > 0.0f && k * double(x.mass) > kLeastAxisShare)) continue;
+    prepare_axis_mass(x, float(1.0 / k), solve.settings);
+    // A motor that is to hold a place without a frequency of its own need not give way as what is swept late must.
+    if (x.axis.motor_frequency <= 0.0f)
+      x.drive = {solve.settings.softness.bias_rate, 1.0f / (1.0f + solve.give),
+                 solve.give / (1.0f + solve.give)};
   }
 }
 
@@ -78,7 +91,7 @@ void note_warm_work(const Linkage& linkage, const LinkageSolve& solve) {
   for (std::size_t c = 0; c < count; ++c) {
     AxisWork& x = *linkage.axes[c].axis;
     double gained = 0.0;
-    for (std::size_t d = 0; d < count; ++d) gained += room.matrix[c * count + d] * room.impulses[d];
+    for (std::size_t d = 0; d < count; ++d) gained += room.way(c, d) * room.impulses[d];
     const double before = double(axis_speed(linkage.nodes[linkage.axes[c].node], x.row, solve.bodies));
     x.worked += room.impulses[c] * (before + 0.5 * gained);
   }
@@ -99,12 +112,12 @@ void solve_linked_axes(const Linkage& linkage, const LinkageSolve& solve, bool s
   for (int sweep = 0; sweep < kAxisSweeps; ++sweep) {
     float most = 0.0f;
     for (std::size_t c = 0; c < count; ++c) {
-      const float k = float(room.matrix[c * count + c]);
+      const float k = float(room.way(c, c));
       const float impulse = solve_axis(*linkage.axes[c].axis, speeds[c], k, solve.settings, soft);
       if (impulse == 0.0f) continue;
       is_any = true;
       room.impulses[c] += double(impulse);
-      for (std::size_t d = 0; d < count; ++d) speeds[d] += float(room.matrix[d * count + c]) * impulse;
+      for (std::size_t d = 0; d < count; ++d) speeds[d] += float(room.way(d, c)) * impulse;
       most = max(most, std::abs(k * impulse));
     }
     if (most < kAxesSettled) break;
@@ -112,7 +125,7 @@ void solve_linked_axes(const Linkage& linkage, const LinkageSolve& solve, bool s
   if (!is_any) return;
   for (std::size_t c = 0; c < count; ++c)
     linkage.axes[c].axis->worked += 0.5 * room.impulses[c] * double(before[c] + speeds[c]);
-  push_columns(linkage, solve, room.impulses, room.columns, room.sum);
+  push_rows(linkage, solve, AxisRows(linkage).list(), room.impulses, room.speeds);
 }
 
 }  // namespace gyre

@@ -2,48 +2,110 @@
 
 #include "solver/joint_equations.h"
 
+#include <algorithm>
+
 namespace gyre {
 
 namespace {
 
-DVec3 at(std::span<const double> speeds, std::int32_t side, int part) {
-  const double* const v = &speeds[std::size_t(6 * side + 3 * part)];
-  return {v[0], v[1], v[2]};
+struct Speeds {
+  DVec3 linear, angular;
+};
+
+// What an impulse of one along a row changes of its two bodies' velocities, before the equations answer.
+struct RowPush {
+  std::int32_t side_a = -1, side_b = -1;
+  Speeds a, b;
+
+  Speeds of(std::int32_t side) const {
+    if (side < 0) return {};
+    return side == side_a ? a : side == side_b ? b : Speeds{};
+  }
+};
+RowPush push_of(const Linkage& linkage, const LinkageSolve& solve, const ResponseRow& row) {
+  const LinkageNode& node = linkage.nodes[row.node];
+  RowPush push{node.side_a, node.side_b, {}, {}};
+  if (node.side_a >= 0)
+    push.a = {DVec3((-row.sign * solve.bodies.inertia[node.body_a].inverse_mass) * row.row->push_a),
+              DVec3(linkage.bodies[std::size_t(node.side_a)].inverse * (-row.sign * row.row->arm_a))};
+  if (node.side_b >= 0)
+    push.b = {DVec3((row.sign * solve.bodies.inertia[node.body_b].inverse_mass) * row.row->push_b),
+              DVec3(linkage.bodies[std::size_t(node.side_b)].inverse * (row.sign * row.row->arm_b))};
+  return push;
 }
-void add(std::span<double> speeds, std::int32_t side, DVec3 linear, DVec3 angular) {
-  double* const v = &speeds[std::size_t(6 * side)];
-  v[0] += linear.x, v[1] += linear.y, v[2] += linear.z;
-  v[3] += angular.x, v[4] += angular.y, v[5] += angular.z;
+
+bool share_body(const LinkageNode& node, const LinkageNode& other) {
+  const auto is_one = [&](std::int32_t side) {
+    return side >= 0 && (side == other.side_a || side == other.side_b);
+  };
+  return is_one(node.side_a) || is_one(node.side_b);
 }
+
+// Sets a node's part of a right side: what its rows miss where its bodies move so.
+void set_missing(const LinkageNode& node, const Speeds& a, const Speeds& b, double* x) {
+  const RowVectors &push = node.rows.push, &arm_a = node.rows.arm_a, &arm_b = node.rows.arm_b;
+  const DVec3 u = a.linear - b.linear;
+  for (int i = 0; i < node.count; ++i)
+    x[i] = double(push.x[i]) * u.x + double(push.y[i]) * u.y + double(push.z[i]) * u.z +
+           double(arm_a.x[i]) * a.angular.x + double(arm_a.y[i]) * a.angular.y +
+           double(arm_a.z[i]) * a.angular.z - double(arm_b.x[i]) * b.angular.x -
+           double(arm_b.y[i]) * b.angular.y - double(arm_b.z[i]) * b.angular.z;
+}
+
+// What a node's rows give its bodies.
+void add_answers(const LinkageNode& node, const double* x, float inverse_mass_a, float inverse_mass_b,
+                 Speeds& a, Speeds& b) {
+  const LinkageRows& rows = node.rows;
+  DVec3 force, turn_a, turn_b;
+  for (int i = 0; i < node.count; ++i) {
+    force += x[i] * DVec3(rows.push.at(i));
+    turn_a += x[i] * DVec3(rows.spin_a.at(i));
+    turn_b += x[i] * DVec3(rows.spin_b.at(i));
+  }
+  a.linear += -double(inverse_mass_a) * force, a.angular += -1.0 * turn_a;
+  b.linear += double(inverse_mass_b) * force, b.angular += turn_b;
+}
+
+double speed_of(const ResponseRow& row, const Speeds& a, const Speeds& b) {
+  return double(row.sign) * (dot(DVec3(row.row->push_b), b.linear) + dot(DVec3(row.row->arm_b), b.angular) -
+                             dot(DVec3(row.row->push_a), a.linear) - dot(DVec3(row.row->arm_a), a.angular));
+}
+
+double dot_rows(std::span<const double> a, std::span<const double> b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+
 std::size_t first_row(const Linkage& linkage, std::size_t node) {
   return linkage.plan.columns[linkage.plan.place_of[node]].row;
 }
-double row_speed(const LinkageNode& node, int i, std::span<const double> speeds) {
-  const DVec3 push = DVec3(node.rows.push.at(i));
-  double speed = 0.0;
-  if (node.side_a >= 0)
-    speed -= dot(push, at(speeds, node.side_a, 0)) +
-             dot(DVec3(node.rows.arm_a.at(i)), at(speeds, node.side_a, 1));
-  if (node.side_b >= 0)
-    speed += dot(push, at(speeds, node.side_b, 0)) +
-             dot(DVec3(node.rows.arm_b.at(i)), at(speeds, node.side_b, 1));
-  return speed;
-}
+
+// Six numbers a body.
+class BodySpeeds {
+ public:
+  explicit BodySpeeds(std::span<double> numbers) : numbers_(numbers) {}
+  Speeds at(std::int32_t side) const {
+    if (side < 0) return {};
+    const double* const v = &numbers_[6 * std::size_t(side)];
+    return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+  }
+  void set(std::int32_t side, const Speeds& speeds) {
+    if (side < 0) return;
+    double* const v = &numbers_[6 * std::size_t(side)];
+    v[0] = speeds.linear.x, v[1] = speeds.linear.y, v[2] = speeds.linear.z;
+    v[3] = speeds.angular.x, v[4] = speeds.angular.y, v[5] = speeds.angular.z;
+  }
+  void add(std::int32_t side, double times, const Speeds& speeds) {
+    const Speeds now = at(side);
+    set(side, {now.linear + times * speeds.linear, now.angular + times * speeds.angular});
+  }
+
+ private:
+  std::span<double> numbers_;
+};
 
 }  // namespace
-
-std::size_t response_speeds(const Linkage& linkage) { return 6 * linkage.bodies.size(); }
-
-double axis_speed(const LinkageNode& node, const AxisRow& row, std::span<const double> speeds) {
-  double speed = 0.0;
-  if (node.side_a >= 0)
-    speed -= dot(DVec3(row.push_a), at(speeds, node.side_a, 0)) +
-             dot(DVec3(row.arm_a), at(speeds, node.side_a, 1));
-  if (node.side_b >= 0)
-    speed += dot(DVec3(row.push_b), at(speeds, node.side_b, 0)) +
-             dot(DVec3(row.arm_b), at(speeds, node.side_b, 1));
-  return speed;
-}
 
 float axis_speed(const LinkageNode& node, const AxisRow& row, const JointBodies& bodies) {
   float speed = 0.0f;
@@ -58,62 +120,71 @@ float axis_speed(const LinkageNode& node, const AxisRow& row, const JointBodies&
   return speed;
 }
 
-void find_response(const Linkage& linkage, const LinkageSolve& solve, std::uint32_t node, const AxisRow& row, float sign,
+void find_response(const Linkage& linkage, const LinkageSolve& solve, const ResponseRow& row,
                    ResponseColumn column) {
-  const auto inverse_mass = [&](std::int32_t body) { return solve.bodies.inertia[body].inverse_mass; };
-  const LinkageNode& own = linkage.nodes[node];
-  for (double& speed : column.speeds) speed = 0.0;
-  if (own.side_a >= 0)
-    add(column.speeds, own.side_a, DVec3((-sign * inverse_mass(own.body_a)) * row.push_a),
-        DVec3(linkage.bodies[std::size_t(own.side_a)].inverse * (-sign * row.arm_a)));
-  if (own.side_b >= 0)
-    add(column.speeds, own.side_b, DVec3((sign * inverse_mass(own.body_b)) * row.push_b),
-        DVec3(linkage.bodies[std::size_t(own.side_b)].inverse * (sign * row.arm_b)));
+  const RowPush push = push_of(linkage, solve, row);
+  const LinkageNode& own = linkage.nodes[row.node];
+  for (double& one : column.down) one = 0.0;
   for (std::size_t n = 0; n < linkage.nodes.size(); ++n) {
-    const LinkageNode& other = linkage.nodes[n];
-    double* const x = &column.answers[first_row(linkage, n)];
-    for (int i = 0; i < other.count; ++i) x[i] = -row_speed(other, i, column.speeds);
+    const LinkageNode& node = linkage.nodes[n];
+    if (share_body(own, node))
+      set_missing(node, push.of(node.side_a), push.of(node.side_b), &column.down[first_row(linkage, n)]);
   }
-  solve_blocks(linkage.plan, linkage.values, column.answers);
-  for (std::size_t n = 0; n < linkage.nodes.size(); ++n) {
-    const LinkageNode& other = linkage.nodes[n];
-    const double* const x = &column.answers[first_row(linkage, n)];
-    for (int i = 0; i < other.count; ++i) {
-      const DVec3 push = DVec3(other.rows.push.at(i));
-      if (other.side_a >= 0)
-        add(column.speeds, other.side_a, (-x[i] * double(inverse_mass(other.body_a))) * push,
-            -x[i] * DVec3(other.rows.spin_a.at(i)));
-      if (other.side_b >= 0)
-        add(column.speeds, other.side_b, (x[i] * double(inverse_mass(other.body_b))) * push,
-            x[i] * DVec3(other.rows.spin_b.at(i)));
+  solve_blocks_down(linkage.plan, linkage.values, column.down, column.scaled);
+}
+
+void find_ways(const Linkage& linkage, const LinkageSolve& solve, std::span<const ResponseRow> rows,
+               const ResponseColumns& columns, std::size_t known, double* matrix, std::size_t stride) {
+  const std::size_t size = linkage.plan.rows;
+  for (std::size_t j = known; j < rows.size(); ++j) {
+    const RowPush push = push_of(linkage, solve, rows[j]);
+    for (std::size_t i = 0; i <= j; ++i) {
+      const LinkageNode& node = linkage.nodes[rows[i].node];
+      const double alone = speed_of(rows[i], push.of(node.side_a), push.of(node.side_b));
+      matrix[i * stride + j] = matrix[j * stride + i] =
+          alone - dot_rows(columns.at(j, size).scaled, columns.at(i, size).down);
     }
   }
 }
 
-void push_columns(const Linkage& linkage, const LinkageSolve& solve, std::span<const double> impulses,
-                  const ResponseColumns& columns, std::span<double> sum) {
-  const std::size_t speeds = response_speeds(linkage), rows = linkage.plan.rows;
-  for (double& one : sum) one = 0.0;
-  for (std::size_t c = 0; c < impulses.size(); ++c) {
+void push_rows(const Linkage& linkage, const LinkageSolve& solve, std::span<const ResponseRow> rows,
+               std::span<const double> impulses, std::span<double> speeds) {
+  BodySpeeds changes(speeds);
+  for (double& one : speeds) one = 0.0;
+  for (std::size_t c = 0; c < rows.size(); ++c) {
     if (impulses[c] == 0.0) continue;
-    for (std::size_t i = 0; i < speeds; ++i) sum[i] += impulses[c] * columns.speeds[c * speeds + i];
-  }
-  // Adding zero keeps -0 out of the state.
-  for (std::size_t b = 0; b < linkage.bodies.size(); ++b) {
-    BodyMotion& motion = solve.bodies.motion[linkage.bodies[b].body];
-    motion.linear_velocity += to_float(at(sum, std::int32_t(b), 0)) + Vec3{};
-    motion.angular_velocity += to_float(at(sum, std::int32_t(b), 1)) + Vec3{};
+    const RowPush push = push_of(linkage, solve, rows[c]);
+    changes.add(push.side_a, impulses[c], push.a);
+    changes.add(push.side_b, impulses[c], push.b);
   }
   for (std::size_t n = 0; n < linkage.nodes.size(); ++n) {
     const LinkageNode& node = linkage.nodes[n];
-    for (int i = 0; i < node.count; ++i) {
-      double impulse = 0.0;
-      for (std::size_t c = 0; c < impulses.size(); ++c)
-        impulse += impulses[c] * columns.answers[c * rows + first_row(linkage, n) + std::size_t(i)];
+    set_missing(node, changes.at(node.side_a), changes.at(node.side_b),
+                &linkage.vector[first_row(linkage, n)]);
+  }
+  solve_blocks(linkage.plan, linkage.values, linkage.vector);
+  const auto inverse_mass = [&](std::int32_t side, std::int32_t body) {
+    return side < 0 ? 0.0f : solve.bodies.inertia[body].inverse_mass;
+  };
+  for (std::size_t n = 0; n < linkage.nodes.size(); ++n) {
+    const LinkageNode& node = linkage.nodes[n];
+    const double* const x = &linkage.vector[first_row(linkage, n)];
+    Speeds a = changes.at(node.side_a), b = changes.at(node.side_b);
+    add_answers(node, x, inverse_mass(node.side_a, node.body_a), inverse_mass(node.side_b, node.body_b), a,
+                b);
+    changes.set(node.side_a, a);
+    changes.set(node.side_b, b);
+    for (int i = 0; i < node.count; ++i)
       keep_impulse(solve.records[node.record], solve.work[node.work],
                    {node.rows.push.at(i), node.rows.arm_a.at(i), node.rows.arm_b.at(i)}, i,
-                   float(impulse) + 0.0f);
-    }
+                   float(x[i]) + 0.0f);
+  }
+  // Adding zero keeps -0 out of the state.
+  for (std::size_t side = 0; side < linkage.bodies.size(); ++side) {
+    BodyMotion& motion = solve.bodies.motion[linkage.bodies[side].body];
+    const Speeds change = changes.at(std::int32_t(side));
+    motion.linear_velocity += to_float(change.linear) + Vec3{};
+    motion.angular_velocity += to_float(change.angular) + Vec3{};
   }
 }
 

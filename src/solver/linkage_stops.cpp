@@ -23,15 +23,10 @@ struct Stop {
 class StopSolve {
  public:
   StopSolve(const Linkage& linkage, const LinkageSolve& solve, ErrorBounds bounds)
-      : linkage_(linkage),
-        solve_(solve),
-        bounds_(bounds),
-        rows_(linkage.plan.rows),
-        speeds_(response_speeds(linkage)) {
+      : linkage_(linkage), solve_(solve), bounds_(bounds), row_count_(linkage.plan.rows) {
     std::span<double> room = solve.room;
-    columns_.answers = take_room(room, kMostStops * rows_);
-    columns_.speeds = take_room(room, kMostStops * speeds_);
-    sum_ = take_room(room, speeds_);
+    columns_ = {take_room(room, response_room(kMostStops, row_count_))};
+    speeds_ = take_room(room, 6 * linkage.bodies.size());
   }
 
   void solve() {
@@ -41,10 +36,8 @@ class StopSolve {
       list_passed();
       if (count_ == known && (round > 0 || !is_any_off())) return;
       for (std::size_t c = known; c < count_; ++c)
-        find_response(linkage_, solve_, stops_[c].node, stops_[c].axis->row, stops_[c].sign, column(c));
-      for (std::size_t c = 0; c < count_; ++c)
-        for (std::size_t d = 0; d < count_; ++d)
-          if (c >= known || d >= known) matrix_[c][d] = seen(stops_[c], column(d).speeds);
+        find_response(linkage_, solve_, rows_[c], columns_.at(c, row_count_));
+      find_ways(linkage_, solve_, {rows_, count_}, columns_, known, matrix_[0], kMostStops);
       find_impulses();
       push();
     }
@@ -82,6 +75,7 @@ class StopSolve {
     if (!(stop.impulse() > 0.0f) && !(speed_of(stop) < -kCalm)) return;
     for (std::size_t c = 0; c < count_; ++c)
       if (stops_[c].axis == stop.axis && stops_[c].sign == stop.sign) return;
+    rows_[count_] = {stop.node, &stop.axis->row, stop.sign};
     stops_[count_++] = stop;
   }
   bool is_any_off() const {
@@ -114,32 +108,30 @@ class StopSolve {
   }
 
   void push() {
-    push_columns(linkage_, solve_, {impulses_, count_}, columns_, sum_);
+    push_rows(linkage_, solve_, {rows_, count_}, {impulses_, count_}, speeds_);
     for (std::size_t c = 0; c < count_; ++c)
       if (impulses_[c] != 0.0) stops_[c].impulse() = max(0.0f, stops_[c].impulse() + float(impulses_[c]));
-  }
-  ResponseColumn column(std::size_t c) const { return columns_.at(c, speeds_, rows_); }
-  double seen(const Stop& stop, std::span<const double> speeds) const {
-    return double(stop.sign) * axis_speed(linkage_.nodes[stop.node], stop.axis->row, speeds);
   }
 
   const Linkage& linkage_;
   const LinkageSolve& solve_;
   ErrorBounds bounds_;
-  std::size_t rows_, speeds_;
+  std::size_t row_count_;    // of the equations
   ResponseColumns columns_;  // by stop
-  std::span<double> sum_;
+  std::span<double> speeds_;
   std::size_t count_ = 0;
   std::uint32_t first_ = 0;  // node
+  // Of the first `count_` stops; what lies behind is not known.
   Stop stops_[kMostStops];
-  double matrix_[kMostStops][kMostStops] = {};
-  double impulses_[kMostStops] = {};
+  ResponseRow rows_[kMostStops];
+  double matrix_[kMostStops][kMostStops];
+  double impulses_[kMostStops];
 };
 
 }  // namespace
 
 std::size_t stops_room(std::size_t rows, std::size_t bodies) {
-  return kMostStops * (rows + 6 * bodies) + 6 * bodies;
+  return response_room(kMostStops, rows) + 6 * bodies;
 }
 
 void solve_stops(const Linkage& linkage, const LinkageSolve& solve, ErrorBounds bounds) {

@@ -157,9 +157,11 @@ void throw_chain(std::uint32_t seed, const Chain& how, Drift& most) {
 // sub-step's to grow from.
 TEST(ThrownLinkages, KeepMomentaWhateverTheyWeigh) {
   Drift sliders, mixed;
-  for (std::uint32_t seed = 0; seed < 60; ++seed)
-    throw_chain(seed, {{JointKind::slider}, 3, 8, 5.0f, 120}, sliders);
-  EXPECT_TRUE(limit_row("sliders between light and heavy bodies: energy gained", sliders.gained, 0.5, 0.01));
+  const Chain sliding{{JointKind::slider}, 3, 8, 5.0f, 120};
+  for (std::uint32_t seed = 0; seed < 60; ++seed) throw_chain(seed, sliding, sliders);
+  // None of these turns far in a sub-step, and yet some doubled what they had, at one step in a thousand.
+  for (const std::uint32_t seed : {88u, 236u, 286u, 349u, 468u, 598u}) throw_chain(seed, sliding, sliders);
+  EXPECT_TRUE(limit_row("sliders between light and heavy bodies: energy gained", sliders.gained, 0.3, 0.01));
   EXPECT_TRUE(limit_row("the same: angular momentum lost, over that of 1 m/s", sliders.turned, 0.02, 0.001));
   // Some of these joints are solved in lanes, some alone, and ropes are swept: all of a chain is one island.
   const Chain kinds{
