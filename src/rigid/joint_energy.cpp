@@ -48,7 +48,7 @@ struct Draft {
   bool has_joints = false, is_swept = false, is_alone = false, is_fast = false;
   bool is_untold =
       false;  // what works on it is not known: several that move, axes of the world, drives in lanes
-  bool is_held = false;
+  bool is_held = false, is_pushed = false;
   std::int32_t carrier = kNoBody;  // the first that holds it
   IslandFrame frame = IslandFrame::rigid;
   std::uint32_t bodies = 0, joints = 0, worked = 0;
@@ -110,6 +110,9 @@ class IslandFinder {
       else if (may_work(joint, detail_of(w_.joints, solve_.batch.joints[at])))
         draft.is_untold = true;
     });
+    for (const ColoringPair& contact : solve_.scratch.pairs)
+      for (const std::uint32_t at : {contact.a, contact.b})
+        if (at != ColoringPair::kNone) drafts_[sets_.of(at)].is_pushed = true;
     for (std::uint32_t i = 0; i < drafts_.size(); ++i) {
       if (!drafts_[i].has_joints) continue;
       Draft& draft = drafts_[sets_.of(i)];
@@ -161,8 +164,12 @@ class IslandFinder {
   }
   // With room for all that belongs to it.
   void begin_island(Draft& draft, JointIsland& island) {
-    island = {arena_.make<std::uint32_t>(draft.bodies), arena_.make<std::uint32_t>(draft.joints),
-              arena_.make<WorkedRow>(draft.worked), draft.frame, draft.carrier};
+    island = {arena_.make<std::uint32_t>(draft.bodies),
+              arena_.make<std::uint32_t>(draft.joints),
+              arena_.make<WorkedRow>(draft.worked),
+              draft.frame,
+              draft.carrier,
+              draft.is_pushed || !solve_.fields.bodies.empty()};
     draft.island = &island;
     draft.bodies = draft.joints = draft.worked = 0;
   }
@@ -370,6 +377,12 @@ void forget_impulses(JointAxisRecord& axis) {
   axis.low_impulse = axis.high_impulse = axis.motor_impulse = axis.spring_impulse = axis.friction_impulse =
       0.0f;
 }
+bool any_turns_far(const Solve& solve, const JointIsland& island) {
+  for (const std::uint32_t body : island.bodies)
+    if (turns_far(solve.w.bodies.motion[body], solve.h)) return true;
+  return false;
+}
+
 // What follows does not begin with the impulses that gave too much, nor with those of springs and motors that they answered. In the middle
 // of a step axes are in the joints' work, as it ends in what persists.
 void forget_impulses(const Solve& solve, const JointIsland& island) {
@@ -443,7 +456,10 @@ void bound_gains(const Solve& solve, int begin, int end) {
 }
 void take_gains_away(const Solve& solve, int begin, int end) {
   for (JointIsland& island : solve.joint_islands.subspan(std::size_t(begin), std::size_t(end - begin))) {
-    bound_gain(solve.w.bodies, island, kMostGain, 0.0f);
+    // What bears a joint's load may take away between two stages what seems to be given in one: at rest on the ground that would be all
+    // there is. Beside what turns far it is little.
+    if (!island.is_pushed || island.is_bounded || any_turns_far(solve, island))
+      bound_gain(solve.w.bodies, island, kMostGain, 0.0f);
     island.gained = 0.0;
   }
 }

@@ -33,14 +33,16 @@ LinkageBundle make_bundle(const LinkageShape& shape, const LinkageKernels& kerne
   b.row_count = shape.plan.rows;
   b.has_fill = shape.has_fill;
   for (const LaneNode& node : shape.nodes) {
-    b.stop_count += (node.has_twist ? 1 : 0) + (node.has_swing ? 1 : 0);
+    b.stop_count += (node.has_twist ? 1 : 0) + (node.has_swing ? 1 : 0) + (node.has_servo ? 1 : 0);
     b.drive_count += node.is_driven() ? 1 : 0;
-    b.has_drives = b.has_drives || node.has_drive;
+    b.servo_count += node.has_servo ? 1 : 0;
+    b.has_drives = b.has_drives || node.has_drive || node.has_servo;
   }
   const std::size_t width = std::size_t(kernels.width);
   b.bodies = arena.make<std::byte>(b.body_count * kernels.body_bytes).data();
   b.joints = arena.make<std::byte>(b.node_count * kernels.joint_bytes).data();
   b.drives = arena.make<std::byte>(b.drive_count * kernels.drives_bytes).data();
+  b.servos = arena.make<std::byte>(b.servo_count * kernels.servo_bytes).data();
   b.values = arena.make<float>(b.value_count * width).data();
   b.vector = arena.make<float>(b.row_count * width).data();
   b.room = arena.make<float>(shape.plan.widest * width).data();

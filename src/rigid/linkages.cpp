@@ -266,7 +266,7 @@ class LinkageMaker {
   // The linkage as lanes have it; false if they cannot bear it. Bodies that cannot be pushed come last, one for each joint's end.
   bool describe(const Draft& draft, LinkageShape& shape) {
     std::size_t stops = 0;
-    std::uint32_t driven = 0;
+    std::uint32_t driven = 0, servos = 0;
     shape.nodes = arena_.make<LaneNode>(draft.joints.size());
     shape.body_count = shape.moving_count = std::uint32_t(draft.bodies.size());
     for (std::size_t i = 0; i < draft.joints.size(); ++i) {
@@ -274,9 +274,10 @@ class LinkageMaker {
       LaneNode& lane = shape.nodes[i] = LaneNode{};
       if (!fits_lane(w_.joints.records[joint.record], detail_of(w_.joints, joint.record), start_, lane))
         return false;
-      stops += (lane.has_twist ? 1 : 0) + (lane.has_swing ? 1 : 0);
+      stops += (lane.has_twist ? 1 : 0) + (lane.has_swing ? 1 : 0) + (lane.has_servo ? 1 : 0);
       if (stops > kMostLaneStops) return false;
       if (lane.is_driven()) lane.drives = driven++;
+      if (lane.has_servo) lane.servo = servos++;
       lane.rows = std::uint32_t(joints_[joint.place].equations);
       lane.a = draft.side_a[i] < 0 ? shape.body_count++ : std::uint32_t(draft.side_a[i]);
       lane.b = draft.side_b[i] < 0 ? shape.body_count++ : std::uint32_t(draft.side_b[i]);
@@ -286,7 +287,8 @@ class LinkageMaker {
   bool find_shape(const LinkageShape& shape, LaneLinkage& linkage) const {
     const auto same = [](const LaneNode& a, const LaneNode& b) {
       return a.kind == b.kind && a.has_twist == b.has_twist && a.has_swing == b.has_swing &&
-             a.has_drive == b.has_drive && a.has_friction == b.has_friction && a.a == b.a && a.b == b.b;
+             a.has_drive == b.has_drive && a.has_friction == b.has_friction && a.has_servo == b.has_servo &&
+             a.a == b.a && a.b == b.b;
     };
     const std::size_t oldest = shape_count_ > kShapesCompared ? shape_count_ - kShapesCompared : 0;
     for (std::size_t i = shape_count_; i-- > oldest;) {

@@ -34,6 +34,10 @@ constexpr float kStraightTurn = 0.05f;
 // asks for goes away after that.
 constexpr float kMostGain = 1.0e-2f, kMostGainAhead = 1.0f;
 
+// Motors that hold a place or a speed without a frequency of their own give way by this share of what would move them freely, where they are
+// solved with the equations of their linkage: ten times as much as those, which motors in conflict are not to break.
+constexpr float kMotorGive = 1.0e-3f;
+
 // Stops of a cone's twist rest where 1 + cos(swing) is less, from 143 degrees on: a limb that points straight back has no twist, and near
 // there it changes by any amount at once.
 constexpr float kLeastTwistTold = 0.2f;

@@ -25,6 +25,7 @@ constexpr std::size_t kLowGap = offsetof(LaneAxis, low_gap) / sizeof(float);
 constexpr std::size_t kHighGap = offsetof(LaneAxis, high_gap) / sizeof(float);
 constexpr std::size_t kFrictionImpulse = offsetof(LaneDrives, friction_impulse) / sizeof(float);
 constexpr std::size_t kDrivesTotal = offsetof(LaneDrives, total) / sizeof(float);
+constexpr std::size_t kServoMost = offsetof(LaneServo, most) / sizeof(float);
 
 // A lane of a joint of a bundle, or of what drives it, and ranges of its floats.
 class Lane {
@@ -33,6 +34,9 @@ class Lane {
       : Lane(bundle, lane, bundle.joints + node * bundle.kernels->joint_bytes) {}
   static Lane of_drives(const LinkageBundle& bundle, int lane, const LaneNode& node) {
     return Lane(bundle, lane, bundle.drives + node.drives * bundle.kernels->drives_bytes);
+  }
+  static Lane of_servo(const LinkageBundle& bundle, int lane, const LaneNode& node) {
+    return Lane(bundle, lane, bundle.servos + node.servo * bundle.kernels->servo_bytes);
   }
   float* at(std::size_t number) const { return first_ + number * width_; }
   std::size_t width() const { return width_; }
@@ -73,7 +77,8 @@ bool fits_hinge(const JointRecord& joint, const JointDetail* detail, const LaneS
   node.has_twist = axis.motion == AxisMotion::limited;
   if (gives_way(axis)) return false;
   if (start.limits_only) return true;
-  node.has_drive = axis.motor_force > 0.0f;
+  node.has_servo = axis.motor_force > 0.0f && axis.motor_frequency <= 0.0f;
+  node.has_drive = axis.motor_force > 0.0f && !node.has_servo;
   node.has_friction = axis.friction > 0.0f;
   return !has_spring(axis) && (detail == nullptr || !has_drive(*detail));
 }
@@ -136,15 +141,23 @@ void begin_drives(const Lane& lane, const LaneNode& node, const JointRecord& joi
         drive.angular_velocity, normalized(drive.orientation), soft(drive.frequency, drive.damping_ratio));
 }
 
+void begin_servo(const Lane& lane, const JointAxisRecord& axis, const LaneStart& start) {
+  begin_stop(lane, 0, {axis.motor_position, 0.0f}, axis.motor_impulse, 0.0f, start);
+  LaneWriter(lane, kServoMost) << start.substep * axis.motor_force << axis.motor_velocity
+                               << (axis.has_motor_target ? start.softness.bias_rate : 0.0f);
+}
+
 // Where a hinge's limits are in a detail too, so is what else acts on its axis.
-void finish_hinge(const Lane& from, const LaneNode& shape, const Lane* drives, JointRecord& joint,
-                  JointDetail* detail) {
+void finish_hinge(const Lane& from, const LaneNode& shape, const Lane* drives, const Lane* servo,
+                  JointRecord& joint, JointDetail* detail) {
   if (shape.has_twist) finish_stop(from, kTwist, joint.low_impulse, joint.high_impulse);
   if (drives != nullptr && shape.has_drive) joint.motor_impulse = drives->number(0);
-  if (detail == nullptr || (!shape.has_twist && drives == nullptr)) return;
+  if (servo != nullptr) joint.motor_impulse = servo->number(kAxisImpulses);
+  if (detail == nullptr || (!shape.has_twist && drives == nullptr && servo == nullptr)) return;
   JointAxisRecord& axis = detail->axes[int(JointAxis::angular_x)];
   axis = axis_of_record(joint, detail, JointAxis::angular_x);
   axis.total = shape.has_twist ? from.number(kTwist + kAxisTotal) : 0.0f;
+  if (servo != nullptr) axis.total += servo->number(kAxisTotal);
   if (drives == nullptr) return;
   if (shape.has_friction) axis.friction_impulse = drives->number(kFrictionImpulse);
   axis.total += drives->number(kDrivesTotal);
@@ -156,7 +169,7 @@ bool fits_lane(const JointRecord& joint, const JointDetail* detail, const LaneSt
   if (joint.kind != JointKind::ball && joint.kind != JointKind::cone && joint.kind != JointKind::hinge)
     return false;
   node.kind = joint.kind;
-  node.has_twist = node.has_swing = node.has_drive = node.has_friction = false;
+  node.has_twist = node.has_swing = node.has_drive = node.has_friction = node.has_servo = false;
   if (joint.kind == JointKind::hinge) return fits_hinge(joint, detail, start, node);
   if (detail == nullptr) return true;
   if (!start.limits_only && !fits_drives(joint.kind, *detail, node)) return false;
@@ -169,6 +182,8 @@ void clear_lanes(const LinkageBundle& bundle) {
   std::memset(static_cast<void*>(bundle.joints), 0, bundle.node_count * bundle.kernels->joint_bytes);
   if (bundle.drive_count > 0)
     std::memset(static_cast<void*>(bundle.drives), 0, bundle.drive_count * bundle.kernels->drives_bytes);
+  if (bundle.servo_count > 0)
+    std::memset(static_cast<void*>(bundle.servos), 0, bundle.servo_count * bundle.kernels->servo_bytes);
   for (std::uint32_t body = 0; body < bundle.body_count; ++body) {
     for (int lane = 0; lane < bundle.kernels->width; ++lane)
       set_lane_body(bundle, lane, body, kNoBody, false);
@@ -195,6 +210,9 @@ void begin_lane(const LinkageBundle& bundle, int lane, std::uint32_t node, const
   writer << (is_hinge ? start.warm_scale * joint.angular_impulse : Vec3{});
   writer << Vec3{} << Vec3{};  // the sums
   if (shape.is_driven()) begin_drives(Lane::of_drives(bundle, lane, shape), shape, joint, detail, start);
+  if (shape.has_servo)
+    begin_servo(Lane::of_servo(bundle, lane, shape), axis_of_record(joint, detail, JointAxis::angular_x),
+                start);
   if (joint.kind == JointKind::ball) return;
   writer << joint.local_frame_a << joint.local_frame_b << joint.position;
   if (!shape.has_swing) {
@@ -256,8 +274,11 @@ void finish_lane(const LinkageBundle& bundle, int lane, std::uint32_t node, Join
   }
   if (joint.kind == JointKind::ball) return;
   joint.position = from.number(kPosition);
-  if (joint.kind == JointKind::hinge)
-    return finish_hinge(from, shape, is_driven ? &drives : nullptr, joint, detail);
+  if (joint.kind == JointKind::hinge) {
+    const Lane servo = Lane::of_servo(bundle, lane, shape);
+    return finish_hinge(from, shape, is_driven ? &drives : nullptr, shape.has_servo ? &servo : nullptr, joint,
+                        detail);
+  }
   if (detail == nullptr) return;
   JointAxisRecord &twist = detail->axes[int(JointAxis::angular_x)],
                   &swing = detail->axes[int(JointAxis::angular_y)];

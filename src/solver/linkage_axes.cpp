@@ -71,10 +71,10 @@ void place_linked_axes(const Linkage& linkage, const LinkageSolve& solve) {
     const double k = room.way(c, c);
     if (!(x.mass > 0.0f && k * double(x.mass) > kLeastAxisShare)) continue;
     prepare_axis_mass(x, float(1.0 / k), solve.settings);
-    // A motor that is to hold a place without a frequency of its own need not give way as what is swept late must.
+    // It need not give way as what is swept late must.
     if (x.axis.motor_frequency <= 0.0f)
-      x.drive = {solve.settings.softness.bias_rate, 1.0f / (1.0f + solve.give),
-                 solve.give / (1.0f + solve.give)};
+      x.drive = {solve.settings.softness.bias_rate, 1.0f / (1.0f + kMotorGive),
+                 kMotorGive / (1.0f + kMotorGive)};
   }
 }
 

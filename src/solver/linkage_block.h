@@ -28,7 +28,7 @@ struct LinkedBody {
 
 static_assert(offsetof(LinkedBody<4>, angular) == offsetof(LinkedBody<4>, linear) + sizeof(Vec3W<4>));
 
-// As LaneAxis, LaneJoint and LaneDrives.
+// As LaneAxis, LaneJoint, LaneDrives and LaneServo.
 template <int W>
 struct LinkedAxis {
   Wide<W> low, high, low_impulse, high_impulse, total, low_gap, high_gap;
@@ -55,7 +55,12 @@ struct LinkedDrives {
   Vec3W<W> error, speed;
   Sym3W<W> mass;
 };
-static_assert(sizeof(LinkedDrives<1>) == sizeof(LaneDrives));
+template <int W>
+struct LinkedServo {
+  LinkedAxis<W> axis;
+  Wide<W> most, target_speed, rate;
+};
+static_assert(sizeof(LinkedDrives<1>) == sizeof(LaneDrives) && sizeof(LinkedServo<1>) == sizeof(LaneServo));
 static_assert(sizeof(LinkedAxis<1>) == sizeof(LaneAxis) && sizeof(LinkedJoint<1>) == sizeof(LaneJoint));
 static_assert(offsetof(LinkedJoint<1>, swing) == offsetof(LaneJoint, swing));
 static_assert(offsetof(LinkedJoint<1>, from_a) == offsetof(LaneJoint, from_a));
@@ -67,12 +72,14 @@ struct Bundle {
   LinkedBody<W>* bodies;
   LinkedJoint<W>* joints;
   LinkedDrives<W>* drives;
+  LinkedServo<W>* servos;
 
   GYRE_INLINE explicit Bundle(const LinkageBundle& bundle)
       : plain(bundle),
         bodies(reinterpret_cast<LinkedBody<W>*>(bundle.bodies)),
         joints(reinterpret_cast<LinkedJoint<W>*>(bundle.joints)),
-        drives(reinterpret_cast<LinkedDrives<W>*>(bundle.drives)) {}
+        drives(reinterpret_cast<LinkedDrives<W>*>(bundle.drives)),
+        servos(reinterpret_cast<LinkedServo<W>*>(bundle.servos)) {}
   GYRE_INLINE bool moves(std::uint32_t body) const { return body < plain.moving_count; }
 
   // Of the matrix.

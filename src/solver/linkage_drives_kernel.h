@@ -39,6 +39,18 @@ __attribute__((noinline)) void place_drives(const Bundle<W>& bundle) {
   }
 }
 
+// What solves stops has them too.
+template <int W>
+__attribute__((noinline)) void place_servos(const Bundle<W>& bundle) {
+  for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
+    const LaneNode& node = bundle.plain.nodes[n];
+    if (!node.has_servo) continue;
+    LinkedAxis<W>& axis = bundle.servos[node.servo].axis;
+    place_axis(axis, bundle.joints[n].axis, bundle.bodies[node.a], bundle.bodies[node.b]);
+    axis.low_gap = bundle.joints[n].position - axis.low;
+  }
+}
+
 // -------------------------------------------------------------------------------------------------------------- sweep
 
 // Turns b by an impulse, and a by its opposite; inertias as they are. (Not inline: it is asked for in many places.)

@@ -202,11 +202,12 @@ GYRE_INLINE void push_kept(const Bundle<W>& bundle) {
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
     const LaneNode& node = bundle.plain.nodes[n];
     LinkedJoint<W>& joint = bundle.joints[n];
-    if (!node.has_twist && !node.has_swing) continue;
+    if (!node.has_twist && !node.has_swing && !node.has_servo) continue;
     const Wide<W> zero(0.0f);
     Vec3W<W> turn{zero, zero, zero};
     if (node.has_twist) turn += kept_impulse(joint.twist);
     if (node.has_swing) turn += kept_impulse(joint.swing);
+    if (node.has_servo) turn += kept_impulse(bundle.servos[node.servo].axis);
     if (bundle.moves(node.a)) bundle.bodies[node.a].angular -= bundle.bodies[node.a].inverse * turn;
     if (bundle.moves(node.b)) bundle.bodies[node.b].angular += bundle.bodies[node.b].inverse * turn;
   }
@@ -241,6 +242,7 @@ void place_linkages(const LinkageBundle& plain, const LaneArrays& arrays, const 
   place_bundle<W>(plain, arrays, s);
   const Bundle<W> bundle(plain);
   if (plain.drive_count > 0) place_drives(bundle);
+  if (plain.servo_count > 0) place_servos(bundle);
   if (plain.stop_count > 0) LaneStops<W>(bundle, s, kNoErrors).begin();
 }
 
@@ -302,6 +304,7 @@ __attribute__((noinline)) void sum_impulses(const Bundle<W>& bundle) {
     joint.total_angular += joint.angular_impulse;
     if (node.has_twist) sum_stop(joint, joint.twist);
     if (node.has_swing) sum_stop(joint, joint.swing);
+    if (node.has_servo) sum_stop(joint, bundle.servos[node.servo].axis);
     if (node.is_driven()) sum_drives(node, joint, bundle.drives[node.drives]);
   }
 }
@@ -337,7 +340,8 @@ void pass_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const Lan
   load_velocities(bundle, arrays);
   const bool is_driven = plain.drive_count > 0;
   const Mask<W> fast = find_fast(bundle, s.substep), relaxed = is_driven ? Mask<W>::splat(true) : fast;
-  const Mask<W> stopped = fast | find_taken_back(bundle);
+  // Motors hold against what is swept, and it against them.
+  const Mask<W> stopped = is_driven && plain.servo_count > 0 ? relaxed : fast | find_taken_back(bundle);
   const EnergyWatch<W> watch(bundle);
   relax(bundle, relaxed);
   if (any(stopped)) solve_stops(bundle, s, kNoErrors, stopped);
@@ -365,6 +369,7 @@ constexpr LinkageKernels linkage_kernels() {
           sizeof(LinkedBody<W>),
           sizeof(LinkedJoint<W>),
           sizeof(LinkedDrives<W>),
+          sizeof(LinkedServo<W>),
           offsetof(LinkedBody<W>, linear),
           stop_room<W>,
           begin_linkages<W>,

@@ -22,7 +22,7 @@ TEST(LinkageKernel, LanesDoWhatOneLinkageDoes) {
 
 TEST(LinkageKernel, DrivesAndFrictionInLanesDoWhatTheyDoInOneLinkage) {
   Shape shape;
-  Crowd one_by_one(0.05f, true), side_by_side(0.05f, true);
+  Crowd one_by_one(0.05f, Driven::swept), side_by_side(0.05f, Driven::swept);
   solve_one_by_one(one_by_one, shape);
   solve_side_by_side(side_by_side, shape, 0);
   expect_same(one_by_one, side_by_side);
@@ -41,7 +41,24 @@ TEST(LinkageKernel, DrivesAndFrictionInLanesDoWhatTheyDoInOneLinkage) {
   EXPECT_GT(holding, 3);
 }
 
-void expect_same_bits_at_every_width(float tension, bool driven, const Between& between, float spins) {
+// Strong ones keep what they are told, weak ones give all they have.
+TEST(LinkageKernel, MotorsInLanesDoWhatTheyDoInOneLinkage) {
+  Shape shape;
+  Crowd one_by_one(0.05f, Driven::motors), side_by_side(0.05f, Driven::motors);
+  solve_one_by_one(one_by_one, shape);
+  solve_side_by_side(side_by_side, shape, 0);
+  // Sweeps over several motors end where none changes a speed by 1e-4 rad/s: 4e-4 N m s where least of the linkage turns.
+  expect_same(one_by_one, side_by_side, 5.0);
+  int weak = 0, strong = 0;
+  for (const JointRecord& joint : side_by_side.records) {
+    if (joint.kind != JointKind::hinge) continue;
+    ++(std::abs(joint.motor_impulse) < 0.999f * kSubstep * joint.motor_force ? strong : weak);
+  }
+  EXPECT_GT(weak, 3);
+  EXPECT_GT(strong, 3);
+}
+
+void expect_same_bits_at_every_width(float tension, Driven driven, const Between& between, float spins) {
   Shape shape;
   const auto start = [&] {
     Crowd crowd(tension, driven);
@@ -79,7 +96,7 @@ void expect_same_bits_at_every_width(float tension, bool driven, const Between& 
 }
 
 TEST(LinkageKernel, EveryWidthHasTheSameBits) {
-  for (const bool driven : {false, true}) {
+  for (const Driven driven : {Driven::no, Driven::swept, Driven::motors}) {
     for (const float tension : {0.05f, 50.0f}) {
       // Some lanes keep what others find anew; some spin so fast that they lose what errors gave them at once.
       expect_same_bits_at_every_width(tension, driven, {.turn = 0.4f}, 1.0f);
@@ -190,7 +207,7 @@ TEST(LinkageKernel, WhatCameFromErrorsMayBeLeftToTheNextPart) {
 // What is swept would hold against it.
 TEST(LinkageKernel, WhatCameFromErrorsIsTakenAwayWhereSomethingIsSwept) {
   Shape shape;
-  Crowd passed(0.05f, true), finished(0.05f, true);
+  Crowd passed(0.05f, Driven::swept), finished(0.05f, Driven::swept);
   for (Crowd* crowd : {&passed, &finished}) crowd->open_stops();
   solve_side_by_side(passed, shape, 0, {.ends = Between::Ends::passes});
   solve_side_by_side(finished, shape, 0, {.ends = Between::Ends::finishes});

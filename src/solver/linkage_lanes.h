@@ -1,7 +1,7 @@
 // Linkages side by side: where several hang together alike (the ragdolls of a heap, the chains of a curtain), lane i of a
 // bundle is the i-th of them, and kernels (solver/linkage_kernel.h) solve W at once in the time of one. The equations are those
-// of solver/linkage.h; this is the form of linkages of ball, cone and hinge joints on which nothing acts but hard stops, drives that
-// turn, and dry friction.
+// of solver/linkage.h; this is the form of linkages of ball, cone and hinge joints on which nothing acts but hard stops, motors and drives
+// that turn, and dry friction.
 //
 // A lane never sees its neighbours, so its bits do not depend on them, on W, or on which bundle a linkage is in.
 #pragma once
@@ -61,6 +61,15 @@ struct LaneDrives {
   Sym3 mass;          // effective
 };
 
+// The motor of a hinge that has no frequency of its own: as stiff as the sub-step allows, it is a stop from both sides, up to a bound. Its
+// impulse, of either sign, is the low one of the axis, and the place to be held the low end.
+struct LaneServo {
+  LaneAxis axis;
+  float most = 0.0f;          // N m s: impulse of a sub-step
+  float target_speed = 0.0f;  // rad/s
+  float rate = 0.0f;          // 1/s, at which it goes to its place; 0: it has none
+};
+
 // More stops than that are solved in turns (solver/linkage_stops.h), not in lanes.
 constexpr std::size_t kMostLaneStops = 64;
 
@@ -68,11 +77,12 @@ constexpr std::size_t kMostLaneStops = 64;
 struct LaneNode {
   JointKind kind = JointKind::ball;
   bool has_twist = false, has_swing = false;  // stops
-  bool has_drive = false, has_friction = false;
+  bool has_drive = false, has_friction = false;   // swept
+  bool has_servo = false;                         // among the stops
   std::uint32_t a = 0, b = 0;                     // entries of the bundle's bodies
   std::uint32_t rows = 0, row = 0, diagonal = 0;  // in the plan
   std::uint32_t column = 0;                       // there: its place
-  std::uint32_t drives = 0;                       // which of the bundle's, if it has any
+  std::uint32_t drives = 0, servo = 0;            // which of the bundle's, if it has any
 
   bool is_driven() const { return has_drive || has_friction; }
 };
@@ -104,12 +114,14 @@ struct LinkageBundle {
   const std::uint32_t* targets = nullptr;
   std::uint32_t column_count = 0, value_count = 0, row_count = 0;
   bool has_fill = false;          // blocks of the plan in which nothing stands before elimination
-  std::uint32_t stop_count = 0;   // axes with stops
+  std::uint32_t stop_count = 0;   // axes with stops, and servos
   std::uint32_t drive_count = 0;  // joints with drives or friction
-  bool has_drives = false;        // of these, with drives
+  std::uint32_t servo_count = 0;
+  bool has_drives = false;  // what does work: drives, servos
   std::byte* bodies = nullptr;
   std::byte* joints = nullptr;
   std::byte* drives = nullptr;
+  std::byte* servos = nullptr;
   float* values = nullptr;  // of the matrix
   float* vector = nullptr;
   float* room = nullptr;        // of the widest column
@@ -148,7 +160,7 @@ struct LaneSettings {
 // The kernels of one CPU target. Each body is a block of `body_bytes` that begins with the lanes' body indices (kNoBody: none).
 struct LinkageKernels {
   int width;
-  std::size_t body_bytes, joint_bytes, drives_bytes;
+  std::size_t body_bytes, joint_bytes, drives_bytes, servo_bytes;
   std::size_t velocities_at;  // bytes: where a body's block has them, as LaneVelocities
   std::size_t (*stop_room)(const LinkageBundle& bundle);  // bytes
   void (*begin)(const LinkageBundle& bundle);             // before it is placed for the first time in a step

@@ -2,8 +2,6 @@
 
 #include "solver/joint_equations.h"
 
-#include <algorithm>
-
 namespace gyre {
 
 namespace {

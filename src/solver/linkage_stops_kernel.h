@@ -24,7 +24,8 @@ constexpr float kKeptTurn = 0.1f;  // rad
 // What a stop may still give way by, of what it would if its two bodies were alone: less is only rounding.
 constexpr float kLeastWay = 1.0e-5f;
 
-// The stops at either end of an axis: x are the impulses found, beyond those that the axis has.
+// The stops at either end of an axis: x are the impulses found, beyond those that the axis has. Behind all of them stand the servos, whose
+// impulse is that of the low end, of either sign.
 template <int W>
 struct LinkedStop {
   Wide<W> speed, low_asked, high_asked, low_x, high_x;
@@ -47,6 +48,7 @@ struct StopSlot {
   Wide<W> excess;       // rad/s: by how much its speed towards the inside is more than what is asked
   Wide<W> share;        // impulse for each rad/s of that, not positive
   Wide<W> least, room;  // least: of the impulse, room: from there to where it is, both not positive
+  Wide<W> most;         // how far it may still grow; known where there are servos
 };
 
 // For which slots of each lane the ways are laid out, and lanes, a bit for each, in which they have been found anew since. Up to
@@ -56,6 +58,8 @@ struct LaidWays {
   alignas(Wide<W>) std::uint32_t counts[W];
   std::uint32_t renewed, cleared;
 };
+
+constexpr float kUnbounded = 3.0e38f;
 
 // As many slots stand in registers while they are swept.
 constexpr std::uint32_t kFewSlots = 8;
@@ -115,6 +119,7 @@ class LaneStops {
       if (node.has_twist) list(stops_[next++], node, b_.joints[n].twist, true);
       if (node.has_swing) list(stops_[next++], node, b_.joints[n].swing, false);
     }
+    if (b_.plain.servo_count > 0) list_servos(next);
     const Wide<W> none(0.0f);
     for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) poses_[n] = {none, none, none, none};
     for (std::uint32_t& laid : laid_->counts) laid = 0;
@@ -135,7 +140,8 @@ class LaneStops {
   }
 
   GYRE_INLINE void solve(Mask<W> lanes) {
-    for (std::uint32_t a = 0; a < count(); ++a) ask(stops_[a]);
+    for (std::uint32_t a = 0; a < end_count(); ++a) ask(stops_[a]);
+    for (std::uint32_t a = end_count(); a < count(); ++a) ask_servo(stops_[a]);
     for (int round = 0; round < kLaneRounds; ++round) {
       const Mask<W> live = look(round == 0) & lanes;
       if (none(live)) return;
@@ -146,6 +152,16 @@ class LaneStops {
 
  private:
   GYRE_INLINE std::uint32_t count() const { return b_.plain.stop_count; }
+  GYRE_INLINE std::uint32_t end_count() const { return count() - b_.plain.servo_count; }
+  GYRE_INLINE const LinkedServo<W>& servo_of(const LinkedStop<W>& stop) const {
+    return b_.servos[stop.node->servo];
+  }
+  void list_servos(std::uint32_t next) {
+    for (std::uint32_t n = 0; n < b_.plain.node_count; ++n) {
+      const LaneNode& node = b_.plain.nodes[n];
+      if (node.has_servo) list(stops_[next++], node, b_.servos[node.servo].axis, true);
+    }
+  }
   GYRE_INLINE std::uint32_t words() const { return reach_words(b_.plain.column_count); }
   GYRE_INLINE static void list(LinkedStop<W>& stop, const LaneNode& node, LinkedAxis<W>& axis, bool has_low) {
     stop.axis = &axis, stop.node = &node;
@@ -155,6 +171,11 @@ class LaneStops {
     stop.low_on = stop.high_on = Mask<W>::splat(false);
     if (stop.has_low) stop.low_asked = asked(stop.axis->low_gap);
     stop.high_asked = asked(stop.axis->high_gap);
+  }
+  GYRE_INLINE void ask_servo(LinkedStop<W>& stop) const {
+    const LinkedServo<W>& servo = servo_of(stop);
+    stop.low_on = stop.high_on = Mask<W>::splat(false);
+    stop.low_asked = servo.target_speed - servo.rate * servo.axis.low_gap;
   }
   GYRE_INLINE Wide<W> asked(Wide<W> gap) const {
     const Wide<W> rate = select(gap > 0.0f, Wide<W>(1.0f / s_.substep), Wide<W>(s_.rate));
@@ -173,7 +194,7 @@ class LaneStops {
   // Finds the stops that are passed or bear an impulse; returns the lanes in which there is something to do.
   GYRE_INLINE Mask<W> look(bool first) {
     Mask<W> live = Mask<W>::splat(false);
-    for (std::uint32_t a = 0; a < count(); ++a) {
+    for (std::uint32_t a = 0; a < end_count(); ++a) {
       LinkedStop<W>& stop = stops_[a];
       const LinkedAxis<W>& axis = *stop.axis;
       stop.speed = dot(axis.about, b_.bodies[stop.node->b].angular - b_.bodies[stop.node->a].angular);
@@ -188,6 +209,19 @@ class LaneStops {
       if (stop.has_low) consider(stop.speed - stop.low_asked, axis.low_impulse, stop.low_on);
       consider(Wide<W>(0.0f) - stop.speed - stop.high_asked, axis.high_impulse, stop.high_on);
     }
+    for (std::uint32_t a = end_count(); a < count(); ++a) live = live | look_at_servo(stops_[a], first);
+    return live;
+  }
+  // Not even a little is left: what stands would be given in each part anew until it is more.
+  Mask<W> look_at_servo(LinkedStop<W>& stop, bool first) const {
+    const LinkedServo<W>& servo = servo_of(stop);
+    const LinkedAxis<W>& axis = servo.axis;
+    stop.speed = dot(axis.about, b_.bodies[stop.node->b].angular - b_.bodies[stop.node->a].angular);
+    const Wide<W> off = stop.speed - stop.low_asked, zero(0.0f), impulse = axis.low_impulse;
+    const Mask<W> turns = axis.mass > zero, more = impulse<servo.most, less = impulse> zero - servo.most;
+    const Mask<W> misses = turns & (((off < zero) & more) | ((off > zero) & less));
+    const Mask<W> live = first ? misses : and_not(misses, stop.low_on);
+    stop.low_on = stop.low_on | misses | (turns & (impulse != zero));
     return live;
   }
 
@@ -375,7 +409,8 @@ class LaneStops {
       const std::uint32_t end = laid_ends_[i * W + lane] = ends_[i * W + lane];
       for (std::uint32_t j = 0; j <= i; ++j) {
         const std::uint32_t other = ends_[j * W + lane];
-        const float size = lane_of(entry(end / 2, other / 2), lane);
+        float size = lane_of(entry(end / 2, other / 2), lane);
+        if (i == j && end / 2 >= end_count()) size *= 1.0f + kMotorGive;
         set(i, j, ((end ^ other) & 1u) != 0 ? -size : size);
       }
     }
@@ -394,7 +429,10 @@ class LaneStops {
   }
   void fill_slots(std::uint32_t slots, const std::uint32_t (&counts)[W]) {
     const Wide<W> none(0.0f);
-    for (std::uint32_t i = 0; i < slots || i < kFewSlots; ++i) slots_[i] = {none, none, none, none};
+    for (std::uint32_t i = 0; i < slots || i < kFewSlots; ++i)
+      slots_[i].excess = slots_[i].share = slots_[i].least = slots_[i].room = none;
+    if (b_.plain.servo_count > 0)
+      for (std::uint32_t i = 0; i < slots; ++i) slots_[i].most = Wide<W>(kUnbounded);
     clear_ways(slots);
     for (std::uint32_t lane = 0; lane < W; ++lane) {
       if (counts[lane] != 0 && !is_laid(lane, counts[lane])) lay_ways(lane, counts[lane]);
@@ -408,15 +446,29 @@ class LaneStops {
         set_lane(slots_[i].excess, lane, (is_high ? -speed : speed) - asked);
         set_lane(slots_[i].least, lane, least);
         set_lane(slots_[i].room, lane, least);
+        if (end / 2 >= end_count()) bound_servo(slots_[i], servo_of(stop), entry(end / 2, end / 2), lane);
       }
     }
   }
+  // A motor may give either way, up to what it has, and gives way by what it bears.
+  static void bound_servo(StopSlot<W>& slot, const LinkedServo<W>& servo, const Wide<W>& way,
+                          std::uint32_t lane) {
+    const float kept = lane_of(servo.axis.low_impulse, lane), most = lane_of(servo.most, lane);
+    set_lane(slot.excess, lane, lane_of(slot.excess, lane) + kMotorGive * lane_of(way, lane) * kept);
+    set_lane(slot.least, lane, -most - kept);
+    set_lane(slot.room, lane, -most - kept);
+    set_lane(slot.most, lane, most - kept);
+  }
 
   // How far a sweep takes the impulse of a slot; `most`: the most that any of them has changed a speed.
+  template <bool kServos>
   GYRE_INLINE static Wide<W> step_of(StopSlot<W>& slot, Wide<W> excess, Wide<W> own, Mask<W> live,
                                      Wide<W>& most) {
-    const Wide<W> by = keep(live, max(slot.room, slot.share * excess));
+    Wide<W> by = max(slot.room, slot.share * excess);
+    if constexpr (kServos) by = min(by, slot.most);
+    by = keep(live, by);
     slot.room -= by;
+    if constexpr (kServos) slot.most -= by;
     most = max(most, max(by, Wide<W>(0.0f) - by) * own);
     return by;
   }
@@ -430,7 +482,7 @@ class LaneStops {
       for (std::uint32_t i = 0; i < kFewSlots; ++i) {
         if (i < slots) {
           const Wide<W>* const ways = slot_ways_ + i * row_length();
-          const Wide<W> by = step_of(slots_[i], excess[i], ways[i], live, most);
+          const Wide<W> by = step_of<false>(slots_[i], excess[i], ways[i], live, most);
           GYRE_UNROLL
           for (std::uint32_t e = 0; e < kFewSlots; ++e) excess[e] += by * ways[e];
         }
@@ -438,6 +490,7 @@ class LaneStops {
       live = live & (most > kLaneSettled);
     }
   }
+  template <bool kServos>
   void sweep_many(std::uint32_t slots, Mask<W> live) const {
     // Of the slot that comes next also in a register: each step waits for it.
     Wide<W> excess = slots_[0].excess;
@@ -445,7 +498,7 @@ class LaneStops {
       Wide<W> most(0.0f);
       for (std::uint32_t i = 0; i < slots; ++i) {
         const Wide<W>* const ways = slot_ways_ + i * row_length();
-        const Wide<W> by = step_of(slots_[i], excess, ways[i], live, most);
+        const Wide<W> by = step_of<kServos>(slots_[i], excess, ways[i], live, most);
         const std::uint32_t next = i + 1 < slots ? i + 1 : 0;
         excess = slots_[next].excess + by * ways[next];
         for (std::uint32_t e = 0; e < slots; ++e) slots_[e].excess += by * ways[e];
@@ -464,10 +517,12 @@ class LaneStops {
       slots_[i].share = keep(own > 0.0f, -kLaneReach / own);
     }
     // One lane has no use for the registers, and the few slots' code is long.
-    if (W > 1 && slots <= kFewSlots)
+    if (b_.plain.servo_count > 0)
+      sweep_many<true>(slots, live);
+    else if (W > 1 && slots <= kFewSlots)
       sweep_few(slots, live);
     else
-      sweep_many(slots, live);
+      sweep_many<false>(slots, live);
     for (std::uint32_t lane = 0; lane < W; ++lane) {
       for (std::uint32_t i = 0; i < counts[lane]; ++i) {
         const std::uint32_t end = ends_[i * W + lane];
@@ -486,7 +541,8 @@ class LaneStops {
       LinkedStop<W>& stop = stops_[a];
       if (stop.in == 0) continue;
       const Wide<W> x = stop.low_x - stop.high_x;
-      stop.axis->low_impulse = max(stop.axis->low_impulse + stop.low_x, Wide<W>(0.0f));
+      const Wide<W> low = stop.axis->low_impulse + stop.low_x;
+      stop.axis->low_impulse = a >= end_count() ? low : max(low, Wide<W>(0.0f));
       stop.axis->high_impulse = max(stop.axis->high_impulse + stop.high_x, Wide<W>(0.0f));
       const Mask<W> own = x != 0.0f;
       if (none(own)) continue;

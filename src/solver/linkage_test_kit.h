@@ -8,6 +8,7 @@
 #include "solver/contact_block.h"
 #include "solver/lane_records.h"
 #include "solver/linkage.h"
+#include "solver/linkage_axes.h"
 #include "solver/linkage_stops.h"
 
 #include <gtest/gtest.h>
@@ -42,6 +43,10 @@ inline constexpr Member kMembers[kJoints] = {
     {JointKind::hinge, kNoBody, 0, true}, {JointKind::cone, 0, 1, true},  {JointKind::ball, 1, 2, false},
     {JointKind::hinge, 3, 1, false},      {JointKind::cone, 0, 4, false}, {JointKind::ball, 1, 2, false}};
 
+// What drives most of the joints: drives, motors with a frequency and friction, which are swept; or motors of hinges without one, which are
+// solved with the equations, and no stop is near.
+enum class Driven : std::uint8_t { no, swept, motors };
+
 // Several copies of that linkage, each in a state of its own, and the work of a step.
 struct Crowd {
   Arena arena;
@@ -52,10 +57,9 @@ struct Crowd {
   std::vector<JointDetail> details{std::size_t(kJoints * kCopies)};
   std::vector<JointWork> work{std::size_t(kJoints * kCopies)};
   std::vector<JointPlaces> places{std::size_t(kJoints * kCopies)};
-  bool is_driven;
+  Driven driven;
 
-  // `driven`: drives, motors and friction act on most of the joints.
-  explicit Crowd(float tension, bool driven = false) : is_driven(driven) {
+  explicit Crowd(float tension, Driven by = Driven::no) : driven(by) {
     Random random{12345};
     for (std::size_t i = 0; i < motion.size(); ++i) {
       motion[i].linear_velocity = random.vector(3.0f);
@@ -71,7 +75,8 @@ struct Crowd {
       orientation[i] = from_rotation_vector(random.vector(1.0f));
     }
     for (std::size_t i = 0; i < records.size(); ++i) set_joint(i, random, tension);
-    for (std::size_t i = 0; is_driven && i < records.size(); ++i) drive_joint(i, random);
+    for (std::size_t i = 0; driven != Driven::no && i < records.size(); ++i) drive_joint(i, random);
+    if (driven == Driven::motors) open_stops();
     for (std::size_t i = 0; i < records.size(); ++i)
       begin_joint(records[i], detail_of(i), {}, work[i], 1.0f, arena);
   }
@@ -125,14 +130,15 @@ struct Crowd {
       joint.motor_impulse = 0.01f * random.next();
       joint.has_motor_target = kMembers[member].stops;
       joint.motor_position = random.next();
-      joint.motor_frequency = member == 0 && i / kJoints % 2 == 0 ? 6.0f : 0.0f;
+      if (driven == Driven::motors) return;
+      joint.motor_frequency = 6.0f;
       JointAxisRecord& axis = detail.axes[int(JointAxis::angular_x)];
       if (!kMembers[member].stops) return;
       axis.friction = 60.0f * strength;
       axis.friction_impulse = 0.01f * random.next();
       return;
     }
-    if (member == kJoints - 1) return;
+    if (member == kJoints - 1 || driven == Driven::motors) return;
     detail.friction = 120.0f * strength;
     detail.friction_impulse = random.vector(0.01f);
     if (member != 1) return;
@@ -152,7 +158,7 @@ struct Crowd {
   }
   JointDetail* detail_of(std::size_t i) {
     const Member& member = kMembers[i % kJoints];
-    return is_driven || (member.stops && member.kind != JointKind::hinge) ? &details[i] : nullptr;
+    return driven != Driven::no || (member.stops && member.kind != JointKind::hinge) ? &details[i] : nullptr;
   }
 
   LinkageSolve solve() {
@@ -216,7 +222,7 @@ inline void solve_one_by_one(Crowd& crowd, const Shape& shape) {
     std::vector<LinkageNode> nodes{std::size_t(kJoints)};
     std::vector<LinkageBody> bodies{std::size_t(kBodies)};
     std::vector<LinkageCoupling> couplings = shape.couplings;
-    std::vector<double> values(shape.plan.values), room(shape.plan.widest), vector(shape.plan.rows);
+    std::vector<double> values(shape.plan.values), room(factor_room(shape.plan)), vector(shape.plan.rows);
     for (int i = 0; i < kBodies; ++i) bodies[std::size_t(i)].body = copy * kBodies + i;
     for (LinkageCoupling& c : couplings) c.body += copy * kBodies;
     for (int i = 0; i < kJoints; ++i) {
@@ -228,7 +234,16 @@ inline void solve_one_by_one(Crowd& crowd, const Shape& shape) {
       node.side_b = kMembers[i].b;
       node.count = int(shape.nodes[std::size_t(i)].rows);
     }
-    const Linkage linkage{nodes, bodies, couplings, shape.plan, values, room, vector, true};
+    Linkage linkage{nodes, bodies, couplings, shape.plan, values, room, vector, true};
+    std::vector<LinkedAxis> axes;
+    for (std::uint32_t i = 0; crowd.driven == Driven::motors && i < kJoints; ++i) {
+      if (kMembers[i].kind != JointKind::hinge) continue;
+      axes.push_back({i, &crowd.work[nodes[i].work].axes[0]});
+      axes.back().axis->is_linked = true;
+    }
+    linkage.axes = axes;
+    std::vector<double> axis_room(linked_axes_room(linkage, axes.size()));
+    linkage.axis_room = axis_room;
     for (int part = 0; part < 2; ++part) {
       place_linkage(linkage, solve);
       warm_linkage(linkage, solve);
@@ -275,13 +290,15 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, const LinkageKernels&
   bundle.row_count = shape.plan.rows;
   bundle.has_fill = true;
   for (LaneNode& node : shape.nodes) {
-    bundle.stop_count += (node.has_twist ? 1 : 0) + (node.has_swing ? 1 : 0);
+    bundle.stop_count += (node.has_twist ? 1 : 0) + (node.has_swing ? 1 : 0) + (node.has_servo ? 1 : 0);
     if (node.is_driven()) node.drives = bundle.drive_count++;
-    bundle.has_drives = bundle.has_drives || node.has_drive;
+    if (node.has_servo) node.servo = bundle.servo_count++;
+    bundle.has_drives = bundle.has_drives || node.has_drive || node.has_servo;
   }
   bundle.bodies = arena.make<std::byte>((kBodies + 1) * kernels.body_bytes).data();
   bundle.joints = arena.make<std::byte>(kJoints * kernels.joint_bytes).data();
   bundle.drives = arena.make<std::byte>(bundle.drive_count * kernels.drives_bytes).data();
+  bundle.servos = arena.make<std::byte>(bundle.servo_count * kernels.servo_bytes).data();
   bundle.values = arena.make<float>(lanes * shape.plan.values).data();
   bundle.gained = arena.make<float>(2 * lanes).data();
   bundle.light = arena.make<float>(lanes).data();
@@ -343,34 +360,36 @@ inline constexpr double kRounding = 2.0e-4;
 // part that makes so many rad/s.
 inline constexpr double kLeftOver = 0.8 * 8.0 * double(kSubstep);
 
-inline void expect_same(const Crowd& one, const Crowd& other) {
+// `times`: so much more than rounding may they differ.
+inline void expect_same(const Crowd& one, const Crowd& other, double times = 1.0) {
+  const double rounding = times * kRounding;
   for (std::size_t i = 0; i < one.motion.size(); ++i) {
-    EXPECT_LT(apart(one.motion[i].linear_velocity, other.motion[i].linear_velocity), 3.0 * kRounding)
+    EXPECT_LT(apart(one.motion[i].linear_velocity, other.motion[i].linear_velocity), 3.0 * rounding)
         << "body " << i;
-    EXPECT_LT(apart(one.motion[i].angular_velocity, other.motion[i].angular_velocity), 8.0 * kRounding)
+    EXPECT_LT(apart(one.motion[i].angular_velocity, other.motion[i].angular_velocity), 8.0 * rounding)
         << "body " << i;
   }
   for (std::size_t i = 0; i < one.records.size(); ++i) {
     const JointRecord &a = one.records[i], &b = other.records[i];
     if (i % kJoints != 2 && i % kJoints != 5) {  // the two balls that share their load by the give alone
-      EXPECT_LT(apart(a.linear_impulse, b.linear_impulse), 3.0 * kRounding) << "joint " << i;
-      EXPECT_LT(apart(a.total_linear, b.total_linear), 3.0 * kRounding) << "joint " << i;
+      EXPECT_LT(apart(a.linear_impulse, b.linear_impulse), 3.0 * rounding) << "joint " << i;
+      EXPECT_LT(apart(a.total_linear, b.total_linear), 3.0 * rounding) << "joint " << i;
     }
-    EXPECT_LT(apart(a.angular_impulse, b.angular_impulse), kRounding) << "joint " << i;
-    EXPECT_LT(apart(a.total_angular, b.total_angular), kRounding) << "joint " << i;
-    EXPECT_NEAR(double(a.low_impulse), double(b.low_impulse), kRounding) << "joint " << i;
-    EXPECT_NEAR(double(a.high_impulse), double(b.high_impulse), kRounding) << "joint " << i;
+    EXPECT_LT(apart(a.angular_impulse, b.angular_impulse), rounding) << "joint " << i;
+    EXPECT_LT(apart(a.total_angular, b.total_angular), rounding) << "joint " << i;
+    EXPECT_NEAR(double(a.low_impulse), double(b.low_impulse), rounding) << "joint " << i;
+    EXPECT_NEAR(double(a.high_impulse), double(b.high_impulse), rounding) << "joint " << i;
     EXPECT_NEAR(double(a.position), double(b.position), 2.0e-6) << "joint " << i;
-    EXPECT_NEAR(double(a.motor_impulse), double(b.motor_impulse), kRounding) << "joint " << i;
+    EXPECT_NEAR(double(a.motor_impulse), double(b.motor_impulse), rounding) << "joint " << i;
     const JointDetail &its = one.details[i], &others = other.details[i];
-    EXPECT_LT(apart(its.drive_torque_impulse, others.drive_torque_impulse), kRounding) << "joint " << i;
-    EXPECT_LT(apart(its.friction_impulse, others.friction_impulse), kRounding) << "joint " << i;
+    EXPECT_LT(apart(its.drive_torque_impulse, others.drive_torque_impulse), rounding) << "joint " << i;
+    EXPECT_LT(apart(its.friction_impulse, others.friction_impulse), rounding) << "joint " << i;
     for (int axis = 3; axis < 5; ++axis) {
       const JointAxisRecord &x = one.details[i].axes[axis], &y = other.details[i].axes[axis];
-      EXPECT_NEAR(double(x.low_impulse), double(y.low_impulse), kRounding) << "joint " << i;
-      EXPECT_NEAR(double(x.high_impulse), double(y.high_impulse), kRounding) << "joint " << i;
-      EXPECT_NEAR(double(x.friction_impulse), double(y.friction_impulse), kRounding) << "joint " << i;
-      EXPECT_NEAR(double(x.total), double(y.total), kRounding) << "joint " << i;
+      EXPECT_NEAR(double(x.low_impulse), double(y.low_impulse), rounding) << "joint " << i;
+      EXPECT_NEAR(double(x.high_impulse), double(y.high_impulse), rounding) << "joint " << i;
+      EXPECT_NEAR(double(x.friction_impulse), double(y.friction_impulse), rounding) << "joint " << i;
+      EXPECT_NEAR(double(x.total), double(y.total), rounding) << "joint " << i;
       EXPECT_NEAR(double(x.position), double(y.position), 2.0e-5) << "joint " << i;
     }
   }

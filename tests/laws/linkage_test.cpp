@@ -437,37 +437,81 @@ TEST(Hub, OfManySpokesHolds) {
   }
 }
 
-// An arm that is held level against gravity: hinges by motors or by limits alone, and motors of joints that are solved alone, which need not
-// give way at all.
+// An arm of six links of 1 m and 40 kg, level, that gravity pulls down.
+enum class Held { by_motors, by_motors_alone, by_limits };  // alone: of joints that lanes do not have
+void build_arm(Assembly& arm, Held held, float most_torque) {
+  BodyId last{};
+  for (int i = 0; i < 6; ++i) {
+    const BodyId body = arm.add({.pose = {.position = {i + 0.5, 0, 0}}}, Box{{0.5f, 0.1f, 0.1f}});
+    JointDef joint{
+        .kind = JointKind::hinge, .a = last, .b = body, .anchor = {double(i), 0, 0}, .axis = {0, 0, 1}};
+    const Motor motor{.target_position = 0.0f, .max_force = most_torque};
+    if (held == Held::by_motors) joint.motor = motor;
+    if (held == Held::by_limits) joint.limits = Limits{0.0f, 1.0f};
+    if (held == Held::by_motors_alone) {
+      joint.kind = JointKind::six_dof;
+      joint.angular_x = {.motion = AxisMotion::free, .motor = motor};
+    }
+    arm.joints.push_back(arm.world.add_joint(joint));
+    last = body;
+  }
+}
+constexpr double kArmWeight = 6.0 * 40.0 * kGravity, kArmTorque = 3.0 * kArmWeight;  // N, N m at the root
+
 TEST(Arm, IsHeldLevelByMotorsOrLimits) {
-  enum class Held { by_motors, by_motors_alone, by_limits };
   const char* const names[] = {"sag of a driven arm of 6 m (m)",
                                "sag of a driven arm of 6 m, solved alone (m)",
                                "sag of an arm at its limits (m)"};
   for (const Held held : {Held::by_motors, Held::by_motors_alone, Held::by_limits}) {
     Assembly arm({.sleeping = false});
-    BodyId last{};
-    for (int i = 0; i < 6; ++i) {
-      const BodyId body = arm.add({.pose = {.position = {i + 0.5, 0, 0}}}, Box{{0.5f, 0.1f, 0.1f}});
-      JointDef joint{
-          .kind = JointKind::hinge, .a = last, .b = body, .anchor = {double(i), 0, 0}, .axis = {0, 0, 1}};
-      const Motor motor{.target_position = 0.0f, .max_force = 1.0e5f};
-      if (held == Held::by_motors) joint.motor = motor;
-      if (held == Held::by_limits) joint.limits = Limits{0.0f, 1.0f};
-      if (held == Held::by_motors_alone) {
-        joint.kind = JointKind::six_dof;
-        joint.angular_x = {.motion = AxisMotion::free, .motor = motor};
-      }
-      arm.joints.push_back(arm.world.add_joint(joint));
-      last = body;
-    }
+    build_arm(arm, held, 1.0e5f);
     run(arm.world, 5.0);
-    EXPECT_TRUE(limit_row(names[int(held)], -arm.world.pose(last).position.y,
-                          held == Held::by_motors ? 0.3 : 1.0e-3, 1e-4));
+    EXPECT_TRUE(limit_row(names[int(held)], -arm.world.pose(arm.bodies.back()).position.y, 1.0e-3, 1e-4));
     const JointReading root = arm.world.joint_reading(arm.joints[0]);
-    const double weight = 6.0 * 40.0 * kGravity;
-    EXPECT_TRUE(relative_row("force at its root (N)", double(root.force.y), weight, 2e-2, 1e-3));
-    EXPECT_TRUE(relative_row("torque at its root (N m)", double(root.torque.z), 3.0 * weight, 5e-2, 1e-3));
+    EXPECT_TRUE(relative_row("force at its root (N)", double(root.force.y), kArmWeight, 2e-2, 1e-3));
+    EXPECT_TRUE(relative_row("torque at its root (N m)", double(root.torque.z), kArmTorque, 5e-2, 1e-3));
+  }
+}
+
+TEST(Arm, FallsIfItsMotorsAreTooWeak) {
+  for (const Held held : {Held::by_motors, Held::by_motors_alone}) {
+    for (const float share : {0.98f, 1.02f}) {
+      Assembly arm({.sleeping = false});
+      build_arm(arm, held, share * float(kArmTorque));
+      double lowest = 0.0;
+      for (int i = 0; i < 120; ++i) {
+        ASSERT_TRUE(arm.world.step(kStep));
+        lowest = std::min(lowest, arm.world.pose(arm.bodies.back()).position.y);
+      }
+      if (share > 1.0f) {
+        EXPECT_TRUE(limit_row("sag of an arm whose motors just hold it (m)", -lowest, 5.0e-3, 1e-3));
+      } else {
+        EXPECT_LT(lowest, -0.1) << "its root bears 2 % less than what hangs on it";
+        const JointReading root = arm.world.joint_reading(arm.joints[0]);
+        EXPECT_TRUE(relative_row("torque of a motor that gives all it has (N m)", double(root.torque.z),
+                                 0.98 * kArmTorque, 1e-3, 1e-4));
+      }
+    }
+  }
+}
+
+// One that turns the whole arm keeps its speed, whatever hangs on it.
+TEST(Arm, IsTurnedAtTheSpeedOfItsMotor) {
+  for (const Held held : {Held::by_motors, Held::by_motors_alone}) {
+    Assembly arm({.sleeping = false});
+    build_arm(arm, held, 1.0e5f);
+    const Motor turning{.target_velocity = 0.5f, .max_force = 1.0e5f};
+    if (held == Held::by_motors) {
+      ASSERT_TRUE(arm.world.set_motor(arm.joints[0], turning));
+    } else {
+      ASSERT_TRUE(arm.world.set_joint_axis(arm.joints[0], JointAxis::angular_x,
+                                           {.motion = AxisMotion::free, .motor = turning}));
+    }
+    run(arm.world, 2.0);
+    const double turned = double(arm.world.joint_axis_reading(arm.joints[0], JointAxis::angular_x).position);
+    EXPECT_TRUE(relative_row("turned in 2 s at 0.5 rad/s (rad)", turned, 1.0, 5e-3, 1e-3));
+    const DVec3 end = arm.world.pose(arm.bodies.back()).position;
+    EXPECT_TRUE(relative_row("reach of an arm that turns as one (m)", length(end), 5.5, 1e-3, 1e-4));
   }
 }
 
