@@ -113,6 +113,8 @@ class IslandFinder {
     for (const ColoringPair& contact : solve_.scratch.pairs)
       for (const std::uint32_t at : {contact.a, contact.b})
         if (at != ColoringPair::kNone) drafts_[sets_.of(at)].is_pushed = true;
+    for (const FieldBody& field : solve_.fields.bodies)
+      drafts_[sets_.of(place(std::int32_t(field.body)))].is_pushed = true;
     for (std::uint32_t i = 0; i < drafts_.size(); ++i) {
       if (!drafts_[i].has_joints) continue;
       Draft& draft = drafts_[sets_.of(i)];
@@ -169,7 +171,7 @@ class IslandFinder {
               arena_.make<WorkedRow>(draft.worked),
               draft.frame,
               draft.carrier,
-              draft.is_pushed || !solve_.fields.bodies.empty()};
+              draft.is_pushed};
     draft.island = &island;
     draft.bodies = draft.joints = draft.worked = 0;
   }

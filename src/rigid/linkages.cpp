@@ -265,8 +265,7 @@ class LinkageMaker {
 
   // The linkage as lanes have it; false if they cannot bear it. Bodies that cannot be pushed come last, one for each joint's end.
   bool describe(const Draft& draft, LinkageShape& shape) {
-    std::size_t stops = 0;
-    std::uint32_t driven = 0, servos = 0;
+    std::size_t stops = 0, servos = 0;
     shape.nodes = arena_.make<LaneNode>(draft.joints.size());
     shape.body_count = shape.moving_count = std::uint32_t(draft.bodies.size());
     for (std::size_t i = 0; i < draft.joints.size(); ++i) {
@@ -274,15 +273,26 @@ class LinkageMaker {
       LaneNode& lane = shape.nodes[i] = LaneNode{};
       if (!fits_lane(w_.joints.records[joint.record], detail_of(w_.joints, joint.record), start_, lane))
         return false;
-      stops += (lane.has_twist ? 1 : 0) + (lane.has_swing ? 1 : 0) + (lane.has_servo ? 1 : 0);
+      stops += (lane.has_twist ? 1 : 0) + (lane.has_swing ? 1 : 0);
+      servos += lane.has_servo ? 1 : 0;
       if (stops > kMostLaneStops) return false;
-      if (lane.is_driven()) lane.drives = driven++;
-      if (lane.has_servo) lane.servo = servos++;
       lane.rows = std::uint32_t(joints_[joint.place].equations);
       lane.a = draft.side_a[i] < 0 ? shape.body_count++ : std::uint32_t(draft.side_a[i]);
       lane.b = draft.side_b[i] < 0 ? shape.body_count++ : std::uint32_t(draft.side_b[i]);
     }
+    if (servos > kMostLaneServos || stops + servos > kMostLaneStops) sweep_servos(shape);
+    std::uint32_t driven = 0, held = 0;
+    for (LaneNode& lane : shape.nodes) {
+      if (lane.is_driven()) lane.drives = driven++;
+      if (lane.has_servo) lane.servo = held++;
+    }
     return true;
+  }
+  static void sweep_servos(LinkageShape& shape) {
+    for (LaneNode& lane : shape.nodes) {
+      lane.has_drive = lane.has_drive || lane.has_servo;
+      lane.has_servo = false;
+    }
   }
   bool find_shape(const LinkageShape& shape, LaneLinkage& linkage) const {
     const auto same = [](const LaneNode& a, const LaneNode& b) {

@@ -142,8 +142,11 @@ void begin_drives(const Lane& lane, const LaneNode& node, const JointRecord& joi
 }
 
 void begin_servo(const Lane& lane, const JointAxisRecord& axis, const LaneStart& start) {
-  begin_stop(lane, 0, {axis.motor_position, 0.0f}, axis.motor_impulse, 0.0f, start);
-  LaneWriter(lane, kServoMost) << start.substep * axis.motor_force << axis.motor_velocity
+  // It may have been stronger when it gave that, or the sub-step longer.
+  const float most = start.substep * axis.motor_force;
+  const float kept = clamp(start.warm_scale * axis.motor_impulse, -most, most);
+  LaneWriter(lane, 0) << axis.motor_position << 0.0f << kept << 0.0f << 0.0f;
+  LaneWriter(lane, kServoMost) << most << axis.motor_velocity
                                << (axis.has_motor_target ? start.softness.bias_rate : 0.0f);
 }
 

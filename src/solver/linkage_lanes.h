@@ -70,6 +70,9 @@ struct LaneServo {
   float rate = 0.0f;          // 1/s, at which it goes to its place; 0: it has none
 };
 
+// More servos than that are swept, as drives are: sweeps over so many rows that depend on each other end before they stand.
+constexpr std::size_t kMostLaneServos = 32;
+
 // More stops than that are solved in turns (solver/linkage_stops.h), not in lanes.
 constexpr std::size_t kMostLaneStops = 64;
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "solver/linkage_place.h"
+#include "solver/linkage_stop_rows.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
@@ -23,68 +24,6 @@ constexpr float kKeptTurn = 0.1f;  // rad
 
 // What a stop may still give way by, of what it would if its two bodies were alone: less is only rounding.
 constexpr float kLeastWay = 1.0e-5f;
-
-// The stops at either end of an axis: x are the impulses found, beyond those that the axis has. Behind all of them stand the servos, whose
-// impulse is that of the low end, of either sign.
-template <int W>
-struct LinkedStop {
-  Wide<W> speed, low_asked, high_asked, low_x, high_x;
-  Mask<W> low_on, high_on;
-  LinkedAxis<W>* axis;
-  const LaneNode* node;
-  bool has_low;  // a swing has only the other one
-  // Lanes, a bit for each: that have it in question, and in which the ways between it and all others so marked are kept.
-  std::uint32_t in, kept;
-  bool has_response;        // it is known what an impulse makes of the linkage, in this part of the sub-step
-  bool has_reach;           // it is known which columns that impulse reaches
-  bool has_turns;           // the next are known, in this part of the sub-step
-  Vec3W<W> turn_a, turn_b;  // how an impulse of one turns its two bodies
-  Vec3W<W> kept_about;      // in a's axes: the axis for which ways are kept
-};
-
-// One end of a stop, in each lane another.
-template <int W>
-struct StopSlot {
-  Wide<W> excess;       // rad/s: by how much its speed towards the inside is more than what is asked
-  Wide<W> share;        // impulse for each rad/s of that, not positive
-  Wide<W> least, room;  // least: of the impulse, room: from there to where it is, both not positive
-  Wide<W> most;         // how far it may still grow; known where there are servos
-};
-
-// For which slots of each lane the ways are laid out, and lanes, a bit for each, in which they have been found anew since. Up to
-// `cleared` slots there is nothing else.
-template <int W>
-struct LaidWays {
-  alignas(Wide<W>) std::uint32_t counts[W];
-  std::uint32_t renewed, cleared;
-};
-
-constexpr float kUnbounded = 3.0e38f;
-
-// As many slots stand in registers while they are swept.
-constexpr std::uint32_t kFewSlots = 8;
-
-template <int W>
-constexpr std::size_t most_slots(const LinkageBundle& bundle) {
-  return bundle.stop_count > kFewSlots / 2 ? 2 * std::size_t(bundle.stop_count) : kFewSlots;
-}
-
-// Of all stops together; what lies behind these words is aligned as vectors are.
-constexpr std::size_t all_reach_words(const LinkageBundle& bundle) {
-  constexpr std::size_t kWords = 64 / sizeof(std::uint64_t);
-  return (bundle.stop_count * reach_words(bundle.column_count) + kWords - 1) / kWords * kWords;
-}
-
-template <int W>
-constexpr std::size_t stop_room(const LinkageBundle& bundle) {
-  const std::size_t n = bundle.stop_count, slots = most_slots<W>(bundle);
-  if (n == 0) return 0;
-  return n * (sizeof(LinkedStop<W>) + n * (sizeof(Wide<W>) + sizeof(std::uint32_t)) +
-              bundle.row_count * 2 * W * sizeof(float)) +
-         all_reach_words(bundle) * sizeof(std::uint64_t) + bundle.node_count * sizeof(QuatW<W>) +
-         bundle.moving_count * sizeof(Vec3W<W>) + sizeof(LaidWays<W>) +
-         slots * (sizeof(StopSlot<W>) + slots * sizeof(Wide<W>) + 2 * W);
-}
 
 // With the equations' matrix as L D L^T, the way of stop i under an impulse at stop j is what it would be without equations less y_i . D^-1
 // y_j, where L y is what the impulse makes of the rows. Elimination reaches few of the rows from one stop, and what is found stands until
@@ -176,6 +115,11 @@ class LaneStops {
     const LinkedServo<W>& servo = servo_of(stop);
     stop.low_on = stop.high_on = Mask<W>::splat(false);
     stop.low_asked = servo.target_speed - servo.rate * servo.axis.low_gap;
+    if (!stop.node->has_twist) return;
+    // Of its own stops it asks nothing that they forbid: both would grow against each other to no end.
+    const LinkedAxis<W>& stops = b_.joints[stop.node - b_.plain.nodes].twist;
+    const Wide<W> least = asked(stops.low_gap), most = Wide<W>(0.0f) - asked(stops.high_gap);
+    stop.low_asked = max(min(stop.low_asked, most), least);
   }
   GYRE_INLINE Wide<W> asked(Wide<W> gap) const {
     const Wide<W> rate = select(gap > 0.0f, Wide<W>(1.0f / s_.substep), Wide<W>(s_.rate));
@@ -377,13 +321,16 @@ class LaneStops {
         if (counts[lane] > most) most = counts[lane];
       }
     };
-    for (std::uint32_t a = 0; a < count(); ++a) {
+    const auto list_stop = [&](std::uint32_t a) {
       LinkedStop<W>& stop = stops_[a];
-      if (stop.in == 0) continue;
+      if (stop.in == 0) return;
       stop.low_x = stop.high_x = Wide<W>(0.0f);
       if (stop.has_low) list(stop.low_on, 2 * a);
       list(stop.high_on, 2 * a + 1);
-    }
+    };
+    // Stops have the last word of a sweep.
+    for (std::uint32_t a = end_count(); a < count(); ++a) list_stop(a);
+    for (std::uint32_t a = 0; a < end_count(); ++a) list_stop(a);
     return most;
   }
   GYRE_INLINE static float lane_of(const Wide<W>& from, std::uint32_t lane) {
@@ -431,8 +378,6 @@ class LaneStops {
     const Wide<W> none(0.0f);
     for (std::uint32_t i = 0; i < slots || i < kFewSlots; ++i)
       slots_[i].excess = slots_[i].share = slots_[i].least = slots_[i].room = none;
-    if (b_.plain.servo_count > 0)
-      for (std::uint32_t i = 0; i < slots; ++i) slots_[i].most = Wide<W>(kUnbounded);
     clear_ways(slots);
     for (std::uint32_t lane = 0; lane < W; ++lane) {
       if (counts[lane] != 0 && !is_laid(lane, counts[lane])) lay_ways(lane, counts[lane]);
@@ -456,19 +401,23 @@ class LaneStops {
     const float kept = lane_of(servo.axis.low_impulse, lane), most = lane_of(servo.most, lane);
     set_lane(slot.excess, lane, lane_of(slot.excess, lane) + kMotorGive * lane_of(way, lane) * kept);
     set_lane(slot.least, lane, -most - kept);
-    set_lane(slot.room, lane, -most - kept);
     set_lane(slot.most, lane, most - kept);
   }
 
-  // How far a sweep takes the impulse of a slot; `most`: the most that any of them has changed a speed.
+  // How far a sweep takes the impulse of a slot; `most`: the most that any of them has changed a speed. Where there are servos, whose bounds
+  // may be far beyond what they give, `room` is what has been given instead.
   template <bool kServos>
   GYRE_INLINE static Wide<W> step_of(StopSlot<W>& slot, Wide<W> excess, Wide<W> own, Mask<W> live,
                                      Wide<W>& most) {
-    Wide<W> by = max(slot.room, slot.share * excess);
-    if constexpr (kServos) by = min(by, slot.most);
-    by = keep(live, by);
-    slot.room -= by;
-    if constexpr (kServos) slot.most -= by;
+    Wide<W> by = slot.share * excess;
+    if constexpr (kServos) {
+      const Wide<W> now = min(max(slot.room + by, slot.least), slot.most);
+      by = keep(live, now - slot.room);
+      slot.room += by;
+    } else {
+      by = keep(live, max(slot.room, by));
+      slot.room -= by;
+    }
     most = max(most, max(by, Wide<W>(0.0f) - by) * own);
     return by;
   }
@@ -511,13 +460,19 @@ class LaneStops {
   void find_impulses(Mask<W> live) {
     std::uint32_t counts[W];
     const std::uint32_t slots = list_ends(live, counts);
+    const bool has_servos = b_.plain.servo_count > 0;
+    // Only a servo knows a bound above.
+    if (has_servos)
+      for (std::uint32_t i = 0; i < slots; ++i) slots_[i].most = Wide<W>(kUnbounded);
     fill_slots(slots, counts);
+    if (has_servos)
+      for (std::uint32_t i = 0; i < slots; ++i) slots_[i].room = Wide<W>(0.0f);
     for (std::uint32_t i = 0; i < slots; ++i) {
       const Wide<W> own = slot_ways_[i * row_length() + i];
       slots_[i].share = keep(own > 0.0f, -kLaneReach / own);
     }
     // One lane has no use for the registers, and the few slots' code is long.
-    if (b_.plain.servo_count > 0)
+    if (has_servos)
       sweep_many<true>(slots, live);
     else if (W > 1 && slots <= kFewSlots)
       sweep_few(slots, live);
@@ -528,7 +483,8 @@ class LaneStops {
         const std::uint32_t end = ends_[i * W + lane];
         LinkedStop<W>& stop = stops_[end / 2];
         set_lane((end & 1u) != 0 ? stop.high_x : stop.low_x, lane,
-                 lane_of(slots_[i].least, lane) - lane_of(slots_[i].room, lane));
+                 has_servos ? lane_of(slots_[i].room, lane)
+                            : lane_of(slots_[i].least, lane) - lane_of(slots_[i].room, lane));
       }
     }
   }

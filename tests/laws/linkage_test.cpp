@@ -495,6 +495,58 @@ TEST(Arm, FallsIfItsMotorsAreTooWeak) {
   }
 }
 
+// What a motor gave as it was stronger it gives no more, and one that may give far more than it needs gives no less.
+TEST(Arm, IsDrivenByWhatItsMotorsHaveNow) {
+  Assembly arm({.sleeping = false});
+  build_arm(arm, Held::by_motors, 1.0e5f);
+  run(arm.world, 1.0);
+  for (const JointId joint : arm.joints)
+    ASSERT_TRUE(arm.world.set_motor(joint, {.target_position = 0.0f, .max_force = 1.0f}));
+  run(arm.world, 0.25);
+  EXPECT_TRUE(relative_row("torque of a motor that was weakened (N m)",
+                           double(arm.world.joint_reading(arm.joints[0]).torque.z), 1.0, 1e-3, 1e-5));
+  EXPECT_LT(arm.world.pose(arm.bodies.back()).position.y, -0.2) << "it falls";
+  for (const float most : {1.0e3f, 1.0e9f, 1.0e30f}) {
+    Assembly cube({.sleeping = false});
+    const BodyId body = cube.add({.pose = {.position = {0.05, 0, 0}}}, Box{{0.05f, 0.05f, 0.05f}});
+    ASSERT_TRUE(cube.world.add_joint({.kind = JointKind::hinge,
+                                      .b = body,
+                                      .axis = {0, 0, 1},
+                                      .motor = {.target_velocity = 2.0f, .max_force = most}}));
+    run(cube.world, 2.0);
+    EXPECT_TRUE(relative_row("speed of a small driven cube (rad/s)",
+                             double(cube.world.angular_velocity(body).z), 2.0, 1e-3, 1e-4));
+  }
+}
+
+// Motors that press a chain against all its limits: the limits hold.
+TEST(Arm, IsNotPressedThroughItsLimits) {
+  for (const float most : {1.0e2f, 1.0e4f, 1.0e6f}) {
+    Assembly arm({.sleeping = false});
+    BodyId last{};
+    for (int i = 0; i < 6; ++i) {
+      const BodyId body = arm.add({.pose = {.position = {0.3 * i + 0.15, 0, 0}}}, Box{{0.15f, 0.03f, 0.03f}});
+      arm.joints.push_back(arm.world.add_joint({.kind = JointKind::hinge,
+                                                .a = last,
+                                                .b = body,
+                                                .anchor = {0.3 * i, 0, 0},
+                                                .axis = {0, 0, 1},
+                                                .limits = Limits{-0.5f, 0.5f},
+                                                .motor = {.target_position = 3.0f, .max_force = most}}));
+      last = body;
+    }
+    double beyond = 0.0;
+    for (int i = 0; i < 240; ++i) {
+      ASSERT_TRUE(arm.world.step(kStep));
+      for (const JointId joint : arm.joints)
+        beyond = std::max(beyond, std::abs(double(arm.world.joint_reading(joint).position)) - 0.5);
+    }
+    EXPECT_TRUE(limit_row("a chain pressed beyond its limits (rad)", beyond, 5.0e-3, 1e-3));
+    EXPECT_TRUE(limit_row("speed of its end then (m/s)", double(length(arm.world.linear_velocity(last))),
+                          1e-2, 1e-3));
+  }
+}
+
 // One that turns the whole arm keeps its speed, whatever hangs on it.
 TEST(Arm, IsTurnedAtTheSpeedOfItsMotor) {
   for (const Held held : {Held::by_motors, Held::by_motors_alone}) {
