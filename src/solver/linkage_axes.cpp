@@ -34,9 +34,9 @@ AxisRoom room_of(const Linkage& linkage) {
 }
 
 // The rows of the axes.
-class AxisRows {
+class LinkedAxisRows {
  public:
-  explicit AxisRows(const Linkage& linkage) : count_(linkage.axes.size()) {
+  explicit LinkedAxisRows(const Linkage& linkage) : count_(linkage.axes.size()) {
     for (std::size_t c = 0; c < count_; ++c) rows_[c] = {linkage.axes[c].node, &linkage.axes[c].axis->row};
   }
   std::span<const ResponseRow> list() const { return {rows_, count_}; }
@@ -62,7 +62,7 @@ void place_linked_axes(const Linkage& linkage, const LinkageSolve& solve) {
   const std::size_t count = linkage.axes.size();
   if (count == 0) return;
   const AxisRoom room = room_of(linkage);
-  const AxisRows rows(linkage);
+  const LinkedAxisRows rows(linkage);
   for (std::size_t c = 0; c < count; ++c)
     find_response(linkage, solve, rows.list()[c], room.columns.at(c, linkage.plan.rows));
   find_ways(linkage, solve, rows.list(), room.columns, 0, room.matrix.data(), count);
@@ -125,7 +125,7 @@ void solve_linked_axes(const Linkage& linkage, const LinkageSolve& solve, bool s
   if (!is_any) return;
   for (std::size_t c = 0; c < count; ++c)
     linkage.axes[c].axis->worked += 0.5 * room.impulses[c] * double(before[c] + speeds[c]);
-  push_rows(linkage, solve, AxisRows(linkage).list(), room.impulses, room.speeds);
+  push_rows(linkage, solve, LinkedAxisRows(linkage).list(), room.impulses, room.speeds);
 }
 
 }  // namespace gyre
