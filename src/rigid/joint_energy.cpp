@@ -379,12 +379,6 @@ void forget_impulses(JointAxisRecord& axis) {
   axis.low_impulse = axis.high_impulse = axis.motor_impulse = axis.spring_impulse = axis.friction_impulse =
       0.0f;
 }
-bool any_turns_far(const Solve& solve, const JointIsland& island) {
-  for (const std::uint32_t body : island.bodies)
-    if (turns_far(solve.w.bodies.motion[body], solve.h)) return true;
-  return false;
-}
-
 // What follows does not begin with the impulses that gave too much, nor with those of springs and motors that they answered. In the middle
 // of a step axes are in the joints' work, as it ends in what persists.
 void forget_impulses(const Solve& solve, const JointIsland& island) {
@@ -402,6 +396,12 @@ void forget_impulses(const Solve& solve, const JointIsland& island) {
     if (!in_lanes.empty() && in_lanes[at] != 0) continue;
     for (AxisWork& x : solve.joint_work[at].axes) forget_impulses(x.axis);
   }
+}
+
+bool any_turns_far(const Solve& solve, const JointIsland& island) {
+  for (const std::uint32_t body : island.bodies)
+    if (turns_far(solve.w.bodies.motion[body], solve.h)) return true;
+  return false;
 }
 
 }  // namespace

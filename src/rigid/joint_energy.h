@@ -13,7 +13,8 @@ namespace gyre {
 // Those of the batch: bodies that hang together by joints, some of them swept or in linkages that are solved alone; of those that are
 // swept, where a body turns far. What springs, motors and drives do is told apart (rigid/worked_rows.h). What a
 // kinematic body holds is seen from that. Not where several that move hold it, where a body is bound to axes of the world, or where a linkage
-// in lanes is driven.
+// in lanes is driven. Where contacts or fields act, gains are taken away only beside what turns far: they may answer between two stages what
+// joints seem to give in one.
 std::span<JointIsland> find_joint_islands(const Solve& solve, Arena& arena);
 
 // Stages, whose blocks are islands: before what joints change of velocities, and after it. Warm: where impulses are given once more.

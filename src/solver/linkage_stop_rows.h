@@ -30,7 +30,8 @@ struct StopSlot {
   Wide<W> excess;       // rad/s: by how much its speed towards the inside is more than what is asked
   Wide<W> share;        // impulse for each rad/s of that, not positive
   Wide<W> least, room;  // least: of the impulse, room: from there to where it is, both not positive
-  Wide<W> most;         // how far it may still grow; known where there are servos
+  // Only in bundles with servos: how far it may grow; `room` is what has been given there, since bounds may be far beyond that.
+  Wide<W> most;
 };
 
 // For which slots of each lane the ways are laid out, and lanes, a bit for each, in which they have been found anew since. Up to
@@ -41,7 +42,7 @@ struct LaidWays {
   std::uint32_t renewed, cleared;
 };
 
-constexpr float kUnbounded = 3.0e38f;
+constexpr float kUnbounded = 3.0e38f;  // how far a stop's impulse may grow
 
 // As many slots stand in registers while they are swept.
 constexpr std::uint32_t kFewSlots = 8;

@@ -404,8 +404,7 @@ class LaneStops {
     set_lane(slot.most, lane, most - kept);
   }
 
-  // How far a sweep takes the impulse of a slot; `most`: the most that any of them has changed a speed. Where there are servos, whose bounds
-  // may be far beyond what they give, `room` is what has been given instead.
+  // How far a sweep takes the impulse of a slot; `most`: the most that any of them has changed a speed.
   template <bool kServos>
   GYRE_INLINE static Wide<W> step_of(StopSlot<W>& slot, Wide<W> excess, Wide<W> own, Mask<W> live,
                                      Wide<W>& most) {
