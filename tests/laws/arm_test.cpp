@@ -108,6 +108,28 @@ TEST(Arm, RestsBetweenMotorsInConflict) {
   }
 }
 
+// Neither at its bound, they press as hard as the share says by which they give way: rate d / 2 over what an impulse of one changes, over that
+// share, in each part of a step.
+TEST(Arm, MotorsInConflictGiveWayByAThousandth) {
+  constexpr double kApart = 1.0e-3, kRate = 40.0, kGives = 1.0e-3, kPart = 1.0 / 480.0;
+  Assembly arm({.gravity = {0, 0, 0}, .sleeping = false});
+  const BodyId body = arm.add({.pose = {.position = {0.5, 0, 0}}}, Box{{0.5f, 0.1f, 0.1f}});
+  for (const float place : {0.0f, float(kApart)})
+    arm.joints.push_back(arm.world.add_joint({.kind = JointKind::hinge,
+                                              .b = body,
+                                              .anchor = {0, 0, place > 0.0f ? 0.1 : -0.1},
+                                              .axis = {0, 0, 1},
+                                              .motor = {.target_position = place, .max_force = 1.0e9f}}));
+  run(arm.world, 2.0);
+  const double inertia = 40.0 * ((1.0 + 0.04) / 12.0 + 0.25);
+  EXPECT_TRUE(relative_row("place between two motors (rad)",
+                           double(arm.world.joint_reading(arm.joints[0]).position), 0.5 * kApart, 2e-2,
+                           1e-3));
+  EXPECT_TRUE(relative_row("torque of motors in conflict (N m)",
+                           double(arm.world.joint_reading(arm.joints[1]).torque.z),
+                           kRate * 0.5 * kApart * inertia / (kGives * kPart), 2e-2, 1e-3));
+}
+
 // Motors that press a chain against all its limits: the limits hold.
 TEST(Arm, IsNotPressedThroughItsLimits) {
   for (const float most : {1.0e2f, 1.0e4f, 1.0e6f}) {
