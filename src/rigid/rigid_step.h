@@ -4,7 +4,7 @@
 #include "base/arena/arena.h"
 #include "collision/continuous/continuous.h"
 #include "rigid/store/rigid_world.h"
-#include "solver/contact/contact_block.h"
+#include "solver/kernels/solver_kernels.h"
 #include "task/task_system.h"
 
 namespace gyre {
@@ -43,7 +43,7 @@ void finish_bodies(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds
 void break_joints(RigidWorld& w, float seconds);
 
 // Sweeps bodies that moved far against what is in their way and takes them back to the first impact.
-void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, const ContactKernels& kernels, Arena& arena,
+void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, const SolverKernels& kernels, Arena& arena,
                        TaskSystem& tasks);
 
 // Fits a new fat box around one shape, with its way in a step of this length, and lists it as changed.

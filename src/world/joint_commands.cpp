@@ -1,7 +1,7 @@
 #include "world/joint_commands.h"
 
 #include "collision/contact/pair_update.h"
-#include "rigid/solve/hits.h"
+#include "rigid/solve/hit_events.h"
 #include "rigid/sleep/island.h"
 #include "rigid/rigid_step.h"
 #include "solver/joint/joint.h"

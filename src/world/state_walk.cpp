@@ -4,7 +4,7 @@
 #include "base/float_mode.h"
 #include "collision/broadphase/fat_box.h"
 #include "rigid/sleep/island.h"
-#include "rigid/batch/solve_batches.h"
+#include "dynamics/island_batches.h"
 #include "world/world_state.h"
 
 #include <vector>
@@ -228,8 +228,8 @@ Error Walk::pairs_have_contacts() const {
 // between steps, too.
 Error Walk::groups_of_constraints() const {
   Error fault = groups_of_batch(s_.solve.together);
-  for (const std::unique_ptr<LoneSolver>& lone : s_.solve.lone) {
-    if (fault.code == ErrorCode::none) fault = groups_of_batch(lone->scratch);
+  for (const std::unique_ptr<WorkerContext>& worker : s_.solve.workers) {
+    if (fault.code == ErrorCode::none) fault = groups_of_batch(worker->scratch);
   }
   return fault;
 }
@@ -238,15 +238,15 @@ Error Walk::groups_of_batch(const BatchScratch& solve) const {
     return pairs.empty() ||
            validate_coloring(pairs, std::uint32_t(colors.masks.size()), {}, kColoringOptions, colors);
   };
-  if (!fits(solve.pairs, solve.contact_colors)) return broken("a group of contacts has a moving body twice");
-  if (!fits(solve.joint_pairs, solve.joint_colors))
+  if (!fits(solve.contacts.pairs, solve.contact_colors)) return broken("a group of contacts has a moving body twice");
+  if (!fits(solve.joints.pairs, solve.joint_colors))
     return broken("a group of joints has a moving body twice");
   return {};
 }
 
 // Whether the lists of all batches together are the slots for which acts(slot) holds, each once.
 template <class Acts>
-bool are_all(const SolveBatches& batches, std::span<const std::uint32_t> SolveBatch::*list, std::size_t slots,
+bool are_all(const IslandBatches& batches, std::span<const std::uint32_t> SolveBatch::*list, std::size_t slots,
              const Acts& acts) {
   std::vector<std::uint8_t> listed(slots);
   for (const SolveBatch& batch : batches.batches) {
@@ -266,7 +266,7 @@ bool are_all(const SolveBatches& batches, std::span<const std::uint32_t> SolveBa
 Error Walk::everything_is_solved() const {
   Arena arena;
   TaskSystem alone;
-  const SolveBatches batches = find_batches(w_, arena, alone, {.most = 16});
+  const IslandBatches batches = find_batches(w_, arena, alone, {.most = 16});
   const auto acts = [&](std::uint32_t slot) { return is_solved(w_, w_.contacts.contacts[slot]); };
   if (!are_all(batches, &SolveBatch::contacts, w_.contacts.contacts.size(), acts))
     return broken("a contact with manifolds and an awake body is not in one batch");

@@ -208,15 +208,15 @@ TEST(Walk, FindsContactsWithoutPairsAndPairsWithoutContacts) {
 
 TEST(Walk, FindsGroupsThatShareABody) {
   EXPECT_TRUE(tells(fault_after([](WorldState& s) {
-                      ASSERT_GE(s.solve.together.pairs.size(), 2u);
+                      ASSERT_GE(s.solve.together.contacts.pairs.size(), 2u);
                       // Both in group 0, as if the second had not seen the first.
-                      s.solve.together.pairs[1] = s.solve.together.pairs[0];
+                      s.solve.together.contacts.pairs[1] = s.solve.together.contacts.pairs[0];
                       s.solve.together.contact_colors.color[1] = s.solve.together.contact_colors.color[0];
                     }),
                     "a group of contacts has a moving body twice"));
   EXPECT_TRUE(tells(fault_after([](WorldState& s) {
-                      ASSERT_EQ(s.solve.together.joint_pairs.size(), 2u);
-                      s.solve.together.joint_pairs[1] = s.solve.together.joint_pairs[0];
+                      ASSERT_EQ(s.solve.together.joints.pairs.size(), 2u);
+                      s.solve.together.joints.pairs[1] = s.solve.together.joints.pairs[0];
                       s.solve.together.joint_colors.color[1] = s.solve.together.joint_colors.color[0];
                     }),
                     "a group of joints has a moving body twice"));

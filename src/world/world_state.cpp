@@ -128,7 +128,7 @@ std::unique_ptr<WorldState> make_world_state(const WorldDef& def) {
   state->number = next_world_number();
   state->tasks = def.host_tasks.run != nullptr ? std::make_unique<TaskSystem>(def.host_tasks)
                                                : std::make_unique<TaskSystem>(def.threads);
-  state->kernels = &select_contact_kernels(def.simd_width);
+  state->kernels = &select_kernels(def.simd_width);
   state->recycle_contacts = select_recycling(def.simd_width);
   const char* timed[kStageCount + 1];
   for (int i = 0; i < kStageCount; ++i) timed[i] = kStageNames[i];

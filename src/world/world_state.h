@@ -7,8 +7,8 @@
 #include "rigid/time/impact_times.h"
 #include "rigid/rigid_step.h"
 #include "rigid/store/rigid_world.h"
-#include "rigid/solve/solve_step.h"
-#include "solver/contact/contact_block.h"
+#include "dynamics/solve_step.h"
+#include "solver/kernels/solver_kernels.h"
 #include "task/task_system.h"
 #include "world/command.h"
 #include "world/state_fields.h"
@@ -49,7 +49,7 @@ struct WorldState {
   // Everything below can be rebuilt, or is about this process and not about the simulated world.
   WorldDef def;
   std::unique_ptr<TaskSystem> tasks;
-  const ContactKernels* kernels = nullptr;
+  const SolverKernels* kernels = nullptr;
   RecycleContacts recycle_contacts = nullptr;
   Arena arena;
   SolveScratch solve;

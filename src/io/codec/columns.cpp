@@ -11,8 +11,8 @@ void clear_events(RigidEvents& events) {
 }
 
 void forget_batch(BatchScratch& batch) {
-  batch.constraints.clear(), batch.constraint_contact.clear(), batch.pairs.clear();
-  batch.swept_joints.clear(), batch.joint_pairs.clear();
+  batch.contacts.constraints.clear(), batch.contacts.slots.clear(), batch.contacts.pairs.clear();
+  batch.joints.swept.clear(), batch.joints.pairs.clear();
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ void forget_reports(WorldState& state) {
   state.frozen.clear();
   // What the solver had were constraints of the state that is replaced.
   forget_batch(state.solve.together);
-  for (const std::unique_ptr<LoneSolver>& lone : state.solve.lone) forget_batch(lone->scratch);
+  for (const std::unique_ptr<WorkerContext>& worker : state.solve.workers) forget_batch(worker->scratch);
   state.solve.counts = {};
   state.solve.colors = 0;
 }

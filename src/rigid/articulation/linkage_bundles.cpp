@@ -76,7 +76,7 @@ bool has_light_link(const RigidWorld& w, const JointRecord& joint) {
 
 }  // namespace
 
-BundleSolve lay_out_bundles(const Linkages& linkages, const ContactKernels& kernels, const LaneArrays& arrays,
+BundleSolve lay_out_bundles(const Linkages& linkages, const SolverKernels& kernels, const LaneArrays& arrays,
                             const LaneSettings& settings, Arena& arena) {
   BundleSolve result{{}, arrays, settings};
   const std::size_t count = linkages.alike.size();
@@ -91,7 +91,7 @@ BundleSolve lay_out_bundles(const Linkages& linkages, const ContactKernels& kern
   result.bundles = arena.make<Bundled>(count);
   const LinkageKernels& wide = kernels.linkages;
   const LinkageKernels& narrow = narrower_kernels(kernels).linkages;
-  const LinkageKernels& single = select_contact_kernels(1).linkages;
+  const LinkageKernels& single = select_kernels(1).linkages;
   const auto kernels_of = [&](std::size_t lanes) -> const LinkageKernels& {
     return lanes == 1 ? single : lanes <= std::size_t(narrow.width) ? narrow : wide;
   };

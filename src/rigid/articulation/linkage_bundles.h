@@ -5,7 +5,7 @@
 #pragma once
 
 #include "rigid/articulation/linkages.h"
-#include "solver/contact/contact_block.h"
+#include "solver/kernels/solver_kernels.h"
 
 namespace gyre {
 
@@ -23,7 +23,7 @@ struct BundleSolve {
 // One of the kernels that work on velocities or places.
 using BundleKernel = void (*LinkageKernels::*)(const LinkageBundle&, const LaneArrays&, const LaneSettings&);
 
-BundleSolve lay_out_bundles(const Linkages& linkages, const ContactKernels& kernels, const LaneArrays& arrays,
+BundleSolve lay_out_bundles(const Linkages& linkages, const SolverKernels& kernels, const LaneArrays& arrays,
                             const LaneSettings& settings, Arena& arena);
 // Of bundles [begin, end).
 void begin_bundles(const BundleSolve& bundles, int begin, int end, const RigidWorld& w,

@@ -26,7 +26,7 @@ struct Crowd {
     }
   }
   BundleSolve lay_out(int width, Arena& arena) {
-    return lay_out_bundles({{}, alike, shapes, {}, {}}, select_contact_kernels(width), {}, {}, arena);
+    return lay_out_bundles({{}, alike, shapes, {}, {}}, select_kernels(width), {}, {}, arena);
   }
 
   std::vector<LaneNode> nodes;
@@ -57,7 +57,7 @@ TEST(LinkageBundles, HaveEachLinkageOnce) {
 
 TEST(LinkageBundles, LeaveNoHalfOfTheLanesIdleWhereFewerWouldDo) {
   for (const int width : {0, 1, 4, 8, 16}) {
-    const ContactKernels& kernels = select_contact_kernels(width);
+    const SolverKernels& kernels = select_kernels(width);
     const int narrow = narrower_kernels(kernels).width;
     EXPECT_TRUE(narrow == kernels.width || 2 * narrow == kernels.width);
     for (std::size_t count = 1; count <= kMost; ++count) {
@@ -73,7 +73,7 @@ TEST(LinkageBundles, LeaveNoHalfOfTheLanesIdleWhereFewerWouldDo) {
 
 // Sixteen lanes have eight of the same instructions beside them.
 TEST(LinkageBundles, SixteenLanesHaveKernelsOfHalfAsMany) {
-  const ContactKernels& kernels = select_contact_kernels(16);
+  const SolverKernels& kernels = select_kernels(16);
   if (kernels.width < 16) GTEST_SKIP() << "this processor has none of sixteen lanes";
   EXPECT_EQ(narrower_kernels(kernels).width, 8);
 }

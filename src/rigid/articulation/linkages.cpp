@@ -1,5 +1,6 @@
 #include "rigid/articulation/linkages.h"
 
+#include "base/container/disjoint_sets.h"
 #include "base/prefetch.h"
 #include "solver/articulation/linkage_axes.h"
 #include "solver/articulation/linkage_stops.h"
@@ -22,23 +23,16 @@ struct Graph {
   std::span<std::uint32_t> joints;  // places in the batch's list
   std::span<std::uint32_t> first;  // by body's place: where its part of `at_body` begins; one more at the end
   std::span<std::uint32_t> at_body;  // numbers in `joints`, body by body
-  std::span<std::uint32_t> parent;   // by body's place
+  DisjointSets bodies;               // by place
 };
-
-std::uint32_t root_of(const Graph& graph, std::uint32_t place) {
-  const std::span<std::uint32_t> parent = graph.parent;
-  while (parent[place] != place) place = parent[place] = parent[parent[place]];
-  return place;
-}
 
 Graph make_graph(std::span<const NetJoint> all, std::size_t bodies, std::span<const std::uint32_t> places,
                  Arena& arena) {
   Graph graph;
   const std::span<std::uint32_t> joints = arena.make<std::uint32_t>(all.size());
   graph.first = arena.make<std::uint32_t>(bodies + 1);
-  graph.parent = arena.make<std::uint32_t>(bodies);
+  graph.bodies = DisjointSets(arena.make<std::uint32_t>(bodies));
   for (std::uint32_t& first : graph.first) first = 0;
-  for (std::uint32_t place = 0; place < graph.parent.size(); ++place) graph.parent[place] = place;
   std::size_t count = 0, ends = 0;
   for (std::uint32_t i = 0; i < all.size(); ++i) {
     if (all[i].equations == 0) continue;
@@ -47,10 +41,7 @@ Graph make_graph(std::span<const NetJoint> all, std::size_t bodies, std::span<co
     for_moving(all[i], [&](std::uint32_t body) {
       ++graph.first[places[body] + 1];
       ++ends;
-      if (previous != kNoIndex) {
-        const std::uint32_t a = root_of(graph, previous), b = root_of(graph, places[body]);
-        graph.parent[max(a, b)] = min(a, b);
-      }
+      if (previous != kNoIndex) graph.bodies.unite(previous, places[body]);
       previous = places[body];
     });
   }
@@ -80,14 +71,14 @@ Groups group_joints(std::span<const NetJoint> all, std::span<const std::uint32_t
   Groups groups{arena.make<std::uint32_t>(graph.joints.size()),
                 arena.make<std::uint32_t>(graph.joints.size()),
                 arena.make<std::uint32_t>(graph.joints.size())};
-  const std::span<std::uint32_t> group_of_root = arena.make<std::uint32_t>(graph.parent.size());
+  const std::span<std::uint32_t> group_of_root = arena.make<std::uint32_t>(graph.bodies.parents.size());
   const std::span<std::uint32_t> group_of = arena.make<std::uint32_t>(graph.joints.size());
   for (std::uint32_t& group : group_of_root) group = kNoIndex;
   std::uint32_t count = 0;
   for (std::uint32_t n = 0; n < graph.joints.size(); ++n) {
     std::uint32_t place = kNoIndex;
     for_moving(all[graph.joints[n]], [&](std::uint32_t body) { place = places[body]; });
-    std::uint32_t& group = group_of_root[root_of(graph, place)];
+    std::uint32_t& group = group_of_root[graph.bodies.of(place)];
     if (group == kNoIndex) {
       group = count;
       groups.ends[count++] = 0;

@@ -7,7 +7,7 @@
 #include "base/function_ref.h"
 #include "rigid/batch/joint_works.h"
 #include "rigid/store/rigid_world.h"
-#include "rigid/batch/solve_batches.h"
+#include "rigid/batch/solve_batch.h"
 #include "solver/articulation/lane_records.h"
 #include "solver/articulation/linkage.h"
 
@@ -63,7 +63,7 @@ class DenseNets {
   Array<NetJoint> joints_;  // of all nets, one after the other
 };
 
-// Of one batch; `places` are those of all (solve_batches.h), `joints` are the batch's. `pressed`: by place, 1 of bodies on which contacts
+// Of one batch; `places`: by body, its index in its batch. `joints` are the batch's. `pressed`: by place, 1 of bodies on which contacts
 // act; or empty. `start`: how lanes will be begun.
 Linkages find_linkages(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
                        std::span<const NetJoint> joints, std::span<const std::uint8_t> pressed,

@@ -3,7 +3,7 @@
 
 #include "base/arena/arena.h"
 #include "rigid/store/rigid_world.h"
-#include "rigid/batch/solve_batches.h"
+#include "rigid/batch/solve_batch.h"
 #include "solver/joint/joint.h"
 
 namespace gyre {

@@ -1,7 +1,7 @@
 #include "rigid/continuous/closing_groups.h"
 
 #include "base/container/sort.h"
-#include "rigid/batch/solve_batches.h"
+#include "rigid/batch/solve_batch.h"
 
 namespace gyre {
 

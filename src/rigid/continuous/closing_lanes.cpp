@@ -40,7 +40,7 @@ class LaneClosing {
     for (std::uint8_t& led : is_led_) led = 0;
   }
 
-  std::span<const std::uint8_t> follow(bool stays, const ContactKernels& kernels, TaskSystem& tasks) {
+  std::span<const std::uint8_t> follow(bool stays, const SolverKernels& kernels, TaskSystem& tasks) {
     list();
     if (batch_.joints.empty()) return is_led_;
     const LaneStart start{.limits_only = true};
@@ -108,7 +108,7 @@ class LaneClosing {
     std::uint32_t going = (1u << bundle.linkages.size()) - 1;
     while (going != 0) {
       forget_lane_impulses(bundle.lanes);
-      kernels.place(bundle.lanes, bundles_.arrays, bundles_.settings);
+      kernels.evaluate(bundle.lanes, bundles_.arrays, bundles_.settings);
       std::uint32_t solved = 0;
       for (std::size_t lane = 0; lane < bundle.linkages.size(); ++lane) {
         if ((going >> lane & 1u) == 0) continue;
@@ -117,9 +117,9 @@ class LaneClosing {
         if (next == ClosingWay::Next::done) going &= ~(1u << lane);
       }
       if (solved == 0) continue;
-      kernels.ask(bundle.lanes, bundles_.arrays, bundles_.settings);
+      kernels.compute_bias(bundle.lanes, bundles_.arrays, bundles_.settings);
       kernels.solve(bundle.lanes, bundles_.arrays, bundles_.settings);
-      kernels.solve_again(bundle.lanes, bundles_.arrays, bundles_.settings);
+      kernels.solve_after_contacts(bundle.lanes, bundles_.arrays, bundles_.settings);
       for (std::size_t lane = 0; lane < bundle.linkages.size(); ++lane)
         if ((solved >> lane & 1u) != 0) way_of(bundle, lane).advance();
     }
@@ -145,7 +145,7 @@ class LaneClosing {
 
 std::span<const std::uint8_t> follow_in_lanes(RigidWorld& w, std::span<const ClosingGroup> groups,
                                               const ClosingBodies& bodies, bool stays,
-                                              const ContactKernels& kernels, TaskSystem& tasks,
+                                              const SolverKernels& kernels, TaskSystem& tasks,
                                               Arena& arena) {
   return LaneClosing(w, groups, bodies, arena).follow(stays, kernels, tasks);
 }

@@ -7,7 +7,7 @@
 #pragma once
 
 #include "rigid/continuous/closing_way.h"
-#include "solver/contact/contact_block.h"
+#include "solver/kernels/solver_kernels.h"
 #include "task/task_system.h"
 
 namespace gyre {
@@ -15,6 +15,6 @@ namespace gyre {
 // Returns by group whether it was led.
 std::span<const std::uint8_t> follow_in_lanes(RigidWorld& w, std::span<const ClosingGroup> groups,
                                               const ClosingBodies& bodies, bool stays,
-                                              const ContactKernels& kernels, TaskSystem& tasks, Arena& arena);
+                                              const SolverKernels& kernels, TaskSystem& tasks, Arena& arena);
 
 }  // namespace gyre

@@ -36,7 +36,7 @@ class ChainsFollow : public ::testing::Test {
   }
   std::span<const std::uint8_t> follow_in_lanes(std::size_t chains) {
     begin(chains);
-    return gyre::follow_in_lanes(world_, groups_, bodies_, false, select_contact_kernels(8), tasks_, arena_);
+    return gyre::follow_in_lanes(world_, groups_, bodies_, false, select_kernels(8), tasks_, arena_);
   }
   void follow_by_rows() {
     begin(stopped_.size());

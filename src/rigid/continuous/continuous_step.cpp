@@ -317,7 +317,7 @@ std::span<const StoppedBody> take_back(RigidWorld& w, ContinuousScratch& scratch
 
 }  // namespace
 
-void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, const ContactKernels& kernels, Arena& arena,
+void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, const SolverKernels& kernels, Arena& arena,
                        TaskSystem& tasks) {
   list_fast_bodies(w, scratch, arena, tasks);
   if (!scratch.fast.empty()) {

@@ -49,7 +49,7 @@ bool holds_point(const RigidWorld& w, std::uint32_t joint) {
 }
 
 void close_joints(RigidWorld& w, std::span<const StoppedBody> stopped, bool stays,
-                  const ContactKernels& kernels, TaskSystem& tasks, Array<std::uint32_t>& moved,
+                  const SolverKernels& kernels, TaskSystem& tasks, Array<std::uint32_t>& moved,
                   Arena& arena) {
   const ArenaScope scope(arena);
   const ClosingBodies bodies = make_bodies(w, arena);

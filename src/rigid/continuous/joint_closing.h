@@ -4,7 +4,7 @@
 #include "base/arena/arena.h"
 #include "base/container/array.h"
 #include "rigid/continuous/closing_groups.h"
-#include "solver/contact/contact_block.h"
+#include "solver/kernels/solver_kernels.h"
 #include "task/task_system.h"
 
 namespace gyre {
@@ -16,7 +16,7 @@ bool holds_point(const RigidWorld& w, std::uint32_t joint);
 // `stays`: nothing goes on beyond where the first that it hangs together with was stopped. Adds to `moved` what ends far, against its
 // size, from where it would have ended: it was not swept on that way.
 void close_joints(RigidWorld& w, std::span<const StoppedBody> stopped, bool stays,
-                  const ContactKernels& kernels, TaskSystem& tasks, Array<std::uint32_t>& moved,
+                  const SolverKernels& kernels, TaskSystem& tasks, Array<std::uint32_t>& moved,
                   Arena& arena);
 
 }  // namespace gyre

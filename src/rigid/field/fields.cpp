@@ -195,8 +195,7 @@ void prepare_fields(RigidWorld& w, FieldBody& from, double h) {
 
 // Calls fn(body) for the bodies of some blocks.
 template <class Fn>
-void for_bodies(void* context, int begin, int end, Fn&& fn) {
-  const FieldSolve& solve = *static_cast<FieldSolve*>(context);
+void for_bodies(const FieldSolve& solve, int begin, int end, Fn&& fn) {
   const std::size_t last = min(std::size_t(end) * kFieldBodiesPerBlock, solve.bodies.size());
   for (std::size_t i = std::size_t(begin) * kFieldBodiesPerBlock; i < last; ++i)
     fn(*solve.world, solve.bodies[i], solve.h);
@@ -276,18 +275,18 @@ int FieldSolve::blocks() const {
   return (int(bodies.size()) + kFieldBodiesPerBlock - 1) / kFieldBodiesPerBlock;
 }
 
-void prepare_fields_stage(void* context, int begin, int end, int) {
-  for_bodies(context, begin, end,
+void prepare_field_bodies(const FieldSolve& fields, int begin, int end) {
+  for_bodies(fields, begin, end,
              [](RigidWorld& w, FieldBody& body, float h) { prepare_fields(w, body, double(h)); });
 }
-void watch_fields_stage(void* context, int begin, int end, int) {
-  for_bodies(context, begin, end, [](const RigidWorld& w, FieldBody& body, float) {
+void record_field_velocities(const FieldSolve& fields, int begin, int end) {
+  for_bodies(fields, begin, end, [](const RigidWorld& w, FieldBody& body, float) {
     body.linear_before = w.bodies.motion[body.body].linear_velocity;
     body.angular_before = w.bodies.motion[body.body].angular_velocity;
   });
 }
-void apply_fields_stage(void* context, int begin, int end, int) {
-  for_bodies(context, begin, end,
+void apply_field_forces(const FieldSolve& fields, int begin, int end) {
+  for_bodies(fields, begin, end,
              [](RigidWorld& w, const FieldBody& body, float h) { apply_fields(w, body, double(h)); });
 }
 

@@ -36,7 +36,7 @@ struct FieldBody {
 Six force_of_fields(const RigidWorld& w, std::uint32_t body, std::span<const std::uint32_t> fields,
                     const BodyStance& stance, double time);
 
-// Stages of the program of sub-steps, over blocks of kFieldBodiesPerBlock bodies; their context is this.
+// What the stages below work on, in blocks of kFieldBodiesPerBlock bodies.
 struct FieldSolve {
   RigidWorld* world = nullptr;
   std::span<FieldBody> bodies{};
@@ -52,10 +52,10 @@ FieldSolve find_field_bodies(RigidWorld& w, std::span<const std::uint32_t> bodie
                              bool free = true);
 
 // Once, as the step begins: drag and stream.
-void prepare_fields_stage(void* context, int begin, int end, int worker);
+void prepare_field_bodies(const FieldSolve& fields, int begin, int end);
 // As a sub-step begins: each notes its velocity.
-void watch_fields_stage(void* context, int begin, int end, int worker);
+void record_field_velocities(const FieldSolve& fields, int begin, int end);
 // Between its forces and its constraints.
-void apply_fields_stage(void* context, int begin, int end, int worker);
+void apply_field_forces(const FieldSolve& fields, int begin, int end);
 
 }  // namespace gyre

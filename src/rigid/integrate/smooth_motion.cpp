@@ -352,8 +352,7 @@ SmoothMotion find_smooth_motion(RigidWorld& w, const SolveBatch& batch, std::spa
   return motion;
 }
 
-void move_smooth_stage(void* context, int begin, int end, int) {
-  const SmoothMotion& motion = *static_cast<SmoothMotion*>(context);
+void move_spring_systems(const SmoothMotion& motion, int begin, int end) {
   for (int n = begin; n < end; ++n) {
     SmoothSystem& system = motion.systems[std::size_t(n)];
     if (system.carried) {
@@ -366,8 +365,7 @@ void move_smooth_stage(void* context, int begin, int end, int) {
   }
 }
 
-void move_carried_stage(void* context, int begin, int end, int) {
-  const SmoothMotion& motion = *static_cast<SmoothMotion*>(context);
+void move_coupled_spring_systems(const SmoothMotion& motion, int begin, int end) {
   for (int n = begin; n < end; ++n) {
     SmoothSystem& system = motion.systems[std::size_t(n)];
     if (!system.carried) continue;
@@ -383,8 +381,7 @@ void move_carried_stage(void* context, int begin, int end, int) {
   }
 }
 
-void kick_carriers_stage(void* context, int, int, int) {
-  SmoothMotion& motion = *static_cast<SmoothMotion*>(context);
+void apply_spring_impulses(SmoothMotion& motion, int, int) {
   RigidWorld& w = *motion.world;
   // Loose springs first look at all places and speeds as they were, then act.
   for (SmoothSpring& spring : motion.loose) {
@@ -408,8 +405,7 @@ void kick_carriers_stage(void* context, int, int, int) {
   motion.time += motion.h;
 }
 
-void finish_smooth_stage(void* context, int begin, int end, int) {
-  const SmoothMotion& motion = *static_cast<SmoothMotion*>(context);
+void finish_spring_systems(const SmoothMotion& motion, int begin, int end) {
   RigidWorld& w = *motion.world;
   const bool keeps_moves = motion.settings.integrator == IntegratorKind::verlet;
   for (int n = begin; n < end; ++n) {

@@ -11,7 +11,7 @@
 #pragma once
 
 #include "rigid/integrate/smooth_schemes.h"
-#include "rigid/batch/solve_batches.h"
+#include "rigid/batch/solve_batch.h"
 
 namespace gyre {
 
@@ -39,11 +39,14 @@ struct SmoothMotion {
 SmoothMotion find_smooth_motion(RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
                                 int parts, float h, Arena& arena);
 
-// Stages of the program of sub-steps, a block being a system; the context is the SmoothMotion.
-void move_smooth_stage(void* context, int begin, int end, int worker);    // once, before all parts
-void move_carried_stage(void* context, int begin, int end, int worker);   // in each part, before its forces
-void kick_carriers_stage(void* context, int begin, int end, int worker);  // after that; one block
-void finish_smooth_stage(void* context, int begin, int end, int worker);  // once, after all parts
+// The stages of systems; a block is a system.
+// Once, before all sub-steps, and after them.
+void move_spring_systems(const SmoothMotion& motion, int begin, int end);
+void finish_spring_systems(const SmoothMotion& motion, int begin, int end);
+// In each sub-step, before its forces: the systems with a spring to what constraints act on; then the impulses of those springs on the
+// other ends, in one block.
+void move_coupled_spring_systems(const SmoothMotion& motion, int begin, int end);
+void apply_spring_impulses(SmoothMotion& motion, int begin, int end);
 
 // What springs gave, into their joints; what the plan did, into the report.
 void finish_springs(RigidWorld& w, const SmoothMotion& motion, StepReport& report);

@@ -41,37 +41,24 @@ RestingIslands::RestingIslands(const RigidWorld& w, std::span<const ContactConst
     : w_(w),
       batch_(batch),
       places_(places),
-      parent_(arena.make<std::uint32_t>(batch.bodies.size())),
+      sets_(arena.make<std::uint32_t>(batch.bodies.size())),
       counts_(arena.make<IslandCount>(batch.bodies.size())) {
-  for (std::uint32_t i = 0; i < parent_.size(); ++i) parent_[i] = i, counts_[i] = {};
+  for (IslandCount& count : counts_) count = {};
   unite_all(pairs, joints);
   refuse_jointed(joints);
   count_bodies();
   count_contacts(constraints, pairs);
 }
 
-std::uint32_t RestingIslands::root(std::uint32_t place) {
-  while (parent_[place] != place) place = parent_[place] = parent_[parent_[place]];
-  return place;
-}
-
-void RestingIslands::unite(std::uint32_t place_a, std::uint32_t place_b) {
-  // Most are in one island by the time they are asked.
-  if (parent_[place_a] == parent_[place_b]) return;
-  const std::uint32_t a = root(place_a), b = root(place_b);
-  parent_[max(a, b)] = min(a, b);
-}
-
 void RestingIslands::unite_all(std::span<const ColoringPair> pairs, std::span<const NetJoint> joints) {
   for (const ColoringPair& pair : pairs) {
-    if (pair.a != ColoringPair::kNone && pair.b != ColoringPair::kNone) unite(pair.a, pair.b);
+    if (pair.a != ColoringPair::kNone && pair.b != ColoringPair::kNone) sets_.unite(pair.a, pair.b);
   }
   for (const NetJoint& joint : joints) {
     if (joint.body_a != kNoBody && joint.body_b != kNoBody)
-      unite(places_[std::size_t(joint.body_a)], places_[std::size_t(joint.body_b)]);
+      sets_.unite(places_[std::size_t(joint.body_a)], places_[std::size_t(joint.body_b)]);
   }
-  // Who is lower has its root by now.
-  for (std::uint32_t& parent : parent_) parent = parent_[parent];
+  sets_.flatten();
 }
 
 void RestingIslands::count_bodies() {
@@ -79,7 +66,7 @@ void RestingIslands::count_bodies() {
   for (std::uint32_t place = 0; place < batch_.bodies.size(); ++place) {
     const std::uint32_t body = batch_.bodies[place];
     if (!is_movable(w_.bodies.flags[body])) continue;
-    IslandCount& count = counts_[parent_[place]];
+    IslandCount& count = counts_[sets_.parents[place]];
     if (count.refused) continue;
     const Slowness slowness(w_, body, pull);
     const float reach = w_.bodies.masses[body].reach;
@@ -99,7 +86,7 @@ void RestingIslands::count_contacts(std::span<const ContactConstraint> constrain
                                     std::span<const ColoringPair> pairs) {
   for (std::uint32_t i = 0; i < constraints.size(); ++i) {
     const bool active_a = pairs[i].a != ColoringPair::kNone, active_b = pairs[i].b != ColoringPair::kNone;
-    IslandCount& count = counts_[parent_[active_a ? pairs[i].a : pairs[i].b]];
+    IslandCount& count = counts_[sets_.parents[active_a ? pairs[i].a : pairs[i].b]];
     if (count.refused) continue;
     const ContactConstraint& c = constraints[i];
     ++count.contacts;
@@ -117,7 +104,7 @@ void RestingIslands::count_contacts(std::span<const ContactConstraint> constrain
 
 void RestingIslands::refuse_jointed(std::span<const NetJoint> joints) {
   for (const NetJoint& joint : joints)
-    for_moving(joint, [&](std::uint32_t body) { counts_[parent_[places_[body]]].refused = true; });
+    for_moving(joint, [&](std::uint32_t body) { counts_[sets_.parents[places_[body]]].refused = true; });
 }
 
 IncidentContacts link_incident_contacts(std::span<const ColoringPair> pairs, std::size_t bodies,

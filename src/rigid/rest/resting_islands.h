@@ -3,9 +3,10 @@
 #pragma once
 
 #include "base/arena/arena.h"
+#include "base/container/disjoint_sets.h"
 #include "rigid/batch/joint_works.h"
 #include "rigid/store/rigid_world.h"
-#include "rigid/batch/solve_batches.h"
+#include "rigid/batch/solve_batch.h"
 #include "solver/contact/contact_block.h"
 #include "task/coloring.h"
 
@@ -41,21 +42,19 @@ struct IslandCount {
 class RestingIslands {
  public:
   // `pairs`: places of the constraints' bodies in the batch, as far as these move. `joints`: those of the batch. `places`: of all
-  // bodies (solve_batches.h).
+  // bodies: by body its index in its batch.
   RestingIslands(const RigidWorld& w, std::span<const ContactConstraint> constraints,
                  std::span<const ColoringPair> pairs, std::span<const NetJoint> joints,
                  const SolveBatch& batch, std::span<const std::uint32_t> places, Arena& arena);
 
   // By place of a body in the batch. Only roots have counts.
   bool is_root(std::uint32_t place) const {
-    return parent_[place] == place && is_movable(w_.bodies.flags[batch_.bodies[place]]);
+    return sets_.parents[place] == place && is_movable(w_.bodies.flags[batch_.bodies[place]]);
   }
   const IslandCount& at_root(std::uint32_t place) const { return counts_[place]; }
-  std::uint32_t root_of(std::uint32_t place) const { return parent_[place]; }
+  std::uint32_t root_of(std::uint32_t place) const { return sets_.parents[place]; }
 
  private:
-  std::uint32_t root(std::uint32_t place);
-  void unite(std::uint32_t place_a, std::uint32_t place_b);
   void unite_all(std::span<const ColoringPair> pairs, std::span<const NetJoint> joints);
   void refuse_jointed(std::span<const NetJoint> joints);
   void count_bodies();
@@ -64,7 +63,7 @@ class RestingIslands {
   const RigidWorld& w_;
   const SolveBatch& batch_;
   std::span<const std::uint32_t> places_;
-  std::span<std::uint32_t> parent_;
+  DisjointSets sets_;
   std::span<IslandCount> counts_;
 };
 

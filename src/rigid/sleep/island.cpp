@@ -1,5 +1,6 @@
 #include "rigid/sleep/island.h"
 
+#include "base/container/disjoint_sets.h"
 #include "collision/contact/pair_update.h"
 
 namespace gyre {
@@ -24,7 +25,7 @@ bool is_asleep(const RigidWorld& w, std::uint32_t body) {
   return is_dynamic(w, body) && w.bodies.flags[body].awake == 0;
 }
 
-// Union-find over bodies; the root of an island is its lowest body.
+// Sets of bodies; the root of an island is its lowest body.
 class Islands {
  public:
   // Of those that are awake, in a step that has woken all who lie beside them: nobody sleeps in one.
@@ -38,27 +39,15 @@ class Islands {
     for_each_link(w, [&](std::uint32_t a, std::uint32_t b) { islands.link(w, a, b); });
     return islands;
   }
-  std::uint32_t root(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
+  std::uint32_t root(std::uint32_t i) const { return sets_.of(i); }
 
  private:
-  Islands(const RigidWorld& w, Arena& arena) : parent_(arena.make<std::uint32_t>(w.bodies.motion.size())) {
-    for (std::uint32_t i = 0; i < parent_.size(); ++i) parent_[i] = i;
-  }
+  Islands(const RigidWorld& w, Arena& arena) : sets_(arena.make<std::uint32_t>(w.bodies.motion.size())) {}
   void link(const RigidWorld& w, std::uint32_t a, std::uint32_t b) {
-    if (!is_dynamic(w, a) || !is_dynamic(w, b)) return;
-    a = root(a);
-    b = root(b);
-    if (a < b) {
-      parent_[b] = a;
-    } else {
-      parent_[a] = b;
-    }
+    if (is_dynamic(w, a) && is_dynamic(w, b)) sets_.unite(a, b);
   }
 
-  std::span<std::uint32_t> parent_;
+  DisjointSets sets_;
 };
 
 // Appends `body` to the ring of its group, whose lowest body is `root`.

@@ -31,11 +31,11 @@ bool turns_far(const BodyMotion& motion, float h) {
 // Calls fn(place in the batch's list) for the joints that are looked at: those that are swept, of linkages solved alone, and of those
 // side by side.
 template <class Fn>
-void for_each_swept(const Solve& solve, Fn&& fn) {
-  for (const std::uint32_t place : solve.scratch.swept_joints) fn(place);
+void for_each_swept(const JointSolve& solve, Fn&& fn) {
+  for (const std::uint32_t place : solve.lists.swept) fn(place);
 }
 template <class Fn>
-void for_each_joint(const Solve& solve, Fn&& fn) {
+void for_each_joint(const JointSolve& solve, Fn&& fn) {
   for_each_swept(solve, fn);
   for (const Linkage& linkage : solve.linkages.linkages)
     for (const LinkageNode& node : linkage.nodes) fn(node.work);
@@ -57,8 +57,11 @@ struct Draft {
 
 class IslandFinder {
  public:
-  IslandFinder(const Solve& solve, Arena& arena)
+  IslandFinder(const JointSolve& solve, std::span<const ColoringPair> contacts,
+               std::span<const FieldBody> fields, Arena& arena)
       : solve_(solve),
+        contacts_(contacts),
+        fields_(fields),
         w_(solve.w),
         arena_(arena),
         in_lanes_(begun_in_lanes(solve)),
@@ -76,7 +79,7 @@ class IslandFinder {
  private:
   bool is_in_lanes(std::uint32_t at) const { return !in_lanes_.empty() && in_lanes_[at] != 0; }
   bool is_pushed(std::int32_t body) const { return body != kNoBody && is_active(w_, std::uint32_t(body)); }
-  std::uint32_t place(std::int32_t body) const { return solve_.places[std::size_t(body)]; }
+  std::uint32_t place(std::int32_t body) const { return solve_.local_index[std::size_t(body)]; }
 
   void unite() {
     for_each_joint(solve_, [&](std::uint32_t at) {
@@ -110,10 +113,10 @@ class IslandFinder {
       else if (may_work(joint, detail_of(w_.joints, solve_.batch.joints[at])))
         draft.is_untold = true;
     });
-    for (const ColoringPair& contact : solve_.scratch.pairs)
+    for (const ColoringPair& contact : contacts_)
       for (const std::uint32_t at : {contact.a, contact.b})
         if (at != ColoringPair::kNone) drafts_[sets_.of(at)].is_pushed = true;
-    for (const FieldBody& field : solve_.fields.bodies)
+    for (const FieldBody& field : fields_)
       drafts_[sets_.of(place(std::int32_t(field.body)))].is_pushed = true;
     for (std::uint32_t i = 0; i < drafts_.size(); ++i) {
       if (!drafts_[i].has_joints) continue;
@@ -121,7 +124,7 @@ class IslandFinder {
       const std::uint32_t body = solve_.batch.bodies[i];
       const BodyFlags& flags = w_.bodies.flags[body];
       ++draft.bodies;
-      if (turns_far(w_.bodies.motion[body], solve_.h)) draft.is_fast = true;
+      if (turns_far(w_.bodies.motion[body], solve_.settings.substep)) draft.is_fast = true;
       if (flags.locked_linear != 0 || flags.locked_angular != 0) draft.is_untold = true;
     }
   }
@@ -194,7 +197,9 @@ class IslandFinder {
     });
   }
 
-  const Solve& solve_;
+  const JointSolve& solve_;
+  std::span<const ColoringPair> contacts_;
+  std::span<const FieldBody> fields_;
   const RigidWorld& w_;
   Arena& arena_;
   std::span<const std::uint8_t> in_lanes_;
@@ -381,7 +386,7 @@ void forget_impulses(JointAxisRecord& axis) {
 }
 // What follows does not begin with the impulses that gave too much, nor with those of springs and motors that they answered. In the middle
 // of a step axes are in the joints' work, as it ends in what persists.
-void forget_impulses(const Solve& solve, const JointIsland& island) {
+void forget_impulses(const JointSolve& solve, const JointIsland& island) {
   JointStore& joints = solve.w.joints;
   const std::span<const std::uint8_t> in_lanes = begun_in_lanes(solve);
   for (const std::uint32_t at : island.joints) {
@@ -394,23 +399,24 @@ void forget_impulses(const Solve& solve, const JointIsland& island) {
       detail->drive_force_impulse = detail->drive_torque_impulse = detail->friction_impulse = {};
     }
     if (!in_lanes.empty() && in_lanes[at] != 0) continue;
-    for (AxisWork& x : solve.joint_work[at].axes) forget_impulses(x.axis);
+    for (AxisWork& x : solve.works.work[at].axes) forget_impulses(x.axis);
   }
 }
 
-bool any_turns_far(const Solve& solve, const JointIsland& island) {
+bool any_turns_far(const JointSolve& solve, const JointIsland& island) {
   for (const std::uint32_t body : island.bodies)
-    if (turns_far(solve.w.bodies.motion[body], solve.h)) return true;
+    if (turns_far(solve.w.bodies.motion[body], solve.settings.substep)) return true;
   return false;
 }
 
 }  // namespace
 
-std::span<JointIsland> find_joint_islands(const Solve& solve, Arena& arena) {
-  if (solve.scratch.swept_joints.empty() && solve.linkages.linkages.empty()) return {};
+std::span<JointIsland> find_joint_islands(const JointSolve& solve, std::span<const ColoringPair> contacts,
+                                          std::span<const FieldBody> fields, Arena& arena) {
+  if (solve.lists.swept.empty() && solve.linkages.linkages.empty()) return {};
   const BodyStore& bodies = solve.w.bodies;
   const auto is_fast = [&](std::uint32_t body) {
-    return is_active(solve.w, body) && turns_far(bodies.motion[body], solve.h);
+    return is_active(solve.w, body) && turns_far(bodies.motion[body], solve.settings.substep);
   };
   bool is_any = !solve.linkages.linkages.empty();
   for (const std::uint32_t body : solve.batch.bodies) {
@@ -418,46 +424,46 @@ std::span<JointIsland> find_joint_islands(const Solve& solve, Arena& arena) {
     is_any = is_fast(body);
   }
   if (!is_any) return {};
-  return IslandFinder(solve, arena).find();
+  return IslandFinder(solve, contacts, fields, arena).find();
 }
 
 namespace {
 
-void begin_work(const Solve& solve, JointIsland& island, bool is_warm) {
+void begin_work(const JointSolve& solve, JointIsland& island, bool is_warm) {
   begin_worked_rows(solve, island.worked, is_warm);
   island.before = kinetic_energy(solve.w.bodies, island);
   if (island.frame == IslandFrame::rigid)
     island.spin = angular_momentum(solve.w.bodies, island, center_of(solve.w.bodies, island.bodies[0]));
 }
+void end_work(const JointSolve& solve, JointIsland& island) {
+  const double worked = work_of(solve, island.worked);
+  if (island.frame == IslandFrame::rigid) keep_angular_momentum(solve.w.bodies, island);
+  island.gained += kinetic_energy(solve.w.bodies, island) - island.before - worked;
+}
 
 }  // namespace
 
-void begin_warm_work(const Solve& solve, int begin, int end) {
-  for (JointIsland& island : solve.joint_islands.subspan(std::size_t(begin), std::size_t(end - begin)))
+void begin_warm_start_energy(const JointSolve& solve, int begin, int end) {
+  for (JointIsland& island : solve.islands.subspan(std::size_t(begin), std::size_t(end - begin)))
     begin_work(solve, island, true);
 }
-void begin_joint_work(const Solve& solve, int begin, int end) {
-  for (JointIsland& island : solve.joint_islands.subspan(std::size_t(begin), std::size_t(end - begin)))
+void begin_energy_gain(const JointSolve& solve, int begin, int end) {
+  for (JointIsland& island : solve.islands.subspan(std::size_t(begin), std::size_t(end - begin)))
     begin_work(solve, island, false);
 }
-void end_joint_work(const Solve& solve, int begin, int end) {
-  for (JointIsland& island : solve.joint_islands.subspan(std::size_t(begin), std::size_t(end - begin))) {
-    const double worked = work_of(solve, island.worked);
-    if (island.frame == IslandFrame::rigid) keep_angular_momentum(solve.w.bodies, island);
-    island.gained += kinetic_energy(solve.w.bodies, island) - island.before - worked;
-  }
-}
-void bound_gains(const Solve& solve, int begin, int end) {
-  for (JointIsland& island : solve.joint_islands.subspan(std::size_t(begin), std::size_t(end - begin))) {
+void limit_energy_gain(const JointSolve& solve, int begin, int end) {
+  for (JointIsland& island : solve.islands.subspan(std::size_t(begin), std::size_t(end - begin))) {
+    end_work(solve, island);
     const double least =
-        energy_of_errors(solve.w.bodies, island, solve.joint_settings.softness.bias_rate, solve.h);
+        energy_of_errors(solve.w.bodies, island, solve.settings.softness.bias_rate, solve.settings.substep);
     if (!bound_gain(solve.w.bodies, island, kMostGainAhead, kMostGainAhead, least)) continue;
     island.is_bounded = true;
     forget_impulses(solve, island);
   }
 }
-void take_gains_away(const Solve& solve, int begin, int end) {
-  for (JointIsland& island : solve.joint_islands.subspan(std::size_t(begin), std::size_t(end - begin))) {
+void remove_energy_gain(const JointSolve& solve, int begin, int end) {
+  for (JointIsland& island : solve.islands.subspan(std::size_t(begin), std::size_t(end - begin))) {
+    end_work(solve, island);
     // What bears a joint's load may take away between two stages what seems to be given in one: at rest on the ground that would be all
     // there is. Beside what turns far it is little.
     if (!island.is_pushed || island.is_bounded || any_turns_far(solve, island))
@@ -465,8 +471,8 @@ void take_gains_away(const Solve& solve, int begin, int end) {
     island.gained = 0.0;
   }
 }
-void forget_bounded(const Solve& solve) {
-  for (const JointIsland& island : solve.joint_islands)
+void forget_limited_impulses(const JointSolve& solve) {
+  for (const JointIsland& island : solve.islands)
     if (island.is_bounded) forget_impulses(solve, island);
 }
 

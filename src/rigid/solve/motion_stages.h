@@ -1,41 +1,47 @@
-// What moves the bodies of a batch: forces, moves and rotation, block by block of those on which constraints act. As functions of blocks,
-// and as stages of programs (task/program.h), whose context is the batch's Solve.
+// The stages that move bodies: forces, positions and rotations. Each works on blocks [begin, end) of what it names; blocks of bodies are
+// those that constraints act on.
+//
+// The velocity change by contacts is measured in each sub-step, from where it is started to where it is added up: the next sub-step
+// begins with it (a warm start by bodies, not by contacts). Nobody asks for it in blocks that are not measured.
 #pragma once
 
-#include "rigid/solve/program_writer.h"
-#include "rigid/solve/solve.h"
+#include "rigid/solve/body_motion_solve.h"
 
 namespace gyre {
 
-// Of blocks [begin, end). Who watches and notes knows what contacts gave the bodies; nobody asks that of blocks that are not watched
-// (Solve::watched_blocks).
-void prepare_motion(const Solve& s, int begin, int end);
-// By forces; warm: and by what contacts gave in the last part.
-void predict_motion(const Solve& s, int begin, int end, bool warm, const LaneVelocities& lanes = {});
-void watch_motion(const Solve& s, int begin, int end, const LaneVelocities& lanes = {});
-void note_motion(const Solve& s, int begin, int end, const LaneVelocities& lanes = {});
-// Noted: what contacts gave has been noted by now. (In lanes it must have been.)
-void advance_motion(const Solve& s, int begin, int end, bool noted, const LaneVelocities& lanes = {});
-// Whether some in these blocks turn alone, and their rotation.
-bool has_spinners(const Solve& s, int begin, int end);
-void turn_spinners(const Solve& s, int begin, int end);
+void prepare_bodies(const BodyMotionSolve& s, int begin, int end);
+// By gravity, forces and damping; and, with the warm start, by what contacts changed in the last sub-step. Starts to measure.
+void apply_forces(const BodyMotionSolve& s, int begin, int end);
+void apply_forces_and_warm_start(const BodyMotionSolve& s, int begin, int end);
+void warm_start_bodies(const BodyMotionSolve& s, int begin, int end);
+// The velocity change by contacts: from here on; and up to here, and on from here.
+void start_contact_change(const BodyMotionSolve& s, int begin, int end);
+void add_contact_change(const BodyMotionSolve& s, int begin, int end);
+// Positions and rotations; where nothing came between, the change by contacts is added up in passing.
+void integrate_positions(const BodyMotionSolve& s, int begin, int end);
+void add_contact_change_and_integrate(const BodyMotionSolve& s, int begin, int end);
 
-void prepare_motion_stage(void* context, int begin, int end, int worker);
-void predict_stage(void* context, int begin, int end, int worker);
-void predict_warm_stage(void* context, int begin, int end, int worker);
-void warm_motion_stage(void* context, int begin, int end, int worker);
-void watch_motion_stage(void* context, int begin, int end, int worker);
-void note_motion_stage(void* context, int begin, int end, int worker);
-void advance_stage(void* context, int begin, int end, int worker);
-void advance_noted_stage(void* context, int begin, int end, int worker);
-void begin_projection_stage(void* context, int begin, int end, int worker);
-void end_projection_stage(void* context, int begin, int end, int worker);
+// The same of bodies whose velocities are in lanes.
+void apply_forces_and_warm_start_in_lanes(const BodyMotionSolve& s, int begin, int end,
+                                          const LaneVelocities& lanes);
+void start_contact_change_in_lanes(const BodyMotionSolve& s, int begin, int end, const LaneVelocities& lanes);
+void add_contact_change_in_lanes(const BodyMotionSolve& s, int begin, int end, const LaneVelocities& lanes);
+void integrate_positions_in_lanes(const BodyMotionSolve& s, int begin, int end, const LaneVelocities& lanes);
 
-// A line for the first `blocks` of the bodies that are moved,
-void add_motion(ProgramWriter& program, Solve& solve, void (*kernel)(void*, int, int, int), int blocks);
-// for those that fly, for those that turn alone, and for the orientations of all as the step ends.
-void add_flying(ProgramWriter& program, Solve& solve);
-void add_turn_alone(ProgramWriter& program, Solve& solve);
-void add_finish_turns(ProgramWriter& program, Solve& solve);
+// Rotations that are fast or bound to axes, which the above leave alone: of blocks of bodies, and whether there are any.
+void integrate_spinners_of_blocks(const BodyMotionSolve& s, int begin, int end);
+bool has_spinners(const BodyMotionSolve& s, int begin, int end);
+// And in blocks of kSpinnersPerBlock of them.
+constexpr int kSpinnersPerBlock = 8;
+void integrate_spinners(const BodyMotionSolve& s, int begin, int end);
+
+// Velocities are saved, overlap is pushed apart by displacements in their place, and velocities are restored.
+void begin_projection(const BodyMotionSolve& s, int begin, int end);
+void end_projection(const BodyMotionSolve& s, int begin, int end);
+
+// The whole step of free bodies, in blocks of kBodiesPerBlock.
+void integrate_free_bodies(const BodyMotionSolve& s, int begin, int end);
+// Orientations as the step ends, in blocks of kBodiesPerBlock.
+void finish_orientations(const BodyMotionSolve& s, int begin, int end);
 
 }  // namespace gyre

@@ -1,7 +1,7 @@
 #include "rigid/solve/rolling.h"
 
 #include "geometry/shape/support.h"
-#include "rigid/batch/solve_batches.h"
+#include "rigid/batch/solve_batch.h"
 #include "task/choose.h"
 #include "task/parallel.h"
 
@@ -155,8 +155,8 @@ class Bearers {
 // is not where it was.
 class Whirls {
  public:
-  Whirls(const RigidWorld& w, const BatchScratch& scratch, std::span<const std::uint32_t> bodies,
-         float seconds, Arena& arena)
+  Whirls(const RigidWorld& w, const ContactLists& lists, std::span<const std::uint32_t> bodies, float seconds,
+         Arena& arena)
       : whirls_(arena.make<bool>(bodies.size())) {
     const auto spin = [&](std::size_t body) {
       return length_squared(w.bodies.motion[body].angular_velocity);
@@ -167,15 +167,15 @@ class Whirls {
       any_ = any_ || whirls_[i];
     }
     if (!any_) return;
-    for (std::size_t i = 0; i < scratch.constraints.size(); ++i) {
-      const ColoringPair places = scratch.pairs[i];
+    for (std::size_t i = 0; i < lists.constraints.size(); ++i) {
+      const ColoringPair places = lists.pairs[i];
       const auto look = [&](std::uint32_t place, std::uint32_t other_place, std::int32_t other) {
         if (has(place) && other_place == ColoringPair::kNone && other != kNoBody &&
             spin(std::size_t(other)) > carried * carried)
           whirls_[place] = false;
       };
-      look(places.a, places.b, scratch.constraints[i].body_b);
-      look(places.b, places.a, scratch.constraints[i].body_a);
+      look(places.a, places.b, lists.constraints[i].body_b);
+      look(places.b, places.a, lists.constraints[i].body_a);
     }
   }
   bool has(std::uint32_t place) const { return any_ && place != ColoringPair::kNone && whirls_[place]; }
@@ -297,28 +297,28 @@ bool may_roll(const RigidWorld& w, const Contact& contact, const ContactConstrai
   return (flat_a ? constraint.body_b : constraint.body_a) != kNoBody && may_bear(*constraint.manifold);
 }
 
-RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch,
+RollingContacts find_rolling_contacts(RigidWorld& w, const ContactLists& lists,
                                       std::span<const std::uint32_t> bodies, float seconds, Arena& arena,
                                       TaskSystem& tasks) {
-  const std::span<const ContactConstraint> constraints = scratch.constraints;
+  const std::span<const ContactConstraint> constraints = lists.constraints;
   const auto contact_of = [&](std::uint32_t i) -> const Contact& {
-    return w.contacts.contacts[scratch.constraint_contact[i]];
+    return w.contacts.contacts[lists.slots[i]];
   };
   RollingContacts all;
-  const Whirls whirls(w, scratch, bodies, seconds, arena);
+  const Whirls whirls(w, lists, bodies, seconds, arena);
   const auto may_roll = [&](std::uint32_t i) {
-    return constraints[i].may_roll || whirls.has(scratch.pairs[i]);
+    return constraints[i].may_roll || whirls.has(lists.pairs[i]);
   };
   const std::span<const std::uint32_t> candidates = choose(tasks, arena, constraints.size(), may_roll).list;
   const std::size_t count = candidates.size();
   if (count == 0) return all;
-  const Bearers bearers(constraints, scratch.pairs, bodies.size(), arena);
+  const Bearers bearers(constraints, lists.pairs, bodies.size(), arena);
   const std::span<RollingSides> sides = arena.make<RollingSides>(count);
   for_blocks(tasks, int(count), kRollersPerBlock, [&](int begin, int end, int) {
     for (std::size_t k = std::size_t(begin); k < std::size_t(end); ++k) {
       const std::uint32_t i = candidates[k];
       const Contact& contact = contact_of(i);
-      const ColoringPair places = scratch.pairs[i];
+      const ColoringPair places = lists.pairs[i];
       const bool flat_a = constraints[i].may_roll && is_flat(w.shapes.colliders[contact.shape_a].shape);
       const bool whirls_here =
           !constraints[i].may_roll ? whirls.has(places) : whirls.has(flat_a ? places.b : places.a);
@@ -352,7 +352,7 @@ RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch
 }
 
 // All that is asked of the manifold stands in the contact by now: manifolds lie far apart.
-void follow_contact(const RigidWorld& w, RollingContact& rolling, float ahead) {
+void advance_contact_point(const RigidWorld& w, RollingContact& rolling, float ahead) {
   const std::size_t body = std::size_t(rolling.body);
   const BodyMotion still;
   const BodyMotion& motion = w.bodies.motion[body];

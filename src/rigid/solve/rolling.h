@@ -19,7 +19,10 @@
 // Source of the idea: the rolling equations of D. Montana, "The kinematics of contact and grasp", 1988.
 #pragma once
 
-#include "rigid/solve/solve_step.h"
+#include "base/arena/arena.h"
+#include "rigid/solve/contact_lists.h"
+#include "rigid/store/rigid_world.h"
+#include "task/task_system.h"
 
 namespace gyre {
 
@@ -79,11 +82,11 @@ bool may_roll(const RigidWorld& w, const Contact& contact, const ContactConstrai
 
 // Those among the constraints of the batch, which has these bodies, that may roll and whose bodies turn against each other, and all of what
 // whirls. Marks these bodies as ones whose place others look at.
-RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch,
+RollingContacts find_rolling_contacts(RigidWorld& w, const ContactLists& lists,
                                       std::span<const std::uint32_t> bodies, float seconds, Arena& arena,
                                       TaskSystem& tasks);
 
 // Into its arms: where the contact is in a sub-step that begins now, with its middle in `ahead` seconds.
-void follow_contact(const RigidWorld& w, RollingContact& rolling, float ahead);
+void advance_contact_point(const RigidWorld& w, RollingContact& rolling, float ahead);
 
 }  // namespace gyre

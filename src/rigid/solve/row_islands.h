@@ -5,16 +5,16 @@
 #pragma once
 
 #include "math/block_ldlt.h"
-#include "rigid/batch/solve_batches.h"
-#include "rigid/solve/solve_step.h"
+#include "rigid/batch/solve_batch.h"
+#include "solver/contact/contact_block.h"
 #include "solver/rows/solve_direct.h"
 
 namespace gyre {
 
 struct RowIsland {
   std::span<const std::uint32_t> bodies;       // slots of those that rows move
-  std::span<const std::uint32_t> constraints;  // places in BatchScratch::constraints
-  std::span<const std::uint32_t> joints;       // places in the batch's list
+  std::span<const std::uint32_t> constraints;  // indices of the batch's
+  std::span<const std::uint32_t> joints;       // indices in the batch's list
   DirectSize size;                             // of its rows, at most
   BlockPlan plan;                              // of its bodies, a node for each; empty if not planned
 };
@@ -25,10 +25,10 @@ struct RowIslands {
 };
 
 // The pattern of an island's bodies, for Newton's method: planned where a factorisation takes at most `most_work` multiplications.
-void plan_row_islands(const RigidWorld& w, const BatchScratch& scratch, const SolveBatch& batch,
-                      std::uint64_t most_work, Arena& arena, RowIslands& islands);
+void plan_row_islands(const RigidWorld& w, std::span<const ContactConstraint> constraints,
+                      const SolveBatch& batch, std::uint64_t most_work, Arena& arena, RowIslands& islands);
 
-RowIslands find_row_islands(const RigidWorld& w, const BatchScratch& scratch, const SolveBatch& batch,
-                            std::span<const JointWork> work, Arena& arena);
+RowIslands find_row_islands(const RigidWorld& w, std::span<const ContactConstraint> constraints,
+                            const SolveBatch& batch, std::span<const JointWork> work, Arena& arena);
 
 }  // namespace gyre

@@ -20,9 +20,9 @@ float worked_impulse(const JointAxisRecord& axis) {
   return axis.spring_impulse + axis.motor_impulse + stops;
 }
 
-RowState state_of(const Solve& solve, const WorkedRow& row) {
-  const JointWork& work = solve.joint_work[row.place];
-  const JointPair pair(solve.w.joints.records[solve.batch.joints[row.place]], solve.joint_bodies);
+RowState state_of(const JointSolve& solve, const WorkedRow& row) {
+  const JointWork& work = solve.works.work[row.place];
+  const JointPair pair(solve.w.joints.records[solve.batch.joints[row.place]], solve.bodies);
   if (row.axis != kDriveRow) {
     const AxisWork& x = work.axes[std::size_t(row.axis)];
     if (x.is_linked) return {{}, {}, {}, {}, x.worked};
@@ -44,29 +44,29 @@ bool may_work(const JointRecord& joint, const JointDetail* detail) {
   return false;
 }
 
-std::size_t count_worked_rows(const Solve& solve, std::uint32_t place) {
-  const JointWork& work = solve.joint_work[place];
+std::size_t count_worked_rows(const JointSolve& solve, std::uint32_t place) {
+  const JointWork& work = solve.works.work[place];
   std::size_t count = work.drive != nullptr ? 1 : 0;
   for (const AxisWork& x : work.axes) count += is_listed(x) ? 1 : 0;
   return count;
 }
 
-void list_worked_rows(const Solve& solve, std::uint32_t place, std::span<WorkedRow> rows) {
-  const JointWork& work = solve.joint_work[place];
+void list_worked_rows(const JointSolve& solve, std::uint32_t place, std::span<WorkedRow> rows) {
+  const JointWork& work = solve.works.work[place];
   std::size_t count = 0;
   if (work.drive != nullptr) rows[count++] = {place, kDriveRow, {}};
   for (std::size_t i = 0; i < work.axes.size(); ++i)
     if (is_listed(work.axes[i])) rows[count++] = {place, std::int32_t(i), {}};
 }
 
-void begin_worked_rows(const Solve& solve, std::span<WorkedRow> rows, bool is_warm) {
+void begin_worked_rows(const JointSolve& solve, std::span<WorkedRow> rows, bool is_warm) {
   for (WorkedRow& row : rows) {
     row.begun = state_of(solve, row);
     if (is_warm) row.begun.push = row.begun.turn = {};
   }
 }
 
-double work_of(const Solve& solve, std::span<const WorkedRow> rows) {
+double work_of(const JointSolve& solve, std::span<const WorkedRow> rows) {
   double twice = 0.0;
   for (const WorkedRow& row : rows) {
     const RowState now = state_of(solve, row);

@@ -3,7 +3,7 @@
 // (rigid/solve/joint_energy.h).
 #pragma once
 
-#include "rigid/solve/solve.h"
+#include "rigid/solve/joint_solve.h"
 
 namespace gyre {
 
@@ -26,11 +26,11 @@ constexpr std::int32_t kDriveRow = -1;
 bool may_work(const JointRecord& joint, const JointDetail* detail);
 
 // How many of a joint's rows may; and these, into as much room.
-std::size_t count_worked_rows(const Solve& solve, std::uint32_t place);
-void list_worked_rows(const Solve& solve, std::uint32_t place, std::span<WorkedRow> rows);
+std::size_t count_worked_rows(const JointSolve& solve, std::uint32_t place);
+void list_worked_rows(const JointSolve& solve, std::uint32_t place, std::span<WorkedRow> rows);
 
 // Before and after a stage in which impulses change; is_warm: in which all of each impulse is given once more. The work in J.
-void begin_worked_rows(const Solve& solve, std::span<WorkedRow> rows, bool is_warm);
-double work_of(const Solve& solve, std::span<const WorkedRow> rows);
+void begin_worked_rows(const JointSolve& solve, std::span<WorkedRow> rows, bool is_warm);
+double work_of(const JointSolve& solve, std::span<const WorkedRow> rows);
 
 }  // namespace gyre

@@ -3,6 +3,19 @@
 //
 // The state of a body is the place of its centre of mass (double), its orientation and its two velocities; the pose of
 // its origin is derived. Slots never move, so everything may keep a body's index; sleeping bodies are left out of `awake`.
+//
+// Who owns the pose, when (stages of world/step.cpp):
+//
+//   between steps, stages 1 to 4   places: centre and orientation. orientations: the same. motion.moved and turned: of the last step
+//   collide (3)                    copies of places, one a contact (rigid/body_looks.h), gone with the stage
+//   solve (5), as it begins        moved, turned = 0: from here on a centre is places.center + motion.moved
+//   solve, in a sub-step           moved, turned are new. The orientation is places.orientation, turned by `turned`; blocks of the kernels
+//                                  (solver/motion/motion_block.h) hold it, and write it to orientations and inertia of bodies that are shown.
+//                                  What spins fast has it in orientations alone
+//   solve, joints in lanes         copies of orientations and moved, new in each sub-step (solver/articulation)
+//   solve, as it ends              orientations and inertia of all are new; places is still that of the step's beginning
+//   clamp_fast_bodies (6)          moved, turned, orientations go back to where the body was stopped
+//   finish_bodies (7)              places.center += moved, places.orientation = orientations: from here on places holds again
 #pragma once
 
 #include "base/container/array.h"

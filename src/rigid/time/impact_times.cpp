@@ -1,8 +1,8 @@
 #include "rigid/time/impact_times.h"
 
 #include "collision/continuous/time_of_impact.h"
-#include "rigid/solve/hits.h"
-#include "rigid/batch/solve_batches.h"
+#include "rigid/solve/hit_events.h"
+#include "rigid/batch/solve_batch.h"
 #include "rigid/batch/surface_rules.h"
 
 namespace gyre {
@@ -166,15 +166,15 @@ bool strike_touching(RigidWorld& w, ImpactScratch& scratch, float threshold) {
       if (blow.count == 0) continue;
       scratch.impacts.push_back(blow);
       scratch.slots.push_back(slot);
-      scratch.fast.push_back(note_approach(w, contact, manifold) ? 1 : 0);
+      scratch.fast.push_back(record_hit_approach(w, contact, manifold) ? 1 : 0);
     }
   }
   if (scratch.impacts.empty()) return false;
   const ContactBodies bodies{w.bodies.motion.data(), w.bodies.inertia.data()};
   // No forces act within a blow, and no time passes: every point that touches and closes is met.
   const ImpactSettings settings{1.0f, threshold};
-  watch_impacts(scratch.impacts, bodies);
-  strike_impacts(scratch.impacts, bodies, settings);
+  record_approach(scratch.impacts, bodies);
+  apply_restitution(scratch.impacts, bodies, settings);
   bool any = false;
   for (std::size_t i = 0; i < scratch.impacts.size(); ++i) {
     const ImpactContact& blow = scratch.impacts[i];
@@ -185,7 +185,7 @@ bool strike_touching(RigidWorld& w, ImpactScratch& scratch, float threshold) {
     const Contact& contact = w.contacts.contacts[scratch.slots[i]];
     scratch.struck.push_back(contact.body_a);
     scratch.struck.push_back(contact.body_b);
-    if (scratch.fast[i] != 0) report_blow(w, contact, *blow.manifold, impulse);
+    if (scratch.fast[i] != 0) report_hit(w, contact, *blow.manifold, impulse);
   }
   return any;
 }

@@ -2,7 +2,7 @@
 #include "base/arena/arena.h"
 #include "math/rotation.h"
 #include "solver/articulation/ball_records.h"
-#include "solver/contact/contact_block.h"
+#include "solver/kernels/solver_kernels.h"
 
 #include <gtest/gtest.h>
 
@@ -62,7 +62,7 @@ void solve_alone(Pairs& pairs) {
     JointRecord& joint = pairs.records[i];
     JointWork& work = pairs.work[i];
     const JointBodies bodies = pairs.bodies();
-    place_joint(joint, work, pairs.places[i], bodies, kSettings);
+    evaluate_joint(joint, work, pairs.places[i], bodies, kSettings);
     bend_joint(joint, work, bodies, kSettings);
     warm_start_joint(joint, work, bodies);
     solve_joint(joint, work, bodies, kSettings, true);
@@ -72,7 +72,7 @@ void solve_alone(Pairs& pairs) {
 }
 
 void solve_side_by_side(Pairs& pairs, int width) {
-  const BallKernels& kernels = select_contact_kernels(width).balls;
+  const BallKernels& kernels = select_kernels(width).balls;
   const int blocks = (kJoints + kernels.width - 1) / kernels.width;
   Arena arena;
   void* const memory = arena.make<std::byte>(std::size_t(blocks) * kernels.block_bytes).data();

@@ -384,13 +384,13 @@ void raise_inertia(const float* pull, const float* inertia, float share, float* 
   for (int i = 0; i < 6; ++i) inverse_inertia[i] = out[i];
 }
 
-void place_linkage(const Linkage& linkage, const LinkageSolve& s) {
+void evaluate_articulation(const Linkage& linkage, const LinkageSolve& s) {
   for (double& value : linkage.values) value = 0.0;
   for (std::size_t n = 0; n < linkage.nodes.size(); ++n) {
     LinkageNode& node = linkage.nodes[n];
     JointRecord& joint = s.records[node.record];
     JointWork& work = s.work[node.work];
-    place_joint(joint, work, s.places[node.work], s.bodies, s.settings);
+    evaluate_joint(joint, work, s.places[node.work], s.bodies, s.settings);
     make_rows(node, joint, work);
   }
   raise_inertias(linkage, s);
@@ -406,7 +406,7 @@ void place_linkage(const Linkage& linkage, const LinkageSolve& s) {
   place_linked_axes(linkage, s);
 }
 
-void warm_linkage(const Linkage& linkage, const LinkageSolve& s) {
+void warm_start_articulation(const Linkage& linkage, const LinkageSolve& s) {
   // Before the impulses of the last sub-step: after a blow these are not of this one, and the bend of such speeds is none.
   ask_rows(linkage, s, kErrorsBeforeContacts);
   note_warm_work(linkage, s);
@@ -427,7 +427,7 @@ void warm_linkage(const Linkage& linkage, const LinkageSolve& s) {
   }
 }
 
-void solve_linkage(const Linkage& linkage, const LinkageSolve& s) {
+void solve_articulation(const Linkage& linkage, const LinkageSolve& s) {
   sweep_axes(linkage, s, true);
   solve_rows(linkage, s, true);
   solve_linked_axes(linkage, s, true);
@@ -435,14 +435,14 @@ void solve_linkage(const Linkage& linkage, const LinkageSolve& s) {
   ask_rows(linkage, s, kMostErrors);  // now with velocities that agree with the joints
 }
 
-void solve_linkage_again(const Linkage& linkage, const LinkageSolve& s) {
+void solve_articulation_after_contacts(const Linkage& linkage, const LinkageSolve& s) {
   sweep_axes(linkage, s, true);
   solve_rows(linkage, s, true);
   solve_linked_axes(linkage, s, true);
   solve_stops(linkage, s, kMostErrors);
 }
 
-void relax_linkage(const Linkage& linkage, const LinkageSolve& s) {
+void relax_articulation(const Linkage& linkage, const LinkageSolve& s) {
   sweep_axes(linkage, s, false);
   solve_rows(linkage, s, false);
   solve_linked_axes(linkage, s, false);

@@ -96,13 +96,13 @@ struct LinkageSolve {
 void raise_inertia(const float* pull, const float* inertia, float share, float* inverse_inertia);
 
 // The rows where the bodies are now, and their matrix, factored.
-void place_linkage(const Linkage& linkage, const LinkageSolve& solve);
+void evaluate_articulation(const Linkage& linkage, const LinkageSolve& solve);
 // With the velocities after the forces: what is asked of the rows, and the impulses of the last sub-step.
-void warm_linkage(const Linkage& linkage, const LinkageSolve& solve);
-void solve_linkage(const Linkage& linkage, const LinkageSolve& solve);
+void warm_start_articulation(const Linkage& linkage, const LinkageSolve& solve);
+void solve_articulation(const Linkage& linkage, const LinkageSolve& solve);
 // After the contacts.
-void solve_linkage_again(const Linkage& linkage, const LinkageSolve& solve);
+void solve_articulation_after_contacts(const Linkage& linkage, const LinkageSolve& solve);
 // After the move: takes away all speed along the rows, and sums the impulses.
-void relax_linkage(const Linkage& linkage, const LinkageSolve& solve);
+void relax_articulation(const Linkage& linkage, const LinkageSolve& solve);
 
 }  // namespace gyre

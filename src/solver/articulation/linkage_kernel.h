@@ -1,4 +1,4 @@
-// The velocities of a bundle of linkages (solver/articulation/linkage_lanes.h): what warm_linkage(), solve_linkage() and relax_linkage() do for
+// The velocities of a bundle of linkages (solver/articulation/linkage_lanes.h): what warm_start_articulation(), solve_articulation() and relax_articulation() do for
 // one alone. A ball joint's three rows are one vector here, and an impulse goes to a body as a force at its arm.
 #pragma once
 

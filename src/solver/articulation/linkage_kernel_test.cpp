@@ -68,9 +68,9 @@ void expect_same_bits_at_every_width(float tension, Driven driven, const Between
   };
   Crowd reference = start();
   solve_side_by_side(reference, shape, 1, between);
-  const ContactKernels &widest = select_contact_kernels(0), &narrower = narrower_kernels(widest);
-  for (const ContactKernels* kernels : {&widest, &narrower, &select_contact_kernels(4),
-                                        &select_contact_kernels(8), &select_contact_kernels(16)}) {
+  const SolverKernels &widest = select_kernels(0), &narrower = narrower_kernels(widest);
+  for (const SolverKernels* kernels : {&widest, &narrower, &select_kernels(4),
+                                        &select_kernels(8), &select_kernels(16)}) {
     const int width = kernels->width;
     Crowd crowd = start();
     solve_side_by_side(crowd, shape, kernels->linkages, between);

@@ -167,14 +167,14 @@ struct LinkageKernels {
   std::size_t velocities_at;  // bytes: where a body's block has them, as LaneVelocities
   std::size_t (*stop_room)(const LinkageBundle& bundle);  // bytes
   void (*begin)(const LinkageBundle& bundle);             // before it is placed for the first time in a step
-  void (*place)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
-  void (*ask)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  void (*evaluate)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  void (*compute_bias)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
   void (*solve)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
-  void (*solve_again)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  void (*solve_after_contacts)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
   // After each move but the last: sums impulses, and asks for what the next part begins with.
-  void (*pass)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  void (*end_substep)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
   // After the last move: no speed is left along the rows or into stops; sums impulses.
-  void (*finish)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  void (*end_step)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
 };
 
 }  // namespace gyre

@@ -5,7 +5,7 @@
 #include "base/arena/arena.h"
 #include "math/rotation.h"
 #include "math/trig.h"
-#include "solver/contact/contact_block.h"
+#include "solver/kernels/solver_kernels.h"
 #include "solver/articulation/lane_records.h"
 #include "solver/articulation/linkage.h"
 #include "solver/articulation/linkage_axes.h"
@@ -245,12 +245,12 @@ inline void solve_one_by_one(Crowd& crowd, const Shape& shape) {
     std::vector<double> axis_room(linked_axes_room(linkage, axes.size()));
     linkage.axis_room = axis_room;
     for (int part = 0; part < 2; ++part) {
-      place_linkage(linkage, solve);
-      warm_linkage(linkage, solve);
-      solve_linkage(linkage, solve);
-      solve_linkage_again(linkage, solve);
+      evaluate_articulation(linkage, solve);
+      warm_start_articulation(linkage, solve);
+      solve_articulation(linkage, solve);
+      solve_articulation_after_contacts(linkage, solve);
     }
-    relax_linkage(linkage, solve);
+    relax_articulation(linkage, solve);
   }
   for (std::size_t i = 0; i < crowd.records.size(); ++i) finish_joint(crowd.records[i], crowd.work[i]);
 }
@@ -324,10 +324,10 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, const LinkageKernels&
     for (int part = 0; part < 2; ++part) {
       if (part == 1) {
         if (between.ends == Between::Ends::passes) {
-          kernels.place(bundle, arrays, settings);
-          kernels.pass(bundle, arrays, settings);
+          kernels.evaluate(bundle, arrays, settings);
+          kernels.end_substep(bundle, arrays, settings);
         }
-        if (between.ends == Between::Ends::finishes) kernels.finish(bundle, arrays, settings);
+        if (between.ends == Between::Ends::finishes) kernels.end_step(bundle, arrays, settings);
         for (int copy = first + (first + 1) % 2; copy < first + used; copy += 2) {
           Quat& body = crowd.orientation[std::size_t(copy * kBodies + 1)];
           body = from_rotation_vector({between.turn, 0, 0}) * body;
@@ -336,19 +336,19 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, const LinkageKernels&
       }
       // Passing on comes after placing, and asks.
       const bool passed = part == 1 && between.ends == Between::Ends::passes;
-      if (!passed) kernels.place(bundle, arrays, settings);
-      if (!passed || between.asks) kernels.ask(bundle, arrays, settings);
+      if (!passed) kernels.evaluate(bundle, arrays, settings);
+      if (!passed || between.asks) kernels.compute_bias(bundle, arrays, settings);
       kernels.solve(bundle, arrays, settings);
-      kernels.solve_again(bundle, arrays, settings);
+      kernels.solve_after_contacts(bundle, arrays, settings);
     }
-    kernels.finish(bundle, arrays, settings);
+    kernels.end_step(bundle, arrays, settings);
     for_each_joint([&](int lane, std::uint32_t n, std::size_t i) {
       finish_lane(bundle, lane, n, crowd.records[i], crowd.detail_of(i));
     });
   }
 }
 inline void solve_side_by_side(Crowd& crowd, Shape& shape, int width, const Between& between = {}) {
-  solve_side_by_side(crowd, shape, select_contact_kernels(width).linkages, between);
+  solve_side_by_side(crowd, shape, select_kernels(width).linkages, between);
 }
 
 inline double apart(Vec3 a, Vec3 b) { return double(length(a - b)); }

@@ -6,11 +6,7 @@
 #pragma once
 
 #include "geometry/manifold/manifold.h"
-#include "solver/articulation/ball_lanes.h"
 #include "solver/core/body_motion.h"
-#include "solver/articulation/linkage_lanes.h"
-#include "solver/motion/motion_block.h"
-#include "solver/motion/turn_block.h"
 
 #include <cstdint>
 #include <span>
@@ -93,14 +89,13 @@ struct FollowedLane {
   const Sym3 *inverse_a, *inverse_b;
 };
 
-// The kernels of one CPU target: every function works on blocks [begin, end) of the array at `blocks`. What only some stages or lanes need
+// The kernels of contacts of one CPU target: every function works on blocks [begin, end) of the array at `blocks`. What only some stages or lanes need
 // of them is in another array, at `asides`: prepared blocks know their part of it. `order` lists constraint indices block by block, W a block;
 // 0xffffffff marks an empty lane. Of a block either all
 // contacts have a body A or none has: the latter have steps of their own, and whether a number leaves a float's range on the way must
 // not depend on the lanes beside it. What is prepared knows where the motion records of its
 // bodies lie.
 struct ContactKernels {
-  int width;
   std::size_t block_bytes, aside_bytes;
   void (*prepare)(void* blocks, void* asides, int begin, int end, const ContactConstraint* constraints,
                   const std::uint32_t* order, ContactBodies bodies, const ContactSettings& settings);
@@ -117,15 +112,6 @@ struct ContactKernels {
   void (*harden)(void* blocks, int block, int lane);
   void (*finish)(void* blocks, int begin, int end, const ContactConstraint* constraints,
                  const std::uint32_t* order, const ContactSettings& settings);
-  MotionKernels motion;
-  TurnKernels turns;
-  LinkageKernels linkages;
-  BallKernels balls;
 };
-
-// The widest kernels that this machine runs well and that have at most `width` lanes (0: any). Same bits whichever.
-const ContactKernels& select_contact_kernels(int width);
-// Those of half as many lanes, for what would leave the others idle; `kernels` itself where there are none of the same instructions.
-const ContactKernels& narrower_kernels(const ContactKernels& kernels);
 
 }  // namespace gyre

@@ -1,7 +1,7 @@
 // The contact kernels at the edge of what floats can say.
 #include "base/arena/arena.h"
 #include "base/processor.h"
-#include "solver/contact/contact_block.h"
+#include "solver/kernels/solver_kernels.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 // A ball on fixed ground, with a load from the step before; solved for a sub-step of a 240th of a second.
 BodyMotion touch(int width, float load) {
-  const ContactKernels& kernels = select_contact_kernels(width);
+  const SolverKernels& kernels = select_kernels(width);
   Manifold manifold;
   manifold.count = 1;
   manifold.points[0].from_b = {0, -0.15f, 0};
@@ -36,13 +36,13 @@ BodyMotion touch(int width, float load) {
   std::vector<std::uint32_t> order(std::size_t(kernels.width), 0xffffffffu);
   order[0] = 0;
   Arena arena;
-  void* const block = arena.make<std::byte>(kernels.block_bytes).data();
-  void* const aside = arena.make<std::byte>(kernels.aside_bytes).data();
+  void* const block = arena.make<std::byte>(kernels.contacts.block_bytes).data();
+  void* const aside = arena.make<std::byte>(kernels.contacts.aside_bytes).data();
   const ContactSettings settings{
       .substep = 1.0f / 240.0f, .step = 1.0f / 60.0f, .rate = 9.0f, .up = {0, 1, 0}};
-  kernels.prepare(block, aside, 0, 1, &constraint, order.data(), {&motion, &inertia}, settings);
-  kernels.warm_start(block, 0, 1);
-  kernels.solve(block, 0, 1, settings.substep);
+  kernels.contacts.prepare(block, aside, 0, 1, &constraint, order.data(), {&motion, &inertia}, settings);
+  kernels.contacts.warm_start(block, 0, 1);
+  kernels.contacts.solve(block, 0, 1, settings.substep);
   return motion;
 }
 
@@ -66,13 +66,13 @@ TEST(ContactKernel, TakesAnyLoadThatAFloatCanHold) {
 
 // Eight lanes that nobody asked for, on a processor that has sixteen, use its registers; asked for, they are those of any with AVX2.
 TEST(ContactKernel, EightLanesUseTheRegistersOfSixteenWhereNobodyAsksForThem) {
-  const ContactKernels &best = select_contact_kernels(0), &asked = select_contact_kernels(8);
+  const SolverKernels &best = select_kernels(0), &asked = select_kernels(8);
   if (most_lanes() < 16) {
-    EXPECT_EQ(&best, &select_contact_kernels(best.width));
+    EXPECT_EQ(&best, &select_kernels(best.width));
     return;
   }
   EXPECT_EQ(asked.width, 8);
-  const ContactKernels& eight = best.width == 8 ? best : narrower_kernels(best);
+  const SolverKernels& eight = best.width == 8 ? best : narrower_kernels(best);
   EXPECT_EQ(eight.width, 8);
   EXPECT_NE(&eight, &asked);
 }
@@ -82,15 +82,15 @@ struct Bone {
   BodyMotion motion;
   BodyInertia inertia{.inverse = {.xx = 100.0f, .yy = 80.0f, .zz = 90.0f}, .inverse_mass = 1.0f};
   Arena arena;
-  const ContactKernels& kernels;
+  const SolverKernels& kernels;
   void* const block;
   void* const aside;
   FollowedArms arms;
 
   explicit Bone(int width)
-      : kernels(select_contact_kernels(width)),
-        block(arena.make<std::byte>(kernels.block_bytes).data()),
-        aside(arena.make<std::byte>(kernels.aside_bytes).data()) {
+      : kernels(select_kernels(width)),
+        block(arena.make<std::byte>(kernels.contacts.block_bytes).data()),
+        aside(arena.make<std::byte>(kernels.contacts.aside_bytes).data()) {
     motion.inverse_mass = 1.0f;
     Manifold manifold;
     manifold.count = arms.count = 2;
@@ -111,12 +111,12 @@ struct Bone {
     order[0] = 0;
     const ContactSettings settings{
         .substep = 1.0f / 240.0f, .step = 1.0f / 60.0f, .rate = 9.0f, .up = {0, 1, 0}};
-    kernels.prepare(block, aside, 0, 1, &constraint, order.data(), {&motion, &inertia}, settings);
-    kernels.warm_start(block, 0, 1);
+    kernels.contacts.prepare(block, aside, 0, 1, &constraint, order.data(), {&motion, &inertia}, settings);
+    kernels.contacts.warm_start(block, 0, 1);
   }
   void follow() {
     const FollowedLane lane{0, &arms, nullptr, &inertia.inverse};
-    kernels.follow(block, 0, &lane, 1);
+    kernels.contacts.follow(block, 0, &lane, 1);
   }
   static constexpr Vec3 kFriction{0, 0, 1.2f};
 };
@@ -128,7 +128,7 @@ TEST(ContactKernel, FrictionGoesWhereTheLoadGoes) {
     bone.follow();
     const Vec3 before = bone.motion.angular_velocity;
     ContactImpulse right{.normal = {0, 3.0f}, .friction = Bone::kFriction};
-    bone.kernels.write_impulse(bone.block, 0, 0, right);
+    bone.kernels.contacts.write_impulse(bone.block, 0, 0, right);
     bone.follow();
     const Vec3 expected = bone.inertia.inverse * cross(Vec3{0.4f, 0, 0}, Bone::kFriction);
     EXPECT_LT(length(bone.motion.angular_velocity - before - expected), 1e-5f * length(expected)) << width;

@@ -140,7 +140,7 @@ ImpactContact make_impact(const ContactConstraint& constraint) {
   return contact;
 }
 
-void watch_impacts(std::span<ImpactContact> contacts, ContactBodies bodies) {
+void record_approach(std::span<ImpactContact> contacts, ContactBodies bodies) {
   for (ImpactContact& contact : contacts) {
     const Bodies pair(contact, bodies);
     for (int k = 0; k < contact.count; ++k) {
@@ -151,7 +151,7 @@ void watch_impacts(std::span<ImpactContact> contacts, ContactBodies bodies) {
   }
 }
 
-void strike_impacts(std::span<ImpactContact> contacts, ContactBodies bodies, const ImpactSettings& settings) {
+void apply_restitution(std::span<ImpactContact> contacts, ContactBodies bodies, const ImpactSettings& settings) {
   // What the forces added: closing speed now less closing speed before.
   for (ImpactContact& contact : contacts) {
     const Bodies pair(contact, bodies);
@@ -178,7 +178,7 @@ void strike_impacts(std::span<ImpactContact> contacts, ContactBodies bodies, con
   }
 }
 
-void release_impacts(std::span<ImpactContact> contacts, ContactBodies bodies, const ImpactSettings&) {
+void apply_delayed_restitution(std::span<ImpactContact> contacts, ContactBodies bodies, const ImpactSettings&) {
   for (ImpactContact& contact : contacts) {
     bool pending = false;
     for (int k = 0; k < contact.count; ++k) {

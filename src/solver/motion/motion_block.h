@@ -69,9 +69,9 @@ struct MotionKernels {
   // The second half of that alone.
   void (*warm)(void* blocks, int begin, int end, BodyMotion* motion);
   // What velocities gain from here on is the work of contacts.
-  void (*watch)(void* blocks, int begin, int end, const BodyMotion* motion);
+  void (*start_contact_change)(void* blocks, int begin, int end, const BodyMotion* motion);
   // What they gained since was; and from here on again. (`advance` does the same of what is watched where nothing comes between.)
-  void (*note)(void* blocks, int begin, int end, const BodyMotion* motion);
+  void (*add_contact_change)(void* blocks, int begin, int end, const BodyMotion* motion);
   // Displacement, rotation and gyroscopic torque over a sub-step.
   void (*advance)(void* blocks, int begin, int end, MotionArrays arrays, float substep, bool watched);
   // Puts velocities by and clears them: overlap is pushed apart by displacements in their place.
@@ -84,8 +84,8 @@ struct MotionKernels {
   // have few lanes, and the way through records costs little.
   void (*predict_in_lanes)(void* blocks, int begin, int end, const LaneVelocities& lanes, bool warm,
                            bool watched);
-  void (*watch_in_lanes)(void* blocks, int begin, int end, const LaneVelocities& lanes);
-  void (*note_in_lanes)(void* blocks, int begin, int end, const BodyMotion* motion,
+  void (*start_contact_change_in_lanes)(void* blocks, int begin, int end, const LaneVelocities& lanes);
+  void (*add_contact_change_in_lanes)(void* blocks, int begin, int end, const BodyMotion* motion,
                         const LaneVelocities& lanes);
   // What contacts gave has been noted by now.
   void (*advance_in_lanes)(void* blocks, int begin, int end, MotionArrays arrays, const LaneVelocities& lanes,

@@ -260,12 +260,12 @@ void warm_motion(void* memory, int begin, int end, BodyMotion* motion) {
 }
 
 template <int W>
-void watch_motion(void* memory, int begin, int end, const BodyMotion* motion) {
+void start_contact_change(void* memory, int begin, int end, const BodyMotion* motion) {
   auto* blocks = static_cast<MotionBlock<W>*>(memory);
   for (int n = begin; n < end; ++n) remember<W>(blocks[n], load_motion<8, W>(blocks[n], motion));
 }
 template <int W>
-void watch_in_lanes(void* memory, int begin, int end, const LaneVelocities& lanes) {
+void start_contact_change_in_lanes(void* memory, int begin, int end, const LaneVelocities& lanes) {
   auto* blocks = static_cast<MotionBlock<W>*>(memory);
   for (int n = begin; n < end; ++n) remember<W>(blocks[n], InLanes<W>{lanes}.template load<6>(blocks[n], n));
 }
@@ -283,11 +283,11 @@ GYRE_INLINE void note_blocks(void* memory, int begin, int end, const BodyMotion*
   }
 }
 template <int W>
-void note_motion(void* memory, int begin, int end, const BodyMotion* motion) {
+void add_contact_change(void* memory, int begin, int end, const BodyMotion* motion) {
   note_blocks<W>(memory, begin, end, motion, [](int, const MotionW<W>&) {});
 }
 template <int W>
-void note_in_lanes(void* memory, int begin, int end, const BodyMotion* motion, const LaneVelocities& lanes) {
+void add_contact_change_in_lanes(void* memory, int begin, int end, const BodyMotion* motion, const LaneVelocities& lanes) {
   const auto* blocks = static_cast<const MotionBlock<W>*>(memory);
   note_blocks<W>(memory, begin, end, motion, [&](int n, const MotionW<W>& m) {
     InLanes<W>{lanes}.template store<6>(blocks[n], n, m);
@@ -436,15 +436,15 @@ constexpr MotionKernels motion_kernels() {
   kernels.prepare = prepare_motion<W>;
   kernels.predict = predict_motion<W>;
   kernels.warm = warm_motion<W>;
-  kernels.watch = watch_motion<W>;
-  kernels.note = note_motion<W>;
+  kernels.start_contact_change = start_contact_change<W>;
+  kernels.add_contact_change = add_contact_change<W>;
   kernels.advance = advance_motion<W>;
   kernels.begin_projection = begin_projection<W>;
   kernels.end_projection = end_projection<W>;
   if constexpr (W >= 8) {
     kernels.predict_in_lanes = predict_in_lanes<W>;
-    kernels.watch_in_lanes = watch_in_lanes<W>;
-    kernels.note_in_lanes = note_in_lanes<W>;
+    kernels.start_contact_change_in_lanes = start_contact_change_in_lanes<W>;
+    kernels.add_contact_change_in_lanes = add_contact_change_in_lanes<W>;
     kernels.advance_in_lanes = advance_in_lanes<W>;
   }
   return kernels;

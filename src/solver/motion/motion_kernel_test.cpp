@@ -1,6 +1,6 @@
 // The motion kernels against plain rotations in double, and every width against width 1.
 #include "random.h"
-#include "solver/contact/contact_block.h"
+#include "solver/kernels/solver_kernels.h"
 #include "solver/motion/motion_block.h"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ struct Crowd {
   }
 
   void prepare(int width) {
-    kernels = &select_contact_kernels(width).motion;
+    kernels = &select_kernels(width).motion;
     blocks = (int(bodies.size()) + width - 1) / width;
     memory.assign(kernels->block_bytes * std::size_t(blocks) / sizeof(std::max_align_t) + 64, {});
     kernels->prepare(place(), 0, blocks, bodies.data(), int(bodies.size()), inertia.data());
@@ -64,7 +64,7 @@ struct Crowd {
     return std::align(64, 1, at, room);
   }
   void predict(bool warm) { kernels->predict(place(), 0, blocks, motion.data(), warm, true); }
-  void note() { kernels->note(place(), 0, blocks, motion.data()); }
+  void note() { kernels->add_contact_change(place(), 0, blocks, motion.data()); }
   void warm() { kernels->warm(place(), 0, blocks, motion.data()); }
   void advance(float h) {
     kernels->advance(place(), 0, blocks, {motion.data(), inertia.data(), orientations.data()}, h, true);
@@ -290,30 +290,30 @@ Crowd pass_parts(int width, bool in_lanes) {
   const Lanes lanes(crowd, width);
   const MotionKernels& kernels = *crowd.kernels;
   const MotionArrays arrays{crowd.motion.data(), crowd.inertia.data(), crowd.orientations.data()};
-  kernels.watch(crowd.place(), 0, crowd.blocks, arrays.motion);
+  kernels.start_contact_change(crowd.place(), 0, crowd.blocks, arrays.motion);
   for (int part = 0; part < 5; ++part) {
     const float h = 1.0f / 240.0f;
     for (BodyMotion& m : crowd.motion) m.linear_velocity = m.linear_velocity + random.vector(0.1f);
     if (in_lanes) {
-      kernels.note_in_lanes(crowd.place(), 0, crowd.blocks, arrays.motion, lanes.velocities());
+      kernels.add_contact_change_in_lanes(crowd.place(), 0, crowd.blocks, arrays.motion, lanes.velocities());
       kernels.advance_in_lanes(crowd.place(), 0, crowd.blocks, arrays, lanes.velocities(), h);
       kernels.predict_in_lanes(crowd.place(), 0, crowd.blocks, lanes.velocities(), true, part % 2 == 0);
-      if (part % 2 != 0) kernels.watch_in_lanes(crowd.place(), 0, crowd.blocks, lanes.velocities());
+      if (part % 2 != 0) kernels.start_contact_change_in_lanes(crowd.place(), 0, crowd.blocks, lanes.velocities());
       lanes.store();
     } else {
-      kernels.note(crowd.place(), 0, crowd.blocks, arrays.motion);
+      kernels.add_contact_change(crowd.place(), 0, crowd.blocks, arrays.motion);
       kernels.advance(crowd.place(), 0, crowd.blocks, arrays, h, false);
       kernels.predict(crowd.place(), 0, crowd.blocks, arrays.motion, true, part % 2 == 0);
-      if (part % 2 != 0) kernels.watch(crowd.place(), 0, crowd.blocks, arrays.motion);
+      if (part % 2 != 0) kernels.start_contact_change(crowd.place(), 0, crowd.blocks, arrays.motion);
     }
   }
   return crowd;
 }
 
 TEST(MotionKernel, VelocitiesInLanesHaveTheBitsOfThoseInRecords) {
-  if (select_contact_kernels(8).width < 8) GTEST_SKIP() << "this processor has fewer than eight lanes";
+  if (select_kernels(8).width < 8) GTEST_SKIP() << "this processor has fewer than eight lanes";
   for (const int asked : {8, 16}) {
-    const int width = select_contact_kernels(asked).width;
+    const int width = select_kernels(asked).width;
     expect_same_bits(pass_parts(width, true), pass_parts(width, false), width);
   }
 }

@@ -1,7 +1,7 @@
 // The kernels of bodies that turn freely against the same turns worked out one body at a time, to the bit, at every width.
 #include "math/rotation.h"
 #include "random.h"
-#include "solver/contact/contact_block.h"
+#include "solver/kernels/solver_kernels.h"
 
 #include <gtest/gtest.h>
 
@@ -146,7 +146,7 @@ TEST(TurnKernel, TurnsManyBodiesAsEachAlone) {
       FreeTurn turns[kMostTurns];
       for (std::size_t i = 0; i < turned.size(); ++i)
         turns[i] = {&turned[i].motion, &turned[i].orientation, &turned[i].inertia};
-      select_contact_kernels(width).turns.turn_freely(turns, int(turned.size()), seconds);
+      select_kernels(width).turns.turn_freely(turns, int(turned.size()), seconds);
       for (std::size_t i = 0; i < turned.size(); ++i) expect_same(turned[i], plain[i], width);
     }
   }
@@ -162,7 +162,7 @@ TEST(TurnKernel, TurnsByVectorsAsEachAlone) {
     }
     for (const int width : {0, 1, 4, 8, 16}) {
       std::vector<SteadyTurn> turned = turns;
-      select_contact_kernels(width).turns.turn_steadily(turned.data(), count);
+      select_kernels(width).turns.turn_steadily(turned.data(), count);
       for (std::size_t i = 0; i < turns.size(); ++i)
         EXPECT_EQ(turned[i].orientation, integrate_rotation(turns[i].orientation, turns[i].turn)) << width;
     }

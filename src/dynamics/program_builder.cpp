@@ -1,0 +1,38 @@
+#include "dynamics/program_builder.h"
+
+#include "rigid/solve/joint_energy.h"
+#include "task/parallel.h"
+
+namespace gyre {
+
+namespace {
+
+// At most: what stands once in the program, and what each sub-step adds beside a line for each colour.
+constexpr std::size_t kLinesOnce = 24, kLinesPerSubstep = 48;
+
+}  // namespace
+
+ProgramBuilder::ProgramBuilder(BatchContext& batch, int substeps, Arena& arena)
+    : batch_(batch),
+      bodies_(count_blocks(int(batch.motion.moved.size()), batch.kernels.width)),
+      spinners_(count_blocks(int(batch.motion.spinners.size()), kSpinnersPerBlock)),
+      orientations_(count_blocks(int(batch.motion.moved.size()), kBodiesPerBlock)),
+      free_bodies_(count_blocks(int(batch.motion.free_bodies.size()), kBodiesPerBlock)),
+      fields_(batch.motion.fields.blocks()),
+      impacts_(batch.scratch.contacts.impacts.empty() ? 0 : 1),
+      trees_(int(batch.contacts.forest.trees.size())),
+      structures_(batch.contacts.structures.empty() ? 0 : 1),
+      joint_slices_(batch.joints.groups.empty() ? 0 : kJointSlices),
+      articulations_(int(batch.joints.linkages.linkages.size())),
+      simd_articulations_(int(batch.joints.bundles.bundles.size())),
+      joint_islands_(int(batch.joints.islands.size())),
+      stiffened_(batch.joints.stiffened.empty() ? 0 : 1),
+      row_islands_(batch.rows == nullptr ? 0 : int(batch.rows->islands.islands.size())),
+      is_fused_(batch.is_fused()) {
+  for (const ContactGroup& group : batch.contact_groups) contact_blocks_ += int(group.count);
+  const std::size_t joints = batch.joints.groups.size(), contacts = batch.contact_groups.size();
+  room_ = arena.make<Stage>(kLinesOnce + 2 * contacts +
+                            std::size_t(substeps) * (kLinesPerSubstep + 3 * joints + 2 * contacts));
+}
+
+}  // namespace gyre

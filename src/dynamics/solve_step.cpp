@@ -1,0 +1,436 @@
+#include "dynamics/solve_step.h"
+
+#include "dynamics/constraint_layout.h"
+#include "dynamics/gather_bodies.h"
+#include "dynamics/gather_constraints.h"
+#include "dynamics/substep_program.h"
+#include "rigid/solve/geometric_stiffness.h"
+#include "rigid/solve/joint_energy.h"
+#include "task/parallel.h"
+
+#include <bit>
+
+namespace gyre {
+
+namespace {
+
+// Contacts begin as soft springs and stiffen as they age, with this time to half; these are the rate at which a new one
+// asks overlap back and that at which it gives way (1/s). docs/decisions/contact-softness.md tells how they were found.
+constexpr float kContactRate = 9.0f;
+constexpr float kContactLeak = 44.0f;
+constexpr float kContactAging = 0.25f;
+// A sub-step of the user's settings is two of the engine's, each one sweep over the constraints, then a move: two short ones hold four times
+// as stiff as two sweeps in one place.
+constexpr int kSubstepsPerSetting = 2;
+// Joints: errors are taken back at this rate (1/s), and impulses give way at this one, a little more than half of it, as
+// sweeps that lag behind need (the same page). Neither depends on the sub-step.
+constexpr float kJointRate = 40.0f;
+constexpr float kJointLeak = 22.0f;
+// Those of articulations are solved exactly; rows give way by this share of what would move them freely, enough to decide among
+// redundant ones (docs/decisions/joint-trees.md).
+constexpr float kArticulationCompliance = 1.0e-4f;
+// Nothing bounces that closes slower than this many times the speed that gravity gives in a sub-step.
+constexpr float kBounceShare = 2.0f;
+
+// By how much impulses grow at most from one part of an adaptive step to the next.
+constexpr float kMostWarm = 4.0f;
+
+// ------------------------------------------------------------------------------------------------------- islands at rest
+
+// Whether all that is in contact hangs on joints. None of these islands counts as one at rest.
+bool all_contacts_are_jointed(const BatchContext& batch, Arena& arena) {
+  const JointSolve& joints = batch.joints;
+  if (joints.edges.empty()) return false;
+  const ArenaScope scope(arena);
+  const std::span<std::uint8_t> jointed = arena.make<std::uint8_t>(batch.members.bodies.size());
+  for (std::uint8_t& one : jointed) one = 0;
+  for (const NetJoint& joint : joints.edges)
+    for_moving(joint, [&](std::uint32_t body) { jointed[batch.local_index[body]] = 1; });
+  const auto is_jointed = [&](std::uint32_t body) {
+    return body != ColoringPair::kNone && jointed[body] != 0;
+  };
+  for (const ColoringPair& pair : batch.scratch.contacts.pairs)
+    if (!is_jointed(pair.a) && !is_jointed(pair.b)) return false;
+  return true;
+}
+// The islands at rest, which are solved directly.
+void find_resting(BatchContext& batch, Arena& arena) {
+  ContactSolve& contacts = batch.contacts;
+  contacts.forest = {};
+  contacts.structures = {};
+  const std::span<ContactConstraint> constraints = contacts.lists.constraints.view();
+  if (constraints.empty() || !(length(batch.w.settings.gravity) > 0.0f)) return;
+  if (all_contacts_are_jointed(batch, arena)) return;
+  const std::span<const ColoringPair> pairs = contacts.lists.pairs;
+  const RestingIslands islands(batch.w, constraints, pairs, batch.joints.edges, batch.members,
+                               batch.local_index, arena);
+  contacts.forest = find_contact_trees(batch.w, constraints, pairs, batch.members, islands, arena);
+  contacts.structures = find_contact_structures(batch.w, pairs, batch.members, islands, arena);
+}
+void lay_out_resting(ContactSolve& s, Arena& arena) {
+  if (s.forest.nodes.empty() && s.structures.empty()) return;
+  const int width = s.kernels.width;
+  const std::span<const std::uint32_t> places =
+      find_kernel_places(s.lists.order, s.lists.constraints.size(), arena);
+  place_tree_nodes(s.forest, places, width);
+  place_structure_contacts(s.structures, places, width);
+  const ContactKernels* const kernels = &s.kernels.contacts;
+  s.tree_solve = {s.forest.nodes, s.forest.work, s.lists.constraints, s.bodies.motion,
+                  kernels,        s.blocks,      s.settings.step};
+  s.structure_solve = {s.lists.constraints, s.bodies.motion, kernels, s.blocks, &arena};
+}
+
+// ---------------------------------------------------------------------------------------------------------------- joints
+
+// By index in the batch: 1 of bodies on which contacts act.
+std::span<const std::uint8_t> find_bodies_in_contact(const BatchContext& batch, Arena& arena) {
+  const std::span<const ColoringPair> pairs = batch.scratch.contacts.pairs;
+  if (pairs.empty() || batch.joints.edges.empty()) return {};
+  const std::span<std::uint8_t> in_contact = arena.make<std::uint8_t>(batch.members.bodies.size());
+  for (std::uint8_t& one : in_contact) one = 0;
+  for (const ColoringPair& pair : pairs) {
+    if (pair.a != ColoringPair::kNone) in_contact[pair.a] = 1;
+    if (pair.b != ColoringPair::kNone) in_contact[pair.b] = 1;
+  }
+  return in_contact;
+}
+
+// Joints, and which of them are in articulations. Most of those, and of a net that is known to be solved iteratively, need no work but a
+// lane.
+void begin_joints(BatchContext& batch, Arena& arena) {
+  JointSolve& s = batch.joints;
+  DenseNets& nets = s.lists.dense_nets;
+  s.is_net = !s.edges.empty() && nets.holds(s.edges);
+  s.linkages = s.is_net ? no_linkages(s.edges.size(), arena)
+                        : find_linkages(s.w, s.batch, s.local_index, s.edges,
+                                        find_bodies_in_contact(batch, arena), s.lane_start, nets, arena);
+  s.works = begin_joints(s.w, s.batch, begun_in_lanes(s), s.lane_start.warm_scale, arena);
+}
+void prepare_articulations(JointSolve& s, std::size_t workers, Arena& arena) {
+  s.linkage_solve = {.records = s.w.joints.records,
+                     .work = s.works.work,
+                     .places = s.works.places,
+                     .bodies = s.bodies,
+                     .settings = s.settings,
+                     .give = kArticulationCompliance};
+  s.linkage_solve.settings.swept = false;
+  link_axes(s.linkages, s.works.work, arena);
+  s.limit_rooms = find_stops(s.linkages, s.works.work, workers, arena);
+  s.bundles = lay_out_bundles(
+      s.linkages, s.kernels, {s.bodies.motion, s.bodies.inertia, s.bodies.orientation},
+      {s.settings.substep, s.settings.softness.bias_rate, kArticulationCompliance, raise_inertia}, arena);
+}
+
+// --------------------------------------------------------------------------------------------------------------- a batch
+
+void color(const BatchContext& batch, std::span<const ColoringPair> pairs,
+           std::span<const std::uint32_t> names, Coloring& colors) {
+  color_constraints(pairs, names, std::uint32_t(batch.members.bodies.size()), {}, kColoringOptions, colors);
+}
+
+// Who is between whom, and which worker begins with what.
+void gather_constraints(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
+  gather_contacts(batch, arena, tasks);
+  gather_joint_edges(batch, arena, tasks);
+  batch.contacts.rolling = find_rolling_contacts(batch.w, batch.scratch.contacts, batch.members.bodies,
+                                                 batch.contacts.settings.step, arena, tasks);
+  batch.partition = partition_bodies(batch.scratch.contacts.pairs, batch.members.bodies.size(),
+                                     tasks.worker_count(), arena);
+}
+
+// How constraints will be solved: directly or iteratively, in which colours, and contacts in which lanes. Joints and islands at rest are
+// found beside the contacts.
+void color_constraints(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
+  BatchScratch& scratch = batch.scratch;
+  const std::span<ContactGroup> room = arena.make<ContactGroup>(kMaxGroups);
+  if (batch.partition.count() > 1)
+    batch.group_bounds = arena.make<int>(kMaxGroups * std::size_t(batch.partition.count() + 1));
+  run_parallel(
+      tasks,
+      [&] {
+        begin_joints(batch, arena);
+        gather_swept_joints(batch);
+        color(batch, scratch.joints.pairs, {}, scratch.joint_colors);
+        find_resting(batch, arena);
+      },
+      [&] {
+        color(batch, scratch.contacts.pairs, scratch.contacts.slots, scratch.contact_colors);
+        batch.contact_groups = lay_out_contacts(batch, room);
+      });
+}
+
+// Each of these asks for what those before it found.
+void prepare_batch(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
+  BodyMotionSolve& motion = batch.motion;
+  JointSolve& joints = batch.joints;
+  if (motion.is_smooth)
+    motion.smooth = find_smooth_motion(batch.w, batch.members, batch.local_index, motion.motions.count,
+                                       motion.motions.substep, arena);
+  motion.fields =
+      find_field_bodies(batch.w, batch.members.bodies, motion.motions.substep, arena, !motion.is_smooth);
+  prepare_articulations(joints, std::size_t(tasks.worker_count()), arena);
+  joints.stiffened = find_stiffened_bodies(joints, arena);
+  joints.islands = find_joint_islands(joints, batch.scratch.contacts.pairs, motion.fields.bodies, arena);
+  gather_bodies(batch, arena, tasks);
+  disable_gyroscopic_torque(joints, motion.moved, arena);
+  make_contact_blocks(batch, arena);
+  lay_out_resting(batch.contacts, arena);
+  lay_out_joints(batch, arena);
+}
+
+void finish_batch(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
+  BatchScratch& scratch = batch.scratch;
+  const JointSolve& joints = batch.joints;
+  remove_geometric_stiffness(joints);
+  finish_joints(batch.w, batch.members, begun_in_lanes(joints), joints.works.work);
+  forget_limited_impulses(joints);
+  if (batch.motion.is_smooth) finish_springs(batch.w, batch.motion.smooth, scratch.report);
+  find_hits(batch.w, scratch.contacts, scratch.hits, arena, tasks);
+  scratch.counts.manifolds += scratch.contacts.constraints.size();
+  scratch.counts.joints += batch.members.joints.size();
+  scratch.counts.swept_joints += scratch.joints.swept.size();
+}
+
+void solve_batch(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
+  const ArenaScope scope(arena);
+  gather_constraints(batch, arena, tasks);
+  color_constraints(batch, arena, tasks);
+  prepare_batch(batch, arena, tasks);
+  run_substeps(batch, arena, tasks);
+  finish_batch(batch, arena, tasks);
+}
+
+// ------------------------------------------------------------------------------------------------------ a batch, as rows
+
+// Rows look at their bodies' positions in each sub-step.
+void show_bodies(const BatchContext& batch) {
+  RigidWorld& w = batch.w;
+  for (const std::uint32_t slot : batch.members.joints) {
+    const JointRecord& joint = w.joints.records[slot];
+    if (joint.body_a != kNoBody) w.bodies.flags[std::size_t(joint.body_a)].touched = kPlaceShown;
+    if (joint.body_b != kNoBody) w.bodies.flags[std::size_t(joint.body_b)].touched = kPlaceShown;
+  }
+  for (const std::uint32_t body : batch.members.bodies) {
+    std::uint8_t& touched = w.bodies.flags[body].touched;
+    if (touched != kUntouched) touched = kPlaceShown;
+  }
+}
+
+// With the solvers that see constraints as rows: no colours, and each island is solved by one worker.
+void solve_batch_as_rows(BatchContext& batch, const SolverSettings& settings, Arena& arena,
+                         TaskSystem& tasks) {
+  const ArenaScope scope(arena);
+  BatchScratch& scratch = batch.scratch;
+  JointSolve& joints = batch.joints;
+  gather_contacts(batch, arena, tasks);
+  for (const ContactConstraint& constraint : scratch.contacts.constraints)
+    constraint.manifold->total_friction = {};
+  show_bodies(batch);
+  batch.motion.fields = find_field_bodies(batch.w, batch.members.bodies, batch.motion.motions.substep, arena);
+  joints.works = begin_joints(batch.w, batch.members, {}, joints.lane_start.warm_scale, arena);
+  gather_bodies(batch, arena, tasks);
+  RowSolve rows = begin_row_solve(batch.contacts, joints, settings, std::size_t(tasks.worker_count()), arena);
+  batch.rows = &rows;
+  run_substeps(batch, arena, tasks);
+  finish_row_solve(rows, scratch.rows);
+  finish_joints(batch.w, batch.members, {}, joints.works.work);
+  // Rows have no colours: what says so looks at these.
+  scratch.contacts.pairs.clear();
+  scratch.joints.pairs.clear();
+  find_hits(batch.w, scratch.contacts, scratch.hits, arena, tasks);
+  scratch.counts.manifolds += scratch.contacts.constraints.size();
+  scratch.counts.joints += batch.members.joints.size();
+}
+
+// ---------------------------------------------------------------------------------------------------------------- a step
+
+// How the sub-steps of a step are.
+struct Substepping {
+  int count = 0;
+  float h = 0.0f;  // s, of each
+  float warm_scale = 0.0f;
+};
+
+Substepping plan_substeps(RigidWorld& w, float seconds, bool by_rows) {
+  Substepping plan;
+  plan.count = by_rows ? w.settings.substeps : kSubstepsPerSetting * w.settings.substeps;
+  plan.h = seconds / float(plan.count);
+  plan.warm_scale = w.settings.last_substep > 0.0f ? plan.h / w.settings.last_substep : 0.0f;
+  // Parts of a step up to an impact may be as short as they like: what one of these leaves is mostly rounding.
+  if (!w.waiting.empty()) plan.warm_scale = min(plan.warm_scale, kMostWarm);
+  w.settings.last_substep = plan.h;
+  w.settings.last_step = seconds;
+  return plan;
+}
+
+ContactSettings contact_settings(const RigidWorld& w, float seconds, const Substepping& plan) {
+  const float h = plan.h, pull = length(w.settings.gravity);
+  return {.substep = h,
+          .step = seconds,
+          .rate = min(kContactRate, 0.8f / h),
+          .give = kContactLeak * h / (1.0f + kContactLeak * h),
+          .aging = kContactAging,
+          .warm_scale = plan.warm_scale,
+          .up = pull > 0.0f ? (-1.0f / pull) * w.settings.gravity : Vec3{}};
+}
+// Long sub-steps take back no more than the whole error and give way by less than the whole impulse.
+JointSettings joint_settings(const RigidWorld& w, float h) {
+  const float give = kJointLeak * h / (1.0f + kJointLeak * h);
+  return {h, {min(kJointRate, 0.8f / h), 1.0f - give, give}, row_solver_of(w) == nullptr};
+}
+
+// What is known of a batch before it is gathered.
+BatchContext describe_batch(RigidWorld& w, BatchScratch& scratch, const SolverKernels& kernels,
+                            const SolveBatch& members, std::span<const std::uint32_t> local_index,
+                            float seconds, const Substepping& plan) {
+  BatchContext batch{.w = w,
+                     .scratch = scratch,
+                     .kernels = kernels,
+                     .members = members,
+                     .local_index = local_index,
+                     .contacts = {w, scratch.contacts, kernels},
+                     .joints = {w, scratch.joints, kernels, members, local_index},
+                     .motion = {w, kernels}};
+  BodyMotion* const motion = w.bodies.motion.data();
+  BodyInertia* const inertia = w.bodies.inertia.data();
+  Quat* const orientations = w.bodies.orientations.data();
+  batch.contacts.settings = contact_settings(w, seconds, plan);
+  batch.contacts.impact_settings = {plan.h, kBounceShare * plan.h * length(w.settings.gravity)};
+  batch.contacts.bodies = {motion, inertia};
+  batch.joints.settings = joint_settings(w, plan.h);
+  batch.joints.bodies = {motion, inertia, orientations};
+  batch.joints.lane_start = {
+      .warm_scale = plan.warm_scale, .substep = plan.h, .softness = batch.joints.settings.softness};
+  batch.motion.motions = {plan.count, plan.h, w.settings.gravity};
+  batch.motion.arrays = {motion, inertia, orientations};
+  batch.motion.is_smooth = !w.motion_settings.empty();
+  return batch;
+}
+
+void begin_bodies(RigidWorld& w, TaskSystem& tasks) {
+  for_blocks(tasks, int(w.bodies.awake.size()), kBodiesPerBlock, [&](int begin, int end, int) {
+    for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
+      const std::uint32_t body = w.bodies.awake[i];
+      w.bodies.flags[body].touched = 0;
+      w.bodies.motion[body].moved = {};
+      w.bodies.motion[body].turned = {};
+      w.bodies.motion[body].pushed = 0.0f;
+    }
+  });
+  w.field_rest.clear();
+  if (!w.fields.empty()) w.field_rest.resize(w.bodies.motion.size());
+  if (motion_settings(w).integrator == IntegratorKind::verlet)
+    w.bodies.last_moves.resize(w.bodies.motion.size());
+}
+
+void begin_scratch(BatchScratch& scratch) {
+  scratch.hits.clear();
+  scratch.counts = {};
+  scratch.report = {};
+  scratch.rows = {};
+}
+
+// What constraints moved has its velocity from them.
+void forget_moves(RigidWorld& w) {
+  for (const std::uint32_t body : w.bodies.awake) {
+    if (w.bodies.flags[body].touched != kUntouched) w.bodies.last_moves[body] = {};
+  }
+}
+
+// Whether workers may solve batches in parallel: what fields, other solvers and other schemes tell of a step is put together by
+// one only.
+bool may_share_batches(const RigidWorld& w, const TaskSystem& tasks) {
+  return tasks.worker_count() > 1 && w.fields.empty() && w.motion_settings.empty() &&
+         row_solver_of(w) == nullptr;
+}
+
+void make_as_roomy(WorkerContext& worker, const WorkerContext& other) {
+  const auto even = [](auto& array, const auto& its) { array.reserve(its.capacity()); };
+  const auto even_colors = [&](Coloring& coloring, const Coloring& its) {
+    even(coloring.color, its.color), even(coloring.order, its.order);
+    even(coloring.offsets, its.offsets), even(coloring.masks, its.masks);
+  };
+  BatchScratch& to = worker.scratch;
+  const BatchScratch& from = other.scratch;
+  even(to.contacts.constraints, from.contacts.constraints), even(to.contacts.slots, from.contacts.slots);
+  even(to.contacts.impacts, from.contacts.impacts), even(to.contacts.pairs, from.contacts.pairs);
+  even(to.contacts.order, from.contacts.order);
+  even_colors(to.contact_colors, from.contact_colors), even_colors(to.joint_colors, from.joint_colors);
+  even(to.joints.swept, from.joints.swept), even(to.joints.pairs, from.joints.pairs),
+      even(to.hits, from.hits);
+  worker.arena.expect(other.arena.peak());
+}
+
+// Which worker solves which batch is chance: all have room for what any of them had, so that a world at its working size no
+// longer allocates.
+void begin_workers(SolveScratch& scratch, std::size_t count) {
+  while (scratch.workers.size() > count) scratch.workers.pop_back();
+  while (scratch.workers.size() < count) scratch.workers.push_back(std::make_unique<WorkerContext>());
+  for (const std::unique_ptr<WorkerContext>& each : scratch.workers)
+    make_as_roomy(*scratch.workers[0], *each);
+  for (const std::unique_ptr<WorkerContext>& each : scratch.workers)
+    make_as_roomy(*each, *scratch.workers[0]);
+  // After all have heard of it: an arena that starts over forgets what it needed.
+  for (const std::unique_ptr<WorkerContext>& each : scratch.workers) {
+    begin_scratch(each->scratch);
+    each->arena.reset();
+  }
+}
+
+// Of all batches together.
+void sum_up(SolveScratch& scratch) {
+  scratch.hits.clear();
+  scratch.counts = {};
+  const auto add = [&](const BatchScratch& part) {
+    scratch.hits.append(part.hits);
+    scratch.counts.manifolds += part.counts.manifolds;
+    scratch.counts.joints += part.counts.joints;
+    scratch.counts.swept_joints += part.counts.swept_joints;
+    scratch.counts.colors_used |= part.counts.colors_used;
+  };
+  add(scratch.together);
+  for (const std::unique_ptr<WorkerContext>& each : scratch.workers) add(each->scratch);
+  scratch.colors = std::popcount(scratch.counts.colors_used);
+  scratch.report = scratch.together.report;
+  scratch.rows = scratch.together.rows;
+}
+
+}  // namespace
+
+void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& tasks,
+                const SolverKernels& kernels, float seconds) {
+  const SolverSettings* const row_solver = row_solver_of(w);
+  const Substepping plan = plan_substeps(w, seconds, row_solver != nullptr);
+  begin_bodies(w, tasks);
+  begin_scratch(scratch.together);
+  const bool shared = may_share_batches(w, tasks);
+  begin_workers(scratch, shared ? std::size_t(tasks.worker_count()) : 0);
+  const ArenaScope scope(arena);
+  const IslandBatches all = find_batches(w, arena, tasks, batch_size(tasks.worker_count(), shared));
+  const auto describe = [&](const IslandBatch& members, BatchScratch& own) {
+    return describe_batch(w, own, kernels, members, all.local_index, seconds, plan);
+  };
+  for (const IslandBatch& members : all.batches) {
+    if (shared && members.is_small) continue;
+    BatchContext batch = describe(members, scratch.together);
+    if (row_solver != nullptr) {
+      solve_batch_as_rows(batch, *row_solver, arena, tasks);
+    } else {
+      solve_batch(batch, arena, tasks);
+    }
+  }
+  if (shared) {
+    for_blocks(tasks, int(all.batches.size()), 1, [&](int i, int, int worker) {
+      const IslandBatch& members = all.batches[std::size_t(i)];
+      if (!members.is_small) return;
+      WorkerContext& own = *scratch.workers[std::size_t(worker)];
+      BatchContext batch = describe(members, own.scratch);
+      solve_batch(batch, own.arena, own.tasks);
+    });
+  }
+  sum_up(scratch);
+  if (motion_settings(w).integrator == IntegratorKind::verlet) forget_moves(w);
+  report_hits(w, scratch.hits.view(), arena);
+}
+
+}  // namespace gyre

@@ -1,0 +1,40 @@
+// Solves what is awake in one step: batches of islands (dynamics/island_batches.h), each gathered, coloured, laid out and prepared once for
+// all its sub-steps, which are a program (dynamics/substep_program.h). Small batches are solved in parallel, each by one worker; large ones
+// one after the other by all workers. docs/step.md has the stages.
+#pragma once
+
+#include "base/arena/arena.h"
+#include "dynamics/batch_context.h"
+#include "task/task_system.h"
+
+#include <memory>
+#include <vector>
+
+namespace gyre {
+
+// What a worker needs that solves batches by itself.
+struct WorkerContext {
+  BatchScratch scratch;
+  Arena arena;
+  TaskSystem tasks;
+};
+
+struct SolveScratch {
+  BatchScratch together;                                // of batches that all workers solve together
+  std::vector<std::unique_ptr<WorkerContext>> workers;  // none where there is one worker
+  Array<SlotHit> hits;
+  SolveCounts counts;  // of all batches
+  StepReport report;
+  RowReport rows;
+  int colors = 0;
+};
+
+// How constraints are shared among groups.
+constexpr ColoringOptions kColoringOptions{.max_colors = 32, .statics_last = true};
+static_assert(kColoringOptions.max_colors < 64, "colors_used has a bit for each, and one for the rest");
+
+// Solves one step of `seconds`: velocities, `moved`, `turned` and orientations of awake bodies, impulses in manifolds and joints.
+void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& tasks,
+                const SolverKernels& kernels, float seconds);
+
+}  // namespace gyre

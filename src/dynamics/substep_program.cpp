@@ -1,0 +1,163 @@
+// The order of a step, as the lines of a program. See substep_program.h.
+#include "dynamics/substep_program.h"
+
+#include "dynamics/program_builder.h"
+#include "rigid/solve/contact_stages.h"
+#include "rigid/solve/geometric_stiffness.h"
+#include "rigid/solve/joint_energy.h"
+
+namespace gyre {
+
+namespace {
+
+using Simd = LinkageKernels;
+
+// Once, before all sub-steps: free bodies move for the whole step; everything else is made ready where it stands.
+void add_preparation(ProgramBuilder& p) {
+  p.free_bodies<integrate_free_bodies>();
+  p.spring_systems<move_spring_systems>();
+  if (!p.is_fused()) p.bodies<prepare_bodies>();
+  p.stiffened_bodies<add_geometric_stiffness>();
+  p.field_bodies<prepare_field_bodies>();
+  p.contact_blocks<prepare_contacts>();
+  p.all_joints<begin_ball_joints>();
+  p.all_joints<evaluate_joints>();
+  p.articulations<evaluate_articulation>();
+  if (!p.is_fused()) p.simd_articulation_lanes<begin_simd_articulations>();
+  if (!p.is_fused()) p.simd_articulations<&Simd::evaluate>();
+  p.row_islands<evaluate_row_joints>();
+}
+
+// Where no joint was relaxed since, they are evaluated in the same line, while their rows are in the cache.
+void add_relaxation_of_simd(ProgramBuilder& p, bool are_evaluated, bool last) {
+  if (are_evaluated && !last) p.simd_articulations<&Simd::end_substep>();
+  if (are_evaluated && last) p.simd_articulations<&Simd::end_step>();
+  if (!are_evaluated && !last) p.simd_articulations<&Simd::evaluate, &Simd::end_substep>();
+  if (!are_evaluated && last) p.simd_articulations<&Simd::evaluate, &Simd::end_step>();
+}
+
+// One sub-step: forces, warm start, joints, contacts, positions, relaxation. What a batch does not have is no line. In a fused batch all
+// that is between the contacts of two sub-steps is one line, run by run (dynamics/fused_stages.h).
+void add_substep(ProgramBuilder& p, bool first, bool last) {
+  const bool fused = p.is_fused(), has_swept = p.has_swept_joints(), has_joints = p.has_joints();
+  const bool warm_start_with_forces = !first && p.can_warm_start_with_forces();
+  if (fused && first) {
+    p.fused<&FusedRun::prepare, &FusedRun::evaluate_joints, &FusedRun::apply_forces,
+            &FusedRun::compute_joint_bias>();
+    p.contacts<warm_start_contacts>();
+    p.fused<&FusedRun::add_first_contact_change, &FusedRun::solve_joints_first>();
+  }
+  if (!fused) {
+    // Forces, and bounces of what meets in this sub-step.
+    p.field_bodies<record_field_velocities>();
+    p.impacts<record_contact_approach>();
+    p.coupled_spring_systems<move_coupled_spring_systems>();
+    p.coupling_springs<apply_spring_impulses>();
+    if (warm_start_with_forces) p.bodies<apply_forces_and_warm_start>();
+    if (!warm_start_with_forces) p.bodies<apply_forces>();
+    p.impacts<apply_contact_restitution>();
+    // Warm start. Joints come before contacts, so that what joints give counts as none of the velocity change by contacts.
+    p.all_joints<compute_rotation_bias>();
+    p.joint_islands<begin_warm_start_energy>();
+    p.articulations<warm_start_articulation>();
+    if (first) p.simd_articulations<&Simd::compute_bias>();  // later: as the sub-step before ended
+    p.joints<warm_start_joints>();
+    p.joint_islands<limit_energy_gain>();
+    if (!first && !warm_start_with_forces) p.measured_bodies<warm_start_bodies>();
+    if (first) p.measured_bodies<start_contact_change>();
+    if (first) p.contacts<warm_start_contacts>();
+    if (first) p.measured_bodies<add_contact_change>();
+    // Fields, after what contacts and joints gave in the last sub-step: a stream pulls at what really moves.
+    p.field_bodies<apply_field_forces>();
+    if (p.has_fields()) p.measured_bodies<start_contact_change>();
+    // Joints.
+    p.joint_islands<begin_energy_gain>();
+    p.joints<solve_joints>();
+    p.articulations<solve_articulation>();
+    p.simd_articulations<&Simd::solve>();
+    p.joint_islands<limit_energy_gain>();
+    if (has_joints) p.measured_bodies<start_contact_change>();
+  }
+  // Contacts, or all constraints as rows. Islands at rest are solved directly in the first sub-step, which gives them the loads of this
+  // step, and in the last, which leaves them at rest: in between nothing is left to change.
+  if (first) p.row_islands<solve_row_islands_first>();
+  if (!first) p.row_islands<solve_row_islands>();
+  p.contacts<solve_contacts>();
+  if (first || last) p.resting_trees<solve_resting_trees>();
+  if (first) p.resting_structures<solve_resting_structures_first>();
+  if (last) p.resting_structures<solve_resting_structures_last>();
+  if (fused && last)
+    return p.fused<&FusedRun::add_contact_change, &FusedRun::solve_joints_after_contacts,
+                   &FusedRun::integrate_positions, &FusedRun::evaluate_joints, &FusedRun::relax_joints_last,
+                   &FusedRun::finish>();
+  if (fused)
+    return p.fused<&FusedRun::add_contact_change, &FusedRun::solve_joints_after_contacts,
+                   &FusedRun::integrate_positions, &FusedRun::evaluate_joints, &FusedRun::relax_joints,
+                   &FusedRun::apply_forces_and_warm_start, &FusedRun::solve_joints>();
+  // Articulations again: they have the last word.
+  if (has_joints) p.measured_bodies<add_contact_change>();
+  p.joint_islands<begin_energy_gain>();
+  p.articulations<solve_articulation_after_contacts>();
+  p.simd_articulations<&Simd::solve_after_contacts>();
+  p.joint_islands<limit_energy_gain>();
+  // Positions, and bounces of what had to be set down first.
+  if (has_joints) p.bodies<integrate_positions>();
+  if (!has_joints) p.bodies<add_contact_change_and_integrate>();
+  p.spinning_bodies<integrate_spinners>();
+  p.impacts<apply_delayed_contact_restitution>();
+  // Relaxation of joints where bodies are now: no velocity stays that came from taking errors back.
+  p.stiffened_bodies<add_geometric_stiffness>();
+  p.all_joints<evaluate_other_joints>();
+  p.articulations<evaluate_articulation>();
+  if (has_swept) p.simd_articulations<&Simd::evaluate>();
+  p.joint_islands<begin_energy_gain>();
+  p.joints<relax_joints>();
+  p.articulations<relax_articulation>();
+  add_relaxation_of_simd(p, has_swept, last);
+  p.joint_islands<remove_energy_gain>();
+  p.row_islands<evaluate_row_joints>();
+  p.row_islands<sum_row_joints>();
+}
+
+// Once, after all sub-steps: contacts without their springs, so that no velocity that came from these stays under load; overlap pushed
+// apart without velocity; and what was gathered goes back to where it is stored.
+void add_completion(ProgramBuilder& p) {
+  p.contacts<relax_contacts>();
+  p.bodies<begin_projection>();
+  p.contacts<project_contacts>();
+  p.row_islands<push_row_islands_apart>();
+  p.bodies<end_projection>();
+  p.orientations<finish_orientations>();
+  p.spring_systems<finish_spring_systems>();
+  p.contact_blocks<finish_contacts>();
+  if (!p.is_fused()) p.simd_articulation_lanes<finish_simd_articulations>();
+  p.all_joints<finish_ball_joints>();
+}
+
+// Of how many bodies, the first, somebody asks for the velocity change by contacts: where there may be any. (The look clears negative zeros
+// away, too, which joints that are not in lanes leave.)
+std::size_t count_measured(const BatchContext& batch) {
+  const JointSolve& joints = batch.joints;
+  const bool has_contacts = !batch.contact_groups.empty(), has_lanes = !joints.bundles.bundles.empty(),
+             has_articulations = !joints.linkages.linkages.empty();
+  if (batch.rows != nullptr) return 0;
+  if (joints.groups.empty() && !has_articulations) {
+    if (has_lanes) return has_contacts ? batch.moved_in_contact : 0;
+    return batch.motion.moved.size();
+  }
+  return has_contacts || has_lanes || has_articulations ? batch.motion.moved.size() : 0;
+}
+
+}  // namespace
+
+void run_substeps(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
+  const int substeps = batch.motion.motions.count;
+  batch.motion.measured_blocks = count_blocks(int(count_measured(batch)), batch.kernels.width);
+  ProgramBuilder program(batch, substeps, arena);
+  add_preparation(program);
+  for (int i = 0; i < substeps; ++i) add_substep(program, i == 0, i + 1 == substeps);
+  add_completion(program);
+  run_program(tasks, program.stages());
+}
+
+}  // namespace gyre

@@ -1,0 +1,13 @@
+// The program of a batch: its sub-steps as a table of stages (task/program.h).
+//
+// In: a batch, gathered and laid out (dynamics/batch_context.h). Out: velocities, `moved`, `turned` and orientations of its bodies, impulses
+// of its manifolds and joints.
+#pragma once
+
+#include "dynamics/batch_context.h"
+
+namespace gyre {
+
+void run_substeps(BatchContext& batch, Arena& arena, TaskSystem& tasks);
+
+}  // namespace gyre

@@ -1,0 +1,66 @@
+// What the stages of joints (rigid/solve/joint_stages.h) work on: the joints of a batch, those in articulations that are solved directly
+// and those that are solved iteratively, colour by colour.
+#pragma once
+
+#include "rigid/articulation/linkage_bundles.h"
+#include "rigid/articulation/linkages.h"
+#include "rigid/batch/joint_works.h"
+#include "task/coloring.h"
+
+namespace gyre {
+
+struct JointGroup;
+struct JointIsland;
+
+// A body of which joints ask more than a sub-step resolves (rigid/solve/geometric_stiffness.h).
+struct StiffenedBody {
+  std::uint32_t body = 0;
+  float added_inertia = 0.0f;  // kg m^2, about every axis
+};
+
+// The joints of a batch that are in no articulation. Kept from step to step only for its memory.
+struct JointLists {
+  Array<std::uint32_t> swept;  // indices in the batch's list of joints
+  Array<ColoringPair> pairs;   // between which bodies each is: indices in the batch, as far as they move
+  DenseNets dense_nets;
+};
+
+struct JointSolve {
+  RigidWorld& w;
+  JointLists& lists;
+  const SolverKernels& kernels;
+  SolveBatch batch{};
+  std::span<const std::uint32_t> local_index{};  // by body: its index in its batch
+  JointSettings settings{};
+  JointBodies bodies{};
+  std::span<NetJoint> edges{};           // of the batch's joints
+  std::span<std::uint8_t> ball_lanes{};  // 1 for those that may be solved as ball joints side by side
+  bool is_net = false;     // all are known to be swept: those of ball_lanes are begun in their lanes
+  LaneStart lane_start{};  // of joints that are begun in lanes
+  JointWorks works{};
+  Linkages linkages{};
+  LinkageSolve linkage_solve{};
+  std::span<std::span<double>> limit_rooms{};  // by worker, where an articulation has limits
+  BundleSolve bundles{};                       // articulations side by side
+  std::span<std::uint32_t> order{};            // indices in the list of swept joints, by groups
+  std::span<JointGroup> groups{};
+  void* balls = nullptr;  // ball joints side by side: solver/articulation/ball_lanes.h
+  std::span<const StiffenedBody> stiffened{};
+  std::span<JointIsland> islands{};  // rigid/solve/joint_energy.h
+};
+
+// Joints of one colour.
+struct JointGroup {
+  const JointSolve* solve = nullptr;
+  std::uint32_t first = 0, count = 0;  // in the joint order
+  bool serial = false;           // what is left over when the colours are used up: its members share bodies
+  std::int32_t ball_block = -1;  // of ball joints that are solved side by side: their first block
+  const int* bounds = nullptr;   // of each worker's share: Stage::bounds
+};
+
+// By index in the batch: 1 for those joints that are begun and finished in their lanes, and have no work.
+inline std::span<const std::uint8_t> begun_in_lanes(const JointSolve& s) {
+  return s.is_net ? s.ball_lanes : s.linkages.in_lanes;
+}
+
+}  // namespace gyre

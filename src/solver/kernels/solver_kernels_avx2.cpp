@@ -1,0 +1,10 @@
+// The kernels for one kind of CPU, in a namespace of its own so that the linker can never mix them with others'.
+#define GYRE_TARGET_NAMESPACE target_avx2
+#include "solver/kernels/kernel_table.h"
+
+namespace gyre {
+
+extern const SolverKernels kSolverKernels_avx2;
+const SolverKernels kSolverKernels_avx2 = solver_kernels<8>();
+
+}  // namespace gyre
