@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,29 @@ TEST(StepTable, NamesUnitsThatExist) {
       EXPECT_TRUE(std::filesystem::exists(source_path("src/" + unit + ".cpp"))) << unit;
     }
   }
+}
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(source_path(path));
+  return std::string((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+}
+
+// The stages of the lines that `p.kind<stage>()` adds in the order of a sub-step; those that are members of other structs left out.
+std::vector<std::string> stages_of_program() {
+  const std::string text = text_of("src/dynamics/substep_program.cpp");
+  const std::regex line("\\bp\\.\\w+<(\\w+)>\\(\\)");
+  std::vector<std::string> stages;
+  for (std::sregex_iterator found(text.begin(), text.end(), line), end; found != end; ++found)
+    stages.push_back((*found)[1]);
+  return stages;
+}
+
+TEST(StepTable, NamesEveryStageOfASubStep) {
+  const std::vector<std::string> stages = stages_of_program();
+  EXPECT_GT(stages.size(), 40u);
+  const std::string document = text_of("docs/step.md");
+  for (const std::string& stage : stages)
+    EXPECT_NE(document.find("`" + stage + "`"), std::string::npos) << stage << " is not in docs/step.md";
 }
 
 // Every `[text](path)` of the documents leads to a file of the tree.

@@ -80,7 +80,7 @@ struct MotionKernels {
   // of bodies that turn alone are still to be made.
   void (*end_projection)(void* blocks, int begin, int end, BodyMotion* motion, Vec3* turns);
 
-  // The same as those above, but velocities are taken from lanes and go there, of `note` from the records to there. None where kernels
+  // The same as those above, but velocities are taken from lanes and go there, of `add_contact_change` from the records to there. None where kernels
   // have few lanes, and the way through records costs little.
   void (*predict_in_lanes)(void* blocks, int begin, int end, const LaneVelocities& lanes, bool warm,
                            bool watched);
