@@ -106,7 +106,7 @@ void FusedRun::integrate_positions() const {
   integrate_spinners_of_blocks(motion_, begin_, end_);
 }
 
-void FusedRun::evaluate_joints() const { for_bundles(&LinkageKernels::evaluate); }
+void FusedRun::prepare_joints() const { for_bundles(&LinkageKernels::prepare); }
 void FusedRun::compute_joint_bias() const { for_bundles(&LinkageKernels::compute_bias); }
 void FusedRun::solve_joints_first() const { solve(true); }
 void FusedRun::solve_joints() const { solve(is_apart()); }

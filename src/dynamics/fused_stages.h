@@ -62,7 +62,7 @@ class FusedRun {
   void apply_forces_and_warm_start() const;
   void add_contact_change() const;
   void integrate_positions() const;
-  void evaluate_joints() const;
+  void prepare_joints() const;
   void compute_joint_bias() const;
   // In the first sub-step velocities come from the records; what contacts change is measured from here on.
   void solve_joints_first() const;

@@ -181,7 +181,7 @@ void prepare_batch(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
 void finish_batch(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
   BatchScratch& scratch = batch.scratch;
   const JointSolve& joints = batch.joints;
-  remove_geometric_stiffness(joints);
+  restore_inertia(joints);
   finish_joints(batch.w, batch.members, begun_in_lanes(joints), joints.works.work);
   forget_limited_impulses(joints);
   if (batch.motion.is_smooth) finish_springs(batch.w, batch.motion.smooth, scratch.report);

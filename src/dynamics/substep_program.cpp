@@ -14,26 +14,26 @@ using Simd = LinkageKernels;
 
 // Once, before all sub-steps: free bodies move for the whole step; everything else is made ready where it stands.
 void add_preparation(ProgramBuilder& p) {
-  p.free_bodies<integrate_free_bodies>();
+  p.free_bodies<move_free_bodies>();
   p.spring_systems<move_spring_systems>();
   if (!p.is_fused()) p.bodies<prepare_bodies>();
-  p.stiffened_bodies<add_geometric_stiffness>();
+  p.stiffened_bodies<stiffen_bodies>();
   p.field_bodies<prepare_field_bodies>();
   p.contact_blocks<prepare_contacts>();
   p.all_joints<begin_ball_joints>();
-  p.all_joints<evaluate_joints>();
-  p.articulations<evaluate_articulation>();
+  p.all_joints<prepare_joints>();
+  p.articulations<prepare_articulation>();
   if (!p.is_fused()) p.simd_articulation_lanes<begin_simd_articulations>();
-  if (!p.is_fused()) p.simd_articulations<&Simd::evaluate>();
-  p.row_islands<evaluate_row_joints>();
+  if (!p.is_fused()) p.simd_articulations<&Simd::prepare>();
+  p.row_islands<prepare_row_joints>();
 }
 
-// Where no joint was relaxed since, they are evaluated in the same line, while their rows are in the cache.
-void add_relaxation_of_simd(ProgramBuilder& p, bool are_evaluated, bool last) {
-  if (are_evaluated && !last) p.simd_articulations<&Simd::end_substep>();
-  if (are_evaluated && last) p.simd_articulations<&Simd::end_step>();
-  if (!are_evaluated && !last) p.simd_articulations<&Simd::evaluate, &Simd::end_substep>();
-  if (!are_evaluated && last) p.simd_articulations<&Simd::evaluate, &Simd::end_step>();
+// Where no joint was relaxed since, they are prepared in the same line, while their rows are in the cache.
+void add_relaxation_of_simd(ProgramBuilder& p, bool are_prepared, bool last) {
+  if (are_prepared && !last) p.simd_articulations<&Simd::end_substep>();
+  if (are_prepared && last) p.simd_articulations<&Simd::end_step>();
+  if (!are_prepared && !last) p.simd_articulations<&Simd::prepare, &Simd::end_substep>();
+  if (!are_prepared && last) p.simd_articulations<&Simd::prepare, &Simd::end_step>();
 }
 
 // One sub-step: forces, warm start, joints, contacts, positions, relaxation. What a batch does not have is no line. In a fused batch all
@@ -42,7 +42,7 @@ void add_substep(ProgramBuilder& p, bool first, bool last) {
   const bool fused = p.is_fused(), has_swept = p.has_swept_joints(), has_joints = p.has_joints();
   const bool warm_start_with_forces = !first && p.can_warm_start_with_forces();
   if (fused && first) {
-    p.fused<&FusedRun::prepare, &FusedRun::evaluate_joints, &FusedRun::apply_forces,
+    p.fused<&FusedRun::prepare, &FusedRun::prepare_joints, &FusedRun::apply_forces,
             &FusedRun::compute_joint_bias>();
     p.contacts<warm_start_contacts>();
     p.fused<&FusedRun::add_first_contact_change, &FusedRun::solve_joints_first>();
@@ -88,11 +88,11 @@ void add_substep(ProgramBuilder& p, bool first, bool last) {
   if (last) p.resting_structures<solve_resting_structures_last>();
   if (fused && last)
     return p.fused<&FusedRun::add_contact_change, &FusedRun::solve_joints_after_contacts,
-                   &FusedRun::integrate_positions, &FusedRun::evaluate_joints, &FusedRun::relax_joints_last,
+                   &FusedRun::integrate_positions, &FusedRun::prepare_joints, &FusedRun::relax_joints_last,
                    &FusedRun::finish>();
   if (fused)
     return p.fused<&FusedRun::add_contact_change, &FusedRun::solve_joints_after_contacts,
-                   &FusedRun::integrate_positions, &FusedRun::evaluate_joints, &FusedRun::relax_joints,
+                   &FusedRun::integrate_positions, &FusedRun::prepare_joints, &FusedRun::relax_joints,
                    &FusedRun::apply_forces_and_warm_start, &FusedRun::solve_joints>();
   // Articulations again: they have the last word.
   if (has_joints) p.measured_bodies<add_contact_change>();
@@ -106,16 +106,16 @@ void add_substep(ProgramBuilder& p, bool first, bool last) {
   p.spinning_bodies<integrate_spinners>();
   p.impacts<apply_delayed_contact_restitution>();
   // Relaxation of joints where bodies are now: no velocity stays that came from taking errors back.
-  p.stiffened_bodies<add_geometric_stiffness>();
-  p.all_joints<evaluate_other_joints>();
-  p.articulations<evaluate_articulation>();
-  if (has_swept) p.simd_articulations<&Simd::evaluate>();
+  p.stiffened_bodies<stiffen_bodies>();
+  p.all_joints<prepare_other_joints>();
+  p.articulations<prepare_articulation>();
+  if (has_swept) p.simd_articulations<&Simd::prepare>();
   p.joint_islands<begin_energy_gain>();
   p.joints<relax_joints>();
   p.articulations<relax_articulation>();
   add_relaxation_of_simd(p, has_swept, last);
   p.joint_islands<remove_energy_gain>();
-  p.row_islands<evaluate_row_joints>();
+  p.row_islands<prepare_row_joints>();
   p.row_islands<sum_row_joints>();
 }
 

@@ -108,7 +108,7 @@ class LaneClosing {
     std::uint32_t going = (1u << bundle.linkages.size()) - 1;
     while (going != 0) {
       forget_lane_impulses(bundle.lanes);
-      kernels.evaluate(bundle.lanes, bundles_.arrays, bundles_.settings);
+      kernels.prepare(bundle.lanes, bundles_.arrays, bundles_.settings);
       std::uint32_t solved = 0;
       for (std::size_t lane = 0; lane < bundle.linkages.size(); ++lane) {
         if ((going >> lane & 1u) == 0) continue;

@@ -99,7 +99,7 @@ class ClosingRows {
     RowList list{rows_.data(), kept_.data(), 0};
     for (std::size_t i = 0; i < joints_.records.size(); ++i) {
       JointWork& work = joints_.works.work[i];
-      evaluate_joint(joints_.records[i], work, joints_.works.places[i], bodies, kClosingSettings);
+      prepare_joint(joints_.records[i], work, joints_.works.places[i], bodies, kClosingSettings);
       bend_joint(joints_.records[i], work, bodies, kClosingSettings);
       add_joint_rows(joints_.records[i], work, kClosingSettings, frame, list);
     }

@@ -84,7 +84,7 @@ void disable_gyroscopic_torque(const JointSolve& solve, std::span<MovedBody> mov
   }
 }
 
-void add_geometric_stiffness(const JointSolve& solve, int, int) {
+void stiffen_bodies(const JointSolve& solve, int, int) {
   BodyStore& bodies = solve.w.bodies;
   for (const StiffenedBody& each : solve.stiffened) {
     const BodyMass& mass = bodies.masses[each.body];
@@ -95,7 +95,7 @@ void add_geometric_stiffness(const JointSolve& solve, int, int) {
   }
 }
 
-void remove_geometric_stiffness(const JointSolve& solve) {
+void restore_inertia(const JointSolve& solve) {
   BodyStore& bodies = solve.w.bodies;
   for (const StiffenedBody& stiffened : solve.stiffened) {
     const std::uint32_t body = stiffened.body;

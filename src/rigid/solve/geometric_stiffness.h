@@ -20,8 +20,8 @@ std::span<const StiffenedBody> find_stiffened_bodies(const JointSolve& solve, Ar
 void disable_gyroscopic_torque(const JointSolve& solve, std::span<MovedBody> moved, Arena& arena);
 // Raises their inertia, as they are turned now: before joints and contacts read it, and again whenever they have turned.
 // A stage of one block.
-void add_geometric_stiffness(const JointSolve& solve, int begin, int end);
+void stiffen_bodies(const JointSolve& solve, int begin, int end);
 // Gives it back, after the last part of the step.
-void remove_geometric_stiffness(const JointSolve& solve);
+void restore_inertia(const JointSolve& solve);
 
 }  // namespace gyre

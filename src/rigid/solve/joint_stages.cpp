@@ -90,13 +90,13 @@ void finish_ball_joints(const JointGroup& g, int begin, int end) {
     finish_ball(balls.kernels, balls.blocks, block, lane, g.solve->w.joints.records[slot]);
   });
 }
-void evaluate_joints(const JointGroup& g, int begin, int end) {
+void prepare_joints(const JointGroup& g, int begin, int end) {
   if (g.ball_block >= 0) {
     const Balls balls = balls_of(g, begin, end);
     return balls.kernels.place(balls.blocks, balls.begin, balls.end, balls.arrays);
   }
   for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces& places) {
-    evaluate_joint(joint, work, places, g.solve->bodies, g.solve->settings);
+    prepare_joint(joint, work, places, g.solve->bodies, g.solve->settings);
   });
 }
 void compute_rotation_bias(const JointGroup& g, int begin, int end) {
@@ -126,8 +126,8 @@ void solve_joints(const JointGroup& g, int begin, int end) {
     solve_joint(joint, work, g.solve->bodies, g.solve->settings, true);
   });
 }
-void evaluate_other_joints(const JointGroup& g, int begin, int end) {
-  if (g.ball_block < 0) evaluate_joints(g, begin, end);
+void prepare_other_joints(const JointGroup& g, int begin, int end) {
+  if (g.ball_block < 0) prepare_joints(g, begin, end);
 }
 void relax_joints(const JointGroup& g, int begin, int end) {
   if (g.ball_block >= 0) {

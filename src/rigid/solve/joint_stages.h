@@ -11,15 +11,15 @@ namespace gyre {
 constexpr int kJointsPerBlock = 16;  // whole blocks of lanes at every width
 
 // Joints of one colour: where they are, soft rows, and no speed along rigid rows.
-void evaluate_joints(const JointGroup& group, int begin, int end);
+void prepare_joints(const JointGroup& group, int begin, int end);
 // How joints turn within the sub-step.
 void compute_rotation_bias(const JointGroup& group, int begin, int end);
 void warm_start_joints(const JointGroup& group, int begin, int end);
 void solve_joints(const JointGroup& group, int begin, int end);
-// Ball joints are evaluated here, while they are in the cache: nothing that one colour gives changes where the next one stands, and no
-// articulation has their bodies. The others are by evaluate_other_joints.
+// Ball joints are prepared here, while they are in the cache: nothing that one colour gives changes where the next one stands, and no
+// articulation has their bodies. The others are by prepare_other_joints.
 void relax_joints(const JointGroup& group, int begin, int end);
-void evaluate_other_joints(const JointGroup& group, int begin, int end);
+void prepare_other_joints(const JointGroup& group, int begin, int end);
 // Ball joints into their lanes, and what they gave back into the joints.
 void begin_ball_joints(const JointGroup& group, int begin, int end);
 void finish_ball_joints(const JointGroup& group, int begin, int end);

@@ -96,7 +96,7 @@ void end_projection(const BodyMotionSolve& s, int begin, int end) {
   s.kernels.motion.end_projection(s.blocks, begin, end, s.arrays.motion, s.pushes.data());
 }
 
-void integrate_free_bodies(const BodyMotionSolve& s, int begin, int end) {
+void move_free_bodies(const BodyMotionSolve& s, int begin, int end) {
   fly(s.w.bodies, block_of(s.free_bodies, begin, end, kBodiesPerBlock), s.motions, s.kernels.turns);
 }
 void finish_orientations(const BodyMotionSolve& s, int begin, int end) {

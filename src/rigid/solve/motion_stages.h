@@ -40,7 +40,7 @@ void begin_projection(const BodyMotionSolve& s, int begin, int end);
 void end_projection(const BodyMotionSolve& s, int begin, int end);
 
 // The whole step of free bodies, in blocks of kBodiesPerBlock.
-void integrate_free_bodies(const BodyMotionSolve& s, int begin, int end);
+void move_free_bodies(const BodyMotionSolve& s, int begin, int end);
 // Orientations as the step ends, in blocks of kBodiesPerBlock.
 void finish_orientations(const BodyMotionSolve& s, int begin, int end);
 

@@ -301,12 +301,12 @@ void push_row_islands_apart(const RowSolve& s, int begin, int end, int worker) {
   }
 }
 
-void evaluate_row_joints(const RowSolve& s, int begin, int end) {
+void prepare_row_joints(const RowSolve& s, int begin, int end) {
   const JointSolve& joints = s.joints;
   for (int i = begin; i < end; ++i) {
     for (const std::uint32_t j : s.islands.islands[std::size_t(i)].joints)
-      evaluate_joint(joints.w.joints.records[joints.batch.joints[j]], joints.works.work[j],
-                     joints.works.places[j], joints.bodies, joints.settings);
+      prepare_joint(joints.w.joints.records[joints.batch.joints[j]], joints.works.work[j],
+                    joints.works.places[j], joints.bodies, joints.settings);
   }
 }
 void sum_row_joints(const RowSolve& s, int begin, int end) {

@@ -47,7 +47,7 @@ RowSolve begin_row_solve(const ContactSolve& contacts, const JointSolve& joints,
 // Stages, whose blocks are islands. In the first sub-step impulses are those of the last step, scaled.
 void solve_row_islands_first(const RowSolve& s, int begin, int end, int worker);
 void solve_row_islands(const RowSolve& s, int begin, int end, int worker);
-void evaluate_row_joints(const RowSolve& s, int begin, int end);
+void prepare_row_joints(const RowSolve& s, int begin, int end);
 void sum_row_joints(const RowSolve& s, int begin, int end);
 void push_row_islands_apart(const RowSolve& s, int begin, int end, int worker);
 

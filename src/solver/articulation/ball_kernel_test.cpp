@@ -62,7 +62,7 @@ void solve_alone(Pairs& pairs) {
     JointRecord& joint = pairs.records[i];
     JointWork& work = pairs.work[i];
     const JointBodies bodies = pairs.bodies();
-    evaluate_joint(joint, work, pairs.places[i], bodies, kSettings);
+    prepare_joint(joint, work, pairs.places[i], bodies, kSettings);
     bend_joint(joint, work, bodies, kSettings);
     warm_start_joint(joint, work, bodies);
     solve_joint(joint, work, bodies, kSettings, true);

@@ -1,6 +1,6 @@
 // Ball joints that are swept, side by side: those of a colour share no moving body, so W of them are solved at once. For ball
 // joints on which nothing else acts, which are what nets and grids are made of; the others are solved one by one. The same
-// arithmetic as evaluate_joint(), bend_joint(), warm_start_joint(), solve_joint() and sum_joint() of solver/joint/joint.h, so a lane has
+// arithmetic as prepare_joint(), bend_joint(), warm_start_joint(), solve_joint() and sum_joint() of solver/joint/joint.h, so a lane has
 // the bits that the joint has alone.
 #pragma once
 

@@ -384,13 +384,13 @@ void raise_inertia(const float* pull, const float* inertia, float share, float* 
   for (int i = 0; i < 6; ++i) inverse_inertia[i] = out[i];
 }
 
-void evaluate_articulation(const Linkage& linkage, const LinkageSolve& s) {
+void prepare_articulation(const Linkage& linkage, const LinkageSolve& s) {
   for (double& value : linkage.values) value = 0.0;
   for (std::size_t n = 0; n < linkage.nodes.size(); ++n) {
     LinkageNode& node = linkage.nodes[n];
     JointRecord& joint = s.records[node.record];
     JointWork& work = s.work[node.work];
-    evaluate_joint(joint, work, s.places[node.work], s.bodies, s.settings);
+    prepare_joint(joint, work, s.places[node.work], s.bodies, s.settings);
     make_rows(node, joint, work);
   }
   raise_inertias(linkage, s);

@@ -96,7 +96,7 @@ struct LinkageSolve {
 void raise_inertia(const float* pull, const float* inertia, float share, float* inverse_inertia);
 
 // The rows where the bodies are now, and their matrix, factored.
-void evaluate_articulation(const Linkage& linkage, const LinkageSolve& solve);
+void prepare_articulation(const Linkage& linkage, const LinkageSolve& solve);
 // With the velocities after the forces: what is asked of the rows, and the impulses of the last sub-step.
 void warm_start_articulation(const Linkage& linkage, const LinkageSolve& solve);
 void solve_articulation(const Linkage& linkage, const LinkageSolve& solve);

@@ -167,7 +167,7 @@ struct LinkageKernels {
   std::size_t velocities_at;  // bytes: where a body's block has them, as LaneVelocities
   std::size_t (*stop_room)(const LinkageBundle& bundle);  // bytes
   void (*begin)(const LinkageBundle& bundle);             // before it is placed for the first time in a step
-  void (*evaluate)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  void (*prepare)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
   void (*compute_bias)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
   void (*solve)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
   void (*solve_after_contacts)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);

@@ -1,5 +1,5 @@
-// Where the joints of a bundle are in a sub-step, and the matrix of their equations (solver/articulation/linkage_lanes.h): what evaluate_joint()
-// and evaluate_articulation() do for a linkage alone, with the zeros of a ball joint's rows left out.
+// Where the joints of a bundle are in a sub-step, and the matrix of their equations (solver/articulation/linkage_lanes.h): what prepare_joint()
+// and prepare_articulation() do for a linkage alone, with the zeros of a ball joint's rows left out.
 #pragma once
 
 #include "math/wide_angle.h"

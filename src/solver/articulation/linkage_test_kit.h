@@ -245,7 +245,7 @@ inline void solve_one_by_one(Crowd& crowd, const Shape& shape) {
     std::vector<double> axis_room(linked_axes_room(linkage, axes.size()));
     linkage.axis_room = axis_room;
     for (int part = 0; part < 2; ++part) {
-      evaluate_articulation(linkage, solve);
+      prepare_articulation(linkage, solve);
       warm_start_articulation(linkage, solve);
       solve_articulation(linkage, solve);
       solve_articulation_after_contacts(linkage, solve);
@@ -324,7 +324,7 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, const LinkageKernels&
     for (int part = 0; part < 2; ++part) {
       if (part == 1) {
         if (between.ends == Between::Ends::passes) {
-          kernels.evaluate(bundle, arrays, settings);
+          kernels.prepare(bundle, arrays, settings);
           kernels.end_substep(bundle, arrays, settings);
         }
         if (between.ends == Between::Ends::finishes) kernels.end_step(bundle, arrays, settings);
@@ -336,7 +336,7 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, const LinkageKernels&
       }
       // Passing on comes after placing, and asks.
       const bool passed = part == 1 && between.ends == Between::Ends::passes;
-      if (!passed) kernels.evaluate(bundle, arrays, settings);
+      if (!passed) kernels.prepare(bundle, arrays, settings);
       if (!passed || between.asks) kernels.compute_bias(bundle, arrays, settings);
       kernels.solve(bundle, arrays, settings);
       kernels.solve_after_contacts(bundle, arrays, settings);

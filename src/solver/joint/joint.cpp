@@ -308,7 +308,7 @@ void begin_joint(JointRecord& joint, JointDetail* detail, std::span<const PathPo
   *work.drive = {};
 }
 
-void evaluate_joint(JointRecord& joint, JointWork& work, const JointPlaces& places, const JointBodies& bodies,
+void prepare_joint(JointRecord& joint, JointWork& work, const JointPlaces& places, const JointBodies& bodies,
                  const JointSettings& settings) {
   const JointPair pair(joint, bodies);
   const Quat orientation_a = orientation_of(joint.body_a, bodies);

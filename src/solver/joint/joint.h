@@ -78,7 +78,7 @@ struct JointWork {
 void begin_joint(JointRecord& joint, JointDetail* detail, std::span<const PathPoint> path, JointWork& work, float warm_scale,
                  Arena& arena);
 // What depends on where the bodies are: once they have moved.
-void evaluate_joint(JointRecord& joint, JointWork& work, const JointPlaces& places, const JointBodies& bodies,
+void prepare_joint(JointRecord& joint, JointWork& work, const JointPlaces& places, const JointBodies& bodies,
                  const JointSettings& settings);
 // What depends on their velocities: before they are solved.
 void bend_joint(const JointRecord& joint, JointWork& work, const JointBodies& bodies,
