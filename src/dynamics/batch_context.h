@@ -32,7 +32,7 @@ struct BatchScratch {
   Array<SlotHit> hits;
   SolveCounts counts;
   StepReport report;
-  RowReport rows;  // of solvers that work on rows
+  RowStats rows;  // of solvers that work on rows
 };
 
 struct BatchContext {

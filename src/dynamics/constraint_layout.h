@@ -9,7 +9,7 @@ namespace gyre {
 
 // Lays the coloured constraints out in blocks of W lanes, in groups of which there is room for kMaxGroups. A group starts a new
 // block; constraints of the overflow group get a block each, so that they are solved one after the other at every width.
-constexpr std::size_t kMaxGroups = ColoringOptions::kMostColors + 1;
+constexpr std::size_t kMaxGroups = ColoringOptions::kMaxColors + 1;
 std::span<ContactGroup> lay_out_contacts(BatchContext& batch, std::span<ContactGroup> room);
 // Memory for these blocks.
 void make_contact_blocks(BatchContext& batch, Arena& arena);

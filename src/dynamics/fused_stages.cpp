@@ -1,6 +1,6 @@
 #include "dynamics/fused_stages.h"
 
-#include "base/cold.h"
+#include "base/noinline.h"
 #include "rigid/solve/motion_stages.h"
 #include "task/parallel.h"
 
@@ -9,7 +9,7 @@ namespace gyre {
 namespace {
 
 // Bodies are moved in whole blocks: with as many in a run, few lanes of the last one are empty.
-constexpr std::size_t kFewestBodies = 96;
+constexpr std::size_t kMinBodies = 96;
 // Of other bodies.
 constexpr int kBlocksAlone = 4;
 
@@ -17,8 +17,8 @@ constexpr int kBlocksAlone = 4;
 LaneVelocities find_lanes(const FusedRuns& line, const ArticulationRun& run) {
   if (run.bundles != 1) return {};
   const SolverKernels& all = line.motion->kernels;
-  const Bundled& bundle = line.joints->bundles.bundles[std::size_t(run.first_bundle)];
-  const LinkageKernels& kernels = *bundle.lanes.kernels;
+  const BundledArticulations& bundle = line.joints->bundles.bundles[std::size_t(run.first_bundle)];
+  const ArticulationKernels& kernels = *bundle.lanes.kernels;
   const bool is_full = kernels.width == all.width && int(bundle.linkages.size()) == kernels.width;
   if (!is_full || all.motion.predict_in_lanes == nullptr) return {};
   return {reinterpret_cast<float*>(bundle.lanes.bodies + kernels.velocities_at),
@@ -32,13 +32,13 @@ GYRE_COLD RunLayout::RunLayout(const BundleSolve& bundles, std::size_t bodies, i
                                         1)) {
   std::size_t filled = 0;
   for (std::size_t i = 0; i < bundles.bundles.size(); ++i) {
-    const Bundled& bundle = bundles.bundles[i];
+    const BundledArticulations& bundle = bundles.bundles[i];
     if (filled == 0) add({int(i), 0, count_blocks(), 0});
     ArticulationRun& run = runs_[used_ - 1];
     ++run.bundles;
     filled += bundle.lanes.moving_count * bundle.linkages.size();
     run.blocks = gyre::count_blocks(int(filled), width);
-    if (filled >= kFewestBodies) filled = 0;
+    if (filled >= kMinBodies) filled = 0;
   }
   articulation_runs_ = used_;
 }
@@ -55,12 +55,12 @@ GYRE_COLD void list_run_bodies(const BundleSolve& bundles, const ArticulationRun
   for (std::int32_t& body : bodies) body = kNoBody;
   std::size_t first = 0;
   for (int i = run.first_bundle; i < run.first_bundle + run.bundles; ++i) {
-    const Bundled& bundle = bundles.bundles[std::size_t(i)];
-    const LinkageBundle& shape = bundle.lanes;
+    const BundledArticulations& bundle = bundles.bundles[std::size_t(i)];
+    const ArticulationBundle& shape = bundle.lanes;
     const std::size_t lanes = bundle.linkages.size();
     for (std::uint32_t n = 0; n < shape.node_count; ++n) {
       for (std::size_t lane = 0; lane < lanes; ++lane) {
-        const LinkedJoint& joint = bundle.linkages[lane]->joints[n];
+        const ArticulationJoint& joint = bundle.linkages[lane]->joints[n];
         const auto list = [&](std::uint32_t place, std::int32_t body) {
           if (place < shape.moving_count) bodies[first + place * lanes + lane] = body;
         };
@@ -80,7 +80,7 @@ FusedRun::FusedRun(const FusedRuns& line, const ArticulationRun& run)
       begin_(run.first_block),
       end_(run.first_block + run.blocks),
       lanes_(find_lanes(line, run)),
-      spins_(has_spinners(motion_, begin_, end_)) {}
+      spins_(has_fast_spinning(motion_, begin_, end_)) {}
 
 void FusedRun::prepare() const {
   prepare_bodies(motion_, begin_, end_);
@@ -106,19 +106,19 @@ void FusedRun::integrate_positions() const {
   integrate_spinners_of_blocks(motion_, begin_, end_);
 }
 
-void FusedRun::prepare_joints() const { for_bundles(&LinkageKernels::prepare); }
-void FusedRun::compute_joint_bias() const { for_bundles(&LinkageKernels::compute_bias); }
+void FusedRun::prepare_joints() const { for_bundles(&ArticulationKernels::prepare); }
+void FusedRun::compute_joint_bias() const { for_bundles(&ArticulationKernels::compute_bias); }
 void FusedRun::solve_joints_first() const { solve(true); }
 void FusedRun::solve_joints() const { solve(is_apart()); }
 // Since solve() only contacts have changed velocities in the records, and only of bodies that are measured: lanes have the others'.
 void FusedRun::solve_joints_after_contacts() const {
-  for_bundles(&LinkageKernels::solve_after_contacts, is_apart(), is_apart() || spins_);
+  for_bundles(&ArticulationKernels::solve_after_contacts, is_apart(), is_apart() || spins_);
 }
 void FusedRun::relax_joints() const {
-  for_bundles(&LinkageKernels::end_substep, is_apart() || spins_, is_apart());
+  for_bundles(&ArticulationKernels::end_substep, is_apart() || spins_, is_apart());
 }
 void FusedRun::relax_joints_last() const {
-  for_bundles(&LinkageKernels::end_step, is_apart() || spins_, true);
+  for_bundles(&ArticulationKernels::end_step, is_apart() || spins_, true);
 }
 
 // `loads`, `stores`: as LaneArrays. (Cold: what it calls is long.)
@@ -126,13 +126,13 @@ GYRE_COLD void FusedRun::for_bundles(BundleKernel kernel, bool loads, bool store
   LaneArrays arrays = joints_.bundles.arrays;
   arrays.loads = loads, arrays.stores = stores;
   for (int i = first_; i < last_; ++i) {
-    const LinkageBundle& bundle = joints_.bundles.bundles[std::size_t(i)].lanes;
+    const ArticulationBundle& bundle = joints_.bundles.bundles[std::size_t(i)].lanes;
     (bundle.kernels->*kernel)(bundle, arrays, joints_.bundles.settings);
   }
 }
 GYRE_COLD void FusedRun::solve(bool loads) const {
   if (first_ == last_) return;
-  for_bundles(&LinkageKernels::solve, loads, true);
+  for_bundles(&ArticulationKernels::solve, loads, true);
   if (is_apart()) return start_contact_change(motion_, begin_, end_);
   start_contact_change_in_lanes(motion_, begin_, end_, lanes_);
 }

@@ -30,9 +30,9 @@ struct Crowd {
   }
 
   std::vector<LaneNode> nodes;
-  std::vector<LinkedJoint> joints;
-  LinkageShape shape;
-  std::vector<LaneLinkage> alike;
+  std::vector<ArticulationJoint> joints;
+  ArticulationTopology shape;
+  std::vector<GroupedArticulation> alike;
 };
 
 TEST(RunLayout, HaveEachBundleAndEachPushedBodyOnce) {

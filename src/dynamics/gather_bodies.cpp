@@ -1,6 +1,6 @@
 #include "dynamics/gather_bodies.h"
 
-#include "base/cold.h"
+#include "base/noinline.h"
 #include "task/parallel.h"
 
 namespace gyre {
@@ -10,7 +10,7 @@ namespace {
 // The kernels leave out what no body of a block needs: those whose rotation is integrated in another way lie apart.
 constexpr std::uint8_t kSpins = 0, kNoGyroscopicTorque = 1, kGyroscopicTorque = 2, kRotationKinds = 3;
 std::uint8_t rotation_kind(const BodyMotionSolve& motion, std::uint32_t body) {
-  if (turns_alone(motion.w.bodies, body, motion.motions.substep)) return kSpins;
+  if (needs_exact_rotation(motion.w.bodies, body, motion.motions.substep)) return kSpins;
   return motion.w.bodies.masses[body].isotropic != 0 ? kNoGyroscopicTorque : kGyroscopicTorque;
 }
 
@@ -53,8 +53,8 @@ void part_bodies(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
   static_assert((kMaxShares + 1) * kRotationKinds + 3 < 256, "kinds are bytes");
   const int shares = batch.partition.count();
   const std::uint8_t apart = std::uint8_t(shares * kRotationKinds),
-                     flies = std::uint8_t(apart + kRotationKinds), stays = std::uint8_t(flies + 1),
-                     in_run = std::uint8_t(stays + 1);
+                     flies = std::uint8_t(apart + kRotationKinds), stop_at_impact = std::uint8_t(flies + 1),
+                     in_run = std::uint8_t(stop_at_impact + 1);
   const std::span<std::uint8_t> kinds = arena.make<std::uint8_t>(bodies.size());
   for (std::uint8_t& kind : kinds) kind = apart;
   const auto touch = [&](std::uint32_t body) {
@@ -66,15 +66,15 @@ void part_bodies(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
     for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
       if (kinds[i] == in_run) continue;
       const BodyFlags& flags = w.bodies.flags[bodies[i]];
-      kinds[i] = flags.touched != kUntouched ? std::uint8_t(kinds[i] + rotation_kind(motion, bodies[i]))
+      kinds[i] = flags.touched != kNotConstrained ? std::uint8_t(kinds[i] + rotation_kind(motion, bodies[i]))
                  : !motion.is_smooth || !is_movable(flags) ? flies
-                                                           : stays;
+                                                           : stop_at_impact;
     }
   });
   std::uint32_t starts[(kMaxShares + 1) * kRotationKinds + 4] = {};
   for (const std::uint8_t kind : kinds) ++starts[kind + 1];
   for (std::size_t kind = 0; kind <= in_run; ++kind) starts[kind + 1] += starts[kind];
-  const std::size_t moved = starts[flies], flying = starts[stays] - moved;
+  const std::size_t moved = starts[flies], flying = starts[stop_at_impact] - moved;
   batch.moved_in_contact = led + starts[apart];
   if (shares > 1 && led == 0 && moved - batch.moved_in_contact <= moved / 8) {
     std::uint32_t firsts[kMaxShares];
@@ -105,8 +105,8 @@ void gather_bodies(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
   part_bodies(batch, arena, tasks);
   const std::size_t moved = motion.moved.size();
   motion.pushes = arena.make<Vec3>(moved);
-  motion.spinners = arena.make<std::uint32_t>(moved);
-  std::size_t spinners = 0;
+  motion.fast_spinning = arena.make<std::uint32_t>(moved);
+  std::size_t fast_spinning = 0;
   const auto describe = [&](int begin, int end, int) {
     bool any_spins = false;
     for (MovedBody& each : motion.moved.subspan(std::size_t(begin), std::size_t(end - begin))) {
@@ -115,24 +115,24 @@ void gather_bodies(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
         continue;
       }
       const std::uint32_t body = std::uint32_t(each.body);
-      each = describe_motion(w.bodies, body, motion.motions, w.bodies.flags[body].touched == kPlaceShown);
+      each = describe_motion(w.bodies, body, motion.motions, w.bodies.flags[body].touched == kPoseRead);
       // A field may spin a light body up within the step, beyond what the kernels turn.
-      if (!w.field_rest.empty() && w.field_rest[body].acts != kNoFields) each.turns_alone = true;
-      any_spins = any_spins || each.turns_alone;
+      if (!w.field_rest.empty() && w.field_rest[body].acts != kNoFields) each.needs_exact_rotation = true;
+      any_spins = any_spins || each.needs_exact_rotation;
     }
     return any_spins;
   };
   const auto either = [](bool a, bool b) { return a || b; };
   const std::size_t width = std::size_t(batch.kernels.width), blocks = (moved + width - 1) / width;
   if (reduce_blocks(tasks, int(moved), kBodiesPerBlock, false, describe, either)) {
-    motion.spinner_starts = arena.make<std::uint32_t>(blocks + 1);
+    motion.fast_spinning_starts = arena.make<std::uint32_t>(blocks + 1);
     for (std::size_t i = 0; i < moved; ++i) {
-      if (i % width == 0) motion.spinner_starts[i / width] = std::uint32_t(spinners);
-      if (motion.moved[i].turns_alone) motion.spinners[spinners++] = std::uint32_t(motion.moved[i].body);
+      if (i % width == 0) motion.fast_spinning_starts[i / width] = std::uint32_t(fast_spinning);
+      if (motion.moved[i].needs_exact_rotation) motion.fast_spinning[fast_spinning++] = std::uint32_t(motion.moved[i].body);
     }
-    motion.spinner_starts[blocks] = std::uint32_t(spinners);
+    motion.fast_spinning_starts[blocks] = std::uint32_t(fast_spinning);
   }
-  motion.spinners = motion.spinners.first(spinners);
+  motion.fast_spinning = motion.fast_spinning.first(fast_spinning);
   motion.blocks = arena.make<std::byte>(blocks * batch.kernels.motion.block_bytes).data();
 }
 

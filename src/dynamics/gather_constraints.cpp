@@ -2,8 +2,8 @@
 
 #include "base/prefetch.h"
 #include "rigid/batch/surface_rules.h"
-#include "solver/articulation/ball_records.h"
-#include "solver/rest/contact_structure.h"
+#include "solver/articulation/ball_joint_transfer.h"
+#include "solver/rest/static_equilibrium.h"
 #include "task/parallel.h"
 
 #include <utility>
@@ -73,7 +73,7 @@ class ContactGatherer {
   Found gather(std::uint32_t slot, std::size_t index) const {
     const Contact& contact = w_.contacts.contacts[slot];
     const Ends ends = find_ends(contact);
-    const std::uint8_t touch = contact.surface.restitution > 0.0f ? kPlaceShown : kTouched;
+    const std::uint8_t touch = contact.surface.restitution > 0.0f ? kPoseRead : kConstrained;
     touch_body(contact.body_a, ends.active_a, touch);
     touch_body(contact.body_b, ends.active_b, touch);
     const ColoringPair pair{ends.active_a ? local_index_[contact.body_a] : ColoringPair::kNone,
@@ -138,9 +138,9 @@ class ContactGatherer {
     constraint.point_count = std::int16_t(manifold.count);
     constraint.loaded = loads.any;
     constraint.may_roll = false;
-    constraint.hold = manifold.age >= kHeldAge ? ContactHold::held
-                      : manifold.age > 0.0f    ? ContactHold::sprung
-                                               : ContactHold::none;
+    constraint.hold = manifold.age >= kRigidContactAge ? ContactStiffness::held
+                      : manifold.age > 0.0f    ? ContactStiffness::sprung
+                                               : ContactStiffness::none;
     if (loads.all) {
       constraint.fast = false;
       for (int k = 0; k < manifold.count; ++k) manifold.points[k].approach_speed = 0.0f;
@@ -150,7 +150,7 @@ class ContactGatherer {
     if (manifold.count == 0) return false;
     if (has_rules_ && !apply_surface_rules(w_, contact, manifold, constraint)) return false;
     if (contact.recycled == 0) constraint.may_roll = may_roll(w_, contact, constraint);
-    constraint.spinning_friction += manifold.count == 1 ? patch_friction(w_, contact, constraint) : 0.0f;
+    constraint.spinning_friction += manifold.count == 1 ? contact_patch_spin_friction(w_, contact, constraint) : 0.0f;
     return true;
   }
 
@@ -229,11 +229,11 @@ void gather_contacts(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
 void gather_joint_edges(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
   RigidWorld& w = batch.w;
   JointSolve& joints = batch.joints;
-  joints.edges = arena.make<NetJoint>(joints.batch.joints.size());
+  joints.edges = arena.make<JointEdge>(joints.batch.joints.size());
   joints.ball_lanes = arena.make<std::uint8_t>(joints.batch.joints.size());
   const auto touch = [&](std::int32_t body, bool is_spring) {
     if (body == kNoBody) return kNoBody;
-    if (!is_spring) touch_shared(w, std::uint32_t(body), kPlaceShown);
+    if (!is_spring) touch_shared(w, std::uint32_t(body), kPoseRead);
     return is_active(w, std::uint32_t(body)) ? body : kNoBody;
   };
   const int count = int(joints.batch.joints.size());
@@ -264,7 +264,7 @@ void gather_swept_joints(BatchContext& batch) {
   for (std::uint32_t i = 0; i < most; ++i) {
     if (joints.linkages.swept[i] == 0) continue;
     if (batch.motion.is_smooth && is_explicit_spring(batch.w, joints.batch.joints[i])) continue;
-    const NetJoint& joint = joints.edges[i];
+    const JointEdge& joint = joints.edges[i];
     s.swept[count] = i;
     s.pairs[count++] = {local(joint.body_a), local(joint.body_b)};
   }

@@ -2,9 +2,9 @@
 // island_batches.h.
 #include "dynamics/island_batches.h"
 
-#include "base/arena/counted_lists.h"
+#include "base/arena/bucketed_lists.h"
 #include "base/container/disjoint_sets.h"
-#include "task/choose.h"
+#include "task/parallel_filter.h"
 #include "task/parallel.h"
 
 #include <algorithm>
@@ -71,9 +71,9 @@ Constraints list_constraints(const RigidWorld& w, Arena& arena, TaskSystem& task
     // As numbers without a sign, kNoBody is kNoIndex.
     return add_edge(w, std::uint32_t(joint.body_a), std::uint32_t(joint.body_b), 1, joint_edges[slot]);
   };
-  const Chosen contacts =
-      choose_among(tasks, arena, manifolds, w.contacts.with_manifolds, w.awake_links.contacts);
-  const Chosen joints = choose_among(tasks, arena, works, w.awake_links.joints);
+  const FilteredList contacts =
+      parallel_filter_among(tasks, arena, manifolds, w.contacts.with_manifolds, w.awake_links.contacts);
+  const FilteredList joints = parallel_filter_among(tasks, arena, works, w.awake_links.joints);
   return {contacts.list, joints.list, contact_edges, joint_edges, contacts.size + joints.size};
 }
 
@@ -215,7 +215,7 @@ IslandBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks,
   };
   if (all_weights <= most) return all_in_one(room.batches.first(awake.empty() ? 0 : 1));
   const std::span<IslandBatch> batches = room.batches;
-  CountedLists bodies(batches.size(), arena), contacts(batches.size(), arena), joints(batches.size(), arena);
+  BucketedLists bodies(batches.size(), arena), contacts(batches.size(), arena), joints(batches.size(), arena);
   const std::span<std::uint32_t> batch_of = arena.make<std::uint32_t>(local_index.size());
   const BatchIslands islands(w, constraints, local_index);
   const std::span<const std::uint32_t> island_weights =

@@ -1,6 +1,6 @@
 #include "dynamics/program_builder.h"
 
-#include "rigid/solve/joint_energy.h"
+#include "rigid/solve/energy_limiter.h"
 #include "task/parallel.h"
 
 namespace gyre {
@@ -15,7 +15,7 @@ constexpr std::size_t kLinesOnce = 24, kLinesPerSubstep = 48;
 ProgramBuilder::ProgramBuilder(BatchContext& batch, int substeps, Arena& arena)
     : batch_(batch),
       bodies_(count_blocks(int(batch.motion.moved.size()), batch.kernels.width)),
-      spinners_(count_blocks(int(batch.motion.spinners.size()), kSpinnersPerBlock)),
+      spinners_(count_blocks(int(batch.motion.fast_spinning.size()), kSpinnersPerBlock)),
       orientations_(count_blocks(int(batch.motion.moved.size()), kBodiesPerBlock)),
       free_bodies_(count_blocks(int(batch.motion.free_bodies.size()), kBodiesPerBlock)),
       fields_(batch.motion.fields.blocks()),

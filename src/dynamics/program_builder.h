@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/check.h"
-#include "base/cold.h"
+#include "base/noinline.h"
 #include "dynamics/batch_context.h"
 #include "rigid/solve/joint_stages.h"
 #include "rigid/solve/motion_stages.h"

@@ -5,7 +5,7 @@
 #include "dynamics/gather_constraints.h"
 #include "dynamics/substep_program.h"
 #include "rigid/solve/geometric_stiffness.h"
-#include "rigid/solve/joint_energy.h"
+#include "rigid/solve/energy_limiter.h"
 #include "task/parallel.h"
 
 #include <bit>
@@ -33,7 +33,7 @@ constexpr float kArticulationCompliance = 1.0e-4f;
 constexpr float kBounceShare = 2.0f;
 
 // By how much impulses grow at most from one part of an adaptive step to the next.
-constexpr float kMostWarm = 4.0f;
+constexpr float kMaxWarm = 4.0f;
 
 // ------------------------------------------------------------------------------------------------------- islands at rest
 
@@ -44,7 +44,7 @@ bool all_contacts_are_jointed(const BatchContext& batch, Arena& arena) {
   const ArenaScope scope(arena);
   const std::span<std::uint8_t> jointed = arena.make<std::uint8_t>(batch.members.bodies.size());
   for (std::uint8_t& one : jointed) one = 0;
-  for (const NetJoint& joint : joints.edges)
+  for (const JointEdge& joint : joints.edges)
     for_moving(joint, [&](std::uint32_t body) { jointed[batch.local_index[body]] = 1; });
   const auto is_jointed = [&](std::uint32_t body) {
     return body != ColoringPair::kNone && jointed[body] != 0;
@@ -99,26 +99,26 @@ std::span<const std::uint8_t> find_bodies_in_contact(const BatchContext& batch, 
 // lane.
 void begin_joints(BatchContext& batch, Arena& arena) {
   JointSolve& s = batch.joints;
-  DenseNets& nets = s.lists.dense_nets;
+  DenseGraphCache& nets = s.lists.dense_graphs;
   s.is_net = !s.edges.empty() && nets.holds(s.edges);
-  s.linkages = s.is_net ? no_linkages(s.edges.size(), arena)
-                        : find_linkages(s.w, s.batch, s.local_index, s.edges,
+  s.linkages = s.is_net ? no_articulations(s.edges.size(), arena)
+                        : find_articulations(s.w, s.batch, s.local_index, s.edges,
                                         find_bodies_in_contact(batch, arena), s.lane_start, nets, arena);
-  s.works = begin_joints(s.w, s.batch, begun_in_lanes(s), s.lane_start.warm_scale, arena);
+  s.works = begin_joints(s.w, s.batch, prepared_in_simd(s), s.lane_start.warm_scale, arena);
 }
 void prepare_articulations(JointSolve& s, std::size_t workers, Arena& arena) {
-  s.linkage_solve = {.records = s.w.joints.records,
+  s.articulation_solve = {.records = s.w.joints.records,
                      .work = s.works.work,
                      .places = s.works.places,
                      .bodies = s.bodies,
                      .settings = s.settings,
                      .give = kArticulationCompliance};
-  s.linkage_solve.settings.swept = false;
-  link_axes(s.linkages, s.works.work, arena);
-  s.limit_rooms = find_stops(s.linkages, s.works.work, workers, arena);
+  s.articulation_solve.settings.swept = false;
+  attach_drives(s.linkages, s.works.work, arena);
+  s.limit_rooms = find_limits(s.linkages, s.works.work, workers, arena);
   s.bundles = lay_out_bundles(
       s.linkages, s.kernels, {s.bodies.motion, s.bodies.inertia, s.bodies.orientation},
-      {s.settings.substep, s.settings.softness.bias_rate, kArticulationCompliance, raise_inertia}, arena);
+      {s.settings.substep, s.settings.softness.bias_rate, kArticulationCompliance, add_geometric_stiffness}, arena);
 }
 
 // --------------------------------------------------------------------------------------------------------------- a batch
@@ -182,7 +182,7 @@ void finish_batch(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
   BatchScratch& scratch = batch.scratch;
   const JointSolve& joints = batch.joints;
   restore_inertia(joints);
-  finish_joints(batch.w, batch.members, begun_in_lanes(joints), joints.works.work);
+  finish_joints(batch.w, batch.members, prepared_in_simd(joints), joints.works.work);
   forget_limited_impulses(joints);
   if (batch.motion.is_smooth) finish_springs(batch.w, batch.motion.smooth, scratch.report);
   find_hits(batch.w, scratch.contacts, scratch.hits, arena, tasks);
@@ -207,12 +207,12 @@ void show_bodies(const BatchContext& batch) {
   RigidWorld& w = batch.w;
   for (const std::uint32_t slot : batch.members.joints) {
     const JointRecord& joint = w.joints.records[slot];
-    if (joint.body_a != kNoBody) w.bodies.flags[std::size_t(joint.body_a)].touched = kPlaceShown;
-    if (joint.body_b != kNoBody) w.bodies.flags[std::size_t(joint.body_b)].touched = kPlaceShown;
+    if (joint.body_a != kNoBody) w.bodies.flags[std::size_t(joint.body_a)].touched = kPoseRead;
+    if (joint.body_b != kNoBody) w.bodies.flags[std::size_t(joint.body_b)].touched = kPoseRead;
   }
   for (const std::uint32_t body : batch.members.bodies) {
     std::uint8_t& touched = w.bodies.flags[body].touched;
-    if (touched != kUntouched) touched = kPlaceShown;
+    if (touched != kNotConstrained) touched = kPoseRead;
   }
 }
 
@@ -257,21 +257,21 @@ Substepping plan_substeps(RigidWorld& w, float seconds, bool by_rows) {
   plan.h = seconds / float(plan.count);
   plan.warm_scale = w.settings.last_substep > 0.0f ? plan.h / w.settings.last_substep : 0.0f;
   // Parts of a step up to an impact may be as short as they like: what one of these leaves is mostly rounding.
-  if (!w.waiting.empty()) plan.warm_scale = min(plan.warm_scale, kMostWarm);
+  if (!w.waiting.empty()) plan.warm_scale = min(plan.warm_scale, kMaxWarm);
   w.settings.last_substep = plan.h;
   w.settings.last_step = seconds;
   return plan;
 }
 
 ContactSettings contact_settings(const RigidWorld& w, float seconds, const Substepping& plan) {
-  const float h = plan.h, pull = length(w.settings.gravity);
+  const float h = plan.h, geometric_stiffness = length(w.settings.gravity);
   return {.substep = h,
           .step = seconds,
           .rate = min(kContactRate, 0.8f / h),
           .give = kContactLeak * h / (1.0f + kContactLeak * h),
           .aging = kContactAging,
           .warm_scale = plan.warm_scale,
-          .up = pull > 0.0f ? (-1.0f / pull) * w.settings.gravity : Vec3{}};
+          .up = geometric_stiffness > 0.0f ? (-1.0f / geometric_stiffness) * w.settings.gravity : Vec3{}};
 }
 // Long sub-steps take back no more than the whole error and give way by less than the whole impulse.
 JointSettings joint_settings(const RigidWorld& w, float h) {
@@ -333,7 +333,7 @@ void begin_scratch(BatchScratch& scratch) {
 // What constraints moved has its velocity from them.
 void forget_moves(RigidWorld& w) {
   for (const std::uint32_t body : w.bodies.awake) {
-    if (w.bodies.flags[body].touched != kUntouched) w.bodies.last_moves[body] = {};
+    if (w.bodies.flags[body].touched != kNotConstrained) w.bodies.last_moves[body] = {};
   }
 }
 

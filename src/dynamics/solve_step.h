@@ -25,7 +25,7 @@ struct SolveScratch {
   Array<SlotHit> hits;
   SolveCounts counts;  // of all batches
   StepReport report;
-  RowReport rows;
+  RowStats rows;
   int colors = 0;
 };
 

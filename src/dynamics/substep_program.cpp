@@ -4,13 +4,13 @@
 #include "dynamics/program_builder.h"
 #include "rigid/solve/contact_stages.h"
 #include "rigid/solve/geometric_stiffness.h"
-#include "rigid/solve/joint_energy.h"
+#include "rigid/solve/energy_limiter.h"
 
 namespace gyre {
 
 namespace {
 
-using Simd = LinkageKernels;
+using Simd = ArticulationKernels;
 
 // Once, before all sub-steps: free bodies move for the whole step; everything else is made ready where it stands.
 void add_preparation(ProgramBuilder& p) {

@@ -2,10 +2,10 @@
 // at rest that are solved directly.
 #pragma once
 
-#include "rigid/rest/contact_forest.h"
-#include "rigid/rest/contact_structures.h"
+#include "rigid/rest/resting_trees.h"
+#include "rigid/rest/resting_structures.h"
 #include "rigid/solve/contact_lists.h"
-#include "rigid/solve/rolling.h"
+#include "rigid/solve/rolling_contacts.h"
 #include "solver/kernels/solver_kernels.h"
 
 namespace gyre {
@@ -17,14 +17,14 @@ struct ContactSolve {
   ContactSettings settings{};
   ImpactSettings impact_settings{};
   ContactBodies bodies{};
-  void *blocks = nullptr, *asides = nullptr;  // of contacts
+  void *blocks = nullptr, *cold_blocks = nullptr;  // of contacts
   RollingContacts rolling{};
   std::span<std::uint16_t>
       rolling_lanes{};  // by block of contacts: bits of those whose points are still to be advanced
   std::span<std::uint32_t> rolling_indices{};  // by lane: which of those that roll it is
-  ContactForest forest{};
+  RestingTrees forest{};
   TreeSolve tree_solve{};
-  std::span<ContactStructure> structures{};
+  std::span<RestingStructure> structures{};
   StructureSolve structure_solve{};
 };
 

@@ -25,7 +25,7 @@ void for_each_rolling(const ContactGroup& group, int begin, int end, Fn&& fn) {
 // Advances their points to the middle of the sub-step, and their bodies to the velocities there, until these contacts are solved.
 void advance_contact_points(const ContactGroup& group, int begin, int end) {
   const ContactSolve& s = *group.solve;
-  FollowedLane lanes[kMaxLanes];
+  AdvancedArmsLane lanes[kMaxLanes];
   RollingContact* contacts[kMaxLanes];
   int present = 0, count = 0;
   const auto inverse_of = [&](std::int32_t body) {
@@ -60,7 +60,7 @@ void restore_velocities(const ContactGroup& group, int begin, int end) {
 }  // namespace
 
 void prepare_contacts(const ContactSolve& s, int begin, int end) {
-  s.kernels.contacts.prepare(s.blocks, s.asides, begin, end, s.lists.constraints.data(), s.lists.order.data(),
+  s.kernels.contacts.prepare(s.blocks, s.cold_blocks, begin, end, s.lists.constraints.data(), s.lists.order.data(),
                              s.bodies, s.settings);
 }
 void finish_contacts(const ContactSolve& s, int begin, int end) {
@@ -104,10 +104,10 @@ void solve_resting_trees(const ContactSolve& s, int begin, int end) {
   for (int i = begin; i < end; ++i) solve_tree(s.forest.trees[std::size_t(i)], s.tree_solve);
 }
 void solve_resting_structures_first(const ContactSolve& s, int, int) {
-  for (ContactStructure& structure : s.structures) solve_structure_first(structure, s.structure_solve);
+  for (RestingStructure& structure : s.structures) solve_structure_first(structure, s.structure_solve);
 }
 void solve_resting_structures_last(const ContactSolve& s, int, int) {
-  for (ContactStructure& structure : s.structures) solve_structure_last(structure, s.structure_solve);
+  for (RestingStructure& structure : s.structures) solve_structure_last(structure, s.structure_solve);
 }
 
 }  // namespace gyre

@@ -7,9 +7,9 @@ namespace gyre {
 namespace {
 
 // h^2 k / I up to which pull is left alone: kick and drift are stable up to 4, and what pulls grows in a step.
-constexpr float kMostPull = 0.1f;
+constexpr float kMaxGeometricStiffness = 0.1f;
 // Of bodies whose turning other joints hold, too: less than anything adds up to.
-constexpr float kNeverPulled = -1.0e30f;
+constexpr float kNeverStiffened = -1.0e30f;
 
 // How stiffly joints hold each body of the batch back as it turns, or drive it on (N m/rad), by its place. A force f at arm r turns with
 // the body like a spring of stiffness (r . f) 1 - sym(r f^T); of forces along their arms the sum of r . f is as much about every axis, or
@@ -17,7 +17,7 @@ constexpr float kNeverPulled = -1.0e30f;
 std::span<const float> add_up_pulls(const JointSolve& solve, Arena& arena) {
   const BodyStore& bodies = solve.w.bodies;
   const std::span<float> pulls = arena.make<float>(solve.batch.bodies.size());
-  for (float& pull : pulls) pull = 0.0f;
+  for (float& geometric_stiffness : pulls) geometric_stiffness = 0.0f;
   const auto is_moved = [&](std::int32_t body) {
     return body != kNoBody && is_movable(bodies.flags[std::size_t(body)]);
   };
@@ -27,7 +27,7 @@ std::span<const float> add_up_pulls(const JointSolve& solve, Arena& arena) {
     pulls[solve.local_index[std::size_t(body)]] += absolute(dot(arm, force));
   };
   const auto leave_out = [&](std::int32_t body) {
-    if (is_moved(body)) pulls[solve.local_index[std::size_t(body)]] = kNeverPulled;
+    if (is_moved(body)) pulls[solve.local_index[std::size_t(body)]] = kNeverStiffened;
   };
   for (const std::uint32_t i : solve.lists.swept) {
     const JointRecord& joint = solve.w.joints.records[solve.batch.joints[i]];
@@ -57,17 +57,17 @@ std::span<const StiffenedBody> find_stiffened_bodies(const JointSolve& solve, Ar
     const Sym3& inverse = bodies.inertia[solve.batch.bodies[place]].inverse;
     return square(solve.settings.substep) * pulls[place] * max(inverse.xx, max(inverse.yy, inverse.zz));
   };
-  const auto is_pulled = [&](std::uint32_t place) {
-    return unresolved(place) > kMostPull && bodies.flags[solve.batch.bodies[place]].locked_angular == 0;
+  const auto is_stiffened = [&](std::uint32_t place) {
+    return unresolved(place) > kMaxGeometricStiffness && bodies.flags[solve.batch.bodies[place]].locked_angular == 0;
   };
   std::size_t count = 0;
-  for (std::uint32_t place = 0; place < pulls.size(); ++place) count += is_pulled(place) ? 1 : 0;
+  for (std::uint32_t place = 0; place < pulls.size(); ++place) count += is_stiffened(place) ? 1 : 0;
   const std::span<StiffenedBody> pulled = arena.make<StiffenedBody>(count);
   count = 0;
   for (std::uint32_t place = 0; place < pulls.size(); ++place) {
-    if (!is_pulled(place)) continue;
+    if (!is_stiffened(place)) continue;
     const float raise =
-        square(solve.settings.substep) * pulls[place] * (1.0f - kMostPull / unresolved(place));
+        square(solve.settings.substep) * pulls[place] * (1.0f - kMaxGeometricStiffness / unresolved(place));
     pulled[count++] = {solve.batch.bodies[place], raise};
   }
   return pulled;
@@ -76,11 +76,11 @@ std::span<const StiffenedBody> find_stiffened_bodies(const JointSolve& solve, Ar
 void disable_gyroscopic_torque(const JointSolve& solve, std::span<MovedBody> moved, Arena& arena) {
   if (solve.stiffened.empty()) return;
   const ArenaScope scope(arena);
-  const std::span<std::uint8_t> is_pulled = arena.make<std::uint8_t>(solve.batch.bodies.size());
-  for (std::uint8_t& one : is_pulled) one = 0;
-  for (const StiffenedBody& body : solve.stiffened) is_pulled[solve.local_index[body.body]] = 1;
+  const std::span<std::uint8_t> is_stiffened = arena.make<std::uint8_t>(solve.batch.bodies.size());
+  for (std::uint8_t& one : is_stiffened) one = 0;
+  for (const StiffenedBody& body : solve.stiffened) is_stiffened[solve.local_index[body.body]] = 1;
   for (MovedBody& one : moved) {
-    if (one.body != kNoBody && is_pulled[solve.local_index[std::size_t(one.body)]] != 0) one.isotropic = true;
+    if (one.body != kNoBody && is_stiffened[solve.local_index[std::size_t(one.body)]] != 0) one.isotropic = true;
   }
 }
 

@@ -4,7 +4,7 @@
 // ever more, until the net is torn apart. So their inertia is raised towards h^2 k for the step, as if the turning of forces were
 // implicit (M. Tournier, M. Nesme, B. Gilles, F. Faure, "Stable Constrained Dynamics", 2015; S. Andrews, M. Teichmann, P. Kry, "Geometric
 // Stiffness for Real-Time Constrained Multibody Dynamics", 2017). What nothing pulls like that stays as it is, to the bit.
-// Linkages do the same with theirs (solver/articulation/linkage.cpp), axis by axis.
+// Linkages do the same with theirs (solver/articulation/articulation.cpp), axis by axis.
 #pragma once
 
 #include "rigid/solve/joint_solve.h"

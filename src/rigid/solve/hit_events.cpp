@@ -2,7 +2,7 @@
 
 #include "base/container/sort.h"
 #include "rigid/batch/surface_rules.h"
-#include "task/choose.h"
+#include "task/parallel_filter.h"
 
 namespace gyre {
 
@@ -48,7 +48,7 @@ void find_hits(const RigidWorld& w, const ContactLists& contacts, Array<SlotHit>
                TaskSystem& tasks) {
   const ArenaScope scope(arena);
   const auto came_fast = [&](std::uint32_t i) { return contacts.constraints[i].fast; };
-  for (const std::uint32_t i : choose(tasks, arena, contacts.constraints.size(), came_fast).list) {
+  for (const std::uint32_t i : parallel_filter(tasks, arena, contacts.constraints.size(), came_fast).list) {
     const Contact& contact = w.contacts.contacts[contacts.slots[i]];
     const Manifold& manifold = *contacts.constraints[i].manifold;
     float fastest = hit_speed(contact);

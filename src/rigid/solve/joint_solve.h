@@ -2,9 +2,9 @@
 // and those that are solved iteratively, colour by colour.
 #pragma once
 
-#include "rigid/articulation/linkage_bundles.h"
-#include "rigid/articulation/linkages.h"
-#include "rigid/batch/joint_works.h"
+#include "rigid/articulation/articulation_bundles.h"
+#include "rigid/articulation/articulations.h"
+#include "rigid/batch/joint_constraints.h"
 #include "task/coloring.h"
 
 namespace gyre {
@@ -22,7 +22,7 @@ struct StiffenedBody {
 struct JointLists {
   Array<std::uint32_t> swept;  // indices in the batch's list of joints
   Array<ColoringPair> pairs;   // between which bodies each is: indices in the batch, as far as they move
-  DenseNets dense_nets;
+  DenseGraphCache dense_graphs;
 };
 
 struct JointSolve {
@@ -33,20 +33,20 @@ struct JointSolve {
   std::span<const std::uint32_t> local_index{};  // by body: its index in its batch
   JointSettings settings{};
   JointBodies bodies{};
-  std::span<NetJoint> edges{};           // of the batch's joints
+  std::span<JointEdge> edges{};           // of the batch's joints
   std::span<std::uint8_t> ball_lanes{};  // 1 for those that may be solved as ball joints side by side
   bool is_net = false;     // all are known to be swept: those of ball_lanes are begun in their lanes
   LaneStart lane_start{};  // of joints that are begun in lanes
-  JointWorks works{};
-  Linkages linkages{};
-  LinkageSolve linkage_solve{};
+  JointConstraints works{};
+  Articulations linkages{};
+  ArticulationSolve articulation_solve{};
   std::span<std::span<double>> limit_rooms{};  // by worker, where an articulation has limits
   BundleSolve bundles{};                       // articulations side by side
   std::span<std::uint32_t> order{};            // indices in the list of swept joints, by groups
   std::span<JointGroup> groups{};
-  void* balls = nullptr;  // ball joints side by side: solver/articulation/ball_lanes.h
+  void* balls = nullptr;  // ball joints side by side: solver/articulation/ball_joint_simd.h
   std::span<const StiffenedBody> stiffened{};
-  std::span<JointIsland> islands{};  // rigid/solve/joint_energy.h
+  std::span<JointIsland> islands{};  // rigid/solve/energy_limiter.h
 };
 
 // Joints of one colour.
@@ -59,8 +59,8 @@ struct JointGroup {
 };
 
 // By index in the batch: 1 for those joints that are begun and finished in their lanes, and have no work.
-inline std::span<const std::uint8_t> begun_in_lanes(const JointSolve& s) {
-  return s.is_net ? s.ball_lanes : s.linkages.in_lanes;
+inline std::span<const std::uint8_t> prepared_in_simd(const JointSolve& s) {
+  return s.is_net ? s.ball_lanes : s.linkages.simd;
 }
 
 }  // namespace gyre

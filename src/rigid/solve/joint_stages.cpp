@@ -1,6 +1,6 @@
 #include "rigid/solve/joint_stages.h"
 
-#include "solver/articulation/ball_records.h"
+#include "solver/articulation/ball_joint_transfer.h"
 
 namespace gyre {
 
@@ -95,7 +95,7 @@ void prepare_joints(const JointGroup& g, int begin, int end) {
     const Balls balls = balls_of(g, begin, end);
     return balls.kernels.place(balls.blocks, balls.begin, balls.end, balls.arrays);
   }
-  for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces& places) {
+  for_joints(g, begin, end, [&](JointRecord& joint, JointConstraint& work, const JointOffsets& places) {
     prepare_joint(joint, work, places, g.solve->bodies, g.solve->settings);
   });
 }
@@ -104,8 +104,8 @@ void compute_rotation_bias(const JointGroup& g, int begin, int end) {
     const Balls balls = balls_of(g, begin, end);
     return balls.kernels.bend(balls.blocks, balls.begin, balls.end, balls.settings);
   }
-  for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
-    bend_joint(joint, work, g.solve->bodies, g.solve->settings);
+  for_joints(g, begin, end, [&](JointRecord& joint, JointConstraint& work, const JointOffsets&) {
+    update_joint_bias(joint, work, g.solve->bodies, g.solve->settings);
   });
 }
 void warm_start_joints(const JointGroup& g, int begin, int end) {
@@ -113,7 +113,7 @@ void warm_start_joints(const JointGroup& g, int begin, int end) {
     const Balls balls = balls_of(g, begin, end);
     return balls.kernels.warm(balls.blocks, balls.begin, balls.end);
   }
-  for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
+  for_joints(g, begin, end, [&](JointRecord& joint, JointConstraint& work, const JointOffsets&) {
     warm_start_joint(joint, work, g.solve->bodies);
   });
 }
@@ -122,7 +122,7 @@ void solve_joints(const JointGroup& g, int begin, int end) {
     const Balls balls = balls_of(g, begin, end);
     return balls.kernels.solve(balls.blocks, balls.begin, balls.end, balls.settings);
   }
-  for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
+  for_joints(g, begin, end, [&](JointRecord& joint, JointConstraint& work, const JointOffsets&) {
     solve_joint(joint, work, g.solve->bodies, g.solve->settings, true);
   });
 }
@@ -135,9 +135,9 @@ void relax_joints(const JointGroup& g, int begin, int end) {
     balls.kernels.place(balls.blocks, balls.begin, balls.end, balls.arrays);
     return balls.kernels.relax(balls.blocks, balls.begin, balls.end);
   }
-  for_joints(g, begin, end, [&](JointRecord& joint, JointWork& work, const JointPlaces&) {
+  for_joints(g, begin, end, [&](JointRecord& joint, JointConstraint& work, const JointOffsets&) {
     solve_joint(joint, work, g.solve->bodies, g.solve->settings, false);
-    sum_joint(joint, work, g.solve->bodies);
+    accumulate_joint_impulses(joint, work, g.solve->bodies);
   });
 }
 

@@ -36,10 +36,10 @@ void in_joint_slices(const JointSolve& s, int begin, int end) {
   }
 }
 
-// Articulations [begin, end), each solved by itself (solver/articulation/linkage.h).
-template <void (*stage)(const Linkage&, const LinkageSolve&)>
+// Articulations [begin, end), each solved by itself (solver/articulation/articulation.h).
+template <void (*stage)(const Articulation&, const ArticulationSolve&)>
 void for_articulations(const JointSolve& s, int begin, int end, int worker) {
-  LinkageSolve own = s.linkage_solve;
+  ArticulationSolve own = s.articulation_solve;
   if (!s.limit_rooms.empty()) own.room = s.limit_rooms[std::size_t(worker)];
   for (int i = begin; i < end; ++i) stage(s.linkages.linkages[std::size_t(i)], own);
 }
@@ -48,7 +48,7 @@ void for_articulations(const JointSolve& s, int begin, int end, int worker) {
 template <BundleKernel... stages>
 void for_simd_articulations(const JointSolve& s, int begin, int end) {
   for (int i = begin; i < end; ++i) {
-    const LinkageBundle& bundle = s.bundles.bundles[std::size_t(i)].lanes;
+    const ArticulationBundle& bundle = s.bundles.bundles[std::size_t(i)].lanes;
     ((bundle.kernels->*stages)(bundle, s.bundles.arrays, s.bundles.settings), ...);
   }
 }

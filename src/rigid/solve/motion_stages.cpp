@@ -76,16 +76,16 @@ void integrate_positions_in_lanes(const BodyMotionSolve& s, int begin, int end, 
   s.kernels.motion.advance_in_lanes(s.blocks, begin, end, s.arrays, lanes, s.motions.substep);
 }
 
-bool has_spinners(const BodyMotionSolve& s, int begin, int end) {
-  return !s.spinners.empty() && s.spinner_starts[std::size_t(begin)] != s.spinner_starts[std::size_t(end)];
+bool has_fast_spinning(const BodyMotionSolve& s, int begin, int end) {
+  return !s.fast_spinning.empty() && s.fast_spinning_starts[std::size_t(begin)] != s.fast_spinning_starts[std::size_t(end)];
 }
 void integrate_spinners_of_blocks(const BodyMotionSolve& s, int begin, int end) {
-  if (!has_spinners(s, begin, end)) return;
-  const std::uint32_t first = s.spinner_starts[std::size_t(begin)], last = s.spinner_starts[std::size_t(end)];
-  turn_alone(s.w.bodies, s.spinners.subspan(first, last - first), s.motions.substep, s.kernels.turns);
+  if (!has_fast_spinning(s, begin, end)) return;
+  const std::uint32_t first = s.fast_spinning_starts[std::size_t(begin)], last = s.fast_spinning_starts[std::size_t(end)];
+  rotate_exactly(s.w.bodies, s.fast_spinning.subspan(first, last - first), s.motions.substep, s.kernels.turns);
 }
 void integrate_spinners(const BodyMotionSolve& s, int begin, int end) {
-  turn_alone(s.w.bodies, block_of(s.spinners, begin, end, kSpinnersPerBlock), s.motions.substep,
+  rotate_exactly(s.w.bodies, block_of(s.fast_spinning, begin, end, kSpinnersPerBlock), s.motions.substep,
              s.kernels.turns);
 }
 
@@ -97,10 +97,10 @@ void end_projection(const BodyMotionSolve& s, int begin, int end) {
 }
 
 void move_free_bodies(const BodyMotionSolve& s, int begin, int end) {
-  fly(s.w.bodies, block_of(s.free_bodies, begin, end, kBodiesPerBlock), s.motions, s.kernels.turns);
+  integrate_free_bodies(s.w.bodies, block_of(s.free_bodies, begin, end, kBodiesPerBlock), s.motions, s.kernels.turns);
 }
 void finish_orientations(const BodyMotionSolve& s, int begin, int end) {
-  finish_turns(s.w.bodies, block_of(s.moved, begin, end, kBodiesPerBlock),
+  apply_rotations(s.w.bodies, block_of(s.moved, begin, end, kBodiesPerBlock),
                block_of(s.pushes, begin, end, kBodiesPerBlock), s.kernels.turns);
 }
 

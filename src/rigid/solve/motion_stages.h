@@ -30,7 +30,7 @@ void integrate_positions_in_lanes(const BodyMotionSolve& s, int begin, int end, 
 
 // Rotations that are fast or bound to axes, which the above leave alone: of blocks of bodies, and whether there are any.
 void integrate_spinners_of_blocks(const BodyMotionSolve& s, int begin, int end);
-bool has_spinners(const BodyMotionSolve& s, int begin, int end);
+bool has_fast_spinning(const BodyMotionSolve& s, int begin, int end);
 // And in blocks of kSpinnersPerBlock of them.
 constexpr int kSpinnersPerBlock = 8;
 void integrate_spinners(const BodyMotionSolve& s, int begin, int end);

@@ -3,7 +3,7 @@
 #include "solver/rows/body_newton.h"
 #include "solver/rows/constraint_rows.h"
 #include "solver/rows/delassus.h"
-#include "solver/rows/solve_sweeps.h"
+#include "solver/rows/gauss_seidel.h"
 
 namespace gyre {
 
@@ -17,10 +17,10 @@ constexpr double kAccepted = 5.0;  // what Newton's method may leave of these wh
 constexpr double kNncgShare = 1.0e-5;
 // Newton's steps from where the impulses stand, and from where so many sweeps lead where that does not end; rows up to
 // which the longer ones are tried, and up to which pivoting is tried where that does not end either.
-constexpr int kNewtonSteps = 30, kLeadingSweeps[] = {0, 64, 256, 1024}, kMostLedFar = 1500,
-              kMostPivotRows = 100;
+constexpr int kNewtonSteps = 30, kLeadingSweeps[] = {0, 64, 256, 1024}, kMaxLedFar = 1500,
+              kMaxPivotRows = 100;
 // Multiplications of a factorisation above which an island is left to NNCG: about a tenth of a second.
-constexpr std::uint64_t kMostFactorWork = 100'000'000;
+constexpr std::uint64_t kMaxFactorWork = 100'000'000;
 
 // The rows of a sub-step of one island, and who they came from.
 struct IslandRows {
@@ -65,19 +65,19 @@ double largest_alone(std::span<const Row> rows, std::span<const RowBody> bodies)
   return most;
 }
 
-void sweep_island(const RowSolve& s, const IslandRows& island, NumberRoom room, double scale,
-                  RowReport& report) {
+void iterate_island(const RowSolve& s, const IslandRows& island, NumberRoom room, double scale,
+                  RowStats& report) {
   const std::span<Row> rows = island.rows();
   const std::span<RowBody> bodies = island.bodies();
   warm_start_rows(rows, bodies);
   if (s.settings.kind == SolverKind::lcp) {
-    const SweepResult result =
+    const GaussSeidelResult result =
         solve_nncg(rows, bodies, s.friction, kNncgShare * scale, sweeps_of(s.settings), room);
     report.sweeps = max(report.sweeps, result.sweeps);
     report.residual = max(report.residual, result.residual);
     return;
   }
-  for (int i = 0; i < sweeps_of(s.settings); ++i) sweep_rows_once(rows, bodies, s.friction);
+  for (int i = 0; i < sweeps_of(s.settings); ++i) iterate_rows_once(rows, bodies, s.friction);
   report.sweeps = sweeps_of(s.settings);
   report.residual = max(report.residual, find_row_residual(rows, bodies, s.friction));
 }
@@ -88,7 +88,7 @@ double direct_tolerance(double scale) {
 
 // False if it left more than it should; the rows' impulses are then the best that it found.
 bool solve_island_directly(const RowSolve& s, const IslandRows& island, NumberRoom room, DirectMethod method,
-                           double scale, RowReport& report) {
+                           double scale, RowStats& report) {
   const std::span<Row> rows = island.rows();
   const std::size_t n = rows.size();
   const std::span<double> a = room.take(n * n), q = room.take(n), x = room.take(n);
@@ -112,7 +112,7 @@ bool solve_island_directly(const RowSolve& s, const IslandRows& island, NumberRo
 
 // Newton's method; false if it does not end. The rows' impulses are then the best that it found.
 bool solve_island_by_newton(const RowSolve& s, const IslandRows& island, NumberRoom room, double scale,
-                            RowReport& report) {
+                            RowStats& report) {
   const std::span<Row> rows = island.rows();
   const std::span<double> x = room.take(rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) x[i] = rows[i].impulse;
@@ -129,10 +129,10 @@ bool solve_island_by_newton(const RowSolve& s, const IslandRows& island, NumberR
 
 // Newton's method from where the impulses stand; where it does not end, from where some sweeps lead.
 bool solve_island_by_all_means(const RowSolve& s, const IslandRows& island, NumberRoom room, double scale,
-                               RowReport& report) {
+                               RowStats& report) {
   const std::span<Row> rows = island.rows();
   for (const int sweeps : kLeadingSweeps) {
-    if (sweeps > kLeadingSweeps[1] && int(rows.size()) > kMostLedFar) break;
+    if (sweeps > kLeadingSweeps[1] && int(rows.size()) > kMaxLedFar) break;
     if (sweeps > 0) {
       warm_start_rows(rows, island.bodies());
       solve_nncg(rows, island.bodies(), s.friction, kNncgShare * scale, sweeps, room);
@@ -143,7 +143,7 @@ bool solve_island_by_all_means(const RowSolve& s, const IslandRows& island, Numb
   return false;
 }
 
-void solve_island(const RowSolve& s, const IslandRows& island, RowReport& report) {
+void solve_island(const RowSolve& s, const IslandRows& island, RowStats& report) {
   const std::span<Row> rows = island.rows();
   if (rows.empty()) return;
   report.islands = 1;
@@ -159,11 +159,11 @@ void solve_island(const RowSolve& s, const IslandRows& island, RowReport& report
     if (!(pivots(method) && fits) && !island.island.plan.columns.empty() &&
         solve_island_by_all_means(s, island, room, scale, report))
       return;
-    if (method == LcpMethod::automatic && int(rows.size()) <= min(most, kMostPivotRows) &&
+    if (method == LcpMethod::automatic && int(rows.size()) <= min(most, kMaxPivotRows) &&
         solve_island_directly(s, island, room, DirectMethod::dantzig, scale, report))
       return;
   }
-  sweep_island(s, island, room, scale, report);
+  iterate_island(s, island, room, scale, report);
 }
 
 // ----------------------------------------------------------------------------------------------------------- stages
@@ -173,7 +173,7 @@ void make_rows(const RowSolve& s, IslandRows& island, bool first) {
   int next = 0;
   for (const std::uint32_t i : island.island.joints) {
     JointRecord& joint = joints.w.joints.records[joints.batch.joints[i]];
-    bend_joint(joint, joints.works.work[i], joints.bodies, joints.settings);
+    update_joint_bias(joint, joints.works.work[i], joints.bodies, joints.settings);
     island.room.starts[std::size_t(next++)] = island.list.count;
     add_joint_rows(joint, joints.works.work[i], joints.settings, island.frame, island.list);
   }
@@ -240,7 +240,7 @@ void make_rooms(RowSolve& s, Arena& arena, std::size_t workers) {
       // Fewer rows than were counted may come within what pivoting takes.
       const LcpMethod method = s.settings.options.lcp_method;
       int most = s.settings.options.direct_rows;
-      if (!pivots(method)) most = method == LcpMethod::automatic ? min(most, kMostPivotRows) : 0;
+      if (!pivots(method)) most = method == LcpMethod::automatic ? min(most, kMaxPivotRows) : 0;
       DirectSize size = island.size;
       size.rows = min(n, std::size_t(most));
       size.equations = min(size.equations, size.rows), size.cones = min(size.cones, (size.rows + 1) / 2);
@@ -261,8 +261,8 @@ void make_rooms(RowSolve& s, Arena& arena, std::size_t workers) {
   }
 }
 
-void add_reports(RowReport& sum, std::span<const RowReport> reports) {
-  for (const RowReport& report : reports) {
+void add_reports(RowStats& sum, std::span<const RowStats> reports) {
+  for (const RowStats& report : reports) {
     sum.residual = max(sum.residual, report.residual);
     sum.islands += report.islands;
     sum.largest = max(sum.largest, report.largest);
@@ -295,7 +295,7 @@ void push_row_islands_apart(const RowSolve& s, int begin, int end, int worker) {
     for (const std::uint32_t j : island.island.joints)
       add_joint_equations(joints.w.joints.records[joints.batch.joints[j]], joints.works.work[j], island.frame,
                           island.list);
-    RowReport unheard;  // of displacements, not impulses
+    RowStats unheard;  // of displacements, not impulses
     solve_island(s, island, unheard);
     store_velocities(s, island);
   }
@@ -313,7 +313,7 @@ void sum_row_joints(const RowSolve& s, int begin, int end) {
   const JointSolve& joints = s.joints;
   for (int i = begin; i < end; ++i) {
     for (const std::uint32_t j : s.islands.islands[std::size_t(i)].joints)
-      sum_joint(joints.w.joints.records[joints.batch.joints[j]], joints.works.work[j], joints.bodies);
+      accumulate_joint_impulses(joints.w.joints.records[joints.batch.joints[j]], joints.works.work[j], joints.bodies);
   }
 }
 
@@ -325,14 +325,14 @@ RowSolve begin_row_solve(const ContactSolve& contacts, const JointSolve& joints,
   const std::span<const ContactConstraint> constraints = contacts.lists.constraints;
   rows.islands = find_row_islands(joints.w, constraints, joints.batch, joints.works.work, arena);
   if (settings.kind == SolverKind::lcp && settings.options.lcp_method != LcpMethod::nncg)
-    plan_row_islands(joints.w, constraints, joints.batch, kMostFactorWork, arena, rows.islands);
-  rows.reports = arena.make<RowReport>(rows.islands.islands.size());
-  for (RowReport& report : rows.reports) report = {};
+    plan_row_islands(joints.w, constraints, joints.batch, kMaxFactorWork, arena, rows.islands);
+  rows.reports = arena.make<RowStats>(rows.islands.islands.size());
+  for (RowStats& report : rows.reports) report = {};
   make_rooms(rows, arena, workers);
   return rows;
 }
 
-void finish_row_solve(const RowSolve& s, RowReport& report) {
+void finish_row_solve(const RowSolve& s, RowStats& report) {
   add_reports(report, s.reports);
   for (const ContactConstraint& constraint : s.contacts.lists.constraints) {
     float load = 0.0f;

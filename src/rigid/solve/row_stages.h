@@ -38,7 +38,7 @@ struct RowSolve {
   DirectMethod method = DirectMethod::dantzig;
   RowIslands islands{};
   std::span<RowWorkerRoom> rooms{};
-  std::span<RowReport> reports{};  // by island
+  std::span<RowStats> reports{};  // by island
 };
 
 RowSolve begin_row_solve(const ContactSolve& contacts, const JointSolve& joints,
@@ -52,6 +52,6 @@ void sum_row_joints(const RowSolve& s, int begin, int end);
 void push_row_islands_apart(const RowSolve& s, int begin, int end, int worker);
 
 // Ages of contacts; adds what the islands had to say to the report.
-void finish_row_solve(const RowSolve& s, RowReport& report);
+void finish_row_solve(const RowSolve& s, RowStats& report);
 
 }  // namespace gyre

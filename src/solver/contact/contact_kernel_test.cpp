@@ -67,7 +67,7 @@ TEST(ContactKernel, TakesAnyLoadThatAFloatCanHold) {
 // Eight lanes that nobody asked for, on a processor that has sixteen, use its registers; asked for, they are those of any with AVX2.
 TEST(ContactKernel, EightLanesUseTheRegistersOfSixteenWhereNobodyAsksForThem) {
   const SolverKernels &best = select_kernels(0), &asked = select_kernels(8);
-  if (most_lanes() < 16) {
+  if (max_lanes() < 16) {
     EXPECT_EQ(&best, &select_kernels(best.width));
     return;
   }
@@ -85,7 +85,7 @@ struct Bone {
   const SolverKernels& kernels;
   void* const block;
   void* const aside;
-  FollowedArms arms;
+  AdvancedArms arms;
 
   explicit Bone(int width)
       : kernels(select_kernels(width)),
@@ -115,7 +115,7 @@ struct Bone {
     kernels.contacts.warm_start(block, 0, 1);
   }
   void follow() {
-    const FollowedLane lane{0, &arms, nullptr, &inertia.inverse};
+    const AdvancedArmsLane lane{0, &arms, nullptr, &inertia.inverse};
     kernels.contacts.follow(block, 0, &lane, 1);
   }
   static constexpr Vec3 kFriction{0, 0, 1.2f};

@@ -1,11 +1,11 @@
 // The kernels of all constraints and motion for one CPU target, W lanes wide, as one table. A world chooses its table once.
 #pragma once
 
-#include "solver/articulation/ball_lanes.h"
+#include "solver/articulation/ball_joint_simd.h"
 #include "solver/articulation/linkage_lanes.h"
 #include "solver/contact/contact_block.h"
 #include "solver/motion/motion_block.h"
-#include "solver/motion/turn_block.h"
+#include "solver/motion/rotation_block.h"
 
 namespace gyre {
 
@@ -13,8 +13,8 @@ struct SolverKernels {
   int width;  // lanes
   ContactKernels contacts;
   MotionKernels motion;
-  TurnKernels turns;
-  LinkageKernels linkages;
+  RotationKernels turns;
+  ArticulationKernels linkages;
   BallKernels balls;
 };
 
