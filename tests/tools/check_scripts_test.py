@@ -120,6 +120,27 @@ class Tree(unittest.TestCase):
         self.assertEqual(code, 0, output)
         self.assertIn("row.cpp:1: a function of 93 lines", output)
 
+    def write_decision(self, page, readme="| [joints](joints.md) | How soft? |\n"):
+        self.write("docs/decisions/joints.md", page)
+        self.write("docs/decisions/README.md", readme)
+
+    def test_decisions(self):
+        abstract = "".join(f"- **{label}:** it is one sentence.\n" for label in
+                           ("Problem", "Rule", "Constants", "Figure", "Limit"))
+        good = "# How soft?\n\n" + abstract + "\n## Why it matters\n"
+        self.write_decision(good)
+        code, output = self.run_check("docs")
+        self.assertEqual(code, 0, output)
+        for page, fault in ((good.replace("?", ""), "the title is no question"),
+                            (good.replace("- **Figure:** it is one sentence.\n", ""), "five lines must follow"),
+                            (good.replace("Figure", "Picture"), "line 6 must begin with '- **Figure:**'"),
+                            (good.replace("sentence.\n\n", "sentence\n\n"), "line 7 must begin with '- **Limit:**'")):
+            with self.subTest(fault=fault):
+                self.write_decision(page)
+                self.assert_fails("docs", fault)
+        self.write_decision(good, "No list.\n")
+        self.assert_fails("docs", "lists it 0 times")
+
     def list_units(self, *options):
         done = subprocess.run([sys.executable, str(self.root / "tools" / "list_units.py"), *options], capture_output=True,
                               text=True, check=False)
