@@ -19,7 +19,7 @@ int main() {
   for (int i = 0; i < 600; ++i) {
     kit::BoneDrive drive;
     if (i < 60) drive.key = {.strength = 1, .frequency = 4};  // keyed to the pose
-    if (i < 120) drive.motor.strength = 1;  // then motors alone, from 2 s no drive
+    if (i < 120) drive.motor.strength = 1;                    // then motors alone, from 2 s no drive
     if (i == 60) world.add_impulse(chest, {0, 0, -60});
     if (const Error e = kit::drive_ragdoll(world, person, ragdoll, standing, {&drive, 1}, step);
         e.code != ErrorCode::none) {
