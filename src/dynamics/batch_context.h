@@ -52,7 +52,7 @@ struct BatchContext {
   FusedRuns fused_runs[2] = {};       // if bodies are moved run by run: of other bodies, and of articulations
   RowSolve* rows = nullptr;           // if constraints are solved as rows
 
-  // All that is between the contacts of one sub-step and those of the next is done run by run.
+  // All that is between the contacts of one half-step and those of the next is done run by run.
   bool is_fused() const { return !fused_runs[1].runs.empty(); }
 };
 

@@ -116,7 +116,7 @@ namespace {
 
 // Of a group whose joints are solved one after the other.
 void begin_ball_alone(JointSolve& s, std::uint32_t joint, Arena& arena) {
-  if (s.is_net) begin_joint(s.w, s.batch, joint, s.lane_start.warm_scale, s.works, arena);
+  if (s.all_iterative) begin_joint(s.w, s.batch, joint, s.lane_start.warm_scale, s.works, arena);
 }
 
 }  // namespace

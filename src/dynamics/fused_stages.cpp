@@ -103,7 +103,7 @@ void FusedRun::integrate_positions() const {
     gyre::integrate_positions(motion_, begin_, end_);
   else
     integrate_positions_in_lanes(motion_, begin_, end_, lanes_);
-  integrate_spinners_of_blocks(motion_, begin_, end_);
+  integrate_fast_spinning_of_blocks(motion_, begin_, end_);
 }
 
 void FusedRun::prepare_joints() const { for_bundles(&ArticulationKernels::prepare); }
@@ -115,7 +115,7 @@ void FusedRun::solve_joints_after_contacts() const {
   for_bundles(&ArticulationKernels::solve_after_contacts, is_apart(), is_apart() || spins_);
 }
 void FusedRun::relax_joints() const {
-  for_bundles(&ArticulationKernels::end_substep, is_apart() || spins_, is_apart());
+  for_bundles(&ArticulationKernels::end_half_step, is_apart() || spins_, is_apart());
 }
 void FusedRun::relax_joints_last() const {
   for_bundles(&ArticulationKernels::end_step, is_apart() || spins_, true);

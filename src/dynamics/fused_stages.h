@@ -1,6 +1,6 @@
-// Stages of articulations side by side and of the bodies that they push, fused: what is between the contacts of one sub-step and those of
+// Stages of articulations side by side and of the bodies that they push, fused: what is between the contacts of one half-step and those of
 // the next asks after no others, so it is done run by run, while all that belongs to a run is in the cache. Stage by stage each
-// articulation would come from memory several times a sub-step: all together are more than a core's cache holds
+// articulation would come from memory several times a half-step: all together are more than a core's cache holds
 // (docs/decisions/bundle-runs.md). What is fused, and in which order, stands in dynamics/substep_program.cpp.
 //
 // In: a batch whose articulations are laid out. Out: the order in which its bodies are moved, and what is done to a run. Every number is what
@@ -64,7 +64,7 @@ class FusedRun {
   void integrate_positions() const;
   void prepare_joints() const;
   void compute_joint_bias() const;
-  // In the first sub-step velocities come from the records; what contacts change is measured from here on.
+  // In the first half-step velocities come from the records; what contacts change is measured from here on.
   void solve_joints_first() const;
   void solve_joints() const;
   void solve_joints_after_contacts() const;

@@ -8,10 +8,10 @@ namespace gyre {
 namespace {
 
 // The kernels leave out what no body of a block needs: those whose rotation is integrated in another way lie apart.
-constexpr std::uint8_t kSpins = 0, kNoGyroscopicTorque = 1, kGyroscopicTorque = 2, kRotationKinds = 3;
-std::uint8_t rotation_kind(const BodyMotionSolve& motion, std::uint32_t body) {
-  if (needs_exact_rotation(motion.w.bodies, body, motion.motions.substep)) return kSpins;
-  return motion.w.bodies.masses[body].isotropic != 0 ? kNoGyroscopicTorque : kGyroscopicTorque;
+constexpr std::uint8_t kExactRotation = 0, kNotGyroscopic = 1, kGyroscopic = 2, kRotationModes = 3;
+std::uint8_t rotation_mode(const BodyMotionSolve& motion, std::uint32_t body) {
+  if (needs_exact_rotation(motion.w.bodies, body, motion.motions.substep)) return kExactRotation;
+  return motion.w.bodies.masses[body].isotropic != 0 ? kNotGyroscopic : kGyroscopic;
 }
 
 // Whether there are articulations side by side, and nothing but they and contacts comes between the moves of bodies.
@@ -50,15 +50,15 @@ void part_bodies(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
   const std::span<int> bounds = arena.make<int>(std::size_t(batch.partition.count() + 1));
   const ArenaScope scope(arena);
   // Where a body belongs: those in contact first, by share and kind of rotation.
-  static_assert((kMaxShares + 1) * kRotationKinds + 3 < 256, "kinds are bytes");
+  static_assert((kMaxShares + 1) * kRotationModes + 3 < 256, "kinds are bytes");
   const int shares = batch.partition.count();
-  const std::uint8_t apart = std::uint8_t(shares * kRotationKinds),
-                     flies = std::uint8_t(apart + kRotationKinds), stop_at_impact = std::uint8_t(flies + 1),
+  const std::uint8_t apart = std::uint8_t(shares * kRotationModes),
+                     flies = std::uint8_t(apart + kRotationModes), stop_at_impact = std::uint8_t(flies + 1),
                      in_run = std::uint8_t(stop_at_impact + 1);
   const std::span<std::uint8_t> kinds = arena.make<std::uint8_t>(bodies.size());
   for (std::uint8_t& kind : kinds) kind = apart;
   const auto touch = [&](std::uint32_t body) {
-    if (body != ColoringPair::kNone) kinds[body] = std::uint8_t(batch.partition.of(body) * kRotationKinds);
+    if (body != ColoringPair::kNone) kinds[body] = std::uint8_t(batch.partition.of(body) * kRotationModes);
   };
   for (const ColoringPair& pair : batch.scratch.contacts.pairs) touch(pair.a), touch(pair.b);
   list_runs(batch, runs, kinds, in_run, arena);
@@ -66,19 +66,19 @@ void part_bodies(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
     for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
       if (kinds[i] == in_run) continue;
       const BodyFlags& flags = w.bodies.flags[bodies[i]];
-      kinds[i] = flags.touched != kNotConstrained ? std::uint8_t(kinds[i] + rotation_kind(motion, bodies[i]))
+      kinds[i] = flags.touched != kNotConstrained ? std::uint8_t(kinds[i] + rotation_mode(motion, bodies[i]))
                  : !motion.is_smooth || !is_movable(flags) ? flies
                                                            : stop_at_impact;
     }
   });
-  std::uint32_t starts[(kMaxShares + 1) * kRotationKinds + 4] = {};
+  std::uint32_t starts[(kMaxShares + 1) * kRotationModes + 4] = {};
   for (const std::uint8_t kind : kinds) ++starts[kind + 1];
   for (std::size_t kind = 0; kind <= in_run; ++kind) starts[kind + 1] += starts[kind];
   const std::size_t moved = starts[flies], flying = starts[stop_at_impact] - moved;
   batch.moved_in_contact = led + starts[apart];
   if (shares > 1 && led == 0 && moved - batch.moved_in_contact <= moved / 8) {
     std::uint32_t firsts[kMaxShares];
-    for (int i = 0; i < shares; ++i) firsts[i] = starts[i * kRotationKinds];
+    for (int i = 0; i < shares; ++i) firsts[i] = starts[i * kRotationModes];
     find_share_bounds(std::span(firsts).first(std::size_t(shares)), std::uint32_t(moved),
                       std::uint32_t(width), bounds.data());
     batch.moved_bounds = bounds.data();
@@ -128,7 +128,8 @@ void gather_bodies(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
     motion.fast_spinning_starts = arena.make<std::uint32_t>(blocks + 1);
     for (std::size_t i = 0; i < moved; ++i) {
       if (i % width == 0) motion.fast_spinning_starts[i / width] = std::uint32_t(fast_spinning);
-      if (motion.moved[i].needs_exact_rotation) motion.fast_spinning[fast_spinning++] = std::uint32_t(motion.moved[i].body);
+      if (motion.moved[i].needs_exact_rotation)
+        motion.fast_spinning[fast_spinning++] = std::uint32_t(motion.moved[i].body);
     }
     motion.fast_spinning_starts[blocks] = std::uint32_t(fast_spinning);
   }

@@ -139,8 +139,8 @@ class ContactGatherer {
     constraint.loaded = loads.any;
     constraint.may_roll = false;
     constraint.hold = manifold.age >= kRigidContactAge ? ContactStiffness::held
-                      : manifold.age > 0.0f    ? ContactStiffness::sprung
-                                               : ContactStiffness::none;
+                      : manifold.age > 0.0f            ? ContactStiffness::sprung
+                                                       : ContactStiffness::none;
     if (loads.all) {
       constraint.fast = false;
       for (int k = 0; k < manifold.count; ++k) manifold.points[k].approach_speed = 0.0f;
@@ -150,7 +150,8 @@ class ContactGatherer {
     if (manifold.count == 0) return false;
     if (has_rules_ && !apply_surface_rules(w_, contact, manifold, constraint)) return false;
     if (contact.recycled == 0) constraint.may_roll = may_roll(w_, contact, constraint);
-    constraint.spinning_friction += manifold.count == 1 ? contact_patch_spin_friction(w_, contact, constraint) : 0.0f;
+    constraint.spinning_friction +=
+        manifold.count == 1 ? contact_patch_spin_friction(w_, contact, constraint) : 0.0f;
     return true;
   }
 

@@ -4,8 +4,8 @@
 
 #include "base/arena/bucketed_lists.h"
 #include "base/container/disjoint_sets.h"
-#include "task/parallel_filter.h"
 #include "task/parallel.h"
+#include "task/parallel_filter.h"
 
 #include <algorithm>
 

@@ -7,12 +7,12 @@ namespace gyre {
 
 namespace {
 
-// At most: what stands once in the program, and what each sub-step adds beside a line for each colour.
-constexpr std::size_t kLinesOnce = 24, kLinesPerSubstep = 48;
+// At most: what stands once in the program, and what each half-step adds beside a line for each colour.
+constexpr std::size_t kLinesOnce = 24, kLinesPerHalfStep = 48;
 
 }  // namespace
 
-ProgramBuilder::ProgramBuilder(BatchContext& batch, int substeps, Arena& arena)
+ProgramBuilder::ProgramBuilder(BatchContext& batch, int half_steps, Arena& arena)
     : batch_(batch),
       bodies_(count_blocks(int(batch.motion.moved.size()), batch.kernels.width)),
       spinners_(count_blocks(int(batch.motion.fast_spinning.size()), kSpinnersPerBlock)),
@@ -32,7 +32,7 @@ ProgramBuilder::ProgramBuilder(BatchContext& batch, int substeps, Arena& arena)
   for (const ContactGroup& group : batch.contact_groups) contact_blocks_ += int(group.count);
   const std::size_t joints = batch.joints.groups.size(), contacts = batch.contact_groups.size();
   room_ = arena.make<Stage>(kLinesOnce + 2 * contacts +
-                            std::size_t(substeps) * (kLinesPerSubstep + 3 * joints + 2 * contacts));
+                            std::size_t(half_steps) * (kLinesPerHalfStep + 3 * joints + 2 * contacts));
 }
 
 }  // namespace gyre

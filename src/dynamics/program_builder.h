@@ -24,7 +24,7 @@ void run_stage(void* context, int begin, int end, int worker) {
 
 class ProgramBuilder {
  public:
-  ProgramBuilder(BatchContext& batch, int substeps, Arena& arena);
+  ProgramBuilder(BatchContext& batch, int half_steps, Arena& arena);
 
   // Bodies that constraints act on; of these the ones whose velocity change by contacts is measured; those whose rotation the kernels leave
   // alone; and all of them again, for orientations.

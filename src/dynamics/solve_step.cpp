@@ -4,8 +4,8 @@
 #include "dynamics/gather_bodies.h"
 #include "dynamics/gather_constraints.h"
 #include "dynamics/substep_program.h"
-#include "rigid/solve/geometric_stiffness.h"
 #include "rigid/solve/energy_limiter.h"
+#include "rigid/solve/geometric_stiffness.h"
 #include "task/parallel.h"
 
 #include <bit>
@@ -19,9 +19,9 @@ namespace {
 constexpr float kContactRate = 9.0f;
 constexpr float kContactLeak = 44.0f;
 constexpr float kContactAging = 0.25f;
-// A sub-step of the user's settings is two of the engine's, each one sweep over the constraints, then a move: two short ones hold four times
+// A sub-step is solved in half-steps: one iteration over the constraints, then everything moves. Two short ones hold four times
 // as stiff as two sweeps in one place.
-constexpr int kSubstepsPerSetting = 2;
+constexpr int kHalfStepsPerSubstep = 2;
 // Joints: errors are taken back at this rate (1/s), and impulses give way at this one, a little more than half of it, as
 // sweeps that lag behind need (the same page). Neither depends on the sub-step.
 constexpr float kJointRate = 40.0f;
@@ -100,25 +100,27 @@ std::span<const std::uint8_t> find_bodies_in_contact(const BatchContext& batch, 
 void begin_joints(BatchContext& batch, Arena& arena) {
   JointSolve& s = batch.joints;
   DenseGraphCache& nets = s.lists.dense_graphs;
-  s.is_net = !s.edges.empty() && nets.holds(s.edges);
-  s.linkages = s.is_net ? no_articulations(s.edges.size(), arena)
-                        : find_articulations(s.w, s.batch, s.local_index, s.edges,
+  s.all_iterative = !s.edges.empty() && nets.holds(s.edges);
+  s.linkages = s.all_iterative
+                   ? no_articulations(s.edges.size(), arena)
+                   : find_articulations(s.w, s.batch, s.local_index, s.edges,
                                         find_bodies_in_contact(batch, arena), s.lane_start, nets, arena);
   s.works = begin_joints(s.w, s.batch, prepared_in_simd(s), s.lane_start.warm_scale, arena);
 }
 void prepare_articulations(JointSolve& s, std::size_t workers, Arena& arena) {
   s.articulation_solve = {.records = s.w.joints.records,
-                     .work = s.works.work,
-                     .places = s.works.places,
-                     .bodies = s.bodies,
-                     .settings = s.settings,
-                     .give = kArticulationCompliance};
+                          .work = s.works.work,
+                          .places = s.works.places,
+                          .bodies = s.bodies,
+                          .settings = s.settings,
+                          .compliance = kArticulationCompliance};
   s.articulation_solve.settings.swept = false;
   attach_drives(s.linkages, s.works.work, arena);
   s.limit_rooms = find_limits(s.linkages, s.works.work, workers, arena);
   s.bundles = lay_out_bundles(
       s.linkages, s.kernels, {s.bodies.motion, s.bodies.inertia, s.bodies.orientation},
-      {s.settings.substep, s.settings.softness.bias_rate, kArticulationCompliance, add_geometric_stiffness}, arena);
+      {s.settings.substep, s.settings.softness.bias_rate, kArticulationCompliance, add_geometric_stiffness},
+      arena);
 }
 
 // --------------------------------------------------------------------------------------------------------------- a batch
@@ -202,7 +204,7 @@ void solve_batch(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
 
 // ------------------------------------------------------------------------------------------------------ a batch, as rows
 
-// Rows look at their bodies' positions in each sub-step.
+// Rows look at their bodies' positions in each half-step.
 void show_bodies(const BatchContext& batch) {
   RigidWorld& w = batch.w;
   for (const std::uint32_t slot : batch.members.joints) {
@@ -244,16 +246,16 @@ void solve_batch_as_rows(BatchContext& batch, const SolverSettings& settings, Ar
 
 // ---------------------------------------------------------------------------------------------------------------- a step
 
-// How the sub-steps of a step are.
-struct Substepping {
+// How the half-steps of a step are.
+struct HalfStepping {
   int count = 0;
   float h = 0.0f;  // s, of each
   float warm_scale = 0.0f;
 };
 
-Substepping plan_substeps(RigidWorld& w, float seconds, bool by_rows) {
-  Substepping plan;
-  plan.count = by_rows ? w.settings.substeps : kSubstepsPerSetting * w.settings.substeps;
+HalfStepping plan_half_steps(RigidWorld& w, float seconds, bool by_rows) {
+  HalfStepping plan;
+  plan.count = by_rows ? w.settings.substeps : kHalfStepsPerSubstep * w.settings.substeps;
   plan.h = seconds / float(plan.count);
   plan.warm_scale = w.settings.last_substep > 0.0f ? plan.h / w.settings.last_substep : 0.0f;
   // Parts of a step up to an impact may be as short as they like: what one of these leaves is mostly rounding.
@@ -263,26 +265,26 @@ Substepping plan_substeps(RigidWorld& w, float seconds, bool by_rows) {
   return plan;
 }
 
-ContactSettings contact_settings(const RigidWorld& w, float seconds, const Substepping& plan) {
-  const float h = plan.h, geometric_stiffness = length(w.settings.gravity);
+ContactSettings contact_settings(const RigidWorld& w, float seconds, const HalfStepping& plan) {
+  const float h = plan.h, gravity = length(w.settings.gravity);
   return {.substep = h,
           .step = seconds,
           .rate = min(kContactRate, 0.8f / h),
-          .give = kContactLeak * h / (1.0f + kContactLeak * h),
+          .compliance = kContactLeak * h / (1.0f + kContactLeak * h),
           .aging = kContactAging,
           .warm_scale = plan.warm_scale,
-          .up = geometric_stiffness > 0.0f ? (-1.0f / geometric_stiffness) * w.settings.gravity : Vec3{}};
+          .up = gravity > 0.0f ? (-1.0f / gravity) * w.settings.gravity : Vec3{}};
 }
-// Long sub-steps take back no more than the whole error and give way by less than the whole impulse.
+// Long half-steps take back no more than the whole error and give way by less than the whole impulse.
 JointSettings joint_settings(const RigidWorld& w, float h) {
-  const float give = kJointLeak * h / (1.0f + kJointLeak * h);
-  return {h, {min(kJointRate, 0.8f / h), 1.0f - give, give}, row_solver_of(w) == nullptr};
+  const float compliance = kJointLeak * h / (1.0f + kJointLeak * h);
+  return {h, {min(kJointRate, 0.8f / h), 1.0f - compliance, compliance}, row_solver_of(w) == nullptr};
 }
 
 // What is known of a batch before it is gathered.
 BatchContext describe_batch(RigidWorld& w, BatchScratch& scratch, const SolverKernels& kernels,
                             const SolveBatch& members, std::span<const std::uint32_t> local_index,
-                            float seconds, const Substepping& plan) {
+                            float seconds, const HalfStepping& plan) {
   BatchContext batch{.w = w,
                      .scratch = scratch,
                      .kernels = kernels,
@@ -400,7 +402,7 @@ void sum_up(SolveScratch& scratch) {
 void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& tasks,
                 const SolverKernels& kernels, float seconds) {
   const SolverSettings* const row_solver = row_solver_of(w);
-  const Substepping plan = plan_substeps(w, seconds, row_solver != nullptr);
+  const HalfStepping plan = plan_half_steps(w, seconds, row_solver != nullptr);
   begin_bodies(w, tasks);
   begin_scratch(scratch.together);
   const bool shared = may_share_batches(w, tasks);

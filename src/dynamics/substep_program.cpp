@@ -3,8 +3,8 @@
 
 #include "dynamics/program_builder.h"
 #include "rigid/solve/contact_stages.h"
-#include "rigid/solve/geometric_stiffness.h"
 #include "rigid/solve/energy_limiter.h"
+#include "rigid/solve/geometric_stiffness.h"
 
 namespace gyre {
 
@@ -12,7 +12,7 @@ namespace {
 
 using Simd = ArticulationKernels;
 
-// Once, before all sub-steps: free bodies move for the whole step; everything else is made ready where it stands.
+// Once, before all half-steps: free bodies move for the whole step; everything else is made ready where it stands.
 void add_preparation(ProgramBuilder& p) {
   p.free_bodies<move_free_bodies>();
   p.spring_systems<move_spring_systems>();
@@ -30,15 +30,15 @@ void add_preparation(ProgramBuilder& p) {
 
 // Where no joint was relaxed since, they are prepared in the same line, while their rows are in the cache.
 void add_relaxation_of_simd(ProgramBuilder& p, bool are_prepared, bool last) {
-  if (are_prepared && !last) p.simd_articulations<&Simd::end_substep>();
+  if (are_prepared && !last) p.simd_articulations<&Simd::end_half_step>();
   if (are_prepared && last) p.simd_articulations<&Simd::end_step>();
-  if (!are_prepared && !last) p.simd_articulations<&Simd::prepare, &Simd::end_substep>();
+  if (!are_prepared && !last) p.simd_articulations<&Simd::prepare, &Simd::end_half_step>();
   if (!are_prepared && last) p.simd_articulations<&Simd::prepare, &Simd::end_step>();
 }
 
-// One sub-step: forces, warm start, joints, contacts, positions, relaxation. What a batch does not have is no line. In a fused batch all
-// that is between the contacts of two sub-steps is one line, run by run (dynamics/fused_stages.h).
-void add_substep(ProgramBuilder& p, bool first, bool last) {
+// One half-step: forces, warm start, joints, contacts, positions, relaxation. What a batch does not have is no line. In a fused batch all
+// that is between the contacts of two half-steps is one line, run by run (dynamics/fused_stages.h).
+void add_half_step(ProgramBuilder& p, bool first, bool last) {
   const bool fused = p.is_fused(), has_swept = p.has_swept_joints(), has_joints = p.has_joints();
   const bool warm_start_with_forces = !first && p.can_warm_start_with_forces();
   if (fused && first) {
@@ -48,7 +48,7 @@ void add_substep(ProgramBuilder& p, bool first, bool last) {
     p.fused<&FusedRun::add_first_contact_change, &FusedRun::solve_joints_first>();
   }
   if (!fused) {
-    // Forces, and bounces of what meets in this sub-step.
+    // Forces, and bounces of what meets in this half-step.
     p.field_bodies<record_field_velocities>();
     p.impacts<record_contact_approach>();
     p.coupled_spring_systems<move_coupled_spring_systems>();
@@ -57,17 +57,17 @@ void add_substep(ProgramBuilder& p, bool first, bool last) {
     if (!warm_start_with_forces) p.bodies<apply_forces>();
     p.impacts<apply_contact_restitution>();
     // Warm start. Joints come before contacts, so that what joints give counts as none of the velocity change by contacts.
-    p.all_joints<compute_rotation_bias>();
+    p.all_joints<compute_second_order_bias>();
     p.joint_islands<begin_warm_start_energy>();
     p.articulations<warm_start_articulation>();
-    if (first) p.simd_articulations<&Simd::compute_bias>();  // later: as the sub-step before ended
+    if (first) p.simd_articulations<&Simd::compute_bias>();  // later: as the half-step before ended
     p.joints<warm_start_joints>();
     p.joint_islands<limit_energy_gain>();
     if (!first && !warm_start_with_forces) p.measured_bodies<warm_start_bodies>();
     if (first) p.measured_bodies<start_contact_change>();
     if (first) p.contacts<warm_start_contacts>();
     if (first) p.measured_bodies<add_contact_change>();
-    // Fields, after what contacts and joints gave in the last sub-step: a stream pulls at what really moves.
+    // Fields, after what contacts and joints gave in the last half-step: a stream pulls at what really moves.
     p.field_bodies<apply_field_forces>();
     if (p.has_fields()) p.measured_bodies<start_contact_change>();
     // Joints.
@@ -78,7 +78,7 @@ void add_substep(ProgramBuilder& p, bool first, bool last) {
     p.joint_islands<limit_energy_gain>();
     if (has_joints) p.measured_bodies<start_contact_change>();
   }
-  // Contacts, or all constraints as rows. Islands at rest are solved directly in the first sub-step, which gives them the loads of this
+  // Contacts, or all constraints as rows. Islands at rest are solved directly in the first half-step, which gives them the loads of this
   // step, and in the last, which leaves them at rest: in between nothing is left to change.
   if (first) p.row_islands<solve_row_islands_first>();
   if (!first) p.row_islands<solve_row_islands>();
@@ -103,7 +103,7 @@ void add_substep(ProgramBuilder& p, bool first, bool last) {
   // Positions, and bounces of what had to be set down first.
   if (has_joints) p.bodies<integrate_positions>();
   if (!has_joints) p.bodies<add_contact_change_and_integrate>();
-  p.spinning_bodies<integrate_spinners>();
+  p.spinning_bodies<integrate_fast_spinning>();
   p.impacts<apply_delayed_contact_restitution>();
   // Relaxation of joints where bodies are now: no velocity stays that came from taking errors back.
   p.stiffened_bodies<stiffen_bodies>();
@@ -119,7 +119,7 @@ void add_substep(ProgramBuilder& p, bool first, bool last) {
   p.row_islands<sum_row_joints>();
 }
 
-// Once, after all sub-steps: contacts without their springs, so that no velocity that came from these stays under load; overlap pushed
+// Once, after all half-steps: contacts without their springs, so that no velocity that came from these stays under load; overlap pushed
 // apart without velocity; and what was gathered goes back to where it is stored.
 void add_completion(ProgramBuilder& p) {
   p.contacts<relax_contacts>();
@@ -151,11 +151,11 @@ std::size_t count_measured(const BatchContext& batch) {
 }  // namespace
 
 void run_substeps(BatchContext& batch, Arena& arena, TaskSystem& tasks) {
-  const int substeps = batch.motion.motions.count;
+  const int half_steps = batch.motion.motions.count;
   batch.motion.measured_blocks = count_blocks(int(count_measured(batch)), batch.kernels.width);
-  ProgramBuilder program(batch, substeps, arena);
+  ProgramBuilder program(batch, half_steps, arena);
   add_preparation(program);
-  for (int i = 0; i < substeps; ++i) add_substep(program, i == 0, i + 1 == substeps);
+  for (int i = 0; i < half_steps; ++i) add_half_step(program, i == 0, i + 1 == half_steps);
   add_completion(program);
   run_program(tasks, program.stages());
 }

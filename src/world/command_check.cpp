@@ -90,7 +90,8 @@ Error check_mass_overrides(const BodyDef& def) {
   if (def.center_of_mass) {
     Error e = check_finite("body.center_of_mass", *def.center_of_mass);
     const float farthest = largest(absolute(*def.center_of_mass));
-    if (e.code == ErrorCode::none) e = check_range("body.center_of_mass", farthest, 0.0f, float(kMaxPosition));
+    if (e.code == ErrorCode::none)
+      e = check_range("body.center_of_mass", farthest, 0.0f, float(kMaxPosition));
     if (e.code != ErrorCode::none) return e;
   }
   if (def.inertia) return check_inertia(*def.inertia);
@@ -191,7 +192,8 @@ Error check_drive(const PoseDrive& d) {
 Error check_path(const JointDef& d) {
   const std::size_t least = d.path_closed ? 3 : 2;
   if (d.path.size() < least || d.path.size() > std::size_t(kMaxPathPoints))
-    return refuse("joint.path has %d points; it must have %d to %d", int(d.path.size()), int(least), kMaxPathPoints);
+    return refuse("joint.path has %d points; it must have %d to %d", int(d.path.size()), int(least),
+                  kMaxPathPoints);
   if (d.path_orientation > PathOrientation::following)
     return refuse("joint.path_orientation is %d; there is no such", int(d.path_orientation));
   for (std::size_t i = 0; i < d.path.size(); ++i) {

@@ -3,8 +3,8 @@
 
 #include "base/float_mode.h"
 #include "collision/broadphase/fat_box.h"
-#include "rigid/sleep/island.h"
 #include "dynamics/island_batches.h"
+#include "rigid/sleep/island.h"
 #include "world/world_state.h"
 
 #include <vector>
@@ -238,7 +238,8 @@ Error StateValidator::groups_of_batch(const BatchScratch& solve) const {
     return pairs.empty() ||
            validate_coloring(pairs, std::uint32_t(colors.masks.size()), {}, kColoringOptions, colors);
   };
-  if (!fits(solve.contacts.pairs, solve.contact_colors)) return broken("a group of contacts has a moving body twice");
+  if (!fits(solve.contacts.pairs, solve.contact_colors))
+    return broken("a group of contacts has a moving body twice");
   if (!fits(solve.joints.pairs, solve.joint_colors))
     return broken("a group of joints has a moving body twice");
   return {};
@@ -246,8 +247,8 @@ Error StateValidator::groups_of_batch(const BatchScratch& solve) const {
 
 // Whether the lists of all batches together are the slots for which acts(slot) holds, each once.
 template <class Acts>
-bool are_all(const IslandBatches& batches, std::span<const std::uint32_t> SolveBatch::*list, std::size_t slots,
-             const Acts& acts) {
+bool are_all(const IslandBatches& batches, std::span<const std::uint32_t> SolveBatch::*list,
+             std::size_t slots, const Acts& acts) {
   std::vector<std::uint8_t> listed(slots);
   for (const SolveBatch& batch : batches.batches) {
     for (std::size_t i = 0; i < (batch.*list).size(); ++i) {

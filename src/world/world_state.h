@@ -4,10 +4,10 @@
 
 #include "base/arena/arena.h"
 #include "base/profile/profile.h"
-#include "rigid/time/toi_stepping.h"
+#include "dynamics/solve_step.h"
 #include "rigid/rigid_step.h"
 #include "rigid/store/rigid_world.h"
-#include "dynamics/solve_step.h"
+#include "rigid/time/toi_stepping.h"
 #include "solver/kernels/solver_kernels.h"
 #include "task/task_system.h"
 #include "world/command.h"

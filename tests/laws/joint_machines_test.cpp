@@ -98,7 +98,8 @@ TEST(Spring, OfAnyStiffnessIsStable) {
         World world = make_world({.sleeping = false});
         const double rest = 1.0, geometric_stiffness = 0.01;
         const float moment = float(mass * 1e-2);
-        const BodyId body = world.add_body(point_body(mass, {moment, moment, moment}, {0, -rest - geometric_stiffness, 0}));
+        const BodyId body =
+            world.add_body(point_body(mass, {moment, moment, moment}, {0, -rest - geometric_stiffness, 0}));
         world.add_joint({.kind = JointKind::distance,
                          .b = body,
                          .length = float(rest),
@@ -109,7 +110,8 @@ TEST(Spring, OfAnyStiffnessIsStable) {
           return e.kinetic + e.elastic + e.potential;
         };
         const double start = energy();
-        const double scale = 0.5 * stiffness * geometric_stiffness * geometric_stiffness + mass * kGravity * geometric_stiffness;
+        const double scale = 0.5 * stiffness * geometric_stiffness * geometric_stiffness +
+                             mass * kGravity * geometric_stiffness;
         double most = start;
         for (int i = 0; i < 600; ++i) {
           world.step(kStep);

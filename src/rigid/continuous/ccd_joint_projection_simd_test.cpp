@@ -108,7 +108,8 @@ class ChainsFollow : public ::testing::Test {
     }
     detail.has_swing = true;
     world_.joints.details.push_back(detail);
-    for (const std::int32_t body : {a, a + 1}) make_joints_of(world_.bodies, std::uint32_t(body)).push_back(slot);
+    for (const std::int32_t body : {a, a + 1})
+      make_joints_of(world_.bodies, std::uint32_t(body)).push_back(slot);
   }
   void begin(std::size_t chains) {
     const std::size_t count = world_.bodies.motion.size();

@@ -5,8 +5,8 @@
 #include "base/arena/arena.h"
 #include "base/container/disjoint_sets.h"
 #include "rigid/batch/joint_constraints.h"
-#include "rigid/store/rigid_world.h"
 #include "rigid/batch/solve_batch.h"
+#include "rigid/store/rigid_world.h"
 #include "solver/contact/contact_block.h"
 #include "task/coloring.h"
 

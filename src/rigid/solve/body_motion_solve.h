@@ -18,9 +18,9 @@ struct BodyMotionSolve {
   void* blocks = nullptr;        // the same for the kernels,
   std::span<Vec3> pushes{};      // and how overlap turned them
   int measured_blocks = 0;       // the first: of these somebody asks for the velocity change by contacts
-  std::span<std::uint32_t> fast_spinning{};        // those whose rotation the kernels leave alone
+  std::span<std::uint32_t> fast_spinning{};         // those whose rotation the kernels leave alone
   std::span<std::uint32_t> fast_spinning_starts{};  // by block of moved bodies: its first; one more
-  std::span<std::uint32_t> free_bodies{};     // no constraint acts on them
+  std::span<std::uint32_t> free_bodies{};           // no constraint acts on them
   FieldSolve fields{};
   bool is_smooth = false;  // free bodies are moved by the schemes of rigid/integrate/smooth_schemes.h
   SmoothMotion smooth{};

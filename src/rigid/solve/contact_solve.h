@@ -2,8 +2,8 @@
 // at rest that are solved directly.
 #pragma once
 
-#include "rigid/rest/resting_trees.h"
 #include "rigid/rest/resting_structures.h"
+#include "rigid/rest/resting_trees.h"
 #include "rigid/solve/contact_lists.h"
 #include "rigid/solve/rolling_contacts.h"
 #include "solver/kernels/solver_kernels.h"

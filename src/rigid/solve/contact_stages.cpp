@@ -60,8 +60,8 @@ void restore_velocities(const ContactGroup& group, int begin, int end) {
 }  // namespace
 
 void prepare_contacts(const ContactSolve& s, int begin, int end) {
-  s.kernels.contacts.prepare(s.blocks, s.cold_blocks, begin, end, s.lists.constraints.data(), s.lists.order.data(),
-                             s.bodies, s.settings);
+  s.kernels.contacts.prepare(s.blocks, s.cold_blocks, begin, end, s.lists.constraints.data(),
+                             s.lists.order.data(), s.bodies, s.settings);
 }
 void finish_contacts(const ContactSolve& s, int begin, int end) {
   s.kernels.contacts.finish(s.blocks, begin, end, s.lists.constraints.data(), s.lists.order.data(),

@@ -29,7 +29,7 @@ struct JointIsland {
   std::int32_t carrier = kNoBody;  // what holds them, if that moves
   bool is_pushed = false;          // contacts or fields act on it between what joints do
   bool is_bounded = false;         // joints gave more than is borne before bodies move
-  double energy_gain = 0.0;             // J, in this sub-step, by what rows that do no work changed of velocities,
+  double energy_gain = 0.0;        // J, in this sub-step, by what rows that do no work changed of velocities,
   double before = 0.0;             // and what there was before they last did;
   DVec3 spin{};  // kg m^2/s: the angular momentum then, about the first body's centre of mass
 };

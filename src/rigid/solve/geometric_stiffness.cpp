@@ -36,7 +36,7 @@ std::span<const float> add_up_pulls(const JointSolve& solve, Arena& arena) {
       continue;
     }
     // As it will be begun with: some batches have scaled it by now, and others scale it in their lanes.
-    const bool is_scaled = !(solve.is_net && solve.ball_lanes[i] != 0);
+    const bool is_scaled = !(solve.all_iterative && solve.ball_lanes[i] != 0);
     const Vec3 impulse =
         is_scaled ? joint.linear_impulse : solve.lane_start.warm_scale * joint.linear_impulse;
     const Vec3 force = (1.0f / solve.settings.substep) * impulse;
@@ -58,7 +58,8 @@ std::span<const StiffenedBody> find_stiffened_bodies(const JointSolve& solve, Ar
     return square(solve.settings.substep) * pulls[place] * max(inverse.xx, max(inverse.yy, inverse.zz));
   };
   const auto is_stiffened = [&](std::uint32_t place) {
-    return unresolved(place) > kMaxGeometricStiffness && bodies.flags[solve.batch.bodies[place]].locked_angular == 0;
+    return unresolved(place) > kMaxGeometricStiffness &&
+           bodies.flags[solve.batch.bodies[place]].locked_angular == 0;
   };
   std::size_t count = 0;
   for (std::uint32_t place = 0; place < pulls.size(); ++place) count += is_stiffened(place) ? 1 : 0;
@@ -80,7 +81,8 @@ void disable_gyroscopic_torque(const JointSolve& solve, std::span<MovedBody> mov
   for (std::uint8_t& one : is_stiffened) one = 0;
   for (const StiffenedBody& body : solve.stiffened) is_stiffened[solve.local_index[body.body]] = 1;
   for (MovedBody& one : moved) {
-    if (one.body != kNoBody && is_stiffened[solve.local_index[std::size_t(one.body)]] != 0) one.isotropic = true;
+    if (one.body != kNoBody && is_stiffened[solve.local_index[std::size_t(one.body)]] != 0)
+      one.isotropic = true;
   }
 }
 

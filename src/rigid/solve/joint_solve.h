@@ -33,9 +33,9 @@ struct JointSolve {
   std::span<const std::uint32_t> local_index{};  // by body: its index in its batch
   JointSettings settings{};
   JointBodies bodies{};
-  std::span<JointEdge> edges{};           // of the batch's joints
+  std::span<JointEdge> edges{};          // of the batch's joints
   std::span<std::uint8_t> ball_lanes{};  // 1 for those that may be solved as ball joints side by side
-  bool is_net = false;     // all are known to be swept: those of ball_lanes are begun in their lanes
+  bool all_iterative = false;     // all are known to be swept: those of ball_lanes are begun in their lanes
   LaneStart lane_start{};  // of joints that are begun in lanes
   JointConstraints works{};
   Articulations linkages{};
@@ -60,7 +60,7 @@ struct JointGroup {
 
 // By index in the batch: 1 for those joints that are begun and finished in their lanes, and have no work.
 inline std::span<const std::uint8_t> prepared_in_simd(const JointSolve& s) {
-  return s.is_net ? s.ball_lanes : s.linkages.simd;
+  return s.all_iterative ? s.ball_lanes : s.linkages.simd;
 }
 
 }  // namespace gyre

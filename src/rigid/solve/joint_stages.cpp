@@ -71,7 +71,7 @@ void begin_ball_joints(const JointGroup& g, int begin, int end) {
   // Lanes without a joint join nothing.
   if (int(g.count) % balls.kernels.width != 0) clear_balls(balls.kernels, balls.blocks, balls.end - 1);
   const JointSolve& s = *g.solve;
-  const float warm_scale = s.is_net ? s.lane_start.warm_scale : 1.0f;
+  const float warm_scale = s.all_iterative ? s.lane_start.warm_scale : 1.0f;
   const auto turns = [&](std::int32_t body) {
     return body != kNoBody &&
            inertia_turns(s.w.bodies.masses[std::size_t(body)], s.w.bodies.flags[std::size_t(body)]);
@@ -99,10 +99,10 @@ void prepare_joints(const JointGroup& g, int begin, int end) {
     prepare_joint(joint, work, places, g.solve->bodies, g.solve->settings);
   });
 }
-void compute_rotation_bias(const JointGroup& g, int begin, int end) {
+void compute_second_order_bias(const JointGroup& g, int begin, int end) {
   if (g.ball_block >= 0) {
     const Balls balls = balls_of(g, begin, end);
-    return balls.kernels.bend(balls.blocks, balls.begin, balls.end, balls.settings);
+    return balls.kernels.second_order_bias(balls.blocks, balls.begin, balls.end, balls.settings);
   }
   for_joints(g, begin, end, [&](JointRecord& joint, JointConstraint& work, const JointOffsets&) {
     update_joint_bias(joint, work, g.solve->bodies, g.solve->settings);

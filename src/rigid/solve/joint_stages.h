@@ -13,7 +13,7 @@ constexpr int kJointsPerBlock = 16;  // whole blocks of lanes at every width
 // Joints of one colour: where they are, soft rows, and no speed along rigid rows.
 void prepare_joints(const JointGroup& group, int begin, int end);
 // How joints turn within the sub-step.
-void compute_rotation_bias(const JointGroup& group, int begin, int end);
+void compute_second_order_bias(const JointGroup& group, int begin, int end);
 void warm_start_joints(const JointGroup& group, int begin, int end);
 void solve_joints(const JointGroup& group, int begin, int end);
 // Ball joints are prepared here, while they are in the cache: nothing that one colour gives changes where the next one stands, and no

@@ -77,16 +77,19 @@ void integrate_positions_in_lanes(const BodyMotionSolve& s, int begin, int end, 
 }
 
 bool has_fast_spinning(const BodyMotionSolve& s, int begin, int end) {
-  return !s.fast_spinning.empty() && s.fast_spinning_starts[std::size_t(begin)] != s.fast_spinning_starts[std::size_t(end)];
+  return !s.fast_spinning.empty() &&
+         s.fast_spinning_starts[std::size_t(begin)] != s.fast_spinning_starts[std::size_t(end)];
 }
-void integrate_spinners_of_blocks(const BodyMotionSolve& s, int begin, int end) {
+void integrate_fast_spinning_of_blocks(const BodyMotionSolve& s, int begin, int end) {
   if (!has_fast_spinning(s, begin, end)) return;
-  const std::uint32_t first = s.fast_spinning_starts[std::size_t(begin)], last = s.fast_spinning_starts[std::size_t(end)];
-  rotate_exactly(s.w.bodies, s.fast_spinning.subspan(first, last - first), s.motions.substep, s.kernels.turns);
+  const std::uint32_t first = s.fast_spinning_starts[std::size_t(begin)],
+                      last = s.fast_spinning_starts[std::size_t(end)];
+  rotate_exactly(s.w.bodies, s.fast_spinning.subspan(first, last - first), s.motions.substep,
+                 s.kernels.turns);
 }
-void integrate_spinners(const BodyMotionSolve& s, int begin, int end) {
+void integrate_fast_spinning(const BodyMotionSolve& s, int begin, int end) {
   rotate_exactly(s.w.bodies, block_of(s.fast_spinning, begin, end, kSpinnersPerBlock), s.motions.substep,
-             s.kernels.turns);
+                 s.kernels.turns);
 }
 
 void begin_projection(const BodyMotionSolve& s, int begin, int end) {
@@ -97,11 +100,12 @@ void end_projection(const BodyMotionSolve& s, int begin, int end) {
 }
 
 void move_free_bodies(const BodyMotionSolve& s, int begin, int end) {
-  integrate_free_bodies(s.w.bodies, block_of(s.free_bodies, begin, end, kBodiesPerBlock), s.motions, s.kernels.turns);
+  integrate_free_bodies(s.w.bodies, block_of(s.free_bodies, begin, end, kBodiesPerBlock), s.motions,
+                        s.kernels.turns);
 }
 void finish_orientations(const BodyMotionSolve& s, int begin, int end) {
   apply_rotations(s.w.bodies, block_of(s.moved, begin, end, kBodiesPerBlock),
-               block_of(s.pushes, begin, end, kBodiesPerBlock), s.kernels.turns);
+                  block_of(s.pushes, begin, end, kBodiesPerBlock), s.kernels.turns);
 }
 
 }  // namespace gyre

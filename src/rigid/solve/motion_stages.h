@@ -1,7 +1,7 @@
 // The stages that move bodies: forces, positions and rotations. Each works on blocks [begin, end) of what it names; blocks of bodies are
 // those that constraints act on.
 //
-// The velocity change by contacts is measured in each sub-step, from where it is started to where it is added up: the next sub-step
+// The velocity change by contacts is measured in each half-step, from where it is started to where it is added up: the next one
 // begins with it (a warm start by bodies, not by contacts). Nobody asks for it in blocks that are not measured.
 #pragma once
 
@@ -10,7 +10,7 @@
 namespace gyre {
 
 void prepare_bodies(const BodyMotionSolve& s, int begin, int end);
-// By gravity, forces and damping; and, with the warm start, by what contacts changed in the last sub-step. Starts to measure.
+// By gravity, forces and damping; and, with the warm start, by what contacts changed in the last half-step. Starts to measure.
 void apply_forces(const BodyMotionSolve& s, int begin, int end);
 void apply_forces_and_warm_start(const BodyMotionSolve& s, int begin, int end);
 void warm_start_bodies(const BodyMotionSolve& s, int begin, int end);
@@ -29,11 +29,11 @@ void add_contact_change_in_lanes(const BodyMotionSolve& s, int begin, int end, c
 void integrate_positions_in_lanes(const BodyMotionSolve& s, int begin, int end, const LaneVelocities& lanes);
 
 // Rotations that are fast or bound to axes, which the above leave alone: of blocks of bodies, and whether there are any.
-void integrate_spinners_of_blocks(const BodyMotionSolve& s, int begin, int end);
+void integrate_fast_spinning_of_blocks(const BodyMotionSolve& s, int begin, int end);
 bool has_fast_spinning(const BodyMotionSolve& s, int begin, int end);
 // And in blocks of kSpinnersPerBlock of them.
 constexpr int kSpinnersPerBlock = 8;
-void integrate_spinners(const BodyMotionSolve& s, int begin, int end);
+void integrate_fast_spinning(const BodyMotionSolve& s, int begin, int end);
 
 // Velocities are saved, overlap is pushed apart by displacements in their place, and velocities are restored.
 void begin_projection(const BodyMotionSolve& s, int begin, int end);

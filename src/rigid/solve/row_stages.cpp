@@ -59,14 +59,14 @@ double largest_alone(std::span<const Row> rows, std::span<const RowBody> bodies)
   double most = 0.0;
   for (const Row& row : rows) {
     if (!(row.diagonal > 0.0)) continue;
-    const double w = row_speed(row, bodies) - row.wanted;
+    const double w = row_speed(row, bodies) - row.target_speed;
     most = max(most, (w < 0.0 ? -w : w) / row.diagonal);
   }
   return most;
 }
 
 void iterate_island(const RowSolve& s, const IslandRows& island, NumberRoom room, double scale,
-                  RowStats& report) {
+                    RowStats& report) {
   const std::span<Row> rows = island.rows();
   const std::span<RowBody> bodies = island.bodies();
   warm_start_rows(rows, bodies);
@@ -95,7 +95,7 @@ bool solve_island_directly(const RowSolve& s, const IslandRows& island, NumberRo
   RowWorkerRoom& own = island.room;
   fill_delassus(rows, island.bodies().size(), a, own.first, own.next);
   for (std::size_t i = 0; i < n; ++i) {
-    q[i] = row_speed(rows[i], island.bodies()) - rows[i].wanted;
+    q[i] = row_speed(rows[i], island.bodies()) - rows[i].target_speed;
     x[i] = rows[i].impulse;
     own.limits[i] = rows[i].limits;
   }
@@ -313,7 +313,8 @@ void sum_row_joints(const RowSolve& s, int begin, int end) {
   const JointSolve& joints = s.joints;
   for (int i = begin; i < end; ++i) {
     for (const std::uint32_t j : s.islands.islands[std::size_t(i)].joints)
-      accumulate_joint_impulses(joints.w.joints.records[joints.batch.joints[j]], joints.works.work[j], joints.bodies);
+      accumulate_joint_impulses(joints.w.joints.records[joints.batch.joints[j]], joints.works.work[j],
+                                joints.bodies);
   }
 }
 

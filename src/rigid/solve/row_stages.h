@@ -44,7 +44,7 @@ struct RowSolve {
 RowSolve begin_row_solve(const ContactSolve& contacts, const JointSolve& joints,
                          const SolverSettings& settings, std::size_t workers, Arena& arena);
 
-// Stages, whose blocks are islands. In the first sub-step impulses are those of the last step, scaled.
+// Stages, whose blocks are islands. In the first half-step impulses are those of the last step, scaled.
 void solve_row_islands_first(const RowSolve& s, int begin, int end, int worker);
 void solve_row_islands(const RowSolve& s, int begin, int end, int worker);
 void prepare_row_joints(const RowSolve& s, int begin, int end);

@@ -3,8 +3,8 @@
 // once its own impulses do, so its neighbours change no bit of it.
 #pragma once
 
-#include "solver/articulation/linkage_place.h"
 #include "solver/articulation/articulation_limit_rows.h"
+#include "solver/articulation/linkage_place.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {

@@ -5,11 +5,11 @@
 #include "base/arena/arena.h"
 #include "math/rotation.h"
 #include "math/trig.h"
-#include "solver/kernels/solver_kernels.h"
-#include "solver/articulation/lane_transfer.h"
 #include "solver/articulation/articulation.h"
 #include "solver/articulation/articulation_drives.h"
 #include "solver/articulation/articulation_limits.h"
+#include "solver/articulation/lane_transfer.h"
+#include "solver/kernels/solver_kernels.h"
 
 #include <gtest/gtest.h>
 
@@ -268,7 +268,8 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, const ArticulationKer
                                const Between& between) {
   const ArticulationSolve solve = crowd.solve();
   const LaneArrays arrays{crowd.motion.data(), crowd.inertia.data(), crowd.orientation.data()};
-  const LaneSettings settings{kSubstep, kSettings.softness.bias_rate, solve.compliance, add_geometric_stiffness};
+  const LaneSettings settings{kSubstep, kSettings.softness.bias_rate, solve.compliance,
+                              add_geometric_stiffness};
   const LaneStart start{.substep = kSubstep, .softness = kSettings.softness};
   for (std::size_t i = 0; i < kJoints; ++i)
     ASSERT_TRUE(fits_lane(crowd.records[i], crowd.detail_of(i), start, shape.nodes[i]));
@@ -325,7 +326,7 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, const ArticulationKer
       if (part == 1) {
         if (between.ends == Between::Ends::passes) {
           kernels.prepare(bundle, arrays, settings);
-          kernels.end_substep(bundle, arrays, settings);
+          kernels.end_half_step(bundle, arrays, settings);
         }
         if (between.ends == Between::Ends::finishes) kernels.end_step(bundle, arrays, settings);
         for (int copy = first + (first + 1) % 2; copy < first + used; copy += 2) {

@@ -86,7 +86,7 @@ struct MotionKernels {
                            bool watched);
   void (*start_contact_change_in_lanes)(void* blocks, int begin, int end, const LaneVelocities& lanes);
   void (*add_contact_change_in_lanes)(void* blocks, int begin, int end, const BodyMotion* motion,
-                        const LaneVelocities& lanes);
+                                      const LaneVelocities& lanes);
   // What contacts gave has been noted by now.
   void (*advance_in_lanes)(void* blocks, int begin, int end, MotionArrays arrays, const LaneVelocities& lanes,
                            float substep);

@@ -287,7 +287,8 @@ void add_contact_change(void* memory, int begin, int end, const BodyMotion* moti
   note_blocks<W>(memory, begin, end, motion, [](int, const MotionW<W>&) {});
 }
 template <int W>
-void add_contact_change_in_lanes(void* memory, int begin, int end, const BodyMotion* motion, const LaneVelocities& lanes) {
+void add_contact_change_in_lanes(void* memory, int begin, int end, const BodyMotion* motion,
+                                 const LaneVelocities& lanes) {
   const auto* blocks = static_cast<const MotionBlock<W>*>(memory);
   note_blocks<W>(memory, begin, end, motion, [&](int n, const MotionW<W>& m) {
     InLanes<W>{lanes}.template store<6>(blocks[n], n, m);
