@@ -235,7 +235,7 @@ inline void solve_one_by_one(Crowd& crowd, const Shape& shape) {
       node.count = int(shape.nodes[std::size_t(i)].rows);
     }
     Articulation articulation{nodes, bodies, couplings, shape.plan, values, room, vector, true};
-    std::vector<WideLimitAxis> axes;
+    std::vector<DrivenAxis> axes;
     for (std::uint32_t i = 0; crowd.driven == Driven::motors && i < kJoints; ++i) {
       if (kMembers[i].kind != JointKind::hinge) continue;
       axes.push_back({i, &crowd.work[nodes[i].work].axes[0]});
