@@ -1,5 +1,5 @@
-// What a batch needs while it is solved: the contexts of contacts, joints and bodies, which `rigid` works on, and what only the program of
-// the batch asks for.
+// The context of a batch: those of contacts, joints and bodies, which the stages of `rigid` work on, and the data that only the program
+// of the batch needs.
 #pragma once
 
 #include "dynamics/fused_stages.h"

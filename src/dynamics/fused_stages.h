@@ -1,10 +1,10 @@
-// Stages of articulations side by side and of the bodies that they push, fused: what is between the contacts of one half-step and those of
-// the next asks after no others, so it is done run by run, while all that belongs to a run is in the cache. Stage by stage each
-// articulation would come from memory several times a half-step: all together are more than a core's cache holds
-// (docs/decisions/bundle-runs.md). What is fused, and in which order, stands in dynamics/substep_program.cpp.
+// Fused stages: all that happens to an articulation bundle and its bodies between two sets of contacts is done in one line, run by run.
+// Nothing else acts there in a fused batch, and the data of a run stays in the cache. Stage by stage each articulation would come from
+// memory several times a half-step, for all of them together are larger than a core's cache (docs/decisions/bundle-runs.md).
+// dynamics/substep_program.cpp says which stages are fused, and in which order.
 //
-// In: a batch whose articulations are laid out. Out: the order in which its bodies are moved, and what is done to a run. Every number is what
-// the stages of rigid/solve would give one after the other.
+// In: a batch whose articulations are laid out. Out: the order in which its bodies are moved, and the parts of fused stages. Every number is
+// the one that the stages of rigid/solve give one after the other.
 #pragma once
 
 #include "rigid/solve/body_motion_solve.h"

@@ -1,9 +1,9 @@
-// Parts the work of a step into batches that are solved one after the other: each holds whole islands, so no body that moves
-// is in two of them, and what a batch needs while it is solved (contacts side by side, colours, trees) is memory that the
-// next one uses again. A batch is small enough to stay in a core's cache.
+// Divides the work of a step into batches of whole islands, so no body that moves is in two batches. Batches are solved one after the
+// other, and the memory of one (contacts side by side, colours, trees) serves the next. A batch is small enough to stay in a core's cache.
 //
-// In: contacts, joints and bodies that are awake. Out: lists of them by batch, each ascending. Which batch an island is in
-// never changes a bit of it.
+// docs/decisions/memory.md has the measurements.
+// In: contacts, joints and bodies that are awake. Out: lists of them by batch, each ascending. The batch of an island never changes a bit
+// of its result.
 #pragma once
 
 #include "base/arena/arena.h"

@@ -1,5 +1,5 @@
-// Builds the program of a batch (task/program.h) line by line: a line is a stage, which `rigid` offers as a function of a context and of
-// blocks [begin, end), over all blocks of what it names. What a batch does not have is no line.
+// Builds the program of a batch (task/program.h) line by line. A line is a stage: a function of a context and of blocks [begin, end), for all
+// blocks of one kind. A kind of which the batch has none gets no line.
 #pragma once
 
 #include "base/check.h"

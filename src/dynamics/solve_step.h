@@ -1,6 +1,6 @@
-// Solves what is awake in one step: batches of islands (dynamics/island_batches.h), each gathered, coloured, laid out and prepared once for
-// all its sub-steps, which are a program (dynamics/substep_program.h). Small batches are solved in parallel, each by one worker; large ones
-// one after the other by all workers. docs/step.md has the stages.
+// Solves one step of all awake bodies. Each batch of islands (dynamics/island_batches.h) is gathered, coloured, laid out and prepared once
+// for all its sub-steps, which are a program (dynamics/substep_program.h). Small batches are solved in parallel, each by one worker; large
+// ones one after the other by all workers. docs/step.md has the stages.
 #pragma once
 
 #include "base/arena/arena.h"

@@ -1,11 +1,11 @@
-// Which worker begins with which bodies and contacts of a batch. What one core has written comes to another slower than it is worked
-// on, so where contacts are solved and bodies are moved, which is done many times in a step, the same bodies go to the same worker, and
-// contacts to the worker that has their second body.
+// Says which worker begins with which bodies and contacts of a batch. Data that one core has written comes slowly to another. Contacts
+// are solved and bodies are moved many times in a step, so the same bodies go to the same worker, and contacts to the worker of their
+// second body.
 //
-// Bodies are cut by their numbers, not by where they are: a core fetches ahead what lies behind in memory, and so takes it from the
-// other wherever it comes to an end. Cut across space, bodies of both lie side by side everywhere.
+// Bodies are divided by their numbers, not by their positions: a core fetches ahead the memory behind its own, and takes it from the
+// other core wherever the two meet. Divided by position, they would meet everywhere.
 //
-// In: the pairs of bodies in contact. Out: for each body the number of a worker. Only the time that a step takes depends on it.
+// In: the pairs of bodies in contact. Out: for each body the number of a worker. Only the time of a step depends on it.
 #pragma once
 
 #include "base/arena/arena.h"
