@@ -8,7 +8,7 @@
 //
 // tools/draw_broad_phases.py makes the chart and the table of docs/broad_phases.md of what this prints as JSON. A run whose
 // next smaller one took too long a step is left out and says so.
-#include "collision/broadphase.h"
+#include "collision/broadphase/broadphase.h"
 
 #include <benchmark/benchmark.h>
 

@@ -2,7 +2,7 @@
 // predicted and real poses: the Rice code of pose tracks, DEFLATE, Zstandard, and an adaptive binary range coder. For
 // docs/decisions/track-coding.md.
 // Usage: track_coding [SCENE...]   without a scene: a thousand boxes that fall into a pit
-#include "io/pose_codec.h"
+#include "io/track/pose_codec.h"
 #include "scene/scene_reader.h"
 #include "scene/scene_runner.h"
 

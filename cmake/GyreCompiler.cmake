@@ -3,7 +3,8 @@
 #   gyre_target_defaults(target)  language level, warnings, floating point: everything of ours
 #   gyre_core_flags(target)       the core library alone: no exceptions, no RTTI
 #   gyre_kernel_flags()           per-file instruction sets of the SIMD kernels
-#   gyre_unity_folders(target sources)  what CMAKE_UNITY_BUILD compiles at once
+#   gyre_unity_rooms(target sources)  what CMAKE_UNITY_BUILD compiles at once
+#   gyre_room_of(source result)  the room of a source, as one word
 
 set(gyre_gnu_like OFF)
 if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
@@ -156,9 +157,18 @@ function(gyre_kernel_flags sources_variable)
   set(${sources_variable} ${kept} PARENT_SCOPE)
 endfunction()
 
-# With CMAKE_UNITY_BUILD a folder is one unit: headers, most of the work, are then read once by folder. So names without linkage are
-# unique within their folder. Kernels stay apart, each with its flags.
-function(gyre_unity_folders target sources)
+# src/geometry/query/cast.cpp stands in the room geometry_query, scene/schema.cpp in scene.
+function(gyre_room_of source result)
+  file(RELATIVE_PATH room ${PROJECT_SOURCE_DIR} "${source}")
+  get_filename_component(room "${room}" DIRECTORY)
+  string(REGEX REPLACE "^src/" "" room "${room}")
+  string(REPLACE "/" "_" room "${room}")
+  set(${result} "${room}" PARENT_SCOPE)
+endfunction()
+
+# With CMAKE_UNITY_BUILD a room (a folder without its sub-folders) is one unit: its headers, most of the work, are read once. So names
+# without linkage are unique within their room. Kernels stay apart, each with its flags.
+function(gyre_unity_rooms target sources)
   set(unity OFF)
   if(CMAKE_UNITY_BUILD)
     set(unity ON)
@@ -166,9 +176,8 @@ function(gyre_unity_folders target sources)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${unity} UNITY_BUILD_MODE GROUP)
   foreach(source IN LISTS sources)
     if(NOT source MATCHES "_kernels_[a-z0-9]+\\.cpp$")
-      get_filename_component(folder "${source}" DIRECTORY)
-      get_filename_component(folder "${folder}" NAME)
-      set_source_files_properties("${source}" PROPERTIES UNITY_GROUP ${folder})
+      gyre_room_of("${source}" room)
+      set_source_files_properties("${source}" PROPERTIES UNITY_GROUP ${room})
     endif()
   endforeach()
   if(unity AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")

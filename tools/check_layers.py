@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Fails on an include that points upward between the folders, on a cycle, and on a standard header that public headers
-or any headers must not include.
+"""Fails on an include that points upward between layers or between the rooms of a layer, on a cycle, on a room that has grown too
+large to be read, and on a standard header that public headers or any headers must not include.
 
-The table below is the one in docs/architecture.md. A folder may include itself, the folders listed, and all that those may
-include. Value headers of include/gyre may be included everywhere; the others only from `world` upward.
+A layer is a folder of src/, a room a folder of a layer. The tables below are those in docs/architecture.md. A layer may include
+itself, the layers listed, and all that those may include; a room likewise among the rooms of its layer. Value headers of
+include/gyre may be included everywhere; the others only from `world` upward.
 """
 
 import re
@@ -27,6 +28,68 @@ LAYERS = {
     "io": ["world"],
     "debug": ["world"],
 }
+# The rooms of each layer that has any, and which rooms of the same layer each includes; "" is the layer's own folder.
+ROOMS = {
+    "base": {
+        "": [],
+        "memory": [""],
+        "container": ["memory"],
+        "arena": ["container"],
+        "profile": ["container"],
+    },
+    "geometry": {
+        "tree": [],
+        "shape": ["tree"],
+        "distance": ["shape"],
+        "query": ["distance"],
+        "manifold": ["distance"],
+        "manifold_mesh": ["manifold"],
+        "mass": ["query"],
+        "bounds": ["distance"],
+        "decomposition": ["mass"],
+        "testing": ["manifold_mesh", "query", "mass"],
+    },
+    "collision": {
+        "broadphase": [],
+        "contact": ["broadphase"],
+        "continuous": ["contact"],
+        "query": ["contact"],
+    },
+    "solver": {
+        "core": [],
+        "motion": ["core"],
+        "joint": ["core"],
+        "articulation": ["joint"],
+        "contact": ["motion", "articulation"],
+        "rest": ["contact"],
+        "rows": ["contact"],
+        "kernels": ["contact"],
+    },
+    "rigid": {
+        "store": [],
+        "sleep": ["store"],
+        "batch": ["store"],
+        "field": ["store"],
+        "integrate": ["batch", "field"],
+        "rest": ["integrate"],
+        "articulation": ["batch"],
+        "solve": ["rest", "articulation"],
+        "": ["sleep"],
+        "continuous": ["", "articulation"],
+        "time": ["solve"],
+    },
+    "io": {
+        "codec": [],
+        "snapshot": ["codec"],
+        "chunk": ["snapshot"],
+        "track": ["chunk"],
+        "recording": ["track"],
+    },
+}
+# Tests and what only they include may use any room of their layer.
+TESTS = re.compile(r"_test(_\w+)?\.(h|cpp)$")
+# Files, tests among them, that may lie in one folder: more than these nobody reads as a list.
+ROOM_LIMIT = 40
 VALUE_HEADERS = {"ids", "math", "result", "geometry", "bounds", "decomposition", "defs", "events", "fields", "memory"}
 SEES_WHOLE_API = {"world", "io", "debug"}
 
@@ -49,28 +112,28 @@ BANNED_IN_HEADERS = {"iostream", "functional", "regex"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)
 
 
-def closure(folder):
+def closure(folder, table):
     allowed = {folder}
-    for lower in LAYERS[folder]:
-        allowed |= closure(lower)
+    for lower in table[folder]:
+        allowed |= closure(lower, table)
     return allowed
 
 
-def check_table():
-    """The table itself must be a graph without cycles over known folders."""
+def check_table(table):
+    """A table itself must be a graph without cycles over known folders."""
     done = set()
 
     def visit(folder, path):
         if folder in path:
             sys.exit("check_layers: the table has a cycle: " + " -> ".join(path + [folder]))
-        if folder not in LAYERS:
+        if folder not in table:
             sys.exit(f"check_layers: '{folder}' (below {path[-1]}) is not in the table")
         if folder not in done:
-            for lower in LAYERS[folder]:
+            for lower in table[folder]:
                 visit(lower, path + [folder])
             done.add(folder)
 
-    for folder in LAYERS:
+    for folder in table:
         visit(folder, [])
 
 
@@ -80,6 +143,28 @@ def folder_of(path):
     if parts[0] in ("src", "include"):
         return parts[0], (parts[1] if len(parts) > 2 else "")
     return parts[0], parts[0]
+
+
+def room_of(path):
+    """'distance' of src/geometry/distance/gjk.h, '' of src/world/step.cpp."""
+    return "/".join(path.relative_to(ROOT).parts[2:-1])
+
+
+def check_rooms():
+    """Every file of a layer with rooms stands in one of them, and no folder is too full."""
+    problems = []
+    files = {}
+    for path in sorted((ROOT / "src").rglob("*")):
+        if path.suffix not in (".h", ".cpp") or folder_of(path)[1] not in LAYERS:
+            continue
+        files[path.parent] = files.get(path.parent, 0) + 1
+        layer = folder_of(path)[1]
+        if room_of(path) not in ROOMS.get(layer, {"": []}):
+            problems.append(f"{path.relative_to(ROOT)}: its room is not in the table of rooms of '{layer}'")
+    for folder, count in files.items():
+        if count > ROOM_LIMIT:
+            problems.append(f"{folder.relative_to(ROOT)}: {count} files, more than {ROOM_LIMIT}: make rooms")
+    return problems
 
 
 def resolve(path, kind, name):
@@ -125,8 +210,12 @@ def check_include(path, kind, name):
             return None
         if to_top != "src":
             return "the core library includes nothing outside src/ and include/"
-        if to_folder not in closure(folder):
+        if to_folder not in closure(folder, LAYERS):
             return f"'{folder}' must not know '{to_folder}'"
+        if to_folder == folder and folder in ROOMS and not TESTS.search(path.name):
+            room, to_room = room_of(path), room_of(target)
+            if room in ROOMS[folder] and to_room not in closure(room, ROOMS[folder]):
+                return f"'{folder}/{room}' must not know '{folder}/{to_room}'"
         return None
     if to_top not in OUTER[top]:
         return f"'{top}' must not include '{to_top}'"
@@ -158,8 +247,12 @@ def find_cycle(graph):
 
 def main():
     sys.setrecursionlimit(10000)
-    check_table()
-    problems = []
+    check_table(LAYERS)
+    for layer, rooms in ROOMS.items():
+        if layer not in LAYERS:
+            sys.exit(f"check_layers: '{layer}' has rooms but is not in the table of layers")
+        check_table(rooms)
+    problems = check_rooms()
     graph = {}
     count = 0
     for top in ["include", "src", *OUTER]:

@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parent.parent
 
 CODE_WORDS = [
     (r"\bstd::(sort|nth_element|partial_sort|partial_sort_copy|make_heap|push_heap|pop_heap|sort_heap|priority_queue)\b",
-     "the order of equal elements differs between standard libraries; use base/sort"),
+     "the order of equal elements differs between standard libraries; use base/container/sort"),
     (r"\bstd::(sin|cos|tan|asin|acos|atan|atan2|sinh|cosh|tanh|asinh|acosh|atanh|exp|exp2|expm1|pow|log|log2|log10|log1p|cbrt"
      r"|hypot|erf|erfc|tgamma|lgamma)f?\s*\(",
      "the last bit differs between C libraries; use math/trig"),
@@ -21,7 +21,7 @@ CODE_WORDS = [
      "the last bit differs between C libraries; use math/trig"),
     (r"(?<![\w>)\]])::\s*(sin|cos|tan|asin|acos|atan|atan2|exp|pow|log|hypot)\s*\(",
      "the last bit differs between C libraries; use math/trig"),
-    (r"\bunordered_(map|set|multimap|multiset)\b", "its order differs between standard libraries; use base/flat_map"),
+    (r"\bunordered_(map|set|multimap|multiset)\b", "its order differs between standard libraries; use base/container/flat_map"),
     (r"\bstd::hash\b", "differs between standard libraries; use base/hash"),
     (r"(?<![\w.:>])(std::)?s?rand\s*\(", "hidden global state"),
     (r"\bstd::(random_device|mt19937(_64)?|default_random_engine|uniform_\w+_distribution|normal_distribution|shuffle)\b",

@@ -2,7 +2,7 @@
 #include "base/float_mode.h"
 #include "debug/flat.h"
 #include "debug/islands.h"
-#include "rigid/island.h"
+#include "rigid/sleep/island.h"
 #include "world/world_state.h"
 
 #include <gyre/debug.h>

@@ -1,6 +1,6 @@
 // read_boxes: boxes of shapes and nodes of the broad phase's trees. See <gyre/debug.h>.
 #include "base/float_mode.h"
-#include "collision/fat_box.h"
+#include "collision/broadphase/fat_box.h"
 #include "debug/flat.h"
 #include "world/world_state.h"
 

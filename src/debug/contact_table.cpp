@@ -2,7 +2,7 @@
 #include "base/float_mode.h"
 #include "debug/flat.h"
 #include "debug/step_length.h"
-#include "rigid/solve_batches.h"
+#include "rigid/batch/solve_batches.h"
 #include "world/world_state.h"
 
 #include <gyre/debug.h>

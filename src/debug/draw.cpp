@@ -1,7 +1,7 @@
 // draw_debug: lines and points for every layer that is wanted, from the same tables that users read. See <gyre/debug.h>.
 #include "base/float_mode.h"
 #include "debug/painter.h"
-#include "rigid/island.h"
+#include "rigid/sleep/island.h"
 #include "world/world_state.h"
 
 namespace gyre {

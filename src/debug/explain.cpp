@@ -3,7 +3,7 @@
 #include "debug/islands.h"
 #include "debug/step_length.h"
 #include "debug/words.h"
-#include "rigid/island.h"
+#include "rigid/sleep/island.h"
 #include "world/world_state.h"
 
 #include <gyre/debug.h>

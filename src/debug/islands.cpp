@@ -1,6 +1,6 @@
 #include "debug/islands.h"
 
-#include "rigid/island.h"
+#include "rigid/sleep/island.h"
 
 #include <gyre/debug.h>
 

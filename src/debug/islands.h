@@ -1,7 +1,7 @@
-// Islands as they stand between two steps, for reading: union-find over what binds (rigid/island.h).
+// Islands as they stand between two steps, for reading: union-find over what binds (rigid/sleep/island.h).
 #pragma once
 
-#include "rigid/rigid_world.h"
+#include "rigid/store/rigid_world.h"
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 // How long the last step was: impulses over it are forces.
 #pragma once
 
-#include "rigid/rigid_world.h"
+#include "rigid/store/rigid_world.h"
 
 namespace gyre {
 

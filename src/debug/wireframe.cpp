@@ -1,10 +1,10 @@
 // add_wireframe: the edges and outlines of a shape in its own frame. See <gyre/debug.h>.
 #include "base/float_mode.h"
 #include "debug/flat.h"
-#include "geometry/cooked.h"
-#include "geometry/height_field.h"
-#include "geometry/hull.h"
-#include "geometry/mesh.h"
+#include "geometry/shape/cooked.h"
+#include "geometry/shape/height_field.h"
+#include "geometry/shape/hull.h"
+#include "geometry/shape/mesh.h"
 
 #include <gyre/debug.h>
 

@@ -10,7 +10,7 @@
 // Sparse Positive Definite Systems", 1981.
 #pragma once
 
-#include "base/arena.h"
+#include "base/arena/arena.h"
 #include "math/block_plan.h"
 
 #include <cstdint>

@@ -2,9 +2,9 @@
 // which is asked has: what sleeps costs nothing.
 #pragma once
 
-#include "base/arena.h"
-#include "collision/collide.h"
-#include "rigid/rigid_world.h"
+#include "base/arena/arena.h"
+#include "collision/contact/collide.h"
+#include "rigid/store/rigid_world.h"
 #include "task/task_system.h"
 
 #include <cstdint>

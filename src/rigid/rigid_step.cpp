@@ -1,12 +1,12 @@
 #include "rigid/rigid_step.h"
 
-#include "base/sort.h"
-#include "collision/fat_box.h"
-#include "collision/pair_update.h"
-#include "collision/seam.h"
+#include "base/container/sort.h"
+#include "collision/broadphase/fat_box.h"
+#include "collision/contact/pair_update.h"
+#include "collision/contact/seam.h"
 #include "rigid/body_looks.h"
-#include "rigid/island.h"
-#include "rigid/shape_boxes.h"
+#include "rigid/sleep/island.h"
+#include "rigid/store/shape_boxes.h"
 #include "task/choose.h"
 #include "task/parallel.h"
 
@@ -89,7 +89,7 @@ void list_if_moving(RigidWorld& w, std::uint32_t shape) {
     w.shapes.hurried.push_back(shape);
 }
 
-// The promise of collision/fat_box.h as a step begins.
+// The promise of collision/broadphase/fat_box.h as a step begins.
 void hold_ways(RigidWorld& w, TaskSystem& tasks, float seconds) {
   if (seconds > w.shapes.fit_for) {
     w.refit_marks.resize(w.shapes.colliders.size(), 0);

@@ -1,10 +1,10 @@
 // The rigid half of a step, as stages that world/step.cpp lists. Each is a function from arrays to arrays.
 #pragma once
 
-#include "base/arena.h"
-#include "collision/continuous.h"
-#include "rigid/rigid_world.h"
-#include "solver/contact_block.h"
+#include "base/arena/arena.h"
+#include "collision/continuous/continuous.h"
+#include "rigid/store/rigid_world.h"
+#include "solver/contact/contact_block.h"
 #include "task/task_system.h"
 
 namespace gyre {

@@ -1,8 +1,8 @@
 // Lists of those among many that something is to be done for, found by all workers.
 #pragma once
 
-#include "base/arena.h"
-#include "base/bitset.h"
+#include "base/arena/arena.h"
+#include "base/container/bitset.h"
 #include "base/function_ref.h"
 #include "task/task_system.h"
 

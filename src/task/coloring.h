@@ -6,7 +6,7 @@
 // find no colour free (a body with a great many contacts) form the overflow group, to be solved one after the other.
 #pragma once
 
-#include "base/array.h"
+#include "base/container/array.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // Colourings are valid for random graphs, use few colours where few are enough, and depend on the input alone.
 #include "task/coloring.h"
 
-#include "base/bitset.h"
+#include "base/container/bitset.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // after the other, and with plain memory between stages, so that the thread sanitizer can judge the barrier.
 #include "task/program.h"
 
-#include "base/memory.h"
+#include "base/memory/memory.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 // Each worker computes in FloatMode while it runs something. Where the platform has no threads there is one worker.
 #pragma once
 
-#include "base/array.h"
+#include "base/container/array.h"
 #include "base/function_ref.h"
 
 #include <gyre/defs.h>

@@ -1,5 +1,5 @@
 // What sleeps is not asked; and asking it all the same changes nothing.
-#include "rigid/awake_links.h"
+#include "rigid/store/awake_links.h"
 #include "determinism/random_world.h"
 #include "determinism/scenes.h"
 #include "world/state_walk.h"

@@ -2,9 +2,9 @@
 #include "world/command.h"
 
 #include "base/float_mode.h"
-#include "collision/pair_update.h"
+#include "collision/contact/pair_update.h"
 #include "math/rotation.h"
-#include "rigid/island.h"
+#include "rigid/sleep/island.h"
 #include "rigid/rigid_step.h"
 #include "world/field_commands.h"
 #include "world/joint_commands.h"

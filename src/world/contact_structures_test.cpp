@@ -1,6 +1,6 @@
-// Which islands are held as structures (rigid/contact_structures.h): what is held has manifolds older than any world.
+// Which islands are held as structures (rigid/rest/contact_structures.h): what is held has manifolds older than any world.
 #include "determinism/scenes.h"
-#include "solver/contact_structure.h"
+#include "solver/rest/contact_structure.h"
 #include "world/world_state.h"
 
 #include <gtest/gtest.h>

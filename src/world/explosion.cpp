@@ -2,10 +2,10 @@
 //
 // Occlusion is asked with rays: from the center to the middle of each body's shapes and to eight points of its surface. The
 // share of those that arrive is the share of the blow.
-#include "geometry/surface_patches.h"
+#include "geometry/mass/surface_patches.h"
 #include "math/rotation.h"
 #include "math/trig.h"
-#include "rigid/island.h"
+#include "rigid/sleep/island.h"
 #include "rigid/rigid_step.h"
 #include "world/field_commands.h"
 #include "world/query_sight.h"

@@ -1,6 +1,6 @@
 #include "world/field_commands.h"
 
-#include "rigid/island.h"
+#include "rigid/sleep/island.h"
 #include "world/refusal.h"
 #include "world/world_state.h"
 

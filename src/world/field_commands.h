@@ -1,7 +1,7 @@
 // Commands about fields, and explosions: checked and carried out like those of command.h.
 #pragma once
 
-#include "rigid/field_record.h"
+#include "rigid/store/field_record.h"
 #include "world/command.h"
 
 #include <span>

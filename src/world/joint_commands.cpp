@@ -1,11 +1,11 @@
 #include "world/joint_commands.h"
 
-#include "collision/pair_update.h"
-#include "rigid/hits.h"
-#include "rigid/island.h"
+#include "collision/contact/pair_update.h"
+#include "rigid/solve/hits.h"
+#include "rigid/sleep/island.h"
 #include "rigid/rigid_step.h"
-#include "solver/joint.h"
-#include "solver/path.h"
+#include "solver/joint/joint.h"
+#include "solver/joint/path.h"
 
 namespace gyre {
 

@@ -1,7 +1,7 @@
 // How joints are added, changed and taken away. What is asked was checked before (command_check.cpp).
 #pragma once
 
-#include "rigid/rigid_world.h"
+#include "rigid/store/rigid_world.h"
 
 namespace gyre {
 

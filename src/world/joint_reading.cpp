@@ -1,7 +1,7 @@
 #include "world/joint_reading.h"
 
-#include "solver/joint_kinds.h"
-#include "solver/path.h"
+#include "solver/joint/joint_kinds.h"
+#include "solver/joint/path.h"
 #include "world/joint_commands.h"
 
 namespace gyre {

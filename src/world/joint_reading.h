@@ -1,7 +1,7 @@
 // What can be read of joints: forces, places and speeds on their axes, energy in their springs.
 #pragma once
 
-#include "rigid/rigid_world.h"
+#include "rigid/store/rigid_world.h"
 
 #include <gyre/world.h>
 

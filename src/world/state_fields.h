@@ -1,11 +1,11 @@
 // The fields of every record that is simulation state, one function a record: what is saved, loaded, hashed and compared
 // is exactly what stands here, without padding and in this order. f is called with one scalar, vector or enum at a time;
-// FieldWriter and its like (io/snapshot) take these apart.
+// FieldWriter and its like (io/snapshot/snapshot) take these apart.
 #pragma once
 
-#include "collision/contact_store.h"
-#include "collision/proxy.h"
-#include "rigid/rigid_world.h"
+#include "collision/contact/contact_store.h"
+#include "collision/broadphase/proxy.h"
+#include "rigid/store/rigid_world.h"
 
 namespace gyre {
 

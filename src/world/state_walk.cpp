@@ -2,9 +2,9 @@
 #include "world/state_walk.h"
 
 #include "base/float_mode.h"
-#include "collision/fat_box.h"
-#include "rigid/island.h"
-#include "rigid/solve_batches.h"
+#include "collision/broadphase/fat_box.h"
+#include "rigid/sleep/island.h"
+#include "rigid/batch/solve_batches.h"
 #include "world/world_state.h"
 
 #include <vector>

@@ -1,10 +1,10 @@
 // One step of the world, as the list of its stages. Each is a function from arrays to arrays in the folders below.
 #include "base/check.h"
 #include "rigid/body_looks.h"
-#include "rigid/doubled_steps.h"
-#include "rigid/island.h"
+#include "rigid/time/doubled_steps.h"
+#include "rigid/sleep/island.h"
 #include "rigid/rigid_step.h"
-#include "rigid/spring_stability.h"
+#include "rigid/integrate/spring_stability.h"
 #include "world/stages.h"
 #include "world/state_walk.h"
 #include "world/world_state.h"

@@ -3,7 +3,7 @@
 #include <gyre/world.h>
 
 #include "base/float_mode.h"
-#include "collision/query.h"
+#include "collision/query/query.h"
 #include "task/parallel.h"
 #include "world/query_sight.h"
 #include "world/refusal.h"

@@ -2,8 +2,8 @@
 #include <gyre/world.h>
 
 #include "base/float_mode.h"
-#include "rigid/spring_stability.h"
-#include "rigid/surface_rules.h"
+#include "rigid/integrate/spring_stability.h"
+#include "rigid/batch/surface_rules.h"
 #include "world/field_commands.h"
 #include "world/joint_reading.h"
 #include "world/world_state.h"

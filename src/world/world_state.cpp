@@ -2,7 +2,7 @@
 
 #include "base/float_mode.h"
 #include "base/hash.h"
-#include "collision/contact_recycle.h"
+#include "collision/contact/contact_recycle.h"
 #include "world/stages.h"
 
 #include <atomic>

@@ -2,13 +2,13 @@
 // comparing are visitors of that one list, so a new array cannot be forgotten in one of them.
 #pragma once
 
-#include "base/arena.h"
-#include "base/profile.h"
-#include "rigid/impact_times.h"
+#include "base/arena/arena.h"
+#include "base/profile/profile.h"
+#include "rigid/time/impact_times.h"
 #include "rigid/rigid_step.h"
-#include "rigid/rigid_world.h"
-#include "rigid/solve_step.h"
-#include "solver/contact_block.h"
+#include "rigid/store/rigid_world.h"
+#include "rigid/solve/solve_step.h"
+#include "solver/contact/contact_block.h"
 #include "task/task_system.h"
 #include "world/command.h"
 #include "world/state_fields.h"

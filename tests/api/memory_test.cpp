@@ -1,5 +1,5 @@
 // A step that has seen its scene before takes no memory, neither by the engine's door nor around it; a resting box is small.
-#include "base/memory.h"
+#include "base/memory/memory.h"
 #include "base/check.h"
 #include "laws/kit.h"
 #include "world/world_state.h"

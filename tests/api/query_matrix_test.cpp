@@ -3,9 +3,9 @@
 // the world is asked by its own geometry, without broad phase and filters of the world.
 #include "api/query_crowd.h"
 
-#include "geometry/cast_surface.h"
-#include "geometry/manifold.h"
-#include "geometry/nearest.h"
+#include "geometry/query/cast_surface.h"
+#include "geometry/manifold/manifold.h"
+#include "geometry/query/nearest.h"
 
 #include <functional>
 #include <type_traits>

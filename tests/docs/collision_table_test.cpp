@@ -1,13 +1,13 @@
 // docs/collision.md shows tables that are made here from the code: which method serves which two shapes, who can be asked what,
 // and which structures there are. A stale table fails; with UPDATE_DOCS set it is written anew.
-#include "collision/continuous.h"
-#include "collision/time_of_impact.h"
-#include "geometry/cast.h"
-#include "geometry/cooked.h"
-#include "geometry/height_field.h"
-#include "geometry/manifold_convex.h"
-#include "geometry/mesh.h"
-#include "geometry/nearest.h"
+#include "collision/continuous/continuous.h"
+#include "collision/continuous/time_of_impact.h"
+#include "geometry/query/cast.h"
+#include "geometry/shape/cooked.h"
+#include "geometry/shape/height_field.h"
+#include "geometry/manifold/manifold_convex.h"
+#include "geometry/shape/mesh.h"
+#include "geometry/query/nearest.h"
 
 #include <gyre/bounds.h>
 

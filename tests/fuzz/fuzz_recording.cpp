@@ -1,7 +1,7 @@
 // Recordings from outside: refused, or played to their end and back, the same each time. Their tracks: fuzz_track.cpp.
 #include "../memory_sink.h"
 #include "edits.h"
-#include "io/chunks.h"
+#include "io/chunk/chunks.h"
 #include "small_scene.h"
 
 #include <cstdlib>

@@ -1,6 +1,6 @@
 // Snapshots from outside: refused, or a world that can be stepped, saved and loaded again, the same each time.
 #include "edits.h"
-#include "io/snapshot.h"
+#include "io/snapshot/snapshot.h"
 #include "small_scene.h"
 
 #include <gyre/replay.h>

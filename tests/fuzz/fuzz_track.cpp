@@ -2,8 +2,8 @@
 #include "../memory_sink.h"
 #include "base/hash.h"
 #include "edits.h"
-#include "io/chunks.h"
-#include "io/track_coder.h"
+#include "io/chunk/chunks.h"
+#include "io/track/track_coder.h"
 #include "small_scene.h"
 
 #include <cstdlib>

@@ -1,5 +1,5 @@
 // Mass, centre and inertia of every shape and of meshes, by the numbers of the validation table; closed forms of textbooks.
-// src/geometry/mass_test.cpp tests the functions one by one.
+// src/geometry/mass/mass_test.cpp tests the functions one by one.
 #include "laws/kit.h"
 
 #include <cstring>

@@ -1,5 +1,5 @@
 // Crowds: pits of boxes, coincident bodies, many fixed bodies, endless coming and going, and steps of changing length.
-#include "base/memory.h"
+#include "base/memory/memory.h"
 #include "laws/kit.h"
 
 #include <gyre/debug.h>

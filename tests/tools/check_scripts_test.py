@@ -18,9 +18,9 @@ class Tree(unittest.TestCase):
         shutil.copytree(TOOLS, self.root / "tools", ignore=shutil.ignore_patterns("__pycache__"))
         self.write("include/gyre/math.h", "#pragma once\n#include <cmath>\n")
         self.write("include/gyre/world.h", "#pragma once\n#include <gyre/math.h>\n")
-        self.write("src/geometry/gjk.h", "#pragma once\n#include <gyre/math.h>\n")
-        self.write("src/solver/row.cpp", '#include "geometry/gjk.h"\n')
-        self.write("src/world/world.cpp", '#include <gyre/world.h>\n#include "geometry/gjk.h"\n')
+        self.write("src/geometry/distance/gjk.h", "#pragma once\n#include <gyre/math.h>\n")
+        self.write("src/solver/rows/row.cpp", '#include "geometry/distance/gjk.h"\n')
+        self.write("src/world/world.cpp", '#include <gyre/world.h>\n#include "geometry/distance/gjk.h"\n')
 
     def write(self, name, text):
         path = self.root / name
@@ -43,39 +43,53 @@ class Tree(unittest.TestCase):
             self.assertEqual(code, 0, output)
 
     def test_upward_include(self):
-        self.write("src/geometry/gjk.cpp", '#include "solver/row.h"\n')
-        self.write("src/solver/row.h", "#pragma once\n")
+        self.write("src/geometry/distance/gjk.cpp", '#include "solver/rows/row.h"\n')
+        self.write("src/solver/rows/row.h", "#pragma once\n")
         self.assert_fails("layers", "'geometry' must not know 'solver'")
 
     def test_siblings_do_not_meet(self):
-        self.write("src/collision/proxy.cpp", '#include "solver/row.h"\n')
-        self.write("src/solver/row.h", "#pragma once\n")
+        self.write("src/collision/broadphase/proxy.cpp", '#include "solver/rows/row.h"\n')
+        self.write("src/solver/rows/row.h", "#pragma once\n")
         self.assert_fails("layers", "'collision' must not know 'solver'")
 
     def test_world_header_below_world(self):
-        self.write("src/solver/row.cpp", "#include <gyre/world.h>\n")
+        self.write("src/solver/rows/row.cpp", "#include <gyre/world.h>\n")
         self.assert_fails("layers", "may include this public header")
 
     def test_public_header_includes_internal(self):
-        self.write("include/gyre/world.h", '#include "../../src/geometry/gjk.h"\n')
+        self.write("include/gyre/world.h", '#include "../../src/geometry/distance/gjk.h"\n')
         self.assert_fails("layers", "public headers include nothing but")
 
     def test_heavy_standard_header(self):
-        self.write("src/geometry/gjk.h", "#pragma once\n#include <functional>\n")
+        self.write("src/geometry/distance/gjk.h", "#pragma once\n#include <functional>\n")
         self.assert_fails("layers", "too heavy")
 
     def test_example_reaches_inside(self):
-        self.write("examples/hello.cpp", '#include "geometry/gjk.h"\n')
+        self.write("examples/hello.cpp", '#include "geometry/distance/gjk.h"\n')
         self.assert_fails("layers", "'examples' must not include 'src'")
 
     def test_cycle_in_one_folder(self):
-        self.write("src/geometry/gjk.h", '#pragma once\n#include "geometry/clip.h"\n')
-        self.write("src/geometry/clip.h", '#pragma once\n#include "geometry/gjk.h"\n')
+        self.write("src/geometry/distance/gjk.h", '#pragma once\n#include "geometry/manifold/clip.h"\n')
+        self.write("src/geometry/manifold/clip.h", '#pragma once\n#include "geometry/distance/gjk.h"\n')
         self.assert_fails("layers", "include cycle")
 
     def test_unknown_folder(self):
         self.write("src/misc/thing.cpp", "\n")
         self.assert_fails("layers", "not in the table")
+
+    def test_upward_include_between_rooms(self):
+        self.write("src/geometry/manifold/clip.h", "#pragma once\n")
+        self.write("src/geometry/distance/gjk.cpp", '#include "geometry/manifold/clip.h"\n')
+        self.assert_fails("layers", "'geometry/distance' must not know 'geometry/manifold'")
+
+    def test_unknown_room(self):
+        self.write("src/geometry/stray.cpp", "\n")
+        self.assert_fails("layers", "its room is not in the table of rooms of 'geometry'")
+
+    def test_full_room(self):
+        for i in range(40):
+            self.write(f"src/geometry/distance/unit_{i}.h", "#pragma once\n")
+        self.assert_fails("layers", "41 files, more than 40")
 
     def test_words(self):
         for code in ("float f(float x) { return std::sin(x); }", "float f(float x) { return sinf(x); }",
@@ -83,7 +97,7 @@ class Tree(unittest.TestCase):
                      "auto y = _mm256_fmadd_ps(a, b, c);", "auto y = _mm_rsqrt_ps(a);", "float z = __builtin_fmaf(a, b, c);",
                      "auto y = vfmaq_f32(a, b, c);", "std::atomic<float> sum;", "// TODO: finish", "int x;  // FIXME"):
             with self.subTest(code=code):
-                self.write("src/solver/row.cpp", code + "\n")
+                self.write("src/solver/rows/row.cpp", code + "\n")
                 self.assert_fails("words", "row.cpp:1")
 
     def test_words_that_are_fine(self):
@@ -92,16 +106,16 @@ class Tree(unittest.TestCase):
                      "int x = operand();", "std::sort(a, b);  // word-ok: all keys differ",
                      "// word-ok: the keys are all different\nstd::sort(a, b);"):
             with self.subTest(code=code):
-                self.write("src/solver/row.cpp", code + "\n")
+                self.write("src/solver/rows/row.cpp", code + "\n")
                 code_out, output = self.run_check("words")
                 self.assertEqual(code_out, 0, output)
 
     def test_size(self):
-        self.write("src/solver/row.cpp", "\n" * 601)
+        self.write("src/solver/rows/row.cpp", "\n" * 601)
         self.assert_fails("size", "601 lines")
 
     def test_long_function_is_named(self):
-        self.write("src/solver/row.cpp", "void f(int a,\n       int b) {\n" + "  g();\n" * 90 + "}\n")
+        self.write("src/solver/rows/row.cpp", "void f(int a,\n       int b) {\n" + "  g();\n" * 90 + "}\n")
         code, output = self.run_check("size")
         self.assertEqual(code, 0, output)
         self.assertIn("row.cpp:1: a function of 93 lines", output)

@@ -1,0 +1,66 @@
+// Pages move whole only from and to places of whole pages, so each place is cut out of one that is a page larger.
+#include "base/memory/large_pages.h"
+
+#if defined(__linux__)
+#include <sys/mman.h>
+#include <cstdint>
+
+namespace gyre {
+
+namespace {
+
+// 0 where that is more than there are numbers for.
+std::size_t whole_pages(std::size_t bytes) {
+  return bytes > SIZE_MAX - 2 * kLargePage ? 0 : (bytes + kLargePage - 1) / kLargePage * kLargePage;
+}
+
+// A place of `size` bytes, whole pages, that starts with one.
+std::byte* map_place(std::size_t size, int access) {
+  void* const found =
+      mmap(nullptr, size + kLargePage, access, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (found == MAP_FAILED) return nullptr;
+  const std::size_t before = (kLargePage - reinterpret_cast<std::uintptr_t>(found) % kLargePage) % kLargePage;
+  std::byte* const place = static_cast<std::byte*>(found) + before;
+  if (before != 0) munmap(found, before);
+  munmap(place + size, kLargePage - before);
+  return place;
+}
+
+}  // namespace
+
+void* map_large_pages(std::size_t bytes) {
+  const std::size_t size = whole_pages(bytes);
+  if (size == 0) return nullptr;
+  std::byte* const place = map_place(size, PROT_READ | PROT_WRITE);
+  if (place != nullptr) madvise(place, size, MADV_HUGEPAGE);
+  return place;
+}
+
+void unmap_large_pages(void* memory, std::size_t bytes) { munmap(memory, whole_pages(bytes)); }
+
+void* remap_large_pages(void* memory, std::size_t old_bytes, std::size_t bytes) {
+  const std::size_t old_size = whole_pages(old_bytes), size = whole_pages(bytes);
+  if (size == old_size) return memory;
+  if (size == 0) return nullptr;
+  if (mremap(memory, old_size, size, 0) != MAP_FAILED) return memory;
+  std::byte* const place = map_place(size, PROT_NONE);
+  if (place == nullptr) return nullptr;
+  void* const moved = mremap(memory, old_size, size, MREMAP_MAYMOVE | MREMAP_FIXED, place);
+  if (moved != MAP_FAILED) return moved;
+  munmap(place, size);
+  return nullptr;
+}
+
+}  // namespace gyre
+
+#else
+
+namespace gyre {
+
+void* map_large_pages(std::size_t) { return nullptr; }
+void unmap_large_pages(void*, std::size_t) {}
+void* remap_large_pages(void*, std::size_t, std::size_t) { return nullptr; }
+
+}  // namespace gyre
+
+#endif

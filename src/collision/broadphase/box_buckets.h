@@ -1,0 +1,195 @@
+// Lists of boxes, eight side by side: what a cell of a grid or a node of a tree holds. All lists of one index share one
+// pool of chunks; a list is the number of its first chunk, the only one that may have free lanes.
+#pragma once
+
+#include "base/container/array.h"
+#include "base/arena/idle_clock.h"
+#include "collision/broadphase/box_lanes.h"
+#include "collision/broadphase/box_sweep.h"
+
+#include <bit>
+#include <cstdint>
+
+namespace gyre {
+
+class BoxBuckets {
+ public:
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  static constexpr std::uint32_t kWidth = BoxLanes::kWidth;
+
+  void clear() {
+    chunks_.clear();
+    free_.clear();
+  }
+  std::size_t bytes() const { return chunks_.bytes() + free_.bytes(); }
+
+  // Adds to the list that starts with chunk `head`; returns the item's place.
+  std::uint32_t add(std::uint32_t& head, std::uint32_t item, const Aabb& box) {
+    if (head == kNone || chunks_[head].count == kWidth) {
+      const std::uint32_t made = make_chunk();
+      chunks_[made].next = head;
+      head = made;
+    }
+    Chunk& chunk = chunks_[head];
+    const std::uint32_t lane = chunk.count++;
+    set_lane_box(chunk, int(lane), box);
+    chunk.item[lane] = item;
+    return head * kWidth + lane;
+  }
+
+  // Takes out what is at `place` of the list. Another item takes that place: it is returned, or kNone if there is none.
+  std::uint32_t remove(std::uint32_t& head, std::uint32_t place) {
+    Chunk& first = chunks_[head];
+    const std::uint32_t last = head * kWidth + first.count - 1;
+    std::uint32_t moved = kNone;
+    if (place != last) {
+      moved = item_at(last);
+      set_box(place, box_at(last));
+      chunks_[place / kWidth].item[place % kWidth] = moved;
+    }
+    clear_lane_box(first, int(--first.count));
+    if (first.count == 0) {
+      const std::uint32_t gone = head;
+      head = first.next;
+      free_.push_back(gone);
+    }
+    return moved;
+  }
+
+  // Where in the list an item is; it must be there.
+  std::uint32_t find(std::uint32_t head, std::uint32_t item) const {
+    for (std::uint32_t i = head;; i = chunks_[i].next) {
+      for (std::uint32_t lane = 0; lane < chunks_[i].count; ++lane) {
+        if (chunks_[i].item[lane] == item) return i * kWidth + lane;
+      }
+    }
+  }
+
+  std::uint32_t item_at(std::uint32_t place) const { return chunks_[place / kWidth].item[place % kWidth]; }
+  Aabb box_at(std::uint32_t place) const { return lane_box(chunks_[place / kWidth], int(place % kWidth)); }
+  void set_box(std::uint32_t place, const Aabb& box) {
+    set_lane_box(chunks_[place / kWidth], int(place % kWidth), box);
+  }
+
+  // Calls visit(item, box, place) for each.
+  template <class Visit>
+  void for_each(std::uint32_t head, Visit&& visit) const {
+    for (std::uint32_t i = head; i != kNone; i = chunks_[i].next) {
+      for (std::uint32_t lane = 0; lane < chunks_[i].count; ++lane) {
+        visit(chunks_[i].item[lane], lane_box(chunks_[i], int(lane)), i * kWidth + lane);
+      }
+    }
+  }
+  // Calls visit(item, place) for each whose box overlaps `box`.
+  template <class Visit>
+  void for_each_overlap(std::uint32_t head, const Aabb& box, Visit&& visit) const {
+    const OverlapTest test(box);
+    for (std::uint32_t i = head; i != kNone; i = chunks_[i].next) {
+      const Chunk& chunk = chunks_[i];
+      for (unsigned rest = test.mask(chunk); rest != 0; rest &= rest - 1) {
+        const auto lane = std::uint32_t(std::countr_zero(rest));
+        visit(chunk.item[lane], i * kWidth + lane);
+      }
+    }
+  }
+  // Calls visit(item, reach, place), which returns the new reach, for each that the sweep may touch. Below 0 ends it.
+  template <class Visit>
+  float for_each_along(std::uint32_t head, const SweepTest& sweep, float reach, Visit&& visit) const {
+    for (std::uint32_t i = head; i != kNone; i = chunks_[i].next) {
+      const Chunk& chunk = chunks_[i];
+      float enter[kWidth];
+      for (unsigned rest = sweep.mask(chunk, reach, enter); rest != 0; rest &= rest - 1) {
+        const auto lane = std::uint32_t(std::countr_zero(rest));
+        reach = visit(chunk.item[lane], reach, i * kWidth + lane);
+        if (reach < 0.0f) return reach;
+      }
+    }
+    return reach;
+  }
+
+  // Gives a whole list back.
+  void free_list(std::uint32_t& head) {
+    while (head != kNone) {
+      free_.push_back(head);
+      head = chunks_[head].next;
+    }
+  }
+
+ private:
+  // Lanes from `count` on have a box that nothing overlaps.
+  struct alignas(64) Chunk : BoxLanes {
+    std::uint32_t item[kWidth];
+    std::uint32_t next;
+    std::uint32_t count;
+  };
+
+  std::uint32_t make_chunk() {
+    const std::uint32_t index = take_place(chunks_, free_);
+    for (std::uint32_t lane = 0; lane < kWidth; ++lane) clear_lane_box(chunks_[index], int(lane));
+    chunks_[index].next = kNone;
+    chunks_[index].count = 0;
+    return index;
+  }
+
+  Array<Chunk> chunks_;
+  Array<std::uint32_t> free_;
+};
+
+// An item with its box, on its way into an index.
+struct BoxEntry {
+  Aabb box;
+  std::uint32_t item;
+};
+
+// What indices share in which each item is in one list: which one, and where.
+class BucketIndex {
+ public:
+  std::size_t size() const { return size_; }
+  bool contains(std::uint32_t item) const { return item < places_.size() && places_[item] != kNone; }
+  Aabb box_of(std::uint32_t item) const { return buckets_.box_at(places_[item]); }
+
+  void begin_build() { entries_.clear(); }
+  void add_to_build(std::uint32_t item, const Aabb& box) { entries_.push_back({box, item}); }
+  void trim() {
+    clock_.trim(entries_, entries_.size());
+    entries_.clear();
+  }
+
+ protected:
+  static constexpr std::uint32_t kNone = BoxBuckets::kNone;
+
+  void make_room(std::uint32_t item) {
+    if (places_.size() <= item) {
+      places_.resize(std::size_t(item) + 1, kNone);
+      nodes_of_.resize(std::size_t(item) + 1, kNone);
+    }
+  }
+  void clear_items() {
+    buckets_.clear();
+    for (std::uint32_t& place : places_) place = kNone;
+    size_ = 0;
+  }
+  // Into the list of a node that begins at `head`, and out of it.
+  void put(std::uint32_t& head, std::uint32_t node, std::uint32_t item, const Aabb& box) {
+    places_[item] = buckets_.add(head, item, box);
+    nodes_of_[item] = node;
+  }
+  void take(std::uint32_t& head, std::uint32_t item) {
+    const std::uint32_t place = places_[item];
+    const std::uint32_t moved = buckets_.remove(head, place);
+    if (moved != kNone) places_[moved] = place;
+    places_[item] = kNone;
+  }
+  std::size_t item_bytes() const {
+    return buckets_.bytes() + places_.bytes() + nodes_of_.bytes() + entries_.bytes();
+  }
+
+  BoxBuckets buckets_;
+  Array<std::uint32_t> places_;    // by item, or kNone
+  Array<std::uint32_t> nodes_of_;  // by item
+  Array<BoxEntry> entries_;        // of the present build
+  IdleClock clock_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace gyre

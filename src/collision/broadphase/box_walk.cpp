@@ -1,0 +1,28 @@
+// Chooses how many boxes are tested side by side on this machine.
+#include "collision/broadphase/box_walk.h"
+
+#include "base/processor.h"
+#include "collision/broadphase/box_walk_lanes.h"
+
+namespace gyre {
+
+#if defined(__x86_64__)
+extern const WalkBoxes kWalkBoxes_avx2;
+extern const WalkLine<BoxTreeNode> kWalkBoxLine_avx2;
+#endif
+
+WalkBoxes select_box_walk() {
+#if defined(__x86_64__)
+  if (most_lanes() >= 8) return kWalkBoxes_avx2;
+#endif
+  return walk_boxes<4>;
+}
+
+WalkLine<BoxTreeNode> select_box_line_walk() {
+#if defined(__x86_64__)
+  if (most_lanes() >= 8) return kWalkBoxLine_avx2;
+#endif
+  return walk_line<4, BoxTreeNode>;
+}
+
+}  // namespace gyre

@@ -1,0 +1,13 @@
+// Walks over trees of boxes for one kind of CPU, in a namespace of its own so that the linker can never mix it with others'.
+#define GYRE_TARGET_NAMESPACE target_avx2
+#include "collision/broadphase/box_walk_lanes.h"
+
+namespace gyre {
+
+extern const WalkBoxes kWalkBoxes_avx2;
+const WalkBoxes kWalkBoxes_avx2 = walk_boxes<8>;
+
+extern const WalkLine<BoxTreeNode> kWalkBoxLine_avx2;
+const WalkLine<BoxTreeNode> kWalkBoxLine_avx2 = walk_line<8, BoxTreeNode>;
+
+}  // namespace gyre

@@ -1,0 +1,33 @@
+// The brute-force broad phase keeps nothing: the proxies themselves are its only data.
+#include "collision/broadphase/broadphase_brute.h"
+
+namespace gyre {
+
+void BroadphaseBrute::rebuild(std::span<const Proxy>) {}
+
+void BroadphaseBrute::update(std::span<const Proxy>, std::span<const std::uint32_t>) {}
+
+void BroadphaseBrute::find_pairs(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved,
+                                 PairFilter filter, TaskSystem& tasks, Array<std::uint64_t>& pairs) {
+  collector_.collect(proxies, moved, filter, tasks, pairs, [&](std::uint32_t, const auto& visit) {
+    for (std::uint32_t other = 0; other < proxies.size(); ++other) visit(other);
+  });
+}
+
+void BroadphaseBrute::query(std::span<const Proxy> proxies, const Aabb& box,
+                            Array<std::uint32_t>& found) const {
+  for (std::uint32_t i = 0; i < proxies.size(); ++i) {
+    if (proxies[i].motion != ProxyMotion::none && overlap(proxies[i].fat_box, box)) found.push_back(i);
+  }
+}
+
+float BroadphaseBrute::cast(std::span<const Proxy> proxies, const BoxSweep& sweep, float reach,
+                            CastVisit visit) const {
+  for (std::uint32_t i = 0; i < proxies.size() && reach >= 0.0f; ++i) {
+    if (proxies[i].motion != ProxyMotion::none && meets(sweep, reach, proxies[i].fat_box))
+      reach = visit(i, reach);
+  }
+  return reach;
+}
+
+}  // namespace gyre

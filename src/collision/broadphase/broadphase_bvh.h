@@ -1,0 +1,15 @@
+// The default broad phase: two wide trees of bounding volumes, one of fixed and one of moving proxies.
+#pragma once
+
+#include "collision/broadphase/box_tree.h"
+#include "collision/broadphase/broadphase_parted.h"
+
+namespace gyre {
+
+class BroadphaseBvh final : public BroadphaseParted<BoxTree> {
+ public:
+  const BoxTree& moving_tree() const { return indices_[kMoving]; }
+  const BoxTree& fixed_tree() const { return indices_[kFixed]; }
+};
+
+}  // namespace gyre

@@ -1,0 +1,144 @@
+// Sweep and prune: boxes in the order of their low ends along the axis on which they are spread farthest. What overlaps lies
+// near in that order, and from step to step the order hardly changes, so insertion sort keeps it up in little more than one
+// pass. If most has moved, one sweep finds all pairs; otherwise each moved box looks backward from where it ends.
+//
+// Boxes lie eight to a block in that order; groups of blocks know how far any of theirs reaches, so that walks pass by what
+// ends too early even where one huge box covers all.
+//
+// Sources: D. Baraff, "Dynamic Simulation of Non-Penetrating Rigid Bodies", 1992; J. Cohen, M. Lin, D. Manocha,
+// M. Ponamgi, "I-COLLIDE", 1995.
+#pragma once
+
+#include "collision/broadphase/box_buckets.h"
+#include "collision/broadphase/broadphase_parted.h"
+
+#include <bit>
+
+namespace gyre {
+
+class SortedAxis {
+ public:
+  static constexpr std::size_t kRebuildShare = 1;
+  static constexpr std::size_t kWidth = BoxLanes::kWidth;
+
+  std::size_t size() const { return size_; }
+  bool contains(std::uint32_t item) const { return item < boxes_.size() && present_[item] != 0; }
+  Aabb box_of(std::uint32_t item) const { return boxes_[item]; }
+  int axis() const { return axis_; }
+
+  void clear();
+  void begin_build() { clear(); }
+  void add_to_build(std::uint32_t item, const Aabb& box) { insert(item, box); }
+  void finish_build();
+  void insert(std::uint32_t item, const Aabb& box);
+  void remove(std::uint32_t item);
+  void move(std::uint32_t item, const Aabb& box);
+  // Puts all in order again.
+  void improve(std::size_t changes);
+  void trim();
+  const char* find_fault() const;
+  std::size_t bytes() const;
+
+  template <class Visit>
+  void for_each_overlap(const Aabb& box, Visit&& visit) const {
+    const OverlapTest test(box);
+    for_each_block_down(blocks_before(box.high[axis_]), box.low[axis_], [&](const Block& block) {
+      for (unsigned rest = test.mask(block); rest != 0; rest &= rest - 1)
+        visit(block.item[std::countr_zero(rest)]);
+      return true;
+    });
+  }
+
+  template <class Visit>
+  float for_each_along(const SweepTest& sweep, float reach, Visit&& visit) const {
+    const Aabb all = sweep.box_of({0.0f, reach});
+    for_each_block_down(blocks_before(all.high[axis_]), all.low[axis_], [&](const Block& block) {
+      float enter[kWidth];
+      for (unsigned rest = sweep.mask(block, reach, enter); rest != 0; rest &= rest - 1) {
+        reach = visit(block.item[std::countr_zero(rest)], reach);
+        if (reach < 0.0f) return false;
+      }
+      return true;
+    });
+    return reach;
+  }
+
+  template <class Visit>
+  void for_each_node(Visit&&) const {}
+
+  // For a sweep: calls visit(item) for each that stands behind `place` in the order and overlaps `box`, which is there.
+  template <class Visit>
+  void for_each_behind(std::size_t place, const Aabb& box, Visit&& visit) const {
+    const OverlapTest test(box);
+    const float end = box.high[axis_];
+    unsigned keep = ~0u << (place % kWidth) << 1;
+    for (std::size_t i = place / kWidth; i < blocks_.size() && blocks_[i].low[axis_][0] <= end;
+         ++i, keep = ~0u) {
+      for (unsigned rest = test.mask(blocks_[i]) & keep; rest != 0; rest &= rest - 1)
+        visit(blocks_[i].item[std::countr_zero(rest)]);
+    }
+  }
+  std::uint32_t item_at(std::size_t place) const { return blocks_[place / kWidth].item[place % kWidth]; }
+
+ private:
+  static constexpr std::size_t kGroup = 16;  // blocks
+
+  // Lanes beyond the last item have a box that nothing overlaps.
+  struct alignas(64) Block : BoxLanes {
+    std::uint32_t item[kWidth];
+  };
+  struct Ordered {
+    float low;
+    std::uint32_t item;
+  };
+
+  // How many blocks begin at or below `x`: nothing behind them does.
+  std::size_t blocks_before(float x) const {
+    std::size_t first = 0, last = blocks_.size();
+    while (first < last) {
+      const std::size_t middle = (first + last) / 2;
+      blocks_[middle].low[axis_][0] <= x ? first = middle + 1 : last = middle;
+    }
+    return first;
+  }
+  // From block `count` - 1 down, those in groups that reach `least`; while `look` says true.
+  template <class Look>
+  void for_each_block_down(std::size_t count, float least, Look&& look) const {
+    for (std::size_t group = (count + kGroup - 1) / kGroup; group-- > 0;) {
+      if (farthest_so_far_[group] < least) return;
+      if (farthest_[group] < least) continue;
+      for (std::size_t i = min(count, (group + 1) * kGroup); i-- > group * kGroup;) {
+        if (!look(blocks_[i])) return;
+      }
+    }
+  }
+
+  int best_axis() const;
+  void sort_all();
+  void lay_out();
+
+  Array<Aabb> boxes_;                         // by item
+  Array<std::uint8_t> present_;               // by item
+  Array<Ordered> order_;                      // between changes also what is gone
+  Array<Block> blocks_;                       // in that order
+  Array<float> farthest_;                     // by group: how far the highest of its boxes reaches
+  Array<float> farthest_so_far_;              // by group: the same of it and all before it
+  Array<std::uint64_t> keys_, keys_scratch_;  // of the present sort
+  Array<std::uint32_t> values_, values_scratch_;
+  IdleClock clock_;
+  std::size_t size_ = 0;
+  std::size_t gone_ = 0;
+  std::size_t changes_since_axis_ = 0;
+  int axis_ = 0;
+};
+
+class BroadphaseSweep final : public BroadphaseParted<SortedAxis> {
+ public:
+  void find_pairs(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved, PairFilter filter,
+                  TaskSystem& tasks, Array<std::uint64_t>& pairs) override;
+
+ private:
+  Array<std::uint32_t> moved_fixed_;
+};
+
+}  // namespace gyre

@@ -1,0 +1,68 @@
+// Boxes of shapes in the world. See fat_box.h.
+#include "collision/broadphase/fat_box.h"
+
+#include <cstdint>
+
+namespace gyre {
+namespace {
+
+// A fat box reaches ahead by the way of one more step, but never by more than this many sizes.
+constexpr float kLargestReach = 2.0f;
+static_assert(kTooLarge > 2.0f * kFatShare + kLargestReach);
+constexpr float kSmallestNormal = 1.17549435e-38f;
+constexpr float kLargestFloat = 3.402823466e38f;
+
+float next_up(float a) {
+  if (absolute(a) < kSmallestNormal) return kSmallestNormal;
+  const auto bits = __builtin_bit_cast(std::uint32_t, a);
+  return __builtin_bit_cast(float, a > 0.0f ? bits + 1 : bits - 1);
+}
+// Sides beyond the range of floats, or not numbers at all, end where floats end: trees rely on finite boxes.
+float round_up(double a) {
+  if (!(a <= double(kLargestFloat))) return kLargestFloat;
+  if (a < -double(kLargestFloat)) return -kLargestFloat;
+  const float rounded = float(a);
+  return double(rounded) < a ? next_up(rounded) : rounded;
+}
+float round_down(double a) { return -round_up(-a); }
+
+// The largest coordinate of a box, leaving out the sides of planes that have no end.
+float largest_coordinate(const Aabb& box) {
+  const auto bounded = [](Vec3 a) {
+    const auto part = [](float value) { return value < kUnboundedSide ? value : 0.0f; };
+    return Vec3{part(a.x), part(a.y), part(a.z)};
+  };
+  return largest(max(bounded(absolute(box.low)), bounded(absolute(box.high))));
+}
+
+}  // namespace
+
+WorldBox world_box(const Shape& shape, const Pose& world_from_shape) {
+  return world_box(shape, bounds(shape, {{}, world_from_shape.orientation}), world_from_shape.position);
+}
+
+WorldBox world_box(const Shape& shape, const Aabb& turned, DVec3 position) {
+  // bounds() works in float: a few roundings of numbers no larger than the box's coordinates. A disc seen from the side
+  // loses half of its digits: sqrt(1 - a^2) with a near 1.
+  const bool has_disc = shape.kind == ShapeKind::cylinder || shape.kind == ShapeKind::cone;
+  const double rounding =
+      2.0e-6 * double(largest_coordinate(turned)) + (has_disc ? 6.0e-4 * double(shape.radius) : 0.0);
+  const DVec3 slack{rounding, rounding, rounding};
+  return {position + turned.low - slack, position + turned.high + slack};
+}
+
+Aabb fat_box(const WorldBox& needed, const BoxMotion& motion) {
+  const double size = margin_size(motion);
+  const double margin = double(kFatShare) * size;
+  const DVec3 all{margin, margin, margin};
+  const float reach = kLargestReach * float(size);
+  const Vec3 ahead = max(min(motion.way, Vec3{reach, reach, reach}), Vec3{-reach, -reach, -reach});
+  return round_outward({needed.low - all + min(ahead, Vec3{}), needed.high + all + max(ahead, Vec3{})});
+}
+
+Aabb round_outward(const WorldBox& box) {
+  return {{round_down(box.low.x), round_down(box.low.y), round_down(box.low.z)},
+          {round_up(box.high.x), round_up(box.high.y), round_up(box.high.z)}};
+}
+
+}  // namespace gyre

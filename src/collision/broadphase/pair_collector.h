@@ -1,0 +1,112 @@
+// What every broad phase's find_pairs shares: blocks of moved proxies run in parallel, each worker keeps the keys that it
+// finds, and one sort at the end makes the result the same whoever found what.
+#pragma once
+
+#include "base/container/array.h"
+#include "base/container/bitset.h"
+#include "base/arena/idle_clock.h"
+#include "base/container/sort.h"
+#include "collision/broadphase/broadphase.h"
+#include "task/parallel.h"
+
+#include <cstdint>
+#include <span>
+
+namespace gyre {
+
+class PairCollector {
+ public:
+  // Calls search(index of the moved proxy, visit); it must call visit(other) for at least every other proxy whose fat box
+  // overlaps, each once. Appends the keys of the pairs among them that may meet and that the filter leaves, sorted.
+  template <class Search>
+  void collect(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved, PairFilter filter,
+               TaskSystem& tasks, Array<std::uint64_t>& pairs, const Search& search) {
+    collect_from(proxies, moved, int(moved.size()), filter, tasks, pairs, [&](int i, const auto& emit) {
+      const std::uint32_t self = moved[std::size_t(i)];
+      if (proxies[self].motion == ProxyMotion::none) return;
+      search(self, [&](std::uint32_t other) {
+        // A pair of two moved proxies is found from the lower one only.
+        if (other == self || (other < self && is_moved(other))) return;
+        emit(self, other);
+      });
+    });
+  }
+
+  // The same from other places than the moved proxies: calls search(i, emit) for each i below `count`; together they must
+  // call emit(one, other) once for each pair that overlaps and of which one is_moved().
+  template <class Search>
+  void collect_from(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved, int count,
+                    PairFilter filter, TaskSystem& tasks, Array<std::uint64_t>& pairs, const Search& search) {
+    if (is_moved_.size() < proxies.size()) is_moved_.resize(proxies.size());
+    for (const std::uint32_t index : moved) is_moved_.set(index);
+    found_.resize(std::size_t(tasks.worker_count()));
+    for (Found& found : found_) found.keys.reserve(most_ + most_at_once_);
+    for_blocks(tasks, count, kBlock, [&](int begin, int end, int worker) {
+      Array<std::uint64_t>& keys = found_[worker].keys;
+      const std::size_t before = keys.size();
+      const auto emit = [&](std::uint32_t one, std::uint32_t other) {
+        const Proxy& a = proxies[one];
+        const Proxy& b = proxies[other];
+        if (overlap(a.fat_box, b.fat_box) && may_pair(a, b)) keys.push_back(pair_key(one, other));
+      };
+      for (int i = begin; i < end; ++i) search(i, emit);
+      found_[worker].most_at_once = max(found_[worker].most_at_once, keys.size() - before);
+      filter(keys, before);
+    });
+    for (const std::uint32_t index : moved) is_moved_.clear(index);
+    append_sorted(pairs);
+  }
+  // While collecting.
+  bool is_moved(std::uint32_t index) const { return is_moved_.test(index); }
+
+  // To be called once a step: gives memory back that was not needed for long.
+  void trim() {
+    const std::size_t needed = last_ * sizeof(std::uint64_t);
+    last_ = 0;
+    if (!clock_.rests(needed, scratch_.bytes())) return;
+    most_ = 2 * clock_.most_needed() / sizeof(std::uint64_t);
+    most_at_once_ = 0;
+    for (Found& found : found_) found = {};
+    scratch_ = Array<std::uint64_t>();
+  }
+  std::size_t bytes() const {
+    std::size_t sum = scratch_.bytes() + (is_moved_.size() + 7) / 8;
+    for (const Found& found : found_) sum += found.keys.bytes();
+    return sum;
+  }
+
+ private:
+  static constexpr int kBlock = 32;
+
+  // What one worker finds.
+  struct Found {
+    Array<std::uint64_t> keys;
+    std::size_t most_at_once = 0;  // in a block
+  };
+
+  void append_sorted(Array<std::uint64_t>& pairs) {
+    const std::size_t before = pairs.size();
+    for (Found& found : found_) {
+      pairs.append(found.keys);
+      found.keys.clear();
+      most_at_once_ = max(most_at_once_, found.most_at_once);
+    }
+    const std::size_t count = pairs.size() - before;
+    // Which worker finds how many changes from run to run: each gets room for all, and for a block before it is filtered, so
+    // that none grows once warm.
+    if (count > most_) most_ = count + count / 2;
+    last_ = last_ < count ? count : last_;
+    if (scratch_.size() < count) scratch_.resize_uninitialized(most_);
+    radix_sort_u64({pairs.data() + before, count}, scratch_);
+  }
+
+  Bitset is_moved_;
+  Array<Found> found_;  // by worker
+  Array<std::uint64_t> scratch_;
+  std::size_t most_ = 0;  // pairs of a step
+  std::size_t most_at_once_ = 0;
+  std::size_t last_ = 0;  // pairs found since the last trim()
+  IdleClock clock_;
+};
+
+}  // namespace gyre

@@ -1,0 +1,202 @@
+// A tree that parts boxes by planes: what the kd-tree and the BSP tree share. Each node parts its boxes along one direction,
+// and keeps for each of its children from where to where its boxes reach along it; a walk enters the children that it
+// overlaps there. So boxes that cross a plane need neither be cut nor be kept twice.
+//
+// What moves widens what the nodes on its way keep. A subtree into whose leaves as many things came as it holds is built
+// anew, so that neither depth nor overlap get out of hand.
+//
+// `Splitter` says how: kChildren; kDirections; Split {std::uint8_t direction; float value}; child_of(split, box);
+// choose(entries, split), which may reorder the entries and says false if nothing parts them.
+#pragma once
+
+#include "collision/broadphase/box_buckets.h"
+#include "collision/broadphase/broadphase_parted.h"
+
+#include <span>
+
+namespace gyre {
+
+struct Split {
+  std::uint8_t direction = 0;
+  float value = 0.0f;
+};
+
+// Directions along which boxes are parted: the axes, the diagonals of the faces of a cube, those of the cube itself. Not of
+// unit length. What a box reaches to along one is worked out from its corners by sums in one order; sums never decrease when
+// a term grows, so boxes with a point in common overlap along every direction, whatever the rounding.
+struct SplitDirections {
+  static constexpr int kCount = 13;
+  static constexpr std::int8_t kSigns[kCount][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1}, {1, 1, 0},  {1, -1, 0},
+                                                    {1, 0, 1},  {1, 0, -1}, {0, 1, 1}, {0, 1, -1}, {1, 1, 1},
+                                                    {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
+
+  static float low(const Aabb& box, int direction) {
+    float sum = 0.0f;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int sign = kSigns[direction][axis];
+      if (sign > 0) sum += box.low[axis];
+      if (sign < 0) sum -= box.high[axis];
+    }
+    return sum;
+  }
+  static float high(const Aabb& box, int direction) {
+    float sum = 0.0f;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int sign = kSigns[direction][axis];
+      if (sign > 0) sum += box.high[axis];
+      if (sign < 0) sum -= box.low[axis];
+    }
+    return sum;
+  }
+};
+
+template <class Splitter>
+class SplitTree : public BucketIndex {
+ public:
+  static constexpr std::size_t kRebuildShare = Splitter::kRebuildShare;
+
+  void clear();
+  void finish_build();
+  void insert(std::uint32_t item, const Aabb& box);
+  void remove(std::uint32_t item);
+  void move(std::uint32_t item, const Aabb& box);
+  void improve(std::size_t) {}
+  const char* find_fault() const;
+  std::size_t bytes() const { return item_bytes() + nodes_.bytes() + free_.bytes(); }
+  // How many nodes lie one below the other at most.
+  int depth() const;
+
+  template <class Visit>
+  void for_each_overlap(const Aabb& box, Visit&& visit) const {
+    if (root_ == kNone) return;
+    float low[Splitter::kDirections], high[Splitter::kDirections];
+    for (int i = 0; i < Splitter::kDirections; ++i) {
+      low[i] = SplitDirections::low(box, i);
+      high[i] = SplitDirections::high(box, i);
+    }
+    std::uint32_t stack[kStackSize];
+    int depth = 0;
+    stack[depth++] = root_;
+    while (depth > 0) {
+      const Node& node = nodes_[stack[--depth]];
+      if (node.is_leaf()) {
+        buckets_.for_each_overlap(node.items, box, [&](std::uint32_t item, std::uint32_t) { visit(item); });
+        continue;
+      }
+      const int direction = node.split.direction;
+      for (int i = 0; i < kChildren; ++i) {
+        if (node.low[i] <= high[direction] && node.high[i] >= low[direction]) stack[depth++] = node.child[i];
+      }
+    }
+  }
+
+  template <class Visit>
+  float for_each_along(const SweepTest& sweep, float reach, Visit&& visit) const {
+    if (root_ == kNone) return reach;
+    struct Waiting {
+      std::uint32_t node;
+      SweepRange range;
+    };
+    Waiting stack[kStackSize];
+    int depth = 0;
+    stack[depth++] = {root_, {0.0f, reach}};
+    while (depth > 0) {
+      Waiting next = stack[--depth];
+      next.range.leave = min(next.range.leave, reach);
+      if (next.range.is_empty()) continue;
+      const Node& node = nodes_[next.node];
+      if (node.is_leaf()) {
+        reach = buckets_.for_each_along(
+            node.items, sweep, reach,
+            [&](std::uint32_t item, float so_far, std::uint32_t) { return visit(item, so_far); });
+        if (reach < 0.0f) return reach;
+        continue;
+      }
+      const int bottom = depth;
+      for (int i = 0; i < kChildren; ++i) {
+        SweepRange range = next.range;
+        if (!(node.low[i] <= node.high[i])) continue;
+        clip(sweep, node, i, range);
+        if (range.is_empty()) continue;
+        int place = depth++;
+        for (; place > bottom && stack[place - 1].range.enter <= range.enter; --place)
+          stack[place] = stack[place - 1];
+        stack[place] = {node.child[i], range};
+      }
+    }
+    return reach;
+  }
+
+  // Boxes around what inner nodes hold.
+  template <class Visit>
+  void for_each_node(Visit&& visit) const {
+    if (root_ != kNone) visit_node(root_, 0, visit);
+  }
+
+ private:
+  static constexpr int kChildren = Splitter::kChildren;
+  static constexpr std::uint32_t kMostInLeaf = 32;
+  static constexpr std::uint32_t kFewInLeaf = 16;  // when it is built
+  static constexpr std::uint32_t kFewArrivals = 64;
+  static constexpr int kMostDepth = 96;
+  static constexpr int kStackSize = (kMostDepth + 2) * kChildren;
+
+  struct Node {
+    Split split;
+    std::uint32_t parent = kNone;
+    std::uint32_t items = kNone;  // of a leaf: a list of buckets_
+    std::uint32_t count = 0;      // items below
+    std::uint32_t arrivals = 0;   // since it was built
+    std::uint32_t child[kChildren] = {};
+    float low[kChildren];
+    float high[kChildren];
+    bool leaf = true;
+    bool used = true;
+
+    bool is_leaf() const { return leaf; }
+  };
+
+  static void clip(const SweepTest& sweep, const Node& node, int child, SweepRange& range) {
+    const int direction = node.split.direction;
+    if (direction < 3) {
+      sweep.clip(direction, node.low[child], node.high[child], range);
+    } else {
+      sweep.clip_along(SplitDirections::kSigns[direction], node.low[child], node.high[child], range);
+    }
+  }
+  template <class Visit>
+  Aabb visit_node(std::uint32_t index, int depth, Visit&& visit) const;
+
+  std::uint32_t make_node(std::uint32_t parent);
+  void free_subtree(std::uint32_t index);
+  void gather(std::uint32_t index);
+  void fill(std::uint32_t index, std::span<BoxEntry> entries, int depth);
+  void fill_leaf(std::uint32_t index, std::span<const BoxEntry> entries);
+  void rebuild(std::uint32_t index);
+  std::uint32_t descend(const Aabb& box);
+  void arrive(std::uint32_t leaf, std::uint32_t item, const Aabb& box);
+  void leave(std::uint32_t item);
+  void widen(Node& node, int child, const Aabb& box);
+
+  Array<Node> nodes_;
+  Array<std::uint32_t> free_;
+  std::uint32_t root_ = kNone;
+};
+
+template <class Splitter>
+template <class Visit>
+Aabb SplitTree<Splitter>::visit_node(std::uint32_t index, int depth, Visit&& visit) const {
+  const Node& node = nodes_[index];
+  constexpr float kEnd = std::numeric_limits<float>::infinity();
+  Aabb all{{kEnd, kEnd, kEnd}, {-kEnd, -kEnd, -kEnd}};
+  if (node.is_leaf()) {
+    buckets_.for_each(node.items,
+                      [&](std::uint32_t, const Aabb& box, std::uint32_t) { all = merge(all, box); });
+  } else {
+    for (const std::uint32_t child : node.child) all = merge(all, visit_node(child, depth + 1, visit));
+  }
+  if (all.low.x <= all.high.x) visit(all, depth);
+  return all;
+}
+
+}  // namespace gyre

@@ -1,0 +1,249 @@
+// Building and changing a tree of planes; for the two sources that make one. See split_tree.h.
+#pragma once
+
+#include "collision/broadphase/split_tree.h"
+
+#include <limits>
+
+namespace gyre {
+
+template <class Splitter>
+std::uint32_t SplitTree<Splitter>::make_node(std::uint32_t parent) {
+  const std::uint32_t index = take_place(nodes_, free_);
+  nodes_[index] = Node();
+  nodes_[index].parent = parent;
+  constexpr float kEnd = std::numeric_limits<float>::infinity();
+  for (int i = 0; i < kChildren; ++i) {
+    nodes_[index].low[i] = kEnd;
+    nodes_[index].high[i] = -kEnd;
+  }
+  return index;
+}
+
+template <class Splitter>
+void SplitTree<Splitter>::clear() {
+  clear_items();
+  nodes_.clear();
+  free_.clear();
+  root_ = kNone;
+}
+
+template <class Splitter>
+void SplitTree<Splitter>::widen(Node& node, int child, const Aabb& box) {
+  node.low[child] = min(node.low[child], SplitDirections::low(box, node.split.direction));
+  node.high[child] = max(node.high[child], SplitDirections::high(box, node.split.direction));
+}
+
+template <class Splitter>
+void SplitTree<Splitter>::fill_leaf(std::uint32_t index, std::span<const BoxEntry> entries) {
+  nodes_[index].leaf = true;
+  for (const BoxEntry& entry : entries) put(nodes_[index].items, index, entry.item, entry.box);
+}
+
+// Makes an empty node hold the entries.
+template <class Splitter>
+void SplitTree<Splitter>::fill(std::uint32_t index, std::span<BoxEntry> entries, int depth) {
+  nodes_[index].count = std::uint32_t(entries.size());
+  nodes_[index].arrivals = 0;
+  Split split;
+  if (entries.size() <= kFewInLeaf || depth >= kMostDepth / 2 || !Splitter::choose(entries, split)) {
+    fill_leaf(index, entries);
+    return;
+  }
+  // Child by child to the front, each time in one pass.
+  std::size_t begins[kChildren + 1] = {};
+  for (int i = 0; i < kChildren; ++i) {
+    std::size_t end = begins[i];
+    for (std::size_t k = end; k < entries.size(); ++k) {
+      if (i + 1 < kChildren && Splitter::child_of(split, entries[k].box) != i) continue;
+      const BoxEntry entry = entries[k];
+      entries[k] = entries[end];
+      entries[end++] = entry;
+    }
+    begins[i + 1] = end;
+  }
+  nodes_[index].leaf = false;
+  nodes_[index].split = split;
+  for (int i = 0; i < kChildren; ++i) {
+    const std::span<BoxEntry> part = entries.subspan(begins[i], begins[i + 1] - begins[i]);
+    const std::uint32_t child = make_node(index);
+    nodes_[index].child[i] = child;
+    for (const BoxEntry& entry : part) widen(nodes_[index], i, entry.box);
+    fill(child, part, depth + 1);
+  }
+}
+
+template <class Splitter>
+void SplitTree<Splitter>::finish_build() {
+  clear();
+  if (entries_.empty()) return;
+  for (const BoxEntry& entry : entries_) make_room(entry.item);
+  size_ = entries_.size();
+  root_ = make_node(kNone);
+  fill(root_, entries_, 0);
+}
+
+// Appends all that lies below a node to entries_.
+template <class Splitter>
+void SplitTree<Splitter>::gather(std::uint32_t index) {
+  const Node& node = nodes_[index];
+  if (node.is_leaf()) {
+    buckets_.for_each(node.items, [&](std::uint32_t item, const Aabb& box, std::uint32_t) {
+      entries_.push_back({box, item});
+    });
+    return;
+  }
+  for (const std::uint32_t child : node.child) gather(child);
+}
+
+// Gives back what is below a node and what it holds; the node itself stays, empty.
+template <class Splitter>
+void SplitTree<Splitter>::free_subtree(std::uint32_t index) {
+  Node& node = nodes_[index];
+  if (node.is_leaf()) {
+    buckets_.free_list(node.items);
+    node.items = kNone;
+    return;
+  }
+  for (const std::uint32_t child : node.child) {
+    free_subtree(child);
+    nodes_[child].used = false;
+    free_.push_back(child);
+  }
+}
+
+template <class Splitter>
+void SplitTree<Splitter>::rebuild(std::uint32_t index) {
+  int depth = 0;
+  for (std::uint32_t above = nodes_[index].parent; above != kNone; above = nodes_[above].parent) ++depth;
+  entries_.clear();
+  gather(index);
+  free_subtree(index);
+  constexpr float kEnd = std::numeric_limits<float>::infinity();
+  for (int i = 0; i < kChildren; ++i) {
+    nodes_[index].low[i] = kEnd;
+    nodes_[index].high[i] = -kEnd;
+  }
+  fill(index, entries_, depth);
+}
+
+// The leaf in which a box belongs; widens what is kept on the way.
+template <class Splitter>
+std::uint32_t SplitTree<Splitter>::descend(const Aabb& box) {
+  std::uint32_t index = root_;
+  while (!nodes_[index].is_leaf()) {
+    Node& node = nodes_[index];
+    const int child = Splitter::child_of(node.split, box);
+    widen(node, child, box);
+    index = node.child[child];
+  }
+  return index;
+}
+
+template <class Splitter>
+void SplitTree<Splitter>::leave(std::uint32_t item) {
+  const std::uint32_t leaf = nodes_of_[item];
+  take(nodes_[leaf].items, item);
+  for (std::uint32_t index = leaf; index != kNone; index = nodes_[index].parent) --nodes_[index].count;
+}
+
+// Puts an item into the leaf where it belongs, and builds anew what that wears out.
+template <class Splitter>
+void SplitTree<Splitter>::arrive(std::uint32_t leaf, std::uint32_t item, const Aabb& box) {
+  put(nodes_[leaf].items, leaf, item, box);
+  std::uint32_t worn = kNone;
+  int depth = 0;
+  for (std::uint32_t index = leaf; index != kNone; index = nodes_[index].parent, ++depth) {
+    Node& node = nodes_[index];
+    ++node.count;
+    if (++node.arrivals > max(kFewArrivals, node.count) && !node.is_leaf()) worn = index;
+  }
+  const std::uint32_t count = nodes_[leaf].count;
+  // What cannot be parted is tried again only when there is twice as much of it.
+  const bool full = count == kMostInLeaf + 1 || (count > kMostInLeaf && (count & (count - 1)) == 0);
+  if (full && worn == kNone) worn = depth > kMostDepth / 2 ? root_ : leaf;
+  if (worn != kNone) rebuild(worn);
+}
+
+template <class Splitter>
+void SplitTree<Splitter>::insert(std::uint32_t item, const Aabb& box) {
+  make_room(item);
+  GYRE_ASSERT(places_[item] == kNone, "the item is not in the tree yet");
+  if (root_ == kNone) root_ = make_node(kNone);
+  ++size_;
+  arrive(descend(box), item, box);
+}
+
+template <class Splitter>
+void SplitTree<Splitter>::remove(std::uint32_t item) {
+  GYRE_ASSERT(contains(item), "the item is in the tree");
+  leave(item);
+  if (--size_ == 0) clear();
+}
+
+template <class Splitter>
+void SplitTree<Splitter>::move(std::uint32_t item, const Aabb& box) {
+  GYRE_ASSERT(contains(item), "the item is in the tree");
+  const std::uint32_t leaf = descend(box);
+  if (leaf == nodes_of_[item]) {
+    buckets_.set_box(places_[item], box);
+    return;
+  }
+  leave(item);
+  arrive(leaf, item, box);
+}
+
+template <class Splitter>
+int SplitTree<Splitter>::depth() const {
+  int deepest = 0;
+  for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+    if (!nodes_[i].used) continue;
+    int depth = 0;
+    for (std::uint32_t above = i; above != kNone; above = nodes_[above].parent) ++depth;
+    deepest = max(deepest, depth);
+  }
+  return deepest;
+}
+
+template <class Splitter>
+const char* SplitTree<Splitter>::find_fault() const {
+  const char* fault = nullptr;
+  std::size_t items = 0, used = 0;
+  for (std::uint32_t index = 0; index < nodes_.size(); ++index) {
+    const Node& node = nodes_[index];
+    if (!node.used) continue;
+    ++used;
+    if (index != root_ && node.parent == kNone) return "a node hangs below none";
+    if (!node.is_leaf()) {
+      std::uint32_t count = 0;
+      for (const std::uint32_t child : node.child) {
+        if (nodes_[child].parent != index) return "a node does not know its parent";
+        count += nodes_[child].count;
+      }
+      if (count != node.count) return "the number of a node's items is wrong";
+      continue;
+    }
+    std::uint32_t here = 0;
+    buckets_.for_each(node.items, [&](std::uint32_t item, const Aabb& box, std::uint32_t place) {
+      ++here;
+      if (places_[item] != place || nodes_of_[item] != index) fault = "an item's place is wrong";
+      std::uint32_t below = index;
+      for (std::uint32_t above = node.parent; above != kNone; below = above, above = nodes_[above].parent) {
+        int lane = 0;
+        while (nodes_[above].child[lane] != below) ++lane;
+        const int direction = nodes_[above].split.direction;
+        if (SplitDirections::low(box, direction) < nodes_[above].low[lane] ||
+            SplitDirections::high(box, direction) > nodes_[above].high[lane])
+          fault = "an item reaches farther than a node above it knows";
+      }
+    });
+    if (here != node.count) return "the number of a leaf's items is wrong";
+    items += here;
+  }
+  if (fault != nullptr) return fault;
+  if (used + free_.size() != nodes_.size()) return "a node is neither in use nor free";
+  if (depth() > kMostDepth) return "nodes lie too deep";
+  return items == size_ ? nullptr : "the number of items is wrong";
+}
+
+}  // namespace gyre

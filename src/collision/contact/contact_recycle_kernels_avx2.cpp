@@ -1,0 +1,10 @@
+// Recycling of contacts for one kind of CPU, in a namespace of its own so that the linker can never mix it with others'.
+#define GYRE_TARGET_NAMESPACE target_avx2
+#include "collision/contact/contact_recycle_lanes.h"
+
+namespace gyre {
+
+extern const RecycleContacts kRecycleContacts_avx2;
+const RecycleContacts kRecycleContacts_avx2 = recycle_contacts<8>;
+
+}  // namespace gyre

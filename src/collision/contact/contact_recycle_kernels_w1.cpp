@@ -1,0 +1,10 @@
+// Recycling of contacts for one kind of CPU, in a namespace of its own so that the linker can never mix it with others'.
+#define GYRE_TARGET_NAMESPACE target_w1
+#include "collision/contact/contact_recycle_lanes.h"
+
+namespace gyre {
+
+extern const RecycleContacts kRecycleContacts_w1;
+const RecycleContacts kRecycleContacts_w1 = recycle_contacts<1>;
+
+}  // namespace gyre

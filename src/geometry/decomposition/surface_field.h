@@ -1,0 +1,55 @@
+// How far a point is from a triangle surface, and whether it is inside, for any triangles at all: open, crossing, doubled.
+//
+// Inside is where the generalized winding number is above kInsideWinding: a sum of solid angles, which is a whole number for
+// closed surfaces and falls off smoothly where there are holes; it is one half in the plane of a flat hole. Far groups of triangles count as one dipole each.
+// Sources: A. Jacobson, L. Kavan, O. Sorkine-Hornung, "Robust Inside-Outside Segmentation using Generalized Winding Numbers",
+// 2013; G. Barill et al., "Fast Winding Numbers for Soups and Clouds", 2018; A. van Oosterom, J. Strackee, "The Solid Angle of
+// a Plane Triangle", 1983.
+#pragma once
+
+#include "geometry/tree/static_tree.h"
+
+#include <gyre/math.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace gyre {
+
+// A little below one half, so that a hull that closes a flat hole lies within.
+constexpr double kInsideWinding = 0.4;
+
+class SurfaceField {
+ public:
+  // Vertices within 0 to about 1; at least one triangle. The spans must outlive the field.
+  SurfaceField(std::span<const DVec3> vertices, std::span<const std::uint32_t> indices);
+
+  double winding(DVec3 p) const;
+  bool inside(DVec3 p) const { return winding(p) > kInsideWinding; }
+  // The distance to the nearest triangle, or `reach` if that is less.
+  double distance(DVec3 p, double reach) const;
+
+ private:
+  // Triangles seen from afar.
+  struct Dipole {
+    DVec3 normal;  // times area
+    DVec3 center;
+    double radius = 0.0;
+  };
+  struct Sum {
+    DVec3 normal, moment;
+    double area = 0.0;
+  };
+  Sum gather(std::uint32_t child, std::uint32_t slot);
+  DVec3 corner(std::uint32_t position, int i) const {
+    return vertices_[indices_[3 * std::size_t(tree_.items[position]) + std::size_t(i)]];
+  }
+
+  std::span<const DVec3> vertices_;
+  std::span<const std::uint32_t> indices_;
+  StaticTree tree_;
+  std::vector<Dipole> dipoles_;  // by node * 8 + lane
+};
+
+}  // namespace gyre

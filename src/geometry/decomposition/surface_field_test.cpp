@@ -1,0 +1,80 @@
+// Distances and winding numbers against plain loops over all triangles.
+#include "geometry/decomposition/surface_field.h"
+
+#include "geometry/distance/closest.h"
+#include "geometry/decomposition/decomposition_test_meshes.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace gyre {
+namespace {
+
+struct Plain {
+  std::vector<DVec3> vertices;
+  std::vector<std::uint32_t> indices;
+
+  explicit Plain(const TestMesh& mesh) : indices(mesh.indices) {
+    for (const Vec3& v : mesh.vertices) vertices.push_back(DVec3(0.4f * v + Vec3{0.5f, 0.5f, 0.5f}));
+  }
+  double winding(DVec3 p) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < indices.size(); i += 3) {
+      const DVec3 a = vertices[indices[i]] - p, b = vertices[indices[i + 1]] - p,
+                  c = vertices[indices[i + 2]] - p;
+      const double la = length(a), lb = length(b), lc = length(c);
+      sum += 2.0 *
+             std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+    }
+    return sum / (4.0 * kPiDouble);
+  }
+  double distance(DVec3 p) const {
+    double best = 1.0e300;
+    for (std::size_t i = 0; i < indices.size(); i += 3) {
+      const SimplexPoint near =
+          closest_on_triangle(p, vertices[indices[i]], vertices[indices[i + 1]], vertices[indices[i + 2]]);
+      best = std::min(best, length(near.point - p));
+    }
+    return best;
+  }
+};
+
+void expect_equal_to_loops(const TestMesh& mesh) {
+  const Plain plain(mesh);
+  const SurfaceField field(plain.vertices, plain.indices);
+  std::mt19937 random(1);
+  const auto number = [&] { return double(random() >> 8) / 16777216.0; };
+  for (int i = 0; i < 400; ++i) {
+    DVec3 p{number(), number(), number()};
+    if (i % 2 == 0) {
+      // Close to the surface.
+      const std::size_t t = random() % (plain.indices.size() / 3);
+      p = plain.vertices[plain.indices[3 * t]] + 0.01 * (p - DVec3{0.5, 0.5, 0.5});
+    }
+    EXPECT_NEAR(field.distance(p, 10.0), plain.distance(p), 1.0e-9);
+    // Groups seen from afar are dipoles: what is left out falls with the square of radius over distance.
+    EXPECT_NEAR(field.winding(p), plain.winding(p), 0.06);
+  }
+  EXPECT_EQ(field.distance({0.5, 0.5, 9.0}, 0.25), 0.25);
+}
+
+TEST(SurfaceField, EqualsLoopsOverAllTriangles) {
+  expect_equal_to_loops(torus_mesh(0.8f, 0.3f));
+  expect_equal_to_loops(mug_mesh());
+  expect_equal_to_loops(bowl_sheet());
+  expect_equal_to_loops(gear_mesh(12));
+}
+
+TEST(SurfaceField, WindingCountsHowOftenAPointIsInside) {
+  TestMesh mesh = box_mesh({0, 0, 0}, {0.5f, 0.5f, 0.5f});
+  mesh.add(box_mesh({0.3f, 0, 0}, {0.5f, 0.4f, 0.4f}));
+  const Plain plain(mesh);
+  const SurfaceField field(plain.vertices, plain.indices);
+  EXPECT_NEAR(field.winding({0.5, 0.5, 0.5}), 2.0, 0.06);
+  EXPECT_NEAR(field.winding({0.35, 0.5, 0.5}), 1.0, 0.06);
+  EXPECT_NEAR(field.winding({0.95, 0.5, 0.5}), 0.0, 0.06);
+}
+
+}  // namespace
+}  // namespace gyre

@@ -1,0 +1,258 @@
+// Clipping of a rectangle to a rectangle. See manifold_box_face.h.
+#include "geometry/manifold/manifold_box_face.h"
+
+#include "geometry/manifold/clip.h"
+
+#include <bit>
+#include <utility>
+
+namespace gyre::boxes {
+namespace {
+
+// The reference box and the other one, the incident, in its frame.
+struct Roles {
+  const float* reference;  // half extents
+  const float* incident;
+  const float (*m)[4];     // reference_from_incident: m[i][k] component along axis i of the incident's axis k
+  const float (*axes)[4];  // the same by the incident's axes
+  alignas(16) float c[4];  // the incident's centre
+  bool reference_is_a;
+
+  Roles(const Boxes& x, bool is_a)
+      : reference(is_a ? x.a : x.b),
+        incident(is_a ? x.b : x.a),
+        m(is_a ? x.r : x.s),
+        axes(is_a ? x.s : x.r),
+        reference_is_a(is_a) {
+    (is_a ? Floats::load(x.t) : -Floats::load(x.u)).store(c);
+  }
+};
+
+// The lane of one axis.
+alignas(16) constexpr std::int32_t kOnly[3][4] = {{-1, 0, 0, 0}, {0, -1, 0, 0}, {0, 0, -1, 0}};
+inline Mask<4> only(int axis) { return Mask<4>::of(WideInt<4>::load(kOnly[axis]).v); }
+
+// The corners of each of the six faces, in order around it, and the edges that leave them: first for the face on the
+// negative side of an axis, then for that on the positive side.
+struct FaceNames {
+  std::uint32_t corner[3][2][4];
+  std::uint32_t edge[3][2][4];
+};
+constexpr FaceNames kFaces = [] {
+  FaceNames names{};
+  for (int k = 0; k < 3; ++k) {
+    const std::uint32_t first = 1u << kNext[k], second = 1u << kAfter[k];
+    const std::uint32_t around[4] = {first | second, second, 0, first};
+    for (int positive = 0; positive < 2; ++positive) {
+      for (int i = 0; i < 4; ++i) {
+        const std::uint32_t corner = around[i] | std::uint32_t(positive) << k;
+        names.corner[k][positive][i] = corner;
+        names.edge[k][positive][i] = edge_number(i % 2 == 0 ? kNext[k] : kAfter[k], corner);
+      }
+    }
+  }
+  return names;
+}();
+
+// A corner of the incident face over the reference face: its coordinates along the reference face, and in the place of the
+// third its height above it.
+struct Corner {
+  alignas(16) float place[4];
+  std::uint32_t feature;
+  std::uint32_t edge;  // the edge that leaves it: one of the incident's 12, or kSide + one of the four sides
+};
+constexpr std::uint32_t kSide = 16;
+
+// The corners of a polygon in order around it, and the first once more. Not cleared, as the corners are not: only the
+// counted ones are ever read.
+struct Polygon {
+  int count = 0;
+  const Corner* corners[12];
+
+  Polygon() {}
+};
+
+// The sides of the reference face.
+struct Sides {
+  std::uint32_t edge[4];  // the reference's edge at u = +, u = -, v = +, v = -
+  std::uint32_t corner;   // corner bits of the reference face with u and v negative
+  std::uint32_t bit_u, bit_v;
+  bool reference_is_a;
+
+  Sides(bool is_a, int axis, float facing)
+      : corner(facing > 0.0f ? 1u << axis : 0u),
+        bit_u(1u << kNext[axis]),
+        bit_v(1u << kAfter[axis]),
+        reference_is_a(is_a) {
+    // As edge_number() has it: v is the axis before this one, and u the one after it.
+    edge[1] = edge_number(kAfter[axis], corner), edge[0] = edge[1] + 2u;
+    edge[3] = edge_number(kNext[axis], corner), edge[2] = edge[3] + 1u;
+  }
+
+  std::uint32_t name(std::uint32_t polygon_edge, std::uint32_t side) const {
+    if (polygon_edge < kSide) {
+      return reference_is_a ? feature_edges(edge[side], polygon_edge)
+                            : feature_edges(polygon_edge, edge[side]);
+    }
+    const std::uint32_t other = polygon_edge - kSide;
+    const std::uint32_t side_u = side < 2 ? side : other, side_v = side < 2 ? other : side;
+    const std::uint32_t id = corner | (side_u == 0 ? bit_u : 0u) | (side_v == 2 ? bit_v : 0u);
+    return reference_is_a ? feature_vertex_a(id) : feature_vertex_b(id);
+  }
+};
+
+// Cuts the polygon where its coordinate along an axis, times `sign`, is above the limit. New corners go to `made`.
+void cut(const Polygon& in, int along, float sign, float limit, std::uint32_t side, const Sides& sides,
+         Corner*& made, Polygon& out) {
+  const Mask<4> lane = only(along);
+  int kept = 0;
+  float distance = sign * in.corners[0]->place[along] - limit;
+  bool inside = distance <= 0.0f;
+  for (int i = 0; i < in.count; ++i) {
+    const Corner& from = *in.corners[i];
+    const Corner& to = *in.corners[i + 1];
+    const float distance_to = sign * to.place[along] - limit;
+    const bool inside_to = distance_to <= 0.0f;
+    if (inside) out.corners[kept++] = &from;
+    if (inside != inside_to && kept < 8) {
+      const Floats start = Floats::load(from.place), t(distance / (distance - distance_to));
+      select(lane, Floats(sign * limit), start + t * (Floats::load(to.place) - start)).store(made->place);
+      made->feature = sides.name(from.edge, side);
+      made->edge = inside ? kSide + side : from.edge;
+      out.corners[kept++] = made++;
+    }
+    distance = distance_to, inside = inside_to;
+  }
+  out.count = kept;
+  out.corners[kept] = out.corners[0];
+}
+
+// The incident face cut to the reference rectangle.
+class FaceClip {
+ public:
+  FaceClip(const Roles& roles, int axis, float facing) : roles_(roles), axis_(axis), facing_(facing) {}
+
+  // Of the incident's face along axis k: points in the frame of the reference, midway between the surfaces, and at most four.
+  // Those above max_separation are left out. Returns how many there are.
+  int clip(int k, float max_separation, ManifoldPoint* out);
+
+ private:
+  void place_corners(int k, Floats* places);
+  int write(float max_separation, ManifoldPoint* out) const;
+
+  const Roles& roles_;
+  int axis_;
+  float facing_;
+  Polygon polygons_[2];
+  Polygon* polygon_ = polygons_;
+  union {
+    Corner corners_[4 + 4 * 8];
+  };
+};
+
+// The four corners of the incident face whose normal is +-axis k, in order around it.
+void FaceClip::place_corners(int k, Floats* places) {
+  const bool positive = !(facing_ * roles_.m[axis_][k] > 0.0f);
+  // Along the normal of the reference face: upwards from that face.
+  const Mask<4> normal = only(axis_);
+  const Floats turn = select(normal, Floats(facing_), Floats(1.0f)),
+               top = keep(normal, Floats::load(roles_.reference));
+  const auto half = [&](int i) { return Floats(roles_.incident[i]) * Floats::load(roles_.axes[i]); };
+  const Floats out = half(k), middle = Floats::load(roles_.c);
+  const Floats center = turn * (positive ? middle + out : middle - out) - top;
+  const Floats first = turn * half(kNext[k]), second = turn * half(kAfter[k]);
+  places[0] = center + first + second;
+  places[1] = center - first + second;
+  places[2] = center - first - second;
+  places[3] = center + first - second;
+  const std::uint32_t kind = roles_.reference_is_a ? feature_vertex_b(0) : feature_vertex_a(0);
+  for (int i = 0; i < 4; ++i) {
+    places[i].store(corners_[i].place);
+    corners_[i].feature = kind | kFaces.corner[k][positive][i];
+    corners_[i].edge = kFaces.edge[k][positive][i];
+  }
+}
+
+int FaceClip::write(float max_separation, ManifoldPoint* out) const {
+  const Mask<4> normal = only(axis_);
+  const Floats top(facing_ * roles_.reference[axis_]), half(0.5f * facing_);
+  int count = 0;
+  for (int i = 0; i < polygon_->count && count < 8; ++i) {
+    const Corner& corner = *polygon_->corners[i];
+    const float separation = corner.place[axis_];
+    if (!(separation <= max_separation)) continue;
+    const Floats place = Floats::load(corner.place);
+    out[count].position = to_vec3(select(normal, top + half * place, place));
+    out[count].separation = separation;
+    out[count++].feature = corner.feature;
+  }
+  return count;
+}
+
+int FaceClip::clip(int k, float max_separation, ManifoldPoint* out) {
+  Floats places[4];
+  place_corners(k, places);
+  const Floats h = Floats::load(roles_.reference);
+  const Floats low = min(min(places[0], places[1]), min(places[2], places[3])),
+               high = max(max(places[0], places[1]), max(places[2], places[3]));
+  const std::uint32_t sideways = kThree & ~(1u << axis_);
+  if (((to_bits(low > h) | to_bits(high < -h)) & sideways) != 0) return 0;
+  polygon_ = polygons_;
+  polygon_->count = 4;
+  for (int i = 0; i < 5; ++i) polygon_->corners[i] = &corners_[i % 4];
+  const std::uint32_t above = to_bits(high > h) & sideways, below = to_bits(low < -h) & sideways;
+  if ((above | below) != 0) {
+    const Sides sides(roles_.reference_is_a, axis_, facing_);
+    Corner* made = corners_ + 4;
+    const auto advance = [&](int along, float sign, std::uint32_t side) {
+      Polygon* const other = polygon_ == polygons_ ? polygons_ + 1 : polygons_;
+      cut(*polygon_, along, sign, roles_.reference[along], side, sides, made, *other);
+      polygon_ = other;
+    };
+    const int iu = kNext[axis_], iv = kAfter[axis_];
+    if ((above >> iu & 1u) != 0) advance(iu, 1.0f, 0);
+    if ((below >> iu & 1u) != 0) advance(iu, -1.0f, 1);
+    if ((above >> iv & 1u) != 0 && polygon_->count > 0) advance(iv, 1.0f, 2);
+    if ((below >> iv & 1u) != 0 && polygon_->count > 0) advance(iv, -1.0f, 3);
+  }
+  if (polygon_->count <= kMaxManifoldPoints) return write(max_separation, out);
+  ManifoldPoint points[8];
+  const int count =
+      reduce_points(points, write(max_separation, points), to_vec3(keep(only(axis_), Floats(facing_))));
+  for (int i = 0; i < count; ++i) out[i] = points[i];
+  return count;
+}
+
+}  // namespace
+
+void collide_face(const Boxes& x, const Axis& found, float max_separation, LocalManifold& out) {
+  const bool reference_is_a = found.number < kFirstB;
+  const int axis = reference_is_a ? found.number : found.number - kFirstB;
+  const Roles roles(x, reference_is_a);
+  const float facing = roles.c[axis] < 0.0f ? -1.0f : 1.0f;
+  FaceClip face(roles, axis, facing);
+  // The incident face opposes the reference most; if it lies beside it, the next two are tried.
+  const Floats slopes = absolute(Floats::load(roles.m[axis]));
+  const int steepest = std::countr_zero((to_bits(slopes >= highest(slopes)) & kThree) | 4u);
+  out.count = face.clip(steepest, max_separation, out.points);
+  if (out.count == 0) {
+    int second = kNext[steepest], third = kAfter[steepest];
+    if (slopes[third] > slopes[second]) std::swap(second, third);
+    out.count = face.clip(second, max_separation, out.points);
+    if (out.count == 0) out.count = face.clip(third, max_separation, out.points);
+    if (out.count == 0) return;
+  }
+  const Floats normal = keep(only(axis), Floats(facing));
+  if (reference_is_a) {
+    out.normal = to_vec3(normal);
+    return;
+  }
+  const Floats s0 = Floats::load(x.s[0]), s1 = Floats::load(x.s[1]), s2 = Floats::load(x.s[2]),
+               center = Floats::load(x.t);
+  const auto turn = [&](Floats v) { return s0 * spread<0>(v) + s1 * spread<1>(v) + s2 * spread<2>(v); };
+  out.normal = normalized(to_vec3(turn(-normal)));
+  for (int i = 0; i < out.count; ++i)
+    out.points[i].position = to_vec3(turn(three(out.points[i].position)) + center);
+}
+
+}  // namespace gyre::boxes

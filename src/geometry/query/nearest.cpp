@@ -1,0 +1,210 @@
+// GJK against convex shapes, planes and triangles; balls beside balls, capsules and boxes in closed form. See nearest.h.
+#include "geometry/query/nearest.h"
+
+#include "geometry/query/cast_ball.h"
+#include "geometry/query/cast_surface.h"
+#include "geometry/distance/closest.h"
+#include "geometry/shape/support.h"
+
+namespace gyre {
+namespace {
+
+// The least distance, less rounding, at which a search in growing boxes may stop.
+constexpr double kDistanceRounding = 1.0e-6;
+
+// From the distance of two cores to that of two surfaces.
+void fill(const CoreDistance& near, double radius_a, double radius_b, Nearest& out) {
+  const double radii = radius_a + radius_b;
+  out.normal = near.normal;
+  out.overlap = near.overlap || near.distance <= radii;
+  out.distance = out.overlap ? 0.0 : near.distance - radii;
+  out.on_target = near.on_a + radius_a * near.normal;
+  out.on_convex = near.on_b - radius_b * near.normal;
+  if (near.overlap) {
+    out.on_target = out.on_convex = near.on_a;
+  } else if (out.overlap) {
+    out.on_target = out.on_convex = 0.5 * (out.on_target + out.on_convex);
+  }
+}
+
+bool finish(const CorePair& pair, double radius_a, double radius_b, double max_distance, Nearest& out) {
+  const double radii = radius_a + radius_b;
+  // Looks a little farther than asked: hulls choose their support points in float.
+  const double reach = (max_distance + radii) * (1.0 + kDistanceRounding) + kDistanceRounding * pair.size();
+  const CoreDistance near = core_distance(pair, reach, {});
+  if (near.beyond || near.distance - radii > max_distance) return false;
+  fill(near, radius_a, radius_b, out);
+  return true;
+}
+
+// A ball beside a shape whose core is a point, a segment or a box; false if its middle lies in that core.
+bool nearest_of_ball(const Shape& target, const PlacedShape& ball, double max_distance, Nearest& out,
+                     bool& within) {
+  const DVec3 core = box_core(target), p = ball.position;
+  CoreDistance near;
+  near.on_a = {clamp(p.x, -core.x, core.x), clamp(p.y, -core.y, core.y), clamp(p.z, -core.z, core.z)};
+  near.on_b = p;
+  const DVec3 way = p - near.on_a;
+  near.distance = length(way);
+  if (!(near.distance > kDistanceRounding * length(p))) return false;
+  const double radius_a = double(target.radius), radius_b = double(ball.shape->radius);
+  within = near.distance - (radius_a + radius_b) <= max_distance;
+  near.normal = way / near.distance;
+  if (within) fill(near, radius_a, radius_b, out);
+  return true;
+}
+
+bool nearest_of_plane(const Shape& plane, const PlacedShape& convex, double max_distance, Nearest& out) {
+  const DVec3 normal(plane.extents);
+  const DVec3 lowest =
+      rotate(convex.orientation, core_support(*convex.shape, rotate_inverse(convex.orientation, -normal)));
+  out.on_convex = convex.position + lowest - double(core_radius(*convex.shape)) * normal;
+  const double height = dot(normal, out.on_convex) - double(plane.offset);
+  if (height > max_distance) return false;
+  out.normal = normal;
+  out.overlap = height <= 0.0;
+  out.distance = out.overlap ? 0.0 : height;
+  out.on_target = out.overlap ? out.on_convex : out.on_convex - height * normal;
+  return true;
+}
+
+bool nearest_of_triangle(const SurfaceTriangle& triangle, const PlacedShape& convex, double max_distance,
+                         Nearest& out) {
+  const DVec3 pivot(triangle.a);
+  const DVec3 corners[3] = {{}, DVec3(triangle.b) - pivot, DVec3(triangle.c) - pivot};
+  if (convex.shape->kind == ShapeKind::sphere) {
+    const DVec3 middle = convex.position - pivot;
+    const SimplexPoint near = closest_on_triangle(middle, corners[0], corners[1], corners[2]);
+    const DVec3 way = middle - near.point;
+    const double apart = length(way), gap = apart - double(convex.shape->radius);
+    if (gap > max_distance) return false;
+    // One that its middle lies in is a case for the search below.
+    if (gap > 0.0 && apart > kDistanceRounding * length(middle)) {
+      out.normal = way / apart;
+      out.overlap = false;
+      out.distance = gap;
+      out.on_target = near.point + pivot;
+      out.on_convex = convex.position - double(convex.shape->radius) * out.normal;
+      return true;
+    }
+  }
+  const CorePair pair(corners, *convex.shape, convex.position - pivot, convex.orientation);
+  const auto radius = double(core_radius(*convex.shape));
+  if (!finish(pair, 0.0, radius, max_distance, out)) return false;
+  out.on_target += pivot;
+  out.on_convex += pivot;
+  return true;
+}
+
+// A lower bound of the distance of two boxes, or 0.
+float box_gap(const Aabb& a, const Aabb& b) {
+  const Vec3 gap = max(max(a.low - b.high, b.low - a.high), Vec3{});
+  return length(gap);
+}
+
+Aabb outward(DVec3 low, DVec3 high) {
+  const double size =
+      max(max(absolute(low.x), absolute(high.x)),
+          max(max(absolute(low.y), absolute(high.y)), max(absolute(low.z), absolute(high.z))));
+  const double slack = 2.0e-7 * size;
+  const DVec3 all{slack, slack, slack};
+  return {to_float(low - all), to_float(high + all)};
+}
+
+// The nearest triangle whose box comes within `reach` of the convex shape's box.
+class SurfaceSearch {
+ public:
+  SurfaceSearch(const Shape& surface, const PlacedShape& convex, double max_distance)
+      : surface_(surface), convex_(convex), reach_(max_distance) {
+    const Aabb box = bounds(*convex.shape, {{}, to_float(convex.orientation)});
+    const float slack = kBoundsSlack * outer_radius(*convex.shape, {});
+    const Aabb grown = grow(box, slack);
+    box_ = outward(convex.position + DVec3(grown.low), convex.position + DVec3(grown.high));
+  }
+
+  // In boxes that grow eightfold, so that a near triangle is found without looking at all.
+  bool run(Nearest& out) {
+    const Aabb& all = surface_.kind == ShapeKind::mesh ? surface_.mesh->tree.box : surface_.field->box;
+    const auto least = double(box_gap(all, box_));
+    if (least * (1.0 - kDistanceRounding) > reach_) return false;
+    const double most = reach_;
+    double look = least + double(largest(half_size(box_))) +
+                  1.0e-6 * double(largest(max(absolute(all.low), absolute(all.high))));
+    for (;; look *= 8.0) {
+      const bool last = look >= most;
+      walk(last ? most : look);
+      // What is found beyond the box that was looked at may not be the nearest.
+      if (last || (found_ && reach_ <= look * (1.0 - kDistanceRounding))) break;
+    }
+    out = best_;
+    return found_;
+  }
+
+ private:
+  void walk(double distance) {
+    const float margin =
+        distance < double(kUnbounded) ? float(distance * (1.0 + kDistanceRounding)) : kUnbounded;
+    const Aabb box = grow(box_, margin);
+    if (surface_.kind == ShapeKind::mesh) {
+      const StaticTree& tree = surface_.mesh->tree;
+      walk_overlaps(
+          tree, box,
+          [&](std::uint32_t node, int lane) { return may_be_nearer(child_box(tree.nodes[node], lane)); },
+          [&](std::uint32_t first, std::uint32_t count) {
+            for (std::uint32_t id = first; id < first + count; ++id) {
+              if (may_be_nearer(triangle_box(*surface_.mesh, id)))
+                look_at(surface_triangle(*surface_.mesh, id));
+            }
+          });
+      return;
+    }
+    const HeightField& field = *surface_.field;
+    walk_cells(
+        field, box, [&](HeightBlock block) { return may_be_nearer(block_box(field, block)); },
+        [&](std::uint32_t column, std::uint32_t row) {
+          if (!is_solid_cell(field, column, row) || !may_be_nearer(block_box(field, {-1, column, row})))
+            return;
+          for (int half = 0; half < 2; ++half) look_at(surface_triangle(field, column, row, half));
+        });
+  }
+
+  bool may_be_nearer(const Aabb& box) const {
+    return double(box_gap(box, box_)) * (1.0 - kDistanceRounding) <= reach_;
+  }
+
+  void look_at(const SurfaceTriangle& triangle) {
+    Nearest next;
+    if (!nearest_of_triangle(triangle, convex_, reach_, next)) return;
+    next.triangle = public_triangle(surface_, triangle.id);
+    if (found_ && (next.distance > best_.distance ||
+                   (next.distance == best_.distance && next.triangle >= best_.triangle)))
+      return;
+    best_ = next;
+    found_ = true;
+    reach_ = next.distance;
+  }
+
+  const Shape& surface_;
+  const PlacedShape& convex_;
+  Aabb box_;  // of the convex shape
+  double reach_;
+  bool found_ = false;
+  Nearest best_;
+};
+
+}  // namespace
+
+bool find_nearest(const Shape& target, const PlacedShape& convex, double max_distance, Nearest& out) {
+  out = {};
+  if (target.kind == ShapeKind::plane) return nearest_of_plane(target, convex, max_distance, out);
+  if (!is_convex(target.kind)) return SurfaceSearch(target, convex, max_distance).run(out);
+  if (convex.shape->kind == ShapeKind::sphere && has_box_core(target)) {
+    bool within;
+    if (nearest_of_ball(target, convex, max_distance, out, within)) return within;
+  }
+  const CorePair pair(target, *convex.shape, convex.position, convex.orientation);
+  const auto radius_a = double(core_radius(target)), radius_b = double(core_radius(*convex.shape));
+  return finish(pair, radius_a, radius_b, max_distance, out);
+}
+
+}  // namespace gyre

@@ -1,0 +1,170 @@
+// cook_mesh: from outside data to a Mesh, or the reason why not.
+//
+// Steps: check every number, weld vertices, leave out triangles without area and doubles, order the rest by their tree, and
+// connect them. Doubles are triangles with the same three places in the same turn; one that faces the other way stays.
+#include "base/float_mode.h"
+#include "base/hash.h"
+#include "base/container/sort.h"
+#include "geometry/shape/cooked.h"
+#include "geometry/shape/mesh.h"
+#include "geometry/shape/mesh_topology.h"
+#include "geometry/shape/mesh_weld.h"
+
+namespace gyre {
+namespace {
+
+Error check_mesh(const MeshDef& def) {
+  if (def.indices.size() % 3 != 0) {
+    return make_error(ErrorCode::invalid_geometry,
+                      "mesh: %zu indices do not make whole triangles (three each)", def.indices.size());
+  }
+  const std::size_t triangles = def.indices.size() / 3;
+  if (triangles > StaticTree::kMaxItems) {
+    return make_error(ErrorCode::invalid_geometry, "mesh: %zu triangles; at most %u are allowed", triangles,
+                      StaticTree::kMaxItems);
+  }
+  if (!def.materials.empty() && def.materials.size() != triangles) {
+    return make_error(ErrorCode::invalid_geometry, "mesh: %zu materials for %zu triangles; needs one each, or none",
+                      def.materials.size(), triangles);
+  }
+  for (std::size_t i = 0; i < def.vertices.size(); ++i) {
+    const Vec3 v = def.vertices[i];
+    if (!is_finite(v)) {
+      return make_error(ErrorCode::invalid_geometry, "mesh: vertex %zu is not finite (%g, %g, %g)", i,
+                        double(v.x), double(v.y), double(v.z));
+    }
+    if (largest(absolute(v)) > kMaxSurfaceCoordinate) {
+      return make_error(ErrorCode::invalid_geometry,
+                        "mesh: vertex %zu (%g, %g, %g) is farther than %g m from the origin", i, double(v.x),
+                        double(v.y), double(v.z), double(kMaxSurfaceCoordinate));
+    }
+  }
+  for (std::size_t i = 0; i < def.indices.size(); ++i) {
+    if (def.indices[i] >= def.vertices.size()) {
+      return make_error(ErrorCode::invalid_geometry,
+                        "mesh: triangle %zu uses vertex %u, but there are only %zu vertices", i / 3,
+                        def.indices[i], def.vertices.size());
+    }
+  }
+  return {};
+}
+
+struct Triangles {
+  std::vector<std::uint32_t> indices;
+  std::vector<std::uint32_t> source;
+};
+
+Triangles keep_proper(const MeshDef& def) {
+  const std::vector<std::uint32_t> weld = weld_vertices(def.vertices, def.indices);
+  Triangles kept;
+  for (std::size_t i = 0; i < def.indices.size(); i += 3) {
+    const std::uint32_t a = weld[def.indices[i]], b = weld[def.indices[i + 1]], c = weld[def.indices[i + 2]];
+    if (triangle_normal(def.vertices[a], def.vertices[b], def.vertices[c]) == Vec3{0, 0, 0}) continue;
+    kept.indices.insert(kept.indices.end(), {a, b, c});
+    kept.source.push_back(std::uint32_t(i / 3));
+  }
+  return kept;
+}
+
+// Leaves out all but the first of triangles with the same corners in the same turn.
+void drop_doubles(Triangles& triangles) {
+  const std::size_t count = triangles.source.size();
+  struct Corners {
+    std::uint32_t a, b, c;
+    bool operator==(const Corners&) const = default;
+  };
+  // The lowest corner first, the turn kept.
+  const auto corners_of = [&](std::size_t triangle) {
+    const std::uint32_t* i = triangles.indices.data() + 3 * triangle;
+    if (i[0] < i[1] && i[0] < i[2]) return Corners{i[0], i[1], i[2]};
+    if (i[1] < i[2]) return Corners{i[1], i[2], i[0]};
+    return Corners{i[2], i[0], i[1]};
+  };
+  std::vector<std::uint64_t> keys(count), scratch_keys(count);
+  std::vector<std::uint32_t> order(count), scratch(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Corners corners = corners_of(i);
+    keys[i] = hash_bytes(&corners, sizeof corners);
+    order[i] = std::uint32_t(i);
+  }
+  radix_sort_pairs(keys, order, scratch_keys, scratch);
+  std::vector<std::uint8_t> drop(count, 0);
+  for (std::size_t begin = 0; begin < count;) {
+    std::size_t end = begin + 1;
+    for (; end < count && keys[end] == keys[begin]; ++end) {
+      if (corners_of(order[end]) == corners_of(order[begin])) drop[order[end]] = 1;
+    }
+    begin = end;
+  }
+  Triangles kept;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (drop[i] != 0) continue;
+    for (std::size_t k = 0; k < 3; ++k) kept.indices.push_back(triangles.indices[3 * i + k]);
+    kept.source.push_back(triangles.source[i]);
+  }
+  triangles = std::move(kept);
+}
+
+// Builds the tree and takes the triangles over in its order, then the vertices in the order in which those use them.
+void arrange(std::span<const Vec3> vertices, const Triangles& triangles, Mesh& mesh) {
+  const std::size_t count = triangles.source.size();
+  std::vector<Aabb> boxes(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3 a = vertices[triangles.indices[3 * i]], b = vertices[triangles.indices[3 * i + 1]],
+               c = vertices[triangles.indices[3 * i + 2]];
+    boxes[i] = {min(a, min(b, c)), max(a, max(b, c))};
+  }
+  build_static_tree(boxes, mesh.tree);
+  constexpr std::uint32_t kUnused = 0xffffffffu;
+  std::vector<std::uint32_t> place(vertices.size(), kUnused);
+  mesh.indices.reserve(3 * count);
+  mesh.source.reserve(count);
+  for (const std::uint32_t triangle : mesh.tree.items) {
+    mesh.source.push_back(triangles.source[triangle]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t vertex = triangles.indices[3 * std::size_t(triangle) + k];
+      if (place[vertex] == kUnused) {
+        place[vertex] = std::uint32_t(mesh.vertices.size());
+        mesh.vertices.push_back(vertices[vertex]);
+      }
+      mesh.indices.push_back(place[vertex]);
+    }
+  }
+  mesh.tree.items = {};
+}
+
+std::uint64_t hash_mesh(const Mesh& mesh) {
+  Hasher hasher{std::uint64_t(ShapeKind::mesh)};
+  hasher.add(std::uint64_t(mesh.double_sided ? 1 : 0));
+  hasher.add(std::uint64_t(mesh.vertices.size()));
+  hasher.add(std::as_bytes(std::span<const Vec3>(mesh.vertices)));
+  hasher.add(std::as_bytes(std::span<const std::uint32_t>(mesh.indices)));
+  for (const std::uint16_t material : mesh.materials) hasher.add(std::uint64_t(material));
+  return hasher.value();
+}
+
+}  // namespace
+
+Result<Geometry> cook_mesh(const MeshDef& def) {
+  const FloatMode mode;
+  if (const Error error = check_mesh(def); error.code != ErrorCode::none) return error;
+  Triangles triangles;
+  if (!def.vertices.empty()) triangles = keep_proper(def);
+  drop_doubles(triangles);
+  if (triangles.source.empty()) {
+    return make_error(ErrorCode::invalid_geometry, "mesh: none of its %zu triangles has an area",
+                      def.indices.size() / 3);
+  }
+  auto mesh = std::make_unique<Mesh>();
+  mesh->double_sided = def.double_sided;
+  mesh->materials.assign(def.materials.begin(), def.materials.end());
+  arrange(def.vertices, triangles, *mesh);
+  connect_triangles(*mesh);
+  auto cooked = std::make_shared<CookedGeometry>();
+  cooked->kind = ShapeKind::mesh;
+  cooked->content_hash = hash_mesh(*mesh);
+  cooked->mesh = std::move(mesh);
+  return Geometry(std::shared_ptr<const CookedGeometry>(std::move(cooked)));
+}
+
+}  // namespace gyre

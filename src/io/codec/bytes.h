@@ -1,0 +1,169 @@
+// Bytes out and in, little-endian on every machine. The reader is for bytes from outside: it never looks past their end,
+// checks counts against what is left before anything is allocated, and once something did not fit it stays failed and
+// gives zeros, so that callers may ask once at the end.
+#pragma once
+
+#include "base/container/array.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+namespace gyre {
+
+// A number's bits as the unsigned integer of its size; bool and enums are one byte.
+template <class T>
+auto to_bits(T value) {
+  if constexpr (std::is_same_v<T, float>) {
+    return __builtin_bit_cast(std::uint32_t, value);
+  } else if constexpr (std::is_same_v<T, double>) {
+    return __builtin_bit_cast(std::uint64_t, value);
+  } else if constexpr (std::is_same_v<T, bool> || std::is_enum_v<T>) {
+    static_assert(sizeof(T) == 1);
+    return static_cast<std::uint8_t>(value);
+  } else {
+    return static_cast<std::make_unsigned_t<T>>(value);
+  }
+}
+template <class T>
+using BitsOf = decltype(to_bits(T()));
+
+template <class Bits>
+void store_little(std::byte* to, Bits bits) {
+  for (std::size_t i = 0; i < sizeof(Bits); ++i) to[i] = static_cast<std::byte>(bits >> 8 * i & 0xff);
+}
+template <class Bits>
+Bits load_little(const std::byte* from) {
+  Bits bits = 0;
+  for (std::size_t i = 0; i < sizeof(Bits); ++i) bits = static_cast<Bits>(bits | Bits(from[i]) << 8 * i);
+  return bits;
+}
+
+// How many values an enum has; those from outside must be below. Every enum that is stored has its line here or beside
+// its codec.
+template <class E>
+constexpr int kEnumCount = E::no_count_is_known_for_this_enum;
+
+// Turns bits back into a value. False for a bool or enum value that does not exist.
+template <class T>
+bool from_bits(BitsOf<T> bits, T& value) {
+  if constexpr (std::is_same_v<T, float> || std::is_same_v<T, double>) {
+    value = __builtin_bit_cast(T, bits);
+  } else if constexpr (std::is_same_v<T, bool>) {
+    if (bits > 1) return false;
+    value = bits != 0;
+  } else if constexpr (std::is_enum_v<T>) {
+    if (bits >= kEnumCount<T>) return false;
+    value = static_cast<T>(bits);
+  } else {
+    value = static_cast<T>(bits);
+  }
+  return true;
+}
+
+class ByteWriter {
+ public:
+  template <class T>
+  requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) void put(T value) {
+    store_little(grow(sizeof(BitsOf<T>)), to_bits(value));
+  }
+  void put_bytes(std::span<const std::byte> bytes) {
+    if (!bytes.empty()) std::memcpy(grow(bytes.size()), bytes.data(), bytes.size());
+  }
+  // A count and the values.
+  template <class T>
+  void put_all(std::span<const T> values) {
+    put(std::uint64_t(values.size()));
+    std::byte* to = grow(values.size() * sizeof(BitsOf<T>));
+    for (const T& value : values) {
+      store_little(to, to_bits(value));
+      to += sizeof(BitsOf<T>);
+    }
+  }
+  // Overwrites what stands at `place`.
+  template <class T>
+  void patch(std::size_t place, T value) {
+    store_little(bytes_.data() + place, to_bits(value));
+  }
+  // Makes room for `count` bytes and returns where to write them; valid until the next call.
+  std::byte* grow(std::size_t count) {
+    const std::size_t old = bytes_.size();
+    bytes_.resize(old + count);
+    return bytes_.data() + old;
+  }
+
+  std::size_t size() const { return bytes_.size(); }
+  std::span<const std::byte> view() const { return bytes_; }
+  std::vector<std::byte> take() { return std::move(bytes_); }
+  void clear() { bytes_.clear(); }
+
+ private:
+  std::vector<std::byte> bytes_;
+};
+
+class ByteReader {
+ public:
+  explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+
+  template <class T>
+  requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) T get() {
+    T value{};
+    const std::byte* const from = take(sizeof(BitsOf<T>));
+    if (from != nullptr && !from_bits(load_little<BitsOf<T>>(from), value)) fail();
+    return value;
+  }
+  // The next `count` bytes; empty, and failed, if there are not as many.
+  std::span<const std::byte> get_bytes(std::uint64_t count) {
+    if (count > left()) {
+      fail();
+      return {};
+    }
+    const std::span<const std::byte> part = bytes_.subspan(place_, std::size_t(count));
+    place_ += std::size_t(count);
+    return part;
+  }
+  // A count of things that take at least `least_bytes` each; 0, and failed, if that many cannot follow.
+  std::size_t get_count(std::size_t least_bytes) {
+    const std::uint64_t count = get<std::uint64_t>();
+    if (count <= left() / least_bytes) return std::size_t(count);
+    fail();
+    return 0;
+  }
+  // What put_all wrote.
+  template <class T>
+  std::vector<T> get_all() {
+    constexpr std::size_t kSize = sizeof(BitsOf<T>);
+    std::vector<T> values(get_count(kSize));
+    const std::byte* from = take(values.size() * kSize);
+    for (T& value : values) {
+      if (!from_bits(load_little<BitsOf<T>>(from), value)) fail();
+      from += kSize;
+    }
+    return values;
+  }
+
+  void fail() { failed_ = true; }
+  bool failed() const { return failed_; }
+  // Nothing left and nothing wrong.
+  bool finished() const { return !failed_ && left() == 0; }
+  std::size_t place() const { return place_; }
+  std::size_t left() const { return failed_ ? 0 : bytes_.size() - place_; }
+
+ private:
+  const std::byte* take(std::size_t count) {
+    if (count > left()) fail();
+    if (failed_) return nullptr;
+    const std::byte* const from = bytes_.data() + place_;
+    place_ += count;
+    return from;
+  }
+
+  std::span<const std::byte> bytes_;
+  std::size_t place_ = 0;
+  bool failed_ = false;
+};
+
+}  // namespace gyre

@@ -1,0 +1,300 @@
+// Commands field by field. Each struct is taken apart by a structured binding, which fails to compile when a field is
+// added that is not listed here; std::visit does the same for a new command.
+#include "io/codec/command_codec.h"
+
+#include "io/codec/enum_counts.h"
+
+#include <type_traits>
+
+namespace gyre {
+
+namespace {
+
+template <class T, class Of>
+concept Is = std::is_same_v<std::remove_const_t<T>, Of>;
+
+// Passes fields on to a ByteWriter or takes them from a ByteReader: the same list of fields serves both.
+class FieldWriter {
+ public:
+  explicit FieldWriter(ByteWriter& out) : out_(out) {}
+  template <class T>
+  requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) void number(const T& value) { out_.put(value); }
+  template <class Tag>
+  void id(const Id<Tag>& value) {
+    out_.put(value.index), out_.put(value.generation);
+  }
+  void shape(const AnyShape& value) { write_shape(out_, value); }
+  template <class T>
+  void count(const std::vector<T>& list) {
+    out_.put(std::uint64_t(list.size()));
+  }
+  template <class T>
+  bool has(const std::optional<T>& value) {
+    out_.put(value.has_value());
+    return value.has_value();
+  }
+
+ private:
+  ByteWriter& out_;
+};
+
+class FieldReader {
+ public:
+  FieldReader(ByteReader& in, const GeometryTable& geometry, std::uint16_t world)
+      : in_(in), geometry_(geometry), world_(world) {}
+  template <class T>
+  requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) void number(T& value) { value = in_.get<T>(); }
+  template <class Tag>
+  void id(Id<Tag>& value) {
+    value.index = in_.get<std::uint32_t>();
+    value.generation = in_.get<std::uint16_t>();
+    value.world = value.generation != 0 ? world_ : std::uint16_t(0);
+  }
+  void shape(AnyShape& value) { value = read_shape(in_, geometry_); }
+  template <class T>
+  void count(std::vector<T>& list) {
+    constexpr std::size_t kLeast = std::is_same_v<T, ShapeDef> ? 64 : sizeof(T);  // bytes; a shape takes more
+    list.resize(in_.get_count(kLeast));
+  }
+  template <class T>
+  bool has(std::optional<T>& value) {
+    if (!in_.get<bool>()) return false;
+    value.emplace();
+    return true;
+  }
+
+ private:
+  ByteReader& in_;
+  const GeometryTable& geometry_;
+  std::uint16_t world_;
+};
+
+// ------------------------------------------------------------------------------------------------------------- values
+
+template <class C, class T>
+requires(std::is_arithmetic_v<std::remove_const_t<T>> ||
+         std::is_enum_v<std::remove_const_t<T>>) void fields(C& c, T& value) {
+  c.number(value);
+}
+template <class C, class Tag>
+void fields(C& c, Id<Tag>& value) {
+  c.id(value);
+}
+template <class C, class Tag>
+void fields(C& c, const Id<Tag>& value) {
+  c.id(value);
+}
+template <class C, Is<AnyShape> T>
+void fields(C& c, T& value) {
+  c.shape(value);
+}
+
+template <class C, class... Fields>
+void all(C& c, Fields&... values);
+
+template <class C, Is<Vec3> T>
+void fields(C& c, T& v) {
+  all(c, v.x, v.y, v.z);
+}
+template <class C, Is<DVec3> T>
+void fields(C& c, T& v) {
+  all(c, v.x, v.y, v.z);
+}
+template <class C, Is<Quat> T>
+void fields(C& c, T& q) {
+  all(c, q.x, q.y, q.z, q.w);
+}
+template <class C, Is<Sym3> T>
+void fields(C& c, T& m) {
+  all(c, m.xx, m.yy, m.zz, m.xy, m.xz, m.yz);
+}
+template <class C, class T>
+requires(Is<T, Transform> || Is<T, Pose>) void fields(C& c, T& t) { all(c, t.position, t.orientation); }
+template <class C, Is<bool[3]> T>
+void fields(C& c, T& flags) {
+  all(c, flags[0], flags[1], flags[2]);
+}
+template <class C, class T>
+void fields(C& c, std::optional<T>& value) {
+  if (c.has(value)) all(c, *value);
+}
+template <class C, class T>
+void fields(C& c, const std::optional<T>& value) {
+  if (c.has(value)) all(c, *value);
+}
+
+// -------------------------------------------------------------------------------------------------------- definitions
+
+template <class C, Is<Material> T>
+void fields(C& c, T& v) {
+  auto& [static_friction, dynamic_friction, restitution, rolling, spinning, id] = v;
+  all(c, static_friction, dynamic_friction, restitution, rolling, spinning, id);
+}
+template <class C, Is<MaterialPair> T>
+void fields(C& c, T& v) {
+  auto& [a, b, static_friction, dynamic_friction, restitution] = v;
+  all(c, a, b, static_friction, dynamic_friction, restitution);
+}
+template <class C, Is<SurfaceRule> T>
+void fields(C& c, T& v) {
+  auto& [id, material, velocity, one_way] = v;
+  all(c, id, material, velocity, one_way);
+}
+template <class C, Is<SolverOptions> T>
+void fields(C& c, T& v) {
+  auto& [method, sides, iterations, rows] = v;
+  all(c, method, sides, iterations, rows);
+}
+template <class C, Is<FieldBounds> T>
+void fields(C& c, T& v) {
+  auto& [low, high] = v;
+  all(c, low, high);
+}
+template <class C, Is<FieldDef> T>
+void fields(C& c, T& v) {
+  auto& [kind, bounds, layers, velocity, density, drag_coefficient, linear_drag, turbulence, turbulence_length, center,
+         strength, radius, falloff, core, axis, normal, offset] = v;
+  all(c, kind, bounds, layers, velocity, density, drag_coefficient, linear_drag, turbulence, turbulence_length, center,
+      strength, radius, falloff, core, axis, normal, offset);
+}
+template <class C, Is<ExplosionDef> T>
+void fields(C& c, T& v) {
+  auto& [center, pressure, reference, falloff, radius, occlusion, layers] = v;
+  all(c, center, pressure, reference, falloff, radius, occlusion, layers);
+}
+template <class C, Is<Filter> T>
+void fields(C& c, T& v) {
+  auto& [layer, collides_with, group] = v;
+  all(c, layer, collides_with, group);
+}
+template <class C, Is<ShapeDef> T>
+void fields(C& c, T& v) {
+  auto& [geometry, local, density, material, filter, sensor, user_data] = v;
+  all(c, geometry, local, density, material, filter, sensor, user_data);
+}
+template <class C, Is<LockedAxes> T>
+void fields(C& c, T& v) {
+  auto& [linear, angular] = v;
+  all(c, linear, angular);
+}
+template <class C, Is<BodyDef> T>
+void fields(C& c, T& v) {
+  auto& [type, pose, linear, angular, linear_damping, angular_damping, gravity_scale, continuous, can_sleep,
+         locked, mass, center, inertia, user_data] = v;
+  all(c, type, pose, linear, angular, linear_damping, angular_damping, gravity_scale, continuous, can_sleep,
+      locked, mass, center, inertia, user_data);
+}
+template <class C, Is<Limits> T>
+void fields(C& c, T& v) {
+  auto& [low, high] = v;
+  all(c, low, high);
+}
+template <class C, Is<Motor> T>
+void fields(C& c, T& v) {
+  auto& [velocity, position, force, frequency, damping] = v;
+  all(c, velocity, position, force, frequency, damping);
+}
+template <class C, Is<JointAxisDef> T>
+void fields(C& c, T& v) {
+  auto& [motion, limits, limit_frequency, limit_damping, motor, stiffness, damping, rest, friction] = v;
+  all(c, motion, limits, limit_frequency, limit_damping, motor, stiffness, damping, rest, friction);
+}
+template <class C, Is<PoseDrive> T>
+void fields(C& c, T& v) {
+  auto& [position, orientation, linear, angular, frequency, damping, force, torque] = v;
+  all(c, position, orientation, linear, angular, frequency, damping, force, torque);
+}
+template <class C, class T>
+requires(Is<T, std::vector<ShapeDef>> || Is<T, std::vector<Vec3>>) void fields(C& c, T& list) {
+  c.count(list);
+  for (auto& item : list) all(c, item);
+}
+// What only kinds beyond these five say: a recording of these stays as short as it was, and older ones open.
+constexpr bool says_more(JointKind kind) { return kind > JointKind::distance; }
+template <class C, Is<JointDef> T>
+void fields(C& c, T& v) {
+  auto& [kind, a, b, anchor, axis, anchor_b, limits, motor, length, min_length, max_length, stiffness,
+         damping, frequency, damping_ratio, break_force, break_torque, collide_connected, axis_b, friction, limit_frequency, limit_damping,
+         swing_y, swing_z, ratio, ground_a, ground_b, linear_x, linear_y, linear_z, angular_x, angular_y, angular_z,
+         drive, path, path_closed, path_orientation] = v;
+  all(c, kind, a, b, anchor, axis, anchor_b, limits, motor, length, min_length, max_length, stiffness,
+      damping, frequency, damping_ratio, break_force, break_torque, collide_connected);
+  all(c, friction, limit_frequency, limit_damping);
+  if (!says_more(kind)) return;
+  all(c, axis_b, swing_y, swing_z, ratio, ground_a, ground_b, linear_x, linear_y, linear_z, angular_x, angular_y,
+      angular_z, drive, path, path_closed, path_orientation);
+}
+
+// ----------------------------------------------------------------------------------------------------------- commands
+
+template <class T, class... Of>
+concept IsOneOf = (Is<T, Of> || ...);
+
+template <class C, class T>
+requires IsOneOf<T, RemoveBody, RemoveShape, AddJoint, RemoveJoint, SetGravity, SetMaterialPair, SetSurfaceRule, SetSleeping,
+                 SetSubsteps, AddField, RemoveField, Explode, Step>
+void fields(C& c, T& v) {
+  auto& [only] = v;
+  all(c, only);
+}
+template <class C, class T>
+requires IsOneOf<T, AddBody, AddShape, SetPose, SetType, SetGravityScale, SetMaterial, SetFilter, SetMotor,
+                 SetAwake, SetField, SetCombineRules, SetDrive, SetJointEnabled, SetSolver>
+void fields(C& c, T& v) {
+  auto& [first, second] = v;
+  all(c, first, second);
+}
+template <class C, Is<SetMotion> T>
+void fields(C& c, T& v) {
+  auto& [integrator, springs, time, tolerance, max_impacts] = v;
+  all(c, integrator, springs, time, tolerance, max_impacts);
+}
+template <class C, class T>
+requires IsOneOf<T, SetVelocity, MoveKinematic, SetDamping, AddForce, AddImpulse, SetJointAxis>
+void fields(C& c, T& v) {
+  auto& [first, second, third] = v;
+  all(c, first, second, third);
+}
+
+template <class C, class... Fields>
+void all(C& c, Fields&... values) {
+  (fields(c, values), ...);
+}
+
+// The n-th alternative of a variant, by its default value.
+template <std::size_t n = 0>
+bool make_alternative(std::size_t index, Command& command) {
+  if constexpr (n < std::variant_size_v<Command>) {
+    if (index != n) return make_alternative<n + 1>(index, command);
+    command.emplace<n>();
+    return true;
+  } else {
+    return false;
+  }
+}
+
+}  // namespace
+
+void write_command(ByteWriter& out, const Command& command) {
+  static_assert(std::variant_size_v<Command> < 256, "the number of a command is one byte");
+  out.put(std::uint8_t(command.index()));
+  FieldWriter writer(out);
+  std::visit([&](const auto& c) { fields(writer, c); }, command);
+}
+
+Command read_command(ByteReader& in, const GeometryTable& geometry, std::uint16_t world_number) {
+  Command command = Step{};
+  if (!make_alternative(in.get<std::uint8_t>(), command)) in.fail();
+  FieldReader reader(in, geometry, world_number);
+  std::visit([&](auto& c) { fields(reader, c); }, command);
+  return command;
+}
+
+void for_each_shape(const Command& command, FunctionRef<void(const AnyShape&)> fn) {
+  if (const auto* body = std::get_if<AddBody>(&command)) {
+    for (const ShapeDef& shape : body->shapes) fn(shape.geometry);
+  }
+  if (const auto* shape = std::get_if<AddShape>(&command)) fn(shape->def.geometry);
+}
+
+}  // namespace gyre

@@ -1,0 +1,41 @@
+// How many values each stored enum has, so that none comes in from outside that does not exist.
+#pragma once
+
+#include "collision/broadphase/proxy.h"
+#include "io/codec/bytes.h"
+
+#include <gyre/defs.h>
+#include <gyre/fields.h>
+
+namespace gyre {
+
+template <>
+inline constexpr int kEnumCount<ShapeKind> = kShapeKindCount;
+template <>
+inline constexpr int kEnumCount<BodyType> = int(BodyType::dynamic) + 1;
+template <>
+inline constexpr int kEnumCount<JointKind> = kJointKindCount;
+template <>
+inline constexpr int kEnumCount<JointAxis> = kJointAxisCount;
+template <>
+inline constexpr int kEnumCount<AxisMotion> = int(AxisMotion::limited) + 1;
+template <>
+inline constexpr int kEnumCount<PathOrientation> = int(PathOrientation::following) + 1;
+template <>
+inline constexpr int kEnumCount<SolverKind> = kSolverKindCount;
+template <>
+inline constexpr int kEnumCount<LcpMethod> = kLcpMethodCount;
+template <>
+inline constexpr int kEnumCount<CombineRule> = int(CombineRule::product) + 1;
+template <>
+inline constexpr int kEnumCount<IntegratorKind> = kIntegratorKindCount;
+template <>
+inline constexpr int kEnumCount<SpringKind> = int(SpringKind::explicit_force) + 1;
+template <>
+inline constexpr int kEnumCount<TimeStepping> = kTimeSteppingCount;
+template <>
+inline constexpr int kEnumCount<FieldKind> = int(FieldKind::buoyancy) + 1;
+template <>
+inline constexpr int kEnumCount<ProxyMotion> = int(ProxyMotion::moving) + 1;
+
+}  // namespace gyre

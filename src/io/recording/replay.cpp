@@ -1,0 +1,113 @@
+// The player. Going back is restoring the nearest keyframe before, which were kept while playing, and playing on from it.
+#include "io/snapshot/kept_state.h"
+#include "io/recording/recording.h"
+
+namespace gyre {
+
+namespace {
+
+// Keyframes of a recording, thinned out as they become many: then every second one goes and the next are twice as far apart.
+class Keyframes {
+ public:
+  static constexpr std::uint64_t kFirstInterval = 16;  // steps
+  static constexpr std::size_t kMostFrames = 128;
+  static constexpr std::size_t kMostBytes = std::size_t(512) << 20;
+
+  // `position`: steps played. Kept if it is time for one.
+  void offer(std::uint64_t position, const WorldState& state) {
+    if (position % interval_ != 0 || (!frames_.empty() && frames_.back().position >= position)) return;
+    frames_.push_back({position, {}});
+    frames_.back().state.keep(state);
+    bytes_ += frames_.back().state.bytes();
+    while (frames_.size() > 2 && (frames_.size() > kMostFrames || bytes_ > kMostBytes)) thin_out();
+  }
+  // The last one at or before `position`; null if there is none.
+  const KeptState* find(std::uint64_t position, std::uint64_t& found) const {
+    const KeptState* state = nullptr;
+    for (const Frame& frame : frames_) {
+      if (frame.position > position) break;
+      state = &frame.state;
+      found = frame.position;
+    }
+    return state;
+  }
+
+ private:
+  struct Frame {
+    std::uint64_t position;
+    KeptState state;
+  };
+
+  void thin_out() {
+    interval_ *= 2;
+    std::vector<Frame> kept;
+    bytes_ = 0;
+    for (Frame& frame : frames_) {
+      if (frame.position % interval_ != 0) continue;
+      bytes_ += frame.state.bytes();
+      kept.push_back(std::move(frame));
+    }
+    frames_ = std::move(kept);
+  }
+
+  std::vector<Frame> frames_;  // by position, ascending
+  std::uint64_t interval_ = kFirstInterval;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace
+
+struct Replay::Player {
+  Recording recording;
+  World world;
+  std::uint64_t position = 0;
+  Keyframes keyframes;
+
+  bool step(bool* matches) {
+    if (position >= recording.steps.size()) return false;
+    keyframes.offer(position, world.state());
+    const RecordedStep& step = recording.steps[std::size_t(position)];
+    const float seconds = play_commands(recording, step, world.state());
+    submit(world.state(), Step{seconds});
+    ++position;
+    if (matches != nullptr) *matches = has_recorded_hash(step, world.state());
+    return true;
+  }
+};
+
+Replay::Replay(std::unique_ptr<Player> player) : player_(std::move(player)) {}
+Replay::~Replay() = default;
+Replay::Replay(Replay&&) noexcept = default;
+Replay& Replay::operator=(Replay&&) noexcept = default;
+
+Result<Replay> Replay::open(std::vector<std::byte> bytes, const WorldDef& def) {
+  Result<Recording> recording = open_recording(std::move(bytes));
+  if (!recording) return recording.error();
+  Result<World> world = make_recorded_world(*recording, def);
+  if (!world) return world.error();
+  return Replay(std::make_unique<Player>(Player{*std::move(recording), *std::move(world), 0, {}}));
+}
+
+World& Replay::world() { return player_->world; }
+std::uint64_t Replay::step_count() const { return player_->recording.steps.size(); }
+std::uint64_t Replay::position() const { return player_->position; }
+bool Replay::truncated() const { return !player_->recording.closed; }
+bool Replay::step(bool* matches) { return player_->step(matches); }
+
+Error Replay::seek(std::uint64_t step) {
+  Player& player = *player_;
+  if (step > step_count()) {
+    return make_error(ErrorCode::invalid_argument, "seek: step %llu; the recording has %llu",
+                      static_cast<unsigned long long>(step), static_cast<unsigned long long>(step_count()));
+  }
+  std::uint64_t found = 0;
+  const KeptState* const frame = player.keyframes.find(step, found);
+  if (frame != nullptr && (step < player.position || found > player.position)) {
+    frame->put_back(player.world.state());
+    player.position = found;
+  }
+  while (player.position < step) player.step(nullptr);
+  return {};
+}
+
+}  // namespace gyre

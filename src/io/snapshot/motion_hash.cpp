@@ -1,0 +1,44 @@
+// See motion_hash.h. The rounds of XXH64 over eight words a body, four lanes at a time.
+#include "io/snapshot/motion_hash.h"
+
+#include "base/hash.h"
+
+#include <bit>
+#include <cstring>
+
+namespace gyre {
+
+namespace {
+
+std::uint64_t word_of(double value) { return __builtin_bit_cast(std::uint64_t, value); }
+
+// Two floats that lie side by side, by one load where that is the same.
+std::uint64_t word_of(const float* two) {
+  std::uint64_t word = 0;
+  if constexpr (std::endian::native == std::endian::little) {
+    std::memcpy(&word, two, sizeof word);
+  } else {
+    for (int i = 0; i < 2; ++i) word |= std::uint64_t(__builtin_bit_cast(std::uint32_t, two[i])) << 32 * i;
+  }
+  return word;
+}
+
+void eat_body(hash_detail::Lanes& lanes, const BodyMotion& motion, const BodyPlace& place) {
+  static_assert(kMotionLinear == 0 && kMotionAngular == 3, "six floats in a row");
+  const float* const velocities = reinterpret_cast<const float*>(&motion);
+  const float* const turn = reinterpret_cast<const float*>(&place.orientation);
+  lanes.eat(word_of(velocities), word_of(velocities + 2), word_of(velocities + 4), word_of(place.center.x));
+  lanes.eat(word_of(place.center.y), word_of(place.center.z), word_of(turn), word_of(turn + 2));
+}
+
+}  // namespace
+
+std::uint64_t hash_motion(const WorldState& state) {
+  const BodyStore& bodies = state.rigid.bodies;
+  hash_detail::Lanes lanes(state.step_count);
+  for (const std::uint32_t i : bodies.awake) eat_body(lanes, bodies.motion[i], bodies.places[i]);
+  const std::uint64_t counts = std::uint64_t(bodies.awake.size()) << 32 | state.rigid.contacts.live;
+  return mix_bits(lanes.merge() ^ mix_bits(counts ^ mix_bits(word_of(state.time))));
+}
+
+}  // namespace gyre

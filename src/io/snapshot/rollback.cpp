@@ -1,0 +1,67 @@
+// The ring of snapshots in memory.
+#include "io/snapshot/kept_state.h"
+
+#include <gyre/replay.h>
+
+namespace gyre {
+
+struct Rollback::Ring {
+  struct Slot {
+    bool used = false;
+    KeptState state;
+  };
+  std::vector<Slot> slots;
+  std::size_t next = 0;  // the slot that is written next
+};
+
+Rollback::Rollback(int capacity) : ring_(std::make_unique<Ring>()) {
+  ring_->slots.resize(capacity > 0 ? std::size_t(capacity) : 1);
+}
+Rollback::~Rollback() = default;
+Rollback::Rollback(Rollback&&) noexcept = default;
+
+void Rollback::save(const World& world) {
+  const std::uint64_t step = world.step_count();
+  std::vector<Ring::Slot>& slots = ring_->slots;
+  // What a rewound world steps through again replaces what was kept of that step, and all later steps are of a future
+  // that will not come.
+  std::size_t place = ring_->next;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (!slots[i].used || slots[i].state.step_count() < step) continue;
+    if (slots[i].state.step_count() == step) place = i;
+    slots[i].used = false;
+  }
+  slots[place].state.keep(world.state());
+  slots[place].used = true;
+  ring_->next = (place + 1) % slots.size();
+}
+
+bool Rollback::restore(World& world, std::uint64_t step) const {
+  for (const Ring::Slot& slot : ring_->slots) {
+    if (!slot.used || slot.state.step_count() != step) continue;
+    slot.state.put_back(world.state());
+    return true;
+  }
+  return false;
+}
+
+std::uint64_t Rollback::oldest() const {
+  std::uint64_t step = UINT64_MAX;
+  for (const Ring::Slot& slot : ring_->slots) {
+    if (slot.used && slot.state.step_count() < step) step = slot.state.step_count();
+  }
+  return step;
+}
+
+std::uint64_t Rollback::newest() const {
+  std::uint64_t step = 0;
+  bool any = false;
+  for (const Ring::Slot& slot : ring_->slots) {
+    if (!slot.used || (any && slot.state.step_count() <= step)) continue;
+    step = slot.state.step_count();
+    any = true;
+  }
+  return any ? step : UINT64_MAX;
+}
+
+}  // namespace gyre

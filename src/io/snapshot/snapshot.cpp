@@ -1,0 +1,346 @@
+// Saving and loading snapshots. See snapshot.h for the format.
+#include "io/snapshot/snapshot.h"
+
+#include "base/hash.h"
+#include "io/codec/record_codec.h"
+
+#include <gyre/replay.h>
+
+#include <cstring>
+#include <string_view>
+
+namespace gyre {
+
+namespace {
+
+constexpr char kSnapshotMagic[9] = "GYRESNAP";
+constexpr std::size_t kSnapshotHeaderBytes = 8 + 4 + 4 + 8 + 8;
+constexpr std::size_t kBodyLengthPlace = 16;
+constexpr std::size_t kBodyChecksumPlace = 24;
+
+Error bad_snapshot(const char* what) { return make_error(ErrorCode::invalid_data, "snapshot: %s", what); }
+
+// -------------------------------------------------------------------------------------------------------- the columns
+
+// The layout of each kind of column. Ids are their generations; shapes have a layout of their own.
+constexpr std::uint64_t kShapeLayout = hash_text("shape 1");
+
+template <class Column>
+struct ColumnLayout {  // a single record
+  static RecordLayout get() { return layout_of<Column>(); }
+};
+template <class T>
+struct ColumnLayout<Array<T>> {
+  static RecordLayout get() { return layout_of<T>(); }
+};
+template <IsColumn Column>
+struct ColumnLayout<Column> {
+  static RecordLayout get() { return layout_of<RecordOf<Column>>(); }
+};
+template <>
+struct ColumnLayout<IdPool> {
+  static RecordLayout get() { return layout_of<std::uint32_t>(); }
+};
+template <>
+struct ColumnLayout<std::vector<AnyShape>> {
+  static RecordLayout get() { return {1, kShapeLayout}; }
+};
+
+// A later column that is empty is not written, and one that is not there is empty: older snapshots open.
+template <class Column>
+bool is_left_out(const Column& column) {
+  if constexpr (is_later_column<Column>) return column.empty();
+  return false;
+}
+
+class ColumnWriter {
+ public:
+  explicit ColumnWriter(ByteWriter& out) : out_(out) {}
+
+  template <class Column>
+  void operator()(const char* name, const Column& column) {
+    if (is_left_out(column)) return;
+    const std::string_view text(name);
+    out_.put(std::uint8_t(text.size()));
+    out_.put_bytes(std::as_bytes(std::span<const char>(text)));
+    out_.put(ColumnLayout<Column>::get().hash);
+    write(column);
+    ++count;
+  }
+  std::uint32_t count = 0;
+
+ private:
+  template <class Record>
+  void write_records(std::span<const Record> records) {
+    const std::size_t bytes = layout_of<Record>().bytes * records.size();
+    out_.put(std::uint64_t(records.size()));
+    out_.put(std::uint64_t(bytes));
+    std::byte* to = out_.grow(bytes);
+    for (const Record& record : records) to = write_record(to, record);
+  }
+  template <class T>
+  void write(const Array<T>& column) {
+    write_records(column.view());
+  }
+  template <IsColumn T>
+  void write(const T& column) {
+    Array<RecordOf<T>> records;
+    records.reserve(column.size());
+    for (std::size_t i = 0; i < column.size(); ++i) records.push_back(column[i]);
+    write(records);
+  }
+  void write(const IdPool& ids) { write_records(ids.generations()); }
+  void write(const std::vector<AnyShape>& shapes) {
+    ByteWriter payload;
+    for (const AnyShape& shape : shapes) write_shape(payload, shape);
+    out_.put(std::uint64_t(shapes.size()));
+    out_.put(std::uint64_t(payload.size()));
+    out_.put_bytes(payload.view());
+  }
+  template <class Record>
+  void write(const Record& record) {
+    write_records(std::span<const Record>(&record, 1));
+  }
+
+  ByteWriter& out_;
+};
+
+// One column as it stands in the bytes.
+struct StoredColumn {
+  std::string_view name;
+  std::uint64_t layout = 0;
+  std::uint64_t count = 0;
+  std::span<const std::byte> payload;
+  bool used = false;
+};
+
+Error list_columns(ByteReader& in, std::vector<StoredColumn>& columns) {
+  const auto count = in.get<std::uint32_t>();
+  constexpr std::uint32_t kMostColumns = 1024;
+  if (in.failed() || count > kMostColumns) return bad_snapshot("it ends before its columns");
+  for (std::uint32_t i = 0; i < count; ++i) {
+    StoredColumn column;
+    const std::span<const std::byte> name = in.get_bytes(in.get<std::uint8_t>());
+    column.name = {reinterpret_cast<const char*>(name.data()), name.size()};
+    column.layout = in.get<std::uint64_t>();
+    column.count = in.get<std::uint64_t>();
+    column.payload = in.get_bytes(in.get<std::uint64_t>());
+    if (in.failed()) return bad_snapshot("it ends within a column");
+    columns.push_back(column);
+  }
+  return in.finished() ? Error{} : bad_snapshot("there is more than its columns take");
+}
+
+class ColumnReader {
+ public:
+  ColumnReader(std::vector<StoredColumn>& stored, const GeometryTable& geometry)
+      : stored_(stored), geometry_(geometry) {}
+
+  template <class Column>
+  void operator()(const char* name, Column& column) {
+    if (error_.code != ErrorCode::none) return;
+    StoredColumn* const found = find(name);
+    if constexpr (is_later_column<Column>) {
+      if (found == nullptr) return column.clear();
+    }
+    if (found == nullptr) {
+      error_ = make_error(ErrorCode::invalid_data, "snapshot: column '%s' is missing", name);
+    } else if (found->used) {
+      error_ = make_error(ErrorCode::invalid_data, "snapshot: column '%s' is there twice", name);
+    } else if (found->layout != ColumnLayout<Column>::get().hash) {
+      error_ = make_error(ErrorCode::unsupported,
+                          "snapshot: column '%s' has other fields than this version knows", name);
+    } else if (!read(*found, column)) {
+      error_ = make_error(ErrorCode::invalid_data, "snapshot: column '%s' holds what it cannot", name);
+    }
+    if (found != nullptr) found->used = true;
+  }
+  const Error& error() const { return error_; }
+
+ private:
+  StoredColumn* find(std::string_view name) {
+    StoredColumn* found = nullptr;
+    for (StoredColumn& column : stored_) {
+      if (column.name != name) continue;
+      if (found != nullptr) column.used = found->used = true;  // twice
+      found = &column;
+    }
+    return found;
+  }
+
+  template <class Record>
+  static bool size_fits(const StoredColumn& stored) {
+    const std::size_t bytes = layout_of<Record>().bytes;
+    return stored.count <= stored.payload.size() / bytes && stored.count * bytes == stored.payload.size();
+  }
+  template <class Record>
+  static bool read_records(const StoredColumn& stored, std::span<Record> records) {
+    const std::size_t bytes = layout_of<Record>().bytes;
+    const std::byte* from = stored.payload.data();
+    bool good = true;
+    for (Record& record : records) {
+      good = read_record(from, record) && good;
+      from += bytes;
+    }
+    return good;
+  }
+  template <class T>
+  bool read(const StoredColumn& stored, Array<T>& column) {
+    if (!size_fits<T>(stored)) return false;
+    column.resize(std::size_t(stored.count));
+    return read_records(stored, column.view());
+  }
+  template <IsColumn T>
+  bool read(const StoredColumn& stored, T& column) {
+    Array<RecordOf<T>> records;
+    if (!read(stored, records)) return false;
+    column.resize(records.size());
+    for (std::size_t i = 0; i < records.size(); ++i) column.set(i, records[i]);
+    return true;
+  }
+  bool read(const StoredColumn& stored, IdPool& ids) {
+    Array<std::uint32_t> generations;
+    return read(stored, generations) && ids.restore(generations);
+  }
+  bool read(const StoredColumn& stored, std::vector<AnyShape>& shapes) {
+    ByteReader in(stored.payload);
+    if (stored.count > in.left()) return false;
+    shapes.resize(std::size_t(stored.count));
+    for (AnyShape& shape : shapes) shape = read_shape(in, geometry_);
+    return in.finished();
+  }
+  template <class Record>
+  bool read(const StoredColumn& stored, Record& record) {
+    return stored.count == 1 && size_fits<Record>(stored) &&
+           read_records(stored, std::span<Record>(&record, 1));
+  }
+
+  std::vector<StoredColumn>& stored_;
+  const GeometryTable& geometry_;
+  Error error_;
+};
+
+Error read_columns(ByteReader& in, const GeometryTable& geometry, StateColumns& columns) {
+  std::vector<StoredColumn> stored;
+  const Error e = list_columns(in, stored);
+  if (e.code != ErrorCode::none) return e;
+  ColumnReader reader(stored, geometry);
+  for_each_column(columns, reader);
+  if (reader.error().code != ErrorCode::none) return reader.error();
+  for (const StoredColumn& column : stored) {
+    if (column.used) continue;
+    return make_error(ErrorCode::unsupported, "snapshot: column '%.*s' is not known to this version",
+                      int(column.name.size()), column.name.data());
+  }
+  return {};
+}
+
+Error read_header(ByteReader& in, std::span<const std::byte>& body) {
+  const std::span<const std::byte> magic = in.get_bytes(sizeof kSnapshotMagic - 1);
+  if (in.failed() || std::memcmp(magic.data(), kSnapshotMagic, magic.size()) != 0)
+    return bad_snapshot("these bytes are none");
+  const auto version = in.get<std::uint32_t>();
+  in.get<std::uint32_t>();
+  const auto length = in.get<std::uint64_t>();
+  const auto checksum = in.get<std::uint64_t>();
+  if (in.failed()) return bad_snapshot("it ends within its header");
+  if (version != kSnapshotVersion) {
+    return make_error(ErrorCode::unsupported, "snapshot: it is of format %u; this version reads format %u",
+                      version, kSnapshotVersion);
+  }
+  if (length != in.left()) return bad_snapshot("it is not as long as it says");
+  body = in.get_bytes(length);
+  if (hash_bytes(body.data(), body.size()) != checksum)
+    return bad_snapshot("it is damaged: the checksum differs");
+  return {};
+}
+
+}  // namespace
+
+void collect_geometry(const WorldState& state, GeometryTable& geometry) {
+  for (const AnyShape& shape : state.rigid.shapes.geometry) geometry.add(shape);
+}
+
+void write_snapshot(ByteWriter& out, const WorldState& state, GeometryTable& geometry) {
+  const std::size_t start = out.size();
+  out.put_bytes(std::as_bytes(std::span<const char>(kSnapshotMagic, sizeof kSnapshotMagic - 1)));
+  out.put(kSnapshotVersion);
+  out.put(std::uint32_t(0));
+  out.put(std::uint64_t(0));
+  out.put(std::uint64_t(0));
+  GeometryTable own;
+  collect_geometry(state, own);
+  for (const Geometry& item : own.items()) geometry.add(item);
+  write_geometry_table(out, own);
+  const std::size_t count_place = out.size();
+  out.put(std::uint32_t(0));
+  ColumnWriter writer(out);
+  for_each_column(state, writer);
+  out.patch(count_place, writer.count);
+  const std::span<const std::byte> body = out.view().subspan(start + kSnapshotHeaderBytes);
+  out.patch(start + kBodyLengthPlace, std::uint64_t(body.size()));
+  out.patch(start + kBodyChecksumPlace, hash_bytes(body.data(), body.size()));
+}
+
+Error read_snapshot(std::span<const std::byte> bytes, std::uint16_t world_number, GeometryTable& geometry,
+                    StateColumns& columns) {
+  ByteReader in(bytes);
+  std::span<const std::byte> body;
+  Error e = read_header(in, body);
+  if (e.code != ErrorCode::none) return e;
+  ByteReader parts(body);
+  e = read_geometry_table(parts, geometry);
+  if (e.code == ErrorCode::none) e = read_columns(parts, geometry, columns);
+  if (e.code != ErrorCode::none) return e;
+  columns.rigid.world_number = world_number;
+  return rebuild_derived(columns.rigid);
+}
+
+std::uint64_t state_layout() {
+  std::uint64_t hash = 0;
+  const StateColumns columns;
+  for_each_column(columns, [&]<class Column>(const char* name, const Column&) {
+    hash = mix_bits(hash + ColumnLayout<Column>::get().hash);
+    hash = mix_bits(hash + hash_text(name));
+  });
+  return hash;
+}
+
+void reseal_snapshot(std::span<std::byte> bytes) {
+  if (bytes.size() < kSnapshotHeaderBytes) return;
+  const std::span<std::byte> body = bytes.subspan(kSnapshotHeaderBytes);
+  store_little(bytes.data() + kBodyLengthPlace, std::uint64_t(body.size()));
+  store_little(bytes.data() + kBodyChecksumPlace, hash_bytes(body.data(), body.size()));
+}
+
+std::vector<std::byte> save_snapshot(const World& world) {
+  ByteWriter out;
+  GeometryTable geometry;
+  write_snapshot(out, world.state(), geometry);
+  return out.take();
+}
+
+Result<World> load_snapshot(std::span<const std::byte> bytes, const WorldDef& def) {
+  Error e = check_world_def(def);
+  if (e.code != ErrorCode::none) return e;
+  std::unique_ptr<WorldState> state = make_world_state(def);
+  GeometryTable geometry;
+  StateColumns columns;
+  e = read_snapshot(bytes, state->number, geometry, columns);
+  if (e.code != ErrorCode::none) return e;
+  adopt_columns(*state, std::move(columns));
+  return World(std::move(state));
+}
+
+Error restore_snapshot(World& world, std::span<const std::byte> bytes) {
+  WorldState& state = world.state();
+  if (state.stepping) return make_error(ErrorCode::busy, "the world is in the middle of a step");
+  GeometryTable geometry;
+  collect_geometry(state, geometry);
+  StateColumns columns;
+  const Error e = read_snapshot(bytes, state.number, geometry, columns);
+  if (e.code == ErrorCode::none) adopt_columns(state, std::move(columns));
+  return e;
+}
+
+}  // namespace gyre

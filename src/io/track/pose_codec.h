@@ -1,0 +1,160 @@
+// Poses as whole numbers, and what is new in a pose after the two before it, as few bits. Integers only beyond the rounding
+// itself, so bits and poses are the same on every platform. docs/recording.md has it in words, docs/decisions/track-coding.md
+// why it is done so.
+//
+// - A coordinate is rounded to a multiple of 2^-position_bits m. An orientation is a quaternion of which the largest part is
+//   positive and left out, and the others are rounded to multiples of 2^-orientation_bits.
+// - A pose is predicted to go on as it went between the last two frames: the position by the same way, the orientation by
+//   the same rotation. What is stored is the difference, so no error is carried on.
+// - A difference is stored in a Rice code whose parameter follows the sizes of the last differences of the same body and
+//   component. R. F. Rice, "Some practical universal noiseless coding techniques", 1979.
+#pragma once
+
+#include "io/codec/bits.h"
+
+#include <gyre/math.h>
+#include <gyre/track.h>
+
+namespace gyre {
+
+struct PoseSteps {
+  int position_bits = 13;
+  int orientation_bits = 16;
+};
+// 2^bits, exactly.
+inline double power_of_two(int bits) { return __builtin_bit_cast(double, std::uint64_t(1023 + bits) << 52); }
+// What a file may say.
+constexpr int kMostPositionBits = 40;
+constexpr int kLeastPositionBits = -20;
+constexpr int kMostOrientationBits = 20;
+constexpr int kLeastOrientationBits = 8;
+constexpr std::int64_t kMostPosition = std::int64_t(1)
+                                       << 51;  // steps from the origin; poses farther off are put there
+
+struct RoundedPose {
+  std::int64_t position[3] = {0, 0, 0};
+  std::int64_t orientation[4] = {
+      0, 0, 0, 0};  // x, y, z, w; the largest is the integer nearest to what the others leave
+  int largest = 3;
+
+  bool operator==(const RoundedPose&) const = default;
+};
+
+// The nearest pose that can be stored. The pose must be finite.
+RoundedPose round_pose(const Pose& pose, PoseSteps steps);
+Pose unrounded(const RoundedPose& pose, PoseSteps steps);
+// How far a stored pose may be from the one that was rounded.
+TrackAccuracy accuracy_of(PoseSteps steps);
+// Fills in the largest part. False if the others leave nothing for it.
+bool complete_orientation(RoundedPose& pose, PoseSteps steps);
+
+// What is known of a body's poses up to the last frame: all that a prediction needs.
+struct PoseHistory {
+  RoundedPose now, before;
+  std::int64_t sizes[6] = {-1, -1, -1,
+                           -1, -1, -1};  // of the last differences, in sixteenths; -1: there was none
+};
+// A history that begins with this pose, at rest.
+PoseHistory begin_history(const RoundedPose& pose);
+// The pose that follows from the history, without `largest`.
+RoundedPose predict(const PoseHistory& history, PoseSteps steps);
+
+// A difference, given the size of those before it.
+template <class Bits>
+void code_difference(Bits& bits, std::int64_t& difference, std::int64_t& size) {
+  constexpr int kFirstLowBits = 8;          // of the first difference after the beginning
+  constexpr std::int64_t kSecondSize = 64;  // the first says nothing about those to come
+  constexpr std::uint64_t kMostHigh = 24;   // more are written as a count of bits
+  constexpr int kMostBits = 57;
+  const bool first = size < 0;
+  // The fewest low bits k with 1.5 * 2^k >= size / 16.
+  const int low_bits = first ? kFirstLowBits : int(std::bit_width(std::uint64_t((size - 1) / 12)));
+  if constexpr (Bits::kReads) {
+    std::uint64_t folded = 0, high = 0, more = 1;
+    while (high < kMostHigh) {
+      bits.code_bits(more, 1);
+      if (!more) break;
+      ++high;
+    }
+    if (high >= kMostHigh) {
+      std::uint64_t width = 0;
+      bits.code_bits(width, 6);
+      if (width > kMostBits) bits.fail(), width = 0;
+      bits.code_bits(folded, int(width));
+    } else {
+      bits.code_bits(folded, low_bits);
+      folded |= high << low_bits;
+    }
+    if (bits.failed() || folded >> kMostBits != 0) bits.fail(), folded = 0;
+    difference = unfold_sign(folded);
+  } else {
+    const std::uint64_t folded = fold_sign(difference), high = folded >> low_bits;
+    if (high < kMostHigh) {
+      constexpr int kMostAtOnce = 64 - int(kMostHigh);
+      const std::uint64_t ones = (std::uint64_t(1) << high) - 1, low = folded & ((std::uint64_t(1) << low_bits) - 1);
+      const int unary = int(high) + 1;
+      if (low_bits <= kMostAtOnce) {
+        bits.code_bits(low << unary | ones, unary + low_bits);
+      } else {
+        bits.code_bits(ones, unary);
+        bits.code_bits(low, low_bits);
+      }
+    } else {
+      bits.code_bits((std::uint64_t(1) << kMostHigh) - 1, int(kMostHigh));
+      bits.code_bits(std::uint64_t(std::bit_width(folded)), 6);
+      bits.code_bits(folded, int(std::bit_width(folded)));
+    }
+  }
+  const std::int64_t newest = 16 * (difference < 0 ? -difference : difference);
+  size = first ? kSecondSize : size + ((newest - size + 1) >> 1);
+}
+
+// A pose by itself.
+template <class Bits>
+void code_pose(Bits& bits, RoundedPose& pose, PoseSteps steps) {
+  constexpr int kPositionOrder = 16;
+  for (std::int64_t& coordinate : pose.position) {
+    std::uint64_t folded = Bits::kReads ? 0 : fold_sign(coordinate);
+    code_count(bits, folded, kPositionOrder);
+    if constexpr (Bits::kReads) coordinate = unfold_sign(folded);
+  }
+  std::uint64_t largest = std::uint64_t(pose.largest);
+  bits.code_bits(largest, 2);
+  pose.largest = int(largest);
+  const std::int64_t one = std::int64_t(1) << steps.orientation_bits;
+  for (int i = 0; i < 4; ++i) {
+    if (i == pose.largest) continue;
+    std::uint64_t above = std::uint64_t(pose.orientation[i] + one);
+    bits.code_bits(above, steps.orientation_bits + 2);
+    pose.orientation[i] = std::int64_t(above) - one;
+  }
+}
+
+// A pose after others.
+template <class Bits>
+void code_next_pose(Bits& bits, RoundedPose& pose, PoseHistory& history, PoseSteps steps) {
+  RoundedPose expected = predict(history, steps);
+  for (int i = 0; i < 3; ++i) {
+    std::int64_t difference = pose.position[i] - expected.position[i];
+    code_difference(bits, difference, history.sizes[i]);
+    pose.position[i] = expected.position[i] + difference;
+  }
+  std::uint64_t other = pose.largest != expected.largest;
+  bits.code_bits(other, 1);
+  std::uint64_t largest = other ? std::uint64_t(pose.largest) : std::uint64_t(expected.largest);
+  if (other) bits.code_bits(largest, 2);
+  pose.largest = int(largest);
+  const std::int64_t sign = expected.orientation[largest] < 0 ? -1 : 1;
+  int component = 3;
+  for (int i = 0; i < 4; ++i) {
+    if (i == pose.largest) continue;
+    std::int64_t difference = pose.orientation[i] - sign * expected.orientation[i];
+    code_difference(bits, difference, history.sizes[component++]);
+    pose.orientation[i] = sign * expected.orientation[i] + difference;
+  }
+}
+
+// Moves the history on by the pose that was coded. False if it is none, which only a reader meets.
+bool advance(PoseHistory& history, RoundedPose& pose, PoseSteps steps);
+
+}  // namespace gyre

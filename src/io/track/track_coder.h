@@ -1,0 +1,81 @@
+// The bits of a frame, for writer and reader alike:
+//
+//   how many bodies changed, then each by ascending index: how far its index is from the last, what changed
+//     removed
+//     put: generation, model, flags, pose by itself
+//     flags
+//   then the next pose of each body that is active and was not put, by ascending index
+//
+// A body is active in the frames in which its pose is written: while it is awake, or was put elsewhere asleep. In a
+// keyframe every body is put.
+#pragma once
+
+#include "io/track/pose_codec.h"
+
+#include <vector>
+
+namespace gyre {
+
+struct TrackedBody {
+  std::uint32_t index = 0;
+  std::uint16_t generation = 0;
+  bool awake = false;
+  bool active = false;
+  bool put = false;  // in the present frame
+  std::uint32_t model = 0;
+  PoseHistory pose;
+};
+
+enum class BodyChange : std::uint8_t { removed, put, flags };
+
+template <class Bits>
+void code_change_count(Bits& bits, std::uint64_t& count) {
+  code_count(bits, count, 0);
+}
+
+// `gap`: indices between this body's and that of the change before.
+template <class Bits>
+void code_change(Bits& bits, std::uint64_t& gap, BodyChange& change) {
+  code_count(bits, gap, 4);
+  auto number = std::uint64_t(change);
+  bits.code_bits(number, 2);
+  change = BodyChange(number);
+}
+
+template <class Bits>
+void code_flags(Bits& bits, TrackedBody& body) {
+  std::uint64_t awake = body.awake, active = body.active;
+  bits.code_bits(awake, 1);
+  bits.code_bits(active, 1);
+  body.awake = awake != 0;
+  body.active = active != 0;
+}
+
+template <class Bits>
+void code_put(Bits& bits, TrackedBody& body, RoundedPose& pose, PoseSteps steps) {
+  std::uint64_t generation = body.generation, model = body.model;
+  bits.code_bits(generation, 16);
+  code_count(bits, model, 4);
+  body.generation = std::uint16_t(generation);
+  body.model = model > 0xffffffffu ? 0xffffffffu : std::uint32_t(model);
+  code_flags(bits, body);
+  code_pose(bits, pose, steps);
+}
+
+// Takes the bits of a frame into `bodies`, which are those of the frame before (none for a keyframe). False if they
+// cannot be; what `bodies` hold is then of no use.
+class FrameDecoder {
+ public:
+  FrameDecoder(std::uint32_t model_count, PoseSteps steps) : model_count_(model_count), steps_(steps) {}
+  bool decode(std::span<const std::byte> bytes, std::vector<TrackedBody>& bodies);
+
+ private:
+  bool apply_changes(BitReader& bits, std::uint64_t count, std::vector<TrackedBody>& bodies);
+  bool read_put(BitReader& bits, TrackedBody& body) const;
+
+  std::uint32_t model_count_;
+  PoseSteps steps_;
+  std::vector<TrackedBody> next_;
+};
+
+}  // namespace gyre

@@ -1,0 +1,67 @@
+// Writes the track of a world's recording: looks at the world after a step and puts out the chunks of a frame. It never
+// changes the world. The reading side is track_reader.cpp, the public one <gyre/track.h>.
+#pragma once
+
+#include "base/container/flat_map.h"
+#include "base/function_ref.h"
+#include "io/chunk/chunks.h"
+#include "io/track/rounding_slack.h"
+#include "io/track/track_coder.h"
+#include "io/track/track_format.h"
+#include "world/world_state.h"
+
+namespace gyre {
+
+using EmitChunk = FunctionRef<void(ChunkKind, std::span<const std::byte>)>;
+
+class TrackWriter {
+ public:
+  explicit TrackWriter(const TrackStart& start) : start_(start) {}
+
+  void begin(EmitChunk emit) const;
+  void frame(const WorldState& state, EmitChunk emit);
+  // Shapes or types of bodies that exist may have changed.
+  void models_changed() { models_stale_ = true; }
+  // The next frame does not follow from the one before.
+  void jumped() { frames_since_key_ = kKeyframeInterval, models_stale_ = true; }
+
+ private:
+  struct WrittenBody {
+    TrackedBody body;
+    bool present = false;
+    bool moved = false;    // `next` is to be written
+    int same = 0;          // frames since `next` was another
+    bool settled = false;  // and so are its bits, `rest`, until it is not
+    int rest_size = 0;
+    std::uint64_t rest = 0;
+    RoundedPose next;
+    // `next` is the rounded pose wherever the body is so near to where it was seen.
+    RoundingSlack slack;
+    BodyPlace seen{};
+    Vec3 seen_mass_center{};
+  };
+  struct Change {
+    std::uint32_t index;
+    BodyChange kind;
+  };
+
+  void look_at(const WorldState& state, std::uint32_t index, bool key, EmitChunk emit);
+  void look_at_known(const WorldState& state, WrittenBody& written);
+  void round_again(const BodyPlace& place, const BodyMass& mass, WrittenBody& written);
+  void write_next(BitWriter& bits, WrittenBody& written);
+  void settle(WrittenBody& written) const;
+  std::vector<std::byte> frame_bits();
+  std::uint32_t model_of(const RigidWorld& w, std::uint32_t body, EmitChunk emit);
+  std::uint32_t geometry_number(const AnyShape& shape, EmitChunk emit);
+
+  TrackStart start_;
+  std::vector<WrittenBody> bodies_;          // by index
+  std::vector<Change> changes_;              // of the present frame, by index
+  FlatMap<std::uint32_t> geometry_numbers_;  // by content hash
+  FlatMap<std::uint32_t> model_numbers_;     // by hash of what was written
+  bool models_stale_ = false;
+  std::uint64_t frames_since_key_ = kKeyframeInterval;
+  std::uint64_t set_version_ = 0;
+};
+
+}  // namespace gyre

@@ -1,0 +1,272 @@
+// Islands by union-find, islands to batches in the order of their lowest bodies, members to batches by counting. See
+// solve_batches.h.
+#include "rigid/batch/solve_batches.h"
+
+#include "base/arena/counted_lists.h"
+#include "task/choose.h"
+#include "task/parallel.h"
+
+#include <algorithm>
+
+namespace gyre {
+
+namespace {
+
+// Manifolds and joints: what is less is not worth to be shared among workers.
+constexpr std::uint32_t kWorthSharing = 64;
+
+// What islands and batches need to know of a contact or joint, so that its record is read once.
+struct Tie {
+  std::uint32_t owner;  // a body that moves: its island is the constraint's
+  std::uint32_t other;  // may be one that does not, or kNoIndex
+  std::uint32_t size;   // manifolds
+};
+
+// What is solved in this step, ascending, and what it ties: by slot, of others nothing is known.
+struct Constraints {
+  std::span<const std::uint32_t> contacts;
+  std::span<const std::uint32_t> joints;
+  std::span<const Tie> contact_ties;
+  std::span<const Tie> joint_ties;
+  std::size_t size = 0;  // manifolds and joints
+
+  // Of the contacts, then of the joints.
+  template <class Fn>
+  void for_each_tie(Fn&& fn) const {
+    for (const std::uint32_t slot : contacts) fn(contact_ties[slot]);
+    for (const std::uint32_t slot : joints) fn(joint_ties[slot]);
+  }
+};
+
+// Returns whether constraints move one of the bodies; kNoIndex is none.
+bool tie(const RigidWorld& w, std::uint32_t a, std::uint32_t b, std::uint32_t size, Tie& to) {
+  if (a != kNoIndex && is_active(w, a)) {
+    to = {a, b, size};
+    return true;
+  }
+  if (b == kNoIndex || !is_active(w, b)) return false;
+  to = {b, a, size};
+  return true;
+}
+
+bool may_act(const Contact& contact) {
+  return contact.manifold_room != 0 && contact.manifold_count != 0 && contact.sensor == 0;
+}
+bool may_act(const RigidWorld& w, std::uint32_t joint) {
+  const JointDetail* const detail = detail_of(w.joints, joint);
+  return detail == nullptr || !detail->disabled;
+}
+
+// How many are asked for before they are looked at.
+constexpr std::uint32_t kContactsFetched = 8, kJointsFetched = 8;
+
+Constraints list_constraints(const RigidWorld& w, Arena& arena, TaskSystem& tasks) {
+  const std::span<Tie> contact_ties = arena.make<Tie>(w.contacts.contacts.size());
+  const std::span<Tie> joint_ties = arena.make<Tie>(w.joints.ids.capacity());
+  const auto manifolds = [&](std::uint32_t slot) {
+    if (w.contacts.with_manifolds.test(slot + kContactsFetched))
+      __builtin_prefetch(&w.contacts.contacts[slot + kContactsFetched]);
+    const Contact& contact = w.contacts.contacts[slot];
+    const std::uint32_t count = contact.manifold_count;
+    return may_act(contact) && tie(w, contact.body_a, contact.body_b, count, contact_ties[slot]) ? count : 0u;
+  };
+  const auto works = [&](std::uint32_t slot) {
+    fetch_joint(w.joints, slot + kJointsFetched);
+    if (!w.joints.ids.live(slot) || !may_act(w, slot)) return false;
+    const JointRecord& joint = w.joints.records[slot];
+    // As numbers without a sign, kNoBody is kNoIndex.
+    return tie(w, std::uint32_t(joint.body_a), std::uint32_t(joint.body_b), 1, joint_ties[slot]);
+  };
+  const Chosen contacts = choose_among(tasks, arena, manifolds, w.contacts.with_manifolds, w.awake_links.contacts);
+  const Chosen joints = choose_among(tasks, arena, works, w.awake_links.joints);
+  return {contacts.list, joints.list, contact_ties, joint_ties, contacts.size + joints.size};
+}
+
+// Union-find over bodies; the root of an island is its lowest body. A kinematic body belongs to the islands that it touches:
+// it moves from sub-step to sub-step, and all must see it where it is.
+class BatchIslands {
+ public:
+  BatchIslands(const RigidWorld& w, const Constraints& constraints, std::span<std::uint32_t> parents)
+      : parents_(parents) {
+    for (std::uint32_t& parent : parents_) parent = kNoIndex;
+    for (const std::uint32_t body : w.bodies.awake) parents_[body] = body;
+    constraints.for_each_tie([&](const Tie& tie) { unite(tie.owner, tie.other); });
+    // Who is lower has its root by now.
+    for (const std::uint32_t body : w.bodies.awake) parents_[body] = parents_[parents_[body]];
+  }
+  std::uint32_t root(std::uint32_t body) const { return parents_[body]; }
+
+ private:
+  void unite(std::uint32_t a, std::uint32_t b) {
+    // Most are in one island by the time they are asked.
+    if (b == kNoIndex || parents_[b] == kNoIndex || parents_[a] == parents_[b]) return;
+    a = find(a);
+    b = find(b);
+    parents_[max(a, b)] = min(a, b);
+  }
+  std::uint32_t find(std::uint32_t i) {
+    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
+    return i;
+  }
+
+  std::span<std::uint32_t> parents_;
+};
+
+// Weights are in quarters of a constraint: each body is one.
+constexpr std::uint32_t kConstraint = 4;
+
+// How much the islands are, by root.
+std::span<const std::uint32_t> weigh_islands(const RigidWorld& w, const Constraints& constraints,
+                                             const BatchIslands& islands, std::size_t bodies, Arena& arena) {
+  const std::span<std::uint32_t> weights = arena.make<std::uint32_t>(bodies);
+  for (std::uint32_t& weight : weights) weight = 0;
+  constraints.for_each_tie(
+      [&](const Tie& tie) { weights[islands.root(tie.owner)] += kConstraint * tie.size; });
+  for (const std::uint32_t body : w.bodies.awake) ++weights[islands.root(body)];
+  return weights;
+}
+
+// BatchIslands that weigh the same and follow each other are mostly alike (a crowd), so what is in them is solved side by side: their
+// batch ends where lanes are full, if they would not be again. Such a batch is more than half of what it may be.
+constexpr std::uint32_t kIslandLanes = 8;
+
+// Gives each island its batch, written for all its bodies to `batch_of`: small ones fill one after the other, those that have more than
+// `most` are alone in theirs. Returns the weights of the batches.
+std::span<std::uint32_t> part_islands(const RigidWorld& w, const BatchIslands& islands,
+                                      std::span<const std::uint32_t> weights, std::uint32_t most,
+                                      Arena& arena, std::span<std::uint32_t> batch_of) {
+  const std::span<std::uint32_t> filled = arena.make<std::uint32_t>(w.bodies.awake.size());
+  // `open`: the batch that others may join; `alike`: how many islands, the last of it, weigh `last` each.
+  std::uint32_t count = 0, open = kNoIndex, alike = 0, last = 0;
+  const auto begin_batch = [&] {
+    filled[count] = 0;
+    return count++;
+  };
+  const auto choose_batch = [&](std::uint32_t weight) {
+    if (weight > most) return begin_batch();
+    const bool lanes_are_full = weight == last && alike > 0 && alike % kIslandLanes == 0;
+    if (open == kNoIndex || filled[open] + (lanes_are_full ? kIslandLanes : 1) * weight > most) {
+      open = begin_batch();
+      alike = 0;
+    }
+    alike = weight == last ? alike + 1 : 1;
+    last = weight;
+    return open;
+  };
+  for (const std::uint32_t body : w.bodies.awake) {
+    const std::uint32_t root = islands.root(body);
+    if (root == body) {
+      batch_of[body] = choose_batch(weights[body]);
+      filled[batch_of[body]] += weights[body];
+    } else {
+      batch_of[body] = batch_of[root];
+    }
+  }
+  return filled.first(count);
+}
+
+// Where few batches are beside islands that have more than `most`, the largest of these takes them in. Returns the weights of those that
+// are left.
+std::span<std::uint32_t> join_few(const RigidWorld& w, std::span<std::uint32_t> weights, std::uint32_t most,
+                                  std::uint32_t fewest, Arena& arena, std::span<std::uint32_t> batch_of) {
+  const auto is_small = [most](std::uint32_t weight) { return weight <= most; };
+  const auto small = std::size_t(std::count_if(weights.begin(), weights.end(), is_small));
+  if (small == 0 || small >= fewest || small == weights.size()) return weights;
+  const auto host = std::max_element(weights.begin(), weights.end()) - weights.begin();
+  const std::span<std::uint32_t> numbers = arena.make<std::uint32_t>(weights.size());
+  std::uint32_t left = 0;
+  for (std::size_t batch = 0; batch < weights.size(); ++batch) {
+    numbers[batch] = kNoIndex;
+    if (is_small(weights[batch])) continue;
+    numbers[batch] = left;
+    weights[left++] = weights[batch];
+  }
+  for (const std::uint32_t body : w.bodies.awake) {
+    const std::uint32_t number = numbers[batch_of[body]];
+    batch_of[body] = number != kNoIndex ? number : numbers[std::size_t(host)];
+  }
+  return weights.first(left);
+}
+
+// Room for all that find_batches() returns, before it is known how much that is.
+struct BatchRoom {
+  std::span<std::uint32_t> places, bodies, contacts, joints;
+  std::span<SolveBatch> batches;
+
+  BatchRoom(const RigidWorld& w, Arena& arena, BatchSize size) {
+    const std::size_t awake = w.bodies.awake.size(), with_manifolds = w.contacts.with_manifolds.count();
+    const std::size_t manifolds = min(with_manifolds * kMaxMeshManifolds, w.contacts.manifolds.size());
+    places = arena.make<std::uint32_t>(w.bodies.motion.size());
+    bodies = arena.make<std::uint32_t>(awake);
+    contacts = arena.make<std::uint32_t>(with_manifolds);
+    joints = arena.make<std::uint32_t>(w.joints.ids.capacity());
+    // An island alone is more than a batch may be, and of the others a batch and the next one together are.
+    const std::uint32_t worth = size.shares == 1 ? size.most : min(size.most, kWorthSharing);
+    const std::size_t weight = kConstraint * (manifolds + joints.size()) + awake;
+    batches = arena.make<SolveBatch>(2 * weight / (kConstraint * worth) + 1);
+  }
+};
+
+std::span<const std::uint32_t> copy_to(std::span<std::uint32_t> room, std::span<const std::uint32_t> list) {
+  std::copy(list.begin(), list.end(), room.begin());
+  return room.first(list.size());
+}
+
+}  // namespace
+
+bool is_solved(const RigidWorld& w, const Contact& contact) {
+  return may_act(contact) && (is_active(w, contact.body_a) || is_active(w, contact.body_b));
+}
+bool is_joint_solved(const RigidWorld& w, std::uint32_t slot) {
+  const JointRecord& joint = w.joints.records[slot];
+  return may_act(w, slot) && ((joint.body_a != kNoBody && is_active(w, std::uint32_t(joint.body_a))) ||
+                              (joint.body_b != kNoBody && is_active(w, std::uint32_t(joint.body_b))));
+}
+
+SolveBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, BatchSize size) {
+  const std::span<const std::uint32_t> awake = w.bodies.awake;
+  // What is returned comes first: the rest is not needed while batches are solved.
+  const BatchRoom room(w, arena, size);
+  const std::span<std::uint32_t> places = room.places;
+  const ArenaScope scope(arena);
+  const Constraints constraints = list_constraints(w, arena, tasks);
+  const std::size_t all_weights = kConstraint * constraints.size + awake.size();
+  const auto share = std::uint32_t(all_weights / size.shares);
+  const std::uint32_t most = min(kConstraint * size.most, max(share, kConstraint * kWorthSharing));
+  const auto all_in_one = [&](std::span<SolveBatch> batches) {
+    for (std::uint32_t i = 0; i < awake.size(); ++i) places[awake[i]] = i;
+    if (!batches.empty())
+      batches[0] = {awake, copy_to(room.contacts, constraints.contacts),
+                    copy_to(room.joints, constraints.joints)};
+    return SolveBatches{batches, places};
+  };
+  if (all_weights <= most) return all_in_one(room.batches.first(awake.empty() ? 0 : 1));
+  const std::span<SolveBatch> batches = room.batches;
+  CountedLists bodies(batches.size(), arena), contacts(batches.size(), arena), joints(batches.size(), arena);
+  const std::span<std::uint32_t> batch_of = arena.make<std::uint32_t>(places.size());
+  const BatchIslands islands(w, constraints, places);
+  const std::span<const std::uint32_t> island_weights =
+      weigh_islands(w, constraints, islands, places.size(), arena);
+  const std::span<std::uint32_t> parts = part_islands(w, islands, island_weights, most, arena, batch_of);
+  const std::span<const std::uint32_t> weights = join_few(w, parts, most, size.fewest, arena, batch_of);
+  const std::size_t count = weights.size();
+  if (count == 1) return all_in_one(batches.first(1));
+  for (const std::uint32_t body : awake) bodies.count(batch_of[body]);
+  const auto contact_batch = [&](std::uint32_t slot) {
+    return batch_of[constraints.contact_ties[slot].owner];
+  };
+  const auto joint_batch = [&](std::uint32_t slot) { return batch_of[constraints.joint_ties[slot].owner]; };
+  for (const std::uint32_t slot : constraints.contacts) contacts.count(contact_batch(slot));
+  for (const std::uint32_t slot : constraints.joints) joints.count(joint_batch(slot));
+  bodies.make_room(room.bodies), contacts.make_room(room.contacts), joints.make_room(room.joints);
+  for (const std::uint32_t body : awake) bodies.add(batch_of[body], body);
+  for (const std::uint32_t slot : constraints.contacts) contacts.add(contact_batch(slot), slot);
+  for (const std::uint32_t slot : constraints.joints) joints.add(joint_batch(slot), slot);
+  for (std::size_t i = 0; i < count; ++i) {
+    batches[i] = {bodies.of(i), contacts.of(i), joints.of(i), weights[i] <= most};
+    for (std::uint32_t n = 0; n < batches[i].bodies.size(); ++n) places[batches[i].bodies[n]] = n;
+  }
+  return {batches.first(count), places};
+}
+
+}  // namespace gyre

@@ -1,0 +1,294 @@
+#include "rigid/field/fields.h"
+
+#include "geometry/mass/submerged.h"
+#include "math/dense.h"
+#include "solver/motion/motion_block.h"
+
+namespace gyre {
+
+namespace {
+
+BodyStance stance_of(const RigidWorld& w, std::uint32_t body) {
+  const BodyMotion& motion = w.bodies.motion[body];
+  return {w.bodies.places[body].center + motion.moved, normalized(to_double(w.bodies.orientations[body])),
+          DVec3(motion.linear_velocity), DVec3(motion.angular_velocity)};
+}
+
+// Mass and world inertia.
+Six2 mass_matrix(const BodyMass& mass, const BodyStance& stance) {
+  const Sym3 inertia = rotate_inertia(to_float(stance.turn), mass.inertia);
+  Six2 out;
+  for (int i = 0; i < 3; ++i) out.m[i][i] = double(mass.mass);
+  out.m[3][3] = double(inertia.xx), out.m[4][4] = double(inertia.yy), out.m[5][5] = double(inertia.zz);
+  out.m[3][4] = out.m[4][3] = double(inertia.xy);
+  out.m[3][5] = out.m[5][3] = double(inertia.xz);
+  out.m[4][5] = out.m[5][4] = double(inertia.yz);
+  return out;
+}
+
+// Along locked axes nothing changes.
+void lock(const BodyFlags& flags, Six2& matrix, Six& right) {
+  const std::uint32_t locked = std::uint32_t(flags.locked_linear) | std::uint32_t(flags.locked_angular) << 3;
+  if (locked == 0) return;
+  for (int i = 0; i < 6; ++i) {
+    if ((locked >> i & 1u) == 0) continue;
+    for (int j = 0; j < 6; ++j) matrix.m[i][j] = matrix.m[j][i] = 0.0;
+    matrix.m[i][i] = 1.0;
+    right.v[i] = 0.0;
+  }
+}
+
+void add_pulls(const RigidWorld& w, const FieldBody& from, const BodyStance& stance, Six& force,
+               Six2& stiffness) {
+  const double mass = double(w.bodies.masses[from.body].mass);
+  for (const std::uint32_t slot : from.acting) {
+    const FieldRecord& field = w.fields[slot];
+    if (field.kind != FieldKind::radial) continue;
+    const Pull pull = pull_at(field, stance.center);
+    add(force, make_six(mass * pull.acceleration, {}));
+    for (int i = 0; i < 3; ++i) stiffness.m[i][i] += mass * pull.stiffness;
+  }
+}
+
+// Gravity against the surface of a buoyant field; not above 0: it does not lift.
+double weight_along(const RigidWorld& w, const FieldRecord& field) {
+  return field.kind == FieldKind::buoyancy ? -double(dot(w.settings.gravity, field.normal)) : 0.0;
+}
+
+void add_lifts(const RigidWorld& w, const FieldBody& from, const BodyStance& stance, Six& force,
+               Six2& stiffness) {
+  for (const std::uint32_t slot : from.acting) {
+    const double gravity = weight_along(w, w.fields[slot]);
+    if (gravity > 0.0) add_lift(w, w.fields[slot], from.body, stance, gravity, force, stiffness);
+  }
+}
+
+// Lift and torque of a light body where the sub-step will lead it: v = v* + h / m F(x + h v) along the gravity, whose right side
+// falls with v, so there is one root. Found by regula falsi (the Illinois variant: M. Dowell, P. Jarratt, 1971).
+void add_implicit_lifts(const RigidWorld& w, const FieldBody& from, const BodyStance& stance, double h,
+                        Six& force, Six2& stiffness) {
+  const DVec3 gravity(w.settings.gravity);
+  const DVec3 up = gravity / -length(gravity);
+  const double give = h / double(w.bodies.masses[from.body].mass), start = dot(stance.velocity, up);
+  const auto lift_at = [&](double speed, Six& lift, Six2& stiff) {
+    BodyStance moved = stance;
+    moved.center += h * stance.velocity + (h * (speed - start)) * up;
+    add_lifts(w, from, moved, lift, stiff);
+    return speed - start - give * dot(lift.linear(), up);
+  };
+  double low = start;
+  Six lift;
+  Six2 stiff;
+  double low_value = lift_at(low, lift, stiff);
+  double high = low - low_value, speed = low;  // the lift is largest where the body rises least
+  if (low_value < 0.0) {
+    double high_value = lift_at(high, lift = {}, stiff = {});
+    speed = high;
+    for (int i = 0; i < 40 && high - low > 1.0e-9 * (absolute(high) + absolute(low)); ++i) {
+      speed = low - low_value * (high - low) / (high_value - low_value);
+      const double value = lift_at(speed, lift = {}, stiff = {});
+      if (value > 0.0) {
+        high = speed, high_value = value;
+        low_value *= 0.5;
+      } else {
+        low = speed, low_value = value;
+        high_value *= 0.5;
+      }
+    }
+  }
+  add(force, lift);
+  // Along the lift nothing more needs to give way.
+  for (int i = 3; i < 6; ++i) {
+    for (int j = 3; j < 6; ++j) stiffness.m[i][j] += stiff.m[i][j];
+  }
+}
+
+// How much of h^2 K is added to the mass: more where the stiffest motion has (w h)^2 above 1.
+double filter_of(const Six2& mass, const Six2& stiffness, double h) {
+  double most = 0.0;
+  for (int i = 0; i < 6; ++i) {
+    if (mass.m[i][i] > 0.0) most = max(most, h * h * stiffness.m[i][i] / mass.m[i][i]);
+  }
+  return 0.25 + 4.0 * most / (1.0 + most);
+}
+
+// What the streams would give a body at rest.
+Six find_drive(const RigidWorld& w, const FieldBody& from, const BodyStance& stance, double time) {
+  Six sum;
+  for (std::size_t i = 0; i < from.acting.size(); ++i) {
+    const FieldRecord& field = w.fields[from.acting[i]];
+    if (field.is_medium()) add(sum, from.drags[i] * stream_at(field, stance.center, time));
+  }
+  return sum;
+}
+
+void apply_fields(RigidWorld& w, const FieldBody& from, double h) {
+  BodyMotion& motion = w.bodies.motion[from.body];
+  const BodyStance stance = stance_of(w, from.body);
+  Six force;
+  Six2 stiffness;
+  add_pulls(w, from, stance, force, stiffness);
+  if (from.light) {
+    add_implicit_lifts(w, from, stance, h, force, stiffness);
+  } else {
+    add_lifts(w, from, stance, force, stiffness);
+  }
+  Six2 matrix = mass_matrix(w.bodies.masses[from.body], stance);
+  const double filter = filter_of(matrix, stiffness, h) * h * h;
+  add_scaled(matrix, filter, stiffness);
+  const Six gained =
+      make_six(stance.velocity - DVec3(from.linear_before), stance.spin - DVec3(from.angular_before));
+  const Six held = stiffness * gained;
+  Six right;
+  for (int i = 0; i < 6; ++i) right.v[i] = h * force.v[i] - filter * held.v[i];
+  if (from.dragged) {
+    add_scaled(matrix, h, from.drag);
+    const Six lost = from.drag * make_six(stance.velocity, stance.spin);
+    const Six drive = find_drive(w, from, stance, w.now + 0.5 * double(w.settings.last_step));
+    for (int i = 0; i < 6; ++i) right.v[i] += h * (drive.v[i] - lost.v[i]);
+  }
+  lock(w.bodies.flags[from.body], matrix, right);
+  // Masses and moments may differ by many orders: pivots are judged against their own row only.
+  solve_ldlt(factor_ldlt(matrix.m, 1.0e-300), right.v);
+  // Pulls may grow with the distance: speeds end where they do everywhere.
+  const Vec3 v = to_float(within(stance.velocity + right.linear(), double(kMaxSpeed)));
+  const Vec3 a = to_float(within(stance.spin + right.angular(), double(kMaxSpin)));
+  if (!is_finite(v) || !is_finite(a)) return;
+  motion.linear_velocity = v + Vec3{};
+  motion.angular_velocity = a + Vec3{};
+}
+
+// Whether a body of all whose volume would swing with w h > 0.3 on a cut across its thinnest part.
+bool is_light(const RigidWorld& w, const FieldBody& from, double h) {
+  constexpr double kStiff = 0.1;
+  double lift = 0.0;
+  for (const std::uint32_t slot : from.acting) {
+    const FieldRecord& field = w.fields[slot];
+    const double gravity = weight_along(w, field);
+    if (!(gravity > 0.0)) continue;
+    for (const ShapeId id : w.bodies.shapes[from.body]) {
+      if (is_seen(w, field, id.index))
+        lift += double(field.density) * gravity * volume_of(w.shapes.colliders[id.index].shape);
+    }
+  }
+  const BodyMass& mass = w.bodies.masses[from.body];
+  return h * h * lift > kStiff * double(mass.mass) * 2.0 * double(mass.size);
+}
+
+void prepare_fields(RigidWorld& w, FieldBody& from, double h) {
+  from.light = is_light(w, from, h);
+  const BodyStance stance = stance_of(w, from.body);
+  FieldRest& rest = w.field_rest[from.body];
+  rest = {w.bodies.motion[from.body].linear_velocity, w.bodies.motion[from.body].angular_velocity,
+          from.alone ? kFieldsAlone : kFieldsToo, 0};
+  const double time = w.now + 0.5 * double(w.settings.last_step);
+  for (std::size_t i = 0; i < from.acting.size(); ++i) {
+    const FieldRecord& field = w.fields[from.acting[i]];
+    from.drags[i] = {};
+    if (!field.is_medium()) continue;
+    if (field.turbulence != 0.0f) rest.is_unsteady = 1;
+    add_drag(w, field, from.body, stance, stream_at(field, stance.center, time), from.drags[i]);
+    add_scaled(from.drag, 1.0, from.drags[i]);
+    from.dragged = true;
+  }
+}
+
+// Calls fn(body) for the bodies of some blocks.
+template <class Fn>
+void for_bodies(void* context, int begin, int end, Fn&& fn) {
+  const FieldSolve& solve = *static_cast<FieldSolve*>(context);
+  const std::size_t last = min(std::size_t(end) * kFieldBodiesPerBlock, solve.bodies.size());
+  for (std::size_t i = std::size_t(begin) * kFieldBodiesPerBlock; i < last; ++i)
+    fn(*solve.world, solve.bodies[i], solve.h);
+}
+
+}  // namespace
+
+Six force_of_fields(const RigidWorld& w, std::uint32_t body, std::span<const std::uint32_t> fields,
+                    const BodyStance& stance, double time) {
+  Six force;
+  Six2 stiffness;
+  for (const std::uint32_t slot : fields) {
+    const FieldRecord& field = w.fields[slot];
+    if (field.kind == FieldKind::radial)
+      add(force,
+          make_six(double(w.bodies.masses[body].mass) * pull_at(field, stance.center).acceleration, {}));
+    if (const double gravity = weight_along(w, field); gravity > 0.0)
+      add_lift(w, field, body, stance, gravity, force, stiffness);
+    if (!field.is_medium()) continue;
+    const Six stream = stream_at(field, stance.center, time);
+    Six slip = stream;
+    const Six velocity = make_six(stance.velocity, stance.spin);
+    for (int i = 0; i < 6; ++i) slip.v[i] -= velocity.v[i];
+    Six2 drag;
+    add_drag(w, field, body, stance, stream, drag);
+    add(force, drag * slip);
+  }
+  return force;
+}
+
+FieldSolve find_field_bodies(RigidWorld& w, std::span<const std::uint32_t> bodies, float h, Arena& arena,
+                             bool free) {
+  FieldSolve solve{&w, {}, h};
+  if (w.field_rest.empty()) return solve;
+  const auto acts = [&](std::uint32_t slot, std::uint32_t body) {
+    return w.fields[slot].is_live() && acts_on(w, w.fields[slot], body, w.bodies.places[body].center);
+  };
+  const auto may_act = [&](std::uint32_t body) {
+    return is_movable(w.bodies.flags[body]) && (free || w.bodies.flags[body].touched != kUntouched);
+  };
+  const std::uint32_t slots = std::uint32_t(w.fields.size());
+  std::size_t count = 0, links = 0;
+  for (const std::uint32_t body : bodies) {
+    std::size_t acting = 0;
+    if (may_act(body)) {
+      for (std::uint32_t slot = 0; slot < slots; ++slot) acting += acts(slot, body) ? 1 : 0;
+    }
+    links += acting;
+    count += acting > 0 ? 1 : 0;
+  }
+  const std::span<FieldBody> out = arena.make<FieldBody>(count);
+  const std::span<std::uint32_t> list = arena.make<std::uint32_t>(links);
+  const std::span<Six2> drags = arena.make<Six2>(links);
+  count = links = 0;
+  for (const std::uint32_t body : bodies) {
+    if (!may_act(body)) continue;
+    const std::size_t first = links;
+    for (std::uint32_t slot = 0; slot < slots; ++slot) {
+      if (acts(slot, body)) list[links++] = slot;
+    }
+    if (links == first) continue;
+    out[count] = {};
+    out[count].body = body;
+    out[count].alone = w.bodies.flags[body].touched == 0;
+    out[count].drags = drags.subspan(first, links - first);
+    out[count++].acting = list.subspan(first, links - first);
+  }
+  for (const FieldBody& made : out) {
+    w.bodies.flags[made.body].touched = kPlaceShown;
+    w.field_rest[made.body].acts = made.alone ? kFieldsAlone : kFieldsToo;
+  }
+  solve.bodies = out;
+  return solve;
+}
+
+int FieldSolve::blocks() const {
+  return (int(bodies.size()) + kFieldBodiesPerBlock - 1) / kFieldBodiesPerBlock;
+}
+
+void prepare_fields_stage(void* context, int begin, int end, int) {
+  for_bodies(context, begin, end,
+             [](RigidWorld& w, FieldBody& body, float h) { prepare_fields(w, body, double(h)); });
+}
+void watch_fields_stage(void* context, int begin, int end, int) {
+  for_bodies(context, begin, end, [](const RigidWorld& w, FieldBody& body, float) {
+    body.linear_before = w.bodies.motion[body.body].linear_velocity;
+    body.angular_before = w.bodies.motion[body.body].angular_velocity;
+  });
+}
+void apply_fields_stage(void* context, int begin, int end, int) {
+  for_bodies(context, begin, end,
+             [](RigidWorld& w, const FieldBody& body, float h) { apply_fields(w, body, double(h)); });
+}
+
+}  // namespace gyre

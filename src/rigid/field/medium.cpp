@@ -1,0 +1,312 @@
+#include "rigid/field/medium.h"
+
+#include "geometry/mass/submerged.h"
+#include "geometry/mass/surface_patches.h"
+#include "math/trig.h"
+
+namespace gyre {
+
+namespace {
+
+// -------------------------------------------------------------------------------------------------------------- streams
+
+// Waves of gusts: where they run, how the air moves in them (at a right angle, so that none piles up), and where they begin.
+struct Gust {
+  DVec3 wave;  // direction
+  DVec3 sway;
+  double phase;
+  double share;   // of the wave number
+  double weight;  // of the square of the speed
+};
+// Three sizes with energies as the 2/3 power of the size (A. N. Kolmogorov, 1941), two waves each; weights sum to 1.
+constexpr double kLargeWave = 0.24657, kMiddleWave = 0.15533, kSmallWave = 0.09810;
+constexpr Gust kGusts[6] = {
+    {{0.80, 0.00, 0.60}, {-0.36, 0.80, 0.48}, 0.3, 1.0, kLargeWave},
+    {{0.60, 0.00, -0.80}, {0.48, 0.80, 0.36}, 2.1, 1.0, kLargeWave},
+    {{0.64, 0.60, 0.48}, {0.60, 0.00, -0.80}, 4.4, 2.0, kMiddleWave},
+    {{0.48, -0.80, 0.36}, {0.64, 0.60, 0.48}, 1.2, 2.0, kMiddleWave},
+    {{0.36, 0.48, 0.80}, {0.80, -0.60, 0.00}, 5.7, 4.0, kSmallWave},
+    {{-0.28, 0.96, 0.00}, {0.00, 0.00, 1.00}, 3.3, 4.0, kSmallWave},
+};
+
+DVec3 gusts_at(const FieldRecord& field, DVec3 place, double time) {
+  const DVec3 mean(field.velocity);
+  const double speed = length(mean);
+  if (field.turbulence == 0.0f || speed == 0.0) return {};
+  const DVec3 carried = place - time * mean;
+  const double number = 2.0 * kPiDouble / double(field.turbulence_length);
+  DVec3 sum;
+  for (const Gust& gust : kGusts) {
+    const double s = sin_cos(number * gust.share * dot(gust.wave, carried) + gust.phase).sin;
+    // A wave's mean square is half its amplitude's square.
+    sum += std::sqrt(2.0 * gust.weight) * s * gust.sway;
+  }
+  return double(field.turbulence) * speed * sum;
+}
+
+Six vortex_at(const FieldRecord& field, DVec3 place) {
+  const DVec3 axis(field.axis), from = place - field.center;
+  const DVec3 out = from - dot(axis, from) * axis;
+  const double radius = double(field.radius), rate = double(field.strength) / radius;
+  const double far = length_squared(out) / (radius * radius);
+  if (far <= 1.0) return make_six(rate * cross(axis, out), rate * axis);
+  return make_six((rate / far) * cross(axis, out), {});
+}
+
+// ----------------------------------------------------------------------------------------------------------------- drag
+
+// Sums of c, c r and c r r' over elements of the surface, with force = c w.
+struct PushSum {
+  double whole = 0.0;
+  DVec3 first;
+  SecondMoments second;
+
+  void add(double c, DVec3 r) {
+    whole += c;
+    first += c * r;
+    add_product(second, c, r);
+  }
+  void add_scaled(double scale, const PushSum& more) {
+    whole += scale * more.whole;
+    first += scale * more.first;
+    second.xx += scale * more.second.xx, second.yy += scale * more.second.yy,
+        second.zz += scale * more.second.zz;
+    second.xy += scale * more.second.xy, second.xz += scale * more.second.xz,
+        second.yz += scale * more.second.yz;
+  }
+};
+
+// sum of c J'J with J (v, a) = v + a x r.
+void add_push(Six2& to, const PushSum& s) {
+  for (int i = 0; i < 3; ++i) to.m[i][i] += s.whole;
+  // The cross product r x as a matrix, below the diagonal block; its transpose above.
+  const DVec3 r = s.first;
+  const double skew[3][3] = {{0.0, -r.z, r.y}, {r.z, 0.0, -r.x}, {-r.y, r.x, 0.0}};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      to.m[3 + i][j] += skew[i][j];
+      to.m[j][3 + i] += skew[i][j];
+    }
+  }
+  const SecondMoments& q = s.second;
+  to.m[3][3] += q.yy + q.zz, to.m[4][4] += q.xx + q.zz, to.m[5][5] += q.xx + q.yy;
+  to.m[3][4] -= q.xy, to.m[4][3] -= q.xy;
+  to.m[3][5] -= q.xz, to.m[5][3] -= q.xz;
+  to.m[4][5] -= q.yz, to.m[5][4] -= q.yz;
+}
+
+bool is_round(ShapeKind kind) {
+  return kind == ShapeKind::sphere || kind == ShapeKind::capsule || kind == ShapeKind::cylinder ||
+         kind == ShapeKind::cone;
+}
+
+// A shape's frame within the world, about the body's centre of mass.
+struct ShapeStance {
+  DQuat turn;    // world_from_shape
+  DVec3 offset;  // of the shape's origin from the centre of mass, world axes
+};
+ShapeStance stance_of(const RigidWorld& w, std::uint32_t body, std::uint32_t shape,
+                      const BodyStance& stance) {
+  const Transform& place = w.shapes.places[shape];
+  return {stance.turn * to_double(place.orientation),
+          rotate(stance.turn, DVec3(place.position) - DVec3(w.bodies.masses[body].center))};
+}
+
+// The plane of a field as a shape sees it.
+struct ShapePlane {
+  DVec3 normal;
+  double level;
+};
+ShapePlane plane_of(const FieldRecord& field, const BodyStance& body, const ShapeStance& shape) {
+  if (field.kind != FieldKind::buoyancy) return {{0, 1, 0}, double(kUnbounded)};
+  const DVec3 normal(field.normal);
+  return {rotate_inverse(shape.turn, normal),
+          field.offset - dot(normal, body.center) - dot(normal, shape.offset)};
+}
+
+// The drag by one shape's surface, for the velocity at which the medium now streams against it.
+PushSum shape_push(const Shape& shape, const ShapeStance& at, const ShapePlane& plane, const Six& against) {
+  PushSum sum;
+  double facing = 0.0;  // of the whole surface, for round shapes
+  const DVec3 wind = rotate_inverse(at.turn, against.linear() + cross(against.angular(), at.offset));
+  const double speed = length(wind);
+  for_each_patch(shape, plane.normal, plane.level, [&](const SurfacePatch& patch) {
+    const DVec3 r = at.offset + rotate(at.turn, patch.place);
+    const DVec3 flow = against.linear() + cross(against.angular(), r);
+    const double c = max(-dot(flow, rotate(at.turn, patch.normal)), 0.0) * patch.area;
+    if (c > 0.0) sum.add(c, r);
+  });
+  if (!is_round(shape.kind) || speed == 0.0) return sum;
+  for_each_patch(shape, {0, 1, 0}, double(kUnbounded), [&](const SurfacePatch& patch) {
+    facing += max(-dot(wind, patch.normal), 0.0) * patch.area;
+  });
+  if (!(facing > 0.0)) return sum;
+  PushSum exact;
+  exact.add_scaled(projected_area(shape, wind / speed) * speed / facing, sum);
+  return exact;
+}
+
+// The share of the body's volume that is below the field's plane.
+double submerged_share(const RigidWorld& w, const FieldRecord& field, std::uint32_t body,
+                       const BodyStance& stance) {
+  double below = 0.0, whole = 0.0;
+  for (const ShapeId id : w.bodies.shapes[body]) {
+    if (!is_seen(w, field, id.index)) continue;
+    const Shape& shape = w.shapes.colliders[id.index].shape;
+    const ShapePlane plane = plane_of(field, stance, stance_of(w, body, id.index, stance));
+    below += submerged_part(shape, plane.normal, plane.level).volume;
+    whole += volume_of(shape);
+  }
+  return whole > 0.0 ? below / whole : 0.0;
+}
+
+void add_linear_drag(const RigidWorld& w, std::uint32_t body, const BodyStance& stance, double rate,
+                     Six2& to) {
+  const BodyMass& mass = w.bodies.masses[body];
+  const Sym3 inertia = rotate_inertia(to_float(stance.turn), mass.inertia);
+  for (int i = 0; i < 3; ++i) to.m[i][i] += rate * double(mass.mass);
+  const double rows[3][3] = {{double(inertia.xx), double(inertia.xy), double(inertia.xz)},
+                             {double(inertia.xy), double(inertia.yy), double(inertia.yz)},
+                             {double(inertia.xz), double(inertia.yz), double(inertia.zz)}};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) to.m[3 + i][3 + j] += rate * rows[i][j];
+  }
+}
+
+}  // namespace
+
+Six operator*(const Six2& a, const Six& b) {
+  Six out;
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j < 6; ++j) out.v[i] += a.m[i][j] * b.v[j];
+  }
+  return out;
+}
+void add(Six& to, const Six& more) {
+  for (int i = 0; i < 6; ++i) to.v[i] += more.v[i];
+}
+void add_scaled(Six2& to, double scale, const Six2& more) {
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j < 6; ++j) to.m[i][j] += scale * more.m[i][j];
+  }
+}
+void add_row(Six2& to, double weight, const Six& row) {
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j < 6; ++j) to.m[i][j] += weight * row.v[i] * row.v[j];
+  }
+}
+
+bool is_seen(const RigidWorld& w, const FieldRecord& field, std::uint32_t shape) {
+  const Proxy& proxy = w.shapes.proxies[shape];
+  return !proxy.sensor && (proxy.filter.layer & field.layers) != 0;
+}
+
+bool acts_on(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, DVec3 center) {
+  if (field.has_bounds != 0) {
+    const DVec3 low = field.low, high = field.high;
+    if (!(center.x >= low.x && center.y >= low.y && center.z >= low.z && center.x <= high.x &&
+          center.y <= high.y && center.z <= high.z)) {
+      return false;
+    }
+  }
+  const auto& shapes = w.bodies.shapes[body];
+  if (shapes.empty()) return true;
+  if (field.kind == FieldKind::buoyancy) {
+    // Nothing of the body can come below the surface in this step.
+    const double height = dot(DVec3(field.normal), center) - field.offset,
+                 step = double(w.settings.last_step);
+    const double way = step * (double(length(w.bodies.motion[body].linear_velocity)) +
+                               step * double(length(w.settings.gravity)));
+    if (height > double(w.bodies.masses[body].reach) + way) return false;
+  }
+  for (const ShapeId id : shapes) {
+    if (is_seen(w, field, id.index)) return true;
+  }
+  return false;
+}
+
+Six stream_at(const FieldRecord& field, DVec3 place, double time) {
+  Six out = make_six(DVec3(field.velocity), {});
+  if (field.kind == FieldKind::wind) add(out, make_six(gusts_at(field, place, time), {}));
+  if (field.kind == FieldKind::vortex) add(out, vortex_at(field, place));
+  return out;
+}
+
+void add_drag(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyStance& stance,
+              const Six& stream, Six2& matrix) {
+  Six against = stream;
+  add(against, make_six(-stance.velocity, -stance.spin));
+  const double half = 0.5 * double(field.density) * double(field.drag_coefficient);
+  if (half > 0.0) {
+    PushSum sum;
+    for (const ShapeId id : w.bodies.shapes[body]) {
+      if (!is_seen(w, field, id.index)) continue;
+      const ShapeStance at = stance_of(w, body, id.index, stance);
+      sum.add_scaled(
+          half, shape_push(w.shapes.colliders[id.index].shape, at, plane_of(field, stance, at), against));
+    }
+    add_push(matrix, sum);
+  }
+  if (!(field.linear_drag > 0.0f)) return;
+  const double share = field.kind == FieldKind::buoyancy ? submerged_share(w, field, body, stance) : 1.0;
+  if (share > 0.0) add_linear_drag(w, body, stance, share * double(field.linear_drag), matrix);
+}
+
+Pull pull_at(const FieldRecord& field, DVec3 place) {
+  const DVec3 from = place - field.center;
+  const double square = length_squared(from) + double(field.core) * double(field.core);
+  Pull out;
+  if (!(square > 0.0)) return out;
+  const double radius = double(field.radius), n = double(field.falloff);
+  const double ratio = square / (radius * radius);
+  // strength (radius / distance)^n / distance; whole powers without logarithms, so that they are as exact as they can be.
+  const double distance = std::sqrt(square);
+  const double power = n == 2.0    ? 1.0 / ratio
+                       : n == 0.0  ? 1.0
+                       : n == 1.0  ? 1.0 / std::sqrt(ratio)
+                       : n == -1.0 ? std::sqrt(ratio)
+                                   : exp(-0.5 * n * log(ratio));
+  const double slope = double(field.strength) * power / distance;
+  out.acceleration = -slope * from;
+  out.stiffness = absolute(slope) * max(1.0, absolute(n));
+  return out;
+}
+
+void add_lift(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyStance& stance,
+              double gravity, Six& force, Six2& stiffness) {
+  const DVec3 up(field.normal);
+  const double weight = double(field.density) * gravity;
+  for (const ShapeId id : w.bodies.shapes[body]) {
+    if (!is_seen(w, field, id.index)) continue;
+    const ShapeStance at = stance_of(w, body, id.index, stance);
+    const ShapePlane plane = plane_of(field, stance, at);
+    const SubmergedPart part = submerged_part(w.shapes.colliders[id.index].shape, plane.normal, plane.level);
+    if (!(part.volume > 0.0)) continue;
+    const DVec3 arm = at.offset + rotate(at.turn, part.center);
+    const double lift = weight * part.volume;
+    add(force, make_six(lift * up, cross(arm, lift * up)));
+    // A body that hangs below its lift swings back like a pendulum.
+    const double swing = max(lift * dot(arm, up), 0.0);
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) stiffness.m[3 + i][3 + j] += swing * ((i == j ? 1.0 : 0.0) - up[i] * up[j]);
+    }
+    if (!(part.area > 0.0)) continue;
+    // The cut at r resists with weight (up, r x up) (up, r x up)' dA: its middle as a point, and its spread about that.
+    const DVec3 middle = at.offset + rotate(at.turn, part.area_center);
+    add_row(stiffness, weight * part.area, make_six(up, cross(middle, up)));
+    const SecondMoments& s = part.spread;
+    const DVec3 axes[3] = {rotate(at.turn, {1, 0, 0}), rotate(at.turn, {0, 1, 0}),
+                           rotate(at.turn, {0, 0, 1})};
+    const double spread[3][3] = {{s.xx, s.xy, s.xz}, {s.xy, s.yy, s.yz}, {s.xz, s.yz, s.zz}};
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        const DVec3 a = cross(axes[i], up), b = cross(axes[j], up);
+        for (int k = 0; k < 3; ++k) {
+          for (int l = 0; l < 3; ++l) stiffness.m[3 + k][3 + l] += weight * spread[i][j] * a[k] * b[l];
+        }
+      }
+    }
+  }
+}
+
+}  // namespace gyre

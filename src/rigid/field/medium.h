@@ -1,0 +1,64 @@
+// What a medium does to one body at one moment: the velocity with which it streams there, the drag by the body's surface, and the
+// lift of what the body displaces. Six-vectors are (linear, angular) about the centre of mass, in world axes.
+//
+// In: a field's record, a body's shapes and place. Out: matrices and forces in double; nothing is moved here.
+#pragma once
+
+#include "math/rotation.h"
+#include "rigid/store/field_record.h"
+#include "rigid/store/rigid_world.h"
+
+namespace gyre {
+
+struct Six {
+  double v[6] = {};
+
+  DVec3 linear() const { return {v[0], v[1], v[2]}; }
+  DVec3 angular() const { return {v[3], v[4], v[5]}; }
+};
+inline Six make_six(DVec3 linear, DVec3 angular) {
+  return {{linear.x, linear.y, linear.z, angular.x, angular.y, angular.z}};
+}
+
+// A symmetric matrix of six rows.
+struct Six2 {
+  double m[6][6] = {};
+};
+Six operator*(const Six2& a, const Six& b);
+void add(Six& to, const Six& more);
+void add_scaled(Six2& to, double scale, const Six2& more);
+// weight J J', for a row of six.
+void add_row(Six2& to, double weight, const Six& row);
+
+// Where a body is within a sub-step.
+struct BodyStance {
+  DVec3 center;  // of mass
+  DQuat turn;    // world_from_body
+  DVec3 velocity, spin;
+};
+
+// Which of a body's shapes a field sees: no sensors, and those in its layers.
+bool is_seen(const RigidWorld& w, const FieldRecord& field, std::uint32_t shape);
+// Whether the field acts on the body at all; `center`: its centre of mass.
+bool acts_on(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, DVec3 center);
+
+// The velocity of the medium at a place, and half its curl, the rate at which it turns there. `time`: s.
+Six stream_at(const FieldRecord& field, DVec3 place, double time);
+
+// Drag as matrix * (stream - velocity): linear in the difference of the two, with the size of the difference taken from now.
+void add_drag(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyStance& stance,
+              const Six& stream, Six2& matrix);
+
+// The acceleration of a radial field at a place, and its stiffness (1/s^2), not below that of the steepest direction.
+struct Pull {
+  DVec3 acceleration;
+  double stiffness = 0.0;
+};
+Pull pull_at(const FieldRecord& field, DVec3 place);
+
+// The lift of what is submerged, and how it gives way to motion: d(force)/d(motion) = -stiffness, with what would lower the
+// stiffness left out.
+void add_lift(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyStance& stance,
+              double gravity, Six& force, Six2& stiffness);
+
+}  // namespace gyre

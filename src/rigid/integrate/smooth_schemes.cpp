@@ -1,0 +1,220 @@
+#include "rigid/integrate/smooth_schemes.h"
+
+#include "math/trig.h"
+
+namespace gyre {
+
+namespace {
+
+// No body turns farther than this in a part, rad: beyond it a rotation vector is none.
+constexpr double kMostPartTurn = 3.0;
+// Verlet's implicit turn: each round gains the factor h w / 2; what it cannot reach at large turns no scheme of order 2 can.
+constexpr int kTurnRounds = 24;
+constexpr double kTurnReached = 1.0e-15;
+// Rounds for the velocity within forces that depend on it: each gains an order.
+constexpr int kVelocityRounds = 3;
+
+DQuat turned_by(DQuat q, DVec3 turn) { return normalized(exponential_map(turn) * q); }
+
+void turn(SchemeRoom& room, std::size_t i, DVec3 by) {
+  room.states[i].q = turned_by(room.states[i].q, by);
+  room.turned[i] += by;
+}
+
+// The exact step of v' = a - c v.
+void kick(DVec3& v, DVec3 a, double damping, double h) {
+  if (!(damping > 0.0)) {
+    v += h * a;
+    return;
+  }
+  const double share = 1.0 - exp(-damping * h);
+  v = v + (share / damping) * a + (-share) * v;
+}
+
+void kick(const SmoothSystem& system, SchemeRoom& room, double h) {
+  for (std::size_t i = 0; i < room.states.size(); ++i) {
+    const SmoothBody& body = system.bodies[i];
+    kick(room.states[i].v, room.rates[i].acceleration, body.linear_damping, h);
+    kick(room.states[i].l, room.rates[i].torque, body.angular_damping, h);
+  }
+}
+
+void turn_at_constant_momentum(const SmoothBody& body, SchemeRoom& room, std::size_t i, double h) {
+  SmoothState& s = room.states[i];
+  const DVec3 spin = spin_of(body, s);
+  const double angle = h * length(spin);
+  if (body.locked_angular != 0 || !(angle > 0.0)) return turn(room, i, h * spin);
+  const DQuat next = normalized(turn_at_momentum(s.q, s.l, body.inverse_inertia, h, angle));
+  room.turned[i] += logarithm_map(next * conjugate(s.q));
+  s.q = next;
+}
+
+void step_explicit_euler(const SmoothSystem& system, SchemeRoom& room, double time, double h) {
+  find_rates(system, room.states, time, h, false, room.rates);
+  for (std::size_t i = 0; i < room.states.size(); ++i) {
+    room.states[i].x += h * room.states[i].v;
+    turn(room, i, h * spin_of(system.bodies[i], room.states[i]));
+  }
+  kick(system, room, h);
+}
+
+void step_semi_implicit_euler(const SmoothSystem& system, SchemeRoom& room, double time, double h) {
+  find_rates(system, room.states, time, h, false, room.rates);
+  kick(system, room, h);
+  for (std::size_t i = 0; i < room.states.size(); ++i) {
+    room.states[i].x += h * room.states[i].v;
+    turn_at_constant_momentum(system.bodies[i], room, i, h);
+  }
+}
+
+DQuat along(DQuat q, DQuat rate, double h) {
+  return {q.x + h * rate.x, q.y + h * rate.y, q.z + h * rate.z, q.w + h * rate.w};
+}
+
+// 1/2 w q
+DQuat rate_of(DQuat q, DVec3 spin) {
+  const DQuat d = DQuat{0.5 * spin.x, 0.5 * spin.y, 0.5 * spin.z, 0.0} * q;
+  return d;
+}
+
+void step_rk4(const SmoothSystem& system, SchemeRoom& room, double time, double h) {
+  constexpr double kAhead[4] = {0.0, 0.5, 0.5, 1.0}, kWeight[4] = {1.0, 2.0, 2.0, 1.0};
+  const std::size_t count = room.states.size();
+  const double share = h / 6.0;
+  for (int k = 0; k < 4; ++k) {
+    const double ahead = kAhead[k] * h;
+    for (std::size_t i = 0; i < count; ++i) {
+      const SmoothState& s = room.states[i];
+      SmoothState& stage = room.stage[i];
+      if (k == 0) {
+        stage = s;
+        room.sum[i] = {};
+        room.drift[i] = {};
+        room.sum_q[i] = {0.0, 0.0, 0.0, 0.0};
+        continue;
+      }
+      const DVec3 speed = stage.v;
+      stage.x = s.x + ahead * speed;
+      stage.v = s.v + ahead * room.rates[i].acceleration;
+      stage.q = normalized(along(s.q, room.rates_q[i], ahead));
+      stage.l = s.l + ahead * room.rates[i].torque;
+    }
+    find_rates(system, room.stage, time + ahead, kWeight[k] * share, true, room.rates);
+    for (std::size_t i = 0; i < count; ++i) {
+      const SmoothState& stage = room.stage[i];
+      room.rates_q[i] = rate_of(stage.q, spin_of(system.bodies[i], stage));
+      room.drift[i] += kWeight[k] * stage.v;
+      room.sum[i].acceleration += kWeight[k] * room.rates[i].acceleration;
+      room.sum[i].torque += kWeight[k] * room.rates[i].torque;
+      room.sum_q[i] = along(room.sum_q[i], room.rates_q[i], kWeight[k]);
+    }
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    SmoothState& s = room.states[i];
+    const DQuat next = normalized(along(s.q, room.sum_q[i], share));
+    room.turned[i] += logarithm_map(next * conjugate(s.q));
+    s.q = next;
+    s.x += share * room.drift[i];
+    s.v += share * room.sum[i].acceleration;
+    s.l += share * room.sum[i].torque;
+  }
+}
+
+// ------------------------------------------------------------------------------------------------------------ Verlet
+
+// Within Verlet v and l are those at the middle of the last move; these are they at the time of the pose, by what is known of
+// the forces there, in `stage`.
+void look_at_velocities(SchemeRoom& room, bool known) {
+  for (std::size_t i = 0; i < room.states.size(); ++i) {
+    room.stage[i] = room.states[i];
+    const LastMove& move = room.moves[i];
+    if (!known || !(move.seconds > 0.0)) continue;
+    room.stage[i].v += (0.5 * move.seconds) * room.rates[i].acceleration;
+    room.stage[i].l += (0.5 * move.seconds) * room.rates[i].torque;
+  }
+}
+
+// Forces at the present poses. Where they depend on velocities these depend on them.
+void find_rates_at_pose(const SmoothSystem& system, SchemeRoom& room, double time, double weight) {
+  const int rounds = system.damped ? kVelocityRounds : 1;
+  for (int round = 0; round < rounds; ++round) {
+    look_at_velocities(room, round > 0);
+    find_rates(system, room.stage, time, round + 1 == rounds ? weight : 0.0, true, room.rates);
+  }
+}
+
+// The turn of which I(q_mid) turn / h = l.
+DVec3 find_turn(const SmoothBody& body, const SmoothState& s, double h) {
+  if (body.locked_angular != 0) return h * s.l;
+  SmoothState middle = s;
+  DVec3 turn = h * spin_of(body, s);
+  for (int round = 0; round < kTurnRounds; ++round) {
+    middle.q = turned_by(s.q, 0.5 * turn);
+    const DVec3 next = h * spin_of(body, middle);
+    const double change = length(next - turn);
+    turn = next;
+    if (change <= kTurnReached * (1.0 + length(turn))) break;
+  }
+  const double size = length(turn);
+  return size > kMostPartTurn ? (kMostPartTurn / size) * turn : turn;
+}
+
+// v and l at the middle of the last move, as the last two poses say.
+void read_last_move(const SmoothBody& body, const LastMove& move, SmoothState& s) {
+  if (!(move.seconds > 0.0)) return;
+  s.v = move.moved / move.seconds;
+  SmoothState middle = s;
+  middle.q = turned_by(s.q, -0.5 * move.turned);
+  s.l = momentum_of(body, middle, move.turned / move.seconds);
+}
+
+void step_verlet(const SmoothSystem& system, SchemeRoom& room, double time, double h) {
+  const std::size_t count = room.states.size();
+  for (std::size_t i = 0; i < count; ++i) read_last_move(system.bodies[i], room.moves[i], room.states[i]);
+  find_rates_at_pose(system, room, time, h);
+  for (std::size_t i = 0; i < count; ++i) {
+    SmoothState& s = room.states[i];
+    LastMove& move = room.moves[i];
+    // A body that has a velocity and no last pose: half a kick makes the one of it that the pose would.
+    const double kick = 0.5 * (h + move.seconds);
+    s.v += kick * room.rates[i].acceleration;
+    s.l += kick * room.rates[i].torque;
+    move.moved = h * s.v;
+    move.turned = find_turn(system.bodies[i], s, h);
+    move.seconds = h;
+    s.x += move.moved;
+    turn(room, i, move.turned);
+  }
+}
+
+}  // namespace
+
+SchemeRoom make_room(std::size_t bodies, Arena& arena) {
+  return {arena.make<SmoothState>(bodies), arena.make<LastMove>(bodies), arena.make<DVec3>(bodies),
+          arena.make<SmoothState>(bodies), arena.make<Rates>(bodies),    arena.make<Rates>(bodies),
+          arena.make<DVec3>(bodies),       arena.make<DQuat>(bodies),    arena.make<DQuat>(bodies)};
+}
+
+void integrate(IntegratorKind kind, const SmoothSystem& system, SchemeRoom& room, double time, double h) {
+  switch (kind) {
+    case IntegratorKind::semi_implicit_euler:
+      return step_semi_implicit_euler(system, room, time, h);
+    case IntegratorKind::explicit_euler:
+      return step_explicit_euler(system, room, time, h);
+    case IntegratorKind::rk4:
+      return step_rk4(system, room, time, h);
+    case IntegratorKind::verlet:
+      return step_verlet(system, room, time, h);
+  }
+}
+
+void show_velocities(IntegratorKind kind, const SmoothSystem& system, SchemeRoom& room, double time) {
+  if (kind == IntegratorKind::verlet) {
+    find_rates_at_pose(system, room, time, 0.0);
+    look_at_velocities(room, true);
+    return;
+  }
+  for (std::size_t i = 0; i < room.states.size(); ++i) room.stage[i] = room.states[i];
+}
+
+}  // namespace gyre

@@ -1,0 +1,148 @@
+#include "rigid/rest/resting_islands.h"
+
+#include "rigid/integrate/integrators.h"
+#include "solver/rest/contact_structure.h"
+
+namespace gyre {
+
+namespace {
+
+// What may be part of a resting island is no faster than a share of what it falls through its own size with,
+struct Slowness {
+  float speed, scale;
+
+  Slowness(const RigidWorld& w, std::uint32_t body, float pull) {
+    const BodyMotion& motion = w.bodies.motion[body];
+    const float reach = w.bodies.masses[body].reach;
+    speed = length(motion.linear_velocity) + reach * length(motion.angular_velocity);
+    scale = std::sqrt(pull * reach);
+  }
+  bool is_below(float share) const { return speed <= share * scale; }
+};
+// and bound to no axes.
+bool is_unbound(const RigidWorld& w, std::uint32_t body) {
+  const BodyFlags& flags = w.bodies.flags[body];
+  return !turns_alone(w.bodies, body, w.settings.last_substep) && flags.locked_linear == 0 &&
+         flags.locked_angular == 0;
+}
+
+// The other end of a constraint may be the fixed world or a kinematic body that stands still.
+bool is_still(const RigidWorld& w, std::int32_t body) {
+  if (body == kNoBody) return true;
+  const BodyMotion& motion = w.bodies.motion[body];
+  return motion.linear_velocity == Vec3{} && motion.angular_velocity == Vec3{};
+}
+
+}  // namespace
+
+RestingIslands::RestingIslands(const RigidWorld& w, std::span<const ContactConstraint> constraints,
+                               std::span<const ColoringPair> pairs, std::span<const NetJoint> joints,
+                               const SolveBatch& batch, std::span<const std::uint32_t> places, Arena& arena)
+    : w_(w),
+      batch_(batch),
+      places_(places),
+      parent_(arena.make<std::uint32_t>(batch.bodies.size())),
+      counts_(arena.make<IslandCount>(batch.bodies.size())) {
+  for (std::uint32_t i = 0; i < parent_.size(); ++i) parent_[i] = i, counts_[i] = {};
+  unite_all(pairs, joints);
+  refuse_jointed(joints);
+  count_bodies();
+  count_contacts(constraints, pairs);
+}
+
+std::uint32_t RestingIslands::root(std::uint32_t place) {
+  while (parent_[place] != place) place = parent_[place] = parent_[parent_[place]];
+  return place;
+}
+
+void RestingIslands::unite(std::uint32_t place_a, std::uint32_t place_b) {
+  // Most are in one island by the time they are asked.
+  if (parent_[place_a] == parent_[place_b]) return;
+  const std::uint32_t a = root(place_a), b = root(place_b);
+  parent_[max(a, b)] = min(a, b);
+}
+
+void RestingIslands::unite_all(std::span<const ColoringPair> pairs, std::span<const NetJoint> joints) {
+  for (const ColoringPair& pair : pairs) {
+    if (pair.a != ColoringPair::kNone && pair.b != ColoringPair::kNone) unite(pair.a, pair.b);
+  }
+  for (const NetJoint& joint : joints) {
+    if (joint.body_a != kNoBody && joint.body_b != kNoBody)
+      unite(places_[std::size_t(joint.body_a)], places_[std::size_t(joint.body_b)]);
+  }
+  // Who is lower has its root by now.
+  for (std::uint32_t& parent : parent_) parent = parent_[parent];
+}
+
+void RestingIslands::count_bodies() {
+  const float pull = length(w_.settings.gravity);
+  for (std::uint32_t place = 0; place < batch_.bodies.size(); ++place) {
+    const std::uint32_t body = batch_.bodies[place];
+    if (!is_movable(w_.bodies.flags[body])) continue;
+    IslandCount& count = counts_[parent_[place]];
+    if (count.refused) continue;
+    const Slowness slowness(w_, body, pull);
+    const float reach = w_.bodies.masses[body].reach;
+    count.smallest = count.bodies == 0 ? reach : min(count.smallest, reach);
+    ++count.bodies;
+    if (!is_unbound(w_, body) || !slowness.is_below(kSlowShare)) {
+      count.refused = true;
+    } else if (!slowness.is_below(kCalmShare)) {
+      count.stirring = true;
+    } else if (!slowness.is_below(kSettledShare)) {
+      count.settling = true;
+    }
+  }
+}
+
+void RestingIslands::count_contacts(std::span<const ContactConstraint> constraints,
+                                    std::span<const ColoringPair> pairs) {
+  for (std::uint32_t i = 0; i < constraints.size(); ++i) {
+    const bool active_a = pairs[i].a != ColoringPair::kNone, active_b = pairs[i].b != ColoringPair::kNone;
+    IslandCount& count = counts_[parent_[active_a ? pairs[i].a : pairs[i].b]];
+    if (count.refused) continue;
+    const ContactConstraint& c = constraints[i];
+    ++count.contacts;
+    if (!(c.static_friction > 0.0f) || c.surface_velocity != Vec3{}) count.refused = true;
+    if (c.point_count < 3) count.balances = true;
+    if (c.point_count == 1) ++count.corners;
+    if (c.hold == ContactHold::held) count.held = true;
+    if (c.hold == ContactHold::sprung) count.springs = true;
+    if (active_a && active_b) continue;
+    ++count.grounded;
+    count.first = i;
+    if (!is_still(w_, active_a ? c.body_b : c.body_a)) count.refused = true;
+  }
+}
+
+void RestingIslands::refuse_jointed(std::span<const NetJoint> joints) {
+  for (const NetJoint& joint : joints)
+    for_moving(joint, [&](std::uint32_t body) { counts_[parent_[places_[body]]].refused = true; });
+}
+
+IncidentContacts link_incident_contacts(std::span<const ColoringPair> pairs, std::size_t bodies,
+                                        Arena& arena) {
+  IncidentContacts links{arena.make<std::uint32_t>(bodies), arena.make<std::uint32_t>(2 * pairs.size())};
+  for (std::uint32_t& f : links.first) f = kNoPlace;
+  for (std::uint32_t i = std::uint32_t(pairs.size()); i-- > 0;) {
+    const std::uint32_t ends[2] = {pairs[i].a, pairs[i].b};
+    for (std::uint32_t side = 0; side < 2; ++side) {
+      if (ends[side] == ColoringPair::kNone) continue;
+      std::uint32_t& first = links.first[ends[side]];
+      links.next[2 * i + side] = first;
+      first = 2 * i + side;
+    }
+  }
+  return links;
+}
+
+std::span<std::uint32_t> find_kernel_places(std::span<const std::uint32_t> order, std::size_t constraints,
+                                            Arena& arena) {
+  const std::span<std::uint32_t> places = arena.make<std::uint32_t>(constraints);
+  for (std::uint32_t i = 0; i < order.size(); ++i) {
+    if (order[i] != kNoPlace) places[order[i]] = i;
+  }
+  return places;
+}
+
+}  // namespace gyre

@@ -1,0 +1,83 @@
+// The islands of a batch that may be at rest, counted for the solvers that take such islands whole: trees of contacts
+// (contact_forest.h) and structures (contact_structures.h).
+#pragma once
+
+#include "base/arena/arena.h"
+#include "rigid/batch/joint_works.h"
+#include "rigid/store/rigid_world.h"
+#include "rigid/batch/solve_batches.h"
+#include "solver/contact/contact_block.h"
+#include "task/coloring.h"
+
+namespace gyre {
+
+constexpr std::uint32_t kNoPlace = 0xffffffffu;
+
+// Slower than this share of sqrt(gravity * reach) counts as at rest.
+constexpr float kSlowShare = 0.1f;
+// and slower than this one as all but at rest: what has loops is looked at only then.
+constexpr float kCalmShare = 0.02f;
+// Slower than this share of it a sweep has left nothing to solve.
+constexpr float kStillShare = 1.0e-7f;
+// The same of an island with loops, whose loads have more rounding.
+constexpr float kStructureStillShare = 1.0e-6f;
+// An island with loops that is slower than this as a step begins has nothing to lose but what the step's forces give it.
+constexpr float kSettledShare = 1.0e-4f;
+
+// What is counted about an island, as long as it is not refused.
+struct IslandCount {
+  std::uint32_t bodies = 0, contacts = 0, grounded = 0;
+  std::uint32_t corners = 0;       // contacts of a single point
+  std::uint32_t first = kNoPlace;  // its last contact with the fixed world
+  float smallest = 0.0f;           // m: the least reach of its bodies
+  bool refused = false;   // cannot be at rest: fast or bound bodies, joints, moving ground, no friction
+  bool stirring = false;  // a body at rest is not calm
+  bool settling = false;  // one is not settled
+  bool balances = false;  // a contact has one or two points
+  bool springs = false;   // a contact bore load in the last step and was not solved directly
+  bool held = false;      // and one was
+};
+
+class RestingIslands {
+ public:
+  // `pairs`: places of the constraints' bodies in the batch, as far as these move. `joints`: those of the batch. `places`: of all
+  // bodies (solve_batches.h).
+  RestingIslands(const RigidWorld& w, std::span<const ContactConstraint> constraints,
+                 std::span<const ColoringPair> pairs, std::span<const NetJoint> joints,
+                 const SolveBatch& batch, std::span<const std::uint32_t> places, Arena& arena);
+
+  // By place of a body in the batch. Only roots have counts.
+  bool is_root(std::uint32_t place) const {
+    return parent_[place] == place && is_movable(w_.bodies.flags[batch_.bodies[place]]);
+  }
+  const IslandCount& at_root(std::uint32_t place) const { return counts_[place]; }
+  std::uint32_t root_of(std::uint32_t place) const { return parent_[place]; }
+
+ private:
+  std::uint32_t root(std::uint32_t place);
+  void unite(std::uint32_t place_a, std::uint32_t place_b);
+  void unite_all(std::span<const ColoringPair> pairs, std::span<const NetJoint> joints);
+  void refuse_jointed(std::span<const NetJoint> joints);
+  void count_bodies();
+  void count_contacts(std::span<const ContactConstraint> constraints, std::span<const ColoringPair> pairs);
+
+  const RigidWorld& w_;
+  const SolveBatch& batch_;
+  std::span<const std::uint32_t> places_;
+  std::span<std::uint32_t> parent_;
+  std::span<IslandCount> counts_;
+};
+
+// For each body that moves the constraints it is in, as linked lists: link 2 * constraint + side (0: it is their a).
+struct IncidentContacts {
+  std::span<std::uint32_t> first;  // by the body's place
+  std::span<std::uint32_t> next;   // by link
+};
+IncidentContacts link_incident_contacts(std::span<const ColoringPair> pairs, std::size_t bodies,
+                                        Arena& arena);
+
+// Where the kernels keep each constraint: `order` has `width` constraint indices a block. By constraint: its place in `order`.
+std::span<std::uint32_t> find_kernel_places(std::span<const std::uint32_t> order, std::size_t constraints,
+                                            Arena& arena);
+
+}  // namespace gyre

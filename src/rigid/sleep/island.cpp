@@ -1,0 +1,234 @@
+#include "rigid/sleep/island.h"
+
+#include "collision/contact/pair_update.h"
+
+namespace gyre {
+
+namespace {
+
+bool is_dynamic(const RigidWorld& w, std::uint32_t body) { return is_movable(w.bodies.flags[body]); }
+
+// What swings on a spring is slow where it turns round, a hundredth of its size from where it will rest: it must be this many times
+// slower than what lies on something.
+constexpr float kSpringRest = 0.1f;
+
+bool is_on_spring(const RigidWorld& w, std::uint32_t body) {
+  for (const std::uint32_t slot : joints_of(w.bodies, body)) {
+    const JointRecord& joint = w.joints.records[slot];
+    if (joint.is_spring || joint.stiffness > 0.0f) return true;
+  }
+  return false;
+}
+
+bool is_asleep(const RigidWorld& w, std::uint32_t body) {
+  return is_dynamic(w, body) && w.bodies.flags[body].awake == 0;
+}
+
+// Union-find over bodies; the root of an island is its lowest body.
+class Islands {
+ public:
+  // Of those that are awake, in a step that has woken all who lie beside them: nobody sleeps in one.
+  static Islands awake(const RigidWorld& w, Arena& arena) {
+    Islands islands(w, arena);
+    for_each_awake_link(w, [&](std::uint32_t a, std::uint32_t b) { islands.link(w, a, b); });
+    return islands;
+  }
+  static Islands all(const RigidWorld& w, Arena& arena) {
+    Islands islands(w, arena);
+    for_each_link(w, [&](std::uint32_t a, std::uint32_t b) { islands.link(w, a, b); });
+    return islands;
+  }
+  std::uint32_t root(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+
+ private:
+  Islands(const RigidWorld& w, Arena& arena) : parent_(arena.make<std::uint32_t>(w.bodies.motion.size())) {
+    for (std::uint32_t i = 0; i < parent_.size(); ++i) parent_[i] = i;
+  }
+  void link(const RigidWorld& w, std::uint32_t a, std::uint32_t b) {
+    if (!is_dynamic(w, a) || !is_dynamic(w, b)) return;
+    a = root(a);
+    b = root(b);
+    if (a < b) {
+      parent_[b] = a;
+    } else {
+      parent_[a] = b;
+    }
+  }
+
+  std::span<std::uint32_t> parent_;
+};
+
+// Appends `body` to the ring of its group, whose lowest body is `root`.
+void fall_asleep(RigidWorld& w, std::uint32_t body, std::uint32_t root) {
+  BodySleep& sleep = w.bodies.sleep[body];
+  sleep.group = root;
+  if (body == root) {
+    sleep.next_in_group = body;
+  } else {
+    sleep.next_in_group = w.bodies.sleep[root].next_in_group;
+    w.bodies.sleep[root].next_in_group = body;
+  }
+  w.bodies.flags[body].awake = 0;
+  stop(w.bodies.motion[body]);
+  w.bodies.awake_stale = true;
+  w.events.sleep_changes.push_back({body_id(w, body), true});
+}
+
+// What is slow gains the time; what is faster than it may be pays by how much further it goes than it might have. So a limb of
+// a heap that slips once by a hair does not keep thousands awake, and what has begun to move has nothing left after a step or two.
+float gained_rest(const Rest& rest, float seconds) {
+  const float motion = rest.speed + kPushWeight * rest.pushed / seconds;
+  if (motion <= rest.rest_speed) return seconds;
+  return rest.rest_speed > 0.0f ? seconds * (1.0f - motion / rest.rest_speed) : -kMostStillTime;
+}
+
+void update_rest_timers(RigidWorld& w, float seconds, bool& somebody) {
+  const float pull = length(w.settings.gravity);
+  for (const std::uint32_t i : w.bodies.awake) {
+    if (w.bodies.flags[i].type != BodyType::dynamic) continue;
+    const Rest rest = find_rest(w, i, pull);
+    float& still = w.bodies.sleep[i].still_time;
+    still = rest.may ? clamp(still + gained_rest(rest, seconds), 0.0f, kMostStillTime) : 0.0f;
+    if (still >= kTimeToSleep) somebody = true;
+  }
+}
+
+}  // namespace
+
+bool disturbs(const RigidWorld& w, std::uint32_t body) {
+  const BodyFlags& flags = w.bodies.flags[body];
+  if (flags.frozen != 0 || flags.awake == 0) return false;
+  if (flags.type == BodyType::dynamic) return true;
+  const BodyMotion& motion = w.bodies.motion[body];
+  return flags.type == BodyType::kinematic &&
+         (motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{});
+}
+
+Rest find_rest(const RigidWorld& w, std::uint32_t body, float pull) {
+  const BodyFlags& flags = w.bodies.flags[body];
+  const BodyMotion& motion = w.bodies.motion[body];
+  const BodyMass& mass = w.bodies.masses[body];
+  const BodyForces& forces = w.bodies.forces[body];
+  const bool moves = motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{};
+  Rest rest;
+  // Nothing holds a free body up: as long as it moves at all it goes on for ever.
+  rest.may = flags.can_sleep != 0 && (flags.touched != 0 || !moves) && forces.force == Vec3{} &&
+             forces.torque == Vec3{} && (flags.touched != 0 || pull * absolute(forces.gravity_scale) == 0.0f);
+  // A body without shapes still has the extent of its inertia: turning is motion.
+  const float spread = mass.inertia.xx + mass.inertia.yy + mass.inertia.zz;
+  const float reach = max(mass.reach, mass.mass > 0.0f ? std::sqrt(spread / mass.mass) : 0.0f);
+  rest.speed = length(motion.linear_velocity) + reach * length(motion.angular_velocity);
+  // What is pushed apart in every step, and taken back by what it hangs on or is wedged in, goes nowhere.
+  rest.pushed = min(motion.pushed, length(motion.moved) + reach * length(motion.turned));
+  rest.rest_speed = kRestShare * std::sqrt((pull > 0.0f ? pull : 9.81f) * reach);
+  if (is_on_spring(w, body)) rest.rest_speed *= kSpringRest;
+  if (body < w.field_rest.size() && w.field_rest[body].acts != kNoFields) {
+    // What only turns round in a field is slow for a moment: at rest its speed must stay, too. And what floats comes near
+    // its place as slowly as it is near: it must be slow indeed.
+    const FieldRest& field = w.field_rest[body];
+    constexpr float kFloatingShare = 1.0f / 200.0f;
+    if (field.acts == kFieldsAlone) rest.rest_speed *= kFloatingShare;
+    const float change = length(motion.linear_velocity - field.linear) +
+                         reach * length(motion.angular_velocity - field.angular);
+    const float most = rest.rest_speed * w.settings.last_step / kTimeToSleep;
+    rest.may = rest.may && field.is_unsteady == 0 && change <= most;
+  }
+  return rest;
+}
+
+void wake(RigidWorld& w, std::uint32_t body) {
+  if (!is_asleep(w, body)) {
+    w.bodies.sleep[body].still_time = 0.0f;
+    return;
+  }
+  const std::uint32_t first = w.bodies.sleep[body].group == kNoGroup ? body : w.bodies.sleep[body].group;
+  std::uint32_t i = first;
+  do {
+    BodySleep& sleep = w.bodies.sleep[i];
+    const std::uint32_t next = sleep.group == kNoGroup ? first : sleep.next_in_group;
+    sleep = {};
+    w.bodies.flags[i].awake = 1;
+    add_awake_links(w, i);
+    w.events.sleep_changes.push_back({body_id(w, i), false});
+    i = next;
+  } while (i != first);
+  w.bodies.awake_stale = true;
+}
+
+void wake_all(RigidWorld& w) {
+  w.bodies.ids.for_each_live([&](std::uint32_t body) {
+    if (is_dynamic(w, body)) wake(w, body);
+  });
+}
+
+void wake_neighbours(RigidWorld& w, std::uint32_t body) {
+  for (const ShapeId id : w.bodies.shapes[body]) {
+    for (const std::uint32_t slot : list_contacts_of_shape(w.contacts, id.index, w.listed)) {
+      const Contact& contact = w.contacts.contacts[slot];
+      const std::uint32_t other = contact.body_a == body ? contact.body_b : contact.body_a;
+      if (contact.manifold_count > 0 && is_dynamic(w, other)) wake(w, other);
+    }
+  }
+  for (const std::uint32_t slot : joints_of(w.bodies, body)) {
+    const JointRecord& joint = w.joints.records[slot];
+    for (const std::int32_t end : {joint.body_a, joint.body_b}) {
+      if (end != kNoBody && std::uint32_t(end) != body && is_dynamic(w, std::uint32_t(end)))
+        wake(w, std::uint32_t(end));
+    }
+  }
+}
+
+void wake_touched(RigidWorld& w) {
+  refresh_awake(w.bodies);
+  if (w.bodies.sleepers == 0) return;
+  // Whoever wakes disturbs its own neighbours in turn, also those that an earlier link led to: nobody may sleep beside a
+  // body that is solved, since colours and islands know only those that are awake.
+  bool woken = true;
+  while (woken) {
+    woken = false;
+    const auto disturb = [&](std::uint32_t sleeper, std::uint32_t other) {
+      if (!is_asleep(w, sleeper) || !disturbs(w, other)) return;
+      wake(w, sleeper);
+      woken = true;
+    };
+    for_each_awake_link(w, [&](std::uint32_t a, std::uint32_t b) { disturb(a, b), disturb(b, a); });
+  }
+}
+
+void put_to_sleep(RigidWorld& w, Arena& arena, float seconds) {
+  if (w.settings.sleeping == 0) return;
+  bool somebody = false;
+  update_rest_timers(w, seconds, somebody);
+  if (!somebody) return;
+  Islands islands = Islands::awake(w, arena);
+  const std::span<std::uint8_t> restless = arena.make<std::uint8_t>(w.bodies.motion.size());
+  for (std::uint8_t& r : restless) r = 0;
+  for (const std::uint32_t i : w.bodies.awake) {
+    if (is_dynamic(w, i) && w.bodies.sleep[i].still_time < kTimeToSleep) restless[islands.root(i)] = 1;
+  }
+  for_each_awake_link(w, [&](std::uint32_t a, std::uint32_t b) {
+    // Who lies on something that moves does not rest.
+    if (is_dynamic(w, a) && !is_dynamic(w, b) && disturbs(w, b)) restless[islands.root(a)] = 1;
+    if (is_dynamic(w, b) && !is_dynamic(w, a) && disturbs(w, a)) restless[islands.root(b)] = 1;
+  });
+  for (const std::uint32_t i : w.bodies.awake) {
+    if (!is_dynamic(w, i)) continue;
+    const std::uint32_t root = islands.root(i);
+    if (restless[root] == 0) fall_asleep(w, i, root);
+  }
+}
+
+void force_sleep(RigidWorld& w, Arena& arena, std::uint32_t body) {
+  if (!is_dynamic(w, body) || is_asleep(w, body)) return;
+  refresh_awake(w.bodies);
+  Islands islands = Islands::all(w, arena);
+  const std::uint32_t root = islands.root(body);
+  for (const std::uint32_t i : w.bodies.awake) {
+    if (is_dynamic(w, i) && islands.root(i) == root) fall_asleep(w, i, root);
+  }
+}
+
+}  // namespace gyre

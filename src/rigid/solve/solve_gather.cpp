@@ -1,0 +1,273 @@
+#include "rigid/solve/solve_gather.h"
+
+#include "base/prefetch.h"
+#include "rigid/solve/hits.h"
+#include "rigid/batch/surface_rules.h"
+#include "solver/articulation/ball_records.h"
+#include "solver/rest/contact_structure.h"
+#include "task/parallel.h"
+
+#include <utility>
+
+namespace gyre {
+
+namespace {
+
+// The fastest that overlap is taken back, as a share of sqrt(gravity * size): falling its own size is a body's natural
+// scale of speed, so the rule holds from millimetres to kilometres.
+constexpr float kPushShare = 0.4f;
+// Manifolds and joints lie anywhere in memory: how many places before its turn one is asked for.
+constexpr std::size_t kAhead = 6;
+constexpr int kContactsPerGather = 64;
+constexpr int kJointsPerGather = 128;
+
+// A body as constraints know it: kNoBody if it never moves (its record is then never read).
+std::int32_t solver_body(const RigidWorld& w, std::uint32_t body) {
+  const BodyFlags& flags = w.bodies.flags[body];
+  return flags.type == BodyType::fixed || flags.frozen != 0 ? kNoBody : std::int32_t(body);
+}
+
+// Others may touch it at once: what is fixed is in many batches. (Not std::atomic_ref: Emscripten's library has none yet.)
+void touch_shared(RigidWorld& w, std::uint32_t body, std::uint8_t touch) {
+  std::uint8_t* const touched = &w.bodies.flags[body].touched;
+  std::uint8_t before = __atomic_load_n(touched, __ATOMIC_RELAXED);
+  while (before < touch &&
+         !__atomic_compare_exchange_n(touched, &before, touch, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+  }
+}
+
+void fetch_manifold(const ContactStore& store, std::uint32_t slot) {
+  prefetch(&store.manifolds[store.contacts[slot].first_manifold], sizeof(Manifold));
+}
+
+// Which points of a manifold bore load in the last step.
+struct Loads {
+  bool any = false, all = true;
+
+  explicit Loads(const Manifold& manifold) {
+    for (int k = 0; k < manifold.count; ++k) {
+      const bool bears = manifold.points[k].normal_impulse > 0.0f;
+      any |= bears;
+      all &= bears;
+    }
+  }
+};
+
+// Writes the constraints of contacts to their places in the lists.
+class ContactGatherer {
+ public:
+  // `is_alone`: no other worker gathers contacts of the same batch.
+  ContactGatherer(Solve& solve, bool is_alone)
+      : solve_(solve),
+        w_(solve.w),
+        fall_(std::sqrt(length(w_.settings.gravity))),
+        has_rules_(!w_.surface_rules.empty()),
+        is_alone_(is_alone) {}
+
+  // What was found among some contacts.
+  struct Found {
+    bool gaps = false;  // constraints without a manifold: nothing is asked of these
+    bool bouncy = false;
+  };
+
+  Found gather(std::uint32_t slot, std::size_t place) const {
+    const Contact& contact = w_.contacts.contacts[slot];
+    const Ends ends = find_ends(contact);
+    const std::uint8_t touch = contact.surface.restitution > 0.0f ? kPlaceShown : kTouched;
+    touch_body(contact.body_a, ends.active_a, touch);
+    touch_body(contact.body_b, ends.active_b, touch);
+    const ColoringPair pair{ends.active_a ? solve_.places[contact.body_a] : ColoringPair::kNone,
+                            ends.active_b ? solve_.places[contact.body_b] : ColoringPair::kNone};
+    BatchScratch& s = solve_.scratch;
+    Found found;
+    for (Manifold& manifold : manifolds_of(w_.contacts, contact)) {
+      ContactConstraint& constraint = s.constraints[place];
+      s.pairs[place] = pair;
+      s.constraint_contact[place++] = slot;
+      describe(contact, ends, constraint);
+      if (!add_manifold(contact, manifold, constraint)) constraint.manifold = nullptr;
+      found.gaps = found.gaps || constraint.manifold == nullptr;
+      found.bouncy = found.bouncy || constraint.restitution > 0.0f;
+    }
+    return found;
+  }
+
+ private:
+  // What follows from the two bodies of a contact, and its size.
+  struct Ends {
+    bool active_a, active_b, linked;
+    std::int32_t body_a, body_b;
+    float push_speed;
+  };
+
+  Ends find_ends(const Contact& contact) const {
+    Ends ends;
+    ends.active_a = is_active(w_, contact.body_a);
+    ends.active_b = is_active(w_, contact.body_b);
+    ends.linked = (ends.active_a && !joints_of(w_.bodies, contact.body_a).empty()) ||
+                  (ends.active_b && !joints_of(w_.bodies, contact.body_b).empty());
+    ends.body_a = ends.active_a ? std::int32_t(contact.body_a) : solver_body(w_, contact.body_a);
+    ends.body_b = ends.active_b ? std::int32_t(contact.body_b) : solver_body(w_, contact.body_b);
+    ends.push_speed = kPushShare * (fall_ > 0.0f ? fall_ : 3.132f) * std::sqrt(contact.size);
+    return ends;
+  }
+  // A body that is active is in one batch only.
+  void touch_body(std::uint32_t body, bool active, std::uint8_t touch) const {
+    if (!is_alone_ || !active) return touch_shared(w_, body, touch);
+    std::uint8_t& touched = w_.bodies.flags[body].touched;
+    touched = max(touched, touch);
+  }
+  // Every member is written, at its place: what is built elsewhere and copied in wider pieces waits for the smaller ones.
+  static void describe(const Contact& contact, const Ends& ends, ContactConstraint& constraint) {
+    constraint.static_friction = contact.surface.static_friction;
+    constraint.dynamic_friction = contact.surface.dynamic_friction;
+    constraint.rolling_friction = contact.surface.rolling_friction;
+    constraint.spinning_friction = contact.surface.spinning_friction;
+    constraint.size = contact.size;
+    constraint.push_speed = ends.push_speed;
+    constraint.surface_velocity = {};
+    constraint.restitution = contact.surface.restitution;
+    constraint.body_a = ends.body_a;
+    constraint.body_b = ends.body_b;
+    constraint.rigid = false;
+    constraint.linked = ends.linked;
+  }
+  // The rest of the members.
+  bool add_manifold(const Contact& contact, Manifold& manifold, ContactConstraint& constraint) const {
+    const Loads loads(manifold);
+    constraint.manifold = &manifold;
+    constraint.point_count = std::int16_t(manifold.count);
+    constraint.loaded = loads.any;
+    constraint.may_roll = false;
+    constraint.hold = manifold.age >= kHeldAge ? ContactHold::held
+                      : manifold.age > 0.0f    ? ContactHold::sprung
+                                               : ContactHold::none;
+    if (loads.all) {
+      constraint.fast = false;
+      for (int k = 0; k < manifold.count; ++k) manifold.points[k].approach_speed = 0.0f;
+    } else {
+      constraint.fast = note_approach(w_, contact, manifold);
+    }
+    if (manifold.count == 0) return false;
+    if (has_rules_ && !apply_surface_rules(w_, contact, manifold, constraint)) return false;
+    if (contact.recycled == 0) constraint.may_roll = may_roll(w_, contact, constraint);
+    constraint.spinning_friction += manifold.count == 1 ? patch_friction(w_, contact, constraint) : 0.0f;
+    return true;
+  }
+
+  Solve& solve_;
+  RigidWorld& w_;
+  float fall_;
+  bool has_rules_;
+  bool is_alone_;
+};
+
+void close_gaps(BatchScratch& s) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < s.constraints.size(); ++i) {
+    if (s.constraints[i].manifold == nullptr) continue;
+    s.constraints[kept] = s.constraints[i];
+    s.pairs[kept] = s.pairs[i];
+    s.constraint_contact[kept++] = s.constraint_contact[i];
+  }
+  s.constraints.resize_uninitialized(kept);
+  s.pairs.resize_uninitialized(kept);
+  s.constraint_contact.resize_uninitialized(kept);
+}
+
+}  // namespace
+
+void gather_contacts(Solve& solve, Arena& arena, TaskSystem& tasks) {
+  const ArenaScope scope(arena);
+  const RigidWorld& w = solve.w;
+  BatchScratch& s = solve.scratch;
+  const std::span<const std::uint32_t> slots = solve.batch.contacts;
+  const auto waits = [&](std::uint32_t slot) { return !w.waiting.empty() && w.waiting[slot] != 0; };
+  const auto for_each_block = [&](auto&& run) {
+    for_blocks(tasks, int(slots.size()), kContactsPerGather,
+               [&](int begin, int end, int) { run(std::size_t(begin), std::size_t(end)); });
+  };
+  // Where the constraints of a block of contacts begin.
+  const auto block_of = [](std::size_t begin) { return begin / std::size_t(kContactsPerGather); };
+  const std::span<std::uint32_t> firsts =
+      arena.make<std::uint32_t>(std::size_t(count_blocks(int(slots.size()), kContactsPerGather)));
+  for_each_block([&](std::size_t begin, std::size_t end) {
+    std::uint32_t manifolds = 0;
+    for (const std::uint32_t slot : slots.subspan(begin, end - begin))
+      if (!waits(slot)) manifolds += w.contacts.contacts[slot].manifold_count;
+    firsts[block_of(begin)] = manifolds;
+  });
+  std::uint32_t count = 0;
+  for (std::uint32_t& first : firsts) count += std::exchange(first, count);
+  s.constraints.resize_uninitialized(count);
+  s.pairs.resize_uninitialized(count);
+  s.constraint_contact.resize_uninitialized(count);
+  using Found = ContactGatherer::Found;
+  const auto either = [](Found a, Found b) { return Found{a.gaps || b.gaps, a.bouncy || b.bouncy}; };
+  const ContactGatherer gatherer(solve, tasks.worker_count() == 1);
+  const auto gather_block = [&](int begin, int end, int) {
+    Found found;
+    std::uint32_t place = firsts[block_of(std::size_t(begin))];
+    for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
+      if (i + kAhead < slots.size()) fetch_manifold(w.contacts, slots[i + kAhead]);
+      if (waits(slots[i])) continue;
+      found = either(found, gatherer.gather(slots[i], place));
+      place += w.contacts.contacts[slots[i]].manifold_count;
+    }
+    return found;
+  };
+  const Found found =
+      reduce_blocks(tasks, int(slots.size()), kContactsPerGather, Found{}, gather_block, either);
+  if (found.gaps) close_gaps(s);
+  s.impacts.clear();
+  if (!found.bouncy) return;
+  for (const ContactConstraint& constraint : s.constraints) {
+    if (constraint.restitution > 0.0f) s.impacts.push_back(make_impact(constraint));
+  }
+}
+
+void look_at_joints(Solve& solve, Arena& arena, TaskSystem& tasks) {
+  RigidWorld& w = solve.w;
+  solve.net_joints = arena.make<NetJoint>(solve.batch.joints.size());
+  solve.ball_lanes = arena.make<std::uint8_t>(solve.batch.joints.size());
+  const auto look = [&](std::int32_t body, bool is_spring) {
+    if (body == kNoBody) return kNoBody;
+    if (!is_spring) touch_shared(w, std::uint32_t(body), kPlaceShown);
+    return is_active(w, std::uint32_t(body)) ? body : kNoBody;
+  };
+  const int count = int(solve.batch.joints.size());
+  for_blocks(tasks, count, kJointsPerGather, [&](int begin, int end, int) {
+    for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i) {
+      if (i + kAhead < solve.batch.joints.size()) fetch_joint(w.joints, solve.batch.joints[i + kAhead]);
+      const std::uint32_t slot = solve.batch.joints[i];
+      const JointRecord& joint = w.joints.records[slot];
+      const JointDetail* const detail = detail_of(w.joints, slot);
+      const bool is_spring = solve.is_smooth && is_explicit_spring(w, slot);
+      solve.net_joints[i] = {look(joint.body_a, is_spring), look(joint.body_b, is_spring),
+                             count_equations(joint, detail)};
+      solve.ball_lanes[i] = fits_ball_lane(joint, detail) ? 1 : 0;
+    }
+  });
+}
+
+void gather_joints(Solve& solve) {
+  BatchScratch& s = solve.scratch;
+  const std::size_t most = solve.batch.joints.size();
+  s.swept_joints.resize_uninitialized(most);
+  s.joint_pairs.resize_uninitialized(most);
+  std::size_t count = 0;
+  const auto place = [&](std::int32_t body) {
+    return body == kNoBody ? ColoringPair::kNone : solve.places[std::size_t(body)];
+  };
+  for (std::uint32_t i = 0; i < most; ++i) {
+    if (solve.linkages.swept[i] == 0) continue;
+    if (solve.is_smooth && is_explicit_spring(solve.w, solve.batch.joints[i])) continue;
+    const NetJoint& joint = solve.net_joints[i];
+    s.swept_joints[count] = i;
+    s.joint_pairs[count++] = {place(joint.body_a), place(joint.body_b)};
+  }
+  s.swept_joints.resize_uninitialized(count);
+  s.joint_pairs.resize_uninitialized(count);
+}
+
+}  // namespace gyre

@@ -1,0 +1,444 @@
+#include "rigid/solve/solve_rows.h"
+
+#include "rigid/solve/hits.h"
+#include "rigid/batch/joint_works.h"
+#include "rigid/solve/motion_stages.h"
+#include "rigid/solve/row_islands.h"
+#include "rigid/solve/solve_bodies.h"
+#include "rigid/solve/solve_gather.h"
+#include "solver/rows/body_newton.h"
+#include "solver/rows/constraint_rows.h"
+#include "solver/rows/delassus.h"
+#include "solver/rows/solve_sweeps.h"
+#include "task/parallel.h"
+
+namespace gyre {
+
+namespace {
+
+// Sides of the polygon by which pivoting leads to Coulomb's disc.
+constexpr int kLeadingSides = 8;
+// Impulses are found to this share of the largest that stops a row alone, and to this many N s where that is less.
+constexpr double kDirectShare = 1.0e-7, kDirectImpulse = 1.0e-7, kRoundedImpulse = 1.0e-11;
+constexpr double kAccepted = 5.0;  // what Newton's method may leave of these where it gets no further
+constexpr double kNncgShare = 1.0e-5;
+// Newton's steps from where the impulses stand, and from where so many sweeps lead where that does not end; rows up to
+// which the longer ones are tried, and up to which pivoting is tried where that does not end either.
+constexpr int kNewtonSteps = 30, kLeadingSweeps[] = {0, 64, 256, 1024}, kMostLedFar = 1500,
+              kMostPivotRows = 100;
+// Multiplications of a factorisation above which an island is left to NNCG: about a tenth of a second.
+constexpr std::uint64_t kMostFactorWork = 100'000'000;
+
+// What one worker needs for the island that it is at.
+struct WorkerRoom {
+  std::span<Row> rows;
+  std::span<float*> kept;
+  std::span<RowBody> bodies;
+  std::span<RowLimits> limits;
+  std::span<std::int32_t> starts, first, next;
+  std::span<double> numbers;
+};
+
+struct RowSolve {
+  Solve& solve;
+  const SolverSettings& settings;
+  FrictionSet friction, polygon;
+  DirectMethod method = DirectMethod::dantzig;
+  RowIslands islands{};
+  std::span<WorkerRoom> rooms{};
+  std::span<RowReport> reports{};  // by island
+  float warm_scale = 1.0f;
+};
+
+// The rows of a sub-step of one island, and who they came from.
+struct IslandRows {
+  const RowIsland& island;
+  WorkerRoom& room;
+  RowFrame frame;
+  RowList list;
+
+  std::span<Row> rows() const { return room.rows.first(std::size_t(list.count)); }
+  std::span<RowBody> bodies() const { return frame.bodies; }
+};
+
+int sweeps_of(const SolverSettings& settings) {
+  if (settings.options.iterations > 0) return settings.options.iterations;
+  return settings.kind == SolverKind::lcp ? kNncgSweeps : kSequentialSweeps;
+}
+bool pivots(LcpMethod method) { return method == LcpMethod::dantzig || method == LcpMethod::lemke; }
+
+IslandRows begin_island(const RowSolve& s, const RowIsland& island, WorkerRoom& room, bool at_rest) {
+  const BodyStore& store = s.solve.w.bodies;
+  for (std::size_t i = 0; i < island.bodies.size(); ++i) {
+    const std::uint32_t slot = island.bodies[i];
+    const BodyMotion& motion = store.motion[slot];
+    RowBody& body = room.bodies[i];
+    body = make_row_body(store.inertia[slot], store.flags[slot].locked_linear);
+    if (!at_rest) body.linear = DVec3(motion.linear_velocity), body.angular = DVec3(motion.angular_velocity);
+  }
+  const RowFrame frame{room.bodies.first(island.bodies.size()), s.islands.place.data(), store.motion.data(),
+                       double(s.solve.h)};
+  return {island, room, frame, {room.rows.data(), room.kept.data(), 0}};
+}
+
+// ---------------------------------------------------------------------------------------------------------- solving
+
+double largest_alone(std::span<const Row> rows, std::span<const RowBody> bodies) {
+  double most = 0.0;
+  for (const Row& row : rows) {
+    if (!(row.diagonal > 0.0)) continue;
+    const double w = row_speed(row, bodies) - row.wanted;
+    most = max(most, (w < 0.0 ? -w : w) / row.diagonal);
+  }
+  return most;
+}
+
+void sweep_island(const RowSolve& s, const IslandRows& island, NumberRoom room, double scale,
+                  RowReport& report) {
+  const std::span<Row> rows = island.rows();
+  const std::span<RowBody> bodies = island.bodies();
+  warm_start_rows(rows, bodies);
+  if (s.settings.kind == SolverKind::lcp) {
+    const SweepResult result =
+        solve_nncg(rows, bodies, s.friction, kNncgShare * scale, sweeps_of(s.settings), room);
+    report.sweeps = max(report.sweeps, result.sweeps);
+    report.residual = max(report.residual, result.residual);
+    return;
+  }
+  for (int i = 0; i < sweeps_of(s.settings); ++i) sweep_rows_once(rows, bodies, s.friction);
+  report.sweeps = sweeps_of(s.settings);
+  report.residual = max(report.residual, find_row_residual(rows, bodies, s.friction));
+}
+
+double direct_tolerance(double scale) {
+  return max(kRoundedImpulse * scale, min(kDirectImpulse, kDirectShare * scale));
+}
+
+// False if it left more than it should; the rows' impulses are then the best that it found.
+bool solve_island_directly(const RowSolve& s, const IslandRows& island, NumberRoom room, DirectMethod method,
+                           double scale, RowReport& report) {
+  const std::span<Row> rows = island.rows();
+  const std::size_t n = rows.size();
+  const std::span<double> a = room.take(n * n), q = room.take(n), x = room.take(n);
+  WorkerRoom& own = island.room;
+  fill_delassus(rows, island.bodies().size(), a, own.first, own.next);
+  for (std::size_t i = 0; i < n; ++i) {
+    q[i] = row_speed(rows[i], island.bodies()) - rows[i].wanted;
+    x[i] = rows[i].impulse;
+    own.limits[i] = rows[i].limits;
+  }
+  const DenseProblem problem{int(n), a, q, own.limits.first(n), &s.friction};
+  const double tolerance = direct_tolerance(scale);
+  const DirectResult result = solve_direct(problem, s.polygon, method, tolerance, x, room);
+  for (std::size_t i = 0; i < n; ++i) rows[i].impulse = x[i];
+  if (!result.is_solved) return false;
+  warm_start_rows(rows, island.bodies());
+  report.residual = max(report.residual, result.residual);
+  report.direct = 1;
+  return true;
+}
+
+// Newton's method; false if it does not end. The rows' impulses are then the best that it found.
+bool solve_island_by_newton(const RowSolve& s, const IslandRows& island, NumberRoom room, double scale,
+                            RowReport& report) {
+  const std::span<Row> rows = island.rows();
+  const std::span<double> x = room.take(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) x[i] = rows[i].impulse;
+  const double tolerance = direct_tolerance(scale);
+  const NewtonResult result = solve_body_newton({rows, island.bodies(), &s.friction, &island.island.plan},
+                                                tolerance, kNewtonSteps, x, room);
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].impulse = x[i];
+  if (!(result.residual <= kAccepted * tolerance)) return false;
+  warm_start_rows(rows, island.bodies());
+  report.residual = max(report.residual, result.residual);
+  report.direct = 1;
+  return true;
+}
+
+// Newton's method from where the impulses stand; where it does not end, from where some sweeps lead.
+bool solve_island_by_all_means(const RowSolve& s, const IslandRows& island, NumberRoom room, double scale,
+                               RowReport& report) {
+  const std::span<Row> rows = island.rows();
+  for (const int sweeps : kLeadingSweeps) {
+    if (sweeps > kLeadingSweeps[1] && int(rows.size()) > kMostLedFar) break;
+    if (sweeps > 0) {
+      warm_start_rows(rows, island.bodies());
+      solve_nncg(rows, island.bodies(), s.friction, kNncgShare * scale, sweeps, room);
+      for (const Row& row : rows) push_row(row, -row.impulse, island.bodies());
+    }
+    if (solve_island_by_newton(s, island, room, scale, report)) return true;
+  }
+  return false;
+}
+
+void solve_island(const RowSolve& s, const IslandRows& island, RowReport& report) {
+  const std::span<Row> rows = island.rows();
+  if (rows.empty()) return;
+  report.islands = 1;
+  report.largest = max(report.largest, int(rows.size()));
+  const double scale = largest_alone(rows, island.bodies());
+  const NumberRoom room(island.room.numbers);
+  const LcpMethod method = s.settings.options.lcp_method;
+  if (s.settings.kind == SolverKind::lcp && method != LcpMethod::nncg) {
+    const int most = s.settings.options.direct_rows;
+    const bool fits = int(rows.size()) <= most;
+    if (pivots(method) && fits && solve_island_directly(s, island, room, s.method, scale, report)) return;
+    if (pivots(method) && !fits) report.too_large = 1;
+    if (!(pivots(method) && fits) && !island.island.plan.columns.empty() &&
+        solve_island_by_all_means(s, island, room, scale, report))
+      return;
+    if (method == LcpMethod::automatic && int(rows.size()) <= min(most, kMostPivotRows) &&
+        solve_island_directly(s, island, room, DirectMethod::dantzig, scale, report))
+      return;
+  }
+  sweep_island(s, island, room, scale, report);
+}
+
+// ----------------------------------------------------------------------------------------------------------- stages
+
+void make_rows(const RowSolve& s, IslandRows& island, bool first) {
+  Solve& solve = s.solve;
+  int next = 0;
+  for (const std::uint32_t i : island.island.joints) {
+    JointRecord& joint = solve.w.joints.records[solve.batch.joints[i]];
+    bend_joint(joint, solve.joint_work[i], solve.joint_bodies, solve.joint_settings);
+    island.room.starts[std::size_t(next++)] = island.list.count;
+    add_joint_rows(joint, solve.joint_work[i], solve.joint_settings, island.frame, island.list);
+  }
+  const float warm = first ? s.warm_scale : 1.0f;
+  for (const std::uint32_t i : island.island.constraints) {
+    island.room.starts[std::size_t(next++)] = island.list.count;
+    add_contact_rows(solve.scratch.constraints[i], island.frame, warm, island.list);
+  }
+  island.room.starts[std::size_t(next)] = island.list.count;
+}
+
+void keep_impulses(const RowSolve& s, const IslandRows& island) {
+  Solve& solve = s.solve;
+  std::size_t next = 0;
+  const auto range = [&] {
+    const std::size_t begin = std::size_t(island.room.starts[next]),
+                      end = std::size_t(island.room.starts[next + 1]);
+    ++next;
+    return std::pair(begin, end - begin);
+  };
+  for (const std::uint32_t i : island.island.joints) {
+    const auto [begin, count] = range();
+    keep_joint_impulses(solve.w.joints.records[solve.batch.joints[i]], solve.joint_work[i],
+                        island.room.rows.subspan(begin, count), island.room.kept.subspan(begin, count));
+  }
+  for (const std::uint32_t i : island.island.constraints) {
+    const auto [begin, count] = range();
+    keep_contact_impulses(solve.scratch.constraints[i], s.friction, island.room.rows.subspan(begin, count));
+  }
+}
+
+// Adding zero keeps -0 out of the state.
+void store_velocities(const RowSolve& s, const IslandRows& island) {
+  for (std::size_t i = 0; i < island.island.bodies.size(); ++i) {
+    BodyMotion& motion = s.solve.w.bodies.motion[island.island.bodies[i]];
+    motion.linear_velocity = to_float(island.frame.bodies[i].linear) + Vec3{};
+    motion.angular_velocity = to_float(island.frame.bodies[i].angular) + Vec3{};
+  }
+}
+
+template <bool first>
+void solve_islands_stage(void* context, int begin, int end, int worker) {
+  const RowSolve& s = *static_cast<RowSolve*>(context);
+  for (int i = begin; i < end; ++i) {
+    IslandRows island =
+        begin_island(s, s.islands.islands[std::size_t(i)], s.rooms[std::size_t(worker)], false);
+    make_rows(s, island, first);
+    solve_island(s, island, s.reports[std::size_t(i)]);
+    store_velocities(s, island);
+    keep_impulses(s, island);
+  }
+}
+
+void push_apart_stage(void* context, int begin, int end, int worker) {
+  const RowSolve& s = *static_cast<RowSolve*>(context);
+  Solve& solve = s.solve;
+  for (int i = begin; i < end; ++i) {
+    IslandRows island =
+        begin_island(s, s.islands.islands[std::size_t(i)], s.rooms[std::size_t(worker)], true);
+    bool overlaps = false;
+    for (const std::uint32_t c : island.island.constraints) {
+      if (add_overlap_rows(solve.scratch.constraints[c], island.frame, solve.contact_settings.step,
+                           island.list))
+        overlaps = true;
+    }
+    if (!overlaps) continue;
+    for (const std::uint32_t j : island.island.joints)
+      add_joint_equations(solve.w.joints.records[solve.batch.joints[j]], solve.joint_work[j], island.frame,
+                          island.list);
+    RowReport unheard;  // of displacements, not impulses
+    solve_island(s, island, unheard);
+    store_velocities(s, island);
+  }
+}
+
+void place_row_joints_stage(void* context, int begin, int end, int) {
+  const RowSolve& s = *static_cast<RowSolve*>(context);
+  Solve& solve = s.solve;
+  for (int i = begin; i < end; ++i) {
+    for (const std::uint32_t j : s.islands.islands[std::size_t(i)].joints)
+      place_joint(solve.w.joints.records[solve.batch.joints[j]], solve.joint_work[j], solve.joint_places[j],
+                  solve.joint_bodies, solve.joint_settings);
+  }
+}
+void sum_joints_stage(void* context, int begin, int end, int) {
+  const RowSolve& s = *static_cast<RowSolve*>(context);
+  Solve& solve = s.solve;
+  for (int i = begin; i < end; ++i) {
+    for (const std::uint32_t j : s.islands.islands[std::size_t(i)].joints)
+      sum_joint(solve.w.joints.records[solve.batch.joints[j]], solve.joint_work[j], solve.joint_bodies);
+  }
+}
+
+void watch_rows_stage(void* context, int, int, int) {
+  const Solve& s = static_cast<RowSolve*>(context)->solve;
+  watch_impacts(s.scratch.impacts, s.contact_bodies);
+}
+void strike_rows_stage(void* context, int, int, int) {
+  const Solve& s = static_cast<RowSolve*>(context)->solve;
+  strike_impacts(s.scratch.impacts, s.contact_bodies, s.impact_settings);
+}
+void release_rows_stage(void* context, int, int, int) {
+  const Solve& s = static_cast<RowSolve*>(context)->solve;
+  release_impacts(s.scratch.impacts, s.contact_bodies, s.impact_settings);
+}
+
+// ---------------------------------------------------------------------------------------------------------- program
+
+void run_substeps(RowSolve& s, Arena& arena, TaskSystem& tasks) {
+  Solve& solve = s.solve;
+  const int islands = int(s.islands.islands.size());
+  const int bodies = count_blocks(int(solve.moved.size()), solve.kernels.width);
+  const int impacts = solve.scratch.impacts.empty() ? 0 : 1;
+  const int fields = solve.fields.blocks();
+  ProgramWriter program(arena.make<Stage>(8 + 11 * std::size_t(solve.motions.count)));
+  add_flying(program, solve);
+  add_motion(program, solve, prepare_motion_stage, bodies);
+  program.add(prepare_fields_stage, &solve.fields, fields);
+  program.add(place_row_joints_stage, &s, islands);
+  for (int i = 0; i < solve.motions.count; ++i) {
+    program.add(watch_fields_stage, &solve.fields, fields);
+    program.add(watch_rows_stage, &s, impacts);
+    add_motion(program, solve, predict_stage, bodies);
+    program.add(strike_rows_stage, &s, impacts);
+    program.add(apply_fields_stage, &solve.fields, fields);
+    program.add(i == 0 ? solve_islands_stage<true> : solve_islands_stage<false>, &s, islands);
+    add_motion(program, solve, advance_stage, bodies);
+    add_turn_alone(program, solve);
+    program.add(release_rows_stage, &s, impacts);
+    program.add(place_row_joints_stage, &s, islands);
+    program.add(sum_joints_stage, &s, islands);
+  }
+  add_motion(program, solve, begin_projection_stage, bodies);
+  program.add(push_apart_stage, &s, islands);
+  add_motion(program, solve, end_projection_stage, bodies);
+  add_finish_turns(program, solve);
+  run_program(tasks, program.stages());
+}
+
+// Room for the largest island, for each worker: whoever comes to it.
+void make_rooms(RowSolve& s, Arena& arena, TaskSystem& tasks) {
+  std::size_t rows = 0, bodies = 0, owners = 0, numbers = 0;
+  for (const RowIsland& island : s.islands.islands) {
+    const std::size_t n = island.size.rows;
+    rows = max(rows, n);
+    bodies = max(bodies, island.bodies.size());
+    owners = max(owners, island.joints.size() + island.constraints.size());
+    std::size_t own = nncg_room(n);
+    if (s.settings.kind == SolverKind::lcp && s.settings.options.lcp_method != LcpMethod::nncg) {
+      if (!island.plan.columns.empty()) own = max(own, n + body_newton_room(n, island.plan));
+      // Fewer rows than were counted may come within what pivoting takes.
+      const LcpMethod method = s.settings.options.lcp_method;
+      int most = s.settings.options.direct_rows;
+      if (!pivots(method)) most = method == LcpMethod::automatic ? min(most, kMostPivotRows) : 0;
+      DirectSize size = island.size;
+      size.rows = min(n, std::size_t(most));
+      size.equations = min(size.equations, size.rows), size.cones = min(size.cones, (size.rows + 1) / 2);
+      own = max(own, size.rows * size.rows + 2 * size.rows + direct_room(size, s.polygon, s.method));
+    }
+    numbers = max(numbers, own);
+  }
+  s.rooms = arena.make<WorkerRoom>(std::size_t(tasks.worker_count()));
+  for (WorkerRoom& room : s.rooms) {
+    room = {arena.make<Row>(rows),
+            arena.make<float*>(rows),
+            arena.make<RowBody>(bodies),
+            arena.make<RowLimits>(rows),
+            arena.make<std::int32_t>(owners + 1),
+            arena.make<std::int32_t>(bodies),
+            arena.make<std::int32_t>(2 * rows),
+            arena.make<double>(numbers)};
+  }
+}
+
+// Rows look at their bodies' places in each sub-step.
+void show_bodies(Solve& solve) {
+  RigidWorld& w = solve.w;
+  for (const std::uint32_t slot : solve.batch.joints) {
+    const JointRecord& joint = w.joints.records[slot];
+    if (joint.body_a != kNoBody) w.bodies.flags[std::size_t(joint.body_a)].touched = kPlaceShown;
+    if (joint.body_b != kNoBody) w.bodies.flags[std::size_t(joint.body_b)].touched = kPlaceShown;
+  }
+  for (const std::uint32_t body : solve.batch.bodies) {
+    std::uint8_t& touched = w.bodies.flags[body].touched;
+    if (touched != kUntouched) touched = kPlaceShown;
+  }
+}
+
+void add_reports(RowReport& sum, std::span<const RowReport> reports) {
+  for (const RowReport& report : reports) {
+    sum.residual = max(sum.residual, report.residual);
+    sum.islands += report.islands;
+    sum.largest = max(sum.largest, report.largest);
+    sum.direct += report.direct;
+    sum.too_large += report.too_large;
+    sum.sweeps = max(sum.sweeps, report.sweeps);
+  }
+}
+
+}  // namespace
+
+void solve_batch_as_rows(Solve& solve, const SolverSettings& settings, Arena& arena, TaskSystem& tasks,
+                         float warm_scale) {
+  const ArenaScope scope(arena);
+  BatchScratch& scratch = solve.scratch;
+  gather_contacts(solve, arena, tasks);
+  for (const ContactConstraint& constraint : scratch.constraints) constraint.manifold->total_friction = {};
+  show_bodies(solve);
+  solve.fields = find_field_bodies(solve.w, solve.batch.bodies, solve.h, arena);
+  const JointWorks works = begin_joints(solve.w, solve.batch, {}, warm_scale, arena);
+  solve.joint_work = works.work;
+  solve.joint_places = works.places;
+  gather_motion(solve, arena, tasks);
+  RowSolve rows{solve, settings, make_friction_set(settings.options.friction_sides), {}};
+  rows.polygon = settings.options.friction_sides == 0 ? make_friction_set(kLeadingSides) : rows.friction;
+  if (settings.options.lcp_method == LcpMethod::lemke) rows.method = DirectMethod::lemke;
+  rows.warm_scale = warm_scale;
+  rows.islands = find_row_islands(solve.w, scratch, solve.batch, solve.joint_work, arena);
+  if (settings.kind == SolverKind::lcp && settings.options.lcp_method != LcpMethod::nncg)
+    plan_row_islands(solve.w, scratch, solve.batch, kMostFactorWork, arena, rows.islands);
+  rows.reports = arena.make<RowReport>(rows.islands.islands.size());
+  for (RowReport& report : rows.reports) report = {};
+  make_rooms(rows, arena, tasks);
+  run_substeps(rows, arena, tasks);
+  add_reports(scratch.rows, rows.reports);
+  for (const ContactConstraint& constraint : scratch.constraints) {
+    float load = 0.0f;
+    for (int k = 0; k < constraint.manifold->count; ++k) load += constraint.manifold->points[k].total_impulse;
+    constraint.manifold->age = load > 0.0f ? constraint.manifold->age + solve.contact_settings.step : 0.0f;
+  }
+  finish_joints(solve.w, solve.batch, {}, solve.joint_work);
+  // Rows have no colours: what says so looks at these.
+  scratch.pairs.clear();
+  scratch.joint_pairs.clear();
+  note_hits(solve.w, scratch, arena, tasks);
+  scratch.counts.manifolds += scratch.constraints.size();
+  scratch.counts.joints += solve.batch.joints.size();
+}
+
+}  // namespace gyre

@@ -1,0 +1,136 @@
+// Everything rigid: bodies, shapes, joints, contacts, and the settings that act on them.
+#pragma once
+
+#include "base/arena/arena.h"
+#include "base/container/flat_map.h"
+#include "base/arena/idle_clock.h"
+#include "collision/broadphase/broadphase.h"
+#include "collision/contact/collide.h"
+#include "collision/contact/contact_store.h"
+#include "collision/contact/seam.h"
+#include "rigid/store/awake_links.h"
+#include "rigid/store/body_store.h"
+#include "rigid/store/field_record.h"
+#include "rigid/store/shape_store.h"
+#include "rigid/store/solver_settings.h"
+#include "solver/joint/joint.h"
+
+#include <gyre/events.h>
+
+#include <memory>
+
+namespace gyre {
+
+struct JointStore {
+  IdPool ids;
+  Array<JointRecord> records;
+  Array<JointDetail> details;      // by slot, as far as a joint needed one: most worlds have none
+  Array<PathPoint> path_points;    // of all curves, one after the other
+  FlatMap<std::uint32_t> blocked;  // body pair key -> number of joints that keep the two from colliding; derived
+};
+
+// What the joint has beyond its record; null if nothing.
+inline const JointDetail* detail_of(const JointStore& joints, std::uint32_t slot) {
+  return slot < joints.details.size() && joints.details[slot].used ? &joints.details[slot] : nullptr;
+}
+inline JointDetail* detail_of(JointStore& joints, std::uint32_t slot) {
+  return slot < joints.details.size() && joints.details[slot].used ? &joints.details[slot] : nullptr;
+}
+// Asks for what is looked at first of a joint that comes soon: records are long, and there are many.
+inline void fetch_joint(const JointStore& joints, std::uint32_t slot) {
+  if (slot < joints.records.size()) __builtin_prefetch(&joints.records[slot]);
+  if (slot < joints.details.size()) __builtin_prefetch(&joints.details[slot]);
+}
+inline std::span<const PathPoint> path_of(const JointStore& joints, const JointDetail& detail) {
+  return joints.path_points.view().subspan(detail.path_first, detail.path_count);
+}
+
+struct RigidSettings {
+  Vec3 gravity{0, -9.81f, 0};
+  std::int32_t substeps = 4;
+  std::uint8_t sleeping = 1;
+  CombineRule friction_rule = CombineRule::geometric_mean;
+  CombineRule restitution_rule = CombineRule::maximum;
+  std::uint8_t spare = 0;
+  float last_substep = 0.0f;  // s, between two sweeps of the solver: the warm start is scaled by the change of it
+  float last_step = 0.0f;     // s
+};
+
+// What happened in a step, before it is made public.
+struct RigidEvents {
+  Array<ContactBegin> begins;
+  Array<ContactEnd> ends;
+  Array<ContactHit> hits;
+  Array<SensorTouch> sensors;
+  Array<JointBroken> broken;
+  Array<SleepChange> sleep_changes;
+};
+
+// When memory that only busy steps need was last needed.
+struct ScratchClocks {
+  IdleClock changed, hurried, new_pairs, sort_scratch;
+  IdleClock begins, ends, hits, sensors, broken, sleep_changes;
+};
+
+// How a body that fields act on fared in a step; by body, in worlds with fields.
+constexpr std::uint8_t kNoFields = 0, kFieldsToo = 1, kFieldsAlone = 2;
+struct FieldRest {
+  Vec3 linear, angular;            // velocity as the step began
+  std::uint8_t acts = kNoFields;   // beside constraints, or alone
+  std::uint8_t is_unsteady = 0;  // a field acts that changes by itself
+};
+
+struct RigidWorld {
+  BodyStore bodies;
+  ShapeStore shapes;
+  JointStore joints;
+  ContactStore contacts;
+  Array<MaterialPair> material_pairs;  // sorted by (a, b), a <= b
+  Array<SurfaceRule> surface_rules;    // sorted by id
+  Array<FieldRecord> fields;           // by slot
+  RigidSettings settings;
+  Array<MotionSettings> motion_settings;  // one, where they are not the default; else none
+  Array<SolverSettings> solver;        // one, or none: the default solver
+
+  // Not state: can be rebuilt or lives for one step.
+  std::unique_ptr<Broadphase> broadphase;
+  bool broadphase_stale = true;        // must be rebuilt from all proxies
+  AwakeLinks awake_links;
+  TouchChanges touches;
+  SeamScratch seams;  // contacts at flush edges, in the last step
+  Array<std::uint64_t> new_pairs;
+  Array<std::uint64_t> sort_scratch;
+  Array<std::uint32_t> listed;         // contacts of a shape that is looked at
+  std::uint64_t steps = 0;             // done before this one: for what is looked at only now and then
+  double now = 0.0;                    // s, as the step begins: for fields that change by themselves
+  Array<FieldRest> field_rest;
+  Array<std::uint8_t> refit_marks;     // by shape: got a new fat box in this step
+  RigidEvents events;
+  ScratchClocks clocks;
+  Array<std::uint8_t> waiting;         // by contact: it does not act (rigid/time/impact_times.h); adaptive steps, else empty
+  std::uint16_t world_number = 0;      // for ids in events
+};
+
+inline MotionSettings motion_settings(const RigidWorld& w) {
+  return w.motion_settings.empty() ? MotionSettings{} : w.motion_settings[0];
+}
+
+inline BodyId body_id(const RigidWorld& w, std::uint32_t body) {
+  return {body, std::uint16_t(w.bodies.ids.generation(body)), w.world_number};
+}
+// Calls fn(slot) for each contact of a body, in no particular order; fn must not add or remove contacts.
+template <class Fn>
+void for_each_contact_of_body(const RigidWorld& w, std::uint32_t body, Fn&& fn) {
+  for (const ShapeId id : w.bodies.shapes[body]) for_each_contact_of_shape(w.contacts, id.index, fn);
+}
+inline ShapeId shape_id(const RigidWorld& w, std::uint32_t shape) {
+  return {shape, std::uint16_t(w.shapes.ids.generation(shape)), w.world_number};
+}
+inline JointId joint_id(const RigidWorld& w, std::uint32_t joint) {
+  return {joint, std::uint16_t(w.joints.ids.generation(joint)), w.world_number};
+}
+
+// Surface of a pair of shapes: the table's entry, or the combine rules.
+ContactSurface combine_materials(const RigidWorld& w, const Material& a, const Material& b);
+
+}  // namespace gyre

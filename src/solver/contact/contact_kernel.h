@@ -1,0 +1,397 @@
+// The contact kernels: prepare, warm start, solve, project and finish, one template for every width. Lane i of a block
+// computes exactly what a block of width 1 would, so the width never changes a bit.
+//
+// A manifold has up to four normal rows and one friction row triple at the centre of pressure: two tangents and the twist
+// about the normal, limited together by an ellipsoid (S. Goyal, A. Ruina, J. Papadopoulos, "Planar sliding with dry
+// friction", 1991; R. Howe, M. Cutkosky, 1996), which couples sliding with spinning as a patch of uniform pressure does.
+// Normal rows are soft springs (after E. Catto, "Soft Constraints", 2011) that stiffen with age and get used to their load:
+// docs/decisions/contact-softness.md. Overlap is taken back apart from velocities (contact_project.h).
+// The normal rows of a manifold are solved together: taken one after the other they would set every box rocking.
+//
+// Error of a point: s = separation + n . (moved_b - moved_a + turned_b x r_b - turned_a x r_a), first order on purpose: a
+// rolling ball's contact does not rise with the material that was there.
+#pragma once
+
+#include "solver/contact/contact_pair.h"
+
+namespace gyre {
+inline namespace GYRE_TARGET_NAMESPACE {
+
+// The fastest that springs take overlap back, as a share of the speed with which it is pushed apart: unlike that, theirs is
+// momentum.
+constexpr float kSpringSpeed = 0.125f;
+// By how many slops a point of a linked body must overlap (three tenths of the smaller body's inner radius) to be lost, and what share of its
+// impulse it loses in a second then: a head on the wrong side of somebody's chest cannot get back without passing it, and the neck would
+// press it on the chest ever harder.
+constexpr float kLostSlops = 750.0f, kLostLeak = 2.0f;
+// Projected sweeps over the points of a manifold in which some would pull.
+constexpr int kPullSweeps = 6;
+
+template <int W, bool kHasA>
+GYRE_INLINE void warm_start_block(ContactBlock<W>& block) {
+  PairMotion<W, kHasA> pair = load_pair<W, kHasA>(block);
+  Wide<W> total = block.impulses[0];
+  Vec3W<W> turn_sum = total * block.points[0].arm;
+  for (int k = 1; k < block.point_count; ++k) {
+    total = total + block.impulses[k];
+    turn_sum = turn_sum + block.impulses[k] * block.points[k].arm;
+  }
+  push_normal<W>(block, pair, total, turn_sum);
+  push<W>(block, pair, block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2, block.friction_from_a,
+          block.friction_from_b, block.twist * block.normal);
+  if (block.rolls != 0) turn<W>(block, pair, block.aside->rolling);
+  store_pair<W>(block, pair);
+}
+
+template <int W>
+void warm_start_blocks(void* memory, int begin, int end) {
+  auto* blocks = static_cast<ContactBlock<W>*>(memory);
+  for (int i = begin; i < end; ++i) {
+    blocks[i].has_a != 0 ? warm_start_block<W, true>(blocks[i]) : warm_start_block<W, false>(blocks[i]);
+  }
+}
+
+// N s: less than this is no load. The square of its inverse is still a float; what dies away goes through all of them down to zero.
+constexpr float kLeastLoad = 1.0e-18f;
+
+// Sum of the normal impulses of a manifold.
+template <int W>
+GYRE_INLINE Wide<W> normal_load(const ContactBlock<W>& block) {
+  Wide<W> load = block.impulses[0];
+  for (int k = 1; k < block.point_count; ++k) load = load + block.impulses[k];
+  return load;
+}
+
+// Friction: the impulse that would stop the slip, pulled back into the ellipsoid of what the load allows.
+template <int W, bool kHasA>
+GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W, kHasA>& pair) {
+  const Wide<W> zero = Wide<W>(0.0f);
+  const Wide<W> one = Wide<W>(1.0f);
+  const Wide<W> load = normal_load<W>(block);
+  const auto loaded = load > Wide<W>(kLeastLoad);
+  if (none(loaded) && none((block.friction_1 != zero) | (block.friction_2 != zero) | (block.twist != zero))) {
+    block.slides = 0;
+    return;
+  }
+  const Vec3W<W> slip = relative_velocity<W>(pair, block.friction_from_a, block.friction_from_b);
+  Wide<W> v1 = dot(slip, block.tangent_1), v2 = dot(slip, block.tangent_2);
+  if (block.slips != 0) v1 = v1 - block.aside->surface_1, v2 = v2 - block.aside->surface_2;
+  const Wide<W> v3 = dot(relative_spin<W>(pair), block.normal);
+
+  // Sticking: all three rows at once.
+  Wide<W> f1 = block.friction_1 - (block.inverse_k11 * v1 + block.inverse_k12 * v2 + block.inverse_k13 * v3);
+  Wide<W> f2 = block.friction_2 - (block.inverse_k12 * v1 + block.inverse_k22 * v2 + block.inverse_k23 * v3);
+  Wide<W> f3 = block.twist - (block.inverse_k13 * v1 + block.inverse_k23 * v2 + block.inverse_k33 * v3);
+
+  // Where on its limit the impulse is: 1 on the ellipsoid. No load, no friction.
+  const auto was_sliding = Mask<W>::of_bits(block.slides);
+  const Wide<W> per_load = select(loaded, one / select(loaded, load, one), zero);
+  const Wide<W> grip = select(was_sliding, block.dynamic_grip, block.static_grip) * per_load;
+  const Wide<W> twist_grip = select(was_sliding, block.dynamic_twist_grip, block.static_twist_grip) * per_load;
+  const Wide<W> use = (f1 * f1 + f2 * f2) * (grip * grip) + (f3 * f3) * (twist_grip * twist_grip);
+  const auto sticks = (use <= one) | ~loaded;
+
+  if (!all(sticks)) {
+    // Sliding: a step along the slip, alike in every direction, then onto the ellipsoid.
+    const Wide<W> g1 = block.friction_1 - block.aside->slide_mass * v1;
+    const Wide<W> g2 = block.friction_2 - block.aside->slide_mass * v2;
+    const Wide<W> g3 = block.twist - block.aside->slide_mass * (block.aside->twist_radius * block.aside->twist_radius) * v3;
+    const Wide<W> slide_grip = block.dynamic_grip * per_load;
+    const Wide<W> slide_twist_grip = block.dynamic_twist_grip * per_load;
+    const Wide<W> reach = (g1 * g1 + g2 * g2) * (slide_grip * slide_grip) + (g3 * g3) * (slide_twist_grip * slide_twist_grip);
+    const Wide<W> scale = select(reach > one, one / sqrt(reach), one);
+    f1 = select(sticks, f1, g1 * scale);
+    f2 = select(sticks, f2, g2 * scale);
+    f3 = select(sticks, f3, g3 * scale);
+  }
+  f1 = keep(grip > zero, f1);
+  f2 = keep(grip > zero, f2);
+  f3 = keep(twist_grip > zero, f3);
+  block.slides = lane_bits<W>(~sticks);
+
+  const Wide<W> d1 = f1 - block.friction_1;
+  const Wide<W> d2 = f2 - block.friction_2;
+  const Wide<W> d3 = f3 - block.twist;
+  block.friction_1 = f1;
+  block.friction_2 = f2;
+  block.twist = f3;
+  push<W>(block, pair, d1 * block.tangent_1 + d2 * block.tangent_2, block.friction_from_a, block.friction_from_b,
+          d3 * block.normal);
+}
+
+// Rolling friction: a torque against the relative turning, at most rolling_friction times the load.
+template <int W, bool kHasA>
+GYRE_INLINE void solve_rolling(ContactBlock<W>& block, PairMotion<W, kHasA>& pair) {
+  const Wide<W> zero = Wide<W>(0.0f);
+  const Wide<W> one = Wide<W>(1.0f);
+  const Vec3W<W> spin = relative_spin<W>(pair);
+  const Vec3W<W> roll = spin - dot(spin, block.normal) * block.normal;
+  const Vec3W<W> wanted = block.aside->rolling - block.aside->rolling_mass * roll;
+  const Wide<W> limit = block.aside->rolling_friction * normal_load<W>(block);
+  const Wide<W> size = sqrt(dot(wanted, wanted));
+  const Wide<W> scale = select(size > limit, limit / select(size > zero, size, one), one);
+  // A lane that does not roll must come out as from a block without this: also where `wanted` leaves a float's range.
+  const auto rolls = block.aside->rolling_friction > zero;
+  const Vec3W<W> bounded = scale * wanted;
+  const Vec3W<W> next{select(rolls, bounded.x, zero), select(rolls, bounded.y, zero), select(rolls, bounded.z, zero)};
+  turn<W>(block, pair, next - block.aside->rolling);
+  block.aside->rolling = next;
+}
+
+// The impulses of lanes in which some points would pull, by projected sweeps: into `next`, of the others nothing.
+// From the impulses that stand, not from the block's answer with its pulls cut off: that is too strong, and piles shake.
+template <int W, int Count>
+GYRE_INLINE void sweep_pulls(const ContactAside<W>& aside, const Wide<W>* residual, const Wide<W>* kept, Mask<W> pulls,
+                             Wide<W>* next) {
+  const Wide<W> zero(0.0f), one(1.0f);
+  Wide<W> tried[Count], change[Count];
+  GYRE_UNROLL
+  for (int i = 0; i < Count; ++i) {
+    tried[i] = max(kept[i], zero);
+    change[i] = tried[i] - kept[i];
+  }
+  GYRE_ROLLED
+  for (int sweep = 0; sweep < kPullSweeps; ++sweep) {
+    auto stands = one > zero;
+    GYRE_UNROLL
+    for (int i = 0; i < Count; ++i) {
+      Wide<W> speed = residual[i];
+      GYRE_UNROLL
+      for (int j = 0; j < Count; ++j) speed = speed + aside.k[packed(i, j)] * change[j];
+      const Wide<W> now = max(tried[i] - aside.relief[i] * speed, zero);
+      stands = stands & (now == tried[i]);
+      tried[i] = now;
+      change[i] = now - kept[i];
+    }
+    // What all of them left as it was, as where no point bears anything, the next sweep would not change either. What the others
+    // come to is not asked.
+    if (none(and_not(pulls, stands))) break;
+  }
+  GYRE_UNROLL
+  for (int i = 0; i < Count; ++i) next[i] = select(pulls, tried[i], next[i]);
+}
+
+// The normal rows of a manifold, solved together as a small complementarity problem: first as if all points pushed (which
+// treats them alike: no order, no rocking), then, where some would pull, by projected sweeps in the space of impulses.
+// Sprung: the spring draws its points to an overlap of `slop`, in both directions, and gives way to what it is not used to.
+// Not sprung: only approach stops, and under load the speed with which springs pushed goes.
+template <int W, bool kSprung, int Count, bool kHasA>
+GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W, kHasA>& pair, float substep) {
+  const Wide<W> zero(0.0f), one(1.0f), rate(1.0f / substep);
+  const NormalMotion<W> ways = normal_ways<W, kHasA>(block), speeds = normal_speeds<W>(block, pair);
+  const Wide<W> lost = Wide<W>(-kLostSlops) * block.slop;
+  const Wide<W> leak(1.0f / (1.0f + kLostLeak * substep));
+  Wide<W> residual[Count];  // speed that the row wants to lose
+  Wide<W> kept[Count];      // the impulse as it stands, less what the spring gives way
+  GYRE_UNROLL
+  for (int i = 0; i < Count; ++i) {
+    const PointBlock<W>& point = block.points[i];
+    const Wide<W> separation = point.separation + ways.at(point);
+    const Wide<W> speed = speeds.at(point);
+    const auto apart = separation > zero;
+    if constexpr (kSprung) {
+      const Wide<W> asked = (separation + block.slop) * block.rate;
+      const Wide<W> fastest = zero - Wide<W>(kSpringSpeed) * block.push_speed;
+      const auto is_capped = asked < fastest;
+      residual[i] = speed + select(apart, separation * rate + block.slop * block.rate, max(asked, fastest));
+      // Where the speed is capped the impulse gives way less by the same share: the spring still bears its load.
+      const Wide<W> share = any(is_capped) ? select(is_capped, fastest / select(is_capped, asked, one), one) : one;
+      // A point that parts ceases to give way by degrees.
+      const Wide<W> near = max(block.slop - max(separation, zero), zero);
+      kept[i] = block.impulses[i] - (block.give * near) * share * max(block.impulses[i] - point.held, zero);
+      if (block.linked != 0) {
+        kept[i] = select(Mask<W>::of_bits(block.linked) & (separation < lost), leak * kept[i], kept[i]);
+      }
+    } else {
+      // A point that is apart may be let go, never be held back: that would brake whatever is about to land.
+      const Wide<W> excess = select(block.impulses[i] > zero, max(speed + separation * rate, zero), zero);
+      residual[i] = select(apart, excess, speed);
+      kept[i] = block.impulses[i];
+    }
+    // A point that the lane does not have must stay out of the sums even where speeds leave a float's range: 0 times that
+    // would be no number, and a block of the lane's own would not have it.
+    if (block.is_ragged != 0) residual[i] = keep(Mask<W>::of_bits(block.rows[i]), residual[i]);
+  }
+  Wide<W> next[Count];
+  auto pulls = one < zero;
+  GYRE_UNROLL
+  for (int i = 0; i < Count; ++i) {
+    Wide<W> change = block.inverse_k[packed(i, 0)] * residual[0];
+    GYRE_UNROLL
+    for (int j = 1; j < Count; ++j) change = change + block.inverse_k[packed(i, j)] * residual[j];
+    const Wide<W> wanted = kept[i] - change;
+    pulls = pulls | (wanted < zero);
+    next[i] = max(wanted, zero);
+  }
+  if (Count > 1 && any(pulls)) sweep_pulls<W, Count>(*block.aside, residual, kept, pulls, next);
+  Wide<W> total = next[0] - block.impulses[0];
+  Vec3W<W> turn_sum = total * block.points[0].arm;
+  block.impulses[0] = next[0];
+  GYRE_UNROLL
+  for (int i = 1; i < Count; ++i) {
+    const Wide<W> change = next[i] - block.impulses[i];
+    block.impulses[i] = next[i];
+    total = total + change;
+    turn_sum = turn_sum + change * block.points[i].arm;
+  }
+  push_normal<W>(block, pair, total, turn_sum);
+}
+
+template <int W, bool kSprung, bool kHasA>
+GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W, kHasA>& pair, float substep) {
+  switch (block.point_count) {
+    case 1:
+      return solve_points<W, kSprung, 1>(block, pair, substep);
+    case 2:
+      return solve_points<W, kSprung, 2>(block, pair, substep);
+    default:
+      return solve_points<W, kSprung, 4>(block, pair, substep);
+  }
+}
+
+// Contacts that bore nothing yet: friction knows no load that limits it, so the normals have to come first once.
+template <int W>
+GYRE_INLINE void strike_fresh(ContactBlock<W>& block, PairMotion<W>& pair, float substep) {
+  const auto fresh = block.aside->fresh > Wide<W>(0.0f);
+  const PairMotion<W> old = pair;
+  Wide<W> impulses[kMaxManifoldPoints];
+  for (int k = 0; k < block.point_count; ++k) impulses[k] = block.impulses[k];
+  const Wide<W> friction_1 = block.friction_1, friction_2 = block.friction_2, twist = block.twist;
+  const std::uint32_t slides = block.slides;
+  solve_normals<W, true>(block, pair, substep);
+  solve_friction<W>(block, pair);
+  for (int k = 0; k < block.point_count; ++k) {
+    block.impulses[k] = select(fresh, block.impulses[k], impulses[k]);
+  }
+  block.friction_1 = select(fresh, block.friction_1, friction_1);
+  block.friction_2 = select(fresh, block.friction_2, friction_2);
+  block.twist = select(fresh, block.twist, twist);
+  block.slides = static_cast<std::uint16_t>((block.slides & to_bits(fresh)) | (slides & ~to_bits(fresh)));
+  block.has_fresh = 0;
+  pair.linear_a = select<W>(fresh, pair.linear_a, old.linear_a);
+  pair.angular_a = select<W>(fresh, pair.angular_a, old.angular_a);
+  pair.linear_b = select<W>(fresh, pair.linear_b, old.linear_b);
+  pair.angular_b = select<W>(fresh, pair.angular_b, old.angular_b);
+}
+
+// What comes before friction and normals. A function of its own, which reads the bodies itself, so that all others may keep them in
+// registers. Few contacts come here, so those without a body A do so as if it were there.
+template <int W>
+__attribute__((noinline)) PairMotion<W> begin_pair(ContactBlock<W>& block, float substep) {
+  PairMotion<W> pair = load_pair<W>(block);
+  if (block.has_fresh != 0) strike_fresh<W>(block, pair, substep);
+  if (block.rolls != 0) solve_rolling<W>(block, pair);
+  return pair;
+}
+
+// What of it a block has in which no lane has a body A.
+template <bool kHasA, int W>
+GYRE_INLINE PairMotion<W, kHasA> part_of(const PairMotion<W>& pair) {
+  if constexpr (kHasA) {
+    return pair;
+  } else {
+    return {pair.linear_b, pair.angular_b};
+  }
+}
+
+// Whether nothing moves: to the bit, so that a block has one answer.
+template <int W>
+GYRE_INLINE WideInt<W> all_bits(Vec3W<W> v) {
+  return bit_pattern(v.x) | bit_pattern(v.y) | bit_pattern(v.z);
+}
+template <int W, bool kHasA>
+GYRE_INLINE bool is_still(const PairMotion<W, kHasA>& pair) {
+  WideInt<W> bits = all_bits<W>(pair.linear_b) | all_bits<W>(pair.angular_b);
+  if constexpr (kHasA) bits = bits | all_bits<W>(pair.linear_a) | all_bits<W>(pair.angular_a);
+  return all(bits == WideInt<W>(0));
+}
+// Nor has moved since the step began.
+template <int W, bool kHasA>
+GYRE_INLINE bool has_stayed(const ContactBlock<W>& block) {
+  const BodyWay<W> b(block.read_b);
+  WideInt<W> bits = all_bits<W>(b.moved) | all_bits<W>(b.turned);
+  if constexpr (kHasA) {
+    const BodyWay<W> a(block.read_a);
+    bits = bits | all_bits<W>(a.moved) | all_bits<W>(a.turned);
+  }
+  return all(bits == WideInt<W>(0));
+}
+
+// What a block without rolling friction carries from one sub-step to the next.
+template <int W>
+struct StandingImpulses {
+  Wide<W> points[kMaxManifoldPoints], friction_1, friction_2, twist;
+  std::uint32_t slides;
+
+  GYRE_INLINE void take(const ContactBlock<W>& block) {
+    for (int k = 0; k < block.point_count; ++k) points[k] = block.impulses[k];
+    friction_1 = block.friction_1, friction_2 = block.friction_2, twist = block.twist, slides = block.slides;
+  }
+  // To the bit.
+  GYRE_INLINE bool stand(const ContactBlock<W>& block) const {
+    const auto change = [](Wide<W> a, Wide<W> b) { return bit_pattern(a) ^ bit_pattern(b); };
+    WideInt<W> bits = change(friction_1, block.friction_1) | change(friction_2, block.friction_2) |
+                      change(twist, block.twist);
+    for (int k = 0; k < block.point_count; ++k) bits = bits | change(points[k], block.impulses[k]);
+    return slides == block.slides && all(bits == WideInt<W>(0));
+  }
+};
+
+// Normals last: what bodies move with then closes nowhere; an error of the slip does no harm.
+template <int W, bool kHasA>
+GYRE_INLINE void solve_block(ContactBlock<W>& block, float substep) {
+  const bool begins = (block.has_fresh | block.rolls) != 0;
+  PairMotion<W, kHasA> pair = begins ? part_of<kHasA>(begin_pair<W>(block, substep)) : load_pair<W, kHasA>(block);
+  const bool still = !begins && is_still<W>(pair) && has_stayed<W, kHasA>(block);
+  if (!still || block.idles == 0) {
+    StandingImpulses<W> standing;
+    if (still) standing.take(block);
+    solve_friction<W>(block, pair);
+    solve_normals<W, true>(block, pair, substep);
+    store_pair<W>(block, pair);
+    block.idles = still && is_still<W>(pair) && standing.stand(block) ? 1 : 0;
+  }
+  for (int k = 0; k < block.point_count; ++k) block.totals[k] = block.totals[k] + block.impulses[k];
+  block.total_1 = block.total_1 + block.friction_1;
+  block.total_2 = block.total_2 + block.friction_2;
+}
+
+template <int W>
+void solve_blocks(void* memory, int begin, int end, float substep) {
+  auto* blocks = static_cast<ContactBlock<W>*>(memory);
+  for (int i = begin; i < end; ++i) {
+    // A lane by itself saves too little for code of its own.
+    if (W == 1 || blocks[i].has_a != 0) {
+      solve_block<W, true>(blocks[i], substep);
+    } else if constexpr (W > 1) {
+      solve_block<W, false>(blocks[i], substep);
+    }
+  }
+}
+
+// Once, at the end of a step: so seldom that what has no body A is relaxed as if it were there.
+template <int W>
+GYRE_INLINE void relax_block(ContactBlock<W>& block, float substep) {
+  PairMotion<W> pair = load_pair<W>(block);
+  const Wide<W> friction_1 = block.friction_1, friction_2 = block.friction_2;
+  Wide<W> impulses[kMaxManifoldPoints];
+  for (int k = 0; k < block.point_count; ++k) impulses[k] = block.impulses[k];
+  if (block.rolls != 0) solve_rolling<W>(block, pair);
+  solve_friction<W>(block, pair);
+  solve_normals<W, false>(block, pair, substep);
+  for (int k = 0; k < block.point_count; ++k) {
+    block.totals[k] = block.totals[k] + (block.impulses[k] - impulses[k]);
+  }
+  block.total_1 = block.total_1 + (block.friction_1 - friction_1);
+  block.total_2 = block.total_2 + (block.friction_2 - friction_2);
+  store_pair<W>(block, pair);
+}
+
+template <int W>
+void relax_blocks(void* memory, int begin, int end, float substep) {
+  auto* blocks = static_cast<ContactBlock<W>*>(memory);
+  for (int i = begin; i < end; ++i) relax_block<W>(blocks[i], substep);
+}
+
+}  // namespace GYRE_TARGET_NAMESPACE
+}  // namespace gyre

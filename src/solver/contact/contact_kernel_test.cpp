@@ -1,0 +1,139 @@
+// The contact kernels at the edge of what floats can say.
+#include "base/arena/arena.h"
+#include "base/processor.h"
+#include "solver/contact/contact_block.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace gyre {
+namespace {
+
+// A ball on fixed ground, with a load from the step before; solved for a sub-step of a 240th of a second.
+BodyMotion touch(int width, float load) {
+  const ContactKernels& kernels = select_contact_kernels(width);
+  Manifold manifold;
+  manifold.count = 1;
+  manifold.points[0].from_b = {0, -0.15f, 0};
+  manifold.points[0].from_a = {0.3f, 0.5f, 0.2f};
+  manifold.points[0].normal_impulse = load;
+  manifold.friction_impulse = {0.1f * load, 0, 0};
+  ContactConstraint constraint;
+  constraint.static_friction = constraint.dynamic_friction = 0.5f;
+  constraint.size = 0.15f;
+  constraint.body_b = 0;
+  constraint.manifold = &manifold;
+  BodyMotion motion;
+  motion.linear_velocity = {0, -1e-3f, 0.2f};
+  motion.angular_velocity = {1, 0, 0};
+  motion.inverse_mass = 1.0f;
+  BodyInertia inertia;
+  inertia.inverse = {.xx = 100.0f, .yy = 100.0f, .zz = 100.0f};
+  inertia.inverse_mass = 1.0f;
+  std::vector<std::uint32_t> order(std::size_t(kernels.width), 0xffffffffu);
+  order[0] = 0;
+  Arena arena;
+  void* const block = arena.make<std::byte>(kernels.block_bytes).data();
+  void* const aside = arena.make<std::byte>(kernels.aside_bytes).data();
+  const ContactSettings settings{
+      .substep = 1.0f / 240.0f, .step = 1.0f / 60.0f, .rate = 9.0f, .up = {0, 1, 0}};
+  kernels.prepare(block, aside, 0, 1, &constraint, order.data(), {&motion, &inertia}, settings);
+  kernels.warm_start(block, 0, 1);
+  kernels.solve(block, 0, 1, settings.substep);
+  return motion;
+}
+
+bool is_finite(const BodyMotion& m) {
+  const float sum = length_squared(m.linear_velocity) + length_squared(m.angular_velocity);
+  return std::isfinite(sum);
+}
+
+// A load that died away was divided by: below 3e-39 that is infinite, and a ball that rolled out was frozen.
+TEST(ContactKernel, TakesAnyLoadThatAFloatCanHold) {
+  for (const int width : {0, 1, 4, 8, 16}) {
+    for (float load = 1.0f; load > 0.0f; load *= 0.1f) {
+      const BodyMotion motion = touch(width, load);
+      ASSERT_TRUE(is_finite(motion)) << "width " << width << ", load " << load;
+      // Friction takes no more than the load allows: the ground stops the fall, 1e-3 N s, and what stood.
+      const float change = std::fabs(motion.linear_velocity.z - 0.2f);
+      ASSERT_LE(change, 0.51f * (1e-3f + 2.0f * load)) << "width " << width << ", load " << load;
+    }
+  }
+}
+
+// Eight lanes that nobody asked for, on a processor that has sixteen, use its registers; asked for, they are those of any with AVX2.
+TEST(ContactKernel, EightLanesUseTheRegistersOfSixteenWhereNobodyAsksForThem) {
+  const ContactKernels &best = select_contact_kernels(0), &asked = select_contact_kernels(8);
+  if (most_lanes() < 16) {
+    EXPECT_EQ(&best, &select_contact_kernels(best.width));
+    return;
+  }
+  EXPECT_EQ(asked.width, 8);
+  const ContactKernels& eight = best.width == 8 ? best : narrower_kernels(best);
+  EXPECT_EQ(eight.width, 8);
+  EXPECT_NE(&eight, &asked);
+}
+
+// A bone of 0.4 m on fixed ground, which its left end bears and where friction holds it. Then its right end does.
+struct Bone {
+  BodyMotion motion;
+  BodyInertia inertia{.inverse = {.xx = 100.0f, .yy = 80.0f, .zz = 90.0f}, .inverse_mass = 1.0f};
+  Arena arena;
+  const ContactKernels& kernels;
+  void* const block;
+  void* const aside;
+  FollowedArms arms;
+
+  explicit Bone(int width)
+      : kernels(select_contact_kernels(width)),
+        block(arena.make<std::byte>(kernels.block_bytes).data()),
+        aside(arena.make<std::byte>(kernels.aside_bytes).data()) {
+    motion.inverse_mass = 1.0f;
+    Manifold manifold;
+    manifold.count = arms.count = 2;
+    for (int k = 0; k < 2; ++k) {
+      manifold.points[k].from_b = {k == 0 ? -0.2f : 0.2f, -0.05f, 0};
+      arms.now.from_a[k] = manifold.points[k].from_a;
+      arms.now.from_b[k] = manifold.points[k].from_b;
+    }
+    arms.before = arms.middle = arms.now;
+    manifold.points[0].normal_impulse = 3.0f;
+    manifold.friction_impulse = kFriction;
+    ContactConstraint constraint;
+    constraint.static_friction = constraint.dynamic_friction = 0.5f;
+    constraint.size = 0.05f;
+    constraint.body_b = 0;
+    constraint.manifold = &manifold;
+    std::vector<std::uint32_t> order(std::size_t(kernels.width), 0xffffffffu);
+    order[0] = 0;
+    const ContactSettings settings{
+        .substep = 1.0f / 240.0f, .step = 1.0f / 60.0f, .rate = 9.0f, .up = {0, 1, 0}};
+    kernels.prepare(block, aside, 0, 1, &constraint, order.data(), {&motion, &inertia}, settings);
+    kernels.warm_start(block, 0, 1);
+  }
+  void follow() {
+    const FollowedLane lane{0, &arms, nullptr, &inertia.inverse};
+    kernels.follow(block, 0, &lane, 1);
+  }
+  static constexpr Vec3 kFriction{0, 0, 1.2f};
+};
+
+// The same was given at one end and taken back at the other: a bone thrown on the ground left it with six times its energy.
+TEST(ContactKernel, FrictionGoesWhereTheLoadGoes) {
+  for (const int width : {0, 1, 4, 8, 16}) {
+    Bone bone(width);
+    bone.follow();
+    const Vec3 before = bone.motion.angular_velocity;
+    ContactImpulse right{.normal = {0, 3.0f}, .friction = Bone::kFriction};
+    bone.kernels.write_impulse(bone.block, 0, 0, right);
+    bone.follow();
+    const Vec3 expected = bone.inertia.inverse * cross(Vec3{0.4f, 0, 0}, Bone::kFriction);
+    EXPECT_LT(length(bone.motion.angular_velocity - before - expected), 1e-5f * length(expected)) << width;
+  }
+}
+
+}  // namespace
+}  // namespace gyre

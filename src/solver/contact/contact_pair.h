@@ -1,0 +1,217 @@
+// Blocks of contacts side by side, and the pairs of bodies that they push: what a block holds, how velocities are read and written,
+// what an impulse does to them, and how points move against each other. Part of the kernels (contact_kernel.h).
+#pragma once
+
+#include "math/wide_vec.h"
+#include "solver/contact/contact_block.h"
+
+namespace gyre {
+inline namespace GYRE_TARGET_NAMESPACE {
+
+template <int W>
+struct PointBlock {
+  Vec3W<W> arm;           // from a centre of mass to the point, times the normal: what a push along it turns
+  Wide<W> separation;     // as the step began
+  Wide<W> held;           // the load it is used to
+};
+
+// Place of row i, column j (either order) in a packed upper triangle, column by column (00 01 11 02 12 22 03 13 23 33): that of fewer
+// points is its beginning.
+constexpr int packed(int i, int j) { return i <= j ? j * (j + 1) / 2 + i : i * (i + 1) / 2 + j; }
+
+// What of a block only some stages or lanes need.
+template <int W>
+struct ContactAside {
+  // Where something slides, or surfaces do.
+  Wide<W> slide_mass;     // scalar step for sliding, so that friction opposes the slip in every direction alike
+  Wide<W> twist_radius;   // m: scale of the twist row beside the tangents
+  Wide<W> surface_1, surface_2;
+  // Where points would pull: K = J M^-1 J^T of the normal rows, upper triangle; it and `relief` are 0 in rows of points that a lane does
+  // not have.
+  Wide<W> k[10];
+  Wide<W> relief[kMaxManifoldPoints];  // 1 / K_ii
+  // Where velocities go if not all bodies of a side are pushed: `nowhere` for those that are not.
+  float* write_a[W];
+  float* write_b[W];
+  Wide<W> fresh;                   // 1 where no load is known yet
+  Wide<W> mobility_a, mobility_b;  // shares of the inverse masses that a push apart sees
+  // Rolling friction.
+  Wide<W> rolling_friction, rolling_mass;
+  Vec3W<W> rolling;
+  alignas(64) float nowhere[kRecordFloats];
+};
+
+// What all parts of a step read. Blocks of a large island do not fit into the caches and come anew in each part, as fast as the processor
+// foresees which lines will be asked for: three times as fast where there are no gaps between them.
+template <int W>
+struct alignas(64) ContactBlock {
+  // Motion records of the bodies: zeros for what has none.
+  float* read_a[W];
+  float* read_b[W];
+  ContactAside<W>* aside;
+  std::int32_t point_count = 0;  // the most of any lane; three are prepared as four, for each number is a kernel of its own
+  // Any lane has rolling friction; is fresh; has a surface that moves by itself; lacks a row that others have.
+  std::uint8_t rolls = 0, has_fresh = 0, slips = 0, is_ragged = 0;
+  std::int32_t idles = 0;        // solved where nothing moves, nor has in the step, it came out as it was: it will again
+  // Lanes, as bits: of which a body hangs on a joint; that have a body there; whose body is pushed; where friction was at its limit;
+  // that have a row for a point.
+  std::uint16_t linked = 0, has_a = 0, has_b = 0, pushes_a = 0, pushes_b = 0, slides = 0, rows[kMaxManifoldPoints] = {};
+  Vec3W<W> normal, tangent_1, tangent_2;
+  // Friction at the centre of pressure.
+  Vec3W<W> friction_from_a, friction_from_b;
+  Wide<W> inverse_k11, inverse_k12, inverse_k13, inverse_k22, inverse_k23, inverse_k33;  // of (tangent_1, tangent_2, twist)
+  // Inverse friction coefficients, static and dynamic, and the same of the twist (1/m): 0 where there is no friction.
+  Wide<W> static_grip, dynamic_grip, static_twist_grip, dynamic_twist_grip;
+  Wide<W> inverse_mass_a, inverse_mass_b;
+  Sym3W<W> inverse_inertia_a, inverse_inertia_b;
+  Wide<W> rate, give, slop, push_speed;
+  // All points' arms on a body differ from `arm` by the same: one of these is zero, that of the body whose centre is nearer.
+  Vec3W<W> arm_shift_a, arm_shift_b;
+  // Accumulated in this sub-step, and summed over the step.
+  Wide<W> friction_1, friction_2, twist, total_1, total_2;
+  Wide<W> impulses[kMaxManifoldPoints], totals[kMaxManifoldPoints];
+  PointBlock<W> points[kMaxManifoldPoints];
+  Wide<W> inverse_k[10];  // of K, regularised
+};
+constexpr std::uint16_t all_lanes(int width) { return static_cast<std::uint16_t>((1u << width) - 1u); }
+
+template <int W>
+GYRE_INLINE std::uint16_t lane_bits(Mask<W> mask) {
+  return static_cast<std::uint16_t>(to_bits(mask));
+}
+
+// Velocities of the two bodies of each lane; of B alone where kHasA is false: in such a block no lane has an A, as where all lie on
+// the ground.
+template <int W, bool kHasA = true>
+struct PairMotion {
+  Vec3W<W> linear_a, angular_a, linear_b, angular_b;
+};
+template <int W>
+struct PairMotion<W, false> {
+  Vec3W<W> linear_b, angular_b;
+};
+
+template <int W>
+GYRE_INLINE void load_velocities(float* const (&records)[W], Vec3W<W>& linear, Vec3W<W>& angular) {
+  Wide<W> columns[8];
+  gather_columns<8, W>(records, kMotionLinear, columns);
+  linear = {columns[0], columns[1], columns[2]};
+  angular = {columns[3], columns[4], columns[5]};
+}
+template <int W, bool kHasA = true>
+GYRE_INLINE PairMotion<W, kHasA> load_pair(const ContactBlock<W>& block) {
+  PairMotion<W, kHasA> pair;
+  if constexpr (kHasA) load_velocities<W>(block.read_a, pair.linear_a, pair.angular_a);
+  load_velocities<W>(block.read_b, pair.linear_b, pair.angular_b);
+  return pair;
+}
+
+template <int W>
+GYRE_INLINE void store_velocities(float* const (&records)[W], Vec3W<W> linear, Vec3W<W> angular) {
+  // Adding zero keeps -0 out of the state: lanes that have fewer points than their block add zeros of either sign.
+  const Wide<W> zero(0.0f);
+  const Wide<W> columns[6] = {linear.x + zero,  linear.y + zero,  linear.z + zero,
+                              angular.x + zero, angular.y + zero, angular.z + zero};
+  scatter_columns<6, W>(records, kMotionLinear, columns);
+}
+template <int W, bool kHasA>
+GYRE_INLINE void store_pair(ContactBlock<W>& block, const PairMotion<W, kHasA>& pair) {
+  if constexpr (kHasA)
+    store_velocities<W>(block.pushes_a == all_lanes(W) ? block.read_a : block.aside->write_a, pair.linear_a, pair.angular_a);
+  store_velocities<W>(block.pushes_b == all_lanes(W) ? block.read_b : block.aside->write_b, pair.linear_b, pair.angular_b);
+}
+
+// Adds the impulse `p` on B at `from_b` (and -p on A at `from_a`), and the angular impulse `t` on B (and -t on A).
+template <int W, bool kHasA>
+GYRE_INLINE void push(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair, Vec3W<W> p, Vec3W<W> from_a,
+                      Vec3W<W> from_b, Vec3W<W> t) {
+  if constexpr (kHasA) {
+    pair.linear_a = pair.linear_a - block.inverse_mass_a * p;
+    pair.angular_a = pair.angular_a - block.inverse_inertia_a * (cross(from_a, p) + t);
+  }
+  pair.linear_b = pair.linear_b + block.inverse_mass_b * p;
+  pair.angular_b = pair.angular_b + block.inverse_inertia_b * (cross(from_b, p) + t);
+}
+
+// Adds an impulse `p` along the normal; `turn` is the sum of its parts times the arms of their points.
+template <int W, bool kHasA>
+GYRE_INLINE void push_normal(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair, Wide<W> p, Vec3W<W> turn) {
+  if constexpr (kHasA) {
+    pair.linear_a = pair.linear_a - (block.inverse_mass_a * p) * block.normal;
+    pair.angular_a = pair.angular_a - block.inverse_inertia_a * (turn + p * block.arm_shift_a);
+  }
+  pair.linear_b = pair.linear_b + (block.inverse_mass_b * p) * block.normal;
+  pair.angular_b = pair.angular_b + block.inverse_inertia_b * (turn + p * block.arm_shift_b);
+}
+
+// How much, along the normal, B's points move against A's: what is the same for all points, and what turns add for each.
+template <int W>
+struct NormalMotion {
+  Wide<W> common;
+  Vec3W<W> turn;
+
+  GYRE_INLINE Wide<W> at(const PointBlock<W>& point) const { return common + dot(turn, point.arm); }
+};
+// Of two bodies, and of one on what is not there.
+template <int W>
+GYRE_INLINE NormalMotion<W> normal_motion(const ContactBlock<W>& block, Vec3W<W> way, Vec3W<W> turn_a, Vec3W<W> turn_b) {
+  return {dot(way, block.normal) + (dot(turn_b, block.arm_shift_b) - dot(turn_a, block.arm_shift_a)), turn_b - turn_a};
+}
+template <int W>
+GYRE_INLINE NormalMotion<W> normal_motion(const ContactBlock<W>& block, Vec3W<W> way, Vec3W<W> turn_b) {
+  return {dot(way, block.normal) + dot(turn_b, block.arm_shift_b), turn_b};
+}
+template <int W, bool kHasA>
+GYRE_INLINE NormalMotion<W> normal_speeds(const ContactBlock<W>& block, const PairMotion<W, kHasA>& pair) {
+  if constexpr (kHasA) {
+    return normal_motion<W>(block, pair.linear_b - pair.linear_a, pair.angular_a, pair.angular_b);
+  } else {
+    return normal_motion<W>(block, pair.linear_b, pair.angular_b);
+  }
+}
+
+// How far a body has moved and turned since the step began.
+template <int W>
+struct BodyWay {
+  Vec3W<W> moved, turned;
+  GYRE_INLINE explicit BodyWay(float* const (&records)[W]) {
+    Wide<W> columns[8];
+    gather_columns<8, W>(records, kMotionMoved, columns);
+    moved = {columns[0], columns[1], columns[2]};
+    turned = {columns[3], columns[4], columns[5]};
+  }
+};
+template <int W, bool kHasA>
+GYRE_INLINE NormalMotion<W> normal_ways(const ContactBlock<W>& block) {
+  const BodyWay<W> b(block.read_b);
+  if constexpr (kHasA) {
+    const BodyWay<W> a(block.read_a);
+    return normal_motion<W>(block, b.moved - a.moved, a.turned, b.turned);
+  } else {
+    return normal_motion<W>(block, b.moved, b.turned);
+  }
+}
+
+// Adds the angular impulse `t` on B (and -t on A).
+template <int W, bool kHasA>
+GYRE_INLINE void turn(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair, Vec3W<W> t) {
+  if constexpr (kHasA) pair.angular_a = pair.angular_a - block.inverse_inertia_a * t;
+  pair.angular_b = pair.angular_b + block.inverse_inertia_b * t;
+}
+
+// Velocity of B's material against A's at a point.
+template <int W, bool kHasA>
+GYRE_INLINE Vec3W<W> relative_velocity(const PairMotion<W, kHasA>& pair, Vec3W<W> from_a, Vec3W<W> from_b) {
+  const Vec3W<W> velocity = pair.linear_b + cross(pair.angular_b, from_b);
+  if constexpr (kHasA) return velocity - (pair.linear_a + cross(pair.angular_a, from_a));
+  return velocity;
+}
+// How fast B turns against A.
+template <int W, bool kHasA>
+GYRE_INLINE Vec3W<W> relative_spin(const PairMotion<W, kHasA>& pair) {
+  if constexpr (kHasA) return pair.angular_b - pair.angular_a;
+  return pair.angular_b;
+}
+
+}  // namespace GYRE_TARGET_NAMESPACE
+}  // namespace gyre

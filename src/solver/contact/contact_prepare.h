@@ -1,0 +1,531 @@
+// Fills contact blocks from manifolds as the step begins, and reads impulses back as it ends. Part of the kernels (one
+// template for every width); apart from contact_kernel.h because it runs once a step. Records are read and written four
+// floats at a time, W records side by side (math/wide_vec.h: Rows).
+#pragma once
+
+#include "solver/contact/contact_kernel.h"
+#include "solver/contact/contact_normal_rows.h"
+
+#include <cstddef>
+
+namespace gyre {
+inline namespace GYRE_TARGET_NAMESPACE {
+
+// The overlap that springs draw their points to, as a share of the size: loaded points then stay in touch.
+constexpr float kSpringSlop = 4.0e-4f;
+// How much of the lower body's mobility is denied to it where a contact faces straight up.
+constexpr float kLowerShare = 0.7f;
+// A point gets used to its load as a mean over its age: of at least the first time (s), of at most the second.
+constexpr float kShortestMean = 0.5f;
+constexpr float kLongestMean = 1.0f;
+
+// A patch narrower than this share of the size does not brake spinning.
+constexpr float kLeastPatch = 1.0e-3f;
+// Friction coefficients beyond this count as this: their inverse must not vanish.
+constexpr float kMostFriction = 1.0e6f;
+
+// ----------------------------------------------------------------------------------------------- records, side by side
+
+// Where the fours begin in the records, in floats.
+constexpr int kManifoldNormal = 0, kManifoldPoints = 4, kManifoldFriction = 52, kManifoldTwist = 56, kManifoldTotals = 61,
+              kPointA = 0, kPointB = 4, kPointImpulse = 8, kPointFloats = 12, kInertiaMass = 4, kConstraintFriction = 0,
+              kConstraintSize = 4, kConstraintVelocity = 6, kConstraintKinds = 10;
+static_assert(offsetof(Manifold, normal) == 4 * kManifoldNormal && offsetof(Manifold, points) == 4 * kManifoldPoints);
+static_assert(offsetof(Manifold, age) == 4 * kManifoldFriction && offsetof(Manifold, friction_impulse) == 4 * kManifoldFriction + 4);
+static_assert(offsetof(Manifold, twist_impulse) == 4 * kManifoldTwist && offsetof(Manifold, rolling_impulse) == 4 * kManifoldTwist + 4);
+static_assert(offsetof(Manifold, count) == 4 * kManifoldNormal + 12);
+static_assert(offsetof(Manifold, total_friction) == 4 * kManifoldTotals && offsetof(Manifold, sliding) == 4 * kManifoldTotals + 12);
+static_assert(sizeof(ContactPointState) == 4 * kPointFloats && offsetof(ContactPointState, from_b) == 4 * kPointB);
+static_assert(offsetof(ContactPointState, normal_impulse) == 4 * kPointImpulse && offsetof(ContactPointState, separation) == 12);
+static_assert(offsetof(ContactPointState, total_impulse) == 4 * kPointImpulse + 4 && offsetof(ContactPointState, held) == 4 * kPointImpulse + 8);
+static_assert(offsetof(BodyInertia, inverse_mass) == 4 * kInertiaMass + 8);
+static_assert(offsetof(ContactConstraint, static_friction) == 4 * kConstraintFriction);
+static_assert(offsetof(ContactConstraint, size) == 4 * kConstraintSize && offsetof(ContactConstraint, push_speed) == 4 * kConstraintSize + 4);
+static_assert(offsetof(ContactConstraint, surface_velocity) == 4 * kConstraintVelocity);
+// Bytes of one four: of the last float.
+static_assert(offsetof(ContactConstraint, rigid) == 4 * kConstraintKinds + 12 && offsetof(ContactConstraint, linked) == 4 * kConstraintKinds + 13);
+
+// The constraints and manifolds of a block's lanes. Lanes without a contact, and points that a lane does not have, read zeros
+// and are not written.
+template <int W>
+struct LaneRecords {
+  const float* constraint[W];
+  float* manifold[W];
+  float* point[W];  // the manifold, where a lane has the point that is worked on
+  float* nowhere;
+  std::uint32_t lanes = 0;                  // bits
+  std::uint32_t has_point[kMaxManifoldPoints];  // bits
+  int point_count = 0;                      // the most of any lane
+  Vec3W<W> normal;
+  Wide<W> exists[kMaxManifoldPoints];  // 1 or 0
+
+  // Where the fours of point k begin in `point`. Points are worked on in rising order.
+  GYRE_INLINE int begin_point(int k) {
+    for (std::uint32_t without = lanes & ~has_point[k]; without != 0; without &= without - 1)
+      point[__builtin_ctz(without)] = nowhere;
+    return kManifoldPoints + k * kPointFloats;
+  }
+};
+
+// Manifolds lie anywhere in memory: those of the next block come while this one is worked on.
+template <int W>
+GYRE_INLINE void fetch_ahead(const ContactConstraint* constraints, const std::uint32_t* order) {
+  for (int lane = 0; lane < W; ++lane) {
+    if (order[lane] == 0xffffffffu) continue;
+    const char* manifold = reinterpret_cast<const char*>(constraints[order[lane]].manifold);
+    GYRE_UNROLL
+    for (int line = 0; line < 5; ++line) __builtin_prefetch(manifold + 64 * line);
+  }
+}
+
+// `nowhere` is what lanes without a record read (zeros) and write.
+template <int W>
+GYRE_INLINE LaneRecords<W> find_records(const ContactConstraint* constraints, const std::uint32_t* order,
+                                        float (&nowhere)[80]) {
+  LaneRecords<W> records;
+  records.nowhere = nowhere;
+  for (int lane = 0; lane < W; ++lane) {
+    records.constraint[lane] = records.manifold[lane] = records.point[lane] = nowhere;
+    if (order[lane] == 0xffffffffu) continue;
+    const ContactConstraint& constraint = constraints[order[lane]];
+    records.lanes |= 1u << lane;
+    records.constraint[lane] = reinterpret_cast<const float*>(&constraint);
+    records.manifold[lane] = records.point[lane] = &constraint.manifold->normal.x;
+  }
+  Wide<W> in[4];
+  gather_columns<4, W>(records.manifold, kManifoldNormal, in);
+  records.normal = {in[0], in[1], in[2]};
+  GYRE_UNROLL
+  for (int k = 0; k < kMaxManifoldPoints; ++k) {
+    const Mask<W> has = bit_pattern(in[3]) > WideInt<W>(k);
+    records.has_point[k] = to_bits(has);
+    records.exists[k] = keep(has, Wide<W>(1.0f));
+    if (records.has_point[k] != 0) records.point_count = k + 1;
+  }
+  return records;
+}
+
+// --------------------------------------------------------------------------------------------------------- preparation
+
+// Lanes of one float, for those who look at single contacts.
+template <int W>
+void set_lane(Wide<W>& wide, int lane, float value) {
+  wide.set(lane, value);
+}
+template <int W>
+float get_lane(const Wide<W>& wide, int lane) {
+  // Adding zero makes -0 from a lane that rested be the 0 that a narrower kernel would have.
+  return wide[lane] + 0.0f;
+}
+template <int W>
+void set_lane(Vec3W<W>& wide, int lane, Vec3 v) {
+  set_lane(wide.x, lane, v.x);
+  set_lane(wide.y, lane, v.y);
+  set_lane(wide.z, lane, v.z);
+}
+template <int W>
+Vec3 get_lane(const Vec3W<W>& wide, int lane) {
+  return {get_lane(wide.x, lane), get_lane(wide.y, lane), get_lane(wide.z, lane)};
+}
+
+// Arms of the points while a block is prepared.
+template <int W>
+struct PointArms {
+  Vec3W<W> from_a, from_b;
+};
+
+// As any_perpendicular of <gyre/math.h>.
+template <int W>
+GYRE_INLINE Vec3W<W> any_perpendicular(Vec3W<W> a) {
+  const Wide<W> zero(0.0f), one(1.0f), bound(0.57735f);
+  const auto x = absolute(a.x) < bound;
+  const auto y = absolute(a.y) < bound;
+  const Vec3W<W> other{select(x, one, zero), select(x, zero, select(y, one, zero)), select(x, zero, select(y, zero, one))};
+  return normalized<W>(cross(a, other));
+}
+
+// The centre of pressure and the patch's mean lever arm. Points weigh by the load they carried; where nothing bore load
+// yet, those that touch count. The share of lever arm: a uniform square's mean distance from its centre is 0.541 of its
+// corners', a uniform segment's half of its ends'. Returns the lever arm.
+template <int W>
+GYRE_INLINE Wide<W> pressure_patch(ContactBlock<W>& block, const LaneRecords<W>& records,
+                                   const PointArms<W> (&arms)[kMaxManifoldPoints]) {
+  const Wide<W> zero(0.0f), one(1.0f);
+  const int count = block.point_count;
+  Wide<W> weights[kMaxManifoldPoints];
+  Wide<W> sum = zero;
+  for (int k = 0; k < count; ++k) sum = sum + (weights[k] = block.impulses[k]);
+  const auto bears = sum > Wide<W>(kLeastLoad);
+  if (!all(bears)) {
+    // A point counts less the farther it is above the lowest, in units of the manifold's extent.
+    Wide<W> extent = zero, nearest = block.points[0].separation;
+    for (int k = 1; k < count; ++k) {
+      const auto exists = records.exists[k] > zero;
+      extent = select(exists, max(extent, length(arms[k].from_a - arms[0].from_a)), extent);
+      nearest = select(exists, min(nearest, block.points[k].separation), nearest);
+    }
+    const auto wide = extent > zero;
+    const Wide<W> fade = select(wide, Wide<W>(100.0f) / select(wide, extent, one), zero);
+    Wide<W> near_sum = zero;
+    for (int k = 0; k < count; ++k) {
+      const Wide<W> above = fade * (block.points[k].separation - nearest);
+      const Wide<W> weight = keep(records.exists[k] > zero, one / (one + above * above));
+      weights[k] = select(bears, weights[k], weight);
+      near_sum = near_sum + weight;
+    }
+    sum = select(bears, sum, near_sum);
+  }
+  const Wide<W> share = one / select(sum > zero, sum, one);
+  Vec3W<W> from_a{zero, zero, zero}, from_b{zero, zero, zero};
+  for (int k = 0; k < count; ++k) {
+    weights[k] = weights[k] * share;
+    from_a = from_a + weights[k] * arms[k].from_a;
+    from_b = from_b + weights[k] * arms[k].from_b;
+  }
+  Wide<W> arm = zero;
+  for (int k = 0; k < count; ++k) arm = arm + weights[k] * length(arms[k].from_a - from_a);
+  block.friction_from_a = from_a;
+  block.friction_from_b = from_b;
+  return select(records.exists[2] > zero, Wide<W>(0.541f), Wide<W>(0.5f)) * arm;
+}
+
+// What a lane's surfaces are like.
+template <int W>
+struct SurfaceLanes {
+  Wide<W> static_friction, dynamic_friction, rolling_friction, spinning_friction;
+};
+
+// Effective mass matrix of the friction rows, and its inverse into the block; the twist row is left out where it has no
+// lever arm (all of them where `twists` says so).
+template <int W>
+GYRE_INLINE Sym3W<W> prepare_friction_masses(ContactBlock<W>& block, Mask<W> has_lever, Mask<W>& twists) {
+  const Wide<W> zero(0.0f), one(1.0f);
+  const Vec3W<W> t1 = block.tangent_1, t2 = block.tangent_2, n = block.normal;
+  const Vec3W<W> a1 = cross(block.friction_from_a, t1), a2 = cross(block.friction_from_a, t2);
+  const Vec3W<W> b1 = cross(block.friction_from_b, t1), b2 = cross(block.friction_from_b, t2);
+  const Vec3W<W> ia1 = block.inverse_inertia_a * a1, ia2 = block.inverse_inertia_a * a2, ian = block.inverse_inertia_a * n;
+  const Vec3W<W> ib1 = block.inverse_inertia_b * b1, ib2 = block.inverse_inertia_b * b2, ibn = block.inverse_inertia_b * n;
+  const Wide<W> inverse_masses = block.inverse_mass_a + block.inverse_mass_b;
+  Sym3W<W> k;
+  k.xx = inverse_masses + dot(a1, ia1) + dot(b1, ib1);
+  k.yy = inverse_masses + dot(a2, ia2) + dot(b2, ib2);
+  k.xy = dot(a1, ia2) + dot(b1, ib2);
+  k.zz = dot(n, ian) + dot(n, ibn);
+  k.xz = dot(a1, ian) + dot(b1, ibn);
+  k.yz = dot(a2, ian) + dot(b2, ibn);
+  twists = has_lever & (k.zz > zero);
+  const Sym3W<W> all_rows = k;
+  k.xz = keep(twists, k.xz);
+  k.yz = keep(twists, k.yz);
+  k.zz = select(twists, k.zz, one);
+  const Sym3W<W> inverse_k = inverse(k);
+  block.inverse_k11 = inverse_k.xx;
+  block.inverse_k22 = inverse_k.yy;
+  block.inverse_k33 = keep(twists, inverse_k.zz);
+  block.inverse_k12 = inverse_k.xy;
+  block.inverse_k13 = inverse_k.xz;
+  block.inverse_k23 = inverse_k.yz;
+  return all_rows;
+}
+
+// The friction rows: their masses and limits. `radius`: the patch's lever arm.
+template <int W>
+GYRE_INLINE void prepare_friction(ContactBlock<W>& block, const SurfaceLanes<W>& surface, Wide<W> radius, Wide<W> size) {
+  const Wide<W> zero(0.0f), one(1.0f);
+  const Wide<W> twist_static = surface.static_friction * radius + surface.spinning_friction;
+  const Wide<W> twist_dynamic = surface.dynamic_friction * radius + surface.spinning_friction;
+  // Where one point bears all, the patch is as wide as rounding made it: that is no lever.
+  const auto is_patch = (radius > Wide<W>(kLeastPatch) * size) | (surface.spinning_friction > zero);
+  auto twists = one < zero;
+  const Sym3W<W> k = prepare_friction_masses<W>(block, is_patch & (twist_static > zero), twists);
+  // The scale at which a twist of 1 rad/s slips like a metre per second; with it the largest eigenvalue of K is bounded by
+  // its trace, and the inverse of half of it is a safe common step.
+  const auto slides = surface.dynamic_friction > zero;
+  const Wide<W> scale = select(twists & slides, twist_dynamic / select(slides, surface.dynamic_friction, one), radius);
+  const Wide<W> bound = max(max(k.xx, k.yy) + absolute(k.xy), keep(twists, scale * scale * k.zz));
+  block.aside->twist_radius = keep(twists, scale);
+  block.aside->slide_mass = keep(bound > zero, one / select(bound > zero, bound, one));
+  const auto grip = [&](Wide<W> friction) {
+    return keep(friction > zero, one / select(friction > zero, min(friction, Wide<W>(kMostFriction)), one));
+  };
+  block.static_grip = grip(surface.static_friction);
+  block.dynamic_grip = grip(surface.dynamic_friction);
+  block.static_twist_grip = keep(twists, grip(twist_static));
+  block.dynamic_twist_grip = keep(twists, grip(twist_dynamic));
+  // Where the patch has shrunk to a point the twist of the last step is far beyond its limit: pulled back as one with the
+  // friction it would take that with it.
+  const Wide<W> most = twist_static * normal_load<W>(block);
+  block.twist = keep(twists, clamp(block.twist, zero - most, most));
+}
+
+// How soft the lanes' contacts are, and who gives way when overlap is pushed apart: what lies on top, as far as the contact
+// faces up. So a heap is freed from below in few passes, as if the lower body were much heavier (E. Guendelman, R. Bridson,
+// R. Fedkiw, "Nonconvex Rigid Bodies with Stacking", 2003, calls it shock propagation).
+template <int W>
+GYRE_INLINE void prepare_softness(ContactBlock<W>& block, Mask<W> rigid, Wide<W> age, Wide<W> size,
+                                  const ContactSettings& settings) {
+  const Wide<W> zero(0.0f), one(1.0f), aging(settings.aging);
+  const auto yields = ~rigid, both = Mask<W>::of_bits(block.pushes_a & block.pushes_b);
+  const Wide<W> youth = aging / (aging + age);
+  block.rate = keep(yields, youth * Wide<W>(settings.rate));
+  block.slop = Wide<W>(kSpringSlop) * size;
+  const auto has_slop = block.slop > zero;
+  block.give = keep(yields & has_slop, youth * Wide<W>(settings.give) / select(has_slop, block.slop, one));
+  const Wide<W> rise = keep(both, Wide<W>(kLowerShare) * dot(block.normal, splat<W>(settings.up)));
+  block.aside->mobility_a = one - max(rise, zero);
+  block.aside->mobility_b = one + min(rise, zero);
+}
+
+// What friction, twist and rolling begin with.
+template <int W>
+GYRE_INLINE void prepare_impulses(ContactBlock<W>& block, const LaneRecords<W>& records, const SurfaceLanes<W>& surface,
+                                  const ContactSettings& settings, Wide<W>& age) {
+  const Wide<W> zero(0.0f), one(1.0f), warm(settings.warm_scale);
+  Wide<W> in[4];
+  gather_columns<4, W>(records.manifold, kManifoldFriction, in);
+  age = in[0];
+  const Vec3W<W> friction = warm * Vec3W<W>{in[1], in[2], in[3]};
+  block.friction_1 = dot(friction, block.tangent_1);
+  block.friction_2 = dot(friction, block.tangent_2);
+  gather_columns<4, W>(records.manifold, kManifoldTotals, in);
+  block.slides = lane_bits<W>(bit_pattern(in[3]) != WideInt<W>(0));
+  gather_columns<4, W>(records.manifold, kManifoldTwist, in);
+  block.twist = warm * in[0];
+  block.aside->rolling_friction = surface.rolling_friction;
+  // A surface that ceased to brake rolling starts from nothing: otherwise it would depend on the lanes beside it whether
+  // the old impulse acts once more.
+  const auto rolls = surface.rolling_friction > zero;
+  block.aside->rolling = keep<W>(rolls, warm * Vec3W<W>{in[1], in[2], in[3]});
+  if (any(rolls)) block.rolls = 1;
+  const Sym3W<W>& a = block.inverse_inertia_a;
+  const Sym3W<W>& b = block.inverse_inertia_b;
+  const Wide<W> turning = (a.xx + a.yy + a.zz) + (b.xx + b.yy + b.zz);
+  block.aside->rolling_mass = keep(turning > zero, one / select(turning > zero, turning, one));
+}
+
+template <int W>
+GYRE_INLINE void load_inertia(const float* const (&record)[W], Wide<W>& inverse_mass, Sym3W<W>& inverse) {
+  Wide<W> low[4], high[4];
+  gather_columns<4, W>(record, 0, low);
+  gather_columns<4, W>(record, kInertiaMass, high);
+  inverse = {low[0], low[1], low[2], low[3], high[0], high[1]};
+  inverse_mass = high[2];
+}
+
+// The records of one side's bodies: their motion, and their mass into the block. Returns which lanes have one, as bits.
+template <int W>
+GYRE_INLINE std::uint16_t find_side(const LaneRecords<W>& records, std::int32_t ContactConstraint::* body,
+                                    ContactBodies bodies, float* (&motion)[W], Wide<W>& inverse_mass,
+                                    Sym3W<W>& inverse_inertia) {
+  const float* inertia[W];
+  std::uint32_t has = 0;
+  for (int lane = 0; lane < W; ++lane) {
+    // Never written: who has no record is not pushed.
+    motion[lane] = const_cast<float*>(kNoRecord);
+    inertia[lane] = kNoRecord;
+    if ((records.lanes >> lane & 1u) == 0) continue;
+    const std::int32_t place = reinterpret_cast<const ContactConstraint*>(records.constraint[lane])->*body;
+    if (place == kNoBody) continue;
+    has |= 1u << lane;
+    motion[lane] = &bodies.motion[place].linear_velocity.x;
+    inertia[lane] = &bodies.inertia[place].inverse.xx;
+  }
+  load_inertia<W>(inertia, inverse_mass, inverse_inertia);
+  return static_cast<std::uint16_t>(has);
+}
+
+// Where the velocities of the bodies that are pushed go.
+template <int W>
+GYRE_INLINE void find_pushed(std::uint32_t pushes, float* const (&read)[W], float* nowhere, float* (&write)[W]) {
+  for (int lane = 0; lane < W; ++lane)
+    write[lane] = (pushes >> lane & 1u) != 0 ? read[lane] : nowhere;
+}
+
+template <int W>
+GYRE_INLINE void prepare_bodies(ContactBlock<W>& block, const LaneRecords<W>& records, ContactBodies bodies) {
+  const Wide<W> zero(0.0f);
+  Sym3W<W>& a = block.inverse_inertia_a;
+  Sym3W<W>& b = block.inverse_inertia_b;
+  block.has_a = find_side<W>(records, &ContactConstraint::body_a, bodies, block.read_a, block.inverse_mass_a, a);
+  block.has_b = find_side<W>(records, &ContactConstraint::body_b, bodies, block.read_b, block.inverse_mass_b, b);
+  // Whatever pushes a body turns or moves it by a diagonal element.
+  block.pushes_a =
+      block.has_a & lane_bits<W>((block.inverse_mass_a > zero) | (a.xx != zero) | (a.yy != zero) | (a.zz != zero));
+  block.pushes_b =
+      block.has_b & lane_bits<W>((block.inverse_mass_b > zero) | (b.xx != zero) | (b.yy != zero) | (b.zz != zero));
+  find_pushed<W>(block.pushes_a, block.read_a, block.aside->nowhere, block.aside->write_a);
+  find_pushed<W>(block.pushes_b, block.read_b, block.aside->nowhere, block.aside->write_b);
+}
+
+// Which body's centre the arms are measured from, and by how much they differ on the other. From the nearer one: the other
+// may be large or far away, and its arms rounded. What nothing moves has no arms at all.
+template <int W>
+GYRE_INLINE Mask<W> place_arms(ContactBlock<W>& block, const PointArms<W>& first) {
+  const Wide<W> zero(0.0f);
+  const Vec3W<W> none{zero, zero, zero};
+  const auto has_a = Mask<W>::of_bits(block.has_a), has_b = Mask<W>::of_bits(block.has_b);
+  const auto nearer_a = has_a & (~has_b | (length_squared(first.from_a) <= length_squared(first.from_b)));
+  const Vec3W<W> shift = cross(first.from_b - first.from_a, block.normal);  // of arms from A to B
+  block.arm_shift_a = select<W>(has_a & ~nearer_a, -shift, none);
+  block.arm_shift_b = select<W>(has_b & nearer_a, shift, none);
+  return nearer_a;
+}
+
+template <int W>
+void prepare_block(ContactBlock<W>& block, const ContactConstraint* constraints, const std::uint32_t* order,
+                   ContactBodies bodies, const ContactSettings& settings) {
+  const Wide<W> zero(0.0f), one(1.0f), warm(settings.warm_scale);
+  alignas(64) float nowhere[80] = {};
+  LaneRecords<W> records = find_records<W>(constraints, order, nowhere);
+  block.point_count = records.point_count == 3 ? 4 : records.point_count;
+  block.rolls = block.has_fresh = 0;
+  block.idles = 0;
+  Wide<W> in[4];
+  block.normal = records.normal;
+  block.tangent_1 = any_perpendicular<W>(block.normal);
+  block.tangent_2 = cross(block.normal, block.tangent_1);
+  prepare_bodies<W>(block, records, bodies);
+  PointArms<W> arms[kMaxManifoldPoints];
+  auto nearer_a = one > zero;
+  for (int k = 0; k < block.point_count; ++k) {
+    PointBlock<W>& point = block.points[k];
+    const int first = records.begin_point(k);
+    gather_columns<4, W>(records.point, first + kPointA, in);
+    arms[k].from_a = {in[0], in[1], in[2]};
+    point.separation = in[3];
+    gather_columns<4, W>(records.point, first + kPointB, in);
+    arms[k].from_b = {in[0], in[1], in[2]};
+    if (k == 0) nearer_a = place_arms<W>(block, arms[0]);
+    gather_columns<4, W>(records.point, first + kPointImpulse, in);
+    block.impulses[k] = warm * in[0];
+    point.held = warm * in[2];
+    block.totals[k] = zero;
+    point.arm = cross(select<W>(nearer_a, arms[k].from_a, arms[k].from_b), block.normal);
+  }
+  gather_columns<4, W>(records.constraint, kConstraintFriction, in);
+  const SurfaceLanes<W> surface{in[0], in[1], in[2], in[3]};
+  gather_columns<4, W>(records.constraint, kConstraintSize, in);
+  const Wide<W> size = in[0];
+  block.push_speed = in[1];
+  gather_columns<4, W>(records.constraint, kConstraintVelocity, in);
+  const Vec3W<W> surface_velocity{in[0], in[1], in[2]};
+  // Not -0: what does not move by itself is left out, and that must be the same.
+  block.aside->surface_1 = dot(surface_velocity, block.tangent_1) + zero;
+  block.aside->surface_2 = dot(surface_velocity, block.tangent_2) + zero;
+  block.slips = any((block.aside->surface_1 != zero) | (block.aside->surface_2 != zero)) ? 1 : 0;
+  block.total_1 = block.total_2 = zero;
+  gather_columns<4, W>(records.constraint, kConstraintKinds, in);
+  const WideInt<W> none(0), kinds = bit_pattern(in[3]);
+  const Mask<W> rigid = (kinds & WideInt<W>(0xff)) != none;
+  block.linked = lane_bits<W>((kinds & WideInt<W>(0xff00)) != none);
+  Wide<W> age;
+  prepare_impulses<W>(block, records, surface, settings, age);
+  block.aside->fresh = select(age > zero, zero, one);
+  if ((to_bits(block.aside->fresh > zero) & records.lanes) != 0) block.has_fresh = 1;
+  prepare_softness<W>(block, rigid, age, size, settings);
+  prepare_friction<W>(block, surface, pressure_patch<W>(block, records, arms), size);
+  prepare_normals<W>(block, records.exists);
+}
+
+template <int W>
+void prepare_blocks(void* memory, void* asides, int begin, int end, const ContactConstraint* constraints,
+                    const std::uint32_t* order, ContactBodies bodies, const ContactSettings& settings) {
+  auto* blocks = static_cast<ContactBlock<W>*>(memory);
+  for (int i = begin; i < end; ++i) {
+    if (i + 1 < end) fetch_ahead<W>(constraints, order + (i + 1) * W);
+    blocks[i].aside = static_cast<ContactAside<W>*>(asides) + i;
+    prepare_block<W>(blocks[i], constraints, order + i * W, bodies, settings);
+  }
+}
+
+// -------------------------------------------------------------------------------------------------------------- finish
+
+// Impulses back into the manifolds; the manifolds' age, and what their points are used to.
+template <int W>
+void finish_block(const ContactBlock<W>& block, const ContactConstraint* constraints, const std::uint32_t* order,
+                  const ContactSettings& settings) {
+  const Wide<W> zero(0.0f), one(1.0f);
+  alignas(64) float nowhere[80] = {};
+  LaneRecords<W> records = find_records<W>(constraints, order, nowhere);
+  Wide<W> row[4];
+  gather_columns<4, W>(records.manifold, kManifoldFriction, row);
+  // Of the whole step: what bore nothing just as it ended is no reason to forget all.
+  Wide<W> load = zero;
+  for (int k = 0; k < block.point_count; ++k) load = max(load, block.totals[k]);
+  const Wide<W> age = keep(load > zero, row[0] + Wide<W>(settings.step));
+  const Wide<W> mean = min(max(age, Wide<W>(kShortestMean)), Wide<W>(kLongestMean));
+  const Wide<W> gain = min(Wide<W>(settings.step) / mean, one);
+  // Adding zero makes -0 from a lane that rested be the 0 that a narrower kernel would have.
+  const Vec3W<W> none{zero, zero, zero};
+  const Vec3W<W> friction = block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2 + none;
+  const Vec3W<W> total = block.total_1 * block.tangent_1 + block.total_2 * block.tangent_2 + none;
+  const Wide<W> friction_row[4] = {age, friction.x, friction.y, friction.z};
+  scatter_columns<4, W>(records.manifold, kManifoldFriction, friction_row);
+  const Vec3W<W> rolling = block.aside->rolling + none;
+  const Wide<W> twist_row[4] = {block.twist + zero, rolling.x, rolling.y, rolling.z};
+  scatter_columns<4, W>(records.manifold, kManifoldTwist, twist_row);
+  const Wide<W> slides = from_bit_pattern(to_int(Mask<W>::of_bits(block.slides)) & WideInt<W>(1));
+  const Wide<W> totals_row[4] = {total.x, total.y, total.z, slides};
+  scatter_columns<4, W>(records.manifold, kManifoldTotals, totals_row);
+  for (int k = 0; k < block.point_count; ++k) {
+    const int first = records.begin_point(k) + kPointImpulse;
+    gather_columns<4, W>(records.point, first, row);
+    const Wide<W> impulse = block.impulses[k] + zero;
+    const Wide<W> held = keep(block.totals[k] > zero, row[2] + gain * (impulse - row[2]));
+    const Wide<W> point_row[4] = {impulse, row[1] + (block.totals[k] + zero), held, row[3]};
+    scatter_columns<4, W>(records.point, first, point_row);
+  }
+}
+
+template <int W>
+void finish_blocks(void* memory, int begin, int end, const ContactConstraint* constraints, const std::uint32_t* order,
+                   const ContactSettings& settings) {
+  auto* blocks = static_cast<const ContactBlock<W>*>(memory);
+  for (int i = begin; i < end; ++i) {
+    if (i + 1 < end) fetch_ahead<W>(constraints, order + (i + 1) * W);
+    finish_block<W>(blocks[i], constraints, order + i * W, settings);
+  }
+}
+
+// ------------------------------------------------------------------------------------------------------ single contacts
+
+template <int W>
+void read_block_impulse(const void* memory, int index, int lane, ContactImpulse& impulse) {
+  const ContactBlock<W>& block = static_cast<const ContactBlock<W>*>(memory)[index];
+  for (int k = 0; k < kMaxManifoldPoints; ++k) impulse.normal[k] = get_lane(block.impulses[k], lane);
+  impulse.friction = get_lane(block.friction_1, lane) * get_lane(block.tangent_1, lane) +
+                     get_lane(block.friction_2, lane) * get_lane(block.tangent_2, lane);
+  impulse.twist = get_lane(block.twist, lane);
+  impulse.rolling = get_lane(block.aside->rolling, lane);
+  impulse.friction_from_b = get_lane(block.friction_from_b, lane);
+  const float twist_grip = get_lane(block.static_twist_grip, lane);
+  impulse.twist_per_normal = twist_grip > 0.0f ? 1.0f / twist_grip : 0.0f;
+}
+
+template <int W>
+void write_block_impulse(void* memory, int index, int lane, const ContactImpulse& impulse) {
+  ContactBlock<W>& block = static_cast<ContactBlock<W>*>(memory)[index];
+  // The sums over the step count what stands in the end.
+  const auto replace = [lane](Wide<W>& present, Wide<W>& total, float value) {
+    set_lane(total, lane, get_lane(total, lane) + (value - get_lane(present, lane)));
+    set_lane(present, lane, value);
+  };
+  block.idles = 0;
+  for (int k = 0; k < kMaxManifoldPoints; ++k) replace(block.impulses[k], block.totals[k], impulse.normal[k]);
+  replace(block.friction_1, block.total_1, dot(impulse.friction, get_lane(block.tangent_1, lane)));
+  replace(block.friction_2, block.total_2, dot(impulse.friction, get_lane(block.tangent_2, lane)));
+  set_lane(block.twist, lane, impulse.twist);
+  set_lane(block.aside->rolling, lane, impulse.rolling);
+  block.slides = static_cast<std::uint16_t>(block.slides & ~(1u << lane));
+}
+
+template <int W>
+void harden_block(void* memory, int index, int lane) {
+  ContactBlock<W>& block = static_cast<ContactBlock<W>*>(memory)[index];
+  set_lane(block.rate, lane, 0.0f);
+  set_lane(block.give, lane, 0.0f);
+  block.idles = 0;
+}
+
+}  // namespace GYRE_TARGET_NAMESPACE
+}  // namespace gyre

@@ -1,0 +1,197 @@
+#include "solver/contact/impact.h"
+
+namespace gyre {
+
+namespace {
+
+constexpr int kPasses = 24;       // over all contacts, until none is closing
+constexpr int kPointSweeps = 16;  // over the points of one manifold
+
+// The two bodies of a contact, with their velocities while a blow is worked out.
+struct Bodies {
+  BodyMotion* a;
+  BodyMotion* b;
+  const BodyInertia* inertia_a;
+  const BodyInertia* inertia_b;
+
+  Bodies(const ImpactContact& contact, ContactBodies bodies) {
+    static constexpr BodyInertia kImmovable{};
+    a = contact.body_a == kNoBody ? nullptr : &bodies.motion[contact.body_a];
+    b = contact.body_b == kNoBody ? nullptr : &bodies.motion[contact.body_b];
+    inertia_a = a == nullptr ? &kImmovable : &bodies.inertia[contact.body_a];
+    inertia_b = b == nullptr ? &kImmovable : &bodies.inertia[contact.body_b];
+  }
+
+  Vec3 velocity(Vec3 from_a, Vec3 from_b) const {
+    Vec3 v;
+    if (b != nullptr) v += b->linear_velocity + cross(b->angular_velocity, from_b);
+    if (a != nullptr) v -= a->linear_velocity + cross(a->angular_velocity, from_a);
+    return v;
+  }
+  Vec3 drift(Vec3 from_a, Vec3 from_b) const {
+    Vec3 d;
+    if (b != nullptr) d += b->moved + cross(b->turned, from_b);
+    if (a != nullptr) d -= a->moved + cross(a->turned, from_a);
+    return d;
+  }
+  float inverse_mass(Vec3 direction, Vec3 from_a, Vec3 from_b) const {
+    const Vec3 ja = cross(from_a, direction), jb = cross(from_b, direction);
+    return inertia_a->inverse_mass + inertia_b->inverse_mass + dot(ja, inertia_a->inverse * ja) +
+           dot(jb, inertia_b->inverse * jb);
+  }
+  void push(Vec3 p, Vec3 from_a, Vec3 from_b) {
+    if (a != nullptr && (inertia_a->inverse_mass > 0.0f || inertia_a->inverse != Sym3{})) {
+      a->linear_velocity -= inertia_a->inverse_mass * p;
+      a->angular_velocity -= inertia_a->inverse * cross(from_a, p);
+    }
+    if (b != nullptr && (inertia_b->inverse_mass > 0.0f || inertia_b->inverse != Sym3{})) {
+      b->linear_velocity += inertia_b->inverse_mass * p;
+      b->angular_velocity += inertia_b->inverse * cross(from_b, p);
+    }
+  }
+};
+
+// Meets the targets of all struck points together: impulses >= 0, speed >= target, one of the two equal.
+void meet_targets(ImpactContact& contact, Bodies& bodies) {
+  for (ImpactPoint& point : contact.points) point.impulse = 0.0f;
+  for (int sweep = 0; sweep < kPointSweeps; ++sweep) {
+    float change = 0.0f;
+    for (int k = 0; k < contact.count; ++k) {
+      ImpactPoint& point = contact.points[k];
+      if (!point.struck) continue;
+      const float k_inverse = bodies.inverse_mass(contact.normal, point.from_a, point.from_b);
+      if (!(k_inverse > 0.0f)) continue;
+      const float speed = dot(bodies.velocity(point.from_a, point.from_b), contact.normal);
+      const float next = max(point.impulse + (point.target - speed) / k_inverse, 0.0f);
+      bodies.push((next - point.impulse) * contact.normal, point.from_a, point.from_b);
+      change = max(change, absolute(next - point.impulse) * k_inverse);
+      point.impulse = next;
+    }
+    // Settled to a float's precision of the speeds at hand.
+    if (change <= 1.0e-6f * absolute(contact.points[0].target)) break;
+  }
+}
+
+// Friction of the blow at its centre of pressure.
+void rub(ImpactContact& contact, Bodies& bodies) {
+  float total = 0.0f;
+  Vec3 from_a, from_b;
+  for (int k = 0; k < contact.count; ++k) {
+    const ImpactPoint& point = contact.points[k];
+    total += point.impulse;
+    from_a += point.impulse * point.from_a;
+    from_b += point.impulse * point.from_b;
+  }
+  if (!(total > 0.0f)) return;
+  for (int k = 0; k < contact.count; ++k) contact.manifold->points[k].total_impulse += contact.points[k].impulse;
+  if (!(contact.friction > 0.0f)) return;
+  from_a = from_a / total;
+  from_b = from_b / total;
+  const Vec3 v = bodies.velocity(from_a, from_b);
+  const Vec3 slip = v - dot(v, contact.normal) * contact.normal;
+  const float speed = length(slip);
+  if (!(speed > 0.0f)) return;
+  const Vec3 direction = slip / speed;
+  const float k_inverse = bodies.inverse_mass(direction, from_a, from_b);
+  if (!(k_inverse > 0.0f)) return;
+  bodies.push(-min(speed / k_inverse, contact.friction * total) * direction, from_a, from_b);
+}
+
+// Whether the point meets within the sub-step and, if so, what speed it is to leave with.
+bool strike_point(ImpactPoint& point, const ImpactContact& contact, const Bodies& bodies, const ImpactSettings& settings) {
+  const float closing = -dot(bodies.velocity(point.from_a, point.from_b), contact.normal);
+  if (!(closing > settings.threshold)) return false;
+  // Below the surface (a contact that was seen too late) the way back up counts like the way down.
+  const float separation = point.separation + dot(bodies.drift(point.from_a, point.from_b), contact.normal);
+  if (closing * settings.substep < separation) return false;
+  const float start = closing - point.kick;  // u: before this sub-step's forces
+  const float half_kick = 0.5f * point.kick;
+  const float fall = 2.0f * point.kick / settings.substep * separation;  // 2 a s
+  const float energy = square(start + half_kick) + fall;
+  if (!(energy > square(settings.threshold))) return false;
+  const float leaving = square(contact.restitution) * energy;
+  if (leaving - fall >= square(half_kick)) {
+    point.target = max(std::sqrt(leaving - fall) - half_kick, 0.0f);
+    point.struck = true;
+  } else {
+    point.target = half_kick + std::sqrt(leaving);
+    point.pending = true;
+  }
+  return point.struck;
+}
+
+}  // namespace
+
+ImpactContact make_impact(const ContactConstraint& constraint) {
+  ImpactContact contact;
+  contact.manifold = constraint.manifold;
+  contact.body_a = constraint.body_a;
+  contact.body_b = constraint.body_b;
+  contact.restitution = constraint.restitution;
+  contact.friction = constraint.dynamic_friction;
+  contact.normal = constraint.manifold->normal;
+  contact.count = constraint.manifold->count;
+  for (int k = 0; k < contact.count; ++k) {
+    const ContactPointState& from = constraint.manifold->points[k];
+    contact.points[k].from_a = from.from_a;
+    contact.points[k].from_b = from.from_b;
+    contact.points[k].separation = from.separation;
+  }
+  return contact;
+}
+
+void watch_impacts(std::span<ImpactContact> contacts, ContactBodies bodies) {
+  for (ImpactContact& contact : contacts) {
+    const Bodies pair(contact, bodies);
+    for (int k = 0; k < contact.count; ++k) {
+      ImpactPoint& point = contact.points[k];
+      point.kick = -dot(pair.velocity(point.from_a, point.from_b), contact.normal);
+      point.pending = false;
+    }
+  }
+}
+
+void strike_impacts(std::span<ImpactContact> contacts, ContactBodies bodies, const ImpactSettings& settings) {
+  // What the forces added: closing speed now less closing speed before.
+  for (ImpactContact& contact : contacts) {
+    const Bodies pair(contact, bodies);
+    for (int k = 0; k < contact.count; ++k) {
+      ImpactPoint& point = contact.points[k];
+      point.kick = -dot(pair.velocity(point.from_a, point.from_b), contact.normal) - point.kick;
+    }
+  }
+  for (int pass = 0; pass < kPasses; ++pass) {
+    bool any = false;
+    for (ImpactContact& contact : contacts) {
+      Bodies pair(contact, bodies);
+      bool struck = false;
+      for (int k = 0; k < contact.count; ++k) {
+        contact.points[k].struck = false;
+        if (strike_point(contact.points[k], contact, pair, settings)) struck = true;
+      }
+      if (!struck) continue;
+      any = true;
+      meet_targets(contact, pair);
+      rub(contact, pair);
+    }
+    if (!any) break;
+  }
+}
+
+void release_impacts(std::span<ImpactContact> contacts, ContactBodies bodies, const ImpactSettings&) {
+  for (ImpactContact& contact : contacts) {
+    bool pending = false;
+    for (int k = 0; k < contact.count; ++k) {
+      ImpactPoint& point = contact.points[k];
+      point.struck = point.pending;
+      pending = pending || point.pending;
+      point.pending = false;
+    }
+    if (!pending) continue;
+    Bodies pair(contact, bodies);
+    meet_targets(contact, pair);
+    rub(contact, pair);
+  }
+}
+
+}  // namespace gyre

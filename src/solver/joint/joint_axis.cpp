@@ -1,0 +1,198 @@
+#include "solver/joint/joint_axis.h"
+
+#include "math/trig.h"
+#include "solver/joint/joint_blocks.h"
+
+namespace gyre {
+
+namespace {
+
+// The share of a constant push that arrives as speed, of one sub-step h with 2 d h = decay.
+double pushed_share(double decay) { return decay > 1.0e-6 ? (1.0 - exp(-decay)) / decay : 1.0 - 0.5 * decay; }
+
+// Coefficients of a spring row for one sub-step.
+//
+// As long as the sub-step resolves the spring (omega h <= 1) kick and drift together have exactly the eigenvalues of the
+// continuous oscillator: det = exp(-2 zeta omega h), trace = 2 exp(-zeta omega h) cos(omega_d h). An undamped spring then keeps
+// its amplitude for ever and its period exactly. What else changes the speed in the sub-step (weight, contacts, other joints)
+// counts as a constant load, by as much as puts the rest where that load and the spring are equal. Faster springs are
+// implicit: stable at any stiffness.
+SpringStep make_spring(const JointAxisRecord& axis, float effective_mass, float substep) {
+  SpringStep spring;
+  const double h = double(substep), mass = double(effective_mass);
+  if (!(mass > 0.0)) return spring;
+  const double omega = std::sqrt(double(axis.stiffness) / mass);
+  const double decay = 0.5 * double(axis.damping) / mass;  // zeta omega
+  spring.is_implicit = omega * h > 1.0 || decay * h > 1.0;
+  if (spring.is_implicit) {
+    // Stiffness and damping over the sub-step, both taken at its end: J = -h (k (x + h v') + c v').
+    const double a2 = h * (h * omega * omega + 2.0 * decay);
+    const double a3 = 1.0 / (1.0 + a2);
+    spring.implicit = {float(h * omega * omega / a2), float(a2 * a3), float(a3)};
+    return spring;
+  }
+  const double e1 = exp(-decay * h);
+  const double e2 = e1 * e1;
+  const double square_d = omega * omega - decay * decay;
+  const double angle = std::sqrt(square_d < 0.0 ? -square_d : square_d) * h;
+  const double c = square_d < 0.0 ? 0.5 * (exp(angle) + exp(-angle)) : sin_cos(angle).cos;
+  const double back = 1.0 + e2 - 2.0 * e1 * c;  // of the displacement over h
+  const double turned = square(omega * h);
+  spring.kept = float(e2);
+  spring.loaded = float(turned > 1.0e-8 ? back / turned : pushed_share(2.0 * decay * h));
+  spring.returned = float(back / h);
+  return spring;
+}
+
+// The change of the spring's impulse.
+float spring_change(const AxisWork& x, float speed) {
+  const JointAxisRecord& axis = x.axis;
+  const float displacement = axis.position - axis.rest_position;
+  if (x.spring.is_implicit) {
+    const Softness& s = x.spring.implicit;
+    return -s.mass_scale * x.mass * (speed + s.bias_rate * displacement) -
+           s.impulse_scale * axis.spring_impulse;
+  }
+  const float without = speed - axis.spring_impulse / x.mass;
+  const float wanted = x.spring.kept * x.speed_before + x.spring.loaded * (without - x.speed_before) -
+                       x.spring.returned * displacement;
+  return x.mass * (wanted - without) - axis.spring_impulse;
+}
+
+float motor_change(const AxisWork& x, float speed, float substep) {
+  const JointAxisRecord& axis = x.axis;
+  float wanted = axis.motor_impulse;
+  if (axis.has_motor_target) {
+    const float error = axis.position - axis.motor_position;
+    const float closing = speed - axis.motor_velocity + x.drive.bias_rate * error;
+    wanted -= x.drive.mass_scale * x.mass * closing + x.drive.impulse_scale * axis.motor_impulse;
+  } else {
+    wanted -= x.mass * (speed - axis.motor_velocity);
+  }
+  const float most = axis.motor_force * substep;
+  return clamp(wanted, -most, most) - axis.motor_impulse;
+}
+
+float friction_change(const AxisWork& x, float speed, float substep) {
+  const float most = x.axis.friction * substep;
+  return clamp(x.axis.friction_impulse - x.mass * speed, -most, most) - x.axis.friction_impulse;
+}
+
+// A stop that gives way does so once it is reached, and only where errors are taken back.
+float end_change(const AxisWork& x, float speed, float gap, float impulse, const JointSettings& settings,
+                 bool soft) {
+  if (x.axis.limit_frequency <= 0.0f) return stop_change(x.mass, speed, gap, impulse, settings, soft);
+  if (!soft) return 0.0f;
+  if (gap > 0.0f) return -impulse;
+  const float change =
+      -x.mass * x.stop.mass_scale * (speed + x.stop.bias_rate * gap) - x.stop.impulse_scale * impulse;
+  return max(impulse + change, 0.0f) - impulse;
+}
+
+float rod_change(const AxisWork& x, float speed, const JointSettings& settings, bool soft) {
+  if (!soft) return -x.mass * speed;
+  const Softness& s = settings.softness;
+  const float error = x.axis.position - x.axis.limits.low;
+  return -s.mass_scale * x.mass * (speed + s.bias_rate * error) - s.impulse_scale * x.axis.low_impulse;
+}
+
+}  // namespace
+
+float axis_speed(const AxisRow& row, const JointPair& pair) {
+  return dot(row.push_b, pair.linear_b) + dot(row.arm_b, pair.angular_b) - dot(row.push_a, pair.linear_a) -
+         dot(row.arm_a, pair.angular_a);
+}
+
+void push_axis(const AxisRow& row, float impulse, JointPair& pair) {
+  pair.linear_a -= (impulse * pair.inverse_mass_a()) * row.push_a;
+  pair.linear_b += (impulse * pair.inverse_mass_b()) * row.push_b;
+  pair.angular_a -= pair.inverse_inertia_a() * (impulse * row.arm_a);
+  pair.angular_b += pair.inverse_inertia_b() * (impulse * row.arm_b);
+}
+
+float axis_impulse(const JointAxisRecord& axis) {
+  return axis.low_impulse - axis.high_impulse + axis.motor_impulse + axis.spring_impulse +
+         axis.friction_impulse;
+}
+
+void prepare_axis(AxisWork& x, const JointPair& pair, const JointSettings& settings) {
+  const AxisRow& row = x.row;
+  const float k = pair.inverse_mass_a() * length_squared(row.push_a) +
+                  pair.inverse_mass_b() * length_squared(row.push_b) +
+                  dot(row.arm_a, pair.inverse_inertia_a() * row.arm_a) +
+                  dot(row.arm_b, pair.inverse_inertia_b() * row.arm_b);
+  x.bend = 0.0f;
+  x.speed_before = axis_speed(row, pair);
+  const JointAxisRecord& axis = x.axis;
+  prepare_axis_mass(x, inverse_or_zero(k), settings);
+  x.drive = axis.motor_frequency > 0.0f
+                ? make_softness(axis.motor_frequency, axis.motor_damping, settings.substep)
+                : settings.softness;
+  if (axis.limit_frequency > 0.0f)
+    x.stop = make_softness(axis.limit_frequency, axis.limit_damping, settings.substep);
+}
+
+void prepare_axis_mass(AxisWork& x, float mass, const JointSettings& settings) {
+  x.mass = mass;
+  if (has_spring(x.axis)) x.spring = make_spring(x.axis, mass, settings.substep);
+}
+
+namespace {
+
+// Calls push(impulse) for each that changes, and see() for what the row sees then.
+template <class See, class Push>
+void solve_axis_by(AxisWork& x, const JointSettings& settings, bool soft, See&& see, Push&& push) {
+  if (!(x.mass > 0.0f)) return;
+  JointAxisRecord& axis = x.axis;
+  const float bend = soft ? x.bend : 0.0f;
+  // Most limits are far away and most frictions hold what rests: what changes nothing is not pushed, and the speed not asked for again.
+  float speed_now = 0.0f;
+  bool is_known = false;
+  const auto change = [&](float& kept, float by, float sign) {
+    if (by == 0.0f) return;
+    push(sign * by);
+    kept += by;
+    is_known = false;
+  };
+  const auto speed = [&] {
+    if (!is_known) speed_now = see() + bend;
+    is_known = true;
+    return speed_now;
+  };
+  if (soft && has_spring(axis)) change(axis.spring_impulse, spring_change(x, speed()), 1.0f);
+  if (axis.motor_force > 0.0f) change(axis.motor_impulse, motor_change(x, speed(), settings.substep), 1.0f);
+  if (axis.friction > 0.0f)
+    change(axis.friction_impulse, friction_change(x, speed(), settings.substep), 1.0f);
+  if (x.is_rod) {
+    if (settings.swept) change(axis.low_impulse, rod_change(x, speed(), settings, soft), 1.0f);
+    return;
+  }
+  if (!settings.swept && !(axis.limit_frequency > 0.0f)) return;
+  const float least = x.row.push_b == Vec3{} && x.row.push_a == Vec3{} ? -kMostStopError : -1.0e30f;
+  if (x.has_low) {
+    const float gap = max(low_gap(x), least);
+    change(axis.low_impulse, end_change(x, speed(), gap, axis.low_impulse, settings, soft), 1.0f);
+  }
+  if (x.has_high) {
+    const float gap = max(high_gap(x), least);
+    change(axis.high_impulse, end_change(x, -speed(), gap, axis.high_impulse, settings, soft), -1.0f);
+  }
+}
+
+}  // namespace
+
+void solve_axis(AxisWork& x, JointPair& pair, const JointSettings& settings, bool soft) {
+  if (x.is_linked) return;
+  solve_axis_by(
+      x, settings, soft, [&] { return axis_speed(x.row, pair); },
+      [&](float impulse) { push_axis(x.row, impulse, pair); });
+}
+
+float solve_axis(AxisWork& x, float speed, float k, const JointSettings& settings, bool soft) {
+  float sum = 0.0f;
+  solve_axis_by(
+      x, settings, soft, [&] { return speed + k * sum; }, [&](float impulse) { sum += impulse; });
+  return sum;
+}
+
+}  // namespace gyre

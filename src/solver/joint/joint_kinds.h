@@ -1,0 +1,45 @@
+// The kinds of joints beyond blocks of a point and a turn: six axes (universal joints and wheels are such, with most axes
+// locked), cones, gears, racks, pulleys and curves. What holds always is a list of rows, what may act is a list of axes.
+// Equations: docs/derive/joints.md.
+#pragma once
+
+#include "solver/joint/joint.h"
+
+namespace gyre {
+
+// Where two bodies stand, as a joint sees them.
+struct RowPose {
+  Vec3 apart;             // b's anchor minus a's
+  Vec3 centers;           // b's centre of mass minus a's
+  Quat frame_a, frame_b;  // world_from_joint
+};
+
+// The axis whose dot product with w_b - w_a is the rate of a Cardan angle (0 to 2), and of a cone's twist.
+Vec3 angle_axis(Quat frame_a, Quat frame_b, int angle);
+Vec3 twist_axis(Quat frame_a, Quat frame_b);
+
+// Which ends of which axes stop, for kinds that know better than the axis.
+void adjust_axes(const JointRecord& joint, std::span<AxisWork> axes);
+
+void place_six_axes(JointRecord& joint, JointWork& work, const JointPair& pair,
+                    const JointSettings& settings);
+void place_cone(JointRecord& joint, JointWork& work, const JointPair& pair, const JointSettings& settings);
+void place_gear(JointRecord& joint, JointWork& work);
+void place_rack(JointRecord& joint, JointWork& work, const JointPair& pair, const JointPlaces& places);
+void place_pulley(JointRecord& joint, JointWork& work, const JointPair& pair, const JointPlaces& places,
+                  const JointSettings& settings);
+void place_path(JointRecord& joint, JointWork& work, const JointPair& pair, const JointSettings& settings);
+void bend_pulley(JointWork& work, const JointPair& pair, float substep);
+
+// The errors that the rows of the work would have with the bodies at another pose nearby.
+void measure_rows(const JointRecord& joint, const JointWork& work, const RowPose& pose,
+                  float (&errors)[kJointAxisCount]);
+
+void prepare_rows(JointRows& rows, const JointPair& pair);
+void warm_rows(const JointRows& rows, const JointDetail& detail, JointPair& pair);
+void sweep_rows(JointRecord& joint, const JointWork& work, JointPair& pair, const JointSettings& settings,
+                bool soft);
+// The rows' impulses as a force's and a torque's on B.
+void gather_rows(JointRecord& joint, const JointWork& work);
+
+}  // namespace gyre

@@ -1,0 +1,37 @@
+// All kernels of one CPU target, as the table that a kernel file exports.
+#pragma once
+
+#include "solver/articulation/ball_kernel.h"
+#include "solver/contact/contact_follow.h"
+#include "solver/contact/contact_prepare.h"
+#include "solver/contact/contact_project.h"
+#include "solver/articulation/linkage_kernel.h"
+#include "solver/motion/motion_kernel.h"
+#include "solver/motion/turn_kernel.h"
+
+namespace gyre {
+inline namespace GYRE_TARGET_NAMESPACE {
+
+template <int W>
+constexpr ContactKernels contact_kernels() {
+  return {W,
+          sizeof(ContactBlock<W>),
+          sizeof(ContactAside<W>),
+          prepare_blocks<W>,
+          follow_lanes<W>,
+          warm_start_blocks<W>,
+          solve_blocks<W>,
+          relax_blocks<W>,
+          project_blocks<W>,
+          read_block_impulse<W>,
+          write_block_impulse<W>,
+          harden_block<W>,
+          finish_blocks<W>,
+          motion_kernels<W>(),
+          turn_kernels<W>(),
+          linkage_kernels<W>(),
+          ball_kernels<W>()};
+}
+
+}  // namespace GYRE_TARGET_NAMESPACE
+}  // namespace gyre

@@ -1,0 +1,10 @@
+// The contact kernels for one kind of CPU, in a namespace of its own so that the linker can never mix them with others'.
+#define GYRE_TARGET_NAMESPACE target_avx512
+#include "solver/kernels/contact_kernel_table.h"
+
+namespace gyre {
+
+extern const ContactKernels kContactKernels_avx512;
+const ContactKernels kContactKernels_avx512 = contact_kernels<16>();
+
+}  // namespace gyre

@@ -1,0 +1,30 @@
+// How contacts and joints begin and end a row.
+#pragma once
+
+#include "solver/rows/constraint_rows.h"
+
+namespace gyre {
+
+inline Row& begin_row(RowList& list) {
+  list.kept[list.count] = nullptr;
+  Row& row = list.rows[list.count++];
+  row = {};
+  return row;
+}
+
+// J is known. What a body that rows do not move brings along is part of what is wanted. `still`: in displacements, where such a
+// body has none.
+inline void end_row(Row& row, std::int32_t body_a, std::int32_t body_b, const RowFrame& frame,
+                    bool still = false) {
+  const auto settle = [&](std::int32_t body, std::int32_t& place, DVec3 linear, DVec3 angular) {
+    place = body == kNoBody ? kNoRowBody : frame.place[body];
+    if (place != kNoRowBody || body == kNoBody || still) return;
+    const BodyMotion& motion = frame.motion[body];
+    row.wanted -= dot(linear, DVec3(motion.linear_velocity)) + dot(angular, DVec3(motion.angular_velocity));
+  };
+  settle(body_a, row.body_a, row.linear_a, row.angular_a);
+  settle(body_b, row.body_b, row.linear_b, row.angular_b);
+  finish_row(row, frame.bodies);
+}
+
+}  // namespace gyre

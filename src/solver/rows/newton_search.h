@@ -1,0 +1,95 @@
+// A semi-smooth Newton method on the natural map of an island's complementarity problem: each step looks at which limits hold
+// where (rows at rest, at a limit, sticking, sliding), solves the linear equations that go with that (solver/rows/natural_map.h), and
+// looks again. A step is shortened until the residuals' sum of squares falls; where no share of it does, it is taken whole: now and
+// then the way leads over a hill. Friction sets are polygons or Coulomb's disc, whose rim bends: its derivative is in the equations.
+//
+// From impulses that are near, as those of the last sub-step or of a pivoting method are, it needs a few steps and leaves only
+// rounding; from afar it may wander, and says so. Where rows are redundant, the step is the smallest that does: rows at rest resist
+// change by a share of their diagonal. That share falls with every good step, quickly where a whole step changes next to nothing
+// (redundant rows that cannot all be at rest then move on to where a limit holds), and rises with every bad one, as in Levenberg's
+// and Marquardt's method.
+//
+// How the equations are solved is the problem's: densely by rows (solver/rows/solve_newton.h) or sparsely by bodies
+// (solver/rows/body_newton.h).
+//
+// Sources: P. Alart, A. Curnier, "A mixed formulation for frictional contact problems prone to Newton like solution methods",
+// 1991; S. Hueeber, B. Wohlmuth, "A primal-dual active set strategy for non-linear multibody contact problems", 2005.
+#pragma once
+
+#include "solver/rows/complementarity.h"
+
+namespace gyre {
+
+struct NewtonResult {
+  double residual = 0.0;
+  int steps = 0;
+};
+
+constexpr std::size_t newton_search_room(std::size_t size) { return 6 * size; }
+
+// Improves `x` until the residual is at most `tolerance`; leaves the best that was found. The problem has
+//   rows()                    how many
+//   find_speeds(x, w)         w of all rows
+//   residual_of(i, x, w)      of the natural map
+//   find_step(x, w, near, dx) solves the equations; false if they are singular
+//   find_change(dx, dw)       what dx makes of w, after find_step
+template <class Problem>
+NewtonResult newton_search(Problem& problem, double tolerance, int most_steps, std::span<double> x,
+                           NumberRoom& room) {
+  constexpr double kFirstNear = 1.0e-4, kMostNear = 1.0e-3, kLeastNear = 1.0e-10;
+  constexpr double kGood = 0.3, kSlow = 0.1, kBad = 10.0;
+  constexpr double kFall = 0.1;  // of the sum of squares, at least, for a whole step
+  constexpr double kShares[] = {1.0, 0.5, 0.25, 0.1, 0.03};
+  // Steps without progress after which it is given up.
+  constexpr int kPatience = 12;
+  const std::size_t n = problem.rows();
+  const std::span<double> now = room.take(n), w = room.take(n), dx = room.take(n), dw = room.take(n),
+                          next = room.take(n), next_w = room.take(n);
+  double squares = 0.0, residual = 0.0;
+  const auto measure = [&](std::span<const double> impulses, std::span<const double> speeds) {
+    squares = residual = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double own = problem.residual_of(int(i), impulses, speeds);
+      squares += own * own;
+      residual = max(residual, own);
+    }
+  };
+  for (std::size_t i = 0; i < n; ++i) now[i] = x[i];
+  problem.find_speeds(now, w);
+  measure(now, w);
+  NewtonResult result{residual, 0};
+  double near = kFirstNear;
+  for (int idle = 0; result.residual > tolerance && result.steps < most_steps && idle < kPatience;) {
+    if (!problem.find_step(now, w, near, dx)) break;
+    problem.find_change(dx, dw);
+    ++result.steps;
+    const double before = squares;
+    double taken = 1.0, whole = 0.0;  // whole: what a whole step makes of the sum of squares
+    bool is_good = false;
+    for (const double share : kShares) {
+      for (std::size_t i = 0; i < n; ++i) next[i] = now[i] + share * dx[i], next_w[i] = w[i] + share * dw[i];
+      measure(next, next_w);
+      if (share == 1.0) whole = squares / before;
+      if (!(squares < (1.0 - kFall * share) * before)) continue;
+      taken = share;
+      is_good = share >= 0.5;
+      break;
+    }
+    near *= whole > 0.8 && whole < 1.001 ? kSlow : is_good ? kGood : kBad;
+    near = clamp(near, kLeastNear, kMostNear);
+    for (std::size_t i = 0; i < n; ++i) now[i] += taken * dx[i];
+    problem.find_speeds(now, w);
+    measure(now, w);
+    if (!(residual < 1.0e300)) break;
+    if (residual < result.residual) {
+      result.residual = residual;
+      for (std::size_t i = 0; i < n; ++i) x[i] = now[i];
+      idle = 0;
+    } else {
+      ++idle;
+    }
+  }
+  return result;
+}
+
+}  // namespace gyre
