@@ -1,10 +1,10 @@
 // Poses and looks as JSON and arrays. See served_recording.h.
 #include "view/served_recording.h"
 
+#include "scene/json_writer.h"
+
 #include <gyre/geometry.h>
 #include <gyre/replay.h>
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -17,8 +17,6 @@
 namespace gyre {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 // One answer is about this large: soon sent, and seldom asked for.
 constexpr std::size_t kGroupBytes = std::size_t(1) << 20;
 constexpr std::size_t kMaxFramesInGroup = 120;
@@ -26,131 +24,162 @@ constexpr std::size_t kRowBytes = 7 * sizeof(float) + 1;
 // m; what lies nearer to zero is drawn where it is.
 constexpr double kFar = 1000.0;
 
-class Arrays {
+// The text, and the arrays that it names.
+class Answer {
  public:
+  JsonWriter json;
+
   template <typename T>
-  Json add(std::span<const T> values) {
-    const std::size_t begin = bytes_.size();
+  void array(const char* name, std::span<const T> values) {
+    json.key(name).begin_array(JsonLayout::one_line);
+    json.value(std::int64_t(bytes_.size()));
+    json.value(std::int64_t(values.size()));
+    json.end_array();
     bytes_.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
     bytes_.resize((bytes_.size() + 3) / 4 * 4);
-    return Json::array({begin, values.size()});
   }
   // Three numbers each.
-  Json add(std::span<const Vec3> points) {
+  void array(const char* name, std::span<const Vec3> points) {
     std::vector<float> numbers;
     numbers.reserve(3 * points.size());
     for (const Vec3 p : points) numbers.insert(numbers.end(), {p.x, p.y, p.z});
-    return add(std::span<const float>(numbers));
+    array(name, std::span<const float>(numbers));
   }
-  std::string answer(const Json& text) const {
-    // Names are bytes of whoever recorded them.
-    std::string out = text.dump(-1, ' ', false, Json::error_handler_t::replace);
-    out.resize((out.size() + 3) / 4 * 4, ' ');
-    const auto length = std::uint32_t(out.size());
+  std::string take() {
+    std::string text = json.take();
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    const auto length = std::uint32_t(text.size());
     char head[sizeof length];
     std::memcpy(head, &length, sizeof length);
-    return std::string(head, sizeof head) + out + bytes_;
+    return std::string(head, sizeof head) + text + bytes_;
   }
 
  private:
   std::string bytes_;
 };
 
-Json numbers(Vec3 v) { return Json::array({v.x, v.y, v.z}); }
-
 const char* word(BodyType type) {
   return type == BodyType::dynamic ? "dynamic" : type == BodyType::kinematic ? "kinematic" : "fixed";
 }
 
-std::uint64_t number(BodyId id) { return id.index | std::uint64_t(id.generation) << 32; }
+std::string key_of(const Geometry& geometry) {
+  char key[17];
+  std::snprintf(key, sizeof key, "%016llx", static_cast<unsigned long long>(geometry.content_hash()));
+  return key;
+}
 
-// Each surface once, however many shapes have it.
-class Looks {
- public:
-  explicit Looks(Arrays& arrays) : arrays_(arrays) {}
+struct DescribeGeometry {
+  JsonWriter& json;
 
-  Json operator()(const Sphere& s) { return {{"kind", "sphere"}, {"radius", s.radius}}; }
-  Json operator()(const Box& b) {
-    return {{"kind", "box"}, {"halfExtents", numbers(b.half_extents)}, {"rounding", b.rounding}};
+  void operator()(const Sphere& s) const {
+    json.field("kind", "sphere");
+    json.field("radius", s.radius);
   }
-  Json operator()(const Capsule& s) { return round("capsule", s.radius, s.half_height); }
-  Json operator()(const Cylinder& s) { return round("cylinder", s.radius, s.half_height); }
-  Json operator()(const Cone& s) { return round("cone", s.radius, s.half_height); }
-  Json operator()(const Plane& p) {
-    return {{"kind", "plane"}, {"normal", numbers(p.normal)}, {"offset", p.offset}};
+  void operator()(const Box& b) const {
+    json.field("kind", "box");
+    json.field("halfExtents", b.half_extents);
+    json.field("rounding", b.rounding);
   }
-  Json operator()(const Geometry& geometry) {
-    char key[17];
-    std::snprintf(key, sizeof key, "%016llx", static_cast<unsigned long long>(geometry.content_hash()));
-    if (known_.insert(key).second) surfaces_.push_back(surface(key, geometry));
-    return {{"kind", "surface"}, {"surface", key}};
+  void operator()(const Capsule& s) const { round("capsule", s.radius, s.half_height); }
+  void operator()(const Cylinder& s) const { round("cylinder", s.radius, s.half_height); }
+  void operator()(const Cone& s) const { round("cone", s.radius, s.half_height); }
+  void operator()(const Plane& p) const {
+    json.field("kind", "plane");
+    json.field("normal", p.normal);
+    json.field("offset", p.offset);
   }
-  Json& surfaces() { return surfaces_; }
-
- private:
-  static Json round(const char* kind, float radius, float half_height) {
-    return {{"kind", kind}, {"radius", radius}, {"halfHeight", half_height}};
+  void operator()(const Geometry& geometry) const {
+    json.field("kind", "surface");
+    json.field("surface", std::string_view(key_of(geometry)));
   }
-  Json surface(const char* key, const Geometry& geometry) {
-    if (geometry.kind() == ShapeKind::hull) {
-      const HullView hull = view_hull(geometry);
-      return {{"key", key},
-              {"kind", "hull"},
-              {"vertices", arrays_.add(hull.vertices)},
-              {"face_offsets", arrays_.add(hull.face_offsets)},
-              {"face_indices", arrays_.add(hull.face_indices)}};
-    }
-    if (geometry.kind() == ShapeKind::mesh) {
-      const MeshView mesh = view_mesh(geometry);
-      return {{"key", key},
-              {"kind", "mesh"},
-              {"vertices", arrays_.add(mesh.vertices)},
-              {"indices", arrays_.add(mesh.indices)}};
-    }
-    const HeightFieldView field = view_height_field(geometry);
-    return {{"key", key},
-            {"kind", "height_field"},
-            {"heights", arrays_.add(field.heights)},
-            {"columns", field.columns},
-            {"rows", field.rows},
-            {"spacing", field.spacing}};
+  void round(const char* kind, float radius, float half_height) const {
+    json.field("kind", kind);
+    json.field("radius", radius);
+    json.field("halfHeight", half_height);
   }
-
-  Arrays& arrays_;
-  std::set<std::string> known_;
-  Json surfaces_ = Json::array();
 };
 
-Json describe(const TrackModel& model, Looks& looks) {
-  Json shapes = Json::array();
+void describe_model(JsonWriter& json, const TrackModel& model) {
+  json.begin_object(JsonLayout::one_line);
+  json.field("type", word(model.type));
+  json.key("shapes").begin_array();
   for (const TrackShape& shape : model.shapes) {
-    const Quat q = shape.local.orientation;
-    shapes.push_back({{"geometry", std::visit(looks, shape.geometry)},
-                      {"position", numbers(shape.local.position)},
-                      {"rotation", Json::array({q.x, q.y, q.z, q.w})},
-                      {"sensor", shape.sensor}});
+    json.begin_object();
+    json.key("geometry").begin_object();
+    std::visit(DescribeGeometry{json}, shape.geometry);
+    json.end_object();
+    json.field("position", shape.local.position);
+    json.field("rotation", shape.local.orientation);
+    json.field("sensor", shape.sensor);
+    json.end_object();
   }
-  return {{"type", word(model.type)}, {"shapes", std::move(shapes)}};
+  json.end_array();
+  json.end_object();
+}
+
+void describe_surface(Answer& answer, const Geometry& geometry) {
+  JsonWriter& json = answer.json;
+  json.begin_object(JsonLayout::one_line);
+  json.field("key", std::string_view(key_of(geometry)));
+  if (geometry.kind() == ShapeKind::hull) {
+    const HullView hull = view_hull(geometry);
+    json.field("kind", "hull");
+    answer.array("vertices", hull.vertices);
+    answer.array("face_offsets", hull.face_offsets);
+    answer.array("face_indices", hull.face_indices);
+  } else if (geometry.kind() == ShapeKind::mesh) {
+    const MeshView mesh = view_mesh(geometry);
+    json.field("kind", "mesh");
+    answer.array("vertices", mesh.vertices);
+    answer.array("indices", mesh.indices);
+  } else {
+    const HeightFieldView field = view_height_field(geometry);
+    json.field("kind", "height_field");
+    answer.array("heights", field.heights);
+    json.field("columns", std::int64_t(field.columns));
+    json.field("rows", std::int64_t(field.rows));
+    json.field("spacing", field.spacing);
+  }
+  json.end_object();
+}
+
+// Each surface once, however many shapes have it.
+void describe_surfaces(Answer& answer, std::span<const TrackModel> models) {
+  std::set<std::uint64_t> told;
+  answer.json.key("surfaces").begin_array();
+  for (const TrackModel& model : models) {
+    for (const TrackShape& shape : model.shapes) {
+      const auto* const geometry = std::get_if<Geometry>(&shape.geometry);
+      if (geometry != nullptr && told.insert(geometry->content_hash()).second)
+        describe_surface(answer, *geometry);
+    }
+  }
+  answer.json.end_array();
 }
 
 // The bodies of a frame, and of all others with its number.
-Json describe_set(const PoseTrack& track, const TrackFrame& frame) {
-  Json ids = Json::array(), names = Json::array(), colors = Json::array();
+void describe_set(JsonWriter& json, const PoseTrack& track, const TrackFrame& frame) {
+  json.begin_object(JsonLayout::one_line);
+  json.key("ids").begin_array();
+  for (const BodyId id : frame.ids) json.value(std::int64_t(id.index | std::uint64_t(id.generation) << 32));
+  json.end_array();
+  json.key("models").begin_array();
+  for (const std::uint32_t model : frame.models) json.value(std::int64_t(model));
+  json.end_array();
+  json.key("names").begin_array();
+  for (const BodyId id : frame.ids) json.value(track.label(id).name);
+  json.end_array();
+  json.key("colors").begin_array();
   for (const BodyId id : frame.ids) {
-    const TrackLabel label = track.label(id);
-    Json own = Json::array();
-    for (const TrackColor c : label.colors) own.push_back(c.red << 16 | c.green << 8 | c.blue);
-    ids.push_back(number(id));
-    names.push_back(std::string(label.name));
-    colors.push_back(std::move(own));
+    json.begin_array();
+    for (const TrackColor c : track.label(id).colors) json.value(c.red << 16 | c.green << 8 | c.blue);
+    json.end_array();
   }
-  return {{"ids", std::move(ids)},
-          {"models", std::vector<std::uint32_t>(frame.models.begin(), frame.models.end())},
-          {"names", std::move(names)},
-          {"colors", std::move(colors)}};
+  json.end_array();
+  json.end_object();
 }
 
-Json place(const TrackFrame& frame, DVec3 origin, Arrays& arrays) {
+void place(Answer& answer, const TrackFrame& frame, DVec3 origin) {
   std::vector<float> poses;
   poses.reserve(7 * frame.poses.size());
   for (const Pose& pose : frame.poses) {
@@ -158,11 +187,13 @@ Json place(const TrackFrame& frame, DVec3 origin, Arrays& arrays) {
     const Quat q = pose.orientation;
     poses.insert(poses.end(), {float(p.x), float(p.y), float(p.z), q.x, q.y, q.z, q.w});
   }
-  return {{"step", frame.step},
-          {"time", frame.time},
-          {"set", frame.set_version},
-          {"poses", arrays.add(std::span<const float>(poses))},
-          {"awake", arrays.add(frame.awake)}};
+  answer.json.begin_object(JsonLayout::one_line);
+  answer.json.field("step", std::int64_t(frame.step));
+  answer.json.field("time", frame.time);
+  answer.json.field("set", std::int64_t(frame.set_version));
+  answer.array("poses", std::span<const float>(poses));
+  answer.array("awake", frame.awake);
+  answer.json.end_object();
 }
 
 // The middle of all bodies, in whole metres.
@@ -217,22 +248,25 @@ Error ServedRecording::open() {
 Result<std::string> ServedRecording::scene() {
   const std::lock_guard lock(mutex_);
   if (Error why = open(); why.code != ErrorCode::none) return why;
-  Arrays arrays;
-  Looks looks(arrays);
-  Json models = Json::array();
-  for (const TrackModel& model : track_->models()) models.push_back(describe(model, looks));
-  const TrackAccuracy accuracy = track_->accuracy();
-  const double time_step = track_->frame_count() > 1 ? track_->time(1) - track_->time(0) : 1.0 / 60.0;
-  return arrays.answer(
-      {{"frames", track_->frame_count()},
-       {"group", frames_in_group_},
-       {"truncated", track_->truncated()},
-       {"time_step", time_step},
-       {"origin", Json::array({origin_.x, origin_.y, origin_.z})},
-       {"accuracy", {{"position", accuracy.position}, {"orientation", accuracy.orientation}}},
-       {"note", std::string(track_->note("scene"))},
-       {"models", std::move(models)},
-       {"surfaces", std::move(looks.surfaces())}});
+  Answer answer;
+  JsonWriter& json = answer.json;
+  json.begin_object();
+  json.field("frames", std::int64_t(track_->frame_count()));
+  json.field("group", std::int64_t(frames_in_group_));
+  json.field("truncated", track_->truncated());
+  json.field("time_step", track_->frame_count() > 1 ? track_->time(1) - track_->time(0) : 1.0 / 60.0);
+  json.field("origin", origin_);
+  json.key("accuracy").begin_object(JsonLayout::one_line);
+  json.field("position", track_->accuracy().position);
+  json.field("orientation", track_->accuracy().orientation);
+  json.end_object();
+  json.field("note", track_->note("scene"));
+  json.key("models").begin_array();
+  for (const TrackModel& model : track_->models()) describe_model(json, model);
+  json.end_array();
+  describe_surfaces(answer, track_->models());
+  json.end_object();
+  return answer.take();
 }
 
 Result<std::string> ServedRecording::frames(std::size_t group) {
@@ -240,21 +274,29 @@ Result<std::string> ServedRecording::frames(std::size_t group) {
   if (!track_) {
     if (Error why = open(); why.code != ErrorCode::none) return why;
   }
-  const std::size_t count = track_->frame_count();
-  if (group >= (count + frames_in_group_ - 1) / frames_in_group_) {
-    return Error{ErrorCode::invalid_argument, "there is no such group of frames"};
-  }
-  Arrays arrays;
-  Json list = Json::array(), sets = Json::object();
   const std::size_t begin = group * frames_in_group_;
-  for (std::size_t i = begin; i < std::min(begin + frames_in_group_, count); ++i) {
+  const std::size_t end = std::min(begin + frames_in_group_, track_->frame_count());
+  if (begin >= end) return make_error(ErrorCode::invalid_argument, "there is no group %zu of frames", group);
+  Answer answer;
+  std::vector<std::size_t> sets;  // a frame of each
+  std::set<std::uint64_t> known;
+  answer.json.begin_object();
+  answer.json.key("frames").begin_array();
+  for (std::size_t i = begin; i < end; ++i) {
     if (Error why = track_->seek(i); why.code != ErrorCode::none) return why;
-    const TrackFrame frame = track_->frame();
-    const std::string set = std::to_string(frame.set_version);
-    if (!sets.contains(set)) sets[set] = describe_set(*track_, frame);
-    list.push_back(place(frame, origin_, arrays));
+    if (known.insert(track_->frame().set_version).second) sets.push_back(i);
+    place(answer, track_->frame(), origin_);
   }
-  return arrays.answer({{"frames", std::move(list)}, {"sets", std::move(sets)}});
+  answer.json.end_array();
+  answer.json.key("sets").begin_object();
+  for (const std::size_t i : sets) {
+    if (Error why = track_->seek(i); why.code != ErrorCode::none) return why;
+    answer.json.key(std::to_string(track_->frame().set_version));
+    describe_set(answer.json, *track_, track_->frame());
+  }
+  answer.json.end_object();
+  answer.json.end_object();
+  return answer.take();
 }
 
 }  // namespace gyre

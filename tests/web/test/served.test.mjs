@@ -27,7 +27,7 @@ after(async () => {
 // Hulls, meshes, height fields, joints and colours: everything that a page must be told.
 execFileSync(gyre, ['simulate', join(root, 'scenes/showcase.gyre.json'), '--steps', `${STEPS}`, '--record', recording, '--trace', join(folder, 'motion.csv'), '--quiet']);
 const [titles, ...rows] = readFileSync(join(folder, 'motion.csv'), 'utf8').trim().split('\n').map((line) => line.split(','));
-const columns = ['step', 'body', 'x', 'y', 'z'].map((title) => titles.indexOf(title));
+const columns = ['step', 'body', 'px', 'py', 'pz'].map((title) => titles.indexOf(title));
 assert.ok(columns.every((column) => column >= 0), `motion.csv begins with ${titles}`);
 const places = new Map(); // step to name to place
 for (const row of rows) {
@@ -77,7 +77,7 @@ test('a recording that the server decodes plays forward and back', async (t) => 
   assert.equal(await page.evaluate(() => window.gyre.scene.live), false);
   assert.equal(await page.evaluate(() => window.gyre.scene.lastStep), STEPS);
   await settled(page);
-  const first = await page.screenshot({ path: process.env.GYRE_PICTURES && join(process.env.GYRE_PICTURES, 'served_first.png') });
+  const first = await page.screenshot();
   for (const step of [0, STEPS, 121, 120, 119, 7]) {
     await page.evaluate((wanted) => window.gyre.seek(wanted), step);
     const off = await farthest(page, step);
@@ -89,7 +89,7 @@ test('a recording that the server decodes plays forward and back', async (t) => 
   const moved = [...places.get(STEPS)].filter(([name, place]) => Math.hypot(...place.map((value, i) => value - places.get(0).get(name)[i])) > 0.1);
   assert.ok(moved.length > 20, `${moved.length} bodies moved`);
   await settled(page);
-  const last = await page.screenshot({ path: process.env.GYRE_PICTURES && join(process.env.GYRE_PICTURES, 'served_last.png') });
+  const last = await page.screenshot();
   assert.ok(!first.equals(last));
   assert.match(await page.evaluate(() => window.gyre.scene.posesOnly), /without the engine.*\.\/run --live/s);
   assert.deepEqual(page.errors, []);
