@@ -10,7 +10,7 @@ import { root, settled } from '../setup.mjs';
 
 const gyre = process.env.GYRE_CLI ?? join(root, 'build/release/bin/gyre');
 const page_folder = join(root, 'web/viewer/dist-recordings');
-const STEPS = 120; // two groups of frames
+const STEPS = 200; // three groups of frames: two are fetched as the page opens
 const ROUNDING = 1e-5; // m: the page draws 32-bit places
 
 const folder = mkdtempSync(join(tmpdir(), 'gyre-served-'));
