@@ -21,8 +21,7 @@ int main() {
     if (i < 60) drive.key = {.strength = 1, .frequency = 4};  // held where the pose has it
     if (i < 120) drive.motor.strength = 1;  // then by its muscles alone, from 2 s by nothing
     if (i == 60) world.add_impulse(chest, {0, 0, -60});
-    if (const Error e = kit::drive_ragdoll(world, person, ragdoll, standing, {&drive, 1}, step);
-        e.code != ErrorCode::none) {
+    if (const Error e = kit::drive_ragdoll(world, person, ragdoll, standing, {&drive, 1}, step)) {
       std::printf("%s\n", e.message);
       return 1;
     }

@@ -54,7 +54,7 @@ int main() {
 
   // Go anywhere in it.
   const Error error = replay.seek(45);
-  if (error.code != ErrorCode::none) {
+  if (error) {
     std::printf("%s\n", error.message);
     return 1;
   }
@@ -62,7 +62,7 @@ int main() {
 
   // Look at it: no world, no simulation, and any version of Gyre.
   Result<PoseTrack> looked_at = PoseTrack::open(sink.data);
-  if (!looked_at || looked_at->seek(100).code != ErrorCode::none) return 1;
+  if (!looked_at || looked_at->seek(100)) return 1;
   const TrackFrame frame = looked_at->frame();
   int awake = 0;
   for (const std::uint8_t moving : frame.awake) awake += moving;

@@ -257,7 +257,7 @@ ShapePlace character_shape(const CharacterDef& def, const CharacterState& state)
 Error move_character(World& world, const CharacterDef& def, CharacterState& state, const CharacterMove& move,
                      float seconds) {
   Error e = check_character(def);
-  if (e.code != ErrorCode::none) return e;
+  if (e) return e;
   if (!lies_within(seconds, 1.0e-6f, 1.0f)) return refuse("seconds", double(seconds), 1.0e-6, 1.0);
   if (!is_finite(move.velocity) || length(move.velocity) > 1.0e4f) {
     return refuse("the size of move.velocity", double(length(move.velocity)), 0.0, 1.0e4);

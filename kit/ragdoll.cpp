@@ -61,7 +61,7 @@ Error check_mass(const char* name, const BoneDef& bone) {
                   double(*bone.mass));
   if (bone.inertia) {
     const Error e = check_inertia(*bone.inertia);
-    if (e.code != ErrorCode::none) return refuse("ragdoll: bone '%s': %s", name, e.message);
+    if (e) return refuse("ragdoll: bone '%s': %s", name, e.message);
   }
   for (const ShapeDef& shape : bone.shapes) {
     if (!is_finite(shape.local.position) || !is_unit(shape.local.orientation) || !(shape.density >= 0.0f))
@@ -91,7 +91,7 @@ Error check_bone(const RagdollDef& def, std::size_t i) {
   if (!is_finite(bone.rest.position) || !is_unit(bone.rest.orientation))
     return refuse("ragdoll: bone '%s': rest must be finite, its orientation of length 1", name);
   const Error e = check_mass(name, bone);
-  return e.code != ErrorCode::none || i == 0 ? e : check_joint(name, bone.joint);
+  return e || i == 0 ? e : check_joint(name, bone.joint);
 }
 
 // ------------------------------------------------------------------------------------------------------------------ adding
@@ -249,7 +249,7 @@ Error check_ragdoll(const RagdollDef& def) {
     return refuse("ragdoll: it has %d bones; 1 to %d are allowed", int(count), RagdollDef::kMostBones);
   for (std::size_t i = 0; i < count; ++i) {
     const Error e = check_bone(def, i);
-    if (e.code != ErrorCode::none) return e;
+    if (e) return e;
   }
   if (def.neighbours < 1) return refuse("ragdoll: neighbours is %d; it must be at least 1", def.neighbours);
   for (const RagdollDef::Pair& p : def.apart) {
@@ -264,7 +264,7 @@ Error check_ragdoll(const RagdollDef& def) {
 }
 
 Result<Ragdoll> add_ragdoll(World& world, const RagdollDef& def, const RagdollPose& start) {
-  if (const Error e = check_ragdoll(def); e.code != ErrorCode::none) return e;
+  if (const Error e = check_ragdoll(def)) return e;
   const std::size_t count = def.bones.size();
   if (start.bones.size() != count || !is_finite(start.world_from_model))
     return refuse("ragdoll: its start has %d bones, the definition %d; and its place must be finite",

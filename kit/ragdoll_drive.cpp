@@ -235,7 +235,7 @@ Error drive_ragdoll(World& world, const RagdollDef& def, Ragdoll& ragdoll, const
   if (!is_finite(target.world_from_model)) return refuse("a target's place must be finite");
   for (const BoneDrive& drive : drives) {
     const Error e = check_drive(drive);
-    if (e.code != ErrorCode::none) return e;
+    if (e) return e;
   }
   Driver(world, def, ragdoll, target, seconds).run(drives);
   return {};

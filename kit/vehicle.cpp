@@ -363,7 +363,7 @@ Error check_vehicle(const VehicleDef& def) {
   }
   for (const WheelDef& wheel : def.wheels) {
     const Error e = check_wheel(wheel);
-    if (e.code != ErrorCode::none) return e;
+    if (e) return e;
   }
   for (const AxleDef& axle : def.axles) {
     if (axle.left < 0 || axle.right < 0 || std::size_t(axle.left) >= count ||
@@ -400,7 +400,7 @@ Error check_vehicle(const VehicleDef& def) {
 Error drive_vehicle(World& world, const VehicleDef& def, BodyId body, VehicleState& state,
                     const VehicleInput& input, float seconds) {
   const Error e = check_vehicle(def);
-  if (e.code != ErrorCode::none) return e;
+  if (e) return e;
   if (!world.exists(body))
     return make_error(ErrorCode::stale_id, "vehicle: body %u does not exist in this world", body.index);
   if (!(seconds > 0.0f && seconds <= 0.1f)) return refuse("seconds", double(seconds));

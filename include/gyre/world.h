@@ -290,12 +290,10 @@ class World {
   // 64-bit hash of the whole simulation state: the same for every thread count, SIMD width, compiler and platform.
   std::uint64_t hash() const;
 
-  // The world's inside, for src/io and src/debug.
-  WorldState& state() { return *state_; }
-  const WorldState& state() const { return *state_; }
+ private:
+  friend struct WorldAccess;  // the engine's own parts: src/world/world_access.h
   explicit World(std::unique_ptr<WorldState> state);
 
- private:
   std::unique_ptr<WorldState> state_;
 };
 

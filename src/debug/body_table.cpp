@@ -3,6 +3,7 @@
 #include "debug/flat.h"
 #include "debug/islands.h"
 #include "rigid/sleep/island.h"
+#include "world/world_access.h"
 #include "world/world_state.h"
 
 #include <gyre/debug.h>
@@ -76,7 +77,7 @@ const char* to_string(RestState state) {
 
 void read_bodies(const World& world, DVec3 origin, BodyTable& out) {
   const FloatMode mode;
-  const RigidWorld& w = world.state().rigid;
+  const RigidWorld& w = state_of(world).rigid;
   clear_all(out.ids, out.centers, out.axes, out.semi_axes, out.velocities, out.spins, out.speeds,
             out.rest_speeds, out.still_times, out.states, out.islands, out.island_sizes);
   const IslandMap islands = find_islands(w);

@@ -2,6 +2,7 @@
 #include "base/float_mode.h"
 #include "debug/painter.h"
 #include "rigid/sleep/island.h"
+#include "world/world_access.h"
 #include "world/world_state.h"
 
 namespace gyre {
@@ -54,7 +55,7 @@ Color contact_color(ContactState state) {
 class Drawing {
  public:
   Drawing(const World& world, const DrawOptions& options, DebugDraw& out)
-      : world_(world), w_(world.state().rigid), paint_(options, out) {
+      : world_(world), w_(state_of(world).rigid), paint_(options, out) {
     read_bodies(world, options.origin, bodies_);
     row_.assign(w_.bodies.motion.size(), 0);
     for (std::uint32_t i = 0; i < bodies_.size(); ++i) row_[bodies_.ids[i].index] = i;

@@ -1,6 +1,7 @@
 // The tables of bodies, contacts, boxes and joints: counts and values against what the world tells elsewhere, and against
 // slow and plain versions of the same.
 #include "laws/kit.h"
+#include "world/world_access.h"
 #include "world/world_state.h"
 
 #include <gyre/debug.h>
@@ -272,7 +273,7 @@ TEST(BoxTable, BoundsHoldTheShapesAndNodesHoldTheBounds) {
   BoxTable boxes;
   for (int step = 0; step < 20; ++step) world.step(kStep);
   // What the broad phase is told at the beginning of the next step is not in its trees yet.
-  const Array<std::uint32_t>& changed = world.state().rigid.shapes.changed;
+  const Array<std::uint32_t>& changed = state_of(world).rigid.shapes.changed;
   read_boxes(world, kAllBoxes, origin, boxes);
   ASSERT_EQ(boxes.corners.size(), 6 * boxes.size());
   int tight = 0, fat = 0, roots = 0;

@@ -3,6 +3,7 @@
 #include "determinism/random_world.h"
 #include "determinism/scenes.h"
 #include "world/state_walk.h"
+#include "world/world_access.h"
 #include "world/world_state.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +11,7 @@
 namespace gyre {
 namespace {
 
-AwakeLinks& links_of(World& world) { return world.state().rigid.awake_links; }
+AwakeLinks& links_of(World& world) { return state_of(world).rigid.awake_links; }
 
 // `columns` stacks of two boxes each, side by side on a thin plate.
 World make_stacks(int columns) {
@@ -51,7 +52,7 @@ TEST(AwakeLinks, AreThoseOfABodyThatBeginsToMove) {
   EXPECT_FALSE(links_of(world).joints.test(joint.index)) << "nothing can move it";
   world.set_type(hook, BodyType::dynamic);
   EXPECT_TRUE(links_of(world).joints.test(joint.index));
-  EXPECT_EQ(walk_state(world.state()).code, ErrorCode::none);
+  EXPECT_EQ(walk_state(state_of(world)).code, ErrorCode::none);
 }
 
 // What it bore as it fell asleep is an impulse of that step: in a shorter one it would be a larger force.
@@ -89,7 +90,7 @@ struct Twins {
   }
   bool are_equal() const {
     const Events &a = some.events(), &b = all.events();
-    return hash_state(some.state()) == hash_state(all.state()) && a.begins.size() == b.begins.size() &&
+    return hash_state(state_of(some)) == hash_state(state_of(all)) && a.begins.size() == b.begins.size() &&
            a.ends.size() == b.ends.size() && a.hits.size() == b.hits.size() &&
            a.sleep_changes.size() == b.sleep_changes.size();
   }

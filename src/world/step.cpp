@@ -26,7 +26,7 @@ bool is_walked(const WorldState& s, StageName stage) {
 void walk_after(const WorldState& s, StageName stage) {
   if (!is_walked(s, stage)) return;
   const Error fault = walk_state(s, stage);
-  if (fault.code != ErrorCode::none) check_failed(kStageNames[int(stage)], fault.message, __FILE__, __LINE__);
+  if (fault) check_failed(kStageNames[int(stage)], fault.message, __FILE__, __LINE__);
 }
 #endif
 

@@ -26,7 +26,7 @@ Error check_vector(const char* what, const char* field, DVec3 p) {
 
 Error check_place(const char* what, const AnyShape& shape, const Pose& pose) {
   const Error e = check_shape(shape);
-  if (!is_fine(e)) return e;
+  if (e) return e;
   const ShapeKind kind = make_shape(shape).kind;
   if (!is_convex(kind)) {
     return make_error(ErrorCode::invalid_geometry, "%s: shape is a %s; only a convex shape can be asked with",
@@ -283,7 +283,7 @@ Penetration deepest(const WorldState& s, const ShapePlace& place, const QueryFil
 // Checks a single question and gets the world ready for it.
 template <class Question>
 bool is_ready(WorldState& s, const Question& question) {
-  if (s.stepping || !is_fine(check_question(question))) return false;
+  if (s.stepping || check_question(question)) return false;
   show_changes(s);
   return true;
 }
@@ -298,7 +298,7 @@ Error ask_each(WorldState& s, std::span<const Question> questions, std::size_t r
   }
   for (std::size_t i = 0; i < questions.size(); ++i) {
     const Error e = check_question(questions[i]);
-    if (!is_fine(e)) return make_error(e.code, "question %zu: %.200s", i, e.message);
+    if (e) return make_error(e.code, "question %zu: %.200s", i, e.message);
   }
   show_changes(s);
   const std::unique_lock<std::mutex> workers(s.batch_lock, std::try_to_lock);
@@ -348,7 +348,7 @@ bool is_in_sight(WorldState& s, DVec3 from, DVec3 to, std::uint32_t body) {
   filter.ignored = body_id(s.rigid, body);
   filter.back_faces = true;
   const Ray ray{from, difference(to, from)};
-  if (!is_fine(check_ray(ray))) return false;
+  if (check_ray(ray)) return false;
   show_changes(s);
   bool hidden = false;
   ask_world(s, filter, [&](const QueryInput& input) {
@@ -362,12 +362,12 @@ bool is_in_sight(WorldState& s, DVec3 from, DVec3 to, std::uint32_t body) {
 
 Error check_ray(const Ray& ray) {
   const Error e = check_vector("ray", "origin", ray.origin);
-  return is_fine(e) ? check_vector("ray", "way", DVec3(ray.way)) : e;
+  return e.ok() ? check_vector("ray", "way", DVec3(ray.way)) : e;
 }
 Error check_shape_cast(const ShapeCast& cast) {
   Error e = check_place("shape cast", cast.shape, cast.pose);
-  if (is_fine(e)) e = check_vector("shape cast", "way", DVec3(cast.way));
-  if (!is_fine(e) || (is_finite(cast.skin) && cast.skin >= 0.0f)) return e;
+  if (e.ok()) e = check_vector("shape cast", "way", DVec3(cast.way));
+  if (e || (is_finite(cast.skin) && cast.skin >= 0.0f)) return e;
   return make_error(ErrorCode::invalid_argument, "shape cast: skin is %g m; it must be finite and 0 or more",
                     double(cast.skin));
 }
@@ -423,19 +423,19 @@ std::size_t World::find_overlaps(const ShapePlace& place, std::span<Overlap> out
 std::optional<ClosestPoint> World::closest_point(const ShapePlace& place, double max_distance,
                                                  const QueryFilter& filter) const {
   const FloatMode mode;
-  if (!is_fine(check_distance(max_distance)) || !is_ready(*state_, place)) return {};
+  if (check_distance(max_distance) || !is_ready(*state_, place)) return {};
   const ClosestPoint nearest = nearest_point(*state_, place, max_distance, filter);
   return nearest ? std::optional(nearest) : std::nullopt;
 }
 bool World::any_within(const ShapePlace& place, double max_distance, const QueryFilter& filter) const {
   const FloatMode mode;
-  return is_fine(check_distance(max_distance)) && is_ready(*state_, place) &&
+  return check_distance(max_distance).ok() && is_ready(*state_, place) &&
          is_near_any(*state_, place, max_distance, filter);
 }
 std::size_t World::find_closest(const ShapePlace& place, double max_distance, std::span<ClosestPoint> out,
                                 const QueryFilter& filter) const {
   const FloatMode mode;
-  if (!is_fine(check_distance(max_distance)) || !is_ready(*state_, place)) return 0;
+  if (check_distance(max_distance) || !is_ready(*state_, place)) return 0;
   return all_near(*state_, place, max_distance, out, filter);
 }
 
@@ -487,7 +487,7 @@ Error World::cast_shapes_all(std::span<const ShapeCast> casts, std::span<CastHit
 Error World::closest_points(std::span<const ShapePlace> places, double max_distance,
                             std::span<ClosestPoint> out, const QueryFilter& filter) const {
   const Error e = check_distance(max_distance);
-  if (!is_fine(e)) return e;
+  if (e) return e;
   return answer_each(*state_, places, out, [&](const ShapePlace& place) {
     return nearest_point(*state_, place, max_distance, filter);
   });
@@ -495,7 +495,7 @@ Error World::closest_points(std::span<const ShapePlace> places, double max_dista
 Error World::places_near(std::span<const ShapePlace> places, double max_distance, std::span<std::uint8_t> out,
                          const QueryFilter& filter) const {
   const Error e = check_distance(max_distance);
-  if (!is_fine(e)) return e;
+  if (e) return e;
   return answer_each(*state_, places, out, [&](const ShapePlace& place) {
     return is_near_any(*state_, place, max_distance, filter);
   });
@@ -504,7 +504,7 @@ Error World::find_closest_all(std::span<const ShapePlace> places, double max_dis
                               std::span<ClosestPoint> out, std::span<std::uint32_t> counts,
                               const QueryFilter& filter) const {
   const Error e = check_distance(max_distance);
-  if (!is_fine(e)) return e;
+  if (e) return e;
   return fill_each(*state_, places, out, counts, [&](const ShapePlace& place, std::span<ClosestPoint> part) {
     return all_near(*state_, place, max_distance, part, filter);
   });

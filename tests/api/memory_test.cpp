@@ -2,6 +2,7 @@
 #include "base/memory/memory.h"
 #include "base/check.h"
 #include "laws/kit.h"
+#include "world/world_access.h"
 #include "world/world_state.h"
 
 #include <gyre/debug.h>
@@ -69,7 +70,7 @@ Taken taken_by_steps(World& world, int steps) {
   return {news.load() - before, allocation_count() - blocks};
 }
 void expect_none(World& world, int warm_up, int steps, const char* name) {
-  world.state().walks = false;  // the walks of debug builds take memory
+  state_of(world).walks = false;  // the walks of debug builds take memory
   for (int i = 0; i < warm_up; ++i) world.step(kStep);
   const Taken t = taken_by_steps(world, steps);
   std::printf("[row] %s: %ld allocations, %llu by the engine's door, in %d steps\n", name, t.news,
@@ -246,7 +247,7 @@ TEST(NoAllocation, WhileFastBodiesFly) {
 // Questions of every kind, alone and in batches over two threads, in a heap that moves on between them.
 TEST(NoAllocation, InQueries) {
   World world = make_world({.threads = 2});
-  world.state().walks = false;
+  state_of(world).walks = false;
   std::vector<float> heights(33 * 33);
   for (std::size_t i = 0; i < heights.size(); ++i) heights[i] = 0.1f * float(i * 7919u % 10u);
   world.add_body({.type = BodyType::fixed},

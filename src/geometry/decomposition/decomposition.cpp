@@ -134,7 +134,7 @@ bool DecompositionProgress::go_on(double done) {
 
 Result<Decomposition> decompose(const DecompositionDef& def) {
   const FloatMode mode;
-  if (const Error error = check_settings(def); error.code != ErrorCode::none) return error;
+  if (const Error error = check_settings(def)) return error;
   DecompositionProgress progress(def);
   if (!progress.go_on(0.0)) return cancelled();
   Result<Model> model = make_model(def);
@@ -142,7 +142,7 @@ Result<Decomposition> decompose(const DecompositionDef& def) {
   TaskSystem tasks(def.threads);
   Prepared prepared;
   prepared.model = std::move(*model);
-  if (const Error error = prepare_solid(def, tasks, prepared); error.code != ErrorCode::none) return error;
+  if (const Error error = prepare_solid(def, tasks, prepared)) return error;
   const Solid3& solid = prepared.solid;
   if (!progress.go_on(0.1)) return cancelled();
 

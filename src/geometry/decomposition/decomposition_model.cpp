@@ -58,7 +58,7 @@ class Unions {
 
 Error check_input(const DecompositionDef& def) {
   const TriangleSurface surface{def.vertices, def.indices, {}, {}};
-  if (const Error error = check_surface_data(surface); error.code != ErrorCode::none) return error;
+  if (const Error error = check_surface_data(surface)) return error;
   for (std::size_t i = 0; i < def.vertices.size(); ++i) {
     const Vec3 p = def.vertices[i];
     if (!is_finite(p) || max(absolute(p.x), max(absolute(p.y), absolute(p.z))) > kLargestMesh) {
@@ -297,7 +297,7 @@ void thicken(Model& model, double half) {
 }
 
 Result<Model> make_model(const DecompositionDef& def) {
-  if (const Error error = check_input(def); error.code != ErrorCode::none) return error;
+  if (const Error error = check_input(def)) return error;
   Model model;
   take_triangles(def, model);
   if (model.indices.empty()) {

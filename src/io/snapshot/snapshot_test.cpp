@@ -1,6 +1,7 @@
 #include "io/snapshot/snapshot.h"
 
 #include "determinism/scenes.h"
+#include "world/world_access.h"
 
 #include <gyre/replay.h>
 
@@ -249,7 +250,7 @@ TEST_F(DamagedSnapshot, SealedAgainIsRefusedOrRuns) {
 template <class Change>
 Error reload(int steps, const char* scene, Change&& change) {
   World world = make_scene(scene_named(scene), steps);
-  change(world.state().rigid);
+  change(state_of(world).rigid);
   return load_snapshot(save_snapshot(world)).error();
 }
 
