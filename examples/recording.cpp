@@ -58,7 +58,7 @@ int main() {
     std::printf("%s\n", error.message);
     return 1;
   }
-  std::printf("at step 45 there are %d bodies\n", replay.world().counts().bodies);
+  std::printf("at step 45 there are %d bodies\n", replay.world().stats().bodies);
 
   // Look at it: no world, no simulation, and any version of Gyre.
   Result<PoseTrack> looked_at = PoseTrack::open(sink.data);

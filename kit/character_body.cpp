@@ -33,7 +33,7 @@ void push_apart(World& world, BodyId character, const CharacterGround& ground, V
 
 BodyId add_character_body(World& world, const CharacterDef& def, DVec3 feet, const Filter& filter) {
   if (check_character(def)) return {};
-  const ShapePlace place = capsule_place(def, feet, def.height);
+  const ShapePose place = capsule_place(def, feet, def.height);
   BodyDef body;
   body.pose = place.pose;
   for (bool& locked : body.locked.angular) locked = true;

@@ -46,8 +46,8 @@ void add_body(const RigidWorld& w, std::uint32_t body, DVec3 origin, BodyTable& 
     append(out.axes, place.orientation);
     append(out.semi_axes, Vec3{});
   }
-  append(out.velocities, motion.linear_velocity);
-  append(out.spins, motion.angular_velocity);
+  append(out.linear_velocities, motion.linear_velocity);
+  append(out.angular_velocities, motion.angular_velocity);
   const Rest rest = movable ? find_rest(w, body, length(w.settings.gravity)) : Rest{};
   out.speeds.push_back(rest.speed);
   out.rest_speeds.push_back(rest.rest_speed);
@@ -78,7 +78,7 @@ const char* to_string(RestState state) {
 void read_bodies(const World& world, DVec3 origin, BodyTable& out) {
   const FloatMode mode;
   const RigidWorld& w = state_of(world).rigid;
-  clear_all(out.ids, out.centers, out.axes, out.semi_axes, out.velocities, out.spins, out.speeds,
+  clear_all(out.ids, out.centers, out.axes, out.semi_axes, out.linear_velocities, out.angular_velocities, out.speeds,
             out.rest_speeds, out.still_times, out.states, out.islands, out.island_sizes);
   const IslandMap islands = find_islands(w);
   out.island_count = islands.count;

@@ -226,8 +226,8 @@ void Drawing::velocities() {
   const float seconds = paint_.options().velocity_seconds;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const Vec3 at = vector_at(bodies_.centers, i);
-    const Vec3 way = seconds * vector_at(bodies_.velocities, i);
-    const Vec3 turn = seconds * reach(bodies_.ids[i].index) * vector_at(bodies_.spins, i);
+    const Vec3 way = seconds * vector_at(bodies_.linear_velocities, i);
+    const Vec3 turn = seconds * reach(bodies_.ids[i].index) * vector_at(bodies_.angular_velocities, i);
     if (way != Vec3{}) paint_.line(at, at + way, kYellow);
     if (turn != Vec3{}) paint_.line(at, at + turn, kViolet);
   }

@@ -31,14 +31,14 @@ TEST(AwakeLinks, OfWhatSleepsNoneIsAsked) {
   world.step(scenes::kStepSeconds);
   EXPECT_EQ(links_of(world).contacts.count(), links_of(world).contacts.size()) << "nobody sleeps";
   for (int i = 0; i < 120; ++i) world.step(scenes::kStepSeconds);
-  ASSERT_EQ(world.counts().awake_bodies, 0);
-  ASSERT_GT(world.counts().touching, 32);
+  ASSERT_EQ(world.stats().awake_bodies, 0);
+  ASSERT_GT(world.stats().touching, 32);
   EXPECT_EQ(links_of(world).contacts.count(), 0u);
   EXPECT_EQ(links_of(world).joints.count(), 0u);
   // One stack that is pushed: two boxes have two contacts.
   world.set_velocity(scenes::body_number(world, 1), {0.5f, 0, 0}, {});
   world.step(scenes::kStepSeconds);
-  EXPECT_EQ(world.counts().awake_bodies, 2);
+  EXPECT_EQ(world.stats().awake_bodies, 2);
   EXPECT_EQ(links_of(world).contacts.count(), 2u);
   EXPECT_EQ(links_of(world).joints.count(), 0u);
 }
@@ -128,7 +128,7 @@ TEST(LongAwakeLinks, AskingAllIsTheSameInAdaptiveSteps) {
 TEST(AwakeLinks, AskingAllIsTheSameWhereSleepersAreShot) {
   Twins twins(make_stacks(40), make_stacks(40));
   for (int i = 0; i < 120; ++i) twins.step([](World&) {});
-  ASSERT_EQ(twins.some.counts().awake_bodies, 0);
+  ASSERT_EQ(twins.some.stats().awake_bodies, 0);
   for (int step = 0; step < 200; ++step) {
     twins.step([&](World& world) {
       if (step % 10 != 0) return;
@@ -165,7 +165,7 @@ TEST(AwakeLinks, AskingAllIsTheSameWhereWallsStopSleepers) {
   };
   Twins twins(make(), make());
   for (int i = 0; i < 3; ++i) twins.step([](World&) {});
-  ASSERT_EQ(twins.some.counts().awake_bodies, 0);
+  ASSERT_EQ(twins.some.stats().awake_bodies, 0);
   scenes::Random random(6);
   for (int i = 0; i < kBoxes; ++i) {
     const float speed = random.next(2.0f, 12.0f);

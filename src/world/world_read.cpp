@@ -133,12 +133,12 @@ std::size_t World::fields(std::span<FieldId> out) const {
   return count;
 }
 
-JointReading World::joint_reading(JointId id) const {
+JointState World::joint_state(JointId id) const {
   if (!exists(id)) return {};
   const FloatMode mode;
   return read_joint(state_->rigid, id.index);
 }
-JointAxisReading World::joint_axis_reading(JointId id, JointAxis axis) const {
+JointAxisState World::joint_axis_state(JointId id, JointAxis axis) const {
   if (!exists(id) || int(axis) >= kJointAxisCount) return {};
   const FloatMode mode;
   return read_joint_axis(state_->rigid, id.index, axis);
@@ -185,7 +185,7 @@ std::size_t World::contacts(std::span<ContactPoint> out) const {
   return count;
 }
 
-std::size_t World::persisting(std::span<ContactPersist> out) const {
+std::size_t World::contact_pairs(std::span<ContactPair> out) const {
   const FloatMode mode;
   const RigidWorld& w = state_->rigid;
   std::size_t count = 0;
@@ -207,9 +207,9 @@ std::size_t World::persisting(std::span<ContactPersist> out) const {
 const Events& World::events() const { return state_->events; }
 std::span<const Problem> World::problems() const { return state_->problems; }
 
-WorldCounts World::counts() const {
+WorldStats World::stats() const {
   const RigidWorld& w = state_->rigid;
-  WorldCounts counts;
+  WorldStats counts;
   counts.bodies = int(w.bodies.ids.size());
   counts.shapes = int(w.shapes.ids.size());
   counts.joints = int(w.joints.ids.size());
@@ -225,7 +225,7 @@ WorldCounts World::counts() const {
   return counts;
 }
 
-SolverReading World::solver_reading() const {
+SolverStats World::solver_stats() const {
   const RowReport& rows = state_->solve.rows;
   return {rows.residual, rows.islands, rows.direct, rows.largest, rows.sweeps};
 }
@@ -256,7 +256,7 @@ WorldDef World::def() const {
   def.restitution_rule = settings.restitution_rule;
   return def;
 }
-StepReport World::step_report() const { return state_->solve.report; }
+StepStats World::step_stats() const { return state_->solve.report; }
 SpringStability World::spring_stability() const {
   const FloatMode mode;
   const RigidWorld& w = state_->rigid;

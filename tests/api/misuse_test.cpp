@@ -78,8 +78,8 @@ TEST(Misuse, PlacesAreTakenUpToTheirLimit) {
       EXPECT_TRUE(world.add_field({.kind = FieldKind::radial, .center = last}));
       EXPECT_FALSE(world.add_field({.kind = FieldKind::radial, .center = first_refused}));
       expect_refused(world, ErrorCode::invalid_argument, "within 1e12 m");
-      EXPECT_EQ(check_ray({.origin = last, .way = {1, 0, 0}}).code, ErrorCode::none);
-      EXPECT_EQ(check_ray({.origin = first_refused, .way = {1, 0, 0}}).code, ErrorCode::invalid_argument);
+      EXPECT_EQ(check_ray({.origin = last, .translation = {1, 0, 0}}).code, ErrorCode::none);
+      EXPECT_EQ(check_ray({.origin = first_refused, .translation = {1, 0, 0}}).code, ErrorCode::invalid_argument);
     }
   }
   EXPECT_TRUE(world.step(kStep));
@@ -103,8 +103,8 @@ TEST(Misuse, BadBodiesAreRefused) {
   EXPECT_FALSE(world.add_body({.pose = {.orientation = {0, 0, 0, 0}}}, {.geometry = Box{}}));
   EXPECT_FALSE(world.add_body({.linear_velocity = {kNan, 0, 0}}, {.geometry = Box{}}));
   EXPECT_FALSE(world.add_body({.angular_velocity = {0, kInf, 0}}, {.geometry = Box{}}));
-  EXPECT_EQ(world.counts().bodies, 0);
-  EXPECT_EQ(world.counts().shapes, 0);
+  EXPECT_EQ(world.stats().bodies, 0);
+  EXPECT_EQ(world.stats().shapes, 0);
   EXPECT_TRUE(world.step(kStep));
   const BodyId turned_long = world.add_body({.pose = {.orientation = {0, 0, 0, 17}}}, {.geometry = Box{}});
   ASSERT_TRUE(turned_long);
@@ -213,8 +213,8 @@ TEST(StaleIds, NeverReachAnotherObject) {
   EXPECT_FALSE(world.set_material(gone_shape, {}));
   EXPECT_FALSE(world.remove_joint(JointId{}));
   EXPECT_FALSE(world.set_motor(JointId{}, {}));
-  EXPECT_EQ(world.joint_reading(JointId{}).position, 0.0f);
-  EXPECT_EQ(world.counts().bodies, 1);
+  EXPECT_EQ(world.joint_state(JointId{}).position, 0.0f);
+  EXPECT_EQ(world.stats().bodies, 1);
   EXPECT_EQ(world.pose(next).position, (DVec3{9, 9, 9}));
 }
 

@@ -98,7 +98,7 @@ void take_triangles(const DecompositionDef& def, Model& model) {
     }
     const double area = 0.5 * length(cross(p[1] - p[0], p[2] - p[0]));
     if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0] || !(area > 0.0)) {
-      ++model.findings.left_out_triangles;
+      ++model.findings.degenerate_triangles;
       continue;
     }
     model.area += area;
@@ -117,7 +117,7 @@ void count_edges(Model& model) {
   for (const auto& [key, use] : edges.entries()) {
     const std::uint32_t count = use.forward + use.backward;
     if (count == 1) ++model.findings.open_edges;
-    if (count > 2) ++model.findings.crowded_edges;
+    if (count > 2) ++model.findings.non_manifold_edges;
   }
 }
 
@@ -173,7 +173,7 @@ std::vector<Piece> find_pieces(Model& model, std::vector<std::uint32_t>& piece_o
 
 void turn(Model& model, std::size_t t) {
   std::swap(model.indices[3 * t + 1], model.indices[3 * t + 2]);
-  ++model.findings.turned_triangles;
+  ++model.findings.flipped_triangles;
 }
 
 }  // namespace

@@ -18,9 +18,9 @@ Error bad_decomposition(const char* what) {
 template <class Report, class Visit>
 void each_field(Report& r, Visit&& visit) {
   visit(r.mesh.open_edges);
-  visit(r.mesh.crowded_edges);
-  visit(r.mesh.turned_triangles);
-  visit(r.mesh.left_out_triangles);
+  visit(r.mesh.non_manifold_edges);
+  visit(r.mesh.flipped_triangles);
+  visit(r.mesh.degenerate_triangles);
   visit(r.mesh.openness);
   visit(r.mesh.shell);
   visit(r.size);

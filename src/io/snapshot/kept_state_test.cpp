@@ -105,7 +105,7 @@ TEST(KeptState, KeepsWhatWaitsForTheNextStep) {
   const BodyId low = scenes::add_fixed(world, {0, -0.99, 0}, Box{});
   scenes::add_moving(world, {0, 0, 0}, Box{});
   for (int i = 0; i < 3; ++i) world.step(scenes::kStepSeconds);
-  ASSERT_EQ(world.counts().touching, 1);
+  ASSERT_EQ(world.stats().touching, 1);
   world.remove_body(low);
   world.set_pose(wall, {{0.99, 0, 0}, {}});
   KeptState kept;

@@ -442,7 +442,7 @@ void finish_smooth_stage(void* context, int begin, int end, int) {
   }
 }
 
-void finish_springs(RigidWorld& w, const SmoothMotion& motion, StepReport& report) {
+void finish_springs(RigidWorld& w, const SmoothMotion& motion, StepStats& report) {
   const auto finish = [&](const SmoothSpring& spring) {
     JointRecord& joint = w.joints.records[spring.joint];
     joint.total_linear = to_float(spring.total) + Vec3{};

@@ -46,6 +46,6 @@ void kick_carriers_stage(void* context, int begin, int end, int worker);  // aft
 void finish_smooth_stage(void* context, int begin, int end, int worker);  // once, after all parts
 
 // What springs gave, into their joints; what the plan did, into the report.
-void finish_springs(RigidWorld& w, const SmoothMotion& motion, StepReport& report);
+void finish_springs(RigidWorld& w, const SmoothMotion& motion, StepStats& report);
 
 }  // namespace gyre

@@ -45,7 +45,7 @@ struct BatchScratch {
   // Of all batches that were solved with it in this step:
   Array<SlotHit> hits;
   SolveCounts counts;
-  StepReport report;
+  StepStats report;
   RowReport rows;  // of solvers that work on rows
 };
 
@@ -61,7 +61,7 @@ struct SolveScratch {
   std::vector<std::unique_ptr<LoneSolver>> lone;  // by worker; none where there is one worker
   Array<SlotHit> hits;
   SolveCounts counts;  // of all batches
-  StepReport report;
+  StepStats report;
   RowReport rows;
   int colors = 0;
 };
