@@ -163,11 +163,11 @@ Result<Decomposition> decompose(const DecompositionDef& def) {
   if (out.hulls.empty())
     return make_error(ErrorCode::invalid_geometry,
                       "decomposition: the mesh is flat; allowed are meshes that span a volume");
-  out.report.mesh = prepared.model.findings;
-  out.report.size = float(prepared.model.size / prepared.model.scale);
+  out.stats.mesh = prepared.model.findings;
+  out.stats.size = float(prepared.model.size / prepared.model.scale);
   if (prepared.model.findings.shell)
-    out.report.shell_thickness = float(2.0 * half_thickness(def, prepared.model) / prepared.model.scale);
-  measure_pieces(solid, tasks, bodies, out.report);
+    out.stats.shell_thickness = float(2.0 * half_thickness(def, prepared.model) / prepared.model.scale);
+  measure_pieces(solid, tasks, bodies, out.stats);
   if (!progress.go_on(1.0)) return cancelled();
   return out;
 }

@@ -290,8 +290,8 @@ TEST(Decomposition, AnOpenBowlIsTakenForASheetAndSaysSo) {
   def.meaning = SurfaceMeaning::solid;
   const Decomposition filled = made(def);
   EXPECT_EQ(filled.hulls.size(), 1u);
-  EXPECT_FALSE(filled.report.mesh.shell);
-  EXPECT_GT(filled.report.mesh.openness, 0.5f);
+  EXPECT_FALSE(filled.stats.mesh.shell);
+  EXPECT_GT(filled.stats.mesh.openness, 0.5f);
   EXPECT_TRUE(in_any(filled, {0, -0.3f, 0}));
 }
 
@@ -366,7 +366,7 @@ void try_soups(int more) {
     if (!d) continue;
     EXPECT_GE(d->hulls.size(), 1u);
     EXPECT_LE(d->hulls.size(), 8u);
-    EXPECT_TRUE(is_finite(d->report.overhang) && is_finite(d->report.excess_volume));
+    EXPECT_TRUE(is_finite(d->stats.overhang) && is_finite(d->stats.excess_volume));
   }
 }
 TEST(Decomposition, SoupsOfTrianglesNeverBreakIt) { try_soups(4); }
