@@ -54,11 +54,11 @@ struct OrientedBox {
 // Hierarchical Structure for Rapid Interference Detection", 1996. In bad cases it has several times the least volume, since a cube has
 // no principal axes.
 Result<OrientedBox> fit_oriented_box_fast(std::span<const Vec3> points);
-// A search for the least volume: with one axis given, the best box is exact (rotating calipers); axes tried are the normals
-// of the hull's faces, and right angles to two edges each of up to 64 different edge directions, the longest first. The best
-// few are turned about each of their own axes in turn until none gets smaller. So the volume is never above that of the
-// smallest box with a side on a face of the hull, and is the least where a side of that box holds two edges of those tried.
-// J. O'Rourke, "Finding Minimal Enclosing Boxes", 1985 (that sides hold edges); H. Freeman, R. Shapira, 1975 (calipers);
+// A search for the least volume. For a given axis the best box is exact (rotating calipers). The search tries the normals of the hull's
+// faces, and the normals of pairs of up to 64 edge directions, the longest first. Then it rotates the best few boxes about each of their own
+// axes until none gets smaller. So the volume is never above that of the smallest box with a side on a face of the hull. It is the least
+// volume if a side of the smallest box contains two edges of those tried.
+// J. O'Rourke, "Finding Minimal Enclosing Boxes", 1985 (sides contain edges); H. Freeman, R. Shapira, 1975 (calipers);
 // C. Chang, B. Gorissen, S. Melchior, "Fast Oriented Bounding Box Optimization on the Rotation Group", 2011 (the descent).
 Result<OrientedBox> fit_oriented_box(std::span<const Vec3> points);
 // Around both: the smallest of the boxes along either's axes and of fit_oriented_box() of their corners.
@@ -82,7 +82,7 @@ struct BoundingCapsule {
 // caps allow. The direction is the best of the principal axes and the longest distance between points, improved by a search in steps down
 // to 1e-4 rad. It need not be the optimal one.
 Result<BoundingCapsule> fit_capsule(std::span<const Vec3> points);
-// Around both; the larger one itself if it holds the other.
+// Around both; the larger one itself if it contains the other.
 BoundingCapsule merge(const BoundingCapsule& a, const BoundingCapsule& b);
 bool overlap(const BoundingCapsule& a, const BoundingCapsule& b);
 bool contains(const BoundingCapsule& capsule, Vec3 point);
@@ -102,7 +102,7 @@ constexpr int kMaxKDopDirections = 13;
 
 struct KDop {
   KDopKind kind = KDopKind::k14;
-  // By direction (k_dop_direction): low <= dot(direction, p) <= high. Directions have parts of 1, 0 and -1; not unit length.
+  // By direction (k_dop_direction): low <= dot(direction, p) <= high. Components of directions are 1, 0 and -1; not unit length.
   float low[kMaxKDopDirections] = {};
   float high[kMaxKDopDirections] = {};
 };

@@ -41,7 +41,7 @@ constexpr std::uint32_t kNoIsland = 0xffffffffu;
 struct BodyTable {
   std::vector<BodyId> ids;
   std::vector<float> centers;      // 3 a body: centre of mass, m
-  std::vector<float> axes;         // 4 a body: x y z w, turns the principal axes of inertia into the world
+  std::vector<float> axes;         // 4 a body: x y z w, the world orientation of the principal axes of inertia
   std::vector<float> semi_axes;    // 3 a body: of the solid ellipsoid with its mass and inertia, m; 0 if it has none
   std::vector<float> linear_velocities;   // 3 a body: of the centre of mass, m/s
   std::vector<float> angular_velocities;  // 3 a body: rad/s

@@ -19,7 +19,7 @@ struct ContactBegin {
 struct ContactEnd {
   ShapeId shape_a{}, shape_b{};
 };
-// Two shapes collided with a noticeable speed of approach.
+// Two shapes collided. Only collisions with a noticeable approach speed, relative to the size of the shapes, are listed.
 struct ContactHit {
   ShapeId shape_a{}, shape_b{};
   BodyId body_a{}, body_b{};

@@ -106,7 +106,7 @@ struct Penetration {
   explicit operator bool() const { return bool(body); }
 };
 
-// The reason why a query finds nothing by definition; code none if it can be asked.
+// The reason why a query is invalid; code none if it is valid.
 Error check_ray(const Ray& ray);
 Error check_shape_cast(const ShapeCast& cast);
 Error check_shape_pose(const ShapePose& shape);

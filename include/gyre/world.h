@@ -53,7 +53,7 @@ struct ContactPoint {
 struct JointState {
   Vec3 force{};   // N on b, world frame, mean over the last step
   Vec3 torque{};  // N m on b about the anchor, world frame
-  // Of what the joint leaves free. Hinge, cone (twist), universal (about axis), wheel (spin), gear and rack_and_pinion (a's
+  // The position along the joint's free axis. Hinge, cone (twist), universal (about axis), wheel (spin), gear and rack_and_pinion (a's
   // turning): rad, continuous beyond +-pi. Slider, path: m along it. Distance, pulley: m, the length. six_dof: linear_x.
   float position = 0;
   float velocity = 0;  // hinge, slider, distance; others: see joint_axis_state()
@@ -203,7 +203,7 @@ class World {
   FieldDef field(FieldId field) const;
   // Copies up to out.size() ids, in order of index; returns how many fields there are.
   std::size_t fields(std::span<FieldId> out) const;
-  // Zero for axes that the joint's kind holds. Hinge: angular_x; slider, distance, path, pulley: linear_x; gear: angular_x (a) and
+  // Zero for axes that this kind of joint constrains. Hinge: angular_x; slider, distance, path, pulley: linear_x; gear: angular_x (a) and
   // angular_y (b).
   JointAxisState joint_axis_state(JointId joint, JointAxis axis) const;
   bool joint_enabled(JointId joint) const;
