@@ -4,9 +4,17 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <memory>
+#include <type_traits>
 
 namespace gyre::laws {
 namespace {
+
+// Users have no way into the state of a world.
+template <class W>
+concept ShowsState = requires(W& world) { world.state(); };
+static_assert(!ShowsState<World> && !ShowsState<const World>);
+static_assert(!std::is_constructible_v<World, std::unique_ptr<WorldState>>);
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
