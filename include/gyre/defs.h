@@ -246,12 +246,12 @@ struct JointDef {
   JointAxisDef linear_x{}, linear_y{}, linear_z{};     // six_dof
   JointAxisDef angular_x{}, angular_y{}, angular_z{};  // six_dof; wheel: angular_x steers; universal: angular_z about axis_b
   PoseDrive drive{};                   // motor, mouse; cone: its turning part
-  // Path: points that the curve runs through (Catmull-Rom), m from the anchor, world axes; 2 to kMostPathPoints, a closed
+  // Path: points that the curve runs through (Catmull-Rom), m from the anchor, world axes; 2 to kMaxPathPoints, a closed
   // one at least 3. The curve must pass near the anchor.
   std::vector<Vec3> path{};
   bool path_closed = false;
   PathOrientation path_orientation = PathOrientation::free;
 };
-constexpr int kMostPathPoints = 4096;
+constexpr int kMaxPathPoints = 4096;
 
 }  // namespace gyre

@@ -1,5 +1,5 @@
 // validate: the walk over a world's structures, as the public header offers it.
-#include "world/state_walk.h"
+#include "world/validate_state.h"
 #include "world/world_access.h"
 #include "world/world_state.h"
 
@@ -9,7 +9,7 @@ namespace gyre {
 
 Error validate(const World& world) {
   if (state_of(world).stepping) return make_error(ErrorCode::busy, "the world is in the middle of a step");
-  return walk_state(state_of(world));
+  return validate_state(state_of(world));
 }
 
 }  // namespace gyre

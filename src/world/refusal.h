@@ -5,7 +5,7 @@
 
 namespace gyre {
 
-constexpr double kMostPlace = 1.0e12;  // m: places beyond this are refused
+constexpr double kMaxPosition = 1.0e12;  // m: places beyond this are refused
 
 inline Error refuse(const char* words) { return make_error(ErrorCode::invalid_argument, "%s", words); }
 template <class... Args>

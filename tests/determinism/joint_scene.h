@@ -61,11 +61,11 @@ inline void build_joint_kinds(World& world) {
   JointDef teeth = KindMaker::joint(JointKind::rack_and_pinion, second, rack, {10, 6, 0});
   teeth.axis = {0, 0, 1}, teeth.axis_b = Vec3{1, 0, 0}, teeth.ratio = 1.0f;
   world.add_joint(teeth);
-  const BodyId light = make.body(13, 6), heavy = make.body(14, 6), tyre = make.body(13, 5);
-  JointDef rope = KindMaker::joint(JointKind::pulley, light, heavy, {13, 6, 0});
+  const BodyId has_extreme_mass_ratio = make.body(13, 6), heavy = make.body(14, 6), tyre = make.body(13, 5);
+  JointDef rope = KindMaker::joint(JointKind::pulley, has_extreme_mass_ratio, heavy, {13, 6, 0});
   rope.ratio = 1.5f, rope.ground_a = {13, 9, 0}, rope.ground_b = {14, 8, 0.5};
   world.add_joint(rope);
-  JointDef wheel = KindMaker::joint(JointKind::wheel, light, tyre, {13, 5, 0});
+  JointDef wheel = KindMaker::joint(JointKind::wheel, has_extreme_mass_ratio, tyre, {13, 5, 0});
   wheel.axis = {0, 1, 0}, wheel.axis_b = Vec3{0, 0, 1}, wheel.limits = Limits{-0.25f, 0.25f};
   wheel.stiffness = 4000.0f, wheel.damping = 200.0f, wheel.motor = {.target_velocity = 3.0f, .max_force = 10.0f};
   wheel.angular_x.motion = AxisMotion::limited, wheel.angular_x.limits = {-0.5f, 0.5f};

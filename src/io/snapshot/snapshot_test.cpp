@@ -71,7 +71,7 @@ TEST(Snapshot, SleepersStaySleepersAndWakeTogether) {
   ASSERT_LT(world.stats().awake_bodies, 15) << "the scene sleeps by now";
   Result<World> loaded = load_snapshot(save_snapshot(world));
   ASSERT_TRUE(loaded) << loaded.error().message;
-  EXPECT_EQ(loaded->counts().awake_bodies, world.stats().awake_bodies);
+  EXPECT_EQ(loaded->stats().awake_bodies, world.stats().awake_bodies);
   for (int i = 119; i < 240; ++i) {
     step_scene(scene, world, i);
     step_scene(scene, *loaded, i);
