@@ -35,7 +35,7 @@ struct Swallow final : ByteSink {
 struct Chosen {
   World* world = nullptr;
   bool events = false, persisting = false, poses = false, counts = false;
-  std::vector<ContactPersist> room{};
+  std::vector<ContactPair> room{};
   Rollback* ring = nullptr;
   double sum = 0;  // of what was read, so that it is read
 };
@@ -48,21 +48,21 @@ struct Chosen {
     const Events& events = world.events();
     for (const ContactBegin& e : events.begins) chosen.sum += double(e.shape_a.index + e.shape_b.index);
     for (const ContactEnd& e : events.ends) chosen.sum += double(e.shape_a.index + e.shape_b.index);
-    for (const ContactHit& e : events.hits) chosen.sum += double(e.speed);
+    for (const ContactHit& e : events.hits) chosen.sum += double(e.approach_speed);
     for (const SleepChange& e : events.sleep_changes) chosen.sum += double(e.body.index);
   }
   if (chosen.persisting) {
-    std::size_t found = world.persisting(chosen.room);
+    std::size_t found = world.contact_pairs(chosen.room);
     if (found > chosen.room.size()) {
       chosen.room.resize(found + found / 4);
-      found = world.persisting(chosen.room);
+      found = world.contact_pairs(chosen.room);
     }
     for (std::size_t i = 0; i < found; ++i) chosen.sum += double(chosen.room[i].impulse);
   }
   if (chosen.poses) {
     for (const Pose& pose : world.bodies().poses) chosen.sum += pose.position.y;
   }
-  if (chosen.counts) chosen.sum += world.counts().contact_points;
+  if (chosen.counts) chosen.sum += world.stats().contact_points;
   if (chosen.ring != nullptr) chosen.ring->save(world);
 }
 

@@ -50,7 +50,7 @@ struct Scene {
   std::vector<Pose> boxes;
   std::vector<Ray> rays;
   std::vector<ShapeCast> casts;
-  std::vector<ShapePlace> places;
+  std::vector<ShapePose> places;
 };
 
 Scene make_scene() {
@@ -180,19 +180,19 @@ class BulletWorld {
   BulletWorld& operator=(const BulletWorld&) = delete;
 
   bool ray(const Ray& ray) {
-    const btVector3 from = bullet(ray.origin), to = bullet(ray.origin + ray.way);
+    const btVector3 from = bullet(ray.origin), to = bullet(ray.origin + ray.translation);
     btCollisionWorld::ClosestRayResultCallback hit(from, to);
     world_.rayTest(from, to, hit);
     return hit.hasHit();
   }
   bool ball(const ShapeCast& cast) {
-    const btVector3 from = bullet(cast.pose.position), to = bullet(cast.pose.position + cast.way);
+    const btVector3 from = bullet(cast.pose.position), to = bullet(cast.pose.position + cast.translation);
     btCollisionWorld::ClosestConvexResultCallback hit(from, to);
     world_.convexSweepTest(&small_ball_, btTransform(btQuaternion::getIdentity(), from),
                            btTransform(btQuaternion::getIdentity(), to), hit);
     return hit.hasHit();
   }
-  std::size_t overlaps(const ShapePlace& place, bool box = false) {
+  std::size_t overlaps(const ShapePose& place, bool box = false) {
     btCollisionObject object;
     object.setCollisionShape(box ? static_cast<btCollisionShape*>(&large_box_) : &ball_);
     object.setWorldTransform(btTransform(btQuaternion::getIdentity(), bullet(place.pose.position)));
@@ -271,7 +271,7 @@ class Box3dWorld {
   Box3dWorld& operator=(const Box3dWorld&) = delete;
 
   bool ray(const Ray& ray) const {
-    return b3World_CastRayClosest(world_, box3d(ray.origin), box3d(DVec3(ray.way)), b3DefaultQueryFilter())
+    return b3World_CastRayClosest(world_, box3d(ray.origin), box3d(DVec3(ray.translation)), b3DefaultQueryFilter())
         .hit;
   }
   bool ball(const ShapeCast& cast) const {
@@ -279,7 +279,7 @@ class Box3dWorld {
     const b3ShapeProxy proxy{&middle, 1, 0.5f};
     float nearest = 1.0f;
     b3World_CastShape(
-        world_, box3d(cast.pose.position), &proxy, box3d(DVec3(cast.way)), b3DefaultQueryFilter(),
+        world_, box3d(cast.pose.position), &proxy, box3d(DVec3(cast.translation)), b3DefaultQueryFilter(),
         [](b3ShapeId, b3Pos, b3Vec3, float fraction, uint64_t, int, int, void* context) {
           *static_cast<float*>(context) = fraction;
           return fraction;
@@ -287,7 +287,7 @@ class Box3dWorld {
         &nearest);
     return nearest < 1.0f;
   }
-  std::size_t overlaps(const ShapePlace& place, std::span<const b3Vec3> points, float radius) const {
+  std::size_t overlaps(const ShapePose& place, std::span<const b3Vec3> points, float radius) const {
     const b3ShapeProxy proxy{points.data(), int(points.size()), radius};
     std::size_t found = 0;
     b3World_OverlapShape(
@@ -328,9 +328,9 @@ class Bench {
     ask(
         "rays", scene_.rays.size(),
         [&](const World& w, std::size_t i) {
-          return w.cast_ray(scene_.rays[i].origin, scene_.rays[i].way).has_value();
+          return w.cast_ray(scene_.rays[i].origin, scene_.rays[i].translation).has_value();
         },
-        [&](const World& w) { return w.cast_rays(scene_.rays, hits_); });
+        [&](const World& w) { return w.cast_ray_batch(scene_.rays, hits_); });
 #if defined(GYRE_HAVE_BULLET)
     other("Bullet", scene_.rays.size(), [&](std::size_t i) { return bullet_.ray(scene_.rays[i]); });
 #endif
@@ -339,27 +339,27 @@ class Bench {
 #endif
 #if defined(GYRE_HAVE_JOLT)
     other("Jolt", scene_.rays.size(),
-          [&](std::size_t i) { return jolt_.ray(&scene_.rays[i].origin.x, &scene_.rays[i].way.x); });
+          [&](std::size_t i) { return jolt_.ray(&scene_.rays[i].origin.x, &scene_.rays[i].translation.x); });
 #endif
     finish();
     ask(
         "rays, all hits", scene_.rays.size(),
         [&](const World& w, std::size_t i) {
-          return w.cast_ray_all(scene_.rays[i].origin, scene_.rays[i].way, all_hits_);
+          return w.cast_ray_all(scene_.rays[i].origin, scene_.rays[i].translation, all_hits_);
         },
-        [&](const World& w) { return w.cast_rays_all(scene_.rays, many_hits_, ray_counts_); });
+        [&](const World& w) { return w.cast_ray_all_batch(scene_.rays, many_hits_, ray_counts_); });
     finish();
     ask(
         "rays, any hit", scene_.rays.size(),
         [&](const World& w, std::size_t i) {
-          return std::size_t(w.ray_hits(scene_.rays[i].origin, scene_.rays[i].way));
+          return std::size_t(w.cast_ray_any(scene_.rays[i].origin, scene_.rays[i].translation));
         },
-        [&](const World& w) { return w.rays_hit(scene_.rays, any_); });
+        [&](const World& w) { return w.cast_ray_any_batch(scene_.rays, any_); });
     finish();
     ask(
         "moving balls", n,
         [&](const World& w, std::size_t i) { return w.cast_shape(scene_.casts[i]).has_value(); },
-        [&](const World& w) { return w.cast_shapes(scene_.casts, std::span(hits_).first(n)); });
+        [&](const World& w) { return w.cast_shape_batch(scene_.casts, std::span(hits_).first(n)); });
 #if defined(GYRE_HAVE_BULLET)
     other("Bullet", n, [&](std::size_t i) { return bullet_.ball(scene_.casts[i]); });
 #endif
@@ -368,7 +368,7 @@ class Bench {
 #endif
 #if defined(GYRE_HAVE_JOLT)
     other("Jolt", n, [&](std::size_t i) {
-      return jolt_.ball(&scene_.casts[i].pose.position.x, &scene_.casts[i].way.x, 0.5f);
+      return jolt_.ball(&scene_.casts[i].pose.position.x, &scene_.casts[i].translation.x, 0.5f);
     });
 #endif
     finish();
@@ -376,27 +376,27 @@ class Bench {
         "moving balls, all hits", n,
         [&](const World& w, std::size_t i) { return w.cast_shape_all(scene_.casts[i], all_hits_); },
         [&](const World& w) {
-          return w.cast_shapes_all(scene_.casts, std::span(many_hits_).first(kRoom * n), counts_);
+          return w.cast_shape_all_batch(scene_.casts, std::span(many_hits_).first(kRoom * n), counts_);
         });
     finish();
     overlaps("overlaps of a ball", scene_.places, false);
-    std::vector<ShapePlace> cubes;
-    for (const ShapePlace& place : scene_.places) cubes.push_back({Box{{1, 1, 1}}, place.pose});
+    std::vector<ShapePose> cubes;
+    for (const ShapePose& place : scene_.places) cubes.push_back({Box{{1, 1, 1}}, place.pose});
     overlaps("overlaps of a box", cubes, true);
     ask(
         "closest points within 5 m of a ball", n,
         [&](const World& w, std::size_t i) { return w.closest_point(scene_.places[i], 5.0).has_value(); },
-        [&](const World& w) { return w.closest_points(scene_.places, 5.0, closest_); });
+        [&](const World& w) { return w.closest_point_batch(scene_.places, 5.0, closest_); });
     finish();
     ask(
         "all shapes within 5 m of a ball", n,
-        [&](const World& w, std::size_t i) { return w.find_closest(scene_.places[i], 5.0, near_); },
-        [&](const World& w) { return w.find_closest_all(scene_.places, 5.0, many_near_, counts_); });
+        [&](const World& w, std::size_t i) { return w.closest_point_all(scene_.places[i], 5.0, near_); },
+        [&](const World& w) { return w.closest_point_all_batch(scene_.places, 5.0, many_near_, counts_); });
     finish();
     ask(
         "ways out of overlap of a box", n,
-        [&](const World& w, std::size_t i) { return w.find_penetrations(cubes[i], deep_); },
-        [&](const World& w) { return w.find_penetrations_all(cubes, many_deep_, counts_); });
+        [&](const World& w, std::size_t i) { return w.penetration_all(cubes[i], deep_); },
+        [&](const World& w) { return w.penetration_all_batch(cubes, many_deep_, counts_); });
     finish();
   }
 
@@ -423,11 +423,11 @@ class Bench {
     }
     rows_.push_back({"brute force", double(few), [this, singly, few] { singly(brute_, few); }, {}, {}});
   }
-  void overlaps(const char* what, const std::vector<ShapePlace>& places, bool cube) {
+  void overlaps(const char* what, const std::vector<ShapePose>& places, bool cube) {
     const std::size_t n = places.size();
     ask(
-        what, n, [&](const World& w, std::size_t i) { return w.find_overlaps(places[i], {}); },
-        [&](const World& w) { return w.count_overlaps(places, counts_); });
+        what, n, [&](const World& w, std::size_t i) { return w.overlap_all(places[i], {}); },
+        [&](const World& w) { return w.overlap_count_batch(places, counts_); });
     static_cast<void>(cube);
 #if defined(GYRE_HAVE_BULLET)
     other("Bullet", n, [&, cube](std::size_t i) { return bullet_.overlaps(places[i], cube); });

@@ -229,7 +229,7 @@ void measure(const NamedScene& scene, const Way& way, double seconds) {
     const std::clock_t begin = std::clock();
     stage.world.step(kStep);
     times.push_back(1000.0 * double(std::clock() - begin) / double(CLOCKS_PER_SEC));
-    const SolverReading reading = stage.world.solver_reading();
+    const SolverStats reading = stage.world.solver_stats();
     rows = std::max(rows, reading.largest_rows);
     if (2 * i < steps) continue;
     direct += reading.direct_islands, islands += reading.islands;

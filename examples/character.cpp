@@ -25,7 +25,7 @@ int main() {
       if (i == 230) world.set_velocity(lift, {0, 0.8f, 0}, {});
       world.step(step);
       const kit::CharacterMove move{.velocity = {i < 220 ? 2.0f : 0.0f, 0, 0}};
-      if (const Error e = kit::move_character(world, def, hero, move, step); e.code != ErrorCode::none) {
+      if (const Error e = kit::move_character(world, def, hero, move, step)) {
         std::printf("%s\n", e.message);
         return;
       }
@@ -39,7 +39,7 @@ int main() {
   const kit::CharacterState then = hero;
   play(150, 400);
   const DVec3 first = hero.feet;
-  if (restore_snapshot(world, moment).code != ErrorCode::none) return 1;
+  if (restore_snapshot(world, moment)) return 1;
   hero = then;
   play(150, 400);
   const bool same = hero.feet == first;

@@ -26,7 +26,7 @@ int main() {
       ++(touch.begins ? entered : left);
     }
     for (const ContactHit& hit : events.hits) {
-      std::printf("%.2f s: hit at %.1f m/s\n", now, double(hit.speed));
+      std::printf("%.2f s: hit at %.1f m/s\n", now, double(hit.approach_speed));
       ++hits;
     }
     for (const SleepChange& change : events.sleep_changes) {

@@ -28,6 +28,6 @@ int main() {
   std::printf("%zu lines, %zu points\n", drawing.line_count(), drawing.point_count());
 
   const gyre::Error fault = gyre::validate(*world);
-  std::printf("%s\n", fault.code == gyre::ErrorCode::none ? "all structures agree" : fault.message);
-  return fault.code == gyre::ErrorCode::none ? 0 : 1;
+  std::printf("%s\n", fault.ok() ? "all structures agree" : fault.message);
+  return fault.ok() ? 0 : 1;
 }

@@ -19,7 +19,7 @@ int main() {
                                          .limits = Limits{-1.0f, 2.0f},
                                          .motor = {.target_velocity = 1.0f, .max_force = 20.0f}});
   for (int i = 0; i < 60 * 4; ++i) world.step(1.0f / 60.0f);
-  const float angle = world.joint_reading(hinge).position;
+  const float angle = world.joint_state(hinge).position;
   std::printf("the motor has opened the door to %.3f rad, its limit\n", double(angle));
   good = good && angle > 1.98f && angle < 2.02f;
 
@@ -29,7 +29,7 @@ int main() {
       {.kind = JointKind::distance, .b = lamp, .anchor = {5, 4, 0}, .min_length = 0.0f, .max_length = 2.0f});
   for (int i = 0; i < 60 * 10; ++i) world.step(1.0f / 60.0f);
   const float weight = 9.81f * world.mass_properties(lamp).mass;
-  const JointReading pull = world.joint_reading(rope);
+  const JointState pull = world.joint_state(rope);
   std::printf("the lamp hangs on %.3f m of rope, which bears %.1f N (the lamp weighs %.1f N)\n",
               double(pull.position), double(length(pull.force)), double(weight));
   good = good && length(pull.force) > 0.98f * weight && length(pull.force) < 1.02f * weight;

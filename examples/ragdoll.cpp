@@ -21,8 +21,7 @@ int main() {
     if (i < 60) drive.key = {.strength = 1, .frequency = 4};  // keyed to the pose
     if (i < 120) drive.motor.strength = 1;                    // then motors alone, from 2 s no drive
     if (i == 60) world.add_impulse(chest, {0, 0, -60});
-    if (const Error e = kit::drive_ragdoll(world, person, ragdoll, standing, {&drive, 1}, step);
-        e.code != ErrorCode::none) {
+    if (const Error e = kit::drive_ragdoll(world, person, ragdoll, standing, {&drive, 1}, step)) {
       std::printf("%s\n", e.message);
       return 1;
     }
@@ -31,12 +30,12 @@ int main() {
     const kit::RagdollPose now = kit::read_ragdoll(world, person, ragdoll);
     float beyond = 0;
     for (int bone = 0; bone < int(person.bones.size()); ++bone)
-      beyond = max(beyond, kit::beyond_limits(person, now, bone));
+      beyond = max(beyond, kit::limit_violation(person, now, bone));
     std::printf(
         "%2.0f s  chest at %.2f m  knee bent by %3.0f degrees  %.1f degrees beyond limits  %d bodies awake\n",
         world.time(), world.pose(chest).position.y,
-        double(57.2958f * kit::bone_turn(person, now, kit::find_bone(person, "left shank")).x),
-        double(57.2958f * beyond), world.counts().awake_bodies);
+        double(57.2958f * kit::bone_rotation(person, now, kit::find_bone(person, "left shank")).x),
+        double(57.2958f * beyond), world.stats().awake_bodies);
   }
-  return world.pose(chest).position.y < 0.5 && world.counts().awake_bodies == 0 ? 0 : 1;
+  return world.pose(chest).position.y < 0.5 && world.stats().awake_bodies == 0 ? 0 : 1;
 }

@@ -54,15 +54,15 @@ int main() {
 
   // A replay can seek to any step.
   const Error error = replay.seek(45);
-  if (error.code != ErrorCode::none) {
+  if (error) {
     std::printf("%s\n", error.message);
     return 1;
   }
-  std::printf("at step 45 there are %d bodies\n", replay.world().counts().bodies);
+  std::printf("at step 45 there are %d bodies\n", replay.world().stats().bodies);
 
   // The pose track needs no world and no simulation, and works in any version of Gyre.
   Result<PoseTrack> looked_at = PoseTrack::open(sink.data);
-  if (!looked_at || looked_at->seek(100).code != ErrorCode::none) return 1;
+  if (!looked_at || looked_at->seek(100)) return 1;
   const TrackFrame frame = looked_at->frame();
   int awake = 0;
   for (const std::uint8_t moving : frame.awake) awake += moving;

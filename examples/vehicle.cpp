@@ -35,7 +35,7 @@ int main() {
     if (i > 60 && i < 500) input.throttle = 1.0f;
     if (i >= 500 && i < 600) input.steer = 0.06f;
     if (i >= 700) input.brake = 0.8f;
-    if (const Error e = kit::drive_vehicle(world, car, body, state, input, step); e.code != ErrorCode::none) {
+    if (const Error e = kit::drive_vehicle(world, car, body, state, input, step)) {
       std::printf("%s\n", e.message);
       return 1;
     }

@@ -47,7 +47,7 @@ class Mover {
       s_.velocity = walk_.flat((1.0f / seconds_) * difference(s_.feet, start_));
     if (s_.ground == GroundKind::firm) weigh();
     if (s_.body) {
-      const ShapePlace place = walk_.shape_at(s_.feet, s_.height);
+      const ShapePose place = walk_.shape_at(s_.feet, s_.height);
       world_.move_kinematic(s_.body, place.pose, seconds_);
     }
   }
@@ -56,7 +56,7 @@ class Mover {
   // With what it stands on, exactly as that moved since the last call.
   void ride() {
     s_.ground_velocity = {};
-    s_.turned = 0.0f;
+    s_.ground_rotation = 0.0f;
     if (s_.ground != GroundKind::firm || !world_.exists(s_.ground_body)) return;
     const Pose now = world_.pose(s_.ground_body), then = s_.ground_pose;
     if (now == then) return;
@@ -68,7 +68,7 @@ class Mover {
     s_.ground_velocity = (1.0f / seconds_) * way;
     const Quat turn = now.orientation * conjugate(then.orientation);
     const float about = dot(Vec3{turn.x, turn.y, turn.z}, def_.up);
-    s_.turned = turn.w < 0.0f ? 2.0f * atan2(-about, -turn.w) : 2.0f * atan2(about, turn.w);
+    s_.ground_rotation = turn.w < 0.0f ? 2.0f * atan2(-about, -turn.w) : 2.0f * atan2(about, turn.w);
     s_.ground_normal = rotate(turn, s_.ground_normal);
     s_.ground_point = now * inverse_times(then, s_.ground_point);
   }
@@ -250,14 +250,14 @@ CharacterState make_character(const CharacterDef& def, DVec3 feet) {
   return state;
 }
 
-ShapePlace character_shape(const CharacterDef& def, const CharacterState& state) {
+ShapePose character_shape(const CharacterDef& def, const CharacterState& state) {
   return capsule_place(def, state.feet, state.height);
 }
 
 Error move_character(World& world, const CharacterDef& def, CharacterState& state, const CharacterMove& move,
                      float seconds) {
   Error e = check_character(def);
-  if (e.code != ErrorCode::none) return e;
+  if (e) return e;
   if (!lies_within(seconds, 1.0e-6f, 1.0f)) return refuse("seconds", double(seconds), 1.0e-6, 1.0);
   if (!is_finite(move.velocity) || length(move.velocity) > 1.0e4f) {
     return refuse("the size of move.velocity", double(length(move.velocity)), 0.0, 1.0e4);

@@ -32,8 +32,8 @@ void push_apart(World& world, BodyId character, const CharacterGround& ground, V
 }  // namespace
 
 BodyId add_character_body(World& world, const CharacterDef& def, DVec3 feet, const Filter& filter) {
-  if (check_character(def).code != ErrorCode::none) return {};
-  const ShapePlace place = capsule_place(def, feet, def.height);
+  if (check_character(def)) return {};
+  const ShapePose place = capsule_place(def, feet, def.height);
   BodyDef body;
   body.pose = place.pose;
   for (bool& locked : body.locked.angular) locked = true;
@@ -68,7 +68,7 @@ CharacterGround find_character_ground(const World& world, const CharacterDef& de
 Error drive_character_body(World& world, const CharacterDef& def, BodyId character, const CharacterMove& move,
                            float seconds, const BodyDrive& drive) {
   const Error e = check_character(def);
-  if (e.code != ErrorCode::none) return e;
+  if (e) return e;
   if (!world.exists(character)) {
     return make_error(ErrorCode::stale_id, "character: body %u does not exist in this world",
                       character.index);

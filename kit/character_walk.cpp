@@ -14,13 +14,13 @@ float cosine(float angle) { return rotate(from_axis_angle({0, 0, 1}, angle), {1,
 
 }  // namespace
 
-ShapePlace capsule_place(const CharacterDef& def, DVec3 feet, float height) {
+ShapePose capsule_place(const CharacterDef& def, DVec3 feet, float height) {
   const float half = 0.5f * height - def.radius;
   return {Capsule{def.radius, half > 0.0f ? half : 0.0f},
           {feet + 0.5 * double(height) * DVec3(def.up), turn_to(def.up)}};
 }
 
-ShapePlace Walker::shape_at(DVec3 feet, float height) const { return capsule_place(def_, feet, height); }
+ShapePose Walker::shape_at(DVec3 feet, float height) const { return capsule_place(def_, feet, height); }
 
 QueryFilter Walker::filter(std::uint32_t layers, BodyId ignored) const {
   QueryFilter out;
@@ -41,14 +41,14 @@ WalkHit Walker::to_hit(const CastHit& hit, float length) const {
 }
 
 WalkHit Walker::cast_down(DVec3 feet, float reach) const {
-  ShapePlace place = shape_at(feet, state_.height);
+  ShapePose place = shape_at(feet, state_.height);
   Capsule& capsule = std::get<Capsule>(place.shape);
   capsule.radius -= 2.0f * kGap;
   capsule.half_height += 2.0f * kGap;
   return cast(place, -reach * def_.up, {});
 }
 
-WalkHit Walker::cast(const ShapePlace& place, Vec3 way, BodyId ignored) const {
+WalkHit Walker::cast(const ShapePose& place, Vec3 way, BodyId ignored) const {
   const float size = length(way);
   if (!(size > 0.0f)) return {};
   // A little overlap does not stop what leads out of it or along.
@@ -112,7 +112,7 @@ bool Walker::escape(DVec3& feet) const {
   const DVec3 start = feet;
   for (int round = 0; round < kRounds; ++round) {
     const std::size_t count =
-        world_.find_penetrations(shape_at(feet, state_.height), deep, filter(solid, {}));
+        world_.penetration_all(shape_at(feet, state_.height), deep, filter(solid, {}));
     if (count == 0 || deep[0].depth <= 2.0f * kGap) return true;
     // Each contact in turn, less what those before have done for it: side by side faces do not push twice.
     Vec3 moved{};
@@ -139,7 +139,7 @@ bool Walker::escape(DVec3& feet) const {
 bool Walker::is_free(DVec3 feet, float height) const {
   Penetration deep[1];
   const std::uint32_t solid = def_.layers & ~def_.one_way_layers;
-  const std::size_t count = world_.find_penetrations(shape_at(feet, height), deep, filter(solid, {}));
+  const std::size_t count = world_.penetration_all(shape_at(feet, height), deep, filter(solid, {}));
   return count == 0 || deep[0].depth <= 2.0f * kGap;
 }
 

@@ -9,7 +9,7 @@ namespace gyre::kit {
 constexpr float kGap = 1.0e-3f;  // m
 
 // The upright capsule whose lowest point is `feet`.
-ShapePlace capsule_place(const CharacterDef& def, DVec3 feet, float height);
+ShapePose capsule_place(const CharacterDef& def, DVec3 feet, float height);
 
 struct WalkHit {
   bool any = false;
@@ -31,7 +31,7 @@ class Walker {
   Vec3 flat(Vec3 v) const { return v - along_up(v) * def_.up; }
   double height_of(DVec3 p) const { return dot(p, DVec3(def_.up)); }
 
-  ShapePlace shape_at(DVec3 feet, float height) const;
+  ShapePose shape_at(DVec3 feet, float height) const;
   // What the capsule first touches on its way (m) from a place.
   WalkHit cast(DVec3 feet, Vec3 way, BodyId ignored = {}) const {
     return cast(shape_at(feet, state_.height), way, ignored);
@@ -50,7 +50,7 @@ class Walker {
   bool is_free(DVec3 feet, float height) const;
 
  private:
-  WalkHit cast(const ShapePlace& place, Vec3 way, BodyId ignored) const;
+  WalkHit cast(const ShapePose& place, Vec3 way, BodyId ignored) const;
   QueryFilter filter(std::uint32_t layers, BodyId ignored) const;
   WalkHit to_hit(const CastHit& hit, float length) const;
 

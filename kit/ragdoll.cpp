@@ -33,7 +33,7 @@ Error check_joint(const char* name, const BoneJoint& joint) {
     const char* field;
     const Limits& limits;
     bool used;
-  } all[] = {{"turn", joint.turn, is_limited(joint)},
+  } all[] = {{"twist", joint.twist, is_limited(joint)},
              {"swing_y", joint.swing_y, joint.kind == BoneJointKind::cone},
              {"swing_z", joint.swing_z, joint.kind == BoneJointKind::cone}};
   for (const auto& l : all) {
@@ -61,7 +61,7 @@ Error check_mass(const char* name, const BoneDef& bone) {
                   double(*bone.mass));
   if (bone.inertia) {
     const Error e = check_inertia(*bone.inertia);
-    if (e.code != ErrorCode::none) return refuse("ragdoll: bone '%s': %s", name, e.message);
+    if (e) return refuse("ragdoll: bone '%s': %s", name, e.message);
   }
   for (const ShapeDef& shape : bone.shapes) {
     if (!is_finite(shape.local.position) || !is_unit(shape.local.orientation) || !(shape.density >= 0.0f))
@@ -91,7 +91,7 @@ Error check_bone(const RagdollDef& def, std::size_t i) {
   if (!is_finite(bone.rest.position) || !is_unit(bone.rest.orientation))
     return refuse("ragdoll: bone '%s': rest must be finite, its orientation of length 1", name);
   const Error e = check_mass(name, bone);
-  return e.code != ErrorCode::none || i == 0 ? e : check_joint(name, bone.joint);
+  return e || i == 0 ? e : check_joint(name, bone.joint);
 }
 
 // ------------------------------------------------------------------------------------------------------------------ adding
@@ -119,14 +119,14 @@ JointDef joint_of(const BoneDef& bone, BodyId parent, BodyId body, const Pose& p
   switch (j.kind) {
     case BoneJointKind::hinge:
       joint.kind = JointKind::hinge;
-      joint.limits = Limits{-half(j.turn), half(j.turn)};
+      joint.limits = Limits{-half(j.twist), half(j.twist)};
       break;
     case BoneJointKind::fixed:
       joint.kind = JointKind::fixed;
       joint.friction = 0.0f;
       break;
     case BoneJointKind::cone:
-      joint.limits = Limits{-half(j.turn), half(j.turn)};
+      joint.limits = Limits{-half(j.twist), half(j.twist)};
       joint.swing_y = half(j.swing_y);
       joint.swing_z = half(j.swing_z);
       [[fallthrough]];
@@ -149,7 +149,7 @@ std::vector<RagdollDef::Pair> rest_overlaps(const RagdollDef& def) {
   for (std::size_t i = 0; i < def.bones.size(); ++i) {
     const Pose pose{DVec3(rest.bones[i].position), rest.bones[i].orientation};
     for (const ShapeDef& shape : def.bones[i].shapes) {
-      const std::size_t count = world.find_overlaps({shape.geometry, pose * shape.local}, found);
+      const std::size_t count = world.overlap_all({shape.geometry, pose * shape.local}, found);
       for (std::size_t k = 0; k < min(count, found.size()); ++k)
         pairs.push_back({int(world.user_data(found[k].body)), int(i)});
     }
@@ -170,7 +170,7 @@ bool may_touch(const BoneDef& a, const BoneDef& b) {
 
 // Pairs that do not touch besides those that a joint keeps apart.
 std::vector<RagdollDef::Pair> pairs_apart(const RagdollDef& def) {
-  std::vector<RagdollDef::Pair> all = def.apart, kept;
+  std::vector<RagdollDef::Pair> all = def.filtered_pairs, kept;
   if (def.skip_rest_overlaps) {
     const std::vector<RagdollDef::Pair> overlaps = rest_overlaps(def);
     all.insert(all.end(), overlaps.begin(), overlaps.end());
@@ -249,12 +249,12 @@ Error check_ragdoll(const RagdollDef& def) {
     return refuse("ragdoll: it has %d bones; 1 to %d are allowed", int(count), RagdollDef::kMaxBones);
   for (std::size_t i = 0; i < count; ++i) {
     const Error e = check_bone(def, i);
-    if (e.code != ErrorCode::none) return e;
+    if (e) return e;
   }
   if (def.neighbours < 1) return refuse("ragdoll: neighbours is %d; it must be at least 1", def.neighbours);
-  for (const RagdollDef::Pair& p : def.apart) {
+  for (const RagdollDef::Pair& p : def.filtered_pairs) {
     if (p.a < 0 || p.b < 0 || std::size_t(p.a) >= count || std::size_t(p.b) >= count || p.a == p.b)
-      return refuse("ragdoll: apart holds the pair %d, %d; both must be bones, and not the same", p.a, p.b);
+      return refuse("ragdoll: filtered_pairs holds the pair %d, %d; both must be bones, and not the same", p.a, p.b);
   }
   if (!(def.linear_damping >= 0.0f && def.angular_damping >= 0.0f) ||
       !is_finite(def.linear_damping + def.angular_damping))
@@ -264,7 +264,7 @@ Error check_ragdoll(const RagdollDef& def) {
 }
 
 Result<Ragdoll> add_ragdoll(World& world, const RagdollDef& def, const RagdollPose& start) {
-  if (const Error e = check_ragdoll(def); e.code != ErrorCode::none) return e;
+  if (const Error e = check_ragdoll(def)) return e;
   const std::size_t count = def.bones.size();
   if (start.bones.size() != count || !is_finite(start.world_from_model))
     return refuse("ragdoll: its start has %d bones, the definition %d; and its place must be finite",
@@ -306,7 +306,7 @@ Result<Ragdoll> add_ragdoll(World& world, const RagdollDef& def, const RagdollPo
     const int parent = def.bones[i].parent;
     if (parent >= 0) at[i].position = at[std::size_t(parent)] * def.bones[i].rest.position;
     world.set_pose(ragdoll.bones[i].body, at[i]);
-    ragdoll.bones[i].target = ragdoll.bones[i].target_before = at[i];
+    ragdoll.bones[i].target = ragdoll.bones[i].previous_target = at[i];
   }
   return ragdoll;
 }

@@ -36,7 +36,7 @@ class Driver {
     mean_ = moves_ ? 0.5f + 0.25f / n : 1.0f;
     for (std::size_t i = 0; i < def.bones.size(); ++i) {
       RagdollBone& bone = ragdoll.bones[i];
-      bone.target_before = bone.target;
+      bone.previous_target = bone.target;
       bone.target = target.world_from_model * target.bones[i];
       bone.target.orientation = normalized(bone.target.orientation);
     }
@@ -53,7 +53,7 @@ class Driver {
   }
 
  private:
-  const Pose& before(std::size_t i) const { return ragdoll_.bones[i].target_before; }
+  const Pose& before(std::size_t i) const { return ragdoll_.bones[i].previous_target; }
   const Pose& after(std::size_t i) const { return ragdoll_.bones[i].target; }
 
   void move(std::size_t i, bool kinematic) {
@@ -74,7 +74,7 @@ class Driver {
       return;
     }
     const BodyId root = ragdoll_.bones[0].body;
-    const bool far = !to_root && length(after(i).position - b.key_place) > kFar;
+    const bool far = !to_root && length(after(i).position - b.key_position) > kFar;
     if (b.key && (far || b.key_to_root != to_root)) {
       world_.remove_joint(b.key);
       b.key = {};
@@ -106,13 +106,13 @@ class Driver {
     joint.collide_connected = true;  // bones that touch go on doing so
     b.key = world_.add_joint(joint);
     b.key_to_root = bool(to);
-    b.key_place = joint.anchor;
-    b.key_turn = normalized(from_matrix(frame));
+    b.key_position = joint.anchor;
+    b.key_orientation = normalized(from_matrix(frame));
     b.key_drive = {};
     if (to) {  // as the root sees it
       const Pose root = world_.pose(to);
-      b.key_place = DVec3(inverse_times(root, joint.anchor));
-      b.key_turn = normalized(conjugate(root.orientation) * b.key_turn);
+      b.key_position = DVec3(inverse_times(root, joint.anchor));
+      b.key_orientation = normalized(conjugate(root.orientation) * b.key_orientation);
     }
   }
 
@@ -122,14 +122,14 @@ class Driver {
   PoseDrive key_from_world(std::size_t i) const {
     const RagdollBone& b = ragdoll_.bones[i];
     const Vec3 c = center(i);
-    return in_frame(b.key_turn, difference(before(i) * c, b.key_place), before(i).orientation,
-                    difference(after(i) * c, b.key_place), after(i).orientation);
+    return in_frame(b.key_orientation, difference(before(i) * c, b.key_position), before(i).orientation,
+                    difference(after(i) * c, b.key_position), after(i).orientation);
   }
   PoseDrive key_from_root(std::size_t i) const {
     const RagdollBone& b = ragdoll_.bones[i];
-    const Vec3 c = center(i), place = to_float(b.key_place);
+    const Vec3 c = center(i), place = to_float(b.key_position);
     const Transform from = inverse_times(before(0), before(i)), to = inverse_times(after(0), after(i));
-    return in_frame(b.key_turn, from * c - place, from.orientation, to * c - place, to.orientation);
+    return in_frame(b.key_orientation, from * c - place, from.orientation, to * c - place, to.orientation);
   }
   PoseDrive in_frame(Quat frame, Vec3 before, Quat turned_before, Vec3 after, Quat turned_after) const {
     PoseDrive d;
@@ -235,7 +235,7 @@ Error drive_ragdoll(World& world, const RagdollDef& def, Ragdoll& ragdoll, const
   if (!is_finite(target.world_from_model)) return refuse("a target's place must be finite");
   for (const BoneDrive& drive : drives) {
     const Error e = check_drive(drive);
-    if (e.code != ErrorCode::none) return e;
+    if (e) return e;
   }
   Driver(world, def, ragdoll, target, seconds).run(drives);
   return {};

@@ -15,7 +15,7 @@ Quat joint_frame(const BoneJoint& joint) {
 Quat middle_turn(const BoneJoint& joint) {
   const auto middle = [](const Limits& l) { return 0.5f * (l.low + l.high); };
   if (!is_limited(joint)) return {};
-  const Quat twist = from_rotation_vector({middle(joint.turn), 0, 0});
+  const Quat twist = from_rotation_vector({middle(joint.twist), 0, 0});
   if (joint.kind == BoneJointKind::hinge) return twist;
   return from_rotation_vector({0, middle(joint.swing_y), middle(joint.swing_z)}) * twist;
 }
@@ -63,7 +63,7 @@ RagdollPose middle_pose(const RagdollDef& def, const Pose& world_from_model) {
   return pose_of_turns(def, world_from_model, true);
 }
 
-void turn_bone(const RagdollDef& def, RagdollPose& pose, int bone, Vec3 turn) {
+void rotate_bone(const RagdollDef& def, RagdollPose& pose, int bone, Vec3 turn) {
   const std::size_t first = std::size_t(bone);
   const Transform before = pose.bones[first];
   const Quat frame = joint_frame(def.bones[first].joint);
@@ -83,21 +83,21 @@ void turn_bone(const RagdollDef& def, RagdollPose& pose, int bone, Vec3 turn) {
   }
 }
 
-Vec3 bone_turn(const RagdollDef& def, const RagdollPose& pose, int bone) {
+Vec3 bone_rotation(const RagdollDef& def, const RagdollPose& pose, int bone) {
   const BoneDef& b = def.bones[std::size_t(bone)];
   if (b.parent < 0) return {};
   return to_rotation_vector(turn_between(b, pose.bones[std::size_t(b.parent)].orientation,
                                          pose.bones[std::size_t(bone)].orientation));
 }
 
-float beyond_limits(const RagdollDef& def, const RagdollPose& pose, int bone) {
+float limit_violation(const RagdollDef& def, const RagdollPose& pose, int bone) {
   const BoneDef& b = def.bones[std::size_t(bone)];
   if (b.parent < 0 || !is_limited(b.joint)) return 0.0f;
   const auto half = [](const Limits& l) { return 0.5f * (l.high - l.low); };
   const Quat from_middle =
       conjugate(middle_turn(b.joint)) * turn_between(b, pose.bones[std::size_t(b.parent)].orientation,
                                                      pose.bones[std::size_t(bone)].orientation);
-  const float twist = absolute(twist_of(from_middle)) - half(b.joint.turn);
+  const float twist = absolute(twist_of(from_middle)) - half(b.joint.twist);
   if (b.joint.kind == BoneJointKind::hinge) return max(twist, 0.0f);
   // The swing is the shortest turn of x; where its ellipse is left along the way to it.
   const Vec3 x = rotate(from_middle, {1, 0, 0});

@@ -45,7 +45,7 @@ std::vector<float> shifted_masses(const RagdollDef& def, const std::vector<MassP
 }  // namespace
 
 Result<RagdollDef> stabilized(const RagdollDef& def, const StableDef& stable) {
-  if (const Error e = check_ragdoll(def); e.code != ErrorCode::none) return e;
+  if (const Error e = check_ragdoll(def)) return e;
   for (const float ratio : {stable.mass_ratio, stable.slenderness, stable.inertia_ratio}) {
     if (!(ratio >= 1.0f && ratio <= 1.0e9f))
       return make_error(ErrorCode::invalid_argument,

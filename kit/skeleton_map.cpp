@@ -120,10 +120,10 @@ void fit_chain(const SkeletonMap& map, int end, int last, const Transform& led, 
 
 Result<SkeletonMap> make_skeleton_map(const RagdollDef& def, const Skeleton& skeleton,
                                       std::span<const MappedBone> pairs) {
-  if (const Error e = check_ragdoll(def); e.code != ErrorCode::none) return e;
-  if (const Error e = check_skeleton(skeleton); e.code != ErrorCode::none) return e;
+  if (const Error e = check_ragdoll(def)) return e;
+  if (const Error e = check_skeleton(skeleton)) return e;
   SkeletonMap map;
-  if (const Error e = pair_up(def, skeleton, pairs, map.joint_of_bone); e.code != ErrorCode::none) return e;
+  if (const Error e = pair_up(def, skeleton, pairs, map.joint_of_bone)) return e;
   const std::size_t count = skeleton.joints.size();
   map.joints.resize(count);
   std::vector<Transform> local(count), model(count);
@@ -138,7 +138,7 @@ Result<SkeletonMap> make_skeleton_map(const RagdollDef& def, const Skeleton& ske
     map.joints[joint].bone = int(bone);
     map.joint_from_bone.push_back(unit(inverse_times(model[joint], rest.bones[bone])));
   }
-  if (const Error e = check_order(def, skeleton, map); e.code != ErrorCode::none) return e;
+  if (const Error e = check_order(def, skeleton, map)) return e;
   find_chains(skeleton, map);
   return map;
 }

@@ -78,7 +78,7 @@ class Drive {
       front = max(front, dot(wheel.mount, def_.forward));
       rear = min(rear, dot(wheel.mount, def_.forward));
     }
-    const SinCos most = sin_cos(def_.lean.most);
+    const SinCos most = sin_cos(def_.lean.max_angle);
     const float speed = dot(world_.linear_velocity(body_), forward_);
     const float angle =
         atan2((front - rear) * length(world_.gravity()) * most.sin, max(square(speed), 1.0e-6f) * most.cos);
@@ -93,7 +93,7 @@ class Drive {
     const Vec3 high = gravity / -pull;
     const Vec3 spin = world_.angular_velocity(body_);
     const float speed = dot(world_.linear_velocity(body_), forward_);
-    const SinCos most = sin_cos(def_.lean.most);
+    const SinCos most = sin_cos(def_.lean.max_angle);
     const float bend = clamp_to(speed * dot(spin, high) / pull, most.sin / most.cos);
     const Vec3 target = normalized(high + bend * normalized(cross(high, forward_)));
     float height = 0.0f, touching = 0.0f;
@@ -203,7 +203,7 @@ class Drive {
   // Of the engine, if the clutch held.
   float driven_speed() const {
     float driven = 0.0f;
-    for (std::size_t i = 0; i < count(); ++i) driven += def_.wheels[i].drive * s_.wheels[i].spin * ratio();
+    for (std::size_t i = 0; i < count(); ++i) driven += def_.wheels[i].drive * s_.wheels[i].angular_velocity * ratio();
     return driven;
   }
 
@@ -243,7 +243,7 @@ class Drive {
     float torque[VehicleState::kMaxWheels];
     for (std::size_t i = 0; i < count(); ++i) torque[i] = def_.wheels[i].drive * clutch * gear;
     for (const AxleDef& axle : def_.axles) {
-      const float apart = s_.wheels[axle.left].spin - s_.wheels[axle.right].spin;
+      const float apart = s_.wheels[axle.left].angular_velocity - s_.wheels[axle.right].angular_velocity;
       const float across =
           clamp_to(apart / (h * (1.0f / rolling_[axle.left].inertia + 1.0f / rolling_[axle.right].inertia)),
                    axle.lock);
@@ -263,10 +263,10 @@ class Drive {
   void bind(const TrackDef& track) {
     float momentum = 0.0f, inertia = 0.0f;
     for (const int wheel : track.wheels) {
-      momentum += rolling_[wheel].inertia * s_.wheels[wheel].spin;
+      momentum += rolling_[wheel].inertia * s_.wheels[wheel].angular_velocity;
       inertia += rolling_[wheel].inertia;
     }
-    for (const int wheel : track.wheels) s_.wheels[wheel].spin = momentum / inertia;
+    for (const int wheel : track.wheels) s_.wheels[wheel].angular_velocity = momentum / inertia;
   }
 
   void turn_wheel(std::size_t i, float torque, float h) {
@@ -276,12 +276,12 @@ class Drive {
     float slope = 0.0f, pull = 0.0f;  // of the tyre's force with the wheel's speed; the force along
     if (w.on_ground) pull = tyre(d, w, r, slope);
     const float inertia = r.inertia;
-    w.spin += h * (torque - d.radius * pull) / inertia;
+    w.angular_velocity += h * (torque - d.radius * pull) / inertia;
     // Brakes and rolling resistance stop it and never turn it back.
     const float hold = in_.brake * d.brake + in_.handbrake * d.handbrake +
                        (w.on_ground ? d.tyre.rolling * w.load * d.radius : 0.0f);
-    w.spin -= clamp_to(w.spin, h * hold / inertia);
-    w.angle += h * w.spin;
+    w.angular_velocity -= clamp_to(w.angular_velocity, h * hold / inertia);
+    w.angle += h * w.angular_velocity;
     if (w.on_ground) {
       float unused = 0.0f;
       const float along = tyre(d, w, r, unused);
@@ -292,7 +292,7 @@ class Drive {
   // Force along; that across is left in side_. Similarity: slips over those of the peaks are one vector.
   float tyre(const WheelDef& d, WheelState& w, const Rolling& r, float& slope) {
     const float ground = max(absolute(r.speed), kSlowest);
-    w.slip = (w.spin * d.radius - r.speed) / ground;
+    w.slip = (w.angular_velocity * d.radius - r.speed) / ground;
     w.slip_angle = atan2(r.side, ground);
     const float x = w.slip / d.tyre.peak_slip, y = -w.slip_angle / d.tyre.peak_angle;
     const float s = std::sqrt(x * x + y * y);
@@ -302,7 +302,7 @@ class Drive {
     // Nobody is stopped more than it moves: what rests on the wheel, within the step.
     const float bears = w.load / 9.81f / seconds_;
     side_ = clamp_to(most * share * y, absolute(r.side) * bears);
-    return clamp_to(most * share * x, absolute(w.spin * d.radius - r.speed) * bears + most * 0.02f);
+    return clamp_to(most * share * x, absolute(w.angular_velocity * d.radius - r.speed) * bears + most * 0.02f);
   }
 
   void push() {
@@ -363,7 +363,7 @@ Error check_vehicle(const VehicleDef& def) {
   }
   for (const WheelDef& wheel : def.wheels) {
     const Error e = check_wheel(wheel);
-    if (e.code != ErrorCode::none) return e;
+    if (e) return e;
   }
   for (const AxleDef& axle : def.axles) {
     if (axle.left < 0 || axle.right < 0 || std::size_t(axle.left) >= count ||
@@ -381,7 +381,7 @@ Error check_vehicle(const VehicleDef& def) {
     }
   }
   if (!(def.lean.frequency >= 0.0f && def.lean.frequency <= 10.0f) ||
-      !(def.lean.most > 0.0f && def.lean.most < 1.5f)) {
+      !(def.lean.max_angle > 0.0f && def.lean.max_angle < 1.5f)) {
     return refuse("the lean's frequency or angle", double(def.lean.frequency));
   }
   if (def.engine.curve.empty() || !is_positive(def.engine.inertia) || !is_positive(def.engine.idle)) {
@@ -400,7 +400,7 @@ Error check_vehicle(const VehicleDef& def) {
 Error drive_vehicle(World& world, const VehicleDef& def, BodyId body, VehicleState& state,
                     const VehicleInput& input, float seconds) {
   const Error e = check_vehicle(def);
-  if (e.code != ErrorCode::none) return e;
+  if (e) return e;
   if (!world.exists(body))
     return make_error(ErrorCode::stale_id, "vehicle: body %u does not exist in this world", body.index);
   if (!(seconds > 0.0f && seconds <= 0.1f)) return refuse("seconds", double(seconds));

@@ -39,7 +39,7 @@ Sym3 read_inertia(const Field& field) {
   for (std::size_t i = 0; i < 6; ++i) part[i] = field.element(i).real(i < 3 ? Range::above(0) : Range::any());
   const Sym3 inertia{part[0], part[1], part[2], part[3], part[4], part[5]};
   const Error error = check_inertia(inertia);
-  if (error.code != ErrorCode::none) field.fail(error.message);
+  if (error) field.fail(error.message);
   return inertia;
 }
 

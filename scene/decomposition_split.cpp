@@ -43,7 +43,7 @@ float scale_of(const Decomposition& made) {
     const Result<MassProperties> mass = mass_properties(hull, 1.0f);
     if (mass) sum += double(mass->mass);
   }
-  const double wanted = made.report.solid_volume;
+  const double wanted = made.stats.solid_volume;
   return sum > 0.0 && wanted > 0.0 ? float(wanted / sum) : 1.0f;
 }
 
@@ -85,7 +85,7 @@ std::optional<SceneError> split_decompositions(Scene& scene, const std::string& 
                             "/bodies/" + std::to_string(b) + "/shapes/" + std::to_string(s) + "/mesh",
                             made.error().message};
         }
-        const std::string findings = describe_findings(made->report);
+        const std::string findings = describe_findings(made->stats);
         if (!findings.empty())
           scene.notes.push_back("mesh \"" + scene.meshes[std::size_t(whole->mesh)].name + "\": " + findings);
         Split& split = splits[key];
@@ -107,16 +107,16 @@ std::optional<SceneError> split_decompositions(Scene& scene, const std::string& 
   return std::nullopt;
 }
 
-std::string describe_findings(const DecompositionReport& report) {
+std::string describe_findings(const DecompositionStats& report) {
   const MeshFindings& mesh = report.mesh;
   std::string out;
   const auto add = [&](const std::string& words) { out += (out.empty() ? "" : "; ") + words; };
   if (mesh.open_edges > 0) add(std::to_string(mesh.open_edges) + " open edges");
-  if (mesh.crowded_edges > 0) add(std::to_string(mesh.crowded_edges) + " edges of more than two triangles");
-  if (mesh.turned_triangles > 0)
-    add(std::to_string(mesh.turned_triangles) + " triangles wound the wrong way were turned");
-  if (mesh.left_out_triangles > 0)
-    add(std::to_string(mesh.left_out_triangles) + " triangles without area were left out");
+  if (mesh.non_manifold_edges > 0) add(std::to_string(mesh.non_manifold_edges) + " edges of more than two triangles");
+  if (mesh.flipped_triangles > 0)
+    add(std::to_string(mesh.flipped_triangles) + " triangles wound the wrong way were turned");
+  if (mesh.degenerate_triangles > 0)
+    add(std::to_string(mesh.degenerate_triangles) + " triangles without area were left out");
   if (mesh.shell) {
     add("taken for a sheet of " + in_words(double(report.shell_thickness)) + " m");
   } else if (mesh.open_edges > 0) {

@@ -41,6 +41,6 @@ std::optional<SceneError> split_decompositions(Scene& scene, const std::string& 
                                                const SplitOptions& options = {});
 
 // What there is to say of a mesh that is not a closed solid, or of hulls that are not as close as was asked for; empty if nothing.
-std::string describe_findings(const DecompositionReport& report);
+std::string describe_findings(const DecompositionStats& report);
 
 }  // namespace gyre

@@ -149,7 +149,7 @@ SceneJoint SceneRunner::final_joint(std::size_t index) const {
     def.axis_b = rotate(now, rotate_inverse(start, *def.axis_b));
   }
   // Zero of a hinge or slider is the pose in which it is made: the travel so far is taken off what refers to it.
-  const float travelled = world_.joint_reading(joints_[index]).position;
+  const float travelled = world_.joint_state(joints_[index]).position;
   if (def.kind == JointKind::hinge || def.kind == JointKind::slider) {
     if (def.limits) def.limits = Limits{def.limits->low - travelled, def.limits->high - travelled};
     if (def.motor.target_position) *def.motor.target_position -= travelled;

@@ -51,7 +51,7 @@ TEST(SceneRunner, NamesAndBodies) {
   EXPECT_EQ(runner.body_of(runner.bodies()[0])->name, "one");
   EXPECT_EQ(runner.body_of(runner.bodies()[1])->name, "two");
   EXPECT_EQ(runner.body_of(BodyId{}), nullptr);
-  EXPECT_EQ(runner.world().counts().bodies, 2);
+  EXPECT_EQ(runner.world().stats().bodies, 2);
 }
 
 SceneRunner run_file(const char* name, double seconds) {

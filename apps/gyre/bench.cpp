@@ -65,7 +65,7 @@ class TimedEngine final : public bench::Engine {
       stages_[i].name = times_.stages[i].name;
       stages_[i].ms += 1e3 * times_.stages[i].seconds;
     }
-    const WorldCounts counts = engine_.world().counts();
+    const WorldStats counts = engine_.world().stats();
     touching += counts.touching;
     points += counts.contact_points;
   }

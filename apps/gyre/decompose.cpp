@@ -69,7 +69,7 @@ struct Run {
 };
 
 void print_text(const Run& run) {
-  const DecompositionReport& r = run.made.report;
+  const DecompositionStats& r = run.made.stats;
   const auto share = [&](float length) {
     return rounded(double(length)) + " m (" + rounded(double(length) / double(r.size)) + " of the size)";
   };
@@ -90,7 +90,7 @@ void print_text(const Run& run) {
 }
 
 void print_json(const Run& run) {
-  const DecompositionReport& r = run.made.report;
+  const DecompositionStats& r = run.made.stats;
   JsonWriter json;
   json.begin_object();
   json.field("hulls", std::int64_t(run.made.hulls.size()));
@@ -111,9 +111,9 @@ void print_json(const Run& run) {
   json.field("shell_thickness", r.shell_thickness);
   json.key("mesh").begin_object();
   json.field("open_edges", std::int64_t(r.mesh.open_edges));
-  json.field("crowded_edges", std::int64_t(r.mesh.crowded_edges));
-  json.field("turned_triangles", std::int64_t(r.mesh.turned_triangles));
-  json.field("left_out_triangles", std::int64_t(r.mesh.left_out_triangles));
+  json.field("crowded_edges", std::int64_t(r.mesh.non_manifold_edges));
+  json.field("turned_triangles", std::int64_t(r.mesh.flipped_triangles));
+  json.field("left_out_triangles", std::int64_t(r.mesh.degenerate_triangles));
   json.field("openness", r.mesh.openness);
   json.field("shell", r.mesh.shell);
   json.end_object();

@@ -40,7 +40,7 @@ std::string hash_text(const World& world) {
 
 std::string summary_text(const SceneRunner& runner, const RunFigures& figures) {
   const World& world = runner.world();
-  const WorldCounts counts = world.counts();
+  const WorldStats counts = world.stats();
   const Energy energy = world.energy();
   const WallTimes times = wall_times(figures.step_ms);
   std::string out;
@@ -85,7 +85,7 @@ std::string explanations_text(const RunFigures& figures) {
 
 std::string summary_json(const SceneRunner& runner, const RunFigures& figures) {
   const World& world = runner.world();
-  const WorldCounts counts = world.counts();
+  const WorldStats counts = world.stats();
   const Energy energy = world.energy();
   const WallTimes times = wall_times(figures.step_ms);
   JsonWriter json;

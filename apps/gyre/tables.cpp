@@ -70,7 +70,7 @@ bool StatsTable::open(const std::string& path) {
 
 bool StatsTable::add_row(const SceneRunner& runner, double step_ms) {
   const World& world = runner.world();
-  const WorldCounts counts = world.counts();
+  const WorldStats counts = world.stats();
   const Energy energy = world.energy();
   const Momentum momentum = world.momentum();
   row_ = std::to_string(runner.steps());

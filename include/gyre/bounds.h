@@ -1,9 +1,9 @@
 // Bounding volumes: simple shapes around points. For each kind: fit, merge, overlap, contains, and what it costs (volume and
 // surface). How tight they are for a mesh is printed by `gyre info`; docs/broad_phases.md says what each is good for.
 //
-// Points are in metres, in any one frame; what is fitted is in the same frame. Every fit holds all its points: contains()
-// says so for each of them. All fits refuse no points, and points that are not finite or beyond 1e9 m, with the point's
-// number; one point, and points on one line or plane, are fine unless it is said otherwise.
+// Points are in metres, in any one frame, and the fitted volume is in the same frame. It contains all points: contains() is true for each
+// of them. All fits refuse an empty set of points, and points that are not finite or beyond 1e9 m, with the point's number. One point, and
+// points on one line or plane, are allowed unless the fit says otherwise.
 #pragma once
 
 #include <gyre/geometry.h>
@@ -22,10 +22,10 @@ struct BoundingSphere {
   float radius = 0.0f;
 };
 
-// In two passes over the points; at most about a fifth larger in radius than it need be, usually a twentieth.
+// In two passes over the points. Its radius is at most about a fifth above the smallest, usually a twentieth.
 // J. Ritter, "An Efficient Bounding Sphere", Graphics Gems, 1990.
 Result<BoundingSphere> fit_sphere_fast(std::span<const Vec3> points);
-// The smallest there is. E. Welzl, "Smallest Enclosing Disks (Balls and Ellipsoids)", 1991; with the farthest point
+// The smallest sphere. E. Welzl, "Smallest Enclosing Disks (Balls and Ellipsoids)", 1991; with the farthest point
 // first: B. Gaertner, "Fast and Robust Smallest Enclosing Balls", 1999.
 Result<BoundingSphere> fit_sphere(std::span<const Vec3> points);
 // The smallest sphere around both.
@@ -43,7 +43,7 @@ bool contains(const Aabb& box, Vec3 point);
 double volume(const Aabb& box);
 double surface_area(const Aabb& box);
 
-// A box that may be turned: center + orientation * (half_extents times -1 to 1 each).
+// A box of any orientation: center + orientation * (half_extents times -1 to 1 each).
 struct OrientedBox {
   Vec3 center{};
   Vec3 half_extents{};
@@ -51,14 +51,14 @@ struct OrientedBox {
 };
 
 // Along the principal axes of the surface of the points' convex hull. S. Gottschalk, M. Lin, D. Manocha, "OBBTree: A
-// Hierarchical Structure for Rapid Interference Detection", 1996. May have several times the least volume in bad cases:
-// a cube has no principal axes.
+// Hierarchical Structure for Rapid Interference Detection", 1996. In bad cases it has several times the least volume, since a cube has
+// no principal axes.
 Result<OrientedBox> fit_oriented_box_fast(std::span<const Vec3> points);
-// A search for the least volume: with one axis given, the best box is exact (rotating calipers); axes tried are the normals
-// of the hull's faces, and right angles to two edges each of up to 64 different edge directions, the longest first. The best
-// few are turned about each of their own axes in turn until none gets smaller. So the volume is never above that of the
-// smallest box with a side on a face of the hull, and is the least where a side of that box holds two edges of those tried.
-// J. O'Rourke, "Finding Minimal Enclosing Boxes", 1985 (that sides hold edges); H. Freeman, R. Shapira, 1975 (calipers);
+// A search for the least volume. For a given axis the best box is exact (rotating calipers). The search tries the normals of the hull's
+// faces, and the normals of pairs of up to 64 edge directions, the longest first. Then it rotates the best few boxes about each of their own
+// axes until none gets smaller. So the volume is never above that of the smallest box with a side on a face of the hull. It is the least
+// volume if a side of the smallest box contains two edges of those tried.
+// J. O'Rourke, "Finding Minimal Enclosing Boxes", 1985 (sides contain edges); H. Freeman, R. Shapira, 1975 (calipers);
 // C. Chang, B. Gorissen, S. Melchior, "Fast Oriented Bounding Box Optimization on the Rotation Group", 2011 (the descent).
 Result<OrientedBox> fit_oriented_box(std::span<const Vec3> points);
 // Around both: the smallest of the boxes along either's axes and of fit_oriented_box() of their corners.
@@ -78,11 +78,11 @@ struct BoundingCapsule {
   float radius = 0.0f;
 };
 
-// For a direction given, the radius is that of the smallest circle around the points seen along it, and the ends are as near
-// as the caps allow. The direction is the best of the principal axes and the longest way between points, bettered by a
-// search in steps down to 1e-4 rad; it need not be the best there is.
+// For a given direction, the radius is that of the smallest circle around the points projected along it, and the ends are as close as the
+// caps allow. The direction is the best of the principal axes and the longest distance between points, improved by a search in steps down
+// to 1e-4 rad. It need not be the optimal one.
 Result<BoundingCapsule> fit_capsule(std::span<const Vec3> points);
-// Around both; the larger one itself if it holds the other.
+// Around both; the larger one itself if it contains the other.
 BoundingCapsule merge(const BoundingCapsule& a, const BoundingCapsule& b);
 bool overlap(const BoundingCapsule& a, const BoundingCapsule& b);
 bool contains(const BoundingCapsule& capsule, Vec3 point);
@@ -91,7 +91,7 @@ double surface_area(const BoundingCapsule& capsule);
 
 // -------------------------------------------------------------------------------------------------------------- k-DOP
 
-// What lies between pairs of planes of fixed directions. J. Klosowski et al., "Efficient Collision Detection Using Bounding
+// The space between pairs of planes of fixed directions. J. Klosowski et al., "Efficient Collision Detection Using Bounding
 // Volume Hierarchies of k-DOPs", 1998. The number counts the planes.
 enum class KDopKind : std::uint8_t {
   k14,  // the axes, and the four diagonals of a cube
@@ -102,7 +102,7 @@ constexpr int kMaxKDopDirections = 13;
 
 struct KDop {
   KDopKind kind = KDopKind::k14;
-  // By direction (k_dop_direction): low <= dot(direction, p) <= high. Directions have parts of 1, 0 and -1; not unit length.
+  // By direction (k_dop_direction): low <= dot(direction, p) <= high. Components of directions are 1, 0 and -1; not unit length.
   float low[kMaxKDopDirections] = {};
   float high[kMaxKDopDirections] = {};
 };
@@ -110,9 +110,9 @@ int k_dop_directions(KDopKind kind);  // how many: half of the planes
 Vec3 k_dop_direction(KDopKind kind, int index);
 
 Result<KDop> fit_k_dop(std::span<const Vec3> points, KDopKind kind);
-// Both of one kind. The smallest of that kind around both.
+// The smallest k-DOP around both, which must be of one kind.
 KDop merge(const KDop& a, const KDop& b);
-// Whether no plane of their directions parts the two: true for all that overlap, and for some that nearly do.
+// Whether no plane of their directions separates the two: true for all that overlap, and for some that nearly do.
 bool overlap(const KDop& a, const KDop& b);
 bool contains(const KDop& dop, Vec3 point);
 double volume(const KDop& dop);
@@ -120,8 +120,8 @@ double surface_area(const KDop& dop);
 
 // --------------------------------------------------------------------------------------------------------------- hull
 
-// The convex hull is cook_hull() of gyre/geometry.h, which refuses points on one line or plane and may leave points out by a
-// relative 1e-6. Of cooked hulls:
+// cook_hull() of gyre/geometry.h makes the convex hull. It refuses points on one line or plane, and points may lie outside of it by a
+// relative 1e-6. For cooked hulls:
 Result<Geometry> merge_hulls(const Geometry& a, const Geometry& b);  // the hull of both
 bool hulls_overlap(const Geometry& a, const Geometry& b);            // by the distance of GJK; in one frame
 double hull_volume(const Geometry& hull);
@@ -148,7 +148,7 @@ struct BoundCost {
   double volume = 0.0;        // m^3
   double surface_area = 0.0;  // m^2
 };
-// What a fit of this kind costs. Its volume over that of what it bounds tells how tight it is.
+// Volume and surface of a fit of this kind. The ratio of its volume to that of the bounded mesh measures how tight it is.
 Result<BoundCost> bound_cost(std::span<const Vec3> points, BoundKind kind);
 
 }  // namespace gyre

@@ -1,12 +1,12 @@
-// To see inside a world: tables of what the engine knows, lines and points to draw, times of the stages, why a body is awake,
-// and whether all structures hang together. Free functions on a World; none of them changes a bit of the simulation.
+// Debugging: tables of bodies, contacts, boxes and joints, lines and points to draw, times of the stages, the reason why a body is awake,
+// and a check of all internal structures. Free functions on a World. None of them changes a bit of the simulation.
 //
 // Arrays are flat, so that a renderer or a JavaScript typed array can take each as it is: "3 a body" means that body i has
-// elements 3 * i to 3 * i + 2. Places are floats relative to an origin that the caller chooses (usually the camera), so
-// that they are exact far from the world's origin; directions are in world axes. SI units.
+// elements 3 * i to 3 * i + 2. Positions are floats relative to an origin that the caller chooses (usually the camera), so that they are
+// precise far from the world's origin. Directions are in world axes. SI units.
 //
-// Every function that fills a struct clears it first and keeps its memory: filling the same one again allocates nothing
-// that was there before. Read between steps; what belongs to a step (contacts, forces) is that of the last one.
+// Every function that fills a struct clears it first and keeps its memory, so a struct that is filled again needs no new memory for the
+// same size. Call them between steps. Contacts and forces are those of the last step.
 #pragma once
 
 #include <gyre/geometry.h>
@@ -23,14 +23,14 @@ namespace gyre {
 
 // ------------------------------------------------------------------------------------------------------------- bodies
 
-// How near to sleep a body is.
+// How close a body is to sleep.
 enum class RestState : std::uint8_t {
   fixed,      // never moves
   kinematic,  // moved by the program, never sleeps
-  moving,     // awake, and its rest timer stands at zero
+  moving,     // awake, its rest timer is at zero
   resting,    // awake, hardly moving: its rest timer runs
   asleep,
-  frozen,  // its state stopped being finite; it is kept where it last was
+  frozen,  // its state stopped being finite; it stays at its last pose
 };
 constexpr int kRestStateCount = 6;
 const char* to_string(RestState state);
@@ -41,15 +41,15 @@ constexpr std::uint32_t kNoIsland = 0xffffffffu;
 struct BodyTable {
   std::vector<BodyId> ids;
   std::vector<float> centers;      // 3 a body: centre of mass, m
-  std::vector<float> axes;         // 4 a body: x y z w, turns the principal axes of inertia into the world
-  std::vector<float> semi_axes;    // 3 a body: of the solid ellipsoid of its mass and inertia, m; else 0
-  std::vector<float> velocities;   // 3 a body: of the centre of mass, m/s
-  std::vector<float> spins;        // 3 a body: angular velocity, rad/s
-  std::vector<float> speeds;       // 1 a body: of its centre and of its farthest point about that, m/s
-  std::vector<float> rest_speeds;  // 1 a body: at or below it the speed counts as still, m/s
-  std::vector<float> still_times;  // 1 a body: for how long it has been still, s
+  std::vector<float> axes;         // 4 a body: x y z w, the world orientation of the principal axes of inertia
+  std::vector<float> semi_axes;    // 3 a body: of the solid ellipsoid with its mass and inertia, m; 0 if it has none
+  std::vector<float> linear_velocities;   // 3 a body: of the centre of mass, m/s
+  std::vector<float> angular_velocities;  // 3 a body: rad/s
+  std::vector<float> speeds;       // 1 a body: of the centre of mass plus that of the farthest point about it, m/s
+  std::vector<float> rest_speeds;  // 1 a body: a body at or below this speed is still, m/s
+  std::vector<float> still_times;  // 1 a body: how long it has been still, s
   std::vector<RestState> states;   // 1 a body
-  // Islands: dynamic bodies that hang together by contacts and joints. They rest and wake together.
+  // Islands: dynamic bodies that contacts and joints connect. They fall asleep and wake together.
   std::vector<std::uint32_t> islands;       // 1 a body: lowest index in its island; kNoIsland if not dynamic
   std::vector<std::uint32_t> island_sizes;  // 1 a body: how many bodies its island has; 0 if not dynamic
   std::uint32_t island_count = 0;
@@ -61,10 +61,10 @@ void read_bodies(const World& world, DVec3 origin, BodyTable& out);
 // ----------------------------------------------------------------------------------------------------------- contacts
 
 enum class ContactState : std::uint8_t {
-  idle,      // the surfaces are close: looked after, but it bore nothing in the last step
+  idle,      // the surfaces are close, but the contact bore no load in the last step
   pressing,  // bears load, friction holds
   sliding,   // bears load, friction is at its limit
-  sensor,    // reports and touches nothing
+  sensor,    // reports and bears no load
 };
 constexpr int kContactStateCount = 4;
 const char* to_string(ContactState state);
@@ -77,13 +77,13 @@ struct ContactTable {
   std::vector<std::uint32_t> shapes;   // 2 a point: ShapeId::index of a and b
   std::vector<float> positions;        // 3 a point: midway between the surfaces, m
   std::vector<float> normals;          // 3 a point: unit, from a to b
-  std::vector<float> tangents;         // 6 a point: two unit vectors that make the basis with the normal
+  std::vector<float> tangents;         // 6 a point: two unit vectors, a basis together with the normal
   std::vector<float> separations;      // 1 a point: m, negative: overlap
   std::vector<float> forces;           // 1 a point: along the normal, mean over the last step, N
   std::vector<float> friction_forces;  // 3 a point: on b, N, of the manifold; at its first point only
-  std::vector<float> scales;           // 1 a point: size of the smaller shape, m: how large to draw it
+  std::vector<float> scales;           // 1 a point: size of the smaller shape, m, as a scale for drawing
   std::vector<ContactState> states;    // 1 a point
-  std::vector<std::uint8_t> colors;    // 1 a point: the solver's group that had it; kNoColor if none had
+  std::vector<std::uint8_t> colors;    // 1 a point: colour of the constraint graph; kNoColor if it has none
 
   std::size_t size() const { return separations.size(); }
 };
@@ -93,9 +93,9 @@ void read_contacts(const World& world, DVec3 origin, ContactTable& out);
 
 enum class BoxKind : std::uint8_t {
   tight,        // the smallest box of a shape
-  fat,          // the box that the broad phase knows it by
-  fixed_tree,   // a node of the broad phase over what never moves
-  moving_tree,  // a node over what may move
+  fat,          // the enlarged box of a shape in the broad phase
+  fixed_tree,   // a node of the broad phase's tree of fixed bodies
+  moving_tree,  // a node of its tree of moving bodies
 };
 constexpr int kBoxKindCount = 4;
 constexpr std::uint32_t box_bit(BoxKind kind) { return 1u << int(kind); }
@@ -103,7 +103,7 @@ constexpr std::uint32_t kAllBoxes = (1u << kBoxKindCount) - 1;
 
 constexpr std::uint32_t kNoShape = 0xffffffffu;
 
-// Boxes of the kinds that were asked for; by kind, then by shape or from the root down. Planes have none. Only the broad phase
+// Boxes of the given kinds (box_bit), ordered by kind, then by shape or from the root down. Planes have no boxes. Only the broad phase
 // `bvh` has nodes.
 struct BoxTable {
   std::vector<float> corners;         // 6 a box: low corner, high corner, m
@@ -127,7 +127,8 @@ struct JointTable {
   std::vector<std::uint8_t> has_limits;  // 1 a joint; distance: 1 for a rope, 0 for a rod or spring
   std::vector<float> limits;     // 2 a joint: low and high, rad (hinge) or m; 0 without limits, 1e30: no end
   std::vector<float> positions;  // 1 a joint: angle (rad), slide or length (m)
-  std::vector<float> motors;     // 2 a joint, of its main axis: speed (or way to the target, rad or m), and greatest force; 0: none
+  // 2 a joint, of its main axis: target velocity (or the distance left to the target position, rad or m) and maximum force; 0: no motor.
+  std::vector<float> motors;
   std::vector<float> forces;     // 3 a joint: on b, mean over the last step, N
   std::vector<float> torques;    // 3 a joint: on b, N m
 
@@ -141,7 +142,7 @@ void read_joints(const World& world, DVec3 origin, JointTable& out);
 // of curved shapes in `segments` pieces a circle, a grid of 10 m for a plane.
 void add_wireframe(const AnyShape& shape, std::vector<float>& lines, int segments = 32);
 
-// What can be drawn; each layer is a run of its own in the arrays.
+// Layers of a drawing; each is a range of its own in the arrays.
 enum class DrawLayer : std::uint8_t {
   geometry,  // wireframes of shapes
   tight_bounds,
@@ -154,29 +155,30 @@ enum class DrawLayer : std::uint8_t {
   mass_centers,     // a point and the principal axes
   inertia,          // the equivalent ellipsoid
   velocities,       // of the centre of mass, and the angular velocity as a vector
-  joints,           // anchors, axes, limits, and the way from each body's centre to its anchor
-  islands,          // lines between the centres of bodies that touch or are joined, a colour an island
+  joints,           // anchors, axes, limits, and a line from each body's centre to its anchor
+  islands,          // lines between the centres of bodies that touch or are joined, one colour for each island
 };
 constexpr int kDrawLayerCount = 13;
 const char* to_string(DrawLayer layer);
 constexpr std::uint32_t draw_bit(DrawLayer layer) { return 1u << int(layer); }
 constexpr std::uint32_t kAllDrawLayers = (1u << kDrawLayerCount) - 1;
 
-// What the colours of geometry, bounds and mass centres tell.
+// The meaning of the colours of geometry, bounds and mass centres.
 enum class ColorBy : std::uint8_t { type, rest_state, island };
 
 struct DrawOptions {
   std::uint32_t layers = kAllDrawLayers;  // draw_bit of each
-  DVec3 origin{};                         // places are relative to it
+  DVec3 origin{};                         // positions are relative to it
   ColorBy color_by = ColorBy::type;
-  bool solver_colors = false;      // contacts are coloured by the solver's groups instead of by their state
-  float meters_per_newton = 0.0f;  // of forces; 0: the weight of the lighter body is as long as its reach
-  float velocity_seconds = 0.1f;  // a velocity is as long as the way in this time, a spin as turn times reach
-  int segments = 32;              // of a circle
-  std::size_t most_lines = 4000000;  // no more than these: then `cut` is set
+  bool solver_colors = false;      // contacts have the colours of the constraint graph instead of those of their state
+  float meters_per_newton = 0.0f;  // length of forces; 0: the weight of the lighter body is as long as its bounding radius
+  // Length of velocities: the distance covered in this time; angular velocities: that of a point at the bounding radius.
+  float velocity_seconds = 0.1f;
+  int segments = 32;                // of a circle
+  std::size_t max_lines = 4000000;  // further lines are left out and `cut` is set
 };
 
-// Lines and points as a renderer takes them: positions and colours per vertex, in separate arrays.
+// Lines and points for a renderer: positions and colours per vertex, in separate arrays.
 struct DebugDraw {
   struct Range {
     std::uint32_t first_line = 0, lines = 0;
@@ -187,7 +189,7 @@ struct DebugDraw {
   std::vector<float> point_positions;      // 3 a point, m
   std::vector<std::uint8_t> point_colors;  // 4 a point
   Range layers[kDrawLayerCount];           // by DrawLayer
-  bool cut = false;                        // most_lines was reached
+  bool cut = false;                        // max_lines was reached
 
   std::size_t line_count() const { return line_positions.size() / 6; }
   std::size_t point_count() const { return point_positions.size() / 3; }
@@ -196,8 +198,8 @@ void draw_debug(const World& world, const DrawOptions& options, DebugDraw& out);
 
 // -------------------------------------------------------------------------------------------------------------- times
 
-// Off in a new world, and then it costs nothing. Times never become part of the state: hashes, snapshots and recordings do
-// not know whether they were taken.
+// Timing of the stages. It is off in a new world and then costs nothing. Times are no part of the state: hashes, snapshots and recordings
+// are the same with and without timing.
 void set_timing(World& world, bool enabled);
 bool timing(const World& world);
 
@@ -209,31 +211,31 @@ struct StepCount {
   const char* name = "";
   std::uint64_t value = 0;
 };
-// The last step that was timed. The stages come in their order and are parts of the whole: their sum is not above it.
+// Times of the last timed step. The stages come in their order; their sum is at most the time of the whole step.
 struct StepTimes {
-  std::uint64_t steps = 0;  // how many steps have been timed; 0: none, and all else is zero
+  std::uint64_t steps = 0;  // number of timed steps; 0: none, and all else is zero
   double seconds = 0.0;     // the whole step
   std::vector<StageSeconds> stages;
-  std::vector<StepCount> counts;  // what there was to do
+  std::vector<StepCount> counts;  // amounts of work
 };
 void read_times(const World& world, StepTimes& out);
 
 // ------------------------------------------------------------------------------------------------------------ explain
 
-// Why a body is awake, or why it is not.
+// The reason why a body is awake or asleep.
 enum class AwakeReason : std::uint8_t {
   none,            // the id is stale
   fixed,           // never moves
   kinematic,       // moved by the program, never sleeps
   frozen,          // its state stopped being finite
-  asleep,          // it rests with its island
+  asleep,          // it sleeps with its island
   sleeping_off,    // World::set_sleeping(false)
   may_not_sleep,   // BodyDef::can_sleep is false
-  unsupported,     // nothing touches it and it is not joined to anything: it flies or falls
+  unsupported,     // nothing touches it and it has no joint: it flies or falls
   moving,          // faster than its rest speed
-  settling,        // still, but not for long enough yet
-  neighbor,        // it rests, but `cause` in its island does not
-  moving_support,  // its island lies on `cause`, a kinematic body that moves
+  settling,        // still, but not for long enough
+  neighbor,        // it is still, but `cause` in its island is not
+  moving_support,  // its island lies on `cause`, a moving kinematic body
 };
 constexpr int kAwakeReasonCount = 12;
 const char* to_string(AwakeReason reason);
@@ -241,7 +243,7 @@ const char* to_string(AwakeReason reason);
 struct TouchingBody {
   BodyId body{};
   int points = 0;
-  float force = 0.0f;  // N, normal force on the explained body, sum over the points, mean over the last step
+  float force = 0.0f;  // N, normal force on the explained body, summed over the points, mean over the last step
   float depth = 0.0f;  // m, deepest overlap; 0 if the surfaces do not overlap
   bool sliding = false;
 };
@@ -255,20 +257,20 @@ struct PullingJoint {
 
 struct Explanation {
   AwakeReason reason = AwakeReason::none;
-  BodyId cause{};                                // neighbor, moving_support: who keeps it awake
-  AwakeReason cause_reason = AwakeReason::none;  // neighbor: why that one is awake
+  BodyId cause{};                                // neighbor, moving_support: the body that keeps it awake
+  AwakeReason cause_reason = AwakeReason::none;  // neighbor: the reason why `cause` is awake
   float speed = 0.0f;                            // m/s, of its farthest point
-  float rest_speed = 0.0f;                       // m/s, slower counts as still
-  float still_seconds = 0.0f;                    // for how long it has been still
-  float seconds_to_sleep = 0.0f;                 // for how long it must be
-  int island_bodies = 0;                         // itself included; 0 if it is not dynamic
-  BodyId island{};                     // the body of the lowest index in it: the same for all of one island
+  float rest_speed = 0.0f;                       // m/s, a slower body is still
+  float still_seconds = 0.0f;                    // how long it has been still
+  float seconds_to_sleep = 0.0f;                 // how long it must be still
+  int island_bodies = 0;                         // the body included; 0 if it is not dynamic
+  BodyId island{};                     // the body of lowest index in the island: the same for all bodies of one island
   std::vector<TouchingBody> touching;  // by index; bodies that bear on it or are about to
   std::vector<PullingJoint> joints;    // by index
-  char words[1024] = {};               // all that as sentences, in English; cut if it is longer
+  char words[1024] = {};               // the explanation in English sentences; cut if it is longer
 };
 
-// What to call a body; without `of`, its index is its name.
+// Names of bodies in an explanation. Without `of` a body's index is its name.
 struct BodyNames {
   const char* (*of)(void* user, BodyId body) = nullptr;
   void* user = nullptr;
@@ -277,9 +279,9 @@ Explanation explain(const World& world, BodyId body, const BodyNames& names = {}
 
 // ----------------------------------------------------------------------------------------------------------- validate
 
-// Walks all structures of a world between two steps: that columns, lists and indices agree, that trees hold every box in
-// its place, that contacts are those of overlapping boxes, that the solver's groups share no body, that sleeping islands
-// hang together. Code none, or the first rule that is broken, in words. For tests and for hunting a bug; slow.
+// Checks all structures of a world between two steps: columns, lists and indices agree, trees contain every box in its place, contacts
+// are those of overlapping boxes, colours of the constraint graph share no body, sleeping islands are connected. The error names the
+// first broken rule. It is slow and meant for tests and for finding bugs.
 Error validate(const World& world);
 
 }  // namespace gyre

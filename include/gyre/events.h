@@ -1,4 +1,4 @@
-// What happened during a step, as arrays in an order that never depends on threads. Valid until the next change.
+// The events of a step, as arrays in an order that never depends on threads. Valid until the next change or step.
 #pragma once
 
 #include <gyre/ids.h>
@@ -15,33 +15,34 @@ struct ContactBegin {
   ShapeId shape_a{}, shape_b{};
   BodyId body_a{}, body_b{};
 };
-// Two shapes ceased to touch, or one of them was removed.
+// Two shapes stopped touching, or one of them was removed.
 struct ContactEnd {
   ShapeId shape_a{}, shape_b{};
 };
-// Two shapes met with speed.
+// Two shapes collided. Only collisions with a noticeable approach speed, relative to the size of the shapes, are listed.
 struct ContactHit {
   ShapeId shape_a{}, shape_b{};
   BodyId body_a{}, body_b{};
   DVec3 point{};
   Vec3 normal{};      // from a to b
-  float speed = 0;  // m/s, of approach along the normal
+  float approach_speed = 0;    // m/s, along the normal
   float impulse = 0;           // N s, along the normal, over the whole step and all points with this normal
   std::int32_t triangle = -1;  // of a mesh or height field, numbered as in CastHit (queries.h); else -1
 };
-// Two shapes touched in the last step and in the one before. Not an event: there may be very many, so World::persisting()
-// lists them for who asks.
-struct ContactPersist {
+// Two shapes touched in the last step and in the one before. It is not an event, since there may be very many such pairs:
+// World::contact_pairs() lists them on demand.
+struct ContactPair {
   ShapeId shape_a{}, shape_b{};
   BodyId body_a{}, body_b{};
   float impulse = 0;  // N s, along the normals, over the last step and all points
 };
-// Something entered or left a sensor. What passes through within one step, however fast, is told to enter and to leave in
-// that step. A sensor or a visitor that is a mesh or height field is met from both sides; two of these do not see each other.
+// A shape entered or left a sensor. A shape that passes through within one step, however fast, is reported to enter and to leave in
+// that step. A mesh or height field that is the sensor or the visitor is met from both sides; two of them do not detect each other.
 struct SensorTouch {
   ShapeId sensor{}, visitor{};
   bool begins = true;
 };
+// A joint broke and was removed.
 struct JointBroken {
   JointId joint{};
   float force = 0;   // N
@@ -62,18 +63,18 @@ struct Events {
   std::span<const SleepChange> sleep_changes{};
 };
 
-// How a step was cut, where time is not fixed.
-struct StepReport {
-  int parts = 0;         // the most in which the motion of a body was computed, if not fixed; 0: there were none
+// How the last step was divided, if TimeStepping is not fixed.
+struct StepStats {
+  int parts = 0;         // the largest number of parts in which a body's motion was computed; a fixed sub-step is two of them
   float error = 0;       // m, the largest estimated error of a body's points in the step
-  int impacts = 0;       // times of impact that were advanced to
-  bool bounded = false;  // there were more than Stepping::max_impacts: the rest of the step was a fixed one
+  int impacts = 0;       // times of impact at which the step was divided
+  bool bounded = false;  // Stepping::max_impacts was reached: what was left of the step was a fixed one
 };
 
-// Something that was refused or had to be contained. `message` names object, field, value and allowed range.
+// A refused call, or a report of the step. The message names the object, the field, the value and the allowed range.
 struct Problem {
   ErrorCode code = ErrorCode::none;
-  BodyId body{};  // null if it is not about a body
+  BodyId body{};  // null if it is not about one body
   char message[232] = {};
 };
 

@@ -1,5 +1,5 @@
 // Shapes. Simple ones are plain values; hulls, meshes and height fields are cooked once into shared, immutable data.
-// Lengths in metres, in the frame of the shape (which a ShapeDef places on a body).
+// Lengths are in metres, in the frame of the shape (ShapeDef::local gives its pose on a body).
 #pragma once
 
 #include <gyre/math.h>
@@ -45,7 +45,7 @@ struct Cone {
   float half_height = 0.5f;
 };
 
-// Everything on or below the plane {p : dot(normal, p) = offset}. Only for static and kinematic bodies.
+// The half-space on and below the plane {p : dot(normal, p) = offset}. Only for fixed and kinematic bodies.
 struct Plane {
   Vec3 normal{0, 1, 0};  // any length but zero
   float offset = 0.0f;
@@ -53,14 +53,14 @@ struct Plane {
 
 struct CookedGeometry;
 
-// A cooked hull, mesh or height field: immutable and shared; copying it copies a pointer.
+// A cooked hull, mesh or height field. It is immutable and shared: a copy copies a pointer.
 class Geometry {
  public:
   Geometry() = default;
   explicit Geometry(std::shared_ptr<const CookedGeometry> data) : data_(std::move(data)) {}
   explicit operator bool() const { return data_ != nullptr; }
   ShapeKind kind() const;
-  // A hash of everything that was cooked; equal data have equal hashes on every platform.
+  // A hash of the cooked data; equal data have equal hashes on every platform.
   std::uint64_t content_hash() const;
   const CookedGeometry* data() const { return data_.get(); }
   const std::shared_ptr<const CookedGeometry>& shared() const { return data_; }
@@ -89,13 +89,13 @@ HullView view_hull(const Geometry& hull);
 struct MeshDef {
   std::span<const Vec3> vertices{};
   std::span<const std::uint32_t> indices{};  // three a triangle, counter-clockwise seen from the solid side's outside
-  bool double_sided = false;               // also collide with the back of the triangles
-  // One a triangle, or none at all: SurfaceRule::id of its material; 0 = the material of the shape.
+  bool double_sided = false;               // the back of the triangles collides too
+  // Empty, or one number a triangle: SurfaceRule::id of its material; 0 = the material of the shape.
   std::span<const std::uint16_t> materials{};
 };
-// A triangle mesh for static and kinematic bodies. Triangles without area are left out; indices out of range and
-// non-finite vertices are refused with the triangle's or vertex's number. Edges that lie within a flat or concave
-// region are marked, so that nothing bumps into them.
+// A triangle mesh for fixed and kinematic bodies. Triangles without area are left out; indices out of range and non-finite vertices are
+// refused with the number of the triangle or vertex. Edges within a flat or concave region are marked as internal, so that sliding bodies
+// have no ghost collisions with them.
 Result<Geometry> cook_mesh(const MeshDef& def);
 struct MeshView {
   std::span<const Vec3> vertices{};
@@ -111,7 +111,7 @@ struct HeightFieldDef {
   std::uint32_t rows = 0;     // samples along z, at least 2
   float spacing = 1.0f;       // m
 };
-// A grid of heights for static and kinematic bodies; each cell is two triangles, solid below. Infinite heights are refused.
+// A grid of heights for fixed and kinematic bodies; each cell is two triangles, solid below. Infinite heights are refused.
 Result<Geometry> cook_height_field(const HeightFieldDef& def);
 struct HeightFieldView {
   std::span<const float> heights{};
@@ -123,7 +123,7 @@ HeightFieldView view_height_field(const Geometry& field);
 
 // ---------------------------------------------------------------------------------------------------- mass properties
 
-// Mass (kg), centre of mass (m) and inertia tensor about the centre of mass (kg m^2), in the frame of what was measured.
+// Mass (kg), centre of mass (m) and inertia tensor about the centre of mass (kg m^2), in the frame of the shape or body.
 struct MassProperties {
   float mass = 0.0f;
   Vec3 center{};
@@ -139,14 +139,14 @@ MassProperties ellipsoid_mass(Vec3 semi_axes, float density);
 MassProperties tetrahedron_mass(Vec3 a, Vec3 b, Vec3 c, Vec3 d, float density);
 // Exact volume integrals over a closed triangle mesh; the error names the first open or inconsistent edge.
 Result<MassProperties> mesh_mass(std::span<const Vec3> vertices, std::span<const std::uint32_t> indices, float density);
-// An estimate by counting voxels (`resolution` along the longest side) by ray parity: a cross-check of the exact
-// integrals, and the way for meshes with holes. Error about 1/resolution.
+// An estimate that counts voxels (`resolution` along the longest side) by ray parity: a cross-check of the exact integrals, and the method
+// for meshes with holes. The relative error is about 1/resolution.
 Result<MassProperties> voxel_mass(std::span<const Vec3> vertices, std::span<const std::uint32_t> indices, float density,
                                   int resolution = 64);
 
 // The same body seen from another frame: p -> t * p.
 MassProperties transformed(const MassProperties& mass, const Transform& t);
-// Parts joined rigidly, by the parallel-axis theorem (Huygens-Steiner), summed about the common centre of mass.
+// The sum of rigidly joined parts about their common centre of mass, by the parallel-axis theorem (Huygens-Steiner).
 MassProperties combined(std::span<const MassProperties> parts);
 
 // Principal moments (kg m^2, ascending) and the orientation of the principal axes: inertia = R diag(moments) R^T.
@@ -155,8 +155,8 @@ struct PrincipalAxes {
   Quat orientation{};
 };
 PrincipalAxes principal_axes(const Sym3& inertia);
-// Whether a body can have this inertia tensor: positive, and no principal moment above the sum of the other two
-// (within a relative 1e-4). The error names the axis.
+// Checks that a body can have this inertia tensor: its principal moments are positive and none is above the sum of the other two (within
+// a relative 1e-4). The error names the axis.
 Error check_inertia(const Sym3& inertia);
 
 }  // namespace gyre

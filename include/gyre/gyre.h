@@ -1,4 +1,4 @@
-// The one header most users include.
+// The header that most users include.
 #pragma once
 
 #include <gyre/defs.h>
@@ -10,4 +10,5 @@
 #include <gyre/memory.h>
 #include <gyre/queries.h>
 #include <gyre/result.h>
+#include <gyre/stepping.h>
 #include <gyre/world.h>

@@ -1,11 +1,11 @@
-// The value types of Gyre's mathematics: all that a user of the library needs, and what every folder below builds on.
+// The value types of Gyre's mathematics, for users and for every part of the engine.
 //
-// Conventions: SI units, right-handed frames, y up; quaternions are (x, y, z, w) with w the scalar part; matrices act on
-// column vectors. A rotation or pose is named after the frames it joins: `world_from_body` takes body coordinates to
-// world coordinates, so products read like dominoes: world_from_body * body_from_shape = world_from_shape.
+// Conventions: SI units, right-handed frames, y up; quaternions are (x, y, z, w) with w the scalar part; matrices act on column vectors.
+// A rotation or pose is named after its two frames: `world_from_body` takes body coordinates to world coordinates, so
+// world_from_body * body_from_shape = world_from_shape.
 //
-// Places in the world are double (DVec3), everything measured from a body is float (Vec3). The difference of two places
-// is float and exact to a float's precision however far from the origin both lie: one build serves a world 1,000 km wide.
+// World positions are double (DVec3), positions relative to a body are float (Vec3). The difference of two world positions is float, and
+// precise however far from the origin both are: one build serves a world 1,000 km wide.
 //
 // Source of the formulas: H. Goldstein, "Classical Mechanics"; J. Diebel, "Representing Attitude" (2006).
 #pragma once
@@ -83,13 +83,13 @@ inline Vec3 normalized(Vec3 a, Vec3 otherwise = {1.0f, 0.0f, 0.0f}) {
   return b / length(b);
 }
 
-// Some unit vector at a right angle to the unit vector `a`.
+// A unit vector perpendicular to the unit vector `a`.
 inline Vec3 any_perpendicular(Vec3 a) {
   const Vec3 other = absolute(a.x) < 0.57735f ? Vec3{1, 0, 0} : (absolute(a.y) < 0.57735f ? Vec3{0, 1, 0} : Vec3{0, 0, 1});
   return normalized(cross(a, other));
 }
 
-// Three doubles: a place in the world, in metres.
+// Three doubles: a position in the world, in metres.
 struct DVec3 {
   double x = 0.0;
   double y = 0.0;
@@ -119,7 +119,7 @@ constexpr DVec3 cross(DVec3 a, DVec3 b) {
 constexpr double length_squared(DVec3 a) { return dot(a, a); }
 inline double length(DVec3 a) { return std::sqrt(dot(a, a)); }
 constexpr Vec3 to_float(DVec3 a) { return {float(a.x), float(a.y), float(a.z)}; }
-// The way from place `from` to place `to`: float, but subtracted in double first.
+// The vector from position `from` to position `to`: subtracted in double, then rounded to float.
 constexpr Vec3 difference(DVec3 to, DVec3 from) { return to_float(to - from); }
 
 inline bool is_finite(float a) { return a - a == 0.0f; }
@@ -196,8 +196,8 @@ constexpr Sym3 to_symmetric(const Mat3& m) {
           0.5f * (m.x.z + m.z.x),
           0.5f * (m.y.z + m.z.y)};
 }
-// A power of two by which a matrix with this largest element on its diagonal is multiplied before its determinant is taken: that of a
-// millimetre's inertia, or of a kilometre's, is no float. Powers of two change no digit.
+// A power of two that scales a matrix with this largest diagonal element before its determinant is computed, since the determinant of a
+// millimetre's or a kilometre's inertia is out of a float's range. Powers of two change no digit.
 constexpr float inverse_scale(float largest) {
   if (largest > 0x1p30f) return largest > 0x1p70f ? 0x1p-100f : 0x1p-50f;
   if (largest < 0x1p-30f) return largest < 0x1p-70f ? 0x1p100f : 0x1p50f;
@@ -249,16 +249,16 @@ inline Quat normalized(Quat q) {
   if (!(n > 0.0f)) return {};
   return {q.x / n, q.y / n, q.z / n, q.w / n};
 }
-// The vector `v` turned by `q`.
+// The vector `v` rotated by `q`.
 constexpr Vec3 rotate(Quat q, Vec3 v) {
   const Vec3 u{q.x, q.y, q.z};
   const Vec3 t = 2.0f * cross(u, v);
   return v + q.w * t + cross(u, t);
 }
-// The vector `v` turned back by `q`.
+// The vector `v` rotated by the inverse of `q`.
 constexpr Vec3 rotate_inverse(Quat q, Vec3 v) { return rotate(conjugate(q), v); }
 
-// The rotation matrix of `q`; its columns are the turned axes.
+// The rotation matrix of `q`; its columns are the rotated axes.
 constexpr Mat3 to_matrix(Quat q) {
   const float x2 = q.x + q.x, y2 = q.y + q.y, z2 = q.z + q.z;
   const float xx = q.x * x2, yy = q.y * y2, zz = q.z * z2;
@@ -276,12 +276,12 @@ Quat from_rotation_vector(Vec3 v);
 Vec3 to_rotation_vector(Quat q);
 // The quaternion of a rotation matrix (columns orthonormal, right-handed). S. W. Shepperd, 1978.
 Quat from_matrix(const Mat3& m);
-// The shortest rotation that takes direction `from` to direction `to` (unit vectors).
+// The shortest rotation from direction `from` to direction `to` (unit vectors).
 Quat from_directions(Vec3 from, Vec3 to);
 // Interpolation along the shortest great arc, t from 0 to 1.
 Quat slerp(Quat a, Quat b, float t);
 
-// The order in which three intrinsic rotations are applied: each about an axis of the body that has turned with it.
+// The order of three intrinsic rotations: each is about an axis of the body, which rotates with the body.
 enum class EulerOrder : std::uint8_t { xyz, xzy, yxz, yzx, zxy, zyx };
 // Three Euler (Tait-Bryan) angles in rad, in the order of `order`: for xyz, R = Rx(first) Ry(second) Rz(third).
 struct EulerAngles {
@@ -306,7 +306,7 @@ float acos(float x);
 
 // -------------------------------------------------------------------------------------------------------- transforms
 
-// A rigid transform between two frames near each other (float): p -> rotate(orientation, p) + position.
+// A rigid transform in float, between frames close to each other: p -> rotate(orientation, p) + position.
 struct Transform {
   Vec3 position{};
   Quat orientation{};
@@ -328,7 +328,7 @@ constexpr Transform inverse_times(const Transform& a, const Transform& b) {
   return {rotate_inverse(a.orientation, b.position - a.position), conjugate(a.orientation) * b.orientation};
 }
 
-// A place and an orientation in the world: world_from_body.
+// A position and an orientation in the world: world_from_body.
 struct Pose {
   DVec3 position{};
   Quat orientation{};
@@ -340,28 +340,28 @@ constexpr DVec3 operator*(const Pose& pose, Vec3 p) { return pose.position + rot
 constexpr Pose operator*(const Pose& pose, const Transform& t) {
   return {pose.position + rotate(pose.orientation, t.position), pose.orientation * t.orientation};
 }
-// The world place `p` in the frame of `pose`.
+// The world position `p` in the frame of `pose`.
 constexpr Vec3 inverse_times(const Pose& pose, DVec3 p) {
   return rotate_inverse(pose.orientation, difference(p, pose.position));
 }
-// Pose `b` seen from pose `a`: a_from_b. Float, and exact near `a` however far both are from the origin.
+// Pose `b` relative to pose `a`: a_from_b. Float, and precise near `a` however far both are from the origin.
 constexpr Transform inverse_times(const Pose& a, const Pose& b) {
   return {rotate_inverse(a.orientation, difference(b.position, a.position)), conjugate(a.orientation) * b.orientation};
 }
 inline bool is_finite(const Pose& pose) { return is_finite(pose.position) && is_finite(pose.orientation); }
 inline bool is_finite(const Transform& t) { return is_finite(t.position) && is_finite(t.orientation); }
 
-// A 4x4 matrix as renderers take it: 16 floats, column after column; translation in elements 12 to 14.
+// A 4x4 matrix for renderers: 16 floats, column after column; the translation is in elements 12 to 14.
 struct Mat4 {
   float elements[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 };
-// The model matrix of a pose, seen from `origin` (usually the camera, so that far worlds keep their precision),
-// with the model scaled by `scale` first.
+// The model matrix of a pose relative to `origin` (usually the camera, so that large worlds keep their precision). The model is scaled by
+// `scale` first.
 Mat4 model_matrix(const Pose& pose, DVec3 origin = {}, Vec3 scale = {1.0f, 1.0f, 1.0f});
 
 // ------------------------------------------------------------------------------------------------------------ boxes
 
-// An axis-aligned box from corner `low` to corner `high`, in whatever frame its owner says.
+// An axis-aligned box from corner `low` to corner `high`, in the frame of its owner.
 struct Aabb {
   Vec3 low{};
   Vec3 high{};

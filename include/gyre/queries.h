@@ -1,17 +1,17 @@
-// What can be asked about the shapes of a world without stepping it: rays, moving shapes, overlaps, closest points,
-// penetrations. The functions are methods of World; here is what goes in and out.
+// Queries on the shapes of a world: rays, moving shapes, overlaps, closest points, penetrations. The functions are methods of World;
+// this header has their arguments and answers.
 //
-// Every query sees the shapes where they are now, changes since the last step included. Places are double: a thousand
-// kilometres from the origin answers are as precise as near it. The same world gives the same bits on every platform, with
-// every broad phase and any number of threads, and answers come in a fixed order: by fraction, distance or depth, and where
-// that is equal by the shape's index.
+// Every query sees the present poses of the shapes, changes since the last step included. Positions are double: answers a thousand
+// kilometres from the origin are as precise as near it. The same world gives the same bits on every platform, with every broad phase
+// and any number of threads. Answers come in a fixed order: by fraction, distance or depth, and by the shape's index where those are
+// equal.
 //
-// Convex shapes and planes are solid. Meshes and height fields are surfaces without thickness: what lies wholly below
-// one does not overlap it, and rays and moving shapes meet its triangles from the front (both sides, if the mesh is
-// double-sided or the filter asks for back faces).
+// Convex shapes and planes are solid. Meshes and height fields are surfaces without thickness: a shape that lies wholly below a surface
+// does not overlap it. Rays and moving shapes hit triangles from the front (from both sides if the mesh is double-sided or the filter
+// asks for back faces).
 //
-// A query with numbers that cannot be asked (not finite, out of range, a shape that is not convex) finds nothing; check_ray,
-// check_shape_cast and check_shape_place say why in words.
+// A query whose numbers are not finite or out of range, or whose shape is not convex, finds nothing. check_ray, check_shape_cast and
+// check_shape_pose name the reason.
 #pragma once
 
 #include <gyre/geometry.h>
@@ -23,51 +23,51 @@
 
 namespace gyre {
 
-// Which shapes a query looks at.
+// The shapes that a query considers.
 struct QueryFilter {
-  std::uint32_t layers = 0xffffffffu;  // those with a bit of their Filter::layer in it
+  std::uint32_t layers = 0xffffffffu;  // shapes whose Filter::layer has a bit in it
   bool sensors = false;                // sensors too
-  bool back_faces = false;             // triangles are met from behind too
-  BodyId ignored{};                    // a body to be left out: mostly the one that asks
-  // Called for each shape that could be met; false leaves it out. In batches from any thread. It must not change the world,
-  // and may be called for shapes that in the end are not met.
+  bool back_faces = false;             // triangles are hit from behind too
+  BodyId ignored{};                    // a body to leave out, mostly the body that asks
+  // Called for each candidate shape; false leaves it out. In batches it is called from any thread. It must not change the world. It may
+  // be called for shapes that are not hit in the end.
   bool (*accepts)(void* user, ShapeId shape, BodyId body) = nullptr;
   void* user = nullptr;
 };
 
 struct Ray {
   DVec3 origin{};
-  Vec3 way{};  // m, from the origin to the end: a ray is as long as its way
+  Vec3 translation{};  // m, from the origin to the end of the ray
 };
 
-// A convex shape that moves along a line without turning.
+// A convex shape that moves along a line without rotating.
 struct ShapeCast {
   AnyShape shape = Sphere{};
-  Pose pose{};        // world_from_shape, as it starts
-  Vec3 way{};         // m
-  // m: what the shape overlaps by no more than this as it starts does not stop it, unless the way leads deeper. For bodies
-  // that stand on something and are to be moved along it.
+  Pose pose{};         // world_from_shape, at the start
+  Vec3 translation{};  // m
+  // m: an overlap at the start of at most this depth does not stop the shape, unless the translation leads deeper. For bodies that
+  // rest on something and are moved along it.
   float skin = 0.0f;
 };
 
-// A convex shape at a place.
-struct ShapePlace {
+// A convex shape and its pose.
+struct ShapePose {
   AnyShape shape = Sphere{};
   Pose pose{};  // world_from_shape
 };
 
-// Where a ray or a moving shape first meets a shape.
+// The first hit of a ray or a moving shape on a shape of the world.
 struct CastHit {
   BodyId body{};
   ShapeId shape{};
-  std::int32_t sub_shape = 0;  // which of the body's shapes: World::shapes(body)[sub_shape]
+  std::int32_t shape_index = 0;  // among the body's shapes: World::shapes(body)[shape_index]
   std::int32_t triangle = -1;  // mesh: its number in the MeshDef; height field: 2 * cell, + 1 for the half away from the
                                // cell's first sample, cell = row * (columns - 1) + column; others: -1
-  DVec3 point{};               // on the shape that is met
-  Vec3 normal{};               // unit, out of that shape; of a ray that starts inside: against its way (zero without a way)
-  double fraction = 1.0;       // of the way, 0 to 1
-  bool inside = false;         // ray: it starts inside a solid. Moving shape: it overlaps the shape as it starts
-  float depth = 0.0f;          // m, of a moving shape that overlaps as it starts: depth * normal parts the two
+  DVec3 point{};               // on the shape that is hit
+  Vec3 normal{};               // unit, out of that shape; of a ray that starts inside: against its translation (zero if that is zero)
+  double fraction = 1.0;       // of the translation, 0 to 1
+  bool inside = false;         // ray: it starts inside a solid. Moving shape: it overlaps the shape at the start
+  float depth = 0.0f;          // m, of a moving shape that overlaps at the start: depth * normal separates the two
 
   explicit operator bool() const { return bool(body); }
 };
@@ -75,8 +75,8 @@ struct CastHit {
 struct Overlap {
   BodyId body{};
   ShapeId shape{};
-  std::int32_t sub_shape = 0;
-  std::int32_t triangle = -1;  // the lowest of those that overlap, numbered as in CastHit
+  std::int32_t shape_index = 0;  // as in CastHit
+  std::int32_t triangle = -1;    // the lowest overlapping one, numbered as in CastHit
 
   explicit operator bool() const { return bool(body); }
 };
@@ -84,12 +84,12 @@ struct Overlap {
 struct ClosestPoint {
   BodyId body{};
   ShapeId shape{};
-  std::int32_t sub_shape = 0;
+  std::int32_t shape_index = 0;
   std::int32_t triangle = -1;
   DVec3 point{};          // on the shape of the world
-  DVec3 own_point{};      // on the shape that asks
-  Vec3 normal{};          // unit, from the first to the second; of no use when they overlap
-  double distance = 0.0;  // m; 0 when they overlap
+  DVec3 query_point{};    // on the shape of the query
+  Vec3 normal{};          // unit, from `point` to `query_point`; meaningless if the shapes overlap
+  double distance = 0.0;  // m; 0 if the shapes overlap
 
   explicit operator bool() const { return bool(body); }
 };
@@ -97,18 +97,18 @@ struct ClosestPoint {
 struct Penetration {
   BodyId body{};
   ShapeId shape{};
-  std::int32_t sub_shape = 0;
+  std::int32_t shape_index = 0;
   std::int32_t triangle = -1;
-  DVec3 point{};      // midway between the surfaces, where they are deepest
-  Vec3 normal{};      // unit: moving the shape that asks by depth * normal ends this contact
+  DVec3 point{};       // midway between the surfaces, where they are deepest
+  Vec3 normal{};       // unit: moving the shape of the query by depth * normal ends this contact
   float depth = 0.0f;  // m, above 0
 
   explicit operator bool() const { return bool(body); }
 };
 
-// Why a query cannot be asked; code none if it can.
+// The reason why a query is invalid; code none if it is valid.
 Error check_ray(const Ray& ray);
 Error check_shape_cast(const ShapeCast& cast);
-Error check_shape_place(const ShapePlace& place);
+Error check_shape_pose(const ShapePose& shape);
 
 }  // namespace gyre

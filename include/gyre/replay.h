@@ -1,4 +1,4 @@
-// Snapshots, rollback, recordings and their replay. Free functions on a World, so that the world knows none of them.
+// Snapshots, rollback, recordings and their replay. Free functions and classes on a World; the world does not depend on them.
 #pragma once
 
 #include <gyre/result.h>
@@ -14,14 +14,14 @@
 
 namespace gyre {
 
-// The whole state as bytes: named, versioned columns, little-endian; loads in any build, at any SIMD width. Events that wait
-// for the next step to be shown are no part of it.
+// The whole state as bytes: named, versioned columns, little-endian. It loads in any build, at any SIMD width. Events that the next step
+// would report are no part of it.
 std::vector<std::byte> save_snapshot(const World& world);
-// Threads, SIMD width and broad phase come from `def` (never part of the state); everything else from the snapshot. The
-// world is a new one: bodies() gives the ids under which it knows its bodies.
+// Threads, SIMD width and broad phase come from `def`, since they are no part of the state; everything else comes from the snapshot. The
+// world is a new one with ids of its own: bodies() has them.
 Result<World> load_snapshot(std::span<const std::byte> bytes, const WorldDef& def = {});
-// Puts `world` back to the snapshot; the world is unchanged if the bytes are refused (the error says why). Ids that it had
-// given out when the snapshot was saved are valid again. A recording of the world goes on.
+// Restores `world` to the snapshot. The world is unchanged if the bytes are refused. Ids from before the snapshot are valid again. A
+// recording of the world continues.
 Error restore_snapshot(World& world, std::span<const std::byte> bytes);
 
 // A ring of the last `capacity` in-memory snapshots, for rollback netcode.
@@ -30,11 +30,11 @@ class Rollback {
   explicit Rollback(int capacity);
   ~Rollback();
   Rollback(Rollback&&) noexcept;
-  // Keeps the world's present state under its step count.
+  // Saves the world's present state under its step count.
   void save(const World& world);
-  // Puts the world back to the state saved at `step`; false if that is no longer (or not yet) kept.
+  // Restores the world to the state saved at `step`; false if there is none.
   bool restore(World& world, std::uint64_t step) const;
-  // Step counts of the states that are kept; UINT64_MAX when there are none.
+  // Step counts of the oldest and the newest saved state; UINT64_MAX if there are none.
   std::uint64_t oldest() const;
   std::uint64_t newest() const;
 
@@ -43,27 +43,26 @@ class Rollback {
   std::unique_ptr<Ring> ring_;
 };
 
-// Where a recording's bytes go. Return false to stop (a full disk); the recording then ends at the last whole chunk.
+// The destination of a recording's bytes. Return false to stop (a full disk); the recording then ends at the last whole chunk.
 class ByteSink {
  public:
   virtual ~ByteSink() = default;
   virtual bool write(std::span<const std::byte> bytes) = 0;
 };
 
-// What a recording holds. Both parts may stand in one file; at least one must.
+// The content of a recording: commands, poses, or both.
 struct RecordOptions {
   bool commands = true;  // a snapshot, every command, a hash after each step: for Replay, which plays it to the bit
-  bool poses = true;     // a pose track: for PoseTrack, which looks at it without simulating, in any later version
-  std::uint32_t frame_interval = 1;  // steps between two frames of the track, from 1; the last step always has one
-  float pose_accuracy = 1.0e-4f;     // m, from 1e-12 to 1e5: the most by which a coordinate of the track may be off
-  // Steps between two hashes of the whole state, from 1; the last step has one too if the recorder ends right after it. The hashes of
-  // the other steps are of what moves: far cheaper, and a replay that moves otherwise is told in the very step.
+  bool poses = true;     // a pose track: for PoseTrack, which reads it without simulating, in any later version
+  std::uint32_t frame_interval = 1;  // at least 1, steps between two frames of the track; the last step always has a frame
+  float pose_accuracy = 1.0e-4f;     // m, from 1e-12 to 1e5: the largest error of a coordinate of the track
+  // At least 1: steps between two hashes of the whole state. The last step has one too if the recorder ends right after it. The hashes
+  // of other steps cover the moving bodies only: they are far cheaper, and still show the first step that moves differently.
   std::uint32_t hash_interval = 128;
 };
 
-// Records `world` until destroyed or finished, beginning with its present state. The world must still be there then. A second
-// recorder of the same world fails at once, as do options out of range. What is recorded is written
-// at once and not kept.
+// Records `world` from its present state until the recorder is finished or destroyed. The world must outlive the recorder. A second
+// recorder of the same world fails at once, as do options out of range. Data are written at once and not kept.
 class Recorder {
  public:
   Recorder(World& world, ByteSink& sink, const RecordOptions& options = {});
@@ -71,13 +70,13 @@ class Recorder {
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  // For who looks at the track: a body's name, and the colours of its shapes in the order of World::shapes. May be said at
-  // any time, and again; the last word holds for the whole recording. Nothing is written without a track.
+  // Gives a body a name, and colours for its shapes in the order of World::shapes. It may be called at any time and repeatedly; the last
+  // call holds for the whole recording. Nothing is written without a track.
   void label(BodyId body, std::string_view name, std::span<const TrackColor> colors = {});
-  // Any text under a key, the same way. The first text of a key holds.
+  // Stores any text under a key, with the same rules, except that the first text of a key holds.
   void note(std::string_view key, std::string_view text);
 
-  bool finish();  // writes the closing chunk; true if every byte went through
+  bool finish();  // writes the closing chunk; true if every byte was written
   bool failed() const;
 
  private:
@@ -85,9 +84,9 @@ class Recorder {
   std::unique_ptr<Log> log_;
 };
 
-// The first place where two runs differ.
+// The first difference between two runs.
 struct Difference {
-  std::uint64_t step = 0;  // steps that were equal: the number of the first that is not, from 0
+  std::uint64_t step = 0;  // index of the first step that differs, from 0
   char stage[48] = {};     // name of the first stage after which the states differ, or "before the step"
   char column[48] = {};  // name of the state column
   std::uint64_t row = 0;
@@ -104,10 +103,10 @@ class Replay {
   std::uint64_t step_count() const;   // whole steps in the recording
   std::uint64_t position() const;     // steps played
   bool truncated() const;             // the file ended without its closing chunk
-  // Plays one step; false at the end. `matches` tells whether the hash is the recorded one: of the whole state, or of what moves
-  // (RecordOptions::hash_interval).
+  // Plays one step; false at the end. `matches` says whether the hash equals the recorded one (of the whole state or of the moving bodies,
+  // see RecordOptions::hash_interval).
   bool step(bool* matches = nullptr);
-  // Goes to the state after `step` steps, forward or back (by keyframes kept while playing).
+  // Goes to the state after `step` steps, forward or back (with keyframes saved while playing).
   Error seek(std::uint64_t step);
 
  private:
@@ -117,12 +116,12 @@ class Replay {
 };
 
 // Runs two worlds in lockstep from the same snapshot under two defs (thread counts, SIMD widths) for `steps` steps of
-// `seconds`, hashing every column after every stage; the first difference, or step = UINT64_MAX if there is none.
+// `seconds`, hashing every column after every stage. Returns the first difference, or step = UINT64_MAX if there is none.
 Result<Difference> first_difference(std::span<const std::byte> snapshot, const WorldDef& a, const WorldDef& b, int steps,
                                     float seconds);
-// The same for a recording: replays it and compares with the recorded hashes; when a step differs, the steps since the last hash
-// of the whole state are played again beside a single-threaded, width-1 world to name step, stage, column and row (no column if
-// these two agree with each other; `step` is then the first whose hash differs).
+// The same for a recording: replays it and compares the recorded hashes. If a step differs, the steps since the last hash of the whole
+// state are played again beside a single-threaded world of SIMD width 1, to name step, stage, column and row. If those two worlds agree,
+// no column is named, and `step` is the first step whose hash differs.
 Result<Difference> first_difference(std::span<const std::byte> recording, const WorldDef& def);
 
 }  // namespace gyre

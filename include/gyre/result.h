@@ -1,4 +1,4 @@
-// Result<T>: what anything fed by outside data returns. Gyre throws no exceptions.
+// Result<T>: the return type of functions that take data from outside. Gyre throws no exceptions.
 #pragma once
 
 #include <cstdint>
@@ -19,19 +19,27 @@ enum class ErrorCode : std::uint8_t {
   unstable,          // an explicit scheme cannot follow what it is to compute: it will gain energy
 };
 
-// A code, and words that name the object, the field, what was found and what is allowed.
+// An error code, and a message that names the object, the field, the value found and the range allowed. As a truth value it is
+// true when there is an error: `if (const Error error = restore_snapshot(world, bytes)) print(error.message);`
 struct Error {
   ErrorCode code = ErrorCode::none;
   char message[232] = {};
+
+  constexpr explicit operator bool() const { return code != ErrorCode::none; }
+  constexpr bool ok() const { return code == ErrorCode::none; }
 };
 
-// printf-style; text that does not fit is cut. Returns the error.
+// Makes an error with a message in the style of printf. A message that does not fit is cut.
 #if defined(__GNUC__)
 __attribute__((format(printf, 2, 3)))
 #endif
 Error make_error(ErrorCode code, const char* format, ...);
 
+// Prints the error's message to stderr and ends the program.
+[[noreturn]] void stop_at_error(const Error& error);
+
 // A value or an error. `if (Result<World> made = World::create(...)) use(*made); else print(made.error().message);`
+// Taking the value of an error prints the error and ends the program, in every build type.
 template <class T>
 class [[nodiscard]] Result {
  public:
@@ -40,16 +48,22 @@ class [[nodiscard]] Result {
 
   explicit operator bool() const { return value_.has_value(); }
   bool has_value() const { return value_.has_value(); }
-  // The value. Only when there is one.
-  T& operator*() & { return *value_; }
-  const T& operator*() const& { return *value_; }
-  T&& operator*() && { return std::move(*value_); }
-  T* operator->() { return &*value_; }
-  const T* operator->() const { return &*value_; }
-  // The error; code none when there is a value.
+  // The value; an error ends the program.
+  T& operator*() & { return checked(value_); }
+  const T& operator*() const& { return checked(value_); }
+  T&& operator*() && { return std::move(checked(value_)); }
+  T* operator->() { return &checked(value_); }
+  const T* operator->() const { return &checked(value_); }
+  // The error; its code is none when there is a value.
   const Error& error() const { return error_; }
 
  private:
+  template <class Optional>
+  auto& checked(Optional& value) const {
+    if (!value.has_value()) stop_at_error(error_);
+    return *value;
+  }
+
   std::optional<T> value_;
   Error error_;
 };

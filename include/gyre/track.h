@@ -1,8 +1,8 @@
-// The pose track of a recording: frame by frame which bodies there were, where, and which slept, and what they looked like. It
-// is read without simulating, forward and back, also by other versions than the one that wrote it (docs/recording.md). It is
-// written by a Recorder (gyre/replay.h).
+// The pose track of a recording: the bodies of each frame, their poses, which of them slept, and their shapes. It is read without
+// simulating, forward and back, and also by other versions than the one that wrote it (docs/recording.md). A Recorder (gyre/replay.h)
+// writes it.
 //
-// Poses are stored rounded: to within TrackAccuracy, in every frame, however long the recording is.
+// Poses are rounded to within TrackAccuracy in every frame, however long the recording is.
 #pragma once
 
 #include <gyre/defs.h>
@@ -27,7 +27,7 @@ struct TrackColor {
   constexpr bool operator==(const TrackColor&) const = default;
 };
 
-// One shape of a body, as it is to be drawn. Cooked geometry is shared: shapes with equal content_hash are the same data.
+// One shape of a body, for drawing. Cooked geometry is shared: shapes with equal content_hash have the same data.
 struct TrackShape {
   AnyShape geometry = Sphere{};
   Transform local{};              // body_from_shape
@@ -35,40 +35,40 @@ struct TrackShape {
   bool sensor = false;
 };
 
-// What a body looks like. Bodies that are alike share one.
+// The appearance of a body. Bodies that look the same share one model.
 struct TrackModel {
   BodyType type = BodyType::dynamic;
   std::vector<TrackShape> shapes{};
 };
 
-// What the recorder was told about a body (Recorder::label); empty if nothing.
+// The label that the recorder was given for a body (Recorder::label); empty if none.
 struct TrackLabel {
-  std::string_view name{};               // UTF-8 as it was given, not checked
+  std::string_view name{};               // as given, UTF-8 is not checked
   std::span<const TrackColor> colors{};  // of the model's shapes, in their order; may be fewer
 };
 
-// How far a pose of the track may be from the one that was recorded.
+// The largest difference between a pose of the track and the recorded one.
 struct TrackAccuracy {
   double position = 0.0;     // m, each coordinate of the body's origin
   double orientation = 0.0;  // rad, angle between the two orientations
 };
 
-// One frame: parallel arrays over all bodies that exist in it, by ascending id index. Valid until the next seek.
+// One frame: parallel arrays of all its bodies, by ascending id index. Valid until the next seek.
 struct TrackFrame {
-  std::uint64_t step = 0;                   // steps that the world had done
+  std::uint64_t step = 0;                   // step count of the world
   double time = 0.0;                        // s, of the world
   std::span<const BodyId> ids{};            // `world` is 0
   std::span<const Pose> poses{};            // world_from_body, of the origins
-  std::span<const std::uint8_t> awake{};    // 1: moved, or could have; fixed and sleeping bodies 0
+  std::span<const std::uint8_t> awake{};    // 1: awake dynamic or kinematic body; 0: fixed or sleeping
   std::span<const std::uint32_t> models{};  // into PoseTrack::models()
-  // Counts changes of `ids` and `models`: both are the same in two frames of one track with the same number.
+  // Counts changes of `ids` and `models`. Two frames of one track with the same number have the same `ids` and `models`.
   std::uint64_t set_version = 0;
 };
 
 class PoseTrack {
  public:
-  // Takes the bytes of a recording. Refused, with the reason, if they are none, or hold no whole frame of a track. A recording
-  // that was cut off or damaged has the frames before that place.
+  // Takes the bytes of a recording. Refuses, with the reason, bytes that are no recording or hold no whole frame of a track. Of a
+  // recording that was cut off or damaged it has the frames before the damage.
   static Result<PoseTrack> open(std::vector<std::byte> bytes);
   ~PoseTrack();
   PoseTrack(PoseTrack&&) noexcept;
@@ -76,20 +76,20 @@ class PoseTrack {
 
   std::size_t frame_count() const;              // at least 1
   bool truncated() const;                       // the file ended without its closing chunk
-  double time(std::size_t frame) const;         // s; 0 for a frame that is not there
-  std::uint64_t step(std::size_t frame) const;  // 0 for a frame that is not there
+  double time(std::size_t frame) const;         // s; 0 if there is no such frame
+  std::uint64_t step(std::size_t frame) const;  // 0 if there is no such frame
   TrackAccuracy accuracy() const;
 
-  // All models that occur, in the order in which they first did.
+  // All models, in the order of their first frame.
   std::span<const TrackModel> models() const;
-  TrackLabel label(BodyId body) const;  // `world` of the id does not matter
-  // Text that the recorder was given (Recorder::note) under `key`; empty if none. `gyre simulate` notes "scene", a JSON object
+  TrackLabel label(BodyId body) const;  // ignores BodyId::world
+  // The text that the recorder was given under `key` (Recorder::note); empty if none. `gyre simulate` notes "scene", a JSON object
   // with the scene's name and view.
   std::string_view note(std::string_view key) const;
 
-  // Goes to a frame. One frame on, or back within the frames since a keyframe, is cheap; elsewhere the frames since the last
-  // keyframe are decoded, some dozens. invalid_argument: there is no such frame. invalid_data: what it holds cannot be (only
-  // in files made to deceive; checksums find the rest when the file is opened). The present frame then stays.
+  // Goes to a frame. One frame forward, or back within the frames since a keyframe, is cheap. Otherwise the frames since the last
+  // keyframe are decoded, some dozens. Error invalid_argument: there is no such frame. Error invalid_data: the frame's content is
+  // impossible (only in files made to deceive; checksums find other damage when the file is opened). The present frame then stays.
   Error seek(std::size_t frame);
   std::size_t position() const;  // the present frame; 0 after opening
   TrackFrame frame() const;      // the present frame

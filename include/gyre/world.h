@@ -1,8 +1,12 @@
-// class World: add, remove, change, step, read in bulk. One thread at a time may change or step a world; any number may
-// read it while nobody does. Everything read as a span is valid until the next change or step.
+// class World: add, remove, change, step, read in bulk. One thread at a time may change or step a world. Any number of threads may
+// read it and query it while nobody changes it. Every span that a World returns is valid until the next change or step.
 //
-// A wrong call (stale id, not finite, out of range) changes nothing, returns a null id or false, and is one entry in
-// problems(). Every change is one command inside, so a recording cannot miss one.
+// Refused calls: a call with a stale id, a number that is not finite or a value out of range changes nothing, returns false or a null
+// id, and adds one entry to problems(). The returned value is enough to know whether a call was carried out; problems() says why one
+// was not. A caller that checks every returned value need not read problems(), except for what a step itself reports there (bodies
+// that stopped being finite, springs that the step cannot follow). A caller that ignores returned values finds every refusal there.
+//
+// Every change is one command inside the world, so a recording cannot miss one.
 #pragma once
 
 #include <gyre/defs.h>
@@ -12,6 +16,7 @@
 #include <gyre/math.h>
 #include <gyre/queries.h>
 #include <gyre/result.h>
+#include <gyre/stepping.h>
 
 #include <cstdint>
 #include <memory>
@@ -22,7 +27,7 @@ namespace gyre {
 
 struct WorldState;  // src/world
 
-// All bodies of one kind of set as parallel arrays; element i of each belongs to ids[i]. In order of id index.
+// Bodies as parallel arrays: element i of each array belongs to ids[i]. In order of id index.
 struct BodyColumns {
   std::span<const BodyId> ids{};
   std::span<const Pose> poses{};              // world_from_body, of the origins
@@ -30,7 +35,7 @@ struct BodyColumns {
   std::span<const Vec3> angular_velocities{};
 };
 
-// One contact point, for reading (positions in the world, impulses of the last step).
+// One contact point of the last step, in the world frame.
 struct ContactPoint {
   ShapeId shape_a{}, shape_b{};
   BodyId body_a{}, body_b{};
@@ -40,53 +45,55 @@ struct ContactPoint {
   float separation = 0;    // m; negative: overlap
   float normal_impulse = 0;  // N s, summed over the step
   Vec3 friction_impulse{};   // N s on b, summed over the step; of the whole manifold, at its first point (zero at the others)
-  Vec3 relative_velocity{};  // m/s, of b against a at the point, rotation included
-  std::int32_t triangle = -1;  // of a mesh or height field, numbered as in CastHit: the deepest of those with this normal
+  Vec3 relative_velocity{};  // m/s, of b relative to a at the point, rotation included
+  std::int32_t triangle = -1;  // of a mesh or height field, numbered as in CastHit: the deepest of the triangles with this normal
 };
 
-struct JointReading {
+// The state of a joint.
+struct JointState {
   Vec3 force{};   // N on b, world frame, mean over the last step
   Vec3 torque{};  // N m on b about the anchor, world frame
-  // Of what the joint leaves free. Hinge, cone (twist), universal (about axis), wheel (spin), gear and rack_and_pinion (a's
+  // The position along the joint's free axis. Hinge, cone (twist), universal (about axis), wheel (spin), gear and rack_and_pinion (a's
   // turning): rad, continuous beyond +-pi. Slider, path: m along it. Distance, pulley: m, the length. six_dof: linear_x.
   float position = 0;
-  float velocity = 0;  // hinge, slider, distance; others: see joint_axis_reading()
+  float velocity = 0;  // hinge, slider, distance; others: see joint_axis_state()
 };
 
-// One of a joint's axes (JointAxis).
-struct JointAxisReading {
+// The state of one axis of a joint (JointAxis).
+struct JointAxisState {
   float position = 0;  // m or rad, continuous beyond +-pi
-  float velocity = 0;  // m/s or rad/s, of b against a
+  float velocity = 0;  // m/s or rad/s, of b relative to a
   float force = 0;     // N or N m along it by limits, motor, spring and friction together, mean over the last step
 };
 
-// Whether the integrator can follow the springs that are forces (Stepping::springs): the fastest oscillation of all of them together,
-// and the longest time that a body may move in one go. A sub-step is two of these.
+// Whether the integrator can follow explicit springs (SpringKind::explicit_force). The figures are those of the fastest mode of all of
+// them together. The critical step bounds half a sub-step, since bodies move twice in each.
 struct SpringStability {
-  int springs = 0;         // that are forces, of bodies that are awake
+  int springs = 0;         // explicit springs of awake bodies
   double frequency = 0;    // Hz, undamped
   double damping_ratio = 0;
   double critical_step = 0;  // s; infinity if there are no such springs; 0 if the integrator gains energy at any step
-  JointId joint{};         // the spring that takes the largest part
+  JointId joint{};         // the spring with the largest share of the mode
 };
 
-struct WorldCounts {
+// How much there is in the world.
+struct WorldStats {
   int bodies = 0, awake_bodies = 0, shapes = 0, joints = 0;
-  int pairs = 0;           // of overlapping fat boxes
+  int pairs = 0;           // of shapes whose fat boxes overlap
   int touching = 0;        // pairs with a contact point that bears load or overlaps
   int contact_points = 0;
-  int colors = 0;
+  int colors = 0;          // of the constraint graph
 };
 
-// What the solvers sequential_impulses and lcp left in the last step; all zero with soft_step.
-struct SolverReading {
-  // N s, or N m s for rows that turn: by how much an impulse of any row misses what is complementary to its speed, the largest of
-  // all rows and sub-steps (the residual of the natural map; docs/numerics.md).
+// How well the solvers sequential_impulses and lcp solved the last step; all zero with soft_step.
+struct SolverStats {
+  // N s, or N m s for angular rows: the residual of the natural map, largest over all rows and sub-steps. It measures by how much an
+  // impulse misses complementarity with its row's velocity (docs/numerics.md).
   double residual = 0;
-  int islands = 0;         // that were solved
-  int direct_islands = 0;  // of these, by a direct method
-  int largest_rows = 0;    // of the largest island
-  int sweeps = 0;          // the most that an island took
+  int islands = 0;         // solved islands
+  int direct_islands = 0;  // of these, solved by a direct method
+  int largest_rows = 0;    // rows of the largest island
+  int sweeps = 0;          // largest number of sweeps over an island
 };
 
 struct Energy {
@@ -102,7 +109,7 @@ struct Momentum {
 
 class World {
  public:
-  // Refuses a def out of range with the field's name.
+  // Refuses a definition out of range; the error names the field.
   static Result<World> create(const WorldDef& def = {});
   ~World();
   World(World&&) noexcept;
@@ -111,18 +118,18 @@ class World {
   // ------------------------------------------------------------------------------------------------ add and remove
   BodyId add_body(const BodyDef& body, const ShapeDef& shape);
   BodyId add_body(const BodyDef& body, std::span<const ShapeDef> shapes = {});
-  bool remove_body(BodyId body);  // its shapes and joints too
-  ShapeId add_shape(BodyId body, const ShapeDef& shape);  // mass is found anew unless the def overrode it
+  bool remove_body(BodyId body);  // with its shapes and joints
+  ShapeId add_shape(BodyId body, const ShapeDef& shape);  // mass is computed anew unless BodyDef overrode it
   bool remove_shape(ShapeId shape);
   JointId add_joint(const JointDef& joint);
   bool remove_joint(JointId joint);
-  FieldId add_field(const FieldDef& field);  // wakes everything, as every change of fields does
+  FieldId add_field(const FieldDef& field);  // wakes every body, as every change of fields does
   bool remove_field(FieldId field);
 
   // --------------------------------------------------------------------------------------------------------- change
-  bool set_pose(BodyId body, const Pose& pose);  // teleports: velocity is kept, contacts are found anew
+  bool set_pose(BodyId body, const Pose& pose);  // teleports: keeps the velocity, drops the contacts
   bool set_velocity(BodyId body, Vec3 linear, Vec3 angular);
-  // The kinematic body reaches `pose` at the end of a step of `seconds`, and pushes what is in its way.
+  // Sets the velocity with which the kinematic body reaches `pose` at the end of a step of `seconds`. It pushes bodies in its path.
   bool move_kinematic(BodyId body, const Pose& pose, float seconds);
   bool set_type(BodyId body, BodyType type);
   bool set_gravity(Vec3 gravity);
@@ -130,7 +137,7 @@ class World {
   bool set_damping(BodyId body, float linear, float angular);
   bool set_material(ShapeId shape, const Material& material);
   bool set_material_pair(const MaterialPair& pair);
-  bool set_surface_rule(const SurfaceRule& rule);  // replaces the rule of the same id; wakes everything
+  bool set_surface_rule(const SurfaceRule& rule);  // replaces the rule of the same id; wakes every body
   bool set_field(FieldId field, const FieldDef& def);
   bool set_filter(ShapeId shape, const Filter& filter);
   bool set_motor(JointId joint, const Motor& motor);
@@ -144,31 +151,31 @@ class World {
   bool set_sleeping(bool enabled);
   bool set_awake(BodyId body, bool awake);  // false puts the body's whole island to sleep
   bool set_substeps(int substeps);
-  // As in Stepping; a motion goes on from its present places and velocities.
+  // The settings of Stepping (stepping.h); they hold from the next step on. Poses and velocities stay as they are.
   bool set_integrator(IntegratorKind integrator);
   bool set_springs(SpringKind springs);
   bool set_time_stepping(TimeStepping time, float tolerance = 1.0e-5f, int max_impacts = 128);
-  bool set_solver(SolverKind solver, const SolverOptions& options = {});  // from the next step on; as WorldDef::stepping
-  bool set_combine_rules(CombineRule friction, CombineRule restitution);  // of all contacts; wakes everything
+  bool set_solver(SolverKind solver, const SolverOptions& options = {});
+  bool set_combine_rules(CombineRule friction, CombineRule restitution);  // of all contacts; wakes every body
 
-  // How the world is computed, not what happens in it: never changes a bit, so neither recordings nor snapshots know it.
-  // False and a problem if out of range, during a step, or (threads) if the host's own tasks are used.
+  // How the world is computed. These settings never change a bit of the result, so recordings and snapshots do not contain them.
+  // Refused during a step; set_threads also if the host's own tasks are used.
   bool set_threads(int threads);  // as WorldDef::threads
   bool set_broad_phase(BroadPhaseKind kind);
 
-  // Forces act during the next step and add up (D'Alembert); torques t = (p - COM) x f too. World frame.
+  // Forces and torques add up and act during the next step. World frame.
   bool add_force(BodyId body, Vec3 force);                    // N, at the centre of mass
-  bool add_force_at(BodyId body, Vec3 force, DVec3 point);    // N, at a world point
+  bool add_force_at(BodyId body, Vec3 force, DVec3 point);    // N, at a world point: with the torque (point - centre) x force
   bool add_torque(BodyId body, Vec3 torque);                  // N m
   // Impulses change the velocity at once.
   bool add_impulse(BodyId body, Vec3 impulse);                // N s, at the centre of mass
   bool add_impulse_at(BodyId body, Vec3 impulse, DVec3 point);
   bool add_angular_impulse(BodyId body, Vec3 impulse);        // N m s
 
-  // Pushes every dynamic body that it reaches, at once; see ExplosionDef. Bodies in its way are those of now.
+  // Gives an impulse at once to every dynamic body within range; see ExplosionDef.
   bool explode(const ExplosionDef& explosion);
 
-  // Moves the world on. `seconds` above 0 and at most 1; false and a problem otherwise.
+  // Advances the world by `seconds`: above 0 and at most 1, otherwise it is refused.
   bool step(float seconds);
 
   // ----------------------------------------------------------------------------------------------------------- read
@@ -176,12 +183,12 @@ class World {
   bool exists(ShapeId shape) const;
   bool exists(JointId joint) const;
   bool exists(FieldId field) const;
-  // Of a stale id: the zero value.
+  // Each returns the zero value for a stale id.
   Pose pose(BodyId body) const;
   DVec3 center_of_mass(BodyId body) const;  // world
   Vec3 linear_velocity(BodyId body) const;
   Vec3 angular_velocity(BodyId body) const;
-  Vec3 velocity_at(BodyId body, DVec3 point) const;  // of the body's material at a world point
+  Vec3 velocity_at(BodyId body, DVec3 point) const;  // m/s, of the body's material at a world point
   BodyType type(BodyId body) const;
   bool is_awake(BodyId body) const;
   std::uint64_t user_data(BodyId body) const;
@@ -191,111 +198,117 @@ class World {
   const AnyShape* geometry(ShapeId shape) const;
   Transform local_transform(ShapeId shape) const;
   Material material(ShapeId shape) const;
-  JointReading joint_reading(JointId joint) const;
-  // As it acts: directions of length 1, the density that holds.
+  JointState joint_state(JointId joint) const;
+  // The definition in force: directions have length 1, an optional density has its default.
   FieldDef field(FieldId field) const;
-  // Copies up to out.size() fields, by index; returns how many there are.
+  // Copies up to out.size() ids, in order of index; returns how many fields there are.
   std::size_t fields(std::span<FieldId> out) const;
-  // Zero for axes that the joint's kind holds. Hinge: angular_x; slider, distance, path, pulley: linear_x; gear: angular_x (a) and
+  // Zero for axes that this kind of joint constrains. Hinge: angular_x; slider, distance, path, pulley: linear_x; gear: angular_x (a) and
   // angular_y (b).
-  JointAxisReading joint_axis_reading(JointId joint, JointAxis axis) const;
+  JointAxisState joint_axis_state(JointId joint, JointAxis axis) const;
   bool joint_enabled(JointId joint) const;
 
+  // Copied at most once after a change, by the first thread that asks; both stay valid side by side until the next change or step.
   BodyColumns bodies() const;        // every body
-  BodyColumns awake_bodies() const;  // those that moved or could have
+  BodyColumns awake_bodies() const;  // awake dynamic and kinematic bodies
   // Copies up to out.size() contact points in a fixed order; returns how many there are.
   std::size_t contacts(std::span<ContactPoint> out) const;
 
   // ---------------------------------------------------------------------------------------------------------- queries
-  // See queries.h. None of them changes anything; any number of threads may ask at once while nobody changes or steps the
-  // world. Functions that fill `out` return how many answers there are; where that is more than fit, the first are kept.
+  // See queries.h. Each question has a form that returns the nearest answer (cast_ray), one that says whether there is any
+  // (cast_ray_any), one that fills `out` with all answers in order (cast_ray_all), and a batch of each (cast_ray_batch, ...).
+  //
+  // Queries change nothing. Any number of threads may ask at once while nobody changes or steps the world. Functions that fill `out`
+  // return how many answers there are; if they are more than out.size(), the first ones are kept.
 
-  std::optional<CastHit> cast_ray(DVec3 origin, Vec3 way, const QueryFilter& filter = {}) const;  // the nearest hit
-  bool ray_hits(DVec3 origin, Vec3 way, const QueryFilter& filter = {}) const;                    // whether there is any
+  std::optional<CastHit> cast_ray(DVec3 origin, Vec3 translation, const QueryFilter& filter = {}) const;
+  bool cast_ray_any(DVec3 origin, Vec3 translation, const QueryFilter& filter = {}) const;
   // The first hit of every shape that the ray meets, by fraction.
-  std::size_t cast_ray_all(DVec3 origin, Vec3 way, std::span<CastHit> out, const QueryFilter& filter = {}) const;
+  std::size_t cast_ray_all(DVec3 origin, Vec3 translation, std::span<CastHit> out, const QueryFilter& filter = {}) const;
 
   std::optional<CastHit> cast_shape(const ShapeCast& cast, const QueryFilter& filter = {}) const;
-  bool shape_hits(const ShapeCast& cast, const QueryFilter& filter = {}) const;
+  bool cast_shape_any(const ShapeCast& cast, const QueryFilter& filter = {}) const;
   std::size_t cast_shape_all(const ShapeCast& cast, std::span<CastHit> out, const QueryFilter& filter = {}) const;
 
-  bool overlaps(const ShapePlace& place, const QueryFilter& filter = {}) const;
-  // Every shape that the given one overlaps or touches, by index.
-  std::size_t find_overlaps(const ShapePlace& place, std::span<Overlap> out, const QueryFilter& filter = {}) const;
+  // Shapes that the given shape overlaps or touches; all of them by index. An overlap has no nearest form.
+  bool overlap_any(const ShapePose& shape, const QueryFilter& filter = {}) const;
+  std::size_t overlap_all(const ShapePose& shape, std::span<Overlap> out, const QueryFilter& filter = {}) const;
 
-  // The nearest point of any shape within `max_distance` (m, at least 0), and all shapes within it by distance.
-  std::optional<ClosestPoint> closest_point(const ShapePlace& place, double max_distance,
+  // The closest point of any shape within `max_distance` (m, at least 0); of all shapes within it, by distance.
+  std::optional<ClosestPoint> closest_point(const ShapePose& shape, double max_distance,
                                             const QueryFilter& filter = {}) const;
-  bool any_within(const ShapePlace& place, double max_distance, const QueryFilter& filter = {}) const;
-  std::size_t find_closest(const ShapePlace& place, double max_distance, std::span<ClosestPoint> out,
-                           const QueryFilter& filter = {}) const;
-  // Every contact in which the shape overlaps another, deepest first: one of each convex shape or plane, up to eight of a
-  // mesh or height field, whose inner edges give none.
-  std::size_t find_penetrations(const ShapePlace& place, std::span<Penetration> out, const QueryFilter& filter = {}) const;
-  // The first of them. Whether there is any, or a touch: overlaps.
-  std::optional<Penetration> deepest_penetration(const ShapePlace& place, const QueryFilter& filter = {}) const;
+  bool closest_point_any(const ShapePose& shape, double max_distance, const QueryFilter& filter = {}) const;
+  std::size_t closest_point_all(const ShapePose& shape, double max_distance, std::span<ClosestPoint> out,
+                                const QueryFilter& filter = {}) const;
 
-  // Many at once, over the world's threads: out[i] answers question i, and is empty (no body) where nothing is met. An error
-  // names the first question that cannot be asked, or spans of different length; then nothing is asked at all. One batch at
-  // a time uses the threads; a batch asked meanwhile by another thread is answered by that thread alone.
-  Error cast_rays(std::span<const Ray> rays, std::span<CastHit> out, const QueryFilter& filter = {}) const;
-  Error cast_shapes(std::span<const ShapeCast> casts, std::span<CastHit> out, const QueryFilter& filter = {}) const;
-  Error closest_points(std::span<const ShapePlace> places, double max_distance, std::span<ClosestPoint> out,
-                       const QueryFilter& filter = {}) const;
-  Error deepest_penetrations(std::span<const ShapePlace> places, std::span<Penetration> out,
-                             const QueryFilter& filter = {}) const;
-  // counts[i]: how many shapes place i overlaps.
-  Error count_overlaps(std::span<const ShapePlace> places, std::span<std::uint32_t> counts,
-                       const QueryFilter& filter = {}) const;
-  // out[i]: 1 if question i meets, overlaps or is near anything, or else 0.
-  Error rays_hit(std::span<const Ray> rays, std::span<std::uint8_t> out, const QueryFilter& filter = {}) const;
-  Error shapes_hit(std::span<const ShapeCast> casts, std::span<std::uint8_t> out, const QueryFilter& filter = {}) const;
-  Error places_overlap(std::span<const ShapePlace> places, std::span<std::uint8_t> out,
-                       const QueryFilter& filter = {}) const;
-  Error places_near(std::span<const ShapePlace> places, double max_distance, std::span<std::uint8_t> out,
-                    const QueryFilter& filter = {}) const;
-  // All answers of each question, in the order of the single question. The room is shared out alike: of out.size() = n * room
-  // answers those of question i begin at out[i * room]. counts[i] is how many there are; where they are more than `room`, the
-  // first are kept.
-  Error cast_rays_all(std::span<const Ray> rays, std::span<CastHit> out, std::span<std::uint32_t> counts,
-                      const QueryFilter& filter = {}) const;
-  Error cast_shapes_all(std::span<const ShapeCast> casts, std::span<CastHit> out, std::span<std::uint32_t> counts,
-                        const QueryFilter& filter = {}) const;
-  Error find_overlaps_all(std::span<const ShapePlace> places, std::span<Overlap> out, std::span<std::uint32_t> counts,
+  // The deepest contact in which the given shape overlaps another. All contacts, deepest first: one for each convex shape or plane, up
+  // to eight for each mesh or height field, without contacts at their inner edges. Whether there is any is overlap_any.
+  std::optional<Penetration> penetration(const ShapePose& shape, const QueryFilter& filter = {}) const;
+  std::size_t penetration_all(const ShapePose& shape, std::span<Penetration> out, const QueryFilter& filter = {}) const;
+
+  // Batches: many questions at once over the world's threads. An error names the first question that cannot be asked, or spans of
+  // different length; nothing is asked then. One batch at a time uses the threads; a batch that another thread asks meanwhile is
+  // answered by that thread alone.
+
+  // out[i] answers question i; it has no body if there is no answer.
+  Error cast_ray_batch(std::span<const Ray> rays, std::span<CastHit> out, const QueryFilter& filter = {}) const;
+  Error cast_shape_batch(std::span<const ShapeCast> casts, std::span<CastHit> out, const QueryFilter& filter = {}) const;
+  Error closest_point_batch(std::span<const ShapePose> shapes, double max_distance, std::span<ClosestPoint> out,
+                            const QueryFilter& filter = {}) const;
+  Error penetration_batch(std::span<const ShapePose> shapes, std::span<Penetration> out,
                           const QueryFilter& filter = {}) const;
-  Error find_closest_all(std::span<const ShapePlace> places, double max_distance, std::span<ClosestPoint> out,
-                         std::span<std::uint32_t> counts, const QueryFilter& filter = {}) const;
-  Error find_penetrations_all(std::span<const ShapePlace> places, std::span<Penetration> out,
+  // out[i] is 1 if question i has any answer, otherwise 0.
+  Error cast_ray_any_batch(std::span<const Ray> rays, std::span<std::uint8_t> out, const QueryFilter& filter = {}) const;
+  Error cast_shape_any_batch(std::span<const ShapeCast> casts, std::span<std::uint8_t> out,
+                             const QueryFilter& filter = {}) const;
+  Error overlap_any_batch(std::span<const ShapePose> shapes, std::span<std::uint8_t> out,
+                          const QueryFilter& filter = {}) const;
+  Error closest_point_any_batch(std::span<const ShapePose> shapes, double max_distance, std::span<std::uint8_t> out,
+                                const QueryFilter& filter = {}) const;
+  // All answers of each question, in the order of the single question. Every question has the same room: with out.size() = n * room,
+  // the answers of question i begin at out[i * room]. counts[i] is how many answers there are; if they are more than `room`, the first
+  // ones are kept.
+  Error cast_ray_all_batch(std::span<const Ray> rays, std::span<CastHit> out, std::span<std::uint32_t> counts,
+                           const QueryFilter& filter = {}) const;
+  Error cast_shape_all_batch(std::span<const ShapeCast> casts, std::span<CastHit> out, std::span<std::uint32_t> counts,
+                             const QueryFilter& filter = {}) const;
+  Error overlap_all_batch(std::span<const ShapePose> shapes, std::span<Overlap> out, std::span<std::uint32_t> counts,
+                          const QueryFilter& filter = {}) const;
+  Error closest_point_all_batch(std::span<const ShapePose> shapes, double max_distance, std::span<ClosestPoint> out,
+                                std::span<std::uint32_t> counts, const QueryFilter& filter = {}) const;
+  Error penetration_all_batch(std::span<const ShapePose> shapes, std::span<Penetration> out,
                               std::span<std::uint32_t> counts, const QueryFilter& filter = {}) const;
+  // counts[i] is how many shapes the given shape i overlaps.
+  Error overlap_count_batch(std::span<const ShapePose> shapes, std::span<std::uint32_t> counts,
+                            const QueryFilter& filter = {}) const;
 
   // ---------------------------------------------------------------------------------------------------- the last step
-  const Events& events() const;  // of the last step
-  // Copies up to out.size() pairs that touched in the last step and in the one before, in a fixed order; returns how many
-  // there are. Pairs that sleep count as touching.
-  std::size_t persisting(std::span<ContactPersist> out) const;
-  std::span<const Problem> problems() const;  // since the last step began, the step included
-  WorldCounts counts() const;
-  StepReport step_report() const;            // how the last step was cut
-  SpringStability spring_stability() const;  // of now; where a step is longer than the critical one, problems() says so too
-  SolverReading solver_reading() const;
+  const Events& events() const;
+  // Copies up to out.size() pairs of shapes that touched in the last step and in the one before, in a fixed order; returns how many
+  // there are. Sleeping pairs count as touching.
+  std::size_t contact_pairs(std::span<ContactPair> out) const;
+  // Refused calls and reports of the step, since the last step began. At most 256 are kept.
+  std::span<const Problem> problems() const;
+  WorldStats stats() const;
+  StepStats step_stats() const;
+  SpringStability spring_stability() const;  // of the present state
+  SolverStats solver_stats() const;
   double time() const;           // s
   std::uint64_t step_count() const;
   Vec3 gravity() const;
   int substeps() const;
-  // A definition with every setting as it is now: what a new world is made of that shall be like this one.
+  // The current settings as a WorldDef, to create a world like this one.
   WorldDef def() const;
   Energy energy() const;
   Momentum momentum() const;
-  float max_penetration() const;  // m, deepest contact point of the last step; 0 if none overlaps
-  // 64-bit hash of the whole simulation state: the same for every thread count, SIMD width, compiler and platform.
+  float max_penetration() const;  // m, of the deepest contact point of the last step; 0 if none overlaps
+  // Hash of the whole simulation state. It is the same for every thread count, SIMD width, compiler and platform.
   std::uint64_t hash() const;
 
-  // The world's inside, for src/io and src/debug.
-  WorldState& state() { return *state_; }
-  const WorldState& state() const { return *state_; }
+ private:
+  friend struct WorldAccess;  // the engine's own parts: src/world/world_access.h
   explicit World(std::unique_ptr<WorldState> state);
 
- private:
   std::unique_ptr<WorldState> state_;
 };
 

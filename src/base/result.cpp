@@ -4,6 +4,7 @@
 
 #include <cstdarg>
 #include <cstdio>
+#include <cstdlib>
 
 namespace gyre {
 
@@ -16,6 +17,12 @@ Error make_error(ErrorCode code, const char* format, ...) {
   if (std::vsnprintf(error.message, sizeof error.message, format, arguments) < 0) error.message[0] = '\0';
   va_end(arguments);
   return error;
+}
+
+void stop_at_error(const Error& error) {
+  std::fprintf(stderr, "gyre: the value of a Result that holds an error: %s\n", error.message);
+  std::fflush(stderr);
+  std::abort();
 }
 
 }  // namespace gyre

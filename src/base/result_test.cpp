@@ -41,5 +41,25 @@ TEST(Result, MovesOwnedValuesOut) {
   EXPECT_EQ(*taken, 3);
 }
 
+TEST(Result, ErrorsTestAsTruthValues) {
+  const Error none;
+  EXPECT_FALSE(bool(none));
+  EXPECT_TRUE(none.ok());
+  const Error stale = make_error(ErrorCode::stale_id, "gone");
+  EXPECT_TRUE(bool(stale));
+  EXPECT_FALSE(stale.ok());
+}
+
+// In every build type: otherwise memory that holds no value would be read.
+TEST(ResultDeathTest, TheValueOfAnErrorSaysWhyAndStops) {
+  Result<std::string> bad = make_error(ErrorCode::invalid_argument, "radius is -1");
+  const Result<std::string>& fixed = bad;
+  EXPECT_DEATH(static_cast<void>(*bad), "radius is -1");
+  EXPECT_DEATH(static_cast<void>(*fixed), "radius is -1");
+  EXPECT_DEATH(static_cast<void>(bad->size()), "radius is -1");
+  EXPECT_DEATH(static_cast<void>(fixed->size()), "radius is -1");
+  EXPECT_DEATH(static_cast<void>(*std::move(bad)), "radius is -1");
+}
+
 }  // namespace
 }  // namespace gyre

@@ -3,6 +3,7 @@
 #include "debug/flat.h"
 #include "debug/islands.h"
 #include "rigid/sleep/island.h"
+#include "world/world_access.h"
 #include "world/world_state.h"
 
 #include <gyre/debug.h>
@@ -45,8 +46,8 @@ void add_body(const RigidWorld& w, std::uint32_t body, DVec3 origin, BodyTable& 
     append(out.axes, place.orientation);
     append(out.semi_axes, Vec3{});
   }
-  append(out.velocities, motion.linear_velocity);
-  append(out.spins, motion.angular_velocity);
+  append(out.linear_velocities, motion.linear_velocity);
+  append(out.angular_velocities, motion.angular_velocity);
   const SleepTest rest = movable ? test_sleep(w, body, length(w.settings.gravity)) : SleepTest{};
   out.speeds.push_back(rest.speed);
   out.rest_speeds.push_back(rest.rest_speed);
@@ -76,8 +77,8 @@ const char* to_string(RestState state) {
 
 void read_bodies(const World& world, DVec3 origin, BodyTable& out) {
   const FloatMode mode;
-  const RigidWorld& w = world.state().rigid;
-  clear_all(out.ids, out.centers, out.axes, out.semi_axes, out.velocities, out.spins, out.speeds,
+  const RigidWorld& w = state_of(world).rigid;
+  clear_all(out.ids, out.centers, out.axes, out.semi_axes, out.linear_velocities, out.angular_velocities, out.speeds,
             out.rest_speeds, out.still_times, out.states, out.islands, out.island_sizes);
   const IslandMap islands = find_islands(w);
   out.island_count = islands.count;

@@ -2,6 +2,7 @@
 #include "base/float_mode.h"
 #include "collision/broadphase/fat_box.h"
 #include "debug/flat.h"
+#include "world/world_access.h"
 #include "world/world_state.h"
 
 #include <gyre/debug.h>
@@ -39,7 +40,7 @@ void add_nodes(const RigidWorld& w, bool fixed, BoxKind kind, Collector& boxes) 
 
 void read_boxes(const World& world, std::uint32_t kinds, DVec3 origin, BoxTable& out) {
   const FloatMode mode;
-  const RigidWorld& w = world.state().rigid;
+  const RigidWorld& w = state_of(world).rigid;
   clear_all(out.corners, out.kinds, out.depths, out.shapes);
   Collector boxes{origin, out};
   const auto wanted = [&](BoxKind kind) { return (kinds & box_bit(kind)) != 0; };

@@ -3,6 +3,7 @@
 #include "debug/flat.h"
 #include "debug/step_length.h"
 #include "rigid/batch/solve_batch.h"
+#include "world/world_access.h"
 #include "world/world_state.h"
 
 #include <gyre/debug.h>
@@ -83,7 +84,7 @@ const char* to_string(ContactState state) {
 
 void read_contacts(const World& world, DVec3 origin, ContactTable& out) {
   const FloatMode mode;
-  const RigidWorld& w = world.state().rigid;
+  const RigidWorld& w = state_of(world).rigid;
   clear_all(out.bodies, out.shapes, out.positions, out.normals, out.tangents, out.separations, out.forces,
             out.friction_forces, out.scales, out.states, out.colors);
   SolverColors colors(w);

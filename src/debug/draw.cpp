@@ -2,6 +2,7 @@
 #include "base/float_mode.h"
 #include "debug/painter.h"
 #include "rigid/sleep/island.h"
+#include "world/world_access.h"
 #include "world/world_state.h"
 
 namespace gyre {
@@ -54,7 +55,7 @@ Color contact_color(ContactState state) {
 class Drawing {
  public:
   Drawing(const World& world, const DrawOptions& options, DebugDraw& out)
-      : world_(world), w_(world.state().rigid), paint_(options, out) {
+      : world_(world), w_(state_of(world).rigid), paint_(options, out) {
     read_bodies(world, options.origin, bodies_);
     row_.assign(w_.bodies.motion.size(), 0);
     for (std::uint32_t i = 0; i < bodies_.size(); ++i) row_[bodies_.ids[i].index] = i;
@@ -225,8 +226,8 @@ void Drawing::velocities() {
   const float seconds = paint_.options().velocity_seconds;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const Vec3 at = vector_at(bodies_.centers, i);
-    const Vec3 way = seconds * vector_at(bodies_.velocities, i);
-    const Vec3 turn = seconds * reach(bodies_.ids[i].index) * vector_at(bodies_.spins, i);
+    const Vec3 way = seconds * vector_at(bodies_.linear_velocities, i);
+    const Vec3 turn = seconds * reach(bodies_.ids[i].index) * vector_at(bodies_.angular_velocities, i);
     if (way != Vec3{}) paint_.line(at, at + way, kYellow);
     if (turn != Vec3{}) paint_.line(at, at + turn, kViolet);
   }

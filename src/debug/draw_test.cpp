@@ -105,7 +105,7 @@ TEST(Draw, PlacesAreRelativeToTheOrigin) {
 
 TEST(Draw, StopsAtTheMostLines) {
   const Scene scene = make_scene();
-  const DebugDraw some = draw(scene.world, {.most_lines = 100});
+  const DebugDraw some = draw(scene.world, {.max_lines = 100});
   EXPECT_EQ(some.line_count(), 100u);
   EXPECT_TRUE(some.cut);
 }

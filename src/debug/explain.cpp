@@ -4,6 +4,7 @@
 #include "debug/step_length.h"
 #include "debug/words.h"
 #include "rigid/sleep/island.h"
+#include "world/world_access.h"
 #include "world/world_state.h"
 
 #include <gyre/debug.h>
@@ -187,7 +188,7 @@ const char* to_string(AwakeReason reason) {
 Explanation explain(const World& world, BodyId body, const BodyNames& names) {
   const FloatMode mode;
   Explanation out;
-  if (world.exists(body)) Inquiry(world.state().rigid, body.index).answer(out);
+  if (world.exists(body)) Inquiry(state_of(world).rigid, body.index).answer(out);
   write_words(out, body, names);
   return out;
 }

@@ -2,6 +2,7 @@
 #include "base/float_mode.h"
 #include "debug/flat.h"
 #include "debug/step_length.h"
+#include "world/world_access.h"
 #include "world/world_state.h"
 
 #include <gyre/debug.h>
@@ -64,7 +65,7 @@ void add_joint(const RigidWorld& w, std::uint32_t slot, DVec3 origin, JointTable
 
 void read_joints(const World& world, DVec3 origin, JointTable& out) {
   const FloatMode mode;
-  const RigidWorld& w = world.state().rigid;
+  const RigidWorld& w = state_of(world).rigid;
   clear_all(out.ids, out.kinds, out.bodies, out.anchors, out.frames, out.has_limits, out.limits,
             out.positions, out.motors, out.forces, out.torques);
   w.joints.ids.for_each_live([&](std::uint32_t slot) { add_joint(w, slot, origin, out); });

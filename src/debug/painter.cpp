@@ -43,7 +43,7 @@ void Painter::begin(DrawLayer layer) {
 }
 
 void Painter::line(Vec3 from, Vec3 to, Color color) {
-  if (out_.line_count() >= options_.most_lines) {
+  if (out_.line_count() >= options_.max_lines) {
     out_.cut = true;
     return;
   }

@@ -1,6 +1,7 @@
 // The tables of bodies, contacts, boxes and joints: counts and values against what the world tells elsewhere, and against
 // slow and plain versions of the same.
 #include "laws/kit.h"
+#include "world/world_access.h"
 #include "world/world_state.h"
 
 #include <gyre/debug.h>
@@ -58,8 +59,8 @@ TEST(BodyTable, TellsWhatTheWorldTells) {
   ASSERT_EQ(table.axes.size(), 4 * table.size());
   for (std::size_t i = 0; i < table.size(); ++i) {
     EXPECT_EQ(table.ids[i], bodies.ids[i]);
-    EXPECT_EQ(vector(table.velocities, i), bodies.linear_velocities[i]);
-    EXPECT_EQ(vector(table.spins, i), bodies.angular_velocities[i]);
+    EXPECT_EQ(vector(table.linear_velocities, i), bodies.linear_velocities[i]);
+    EXPECT_EQ(vector(table.angular_velocities, i), bodies.angular_velocities[i]);
     EXPECT_LT(length(place(table.centers, i, at) - yard.world.center_of_mass(table.ids[i])), 3e-6);
     const bool fixed = yard.world.type(table.ids[i]) == BodyType::fixed;
     EXPECT_EQ(table.states[i] == RestState::fixed, fixed);
@@ -207,7 +208,7 @@ TEST(ContactTable, GroupsOfTheSolverShareNoMovingBody) {
       EXPECT_EQ(found->second, pair) << "two contacts of body " << body << " in one group";
     }
   }
-  EXPECT_EQ(int(colors.size()), yard.world.counts().colors);
+  EXPECT_EQ(int(colors.size()), yard.world.stats().colors);
 }
 
 TEST(ContactTable, WhatSlidesIsToldFromWhatHolds) {
@@ -272,7 +273,7 @@ TEST(BoxTable, BoundsHoldTheShapesAndNodesHoldTheBounds) {
   BoxTable boxes;
   for (int step = 0; step < 20; ++step) world.step(kStep);
   // What the broad phase is told at the beginning of the next step is not in its trees yet.
-  const Array<std::uint32_t>& changed = world.state().rigid.shapes.changed;
+  const Array<std::uint32_t>& changed = state_of(world).rigid.shapes.changed;
   read_boxes(world, kAllBoxes, origin, boxes);
   ASSERT_EQ(boxes.corners.size(), 6 * boxes.size());
   int tight = 0, fat = 0, roots = 0;
@@ -283,8 +284,8 @@ TEST(BoxTable, BoundsHoldTheShapesAndNodesHoldTheBounds) {
     if (boxes.shapes[b] == kNoShape && boxes.depths[b] == 0) ++roots;
   }
   // All but the plane.
-  EXPECT_EQ(tight, world.counts().shapes - 1);
-  EXPECT_EQ(fat, world.counts().shapes - 1);
+  EXPECT_EQ(tight, world.stats().shapes - 1);
+  EXPECT_EQ(fat, world.stats().shapes - 1);
   EXPECT_EQ(roots, 2);
   for (const BodyId body : world.bodies().ids) {
     for (const ShapeId id : world.shapes(body)) {
@@ -325,7 +326,7 @@ TEST(BoxTable, OnlyWhatWasAskedFor) {
   run(yard.world, 0.1);
   BoxTable boxes;
   read_boxes(yard.world, box_bit(BoxKind::fat), {}, boxes);
-  EXPECT_EQ(int(boxes.size()), yard.world.counts().shapes);
+  EXPECT_EQ(int(boxes.size()), yard.world.stats().shapes);
   for (const BoxKind kind : boxes.kinds) EXPECT_EQ(kind, BoxKind::fat);
   Result<World> brute = World::create({.stepping = {.broad_phase = BroadPhaseKind::brute_force}});
   brute->add_body({}, {.geometry = Box{}});

@@ -1,16 +1,17 @@
 // set_timing, read_times: what the profiler measured. See <gyre/debug.h>.
 #include "world/stages.h"
+#include "world/world_access.h"
 #include "world/world_state.h"
 
 #include <gyre/debug.h>
 
 namespace gyre {
 
-void set_timing(World& world, bool enabled) { world.state().profile.set_enabled(enabled); }
-bool timing(const World& world) { return world.state().profile.enabled(); }
+void set_timing(World& world, bool enabled) { state_of(world).profile.set_enabled(enabled); }
+bool timing(const World& world) { return state_of(world).profile.enabled(); }
 
 void read_times(const World& world, StepTimes& out) {
-  const StageProfile& profile = world.state().profile;
+  const StageProfile& profile = state_of(world).profile;
   out.steps = profile.step_count();
   const std::span<const StageTime> times = profile.step_times();
   out.seconds = times[kWholeStep].seconds;

@@ -66,10 +66,10 @@ TEST(Times, CountsAreThoseOfTheStep) {
   world.step(kStep);
   read_times(world, times);
   EXPECT_EQ(count_of(times, "refitted_boxes"), 61u) << "all shapes are new";
-  EXPECT_EQ(count_of(times, "new_pairs"), std::uint64_t(world.counts().pairs));
+  EXPECT_EQ(count_of(times, "new_pairs"), std::uint64_t(world.stats().pairs));
   for (int i = 0; i < 20; ++i) world.step(kStep);
   read_times(world, times);
-  const WorldCounts counts = world.counts();
+  const WorldStats counts = world.stats();
   EXPECT_EQ(count_of(times, "contacts"), std::uint64_t(counts.pairs));
   EXPECT_EQ(count_of(times, "colors"), std::uint64_t(counts.colors));
   EXPECT_EQ(count_of(times, "awake_bodies"), std::uint64_t(counts.awake_bodies));

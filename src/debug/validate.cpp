@@ -1,5 +1,6 @@
 // validate: the walk over a world's structures, as the public header offers it.
 #include "world/validate_state.h"
+#include "world/world_access.h"
 #include "world/world_state.h"
 
 #include <gyre/debug.h>
@@ -7,8 +8,8 @@
 namespace gyre {
 
 Error validate(const World& world) {
-  if (world.state().stepping) return make_error(ErrorCode::busy, "the world is in the middle of a step");
-  return validate_state(world.state());
+  if (state_of(world).stepping) return make_error(ErrorCode::busy, "the world is in the middle of a step");
+  return validate_state(state_of(world));
 }
 
 }  // namespace gyre

@@ -3,6 +3,7 @@
 #include "determinism/scenes.h"
 #include "rigid/store/active_constraints.h"
 #include "world/validate_state.h"
+#include "world/world_access.h"
 #include "world/world_state.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +11,7 @@
 namespace gyre {
 namespace {
 
-ActiveConstraints& links_of(World& world) { return world.state().rigid.awake_links; }
+ActiveConstraints& links_of(World& world) { return state_of(world).rigid.awake_links; }
 
 // `columns` stacks of two boxes each, side by side on a thin plate.
 World make_stacks(int columns) {
@@ -30,14 +31,14 @@ TEST(ActiveConstraints, OfWhatSleepsNoneIsAsked) {
   world.step(scenes::kStepSeconds);
   EXPECT_EQ(links_of(world).contacts.count(), links_of(world).contacts.size()) << "nobody sleeps";
   for (int i = 0; i < 120; ++i) world.step(scenes::kStepSeconds);
-  ASSERT_EQ(world.counts().awake_bodies, 0);
-  ASSERT_GT(world.counts().touching, 32);
+  ASSERT_EQ(world.stats().awake_bodies, 0);
+  ASSERT_GT(world.stats().touching, 32);
   EXPECT_EQ(links_of(world).contacts.count(), 0u);
   EXPECT_EQ(links_of(world).joints.count(), 0u);
   // One stack that is pushed: two boxes have two contacts.
   world.set_velocity(scenes::body_number(world, 1), {0.5f, 0, 0}, {});
   world.step(scenes::kStepSeconds);
-  EXPECT_EQ(world.counts().awake_bodies, 2);
+  EXPECT_EQ(world.stats().awake_bodies, 2);
   EXPECT_EQ(links_of(world).contacts.count(), 2u);
   EXPECT_EQ(links_of(world).joints.count(), 0u);
 }
@@ -51,7 +52,7 @@ TEST(ActiveConstraints, AreThoseOfABodyThatBeginsToMove) {
   EXPECT_FALSE(links_of(world).joints.test(joint.index)) << "nothing can move it";
   world.set_type(hook, BodyType::dynamic);
   EXPECT_TRUE(links_of(world).joints.test(joint.index));
-  EXPECT_EQ(validate_state(world.state()).code, ErrorCode::none);
+  EXPECT_EQ(validate_state(state_of(world)).code, ErrorCode::none);
 }
 
 // What it bore as it fell asleep is an impulse of that step: in a shorter one it would be a larger force.
@@ -89,7 +90,7 @@ struct Twins {
   }
   bool are_equal() const {
     const Events &a = some.events(), &b = all.events();
-    return hash_state(some.state()) == hash_state(all.state()) && a.begins.size() == b.begins.size() &&
+    return hash_state(state_of(some)) == hash_state(state_of(all)) && a.begins.size() == b.begins.size() &&
            a.ends.size() == b.ends.size() && a.hits.size() == b.hits.size() &&
            a.sleep_changes.size() == b.sleep_changes.size();
   }
@@ -129,7 +130,7 @@ TEST(LongAwakeLinks, AskingAllIsTheSameInAdaptiveSteps) {
 TEST(ActiveConstraints, AskingAllIsTheSameWhereSleepersAreShot) {
   Twins twins(make_stacks(40), make_stacks(40));
   for (int i = 0; i < 120; ++i) twins.step([](World&) {});
-  ASSERT_EQ(twins.some.counts().awake_bodies, 0);
+  ASSERT_EQ(twins.some.stats().awake_bodies, 0);
   for (int step = 0; step < 200; ++step) {
     twins.step([&](World& world) {
       if (step % 10 != 0) return;
@@ -166,7 +167,7 @@ TEST(ActiveConstraints, AskingAllIsTheSameWhereWallsStopSleepers) {
   };
   Twins twins(make(), make());
   for (int i = 0; i < 3; ++i) twins.step([](World&) {});
-  ASSERT_EQ(twins.some.counts().awake_bodies, 0);
+  ASSERT_EQ(twins.some.stats().awake_bodies, 0);
   scenes::Random random(6);
   for (int i = 0; i < kBoxes; ++i) {
     const float speed = random.next(2.0f, 12.0f);

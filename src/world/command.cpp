@@ -436,12 +436,13 @@ void remove_joint_now(WorldState& state, std::uint32_t joint) { remove_joint(sta
 CommandResult submit(WorldState& state, const Command& command) {
   const FloatMode mode;  // commands and the serial parts of a step compute too
   const Error why = check_command(state, command);
-  if (why.code != ErrorCode::none) {
+  if (why) {
     report_problem(state, why.code, {}, "%s", why.message);
     return {};
   }
   if (state.log != nullptr) state.log->on_command(command);
   const CommandResult result = std::visit([&](const auto& c) { return execute(state, c); }, command);
+  note_change(state);
   if (state.log != nullptr && std::holds_alternative<Step>(command)) state.log->on_step_done(state);
   return result;
 }

@@ -61,20 +61,20 @@ Error check_material(const char* field, const Material& m) {
     return name;
   };
   Error e = check_range(part("static_friction"), m.static_friction, 0.0f, 1.0e6f);
-  if (e.code == ErrorCode::none) e = check_range(part("dynamic_friction"), m.dynamic_friction, 0.0f, 1.0e6f);
-  if (e.code == ErrorCode::none) e = check_range(part("restitution"), m.restitution, 0.0f, 1.0f);
-  if (e.code == ErrorCode::none) e = check_range(part("rolling_friction"), m.rolling_friction, 0.0f, 1.0e6f);
-  if (e.code == ErrorCode::none) e = check_range(part("spinning_friction"), m.spinning_friction, 0.0f, 1.0e6f);
+  if (e.ok()) e = check_range(part("dynamic_friction"), m.dynamic_friction, 0.0f, 1.0e6f);
+  if (e.ok()) e = check_range(part("restitution"), m.restitution, 0.0f, 1.0f);
+  if (e.ok()) e = check_range(part("rolling_friction"), m.rolling_friction, 0.0f, 1.0e6f);
+  if (e.ok()) e = check_range(part("spinning_friction"), m.spinning_friction, 0.0f, 1.0e6f);
   return e;
 }
 
 Error check_shape_def(const ShapeDef& def, BodyType type) {
   Error e = check_shape(def.geometry);
-  if (e.code != ErrorCode::none) return e;
+  if (e) return e;
   e = check_pose("shape.local", {DVec3(def.local.position), def.local.orientation});
-  if (e.code == ErrorCode::none) e = check_range("shape.density", def.density, 0.0f, 1.0e20f);
-  if (e.code == ErrorCode::none) e = check_material("shape.material", def.material);
-  if (e.code != ErrorCode::none) return e;
+  if (e.ok()) e = check_range("shape.density", def.density, 0.0f, 1.0e20f);
+  if (e.ok()) e = check_material("shape.material", def.material);
+  if (e) return e;
   if (type == BodyType::dynamic && !is_convex(make_shape(def.geometry).kind)) {
     return make_error(ErrorCode::invalid_geometry,
                       "shape.geometry is a %s; dynamic bodies need convex shapes (decompose it, or make the body fixed)",
@@ -90,9 +90,9 @@ Error check_mass_overrides(const BodyDef& def) {
   if (def.center_of_mass) {
     Error e = check_finite("body.center_of_mass", *def.center_of_mass);
     const float farthest = largest(absolute(*def.center_of_mass));
-    if (e.code == ErrorCode::none)
+    if (e.ok())
       e = check_range("body.center_of_mass", farthest, 0.0f, float(kMaxPosition));
-    if (e.code != ErrorCode::none) return e;
+    if (e) return e;
   }
   if (def.inertia) return check_inertia(*def.inertia);
   return ok();
@@ -101,32 +101,32 @@ Error check_mass_overrides(const BodyDef& def) {
 Error check(const WorldState&, const AddBody& c) {
   const BodyDef& d = c.def;
   Error e = check_pose("body.pose", d.pose);
-  if (e.code == ErrorCode::none) e = check_finite("body.linear_velocity", d.linear_velocity);
-  if (e.code == ErrorCode::none) e = check_finite("body.angular_velocity", d.angular_velocity);
-  if (e.code == ErrorCode::none) e = check_range("body.linear_damping", d.linear_damping, 0.0f, 1.0e6f);
-  if (e.code == ErrorCode::none) e = check_range("body.angular_damping", d.angular_damping, 0.0f, 1.0e6f);
-  if (e.code == ErrorCode::none) e = check_range("body.gravity_scale", d.gravity_scale, -1.0e6f, 1.0e6f);
-  if (e.code == ErrorCode::none) e = check_mass_overrides(d);
+  if (e.ok()) e = check_finite("body.linear_velocity", d.linear_velocity);
+  if (e.ok()) e = check_finite("body.angular_velocity", d.angular_velocity);
+  if (e.ok()) e = check_range("body.linear_damping", d.linear_damping, 0.0f, 1.0e6f);
+  if (e.ok()) e = check_range("body.angular_damping", d.angular_damping, 0.0f, 1.0e6f);
+  if (e.ok()) e = check_range("body.gravity_scale", d.gravity_scale, -1.0e6f, 1.0e6f);
+  if (e.ok()) e = check_mass_overrides(d);
   for (const ShapeDef& shape : c.shapes) {
-    if (e.code == ErrorCode::none) e = check_shape_def(shape, d.type);
+    if (e.ok()) e = check_shape_def(shape, d.type);
   }
   return e;
 }
 Error check(const WorldState& s, const RemoveBody& c) { return check_body(s, c.body, "remove_body"); }
 Error check(const WorldState& s, const AddShape& c) {
   const Error e = check_body(s, c.body, "add_shape");
-  return e.code != ErrorCode::none ? e : check_shape_def(c.def, s.rigid.bodies.flags[c.body.index].type);
+  return e ? e : check_shape_def(c.def, s.rigid.bodies.flags[c.body.index].type);
 }
 Error check(const WorldState& s, const RemoveShape& c) { return check_shape_id(s, c.shape, "remove_shape"); }
 
 Error check_motor(const Motor& m) {
   Error e = check_range("motor.target_velocity", m.target_velocity, -1.0e6f, 1.0e6f);
-  if (e.code == ErrorCode::none && m.target_position) {
+  if (e.ok() && m.target_position) {
     e = check_range("motor.target_position", *m.target_position, -1.0e9f, 1.0e9f);
   }
-  if (e.code == ErrorCode::none) e = check_range("motor.max_force", m.max_force, 0.0f, 1.0e30f);
-  if (e.code == ErrorCode::none) e = check_range("motor.frequency", m.frequency, 0.0f, 1.0e6f);
-  if (e.code == ErrorCode::none) e = check_range("motor.damping_ratio", m.damping_ratio, 0.0f, 1.0e6f);
+  if (e.ok()) e = check_range("motor.max_force", m.max_force, 0.0f, 1.0e30f);
+  if (e.ok()) e = check_range("motor.frequency", m.frequency, 0.0f, 1.0e6f);
+  if (e.ok()) e = check_range("motor.damping_ratio", m.damping_ratio, 0.0f, 1.0e6f);
   return e;
 }
 
@@ -136,13 +136,13 @@ Error check_optional(const char* field, const std::optional<float>& value, float
 
 Error check_distance(const JointDef& d) {
   Error e = check_optional("joint.length", d.length, 0.0f);
-  if (e.code == ErrorCode::none) e = check_optional("joint.min_length", d.min_length, 0.0f);
-  if (e.code == ErrorCode::none) e = check_optional("joint.max_length", d.max_length, 0.0f);
-  if (e.code == ErrorCode::none) e = check_optional("joint.stiffness", d.stiffness, 0.0f);
-  if (e.code == ErrorCode::none) e = check_optional("joint.damping", d.damping, 0.0f);
-  if (e.code == ErrorCode::none && d.frequency) e = check_range("joint.frequency", *d.frequency, 1.0e-6f, 1.0e6f);
-  if (e.code == ErrorCode::none) e = check_range("joint.damping_ratio", d.damping_ratio, 0.0f, 1.0e6f);
-  if (e.code != ErrorCode::none) return e;
+  if (e.ok()) e = check_optional("joint.min_length", d.min_length, 0.0f);
+  if (e.ok()) e = check_optional("joint.max_length", d.max_length, 0.0f);
+  if (e.ok()) e = check_optional("joint.stiffness", d.stiffness, 0.0f);
+  if (e.ok()) e = check_optional("joint.damping", d.damping, 0.0f);
+  if (e.ok() && d.frequency) e = check_range("joint.frequency", *d.frequency, 1.0e-6f, 1.0e6f);
+  if (e.ok()) e = check_range("joint.damping_ratio", d.damping_ratio, 0.0f, 1.0e6f);
+  if (e) return e;
   if (d.frequency && (d.stiffness || d.damping)) return refuse("joint.frequency is instead of joint.stiffness and joint.damping; give one");
   if (d.min_length && d.max_length && *d.min_length > *d.max_length) {
     return refuse("joint.min_length is %g, above joint.max_length %g", double(*d.min_length), double(*d.max_length));
@@ -152,14 +152,14 @@ Error check_distance(const JointDef& d) {
 
 Error first_of(std::initializer_list<Error> errors) {
   for (const Error& e : errors) {
-    if (e.code != ErrorCode::none) return e;
+    if (e) return e;
   }
   return ok();
 }
 
 Error check_direction(const char* field, Vec3 v) {
   const Error e = check_finite(field, v);
-  if (e.code != ErrorCode::none) return e;
+  if (e) return e;
   return largest(absolute(v)) > 0.0f ? ok() : refuse("%s is zero; it must have a direction", field);
 }
 
@@ -212,7 +212,7 @@ Error check_path(const JointDef& d) {
 Error check_kind(const JointDef& d) {
   if (d.axis_b) {
     const Error e = check_direction("joint.axis_b", *d.axis_b);
-    if (e.code != ErrorCode::none) return e;
+    if (e) return e;
   }
   const Vec3 axis = normalized(d.axis), other = d.axis_b ? normalized(*d.axis_b) : Vec3{};
   const float between = length(cross(axis, other));
@@ -237,7 +237,7 @@ Error check_kind(const JointDef& d) {
     case JointKind::pulley: {
       const Error e = first_of({check_pose("joint.ground_a", {d.ground_a, {}}), check_pose("joint.ground_b", {d.ground_b, {}}),
                                 check_optional("joint.length", d.length, 0.0f)});
-      if (e.code != ErrorCode::none) return e;
+      if (e) return e;
       if (!d.a || !d.b) return refuse("joint.a and joint.b of a pulley must both be bodies");
       return check_range("joint.ratio", d.ratio, 1.0e-6f, 1.0e6f);
     }
@@ -246,7 +246,7 @@ Error check_kind(const JointDef& d) {
   }
   if (d.kind == JointKind::gear || d.kind == JointKind::rack_and_pinion) {
     const Error e = check_range("joint.ratio", d.ratio, -1.0e6f, 1.0e6f);
-    if (e.code != ErrorCode::none) return e;
+    if (e) return e;
     if (!(absolute(d.ratio) >= 1.0e-6f)) return refuse("joint.ratio is %g; it must not be zero", double(d.ratio));
   }
   return ok();
@@ -256,55 +256,55 @@ Error check(const WorldState& s, const AddJoint& c) {
   const JointDef& d = c.def;
   Error e = ok();
   if (d.a) e = check_body(s, d.a, "add_joint");
-  if (e.code == ErrorCode::none && d.b) e = check_body(s, d.b, "add_joint");
-  if (e.code != ErrorCode::none) return e;
+  if (e.ok() && d.b) e = check_body(s, d.b, "add_joint");
+  if (e) return e;
   if (!d.a && !d.b) return refuse("joint.a and joint.b are both the world; one must be a body");
   if (d.a == d.b) return refuse("joint.a and joint.b are the same body (%u)", d.a.index);
   if (int(d.kind) >= kJointKindCount) return refuse("joint.kind is %d; there is no such kind", int(d.kind));
   e = check_pose("joint.anchor", {d.anchor, {}});
-  if (e.code == ErrorCode::none && d.anchor_b) e = check_pose("joint.anchor_b", {*d.anchor_b, {}});
-  if (e.code == ErrorCode::none) e = check_finite("joint.axis", d.axis);
-  if (e.code != ErrorCode::none) return e;
+  if (e.ok() && d.anchor_b) e = check_pose("joint.anchor_b", {*d.anchor_b, {}});
+  if (e.ok()) e = check_finite("joint.axis", d.axis);
+  if (e) return e;
   if (!(largest(absolute(d.axis)) > 0.0f)) return refuse("joint.axis is zero; it must have a direction");
   if (d.limits) e = check_limits(*d.limits);
-  if (e.code == ErrorCode::none) {
+  if (e.ok()) {
     e = first_of({check_range("joint.friction", d.friction, 0.0f, 1.0e30f),
                   check_range("joint.limit_frequency", d.limit_frequency, 0.0f, 1.0e6f),
                   check_range("joint.limit_damping_ratio", d.limit_damping_ratio, 0.0f, 1.0e6f),
                   check_optional("joint.stiffness", d.stiffness, 0.0f), check_optional("joint.damping", d.damping, 0.0f),
                   check_kind(d)});
   }
-  if (e.code == ErrorCode::none) e = check_motor(d.motor);
-  if (e.code == ErrorCode::none) e = check_optional("joint.break_force", d.break_force, 0.0f);
-  if (e.code == ErrorCode::none) e = check_optional("joint.break_torque", d.break_torque, 0.0f);
-  if (e.code == ErrorCode::none && d.kind == JointKind::distance) e = check_distance(d);
-  if (e.code == ErrorCode::none && d.kind != JointKind::distance && d.frequency)
+  if (e.ok()) e = check_motor(d.motor);
+  if (e.ok()) e = check_optional("joint.break_force", d.break_force, 0.0f);
+  if (e.ok()) e = check_optional("joint.break_torque", d.break_torque, 0.0f);
+  if (e.ok() && d.kind == JointKind::distance) e = check_distance(d);
+  if (e.ok() && d.kind != JointKind::distance && d.frequency)
     e = refuse("joint.frequency: only distance joints have it; motors have their own");
   return e;
 }
 Error check(const WorldState& s, const RemoveJoint& c) { return check_joint_id(s, c.joint, "remove_joint"); }
 Error check(const WorldState& s, const SetPose& c) {
   const Error e = check_body(s, c.body, "set_pose");
-  return e.code != ErrorCode::none ? e : check_pose("pose", c.pose);
+  return e ? e : check_pose("pose", c.pose);
 }
 Error check(const WorldState& s, const SetVelocity& c) {
   Error e = check_body(s, c.body, "set_velocity");
-  if (e.code == ErrorCode::none) e = check_finite("linear velocity", c.linear);
-  if (e.code == ErrorCode::none) e = check_finite("angular velocity", c.angular);
+  if (e.ok()) e = check_finite("linear velocity", c.linear);
+  if (e.ok()) e = check_finite("angular velocity", c.angular);
   return e;
 }
 Error check(const WorldState& s, const MoveKinematic& c) {
   Error e = check_body(s, c.body, "move_kinematic");
-  if (e.code != ErrorCode::none) return e;
+  if (e) return e;
   if (s.rigid.bodies.flags[c.body.index].type != BodyType::kinematic) {
     return refuse("move_kinematic: body %u is not kinematic", c.body.index);
   }
   e = check_pose("pose", c.pose);
-  return e.code != ErrorCode::none ? e : check_range("seconds", c.seconds, 1.0e-9f, 1.0f);
+  return e ? e : check_range("seconds", c.seconds, 1.0e-9f, 1.0f);
 }
 Error check(const WorldState& s, const SetType& c) {
   const Error e = check_body(s, c.body, "set_type");
-  if (e.code != ErrorCode::none) return e;
+  if (e) return e;
   if (c.type > BodyType::dynamic) return refuse("set_type: there is no body type %d", int(c.type));
   if (c.type != BodyType::dynamic) return ok();
   for (const ShapeId id : s.rigid.bodies.shapes[c.body.index]) {
@@ -318,21 +318,21 @@ Error check(const WorldState& s, const SetType& c) {
 }
 Error check(const WorldState&, const SetGravity& c) {
   const Error e = check_finite("gravity", c.gravity);
-  return e.code != ErrorCode::none ? e : check_range("gravity", length(c.gravity), 0.0f, 1.0e9f);
+  return e ? e : check_range("gravity", length(c.gravity), 0.0f, 1.0e9f);
 }
 Error check(const WorldState& s, const SetGravityScale& c) {
   const Error e = check_body(s, c.body, "set_gravity_scale");
-  return e.code != ErrorCode::none ? e : check_range("gravity scale", c.scale, -1.0e6f, 1.0e6f);
+  return e ? e : check_range("gravity scale", c.scale, -1.0e6f, 1.0e6f);
 }
 Error check(const WorldState& s, const SetDamping& c) {
   Error e = check_body(s, c.body, "set_damping");
-  if (e.code == ErrorCode::none) e = check_range("linear damping", c.linear, 0.0f, 1.0e6f);
-  if (e.code == ErrorCode::none) e = check_range("angular damping", c.angular, 0.0f, 1.0e6f);
+  if (e.ok()) e = check_range("linear damping", c.linear, 0.0f, 1.0e6f);
+  if (e.ok()) e = check_range("angular damping", c.angular, 0.0f, 1.0e6f);
   return e;
 }
 Error check(const WorldState& s, const SetMaterial& c) {
   const Error e = check_shape_id(s, c.shape, "set_material");
-  return e.code != ErrorCode::none ? e : check_material("material", c.material);
+  return e ? e : check_material("material", c.material);
 }
 Error check(const WorldState&, const SetMaterialPair& c) {
   if (c.pair.a == 0 || c.pair.b == 0) {
@@ -344,18 +344,18 @@ Error check(const WorldState&, const SetMaterialPair& c) {
 Error check(const WorldState&, const SetSurfaceRule& c) {
   if (c.rule.id == 0) return refuse("surface rule: its id must be above 0");
   Error e = check_material("surface rule: material", c.rule.material);
-  if (e.code == ErrorCode::none) e = check_finite("surface rule: velocity", c.rule.velocity);
-  if (e.code == ErrorCode::none) e = check_range("surface rule: velocity", largest(absolute(c.rule.velocity)), 0.0f, 1.0e6f);
-  return e.code == ErrorCode::none ? check_finite("surface rule: one_way", c.rule.one_way) : e;
+  if (e.ok()) e = check_finite("surface rule: velocity", c.rule.velocity);
+  if (e.ok()) e = check_range("surface rule: velocity", largest(absolute(c.rule.velocity)), 0.0f, 1.0e6f);
+  return e.ok() ? check_finite("surface rule: one_way", c.rule.one_way) : e;
 }
 Error check(const WorldState& s, const SetFilter& c) { return check_shape_id(s, c.shape, "set_filter"); }
 Error check(const WorldState& s, const SetMotor& c) {
   const Error e = check_joint_id(s, c.joint, "set_motor");
-  return e.code != ErrorCode::none ? e : check_motor(c.motor);
+  return e ? e : check_motor(c.motor);
 }
 Error check(const WorldState& s, const SetJointAxis& c) {
   const Error e = check_joint_id(s, c.joint, "set_joint_axis");
-  if (e.code != ErrorCode::none) return e;
+  if (e) return e;
   const JointKind kind = s.rigid.joints.records[c.joint.index].kind;
   if (int(c.axis) >= kJointAxisCount || ((open_axes(kind) >> int(c.axis)) & 1u) == 0) {
     return refuse("set_joint_axis: a %s joint has no %s to set", to_string(kind),
@@ -365,7 +365,7 @@ Error check(const WorldState& s, const SetJointAxis& c) {
 }
 Error check(const WorldState& s, const SetDrive& c) {
   const Error e = check_joint_id(s, c.joint, "set_drive");
-  if (e.code != ErrorCode::none) return e;
+  if (e) return e;
   const JointKind kind = s.rigid.joints.records[c.joint.index].kind;
   if (!has_pose_drive(kind)) return refuse("set_drive: a %s joint has no drive; motor, mouse and cone have", to_string(kind));
   return check_drive(c.drive);
@@ -404,14 +404,14 @@ Error check(const WorldState&, const SetCombineRules& c) {
 }
 Error check(const WorldState& s, const AddForce& c) {
   Error e = check_body(s, c.body, "add_force");
-  if (e.code == ErrorCode::none) e = check_finite("force", c.force);
-  if (e.code == ErrorCode::none) e = check_finite("torque", c.torque);
+  if (e.ok()) e = check_finite("force", c.force);
+  if (e.ok()) e = check_finite("torque", c.torque);
   return e;
 }
 Error check(const WorldState& s, const AddImpulse& c) {
   Error e = check_body(s, c.body, "add_impulse");
-  if (e.code == ErrorCode::none) e = check_finite("impulse", c.impulse);
-  if (e.code == ErrorCode::none) e = check_finite("angular impulse", c.angular);
+  if (e.ok()) e = check_finite("impulse", c.impulse);
+  if (e.ok()) e = check_finite("angular impulse", c.angular);
   return e;
 }
 Error check(const WorldState&, const Step& c) {
@@ -428,8 +428,8 @@ Error check_command(const WorldState& state, const Command& command) {
 
 Error check_world_def(const WorldDef& def) {
   Error e = check_finite("gravity", def.gravity);
-  if (e.code == ErrorCode::none) e = check_range("gravity", length(def.gravity), 0.0f, 1.0e9f);
-  if (e.code != ErrorCode::none) return e;
+  if (e.ok()) e = check_range("gravity", length(def.gravity), 0.0f, 1.0e9f);
+  if (e) return e;
   if (def.threads < 0 || def.threads > TaskSystem::kMaxWorkers) {
     return refuse("threads is %d; it must lie within 0 and %d", def.threads, TaskSystem::kMaxWorkers);
   }
@@ -440,7 +440,7 @@ Error check_world_def(const WorldDef& def) {
     return refuse("stepping.substeps is %d; it must lie within 1 and 64", def.stepping.substeps);
   }
   e = check_motion(def.stepping.integrator, def.stepping.springs, def.stepping.time, def.stepping.tolerance, def.stepping.max_impacts);
-  if (e.code != ErrorCode::none) return e;
+  if (e) return e;
   const Stepping& by = def.stepping;
   const char* const fault = fault_in(SolverSettings{by.solver, by.solver_options});
   if (fault != nullptr) return refuse("stepping.%s", fault);

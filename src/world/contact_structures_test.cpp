@@ -1,6 +1,7 @@
 // Which islands are held as structures (rigid/rest/resting_structures.h): what is held has manifolds older than any world.
 #include "determinism/scenes.h"
 #include "solver/rest/static_equilibrium.h"
+#include "world/world_access.h"
 #include "world/world_state.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +17,7 @@ struct Held {
 };
 Held count_held(World& world) {
   Held count;
-  const ContactStore& store = world.state().rigid.contacts;
+  const ContactStore& store = state_of(world).rigid.contacts;
   for (const Contact& contact : store.contacts) {
     for (const Manifold& manifold : manifolds_of(store, contact)) {
       if (manifold.total_friction == Vec3{} && manifold.points[0].total_impulse == 0.0f) continue;

@@ -40,8 +40,8 @@ Error check_def(const FieldDef& d) {
   Error e;
   if (d.bounds) {
     e = check_place("field.bounds.low", d.bounds->low);
-    if (is_fine(e)) e = check_place("field.bounds.high", d.bounds->high);
-    if (!is_fine(e)) return e;
+    if (e.ok()) e = check_place("field.bounds.high", d.bounds->high);
+    if (e) return e;
     const DVec3 low = d.bounds->low, high = d.bounds->high;
     if (!(low.x <= high.x && low.y <= high.y && low.z <= high.z)) {
       return refuse("field.bounds.low is (%g, %g, %g), in part above field.bounds.high (%g, %g, %g)", low.x,
@@ -64,11 +64,11 @@ Error check_def(const FieldDef& d) {
   };
   for (const NamedNumber& n : numbers) {
     e = check_number(n.name, n.value, n.low, n.high);
-    if (!is_fine(e)) return e;
+    if (e) return e;
   }
   e = check_place("field.center", d.center);
-  if (is_fine(e)) e = check_field_direction("field.axis", d.axis);
-  return is_fine(e) ? check_field_direction("field.normal", d.normal) : e;
+  if (e.ok()) e = check_field_direction("field.axis", d.axis);
+  return e.ok() ? check_field_direction("field.normal", d.normal) : e;
 }
 
 FieldId field_id(const WorldState& s, std::uint32_t slot) {
@@ -97,7 +97,7 @@ Error check(const WorldState& s, const AddField& c) {
 }
 Error check(const WorldState& s, const SetField& c) {
   const Error e = check_id(s, c.field, "set_field");
-  return is_fine(e) ? check_def(c.def) : e;
+  return e.ok() ? check_def(c.def) : e;
 }
 Error check(const WorldState& s, const RemoveField& c) { return check_id(s, c.field, "remove_field"); }
 Error check(const WorldState&, const Explode& c) {
@@ -108,7 +108,7 @@ Error check(const WorldState&, const Explode& c) {
                                  {"explosion.falloff", double(d.falloff), 0.0, 4.0},
                                  {"explosion.radius", double(d.radius), 0.0, 1.0e9}};
   for (const NamedNumber& n : numbers) {
-    if (is_fine(e)) e = check_number(n.name, n.value, n.low, n.high);
+    if (e.ok()) e = check_number(n.name, n.value, n.low, n.high);
   }
   return e;
 }
@@ -152,7 +152,7 @@ const char* fault_in_fields(std::span<const FieldRecord> fields) {
   for (const FieldRecord& field : fields) {
     if (field.generation > 0x10000) return "a field whose generation is too large";
     if (!field.is_live()) continue;
-    if (!is_fine(check_def(field_def(field)))) return "a field that could not have been added";
+    if (check_def(field_def(field))) return "a field that could not have been added";
   }
   return nullptr;
 }

@@ -9,13 +9,13 @@ namespace gyre {
 namespace {
 
 // The two ends as they stand and move.
-struct JointState {
+struct JointMotion {
   BodyMotion a, b;
   Quat frame_a, frame_b;
   Vec3 speed;  // of b's anchor against a's body there
   Vec3 turning;
 };
-JointState state_of(const RigidWorld& w, const JointRecord& joint) {
+JointMotion state_of(const RigidWorld& w, const JointRecord& joint) {
   const auto motion = [&](std::int32_t body) {
     return body == kNoBody ? BodyMotion{} : w.bodies.motion[std::size_t(body)];
   };
@@ -23,7 +23,7 @@ JointState state_of(const RigidWorld& w, const JointRecord& joint) {
     return body == kNoBody ? Quat{} : w.bodies.places[std::size_t(body)].orientation;
   };
   const JointAnchors anchors = joint_anchors(w, joint);
-  JointState s;
+  JointMotion s;
   s.a = motion(joint.body_a), s.b = motion(joint.body_b);
   s.frame_a = orientation(joint.body_a) * joint.local_frame_a;
   s.frame_b = orientation(joint.body_b) * joint.local_frame_b;
@@ -37,7 +37,7 @@ JointState state_of(const RigidWorld& w, const JointRecord& joint) {
 }
 
 float line_speed(const RigidWorld& w, const JointRecord& joint, const JointDetail* detail,
-                 const JointState& s, int axis) {
+                 const JointMotion& s, int axis) {
   switch (joint.kind) {
     case JointKind::distance: {
       const JointAnchors anchors = joint_anchors(w, joint);
@@ -64,7 +64,7 @@ float line_speed(const RigidWorld& w, const JointRecord& joint, const JointDetai
   return dot(s.speed, rotate(s.frame_a, unit[axis]));
 }
 
-float turn_speed(const JointRecord& joint, const JointState& s, int axis) {
+float turn_speed(const JointRecord& joint, const JointMotion& s, int axis) {
   const Vec3 x_a = rotate(s.frame_a, {1, 0, 0}), x_b = rotate(s.frame_b, {1, 0, 0});
   switch (joint.kind) {
     case JointKind::hinge:
@@ -98,7 +98,7 @@ std::uint32_t readable_axes(JointKind kind) {
 }
 
 // Forces along the one axis of joints that keep it in their record: what the rows across it do not explain.
-float force_in_record(const JointRecord& joint, const JointState& s) {
+float force_in_record(const JointRecord& joint, const JointMotion& s) {
   const Vec3 along = rotate(s.frame_a, {1, 0, 0});
   return joint.kind == JointKind::hinge ? dot(joint.total_angular, along) : dot(joint.total_linear, along);
 }
@@ -115,9 +115,9 @@ JointAnchors joint_anchors(const RigidWorld& w, const JointRecord& joint) {
           place(joint.body_b, joint.local_anchor_b, joint.world_anchor_b)};
 }
 
-JointReading read_joint(const RigidWorld& w, std::uint32_t slot) {
+JointState read_joint(const RigidWorld& w, std::uint32_t slot) {
   const JointRecord& joint = w.joints.records[slot];
-  JointReading reading;
+  JointState reading;
   const float seconds = w.settings.last_step;
   if (seconds > 0.0f) {
     reading.force = (1.0f / seconds) * joint.total_linear;
@@ -128,14 +128,14 @@ JointReading read_joint(const RigidWorld& w, std::uint32_t slot) {
   return reading;
 }
 
-JointAxisReading read_joint_axis(const RigidWorld& w, std::uint32_t slot, JointAxis axis) {
+JointAxisState read_joint_axis(const RigidWorld& w, std::uint32_t slot, JointAxis axis) {
   const JointRecord& joint = w.joints.records[slot];
   if (((readable_axes(joint.kind) >> int(axis)) & 1u) == 0) return {};
   const JointDetail* const detail = detail_of(w.joints, slot);
-  const JointState s = state_of(w, joint);
+  const JointMotion s = state_of(w, joint);
   const float seconds = w.settings.last_step;
   const int i = int(axis);
-  JointAxisReading reading;
+  JointAxisState reading;
   reading.velocity = i < 3 ? line_speed(w, joint, detail, s, i) : turn_speed(joint, s, i - 3);
   if (joint.kind <= JointKind::distance) {
     reading.position = joint.position;

@@ -13,8 +13,8 @@ struct JointAnchors {
 };
 JointAnchors joint_anchors(const RigidWorld& w, const JointRecord& joint);
 
-JointReading read_joint(const RigidWorld& w, std::uint32_t slot);
-JointAxisReading read_joint_axis(const RigidWorld& w, std::uint32_t slot, JointAxis axis);
+JointState read_joint(const RigidWorld& w, std::uint32_t slot);
+JointAxisState read_joint_axis(const RigidWorld& w, std::uint32_t slot, JointAxis axis);
 // J.
 double spring_energy(const RigidWorld& w, std::uint32_t slot);
 

@@ -7,8 +7,6 @@ namespace gyre {
 
 constexpr double kMaxPosition = 1.0e12;  // m: places beyond this are refused
 
-inline bool is_fine(const Error& error) { return error.code == ErrorCode::none; }
-
 inline Error refuse(const char* words) { return make_error(ErrorCode::invalid_argument, "%s", words); }
 template <class... Args>
 Error refuse(const char* format, Args... args) {

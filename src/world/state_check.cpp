@@ -96,7 +96,7 @@ const char* fault_in_shape(const RigidWorld& w, std::uint32_t i) {
   const bool live = w.shapes.ids.live(i);
   if (proxy.motion > ProxyMotion::moving) return "a proxy of unknown motion";
   if ((proxy.motion != ProxyMotion::none) != live) return "a proxy without a shape";
-  if (check_shape(w.shapes.geometry[i]).code != ErrorCode::none) return "a shape that cannot be";
+  if (check_shape(w.shapes.geometry[i])) return "a shape that cannot be";
   if (!live) return nullptr;
   const std::uint32_t body = w.shapes.bodies[i];
   if (!w.bodies.ids.live(body)) return "a shape without a body";
@@ -229,7 +229,7 @@ Error check_columns(const RigidWorld& w) {
 
 Error rebuild_derived(RigidWorld& w) {
   const Error e = check_columns(w);
-  if (e.code != ErrorCode::none) return e;
+  if (e) return e;
   derive_state(w);
   const char* const fault = find_fault(w.contacts);
   return fault != nullptr ? inconsistent(fault) : Error{};

@@ -26,7 +26,7 @@ bool is_walked(const WorldState& s, StageName stage) {
 void validate_after(const WorldState& s, StageName stage) {
   if (!is_walked(s, stage)) return;
   const Error fault = validate_state(s, stage);
-  if (fault.code != ErrorCode::none) check_failed(kStageNames[int(stage)], fault.message, __FILE__, __LINE__);
+  if (fault) check_failed(kStageNames[int(stage)], fault.message, __FILE__, __LINE__);
 }
 #endif
 
@@ -232,7 +232,7 @@ void step_to_impacts(WorldState& s, float seconds) {
   RigidWorld& w = s.rigid;
   const std::int32_t most = motion_settings(w).max_impacts;
   const float threshold = max(length(w.settings.gravity) * seconds / 128.0f, 1.0e-6f);
-  StepReport report;
+  StepStats report;
   double left = double(seconds);
   for (int part = 0; left > 0.0; ++part) {
     w.now = s.time + (double(seconds) - left);

@@ -149,7 +149,7 @@ Error StateValidator::blocked_bodies() const {
     if (!w_.joints.blocked.contains(pair_key(std::uint32_t(joint.body_a), std::uint32_t(joint.body_b))))
       error = broken("joint %u keeps its bodies from colliding, but they are not known to be kept", slot);
   });
-  if (error.code != ErrorCode::none) return error;
+  if (error) return error;
   w_.joints.blocked.for_each([&](std::uint64_t, std::uint32_t count) { counted += count; });
   return joints == counted ? Error{} : broken("bodies are kept from colliding by more joints than there are");
 }
@@ -229,7 +229,7 @@ Error StateValidator::pairs_have_contacts() const {
 Error StateValidator::groups_of_constraints() const {
   Error fault = groups_of_batch(s_.solve.together);
   for (const std::unique_ptr<WorkerContext>& worker : s_.solve.workers) {
-    if (fault.code == ErrorCode::none) fault = groups_of_batch(worker->scratch);
+    if (fault.ok()) fault = groups_of_batch(worker->scratch);
   }
   return fault;
 }
@@ -348,9 +348,9 @@ Error StateValidator::nobody_sleeps_beside_motion() const {
 Error StateValidator::run() {
   Error error = is_on_the_way() ? Error{} : check_columns(w_);
   const auto next = [&](Error (StateValidator::*rule)() const, bool holds = true) {
-    if (error.code == ErrorCode::none && holds) error = (this->*rule)();
+    if (error.ok() && holds) error = (this->*rule)();
   };
-  if (error.code != ErrorCode::none) return error;
+  if (error) return error;
   list_changed();
   next(&StateValidator::lists_of_bodies);
   next(&StateValidator::list_of_awake);

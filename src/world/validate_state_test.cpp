@@ -3,6 +3,7 @@
 #include "world/validate_state.h"
 #include "determinism/random_world.h"
 #include "determinism/scenes.h"
+#include "world/world_access.h"
 #include "world/world_state.h"
 
 #include <gyre/replay.h>
@@ -18,7 +19,7 @@ namespace {
 // Walks a world after each stage of its steps, and keeps the first fault.
 class Watch {
  public:
-  explicit Watch(World& world) : state_(world.state()) {
+  explicit Watch(World& world) : state_(state_of(world)) {
     state_.stage_hook = {[](void* user, const char* stage) { static_cast<Watch*>(user)->look(stage); }, this};
   }
   ~Watch() { state_.stage_hook = {}; }
@@ -33,7 +34,7 @@ class Watch {
     while (stage < kStageCount - 1 && std::strcmp(kStageNames[stage], name) != 0) ++stage;
     const Error error = validate_state(state_, StageName(stage));
     ++walks_;
-    if (error.code == ErrorCode::none || !fault_.empty()) return;
+    if (error.ok() || !fault_.empty()) return;
     fault_ = "step " + std::to_string(state_.step_count) + ", after " + name + ": " + error.message;
   }
 
@@ -52,7 +53,7 @@ TEST_P(WalkScenes, FindsNothingWrong) {
   for (int step = 0; step < scenes::kSteps; ++step) {
     if (scene.drive != nullptr) scene.drive(*world, step);
     if (step % 10 == 0) {
-      const Error between = validate_state(world->state());
+      const Error between = validate_state(state_of(*world));
       ASSERT_EQ(between.code, ErrorCode::none) << "before step " << step << ": " << between.message;
     }
     world->step(scenes::kStepSeconds);
@@ -80,12 +81,12 @@ void walk_random_worlds(std::uint32_t first, std::uint32_t count, int steps) {
       if (step == steps / 2 + 7) {
         ASSERT_EQ(restore_snapshot(*world, snapshot).code, ErrorCode::none);
       }
-      Error between = validate_state(world->state());
+      Error between = validate_state(state_of(*world));
       ASSERT_EQ(between.code, ErrorCode::none)
           << "world " << number << ", before step " << step << ": " << between.message;
       world->step(scenes::kStepSeconds);
       ASSERT_EQ(watch.fault(), "") << "world " << number;
-      between = validate_state(world->state());
+      between = validate_state(state_of(*world));
       ASSERT_EQ(between.code, ErrorCode::none)
           << "world " << number << ", after step " << step << ": " << between.message;
     }
@@ -116,10 +117,10 @@ World make_busy_world() {
 template <class Spoil>
 std::string fault_after(Spoil&& spoil, std::optional<StageName> stage = {}) {
   World world = make_busy_world();
-  const Error before = validate_state(world.state(), stage);
-  if (before.code != ErrorCode::none) return std::string("before: ") + before.message;
-  spoil(world.state());
-  return validate_state(world.state(), stage).message;
+  const Error before = validate_state(state_of(world), stage);
+  if (before) return std::string("before: ") + before.message;
+  spoil(state_of(world));
+  return validate_state(state_of(world), stage).message;
 }
 testing::AssertionResult tells(const std::string& fault, const char* words) {
   if (fault.find(words) != std::string::npos) return testing::AssertionSuccess();

@@ -9,7 +9,7 @@ namespace gyre {
 
 Result<World> World::create(const WorldDef& def) {
   const Error why = check_world_def(def);
-  if (why.code != ErrorCode::none) return why;
+  if (why) return why;
   return World(make_world_state(def));
 }
 
@@ -99,10 +99,10 @@ bool World::set_threads(int threads) {
   WorldDef wanted = state_->def;
   wanted.threads = threads;
   Error why = check_change(*state_, wanted);
-  if (why.code == ErrorCode::none && wanted.host_tasks.run != nullptr) {
+  if (why.ok() && wanted.host_tasks.run != nullptr) {
     why = make_error(ErrorCode::unsupported, "threads: this world uses the host's own tasks");
   }
-  if (why.code != ErrorCode::none) return refuse_change(*state_, why);
+  if (why) return refuse_change(*state_, why);
   state_->tasks = std::make_unique<TaskSystem>(threads);
   state_->def.threads = threads;
   return true;
@@ -111,7 +111,7 @@ bool World::set_broad_phase(BroadPhaseKind kind) {
   WorldDef wanted = state_->def;
   wanted.stepping.broad_phase = kind;
   const Error why = check_change(*state_, wanted);
-  if (why.code != ErrorCode::none) return refuse_change(*state_, why);
+  if (why) return refuse_change(*state_, why);
   // The next step builds it from all boxes. Which of them changed it is told then, too.
   state_->rigid.broadphase = make_broadphase(kind);
   state_->rigid.broadphase_stale = true;

@@ -27,7 +27,7 @@ Error check_vector(const char* what, const char* field, DVec3 p) {
 
 Error check_place(const char* what, const AnyShape& shape, const Pose& pose) {
   const Error e = check_shape(shape);
-  if (!is_fine(e)) return e;
+  if (e) return e;
   const ShapeKind kind = make_shape(shape).kind;
   if (!is_convex(kind)) {
     return make_error(ErrorCode::invalid_geometry, "%s: shape is a %s; only a convex shape can be asked with",
@@ -51,7 +51,7 @@ Error check_distance(double max_distance) {
 
 Error check_question(const Ray& ray) { return check_ray(ray); }
 Error check_question(const ShapeCast& cast) { return check_shape_cast(cast); }
-Error check_question(const ShapePlace& place) { return check_shape_place(place); }
+Error check_question(const ShapePose& shape) { return check_shape_pose(shape); }
 
 // ------------------------------------------------------------------------------------------------------------- the world
 
@@ -95,10 +95,10 @@ void ask_world(const WorldState& s, const QueryFilter& filter, Ask&& ask) {
 WorldShape world_shape(const AnyShape& shape, const Pose& pose) {
   return {make_shape(shape), {pose.position, normalized(pose.orientation)}, {}, 0.0f};
 }
-WorldShape world_shape(const ShapePlace& place) { return world_shape(place.shape, place.pose); }
+WorldShape world_shape(const ShapePose& shape) { return world_shape(shape.shape, shape.pose); }
 WorldShape world_shape(const ShapeCast& cast) {
   WorldShape out = world_shape(cast.shape, cast.pose);
-  out.way = cast.way;
+  out.way = cast.translation;
   out.skin = cast.skin;
   return out;
 }
@@ -113,7 +113,7 @@ Answer named(const RigidWorld& w, std::uint32_t shape, std::uint32_t triangle) {
   answer.shape = shape_id(w, shape);
   for (const ShapeId id : w.bodies.shapes[answer.body.index]) {
     if (id == answer.shape) break;
-    ++answer.sub_shape;
+    ++answer.shape_index;
   }
   answer.triangle = triangle == kNoTriangle ? -1 : std::int32_t(triangle);
   return answer;
@@ -130,7 +130,7 @@ CastHit public_answer(const RigidWorld& w, const ShapeHit& hit) {
 ClosestPoint public_answer(const RigidWorld& w, const ShapeNear& near) {
   auto out = named<ClosestPoint>(w, near.shape, near.triangle);
   out.point = near.point;
-  out.own_point = near.own_point;
+  out.query_point = near.query_point;
   out.normal = near.normal;
   out.distance = near.distance;
   return out;
@@ -177,7 +177,7 @@ class FirstAnswers {
 };
 
 void cast(const QueryInput& input, const Ray& ray, HitVisit found) {
-  cast_ray(input, {ray.origin, ray.way}, found);
+  cast_ray(input, {ray.origin, ray.translation}, found);
 }
 void cast(const QueryInput& input, const ShapeCast& shape, HitVisit found) {
   cast_shape(input, world_shape(shape), found);
@@ -224,67 +224,67 @@ std::size_t all_hits(const WorldState& s, const Question& question, std::span<Ca
   return answers.count();
 }
 
-ClosestPoint nearest_point(const WorldState& s, const ShapePlace& place, double max_distance,
+ClosestPoint nearest_point(const WorldState& s, const ShapePose& shape, double max_distance,
                            const QueryFilter& filter) {
   ShapeNear nearest;
   bool any = false;
   ask_world(s, filter, [&](const QueryInput& input) {
-    any = find_nearest_shape(input, world_shape(place), max_distance, nearest);
+    any = find_nearest_shape(input, world_shape(shape), max_distance, nearest);
   });
   return any ? public_answer(s.rigid, nearest) : ClosestPoint{};
 }
 
 // Calls `found` for each shape within the distance, until it says false.
 template <class Found>
-void for_each_near(const WorldState& s, const ShapePlace& place, double max_distance,
+void for_each_near(const WorldState& s, const ShapePose& shape, double max_distance,
                    const QueryFilter& filter, Found&& found) {
   ask_world(s, filter,
-            [&](const QueryInput& input) { find_near(input, world_shape(place), max_distance, found); });
+            [&](const QueryInput& input) { find_near(input, world_shape(shape), max_distance, found); });
 }
 
-bool is_near_any(const WorldState& s, const ShapePlace& place, double max_distance,
+bool is_near_any(const WorldState& s, const ShapePose& shape, double max_distance,
                  const QueryFilter& filter) {
   bool any = false;
-  for_each_near(s, place, max_distance, filter, [&](const ShapeNear&) { return !(any = true); });
+  for_each_near(s, shape, max_distance, filter, [&](const ShapeNear&) { return !(any = true); });
   return any;
 }
-std::size_t all_near(const WorldState& s, const ShapePlace& place, double max_distance,
+std::size_t all_near(const WorldState& s, const ShapePose& shape, double max_distance,
                      std::span<ClosestPoint> out, const QueryFilter& filter) {
   FirstAnswers<ClosestPoint> answers(out);
-  for_each_near(s, place, max_distance, filter, [&](const ShapeNear& near) {
+  for_each_near(s, shape, max_distance, filter, [&](const ShapeNear& near) {
     answers.add(public_answer(s.rigid, near));
     return true;
   });
   return answers.count();
 }
-std::size_t all_overlaps(const WorldState& s, const ShapePlace& place, std::span<Overlap> out,
+std::size_t all_overlaps(const WorldState& s, const ShapePose& shape, std::span<Overlap> out,
                          const QueryFilter& filter) {
   FirstAnswers<Overlap> answers(out);
-  for_each_near(s, place, 0.0, filter, [&](const ShapeNear& near) {
+  for_each_near(s, shape, 0.0, filter, [&](const ShapeNear& near) {
     answers.add(named<Overlap>(s.rigid, near.shape, near.triangle));
     return true;
   });
   return answers.count();
 }
-std::size_t all_penetrations(const WorldState& s, const ShapePlace& place, std::span<Penetration> out,
+std::size_t all_penetrations(const WorldState& s, const ShapePose& shape, std::span<Penetration> out,
                              const QueryFilter& filter) {
   FirstAnswers<Penetration> answers(out);
   ask_world(s, filter, [&](const QueryInput& input) {
-    find_penetrations(input, world_shape(place),
+    find_penetrations(input, world_shape(shape),
                       [&](const ShapePenetration& deep) { answers.add(public_answer(s.rigid, deep)); });
   });
   return answers.count();
 }
-Penetration deepest(const WorldState& s, const ShapePlace& place, const QueryFilter& filter) {
+Penetration deepest(const WorldState& s, const ShapePose& shape, const QueryFilter& filter) {
   Penetration out;
-  all_penetrations(s, place, std::span(&out, 1), filter);
+  all_penetrations(s, shape, std::span(&out, 1), filter);
   return out;
 }
 
 // Checks a single question and gets the world ready for it.
 template <class Question>
 bool is_ready(WorldState& s, const Question& question) {
-  if (s.stepping || !is_fine(check_question(question))) return false;
+  if (s.stepping || check_question(question)) return false;
   show_changes(s);
   return true;
 }
@@ -299,7 +299,7 @@ Error ask_each(WorldState& s, std::span<const Question> questions, std::size_t r
   }
   for (std::size_t i = 0; i < questions.size(); ++i) {
     const Error e = check_question(questions[i]);
-    if (!is_fine(e)) return make_error(e.code, "question %zu: %.200s", i, e.message);
+    if (e) return make_error(e.code, "question %zu: %.200s", i, e.message);
   }
   show_changes(s);
   const std::unique_lock<std::mutex> workers(s.batch_lock, std::try_to_lock);
@@ -349,7 +349,7 @@ bool is_in_sight(WorldState& s, DVec3 from, DVec3 to, std::uint32_t body) {
   filter.ignored = body_id(s.rigid, body);
   filter.back_faces = true;
   const Ray ray{from, difference(to, from)};
-  if (!is_fine(check_ray(ray))) return false;
+  if (check_ray(ray)) return false;
   show_changes(s);
   bool hidden = false;
   ask_world(s, filter, [&](const QueryInput& input) {
@@ -363,35 +363,33 @@ bool is_in_sight(WorldState& s, DVec3 from, DVec3 to, std::uint32_t body) {
 
 Error check_ray(const Ray& ray) {
   const Error e = check_vector("ray", "origin", ray.origin);
-  return is_fine(e) ? check_vector("ray", "way", DVec3(ray.way)) : e;
+  return e.ok() ? check_vector("ray", "translation", DVec3(ray.translation)) : e;
 }
 Error check_shape_cast(const ShapeCast& cast) {
   Error e = check_place("shape cast", cast.shape, cast.pose);
-  if (is_fine(e)) e = check_vector("shape cast", "way", DVec3(cast.way));
-  if (!is_fine(e) || (is_finite(cast.skin) && cast.skin >= 0.0f)) return e;
+  if (e.ok()) e = check_vector("shape cast", "translation", DVec3(cast.translation));
+  if (e || (is_finite(cast.skin) && cast.skin >= 0.0f)) return e;
   return make_error(ErrorCode::invalid_argument, "shape cast: skin is %g m; it must be finite and 0 or more",
                     double(cast.skin));
 }
-Error check_shape_place(const ShapePlace& place) {
-  return check_place("shape place", place.shape, place.pose);
-}
+Error check_shape_pose(const ShapePose& shape) { return check_place("shape", shape.shape, shape.pose); }
 
-std::optional<CastHit> World::cast_ray(DVec3 origin, Vec3 way, const QueryFilter& filter) const {
+std::optional<CastHit> World::cast_ray(DVec3 origin, Vec3 translation, const QueryFilter& filter) const {
   const FloatMode mode;
-  const Ray ray{origin, way};
+  const Ray ray{origin, translation};
   if (!is_ready(*state_, ray)) return {};
   const CastHit hit = nearest_hit(*state_, ray, filter);
   return hit ? std::optional(hit) : std::nullopt;
 }
-bool World::ray_hits(DVec3 origin, Vec3 way, const QueryFilter& filter) const {
+bool World::cast_ray_any(DVec3 origin, Vec3 translation, const QueryFilter& filter) const {
   const FloatMode mode;
-  const Ray ray{origin, way};
+  const Ray ray{origin, translation};
   return is_ready(*state_, ray) && hits_any(*state_, ray, filter);
 }
-std::size_t World::cast_ray_all(DVec3 origin, Vec3 way, std::span<CastHit> out,
+std::size_t World::cast_ray_all(DVec3 origin, Vec3 translation, std::span<CastHit> out,
                                 const QueryFilter& filter) const {
   const FloatMode mode;
-  const Ray ray{origin, way};
+  const Ray ray{origin, translation};
   return is_ready(*state_, ray) ? all_hits(*state_, ray, out, filter) : 0;
 }
 
@@ -401,7 +399,7 @@ std::optional<CastHit> World::cast_shape(const ShapeCast& cast, const QueryFilte
   const CastHit hit = nearest_hit(*state_, cast, filter);
   return hit ? std::optional(hit) : std::nullopt;
 }
-bool World::shape_hits(const ShapeCast& cast, const QueryFilter& filter) const {
+bool World::cast_shape_any(const ShapeCast& cast, const QueryFilter& filter) const {
   const FloatMode mode;
   return is_ready(*state_, cast) && hits_any(*state_, cast, filter);
 }
@@ -411,130 +409,130 @@ std::size_t World::cast_shape_all(const ShapeCast& cast, std::span<CastHit> out,
   return is_ready(*state_, cast) ? all_hits(*state_, cast, out, filter) : 0;
 }
 
-bool World::overlaps(const ShapePlace& place, const QueryFilter& filter) const {
+bool World::overlap_any(const ShapePose& shape, const QueryFilter& filter) const {
   const FloatMode mode;
-  return is_ready(*state_, place) && is_near_any(*state_, place, 0.0, filter);
+  return is_ready(*state_, shape) && is_near_any(*state_, shape, 0.0, filter);
 }
-std::size_t World::find_overlaps(const ShapePlace& place, std::span<Overlap> out,
-                                 const QueryFilter& filter) const {
+std::size_t World::overlap_all(const ShapePose& shape, std::span<Overlap> out,
+                               const QueryFilter& filter) const {
   const FloatMode mode;
-  return is_ready(*state_, place) ? all_overlaps(*state_, place, out, filter) : 0;
+  return is_ready(*state_, shape) ? all_overlaps(*state_, shape, out, filter) : 0;
 }
 
-std::optional<ClosestPoint> World::closest_point(const ShapePlace& place, double max_distance,
+std::optional<ClosestPoint> World::closest_point(const ShapePose& shape, double max_distance,
                                                  const QueryFilter& filter) const {
   const FloatMode mode;
-  if (!is_fine(check_distance(max_distance)) || !is_ready(*state_, place)) return {};
-  const ClosestPoint nearest = nearest_point(*state_, place, max_distance, filter);
+  if (check_distance(max_distance) || !is_ready(*state_, shape)) return {};
+  const ClosestPoint nearest = nearest_point(*state_, shape, max_distance, filter);
   return nearest ? std::optional(nearest) : std::nullopt;
 }
-bool World::any_within(const ShapePlace& place, double max_distance, const QueryFilter& filter) const {
+bool World::closest_point_any(const ShapePose& shape, double max_distance, const QueryFilter& filter) const {
   const FloatMode mode;
-  return is_fine(check_distance(max_distance)) && is_ready(*state_, place) &&
-         is_near_any(*state_, place, max_distance, filter);
+  return check_distance(max_distance).ok() && is_ready(*state_, shape) &&
+         is_near_any(*state_, shape, max_distance, filter);
 }
-std::size_t World::find_closest(const ShapePlace& place, double max_distance, std::span<ClosestPoint> out,
-                                const QueryFilter& filter) const {
-  const FloatMode mode;
-  if (!is_fine(check_distance(max_distance)) || !is_ready(*state_, place)) return 0;
-  return all_near(*state_, place, max_distance, out, filter);
-}
-
-std::optional<Penetration> World::deepest_penetration(const ShapePlace& place,
-                                                      const QueryFilter& filter) const {
-  const FloatMode mode;
-  if (!is_ready(*state_, place)) return {};
-  const Penetration out = deepest(*state_, place, filter);
-  return out ? std::optional(out) : std::nullopt;
-}
-std::size_t World::find_penetrations(const ShapePlace& place, std::span<Penetration> out,
+std::size_t World::closest_point_all(const ShapePose& shape, double max_distance, std::span<ClosestPoint> out,
                                      const QueryFilter& filter) const {
   const FloatMode mode;
-  return is_ready(*state_, place) ? all_penetrations(*state_, place, out, filter) : 0;
+  if (check_distance(max_distance) || !is_ready(*state_, shape)) return 0;
+  return all_near(*state_, shape, max_distance, out, filter);
+}
+
+std::optional<Penetration> World::penetration(const ShapePose& shape, const QueryFilter& filter) const {
+  const FloatMode mode;
+  if (!is_ready(*state_, shape)) return {};
+  const Penetration out = deepest(*state_, shape, filter);
+  return out ? std::optional(out) : std::nullopt;
+}
+std::size_t World::penetration_all(const ShapePose& shape, std::span<Penetration> out,
+                                   const QueryFilter& filter) const {
+  const FloatMode mode;
+  return is_ready(*state_, shape) ? all_penetrations(*state_, shape, out, filter) : 0;
 }
 
 // --------------------------------------------------------------------------------------------------------------- batches
 
-Error World::cast_rays(std::span<const Ray> rays, std::span<CastHit> out, const QueryFilter& filter) const {
+Error World::cast_ray_batch(std::span<const Ray> rays, std::span<CastHit> out,
+                            const QueryFilter& filter) const {
   return answer_each(*state_, rays, out, [&](const Ray& ray) { return nearest_hit(*state_, ray, filter); });
 }
-Error World::rays_hit(std::span<const Ray> rays, std::span<std::uint8_t> out,
-                      const QueryFilter& filter) const {
+Error World::cast_ray_any_batch(std::span<const Ray> rays, std::span<std::uint8_t> out,
+                                const QueryFilter& filter) const {
   return answer_each(*state_, rays, out, [&](const Ray& ray) { return hits_any(*state_, ray, filter); });
 }
-Error World::cast_rays_all(std::span<const Ray> rays, std::span<CastHit> out, std::span<std::uint32_t> counts,
-                           const QueryFilter& filter) const {
+Error World::cast_ray_all_batch(std::span<const Ray> rays, std::span<CastHit> out,
+                                std::span<std::uint32_t> counts, const QueryFilter& filter) const {
   return fill_each(*state_, rays, out, counts, [&](const Ray& ray, std::span<CastHit> part) {
     return all_hits(*state_, ray, part, filter);
   });
 }
-Error World::cast_shapes(std::span<const ShapeCast> casts, std::span<CastHit> out,
-                         const QueryFilter& filter) const {
+Error World::cast_shape_batch(std::span<const ShapeCast> casts, std::span<CastHit> out,
+                              const QueryFilter& filter) const {
   return answer_each(*state_, casts, out,
                      [&](const ShapeCast& cast) { return nearest_hit(*state_, cast, filter); });
 }
-Error World::shapes_hit(std::span<const ShapeCast> casts, std::span<std::uint8_t> out,
-                        const QueryFilter& filter) const {
+Error World::cast_shape_any_batch(std::span<const ShapeCast> casts, std::span<std::uint8_t> out,
+                                  const QueryFilter& filter) const {
   return answer_each(*state_, casts, out,
                      [&](const ShapeCast& cast) { return hits_any(*state_, cast, filter); });
 }
-Error World::cast_shapes_all(std::span<const ShapeCast> casts, std::span<CastHit> out,
-                             std::span<std::uint32_t> counts, const QueryFilter& filter) const {
+Error World::cast_shape_all_batch(std::span<const ShapeCast> casts, std::span<CastHit> out,
+                                  std::span<std::uint32_t> counts, const QueryFilter& filter) const {
   return fill_each(*state_, casts, out, counts, [&](const ShapeCast& cast, std::span<CastHit> part) {
     return all_hits(*state_, cast, part, filter);
   });
 }
 
-Error World::closest_points(std::span<const ShapePlace> places, double max_distance,
-                            std::span<ClosestPoint> out, const QueryFilter& filter) const {
+Error World::closest_point_batch(std::span<const ShapePose> shapes, double max_distance,
+                                 std::span<ClosestPoint> out, const QueryFilter& filter) const {
   const Error e = check_distance(max_distance);
-  if (!is_fine(e)) return e;
-  return answer_each(*state_, places, out, [&](const ShapePlace& place) {
-    return nearest_point(*state_, place, max_distance, filter);
+  if (e) return e;
+  return answer_each(*state_, shapes, out, [&](const ShapePose& shape) {
+    return nearest_point(*state_, shape, max_distance, filter);
   });
 }
-Error World::places_near(std::span<const ShapePlace> places, double max_distance, std::span<std::uint8_t> out,
-                         const QueryFilter& filter) const {
+Error World::closest_point_any_batch(std::span<const ShapePose> shapes, double max_distance,
+                                     std::span<std::uint8_t> out, const QueryFilter& filter) const {
   const Error e = check_distance(max_distance);
-  if (!is_fine(e)) return e;
-  return answer_each(*state_, places, out, [&](const ShapePlace& place) {
-    return is_near_any(*state_, place, max_distance, filter);
+  if (e) return e;
+  return answer_each(*state_, shapes, out, [&](const ShapePose& shape) {
+    return is_near_any(*state_, shape, max_distance, filter);
   });
 }
-Error World::find_closest_all(std::span<const ShapePlace> places, double max_distance,
-                              std::span<ClosestPoint> out, std::span<std::uint32_t> counts,
-                              const QueryFilter& filter) const {
+Error World::closest_point_all_batch(std::span<const ShapePose> shapes, double max_distance,
+                                     std::span<ClosestPoint> out, std::span<std::uint32_t> counts,
+                                     const QueryFilter& filter) const {
   const Error e = check_distance(max_distance);
-  if (!is_fine(e)) return e;
-  return fill_each(*state_, places, out, counts, [&](const ShapePlace& place, std::span<ClosestPoint> part) {
-    return all_near(*state_, place, max_distance, part, filter);
+  if (e) return e;
+  return fill_each(*state_, shapes, out, counts, [&](const ShapePose& shape, std::span<ClosestPoint> part) {
+    return all_near(*state_, shape, max_distance, part, filter);
   });
 }
 
-Error World::count_overlaps(std::span<const ShapePlace> places, std::span<std::uint32_t> counts,
-                            const QueryFilter& filter) const {
-  return find_overlaps_all(places, {}, counts, filter);
+Error World::overlap_count_batch(std::span<const ShapePose> shapes, std::span<std::uint32_t> counts,
+                                 const QueryFilter& filter) const {
+  return overlap_all_batch(shapes, {}, counts, filter);
 }
-Error World::places_overlap(std::span<const ShapePlace> places, std::span<std::uint8_t> out,
-                            const QueryFilter& filter) const {
-  return places_near(places, 0.0, out, filter);
+Error World::overlap_any_batch(std::span<const ShapePose> shapes, std::span<std::uint8_t> out,
+                               const QueryFilter& filter) const {
+  return closest_point_any_batch(shapes, 0.0, out, filter);
 }
-Error World::find_overlaps_all(std::span<const ShapePlace> places, std::span<Overlap> out,
+Error World::overlap_all_batch(std::span<const ShapePose> shapes, std::span<Overlap> out,
                                std::span<std::uint32_t> counts, const QueryFilter& filter) const {
-  return fill_each(*state_, places, out, counts, [&](const ShapePlace& place, std::span<Overlap> part) {
-    return all_overlaps(*state_, place, part, filter);
+  return fill_each(*state_, shapes, out, counts, [&](const ShapePose& shape, std::span<Overlap> part) {
+    return all_overlaps(*state_, shape, part, filter);
   });
 }
 
-Error World::deepest_penetrations(std::span<const ShapePlace> places, std::span<Penetration> out,
-                                  const QueryFilter& filter) const {
-  return answer_each(*state_, places, out,
-                     [&](const ShapePlace& place) { return deepest(*state_, place, filter); });
+Error World::penetration_batch(std::span<const ShapePose> shapes, std::span<Penetration> out,
+                               const QueryFilter& filter) const {
+  return answer_each(*state_, shapes, out,
+                     [&](const ShapePose& shape) { return deepest(*state_, shape, filter); });
 }
-Error World::find_penetrations_all(std::span<const ShapePlace> places, std::span<Penetration> out,
+Error World::penetration_all_batch(std::span<const ShapePose> shapes, std::span<Penetration> out,
                                    std::span<std::uint32_t> counts, const QueryFilter& filter) const {
-  return fill_each(*state_, places, out, counts, [&](const ShapePlace& place, std::span<Penetration> part) {
-    return all_penetrations(*state_, place, part, filter);
+  return fill_each(*state_, shapes, out, counts, [&](const ShapePose& shape, std::span<Penetration> part) {
+    return all_penetrations(*state_, shape, part, filter);
   });
 }
 

@@ -23,28 +23,37 @@ bool lives(const WorldState& s, BodyId id) { return lives(s, s.rigid.bodies.ids,
 bool lives(const WorldState& s, ShapeId id) { return lives(s, s.rigid.shapes.ids, id); }
 bool lives(const WorldState& s, JointId id) { return lives(s, s.rigid.joints.ids, id); }
 
-void make_room(const WorldState& s, std::size_t bodies) {
-  s.read_ids.resize(bodies);
-  s.read_poses.resize(bodies);
-  s.read_linear.resize(bodies);
-  s.read_angular.resize(bodies);
+void resize(BodyCopy& copy, std::size_t bodies) {
+  copy.ids.resize(bodies);
+  copy.poses.resize(bodies);
+  copy.linear_velocities.resize(bodies);
+  copy.angular_velocities.resize(bodies);
 }
-// By ascending index. (In one place for both: code counts on the web.)
-BodyColumns read_bodies(const WorldState& s, bool only_awake) {
+void fill(BodyCopy& copy, const WorldState& s, bool only_awake) {
   const FloatMode mode;
   const BodyStore& bodies = s.rigid.bodies;
-  make_room(s, bodies.ids.capacity());
+  resize(copy, bodies.ids.capacity());
   std::size_t count = 0;
   bodies.ids.for_each_live([&](std::uint32_t body) {
     if (only_awake && !is_simulated(bodies.flags[body])) return;
-    s.read_ids[count] = body_id(s.rigid, body);
-    s.read_poses[count] = origin_pose(bodies, body);
-    s.read_linear[count] = bodies.motion[body].linear_velocity;
-    s.read_angular[count] = bodies.motion[body].angular_velocity;
+    copy.ids[count] = body_id(s.rigid, body);
+    copy.poses[count] = origin_pose(bodies, body);
+    copy.linear_velocities[count] = bodies.motion[body].linear_velocity;
+    copy.angular_velocities[count] = bodies.motion[body].angular_velocity;
     ++count;
   });
-  make_room(s, count);
-  return {s.read_ids, s.read_poses, s.read_linear, s.read_angular};
+  resize(copy, count);
+}
+// By ascending index. The first thread that asks after a change makes the copy for all. (In one place for both: code counts on the web.)
+BodyColumns read_bodies(WorldState& s, BodyCopy& copy, bool only_awake) {
+  if (copy.made_at.load(std::memory_order_acquire) != s.changes) {
+    const std::lock_guard<std::mutex> lock(s.query_lock);
+    if (copy.made_at.load(std::memory_order_relaxed) != s.changes) {
+      fill(copy, s, only_awake);
+      copy.made_at.store(s.changes, std::memory_order_release);
+    }
+  }
+  return {copy.ids, copy.poses, copy.linear_velocities, copy.angular_velocities};
 }
 
 // Angular momentum about the centre of mass, world frame, in double.
@@ -124,12 +133,12 @@ std::size_t World::fields(std::span<FieldId> out) const {
   return count;
 }
 
-JointReading World::joint_reading(JointId id) const {
+JointState World::joint_state(JointId id) const {
   if (!exists(id)) return {};
   const FloatMode mode;
   return read_joint(state_->rigid, id.index);
 }
-JointAxisReading World::joint_axis_reading(JointId id, JointAxis axis) const {
+JointAxisState World::joint_axis_state(JointId id, JointAxis axis) const {
   if (!exists(id) || int(axis) >= kJointAxisCount) return {};
   const FloatMode mode;
   return read_joint_axis(state_->rigid, id.index, axis);
@@ -140,8 +149,8 @@ bool World::joint_enabled(JointId id) const {
   return detail == nullptr || !detail->disabled;
 }
 
-BodyColumns World::bodies() const { return read_bodies(*state_, false); }
-BodyColumns World::awake_bodies() const { return read_bodies(*state_, true); }
+BodyColumns World::bodies() const { return read_bodies(*state_, state_->all_bodies, false); }
+BodyColumns World::awake_bodies() const { return read_bodies(*state_, state_->awake_bodies, true); }
 
 std::size_t World::contacts(std::span<ContactPoint> out) const {
   const FloatMode mode;
@@ -176,7 +185,7 @@ std::size_t World::contacts(std::span<ContactPoint> out) const {
   return count;
 }
 
-std::size_t World::persisting(std::span<ContactPersist> out) const {
+std::size_t World::contact_pairs(std::span<ContactPair> out) const {
   const FloatMode mode;
   const RigidWorld& w = state_->rigid;
   std::size_t count = 0;
@@ -198,9 +207,9 @@ std::size_t World::persisting(std::span<ContactPersist> out) const {
 const Events& World::events() const { return state_->events; }
 std::span<const Problem> World::problems() const { return state_->problems; }
 
-WorldCounts World::counts() const {
+WorldStats World::stats() const {
   const RigidWorld& w = state_->rigid;
-  WorldCounts counts;
+  WorldStats counts;
   counts.bodies = int(w.bodies.ids.size());
   counts.shapes = int(w.shapes.ids.size());
   counts.joints = int(w.joints.ids.size());
@@ -216,7 +225,7 @@ WorldCounts World::counts() const {
   return counts;
 }
 
-SolverReading World::solver_reading() const {
+SolverStats World::solver_stats() const {
   const RowStats& rows = state_->solve.rows;
   return {rows.residual, rows.islands, rows.direct, rows.largest, rows.sweeps};
 }
@@ -247,7 +256,7 @@ WorldDef World::def() const {
   def.restitution_rule = settings.restitution_rule;
   return def;
 }
-StepReport World::step_report() const { return state_->solve.report; }
+StepStats World::step_stats() const { return state_->solve.report; }
 SpringStability World::spring_stability() const {
   const FloatMode mode;
   const RigidWorld& w = state_->rigid;

@@ -186,10 +186,10 @@ TEST(Events, OfABoxThatLandsRestsAndIsTakenAway) {
     for (const ContactHit& hit : world.events().hits) {
       struck += double(hit.impulse);
       EXPECT_EQ(hit.triangle, -1);
-      EXPECT_GT(hit.speed, 1.0f);
+      EXPECT_GT(hit.approach_speed, 1.0f);
     }
-    ContactPersist pairs[2];
-    const std::size_t count = world.persisting(pairs);
+    ContactPair pairs[2];
+    const std::size_t count = world.contact_pairs(pairs);
     EXPECT_EQ(count, first >= 0 && i > first ? 1u : 0u) << i;
     if (i > 100) {
       EXPECT_EQ(pairs[0].body_a, ground);
@@ -204,7 +204,7 @@ TEST(Events, OfABoxThatLandsRestsAndIsTakenAway) {
   world.set_pose(box, {{0, 5, 0}, {}});
   world.step(kStep);
   EXPECT_EQ(world.events().ends.size(), 1u);
-  EXPECT_EQ(world.persisting({}), 0u);
+  EXPECT_EQ(world.contact_pairs({}), 0u);
 }
 
 TEST(Events, NameTheTriangle) {
@@ -344,7 +344,7 @@ Sleepers sleepers() {
     for (const SleepChange& c : s.world.events().sleep_changes) asleep_events += int(c.asleep);
   }
   EXPECT_EQ(asleep_events, 3);
-  EXPECT_EQ(s.world.counts().awake_bodies, 0);
+  EXPECT_EQ(s.world.stats().awake_bodies, 0);
   return s;
 }
 TEST(Sleep, EndsForTheTowerWhenItsFootIsRemoved) {
@@ -373,7 +373,7 @@ TEST(Sleep, EndsWithGravityForceVelocityPoseAndType) {
     if (k == 4) s.world.add_impulse(s.boxes[2], {0, 5000, 0});
     if (k == 5) s.world.set_gravity_scale(s.boxes[2], -1.0f);
     s.world.step(kStep);
-    EXPECT_GT(s.world.counts().awake_bodies, 0) << k;
+    EXPECT_GT(s.world.stats().awake_bodies, 0) << k;
     run(s.world, 0.5);
     double moved = 0.0;
     for (int i = 0; i < 3; ++i)

@@ -2,6 +2,7 @@
 #include "base/memory/memory.h"
 #include "base/check.h"
 #include "laws/kit.h"
+#include "world/world_access.h"
 #include "world/world_state.h"
 
 #include <gyre/debug.h>
@@ -69,7 +70,7 @@ Taken taken_by_steps(World& world, int steps) {
   return {news.load() - before, allocation_count() - blocks};
 }
 void expect_none(World& world, int warm_up, int steps, const char* name) {
-  world.state().walks = false;  // the walks of debug builds take memory
+  state_of(world).walks = false;  // the walks of debug builds take memory
   for (int i = 0; i < warm_up; ++i) world.step(kStep);
   const Taken t = taken_by_steps(world, steps);
   std::printf("[row] %s: %ld allocations, %llu by the engine's door, in %d steps\n", name, t.news,
@@ -246,7 +247,7 @@ TEST(NoAllocation, WhileFastBodiesFly) {
 // Questions of every kind, alone and in batches over two threads, in a heap that moves on between them.
 TEST(NoAllocation, InQueries) {
   World world = make_world({.threads = 2});
-  world.state().walks = false;
+  state_of(world).walks = false;
   std::vector<float> heights(33 * 33);
   for (std::size_t i = 0; i < heights.size(); ++i) heights[i] = 0.1f * float(i * 7919u % 10u);
   world.add_body({.type = BodyType::fixed},
@@ -257,7 +258,7 @@ TEST(NoAllocation, InQueries) {
   }
   std::vector<Ray> rays(500);
   std::vector<ShapeCast> casts(100);
-  std::vector<ShapePlace> places(100);
+  std::vector<ShapePose> places(100);
   for (std::size_t i = 0; i < rays.size(); ++i)
     rays[i] = {{0.02 * double(i), 9, 0.01 * double(i)}, {0.3f, -20, 0}};
   for (std::size_t i = 0; i < casts.size(); ++i) {
@@ -275,28 +276,28 @@ TEST(NoAllocation, InQueries) {
   std::array<Penetration, 16> deep;
   std::array<Overlap, 16> overlapping;
   const auto ask = [&] {
-    (void)world.cast_rays(rays, hits);
-    (void)world.cast_shapes(casts, std::span(hits).first(casts.size()));
-    (void)world.closest_points(places, 2.0, closest);
-    (void)world.count_overlaps(places, counts);
-    (void)world.rays_hit(rays, any);
-    (void)world.cast_rays_all(rays, all_hits, ray_counts);
-    (void)world.find_closest_all(places, 1.0, all_closest, counts);
-    (void)world.find_overlaps_all(places, all_overlaps, counts);
-    (void)world.find_penetrations_all(places, all_deep, counts);
-    std::size_t found = world.cast_ray_all(rays[3].origin, rays[3].way, hits);
-    for (const ShapePlace& place : places) {
-      found += world.find_penetrations(place, deep) + world.find_overlaps(place, overlapping);
-      found += std::size_t(world.deepest_penetration(place).has_value());
-      found += std::size_t(world.any_within(place, 1.0));
-      found += world.find_closest(place, 1.0, closest) + std::size_t(world.overlaps(place));
-      found += std::size_t(world.ray_hits(place.pose.position, {0, -5, 0}));
+    (void)world.cast_ray_batch(rays, hits);
+    (void)world.cast_shape_batch(casts, std::span(hits).first(casts.size()));
+    (void)world.closest_point_batch(places, 2.0, closest);
+    (void)world.overlap_count_batch(places, counts);
+    (void)world.cast_ray_any_batch(rays, any);
+    (void)world.cast_ray_all_batch(rays, all_hits, ray_counts);
+    (void)world.closest_point_all_batch(places, 1.0, all_closest, counts);
+    (void)world.overlap_all_batch(places, all_overlaps, counts);
+    (void)world.penetration_all_batch(places, all_deep, counts);
+    std::size_t found = world.cast_ray_all(rays[3].origin, rays[3].translation, hits);
+    for (const ShapePose& place : places) {
+      found += world.penetration_all(place, deep) + world.overlap_all(place, overlapping);
+      found += std::size_t(world.penetration(place).has_value());
+      found += std::size_t(world.closest_point_any(place, 1.0));
+      found += world.closest_point_all(place, 1.0, closest) + std::size_t(world.overlap_any(place));
+      found += std::size_t(world.cast_ray_any(place.pose.position, {0, -5, 0}));
       found += std::size_t(world.closest_point(place, 2.0).has_value());
     }
     for (const ShapeCast& cast : casts) {
-      found += std::size_t(world.cast_shape(cast).has_value()) + std::size_t(world.shape_hits(cast));
+      found += std::size_t(world.cast_shape(cast).has_value()) + std::size_t(world.cast_shape_any(cast));
       found += world.cast_shape_all(cast, hits);
-      found += std::size_t(world.cast_ray(cast.pose.position, cast.way).has_value());
+      found += std::size_t(world.cast_ray(cast.pose.position, cast.translation).has_value());
     }
     return found;
   };
@@ -351,7 +352,7 @@ double bytes_a_box(void (*add)(World&, int), int boxes, bool sleeping) {
   add(world, boxes);
   for (int i = 0; i < 140; ++i) world.step(kStep);
   if (!sleeping) {
-    EXPECT_EQ(world.counts().awake_bodies, boxes);
+    EXPECT_EQ(world.stats().awake_bodies, boxes);
   }
   return double(bytes_held() - before) / boxes;
 }

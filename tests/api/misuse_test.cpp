@@ -4,9 +4,17 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <memory>
+#include <type_traits>
 
 namespace gyre::laws {
 namespace {
+
+// Users have no way into the state of a world.
+template <class W>
+concept ShowsState = requires(W& world) { world.state(); };
+static_assert(!ShowsState<World> && !ShowsState<const World>);
+static_assert(!std::is_constructible_v<World, std::unique_ptr<WorldState>>);
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
@@ -78,8 +86,8 @@ TEST(Misuse, PlacesAreTakenUpToTheirLimit) {
       EXPECT_TRUE(world.add_field({.kind = FieldKind::radial, .center = last}));
       EXPECT_FALSE(world.add_field({.kind = FieldKind::radial, .center = first_refused}));
       expect_refused(world, ErrorCode::invalid_argument, "within 1e12 m");
-      EXPECT_EQ(check_ray({.origin = last, .way = {1, 0, 0}}).code, ErrorCode::none);
-      EXPECT_EQ(check_ray({.origin = first_refused, .way = {1, 0, 0}}).code, ErrorCode::invalid_argument);
+      EXPECT_EQ(check_ray({.origin = last, .translation = {1, 0, 0}}).code, ErrorCode::none);
+      EXPECT_EQ(check_ray({.origin = first_refused, .translation = {1, 0, 0}}).code, ErrorCode::invalid_argument);
     }
   }
   EXPECT_TRUE(world.step(kStep));
@@ -103,8 +111,8 @@ TEST(Misuse, BadBodiesAreRefused) {
   EXPECT_FALSE(world.add_body({.pose = {.orientation = {0, 0, 0, 0}}}, {.geometry = Box{}}));
   EXPECT_FALSE(world.add_body({.linear_velocity = {kNan, 0, 0}}, {.geometry = Box{}}));
   EXPECT_FALSE(world.add_body({.angular_velocity = {0, kInf, 0}}, {.geometry = Box{}}));
-  EXPECT_EQ(world.counts().bodies, 0);
-  EXPECT_EQ(world.counts().shapes, 0);
+  EXPECT_EQ(world.stats().bodies, 0);
+  EXPECT_EQ(world.stats().shapes, 0);
   EXPECT_TRUE(world.step(kStep));
   const BodyId turned_long = world.add_body({.pose = {.orientation = {0, 0, 0, 17}}}, {.geometry = Box{}});
   ASSERT_TRUE(turned_long);
@@ -213,8 +221,8 @@ TEST(StaleIds, NeverReachAnotherObject) {
   EXPECT_FALSE(world.set_material(gone_shape, {}));
   EXPECT_FALSE(world.remove_joint(JointId{}));
   EXPECT_FALSE(world.set_motor(JointId{}, {}));
-  EXPECT_EQ(world.joint_reading(JointId{}).position, 0.0f);
-  EXPECT_EQ(world.counts().bodies, 1);
+  EXPECT_EQ(world.joint_state(JointId{}).position, 0.0f);
+  EXPECT_EQ(world.stats().bodies, 1);
   EXPECT_EQ(world.pose(next).position, (DVec3{9, 9, 9}));
 }
 

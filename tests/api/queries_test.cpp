@@ -28,7 +28,7 @@ void for_each_alone(const Crowd& c, Ask&& ask) {
 void expect_same(const CastHit& a, const CastHit& b) {
   EXPECT_EQ(a.body.index, b.body.index);
   EXPECT_EQ(a.shape.index, b.shape.index);
-  EXPECT_EQ(a.sub_shape, b.sub_shape);
+  EXPECT_EQ(a.shape_index, b.shape_index);
   EXPECT_EQ(a.triangle, b.triangle);
   EXPECT_EQ(a.point, b.point);
   EXPECT_EQ(a.normal, b.normal);
@@ -62,15 +62,15 @@ TEST(Queries, FindWhatEveryShapeAloneAnswers) {
     for (int i = 0; i < 150 && !::testing::Test::HasFailure(); ++i) {
       const Ray ray = random_ray(random);
       expect_like_each_alone(
-          c, [&](const QueryFilter& f) { return c.world.cast_ray(ray.origin, ray.way, f); },
-          [&](std::span<CastHit> out) { return c.world.cast_ray_all(ray.origin, ray.way, out); },
-          [&](const QueryFilter& f) { return c.world.ray_hits(ray.origin, ray.way, f); });
+          c, [&](const QueryFilter& f) { return c.world.cast_ray(ray.origin, ray.translation, f); },
+          [&](std::span<CastHit> out) { return c.world.cast_ray_all(ray.origin, ray.translation, out); },
+          [&](const QueryFilter& f) { return c.world.cast_ray_any(ray.origin, ray.translation, f); });
       if (i % 5 != 0) continue;
       const ShapeCast cast = random_cast(random);
       expect_like_each_alone(
           c, [&](const QueryFilter& f) { return c.world.cast_shape(cast, f); },
           [&](std::span<CastHit> out) { return c.world.cast_shape_all(cast, out); },
-          [&](const QueryFilter& f) { return c.world.shape_hits(cast, f); });
+          [&](const QueryFilter& f) { return c.world.cast_shape_any(cast, f); });
     }
   }
 }
@@ -80,13 +80,13 @@ TEST(Queries, FindOverlapsAndClosestPointsThatEveryShapeAloneAnswers) {
     const Crowd c = crowd(seed, BroadPhaseKind::bvh);
     Random random{std::mt19937(200 + seed)};
     for (int i = 0; i < 60 && !::testing::Test::HasFailure(); ++i) {
-      const ShapePlace place = random_place(random);
+      const ShapePose place = random_place(random);
       std::vector<ClosestPoint> expected;
       std::vector<std::uint32_t> overlapping;
       for_each_alone(c, [&](const QueryFilter& f) {
         const std::optional<ClosestPoint> near = c.world.closest_point(place, 1.0e30, f);
         // Overlap is distance 0, and nothing else.
-        EXPECT_EQ(c.world.overlaps(place, f), near && near->distance == 0.0);
+        EXPECT_EQ(c.world.overlap_any(place, f), near && near->distance == 0.0);
         if (!near) return;  // a sensor
         expected.push_back(*near);
         if (near->distance == 0.0) overlapping.push_back(near->shape.index);
@@ -100,14 +100,14 @@ TEST(Queries, FindOverlapsAndClosestPointsThatEveryShapeAloneAnswers) {
       EXPECT_EQ(nearest->shape, expected[0].shape);
       EXPECT_EQ(nearest->distance, expected[0].distance);
       EXPECT_EQ(nearest->point, expected[0].point);
-      EXPECT_NEAR(length(nearest->own_point - nearest->point), nearest->distance, 1e-6);
+      EXPECT_NEAR(length(nearest->query_point - nearest->point), nearest->distance, 1e-6);
       std::array<ClosestPoint, 4> some;
-      const std::size_t clamp_length = c.world.find_closest(place, expected[3].distance * (1.0 + 1e-9), some);
+      const std::size_t clamp_length = c.world.closest_point_all(place, expected[3].distance * (1.0 + 1e-9), some);
       EXPECT_GE(clamp_length, 4u);
       for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(some[k].shape, expected[k].shape);
-      EXPECT_EQ(c.world.overlaps(place), !overlapping.empty());
+      EXPECT_EQ(c.world.overlap_any(place), !overlapping.empty());
       std::array<Overlap, 64> found;
-      ASSERT_EQ(c.world.find_overlaps(place, found), overlapping.size());
+      ASSERT_EQ(c.world.overlap_all(place, found), overlapping.size());
       for (std::size_t k = 0; k < overlapping.size(); ++k) EXPECT_EQ(found[k].shape.index, overlapping[k]);
     }
   }
@@ -120,24 +120,24 @@ TEST(Queries, InBatchesDependOnNothing) {
   Random random{std::mt19937(300)};
   std::vector<Ray> rays(5000);
   std::vector<ShapeCast> casts(400);
-  std::vector<ShapePlace> places(400);
+  std::vector<ShapePose> places(400);
   for (Ray& ray : rays) ray = random_ray(random);
   for (ShapeCast& cast : casts) cast = random_cast(random);
-  for (ShapePlace& place : places) place = random_place(random);
-  std::vector<CastHit> hits(rays.size()), shape_hits(casts.size());
+  for (ShapePose& place : places) place = random_place(random);
+  std::vector<CastHit> hits(rays.size()), cast_shape_any(casts.size());
   std::vector<ClosestPoint> closest(places.size());
   std::vector<std::uint32_t> counts(places.size());
   int found = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    hits[i] = one.world.cast_ray(rays[i].origin, rays[i].way).value_or(CastHit{});
+    hits[i] = one.world.cast_ray(rays[i].origin, rays[i].translation).value_or(CastHit{});
     found += hits[i] ? 1 : 0;
   }
   EXPECT_GT(found, 1000);
   for (std::size_t i = 0; i < casts.size(); ++i)
-    shape_hits[i] = one.world.cast_shape(casts[i]).value_or(CastHit{});
+    cast_shape_any[i] = one.world.cast_shape(casts[i]).value_or(CastHit{});
   for (std::size_t i = 0; i < places.size(); ++i) {
     closest[i] = one.world.closest_point(places[i], 3.0).value_or(ClosestPoint{});
-    counts[i] = std::uint32_t(one.world.find_overlaps(places[i], {}));
+    counts[i] = std::uint32_t(one.world.overlap_all(places[i], {}));
   }
   for (const int threads : {1, 2, 4}) {
     for (const BroadPhaseKind kind : {BroadPhaseKind::bvh, BroadPhaseKind::brute_force}) {
@@ -145,12 +145,12 @@ TEST(Queries, InBatchesDependOnNothing) {
       std::vector<CastHit> out(rays.size()), shape_out(casts.size());
       std::vector<ClosestPoint> closest_out(places.size());
       std::vector<std::uint32_t> counts_out(places.size());
-      EXPECT_EQ(c.world.cast_rays(rays, out).code, ErrorCode::none);
-      EXPECT_EQ(c.world.cast_shapes(casts, shape_out).code, ErrorCode::none);
-      EXPECT_EQ(c.world.closest_points(places, 3.0, closest_out).code, ErrorCode::none);
-      EXPECT_EQ(c.world.count_overlaps(places, counts_out).code, ErrorCode::none);
+      EXPECT_EQ(c.world.cast_ray_batch(rays, out).code, ErrorCode::none);
+      EXPECT_EQ(c.world.cast_shape_batch(casts, shape_out).code, ErrorCode::none);
+      EXPECT_EQ(c.world.closest_point_batch(places, 3.0, closest_out).code, ErrorCode::none);
+      EXPECT_EQ(c.world.overlap_count_batch(places, counts_out).code, ErrorCode::none);
       for (std::size_t i = 0; i < rays.size(); ++i) expect_same(out[i], hits[i]);
-      for (std::size_t i = 0; i < casts.size(); ++i) expect_same(shape_out[i], shape_hits[i]);
+      for (std::size_t i = 0; i < casts.size(); ++i) expect_same(shape_out[i], cast_shape_any[i]);
       for (std::size_t i = 0; i < places.size(); ++i) {
         EXPECT_EQ(closest_out[i].shape.index, closest[i].shape.index);
         EXPECT_EQ(closest_out[i].triangle, closest[i].triangle);
@@ -169,18 +169,18 @@ TEST(Queries, MayBeAskedByManyThreadsAtOnce) {
   std::vector<Ray> rays(1000);
   for (Ray& ray : rays) ray = random_ray(random);
   std::vector<CastHit> expected(rays.size());
-  ASSERT_EQ(alone.world.cast_rays(rays, expected).code, ErrorCode::none);
+  ASSERT_EQ(alone.world.cast_ray_batch(rays, expected).code, ErrorCode::none);
   std::array<std::vector<CastHit>, 4> out;
   std::vector<std::thread> threads;
   for (std::size_t t = 0; t < out.size(); ++t) {
     threads.emplace_back([&, t] {
       out[t].resize(rays.size());
       if (t % 2 == 0) {
-        EXPECT_EQ(c.world.cast_rays(rays, out[t]).code, ErrorCode::none);
+        EXPECT_EQ(c.world.cast_ray_batch(rays, out[t]).code, ErrorCode::none);
         return;
       }
       for (std::size_t i = 0; i < rays.size(); ++i)
-        out[t][i] = c.world.cast_ray(rays[i].origin, rays[i].way).value_or(CastHit{});
+        out[t][i] = c.world.cast_ray(rays[i].origin, rays[i].translation).value_or(CastHit{});
     });
   }
   for (std::thread& thread : threads) thread.join();
@@ -204,7 +204,7 @@ TEST(Queries, SeeEveryChangeAtOnceAndChangeNothing) {
   EXPECT_DOUBLE_EQ(height(), 3.5);
   const ShapeId more = world.add_shape(box, {.geometry = Sphere{0.5f}, .local = {{0, 2, 0}, {}}});
   EXPECT_DOUBLE_EQ(height(), 5.5);
-  EXPECT_EQ(world.cast_ray({0, 20, 0}, {0, -40, 0})->sub_shape, 1);
+  EXPECT_EQ(world.cast_ray({0, 20, 0}, {0, -40, 0})->shape_index, 1);
   world.set_broad_phase(BroadPhaseKind::brute_force);
   EXPECT_DOUBLE_EQ(height(), 5.5);
   world.set_broad_phase(BroadPhaseKind::bvh);
@@ -222,7 +222,7 @@ TEST(Queries, SeeEveryChangeAtOnceAndChangeNothing) {
   for (int i = 0; i < 60; ++i) {
     for (int k = 0; k < 5; ++k) {
       const Ray ray = random_ray(random);
-      (void)asked.world.cast_ray(ray.origin, ray.way);
+      (void)asked.world.cast_ray(ray.origin, ray.translation);
     }
     asked.world.step(kStep);
     left_alone.world.step(kStep);
@@ -269,8 +269,8 @@ TEST(Queries, AreAsPreciseAThousandKilometresAway) {
   int hits = 0, differ = 0;
   for (int i = 0; i < 3000; ++i) {
     const Ray ray = random_ray(random);
-    const std::optional<CastHit> a = near_crowd.world.cast_ray(ray.origin, ray.way);
-    const std::optional<CastHit> b = far_crowd.world.cast_ray(far_away + ray.origin, ray.way);
+    const std::optional<CastHit> a = near_crowd.world.cast_ray(ray.origin, ray.translation);
+    const std::optional<CastHit> b = far_crowd.world.cast_ray(far_away + ray.origin, ray.translation);
     if (a.has_value() != b.has_value() || (a && a->shape.index != b->shape.index)) {
       ++differ;  // at an edge
       continue;
@@ -303,17 +303,17 @@ TEST(Queries, TellTheWayOutOfOverlap) {
     World world = make_world();
     world.add_body({.type = BodyType::fixed, .pose = {{}, random.turn()}},
                    {.geometry = random_convex(random)});
-    ShapePlace place{random_convex(random), {DVec3(random.in_box(0.9f)), random.turn()}};
+    ShapePose place{random_convex(random), {DVec3(random.in_box(0.9f)), random.turn()}};
     std::array<Penetration, 4> out;
-    const std::size_t count = world.find_penetrations(place, out);
-    EXPECT_EQ(count, world.overlaps(place) ? 1u : 0u);
+    const std::size_t count = world.penetration_all(place, out);
+    EXPECT_EQ(count, world.overlap_any(place) ? 1u : 0u);
     if (count == 0) continue;
     ++overlaps;
     EXPECT_GT(out[0].depth, 0.0f);
     place.pose.position += (1.001 * double(out[0].depth) + 1e-5) * DVec3(out[0].normal);
-    EXPECT_FALSE(world.overlaps(place));
+    EXPECT_FALSE(world.overlap_any(place));
     place.pose.position = place.pose.position - (0.01 * double(out[0].depth) + 3e-5) * DVec3(out[0].normal);
-    EXPECT_TRUE(world.overlaps(place) || out[0].depth < 1e-3f);
+    EXPECT_TRUE(world.overlap_any(place) || out[0].depth < 1e-3f);
   }
   EXPECT_GT(overlaps, 100);
   // Of a flat mesh floor: straight up, whatever lies below the shape.
@@ -328,7 +328,7 @@ TEST(Queries, TellTheWayOutOfOverlap) {
   const BodyId floor =
       world.add_body({.type = BodyType::fixed}, {.geometry = *cook_mesh({vertices, indices})});
   std::array<Penetration, 8> out;
-  ASSERT_EQ(world.find_penetrations({Sphere{0.5f}, {{0.1, 0.4, 0.3}, {}}}, out), 1u);
+  ASSERT_EQ(world.penetration_all({Sphere{0.5f}, {{0.1, 0.4, 0.3}, {}}}, out), 1u);
   EXPECT_EQ(out[0].body, floor);
   EXPECT_NEAR(out[0].depth, 0.1f, 1e-6f);
   EXPECT_NEAR(out[0].normal.y, 1.0f, 1e-6f);
@@ -349,7 +349,7 @@ TEST(Queries, NameTheTriangleOfTheMeshAsItWasGiven) {
     const int column = int(u), row = int(v);
     const int half = (u - column) + (v - row) > 1.0 ? 1 : 0;
     EXPECT_EQ(hit->triangle, 2 * (row * 11 + column) + half);
-    EXPECT_EQ(hit->sub_shape, 0);
+    EXPECT_EQ(hit->shape_index, 0);
   }
 }
 
@@ -360,32 +360,32 @@ TEST(Queries, ThatCannotBeAskedFindNothingAndSayWhy) {
   for (const float bad : {nan, inf, -inf}) {
     EXPECT_FALSE(world.cast_ray({0, double(bad), 0}, {0, -1, 0}).has_value());
     EXPECT_FALSE(world.cast_ray({0, 1, 0}, {0, bad, 0}).has_value());
-    EXPECT_FALSE(world.ray_hits({0, 1, 0}, {0, bad, 0}));
+    EXPECT_FALSE(world.cast_ray_any({0, 1, 0}, {0, bad, 0}));
     EXPECT_EQ(world.cast_ray_all({0, 1, 0}, {0, bad, 0}, {}), 0u);
     EXPECT_FALSE(world.cast_shape({Sphere{}, {{0, 3, 0}, {}}, {0, bad, 0}}).has_value());
     EXPECT_FALSE(world.cast_shape({Sphere{bad}, {{0, 3, 0}, {}}, {0, -5, 0}}).has_value());
     EXPECT_FALSE(world.cast_shape({Sphere{}, {{0, 3, 0}, {0, 0, bad, 1}}, {0, -5, 0}}).has_value());
-    EXPECT_FALSE(world.overlaps({Sphere{bad}, {}}));
+    EXPECT_FALSE(world.overlap_any({Sphere{bad}, {}}));
     EXPECT_FALSE(world.closest_point({Sphere{}, {{0, double(bad), 0}, {}}}, 1.0).has_value());
-    EXPECT_NE(std::strstr(check_ray({{0, 1, 0}, {0, bad, 0}}).message, "ray: way"), nullptr);
+    EXPECT_NE(std::strstr(check_ray({{0, 1, 0}, {0, bad, 0}}).message, "ray: translation"), nullptr);
   }
   EXPECT_FALSE(world.closest_point({Sphere{}, {{0, 1, 0}, {}}}, double(nan)).has_value());
   EXPECT_FALSE(world.closest_point({Sphere{}, {{0, 1, 0}, {}}}, -1.0).has_value());
-  EXPECT_FALSE(world.overlaps({Plane{}, {}}));
-  EXPECT_EQ(check_shape_place({Plane{}, {}}).code, ErrorCode::invalid_geometry);
-  EXPECT_NE(std::strstr(check_shape_place({Plane{}, {}}).message, "plane"), nullptr);
+  EXPECT_FALSE(world.overlap_any({Plane{}, {}}));
+  EXPECT_EQ(check_shape_pose({Plane{}, {}}).code, ErrorCode::invalid_geometry);
+  EXPECT_NE(std::strstr(check_shape_pose({Plane{}, {}}).message, "plane"), nullptr);
   EXPECT_EQ(check_shape_cast({Sphere{}, {}, {}, -1.0f}).code, ErrorCode::invalid_argument);
   EXPECT_EQ(check_shape_cast({Sphere{}, {}, {0, 1, 0}}).code, ErrorCode::none);
   EXPECT_EQ(check_ray({{0, 1, 0}, {}}).code, ErrorCode::none);  // without length it is a point
 
   std::vector<Ray> rays(5);
-  rays[3].way.y = nan;
+  rays[3].translation.y = nan;
   std::vector<CastHit> out(5);
-  const Error error = world.cast_rays(rays, out);
+  const Error error = world.cast_ray_batch(rays, out);
   EXPECT_EQ(error.code, ErrorCode::invalid_argument);
   EXPECT_NE(std::strstr(error.message, "question 3"), nullptr) << error.message;
-  EXPECT_EQ(world.cast_rays(std::span(rays).first(3), out).code, ErrorCode::invalid_argument);
-  EXPECT_EQ(world.cast_rays({}, {}).code, ErrorCode::none);
+  EXPECT_EQ(world.cast_ray_batch(std::span(rays).first(3), out).code, ErrorCode::invalid_argument);
+  EXPECT_EQ(world.cast_ray_batch({}, {}).code, ErrorCode::none);
 }
 
 TEST(Queries, OfPointsAndTouchingShapes) {
@@ -395,16 +395,16 @@ TEST(Queries, OfPointsAndTouchingShapes) {
   EXPECT_TRUE(world.cast_ray({0.4, 0, 0}, {})->inside);
   EXPECT_FALSE(world.cast_ray({0.6, 0, 0}, {}).has_value());
   // Touching is overlap of no depth.
-  EXPECT_TRUE(world.overlaps({Sphere{0.5f}, {{1, 0, 0}, {}}}));
-  EXPECT_FALSE(world.overlaps({Sphere{0.5f}, {{1.00001, 0, 0}, {}}}));
+  EXPECT_TRUE(world.overlap_any({Sphere{0.5f}, {{1, 0, 0}, {}}}));
+  EXPECT_FALSE(world.overlap_any({Sphere{0.5f}, {{1.00001, 0, 0}, {}}}));
   std::array<Penetration, 2> none;
-  EXPECT_EQ(world.find_penetrations({Sphere{0.5f}, {{1, 0, 0}, {}}}, none), 0u);
+  EXPECT_EQ(world.penetration_all({Sphere{0.5f}, {{1, 0, 0}, {}}}, none), 0u);
   const std::optional<ClosestPoint> near = world.closest_point({Sphere{0.5f}, {{3, 0, 0}, {}}}, 10.0);
   ASSERT_TRUE(near.has_value());
   EXPECT_EQ(near->body, box);
   EXPECT_NEAR(near->distance, 2.0, 1e-12);
   EXPECT_NEAR(near->point.x, 0.5, 1e-12);
-  EXPECT_NEAR(near->own_point.x, 2.5, 1e-12);
+  EXPECT_NEAR(near->query_point.x, 2.5, 1e-12);
   EXPECT_FALSE(world.closest_point({Sphere{0.5f}, {{3, 0, 0}, {}}}, 1.99).has_value());
 }
 

@@ -115,11 +115,11 @@ inline Ray random_ray(Random& random, DVec3 origin = {}) {
   if (random.below(5) == 0) way = {0.0f, way.y, 0.0f};
   return {origin + from, way};
 }
-inline ShapePlace random_place(Random& random, DVec3 origin = {}) {
+inline ShapePose random_place(Random& random, DVec3 origin = {}) {
   return {random_convex(random), {origin + random.in_box(10.0f), random.turn()}};
 }
 inline ShapeCast random_cast(Random& random, DVec3 origin = {}) {
-  const ShapePlace place = random_place(random, origin);
+  const ShapePose place = random_place(random, origin);
   return {place.shape, place.pose, random.in_box(15.0f)};
 }
 

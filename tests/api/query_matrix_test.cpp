@@ -91,7 +91,7 @@ struct Oracle {
   Answers rays(const Ray& ray, const QueryFilter& f) const {
     return all(f, [&](const Target& t, Answers& out) {
       LocalHit hit;
-      const LocalRay local{t.to_local(ray.origin), rotate_inverse(t.turn(), DVec3(ray.way))};
+      const LocalRay local{t.to_local(ray.origin), rotate_inverse(t.turn(), DVec3(ray.translation))};
       if (cast_ray(t.shape, local, 1.0, f.back_faces, hit))
         out.push_back({t.id.index, number(hit.triangle), hit.fraction});
     });
@@ -102,12 +102,12 @@ struct Oracle {
       LocalHit hit;
       const MovingShape moving{&shape, t.to_local(cast.pose.position),
                                conjugate(t.turn()) * normalized(to_double(cast.pose.orientation)),
-                               rotate_inverse(t.turn(), DVec3(cast.way)), cast.skin};
+                               rotate_inverse(t.turn(), DVec3(cast.translation)), cast.skin};
       if (cast_shape(t.shape, moving, 1.0, f.back_faces, hit))
         out.push_back({t.id.index, number(hit.triangle), hit.fraction});
     });
   }
-  Answers near(const ShapePlace& place, double reach, const QueryFilter& f) const {
+  Answers near(const ShapePose& place, double reach, const QueryFilter& f) const {
     const Shape shape = make_shape(place.shape);
     return all(f, [&](const Target& t, Answers& out) {
       Nearest nearest;
@@ -117,7 +117,7 @@ struct Oracle {
         out.push_back({t.id.index, number(nearest.triangle), nearest.distance});
     });
   }
-  Answers deep(const ShapePlace& place, const QueryFilter& f) const {
+  Answers deep(const ShapePose& place, const QueryFilter& f) const {
     const Shape shape = make_shape(place.shape);
     return all(f, [&](const Target& t, Answers& out) {
       PairCache cache;
@@ -225,19 +225,19 @@ class QueryMatrix : public ::testing::TestWithParam<FilterCase> {
   QueryFilter filter_;
   std::vector<Ray> rays_;
   std::vector<ShapeCast> casts_;
-  std::vector<ShapePlace> places_;
+  std::vector<ShapePose> places_;
 };
 
 TEST_P(QueryMatrix, Rays) {
   const QueryFilter& f = filter_;
   Forms<Ray, CastHit> forms;
   forms.oracle = [&](const Ray& r) { return oracle_.rays(r, f); };
-  forms.closest = [&](const World& w, const Ray& r) { return w.cast_ray(r.origin, r.way, f); };
-  forms.any = [&](const World& w, const Ray& r) { return w.ray_hits(r.origin, r.way, f); };
-  forms.all = [&](const World& w, const Ray& r, auto out) { return w.cast_ray_all(r.origin, r.way, out, f); };
-  forms.closest_batch = [&](const World& w, auto q, auto out) { return w.cast_rays(q, out, f); };
-  forms.any_batch = [&](const World& w, auto q, auto out) { return w.rays_hit(q, out, f); };
-  forms.all_batch = [&](const World& w, auto q, auto out, auto n) { return w.cast_rays_all(q, out, n, f); };
+  forms.closest = [&](const World& w, const Ray& r) { return w.cast_ray(r.origin, r.translation, f); };
+  forms.any = [&](const World& w, const Ray& r) { return w.cast_ray_any(r.origin, r.translation, f); };
+  forms.all = [&](const World& w, const Ray& r, auto out) { return w.cast_ray_all(r.origin, r.translation, out, f); };
+  forms.closest_batch = [&](const World& w, auto q, auto out) { return w.cast_ray_batch(q, out, f); };
+  forms.any_batch = [&](const World& w, auto q, auto out) { return w.cast_ray_any_batch(q, out, f); };
+  forms.all_batch = [&](const World& w, auto q, auto out, auto n) { return w.cast_ray_all_batch(q, out, n, f); };
   EXPECT_GT(compare(crowd_.world, rays_, forms), rays_.size() / 4);
 }
 
@@ -246,63 +246,63 @@ TEST_P(QueryMatrix, MovingShapes) {
   Forms<ShapeCast, CastHit> forms;
   forms.oracle = [&](const ShapeCast& c) { return oracle_.casts(c, f); };
   forms.closest = [&](const World& w, const ShapeCast& c) { return w.cast_shape(c, f); };
-  forms.any = [&](const World& w, const ShapeCast& c) { return w.shape_hits(c, f); };
+  forms.any = [&](const World& w, const ShapeCast& c) { return w.cast_shape_any(c, f); };
   forms.all = [&](const World& w, const ShapeCast& c, auto out) { return w.cast_shape_all(c, out, f); };
-  forms.closest_batch = [&](const World& w, auto q, auto out) { return w.cast_shapes(q, out, f); };
-  forms.any_batch = [&](const World& w, auto q, auto out) { return w.shapes_hit(q, out, f); };
-  forms.all_batch = [&](const World& w, auto q, auto out, auto n) { return w.cast_shapes_all(q, out, n, f); };
+  forms.closest_batch = [&](const World& w, auto q, auto out) { return w.cast_shape_batch(q, out, f); };
+  forms.any_batch = [&](const World& w, auto q, auto out) { return w.cast_shape_any_batch(q, out, f); };
+  forms.all_batch = [&](const World& w, auto q, auto out, auto n) { return w.cast_shape_all_batch(q, out, n, f); };
   EXPECT_GT(compare(crowd_.world, casts_, forms), casts_.size() / 4);
 }
 
 // Overlaps have no closest: how deep they are, penetrations tell.
 TEST_P(QueryMatrix, Overlaps) {
   const QueryFilter& f = filter_;
-  Forms<ShapePlace, Overlap> forms;
-  forms.oracle = [&](const ShapePlace& p) { return oracle_.near(p, 0.0, f); };
-  forms.any = [&](const World& w, const ShapePlace& p) { return w.overlaps(p, f); };
-  forms.all = [&](const World& w, const ShapePlace& p, auto out) { return w.find_overlaps(p, out, f); };
-  forms.any_batch = [&](const World& w, auto q, auto out) { return w.places_overlap(q, out, f); };
+  Forms<ShapePose, Overlap> forms;
+  forms.oracle = [&](const ShapePose& p) { return oracle_.near(p, 0.0, f); };
+  forms.any = [&](const World& w, const ShapePose& p) { return w.overlap_any(p, f); };
+  forms.all = [&](const World& w, const ShapePose& p, auto out) { return w.overlap_all(p, out, f); };
+  forms.any_batch = [&](const World& w, auto q, auto out) { return w.overlap_any_batch(q, out, f); };
   forms.all_batch = [&](const World& w, auto q, auto out, auto n) {
-    return w.find_overlaps_all(q, out, n, f);
+    return w.overlap_all_batch(q, out, n, f);
   };
   EXPECT_GT(compare(crowd_.world, places_, forms), places_.size() / 20);
   std::vector<std::uint32_t> counts(places_.size());
-  EXPECT_EQ(crowd_.world.count_overlaps(places_, counts, f).code, ErrorCode::none);
+  EXPECT_EQ(crowd_.world.overlap_count_batch(places_, counts, f).code, ErrorCode::none);
   for (std::size_t i = 0; i < places_.size(); ++i)
     EXPECT_EQ(counts[i], oracle_.near(places_[i], 0.0, f).size());
 }
 
 TEST_P(QueryMatrix, ClosestPoints) {
   const QueryFilter& f = filter_;
-  Forms<ShapePlace, ClosestPoint> forms;
-  forms.oracle = [&](const ShapePlace& p) { return oracle_.near(p, kNear, f); };
-  forms.closest = [&](const World& w, const ShapePlace& p) { return w.closest_point(p, kNear, f); };
-  forms.any = [&](const World& w, const ShapePlace& p) { return w.any_within(p, kNear, f); };
-  forms.all = [&](const World& w, const ShapePlace& p, auto out) { return w.find_closest(p, kNear, out, f); };
-  forms.closest_batch = [&](const World& w, auto q, auto out) { return w.closest_points(q, kNear, out, f); };
-  forms.any_batch = [&](const World& w, auto q, auto out) { return w.places_near(q, kNear, out, f); };
+  Forms<ShapePose, ClosestPoint> forms;
+  forms.oracle = [&](const ShapePose& p) { return oracle_.near(p, kNear, f); };
+  forms.closest = [&](const World& w, const ShapePose& p) { return w.closest_point(p, kNear, f); };
+  forms.any = [&](const World& w, const ShapePose& p) { return w.closest_point_any(p, kNear, f); };
+  forms.all = [&](const World& w, const ShapePose& p, auto out) { return w.closest_point_all(p, kNear, out, f); };
+  forms.closest_batch = [&](const World& w, auto q, auto out) { return w.closest_point_batch(q, kNear, out, f); };
+  forms.any_batch = [&](const World& w, auto q, auto out) { return w.closest_point_any_batch(q, kNear, out, f); };
   forms.all_batch = [&](const World& w, auto q, auto out, auto n) {
-    return w.find_closest_all(q, kNear, out, n, f);
+    return w.closest_point_all_batch(q, kNear, out, n, f);
   };
   EXPECT_GT(compare(crowd_.world, places_, forms), places_.size() / 10);
 }
 
 TEST_P(QueryMatrix, Penetrations) {
   const QueryFilter& f = filter_;
-  Forms<ShapePlace, Penetration> forms;
-  forms.oracle = [&](const ShapePlace& p) { return oracle_.deep(p, f); };
-  forms.closest = [&](const World& w, const ShapePlace& p) { return w.deepest_penetration(p, f); };
-  forms.any = [&](const World& w, const ShapePlace& p) { return w.deepest_penetration(p, f).has_value(); };
-  forms.all = [&](const World& w, const ShapePlace& p, auto out) { return w.find_penetrations(p, out, f); };
-  forms.closest_batch = [&](const World& w, auto q, auto out) { return w.deepest_penetrations(q, out, f); };
+  Forms<ShapePose, Penetration> forms;
+  forms.oracle = [&](const ShapePose& p) { return oracle_.deep(p, f); };
+  forms.closest = [&](const World& w, const ShapePose& p) { return w.penetration(p, f); };
+  forms.any = [&](const World& w, const ShapePose& p) { return w.penetration(p, f).has_value(); };
+  forms.all = [&](const World& w, const ShapePose& p, auto out) { return w.penetration_all(p, out, f); };
+  forms.closest_batch = [&](const World& w, auto q, auto out) { return w.penetration_batch(q, out, f); };
   forms.any_batch = [&](const World& w, auto q, std::span<std::uint8_t> out) {
     std::vector<Penetration> deep(q.size());
-    const Error e = w.deepest_penetrations(q, deep, f);
+    const Error e = w.penetration_batch(q, deep, f);
     for (std::size_t i = 0; i < deep.size(); ++i) out[i] = deep[i] ? 1 : 0;
     return e;
   };
   forms.all_batch = [&](const World& w, auto q, auto out, auto n) {
-    return w.find_penetrations_all(q, out, n, f);
+    return w.penetration_all_batch(q, out, n, f);
   };
   EXPECT_GT(compare(crowd_.world, places_, forms), places_.size() / 20);
 }
@@ -335,10 +335,10 @@ TEST(QueryBatches, HaveTheSameBitsOverThreads) {
   Random random{std::mt19937(43)};
   std::vector<Ray> rays(400);
   std::vector<ShapeCast> casts(200);
-  std::vector<ShapePlace> places(300);
+  std::vector<ShapePose> places(300);
   for (Ray& ray : rays) ray = random_ray(random);
   for (ShapeCast& cast : casts) cast = random_cast(random);
-  for (ShapePlace& place : places) place = random_place(random);
+  for (ShapePose& place : places) place = random_place(random);
   struct Batches {
     std::vector<CastHit> rays, casts;
     std::vector<Overlap> overlaps;
@@ -355,16 +355,16 @@ TEST(QueryBatches, HaveTheSameBitsOverThreads) {
     const std::size_t sizes[5] = {rays.size(), casts.size(), places.size(), places.size(), places.size()};
     for (int i = 0; i < 5; ++i) b.counts[i].resize(sizes[i]);
     for (int i = 0; i < 4; ++i) b.any[i].resize(sizes[i]);
-    const Error errors[] = {w.cast_rays_all(rays, b.rays, b.counts[0]),
-                            w.cast_shapes_all(casts, b.casts, b.counts[1]),
-                            w.find_overlaps_all(places, b.overlaps, b.counts[2]),
-                            w.find_closest_all(places, kNear, b.near, b.counts[3]),
-                            w.find_penetrations_all(places, b.deep, b.counts[4]),
-                            w.deepest_penetrations(places, b.deepest),
-                            w.rays_hit(rays, b.any[0]),
-                            w.shapes_hit(casts, b.any[1]),
-                            w.places_overlap(places, b.any[2]),
-                            w.places_near(places, kNear, b.any[3])};
+    const Error errors[] = {w.cast_ray_all_batch(rays, b.rays, b.counts[0]),
+                            w.cast_shape_all_batch(casts, b.casts, b.counts[1]),
+                            w.overlap_all_batch(places, b.overlaps, b.counts[2]),
+                            w.closest_point_all_batch(places, kNear, b.near, b.counts[3]),
+                            w.penetration_all_batch(places, b.deep, b.counts[4]),
+                            w.penetration_batch(places, b.deepest),
+                            w.cast_ray_any_batch(rays, b.any[0]),
+                            w.cast_shape_any_batch(casts, b.any[1]),
+                            w.overlap_any_batch(places, b.any[2]),
+                            w.closest_point_any_batch(places, kNear, b.any[3])};
     for (const Error& error : errors) EXPECT_EQ(error.code, ErrorCode::none) << error.message;
     return b;
   };
@@ -405,15 +405,15 @@ TEST(QueryBatches, SayWhyTheyCannotBeAsked) {
   const std::vector<Ray> rays(3, Ray{{0, 1, 0}, {0, -2, 0}});
   std::vector<CastHit> out(7);
   std::vector<std::uint32_t> counts(3);
-  EXPECT_EQ(world.cast_rays_all(rays, out, counts).code, ErrorCode::invalid_argument);
-  EXPECT_EQ(world.cast_rays_all(rays, std::span(out).first(6), std::span(counts).first(2)).code,
+  EXPECT_EQ(world.cast_ray_all_batch(rays, out, counts).code, ErrorCode::invalid_argument);
+  EXPECT_EQ(world.cast_ray_all_batch(rays, std::span(out).first(6), std::span(counts).first(2)).code,
             ErrorCode::invalid_argument);
   EXPECT_EQ(counts[0], 0u);
-  EXPECT_EQ(world.cast_rays_all(rays, {}, counts).code, ErrorCode::none);
+  EXPECT_EQ(world.cast_ray_all_batch(rays, {}, counts).code, ErrorCode::none);
   EXPECT_EQ(counts[2], 1u);
-  EXPECT_EQ(world.cast_rays_all({}, {}, {}).code, ErrorCode::none);
+  EXPECT_EQ(world.cast_ray_all_batch({}, {}, {}).code, ErrorCode::none);
   std::vector<std::uint8_t> near(1);
-  EXPECT_EQ(world.places_near(std::vector<ShapePlace>(1), -1.0, near).code, ErrorCode::invalid_argument);
+  EXPECT_EQ(world.closest_point_any_batch(std::vector<ShapePose>(1), -1.0, near).code, ErrorCode::invalid_argument);
 }
 
 }  // namespace

@@ -169,7 +169,7 @@ TEST(Queries, ThatAreDegenerateAgreeWithBruteForce) {
                       {{0, 5, 0}, {0, -3e38f, 0}}};
   int met = 0;
   for (const Ray& ray : rays) {
-    const auto a = fast.cast_ray(ray.origin, ray.way), b = brute.cast_ray(ray.origin, ray.way);
+    const auto a = fast.cast_ray(ray.origin, ray.translation), b = brute.cast_ray(ray.origin, ray.translation);
     EXPECT_EQ(a.has_value(), b.has_value()) << "B-14";
     if (!a || !b) continue;
     ++met;

@@ -34,13 +34,13 @@ int main() {
   if (!recorder.finish()) return 1;
   const double height = world.pose(ball).position.y;
   gyre::Result<gyre::PoseTrack> track = gyre::PoseTrack::open(sink.bytes);
-  if (!track || track->seek(30).code != gyre::ErrorCode::none) return 1;
+  if (!track || track->seek(30)) return 1;
   const double shown = track->frame().poses[0].position.y;
   if (shown - height > 1e-4 || height - shown > 1e-4) return 1;
   // The kit comes along with the package.
   const gyre::kit::CharacterDef walker;
   gyre::kit::CharacterState state = gyre::kit::make_character(walker, {0, 5, 0});
-  if (gyre::kit::move_character(world, walker, state, {}, 1.0f / 60.0f).code != gyre::ErrorCode::none) return 1;
+  if (gyre::kit::move_character(world, walker, state, {}, 1.0f / 60.0f)) return 1;
   if (!(state.feet.y < 5)) return 1;
   std::printf("height %.3f\n", height);
   // Half a second of free fall from 10 m: 1.23 m lower, give or take the first-order error of one step.

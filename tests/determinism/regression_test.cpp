@@ -110,7 +110,7 @@ TEST(Threads, DoNotShowInALargePile) {
       }
     }
     for (int step = 0; step < 25; ++step) world.step(kStepSeconds);
-    EXPECT_GT(world.counts().touching, 600);  // of one island: all lie side by side
+    EXPECT_GT(world.stats().touching, 600);  // of one island: all lie side by side
     return world.hash();
   };
   const std::uint64_t expected = outcome(1, 1);

@@ -267,7 +267,7 @@ void call(World& world, Ids& ids, Input& in) {
 
 void check_world(const World& world) {
   const Error fault = validate(world);
-  if (fault.code != ErrorCode::none) {
+  if (fault) {
     std::fprintf(stderr, "%s\n", fault.message);
     std::abort();
   }

@@ -67,7 +67,7 @@ void try_mesh(fuzz::Input& input) {
     check(hull.vertices.size() <= std::size_t(def.max_hull_vertices));
     for (const Vec3& v : hull.vertices) check(is_finite(v));
   }
-  const DecompositionReport& r = made->report;
+  const DecompositionStats& r = made->stats;
   check(is_finite(r.overhang) && is_finite(r.depth) && is_finite(r.uncovered));
   check(std::isfinite(r.solid_volume) && std::isfinite(r.hull_volume) && std::isfinite(r.excess_volume));
   check(r.overhang >= 0.0f && r.depth >= 0.0f && r.hull_volume > 0.0);

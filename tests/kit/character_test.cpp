@@ -243,7 +243,7 @@ TEST(Character, PlatformsCarryItExactly) {
     ASSERT_TRUE(world.move_kinematic(platform, pose, kStep));
     ASSERT_TRUE(world.step(kStep));
     ASSERT_EQ(move_character(world, def, state, {}, kStep).code, ErrorCode::none);
-    turned += double(state.turned);
+    turned += double(state.ground_rotation);
     most = std::fmax(most, double(length(inverse_times(world.pose(platform), state.feet) - spot)));
     EXPECT_EQ(state.ground_body, platform);
   }
@@ -353,9 +353,9 @@ TEST(Character, GetsOutOfWhatItWasPutInto) {
     traversal(world, def, state, {}, 2.0);
     EXPECT_FALSE(state.stuck);
     EXPECT_EQ(state.ground, GroundKind::firm);
-    ShapePlace place = character_shape(def, state);
+    ShapePose place = character_shape(def, state);
     Penetration deep[4];
-    const std::size_t count = world.find_penetrations(place, deep);
+    const std::size_t count = world.penetration_all(place, deep);
     EXPECT_TRUE(count == 0 || deep[0].depth < 0.003f) << deep[0].depth;
     return state.feet;
   };
@@ -425,7 +425,7 @@ TEST(Character, WandersWithoutEnteringAnything) {
       way.y = 0;
       if (i > 60) fastest = std::fmax(fastest, length(way) * 60);
       Penetration deep[1];
-      if (world.find_penetrations(character_shape(def, state), deep) > 0)
+      if (world.penetration_all(character_shape(def, state), deep) > 0)
         deepest = std::fmax(deepest, double(deep[0].depth));
       ASSERT_FALSE(state.stuck) << "seed " << seed << " step " << i;
     }

@@ -102,7 +102,7 @@ TEST(Ragdoll, MotorsSagAsTheirFrequencySays) {
     const double k = std::pow(2 * kPiDouble * double(frequency), 2) * inertia;
     double sag = 0;
     for (int i = 0; i < 50; ++i) sag = m * kGravity * l * std::cos(sag) / k;
-    const double measured = -double(bone_turn(def, read_ragdoll(world, def, ragdoll), 1).x);
+    const double measured = -double(bone_rotation(def, read_ragdoll(world, def, ragdoll), 1).x);
     EXPECT_TRUE(row("hinge motor: sag, rad", measured, sag, 0.005 * sag + 2e-6));
   }
 }
@@ -121,7 +121,7 @@ TEST(Ragdoll, MotorsGiveWayAtTheirTorque) {
       double turned = 0;
       for (int i = 0; i < 120; ++i) {
         drive(world, def, ragdoll, rest_pose(def), drives);
-        turned = std::max(turned, double(length(bone_turn(def, read_ragdoll(world, def, ragdoll), 1))));
+        turned = std::max(turned, double(length(bone_rotation(def, read_ragdoll(world, def, ragdoll), 1))));
       }
       if (share < 1) {
         EXPECT_LT(turned, 2e-3) << int(kind);
@@ -147,7 +147,7 @@ TEST(Ragdoll, MotorsReachThePose) {
     for (int i = 0; i < 240; ++i) drive(world, def, ragdoll, target, {&motor, 1});
     const RagdollPose now = read_ragdoll(world, def, ragdoll);
     for (std::size_t i = 1; i < def.bones.size(); ++i) {
-      turned = std::max(turned, double(length(bone_turn(def, now, int(i)) - bone_turn(def, target, int(i)))));
+      turned = std::max(turned, double(length(bone_rotation(def, now, int(i)) - bone_rotation(def, target, int(i)))));
     }
   }
   std::printf("[row] motors, no gravity, ten random poses: off by %.4f degrees at most\n",

@@ -67,7 +67,7 @@ std::vector<float> heap(bool slack, int threads, int width) {
   }
   if (slack) add_slack(world, boxes[2], boxes[5]);
   for (int step = 0; step < 90; ++step) EXPECT_TRUE(world.step(kStep));
-  EXPECT_GT(world.counts().touching, 150);
+  EXPECT_GT(world.stats().touching, 150);
   return read_bodies(world);
 }
 

@@ -44,7 +44,7 @@ inline double largest_gap(const World& world, const RagdollDef& def, const Ragdo
 }
 inline double max_beyond(const RagdollDef& def, const RagdollPose& pose) {
   float most = 0;
-  for (std::size_t i = 1; i < def.bones.size(); ++i) most = std::max(most, beyond_limits(def, pose, int(i)));
+  for (std::size_t i = 1; i < def.bones.size(); ++i) most = std::max(most, limit_violation(def, pose, int(i)));
   return double(most);
 }
 inline double farthest(const World& world, const Ragdoll& ragdoll, const RagdollPose& target) {
@@ -97,8 +97,8 @@ inline RagdollPose random_pose(const RagdollDef& def, const Pose& at, std::mt199
       return share * random_in(random, -0.5f, 0.5f) * (l.high - l.low);
     };
     const bool cone = j.kind == BoneJointKind::cone;
-    turn_bone(def, pose, int(i),
-              {part(j.turn), cone ? 0.7f * part(j.swing_y) : 0, cone ? 0.7f * part(j.swing_z) : 0});
+    rotate_bone(def, pose, int(i),
+              {part(j.twist), cone ? 0.7f * part(j.swing_y) : 0, cone ? 0.7f * part(j.swing_z) : 0});
   }
   return pose;
 }
@@ -126,7 +126,7 @@ inline RagdollDef arm_def(BoneJointKind kind, float mass = 2.0f, float length = 
   arm.mass = mass;
   arm.joint.kind = kind;
   arm.joint.axis = kind == BoneJointKind::hinge ? Vec3{0, 0, 1} : Vec3{1, 0, 0};
-  arm.joint.turn = {-1.5f, 1.5f};
+  arm.joint.twist = {-1.5f, 1.5f};
   arm.joint.swing_y = arm.joint.swing_z = {-1.5f, 1.5f};
   arm.joint.max_torque = 1000;
   def.bones = {root, arm};
@@ -137,13 +137,13 @@ inline RagdollDef arm_def(BoneJointKind kind, float mass = 2.0f, float length = 
 inline RagdollPose moving(const RagdollDef& def, double time) {
   RagdollPose pose = rest_pose(def, {{0.8 * time, 3, 0}, from_axis_angle({0, 1, 0}, float(0.5 * time))});
   const float swing = 0.5f * float(std::sin(3 * time));
-  turn_bone(def, pose, find_bone(def, "left thigh"), {0, 0, 0.4f + swing});
-  turn_bone(def, pose, find_bone(def, "right thigh"), {0, 0, 0.4f - swing});
-  turn_bone(def, pose, find_bone(def, "left shank"), {0.8f + swing, 0, 0});
-  turn_bone(def, pose, find_bone(def, "left upper arm"), {0, -0.8f, swing});
-  turn_bone(def, pose, find_bone(def, "right upper arm"), {0, 0.8f, -swing});
-  turn_bone(def, pose, find_bone(def, "right forearm"), {0.9f + swing, 0, 0});
-  turn_bone(def, pose, find_bone(def, "head"), {0.3f, 0.1f, swing});
+  rotate_bone(def, pose, find_bone(def, "left thigh"), {0, 0, 0.4f + swing});
+  rotate_bone(def, pose, find_bone(def, "right thigh"), {0, 0, 0.4f - swing});
+  rotate_bone(def, pose, find_bone(def, "left shank"), {0.8f + swing, 0, 0});
+  rotate_bone(def, pose, find_bone(def, "left upper arm"), {0, -0.8f, swing});
+  rotate_bone(def, pose, find_bone(def, "right upper arm"), {0, 0.8f, -swing});
+  rotate_bone(def, pose, find_bone(def, "right forearm"), {0.9f + swing, 0, 0});
+  rotate_bone(def, pose, find_bone(def, "head"), {0.3f, 0.1f, swing});
   return pose;
 }
 

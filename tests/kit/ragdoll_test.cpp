@@ -60,12 +60,12 @@ TEST(Ragdoll, SaysWhatIsWrongWithADescription) {
         d.bones[3].joint.swing_y = {1, -1};
       },
       [](RagdollDef& d) {
-        d.bones[3].joint.turn = {-4, 4};
+        d.bones[3].joint.twist = {-4, 4};
       },
       [](RagdollDef& d) { d.bones[3].joint.friction = -1; },
       [](RagdollDef& d) { d.neighbours = 0; },
       [](RagdollDef& d) {
-        d.apart = {{3, 99}};
+        d.filtered_pairs = {{3, 99}};
       },
       [](RagdollDef& d) { d.angular_damping = -1; },
   };
@@ -98,7 +98,7 @@ TEST(Ragdoll, SaysWhatIsWrongWithADescription) {
     EXPECT_NE(std::string(e.message).find(words[i]), std::string::npos) << "case " << i << ": " << e.message;
     World world = make_world();
     EXPECT_FALSE(add_ragdoll(world, def, {{}, std::vector<Transform>(def.bones.size())}));
-    EXPECT_EQ(world.counts().bodies, 0) << "case " << i;
+    EXPECT_EQ(world.stats().bodies, 0) << "case " << i;
     EXPECT_FALSE(stabilized(def));
   }
   World world = make_world();
@@ -118,8 +118,8 @@ TEST(Ragdoll, SaysWhatIsWrongWithADescription) {
   EXPECT_NE(drive_ragdoll(world, def, ragdoll, rest_pose(def), {}, kStep).code, ErrorCode::none);
   EXPECT_EQ(world.hash(), hash);
   remove_ragdoll(world, ragdoll);
-  EXPECT_EQ(world.counts().bodies, 0);
-  EXPECT_EQ(world.counts().joints, 0);
+  EXPECT_EQ(world.stats().bodies, 0);
+  EXPECT_EQ(world.stats().joints, 0);
 }
 
 // What a bone is turned by is told as it was asked for, and beyond limits by as much as it is.
@@ -128,27 +128,27 @@ TEST(Ragdoll, TellsTheAnglesOfItsJoints) {
   const int knee = find_bone(def, "left shank"), shoulder = find_bone(def, "right upper arm");
   for (const float angle : {-0.4f, 0.3f, 2.0f, 2.5f}) {
     RagdollPose pose = rest_pose(def);
-    turn_bone(def, pose, knee, {angle, 0, 0});
-    EXPECT_NEAR(bone_turn(def, pose, knee).x, angle, 1e-5f);
+    rotate_bone(def, pose, knee, {angle, 0, 0});
+    EXPECT_NEAR(bone_rotation(def, pose, knee).x, angle, 1e-5f);
     const float expected = std::max({0.0f, -angle, angle - 135 * kDegree});
-    EXPECT_NEAR(beyond_limits(def, pose, knee), expected, 1e-5f);
+    EXPECT_NEAR(limit_violation(def, pose, knee), expected, 1e-5f);
     const std::size_t foot = std::size_t(find_bone(def, "left foot"));
     EXPECT_NEAR(pose.bones[foot].position.y, 0.502f - 0.434f * std::cos(angle), 1e-4f)
         << "the foot hangs on it";
   }
   // Straight forward from the middle of a round cone.
   RagdollPose pose = middle_pose(def);
-  turn_bone(def, pose, shoulder, {0, 0.8f, 1.7f});
-  EXPECT_NEAR(beyond_limits(def, pose, shoulder), std::sqrt(0.8f * 0.8f + 1.7f * 1.7f) - 100 * kDegree,
+  rotate_bone(def, pose, shoulder, {0, 0.8f, 1.7f});
+  EXPECT_NEAR(limit_violation(def, pose, shoulder), std::sqrt(0.8f * 0.8f + 1.7f * 1.7f) - 100 * kDegree,
               1e-4f);
   pose = middle_pose(def);
-  turn_bone(def, pose, shoulder, {2.0f, 0, 0});
-  EXPECT_NEAR(beyond_limits(def, pose, shoulder), 2.0f - 80 * kDegree, 1e-4f);
+  rotate_bone(def, pose, shoulder, {2.0f, 0, 0});
+  EXPECT_NEAR(limit_violation(def, pose, shoulder), 2.0f - 80 * kDegree, 1e-4f);
   // Along the axes of an ellipse.
   const int hip = find_bone(def, "left thigh");
   pose = middle_pose(def);
-  turn_bone(def, pose, hip, {0, 0.7f, 0});
-  EXPECT_NEAR(beyond_limits(def, pose, hip), 0.7f - 35 * kDegree, 1e-4f);
+  rotate_bone(def, pose, hip, {0, 0.7f, 0});
+  EXPECT_NEAR(limit_violation(def, pose, hip), 0.7f - 35 * kDegree, 1e-4f);
 }
 
 TEST(Ragdoll, StandsWhereItIsPut) {
@@ -197,8 +197,8 @@ TEST(Ragdoll, LimitsHold) {
       world.add_force_at(ragdoll.bones[bone].body, force * axis, world.pose(ragdoll.bones[bone].body) * end);
       drive(world, def, ragdoll, target, drives);
       const RagdollPose now = read_ragdoll(world, def, ragdoll);
-      if (i % 60 >= 45) most = std::max(most, double(beyond_limits(def, now, int(bone))));
-      far = std::max(far, double(length(bone_turn(def, now, int(bone)) - bone_turn(def, target, int(bone)))));
+      if (i % 60 >= 45) most = std::max(most, double(limit_violation(def, now, int(bone))));
+      far = std::max(far, double(length(bone_rotation(def, now, int(bone)) - bone_rotation(def, target, int(bone)))));
     }
     min_turn = std::min(min_turn, far);
   }
@@ -341,7 +341,7 @@ TEST(Ragdoll, FallsTheSameBesideOneWithoutFriction) {
       if (!(is_free ? with_free : with_rubbing)) continue;
       const RagdollDef& def = is_free ? free : rubs;
       RagdollPose start = rest_pose(def, {{4.0 * (i / 2), 3.0, 4.0 * (i % 2)}, {}});
-      turn_bone(def, start, find_bone(def, "left thigh"), {0, 0, 0.4f});
+      rotate_bone(def, start, find_bone(def, "left thigh"), {0, 0, 0.4f});
       all[is_free].push_back(add(world, def, start));
       world.set_velocity(all[is_free].back().bones[0].body, {0, 1, 0}, {3, 2, 1});
     }
@@ -406,7 +406,7 @@ TEST(Ragdoll, FallsAsleep) {
     int asleep = 0;
     for (int i = 0; i < 1200 && asleep == 0; ++i) {
       drive(world, def, ragdoll, rest_pose(def), {&d, 1});
-      if (world.counts().awake_bodies == 0) asleep = i;
+      if (world.stats().awake_bodies == 0) asleep = i;
     }
     std::printf("[row] %s: asleep after %.1f s\n", motors ? "on weak motors" : "limp", asleep / 60.0);
     EXPECT_GT(asleep, 0) << motors;

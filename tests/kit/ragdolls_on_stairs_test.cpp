@@ -100,10 +100,10 @@ Judged fall(const Fall& f) {
         const Pose parent = world.pose(ragdoll.bones[std::size_t(def.bones[k].parent)].body);
         j.gaps.push_back(
             float(length(parent * def.bones[k].rest.position - world.pose(ragdoll.bones[k].body).position)));
-        j.beyond.push_back(float(double(beyond_limits(def, pose, int(k))) / kDegree));
+        j.beyond.push_back(float(double(limit_violation(def, pose, int(k))) / kDegree));
       }
     }
-    j.awake = world.counts().awake_bodies;
+    j.awake = world.stats().awake_bodies;
     j.kinetic = world.energy().kinetic;
     j.seconds = (i + 1) / 60.0;
     if (j.awake == 0) break;

@@ -140,7 +140,7 @@ TEST(SkeletonMap, SharesATurnAmongTheJointsBetween) {
   std::vector<Transform> local(rest.size()), model(rest.size());
   model_to_local(skeleton, rest, local);
   RagdollPose pose = rest_pose(def);
-  turn_bone(def, pose, find_bone(def, "chest"), {0.9f, 0, 0});
+  rotate_bone(def, pose, find_bone(def, "chest"), {0.9f, 0, 0});
   ASSERT_TRUE(skeleton_from_ragdoll(map, pose.bones, local, model));
   const auto turned = [&](const char* name) {
     const std::size_t i = std::size_t(find_joint(skeleton, name));

@@ -183,7 +183,7 @@ TEST(Vehicle, TyresPullAsTheirCurvesSay) {
       const SinCos drift = sin_cos_of(0.12 * across);
       world.set_velocity(car.body, {speed * drift.sin, 0, speed * drift.cos}, {});
       for (int i = 0; i < 4; ++i)
-        car.state.wheels[i].spin = speed * drift.cos * float(1.0 + 0.1 * along) / float(kRadius);
+        car.state.wheels[i].angular_velocity = speed * drift.cos * float(1.0 + 0.1 * along) / float(kRadius);
       ASSERT_EQ(drive_vehicle(world, car.def, car.body, car.state, {.gear = 0}, kStep).code, ErrorCode::none);
       const double s = std::hypot(along, across), peak = 2 * s / (1 + s * s);
       const double share = s <= 1 ? peak : 0.7 + 0.3 * peak;
@@ -206,7 +206,7 @@ TEST(Vehicle, BrakesAsItsTyresGrip) {
     Car car = make_car(world);
     drive(world, car, {.gear = 0}, 2.0);
     world.set_velocity(car.body, {0, 0, 30}, {});
-    for (int i = 0; i < 4; ++i) car.state.wheels[i].spin = 30 / float(kRadius);
+    for (int i = 0; i < 4; ++i) car.state.wheels[i].angular_velocity = 30 / float(kRadius);
     for (WheelDef& wheel : car.def.wheels) {
       // In proportion to the load under braking, short of the peak.
       wheel.brake = locked ? 1e5f : 0.0f;
@@ -245,7 +245,7 @@ TEST(Vehicle, UndersteersAsTheBicycleModelSays) {
       drive(world, car, {.gear = 0}, 2.0);
       const float speed = k == 0 ? 5.0f : 20.0f;
       world.set_velocity(car.body, {0, 0, speed}, {});
-      for (int i = 0; i < 4; ++i) car.state.wheels[i].spin = speed / float(kRadius);
+      for (int i = 0; i < 4; ++i) car.state.wheels[i].angular_velocity = speed / float(kRadius);
       // Small angles: a tenth of a radian would be past what is linear at this speed.
       const float angle = k == 0 ? 0.02f : 0.01f;
       drive(world, car, {.steer = angle / car.def.steer_angle, .gear = 0}, 5.0);
@@ -298,7 +298,7 @@ TEST(Vehicle, DifferentialsShareTorque) {
     drive(world, car, {.throttle = 0.4f}, 4.0);
     speed[locked ? 1 : 0] = forward_speed(world, car);
     if (locked) {
-      EXPECT_NEAR(double(car.state.wheels[2].spin / car.state.wheels[3].spin), 1.0, 0.1);
+      EXPECT_NEAR(double(car.state.wheels[2].angular_velocity / car.state.wheels[3].angular_velocity), 1.0, 0.1);
     }
   }
   std::printf("[row] one wheel on ice: %.2f m/s open, %.2f m/s locked\n", speed[0], speed[1]);
@@ -314,7 +314,7 @@ TEST(Vehicle, AntiRollBarsHoldItUpright) {
     for (AxleDef& axle : car.def.axles) axle.anti_roll = bars ? 30000.0f : 0.0f;
     drive(world, car, {.gear = 0}, 2.0);
     world.set_velocity(car.body, {0, 0, 15}, {});
-    for (int i = 0; i < 4; ++i) car.state.wheels[i].spin = 15 / float(kRadius);
+    for (int i = 0; i < 4; ++i) car.state.wheels[i].angular_velocity = 15 / float(kRadius);
     drive(world, car, {.steer = 0.06f / car.def.steer_angle, .gear = 0}, 3.0);
     const Vec3 left = rotate(world.pose(car.body).orientation, {1, 0, 0});
     lean[bars ? 1 : 0] = double(left.y);
@@ -379,9 +379,9 @@ TEST(Vehicle, TracksTurnTogether) {
   drive(world, tank, {.steer = 1, .gear = 0}, 3.0);
   EXPECT_GT(double(world.angular_velocity(tank.body).y), 0.2) << "to the left";
   EXPECT_LT(length(world.pose(tank.body).position - place), 0.5) << "on the spot";
-  EXPECT_LT(tank.state.wheels[0].spin, 0.0f);
-  EXPECT_GT(tank.state.wheels[1].spin, 0.0f);
-  for (int i = 2; i < 10; ++i) EXPECT_EQ(tank.state.wheels[i].spin, tank.state.wheels[i % 2].spin);
+  EXPECT_LT(tank.state.wheels[0].angular_velocity, 0.0f);
+  EXPECT_GT(tank.state.wheels[1].angular_velocity, 0.0f);
+  for (int i = 2; i < 10; ++i) EXPECT_EQ(tank.state.wheels[i].angular_velocity, tank.state.wheels[i % 2].angular_velocity);
 }
 
 // It stands, and in a bend leans by atan(v^2 / g R) with hardly any torque left to hold it there.
@@ -391,7 +391,7 @@ TEST(Vehicle, MotorcyclesLeanIntoBends) {
   drive(world, bike, {.gear = 0}, 2.0);
   EXPECT_NEAR(double(rotate(world.pose(bike.body).orientation, {0, 1, 0}).y), 1.0, 1e-4) << "it stands";
   world.set_velocity(bike.body, {0, 0, 15}, {});
-  for (int i = 0; i < 2; ++i) bike.state.wheels[i].spin = 50;
+  for (int i = 0; i < 2; ++i) bike.state.wheels[i].angular_velocity = 50;
   drive(world, bike, {.steer = 0.35f, .gear = 0}, 4.0);
   const double v = double(length(world.linear_velocity(bike.body))),
                rate = double(world.angular_velocity(bike.body).y);

@@ -52,8 +52,8 @@ TEST(Adaptive, ABouncingBallIsWhereItMustBe) {
         world.step(kStep);
         worst = std::max(worst, std::fabs(world.pose(ball).position.y - 0.25 -
                                           bounced_height(2.0, double(e), i * double(kStep))));
-        most = std::max(most, world.step_report().impacts);
-        EXPECT_FALSE(world.step_report().bounded);
+        most = std::max(most, world.step_stats().impacts);
+        EXPECT_FALSE(world.step_stats().bounded);
       }
       std::printf("[row] %-20s e %.1f: at most %d impacts a step\n", to_string(kind), double(e), most);
       EXPECT_TRUE(limit_row("bouncing ball, 10 s: farthest from exact, m", worst, 2e-3, 2e-4));
@@ -71,9 +71,9 @@ TEST(Adaptive, ZenosBallComesToRestInTime) {
     world.step(float(kFine));
     time += kFine;
     const double v = double(world.linear_velocity(ball).y), height = world.pose(ball).position.y - 0.25;
-    if (world.step_report().impacts > 0) path += 2.0 * (height + 0.5 * v * v / kGravity);
+    if (world.step_stats().impacts > 0) path += 2.0 * (height + 0.5 * v * v / kGravity);
     if (length(world.linear_velocity(ball)) > 1e-4f) rest = time;
-    EXPECT_FALSE(world.step_report().bounded);
+    EXPECT_FALSE(world.step_stats().bounded);
   }
   // sqrt(2 h / g) (1 + e) / (1 - e) and h (1 + e^2) / (1 - e^2).
   EXPECT_TRUE(relative_row("A-92 time to rest", rest, std::sqrt(4.0 / kGravity) * 9.0, 1e-3, 1e-3));
@@ -90,8 +90,8 @@ TEST(Adaptive, ImpactsInAStepAreBoundedAndToldSo) {
   const BodyId ball = world.add_body({.pose = {.position = {0, 0.1005, 0}}, .linear_velocity = {0, 20, 0}},
                                      {.geometry = Sphere{.radius = 0.1f}, .material = surface(0.0f, 1.0f)});
   world.step(kStep);
-  EXPECT_EQ(world.step_report().impacts, 10);
-  EXPECT_TRUE(world.step_report().bounded);
+  EXPECT_EQ(world.step_stats().impacts, 10);
+  EXPECT_TRUE(world.step_stats().bounded);
   EXPECT_NEAR(world.pose(ball).position.y, 0.1005,
               0.02);  // the rest of the step was a fixed one, in which walls give way
   World all = adaptive(IntegratorKind::semi_implicit_euler, {}, 4096);
@@ -101,8 +101,8 @@ TEST(Adaptive, ImpactsInAStepAreBoundedAndToldSo) {
   const BodyId whole = all.add_body({.pose = {.position = {0, 0.1005, 0}}, .linear_velocity = {0, 20, 0}},
                                     {.geometry = Sphere{.radius = 0.1f}, .material = surface(0.0f, 1.0f)});
   all.step(kStep);
-  EXPECT_FALSE(all.step_report().bounded);
-  EXPECT_NEAR(all.step_report().impacts, 333, 4);
+  EXPECT_FALSE(all.step_stats().bounded);
+  EXPECT_NEAR(all.step_stats().impacts, 333, 4);
   EXPECT_NEAR(std::fabs(double(all.linear_velocity(whole).y)), 20.0, 1e-4);
 }
 
@@ -224,8 +224,8 @@ TEST(Adaptive, ABreakShotIsThatOfHardSpheres) {
     int found = 0;
     for (int i = 0; i < steps; ++i) {
       world.step(float(kSeconds / steps));
-      found += world.step_report().impacts;
-      EXPECT_FALSE(world.step_report().bounded);
+      found += world.step_stats().impacts;
+      EXPECT_FALSE(world.step_stats().bounded);
     }
     double place = 0.0, speed = 0.0;
     for (std::size_t i = 0; i < balls.size(); ++i) {
@@ -299,7 +299,7 @@ DVec3 swung(World world, double seconds, float step, int* parts = nullptr) {
   const BodyId lower = add_double_pendulum(world);
   for (int i = 0; i < int(std::lround(seconds / double(step))); ++i) {
     world.step(step);
-    if (parts != nullptr) *parts = std::max(*parts, world.step_report().parts);
+    if (parts != nullptr) *parts = std::max(*parts, world.step_stats().parts);
   }
   return world.pose(lower).position;
 }
@@ -329,10 +329,10 @@ TEST(ErrorControl, SubstepsFallBackWhenMotionDies) {
   int most = 0;
   for (int i = 0; i < 600; ++i) {
     world.step(1.0f / 60.0f);
-    most = std::max(most, world.step_report().parts);
+    most = std::max(most, world.step_stats().parts);
   }
   EXPECT_GE(most, 16);
-  EXPECT_EQ(world.step_report().parts, 4);  // of two sub-steps, twice the one of the settings
+  EXPECT_EQ(world.step_stats().parts, 4);  // of two sub-steps, twice the one of the settings
 }
 
 TEST(ErrorControl, WhatIsWithinItsToleranceIsTheStepOfTwiceTheSubsteps) {
@@ -372,7 +372,7 @@ TEST(ErrorControl, ABlowIsToldToBeLessExact) {
   float blow = 0.0f, flight = 0.0f;
   for (int i = 0; i < 12; ++i) {
     world.step(1.0f / 60.0f);
-    const float error = world.step_report().error;
+    const float error = world.step_stats().error;
     (error > 1.0e-6f ? blow : flight) = std::max(error, error > 1.0e-6f ? blow : flight);
   }
   EXPECT_GT(blow, 1.0e-6f);

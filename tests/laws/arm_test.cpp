@@ -34,7 +34,7 @@ TEST(Arm, IsHeldLevelByMotorsOrLimits) {
     build_arm(arm, held, 1.0e5f);
     run(arm.world, 5.0);
     EXPECT_TRUE(limit_row(names[int(held)], -arm.world.pose(arm.bodies.back()).position.y, 1.0e-3, 1e-4));
-    const JointReading root = arm.world.joint_reading(arm.joints[0]);
+    const JointState root = arm.world.joint_state(arm.joints[0]);
     EXPECT_TRUE(relative_row("force at its root (N)", double(root.force.y), kArmWeight, 2e-2, 1e-3));
     EXPECT_TRUE(relative_row("torque at its root (N m)", double(root.torque.z), kArmTorque, 5e-2, 1e-3));
   }
@@ -54,7 +54,7 @@ TEST(Arm, FallsIfItsMotorsAreTooWeak) {
         EXPECT_TRUE(limit_row("sag of an arm whose motors just hold it (m)", -lowest, 5.0e-3, 1e-3));
       } else {
         EXPECT_LT(lowest, -0.1) << "its root bears 2 % less than what hangs on it";
-        const JointReading root = arm.world.joint_reading(arm.joints[0]);
+        const JointState root = arm.world.joint_state(arm.joints[0]);
         EXPECT_TRUE(relative_row("torque of a motor that gives all it has (N m)", double(root.torque.z),
                                  0.98 * kArmTorque, 1e-3, 1e-4));
       }
@@ -71,7 +71,7 @@ TEST(Arm, IsDrivenByWhatItsMotorsHaveNow) {
     ASSERT_TRUE(arm.world.set_motor(joint, {.target_position = 0.0f, .max_force = 1.0f}));
   run(arm.world, 0.25);
   EXPECT_TRUE(relative_row("torque of a motor that was weakened (N m)",
-                           double(arm.world.joint_reading(arm.joints[0]).torque.z), 1.0, 1e-3, 1e-5));
+                           double(arm.world.joint_state(arm.joints[0]).torque.z), 1.0, 1e-3, 1e-5));
   EXPECT_LT(arm.world.pose(arm.bodies.back()).position.y, -0.2) << "it falls";
   for (const float most : {1.0e3f, 1.0e9f, 1.0e30f}) {
     Assembly cube({.sleeping = false});
@@ -99,11 +99,11 @@ TEST(Arm, RestsBetweenMotorsInConflict) {
                                                 .motor = {.target_position = place, .max_force = most}}));
     run(arm.world, 5.0);
     EXPECT_TRUE(row("a link between two motors (rad)",
-                    double(arm.world.joint_reading(arm.joints[0]).position), 0.005, 0.0055, 0.001));
+                    double(arm.world.joint_state(arm.joints[0]).position), 0.005, 0.0055, 0.001));
     EXPECT_TRUE(
         limit_row("its turning (rad/s)", double(length(arm.world.angular_velocity(body))), 1.0e-3, 1e-5));
-    const double torque = double(arm.world.joint_reading(arm.joints[0]).torque.z) +
-                          double(arm.world.joint_reading(arm.joints[1]).torque.z);
+    const double torque = double(arm.world.joint_state(arm.joints[0]).torque.z) +
+                          double(arm.world.joint_state(arm.joints[1]).torque.z);
     EXPECT_TRUE(relative_row("torque of both (N m)", torque, 0.5 * 40.0 * kGravity, 2e-2, 1e-3));
   }
 }
@@ -123,10 +123,10 @@ TEST(Arm, MotorsInConflictGiveWayByAThousandth) {
   run(arm.world, 2.0);
   const double inertia = 40.0 * ((1.0 + 0.04) / 12.0 + 0.25);
   EXPECT_TRUE(relative_row("place between two motors (rad)",
-                           double(arm.world.joint_reading(arm.joints[0]).position), 0.5 * kApart, 2e-2,
+                           double(arm.world.joint_state(arm.joints[0]).position), 0.5 * kApart, 2e-2,
                            1e-3));
   EXPECT_TRUE(relative_row("torque of motors in conflict (N m)",
-                           double(arm.world.joint_reading(arm.joints[1]).torque.z),
+                           double(arm.world.joint_state(arm.joints[1]).torque.z),
                            kRate * 0.5 * kApart * inertia / (kGives * kPart), 2e-2, 1e-3));
 }
 
@@ -150,7 +150,7 @@ TEST(Arm, IsNotPressedThroughItsLimits) {
     for (int i = 0; i < 240; ++i) {
       ASSERT_TRUE(arm.world.step(kStep));
       for (const JointId joint : arm.joints)
-        beyond = std::max(beyond, std::abs(double(arm.world.joint_reading(joint).position)) - 0.5);
+        beyond = std::max(beyond, std::abs(double(arm.world.joint_state(joint).position)) - 0.5);
     }
     EXPECT_TRUE(limit_row("a chain pressed beyond its limits (rad)", beyond, 5.0e-3, 1e-3));
     EXPECT_TRUE(limit_row("speed of its end then (m/s)", double(length(arm.world.linear_velocity(last))),
@@ -171,7 +171,7 @@ TEST(Arm, IsTurnedAtTheSpeedOfItsMotor) {
                                            {.motion = AxisMotion::free, .motor = turning}));
     }
     run(arm.world, 2.0);
-    const double turned = double(arm.world.joint_axis_reading(arm.joints[0], JointAxis::angular_x).position);
+    const double turned = double(arm.world.joint_axis_state(arm.joints[0], JointAxis::angular_x).position);
     EXPECT_TRUE(relative_row("turned in 2 s at 0.5 rad/s (rad)", turned, 1.0, 5e-3, 1e-3));
     const DVec3 end = arm.world.pose(arm.bodies.back()).position;
     EXPECT_TRUE(relative_row("reach of an arm that turns as one (m)", length(end), 5.5, 1e-3, 1e-4));

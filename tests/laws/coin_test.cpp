@@ -87,7 +87,7 @@ Whirl whirl(float step) {
       const double x = std::log(sine), y = std::log(length(w - dot(w, axis) * axis) / sine);
       sum_x += x, sum_y += y, sum_xx += x * x, sum_xy += x * y, count += 1.0;
     }
-    if (world.counts().awake_bodies == 0) seen.rest = i * double(step);
+    if (world.stats().awake_bodies == 0) seen.rest = i * double(step);
   }
   seen.exponent = (sum_xy - sum_x * sum_y / count) / (sum_xx - sum_x * sum_x / count);
   return seen;

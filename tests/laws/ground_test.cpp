@@ -173,7 +173,7 @@ TEST(CreationOrder, DoesNotShowInAHeapsStatistics) {
   World first = make_world();
   const std::vector<BodyId> settled = pour(first, heap);
   run(first, 12.0);
-  EXPECT_EQ(first.counts().awake_bodies, 0);
+  EXPECT_EQ(first.stats().awake_bodies, 0);
   for (std::size_t i = 0; i < heap.size(); ++i) heap[i].pose = first.pose(settled[i]);
   std::uint32_t state = 1;
   Heights before{};
@@ -221,7 +221,7 @@ TEST(Ground, BoxesComeToRestOnRoughGround) {
       world.add_body(def, {.geometry = Box{half}, .material = surface(0.6f)});
     }
     run(world, 15.0);
-    awake += world.counts().awake_bodies;
+    awake += world.stats().awake_bodies;
   }
   EXPECT_TRUE(limit_row("boxes of 432 on rough ground that move after 15 s", awake, 3, 0));
 }

@@ -182,7 +182,7 @@ TEST(Bones, ThrownOnTheGroundGainNoEnergy) {
                          random.vector(-30, 30));
       const auto energy = [&] { return world.energy().kinetic + world.energy().potential; };
       const double first = energy();
-      for (double last = first; world.counts().awake_bodies > 0 && world.time() < 1.0;) {
+      for (double last = first; world.stats().awake_bodies > 0 && world.time() < 1.0;) {
         ASSERT_TRUE(world.step(kStep));
         const double now = energy();
         worst = std::max(worst, (now - last) / first);

@@ -251,8 +251,8 @@ TEST(ErrorControl, KeepsItsToleranceWhateverTheIntegrator) {
     int parts = 0;
     for (int i = 0; i < 30; ++i) {
       world.step(1.0f / 30.0f);
-      parts = std::max(parts, world.step_report().parts);
-      EXPECT_LE(world.step_report().error, 1e-5f);
+      parts = std::max(parts, world.step_stats().parts);
+      EXPECT_LE(world.step_stats().error, 1e-5f);
     }
     // Each step leaves at most the tolerance in the place, and the tolerance over the step's length in the velocity, of which
     // the oscillator makes 1 / w of way.

@@ -62,7 +62,7 @@ TEST(Cone, LetsItsTwistAloneWithinTheSwing) {
       world.add_joint({.kind = JointKind::cone, .b = body, .swing_y = 0.5f, .swing_z = 0.3f});
   run(world, 10.0);
   EXPECT_NEAR(double(world.angular_velocity(body).x), 2.0, 1e-5);
-  EXPECT_NEAR(double(world.joint_axis_reading(joint, JointAxis::angular_x).position), 20.0, 1e-3);
+  EXPECT_NEAR(double(world.joint_axis_state(joint, JointAxis::angular_x).position), 20.0, 1e-3);
 }
 
 // Ends of swing and twist that give way do so like springs: load / (2 pi f)^2 of the inertia.
@@ -154,8 +154,8 @@ TEST(Gear, TurnsShaftsInItsRatio) {
   rig.world.set_velocity(rig.first, {}, {0, 0, 30});
   rig.world.set_velocity(rig.second, {}, {0, 0, -10});
   run(rig.world, 22.0);  // more than a hundred turns
-  const double a = double(rig.world.joint_axis_reading(rig.gear, JointAxis::angular_x).position);
-  const double b = double(rig.world.joint_axis_reading(rig.gear, JointAxis::angular_y).position);
+  const double a = double(rig.world.joint_axis_state(rig.gear, JointAxis::angular_x).position);
+  const double b = double(rig.world.joint_axis_state(rig.gear, JointAxis::angular_y).position);
   EXPECT_GT(a, 2.0 * kPiDouble * 100.0);
   EXPECT_TRUE(limit_row("A-42 drift in 100 turns (rad)", std::fabs(a + 3.0 * b), 1e-3, 1e-4));
 }
@@ -244,7 +244,7 @@ TEST(RackAndPinion, RollWithoutSlip) {
   EXPECT_TRUE(relative_row("A-42 pinion (rad/s)", double(world.angular_velocity(pinion).z), 8.0, 1e-2, 1e-4));
   EXPECT_TRUE(relative_row("A-42 rack (m/s)", double(world.linear_velocity(rack).x), 2.0, 1e-2, 1e-4));
   run(world, 60.0);
-  const double turned = double(world.joint_axis_reading(joint, JointAxis::angular_x).position);
+  const double turned = double(world.joint_axis_state(joint, JointAxis::angular_x).position);
   EXPECT_TRUE(limit_row("A-42 slip of the rack in 76 turns (m)",
                         std::fabs(world.pose(rack).position.x - 0.25 * turned), 1e-3, 1e-4));
 }
@@ -285,8 +285,8 @@ TEST(Pulley, IsAtwoodsMachine) {
   EXPECT_TRUE(relative_row("A-41 acceleration", -double(world.linear_velocity(heavy).y) / 0.5, kGravity / 3.0,
                            1e-2, 1e-4));
   EXPECT_TRUE(
-      relative_row("A-41 tension (N)", double(length(world.joint_reading(rope).force)), 13.08, 1e-2, 1e-4));
-  EXPECT_NEAR(double(world.joint_reading(rope).position), 3.0, 1e-4);
+      relative_row("A-41 tension (N)", double(length(world.joint_state(rope).force)), 13.08, 1e-2, 1e-4));
+  EXPECT_NEAR(double(world.joint_state(rope).position), 3.0, 1e-4);
 }
 
 // A block and tackle: ratio 2 balances a weight twice as heavy; a rope never pushes.
@@ -307,7 +307,7 @@ TEST(Pulley, MultipliesForceAndGoesSlack) {
   world.set_velocity(a, {0, 3, 0}, {});
   world.step(kStep);
   EXPECT_NEAR(double(world.linear_velocity(b).y), -kGravity / 60.0, 1e-3) << "slack: b falls freely";
-  EXPECT_LT(double(world.joint_reading(rope).position), 4.0);
+  EXPECT_LT(double(world.joint_state(rope).position), 4.0);
 }
 
 // --------------------------------------------------------------------------------------------------------------- paths
@@ -386,7 +386,7 @@ TEST(Path, EndsWhereItEnds) {
   world.set_velocity(cart, {3, 0, 0}, {});
   run(world, 3.0);
   EXPECT_NEAR(world.pose(cart).position.x, 2.0, 2e-3);
-  EXPECT_NEAR(double(world.joint_reading(joint).velocity), 0.0, 1e-3);
+  EXPECT_NEAR(double(world.joint_state(joint).velocity), 0.0, 1e-3);
 }
 
 // ---------------------------------------------------------------------------------------------------- mice and motors
@@ -401,7 +401,7 @@ TEST(Mouse, DragsWithALimitedForce) {
   EXPECT_TRUE(world.set_drive(mouse, {.position = {4, 0, 0}, .frequency = 5.0f, .max_force = 5.0f}));
   run(world, 1.0);
   EXPECT_NEAR(double(world.linear_velocity(body).x), 0.5, 1e-3) << "at full force";
-  EXPECT_NEAR(double(length(world.joint_reading(mouse).force)), 5.0, 1e-3);
+  EXPECT_NEAR(double(length(world.joint_state(mouse).force)), 5.0, 1e-3);
   EXPECT_TRUE(world.set_drive(mouse, {.position = {4, 1, 0}, .frequency = 5.0f, .max_force = 5000.0f}));
   run(world, 2.0);
   EXPECT_LE(length(world.pose(body).position - DVec3{4, 1, 0}), 1e-3);
@@ -442,7 +442,7 @@ TEST(PoseMotor, BringsABodyToItsPose) {
     const double sag = frequency > 0.0f ? kGravity / (omega * omega) : 0.0;
     EXPECT_LE(length(world.pose(body).position - DVec3{1, 2 - sag, 3}), 2e-3);
     EXPECT_LE(double(length(to_rotation_vector(world.pose(body).orientation * conjugate(turn)))), 1e-3);
-    EXPECT_NEAR(double(world.joint_reading(motor).force.y), 2.0 * kGravity, 0.05);
+    EXPECT_NEAR(double(world.joint_state(motor).force.y), 2.0 * kGravity, 0.05);
   }
 }
 

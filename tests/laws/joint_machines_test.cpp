@@ -24,7 +24,7 @@ TEST(Gimbal, PrecessesAboutTheOtherAxis) {
   for (int i = 0; i < steps; ++i) {
     world.add_torque(outer, {0.5f, 0, 0});
     world.step(kStep);
-    last = double(world.joint_reading(second).position);
+    last = double(world.joint_state(second).position);
   }
   // The torque turns the spin with it: its part along the outer axis is torque times time.
   EXPECT_TRUE(relative_row("A-22 precession (rad/s)", std::sin(std::fabs(last)) / (steps / 60.0), 0.25, 2e-2, 1e-3));
@@ -59,11 +59,11 @@ TEST(Universal, TurnsUnevenlyAndTwoOfThemEvenly) {
   for (int i = 0; i < 300; ++i) {
     world.step(kStep);
     // t: how far the first's cross axis is from where it lies across the plane of the shafts.
-    const double t = double(world.joint_reading(drive).position);
+    const double t = double(world.joint_state(drive).position);
     const double exact = 3.0 * std::cos(bend) / (1.0 - std::pow(std::sin(bend) * std::sin(t), 2.0));
     const double measured = dot(DVec3(world.angular_velocity(middle)), way);
     worst_middle = std::max(worst_middle, std::fabs(measured / exact - 1.0));
-    worst_last = std::max(worst_last, std::fabs(double(world.joint_reading(out).velocity) / 3.0 - 1.0));
+    worst_last = std::max(worst_last, std::fabs(double(world.joint_state(out).velocity) / 3.0 - 1.0));
   }
   EXPECT_TRUE(limit_row("middle shaft off Hooke's law", worst_middle, 1e-2, 1e-3));
   EXPECT_TRUE(limit_row("last shaft off the first", worst_last, 1e-2, 1e-3));
@@ -84,7 +84,7 @@ TEST(Hinge, StopsBeyondHalfATurn) {
         world.step(kStep);
       }
       const double stop = double(way > 0.0f ? limits.high : limits.low);
-      EXPECT_TRUE(row("A-45 stop (degrees)", double(world.joint_reading(hinge).position) / double(kDegree),
+      EXPECT_TRUE(row("A-45 stop (degrees)", double(world.joint_state(hinge).position) / double(kDegree),
                       stop / double(kDegree), 1.0, 0.1));
     }
   }
@@ -175,7 +175,7 @@ TEST(Wheel, CarriesItsLoadThroughTheSuspension) {
   }
   run(world, 5.0);
   for (const JointId wheel : wheels) {
-    const JointAxisReading at = world.joint_axis_reading(wheel, JointAxis::linear_x);
+    const JointAxisState at = world.joint_axis_state(wheel, JointAxis::linear_x);
     EXPECT_NEAR(double(at.position), 200.0 * kGravity / 30000.0, 2e-3);
     EXPECT_NEAR(double(at.force), -200.0 * kGravity, 0.02 * 200.0 * kGravity);
   }
@@ -237,12 +237,12 @@ TEST(JointTrouble, ParallelJointsBetweenOnePair) {
   world.set_velocity(a, {}, {0, 0, 3});
   for (const JointId joint : joints) {
     run(world, 1.0);
-    EXPECT_EQ(world.counts().touching, 0);
+    EXPECT_EQ(world.stats().touching, 0);
     EXPECT_TRUE(limit_row("B-30 speed on several joints (m/s)", double(length(world.linear_velocity(a))), 3.0, 1.0));
     EXPECT_TRUE(world.remove_joint(joint));
   }
   run(world, 0.5);
-  EXPECT_GT(world.counts().touching + int(length(world.pose(a).position - world.pose(b).position) > 0.9), 0)
+  EXPECT_GT(world.stats().touching + int(length(world.pose(a).position - world.pose(b).position) > 0.9), 0)
       << "now they collide";
 }
 

@@ -116,7 +116,7 @@ TEST(JointReports, ACantileverOfTenBoxesStaysLevel) {
   EXPECT_TRUE(limit_row("B4-41 sag of the end (m)", length(beam.world.pose(last).position - DVec3{9.5, 0, 0}),
                         1e-2, 1e-3));
   EXPECT_TRUE(relative_row("B4-41 moment at the wall (N m)",
-                           double(length(beam.world.joint_reading(beam.joints[0]).torque)), 50.0 * weight,
+                           double(length(beam.world.joint_state(beam.joints[0]).torque)), 50.0 * weight,
                            1e-2, 1e-3));
 }
 
@@ -172,7 +172,7 @@ TEST(JointReports, AMotorAgainstItsLimitStaysThere) {
     if (i % 600 == 0)
       world.set_motor(hinge, {.target_velocity = i / 600 % 2 == 0 ? 30.0f : -30.0f, .max_force = 1000.0f});
     world.step(kStep);
-    const JointReading reading = world.joint_reading(hinge);
+    const JointState reading = world.joint_state(hinge);
     beyond = std::max(beyond, std::fabs(double(reading.position)) - 1.0);
     if (i % 600 > 300) shakes = std::max(shakes, std::fabs(double(reading.velocity)));
   }
@@ -236,7 +236,7 @@ TEST(JointReports, ARobotAtItsLimitsStandsStill) {
     for (const BodyId body : robot.bodies)
       shakes = std::max(shakes, double(length(robot.world.linear_velocity(body))));
     for (const JointId joint : robot.joints)
-      beyond = std::max(beyond, std::fabs(double(robot.world.joint_reading(joint).position) - 0.5));
+      beyond = std::max(beyond, std::fabs(double(robot.world.joint_state(joint).position) - 0.5));
   }
   EXPECT_TRUE(limit_row("B4-52 speed of a part (m/s)", shakes, 1e-3, 1e-5));
   // Limits are rows that give way by 9.5e-6 s^2 of the acceleration that they stop (docs/joints.md): here of up to 2,000 rad/s^2.

@@ -129,7 +129,7 @@ TEST(EveryKind, CarriesAWeightAtAnArm) {
       run(world, 2.0);
       SCOPED_TRACE(testing::Message() << kind.name << " weight along axis " << down);
       EXPECT_LE(length(world.pose(body).position), 1e-3);
-      const JointReading reading = world.joint_reading(joint);
+      const JointState reading = world.joint_state(joint);
       EXPECT_NEAR(double(length(reading.force)), 9.81, 0.01 * 9.81);
       EXPECT_NEAR(double(length(reading.torque)), 9.81, 0.01 * 9.81);
     }
@@ -198,7 +198,7 @@ struct Rig {
       world.add_force(body, by * axis.unit);
     }
   }
-  JointAxisReading reading() const { return world.joint_axis_reading(joint, axis.axis); }
+  JointAxisState reading() const { return world.joint_axis_state(joint, axis.axis); }
   double speed() const {
     return double(dot(axis.turns ? world.angular_velocity(body) : world.linear_velocity(body), axis.unit));
   }

@@ -179,7 +179,7 @@ TEST(Chain, HangsAsACatenary) {
   double lowest = 0.0;
   for (const BodyId body : chain.bodies) lowest = std::min(lowest, chain.world.pose(body).position.y);
   EXPECT_TRUE(relative_row("A-46 sag (m)", -lowest, 1.17734, 1e-2, 1e-3));
-  const JointReading end = chain.world.joint_reading(chain.joints[0]);
+  const JointState end = chain.world.joint_state(chain.joints[0]);
   const double weight_per_metre = 40 * 0.1 * kGravity / 4.0;
   EXPECT_TRUE(relative_row("A-46 horizontal tension", std::fabs(double(end.force.x)) / weight_per_metre,
                            1.11008, 1e-2, 2e-3));
@@ -332,7 +332,7 @@ TEST(SixBarLinkage, TurnsForAMinuteWithTwiceTheJointsItNeeds) {
     tilt = std::max(tilt, double(std::fabs(2.0f * articulation.world.pose(bar).orientation.z)));
     change = std::max(change, std::fabs(articulation.energy() - start) / weight);
     for (const JointId joint : articulation.joints)
-      force = std::max(force, double(length(articulation.world.joint_reading(joint).force)));
+      force = std::max(force, double(length(articulation.world.joint_state(joint).force)));
   }
   EXPECT_TRUE(limit_row("gap of the six-bar (m)", gap, 1e-3, 1e-5));
   EXPECT_TRUE(limit_row("its bar's tilt (rad)", tilt, 1e-3, 1e-5));

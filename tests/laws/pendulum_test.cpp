@@ -114,13 +114,13 @@ TEST(FallingRod, PassesTheHorizontalAtItsRateWithItsForces) {
     world.step(kStep);
     const DVec3 p = world.pose(rod).position;
     const double angle = std::atan2(p.x, p.y), rate = -double(world.angular_velocity(rod).z);
-    const Vec3 force = world.joint_reading(hinge).force;
+    const Vec3 force = world.joint_state(hinge).force;
     if (angle >= 0.5 * kPiDouble) {
       // The rate at the crossing; the force is the mean over a step, so that of its middle.
       const double part = (0.5 * kPiDouble - before) / (angle - before);
       const double crossing = rate_before + part * (rate - rate_before);
       world.step(kStep);
-      const Vec3 after = world.joint_reading(hinge).force;
+      const Vec3 after = world.joint_state(hinge).force;
       const float s = float(part) + 0.5f;
       const Vec3 at =
           s < 1.0f ? force_before + s * (force - force_before) : force + (s - 1.0f) * (after - force);
@@ -145,7 +145,7 @@ TEST(ConicalPendulum, TurnsAtItsRateWithItsTension) {
   for (int i = 0; i <= 600; ++i) {
     if (i > 0) {
       world.step(kStep);
-      force += double(length(world.joint_reading(rod).force)) / 600.0;
+      force += double(length(world.joint_state(rod).force)) / 600.0;
     }
     const DVec3 p = world.pose(bob).position;
     angle.add(std::atan2(p.z, p.x));
@@ -167,7 +167,7 @@ TEST(FixedJoint, CarriesForceAndMomentOfACantilever) {
                                     {.geometry = Box{.half_extents = {0.1f, 0.1f, 0.1f}}});
   const JointId weld = world.add_joint({.kind = JointKind::fixed, .b = box, .anchor = {0, 0, 0}});
   run(world, 1.0);
-  const JointReading r = world.joint_reading(weld);
+  const JointState r = world.joint_state(weld);
   EXPECT_TRUE(relative_row("A-39 force (N)", double(r.force.y), 9.81, 1e-2, 5e-4));
   EXPECT_TRUE(relative_row("A-39 moment (N m)", double(length(r.torque)), 9.81, 1e-2, 5e-4));
   row("A-39 sag (m)", world.pose(box).position.y, 0.0, 1e-2, 1e-4);

@@ -41,7 +41,7 @@ double settle(const Heap& heap, int variant, double* overlap) {
     world.add_body(def, {.geometry = heap.shapes[std::size_t(i) % heap.shapes.size()], .material = material});
   }
   int steps = 0;
-  while (steps < 1800 && world.counts().awake_bodies > 0) {
+  while (steps < 1800 && world.stats().awake_bodies > 0) {
     world.step(kStep);
     ++steps;
   }

@@ -57,8 +57,8 @@ TEST(Solvers, AThousandfoldLoadIsBorne) {
     double residual = 0.0;
     for (int step = 0; step < 120; ++step) {
       world.step(kStep);
-      residual = std::max(residual, world.solver_reading().residual);
-      EXPECT_EQ(world.solver_reading().direct_islands, 1) << way.name;
+      residual = std::max(residual, world.solver_stats().residual);
+      EXPECT_EQ(world.solver_stats().direct_islands, 1) << way.name;
     }
     EXPECT_LT(residual, kMaxResidual) << way.name;
     for (std::size_t i = 0; i < cubes.size(); ++i) {
@@ -127,8 +127,8 @@ double sag_of(World& world, const std::vector<BodyId>& arch, double seconds) {
 TEST(Solvers, ADryArchStandsWhenAllStonesAreSolvedTogether) {
   World world = make_world_by({"lcp", SolverKind::lcp}, 1);
   EXPECT_LT(sag_of(world, add_arch(world, 15), 5.0), 1.0e-4);
-  EXPECT_LT(world.solver_reading().residual, kMaxResidual);
-  EXPECT_EQ(world.solver_reading().direct_islands, 1);
+  EXPECT_LT(world.solver_stats().residual, kMaxResidual);
+  EXPECT_EQ(world.solver_stats().direct_islands, 1);
 }
 
 TEST(Solvers, ADryArchFallsWhenStonesAreSolvedOneAfterTheOther) {
@@ -240,7 +240,7 @@ TEST(Solvers, AChainWithALoadOfAThousandLinksHangsStill) {
     double residual = 0.0;
     for (int i = 0; i < 120; ++i) {
       world.step(kStep);
-      residual = std::max(residual, world.solver_reading().residual);
+      residual = std::max(residual, world.solver_stats().residual);
     }
     EXPECT_LT(residual, kMaxResidual) << way.name;
     EXPECT_NEAR(world.pose(links.back()).position.y, -9.5, 1.0e-4) << way.name;
@@ -294,9 +294,9 @@ TEST(Solvers, MotorsAndLimitsOfHingesAct) {
     // Four N m on one kg m^2: after a quarter of a second 1 rad/s and an eighth of a rad.
     run(world, 0.25);
     EXPECT_NEAR(double(world.angular_velocity(wheel).z), 1.0, 0.01) << way.name;
-    EXPECT_NEAR(double(world.joint_reading(id).position), 0.125, 0.01) << way.name;
+    EXPECT_NEAR(double(world.joint_state(id).position), 0.125, 0.01) << way.name;
     run(world, 2.0);
-    EXPECT_NEAR(double(world.joint_reading(id).position), 1.0, 1.0e-3) << way.name;
+    EXPECT_NEAR(double(world.joint_state(id).position), 1.0, 1.0e-3) << way.name;
     EXPECT_NEAR(double(world.angular_velocity(wheel).z), 0.0, 1.0e-3) << way.name;
   }
 }
@@ -342,7 +342,7 @@ TEST(Solvers, WhatRestsFallsAsleep) {
     add_ground(world, surface(0.5f));
     for (int i = 0; i < 3; ++i) add_cube(world, {0, 0.5 + 1.01 * i, 0});
     run(world, 4.0);
-    EXPECT_EQ(world.counts().awake_bodies, 0) << way.name;
+    EXPECT_EQ(world.stats().awake_bodies, 0) << way.name;
   }
 }
 
@@ -355,9 +355,9 @@ TEST(Solvers, IslandsThatAreTooLargeForAMethodAreToldAndSolvedAllTheSame) {
   run(world, 0.5);
   ASSERT_EQ(world.problems().size(), 1u);
   EXPECT_EQ(world.problems()[0].code, ErrorCode::unsupported);
-  EXPECT_EQ(world.solver_reading().direct_islands, 1);
-  EXPECT_LT(world.solver_reading().residual, kMaxResidual);
-  EXPECT_EQ(world.solver_reading().largest_rows, 48);
+  EXPECT_EQ(world.solver_stats().direct_islands, 1);
+  EXPECT_LT(world.solver_stats().residual, kMaxResidual);
+  EXPECT_EQ(world.solver_stats().largest_rows, 48);
   EXPECT_NEAR(world.pose(cubes.back()).position.y, 3.5, 1.0e-3);
 }
 
@@ -382,11 +382,11 @@ TEST(Solvers, IslandsOfAThousandRowsAreSolvedToTheLastDigits) {
     for (const BodyId body : stones) built.push_back(world.pose(body).position);
     for (int i = 0; i < 60; ++i) {
       world.step(1.0f / 60.0f);
-      EXPECT_LT(world.solver_reading().residual, kMaxResidual) << is_wall << " step " << i;
-      EXPECT_EQ(world.solver_reading().direct_islands, world.solver_reading().islands)
+      EXPECT_LT(world.solver_stats().residual, kMaxResidual) << is_wall << " step " << i;
+      EXPECT_EQ(world.solver_stats().direct_islands, world.solver_stats().islands)
           << is_wall << " step " << i;
     }
-    EXPECT_GT(world.solver_reading().largest_rows, 900);
+    EXPECT_GT(world.solver_stats().largest_rows, 900);
     for (std::size_t i = 0; i < stones.size(); ++i)
       EXPECT_LT(length(world.pose(stones[i]).position - built[i]), 1.0e-6) << is_wall << " stone " << i;
   }

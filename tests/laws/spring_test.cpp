@@ -82,7 +82,7 @@ TEST(Spring, IsToldByItsFrequency) {
     ZeroCrossings through;
     double peak = 0.0;
     for (int i = 0; i < 240; ++i) {
-      const double x = double(world.joint_reading(spring).position) - 2.0;
+      const double x = double(world.joint_state(spring).position) - 2.0;
       if (i > 0) through.add(double(i) * double(kStep), x);
       if (i > 20 && i < 45) peak = std::max(peak, x);
       world.step(kStep);

@@ -155,7 +155,7 @@ TEST(SprungLinkages, SwingWithAllThatHangsOnThem) {
   double early = 0.0, late = 0.0;
   for (int i = 0; i < 600; ++i) {
     ASSERT_TRUE(machine.world.step(kStep));
-    const double x = machine.world.joint_reading(spring).position;
+    const double x = machine.world.joint_state(spring).position;
     through.add(machine.world.time(), x);
     (i < 100 ? early : late) = std::max(i < 100 ? early : late, i < 100 || i >= 500 ? std::abs(x) : 0.0);
   }

@@ -24,7 +24,7 @@ TowerResult stand(int n, double seconds, bool sleeping) {
   add_ground(world);
   const std::vector<BodyId> boxes = tower(world, n);
   run(world, seconds);
-  TowerResult r{double(n) - 0.5 - world.pose(boxes.back()).position.y, 0.0, world.counts().awake_bodies == 0};
+  TowerResult r{double(n) - 0.5 - world.pose(boxes.back()).position.y, 0.0, world.stats().awake_bodies == 0};
   for (const BodyId b : boxes) {
     const DVec3 p = world.pose(b).position;
     r.drift = std::max(r.drift, std::sqrt(p.x * p.x + p.z * p.z));

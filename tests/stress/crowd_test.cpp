@@ -63,7 +63,7 @@ void drop(int n, int side, double seconds, const char* name) {
   expect_whole(pit.world);
   std::printf("[row] %s: %d boxes, %.1f s of computing for %g s\n", name, n, seconds_since(start), seconds);
   EXPECT_TRUE(limit_row("deepest penetration (m)", double(pit.world.max_penetration()), 1e-2, 5e-3));
-  EXPECT_TRUE(limit_row("awake", pit.world.counts().awake_bodies, 0, 0));
+  EXPECT_TRUE(limit_row("awake", pit.world.stats().awake_bodies, 0, 0));
 }
 TEST(Pit, KeepsAThousandBoxes) { drop(1000, 8, 10.0, "pit"); }
 TEST(LongPit, KeepsTenThousandBoxes) { drop(10000, 18, 30.0, "long pit"); }
@@ -141,7 +141,7 @@ TEST(Churn, MemoryReachesAPlateau) {
     if (i == 20000) early = total_bytes();
     late = total_bytes();
   }
-  EXPECT_EQ(world.counts().bodies, 201);
+  EXPECT_EQ(world.stats().bodies, 201);
   EXPECT_TRUE(limit_row("B-08 memory late over early", double(late) / double(early), 1.05, 1.0));
 }
 
@@ -192,7 +192,7 @@ TEST(Scale, LargeGroundLittleBoxes) {
   run(world, 5.0);
   EXPECT_TRUE(
       row("B-18 top of five boxes of 10 cm (m)", world.pose(boxes.back()).position.y, 0.45, 2e-3, 1e-4));
-  EXPECT_EQ(world.counts().awake_bodies, 0) << "B-18";
+  EXPECT_EQ(world.stats().awake_bodies, 0) << "B-18";
 }
 TEST(Scale, AScrewOnAKilometreOfTerrain) {
   World world = make_world();
@@ -224,7 +224,7 @@ TEST(Scale, StacksFarAwaySleepInTheSameStep) {
     for (int i = 0; i < 5; ++i)
       boxes.push_back(
           world.add_body({.pose = {.position = {places[k], 0.6 + 1.1 * i, places[k]}}}, {.geometry = Box{}}));
-    while (world.counts().awake_bodies > 0 && world.step_count() < 1200) world.step(kStep);
+    while (world.stats().awake_bodies > 0 && world.step_count() < 1200) world.step(kStep);
     frames[k] = world.step_count();
     EXPECT_NEAR(world.pose(boxes.back()).position.y, 4.5, 1e-2) << places[k];
     EXPECT_NEAR(world.pose(boxes.back()).position.x, places[k], 1e-3) << places[k];

@@ -88,7 +88,7 @@ int Answer::done() {
 }
 
 int Answer::checked(const Error& error) {
-  if (error.code == ErrorCode::none) return done();
+  if (error.ok()) return done();
   last_error() = error;
   return 0;
 }

@@ -10,14 +10,14 @@ from pathlib import Path
 import headers
 
 ROOT = Path(__file__).resolve().parents[2]
-HEADERS = ["math", "ids", "result", "geometry", "queries", "defs", "events", "fields", "world", "replay", "debug", "track"]
+HEADERS = ["math", "ids", "result", "geometry", "queries", "stepping", "defs", "events", "fields", "world", "replay", "debug", "track"]
 # Public headers that are not bound, and why.
 NOT_BOUND = {"gyre": "includes the others", "decomposition": "seconds of work on a mesh, done before a page is made; its hulls come as hulls",
              "bounds": "measures meshes before they are cooked; a page does not choose volumes",
              "memory": "a page has one memory, and the browser hands it out"}
 
 LEFT_OUT = {
-    "World::state": "the inside of the engine",
+    "stop_at_error": "what C++ does where the value of an error is taken",
     "World::World": "made by create()",
     "World::add_body(BodyDef,ShapeDef)": "the form with several shapes takes one as well",
     "Geometry::Geometry": "made by the cook functions",
@@ -29,20 +29,20 @@ LEFT_OUT = {
     "Recorder::finish": "by hand in hosts.cpp, which also takes the bytes",
     "Recorder::failed": "memory as a sink does not fail; options out of range are an error at the start",
     "ByteSink": "by hand in hosts.cpp: the recorder's memory",
-    "World::cast_rays": "a batch fills a span that it is given; a page asks one by one",
-    "World::cast_shapes": "see World::cast_rays",
-    "World::closest_points": "see World::cast_rays",
-    "World::count_overlaps": "see World::cast_rays",
-    "World::deepest_penetrations": "see World::cast_rays",
-    "World::rays_hit": "see World::cast_rays",
-    "World::shapes_hit": "see World::cast_rays",
-    "World::places_overlap": "see World::cast_rays",
-    "World::places_near": "see World::cast_rays",
-    "World::cast_rays_all": "see World::cast_rays",
-    "World::cast_shapes_all": "see World::cast_rays",
-    "World::find_overlaps_all": "see World::cast_rays",
-    "World::find_closest_all": "see World::cast_rays",
-    "World::find_penetrations_all": "see World::cast_rays",
+    "World::cast_ray_batch": "a batch fills a span that it is given; a page asks one by one",
+    "World::cast_shape_batch": "see World::cast_ray_batch",
+    "World::closest_point_batch": "see World::cast_ray_batch",
+    "World::overlap_count_batch": "see World::cast_ray_batch",
+    "World::penetration_batch": "see World::cast_ray_batch",
+    "World::cast_ray_any_batch": "see World::cast_ray_batch",
+    "World::cast_shape_any_batch": "see World::cast_ray_batch",
+    "World::overlap_any_batch": "see World::cast_ray_batch",
+    "World::closest_point_any_batch": "see World::cast_ray_batch",
+    "World::cast_ray_all_batch": "see World::cast_ray_batch",
+    "World::cast_shape_all_batch": "see World::cast_ray_batch",
+    "World::overlap_all_batch": "see World::cast_ray_batch",
+    "World::closest_point_all_batch": "see World::cast_ray_batch",
+    "World::penetration_all_batch": "see World::cast_ray_batch",
     "QueryFilter.accepts": "a function pointer; the layers of the filter are carried",
     "QueryFilter.user": "see QueryFilter.accepts",
     "BodyNames": "a function pointer; bodies of a scene are named by the scene",

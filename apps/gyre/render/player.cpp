@@ -98,7 +98,7 @@ class RecordingPlayer : public Player {
   }
   bool rewind(std::string& error) override {
     const Error why = replay_.seek(0);
-    if (why.code != ErrorCode::none) {
+    if (why) {
       error = why.message;
       return false;
     }
@@ -147,7 +147,7 @@ bool looks_like_scene(const std::string& bytes) {
 bool replays_alike(Replay& replay) {
   bool matches = true;
   if (replay.step_count() > 0) replay.step(&matches);
-  return replay.seek(0).code == ErrorCode::none && matches;
+  return replay.seek(0).ok() && matches;
 }
 
 // Replayed where that is possible, as a track knows no ropes; else its track is looked at.

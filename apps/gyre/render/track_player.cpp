@@ -42,7 +42,7 @@ class TrackPlayer : public Player {
     if (track_.position() + 1 >= track_.frame_count()) return false;
     const double before = time();
     const Error why = track_.seek(track_.position() + 1);
-    if (why.code != ErrorCode::none) {
+    if (why) {
       note_ = why.message;
       return false;
     }
@@ -52,8 +52,8 @@ class TrackPlayer : public Player {
   bool rewind(std::string& error) override {
     const Error why = track_.seek(0);
     last_step_ = 0;
-    if (why.code != ErrorCode::none) error = why.message;
-    return why.code == ErrorCode::none;
+    if (why) error = why.message;
+    return why.ok();
   }
 
  private:

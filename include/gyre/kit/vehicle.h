@@ -1,9 +1,8 @@
-// Wheeled vehicles: a rigid body on wheels that are rays, with suspension, tyres, brakes, and an engine behind clutch, gearbox and
-// differentials.
+// Wheeled vehicles: a rigid body on ray-cast wheels with suspension, tyres and brakes, and an engine with clutch, gearbox and differentials.
 //
-// Made of the public interface alone, like a user's own. A vehicle is plain data beside its body: VehicleDef says what it is,
-// VehicleState how it is; copy the state with a snapshot of the world and both can be rolled back. Call drive_vehicle once before
-// each World::step with the same seconds. SI units. docs/vehicles.md gives the equations and what was validated.
+// It uses the public headers only. A vehicle is plain data beside its body: VehicleDef describes it, VehicleState has its state. Copy the
+// state together with a snapshot of the world, and both can be rolled back. Call drive_vehicle once before each World::step with the same
+// seconds. SI units. docs/vehicles.md has the equations and the validation.
 //
 // Source: H. B. Pacejka, "Tire and Vehicle Dynamics", 3rd edition, 2012 (slip, similarity of combined slip, the bicycle model).
 #pragma once
@@ -14,47 +13,47 @@
 
 namespace gyre::kit {
 
-// Force over load against slip: `grip` at the peak, `slide` times that far beyond. With s = slip over the slip of the peak, along and
-// across taken together as one vector, it is 2 s / (1 + s^2) of the peak up to it, along -s. So the cornering stiffness at small
-// angles is 2 grip load / peak_angle.
+// Tyre force against slip. The force is `grip` times the load at the peak and falls to `slide` times that far beyond it. Let s be the slip
+// vector (longitudinal and lateral together) relative to the slip of the peak: up to the peak the force is 2 s / (1 + s^2) of the peak
+// force, along -s. So the cornering stiffness at small angles is 2 grip load / peak_angle.
 struct TyreDef {
   float grip = 1.1f;
   float slide = 0.8f;
-  float peak_slip = 0.12f;   // of (wheel speed - ground speed) / ground speed
+  float peak_slip = 0.12f;   // longitudinal: (wheel speed - ground speed) / ground speed
   float peak_angle = 0.14f;  // rad
-  float rolling = 0.012f;    // resistance over load
+  float rolling = 0.012f;    // rolling resistance over load
 };
 
 struct WheelDef {
-  Vec3 mount{};             // m, body frame: where the wheel's middle is with the spring fully out
+  Vec3 mount{};             // m, body frame: the wheel's centre with the spring fully extended
   float radius = 0.33f;     // m
   float inertia = 1.0f;     // kg m^2, of wheel and half shaft
-  float travel = 0.25f;     // m, from fully out to the stop
+  float travel = 0.25f;     // m, from fully extended to the bump stop
   float stiffness = 30000;  // N/m
   float damping = 3000;     // N s/m
-  float steer = 0.0f;       // share of the steering angle: 1 in front, below 0 the other way
+  float steer = 0.0f;       // share of the steering angle: 1 in front, below 0 in the opposite direction
   float brake = 2500;       // N m at full brake
   float handbrake = 0.0f;   // N m
-  float drive =
-      0.0f;  // share of the gearbox's torque; all wheels' shares sum to 1, or to 0 if nothing drives
+  float drive = 0.0f;       // share of the gearbox's torque; the shares of all wheels sum to 1, or to 0 without an engine
   TyreDef tyre{};
 };
 
 // Two wheels on one axle.
 struct AxleDef {
   int left = 0, right = 1;  // wheels
-  float anti_roll = 0.0f;   // N for each m by which one spring is pressed in more than the other
-  float lock = 0.0f;  // N m by which the differential resists a difference of speeds; 0: open, 1e9: locked
+  float anti_roll = 0.0f;   // N/m, of the difference in compression of the two springs
+  float lock = 0.0f;        // N m by which the differential resists a difference of angular velocities; 0: open, 1e9: locked
 };
 
+// A point of the engine's torque curve.
 struct TorquePoint {
-  float speed = 0.0f;   // rad/s
+  float speed = 0.0f;   // rad/s, of the engine
   float torque = 0.0f;  // N m at full throttle
 };
 
 struct EngineDef {
   std::vector<TorquePoint> curve{
-      {80, 180}, {300, 260}, {500, 240}, {680, 160}};  // by speed; ends hold beyond
+      {80, 180}, {300, 260}, {500, 240}, {680, 160}};  // by ascending speed; constant beyond its ends
   float idle = 85;                                     // rad/s
   float redline = 680;                                 // rad/s: no fuel above it
   float inertia = 0.18f;                               // kg m^2
@@ -65,26 +64,26 @@ struct GearboxDef {
   std::vector<float> ratios{3.6f, 2.1f, 1.4f, 1.0f, 0.8f};
   float reverse = 3.4f;
   float final_ratio = 3.7f;
-  float clutch = 500;        // N m that it holds
+  float clutch = 500;        // N m, the largest torque that it transmits
   float shift_time = 0.25f;  // s, with the clutch open
   bool automatic = true;     // shifts by itself between first and last gear
   float shift_up = 580;      // rad/s of the engine
   float shift_down = 240;
 };
 
-// Wheels that a track binds to one speed.
+// Wheels that a track forces to one speed.
 struct TrackDef {
   std::vector<int> wheels{};
   float side = 1.0f;       // 1 on the left, -1 on the right
-  float steering = 20000;  // N m, which full lock adds on one side and takes on the other
+  float steering = 20000;  // N m that full lock adds on one side and subtracts on the other
 };
 
-// Keeps a two-wheeler from falling: leans it into bends until gravity and the bend's acceleration balance, like a rider. A torque
-// about its length from nowhere; in a steady bend next to none is left, as the wheels' forces pass through the centre of mass.
+// Keeps a two-wheeler upright: leans it into bends until gravity and the centripetal acceleration balance, like a rider. It is an external
+// torque about the long axis. In a steady bend it is almost zero, since the wheels' forces pass through the centre of mass.
 struct LeanDef {
-  float frequency = 0.0f;  // Hz, of the lean; 0: none. Above 1.5 for something as tall as a motorcycle
+  float frequency = 0.0f;  // Hz, of the lean; 0: no lean control. Above 1.5 for a vehicle as tall as a motorcycle
   float damping_ratio = 1.0f;
-  float most = 0.85f;  // rad; steering is held back so that no more is needed
+  float max_angle = 0.85f;  // rad; steering is limited so that no larger lean is needed
 };
 
 struct VehicleDef {
@@ -97,17 +96,17 @@ struct VehicleDef {
   EngineDef engine{};
   GearboxDef gearbox{};
   float steer_angle = 0.6f;            // rad at full lock
-  std::uint32_t layers = 0xffffffffu;  // shapes that wheels roll on
+  std::uint32_t layers = 0xffffffffu;  // of shapes that the wheels roll on
 };
 
 struct WheelState {
-  float spin = 0.0f;         // rad/s
-  float angle = 0.0f;        // rad, by which it has turned
+  float angular_velocity = 0.0f;  // rad/s, about the axle
+  float angle = 0.0f;        // rad, about the axle
   float steer = 0.0f;        // rad, to the left
   float compression = 0.0f;  // m
   float load = 0.0f;         // N
   float slip = 0.0f, slip_angle = 0.0f;
-  Vec3 force{};  // N on the vehicle, of the tyre, world frame
+  Vec3 force{};  // N, of the tyre on the vehicle, world frame
   bool on_ground = false;
   DVec3 contact{};
   Vec3 normal{};
@@ -119,7 +118,7 @@ struct VehicleState {
   WheelState wheels[kMaxWheels]{};
   float engine_speed = 85;   // rad/s
   int gear = 1;              // -1 reverse, 0 neutral, 1 first ...
-  float shifting = 0.0f;     // s that are left of a shift
+  float shifting = 0.0f;     // s, the time left of a shift
   float lean_torque = 0.0f;  // N m, in the last call
 };
 
@@ -128,19 +127,19 @@ struct VehicleInput {
   float brake = 0.0f;      // 0 to 1
   float handbrake = 0.0f;  // 0 to 1
   float steer = 0.0f;      // -1 (right) to 1 (left)
-  int gear = 1;            // asked for: -1, 0 or 1 and above; an automatic gearbox takes above 0 as forward
+  int gear = 1;            // desired: -1, 0, or 1 and above; for an automatic gearbox everything above 0 means forward
   float clutch = 0.0f;     // 0 closed, 1 open
 };
 
-// Why a definition cannot be used; code none if it can.
+// The reason why a definition is invalid; code none if it is valid.
 Error check_vehicle(const VehicleDef& def);
 
-// Gives the body the forces of its wheels for the next step, and turns wheels and engine on by `seconds`. What wheels roll on is
-// pushed back if it is dynamic. An error if something cannot be used; nothing changes then.
+// Applies the forces of the wheels to the body for the next step, and advances wheels and engine by `seconds`. The opposite forces act on
+// dynamic bodies that the wheels roll on. Returns an error, and changes nothing, if something is invalid.
 Error drive_vehicle(World& world, const VehicleDef& def, BodyId body, VehicleState& state,
                     const VehicleInput& input, float seconds);
 
-// Where a wheel's middle is, and how it is turned: about its axle (to the left) by `angle`, after steering.
+// The pose of a wheel: its centre, rotated by the steering angle and then about its axle (which points left) by `angle`.
 Pose wheel_pose(const World& world, const VehicleDef& def, BodyId body, const VehicleState& state, int wheel);
 
 }  // namespace gyre::kit

@@ -71,9 +71,9 @@ inline CollisionBody make_collision_body(const ColliderBody& body, float seconds
 }
 
 // How contacts are recycled: a kernel of contact_recycle.h.
-struct ContactPair;
+struct PairInput;
 struct Recycled;
-using RecycleContacts = void (*)(const ContactPair* pairs, int begin, int end, bool may_recycle,
+using RecycleContacts = void (*)(const PairInput* pairs, int begin, int end, bool may_recycle,
                                  Recycled& recycled);
 
 // A body's centre of mass in its frame, and how far its farthest point is from there. Four floats are read at a time.

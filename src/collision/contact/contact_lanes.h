@@ -109,7 +109,7 @@ constexpr int kLooked = GYRE_FLOATS_BEFORE(Contact, looked);
 // The contacts of a group; lanes without one repeat the last.
 template <int W>
 struct Group {
-  const ContactPair* pairs[W];
+  const PairInput* pairs[W];
   std::int32_t counts[W];  // of manifolds
   Side<W> a, b;
   Wide<W> size, looked;
@@ -121,7 +121,7 @@ struct Group {
 };
 
 template <int W>
-GYRE_INLINE void load_group(const ContactPair* pairs, int count, Group<W>& group) {
+GYRE_INLINE void load_group(const PairInput* pairs, int count, Group<W>& group) {
   static_assert(GYRE_FLOATS_BEFORE(Contact, size) == kLooked + 1);
   static_assert(GYRE_FLOATS_BEFORE(Contact, seen_a_from_b) == kLooked + 2);
   static_assert(offsetof(Transform, orientation) == sizeof(Vec3));
@@ -129,7 +129,7 @@ GYRE_INLINE void load_group(const ContactPair* pairs, int count, Group<W>& group
   Records<W> record, centers_a, centers_b;
   GYRE_UNROLL
   for (int i = 0; i < W; ++i) {
-    const ContactPair& pair = pairs[i < count ? i : count - 1];
+    const PairInput& pair = pairs[i < count ? i : count - 1];
     group.pairs[i] = &pair;
     looks_a[i] = pair.look_a;
     looks_b[i] = pair.look_b;

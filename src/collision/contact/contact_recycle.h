@@ -33,7 +33,7 @@ constexpr float kNearSlack = 0.03f, kFarSlack = 0.25f, kSlow = 0.02f;
 constexpr int kContactBlock = 64;
 
 // A contact to be looked at, and its two sides.
-struct ContactPair {
+struct PairInput {
   Contact* contact;
   Manifold* manifolds;  // of the contact, as many as its manifold_count
   const ColliderShape* shape_a;

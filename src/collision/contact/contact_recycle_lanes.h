@@ -124,7 +124,7 @@ GYRE_INLINE void load_manifold(const Group<W>& group, int m, Manifold& none, Man
   manifold.most = 0;
   GYRE_UNROLL
   for (int i = 0; i < W; ++i) {
-    const ContactPair& pair = *group.pairs[i];
+    const PairInput& pair = *group.pairs[i];
     Manifold* const mine = m < group.counts[i] ? pair.manifolds + m : &none;
     manifold.record[i] = floats(mine);
     manifold.counts[i] = mine->count;
@@ -293,7 +293,7 @@ GYRE_INLINE unsigned recycle_group(const Group<W>& group, unsigned lanes, Manifo
 // Manifolds lie anywhere in memory: how many contacts before its turn one is asked for.
 constexpr int kAhead = 8;
 
-GYRE_INLINE void fetch_manifolds(const ContactPair* pairs, int begin, int end) {
+GYRE_INLINE void fetch_manifolds(const PairInput* pairs, int begin, int end) {
   for (int i = begin; i < end; ++i) {
     if (pairs[i].contact->manifold_count == 0) continue;
     const char* const manifold = reinterpret_cast<const char*>(pairs[i].manifolds);
@@ -304,7 +304,7 @@ GYRE_INLINE void fetch_manifolds(const ContactPair* pairs, int begin, int end) {
 
 // See RecycleContacts.
 template <int W>
-void recycle_contacts(const ContactPair* pairs, int begin, int end, bool may_recycle, Recycled& recycled) {
+void recycle_contacts(const PairInput* pairs, int begin, int end, bool may_recycle, Recycled& recycled) {
   Manifold none;
   fetch_manifolds(pairs, begin, begin + kAhead < end ? begin + kAhead : end);
   for (int first = begin; first < end; first += W) {

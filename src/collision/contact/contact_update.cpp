@@ -27,7 +27,7 @@ bool has_rim(const Shape& shape) {
   return shape.kind == ShapeKind::cylinder || shape.kind == ShapeKind::cone;
 }
 
-std::span<Manifold> manifolds_of(const ContactPair& pair) {
+std::span<Manifold> manifolds_of(const PairInput& pair) {
   return {pair.manifolds, pair.contact->manifold_count};
 }
 // Whether the anchors lie in the frame of B's body, else A's.
@@ -65,7 +65,7 @@ struct SeenShape {
 };
 
 template <int kRoom>
-void ask_shapes(const ContactPair& pair, const View& view, float reach, CachedTriangles* kept,
+void ask_shapes(const PairInput& pair, const View& view, float reach, CachedTriangles* kept,
                 Found<kRoom>& found) {
   const SeenShape a(pair.shape_a->shape, pair.shape_b->shape), b(pair.shape_b->shape, pair.shape_a->shape);
   found.count = collide_shapes(*a.shape, *b.shape, view.shapes_a_from_b, reach, pair.contact->cache,
@@ -80,7 +80,7 @@ float near_along(const View& view, Vec3 normal) {
 
 // As ask_shapes, of two sharp boxes; but nothing is found where they do not come near enough along the axis that parts them most.
 // Then nothing is nearer than they are along that axis, and that is what is returned.
-float ask_boxes(const ContactPair& pair, const View& view, float reach, Found<1>& found) {
+float ask_boxes(const PairInput& pair, const View& view, float reach, Found<1>& found) {
   const Shape& a = pair.shape_a->shape;
   const Shape& b = pair.shape_b->shape;
   PairCache& cache = pair.contact->cache;
@@ -273,7 +273,7 @@ struct Placing {
   Quat anchor_turn;
   Vec3 anchor_center;
 
-  Placing(const ContactPair& pair, const View& seen) : view(seen) {
+  Placing(const PairInput& pair, const View& seen) : view(seen) {
     anchors_in_b = frame_is_b(pair.shape_a->shape, pair.shape_b->shape);
     anchor_turn = (anchors_in_b ? pair.look_b : pair.look_a)->orientation;
     anchor_center = (anchors_in_b ? pair.center_b : pair.center_a)->position;
@@ -346,7 +346,7 @@ void match_rolling(Former<kRoom>& former, Manifold& manifold, unsigned matched_b
 }
 
 template <int kRoom>
-void write_manifolds(const Found<kRoom>& found, const ContactPair& pair, const View& view) {
+void write_manifolds(const Found<kRoom>& found, const PairInput& pair, const View& view) {
   Manifold* const out = pair.manifolds;
   Former<kRoom> former(manifolds_of(pair));
   const Placing placing(pair, view);
@@ -373,7 +373,7 @@ void note_look(Contact& contact, const View& view, float looked) {
   contact.seen_a_from_b = view.a_from_b;
 }
 
-bool is_clear_of_surface(const ContactPair& pair, const View& view, float reach) {
+bool is_clear_of_surface(const PairInput& pair, const View& view, float reach) {
   const Transform a_from_b =
       inverse(pair.shape_a->body_from_shape) * view.a_from_b * pair.shape_b->body_from_shape;
   return is_clear_of_surface(pair.shape_a->shape, pair.shape_b->shape, a_from_b, reach);
@@ -386,7 +386,7 @@ float looked_as_far(float reach, float kept, float left_out) {
 }
 
 // A look at what is no mesh. Returns how far it reached.
-float compute_convex_manifold(const ContactPair& pair, const View& view, Found<1>& found) {
+float compute_convex_manifold(const PairInput& pair, const View& view, Found<1>& found) {
   float kept = view.speculative + kKept * view.size;
   if (pair.contact->manifold_count == 0 && view.way < kSlow * view.size) {
     const float far_reach = view.speculative + kFarSlack * view.size;
@@ -406,7 +406,7 @@ float compute_convex_manifold(const ContactPair& pair, const View& view, Found<1
 }
 
 // A look at a mesh or height field.
-float compute_mesh_manifolds(const ContactPair& pair, const View& view, CachedTriangles* kept_triangles,
+float compute_mesh_manifolds(const PairInput& pair, const View& view, CachedTriangles* kept_triangles,
                              Found<kMaxMeshManifolds>& found) {
   if (pair.contact->manifold_count == 0) {
     const float far_reach = view.speculative + kClearSteps * view.way + kFarSlack * view.size;
@@ -419,7 +419,7 @@ float compute_mesh_manifolds(const ContactPair& pair, const View& view, CachedTr
 
 // kRoom is the contact's manifold_room.
 template <int kRoom>
-void look_in_room(const ContactPair& pair, const View& view, CachedTriangles* kept_triangles) {
+void look_in_room(const PairInput& pair, const View& view, CachedTriangles* kept_triangles) {
   Found<kRoom> found;
   float looked = 0.0f;
   if constexpr (kRoom == 1) {
@@ -457,7 +457,7 @@ float smaller_size(float a, float b) {
   return has_a && has_b ? min(a, b) : has_a ? a : has_b ? b : 0.0f;
 }
 
-bool test_sensor_overlap(const ContactPair& pair, const View& view) {
+bool test_sensor_overlap(const PairInput& pair, const View& view) {
   const Shape& a = pair.shape_a->shape;
   const Shape& b = pair.shape_b->shape;
   if (!is_convex(a.kind) && !is_convex(b.kind)) return surfaces_overlap(a, b, view.shapes_a_from_b);
@@ -467,7 +467,7 @@ bool test_sensor_overlap(const ContactPair& pair, const View& view) {
   return found.count > 0;
 }
 
-bool compute_manifold(const ContactPair& pair, const View& view, CachedTriangles* kept) {
+bool compute_manifold(const PairInput& pair, const View& view, CachedTriangles* kept) {
   const bool loaded = carried_load(manifolds_of(pair));
   if (pair.contact->manifold_room == 1) {
     look_in_room<1>(pair, view, kept);

@@ -61,7 +61,7 @@ struct ShapeNear {
   std::uint32_t triangle = kNoTriangle;
   double distance = 0.0;
   DVec3 point;      // of the shape that is near
-  DVec3 own_point;  // of the one that asks
+  DVec3 query_point;  // of the one that asks
   Vec3 normal;      // from the near shape to the one that asks
 };
 

@@ -215,7 +215,7 @@ void add_corners(const OrientedBox& box, std::vector<Vec3>& corners, std::vector
 }  // namespace
 
 Result<Aabb> fit_box(std::span<const Vec3> points) {
-  if (const Error e = check_bounded_points(points); e.code != ErrorCode::none) return e;
+  if (const Error e = check_bounded_points(points)) return e;
   Aabb box{points[0], points[0]};
   for (const Vec3& p : points) box = {min(box.low, p), max(box.high, p)};
   return box;
@@ -232,13 +232,13 @@ double surface_area(const Aabb& box) {
 
 Result<OrientedBox> fit_oriented_box_fast(std::span<const Vec3> points) {
   const FloatMode mode;
-  if (const Error e = check_bounded_points(points); e.code != ErrorCode::none) return e;
+  if (const Error e = check_bounded_points(points)) return e;
   return box_around(points, outline_of(points).axes);
 }
 
 Result<OrientedBox> fit_oriented_box(std::span<const Vec3> points) {
   const FloatMode mode;
-  if (const Error e = check_bounded_points(points); e.code != ErrorCode::none) return e;
+  if (const Error e = check_bounded_points(points)) return e;
   return box_around(points, smallest_axes(outline_of(points)));
 }
 

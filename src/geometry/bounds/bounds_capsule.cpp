@@ -109,7 +109,7 @@ double squared_distance(DVec3 p0, DVec3 p1, DVec3 q0, DVec3 q1) {
 
 Result<BoundingCapsule> fit_capsule(std::span<const Vec3> points) {
   const FloatMode mode;
-  if (const Error e = check_bounded_points(points); e.code != ErrorCode::none) return e;
+  if (const Error e = check_bounded_points(points)) return e;
   return rounded(best_tube(outline_of(points)), [&](DVec3 a, DVec3 b) {
     double reach = 0.0;
     for (const Vec3& p : points) reach = max(reach, length(DVec3(p) - nearest_on(a, b, DVec3(p))));

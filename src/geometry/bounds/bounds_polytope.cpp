@@ -111,7 +111,7 @@ int k_dop_directions(KDopKind kind) { return kind == KDopKind::k14 ? 7 : kind ==
 Vec3 k_dop_direction(KDopKind kind, int index) { return to_float(direction_of(kind, index)); }
 
 Result<KDop> fit_k_dop(std::span<const Vec3> points, KDopKind kind) {
-  if (const Error e = check_bounded_points(points); e.code != ErrorCode::none) return e;
+  if (const Error e = check_bounded_points(points)) return e;
   KDop dop;
   dop.kind = kind;
   for (int i = 0; i < k_dop_directions(kind); ++i) {

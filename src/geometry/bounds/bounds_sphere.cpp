@@ -109,7 +109,7 @@ BoundingSphere rounded(const Ball& ball, std::span<const Vec3> points) {
 
 Result<BoundingSphere> fit_sphere(std::span<const Vec3> points) {
   const FloatMode mode;
-  if (const Error e = check_bounded_points(points); e.code != ErrorCode::none) return e;
+  if (const Error e = check_bounded_points(points)) return e;
   std::vector<DVec3> exact;
   for (const Vec3& p : points) exact.emplace_back(p);
   return rounded(smallest_ball(exact), points);
@@ -117,7 +117,7 @@ Result<BoundingSphere> fit_sphere(std::span<const Vec3> points) {
 
 Result<BoundingSphere> fit_sphere_fast(std::span<const Vec3> points) {
   const FloatMode mode;
-  if (const Error e = check_bounded_points(points); e.code != ErrorCode::none) return e;
+  if (const Error e = check_bounded_points(points)) return e;
   const auto farthest_from = [&](Vec3 from) {
     Vec3 best = from;
     for (const Vec3& p : points) {

@@ -134,7 +134,7 @@ bool DecompositionProgress::go_on(double done) {
 
 Result<Decomposition> decompose(const DecompositionDef& def) {
   const FloatMode mode;
-  if (const Error error = check_settings(def); error.code != ErrorCode::none) return error;
+  if (const Error error = check_settings(def)) return error;
   DecompositionProgress progress(def);
   if (!progress.go_on(0.0)) return cancelled();
   Result<Model> model = make_model(def);
@@ -142,7 +142,7 @@ Result<Decomposition> decompose(const DecompositionDef& def) {
   TaskSystem tasks(def.threads);
   Prepared prepared;
   prepared.model = std::move(*model);
-  if (const Error error = prepare_solid(def, tasks, prepared); error.code != ErrorCode::none) return error;
+  if (const Error error = prepare_solid(def, tasks, prepared)) return error;
   const Solid3& solid = prepared.solid;
   if (!progress.go_on(0.1)) return cancelled();
 
@@ -163,11 +163,11 @@ Result<Decomposition> decompose(const DecompositionDef& def) {
   if (out.hulls.empty())
     return make_error(ErrorCode::invalid_geometry,
                       "decomposition: the mesh is flat; allowed are meshes that span a volume");
-  out.report.mesh = prepared.model.findings;
-  out.report.size = float(prepared.model.size / prepared.model.scale);
+  out.stats.mesh = prepared.model.findings;
+  out.stats.size = float(prepared.model.size / prepared.model.scale);
   if (prepared.model.findings.shell)
-    out.report.shell_thickness = float(2.0 * half_thickness(def, prepared.model) / prepared.model.scale);
-  measure_pieces(solid, tasks, bodies, out.report);
+    out.stats.shell_thickness = float(2.0 * half_thickness(def, prepared.model) / prepared.model.scale);
+  measure_pieces(solid, tasks, bodies, out.stats);
   if (!progress.go_on(1.0)) return cancelled();
   return out;
 }

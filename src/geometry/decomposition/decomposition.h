@@ -38,6 +38,6 @@ std::vector<SurfaceSample> sample_surface(const Model& model, const SurfaceField
                                           double spacing, double& openness);
 // Fills in all that is measured on the hulls as they are handed out.
 void measure_pieces(const Solid3& solid, TaskSystem& tasks, std::span<const ConvexBody> bodies,
-                    DecompositionReport& report);
+                    DecompositionStats& report);
 
 }  // namespace gyre

@@ -174,7 +174,7 @@ double outside_all(std::span<const ConvexBody> bodies, DVec3 p, double known) {
 }  // namespace
 
 void measure_pieces(const Solid3& solid, TaskSystem& tasks, std::span<const ConvexBody> bodies,
-                    DecompositionReport& report) {
+                    DecompositionStats& report) {
   const double metres = 1.0 / solid.model->scale;
   std::vector<Overhang> overhangs(bodies.size());
   std::vector<double> depths(bodies.size());

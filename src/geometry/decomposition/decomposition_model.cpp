@@ -58,7 +58,7 @@ class Unions {
 
 Error check_input(const DecompositionDef& def) {
   const TriangleSurface surface{def.vertices, def.indices, {}, {}};
-  if (const Error error = check_surface_data(surface); error.code != ErrorCode::none) return error;
+  if (const Error error = check_surface_data(surface)) return error;
   for (std::size_t i = 0; i < def.vertices.size(); ++i) {
     const Vec3 p = def.vertices[i];
     if (!is_finite(p) || max(absolute(p.x), max(absolute(p.y), absolute(p.z))) > kMaxMesh) {
@@ -98,7 +98,7 @@ void take_triangles(const DecompositionDef& def, Model& model) {
     }
     const double area = 0.5 * length(cross(p[1] - p[0], p[2] - p[0]));
     if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0] || !(area > 0.0)) {
-      ++model.findings.left_out_triangles;
+      ++model.findings.degenerate_triangles;
       continue;
     }
     model.area += area;
@@ -117,7 +117,7 @@ void count_edges(Model& model) {
   for (const auto& [key, use] : edges.entries()) {
     const std::uint32_t count = use.forward + use.backward;
     if (count == 1) ++model.findings.open_edges;
-    if (count > 2) ++model.findings.crowded_edges;
+    if (count > 2) ++model.findings.non_manifold_edges;
   }
 }
 
@@ -173,7 +173,7 @@ std::vector<Piece> find_pieces(Model& model, std::vector<std::uint32_t>& piece_o
 
 void turn(Model& model, std::size_t t) {
   std::swap(model.indices[3 * t + 1], model.indices[3 * t + 2]);
-  ++model.findings.turned_triangles;
+  ++model.findings.flipped_triangles;
 }
 
 }  // namespace
@@ -297,7 +297,7 @@ void thicken(Model& model, double half) {
 }
 
 Result<Model> make_model(const DecompositionDef& def) {
-  if (const Error error = check_input(def); error.code != ErrorCode::none) return error;
+  if (const Error error = check_input(def)) return error;
   Model model;
   take_triangles(def, model);
   if (model.indices.empty()) {

@@ -75,7 +75,7 @@ double outside(const TestMesh& mesh, Vec3 at) {
 
 // What the report says is true, and what it says is within what was asked for.
 void expect_honest(const TestMesh& mesh, const DecompositionDef& def, const Decomposition& d) {
-  const DecompositionReport& report = d.report;
+  const DecompositionStats& report = d.stats;
   ASSERT_FALSE(d.hulls.empty());
   EXPECT_LE(d.hulls.size(), std::size_t(def.max_hulls));
   EXPECT_TRUE(report.within_concavity);
@@ -123,11 +123,11 @@ TEST(Decomposition, ConvexMeshesAreOneHull) {
                                prism_mesh({{0, 0}, {1, 0}, {0, 1}}, {0.3f, 0.3f}, 0.01f)}) {
     const Decomposition d = made(mesh.def());
     ASSERT_EQ(d.hulls.size(), 1u);
-    EXPECT_LT(d.report.overhang, 1.0e-6f * d.report.size);
-    EXPECT_LT(d.report.depth, 1.0e-5f * d.report.size);
+    EXPECT_LT(d.stats.overhang, 1.0e-6f * d.stats.size);
+    EXPECT_LT(d.stats.depth, 1.0e-5f * d.stats.size);
     EXPECT_NEAR(double(mass_properties(d.hulls[0], 1.0f)->mass), mesh.volume(), 1.0e-3 * mesh.volume());
     // Lines see a round thing in steps: 100 of them across.
-    EXPECT_NEAR(d.report.solid_volume, mesh.volume(), 0.01 * mesh.volume());
+    EXPECT_NEAR(d.stats.solid_volume, mesh.volume(), 0.01 * mesh.volume());
     expect_honest(mesh, mesh.def(), d);
   }
 }
@@ -152,7 +152,7 @@ TEST(Decomposition, CrossingBoxesAreTwoHulls) {
   mesh.add(box_mesh({0, 0, 0}, {0.2f, 1, 0.2f}));
   const Decomposition d = made(mesh.def());
   EXPECT_EQ(d.hulls.size(), 2u);
-  EXPECT_LT(d.report.excess_volume, 1.0e-3);
+  EXPECT_LT(d.stats.excess_volume, 1.0e-3);
   expect_honest(mesh, mesh.def(), d);
 }
 
@@ -176,7 +176,7 @@ TEST(Decomposition, ARingKeepsItsHole) {
   const Decomposition d = made(def);
   expect_honest(mesh, def, d);
   // Its hull would fill the hole of radius 0.4; what is left is free up to the overhang.
-  const float free = 0.4f - d.report.overhang_bound;
+  const float free = 0.4f - d.stats.overhang_bound;
   ASSERT_GT(free, 0.25f);
   Random random;
   for (int i = 0; i < 500; ++i) {
@@ -209,10 +209,10 @@ TEST(Decomposition, ACavityStaysHollow) {
   hole.turn_over();
   mesh.add(hole);
   const Decomposition d = made(mesh.def());
-  EXPECT_EQ(d.report.mesh.turned_triangles, 0u);
+  EXPECT_EQ(d.stats.mesh.flipped_triangles, 0u);
   EXPECT_EQ(d.hulls.size(), 6u);
   EXPECT_FALSE(in_any(d, {0.4f, -0.4f, 0.4f}));
-  EXPECT_NEAR(d.report.hull_volume, 7.0, 0.02);
+  EXPECT_NEAR(d.stats.hull_volume, 7.0, 0.02);
 }
 
 // ------------------------------------------------------------------------------------------------- sizes and attitudes
@@ -236,7 +236,7 @@ TEST(LongDecomposition, TurnedMeshesAreCutAsWell) {
   for (int i = 0; i < 4; ++i) {
     const TestMesh turned = moved(mesh, {random.vector(), random.turn()});
     const Decomposition d = made(turned.def());
-    EXPECT_TRUE(d.report.within_concavity);
+    EXPECT_TRUE(d.stats.within_concavity);
     // Planes fall elsewhere, so a few hulls more or less.
     EXPECT_LE(d.hulls.size(), count + count / 2) << i;
     EXPECT_GE(d.hulls.size(), count - count / 2) << i;
@@ -250,7 +250,7 @@ bool same(const Decomposition& a, const Decomposition& b) {
   for (std::size_t i = 0; i < a.hulls.size(); ++i) {
     if (a.hulls[i].content_hash() != b.hulls[i].content_hash()) return false;
   }
-  const DecompositionReport &x = a.report, &y = b.report;
+  const DecompositionStats &x = a.stats, &y = b.stats;
   return x.overhang == y.overhang && x.overhang_bound == y.overhang_bound && x.depth == y.depth &&
          x.uncovered == y.uncovered && x.solid_volume == y.solid_volume && x.hull_volume == y.hull_volume &&
          x.excess_volume == y.excess_volume && x.missing_volume == y.missing_volume;
@@ -272,12 +272,12 @@ TEST(Decomposition, AnOpenBowlIsTakenForASheetAndSaysSo) {
   const TestMesh mesh = bowl_sheet();
   DecompositionDef def = mesh.def();
   const Decomposition d = made(def);
-  EXPECT_TRUE(d.report.mesh.shell);
-  EXPECT_EQ(d.report.mesh.open_edges, 24u);
-  EXPECT_GT(d.report.mesh.openness, 0.5f);
-  EXPECT_FLOAT_EQ(d.report.shell_thickness, 0.5f * def.concavity * d.report.size);
+  EXPECT_TRUE(d.stats.mesh.shell);
+  EXPECT_EQ(d.stats.mesh.open_edges, 24u);
+  EXPECT_GT(d.stats.mesh.openness, 0.5f);
+  EXPECT_FLOAT_EQ(d.stats.shell_thickness, 0.5f * def.concavity * d.stats.size);
   // A ball can lie in it: free is all but the sheet and what was asked for.
-  const float free = 1.0f - 0.5f * d.report.shell_thickness - d.report.overhang_bound;
+  const float free = 1.0f - 0.5f * d.stats.shell_thickness - d.stats.overhang_bound;
   Random random;
   for (int i = 0; i < 300; ++i) {
     const Vec3 p = random.vector();
@@ -290,8 +290,8 @@ TEST(Decomposition, AnOpenBowlIsTakenForASheetAndSaysSo) {
   def.meaning = SurfaceMeaning::solid;
   const Decomposition filled = made(def);
   EXPECT_EQ(filled.hulls.size(), 1u);
-  EXPECT_FALSE(filled.report.mesh.shell);
-  EXPECT_GT(filled.report.mesh.openness, 0.5f);
+  EXPECT_FALSE(filled.stats.mesh.shell);
+  EXPECT_GT(filled.stats.mesh.openness, 0.5f);
   EXPECT_TRUE(in_any(filled, {0, -0.3f, 0}));
 }
 
@@ -300,7 +300,7 @@ TEST(Decomposition, ASheetOfTwoSidesIsASheet) {
   inner.turn_over();
   mesh.add(inner);
   const Decomposition d = made(mesh.def());
-  EXPECT_TRUE(d.report.mesh.shell);
+  EXPECT_TRUE(d.stats.mesh.shell);
   EXPECT_FALSE(in_any(d, {0, -0.3f, 0}));
 }
 
@@ -320,9 +320,9 @@ TEST(Decomposition, ASmallHoleIsClosedAndCounted) {
   TestMesh mesh = revolved({{0, -1}, {0.7f, -0.7f}, {1, 0}, {0.7f, 0.7f}, {0, 1}}, 32);
   mesh.indices.resize(mesh.indices.size() - 3);
   const Decomposition d = made(mesh.def());
-  EXPECT_FALSE(d.report.mesh.shell);
-  EXPECT_EQ(d.report.mesh.open_edges, 3u);
-  EXPECT_GT(d.report.mesh.openness, 0.0f);
+  EXPECT_FALSE(d.stats.mesh.shell);
+  EXPECT_EQ(d.stats.mesh.open_edges, 3u);
+  EXPECT_GT(d.stats.mesh.openness, 0.0f);
   EXPECT_EQ(d.hulls.size(), 1u);
 }
 
@@ -331,14 +331,14 @@ TEST(Decomposition, TrianglesWoundWronglyAreTurnedAndCounted) {
   inside_out.turn_over();
   const Decomposition a = made(inside_out.def());
   EXPECT_EQ(a.hulls.size(), 2u);
-  EXPECT_EQ(a.report.mesh.turned_triangles, inside_out.indices.size() / 3);
+  EXPECT_EQ(a.stats.mesh.flipped_triangles, inside_out.indices.size() / 3);
   TestMesh mixed = beam_mesh();
   for (std::size_t i = 0; i < mixed.indices.size(); i += 15)
     std::swap(mixed.indices[i], mixed.indices[i + 1]);
   const Decomposition b = made(mixed.def());
   EXPECT_EQ(b.hulls.size(), 2u);
-  EXPECT_EQ(b.report.mesh.turned_triangles, (mixed.indices.size() + 14) / 15);
-  EXPECT_FALSE(b.report.mesh.shell);
+  EXPECT_EQ(b.stats.mesh.flipped_triangles, (mixed.indices.size() + 14) / 15);
+  EXPECT_FALSE(b.stats.mesh.shell);
 }
 
 TEST(Decomposition, EdgesOfManyTrianglesAreCounted) {
@@ -346,9 +346,9 @@ TEST(Decomposition, EdgesOfManyTrianglesAreCounted) {
   TestMesh mesh = box_mesh({-0.5f, -0.5f, 0}, {0.5f, 0.5f, 0.5f});
   mesh.add(box_mesh({0.5f, 0.5f, 0}, {0.5f, 0.5f, 0.5f}));
   const Decomposition d = made(mesh.def());
-  EXPECT_EQ(d.report.mesh.crowded_edges, 1u);
+  EXPECT_EQ(d.stats.mesh.non_manifold_edges, 1u);
   EXPECT_EQ(d.hulls.size(), 2u);
-  EXPECT_LT(d.report.excess_volume, 1.0e-3);
+  EXPECT_LT(d.stats.excess_volume, 1.0e-3);
 }
 
 // Rounds of soups that grow by `more` triangles each.
@@ -366,7 +366,7 @@ void try_soups(int more) {
     if (!d) continue;
     EXPECT_GE(d->hulls.size(), 1u);
     EXPECT_LE(d->hulls.size(), 8u);
-    EXPECT_TRUE(is_finite(d->report.overhang) && is_finite(d->report.excess_volume));
+    EXPECT_TRUE(is_finite(d->stats.overhang) && is_finite(d->stats.excess_volume));
   }
 }
 TEST(Decomposition, SoupsOfTrianglesNeverBreakIt) { try_soups(4); }
@@ -382,8 +382,8 @@ TEST(LongDecomposition, FewerHullsThanNeededAreReported) {
     def.max_hulls = most;
     const Decomposition d = made(def);
     EXPECT_EQ(d.hulls.size(), std::size_t(most));
-    EXPECT_FALSE(d.report.within_concavity);
-    EXPECT_GT(d.report.overhang, 1.05f * def.concavity * d.report.size);
+    EXPECT_FALSE(d.stats.within_concavity);
+    EXPECT_GT(d.stats.overhang, 1.05f * def.concavity * d.stats.size);
   }
 }
 
@@ -396,8 +396,8 @@ TEST(Decomposition, VerticesAreLimited) {
   ASSERT_EQ(d.hulls.size(), 1u);
   EXPECT_LE(view_hull(d.hulls[0]).vertices.size(), 12u);
   // What they lose is said.
-  EXPECT_GT(d.report.uncovered, 0.05f);
-  EXPECT_GT(d.report.missing_volume, 0.2);
+  EXPECT_GT(d.stats.uncovered, 0.05f);
+  EXPECT_GT(d.stats.missing_volume, 0.2);
 }
 
 struct Watch {

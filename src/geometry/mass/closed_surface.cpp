@@ -195,10 +195,10 @@ Error CoverCheck::check_sides(std::uint32_t i) {
 
 Error CoverCheck::check() {
   for (std::uint32_t i = 0; i < surface_.triangle_count(); ++i) {
-    if (const Error error = check_crossings(i); error.code != ErrorCode::none) return error;
+    if (const Error error = check_crossings(i)) return error;
   }
   for (std::uint32_t i = 0; i < surface_.triangle_count(); ++i) {
-    if (const Error error = check_sides(i); error.code != ErrorCode::none) return error;
+    if (const Error error = check_sides(i)) return error;
   }
   return {};
 }

@@ -194,8 +194,8 @@ Solid TetrahedronSum::solid(double density) const {
 
 Result<MassProperties> mass_properties(const AnyShape& shape, float density) {
   const FloatMode mode;
-  if (const Error error = check_shape(shape); error.code != ErrorCode::none) return error;
-  if (const Error error = check_density(double(density), "kg/m^3"); error.code != ErrorCode::none)
+  if (const Error error = check_shape(shape)) return error;
+  if (const Error error = check_density(double(density), "kg/m^3"))
     return error;
   const char* name = shape_name(shape);
   const double rho = double(density);

@@ -23,10 +23,10 @@ DVec3 middle_of(const TriangleSurface& surface) {
 Result<Solid> closed_mesh_solid(std::span<const Vec3> vertices, std::span<const std::uint32_t> indices,
                                 std::span<const std::uint32_t> source, double density) {
   TriangleSurface surface{vertices, indices, source, {}};
-  if (const Error error = check_surface_data(surface); error.code != ErrorCode::none) return error;
+  if (const Error error = check_surface_data(surface)) return error;
   const std::vector<std::uint32_t> welded = weld_vertices(vertices, indices);
   surface.welded = welded;
-  if (const Error error = check_edges(surface); error.code != ErrorCode::none) return error;
+  if (const Error error = check_edges(surface)) return error;
 
   TetrahedronSum sum(middle_of(surface));
   double size = 0.0;  // what rounding is measured by
@@ -46,14 +46,14 @@ Result<Solid> closed_mesh_solid(std::span<const Vec3> vertices, std::span<const 
                       "counter-clockwise seen from outside",
                       sum.volume(), surface.name(0));
   }
-  if (const Error error = check_covered_once(surface); error.code != ErrorCode::none) return error;
+  if (const Error error = check_covered_once(surface)) return error;
   return sum.solid(density);
 }
 
 Result<MassProperties> mesh_mass(std::span<const Vec3> vertices, std::span<const std::uint32_t> indices,
                                  float density) {
   const FloatMode mode;
-  if (const Error error = check_density(double(density), "kg/m^3"); error.code != ErrorCode::none)
+  if (const Error error = check_density(double(density), "kg/m^3"))
     return error;
   const Result<Solid> solid = closed_mesh_solid(vertices, indices, {}, double(density));
   if (!solid) return solid.error();

@@ -201,14 +201,14 @@ Solid sum_voxels(const VoxelGrid& grid, const std::vector<signed char>& votes, d
 Result<MassProperties> voxel_mass(std::span<const Vec3> vertices, std::span<const std::uint32_t> indices,
                                   float density, int resolution) {
   const FloatMode mode;
-  if (const Error error = check_density(double(density), "kg/m^3"); error.code != ErrorCode::none)
+  if (const Error error = check_density(double(density), "kg/m^3"))
     return error;
   if (resolution < kMinResolution || resolution > kMaxResolution) {
     return make_error(ErrorCode::invalid_argument, "resolution is %d voxels; allowed are %d to %d",
                       resolution, kMinResolution, kMaxResolution);
   }
   const TriangleSurface surface{vertices, indices, {}, {}};
-  if (const Error error = check_surface_data(surface); error.code != ErrorCode::none) return error;
+  if (const Error error = check_surface_data(surface)) return error;
   const VoxelGrid grid = make_grid(surface, resolution);
   std::vector<signed char> votes(grid.total(), 0);
   RayVotes rays(surface, grid, votes);

@@ -168,7 +168,7 @@ std::uint64_t hash_field(const HeightField& field) {
 
 Result<Geometry> cook_height_field(const HeightFieldDef& def) {
   const FloatMode mode;
-  if (const Error error = check_field(def); error.code != ErrorCode::none) return error;
+  if (const Error error = check_field(def)) return error;
   auto field = std::make_unique<HeightField>();
   field->columns = def.columns;
   field->rows = def.rows;

@@ -309,7 +309,7 @@ std::uint64_t hash_hull(const Hull& hull) {
 }  // namespace
 
 Result<Hull> build_hull(std::span<const Vec3> points) {
-  if (const Error error = check_points(points); error.code != ErrorCode::none) return error;
+  if (const Error error = check_points(points)) return error;
   const Grid grid = make_grid(points);
   if (grid.points.empty()) return span_error(GridSpan::point, points.size(), double(kMinLength));
   const double flat = 4.0 * grid.tolerance;

@@ -147,7 +147,7 @@ std::uint64_t hash_mesh(const Mesh& mesh) {
 
 Result<Geometry> cook_mesh(const MeshDef& def) {
   const FloatMode mode;
-  if (const Error error = check_mesh(def); error.code != ErrorCode::none) return error;
+  if (const Error error = check_mesh(def)) return error;
   Triangles triangles;
   if (!def.vertices.empty()) triangles = keep_proper(def);
   drop_doubles(triangles);

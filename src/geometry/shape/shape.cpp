@@ -81,26 +81,26 @@ Error check(const Box& box) {
   constexpr const char* kNames[3] = {"half_extents.x", "half_extents.y", "half_extents.z"};
   for (int axis = 0; axis < 3; ++axis) {
     const Error error = check_length("box", kNames[axis], box.half_extents[axis]);
-    if (error.code != ErrorCode::none) return error;
+    if (error) return error;
   }
   return check_range("box", "rounding", box.rounding, 0.0f, smallest(box.half_extents));
 }
 
 Error check(const Capsule& capsule) {
   const Error error = check_length("capsule", "radius", capsule.radius);
-  if (error.code != ErrorCode::none) return error;
+  if (error) return error;
   return check_range("capsule", "half_height", capsule.half_height, 0.0f, kMaxLength);
 }
 
 Error check(const Cylinder& cylinder) {
   const Error error = check_length("cylinder", "radius", cylinder.radius);
-  return error.code != ErrorCode::none ? error
+  return error ? error
                                        : check_length("cylinder", "half_height", cylinder.half_height);
 }
 
 Error check(const Cone& cone) {
   const Error error = check_length("cone", "radius", cone.radius);
-  return error.code != ErrorCode::none ? error : check_length("cone", "half_height", cone.half_height);
+  return error ? error : check_length("cone", "half_height", cone.half_height);
 }
 
 Error check(const Plane& plane) {

@@ -33,6 +33,7 @@ void adopt_columns(WorldState& state, StateColumns&& columns) {
 }
 
 void clear_reports(WorldState& state) {
+  note_change(state);
   clear_events(state.shown);
   state.events = {};
   state.problems.clear();

@@ -18,9 +18,9 @@ Error bad_decomposition(const char* what) {
 template <class Report, class Visit>
 void each_field(Report& r, Visit&& visit) {
   visit(r.mesh.open_edges);
-  visit(r.mesh.crowded_edges);
-  visit(r.mesh.turned_triangles);
-  visit(r.mesh.left_out_triangles);
+  visit(r.mesh.non_manifold_edges);
+  visit(r.mesh.flipped_triangles);
+  visit(r.mesh.degenerate_triangles);
   visit(r.mesh.openness);
   visit(r.mesh.shell);
   visit(r.size);
@@ -43,7 +43,7 @@ std::vector<std::byte> save_decomposition(const Decomposition& decomposition, st
   ByteWriter out;
   out.put(kMark);
   out.put(key);
-  each_field(decomposition.report, [&](auto field) { out.put(field); });
+  each_field(decomposition.stats, [&](auto field) { out.put(field); });
   out.put(std::uint64_t(decomposition.hulls.size()));
   for (const Geometry& hull : decomposition.hulls) write_geometry(out, hull);
   out.put(hash_bytes(out.view().data(), out.size()));
@@ -62,7 +62,7 @@ Result<Decomposition> load_decomposition(std::span<const std::byte> bytes, std::
   if (load_little<std::uint64_t>(bytes.data() + content.size()) != hash_bytes(content.data(), content.size()))
     return bad_decomposition("the bytes are damaged");
   Decomposition out;
-  each_field(out.report, [&](auto& field) { field = in.get<std::remove_reference_t<decltype(field)>>(); });
+  each_field(out.stats, [&](auto& field) { field = in.get<std::remove_reference_t<decltype(field)>>(); });
   const std::size_t count = in.get_count(1 + 2 * sizeof(std::uint64_t));
   const GeometryTable none;
   for (std::size_t i = 0; i < count; ++i) {

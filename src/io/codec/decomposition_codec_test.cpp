@@ -20,9 +20,9 @@ TEST(DecompositionCodec, GivesBackWhatWasSaved) {
   ASSERT_EQ(back->hulls.size(), made->hulls.size());
   for (std::size_t i = 0; i < made->hulls.size(); ++i)
     EXPECT_EQ(back->hulls[i].content_hash(), made->hulls[i].content_hash());
-  EXPECT_EQ(back->report.overhang_bound, made->report.overhang_bound);
-  EXPECT_EQ(back->report.solid_volume, made->report.solid_volume);
-  EXPECT_EQ(back->report.within_concavity, made->report.within_concavity);
+  EXPECT_EQ(back->stats.overhang_bound, made->stats.overhang_bound);
+  EXPECT_EQ(back->stats.solid_volume, made->stats.solid_volume);
+  EXPECT_EQ(back->stats.within_concavity, made->stats.within_concavity);
   EXPECT_EQ(save_decomposition(*back, key), bytes);
 }
 

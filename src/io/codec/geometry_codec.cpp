@@ -215,7 +215,7 @@ Error read_mesh(ByteReader& in, CookedGeometry& cooked) {
   }
   mesh->normals.resize(triangles);
   const Error e = rebuild_tree(*mesh);
-  if (e.code != ErrorCode::none) return e;
+  if (e) return e;
   connect_triangles(*mesh);
   cooked.mesh = std::move(mesh);
   return {};
@@ -294,7 +294,7 @@ Result<Geometry> read_geometry(ByteReader& in, const GeometryTable& known) {
   Error e = bad_geometry("it is of no kind that is cooked");
   if (kind == ShapeKind::hull) e = read_hull(body, *cooked);
   if (kind == ShapeKind::mesh) e = read_mesh(body, *cooked);
-  if (e.code != ErrorCode::none) return e;
+  if (e) return e;
   if (!body.finished()) return bad_geometry("there is more than its parts take");
   return Geometry(std::shared_ptr<const CookedGeometry>(std::move(cooked)));
 }

@@ -7,6 +7,7 @@
 #include "base/hash.h"
 #include "io/recording/recording.h"
 #include "io/snapshot/state_copy.h"
+#include "world/world_access.h"
 
 #include <cstdio>
 #include <cstring>
@@ -190,7 +191,7 @@ Result<Difference> first_difference(std::span<const std::byte> snapshot, const W
   if (!second) return second.error();
   for (int i = 0; i < steps; ++i) {
     Difference found;
-    if (!step_and_compare(first->state(), second->state(), seconds, found)) continue;
+    if (!step_and_compare(state_of(*first), state_of(*second), seconds, found)) continue;
     found.step = std::uint64_t(i);
     return found;
   }
@@ -211,9 +212,9 @@ Result<Difference> first_difference(std::span<const std::byte> recording, const 
   if (!plain) return plain.error();
   StateCopy before;  // the last state that is known to be the recorded one
   std::uint64_t first = 0;
-  before.keep(suspect->state());
+  before.keep(state_of(*suspect));
   for (std::uint64_t i = 0; i < opened->steps.size(); ++i) {
-    WorldState& state = suspect->state();
+    WorldState& state = state_of(*suspect);
     const RecordedStep& step = opened->steps[std::size_t(i)];
     const float seconds = play_commands(*opened, step, state);
     submit(state, Step{seconds});
@@ -224,8 +225,8 @@ Result<Difference> first_difference(std::span<const std::byte> recording, const 
       continue;
     }
     before.put_back(state);
-    before.put_back(plain->state());
-    return explain_steps(*opened, first, i, state, plain->state());
+    before.put_back(state_of(*plain));
+    return explain_steps(*opened, first, i, state, state_of(*plain));
   }
   return no_difference();
 }

@@ -2,6 +2,7 @@
 
 #include "determinism/scenes.h"
 #include "memory_sink.h"
+#include "world/world_access.h"
 
 #include <gtest/gtest.h>
 
@@ -33,14 +34,14 @@ TEST(Difference, NoneBetweenEqualWorlds) {
   Pair worlds(kScenes[1], 30);
   Difference found;
   for (int i = 0; i < 10; ++i)
-    EXPECT_FALSE(step_and_compare(worlds.a.state(), worlds.b.state(), 0.01f, found));
+    EXPECT_FALSE(step_and_compare(state_of(worlds.a), state_of(worlds.b), 0.01f, found));
 }
 
 TEST(Difference, OfAVelocityBitBetweenSteps) {
   Pair worlds(kScenes[1], 30);
-  flip_lowest_bit(worlds.b.state().rigid.bodies.motion[17].angular_velocity.z);
+  flip_lowest_bit(state_of(worlds.b).rigid.bodies.motion[17].angular_velocity.z);
   Difference found;
-  ASSERT_TRUE(step_and_compare(worlds.a.state(), worlds.b.state(), 0.01f, found));
+  ASSERT_TRUE(step_and_compare(state_of(worlds.a), state_of(worlds.b), 0.01f, found));
   EXPECT_STREQ(found.stage, "before the step");
   EXPECT_STREQ(found.column, "body_motion");
   EXPECT_EQ(found.row, 17u);
@@ -53,7 +54,7 @@ TEST(Difference, OfABitWithinAStep) {
     struct Fault {
       WorldState& state;
       const char* stage;
-    } fault{worlds.b.state(), stage};
+    } fault{state_of(worlds.b), stage};
     fault.state.stage_hook = {[](void* context, const char* now) {
                                 const Fault& f = *static_cast<Fault*>(context);
                                 if (std::strcmp(now, f.stage) == 0) {
@@ -62,7 +63,7 @@ TEST(Difference, OfABitWithinAStep) {
                               },
                               &fault};
     Difference found;
-    ASSERT_TRUE(step_and_compare(worlds.a.state(), worlds.b.state(), 0.01f, found));
+    ASSERT_TRUE(step_and_compare(state_of(worlds.a), state_of(worlds.b), 0.01f, found));
     EXPECT_STREQ(found.stage, stage);
     EXPECT_STREQ(found.column, "body_motion");
     EXPECT_EQ(found.row, 23u);
@@ -73,7 +74,7 @@ TEST(Difference, OfABitWithinAStep) {
 // Derived data is in no column: its fault shows in the first stage that makes use of it.
 TEST(Difference, OfDerivedDataShowsWhereItIsUsed) {
   Pair worlds(kScenes[1], 80);
-  BodyStore& bodies = worlds.b.state().rigid.bodies;
+  BodyStore& bodies = state_of(worlds.b).rigid.bodies;
   std::uint32_t touching = 0;
   for (std::uint32_t i = 0; i < bodies.flags.size(); ++i) {
     if (bodies.flags[i].type == BodyType::dynamic && bodies.flags[i].touched != 0) touching = i;
@@ -81,16 +82,16 @@ TEST(Difference, OfDerivedDataShowsWhereItIsUsed) {
   ASSERT_NE(touching, 0u);
   bodies.inertia[touching].inverse.xx *= 1.5f;
   Difference found;
-  ASSERT_TRUE(step_and_compare(worlds.a.state(), worlds.b.state(), 0.01f, found));
+  ASSERT_TRUE(step_and_compare(state_of(worlds.a), state_of(worlds.b), 0.01f, found));
   EXPECT_STREQ(found.stage, "solve");
 }
 
 TEST(Difference, OfLengthsNamesTheFirstRowBeyond) {
   Pair worlds(kScenes[0], 1);
-  const std::size_t count = worlds.a.state().rigid.bodies.motion.size();
+  const std::size_t count = state_of(worlds.a).rigid.bodies.motion.size();
   scenes::add_moving(worlds.b, {0, 50, 0}, Sphere{});
   Difference found;
-  ASSERT_TRUE(step_and_compare(worlds.a.state(), worlds.b.state(), 0.01f, found));
+  ASSERT_TRUE(step_and_compare(state_of(worlds.a), state_of(worlds.b), 0.01f, found));
   EXPECT_STREQ(found.column, "body_ids");
   EXPECT_EQ(found.row, count);
 }
@@ -114,7 +115,7 @@ TEST(FirstDifference, OfARecordingMadeWithAFault) {
   Recorder recorder(world, sink);
   kScenes[2].build(world);
   for (int i = 0; i < 20; ++i) {
-    if (i == 12) flip_lowest_bit(world.state().rigid.bodies.motion[5].linear_velocity.y);
+    if (i == 12) flip_lowest_bit(state_of(world).rigid.bodies.motion[5].linear_velocity.y);
     world.step(scenes::kStepSeconds);
   }
   recorder.finish();
@@ -132,7 +133,7 @@ TEST(FirstDifference, OfHiddenStateIsToldByTheNextWholeHash) {
   Recorder recorder(world, sink, {.hash_interval = 8});
   kScenes[2].build(world);
   for (int i = 0; i < 30; ++i) {
-    if (i == 12) world.state().rigid.bodies.user_data[5] ^= 1;
+    if (i == 12) state_of(world).rigid.bodies.user_data[5] ^= 1;
     world.step(scenes::kStepSeconds);
   }
   recorder.finish();

@@ -4,6 +4,7 @@
 #include "io/snapshot/motion_hash.h"
 #include "io/snapshot/snapshot.h"
 #include "io/track/track_writer.h"
+#include "world/world_access.h"
 
 #include <gyre/replay.h>
 
@@ -141,7 +142,7 @@ struct Recorder::Log final : CommandLog {
 };
 
 Recorder::Recorder(World& world, ByteSink& sink, const RecordOptions& options)
-    : log_(std::make_unique<Log>(world.state(), sink, options)) {
+    : log_(std::make_unique<Log>(state_of(world), sink, options)) {
   Log& log = *log_;
   // A world is recorded once at a time.
   if (log.state->log != nullptr || log.state->stepping || !can_record(options)) {

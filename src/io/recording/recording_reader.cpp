@@ -2,6 +2,7 @@
 #include "io/recording/recording.h"
 
 #include "io/snapshot/motion_hash.h"
+#include "world/world_access.h"
 
 namespace gyre {
 
@@ -50,7 +51,7 @@ class Opener {
  private:
   bool take_snapshot(const Chunk& chunk) {
     StateColumns columns;
-    if (read_snapshot(chunk.payload, 1, recording_.geometry, columns).code != ErrorCode::none) return false;
+    if (read_snapshot(chunk.payload, 1, recording_.geometry, columns)) return false;
     if (recording_.first_snapshot.empty()) {
       recording_.first_snapshot = chunk.payload;
       return true;
@@ -112,7 +113,7 @@ Result<Recording> open_recording(std::vector<std::byte> bytes) {
   recording.bytes = std::move(bytes);
   ChunkReader reader(recording.bytes);
   const Error e = reader.read_header();
-  if (e.code != ErrorCode::none) return e;
+  if (e) return e;
   if (reader.layout() != recording_layout(false) && reader.layout() != recording_layout(true)) {
     return make_error(
         ErrorCode::unsupported,
@@ -133,14 +134,14 @@ Result<Recording> open_recording(std::vector<std::byte> bytes) {
 
 Result<World> make_recorded_world(const Recording& recording, const WorldDef& def) {
   Error e = check_world_def(def);
-  if (e.code != ErrorCode::none) return e;
+  if (e) return e;
   std::unique_ptr<WorldState> state = make_world_state(def);
   GeometryTable geometry = recording.geometry;
   StateColumns columns;
   e = read_snapshot(recording.first_snapshot, state->number, geometry, columns);
-  if (e.code != ErrorCode::none) return e;
+  if (e) return e;
   adopt_columns(*state, std::move(columns));
-  return World(std::move(state));
+  return WorldAccess::make(std::move(state));
 }
 
 bool has_recorded_hash(const RecordedStep& step, const WorldState& state) {
@@ -154,7 +155,7 @@ float play_commands(const Recording& recording, const RecordedStep& step, WorldS
     if (chunk.kind == ChunkKind::snapshot) {
       GeometryTable geometry = recording.geometry;
       StateColumns columns;
-      if (read_snapshot(chunk.payload, state.number, geometry, columns).code == ErrorCode::none) {
+      if (read_snapshot(chunk.payload, state.number, geometry, columns).ok()) {
         adopt_columns(state, std::move(columns));
       }
       continue;

@@ -1,6 +1,7 @@
 #include "io/recording/recording.h"
 
 #include "determinism/record_scene.h"
+#include "world/world_access.h"
 
 #include <gtest/gtest.h>
 
@@ -138,11 +139,11 @@ std::vector<std::byte> record_with_fault(int steps, const RecordOptions& options
 }
 
 void change_velocity(World& world) {
-  float& value = world.state().rigid.bodies.motion[world.state().rigid.bodies.awake.back()].linear_velocity.x;
+  float& value = state_of(world).rigid.bodies.motion[state_of(world).rigid.bodies.awake.back()].linear_velocity.x;
   value = __builtin_bit_cast(float, __builtin_bit_cast(std::uint32_t, value) ^ 1u);
 }
 // Nothing moves otherwise for it.
-void change_hidden(World& world) { world.state().rigid.bodies.user_data[3] ^= 1; }
+void change_hidden(World& world) { state_of(world).rigid.bodies.user_data[3] ^= 1; }
 
 TEST(Replay, TellsAnotherMotionInTheVeryStep) {
   for (const std::uint32_t interval : {1u, 16u, 1000u})

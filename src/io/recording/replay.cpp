@@ -1,6 +1,7 @@
 // The player. Going back is restoring the nearest keyframe before, which were kept while playing, and playing on from it.
 #include "io/recording/recording.h"
 #include "io/snapshot/state_copy.h"
+#include "world/world_access.h"
 
 namespace gyre {
 
@@ -65,12 +66,12 @@ struct Replay::Player {
 
   bool step(bool* matches) {
     if (position >= recording.steps.size()) return false;
-    keyframes.offer(position, world.state());
+    keyframes.offer(position, state_of(world));
     const RecordedStep& step = recording.steps[std::size_t(position)];
-    const float seconds = play_commands(recording, step, world.state());
-    submit(world.state(), Step{seconds});
+    const float seconds = play_commands(recording, step, state_of(world));
+    submit(state_of(world), Step{seconds});
     ++position;
-    if (matches != nullptr) *matches = has_recorded_hash(step, world.state());
+    if (matches != nullptr) *matches = has_recorded_hash(step, state_of(world));
     return true;
   }
 };
@@ -103,7 +104,7 @@ Error Replay::seek(std::uint64_t step) {
   std::uint64_t found = 0;
   const StateCopy* const frame = player.keyframes.find(step, found);
   if (frame != nullptr && (step < player.position || found > player.position)) {
-    frame->put_back(player.world.state());
+    frame->put_back(state_of(player.world));
     player.position = found;
   }
   while (player.position < step) player.step(nullptr);

@@ -1,6 +1,7 @@
 #include "io/snapshot/motion_hash.h"
 
 #include "determinism/scenes.h"
+#include "world/world_access.h"
 
 #include <gyre/replay.h>
 
@@ -29,7 +30,7 @@ void flip(T& value, int bit) {
 
 TEST(MotionHash, EveryBitOfWhatMovesMatters) {
   World world = make_pile(20);
-  WorldState& state = world.state();
+  WorldState& state = state_of(world);
   ASSERT_FALSE(state.rigid.bodies.awake.empty());
   std::set<std::uint64_t> seen{hash_motion(state)};
   const auto try_bits = [&](auto& value) {
@@ -55,7 +56,7 @@ TEST(MotionHash, IsThatOfALoadedWorldAfterTheSameStep) {
   for (int i = 0; i < 200; ++i) {
     world.step(scenes::kStepSeconds);
     loaded.step(scenes::kStepSeconds);
-    ASSERT_EQ(hash_motion(world.state()), hash_motion(loaded.state())) << i;
+    ASSERT_EQ(hash_motion(state_of(world)), hash_motion(state_of(loaded))) << i;
   }
 }
 
@@ -65,9 +66,9 @@ TEST(MotionHash, IncludesWhatFellAsleepInTheStep) {
   scenes::add_fixed(world, {}, Plane{});
   const BodyId box = scenes::add_moving(world, {0, 0.5, 0}, Box{});
   while (world.is_awake(box)) world.step(scenes::kStepSeconds);
-  const std::uint64_t hash = hash_motion(world.state());
-  world.state().rigid.bodies.places[box.index].center.x += 0.25;
-  EXPECT_NE(hash_motion(world.state()), hash);
+  const std::uint64_t hash = hash_motion(state_of(world));
+  state_of(world).rigid.bodies.places[box.index].center.x += 0.25;
+  EXPECT_NE(hash_motion(state_of(world)), hash);
 }
 
 }  // namespace

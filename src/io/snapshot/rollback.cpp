@@ -1,5 +1,6 @@
 // The ring of snapshots in memory.
 #include "io/snapshot/state_copy.h"
+#include "world/world_access.h"
 
 #include <gyre/replay.h>
 
@@ -31,7 +32,7 @@ void Rollback::save(const World& world) {
     if (slots[i].state.step_count() == step) place = i;
     slots[i].used = false;
   }
-  slots[place].state.keep(world.state());
+  slots[place].state.keep(state_of(world));
   slots[place].used = true;
   ring_->next = (place + 1) % slots.size();
 }
@@ -39,7 +40,7 @@ void Rollback::save(const World& world) {
 bool Rollback::restore(World& world, std::uint64_t step) const {
   for (const Ring::Slot& slot : ring_->slots) {
     if (!slot.used || slot.state.step_count() != step) continue;
-    slot.state.put_back(world.state());
+    slot.state.put_back(state_of(world));
     return true;
   }
   return false;

@@ -63,7 +63,7 @@ void soak(const Scene& scene, int steps) {
     const int from = step < kBack ? 0 : step - kBack;
     ring.save(world);
     ASSERT_TRUE(ring.restore(world, std::uint64_t(from)));
-    if (world.counts().bodies > 4) {
+    if (world.stats().bodies > 4) {
       world.add_impulse(scenes::body_number(world, 3 + std::size_t(step) % 2), {100, 50, 30});
       scenes::add_moving(world, {0, 3, 0}, Sphere{0.5f});
     }

@@ -3,6 +3,7 @@
 
 #include "base/hash.h"
 #include "io/codec/record_codec.h"
+#include "world/world_access.h"
 
 #include <gyre/replay.h>
 
@@ -138,7 +139,7 @@ class ColumnReader {
 
   template <class Column>
   void operator()(const char* name, Column& column) {
-    if (error_.code != ErrorCode::none) return;
+    if (error_) return;
     StoredColumn* const found = find(name);
     if constexpr (is_later_column<Column>) {
       if (found == nullptr) return column.clear();
@@ -223,10 +224,10 @@ class ColumnReader {
 Error read_columns(ByteReader& in, const GeometryTable& geometry, StateColumns& columns) {
   std::vector<StoredColumn> stored;
   const Error e = list_columns(in, stored);
-  if (e.code != ErrorCode::none) return e;
+  if (e) return e;
   ColumnReader reader(stored, geometry);
   for_each_column(columns, reader);
-  if (reader.error().code != ErrorCode::none) return reader.error();
+  if (reader.error()) return reader.error();
   for (const StoredColumn& column : stored) {
     if (column.used) continue;
     return make_error(ErrorCode::unsupported, "snapshot: column '%.*s' is not known to this version",
@@ -287,11 +288,11 @@ Error read_snapshot(std::span<const std::byte> bytes, std::uint16_t world_number
   ByteReader in(bytes);
   std::span<const std::byte> body;
   Error e = read_header(in, body);
-  if (e.code != ErrorCode::none) return e;
+  if (e) return e;
   ByteReader parts(body);
   e = read_geometry_table(parts, geometry);
-  if (e.code == ErrorCode::none) e = read_columns(parts, geometry, columns);
-  if (e.code != ErrorCode::none) return e;
+  if (e.ok()) e = read_columns(parts, geometry, columns);
+  if (e) return e;
   columns.rigid.world_number = world_number;
   return rebuild_derived(columns.rigid);
 }
@@ -316,30 +317,30 @@ void reseal_snapshot(std::span<std::byte> bytes) {
 std::vector<std::byte> save_snapshot(const World& world) {
   ByteWriter out;
   GeometryTable geometry;
-  write_snapshot(out, world.state(), geometry);
+  write_snapshot(out, state_of(world), geometry);
   return out.take();
 }
 
 Result<World> load_snapshot(std::span<const std::byte> bytes, const WorldDef& def) {
   Error e = check_world_def(def);
-  if (e.code != ErrorCode::none) return e;
+  if (e) return e;
   std::unique_ptr<WorldState> state = make_world_state(def);
   GeometryTable geometry;
   StateColumns columns;
   e = read_snapshot(bytes, state->number, geometry, columns);
-  if (e.code != ErrorCode::none) return e;
+  if (e) return e;
   adopt_columns(*state, std::move(columns));
-  return World(std::move(state));
+  return WorldAccess::make(std::move(state));
 }
 
 Error restore_snapshot(World& world, std::span<const std::byte> bytes) {
-  WorldState& state = world.state();
+  WorldState& state = state_of(world);
   if (state.stepping) return make_error(ErrorCode::busy, "the world is in the middle of a step");
   GeometryTable geometry;
   collect_geometry(state, geometry);
   StateColumns columns;
   const Error e = read_snapshot(bytes, state.number, geometry, columns);
-  if (e.code == ErrorCode::none) adopt_columns(state, std::move(columns));
+  if (e.ok()) adopt_columns(state, std::move(columns));
   return e;
 }
 

@@ -1,6 +1,7 @@
 #include "io/snapshot/snapshot.h"
 
 #include "determinism/scenes.h"
+#include "world/world_access.h"
 
 #include <gyre/replay.h>
 
@@ -67,10 +68,10 @@ TEST(Snapshot, OfAnEmptyWorld) {
 TEST(Snapshot, SleepersStaySleepersAndWakeTogether) {
   const Scene& scene = scene_named("pusher");
   World world = make_scene(scene, 119);
-  ASSERT_LT(world.counts().awake_bodies, 15) << "the scene sleeps by now";
+  ASSERT_LT(world.stats().awake_bodies, 15) << "the scene sleeps by now";
   Result<World> loaded = load_snapshot(save_snapshot(world));
   ASSERT_TRUE(loaded) << loaded.error().message;
-  EXPECT_EQ(loaded->counts().awake_bodies, world.counts().awake_bodies);
+  EXPECT_EQ(loaded->stats().awake_bodies, world.stats().awake_bodies);
   for (int i = 119; i < 240; ++i) {
     step_scene(scene, world, i);
     step_scene(scene, *loaded, i);
@@ -249,7 +250,7 @@ TEST_F(DamagedSnapshot, SealedAgainIsRefusedOrRuns) {
 template <class Change>
 Error reload(int steps, const char* scene, Change&& change) {
   World world = make_scene(scene_named(scene), steps);
-  change(world.state().rigid);
+  change(state_of(world).rigid);
   return load_snapshot(save_snapshot(world)).error();
 }
 

@@ -1,6 +1,7 @@
 #include "io/snapshot/state_copy.h"
 
 #include "determinism/scenes.h"
+#include "world/world_access.h"
 
 #include <gtest/gtest.h>
 
@@ -57,22 +58,22 @@ TEST_P(KeptStates, ArePutBackToTheLastBit) {
   for (int i = 0; i < 60; ++i) step_scene(scene, world, i);
   const std::uint64_t hash = world.hash();
   StateCopy kept;
-  kept.keep(world.state());
+  kept.keep(state_of(world));
   EXPECT_EQ(kept.step_count(), world.step_count());
-  kept.put_back(world.state());
+  kept.put_back(state_of(world));
   EXPECT_EQ(world.hash(), hash);
   for (int i = 60; i < 120; ++i) step_scene(scene, world, i);
   const std::uint64_t later = world.hash();
-  kept.put_back(world.state());
+  kept.put_back(state_of(world));
   EXPECT_EQ(world.hash(), hash);
-  EXPECT_EQ(find_fault(world.state().rigid.contacts), nullptr);
+  EXPECT_EQ(find_fault(state_of(world).rigid.contacts), nullptr);
   for (int i = 60; i < 120; ++i) step_scene(scene, world, i);
   EXPECT_EQ(world.hash(), later);
 
   World other = *World::create();
-  kept.put_back(other.state());
+  kept.put_back(state_of(other));
   EXPECT_EQ(other.hash(), hash);
-  EXPECT_EQ(find_fault(other.state().rigid.contacts), nullptr);
+  EXPECT_EQ(find_fault(state_of(other).rigid.contacts), nullptr);
 }
 
 // Keeping one state into another leaves nothing of that.
@@ -85,11 +86,11 @@ TEST_P(KeptStates, ReplaceEachOther) {
   for (int i = 0; i < 90; ++i) {
     if (i % 30 == 0) {
       hash = world.hash();
-      kept.keep(world.state());
+      kept.keep(state_of(world));
     }
     step_scene(scene, world, i);
   }
-  kept.put_back(world.state());
+  kept.put_back(state_of(world));
   EXPECT_EQ(world.hash(), hash);
   EXPECT_EQ(world.step_count(), 60u);
 }
@@ -104,11 +105,11 @@ TEST(StateCopy, KeepsWhatWaitsForTheNextStep) {
   const BodyId low = scenes::add_fixed(world, {0, -0.99, 0}, Box{});
   scenes::add_moving(world, {0, 0, 0}, Box{});
   for (int i = 0; i < 3; ++i) world.step(scenes::kStepSeconds);
-  ASSERT_EQ(world.counts().touching, 1);
+  ASSERT_EQ(world.stats().touching, 1);
   world.remove_body(low);
   world.set_pose(wall, {{0.99, 0, 0}, {}});
   StateCopy kept;
-  kept.keep(world.state());
+  kept.keep(state_of(world));
   std::uint64_t hash = 0;
   for (int run = 0; run < 2; ++run) {
     world.step(scenes::kStepSeconds);
@@ -116,7 +117,7 @@ TEST(StateCopy, KeepsWhatWaitsForTheNextStep) {
     EXPECT_EQ(world.events().begins.size(), 1u) << run;
     if (run == 0) hash = world.hash();
     EXPECT_EQ(world.hash(), hash);
-    kept.put_back(world.state());
+    kept.put_back(state_of(world));
   }
 }
 
@@ -125,13 +126,13 @@ TEST(StateCopy, HoldsNothingOfManifoldsThatAreNotInUse) {
   World world = *World::create({.gravity = {}});
   for (int i = 0; i < 400; ++i) scenes::add_moving(world, {0.9 * i, 0.9 * i, 0}, Sphere{0.5f});
   for (int i = 0; i < 2; ++i) world.step(scenes::kStepSeconds);
-  const ManifoldCount count = count_manifolds(world.state());
+  const ManifoldCount count = count_manifolds(state_of(world));
   ASSERT_GT(count.room, 300u) << count.used;
   ASSERT_LT(count.used, 10u) << count.room;
   ColumnBytes all;
-  for_each_column(world.state(), all);
+  for_each_column(state_of(world), all);
   StateCopy kept;
-  kept.keep(world.state());
+  kept.keep(state_of(world));
   // Arrays begin on cache lines of their own and grow by an eighth.
   EXPECT_LT(kept.bytes(), (all.bytes - count.room * sizeof(Manifold)) * 9 / 8 + 32 * 128);
 }

@@ -64,7 +64,7 @@ struct PoseTrack::Reader {
 bool PoseTrack::Reader::take_start(const Chunk& chunk, Error& why) {
   if (started) return false;
   why = read_track_start(chunk.payload, start);
-  started = why.code == ErrorCode::none;
+  started = why.ok();
   return started;
 }
 
@@ -151,11 +151,11 @@ Result<PoseTrack> PoseTrack::open(std::vector<std::byte> bytes) {
   reader->bytes = std::move(bytes);
   ChunkReader chunks(reader->bytes);
   Error why = chunks.read_header();
-  if (why.code != ErrorCode::none) return why;
+  if (why) return why;
   Chunk chunk;
   while (chunks.next(chunk) && reader->take(chunk, why)) {
   }
-  if (why.code != ErrorCode::none) return why;
+  if (why) return why;
   if (reader->frames.empty()) {
     if (reader->closed && !reader->started) {
       return make_error(ErrorCode::unsupported,

@@ -144,7 +144,7 @@ TEST(Track, OfAThousandTumblingBoxesTakesFewerThanSixBytesABodyAndFrame) {
   std::size_t moved = 0;
   for (int i = 0; i < 300; ++i) {
     world.step(1.0f / 60);
-    moved += std::size_t(world.counts().awake_bodies);
+    moved += std::size_t(world.stats().awake_bodies);
   }
   EXPECT_TRUE(recorder.finish());
   EXPECT_GT(moved, 250'000u);
@@ -161,7 +161,7 @@ TEST(Track, SleepingAndFixedBodiesCostNothing) {
   scenes::add_fixed(world, {}, Plane{});
   for (int i = 0; i < 500; ++i) scenes::add_moving(world, {2.0 * i, 0.5, 0}, Box{});
   for (int i = 0; i < 200; ++i) world.step(1.0f / 60);
-  ASSERT_EQ(world.counts().awake_bodies, 0);
+  ASSERT_EQ(world.stats().awake_bodies, 0);
   MemorySink sink;
   Recorder recorder(world, sink, kPosesOnly);
   const std::size_t before = sink.bytes.size();

@@ -439,7 +439,7 @@ void finish_spring_systems(const SmoothMotion& motion, int begin, int end) {
   }
 }
 
-void finish_springs(RigidWorld& w, const SmoothMotion& motion, StepReport& report) {
+void finish_springs(RigidWorld& w, const SmoothMotion& motion, StepStats& report) {
   const auto finish = [&](const SmoothSpring& spring) {
     JointRecord& joint = w.joints.records[spring.joint];
     joint.total_linear = to_float(spring.total) + Vec3{};

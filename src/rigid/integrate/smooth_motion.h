@@ -49,6 +49,6 @@ void move_coupled_spring_systems(const SmoothMotion& motion, int begin, int end)
 void apply_spring_impulses(SmoothMotion& motion, int begin, int end);
 
 // What springs gave, into their joints; what the plan did, into the report.
-void finish_springs(RigidWorld& w, const SmoothMotion& motion, StepReport& report);
+void finish_springs(RigidWorld& w, const SmoothMotion& motion, StepStats& report);
 
 }  // namespace gyre

@@ -142,7 +142,7 @@ test('contacts, events, counts, energy', () => {
   assert.equal(contacts.count, 4);
   const force = contacts.normalImpulse.reduce((sum, impulse) => sum + impulse) / second;
   close([force], [9.81 * 1000], 1);
-  assert.equal(world.counts().contactPoints, 4);
+  assert.equal(world.stats().contactPoints, 4);
   close([world.energy().potential], [1000 * 9.81 * 0.5], 0.5);
   close(world.momentum().linear, [0, 0, 0], 1e-2);
 });
@@ -348,15 +348,15 @@ test('scenes: names, meshes, forces, and what they are told to change', () => {
   assert.throws(() => api.openScene(sceneText('mesh_terrain.gyre.json')), /\.obj.*no files/);
   assert.throws(() => api.openScene(sceneText('mesh_terrain.gyre.json'), { files: { 'hills.obj': '' } }), /given were: "hills\.obj"/);
   const terrain = api.openScene(sceneText('mesh_terrain.gyre.json'), { files: meshFiles() });
-  assert.ok(terrain.counts().shapes > 1);
+  assert.ok(terrain.stats().shapes > 1);
   const scene = api.openScene(sceneText('bridge.gyre.json'), { settings: { stepping: { substeps: 9 }, gravity: [0, -1, 0], timeStep: 0.02 } });
   assert.equal(scene.substeps(), 9);
   assert.equal(scene.timeStep, 0.02);
   assert.deepEqual(scene.gravity(), [0, -1, 0]);
-  assert.equal(scene.bodyNames.length, scene.counts().bodies);
+  assert.equal(scene.bodyNames.length, scene.stats().bodies);
   assert.equal(scene.bodyName(scene.sceneBodies[3]), scene.bodyNames[3]);
   assert.equal(new Set(scene.bodyNames).size, scene.bodyNames.length);
-  assert.equal(scene.sceneJoints.length, scene.counts().joints);
+  assert.equal(scene.sceneJoints.length, scene.stats().joints);
   scene.step();
   assert.equal(scene.steps, 1);
   const again = api.openScene(scene.toJson());

@@ -42,7 +42,7 @@ export function readFlags(world: World, ids: Float64Array, types: Uint8Array): U
 }
 
 export function readStats(world: World, stepMs: number): Stats {
-  const counts = world.counts();
+  const counts = world.stats();
   const energy = world.energy();
   const momentum = world.momentum();
   return {
@@ -64,7 +64,7 @@ export function readStats(world: World, stepMs: number): Stats {
 
 // The anchors of distance joints.
 export function readLinks(world: World, origin: Vec3): Float32Array {
-  if (world.counts().joints === 0) return new Float32Array(0);
+  if (world.stats().joints === 0) return new Float32Array(0);
   const { kinds, anchors } = world.readJoints(origin);
   const links: number[] = [];
   kinds.forEach((kind, i) => {

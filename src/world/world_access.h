@@ -1,0 +1,23 @@
+// The engine's own way into a World: its state, and a World made of a state. Users have none; io and debug, which are built on
+// the state, go through here.
+#pragma once
+
+#include "world/world_state.h"
+
+#include <gyre/world.h>
+
+#include <memory>
+#include <utility>
+
+namespace gyre {
+
+struct WorldAccess {
+  static WorldState& state(World& world) { return *world.state_; }
+  static const WorldState& state(const World& world) { return *world.state_; }
+  static World make(std::unique_ptr<WorldState> state) { return World(std::move(state)); }
+};
+
+inline WorldState& state_of(World& world) { return WorldAccess::state(world); }
+inline const WorldState& state_of(const World& world) { return WorldAccess::state(world); }
+
+}  // namespace gyre
