@@ -5,9 +5,7 @@
 // frame on a and on b has its origin at the anchor, x along `axis` and z along `axis_b` as far as that is across. SI units.
 // docs/joints.md gives the equations of each kind.
 //
-// Every definition begins with the bodies `a` and `b` (a null id is the world; one must be a body) and the anchor, and ends with
-// break_force (N) and break_torque (N m), above which the joint is removed (none: it never breaks), and collide_connected, which says
-// whether the two bodies still collide with each other.
+// One of the bodies `a` and `b` must be a body. A joint that breaks is removed, and is in the step's events.
 #pragma once
 
 #include <gyre/ids.h>
@@ -106,19 +104,19 @@ enum class PathOrientation : std::uint8_t {
 
 // One common point; b turns freely about it.
 struct BallDef {
-  BodyId a{};
-  BodyId b{};
+  BodyId a{};                           // null = the world
+  BodyId b{};                           // null = the world
   DVec3 anchor{};                       // m, world: the common point
   float friction = 0.0f;                // N m, dry: against all turning
-  std::optional<float> break_force{};   // N
-  std::optional<float> break_torque{};  // N m
-  bool collide_connected = false;
+  std::optional<float> break_force{};   // N: the joint breaks above it; none = never
+  std::optional<float> break_torque{};  // N m: the joint breaks above it; none = never
+  bool collide_connected = false;       // whether a and b still collide with each other
 };
 
 // One common point and axis: b turns about `axis` of a. A door, an elbow. PhysX and Box3D: revolute.
 struct HingeDef {
-  BodyId a{};
-  BodyId b{};
+  BodyId a{};                           // null = the world
+  BodyId b{};                           // null = the world
   DVec3 anchor{};                       // m, world: the common point
   Vec3 axis{1, 0, 0};                   // world, any length; b turns positively about it by the right-hand rule
   std::optional<Limits> limits{};       // rad, of b's angle against a; none: it turns freely
@@ -128,15 +126,15 @@ struct HingeDef {
   float stiffness = 0.0f;               // N m/rad: a spring to angle zero
   float damping = 0.0f;                 // N m s/rad
   float friction = 0.0f;                // N m, dry: against turning
-  std::optional<float> break_force{};   // N
-  std::optional<float> break_torque{};  // N m
-  bool collide_connected = false;
+  std::optional<float> break_force{};   // N: the joint breaks above it; none = never
+  std::optional<float> break_torque{};  // N m: the joint breaks above it; none = never
+  bool collide_connected = false;       // whether a and b still collide with each other
 };
 
 // b slides along `axis` of a and does not turn against it. A piston, a lift. PhysX and Box3D: prismatic.
 struct SliderDef {
-  BodyId a{};
-  BodyId b{};
+  BodyId a{};                           // null = the world
+  BodyId b{};                           // null = the world
   DVec3 anchor{};                       // m, world: the common point
   Vec3 axis{1, 0, 0};                   // world, any length: positive travel of b
   std::optional<Limits> limits{};       // m, of b's travel; none: it slides freely
@@ -146,27 +144,27 @@ struct SliderDef {
   float stiffness = 0.0f;               // N/m: a spring to travel zero
   float damping = 0.0f;                 // N s/m
   float friction = 0.0f;                // N, dry: against sliding
-  std::optional<float> break_force{};   // N
-  std::optional<float> break_torque{};  // N m
-  bool collide_connected = false;
+  std::optional<float> break_force{};   // N: the joint breaks above it; none = never
+  std::optional<float> break_torque{};  // N m: the joint breaks above it; none = never
+  bool collide_connected = false;       // whether a and b still collide with each other
 };
 
 // b keeps its pose in a. Box3D: weld.
 struct FixedDef {
-  BodyId a{};
-  BodyId b{};
+  BodyId a{};                           // null = the world
+  BodyId b{};                           // null = the world
   DVec3 anchor{};                       // m, world: where force and torque of the joint are measured
-  std::optional<float> break_force{};   // N
-  std::optional<float> break_torque{};  // N m
-  bool collide_connected = false;
+  std::optional<float> break_force{};   // N: the joint breaks above it; none = never
+  std::optional<float> break_torque{};  // N m: the joint breaks above it; none = never
+  bool collide_connected = false;       // whether a and b still collide with each other
 };
 
 // A rod, rope or spring between two points. With none of the lengths and none of the spring's fields it is a rod of the present
 // length. min_length and max_length make a rope (a gap within which nothing acts); stiffness, damping or frequency make a Hooke
 // spring of rest length `length`.
 struct DistanceDef {
-  BodyId a{};
-  BodyId b{};
+  BodyId a{};                           // null = the world
+  BodyId b{};                           // null = the world
   DVec3 anchor{};                       // m, world: the point on a
   std::optional<DVec3> anchor_b{};      // m, world: the point on b; none = b's origin
   std::optional<float> length{};        // m, of the rod, or the spring at rest; none = as it is
@@ -178,15 +176,15 @@ struct DistanceDef {
   // along the line at this frequency.
   std::optional<float> frequency{};
   float damping_ratio = 0.0f;           // with frequency: 1 = critical damping
-  std::optional<float> break_force{};   // N
-  std::optional<float> break_torque{};  // N m
-  bool collide_connected = false;
+  std::optional<float> break_force{};   // N: the joint breaks above it; none = never
+  std::optional<float> break_torque{};  // N m: the joint breaks above it; none = never
+  bool collide_connected = false;       // whether a and b still collide with each other
 };
 
 // A ball whose swing stays within an ellipse and whose twist within limits: a shoulder. Jolt: SwingTwist.
 struct ConeDef {
-  BodyId a{};
-  BodyId b{};
+  BodyId a{};                           // null = the world
+  BodyId b{};                           // null = the world
   DVec3 anchor{};                       // m, world: the common point
   Vec3 axis{1, 0, 0};                   // world, any length: the middle of the cone, along the limb; x of the joint's frame
   std::optional<Vec3> axis_b{};         // world: z of the joint's frame; none = any direction across `axis`
@@ -200,15 +198,15 @@ struct ConeDef {
   float damping = 0.0f;                 // N m s/rad
   float friction = 0.0f;                // N m, dry: against all turning
   PoseDrive drive{};                    // to an orientation: its turning part alone
-  std::optional<float> break_force{};   // N
-  std::optional<float> break_torque{};  // N m
-  bool collide_connected = false;
+  std::optional<float> break_force{};   // N: the joint breaks above it; none = never
+  std::optional<float> break_torque{};  // N m: the joint breaks above it; none = never
+  bool collide_connected = false;       // whether a and b still collide with each other
 };
 
 // One common point; b turns about `axis`, fixed in a, and about `axis_b`, fixed in b, which keep their angle. A cardan shaft.
 struct UniversalDef {
-  BodyId a{};
-  BodyId b{};
+  BodyId a{};                           // null = the world
+  BodyId b{};                           // null = the world
   DVec3 anchor{};                       // m, world: the common point
   Vec3 axis{1, 0, 0};                   // world, any length: fixed in a
   std::optional<Vec3> axis_b{};         // world: fixed in b, 10 degrees or more from `axis`; none = any direction across it
@@ -220,15 +218,15 @@ struct UniversalDef {
   float damping = 0.0f;                 // N m s/rad
   float friction = 0.0f;                // N m, dry: about `axis`
   JointAxisDef angular_z{};             // all that acts about `axis_b`; locked means free here
-  std::optional<float> break_force{};   // N
-  std::optional<float> break_torque{};  // N m
-  bool collide_connected = false;
+  std::optional<float> break_force{};   // N: the joint breaks above it; none = never
+  std::optional<float> break_torque{};  // N m: the joint breaks above it; none = never
+  bool collide_connected = false;       // whether a and b still collide with each other
 };
 
 // Each of the six axes of the joint's frame as it is told (see JointAxis); what is not told is locked. PhysX: D6.
 struct SixDofDef {
-  BodyId a{};
-  BodyId b{};
+  BodyId a{};                           // null = the world
+  BodyId b{};                           // null = the world
   DVec3 anchor{};                       // m, world: the origin of the frame
   Vec3 axis{1, 0, 0};                   // world, any length: x of the frame
   std::optional<Vec3> axis_b{};         // world: z of the frame as far as it is across; none = any direction across `axis`
@@ -238,56 +236,56 @@ struct SixDofDef {
   JointAxisDef angular_x{};             // rad, N m
   JointAxisDef angular_y{};
   JointAxisDef angular_z{};
-  std::optional<float> break_force{};   // N
-  std::optional<float> break_torque{};  // N m
-  bool collide_connected = false;
+  std::optional<float> break_force{};   // N: the joint breaks above it; none = never
+  std::optional<float> break_torque{};  // N m: the joint breaks above it; none = never
+  bool collide_connected = false;       // whether a and b still collide with each other
 };
 
 // a's turning about `axis` is -ratio times b's turning about `axis_b`, both against the world. Both wheels want bearings: hinges.
 struct GearDef {
-  BodyId a{};
-  BodyId b{};
+  BodyId a{};                           // null = the world
+  BodyId b{};                           // null = the world
   DVec3 anchor{};                       // m, world: where force and torque of the joint are measured
   Vec3 axis{1, 0, 0};                   // world, any length: the shaft of a
   std::optional<Vec3> axis_b{};         // world: the shaft of b; none = as `axis`
   float ratio = 1.0f;                   // not 0: b's teeth over a's; negative where they turn the same way
-  std::optional<float> break_force{};   // N
-  std::optional<float> break_torque{};  // N m
-  bool collide_connected = false;
+  std::optional<float> break_force{};   // N: the joint breaks above it; none = never
+  std::optional<float> break_torque{};  // N m: the joint breaks above it; none = never
+  bool collide_connected = false;       // whether a and b still collide with each other
 };
 
 // b, the rack, travels along `axis_b` by ratio times a's turning about `axis`. Both want bearings: a hinge and a slider.
 struct RackAndPinionDef {
-  BodyId a{};
-  BodyId b{};
+  BodyId a{};                           // null = the world
+  BodyId b{};                           // null = the world
   DVec3 anchor{};                       // m, world: where force and torque of the joint are measured
   Vec3 axis{1, 0, 0};                   // world, any length: the shaft of the pinion, a
   std::optional<Vec3> axis_b{};         // world: along the rack, b; across `axis`. It must be given
   float ratio = 1.0f;                   // m/rad, not 0: the pinion's radius
-  std::optional<float> break_force{};   // N
-  std::optional<float> break_torque{};  // N m
-  bool collide_connected = false;
+  std::optional<float> break_force{};   // N: the joint breaks above it; none = never
+  std::optional<float> break_torque{};  // N m: the joint breaks above it; none = never
+  bool collide_connected = false;       // whether a and b still collide with each other
 };
 
 // A rope from a over two points of the world to b: |a's part| + ratio |b's part| <= length. It pulls and never pushes.
 struct PulleyDef {
-  BodyId a{};                           // both must be bodies
-  BodyId b{};
+  BodyId a{};                           // must be a body
+  BodyId b{};                           // must be a body
   DVec3 anchor{};                       // m, world: the point on a
   std::optional<DVec3> anchor_b{};      // m, world: the point on b; none = b's origin
   DVec3 ground_a{};                     // m, world, fixed: the point that a's part of the rope runs over
   DVec3 ground_b{};                     // m, world, fixed: the point that b's part of the rope runs over
   float ratio = 1.0f;                   // above 0: how much b's part counts
   std::optional<float> length{};        // m, of the whole rope; none = as it is
-  std::optional<float> break_force{};   // N
-  std::optional<float> break_torque{};  // N m
-  bool collide_connected = false;
+  std::optional<float> break_force{};   // N: the joint breaks above it; none = never
+  std::optional<float> break_torque{};  // N m: the joint breaks above it; none = never
+  bool collide_connected = false;       // whether a and b still collide with each other
 };
 
 // b, the wheel, spins about `axis_b`, is sprung along `axis` of a, the chassis, and is steered about `axis`.
 struct WheelDef {
-  BodyId a{};
-  BodyId b{};
+  BodyId a{};                           // null = the world
+  BodyId b{};                           // null = the world
   DVec3 anchor{};                       // m, world: the middle of the wheel
   Vec3 axis{1, 0, 0};                   // world, any length: of suspension and steering, from the ground up
   std::optional<Vec3> axis_b{};         // world: what the wheel spins about, 10 degrees or more from `axis`; none = any across it
@@ -299,15 +297,15 @@ struct WheelDef {
   Motor motor{};                        // rad/s, rad, N m, of the spin; none by default
   float friction = 0.0f;                // N m, dry, of the spin: a brake
   JointAxisDef steering{};              // rad, N m, about `axis`; locked by default: it does not steer
-  std::optional<float> break_force{};   // N
-  std::optional<float> break_torque{};  // N m
-  bool collide_connected = false;
+  std::optional<float> break_force{};   // N: the joint breaks above it; none = never
+  std::optional<float> break_torque{};  // N m: the joint breaks above it; none = never
+  bool collide_connected = false;       // whether a and b still collide with each other
 };
 
 // A point of b stays on a curve that is fixed in a: a smooth curve (Catmull-Rom) through `points`.
 struct PathDef {
-  BodyId a{};
-  BodyId b{};
+  BodyId a{};                           // null = the world
+  BodyId b{};                           // null = the world
   DVec3 anchor{};                       // m, world: the point of b; the curve must pass near it
   // m, from the anchor, world axes; 2 to kMostPathPoints, a closed curve at least 3; no two neighbours alike.
   std::vector<Vec3> points{};
@@ -320,34 +318,34 @@ struct PathDef {
   float stiffness = 0.0f;               // N/m: a spring to the place when added
   float damping = 0.0f;                 // N s/m
   float friction = 0.0f;                // N, dry: against motion along the curve
-  std::optional<float> break_force{};   // N
-  std::optional<float> break_torque{};  // N m
-  bool collide_connected = false;
+  std::optional<float> break_force{};   // N: the joint breaks above it; none = never
+  std::optional<float> break_torque{};  // N m: the joint breaks above it; none = never
+  bool collide_connected = false;       // whether a and b still collide with each other
 };
 constexpr int kMostPathPoints = 4096;
 
 // A point of b is dragged with a limited force, as by a mouse. World::set_drive moves it.
 struct MouseDef {
-  BodyId a{};                           // usually null: the world
-  BodyId b{};
+  BodyId a{};                           // null = the world, as it usually is
+  BodyId b{};                           // null = the world
   DVec3 anchor{};                       // m, world: the point of b
   PoseDrive drive{};                    // its position, linear_velocity, frequency, damping_ratio and max_force
-  std::optional<float> break_force{};   // N
-  std::optional<float> break_torque{};  // N m
-  bool collide_connected = false;
+  std::optional<float> break_force{};   // N: the joint breaks above it; none = never
+  std::optional<float> break_torque{};  // N m: the joint breaks above it; none = never
+  bool collide_connected = false;       // whether a and b still collide with each other
 };
 
 // b is driven to a pose in a with a limited force and torque. World::set_drive moves the pose.
 struct MotorDef {
-  BodyId a{};
-  BodyId b{};
+  BodyId a{};                           // null = the world
+  BodyId b{};                           // null = the world
   DVec3 anchor{};                       // m, world: the origin of the joint's frames
   Vec3 axis{1, 0, 0};                   // world, any length: x of the frames
   std::optional<Vec3> axis_b{};         // world: z of the frames as far as it is across; none = any direction across `axis`
   PoseDrive drive{};                    // the pose, and how hard b is driven to it
-  std::optional<float> break_force{};   // N
-  std::optional<float> break_torque{};  // N m
-  bool collide_connected = false;
+  std::optional<float> break_force{};   // N: the joint breaks above it; none = never
+  std::optional<float> break_torque{};  // N m: the joint breaks above it; none = never
+  bool collide_connected = false;       // whether a and b still collide with each other
 };
 
 // A definition of any kind, in the order of JointKind.
