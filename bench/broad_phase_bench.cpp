@@ -27,7 +27,7 @@ using namespace gyre;
 enum class Layout { uniform, clustered, unequal };
 constexpr const char* kLayoutNames[] = {"uniform", "clustered", "unequal"};
 
-constexpr double kMostSeconds = 2.5;  // a step; the next larger world is then left out
+constexpr double kMaxSeconds = 2.5;  // a step; the next larger world is then left out
 constexpr int kShare = 5;             // one in so many bodies changes its box in a step
 constexpr std::int64_t kCounts[] = {100, 300, 1000, 3000, 10000, 30000, 100000, 300000, 1000000};
 
@@ -106,7 +106,7 @@ void run(benchmark::State& state, BroadPhaseKind kind, Layout layout) {
   // The slowest step of each broad phase and layout so far.
   static std::map<std::pair<BroadPhaseKind, Layout>, double> slowest;
   double& seconds = slowest[{kind, layout}];
-  if (seconds > kMostSeconds) {
+  if (seconds > kMaxSeconds) {
     state.SkipWithError("left out: a smaller world took too long a step");
     return;
   }

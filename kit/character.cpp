@@ -8,7 +8,7 @@ namespace gyre::kit {
 
 namespace {
 
-constexpr int kMostPlanes = 6;
+constexpr int kMaxPlanes = 6;
 
 Error refuse(const char* what, double value, double low, double high) {
   return make_error(ErrorCode::invalid_argument, "character: %s is %g; it must lie within %g and %g", what,
@@ -100,10 +100,10 @@ class Mover {
   }
 
   void slide(Vec3 way) {
-    Vec3 planes[kMostPlanes];
+    Vec3 planes[kMaxPlanes];
     int count = 0;
     const Vec3 first = way;
-    for (int round = 0; round < kMostPlanes; ++round) {
+    for (int round = 0; round < kMaxPlanes; ++round) {
       if (!(length_squared(way) > 1.0e-14f)) return;
       WalkHit hit;
       way = way - walk_.go(s_.feet, way, hit);

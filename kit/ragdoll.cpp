@@ -241,8 +241,8 @@ MassProperties bone_mass(const BoneDef& bone) {
 
 Error check_ragdoll(const RagdollDef& def) {
   const std::size_t count = def.bones.size();
-  if (count < 1 || count > std::size_t(RagdollDef::kMostBones))
-    return refuse("ragdoll: it has %d bones; 1 to %d are allowed", int(count), RagdollDef::kMostBones);
+  if (count < 1 || count > std::size_t(RagdollDef::kMaxBones))
+    return refuse("ragdoll: it has %d bones; 1 to %d are allowed", int(count), RagdollDef::kMaxBones);
   for (std::size_t i = 0; i < count; ++i) {
     const Error e = check_bone(def, i);
     if (e.code != ErrorCode::none) return e;

@@ -13,9 +13,9 @@ namespace {
 // Ratios end within this of what was asked.
 constexpr float kClose = 1.0e-4f;
 
-float raised_least(const Vec3& moments, float most_ratio) {
+float raised_least(const Vec3& moments, float max_ratio) {
   // (largest + s) <= ratio (smallest + s)
-  return most_ratio > 1.0f ? (moments.z - most_ratio * moments.x) / (most_ratio - 1.0f) : 0.0f;
+  return max_ratio > 1.0f ? (moments.z - max_ratio * moments.x) / (max_ratio - 1.0f) : 0.0f;
 }
 
 std::vector<float> shifted_masses(const RagdollDef& def, const std::vector<MassProperties>& mass,

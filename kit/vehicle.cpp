@@ -240,7 +240,7 @@ class Drive {
       rolling_[i].inertia = def_.wheels[i].inertia + h * square(def_.wheels[i].radius) * slope;
     }
     const float clutch = clutch_torque(h), gear = ratio();
-    float torque[VehicleState::kMostWheels];
+    float torque[VehicleState::kMaxWheels];
     for (std::size_t i = 0; i < count(); ++i) torque[i] = def_.wheels[i].drive * clutch * gear;
     for (const AxleDef& axle : def_.axles) {
       const float apart = s_.wheels[axle.left].spin - s_.wheels[axle.right].spin;
@@ -325,7 +325,7 @@ class Drive {
   Pose pose_;
   float mass_;
   Vec3 up_, forward_;
-  Rolling rolling_[VehicleState::kMostWheels];
+  Rolling rolling_[VehicleState::kMaxWheels];
   float side_ = 0.0f;
   float steering_ = 0.0f;  // rad
 };
@@ -354,7 +354,7 @@ Error check_wheel(const WheelDef& d) {
 
 Error check_vehicle(const VehicleDef& def) {
   const std::size_t count = def.wheels.size();
-  if (count < 1 || count > std::size_t(VehicleState::kMostWheels))
+  if (count < 1 || count > std::size_t(VehicleState::kMaxWheels))
     return refuse("the number of wheels", double(count));
   if (!(absolute(length(def.forward) - 1.0f) < 1.0e-3f) || !(absolute(length(def.up) - 1.0f) < 1.0e-3f) ||
       !(absolute(dot(def.forward, def.up)) < 1.0e-3f)) {

@@ -63,9 +63,9 @@ void read_motion(Members& members, BodyDef& def) {
   members.read("orientation", def.pose.orientation);
   members.read("linear_velocity", def.linear_velocity);
   members.read("angular_velocity", def.angular_velocity);
-  members.read("linear_damping", def.linear_damping, Range::between(0, kMostSurface));
-  members.read("angular_damping", def.angular_damping, Range::between(0, kMostSurface));
-  members.read("gravity_scale", def.gravity_scale, Range::between(-kMostSurface, kMostSurface));
+  members.read("linear_damping", def.linear_damping, Range::between(0, kMaxSurface));
+  members.read("angular_damping", def.angular_damping, Range::between(0, kMaxSurface));
+  members.read("gravity_scale", def.gravity_scale, Range::between(-kMaxSurface, kMaxSurface));
   members.read("continuous", def.continuous);
   members.read("can_sleep", def.can_sleep);
   if (const auto locked = members.find("locked")) read_locked(*locked, def.locked);

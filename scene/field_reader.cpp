@@ -72,9 +72,9 @@ void read_field_members(Members& members, FieldDef& def) {
   if (const auto bounds = members.find_value("bounds")) def.bounds = read_bounds(*bounds);
   if (const auto velocity = members.find_value("velocity"))
     def.velocity = velocity->vec3(Range::between(-1.0e6, 1.0e6));
-  members.read("density", def.density, Range::between(0, kMostDensity));
-  read_number(members, "drag_coefficient", def.drag_coefficient, Range::between(0, kMostSurface));
-  read_number(members, "linear_drag", def.linear_drag, Range::between(0, kMostSurface));
+  members.read("density", def.density, Range::between(0, kMaxDensity));
+  read_number(members, "drag_coefficient", def.drag_coefficient, Range::between(0, kMaxSurface));
+  read_number(members, "linear_drag", def.linear_drag, Range::between(0, kMaxSurface));
   read_number(members, "turbulence", def.turbulence, Range::between(0, 1000));
   read_number(members, "turbulence_length", def.turbulence_length, Range::between(1.0e-6, 1.0e9));
   read_center(members, def.center);

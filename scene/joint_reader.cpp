@@ -36,8 +36,8 @@ Motor read_motor(const Field& field) {
   members.read("target_velocity", motor.target_velocity, Range::between(-1.0e6, 1.0e6));
   members.read("target_position", motor.target_position, Range::between(-1.0e9, 1.0e9));
   members.read("max_force", motor.max_force, Range::at_least(0));
-  members.read("frequency", motor.frequency, Range::between(0, kMostSurface));
-  members.read("damping_ratio", motor.damping_ratio, Range::between(0, kMostSurface));
+  members.read("frequency", motor.frequency, Range::between(0, kMaxSurface));
+  members.read("damping_ratio", motor.damping_ratio, Range::between(0, kMaxSurface));
   members.finish();
   return motor;
 }
@@ -104,8 +104,8 @@ JointAxisDef read_axis(const Field& field, bool may_lock) {
     axis.limits = read_limits(*limits);
     axis.motion = AxisMotion::limited;
   }
-  members.read("limit_frequency", axis.limit_frequency, Range::between(0, kMostSurface));
-  members.read("limit_damping_ratio", axis.limit_damping_ratio, Range::between(0, kMostSurface));
+  members.read("limit_frequency", axis.limit_frequency, Range::between(0, kMaxSurface));
+  members.read("limit_damping_ratio", axis.limit_damping_ratio, Range::between(0, kMaxSurface));
   if (const auto motor = members.find_value("motor")) axis.motor = read_motor(*motor);
   members.read("stiffness", axis.stiffness, Range::at_least(0));
   members.read("damping", axis.damping, Range::at_least(0));
@@ -150,8 +150,8 @@ template <class Def>
 void read_limits_of(Members& members, Def& def) {
   if constexpr (requires { def.limits; }) {
     if (const auto limits = members.find_value("limits")) def.limits = read_limits(*limits);
-    members.read("limit_frequency", def.limit_frequency, Range::between(0, kMostSurface));
-    members.read("limit_damping_ratio", def.limit_damping_ratio, Range::between(0, kMostSurface));
+    members.read("limit_frequency", def.limit_frequency, Range::between(0, kMaxSurface));
+    members.read("limit_damping_ratio", def.limit_damping_ratio, Range::between(0, kMaxSurface));
   } else {
     refuse_all(members, {"limits", "limit_frequency", "limit_damping_ratio"}, "this type of joint has no limits");
   }
@@ -195,9 +195,9 @@ void read_lengths(Members& members, Def& def) {
     refuse_all(members, {"anchor_b", "length"}, "only distance joints and pulleys have this");
   }
   if constexpr (requires { def.min_length; }) {
-    members.read("frequency", def.frequency, Range::between(1.0e-6, kMostSurface));
+    members.read("frequency", def.frequency, Range::between(1.0e-6, kMaxSurface));
     if (!def.frequency) members.refuse("damping_ratio", "it goes with a frequency");
-    members.read("damping_ratio", def.damping_ratio, Range::between(0, kMostSurface));
+    members.read("damping_ratio", def.damping_ratio, Range::between(0, kMaxSurface));
     if (def.frequency && (def.stiffness || def.damping)) {
       members.need("frequency").fail("found beside stiffness or damping, of which it takes the place");
     }
@@ -245,7 +245,7 @@ void read_path(Members& members, Def& def) {
     }
     const Field points = members.need("path");
     const std::size_t count = points.array("an array of points");
-    if (count < (def.closed ? 3u : 2u) || count > std::size_t(kMostPathPoints))
+    if (count < (def.closed ? 3u : 2u) || count > std::size_t(kMaxPathPoints))
       points.expected(def.closed ? "3 to 4096 points" : "2 to 4096 points");
     for (std::size_t i = 0; i < count; ++i)
       def.points.push_back(difference(points.element(i).place(), def.anchor));
@@ -265,8 +265,8 @@ void read_drive(Members& members, Def& def) {
     drive.read("orientation", d.orientation);
     drive.read("linear_velocity", d.linear_velocity);
     drive.read("angular_velocity", d.angular_velocity);
-    drive.read("frequency", d.frequency, Range::between(0, kMostSurface));
-    drive.read("damping_ratio", d.damping_ratio, Range::between(0, kMostSurface));
+    drive.read("frequency", d.frequency, Range::between(0, kMaxSurface));
+    drive.read("damping_ratio", d.damping_ratio, Range::between(0, kMaxSurface));
     drive.read("max_force", d.max_force, Range::at_least(0));
     drive.read("max_torque", d.max_torque, Range::at_least(0));
     drive.finish();

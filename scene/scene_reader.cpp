@@ -20,12 +20,12 @@ int find_name(const NameTable& table, const Field& field, const char* what) {
 
 SurfaceFields read_surface(Members& members) {
   SurfaceFields out;
-  members.read("density", out.density, Range::between(0, kMostDensity));
-  members.read("static_friction", out.static_friction, Range::between(0, kMostSurface));
-  members.read("dynamic_friction", out.dynamic_friction, Range::between(0, kMostSurface));
+  members.read("density", out.density, Range::between(0, kMaxDensity));
+  members.read("static_friction", out.static_friction, Range::between(0, kMaxSurface));
+  members.read("dynamic_friction", out.dynamic_friction, Range::between(0, kMaxSurface));
   members.read("restitution", out.restitution, Range::between(0, 1));
-  members.read("rolling_friction", out.rolling_friction, Range::between(0, kMostSurface));
-  members.read("spinning_friction", out.spinning_friction, Range::between(0, kMostSurface));
+  members.read("rolling_friction", out.rolling_friction, Range::between(0, kMaxSurface));
+  members.read("spinning_friction", out.spinning_friction, Range::between(0, kMaxSurface));
   return out;
 }
 
@@ -129,8 +129,8 @@ void complete_friction(const SurfaceFields& given, Material& surface) {
 }
 
 void read_material(SceneReading& reading, const std::string& name, const Field& field) {
-  constexpr std::size_t kMostMaterials = 65534;  // Material::id is 16 bits wide
-  if (reading.scene.materials.size() >= kMostMaterials) field.fail("found more than 65534 materials");
+  constexpr std::size_t kMaxMaterials = 65534;  // Material::id is 16 bits wide
+  if (reading.scene.materials.size() >= kMaxMaterials) field.fail("found more than 65534 materials");
   Members members(field, "a material");
   SceneMaterial material;
   material.name = name;
@@ -159,8 +159,8 @@ void read_material_pairs(SceneReading& reading, const Field& field) {
     names.array("the names of 2 materials", 2);
     pair.a = find_name(reading.materials, names.element(0), "a material");
     pair.b = find_name(reading.materials, names.element(1), "a material");
-    members.read("static_friction", pair.static_friction, Range::between(0, kMostSurface));
-    members.read("dynamic_friction", pair.dynamic_friction, Range::between(0, kMostSurface));
+    members.read("static_friction", pair.static_friction, Range::between(0, kMaxSurface));
+    members.read("dynamic_friction", pair.dynamic_friction, Range::between(0, kMaxSurface));
     members.read("restitution", pair.restitution, Range::between(0, 1));
     members.finish();
     if (!seen.insert(std::minmax(pair.a, pair.b)).second) {
@@ -232,8 +232,8 @@ void read_scene_object(SceneReading& reading, const Field& root) {
   refuse_section(members, "liquids", "liquids");
   if (const auto fields = members.find("force_fields")) {
     const std::size_t count = fields->array("an array of force fields");
-    constexpr std::size_t kMostFields = 10000;
-    if (count > kMostFields) fields->expected("at most 10000 force fields");
+    constexpr std::size_t kMaxFields = 10000;
+    if (count > kMaxFields) fields->expected("at most 10000 force fields");
     for (std::size_t i = 0; i < count; ++i) read_field(reading, fields->element(i));
   }
   members.finish();

@@ -307,7 +307,7 @@ struct PathDef {
   BodyId a{};                           // null = the world
   BodyId b{};                           // null = the world
   DVec3 anchor{};                       // m, world: the point of b; the curve must pass near it
-  // m, from the anchor, world axes; 2 to kMostPathPoints, a closed curve at least 3; no two neighbours alike.
+  // m, from the anchor, world axes; 2 to kMaxPathPoints, a closed curve at least 3; no two neighbours alike.
   std::vector<Vec3> points{};
   bool closed = false;                  // whether the last point is joined to the first
   PathOrientation orientation = PathOrientation::free;
@@ -322,7 +322,7 @@ struct PathDef {
   std::optional<float> break_torque{};  // N m: the joint breaks above it; none = never
   bool collide_connected = false;       // whether a and b still collide with each other
 };
-constexpr int kMostPathPoints = 4096;
+constexpr int kMaxPathPoints = 4096;
 
 // A point of b is dragged with a limited force, as by a mouse. World::set_drive moves it.
 struct MouseDef {

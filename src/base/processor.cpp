@@ -54,7 +54,7 @@ int find_best() { return kLanesOfAll; }
 
 }  // namespace
 
-int most_lanes() {
+int max_lanes() {
   static const int lanes = find_most();
   return lanes;
 }

@@ -14,9 +14,9 @@ inline constexpr int kLanesOfAll = 4;
 
 // Lanes that the processor has instructions for: 16 (AVX-512 with what the kernels use of it), 8 (AVX2), or
 // kLanesOfAll.
-int most_lanes();
+int max_lanes();
 
-// Lanes with which kernels run fastest, at most most_lanes(). 16 only where they were measured to pay: on AMD's from family 1Ah on (Zen 5),
+// Lanes with which kernels run fastest, at most max_lanes(). 16 only where they were measured to pay: on AMD's from family 1Ah on (Zen 5),
 // where registers of 512 bits are as wide within, and on Intel's from Sapphire Rapids on, which do not slow down for them and are known by
 // their arithmetic of half floats. Elsewhere what they save in instructions is lost again on the way (docs/performance.md): there eight
 // lanes have kernels that use the 32 registers.
@@ -25,7 +25,7 @@ int best_lanes();
 // What somebody asked for, 0 being the best, as far as the processor has it.
 inline int lanes_for(int asked) {
   if (asked == 0) return best_lanes();
-  const int most = most_lanes();
+  const int most = max_lanes();
   return asked < most ? asked : most;
 }
 

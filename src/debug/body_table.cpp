@@ -31,7 +31,7 @@ Vec3 semi_axes(Vec3 moments, float mass) {
 }
 
 void add_body(const RigidWorld& w, std::uint32_t body, DVec3 origin, BodyTable& out) {
-  const BodyPlace& place = w.bodies.places[body];
+  const BodyPose& place = w.bodies.places[body];
   const BodyMotion& motion = w.bodies.motion[body];
   const BodyMass& mass = w.bodies.masses[body];
   const bool movable = is_movable(w.bodies.flags[body]);
@@ -47,7 +47,7 @@ void add_body(const RigidWorld& w, std::uint32_t body, DVec3 origin, BodyTable& 
   }
   append(out.velocities, motion.linear_velocity);
   append(out.spins, motion.angular_velocity);
-  const Rest rest = movable ? find_rest(w, body, length(w.settings.gravity)) : Rest{};
+  const SleepTest rest = movable ? test_sleep(w, body, length(w.settings.gravity)) : SleepTest{};
   out.speeds.push_back(rest.speed);
   out.rest_speeds.push_back(rest.rest_speed);
   out.still_times.push_back(w.bodies.sleep[body].still_time);

@@ -294,7 +294,7 @@ void Drawing::joints() {
 
 void Drawing::islands() {
   paint_.begin(DrawLayer::islands);
-  for_each_link(w_, [&](std::uint32_t a, std::uint32_t b) {
+  for_each_island_edge(w_, [&](std::uint32_t a, std::uint32_t b) {
     const std::uint32_t island = bodies_.islands[row_[a]];
     if (island == kNoIsland || bodies_.islands[row_[b]] != island) return;
     paint_.line(center(a), center(b), color_of_number(island));

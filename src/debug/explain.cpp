@@ -24,7 +24,7 @@ class Inquiry {
   bool is_awake_member(std::uint32_t body) const {
     return islands_.roots[body] == islands_.roots[body_] && w_.bodies.flags[body].awake != 0;
   }
-  std::uint32_t least_still() const;
+  std::uint32_t min_still() const;
   std::uint32_t moving_support() const;
   void find_reason(Explanation& out) const;
   void find_touching(Explanation& out) const;
@@ -45,14 +45,14 @@ AwakeReason Inquiry::own_reason(std::uint32_t body) const {
   if (flags.awake == 0) return AwakeReason::asleep;
   if (w_.settings.sleeping == 0) return AwakeReason::sleeping_off;
   if (flags.can_sleep == 0) return AwakeReason::may_not_sleep;
-  const Rest rest = find_rest(w_, body, pull_);
-  if (!rest.may && flags.touched == 0) return AwakeReason::unsupported;
+  const SleepTest rest = test_sleep(w_, body, pull_);
+  if (!rest.allowed && flags.touched == 0) return AwakeReason::unsupported;
   if (rest.speed > rest.rest_speed) return AwakeReason::moving;
   return AwakeReason::settling;
 }
 
 // Who in the island has rested for the shortest time: the whole island waits for it. Among equals the explained body.
-std::uint32_t Inquiry::least_still() const {
+std::uint32_t Inquiry::min_still() const {
   std::uint32_t least = body_;
   w_.bodies.ids.for_each_live([&](std::uint32_t i) {
     if (!is_movable(w_.bodies.flags[i]) || !is_awake_member(i)) return;
@@ -64,13 +64,13 @@ std::uint32_t Inquiry::least_still() const {
 // The lowest kinematic body that moves and that somebody of the island lies on or hangs on; the body itself if none.
 std::uint32_t Inquiry::moving_support() const {
   std::uint32_t found = body_;
-  for_each_link(w_, [&](std::uint32_t a, std::uint32_t b) {
+  for_each_island_edge(w_, [&](std::uint32_t a, std::uint32_t b) {
     if (is_movable(w_.bodies.flags[a])) {
       const std::uint32_t other = a;
       a = b;
       b = other;
     }
-    if (is_movable(w_.bodies.flags[a]) || !disturbs(w_, a)) return;
+    if (is_movable(w_.bodies.flags[a]) || !can_wake_others(w_, a)) return;
     if (islands_.roots[b] == islands_.roots[body_] && (found == body_ || a < found)) found = a;
   });
   return found;
@@ -79,7 +79,7 @@ std::uint32_t Inquiry::moving_support() const {
 void Inquiry::find_reason(Explanation& out) const {
   out.reason = own_reason(body_);
   if (out.reason != AwakeReason::settling) return;
-  const std::uint32_t least = least_still();
+  const std::uint32_t least = min_still();
   if (least != body_) {
     out.reason = AwakeReason::neighbor;
     out.cause = body_id(w_, least);
@@ -141,7 +141,7 @@ void Inquiry::answer(Explanation& out) {
   find_joints(out);
   const std::uint32_t root = islands_.roots[body_];
   if (root != kNoIsland) {
-    const Rest rest = find_rest(w_, body_, pull_);
+    const SleepTest rest = test_sleep(w_, body_, pull_);
     out.speed = rest.speed;
     out.rest_speed = rest.rest_speed;
     out.still_seconds = w_.bodies.sleep[body_].still_time;

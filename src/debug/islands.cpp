@@ -24,7 +24,7 @@ IslandMap find_islands(const RigidWorld& w) {
   map.roots.resize(count);
   map.sizes.assign(count, 0);
   for (std::uint32_t i = 0; i < count; ++i) map.roots[i] = i;
-  for_each_link(w, [&](std::uint32_t a, std::uint32_t b) {
+  for_each_island_edge(w, [&](std::uint32_t a, std::uint32_t b) {
     if (!moves(a) || !moves(b)) return;
     a = find_root(map.roots, a);
     b = find_root(map.roots, b);

@@ -1,5 +1,5 @@
 // validate: the walk over a world's structures, as the public header offers it.
-#include "world/state_walk.h"
+#include "world/validate_state.h"
 #include "world/world_state.h"
 
 #include <gyre/debug.h>
@@ -8,7 +8,7 @@ namespace gyre {
 
 Error validate(const World& world) {
   if (world.state().stepping) return make_error(ErrorCode::busy, "the world is in the middle of a step");
-  return walk_state(world.state());
+  return validate_state(world.state());
 }
 
 }  // namespace gyre

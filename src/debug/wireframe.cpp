@@ -15,15 +15,15 @@ namespace {
 // Half the side of what is shown of a plane, and its grid.
 constexpr float kPlaneHalf = 10.0f;  // m
 constexpr int kPlaneCells = 10;
-constexpr int kFewestSegments = 4;
-constexpr int kMostSegments = 1024;
+constexpr int kMinSegments = 4;
+constexpr int kMaxSegments = 1024;
 
 class Wire {
  public:
   Wire(std::vector<float>& lines, int segments)
       : lines_(lines),
-        segments_(segments < kFewestSegments ? kFewestSegments
-                                             : (segments > kMostSegments ? kMostSegments : segments)) {}
+        segments_(segments < kMinSegments ? kMinSegments
+                                             : (segments > kMaxSegments ? kMaxSegments : segments)) {}
 
   void line(Vec3 from, Vec3 to) {
     append(lines_, from);

@@ -8,7 +8,7 @@ namespace gyre {
 namespace {
 
 // Neighbours and joints that are named one by one; the rest is counted.
-constexpr std::size_t kMostNamed = 4;
+constexpr std::size_t kMaxNamed = 4;
 
 class Sentences {
  public:
@@ -148,8 +148,8 @@ void Sentences::touching() {
   if (out_.touching.empty()) return;
   add(" It touches ");
   const std::size_t all = out_.touching.size();
-  const std::size_t count = all > kMostNamed ? kMostNamed : all;
-  const std::size_t parts = all > kMostNamed ? count + 1 : count;
+  const std::size_t count = all > kMaxNamed ? kMaxNamed : all;
+  const std::size_t parts = all > kMaxNamed ? count + 1 : count;
   for (std::size_t i = 0; i < count; ++i) {
     const TouchingBody& other = out_.touching[i];
     separate(i, parts);
@@ -166,8 +166,8 @@ void Sentences::joints() {
   if (out_.joints.empty()) return;
   add(" It is pulled by ");
   const std::size_t all = out_.joints.size();
-  const std::size_t count = all > kMostNamed ? kMostNamed : all;
-  const std::size_t parts = all > kMostNamed ? count + 1 : count;
+  const std::size_t count = all > kMaxNamed ? kMaxNamed : all;
+  const std::size_t parts = all > kMaxNamed ? count + 1 : count;
   for (std::size_t i = 0; i < count; ++i) {
     const PullingJoint& joint = out_.joints[i];
     separate(i, parts);

@@ -282,7 +282,7 @@ void scale_column(const BlockColumn& column, const double* values, const double*
 template <int C>
 void solve_up(const BlockPlan& plan, const BlockColumn& column, const double* values, double* x) {
   const int size = C > 0 ? C : int(column.size);
-  double own[kMostBlockRows];
+  double own[kMaxBlockRows];
   scale_column<C>(column, values, x + column.row, own);
   for (std::uint32_t i = column.begin; i < column.end; ++i) {
     const BlockColumn& row = plan.columns[plan.entries[i].place];
@@ -296,7 +296,7 @@ void solve_up(const BlockPlan& plan, const BlockColumn& column, const double* va
 
 // The columns' neighbours as they are eliminated, by node; false if that costs too much.
 bool eliminate_all(std::span<const std::uint8_t> sizes, std::span<const BlockEdge> edges,
-                   std::uint64_t most_work, Arena& arena, std::span<std::uint32_t> place_of,
+                   std::uint64_t max_work, Arena& arena, std::span<std::uint32_t> place_of,
                    std::span<std::uint32_t> node_at, std::span<std::span<const std::uint32_t>> below,
                    std::uint64_t& work) {
   Elimination elimination(sizes, edges, arena);
@@ -308,7 +308,7 @@ bool eliminate_all(std::span<const std::uint8_t> sizes, std::span<const BlockEdg
     for (const std::uint32_t other : around) rows += sizes[other];
     const std::uint64_t own = sizes[node];
     work += own * own * own + own * own * rows + own * rows * (rows + 1) / 2;
-    if (work > most_work) return false;
+    if (work > max_work) return false;
     place_of[node] = place;
     node_at[place] = node;
     below[place] = around;
@@ -320,13 +320,13 @@ bool eliminate_all(std::span<const std::uint8_t> sizes, std::span<const BlockEdg
 }  // namespace
 
 bool plan_blocks(std::span<const std::uint8_t> sizes, std::span<const BlockEdge> edges,
-                 std::uint64_t most_work, Arena& arena, BlockPlan& plan) {
+                 std::uint64_t max_work, Arena& arena, BlockPlan& plan) {
   const std::size_t count = sizes.size();
   const std::span<std::uint32_t> place_of = arena.make<std::uint32_t>(count);
   const std::span<std::uint32_t> node_at = arena.make<std::uint32_t>(count);
   const std::span<std::span<const std::uint32_t>> below = arena.make<std::span<const std::uint32_t>>(count);
   plan = {};
-  if (!eliminate_all(sizes, edges, most_work, arena, place_of, node_at, below, plan.work)) return false;
+  if (!eliminate_all(sizes, edges, max_work, arena, place_of, node_at, below, plan.work)) return false;
   std::size_t entry_count = 0;
   for (const std::span<const std::uint32_t>& nodes : below) entry_count += nodes.size();
   const std::span<BlockColumn> columns = arena.make<BlockColumn>(count);
@@ -336,7 +336,7 @@ bool plan_blocks(std::span<const std::uint8_t> sizes, std::span<const BlockEdge>
   for (std::uint32_t place = 0; place < count; ++place) {
     BlockColumn& column = columns[place];
     column.size = sizes[node_at[place]];
-    plan.is_six = plan.is_six && column.size == kMostBlockRows;
+    plan.is_six = plan.is_six && column.size == kMaxBlockRows;
     column.row = plan.rows;
     plan.rows += column.size;
     column.diagonal = plan.values;

@@ -18,7 +18,7 @@
 
 namespace gyre {
 
-constexpr int kMostBlockRows = 6;
+constexpr int kMaxBlockRows = 6;
 
 // Two nodes whose block is not zero. Pairs may repeat; a node is not paired with itself.
 struct BlockEdge {
@@ -39,10 +39,10 @@ struct BlockPlan {
   bool is_six = false;                     // every node has six rows
 };
 
-// Plans the elimination of nodes with `sizes` rows (1 to 6). False, and no plan, once it would take more than `most_work`
+// Plans the elimination of nodes with `sizes` rows (1 to 6). False, and no plan, once it would take more than `max_work`
 // multiplications.
 bool plan_blocks(std::span<const std::uint8_t> sizes, std::span<const BlockEdge> edges,
-                 std::uint64_t most_work, Arena& arena, BlockPlan& plan);
+                 std::uint64_t max_work, Arena& arena, BlockPlan& plan);
 
 // Where the block of two nodes lies. `first_is_row`: its rows are those of `a`, otherwise those of `b`.
 struct BlockPlace {

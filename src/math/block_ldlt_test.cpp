@@ -155,7 +155,7 @@ double residual(const Matrix& m, const std::vector<double>& x, const std::vector
 
 TEST(BlockLdlt, SolvesWhatADenseOneSolves) {
   Graph mixed = tree(40, 3);
-  for (std::size_t i = 0; i < mixed.sizes.size(); ++i) mixed.sizes[i] = std::uint8_t(1 + i % kMostBlockRows);
+  for (std::size_t i = 0; i < mixed.sizes.size(); ++i) mixed.sizes[i] = std::uint8_t(1 + i % kMaxBlockRows);
   mixed.edges.push_back({0, 39});
   mixed.edges.push_back({39, 0});  // pairs may repeat
   for (const Graph& graph :
@@ -196,7 +196,7 @@ TEST(BlockLdlt, BlocksOfSixAreSolvedBitForBitAlike) {
 // Of right sides that are zero but for one node, as an impulse at a joint makes them.
 TEST(BlockLdlt, HalfASolutionOfEachTellsWhatOneIsToAnother) {
   Graph mixed = tree(40, 3);
-  for (std::size_t i = 0; i < mixed.sizes.size(); ++i) mixed.sizes[i] = std::uint8_t(1 + i % kMostBlockRows);
+  for (std::size_t i = 0; i < mixed.sizes.size(); ++i) mixed.sizes[i] = std::uint8_t(1 + i % kMaxBlockRows);
   for (const Graph& graph : {chain(12, 5), chain(17, 6, true), grid(5), mixed}) {
     Arena arena;
     BlockPlan plan;

@@ -63,7 +63,7 @@ double within_half_turn(double angle) {
 
 DQuat exponential_map(DVec3 v) {
   const double square = 0.25 * length_squared(v);  // of the half angle
-  if (square <= kMostHalfAngleSquare) {
+  if (square <= kMaxHalfAngleSquare) {
     const HalfAngle<1> half = half_angle_of(WideDouble<1>(square));
     const double s = 0.5 * half.sine_over_angle.v;
     return {s * v.x, s * v.y, s * v.z, half.cosine.v};

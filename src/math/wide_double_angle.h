@@ -8,7 +8,7 @@ namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
 // sin(a) / a and cos(a) by their series in a^2, a <= 1/2: no division, no root, nothing special at zero.
-constexpr double kMostHalfAngleSquare = 0.25;
+constexpr double kMaxHalfAngleSquare = 0.25;
 template <int H>
 struct HalfAngle {
   WideDouble<H> sine_over_angle, cosine;

@@ -107,7 +107,7 @@ template <int H>
 GYRE_INLINE DQuatW<H> exponential_map(DVec3W<H> v) {
   DQuatW<H> q;
   const WideDouble<H> square = 0.25 * dot(v, v);
-  if (H > 1 && all_at_most(square, kMostHalfAngleSquare)) {
+  if (H > 1 && all_at_most(square, kMaxHalfAngleSquare)) {
     const HalfAngle<H> half = half_angle_of(square);
     const WideDouble<H> s = 0.5 * half.sine_over_angle;
     q = {s * v.x, s * v.y, s * v.z, half.cosine};

@@ -3,11 +3,11 @@
 #include "base/container/sort.h"
 #include "collision/broadphase/fat_box.h"
 #include "collision/contact/pair_update.h"
-#include "collision/contact/seam.h"
-#include "rigid/body_looks.h"
+#include "collision/contact/internal_edges.h"
+#include "rigid/collision_bodies.h"
 #include "rigid/sleep/island.h"
 #include "rigid/store/shape_boxes.h"
-#include "task/choose.h"
+#include "task/parallel_filter.h"
 #include "task/parallel.h"
 
 namespace gyre {
@@ -74,7 +74,7 @@ void list_marked(RigidWorld& w, std::span<const std::uint32_t> bodies) {
 }
 
 // Whether the fat box did not hold its shape's way in the coming step, and is made anew.
-bool hold_way(RigidWorld& w, std::uint32_t shape, float seconds) {
+bool ensure_fat_box_covers_motion(RigidWorld& w, std::uint32_t shape, float seconds) {
   const ShapeBox box = find_box(w, shape, seconds);
   const WorldBox needed = needed_box(box.tight, box.motion);
   Proxy& proxy = w.shapes.proxies[shape];
@@ -90,23 +90,23 @@ void list_if_moving(RigidWorld& w, std::uint32_t shape) {
 }
 
 // The promise of collision/broadphase/fat_box.h as a step begins.
-void hold_ways(RigidWorld& w, TaskSystem& tasks, float seconds) {
-  if (seconds > w.shapes.fit_for) {
+void ensure_fat_boxes_cover_motion(RigidWorld& w, TaskSystem& tasks, float seconds) {
+  if (seconds > w.shapes.fat_box_horizon) {
     w.refit_marks.resize(w.shapes.colliders.size(), 0);
     for_blocks(tasks, int(w.bodies.awake.size()), kBodiesPerBlock, [&](int begin, int end, int) {
       for (int n = begin; n < end; ++n) {
         const std::uint32_t i = w.bodies.awake[n];
-        for (const ShapeId id : w.bodies.shapes[i]) w.refit_marks[id.index] = hold_way(w, id.index, seconds);
+        for (const ShapeId id : w.bodies.shapes[i]) w.refit_marks[id.index] = ensure_fat_box_covers_motion(w, id.index, seconds);
       }
     });
     list_marked(w, w.bodies.awake);
   } else {
     for (const std::uint32_t shape : w.shapes.hurried) {
       if (!w.shapes.ids.live(shape)) continue;
-      if (hold_way(w, shape, seconds)) w.shapes.changed.push_back(shape);
+      if (ensure_fat_box_covers_motion(w, shape, seconds)) w.shapes.changed.push_back(shape);
     }
   }
-  w.shapes.fit_for = seconds;
+  w.shapes.fat_box_horizon = seconds;
   w.clocks.hurried.trim(w.shapes.hurried, w.shapes.hurried.size());
   w.shapes.hurried.clear();
 }
@@ -123,7 +123,7 @@ void freeze(RigidWorld& w, std::uint32_t body) {
     Contact& contact = w.contacts.contacts[slot];
     for (Manifold& manifold : manifolds_of(w.contacts, contact)) manifold = {};
     contact.manifold_count = 0;
-    forget_look(contact);
+    invalidate_cache(contact);
   });
   for (const std::uint32_t slot : joints_of(w.bodies, body)) {
     forget_impulses(w.joints.records[slot]);
@@ -132,9 +132,9 @@ void freeze(RigidWorld& w, std::uint32_t body) {
 }
 
 // Contacts of a body that woke after they were asked: what may stop it there.
-void note_stops(RigidWorld& w, std::uint32_t body) {
+void collect_ccd_blockers(RigidWorld& w, std::uint32_t body) {
   for_each_contact_of_body(w, body, [&](std::uint32_t slot) {
-    if (stops_others(w.contacts.contacts[slot], w.shapes.proxies)) w.touches.may_stop.set(slot);
+    if (blocks_fast_bodies(w.contacts.contacts[slot], w.shapes.proxies)) w.touches.may_stop.set(slot);
   });
 }
 
@@ -161,11 +161,11 @@ void refit_shape(RigidWorld& w, std::uint32_t shape, float seconds) {
   w.shapes.changed.push_back(shape);
 }
 
-void hurry(RigidWorld& w, std::uint32_t body) {
+void mark_moved(RigidWorld& w, std::uint32_t body) {
   for (const ShapeId id : w.bodies.shapes[body]) list_if_moving(w, id.index);
 }
 
-void place_box(RigidWorld& w, std::uint32_t shape) {
+void refit_placed_shape(RigidWorld& w, std::uint32_t shape) {
   refit_shape(w, shape, 0.0f);
   list_if_moving(w, shape);
 }
@@ -183,7 +183,7 @@ void report_end(RigidWorld& w, const Contact& contact) {
 }
 
 void refit(RigidWorld& w, TaskSystem& tasks, float seconds) {
-  hold_ways(w, tasks, seconds);
+  ensure_fat_boxes_cover_motion(w, tasks, seconds);
   sort_changed(w.shapes.changed, w.new_pairs, w.sort_scratch);
   if (w.broadphase_stale) {
     w.broadphase->rebuild(w.shapes.proxies);
@@ -205,7 +205,7 @@ std::size_t find_pairs(RigidWorld& w, TaskSystem& tasks) {
   const std::size_t found = w.new_pairs.size();
   add_pairs(w.contacts, w.new_pairs, w.joints.blocked,
             [&](std::uint64_t key) { return describe_pair(w, key); });
-  find_awake_links(w);
+  find_active_constraints(w);
   w.clocks.changed.trim(w.shapes.changed, w.shapes.changed.size());
   w.shapes.changed.clear();
   w.broadphase->trim();
@@ -219,12 +219,12 @@ std::size_t find_pairs(RigidWorld& w, TaskSystem& tasks) {
 void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, RecycleContacts recycle_contacts,
                    float seconds) {
   const ArenaScope scope(arena);
-  BodyLooks bodies(w, arena, seconds);
+  CollisionBodies bodies(w, arena, seconds);
   bodies.make(tasks, arena);
-  const CollideInput input{w.shapes.colliders, bodies.looks(),         bodies.centers(), bodies.awake(),
+  const CollideInput input{w.shapes.colliders, bodies.collision_bodies(),         bodies.centers(), bodies.awake(),
                            w.shapes.proxies,   w.awake_links.contacts, recycle_contacts};
   collide(w.contacts, input, tasks, w.touches);
-  hide_seams(w.contacts, input, w.touches.beside_resting, arena, tasks, w.seams);
+  remove_internal_edge_contacts(w.contacts, input, w.touches.beside_resting, arena, tasks, w.internal_edges);
 }
 
 void link_islands(RigidWorld& w) {
@@ -240,7 +240,7 @@ void link_islands(RigidWorld& w) {
   wake_touched(w);
   refresh_awake(w.bodies);
   for (std::size_t i = told; i < w.events.sleep_changes.size(); ++i)
-    note_stops(w, w.events.sleep_changes[i].body.index);
+    collect_ccd_blockers(w, w.events.sleep_changes[i].body.index);
 }
 
 void finish_bodies(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds,
@@ -251,7 +251,7 @@ void finish_bodies(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds
     const std::uint32_t i = bodies.awake[n];
     return !finite_state(bodies.motion[i], bodies.orientations[i]);
   };
-  for (const std::uint32_t n : choose(tasks, arena, bodies.awake.size(), went_wrong).list)
+  for (const std::uint32_t n : parallel_filter(tasks, arena, bodies.awake.size(), went_wrong).list)
     frozen.push_back(bodies.awake[n]);
   for (const std::uint32_t i : frozen) freeze(w, i);
   refresh_awake(bodies);
@@ -277,12 +277,12 @@ void finish_bodies(RigidWorld& w, Arena& arena, TaskSystem& tasks, float seconds
   for (std::size_t i = 0; i < marked.size(); ++i) {
     if (marked[i]) list_marked(w, block_at(i * kBodiesPerBlock));
   }
-  w.shapes.fit_for = seconds;
+  w.shapes.fat_box_horizon = seconds;
 }
 
 void break_joints(RigidWorld& w, float seconds) {
   const auto goes = [&](std::int32_t body) {
-    return body != kNoBody && goes_along(w.bodies.flags[std::size_t(body)]);
+    return body != kNoBody && is_simulated(w.bodies.flags[std::size_t(body)]);
   };
   w.awake_links.joints.for_each_set([&](std::size_t number) {
     const auto slot = std::uint32_t(number);

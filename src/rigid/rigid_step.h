@@ -12,7 +12,7 @@ namespace gyre {
 // Kept from step to step only for its memory.
 struct ContinuousScratch {
   Array<FastBody> fast;
-  Array<KeptMotion> kept;
+  Array<SavedMotion> kept;
   Array<std::uint32_t> found;
   Bitset listed;
   Bitset near_stops;  // by shape
@@ -49,9 +49,9 @@ void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, const ContactK
 // Fits a new fat box around one shape, with its way in a step of this length, and lists it as changed.
 void refit_shape(RigidWorld& w, std::uint32_t shape, float seconds);
 // A command changed how the body moves: the coming step sees to its boxes.
-void hurry(RigidWorld& w, std::uint32_t body);
+void mark_moved(RigidWorld& w, std::uint32_t body);
 // Fits a new fat box around what a command placed, with no way yet; the coming step sees to that.
-void place_box(RigidWorld& w, std::uint32_t shape);
+void refit_placed_shape(RigidWorld& w, std::uint32_t shape);
 // Removes one contact's traces: its end-of-touch event.
 void report_end(RigidWorld& w, const Contact& contact);
 

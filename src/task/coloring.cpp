@@ -61,7 +61,7 @@ void group_by_color(int group_count, Coloring& out) {
   for (const std::uint8_t color : out.color) ++out.offsets[color + 1];
   for (int g = 0; g < group_count; ++g) out.offsets[g + 1] += out.offsets[g];
 
-  std::uint32_t next[ColoringOptions::kMostColors + 1];
+  std::uint32_t next[ColoringOptions::kMaxColors + 1];
   for (int g = 0; g < group_count; ++g) next[g] = out.offsets[g];
   for (std::size_t i = 0; i < out.color.size(); ++i) {
     out.order[next[out.color[i]]++] = static_cast<std::uint32_t>(i);
@@ -74,7 +74,7 @@ void color_constraints(std::span<const ColoringPair> pairs, std::span<const std:
                        std::uint32_t body_count, std::span<const std::uint64_t> is_static, const ColoringOptions& options,
                        Coloring& out) {
   GYRE_ASSERT(names.empty() || names.size() == pairs.size(), "each constraint has a name, or none has");
-  GYRE_ASSERT(options.max_colors >= 1 && options.max_colors <= ColoringOptions::kMostColors,
+  GYRE_ASSERT(options.max_colors >= 1 && options.max_colors <= ColoringOptions::kMaxColors,
               "a body's used colours fit in 64 bits");
   out.masks.assign(body_count, std::uint64_t{0});
   out.color.resize_uninitialized(pairs.size());

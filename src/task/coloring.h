@@ -24,9 +24,9 @@ struct ColoringPair {
 };
 
 struct ColoringOptions {
-  static constexpr int kMostColors = 64;
+  static constexpr int kMaxColors = 64;
 
-  int max_colors = 32;  // 1 to kMostColors
+  int max_colors = 32;  // 1 to kMaxColors
   // Constraints with just one moving body are coloured from the top colour downward, so they are solved last: contacts
   // with the ground then have the last word, and the ground is what must not be sunk into.
   bool statics_last = false;

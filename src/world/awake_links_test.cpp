@@ -1,8 +1,8 @@
 // What sleeps is not asked; and asking it all the same changes nothing.
-#include "rigid/store/awake_links.h"
+#include "rigid/store/active_constraints.h"
 #include "determinism/random_world.h"
 #include "determinism/scenes.h"
-#include "world/state_walk.h"
+#include "world/validate_state.h"
 #include "world/world_state.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace gyre {
 namespace {
 
-AwakeLinks& links_of(World& world) { return world.state().rigid.awake_links; }
+ActiveConstraints& links_of(World& world) { return world.state().rigid.awake_links; }
 
 // `columns` stacks of two boxes each, side by side on a thin plate.
 World make_stacks(int columns) {
@@ -22,7 +22,7 @@ World make_stacks(int columns) {
   return std::move(*world);
 }
 
-TEST(AwakeLinks, OfWhatSleepsNoneIsAsked) {
+TEST(ActiveConstraints, OfWhatSleepsNoneIsAsked) {
   World world = make_stacks(16);
   const BodyId low = scenes::add_moving(world, {-8, 0.25, 0}, Box{{0.25f, 0.25f, 0.25f}});
   const BodyId high = scenes::add_moving(world, {-8, 0.75, 0}, Box{{0.25f, 0.25f, 0.25f}});
@@ -43,7 +43,7 @@ TEST(AwakeLinks, OfWhatSleepsNoneIsAsked) {
 }
 
 // Between steps, too: a tool may look at a world before it is stepped.
-TEST(AwakeLinks, AreThoseOfABodyThatBeginsToMove) {
+TEST(ActiveConstraints, AreThoseOfABodyThatBeginsToMove) {
   World world = make_stacks(16);
   const BodyId hook = scenes::add_fixed(world, {0, 5, 8}, Sphere{0.5f});
   const JointId joint = world.add_joint(BallDef{.b = hook, .anchor = {0, 6, 8}});
@@ -51,11 +51,11 @@ TEST(AwakeLinks, AreThoseOfABodyThatBeginsToMove) {
   EXPECT_FALSE(links_of(world).joints.test(joint.index)) << "nothing can move it";
   world.set_type(hook, BodyType::dynamic);
   EXPECT_TRUE(links_of(world).joints.test(joint.index));
-  EXPECT_EQ(walk_state(world.state()).code, ErrorCode::none);
+  EXPECT_EQ(validate_state(world.state()).code, ErrorCode::none);
 }
 
 // What it bore as it fell asleep is an impulse of that step: in a shorter one it would be a larger force.
-TEST(AwakeLinks, AJointThatSleepsDoesNotBreakInAShorterStep) {
+TEST(ActiveConstraints, AJointThatSleepsDoesNotBreakInAShorterStep) {
   // Alone, and among many that fall.
   for (const int falling : {0, 16}) {
     World world = make_stacks(0);
@@ -117,14 +117,14 @@ int compare_random_worlds(std::uint32_t first, std::uint32_t count, TimeStepping
   }
   return left_out;
 }
-TEST(AwakeLinks, AskingAllIsTheSameInRandomWorlds) { EXPECT_GT(compare_random_worlds(1, 20, TimeStepping::fixed), 500); }
+TEST(ActiveConstraints, AskingAllIsTheSameInRandomWorlds) { EXPECT_GT(compare_random_worlds(1, 20, TimeStepping::fixed), 500); }
 // Whose parts of a step some may be put to sleep between.
 TEST(LongAwakeLinks, AskingAllIsTheSameInAdaptiveSteps) {
   EXPECT_GT(compare_random_worlds(100, 4, TimeStepping::adaptive), 50);
 }
 
 // What is shot out of its sleep is fast in the step in which it wakes, and the plate below is thin.
-TEST(AwakeLinks, AskingAllIsTheSameWhereSleepersAreShot) {
+TEST(ActiveConstraints, AskingAllIsTheSameWhereSleepersAreShot) {
   Twins twins(make_stacks(40), make_stacks(40));
   for (int i = 0; i < 120; ++i) twins.step([](World&) {});
   ASSERT_EQ(twins.some.counts().awake_bodies, 0);
@@ -148,7 +148,7 @@ TEST(AwakeLinks, AskingAllIsTheSameWhereSleepersAreShot) {
 
 // What is struck in its sleep and goes no farther than its fat box reaches: what stops it there must be known, though nobody asked in
 // that step. Boxes in flight, put to sleep before walls as thin as paper, which their fat boxes reach beyond.
-TEST(AwakeLinks, AskingAllIsTheSameWhereWallsStopSleepers) {
+TEST(ActiveConstraints, AskingAllIsTheSameWhereWallsStopSleepers) {
   constexpr int kBoxes = 100;
   const auto make = [] {
     Result<World> world = World::create({.gravity = {}});

@@ -18,7 +18,7 @@ namespace {
 Vec3 finite_or(Vec3 value, Vec3 otherwise) { return is_finite(value) ? value : otherwise; }
 
 // A body that a user pushes is awake.
-void stir(RigidWorld& w, std::uint32_t body) {
+void wake_if_movable(RigidWorld& w, std::uint32_t body) {
   if (is_movable(w.bodies.flags[body])) wake(w, body);
 }
 
@@ -85,8 +85,8 @@ void refresh_mass(RigidWorld& w, std::uint32_t body, const Pose& origin) {
   shift_joint_ends(w, body, mass.center - old_center);
   bodies.orientations[body] = origin.orientation;
   refresh_inertia(bodies, body);
-  for_each_contact_of_body(w, body, [&](std::uint32_t slot) { forget_look(w.contacts.contacts[slot]); });
-  hurry(w, body);
+  for_each_contact_of_body(w, body, [&](std::uint32_t slot) { invalidate_cache(w.contacts.contacts[slot]); });
+  mark_moved(w, body);
 }
 void refresh_mass(RigidWorld& w, std::uint32_t body) { refresh_mass(w, body, origin_pose(w.bodies, body)); }
 
@@ -126,14 +126,14 @@ ShapeId attach_shape(RigidWorld& w, std::uint32_t body, const ShapeDef& def) {
 }
 
 void refit_body(RigidWorld& w, std::uint32_t body) {
-  for (const ShapeId id : w.bodies.shapes[body]) place_box(w, id.index);
+  for (const ShapeId id : w.bodies.shapes[body]) refit_placed_shape(w, id.index);
 }
 
 std::uint8_t bits(const bool (&axes)[3]) {
   return std::uint8_t((axes[0] ? 1 : 0) | (axes[1] ? 2 : 0) | (axes[2] ? 4 : 0));
 }
 
-Submitted carry_out(WorldState& s, const AddBody& c) {
+CommandResult execute(WorldState& s, const AddBody& c) {
   RigidWorld& w = s.rigid;
   const BodyDef& def = c.def;
   const std::uint32_t body = add_body_slot(w.bodies).index;
@@ -164,10 +164,10 @@ Submitted carry_out(WorldState& s, const AddBody& c) {
   return {true, body_id(w, body), {}, {}};
 }
 
-Submitted carry_out(WorldState& s, const RemoveBody& c) {
+CommandResult execute(WorldState& s, const RemoveBody& c) {
   RigidWorld& w = s.rigid;
   const std::uint32_t body = c.body.index;
-  stir(w, body);
+  wake_if_movable(w, body);
   wake_neighbours(w, body);
   while (!joints_of(w.bodies, body).empty()) remove_joint(w, joints_of(w.bodies, body).front());
   for (const ShapeId id : w.bodies.shapes[body]) {
@@ -178,20 +178,20 @@ Submitted carry_out(WorldState& s, const RemoveBody& c) {
   return {true, {}, {}, {}};
 }
 
-Submitted carry_out(WorldState& s, const AddShape& c) {
+CommandResult execute(WorldState& s, const AddShape& c) {
   RigidWorld& w = s.rigid;
-  stir(w, c.body.index);
+  wake_if_movable(w, c.body.index);
   const ShapeId id = attach_shape(w, c.body.index, c.def);
   refresh_mass(w, c.body.index);
   refit_body(w, c.body.index);
   return {true, {}, id, {}};
 }
 
-Submitted carry_out(WorldState& s, const RemoveShape& c) {
+CommandResult execute(WorldState& s, const RemoveShape& c) {
   RigidWorld& w = s.rigid;
   const std::uint32_t shape = c.shape.index;
   const std::uint32_t body = w.shapes.bodies[shape];
-  stir(w, body);
+  wake_if_movable(w, body);
   wake_neighbours(w, body);
   drop_contacts(w, shape);
   erase_index(w.bodies.shapes[body], shape);
@@ -200,17 +200,17 @@ Submitted carry_out(WorldState& s, const RemoveShape& c) {
   return {true, {}, {}, {}};
 }
 
-Submitted carry_out(WorldState& s, const AddJoint& c) { return {true, {}, {}, add_joint(s.rigid, c.def)}; }
+CommandResult execute(WorldState& s, const AddJoint& c) { return {true, {}, {}, add_joint(s.rigid, c.def)}; }
 
-Submitted carry_out(WorldState& s, const RemoveJoint& c) {
+CommandResult execute(WorldState& s, const RemoveJoint& c) {
   remove_joint(s.rigid, c.joint.index);
   return {true, {}, {}, {}};
 }
 
-Submitted carry_out(WorldState& s, const SetPose& c) {
+CommandResult execute(WorldState& s, const SetPose& c) {
   RigidWorld& w = s.rigid;
   const std::uint32_t body = c.body.index;
-  stir(w, body);
+  wake_if_movable(w, body);
   wake_neighbours(w, body);
   const Pose pose{c.pose.position, normalized(c.pose.orientation)};
   w.bodies.places[body] = {pose * w.bodies.masses[body].center, pose.orientation};
@@ -221,17 +221,17 @@ Submitted carry_out(WorldState& s, const SetPose& c) {
   return {true, {}, {}, {}};
 }
 
-Submitted carry_out(WorldState& s, const SetVelocity& c) {
+CommandResult execute(WorldState& s, const SetVelocity& c) {
   RigidWorld& w = s.rigid;
   if (w.bodies.flags[c.body.index].type == BodyType::fixed) return {true, {}, {}, {}};
-  stir(w, c.body.index);
+  wake_if_movable(w, c.body.index);
   w.bodies.motion[c.body.index].linear_velocity = c.linear + Vec3{};
   w.bodies.motion[c.body.index].angular_velocity = c.angular + Vec3{};
-  hurry(w, c.body.index);
+  mark_moved(w, c.body.index);
   return {true, {}, {}, {}};
 }
 
-Submitted carry_out(WorldState& s, const MoveKinematic& c) {
+CommandResult execute(WorldState& s, const MoveKinematic& c) {
   RigidWorld& w = s.rigid;
   const std::uint32_t body = c.body.index;
   const Quat orientation = normalized(c.pose.orientation);
@@ -241,20 +241,20 @@ Submitted carry_out(WorldState& s, const MoveKinematic& c) {
   motion.linear_velocity = finite_or((1.0f / c.seconds) * difference(center, w.bodies.places[body].center) + Vec3{}, {});
   motion.angular_velocity =
       finite_or((1.0f / c.seconds) * rotation_between(w.bodies.places[body].orientation, orientation) + Vec3{}, {});
-  hurry(w, body);
+  mark_moved(w, body);
   return {true, {}, {}, {}};
 }
 
-Submitted carry_out(WorldState& s, const SetType& c) {
+CommandResult execute(WorldState& s, const SetType& c) {
   RigidWorld& w = s.rigid;
   const std::uint32_t body = c.body.index;
   if (w.bodies.flags[body].type == c.type) return {true, {}, {}, {}};
-  stir(w, body);
+  wake_if_movable(w, body);
   wake_neighbours(w, body);
   for (const ShapeId id : w.bodies.shapes[body]) drop_contacts(w, id.index);
   w.bodies.flags[body].type = c.type;
   w.bodies.flags[body].awake = 1;
-  add_awake_links(w, body);
+  activate_constraints_of(w, body);
   w.bodies.flags[body].frozen = 0;
   w.bodies.sleep[body] = {};
   if (c.type == BodyType::fixed) stop(w.bodies.motion[body]);
@@ -265,17 +265,17 @@ Submitted carry_out(WorldState& s, const SetType& c) {
   return {true, {}, {}, {}};
 }
 
-Submitted carry_out(WorldState& s, const SetGravity& c) {
+CommandResult execute(WorldState& s, const SetGravity& c) {
   if (s.rigid.settings.gravity != c.gravity) wake_all(s.rigid);
   s.rigid.settings.gravity = c.gravity;
   return {true, {}, {}, {}};
 }
-Submitted carry_out(WorldState& s, const SetGravityScale& c) {
-  stir(s.rigid, c.body.index);
+CommandResult execute(WorldState& s, const SetGravityScale& c) {
+  wake_if_movable(s.rigid, c.body.index);
   s.rigid.bodies.forces[c.body.index].gravity_scale = c.scale;
   return {true, {}, {}, {}};
 }
-Submitted carry_out(WorldState& s, const SetDamping& c) {
+CommandResult execute(WorldState& s, const SetDamping& c) {
   s.rigid.bodies.forces[c.body.index].linear_damping = c.linear;
   s.rigid.bodies.forces[c.body.index].angular_damping = c.angular;
   return {true, {}, {}, {}};
@@ -288,15 +288,15 @@ void remix(RigidWorld& w, std::uint32_t shape) {
     contact.surface = combine_materials(w, w.shapes.materials[contact.shape_a], w.shapes.materials[contact.shape_b]);
   });
 }
-Submitted carry_out(WorldState& s, const SetMaterial& c) {
+CommandResult execute(WorldState& s, const SetMaterial& c) {
   RigidWorld& w = s.rigid;
   w.shapes.materials.set(c.shape.index, c.material);
   remix(w, c.shape.index);
-  stir(w, w.shapes.bodies[c.shape.index]);
+  wake_if_movable(w, w.shapes.bodies[c.shape.index]);
   wake_neighbours(w, w.shapes.bodies[c.shape.index]);
   return {true, {}, {}, {}};
 }
-Submitted carry_out(WorldState& s, const SetMaterialPair& c) {
+CommandResult execute(WorldState& s, const SetMaterialPair& c) {
   RigidWorld& w = s.rigid;
   MaterialPair pair = c.pair;
   if (pair.a > pair.b) {
@@ -317,7 +317,7 @@ Submitted carry_out(WorldState& s, const SetMaterialPair& c) {
   wake_all(w);
   return {true, {}, {}, {}};
 }
-Submitted carry_out(WorldState& s, const SetSurfaceRule& c) {
+CommandResult execute(WorldState& s, const SetSurfaceRule& c) {
   Array<SurfaceRule>& rules = s.rigid.surface_rules;
   std::size_t at = 0;
   while (at < rules.size() && rules[at].id < c.rule.id) ++at;
@@ -329,51 +329,51 @@ Submitted carry_out(WorldState& s, const SetSurfaceRule& c) {
   wake_all(s.rigid);
   return {true, {}, {}, {}};
 }
-Submitted carry_out(WorldState& s, const SetFilter& c) {
+CommandResult execute(WorldState& s, const SetFilter& c) {
   RigidWorld& w = s.rigid;
   const std::uint32_t shape = c.shape.index;
-  stir(w, w.shapes.bodies[shape]);
+  wake_if_movable(w, w.shapes.bodies[shape]);
   wake_neighbours(w, w.shapes.bodies[shape]);
   drop_contacts(w, shape);
   w.shapes.proxies[shape].filter = c.filter;
-  place_box(w, shape);
+  refit_placed_shape(w, shape);
   return {true, {}, {}, {}};
 }
-Submitted carry_out(WorldState& s, const SetMotor& c) {
+CommandResult execute(WorldState& s, const SetMotor& c) {
   set_motor(s.rigid, c.joint.index, c.motor);
   return {true, {}, {}, {}};
 }
-Submitted carry_out(WorldState& s, const SetJointAxis& c) {
+CommandResult execute(WorldState& s, const SetJointAxis& c) {
   set_joint_axis(s.rigid, c.joint.index, c.axis, c.def);
   return {true, {}, {}, {}};
 }
-Submitted carry_out(WorldState& s, const SetDrive& c) {
+CommandResult execute(WorldState& s, const SetDrive& c) {
   set_drive(s.rigid, c.joint.index, c.drive);
   return {true, {}, {}, {}};
 }
-Submitted carry_out(WorldState& s, const SetJointEnabled& c) {
+CommandResult execute(WorldState& s, const SetJointEnabled& c) {
   set_joint_enabled(s.rigid, c.joint.index, c.enabled);
   return {true, {}, {}, {}};
 }
-Submitted carry_out(WorldState& s, const SetSleeping& c) {
+CommandResult execute(WorldState& s, const SetSleeping& c) {
   if (!c.enabled) wake_all(s.rigid);
   s.rigid.settings.sleeping = c.enabled ? 1 : 0;
   return {true, {}, {}, {}};
 }
-Submitted carry_out(WorldState& s, const SetAwake& c) {
+CommandResult execute(WorldState& s, const SetAwake& c) {
   if (c.awake) {
-    stir(s.rigid, c.body.index);
+    wake_if_movable(s.rigid, c.body.index);
   } else {
     force_sleep(s.rigid, s.arena, c.body.index);
   }
   return {true, {}, {}, {}};
 }
-Submitted carry_out(WorldState& s, const SetSubsteps& c) {
+CommandResult execute(WorldState& s, const SetSubsteps& c) {
   s.rigid.settings.substeps = c.substeps;
   return {true, {}, {}, {}};
 }
 
-Submitted carry_out(WorldState& s, const SetMotion& c) {
+CommandResult execute(WorldState& s, const SetMotion& c) {
   RigidWorld& w = s.rigid;
   const MotionSettings motion{c.integrator, c.springs, c.time, c.tolerance, c.max_impacts};
   w.motion_settings.clear();
@@ -382,14 +382,14 @@ Submitted carry_out(WorldState& s, const SetMotion& c) {
   return {true, {}, {}, {}};
 }
 
-Submitted carry_out(WorldState& s, const SetSolver& c) {
+CommandResult execute(WorldState& s, const SetSolver& c) {
   s.rigid.solver.clear();
   if (c.solver != SolverKind::soft_step) s.rigid.solver.push_back({c.solver, c.options});
   s.def.stepping.solver_options = c.options;
   return {true, {}, {}, {}};
 }
 
-Submitted carry_out(WorldState& s, const SetCombineRules& c) {
+CommandResult execute(WorldState& s, const SetCombineRules& c) {
   RigidWorld& w = s.rigid;
   if (w.settings.friction_rule == c.friction && w.settings.restitution_rule == c.restitution) return {true, {}, {}, {}};
   w.settings.friction_rule = c.friction;
@@ -404,27 +404,27 @@ Vec3 bounded(Vec3 v) {
   constexpr float kMost = 3.0e38f;
   return {clamp(v.x, -kMost, kMost), clamp(v.y, -kMost, kMost), clamp(v.z, -kMost, kMost)};
 }
-Submitted carry_out(WorldState& s, const AddForce& c) {
+CommandResult execute(WorldState& s, const AddForce& c) {
   const std::uint32_t body = c.body.index;
   if (!is_movable(s.rigid.bodies.flags[body])) return {true, {}, {}, {}};
-  if (c.force != Vec3{} || c.torque != Vec3{}) stir(s.rigid, body);
+  if (c.force != Vec3{} || c.torque != Vec3{}) wake_if_movable(s.rigid, body);
   BodyForces& forces = s.rigid.bodies.forces[body];
   forces.force = bounded(forces.force + c.force);
   forces.torque = bounded(forces.torque + c.torque);
   return {true, {}, {}, {}};
 }
-Submitted carry_out(WorldState& s, const AddImpulse& c) {
+CommandResult execute(WorldState& s, const AddImpulse& c) {
   const std::uint32_t body = c.body.index;
   if (!is_movable(s.rigid.bodies.flags[body])) return {true, {}, {}, {}};
-  stir(s.rigid, body);
+  wake_if_movable(s.rigid, body);
   BodyMotion& motion = s.rigid.bodies.motion[body];
   const BodyInertia& inertia = s.rigid.bodies.inertia[body];
   motion.linear_velocity = bounded(motion.linear_velocity + inertia.inverse_mass * c.impulse) + Vec3{};
   motion.angular_velocity = bounded(motion.angular_velocity + inertia.inverse * c.angular) + Vec3{};
-  hurry(s.rigid, body);
+  mark_moved(s.rigid, body);
   return {true, {}, {}, {}};
 }
-Submitted carry_out(WorldState& s, const Step& c) {
+CommandResult execute(WorldState& s, const Step& c) {
   step_world(s, c.seconds);
   return {true, {}, {}, {}};
 }
@@ -433,7 +433,7 @@ Submitted carry_out(WorldState& s, const Step& c) {
 
 void remove_joint_now(WorldState& state, std::uint32_t joint) { remove_joint(state.rigid, joint); }
 
-Submitted submit(WorldState& state, const Command& command) {
+CommandResult submit(WorldState& state, const Command& command) {
   const FloatMode mode;  // commands and the serial parts of a step compute too
   const Error why = check_command(state, command);
   if (why.code != ErrorCode::none) {
@@ -441,7 +441,7 @@ Submitted submit(WorldState& state, const Command& command) {
     return {};
   }
   if (state.log != nullptr) state.log->on_command(command);
-  const Submitted result = std::visit([&](const auto& c) { return carry_out(state, c); }, command);
+  const CommandResult result = std::visit([&](const auto& c) { return execute(state, c); }, command);
   if (state.log != nullptr && std::holds_alternative<Step>(command)) state.log->on_step_done(state);
   return result;
 }

@@ -152,7 +152,7 @@ using Command = std::variant<AddBody, RemoveBody, AddShape, RemoveShape, AddJoin
                              SetMotion, SetSolver>;
 
 // What a command gave back: whether it was done, and the id of what it made.
-struct Submitted {
+struct CommandResult {
   bool done = false;
   BodyId body;
   ShapeId shape;
@@ -161,7 +161,7 @@ struct Submitted {
 };
 
 // Checks the command, shows it to the log, does it. A command that is refused changes nothing and is one problem.
-Submitted submit(WorldState& state, const Command& command);
+CommandResult submit(WorldState& state, const Command& command);
 
 // Takes a joint away as part of a step (it broke), not as a command of the user's.
 void remove_joint_now(WorldState& state, std::uint32_t joint);

@@ -41,8 +41,8 @@ Error check_range(const char* field, float value, float low, float high) {
 }
 Error check_pose(const char* field, const Pose& pose) {
   const DVec3 p = pose.position;
-  if (!is_finite(p) || absolute(p.x) > kMostPlace || absolute(p.y) > kMostPlace ||
-      absolute(p.z) > kMostPlace) {
+  if (!is_finite(p) || absolute(p.x) > kMaxPosition || absolute(p.y) > kMaxPosition ||
+      absolute(p.z) > kMaxPosition) {
     return refuse("%s.position is (%g, %g, %g); every component must be finite and within 1e12 m", field, p.x, p.y, p.z);
   }
   const Quat q = pose.orientation;
@@ -90,7 +90,7 @@ Error check_mass_overrides(const BodyDef& def) {
   if (def.center_of_mass) {
     Error e = check_finite("body.center_of_mass", *def.center_of_mass);
     const float farthest = largest(absolute(*def.center_of_mass));
-    if (e.code == ErrorCode::none) e = check_range("body.center_of_mass", farthest, 0.0f, float(kMostPlace));
+    if (e.code == ErrorCode::none) e = check_range("body.center_of_mass", farthest, 0.0f, float(kMaxPosition));
     if (e.code != ErrorCode::none) return e;
   }
   if (def.inertia) return check_inertia(*def.inertia);
@@ -190,9 +190,9 @@ Error check_drive(const PoseDrive& d) {
 
 Error check_path(const FlatJoint& d) {
   const std::size_t least = d.path_closed ? 3 : 2;
-  if (d.path.size() < least || d.path.size() > std::size_t(kMostPathPoints))
+  if (d.path.size() < least || d.path.size() > std::size_t(kMaxPathPoints))
     return refuse("joint.points has %d points; it must have %d to %d", int(d.path.size()), int(least),
-                  kMostPathPoints);
+                  kMaxPathPoints);
   if (d.path_orientation > PathOrientation::following)
     return refuse("joint.orientation is %d; there is no such", int(d.path_orientation));
   for (std::size_t i = 0; i < d.path.size(); ++i) {
@@ -376,11 +376,11 @@ Error check_motion(IntegratorKind integrator, SpringKind springs, TimeStepping t
   if (int(integrator) >= kIntegratorKindCount) return refuse("integrator: there is no such kind");
   if (int(springs) > int(SpringKind::explicit_force)) return refuse("springs: there is no such kind");
   if (int(time) >= kTimeSteppingCount) return refuse("time stepping: there is no such kind");
-  if (!is_finite(tolerance) || tolerance < kLeastTolerance || tolerance > 1.0f) {
-    return refuse("tolerance is %g; it must lie within %g and 1", double(tolerance), double(kLeastTolerance));
+  if (!is_finite(tolerance) || tolerance < kMinTolerance || tolerance > 1.0f) {
+    return refuse("tolerance is %g; it must lie within %g and 1", double(tolerance), double(kMinTolerance));
   }
-  if (max_impacts < 1 || max_impacts > kMostImpacts) {
-    return refuse("max_impacts is %d; it must lie within 1 and %d", max_impacts, kMostImpacts);
+  if (max_impacts < 1 || max_impacts > kMaxImpacts) {
+    return refuse("max_impacts is %d; it must lie within 1 and %d", max_impacts, kMaxImpacts);
   }
   return ok();
 }

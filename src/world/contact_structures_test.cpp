@@ -1,6 +1,6 @@
-// Which islands are held as structures (rigid/rest/contact_structures.h): what is held has manifolds older than any world.
+// Which islands are held as structures (rigid/rest/resting_structures.h): what is held has manifolds older than any world.
 #include "determinism/scenes.h"
-#include "solver/rest/contact_structure.h"
+#include "solver/rest/static_equilibrium.h"
 #include "world/world_state.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ Held count_held(World& world) {
   for (const Contact& contact : store.contacts) {
     for (const Manifold& manifold : manifolds_of(store, contact)) {
       if (manifold.total_friction == Vec3{} && manifold.points[0].total_impulse == 0.0f) continue;
-      ++(manifold.age >= kHeldAge ? count.held : count.sprung);
+      ++(manifold.age >= kRigidContactAge ? count.held : count.sprung);
     }
   }
   return count;

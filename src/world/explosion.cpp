@@ -15,7 +15,7 @@ namespace gyre {
 
 namespace {
 
-struct Blow {
+struct BodyImpulse {
   DVec3 linear, angular;  // N s, N m s about the centre of mass
 };
 
@@ -34,7 +34,7 @@ struct ShapeAt {
   DQuat turn;
 };
 ShapeAt shape_at(const RigidWorld& w, std::uint32_t shape) {
-  const BodyPlace& place = w.bodies.places[w.shapes.bodies[shape]];
+  const BodyPose& place = w.bodies.places[w.shapes.bodies[shape]];
   const Transform& local = w.shapes.places[shape];
   const DQuat body = normalized(to_double(place.orientation));
   const DVec3 from_center = DVec3(local.position) - DVec3(w.bodies.masses[w.shapes.bodies[shape]].center);
@@ -56,8 +56,8 @@ double shadow_scale(const ShapeAt& at, DVec3 center) {
   return facing > 0.0 ? projected_area(*at.shape, way) / facing : 1.0;
 }
 
-Blow blow_on(const RigidWorld& w, std::uint32_t body, const ExplosionDef& def) {
-  Blow blow;
+BodyImpulse explosion_impulse_on(const RigidWorld& w, std::uint32_t body, const ExplosionDef& def) {
+  BodyImpulse blow;
   for (const ShapeId id : w.bodies.shapes[body]) {
     const Proxy& proxy = w.shapes.proxies[id.index];
     if (proxy.sensor || (proxy.filter.layer & def.layers) == 0) continue;
@@ -105,14 +105,14 @@ double seen_share(WorldState& s, std::uint32_t body, DVec3 center) {
 
 }  // namespace
 
-Submitted carry_out(WorldState& s, const Explode& c) {
+CommandResult execute(WorldState& s, const Explode& c) {
   RigidWorld& w = s.rigid;
   const ExplosionDef& def = c.def;
   w.bodies.ids.for_each_live([&](std::uint32_t body) {
     if (!is_movable(w.bodies.flags[body])) return;
     const double distance = length(w.bodies.places[body].center - def.center);
     if (distance > double(def.radius) + double(w.bodies.masses[body].reach)) return;
-    Blow blow = blow_on(w, body, def);
+    BodyImpulse blow = explosion_impulse_on(w, body, def);
     if (blow.linear == DVec3{} && blow.angular == DVec3{}) return;
     const double share = def.occlusion ? seen_share(s, body, def.center) : 1.0;
     if (share == 0.0) return;
@@ -124,7 +124,7 @@ Submitted carry_out(WorldState& s, const Explode& c) {
     wake(w, body);
     motion.linear_velocity = linear + Vec3{};
     motion.angular_velocity = angular + Vec3{};
-    hurry(w, body);
+    mark_moved(w, body);
   });
   return {true, {}, {}, {}};
 }

@@ -10,15 +10,15 @@ namespace gyre {
 
 namespace {
 
-constexpr std::size_t kMostFields = 65536;
+constexpr std::size_t kMaxFields = 65536;
 
 Error check_number(const char* field, double value, double low, double high) {
   if (is_finite(value) && value >= low && value <= high) return {};
   return refuse("%s is %g; it must lie within %g and %g", field, value, low, high);
 }
 Error check_place(const char* field, DVec3 p) {
-  if (is_finite(p) && absolute(p.x) <= kMostPlace && absolute(p.y) <= kMostPlace &&
-      absolute(p.z) <= kMostPlace)
+  if (is_finite(p) && absolute(p.x) <= kMaxPosition && absolute(p.y) <= kMaxPosition &&
+      absolute(p.z) <= kMaxPosition)
     return {};
   return refuse("%s is (%g, %g, %g); every component must be finite and within 1e12 m", field, p.x, p.y, p.z);
 }
@@ -60,7 +60,7 @@ Error check_def(const FieldDef& d) {
       {"field.radius", double(d.radius), 1.0e-6, 1.0e9},
       {"field.falloff", double(d.falloff), -4.0, 4.0},
       {"field.core", double(d.core), 0.0, 1.0e9},
-      {"field.offset", d.offset, -kMostPlace, kMostPlace},
+      {"field.offset", d.offset, -kMaxPosition, kMaxPosition},
   };
   for (const NamedNumber& n : numbers) {
     e = check_number(n.name, n.value, n.low, n.high);
@@ -92,7 +92,7 @@ bool is_field(const WorldState& s, FieldId id) {
 Error check(const WorldState& s, const AddField& c) {
   std::size_t live = 0;
   for (const FieldRecord& field : s.rigid.fields) live += field.is_live() ? 1 : 0;
-  if (live >= kMostFields) return refuse("add_field: a world has at most %d fields", int(kMostFields));
+  if (live >= kMaxFields) return refuse("add_field: a world has at most %d fields", int(kMaxFields));
   return check_def(c.def);
 }
 Error check(const WorldState& s, const SetField& c) {
@@ -113,7 +113,7 @@ Error check(const WorldState&, const Explode& c) {
   return e;
 }
 
-Submitted carry_out(WorldState& s, const AddField& c) {
+CommandResult execute(WorldState& s, const AddField& c) {
   Array<FieldRecord>& fields = s.rigid.fields;
   constexpr std::uint32_t kLastGeneration = 0xffff;
   std::uint32_t slot = 0;
@@ -125,12 +125,12 @@ Submitted carry_out(WorldState& s, const AddField& c) {
   fields[slot] = make_field_record(c.def);
   fields[slot].generation = generation;
   wake_all(s.rigid);
-  Submitted out;
+  CommandResult out;
   out.done = true;
   out.field = field_id(s, slot);
   return out;
 }
-Submitted carry_out(WorldState& s, const SetField& c) {
+CommandResult execute(WorldState& s, const SetField& c) {
   FieldRecord& field = s.rigid.fields[c.field.index];
   const std::uint32_t generation = field.generation;
   field = make_field_record(c.def);
@@ -138,7 +138,7 @@ Submitted carry_out(WorldState& s, const SetField& c) {
   wake_all(s.rigid);
   return {true, {}, {}, {}};
 }
-Submitted carry_out(WorldState& s, const RemoveField& c) {
+CommandResult execute(WorldState& s, const RemoveField& c) {
   FieldRecord& field = s.rigid.fields[c.field.index];
   const std::uint32_t generation = field.generation + 1;
   field = {};
@@ -148,7 +148,7 @@ Submitted carry_out(WorldState& s, const RemoveField& c) {
 }
 
 const char* fault_in_fields(std::span<const FieldRecord> fields) {
-  if (fields.size() > 2 * kMostFields) return "too many fields";
+  if (fields.size() > 2 * kMaxFields) return "too many fields";
   for (const FieldRecord& field : fields) {
     if (field.generation > 0x10000) return "a field whose generation is too large";
     if (!field.is_live()) continue;

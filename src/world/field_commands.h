@@ -13,10 +13,10 @@ Error check(const WorldState& state, const SetField& c);
 Error check(const WorldState& state, const RemoveField& c);
 Error check(const WorldState& state, const Explode& c);
 
-Submitted carry_out(WorldState& state, const AddField& c);
-Submitted carry_out(WorldState& state, const SetField& c);
-Submitted carry_out(WorldState& state, const RemoveField& c);
-Submitted carry_out(WorldState& state, const Explode& c);
+CommandResult execute(WorldState& state, const AddField& c);
+CommandResult execute(WorldState& state, const SetField& c);
+CommandResult execute(WorldState& state, const RemoveField& c);
+CommandResult execute(WorldState& state, const Explode& c);
 
 // Whether the field of an id exists.
 bool is_field(const WorldState& state, FieldId id);

@@ -13,7 +13,7 @@ namespace {
 
 // ---------------------------------------------------------------------------------------------------- lists and pairs
 
-void stir_ends(RigidWorld& w, const JointRecord& joint) {
+void wake_joint_bodies(RigidWorld& w, const JointRecord& joint) {
   for (const std::int32_t body : {joint.body_a, joint.body_b}) {
     if (body != kNoBody && is_movable(w.bodies.flags[std::size_t(body)])) wake(w, std::uint32_t(body));
   }
@@ -74,7 +74,7 @@ struct JointEnd {
 };
 JointEnd joint_end(const RigidWorld& w, std::int32_t body, DVec3 anchor, Quat world_from_joint) {
   if (body == kNoBody) return {{}, world_from_joint, anchor};
-  const BodyPlace& place = w.bodies.places[body];
+  const BodyPose& place = w.bodies.places[body];
   return {rotate_inverse(place.orientation, difference(anchor, place.center)),
           normalized(conjugate(place.orientation) * world_from_joint), anchor};
 }
@@ -132,7 +132,7 @@ double mass_along(const RigidWorld& w, const JointRecord& joint, DVec3 anchor_a,
   const auto add = [&](std::int32_t body, DVec3 anchor) {
     if (body == kNoBody) return;
     const std::size_t i = std::size_t(body);
-    const BodyPlace& place = w.bodies.places[i];
+    const BodyPose& place = w.bodies.places[i];
     const BodyInertia at = world_inertia(w.bodies.masses[i], w.bodies.flags[i], place.orientation);
     const Vec3 arm = cross(difference(anchor, place.center), way);
     inverse += double(at.inverse_mass) + double(dot(arm, at.inverse * arm));
@@ -378,7 +378,7 @@ bool has_pose_drive(JointKind kind) {
 
 JointId add_joint(RigidWorld& w, const FlatJoint& def) {
   const std::uint32_t slot = w.joints.ids.acquire().index;
-  add_awake_joint(w, slot);
+  activate_joint(w, slot);
   if (slot >= w.joints.records.size()) w.joints.records.resize(slot + 1);
   JointRecord joint;
   joint.kind = def.kind;
@@ -401,7 +401,7 @@ JointId add_joint(RigidWorld& w, const FlatJoint& def) {
   }
   w.joints.records[slot] = joint;
   if (needs_detail(def)) fill_detail(w, joint, make_detail(w.joints, slot), def, a, b, frames);
-  stir_ends(w, joint);
+  wake_joint_bodies(w, joint);
   for (const std::int32_t body : {joint.body_a, joint.body_b}) {
     if (body != kNoBody) insert_sorted(make_joints_of(w.bodies, std::uint32_t(body)), slot);
   }
@@ -411,7 +411,7 @@ JointId add_joint(RigidWorld& w, const FlatJoint& def) {
 
 void remove_joint(RigidWorld& w, std::uint32_t slot) {
   const JointRecord joint = w.joints.records[slot];
-  stir_ends(w, joint);
+  wake_joint_bodies(w, joint);
   for (const std::int32_t body : {joint.body_a, joint.body_b}) {
     if (body != kNoBody) erase_slot(make_joints_of(w.bodies, std::uint32_t(body)), slot);
   }
@@ -434,7 +434,7 @@ void set_motor(RigidWorld& w, std::uint32_t slot, const Motor& motor) {
   set_motor_of(joint, motor);
   if (JointDetail* const detail = detail_of(w.joints, slot))
     set_motor_of(detail->axes[int(main_axis(joint.kind))], motor);
-  stir_ends(w, joint);
+  wake_joint_bodies(w, joint);
 }
 
 void set_joint_axis(RigidWorld& w, std::uint32_t slot, JointAxis axis, const JointAxisDef& def) {
@@ -456,7 +456,7 @@ void set_joint_axis(RigidWorld& w, std::uint32_t slot, JointAxis axis, const Joi
     if (!is_limited) joint.low_impulse = joint.high_impulse = 0.0f;
     set_motor_of(joint, def.motor);
   }
-  stir_ends(w, joint);
+  wake_joint_bodies(w, joint);
 }
 
 void set_drive(RigidWorld& w, std::uint32_t slot, const PoseDrive& drive) {
@@ -465,7 +465,7 @@ void set_drive(RigidWorld& w, std::uint32_t slot, const PoseDrive& drive) {
   detail.drive = drive;
   if (joint.kind == JointKind::cone) detail.drive.max_force = 0.0f;
   if (joint.kind == JointKind::mouse) detail.drive.max_torque = 0.0f;
-  stir_ends(w, joint);
+  wake_joint_bodies(w, joint);
 }
 
 void shift_joint_ends(RigidWorld& w, std::uint32_t body, Vec3 by) {
@@ -497,7 +497,7 @@ void set_joint_enabled(RigidWorld& w, std::uint32_t slot, bool enabled) {
   const float position = w.joints.records[slot].position;
   forget_impulses(w.joints.records[slot]);
   w.joints.records[slot].position = position;
-  stir_ends(w, w.joints.records[slot]);
+  wake_joint_bodies(w, w.joints.records[slot]);
 }
 
 }  // namespace gyre

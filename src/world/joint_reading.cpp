@@ -108,7 +108,7 @@ float force_in_record(const JointRecord& joint, const JointState& s) {
 JointAnchors joint_anchors(const RigidWorld& w, const JointRecord& joint) {
   const auto place = [&](std::int32_t body, Vec3 local, DVec3 world) {
     if (body == kNoBody) return world;
-    const BodyPlace& at = w.bodies.places[std::size_t(body)];
+    const BodyPose& at = w.bodies.places[std::size_t(body)];
     return at.center + rotate(at.orientation, local);
   };
   return {place(joint.body_a, joint.local_anchor_a, joint.world_anchor_a),

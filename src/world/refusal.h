@@ -5,7 +5,7 @@
 
 namespace gyre {
 
-constexpr double kMostPlace = 1.0e12;  // m: places beyond this are refused
+constexpr double kMaxPosition = 1.0e12;  // m: places beyond this are refused
 
 inline bool is_fine(const Error& error) { return error.code == ErrorCode::none; }
 

@@ -23,8 +23,8 @@ const char* fault_in_settings(const RigidSettings& settings) {
 const char* fault_in_motion(const RigidWorld& w) {
   if (w.motion_settings.size() > 1) return "settings of motion that contradict each other";
   for (const MotionSettings& m : w.motion_settings) {
-    if (!is_finite(m.tolerance) || m.tolerance < kLeastTolerance) return "a tolerance that nothing can keep";
-    if (m.max_impacts < 1 || m.max_impacts > kMostImpacts) return "a bound of impacts beyond 1 to 4096";
+    if (!is_finite(m.tolerance) || m.tolerance < kMinTolerance) return "a tolerance that nothing can keep";
+    if (m.max_impacts < 1 || m.max_impacts > kMaxImpacts) return "a bound of impacts beyond 1 to 4096";
     if (m.planned_substeps < 0 || m.planned_substeps > 64) return "planned sub-steps beyond 0 to 64";
   }
   if (w.bodies.last_moves.size() > w.bodies.ids.capacity()) return "last moves of bodies that are not there";
@@ -59,7 +59,7 @@ const char* fault_in_sizes(const RigidWorld& w) {
 const char* fault_in_body(const BodyStore& bodies, std::uint32_t i) {
   const BodyFlags& flags = bodies.flags[i];
   if (flags.type > BodyType::dynamic) return "a body of unknown type";
-  const BodyPlace& place = bodies.places[i];
+  const BodyPose& place = bodies.places[i];
   if (!is_finite(place.center) || !is_finite(place.orientation)) return "a body whose place is not finite";
   if (!is_finite(bodies.motion[i].linear_velocity) || !is_finite(bodies.motion[i].angular_velocity)) {
     return "a body whose velocity is not finite";

@@ -71,7 +71,7 @@ void for_each_field(T& r, F&& f) {
   // `moved` and `turned` live for a step only; the inverse mass follows from the mass.
   for_each_field(r.linear_velocity, f), for_each_field(r.angular_velocity, f);
 }
-template <Is<BodyPlace> T, class F>
+template <Is<BodyPose> T, class F>
 void for_each_field(T& r, F&& f) {
   for_each_field(r.center, f), for_each_field(r.orientation, f);
 }

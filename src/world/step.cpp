@@ -1,12 +1,12 @@
 // One step of the world, as the list of its stages. Each is a function from arrays to arrays in the folders below.
 #include "base/check.h"
-#include "rigid/body_looks.h"
-#include "rigid/time/doubled_steps.h"
+#include "rigid/collision_bodies.h"
+#include "rigid/time/step_error.h"
 #include "rigid/sleep/island.h"
 #include "rigid/rigid_step.h"
 #include "rigid/integrate/spring_stability.h"
 #include "world/stages.h"
-#include "world/state_walk.h"
+#include "world/validate_state.h"
 #include "world/world_state.h"
 
 namespace gyre {
@@ -23,9 +23,9 @@ bool is_walked(const WorldState& s, StageName stage) {
   return s.walks && (small || (s.step_count % kEvery == 0 && int(stage) == kStageCount - 1));
 }
 
-void walk_after(const WorldState& s, StageName stage) {
+void validate_after(const WorldState& s, StageName stage) {
   if (!is_walked(s, stage)) return;
-  const Error fault = walk_state(s, stage);
+  const Error fault = validate_state(s, stage);
   if (fault.code != ErrorCode::none) check_failed(kStageNames[int(stage)], fault.message, __FILE__, __LINE__);
 }
 #endif
@@ -37,14 +37,14 @@ void run_stage(WorldState& s, StageName stage, Fn&& fn) {
     const StageZone zone(s.profile, int(stage));
     fn();
   }
-  GYRE_VALIDATE_ONLY(walk_after(s, stage));
+  GYRE_VALIDATE_ONLY(validate_after(s, stage));
   if (s.stage_hook.call != nullptr) s.stage_hook.call(s.stage_hook.context, kStageNames[int(stage)]);
 }
 
 void begin_step(WorldState& s) {
   s.stepping = true;
   s.arena.reset();
-  s.shown_changes.store(kNothingShown, std::memory_order_relaxed);
+  s.queried_changes.store(kNothingQueried, std::memory_order_relaxed);
   s.frozen.clear();
   s.problems.clear();
   s.profile.begin_step();
@@ -86,7 +86,7 @@ void report_stiffness(WorldState& s) {
 
 // A method that was asked for by name does not take islands of any size.
 void report_large_islands(WorldState& s) {
-  const RowReport& rows = s.solve.rows;
+  const RowStats& rows = s.solve.rows;
   if (rows.too_large == 0) return;
   const SolverSettings& solver = s.rigid.solver[0];
   report_problem(s, ErrorCode::unsupported, {},
@@ -98,7 +98,7 @@ void report_large_islands(WorldState& s) {
 void count(WorldState& s, CounterName counter, std::size_t amount) { s.profile.count(int(counter), amount); }
 
 // Right after the stage, which leaves contacts that it did not look at as they were.
-void count_full_looks(WorldState& s) {
+void count_manifold_updates(WorldState& s) {
   if (!s.profile.enabled()) return;
   std::size_t full_looks = 0;
   for (const Contact& contact : s.rigid.contacts.contacts) {
@@ -122,18 +122,18 @@ void count_work(WorldState& s) {
 }
 
 // Who touches whom, and where.
-void look(WorldState& s, float seconds) {
+void detect_collisions(WorldState& s, float seconds) {
   RigidWorld& w = s.rigid;
   run_stage(s, StageName::refit, [&] { refit(w, *s.tasks, seconds); });
   count(s, CounterName::refitted_boxes, w.shapes.changed.size());
   run_stage(s, StageName::find_pairs, [&] { count(s, CounterName::new_pairs, find_pairs(w, *s.tasks)); });
   run_stage(s, StageName::collide, [&] { collide_pairs(w, s.arena, *s.tasks, s.recycle_contacts, seconds); });
-  count_full_looks(s);
+  count_manifold_updates(s);
   run_stage(s, StageName::link_islands, [&] { link_islands(w); });
 }
 
 // What follows on the motion of `seconds`, the last of a step of `whole` or not.
-void finish(WorldState& s, float seconds, float whole, bool last) {
+void finish_step(WorldState& s, float seconds, float whole, bool last) {
   RigidWorld& w = s.rigid;
   run_stage(s, StageName::clamp_fast_bodies,
             [&] { clamp_fast_bodies(w, s.continuous, *s.kernels, s.arena, *s.tasks); });
@@ -148,7 +148,7 @@ void solve_to_tolerance(WorldState& s, float seconds) {
   MotionSettings& motion = w.motion_settings[0];
   const std::int32_t least = w.settings.substeps;
   const std::size_t hits = w.events.hits.size();
-  std::int32_t substeps = clamp(motion.planned_substeps, least, max(least, kMostPlanned / 2));
+  std::int32_t substeps = clamp(motion.planned_substeps, least, max(least, kMaxPlanned / 2));
   s.impacts.before.keep(w);
   const auto solve = [&] {
     w.settings.substeps = substeps;
@@ -157,15 +157,15 @@ void solve_to_tolerance(WorldState& s, float seconds) {
   };
   solve();
   motion.planned_substeps = 0;
-  if (!is_anything_touched(w)) return;
+  if (!is_anything_constrained(w)) return;
   double error = 0.0;
-  while (2 * substeps <= kMostPlanned) {
+  while (2 * substeps <= kMaxPlanned) {
     s.impacts.other = w.bodies.motion;
     s.impacts.before.put_back(w);
     w.events.hits.resize(hits);
     substeps *= 2;
     solve();
-    error = ends_apart(w, s.impacts.other, seconds);
+    error = step_difference(w, s.impacts.other, seconds);
     if (!(error > double(motion.tolerance))) break;
   }
   // The next step begins with half of these, or with a quarter where that should do.
@@ -177,18 +177,18 @@ void solve_to_tolerance(WorldState& s, float seconds) {
 }
 
 void step_at_once(WorldState& s, float seconds) {
-  look(s, seconds);
+  detect_collisions(s, seconds);
   s.rigid.now = s.time;
   run_stage(s, StageName::solve, [&] {
     if (motion_settings(s.rigid).time == TimeStepping::error_controlled)
       return solve_to_tolerance(s, seconds);
     solve_step(s.rigid, s.solve, s.arena, *s.tasks, *s.kernels, seconds);
   });
-  finish(s, seconds, seconds, true);
+  finish_step(s, seconds, seconds, true);
 }
 
 // How often a part of a step is tried until it ends at an impact, and the shortest part, as a share of the step.
-constexpr int kMostTries = 8;
+constexpr int kMaxTries = 8;
 constexpr double kShortest = 1.0e-7;
 
 // The solve of at most `left`, as long as it takes until the first impact. Says how long that is, and whether it is one.
@@ -204,7 +204,7 @@ double solve_to_impact(WorldState& s, double left, float seconds, bool& is_impac
     w.settings.substeps =
         clamp(std::int32_t(std::ceil(double(substeps) * length / double(seconds))), 1, substeps);
     solve_step(w, s.solve, s.arena, *s.tasks, *s.kernels, float(length));
-    if (bounded || n + 1 == kMostTries) break;
+    if (bounded || n + 1 == kMaxTries) break;
     const FirstImpact first = find_first_impact(w, s.impacts.before, length);
     if (!(first.time < length)) break;
     is_impact = !first.turn;
@@ -219,11 +219,11 @@ double solve_to_impact(WorldState& s, double left, float seconds, bool& is_impac
 // Strikes what has met; then who touches whom must be asked again, since others are ahead of those that were struck.
 void strike(WorldState& s, float threshold, float seconds, float left) {
   RigidWorld& w = s.rigid;
-  if (!strike_touching(w, s.impacts, threshold)) return;
+  if (!resolve_impacts(w, s.impacts, threshold)) return;
   for (const std::uint32_t body : s.impacts.struck) {
     for (const ShapeId id : w.bodies.shapes[body]) refit_shape(w, id.index, seconds);
   }
-  look(s, left);
+  detect_collisions(s, left);
 }
 
 // From impact to impact. What would bounce on for less than 1/64 of the step does not bounce any more: so a ball that bounces
@@ -236,13 +236,13 @@ void step_to_impacts(WorldState& s, float seconds) {
   double left = double(seconds);
   for (int part = 0; left > 0.0; ++part) {
     w.now = s.time + (double(seconds) - left);
-    look(s, float(left));
+    detect_collisions(s, float(left));
     report.bounded = report.impacts >= most || part > 3 * most;
     if (report.bounded) {
       w.waiting.clear();
     } else {
       strike(s, threshold, seconds, float(left));
-      list_waiting(w, threshold);
+      list_inactive_contacts(w, threshold);
     }
     double length = left;
     bool is_impact = false;
@@ -251,7 +251,7 @@ void step_to_impacts(WorldState& s, float seconds) {
     report.error += s.solve.report.error;
     const bool last = length >= left;
     if (is_impact && !last) ++report.impacts;
-    finish(s, float(length), seconds, last);
+    finish_step(s, float(length), seconds, last);
     left = last ? 0.0 : left - length;
   }
   w.waiting.clear();

@@ -115,7 +115,7 @@ bool World::set_broad_phase(BroadPhaseKind kind) {
   // The next step builds it from all boxes. Which of them changed it is told then, too.
   state_->rigid.broadphase = make_broadphase(kind);
   state_->rigid.broadphase_stale = true;
-  state_->shown_changes.store(kNothingShown, std::memory_order_relaxed);
+  state_->queried_changes.store(kNothingQueried, std::memory_order_relaxed);
   state_->def.stepping.broad_phase = kind;
   return true;
 }

@@ -18,7 +18,7 @@ constexpr int kBlock = 32;  // questions that one worker takes at a time
 // ---------------------------------------------------------------------------------------------------------------- checks
 
 Error check_vector(const char* what, const char* field, DVec3 p) {
-  if (absolute(p.x) <= kMostPlace && absolute(p.y) <= kMostPlace && absolute(p.z) <= kMostPlace) return {};
+  if (absolute(p.x) <= kMaxPosition && absolute(p.y) <= kMaxPosition && absolute(p.z) <= kMaxPosition) return {};
   return make_error(ErrorCode::invalid_argument,
                     "%s: %s is (%g, %g, %g); every component must be finite and within 1e12 m", what, field,
                     p.x, p.y, p.z);
@@ -57,18 +57,18 @@ Error check_question(const ShapePlace& place) { return check_shape_place(place);
 // Shows the broad phase what came, went or moved since it last looked. Whoever comes first does it for all.
 void show_changes(WorldState& s) {
   RigidWorld& w = s.rigid;
-  if (s.shown_changes.load(std::memory_order_acquire) == w.shapes.changed.size()) return;
+  if (s.queried_changes.load(std::memory_order_acquire) == w.shapes.changed.size()) return;
   const std::lock_guard<std::mutex> lock(s.query_lock);
-  const std::size_t shown = s.shown_changes.load(std::memory_order_relaxed);
+  const std::size_t shown = s.queried_changes.load(std::memory_order_relaxed);
   if (shown == w.shapes.changed.size()) return;
-  if (shown == kNothingShown && w.broadphase_stale) {
+  if (shown == kNothingQueried && w.broadphase_stale) {
     w.broadphase->rebuild(w.shapes.proxies);
   } else {
     s.changes_to_show.assign(w.shapes.changed.view());
     sort_changed(s.changes_to_show, s.change_keys, s.change_scratch);
     w.broadphase->update(w.shapes.proxies, s.changes_to_show);
   }
-  s.shown_changes.store(w.shapes.changed.size(), std::memory_order_release);
+  s.queried_changes.store(w.shapes.changed.size(), std::memory_order_release);
 }
 
 bool accepts(const RigidWorld& w, const QueryFilter& filter, std::uint32_t shape) {

@@ -36,7 +36,7 @@ BodyColumns read_bodies(const WorldState& s, bool only_awake) {
   make_room(s, bodies.ids.capacity());
   std::size_t count = 0;
   bodies.ids.for_each_live([&](std::uint32_t body) {
-    if (only_awake && !goes_along(bodies.flags[body])) return;
+    if (only_awake && !is_simulated(bodies.flags[body])) return;
     s.read_ids[count] = body_id(s.rigid, body);
     s.read_poses[count] = origin_pose(bodies, body);
     s.read_linear[count] = bodies.motion[body].linear_velocity;
@@ -82,7 +82,7 @@ BodyType World::type(BodyId body) const {
 }
 bool World::is_awake(BodyId body) const {
   if (!exists(body)) return false;
-  return goes_along(state_->rigid.bodies.flags[body.index]);
+  return is_simulated(state_->rigid.bodies.flags[body.index]);
 }
 std::uint64_t World::user_data(BodyId body) const {
   return exists(body) ? state_->rigid.bodies.user_data[body.index] : 0;
@@ -207,7 +207,7 @@ WorldCounts World::counts() const {
   counts.colors = state_->solve.colors;
   counts.pairs = int(w.contacts.live);
   // Slots that are free have the flags of fixed bodies, and contacts that touch nothing and have no manifolds.
-  for (const BodyFlags& flags : w.bodies.flags) counts.awake_bodies += goes_along(flags) ? 1 : 0;
+  for (const BodyFlags& flags : w.bodies.flags) counts.awake_bodies += is_simulated(flags) ? 1 : 0;
   for (const Contact& contact : w.contacts.contacts) {
     counts.touching += contact.touching != 0 ? 1 : 0;
     for (const Manifold& manifold : manifolds_of(w.contacts, contact))
@@ -217,7 +217,7 @@ WorldCounts World::counts() const {
 }
 
 SolverReading World::solver_reading() const {
-  const RowReport& rows = state_->solve.rows;
+  const RowStats& rows = state_->solve.rows;
   return {rows.residual, rows.islands, rows.direct, rows.largest, rows.sweeps};
 }
 

@@ -170,7 +170,7 @@ void derive_state(RigidWorld& w) {
   // finds, only those have no contact yet that it would have found anyway.
   w.shapes.changed.clear();
   w.shapes.hurried.clear();
-  w.shapes.fit_for = 0.0f;
+  w.shapes.fat_box_horizon = 0.0f;
   w.shapes.ids.for_each_live([&](std::uint32_t shape) {
     refresh_collider(w.shapes, shape);
     bodies.shapes[w.shapes.bodies[shape]].push_back(shape_id(w, shape));
@@ -186,7 +186,7 @@ void derive_state(RigidWorld& w) {
     }
   });
   rebuild_index(w.contacts);
-  add_all_links(w);
+  activate_all_constraints(w);
   w.broadphase_stale = true;
 }
 
@@ -198,8 +198,8 @@ std::uint64_t hash_state(const WorldState& state) {
 }
 
 void report_problem(WorldState& state, ErrorCode code, BodyId body, const char* format, ...) {
-  constexpr std::size_t kMostProblems = 256;  // a host that never looks must not fill the memory
-  if (state.problems.size() >= kMostProblems) return;
+  constexpr std::size_t kMaxProblems = 256;  // a host that never looks must not fill the memory
+  if (state.problems.size() >= kMaxProblems) return;
   Problem problem;
   problem.code = code;
   problem.body = body;

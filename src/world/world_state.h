@@ -4,7 +4,7 @@
 
 #include "base/arena/arena.h"
 #include "base/profile/profile.h"
-#include "rigid/time/impact_times.h"
+#include "rigid/time/toi_stepping.h"
 #include "rigid/rigid_step.h"
 #include "rigid/store/rigid_world.h"
 #include "rigid/solve/solve_step.h"
@@ -38,7 +38,7 @@ struct StageHook {
   void* context = nullptr;
 };
 
-constexpr std::size_t kNothingShown = std::size_t(-1);
+constexpr std::size_t kNothingQueried = std::size_t(-1);
 
 struct WorldState {
   // Simulation state.
@@ -65,9 +65,9 @@ struct WorldState {
   bool stepping = false;
   bool walks = true;              // builds with GYRE_VALIDATE: after each stage all structures are walked
   std::uint16_t number = 0;       // of this world, in its ids
-  // How many entries of rigid.shapes.changed queries have shown to the broad phase already; kNothingShown when it may not even
+  // How many entries of rigid.shapes.changed queries have shown to the broad phase already; kNothingQueried when it may not even
   // have been built. Queries bring it up to date under the lock, since several threads may ask at once.
-  std::atomic<std::size_t> shown_changes{kNothingShown};
+  std::atomic<std::size_t> queried_changes{kNothingQueried};
   std::mutex query_lock;
   std::mutex batch_lock;          // the workers answer one batch of queries at a time
   Array<std::uint32_t> changes_to_show;
@@ -82,7 +82,7 @@ struct WorldState {
 template <class T>
 constexpr bool is_column = false;
 template <class T>
-constexpr bool is_column<SharedColumn<T>> = true;
+constexpr bool is_column<InternedColumn<T>> = true;
 template <class T, std::size_t N>
 constexpr bool is_column<PagedArray<T, N>> = true;
 template <class T>

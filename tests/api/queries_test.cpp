@@ -102,8 +102,8 @@ TEST(Queries, FindOverlapsAndClosestPointsThatEveryShapeAloneAnswers) {
       EXPECT_EQ(nearest->point, expected[0].point);
       EXPECT_NEAR(length(nearest->own_point - nearest->point), nearest->distance, 1e-6);
       std::array<ClosestPoint, 4> some;
-      const std::size_t within = c.world.find_closest(place, expected[3].distance * (1.0 + 1e-9), some);
-      EXPECT_GE(within, 4u);
+      const std::size_t clamp_length = c.world.find_closest(place, expected[3].distance * (1.0 + 1e-9), some);
+      EXPECT_GE(clamp_length, 4u);
       for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(some[k].shape, expected[k].shape);
       EXPECT_EQ(c.world.overlaps(place), !overlapping.empty());
       std::array<Overlap, 64> found;

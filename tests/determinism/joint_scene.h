@@ -56,11 +56,11 @@ inline void build_joint_kinds(World& world) {
   RackAndPinionDef teeth{.a = second, .b = rack, .anchor = {10, 6, 0}};
   teeth.axis = {0, 0, 1}, teeth.axis_b = Vec3{1, 0, 0}, teeth.ratio = 1.0f;
   world.add_joint(teeth);
-  const BodyId light = make.body(13, 6), heavy = make.body(14, 6), tyre = make.body(13, 5);
-  PulleyDef rope{.a = light, .b = heavy, .anchor = {13, 6, 0}};
+  const BodyId has_extreme_mass_ratio = make.body(13, 6), heavy = make.body(14, 6), tyre = make.body(13, 5);
+  PulleyDef rope{.a = has_extreme_mass_ratio, .b = heavy, .anchor = {13, 6, 0}};
   rope.ratio = 1.5f, rope.ground_a = {13, 9, 0}, rope.ground_b = {14, 8, 0.5};
   world.add_joint(rope);
-  WheelDef wheel{.a = light, .b = tyre, .anchor = {13, 5, 0}};
+  WheelDef wheel{.a = has_extreme_mass_ratio, .b = tyre, .anchor = {13, 5, 0}};
   wheel.axis = {0, 1, 0}, wheel.axis_b = Vec3{0, 0, 1}, wheel.limits = Limits{-0.25f, 0.25f};
   wheel.stiffness = 4000.0f, wheel.damping = 200.0f, wheel.motor = {.target_velocity = 3.0f, .max_force = 10.0f};
   wheel.steering.motion = AxisMotion::limited, wheel.steering.limits = {-0.5f, 0.5f};

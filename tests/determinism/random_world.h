@@ -227,7 +227,7 @@ class RandomWorld {
   void command(World& world, Random& random) {
     const BodyId body = any_body(world, random);
     const ShapeId shape = any_shape(world, random);
-    const Vec3 push = random.next_vector(600);
+    const Vec3 direction = random.next_vector(600);
     switch (pick(random, 26)) {
       case 0:
       case 1:
@@ -280,30 +280,30 @@ class RandomWorld {
         set_pair(world, random);
         break;
       default:
-        push_something(world, random, body, push);
+        push_something(world, random, body, direction);
         break;
     }
   }
 
-  void push_something(World& world, Random& random, BodyId body, Vec3 push) {
+  void push_something(World& world, Random& random, BodyId body, Vec3 direction) {
     const DVec3 point = world.center_of_mass(body) + random.next_vector(0.25f);
     const JointId joint = any_joint(world, random);
     const float speed = coin(random) ? 0.0078125f : 0.25f;  // m/s for each N s
     switch (pick(random, 10)) {
       case 0:
-        world.add_force_at(body, 20 * push, point);
+        world.add_force_at(body, 20 * direction, point);
         break;
       case 1:
-        world.add_torque(body, push);
+        world.add_torque(body, direction);
         break;
       case 2:
-        world.add_impulse_at(body, push, point);
+        world.add_impulse_at(body, direction, point);
         break;
       case 3:
-        world.add_angular_impulse(body, 0.25f * push);
+        world.add_angular_impulse(body, 0.25f * direction);
         break;
       case 4:
-        world.set_velocity(body, speed * push, random.next_vector(4));
+        world.set_velocity(body, speed * direction, random.next_vector(4));
         break;
       case 5: {
         const Pose pose{point, random.next_rotation()};

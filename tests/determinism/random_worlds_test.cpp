@@ -206,10 +206,10 @@ World make_used_world(std::uint32_t number, const Way& way) {
   return world;
 }
 
-void expect_same_from_bookmarks(const Reference& reference, const Way& way, int most_steps) {
+void expect_same_from_bookmarks(const Reference& reference, const Way& way, int max_steps) {
   World used = make_used_world(reference.number + 1000, way);
   for (const Bookmark& mark : reference.bookmarks) {
-    const int end = min(mark.step + most_steps, reference.steps());
+    const int end = min(mark.step + max_steps, reference.steps());
     RandomWorld driver = mark.driver;
     Result<World> loaded = load_snapshot(mark.snapshot, computed(reference.def, way));
     ASSERT_TRUE(loaded) << loaded.error().message;

@@ -91,7 +91,7 @@ TEST(Threads, DoNotShowWhereABodyHasMoreConstraintsThanThereAreColors) {
   for (int again = 0; again < 4; ++again) EXPECT_EQ(expected, outcome(2 + again)) << again;
 }
 
-// Large enough for shares that are cut where bodies are (rigid/batch/solve_domains): those of one kind in contact, others that hang on joints
+// Large enough for shares that are cut where bodies are (rigid/batch/worker_partition): those of one kind in contact, others that hang on joints
 // only, some without a body A.
 TEST(Threads, DoNotShowInALargePile) {
   const auto outcome = [](int threads, int width) {

@@ -427,14 +427,14 @@ inline void build_fields(World& world) {
   gusts.turbulence = 0.5f;
   gusts.turbulence_length = 4;
   world.add_field(gusts);
-  FieldDef pull;
-  pull.kind = FieldKind::radial;
-  pull.center = {7, 1, 0};
-  pull.strength = 2;
-  pull.radius = 4;
-  pull.falloff = 1.5f;
-  pull.core = 0.5f;
-  world.add_field(pull);
+  FieldDef geometric_stiffness;
+  geometric_stiffness.kind = FieldKind::radial;
+  geometric_stiffness.center = {7, 1, 0};
+  geometric_stiffness.strength = 2;
+  geometric_stiffness.radius = 4;
+  geometric_stiffness.falloff = 1.5f;
+  geometric_stiffness.core = 0.5f;
+  world.add_field(geometric_stiffness);
   Random random(8);
   for (int i = 0; i < 40; ++i) {
     BodyDef body;

@@ -174,12 +174,12 @@ FieldId any_field(const World& world, Input& in) {
 }
 
 void call(World& world, Ids& ids, Input& in) {
-  constexpr std::size_t kMostBodies = 24;
+  constexpr std::size_t kMaxBodies = 24;
   const BodyId body = Ids::pick(ids.bodies, in);
   switch (in.byte() % 28) {
     case 0:
     case 1:
-      if (world.bodies().ids.size() < kMostBodies)
+      if (world.bodies().ids.size() < kMaxBodies)
         ids.bodies.push_back(world.add_body(body_def(in), shape_def(in)));
       break;
     case 2:
@@ -281,7 +281,7 @@ void check_world(const World& world) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  constexpr int kMostCalls = 200, kMostSteps = 40;
+  constexpr int kMaxCalls = 200, kMostSteps = 40;
   Input in(data, size);
   MemorySink sink;
   World world = *World::create();
@@ -289,7 +289,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   {
     Recorder recorder(world, sink);
     Ids ids;
-    for (int i = 0; i < kMostCalls && !in.empty() && world.step_count() < kMostSteps; ++i) {
+    for (int i = 0; i < kMaxCalls && !in.empty() && world.step_count() < kMostSteps; ++i) {
       call(world, ids, in);
       check_world(world);
       if (i % 4 == 3) world.step(scenes::kStepSeconds);

@@ -25,7 +25,7 @@ BodyId add_fixed(World& world, DVec3 place, const AnyShape& shape, Quat turn = {
 BodyId add_ground(World& world) { return add_fixed(world, {}, Plane{}); }
 
 // Steps the world and the character for some seconds.
-void walk(World& world, const CharacterDef& def, CharacterState& state, Vec3 velocity, double seconds,
+void traversal(World& world, const CharacterDef& def, CharacterState& state, Vec3 velocity, double seconds,
           const std::function<void()>& each = {}) {
   for (int i = 0; i < int(std::lround(seconds * 60)); ++i) {
     ASSERT_TRUE(world.step(kStep));
@@ -36,7 +36,7 @@ void walk(World& world, const CharacterDef& def, CharacterState& state, Vec3 vel
 
 CharacterState stand(World& world, const CharacterDef& def, DVec3 feet) {
   CharacterState state = make_character(def, feet);
-  walk(world, def, state, {}, 0.5);
+  traversal(world, def, state, {}, 0.5);
   return state;
 }
 
@@ -45,15 +45,15 @@ TEST(Character, FallsStandsAndWalksAtItsSpeed) {
   add_ground(world);
   const CharacterDef def;
   CharacterState state = make_character(def, {0, 2, 0});
-  walk(world, def, state, {}, 0.2);
+  traversal(world, def, state, {}, 0.2);
   EXPECT_EQ(state.ground, GroundKind::none);
   // Twelve kicks of gravity.
   EXPECT_NEAR(double(state.velocity.y), -9.81 * 0.2, 1e-3);
-  walk(world, def, state, {}, 1.0);
+  traversal(world, def, state, {}, 1.0);
   EXPECT_EQ(state.ground, GroundKind::firm);
   EXPECT_NEAR(state.feet.y, 0.001, 1e-4);
   const DVec3 before = state.feet;
-  walk(world, def, state, {3, 0, -4}, 1.0);
+  traversal(world, def, state, {3, 0, -4}, 1.0);
   EXPECT_NEAR(state.feet.x - before.x, 3.0, 1e-4);
   EXPECT_NEAR(state.feet.z - before.z, -4.0, 1e-4);
 }
@@ -64,7 +64,7 @@ TEST(Character, KeepsStill) {
     const char* name;
     std::function<void(World&)> build;
     DVec3 feet;
-    Vec3 push;
+    Vec3 direction;
   };
   const auto corner = [](World& world) {
     add_ground(world);
@@ -106,11 +106,11 @@ TEST(Character, KeepsStill) {
     c.build(world);
     const CharacterDef def;
     CharacterState state = make_character(def, c.feet);
-    walk(world, def, state, c.push, 3.0);
+    traversal(world, def, state, c.direction, 3.0);
     const DVec3 rest = state.feet;
     double most = 0;
     const GroundKind ground = state.ground;
-    walk(world, def, state, c.push, 3.0, [&] {
+    traversal(world, def, state, c.direction, 3.0, [&] {
       most = std::fmax(most, length(state.feet - rest));
       EXPECT_EQ(state.ground, ground) << c.name;
     });
@@ -128,21 +128,21 @@ TEST(Character, WalksSlopesUpToItsLimit) {
       add_fixed(world, {0, 0, 0}, Plane{{-std::sin(angle * kDegree), std::cos(angle * kDegree), 0}, 0});
       const CharacterDef def{.max_slope = limit * kDegree};
       CharacterState state = stand(world, def, {-1, 0.01, 0});
-      walk(world, def, state, {2, 0, 0}, 3.0);
+      traversal(world, def, state, {2, 0, 0}, 3.0);
       if (angle < limit) {
         // Five metres on, less what the foot of the slope costs.
         EXPECT_NEAR(state.feet.x, 5.0, 0.2) << angle;
         EXPECT_NEAR(state.feet.y, state.feet.x * std::tan(double(angle * kDegree)), 0.3) << angle;
         EXPECT_EQ(state.ground, GroundKind::firm);
         const DVec3 rest = state.feet;
-        walk(world, def, state, {}, 1.0);
+        traversal(world, def, state, {}, 1.0);
         EXPECT_NEAR(length(state.feet - rest), 0.0, 1e-5) << "and it stands there";
       } else {
         EXPECT_LT(state.feet.y, 0.05) << angle;
       }
       // Put onto the slope, it slides off the steep one.
       CharacterState put = make_character(def, {3, 3 * std::tan(double(angle * kDegree)) + 0.2, 0});
-      walk(world, def, put, {}, 2.0);
+      traversal(world, def, put, {}, 2.0);
       EXPECT_EQ(put.feet.y<0.1, angle> limit) << angle;
     }
   }
@@ -153,7 +153,7 @@ double climbed(double ledge, const CharacterDef& def, float speed) {
   add_ground(world);
   add_fixed(world, {3, ledge - 2, 0}, Box{{2, 2, 5}});
   CharacterState state = stand(world, def, {-0.5, 0.01, 0});
-  walk(world, def, state, {speed, 0, 0}, 2.5 / double(speed));
+  traversal(world, def, state, {speed, 0, 0}, 2.5 / double(speed));
   return state.feet.y;
 }
 
@@ -181,10 +181,10 @@ TEST(Character, WalksStairsBothWays) {
   for (int i = 0; i < 10; ++i) add_fixed(world, {1.0 + 0.3 * i + 5, 0.2 * (i + 1) - 2, 0}, Box{{5, 2, 2}});
   const CharacterDef def;
   CharacterState state = stand(world, def, {0, 0.01, 0});
-  walk(world, def, state, {2, 0, 0}, 3.0, [&] { EXPECT_EQ(state.ground, GroundKind::firm) << state.feet.x; });
+  traversal(world, def, state, {2, 0, 0}, 3.0, [&] { EXPECT_EQ(state.ground, GroundKind::firm) << state.feet.x; });
   EXPECT_NEAR(state.feet.y, 2.0, kGapAndABit);
   EXPECT_GT(state.feet.x, 5.0);
-  walk(world, def, state, {-2, 0, 0}, 3.0,
+  traversal(world, def, state, {-2, 0, 0}, 3.0,
        [&] { EXPECT_EQ(state.ground, GroundKind::firm) << state.feet.x; });
   EXPECT_NEAR(state.feet.y, 0.0, kGapAndABit);
   std::printf("[row] way lost on ten stairs of 0.3 m %.3f m of 12\n", -state.feet.x);
@@ -200,7 +200,7 @@ TEST(Character, StepsDownUpToItsLimit) {
     const CharacterDef def{.step_down = 0.35f};
     CharacterState state = stand(world, def, {-1, drop + 0.01, 0});
     bool flew = false;
-    walk(world, def, state, {6, 0, 0}, 0.6, [&] { flew = flew || state.ground == GroundKind::none; });
+    traversal(world, def, state, {6, 0, 0}, 0.6, [&] { flew = flew || state.ground == GroundKind::none; });
     EXPECT_EQ(flew, drop > 0.35) << drop;
   }
 }
@@ -214,9 +214,9 @@ TEST(Character, DoesNotCatchOnWallsOfBoxes) {
   }
   const CharacterDef def;
   CharacterState state = stand(world, def, {0, 0.02, 0.2});
-  walk(world, def, state, {3, 0, 1}, 0.5);
+  traversal(world, def, state, {3, 0, 1}, 0.5);
   double last = state.feet.x, slowest = 1;
-  walk(world, def, state, {3, 0, 1}, 2.5, [&] {
+  traversal(world, def, state, {3, 0, 1}, 2.5, [&] {
     slowest = std::fmin(slowest, state.feet.x - last);
     last = state.feet.x;
     EXPECT_EQ(state.ground, GroundKind::firm);
@@ -260,11 +260,11 @@ TEST(Character, JumpsAndTakesTheSpeedAlong) {
   const CharacterDef def{.air_acceleration = 0};
   CharacterState state = stand(world, def, {0, 1.01, 0});
   world.set_velocity(cart, {2, 0, 0}, {});
-  walk(world, def, state, {}, 0.5);
+  traversal(world, def, state, {}, 0.5);
   world.step(kStep);
   move_character(world, def, state, {.jump_speed = 4}, kStep);
   double top = 0;
-  walk(world, def, state, {}, 0.6, [&] { top = std::fmax(top, state.feet.y); });
+  traversal(world, def, state, {}, 0.6, [&] { top = std::fmax(top, state.feet.y); });
   EXPECT_NEAR(double(state.velocity.x), 2.0, 1e-3);
   // Steps of 1/60 s: v dt / 2 of the parabola.
   EXPECT_NEAR(top - 1.0, 16 / (2 * 9.81), 4.0 / 60);
@@ -278,7 +278,7 @@ TEST(Character, PlatformsPushItAside) {
   const CharacterDef def;
   CharacterState state = stand(world, def, {0, 0.01, 0});
   world.set_velocity(wall, {-2, 0, 0}, {});
-  walk(world, def, state, {}, 3.0);
+  traversal(world, def, state, {}, 3.0);
   // The wall's face has come to -3.5.
   EXPECT_NEAR(state.feet.x, -3.5 - 0.3, 0.05);
   EXPECT_FALSE(state.stuck);
@@ -292,7 +292,7 @@ TEST(Character, PushesWhatItCanAndStopsAtWhatItCannot) {
                                         {.geometry = Box{{0.5f, 0.5f, 0.5f}}, .density = density});
     const CharacterDef def{.push_force = force};
     CharacterState state = stand(world, def, {0, 0.01, 0});
-    walk(world, def, state, {2, 0, 0}, 3.0);
+    traversal(world, def, state, {2, 0, 0}, 3.0);
     EXPECT_LT(state.feet.x, world.pose(crate).position.x - 0.5 - 0.28) << "it never walks into the crate";
     return world.pose(crate).position.x - 2.0;
   };
@@ -308,7 +308,7 @@ TEST(Character, PushesWhatItCanAndStopsAtWhatItCannot) {
       world.add_body({.pose = {{0, 0.55, 0}, {}}}, {.geometry = Box{{1.5f, 0.05f, 0.5f}}, .density = 200});
   const CharacterDef def;
   CharacterState state = make_character(def, {1, 0.62, 0});
-  walk(world, def, state, {}, 1.0);
+  traversal(world, def, state, {}, 1.0);
   EXPECT_LT(rotate(world.pose(board).orientation, {1, 0, 0}).y, -0.05f);
 }
 
@@ -318,14 +318,14 @@ TEST(Character, CrouchesUnderWhatIsLowAndStandsUpWhereThereIsRoom) {
   add_fixed(world, {3, 2.3, 0}, Box{{1, 1, 2}});  // 1.3 m of head room from x = 2 to 4
   const CharacterDef def;
   CharacterState state = stand(world, def, {0, 0.01, 0});
-  walk(world, def, state, {2, 0, 0}, 2.0);
+  traversal(world, def, state, {2, 0, 0}, 2.0);
   EXPECT_NEAR(state.feet.x, 1.7, 0.02) << "the lintel stops who stands";
   ASSERT_TRUE(set_character_height(world, def, state, 1.2f));
-  walk(world, def, state, {2, 0, 0}, 0.6);
+  traversal(world, def, state, {2, 0, 0}, 0.6);
   EXPECT_GT(state.feet.x, 2.5);
   EXPECT_FALSE(set_character_height(world, def, state, def.height));
   EXPECT_EQ(state.height, 1.2f);
-  walk(world, def, state, {2, 0, 0}, 1.5);
+  traversal(world, def, state, {2, 0, 0}, 1.5);
   EXPECT_TRUE(set_character_height(world, def, state, def.height));
   EXPECT_FALSE(set_character_height(world, def, state, 0.3f)) << "lower than its two caps";
   // A jump under a ceiling ends there.
@@ -336,7 +336,7 @@ TEST(Character, CrouchesUnderWhatIsLowAndStandsUpWhereThereIsRoom) {
   low.step(kStep);
   move_character(low, def, jumper, {.jump_speed = 5}, kStep);
   double top = 0;
-  walk(low, def, jumper, {}, 1.0, [&] { top = std::fmax(top, jumper.feet.y + double(def.height)); });
+  traversal(low, def, jumper, {}, 1.0, [&] { top = std::fmax(top, jumper.feet.y + double(def.height)); });
   EXPECT_LT(top, 2.0);
   EXPECT_GT(top, 1.9);
   EXPECT_EQ(jumper.ground, GroundKind::firm);
@@ -349,7 +349,7 @@ TEST(Character, GetsOutOfWhatItWasPutInto) {
     add_ground(world);
     build(world);
     CharacterState state = make_character(def, feet);
-    walk(world, def, state, {}, 2.0);
+    traversal(world, def, state, {}, 2.0);
     EXPECT_FALSE(state.stuck);
     EXPECT_EQ(state.ground, GroundKind::firm);
     ShapePlace place = character_shape(def, state);
@@ -380,7 +380,7 @@ TEST(Character, OneWayPlatformsHoldFromAbove) {
   EXPECT_NEAR(state.feet.y, 0.001, kGapAndABit) << "it stands in it and does not mind";
   world.step(kStep);
   move_character(world, def, state, {.jump_speed = 6}, kStep);
-  walk(world, def, state, {}, 2.0);
+  traversal(world, def, state, {}, 2.0);
   EXPECT_NEAR(state.feet.y, 1.05, kGapAndABit);
 }
 
@@ -446,7 +446,7 @@ TEST(Character, StaysOnAPlatformThatSinksSideways) {
   world.set_velocity(lift, {1.5f, -3, 0.5f}, {});
   const DVec3 spot = state.feet - world.pose(lift).position;
   double most = 0;
-  walk(world, def, state, {}, 2.5, [&] {
+  traversal(world, def, state, {}, 2.5, [&] {
     most = std::fmax(most, length(state.feet - world.pose(lift).position - spot));
     EXPECT_EQ(state.ground, GroundKind::firm);
   });

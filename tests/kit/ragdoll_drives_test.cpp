@@ -21,7 +21,7 @@ TEST(Ragdoll, KinematicBonesAreWhereTheTargetIs) {
     drive(world, def, ragdoll, target, {&kinematic, 1});
     // A step from a place of a few metres in floats, and turns of a tenth of a radian.
     ASSERT_LT(farthest(world, ragdoll, target), 1e-5);
-    ASSERT_LT(most_turned(world, ragdoll, target), 1e-5);
+    ASSERT_LT(max_turned(world, ragdoll, target), 1e-5);
   }
 }
 
@@ -38,7 +38,7 @@ TEST(Ragdoll, KeyedToTheWorldSagsLikeASpring) {
                        world.pose(ragdoll.bones[0].body).position.y;
     const double expected = kGravity / std::pow(2 * kPiDouble * double(frequency), 2);
     EXPECT_TRUE(row("keyed to the world: sag, m", sag, expected, 0.002 * expected));
-    EXPECT_LT(most_turned(world, ragdoll, target), 2e-4);
+    EXPECT_LT(max_turned(world, ragdoll, target), 2e-4);
     // Half the strength: half the stiffness.
     const BoneDrive half{.key = {.strength = 0.5f, .frequency = frequency}};
     for (int i = 0; i < 240; ++i) drive(world, def, ragdoll, target, {&half, 1});
@@ -74,7 +74,7 @@ TEST(Ragdoll, KeyedFollowsWithoutLag) {
     const RagdollPose target = moving(def, i / 60.0);
     drive(world, def, ragdoll, target, {&stiff, 1});
     if (i < 60) continue;
-    turned = std::max(turned, most_turned(world, ragdoll, target));
+    turned = std::max(turned, max_turned(world, ragdoll, target));
     far = std::max(far, farthest(world, ragdoll, target));
   }
   std::printf("[row] keyed as stiffly as the step allows, walking: off by %.2f mm and %.2f degrees at most\n",

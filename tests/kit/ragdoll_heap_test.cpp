@@ -1,4 +1,4 @@
-// A heap of ragdolls among other bodies: how its bodies are moved (rigid/solve/bundle_runs) shows in no bit.
+// A heap of ragdolls among other bodies: how its bodies are moved (rigid/solve/fused_stages) shows in no bit.
 #include "ragdoll_scenes.h"
 
 namespace gyre::kit {

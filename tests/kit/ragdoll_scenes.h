@@ -42,7 +42,7 @@ inline double largest_gap(const World& world, const RagdollDef& def, const Ragdo
   }
   return gap;
 }
-inline double most_beyond(const RagdollDef& def, const RagdollPose& pose) {
+inline double max_beyond(const RagdollDef& def, const RagdollPose& pose) {
   float most = 0;
   for (std::size_t i = 1; i < def.bones.size(); ++i) most = std::max(most, beyond_limits(def, pose, int(i)));
   return double(most);
@@ -55,7 +55,7 @@ inline double farthest(const World& world, const Ragdoll& ragdoll, const Ragdoll
   }
   return far;
 }
-inline double most_turned(const World& world, const Ragdoll& ragdoll, const RagdollPose& target) {
+inline double max_turned(const World& world, const Ragdoll& ragdoll, const RagdollPose& target) {
   float most = 0;
   for (std::size_t i = 0; i < target.bones.size(); ++i) {
     const Quat wanted = (target.world_from_model * target.bones[i]).orientation;

@@ -32,8 +32,8 @@ TEST(Ragdoll, AHumanoidIsAsItsTableSays) {
   EXPECT_NEAR(top->point.y, 1.8, 0.01);
   EXPECT_NEAR(sole->point.y, 0.0, 1e-3);
   EXPECT_EQ(find_bone(def, "tail"), -1);
-  EXPECT_LT(most_beyond(def, rest_pose(def)), 1e-6);
-  EXPECT_LT(most_beyond(def, middle_pose(def)), 1e-6);
+  EXPECT_LT(max_beyond(def, rest_pose(def)), 1e-6);
+  EXPECT_LT(max_beyond(def, middle_pose(def)), 1e-6);
 }
 
 TEST(Ragdoll, SaysWhatIsWrongWithADescription) {
@@ -159,7 +159,7 @@ TEST(Ragdoll, StandsWhereItIsPut) {
   const RagdollPose start = random_pose(def, at, random, 1.0f);
   const Ragdoll ragdoll = add(world, def, start);
   EXPECT_LT(farthest(world, ragdoll, start), 1e-5);
-  EXPECT_LT(most_turned(world, ragdoll, start), 1e-6);
+  EXPECT_LT(max_turned(world, ragdoll, start), 1e-6);
   const RagdollPose read = read_ragdoll(world, def, ragdoll);
   for (std::size_t i = 0; i < start.bones.size(); ++i) {
     EXPECT_LT(length(read.bones[i].position - start.bones[i].position), 1e-5f);
@@ -173,7 +173,7 @@ TEST(Ragdoll, StandsWhereItIsPut) {
 TEST(Ragdoll, LimitsHold) {
   RagdollDef def = make_humanoid();
   def.angular_damping = 5;  // nothing else brings a hand to rest that is pulled about
-  double most = 0, least_turn = 9;
+  double most = 0, min_turn = 9;
   for (std::size_t bone = 1; bone < def.bones.size(); ++bone) {
     World world = make_world({});
     Ragdoll ragdoll = add(world, def, middle_pose(def));
@@ -200,12 +200,12 @@ TEST(Ragdoll, LimitsHold) {
       if (i % 60 >= 45) most = std::max(most, double(beyond_limits(def, now, int(bone))));
       far = std::max(far, double(length(bone_turn(def, now, int(bone)) - bone_turn(def, target, int(bone)))));
     }
-    least_turn = std::min(least_turn, far);
+    min_turn = std::min(min_turn, far);
   }
   std::printf("[row] limits under twice the bone's weight: beyond by %.3f degrees at most\n",
               most / double(kDegree));
   EXPECT_LT(most / double(kDegree), 1.0);
-  EXPECT_GT(least_turn, 0.2) << "every joint was turned";
+  EXPECT_GT(min_turn, 0.2) << "every joint was turned";
 }
 
 // ------------------------------------------------------------------------------------------------------ stabilisation
@@ -277,7 +277,7 @@ TEST(Ragdoll, NoStartMakesItExplode) {
       if (HasFatalFailure()) return;
       gap = std::max(gap, largest_gap(world, def, ragdoll));
       kinetic.push_back(world.energy().kinetic);
-      beyond.push_back(most_beyond(def, read_ragdoll(world, def, ragdoll)) / double(kDegree));
+      beyond.push_back(max_beyond(def, read_ragdoll(world, def, ragdoll)) / double(kDegree));
       if (kinetic.back() < 0.05) continue;
       ++late;
       watch(13);
@@ -411,7 +411,7 @@ TEST(Ragdoll, FallsAsleep) {
     std::printf("[row] %s: asleep after %.1f s\n", motors ? "on weak motors" : "limp", asleep / 60.0);
     EXPECT_GT(asleep, 0) << motors;
     EXPECT_LT(largest_gap(world, def, ragdoll), 1e-3);
-    EXPECT_LT(most_beyond(def, read_ragdoll(world, def, ragdoll)), 2 * double(kDegree));
+    EXPECT_LT(max_beyond(def, read_ragdoll(world, def, ragdoll)), 2 * double(kDegree));
   }
 }
 

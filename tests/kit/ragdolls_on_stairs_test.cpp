@@ -47,7 +47,7 @@ double depth_in_stairs(DVec3 p) {
 struct Judged {
   std::vector<float> gaps;    // m, of every joint in every tenth step
   double inside = -1e9;       // m: how far a bone's centre was inside the stairs, at most
-  double gained = 0;          // J in a step
+  double energy_gain = 0;          // J in a step
   std::vector<float> beyond;  // degrees, of every bone in every tenth step
   int awake = 0;
   double kinetic = 0;  // J, at the end
@@ -58,7 +58,7 @@ struct Fall {
   int count = 0;
   double seconds = 0;
   int threads = 1;
-  float push = 1.5f;  // m/s
+  float direction = 1.5f;  // m/s
 };
 Judged fall(const Fall& f) {
   const int count = f.count;
@@ -79,7 +79,7 @@ Judged fall(const Fall& f) {
     EXPECT_TRUE(made) << made.error().message;
     if (!made) return {};
     crowd.push_back(*made);
-    for (const RagdollBone& bone : crowd.back().bones) world.set_velocity(bone.body, {f.push, 0, 0}, {});
+    for (const RagdollBone& bone : crowd.back().bones) world.set_velocity(bone.body, {f.direction, 0, 0}, {});
   }
   Judged j;
   double energy = world.energy().kinetic + world.energy().potential;
@@ -88,7 +88,7 @@ Judged fall(const Fall& f) {
     EXPECT_TRUE(world.problems().empty()) << world.problems()[0].message;
     if (::testing::Test::HasFailure()) return j;
     const double now = world.energy().kinetic + world.energy().potential;
-    j.gained = std::max(j.gained, now - energy);
+    j.energy_gain = std::max(j.energy_gain, now - energy);
     energy = now;
     if (i % 10 != 9) continue;
     for (const Ragdoll& ragdoll : crowd) {
@@ -125,7 +125,7 @@ void judge(int count, Judged j) {
       "at most; %d bodies "
       "awake after %.1f s, with %.4f J\n",
       count, 1e3 * share(j.gaps, 0.99), 1e3 * share(j.gaps, 0.999), 1e3 * share(j.gaps, 1),
-      share(j.beyond, 0.99), share(j.beyond, 0.999), share(j.beyond, 1), -j.inside, j.gained, j.awake,
+      share(j.beyond, 0.99), share(j.beyond, 0.999), share(j.beyond, 1), -j.inside, j.energy_gain, j.awake,
       j.seconds, j.kinetic);
   EXPECT_LT(share(j.gaps, 0.999), 0.01);
   EXPECT_LT(share(j.gaps, 1), 0.05) << "a limb struck at 10 m/s, for a step";
@@ -137,12 +137,12 @@ void judge(int count, Judged j) {
   EXPECT_LT(j.kinetic, 0.01 * count);
   // Places that are taken back (overlap, joints) lift something now and then, and limbs that are wedged in a heap slip: by less than
   // a millimetre of the crowd's weight.
-  EXPECT_LT(j.gained, 0.5 * count);
+  EXPECT_LT(j.energy_gain, 0.5 * count);
 }
 
 TEST(RagdollsOnStairs, TwentyComeToRest) {
   for (int draw = 0; draw < 5; ++draw) {
-    const Judged j = fall({.count = 20, .seconds = 30, .push = 1.5f + 0.001f * float(draw)});
+    const Judged j = fall({.count = 20, .seconds = 30, .direction = 1.5f + 0.001f * float(draw)});
     judge(20, j);
     EXPECT_EQ(j.awake, 0) << "fall " << draw;
   }

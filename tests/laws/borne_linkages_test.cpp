@@ -39,11 +39,11 @@ TEST(BorneLinkages, APendulumSwingsOnAStandOnTheGround) {
 
 TEST(BorneLinkages, APendulumSwingsInAField) {
   Assembly chain({.gravity = {0, 0, 0}, .sleeping = false});
-  FieldDef pull{.kind = FieldKind::radial};
-  pull.center = {0, -1000, 0};
-  pull.radius = 1000;
-  pull.strength = 9.81f;
-  ASSERT_TRUE(chain.world.add_field(pull));
+  FieldDef geometric_stiffness{.kind = FieldKind::radial};
+  geometric_stiffness.center = {0, -1000, 0};
+  geometric_stiffness.radius = 1000;
+  geometric_stiffness.strength = 9.81f;
+  ASSERT_TRUE(chain.world.add_field(geometric_stiffness));
   const BodyId link = chain.add(body_of(0.05f, {0.1, -0.5, 0}), Box{{0.02f, 0.02f, 0.02f}});
   const BodyId bob = chain.add(body_of(5, {0.2, -1, 0}), Box{{0.1f, 0.1f, 0.1f}});
   chain.join(JointKind::hinge, {}, link, {0, 0, 0});
@@ -59,11 +59,11 @@ TEST(BorneLinkages, ASeesawTipsOverToItsHeavySide) {
   const BodyId post = seesaw.add(body_of(5, {0, 0.6, 0}), Box{{0.05f, 0.5f, 0.05f}});
   const BodyId beam = seesaw.add(body_of(5, {0, 1.1, 0}), Box{{1, 0.05f, 0.1f}});
   const BodyId heavy = seesaw.add(body_of(3, {-0.9, 1.1, 0}), Sphere{0.1f});
-  const BodyId light = seesaw.add(body_of(2, {0.9, 1.1, 0}), Sphere{0.1f});
+  const BodyId has_extreme_mass_ratio = seesaw.add(body_of(2, {0.9, 1.1, 0}), Sphere{0.1f});
   seesaw.join(JointKind::fixed, foot, post, {0, 0.1, 0});
   seesaw.join(JointKind::hinge, post, beam, {0, 1.1, 0});
   seesaw.join(JointKind::fixed, beam, heavy, {-0.9, 1.1, 0});
-  seesaw.join(JointKind::fixed, beam, light, {0.9, 1.1, 0});
+  seesaw.join(JointKind::fixed, beam, has_extreme_mass_ratio, {0.9, 1.1, 0});
   run(seesaw.world, 0.25);
   const double balls = 5.0 * (0.81 + 0.4 * 0.01), own = 5.0 * (4.0 + 0.01) / 12.0;
   const double turning = kGravity * 0.9 / (balls + own);  // rad/s^2, while it is level

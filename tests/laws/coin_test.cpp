@@ -7,7 +7,7 @@ namespace gyre::laws {
 namespace {
 
 struct Circle {
-  double rate, most_lean, least_lean, spin;
+  double rate, max_lean, min_lean, spin;
 };
 // A thin uniform disc of radius 0.5 that leans 20 degrees inwards while its centre runs a circle of 2 m, for one lap.
 Circle roll_a_lap(float step) {
@@ -30,7 +30,7 @@ Circle roll_a_lap(float step) {
     const DVec3 n = turned(world.pose(coin).orientation, {0, 1, 0});
     angle.add(std::atan2(-n.z, n.x));
     const double leans = std::asin(std::fabs(n.y)) / double(kDegree);
-    seen.most_lean = std::max(seen.most_lean, leans), seen.least_lean = std::min(seen.least_lean, leans);
+    seen.max_lean = std::max(seen.max_lean, leans), seen.min_lean = std::min(seen.min_lean, leans);
     seen.spin = std::fabs(dot(wide(world.angular_velocity(coin)), n));
     if (i < steps) world.step(step);
   }
@@ -44,8 +44,8 @@ TEST(Coin, RollsInASteadyCircle) {
     const Circle seen = roll_a_lap(step);
     say("[row] step %g s\n", double(step));
     EXPECT_TRUE(relative_row("A-26 rate of turning", seen.rate, 1.0833, 3e-3, 3e-3));
-    EXPECT_TRUE(relative_row("A-26 largest lean (degrees)", seen.most_lean, 20.0, 6e-3, 3e-3));
-    EXPECT_TRUE(relative_row("A-26 smallest lean (degrees)", seen.least_lean, 20.0, 6e-3, 3e-3));
+    EXPECT_TRUE(relative_row("A-26 largest lean (degrees)", seen.max_lean, 20.0, 6e-3, 3e-3));
+    EXPECT_TRUE(relative_row("A-26 smallest lean (degrees)", seen.min_lean, 20.0, 6e-3, 3e-3));
     EXPECT_TRUE(relative_row("A-26 spin about its axis", seen.spin, 4.3330, 3e-3, 3e-3));
   }
 }

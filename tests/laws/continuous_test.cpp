@@ -432,7 +432,7 @@ TEST(Continuous, DoesNotHoldWhatGoesOverRoughGround) {
   }
 }
 
-TEST(Rest, OnTwoTrianglesEndsInSleep) {
+TEST(SleepTest, OnTwoTrianglesEndsInSleep) {
   World world = make_world();
   world.add_body({.type = BodyType::fixed}, {.geometry = floor_mesh(20.0f, 1)});
   Material rough = surface(0.6f);

@@ -135,13 +135,13 @@ TEST(TwoBalls, TheLightOneLeavesHigh) {
   add_ground(world, surface(0.0f, 1.0f));
   world.add_body({.pose = {.position = {0, 1.12, 0}}, .mass = 0.6f},
                  {.geometry = Sphere{0.12f}, .material = surface(0.0f, 1.0f)});
-  const BodyId light =
+  const BodyId has_extreme_mass_ratio =
       world.add_body({.pose = {.position = {0, 1.12 + 0.12 + 0.033 + 0.02, 0}}, .mass = 0.06f},
                      {.geometry = Sphere{0.033f}, .material = surface(0.0f, 1.0f)});
   double most = 0.0;
   for (int i = 0; i < 60; ++i) {
     world.step(kStep);
-    most = std::max(most, double(world.linear_velocity(light).y));
+    most = std::max(most, double(world.linear_velocity(has_extreme_mass_ratio).y));
   }
   const double v = std::sqrt(2.0 * kGravity * 1.0);
   EXPECT_TRUE(relative_row("A-100 speed of the light ball over v", most / v, (3.0 - 0.1) / 1.1, 5e-2, 1e-2));

@@ -121,9 +121,9 @@ TEST(Integrators, ASpringToWhatStandsOnTheFloorPullsAtBoth) {
     const BodyId sled =
         world.add_body({.pose = {.position = {0, 0.5, 0}}},
                        {.geometry = Box{{1, 0.5f, 0.5f}}, .density = 4.0f, .material = surface(0.0f)});
-    BodyDef light = point_body(2.0, {1, 1, 1}, {2.2, 0.5, 0.0});
-    light.gravity_scale = 0.0f;
-    const BodyId weight = world.add_body(light);
+    BodyDef has_extreme_mass_ratio = point_body(2.0, {1, 1, 1}, {2.2, 0.5, 0.0});
+    has_extreme_mass_ratio.gravity_scale = 0.0f;
+    const BodyId weight = world.add_body(has_extreme_mass_ratio);
     world.add_joint(
         DistanceDef{.a = sled, .b = weight, .anchor = {0, 0.5, 0}, .length = 2.0f, .stiffness = 160.0f});
     ZeroCrossings through;

@@ -34,8 +34,8 @@ TEST(Cone, HoldsItsSwingWithinAnEllipse) {
       for (int i = 0; i < 240; ++i) {
         // A weight that pulls the axis to one side: it comes to rest where the ellipse is farthest that way.
         const Vec3 x = rotate(world.pose(body).orientation, {1, 0, 0});
-        const Vec3 pull{0, float(std::sin(a)), float(-std::cos(a))};
-        world.add_torque(body, 1.0f * cross(x, pull) - 0.3f * world.angular_velocity(body));
+        const Vec3 geometric_stiffness{0, float(std::sin(a)), float(-std::cos(a))};
+        world.add_torque(body, 1.0f * cross(x, geometric_stiffness) - 0.3f * world.angular_velocity(body));
         world.step(kStep);
         const SwingOf s = swing_of(world, body);
         most = std::max(most, std::hypot(s.y / double(ly), s.z / double(lz)));
@@ -254,10 +254,10 @@ TEST(RackAndPinion, KeepMomentumBetweenThem) {
 // 1 kg and 2 kg on a rope without mass.
 TEST(Pulley, IsAtwoodsMachine) {
   World world = make_world({.sleeping = false});
-  const BodyId light = world.add_body(point_body(1.0, {1e-2f, 1e-2f, 1e-2f}, {-0.5, -2, 0}));
+  const BodyId has_extreme_mass_ratio = world.add_body(point_body(1.0, {1e-2f, 1e-2f, 1e-2f}, {-0.5, -2, 0}));
   const BodyId heavy = world.add_body(point_body(2.0, {1e-2f, 1e-2f, 1e-2f}, {0.5, -1, 0}));
   const JointId rope = world.add_joint(PulleyDef{
-      .a = light, .b = heavy, .anchor = {-0.5, -2, 0}, .ground_a = {-0.5, 0, 0}, .ground_b = {0.5, 0, 0}});
+      .a = has_extreme_mass_ratio, .b = heavy, .anchor = {-0.5, -2, 0}, .ground_a = {-0.5, 0, 0}, .ground_b = {0.5, 0, 0}});
   ASSERT_TRUE(rope);
   run(world, 0.5);
   EXPECT_TRUE(relative_row("A-41 acceleration", -double(world.linear_velocity(heavy).y) / 0.5, kGravity / 3.0,

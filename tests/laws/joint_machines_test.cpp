@@ -9,9 +9,9 @@ namespace {
 // a rotor in two gimbals. A torque about the outer axis turns the inner one at torque / (I3 w).
 TEST(Gimbal, PrecessesAboutTheOtherAxis) {
   World world = weightless();
-  const Vec3 light{1e-5f, 1e-5f, 1e-5f};
-  const BodyId outer = world.add_body(point_body(0.1, light));
-  const BodyId inner = world.add_body(point_body(0.1, light));
+  const Vec3 has_extreme_mass_ratio{1e-5f, 1e-5f, 1e-5f};
+  const BodyId outer = world.add_body(point_body(0.1, has_extreme_mass_ratio));
+  const BodyId inner = world.add_body(point_body(0.1, has_extreme_mass_ratio));
   BodyDef def = point_body(1.0, {0.01f, 0.01f, 0.02f});
   def.angular_velocity = {0, 0, 100};
   const BodyId rotor = world.add_body(def);
@@ -89,9 +89,9 @@ TEST(Spring, OfAnyStiffnessIsStable) {
     for (const double damping : {0.0, 1.0, 1e6}) {
       for (const double mass : {1e-3, 1.0, 1e3}) {
         World world = make_world({.sleeping = false});
-        const double rest = 1.0, pull = 0.01;
+        const double rest = 1.0, geometric_stiffness = 0.01;
         const float moment = float(mass * 1e-2);
-        const BodyId body = world.add_body(point_body(mass, {moment, moment, moment}, {0, -rest - pull, 0}));
+        const BodyId body = world.add_body(point_body(mass, {moment, moment, moment}, {0, -rest - geometric_stiffness, 0}));
         world.add_joint(DistanceDef{
             .b = body, .length = float(rest), .stiffness = float(stiffness), .damping = float(damping)});
         const auto energy = [&] {
@@ -99,7 +99,7 @@ TEST(Spring, OfAnyStiffnessIsStable) {
           return e.kinetic + e.elastic + e.potential;
         };
         const double start = energy();
-        const double scale = 0.5 * stiffness * pull * pull + mass * kGravity * pull;
+        const double scale = 0.5 * stiffness * geometric_stiffness * geometric_stiffness + mass * kGravity * geometric_stiffness;
         double most = start;
         for (int i = 0; i < 600; ++i) {
           world.step(kStep);
@@ -284,7 +284,7 @@ TEST(SwingingChain, HoldsEachOfItsJoints) {
 }
 
 // Rods on universal joints and six axes keep their energy like those on hinges, and momentum when nothing holds them.
-TEST(Linkages, OfOtherKindsKeepEnergyAndMomentum) {
+TEST(Articulations, OfOtherKindsKeepEnergyAndMomentum) {
   for (const JointKind kind : {JointKind::universal, JointKind::cone, JointKind::six_dof}) {
     for (const bool hung : {true, false}) {
       World world = make_world(

@@ -192,7 +192,7 @@ struct Rig {
     joint = world.add_joint(definition_of(made));
     EXPECT_TRUE(world.set_joint_axis(joint, a.axis, def)) << a.name;
   }
-  void push(float by) {
+  void direction(float by) {
     if (axis.turns) {
       world.add_torque(body, by * axis.unit);
     } else {
@@ -216,7 +216,7 @@ TEST(EveryAxis, StopsAtItsLimits) {
       Rig rig(axis, {.motion = AxisMotion::limited, .limits = {-0.3f, 0.5f}});
       double most = 0.0;
       for (int i = 0; i < 240; ++i) {
-        rig.push(2.0f * way);
+        rig.direction(2.0f * way);
         rig.world.step(kStep);
         most = std::max(most, double(way) * double(rig.reading().position));
       }
@@ -238,7 +238,7 @@ TEST(EveryAxis, GivesWayAtSoftLimits) {
                    .limit_frequency = 2.0f,
                    .limit_damping_ratio = 1.0f});
     for (int i = 0; i < 600; ++i) {
-      rig.push(5.0f);
+      rig.direction(5.0f);
       rig.world.step(kStep);
     }
     const double omega = 2.0 * kPiDouble * 2.0;
@@ -292,7 +292,7 @@ TEST(EveryAxis, IsDrivenToAPlace) {
       EXPECT_NEAR(double(rig.reading().position), 0.4, 1e-4);
       // Under a load it gives way as its spring does, or not at all.
       for (int i = 0; i < 300; ++i) {
-        rig.push(3.0f);
+        rig.direction(3.0f);
         rig.world.step(kStep);
       }
       const double omega = 2.0 * kPiDouble * double(frequency);
@@ -317,7 +317,7 @@ TEST(EveryAxis, IsSprungAsHookeSays) {
     Rig damped(axis,
                {.motion = AxisMotion::free, .stiffness = 40.0f, .damping = 6.0f, .rest_position = 0.25f});
     for (int i = 0; i < 900; ++i) {
-      damped.push(4.0f);
+      damped.direction(4.0f);
       damped.world.step(kStep);
     }
     EXPECT_NEAR(double(damped.reading().position), 0.35, 1e-5);
@@ -336,12 +336,12 @@ TEST(EveryAxis, IsBrakedByFriction) {
     EXPECT_NEAR(double(rig.reading().position), 0.25, 5e-3);
     const double there = double(rig.reading().position);
     for (int i = 0; i < 120; ++i) {
-      rig.push(1.9f);
+      rig.direction(1.9f);
       rig.world.step(kStep);
     }
     EXPECT_NEAR(double(rig.reading().position), there, 1e-4) << "stiction holds below its force";
     for (int i = 0; i < 60; ++i) {
-      rig.push(3.0f);
+      rig.direction(3.0f);
       rig.world.step(kStep);
     }
     EXPECT_NEAR(rig.speed(), 1.0, 1e-2);

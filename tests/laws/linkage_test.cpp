@@ -311,25 +311,25 @@ TEST(Ring, HangsAndWhipsWithoutGainingEnergy) {
 
 // Six links: the ground, a bar, and four parallel cranks between them, of which two would do.
 TEST(SixBarLinkage, TurnsForAMinuteWithTwiceTheJointsItNeeds) {
-  Assembly linkage({.sleeping = false});
-  const BodyId bar = linkage.add({.pose = {.position = {1.5, 0, 0}}}, Box{{2.0f, 0.05f, 0.05f}});
+  Assembly articulation({.sleeping = false});
+  const BodyId bar = articulation.add({.pose = {.position = {1.5, 0, 0}}}, Box{{2.0f, 0.05f, 0.05f}});
   for (int k = 0; k < 4; ++k) {
-    const BodyId crank = linkage.add({.pose = {.position = {double(k), 0.5, 0}}}, Box{{0.05f, 0.5f, 0.05f}});
-    linkage.join(JointKind::hinge, {}, crank, {double(k), 1, 0});
-    linkage.join(JointKind::hinge, crank, bar, {double(k), 0, 0});
-    linkage.world.set_velocity(crank, {1.5f, 0, 0}, {0, 0, 3});
+    const BodyId crank = articulation.add({.pose = {.position = {double(k), 0.5, 0}}}, Box{{0.05f, 0.5f, 0.05f}});
+    articulation.join(JointKind::hinge, {}, crank, {double(k), 1, 0});
+    articulation.join(JointKind::hinge, crank, bar, {double(k), 0, 0});
+    articulation.world.set_velocity(crank, {1.5f, 0, 0}, {0, 0, 3});
   }
-  linkage.world.set_velocity(bar, {3, 0, 0}, {});
-  const double start = linkage.energy();
-  const double weight = double(linkage.world.mass_properties(bar).mass) * kGravity;
+  articulation.world.set_velocity(bar, {3, 0, 0}, {});
+  const double start = articulation.energy();
+  const double weight = double(articulation.world.mass_properties(bar).mass) * kGravity;
   double gap = 0.0, tilt = 0.0, change = 0.0, force = 0.0;
   for (int i = 0; i < 3600; ++i) {
-    linkage.world.step(kStep);
-    gap = std::max(gap, linkage.largest_gap());
-    tilt = std::max(tilt, double(std::fabs(2.0f * linkage.world.pose(bar).orientation.z)));
-    change = std::max(change, std::fabs(linkage.energy() - start) / weight);
-    for (const JointId joint : linkage.joints)
-      force = std::max(force, double(length(linkage.world.joint_reading(joint).force)));
+    articulation.world.step(kStep);
+    gap = std::max(gap, articulation.largest_gap());
+    tilt = std::max(tilt, double(std::fabs(2.0f * articulation.world.pose(bar).orientation.z)));
+    change = std::max(change, std::fabs(articulation.energy() - start) / weight);
+    for (const JointId joint : articulation.joints)
+      force = std::max(force, double(length(articulation.world.joint_reading(joint).force)));
   }
   EXPECT_TRUE(limit_row("gap of the six-bar (m)", gap, 1e-3, 1e-5));
   EXPECT_TRUE(limit_row("its bar's tilt (rad)", tilt, 1e-3, 1e-5));
@@ -350,31 +350,31 @@ TEST(FourBarLinkage, FollowsFreudenstein) {
   const DVec3 p{a * std::cos(start), a * std::sin(start), 0};
   const double rocker = rocker_angle(start);
   const DVec3 q{d + c * std::cos(rocker), c * std::sin(rocker), 0};
-  Assembly linkage({.gravity = {0, 0, 0}, .sleeping = false});
+  Assembly articulation({.gravity = {0, 0, 0}, .sleeping = false});
   const auto link = [&](DVec3 from, DVec3 to) {
     const DVec3 way = to - from;
     const float length_of = float(length(way));
-    return linkage.add(
+    return articulation.add(
         {.pose = {0.5 * (from + to), from_axis_angle({0, 0, 1}, float(std::atan2(way.y, way.x)))}},
         Box{{0.5f * length_of, 0.02f, 0.02f}});
   };
   const BodyId crank = link({}, p), coupler = link(p, q), swing = link({d, 0, 0}, q);
-  const JointId drive = linkage.join(JointKind::hinge, {}, crank, {});
-  linkage.join(JointKind::hinge, crank, coupler, p);
-  linkage.join(JointKind::hinge, coupler, swing, q);
-  linkage.join(JointKind::hinge, swing, {}, {d, 0, 0});
-  linkage.world.set_motor(drive, {.target_velocity = 2.0f, .max_force = 1000.0f});
+  const JointId drive = articulation.join(JointKind::hinge, {}, crank, {});
+  articulation.join(JointKind::hinge, crank, coupler, p);
+  articulation.join(JointKind::hinge, coupler, swing, q);
+  articulation.join(JointKind::hinge, swing, {}, {d, 0, 0});
+  articulation.world.set_motor(drive, {.target_velocity = 2.0f, .max_force = 1000.0f});
   double worst = 0.0;
   for (int i = 0; i < 1200; ++i) {
-    linkage.world.step(kStep);
-    const Quat at = linkage.world.pose(crank).orientation, end = linkage.world.pose(swing).orientation;
+    articulation.world.step(kStep);
+    const Quat at = articulation.world.pose(crank).orientation, end = articulation.world.pose(swing).orientation;
     const double expected = rocker_angle(2.0 * std::atan2(double(at.z), double(at.w)));
     double error = 2.0 * std::atan2(double(end.z), double(end.w)) - expected;
     error -= 2.0 * kPiDouble * std::round(error / (2.0 * kPiDouble));
     worst = std::max(worst, std::fabs(error));
   }
   EXPECT_TRUE(limit_row("A-43 rocker angle (rad)", worst, 1e-2, 1e-4));
-  EXPECT_TRUE(relative_row("A-43 speed of the crank", double(linkage.world.angular_velocity(crank).z), 2.0,
+  EXPECT_TRUE(relative_row("A-43 speed of the crank", double(articulation.world.angular_velocity(crank).z), 2.0,
                            1e-2, 1e-4));
 }
 

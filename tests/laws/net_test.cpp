@@ -52,7 +52,7 @@ double gained_by(const NetCase& net) {
   const std::vector<BodyId> knots = add_net(world, net);
   const double whole =
       9.81 * net.spacing * (net.side - 1) * double(knots.size());  // J/kg, all of it fallen by its span
-  double gained = 0.0;
+  double energy_gain = 0.0;
   for (int k = 0; k < 24; ++k) {
     run(world, 10.0 / 60.0);
     double energy = 0.0;  // J/kg, without the knots' spin
@@ -60,9 +60,9 @@ double gained_by(const NetCase& net) {
       const double speed = double(length(world.linear_velocity(knot)));
       energy += 0.5 * speed * speed + 9.81 * (world.pose(knot).position.y - 40.0);
     }
-    gained = std::max(gained, energy / whole);
+    energy_gain = std::max(energy_gain, energy / whole);
   }
-  return gained;
+  return energy_gain;
 }
 bool gains_nothing(const char* what, const NetCase& net) {
   return limit_row(what, gained_by(net), 0.01, 0.001);

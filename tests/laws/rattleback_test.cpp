@@ -58,7 +58,7 @@ TEST(Rattleback, ReversesOneWaySoonAndTheOtherWayLate) {
 // A rod that leans by `angle` from the horizontal while its lower tip slides ahead of it at 5 m/s, with no impact.
 struct Slide {
   double energy_gain = 0.0;  // in a step, over the start, while the upper end is in the air
-  double most_energy = 0.0;  // over the start
+  double max_energy = 0.0;  // over the start
   double largest_impulse = 0.0;
   std::uint64_t hash = 0;
   bool finite = true;
@@ -88,7 +88,7 @@ Slide slide_rod(double mu, double angle, double side) {
       seen.energy_gain = std::max(seen.energy_gain, (std::min(energy(), before) - oldest) / start);
     oldest = before;
     before = energy();
-    seen.most_energy = std::max(seen.most_energy, before / start);
+    seen.max_energy = std::max(seen.max_energy, before / start);
     double impulse = 0.0;
     for (const ContactPoint& point : std::span(points).first(world.contacts(points)))
       impulse += double(point.normal_impulse);
@@ -105,7 +105,7 @@ TEST(PainleveRod, NeitherJamsNorGainsEnergy) {
         const Slide seen = slide_rod(mu, degrees * double(kDegree), side);
         EXPECT_TRUE(seen.finite) << mu << " " << degrees;
         EXPECT_LE(seen.energy_gain, 1e-3) << mu << " " << degrees << " " << side;
-        EXPECT_LE(seen.most_energy, 1.0 + 1e-6) << mu << " " << degrees << " " << side;
+        EXPECT_LE(seen.max_energy, 1.0 + 1e-6) << mu << " " << degrees << " " << side;
         // The most that stops a rod of 1 kg: its momentum and that of the fall.
         EXPECT_LE(seen.largest_impulse, 1.0 * (5.0 + std::sqrt(2.0 * kGravity) + kGravity * double(kStep)))
             << mu << " " << degrees << " " << side;

@@ -95,7 +95,7 @@ TEST(Billiards, SlidingTurnsIntoRolling) {
   }
 }
 
-TEST(Billiards, Follow) {
+TEST(Billiards, ManifoldMatch) {
   World world = make_world({.sleeping = false});
   world.set_material_pair(
       {.a = 1, .b = 1, .static_friction = 0.0f, .dynamic_friction = 0.0f, .restitution = 1.0f});

@@ -46,10 +46,10 @@ TEST(MiddleAxis, FlipsInTime) {
     away = std::max(away, length(w - exact.w));
     if (w.y * last < 0.0) {
       // Where the rate passes zero within the step: as far as the exact one does from the rates that were measured.
-      EulerReference within{exact.moments, before + (w - exact.w)};
+      EulerReference clamp_length{exact.moments, before + (w - exact.w)};
       double t = double(i - 1) * double(kStep);
-      const double side = within.w.y;
-      while (within.w.y * side > 0.0) within.advance(1e-5), t += 1e-5;
+      const double side = clamp_length.w.y;
+      while (clamp_length.w.y * side > 0.0) clamp_length.advance(1e-5), t += 1e-5;
       flips.push_back(t);
     }
     last = w.y;

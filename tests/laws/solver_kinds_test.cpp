@@ -28,7 +28,7 @@ constexpr Way kDantzig{"Dantzig", SolverKind::lcp, {.lcp_method = LcpMethod::dan
 constexpr Way kLemke{"Lemke", SolverKind::lcp, {.lcp_method = LcpMethod::lemke, .friction_sides = 4}};
 constexpr Way kNewton{"Newton", SolverKind::lcp, {.lcp_method = LcpMethod::newton}};
 constexpr Way kNncg{"NNCG", SolverKind::lcp, {.lcp_method = LcpMethod::nncg}};
-constexpr double kMostResidual = 1.0e-6;  // N s
+constexpr double kMaxResidual = 1.0e-6;  // N s
 
 BodyId add_cube(World& world, DVec3 place, float density = 1000.0f,
                 const Material& material = surface(0.5f)) {
@@ -60,7 +60,7 @@ TEST(Solvers, AThousandfoldLoadIsBorne) {
       residual = std::max(residual, world.solver_reading().residual);
       EXPECT_EQ(world.solver_reading().direct_islands, 1) << way.name;
     }
-    EXPECT_LT(residual, kMostResidual) << way.name;
+    EXPECT_LT(residual, kMaxResidual) << way.name;
     for (std::size_t i = 0; i < cubes.size(); ++i) {
       const DVec3 place = world.pose(cubes[i]).position;
       EXPECT_NEAR(place.y, 0.5 + double(i), 1.0e-4) << way.name << ", cube " << i;
@@ -127,7 +127,7 @@ double sag_of(World& world, const std::vector<BodyId>& arch, double seconds) {
 TEST(Solvers, ADryArchStandsWhenAllStonesAreSolvedTogether) {
   World world = make_world_by({"lcp", SolverKind::lcp}, 1);
   EXPECT_LT(sag_of(world, add_arch(world, 15), 5.0), 1.0e-4);
-  EXPECT_LT(world.solver_reading().residual, kMostResidual);
+  EXPECT_LT(world.solver_reading().residual, kMaxResidual);
   EXPECT_EQ(world.solver_reading().direct_islands, 1);
 }
 
@@ -241,7 +241,7 @@ TEST(Solvers, AChainWithALoadOfAThousandLinksHangsStill) {
       world.step(kStep);
       residual = std::max(residual, world.solver_reading().residual);
     }
-    EXPECT_LT(residual, kMostResidual) << way.name;
+    EXPECT_LT(residual, kMaxResidual) << way.name;
     EXPECT_NEAR(world.pose(links.back()).position.y, -9.5, 1.0e-4) << way.name;
   }
 }
@@ -353,7 +353,7 @@ TEST(Solvers, IslandsThatAreTooLargeForAMethodAreToldAndSolvedAllTheSame) {
   ASSERT_EQ(world.problems().size(), 1u);
   EXPECT_EQ(world.problems()[0].code, ErrorCode::unsupported);
   EXPECT_EQ(world.solver_reading().direct_islands, 1);
-  EXPECT_LT(world.solver_reading().residual, kMostResidual);
+  EXPECT_LT(world.solver_reading().residual, kMaxResidual);
   EXPECT_EQ(world.solver_reading().largest_rows, 48);
   EXPECT_NEAR(world.pose(cubes.back()).position.y, 3.5, 1.0e-3);
 }
@@ -379,7 +379,7 @@ TEST(Solvers, IslandsOfAThousandRowsAreSolvedToTheLastDigits) {
     for (const BodyId body : stones) built.push_back(world.pose(body).position);
     for (int i = 0; i < 60; ++i) {
       world.step(1.0f / 60.0f);
-      EXPECT_LT(world.solver_reading().residual, kMostResidual) << is_wall << " step " << i;
+      EXPECT_LT(world.solver_reading().residual, kMaxResidual) << is_wall << " step " << i;
       EXPECT_EQ(world.solver_reading().direct_islands, world.solver_reading().islands)
           << is_wall << " step " << i;
     }

@@ -10,9 +10,9 @@ struct Oscillator {
   BodyId mass;
   JointId spring;
 };
-Oscillator pulled(double stiffness, double damping, float pull = 0.5f) {
+Oscillator pulled(double stiffness, double damping, float geometric_stiffness = 0.5f) {
   Oscillator o{make_world({.gravity = {0, 0, 0}, .sleeping = false}), {}, {}};
-  o.mass = o.world.add_body(point_body(1.0, {1, 1, 1}, {2.0 + double(pull), 0, 0}));
+  o.mass = o.world.add_body(point_body(1.0, {1, 1, 1}, {2.0 + double(geometric_stiffness), 0, 0}));
   o.spring = o.world.add_joint(DistanceDef{.b = o.mass,
                                            .anchor = {0, 0, 0},
                                            .length = 2.0f,

@@ -93,7 +93,7 @@ TEST(Tower, ReadsItsOwnWeight) {
 TEST(Tower, HeavyOnLight) {
   World world = make_world({.sleeping = false});
   add_ground(world);
-  const std::vector<BodyId> light = tower(world, 5);
+  const std::vector<BodyId> has_extreme_mass_ratio = tower(world, 5);
   const BodyId heavy =
       world.add_body({.pose = {.position = {0, 5.5, 0}}}, {.geometry = Box{}, .density = 1e5f});
   run(world, 20.0);

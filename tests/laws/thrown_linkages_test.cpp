@@ -109,7 +109,7 @@ struct Chain {
   int steps;
 };
 struct Drift {
-  double gained = 0.0;  // of the energy after the first step
+  double energy_gain = 0.0;  // of the energy after the first step
   double turned = 0.0;  // of the angular momentum, over that of 1 m/s
 };
 
@@ -148,7 +148,7 @@ void throw_chain(std::uint32_t seed, const Chain& how, Drift& most) {
   const double first = chain.energy();
   for (int i = 1; i < how.steps; ++i) {
     ASSERT_TRUE(chain.world.step(kStep));
-    most.gained = std::max(most.gained, chain.energy() / first - 1.0);
+    most.energy_gain = std::max(most.energy_gain, chain.energy() / first - 1.0);
     most.turned = std::max(most.turned, length(chain.world.momentum().angular - thrown) / scale);
   }
 }
@@ -162,7 +162,7 @@ TEST(ThrownLinkages, KeepMomentaWhateverTheyWeigh) {
   for (std::uint32_t seed = 0; seed < 60; ++seed) throw_chain(seed, sliding, sliders);
   // None of these turns far in a sub-step, and yet some doubled what they had, at one step in a thousand.
   for (const std::uint32_t seed : {88u, 236u, 286u, 349u, 468u, 598u}) throw_chain(seed, sliding, sliders);
-  EXPECT_TRUE(limit_row("sliders between light and heavy bodies: energy gained", sliders.gained, 0.3, 0.01));
+  EXPECT_TRUE(limit_row("sliders between light and heavy bodies: energy gained", sliders.energy_gain, 0.3, 0.01));
   EXPECT_TRUE(limit_row("the same: angular momentum lost, over that of 1 m/s", sliders.turned, 0.02, 0.001));
   // Some of these joints are solved in lanes, some alone, and ropes are swept: all of a chain is one island.
   const Chain kinds{
@@ -172,7 +172,7 @@ TEST(ThrownLinkages, KeepMomentaWhateverTheyWeigh) {
       20.0f,
       240};
   for (std::uint32_t seed = 0; seed < 100; ++seed) throw_chain(seed, kinds, mixed);
-  EXPECT_TRUE(limit_row("joints of five kinds, ropes among them: energy gained", mixed.gained, 0.5, 0.01));
+  EXPECT_TRUE(limit_row("joints of five kinds, ropes among them: energy gained", mixed.energy_gain, 0.5, 0.01));
   EXPECT_TRUE(limit_row("the same: angular momentum lost, over that of 1 m/s", mixed.turned, 0.02, 0.001));
 }
 
@@ -274,14 +274,14 @@ TEST(ThrownLinkages, GainNothingFromAHandThatShakesThem) {
   const JointKind cones[] = {JointKind::cone},
                   mixed[] = {JointKind::ball,   JointKind::hinge, JointKind::fixed,
                              JointKind::slider, JointKind::cone,  JointKind::universal};
-  double most_cones = 0.0, most_mixed = 0.0;
+  double max_cones = 0.0, max_mixed = 0.0;
   for (std::uint32_t seed = 0; seed < 60; ++seed) {
-    most_cones = std::max(most_cones, shake_chain(seed, cones));
-    most_mixed = std::max(most_mixed, shake_chain(seed, mixed));
+    max_cones = std::max(max_cones, shake_chain(seed, cones));
+    max_mixed = std::max(max_mixed, shake_chain(seed, mixed));
   }
-  EXPECT_TRUE(limit_row("cones in a hand that shakes them: speed over what hand and fall explain", most_cones,
+  EXPECT_TRUE(limit_row("cones in a hand that shakes them: speed over what hand and fall explain", max_cones,
                         2.0, 1.0));
-  EXPECT_TRUE(limit_row("joints of six kinds, the same", most_mixed, 2.0, 1.0));
+  EXPECT_TRUE(limit_row("joints of six kinds, the same", max_mixed, 2.0, 1.0));
 }
 
 // What turns with a shaft keeps its way and its speed: bars in a row, their joints all in lanes or, with fixed ones, solved alone.

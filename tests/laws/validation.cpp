@@ -49,7 +49,7 @@ class Collector : public testing::EmptyTestEventListener {
  public:
   explicit Collector(Progress& progress) : progress_(progress) {}
 
-  void choose(const Choice& choice) {
+  void parallel_filter(const Choice& choice) {
     laws::choice() = choice;
     default_parts_ = choice.integrator == Choice{}.integrator && choice.solver == Choice{}.solver;
     integrator_ = to_string(choice.integrator);
@@ -90,7 +90,7 @@ class Collector : public testing::EmptyTestEventListener {
 // What failed, the collector knows.
 int run_matching(const std::string& pattern, const Choice& choice, Collector& collector) {
   GTEST_FLAG_SET(filter, pattern);
-  collector.choose(choice);
+  collector.parallel_filter(choice);
   return RUN_ALL_TESTS();
 }
 

@@ -37,13 +37,13 @@ AnyShape draw_shape(std::size_t kind, testing_random::Random& random, float size
 
 // The most that one step adds to a body's energy, over what it was dropped with, and beyond what a sweep may leave it: where it is stopped
 // on its way, gravity has worked for the whole step but has moved it for a part of it.
-double drop(std::size_t kind, std::uint32_t seed, float friction, float least_spin, float most_spin) {
+double drop(std::size_t kind, std::uint32_t seed, float friction, float min_spin, float max_spin) {
   testing_random::Random random;
   random.state += seed * 0x9e3779b97f4a7c15u;
   World world = make_world({.sleeping = false});
   add_ground(world, surface(friction));
   const float size = 0.01f * std::pow(30.0f, random.real(0, 1));                        // 1 to 30 cm
-  const float spin = least_spin * std::pow(most_spin / least_spin, random.real(0, 1));  // about each axis
+  const float spin = min_spin * std::pow(max_spin / min_spin, random.real(0, 1));  // about each axis
   const BodyDef def{.pose = {{0, 2.0 * double(size), 0}, random.turn(3.0f)},
                     .linear_velocity = random.vector(-1, 1),
                     .angular_velocity = random.vector(-spin, spin)};
@@ -63,15 +63,15 @@ double drop(std::size_t kind, std::uint32_t seed, float friction, float least_sp
   return most;
 }
 
-void expect_no_gain(float least_spin, float most_spin, double most_gain) {
+void expect_no_gain(float min_spin, float max_spin, double max_gain) {
   for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
     double most = 0.0;
     for (const float friction : {0.0f, 0.5f})
       for (std::uint32_t seed = 1; seed <= 100; ++seed)
-        most = std::max(most, drop(kind, seed, friction, least_spin, most_spin));
-    const std::string name = "up to " + std::to_string(int(most_spin)) + " rad/s: energy that a " +
+        most = std::max(most, drop(kind, seed, friction, min_spin, max_spin));
+    const std::string name = "up to " + std::to_string(int(max_spin)) + " rad/s: energy that a " +
                              kKinds[kind] + " gains in a step";
-    EXPECT_TRUE(limit_row(name.c_str(), most, most_gain, 0.001));
+    EXPECT_TRUE(limit_row(name.c_str(), most, max_gain, 0.001));
   }
 }
 

@@ -13,7 +13,7 @@
 namespace gyre {
 namespace {
 
-constexpr std::size_t kMostColors = 255;  // and one number for "as before"
+constexpr std::size_t kMaxColors = 255;  // and one number for "as before"
 constexpr int kSameEnough = 3;  // of 255: a change too small to be seen is none, which keeps files small
 
 int append_to_string(GifFileType* file, const GifByteType* bytes, int count) {
@@ -132,7 +132,7 @@ bool GifWriter::write_frame(GifFileType* file, const Picture& frame) {
 std::string gif_bytes(const std::vector<Picture>& frames, double seconds, std::string& error) {
   ColorCount colors;
   for (const Picture& frame : frames) colors.add(frame);
-  GifWriter writer(frames, seconds, PaletteMap(make_palette(colors, kMostColors)));
+  GifWriter writer(frames, seconds, PaletteMap(make_palette(colors, kMaxColors)));
   std::string bytes;
   int code = 0;
   GifFileType* file = EGifOpen(&bytes, append_to_string, &code);

@@ -23,8 +23,8 @@ namespace {
 
 constexpr double kUsualSeconds = 5, kUsualFrameRate = 20;
 constexpr std::uint64_t kUntilTheEnd = std::numeric_limits<std::uint64_t>::max();  // of a recording
-constexpr std::uint64_t kMostPictures = 10'000'000;
-constexpr std::uint64_t kMostMovieBytes = std::uint64_t(2)
+constexpr std::uint64_t kMaxPictures = 10'000'000;
+constexpr std::uint64_t kMaxMovieBytes = std::uint64_t(2)
                                           << 30;  // of memory, as a GIF needs all its frames at once
 
 void say(const std::string& message) { std::fprintf(stderr, "gyre: %s\n", message.c_str()); }
@@ -126,7 +126,7 @@ bool Rendering::find_follow() {
 bool Rendering::fits_in_memory() const {
   const std::uint64_t frame_bytes = std::uint64_t(width_) * std::uint64_t(height_) * 3;
   const std::uint64_t most =
-      options_.out.kind == OutputKind::movie ? kMostMovieBytes / frame_bytes : kMostPictures;
+      options_.out.kind == OutputKind::movie ? kMaxMovieBytes / frame_bytes : kMaxPictures;
   if (plan_.count <= most) return true;
   say("found " + std::to_string(plan_.count) + " frames, expected at most " + std::to_string(most) +
       (options_.out.kind == OutputKind::movie

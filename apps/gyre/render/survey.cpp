@@ -10,7 +10,7 @@
 namespace gyre {
 namespace {
 
-constexpr std::size_t kMostMoments = 48;
+constexpr std::size_t kMaxMoments = 48;
 constexpr float kUsualFieldOfView = 0.6f;
 constexpr float kShownShare = 0.98f;  // of all balls; what flies away shall not make the rest tiny
 
@@ -97,7 +97,7 @@ void Survey::look_at_moving(const Sight& sight) {
     }
   }
   ends_.push_back(moving_.size());
-  if (ends_.size() > kMostMoments) thin_out();
+  if (ends_.size() > kMaxMoments) thin_out();
 }
 
 // Every other moment goes.

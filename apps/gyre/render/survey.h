@@ -58,7 +58,7 @@ class Survey {
   void thin_out();
   std::vector<Ball> important() const;
 
-  std::vector<Ball> moving_;       // all bodies that move, at up to kMostMoments moments
+  std::vector<Ball> moving_;       // all bodies that move, at up to kMaxMoments moments
   std::vector<std::size_t> ends_;  // of each moment, in moving_
   std::uint64_t every_ = 1;        // each so-manieth frame is kept
   std::vector<Ball> still_;

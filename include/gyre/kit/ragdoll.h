@@ -65,7 +65,7 @@ struct BoneDef {
 };
 
 struct RagdollDef {
-  static constexpr int kMostBones = 256;
+  static constexpr int kMaxBones = 256;
   std::vector<BoneDef> bones{};
   // Which bones of one ragdoll do not touch each other: those that are at most so many joints apart (1: bone and parent; at least 1),
   // those that overlap in the rest pose if asked, and these pairs. To let none touch, give all shapes one negative Filter::group.

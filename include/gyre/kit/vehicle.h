@@ -115,8 +115,8 @@ struct WheelState {
 };
 
 struct VehicleState {
-  static constexpr int kMostWheels = 16;
-  WheelState wheels[kMostWheels]{};
+  static constexpr int kMaxWheels = 16;
+  WheelState wheels[kMaxWheels]{};
   float engine_speed = 85;   // rad/s
   int gear = 1;              // -1 reverse, 0 neutral, 1 first ...
   float shifting = 0.0f;     // s that are left of a shift

@@ -72,7 +72,7 @@ void Arena::reset() {
   const bool too_large = clock_.rests(most, held_);
   used_ = 0;
   if (!too_small && !too_large) return;
-  const std::size_t need = too_small ? most : clock_.most_needed();
+  const std::size_t need = too_small ? most : clock_.max_needed();
   const std::size_t spare = need / (too_small && grew_ ? kShareOfGrowing : kShare);
   grew_ = too_small;
   const std::size_t room = round_up(need + spare);

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "base/check.h"
-#include "base/arena/idle_clock.h"
+#include "base/arena/shrink_policy.h"
 #include "base/memory/memory.h"
 
 #include <cstddef>
@@ -76,7 +76,7 @@ class Arena {
   std::size_t held_ = 0;         // capacity of all blocks
   std::size_t peak_ = 0;         // of this step, at the last release
   std::size_t high_water_ = 0;
-  IdleClock clock_;
+  ShrinkPolicy clock_;
   bool grew_ = false;  // when it last took another block
 };
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "base/check.h"
-#include "base/cold.h"
+#include "base/noinline.h"
 #include "base/memory/memory.h"
 
 #include <cstddef>

@@ -72,7 +72,7 @@ class FlatMap {
   // Makes room for `count` entries in all.
   void reserve(std::size_t count) {
     entries_.reserve(count);
-    std::size_t wanted = kLeastCells;
+    std::size_t wanted = kMinCells;
     while (wanted / 4 * 3 < count) wanted *= 2;
     if (wanted > cells_.size()) rebuild_cells(wanted);
   }
@@ -94,7 +94,7 @@ class FlatMap {
  private:
   static constexpr std::uint32_t kEmpty = 0xffffffff;
   static constexpr std::size_t kNowhere = SIZE_MAX;
-  static constexpr std::size_t kLeastCells = 16;
+  static constexpr std::size_t kMinCells = 16;
 
   // Half of the hash is kept: it gives the home cell, and tells most other keys apart without looking at the entry.
   struct Cell {
@@ -125,7 +125,7 @@ class FlatMap {
     GYRE_ASSERT(entries_.size() < kEmpty, "a map holds fewer than 2^32 - 1 entries");
     // At most three quarters full, so that an empty cell ends every search soon.
     if (entries_.size() + 1 > cells_.size() / 4 * 3) {
-      rebuild_cells(cells_.empty() ? kLeastCells : cells_.size() * 2);
+      rebuild_cells(cells_.empty() ? kMinCells : cells_.size() * 2);
     }
     place({hash_of(key), static_cast<std::uint32_t>(entries_.size())});
     return entries_.push_back(Entry{key, std::move(value)}).value;

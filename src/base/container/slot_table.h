@@ -33,7 +33,7 @@ class SlotTable {
   // The key must be new, and key_of must tell the slot's key already.
   template <class KeyOf>
   void insert(std::uint64_t key, std::uint32_t slot, const KeyOf& key_of) {
-    if (size_ + 1 > cells_.size() / 4 * 3) enlarge(cells_.empty() ? kLeastCells : 2 * cells_.size(), key_of);
+    if (size_ + 1 > cells_.size() / 4 * 3) enlarge(cells_.empty() ? kMinCells : 2 * cells_.size(), key_of);
     place(key, slot);
     ++size_;
   }
@@ -62,7 +62,7 @@ class SlotTable {
   }
 
  private:
-  static constexpr std::size_t kLeastCells = 16;
+  static constexpr std::size_t kMinCells = 16;
 
   std::size_t mask() const { return cells_.size() - 1; }
   std::size_t home(std::uint64_t key) const { return static_cast<std::size_t>(mix_bits(key) >> 32) & mask(); }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/container/array.h"
-#include "base/arena/idle_clock.h"
+#include "base/arena/shrink_policy.h"
 #include "collision/broadphase/box_lanes.h"
 #include "collision/broadphase/box_sweep.h"
 
@@ -188,7 +188,7 @@ class BucketIndex {
   Array<std::uint32_t> places_;    // by item, or kNone
   Array<std::uint32_t> nodes_of_;  // by item
   Array<BoxEntry> entries_;        // of the present build
-  IdleClock clock_;
+  ShrinkPolicy clock_;
   std::size_t size_ = 0;
 };
 

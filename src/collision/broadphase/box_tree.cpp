@@ -177,15 +177,15 @@ void BoxTree::insert_entry(const Entry& entry) {
     Node& node = nodes_[index];
     // The child that grows least in surface; among equals the smallest.
     int best = 0;
-    float least_growth = std::numeric_limits<float>::infinity(), least_area = least_growth;
+    float min_growth = std::numeric_limits<float>::infinity(), min_area = min_growth;
     for (int lane = 0; lane < node.count; ++lane) {
       const Aabb box = lane_box(node, lane);
       const float area = half_area(box);
       const float growth = half_area(merge(box, entry.box)) - area;
-      if (growth < least_growth || (growth == least_growth && area < least_area)) {
+      if (growth < min_growth || (growth == min_growth && area < min_area)) {
         best = lane;
-        least_growth = growth;
-        least_area = area;
+        min_growth = growth;
+        min_area = area;
       }
     }
     set_lane_box(node, best, merge(lane_box(node, best), entry.box));
@@ -240,7 +240,7 @@ std::uint32_t BoxTree::split(std::uint32_t node, const Entry& extra) {
     Aabb left = sorted[0].box;
     for (int count = 1; count < kCount; ++count) {
       left = merge(left, sorted[count - 1].box);
-      if (count < kLeastInHalf || kCount - count < kLeastInHalf) continue;
+      if (count < kMinInHalf || kCount - count < kMinInHalf) continue;
       const float cost = float(count) * half_area(left) + float(kCount - count) * right_area[count];
       if (cost < least) {
         least = cost;

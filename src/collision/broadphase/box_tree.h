@@ -14,7 +14,7 @@
 #pragma once
 
 #include "base/container/array.h"
-#include "base/arena/idle_clock.h"
+#include "base/arena/shrink_policy.h"
 #include "collision/broadphase/box_lanes.h"
 #include "collision/broadphase/box_sweep.h"
 #include "collision/broadphase/box_walk.h"
@@ -115,7 +115,7 @@ class BoxTree {
  private:
   static constexpr std::uint32_t kNowhere = 0xffffffffu;
   static constexpr int kMaxLevels = BoxWalk::kMaxLevels;
-  static constexpr int kLeastInHalf = 3;
+  static constexpr int kMinInHalf = 3;
 
   using Node = BoxTreeNode;
 
@@ -148,7 +148,7 @@ class BoxTree {
   Array<std::uint32_t> free_;
   Array<std::uint32_t> places_;  // by item: kWidth * node + lane, or kNowhere
   Array<Entry> entries_;         // of the present build
-  IdleClock clock_;
+  ShrinkPolicy clock_;
   std::uint32_t root_ = kNowhere;
   std::uint32_t next_improved_ = 0;
   float looseness_ = 0.0f;  // when it was built: surface of the nodes over that of the boxes

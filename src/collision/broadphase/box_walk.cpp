@@ -13,14 +13,14 @@ extern const WalkLine<BoxTreeNode> kWalkBoxLine_avx2;
 
 WalkBoxes select_box_walk() {
 #if defined(__x86_64__)
-  if (most_lanes() >= 8) return kWalkBoxes_avx2;
+  if (max_lanes() >= 8) return kWalkBoxes_avx2;
 #endif
   return walk_boxes<4>;
 }
 
 WalkLine<BoxTreeNode> select_box_line_walk() {
 #if defined(__x86_64__)
-  if (most_lanes() >= 8) return kWalkBoxLine_avx2;
+  if (max_lanes() >= 8) return kWalkBoxLine_avx2;
 #endif
   return walk_line<4, BoxTreeNode>;
 }

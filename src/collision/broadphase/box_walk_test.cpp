@@ -55,13 +55,13 @@ struct Tree {
 
 std::vector<std::uint32_t> walk_all(WalkBoxes walk_boxes, const Tree& tree, const Aabb& box) {
   // Of each level below the root no more than the children of two nodes.
-  constexpr int kMostWaiting = 2 * Tree::kLevel * BoxLanes::kWidth;
+  constexpr int kMaxWaiting = 2 * Tree::kLevel * BoxLanes::kWidth;
   std::vector<std::uint32_t> all;
   BoxWalk walk(box, 0);
   do {
     walk_boxes(tree.nodes.data(), walk);
     EXPECT_LE(walk.found_count, BoxWalk::kRoom);
-    EXPECT_LE(walk.depth, kMostWaiting);
+    EXPECT_LE(walk.depth, kMaxWaiting);
     all.insert(all.end(), walk.found, walk.found + walk.found_count);
   } while (walk.depth > 0);
   std::sort(all.begin(), all.end());

@@ -27,15 +27,15 @@ std::unique_ptr<Broadphase> make_broadphase(BroadPhaseKind kind) {
     case BroadPhaseKind::bvh:
       return std::make_unique<BroadphaseBvh>();
     case BroadPhaseKind::grid:
-      return std::make_unique<BroadphaseParted<HashedGrid>>();
+      return std::make_unique<BroadphaseBase<HashedGrid>>();
     case BroadPhaseKind::octree:
-      return std::make_unique<BroadphaseParted<LooseOctree>>();
+      return std::make_unique<BroadphaseBase<LooseOctree>>();
     case BroadPhaseKind::quadtree:
-      return std::make_unique<BroadphaseParted<LooseQuadtree>>();
+      return std::make_unique<BroadphaseBase<LooseQuadtree>>();
     case BroadPhaseKind::kd_tree:
-      return std::make_unique<BroadphaseParted<KdTree>>();
+      return std::make_unique<BroadphaseBase<KdTree>>();
     case BroadPhaseKind::bsp_tree:
-      return std::make_unique<BroadphaseParted<BspTree>>();
+      return std::make_unique<BroadphaseBase<BspTree>>();
     case BroadPhaseKind::sweep_and_prune:
       return std::make_unique<BroadphaseSweep>();
     case BroadPhaseKind::brute_force:

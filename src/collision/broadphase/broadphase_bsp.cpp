@@ -46,7 +46,7 @@ void choose_along(int direction, std::span<const BoxEntry> sample, Choice& best)
 
 }  // namespace
 
-bool BspSplitter::choose(std::span<BoxEntry> entries, Split& split) {
+bool BspSplitter::parallel_filter(std::span<BoxEntry> entries, Split& split) {
   BoxEntry sample[kPlaneSample];
   const std::size_t stride = (entries.size() + kPlaneSample - 1) / kPlaneSample;
   std::size_t count = 0;

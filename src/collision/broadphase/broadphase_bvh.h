@@ -2,11 +2,11 @@
 #pragma once
 
 #include "collision/broadphase/box_tree.h"
-#include "collision/broadphase/broadphase_parted.h"
+#include "collision/broadphase/broadphase_base.h"
 
 namespace gyre {
 
-class BroadphaseBvh final : public BroadphaseParted<BoxTree> {
+class BroadphaseBvh final : public BroadphaseBase<BoxTree> {
  public:
   const BoxTree& moving_tree() const { return indices_[kMoving]; }
   const BoxTree& fixed_tree() const { return indices_[kFixed]; }

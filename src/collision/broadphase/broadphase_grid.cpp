@@ -66,7 +66,7 @@ void HashedGrid::finish_build() {
 void HashedGrid::put(std::uint32_t item, const Aabb& box) {
   boxes_[item] = box;
   const Cells cells = cells_of(box);
-  if (cells.count() > kMostCells) {
+  if (cells.count() > kMaxCells) {
     places_[item] = buckets_.add(large_, item, box);
     where_[item] = kInLarge;
     return;
@@ -116,7 +116,7 @@ void HashedGrid::remove(std::uint32_t item) {
 void HashedGrid::move(std::uint32_t item, const Aabb& box) {
   GYRE_ASSERT(contains(item), "the item is in the grid");
   const Cells cells = cells_of(box);
-  if (where_[item] == kInLarge && cells.count() > kMostCells) {
+  if (where_[item] == kInLarge && cells.count() > kMaxCells) {
     boxes_[item] = box;
     buckets_.set_box(places_[item], box);
   } else if (where_[item] == kInCells && cells == cells_of(boxes_[item])) {
@@ -151,7 +151,7 @@ const char* HashedGrid::find_fault() const {
     if (where_[item] == kAbsent) continue;
     ++items;
     const Cells cells = cells_of(boxes_[item]);
-    if ((cells.count() > kMostCells) != (where_[item] == kInLarge))
+    if ((cells.count() > kMaxCells) != (where_[item] == kInLarge))
       return "a large box is not where large ones are";
     if (where_[item] == kInLarge) {
       if (buckets_.item_at(places_[item]) != item) return "an item's place is wrong";

@@ -12,7 +12,7 @@
 
 #include "base/container/flat_map.h"
 #include "collision/broadphase/box_buckets.h"
-#include "collision/broadphase/broadphase_parted.h"
+#include "collision/broadphase/broadphase_base.h"
 
 namespace gyre {
 
@@ -77,7 +77,7 @@ class HashedGrid {
 
  private:
   static constexpr std::uint32_t kNone = BoxBuckets::kNone;
-  static constexpr std::int64_t kMostCells = 64;           // of one box
+  static constexpr std::int64_t kMaxCells = 64;           // of one box
   static constexpr std::int32_t kFarthest = (1 << 20) - 1;  // cells beyond this count as this one
 
   struct Cell {
@@ -175,7 +175,7 @@ class HashedGrid {
   Array<Where> where_;           // by item
   Array<std::uint32_t> places_;  // by item, of those in the list of large boxes
   Array<BoxEntry> entries_;      // of the present build
-  IdleClock clock_;
+  ShrinkPolicy clock_;
   std::uint32_t large_ = kNone;
   Cells reach_{{{0, 0, 0}}, {{-1, -1, -1}}};  // all cells that were ever occupied since the build
   float cell_size_ = 1.0f, inverse_size_ = 1.0f;

@@ -192,7 +192,7 @@ void BroadphaseSweep::find_pairs(std::span<const Proxy> proxies, std::span<const
     if (homes_[index] == kFixed) moved_fixed_.push_back(index);
   }
   if (!sweeps) {
-    BroadphaseParted::find_pairs(proxies, moved, filter, tasks, pairs);
+    BroadphaseBase::find_pairs(proxies, moved, filter, tasks, pairs);
     return;
   }
   const auto is_moved = [&](std::uint32_t index) { return collector_.is_moved(index); };

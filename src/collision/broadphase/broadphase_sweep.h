@@ -10,7 +10,7 @@
 #pragma once
 
 #include "collision/broadphase/box_buckets.h"
-#include "collision/broadphase/broadphase_parted.h"
+#include "collision/broadphase/broadphase_base.h"
 
 #include <bit>
 
@@ -125,14 +125,14 @@ class SortedAxis {
   Array<float> farthest_so_far_;              // by group: the same of it and all before it
   Array<std::uint64_t> keys_, keys_scratch_;  // of the present sort
   Array<std::uint32_t> values_, values_scratch_;
-  IdleClock clock_;
+  ShrinkPolicy clock_;
   std::size_t size_ = 0;
   std::size_t gone_ = 0;
   std::size_t changes_since_axis_ = 0;
   int axis_ = 0;
 };
 
-class BroadphaseSweep final : public BroadphaseParted<SortedAxis> {
+class BroadphaseSweep final : public BroadphaseBase<SortedAxis> {
  public:
   void find_pairs(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved, PairFilter filter,
                   TaskSystem& tasks, Array<std::uint64_t>& pairs) override;

@@ -7,20 +7,20 @@ namespace gyre {
 namespace {
 
 // A fat box reaches ahead by the way of one more step, but never by more than this many sizes.
-constexpr float kLargestReach = 2.0f;
-static_assert(kTooLarge > 2.0f * kFatShare + kLargestReach);
-constexpr float kSmallestNormal = 1.17549435e-38f;
-constexpr float kLargestFloat = 3.402823466e38f;
+constexpr float kMaxReach = 2.0f;
+static_assert(kTooLarge > 2.0f * kFatShare + kMaxReach);
+constexpr float kMinNormal = 1.17549435e-38f;
+constexpr float kMaxFloat = 3.402823466e38f;
 
 float next_up(float a) {
-  if (absolute(a) < kSmallestNormal) return kSmallestNormal;
+  if (absolute(a) < kMinNormal) return kMinNormal;
   const auto bits = __builtin_bit_cast(std::uint32_t, a);
   return __builtin_bit_cast(float, a > 0.0f ? bits + 1 : bits - 1);
 }
 // Sides beyond the range of floats, or not numbers at all, end where floats end: trees rely on finite boxes.
 float round_up(double a) {
-  if (!(a <= double(kLargestFloat))) return kLargestFloat;
-  if (a < -double(kLargestFloat)) return -kLargestFloat;
+  if (!(a <= double(kMaxFloat))) return kMaxFloat;
+  if (a < -double(kMaxFloat)) return -kMaxFloat;
   const float rounded = float(a);
   return double(rounded) < a ? next_up(rounded) : rounded;
 }
@@ -55,7 +55,7 @@ Aabb fat_box(const WorldBox& needed, const BoxMotion& motion) {
   const double size = margin_size(motion);
   const double margin = double(kFatShare) * size;
   const DVec3 all{margin, margin, margin};
-  const float reach = kLargestReach * float(size);
+  const float reach = kMaxReach * float(size);
   const Vec3 ahead = max(min(motion.way, Vec3{reach, reach, reach}), Vec3{-reach, -reach, -reach});
   return round_outward({needed.low - all + min(ahead, Vec3{}), needed.high + all + max(ahead, Vec3{})});
 }

@@ -11,7 +11,7 @@
 #pragma once
 
 #include "collision/broadphase/box_buckets.h"
-#include "collision/broadphase/broadphase_parted.h"
+#include "collision/broadphase/broadphase_base.h"
 
 #include <limits>
 

@@ -4,7 +4,7 @@
 
 #include "base/container/array.h"
 #include "base/container/bitset.h"
-#include "base/arena/idle_clock.h"
+#include "base/arena/shrink_policy.h"
 #include "base/container/sort.h"
 #include "collision/broadphase/broadphase.h"
 #include "task/parallel.h"
@@ -40,7 +40,7 @@ class PairCollector {
     if (is_moved_.size() < proxies.size()) is_moved_.resize(proxies.size());
     for (const std::uint32_t index : moved) is_moved_.set(index);
     found_.resize(std::size_t(tasks.worker_count()));
-    for (Found& found : found_) found.keys.reserve(most_ + most_at_once_);
+    for (Found& found : found_) found.keys.reserve(most_ + max_at_once_);
     for_blocks(tasks, count, kBlock, [&](int begin, int end, int worker) {
       Array<std::uint64_t>& keys = found_[worker].keys;
       const std::size_t before = keys.size();
@@ -50,7 +50,7 @@ class PairCollector {
         if (overlap(a.fat_box, b.fat_box) && may_pair(a, b)) keys.push_back(pair_key(one, other));
       };
       for (int i = begin; i < end; ++i) search(i, emit);
-      found_[worker].most_at_once = max(found_[worker].most_at_once, keys.size() - before);
+      found_[worker].max_at_once = max(found_[worker].max_at_once, keys.size() - before);
       filter(keys, before);
     });
     for (const std::uint32_t index : moved) is_moved_.clear(index);
@@ -64,8 +64,8 @@ class PairCollector {
     const std::size_t needed = last_ * sizeof(std::uint64_t);
     last_ = 0;
     if (!clock_.rests(needed, scratch_.bytes())) return;
-    most_ = 2 * clock_.most_needed() / sizeof(std::uint64_t);
-    most_at_once_ = 0;
+    most_ = 2 * clock_.max_needed() / sizeof(std::uint64_t);
+    max_at_once_ = 0;
     for (Found& found : found_) found = {};
     scratch_ = Array<std::uint64_t>();
   }
@@ -81,7 +81,7 @@ class PairCollector {
   // What one worker finds.
   struct Found {
     Array<std::uint64_t> keys;
-    std::size_t most_at_once = 0;  // in a block
+    std::size_t max_at_once = 0;  // in a block
   };
 
   void append_sorted(Array<std::uint64_t>& pairs) {
@@ -89,7 +89,7 @@ class PairCollector {
     for (Found& found : found_) {
       pairs.append(found.keys);
       found.keys.clear();
-      most_at_once_ = max(most_at_once_, found.most_at_once);
+      max_at_once_ = max(max_at_once_, found.max_at_once);
     }
     const std::size_t count = pairs.size() - before;
     // Which worker finds how many changes from run to run: each gets room for all, and for a block before it is filtered, so
@@ -104,9 +104,9 @@ class PairCollector {
   Array<Found> found_;  // by worker
   Array<std::uint64_t> scratch_;
   std::size_t most_ = 0;  // pairs of a step
-  std::size_t most_at_once_ = 0;
+  std::size_t max_at_once_ = 0;
   std::size_t last_ = 0;  // pairs found since the last trim()
-  IdleClock clock_;
+  ShrinkPolicy clock_;
 };
 
 }  // namespace gyre

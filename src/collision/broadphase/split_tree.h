@@ -10,7 +10,7 @@
 #pragma once
 
 #include "collision/broadphase/box_buckets.h"
-#include "collision/broadphase/broadphase_parted.h"
+#include "collision/broadphase/broadphase_base.h"
 
 #include <span>
 
@@ -135,7 +135,7 @@ class SplitTree : public BucketIndex {
 
  private:
   static constexpr int kChildren = Splitter::kChildren;
-  static constexpr std::uint32_t kMostInLeaf = 32;
+  static constexpr std::uint32_t kMaxInLeaf = 32;
   static constexpr std::uint32_t kFewInLeaf = 16;  // when it is built
   static constexpr std::uint32_t kFewArrivals = 64;
   static constexpr int kMostDepth = 96;

@@ -46,7 +46,7 @@ void SplitTree<Splitter>::fill(std::uint32_t index, std::span<BoxEntry> entries,
   nodes_[index].count = std::uint32_t(entries.size());
   nodes_[index].arrivals = 0;
   Split split;
-  if (entries.size() <= kFewInLeaf || depth >= kMostDepth / 2 || !Splitter::choose(entries, split)) {
+  if (entries.size() <= kFewInLeaf || depth >= kMostDepth / 2 || !Splitter::parallel_filter(entries, split)) {
     fill_leaf(index, entries);
     return;
   }
@@ -160,7 +160,7 @@ void SplitTree<Splitter>::arrive(std::uint32_t leaf, std::uint32_t item, const A
   }
   const std::uint32_t count = nodes_[leaf].count;
   // What cannot be parted is tried again only when there is twice as much of it.
-  const bool full = count == kMostInLeaf + 1 || (count > kMostInLeaf && (count & (count - 1)) == 0);
+  const bool full = count == kMaxInLeaf + 1 || (count > kMaxInLeaf && (count & (count - 1)) == 0);
   if (full && worn == kNone) worn = depth > kMostDepth / 2 ? root_ : leaf;
   if (worn != kNone) rebuild(worn);
 }

@@ -71,8 +71,8 @@ bool boxes_overlap(const Proxy& a, const Proxy& b) {
 // Whether the balls around two bodies that hold them stay farther apart in the step than a full look at shapes of this size reaches.
 // However the bodies turn, their balls only go along.
 bool bodies_apart(const CollideInput& input, const Contact& contact) {
-  const BodyLook& a = input.looks[contact.body_a];
-  const BodyLook& b = input.looks[contact.body_b];
+  const CollisionBody& a = input.looks[contact.body_a];
+  const CollisionBody& b = input.looks[contact.body_b];
   const float extents = extent_of(input.centers[contact.body_a]) + extent_of(input.centers[contact.body_b]);
   const float reach = extents + (kSpeculativeShare + kNearSlack) * contact.size + length(b.way - a.way);
   return length_squared(difference(b.position, a.position)) > square(reach);
@@ -107,7 +107,7 @@ void list_contacts(ContactStore& store, std::uint32_t begin, std::uint64_t asked
       list.note_manifolds(slot, contact);
       continue;
     }
-    if (stops_others(contact, input.proxies)) changes.may_stop.set(slot);
+    if (blocks_fast_bodies(contact, input.proxies)) changes.may_stop.set(slot);
     if (input.awake[contact.body_a] == 0 && input.awake[contact.body_b] == 0) {
       list.note_manifolds(slot, contact);
       continue;
@@ -145,9 +145,9 @@ class MeshesAhead {
     list.for_each_place([&](int i) {
       if ((recycled.contacts >> i & 1) != 0) return;
       const Contact& contact = *list.pairs[i].contact;
-      const KeptTriangles* const kept = contact.sensor != 0 ? nullptr : kept_triangles_of(store, contact);
+      const CachedTriangles* const kept = contact.sensor != 0 ? nullptr : cached_triangles_of(store, contact);
       if (kept == nullptr) return;
-      prefetch(kept, sizeof(KeptTriangles));
+      prefetch(kept, sizeof(CachedTriangles));
       left_ |= std::uint64_t{1} << i;
     });
   }
@@ -161,7 +161,7 @@ class MeshesAhead {
     const Shape& a = next.shape_a->shape;
     const Shape& mesh = a.kind == ShapeKind::mesh ? a : next.shape_b->shape;
     if (mesh.kind == ShapeKind::mesh)
-      prefetch_triangles(*mesh.mesh, *kept_triangles_of(store_, *next.contact));
+      prefetch_triangles(*mesh.mesh, *cached_triangles_of(store_, *next.contact));
   }
 
  private:
@@ -170,7 +170,7 @@ class MeshesAhead {
   std::uint64_t left_ = 0;  // bits, by place
 };
 
-void look_at_block(ContactStore& store, int begin, const CollideInput& input, TouchChanges& changes) {
+void update_contact_block(ContactStore& store, int begin, const CollideInput& input, TouchChanges& changes) {
   const std::size_t word = std::size_t(begin / kContactBlock);
   const std::uint64_t asked = input.asked.words()[word];
   if (asked == 0) return;
@@ -190,8 +190,8 @@ void look_at_block(ContactStore& store, int begin, const CollideInput& input, To
     if ((recycled.apart & own) != 0) return note_touch(contact, list.slots[i], false, changes);
     const bool touches = contact.recycled != 0 ? (recycled.touching & own) != 0
                          : contact.sensor != 0
-                             ? look_at_sensor(pair, recycled.views[i])
-                             : look_anew(pair, recycled.views[i], kept_triangles_of(store, contact));
+                             ? test_sensor_overlap(pair, recycled.views[i])
+                             : compute_manifold(pair, recycled.views[i], cached_triangles_of(store, contact));
     note_touch(contact, list.slots[i], touches, changes);
     list.note_manifolds(list.slots[i], contact);
     if ((list.one_resting & own) != 0 && contact.manifold_count != 0)
@@ -211,7 +211,7 @@ void collide(ContactStore& store, const CollideInput& input, TaskSystem& tasks, 
   prepare_bits(changes.beside_resting, count);
   prepare_bits(changes.may_stop, count);
   for_blocks(tasks, int(count), kContactBlock,
-             [&](int begin, int, int) { look_at_block(store, begin, input, changes); });
+             [&](int begin, int, int) { update_contact_block(store, begin, input, changes); });
 }
 
 }  // namespace gyre

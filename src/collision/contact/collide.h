@@ -6,7 +6,7 @@
 #pragma once
 
 #include "base/container/bitset.h"
-#include "base/container/shared_column.h"
+#include "base/container/interned_column.h"
 #include "collision/contact/contact_store.h"
 #include "geometry/shape/shape.h"
 #include "task/task_system.h"
@@ -31,7 +31,7 @@ class ColliderShapes {
   requires std::is_convertible_v<const Shapes&, std::span<const ColliderShape>> ColliderShapes(
       const Shapes& shapes)  // NOLINT: either form is all that is needed
       : records_(std::span<const ColliderShape>(shapes).data()) {}
-  ColliderShapes(const SharedColumn<ColliderShape>& shapes)  // NOLINT
+  ColliderShapes(const InternedColumn<ColliderShape>& shapes)  // NOLINT
       : records_(shapes.records()), places_(shapes.places()) {}
   const ColliderShape& operator[](std::uint32_t shape) const {
     return records_[places_ != nullptr ? places_[shape] : shape];
@@ -53,7 +53,7 @@ struct ColliderBody {
 };
 
 // What contacts need to know of a body, in one cache line. Made before the stage.
-struct alignas(64) BodyLook {
+struct alignas(64) CollisionBody {
   DVec3 position;  // of the origin
   Quat orientation;
   Vec3 way;   // m, how far the centre of mass goes in the step
@@ -61,8 +61,8 @@ struct alignas(64) BodyLook {
 };
 
 // `seconds`: length of the step, how far things may come.
-inline BodyLook make_body_look(const ColliderBody& body, float seconds) {
-  BodyLook look;
+inline CollisionBody make_collision_body(const ColliderBody& body, float seconds) {
+  CollisionBody look;
   look.position = body.pose.position;
   look.orientation = body.pose.orientation;
   look.way = seconds * body.linear_velocity;
@@ -86,7 +86,7 @@ inline float extent_of(const BodyCenter& center) { return center.reach + length(
 
 struct CollideInput {
   ColliderShapes shapes;
-  std::span<const BodyLook> looks;      // by body
+  std::span<const CollisionBody> looks;      // by body
   std::span<const BodyCenter> centers;  // by body
   std::span<const std::uint8_t> awake;  // by body: 1 for those that are, and not fixed
   std::span<const Proxy> proxies;
@@ -103,11 +103,11 @@ struct TouchChanges {
   Bitset ended;  // the other way round
   Bitset gone;   // fat boxes no longer overlap: remove the contact (`ended` is set too if it was touching)
   Bitset beside_resting;  // looked at, has points, and only one of the two is moved by contacts (for seam.h)
-  Bitset may_stop;  // asked, not gone, and stops_others(): what is fast may have to stop (for continuous.h)
+  Bitset may_stop;  // asked, not gone, and blocks_fast_bodies(): what is fast may have to stop (for continuous.h)
 };
 
 // Whether one of the two is not pushed, or is a sensor.
-inline bool stops_others(const Contact& contact, std::span<const Proxy> proxies) {
+inline bool blocks_fast_bodies(const Contact& contact, std::span<const Proxy> proxies) {
   return !proxies[contact.shape_a].pushes || !proxies[contact.shape_b].pushes || contact.sensor != 0;
 }
 

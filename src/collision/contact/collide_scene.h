@@ -72,11 +72,11 @@ class CollideScene {
   }
 
   void look() {
-    std::vector<BodyLook> looks;
+    std::vector<CollisionBody> looks;
     std::vector<BodyCenter> centers;
     std::vector<std::uint8_t> awake;
     for (const ColliderBody& body : bodies) {
-      looks.push_back(make_body_look(body, seconds));
+      looks.push_back(make_collision_body(body, seconds));
       centers.push_back({body.center, body.reach});
       awake.push_back(body.awake ? 1 : 0);
     }

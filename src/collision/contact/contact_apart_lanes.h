@@ -77,7 +77,7 @@ GYRE_INLINE Mask<W> looks_far(const Group<W>& group) {
   return (group.way < Wide<W>(kSlow) * group.size) & Mask<W>::of_bits(empty_lanes<W>(group));
 }
 template <int W>
-GYRE_INLINE Wide<W> look_reach(const Group<W>& group, Mask<W> far) {
+GYRE_INLINE Wide<W> speculative_reach(const Group<W>& group, Mask<W> far) {
   return group.speculative + select(far, Wide<W>(kFarSlack), Wide<W>(kNearSlack)) * group.size;
 }
 
@@ -98,7 +98,7 @@ GYRE_INLINE unsigned part_by_last_face(const Group<W>& group, const ShapesInView
   GYRE_UNROLL
   for (int i = 0; i < W; ++i) may |= unsigned(begins_with_face(*group.pairs[i])) << i;
   if ((may & lanes) == 0) return 0;
-  const Wide<W> reach = look_reach<W>(group, looks_far<W>(group));
+  const Wide<W> reach = speculative_reach<W>(group, looks_far<W>(group));
   const Wide<W> separation = face_separation<W>(last_axis<W>(group), load_half_extents<W>(shapes.records_a),
                                                 load_half_extents<W>(shapes.records_b), shapes.a_from_b);
   const unsigned apart = may & lanes & to_bits(separation > reach);
@@ -120,7 +120,7 @@ GYRE_INLINE unsigned search_boxes(const Group<W>& group, const ShapesInView<W>& 
   const WideInt<W> last = last_axis<W>(group), none(boxes::kNoAxis);
   const Mask<W> is_axis = (last >= WideInt<W>(0)) & (last < WideInt<W>(boxes::kAxisCount));
   const Mask<W> far = looks_far<W>(group);
-  const Wide<W> reach = look_reach<W>(group, far);
+  const Wide<W> reach = speculative_reach<W>(group, far);
   const BoxPairLanes<W> pair(load_half_extents<W>(shapes.records_a), load_half_extents<W>(shapes.records_b),
                              shapes.a_from_b.position, shapes.a_from_b.orientation);
   const AxisLanes<W> found = search_axes<W>(pair, reach, select(is_axis, last, none));

@@ -2,7 +2,7 @@
 // width: lane i computes exactly what a width of 1 would.
 #pragma once
 
-#include "collision/contact/contact_fours.h"
+#include "collision/contact/manifold_layout.h"
 #include "collision/contact/contact_recycle.h"
 #include "collision/broadphase/fat_box.h"
 #include "geometry/manifold/box_search_lanes.h"
@@ -35,7 +35,7 @@ struct Places {
   Half x[kHalves<W>], y[kHalves<W>], z[kHalves<W>];
 };
 template <int W>
-GYRE_INLINE void load_halves(const BodyLook* const (&looks)[W], double DVec3::*axis,
+GYRE_INLINE void load_halves(const CollisionBody* const (&looks)[W], double DVec3::*axis,
                              typename Places<W>::Half (&out)[kHalves<W>]) {
   if constexpr (W == 1) {
     out[0].v = looks[0]->position.*axis;
@@ -77,9 +77,9 @@ struct Side {
 };
 
 template <int W>
-GYRE_INLINE Side<W> load_side(const BodyLook* const (&looks)[W], const Records<W>& centers) {
-  static_assert(GYRE_FLOATS_BEFORE(BodyLook, orientation) == 6 && GYRE_FLOATS_BEFORE(BodyLook, way) == 10);
-  static_assert(GYRE_FLOATS_BEFORE(BodyLook, turn) == 13 && GYRE_FLOATS_BEFORE(BodyCenter, reach) == 3);
+GYRE_INLINE Side<W> load_side(const CollisionBody* const (&looks)[W], const Records<W>& centers) {
+  static_assert(GYRE_FLOATS_BEFORE(CollisionBody, orientation) == 6 && GYRE_FLOATS_BEFORE(CollisionBody, way) == 10);
+  static_assert(GYRE_FLOATS_BEFORE(CollisionBody, turn) == 13 && GYRE_FLOATS_BEFORE(BodyCenter, reach) == 3);
   Records<W> record;
   GYRE_UNROLL
   for (int i = 0; i < W; ++i) record[i] = floats(looks[i]);
@@ -124,7 +124,7 @@ GYRE_INLINE void load_group(const ContactPair* pairs, int count, Group<W>& group
   static_assert(GYRE_FLOATS_BEFORE(Contact, size) == kLooked + 1);
   static_assert(GYRE_FLOATS_BEFORE(Contact, seen_a_from_b) == kLooked + 2);
   static_assert(offsetof(Transform, orientation) == sizeof(Vec3));
-  const BodyLook *looks_a[W], *looks_b[W];
+  const CollisionBody *looks_a[W], *looks_b[W];
   Records<W> record, centers_a, centers_b;
   GYRE_UNROLL
   for (int i = 0; i < W; ++i) {
@@ -151,7 +151,7 @@ GYRE_INLINE void load_group(const ContactPair* pairs, int count, Group<W>& group
 // ------------------------------------------------------------------------------------------------------------- the view
 
 // m^2: below the square of any distance between bodies that is one.
-constexpr float kSmallestLength = 1.0e-30f;
+constexpr float kMinLength = 1.0e-30f;
 
 // The most that surfaces of the two come towards each other in the step, by how each turns about its own centre of mass. A
 // body that is long beyond the other one turns no faster there.
@@ -179,7 +179,7 @@ GYRE_INLINE void find_closing(Vec3W<W> b_from_a, Wide<W> gap, Wide<W> spin_a, Wi
   const Wide<W> squared = length_squared(b_from_a), apart = sqrt(squared);
   // Where the plane through the circle that both balls share lies between the centres.
   const Wide<W> share = min(max((squared + (radius_a - radius_b) * (radius_a + radius_b)) /
-                                    (2.0f * squared + Wide<W>(kSmallestLength)),
+                                    (2.0f * squared + Wide<W>(kMinLength)),
                                 zero),
                             one);
   const Wide<W> from_a = share * apart, from_b = (one - share) * apart;
@@ -199,7 +199,7 @@ GYRE_INLINE void find_view(Group<W>& group) {
   const Vec3W<W> b_from_a = way + rotate(b.orientation, b.center) - rotate(a.orientation, a.center);
   const Wide<W> by_each = way_by_each<W>(group, spin_a, spin_b);
   const Wide<W> margin = Wide<W>(kSpeculativeShare) * group.size,
-                largest_approach = Wide<W>(kLargestApproach) * group.size;
+                largest_approach = Wide<W>(kMaxApproach) * group.size;
   find_closing<W>(b_from_a, margin + min(by_each, largest_approach), spin_a, spin_b, group);
   group.way = min(by_each, length(group.closing_way) + length(group.closing_turn) * group.lever + group.bend);
   group.speculative = margin + min(group.way, largest_approach);

@@ -140,7 +140,7 @@ bool too_fast(const CollideScene& scene) {
   const ColliderBody& b = scene.bodies[1];
   const float fastest = length(b.linear_velocity - a.linear_velocity) + length(a.angular_velocity) * a.reach +
                         length(b.angular_velocity) * b.reach;
-  return scene.seconds * fastest > kLargestApproach * min(scene.shapes[0].size, scene.shapes[1].size);
+  return scene.seconds * fastest > kMaxApproach * min(scene.shapes[0].size, scene.shapes[1].size);
 }
 
 TEST(Closing, WhatMeetsInAStepIsSeenBefore) {

@@ -22,7 +22,7 @@ namespace gyre {
 // Surfaces nearer than this touch.
 constexpr float kTouch = 0.005f;
 // What comes faster than this in a step is left to the sweep (continuous.h).
-constexpr float kLargestApproach = 1.0f;
+constexpr float kMaxApproach = 1.0f;
 
 // How far a full look reaches beyond the speculative distance: farther than needed, so that the contact may be recycled while
 // the pair moves a little. Where nothing touches, and the pair goes less than kSlow in a step, it reaches far: it is cheaper
@@ -38,8 +38,8 @@ struct ContactPair {
   Manifold* manifolds;  // of the contact, as many as its manifold_count
   const ColliderShape* shape_a;
   const ColliderShape* shape_b;
-  const BodyLook* look_a;
-  const BodyLook* look_b;
+  const CollisionBody* look_a;
+  const CollisionBody* look_b;
   const BodyCenter* center_a;
   const BodyCenter* center_b;
 };

@@ -4,7 +4,7 @@
 
 #include "base/prefetch.h"
 #include "collision/contact/contact_apart_lanes.h"
-#include "collision/contact/contact_follow.h"
+#include "collision/contact/match_manifold.h"
 #include "collision/contact/contact_lanes.h"
 
 namespace gyre {
@@ -88,14 +88,14 @@ GYRE_INLINE Roundness<W> load_roundness(const Records<W>& shape) {
 }
 
 template <int W>
-GYRE_INLINE Follow<W> find_follow(const Group<W>& group) {
+GYRE_INLINE ManifoldMatch<W> find_follow(const Group<W>& group) {
   Records<W> a, b;
   GYRE_UNROLL
   for (int i = 0; i < W; ++i) {
     a[i] = floats(group.pairs[i]->shape_a);
     b[i] = floats(group.pairs[i]->shape_b);
   }
-  return Follow<W>(load_roundness<W>(a), load_roundness<W>(b));
+  return ManifoldMatch<W>(load_roundness<W>(a), load_roundness<W>(b));
 }
 
 // One point of each manifold as the last full look found it, and how far the moving body's point there has gone.
@@ -140,7 +140,7 @@ GYRE_INLINE void load_manifold(const Group<W>& group, int m, Manifold& none, Man
 
 // Returns in which lanes the anchors of this manifold are still good.
 template <int W>
-GYRE_INLINE Mask<W> find_ways(const Group<W>& group, const Follow<W>& follow, const PointMotion<W>& motion,
+GYRE_INLINE Mask<W> find_motions(const Group<W>& group, const ManifoldMatch<W>& follow, const PointMotion<W>& motion,
                               Wide<W> twice_sine, ManifoldLanes<W>& manifold) {
   const Mask<W> curved = and_not(manifold.count < WideInt<W>(3), follow.flat | follow.round);
   const Mask<W> tilts = twice_sine > select(curved, Wide<W>(kCurvedTilt), Wide<W>(kFlatTilt));
@@ -172,7 +172,7 @@ struct WorldFrame {
 };
 
 template <int W>
-GYRE_INLINE WorldFrame<W> find_world_frame(const Group<W>& group, const Follow<W>& follow) {
+GYRE_INLINE WorldFrame<W> find_world_frame(const Group<W>& group, const ManifoldMatch<W>& follow) {
   const Side<W>& a = group.a;
   const Side<W>& b = group.b;
   const Vec3W<W> b_from_a = difference(b.center_of_mass(), a.center_of_mass());
@@ -182,7 +182,7 @@ GYRE_INLINE WorldFrame<W> find_world_frame(const Group<W>& group, const Follow<W
 
 // Writes point `i` of each manifold. Returns in which lanes it carried load in the last step, or its surfaces touch.
 template <int W>
-GYRE_INLINE Mask<W> move_point(const Group<W>& group, const Follow<W>& follow, const WorldFrame<W>& frame,
+GYRE_INLINE Mask<W> move_point(const Group<W>& group, const ManifoldMatch<W>& follow, const WorldFrame<W>& frame,
                                const ManifoldLanes<W>& manifold, int i, const Targets<W>& to) {
   const Anchor<W>& anchor = manifold.anchors[i];
   const Wide<W> share = select(follow.round, Wide<W>(1.0f), Wide<W>(0.5f));
@@ -216,7 +216,7 @@ GYRE_INLINE void carry_friction(const ManifoldLanes<W>& manifold, int first, Vec
 
 // Writes the manifolds of those lanes whose bits are set. Returns in which lanes the shapes touch.
 template <int W>
-GYRE_INLINE Mask<W> move_manifold(const Group<W>& group, const Follow<W>& follow, const WorldFrame<W>& frame,
+GYRE_INLINE Mask<W> move_manifold(const Group<W>& group, const ManifoldMatch<W>& follow, const WorldFrame<W>& frame,
                                   const ManifoldLanes<W>& manifold, unsigned lanes) {
   alignas(16) float nowhere[kManifoldFloats];
   Targets<W> to;
@@ -248,7 +248,7 @@ GYRE_INLINE Mask<W> move_manifold(const Group<W>& group, const Follow<W>& follow
 template <int W>
 unsigned move_contacts(const Group<W>& group, const Motion<W>& motion, unsigned near, Manifold& none,
                        unsigned& touching) {
-  const Follow<W> follow = find_follow<W>(group);
+  const ManifoldMatch<W> follow = find_follow<W>(group);
   Placement<W> seen = group.seen, now = group.now;
   if (any(follow.frame_is_b)) {
     seen = select(follow.frame_is_b, inverse(seen), seen);
@@ -261,7 +261,7 @@ unsigned move_contacts(const Group<W>& group, const Motion<W>& motion, unsigned 
   unsigned held = near;
   for (int m = 0; m < most; ++m) {
     load_manifold<W>(group, m, none, manifolds[m]);
-    held &= to_bits(find_ways<W>(group, follow, points, motion.twice_sine(), manifolds[m]));
+    held &= to_bits(find_motions<W>(group, follow, points, motion.twice_sine(), manifolds[m]));
     if (held == 0) return 0;
   }
   const WorldFrame<W> frame = find_world_frame<W>(group, follow);

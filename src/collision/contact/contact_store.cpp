@@ -21,30 +21,30 @@ std::uint32_t add_chunk(ContactStore& store) {
   return chunk;
 }
 
-std::uint32_t take_manifolds(ContactStore& store, std::uint16_t room) {
+std::uint32_t acquire_manifolds(ContactStore& store, std::uint16_t room) {
   if (room == 1) {
-    if (const std::uint32_t chunk = store.partial_chunks.lowest(); chunk != FreePlaces::kNone) {
+    if (const std::uint32_t chunk = store.partial_chunks.lowest(); chunk != FreeSlots::kNone) {
       std::uint8_t& used = store.chunk_used[chunk];
       const auto place = std::uint32_t(std::countr_one(used));
       used = std::uint8_t(used | 1u << place);
-      if (used == kWholeChunk) store.partial_chunks.drop(chunk);
+      if (used == kWholeChunk) store.partial_chunks.acquire(chunk);
       return chunk * kChunk + place;
     }
   }
   std::uint32_t chunk = store.free_chunks.lowest();
-  if (chunk == FreePlaces::kNone) chunk = add_chunk(store);
-  store.free_chunks.drop(chunk);
+  if (chunk == FreeSlots::kNone) chunk = add_chunk(store);
+  store.free_chunks.acquire(chunk);
   store.chunk_used[chunk] = room == 1 ? std::uint8_t(1) : kWholeChunk;
   if (room == 1) store.partial_chunks.give(chunk);
   return chunk * kChunk;
 }
 
-void give_manifolds(ContactStore& store, std::uint32_t first, std::uint16_t room) {
+void release_manifolds(ContactStore& store, std::uint32_t first, std::uint16_t room) {
   const std::uint32_t chunk = first / kChunk;
   std::uint8_t& used = store.chunk_used[chunk];
   used = room == 1 ? std::uint8_t(used & ~(1u << first % kChunk)) : std::uint8_t(0);
   if (used == 0) {
-    store.partial_chunks.drop(chunk);
+    store.partial_chunks.acquire(chunk);
     store.free_chunks.give(chunk);
   } else {
     store.partial_chunks.give(chunk);
@@ -55,7 +55,7 @@ void give_manifolds(ContactStore& store, std::uint32_t first, std::uint16_t room
 void clear_kept_triangles(ContactStore& store, const Contact& contact) {
   const std::size_t chunk = contact.first_manifold / kChunk;
   if (store.kept_triangles.size() <= chunk) store.kept_triangles.resize(chunk + 1);
-  store.kept_triangles[chunk].count = KeptTriangles::kUnknown;
+  store.kept_triangles[chunk].count = CachedTriangles::kUnknown;
 }
 
 void link(ContactStore& store, std::uint32_t slot) {
@@ -90,17 +90,17 @@ void unlink(ContactStore& store, std::uint32_t slot) {
 
 }  // namespace
 
-void FreePlaces::give(std::uint32_t place) {
+void FreeSlots::give(std::uint32_t place) {
   if (place >= free_.size()) free_.resize(std::size_t(place) + 1);
   free_.set(place);
   hint_ = min(hint_, place);
 }
 
-void FreePlaces::drop(std::uint32_t place) {
+void FreeSlots::acquire(std::uint32_t place) {
   if (free_.test(place)) free_.clear(place);
 }
 
-std::uint32_t FreePlaces::lowest() {
+std::uint32_t FreeSlots::lowest() {
   const std::size_t found = free_.find_next(hint_);
   hint_ = std::uint32_t(found);
   return found == free_.size() ? kNone : hint_;
@@ -109,13 +109,13 @@ std::uint32_t FreePlaces::lowest() {
 std::uint32_t add_contact(ContactStore& store, std::uint64_t key, const PairShapes& shapes) {
   GYRE_ASSERT(find_contact(store, key) == SlotTable::kNone, "a pair has one contact");
   std::uint32_t slot = store.free_contacts.lowest();
-  if (slot == FreePlaces::kNone) {
+  if (slot == FreeSlots::kNone) {
     slot = std::uint32_t(store.contacts.size());
     store.contacts.emplace_back();
     store.links.emplace_back();
     store.with_manifolds.resize(store.contacts.size());
   } else {
-    store.free_contacts.drop(slot);
+    store.free_contacts.acquire(slot);
   }
   Contact contact;
   contact.shape_a = std::uint32_t(key >> 32);
@@ -123,7 +123,7 @@ std::uint32_t add_contact(ContactStore& store, std::uint64_t key, const PairShap
   contact.body_a = shapes.body_a;
   contact.body_b = shapes.body_b;
   contact.manifold_room = shapes.against_mesh ? std::uint16_t(kMaxMeshManifolds) : std::uint16_t(1);
-  contact.first_manifold = take_manifolds(store, contact.manifold_room);
+  contact.first_manifold = acquire_manifolds(store, contact.manifold_room);
   contact.sensor = shapes.sensor ? 1 : 0;
   contact.surface = shapes.surface;
   store.contacts[slot] = contact;
@@ -141,7 +141,7 @@ void remove_contact(ContactStore& store, std::uint32_t slot) {
   store.slot_of_pair.erase(pair_key(contact.shape_a, contact.shape_b), key_reader(store));
   // Of manifolds that are not in use nothing is left to hide from hashes and snapshots.
   for (Manifold& manifold : manifolds_of(store, contact)) manifold = Manifold{};
-  give_manifolds(store, contact.first_manifold, contact.manifold_room);
+  release_manifolds(store, contact.first_manifold, contact.manifold_room);
   store.contacts[slot] = Contact{};
   store.with_manifolds.clear(slot);
   store.free_contacts.give(slot);

@@ -11,7 +11,7 @@
 #include "base/container/paged_array.h"
 #include "base/container/slot_table.h"
 #include "collision/broadphase/proxy.h"
-#include "geometry/manifold_mesh/kept_triangles.h"
+#include "geometry/manifold_mesh/cached_triangles.h"
 #include "geometry/manifold/manifold.h"
 
 #include <cstdint>
@@ -58,12 +58,12 @@ struct ContactLinks {
 constexpr std::uint32_t kNoLink = 0xffffffffu;
 
 // Places that are free, of which the lowest is handed out first.
-class FreePlaces {
+class FreeSlots {
  public:
   static constexpr std::uint32_t kNone = 0xffffffffu;
-  void clear() { *this = FreePlaces{}; }
+  void clear() { *this = FreeSlots{}; }
   void give(std::uint32_t place);
-  void drop(std::uint32_t place);  // takes this very place; no effect if it is not free
+  void acquire(std::uint32_t place);  // takes this very place; no effect if it is not free
   std::uint32_t lowest();          // kNone if none is free
   bool contains(std::uint32_t place) const { return free_.test(place); }
 
@@ -83,13 +83,13 @@ struct ContactStore {
       first_of_shape;         // by shape: the first link of its list, in no particular order; may be short
   Array<ContactLinks> links;  // by slot
   Bitset with_manifolds;      // by slot: clear where a contact has no manifold, for certain
-  FreePlaces free_contacts;
+  FreeSlots free_contacts;
   // Manifolds are handed out in chunks of kMaxMeshManifolds: a chunk is one run for a mesh contact, or singles.
   Array<std::uint8_t> chunk_used;  // bit i: manifold i of the chunk is in use
-  FreePlaces free_chunks;          // chunks of which nothing is in use
-  FreePlaces partial_chunks;       // chunks of which some singles are in use and some are free
+  FreeSlots free_chunks;          // chunks of which nothing is in use
+  FreeSlots partial_chunks;       // chunks of which some singles are in use and some are free
   // By chunk, of those that belong to mesh contacts: what their looks keep of the mesh. As long as the last of these needs.
-  Array<KeptTriangles> kept_triangles;
+  Array<CachedTriangles> kept_triangles;
 };
 
 // What a new pair needs to know about its shapes.
@@ -116,7 +116,7 @@ void remove_contact(ContactStore& store, std::uint32_t slot);
 // Builds everything but contacts and manifolds anew (after loading a snapshot).
 void rebuild_index(ContactStore& store);
 // Makes the next look at this contact a full one: something about one of its bodies changed that its pose does not show.
-inline void forget_look(Contact& contact) { contact.looked = -1.0f; }
+inline void invalidate_cache(Contact& contact) { contact.looked = -1.0f; }
 
 // Calls fn(slot) for each contact of a shape, in no particular order; fn must not add or remove contacts.
 template <class Fn>
@@ -129,7 +129,7 @@ void for_each_contact_of_shape(const ContactStore& store, std::uint32_t shape, F
 }
 
 // Null for a contact without a mesh or height field; of fields nothing is ever known.
-inline KeptTriangles* kept_triangles_of(ContactStore& store, const Contact& contact) {
+inline CachedTriangles* cached_triangles_of(ContactStore& store, const Contact& contact) {
   return contact.manifold_room > 1 ? &store.kept_triangles[contact.first_manifold / kMaxMeshManifolds]
                                    : nullptr;
 }

@@ -62,15 +62,15 @@ TEST(ContactStore, TrianglesOfAMeshAreForgottenWithItsContact) {
   const auto add = [&](std::uint32_t shape) { return add_contact(store, pair_key(0, shape), on_mesh); };
   const std::uint32_t slot = add(1), other = add(2);
   const std::uint32_t chunk = store.contacts[slot].first_manifold;
-  kept_triangles_of(store, store.contacts[slot])->count = 3;
-  kept_triangles_of(store, store.contacts[other])->count = 5;
+  cached_triangles_of(store, store.contacts[slot])->count = 3;
+  cached_triangles_of(store, store.contacts[other])->count = 5;
   remove_contact(store, slot);
   const std::uint32_t next = add(3);
   ASSERT_EQ(store.contacts[next].first_manifold, chunk) << "it takes the same place";
-  EXPECT_EQ(kept_triangles_of(store, store.contacts[next])->count, KeptTriangles::kUnknown);
-  EXPECT_EQ(kept_triangles_of(store, store.contacts[other])->count, 5);
+  EXPECT_EQ(cached_triangles_of(store, store.contacts[next])->count, CachedTriangles::kUnknown);
+  EXPECT_EQ(cached_triangles_of(store, store.contacts[other])->count, 5);
   rebuild_index(store);
-  EXPECT_EQ(kept_triangles_of(store, store.contacts[other])->count, KeptTriangles::kUnknown);
+  EXPECT_EQ(cached_triangles_of(store, store.contacts[other])->count, CachedTriangles::kUnknown);
 }
 
 TEST(ContactStore, ChurnKeepsIndicesRightAndMemoryLevel) {
@@ -79,7 +79,7 @@ TEST(ContactStore, ChurnKeepsIndicesRightAndMemoryLevel) {
   std::map<std::uint64_t, std::uint32_t> expected;
   std::set<std::uint32_t> free_slots;
   std::vector<std::uint64_t> keys;
-  std::size_t most_live = 0, owned = 0, most_owned = 0;
+  std::size_t max_live = 0, owned = 0, max_owned = 0;
   for (int round = 0; round < 100000; ++round) {
     const bool grow = keys.size() < 500 || (keys.size() < 1500 && random.next(2) == 0);
     if (grow) {
@@ -106,15 +106,15 @@ TEST(ContactStore, ChurnKeepsIndicesRightAndMemoryLevel) {
     if (round % 9973 == 0) {
       ASSERT_STREQ(find_fault(store), nullptr) << round;
     }
-    most_live = std::max(most_live, expected.size());
-    most_owned = std::max(most_owned, owned);
+    max_live = std::max(max_live, expected.size());
+    max_owned = std::max(max_owned, owned);
   }
   ASSERT_STREQ(find_fault(store), nullptr);
   EXPECT_EQ(store.live, expected.size());
   for (const auto& [key, slot] : expected) EXPECT_EQ(find_contact(store, key), slot);
   // Never more places than were needed at the busiest moment, and little waste in shared chunks.
-  EXPECT_EQ(store.contacts.size(), most_live);
-  EXPECT_LE(store.manifolds.size(), most_owned + most_owned / 4);
+  EXPECT_EQ(store.contacts.size(), max_live);
+  EXPECT_LE(store.manifolds.size(), max_owned + max_owned / 4);
 }
 
 TEST(ContactStore, RebuiltIndexGoesOnLikeTheOriginal) {

@@ -2,8 +2,8 @@
 #include "collision/contact/contact_update.h"
 
 #include "collision/contact/contact_apart_lanes.h"
-#include "collision/contact/contact_follow.h"
-#include "collision/contact/contact_fours.h"
+#include "collision/contact/match_manifold.h"
+#include "collision/contact/manifold_layout.h"
 #include "collision/broadphase/fat_box.h"
 #include "geometry/manifold/manifold_box.h"
 #include "geometry/manifold_mesh/manifold_mesh.h"
@@ -33,7 +33,7 @@ std::span<Manifold> manifolds_of(const ContactPair& pair) {
 // Whether the anchors lie in the frame of B's body, else A's.
 bool frame_is_b(const Shape& a, const Shape& b) {
   const Roundness<1> round_a{std::int32_t(a.kind), a.radius}, round_b{std::int32_t(b.kind), b.radius};
-  return any(Follow<1>(round_a, round_b).frame_is_b);
+  return any(ManifoldMatch<1>(round_a, round_b).frame_is_b);
 }
 
 // ----------------------------------------------------------------------------------------------- what the shapes tell
@@ -65,17 +65,17 @@ struct SeenShape {
 };
 
 template <int kRoom>
-void ask_shapes(const ContactPair& pair, const View& view, float reach, KeptTriangles* kept,
+void ask_shapes(const ContactPair& pair, const View& view, float reach, CachedTriangles* kept,
                 Found<kRoom>& found) {
   const SeenShape a(pair.shape_a->shape, pair.shape_b->shape), b(pair.shape_b->shape, pair.shape_a->shape);
   found.count = collide_shapes(*a.shape, *b.shape, view.shapes_a_from_b, reach, pair.contact->cache,
                                found.manifolds, kept);
 }
 
-// How near surfaces must be for contacts along a normal to matter. What is no farther apart than `least_near` always does.
-float least_near(const View& view) { return (kSpeculativeShare + kKept) * view.size; }
+// How near surfaces must be for contacts along a normal to matter. What is no farther apart than `min_near` always does.
+float min_near(const View& view) { return (kSpeculativeShare + kKept) * view.size; }
 float near_along(const View& view, Vec3 normal) {
-  return least_near(view) + min(min(view.closing.along(normal), view.way), kLargestApproach * view.size);
+  return min_near(view) + min(min(view.closing.along(normal), view.way), kMaxApproach * view.size);
 }
 
 // As ask_shapes, of two sharp boxes; but nothing is found where they do not come near enough along the axis that parts them most.
@@ -87,7 +87,7 @@ float ask_boxes(const ContactPair& pair, const View& view, float reach, Found<1>
   const boxes::Axis axis = view.axis.number != boxes::kNoAxis
                                ? view.axis
                                : find_box_axis(a, b, view.shapes_a_from_b, reach, cache);
-  if (axis.separation > least_near(view) &&
+  if (axis.separation > min_near(view) &&
       axis.separation > near_along(view, box_axis_normal(axis, view.shapes_a_from_b))) {
     cache.words[0] = std::uint32_t(axis.number + 1);
     found.count = 0;
@@ -386,7 +386,7 @@ float looked_as_far(float reach, float kept, float left_out) {
 }
 
 // A look at what is no mesh. Returns how far it reached.
-float look_at_convex(const ContactPair& pair, const View& view, Found<1>& found) {
+float compute_convex_manifold(const ContactPair& pair, const View& view, Found<1>& found) {
   float kept = view.speculative + kKept * view.size;
   if (pair.contact->manifold_count == 0 && view.way < kSlow * view.size) {
     const float far_reach = view.speculative + kFarSlack * view.size;
@@ -400,13 +400,13 @@ float look_at_convex(const ContactPair& pair, const View& view, Found<1>& found)
   } else {
     ask_shapes(pair, view, reach, nullptr, found);
   }
-  if (found.count > 0 && farthest_of(found.manifolds[0]) > least_near(view))
+  if (found.count > 0 && farthest_of(found.manifolds[0]) > min_near(view))
     kept = near_along(view, found.manifolds[0].normal);
   return looked_as_far(reach, kept, keep_near(found, kept));
 }
 
 // A look at a mesh or height field.
-float look_at_surface(const ContactPair& pair, const View& view, KeptTriangles* kept_triangles,
+float compute_mesh_manifolds(const ContactPair& pair, const View& view, CachedTriangles* kept_triangles,
                       Found<kMaxMeshManifolds>& found) {
   if (pair.contact->manifold_count == 0) {
     const float far_reach = view.speculative + kClearSteps * view.way + kFarSlack * view.size;
@@ -419,13 +419,13 @@ float look_at_surface(const ContactPair& pair, const View& view, KeptTriangles* 
 
 // kRoom is the contact's manifold_room.
 template <int kRoom>
-void look_in_room(const ContactPair& pair, const View& view, KeptTriangles* kept_triangles) {
+void look_in_room(const ContactPair& pair, const View& view, CachedTriangles* kept_triangles) {
   Found<kRoom> found;
   float looked = 0.0f;
   if constexpr (kRoom == 1) {
-    looked = look_at_convex(pair, view, found);
+    looked = compute_convex_manifold(pair, view, found);
   } else {
-    looked = look_at_surface(pair, view, kept_triangles, found);
+    looked = compute_mesh_manifolds(pair, view, kept_triangles, found);
   }
   if (found.count > 0 || pair.contact->manifold_count > 0) write_manifolds(found, pair, view);
   note_look(*pair.contact, view, looked);
@@ -457,7 +457,7 @@ float smaller_size(float a, float b) {
   return has_a && has_b ? min(a, b) : has_a ? a : has_b ? b : 0.0f;
 }
 
-bool look_at_sensor(const ContactPair& pair, const View& view) {
+bool test_sensor_overlap(const ContactPair& pair, const View& view) {
   const Shape& a = pair.shape_a->shape;
   const Shape& b = pair.shape_b->shape;
   if (!is_convex(a.kind) && !is_convex(b.kind)) return surfaces_overlap(a, b, view.shapes_a_from_b);
@@ -467,7 +467,7 @@ bool look_at_sensor(const ContactPair& pair, const View& view) {
   return found.count > 0;
 }
 
-bool look_anew(const ContactPair& pair, const View& view, KeptTriangles* kept) {
+bool compute_manifold(const ContactPair& pair, const View& view, CachedTriangles* kept) {
   const bool loaded = carried_load(manifolds_of(pair));
   if (pair.contact->manifold_room == 1) {
     look_in_room<1>(pair, view, kept);

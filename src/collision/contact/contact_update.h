@@ -13,9 +13,9 @@ namespace gyre {
 float smaller_size(float a, float b);
 
 // Full look of a sensor's contact: whether the two shapes overlap. Keeps no manifold.
-bool look_at_sensor(const ContactPair& pair, const View& view);
+bool test_sensor_overlap(const ContactPair& pair, const View& view);
 
 // Full look of any other contact; returns whether its shapes touch. `kept`: of a contact with a mesh, else null.
-bool look_anew(const ContactPair& pair, const View& view, KeptTriangles* kept);
+bool compute_manifold(const ContactPair& pair, const View& view, CachedTriangles* kept);
 
 }  // namespace gyre

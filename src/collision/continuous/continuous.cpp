@@ -117,7 +117,7 @@ Sweep rest_of(const Sweep& sweep, double from) {
 }
 
 // A fast body on its way, or on the last part of it: what moves beside it does so from `from` on.
-struct Way {
+struct SweptPath {
   const FastBody& fast;
   const Sweep& sweep;
   double from = 0.0;
@@ -161,7 +161,7 @@ void list_in_box(const ContinuousInput& input, const FastBody& fast, std::uint32
 // Calls visit(shape on its way, its index, the other's index, the other on its way) for all that the shapes of a fast body
 // may come near and that `wanted` says yes to. `found` is scratch.
 template <class Wanted, class Visit>
-void for_each_in_the_way(const ContinuousInput& input, const Way& way, Array<std::uint32_t>& found,
+void for_each_in_the_way(const ContinuousInput& input, const SweptPath& way, Array<std::uint32_t>& found,
                          const Wanted& wanted, const Visit& visit) {
   for (const std::uint32_t index : input.shapes_of(way.fast.body)) {
     const ColliderShape& shape = input.shapes[index];
@@ -187,14 +187,14 @@ void for_each_in_the_way(const ContinuousInput& input, const Way& way, Array<std
 }
 
 // Where a body must stop, and which of its shapes in front of which.
-struct BodyStop : Stop {
+struct BodyImpactTime : Stop {
   std::uint32_t shape = 0, obstacle = 0;
   bool near_gate = false;  // something on its way may be crossed
 };
 
-BodyStop first_stop(const ContinuousInput& input, const Way& way, Array<std::uint32_t>& found,
+BodyImpactTime first_stop(const ContinuousInput& input, const SweptPath& way, Array<std::uint32_t>& found,
                     TriangleHull& triangle) {
-  BodyStop first;
+  BodyImpactTime first;
   for_each_in_the_way(
       input, way, found,
       [&](const Proxy& self, const Proxy& other) {
@@ -213,7 +213,7 @@ BodyStop first_stop(const ContinuousInput& input, const Way& way, Array<std::uin
   return first;
 }
 
-void find_crossings(const ContinuousInput& input, const Way& way, double end, Array<std::uint32_t>& found,
+void find_crossings(const ContinuousInput& input, const SweptPath& way, double end, Array<std::uint32_t>& found,
                     Array<std::uint64_t>& crossings, TriangleHull& triangle) {
   for_each_in_the_way(
       input, way, found, is_gate,
@@ -226,7 +226,7 @@ void find_crossings(const ContinuousInput& input, const Way& way, double end, Ar
 
 // How much of a way along an obstacle a shape can go and still touch it where both are then: the contact of the next step
 // must find it there, or nothing would ever answer for the hit. `drift` is the way against the obstacle.
-double part_in_touch(const ContinuousInput& input, const BodyStop& stop, Pose pose, DVec3 drift) {
+double part_in_touch(const ContinuousInput& input, const BodyImpactTime& stop, Pose pose, DVec3 drift) {
   const ColliderShape& own = input.shapes[stop.shape];
   const ColliderShape& other = input.shapes[stop.obstacle];
   const Pose frame = pose_at(input.sweep_of(input.proxies[stop.obstacle].body), 1.0) * other.body_from_shape;
@@ -275,9 +275,9 @@ class Slide {
       : input_(input), fast_(fast), found_(found), crossings_(crossings), triangle_(triangle) {}
 
   // How far the body goes after `stop`: into kept.slide and kept.turn.
-  void run(const Sweep& sweep, const BodyStop& stop, KeptMotion& kept) {
+  void run(const Sweep& sweep, const BodyImpactTime& stop, SavedMotion& kept) {
     DVec3 normals[2];
-    BodyStop last = stop;
+    BodyImpactTime last = stop;
     DVec3 way = (1.0 - stop.time) * DVec3(sweep.moved), gone;
     Pose pose = pose_at(sweep, stop.time);
     double from = stop.time;
@@ -292,8 +292,8 @@ class Slide {
       // Of what the core only is in the way the shape itself may be in, and need not stay in touch.
       if (!stop.by_core) drift = part_in_touch(input_, last, pose_at(ride, 1.0), drift) * drift;
       ride.moved = to_float(drift + carried);
-      const Way rest{fast_, ride, from, true, stop.by_core};
-      const BodyStop second = first_stop(input_, rest, found_, triangle_);
+      const SweptPath rest{fast_, ride, from, true, stop.by_core};
+      const BodyImpactTime second = first_stop(input_, rest, found_, triangle_);
       const double part = second.hit ? second.time : 1.0;
       if (second.near_gate) find_crossings(input_, rest, part, found_, crossings_, triangle_);
       // What moves on pushes the body before it whatever stands behind.
@@ -310,13 +310,13 @@ class Slide {
   }
 
  private:
-  Sweep sweep_of(const BodyStop& stop) const { return input_.sweep_of(input_.proxies[stop.obstacle].body); }
-  bool may_slide(const BodyStop& stop) const {
+  Sweep sweep_of(const BodyImpactTime& stop) const { return input_.sweep_of(input_.proxies[stop.obstacle].body); }
+  bool may_slide(const BodyImpactTime& stop) const {
     if (!stop.hit || stop.time >= 1.0 || !(length_squared(stop.normal) > 0.5)) return false;
     return stop.by_core || !is_pushed(stop);
   }
   // Where what a sweep pushes will be, only its own sweep knows.
-  bool is_pushed(const BodyStop& stop) const { return input_.proxies[stop.obstacle].pushes; }
+  bool is_pushed(const BodyImpactTime& stop) const { return input_.proxies[stop.obstacle].pushes; }
   // The way without what leads into the obstacles met so far (k + 1 of them).
   static DVec3 along(DVec3 way, const DVec3 (&normals)[2], int k) {
     way = way - max(dot(way, normals[k]), 0.0) * normals[k];
@@ -340,7 +340,7 @@ Aabb box_of_way(const ColliderShape& shape, const Sweep& sweep) {
 }
 
 void ContinuousCollision::clamp_fast_bodies(const ContinuousInput& input, std::span<const FastBody> fast,
-                                            TaskSystem& tasks, std::span<KeptMotion> kept) {
+                                            TaskSystem& tasks, std::span<SavedMotion> kept) {
   crossings_.clear();
   if (fast.empty() && input.gates.empty()) return;
   workers_.resize(std::size_t(tasks.worker_count()));
@@ -351,15 +351,15 @@ void ContinuousCollision::clamp_fast_bodies(const ContinuousInput& input, std::s
     for (int i = begin; i < end; ++i) {
       const FastBody& body = fast[std::size_t(i)];
       const Sweep sweep = input.sweep_of(body.body);
-      KeptMotion& out = kept[std::size_t(i)];
+      SavedMotion& out = kept[std::size_t(i)];
       out = {};
       if (!is_sound(sweep)) continue;
-      const Way way{body, sweep};
+      const SweptPath way{body, sweep};
       if (body.only_crosses) {
         find_crossings(input, way, 1.0, own.found, own.crossings, *own.triangle);
         continue;
       }
-      BodyStop stop = first_stop(input, way, own.found, *own.triangle);
+      BodyImpactTime stop = first_stop(input, way, own.found, *own.triangle);
       // Rounded down: the fraction must not pass the impact.
       const auto fraction = float(stop.time);
       out.fraction = double(fraction) > stop.time ? fraction * (1.0f - 1.2e-7f) : fraction;

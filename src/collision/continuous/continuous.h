@@ -37,7 +37,7 @@ struct FastBody {
 
 // What a fast body keeps of its motion: a fraction of it (1 where nothing is in the way), and then a way along what it met and
 // with it.
-struct KeptMotion {
+struct SavedMotion {
   float fraction = 1.0f;
   Vec3 slide;  // m, of the centre of mass
   Vec3 turn;   // rad, rotation vector, world: what it met turned it along
@@ -94,7 +94,7 @@ class ContinuousCollision {
  public:
   // kept[i] of the motion of fast[i] is to be kept. Parallel over bodies.
   void clamp_fast_bodies(const ContinuousInput& input, std::span<const FastBody> fast, TaskSystem& tasks,
-                         std::span<KeptMotion> kept);
+                         std::span<SavedMotion> kept);
   // Of the last call: crossing_key of each sensor and visitor, in rising order, also of pairs that overlapped from the
   // start.
   std::span<const std::uint64_t> crossings() const { return crossings_; }

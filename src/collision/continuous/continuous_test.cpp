@@ -140,7 +140,7 @@ class Scene {
         {shapes, proxies, *broadphase_, blocked, sweep_of, shapes_of, nullptr, {}, contacts_}, fast, tasks_,
         kept_);
     std::vector<float> fractions;
-    for (const KeptMotion& kept : kept_) fractions.push_back(kept.fraction);
+    for (const SavedMotion& kept : kept_) fractions.push_back(kept.fraction);
     return fractions;
   }
   float clamp_as_is(std::uint32_t body) { return clamp_as_is({{body, false}})[0]; }
@@ -178,7 +178,7 @@ class Scene {
   TaskSystem tasks_;
   std::unique_ptr<Broadphase> broadphase_ = make_broadphase(BroadPhaseKind::bvh);
   ContinuousCollision stage_;
-  std::vector<KeptMotion> kept_;
+  std::vector<SavedMotion> kept_;
   std::vector<std::uint32_t> indices_;
   std::vector<AnyShape> geometries_;  // keeps cooked data alive
   const KnownContacts* contacts_ = nullptr;

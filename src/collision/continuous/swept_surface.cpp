@@ -16,8 +16,8 @@ constexpr float kCoreShare = 0.5f;   // of the inner radius
 // A core as near as this part of where it is left is taken for deep.
 constexpr double kDeep = 1.0e-3;
 // How often a shape is advanced towards a triangle's plane before it is worth a search, and how far at least, in distances.
-constexpr int kMostPlaneAdvances = 12;
-constexpr double kLeastAdvance = 0.1;
+constexpr int kMaxPlaneAdvances = 12;
+constexpr double kMinAdvance = 0.1;
 // A shape that slides may come nearer than it was left by this, and close in by this sine: rounding, not a stop.
 constexpr double kSlideShare = 0.5, kSlideSlack = 1.0e-6;
 
@@ -227,10 +227,10 @@ class SurfaceSweep {
     const double closing = -dot(DVec3(shape.sweep->moved) - DVec3(b_.sweep->moved), up) +
                            length(cross(DVec3(shape.sweep->turned), up)) * double(shape.radius);
     double time = 0.0;
-    for (int i = 0; i < kMostPlaneAdvances; ++i) {
+    for (int i = 0; i < kMaxPlaneAdvances; ++i) {
       const double rest = height - distance - rounding;
       if (rest > max(closing, 0.0) * (stop_.time - time)) return true;
-      if (!(rest > kLeastAdvance * distance)) return false;
+      if (!(rest > kMinAdvance * distance)) return false;
       time += rest / closing;
       height = height_of(*shape.shape, surface_from_a(time) * part.from_shape, normal, corner);
     }

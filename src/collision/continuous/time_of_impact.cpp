@@ -13,7 +13,7 @@ namespace {
 constexpr int kMaxSteps = 1000;
 constexpr double kTolerance = 0.25;  // of the target
 // How often the two are advanced along one normal before nearest points are searched for again.
-constexpr int kMostNormalAdvances = 8;
+constexpr int kMaxNormalAdvances = 8;
 
 bool is_still(Vec3 turned) { return turned.x == 0.0f && turned.y == 0.0f && turned.z == 0.0f; }
 
@@ -81,7 +81,7 @@ bool passes_along(const SweptShape& a, DVec3 way, const Gap& gap, double closing
                   double& time) {
   const double start = time, reach = reach_along(a, start, gap.normal), straight = dot(way, gap.normal);
   double rest = gap.distance - target;
-  for (int i = 0; i < kMostNormalAdvances && rest > kTolerance * target; ++i) {
+  for (int i = 0; i < kMaxNormalAdvances && rest > kTolerance * target; ++i) {
     time += rest / closing;
     rest = gap.distance - target - straight * (time - start) - (reach_along(a, time, gap.normal) - reach);
     if (closing * (end - time) <= rest) return true;

@@ -6,12 +6,12 @@
 namespace gyre {
 namespace {
 
-constexpr std::size_t kMostEdges = 64;
+constexpr std::size_t kMaxEdges = 64;
 // So many of the best boxes are bettered by turning.
-constexpr int kMostStarts = 8;
-constexpr int kMostTurns = 60;
+constexpr int kMaxStarts = 8;
+constexpr int kMaxTurns = 60;
 // A turn must make a box smaller by this share.
-constexpr double kLeastGain = 1.0e-9;
+constexpr double kMinGain = 1.0e-9;
 
 struct Point2 {
   double x, y;
@@ -108,10 +108,10 @@ class BoxSearch {
   // Turned about each of its own axes in turn, as long as that makes it smaller.
   BoxCandidate descended(BoxCandidate start) {
     int kept = 0;
-    for (int turn = 0; turn < kMostTurns && kept < 3; ++turn) {
+    for (int turn = 0; turn < kMaxTurns && kept < 3; ++turn) {
       const DVec3 axis = turn % 3 == 0 ? start.axes.x : turn % 3 == 1 ? start.axes.y : start.axes.z;
       const BoxCandidate turned = best_about(axis);
-      if (turned.cost < start.cost * (1.0 - kLeastGain)) {
+      if (turned.cost < start.cost * (1.0 - kMinGain)) {
         // Its axes in the order that the next turns take others first.
         start = turned;
         kept = 0;
@@ -128,14 +128,14 @@ class BoxSearch {
   std::vector<Point2> flat_, scratch_, hull_;
 };
 
-// Directions of edges, each once whichever way it points, the longest first; no more than kMostEdges.
+// Directions of edges, each once whichever way it points, the longest first; no more than kMaxEdges.
 std::vector<DVec3> main_directions(const std::vector<DVec3>& edges) {
   std::vector<DVec3> sorted = edges, scratch(edges.size()), directions;
   merge_sort(std::span(sorted), std::span(scratch),
              [](const DVec3& a, const DVec3& b) { return length_squared(a) > length_squared(b); });
   for (const DVec3& edge : sorted) {
     const DVec3 direction = unit(edge);
-    bool is_new = directions.size() < kMostEdges;
+    bool is_new = directions.size() < kMaxEdges;
     for (const DVec3& other : directions)
       is_new = is_new && length_squared(gyre::cross(direction, other)) > 1.0e-10;
     if (is_new) directions.push_back(direction);
@@ -146,9 +146,9 @@ std::vector<DVec3> main_directions(const std::vector<DVec3>& edges) {
 void keep_best(std::vector<BoxCandidate>& best, const BoxCandidate& candidate) {
   std::size_t place = best.size();
   while (place > 0 && candidate.cost < best[place - 1].cost) --place;
-  if (place >= kMostStarts) return;
+  if (place >= kMaxStarts) return;
   best.insert(best.begin() + std::ptrdiff_t(place), candidate);
-  if (best.size() > kMostStarts) best.pop_back();
+  if (best.size() > kMaxStarts) best.pop_back();
 }
 
 DAxes smallest_axes(const Outline& outline) {

@@ -49,11 +49,11 @@ Error check_bounded_points(std::span<const Vec3> points) {
     return make_error(ErrorCode::invalid_geometry, "bounds: no points; allowed is one or more");
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3 p = points[i];
-    if (is_finite(p) && largest(absolute(p)) <= kLargestLength) continue;
+    if (is_finite(p) && largest(absolute(p)) <= kMaxLength) continue;
     return make_error(ErrorCode::invalid_geometry,
                       "bounds: point %zu is (%g, %g, %g); allowed are finite coordinates within -%g to %g m",
-                      i, double(p.x), double(p.y), double(p.z), double(kLargestLength),
-                      double(kLargestLength));
+                      i, double(p.x), double(p.y), double(p.z), double(kMaxLength),
+                      double(kMaxLength));
   }
   return {};
 }

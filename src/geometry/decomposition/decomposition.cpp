@@ -14,7 +14,7 @@ namespace {
 // Goes into the key: counts up whenever the hulls of any mesh change.
 constexpr std::uint64_t kMethodVersion = 1;
 // A surface is a sheet when more than this part of it lies near holes.
-constexpr double kMostOpen = 0.15;
+constexpr double kMaxOpen = 0.15;
 
 Error check_settings(const DecompositionDef& def) {
   if (!(def.concavity >= 0.001f && def.concavity <= 1.0f)) {
@@ -78,7 +78,7 @@ Error prepare_solid(const DecompositionDef& def, TaskSystem& tasks, Prepared& ou
   MeshFindings& findings = out.model.findings;
   findings.openness = float(out.openness);
   const bool sheet = def.meaning == SurfaceMeaning::shell ||
-                     (def.meaning == SurfaceMeaning::automatic && out.openness > kMostOpen);
+                     (def.meaning == SurfaceMeaning::automatic && out.openness > kMaxOpen);
   if (!sheet) {
     if (!out.solid.samples.empty()) return {};
     return make_error(

@@ -53,7 +53,7 @@ const Pair* best_pair(const std::vector<Pair>& pairs, double enough) {
   }
   return best;
 }
-const Pair* least_lacking(const std::vector<Pair>& pairs) {
+const Pair* min_lacking(const std::vector<Pair>& pairs) {
   const Pair* best = nullptr;
   for (const Pair& pair : pairs) {
     if (best == nullptr || pair.lack < best->lack * (1.0 - 1.0e-6)) best = &pair;
@@ -91,7 +91,7 @@ class Joining {
     const int from = count_;
     while (count_ > least) {
       if (!progress.go_on(0.7 + 0.2 * double(from - count_) / double(from))) return;
-      const Pair* const best = by_lack ? least_lacking(pairs) : best_pair(pairs, enough);
+      const Pair* const best = by_lack ? min_lacking(pairs) : best_pair(pairs, enough);
       if (best == nullptr) return;
       const std::uint32_t a = best->a, b = best->b;
       join(solid_, pieces_, a, b);

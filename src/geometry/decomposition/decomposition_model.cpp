@@ -13,7 +13,7 @@
 namespace gyre {
 namespace {
 
-constexpr float kSmallestMesh = 1.0e-6f, kLargestMesh = 1.0e9f;  // m
+constexpr float kMinMesh = 1.0e-6f, kMaxMesh = 1.0e9f;  // m
 
 std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
   return std::uint64_t(min(a, b)) << 32 | max(a, b);
@@ -61,11 +61,11 @@ Error check_input(const DecompositionDef& def) {
   if (const Error error = check_surface_data(surface); error.code != ErrorCode::none) return error;
   for (std::size_t i = 0; i < def.vertices.size(); ++i) {
     const Vec3 p = def.vertices[i];
-    if (!is_finite(p) || max(absolute(p.x), max(absolute(p.y), absolute(p.z))) > kLargestMesh) {
+    if (!is_finite(p) || max(absolute(p.x), max(absolute(p.y), absolute(p.z))) > kMaxMesh) {
       return make_error(
           ErrorCode::invalid_geometry,
           "decomposition: vertex %zu is (%g, %g, %g); allowed are finite coordinates within -%g to %g m", i,
-          double(p.x), double(p.y), double(p.z), double(kLargestMesh), double(kLargestMesh));
+          double(p.x), double(p.y), double(p.z), double(kMaxMesh), double(kMaxMesh));
     }
   }
   return {};
@@ -310,10 +310,10 @@ Result<Model> make_model(const DecompositionDef& def) {
   const Result<BoundingSphere> sphere = fit_sphere(points);
   if (!sphere) return sphere.error();
   model.size = 2.0 * double(sphere->radius);
-  if (!(model.size / model.scale >= double(kSmallestMesh))) {
+  if (!(model.size / model.scale >= double(kMinMesh))) {
     return make_error(ErrorCode::invalid_geometry,
                       "decomposition: the mesh is %g m large; allowed are %g m and more",
-                      model.size / model.scale, double(kSmallestMesh));
+                      model.size / model.scale, double(kMinMesh));
   }
   count_edges(model);
   wind_alike(model);

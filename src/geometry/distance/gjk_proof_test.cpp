@@ -6,7 +6,7 @@
 // whatever way led to it. A point that lies in both cores proves that they overlap.
 #include "geometry/distance/gjk.h"
 
-#include "geometry/testing/odd_pairs.h"
+#include "geometry/testing/degenerate_pairs.h"
 
 #include <gtest/gtest.h>
 

@@ -90,7 +90,7 @@ void collide_plane(const Shape& plane, const Shape& b, const Transform& a_from_b
 }
 
 int collide_shapes(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
-                   PairCache& cache, LocalManifold* out, KeptTriangles* kept) {
+                   PairCache& cache, LocalManifold* out, CachedTriangles* kept) {
   const bool convex_a = is_convex(a.kind), convex_b = is_convex(b.kind);
   if (convex_a && convex_b) {
     collide_convex(a, b, a_from_b, max_separation, cache, out[0]);

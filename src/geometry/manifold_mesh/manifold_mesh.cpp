@@ -56,7 +56,7 @@ struct Waiting {
 class MeshCollider {
  public:
   MeshCollider(const Shape& mesh, const Shape& b, const Transform& a_from_b, float max_separation,
-               KeptTriangles* kept)
+               CachedTriangles* kept)
       : surface_(mesh),
         convex_(b, a_from_b.orientation),
         position_(a_from_b.position),
@@ -121,7 +121,7 @@ class MeshCollider {
   PlacedConvex convex_;
   Vec3 position_;
   float max_separation_;
-  KeptTriangles* kept_;
+  CachedTriangles* kept_;
   float bias_;
   bool is_blade_;
 
@@ -571,7 +571,7 @@ void MeshCollider::look_for_corners() {
 }  // namespace
 
 int collide_mesh(const Shape& mesh, const Shape& b, const Transform& a_from_b, float max_separation,
-                 LocalManifold* out, KeptTriangles* kept) {
+                 LocalManifold* out, CachedTriangles* kept) {
   if (!is_convex(b.kind)) return 0;
   return MeshCollider(mesh, b, a_from_b, max_separation, kept).run(out);
 }

@@ -80,14 +80,14 @@ class DirectionSearch {
   // here.
   struct EdgeBar {
     float needed[3];
-    float least_before[3];
+    float min_before[3];
   };
   EdgeBar edge_bar() const {
     EdgeBar bar;
     const float rounding = 20.0f * t_.slack + 0.2f * kAxisBias * convex_.size();
     for (int i = 0; i < 3; ++i) {
       bar.needed[i] = needed_of(i);
-      bar.least_before[i] = min(bar.needed[i] + convex_.radius(), 0.0f) - rounding;
+      bar.min_before[i] = min(bar.needed[i] + convex_.radius(), 0.0f) - rounding;
     }
     return bar;
   }
@@ -236,7 +236,7 @@ void DirectionSearch::edge_axes() {
     for (int i = 0; i < 3; ++i) {
       const Mask<4> backwards = Floats::load_unaligned(scratch_.along[i] + f) < Floats(0.0f);
       const Mask<4> beyond = Floats::load_unaligned(outward[i] + f) < Floats(kOutwardSlack);
-      const Mask<4> hopeless = Floats::load_unaligned(scratch_.before[i] + f) < Floats(bar.least_before[i]);
+      const Mask<4> hopeless = Floats::load_unaligned(scratch_.before[i] + f) < Floats(bar.min_before[i]);
       mark = mark | (to_int(backwards) & 1 << i) | (to_int(beyond) & 8 << i) | (to_int(~hopeless) & 64 << i);
     }
     mark.store_unaligned(marks + f);
@@ -259,7 +259,7 @@ bool DirectionSearch::axes_across(const HullEdge& edge, unsigned rest, const Edg
     const float left_part = absolute(left), right_part = absolute(right), longest = left_part + right_part;
     const float before =
         right_part * scratch_.before[i][edge.left] + left_part * scratch_.before[i][edge.right];
-    if (!(left * right < 0.0f) || before < bar.least_before[i] * longest) continue;
+    if (!(left * right < 0.0f) || before < bar.min_before[i] * longest) continue;
     const Vec3 crossing =
         right_part * convex_.face_normal(edge.left) + left_part * convex_.face_normal(edge.right);
     if (!(dot(crossing, t_.outward[i]) < 0.0f)) continue;

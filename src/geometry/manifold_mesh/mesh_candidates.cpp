@@ -42,7 +42,7 @@ AxisBox inner_cube(const PlacedConvex& convex, Vec3 position, float max_separati
 class Gatherer {
  public:
   Gatherer(const MeshKernels& kernels, const Surface& surface, const PlacedConvex& convex, Vec3 position,
-           float max_separation, KeptTriangles* kept, MeshCandidates& out)
+           float max_separation, CachedTriangles* kept, MeshCandidates& out)
       : kernels_(kernels),
         surface_(surface),
         convex_(convex),
@@ -95,9 +95,9 @@ class Gatherer {
     const auto overlaps = [&](const AxisBox& box) {
       return box.overlaps(outer) && (box.overlaps(inner_) || near(box));
     };
-    if (kept_ != nullptr && keep_triangles(mesh, box_, kKeptMargin * convex_.size(), *kept_)) {
+    if (kept_ != nullptr && cache_triangles(mesh, box_, kKeptMargin * convex_.size(), *kept_)) {
       const NearBoxes boxes{box_, inner_.box(), position_, max_separation_};
-      static_assert(KeptTriangles::kRoom <= 32);
+      static_assert(CachedTriangles::kRoom <= 32);
       std::uint32_t near =
           kernels_.find_near(columns_of(mesh), kept_->ids, kept_->count, convex_.columns(), boxes);
       for (; near != 0; near &= near - 1) add(kept_->ids[std::countr_zero(near)]);
@@ -281,7 +281,7 @@ class Gatherer {
   const PlacedConvex& convex_;
   Vec3 position_;
   float max_separation_;
-  KeptTriangles* kept_;
+  CachedTriangles* kept_;
   MeshCandidates& out_;
   Aabb box_;
   AxisBox inner_;
@@ -293,7 +293,7 @@ class Gatherer {
 }  // namespace
 
 void find_candidates(const MeshKernels& kernels, const Surface& surface, const PlacedConvex& convex,
-                     Vec3 position, float max_separation, KeptTriangles* kept, MeshCandidates& out) {
+                     Vec3 position, float max_separation, CachedTriangles* kept, MeshCandidates& out) {
   out.count = 0;
   out.deep_patch_count = 0;
   Gatherer(kernels, surface, convex, position, max_separation, kept, out).run();

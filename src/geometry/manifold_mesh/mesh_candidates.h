@@ -6,7 +6,7 @@
 // cell keeps its deepest.
 #pragma once
 
-#include "geometry/manifold_mesh/kept_triangles.h"
+#include "geometry/manifold_mesh/cached_triangles.h"
 #include "geometry/manifold_mesh/mesh_axis.h"
 #include "geometry/manifold_mesh/mesh_kernels.h"
 
@@ -25,7 +25,7 @@ struct MeshCandidates {
 // `position` is the place of the convex shape's origin in the surface's frame. `kept`, if it is not null: what is kept of a mesh
 // from one look of this shape at it to the next. What is found is the same with it and without it.
 void find_candidates(const MeshKernels& kernels, const Surface& surface, const PlacedConvex& convex, Vec3 position, float max_separation,
-                     KeptTriangles* kept, MeshCandidates& out);
+                     CachedTriangles* kept, MeshCandidates& out);
 
 // The triangles whose boxes overlap a box in the surface's frame, ascending by their place in the tree or pyramid; those
 // that do not fit into `out` are left out. Returns how many were written.

@@ -12,7 +12,7 @@ extern const MeshKernels kMeshKernels_avx2;
 
 const MeshKernels& select_mesh_kernels() {
 #if defined(__x86_64__)
-  if (most_lanes() >= 8) return kMeshKernels_avx2;
+  if (max_lanes() >= 8) return kMeshKernels_avx2;
 #endif
   static constexpr MeshKernels kDefault = mesh_kernels<4>();
   return kDefault;

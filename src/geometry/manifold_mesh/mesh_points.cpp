@@ -11,7 +11,7 @@ namespace gyre {
 namespace {
 
 // A face of the shape leans less than this (cosine) against the contact's direction, or it does not lie on the edge.
-constexpr float kFlush = 0.985f;
+constexpr float kFlushShare = 0.985f;
 // Sine between two edges that run side by side and touch in two points.
 constexpr float kSideBySideEdges = 0.05f;
 // How far two edges may pass beside each other and still cross, of the longer one's length.
@@ -323,7 +323,7 @@ void corner_points(const NearTriangle& t, int corner, const PlacedConvex& convex
   float height = dot(emit.direction, axis.on_core - v);
   if (axis.source != AxisSource::nearest_pair) {
     const float facing = dot(face.normal, emit.direction);
-    const bool flush = face.count >= 3 && facing < -kFlush;
+    const bool flush = face.count >= 3 && facing < -kFlushShare;
     // Beside the face there is nothing above the corner at that height.
     if (flush && !inside_polygon(face, v, t.slack)) return;
     height = flush ? dot(face.normal, face.vertices[0] - v) / facing
@@ -362,7 +362,7 @@ void feature_points(const NearTriangle& t, const PlacedConvex& convex, const Fea
     if (axis.corners == 1u << i) return corner_points(t, i, convex, axis, face, emit);
   }
   const int edge = axis.corners == 3 ? 0 : (axis.corners == 6 ? 1 : 2);
-  if (face.count >= 3 && dot(face.normal, d) < -kFlush) {
+  if (face.count >= 3 && dot(face.normal, d) < -kFlushShare) {
     // Also where an edge of the shape is in touch: that face's other end lies over the triangle's edge, too, and a shape that had only
     // one of the two ends would rock on it, from step to step.
     EdgeContact{t, edge, face, d, emit}.under_polygon();

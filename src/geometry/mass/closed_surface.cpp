@@ -220,11 +220,11 @@ Error check_surface_data(const TriangleSurface& surface) {
   }
   for (std::size_t i = 0; i < surface.vertices.size(); ++i) {
     const Vec3 p = surface.vertices[i];
-    if (is_finite(p) && largest(absolute(p)) <= kLargestLength) continue;
+    if (is_finite(p) && largest(absolute(p)) <= kMaxLength) continue;
     return make_error(ErrorCode::invalid_geometry,
                       "mesh: vertex %zu is (%g, %g, %g); allowed are finite coordinates within -%g to %g m",
-                      i, double(p.x), double(p.y), double(p.z), double(kLargestLength),
-                      double(kLargestLength));
+                      i, double(p.x), double(p.y), double(p.z), double(kMaxLength),
+                      double(kMaxLength));
   }
   return {};
 }

@@ -15,8 +15,8 @@
 namespace gyre {
 namespace {
 
-constexpr int kSmallestResolution = 2;
-constexpr int kLargestResolution = 512;
+constexpr int kMinResolution = 2;
+constexpr int kMaxResolution = 512;
 
 struct VoxelGrid {
   DVec3 low;  // corner of the first voxel
@@ -203,9 +203,9 @@ Result<MassProperties> voxel_mass(std::span<const Vec3> vertices, std::span<cons
   const FloatMode mode;
   if (const Error error = check_density(double(density), "kg/m^3"); error.code != ErrorCode::none)
     return error;
-  if (resolution < kSmallestResolution || resolution > kLargestResolution) {
+  if (resolution < kMinResolution || resolution > kMaxResolution) {
     return make_error(ErrorCode::invalid_argument, "resolution is %d voxels; allowed are %d to %d",
-                      resolution, kSmallestResolution, kLargestResolution);
+                      resolution, kMinResolution, kMaxResolution);
   }
   const TriangleSurface surface{vertices, indices, {}, {}};
   if (const Error error = check_surface_data(surface); error.code != ErrorCode::none) return error;

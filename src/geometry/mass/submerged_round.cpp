@@ -35,9 +35,9 @@ class SliceSum {
  public:
   SliceSum(DVec3 normal, double level) : level_(level), along_(normal.y) {
     // A plane that does not lean has no side; this little does not show.
-    constexpr double kLeastLean = 1.0e-8;
+    constexpr double kMinLean = 1.0e-8;
     const double lean = std::sqrt(normal.x * normal.x + normal.z * normal.z);
-    across_ = max(lean, kLeastLean);
+    across_ = max(lean, kMinLean);
     if (lean > 0.0) side_ = {normal.x / lean, 0.0, normal.z / lean};
   }
 

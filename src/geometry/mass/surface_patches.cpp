@@ -12,7 +12,7 @@ using PatchFn = FunctionRef<void(const SurfacePatch&)>;
 
 // ------------------------------------------------------------------------------------------------------------ polyhedra
 
-constexpr int kMostCorners = 256;  // of a face and one more for each edge that the plane cuts
+constexpr int kMaxCorners = 256;  // of a face and one more for each edge that the plane cuts
 
 // Corners stay as they are until they are set: most faces have four.
 struct PolygonCorner {
@@ -26,7 +26,7 @@ struct Polygon {
   void add(DVec3 p) { corners[count++] = {p.x, p.y, p.z}; }
 
   int count;
-  PolygonCorner corners[kMostCorners + 2];
+  PolygonCorner corners[kMaxCorners + 2];
 };
 
 // Sutherland and Hodgman, for one plane.

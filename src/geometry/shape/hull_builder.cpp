@@ -24,10 +24,10 @@ struct Grid {
 Error check_points(std::span<const Vec3> points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3 p = points[i];
-    if (is_finite(p) && largest(absolute(p)) <= kLargestLength) continue;
+    if (is_finite(p) && largest(absolute(p)) <= kMaxLength) continue;
     return make_error(ErrorCode::invalid_geometry,
                       "hull: point %zu is (%g, %g, %g); allowed are finite coordinates within -%g to %g m", i,
-                      double(p.x), double(p.y), double(p.z), double(kLargestLength), double(kLargestLength));
+                      double(p.x), double(p.y), double(p.z), double(kMaxLength), double(kMaxLength));
   }
   if (points.size() >= 4) return {};
   return make_error(ErrorCode::invalid_geometry,
@@ -45,7 +45,7 @@ Grid make_grid(std::span<const Vec3> points) {
   const double reach = double(max(largest(absolute(low)), largest(absolute(high))));
   Grid grid;
   grid.origin = DVec3(low);
-  if (!(extent >= double(kSmallestLength))) return grid;
+  if (!(extent >= double(kMinLength))) return grid;
   grid.step = extent / double(kGridSize);
   // Points that lie far from their origin are no finer than a float there (3 half steps of 2^-24).
   grid.tolerance = max(kHullTolerance * extent, 1.8e-7 * reach) / grid.step;
@@ -311,7 +311,7 @@ std::uint64_t hash_hull(const Hull& hull) {
 Result<Hull> build_hull(std::span<const Vec3> points) {
   if (const Error error = check_points(points); error.code != ErrorCode::none) return error;
   const Grid grid = make_grid(points);
-  if (grid.points.empty()) return span_error(GridSpan::point, points.size(), double(kSmallestLength));
+  if (grid.points.empty()) return span_error(GridSpan::point, points.size(), double(kMinLength));
   const double flat = 4.0 * grid.tolerance;
 
   HullCandidate body = thin_hull(grid, kMaxHullVertices, flat);

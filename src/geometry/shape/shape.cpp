@@ -72,7 +72,7 @@ Error check_range(const char* shape, const char* field, float value, float low, 
                     double(value), double(low), double(high));
 }
 Error check_length(const char* shape, const char* field, float value) {
-  return check_range(shape, field, value, kSmallestLength, kLargestLength);
+  return check_range(shape, field, value, kMinLength, kMaxLength);
 }
 
 Error check(const Sphere& sphere) { return check_length("sphere", "radius", sphere.radius); }
@@ -89,7 +89,7 @@ Error check(const Box& box) {
 Error check(const Capsule& capsule) {
   const Error error = check_length("capsule", "radius", capsule.radius);
   if (error.code != ErrorCode::none) return error;
-  return check_range("capsule", "half_height", capsule.half_height, 0.0f, kLargestLength);
+  return check_range("capsule", "half_height", capsule.half_height, 0.0f, kMaxLength);
 }
 
 Error check(const Cylinder& cylinder) {
@@ -112,10 +112,10 @@ Error check(const Plane& plane) {
                       double(n.x), double(n.y), double(n.z));
   }
   const double distance = double(plane.offset) / length(DVec3(n));
-  if (absolute(distance) <= double(kLargestLength)) return {};
+  if (absolute(distance) <= double(kMaxLength)) return {};
   return make_error(ErrorCode::invalid_argument,
                     "plane: offset is %g, %g m from the origin; allowed is -%g to %g m", double(plane.offset),
-                    distance, double(kLargestLength), double(kLargestLength));
+                    distance, double(kMaxLength), double(kMaxLength));
 }
 
 Error check(const Geometry& geometry) {

@@ -31,10 +31,10 @@ struct Shape {
 // The inner form of a checked shape.
 Shape make_shape(const AnyShape& shape);
 // Why `shape` cannot be used (radius not positive, not finite, zero normal, empty Geometry ...); code none if it can.
-// Lengths that must not be zero lie within kSmallestLength .. kLargestLength.
+// Lengths that must not be zero lie within kMinLength .. kMaxLength.
 Error check_shape(const AnyShape& shape);
-constexpr float kSmallestLength = 1.0e-9f;
-constexpr float kLargestLength = 1.0e9f;
+constexpr float kMinLength = 1.0e-9f;
+constexpr float kMaxLength = 1.0e9f;
 
 // Whether the kind is convex and bounded: everything but plane, mesh and height field.
 constexpr bool is_convex(ShapeKind kind) { return kind <= ShapeKind::hull; }

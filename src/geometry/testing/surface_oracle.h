@@ -2,7 +2,7 @@
 // direction parts two shapes or not; with these, answers are proven whatever way led to them.
 #pragma once
 
-#include "geometry/testing/odd_pairs.h"
+#include "geometry/testing/degenerate_pairs.h"
 
 namespace gyre::oracle {
 
@@ -49,9 +49,9 @@ inline double thin_side(const Shape& shape) { return double(inner_radius(shape))
 
 // Climbs from `n` to where the two are farthest apart along a direction: a walk over the sphere in shrinking steps.
 inline double climb_separation(const Shape& a, const Shape& b, const CorePair& pair, DVec3& n, double step,
-                               double least_step) {
+                               double min_step) {
   double best = surface_separation(a, b, pair, n);
-  for (; step > least_step; step *= 0.5) {
+  for (; step > min_step; step *= 0.5) {
     int rounds = 0;
     for (bool better = true; better && rounds < 30; ++rounds) {
       better = false;

@@ -12,7 +12,7 @@ extern const WalkLine<StaticNode> kWalkStaticLine_avx2;
 
 WalkLine<StaticNode> select_static_line_walk() {
 #if defined(__x86_64__)
-  if (most_lanes() >= 8) return kWalkStaticLine_avx2;
+  if (max_lanes() >= 8) return kWalkStaticLine_avx2;
 #endif
   return walk_line<4, StaticNode>;
 }

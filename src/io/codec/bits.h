@@ -55,8 +55,8 @@ class BitWriter {
   }
   // Four bytes of the word to where the next ones belong.
   void spill() {
-    constexpr std::size_t kLeastRoom = 256;
-    if (used_ + 4 > bytes_.size()) bytes_.resize(2 * used_ + kLeastRoom);
+    constexpr std::size_t kMinRoom = 256;
+    if (used_ + 4 > bytes_.size()) bytes_.resize(2 * used_ + kMinRoom);
     store_little(bytes_.data() + used_, std::uint32_t(word_));
   }
 
@@ -116,7 +116,7 @@ class BitReader {
 // for clustered bit-vectors", 1978.
 template <class Bits>
 void code_count(Bits& bits, std::uint64_t& value, int order) {
-  constexpr int kMostBits = 62;
+  constexpr int kMaxBits = 62;
   const std::uint64_t shifted = value + (std::uint64_t(1) << order);
   int extra = Bits::kReads ? 0 : int(std::bit_width(shifted)) - 1 - order;
   for (int zeros = 0;; ++zeros) {
@@ -124,7 +124,7 @@ void code_count(Bits& bits, std::uint64_t& value, int order) {
     bits.code_bits(stop, 1);
     if constexpr (Bits::kReads) extra = stop ? zeros : zeros + 1;
     if (stop) break;
-    if (bits.failed() || order + zeros >= kMostBits) {
+    if (bits.failed() || order + zeros >= kMaxBits) {
       if constexpr (Bits::kReads) bits.fail();
       value = 0;
       return;

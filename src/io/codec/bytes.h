@@ -125,10 +125,10 @@ class ByteReader {
     place_ += std::size_t(count);
     return part;
   }
-  // A count of things that take at least `least_bytes` each; 0, and failed, if that many cannot follow.
-  std::size_t get_count(std::size_t least_bytes) {
+  // A count of things that take at least `min_bytes` each; 0, and failed, if that many cannot follow.
+  std::size_t get_count(std::size_t min_bytes) {
     const std::uint64_t count = get<std::uint64_t>();
-    if (count <= left() / least_bytes) return std::size_t(count);
+    if (count <= left() / min_bytes) return std::size_t(count);
     fail();
     return 0;
   }

@@ -24,22 +24,22 @@ void adopt_columns(WorldState& state, StateColumns&& columns) {
   state.rigid = std::move(columns.rigid);
   state.time = columns.time;
   state.step_count = columns.step_count;
-  state.shown_changes.store(kNothingShown, std::memory_order_relaxed);
+  state.queried_changes.store(kNothingQueried, std::memory_order_relaxed);
   // Bytes from outside can break rules that the engine never would (boxes that hold no shape, say), and are stepped without
   // harm. A walk that stops at them would blame the engine.
   state.walks = false;
-  forget_reports(state);
+  clear_reports(state);
   if (state.log != nullptr) state.log->on_restored(state);
 }
 
-void forget_reports(WorldState& state) {
+void clear_reports(WorldState& state) {
   clear_events(state.shown);
   state.events = {};
   state.problems.clear();
   state.frozen.clear();
   // What the solver had were constraints of the state that is replaced.
   forget_batch(state.solve.together);
-  for (const std::unique_ptr<LoneSolver>& lone : state.solve.lone) forget_batch(lone->scratch);
+  for (const std::unique_ptr<WorkerContext>& lone : state.solve.lone) forget_batch(lone->scratch);
   state.solve.counts = {};
   state.solve.colors = 0;
 }

@@ -16,6 +16,6 @@ struct StateColumns {
 // as far as the columns know their bodies; events and problems are forgotten; the log is told.
 void adopt_columns(WorldState& state, StateColumns&& columns);
 // What a world whose state is replaced tells about its last step is of another history now.
-void forget_reports(WorldState& state);
+void clear_reports(WorldState& state);
 
 }  // namespace gyre

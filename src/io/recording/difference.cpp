@@ -5,7 +5,7 @@
 #include "io/recording/difference.h"
 
 #include "base/hash.h"
-#include "io/snapshot/kept_state.h"
+#include "io/snapshot/state_copy.h"
 #include "io/recording/recording.h"
 
 #include <cstdio>
@@ -209,7 +209,7 @@ Result<Difference> first_difference(std::span<const std::byte> recording, const 
   if (!suspect) return suspect.error();
   Result<World> plain = make_recorded_world(*opened, plain_def);
   if (!plain) return plain.error();
-  KeptState before;  // the last state that is known to be the recorded one
+  StateCopy before;  // the last state that is known to be the recorded one
   std::uint64_t first = 0;
   before.keep(suspect->state());
   for (std::uint64_t i = 0; i < opened->steps.size(); ++i) {

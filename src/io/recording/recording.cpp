@@ -28,7 +28,7 @@ bool changes_models(const Command& command) {
 
 struct Recorder::Log final : CommandLog {
   // Commands wait for the step that they belong to, unless they become this many bytes.
-  static constexpr std::size_t kMostPending = std::size_t(1) << 20;
+  static constexpr std::size_t kMaxPending = std::size_t(1) << 20;
 
   Log(WorldState& recorded, ByteSink& to, const RecordOptions& wanted)
       : state(&recorded), sink(to), options(wanted) {}
@@ -45,7 +45,7 @@ struct Recorder::Log final : CommandLog {
     });
     write_command(pending, command);
     // Before the step is done, so that the file holds what a step was given even if it never comes back.
-    if (std::holds_alternative<Step>(command) || pending.size() > kMostPending) flush();
+    if (std::holds_alternative<Step>(command) || pending.size() > kMaxPending) flush();
   }
 
   void on_step_done(WorldState& done) override {
@@ -96,8 +96,8 @@ struct Recorder::Log final : CommandLog {
     TrackStart start;
     start.frame_interval = options.frame_interval;
     // The coarsest steps that are fine enough: a coordinate is off by half of one at most.
-    start.steps.position_bits = kLeastPositionBits;
-    for (double step = double(1 << -kLeastPositionBits); 0.5 * step > double(options.pose_accuracy);
+    start.steps.position_bits = kMinPositionBits;
+    for (double step = double(1 << -kMinPositionBits); 0.5 * step > double(options.pose_accuracy);
          step *= 0.5)
       ++start.steps.position_bits;
     track.emplace(start);

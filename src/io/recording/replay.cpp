@@ -1,5 +1,5 @@
 // The player. Going back is restoring the nearest keyframe before, which were kept while playing, and playing on from it.
-#include "io/snapshot/kept_state.h"
+#include "io/snapshot/state_copy.h"
 #include "io/recording/recording.h"
 
 namespace gyre {
@@ -10,8 +10,8 @@ namespace {
 class Keyframes {
  public:
   static constexpr std::uint64_t kFirstInterval = 16;  // steps
-  static constexpr std::size_t kMostFrames = 128;
-  static constexpr std::size_t kMostBytes = std::size_t(512) << 20;
+  static constexpr std::size_t kMaxFrames = 128;
+  static constexpr std::size_t kMaxBytes = std::size_t(512) << 20;
 
   // `position`: steps played. Kept if it is time for one.
   void offer(std::uint64_t position, const WorldState& state) {
@@ -19,11 +19,11 @@ class Keyframes {
     frames_.push_back({position, {}});
     frames_.back().state.keep(state);
     bytes_ += frames_.back().state.bytes();
-    while (frames_.size() > 2 && (frames_.size() > kMostFrames || bytes_ > kMostBytes)) thin_out();
+    while (frames_.size() > 2 && (frames_.size() > kMaxFrames || bytes_ > kMaxBytes)) thin_out();
   }
   // The last one at or before `position`; null if there is none.
-  const KeptState* find(std::uint64_t position, std::uint64_t& found) const {
-    const KeptState* state = nullptr;
+  const StateCopy* find(std::uint64_t position, std::uint64_t& found) const {
+    const StateCopy* state = nullptr;
     for (const Frame& frame : frames_) {
       if (frame.position > position) break;
       state = &frame.state;
@@ -35,7 +35,7 @@ class Keyframes {
  private:
   struct Frame {
     std::uint64_t position;
-    KeptState state;
+    StateCopy state;
   };
 
   void thin_out() {
@@ -101,7 +101,7 @@ Error Replay::seek(std::uint64_t step) {
                       static_cast<unsigned long long>(step), static_cast<unsigned long long>(step_count()));
   }
   std::uint64_t found = 0;
-  const KeptState* const frame = player.keyframes.find(step, found);
+  const StateCopy* const frame = player.keyframes.find(step, found);
   if (frame != nullptr && (step < player.position || found > player.position)) {
     frame->put_back(player.world.state());
     player.position = found;

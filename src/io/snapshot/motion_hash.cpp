@@ -23,7 +23,7 @@ std::uint64_t word_of(const float* two) {
   return word;
 }
 
-void eat_body(hash_detail::Lanes& lanes, const BodyMotion& motion, const BodyPlace& place) {
+void hash_body(hash_detail::Lanes& lanes, const BodyMotion& motion, const BodyPose& place) {
   static_assert(kMotionLinear == 0 && kMotionAngular == 3, "six floats in a row");
   const float* const velocities = reinterpret_cast<const float*>(&motion);
   const float* const turn = reinterpret_cast<const float*>(&place.orientation);
@@ -36,7 +36,7 @@ void eat_body(hash_detail::Lanes& lanes, const BodyMotion& motion, const BodyPla
 std::uint64_t hash_motion(const WorldState& state) {
   const BodyStore& bodies = state.rigid.bodies;
   hash_detail::Lanes lanes(state.step_count);
-  for (const std::uint32_t i : bodies.awake) eat_body(lanes, bodies.motion[i], bodies.places[i]);
+  for (const std::uint32_t i : bodies.awake) hash_body(lanes, bodies.motion[i], bodies.places[i]);
   const std::uint64_t counts = std::uint64_t(bodies.awake.size()) << 32 | state.rigid.contacts.live;
   return mix_bits(lanes.merge() ^ mix_bits(counts ^ mix_bits(word_of(state.time))));
 }

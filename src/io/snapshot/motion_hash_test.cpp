@@ -41,7 +41,7 @@ TEST(MotionHash, EveryBitOfWhatMovesMatters) {
   };
   const std::uint32_t last = state.rigid.bodies.awake.back();
   BodyMotion& motion = state.rigid.bodies.motion[last];
-  BodyPlace& place = state.rigid.bodies.places[last];
+  BodyPose& place = state.rigid.bodies.places[last];
   try_bits(motion.linear_velocity), try_bits(motion.angular_velocity);
   try_bits(place.center), try_bits(place.orientation);
   try_bits(state.time), try_bits(state.step_count), try_bits(state.rigid.contacts.live);

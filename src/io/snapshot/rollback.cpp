@@ -1,5 +1,5 @@
 // The ring of snapshots in memory.
-#include "io/snapshot/kept_state.h"
+#include "io/snapshot/state_copy.h"
 
 #include <gyre/replay.h>
 
@@ -8,7 +8,7 @@ namespace gyre {
 struct Rollback::Ring {
   struct Slot {
     bool used = false;
-    KeptState state;
+    StateCopy state;
   };
   std::vector<Slot> slots;
   std::size_t next = 0;  // the slot that is written next

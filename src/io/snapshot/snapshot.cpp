@@ -116,8 +116,8 @@ struct StoredColumn {
 
 Error list_columns(ByteReader& in, std::vector<StoredColumn>& columns) {
   const auto count = in.get<std::uint32_t>();
-  constexpr std::uint32_t kMostColumns = 1024;
-  if (in.failed() || count > kMostColumns) return bad_snapshot("it ends before its columns");
+  constexpr std::uint32_t kMaxColumns = 1024;
+  if (in.failed() || count > kMaxColumns) return bad_snapshot("it ends before its columns");
   for (std::uint32_t i = 0; i < count; ++i) {
     StoredColumn column;
     const std::span<const std::byte> name = in.get_bytes(in.get<std::uint8_t>());

@@ -52,9 +52,9 @@ RoundedPose round_pose(const Pose& pose, PoseSteps steps) {
   const double per_metre = power_of_two(steps.position_bits);
   for (int i = 0; i < 3; ++i) {
     const double scaled = pose.position[i] * per_metre;
-    const double limit = double(kMostPosition);
-    rounded.position[i] = scaled >= limit    ? kMostPosition
-                          : scaled <= -limit ? -kMostPosition
+    const double limit = double(kMaxPosition);
+    rounded.position[i] = scaled >= limit    ? kMaxPosition
+                          : scaled <= -limit ? -kMaxPosition
                                              : nearest(scaled);
   }
   const Quat q = pose.orientation == Quat{0, 0, 0, 0} ? Quat{} : pose.orientation;
@@ -121,7 +121,7 @@ RoundedPose predict(const PoseHistory& history, PoseSteps steps) {
 
 bool advance(PoseHistory& history, RoundedPose& pose, PoseSteps steps) {
   for (const std::int64_t coordinate : pose.position) {
-    if (magnitude(coordinate) > kMostPosition) return false;
+    if (magnitude(coordinate) > kMaxPosition) return false;
   }
   const std::int64_t one = std::int64_t(1) << steps.orientation_bits;
   for (int i = 0; i < 4; ++i) {

@@ -24,11 +24,11 @@ struct PoseSteps {
 // 2^bits, exactly.
 inline double power_of_two(int bits) { return __builtin_bit_cast(double, std::uint64_t(1023 + bits) << 52); }
 // What a file may say.
-constexpr int kMostPositionBits = 40;
-constexpr int kLeastPositionBits = -20;
-constexpr int kMostOrientationBits = 20;
-constexpr int kLeastOrientationBits = 8;
-constexpr std::int64_t kMostPosition = std::int64_t(1)
+constexpr int kMaxPositionBits = 40;
+constexpr int kMinPositionBits = -20;
+constexpr int kMaxOrientationBits = 20;
+constexpr int kMinOrientationBits = 8;
+constexpr std::int64_t kMaxPosition = std::int64_t(1)
                                        << 51;  // steps from the origin; poses farther off are put there
 
 struct RoundedPose {
@@ -64,43 +64,43 @@ template <class Bits>
 void code_difference(Bits& bits, std::int64_t& difference, std::int64_t& size) {
   constexpr int kFirstLowBits = 8;          // of the first difference after the beginning
   constexpr std::int64_t kSecondSize = 64;  // the first says nothing about those to come
-  constexpr std::uint64_t kMostHigh = 24;   // more are written as a count of bits
-  constexpr int kMostBits = 57;
+  constexpr std::uint64_t kMaxHigh = 24;   // more are written as a count of bits
+  constexpr int kMaxBits = 57;
   const bool first = size < 0;
   // The fewest low bits k with 1.5 * 2^k >= size / 16.
   const int low_bits = first ? kFirstLowBits : int(std::bit_width(std::uint64_t((size - 1) / 12)));
   if constexpr (Bits::kReads) {
     std::uint64_t folded = 0, high = 0, more = 1;
-    while (high < kMostHigh) {
+    while (high < kMaxHigh) {
       bits.code_bits(more, 1);
       if (!more) break;
       ++high;
     }
-    if (high >= kMostHigh) {
+    if (high >= kMaxHigh) {
       std::uint64_t width = 0;
       bits.code_bits(width, 6);
-      if (width > kMostBits) bits.fail(), width = 0;
+      if (width > kMaxBits) bits.fail(), width = 0;
       bits.code_bits(folded, int(width));
     } else {
       bits.code_bits(folded, low_bits);
       folded |= high << low_bits;
     }
-    if (bits.failed() || folded >> kMostBits != 0) bits.fail(), folded = 0;
+    if (bits.failed() || folded >> kMaxBits != 0) bits.fail(), folded = 0;
     difference = unfold_sign(folded);
   } else {
     const std::uint64_t folded = fold_sign(difference), high = folded >> low_bits;
-    if (high < kMostHigh) {
-      constexpr int kMostAtOnce = 64 - int(kMostHigh);
+    if (high < kMaxHigh) {
+      constexpr int kMaxAtOnce = 64 - int(kMaxHigh);
       const std::uint64_t ones = (std::uint64_t(1) << high) - 1, low = folded & ((std::uint64_t(1) << low_bits) - 1);
       const int unary = int(high) + 1;
-      if (low_bits <= kMostAtOnce) {
+      if (low_bits <= kMaxAtOnce) {
         bits.code_bits(low << unary | ones, unary + low_bits);
       } else {
         bits.code_bits(ones, unary);
         bits.code_bits(low, low_bits);
       }
     } else {
-      bits.code_bits((std::uint64_t(1) << kMostHigh) - 1, int(kMostHigh));
+      bits.code_bits((std::uint64_t(1) << kMaxHigh) - 1, int(kMaxHigh));
       bits.code_bits(std::uint64_t(std::bit_width(folded)), 6);
       bits.code_bits(folded, int(std::bit_width(folded)));
     }

@@ -77,8 +77,8 @@ TEST(PoseCodec, StrangePosesAreStoredAllTheSame) {
   for (const Quat q : {Quat{0, 0, 0, 0}, Quat{1, 0, 0, 0}, Quat{0, 0, 0, -1}, Quat{0.5f, 0.5f, 0.5f, 0.5f},
                        Quat{3, 4, 0, 0}, Quat{1e-38f, 0, 0, 0}, Quat{-0.5f, 0.5f, -0.5f, -0.5f}}) {
     RoundedPose rounded = round_pose({{1e300, -1e300, 0}, q}, {});
-    EXPECT_EQ(rounded.position[0], kMostPosition);
-    EXPECT_EQ(rounded.position[1], -kMostPosition);
+    EXPECT_EQ(rounded.position[0], kMaxPosition);
+    EXPECT_EQ(rounded.position[1], -kMaxPosition);
     EXPECT_GT(rounded.orientation[rounded.largest], 0);
     PoseHistory history;
     EXPECT_TRUE(advance(history, rounded, {}));
@@ -203,7 +203,7 @@ TEST(PoseCodec, BytesThatAreNoPoseAreRefused) {
   pose.orientation[0] = pose.orientation[1] = 1 << 16;  // leaves nothing for w
   EXPECT_FALSE(advance(history, pose, {}));
   pose = round_pose({}, {});
-  pose.position[2] = kMostPosition + 1;
+  pose.position[2] = kMaxPosition + 1;
   EXPECT_FALSE(advance(history, pose, {}));
   const std::vector<std::byte> ones(64, std::byte(0xff));
   BitReader reader(ones);

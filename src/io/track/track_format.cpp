@@ -68,9 +68,9 @@ Error read_track_start(std::span<const std::byte> payload, TrackStart& start) {
   start.steps.orientation_bits = in.get<std::uint8_t>();
   in.get<std::uint16_t>();
   start.frame_interval = in.get<std::uint32_t>();
-  if (!in.finished() || start.steps.position_bits < kLeastPositionBits ||
-      start.steps.position_bits > kMostPositionBits || start.steps.orientation_bits < kLeastOrientationBits ||
-      start.steps.orientation_bits > kMostOrientationBits) {
+  if (!in.finished() || start.steps.position_bits < kMinPositionBits ||
+      start.steps.position_bits > kMaxPositionBits || start.steps.orientation_bits < kMinOrientationBits ||
+      start.steps.orientation_bits > kMaxOrientationBits) {
     return bad_recording("its track has an accuracy that cannot be");
   }
   return {};

@@ -47,7 +47,7 @@ std::uint32_t TrackWriter::model_of(const RigidWorld& w, std::uint32_t body, Emi
   return number;
 }
 
-void TrackWriter::round_again(const BodyPlace& place, const BodyMass& mass, WrittenBody& written) {
+void TrackWriter::round_again(const BodyPose& place, const BodyMass& mass, WrittenBody& written) {
   constexpr int kSameToStay = 8;  // frames; what is still on its way, slowly, would have to be rounded soon all the same
   const Pose pose = origin_pose(place, mass);
   if (is_finite(pose)) {
@@ -58,7 +58,7 @@ void TrackWriter::round_again(const BodyPlace& place, const BodyMass& mass, Writ
       written.settled = false;
     }
   }
-  written.slack = written.same < kSameToStay ? RoundingSlack{} : find_slack(place, mass, start_.steps);
+  written.slack = written.same < kSameToStay ? RoundingTolerance{} : find_rounding_tolerance(place, mass, start_.steps);
   written.seen = place;
   written.seen_mass_center = mass.center;
 }
@@ -66,9 +66,9 @@ void TrackWriter::round_again(const BodyPlace& place, const BodyMass& mass, Writ
 void TrackWriter::look_at_known(const WorldState& state, WrittenBody& written) {
   const BodyStore& bodies = state.rigid.bodies;
   const std::uint32_t index = written.body.index;
-  const BodyPlace& place = bodies.places[index];
+  const BodyPose& place = bodies.places[index];
   const BodyMass& mass = bodies.masses[index];
-  const bool awake = goes_along(bodies.flags[index]);
+  const bool awake = is_simulated(bodies.flags[index]);
   ++written.same;
   if (!is_within(place, written.seen, written.slack) || !(mass.center == written.seen_mass_center))
     round_again(place, mass, written);
@@ -115,7 +115,7 @@ void TrackWriter::look_at(const WorldState& state, std::uint32_t index, bool key
   written.body.index = index;
   written.body.generation = generation;
   written.body.model = model;
-  written.body.awake = written.body.active = goes_along(bodies.flags[index]);
+  written.body.awake = written.body.active = is_simulated(bodies.flags[index]);
   written.body.pose = begin_history(written.next);
   changes_.push_back({index, BodyChange::put});
 }

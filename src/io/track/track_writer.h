@@ -5,7 +5,7 @@
 #include "base/container/flat_map.h"
 #include "base/function_ref.h"
 #include "io/chunk/chunks.h"
-#include "io/track/rounding_slack.h"
+#include "io/track/rounding_tolerance.h"
 #include "io/track/track_coder.h"
 #include "io/track/track_format.h"
 #include "world/world_state.h"
@@ -36,8 +36,8 @@ class TrackWriter {
     std::uint64_t rest = 0;
     RoundedPose next;
     // `next` is the rounded pose wherever the body is so near to where it was seen.
-    RoundingSlack slack;
-    BodyPlace seen{};
+    RoundingTolerance slack;
+    BodyPose seen{};
     Vec3 seen_mass_center{};
   };
   struct Change {
@@ -47,7 +47,7 @@ class TrackWriter {
 
   void look_at(const WorldState& state, std::uint32_t index, bool key, EmitChunk emit);
   void look_at_known(const WorldState& state, WrittenBody& written);
-  void round_again(const BodyPlace& place, const BodyMass& mass, WrittenBody& written);
+  void round_again(const BodyPose& place, const BodyMass& mass, WrittenBody& written);
   void write_next(BitWriter& bits, WrittenBody& written);
   void settle(WrittenBody& written) const;
   std::vector<std::byte> frame_bits();

@@ -2,8 +2,8 @@
 // solve_batches.h.
 #include "rigid/batch/solve_batches.h"
 
-#include "base/arena/counted_lists.h"
-#include "task/choose.h"
+#include "base/arena/bucketed_lists.h"
+#include "task/parallel_filter.h"
 #include "task/parallel.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint32_t kWorthSharing = 64;
 
 // What islands and batches need to know of a contact or joint, so that its record is read once.
-struct Tie {
+struct ConstraintEdge {
   std::uint32_t owner;  // a body that moves: its island is the constraint's
   std::uint32_t other;  // may be one that does not, or kNoIndex
   std::uint32_t size;   // manifolds
@@ -26,8 +26,8 @@ struct Tie {
 struct Constraints {
   std::span<const std::uint32_t> contacts;
   std::span<const std::uint32_t> joints;
-  std::span<const Tie> contact_ties;
-  std::span<const Tie> joint_ties;
+  std::span<const ConstraintEdge> contact_ties;
+  std::span<const ConstraintEdge> joint_ties;
   std::size_t size = 0;  // manifolds and joints
 
   // Of the contacts, then of the joints.
@@ -39,7 +39,7 @@ struct Constraints {
 };
 
 // Returns whether constraints move one of the bodies; kNoIndex is none.
-bool tie(const RigidWorld& w, std::uint32_t a, std::uint32_t b, std::uint32_t size, Tie& to) {
+bool tie(const RigidWorld& w, std::uint32_t a, std::uint32_t b, std::uint32_t size, ConstraintEdge& to) {
   if (a != kNoIndex && is_active(w, a)) {
     to = {a, b, size};
     return true;
@@ -61,8 +61,8 @@ bool may_act(const RigidWorld& w, std::uint32_t joint) {
 constexpr std::uint32_t kContactsFetched = 8, kJointsFetched = 8;
 
 Constraints list_constraints(const RigidWorld& w, Arena& arena, TaskSystem& tasks) {
-  const std::span<Tie> contact_ties = arena.make<Tie>(w.contacts.contacts.size());
-  const std::span<Tie> joint_ties = arena.make<Tie>(w.joints.ids.capacity());
+  const std::span<ConstraintEdge> contact_ties = arena.make<ConstraintEdge>(w.contacts.contacts.size());
+  const std::span<ConstraintEdge> joint_ties = arena.make<ConstraintEdge>(w.joints.ids.capacity());
   const auto manifolds = [&](std::uint32_t slot) {
     if (w.contacts.with_manifolds.test(slot + kContactsFetched))
       __builtin_prefetch(&w.contacts.contacts[slot + kContactsFetched]);
@@ -77,8 +77,8 @@ Constraints list_constraints(const RigidWorld& w, Arena& arena, TaskSystem& task
     // As numbers without a sign, kNoBody is kNoIndex.
     return tie(w, std::uint32_t(joint.body_a), std::uint32_t(joint.body_b), 1, joint_ties[slot]);
   };
-  const Chosen contacts = choose_among(tasks, arena, manifolds, w.contacts.with_manifolds, w.awake_links.contacts);
-  const Chosen joints = choose_among(tasks, arena, works, w.awake_links.joints);
+  const FilteredList contacts = parallel_filter_among(tasks, arena, manifolds, w.contacts.with_manifolds, w.awake_links.contacts);
+  const FilteredList joints = parallel_filter_among(tasks, arena, works, w.awake_links.joints);
   return {contacts.list, joints.list, contact_ties, joint_ties, contacts.size + joints.size};
 }
 
@@ -90,7 +90,7 @@ class BatchIslands {
       : parents_(parents) {
     for (std::uint32_t& parent : parents_) parent = kNoIndex;
     for (const std::uint32_t body : w.bodies.awake) parents_[body] = body;
-    constraints.for_each_tie([&](const Tie& tie) { unite(tie.owner, tie.other); });
+    constraints.for_each_tie([&](const ConstraintEdge& tie) { unite(tie.owner, tie.other); });
     // Who is lower has its root by now.
     for (const std::uint32_t body : w.bodies.awake) parents_[body] = parents_[parents_[body]];
   }
@@ -121,7 +121,7 @@ std::span<const std::uint32_t> weigh_islands(const RigidWorld& w, const Constrai
   const std::span<std::uint32_t> weights = arena.make<std::uint32_t>(bodies);
   for (std::uint32_t& weight : weights) weight = 0;
   constraints.for_each_tie(
-      [&](const Tie& tie) { weights[islands.root(tie.owner)] += kConstraint * tie.size; });
+      [&](const ConstraintEdge& tie) { weights[islands.root(tie.owner)] += kConstraint * tie.size; });
   for (const std::uint32_t body : w.bodies.awake) ++weights[islands.root(body)];
   return weights;
 }
@@ -242,7 +242,7 @@ SolveBatches find_batches(const RigidWorld& w, Arena& arena, TaskSystem& tasks, 
   };
   if (all_weights <= most) return all_in_one(room.batches.first(awake.empty() ? 0 : 1));
   const std::span<SolveBatch> batches = room.batches;
-  CountedLists bodies(batches.size(), arena), contacts(batches.size(), arena), joints(batches.size(), arena);
+  BucketedLists bodies(batches.size(), arena), contacts(batches.size(), arena), joints(batches.size(), arena);
   const std::span<std::uint32_t> batch_of = arena.make<std::uint32_t>(places.size());
   const BatchIslands islands(w, constraints, places);
   const std::span<const std::uint32_t> island_weights =

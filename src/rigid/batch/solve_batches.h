@@ -23,10 +23,10 @@ struct BatchSize {
 
 // Alone a worker is as fast with twice as much, but a batch's memory stays. Workers that solve batches side by side come out even
 // if there are some for each; those that meet after each colour of one need more of it to do in between.
-constexpr BatchSize batch_size(int workers, bool side_by_side) {
+constexpr BatchSize batch_size(int workers, bool run_parallel) {
   if (workers == 1) return {512, 1, 2};
   const std::uint32_t count = std::uint32_t(workers);
-  return side_by_side ? BatchSize{1024, 4 * count, count} : BatchSize{2048 * count, 1, 2};
+  return run_parallel ? BatchSize{1024, 4 * count, count} : BatchSize{2048 * count, 1, 2};
 }
 
 struct SolveBatch {

@@ -22,7 +22,7 @@ class ChainsInBatches : public ::testing::Test {
       if (i == 0) continue;
       const std::uint32_t slot = w_.joints.ids.acquire().index;
       w_.joints.records.resize(slot + 1);
-      add_awake_joint(w_, slot);
+      activate_joint(w_, slot);
       w_.joints.records[slot].body_a = std::int32_t(body) - 1;
       w_.joints.records[slot].body_b = std::int32_t(body);
     }

@@ -2,11 +2,11 @@
 // collision/continuous/continuous sweep them, and takes back what motion they may not keep.
 #include "collision/continuous/continuous.h"
 #include "math/rotation.h"
-#include "rigid/continuous/joint_closing.h"
+#include "rigid/continuous/ccd_joint_projection.h"
 #include "rigid/rigid_step.h"
 #include "rigid/store/shape_boxes.h"
 #include "rigid/batch/surface_rules.h"
-#include "task/choose.h"
+#include "task/parallel_filter.h"
 #include "task/parallel.h"
 
 #include <cmath>
@@ -16,9 +16,9 @@ namespace gyre {
 namespace {
 
 // The part of its way that a body in contact keeps whatever the sweep says.
-constexpr float kLeastProgress = 0.2f;
+constexpr float kMinProgress = 0.2f;
 // How often bodies that follow others by joints are swept in turn.
-constexpr int kMostRounds = 4;
+constexpr int kMaxRounds = 4;
 
 // What was inside as the step began has been told to begin, and its end is seen when the contact is looked at again.
 void report_crossings(RigidWorld& w, std::span<const std::uint64_t> crossings) {
@@ -39,9 +39,9 @@ DVec3 middle_of(const RigidWorld& w, std::uint32_t body) {
 // Takes the speed with which a body goes on into what its core met: first by an impulse without bounce at the point where the
 // core would have gone in, and then, if its middle still goes that way, by one through the middle. What is at rest or asleep is
 // not moved by them.
-class Blow {
+class BodyImpulse {
  public:
-  Blow(RigidWorld& w, std::uint32_t body, const KeptMotion& kept)
+  BodyImpulse(RigidWorld& w, std::uint32_t body, const SavedMotion& kept)
       : w_(w), bodies_{body, kept.other}, normal_(kept.blow), at_(kept.blow_at) {}
 
   void take() {
@@ -159,16 +159,16 @@ std::size_t count_stopped_with_joints(const RigidWorld& w, const ContinuousScrat
 }
 
 // Of two stopped bodies with a joint between them both keep what the one that is stopped first keeps.
-void stop_together(const RigidWorld& w, const ContinuousScratch& scratch, std::span<KeptMotion> kept,
+void stop_together(const RigidWorld& w, const ContinuousScratch& scratch, std::span<SavedMotion> kept,
                    Arena& arena) {
-  constexpr int kMostPasses = 16;
+  constexpr int kMaxPasses = 16;
   const std::span<std::uint32_t> place = arena.make<std::uint32_t>(w.bodies.motion.size());
   for (std::uint32_t& p : place) p = kNoIndex;
   for (std::uint32_t k = 0; k < kept.size(); ++k) {
     if (kept[k].fraction < 1.0f) place[scratch.fast[k].body] = k;
   }
   bool changed = true;
-  for (int pass = 0; pass < kMostPasses && changed; ++pass) {
+  for (int pass = 0; pass < kMaxPasses && changed; ++pass) {
     changed = false;
     for (std::size_t k = 0; k < kept.size(); ++k) {
       if (!(kept[k].fraction < 1.0f)) continue;
@@ -176,7 +176,7 @@ void stop_together(const RigidWorld& w, const ContinuousScratch& scratch, std::s
       for (const std::uint32_t slot : joints_of(w.bodies, std::uint32_t(body))) {
         const JointRecord& joint = w.joints.records[slot];
         const std::int32_t other = joint.body_a == body ? joint.body_b : joint.body_a;
-        if (other == kNoBody || place[std::size_t(other)] == kNoIndex || !holds_point(w, slot)) continue;
+        if (other == kNoBody || place[std::size_t(other)] == kNoIndex || !constrains_position(w, slot)) continue;
         const float others = kept[place[std::size_t(other)]].fraction;
         changed = changed || others < kept[k].fraction;
         kept[k].fraction = min(kept[k].fraction, others);
@@ -195,17 +195,17 @@ void list_fast_bodies(const RigidWorld& w, ContinuousScratch& scratch, Arena& ar
     return is_fast(motion.moved, motion.turned, mass.reach, mass.size) && is_movable(w.bodies.flags[i]) &&
            !w.bodies.shapes[i].empty();
   };
-  for (const std::uint32_t n : choose(tasks, arena, w.bodies.awake.size(), goes_fast).list) {
+  for (const std::uint32_t n : parallel_filter(tasks, arena, w.bodies.awake.size(), goes_fast).list) {
     const std::uint32_t i = w.bodies.awake[n];
     // What contacts already act on must not be held in the air by a sweep: it keeps a part of its way, and they answer.
-    const float least = w.bodies.flags[i].touched != 0 ? kLeastProgress : 0.0f;
+    const float least = w.bodies.flags[i].touched != 0 ? kMinProgress : 0.0f;
     scratch.fast.push_back({i, w.bodies.flags[i].continuous != 0, least, joints_of(w.bodies, i).empty(), false});
   }
   Overrun(w, scratch).add_all();
 }
 
 // By shape: whether a contact may stop it.
-void mark_near_stops(const RigidWorld& w, Bitset& near) {
+void mark_near_blockers(const RigidWorld& w, Bitset& near) {
   near.resize(w.shapes.colliders.size());
   near.reset_all();
   w.touches.may_stop.for_each_set([&](std::size_t slot) {
@@ -291,13 +291,13 @@ Vec3 spin_at(const BodyMass& mass, const BodyFlags& flags, Quat from, Quat to, V
 }
 
 // Puts the listed bodies where they stay. Returns those that were stopped and hang on joints.
-std::span<const StoppedBody> take_back(RigidWorld& w, ContinuousScratch& scratch, Arena& arena) {
-  const std::span<StoppedBody> stopped = arena.make<StoppedBody>(count_stopped_with_joints(w, scratch));
+std::span<const HaltedBody> remove_error(RigidWorld& w, ContinuousScratch& scratch, Arena& arena) {
+  const std::span<HaltedBody> stopped = arena.make<HaltedBody>(count_stopped_with_joints(w, scratch));
   std::size_t stopped_count = 0;
   if (!stopped.empty()) stop_together(w, scratch, scratch.kept, arena);
   for (std::size_t k = 0; k < scratch.fast.size(); ++k) {
     const std::uint32_t i = scratch.fast[k].body;
-    const KeptMotion& kept = scratch.kept[k];
+    const SavedMotion& kept = scratch.kept[k];
     if (!(kept.fraction < 1.0f)) continue;
     BodyMotion& motion = w.bodies.motion[i];
     if (!joints_of(w.bodies, i).empty())
@@ -310,7 +310,7 @@ std::span<const StoppedBody> take_back(RigidWorld& w, ContinuousScratch& scratch
     motion.moved = kept.fraction * motion.moved + kept.slide;
     motion.turned = kept.fraction * motion.turned + kept.turn;
     w.bodies.inertia[i] = world_inertia(w.bodies.masses[i], w.bodies.flags[i], w.bodies.orientations[i]);
-    if (!(kept.blow == Vec3{})) Blow(w, i, kept).take();
+    if (!(kept.blow == Vec3{})) BodyImpulse(w, i, kept).take();
   }
   return stopped;
 }
@@ -321,18 +321,18 @@ void clamp_fast_bodies(RigidWorld& w, ContinuousScratch& scratch, const ContactK
                        TaskSystem& tasks) {
   list_fast_bodies(w, scratch, arena, tasks);
   if (!scratch.fast.empty()) {
-    mark_near_stops(w, scratch.near_stops);
+    mark_near_blockers(w, scratch.near_stops);
     leave_out_free(w, scratch, arena, tasks);
   }
   if (scratch.fast.empty() && scratch.gates.empty()) return;
-  for (int round = 1; round <= kMostRounds; ++round) {
+  for (int round = 1; round <= kMaxRounds; ++round) {
     sweep_fast_bodies(w, scratch, arena, tasks);
     if (round == 1) report_crossings(w, scratch.collision.crossings());
-    const std::span<const StoppedBody> stopped = take_back(w, scratch, arena);
+    const std::span<const HaltedBody> stopped = remove_error(w, scratch, arena);
     if (stopped.empty()) return;
     // What hangs on those that were stopped comes after, on ways that have not been looked at.
     scratch.moved.clear();
-    close_joints(w, stopped, round == kMostRounds, kernels, tasks, scratch.moved, arena);
+    project_joints_after_ccd(w, stopped, round == kMaxRounds, kernels, tasks, scratch.moved, arena);
     list_moved_bodies(w, scratch);
     if (scratch.fast.empty()) return;
   }

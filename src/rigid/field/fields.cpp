@@ -15,9 +15,9 @@ BodyStance stance_of(const RigidWorld& w, std::uint32_t body) {
 }
 
 // Mass and world inertia.
-Six2 mass_matrix(const BodyMass& mass, const BodyStance& stance) {
+Mat6 mass_matrix(const BodyMass& mass, const BodyStance& stance) {
   const Sym3 inertia = rotate_inertia(to_float(stance.turn), mass.inertia);
-  Six2 out;
+  Mat6 out;
   for (int i = 0; i < 3; ++i) out.m[i][i] = double(mass.mass);
   out.m[3][3] = double(inertia.xx), out.m[4][4] = double(inertia.yy), out.m[5][5] = double(inertia.zz);
   out.m[3][4] = out.m[4][3] = double(inertia.xy);
@@ -27,7 +27,7 @@ Six2 mass_matrix(const BodyMass& mass, const BodyStance& stance) {
 }
 
 // Along locked axes nothing changes.
-void lock(const BodyFlags& flags, Six2& matrix, Six& right) {
+void lock(const BodyFlags& flags, Mat6& matrix, Vec6& right) {
   const std::uint32_t locked = std::uint32_t(flags.locked_linear) | std::uint32_t(flags.locked_angular) << 3;
   if (locked == 0) return;
   for (int i = 0; i < 6; ++i) {
@@ -38,15 +38,15 @@ void lock(const BodyFlags& flags, Six2& matrix, Six& right) {
   }
 }
 
-void add_pulls(const RigidWorld& w, const FieldBody& from, const BodyStance& stance, Six& force,
-               Six2& stiffness) {
+void add_pulls(const RigidWorld& w, const FieldBody& from, const BodyStance& stance, Vec6& force,
+               Mat6& stiffness) {
   const double mass = double(w.bodies.masses[from.body].mass);
   for (const std::uint32_t slot : from.acting) {
     const FieldRecord& field = w.fields[slot];
     if (field.kind != FieldKind::radial) continue;
-    const Pull pull = pull_at(field, stance.center);
-    add(force, make_six(mass * pull.acceleration, {}));
-    for (int i = 0; i < 3; ++i) stiffness.m[i][i] += mass * pull.stiffness;
+    const Pull geometric_stiffness = pull_at(field, stance.center);
+    add(force, make_six(mass * geometric_stiffness.acceleration, {}));
+    for (int i = 0; i < 3; ++i) stiffness.m[i][i] += mass * geometric_stiffness.stiffness;
   }
 }
 
@@ -55,8 +55,8 @@ double weight_along(const RigidWorld& w, const FieldRecord& field) {
   return field.kind == FieldKind::buoyancy ? -double(dot(w.settings.gravity, field.normal)) : 0.0;
 }
 
-void add_lifts(const RigidWorld& w, const FieldBody& from, const BodyStance& stance, Six& force,
-               Six2& stiffness) {
+void add_lifts(const RigidWorld& w, const FieldBody& from, const BodyStance& stance, Vec6& force,
+               Mat6& stiffness) {
   for (const std::uint32_t slot : from.acting) {
     const double gravity = weight_along(w, w.fields[slot]);
     if (gravity > 0.0) add_lift(w, w.fields[slot], from.body, stance, gravity, force, stiffness);
@@ -66,19 +66,19 @@ void add_lifts(const RigidWorld& w, const FieldBody& from, const BodyStance& sta
 // Lift and torque of a light body where the sub-step will lead it: v = v* + h / m F(x + h v) along the gravity, whose right side
 // falls with v, so there is one root. Found by regula falsi (the Illinois variant: M. Dowell, P. Jarratt, 1971).
 void add_implicit_lifts(const RigidWorld& w, const FieldBody& from, const BodyStance& stance, double h,
-                        Six& force, Six2& stiffness) {
+                        Vec6& force, Mat6& stiffness) {
   const DVec3 gravity(w.settings.gravity);
   const DVec3 up = gravity / -length(gravity);
   const double give = h / double(w.bodies.masses[from.body].mass), start = dot(stance.velocity, up);
-  const auto lift_at = [&](double speed, Six& lift, Six2& stiff) {
+  const auto lift_at = [&](double speed, Vec6& lift, Mat6& stiff) {
     BodyStance moved = stance;
     moved.center += h * stance.velocity + (h * (speed - start)) * up;
     add_lifts(w, from, moved, lift, stiff);
     return speed - start - give * dot(lift.linear(), up);
   };
   double low = start;
-  Six lift;
-  Six2 stiff;
+  Vec6 lift;
+  Mat6 stiff;
   double low_value = lift_at(low, lift, stiff);
   double high = low - low_value, speed = low;  // the lift is largest where the body rises least
   if (low_value < 0.0) {
@@ -104,7 +104,7 @@ void add_implicit_lifts(const RigidWorld& w, const FieldBody& from, const BodySt
 }
 
 // How much of h^2 K is added to the mass: more where the stiffest motion has (w h)^2 above 1.
-double filter_of(const Six2& mass, const Six2& stiffness, double h) {
+double filter_of(const Mat6& mass, const Mat6& stiffness, double h) {
   double most = 0.0;
   for (int i = 0; i < 6; ++i) {
     if (mass.m[i][i] > 0.0) most = max(most, h * h * stiffness.m[i][i] / mass.m[i][i]);
@@ -113,8 +113,8 @@ double filter_of(const Six2& mass, const Six2& stiffness, double h) {
 }
 
 // What the streams would give a body at rest.
-Six find_drive(const RigidWorld& w, const FieldBody& from, const BodyStance& stance, double time) {
-  Six sum;
+Vec6 find_drive(const RigidWorld& w, const FieldBody& from, const BodyStance& stance, double time) {
+  Vec6 sum;
   for (std::size_t i = 0; i < from.acting.size(); ++i) {
     const FieldRecord& field = w.fields[from.acting[i]];
     if (field.is_medium()) add(sum, from.drags[i] * stream_at(field, stance.center, time));
@@ -125,34 +125,34 @@ Six find_drive(const RigidWorld& w, const FieldBody& from, const BodyStance& sta
 void apply_fields(RigidWorld& w, const FieldBody& from, double h) {
   BodyMotion& motion = w.bodies.motion[from.body];
   const BodyStance stance = stance_of(w, from.body);
-  Six force;
-  Six2 stiffness;
+  Vec6 force;
+  Mat6 stiffness;
   add_pulls(w, from, stance, force, stiffness);
-  if (from.light) {
+  if (from.has_extreme_mass_ratio) {
     add_implicit_lifts(w, from, stance, h, force, stiffness);
   } else {
     add_lifts(w, from, stance, force, stiffness);
   }
-  Six2 matrix = mass_matrix(w.bodies.masses[from.body], stance);
+  Mat6 matrix = mass_matrix(w.bodies.masses[from.body], stance);
   const double filter = filter_of(matrix, stiffness, h) * h * h;
   add_scaled(matrix, filter, stiffness);
-  const Six gained =
+  const Vec6 energy_gain =
       make_six(stance.velocity - DVec3(from.linear_before), stance.spin - DVec3(from.angular_before));
-  const Six held = stiffness * gained;
-  Six right;
+  const Vec6 held = stiffness * energy_gain;
+  Vec6 right;
   for (int i = 0; i < 6; ++i) right.v[i] = h * force.v[i] - filter * held.v[i];
   if (from.dragged) {
     add_scaled(matrix, h, from.drag);
-    const Six lost = from.drag * make_six(stance.velocity, stance.spin);
-    const Six drive = find_drive(w, from, stance, w.now + 0.5 * double(w.settings.last_step));
+    const Vec6 lost = from.drag * make_six(stance.velocity, stance.spin);
+    const Vec6 drive = find_drive(w, from, stance, w.now + 0.5 * double(w.settings.last_step));
     for (int i = 0; i < 6; ++i) right.v[i] += h * (drive.v[i] - lost.v[i]);
   }
   lock(w.bodies.flags[from.body], matrix, right);
   // Masses and moments may differ by many orders: pivots are judged against their own row only.
   solve_ldlt(factor_ldlt(matrix.m, 1.0e-300), right.v);
   // Pulls may grow with the distance: speeds end where they do everywhere.
-  const Vec3 v = to_float(within(stance.velocity + right.linear(), double(kMaxSpeed)));
-  const Vec3 a = to_float(within(stance.spin + right.angular(), double(kMaxSpin)));
+  const Vec3 v = to_float(clamp_length(stance.velocity + right.linear(), double(kMaxSpeed)));
+  const Vec3 a = to_float(clamp_length(stance.spin + right.angular(), double(kMaxSpin)));
   if (!is_finite(v) || !is_finite(a)) return;
   motion.linear_velocity = v + Vec3{};
   motion.angular_velocity = a + Vec3{};
@@ -176,7 +176,7 @@ bool is_light(const RigidWorld& w, const FieldBody& from, double h) {
 }
 
 void prepare_fields(RigidWorld& w, FieldBody& from, double h) {
-  from.light = is_light(w, from, h);
+  from.has_extreme_mass_ratio = is_light(w, from, h);
   const BodyStance stance = stance_of(w, from.body);
   FieldRest& rest = w.field_rest[from.body];
   rest = {w.bodies.motion[from.body].linear_velocity, w.bodies.motion[from.body].angular_velocity,
@@ -204,10 +204,10 @@ void for_bodies(void* context, int begin, int end, Fn&& fn) {
 
 }  // namespace
 
-Six force_of_fields(const RigidWorld& w, std::uint32_t body, std::span<const std::uint32_t> fields,
+Vec6 force_of_fields(const RigidWorld& w, std::uint32_t body, std::span<const std::uint32_t> fields,
                     const BodyStance& stance, double time) {
-  Six force;
-  Six2 stiffness;
+  Vec6 force;
+  Mat6 stiffness;
   for (const std::uint32_t slot : fields) {
     const FieldRecord& field = w.fields[slot];
     if (field.kind == FieldKind::radial)
@@ -216,11 +216,11 @@ Six force_of_fields(const RigidWorld& w, std::uint32_t body, std::span<const std
     if (const double gravity = weight_along(w, field); gravity > 0.0)
       add_lift(w, field, body, stance, gravity, force, stiffness);
     if (!field.is_medium()) continue;
-    const Six stream = stream_at(field, stance.center, time);
-    Six slip = stream;
-    const Six velocity = make_six(stance.velocity, stance.spin);
+    const Vec6 stream = stream_at(field, stance.center, time);
+    Vec6 slip = stream;
+    const Vec6 velocity = make_six(stance.velocity, stance.spin);
     for (int i = 0; i < 6; ++i) slip.v[i] -= velocity.v[i];
-    Six2 drag;
+    Mat6 drag;
     add_drag(w, field, body, stance, stream, drag);
     add(force, drag * slip);
   }
@@ -235,7 +235,7 @@ FieldSolve find_field_bodies(RigidWorld& w, std::span<const std::uint32_t> bodie
     return w.fields[slot].is_live() && acts_on(w, w.fields[slot], body, w.bodies.places[body].center);
   };
   const auto may_act = [&](std::uint32_t body) {
-    return is_movable(w.bodies.flags[body]) && (free || w.bodies.flags[body].touched != kUntouched);
+    return is_movable(w.bodies.flags[body]) && (free || w.bodies.flags[body].touched != kNotConstrained);
   };
   const std::uint32_t slots = std::uint32_t(w.fields.size());
   std::size_t count = 0, links = 0;
@@ -249,7 +249,7 @@ FieldSolve find_field_bodies(RigidWorld& w, std::span<const std::uint32_t> bodie
   }
   const std::span<FieldBody> out = arena.make<FieldBody>(count);
   const std::span<std::uint32_t> list = arena.make<std::uint32_t>(links);
-  const std::span<Six2> drags = arena.make<Six2>(links);
+  const std::span<Mat6> drags = arena.make<Mat6>(links);
   count = links = 0;
   for (const std::uint32_t body : bodies) {
     if (!may_act(body)) continue;
@@ -265,7 +265,7 @@ FieldSolve find_field_bodies(RigidWorld& w, std::span<const std::uint32_t> bodie
     out[count++].acting = list.subspan(first, links - first);
   }
   for (const FieldBody& made : out) {
-    w.bodies.flags[made.body].touched = kPlaceShown;
+    w.bodies.flags[made.body].touched = kPoseRead;
     w.field_rest[made.body].acts = made.alone ? kFieldsAlone : kFieldsToo;
   }
   solve.bodies = out;

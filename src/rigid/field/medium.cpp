@@ -44,7 +44,7 @@ DVec3 gusts_at(const FieldRecord& field, DVec3 place, double time) {
   return double(field.turbulence) * speed * sum;
 }
 
-Six vortex_at(const FieldRecord& field, DVec3 place) {
+Vec6 vortex_at(const FieldRecord& field, DVec3 place) {
   const DVec3 axis(field.axis), from = place - field.center;
   const DVec3 out = from - dot(axis, from) * axis;
   const double radius = double(field.radius), rate = double(field.strength) / radius;
@@ -77,7 +77,7 @@ struct PushSum {
 };
 
 // sum of c J'J with J (v, a) = v + a x r.
-void add_push(Six2& to, const PushSum& s) {
+void add_push(Mat6& to, const PushSum& s) {
   for (int i = 0; i < 3; ++i) to.m[i][i] += s.whole;
   // The cross product r x as a matrix, below the diagonal block; its transpose above.
   const DVec3 r = s.first;
@@ -125,7 +125,7 @@ ShapePlane plane_of(const FieldRecord& field, const BodyStance& body, const Shap
 }
 
 // The drag by one shape's surface, for the velocity at which the medium now streams against it.
-PushSum shape_push(const Shape& shape, const ShapeStance& at, const ShapePlane& plane, const Six& against) {
+PushSum shape_push(const Shape& shape, const ShapeStance& at, const ShapePlane& plane, const Vec6& against) {
   PushSum sum;
   double facing = 0.0;  // of the whole surface, for round shapes
   const DVec3 wind = rotate_inverse(at.turn, against.linear() + cross(against.angular(), at.offset));
@@ -161,7 +161,7 @@ double submerged_share(const RigidWorld& w, const FieldRecord& field, std::uint3
 }
 
 void add_linear_drag(const RigidWorld& w, std::uint32_t body, const BodyStance& stance, double rate,
-                     Six2& to) {
+                     Mat6& to) {
   const BodyMass& mass = w.bodies.masses[body];
   const Sym3 inertia = rotate_inertia(to_float(stance.turn), mass.inertia);
   for (int i = 0; i < 3; ++i) to.m[i][i] += rate * double(mass.mass);
@@ -175,22 +175,22 @@ void add_linear_drag(const RigidWorld& w, std::uint32_t body, const BodyStance& 
 
 }  // namespace
 
-Six operator*(const Six2& a, const Six& b) {
-  Six out;
+Vec6 operator*(const Mat6& a, const Vec6& b) {
+  Vec6 out;
   for (int i = 0; i < 6; ++i) {
     for (int j = 0; j < 6; ++j) out.v[i] += a.m[i][j] * b.v[j];
   }
   return out;
 }
-void add(Six& to, const Six& more) {
+void add(Vec6& to, const Vec6& more) {
   for (int i = 0; i < 6; ++i) to.v[i] += more.v[i];
 }
-void add_scaled(Six2& to, double scale, const Six2& more) {
+void add_scaled(Mat6& to, double scale, const Mat6& more) {
   for (int i = 0; i < 6; ++i) {
     for (int j = 0; j < 6; ++j) to.m[i][j] += scale * more.m[i][j];
   }
 }
-void add_row(Six2& to, double weight, const Six& row) {
+void add_row(Mat6& to, double weight, const Vec6& row) {
   for (int i = 0; i < 6; ++i) {
     for (int j = 0; j < 6; ++j) to.m[i][j] += weight * row.v[i] * row.v[j];
   }
@@ -225,16 +225,16 @@ bool acts_on(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, 
   return false;
 }
 
-Six stream_at(const FieldRecord& field, DVec3 place, double time) {
-  Six out = make_six(DVec3(field.velocity), {});
+Vec6 stream_at(const FieldRecord& field, DVec3 place, double time) {
+  Vec6 out = make_six(DVec3(field.velocity), {});
   if (field.kind == FieldKind::wind) add(out, make_six(gusts_at(field, place, time), {}));
   if (field.kind == FieldKind::vortex) add(out, vortex_at(field, place));
   return out;
 }
 
 void add_drag(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyStance& stance,
-              const Six& stream, Six2& matrix) {
-  Six against = stream;
+              const Vec6& stream, Mat6& matrix) {
+  Vec6 against = stream;
   add(against, make_six(-stance.velocity, -stance.spin));
   const double half = 0.5 * double(field.density) * double(field.drag_coefficient);
   if (half > 0.0) {
@@ -273,7 +273,7 @@ Pull pull_at(const FieldRecord& field, DVec3 place) {
 }
 
 void add_lift(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyStance& stance,
-              double gravity, Six& force, Six2& stiffness) {
+              double gravity, Vec6& force, Mat6& stiffness) {
   const DVec3 up(field.normal);
   const double weight = double(field.density) * gravity;
   for (const ShapeId id : w.bodies.shapes[body]) {

@@ -10,25 +10,25 @@
 
 namespace gyre {
 
-struct Six {
+struct Vec6 {
   double v[6] = {};
 
   DVec3 linear() const { return {v[0], v[1], v[2]}; }
   DVec3 angular() const { return {v[3], v[4], v[5]}; }
 };
-inline Six make_six(DVec3 linear, DVec3 angular) {
+inline Vec6 make_six(DVec3 linear, DVec3 angular) {
   return {{linear.x, linear.y, linear.z, angular.x, angular.y, angular.z}};
 }
 
 // A symmetric matrix of six rows.
-struct Six2 {
+struct Mat6 {
   double m[6][6] = {};
 };
-Six operator*(const Six2& a, const Six& b);
-void add(Six& to, const Six& more);
-void add_scaled(Six2& to, double scale, const Six2& more);
+Vec6 operator*(const Mat6& a, const Vec6& b);
+void add(Vec6& to, const Vec6& more);
+void add_scaled(Mat6& to, double scale, const Mat6& more);
 // weight J J', for a row of six.
-void add_row(Six2& to, double weight, const Six& row);
+void add_row(Mat6& to, double weight, const Vec6& row);
 
 // Where a body is within a sub-step.
 struct BodyStance {
@@ -43,11 +43,11 @@ bool is_seen(const RigidWorld& w, const FieldRecord& field, std::uint32_t shape)
 bool acts_on(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, DVec3 center);
 
 // The velocity of the medium at a place, and half its curl, the rate at which it turns there. `time`: s.
-Six stream_at(const FieldRecord& field, DVec3 place, double time);
+Vec6 stream_at(const FieldRecord& field, DVec3 place, double time);
 
 // Drag as matrix * (stream - velocity): linear in the difference of the two, with the size of the difference taken from now.
 void add_drag(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyStance& stance,
-              const Six& stream, Six2& matrix);
+              const Vec6& stream, Mat6& matrix);
 
 // The acceleration of a radial field at a place, and its stiffness (1/s^2), not below that of the steepest direction.
 struct Pull {
@@ -59,6 +59,6 @@ Pull pull_at(const FieldRecord& field, DVec3 place);
 // The lift of what is submerged, and how it gives way to motion: d(force)/d(motion) = -stiffness, with what would lower the
 // stiffness left out.
 void add_lift(const RigidWorld& w, const FieldRecord& field, std::uint32_t body, const BodyStance& stance,
-              double gravity, Six& force, Six2& stiffness);
+              double gravity, Vec6& force, Mat6& stiffness);
 
 }  // namespace gyre

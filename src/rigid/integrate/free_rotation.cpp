@@ -1,6 +1,6 @@
 #include "rigid/integrate/free_rotation.h"
 
-#include "solver/motion/free_turn.h"
+#include "solver/motion/torque_free_rotation.h"
 
 namespace gyre {
 

@@ -1,4 +1,4 @@
-// The turn of a single body at constant momentum (solver/motion/free_turn.h tells how and why).
+// The turn of a single body at constant momentum (solver/motion/torque_free_rotation.h tells how and why).
 #pragma once
 
 #include "math/rotation.h"

@@ -103,18 +103,18 @@ class InertiaRefresh {
 // Turns by rotation vectors wait for others, to be made side by side.
 class SteadyTurns {
  public:
-  SteadyTurns(BodyStore& bodies, const TurnKernels& kernels) : bodies_(bodies), kernels_(kernels) {}
+  SteadyTurns(BodyStore& bodies, const RotationKernels& kernels) : bodies_(bodies), kernels_(kernels) {}
 
   // From an orientation, which need not be the present one.
   void add(std::uint32_t body, Quat from, Vec3 turn) {
     turns_[count_] = {from, turn};
     waiting_[count_++] = body;
   }
-  bool is_full() const { return count_ == kMostTurns; }
+  bool is_full() const { return count_ == kMaxTurns; }
   // Calls then(body) for each that is turned.
   template <class Then>
   void finish(Then&& then) {
-    kernels_.turn_steadily(turns_, count_);
+    kernels_.rotate_at_constant_velocity(turns_, count_);
     for (int i = 0; i < count_; ++i) {
       bodies_.orientations[waiting_[i]] = turns_[i].orientation;
       then(waiting_[i]);
@@ -124,16 +124,16 @@ class SteadyTurns {
 
  private:
   BodyStore& bodies_;
-  const TurnKernels& kernels_;
-  SteadyTurn turns_[kMostTurns];
-  std::uint32_t waiting_[kMostTurns];
+  const RotationKernels& kernels_;
+  ConstantRotation turns_[kMaxTurns];
+  std::uint32_t waiting_[kMaxTurns];
   int count_ = 0;
 };
 
 // Turns bodies with the velocities that they have: they wait for others, to be turned side by side.
 class BodyTurns {
  public:
-  BodyTurns(BodyStore& bodies, const TurnKernels& kernels, float seconds)
+  BodyTurns(BodyStore& bodies, const RotationKernels& kernels, float seconds)
       : bodies_(bodies), kernels_(kernels), seconds_(seconds), steady_(bodies, kernels) {}
 
   void add(std::uint32_t i) {
@@ -143,11 +143,11 @@ class BodyTurns {
       return add_steady(i, flags.locked_angular);
     free_[count_] = i;
     turns_[count_++] = {&bodies_.motion[i], &bodies_.orientations[i], &mass.inertia};
-    if (count_ == kMostTurns) turn_freely();
+    if (count_ == kMaxTurns) rotate_torque_free();
   }
   void finish() {
-    turn_freely();
-    turn_steadily();
+    rotate_torque_free();
+    rotate_at_constant_velocity();
   }
 
  private:
@@ -163,17 +163,17 @@ class BodyTurns {
     }
     motion.turned += turn;
     steady_.add(i, bodies_.orientations[i], turn);
-    if (steady_.is_full()) turn_steadily();
+    if (steady_.is_full()) rotate_at_constant_velocity();
   }
-  void turn_steadily() {
+  void rotate_at_constant_velocity() {
     steady_.finish([&](std::uint32_t i) {
       const std::uint8_t locked = bodies_.flags[i].locked_angular;
       if (locked != 0 && locked != 7) refresh_world_inertia(bodies_, i);
     });
   }
-  void turn_freely() {
+  void rotate_torque_free() {
     if (count_ == 0) return;
-    kernels_.turn_freely(turns_, count_, seconds_);
+    kernels_.rotate_torque_free(turns_, count_, seconds_);
     InertiaRefresh refresh(bodies_);
     for (int i = 0; i < count_; ++i) refresh.add(free_[i]);
     refresh.finish();
@@ -181,11 +181,11 @@ class BodyTurns {
   }
 
   BodyStore& bodies_;
-  const TurnKernels& kernels_;
+  const RotationKernels& kernels_;
   float seconds_;
   SteadyTurns steady_;
-  std::uint32_t free_[kMostTurns];
-  FreeTurn turns_[kMostTurns];
+  std::uint32_t free_[kMaxTurns];
+  TorqueFreeRotation turns_[kMaxTurns];
   int count_ = 0;
 };
 
@@ -197,8 +197,8 @@ void kick(BodyStore& bodies, std::uint32_t i, const Motions& motions) {
   BodyMotion& motion = bodies.motion[i];
   const Damping linear(forces.linear_damping, motions.substep),
       angular(forces.angular_damping, motions.substep);
-  const Vec3 pull = forces.gravity_scale * motions.gravity + inertia.inverse_mass * forces.force;
-  const Vec3 v = motion.linear_velocity + (linear.gain * pull - linear.lost * motion.linear_velocity);
+  const Vec3 geometric_stiffness = forces.gravity_scale * motions.gravity + inertia.inverse_mass * forces.force;
+  const Vec3 v = motion.linear_velocity + (linear.gain * geometric_stiffness - linear.lost * motion.linear_velocity);
   const Vec3 w = motion.angular_velocity +
                  (angular.gain * (inertia.inverse * forces.torque) - angular.lost * motion.angular_velocity);
   // Adding zero keeps -0 out of the state, so that wide kernels may add zeros to lanes that nothing touches.
@@ -241,7 +241,7 @@ void kick_and_move(BodyStore& bodies, std::uint32_t i, const Motions& motions) {
 }
 
 // `turns`: over the whole step.
-void fly_body(BodyStore& bodies, std::uint32_t i, const Motions& motions, const TurnKernels& kernels,
+void integrate_free_body(BodyStore& bodies, std::uint32_t i, const Motions& motions, const RotationKernels& kernels,
               BodyTurns& turns) {
   const BodyFlags& flags = bodies.flags[i];
   const BodyForces& forces = bodies.forces[i];
@@ -274,7 +274,7 @@ MovedBody describe_motion(const BodyStore& bodies, std::uint32_t body, const Mot
   MovedBody moved;
   moved.body = std::int32_t(body);
   moved.orientation = bodies.orientations[body];
-  moved.turns_alone = turns_alone(bodies, body, motions.substep);
+  moved.needs_exact_rotation = needs_exact_rotation(bodies, body, motions.substep);
   moved.shown = shown;
   if (flags.type != BodyType::dynamic) return moved;
   const Damping linear(forces.linear_damping, motions.substep),
@@ -292,22 +292,22 @@ MovedBody describe_motion(const BodyStore& bodies, std::uint32_t body, const Mot
   return moved;
 }
 
-void fly(BodyStore& bodies, std::span<const std::uint32_t> list, const Motions& motions,
-         const TurnKernels& kernels) {
+void integrate_free_bodies(BodyStore& bodies, std::span<const std::uint32_t> list, const Motions& motions,
+         const RotationKernels& kernels) {
   BodyTurns turns(bodies, kernels, float(motions.count) * motions.substep);
-  for (const std::uint32_t i : list) fly_body(bodies, i, motions, kernels, turns);
+  for (const std::uint32_t i : list) integrate_free_body(bodies, i, motions, kernels, turns);
   turns.finish();
 }
 
-void turn_alone(BodyStore& bodies, std::span<const std::uint32_t> list, float substep,
-                const TurnKernels& kernels) {
+void rotate_exactly(BodyStore& bodies, std::span<const std::uint32_t> list, float substep,
+                const RotationKernels& kernels) {
   BodyTurns turns(bodies, kernels, substep);
   for (const std::uint32_t i : list) turns.add(i);
   turns.finish();
 }
 
-void finish_turns(BodyStore& bodies, std::span<const MovedBody> moved, std::span<const Vec3> pushes,
-                  const TurnKernels& kernels) {
+void apply_rotations(BodyStore& bodies, std::span<const MovedBody> moved, std::span<const Vec3> pushes,
+                  const RotationKernels& kernels) {
   InertiaRefresh refresh(bodies);
   SteadyTurns turns(bodies, kernels);
   const auto turn_all = [&] { turns.finish([&](std::uint32_t i) { refresh.add(i); }); };
@@ -317,7 +317,7 @@ void finish_turns(BodyStore& bodies, std::span<const MovedBody> moved, std::span
     if (bodies.flags[i].type != BodyType::dynamic) continue;
     BodyMotion& motion = bodies.motion[i];
     Quat& orientation = bodies.orientations[i];
-    if (moved[n].turns_alone) {
+    if (moved[n].needs_exact_rotation) {
       const Vec3 turn = without_locked(pushes[n], bodies.flags[i].locked_angular);
       if (turn == Vec3{}) continue;
       motion.turned += turn;

@@ -9,7 +9,7 @@
 
 #include "rigid/store/body_store.h"
 #include "solver/motion/motion_block.h"
-#include "solver/motion/turn_block.h"
+#include "solver/motion/rotation_block.h"
 
 #include <span>
 
@@ -27,8 +27,8 @@ struct Motions {
 constexpr float kKernelAngle = 0.01f;
 constexpr float kKernelAngleIsotropic = 0.1f;
 
-// Whether a body spins so fast, or is so bound, that the motion kernels leave its rotation to turn_alone.
-inline bool turns_alone(const BodyStore& bodies, std::uint32_t body, float substep) {
+// Whether a body spins so fast, or is so bound, that the motion kernels leave its rotation to rotate_exactly.
+inline bool needs_exact_rotation(const BodyStore& bodies, std::uint32_t body, float substep) {
   const BodyFlags& flags = bodies.flags[body];
   if (flags.type != BodyType::dynamic || flags.locked_angular != 0) return true;
   const float most = bodies.masses[body].isotropic != 0 ? kKernelAngleIsotropic : kKernelAngle;
@@ -39,16 +39,16 @@ inline bool turns_alone(const BodyStore& bodies, std::uint32_t body, float subst
 MovedBody describe_motion(const BodyStore& bodies, std::uint32_t body, const Motions& motions, bool shown);
 
 // A whole step of bodies that no constraint acts on, kinematic ones among them.
-void fly(BodyStore& bodies, std::span<const std::uint32_t> list, const Motions& motions,
-         const TurnKernels& kernels);
+void integrate_free_bodies(BodyStore& bodies, std::span<const std::uint32_t> list, const Motions& motions,
+         const RotationKernels& kernels);
 
 // The rotation of a sub-step of bodies that turn alone.
-void turn_alone(BodyStore& bodies, std::span<const std::uint32_t> list, float substep,
-                const TurnKernels& kernels);
+void rotate_exactly(BodyStore& bodies, std::span<const std::uint32_t> list, float substep,
+                const RotationKernels& kernels);
 
 // At the end of a step: orientations and world inertia of the bodies of which constraints were made. `pushes` (rotation
 // vectors, one for each of `moved`) are the turns by which overlap was pushed apart.
-void finish_turns(BodyStore& bodies, std::span<const MovedBody> moved, std::span<const Vec3> pushes,
-                  const TurnKernels& kernels);
+void apply_rotations(BodyStore& bodies, std::span<const MovedBody> moved, std::span<const Vec3> pushes,
+                  const RotationKernels& kernels);
 
 }  // namespace gyre

@@ -66,10 +66,10 @@ void find_rates(const SmoothSystem& system, std::span<const SmoothState> states,
   for (std::size_t i = 0; i < states.size(); ++i) {
     const SmoothBody& body = system.bodies[i];
     const SmoothState& s = states[i];
-    rates[i] = {body.pull, body.torque};
+    rates[i] = {body.geometric_stiffness, body.torque};
     if (body.fields.empty()) continue;
     const BodyStance stance{s.x, s.q, s.v, spin_of(body, s)};
-    const Six force = force_of_fields(w, body.body, body.fields, stance, system.begin + time);
+    const Vec6 force = force_of_fields(w, body.body, body.fields, stance, system.begin + time);
     rates[i].acceleration += force.linear() / body.mass;
     rates[i].torque += force.angular();
   }

@@ -8,10 +8,10 @@ namespace gyre {
 namespace {
 
 // As many parts as a step is ever cut into for the sake of its error.
-constexpr int kMostParts = 8192;
+constexpr int kMaxParts = 8192;
 
 bool is_untouched(const RigidWorld& w, std::uint32_t body) {
-  return is_active(w, body) && w.bodies.flags[body].touched == kUntouched;
+  return is_active(w, body) && w.bodies.flags[body].touched == kNotConstrained;
 }
 
 SmoothBody describe(const RigidWorld& w, std::uint32_t i, Arena& arena) {
@@ -24,7 +24,7 @@ SmoothBody describe(const RigidWorld& w, std::uint32_t i, Arena& arena) {
   body.mass = double(mass.mass);
   body.inertia = to_double(mass.inertia);
   body.inverse_inertia = inverse(body.inertia);
-  body.pull = double(forces.gravity_scale) * DVec3(w.settings.gravity) + DVec3(forces.force) / body.mass;
+  body.geometric_stiffness = double(forces.gravity_scale) * DVec3(w.settings.gravity) + DVec3(forces.force) / body.mass;
   body.torque = DVec3(forces.torque);
   body.linear_damping = double(forces.linear_damping);
   body.angular_damping = double(forces.angular_damping);
@@ -67,10 +67,10 @@ void begin_room(const RigidWorld& w, const SmoothSystem& system, SchemeRoom& roo
 void limit_speeds(const SmoothSystem& system, SchemeRoom& room) {
   for (std::size_t i = 0; i < system.bodies.size(); ++i) {
     SmoothState& s = room.states[i];
-    s.v = within(s.v, double(kMaxSpeed));
+    s.v = clamp_length(s.v, double(kMaxSpeed));
     const DVec3 spin = spin_of(system.bodies[i], s);
     if (length(spin) > double(kMaxSpin))
-      s.l = momentum_of(system.bodies[i], s, within(spin, double(kMaxSpin)));
+      s.l = momentum_of(system.bodies[i], s, clamp_length(spin, double(kMaxSpin)));
   }
 }
 
@@ -121,7 +121,7 @@ void kick_end(RigidWorld& w, const SpringEnd& end, DVec3 impulse) {
 bool moves(const RigidWorld& w, const SpringEnd& end) {
   if (end.place >= 0 || end.body == kNoBody) return false;
   const BodyFlags& flags = w.bodies.flags[std::size_t(end.body)];
-  return flags.type != BodyType::fixed && flags.awake != 0 && flags.touched != kUntouched;
+  return flags.type != BodyType::fixed && flags.awake != 0 && flags.touched != kNotConstrained;
 }
 
 // Parts [0, parts) of the whole step.
@@ -180,7 +180,7 @@ void run_to_tolerance(const SmoothMotion& motion, std::size_t n) {
     const double error = difference_of(system, *coarse, *fine, motion.h * double(motion.parts)) / share;
     motion.errors[n] = error;
     motion.parts_used[n] = std::uint32_t(parts);
-    if (!(error > tolerance) || parts >= kMostParts) break;
+    if (!(error > tolerance) || parts >= kMaxParts) break;
     std::swap(coarse, fine);
   }
   if (order_of(motion.settings.integrator) == 1) extrapolate(system, *coarse, *fine);
@@ -340,7 +340,7 @@ SmoothMotion find_smooth_motion(RigidWorld& w, const SolveBatch& batch, std::spa
     for (const std::int32_t body : {joint.body_a, joint.body_b}) {
       if (body == kNoBody) continue;
       BodyFlags& flags = w.bodies.flags[std::size_t(body)];
-      if (flags.type == BodyType::kinematic || flags.touched != kUntouched) flags.touched = kPlaceShown;
+      if (flags.type == BodyType::kinematic || flags.touched != kNotConstrained) flags.touched = kPoseRead;
     }
   }
   const Members members = part_bodies(w, batch, places, springs.first(count), arena);
@@ -424,8 +424,8 @@ void finish_smooth_stage(void* context, int begin, int end, int) {
       const SmoothState& s = room.stage[k];
       const std::uint32_t i = from.body;
       BodyMotion& to = w.bodies.motion[i];
-      to.linear_velocity = to_float(within(s.v, double(kMaxSpeed))) + Vec3{};
-      to.angular_velocity = to_float(within(spin_of(from, s), double(kMaxSpin))) + Vec3{};
+      to.linear_velocity = to_float(clamp_length(s.v, double(kMaxSpeed))) + Vec3{};
+      to.angular_velocity = to_float(clamp_length(spin_of(from, s), double(kMaxSpin))) + Vec3{};
       to.moved = to_float(s.x - from.start.x) + Vec3{};
       to.turned = to_float(room.turned[k]) + Vec3{};
       w.bodies.orientations[i] = normalized(to_float(s.q));

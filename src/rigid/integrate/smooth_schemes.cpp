@@ -7,7 +7,7 @@ namespace gyre {
 namespace {
 
 // No body turns farther than this in a part, rad: beyond it a rotation vector is none.
-constexpr double kMostPartTurn = 3.0;
+constexpr double kMaxHalfStepRotation = 3.0;
 // Verlet's implicit turn: each round gains the factor h w / 2; what it cannot reach at large turns no scheme of order 2 can.
 constexpr int kTurnRounds = 24;
 constexpr double kTurnReached = 1.0e-15;
@@ -156,7 +156,7 @@ DVec3 find_turn(const SmoothBody& body, const SmoothState& s, double h) {
     if (change <= kTurnReached * (1.0 + length(turn))) break;
   }
   const double size = length(turn);
-  return size > kMostPartTurn ? (kMostPartTurn / size) * turn : turn;
+  return size > kMaxHalfStepRotation ? (kMaxHalfStepRotation / size) * turn : turn;
 }
 
 // v and l at the middle of the last move, as the last two poses say.

@@ -1,28 +1,28 @@
 #include "rigid/rest/resting_islands.h"
 
 #include "rigid/integrate/integrators.h"
-#include "solver/rest/contact_structure.h"
+#include "solver/rest/static_equilibrium.h"
 
 namespace gyre {
 
 namespace {
 
 // What may be part of a resting island is no faster than a share of what it falls through its own size with,
-struct Slowness {
+struct RestSpeed {
   float speed, scale;
 
-  Slowness(const RigidWorld& w, std::uint32_t body, float pull) {
+  RestSpeed(const RigidWorld& w, std::uint32_t body, float geometric_stiffness) {
     const BodyMotion& motion = w.bodies.motion[body];
     const float reach = w.bodies.masses[body].reach;
     speed = length(motion.linear_velocity) + reach * length(motion.angular_velocity);
-    scale = std::sqrt(pull * reach);
+    scale = std::sqrt(geometric_stiffness * reach);
   }
   bool is_below(float share) const { return speed <= share * scale; }
 };
 // and bound to no axes.
 bool is_unbound(const RigidWorld& w, std::uint32_t body) {
   const BodyFlags& flags = w.bodies.flags[body];
-  return !turns_alone(w.bodies, body, w.settings.last_substep) && flags.locked_linear == 0 &&
+  return !needs_exact_rotation(w.bodies, body, w.settings.last_substep) && flags.locked_linear == 0 &&
          flags.locked_angular == 0;
 }
 
@@ -36,7 +36,7 @@ bool is_still(const RigidWorld& w, std::int32_t body) {
 }  // namespace
 
 RestingIslands::RestingIslands(const RigidWorld& w, std::span<const ContactConstraint> constraints,
-                               std::span<const ColoringPair> pairs, std::span<const NetJoint> joints,
+                               std::span<const ColoringPair> pairs, std::span<const JointEdge> joints,
                                const SolveBatch& batch, std::span<const std::uint32_t> places, Arena& arena)
     : w_(w),
       batch_(batch),
@@ -62,11 +62,11 @@ void RestingIslands::unite(std::uint32_t place_a, std::uint32_t place_b) {
   parent_[max(a, b)] = min(a, b);
 }
 
-void RestingIslands::unite_all(std::span<const ColoringPair> pairs, std::span<const NetJoint> joints) {
+void RestingIslands::unite_all(std::span<const ColoringPair> pairs, std::span<const JointEdge> joints) {
   for (const ColoringPair& pair : pairs) {
     if (pair.a != ColoringPair::kNone && pair.b != ColoringPair::kNone) unite(pair.a, pair.b);
   }
-  for (const NetJoint& joint : joints) {
+  for (const JointEdge& joint : joints) {
     if (joint.body_a != kNoBody && joint.body_b != kNoBody)
       unite(places_[std::size_t(joint.body_a)], places_[std::size_t(joint.body_b)]);
   }
@@ -75,20 +75,20 @@ void RestingIslands::unite_all(std::span<const ColoringPair> pairs, std::span<co
 }
 
 void RestingIslands::count_bodies() {
-  const float pull = length(w_.settings.gravity);
+  const float geometric_stiffness = length(w_.settings.gravity);
   for (std::uint32_t place = 0; place < batch_.bodies.size(); ++place) {
     const std::uint32_t body = batch_.bodies[place];
     if (!is_movable(w_.bodies.flags[body])) continue;
     IslandCount& count = counts_[parent_[place]];
     if (count.refused) continue;
-    const Slowness slowness(w_, body, pull);
+    const RestSpeed slowness(w_, body, geometric_stiffness);
     const float reach = w_.bodies.masses[body].reach;
     count.smallest = count.bodies == 0 ? reach : min(count.smallest, reach);
     ++count.bodies;
-    if (!is_unbound(w_, body) || !slowness.is_below(kSlowShare)) {
+    if (!is_unbound(w_, body) || !slowness.is_below(kSlowSpeedShare)) {
       count.refused = true;
-    } else if (!slowness.is_below(kCalmShare)) {
-      count.stirring = true;
+    } else if (!slowness.is_below(kCalmSpeedShare)) {
+      count.not_calm = true;
     } else if (!slowness.is_below(kSettledShare)) {
       count.settling = true;
     }
@@ -106,8 +106,8 @@ void RestingIslands::count_contacts(std::span<const ContactConstraint> constrain
     if (!(c.static_friction > 0.0f) || c.surface_velocity != Vec3{}) count.refused = true;
     if (c.point_count < 3) count.balances = true;
     if (c.point_count == 1) ++count.corners;
-    if (c.hold == ContactHold::held) count.held = true;
-    if (c.hold == ContactHold::sprung) count.springs = true;
+    if (c.hold == ContactStiffness::held) count.held = true;
+    if (c.hold == ContactStiffness::sprung) count.springs = true;
     if (active_a && active_b) continue;
     ++count.grounded;
     count.first = i;
@@ -115,8 +115,8 @@ void RestingIslands::count_contacts(std::span<const ContactConstraint> constrain
   }
 }
 
-void RestingIslands::refuse_jointed(std::span<const NetJoint> joints) {
-  for (const NetJoint& joint : joints)
+void RestingIslands::refuse_jointed(std::span<const JointEdge> joints) {
+  for (const JointEdge& joint : joints)
     for_moving(joint, [&](std::uint32_t body) { counts_[parent_[places_[body]]].refused = true; });
 }
 

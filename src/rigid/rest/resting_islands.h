@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/arena/arena.h"
-#include "rigid/batch/joint_works.h"
+#include "rigid/batch/joint_constraints.h"
 #include "rigid/store/rigid_world.h"
 #include "rigid/batch/solve_batches.h"
 #include "solver/contact/contact_block.h"
@@ -14,11 +14,11 @@ namespace gyre {
 constexpr std::uint32_t kNoPlace = 0xffffffffu;
 
 // Slower than this share of sqrt(gravity * reach) counts as at rest.
-constexpr float kSlowShare = 0.1f;
+constexpr float kSlowSpeedShare = 0.1f;
 // and slower than this one as all but at rest: what has loops is looked at only then.
-constexpr float kCalmShare = 0.02f;
+constexpr float kCalmSpeedShare = 0.02f;
 // Slower than this share of it a sweep has left nothing to solve.
-constexpr float kStillShare = 1.0e-7f;
+constexpr float kStillSpeedShare = 1.0e-7f;
 // The same of an island with loops, whose loads have more rounding.
 constexpr float kStructureStillShare = 1.0e-6f;
 // An island with loops that is slower than this as a step begins has nothing to lose but what the step's forces give it.
@@ -31,7 +31,7 @@ struct IslandCount {
   std::uint32_t first = kNoPlace;  // its last contact with the fixed world
   float smallest = 0.0f;           // m: the least reach of its bodies
   bool refused = false;   // cannot be at rest: fast or bound bodies, joints, moving ground, no friction
-  bool stirring = false;  // a body at rest is not calm
+  bool not_calm = false;  // a body at rest is not calm
   bool settling = false;  // one is not settled
   bool balances = false;  // a contact has one or two points
   bool springs = false;   // a contact bore load in the last step and was not solved directly
@@ -43,7 +43,7 @@ class RestingIslands {
   // `pairs`: places of the constraints' bodies in the batch, as far as these move. `joints`: those of the batch. `places`: of all
   // bodies (solve_batches.h).
   RestingIslands(const RigidWorld& w, std::span<const ContactConstraint> constraints,
-                 std::span<const ColoringPair> pairs, std::span<const NetJoint> joints,
+                 std::span<const ColoringPair> pairs, std::span<const JointEdge> joints,
                  const SolveBatch& batch, std::span<const std::uint32_t> places, Arena& arena);
 
   // By place of a body in the batch. Only roots have counts.
@@ -56,8 +56,8 @@ class RestingIslands {
  private:
   std::uint32_t root(std::uint32_t place);
   void unite(std::uint32_t place_a, std::uint32_t place_b);
-  void unite_all(std::span<const ColoringPair> pairs, std::span<const NetJoint> joints);
-  void refuse_jointed(std::span<const NetJoint> joints);
+  void unite_all(std::span<const ColoringPair> pairs, std::span<const JointEdge> joints);
+  void refuse_jointed(std::span<const JointEdge> joints);
   void count_bodies();
   void count_contacts(std::span<const ContactConstraint> constraints, std::span<const ColoringPair> pairs);
 

@@ -30,12 +30,12 @@ class Islands {
   // Of those that are awake, in a step that has woken all who lie beside them: nobody sleeps in one.
   static Islands awake(const RigidWorld& w, Arena& arena) {
     Islands islands(w, arena);
-    for_each_awake_link(w, [&](std::uint32_t a, std::uint32_t b) { islands.link(w, a, b); });
+    for_each_active_edge(w, [&](std::uint32_t a, std::uint32_t b) { islands.link(w, a, b); });
     return islands;
   }
   static Islands all(const RigidWorld& w, Arena& arena) {
     Islands islands(w, arena);
-    for_each_link(w, [&](std::uint32_t a, std::uint32_t b) { islands.link(w, a, b); });
+    for_each_island_edge(w, [&](std::uint32_t a, std::uint32_t b) { islands.link(w, a, b); });
     return islands;
   }
   std::uint32_t root(std::uint32_t i) {
@@ -79,26 +79,26 @@ void fall_asleep(RigidWorld& w, std::uint32_t body, std::uint32_t root) {
 
 // What is slow gains the time; what is faster than it may be pays by how much further it goes than it might have. So a limb of
 // a heap that slips once by a hair does not keep thousands awake, and what has begun to move has nothing left after a step or two.
-float gained_rest(const Rest& rest, float seconds) {
-  const float motion = rest.speed + kPushWeight * rest.pushed / seconds;
+float gained_rest(const SleepTest& rest, float seconds) {
+  const float motion = rest.speed + kPushoutWeight * rest.pushed / seconds;
   if (motion <= rest.rest_speed) return seconds;
-  return rest.rest_speed > 0.0f ? seconds * (1.0f - motion / rest.rest_speed) : -kMostStillTime;
+  return rest.rest_speed > 0.0f ? seconds * (1.0f - motion / rest.rest_speed) : -kMaxStillTime;
 }
 
 void update_rest_timers(RigidWorld& w, float seconds, bool& somebody) {
-  const float pull = length(w.settings.gravity);
+  const float geometric_stiffness = length(w.settings.gravity);
   for (const std::uint32_t i : w.bodies.awake) {
     if (w.bodies.flags[i].type != BodyType::dynamic) continue;
-    const Rest rest = find_rest(w, i, pull);
+    const SleepTest rest = test_sleep(w, i, geometric_stiffness);
     float& still = w.bodies.sleep[i].still_time;
-    still = rest.may ? clamp(still + gained_rest(rest, seconds), 0.0f, kMostStillTime) : 0.0f;
+    still = rest.allowed ? clamp(still + gained_rest(rest, seconds), 0.0f, kMaxStillTime) : 0.0f;
     if (still >= kTimeToSleep) somebody = true;
   }
 }
 
 }  // namespace
 
-bool disturbs(const RigidWorld& w, std::uint32_t body) {
+bool can_wake_others(const RigidWorld& w, std::uint32_t body) {
   const BodyFlags& flags = w.bodies.flags[body];
   if (flags.frozen != 0 || flags.awake == 0) return false;
   if (flags.type == BodyType::dynamic) return true;
@@ -107,23 +107,23 @@ bool disturbs(const RigidWorld& w, std::uint32_t body) {
          (motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{});
 }
 
-Rest find_rest(const RigidWorld& w, std::uint32_t body, float pull) {
+SleepTest test_sleep(const RigidWorld& w, std::uint32_t body, float geometric_stiffness) {
   const BodyFlags& flags = w.bodies.flags[body];
   const BodyMotion& motion = w.bodies.motion[body];
   const BodyMass& mass = w.bodies.masses[body];
   const BodyForces& forces = w.bodies.forces[body];
   const bool moves = motion.linear_velocity != Vec3{} || motion.angular_velocity != Vec3{};
-  Rest rest;
+  SleepTest rest;
   // Nothing holds a free body up: as long as it moves at all it goes on for ever.
-  rest.may = flags.can_sleep != 0 && (flags.touched != 0 || !moves) && forces.force == Vec3{} &&
-             forces.torque == Vec3{} && (flags.touched != 0 || pull * absolute(forces.gravity_scale) == 0.0f);
+  rest.allowed = flags.can_sleep != 0 && (flags.touched != 0 || !moves) && forces.force == Vec3{} &&
+             forces.torque == Vec3{} && (flags.touched != 0 || geometric_stiffness * absolute(forces.gravity_scale) == 0.0f);
   // A body without shapes still has the extent of its inertia: turning is motion.
   const float spread = mass.inertia.xx + mass.inertia.yy + mass.inertia.zz;
   const float reach = max(mass.reach, mass.mass > 0.0f ? std::sqrt(spread / mass.mass) : 0.0f);
   rest.speed = length(motion.linear_velocity) + reach * length(motion.angular_velocity);
   // What is pushed apart in every step, and taken back by what it hangs on or is wedged in, goes nowhere.
   rest.pushed = min(motion.pushed, length(motion.moved) + reach * length(motion.turned));
-  rest.rest_speed = kRestShare * std::sqrt((pull > 0.0f ? pull : 9.81f) * reach);
+  rest.rest_speed = kRestShare * std::sqrt((geometric_stiffness > 0.0f ? geometric_stiffness : 9.81f) * reach);
   if (is_on_spring(w, body)) rest.rest_speed *= kSpringRest;
   if (body < w.field_rest.size() && w.field_rest[body].acts != kNoFields) {
     // What only turns round in a field is slow for a moment: at rest its speed must stay, too. And what floats comes near
@@ -134,7 +134,7 @@ Rest find_rest(const RigidWorld& w, std::uint32_t body, float pull) {
     const float change = length(motion.linear_velocity - field.linear) +
                          reach * length(motion.angular_velocity - field.angular);
     const float most = rest.rest_speed * w.settings.last_step / kTimeToSleep;
-    rest.may = rest.may && field.is_unsteady == 0 && change <= most;
+    rest.allowed = rest.allowed && field.is_unsteady == 0 && change <= most;
   }
   return rest;
 }
@@ -151,7 +151,7 @@ void wake(RigidWorld& w, std::uint32_t body) {
     const std::uint32_t next = sleep.group == kNoGroup ? first : sleep.next_in_group;
     sleep = {};
     w.bodies.flags[i].awake = 1;
-    add_awake_links(w, i);
+    activate_constraints_of(w, i);
     w.events.sleep_changes.push_back({body_id(w, i), false});
     i = next;
   } while (i != first);
@@ -190,11 +190,11 @@ void wake_touched(RigidWorld& w) {
   while (woken) {
     woken = false;
     const auto disturb = [&](std::uint32_t sleeper, std::uint32_t other) {
-      if (!is_asleep(w, sleeper) || !disturbs(w, other)) return;
+      if (!is_asleep(w, sleeper) || !can_wake_others(w, other)) return;
       wake(w, sleeper);
       woken = true;
     };
-    for_each_awake_link(w, [&](std::uint32_t a, std::uint32_t b) { disturb(a, b), disturb(b, a); });
+    for_each_active_edge(w, [&](std::uint32_t a, std::uint32_t b) { disturb(a, b), disturb(b, a); });
   }
 }
 
@@ -209,10 +209,10 @@ void put_to_sleep(RigidWorld& w, Arena& arena, float seconds) {
   for (const std::uint32_t i : w.bodies.awake) {
     if (is_dynamic(w, i) && w.bodies.sleep[i].still_time < kTimeToSleep) restless[islands.root(i)] = 1;
   }
-  for_each_awake_link(w, [&](std::uint32_t a, std::uint32_t b) {
+  for_each_active_edge(w, [&](std::uint32_t a, std::uint32_t b) {
     // Who lies on something that moves does not rest.
-    if (is_dynamic(w, a) && !is_dynamic(w, b) && disturbs(w, b)) restless[islands.root(a)] = 1;
-    if (is_dynamic(w, b) && !is_dynamic(w, a) && disturbs(w, a)) restless[islands.root(b)] = 1;
+    if (is_dynamic(w, a) && !is_dynamic(w, b) && can_wake_others(w, b)) restless[islands.root(a)] = 1;
+    if (is_dynamic(w, b) && !is_dynamic(w, a) && can_wake_others(w, a)) restless[islands.root(b)] = 1;
   });
   for (const std::uint32_t i : w.bodies.awake) {
     if (!is_dynamic(w, i)) continue;

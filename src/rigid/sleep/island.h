@@ -13,52 +13,52 @@ namespace gyre {
 // A body rests after so long without motion.
 constexpr float kTimeToSleep = 0.5f;  // s
 // More is not counted, so that what rested for long is not excused for longer.
-constexpr float kMostStillTime = 2.0f * kTimeToSleep;
+constexpr float kMaxStillTime = 2.0f * kTimeToSleep;
 // Motion that counts as none: this share of sqrt(gravity * reach), the body's natural speed.
 constexpr float kRestShare = 0.015f;
 // Being pushed apart counts as faster motion than it is: a heap that falls asleep keeps the overlap that it has then.
-constexpr float kPushWeight = 4.0f;
+constexpr float kPushoutWeight = 4.0f;
 
 // Calls fn(body_a, body_b) where a contact or joint binds two bodies; either may be one that nothing moves.
 template <class Fn>
-void follow_contact_link(const Contact& contact, Fn&& fn) {
+void visit_contact_edge(const Contact& contact, Fn&& fn) {
   if (contact.manifold_room == 0 || contact.manifold_count == 0 || contact.sensor != 0) return;
   fn(contact.body_a, contact.body_b);
 }
 template <class Fn>
-void follow_joint_link(const JointRecord& joint, Fn&& fn) {
+void visit_joint_edge(const JointRecord& joint, Fn&& fn) {
   if (joint.body_a != kNoBody && joint.body_b != kNoBody) fn(std::uint32_t(joint.body_a), std::uint32_t(joint.body_b));
 }
 
 // Of every contact and joint.
 template <class Fn>
-void for_each_link(const RigidWorld& w, Fn&& fn) {
-  for (const Contact& contact : w.contacts.contacts) follow_contact_link(contact, fn);
-  w.joints.ids.for_each_live([&](std::uint32_t slot) { follow_joint_link(w.joints.records[slot], fn); });
+void for_each_island_edge(const RigidWorld& w, Fn&& fn) {
+  for (const Contact& contact : w.contacts.contacts) visit_contact_edge(contact, fn);
+  w.joints.ids.for_each_live([&](std::uint32_t slot) { visit_joint_edge(w.joints.records[slot], fn); });
 }
 // The same, in the same order, of those of which a body goes along in the step: of others that sleep, or of some of them, too. Where fn
 // wakes a body, those of its contacts and joints that are yet to come are among them.
 template <class Fn>
-void for_each_awake_link(const RigidWorld& w, Fn&& fn) {
-  const AwakeLinks& links = w.awake_links;
+void for_each_active_edge(const RigidWorld& w, Fn&& fn) {
+  const ActiveConstraints& links = w.awake_links;
   for (std::size_t slot = links.contacts.find_next(0); slot < links.contacts.size(); slot = links.contacts.find_next(slot + 1))
-    follow_contact_link(w.contacts.contacts[slot], fn);
+    visit_contact_edge(w.contacts.contacts[slot], fn);
   for (std::size_t slot = links.joints.find_next(0); slot < links.joints.size(); slot = links.joints.find_next(slot + 1))
-    if (w.joints.ids.live(std::uint32_t(slot))) follow_joint_link(w.joints.records[slot], fn);
+    if (w.joints.ids.live(std::uint32_t(slot))) visit_joint_edge(w.joints.records[slot], fn);
 }
 
 // Whether the body can disturb a sleeping one: it is awake and dynamic, or kinematic and moving.
-bool disturbs(const RigidWorld& w, std::uint32_t body);
+bool can_wake_others(const RigidWorld& w, std::uint32_t body);
 
 // What decides whether a dynamic body counts as still.
-struct Rest {
-  bool may = false;         // it is allowed to, no force acts on it, and something holds it up (or nothing pulls or moves it)
+struct SleepTest {
+  bool allowed = false;         // it is allowed to, no force acts on it, and something holds it up (or nothing pulls or moves it)
   float speed = 0.0f;       // m/s, of its centre of mass and of its farthest point about that
   float pushed = 0.0f;      // m, by overlap in the last step
   float rest_speed = 0.0f;  // m/s, slower is still
 };
 // `pull`: the length of gravity, m/s^2.
-Rest find_rest(const RigidWorld& w, std::uint32_t body, float pull);
+SleepTest test_sleep(const RigidWorld& w, std::uint32_t body, float geometric_stiffness);
 
 // Wakes a body's group; nothing if it is awake. Events are added to w.events.
 void wake(RigidWorld& w, std::uint32_t body);

@@ -2,7 +2,7 @@
 
 #include "base/container/sort.h"
 #include "rigid/batch/surface_rules.h"
-#include "task/choose.h"
+#include "task/parallel_filter.h"
 
 namespace gyre {
 
@@ -47,7 +47,7 @@ bool note_approach(const RigidWorld& w, const Contact& contact, Manifold& manifo
 void note_hits(const RigidWorld& w, BatchScratch& s, Arena& arena, TaskSystem& tasks) {
   const ArenaScope scope(arena);
   const auto came_fast = [&](std::uint32_t i) { return s.constraints[i].fast; };
-  for (const std::uint32_t i : choose(tasks, arena, s.constraints.size(), came_fast).list) {
+  for (const std::uint32_t i : parallel_filter(tasks, arena, s.constraints.size(), came_fast).list) {
     const Contact& contact = w.contacts.contacts[s.constraint_contact[i]];
     const Manifold& manifold = *s.constraints[i].manifold;
     float fastest = hit_speed(contact);
@@ -65,7 +65,7 @@ void note_hits(const RigidWorld& w, BatchScratch& s, Arena& arena, TaskSystem& t
   }
 }
 
-void report_blow(RigidWorld& w, const Contact& contact, const Manifold& manifold, float impulse) {
+void report_impulse(RigidWorld& w, const Contact& contact, const Manifold& manifold, float impulse) {
   const ContactPointState* struck = nullptr;
   for (int k = 0; k < manifold.count; ++k) {
     const ContactPointState& point = manifold.points[k];

@@ -12,7 +12,7 @@ bool note_approach(const RigidWorld& w, const Contact& contact, Manifold& manifo
 // Those contacts of a batch that were struck hard in this step.
 void note_hits(const RigidWorld& w, BatchScratch& s, Arena& arena, TaskSystem& tasks);
 // A blow outside of the solve, whose points' approach was noted before it.
-void report_blow(RigidWorld& w, const Contact& contact, const Manifold& manifold, float impulse);
+void report_impulse(RigidWorld& w, const Contact& contact, const Manifold& manifold, float impulse);
 // The events of all batches, in contact order.
 void report_hits(RigidWorld& w, std::span<SlotHit> hits, Arena& arena);
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/check.h"
-#include "base/cold.h"
+#include "base/noinline.h"
 #include "task/program.h"
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 #include "rigid/solve/row_islands.h"
 
-#include "base/arena/counted_lists.h"
+#include "base/arena/bucketed_lists.h"
 #include "math/block_lu.h"
 #include "solver/rows/constraint_rows.h"
 
@@ -42,7 +42,7 @@ Ends ends_of(const RigidWorld& w, const ContactConstraint& c) {
 Ends ends_of(const RigidWorld& w, const JointRecord& j) { return {active(w, j.body_a), active(w, j.body_b)}; }
 
 DirectSize size_of(const RigidWorld& w, const BatchScratch& scratch, const SolveBatch& batch,
-                   std::span<const JointWork> work, const RowIsland& island) {
+                   std::span<const JointConstraint> work, const RowIsland& island) {
   DirectSize size;
   for (const std::uint32_t i : island.constraints) {
     const std::size_t rows = std::size_t(count_contact_rows(scratch.constraints[i]));
@@ -62,7 +62,7 @@ DirectSize size_of(const RigidWorld& w, const BatchScratch& scratch, const Solve
 }  // namespace
 
 RowIslands find_row_islands(const RigidWorld& w, const BatchScratch& scratch, const SolveBatch& batch,
-                            std::span<const JointWork> work, Arena& arena) {
+                            std::span<const JointConstraint> work, Arena& arena) {
   const std::size_t bodies = w.bodies.motion.size();
   const std::span<std::int32_t> place = arena.make<std::int32_t>(bodies);
   const std::span<std::uint32_t> island_of = arena.make<std::uint32_t>(bodies);
@@ -81,7 +81,7 @@ RowIslands find_row_islands(const RigidWorld& w, const BatchScratch& scratch, co
     const std::uint32_t root = sets.root(body);
     island_of[body] = root == body ? count++ : island_of[root];
   }
-  CountedLists own(count, arena), contacts(count, arena), joints(count, arena);
+  BucketedLists own(count, arena), contacts(count, arena), joints(count, arena);
   for (const std::uint32_t body : batch.bodies)
     if (place[body] != kNoRowBody) own.count(island_of[body]);
   for (const ContactConstraint& constraint : scratch.constraints)
@@ -106,7 +106,7 @@ RowIslands find_row_islands(const RigidWorld& w, const BatchScratch& scratch, co
 }
 
 void plan_row_islands(const RigidWorld& w, const BatchScratch& scratch, const SolveBatch& batch,
-                      std::uint64_t most_work, Arena& arena, RowIslands& islands) {
+                      std::uint64_t max_work, Arena& arena, RowIslands& islands) {
   for (RowIsland& island : islands.islands) {
     const std::span<std::uint8_t> sizes = arena.make<std::uint8_t>(island.bodies.size());
     for (std::uint8_t& size : sizes) size = kLuBlock;
@@ -119,7 +119,7 @@ void plan_row_islands(const RigidWorld& w, const BatchScratch& scratch, const So
     };
     for (const std::uint32_t i : island.constraints) add(ends_of(w, scratch.constraints[i]));
     for (const std::uint32_t i : island.joints) add(ends_of(w, w.joints.records[batch.joints[i]]));
-    plan_blocks(sizes, edges.first(count), most_work, arena, island.plan);
+    plan_blocks(sizes, edges.first(count), max_work, arena, island.plan);
   }
 }
 

@@ -24,11 +24,11 @@ struct RowIslands {
   std::span<const std::int32_t> place;  // by body: in its island's list; kNoRowBody if no row moves it
 };
 
-// The pattern of an island's bodies, for Newton's method: planned where a factorisation takes at most `most_work` multiplications.
+// The pattern of an island's bodies, for Newton's method: planned where a factorisation takes at most `max_work` multiplications.
 void plan_row_islands(const RigidWorld& w, const BatchScratch& scratch, const SolveBatch& batch,
-                      std::uint64_t most_work, Arena& arena, RowIslands& islands);
+                      std::uint64_t max_work, Arena& arena, RowIslands& islands);
 
 RowIslands find_row_islands(const RigidWorld& w, const BatchScratch& scratch, const SolveBatch& batch,
-                            std::span<const JointWork> work, Arena& arena);
+                            std::span<const JointConstraint> work, Arena& arena);
 
 }  // namespace gyre

@@ -2,29 +2,29 @@
 // solve_bodies.h, laid out by solve_layout.h.
 #pragma once
 
-#include "rigid/solve/bundle_runs.h"
-#include "rigid/rest/contact_forest.h"
-#include "rigid/rest/contact_structures.h"
+#include "rigid/solve/fused_stages.h"
+#include "rigid/rest/resting_trees.h"
+#include "rigid/rest/resting_structures.h"
 #include "rigid/field/fields.h"
 #include "rigid/integrate/integrators.h"
-#include "rigid/articulation/linkages.h"
-#include "rigid/solve/rolling.h"
+#include "rigid/articulation/articulations.h"
+#include "rigid/solve/rolling_contacts.h"
 #include "rigid/integrate/smooth_motion.h"
 #include "rigid/batch/solve_batches.h"
-#include "rigid/batch/solve_domains.h"
+#include "rigid/batch/worker_partition.h"
 #include "rigid/solve/solve_step.h"
 
 namespace gyre {
 
 struct Group;
 
-// A body of which joints ask more than a sub-step resolves (rigid/solve/pulled_bodies.h).
-struct PulledBody {
+// A body of which joints ask more than a sub-step resolves (rigid/solve/geometric_stiffness.h).
+struct StiffenedBody {
   std::uint32_t body = 0;
   float raise = 0.0f;  // kg m^2, about every axis
 };
 
-struct WorkedRow;
+struct ActuatedRow;
 
 // What motion of all bodies together the joints of an island see nothing of.
 enum class IslandFrame : std::uint8_t {
@@ -33,65 +33,65 @@ enum class IslandFrame : std::uint8_t {
   held,      // none but that of what holds them
 };
 
-// Bodies that hang together by joints that should do no work, but for some of their rows (rigid/solve/joint_energy.h).
+// Bodies that hang together by joints that should do no work, but for some of their rows (rigid/solve/energy_limiter.h).
 struct JointIsland {
   std::span<std::uint32_t> bodies;
   std::span<std::uint32_t> joints;  // places in the batch
-  std::span<WorkedRow> worked;
+  std::span<ActuatedRow> worked;
   IslandFrame frame = IslandFrame::rigid;
   std::int32_t carrier = kNoBody;         // what holds them, if that moves
   bool is_pushed = false;                 // contacts or fields act on it between what joints do
   bool is_bounded = false;                // joints gave more than is borne before bodies move
-  double gained = 0.0;  // J, in this sub-step, by what rows that do no work changed of velocities,
+  double energy_gain = 0.0;  // J, in this sub-step, by what rows that do no work changed of velocities,
   double before = 0.0;                    // and what there was before they last did;
   DVec3 spin{};  // kg m^2/s: the angular momentum then, about the first body's centre of mass
 };
 
 // What every stage of the program reads.
-struct Solve {
+struct BatchContext {
   RigidWorld& w;
   BatchScratch& scratch;
   const ContactKernels& kernels;
   SolveBatch batch{};
   std::span<const std::uint32_t> places{};  // of bodies in their batches
-  Domains domains{};
-  std::span<int> group_bounds{};              // where there are several: for kMostGroups
-  void *blocks = nullptr, *asides = nullptr;  // of contacts
+  WorkerPartition domains{};
+  std::span<int> group_bounds{};              // where there are several: for kMaxGroups
+  void *blocks = nullptr, *cold_blocks = nullptr;  // of contacts
   float h = 0.0f;
   ContactSettings contact_settings{};
   JointSettings joint_settings{};
   ImpactSettings impact_settings{};
   ContactBodies contact_bodies{};
   JointBodies joint_bodies{};
-  std::span<NetJoint> net_joints{};      // the batch's joints
+  std::span<JointEdge> joint_edges{};      // the batch's joints
   std::span<std::uint8_t> ball_lanes{};  // 1 for those that may be solved side by side
-  bool is_net = false;     // all are known to be swept: those of ball_lanes are begun in their lanes
+  bool all_iterative = false;     // all are known to be swept: those of ball_lanes are begun in their lanes
   LaneStart lane_start{};  // of joints that are begun in lanes
-  std::span<JointWork> joint_work{};
-  std::span<JointPlaces> joint_places{};
-  Linkages linkages{};
-  LinkageSolve linkage_solve{};
+  std::span<JointConstraint> joint_work{};
+  std::span<JointOffsets> joint_offsets{};
+  Articulations linkages{};
+  ArticulationSolve articulation_solve{};
   std::span<std::span<double>> stop_rooms{};  // by worker, where a linkage has stops
   BundleSolve bundles{};
   std::span<std::uint32_t> joint_order{};  // places in the list of swept joints, by groups
   std::span<Group> joint_groups{};
-  void* balls = nullptr;  // joints side by side: solver/articulation/ball_lanes.h
-  std::span<const PulledBody> pulled{};
+  void* balls = nullptr;  // joints side by side: solver/articulation/ball_joint_simd.h
+  std::span<const StiffenedBody> pulled{};
   std::span<JointIsland> joint_islands{};
   Motions motions{};
   std::span<MovedBody> moved{};               // the batch's bodies that constraints act on,
   void* motion_blocks = nullptr;              // the same for the kernels,
   std::span<Vec3> pushes{};                   // and how overlap turned them
-  std::span<std::uint32_t> spinners{};        // those of them that turn alone
-  std::span<std::uint32_t> spinner_starts{};  // by block of moved bodies: its first; one more
-  RunLine run_lines[2] = {};                  // if bodies are moved run by run: of others, and of bundles
+  std::span<std::uint32_t> fast_spinning{};        // those of them that turn alone
+  std::span<std::uint32_t> fast_spinning_starts{};  // by block of moved bodies: its first; one more
+  FusedStage run_lines[2] = {};                  // if bodies are moved run by run: of others, and of bundles
   std::size_t moved_in_contact = 0;           // of these, the first: contacts act on them
   const int* moved_bounds = nullptr;          // of the blocks, by domain: where contacts act on nearly all
-  int watched_blocks = 0;             // the first: of these somebody asks what contacts gave the bodies
-  std::span<std::uint32_t> flying{};  // the others
-  ContactForest forest{};
+  int recorded_blocks = 0;             // the first: of these somebody asks what contacts gave the bodies
+  std::span<std::uint32_t> free_bodies{};  // the others
+  RestingTrees forest{};
   TreeSolve tree_solve{};
-  std::span<ContactStructure> structures{};
+  std::span<RestingStructure> structures{};
   StructureSolve structure_solve{};
   RollingContacts rolling{};
   std::span<std::uint16_t> rolling_lanes{};   // by block of contacts: bits of those still to be taken along
@@ -103,7 +103,7 @@ struct Solve {
 
 // A run of blocks of one colour.
 struct Group {
-  Solve* solve = nullptr;
+  BatchContext* solve = nullptr;
   std::uint32_t first = 0;       // first block of contacts, or first place in the joint order
   std::uint32_t count = 0;       // blocks or joints
   bool serial = false;           // what is left over when the colours are used up: its members share bodies
@@ -112,8 +112,8 @@ struct Group {
 };
 
 // By place in the batch: those joints that are begun and finished in their lanes, and have no work.
-inline std::span<const std::uint8_t> begun_in_lanes(const Solve& solve) {
-  return solve.is_net ? solve.ball_lanes : solve.linkages.in_lanes;
+inline std::span<const std::uint8_t> prepared_in_simd(const BatchContext& solve) {
+  return solve.all_iterative ? solve.ball_lanes : solve.linkages.simd;
 }
 
 }  // namespace gyre

@@ -9,6 +9,6 @@ namespace gyre {
 
 // Parts the bodies of a batch into those that constraints act on and those that fly. Of the former those in contact come first;
 // those of a domain and those that turn alike lie side by side.
-void gather_motion(Solve& solve, Arena& arena, TaskSystem& tasks);
+void gather_motion(BatchContext& solve, Arena& arena, TaskSystem& tasks);
 
 }  // namespace gyre

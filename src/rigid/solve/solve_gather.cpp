@@ -3,8 +3,8 @@
 #include "base/prefetch.h"
 #include "rigid/solve/hits.h"
 #include "rigid/batch/surface_rules.h"
-#include "solver/articulation/ball_records.h"
-#include "solver/rest/contact_structure.h"
+#include "solver/articulation/ball_joint_transfer.h"
+#include "solver/rest/static_equilibrium.h"
 #include "task/parallel.h"
 
 #include <utility>
@@ -57,7 +57,7 @@ struct Loads {
 class ContactGatherer {
  public:
   // `is_alone`: no other worker gathers contacts of the same batch.
-  ContactGatherer(Solve& solve, bool is_alone)
+  ContactGatherer(BatchContext& solve, bool is_alone)
       : solve_(solve),
         w_(solve.w),
         fall_(std::sqrt(length(w_.settings.gravity))),
@@ -73,7 +73,7 @@ class ContactGatherer {
   Found gather(std::uint32_t slot, std::size_t place) const {
     const Contact& contact = w_.contacts.contacts[slot];
     const Ends ends = find_ends(contact);
-    const std::uint8_t touch = contact.surface.restitution > 0.0f ? kPlaceShown : kTouched;
+    const std::uint8_t touch = contact.surface.restitution > 0.0f ? kPoseRead : kConstrained;
     touch_body(contact.body_a, ends.active_a, touch);
     touch_body(contact.body_b, ends.active_b, touch);
     const ColoringPair pair{ends.active_a ? solve_.places[contact.body_a] : ColoringPair::kNone,
@@ -139,9 +139,9 @@ class ContactGatherer {
     constraint.point_count = std::int16_t(manifold.count);
     constraint.loaded = loads.any;
     constraint.may_roll = false;
-    constraint.hold = manifold.age >= kHeldAge ? ContactHold::held
-                      : manifold.age > 0.0f    ? ContactHold::sprung
-                                               : ContactHold::none;
+    constraint.hold = manifold.age >= kRigidContactAge ? ContactStiffness::held
+                      : manifold.age > 0.0f    ? ContactStiffness::sprung
+                                               : ContactStiffness::none;
     if (loads.all) {
       constraint.fast = false;
       for (int k = 0; k < manifold.count; ++k) manifold.points[k].approach_speed = 0.0f;
@@ -151,11 +151,11 @@ class ContactGatherer {
     if (manifold.count == 0) return false;
     if (has_rules_ && !apply_surface_rules(w_, contact, manifold, constraint)) return false;
     if (contact.recycled == 0) constraint.may_roll = may_roll(w_, contact, constraint);
-    constraint.spinning_friction += manifold.count == 1 ? patch_friction(w_, contact, constraint) : 0.0f;
+    constraint.spinning_friction += manifold.count == 1 ? contact_patch_spin_friction(w_, contact, constraint) : 0.0f;
     return true;
   }
 
-  Solve& solve_;
+  BatchContext& solve_;
   RigidWorld& w_;
   float fall_;
   bool has_rules_;
@@ -177,7 +177,7 @@ void close_gaps(BatchScratch& s) {
 
 }  // namespace
 
-void gather_contacts(Solve& solve, Arena& arena, TaskSystem& tasks) {
+void gather_contacts(BatchContext& solve, Arena& arena, TaskSystem& tasks) {
   const ArenaScope scope(arena);
   const RigidWorld& w = solve.w;
   BatchScratch& s = solve.scratch;
@@ -226,13 +226,13 @@ void gather_contacts(Solve& solve, Arena& arena, TaskSystem& tasks) {
   }
 }
 
-void look_at_joints(Solve& solve, Arena& arena, TaskSystem& tasks) {
+void look_at_joints(BatchContext& solve, Arena& arena, TaskSystem& tasks) {
   RigidWorld& w = solve.w;
-  solve.net_joints = arena.make<NetJoint>(solve.batch.joints.size());
+  solve.joint_edges = arena.make<JointEdge>(solve.batch.joints.size());
   solve.ball_lanes = arena.make<std::uint8_t>(solve.batch.joints.size());
   const auto look = [&](std::int32_t body, bool is_spring) {
     if (body == kNoBody) return kNoBody;
-    if (!is_spring) touch_shared(w, std::uint32_t(body), kPlaceShown);
+    if (!is_spring) touch_shared(w, std::uint32_t(body), kPoseRead);
     return is_active(w, std::uint32_t(body)) ? body : kNoBody;
   };
   const int count = int(solve.batch.joints.size());
@@ -243,14 +243,14 @@ void look_at_joints(Solve& solve, Arena& arena, TaskSystem& tasks) {
       const JointRecord& joint = w.joints.records[slot];
       const JointDetail* const detail = detail_of(w.joints, slot);
       const bool is_spring = solve.is_smooth && is_explicit_spring(w, slot);
-      solve.net_joints[i] = {look(joint.body_a, is_spring), look(joint.body_b, is_spring),
+      solve.joint_edges[i] = {look(joint.body_a, is_spring), look(joint.body_b, is_spring),
                              count_equations(joint, detail)};
       solve.ball_lanes[i] = fits_ball_lane(joint, detail) ? 1 : 0;
     }
   });
 }
 
-void gather_joints(Solve& solve) {
+void gather_joints(BatchContext& solve) {
   BatchScratch& s = solve.scratch;
   const std::size_t most = solve.batch.joints.size();
   s.swept_joints.resize_uninitialized(most);
@@ -262,7 +262,7 @@ void gather_joints(Solve& solve) {
   for (std::uint32_t i = 0; i < most; ++i) {
     if (solve.linkages.swept[i] == 0) continue;
     if (solve.is_smooth && is_explicit_spring(solve.w, solve.batch.joints[i])) continue;
-    const NetJoint& joint = solve.net_joints[i];
+    const JointEdge& joint = solve.joint_edges[i];
     s.swept_joints[count] = i;
     s.joint_pairs[count++] = {place(joint.body_a), place(joint.body_b)};
   }

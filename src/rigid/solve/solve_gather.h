@@ -8,10 +8,10 @@
 namespace gyre {
 
 // The batch's contacts as constraints, and what colouring needs to know of them; marks the bodies as touched.
-void gather_contacts(Solve& solve, Arena& arena, TaskSystem& tasks);
+void gather_contacts(BatchContext& solve, Arena& arena, TaskSystem& tasks);
 // What all joints of the batch are; marks their bodies.
-void look_at_joints(Solve& solve, Arena& arena, TaskSystem& tasks);
+void look_at_joints(BatchContext& solve, Arena& arena, TaskSystem& tasks);
 // Those that are in no linkage, as contacts.
-void gather_joints(Solve& solve);
+void gather_joints(BatchContext& solve);
 
 }  // namespace gyre

@@ -1,12 +1,12 @@
 #include "rigid/solve/solve_layout.h"
 
-#include "rigid/batch/joint_works.h"
+#include "rigid/batch/joint_constraints.h"
 
 namespace gyre {
 
 namespace {
 
-void mark_rolling_lanes(Solve& solve, std::uint32_t blocks, Arena& arena) {
+void mark_rolling_lanes(BatchContext& solve, std::uint32_t blocks, Arena& arena) {
   const std::uint32_t width = std::uint32_t(solve.kernels.width);
   solve.rolling_lanes = arena.make<std::uint16_t>(blocks);
   solve.rolling_places = arena.make<std::uint32_t>(std::size_t(blocks) * width);
@@ -28,7 +28,7 @@ void mark_rolling_lanes(Solve& solve, std::uint32_t blocks, Arena& arena) {
 // side. Those of one colour do not notice each other. Those without a body A come last.
 constexpr int kWaysToRoll = 3;
 constexpr int kWithA = 2 * kWaysToRoll * kMaxManifoldPoints;
-int likeness(const Solve& solve, std::uint32_t member) {
+int likeness(const BatchContext& solve, std::uint32_t member) {
   const ContactConstraint& constraint = solve.scratch.constraints[member];
   const int points = kMaxManifoldPoints - constraint.point_count, load = constraint.loaded ? 0 : 1;
   const RollingContacts& rolling = solve.rolling;
@@ -38,14 +38,14 @@ int likeness(const Solve& solve, std::uint32_t member) {
 }
 
 // Appends the members of a colour to the order, in whole blocks, domain by domain; `bounds` of these, if there are several.
-void order_alike(const Solve& solve, std::span<const std::uint32_t> members, Array<std::uint32_t>& order,
+void order_alike(const BatchContext& solve, std::span<const std::uint32_t> members, Array<std::uint32_t>& order,
                  int* bounds) {
   constexpr int kKinds = 2 * kWithA;
   const std::size_t domains = std::size_t(solve.domains.count());
   const auto kind_of = [&](std::uint32_t member) {
     return std::size_t(solve.domains.of(solve.scratch.pairs[member]) * kKinds + likeness(solve, member));
   };
-  std::uint32_t starts[kMostDomains * kKinds], firsts[kMostDomains];
+  std::uint32_t starts[kMaxPartitions * kKinds], firsts[kMaxPartitions];
   for (std::size_t i = 0; i < domains * kKinds; ++i) starts[i] = 0;
   for (const std::uint32_t member : members) ++starts[kind_of(member)];
   // No block has contacts with and without a body A.
@@ -70,12 +70,12 @@ void order_alike(const Solve& solve, std::span<const std::uint32_t> members, Arr
   const std::size_t first = order.size();
   order.resize(first + (place + width - 1) / width * width, kNoPlace);
   for (const std::uint32_t member : members) order[first + starts[kind_of(member)]++] = member;
-  if (domains > 1 && bounds != nullptr) set_bounds(std::span(firsts).first(domains), place, width, bounds);
+  if (domains > 1 && bounds != nullptr) set_partition_bounds(std::span(firsts).first(domains), place, width, bounds);
 }
 
 }  // namespace
 
-std::span<Group> lay_out_contacts(Solve& solve, std::span<Group> groups) {
+std::span<Group> lay_out_contacts(BatchContext& solve, std::span<Group> groups) {
   BatchScratch& s = solve.scratch;
   const Coloring& colors = s.contact_colors;
   const std::uint32_t width = std::uint32_t(solve.kernels.width);
@@ -104,25 +104,25 @@ std::span<Group> lay_out_contacts(Solve& solve, std::span<Group> groups) {
   return groups.first(used);
 }
 
-void make_contact_blocks(Solve& solve, std::span<const Group> groups, Arena& arena) {
+void make_contact_blocks(BatchContext& solve, std::span<const Group> groups, Arena& arena) {
   const std::uint32_t blocks = groups.empty() ? 0 : groups.back().first + groups.back().count;
   if (!solve.rolling.contacts.empty()) mark_rolling_lanes(solve, blocks, arena);
   solve.blocks = arena.make<std::byte>(std::size_t(blocks) * solve.kernels.block_bytes).data();
-  solve.asides = arena.make<std::byte>(std::size_t(blocks) * solve.kernels.aside_bytes).data();
+  solve.cold_blocks = arena.make<std::byte>(std::size_t(blocks) * solve.kernels.aside_bytes).data();
 }
 
 namespace {
 
 // Of a group whose joints are solved one after the other.
-void begin_ball_alone(Solve& solve, std::uint32_t joint, Arena& arena) {
-  if (solve.is_net)
+void begin_ball_alone(BatchContext& solve, std::uint32_t joint, Arena& arena) {
+  if (solve.all_iterative)
     begin_joint(solve.w, solve.batch, joint, solve.lane_start.warm_scale,
-                {solve.joint_work, solve.joint_places}, arena);
+                {solve.joint_work, solve.joint_offsets}, arena);
 }
 
 }  // namespace
 
-std::span<Group> lay_out_joints(Solve& solve, Arena& arena) {
+std::span<Group> lay_out_joints(BatchContext& solve, Arena& arena) {
   if (solve.scratch.swept_joints.empty()) return {};
   const Coloring& colors = solve.scratch.joint_colors;
   const std::span<Group> groups = arena.make<Group>(2 * std::size_t(colors.group_count()));

@@ -7,13 +7,13 @@
 
 namespace gyre {
 
-// Lays the coloured constraints out in blocks of W lanes, in groups of which there is room for kMostGroups. A group starts a new
+// Lays the coloured constraints out in blocks of W lanes, in groups of which there is room for kMaxGroups. A group starts a new
 // block; constraints of the overflow group get a block each, so that they are solved one after the other at every width.
-constexpr std::size_t kMostGroups = ColoringOptions::kMostColors + 1;
-std::span<Group> lay_out_contacts(Solve& solve, std::span<Group> room);
+constexpr std::size_t kMaxGroups = ColoringOptions::kMaxColors + 1;
+std::span<Group> lay_out_contacts(BatchContext& solve, std::span<Group> room);
 // Memory for these blocks.
-void make_contact_blocks(Solve& solve, std::span<const Group> groups, Arena& arena);
+void make_contact_blocks(BatchContext& solve, std::span<const Group> groups, Arena& arena);
 // Of each colour first those joints that are solved side by side, then the others.
-std::span<Group> lay_out_joints(Solve& solve, Arena& arena);
+std::span<Group> lay_out_joints(BatchContext& solve, Arena& arena);
 
 }  // namespace gyre

@@ -8,7 +8,7 @@
 
 namespace gyre {
 
-void run_substeps(Solve& solve, std::span<Group> contacts, std::span<Group> joints, Arena& arena,
+void run_substeps(BatchContext& solve, std::span<Group> contacts, std::span<Group> joints, Arena& arena,
                   TaskSystem& tasks);
 
 }  // namespace gyre

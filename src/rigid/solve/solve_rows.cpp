@@ -1,7 +1,7 @@
 #include "rigid/solve/solve_rows.h"
 
 #include "rigid/solve/hits.h"
-#include "rigid/batch/joint_works.h"
+#include "rigid/batch/joint_constraints.h"
 #include "rigid/solve/motion_stages.h"
 #include "rigid/solve/row_islands.h"
 #include "rigid/solve/solve_bodies.h"
@@ -9,7 +9,7 @@
 #include "solver/rows/body_newton.h"
 #include "solver/rows/constraint_rows.h"
 #include "solver/rows/delassus.h"
-#include "solver/rows/solve_sweeps.h"
+#include "solver/rows/gauss_seidel.h"
 #include "task/parallel.h"
 
 namespace gyre {
@@ -24,10 +24,10 @@ constexpr double kAccepted = 5.0;  // what Newton's method may leave of these wh
 constexpr double kNncgShare = 1.0e-5;
 // Newton's steps from where the impulses stand, and from where so many sweeps lead where that does not end; rows up to
 // which the longer ones are tried, and up to which pivoting is tried where that does not end either.
-constexpr int kNewtonSteps = 30, kLeadingSweeps[] = {0, 64, 256, 1024}, kMostLedFar = 1500,
-              kMostPivotRows = 100;
+constexpr int kNewtonSteps = 30, kLeadingSweeps[] = {0, 64, 256, 1024}, kMaxLedFar = 1500,
+              kMaxPivotRows = 100;
 // Multiplications of a factorisation above which an island is left to NNCG: about a tenth of a second.
-constexpr std::uint64_t kMostFactorWork = 100'000'000;
+constexpr std::uint64_t kMaxFactorWork = 100'000'000;
 
 // What one worker needs for the island that it is at.
 struct WorkerRoom {
@@ -40,13 +40,13 @@ struct WorkerRoom {
 };
 
 struct RowSolve {
-  Solve& solve;
+  BatchContext& solve;
   const SolverSettings& settings;
   FrictionSet friction, polygon;
   DirectMethod method = DirectMethod::dantzig;
   RowIslands islands{};
   std::span<WorkerRoom> rooms{};
-  std::span<RowReport> reports{};  // by island
+  std::span<RowStats> reports{};  // by island
   float warm_scale = 1.0f;
 };
 
@@ -87,25 +87,25 @@ double largest_alone(std::span<const Row> rows, std::span<const RowBody> bodies)
   double most = 0.0;
   for (const Row& row : rows) {
     if (!(row.diagonal > 0.0)) continue;
-    const double w = row_speed(row, bodies) - row.wanted;
+    const double w = row_speed(row, bodies) - row.target_speed;
     most = max(most, (w < 0.0 ? -w : w) / row.diagonal);
   }
   return most;
 }
 
-void sweep_island(const RowSolve& s, const IslandRows& island, NumberRoom room, double scale,
-                  RowReport& report) {
+void iterate_island(const RowSolve& s, const IslandRows& island, NumberRoom room, double scale,
+                  RowStats& report) {
   const std::span<Row> rows = island.rows();
   const std::span<RowBody> bodies = island.bodies();
   warm_start_rows(rows, bodies);
   if (s.settings.kind == SolverKind::lcp) {
-    const SweepResult result =
+    const GaussSeidelResult result =
         solve_nncg(rows, bodies, s.friction, kNncgShare * scale, sweeps_of(s.settings), room);
     report.sweeps = max(report.sweeps, result.sweeps);
     report.residual = max(report.residual, result.residual);
     return;
   }
-  for (int i = 0; i < sweeps_of(s.settings); ++i) sweep_rows_once(rows, bodies, s.friction);
+  for (int i = 0; i < sweeps_of(s.settings); ++i) iterate_rows_once(rows, bodies, s.friction);
   report.sweeps = sweeps_of(s.settings);
   report.residual = max(report.residual, find_row_residual(rows, bodies, s.friction));
 }
@@ -116,14 +116,14 @@ double direct_tolerance(double scale) {
 
 // False if it left more than it should; the rows' impulses are then the best that it found.
 bool solve_island_directly(const RowSolve& s, const IslandRows& island, NumberRoom room, DirectMethod method,
-                           double scale, RowReport& report) {
+                           double scale, RowStats& report) {
   const std::span<Row> rows = island.rows();
   const std::size_t n = rows.size();
   const std::span<double> a = room.take(n * n), q = room.take(n), x = room.take(n);
   WorkerRoom& own = island.room;
   fill_delassus(rows, island.bodies().size(), a, own.first, own.next);
   for (std::size_t i = 0; i < n; ++i) {
-    q[i] = row_speed(rows[i], island.bodies()) - rows[i].wanted;
+    q[i] = row_speed(rows[i], island.bodies()) - rows[i].target_speed;
     x[i] = rows[i].impulse;
     own.limits[i] = rows[i].limits;
   }
@@ -140,7 +140,7 @@ bool solve_island_directly(const RowSolve& s, const IslandRows& island, NumberRo
 
 // Newton's method; false if it does not end. The rows' impulses are then the best that it found.
 bool solve_island_by_newton(const RowSolve& s, const IslandRows& island, NumberRoom room, double scale,
-                            RowReport& report) {
+                            RowStats& report) {
   const std::span<Row> rows = island.rows();
   const std::span<double> x = room.take(rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) x[i] = rows[i].impulse;
@@ -157,10 +157,10 @@ bool solve_island_by_newton(const RowSolve& s, const IslandRows& island, NumberR
 
 // Newton's method from where the impulses stand; where it does not end, from where some sweeps lead.
 bool solve_island_by_all_means(const RowSolve& s, const IslandRows& island, NumberRoom room, double scale,
-                               RowReport& report) {
+                               RowStats& report) {
   const std::span<Row> rows = island.rows();
   for (const int sweeps : kLeadingSweeps) {
-    if (sweeps > kLeadingSweeps[1] && int(rows.size()) > kMostLedFar) break;
+    if (sweeps > kLeadingSweeps[1] && int(rows.size()) > kMaxLedFar) break;
     if (sweeps > 0) {
       warm_start_rows(rows, island.bodies());
       solve_nncg(rows, island.bodies(), s.friction, kNncgShare * scale, sweeps, room);
@@ -171,7 +171,7 @@ bool solve_island_by_all_means(const RowSolve& s, const IslandRows& island, Numb
   return false;
 }
 
-void solve_island(const RowSolve& s, const IslandRows& island, RowReport& report) {
+void solve_island(const RowSolve& s, const IslandRows& island, RowStats& report) {
   const std::span<Row> rows = island.rows();
   if (rows.empty()) return;
   report.islands = 1;
@@ -187,21 +187,21 @@ void solve_island(const RowSolve& s, const IslandRows& island, RowReport& report
     if (!(pivots(method) && fits) && !island.island.plan.columns.empty() &&
         solve_island_by_all_means(s, island, room, scale, report))
       return;
-    if (method == LcpMethod::automatic && int(rows.size()) <= min(most, kMostPivotRows) &&
+    if (method == LcpMethod::automatic && int(rows.size()) <= min(most, kMaxPivotRows) &&
         solve_island_directly(s, island, room, DirectMethod::dantzig, scale, report))
       return;
   }
-  sweep_island(s, island, room, scale, report);
+  iterate_island(s, island, room, scale, report);
 }
 
 // ----------------------------------------------------------------------------------------------------------- stages
 
 void make_rows(const RowSolve& s, IslandRows& island, bool first) {
-  Solve& solve = s.solve;
+  BatchContext& solve = s.solve;
   int next = 0;
   for (const std::uint32_t i : island.island.joints) {
     JointRecord& joint = solve.w.joints.records[solve.batch.joints[i]];
-    bend_joint(joint, solve.joint_work[i], solve.joint_bodies, solve.joint_settings);
+    update_joint_bias(joint, solve.joint_work[i], solve.joint_bodies, solve.joint_settings);
     island.room.starts[std::size_t(next++)] = island.list.count;
     add_joint_rows(joint, solve.joint_work[i], solve.joint_settings, island.frame, island.list);
   }
@@ -214,7 +214,7 @@ void make_rows(const RowSolve& s, IslandRows& island, bool first) {
 }
 
 void keep_impulses(const RowSolve& s, const IslandRows& island) {
-  Solve& solve = s.solve;
+  BatchContext& solve = s.solve;
   std::size_t next = 0;
   const auto range = [&] {
     const std::size_t begin = std::size_t(island.room.starts[next]),
@@ -257,7 +257,7 @@ void solve_islands_stage(void* context, int begin, int end, int worker) {
 
 void push_apart_stage(void* context, int begin, int end, int worker) {
   const RowSolve& s = *static_cast<RowSolve*>(context);
-  Solve& solve = s.solve;
+  BatchContext& solve = s.solve;
   for (int i = begin; i < end; ++i) {
     IslandRows island =
         begin_island(s, s.islands.islands[std::size_t(i)], s.rooms[std::size_t(worker)], true);
@@ -271,7 +271,7 @@ void push_apart_stage(void* context, int begin, int end, int worker) {
     for (const std::uint32_t j : island.island.joints)
       add_joint_equations(solve.w.joints.records[solve.batch.joints[j]], solve.joint_work[j], island.frame,
                           island.list);
-    RowReport unheard;  // of displacements, not impulses
+    RowStats unheard;  // of displacements, not impulses
     solve_island(s, island, unheard);
     store_velocities(s, island);
   }
@@ -279,57 +279,57 @@ void push_apart_stage(void* context, int begin, int end, int worker) {
 
 void place_row_joints_stage(void* context, int begin, int end, int) {
   const RowSolve& s = *static_cast<RowSolve*>(context);
-  Solve& solve = s.solve;
+  BatchContext& solve = s.solve;
   for (int i = begin; i < end; ++i) {
     for (const std::uint32_t j : s.islands.islands[std::size_t(i)].joints)
-      place_joint(solve.w.joints.records[solve.batch.joints[j]], solve.joint_work[j], solve.joint_places[j],
+      prepare_joint(solve.w.joints.records[solve.batch.joints[j]], solve.joint_work[j], solve.joint_offsets[j],
                   solve.joint_bodies, solve.joint_settings);
   }
 }
 void sum_joints_stage(void* context, int begin, int end, int) {
   const RowSolve& s = *static_cast<RowSolve*>(context);
-  Solve& solve = s.solve;
+  BatchContext& solve = s.solve;
   for (int i = begin; i < end; ++i) {
     for (const std::uint32_t j : s.islands.islands[std::size_t(i)].joints)
-      sum_joint(solve.w.joints.records[solve.batch.joints[j]], solve.joint_work[j], solve.joint_bodies);
+      accumulate_joint_impulses(solve.w.joints.records[solve.batch.joints[j]], solve.joint_work[j], solve.joint_bodies);
   }
 }
 
-void watch_rows_stage(void* context, int, int, int) {
-  const Solve& s = static_cast<RowSolve*>(context)->solve;
-  watch_impacts(s.scratch.impacts, s.contact_bodies);
+void record_row_approach_stage(void* context, int, int, int) {
+  const BatchContext& s = static_cast<RowSolve*>(context)->solve;
+  record_approach(s.scratch.impacts, s.contact_bodies);
 }
-void strike_rows_stage(void* context, int, int, int) {
-  const Solve& s = static_cast<RowSolve*>(context)->solve;
-  strike_impacts(s.scratch.impacts, s.contact_bodies, s.impact_settings);
+void apply_row_restitution_stage(void* context, int, int, int) {
+  const BatchContext& s = static_cast<RowSolve*>(context)->solve;
+  apply_restitution(s.scratch.impacts, s.contact_bodies, s.impact_settings);
 }
 void release_rows_stage(void* context, int, int, int) {
-  const Solve& s = static_cast<RowSolve*>(context)->solve;
-  release_impacts(s.scratch.impacts, s.contact_bodies, s.impact_settings);
+  const BatchContext& s = static_cast<RowSolve*>(context)->solve;
+  apply_delayed_restitution(s.scratch.impacts, s.contact_bodies, s.impact_settings);
 }
 
 // ---------------------------------------------------------------------------------------------------------- program
 
 void run_substeps(RowSolve& s, Arena& arena, TaskSystem& tasks) {
-  Solve& solve = s.solve;
+  BatchContext& solve = s.solve;
   const int islands = int(s.islands.islands.size());
   const int bodies = count_blocks(int(solve.moved.size()), solve.kernels.width);
   const int impacts = solve.scratch.impacts.empty() ? 0 : 1;
   const int fields = solve.fields.blocks();
   ProgramWriter program(arena.make<Stage>(8 + 11 * std::size_t(solve.motions.count)));
-  add_flying(program, solve);
+  add_free_bodies(program, solve);
   add_motion(program, solve, prepare_motion_stage, bodies);
   program.add(prepare_fields_stage, &solve.fields, fields);
   program.add(place_row_joints_stage, &s, islands);
   for (int i = 0; i < solve.motions.count; ++i) {
     program.add(watch_fields_stage, &solve.fields, fields);
-    program.add(watch_rows_stage, &s, impacts);
+    program.add(record_row_approach_stage, &s, impacts);
     add_motion(program, solve, predict_stage, bodies);
-    program.add(strike_rows_stage, &s, impacts);
+    program.add(apply_row_restitution_stage, &s, impacts);
     program.add(apply_fields_stage, &solve.fields, fields);
     program.add(i == 0 ? solve_islands_stage<true> : solve_islands_stage<false>, &s, islands);
     add_motion(program, solve, advance_stage, bodies);
-    add_turn_alone(program, solve);
+    add_exact_rotation(program, solve);
     program.add(release_rows_stage, &s, impacts);
     program.add(place_row_joints_stage, &s, islands);
     program.add(sum_joints_stage, &s, islands);
@@ -337,7 +337,7 @@ void run_substeps(RowSolve& s, Arena& arena, TaskSystem& tasks) {
   add_motion(program, solve, begin_projection_stage, bodies);
   program.add(push_apart_stage, &s, islands);
   add_motion(program, solve, end_projection_stage, bodies);
-  add_finish_turns(program, solve);
+  add_apply_rotations(program, solve);
   run_program(tasks, program.stages());
 }
 
@@ -355,7 +355,7 @@ void make_rooms(RowSolve& s, Arena& arena, TaskSystem& tasks) {
       // Fewer rows than were counted may come within what pivoting takes.
       const LcpMethod method = s.settings.options.lcp_method;
       int most = s.settings.options.direct_rows;
-      if (!pivots(method)) most = method == LcpMethod::automatic ? min(most, kMostPivotRows) : 0;
+      if (!pivots(method)) most = method == LcpMethod::automatic ? min(most, kMaxPivotRows) : 0;
       DirectSize size = island.size;
       size.rows = min(n, std::size_t(most));
       size.equations = min(size.equations, size.rows), size.cones = min(size.cones, (size.rows + 1) / 2);
@@ -377,21 +377,21 @@ void make_rooms(RowSolve& s, Arena& arena, TaskSystem& tasks) {
 }
 
 // Rows look at their bodies' places in each sub-step.
-void show_bodies(Solve& solve) {
+void show_bodies(BatchContext& solve) {
   RigidWorld& w = solve.w;
   for (const std::uint32_t slot : solve.batch.joints) {
     const JointRecord& joint = w.joints.records[slot];
-    if (joint.body_a != kNoBody) w.bodies.flags[std::size_t(joint.body_a)].touched = kPlaceShown;
-    if (joint.body_b != kNoBody) w.bodies.flags[std::size_t(joint.body_b)].touched = kPlaceShown;
+    if (joint.body_a != kNoBody) w.bodies.flags[std::size_t(joint.body_a)].touched = kPoseRead;
+    if (joint.body_b != kNoBody) w.bodies.flags[std::size_t(joint.body_b)].touched = kPoseRead;
   }
   for (const std::uint32_t body : solve.batch.bodies) {
     std::uint8_t& touched = w.bodies.flags[body].touched;
-    if (touched != kUntouched) touched = kPlaceShown;
+    if (touched != kNotConstrained) touched = kPoseRead;
   }
 }
 
-void add_reports(RowReport& sum, std::span<const RowReport> reports) {
-  for (const RowReport& report : reports) {
+void add_reports(RowStats& sum, std::span<const RowStats> reports) {
+  for (const RowStats& report : reports) {
     sum.residual = max(sum.residual, report.residual);
     sum.islands += report.islands;
     sum.largest = max(sum.largest, report.largest);
@@ -403,7 +403,7 @@ void add_reports(RowReport& sum, std::span<const RowReport> reports) {
 
 }  // namespace
 
-void solve_batch_as_rows(Solve& solve, const SolverSettings& settings, Arena& arena, TaskSystem& tasks,
+void solve_batch_as_rows(BatchContext& solve, const SolverSettings& settings, Arena& arena, TaskSystem& tasks,
                          float warm_scale) {
   const ArenaScope scope(arena);
   BatchScratch& scratch = solve.scratch;
@@ -411,9 +411,9 @@ void solve_batch_as_rows(Solve& solve, const SolverSettings& settings, Arena& ar
   for (const ContactConstraint& constraint : scratch.constraints) constraint.manifold->total_friction = {};
   show_bodies(solve);
   solve.fields = find_field_bodies(solve.w, solve.batch.bodies, solve.h, arena);
-  const JointWorks works = begin_joints(solve.w, solve.batch, {}, warm_scale, arena);
+  const JointConstraints works = begin_joints(solve.w, solve.batch, {}, warm_scale, arena);
   solve.joint_work = works.work;
-  solve.joint_places = works.places;
+  solve.joint_offsets = works.places;
   gather_motion(solve, arena, tasks);
   RowSolve rows{solve, settings, make_friction_set(settings.options.friction_sides), {}};
   rows.polygon = settings.options.friction_sides == 0 ? make_friction_set(kLeadingSides) : rows.friction;
@@ -421,9 +421,9 @@ void solve_batch_as_rows(Solve& solve, const SolverSettings& settings, Arena& ar
   rows.warm_scale = warm_scale;
   rows.islands = find_row_islands(solve.w, scratch, solve.batch, solve.joint_work, arena);
   if (settings.kind == SolverKind::lcp && settings.options.lcp_method != LcpMethod::nncg)
-    plan_row_islands(solve.w, scratch, solve.batch, kMostFactorWork, arena, rows.islands);
-  rows.reports = arena.make<RowReport>(rows.islands.islands.size());
-  for (RowReport& report : rows.reports) report = {};
+    plan_row_islands(solve.w, scratch, solve.batch, kMaxFactorWork, arena, rows.islands);
+  rows.reports = arena.make<RowStats>(rows.islands.islands.size());
+  for (RowStats& report : rows.reports) report = {};
   make_rooms(rows, arena, tasks);
   run_substeps(rows, arena, tasks);
   add_reports(scratch.rows, rows.reports);

@@ -17,7 +17,7 @@ inline const SolverSettings* row_solver_of(const RigidWorld& w) {
 }
 
 // Solves the batch. Adds to scratch.rows what its islands had to say.
-void solve_batch_as_rows(Solve& solve, const SolverSettings& settings, Arena& arena, TaskSystem& tasks,
+void solve_batch_as_rows(BatchContext& solve, const SolverSettings& settings, Arena& arena, TaskSystem& tasks,
                          float warm_scale);
 
 }  // namespace gyre

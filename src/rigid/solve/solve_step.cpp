@@ -1,9 +1,9 @@
 #include "rigid/solve/solve_step.h"
 
 #include "rigid/solve/hits.h"
-#include "rigid/solve/joint_energy.h"
-#include "rigid/batch/joint_works.h"
-#include "rigid/solve/pulled_bodies.h"
+#include "rigid/solve/energy_limiter.h"
+#include "rigid/batch/joint_constraints.h"
+#include "rigid/solve/geometric_stiffness.h"
 #include "rigid/solve/solve_bodies.h"
 #include "rigid/solve/solve_gather.h"
 #include "rigid/solve/solve_layout.h"
@@ -24,27 +24,27 @@ constexpr float kContactLeak = 44.0f;
 constexpr float kContactAging = 0.25f;
 // A sub-step is solved in parts: one sweep over the constraints, then everything moves. Two short parts hold four times
 // as stiff as two sweeps in one place.
-constexpr int kPartsPerSubstep = 2;
+constexpr int kHalfStepsPerSubstep = 2;
 // Joints: errors are taken back at this rate (1/s), and impulses give way at this one, a little more than half of it, as
 // sweeps that lag behind need (the same page). Neither depends on the sub-step.
 constexpr float kJointRate = 40.0f;
 constexpr float kJointLeak = 22.0f;
 // Those of linkages are solved exactly; rows give way by this share of what would move them freely, enough to decide among
 // redundant ones (docs/decisions/joint-trees.md).
-constexpr float kLinkageGive = 1.0e-4f;
+constexpr float kArticulationCompliance = 1.0e-4f;
 // Nothing bounces that closes slower than this many times the speed that gravity gives in a sub-step.
 constexpr float kBounceShare = 2.0f;
 
 // By how much impulses grow at most from one part of an adaptive step to the next.
-constexpr float kMostWarm = 4.0f;
+constexpr float kMaxWarm = 4.0f;
 
 // Whether all that is in contact hangs on joints. None of these islands counts as one at rest.
-bool all_contacts_hang(const Solve& solve, Arena& arena) {
-  if (solve.net_joints.empty()) return false;
+bool all_contacts_hang(const BatchContext& solve, Arena& arena) {
+  if (solve.joint_edges.empty()) return false;
   const ArenaScope scope(arena);
   const std::span<std::uint8_t> hangs = arena.make<std::uint8_t>(solve.batch.bodies.size());
   for (std::uint8_t& one : hangs) one = 0;
-  for (const NetJoint& joint : solve.net_joints)
+  for (const JointEdge& joint : solve.joint_edges)
     for_moving(joint, [&](std::uint32_t body) { hangs[solve.places[body]] = 1; });
   const auto hangs_at = [&](std::uint32_t place) {
     return place != ColoringPair::kNone && hangs[place] != 0;
@@ -54,19 +54,19 @@ bool all_contacts_hang(const Solve& solve, Arena& arena) {
   return true;
 }
 // The islands at rest, which are solved directly.
-void find_resting(Solve& solve, Arena& arena) {
+void find_resting(BatchContext& solve, Arena& arena) {
   solve.forest = {};
   solve.structures = {};
   const std::span<ContactConstraint> constraints = solve.scratch.constraints.view();
   if (constraints.empty() || !(length(solve.w.settings.gravity) > 0.0f)) return;
   if (all_contacts_hang(solve, arena)) return;
   const std::span<const ColoringPair> pairs = solve.scratch.pairs;
-  const RestingIslands islands(solve.w, constraints, pairs, solve.net_joints, solve.batch, solve.places,
+  const RestingIslands islands(solve.w, constraints, pairs, solve.joint_edges, solve.batch, solve.places,
                                arena);
   solve.forest = find_contact_trees(solve.w, constraints, pairs, solve.batch, islands, arena);
   solve.structures = find_contact_structures(solve.w, pairs, solve.batch, islands, arena);
 }
-void place_resting(Solve& solve, Arena& arena) {
+void place_resting(BatchContext& solve, Arena& arena) {
   if (solve.forest.nodes.empty() && solve.structures.empty()) return;
   const BatchScratch& scratch = solve.scratch;
   const int width = solve.kernels.width;
@@ -81,9 +81,9 @@ void place_resting(Solve& solve, Arena& arena) {
 }
 
 // By place in the batch: 1 of bodies on which contacts act.
-std::span<const std::uint8_t> find_pressed(const Solve& solve, Arena& arena) {
+std::span<const std::uint8_t> find_pressed(const BatchContext& solve, Arena& arena) {
   const std::span<const ColoringPair> pairs = solve.scratch.pairs;
-  if (pairs.empty() || solve.net_joints.empty()) return {};
+  if (pairs.empty() || solve.joint_edges.empty()) return {};
   const std::span<std::uint8_t> pressed = arena.make<std::uint8_t>(solve.batch.bodies.size());
   for (std::uint8_t& one : pressed) one = 0;
   for (const ColoringPair& pair : pairs) {
@@ -95,31 +95,31 @@ std::span<const std::uint8_t> find_pressed(const Solve& solve, Arena& arena) {
 
 // Joints, and which of them are solved directly. Most of those in linkages, and of a net that is known to be swept, need no work
 // but a lane.
-void begin_joints(Solve& solve, float warm_scale, Arena& arena) {
-  DenseNets& nets = solve.scratch.dense_nets;
-  solve.is_net = !solve.net_joints.empty() && nets.holds(solve.net_joints);
+void begin_joints(BatchContext& solve, float warm_scale, Arena& arena) {
+  DenseGraphCache& nets = solve.scratch.dense_graphs;
+  solve.all_iterative = !solve.joint_edges.empty() && nets.holds(solve.joint_edges);
   solve.lane_start = {
       .warm_scale = warm_scale, .substep = solve.h, .softness = solve.joint_settings.softness};
-  solve.linkages = solve.is_net ? no_linkages(solve.net_joints.size(), arena)
-                                : find_linkages(solve.w, solve.batch, solve.places, solve.net_joints,
+  solve.linkages = solve.all_iterative ? no_articulations(solve.joint_edges.size(), arena)
+                                : find_articulations(solve.w, solve.batch, solve.places, solve.joint_edges,
                                                 find_pressed(solve, arena), solve.lane_start, nets, arena);
-  const JointWorks works = begin_joints(solve.w, solve.batch, begun_in_lanes(solve), warm_scale, arena);
+  const JointConstraints works = begin_joints(solve.w, solve.batch, prepared_in_simd(solve), warm_scale, arena);
   solve.joint_work = works.work;
-  solve.joint_places = works.places;
+  solve.joint_offsets = works.places;
 }
 
-void color(const Solve& solve, std::span<const ColoringPair> pairs, std::span<const std::uint32_t> names,
+void color(const BatchContext& solve, std::span<const ColoringPair> pairs, std::span<const std::uint32_t> names,
            Coloring& colors) {
   color_constraints(pairs, names, std::uint32_t(solve.batch.bodies.size()), {}, kColoringOptions, colors);
 }
 
 // How the constraints will be solved: directly or swept, in which colours, and in which lanes. Joints and islands at rest are looked at
 // beside the contacts.
-std::span<Group> arrange(Solve& solve, float warm_scale, Arena& arena, TaskSystem& tasks) {
+std::span<Group> arrange(BatchContext& solve, float warm_scale, Arena& arena, TaskSystem& tasks) {
   BatchScratch& scratch = solve.scratch;
-  const std::span<Group> room = arena.make<Group>(kMostGroups);
+  const std::span<Group> room = arena.make<Group>(kMaxGroups);
   if (solve.domains.count() > 1)
-    solve.group_bounds = arena.make<int>(kMostGroups * std::size_t(solve.domains.count() + 1));
+    solve.group_bounds = arena.make<int>(kMaxGroups * std::size_t(solve.domains.count() + 1));
   std::span<Group> contacts;
   side_by_side(
       tasks,
@@ -136,43 +136,43 @@ std::span<Group> arrange(Solve& solve, float warm_scale, Arena& arena, TaskSyste
   return contacts;
 }
 
-void solve_batch(Solve& solve, Arena& arena, TaskSystem& tasks, float warm_scale) {
+void solve_batch(BatchContext& solve, Arena& arena, TaskSystem& tasks, float warm_scale) {
   const ArenaScope scope(arena);
   BatchScratch& scratch = solve.scratch;
   gather_contacts(solve, arena, tasks);
   look_at_joints(solve, arena, tasks);
   solve.rolling =
       find_rolling_contacts(solve.w, scratch, solve.batch.bodies, solve.contact_settings.step, arena, tasks);
-  solve.domains = find_domains(scratch.pairs, solve.batch.bodies.size(), tasks.worker_count(), arena);
+  solve.domains = partition_by_worker(scratch.pairs, solve.batch.bodies.size(), tasks.worker_count(), arena);
   const std::span<Group> contacts = arrange(solve, warm_scale, arena, tasks);
   if (solve.is_smooth)
     solve.smooth =
         find_smooth_motion(solve.w, solve.batch, solve.places, solve.motions.count, solve.h, arena);
   solve.fields = find_field_bodies(solve.w, solve.batch.bodies, solve.h, arena, !solve.is_smooth);
-  solve.linkage_solve = {.records = solve.w.joints.records,
+  solve.articulation_solve = {.records = solve.w.joints.records,
                          .work = solve.joint_work,
-                         .places = solve.joint_places,
+                         .places = solve.joint_offsets,
                          .bodies = solve.joint_bodies,
                          .settings = solve.joint_settings,
-                         .give = kLinkageGive};
-  solve.linkage_solve.settings.swept = false;
-  link_axes(solve.linkages, solve.joint_work, arena);
-  solve.stop_rooms = find_stops(solve.linkages, solve.joint_work, std::size_t(tasks.worker_count()), arena);
+                         .compliance = kArticulationCompliance};
+  solve.articulation_solve.settings.swept = false;
+  attach_drives(solve.linkages, solve.joint_work, arena);
+  solve.stop_rooms = find_limits(solve.linkages, solve.joint_work, std::size_t(tasks.worker_count()), arena);
   const JointBodies& bodies = solve.joint_bodies;
   solve.bundles =
       lay_out_bundles(solve.linkages, solve.kernels, {bodies.motion, bodies.inertia, bodies.orientation},
-                      {solve.h, solve.joint_settings.softness.bias_rate, kLinkageGive, raise_inertia}, arena);
-  solve.pulled = find_pulled_bodies(solve, arena);
+                      {solve.h, solve.joint_settings.softness.bias_rate, kArticulationCompliance, add_geometric_stiffness}, arena);
+  solve.pulled = find_stiffened_bodies(solve, arena);
   solve.joint_islands = find_joint_islands(solve, arena);
   gather_motion(solve, arena, tasks);
-  calm_pulled(solve, arena);
+  disable_gyroscopic_torque(solve, arena);
   make_contact_blocks(solve, contacts, arena);
   place_resting(solve, arena);
   const std::span<Group> joints = lay_out_joints(solve, arena);
   run_substeps(solve, contacts, joints, arena, tasks);
-  restore_pulled(solve);
-  finish_joints(solve.w, solve.batch, begun_in_lanes(solve), solve.joint_work);
-  forget_bounded(solve);
+  restore_inertia(solve);
+  finish_joints(solve.w, solve.batch, prepared_in_simd(solve), solve.joint_work);
+  drop_limited_impulses(solve);
   if (solve.is_smooth) finish_springs(solve.w, solve.smooth, scratch.report);
   note_hits(solve.w, scratch, arena, tasks);
   scratch.counts.manifolds += scratch.constraints.size();
@@ -189,36 +189,36 @@ struct SubStepping {
 
 SubStepping plan_substeps(RigidWorld& w, float seconds, bool by_rows) {
   SubStepping plan;
-  plan.parts = by_rows ? w.settings.substeps : kPartsPerSubstep * w.settings.substeps;
+  plan.parts = by_rows ? w.settings.substeps : kHalfStepsPerSubstep * w.settings.substeps;
   plan.h = seconds / float(plan.parts);
   plan.warm_scale = w.settings.last_substep > 0.0f ? plan.h / w.settings.last_substep : 0.0f;
   // Parts of a step up to an impact may be as short as they like: what one of these leaves is mostly rounding.
-  if (!w.waiting.empty()) plan.warm_scale = min(plan.warm_scale, kMostWarm);
+  if (!w.waiting.empty()) plan.warm_scale = min(plan.warm_scale, kMaxWarm);
   w.settings.last_substep = plan.h;
   w.settings.last_step = seconds;
   return plan;
 }
 
 // What is the same for all batches.
-Solve describe_solve(RigidWorld& w, BatchScratch& scratch, const ContactKernels& kernels, float seconds,
+BatchContext describe_solve(RigidWorld& w, BatchScratch& scratch, const ContactKernels& kernels, float seconds,
                      const SubStepping& plan) {
   const float h = plan.h;
-  Solve solve{w, scratch, kernels};
+  BatchContext solve{w, scratch, kernels};
   solve.h = h;
   solve.motions = {plan.parts, h, w.settings.gravity};
   solve.is_smooth = !w.motion_settings.empty();
-  const float pull = length(w.settings.gravity);
+  const float geometric_stiffness = length(w.settings.gravity);
   solve.contact_settings = {.substep = h,
                             .step = seconds,
                             .rate = min(kContactRate, 0.8f / h),
-                            .give = kContactLeak * h / (1.0f + kContactLeak * h),
+                            .compliance = kContactLeak * h / (1.0f + kContactLeak * h),
                             .aging = kContactAging,
                             .warm_scale = plan.warm_scale,
-                            .up = pull > 0.0f ? (-1.0f / pull) * w.settings.gravity : Vec3{}};
+                            .up = geometric_stiffness > 0.0f ? (-1.0f / geometric_stiffness) * w.settings.gravity : Vec3{}};
   // Long sub-steps take back no more than the whole error and give way by less than the whole impulse.
-  const float give = kJointLeak * h / (1.0f + kJointLeak * h);
-  solve.joint_settings = {h, {min(kJointRate, 0.8f / h), 1.0f - give, give}, row_solver_of(w) == nullptr};
-  solve.impact_settings = {h, kBounceShare * h * pull};
+  const float compliance = kJointLeak * h / (1.0f + kJointLeak * h);
+  solve.joint_settings = {h, {min(kJointRate, 0.8f / h), 1.0f - compliance, compliance}, row_solver_of(w) == nullptr};
+  solve.impact_settings = {h, kBounceShare * h * geometric_stiffness};
   solve.contact_bodies = {w.bodies.motion.data(), w.bodies.inertia.data()};
   solve.joint_bodies = {w.bodies.motion.data(), w.bodies.inertia.data(), w.bodies.orientations.data()};
   return solve;
@@ -250,18 +250,18 @@ void begin_scratch(BatchScratch& scratch) {
 // What constraints moved has its velocity from them.
 void forget_moves(RigidWorld& w) {
   for (const std::uint32_t body : w.bodies.awake) {
-    if (w.bodies.flags[body].touched != kUntouched) w.bodies.last_moves[body] = {};
+    if (w.bodies.flags[body].touched != kNotConstrained) w.bodies.last_moves[body] = {};
   }
 }
 
 // Whether workers may solve batches side by side: what fields, other solvers and other schemes tell of a step is put together by
 // one only.
-bool may_part(const RigidWorld& w, const TaskSystem& tasks) {
+bool can_solve_batches_in_parallel(const RigidWorld& w, const TaskSystem& tasks) {
   return tasks.worker_count() > 1 && w.fields.empty() && w.motion_settings.empty() &&
          row_solver_of(w) == nullptr;
 }
 
-void make_as_roomy(LoneSolver& lone, const LoneSolver& other) {
+void make_as_roomy(WorkerContext& lone, const WorkerContext& other) {
   const auto even = [](auto& array, const auto& its) { array.reserve(its.capacity()); };
   const auto even_colors = [&](Coloring& coloring, const Coloring& its) {
     even(coloring.color, its.color), even(coloring.order, its.order);
@@ -280,11 +280,11 @@ void make_as_roomy(LoneSolver& lone, const LoneSolver& other) {
 // longer allocates.
 void begin_lone(SolveScratch& scratch, std::size_t workers) {
   while (scratch.lone.size() > workers) scratch.lone.pop_back();
-  while (scratch.lone.size() < workers) scratch.lone.push_back(std::make_unique<LoneSolver>());
-  for (const std::unique_ptr<LoneSolver>& lone : scratch.lone) make_as_roomy(*scratch.lone[0], *lone);
-  for (const std::unique_ptr<LoneSolver>& lone : scratch.lone) make_as_roomy(*lone, *scratch.lone[0]);
+  while (scratch.lone.size() < workers) scratch.lone.push_back(std::make_unique<WorkerContext>());
+  for (const std::unique_ptr<WorkerContext>& lone : scratch.lone) make_as_roomy(*scratch.lone[0], *lone);
+  for (const std::unique_ptr<WorkerContext>& lone : scratch.lone) make_as_roomy(*lone, *scratch.lone[0]);
   // After all have heard of it: an arena that starts over forgets what it needed.
-  for (const std::unique_ptr<LoneSolver>& lone : scratch.lone) {
+  for (const std::unique_ptr<WorkerContext>& lone : scratch.lone) {
     begin_scratch(lone->scratch);
     lone->arena.reset();
   }
@@ -302,7 +302,7 @@ void sum_up(SolveScratch& scratch) {
     scratch.counts.colors_used |= part.counts.colors_used;
   };
   add(scratch.together);
-  for (const std::unique_ptr<LoneSolver>& lone : scratch.lone) add(lone->scratch);
+  for (const std::unique_ptr<WorkerContext>& lone : scratch.lone) add(lone->scratch);
   scratch.colors = std::popcount(scratch.counts.colors_used);
   scratch.report = scratch.together.report;
   scratch.rows = scratch.together.rows;
@@ -316,13 +316,13 @@ void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& 
   const SubStepping plan = plan_substeps(w, seconds, row_solver != nullptr);
   begin_bodies(w, tasks);
   begin_scratch(scratch.together);
-  const bool parted = may_part(w, tasks);
+  const bool parted = can_solve_batches_in_parallel(w, tasks);
   begin_lone(scratch, parted ? std::size_t(tasks.worker_count()) : 0);
   const ArenaScope scope(arena);
   const SolveBatches all = find_batches(w, arena, tasks, batch_size(tasks.worker_count(), parted));
   for (const SolveBatch& batch : all.batches) {
     if (parted && batch.is_small) continue;
-    Solve solve = describe_solve(w, scratch.together, kernels, seconds, plan);
+    BatchContext solve = describe_solve(w, scratch.together, kernels, seconds, plan);
     solve.batch = batch;
     solve.places = all.places;
     if (row_solver != nullptr) {
@@ -335,8 +335,8 @@ void solve_step(RigidWorld& w, SolveScratch& scratch, Arena& arena, TaskSystem& 
     for_blocks(tasks, int(all.batches.size()), 1, [&](int i, int, int worker) {
       const SolveBatch& batch = all.batches[std::size_t(i)];
       if (!batch.is_small) return;
-      LoneSolver& lone = *scratch.lone[std::size_t(worker)];
-      Solve solve = describe_solve(w, lone.scratch, kernels, seconds, plan);
+      WorkerContext& lone = *scratch.lone[std::size_t(worker)];
+      BatchContext solve = describe_solve(w, lone.scratch, kernels, seconds, plan);
       solve.batch = batch;
       solve.places = all.places;
       solve_batch(solve, lone.arena, lone.tasks, plan.warm_scale);

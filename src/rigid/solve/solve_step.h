@@ -4,7 +4,7 @@
 #pragma once
 
 #include "base/arena/arena.h"
-#include "rigid/articulation/linkages.h"
+#include "rigid/articulation/articulations.h"
 #include "rigid/store/rigid_world.h"
 #include "solver/contact/contact_block.h"
 #include "solver/contact/impact.h"
@@ -40,17 +40,17 @@ struct BatchScratch {
   Coloring joint_colors;
   Array<std::uint32_t> swept_joints;  // those of the batch's that are in no linkage: places in its list
   Array<ColoringPair> joint_pairs;    // theirs
-  DenseNets dense_nets;
+  DenseGraphCache dense_graphs;
   Array<std::uint32_t> order;  // constraint indices, W a block
   // Of all batches that were solved with it in this step:
   Array<SlotHit> hits;
   SolveCounts counts;
   StepReport report;
-  RowReport rows;  // of solvers that work on rows
+  RowStats rows;  // of solvers that work on rows
 };
 
 // What a worker needs that solves batches by itself.
-struct LoneSolver {
+struct WorkerContext {
   BatchScratch scratch;
   Arena arena;
   TaskSystem tasks;
@@ -58,11 +58,11 @@ struct LoneSolver {
 
 struct SolveScratch {
   BatchScratch together;                          // of batches that all workers solve together
-  std::vector<std::unique_ptr<LoneSolver>> lone;  // by worker; none where there is one worker
+  std::vector<std::unique_ptr<WorkerContext>> lone;  // by worker; none where there is one worker
   Array<SlotHit> hits;
   SolveCounts counts;  // of all batches
   StepReport report;
-  RowReport rows;
+  RowStats rows;
   int colors = 0;
 };
 

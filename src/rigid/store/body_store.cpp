@@ -92,7 +92,7 @@ void refresh_awake(BodyStore& store) {
   store.sleepers = 0;
   store.ids.for_each_live([&](std::uint32_t body) {
     const BodyFlags& flags = store.flags[body];
-    if (goes_along(flags)) store.awake.push_back(body);
+    if (is_simulated(flags)) store.awake.push_back(body);
     if (is_movable(flags) && flags.awake == 0) ++store.sleepers;
   });
 }

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "base/container/array.h"
-#include "base/container/shared_column.h"
+#include "base/container/interned_column.h"
 #include "base/container/slot_map.h"
 #include "base/container/small_array.h"
 #include "collision/continuous/time_of_impact.h"
@@ -20,7 +20,7 @@
 namespace gyre {
 
 // Where a body is: its centre of mass and how it is turned.
-struct BodyPlace {
+struct BodyPose {
   DVec3 center;
   Quat orientation;  // world_from_body
 };
@@ -47,7 +47,7 @@ struct BodyForces {
 };
 
 // What BodyFlags::touched says in a step: constraints or fields act on the body; they also look at its place in each sub-step.
-constexpr std::uint8_t kUntouched = 0, kTouched = 1, kPlaceShown = 2;
+constexpr std::uint8_t kNotConstrained = 0, kConstrained = 1, kPoseRead = 2;
 
 struct BodyFlags {
   BodyType type = BodyType::fixed;
@@ -76,11 +76,11 @@ struct BodyOverrides {
   Sym3 inertia;
 };
 
-inline auto shared_bits(const BodyMass& m) {
+inline auto interning_key(const BodyMass& m) {
   static_assert(sizeof(BodyMass) == 80, "every field is among the bits");
   return words_of(m.mass, m.inverse_mass, m.center, m.inertia, m.inverse_inertia, m.reach, m.size, m.isotropic);
 }
-inline auto shared_bits(const BodyOverrides& o) {
+inline auto interning_key(const BodyOverrides& o) {
   static_assert(sizeof(BodyOverrides) == 44, "every field is among the bits");
   const std::uint32_t has = std::uint32_t(o.has_mass) | std::uint32_t(o.has_center) << 8 | std::uint32_t(o.has_inertia) << 16;
   return words_of(has, o.mass, o.center, o.inertia);
@@ -90,13 +90,13 @@ struct BodyStore {
   IdPool ids;
   Array<BodyMotion> motion;
   Array<BodyInertia> inertia;       // world axes, of the present orientation; can be rebuilt
-  Array<BodyPlace> places;
+  Array<BodyPose> places;
   Array<Quat> orientations;         // beside `places` for the solver's gathers; equal to places[i].orientation between steps
-  SharedColumn<BodyMass> masses;
+  InternedColumn<BodyMass> masses;
   Array<BodyForces> forces;
   Array<BodyFlags> flags;
   Array<BodySleep> sleep;
-  SharedColumn<BodyOverrides> overrides;
+  InternedColumn<BodyOverrides> overrides;
   Array<std::uint64_t> user_data;
   Array<LastMove> last_moves;       // by slot, in worlds with the integrator verlet; else empty
   Array<SmallArray<ShapeId, 1>> shapes;         // by body, ascending index; derived
@@ -124,7 +124,7 @@ BodyInertia world_inertia(const BodyMass& mass, const BodyFlags& flags, Quat ori
 void refresh_inertia(BodyStore& store, std::uint32_t body);
 // The pose of the body's origin, from the place of its centre of mass. It is not kept: rounding would make the kept one
 // differ from what a world that is loaded can know.
-inline Pose origin_pose(const BodyPlace& place, const BodyMass& mass) {
+inline Pose origin_pose(const BodyPose& place, const BodyMass& mass) {
   return {place.center - rotate(place.orientation, mass.center), place.orientation};
 }
 inline Pose origin_pose(const BodyStore& store, std::uint32_t body) {
@@ -137,13 +137,13 @@ inline bool inertia_turns(const BodyMass& mass, const BodyFlags& flags) {
 }
 inline bool is_movable(const BodyFlags& flags) { return flags.type == BodyType::dynamic && flags.frozen == 0; }
 // Whether a step takes it along, by itself or as its velocity says. What does not may still hold the way of an earlier step.
-inline bool goes_along(const BodyFlags& flags) {
+inline bool is_simulated(const BodyFlags& flags) {
   return flags.awake != 0 && flags.type != BodyType::fixed && flags.frozen == 0;
 }
 // How the body moves over the step, as far as that is known.
 inline Sweep sweep_of_body(const BodyStore& store, std::uint32_t body) {
   const BodyMotion& motion = store.motion[body];
-  const bool moves = goes_along(store.flags[body]);
+  const bool moves = is_simulated(store.flags[body]);
   return {origin_pose(store, body), store.masses[body].center, moves ? motion.moved : Vec3{}, moves ? motion.turned : Vec3{}};
 }
 // What loops over bodies take at once.

@@ -8,8 +8,8 @@
 
 namespace gyre {
 
-constexpr float kLeastTolerance = 1.0e-9f;  // m
-constexpr int kMostImpacts = 4096;
+constexpr float kMinTolerance = 1.0e-9f;  // m
+constexpr int kMaxImpacts = 4096;
 
 struct MotionSettings {
   IntegratorKind integrator = IntegratorKind::semi_implicit_euler;

@@ -3,12 +3,12 @@
 
 #include "base/arena/arena.h"
 #include "base/container/flat_map.h"
-#include "base/arena/idle_clock.h"
+#include "base/arena/shrink_policy.h"
 #include "collision/broadphase/broadphase.h"
 #include "collision/contact/collide.h"
 #include "collision/contact/contact_store.h"
-#include "collision/contact/seam.h"
-#include "rigid/store/awake_links.h"
+#include "collision/contact/internal_edges.h"
+#include "rigid/store/active_constraints.h"
 #include "rigid/store/body_store.h"
 #include "rigid/store/field_record.h"
 #include "rigid/store/shape_store.h"
@@ -68,8 +68,8 @@ struct RigidEvents {
 
 // When memory that only busy steps need was last needed.
 struct ScratchClocks {
-  IdleClock changed, hurried, new_pairs, sort_scratch;
-  IdleClock begins, ends, hits, sensors, broken, sleep_changes;
+  ShrinkPolicy changed, hurried, new_pairs, sort_scratch;
+  ShrinkPolicy begins, ends, hits, sensors, broken, sleep_changes;
 };
 
 // How a body that fields act on fared in a step; by body, in worlds with fields.
@@ -95,9 +95,9 @@ struct RigidWorld {
   // Not state: can be rebuilt or lives for one step.
   std::unique_ptr<Broadphase> broadphase;
   bool broadphase_stale = true;        // must be rebuilt from all proxies
-  AwakeLinks awake_links;
+  ActiveConstraints awake_links;
   TouchChanges touches;
-  SeamScratch seams;  // contacts at flush edges, in the last step
+  InternalEdgeScratch internal_edges;  // contacts at flush edges, in the last step
   Array<std::uint64_t> new_pairs;
   Array<std::uint64_t> sort_scratch;
   Array<std::uint32_t> listed;         // contacts of a shape that is looked at
@@ -107,7 +107,7 @@ struct RigidWorld {
   Array<std::uint8_t> refit_marks;     // by shape: got a new fat box in this step
   RigidEvents events;
   ScratchClocks clocks;
-  Array<std::uint8_t> waiting;         // by contact: it does not act (rigid/time/impact_times.h); adaptive steps, else empty
+  Array<std::uint8_t> waiting;         // by contact: it does not act (rigid/time/toi_stepping.h); adaptive steps, else empty
   std::uint16_t world_number = 0;      // for ids in events
 };
 

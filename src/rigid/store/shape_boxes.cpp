@@ -154,16 +154,16 @@ class ShapeLanes {
     const Vector reach = half + Vector{margin, margin, margin}, position = middle - to_origin + to_shape;
     const Number slack = rounding * largest(absolute(middle) + absolute(to_origin) + absolute(to_shape) +
                                             reach + absolute(way));
-    Mask<kBoxLanes> stays = Mask<kBoxLanes>::splat(true);
+    Mask<kBoxLanes> stop_at_impact = Mask<kBoxLanes>::splat(true);
     const auto look = [&](Number at, Number away, Number goes, Number inside, Number from, Number to) {
-      stays =
-          stays & (at - away + min(goes, zero) - slack > from) & (at + away + max(goes, zero) + slack < to);
+      stop_at_impact =
+          stop_at_impact & (at - away + min(goes, zero) - slack > from) & (at + away + max(goes, zero) + slack < to);
       also(inside, from, to, slack);
     };
     look(position.x, reach.x, way.x, half.x, low.x, high.x);
     look(position.y, reach.y, way.y, half.y, low.y, high.y);
     look(position.z, reach.z, way.z, half.z, low.z, high.z);
-    return to_bits(stays) & known;
+    return to_bits(stop_at_impact) & known;
   }
 
   const ColliderShape* colliders_[kBoxLanes];

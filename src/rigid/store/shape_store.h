@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/container/array.h"
-#include "base/container/shared_column.h"
+#include "base/container/interned_column.h"
 #include "base/container/slot_map.h"
 #include "collision/contact/collide.h"
 #include "collision/broadphase/proxy.h"
@@ -13,13 +13,13 @@
 
 namespace gyre {
 
-inline auto shared_bits(const Transform& t) { return words_of(t.position, t.orientation); }
-inline auto shared_bits(const Material& m) {
+inline auto interning_key(const Transform& t) { return words_of(t.position, t.orientation); }
+inline auto interning_key(const Material& m) {
   static_assert(sizeof(Material) == 24, "every field is among the bits");
   return words_of(m.static_friction, m.dynamic_friction, m.restitution, m.rolling_friction, m.spinning_friction,
                   std::uint32_t(m.id));
 }
-inline auto shared_bits(const ColliderShape& c) {
+inline auto interning_key(const ColliderShape& c) {
   const Shape& s = c.shape;
   const std::uint64_t data = reinterpret_cast<std::uintptr_t>(s.hull);
   return words_of(std::uint32_t(s.kind), s.radius, s.extents, s.offset, data, c.body_from_shape.position,
@@ -29,16 +29,16 @@ inline auto shared_bits(const ColliderShape& c) {
 struct ShapeStore {
   IdPool ids;
   Array<std::uint32_t> bodies;      // owner of each shape
-  SharedColumn<Transform> places;          // body_from_shape
-  SharedColumn<ColliderShape> colliders;   // inner form of all that; borrows from `geometry`; derived
+  InternedColumn<Transform> places;          // body_from_shape
+  InternedColumn<ColliderShape> colliders;   // inner form of all that; borrows from `geometry`; derived
   Array<Proxy> proxies;             // fat boxes are state: they decide when pairs begin
-  SharedColumn<Material> materials;
+  InternedColumn<Material> materials;
   std::vector<AnyShape> geometry;   // keeps cooked data alive
   Array<float> density;
   Array<std::uint64_t> user_data;
   Array<std::uint32_t> changed;     // proxies that the broad phase has not seen yet, in no order; derived
   // The fat boxes of what is awake hold its way in a step of this length (s), but for those of `hurried`; derived.
-  float fit_for = 0.0f;
+  float fat_box_horizon = 0.0f;
   Array<std::uint32_t> hurried;     // shapes that commands placed or set moving since
 };
 

@@ -17,7 +17,7 @@ const char* fault_in(const SolverSettings& solver) {
   if (int(solver.kind) >= kSolverKindCount) return "solver: there is no such kind";
   if (int(solver.options.lcp_method) >= kLcpMethodCount) return "lcp_method: there is no such method";
   const int sides = solver.options.friction_sides;
-  if (sides != 0 && (sides < kLeastSides || sides > kMostSides || sides % 2 != 0))
+  if (sides != 0 && (sides < kMinSides || sides > kMaxSides || sides % 2 != 0))
     return "friction_sides must be 0 or an even number of 4 to 32";
   if (solver.options.iterations < 0 || solver.options.iterations > 10000)
     return "iterations must lie within 0 and 10000";

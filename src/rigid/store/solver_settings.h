@@ -21,7 +21,7 @@ constexpr int kSequentialSweeps = 10;
 constexpr int kNncgSweeps = 200;
 
 // What a step's islands had to say, the sub-steps together.
-struct RowReport {
+struct RowStats {
   double residual = 0.0;  // N s, or N m s
   int islands = 0;
   int largest = 0;    // rows of the largest island

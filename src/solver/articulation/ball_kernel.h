@@ -1,7 +1,7 @@
-// The kernels of ball joints side by side (solver/articulation/ball_lanes.h), one template for every width.
+// The kernels of ball joints side by side (solver/articulation/ball_joint_simd.h), one template for every width.
 #pragma once
 
-#include "solver/articulation/ball_lanes.h"
+#include "solver/articulation/ball_joint_simd.h"
 #include "solver/articulation/linkage_block.h"
 
 #include <cstring>
@@ -23,7 +23,7 @@ template <int W>
 struct BallBlock {
   std::int32_t read_a[W], read_b[W], write_a[W], write_b[W], inertia[W];
   // As LaneBall. Side by side what the same sweeps read: they wait for memory more than they compute.
-  Vec3W<W> local_a, local_b, offset, total, from_a, from_b, impulse, error, bend;
+  Vec3W<W> local_a, local_b, offset, total, from_a, from_b, impulse, error, second_order_bias;
   Mat3W<W> mass;  // of this sub-step: inverse of K
   // The bodies' records, to be read (zeros for what has none), and where they are written: most blocks push all that they read, and
   // have one list for both.
@@ -74,7 +74,7 @@ struct BallMotion {
     gather_columns<8, W>(block.record_b, kMotionLinear, c);
     linear_b = {c[0], c[1], c[2]}, angular_b = {c[3], c[4], c[5]};
   }
-  GYRE_INLINE void push(const BallBlock<W>& block, Vec3W<W> p) {
+  GYRE_INLINE void direction(const BallBlock<W>& block, Vec3W<W> p) {
     const BallInertia<W>&a = *block.inertia_a, &b = *block.inertia_b;
     linear_a -= a.inverse_mass * p;
     angular_a -= a.inverse * cross(block.from_a, p);
@@ -107,7 +107,7 @@ struct BallSide {
   GYRE_INLINE BallSide(const std::int32_t* indices, const RecordList<W>& records, const BallArrays& arrays) {
     alignas(16) static constexpr float kUnturned[4] = {0.0f, 0.0f, 0.0f, 1.0f};
     Wide<W> c[4];
-    gather_fours<1, W, 4>(&arrays.orientation->x, indices, kUnturned, 0, c);
+    gather_vec4<1, W, 4>(&arrays.orientation->x, indices, kUnturned, 0, c);
     orientation = {c[0], c[1], c[2], c[3]};
     gather_columns<4, W>(records, kMotionMoved, c);
     moved = {c[0], c[1], c[2]};
@@ -119,7 +119,7 @@ GYRE_INLINE void load_inertia(const std::int32_t* indices, const BallArrays& arr
                               BallInertia<W>& inertia) {
   constexpr int kInertiaFloats = int(sizeof(BodyInertia) / sizeof(float));
   Wide<W> c[8];
-  gather_fours<2, W, kInertiaFloats>(&arrays.inertia->inverse.xx, indices, kNothing, 0, c);
+  gather_vec4<2, W, kInertiaFloats>(&arrays.inertia->inverse.xx, indices, kNothing, 0, c);
   inertia = {c[6], {c[0], c[1], c[2], c[3], c[4], c[5]}};
 }
 // To the bit.
@@ -182,13 +182,13 @@ void place_balls(void* blocks, int begin, int end, const BallArrays& arrays) {
 }
 
 template <int W>
-void bend_balls(void* blocks, int begin, int end, const BallSettings& settings) {
+void update_ball_bias(void* blocks, int begin, int end, const BallSettings& settings) {
   for (int i = begin; i < end; ++i) {
     BallBlock<W>& block = static_cast<BallBlock<W>*>(blocks)[i];
     const BallMotion<W> pair(block);
-    const Vec3W<W> bend = cross(pair.angular_b, cross(pair.angular_b, block.from_b)) -
+    const Vec3W<W> second_order_bias = cross(pair.angular_b, cross(pair.angular_b, block.from_b)) -
                           cross(pair.angular_a, cross(pair.angular_a, block.from_a));
-    block.bend = (0.5f * settings.substep) * bend;
+    block.second_order_bias = (0.5f * settings.substep) * second_order_bias;
   }
 }
 
@@ -197,7 +197,7 @@ void warm_balls(void* blocks, int begin, int end) {
   for (int i = begin; i < end; ++i) {
     BallBlock<W>& block = static_cast<BallBlock<W>*>(blocks)[i];
     BallMotion<W> pair(block);
-    pair.push(block, block.impulse);
+    pair.direction(block, block.impulse);
     pair.store(block);
   }
 }
@@ -207,10 +207,10 @@ void solve_balls(void* blocks, int begin, int end, const BallSettings& s) {
   for (int i = begin; i < end; ++i) {
     BallBlock<W>& block = static_cast<BallBlock<W>*>(blocks)[i];
     BallMotion<W> pair(block);
-    const Vec3W<W> speed = pair.point_velocity(block) + block.bend;
+    const Vec3W<W> speed = pair.point_velocity(block) + block.second_order_bias;
     const Vec3W<W> change =
         -s.mass_scale * (block.mass * (speed + s.rate * block.error)) - s.impulse_scale * block.impulse;
-    pair.push(block, change);
+    pair.direction(block, change);
     block.impulse += change;
     pair.store(block);
   }
@@ -224,7 +224,7 @@ void relax_balls(void* blocks, int begin, int end) {
     BallBlock<W>& block = static_cast<BallBlock<W>*>(blocks)[i];
     BallMotion<W> pair(block);
     const Vec3W<W> change = -(block.mass * (pair.point_velocity(block) + nothing));
-    pair.push(block, change);
+    pair.direction(block, change);
     block.impulse += change;
     block.total += block.impulse;
     pair.store(block);
@@ -239,7 +239,7 @@ constexpr BallKernels ball_kernels() {
           offsetof(BallBlock<W>, local_a),
           locate_balls<W>,
           place_balls<W>,
-          bend_balls<W>,
+          update_ball_bias<W>,
           warm_balls<W>,
           solve_balls<W>,
           relax_balls<W>};

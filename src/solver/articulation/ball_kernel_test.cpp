@@ -1,7 +1,7 @@
 // Ball joints side by side: the bits of each joint solved alone, at every width.
 #include "base/arena/arena.h"
 #include "math/rotation.h"
-#include "solver/articulation/ball_records.h"
+#include "solver/articulation/ball_joint_transfer.h"
 #include "solver/contact/contact_block.h"
 
 #include <gtest/gtest.h>
@@ -23,8 +23,8 @@ struct Pairs {
   std::vector<BodyInertia> inertia{std::size_t(2 * kJoints)};
   std::vector<Quat> orientation{std::size_t(2 * kJoints)};
   std::vector<JointRecord> records{std::size_t(kJoints)};
-  std::vector<JointWork> work{std::size_t(kJoints)};
-  std::vector<JointPlaces> places{std::size_t(kJoints)};
+  std::vector<JointConstraint> work{std::size_t(kJoints)};
+  std::vector<JointOffsets> places{std::size_t(kJoints)};
 
   Pairs() {
     std::uint32_t state = 7;
@@ -60,14 +60,14 @@ struct Pairs {
 void solve_alone(Pairs& pairs) {
   for (std::size_t i = 0; i < kJoints; ++i) {
     JointRecord& joint = pairs.records[i];
-    JointWork& work = pairs.work[i];
+    JointConstraint& work = pairs.work[i];
     const JointBodies bodies = pairs.bodies();
-    place_joint(joint, work, pairs.places[i], bodies, kSettings);
-    bend_joint(joint, work, bodies, kSettings);
+    prepare_joint(joint, work, pairs.places[i], bodies, kSettings);
+    update_joint_bias(joint, work, bodies, kSettings);
     warm_start_joint(joint, work, bodies);
     solve_joint(joint, work, bodies, kSettings, true);
     solve_joint(joint, work, bodies, kSettings, false);
-    sum_joint(joint, work, bodies);
+    accumulate_joint_impulses(joint, work, bodies);
   }
 }
 
@@ -87,7 +87,7 @@ void solve_side_by_side(Pairs& pairs, int width) {
   }
   kernels.locate(memory, 0, blocks, arrays);
   kernels.place(memory, 0, blocks, arrays);
-  kernels.bend(memory, 0, blocks, settings);
+  kernels.second_order_bias(memory, 0, blocks, settings);
   kernels.warm(memory, 0, blocks);
   kernels.solve(memory, 0, blocks, settings);
   kernels.relax(memory, 0, blocks);

@@ -9,7 +9,7 @@ namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
 template <int W>
-struct LinkedBody {
+struct WideBody {
   std::int32_t record[W];
   std::int32_t pressed[W];  // 1: contacts act on it
   Vec3W<W> linear,
@@ -22,33 +22,33 @@ struct LinkedBody {
   // While joints are placed: the pose, and by how much tension holds it (N m/rad).
   QuatW<W> orientation;
   Vec3W<W> moved;
-  Sym3W<W> pull;
+  Sym3W<W> geometric_stiffness;
   Vec3W<W> center;  // while inner motion is slowed: from that of the first body
 };
 
-static_assert(offsetof(LinkedBody<4>, angular) == offsetof(LinkedBody<4>, linear) + sizeof(Vec3W<4>));
+static_assert(offsetof(WideBody<4>, angular) == offsetof(WideBody<4>, linear) + sizeof(Vec3W<4>));
 
-// As LaneAxis, LaneJoint, LaneDrives and LaneServo.
+// As LaneLimitAxis, LaneJoint, LaneDrives and LaneServo.
 template <int W>
-struct LinkedAxis {
+struct WideLimitAxis {
   Wide<W> low, high, low_impulse, high_impulse, total, low_gap, high_gap;
   Vec3W<W> about;
   Wide<W> mass;
 };
 template <int W>
-struct LinkedJoint {
+struct WideJoint {
   Vec3W<W> local_a, local_b, offset, linear_impulse, angular_impulse, total_linear, total_angular;
   QuatW<W> local_frame_a, local_frame_b;
-  Wide<W> position, swing_grip_y, swing_grip_z;
-  LinkedAxis<W> twist, swing;
-  Vec3W<W> from_a, from_b, error, give, wanted;
+  Wide<W> position, inverse_swing_y, inverse_swing_z;
+  WideLimitAxis<W> twist, swing;
+  Vec3W<W> from_a, from_b, error, compliance, target_speed;
   Vec3W<W> axis, perpendicular_1, perpendicular_2, angular_error;
   Wide<W> turn_give_1, turn_give_2, turn_wanted_1, turn_wanted_2;
 };
 template <int W>
-struct LinkedDrives {
+struct WideDrives {
   Vec3W<W> drive_impulse, friction_impulse;
-  Wide<W> total, most_drive, most_friction;
+  Wide<W> total, max_drive, max_friction;
   Vec3W<W> target_speed;
   QuatW<W> target;
   Wide<W> rate, mass_scale, impulse_scale;
@@ -56,30 +56,30 @@ struct LinkedDrives {
   Sym3W<W> mass;
 };
 template <int W>
-struct LinkedServo {
-  LinkedAxis<W> axis;
+struct WideServo {
+  WideLimitAxis<W> axis;
   Wide<W> most, target_speed, rate;
 };
-static_assert(sizeof(LinkedDrives<1>) == sizeof(LaneDrives) && sizeof(LinkedServo<1>) == sizeof(LaneServo));
-static_assert(sizeof(LinkedAxis<1>) == sizeof(LaneAxis) && sizeof(LinkedJoint<1>) == sizeof(LaneJoint));
-static_assert(offsetof(LinkedJoint<1>, swing) == offsetof(LaneJoint, swing));
-static_assert(offsetof(LinkedJoint<1>, from_a) == offsetof(LaneJoint, from_a));
+static_assert(sizeof(WideDrives<1>) == sizeof(LaneDrives) && sizeof(WideServo<1>) == sizeof(LaneServo));
+static_assert(sizeof(WideLimitAxis<1>) == sizeof(LaneLimitAxis) && sizeof(WideJoint<1>) == sizeof(LaneJoint));
+static_assert(offsetof(WideJoint<1>, swing) == offsetof(LaneJoint, swing));
+static_assert(offsetof(WideJoint<1>, from_a) == offsetof(LaneJoint, from_a));
 
 // A bundle while a stage works on it.
 template <int W>
-struct Bundle {
-  const LinkageBundle& plain;
-  LinkedBody<W>* bodies;
-  LinkedJoint<W>* joints;
-  LinkedDrives<W>* drives;
-  LinkedServo<W>* servos;
+struct WideBundle {
+  const ArticulationBundle& plain;
+  WideBody<W>* bodies;
+  WideJoint<W>* joints;
+  WideDrives<W>* drives;
+  WideServo<W>* servos;
 
-  GYRE_INLINE explicit Bundle(const LinkageBundle& bundle)
+  GYRE_INLINE explicit WideBundle(const ArticulationBundle& bundle)
       : plain(bundle),
-        bodies(reinterpret_cast<LinkedBody<W>*>(bundle.bodies)),
-        joints(reinterpret_cast<LinkedJoint<W>*>(bundle.joints)),
-        drives(reinterpret_cast<LinkedDrives<W>*>(bundle.drives)),
-        servos(reinterpret_cast<LinkedServo<W>*>(bundle.servos)) {}
+        bodies(reinterpret_cast<WideBody<W>*>(bundle.bodies)),
+        joints(reinterpret_cast<WideJoint<W>*>(bundle.joints)),
+        drives(reinterpret_cast<WideDrives<W>*>(bundle.drives)),
+        servos(reinterpret_cast<WideServo<W>*>(bundle.servos)) {}
   GYRE_INLINE bool moves(std::uint32_t body) const { return body < plain.moving_count; }
 
   // Of the matrix.
@@ -98,15 +98,15 @@ struct Bundle {
 
 // The impulse p at the joint and the turning impulse t, on b, and their opposites on a.
 template <int W>
-GYRE_INLINE void push_joint(const Bundle<W>& bundle, const LaneNode& node, const LinkedJoint<W>& joint,
+GYRE_INLINE void push_joint(const WideBundle<W>& bundle, const LaneNode& node, const WideJoint<W>& joint,
                             Vec3W<W> p, Vec3W<W> t) {
   if (bundle.moves(node.a)) {
-    LinkedBody<W>& a = bundle.bodies[node.a];
+    WideBody<W>& a = bundle.bodies[node.a];
     a.linear -= a.inverse_mass * p;
     a.angular -= a.inverse * (cross(joint.from_a, p) + t);
   }
   if (bundle.moves(node.b)) {
-    LinkedBody<W>& b = bundle.bodies[node.b];
+    WideBody<W>& b = bundle.bodies[node.b];
     b.linear += b.inverse_mass * p;
     b.angular += b.inverse * (cross(joint.from_b, p) + t);
   }
@@ -114,7 +114,7 @@ GYRE_INLINE void push_joint(const Bundle<W>& bundle, const LaneNode& node, const
 
 // `Fours` times four floats of records of `Stride` floats; of `none` where there is no record.
 template <int Fours, int W, int Stride>
-GYRE_INLINE void gather_fours(const float* base, const std::int32_t* indices, const float* none, int first,
+GYRE_INLINE void gather_vec4(const float* base, const std::int32_t* indices, const float* none, int first,
                               Wide<W>* out) {
   const float* record[W];
   locate_records<W, Stride>(base, indices, none, record);
@@ -129,9 +129,9 @@ GYRE_INLINE void gather_fours(const float* base, const std::int32_t* indices, co
 
 // (These two are not inline: every stage has them.)
 template <int W>
-__attribute__((noinline)) void load_velocities(const Bundle<W>& bundle, const LaneArrays& arrays) {
+__attribute__((noinline)) void load_velocities(const WideBundle<W>& bundle, const LaneArrays& arrays) {
   for (std::uint32_t i = arrays.loads ? 0 : bundle.plain.moving_count; i < bundle.plain.body_count; ++i) {
-    LinkedBody<W>& body = bundle.bodies[i];
+    WideBody<W>& body = bundle.bodies[i];
     Wide<W> c[8];
     gather8<W>(&arrays.motion->linear_velocity.x, body.record, c);
     body.linear = {c[0], c[1], c[2]};
@@ -140,11 +140,11 @@ __attribute__((noinline)) void load_velocities(const Bundle<W>& bundle, const La
 }
 
 template <int W>
-__attribute__((noinline)) void store_velocities(const Bundle<W>& bundle, const LaneArrays& arrays) {
+__attribute__((noinline)) void store_velocities(const WideBundle<W>& bundle, const LaneArrays& arrays) {
   // Adding zero keeps -0 out of the state.
   const Wide<W> zero(0.0f);
   for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i) {
-    LinkedBody<W>& body = bundle.bodies[i];
+    WideBody<W>& body = bundle.bodies[i];
     body.linear = {body.linear.x + zero, body.linear.y + zero, body.linear.z + zero};
     body.angular = {body.angular.x + zero, body.angular.y + zero, body.angular.z + zero};
     if (!arrays.stores) continue;
@@ -156,26 +156,26 @@ __attribute__((noinline)) void store_velocities(const Bundle<W>& bundle, const L
 
 // Where the bodies are, and their inertia.
 template <int W>
-GYRE_INLINE void load_poses(const Bundle<W>& bundle, const LaneArrays& arrays) {
+GYRE_INLINE void load_poses(const WideBundle<W>& bundle, const LaneArrays& arrays) {
   alignas(64) static constexpr float kZeros[kRecordFloats] = {};
   alignas(16) static constexpr float kUnturned[4] = {0.0f, 0.0f, 0.0f, 1.0f};
   constexpr int kInertiaFloats = int(sizeof(BodyInertia) / sizeof(float));
   for (std::uint32_t i = 0; i < bundle.plain.body_count; ++i) {
-    LinkedBody<W>& body = bundle.bodies[i];
+    WideBody<W>& body = bundle.bodies[i];
     Wide<W> c[8];
-    gather_fours<1, W, 4>(&arrays.orientation->x, body.record, kUnturned, 0, c);
+    gather_vec4<1, W, 4>(&arrays.orientation->x, body.record, kUnturned, 0, c);
     body.orientation = {c[0], c[1], c[2], c[3]};
-    gather_fours<1, W, kMotionFloats>(&arrays.motion->linear_velocity.x, body.record, kZeros, kMotionMoved,
+    gather_vec4<1, W, kMotionFloats>(&arrays.motion->linear_velocity.x, body.record, kZeros, kMotionMoved,
                                       c);
     body.moved = {c[0], c[1], c[2]};
     const Wide<W> zero(0.0f);
-    body.pull = {zero, zero, zero, zero, zero, zero};
+    body.geometric_stiffness = {zero, zero, zero, zero, zero, zero};
     if (!bundle.moves(i)) {
       body.inverse_mass = zero;
-      body.inverse = body.own_inverse = body.inertia = body.pull;
+      body.inverse = body.own_inverse = body.inertia = body.geometric_stiffness;
       continue;
     }
-    gather_fours<2, W, kInertiaFloats>(&arrays.inertia->inverse.xx, body.record, kZeros, 0, c);
+    gather_vec4<2, W, kInertiaFloats>(&arrays.inertia->inverse.xx, body.record, kZeros, 0, c);
     body.own_inverse = {c[0], c[1], c[2], c[3], c[4], c[5]};
     body.inverse = body.own_inverse;
     body.inverse_mass = c[6];

@@ -10,8 +10,8 @@ inline namespace GYRE_TARGET_NAMESPACE {
 // -------------------------------------------------------------------------------------------------------------- place
 
 template <int W>
-GYRE_INLINE void place_hinge_drives(const LinkedJoint<W>& joint, LinkedDrives<W>& d, const LinkedBody<W>& a,
-                                    const LinkedBody<W>& b) {
+GYRE_INLINE void place_hinge_drives(const WideJoint<W>& joint, WideDrives<W>& d, const WideBody<W>& a,
+                                    const WideBody<W>& b) {
   const Wide<W> k = dot(joint.axis, a.own_inverse * joint.axis) + dot(joint.axis, b.own_inverse * joint.axis);
   d.mass.xx = keep(k > 0.0f, 1.0f / k);
   d.error.x = joint.position - d.target.x;
@@ -19,13 +19,13 @@ GYRE_INLINE void place_hinge_drives(const LinkedJoint<W>& joint, LinkedDrives<W>
 }
 
 template <int W>
-__attribute__((noinline)) void place_drives(const Bundle<W>& bundle) {
+__attribute__((noinline)) void place_drives(const WideBundle<W>& bundle) {
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
     const LaneNode& node = bundle.plain.nodes[n];
     if (!node.is_driven()) continue;
-    const LinkedJoint<W>& joint = bundle.joints[n];
-    const LinkedBody<W>&a = bundle.bodies[node.a], &b = bundle.bodies[node.b];
-    LinkedDrives<W>& d = bundle.drives[node.drives];
+    const WideJoint<W>& joint = bundle.joints[n];
+    const WideBody<W>&a = bundle.bodies[node.a], &b = bundle.bodies[node.b];
+    WideDrives<W>& d = bundle.drives[node.drives];
     if (node.kind == JointKind::hinge) {
       place_hinge_drives(joint, d, a, b);
       continue;
@@ -41,11 +41,11 @@ __attribute__((noinline)) void place_drives(const Bundle<W>& bundle) {
 
 // What solves stops has them too.
 template <int W>
-__attribute__((noinline)) void place_servos(const Bundle<W>& bundle) {
+__attribute__((noinline)) void place_servos(const WideBundle<W>& bundle) {
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
     const LaneNode& node = bundle.plain.nodes[n];
     if (!node.has_servo) continue;
-    LinkedAxis<W>& axis = bundle.servos[node.servo].axis;
+    WideLimitAxis<W>& axis = bundle.servos[node.servo].axis;
     place_axis(axis, bundle.joints[n].axis, bundle.bodies[node.a], bundle.bodies[node.b]);
     axis.low_gap = bundle.joints[n].position - axis.low;
   }
@@ -55,57 +55,57 @@ __attribute__((noinline)) void place_servos(const Bundle<W>& bundle) {
 
 // Turns b by an impulse, and a by its opposite; inertias as they are. (Not inline: it is asked for in many places.)
 template <int W>
-__attribute__((noinline)) void turn_joint(const Bundle<W>& bundle, const LaneNode& node, Vec3W<W> t) {
+__attribute__((noinline)) void turn_joint(const WideBundle<W>& bundle, const LaneNode& node, Vec3W<W> t) {
   if (bundle.moves(node.a)) bundle.bodies[node.a].angular -= bundle.bodies[node.a].own_inverse * t;
   if (bundle.moves(node.b)) bundle.bodies[node.b].angular += bundle.bodies[node.b].own_inverse * t;
 }
 
 template <int W>
-GYRE_INLINE Vec3W<W> turning_of(const Bundle<W>& bundle, const LaneNode& node) {
+GYRE_INLINE Vec3W<W> turning_of(const WideBundle<W>& bundle, const LaneNode& node) {
   return bundle.bodies[node.b].angular - bundle.bodies[node.a].angular;
 }
 
 template <int W>
-GYRE_INLINE void sweep_hinge(const Bundle<W>& bundle, const LaneNode& node, Vec3W<W> axis,
-                             LinkedDrives<W>& d) {
-  const auto change = [&](Wide<W>& kept, Wide<W> wanted, Wide<W> most) {
-    const Wide<W> now = min(max(wanted, Wide<W>(0.0f) - most), most);
+GYRE_INLINE void sweep_hinge(const WideBundle<W>& bundle, const LaneNode& node, Vec3W<W> axis,
+                             WideDrives<W>& d) {
+  const auto change = [&](Wide<W>& kept, Wide<W> target_speed, Wide<W> most) {
+    const Wide<W> now = min(max(target_speed, Wide<W>(0.0f) - most), most);
     turn_joint(bundle, node, (now - kept) * axis);
     kept = now;
   };
   if (node.has_drive) {
     Wide<W>& kept = d.drive_impulse.x;
     const Wide<W> closing = dot(axis, turning_of(bundle, node)) - d.speed.x + d.rate * d.error.x;
-    change(kept, kept - d.mass_scale * d.mass.xx * closing - d.impulse_scale * kept, d.most_drive);
+    change(kept, kept - d.mass_scale * d.mass.xx * closing - d.impulse_scale * kept, d.max_drive);
   }
   if (node.has_friction) {
     Wide<W>& kept = d.friction_impulse.x;
-    change(kept, kept - d.mass.xx * dot(axis, turning_of(bundle, node)), d.most_friction);
+    change(kept, kept - d.mass.xx * dot(axis, turning_of(bundle, node)), d.max_friction);
   }
 }
 
 template <int W>
-__attribute__((noinline)) void sweep_drives(const Bundle<W>& bundle) {
+__attribute__((noinline)) void sweep_drives(const WideBundle<W>& bundle) {
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
     const LaneNode& node = bundle.plain.nodes[n];
     if (!node.is_driven()) continue;
-    LinkedDrives<W>& d = bundle.drives[node.drives];
+    WideDrives<W>& d = bundle.drives[node.drives];
     if (node.kind == JointKind::hinge) {
       sweep_hinge(bundle, node, bundle.joints[n].axis, d);
       continue;
     }
-    const auto change = [&](Vec3W<W>& kept, Vec3W<W> wanted, Wide<W> most) {
-      const Vec3W<W> now = within(wanted, most);
+    const auto change = [&](Vec3W<W>& kept, Vec3W<W> target_speed, Wide<W> most) {
+      const Vec3W<W> now = clamp_length(target_speed, most);
       turn_joint(bundle, node, now - kept);
       kept = now;
     };
     if (node.has_drive) {
       Vec3W<W>& kept = d.drive_impulse;
       const Vec3W<W> closing = turning_of(bundle, node) - d.speed + d.rate * d.error;
-      change(kept, kept - d.mass_scale * (d.mass * closing) - d.impulse_scale * kept, d.most_drive);
+      change(kept, kept - d.mass_scale * (d.mass * closing) - d.impulse_scale * kept, d.max_drive);
     }
     if (node.has_friction)
-      change(d.friction_impulse, d.friction_impulse - d.mass * turning_of(bundle, node), d.most_friction);
+      change(d.friction_impulse, d.friction_impulse - d.mass * turning_of(bundle, node), d.max_friction);
   }
 }
 
@@ -113,14 +113,14 @@ __attribute__((noinline)) void sweep_drives(const Bundle<W>& bundle) {
 
 // Of a joint's drive and friction together.
 template <int W>
-GYRE_INLINE Vec3W<W> sum_of(const LaneNode& node, const LinkedDrives<W>& d) {
+GYRE_INLINE Vec3W<W> sum_of(const LaneNode& node, const WideDrives<W>& d) {
   if (!node.has_friction) return d.drive_impulse;
   return node.has_drive ? d.drive_impulse + d.friction_impulse : d.friction_impulse;
 }
 // As a turning impulse on b.
 template <int W>
-GYRE_INLINE Vec3W<W> driven_impulse(const LaneNode& node, const LinkedJoint<W>& joint,
-                                    const LinkedDrives<W>& d) {
+GYRE_INLINE Vec3W<W> driven_impulse(const LaneNode& node, const WideJoint<W>& joint,
+                                    const WideDrives<W>& d) {
   const Vec3W<W> sum = sum_of(node, d);
   return node.kind == JointKind::hinge ? sum.x * joint.axis : sum;
 }
@@ -128,10 +128,10 @@ GYRE_INLINE Vec3W<W> driven_impulse(const LaneNode& node, const LinkedJoint<W>& 
 // What drives and the equations gave in the last part of the step, again: a sweep must see all that a joint bears, or it would hold
 // against the fall of what the equations are about to hold.
 template <int W>
-GYRE_INLINE void push_driven(const Bundle<W>& bundle) {
+GYRE_INLINE void push_driven(const WideBundle<W>& bundle) {
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
     const LaneNode& node = bundle.plain.nodes[n];
-    LinkedJoint<W>& joint = bundle.joints[n];
+    WideJoint<W>& joint = bundle.joints[n];
     if (node.is_driven()) turn_joint(bundle, node, driven_impulse(node, joint, bundle.drives[node.drives]));
     const Wide<W> zero(0.0f);
     Vec3W<W> turn{zero, zero, zero};
@@ -145,7 +145,7 @@ GYRE_INLINE void push_driven(const Bundle<W>& bundle) {
 }
 
 template <int W>
-GYRE_INLINE void sum_drives(const LaneNode& node, LinkedJoint<W>& joint, LinkedDrives<W>& d) {
+GYRE_INLINE void sum_drives(const LaneNode& node, WideJoint<W>& joint, WideDrives<W>& d) {
   joint.total_angular += driven_impulse(node, joint, d);
   if (node.kind == JointKind::hinge) d.total += sum_of(node, d).x;
 }

@@ -1,10 +1,10 @@
-// The velocities of a bundle of linkages (solver/articulation/linkage_lanes.h): what warm_linkage(), solve_linkage() and relax_linkage() do for
+// The velocities of a bundle of linkages (solver/articulation/linkage_lanes.h): what warm_start_articulation(), solve_articulation() and relax_articulation() do for
 // one alone. A ball joint's three rows are one vector here, and an impulse goes to a body as a force at its arm.
 #pragma once
 
 #include "solver/articulation/linkage_drives_kernel.h"
-#include "solver/articulation/linkage_energy_kernel.h"
-#include "solver/articulation/linkage_stops_kernel.h"
+#include "solver/articulation/articulation_energy_kernel.h"
+#include "solver/articulation/articulation_limits_kernel.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
@@ -28,7 +28,7 @@ GYRE_INLINE Vec3W<W> swing_of(const QuatW<W>& turn, Vec3W<W> arm) {
 
 // How a hinge's error will have changed at the end of the sub-step, over its length, beyond what the rows see.
 template <int W>
-GYRE_INLINE Vec3W<W> hinge_bend(const LinkedJoint<W>& joint, const LinkedBody<W>& a, const LinkedBody<W>& b,
+GYRE_INLINE Vec3W<W> hinge_second_order_bias(const WideJoint<W>& joint, const WideBody<W>& a, const WideBody<W>& b,
                                 float per_substep) {
   const Vec3W<W> error = joint.angular_error;  // axis a x axis b
   const Vec3W<W> axis_b =
@@ -41,17 +41,17 @@ GYRE_INLINE Vec3W<W> hinge_bend(const LinkedJoint<W>& joint, const LinkedBody<W>
 // How their bodies turn makes joints bend: by how much of it they are asked for more. `turns`: the square of how far the faster of a
 // joint's bodies turns in the sub-step.
 template <int W>
-GYRE_INLINE Wide<W> bend_share(Wide<W> turns, float most_turn) {
+GYRE_INLINE Wide<W> bias_fade(Wide<W> turns, float max_turn) {
   // Of those that hardly turn nothing is asked; of those that turn far, less.
-  constexpr float kLeast = kLeastBendTurn * kLeastBendTurn;
-  const float most = most_turn * most_turn;
+  constexpr float kLeast = kMinBiasAngle * kMinBiasAngle;
+  const float most = max_turn * max_turn;
   const Wide<W> share = keep(turns > kLeast, Wide<W>(1.0f));
   return select(turns > most, most / turns, share);
 }
 
 // How fast errors are taken back: what bend that was not asked for opened, at once.
 template <int W>
-GYRE_INLINE Wide<W> take_back(Wide<W> turns, float rate, float per_substep) {
+GYRE_INLINE Wide<W> remove_error(Wide<W> turns, float rate, float per_substep) {
   constexpr float kCalm = kCalmTurn * kCalmTurn;
   const Mask<W> fast = turns > kCalm;
   const Wide<W> back(-rate);
@@ -60,14 +60,14 @@ GYRE_INLINE Wide<W> take_back(Wide<W> turns, float rate, float per_substep) {
 }
 
 template <int W>
-GYRE_INLINE void ask_bend(const LaneNode& node, LinkedJoint<W>& joint, const LinkedBody<W>& a,
-                          const LinkedBody<W>& b, Wide<W> share, float per_substep) {
-  const Vec3W<W> bend = per_substep * (swing_of(b.turn, joint.from_b) - swing_of(a.turn, joint.from_a)) -
+GYRE_INLINE void add_second_order_bias(const LaneNode& node, WideJoint<W>& joint, const WideBody<W>& a,
+                          const WideBody<W>& b, Wide<W> share, float per_substep) {
+  const Vec3W<W> second_order_bias = per_substep * (swing_of(b.turn, joint.from_b) - swing_of(a.turn, joint.from_a)) -
                         (cross(b.angular, joint.from_b) - cross(a.angular, joint.from_a));
   const Mask<W> bends = share > 0.0f;
-  joint.wanted = select(bends, joint.wanted - share * bend, joint.wanted);
+  joint.target_speed = select(bends, joint.target_speed - share * second_order_bias, joint.target_speed);
   if (node.kind != JointKind::hinge) return;
-  const Vec3W<W> turn = share * hinge_bend(joint, a, b, per_substep);
+  const Vec3W<W> turn = share * hinge_second_order_bias(joint, a, b, per_substep);
   joint.turn_wanted_1 =
       select(bends, joint.turn_wanted_1 - dot(turn, joint.perpendicular_1), joint.turn_wanted_1);
   joint.turn_wanted_2 =
@@ -76,35 +76,35 @@ GYRE_INLINE void ask_bend(const LaneNode& node, LinkedJoint<W>& joint, const Lin
 
 // That the end of the sub-step, not its beginning, meets the joints. (In one place, as stops are: all that solves asks.)
 template <int W>
-__attribute__((noinline)) void ask_lanes(const Bundle<W>& bundle, const LaneSettings& s, ErrorBounds bounds) {
+__attribute__((noinline)) void compute_lane_bias(const WideBundle<W>& bundle, const LaneSettings& s, ErrorBounds bounds) {
   const float h = s.substep, per_substep = 1.0f / s.substep;
   for (std::uint32_t i = 0; i < bundle.plain.body_count; ++i) {
-    LinkedBody<W>& body = bundle.bodies[i];
+    WideBody<W>& body = bundle.bodies[i];
     const Vec3W<W> w = body.angular;
     const Vec3W<W> swerve = body.own_inverse * cross(body.inertia * w, w);  // free rotation
-    body.turn = small_rotation(h * (w + (0.5f * h * s.swerves) * swerve));
+    body.turn = small_rotation(h * (w + (0.5f * h * s.gyroscopic_share) * swerve));
   }
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
     const LaneNode& node = bundle.plain.nodes[n];
-    LinkedJoint<W>& joint = bundle.joints[n];
-    const LinkedBody<W>&a = bundle.bodies[node.a], &b = bundle.bodies[node.b];
+    WideJoint<W>& joint = bundle.joints[n];
+    const WideBody<W>&a = bundle.bodies[node.a], &b = bundle.bodies[node.b];
     const Wide<W> turns = (h * h) * max(length_squared(a.angular), length_squared(b.angular));
-    const Wide<W> back = take_back(turns, s.rate, per_substep);
-    joint.wanted = back * within(joint.error, bounds.point);
+    const Wide<W> back = remove_error(turns, s.rate, per_substep);
+    joint.target_speed = back * clamp_length(joint.error, bounds.point);
     if (node.kind == JointKind::hinge) {
-      const Vec3W<W> turn = back * within(joint.angular_error, bounds.turn);
+      const Vec3W<W> turn = back * clamp_length(joint.angular_error, bounds.turn);
       joint.turn_wanted_1 = dot(turn, joint.perpendicular_1);
       joint.turn_wanted_2 = dot(turn, joint.perpendicular_2);
     }
-    const Wide<W> share = bend_share(turns, s.most_turn);
-    if (any(share > 0.0f)) ask_bend(node, joint, a, b, share, per_substep);
+    const Wide<W> share = bias_fade(turns, s.max_turn);
+    if (any(share > 0.0f)) add_second_order_bias(node, joint, a, b, share, per_substep);
   }
 }
 
 // --------------------------------------------------------------------------------------------------------- equations
 
 // What a solution of the equations is for.
-enum class Asks : std::uint8_t {
+enum class BiasUse : std::uint8_t {
   first,  // what is wanted; nothing has been given yet
   again,  // what is wanted, and what gives way by what has been given
   relax,  // no speed along the rows
@@ -114,8 +114,8 @@ enum class Asks : std::uint8_t {
 constexpr float kQuiet = 1.0e-5f;  // m/s or rad/s
 
 // Sets the right side: what each row misses. Returns the lanes in which that is more than rounding.
-template <int W, Asks asks>
-GYRE_INLINE Mask<W> set_missing(const Bundle<W>& bundle) {
+template <int W, BiasUse asks>
+GYRE_INLINE Mask<W> set_missing(const WideBundle<W>& bundle) {
   Wide<W> most(0.0f);
   const auto set = [&](std::uint32_t row, Wide<W> v) {
     bundle.set_row(row, v);
@@ -123,23 +123,23 @@ GYRE_INLINE Mask<W> set_missing(const Bundle<W>& bundle) {
   };
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
     const LaneNode& node = bundle.plain.nodes[n];
-    const LinkedJoint<W>& joint = bundle.joints[n];
-    const LinkedBody<W>&a = bundle.bodies[node.a], &b = bundle.bodies[node.b];
+    const WideJoint<W>& joint = bundle.joints[n];
+    const WideBody<W>&a = bundle.bodies[node.a], &b = bundle.bodies[node.b];
     Vec3W<W> missing = a.linear + cross(a.angular, joint.from_a) - b.linear - cross(b.angular, joint.from_b);
-    if constexpr (asks == Asks::first) missing += joint.wanted;
-    if constexpr (asks == Asks::again)
-      missing += joint.wanted - multiply_each(joint.give, joint.linear_impulse);
+    if constexpr (asks == BiasUse::first) missing += joint.target_speed;
+    if constexpr (asks == BiasUse::again)
+      missing += joint.target_speed - multiply_each(joint.compliance, joint.linear_impulse);
     set(node.row, missing.x);
     set(node.row + 1, missing.y);
     set(node.row + 2, missing.z);
     if (node.kind != JointKind::hinge) continue;
     const Vec3W<W> turning = a.angular - b.angular;
     Wide<W> first = dot(turning, joint.perpendicular_1), second = dot(turning, joint.perpendicular_2);
-    if constexpr (asks == Asks::first) {
+    if constexpr (asks == BiasUse::first) {
       first += joint.turn_wanted_1;
       second += joint.turn_wanted_2;
     }
-    if constexpr (asks == Asks::again) {
+    if constexpr (asks == BiasUse::again) {
       first += joint.turn_wanted_1 - joint.turn_give_1 * dot(joint.angular_impulse, joint.perpendicular_1);
       second += joint.turn_wanted_2 - joint.turn_give_2 * dot(joint.angular_impulse, joint.perpendicular_2);
     }
@@ -150,47 +150,47 @@ GYRE_INLINE Mask<W> set_missing(const Bundle<W>& bundle) {
 }
 
 // Solves for the change of all impulses and applies it, in these lanes.
-template <int W, Asks asks>
-GYRE_INLINE void solve_rows(const Bundle<W>& bundle, Mask<W> lanes = Mask<W>::splat(true)) {
+template <int W, BiasUse asks>
+GYRE_INLINE void solve_rows(const WideBundle<W>& bundle, Mask<W> lanes = Mask<W>::splat(true)) {
   const Mask<W> live = set_missing<W, asks>(bundle) & lanes;
   if (any(live)) {
     factor_bundle(bundle);
     solve_lanes<W>(bundle.plain);
-  } else if (asks != Asks::first) {
+  } else if (asks != BiasUse::first) {
     return;  // nothing is added to what has been given
   }
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
     const LaneNode& node = bundle.plain.nodes[n];
-    LinkedJoint<W>& joint = bundle.joints[n];
+    WideJoint<W>& joint = bundle.joints[n];
     const Vec3W<W> p = keep(live, bundle.rows3(node.row));
     Vec3W<W> t{Wide<W>(0.0f), Wide<W>(0.0f), Wide<W>(0.0f)};
     if (node.kind == JointKind::hinge) {
       t = keep(live, bundle.row(node.row + 3) * joint.perpendicular_1 +
                          bundle.row(node.row + 4) * joint.perpendicular_2);
-      joint.angular_impulse = asks == Asks::first ? t : joint.angular_impulse + t;
+      joint.angular_impulse = asks == BiasUse::first ? t : joint.angular_impulse + t;
     }
     push_joint(bundle, node, joint, p, t);
-    joint.linear_impulse = asks == Asks::first ? p : joint.linear_impulse + p;
+    joint.linear_impulse = asks == BiasUse::first ? p : joint.linear_impulse + p;
   }
 }
 
 // What is driven or rubs is swept, then the equations have the last word. (In one place each, as stops are: all that is long.)
 template <int W>
-__attribute__((noinline)) void solve_again(const Bundle<W>& bundle) {
+__attribute__((noinline)) void solve_again(const WideBundle<W>& bundle) {
   if (bundle.plain.drive_count > 0) sweep_drives(bundle);
-  solve_rows<W, Asks::again>(bundle);
+  solve_rows<W, BiasUse::again>(bundle);
 }
 template <int W>
-__attribute__((noinline)) void relax(const Bundle<W>& bundle, Mask<W> lanes) {
+__attribute__((noinline)) void relax(const WideBundle<W>& bundle, Mask<W> lanes) {
   if (bundle.plain.drive_count > 0) sweep_drives(bundle);
-  if (any(lanes)) solve_rows<W, Asks::relax>(bundle, lanes);
+  if (any(lanes)) solve_rows<W, BiasUse::relax>(bundle, lanes);
 }
 
 // -------------------------------------------------------------------------------------------------------------- stops
 
 // What a stop bore in the last part of the step, along its axis as it is now; what nothing can turn bears nothing.
 template <int W>
-GYRE_INLINE Vec3W<W> kept_impulse(LinkedAxis<W>& axis) {
+GYRE_INLINE Vec3W<W> kept_impulse(WideLimitAxis<W>& axis) {
   const Mask<W> turns = axis.mass > 0.0f;
   axis.low_impulse = keep(turns, axis.low_impulse);
   axis.high_impulse = keep(turns, axis.high_impulse);
@@ -198,10 +198,10 @@ GYRE_INLINE Vec3W<W> kept_impulse(LinkedAxis<W>& axis) {
 }
 
 template <int W>
-GYRE_INLINE void push_kept(const Bundle<W>& bundle) {
+GYRE_INLINE void push_kept(const WideBundle<W>& bundle) {
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
     const LaneNode& node = bundle.plain.nodes[n];
-    LinkedJoint<W>& joint = bundle.joints[n];
+    WideJoint<W>& joint = bundle.joints[n];
     if (!node.has_twist && !node.has_swing && !node.has_servo) continue;
     const Wide<W> zero(0.0f);
     Vec3W<W> turn{zero, zero, zero};
@@ -214,13 +214,13 @@ GYRE_INLINE void push_kept(const Bundle<W>& bundle) {
 }
 
 template <int W>
-__attribute__((noinline)) void solve_stops(const Bundle<W>& bundle, const LaneSettings& s, ErrorBounds bounds,
+__attribute__((noinline)) void solve_limits(const WideBundle<W>& bundle, const LaneSettings& s, ErrorBounds bounds,
                                            Mask<W> lanes = Mask<W>::splat(true)) {
-  if (bundle.plain.stop_count > 0) LaneStops<W>(bundle, s, bounds).solve(lanes);
+  if (bundle.plain.limit_count > 0) LimitSolver<W>(bundle, s, bounds).solve(lanes);
 }
 
 template <int W>
-GYRE_INLINE void sum_stop(LinkedJoint<W>& joint, LinkedAxis<W>& axis) {
+GYRE_INLINE void accumulate_limit(WideJoint<W>& joint, WideLimitAxis<W>& axis) {
   const Wide<W> along = axis.low_impulse - axis.high_impulse;
   axis.total += along;
   joint.total_angular += along * axis.about;
@@ -230,34 +230,34 @@ GYRE_INLINE void sum_stop(LinkedJoint<W>& joint, LinkedAxis<W>& axis) {
 
 // Before the first part of a step.
 template <int W>
-void begin_linkages(const LinkageBundle& plain) {
-  if (plain.stop_count == 0) return;
-  const Bundle<W> bundle(plain);
-  LaneStops<W>(bundle, {}, kNoErrors).clear();
+void begin_articulation_bundles(const ArticulationBundle& plain) {
+  if (plain.limit_count == 0) return;
+  const WideBundle<W> bundle(plain);
+  LimitSolver<W>(bundle, {}, kNoErrors).clear();
 }
 
 // The rows where the bodies are now, and their matrix, factored.
 template <int W>
-void place_linkages(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
-  place_bundle<W>(plain, arrays, s);
-  const Bundle<W> bundle(plain);
+void prepare_articulations(const ArticulationBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
+  prepare_bundle<W>(plain, arrays, s);
+  const WideBundle<W> bundle(plain);
   if (plain.drive_count > 0) place_drives(bundle);
   if (plain.servo_count > 0) place_servos(bundle);
-  if (plain.stop_count > 0) LaneStops<W>(bundle, s, kNoErrors).begin();
+  if (plain.limit_count > 0) LimitSolver<W>(bundle, s, kNoErrors).begin();
 }
 
 // Before what is kept of the last sub-step is given again: after a blow these impulses are not of this one, and the bend of such
 // speeds is none.
 template <int W>
-void ask_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
-  const Bundle<W> bundle(plain);
+void compute_bundle_bias(const ArticulationBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
+  const WideBundle<W> bundle(plain);
   load_velocities(bundle, arrays);
-  ask_lanes(bundle, s, s.first_errors);
+  compute_lane_bias(bundle, s, s.first_errors);
 }
 
 // Those in which a body turns so far in a part that the bend shows in its velocities.
 template <int W>
-GYRE_INLINE Mask<W> find_fast(const Bundle<W>& bundle, float substep) {
+GYRE_INLINE Mask<W> find_fast(const WideBundle<W>& bundle, float substep) {
   Wide<W> most(0.0f);
   for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i)
     most = max(most, length_squared(bundle.bodies[i].angular));
@@ -266,45 +266,45 @@ GYRE_INLINE Mask<W> find_fast(const Bundle<W>& bundle, float substep) {
 
 // The impulses of equations are found from nothing, those of stops from what they were; where something is swept, all from what they were.
 template <int W>
-void solve_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
-  const Bundle<W> bundle(plain);
+void solve_bundle(const ArticulationBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
+  const WideBundle<W> bundle(plain);
   load_velocities(bundle, arrays);
-  const EnergyWatch<W> watch(
-      bundle, Mask<W>::splat(s.keeps_energy) & (light_lanes(bundle) | find_fast(bundle, s.substep)));
+  const EnergyLimiter<W> watch(
+      bundle, Mask<W>::splat(s.keeps_energy) & (extreme_ratio_lanes(bundle) | find_fast(bundle, s.substep)));
   push_kept(bundle);
   if (plain.drive_count > 0) {
     push_driven(bundle);
     solve_again(bundle);
   } else {
-    solve_rows<W, Asks::first>(bundle);
+    solve_rows<W, BiasUse::first>(bundle);
   }
-  solve_stops(bundle, s, s.first_errors);
+  solve_limits(bundle, s, s.first_errors);
   watch.bound(s.rate, s.substep);     // before contacts answer it
-  ask_lanes(bundle, s, kMostErrors);  // now with velocities that agree with the joints
+  compute_lane_bias(bundle, s, kMaxErrors);  // now with velocities that agree with the joints
   store_velocities(bundle, arrays);
 }
 
 template <int W>
-void solve_bundle_again(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
-  const Bundle<W> bundle(plain);
+void solve_bundle_after_contacts(const ArticulationBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
+  const WideBundle<W> bundle(plain);
   load_velocities(bundle, arrays);
-  const EnergyWatch<W> watch(bundle);
+  const EnergyLimiter<W> watch(bundle);
   solve_again(bundle);
-  solve_stops(bundle, s, kMostErrors);
+  solve_limits(bundle, s, kMaxErrors);
   watch.bound(s.rate, s.substep);
   store_velocities(bundle, arrays);
 }
 
 template <int W>
-__attribute__((noinline)) void sum_impulses(const Bundle<W>& bundle) {
+__attribute__((noinline)) void sum_impulses(const WideBundle<W>& bundle) {
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
     const LaneNode& node = bundle.plain.nodes[n];
-    LinkedJoint<W>& joint = bundle.joints[n];
+    WideJoint<W>& joint = bundle.joints[n];
     joint.total_linear += joint.linear_impulse;
     joint.total_angular += joint.angular_impulse;
-    if (node.has_twist) sum_stop(joint, joint.twist);
-    if (node.has_swing) sum_stop(joint, joint.swing);
-    if (node.has_servo) sum_stop(joint, bundle.servos[node.servo].axis);
+    if (node.has_twist) accumulate_limit(joint, joint.twist);
+    if (node.has_swing) accumulate_limit(joint, joint.swing);
+    if (node.has_servo) accumulate_limit(joint, bundle.servos[node.servo].axis);
     if (node.is_driven()) sum_drives(node, joint, bundle.drives[node.drives]);
   }
 }
@@ -312,17 +312,17 @@ __attribute__((noinline)) void sum_impulses(const Bundle<W>& bundle) {
 // Those in which a stop pushes a limb back faster than it may stay. What it gives for that is taken away at once: a stop only pushes, so
 // the next part, whose stops begin with what they gave, does not take it all back.
 template <int W>
-GYRE_INLINE Mask<W> find_taken_back(const Bundle<W>& bundle) {
-  constexpr float kMostKept = 0.01f;  // rad/s
+GYRE_INLINE Mask<W> find_error_speed(const WideBundle<W>& bundle) {
+  constexpr float kMaxCached = 0.01f;  // rad/s
   Mask<W> any_back = Mask<W>::splat(false);
   for (std::uint32_t n = 0; n < bundle.plain.node_count; ++n) {
     const LaneNode& node = bundle.plain.nodes[n];
     if (!node.has_twist && !node.has_swing) continue;
     const Vec3W<W> turning = turning_of(bundle, node);
-    const auto look = [&](const LinkedAxis<W>& axis) {
+    const auto look = [&](const WideLimitAxis<W>& axis) {
       const Wide<W> speed = dot(axis.about, turning);
-      any_back = any_back | ((axis.low_impulse > 0.0f) & (speed > kMostKept)) |
-                 ((axis.high_impulse > 0.0f) & (speed < -kMostKept));
+      any_back = any_back | ((axis.low_impulse > 0.0f) & (speed > kMaxCached)) |
+                 ((axis.high_impulse > 0.0f) & (speed < -kMaxCached));
     };
     if (node.has_twist) look(bundle.joints[n].twist);
     if (node.has_swing) look(bundle.joints[n].swing);
@@ -335,49 +335,49 @@ GYRE_INLINE Mask<W> find_taken_back(const Bundle<W>& bundle) {
 // speed is taken away here, since the bend is asked for of these velocities, and limbs that start out of their limits would be flung;
 // also where something is swept, which would hold against it.
 template <int W>
-void pass_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
-  const Bundle<W> bundle(plain);
+void end_half_step(const ArticulationBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
+  const WideBundle<W> bundle(plain);
   load_velocities(bundle, arrays);
   const bool is_driven = plain.drive_count > 0;
   const Mask<W> fast = find_fast(bundle, s.substep), relaxed = is_driven ? Mask<W>::splat(true) : fast;
   // Motors hold against what is swept, and it against them.
-  const Mask<W> stopped = is_driven && plain.servo_count > 0 ? relaxed : fast | find_taken_back(bundle);
-  const EnergyWatch<W> watch(bundle);
+  const Mask<W> stopped = is_driven && plain.servo_count > 0 ? relaxed : fast | find_error_speed(bundle);
+  const EnergyLimiter<W> watch(bundle);
   relax(bundle, relaxed);
-  if (any(stopped)) solve_stops(bundle, s, kNoErrors, stopped);
-  const Mask<W> slowed = watch.take_away();
+  if (any(stopped)) solve_limits(bundle, s, kNoErrors, stopped);
+  const Mask<W> slowed = watch.remove_gain();
   if (any(relaxed | stopped | slowed)) store_velocities(bundle, arrays);
-  ask_lanes(bundle, s, s.first_errors);
+  compute_lane_bias(bundle, s, s.first_errors);
   sum_impulses(bundle);
 }
 // After the last move: takes away all speed along the rows and into stops, and sums the impulses.
 template <int W>
-void finish_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
-  const Bundle<W> bundle(plain);
+void finish_bundle(const ArticulationBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
+  const WideBundle<W> bundle(plain);
   load_velocities(bundle, arrays);
-  const EnergyWatch<W> watch(bundle);
+  const EnergyLimiter<W> watch(bundle);
   relax(bundle, Mask<W>::splat(true));
-  solve_stops(bundle, s, kNoErrors);
-  watch.take_away();
+  solve_limits(bundle, s, kNoErrors);
+  watch.remove_gain();
   sum_impulses(bundle);
   store_velocities(bundle, arrays);
 }
 
 template <int W>
-constexpr LinkageKernels linkage_kernels() {
+constexpr ArticulationKernels articulation_kernels() {
   return {W,
-          sizeof(LinkedBody<W>),
-          sizeof(LinkedJoint<W>),
-          sizeof(LinkedDrives<W>),
-          sizeof(LinkedServo<W>),
-          offsetof(LinkedBody<W>, linear),
-          stop_room<W>,
-          begin_linkages<W>,
-          place_linkages<W>,
-          ask_bundle<W>,
+          sizeof(WideBody<W>),
+          sizeof(WideJoint<W>),
+          sizeof(WideDrives<W>),
+          sizeof(WideServo<W>),
+          offsetof(WideBody<W>, linear),
+          limit_room<W>,
+          begin_articulation_bundles<W>,
+          prepare_articulations<W>,
+          compute_bundle_bias<W>,
           solve_bundle<W>,
-          solve_bundle_again<W>,
-          pass_bundle<W>,
+          solve_bundle_after_contacts<W>,
+          end_half_step<W>,
           finish_bundle<W>};
 }
 

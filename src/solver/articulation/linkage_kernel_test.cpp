@@ -184,19 +184,19 @@ TEST(LinkageKernel, WhatCameFromErrorsMayBeLeftToTheNextPart) {
   solve_side_by_side(taken, shape, 0, {.ends = Between::Ends::finishes});
   std::vector<Vec3> given(left.motion.size());
   std::vector<float> sizes(left.motion.size());  // of all that was given, N s
-  const auto give = [&](std::int32_t body, Vec3 impulse) {
+  const auto compliance = [&](std::int32_t body, Vec3 impulse) {
     given[std::size_t(body)] += impulse;
     sizes[std::size_t(body)] += length(impulse);
   };
   for (const JointRecord& joint : left.records) {
-    if (joint.body_a != kNoBody) give(joint.body_a, -joint.total_linear);
-    give(joint.body_b, joint.total_linear);
+    if (joint.body_a != kNoBody) compliance(joint.body_a, -joint.total_linear);
+    compliance(joint.body_b, joint.total_linear);
   }
   for (std::size_t i = 0; i < left.motion.size(); ++i) {
     const Vec3 now = left.motion[i].linear_velocity;
-    const Vec3 gained = left.inertia[i].inverse_mass * given[i];
+    const Vec3 energy_gain = left.inertia[i].inverse_mass * given[i];
     const float speeds = length(before.motion[i].linear_velocity) + left.inertia[i].inverse_mass * sizes[i];
-    EXPECT_LT(apart(now, before.motion[i].linear_velocity + gained), kSumRounding * speeds)
+    EXPECT_LT(apart(now, before.motion[i].linear_velocity + energy_gain), kSumRounding * speeds)
         << "sums are all that was given, " << i;
     EXPECT_LT(apart(now, taken.motion[i].linear_velocity), kLeftOver) << "body " << i;
     EXPECT_LT(apart(left.motion[i].angular_velocity, taken.motion[i].angular_velocity), kLeftOver)
@@ -237,7 +237,7 @@ TEST(LinkageMatrix, WhatEliminationReachesHasABitForEachColumn) {
     rows += columns[i].size;
     if (i + 1 < kColumns) entries[i].place = i + (i < kMeet - 1 ? 2 : 1);
   }
-  LinkageBundle bundle;
+  ArticulationBundle bundle;
   bundle.columns = columns.data(), bundle.entries = entries.data();
   bundle.column_count = kColumns, bundle.row_count = rows;
   std::vector<std::uint64_t> even(reach_words(kColumns)), odd(reach_words(kColumns));

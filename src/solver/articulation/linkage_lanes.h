@@ -1,6 +1,6 @@
 // Linkages side by side: where several hang together alike (the ragdolls of a heap, the chains of a curtain), lane i of a
 // bundle is the i-th of them, and kernels (solver/articulation/linkage_kernel.h) solve W at once in the time of one. The equations are those
-// of solver/articulation/linkage.h; this is the form of linkages of ball, cone and hinge joints on which nothing acts but hard stops, motors and drives
+// of solver/articulation/articulation.h; this is the form of linkages of ball, cone and hinge joints on which nothing acts but hard stops, motors and drives
 // that turn, and dry friction.
 //
 // A lane never sees its neighbours, so its bits do not depend on them, on W, or on which bundle a linkage is in.
@@ -18,7 +18,7 @@ namespace gyre {
 
 // A stop at either end of an axis about which a joint turns. In each of these structs the floats are in the order of the kernels'
 // (a float of a lane is W floats there); what goes in and comes out stands first.
-struct LaneAxis {
+struct LaneLimitAxis {
   float low = 0.0f, high = 0.0f;  // rad: where the stops are
   float low_impulse = 0.0f, high_impulse = 0.0f;
   float total = 0.0f;                     // of the impulses over the step
@@ -30,18 +30,18 @@ struct LaneAxis {
 // A joint as one lane.
 struct LaneJoint {
   Vec3 local_a, local_b;  // anchors from the centres of mass, body frames
-  Vec3 offset;            // JointPlaces::offset
+  Vec3 offset;            // JointOffsets::offset
   Vec3 linear_impulse, angular_impulse;
   Vec3 total_linear, total_angular;
   // What hinges and cones have.
   Quat local_frame_a, local_frame_b;
   float position = 0.0f;                           // rad: the twist
-  float swing_grip_y = 0.0f, swing_grip_z = 0.0f;  // cones: 1 / the largest swing, 1/rad
-  LaneAxis twist, swing;
+  float inverse_swing_y = 0.0f, inverse_swing_z = 0.0f;  // cones: 1 / the largest swing, 1/rad
+  LaneLimitAxis twist, swing;
   // Of this sub-step.
   Vec3 from_a, from_b;  // anchors from the centres of mass, world axes
   Vec3 error;           // anchor b minus anchor a
-  Vec3 give, wanted;    // of the three rows of the point, as LinkageRows
+  Vec3 compliance, target_speed;    // of the three rows of the point, as ArticulationRows
   // Hinges: a's axis and what is across it, the error, the two rows that keep the axes together.
   Vec3 axis, perpendicular_1, perpendicular_2, angular_error;
   float turn_give_1 = 0.0f, turn_give_2 = 0.0f, turn_wanted_1 = 0.0f, turn_wanted_2 = 0.0f;
@@ -52,7 +52,7 @@ struct LaneJoint {
 struct LaneDrives {
   Vec3 drive_impulse, friction_impulse;
   float total = 0.0f;                                          // hinges: of the impulses over the step
-  float most_drive = 0.0f, most_friction = 0.0f;               // N m s: impulses of a sub-step
+  float max_drive = 0.0f, max_friction = 0.0f;               // N m s: impulses of a sub-step
   Vec3 target_speed;                                           // rad/s, in the joint's frame on a
   Quat target;                                                 // a from b; of hinges x is an angle
   float rate = 0.0f, mass_scale = 1.0f, impulse_scale = 0.0f;  // how soft the drive is: Softness
@@ -64,17 +64,17 @@ struct LaneDrives {
 // The motor of a hinge that has no frequency of its own: as stiff as the sub-step allows, it is a stop from both sides, up to a bound. Its
 // impulse, of either sign, is the low one of the axis, and the place to be held the low end.
 struct LaneServo {
-  LaneAxis axis;
+  LaneLimitAxis axis;
   float most = 0.0f;          // N m s: impulse of a sub-step
   float target_speed = 0.0f;  // rad/s
   float rate = 0.0f;          // 1/s, at which it goes to its place; 0: it has none
 };
 
 // More servos than that are swept, as drives are: sweeps over so many rows that depend on each other end before they stand.
-constexpr std::size_t kMostLaneServos = 32;
+constexpr std::size_t kMaxLaneServos = 32;
 
-// More stops than that are solved in turns (solver/articulation/linkage_stops.h), not in lanes.
-constexpr std::size_t kMostLaneStops = 64;
+// More stops than that are solved in turns (solver/articulation/articulation_limits.h), not in lanes.
+constexpr std::size_t kMaxLaneLimits = 64;
 
 // What the linkages of a bundle have in common.
 struct LaneNode {
@@ -90,7 +90,7 @@ struct LaneNode {
   bool is_driven() const { return has_drive || has_friction; }
 };
 // From a body whose place is known to one that a joint ties to it.
-struct LaneStep {
+struct TraversalStep {
   std::uint32_t node = 0;
   bool to_b = false;
 };
@@ -102,12 +102,12 @@ struct LaneCoupling {
   bool is_first = false;  // of those with this block
 };
 
-struct LinkageKernels;
-struct LinkageBundle {
-  const LinkageKernels* kernels = nullptr;
+struct ArticulationKernels;
+struct ArticulationBundle {
+  const ArticulationKernels* kernels = nullptr;
   const LaneNode* nodes = nullptr;
   const LaneCoupling* couplings = nullptr;
-  const LaneStep* walk =
+  const TraversalStep* traversal =
       nullptr;  // from the first body to all others; of those that hang on one body at most
   std::uint32_t node_count = 0, coupling_count = 0;
   std::uint32_t body_count = 0, moving_count = 0;  // those that can be pushed come first
@@ -117,7 +117,7 @@ struct LinkageBundle {
   const std::uint32_t* targets = nullptr;
   std::uint32_t column_count = 0, value_count = 0, row_count = 0;
   bool has_fill = false;          // blocks of the plan in which nothing stands before elimination
-  std::uint32_t stop_count = 0;   // axes with stops, and servos
+  std::uint32_t limit_count = 0;   // axes with stops, and servos
   std::uint32_t drive_count = 0;  // joints with drives or friction
   std::uint32_t servo_count = 0;
   bool has_drives = false;  // what does work: drives, servos
@@ -128,10 +128,10 @@ struct LinkageBundle {
   float* values = nullptr;  // of the matrix
   float* vector = nullptr;
   float* room = nullptr;        // of the widest column
-  float* gained = nullptr;  // J, by lane: what joints gave in this sub-step; then 1 in lanes that are watched
-  float* light = nullptr;   // 1 in lanes with a link so light that it is always watched
+  float* energy_gain = nullptr;  // J, by lane: what joints gave in this sub-step; then 1 in lanes that are watched
+  float* has_extreme_mass_ratio = nullptr;   // 1 in lanes with a link so light that it is always watched
   bool* is_factored = nullptr;  // whether `values` are factors by now
-  std::byte* stops = nullptr;   // what is known of them in this step: as much as stop_room() says
+  std::byte* stops = nullptr;   // what is known of them in this step: as much as limit_room() says
 };
 
 struct LaneArrays {
@@ -146,35 +146,35 @@ struct LaneArrays {
 struct LaneSettings {
   float substep = 0.0f;
   float rate = 0.0f;  // 1/s, at which errors are taken back
-  // As LinkageSolve::give, 1e-4 or so: far above the rounding of floats, in which the matrix is eliminated.
-  float give = 0.0f;
+  // As ArticulationSolve::give, 1e-4 or so: far above the rounding of floats, in which the matrix is eliminated.
+  float compliance = 0.0f;
   // The inverse of an inertia raised by `share` of what of `pull` holds back (six floats each, as Sym3).
-  void (*raise)(const float* pull, const float* inertia, float share, float* inverse) = nullptr;
+  void (*raise)(const float* geometric_stiffness, const float* inertia, float share, float* inverse) = nullptr;
   // What the first of two solutions takes back.
   ErrorBounds first_errors = kErrorsBeforeContacts;
   // Of the way that free rotation swerves in a sub-step, how much is asked for; none where speeds stand for displacements.
-  float swerves = 1.0f;
+  float gyroscopic_share = 1.0f;
   // Where a body turns by more than that in a sub-step, less of the bend is asked for.
-  float most_turn = kMostBendTurn;  // rad
+  float max_turn = kMaxBiasAngle;  // rad
   // Whether joints that do work are answered for; not where speeds stand for displacements.
   bool keeps_energy = true;
 };
 
 // The kernels of one CPU target. Each body is a block of `body_bytes` that begins with the lanes' body indices (kNoBody: none).
-struct LinkageKernels {
+struct ArticulationKernels {
   int width;
   std::size_t body_bytes, joint_bytes, drives_bytes, servo_bytes;
   std::size_t velocities_at;  // bytes: where a body's block has them, as LaneVelocities
-  std::size_t (*stop_room)(const LinkageBundle& bundle);  // bytes
-  void (*begin)(const LinkageBundle& bundle);             // before it is placed for the first time in a step
-  void (*place)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
-  void (*ask)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
-  void (*solve)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
-  void (*solve_again)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  std::size_t (*limit_room)(const ArticulationBundle& bundle);  // bytes
+  void (*begin)(const ArticulationBundle& bundle);             // before it is placed for the first time in a step
+  void (*place)(const ArticulationBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  void (*ask)(const ArticulationBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  void (*solve)(const ArticulationBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  void (*solve_again)(const ArticulationBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
   // After each move but the last: sums impulses, and asks for what the next part begins with.
-  void (*pass)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  void (*pass)(const ArticulationBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
   // After the last move: no speed is left along the rows or into stops; sums impulses.
-  void (*finish)(const LinkageBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  void (*finish)(const ArticulationBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
 };
 
 }  // namespace gyre

@@ -15,7 +15,7 @@ namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
 // A pivot below this share of its own diagonal element is only rounding, as in math/dense.h.
-constexpr float kLeastPivot = 1.0e-6f;
+constexpr float kMinPivot = 1.0e-6f;
 
 // A diagonal block of which the lower triangle is read, as L P L^T: L below the diagonal, and on it the inverses of the pivots, zero
 // where one was dropped.
@@ -32,7 +32,7 @@ void factor_diagonal(float* block) {
       for (int k = 0; k < j; ++k) unscaled[i][j] -= unscaled[i][k] * lower[j][k];
     }
     const V pivot = unscaled[j][j];
-    const V inverse = keep(pivot > kLeastPivot * V::load(block + (j * N + j) * W), 1.0f / pivot);
+    const V inverse = keep(pivot > kMinPivot * V::load(block + (j * N + j) * W), 1.0f / pivot);
     inverse.store(block + (j * N + j) * W);
     GYRE_UNROLL
     for (int i = j + 1; i < N; ++i) {
@@ -79,7 +79,7 @@ void subtract_product(const float* s, const float* b, float* out, bool lower_onl
 }
 
 template <int W, int R, int C>
-void eliminate_entry(const LinkageBundle& bundle, const BlockColumn& column, std::uint32_t i,
+void eliminate_entry(const ArticulationBundle& bundle, const BlockColumn& column, std::uint32_t i,
                      const std::uint32_t* targets, float* scaled) {
   scale_block<W, R, C>(bundle.values + std::size_t(column.diagonal) * W,
                        bundle.values + std::size_t(bundle.entries[i].offset) * W, scaled);
@@ -96,7 +96,7 @@ void eliminate_entry(const LinkageBundle& bundle, const BlockColumn& column, std
 }
 
 template <int W, int C>
-void eliminate_column(const LinkageBundle& bundle, const BlockColumn& column) {
+void eliminate_column(const ArticulationBundle& bundle, const BlockColumn& column) {
   factor_diagonal<W, C>(bundle.values + std::size_t(column.diagonal) * W);
   const std::uint32_t* targets = bundle.targets + column.targets;
   float* scaled = bundle.room;
@@ -141,7 +141,7 @@ GYRE_INLINE void pull_up(const float* b, const float* x, Wide<W> (&own)[C]) {
 }
 
 template <int W, int C>
-void solve_column_down(const LinkageBundle& bundle, const BlockColumn& column, float* vector) {
+void solve_column_down(const ArticulationBundle& bundle, const BlockColumn& column, float* vector) {
   using V = Wide<W>;
   const float* const diagonal = bundle.values + std::size_t(column.diagonal) * W;
   float* const x = vector + std::size_t(column.row) * W;
@@ -170,7 +170,7 @@ void solve_column_down(const LinkageBundle& bundle, const BlockColumn& column, f
 
 // out = P^-1 x, of the column's rows.
 template <int W, int C>
-GYRE_INLINE void scale_column(const LinkageBundle& bundle, const BlockColumn& column, const float* vector,
+GYRE_INLINE void scale_column(const ArticulationBundle& bundle, const BlockColumn& column, const float* vector,
                               float* out) {
   using V = Wide<W>;
   const float* const diagonal = bundle.values + std::size_t(column.diagonal) * W;
@@ -181,7 +181,7 @@ GYRE_INLINE void scale_column(const LinkageBundle& bundle, const BlockColumn& co
 }
 
 template <int W, int C>
-void solve_column_up(const LinkageBundle& bundle, const BlockColumn& column, float* vector) {
+void solve_column_up(const ArticulationBundle& bundle, const BlockColumn& column, float* vector) {
   using V = Wide<W>;
   const float* const diagonal = bundle.values + std::size_t(column.diagonal) * W;
   float* const x = vector + std::size_t(column.row) * W;
@@ -209,7 +209,7 @@ void solve_column_up(const LinkageBundle& bundle, const BlockColumn& column, flo
 }
 
 template <int W>
-void factor_lanes(const LinkageBundle& bundle) {
+void factor_lanes(const ArticulationBundle& bundle) {
   for (std::uint32_t place = 0; place < bundle.column_count; ++place) {
     const BlockColumn& column = bundle.columns[place];
     if (column.size == 3) {
@@ -221,7 +221,7 @@ void factor_lanes(const LinkageBundle& bundle) {
 }
 
 template <int W>
-void solve_lanes(const LinkageBundle& bundle) {
+void solve_lanes(const ArticulationBundle& bundle) {
   for (std::uint32_t place = 0; place < bundle.column_count; ++place) {
     const BlockColumn& column = bundle.columns[place];
     if (column.size == 3) {
@@ -248,7 +248,7 @@ constexpr std::uint32_t reach_words(std::uint32_t columns) { return (columns + 6
 
 // Calls run(column) for those of the bundle's columns whose bits are set, in their order; word(i) tells the bits from 64 i on.
 template <class Word, class Run>
-GYRE_INLINE void for_columns(const LinkageBundle& bundle, const Word& word, const Run& run) {
+GYRE_INLINE void for_columns(const ArticulationBundle& bundle, const Word& word, const Run& run) {
   const std::uint32_t words = reach_words(bundle.column_count);
   for (std::uint32_t i = 0; i < words; ++i)
     for (std::uint64_t left = word(i); left != 0; left &= left - 1)
@@ -256,7 +256,7 @@ GYRE_INLINE void for_columns(const LinkageBundle& bundle, const Word& word, cons
 }
 
 // Marks, beside the columns that are marked, those that elimination reaches from them: all come later.
-inline void reach_columns(const LinkageBundle& bundle, ReachedColumns reached) {
+inline void reach_columns(const ArticulationBundle& bundle, ReachedColumns reached) {
   for (std::uint32_t place = 0; place < bundle.column_count; ++place) {
     if ((reached[place / 64] >> place % 64 & 1u) == 0) continue;
     const BlockColumn& column = bundle.columns[place];
@@ -269,7 +269,7 @@ inline void reach_columns(const LinkageBundle& bundle, ReachedColumns reached) {
 
 // Clears their rows in x.
 template <int W>
-void clear_reached(const LinkageBundle& bundle, const ReachedColumns reached, float* x) {
+void clear_reached(const ArticulationBundle& bundle, const ReachedColumns reached, float* x) {
   const auto own = [&](std::uint32_t i) { return reached[i]; };
   for_columns(bundle, own, [&](const BlockColumn& column) {
     for (std::uint32_t r = 0; r < column.size; ++r) Wide<W>(0.0f).store(x + (column.row + r) * W);
@@ -278,7 +278,7 @@ void clear_reached(const LinkageBundle& bundle, const ReachedColumns reached, fl
 
 // Replaces the right side x, of the columns that are reached, by y of L y = x, and finds P^-1 y.
 template <int W>
-void solve_reached_down(const LinkageBundle& bundle, const ReachedColumns reached, float* x, float* scaled) {
+void solve_reached_down(const ArticulationBundle& bundle, const ReachedColumns reached, float* x, float* scaled) {
   const auto own = [&](std::uint32_t i) { return reached[i]; };
   for_columns(bundle, own, [&](const BlockColumn& column) {
     if (column.size == 3) {
@@ -300,7 +300,7 @@ GYRE_INLINE void add_products(const float* a, const float* b, Wide<W>& sum) {
 
 // The product of two vectors over the columns that both reach.
 template <int W>
-Wide<W> dot_reached(const LinkageBundle& bundle, const ReachedColumns reached_a, const float* a,
+Wide<W> dot_reached(const ArticulationBundle& bundle, const ReachedColumns reached_a, const float* a,
                     const ReachedColumns reached_b, const float* b) {
   const auto common = [&](std::uint32_t i) { return reached_a[i] & reached_b[i]; };
   Wide<W> sum(0.0f);

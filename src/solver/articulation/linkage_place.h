@@ -1,5 +1,5 @@
-// Where the joints of a bundle are in a sub-step, and the matrix of their equations (solver/articulation/linkage_lanes.h): what place_joint()
-// and place_linkage() do for a linkage alone, with the zeros of a ball joint's rows left out.
+// Where the joints of a bundle are in a sub-step, and the matrix of their equations (solver/articulation/linkage_lanes.h): what prepare_joint()
+// and prepare_articulation() do for a linkage alone, with the zeros of a ball joint's rows left out.
 #pragma once
 
 #include "math/wide_angle.h"
@@ -10,11 +10,11 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// As in solver/articulation/linkage.cpp.
+// As in solver/articulation/articulation.cpp.
 constexpr float kLanePull = 1.0f;
 
 template <int W>
-GYRE_INLINE Vec3W<W> within(Vec3W<W> v, std::type_identity_t<Wide<W>> most) {
+GYRE_INLINE Vec3W<W> clamp_length(Vec3W<W> v, std::type_identity_t<Wide<W>> most) {
   const Wide<W> size = length(v);
   const Mask<W> beyond = size > most;
   if (!any(beyond)) return v;
@@ -24,8 +24,8 @@ GYRE_INLINE Vec3W<W> within(Vec3W<W> v, std::type_identity_t<Wide<W>> most) {
 // -------------------------------------------------------------------------------------------------------------- stops
 
 template <int W>
-GYRE_INLINE void place_axis(LinkedAxis<W>& axis, Vec3W<W> about, const LinkedBody<W>& a,
-                            const LinkedBody<W>& b) {
+GYRE_INLINE void place_axis(WideLimitAxis<W>& axis, Vec3W<W> about, const WideBody<W>& a,
+                            const WideBody<W>& b) {
   axis.about = about;
   const Wide<W> k = dot(about, a.own_inverse * about) + dot(about, b.own_inverse * about);
   axis.mass = keep(k > 0.0f, 1.0f / k);
@@ -33,53 +33,53 @@ GYRE_INLINE void place_axis(LinkedAxis<W>& axis, Vec3W<W> about, const LinkedBod
 
 // `slack`: by how much farther both stops are.
 template <int W>
-GYRE_INLINE void place_twist(LinkedAxis<W>& axis, Wide<W> position, Wide<W> slack = Wide<W>(0.0f)) {
-  axis.low_gap = max(position - axis.low + slack, Wide<W>(-kMostErrors.turn));
-  axis.high_gap = max(axis.high - position + slack, Wide<W>(-kMostErrors.turn));
+GYRE_INLINE void place_twist(WideLimitAxis<W>& axis, Wide<W> position, Wide<W> slack = Wide<W>(0.0f)) {
+  axis.low_gap = max(position - axis.low + slack, Wide<W>(-kMaxErrors.turn));
+  axis.high_gap = max(axis.high - position + slack, Wide<W>(-kMaxErrors.turn));
 }
 
 // Near what the twist of a joint is told: of a cone the nearer way round to its stops, if these are less than a turn apart; otherwise as
 // it was last.
 template <int W>
-GYRE_INLINE Wide<W> near_twist(const LaneNode& node, const LinkedJoint<W>& joint) {
+GYRE_INLINE Wide<W> near_twist(const LaneNode& node, const WideJoint<W>& joint) {
   if (node.kind == JointKind::hinge || !node.has_twist) return joint.position;
-  const LinkedAxis<W>& axis = joint.twist;
+  const WideLimitAxis<W>& axis = joint.twist;
   return select(axis.high - axis.low < 2.0f * kWidePi, 0.5f * (axis.low + axis.high), joint.position);
 }
 
-// How far b's axis may still lean out of a's, and the axis about which the stop is nearest: find_swing_stop() of
+// How far b's axis may still lean out of a's, and the axis about which the stop is nearest: find_swing_limit() of
 // solver/joint/joint_kinds.cpp.
 template <int W>
-GYRE_INLINE void place_swing(LinkedJoint<W>& joint, const Mat3W<W>& frame_a, Vec3W<W> x_b,
-                             const LinkedBody<W>& a, const LinkedBody<W>& b) {
+GYRE_INLINE void place_swing(WideJoint<W>& joint, const Mat3W<W>& frame_a, Vec3W<W> x_b,
+                             const WideBody<W>& a, const WideBody<W>& b) {
   const Vec3W<W> across_both = cross(frame_a.x, x_b);
   const Wide<W> sine = length(across_both);
   const Wide<W> angle = atan2(sine, dot(frame_a.x, x_b));
   const Mask<W> leans = sine > 1.0e-6f;
   const Vec3W<W> along = across_both / select(leans, sine, Wide<W>(1.0f));
   const Wide<W> cy = dot(along, frame_a.y), cz = dot(along, frame_a.z);
-  const Wide<W> y = cy * joint.swing_grip_y, z = cz * joint.swing_grip_z;
+  const Wide<W> y = cy * joint.inverse_swing_y, z = cz * joint.inverse_swing_z;
   const Wide<W> share = sqrt(y * y + z * z);
-  const Wide<W> across = cy * cz * (square(joint.swing_grip_z) - square(joint.swing_grip_y)) / share;
+  const Wide<W> across = cy * cz * (square(joint.inverse_swing_z) - square(joint.inverse_swing_y)) / share;
   const Vec3W<W> raw = share * along + (across * angle / sine) * cross(x_b, along);
   const Wide<W> size = length(raw);
   // Opposite to a's axis every direction is as good; along it the stop is far.
   const Mask<W> opposite = and_not(angle > 1.0f, leans);
-  const Wide<W> smallest = 1.0f / max(joint.swing_grip_y, joint.swing_grip_z);
+  const Wide<W> smallest = 1.0f / max(joint.inverse_swing_y, joint.inverse_swing_z);
   Vec3W<W> about = keep(opposite, frame_a.y);
   about = select(leans, raw / size, about);
   Wide<W> gap = select(opposite, smallest - angle, Wide<W>(kAway));
   gap = select(leans, (1.0f - share * angle) / size, gap);
   place_axis(joint.swing, about, a, b);
   joint.swing.low_gap = gap;  // as it is
-  joint.swing.high_gap = max(gap, Wide<W>(-kMostErrors.turn));
+  joint.swing.high_gap = max(gap, Wide<W>(-kMaxErrors.turn));
 }
 
 // ------------------------------------------------------------------------------------------------------------- joints
 
 template <int W>
-GYRE_INLINE void place_lane_joint(const LaneNode& node, LinkedJoint<W>& joint, const LinkedBody<W>& a,
-                                  const LinkedBody<W>& b) {
+GYRE_INLINE void place_lane_joint(const LaneNode& node, WideJoint<W>& joint, const WideBody<W>& a,
+                                  const WideBody<W>& b) {
   joint.from_a = rotate(a.orientation, joint.local_a);
   joint.from_b = rotate(b.orientation, joint.local_b);
   joint.error = joint.offset + (b.moved - a.moved) + joint.from_b - joint.from_a;
@@ -94,7 +94,7 @@ GYRE_INLINE void place_lane_joint(const LaneNode& node, LinkedJoint<W>& joint, c
     joint.axis = frame_a.x;
     joint.perpendicular_1 = frame_a.y;
     joint.perpendicular_2 = frame_a.z;
-    joint.angular_error = within(cross(frame_a.x, x_b), kMostErrors.turn);
+    joint.angular_error = clamp_length(cross(frame_a.x, x_b), kMaxErrors.turn);
     if (!node.has_twist) return;
     place_twist(joint.twist, joint.position);
     place_axis(joint.twist, frame_a.x, a, b);
@@ -103,7 +103,7 @@ GYRE_INLINE void place_lane_joint(const LaneNode& node, LinkedJoint<W>& joint, c
   // Half-way between the axes of a and b.
   if (node.has_twist) {
     const Wide<W> told = 1.0f + dot(frame_a.x, x_b);
-    place_twist(joint.twist, joint.position, keep(told < kLeastTwistTold, Wide<W>(kAway)));
+    place_twist(joint.twist, joint.position, keep(told < kMinTwistReported, Wide<W>(kAway)));
     place_axis(joint.twist, (frame_a.x + x_b) / max(told, Wide<W>(0.05f)), a, b);
   }
   if (node.has_swing) place_swing(joint, frame_a, x_b, a, b);
@@ -112,9 +112,9 @@ GYRE_INLINE void place_lane_joint(const LaneNode& node, LinkedJoint<W>& joint, c
 // ----------------------------------------------------------------------------------------------------------- inertias
 
 template <int W>
-GYRE_INLINE void add_pull(LinkedBody<W>& body, Vec3W<W> r, Vec3W<W> f) {
+GYRE_INLINE void add_geometric_stiffness_term(WideBody<W>& body, Vec3W<W> r, Vec3W<W> f) {
   const Wide<W> k = dot(r, f);
-  body.pull = body.pull + Sym3W<W>{k - r.x * f.x,
+  body.geometric_stiffness = body.geometric_stiffness + Sym3W<W>{k - r.x * f.x,
                                    k - r.y * f.y,
                                    k - r.z * f.z,
                                    -0.5f * (r.x * f.y + r.y * f.x),
@@ -122,11 +122,11 @@ GYRE_INLINE void add_pull(LinkedBody<W>& body, Vec3W<W> r, Vec3W<W> f) {
                                    -0.5f * (r.y * f.z + r.z * f.y)};
 }
 
-// As raise_inertias() of solver/articulation/linkage.cpp. Hardly any body is pulled like that.
+// As raise_inertias() of solver/articulation/articulation.cpp. Hardly any body is pulled like that.
 template <int W>
-GYRE_INLINE void raise_body(LinkedBody<W>& body, const LaneSettings& s) {
+GYRE_INLINE void raise_body(WideBody<W>& body, const LaneSettings& s) {
   const Sym3W<W>& i = body.inverse;
-  const Sym3W<W>& p = body.pull;
+  const Sym3W<W>& p = body.geometric_stiffness;
   const Wide<W> trace =
       i.xx * p.xx + i.yy * p.yy + i.zz * p.zz + 2.0f * (i.xy * p.xy + i.xz * p.xz + i.yz * p.yz);
   const Wide<W> unresolved = (0.5f * s.substep * s.substep) * trace;
@@ -139,10 +139,10 @@ GYRE_INLINE void raise_body(LinkedBody<W>& body, const LaneSettings& s) {
   Wide<W> out[6] = {i.xx, i.yy, i.zz, i.xy, i.xz, i.yz};
   for (int lane = 0; lane < W; ++lane) {
     if (!raised[lane]) continue;
-    float pull[6], inertia[6], inverse[6];
-    for (int k = 0; k < 6; ++k) pull[k] = pulls[k][lane], inertia[k] = inertias[k][lane];
+    float geometric_stiffness[6], inertia[6], inverse[6];
+    for (int k = 0; k < 6; ++k) geometric_stiffness[k] = pulls[k][lane], inertia[k] = inertias[k][lane];
     const float share = s.substep * s.substep * (1.0f - kLanePull / unresolved[lane]);
-    s.raise(pull, inertia, share, inverse);
+    s.raise(geometric_stiffness, inertia, share, inverse);
     for (int k = 0; k < 6; ++k) out[k].set(lane, inverse[k]);
   }
   body.inverse = {out[0], out[1], out[2], out[3], out[4], out[5]};
@@ -160,9 +160,9 @@ GYRE_INLINE Mat3W<W> spins_at(const Sym3W<W>& i, Vec3W<W> r) {
 
 // K + give of a joint's own rows.
 template <int W>
-GYRE_INLINE void make_own_block(const Bundle<W>& bundle, const LaneNode& node, float give) {
-  LinkedJoint<W>& joint = bundle.joints[&node - bundle.plain.nodes];
-  const LinkedBody<W>&a = bundle.bodies[node.a], &b = bundle.bodies[node.b];
+GYRE_INLINE void make_own_block(const WideBundle<W>& bundle, const LaneNode& node, float compliance) {
+  WideJoint<W>& joint = bundle.joints[&node - bundle.plain.nodes];
+  const WideBody<W>&a = bundle.bodies[node.a], &b = bundle.bodies[node.b];
   const Wide<W> mass = a.inverse_mass + b.inverse_mass;
   const Mat3W<W> spins_a = spins_at(a.inverse, joint.from_a), spins_b = spins_at(b.inverse, joint.from_b);
   // Row i of r x (spin i) by column: (spin x r) . axis.
@@ -171,13 +171,13 @@ GYRE_INLINE void make_own_block(const Bundle<W>& bundle, const LaneNode& node, f
   const Vec3W<W> z = cross(spins_a.z, joint.from_a) + cross(spins_b.z, joint.from_b);
   const std::uint32_t at = node.diagonal, n = node.rows;
   const Vec3W<W> own{mass + x.x, mass + y.y, mass + z.z};
-  joint.give = give * own;
-  bundle.set_value(at, own.x + joint.give.x);
+  joint.compliance = compliance * own;
+  bundle.set_value(at, own.x + joint.compliance.x);
   bundle.set_value(at + n, y.x);
-  bundle.set_value(at + n + 1, own.y + joint.give.y);
+  bundle.set_value(at + n + 1, own.y + joint.compliance.y);
   bundle.set_value(at + 2 * n, z.x);
   bundle.set_value(at + 2 * n + 1, z.y);
-  bundle.set_value(at + 2 * n + 2, own.z + joint.give.z);
+  bundle.set_value(at + 2 * n + 2, own.z + joint.compliance.z);
   if (n == 3) return;
   const Vec3W<W> p = joint.perpendicular_1, q = joint.perpendicular_2;
   bundle.set_value(at + 3 * n, dot(p, spins_a.x) + dot(p, spins_b.x));
@@ -188,8 +188,8 @@ GYRE_INLINE void make_own_block(const Bundle<W>& bundle, const LaneNode& node, f
   bundle.set_value(at + 4 * n + 2, dot(q, spins_a.z) + dot(q, spins_b.z));
   const Vec3W<W> spin_p = a.inverse * p + b.inverse * p, spin_q = a.inverse * q + b.inverse * q;
   const Wide<W> kp = dot(p, spin_p), kq = dot(q, spin_q);
-  joint.turn_give_1 = give * kp;
-  joint.turn_give_2 = give * kq;
+  joint.turn_give_1 = compliance * kp;
+  joint.turn_give_2 = compliance * kq;
   bundle.set_value(at + 3 * n + 3, kp + joint.turn_give_1);
   bundle.set_value(at + 4 * n + 3, dot(p, spin_q));
   bundle.set_value(at + 4 * n + 4, kq + joint.turn_give_2);
@@ -197,12 +197,12 @@ GYRE_INLINE void make_own_block(const Bundle<W>& bundle, const LaneNode& node, f
 
 // One row of what a shared body couples: by the spin that the row's impulse of one gives it.
 template <int W>
-GYRE_INLINE void put_coupled_row(const Bundle<W>& bundle, std::uint32_t at, Vec3W<W> push, Vec3W<W> spin,
-                                 Vec3W<W> r, const LinkedJoint<W>& column, bool turns, bool is_first) {
+GYRE_INLINE void put_coupled_row(const WideBundle<W>& bundle, std::uint32_t at, Vec3W<W> direction, Vec3W<W> spin,
+                                 Vec3W<W> r, const WideJoint<W>& column, bool turns, bool is_first) {
   const auto put = [&](std::uint32_t i, Wide<W> v) {
     is_first ? bundle.set_value(i, v) : bundle.add_value(i, v);
   };
-  const Vec3W<W> k = push + cross(spin, r);
+  const Vec3W<W> k = direction + cross(spin, r);
   put(at, k.x);
   put(at + 1, k.y);
   put(at + 2, k.z);
@@ -213,9 +213,9 @@ GYRE_INLINE void put_coupled_row(const Bundle<W>& bundle, std::uint32_t at, Vec3
 
 // Signs, because a feels the opposite of what b does.
 template <int W>
-GYRE_INLINE void put_coupling(const Bundle<W>& bundle, const LaneCoupling& coupling) {
-  const LinkedJoint<W>&row = bundle.joints[coupling.row], &column = bundle.joints[coupling.column];
-  const LinkedBody<W>& body = bundle.bodies[coupling.body];
+GYRE_INLINE void put_coupling(const WideBundle<W>& bundle, const LaneCoupling& coupling) {
+  const WideJoint<W>&row = bundle.joints[coupling.row], &column = bundle.joints[coupling.column];
+  const WideBody<W>& body = bundle.bodies[coupling.body];
   const float sign = coupling.row_has_b == coupling.column_has_b ? 1.0f : -1.0f;
   const Sym3W<W> inverse = Wide<W>(sign) * body.inverse;
   const Wide<W> mass = sign * body.inverse_mass, none(0.0f);
@@ -233,42 +233,42 @@ GYRE_INLINE void put_coupling(const Bundle<W>& bundle, const LaneCoupling& coupl
 }
 
 template <int W>
-void clear_values(const LinkageBundle& plain) {
+void clear_values(const ArticulationBundle& plain) {
   for (std::uint32_t i = 0; i < plain.value_count; ++i) Wide<W>(0.0f).store(plain.values + i * W);
 }
 
 // The rows where the bodies are now, and their own blocks of the matrix.
 template <int W>
-void place_bundle(const LinkageBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
-  const Bundle<W> bundle(plain);
+void prepare_bundle(const ArticulationBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
+  const WideBundle<W> bundle(plain);
   load_poses(bundle, arrays);
   const float per_substep = 1.0f / s.substep;
   for (std::uint32_t n = 0; n < plain.node_count; ++n) {
     const LaneNode& node = plain.nodes[n];
-    LinkedJoint<W>& joint = bundle.joints[n];
-    LinkedBody<W>&a = bundle.bodies[node.a], &b = bundle.bodies[node.b];
+    WideJoint<W>& joint = bundle.joints[n];
+    WideBody<W>&a = bundle.bodies[node.a], &b = bundle.bodies[node.b];
     place_lane_joint(node, joint, a, b);
     const Vec3W<W> force = per_substep * joint.linear_impulse;
-    if (bundle.moves(node.a)) add_pull(a, joint.from_a, -force);
-    if (bundle.moves(node.b)) add_pull(b, joint.from_b, force);
+    if (bundle.moves(node.a)) add_geometric_stiffness_term(a, joint.from_a, -force);
+    if (bundle.moves(node.b)) add_geometric_stiffness_term(b, joint.from_b, force);
   }
   for (std::uint32_t i = 0; i < plain.moving_count; ++i) raise_body(bundle.bodies[i], s);
   if (plain.has_fill) clear_values<W>(plain);
-  for (std::uint32_t n = 0; n < plain.node_count; ++n) make_own_block(bundle, plain.nodes[n], s.give);
+  for (std::uint32_t n = 0; n < plain.node_count; ++n) make_own_block(bundle, plain.nodes[n], s.compliance);
   *plain.is_factored = false;
 }
 
 // The rest of the matrix, and its factors: in one place, for it is long and asked for from many.
 template <int W>
-__attribute__((noinline)) void make_factors(const Bundle<W>& bundle) {
-  const LinkageBundle& plain = bundle.plain;
+__attribute__((noinline)) void make_factors(const WideBundle<W>& bundle) {
+  const ArticulationBundle& plain = bundle.plain;
   for (std::uint32_t i = 0; i < plain.coupling_count; ++i) put_coupling(bundle, plain.couplings[i]);
   factor_lanes<W>(plain);
   *plain.is_factored = true;
 }
 // Once something is to be solved with them. Of linkages that fall freely nothing is.
 template <int W>
-GYRE_INLINE void factor_bundle(const Bundle<W>& bundle) {
+GYRE_INLINE void factor_bundle(const WideBundle<W>& bundle) {
   if (!*bundle.plain.is_factored) make_factors<W>(bundle);
 }
 

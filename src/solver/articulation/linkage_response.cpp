@@ -20,19 +20,19 @@ struct RowPush {
     return side == side_a ? a : side == side_b ? b : Speeds{};
   }
 };
-RowPush push_of(const Linkage& linkage, const LinkageSolve& solve, const ResponseRow& row) {
-  const LinkageNode& node = linkage.nodes[row.node];
-  RowPush push{node.side_a, node.side_b, {}, {}};
+RowPush push_of(const Articulation& articulation, const ArticulationSolve& solve, const ResponseRow& row) {
+  const ArticulationNode& node = articulation.nodes[row.node];
+  RowPush direction{node.side_a, node.side_b, {}, {}};
   if (node.side_a >= 0)
-    push.a = {DVec3((-row.sign * solve.bodies.inertia[node.body_a].inverse_mass) * row.row->push_a),
-              DVec3(linkage.bodies[std::size_t(node.side_a)].inverse * (-row.sign * row.row->arm_a))};
+    direction.a = {DVec3((-row.sign * solve.bodies.inertia[node.body_a].inverse_mass) * row.row->push_a),
+              DVec3(articulation.bodies[std::size_t(node.side_a)].inverse * (-row.sign * row.row->arm_a))};
   if (node.side_b >= 0)
-    push.b = {DVec3((row.sign * solve.bodies.inertia[node.body_b].inverse_mass) * row.row->push_b),
-              DVec3(linkage.bodies[std::size_t(node.side_b)].inverse * (row.sign * row.row->arm_b))};
-  return push;
+    direction.b = {DVec3((row.sign * solve.bodies.inertia[node.body_b].inverse_mass) * row.row->push_b),
+              DVec3(articulation.bodies[std::size_t(node.side_b)].inverse * (row.sign * row.row->arm_b))};
+  return direction;
 }
 
-bool share_body(const LinkageNode& node, const LinkageNode& other) {
+bool share_body(const ArticulationNode& node, const ArticulationNode& other) {
   const auto is_one = [&](std::int32_t side) {
     return side >= 0 && (side == other.side_a || side == other.side_b);
   };
@@ -40,23 +40,23 @@ bool share_body(const LinkageNode& node, const LinkageNode& other) {
 }
 
 // Sets a node's part of a right side: what its rows miss where its bodies move so.
-void set_missing(const LinkageNode& node, const Speeds& a, const Speeds& b, double* x) {
-  const RowVectors &push = node.rows.push, &arm_a = node.rows.arm_a, &arm_b = node.rows.arm_b;
+void set_missing(const ArticulationNode& node, const Speeds& a, const Speeds& b, double* x) {
+  const RowVectors &direction = node.rows.direction, &arm_a = node.rows.arm_a, &arm_b = node.rows.arm_b;
   const DVec3 u = a.linear - b.linear;
   for (int i = 0; i < node.count; ++i)
-    x[i] = double(push.x[i]) * u.x + double(push.y[i]) * u.y + double(push.z[i]) * u.z +
+    x[i] = double(direction.x[i]) * u.x + double(direction.y[i]) * u.y + double(direction.z[i]) * u.z +
            double(arm_a.x[i]) * a.angular.x + double(arm_a.y[i]) * a.angular.y +
            double(arm_a.z[i]) * a.angular.z - double(arm_b.x[i]) * b.angular.x -
            double(arm_b.y[i]) * b.angular.y - double(arm_b.z[i]) * b.angular.z;
 }
 
 // What a node's rows give its bodies.
-void add_answers(const LinkageNode& node, const double* x, float inverse_mass_a, float inverse_mass_b,
+void add_answers(const ArticulationNode& node, const double* x, float inverse_mass_a, float inverse_mass_b,
                  Speeds& a, Speeds& b) {
-  const LinkageRows& rows = node.rows;
+  const ArticulationRows& rows = node.rows;
   DVec3 force, turn_a, turn_b;
   for (int i = 0; i < node.count; ++i) {
-    force += x[i] * DVec3(rows.push.at(i));
+    force += x[i] * DVec3(rows.direction.at(i));
     turn_a += x[i] * DVec3(rows.spin_a.at(i));
     turn_b += x[i] * DVec3(rows.spin_b.at(i));
   }
@@ -75,8 +75,8 @@ double dot_rows(std::span<const double> a, std::span<const double> b) {
   return sum;
 }
 
-std::size_t first_row(const Linkage& linkage, std::size_t node) {
-  return linkage.plan.columns[linkage.plan.place_of[node]].row;
+std::size_t first_row(const Articulation& articulation, std::size_t node) {
+  return articulation.plan.columns[articulation.plan.place_of[node]].row;
 }
 
 // Six numbers a body.
@@ -105,7 +105,7 @@ class BodySpeeds {
 
 }  // namespace
 
-float axis_speed(const LinkageNode& node, const AxisRow& row, const JointBodies& bodies) {
+float axis_speed(const ArticulationNode& node, const AxisRow& row, const JointBodies& bodies) {
   float speed = 0.0f;
   if (node.body_a != kNoBody) {
     const BodyMotion& a = bodies.motion[node.body_a];
@@ -118,55 +118,55 @@ float axis_speed(const LinkageNode& node, const AxisRow& row, const JointBodies&
   return speed;
 }
 
-void find_response(const Linkage& linkage, const LinkageSolve& solve, const ResponseRow& row,
+void find_response(const Articulation& articulation, const ArticulationSolve& solve, const ResponseRow& row,
                    ResponseColumn column) {
-  const RowPush push = push_of(linkage, solve, row);
-  const LinkageNode& own = linkage.nodes[row.node];
+  const RowPush direction = push_of(articulation, solve, row);
+  const ArticulationNode& own = articulation.nodes[row.node];
   for (double& one : column.down) one = 0.0;
-  for (std::size_t n = 0; n < linkage.nodes.size(); ++n) {
-    const LinkageNode& node = linkage.nodes[n];
+  for (std::size_t n = 0; n < articulation.nodes.size(); ++n) {
+    const ArticulationNode& node = articulation.nodes[n];
     if (share_body(own, node))
-      set_missing(node, push.of(node.side_a), push.of(node.side_b), &column.down[first_row(linkage, n)]);
+      set_missing(node, direction.of(node.side_a), direction.of(node.side_b), &column.down[first_row(articulation, n)]);
   }
-  solve_blocks_down(linkage.plan, linkage.values, column.down, column.scaled);
+  solve_blocks_down(articulation.plan, articulation.values, column.down, column.scaled);
 }
 
-void find_ways(const Linkage& linkage, const LinkageSolve& solve, std::span<const ResponseRow> rows,
+void compute_delassus(const Articulation& articulation, const ArticulationSolve& solve, std::span<const ResponseRow> rows,
                const ResponseColumns& columns, std::size_t known, double* matrix, std::size_t stride) {
-  const std::size_t size = linkage.plan.rows;
+  const std::size_t size = articulation.plan.rows;
   for (std::size_t j = known; j < rows.size(); ++j) {
-    const RowPush push = push_of(linkage, solve, rows[j]);
+    const RowPush direction = push_of(articulation, solve, rows[j]);
     for (std::size_t i = 0; i <= j; ++i) {
-      const LinkageNode& node = linkage.nodes[rows[i].node];
-      const double alone = speed_of(rows[i], push.of(node.side_a), push.of(node.side_b));
+      const ArticulationNode& node = articulation.nodes[rows[i].node];
+      const double alone = speed_of(rows[i], direction.of(node.side_a), direction.of(node.side_b));
       matrix[i * stride + j] = matrix[j * stride + i] =
           alone - dot_rows(columns.at(j, size).scaled, columns.at(i, size).down);
     }
   }
 }
 
-void push_rows(const Linkage& linkage, const LinkageSolve& solve, std::span<const ResponseRow> rows,
+void push_rows(const Articulation& articulation, const ArticulationSolve& solve, std::span<const ResponseRow> rows,
                std::span<const double> impulses, std::span<double> speeds) {
   BodySpeeds changes(speeds);
   for (double& one : speeds) one = 0.0;
   for (std::size_t c = 0; c < rows.size(); ++c) {
     if (impulses[c] == 0.0) continue;
-    const RowPush push = push_of(linkage, solve, rows[c]);
-    changes.add(push.side_a, impulses[c], push.a);
-    changes.add(push.side_b, impulses[c], push.b);
+    const RowPush direction = push_of(articulation, solve, rows[c]);
+    changes.add(direction.side_a, impulses[c], direction.a);
+    changes.add(direction.side_b, impulses[c], direction.b);
   }
-  for (std::size_t n = 0; n < linkage.nodes.size(); ++n) {
-    const LinkageNode& node = linkage.nodes[n];
+  for (std::size_t n = 0; n < articulation.nodes.size(); ++n) {
+    const ArticulationNode& node = articulation.nodes[n];
     set_missing(node, changes.at(node.side_a), changes.at(node.side_b),
-                &linkage.vector[first_row(linkage, n)]);
+                &articulation.vector[first_row(articulation, n)]);
   }
-  solve_blocks(linkage.plan, linkage.values, linkage.vector);
+  solve_blocks(articulation.plan, articulation.values, articulation.vector);
   const auto inverse_mass = [&](std::int32_t side, std::int32_t body) {
     return side < 0 ? 0.0f : solve.bodies.inertia[body].inverse_mass;
   };
-  for (std::size_t n = 0; n < linkage.nodes.size(); ++n) {
-    const LinkageNode& node = linkage.nodes[n];
-    const double* const x = &linkage.vector[first_row(linkage, n)];
+  for (std::size_t n = 0; n < articulation.nodes.size(); ++n) {
+    const ArticulationNode& node = articulation.nodes[n];
+    const double* const x = &articulation.vector[first_row(articulation, n)];
     Speeds a = changes.at(node.side_a), b = changes.at(node.side_b);
     add_answers(node, x, inverse_mass(node.side_a, node.body_a), inverse_mass(node.side_b, node.body_b), a,
                 b);
@@ -174,12 +174,12 @@ void push_rows(const Linkage& linkage, const LinkageSolve& solve, std::span<cons
     changes.set(node.side_b, b);
     for (int i = 0; i < node.count; ++i)
       keep_impulse(solve.records[node.record], solve.work[node.work],
-                   {node.rows.push.at(i), node.rows.arm_a.at(i), node.rows.arm_b.at(i)}, i,
+                   {node.rows.direction.at(i), node.rows.arm_a.at(i), node.rows.arm_b.at(i)}, i,
                    float(x[i]) + 0.0f);
   }
   // Adding zero keeps -0 out of the state.
-  for (std::size_t side = 0; side < linkage.bodies.size(); ++side) {
-    BodyMotion& motion = solve.bodies.motion[linkage.bodies[side].body];
+  for (std::size_t side = 0; side < articulation.bodies.size(); ++side) {
+    BodyMotion& motion = solve.bodies.motion[articulation.bodies[side].body];
     const Speeds change = changes.at(std::int32_t(side));
     motion.linear_velocity += to_float(change.linear) + Vec3{};
     motion.angular_velocity += to_float(change.angular) + Vec3{};

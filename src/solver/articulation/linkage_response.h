@@ -6,7 +6,7 @@
 #pragma once
 
 #include "solver/joint/joint_axis.h"
-#include "solver/articulation/linkage.h"
+#include "solver/articulation/articulation.h"
 
 namespace gyre {
 
@@ -36,20 +36,20 @@ inline std::span<double> take_room(std::span<double>& room, std::size_t count) {
   return part;
 }
 
-void find_response(const Linkage& linkage, const LinkageSolve& solve, const ResponseRow& row,
+void find_response(const Articulation& articulation, const ArticulationSolve& solve, const ResponseRow& row,
                    ResponseColumn column);
 
 // Ways among rows from, to, ...: matrix[i * stride + j] is the speed that row i has of an impulse of one along row j. Those of [0, known) among
 // each other are left as they are.
-void find_ways(const Linkage& linkage, const LinkageSolve& solve, std::span<const ResponseRow> rows,
+void compute_delassus(const Articulation& articulation, const ArticulationSolve& solve, std::span<const ResponseRow> rows,
                const ResponseColumns& columns, std::size_t known, double* matrix, std::size_t stride);
 
 // Adds impulses along rows, and what the equations answer: to the bodies' velocities and to what joints keep. `speeds` is room for six
 // numbers a body.
-void push_rows(const Linkage& linkage, const LinkageSolve& solve, std::span<const ResponseRow> rows,
+void push_rows(const Articulation& articulation, const ArticulationSolve& solve, std::span<const ResponseRow> rows,
                std::span<const double> impulses, std::span<double> speeds);
 
 // What an axis sees of the bodies' velocities.
-float axis_speed(const LinkageNode& node, const AxisRow& row, const JointBodies& bodies);
+float axis_speed(const ArticulationNode& node, const AxisRow& row, const JointBodies& bodies);
 
 }  // namespace gyre

@@ -6,10 +6,10 @@
 #include "math/rotation.h"
 #include "math/trig.h"
 #include "solver/contact/contact_block.h"
-#include "solver/articulation/lane_records.h"
-#include "solver/articulation/linkage.h"
-#include "solver/articulation/linkage_axes.h"
-#include "solver/articulation/linkage_stops.h"
+#include "solver/articulation/lane_transfer.h"
+#include "solver/articulation/articulation.h"
+#include "solver/articulation/articulation_drives.h"
+#include "solver/articulation/articulation_limits.h"
 
 #include <gtest/gtest.h>
 
@@ -55,8 +55,8 @@ struct Crowd {
   std::vector<Quat> orientation{std::size_t(kBodies * kCopies)};
   std::vector<JointRecord> records{std::size_t(kJoints * kCopies)};
   std::vector<JointDetail> details{std::size_t(kJoints * kCopies)};
-  std::vector<JointWork> work{std::size_t(kJoints * kCopies)};
-  std::vector<JointPlaces> places{std::size_t(kJoints * kCopies)};
+  std::vector<JointConstraint> work{std::size_t(kJoints * kCopies)};
+  std::vector<JointOffsets> places{std::size_t(kJoints * kCopies)};
   Driven driven;
 
   explicit Crowd(float tension, Driven by = Driven::no) : driven(by) {
@@ -161,13 +161,13 @@ struct Crowd {
     return driven != Driven::no || (member.stops && member.kind != JointKind::hinge) ? &details[i] : nullptr;
   }
 
-  LinkageSolve solve() {
+  ArticulationSolve solve() {
     return {.records = records,
             .work = work,
             .places = places,
             .bodies = {motion.data(), inertia.data(), orientation.data()},
             .settings = kSettings,
-            .give = 1.0e-4f};
+            .compliance = 1.0e-4f};
   }
 };
 
@@ -175,7 +175,7 @@ struct Crowd {
 struct Shape {
   Arena arena;
   BlockPlan plan;
-  std::vector<LinkageCoupling> couplings;
+  std::vector<ArticulationCoupling> couplings;
   std::vector<LaneCoupling> lane_couplings;
   std::vector<LaneNode> nodes{std::size_t(kJoints)};
 
@@ -193,7 +193,7 @@ struct Shape {
       }
     }
     EXPECT_TRUE(plan_blocks(sizes, edges, 100000, arena, plan));
-    for (LinkageCoupling& c : couplings) {
+    for (ArticulationCoupling& c : couplings) {
       const BlockPlace block = find_block(plan, c.row, c.column);
       if (!block.first_is_row) c = {c.column, c.row, 0, c.body, c.column_has_b, c.row_has_b};
       c.offset = block.offset;
@@ -215,18 +215,18 @@ struct Shape {
 };
 
 inline void solve_one_by_one(Crowd& crowd, const Shape& shape) {
-  LinkageSolve solve = crowd.solve();
-  std::vector<double> stop_room(stops_room(shape.plan.rows, kBodies));
-  solve.room = stop_room;
+  ArticulationSolve solve = crowd.solve();
+  std::vector<double> limit_room(limits_room(shape.plan.rows, kBodies));
+  solve.room = limit_room;
   for (int copy = 0; copy < kCopies; ++copy) {
-    std::vector<LinkageNode> nodes{std::size_t(kJoints)};
-    std::vector<LinkageBody> bodies{std::size_t(kBodies)};
-    std::vector<LinkageCoupling> couplings = shape.couplings;
+    std::vector<ArticulationNode> nodes{std::size_t(kJoints)};
+    std::vector<ArticulationBody> bodies{std::size_t(kBodies)};
+    std::vector<ArticulationCoupling> couplings = shape.couplings;
     std::vector<double> values(shape.plan.values), room(factor_room(shape.plan)), vector(shape.plan.rows);
     for (int i = 0; i < kBodies; ++i) bodies[std::size_t(i)].body = copy * kBodies + i;
-    for (LinkageCoupling& c : couplings) c.body += copy * kBodies;
+    for (ArticulationCoupling& c : couplings) c.body += copy * kBodies;
     for (int i = 0; i < kJoints; ++i) {
-      LinkageNode& node = nodes[std::size_t(i)];
+      ArticulationNode& node = nodes[std::size_t(i)];
       node.record = node.work = std::uint32_t(copy * kJoints + i);
       node.body_a = crowd.records[node.record].body_a;
       node.body_b = crowd.records[node.record].body_b;
@@ -234,23 +234,23 @@ inline void solve_one_by_one(Crowd& crowd, const Shape& shape) {
       node.side_b = kMembers[i].b;
       node.count = int(shape.nodes[std::size_t(i)].rows);
     }
-    Linkage linkage{nodes, bodies, couplings, shape.plan, values, room, vector, true};
-    std::vector<LinkedAxis> axes;
+    Articulation articulation{nodes, bodies, couplings, shape.plan, values, room, vector, true};
+    std::vector<WideLimitAxis> axes;
     for (std::uint32_t i = 0; crowd.driven == Driven::motors && i < kJoints; ++i) {
       if (kMembers[i].kind != JointKind::hinge) continue;
       axes.push_back({i, &crowd.work[nodes[i].work].axes[0]});
-      axes.back().axis->is_linked = true;
+      axes.back().axis->in_articulation = true;
     }
-    linkage.axes = axes;
-    std::vector<double> axis_room(linked_axes_room(linkage, axes.size()));
-    linkage.axis_room = axis_room;
+    articulation.axes = axes;
+    std::vector<double> axis_room(drives_room(articulation, axes.size()));
+    articulation.axis_room = axis_room;
     for (int part = 0; part < 2; ++part) {
-      place_linkage(linkage, solve);
-      warm_linkage(linkage, solve);
-      solve_linkage(linkage, solve);
-      solve_linkage_again(linkage, solve);
+      prepare_articulation(articulation, solve);
+      warm_start_articulation(articulation, solve);
+      solve_articulation(articulation, solve);
+      solve_articulation_after_contacts(articulation, solve);
     }
-    relax_linkage(linkage, solve);
+    relax_articulation(articulation, solve);
   }
   for (std::size_t i = 0; i < crowd.records.size(); ++i) finish_joint(crowd.records[i], crowd.work[i]);
 }
@@ -264,17 +264,17 @@ struct Between {
   bool asks = true;  // what the second part begins with is asked for by itself too
 };
 
-inline void solve_side_by_side(Crowd& crowd, Shape& shape, const LinkageKernels& kernels,
+inline void solve_side_by_side(Crowd& crowd, Shape& shape, const ArticulationKernels& kernels,
                                const Between& between) {
-  const LinkageSolve solve = crowd.solve();
+  const ArticulationSolve solve = crowd.solve();
   const LaneArrays arrays{crowd.motion.data(), crowd.inertia.data(), crowd.orientation.data()};
-  const LaneSettings settings{kSubstep, kSettings.softness.bias_rate, solve.give, raise_inertia};
+  const LaneSettings settings{kSubstep, kSettings.softness.bias_rate, solve.compliance, add_geometric_stiffness};
   const LaneStart start{.substep = kSubstep, .softness = kSettings.softness};
   for (std::size_t i = 0; i < kJoints; ++i)
     ASSERT_TRUE(fits_lane(crowd.records[i], crowd.detail_of(i), start, shape.nodes[i]));
   Arena arena;
   const std::size_t lanes = std::size_t(kernels.width);
-  LinkageBundle bundle;
+  ArticulationBundle bundle;
   bundle.kernels = &kernels;
   bundle.nodes = shape.nodes.data();
   bundle.couplings = shape.lane_couplings.data();
@@ -290,7 +290,7 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, const LinkageKernels&
   bundle.row_count = shape.plan.rows;
   bundle.has_fill = true;
   for (LaneNode& node : shape.nodes) {
-    bundle.stop_count += (node.has_twist ? 1 : 0) + (node.has_swing ? 1 : 0) + (node.has_servo ? 1 : 0);
+    bundle.limit_count += (node.has_twist ? 1 : 0) + (node.has_swing ? 1 : 0) + (node.has_servo ? 1 : 0);
     if (node.is_driven()) node.drives = bundle.drive_count++;
     if (node.has_servo) node.servo = bundle.servo_count++;
     bundle.has_drives = bundle.has_drives || node.has_drive || node.has_servo;
@@ -300,13 +300,13 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, const LinkageKernels&
   bundle.drives = arena.make<std::byte>(bundle.drive_count * kernels.drives_bytes).data();
   bundle.servos = arena.make<std::byte>(bundle.servo_count * kernels.servo_bytes).data();
   bundle.values = arena.make<float>(lanes * shape.plan.values).data();
-  bundle.gained = arena.make<float>(2 * lanes).data();
-  bundle.light = arena.make<float>(lanes).data();
-  for (int lane = 0; lane < kernels.width; ++lane) bundle.light[lane] = 0.0f;
+  bundle.energy_gain = arena.make<float>(2 * lanes).data();
+  bundle.has_extreme_mass_ratio = arena.make<float>(lanes).data();
+  for (int lane = 0; lane < kernels.width; ++lane) bundle.has_extreme_mass_ratio[lane] = 0.0f;
   bundle.vector = arena.make<float>(lanes * shape.plan.rows).data();
   bundle.room = arena.make<float>(lanes * shape.plan.widest).data();
   bundle.is_factored = arena.make<bool>(1).data();
-  bundle.stops = arena.make<std::byte>(kernels.stop_room(bundle)).data();
+  bundle.stops = arena.make<std::byte>(kernels.limit_room(bundle)).data();
   for (int first = 0; first < kCopies; first += kernels.width) {
     const int used = std::min(kernels.width, kCopies - first);
     clear_lanes(bundle);
@@ -317,7 +317,7 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, const LinkageKernels&
       }
     };
     for_each_joint([&](int lane, std::uint32_t n, std::size_t i) {
-      begin_lane(bundle, lane, n, crowd.records[i], crowd.detail_of(i), crowd.places[i].offset, start);
+      load_lane(bundle, lane, n, crowd.records[i], crowd.detail_of(i), crowd.places[i].offset, start);
       set_lane_body(bundle, lane, shape.nodes[n].a, crowd.records[i].body_a, false);
       set_lane_body(bundle, lane, shape.nodes[n].b, crowd.records[i].body_b, false);
     });
@@ -343,7 +343,7 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, const LinkageKernels&
     }
     kernels.finish(bundle, arrays, settings);
     for_each_joint([&](int lane, std::uint32_t n, std::size_t i) {
-      finish_lane(bundle, lane, n, crowd.records[i], crowd.detail_of(i));
+      store_lane(bundle, lane, n, crowd.records[i], crowd.detail_of(i));
     });
   }
 }

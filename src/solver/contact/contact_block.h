@@ -6,19 +6,19 @@
 #pragma once
 
 #include "geometry/manifold/manifold.h"
-#include "solver/articulation/ball_lanes.h"
+#include "solver/articulation/ball_joint_simd.h"
 #include "solver/core/body_motion.h"
 #include "solver/articulation/linkage_lanes.h"
 #include "solver/motion/motion_block.h"
-#include "solver/motion/turn_block.h"
+#include "solver/motion/rotation_block.h"
 
 #include <cstdint>
 #include <span>
 
 namespace gyre {
 
-// Whether a contact has borne load as a spring, or is held as part of a structure at rest (solver/rest/contact_structure.h).
-enum class ContactHold : std::uint8_t { none, sprung, held };
+// Whether a contact has borne load as a spring, or is held as part of a structure at rest (solver/rest/static_equilibrium.h).
+enum class ContactStiffness : std::uint8_t { none, sprung, held };
 
 // One manifold to be solved. Plain data: the same for every width; the kernels read it four floats at a time.
 struct ContactConstraint {
@@ -38,7 +38,7 @@ struct ContactConstraint {
   bool rigid = false;                    // no spring: part of a tree that is solved directly
   bool linked = false;                   // one of the bodies hangs on a joint
   bool fast = false;                     // closes so fast that it may be told as a hit
-  ContactHold hold = ContactHold::none;  // as the step began
+  ContactStiffness hold = ContactStiffness::none;  // as the step began
   Manifold* manifold = nullptr;
 };
 static_assert(sizeof(ContactConstraint) <= 64 || sizeof(void*) != 8, "a cache line");
@@ -49,7 +49,7 @@ struct ContactSettings {
   float step = 0.0f;     // s
   // A contact that has just begun to bear load is a soft spring: it asks overlap back at `rate` (1/s) and gives way by the
   // share `give` of the load it is not used to. Both fade as it ages: at `aging` seconds to half.
-  float rate = 0.0f, give = 0.0f, aging = 1.0f;
+  float rate = 0.0f, compliance = 0.0f, aging = 1.0f;
   float warm_scale = 1.0f;  // present sub-step over the last step's: impulses are kept per sub-step
   Vec3 up;                  // against gravity; zero where there is none
 };
@@ -77,7 +77,7 @@ struct PointArmPairs {
 
 // Where the points of a contact are in a sub-step, if not where they were as the step began: in its middle, where speeds are
 // taken, and as it begins, where impulses act.
-struct FollowedArms {
+struct AdvancedArms {
   PointArmPairs middle, before, now;  // `before`: as the last sub-step began
   // m, less what the bodies' motion since the step began makes of it with the arms of the middle.
   float separation[kMaxManifoldPoints] = {};
@@ -87,9 +87,9 @@ struct FollowedArms {
 };
 
 // A contact that is followed: its lane in the block, and the present inverse inertia of its bodies, null where there is none.
-struct FollowedLane {
+struct AdvancedArmsLane {
   int lane;
-  FollowedArms* arms;
+  AdvancedArms* arms;
   const Sym3 *inverse_a, *inverse_b;
 };
 
@@ -105,7 +105,7 @@ struct ContactKernels {
   void (*prepare)(void* blocks, void* asides, int begin, int end, const ContactConstraint* constraints,
                   const std::uint32_t* order, ContactBodies bodies, const ContactSettings& settings);
   // Moves the points of contacts of a block, and along with them the impulses that stand, which these velocities have.
-  void (*follow)(void* blocks, int block, const FollowedLane* lanes, int count);
+  void (*follow)(void* blocks, int block, const AdvancedArmsLane* lanes, int count);
   void (*warm_start)(void* blocks, int begin, int end);
   void (*solve)(void* blocks, int begin, int end, float substep);
   void (*relax)(void* blocks, int begin, int end, float substep);
@@ -118,8 +118,8 @@ struct ContactKernels {
   void (*finish)(void* blocks, int begin, int end, const ContactConstraint* constraints,
                  const std::uint32_t* order, const ContactSettings& settings);
   MotionKernels motion;
-  TurnKernels turns;
-  LinkageKernels linkages;
+  RotationKernels turns;
+  ArticulationKernels linkages;
   BallKernels balls;
 };
 

@@ -23,7 +23,7 @@ constexpr float kSpringSpeed = 0.125f;
 // By how many slops a point of a linked body must overlap (three tenths of the smaller body's inner radius) to be lost, and what share of its
 // impulse it loses in a second then: a head on the wrong side of somebody's chest cannot get back without passing it, and the neck would
 // press it on the chest ever harder.
-constexpr float kLostSlops = 750.0f, kLostLeak = 2.0f;
+constexpr float kDeepPenetrationSlops = 750.0f, kLostLeak = 2.0f;
 // Projected sweeps over the points of a manifold in which some would pull.
 constexpr int kPullSweeps = 6;
 
@@ -37,7 +37,7 @@ GYRE_INLINE void warm_start_block(ContactBlock<W>& block) {
     turn_sum = turn_sum + block.impulses[k] * block.points[k].arm;
   }
   push_normal<W>(block, pair, total, turn_sum);
-  push<W>(block, pair, block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2, block.friction_from_a,
+  direction<W>(block, pair, block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2, block.friction_from_a,
           block.friction_from_b, block.twist * block.normal);
   if (block.rolls != 0) turn<W>(block, pair, block.aside->rolling);
   store_pair<W>(block, pair);
@@ -52,7 +52,7 @@ void warm_start_blocks(void* memory, int begin, int end) {
 }
 
 // N s: less than this is no load. The square of its inverse is still a float; what dies away goes through all of them down to zero.
-constexpr float kLeastLoad = 1.0e-18f;
+constexpr float kMinLoad = 1.0e-18f;
 
 // Sum of the normal impulses of a manifold.
 template <int W>
@@ -68,7 +68,7 @@ GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W, kHasA>& pa
   const Wide<W> zero = Wide<W>(0.0f);
   const Wide<W> one = Wide<W>(1.0f);
   const Wide<W> load = normal_load<W>(block);
-  const auto loaded = load > Wide<W>(kLeastLoad);
+  const auto loaded = load > Wide<W>(kMinLoad);
   if (none(loaded) && none((block.friction_1 != zero) | (block.friction_2 != zero) | (block.twist != zero))) {
     block.slides = 0;
     return;
@@ -86,7 +86,7 @@ GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W, kHasA>& pa
   // Where on its limit the impulse is: 1 on the ellipsoid. No load, no friction.
   const auto was_sliding = Mask<W>::of_bits(block.slides);
   const Wide<W> per_load = select(loaded, one / select(loaded, load, one), zero);
-  const Wide<W> grip = select(was_sliding, block.dynamic_grip, block.static_grip) * per_load;
+  const Wide<W> grip = select(was_sliding, block.dynamic_grip, block.inverse_friction) * per_load;
   const Wide<W> twist_grip = select(was_sliding, block.dynamic_twist_grip, block.static_twist_grip) * per_load;
   const Wide<W> use = (f1 * f1 + f2 * f2) * (grip * grip) + (f3 * f3) * (twist_grip * twist_grip);
   const auto sticks = (use <= one) | ~loaded;
@@ -115,7 +115,7 @@ GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W, kHasA>& pa
   block.friction_1 = f1;
   block.friction_2 = f2;
   block.twist = f3;
-  push<W>(block, pair, d1 * block.tangent_1 + d2 * block.tangent_2, block.friction_from_a, block.friction_from_b,
+  direction<W>(block, pair, d1 * block.tangent_1 + d2 * block.tangent_2, block.friction_from_a, block.friction_from_b,
           d3 * block.normal);
 }
 
@@ -126,13 +126,13 @@ GYRE_INLINE void solve_rolling(ContactBlock<W>& block, PairMotion<W, kHasA>& pai
   const Wide<W> one = Wide<W>(1.0f);
   const Vec3W<W> spin = relative_spin<W>(pair);
   const Vec3W<W> roll = spin - dot(spin, block.normal) * block.normal;
-  const Vec3W<W> wanted = block.aside->rolling - block.aside->rolling_mass * roll;
+  const Vec3W<W> target_speed = block.aside->rolling - block.aside->rolling_mass * roll;
   const Wide<W> limit = block.aside->rolling_friction * normal_load<W>(block);
-  const Wide<W> size = sqrt(dot(wanted, wanted));
+  const Wide<W> size = sqrt(dot(target_speed, target_speed));
   const Wide<W> scale = select(size > limit, limit / select(size > zero, size, one), one);
   // A lane that does not roll must come out as from a block without this: also where `wanted` leaves a float's range.
   const auto rolls = block.aside->rolling_friction > zero;
-  const Vec3W<W> bounded = scale * wanted;
+  const Vec3W<W> bounded = scale * target_speed;
   const Vec3W<W> next{select(rolls, bounded.x, zero), select(rolls, bounded.y, zero), select(rolls, bounded.z, zero)};
   turn<W>(block, pair, next - block.aside->rolling);
   block.aside->rolling = next;
@@ -141,7 +141,7 @@ GYRE_INLINE void solve_rolling(ContactBlock<W>& block, PairMotion<W, kHasA>& pai
 // The impulses of lanes in which some points would pull, by projected sweeps: into `next`, of the others nothing.
 // From the impulses that stand, not from the block's answer with its pulls cut off: that is too strong, and piles shake.
 template <int W, int Count>
-GYRE_INLINE void sweep_pulls(const ContactAside<W>& aside, const Wide<W>* residual, const Wide<W>* kept, Mask<W> pulls,
+GYRE_INLINE void iterate_manifold_points(const ContactBlockCold<W>& aside, const Wide<W>* residual, const Wide<W>* kept, Mask<W> pulls,
                              Wide<W>* next) {
   const Wide<W> zero(0.0f), one(1.0f);
   Wide<W> tried[Count], change[Count];
@@ -179,7 +179,7 @@ template <int W, bool kSprung, int Count, bool kHasA>
 GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W, kHasA>& pair, float substep) {
   const Wide<W> zero(0.0f), one(1.0f), rate(1.0f / substep);
   const NormalMotion<W> ways = normal_ways<W, kHasA>(block), speeds = normal_speeds<W>(block, pair);
-  const Wide<W> lost = Wide<W>(-kLostSlops) * block.slop;
+  const Wide<W> lost = Wide<W>(-kDeepPenetrationSlops) * block.slop;
   const Wide<W> leak(1.0f / (1.0f + kLostLeak * substep));
   Wide<W> residual[Count];  // speed that the row wants to lose
   Wide<W> kept[Count];      // the impulse as it stands, less what the spring gives way
@@ -198,7 +198,7 @@ GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W, kHasA>& pair
       const Wide<W> share = any(is_capped) ? select(is_capped, fastest / select(is_capped, asked, one), one) : one;
       // A point that parts ceases to give way by degrees.
       const Wide<W> near = max(block.slop - max(separation, zero), zero);
-      kept[i] = block.impulses[i] - (block.give * near) * share * max(block.impulses[i] - point.held, zero);
+      kept[i] = block.impulses[i] - (block.compliance * near) * share * max(block.impulses[i] - point.held, zero);
       if (block.linked != 0) {
         kept[i] = select(Mask<W>::of_bits(block.linked) & (separation < lost), leak * kept[i], kept[i]);
       }
@@ -210,7 +210,7 @@ GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W, kHasA>& pair
     }
     // A point that the lane does not have must stay out of the sums even where speeds leave a float's range: 0 times that
     // would be no number, and a block of the lane's own would not have it.
-    if (block.is_ragged != 0) residual[i] = keep(Mask<W>::of_bits(block.rows[i]), residual[i]);
+    if (block.has_uneven_points != 0) residual[i] = keep(Mask<W>::of_bits(block.rows[i]), residual[i]);
   }
   Wide<W> next[Count];
   auto pulls = one < zero;
@@ -219,11 +219,11 @@ GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W, kHasA>& pair
     Wide<W> change = block.inverse_k[packed(i, 0)] * residual[0];
     GYRE_UNROLL
     for (int j = 1; j < Count; ++j) change = change + block.inverse_k[packed(i, j)] * residual[j];
-    const Wide<W> wanted = kept[i] - change;
-    pulls = pulls | (wanted < zero);
-    next[i] = max(wanted, zero);
+    const Wide<W> target_speed = kept[i] - change;
+    pulls = pulls | (target_speed < zero);
+    next[i] = max(target_speed, zero);
   }
-  if (Count > 1 && any(pulls)) sweep_pulls<W, Count>(*block.aside, residual, kept, pulls, next);
+  if (Count > 1 && any(pulls)) iterate_manifold_points<W, Count>(*block.aside, residual, kept, pulls, next);
   Wide<W> total = next[0] - block.impulses[0];
   Vec3W<W> turn_sum = total * block.points[0].arm;
   block.impulses[0] = next[0];
@@ -251,7 +251,7 @@ GYRE_INLINE void solve_normals(ContactBlock<W>& block, PairMotion<W, kHasA>& pai
 
 // Contacts that bore nothing yet: friction knows no load that limits it, so the normals have to come first once.
 template <int W>
-GYRE_INLINE void strike_fresh(ContactBlock<W>& block, PairMotion<W>& pair, float substep) {
+GYRE_INLINE void apply_new_contact_impulse(ContactBlock<W>& block, PairMotion<W>& pair, float substep) {
   const auto fresh = block.aside->fresh > Wide<W>(0.0f);
   const PairMotion<W> old = pair;
   Wide<W> impulses[kMaxManifoldPoints];
@@ -279,7 +279,7 @@ GYRE_INLINE void strike_fresh(ContactBlock<W>& block, PairMotion<W>& pair, float
 template <int W>
 __attribute__((noinline)) PairMotion<W> begin_pair(ContactBlock<W>& block, float substep) {
   PairMotion<W> pair = load_pair<W>(block);
-  if (block.has_fresh != 0) strike_fresh<W>(block, pair, substep);
+  if (block.has_fresh != 0) apply_new_contact_impulse<W>(block, pair, substep);
   if (block.rolls != 0) solve_rolling<W>(block, pair);
   return pair;
 }

@@ -67,7 +67,7 @@ TEST(ContactKernel, TakesAnyLoadThatAFloatCanHold) {
 // Eight lanes that nobody asked for, on a processor that has sixteen, use its registers; asked for, they are those of any with AVX2.
 TEST(ContactKernel, EightLanesUseTheRegistersOfSixteenWhereNobodyAsksForThem) {
   const ContactKernels &best = select_contact_kernels(0), &asked = select_contact_kernels(8);
-  if (most_lanes() < 16) {
+  if (max_lanes() < 16) {
     EXPECT_EQ(&best, &select_contact_kernels(best.width));
     return;
   }
@@ -85,7 +85,7 @@ struct Bone {
   const ContactKernels& kernels;
   void* const block;
   void* const aside;
-  FollowedArms arms;
+  AdvancedArms arms;
 
   explicit Bone(int width)
       : kernels(select_contact_kernels(width)),
@@ -115,7 +115,7 @@ struct Bone {
     kernels.warm_start(block, 0, 1);
   }
   void follow() {
-    const FollowedLane lane{0, &arms, nullptr, &inertia.inverse};
+    const AdvancedArmsLane lane{0, &arms, nullptr, &inertia.inverse};
     kernels.follow(block, 0, &lane, 1);
   }
   static constexpr Vec3 kFriction{0, 0, 1.2f};

@@ -7,10 +7,10 @@ namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
 template <int W>
-GYRE_INLINE void note_ragged(ContactBlock<W>& block) {
+GYRE_INLINE void mark_uneven_points(ContactBlock<W>& block) {
   std::uint32_t missing = 0;
   for (int i = 0; i < block.point_count; ++i) missing |= block.rows[i] ^ all_lanes(W);
-  block.is_ragged = missing != 0 ? 1 : 0;
+  block.has_uneven_points = missing != 0 ? 1 : 0;
 }
 
 // K of the normal rows and its inverse. Four points of a plane give rank 3 at most, so the inverse is of K with its
@@ -82,7 +82,7 @@ __attribute__((noinline)) void prepare_normals(ContactBlock<W>& block, const Wid
       prepare_rows<W, 4>(block, point_exists);
       break;
   }
-  note_ragged<W>(block);
+  mark_uneven_points<W>(block);
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

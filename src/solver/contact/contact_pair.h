@@ -21,7 +21,7 @@ constexpr int packed(int i, int j) { return i <= j ? j * (j + 1) / 2 + i : i * (
 
 // What of a block only some stages or lanes need.
 template <int W>
-struct ContactAside {
+struct ContactBlockCold {
   // Where something slides, or surfaces do.
   Wide<W> slide_mass;     // scalar step for sliding, so that friction opposes the slip in every direction alike
   Wide<W> twist_radius;   // m: scale of the twist row beside the tangents
@@ -48,10 +48,10 @@ struct alignas(64) ContactBlock {
   // Motion records of the bodies: zeros for what has none.
   float* read_a[W];
   float* read_b[W];
-  ContactAside<W>* aside;
+  ContactBlockCold<W>* aside;
   std::int32_t point_count = 0;  // the most of any lane; three are prepared as four, for each number is a kernel of its own
   // Any lane has rolling friction; is fresh; has a surface that moves by itself; lacks a row that others have.
-  std::uint8_t rolls = 0, has_fresh = 0, slips = 0, is_ragged = 0;
+  std::uint8_t rolls = 0, has_fresh = 0, slips = 0, has_uneven_points = 0;
   std::int32_t idles = 0;        // solved where nothing moves, nor has in the step, it came out as it was: it will again
   // Lanes, as bits: of which a body hangs on a joint; that have a body there; whose body is pushed; where friction was at its limit;
   // that have a row for a point.
@@ -61,10 +61,10 @@ struct alignas(64) ContactBlock {
   Vec3W<W> friction_from_a, friction_from_b;
   Wide<W> inverse_k11, inverse_k12, inverse_k13, inverse_k22, inverse_k23, inverse_k33;  // of (tangent_1, tangent_2, twist)
   // Inverse friction coefficients, static and dynamic, and the same of the twist (1/m): 0 where there is no friction.
-  Wide<W> static_grip, dynamic_grip, static_twist_grip, dynamic_twist_grip;
+  Wide<W> inverse_friction, dynamic_grip, static_twist_grip, dynamic_twist_grip;
   Wide<W> inverse_mass_a, inverse_mass_b;
   Sym3W<W> inverse_inertia_a, inverse_inertia_b;
-  Wide<W> rate, give, slop, push_speed;
+  Wide<W> rate, compliance, slop, push_speed;
   // All points' arms on a body differ from `arm` by the same: one of these is zero, that of the body whose centre is nearer.
   Vec3W<W> arm_shift_a, arm_shift_b;
   // Accumulated in this sub-step, and summed over the step.
@@ -123,7 +123,7 @@ GYRE_INLINE void store_pair(ContactBlock<W>& block, const PairMotion<W, kHasA>& 
 
 // Adds the impulse `p` on B at `from_b` (and -p on A at `from_a`), and the angular impulse `t` on B (and -t on A).
 template <int W, bool kHasA>
-GYRE_INLINE void push(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair, Vec3W<W> p, Vec3W<W> from_a,
+GYRE_INLINE void direction(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair, Vec3W<W> p, Vec3W<W> from_a,
                       Vec3W<W> from_b, Vec3W<W> t) {
   if constexpr (kHasA) {
     pair.linear_a = pair.linear_a - block.inverse_mass_a * p;

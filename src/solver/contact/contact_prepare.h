@@ -20,9 +20,9 @@ constexpr float kShortestMean = 0.5f;
 constexpr float kLongestMean = 1.0f;
 
 // A patch narrower than this share of the size does not brake spinning.
-constexpr float kLeastPatch = 1.0e-3f;
+constexpr float kMinPatch = 1.0e-3f;
 // Friction coefficients beyond this count as this: their inverse must not vanish.
-constexpr float kMostFriction = 1.0e6f;
+constexpr float kMaxFriction = 1.0e6f;
 
 // ----------------------------------------------------------------------------------------------- records, side by side
 
@@ -155,7 +155,7 @@ GYRE_INLINE Wide<W> pressure_patch(ContactBlock<W>& block, const LaneRecords<W>&
   Wide<W> weights[kMaxManifoldPoints];
   Wide<W> sum = zero;
   for (int k = 0; k < count; ++k) sum = sum + (weights[k] = block.impulses[k]);
-  const auto bears = sum > Wide<W>(kLeastLoad);
+  const auto bears = sum > Wide<W>(kMinLoad);
   if (!all(bears)) {
     // A point counts less the farther it is above the lowest, in units of the manifold's extent.
     Wide<W> extent = zero, nearest = block.points[0].separation;
@@ -235,7 +235,7 @@ GYRE_INLINE void prepare_friction(ContactBlock<W>& block, const SurfaceLanes<W>&
   const Wide<W> twist_static = surface.static_friction * radius + surface.spinning_friction;
   const Wide<W> twist_dynamic = surface.dynamic_friction * radius + surface.spinning_friction;
   // Where one point bears all, the patch is as wide as rounding made it: that is no lever.
-  const auto is_patch = (radius > Wide<W>(kLeastPatch) * size) | (surface.spinning_friction > zero);
+  const auto is_patch = (radius > Wide<W>(kMinPatch) * size) | (surface.spinning_friction > zero);
   auto twists = one < zero;
   const Sym3W<W> k = prepare_friction_masses<W>(block, is_patch & (twist_static > zero), twists);
   // The scale at which a twist of 1 rad/s slips like a metre per second; with it the largest eigenvalue of K is bounded by
@@ -246,9 +246,9 @@ GYRE_INLINE void prepare_friction(ContactBlock<W>& block, const SurfaceLanes<W>&
   block.aside->twist_radius = keep(twists, scale);
   block.aside->slide_mass = keep(bound > zero, one / select(bound > zero, bound, one));
   const auto grip = [&](Wide<W> friction) {
-    return keep(friction > zero, one / select(friction > zero, min(friction, Wide<W>(kMostFriction)), one));
+    return keep(friction > zero, one / select(friction > zero, min(friction, Wide<W>(kMaxFriction)), one));
   };
-  block.static_grip = grip(surface.static_friction);
+  block.inverse_friction = grip(surface.static_friction);
   block.dynamic_grip = grip(surface.dynamic_friction);
   block.static_twist_grip = keep(twists, grip(twist_static));
   block.dynamic_twist_grip = keep(twists, grip(twist_dynamic));
@@ -270,7 +270,7 @@ GYRE_INLINE void prepare_softness(ContactBlock<W>& block, Mask<W> rigid, Wide<W>
   block.rate = keep(yields, youth * Wide<W>(settings.rate));
   block.slop = Wide<W>(kSpringSlop) * size;
   const auto has_slop = block.slop > zero;
-  block.give = keep(yields & has_slop, youth * Wide<W>(settings.give) / select(has_slop, block.slop, one));
+  block.compliance = keep(yields & has_slop, youth * Wide<W>(settings.compliance) / select(has_slop, block.slop, one));
   const Wide<W> rise = keep(both, Wide<W>(kLowerShare) * dot(block.normal, splat<W>(settings.up)));
   block.aside->mobility_a = one - max(rise, zero);
   block.aside->mobility_b = one + min(rise, zero);
@@ -433,7 +433,7 @@ void prepare_blocks(void* memory, void* asides, int begin, int end, const Contac
   auto* blocks = static_cast<ContactBlock<W>*>(memory);
   for (int i = begin; i < end; ++i) {
     if (i + 1 < end) fetch_ahead<W>(constraints, order + (i + 1) * W);
-    blocks[i].aside = static_cast<ContactAside<W>*>(asides) + i;
+    blocks[i].aside = static_cast<ContactBlockCold<W>*>(asides) + i;
     prepare_block<W>(blocks[i], constraints, order + i * W, bodies, settings);
   }
 }
@@ -523,7 +523,7 @@ template <int W>
 void harden_block(void* memory, int index, int lane) {
   ContactBlock<W>& block = static_cast<ContactBlock<W>*>(memory)[index];
   set_lane(block.rate, lane, 0.0f);
-  set_lane(block.give, lane, 0.0f);
+  set_lane(block.compliance, lane, 0.0f);
   block.idles = 0;
 }
 

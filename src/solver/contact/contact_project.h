@@ -80,7 +80,7 @@ GYRE_INLINE NormalMotion<W> pushed_ways(const ContactBlock<W>& block, const Pair
 // How far each point wants to be pushed; at least minus the way that it may close. False if no lane overlaps.
 template <int W, bool kHasA>
 GYRE_INLINE bool wanted_pushes(const ContactBlock<W>& block, const PairMotion<W, kHasA>& pair, float step,
-                               Wide<W>* wanted) {
+                               Wide<W>* target_speed) {
   const Wide<W> zero(0.0f);
   const NormalMotion<W> ways = pushed_ways<W>(block, pair);
   const Wide<W> most = block.push_speed * Wide<W>(step);
@@ -91,7 +91,7 @@ GYRE_INLINE bool wanted_pushes(const ContactBlock<W>& block, const PairMotion<W,
     const auto exists = Mask<W>::of_bits(block.rows[i]);
     const auto deep = (over > zero) & exists;
     overlaps = overlaps | deep;
-    wanted[i] = select(exists, select(deep, min(Wide<W>(kProjectedShare) * over, most), over), zero);
+    target_speed[i] = select(exists, select(deep, min(Wide<W>(kProjectedShare) * over, most), over), zero);
   }
   return any(overlaps);
 }
@@ -100,8 +100,8 @@ template <int W, bool kHasA>
 GYRE_INLINE void project_block(ContactBlock<W>& block, float step) {
   const Wide<W> zero(0.0f);
   PairMotion<W, kHasA> pair = displacements<W, kHasA>(block);
-  Wide<W> wanted[kMaxManifoldPoints];
-  if (!wanted_pushes<W>(block, pair, step, wanted)) return;
+  Wide<W> target_speed[kMaxManifoldPoints];
+  if (!wanted_pushes<W>(block, pair, step, target_speed)) return;
   const PushResponse<W> response = push_response<W, kHasA>(block);
   const int count = block.point_count;
   Wide<W> pushes[kMaxManifoldPoints], relief[kMaxManifoldPoints];
@@ -115,7 +115,7 @@ GYRE_INLINE void project_block(ContactBlock<W>& block, float step) {
   for (int sweep = 0; sweep < kProjectionSweeps; ++sweep) {
     auto stands = zero == zero;
     for (int i = 0; i < count; ++i) {
-      Wide<W> left = wanted[i];
+      Wide<W> left = target_speed[i];
       for (int j = 0; j < count; ++j) left = left - response.k[packed(i, j)] * pushes[j];
       const Wide<W> now = max(pushes[i] + relief[i] * left, zero);
       stands = stands & (now == pushes[i]);

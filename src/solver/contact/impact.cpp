@@ -39,7 +39,7 @@ struct Bodies {
     return inertia_a->inverse_mass + inertia_b->inverse_mass + dot(ja, inertia_a->inverse * ja) +
            dot(jb, inertia_b->inverse * jb);
   }
-  void push(Vec3 p, Vec3 from_a, Vec3 from_b) {
+  void direction(Vec3 p, Vec3 from_a, Vec3 from_b) {
     if (a != nullptr && (inertia_a->inverse_mass > 0.0f || inertia_a->inverse != Sym3{})) {
       a->linear_velocity -= inertia_a->inverse_mass * p;
       a->angular_velocity -= inertia_a->inverse * cross(from_a, p);
@@ -63,7 +63,7 @@ void meet_targets(ImpactContact& contact, Bodies& bodies) {
       if (!(k_inverse > 0.0f)) continue;
       const float speed = dot(bodies.velocity(point.from_a, point.from_b), contact.normal);
       const float next = max(point.impulse + (point.target - speed) / k_inverse, 0.0f);
-      bodies.push((next - point.impulse) * contact.normal, point.from_a, point.from_b);
+      bodies.direction((next - point.impulse) * contact.normal, point.from_a, point.from_b);
       change = max(change, absolute(next - point.impulse) * k_inverse);
       point.impulse = next;
     }
@@ -94,11 +94,11 @@ void rub(ImpactContact& contact, Bodies& bodies) {
   const Vec3 direction = slip / speed;
   const float k_inverse = bodies.inverse_mass(direction, from_a, from_b);
   if (!(k_inverse > 0.0f)) return;
-  bodies.push(-min(speed / k_inverse, contact.friction * total) * direction, from_a, from_b);
+  bodies.direction(-min(speed / k_inverse, contact.friction * total) * direction, from_a, from_b);
 }
 
 // Whether the point meets within the sub-step and, if so, what speed it is to leave with.
-bool strike_point(ImpactPoint& point, const ImpactContact& contact, const Bodies& bodies, const ImpactSettings& settings) {
+bool apply_point_restitution(ImpactPoint& point, const ImpactContact& contact, const Bodies& bodies, const ImpactSettings& settings) {
   const float closing = -dot(bodies.velocity(point.from_a, point.from_b), contact.normal);
   if (!(closing > settings.threshold)) return false;
   // Below the surface (a contact that was seen too late) the way back up counts like the way down.
@@ -140,7 +140,7 @@ ImpactContact make_impact(const ContactConstraint& constraint) {
   return contact;
 }
 
-void watch_impacts(std::span<ImpactContact> contacts, ContactBodies bodies) {
+void record_approach(std::span<ImpactContact> contacts, ContactBodies bodies) {
   for (ImpactContact& contact : contacts) {
     const Bodies pair(contact, bodies);
     for (int k = 0; k < contact.count; ++k) {
@@ -151,7 +151,7 @@ void watch_impacts(std::span<ImpactContact> contacts, ContactBodies bodies) {
   }
 }
 
-void strike_impacts(std::span<ImpactContact> contacts, ContactBodies bodies, const ImpactSettings& settings) {
+void apply_restitution(std::span<ImpactContact> contacts, ContactBodies bodies, const ImpactSettings& settings) {
   // What the forces added: closing speed now less closing speed before.
   for (ImpactContact& contact : contacts) {
     const Bodies pair(contact, bodies);
@@ -167,7 +167,7 @@ void strike_impacts(std::span<ImpactContact> contacts, ContactBodies bodies, con
       bool struck = false;
       for (int k = 0; k < contact.count; ++k) {
         contact.points[k].struck = false;
-        if (strike_point(contact.points[k], contact, pair, settings)) struck = true;
+        if (apply_point_restitution(contact.points[k], contact, pair, settings)) struck = true;
       }
       if (!struck) continue;
       any = true;
@@ -178,7 +178,7 @@ void strike_impacts(std::span<ImpactContact> contacts, ContactBodies bodies, con
   }
 }
 
-void release_impacts(std::span<ImpactContact> contacts, ContactBodies bodies, const ImpactSettings&) {
+void apply_delayed_restitution(std::span<ImpactContact> contacts, ContactBodies bodies, const ImpactSettings&) {
   for (ImpactContact& contact : contacts) {
     bool pending = false;
     for (int k = 0; k < contact.count; ++k) {

@@ -11,18 +11,18 @@ struct ErrorBounds {
 };
 
 // Bodies that are joined, or let go by what held them, far from where the joint would have them do not strike out.
-constexpr ErrorBounds kMostErrors{0.1f, 0.2f};
+constexpr ErrorBounds kMaxErrors{0.1f, 0.2f};
 // Before contacts are solved: they answer what is taken back as if it were a load, and keep that answer. Of small errors they must,
 // or a rope would slip round a drum by what it gives; but limbs that are wedged in a heap pressed each other with tons.
 constexpr ErrorBounds kErrorsBeforeContacts{0.5e-3f, 5.0e-3f};
 constexpr ErrorBounds kNoErrors{0.0f, 0.0f};
 // rad. What a stop that turns is passed by is taken back as if it were no more than this: slower than what joints do not allow, since its axis
 // turns meanwhile, and of what it gives some is kept then.
-constexpr float kMostStopError = 0.1f;
+constexpr float kMaxLimitError = 0.1f;
 
 // rad. Bodies that turn by less than the first in a sub-step do so along a straight line; of those that turn by more than the second, the
 // rows ask for less and less of the bend: a whip's end then loses energy instead of gaining it.
-constexpr float kLeastBendTurn = 1.0e-4f, kMostBendTurn = 0.3f;
+constexpr float kMinBiasAngle = 1.0e-4f, kMaxBiasAngle = 0.3f;
 // Bend that is not asked for, or that two solutions do not find, opens the joint in each sub-step anew. Errors of joints whose bodies
 // turn by more than this (rad) are taken back the faster for it: wholly in a sub-step where they turn by far more.
 constexpr float kCalmTurn = 0.15f;
@@ -32,7 +32,7 @@ constexpr float kStraightTurn = 0.05f;
 // What joints that do no work may give in a sub-step, of the energy of motion that there was, before all of it is taken away: what the bend
 // beyond the second order gives and takes in turn in a smooth swing is less. Until bodies have moved it may be more, since what the bend
 // asks for goes away after that.
-constexpr float kMostGain = 1.0e-2f, kMostGainAhead = 1.0f;
+constexpr float kMaxEnergyGain = 1.0e-2f, kMaxEnergyGainAhead = 1.0f;
 
 // Motors that hold a place or a speed without a frequency of their own give way by this share of what would move them freely, where they are
 // solved with the equations of their linkage: ten times as much as those, which motors in conflict are not to break.
@@ -40,7 +40,7 @@ constexpr float kMotorGive = 1.0e-3f;
 
 // Stops of a cone's twist rest where 1 + cos(swing) is less, from 143 degrees on: a limb that points straight back has no twist, and near
 // there it changes by any amount at once.
-constexpr float kLeastTwistTold = 0.2f;
+constexpr float kMinTwistReported = 0.2f;
 // Of stops that cannot be reached.
 constexpr float kAway = 1.0e9f;  // rad
 

@@ -16,35 +16,35 @@ Quat orientation_of(std::int32_t body, const JointBodies& bodies) {
 // see. Asking the rows for the opposite makes the end of the sub-step, not its beginning, meet the joint, as in SHAKE
 // (J.-P. Ryckaert, G. Ciccotti, H. Berendsen, 1977); with the rows taken anew before velocities relax (RATTLE: H. Andersen,
 // 1983) a swinging pendulum keeps its energy.
-Vec3 bend_of(const JointPair& pair, const JointWork& work, bool slides, float h) {
-  Vec3 bend = cross(pair.angular_b, cross(pair.angular_b, work.from_b)) -
+Vec3 second_order_bias_of(const JointPair& pair, const JointConstraint& work, bool slides, float h) {
+  Vec3 second_order_bias = cross(pair.angular_b, cross(pair.angular_b, work.from_b)) -
               cross(pair.angular_a, cross(pair.angular_a, work.from_a));
-  if (slides) bend -= 2.0f * cross(pair.angular_a, pair.point_velocity(work.from_a, work.from_b));
-  return 0.5f * h * bend;
+  if (slides) second_order_bias -= 2.0f * cross(pair.angular_a, pair.point_velocity(work.from_a, work.from_b));
+  return 0.5f * h * second_order_bias;
 }
 
-void prepare_ball(const JointPair& pair, JointWork& work) {
+void prepare_ball(const JointPair& pair, JointConstraint& work) {
   work.linear_mass = inverse(point_matrix(pair, work.from_a, work.from_b));
 }
 
 // The axis of a hinge, slider or distance joint, if anything acts along or about it.
-AxisWork* only_axis(JointWork& work) { return work.axes.empty() ? nullptr : &work.axes[0]; }
+AxisConstraint* only_axis(JointConstraint& work) { return work.axes.empty() ? nullptr : &work.axes[0]; }
 
-void place_line_axis(JointWork& work, const JointPair& pair, const JointSettings& settings) {
-  AxisWork* const x = only_axis(work);
+void place_line_axis(JointConstraint& work, const JointPair& pair, const JointSettings& settings) {
+  AxisConstraint* const x = only_axis(work);
   if (x == nullptr) return;
   x->row = {work.axis, work.axis, cross(work.from_a, work.axis), cross(work.from_b, work.axis)};
   x->axis.position = work.position;
   prepare_axis(*x, pair, settings);
 }
 
-void prepare_hinge(JointRecord& joint, const JointPair& pair, JointWork& work, const JointSettings& settings) {
+void prepare_hinge(JointRecord& joint, const JointPair& pair, JointConstraint& work, const JointSettings& settings) {
   const Mat3 axes_a = to_matrix(work.frame_a);
   const Vec3 axis_b = rotate(work.frame_b, {1, 0, 0});
   work.axis = axes_a.x;
   work.perpendicular_1 = axes_a.y;
   work.perpendicular_2 = axes_a.z;
-  work.angular_error = within(cross(work.axis, axis_b), kMostErrors.turn);
+  work.angular_error = clamp_length(cross(work.axis, axis_b), kMaxErrors.turn);
   if (settings.swept) {
     prepare_ball(pair, work);
     const Mat3 k = to_matrix(pair.inverse_inertia_a()) + to_matrix(pair.inverse_inertia_b());
@@ -53,14 +53,14 @@ void prepare_hinge(JointRecord& joint, const JointPair& pair, JointWork& work, c
   // The twist of b's frame in a's, unwrapped by staying near the last value.
   const Quat twist = conjugate(work.frame_a) * work.frame_b;
   work.position = joint.position = unwrapped(2.0f * atan2(twist.x, twist.w), joint.position);
-  AxisWork* const x = only_axis(work);
+  AxisConstraint* const x = only_axis(work);
   if (x == nullptr) return;
   x->row = {{}, {}, work.axis, work.axis};
   x->axis.position = work.position;
   prepare_axis(*x, pair, settings);
 }
 
-void prepare_slider(JointRecord& joint, const JointPair& pair, JointWork& work, const JointSettings& settings) {
+void prepare_slider(JointRecord& joint, const JointPair& pair, JointConstraint& work, const JointSettings& settings) {
   const Mat3 axes_a = to_matrix(work.frame_a);
   work.axis = axes_a.x;
   work.perpendicular_1 = axes_a.y;
@@ -70,7 +70,7 @@ void prepare_slider(JointRecord& joint, const JointPair& pair, JointWork& work, 
   work.from_a += work.error;
   work.along = work.position * work.axis;
   work.error -= work.along;
-  work.angular_error = within(to_rotation_vector(work.frame_b * conjugate(work.frame_a)), kMostErrors.turn);
+  work.angular_error = clamp_length(to_rotation_vector(work.frame_b * conjugate(work.frame_a)), kMaxErrors.turn);
   if (settings.swept) {
     const Mat3 k = point_matrix(pair, work.from_a, work.from_b);
     work.linear_mass = inverse_in_plane(k, work.perpendicular_1, work.perpendicular_2);
@@ -79,42 +79,42 @@ void prepare_slider(JointRecord& joint, const JointPair& pair, JointWork& work, 
   place_line_axis(work, pair, settings);
 }
 
-void prepare_fixed(const JointPair& pair, JointWork& work, bool swept) {
-  work.angular_error = within(to_rotation_vector(work.frame_b * conjugate(work.frame_a)), kMostErrors.turn);
+void prepare_fixed(const JointPair& pair, JointConstraint& work, bool swept) {
+  work.angular_error = clamp_length(to_rotation_vector(work.frame_b * conjugate(work.frame_a)), kMaxErrors.turn);
   if (!swept) return;
   prepare_ball(pair, work);
   work.angular_mass = to_matrix(inverse(pair.inverse_inertia_a() + pair.inverse_inertia_b()));
 }
 
-void prepare_distance(JointRecord& joint, const JointPair& pair, JointWork& work, const JointSettings& settings) {
+void prepare_distance(JointRecord& joint, const JointPair& pair, JointConstraint& work, const JointSettings& settings) {
   work.axis = normalized(work.error, rotate(Quat{}, {0, 1, 0}));
   work.position = joint.position = length(work.error);
   place_line_axis(work, pair, settings);
 }
 
-void solve_axes(const JointWork& work, JointPair& pair, const JointSettings& settings, bool soft) {
+void solve_axes(const JointConstraint& work, JointPair& pair, const JointSettings& settings, bool soft) {
   if (work.drive != nullptr) solve_drive(work, pair, settings);
-  for (AxisWork& x : work.axes) solve_axis(x, pair, settings, soft);
+  for (AxisConstraint& x : work.axes) solve_axis(x, pair, settings, soft);
 }
-void warm_axes(const JointWork& work, JointPair& pair, bool rods) {
-  for (const AxisWork& x : work.axes) {
+void warm_axes(const JointConstraint& work, JointPair& pair, bool rods) {
+  for (const AxisConstraint& x : work.axes) {
     if (rods || !x.is_rod) push_axis(x.row, axis_impulse(x.axis), pair);
   }
   if (work.drive != nullptr) warm_drive(work, pair);
 }
-bool has_axes(const JointWork& work) { return !work.axes.empty() || work.drive != nullptr; }
+bool has_axes(const JointConstraint& work) { return !work.axes.empty() || work.drive != nullptr; }
 
-void solve_turn_rows(JointRecord& joint, const JointWork& work, JointPair& pair, const JointSettings& settings, bool soft) {
+void solve_turn_rows(JointRecord& joint, const JointConstraint& work, JointPair& pair, const JointSettings& settings, bool soft) {
   const Vec3 change = row_change(work.angular_mass, pair.turning(), work.angular_error, joint.angular_impulse,
                                  settings.softness, soft);
   pair.turn(change);
   joint.angular_impulse += change;
 }
 
-void solve_point_rows(JointRecord& joint, const JointWork& work, JointPair& pair, const JointSettings& settings, bool soft) {
-  const Vec3 speed = pair.point_velocity(work.from_a, work.from_b) + (soft ? work.bend : Vec3{});
+void solve_point_rows(JointRecord& joint, const JointConstraint& work, JointPair& pair, const JointSettings& settings, bool soft) {
+  const Vec3 speed = pair.point_velocity(work.from_a, work.from_b) + (soft ? work.second_order_bias : Vec3{});
   const Vec3 change = row_change(work.linear_mass, speed, work.error, joint.linear_impulse, settings.softness, soft);
-  pair.push(change, work.from_a, work.from_b);
+  pair.direction(change, work.from_a, work.from_b);
   joint.linear_impulse += change;
 }
 
@@ -145,7 +145,7 @@ void forget_what_ended(JointDetail& detail) {
 }
 
 // An axis on which something acts.
-void begin_axis(AxisWork& x, JointAxis index, const JointAxisRecord& axis, float warm_scale) {
+void begin_axis(AxisConstraint& x, JointAxis index, const JointAxisRecord& axis, float warm_scale) {
   x = {};
   x.axis = axis;
   forget_what_ended(x.axis);
@@ -155,12 +155,12 @@ void begin_axis(AxisWork& x, JointAxis index, const JointAxisRecord& axis, float
 }
 
 // The axes on which anything acts.
-void begin_axes(const JointRecord& joint, JointWork& work, float warm_scale, Arena& arena) {
+void begin_axes(const JointRecord& joint, JointConstraint& work, float warm_scale, Arena& arena) {
   if (keeps_axis_in_record(joint.kind)) {
     const JointAxis index = joint.kind == JointKind::hinge ? JointAxis::angular_x : JointAxis::linear_x;
     const JointAxisRecord axis = axis_of_record(joint, work.detail, index);
     if (joint.kind != JointKind::distance && !acts(axis)) return;
-    work.axes = arena.make<AxisWork>(1);
+    work.axes = arena.make<AxisConstraint>(1);
     begin_axis(work.axes[0], index, axis, warm_scale);
     if (joint.kind != JointKind::distance) return;
     work.axes[0].is_rod = joint.min_length == joint.max_length;
@@ -176,7 +176,7 @@ void begin_axes(const JointRecord& joint, JointWork& work, float warm_scale, Are
   std::size_t count = 0;
   for (int i = 0; i < kJointAxisCount; ++i) count += acts_on(i) ? 1 : 0;
   if (count == 0) return;
-  work.axes = arena.make<AxisWork>(count);
+  work.axes = arena.make<AxisConstraint>(count);
   std::size_t used = 0;
   for (int i = 0; i < kJointAxisCount; ++i) {
     if (acts_on(i)) begin_axis(work.axes[used++], JointAxis(i), work.detail->axes[i], warm_scale);
@@ -184,7 +184,7 @@ void begin_axes(const JointRecord& joint, JointWork& work, float warm_scale, Are
   adjust_axes(joint, work.axes);
 }
 
-void place_kind(JointRecord& joint, JointWork& work, const JointPair& pair, const JointPlaces& places,
+void prepare_kind(JointRecord& joint, JointConstraint& work, const JointPair& pair, const JointOffsets& places,
                 const JointSettings& settings) {
   switch (joint.kind) {
     case JointKind::ball:
@@ -192,7 +192,7 @@ void place_kind(JointRecord& joint, JointWork& work, const JointPair& pair, cons
       break;
     case JointKind::cone:
       if (settings.swept) prepare_ball(pair, work);
-      place_cone(joint, work, pair, settings);
+      prepare_cone(joint, work, pair, settings);
       break;
     case JointKind::hinge: prepare_hinge(joint, pair, work, settings); break;
     case JointKind::slider: prepare_slider(joint, pair, work, settings); break;
@@ -283,7 +283,7 @@ int count_equations(const JointRecord& joint, const JointDetail* detail) {
   return 0;
 }
 
-void begin_joint(JointRecord& joint, JointDetail* detail, std::span<const PathPoint> path, JointWork& work, float warm_scale,
+void begin_joint(JointRecord& joint, JointDetail* detail, std::span<const PathPoint> path, JointConstraint& work, float warm_scale,
                  Arena& arena) {
   joint.linear_impulse *= warm_scale;
   joint.angular_impulse *= warm_scale;
@@ -304,11 +304,11 @@ void begin_joint(JointRecord& joint, JointDetail* detail, std::span<const PathPo
   detail->drive_force_impulse *= warm_scale;
   detail->drive_torque_impulse *= warm_scale;
   detail->friction_impulse *= warm_scale;
-  work.drive = arena.make<DriveWork>(1).data();
+  work.drive = arena.make<DriveConstraint>(1).data();
   *work.drive = {};
 }
 
-void place_joint(JointRecord& joint, JointWork& work, const JointPlaces& places, const JointBodies& bodies,
+void prepare_joint(JointRecord& joint, JointConstraint& work, const JointOffsets& places, const JointBodies& bodies,
                  const JointSettings& settings) {
   const JointPair pair(joint, bodies);
   const Quat orientation_a = orientation_of(joint.body_a, bodies);
@@ -321,36 +321,36 @@ void place_joint(JointRecord& joint, JointWork& work, const JointPlaces& places,
     work.frame_a = orientation_a * joint.local_frame_a;
     work.frame_b = orientation_b * joint.local_frame_b;
   }
-  place_kind(joint, work, pair, places, settings);
+  prepare_kind(joint, work, pair, places, settings);
 }
 
-void bend_joint(const JointRecord& joint, JointWork& work, const JointBodies& bodies,
+void update_joint_bias(const JointRecord& joint, JointConstraint& work, const JointBodies& bodies,
                 const JointSettings& settings) {
   const JointPair pair(joint, bodies);
   const bool slides = joint.kind == JointKind::slider || has_rows(joint.kind);
-  work.bend = bend_of(pair, work, slides, settings.substep);
+  work.second_order_bias = second_order_bias_of(pair, work, slides, settings.substep);
   if (joint.kind == JointKind::pulley) bend_pulley(work, pair, settings.substep);
   if (joint.kind != JointKind::distance) return;
   const Vec3 speed = pair.point_velocity(work.from_a, work.from_b);
   const Vec3 across = speed - dot(speed, work.axis) * work.axis;
   const float distance = work.position;
-  work.axes[0].bend = dot(work.bend, work.axis) +
+  work.axes[0].second_order_bias = dot(work.second_order_bias, work.axis) +
                       (distance > 0.0f ? 0.5f * settings.substep * length_squared(across) / distance : 0.0f);
 }
 
-void warm_start_joint(const JointRecord& joint, const JointWork& work, const JointBodies& bodies) {
+void warm_start_joint(const JointRecord& joint, const JointConstraint& work, const JointBodies& bodies) {
   JointPair pair(joint, bodies);
   if (work.rows != nullptr) {
     warm_rows(*work.rows, *work.detail, pair);
   } else {
-    pair.push(joint.linear_impulse, work.from_a, work.from_b);
+    pair.direction(joint.linear_impulse, work.from_a, work.from_b);
     if (joint.angular_impulse != Vec3{}) pair.turn(joint.angular_impulse);
   }
   warm_axes(work, pair, true);
   pair.store();
 }
 
-void solve_joint(JointRecord& joint, const JointWork& work, const JointBodies& bodies, const JointSettings& settings,
+void solve_joint(JointRecord& joint, const JointConstraint& work, const JointBodies& bodies, const JointSettings& settings,
                  bool soft) {
   JointPair pair(joint, bodies);
   solve_axes(work, pair, settings, soft);
@@ -364,19 +364,19 @@ void solve_joint(JointRecord& joint, const JointWork& work, const JointBodies& b
       solve_point_rows(joint, work, pair, settings, soft);
       break;
     default:
-      if (work.rows != nullptr) sweep_rows(joint, work, pair, settings, soft);
+      if (work.rows != nullptr) iterate_rows(joint, work, pair, settings, soft);
   }
   pair.store();
 }
 
-void warm_start_joint_axes(const JointRecord& joint, const JointWork& work, const JointBodies& bodies) {
+void warm_start_joint_axes(const JointRecord& joint, const JointConstraint& work, const JointBodies& bodies) {
   if (!has_axes(work)) return;
   JointPair pair(joint, bodies);
   warm_axes(work, pair, false);  // rods are equations
   pair.store();
 }
 
-void solve_joint_axes(JointRecord& joint, const JointWork& work, const JointBodies& bodies,
+void solve_joint_axes(JointRecord& joint, const JointConstraint& work, const JointBodies& bodies,
                       const JointSettings& settings, bool soft) {
   if (!has_axes(work)) return;
   JointPair pair(joint, bodies);
@@ -384,13 +384,13 @@ void solve_joint_axes(JointRecord& joint, const JointWork& work, const JointBodi
   pair.store();
 }
 
-void sum_joint(JointRecord& joint, const JointWork& work, const JointBodies& bodies) {
+void accumulate_joint_impulses(JointRecord& joint, const JointConstraint& work, const JointBodies& bodies) {
   if (work.rows != nullptr) gather_rows(joint, work);
   joint.total_linear += joint.linear_impulse;
   joint.total_angular += joint.angular_impulse;
   if (!has_axes(work)) return;
   const JointPair pair(joint, bodies);
-  for (AxisWork& x : work.axes) {
+  for (AxisConstraint& x : work.axes) {
     const float along = axis_impulse(x.axis);
     x.axis.total += along;
     joint.total_linear += along * x.row.push_b;
@@ -400,8 +400,8 @@ void sum_joint(JointRecord& joint, const JointWork& work, const JointBodies& bod
   if (work.drive != nullptr) sum_drive(joint, *work.detail);
 }
 
-void finish_joint(JointRecord& joint, const JointWork& work) {
-  for (const AxisWork& x : work.axes) {
+void finish_joint(JointRecord& joint, const JointConstraint& work) {
+  for (const AxisConstraint& x : work.axes) {
     if (work.detail != nullptr) work.detail->axes[int(x.index)] = x.axis;
     if (!keeps_axis_in_record(joint.kind)) continue;
     joint.low_impulse = x.axis.low_impulse;

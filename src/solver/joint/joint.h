@@ -13,7 +13,7 @@
 namespace gyre {
 
 // What a step knows about one joint: the difference of the anchors' owners' centres, exact at any distance from the origin.
-struct JointPlaces {
+struct JointOffsets {
   Vec3 offset;              // centre (or world anchor) of b minus that of a, as the step began
   Vec3 ground_a, ground_b;  // pulley: the fixed points minus the centres of a and b
 };
@@ -28,12 +28,12 @@ struct JointBodies {
 struct JointSettings {
   float substep = 0.0f;
   Softness softness;  // of the joint's own rows
-  bool swept = true;  // false: the joint's equations and hard stops are solved elsewhere (solver/articulation/linkage.h)
+  bool swept = true;  // false: the joint's equations and hard stops are solved elsewhere (solver/articulation/articulation.h)
 };
 
 // One row that holds always: it sees push . (v_b - v_a) + arm_b . w_b - arm_a . w_a.
 struct JointRow {
-  Vec3 push;          // direction of a force; zero for a turning row
+  Vec3 direction;          // direction of a force; zero for a turning row
   Vec3 arm_a, arm_b;  // r x push, or the axis of a turn
   float error = 0.0f;
 };
@@ -46,7 +46,7 @@ struct JointRows {
 };
 
 // What a drive to a pose, and friction against all turning, know of a sub-step.
-struct DriveWork {
+struct DriveConstraint {
   Vec3 point_error, turn_error;  // world
   Vec3 point_speed, turn_speed;  // asked for
   Vec3 from_a;                   // to where b's anchor is
@@ -55,10 +55,10 @@ struct DriveWork {
 };
 
 // One joint in one sub-step, prepared. Lives in the step's arena.
-struct JointWork {
+struct JointConstraint {
   Vec3 from_a, from_b;       // anchors from the centres of mass, world axes
   Vec3 error;                // anchor b minus anchor a
-  Vec3 bend;                 // m/s: how far b's anchor leaves a's by turning in the sub-step, beyond what the rows see
+  Vec3 second_order_bias;                 // m/s: how far b's anchor leaves a's by turning in the sub-step, beyond what the rows see
   Vec3 axis;                 // hinge and slider: of a; distance: unit from a to b
   Vec3 perpendicular_1, perpendicular_2;
   Vec3 angular_error;        // rotation vector that turns a's frame onto b's
@@ -69,35 +69,35 @@ struct JointWork {
   float position = 0.0f;
   JointDetail* detail = nullptr;  // of the joint, if it has one
   std::span<const PathPoint> path{};
-  std::span<AxisWork> axes{};
+  std::span<AxisConstraint> axes{};
   JointRows* rows = nullptr;
-  DriveWork* drive = nullptr;
+  DriveConstraint* drive = nullptr;
 };
 
 // Once a step: room for the work, impulses scaled to a new sub-step length, sums cleared.
-void begin_joint(JointRecord& joint, JointDetail* detail, std::span<const PathPoint> path, JointWork& work, float warm_scale,
+void begin_joint(JointRecord& joint, JointDetail* detail, std::span<const PathPoint> path, JointConstraint& work, float warm_scale,
                  Arena& arena);
 // What depends on where the bodies are: once they have moved.
-void place_joint(JointRecord& joint, JointWork& work, const JointPlaces& places, const JointBodies& bodies,
+void prepare_joint(JointRecord& joint, JointConstraint& work, const JointOffsets& places, const JointBodies& bodies,
                  const JointSettings& settings);
 // What depends on their velocities: before they are solved.
-void bend_joint(const JointRecord& joint, JointWork& work, const JointBodies& bodies,
+void update_joint_bias(const JointRecord& joint, JointConstraint& work, const JointBodies& bodies,
                 const JointSettings& settings);
-void warm_start_joint(const JointRecord& joint, const JointWork& work, const JointBodies& bodies);
-void solve_joint(JointRecord& joint, const JointWork& work, const JointBodies& bodies,
+void warm_start_joint(const JointRecord& joint, const JointConstraint& work, const JointBodies& bodies);
+void solve_joint(JointRecord& joint, const JointConstraint& work, const JointBodies& bodies,
                  const JointSettings& settings, bool soft);
 // Only what is no equation: axes (limits, motors, springs, friction) and drives.
-void warm_start_joint_axes(const JointRecord& joint, const JointWork& work, const JointBodies& bodies);
-void solve_joint_axes(JointRecord& joint, const JointWork& work, const JointBodies& bodies,
+void warm_start_joint_axes(const JointRecord& joint, const JointConstraint& work, const JointBodies& bodies);
+void solve_joint_axes(JointRecord& joint, const JointConstraint& work, const JointBodies& bodies,
                       const JointSettings& settings, bool soft);
 // Once velocities are those that the sub-step ends with: adds its impulses to the sums.
-void sum_joint(JointRecord& joint, const JointWork& work, const JointBodies& bodies);
+void accumulate_joint_impulses(JointRecord& joint, const JointConstraint& work, const JointBodies& bodies);
 // Once a step: what the work knows goes back into the joint.
-void finish_joint(JointRecord& joint, const JointWork& work);
+void finish_joint(JointRecord& joint, const JointConstraint& work);
 
 // The axis that a joint's limits, motor and position are about.
 JointAxis main_axis(JointKind kind);
-// Whether the kind's equations are in JointWork::rows rather than blocks of a point and a turn.
+// Whether the kind's equations are in JointConstraint::rows rather than blocks of a point and a turn.
 bool has_rows(JointKind kind);
 // The axis of kinds whose record has all that acts there (hinges, sliders, rods, ropes, springs); details may add to it.
 JointAxisRecord axis_of_record(const JointRecord& joint, const JointDetail* detail, JointAxis index);

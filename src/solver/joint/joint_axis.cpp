@@ -45,7 +45,7 @@ SpringStep make_spring(const JointAxisRecord& axis, float effective_mass, float 
 }
 
 // The change of the spring's impulse.
-float spring_change(const AxisWork& x, float speed) {
+float spring_change(const AxisConstraint& x, float speed) {
   const JointAxisRecord& axis = x.axis;
   const float displacement = axis.position - axis.rest_position;
   if (x.spring.is_implicit) {
@@ -54,34 +54,34 @@ float spring_change(const AxisWork& x, float speed) {
            s.impulse_scale * axis.spring_impulse;
   }
   const float without = speed - axis.spring_impulse / x.mass;
-  const float wanted = x.spring.kept * x.speed_before + x.spring.loaded * (without - x.speed_before) -
+  const float target_speed = x.spring.kept * x.speed_before + x.spring.loaded * (without - x.speed_before) -
                        x.spring.returned * displacement;
-  return x.mass * (wanted - without) - axis.spring_impulse;
+  return x.mass * (target_speed - without) - axis.spring_impulse;
 }
 
-float motor_change(const AxisWork& x, float speed, float substep) {
+float motor_change(const AxisConstraint& x, float speed, float substep) {
   const JointAxisRecord& axis = x.axis;
-  float wanted = axis.motor_impulse;
+  float target_speed = axis.motor_impulse;
   if (axis.has_motor_target) {
     const float error = axis.position - axis.motor_position;
     const float closing = speed - axis.motor_velocity + x.drive.bias_rate * error;
-    wanted -= x.drive.mass_scale * x.mass * closing + x.drive.impulse_scale * axis.motor_impulse;
+    target_speed -= x.drive.mass_scale * x.mass * closing + x.drive.impulse_scale * axis.motor_impulse;
   } else {
-    wanted -= x.mass * (speed - axis.motor_velocity);
+    target_speed -= x.mass * (speed - axis.motor_velocity);
   }
   const float most = axis.motor_force * substep;
-  return clamp(wanted, -most, most) - axis.motor_impulse;
+  return clamp(target_speed, -most, most) - axis.motor_impulse;
 }
 
-float friction_change(const AxisWork& x, float speed, float substep) {
+float friction_change(const AxisConstraint& x, float speed, float substep) {
   const float most = x.axis.friction * substep;
   return clamp(x.axis.friction_impulse - x.mass * speed, -most, most) - x.axis.friction_impulse;
 }
 
 // A stop that gives way does so once it is reached, and only where errors are taken back.
-float end_change(const AxisWork& x, float speed, float gap, float impulse, const JointSettings& settings,
+float end_change(const AxisConstraint& x, float speed, float gap, float impulse, const JointSettings& settings,
                  bool soft) {
-  if (x.axis.limit_frequency <= 0.0f) return stop_change(x.mass, speed, gap, impulse, settings, soft);
+  if (x.axis.limit_frequency <= 0.0f) return limit_impulse_change(x.mass, speed, gap, impulse, settings, soft);
   if (!soft) return 0.0f;
   if (gap > 0.0f) return -impulse;
   const float change =
@@ -89,7 +89,7 @@ float end_change(const AxisWork& x, float speed, float gap, float impulse, const
   return max(impulse + change, 0.0f) - impulse;
 }
 
-float rod_change(const AxisWork& x, float speed, const JointSettings& settings, bool soft) {
+float rod_change(const AxisConstraint& x, float speed, const JointSettings& settings, bool soft) {
   if (!soft) return -x.mass * speed;
   const Softness& s = settings.softness;
   const float error = x.axis.position - x.axis.limits.low;
@@ -115,13 +115,13 @@ float axis_impulse(const JointAxisRecord& axis) {
          axis.friction_impulse;
 }
 
-void prepare_axis(AxisWork& x, const JointPair& pair, const JointSettings& settings) {
+void prepare_axis(AxisConstraint& x, const JointPair& pair, const JointSettings& settings) {
   const AxisRow& row = x.row;
   const float k = pair.inverse_mass_a() * length_squared(row.push_a) +
                   pair.inverse_mass_b() * length_squared(row.push_b) +
                   dot(row.arm_a, pair.inverse_inertia_a() * row.arm_a) +
                   dot(row.arm_b, pair.inverse_inertia_b() * row.arm_b);
-  x.bend = 0.0f;
+  x.second_order_bias = 0.0f;
   x.speed_before = axis_speed(row, pair);
   const JointAxisRecord& axis = x.axis;
   prepare_axis_mass(x, inverse_or_zero(k), settings);
@@ -132,7 +132,7 @@ void prepare_axis(AxisWork& x, const JointPair& pair, const JointSettings& setti
     x.stop = make_softness(axis.limit_frequency, axis.limit_damping, settings.substep);
 }
 
-void prepare_axis_mass(AxisWork& x, float mass, const JointSettings& settings) {
+void prepare_axis_mass(AxisConstraint& x, float mass, const JointSettings& settings) {
   x.mass = mass;
   if (has_spring(x.axis)) x.spring = make_spring(x.axis, mass, settings.substep);
 }
@@ -141,21 +141,21 @@ namespace {
 
 // Calls push(impulse) for each that changes, and see() for what the row sees then.
 template <class See, class Push>
-void solve_axis_by(AxisWork& x, const JointSettings& settings, bool soft, See&& see, Push&& push) {
+void solve_axis_by(AxisConstraint& x, const JointSettings& settings, bool soft, See&& see, Push&& direction) {
   if (!(x.mass > 0.0f)) return;
   JointAxisRecord& axis = x.axis;
-  const float bend = soft ? x.bend : 0.0f;
+  const float second_order_bias = soft ? x.second_order_bias : 0.0f;
   // Most limits are far away and most frictions hold what rests: what changes nothing is not pushed, and the speed not asked for again.
   float speed_now = 0.0f;
   bool is_known = false;
   const auto change = [&](float& kept, float by, float sign) {
     if (by == 0.0f) return;
-    push(sign * by);
+    direction(sign * by);
     kept += by;
     is_known = false;
   };
   const auto speed = [&] {
-    if (!is_known) speed_now = see() + bend;
+    if (!is_known) speed_now = see() + second_order_bias;
     is_known = true;
     return speed_now;
   };
@@ -168,7 +168,7 @@ void solve_axis_by(AxisWork& x, const JointSettings& settings, bool soft, See&& 
     return;
   }
   if (!settings.swept && !(axis.limit_frequency > 0.0f)) return;
-  const float least = x.row.push_b == Vec3{} && x.row.push_a == Vec3{} ? -kMostStopError : -1.0e30f;
+  const float least = x.row.push_b == Vec3{} && x.row.push_a == Vec3{} ? -kMaxLimitError : -1.0e30f;
   if (x.has_low) {
     const float gap = max(low_gap(x), least);
     change(axis.low_impulse, end_change(x, speed(), gap, axis.low_impulse, settings, soft), 1.0f);
@@ -181,14 +181,14 @@ void solve_axis_by(AxisWork& x, const JointSettings& settings, bool soft, See&& 
 
 }  // namespace
 
-void solve_axis(AxisWork& x, JointPair& pair, const JointSettings& settings, bool soft) {
-  if (x.is_linked) return;
+void solve_axis(AxisConstraint& x, JointPair& pair, const JointSettings& settings, bool soft) {
+  if (x.in_articulation) return;
   solve_axis_by(
       x, settings, soft, [&] { return axis_speed(x.row, pair); },
       [&](float impulse) { push_axis(x.row, impulse, pair); });
 }
 
-float solve_axis(AxisWork& x, float speed, float k, const JointSettings& settings, bool soft) {
+float solve_axis(AxisConstraint& x, float speed, float k, const JointSettings& settings, bool soft) {
   float sum = 0.0f;
   solve_axis_by(
       x, settings, soft, [&] { return speed + k * sum; }, [&](float impulse) { sum += impulse; });

@@ -29,17 +29,17 @@ struct SpringStep {
   bool is_implicit = false;
 };
 
-struct AxisWork {
+struct AxisConstraint {
   JointAxisRecord axis;  // settings and impulses; goes back into the joint when the step is over
   JointAxis index = JointAxis::linear_x;
   bool has_low = false, has_high = false;
-  bool is_linked = false;  // solved with the equations of its linkage (solver/articulation/linkage_axes.h)
+  bool in_articulation = false;  // solved with the equations of its linkage (solver/articulation/articulation_drives.h)
   bool is_rod = false;  // one two-sided stop at limits.low, its impulse in low_impulse
   double worked = 0.0;  // J since the step began, if it is linked: by all but hard stops
   float slack = 0.0f;   // by how much farther than the limits both stops are
   AxisRow row;
   float mass = 0.0f;          // effective
-  float bend = 0.0f;          // m/s: how far the position changes in the sub-step beyond what the row sees
+  float second_order_bias = 0.0f;          // m/s: how far the position changes in the sub-step beyond what the row sees
   float speed_before = 0.0f;  // as the part began, before forces
   SpringStep spring;
   Softness drive, stop;
@@ -53,8 +53,8 @@ inline bool acts(const JointAxisRecord& axis) {
 }
 
 // How far it is to the stops.
-inline float low_gap(const AxisWork& x) { return x.axis.position - x.axis.limits.low + x.slack; }
-inline float high_gap(const AxisWork& x) { return x.axis.limits.high - x.axis.position + x.slack; }
+inline float low_gap(const AxisConstraint& x) { return x.axis.position - x.axis.limits.low + x.slack; }
+inline float high_gap(const AxisConstraint& x) { return x.axis.limits.high - x.axis.position + x.slack; }
 
 float axis_speed(const AxisRow& row, const JointPair& pair);
 void push_axis(const AxisRow& row, float impulse, JointPair& pair);
@@ -62,11 +62,11 @@ void push_axis(const AxisRow& row, float impulse, JointPair& pair);
 float axis_impulse(const JointAxisRecord& axis);
 
 // Once the row and the position are known: as if the two bodies were alone.
-void prepare_axis(AxisWork& axis, const JointPair& pair, const JointSettings& settings);
+void prepare_axis(AxisConstraint& axis, const JointPair& pair, const JointSettings& settings);
 // What depends on the effective mass.
-void prepare_axis_mass(AxisWork& axis, float mass, const JointSettings& settings);
-void solve_axis(AxisWork& axis, JointPair& pair, const JointSettings& settings, bool soft);
+void prepare_axis_mass(AxisConstraint& axis, float mass, const JointSettings& settings);
+void solve_axis(AxisConstraint& axis, JointPair& pair, const JointSettings& settings, bool soft);
 // Where the row sees `speed` and an impulse of one changes that by k: the impulse of all that acts.
-float solve_axis(AxisWork& axis, float speed, float k, const JointSettings& settings, bool soft);
+float solve_axis(AxisConstraint& axis, float speed, float k, const JointSettings& settings, bool soft);
 
 }  // namespace gyre

@@ -42,7 +42,7 @@ class JointPair {
   Vec3 moved_b() const { return b_ != nullptr ? b_->moved : Vec3{}; }
 
   // The impulse p on B at r_b, and -p on A at r_a.
-  void push(Vec3 p, Vec3 r_a, Vec3 r_b) {
+  void direction(Vec3 p, Vec3 r_a, Vec3 r_b) {
     linear_a -= inverse_mass_a() * p;
     angular_a -= inverse_inertia_a() * cross(r_a, p);
     linear_b += inverse_mass_b() * p;
@@ -112,12 +112,12 @@ inline float unwrapped(float angle, float near) {
 
 inline float inverse_or_zero(float k) { return k > 0.0f ? 1.0f / k : 0.0f; }
 
-inline Vec3 within(Vec3 v, float most) {
+inline Vec3 clamp_length(Vec3 v, float most) {
   const float size = length(v);
   return size > most ? (most / size) * v : v;
 }
-inline float error_taken_back(const JointRow& row, ErrorBounds bounds = kMostErrors) {
-  const float most = row.push == Vec3{} ? bounds.turn : bounds.point;
+inline float clamped_error(const JointRow& row, ErrorBounds bounds = kMaxErrors) {
+  const float most = row.direction == Vec3{} ? bounds.turn : bounds.point;
   return clamp(row.error, -most, most);
 }
 
@@ -141,18 +141,18 @@ inline Vec3 row_change(const Mat3& mass, Vec3 speed, Vec3 error, Vec3 impulse, c
 }
 
 // A one-sided row: distance `gap` left before the stop, closing speed -speed. Returns the change of `impulse` (>= 0).
-inline float stop_change(float mass, float speed, float gap, float impulse, const JointSettings& settings,
+inline float limit_impulse_change(float mass, float speed, float gap, float impulse, const JointSettings& settings,
                          bool is_soft) {
-  float wanted = 0.0f;
+  float target_speed = 0.0f;
   if (gap > 0.0f) {
-    wanted = impulse - mass * (speed + gap / settings.substep);
+    target_speed = impulse - mass * (speed + gap / settings.substep);
   } else if (is_soft) {
     const Softness& soft = settings.softness;
-    wanted = impulse - mass * soft.mass_scale * (speed + soft.bias_rate * gap) - soft.impulse_scale * impulse;
+    target_speed = impulse - mass * soft.mass_scale * (speed + soft.bias_rate * gap) - soft.impulse_scale * impulse;
   } else {
-    wanted = impulse - mass * speed;
+    target_speed = impulse - mass * speed;
   }
-  return max(wanted, 0.0f) - impulse;
+  return max(target_speed, 0.0f) - impulse;
 }
 
 }  // namespace gyre

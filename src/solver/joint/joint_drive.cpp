@@ -8,9 +8,9 @@ namespace {
 
 // The change of an impulse that brings `speed` to what is asked, as far as `most` allows.
 Vec3 drive_change(const Mat3& mass, Vec3 speed, Vec3 error, Vec3 impulse, const Softness& s, float most) {
-  const Vec3 wanted =
+  const Vec3 target_speed =
       impulse - s.mass_scale * (mass * (speed + s.bias_rate * error)) - s.impulse_scale * impulse;
-  return within(wanted, most) - impulse;
+  return clamp_length(target_speed, most) - impulse;
 }
 
 }  // namespace
@@ -19,9 +19,9 @@ bool has_drive(const JointDetail& detail) {
   return detail.drive.max_force > 0.0f || detail.drive.max_torque > 0.0f || detail.friction > 0.0f;
 }
 
-void place_drive(const JointWork& work, const JointPair& pair, const JointSettings& settings) {
+void place_drive(const JointConstraint& work, const JointPair& pair, const JointSettings& settings) {
   const PoseDrive& drive = work.detail->drive;
-  DriveWork& d = *work.drive;
+  DriveConstraint& d = *work.drive;
   d.softness = drive.frequency > 0.0f ? make_softness(drive.frequency, drive.damping_ratio, settings.substep)
                                       : settings.softness;
   if (drive.max_force > 0.0f) {
@@ -36,15 +36,15 @@ void place_drive(const JointWork& work, const JointPair& pair, const JointSettin
   d.turn_mass = to_matrix(inverse(pair.inverse_inertia_a() + pair.inverse_inertia_b()));
 }
 
-void warm_drive(const JointWork& work, JointPair& pair) {
+void warm_drive(const JointConstraint& work, JointPair& pair) {
   const JointDetail& detail = *work.detail;
-  if (detail.drive.max_force > 0.0f) pair.push(detail.drive_force_impulse, work.drive->from_a, work.from_b);
+  if (detail.drive.max_force > 0.0f) pair.direction(detail.drive_force_impulse, work.drive->from_a, work.from_b);
   pair.turn(detail.drive_torque_impulse + detail.friction_impulse);
 }
 
-void solve_drive(const JointWork& work, JointPair& pair, const JointSettings& settings) {
+void solve_drive(const JointConstraint& work, JointPair& pair, const JointSettings& settings) {
   JointDetail& detail = *work.detail;
-  const DriveWork& d = *work.drive;
+  const DriveConstraint& d = *work.drive;
   const float h = settings.substep;
   if (detail.drive.max_torque > 0.0f) {
     const Vec3 change = drive_change(d.turn_mass, pair.turning() - d.turn_speed, d.turn_error,
@@ -62,7 +62,7 @@ void solve_drive(const JointWork& work, JointPair& pair, const JointSettings& se
     const Vec3 speed = pair.point_velocity(d.from_a, work.from_b) - d.point_speed;
     const Vec3 change = drive_change(d.point_mass, speed, d.point_error, detail.drive_force_impulse,
                                      d.softness, detail.drive.max_force * h);
-    pair.push(change, d.from_a, work.from_b);
+    pair.direction(change, d.from_a, work.from_b);
     detail.drive_force_impulse += change;
   }
 }

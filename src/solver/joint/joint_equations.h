@@ -1,4 +1,4 @@
-// The rows of a joint that hold always, one by one, and where their impulses are kept: for linkages (solver/articulation/linkage.cpp), which
+// The rows of a joint that hold always, one by one, and where their impulses are kept: for linkages (solver/articulation/articulation.cpp), which
 // lay them side by side, and for the solvers that see all of an island as rows (solver/rows/joint_rows.cpp).
 #pragma once
 
@@ -9,7 +9,7 @@ namespace gyre {
 
 // It sees push . (v_b - v_a) + arm_b . w_b - arm_a . w_a.
 struct JointEquation {
-  Vec3 push;  // direction of a force; zero for a turning row
+  Vec3 direction;  // direction of a force; zero for a turning row
   Vec3 arm_a, arm_b;
 };
 struct JointEquations {
@@ -19,14 +19,14 @@ struct JointEquations {
 
 // Calls add(push, arm_a, arm_b) for each of them.
 template <class Add>
-inline void list_equations(const JointRecord& joint, const JointWork& work, Add&& add) {
+inline void list_equations(const JointRecord& joint, const JointConstraint& work, Add&& add) {
   constexpr Vec3 kAxes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const auto add_point = [&](Vec3 way) { add(way, cross(work.from_a, way), cross(work.from_b, way)); };
   const auto add_turn = [&](Vec3 axis) { add(Vec3{}, axis, axis); };
   if (work.rows != nullptr) {
     for (int i = 0; i < work.rows->count; ++i) {
       const JointRow& from = work.rows->rows[i];
-      add(from.push, from.arm_a, from.arm_b);
+      add(from.direction, from.arm_a, from.arm_b);
     }
     return;
   }
@@ -49,22 +49,22 @@ inline void list_equations(const JointRecord& joint, const JointWork& work, Add&
   }
 }
 
-inline void make_equations(JointEquations& node, const JointRecord& joint, const JointWork& work) {
+inline void make_equations(JointEquations& node, const JointRecord& joint, const JointConstraint& work) {
   node.count = 0;
-  list_equations(joint, work, [&](Vec3 push, Vec3 arm_a, Vec3 arm_b) {
-    node.rows[node.count++] = {push, arm_a, arm_b};
+  list_equations(joint, work, [&](Vec3 direction, Vec3 arm_a, Vec3 arm_b) {
+    node.rows[node.count++] = {direction, arm_a, arm_b};
   });
 }
 
-inline bool is_turn(const JointEquation& row) { return row.push == Vec3{}; }
+inline bool is_turn(const JointEquation& row) { return row.direction == Vec3{}; }
 
 // The joint's accumulated impulses in terms of its rows, and back.
-inline float kept_impulse(const JointRecord& joint, const JointWork& work, const JointEquation& row, int i) {
+inline float kept_impulse(const JointRecord& joint, const JointConstraint& work, const JointEquation& row, int i) {
   if (work.rows != nullptr) return work.detail->row_impulses[i];
   if (joint.kind == JointKind::distance) return work.axes[0].axis.low_impulse;
-  return is_turn(row) ? dot(joint.angular_impulse, row.arm_a) : dot(joint.linear_impulse, row.push);
+  return is_turn(row) ? dot(joint.angular_impulse, row.arm_a) : dot(joint.linear_impulse, row.direction);
 }
-inline void keep_impulse(JointRecord& joint, const JointWork& work, const JointEquation& row, int i,
+inline void keep_impulse(JointRecord& joint, const JointConstraint& work, const JointEquation& row, int i,
                          float impulse) {
   if (work.rows != nullptr) {
     work.detail->row_impulses[i] += impulse;
@@ -73,23 +73,23 @@ inline void keep_impulse(JointRecord& joint, const JointWork& work, const JointE
   } else if (is_turn(row)) {
     joint.angular_impulse += impulse * row.arm_a;
   } else {
-    joint.linear_impulse += impulse * row.push;
+    joint.linear_impulse += impulse * row.direction;
   }
 }
-inline void forget_kept(JointRecord& joint, const JointWork& work) {
+inline void forget_kept(JointRecord& joint, const JointConstraint& work) {
   joint.linear_impulse = joint.angular_impulse = {};
   if (work.rows == nullptr && joint.kind == JointKind::distance) work.axes[0].axis.low_impulse = 0.0f;
   if (work.rows == nullptr) return;
   for (float& impulse : work.detail->row_impulses) impulse = 0.0f;
 }
 
-inline float error_of(const JointRecord& joint, const JointWork& work, const JointEquation& row, int i,
-                      ErrorBounds bounds = kMostErrors) {
-  if (work.rows != nullptr) return error_taken_back(work.rows->rows[i], bounds);
-  if (is_turn(row)) return dot(within(work.angular_error, bounds.turn), row.arm_a);
+inline float error_of(const JointRecord& joint, const JointConstraint& work, const JointEquation& row, int i,
+                      ErrorBounds bounds = kMaxErrors) {
+  if (work.rows != nullptr) return clamped_error(work.rows->rows[i], bounds);
+  if (is_turn(row)) return dot(clamp_length(work.angular_error, bounds.turn), row.arm_a);
   if (joint.kind == JointKind::distance)
     return clamp(work.position - joint.min_length, -bounds.point, bounds.point);
-  return dot(within(work.error, bounds.point), row.push);
+  return dot(clamp_length(work.error, bounds.point), row.direction);
 }
 
 }  // namespace gyre

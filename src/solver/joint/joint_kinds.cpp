@@ -56,7 +56,7 @@ int add_row(JointRows& rows, const JointRow& row) {
   return rows.count++;
 }
 
-JointRow point_row(const JointWork& work, Vec3 direction, float error) {
+JointRow point_row(const JointConstraint& work, Vec3 direction, float error) {
   return {direction, cross(work.from_a, direction), cross(work.from_b, direction), error};
 }
 JointRow turn_row(Vec3 axis, float error) { return {{}, axis, axis, error}; }
@@ -73,7 +73,7 @@ Vec3 locked_turn(const JointDetail& detail, const Cardan& c, const Vec3 (&axes)[
 }
 
 // Rows that hold the locked angles: across the axes that are free. An orthonormal basis that turns with the bodies.
-void add_locked_turns(const JointDetail& detail, const JointWork& work, const Cardan& c, JointRows& rows) {
+void add_locked_turns(const JointDetail& detail, const JointConstraint& work, const Cardan& c, JointRows& rows) {
   int free_axes[3], free_count = 0;
   for (int i = 0; i < 3; ++i) {
     if (!is_locked(detail, 3 + i)) free_axes[free_count++] = i;
@@ -95,14 +95,14 @@ void add_locked_turns(const JointDetail& detail, const JointWork& work, const Ca
   }
 }
 
-void place_axis_work(AxisWork& x, const AxisRow& row, float position, const JointPair& pair,
+void place_axis_work(AxisConstraint& x, const AxisRow& row, float position, const JointPair& pair,
                      const JointSettings& settings) {
   x.row = row;
   x.axis.position = position;
   prepare_axis(x, pair, settings);
 }
 
-AxisRow point_axis(const JointWork& work, Vec3 direction) {
+AxisRow point_axis(const JointConstraint& work, Vec3 direction) {
   return {direction, direction, cross(work.from_a, direction), cross(work.from_b, direction)};
 }
 
@@ -132,7 +132,7 @@ float rack_error(const JointDetail& detail, const RowPose& pose) {
 
 // --------------------------------------------------------------------------------------------------------------- paths
 
-PathCurve curve_of(const JointWork& work) { return {work.path, work.detail->path_closed}; }
+PathCurve curve_of(const JointConstraint& work) { return {work.path, work.detail->path_closed}; }
 
 // What a curve is at a place, in the world.
 struct PathFrame {
@@ -141,7 +141,7 @@ struct PathFrame {
   Vec3 position;  // in the joint's frame on a
   Vec3 bending;   // rad/m: how its frame turns along it, world
 };
-PathFrame path_frame_at(const JointWork& work, float place, Quat frame_a) {
+PathFrame path_frame_at(const JointConstraint& work, float place, Quat frame_a) {
   const PathCurve curve = curve_of(work);
   const PathSample s = sample_path(curve, place);
   PathFrame f;
@@ -163,22 +163,22 @@ Vec3 path_turn_error(const JointDetail& detail, const RowPose& pose, const PathF
 // -------------------------------------------------------------------------------------------------------------- cones
 
 // The stop of a swing: where it is, and the axis about which it is nearest.
-struct SwingStop {
+struct SwingLimit {
   float gap = 1.0e9f;  // rad
   Vec3 axis;           // world; turning about it brings the stop nearer
 };
-SwingStop find_swing_stop(const JointDetail& detail, Quat frame_a, Quat frame_b) {
-  constexpr float kLeastSwing = 1.0e-3f;
+SwingLimit find_swing_limit(const JointDetail& detail, Quat frame_a, Quat frame_b) {
+  constexpr float kMinSwing = 1.0e-3f;
   const Mat3 a = to_matrix(frame_a);
   const Vec3 x_b = rotate(frame_b, {1, 0, 0});
   const Vec3 about = cross(a.x, x_b);
   const float sine = length(about);
   const float angle = atan2(sine, dot(a.x, x_b));
   if (!(sine > 1.0e-6f))
-    return angle > 1.0f ? SwingStop{min(detail.swing_y, detail.swing_z) - angle, a.y} : SwingStop{};
+    return angle > 1.0f ? SwingLimit{min(detail.swing_y, detail.swing_z) - angle, a.y} : SwingLimit{};
   const Vec3 along = about / sine;  // the axis of the swing, in a's y z plane
   const float cy = dot(along, a.y), cz = dot(along, a.z);
-  const float ly = max(detail.swing_y, kLeastSwing), lz = max(detail.swing_z, kLeastSwing);
+  const float ly = max(detail.swing_y, kMinSwing), lz = max(detail.swing_z, kMinSwing);
   // f = |swing / limits| = 1 at the stop; its change with the angle, and with the direction times the angle.
   const float share = std::sqrt(square(cy / ly) + square(cz / lz));
   const float across = cy * cz * (1.0f / square(lz) - 1.0f / square(ly)) / share;
@@ -200,14 +200,14 @@ Vec3 twist_axis(Quat frame_a, Quat frame_b) {
   return (x_a + x_b) / max(1.0f + dot(x_a, x_b), kLeast);
 }
 
-void adjust_axes(const JointRecord& joint, std::span<AxisWork> axes) {
-  for (AxisWork& x : axes) {
+void adjust_axes(const JointRecord& joint, std::span<AxisConstraint> axes) {
+  for (AxisConstraint& x : axes) {
     if (joint.kind == JointKind::pulley || (joint.kind == JointKind::cone && x.index == JointAxis::angular_y))
       x.has_low = false;
   }
 }
 
-void place_six_axes(JointRecord& joint, JointWork& work, const JointPair& pair,
+void place_six_axes(JointRecord& joint, JointConstraint& work, const JointPair& pair,
                     const JointSettings& settings) {
   JointDetail& detail = *work.detail;
   const Mat3 frame = to_matrix(work.frame_a);
@@ -231,7 +231,7 @@ void place_six_axes(JointRecord& joint, JointWork& work, const JointPair& pair,
   for (int i = 0; i < 3; ++i)
     detail.axes[3 + i].position = unwrapped(c.angles[i], detail.axes[3 + i].position);
   add_locked_turns(detail, work, c, rows);
-  for (AxisWork& x : work.axes) {
+  for (AxisConstraint& x : work.axes) {
     const int i = int(x.index);
     const Vec3 dual = i >= 3 ? c.dual(i - 3) : Vec3{};
     place_axis_work(x, i < 3 ? point_axis(work, linear[i]) : AxisRow{{}, {}, dual, dual},
@@ -240,25 +240,25 @@ void place_six_axes(JointRecord& joint, JointWork& work, const JointPair& pair,
   work.position = joint.position = detail.axes[int(main_axis(joint.kind))].position;
 }
 
-void place_cone(JointRecord& joint, JointWork& work, const JointPair& pair, const JointSettings& settings) {
+void prepare_cone(JointRecord& joint, JointConstraint& work, const JointPair& pair, const JointSettings& settings) {
   const Quat twist = conjugate(work.frame_a) * work.frame_b;
   work.position = joint.position = unwrapped(2.0f * atan2(twist.x, twist.w), near_twist(joint, work.detail));
   if (work.detail == nullptr) return;
   work.detail->axes[3].position = joint.position;
-  for (AxisWork& x : work.axes) {
+  for (AxisConstraint& x : work.axes) {
     if (x.index == JointAxis::angular_x) {
       const Vec3 about = twist_axis(work.frame_a, work.frame_b);
-      x.slack = twist_told(work.frame_a, work.frame_b) < kLeastTwistTold ? kAway : 0.0f;
+      x.slack = twist_told(work.frame_a, work.frame_b) < kMinTwistReported ? kAway : 0.0f;
       place_axis_work(x, {{}, {}, about, about}, joint.position, pair, settings);
     } else {
-      const SwingStop stop = find_swing_stop(*work.detail, work.frame_a, work.frame_b);
+      const SwingLimit stop = find_swing_limit(*work.detail, work.frame_a, work.frame_b);
       x.axis.limits = {};
       place_axis_work(x, {{}, {}, stop.axis, stop.axis}, -stop.gap, pair, settings);
     }
   }
 }
 
-void place_gear(JointRecord& joint, JointWork& work) {
+void place_gear(JointRecord& joint, JointConstraint& work) {
   JointDetail& detail = *work.detail;
   JointRow row;
   row.error = gear_error(detail, work.frame_a, work.frame_b);
@@ -271,7 +271,7 @@ void place_gear(JointRecord& joint, JointWork& work) {
   add_row(*work.rows, row);
 }
 
-void place_rack(JointRecord& joint, JointWork& work, const JointPair& pair, const JointPlaces& places) {
+void place_rack(JointRecord& joint, JointConstraint& work, const JointPair& pair, const JointOffsets& places) {
   JointDetail& detail = *work.detail;
   const Vec3 centers = places.offset + pair.moved();
   work.from_a += work.error;  // to b's anchor
@@ -280,7 +280,7 @@ void place_rack(JointRecord& joint, JointWork& work, const JointPair& pair, cons
   row.error = rack_error(detail, {{}, centers, work.frame_a, work.frame_b});
   // The teeth meet at the rim: where it moves along the rack.
   const Vec3 rim = detail.ratio * cross(along, about);
-  row.push = along;
+  row.direction = along;
   row.arm_a = detail.ratio * about;
   row.arm_b = cross(rim - centers, along);
   detail.axes[3].position = float(turned_about_x(detail.reference_a, work.frame_a, detail.axes[3].position));
@@ -289,7 +289,7 @@ void place_rack(JointRecord& joint, JointWork& work, const JointPair& pair, cons
   add_row(*work.rows, row);
 }
 
-void place_pulley(JointRecord& joint, JointWork& work, const JointPair& pair, const JointPlaces& places,
+void place_pulley(JointRecord& joint, JointConstraint& work, const JointPair& pair, const JointOffsets& places,
                   const JointSettings& settings) {
   const float ratio = work.detail->ratio;
   const Vec3 a = pair.moved_a() + work.from_a - places.ground_a,
@@ -300,13 +300,13 @@ void place_pulley(JointRecord& joint, JointWork& work, const JointPair& pair, co
   work.perpendicular_2 = b;
   work.position = joint.position = length_a + ratio * length_b;
   work.detail->axes[0].position = work.position;
-  for (AxisWork& x : work.axes) {
+  for (AxisConstraint& x : work.axes) {
     const AxisRow row{-way_a, ratio * way_b, cross(work.from_a, -way_a), cross(work.from_b, ratio * way_b)};
     place_axis_work(x, row, work.position, pair, settings);
   }
 }
 
-void bend_pulley(JointWork& work, const JointPair& pair, float h) {
+void bend_pulley(JointConstraint& work, const JointPair& pair, float h) {
   const auto side = [h](Vec3 rope, Vec3 velocity, Vec3 spin, Vec3 arm) {
     const float size = length(rope);
     const Vec3 way = normalized(rope, {0, -1, 0});
@@ -315,13 +315,13 @@ void bend_pulley(JointWork& work, const JointPair& pair, float h) {
     return 0.5f * h *
            (dot(cross(spin, cross(spin, arm)), way) + (size > 0.0f ? length_squared(across) / size : 0.0f));
   };
-  for (AxisWork& x : work.axes) {
-    x.bend = side(work.perpendicular_1, pair.linear_a, pair.angular_a, work.from_a) +
+  for (AxisConstraint& x : work.axes) {
+    x.second_order_bias = side(work.perpendicular_1, pair.linear_a, pair.angular_a, work.from_a) +
              work.detail->ratio * side(work.perpendicular_2, pair.linear_b, pair.angular_b, work.from_b);
   }
 }
 
-void place_path(JointRecord& joint, JointWork& work, const JointPair& pair, const JointSettings& settings) {
+void place_path(JointRecord& joint, JointConstraint& work, const JointPair& pair, const JointSettings& settings) {
   JointDetail& detail = *work.detail;
   const Vec3 apart = work.error;
   const Vec3 local = rotate_inverse(work.frame_a, apart);
@@ -343,21 +343,21 @@ void place_path(JointRecord& joint, JointWork& work, const JointPair& pair, cons
     for (const Vec3 axis : {f.axes.x, f.axes.y, f.axes.z}) {
       JointRow row = turn_row(axis, dot(axis, error));
       if (follows) {
-        row.push = -dot(axis, f.bending) * f.axes.x;
-        row.arm_a += cross(work.from_a, row.push);
-        row.arm_b += cross(work.from_b, row.push);
+        row.direction = -dot(axis, f.bending) * f.axes.x;
+        row.arm_a += cross(work.from_a, row.direction);
+        row.arm_b += cross(work.from_b, row.direction);
       }
       add_row(rows, row);
     }
   }
   work.position = joint.position = path_length(curve, detail.path_place) - detail.start;
   detail.axes[0].position = work.position;
-  for (AxisWork& x : work.axes) place_axis_work(x, point_axis(work, f.axes.x), work.position, pair, settings);
+  for (AxisConstraint& x : work.axes) place_axis_work(x, point_axis(work, f.axes.x), work.position, pair, settings);
 }
 
 // ---------------------------------------------------------------------------------------------------------------- rows
 
-void measure_rows(const JointRecord& joint, const JointWork& work, const RowPose& pose,
+void measure_rows(const JointRecord& joint, const JointConstraint& work, const RowPose& pose,
                   float (&errors)[kJointAxisCount]) {
   const JointDetail& detail = *work.detail;
   const JointRows& rows = *work.rows;
@@ -403,7 +403,7 @@ void prepare_rows(JointRows& rows, const JointPair& pair) {
     const Vec3 spin_a = pair.inverse_inertia_a() * row.arm_a, spin_b = pair.inverse_inertia_b() * row.arm_b;
     for (int j = 0; j <= i; ++j) {
       const JointRow& other = rows.rows[j];
-      rows.factors[i * n + j] = double(inverse_mass * dot(row.push, other.push) + dot(spin_a, other.arm_a) +
+      rows.factors[i * n + j] = double(inverse_mass * dot(row.direction, other.direction) + dot(spin_a, other.arm_a) +
                                        dot(spin_b, other.arm_b));
     }
   }
@@ -411,14 +411,14 @@ void prepare_rows(JointRows& rows, const JointPair& pair) {
 }
 
 void push_row(const JointRow& row, float impulse, JointPair& pair) {
-  push_axis({row.push, row.push, row.arm_a, row.arm_b}, impulse, pair);
+  push_axis({row.direction, row.direction, row.arm_a, row.arm_b}, impulse, pair);
 }
 
 void warm_rows(const JointRows& rows, const JointDetail& detail, JointPair& pair) {
   for (int i = 0; i < rows.count; ++i) push_row(rows.rows[i], detail.row_impulses[i], pair);
 }
 
-void sweep_rows(JointRecord& joint, const JointWork& work, JointPair& pair, const JointSettings& settings,
+void iterate_rows(JointRecord& joint, const JointConstraint& work, JointPair& pair, const JointSettings& settings,
                 bool soft) {
   const JointRows& rows = *work.rows;
   JointDetail& detail = *work.detail;
@@ -428,9 +428,9 @@ void sweep_rows(JointRecord& joint, const JointWork& work, JointPair& pair, cons
   double x[kJointAxisCount];
   for (int i = 0; i < rows.count; ++i) {
     const JointRow& row = rows.rows[i];
-    float speed = axis_speed({row.push, row.push, row.arm_a, row.arm_b}, pair);
-    if (bends) speed += dot(row.push, work.bend);
-    x[i] = double(soft ? speed + s.bias_rate * error_taken_back(row) : speed);
+    float speed = axis_speed({row.direction, row.direction, row.arm_a, row.arm_b}, pair);
+    if (bends) speed += dot(row.direction, work.second_order_bias);
+    x[i] = double(soft ? speed + s.bias_rate * clamped_error(row) : speed);
   }
   solve_ldlt(std::span<const double>(rows.factors, n * n), rows.count, std::span<double>(x, n));
   for (int i = 0; i < rows.count; ++i) {
@@ -441,13 +441,13 @@ void sweep_rows(JointRecord& joint, const JointWork& work, JointPair& pair, cons
   }
 }
 
-void gather_rows(JointRecord& joint, const JointWork& work) {
+void gather_rows(JointRecord& joint, const JointConstraint& work) {
   joint.linear_impulse = joint.angular_impulse = {};
   for (int i = 0; i < work.rows->count; ++i) {
     const JointRow& row = work.rows->rows[i];
     const float impulse = work.detail->row_impulses[i];
-    joint.linear_impulse += impulse * row.push;
-    joint.angular_impulse += impulse * (row.arm_b - cross(work.from_b, row.push));
+    joint.linear_impulse += impulse * row.direction;
+    joint.angular_impulse += impulse * (row.arm_b - cross(work.from_b, row.direction));
   }
 }
 

@@ -19,27 +19,27 @@ Vec3 angle_axis(Quat frame_a, Quat frame_b, int angle);
 Vec3 twist_axis(Quat frame_a, Quat frame_b);
 
 // Which ends of which axes stop, for kinds that know better than the axis.
-void adjust_axes(const JointRecord& joint, std::span<AxisWork> axes);
+void adjust_axes(const JointRecord& joint, std::span<AxisConstraint> axes);
 
-void place_six_axes(JointRecord& joint, JointWork& work, const JointPair& pair,
+void place_six_axes(JointRecord& joint, JointConstraint& work, const JointPair& pair,
                     const JointSettings& settings);
-void place_cone(JointRecord& joint, JointWork& work, const JointPair& pair, const JointSettings& settings);
-void place_gear(JointRecord& joint, JointWork& work);
-void place_rack(JointRecord& joint, JointWork& work, const JointPair& pair, const JointPlaces& places);
-void place_pulley(JointRecord& joint, JointWork& work, const JointPair& pair, const JointPlaces& places,
+void prepare_cone(JointRecord& joint, JointConstraint& work, const JointPair& pair, const JointSettings& settings);
+void place_gear(JointRecord& joint, JointConstraint& work);
+void place_rack(JointRecord& joint, JointConstraint& work, const JointPair& pair, const JointOffsets& places);
+void place_pulley(JointRecord& joint, JointConstraint& work, const JointPair& pair, const JointOffsets& places,
                   const JointSettings& settings);
-void place_path(JointRecord& joint, JointWork& work, const JointPair& pair, const JointSettings& settings);
-void bend_pulley(JointWork& work, const JointPair& pair, float substep);
+void place_path(JointRecord& joint, JointConstraint& work, const JointPair& pair, const JointSettings& settings);
+void bend_pulley(JointConstraint& work, const JointPair& pair, float substep);
 
 // The errors that the rows of the work would have with the bodies at another pose nearby.
-void measure_rows(const JointRecord& joint, const JointWork& work, const RowPose& pose,
+void measure_rows(const JointRecord& joint, const JointConstraint& work, const RowPose& pose,
                   float (&errors)[kJointAxisCount]);
 
 void prepare_rows(JointRows& rows, const JointPair& pair);
 void warm_rows(const JointRows& rows, const JointDetail& detail, JointPair& pair);
-void sweep_rows(JointRecord& joint, const JointWork& work, JointPair& pair, const JointSettings& settings,
+void iterate_rows(JointRecord& joint, const JointConstraint& work, JointPair& pair, const JointSettings& settings,
                 bool soft);
 // The rows' impulses as a force's and a torque's on B.
-void gather_rows(JointRecord& joint, const JointWork& work);
+void gather_rows(JointRecord& joint, const JointConstraint& work);
 
 }  // namespace gyre

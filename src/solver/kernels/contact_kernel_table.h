@@ -2,12 +2,12 @@
 #pragma once
 
 #include "solver/articulation/ball_kernel.h"
-#include "solver/contact/contact_follow.h"
+#include "solver/contact/moving_contact_points.h"
 #include "solver/contact/contact_prepare.h"
 #include "solver/contact/contact_project.h"
 #include "solver/articulation/linkage_kernel.h"
 #include "solver/motion/motion_kernel.h"
-#include "solver/motion/turn_kernel.h"
+#include "solver/motion/rotation_kernel.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
@@ -16,7 +16,7 @@ template <int W>
 constexpr ContactKernels contact_kernels() {
   return {W,
           sizeof(ContactBlock<W>),
-          sizeof(ContactAside<W>),
+          sizeof(ContactBlockCold<W>),
           prepare_blocks<W>,
           follow_lanes<W>,
           warm_start_blocks<W>,
@@ -29,7 +29,7 @@ constexpr ContactKernels contact_kernels() {
           finish_blocks<W>,
           motion_kernels<W>(),
           turn_kernels<W>(),
-          linkage_kernels<W>(),
+          articulation_kernels<W>(),
           ball_kernels<W>()};
 }
 

@@ -18,7 +18,7 @@ const ContactKernels& select_contact_kernels(int width) {
   if (lanes >= 16) return kContactKernels_avx512;
   // Eight lanes with the instructions and the twice as many registers of a processor that has sixteen. (Asked for, eight are those of any
   // with AVX2.)
-  if (width == 0 && lanes == 8 && most_lanes() == 16) return kContactKernels_avx512vl;
+  if (width == 0 && lanes == 8 && max_lanes() == 16) return kContactKernels_avx512vl;
   if (lanes >= 8) return kContactKernels_avx2;
 #endif
   if constexpr (kLanesOfAll >= 4) {

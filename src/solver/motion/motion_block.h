@@ -16,7 +16,7 @@ namespace gyre {
 // Beyond these nothing is simulated faithfully; speeds are clamped to them and the clamping is reported.
 constexpr float kMaxSpeed = 1.0e7f;  // m/s
 constexpr float kMaxSpin = 2.0e4f;   // rad/s
-inline DVec3 within(DVec3 v, double most) {
+inline DVec3 clamp_length(DVec3 v, double most) {
   const double size = length(v);
   return size > most ? (most / size) * v : v;
 }
@@ -35,7 +35,7 @@ struct MovedBody {
   float reach = 0.0f;        // m, farthest point from the centre of mass
   std::uint8_t locked = 0;   // world axes that it may not move along: bits 0 to 2
   bool isotropic = false;    // equal principal moments: no gyroscopic torque
-  bool turns_alone = false;  // the kernels leave its rotation alone
+  bool needs_exact_rotation = false;  // the kernels leave its rotation alone
   bool shown = false;        // its orientation and inertia are written in each sub-step
 };
 

@@ -7,7 +7,7 @@
 //
 // Free rotation: the angular momentum is what stays constant in the world frame. The body turns with the angular velocity
 // of the middle of the sub-step, and has at its end the one that its momentum asks for in its new orientation (the error is
-// of order angle^3; faster bodies turn alone). Sources as in solver/motion/free_turn.h.
+// of order angle^3; faster bodies turn alone). Sources as in solver/motion/torque_free_rotation.h.
 //
 // Contacts do the same work at the beginning of each sub-step as they did in the last one (warm start). Instead of walking
 // over all contacts, each body remembers what they gave it.
@@ -164,11 +164,11 @@ void prepare_motion(void* memory, int begin, int end, const MovedBody* bodies, i
       }
       const MovedBody& from = bodies[n * W + lane];
       block.body[lane] = from.body;
-      if (from.shown && !from.turns_alone) block.shown |= 1u << lane;
+      if (from.shown && !from.needs_exact_rotation) block.shown |= 1u << lane;
       if (from.locked != 0) block.any_locked = 1;
       if (from.torque != Vec3{}) block.any_torque = 1;
       if (from.linear_lost != 0.0f || from.angular_lost != 0.0f) block.any_lost = 1;
-      const bool gyroscopic = !from.isotropic && !from.turns_alone;
+      const bool gyroscopic = !from.isotropic && !from.needs_exact_rotation;
       if (gyroscopic) block.any_gyroscopic = 1;
       put<W>(block.kick, lane, from.kick);
       put<W>(block.torque, lane, from.torque);
@@ -178,7 +178,7 @@ void prepare_motion(void* memory, int begin, int end, const MovedBody* bodies, i
       put<W>(block.loose, lane,
              Vec3{(from.locked & 1) != 0 ? 0.0f : 1.0f, (from.locked & 2) != 0 ? 0.0f : 1.0f,
                   (from.locked & 4) != 0 ? 0.0f : 1.0f});
-      put(block.turns, lane, from.turns_alone ? 0.0f : 1.0f);
+      put(block.turns, lane, from.needs_exact_rotation ? 0.0f : 1.0f);
       put(block.gyroscopic, lane, gyroscopic ? 1.0f : 0.0f);
       put(block.start.x, lane, from.orientation.x);
       put(block.start.y, lane, from.orientation.y);
@@ -220,15 +220,15 @@ GYRE_INLINE void predict_blocks(void* memory, int begin, int end, const Where& w
     MotionBlock<W>& block = blocks[n];
     MotionW<W> m = where.template load<8>(block, n);
     Vec3W<W> v = m.linear(), w = m.angular();
-    Vec3W<W> push = block.kick;
+    Vec3W<W> direction = block.kick;
     Vec3W<W> twist = none;
     if (block.any_torque != 0) twist = block.world_inverse_inertia * block.torque;
     if (block.any_lost != 0) {
       // Not 0 times v where nothing is lost: a lane must not see that another one loses something, whatever its numbers.
-      push = push - select<W>(block.linear_lost > zero, block.linear_lost * v, none);
+      direction = direction - select<W>(block.linear_lost > zero, block.linear_lost * v, none);
       twist = twist - select<W>(block.angular_lost > zero, block.angular_lost * w, none);
     }
-    v = v + push;
+    v = v + direction;
     w = w + twist;
     if (block.any_locked != 0) v = along_loose_axes<W>(block, v);
     // Adding zero keeps -0 out of the state, so that wide kernels may add zeros to lanes that nothing touches.
@@ -260,7 +260,7 @@ void warm_motion(void* memory, int begin, int end, BodyMotion* motion) {
 }
 
 template <int W>
-void watch_motion(void* memory, int begin, int end, const BodyMotion* motion) {
+void record_velocities(void* memory, int begin, int end, const BodyMotion* motion) {
   auto* blocks = static_cast<MotionBlock<W>*>(memory);
   for (int n = begin; n < end; ++n) remember<W>(blocks[n], load_motion<8, W>(blocks[n], motion));
 }
@@ -283,7 +283,7 @@ GYRE_INLINE void note_blocks(void* memory, int begin, int end, const BodyMotion*
   }
 }
 template <int W>
-void note_motion(void* memory, int begin, int end, const BodyMotion* motion) {
+void record_velocity_change(void* memory, int begin, int end, const BodyMotion* motion) {
   note_blocks<W>(memory, begin, end, motion, [](int, const MotionW<W>&) {});
 }
 template <int W>
@@ -436,8 +436,8 @@ constexpr MotionKernels motion_kernels() {
   kernels.prepare = prepare_motion<W>;
   kernels.predict = predict_motion<W>;
   kernels.warm = warm_motion<W>;
-  kernels.watch = watch_motion<W>;
-  kernels.note = note_motion<W>;
+  kernels.watch = record_velocities<W>;
+  kernels.note = record_velocity_change<W>;
   kernels.advance = advance_motion<W>;
   kernels.begin_projection = begin_projection<W>;
   kernels.end_projection = end_projection<W>;

@@ -212,7 +212,7 @@ Crowd make_crowd(Random& random) {
     if (i % 4 == 1) body.torque = random.vector(5.0f);
     if (i % 5 == 2) body.linear_lost = 0.01f, body.angular_lost = 0.02f;
     body.locked = i % 7 == 3 ? 5 : 0;
-    body.turns_alone = i % 11 == 4;
+    body.needs_exact_rotation = i % 11 == 4;
     body.shown = i % 2 == 0;
     body.reach = 0.5f;
     crowd.motion[std::size_t(i)].linear_velocity = random.vector(10.0f);

@@ -22,9 +22,9 @@ void add_times(const double* values, double by, double* to) {
 }
 
 // block += push gain^T.
-void add_product(const double* push, const double* gain, double* block) {
+void add_product(const double* direction, const double* gain, double* block) {
   GYRE_UNROLL
-  for (int r = 0; r < kLuBlock; ++r) add_times<kLuBlock>(gain, push[r], block + r * kLuBlock);
+  for (int r = 0; r < kLuBlock; ++r) add_times<kLuBlock>(gain, direction[r], block + r * kLuBlock);
 }
 
 class BodyNewton {
@@ -50,14 +50,14 @@ class BodyNewton {
     for (std::size_t i = 0; i < p_.bodies.size(); ++i)
       for (std::size_t k = 0; k < kLuBlock; ++k)
         velocities_[kLuBlock * i + k] = velocities_of(p_.bodies[i])[k];
-    push(x);
+    direction(x);
     for (std::size_t i = 0; i < rows(); ++i)
-      w[i] = seen(p_.rows[i]) - p_.rows[i].wanted + p_.rows[i].give * x[i];
+      w[i] = seen(p_.rows[i]) - p_.rows[i].target_speed + p_.rows[i].compliance * x[i];
   }
   void find_change(std::span<const double> dx, std::span<double> dw) const {
     for (double& value : velocities_) value = 0.0;
-    push(dx);
-    for (std::size_t i = 0; i < rows(); ++i) dw[i] = seen(p_.rows[i]) + p_.rows[i].give * dx[i];
+    direction(dx);
+    for (std::size_t i = 0; i < rows(); ++i) dw[i] = seen(p_.rows[i]) + p_.rows[i].compliance * dx[i];
   }
 
   bool find_step(std::span<const double> x, std::span<const double> w, double near, std::span<double> dx) {
@@ -99,7 +99,7 @@ class BodyNewton {
     // (own + speed give) dx = right - speed J dv - load dL.
     double own[2][2] = {{1.0, 0.0}, {0.0, 1.0}};
     for (std::size_t r = 0; r < count; ++r) {
-      for (std::size_t k = 0; k < count; ++k) own[r][k] = e.own[r][k] + e.speed[r][k] * p_.rows[i + k].give;
+      for (std::size_t k = 0; k < count; ++k) own[r][k] = e.own[r][k] + e.speed[r][k] * p_.rows[i + k].compliance;
     }
     double inverse[2][2] = {{1.0 / own[0][0]}};
     if (is_cone) {
@@ -173,7 +173,7 @@ class BodyNewton {
   double* at(std::int32_t body) const { return body == kNoRowBody ? nullptr : &step_[column_of(body).row]; }
 
   // Adds what impulses do to the velocities.
-  void push(std::span<const double> impulses) const {
+  void direction(std::span<const double> impulses) const {
     for (std::size_t i = 0; i < rows(); ++i) {
       if (impulses[i] == 0.0) continue;
       const Row& row = p_.rows[i];
@@ -206,10 +206,10 @@ std::size_t body_newton_room(std::size_t rows, const BlockPlan& plan) {
   return 2 * plan.values + 3 * plan.rows + (1 + kSeen) * rows + newton_search_room(rows);
 }
 
-NewtonResult solve_body_newton(const RowProblem& problem, double tolerance, int most_steps,
+NewtonResult solve_body_newton(const RowProblem& problem, double tolerance, int max_steps,
                                std::span<double> x, NumberRoom room) {
   BodyNewton newton(problem, room);
-  return newton_search(newton, tolerance, most_steps, x, room);
+  return newton_search(newton, tolerance, max_steps, x, room);
 }
 
 }  // namespace gyre

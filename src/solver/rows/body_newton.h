@@ -26,7 +26,7 @@ struct RowProblem {
 std::size_t body_newton_room(std::size_t rows, const BlockPlan& plan);
 
 // Improves `x`, the rows' impulses, until the residual is at most `tolerance`; leaves the best that was found.
-NewtonResult solve_body_newton(const RowProblem& problem, double tolerance, int most_steps,
+NewtonResult solve_body_newton(const RowProblem& problem, double tolerance, int max_steps,
                                std::span<double> x, NumberRoom room);
 
 }  // namespace gyre

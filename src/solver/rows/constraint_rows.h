@@ -9,7 +9,7 @@
 // Springs that a sub-step resolves are forces (kick and drift keep their energy); stiffer ones are soft rows. Limits of drives to a
 // pose and of friction against all turning hold for each of the world's axes by itself.
 //
-// In: ContactConstraint, or JointRecord with JointWork as placed and bent in the sub-step. Out: rows; then velocities' impulses.
+// In: ContactConstraint, or JointRecord with JointConstraint as placed and bent in the sub-step. Out: rows; then velocities' impulses.
 #pragma once
 
 #include "solver/contact/contact_block.h"
@@ -53,13 +53,13 @@ void keep_contact_impulses(const ContactConstraint& constraint, const FrictionSe
 // Rows of the normals alone, in displacements: how far a step pushes what overlaps. Returns whether anything does.
 bool add_overlap_rows(const ContactConstraint& constraint, const RowFrame& frame, float step, RowList& list);
 
-int count_joint_rows(const JointRecord& joint, const JointDetail* detail, const JointWork& work);
+int count_joint_rows(const JointRecord& joint, const JointDetail* detail, const JointConstraint& work);
 // Springs that are forces push the bodies of the frame at once.
-void add_joint_rows(JointRecord& joint, JointWork& work, const JointSettings& settings, const RowFrame& frame,
+void add_joint_rows(JointRecord& joint, JointConstraint& work, const JointSettings& settings, const RowFrame& frame,
                     RowList& list);
-void keep_joint_impulses(JointRecord& joint, JointWork& work, std::span<const Row> rows,
+void keep_joint_impulses(JointRecord& joint, JointConstraint& work, std::span<const Row> rows,
                          std::span<float* const> kept);
 // The equations alone, asking for nothing: what is pushed apart stays joined.
-void add_joint_equations(JointRecord& joint, JointWork& work, const RowFrame& frame, RowList& list);
+void add_joint_equations(JointRecord& joint, JointConstraint& work, const RowFrame& frame, RowList& list);
 
 }  // namespace gyre

@@ -70,7 +70,7 @@ void add_contact_rows(const ContactConstraint& c, const RowFrame& frame, float w
     Row& row = begin_row(list);
     row.limits = {k % 2 == 0 ? RowKind::cone : RowKind::cone_second, 0.0, 0.0, friction, normals + k / 2, 1};
     point_row(row, axis, point);
-    row.wanted = dot(DVec3(c.surface_velocity), axis);
+    row.target_speed = dot(DVec3(c.surface_velocity), axis);
     // Friction is kept for the contact as a whole: points share it as they share the load.
     if (load > 0.0)
       row.impulse =
@@ -82,7 +82,7 @@ void add_contact_rows(const ContactConstraint& c, const RowFrame& frame, float w
     Row& row = begin_row(list);
     row.limits.low = 0.0;
     point_row(row, axes.normal, point);
-    row.wanted = -max(gap_now(c, point, frame), 0.0) / frame.substep;
+    row.target_speed = -max(gap_now(c, point, frame), 0.0) / frame.substep;
     row.impulse = double(warm) * double(point.normal_impulse);
     end_row(row, c.body_a, c.body_b, frame);
   }
@@ -153,7 +153,7 @@ bool add_overlap_rows(const ContactConstraint& c, const RowFrame& frame, float s
     Row& row = begin_row(list);
     row.limits.low = 0.0;
     point_row(row, normal, point);
-    row.wanted = over > 0.0 ? min(kTakenBack * over, most) : over;
+    row.target_speed = over > 0.0 ? min(kTakenBack * over, most) : over;
     end_row(row, c.body_a, c.body_b, frame, true);
   }
   return overlaps;

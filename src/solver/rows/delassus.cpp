@@ -23,7 +23,7 @@ void fill_delassus(std::span<const Row> rows, std::size_t bodies, std::span<doub
   for (std::size_t b = 0; b < bodies; ++b) first[b] = -1;
   for (std::size_t i = 0; i < n; ++i) {
     double* const row = &matrix[i * n];
-    row[i] = rows[i].give;
+    row[i] = rows[i].compliance;
     for (int s = 0; s < 2; ++s) {
       const Side side = side_of(rows[i], s == 1);
       if (side.body == kNoRowBody) continue;

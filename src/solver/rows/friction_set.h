@@ -7,17 +7,17 @@
 
 namespace gyre {
 
-constexpr int kLeastSides = 4, kMostSides = 32;  // even numbers
+constexpr int kMinSides = 4, kMaxSides = 32;  // even numbers
 
 struct FrictionSet {
   int sides = 0;       // 0: the disc
   double inner = 1.0;  // distance of the sides from the middle, of a set with radius one
   double half_side = 0.0;
-  double corner[kMostSides][2] = {};  // of a set with radius one
-  double side[kMostSides][2] = {};    // unit, across: the side from corner i to i + 1
+  double corner[kMaxSides][2] = {};  // of a set with radius one
+  double side[kMaxSides][2] = {};    // unit, across: the side from corner i to i + 1
 };
 
-// `sides`: 0, or an even number within kLeastSides and kMostSides.
+// `sides`: 0, or an even number within kMinSides and kMaxSides.
 FrictionSet make_friction_set(int sides);
 
 // Where the nearest point of a set lies.

@@ -20,42 +20,42 @@ void set_axis(Row& row, const AxisRow& axis, float sign) {
 void end_soft_row(Row& row, const JointRecord& joint, const Softness& soft, const RowFrame& frame) {
   end_row(row, joint.body_a, joint.body_b, frame);
   if (!(soft.mass_scale > 0.0f)) return;
-  row.give = row.diagonal * double(soft.impulse_scale) / double(soft.mass_scale);
-  row.diagonal += row.give;
+  row.compliance = row.diagonal * double(soft.impulse_scale) / double(soft.mass_scale);
+  row.diagonal += row.compliance;
 }
 
-int equations_of(const JointRecord& joint, const JointWork& work) {
+int equations_of(const JointRecord& joint, const JointConstraint& work) {
   return count_equations(joint, work.detail);
 }
 
 // Of bodies that turn by more than this in a sub-step (rad) rows ask for less and less of the bend, as linkages do.
-constexpr double kMostTurn = 0.15;
+constexpr double kMaxTurn = 0.15;
 
-float bend_share(const JointRecord& joint, const RowFrame& frame) {
+float bias_fade(const JointRecord& joint, const RowFrame& frame) {
   double fastest = 0.0;
   for (const std::int32_t body : {joint.body_a, joint.body_b}) {
     if (body != kNoBody) fastest = max(fastest, length_squared(DVec3(frame.motion[body].angular_velocity)));
   }
   fastest *= square(frame.substep);
-  return fastest > square(kMostTurn) ? float(square(kMostTurn) / fastest) : 1.0f;
+  return fastest > square(kMaxTurn) ? float(square(kMaxTurn) / fastest) : 1.0f;
 }
 
-void add_equations(JointRecord& joint, JointWork& work, const RowFrame& frame, float rate, bool in_motion,
+void add_equations(JointRecord& joint, JointConstraint& work, const RowFrame& frame, float rate, bool in_motion,
                    RowList& list) {
   if (equations_of(joint, work) == 0) return;
   JointEquations node;
   make_equations(node, joint, work);
-  const float share = bend_share(joint, frame);
+  const float share = bias_fade(joint, frame);
   const bool bends = joint.kind != JointKind::gear && joint.kind != JointKind::rack_and_pinion;
   for (int i = 0; i < node.count; ++i) {
     const JointEquation& from = node.rows[i];
     Row& row = begin_row(list);
     if (i == 0) row.block = node.count;
-    row.linear_a = -DVec3(from.push), row.angular_a = -DVec3(from.arm_a);
-    row.linear_b = DVec3(from.push), row.angular_b = DVec3(from.arm_b);
+    row.linear_a = -DVec3(from.direction), row.angular_a = -DVec3(from.arm_a);
+    row.linear_b = DVec3(from.direction), row.angular_b = DVec3(from.arm_b);
     if (in_motion) {
-      const float bend = joint.kind == JointKind::distance ? work.axes[0].bend : dot(from.push, work.bend);
-      row.wanted = -double(rate * error_of(joint, work, from, i)) - (bends ? double(share * bend) : 0.0);
+      const float second_order_bias = joint.kind == JointKind::distance ? work.axes[0].second_order_bias : dot(from.direction, work.second_order_bias);
+      row.target_speed = -double(rate * error_of(joint, work, from, i)) - (bends ? double(share * second_order_bias) : 0.0);
       row.impulse = double(kept_impulse(joint, work, from, i));
     }
     end_row(row, joint.body_a, joint.body_b, frame, !in_motion);
@@ -65,7 +65,7 @@ void add_equations(JointRecord& joint, JointWork& work, const RowFrame& frame, f
 // What acts on one axis of a joint, as rows.
 class AxisRows {
  public:
-  AxisRows(const JointRecord& joint, AxisWork& work, const JointSettings& settings, const RowFrame& frame,
+  AxisRows(const JointRecord& joint, AxisConstraint& work, const JointSettings& settings, const RowFrame& frame,
            RowList& list)
       : joint_(joint), x_(work), settings_(settings), frame_(frame), list_(list) {}
 
@@ -85,9 +85,9 @@ class AxisRows {
       return;
     }
     const bool turns = x_.row.push_b == Vec3{} && x_.row.push_a == Vec3{};
-    const float least = turns ? -kMostStopError : -1.0e30f;
-    if (x_.has_low) add_stop(axis.low_impulse, max(low_gap(x_), least), 1.0f);
-    if (x_.has_high) add_stop(axis.high_impulse, max(high_gap(x_), least), -1.0f);
+    const float least = turns ? -kMaxLimitError : -1.0e30f;
+    if (x_.has_low) add_limit(axis.low_impulse, max(low_gap(x_), least), 1.0f);
+    if (x_.has_high) add_limit(axis.high_impulse, max(high_gap(x_), least), -1.0f);
   }
 
  private:
@@ -95,7 +95,7 @@ class AxisRows {
     Row& row = begin_row(list_);
     list_.kept[list_.count - 1] = &kept;
     set_axis(row, x_.row, sign);
-    row.wanted = -double(sign * x_.bend);
+    row.target_speed = -double(sign * x_.second_order_bias);
     row.impulse = double(kept);
     return row;
   }
@@ -109,14 +109,14 @@ class AxisRows {
     const float displacement = axis.position - axis.rest_position;
     if (x_.spring.is_implicit) {
       Row& row = begin(axis.spring_impulse, 1.0f);
-      row.wanted -= double(x_.spring.implicit.bias_rate * displacement);
+      row.target_speed -= double(x_.spring.implicit.bias_rate * displacement);
       end_soft_row(row, joint_, x_.spring.implicit, frame_);
       return;
     }
     Row row;
     set_axis(row, x_.row, 1.0f);
     end_row(row, joint_.body_a, joint_.body_b, frame_);
-    const double speed = row_speed(row, frame_.bodies) - row.wanted, before = double(x_.speed_before);
+    const double speed = row_speed(row, frame_.bodies) - row.target_speed, before = double(x_.speed_before);
     const double asked = double(x_.spring.kept) * before + double(x_.spring.loaded) * (speed - before) -
                          double(x_.spring.returned) * double(displacement);
     axis.spring_impulse = float(double(x_.mass) * (asked - speed));
@@ -126,13 +126,13 @@ class AxisRows {
     JointAxisRecord& axis = x_.axis;
     Row& row = begin(axis.motor_impulse, 1.0f);
     limit(row, axis.motor_force);
-    row.wanted += double(axis.motor_velocity);
+    row.target_speed += double(axis.motor_velocity);
     if (!axis.has_motor_target) return end_row(row, joint_.body_a, joint_.body_b, frame_);
-    row.wanted -= double(x_.drive.bias_rate * (axis.position - axis.motor_position));
+    row.target_speed -= double(x_.drive.bias_rate * (axis.position - axis.motor_position));
     end_soft_row(row, joint_, x_.drive, frame_);
   }
   // A stop at `gap` from here; one that gives way does so once it is reached.
-  void add_stop(float& kept, float gap, float sign) {
+  void add_limit(float& kept, float gap, float sign) {
     const bool is_soft = x_.axis.limit_frequency > 0.0f;
     if (is_soft && gap > 0.0f) {
       kept = 0.0f;
@@ -142,22 +142,22 @@ class AxisRows {
     row.limits.low = 0.0;
     const double rate = gap > 0.0f ? 1.0 / frame_.substep
                                    : double(is_soft ? x_.stop.bias_rate : settings_.softness.bias_rate);
-    row.wanted -= rate * double(gap);
+    row.target_speed -= rate * double(gap);
     if (is_soft) return end_soft_row(row, joint_, x_.stop, frame_);
     end_row(row, joint_.body_a, joint_.body_b, frame_);
   }
 
   const JointRecord& joint_;
-  AxisWork& x_;
+  AxisConstraint& x_;
   const JointSettings& settings_;
   const RowFrame& frame_;
   RowList& list_;
 };
 
-void add_drive_rows(const JointRecord& joint, const JointWork& work, const RowFrame& frame, RowList& list) {
+void add_drive_rows(const JointRecord& joint, const JointConstraint& work, const RowFrame& frame, RowList& list) {
   JointDetail& detail = *work.detail;
-  const DriveWork& d = *work.drive;
-  const auto add = [&](float& kept, Vec3 axis, bool turns, float force, float wanted, const Softness& soft) {
+  const DriveConstraint& d = *work.drive;
+  const auto add = [&](float& kept, Vec3 axis, bool turns, float force, float target_speed, const Softness& soft) {
     Row& row = begin_row(list);
     list.kept[list.count - 1] = &kept;
     AxisRow along{{}, {}, axis, axis};
@@ -166,14 +166,14 @@ void add_drive_rows(const JointRecord& joint, const JointWork& work, const RowFr
     row.impulse = double(kept);
     row.limits.high = double(force) * frame.substep;
     row.limits.low = -row.limits.high;
-    row.wanted = double(wanted);
+    row.target_speed = double(target_speed);
     end_soft_row(row, joint, soft, frame);
   };
-  const auto add_three = [&](Vec3& kept, bool turns, float force, Vec3 wanted, const Softness& soft) {
+  const auto add_three = [&](Vec3& kept, bool turns, float force, Vec3 target_speed, const Softness& soft) {
     if (!(force > 0.0f)) return;
-    add(kept.x, kWorldAxes[0], turns, force, wanted.x, soft);
-    add(kept.y, kWorldAxes[1], turns, force, wanted.y, soft);
-    add(kept.z, kWorldAxes[2], turns, force, wanted.z, soft);
+    add(kept.x, kWorldAxes[0], turns, force, target_speed.x, soft);
+    add(kept.y, kWorldAxes[1], turns, force, target_speed.y, soft);
+    add(kept.z, kWorldAxes[2], turns, force, target_speed.z, soft);
   };
   const float rate = d.softness.bias_rate;
   add_three(detail.drive_torque_impulse, true, detail.drive.max_torque, d.turn_speed - rate * d.turn_error,
@@ -185,24 +185,24 @@ void add_drive_rows(const JointRecord& joint, const JointWork& work, const RowFr
 
 }  // namespace
 
-int count_joint_rows(const JointRecord& joint, const JointDetail* detail, const JointWork& work) {
+int count_joint_rows(const JointRecord& joint, const JointDetail* detail, const JointConstraint& work) {
   int count = count_equations(joint, detail);
   count += 5 * int(work.axes.size());
   return count + (work.drive != nullptr ? 9 : 0);
 }
 
-void add_joint_rows(JointRecord& joint, JointWork& work, const JointSettings& settings, const RowFrame& frame,
+void add_joint_rows(JointRecord& joint, JointConstraint& work, const JointSettings& settings, const RowFrame& frame,
                     RowList& list) {
   add_equations(joint, work, frame, settings.softness.bias_rate, true, list);
-  for (AxisWork& axis : work.axes) AxisRows(joint, axis, settings, frame, list).add_all();
+  for (AxisConstraint& axis : work.axes) AxisRows(joint, axis, settings, frame, list).add_all();
   if (work.drive != nullptr) add_drive_rows(joint, work, frame, list);
 }
 
-void add_joint_equations(JointRecord& joint, JointWork& work, const RowFrame& frame, RowList& list) {
+void add_joint_equations(JointRecord& joint, JointConstraint& work, const RowFrame& frame, RowList& list) {
   add_equations(joint, work, frame, 0.0f, false, list);
 }
 
-void keep_joint_impulses(JointRecord& joint, JointWork& work, std::span<const Row> rows,
+void keep_joint_impulses(JointRecord& joint, JointConstraint& work, std::span<const Row> rows,
                          std::span<float* const> kept) {
   if (equations_of(joint, work) > 0) {
     JointEquations node;

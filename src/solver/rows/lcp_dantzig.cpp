@@ -7,7 +7,7 @@ constexpr double kNever = 1.0e301;
 }
 
 // The tableau says y = T u + qt: of rows in the basis u is w and y is x, of the others the other way round.
-Dantzig::Dantzig(std::span<const double> a, std::span<const double> q, double give, NumberRoom& room)
+Dantzig::Dantzig(std::span<const double> a, std::span<const double> q, double compliance, NumberRoom& room)
     : n_(int(q.size())),
       t_(room.take(a.size())),
       qt_(room.take(q.size())),
@@ -20,7 +20,7 @@ Dantzig::Dantzig(std::span<const double> a, std::span<const double> q, double gi
       diagonal_(room.take(q.size())) {
   for (std::size_t i = 0; i < a.size(); ++i) t_[i] = a[i];
   for (int i = 0; i < n_; ++i) {
-    at(i, i) *= 1.0 + give;
+    at(i, i) *= 1.0 + compliance;
     diagonal_[std::size_t(i)] = at(i, i);
     qt_[std::size_t(i)] = q[std::size_t(i)];
     x_[std::size_t(i)] = basic_[std::size_t(i)] = 0.0;
@@ -76,11 +76,11 @@ bool Dantzig::is_right(int i) const {
 }
 
 // Drives row i, which is out of the basis, until its speed is zero or its impulse at a limit.
-bool Dantzig::drive(int i, int most_pivots) {
+bool Dantzig::drive(int i, int max_pivots) {
   const std::size_t own = std::size_t(i);
   const double sign = w_[own] > 0.0 ? -1.0 : 1.0;
   for (;;) {
-    if (pivots_ > most_pivots) return false;
+    if (pivots_ > max_pivots) return false;
     const double limit = sign > 0.0 ? high_[own] : low_[own];
     const double gain = at(i, i);
     double least = limit <= -kNoLimit || limit >= kNoLimit ? kNever : max(sign * (limit - x_[own]), 0.0);
@@ -123,9 +123,9 @@ bool Dantzig::drive(int i, int most_pivots) {
   }
 }
 
-bool Dantzig::solve(double tolerance, int most_pivots) {
+bool Dantzig::solve(double tolerance, int max_pivots) {
   tolerance_ = tolerance;
-  const int last_pivot = pivots_ + most_pivots;
+  const int last_pivot = pivots_ + max_pivots;
   refresh();
   for (int pass = 0; pass < 4; ++pass) {
     bool any = false;

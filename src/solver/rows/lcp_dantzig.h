@@ -19,12 +19,12 @@ class Dantzig {
   static std::size_t room_for(std::size_t size) { return size * size + 8 * size; }
 
   // Of a matrix of `size`, whose diagonal is raised by the share `give` of itself.
-  Dantzig(std::span<const double> a, std::span<const double> q, double give, NumberRoom& room);
+  Dantzig(std::span<const double> a, std::span<const double> q, double compliance, NumberRoom& room);
 
   // Beyond all bounds: 1e300. All x start at 0, or at the limit that is nearest to it.
   void set_limits(int i, double low, double high);
-  // Solves within the limits that are set now. False if it gave up: more than `most_pivots`, or no finite solution.
-  bool solve(double tolerance, int most_pivots);
+  // Solves within the limits that are set now. False if it gave up: more than `max_pivots`, or no finite solution.
+  bool solve(double tolerance, int max_pivots);
 
   double x(int i) const { return x_[std::size_t(i)]; }
   double w(int i) const { return w_[std::size_t(i)]; }
@@ -37,7 +37,7 @@ class Dantzig {
   void pivot(int k);
   void refresh();
   bool is_right(int i) const;
-  bool drive(int i, int most_pivots);
+  bool drive(int i, int max_pivots);
 
   int n_ = 0;
   std::span<double> t_, qt_, x_, w_, low_, high_, basic_, right_, diagonal_;

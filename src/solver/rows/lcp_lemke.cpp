@@ -33,7 +33,7 @@ class Dictionary {
   std::size_t basic(std::size_t i) const { return std::size_t(basic_[i]); }
 
   // The row that the artificial variable must replace so that all constants are positive; n if none is negative.
-  std::size_t most_negative() const {
+  std::size_t max_negative() const {
     std::size_t row = n_;
     double least = 0.0;
     for (std::size_t i = 0; i < n_; ++i) {
@@ -89,13 +89,13 @@ class Dictionary {
 
 }  // namespace
 
-LemkeResult solve_lemke(std::span<const double> m, std::span<const double> q, double parting, int most_pivots,
+LemkeResult solve_lemke(std::span<const double> m, std::span<const double> q, double parting, int max_pivots,
                         std::span<double> z, NumberRoom& room) {
   const std::size_t n = q.size();
   for (double& value : z) value = 0.0;
   LemkeResult result{LemkeEnd::solved, 0};
   Dictionary dictionary(m, q, parting, room);
-  std::size_t row = dictionary.most_negative();
+  std::size_t row = dictionary.max_negative();
   if (row == n) return result;
   std::size_t column = n;
   for (;;) {
@@ -103,7 +103,7 @@ LemkeResult solve_lemke(std::span<const double> m, std::span<const double> q, do
     dictionary.pivot(row, column);
     ++result.pivots;
     if (leaving == 2 * n) break;
-    if (result.pivots > most_pivots) {
+    if (result.pivots > max_pivots) {
       result.end = LemkeEnd::gave_up;
       break;
     }

@@ -34,9 +34,9 @@ constexpr std::size_t newton_search_room(std::size_t size) { return 6 * size; }
 //   find_step(x, w, near, dx) solves the equations; false if they are singular
 //   find_change(dx, dw)       what dx makes of w, after find_step
 template <class Problem>
-NewtonResult newton_search(Problem& problem, double tolerance, int most_steps, std::span<double> x,
+NewtonResult newton_search(Problem& problem, double tolerance, int max_steps, std::span<double> x,
                            NumberRoom& room) {
-  constexpr double kFirstNear = 1.0e-4, kMostNear = 1.0e-3, kLeastNear = 1.0e-10;
+  constexpr double kFirstNear = 1.0e-4, kMaxNear = 1.0e-3, kMinNear = 1.0e-10;
   constexpr double kGood = 0.3, kSlow = 0.1, kBad = 10.0;
   constexpr double kFall = 0.1;  // of the sum of squares, at least, for a whole step
   constexpr double kShares[] = {1.0, 0.5, 0.25, 0.1, 0.03};
@@ -59,7 +59,7 @@ NewtonResult newton_search(Problem& problem, double tolerance, int most_steps, s
   measure(now, w);
   NewtonResult result{residual, 0};
   double near = kFirstNear;
-  for (int idle = 0; result.residual > tolerance && result.steps < most_steps && idle < kPatience;) {
+  for (int idle = 0; result.residual > tolerance && result.steps < max_steps && idle < kPatience;) {
     if (!problem.find_step(now, w, near, dx)) break;
     problem.find_change(dx, dw);
     ++result.steps;
@@ -76,7 +76,7 @@ NewtonResult newton_search(Problem& problem, double tolerance, int most_steps, s
       break;
     }
     near *= whole > 0.8 && whole < 1.001 ? kSlow : is_good ? kGood : kBad;
-    near = clamp(near, kLeastNear, kMostNear);
+    near = clamp(near, kMinNear, kMaxNear);
     for (std::size_t i = 0; i < n; ++i) now[i] += taken * dx[i];
     problem.find_speeds(now, w);
     measure(now, w);

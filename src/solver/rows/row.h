@@ -49,7 +49,7 @@ struct RowBody {
 };
 
 constexpr std::int32_t kNoRowBody = -1;
-constexpr int kMostRowBlock = 6;
+constexpr int kMaxRowBlock = 6;
 
 struct Row {
   std::int32_t body_a = kNoRowBody, body_b = kNoRowBody;  // places in the island's list
@@ -60,8 +60,8 @@ struct Row {
   DVec3 linear_a, angular_a, linear_b, angular_b;
   // M^-1 J^T: what an impulse of one does.
   DVec3 gain_linear_a, gain_angular_a, gain_linear_b, gain_angular_b;
-  double wanted = 0.0;
-  double give = 0.0;
+  double target_speed = 0.0;
+  double compliance = 0.0;
   double diagonal = 0.0;  // J M^-1 J^T + give
   double impulse = 0.0;
 };
@@ -85,7 +85,7 @@ inline DVec3 along_mass(const RowBody& body, DVec3 v) {
 
 // Gains and diagonal, once J, give and the bodies are known.
 inline void finish_row(Row& row, std::span<const RowBody> bodies) {
-  row.diagonal = row.give;
+  row.diagonal = row.compliance;
   row.gain_linear_a = row.gain_angular_a = row.gain_linear_b = row.gain_angular_b = {};
   if (row.body_a != kNoRowBody) {
     const RowBody& a = bodies[std::size_t(row.body_a)];

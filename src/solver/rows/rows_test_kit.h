@@ -5,7 +5,7 @@
 #include "solver/rows/complementarity.h"
 #include "solver/rows/delassus.h"
 #include "solver/rows/solve_direct.h"
-#include "solver/rows/solve_sweeps.h"
+#include "solver/rows/gauss_seidel.h"
 
 #include <cstdint>
 #include <vector>
@@ -47,7 +47,7 @@ inline void add_contact(std::vector<Row>& rows, std::span<const RowBody> bodies,
     row.body_a = a, row.body_b = b;
     row.linear_a = -axes[k], row.angular_a = -cross(from_a, axes[k]);
     row.linear_b = axes[k], row.angular_b = cross(from_b, axes[k]);
-    if (k == 0) row.limits.low = 0.0, row.wanted = -gap_speed;
+    if (k == 0) row.limits.low = 0.0, row.target_speed = -gap_speed;
     if (k == 1) row.limits = {RowKind::cone, 0, 0, friction, first, 1};
     if (k == 2) row.limits = {RowKind::cone_second, 0, 0, friction, first, 1};
     finish_row(row, bodies);
@@ -124,7 +124,7 @@ struct Dense {
     std::vector<std::int32_t> first(island.bodies.size()), next(2 * n);
     fill_delassus(island.rows, island.bodies.size(), a, first, next);
     for (const Row& row : island.rows) {
-      q.push_back(row_speed(row, island.bodies) - row.wanted);
+      q.push_back(row_speed(row, island.bodies) - row.target_speed);
       limits.push_back(row.limits);
     }
     problem = {int(n), a, q, limits, &friction};

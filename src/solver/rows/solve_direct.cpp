@@ -236,7 +236,7 @@ class Equations {
 };
 
 // With the diagonal raised by the share `give`.
-void run_lemke(const DenseProblem& p, const FrictionSet& polygon, double give, double tolerance,
+void run_lemke(const DenseProblem& p, const FrictionSet& polygon, double compliance, double tolerance,
                std::span<double> x, NumberRoom room, DirectResult& result) {
   const std::size_t n = std::size_t(p.size);
   std::size_t equations = 0;
@@ -246,7 +246,7 @@ void run_lemke(const DenseProblem& p, const FrictionSet& polygon, double give, d
   const std::span<double> a = room.take(n * n), q = room.take(n), z = room.take(size);
   for (std::size_t i = 0; i < n * n; ++i) a[i] = p.a[i];
   for (std::size_t i = 0; i < n; ++i) {
-    a[i * n + i] *= 1.0 + give;
+    a[i * n + i] *= 1.0 + compliance;
     q[i] = p.q[i];
     for (std::size_t j = 0; j < n; ++j) q[i] += a[i * n + j] * lemke.shift[j];
   }
@@ -318,8 +318,8 @@ DirectResult solve_direct(const DenseProblem& problem, const FrictionSet& polygo
     run_dantzig(problem, polygon, tolerance, x, room, result);
   } else {
     // Where rows are so redundant that pivots are rounding, more of it tells them apart.
-    for (const double give : {kGive, 100.0 * kGive, 10000.0 * kGive}) {
-      run_lemke(problem, polygon, give, tolerance, x, room, result);
+    for (const double compliance : {kGive, 100.0 * kGive, 10000.0 * kGive}) {
+      run_lemke(problem, polygon, compliance, tolerance, x, room, result);
       if (result.residual <= tolerance) break;
     }
   }

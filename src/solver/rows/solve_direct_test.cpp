@@ -150,7 +150,7 @@ TEST(SolveDirect, DantzigLemkeAndNncgAgreeOnHeapsWithFriction) {
       EXPECT_LT(apart(dantzig, lemke), 1.0e-6) << sides << " sides, seed " << seed;
       Island swept = island;
       std::vector<double> numbers(nncg_room(swept.rows.size()));
-      const SweepResult nncg =
+      const GaussSeidelResult nncg =
           solve_nncg(swept.rows, swept.bodies, polygon, 1.0e-9, 20000, NumberRoom(numbers));
       if (nncg.residual > 1.0e-8) continue;
       ++ended;
@@ -212,7 +212,7 @@ TEST(SolveDirect, RedundantCornersBearAThousandfoldLoad) {
   check("Newton", newton.residual, x);
   // What many sweeps make of the same.
   Island swept = island;
-  for (int i = 0; i < 50; ++i) sweep_rows_once(swept.rows, swept.bodies, polygon);
+  for (int i = 0; i < 50; ++i) iterate_rows_once(swept.rows, swept.bodies, polygon);
   EXPECT_GT(length(swept.bodies.back().linear), 0.5 * kick);
 }
 

@@ -106,10 +106,10 @@ class DenseNewton {
 
 }  // namespace
 
-NewtonResult solve_newton(const DenseProblem& problem, double tolerance, int most_steps, std::span<double> x,
+NewtonResult solve_newton(const DenseProblem& problem, double tolerance, int max_steps, std::span<double> x,
                           NumberRoom room) {
   DenseNewton newton(problem, room);
-  return newton_search(newton, tolerance, most_steps, x, room);
+  return newton_search(newton, tolerance, max_steps, x, room);
 }
 
 }  // namespace gyre

@@ -9,7 +9,7 @@ namespace gyre {
 constexpr std::size_t newton_room(std::size_t size) { return size * size + newton_search_room(size); }
 
 // Improves `x` until the residual is at most `tolerance`; leaves the best that was found.
-NewtonResult solve_newton(const DenseProblem& problem, double tolerance, int most_steps, std::span<double> x,
+NewtonResult solve_newton(const DenseProblem& problem, double tolerance, int max_steps, std::span<double> x,
                           NumberRoom room);
 
 }  // namespace gyre

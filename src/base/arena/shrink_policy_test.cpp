@@ -1,0 +1,39 @@
+// Memory is given back after it was too large for long, and not before.
+#include "base/arena/shrink_policy.h"
+
+#include <gtest/gtest.h>
+
+namespace gyre {
+namespace {
+
+constexpr int kSteps = 63;
+
+TEST(ShrinkPolicy, RestsAfterManyStepsOfLittleUse) {
+  ShrinkPolicy clock;
+  const std::size_t held = 1 << 20;
+  for (int i = 0; i < kSteps - 1; ++i) EXPECT_FALSE(clock.rests(held / 8, held));
+  // One busy step and the count begins anew.
+  EXPECT_FALSE(clock.rests(held / 2, held));
+  for (int i = 0; i < kSteps - 1; ++i) EXPECT_FALSE(clock.rests(i == 20 ? held / 4 : 100, held));
+  EXPECT_TRUE(clock.rests(100, held));
+  EXPECT_EQ(clock.max_needed(), held / 4);
+}
+
+TEST(ShrinkPolicy, LeavesSmallMemoryAlone) {
+  ShrinkPolicy clock;
+  for (int i = 0; i < 10 * kSteps; ++i) EXPECT_FALSE(clock.rests(0, 10000));
+}
+
+TEST(ShrinkPolicy, TrimsAnArray) {
+  ShrinkPolicy clock;
+  Array<int> array;
+  array.reserve(100000);
+  for (int i = 0; i < kSteps; ++i) {
+    EXPECT_EQ(array.capacity(), 100000u);
+    clock.trim(array, i == 5 ? 30 : 0);
+  }
+  EXPECT_EQ(array.capacity(), 60u);
+}
+
+}  // namespace
+}  // namespace gyre

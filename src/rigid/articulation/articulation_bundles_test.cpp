@@ -1,0 +1,82 @@
+// Bundles against what they promise: each linkage is in one lane, beside none of another shape, and no more lanes than half are idle
+// where kernels of half as many would do.
+#include "rigid/articulation/articulation_bundles.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <vector>
+
+namespace gyre {
+namespace {
+
+constexpr std::size_t kMost = 40;
+
+// So many linkages of each shape, one joint each, those of the shapes mixed.
+struct Crowd {
+  explicit Crowd(std::vector<std::size_t> counts)
+      : nodes(counts.size()), shapes(counts.size()), joints(kMost * counts.size()) {
+    for (std::size_t shape = 0; shape < counts.size(); ++shape) {
+      shapes[shape].nodes = {&nodes[shape], 1};
+      shapes[shape].body_count = 2, shapes[shape].moving_count = 1;
+    }
+    for (std::size_t i = 0; i < kMost; ++i) {
+      for (std::size_t shape = 0; shape < counts.size(); ++shape)
+        if (i < counts[shape]) alike.push_back({{&joints[alike.size()], 1}, std::uint32_t(shape)});
+    }
+  }
+  BundleSolve lay_out(int width, Arena& arena) {
+    return lay_out_bundles({{}, alike, shapes, {}, {}}, select_contact_kernels(width), {}, {}, arena);
+  }
+
+  std::vector<LaneNode> nodes;
+  std::vector<ArticulationTopology> shapes;
+  std::vector<ArticulationJoint> joints;
+  std::vector<GroupedArticulation> alike;
+};
+
+TEST(LinkageBundles, HaveEachLinkageOnce) {
+  for (const int width : {0, 1, 4, 8, 16}) {
+    for (std::size_t count = 1; count <= kMost; ++count) {
+      Crowd crowd({count, kMost - count, 1});
+      Arena arena;
+      std::map<const GroupedArticulation*, int> times;
+      for (const BundledArticulations& bundle : crowd.lay_out(width, arena).bundles) {
+        ASSERT_LE(bundle.linkages.size(), std::size_t(bundle.lanes.kernels->width));
+        for (const GroupedArticulation* articulation : bundle.linkages) {
+          ++times[articulation];
+          EXPECT_EQ(articulation->shape, bundle.linkages[0]->shape);
+          EXPECT_EQ(bundle.lanes.nodes, crowd.shapes[articulation->shape].nodes.data());
+        }
+      }
+      EXPECT_EQ(times.size(), crowd.alike.size());
+      for (const auto& [articulation, n] : times) EXPECT_EQ(n, 1);
+    }
+  }
+}
+
+TEST(LinkageBundles, LeaveNoHalfOfTheLanesIdleWhereFewerWouldDo) {
+  for (const int width : {0, 1, 4, 8, 16}) {
+    const ContactKernels& kernels = select_contact_kernels(width);
+    const int narrow = narrower_kernels(kernels).width;
+    EXPECT_TRUE(narrow == kernels.width || 2 * narrow == kernels.width);
+    for (std::size_t count = 1; count <= kMost; ++count) {
+      Crowd crowd({count});
+      Arena arena;
+      for (const BundledArticulations& bundle : crowd.lay_out(width, arena).bundles) {
+        const int used = int(bundle.linkages.size()), lanes = bundle.lanes.kernels->width;
+        EXPECT_EQ(lanes, used == 1 ? 1 : used <= narrow ? narrow : kernels.width) << used << " at " << width;
+      }
+    }
+  }
+}
+
+// Sixteen lanes have eight of the same instructions beside them.
+TEST(LinkageBundles, SixteenLanesHaveKernelsOfHalfAsMany) {
+  const ContactKernels& kernels = select_contact_kernels(16);
+  if (kernels.width < 16) GTEST_SKIP() << "this processor has none of sixteen lanes";
+  EXPECT_EQ(narrower_kernels(kernels).width, 8);
+}
+
+}  // namespace
+}  // namespace gyre

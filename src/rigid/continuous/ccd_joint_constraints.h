@@ -1,0 +1,19 @@
+// The joints of groups that follow what was stopped, as their solvers see them: of what acts on them only equations and limits.
+#pragma once
+
+#include "rigid/continuous/ccd_projection_path.h"
+#include "rigid/batch/joint_constraints.h"
+
+namespace gyre {
+
+struct ProjectionJoints {
+  std::span<JointRecord> records;
+  JointConstraints works;
+};
+
+constexpr JointSettings kClosingSettings{kProjectionStep, {1.0f / kProjectionStep, 1.0f, 0.0f}, false};
+
+// Copies of the joints in these slots.
+ProjectionJoints copy_closing_joints(const RigidWorld& w, std::span<const std::uint32_t> slots, Arena& arena);
+
+}  // namespace gyre

@@ -1,0 +1,156 @@
+#include "rigid/rest/resting_structures.h"
+
+#include "math/rotation.h"
+
+namespace gyre {
+
+namespace {
+
+// Larger islands are not looked at,
+constexpr std::uint32_t kMaxBodies = 512;
+// nor those that have more contacts than this for each body: heaps, whose every body leans on many.
+constexpr std::uint32_t kMaxContactsPerBody = 4;
+// And of a heap no more than these, whose corners stand on something more often than once in so many contacts: one of its bodies slips
+// more often than not, and a look at a heap of 300 takes forty times as long as a step of it.
+constexpr std::uint32_t kMaxInHeap = 32;
+constexpr std::uint32_t kContactsPerCorner = 8;
+// What did not hold in the last step is looked at once in so many steps, by its bodies: looking is dear where there are many. Large
+// islands are looked at once in a while by how fast their smallest body could fall through its own size: sooner it cannot fall far.
+constexpr std::uint32_t kSmall = 4, kLarge = 128;
+constexpr std::uint64_t kPatience = 8, kMinPatienceIfLarge = 16;
+constexpr float kFallsIfLarge = 4.0f, kMaxPatienceIfLarge = 1024.0f;
+
+bool is_due_this_step(const RigidWorld& w, const IslandCount& count) {
+  if (count.bodies <= kSmall) return true;
+  if (count.bodies <= kLarge) return w.steps % kPatience == 0;
+  const float fall = std::sqrt(count.smallest / length(w.settings.gravity));  // s
+  const float patience = min(kFallsIfLarge * fall / w.settings.last_step, kMaxPatienceIfLarge);
+  return w.steps % max(std::uint64_t(patience), kMinPatienceIfLarge) == 0;
+}
+
+// Whether all that bore load in the last step was solved directly.
+bool is_in_equilibrium(const IslandCount& count) { return count.held && !count.springs; }
+
+bool may_stand(const RigidWorld& w, const IslandCount& count) {
+  if (count.refused || count.not_calm || count.grounded == 0) return false;
+  // Trees are solved by themselves.
+  if (!count.balances && count.grounded == 1 && count.contacts == count.bodies) return false;
+  if (count.bodies > kMaxBodies || count.contacts > kMaxContactsPerBody * count.bodies) return false;
+  if (count.bodies > kMaxInHeap && kContactsPerCorner * count.corners > count.contacts) return false;
+  return is_in_equilibrium(count) || is_due_this_step(w, count);
+}
+
+class StructureMaker {
+ public:
+  StructureMaker(const RigidWorld& w, std::span<const ColoringPair> pairs, const SolveBatch& batch,
+                 const RestingIslands& islands, Arena& arena)
+      : w_(w),
+        pairs_(pairs),
+        batch_(batch),
+        islands_(islands),
+        arena_(arena),
+        node_of_(arena.make<std::uint32_t>(batch.bodies.size())),
+        members_(arena.make<Members>(batch.bodies.size())) {
+    for (std::uint32_t i = 0; i < node_of_.size(); ++i) node_of_[i] = kNoNode, members_[i] = {};
+  }
+
+  // Lists of what each island at `roots` has, by its root.
+  void list(std::span<const std::uint32_t> roots) {
+    for (const std::uint32_t root : roots) {
+      members_[root].nodes = arena_.make<StructureNode>(islands_.at_root(root).bodies);
+      members_[root].contacts = arena_.make<StructureContact>(islands_.at_root(root).contacts);
+    }
+    for (std::uint32_t place = 0; place < batch_.bodies.size(); ++place) {
+      if (!is_movable(w_.bodies.flags[batch_.bodies[place]])) continue;
+      Members& members = members_[islands_.root_of(place)];
+      if (members.nodes.empty()) continue;
+      node_of_[place] = members.bodies;
+      members.nodes[members.bodies++] = make_node(batch_.bodies[place]);
+    }
+    for (std::uint32_t i = 0; i < pairs_.size(); ++i) {
+      const ColoringPair& pair = pairs_[i];
+      Members& members = members_[islands_.root_of(pair.a != ColoringPair::kNone ? pair.a : pair.b)];
+      if (members.nodes.empty()) continue;
+      StructureContact& contact = members.contacts[members.count++] = {};
+      contact.constraint = i;
+      contact.node_a = node_at(pair.a);
+      contact.node_b = node_at(pair.b);
+    }
+  }
+
+  RestingStructure make(std::uint32_t root) const {
+    const Members& members = members_[root];
+    RestingStructure structure;
+    const IslandCount& count = islands_.at_root(root);
+    structure.settling = count.settling;
+    structure.held = is_in_equilibrium(count);
+    structure.fresh = !count.held && !count.springs;
+    structure.nodes = members.nodes;
+    structure.contacts = members.contacts;
+    structure.work = arena_.make<StructureScratch>(members.contacts.size());
+    return structure;
+  }
+
+ private:
+  struct Members {
+    std::span<StructureNode> nodes;
+    std::span<StructureContact> contacts;
+    std::uint32_t bodies = 0, count = 0;
+  };
+
+  std::uint32_t node_at(std::uint32_t place) const {
+    return place == ColoringPair::kNone ? kNoNode : node_of_[place];
+  }
+  StructureNode make_node(std::uint32_t body) const {
+    const BodyMass& mass = w_.bodies.masses[body];
+    StructureNode node;
+    node.body = std::int32_t(body);
+    node.mass = mass.mass;
+    node.still = kStructureStillShare * std::sqrt(length(w_.settings.gravity) * mass.reach);
+    node.still_spin = mass.reach > 0.0f ? node.still / mass.reach : 0.0f;
+    node.inertia = rotate_inertia(w_.bodies.places[body].orientation, mass.inertia);
+    return node;
+  }
+
+  const RigidWorld& w_;
+  std::span<const ColoringPair> pairs_;
+  const SolveBatch& batch_;
+  const RestingIslands& islands_;
+  Arena& arena_;
+  std::span<std::uint32_t> node_of_;  // by body's place
+  std::span<Members> members_;        // by root
+};
+
+}  // namespace
+
+std::span<RestingStructure> find_contact_structures(const RigidWorld& w, std::span<const ColoringPair> pairs,
+                                                    const SolveBatch& batch, const RestingIslands& islands,
+                                                    Arena& arena) {
+  std::size_t count = 0;
+  for (std::uint32_t place = 0; place < batch.bodies.size(); ++place) {
+    if (islands.is_root(place) && may_stand(w, islands.at_root(place))) ++count;
+  }
+  if (count == 0) return {};
+  const std::span<std::uint32_t> roots = arena.make<std::uint32_t>(count);
+  count = 0;
+  for (std::uint32_t place = 0; place < batch.bodies.size(); ++place) {
+    if (islands.is_root(place) && may_stand(w, islands.at_root(place))) roots[count++] = place;
+  }
+  StructureMaker maker(w, pairs, batch, islands, arena);
+  maker.list(roots);
+  const std::span<RestingStructure> structures = arena.make<RestingStructure>(count);
+  for (std::size_t i = 0; i < count; ++i) structures[i] = maker.make(roots[i]);
+  return structures;
+}
+
+void place_structure_contacts(std::span<RestingStructure> structures, std::span<const std::uint32_t> places,
+                              int width) {
+  for (RestingStructure& structure : structures) {
+    for (StructureContact& contact : structure.contacts) {
+      contact.block = places[contact.constraint] / std::uint32_t(width);
+      contact.lane = places[contact.constraint] % std::uint32_t(width);
+    }
+  }
+}
+
+}  // namespace gyre

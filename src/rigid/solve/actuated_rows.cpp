@@ -1,0 +1,80 @@
+#include "rigid/solve/actuated_rows.h"
+
+#include "solver/joint/joint_axis.h"
+#include "solver/joint/joint_blocks.h"
+#include "solver/joint/joint_drive.h"
+
+namespace gyre {
+
+namespace {
+
+bool can_do_work(const JointAxisRecord& axis) {
+  return axis.motor_force > 0.0f || has_spring(axis) || axis.limit_frequency > 0.0f;
+}
+
+bool is_listed(const AxisConstraint& x) { return x.in_articulation || can_do_work(x.axis); }
+
+// Dry friction only takes.
+float worked_impulse(const JointAxisRecord& axis) {
+  const float stops = axis.limit_frequency > 0.0f ? axis.low_impulse - axis.high_impulse : 0.0f;
+  return axis.spring_impulse + axis.motor_impulse + stops;
+}
+
+RowState state_of(const BatchContext& solve, const ActuatedRow& row) {
+  const JointConstraint& work = solve.joint_work[row.place];
+  const JointPair pair(solve.w.joints.records[solve.batch.joints[row.place]], solve.joint_bodies);
+  if (row.axis != kDriveRow) {
+    const AxisConstraint& x = work.axes[std::size_t(row.axis)];
+    if (x.in_articulation) return {{}, {}, {}, {}, x.worked};
+    return {{worked_impulse(x.axis), 0, 0}, {axis_speed(x.row, pair), 0, 0}, {}, {}, 0.0};
+  }
+  return {work.detail->drive_force_impulse, pair.point_velocity(work.drive->from_a, work.from_b),
+          work.detail->drive_torque_impulse, pair.turning(), 0.0};
+}
+
+}  // namespace
+
+bool can_do_work(const JointRecord& joint, const JointDetail* detail) {
+  if (joint.is_spring || joint.motor_force > 0.0f || joint.stiffness > 0.0f || joint.damping > 0.0f)
+    return true;
+  if (detail == nullptr) return false;
+  if (has_drive(*detail)) return true;
+  for (const JointAxisRecord& axis : detail->axes)
+    if (can_do_work(axis)) return true;
+  return false;
+}
+
+std::size_t count_actuated_rows(const BatchContext& solve, std::uint32_t place) {
+  const JointConstraint& work = solve.joint_work[place];
+  std::size_t count = work.drive != nullptr ? 1 : 0;
+  for (const AxisConstraint& x : work.axes) count += is_listed(x) ? 1 : 0;
+  return count;
+}
+
+void list_actuated_rows(const BatchContext& solve, std::uint32_t place, std::span<ActuatedRow> rows) {
+  const JointConstraint& work = solve.joint_work[place];
+  std::size_t count = 0;
+  if (work.drive != nullptr) rows[count++] = {place, kDriveRow, {}};
+  for (std::size_t i = 0; i < work.axes.size(); ++i)
+    if (is_listed(work.axes[i])) rows[count++] = {place, std::int32_t(i), {}};
+}
+
+void begin_actuated_rows(const BatchContext& solve, std::span<ActuatedRow> rows, bool is_warm) {
+  for (ActuatedRow& row : rows) {
+    row.begun = state_of(solve, row);
+    if (is_warm) row.begun.push = row.begun.turn = {};
+  }
+}
+
+double actuated_work(const BatchContext& solve, std::span<const ActuatedRow> rows) {
+  double twice = 0.0;
+  for (const ActuatedRow& row : rows) {
+    const RowState now = state_of(solve, row);
+    twice += 2.0 * (now.worked - row.begun.worked);
+    twice += double(dot(now.push - row.begun.push, now.speed + row.begun.speed));
+    twice += double(dot(now.turn - row.begun.turn, now.turning + row.begun.turning));
+  }
+  return 0.5 * twice;
+}
+
+}  // namespace gyre

@@ -1,0 +1,106 @@
+#include "rigid/solve/geometric_stiffness.h"
+
+#include "math/rotation.h"
+
+namespace gyre {
+
+namespace {
+
+// h^2 k / I up to which pull is left alone: kick and drift are stable up to 4, and what pulls grows in a step.
+constexpr float kMaxGeometricStiffness = 0.1f;
+// Of bodies whose turning other joints hold, too: less than anything adds up to.
+constexpr float kNeverStiffened = -1.0e30f;
+
+// How stiffly joints hold each body of the batch back as it turns, or drive it on (N m/rad), by its place. A force f at arm r turns with
+// the body like a spring of stiffness (r . f) 1 - sym(r f^T); of forces along their arms the sum of r . f is as much about every axis, or
+// more. Where arms are pressed together it is less than nothing, and what it drives grows as fast as a pull would swing.
+std::span<const float> add_up_pulls(const BatchContext& solve, Arena& arena) {
+  const BodyStore& bodies = solve.w.bodies;
+  const std::span<float> pulls = arena.make<float>(solve.batch.bodies.size());
+  for (float& geometric_stiffness : pulls) geometric_stiffness = 0.0f;
+  const auto is_moved = [&](std::int32_t body) {
+    return body != kNoBody && is_movable(bodies.flags[std::size_t(body)]);
+  };
+  const auto add = [&](std::int32_t body, Vec3 anchor, Vec3 force) {
+    if (!is_moved(body)) return;
+    const Vec3 arm = rotate(bodies.orientations[std::size_t(body)], anchor);
+    pulls[solve.places[std::size_t(body)]] += absolute(dot(arm, force));
+  };
+  const auto leave_out = [&](std::int32_t body) {
+    if (is_moved(body)) pulls[solve.places[std::size_t(body)]] = kNeverStiffened;
+  };
+  for (const std::uint32_t i : solve.scratch.swept_joints) {
+    const JointRecord& joint = solve.w.joints.records[solve.batch.joints[i]];
+    if (joint.kind != JointKind::ball) {
+      leave_out(joint.body_a), leave_out(joint.body_b);
+      continue;
+    }
+    // As it will be begun with: some batches have scaled it by now, and others scale it in their lanes.
+    const bool is_scaled = !(solve.all_iterative && solve.ball_lanes[i] != 0);
+    const Vec3 impulse =
+        is_scaled ? joint.linear_impulse : solve.lane_start.warm_scale * joint.linear_impulse;
+    const Vec3 force = (1.0f / solve.h) * impulse;
+    add(joint.body_a, joint.local_anchor_a, -force);
+    add(joint.body_b, joint.local_anchor_b, force);
+  }
+  return pulls;
+}
+
+}  // namespace
+
+std::span<const StiffenedBody> find_stiffened_bodies(const BatchContext& solve, Arena& arena) {
+  if (solve.scratch.swept_joints.empty()) return {};
+  const BodyStore& bodies = solve.w.bodies;
+  const std::span<const float> pulls = add_up_pulls(solve, arena);
+  // Of the axis about which the body turns most easily.
+  const auto unresolved = [&](std::uint32_t place) {
+    const Sym3& inverse = bodies.inertia[solve.batch.bodies[place]].inverse;
+    return square(solve.h) * pulls[place] * max(inverse.xx, max(inverse.yy, inverse.zz));
+  };
+  const auto is_stiffened = [&](std::uint32_t place) {
+    return unresolved(place) > kMaxGeometricStiffness && bodies.flags[solve.batch.bodies[place]].locked_angular == 0;
+  };
+  std::size_t count = 0;
+  for (std::uint32_t place = 0; place < pulls.size(); ++place) count += is_stiffened(place) ? 1 : 0;
+  const std::span<StiffenedBody> pulled = arena.make<StiffenedBody>(count);
+  count = 0;
+  for (std::uint32_t place = 0; place < pulls.size(); ++place) {
+    if (!is_stiffened(place)) continue;
+    const float raise = square(solve.h) * pulls[place] * (1.0f - kMaxGeometricStiffness / unresolved(place));
+    pulled[count++] = {solve.batch.bodies[place], raise};
+  }
+  return pulled;
+}
+
+void disable_gyroscopic_torque(const BatchContext& solve, Arena& arena) {
+  if (solve.pulled.empty()) return;
+  const ArenaScope scope(arena);
+  const std::span<std::uint8_t> is_stiffened = arena.make<std::uint8_t>(solve.batch.bodies.size());
+  for (std::uint8_t& one : is_stiffened) one = 0;
+  for (const StiffenedBody& pulled : solve.pulled) is_stiffened[solve.places[pulled.body]] = 1;
+  for (MovedBody& moved : solve.moved) {
+    if (moved.body != kNoBody && is_stiffened[solve.places[std::size_t(moved.body)]] != 0)
+      moved.isotropic = true;
+  }
+}
+
+void stiffen_bodies(const BatchContext& solve) {
+  BodyStore& bodies = solve.w.bodies;
+  for (const StiffenedBody& pulled : solve.pulled) {
+    const BodyMass& mass = bodies.masses[pulled.body];
+    Sym3 inertia =
+        mass.isotropic != 0 ? mass.inertia : rotate_inertia(bodies.orientations[pulled.body], mass.inertia);
+    inertia.xx += pulled.raise, inertia.yy += pulled.raise, inertia.zz += pulled.raise;
+    bodies.inertia[pulled.body].inverse = inverse(inertia);
+  }
+}
+
+void restore_inertia(const BatchContext& solve) {
+  BodyStore& bodies = solve.w.bodies;
+  for (const StiffenedBody& pulled : solve.pulled) {
+    const std::uint32_t body = pulled.body;
+    bodies.inertia[body] = world_inertia(bodies.masses[body], bodies.flags[body], bodies.orientations[body]);
+  }
+}
+
+}  // namespace gyre

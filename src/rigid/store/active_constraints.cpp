@@ -1,0 +1,50 @@
+#include "rigid/store/active_constraints.h"
+
+#include "rigid/store/rigid_world.h"
+
+namespace gyre {
+
+namespace {
+
+// As long as fewer sleep for each body that is awake, finding out whom to leave alone costs more than asking.
+constexpr std::size_t kAwakeForOneAsleep = 4;
+
+void add(Bitset& set, std::uint32_t slot) {
+  if (slot >= set.size()) set.resize(slot + 1);
+  set.set(slot);
+}
+
+void fit_all(RigidWorld& w) {
+  w.awake_links.contacts.resize(w.contacts.contacts.size());
+  w.awake_links.joints.resize(w.joints.ids.capacity());
+}
+
+}  // namespace
+
+void activate_constraints_of(RigidWorld& w, std::uint32_t body) {
+  for_each_contact_of_body(w, body, [&](std::uint32_t slot) { add(w.awake_links.contacts, slot); });
+  for (const std::uint32_t slot : joints_of(w.bodies, body)) activate_joint(w, slot);
+}
+
+void activate_joint(RigidWorld& w, std::uint32_t joint) { add(w.awake_links.joints, joint); }
+
+void activate_all_constraints(RigidWorld& w) {
+  fit_all(w);
+  w.awake_links.contacts.set_all();
+  w.awake_links.joints.set_all();
+}
+
+void find_active_constraints(RigidWorld& w) {
+  const BodyStore& bodies = w.bodies;
+  // Between the parts of a step some may have fallen asleep.
+  refresh_awake(w.bodies);
+  if (w.awake_links.all || kAwakeForOneAsleep * bodies.sleepers < bodies.awake.size()) return activate_all_constraints(w);
+  fit_all(w);
+  w.awake_links.contacts.reset_all();
+  w.awake_links.joints.reset_all();
+  for (const std::uint32_t body : bodies.awake) activate_constraints_of(w, body);
+  for (const std::uint32_t shape : w.shapes.changed)
+    for_each_contact_of_shape(w.contacts, shape, [&](std::uint32_t slot) { add(w.awake_links.contacts, slot); });
+}
+
+}  // namespace gyre

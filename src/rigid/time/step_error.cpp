@@ -1,0 +1,27 @@
+#include "rigid/time/step_error.h"
+
+namespace gyre {
+
+bool is_anything_constrained(const RigidWorld& w) {
+  for (const std::uint32_t body : w.bodies.awake) {
+    if (w.bodies.flags[body].touched != kNotConstrained) return true;
+  }
+  return false;
+}
+
+double step_difference(const RigidWorld& w, std::span<const BodyMotion> other, float seconds) {
+  const double t = double(seconds);
+  double most = 0.0;
+  for (const std::uint32_t body : w.bodies.awake) {
+    if (w.bodies.flags[body].touched == kNotConstrained) continue;
+    const BodyMotion &a = w.bodies.motion[body], &b = other[body];
+    const double way = length(DVec3(a.moved) - DVec3(b.moved)) +
+                       t * length(DVec3(a.linear_velocity) - DVec3(b.linear_velocity));
+    const double turn = length(DVec3(a.turned) - DVec3(b.turned)) +
+                        t * length(DVec3(a.angular_velocity) - DVec3(b.angular_velocity));
+    most = max(most, way + double(w.bodies.masses[body].reach) * turn);
+  }
+  return most;
+}
+
+}  // namespace gyre

@@ -1,0 +1,241 @@
+#include "rigid/time/toi_stepping.h"
+
+#include "collision/continuous/time_of_impact.h"
+#include "rigid/solve/hits.h"
+#include "rigid/batch/solve_batches.h"
+#include "rigid/batch/surface_rules.h"
+
+namespace gyre {
+
+namespace {
+
+// How a contact waits.
+constexpr std::uint8_t kActs = 0, kApart = 1, kParting = 2;
+
+bool has_gap(const RigidWorld& w, const Contact& contact) {
+  const auto is_solid = [&](std::uint32_t shape) {
+    const ShapeKind kind = w.shapes.colliders[shape].shape.kind;
+    return kind != ShapeKind::mesh && kind != ShapeKind::height_field;
+  };
+  return is_solid(contact.shape_a) && is_solid(contact.shape_b);
+}
+
+bool is_considered(const RigidWorld& w, const Contact& contact) {
+  return contact.manifold_room != 0 && contact.sensor == 0 && contact.ended == 0 &&
+         (is_active(w, contact.body_a) || is_active(w, contact.body_b)) && has_gap(w, contact);
+}
+
+// The two shapes of a contact on their way.
+struct SweptPair {
+  Sweep sweep_a, sweep_b;
+  SweptShape a, b;
+
+  // `moved`: on their way; else where they are as the step begins.
+  SweptPair(const RigidWorld& w, const Contact& contact, bool moved)
+      : sweep_a(sweep_of_body(w.bodies, contact.body_a)), sweep_b(sweep_of_body(w.bodies, contact.body_b)) {
+    if (!moved) sweep_a.moved = sweep_a.turned = sweep_b.moved = sweep_b.turned = {};
+    const ColliderShape &shape_a = w.shapes.colliders[contact.shape_a],
+                        &shape_b = w.shapes.colliders[contact.shape_b];
+    a = make_swept_shape(shape_a.shape, shape_a.body_from_shape, sweep_a);
+    b = make_swept_shape(shape_b.shape, shape_b.body_from_shape, sweep_b);
+  }
+  SweptPair(const SweptPair&) = delete;
+  SweptPair& operator=(const SweptPair&) = delete;
+
+  Gap gap(double time, double reach) const { return find_gap(a, b, time, reach); }
+};
+
+// The slowest that points of the contact part which touch, m/s; closing is below 0. `near`: m.
+float parting_speed(const RigidWorld& w, const Contact& contact, float near) {
+  float slowest = 1.0e30f;
+  for (const Manifold& manifold : manifolds_of(w.contacts, contact)) {
+    for (int k = 0; k < manifold.count; ++k) {
+      const ContactPointState& point = manifold.points[k];
+      if (point.separation > near) continue;
+      const DVec3 v = DVec3(point_velocity(w.bodies.motion[contact.body_b], point.from_b)) -
+                      DVec3(point_velocity(w.bodies.motion[contact.body_a], point.from_a));
+      slowest = min(slowest, float(dot(v, DVec3(manifold.normal))));
+    }
+  }
+  return slowest;
+}
+
+float min_separation(const RigidWorld& w, const Contact& contact) {
+  float least = 1.0e30f;
+  for (const Manifold& manifold : manifolds_of(w.contacts, contact)) {
+    for (int k = 0; k < manifold.count; ++k) least = min(least, manifold.points[k].separation);
+  }
+  return least;
+}
+
+std::int32_t apply_impulse_to(const RigidWorld& w, std::uint32_t body) {
+  const BodyFlags& flags = w.bodies.flags[body];
+  return flags.type == BodyType::fixed || flags.frozen != 0 ? kNoBody : std::int32_t(body);
+}
+
+// The manifold's points that touch, as a blow knows them; none: count 0.
+ImpactContact make_blow(const RigidWorld& w, const Contact& contact, Manifold& manifold) {
+  ContactConstraint constraint;
+  constraint.body_a = apply_impulse_to(w, contact.body_a);
+  constraint.body_b = apply_impulse_to(w, contact.body_b);
+  constraint.dynamic_friction = contact.surface.dynamic_friction;
+  constraint.restitution = contact.surface.restitution;
+  constraint.manifold = &manifold;
+  constraint.point_count = std::int16_t(manifold.count);
+  if (!w.surface_rules.empty() && !apply_surface_rules(w, contact, manifold, constraint))
+    constraint.restitution = 0.0f;
+  ImpactContact blow = make_impact(constraint);
+  const float near = 2.0f * touch_distance(contact);
+  int touching = 0;
+  for (int k = 0; k < blow.count; ++k) {
+    if (blow.points[k].separation > near) {
+      blow.points[k].separation = 1.0e30f;  // never met
+      continue;
+    }
+    blow.points[k].separation = 0.0f;
+    ++touching;
+  }
+  if (touching == 0 || !(blow.restitution > 0.0f)) blow.count = 0;
+  return blow;
+}
+
+// How far b is beyond the straight way, against a, at a share of a step: it starts slower than the mean speed and ends faster.
+DVec3 off_the_chord(const RigidWorld& w, const StepCheckpoint& before, const Contact& contact, double share,
+                    double seconds) {
+  const auto energy_gain = [&](std::uint32_t body) {
+    if (!is_active(w, body)) return DVec3{};
+    return DVec3(w.bodies.motion[body].linear_velocity) - DVec3(before.motion(body).linear_velocity);
+  };
+  return (-0.5 * share * (1.0 - share) * seconds) * (energy_gain(contact.body_b) - energy_gain(contact.body_a));
+}
+
+double first_meeting(const RigidWorld& w, const StepCheckpoint& before, const Contact& contact, double seconds) {
+  const double near = double(touch_distance(contact));
+  const SweptPair pair(w, contact, true);
+  const Impact impact = time_of_impact(pair.a, pair.b, 0.0, 1.0, 0.5 * near);
+  if (!impact.hit) return kNoImpact;
+  const double end = pair.gap(1.0, 4.0 * near).distance;
+  if (impact.time >= 1.0 || absolute(end) <= near) return kNoImpact;  // just there
+  const DVec3 off = off_the_chord(w, before, contact, impact.time, seconds);
+  constexpr double kBit = 1.0e-3;
+  const double ahead = min(kBit, 0.5 * impact.time);
+  const Gap there = pair.gap(impact.time, 4.0 * near), earlier = pair.gap(impact.time - ahead, 1.0e30);
+  const double closing =
+      ahead > 0.0 ? (earlier.distance - there.distance) / ahead : 0.0;  // m, in the whole step
+  double time = impact.time;
+  if (closing > 0.0) time += dot(off, there.normal) / closing;
+  // Not beyond what the straight way says by more than a step's bend can: where the end overlaps it is met in any case.
+  if (!(time > 0.0)) time = impact.time;
+  if (time >= 1.0) return end < 0.0 ? impact.time * seconds : kNoImpact;
+  return time * seconds;
+}
+
+}  // namespace
+
+void StepCheckpoint::keep(const RigidWorld& w) {
+  motion_ = w.bodies.motion;
+  inertia_ = w.bodies.inertia;
+  orientations_ = w.bodies.orientations;
+  flags_ = w.bodies.flags;
+  moves_ = w.bodies.last_moves;
+  manifolds_ = w.contacts.manifolds;
+  joints_ = w.joints.records;
+  details_ = w.joints.details;
+  settings_ = w.settings;
+}
+
+void StepCheckpoint::put_back(RigidWorld& w) const {
+  w.bodies.motion = motion_;
+  w.bodies.inertia = inertia_;
+  w.bodies.orientations = orientations_;
+  w.bodies.flags = flags_;
+  w.bodies.last_moves = moves_;
+  w.contacts.manifolds = manifolds_;
+  w.joints.records = joints_;
+  w.joints.details = details_;
+  w.settings = settings_;
+}
+
+bool resolve_impacts(RigidWorld& w, ImpactScratch& scratch, float threshold) {
+  scratch.impacts.clear(), scratch.slots.clear(), scratch.fast.clear(), scratch.struck.clear();
+  for (std::uint32_t slot = 0; slot < w.contacts.contacts.size(); ++slot) {
+    const Contact& contact = w.contacts.contacts[slot];
+    if (!is_considered(w, contact) || !is_solved(w, contact)) continue;
+    for (Manifold& manifold : manifolds_of(w.contacts, contact)) {
+      const ImpactContact blow = make_blow(w, contact, manifold);
+      if (blow.count == 0) continue;
+      scratch.impacts.push_back(blow);
+      scratch.slots.push_back(slot);
+      scratch.fast.push_back(note_approach(w, contact, manifold) ? 1 : 0);
+    }
+  }
+  if (scratch.impacts.empty()) return false;
+  const ContactBodies bodies{w.bodies.motion.data(), w.bodies.inertia.data()};
+  // No forces act within a blow, and no time passes: every point that touches and closes is met.
+  const ImpactSettings settings{1.0f, threshold};
+  record_approach(scratch.impacts, bodies);
+  apply_restitution(scratch.impacts, bodies, settings);
+  bool any = false;
+  for (std::size_t i = 0; i < scratch.impacts.size(); ++i) {
+    const ImpactContact& blow = scratch.impacts[i];
+    float impulse = 0.0f;
+    for (int k = 0; k < blow.count; ++k) impulse += blow.points[k].impulse;
+    if (!(impulse > 0.0f)) continue;
+    any = true;
+    const Contact& contact = w.contacts.contacts[scratch.slots[i]];
+    scratch.struck.push_back(contact.body_a);
+    scratch.struck.push_back(contact.body_b);
+    if (scratch.fast[i] != 0) report_impulse(w, contact, *blow.manifold, impulse);
+  }
+  return any;
+}
+
+void list_inactive_contacts(RigidWorld& w, float threshold) {
+  w.waiting.resize(w.contacts.contacts.size());
+  for (std::uint32_t slot = 0; slot < w.waiting.size(); ++slot) {
+    const Contact& contact = w.contacts.contacts[slot];
+    std::uint8_t& waits = w.waiting[slot];
+    waits = kActs;
+    if (!is_considered(w, contact)) continue;
+    const float near = touch_distance(contact);
+    const SweptPair pair(w, contact, false);
+    const Gap gap = pair.gap(0.0, 2.0 * double(near));
+    const bool apart = gap.beyond || gap.distance > double(near);
+    if (apart && min_separation(w, contact) > near) {
+      waits = kApart;
+    } else if (parting_speed(w, contact, 2.0f * near) > threshold) {
+      waits = kParting;
+    }
+  }
+}
+
+FirstImpact find_first_impact(const RigidWorld& w, const StepCheckpoint& before, double seconds) {
+  FirstImpact first;
+  for (std::uint32_t slot = 0; slot < w.waiting.size(); ++slot) {
+    if (w.waiting[slot] == kActs) continue;
+    const Contact& contact = w.contacts.contacts[slot];
+    if (w.waiting[slot] == kApart) {
+      const double time = first_meeting(w, before, contact, seconds);
+      if (time < first.time) first = {time, false};
+      continue;
+    }
+    // Parting: back within the step? Then it turned between.
+    const double near = double(touch_distance(contact));
+    const SweptPair pair(w, contact, true);
+    const Gap start = pair.gap(0.0, 1.0e30), end = pair.gap(1.0, 1.0e30);
+    if (end.distance > near) continue;
+    const auto speed = [&](auto&& motion_of) {
+      return dot(
+          DVec3(motion_of(contact.body_b).linear_velocity) - DVec3(motion_of(contact.body_a).linear_velocity),
+          start.normal);
+    };
+    const double away = speed([&](std::uint32_t body) -> const BodyMotion& { return before.motion(body); });
+    const double back = speed([&](std::uint32_t body) -> const BodyMotion& { return w.bodies.motion[body]; });
+    if (!(away > 0.0) || !(back < 0.0)) continue;
+    const double time = seconds * away / (away - back);
+    if (time < first.time) first = {time, true};
+  }
+  return first;
+}
+
+}  // namespace gyre

@@ -1,0 +1,237 @@
+// Takes the points of a contact along within the step: what rolls touches elsewhere in each sub-step, and what it weighs on
+// follows (rigid/solve/rolling_contacts.h says where). The lanes of a block that roll side by side. Part of the kernels.
+//
+// The impulses that stand go on acting, but at the new place: what they turn changes by
+//   I'^-1 (r' x p) - I^-1 (r x p)
+// without which they would turn the bodies as if the contact had stayed behind, or what friction was given at one end of a bone would be
+// taken back at the other, once the load lies there. They act where the contact is as the sub-step
+// begins, but the speeds that they bring about are those of its middle: so what the contact's own motion takes at the one end
+// it gives back at the other, as in the leapfrog scheme. With one arm for both, rolling would lose energy to the first order.
+#pragma once
+
+#include "solver/contact/contact_prepare.h"
+
+#include <cstddef>
+
+namespace gyre {
+inline namespace GYRE_TARGET_NAMESPACE {
+
+// Where the arms lie in AdvancedArms, in floats.
+constexpr int kArmsMiddle = 0, kArmsBefore = 24, kArmsNow = 48, kArmsSeparation = 72, kArmsShares = 76;
+static_assert(offsetof(AdvancedArms, before) == 4 * kArmsBefore && offsetof(AdvancedArms, now) == 4 * kArmsNow);
+static_assert(offsetof(AdvancedArms, middle) == 0 && offsetof(AdvancedArms, separation) == 4 * kArmsSeparation);
+static_assert(offsetof(AdvancedArms, friction_shares) == 4 * kArmsShares);
+static_assert(sizeof(PointArmPairs) == 4 * kArmsBefore && offsetof(PointArmPairs, from_b) == 48);
+
+// The lanes of a block that are followed. The others read zeros, and what is worked out for them is not kept.
+template <int W>
+struct AdvancedArmsLanes {
+  const float* arms[W];
+  const float* inverse_a[W];
+  const float* inverse_b[W];
+  std::uint32_t bits = 0, has_a = 0, has_b = 0;  // has_a: whose inertia is known
+  Wide<W> counts{0.0f};
+  int point_count = 0;  // the most of any
+
+  GYRE_INLINE AdvancedArmsLanes(const AdvancedArmsLane* lanes, int count) {
+    alignas(64) static constexpr float kNoArms[sizeof(AdvancedArms) / sizeof(float)] = {};
+    for (int i = 0; i < W; ++i) arms[i] = inverse_a[i] = inverse_b[i] = kNoArms;
+    for (int i = 0; i < count; ++i) {
+      const AdvancedArmsLane& followed = lanes[i];
+      const int lane = followed.lane;
+      bits |= 1u << lane;
+      arms[lane] = &followed.arms->middle.from_a[0].x;
+      if (followed.inverse_a != nullptr) inverse_a[lane] = &followed.inverse_a->xx, has_a |= 1u << lane;
+      if (followed.inverse_b != nullptr) inverse_b[lane] = &followed.inverse_b->xx, has_b |= 1u << lane;
+      counts.set(lane, float(followed.arms->count));
+      if (followed.arms->count > point_count) point_count = followed.arms->count;
+    }
+  }
+  GYRE_INLINE Mask<W> has_point(int k) const { return counts > Wide<W>(float(k)); }
+};
+
+template <int W>
+GYRE_INLINE Vec3W<W> gather_vector(const float* const (&records)[W], int first) {
+  Wide<W> in[4];
+  gather_columns<4, W>(records, first, in);
+  return {in[0], in[1], in[2]};
+}
+template <int W>
+GYRE_INLINE Sym3W<W> gather_tensor(const float* const (&records)[W]) {
+  Wide<W> in[8];
+  gather_columns<4, W>(records, 0, in);
+  gather_columns<4, W>(records, 2, in + 4);
+  return {in[0], in[1], in[2], in[3], in[6], in[7]};
+}
+template <int W>
+GYRE_INLINE PointArms<W> gather_arms(const AdvancedArmsLanes<W>& lanes, int set, int k) {
+  return {gather_vector<W>(lanes.arms, set + 3 * k), gather_vector<W>(lanes.arms, set + 12 + 3 * k)};
+}
+
+// How the load is shared among the points: friction acts where the load does, or at the lowest point where nothing bears any.
+template <int W>
+struct LoadShares {
+  Mask<W> exists[kMaxManifoldPoints];
+  Wide<W> shares[kMaxManifoldPoints];
+
+  GYRE_INLINE LoadShares(const ContactBlock<W>& block, const AdvancedArmsLanes<W>& lanes) {
+    const Wide<W> zero(0.0f), one(1.0f);
+    Wide<W> separations[kMaxManifoldPoints], load = zero;
+    gather_columns<4, W>(lanes.arms, kArmsSeparation, separations);
+    Wide<W> least = separations[0];
+    for (int k = 0; k < lanes.point_count; ++k) {
+      exists[k] = lanes.has_point(k);
+      least = select(exists[k], min(least, separations[k]), least);
+      load = load + keep(exists[k], block.impulses[k]);
+    }
+    const auto bears = load > zero;
+    const Wide<W> divisor = select(bears, load, one);
+    auto left = ~bears;
+    for (int k = 0; k < lanes.point_count; ++k) {
+      const auto lowest = left & exists[k] & (separations[k] <= least);
+      left = left & ~lowest;
+      shares[k] = select(bears, keep(exists[k], block.impulses[k] / divisor), keep(lowest, one));
+    }
+  }
+};
+
+// By which shares the friction that stands came to act; as the step begins it acts where the load does.
+template <int W>
+GYRE_INLINE void shares_before(const AdvancedArmsLanes<W>& lanes, const LoadShares<W>& now, Wide<W> (&before)[kMaxManifoldPoints]) {
+  Wide<W> noted[kMaxManifoldPoints], sum(0.0f);
+  gather_columns<4, W>(lanes.arms, kArmsShares, noted);
+  for (int k = 0; k < lanes.point_count; ++k) sum = sum + noted[k];
+  for (int k = 0; k < lanes.point_count; ++k)
+    before[k] = select(sum > Wide<W>(0.0f), noted[k], now.shares[k]);
+}
+
+// Where friction acts, added up point by point.
+template <int W>
+struct FrictionArms {
+  Vec3W<W> from_a{Wide<W>(0.0f), Wide<W>(0.0f), Wide<W>(0.0f)}, from_b = from_a;
+
+  GYRE_INLINE void add(Wide<W> share, const PointArms<W>& arms) {
+    from_a = from_a + share * arms.from_a;
+    from_b = from_b + share * arms.from_b;
+  }
+};
+
+// How the impulses that stand turn the two bodies about their centres of mass (N m s) with these arms.
+template <int W>
+struct LaneTorques {
+  Vec3W<W> a, b;
+};
+template <int W>
+GYRE_INLINE LaneTorques<W> torques_of(const ContactBlock<W>& block, const AdvancedArmsLanes<W>& lanes,
+                                      const LoadShares<W>& load, const Wide<W> (&friction_shares)[kMaxManifoldPoints],
+                                      int set) {
+  PointArms<W> arms[kMaxManifoldPoints];
+  FrictionArms<W> friction;
+  for (int k = 0; k < lanes.point_count; ++k) friction.add(friction_shares[k], arms[k] = gather_arms<W>(lanes, set, k));
+  const Vec3W<W> slide = block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2;
+  const Vec3W<W> turn = block.twist * block.normal + block.aside->rolling;
+  LaneTorques<W> torques{cross(friction.from_a, slide) + turn, cross(friction.from_b, slide) + turn};
+  for (int k = 0; k < lanes.point_count; ++k) {
+    const Vec3W<W> direction = block.impulses[k] * block.normal;
+    torques.a = select<W>(load.exists[k], torques.a + cross(arms[k].from_a, direction), torques.a);
+    torques.b = select<W>(load.exists[k], torques.b + cross(arms[k].from_b, direction), torques.b);
+  }
+  return torques;
+}
+
+template <int W>
+GYRE_INLINE void turn_body(float* record, int lane, const Vec3W<W>& change) {
+  float* const spin = record + kMotionAngular;
+  spin[0] += change.x[lane];
+  spin[1] += change.y[lane];
+  spin[2] += change.z[lane];
+}
+
+// What decides the masses, for all lanes of a block.
+template <int W>
+GYRE_INLINE void copy_bodies(const ContactBlock<W>& from, ContactBlock<W>& to) {
+  to.has_a = from.has_a, to.has_b = from.has_b;
+  to.normal = from.normal, to.tangent_1 = from.tangent_1, to.tangent_2 = from.tangent_2;
+  to.inverse_mass_a = from.inverse_mass_a, to.inverse_mass_b = from.inverse_mass_b;
+}
+
+// Takes over what became of the lanes that are followed.
+template <int W>
+GYRE_INLINE void put_back(ContactBlock<W>& block, const ContactBlock<W>& moved, const AdvancedArmsLanes<W>& lanes,
+                          const LoadShares<W>& load) {
+  const auto followed = Mask<W>::of_bits(lanes.bits);
+  const auto put = [](Mask<W> where, auto& to, const auto& from) { to = select(where, from, to); };
+  const auto put_vector = [](Mask<W> where, Vec3W<W>& to, const Vec3W<W>& from) { to = select<W>(where, from, to); };
+  put_vector(followed, block.friction_from_a, moved.friction_from_a);
+  put_vector(followed, block.friction_from_b, moved.friction_from_b);
+  put(followed, block.inverse_k11, moved.inverse_k11), put(followed, block.inverse_k12, moved.inverse_k12);
+  put(followed, block.inverse_k13, moved.inverse_k13), put(followed, block.inverse_k22, moved.inverse_k22);
+  put(followed, block.inverse_k23, moved.inverse_k23), put(followed, block.inverse_k33, moved.inverse_k33);
+  put_vector(followed, block.arm_shift_a, moved.arm_shift_a);
+  put_vector(followed, block.arm_shift_b, moved.arm_shift_b);
+  Wide<W> separations[kMaxManifoldPoints];
+  gather_columns<4, W>(lanes.arms, kArmsSeparation, separations);
+  for (int i = 0; i < lanes.point_count; ++i) {
+    put_vector(load.exists[i], block.points[i].arm, moved.points[i].arm);
+    put(load.exists[i], block.points[i].separation, separations[i]);
+    put(load.exists[i], block.aside->relief[i], moved.aside->relief[i]);
+    block.rows[i] = lane_bits<W>(block.aside->relief[i] > Wide<W>(0.0f));
+    for (int j = i; j < lanes.point_count; ++j) {
+      put(load.exists[j], block.aside->k[packed(i, j)], moved.aside->k[packed(i, j)]);
+      put(load.exists[j], block.inverse_k[packed(i, j)], moved.inverse_k[packed(i, j)]);
+    }
+  }
+}
+
+template <int W>
+void follow_lanes(void* memory, int index, const AdvancedArmsLane* followed, int count) {
+  ContactBlock<W>& block = static_cast<ContactBlock<W>*>(memory)[index];
+  const AdvancedArmsLanes<W> lanes(followed, count);
+  const LoadShares<W> load(block, lanes);
+  Wide<W> friction_before[kMaxManifoldPoints];
+  shares_before<W>(lanes, load, friction_before);
+  const LaneTorques<W> before = torques_of<W>(block, lanes, load, friction_before, kArmsBefore),
+                       now = torques_of<W>(block, lanes, load, load.shares, kArmsNow);
+  const Vec3W<W> before_a = block.inverse_inertia_a * before.a, before_b = block.inverse_inertia_b * before.b;
+  const auto refresh = [](std::uint32_t bits, const Sym3W<W>& present, Sym3W<W>& old) {
+    const auto known = Mask<W>::of_bits(bits);
+    old = {select(known, present.xx, old.xx), select(known, present.yy, old.yy), select(known, present.zz, old.zz),
+           select(known, present.xy, old.xy), select(known, present.xz, old.xz), select(known, present.yz, old.yz)};
+  };
+  refresh(lanes.has_a, gather_tensor<W>(lanes.inverse_a), block.inverse_inertia_a);
+  refresh(lanes.has_b, gather_tensor<W>(lanes.inverse_b), block.inverse_inertia_b);
+  const Vec3W<W> change_a = before_a - block.inverse_inertia_a * now.a,  // a gets the opposite
+                 change_b = block.inverse_inertia_b * now.b - before_b;
+  for (int i = 0; i < count; ++i) {
+    const int lane = followed[i].lane;
+    turn_body<W>(block.aside->write_a[lane], lane, change_a);
+    turn_body<W>(block.aside->write_b[lane], lane, change_b);
+    for (int k = 0; k < lanes.point_count; ++k) followed[i].arms->friction_shares[k] = load.shares[k][lane];
+  }
+  ContactBlockCold<W> aside;
+  ContactBlock<W> moved;
+  moved.aside = &aside;
+  copy_bodies<W>(block, moved);
+  moved.inverse_inertia_a = block.inverse_inertia_a, moved.inverse_inertia_b = block.inverse_inertia_b;
+  moved.point_count = lanes.point_count;
+  const PointArms<W> first = gather_arms<W>(lanes, kArmsMiddle, 0);
+  const auto nearer_a = place_arms<W>(moved, first);
+  FrictionArms<W> friction;
+  Wide<W> exists[kMaxManifoldPoints];
+  for (int k = 0; k < lanes.point_count; ++k) {
+    exists[k] = keep(load.exists[k], Wide<W>(1.0f));
+    const PointArms<W> arms = k == 0 ? first : gather_arms<W>(lanes, kArmsMiddle, k);
+    friction.add(load.shares[k], arms);
+    moved.points[k].arm = cross(select<W>(nearer_a, arms.from_a, arms.from_b), block.normal);
+  }
+  moved.friction_from_a = friction.from_a, moved.friction_from_b = friction.from_b;
+  auto twists = nearer_a;
+  prepare_friction_masses<W>(moved, block.aside->twist_radius > Wide<W>(0.0f), twists);
+  prepare_normals<W>(moved, exists);
+  put_back<W>(block, moved, lanes, load);
+  mark_uneven_points<W>(block);
+  block.idles = 0;
+}
+
+}  // namespace GYRE_TARGET_NAMESPACE
+}  // namespace gyre

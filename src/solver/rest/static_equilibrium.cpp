@@ -1,0 +1,535 @@
+#include "solver/rest/static_equilibrium.h"
+
+#include "math/block_six.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace gyre {
+
+namespace {
+
+// What counts as one that does not stand: after so many rounds, or multiplications where these are fewer rounds. Pyramids and
+// walls take one round, card houses and towers of planks up to six, arches near their limit up to twenty.
+constexpr int kMaxRounds = 30;
+constexpr int kMinRounds = 12;
+constexpr int kMaxStuck = 5;  // rounds in turn after which no less was left over
+constexpr std::uint64_t kMaxWork = 6'000'000;
+// Where a round is so many multiplications they have to bring more: what holds goes straight there.
+constexpr std::uint64_t kDear = 250'000;
+constexpr int kMaxStuckIfDear = 2;  // rounds in turn after which more than this share was left over
+constexpr double kProgressIfDear = 0.7;
+constexpr int kMaxRoundsIfFresh = 2;  // and dear: what was put as it lies holds at once, what has yet to settle does not
+// What a point that lets go keeps of its stiffness in the second derivative, but not in what it bears.
+constexpr double kTrace = 1.0e-6;
+// The longest step, in Newton's, and after how many tries it is taken as it is.
+constexpr double kLongestStep = 1.0e3;
+constexpr int kCuts = 40;
+// A slope counts as none below this share of what it is where the step begins, if that is Newton's own step; if not, below the next.
+constexpr double kFlat = 1.0e-9, kRounding = 1.0e-13;
+// Contacts begin this stiff sideways, as elastic bodies are (R. Mindlin, 1949: 2 (1 - nu) / (2 - nu) = 0.82 for nu = 0.3), and
+// what is softer than this bears nothing sideways.
+constexpr float kShear = 0.8f;
+constexpr float kMinShear = 1.0e-7f;
+// A contact asked for too much friction is softened so that it bears this share of what it can.
+constexpr double kFrictionAim = 0.7;
+constexpr double kMaxSoftening = 0.05;  // at once
+// The age of contacts that were held and are not any more (s).
+constexpr float kReleasedAge = 2.0f;
+// Points further apart than this share of the size do not touch.
+constexpr float kTouchingGap = 1.0e-3f;
+constexpr double kEndless = 1.0e30;
+// What an answer may leave of a body's speed, over what counts as still: rounding. Of one that leaves more than the next share of
+// that a round more is made.
+constexpr double kResidual = 100.0;
+constexpr double kExactShare = 0.01;
+// The most that a point of an answer may bear, over all that the structure weighs. What is wedged between two walls would hold by a thrust
+// that is large enough, though nothing presses it: a thousand times its weight, even by the little friction that a point has about
+// its normal. Arches bear less than once that, a wedge of two degrees between smooth walls 29 times.
+constexpr double kMaxThrust = 30.0;
+// What a structure that was held may move by, over what counts as still: what thirty rows of boxes weigh rounds to more than that, and
+// solving would but round it anew. It may grow as the structure buckles, and then takes one round.
+constexpr float kHeldStill = 30.0f;
+
+// A row of a contact: what it is about, on either body, and what it bears before anything moves. The structure's rows are those
+// of bodies: place, then rotation.
+struct ContactRow {
+  double a[6], b[6];
+  double stiffness = 0.0, before = 0.0;
+};
+
+ContactRow make_row(Vec3 direction, Vec3 from_a, Vec3 from_b, double stiffness, float before) {
+  const Vec3 turn_a = cross(from_a, direction), turn_b = cross(from_b, direction);
+  return {{-double(direction.x), -double(direction.y), -double(direction.z), -double(turn_a.x),
+           -double(turn_a.y), -double(turn_a.z)},
+          {double(direction.x), double(direction.y), double(direction.z), double(turn_b.x), double(turn_b.y),
+           double(turn_b.z)},
+          stiffness,
+          double(before)};
+}
+
+// The rows of a contact: one for each point, two of friction and one of twist where the load gives them any.
+struct ContactRows {
+  ContactRow normal[kMaxManifoldPoints];
+  ContactRow tangent[2], twist;
+  Vec3 u, v;
+  bool rubs = false;
+};
+
+// Those of friction and twist, as stiff as the contact is sideways now.
+void place_friction(const ContactConstraint& constraint, const StructureScratch& work, ContactRows& rows) {
+  const Manifold& manifold = *constraint.manifold;
+  const Vec3 n = manifold.normal, from_b = work.impulse.friction_from_b;
+  const Vec3 from_a = from_b + (manifold.points[0].from_a - manifold.points[0].from_b);
+  const double shear = double(work.shear) * double(std::popcount(work.touching));
+  rows.tangent[0] = make_row(rows.u, from_a, from_b, shear, dot(work.before.friction, rows.u));
+  rows.tangent[1] = make_row(rows.v, from_a, from_b, shear, dot(work.before.friction, rows.v));
+  const double arm = double(work.impulse.twist_per_normal) / double(constraint.static_friction);
+  rows.twist = {{0, 0, 0, -double(n.x), -double(n.y), -double(n.z)},
+                {0, 0, 0, double(n.x), double(n.y), double(n.z)},
+                shear * arm * arm,
+                double(work.before.twist)};
+}
+
+void place_rows(const ContactConstraint& constraint, const StructureScratch& work, ContactRows& rows) {
+  const Manifold& manifold = *constraint.manifold;
+  const Vec3 n = manifold.normal;
+  for (int k = 0; k < manifold.count; ++k) {
+    rows.normal[k] =
+        make_row(n, manifold.points[k].from_a, manifold.points[k].from_b, 1.0, work.before.normal[k]);
+  }
+  rows.u = any_perpendicular(n);
+  rows.v = cross(n, rows.u);
+  rows.rubs = constraint.static_friction > 0.0f && work.touching != 0;
+  if (rows.rubs) place_friction(constraint, work, rows);
+}
+
+// Whether the sweeps left every body as good as at rest.
+bool is_still(const RestingStructure& s, const StructureSolve& solve) {
+  const float factor = s.held ? kHeldStill : 1.0f;
+  for (const StructureNode& node : s.nodes) {
+    const BodyMotion& motion = solve.motion[node.body];
+    if (largest(absolute(motion.linear_velocity)) > factor * node.still) return false;
+    if (largest(absolute(motion.angular_velocity)) > factor * node.still_spin) return false;
+  }
+  return true;
+}
+
+void stop(const RestingStructure& s, const StructureSolve& solve) {
+  for (const StructureNode& node : s.nodes) {
+    BodyMotion& motion = solve.motion[node.body];
+    motion.linear_velocity = motion.angular_velocity = {};
+  }
+}
+
+// From now on its contacts are no springs,
+void hold(const RestingStructure& s, const StructureSolve& solve) {
+  for (const StructureContact& contact : s.contacts) {
+    solve.constraints[contact.constraint].manifold->age = kRigidContactAge;
+    solve.kernels->harden(solve.blocks, int(contact.block), int(contact.lane));
+  }
+}
+// and from now on they are.
+void release(const RestingStructure& s, const StructureSolve& solve) {
+  for (const StructureContact& contact : s.contacts) {
+    Manifold& manifold = *solve.constraints[contact.constraint].manifold;
+    if (manifold.age >= kRigidContactAge) manifold.age = kReleasedAge;
+  }
+}
+
+class Solver {
+ public:
+  Solver(RestingStructure& structure, const StructureSolve& solve) : s_(structure), solve_(solve) {}
+
+  // Finds impulses that stop everything; false if it cannot. Newton's method on the springs' energy, which is convex: pieces of
+  // parabolas that meet where points let go.
+  bool find() {
+    if (!plan()) return false;
+    if (!s_.begun) begin();
+    if (!touches_all()) return false;
+    gather_loads();
+    for (double& x : place_) x = 0.0;
+    const bool is_dear = plan_.work > kDear;
+    const double progress = is_dear ? kProgressIfDear : 1.0;
+    const int rounds = max_rounds(), max_stuck = is_dear ? kMaxStuckIfDear : kMaxStuck;
+    double least = kEndless;
+    int stuck = 0;
+    bool holds = false;
+    for (int round = 0; round < rounds && stuck < max_stuck; ++round) {
+      assemble();
+      factor_blocks(plan_, values_, room_);
+      find_way();
+      solve_blocks(plan_, values_, way_);
+      go(find_step());
+      give_friction();
+      const double left = left_over();
+      if (left <= kExactShare || (holds && left <= 1.0)) return is_thrust_borne();
+      holds = left <= 1.0;
+      stuck = left < progress * least ? 0 : stuck + 1;
+      least = min(least, left);
+    }
+    return holds && is_thrust_borne();
+  }
+
+  void write() const {
+    for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
+      const StructureContact& contact = s_.contacts[i];
+      solve_.kernels->write_impulse(solve_.blocks, int(contact.block), int(contact.lane), s_.work[i].impulse);
+    }
+  }
+
+ private:
+  int max_rounds() const {
+    if (s_.fresh && plan_.work > kDear) return kMaxRoundsIfFresh;
+    const std::uint64_t affordable = kMaxWork / (plan_.work + 1);
+    return int(min(std::uint64_t(kMaxRounds), max(std::uint64_t(kMinRounds), affordable)));
+  }
+  bool plan() {
+    Arena& arena = *solve_.arena;
+    const std::span<std::uint8_t> sizes = arena.make<std::uint8_t>(s_.nodes.size());
+    for (std::uint8_t& size : sizes) size = 6;
+    const std::span<BlockEdge> edges = arena.make<BlockEdge>(s_.contacts.size());
+    std::size_t count = 0;
+    for (const StructureContact& contact : s_.contacts) {
+      if (contact.is_between()) edges[count++] = {contact.node_a, contact.node_b};
+    }
+    if (!plan_blocks(sizes, edges.first(count), kMaxStructureWorkPerRow * 6 * sizes.size(), arena, plan_))
+      return false;
+    for (StructureContact& contact : s_.contacts) {
+      if (contact.is_between()) contact.coupling = find_block(plan_, contact.node_a, contact.node_b);
+    }
+    values_ = arena.make<double>(plan_.values);
+    room_ = arena.make<double>(factor_room(plan_));
+    loads_ = arena.make<double>(plan_.rows);
+    place_ = arena.make<double>(plan_.rows);
+    way_ = arena.make<double>(plan_.rows);
+    rows_ = arena.make<ContactRows>(s_.contacts.size());
+    return true;
+  }
+
+  // Every point bears, but those that are ahead of their contact: they never will.
+  void begin() {
+    s_.begun = true;
+    for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
+      const ContactConstraint& c = constraint(i);
+      StructureScratch& work = s_.work[i] = {};
+      work.shear = kShear;
+      for (int k = 0; k < c.manifold->count; ++k) {
+        const bool touches = c.manifold->points[k].separation <= kTouchingGap * c.size;
+        if (touches) work.touching = std::uint8_t(work.touching | 1u << k);
+      }
+    }
+  }
+
+  // A body that touches nothing falls.
+  bool touches_all() {
+    for (double& x : way_) x = 0.0;
+    for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
+      if (s_.work[i].touching == 0) continue;
+      for (const std::uint32_t node : {s_.contacts[i].node_a, s_.contacts[i].node_b}) {
+        if (node != kNoNode) rows_at(way_, node)[0] = 1.0;
+      }
+    }
+    for (std::uint32_t i = 0; i < s_.nodes.size(); ++i) {
+      if (rows_at(way_, i)[0] == 0.0) return false;
+    }
+    return true;
+  }
+
+  const ContactConstraint& constraint(std::uint32_t i) const {
+    return solve_.constraints[s_.contacts[i].constraint];
+  }
+  const BlockColumn& column(std::uint32_t node) const { return plan_.columns[plan_.place_of[node]]; }
+  double* rows_at(std::span<double> x, std::uint32_t node) const { return x.data() + column(node).row; }
+
+  // What the contacts must bear: what they do, less the momentum that is left over.
+  void gather_loads() {
+    for (std::uint32_t i = 0; i < s_.nodes.size(); ++i) {
+      const StructureNode& node = s_.nodes[i];
+      const BodyMotion& motion = solve_.motion[node.body];
+      const Vec3 momentum = node.mass * motion.linear_velocity, spin = node.inertia * motion.angular_velocity;
+      double* load = rows_at(loads_, i);
+      load[0] = -double(momentum.x), load[1] = -double(momentum.y), load[2] = -double(momentum.z);
+      load[3] = -double(spin.x), load[4] = -double(spin.y), load[5] = -double(spin.z);
+    }
+    for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
+      const StructureContact& contact = s_.contacts[i];
+      StructureScratch& work = s_.work[i];
+      solve_.kernels->read_impulse(solve_.blocks, int(contact.block), int(contact.lane), work.before);
+      add_wrench(contact, constraint(i), work.before, 1.0, loads_);
+      // A contact that bore nothing yet begins with all its points.
+      std::uint8_t loaded = 0;
+      for (int k = 0; k < kMaxManifoldPoints; ++k) {
+        if ((work.touching >> k & 1) == 0) work.before.normal[k] = 0.0f;
+        if (work.before.normal[k] > 0.0f) loaded = std::uint8_t(loaded | 1u << k);
+      }
+      work.pressed = loaded != 0 ? loaded : work.touching;
+      work.impulse = work.before;
+      place_rows(constraint(i), work, rows_[i]);
+    }
+  }
+
+  // Adds what the impulses do to both bodies.
+  void add_wrench(const StructureContact& contact, const ContactConstraint& c, const ContactImpulse& impulse,
+                  double factor, std::span<double> x) const {
+    const Manifold& manifold = *c.manifold;
+    const auto add = [&](Vec3 direction, Vec3 from_a, Vec3 from_b, float value) {
+      const ContactRow row = make_row(direction, from_a, from_b, 1.0, 0.0f);
+      const double amount = factor * double(value);
+      if (contact.node_a != kNoNode) {
+        for (int j = 0; j < 6; ++j) rows_at(x, contact.node_a)[j] += amount * row.a[j];
+      }
+      if (contact.node_b != kNoNode) {
+        for (int j = 0; j < 6; ++j) rows_at(x, contact.node_b)[j] += amount * row.b[j];
+      }
+    };
+    for (int k = 0; k < manifold.count; ++k) {
+      add(manifold.normal, manifold.points[k].from_a, manifold.points[k].from_b, impulse.normal[k]);
+    }
+    const Vec3 from_b = impulse.friction_from_b;
+    add(impulse.friction, from_b + (manifold.points[0].from_a - manifold.points[0].from_b), from_b, 1.0f);
+    const Vec3 turn = impulse.twist * manifold.normal + impulse.rolling;
+    const double turns[3] = {factor * double(turn.x), factor * double(turn.y), factor * double(turn.z)};
+    for (int j = 0; j < 3; ++j) {
+      if (contact.node_a != kNoNode) rows_at(x, contact.node_a)[3 + j] -= turns[j];
+      if (contact.node_b != kNoNode) rows_at(x, contact.node_b)[3 + j] += turns[j];
+    }
+  }
+
+  // The second derivative of the energy; points that do not bear keep a trace of stiffness, so that what nothing holds has one.
+  void assemble() {
+    for (double& value : values_) value = 0.0;
+    for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
+      const StructureContact& contact = s_.contacts[i];
+      const StructureScratch& work = s_.work[i];
+      const ContactRows& rows = rows_[i];
+      for (int k = 0; k < constraint(i).manifold->count; ++k) {
+        if ((work.touching >> k & 1) == 0) continue;
+        add_row(contact, rows.normal[k], (work.pressed >> k & 1) != 0 ? 1.0 : kTrace);
+      }
+      if (!rows.rubs) continue;
+      for (const ContactRow* row : {&rows.tangent[0], &rows.tangent[1], &rows.twist})
+        add_row(contact, *row, row->stiffness);
+    }
+  }
+  void add_row(const StructureContact& contact, const ContactRow& row, double stiffness) {
+    double* values = values_.data();
+    if (contact.node_a != kNoNode)
+      add_outer_six(values + column(contact.node_a).diagonal, row.a, row.a, stiffness);
+    if (contact.node_b != kNoNode)
+      add_outer_six(values + column(contact.node_b).diagonal, row.b, row.b, stiffness);
+    if (!contact.is_between()) return;
+    const bool a_first = contact.coupling.first_is_row;
+    add_outer_six(values + contact.coupling.offset, a_first ? row.a : row.b, a_first ? row.b : row.a, stiffness);
+  }
+
+  // How far the bodies' moves `x` press the row together.
+  double along(const StructureContact& contact, const ContactRow& row, std::span<double> x) const {
+    double sum = 0.0;
+    if (contact.node_a != kNoNode) {
+      const double* moves = rows_at(x, contact.node_a);
+      for (int j = 0; j < 6; ++j) sum += row.a[j] * moves[j];
+    }
+    if (contact.node_b != kNoNode) {
+      const double* moves = rows_at(x, contact.node_b);
+      for (int j = 0; j < 6; ++j) sum += row.b[j] * moves[j];
+    }
+    return sum;
+  }
+  // What the row bears where the bodies are now.
+  double borne(const StructureContact& contact, const ContactRow& row) const {
+    return row.before + row.stiffness * along(contact, row, place_);
+  }
+  void add_to(std::span<double> x, const StructureContact& contact, const ContactRow& row,
+              double amount) const {
+    if (contact.node_a != kNoNode) {
+      for (int j = 0; j < 6; ++j) rows_at(x, contact.node_a)[j] += amount * row.a[j];
+    }
+    if (contact.node_b != kNoNode) {
+      for (int j = 0; j < 6; ++j) rows_at(x, contact.node_b)[j] += amount * row.b[j];
+    }
+  }
+
+  // What is not borne yet.
+  void find_way() {
+    std::copy(loads_.begin(), loads_.end(), way_.begin());
+    for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
+      const StructureContact& contact = s_.contacts[i];
+      const StructureScratch& work = s_.work[i];
+      const ContactRows& rows = rows_[i];
+      for (int k = 0; k < constraint(i).manifold->count; ++k) {
+        if ((work.touching >> k & 1) == 0) continue;
+        add_to(way_, contact, rows.normal[k], -max(borne(contact, rows.normal[k]), 0.0));
+      }
+      if (!rows.rubs) continue;
+      for (const ContactRow* row : {&rows.tangent[0], &rows.tangent[1], &rows.twist}) {
+        add_to(way_, contact, *row, -borne(contact, *row));
+      }
+    }
+  }
+
+  // How far to go along `way_`: to where the energy is least. Its derivative grows, in straight pieces.
+  double find_step() {
+    slope_ = curve_ = 0.0;
+    for (std::size_t j = 0; j < way_.size(); ++j) slope_ -= loads_[j] * way_[j];
+    for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
+      const StructureContact& contact = s_.contacts[i];
+      StructureScratch& work = s_.work[i];
+      const ContactRows& rows = rows_[i];
+      for (int k = 0; k < constraint(i).manifold->count; ++k) {
+        work.at[k] = work.ahead[k] = 0.0;
+        if ((work.touching >> k & 1) == 0) continue;
+        work.at[k] = borne(contact, rows.normal[k]);
+        work.ahead[k] = along(contact, rows.normal[k], way_);
+      }
+      if (!rows.rubs) continue;
+      for (const ContactRow* row : {&rows.tangent[0], &rows.tangent[1], &rows.twist}) {
+        const double ahead = along(contact, *row, way_);
+        slope_ += borne(contact, *row) * ahead;
+        curve_ += row->stiffness * ahead * ahead;
+      }
+    }
+    const double start = absolute(slope_at(0.0).value);
+    double low = 0.0, high = 1.0;
+    Slope here = slope_at(high);
+    if (absolute(here.value) <= kFlat * start) return high;
+    while (here.value < 0.0 && high < kLongestStep) {
+      low = high, high *= 2.0;
+      here = slope_at(high);
+    }
+    // Newton's method ends as soon as it meets the right piece; where it leads out of the bracket, that is halved.
+    double t = high;
+    for (int cut = 0; cut < kCuts && low < high && absolute(here.value) > kRounding * start; ++cut) {
+      (here.value < 0.0 ? low : high) = t;
+      const double next = t - here.value / here.growth;
+      t = next > low && next < high ? next : 0.5 * (low + high);
+      here = slope_at(t);
+    }
+    return t;
+  }
+  // The energy's derivative along the way, and how fast that grows.
+  struct Slope {
+    double value, growth;
+  };
+  Slope slope_at(double t) const {
+    Slope slope{slope_ + t * curve_, curve_};
+    for (const StructureScratch& work : s_.work) {
+      for (int k = 0; k < kMaxManifoldPoints; ++k) {
+        const double press = work.at[k] + t * work.ahead[k];
+        slope.value += press > 0.0 ? press * work.ahead[k] : 0.0;
+        slope.growth += press > 0.0 ? square(work.ahead[k]) : 0.0;
+      }
+    }
+    return slope;
+  }
+
+  void go(double t) {
+    for (std::size_t j = 0; j < place_.size(); ++j) place_[j] += t * way_[j];
+    for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
+      StructureScratch& work = s_.work[i];
+      work.pressed = 0;
+      for (int k = 0; k < kMaxManifoldPoints; ++k) {
+        const double press = work.at[k] + t * work.ahead[k];
+        if (press > 0.0) work.pressed = std::uint8_t(work.pressed | 1u << k);
+        work.impulse.normal[k] = float(max(press, 0.0));
+      }
+    }
+  }
+
+  // Friction and twist of all contacts, no more than there can be; those that were asked for more give way sideways.
+  void give_friction() {
+    for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
+      const StructureContact& contact = s_.contacts[i];
+      const ContactConstraint& c = constraint(i);
+      StructureScratch& work = s_.work[i];
+      ContactRows& rows = rows_[i];
+      ContactImpulse& impulse = work.impulse;
+      impulse.friction = impulse.rolling = {};
+      impulse.twist = 0.0f;
+      double load = 0.0;
+      for (const float normal : impulse.normal) load += double(normal);
+      if (!rows.rubs || !(load > 0.0)) continue;
+      const double u = borne(contact, rows.tangent[0]), v = borne(contact, rows.tangent[1]);
+      const double twist = borne(contact, rows.twist);
+      const double limit = double(impulse.twist_per_normal) * load;
+      const double slide = std::sqrt(u * u + v * v) / (double(c.static_friction) * load);
+      const double turn = limit > 0.0 ? twist / limit : 0.0;
+      const double use = std::sqrt(slide * slide + turn * turn);
+      const double share = use > 1.0 ? 1.0 / use : 1.0;
+      impulse.friction = float(share * u) * rows.u + float(share * v) * rows.v;
+      impulse.twist = float(share * twist);
+      if (use <= 1.0) continue;
+      const float rest = float(max(kFrictionAim / use, kMaxSoftening));
+      work.shear = max(work.shear * rest, kMinShear);
+      work.before.friction *= rest;
+      work.before.twist *= rest;
+      place_friction(c, work, rows);
+    }
+  }
+
+  // The most that a body has left to be borne, over what it may: bodies that could still move have no load to do so.
+  double left_over() {
+    std::copy(loads_.begin(), loads_.end(), way_.begin());
+    for (std::uint32_t i = 0; i < s_.contacts.size(); ++i) {
+      add_wrench(s_.contacts[i], constraint(i), s_.work[i].impulse, -1.0, way_);
+    }
+    double most = 0.0;
+    for (std::uint32_t i = 0; i < s_.nodes.size(); ++i) {
+      const StructureNode& node = s_.nodes[i];
+      const double* rest = rows_at(way_, i);
+      const double speed = length_of(rest) / double(node.mass);
+      const double spin =
+          length_of(rest + 3) / double(min(node.inertia.xx, min(node.inertia.yy, node.inertia.zz)));
+      const double left = max(speed / double(node.still), spin / double(node.still_spin)) / kResidual;
+      if (!(speed + spin < kEndless)) return kEndless;  // no number
+      most = max(most, left);
+    }
+    return most;
+  }
+  bool is_thrust_borne() const {
+    double weight = 0.0, most = 0.0;
+    for (std::uint32_t i = 0; i < s_.nodes.size(); ++i) weight += length_of(rows_at(loads_, i));
+    for (const StructureScratch& work : s_.work)
+      for (const float normal : work.impulse.normal) most = max(most, double(normal));
+    return most <= kMaxThrust * weight;
+  }
+  static double length_of(const double* v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
+  RestingStructure& s_;
+  const StructureSolve& solve_;
+  BlockPlan plan_;
+  double slope_ = 0.0, curve_ = 0.0;  // of the energy along the way, without its points
+  std::span<double> values_, room_, loads_, place_, way_;
+  std::span<ContactRows> rows_;  // by contact
+};
+
+// Brings the structure to rest; false if its contacts cannot.
+bool bring_to_rest(RestingStructure& structure, const StructureSolve& solve) {
+  if (!is_still(structure, solve)) {
+    const ArenaScope scope(*solve.arena);
+    Solver solver(structure, solve);
+    if (!solver.find()) return false;
+    solver.write();
+  }
+  stop(structure, solve);
+  return true;
+}
+
+}  // namespace
+
+void solve_structure_first(RestingStructure& structure, const StructureSolve& solve) {
+  if (structure.settling) return;
+  structure.solved = bring_to_rest(structure, solve);
+  structure.solved ? hold(structure, solve) : release(structure, solve);
+}
+
+void solve_structure_last(RestingStructure& structure, const StructureSolve& solve) {
+  if (structure.solved) {
+    bring_to_rest(structure, solve);
+  } else if (structure.settling) {
+    bring_to_rest(structure, solve) ? hold(structure, solve) : release(structure, solve);
+  }
+}
+
+}  // namespace gyre

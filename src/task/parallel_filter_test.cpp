@@ -1,0 +1,38 @@
+// The same list for any number of workers, ascending, with the sizes of those that are in it.
+#include "task/parallel_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace gyre {
+namespace {
+
+TEST(Choose, SameListForAnyWorkers) {
+  for (const std::uint32_t count : {0u, 1u, 63u, 64u, 65u, 1000u}) {
+    std::vector<std::uint32_t> expected;
+    std::size_t size = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (i % 7 % 3 != 0) expected.push_back(i), size += i % 7 % 3;
+    }
+    for (const int workers : {1, 2, 5}) {
+      TaskSystem tasks(workers);
+      Arena arena;
+      const FilteredList chosen = parallel_filter(tasks, arena, count, [](std::uint32_t i) { return i % 7 % 3; });
+      EXPECT_EQ(std::vector<std::uint32_t>(chosen.list.begin(), chosen.list.end()), expected);
+      EXPECT_EQ(chosen.size, size);
+    }
+  }
+}
+
+TEST(Choose, NoneAndAll) {
+  TaskSystem tasks(2);
+  Arena arena;
+  EXPECT_TRUE(parallel_filter(tasks, arena, 300, [](std::uint32_t) { return 0u; }).list.empty());
+  const FilteredList all = parallel_filter(tasks, arena, 300, [](std::uint32_t) { return 1u; });
+  ASSERT_EQ(all.list.size(), 300u);
+  EXPECT_EQ(all.list[299], 299u);
+}
+
+}  // namespace
+}  // namespace gyre

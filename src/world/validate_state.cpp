@@ -1,0 +1,376 @@
+// The rules, group by group. See state_walk.h.
+#include "world/validate_state.h"
+
+#include "base/float_mode.h"
+#include "collision/broadphase/fat_box.h"
+#include "rigid/sleep/island.h"
+#include "rigid/batch/solve_batches.h"
+#include "world/world_state.h"
+
+#include <vector>
+
+namespace gyre {
+
+namespace {
+
+Error broken(const char* rule) { return make_error(ErrorCode::invalid_data, "%s", rule); }
+template <class... Args>
+Error broken(const char* rule, Args... args) {
+  return make_error(ErrorCode::invalid_data, rule, args...);
+}
+
+class StateValidator {
+ public:
+  StateValidator(const WorldState& s, std::optional<StageName> after) : s_(s), w_(s.rigid), after_(after) {}
+
+  Error run();
+
+ private:
+  // Whether the step has come at least so far; between steps it has.
+  bool is_past(StageName stage) const { return !after_ || *after_ >= stage; }
+  // The solver has moved velocities and orientations on, and nobody has looked yet whether they are finite.
+  bool is_on_the_way() const {
+    return after_ && *after_ >= StageName::solve && *after_ < StageName::finish_bodies;
+  }
+  bool is_right_after(StageName stage) const { return after_ && *after_ == stage; }
+
+  void list_changed();
+  Error lists_of_bodies() const;
+  Error list_of_awake() const;
+  Error awake_links() const;
+  Error blocked_bodies() const;
+  Error places() const;
+  Error fat_boxes() const;
+  Error contacts_have_pairs() const;
+  Error pairs_have_contacts() const;
+  Error groups_of_constraints() const;
+  Error groups_of_batch(const BatchScratch& solve) const;
+  Error everything_is_solved() const;
+  Error islands() const;
+  Error nobody_sleeps_beside_motion() const;
+
+  bool was_shown(std::uint32_t shape) const { return changed_mark_[shape] == 0; }
+
+  const WorldState& s_;
+  const RigidWorld& w_;
+  std::optional<StageName> after_;
+  std::vector<std::uint32_t> changed_;      // proxies that the broad phase has not been shown; ascending
+  std::vector<std::uint8_t> changed_mark_;  // the same by shape
+};
+
+void StateValidator::list_changed() {
+  changed_mark_.assign(w_.shapes.proxies.size(), 0);
+  for (const std::uint32_t shape : w_.shapes.changed) changed_mark_[shape] = 1;
+  for (std::uint32_t shape = 0; shape < changed_mark_.size(); ++shape) {
+    if (changed_mark_[shape] != 0) changed_.push_back(shape);
+  }
+}
+
+// Each shape is in the list of its body and each joint in those of its bodies, ascending and once; nothing else is.
+Error StateValidator::lists_of_bodies() const {
+  std::size_t listed_shapes = 0, listed_joints = 0, joint_ends = 0;
+  for (std::uint32_t body = 0; body < w_.bodies.ids.capacity(); ++body) {
+    const std::span<const ShapeId> shapes = w_.bodies.shapes[body];
+    const std::span<const std::uint32_t> joints = joints_of(w_.bodies, body);
+    if (!w_.bodies.ids.live(body) && (!shapes.empty() || !joints.empty()))
+      return broken("body %u was removed but has shapes or joints", body);
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      const std::uint32_t shape = shapes[i].index;
+      if (!w_.shapes.ids.live(shape) || w_.shapes.bodies[shape] != body ||
+          !(shapes[i] == shape_id(w_, shape)))
+        return broken("body %u lists shape %u, which is not its own", body, shape);
+      if (i > 0 && shapes[i - 1].index >= shape)
+        return broken("the shapes of body %u are not in order", body);
+    }
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      if (!w_.joints.ids.live(joints[i]))
+        return broken("body %u lists joint %u, which was removed", body, joints[i]);
+      const JointRecord& joint = w_.joints.records[joints[i]];
+      if (joint.body_a != std::int32_t(body) && joint.body_b != std::int32_t(body))
+        return broken("body %u lists joint %u, which is between others", body, joints[i]);
+      if (i > 0 && joints[i - 1] >= joints[i]) return broken("the joints of body %u are not in order", body);
+    }
+    listed_shapes += shapes.size();
+    listed_joints += joints.size();
+  }
+  w_.joints.ids.for_each_live([&](std::uint32_t slot) {
+    joint_ends += w_.joints.records[slot].body_a != kNoBody ? 1 : 0;
+    joint_ends += w_.joints.records[slot].body_b != kNoBody ? 1 : 0;
+  });
+  if (listed_shapes != w_.shapes.ids.size()) return broken("a shape is not in the list of its body");
+  if (listed_joints != joint_ends) return broken("a joint is not in the list of its body");
+  return {};
+}
+
+Error StateValidator::list_of_awake() const {
+  if (w_.bodies.awake_stale) return {};
+  std::size_t next = 0, sleepers = 0;
+  for (std::uint32_t body = 0; body < w_.bodies.ids.capacity(); ++body) {
+    const BodyFlags& flags = w_.bodies.flags[body];
+    const bool awake =
+        w_.bodies.ids.live(body) && flags.type != BodyType::fixed && flags.awake != 0 && flags.frozen == 0;
+    sleepers += w_.bodies.ids.live(body) && is_movable(flags) && flags.awake == 0 ? 1 : 0;
+    const bool listed = next < w_.bodies.awake.size() && w_.bodies.awake[next] == body;
+    if (awake != listed)
+      return broken("body %u is %s but %s listed so", body, awake ? "awake" : "not awake",
+                    listed ? "is" : "is not");
+    if (listed) ++next;
+  }
+  if (sleepers != w_.bodies.sleepers) return broken("%zu bodies sleep, not %zu", sleepers, w_.bodies.sleepers);
+  return next == w_.bodies.awake.size() ? Error{}
+                                        : broken("the list of awake bodies has more than there are");
+}
+
+// Bodies that a joint keeps from colliding are known as such, as often as there are such joints.
+// Whatever has a body that goes along is asked; that others are too costs time only.
+Error StateValidator::awake_links() const {
+  const auto goes = [&](std::uint32_t body) { return is_simulated(w_.bodies.flags[body]); };
+  for (std::uint32_t slot = 0; slot < w_.contacts.contacts.size(); ++slot) {
+    const Contact& contact = w_.contacts.contacts[slot];
+    if (contact.manifold_room == 0 || w_.awake_links.contacts.test(slot)) continue;
+    if (goes(contact.body_a) || goes(contact.body_b)) return broken("contact %u has an awake body, but nobody asks it", slot);
+  }
+  for (std::uint32_t slot = 0; slot < w_.joints.ids.capacity(); ++slot) {
+    if (!w_.joints.ids.live(slot) || w_.awake_links.joints.test(slot)) continue;
+    const JointRecord& joint = w_.joints.records[slot];
+    if ((joint.body_a != kNoBody && goes(std::uint32_t(joint.body_a))) || (joint.body_b != kNoBody && goes(std::uint32_t(joint.body_b))))
+      return broken("joint %u has an awake body, but nobody asks it", slot);
+  }
+  return {};
+}
+
+Error StateValidator::blocked_bodies() const {
+  std::size_t joints = 0, counted = 0;
+  Error error;
+  w_.joints.ids.for_each_live([&](std::uint32_t slot) {
+    const JointRecord& joint = w_.joints.records[slot];
+    if (joint.collide_connected || joint.body_a == kNoBody || joint.body_b == kNoBody) return;
+    ++joints;
+    if (!w_.joints.blocked.contains(pair_key(std::uint32_t(joint.body_a), std::uint32_t(joint.body_b))))
+      error = broken("joint %u keeps its bodies from colliding, but they are not known to be kept", slot);
+  });
+  if (error.code != ErrorCode::none) return error;
+  w_.joints.blocked.for_each([&](std::uint64_t, std::uint32_t count) { counted += count; });
+  return joints == counted ? Error{} : broken("bodies are kept from colliding by more joints than there are");
+}
+
+// What is derived from the place of the centre of mass is what derivation gives.
+Error StateValidator::places() const {
+  if (is_on_the_way()) return {};
+  for (std::uint32_t body = 0; body < w_.bodies.ids.capacity(); ++body) {
+    if (!w_.bodies.ids.live(body)) continue;
+    if (!(w_.bodies.orientations[body] == w_.bodies.places[body].orientation))
+      return broken("body %u has two orientations", body);
+  }
+  return {};
+}
+
+Error StateValidator::fat_boxes() const {
+  for (std::uint32_t shape = 0; shape < w_.shapes.ids.capacity(); ++shape) {
+    if (!w_.shapes.ids.live(shape)) continue;
+    const ColliderShape& collider = w_.shapes.colliders[shape];
+    const WorldBox tight =
+        world_box(collider.shape, origin_pose(w_.bodies, w_.shapes.bodies[shape]) * collider.body_from_shape);
+    const Aabb& fat = w_.shapes.proxies[shape].fat_box;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (double(fat.low[axis]) > tight.low[axis] || double(fat.high[axis]) < tight.high[axis])
+        return broken("the fat box of shape %u does not contain the shape", shape);
+    }
+  }
+  if (w_.broadphase_stale) return {};
+  const char* const fault = w_.broadphase->find_fault(w_.shapes.proxies, changed_);
+  return fault != nullptr ? broken("broad phase: %s", fault) : Error{};
+}
+
+Error StateValidator::contacts_have_pairs() const {
+  if (const char* const fault = find_fault(w_.contacts)) return broken("contacts: %s", fault);
+  for (std::uint32_t slot = 0; slot < w_.contacts.contacts.size(); ++slot) {
+    const Contact& contact = w_.contacts.contacts[slot];
+    if (contact.manifold_room == 0) continue;
+    const Proxy &a = w_.shapes.proxies[contact.shape_a], &b = w_.shapes.proxies[contact.shape_b];
+    if (!may_pair(a, b))
+      return broken("contact %u is of shapes %u and %u, which may not touch", slot, contact.shape_a,
+                    contact.shape_b);
+    if (w_.joints.blocked.contains(pair_key(contact.body_a, contact.body_b)))
+      return broken("contact %u is of bodies %u and %u, which a joint keeps from colliding", slot,
+                    contact.body_a, contact.body_b);
+    // Pairs that have come apart go in link_islands.
+    if (!is_past(StageName::link_islands) || !was_shown(contact.shape_a) || !was_shown(contact.shape_b))
+      continue;
+    if (!overlap(a.fat_box, b.fat_box))
+      return broken("contact %u is of shapes %u and %u, whose fat boxes are apart", slot, contact.shape_a,
+                    contact.shape_b);
+  }
+  return {};
+}
+
+Error StateValidator::pairs_have_contacts() const {
+  if (w_.broadphase_stale || !is_past(StageName::find_pairs)) return {};
+  Array<std::uint32_t> found;
+  for (std::uint32_t shape = 0; shape < w_.shapes.ids.capacity(); ++shape) {
+    if (!w_.shapes.ids.live(shape) || !was_shown(shape)) continue;
+    const Proxy& proxy = w_.shapes.proxies[shape];
+    found.clear();
+    w_.broadphase->query(w_.shapes.proxies, proxy.fat_box, found);
+    for (const std::uint32_t other : found) {
+      if (other <= shape || !was_shown(other)) continue;
+      const Proxy& other_proxy = w_.shapes.proxies[other];
+      if (!may_pair(proxy, other_proxy) || w_.joints.blocked.contains(pair_key(proxy.body, other_proxy.body)))
+        continue;
+      if (find_contact(w_.contacts, pair_key(shape, other)) == SlotTable::kNone)
+        return broken("the fat boxes of shapes %u and %u overlap, but they have no contact", shape, other);
+    }
+  }
+  return {};
+}
+
+// No group has a moving body twice, and each constraint is in one group. What is left of the last step is looked at
+// between steps, too.
+Error StateValidator::groups_of_constraints() const {
+  Error fault = groups_of_batch(s_.solve.together);
+  for (const std::unique_ptr<WorkerContext>& lone : s_.solve.lone) {
+    if (fault.code == ErrorCode::none) fault = groups_of_batch(lone->scratch);
+  }
+  return fault;
+}
+Error StateValidator::groups_of_batch(const BatchScratch& solve) const {
+  const auto fits = [](std::span<const ColoringPair> pairs, const Coloring& colors) {
+    return pairs.empty() ||
+           validate_coloring(pairs, std::uint32_t(colors.masks.size()), {}, kColoringOptions, colors);
+  };
+  if (!fits(solve.pairs, solve.contact_colors)) return broken("a group of contacts has a moving body twice");
+  if (!fits(solve.joint_pairs, solve.joint_colors))
+    return broken("a group of joints has a moving body twice");
+  return {};
+}
+
+// Whether the lists of all batches together are the slots for which acts(slot) holds, each once.
+template <class Acts>
+bool are_all(const SolveBatches& batches, std::span<const std::uint32_t> SolveBatch::*list, std::size_t slots,
+             const Acts& acts) {
+  std::vector<std::uint8_t> listed(slots);
+  for (const SolveBatch& batch : batches.batches) {
+    for (std::size_t i = 0; i < (batch.*list).size(); ++i) {
+      const std::uint32_t slot = (batch.*list)[i];
+      if (slot >= slots || (i > 0 && (batch.*list)[i - 1] >= slot) || listed[slot]++ != 0) return false;
+    }
+  }
+  for (std::uint32_t slot = 0; slot < slots; ++slot) {
+    if (acts(slot) != (listed[slot] != 0)) return false;
+  }
+  return true;
+}
+
+// What acts is in one batch, as are all that it moves; and the solver had as much of it. The batches are found anew, and
+// smaller, so that there are several.
+Error StateValidator::everything_is_solved() const {
+  Arena arena;
+  TaskSystem alone;
+  const SolveBatches batches = find_batches(w_, arena, alone, {.most = 16});
+  const auto acts = [&](std::uint32_t slot) { return is_solved(w_, w_.contacts.contacts[slot]); };
+  if (!are_all(batches, &SolveBatch::contacts, w_.contacts.contacts.size(), acts))
+    return broken("a contact with manifolds and an awake body is not in one batch");
+  const auto joint_acts = [&](std::uint32_t slot) {
+    return w_.joints.ids.live(slot) && is_joint_solved(w_, slot);
+  };
+  if (!are_all(batches, &SolveBatch::joints, w_.joints.ids.capacity(), joint_acts))
+    return broken("a joint with an awake body is not in one batch");
+  std::vector<std::uint32_t> batch_of(w_.bodies.motion.size(), 0xffffffffu);
+  std::size_t manifolds = 0, joints = 0, bodies = 0;
+  for (std::uint32_t i = 0; i < batches.batches.size(); ++i) {
+    for (const std::uint32_t body : batches.batches[i].bodies) batch_of[body] = i;
+    bodies += batches.batches[i].bodies.size();
+    joints += batches.batches[i].joints.size();
+  }
+  if (bodies != w_.bodies.awake.size()) return broken("the batches are not of all awake bodies");
+  const auto is_elsewhere = [&](std::uint32_t body, std::uint32_t batch) {
+    return w_.bodies.flags[body].type != BodyType::fixed && batch_of[body] != 0xffffffffu &&
+           batch_of[body] != batch;
+  };
+  for (std::uint32_t i = 0; i < batches.batches.size(); ++i) {
+    for (const std::uint32_t slot : batches.batches[i].contacts) {
+      const Contact& contact = w_.contacts.contacts[slot];
+      if (is_elsewhere(contact.body_a, i) || is_elsewhere(contact.body_b, i))
+        return broken("contact %u is in another batch than its bodies", slot);
+      for (const Manifold& manifold : manifolds_of(w_.contacts, contact))
+        manifolds += manifold.count > 0 ? 1 : 0;
+    }
+  }
+  if (manifolds != s_.solve.counts.manifolds)
+    return broken("the solver has other manifolds than those that touch");
+  return joints == s_.solve.counts.joints ? Error{}
+                                          : broken("the solver has other joints than those that act");
+}
+
+// The bodies of a sleeping group hang together, if they came to rest by themselves. Those that were put to sleep in full
+// motion may have contacts that are about to end.
+Error StateValidator::islands() const {
+  std::vector<std::uint32_t> parent(w_.bodies.motion.size());
+  for (std::uint32_t i = 0; i < parent.size(); ++i) parent[i] = i;
+  const auto root_of = [&](std::uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for_each_island_edge(w_, [&](std::uint32_t a, std::uint32_t b) {
+    if (!is_movable(w_.bodies.flags[a]) || !is_movable(w_.bodies.flags[b])) return;
+    a = root_of(a);
+    b = root_of(b);
+    parent[max(a, b)] = min(a, b);
+  });
+  std::vector<std::uint8_t> was_restless(parent.size(), 0);
+  for (const BodySleep& sleep : w_.bodies.sleep) {
+    if (sleep.group != kNoGroup && sleep.still_time < kTimeToSleep) was_restless[sleep.group] = 1;
+  }
+  for (std::uint32_t body = 0; body < parent.size(); ++body) {
+    const std::uint32_t group = w_.bodies.sleep[body].group;
+    if (group == kNoGroup || was_restless[group] != 0) continue;
+    if (root_of(body) != root_of(group))
+      return broken("body %u sleeps in the group of body %u, but nothing links them", body, group);
+  }
+  return {};
+}
+
+Error StateValidator::nobody_sleeps_beside_motion() const {
+  Error error;
+  for_each_island_edge(w_, [&](std::uint32_t a, std::uint32_t b) {
+    const auto check = [&](std::uint32_t sleeper, std::uint32_t other) {
+      const BodyFlags& flags = w_.bodies.flags[sleeper];
+      if (is_movable(flags) && flags.awake == 0 && can_wake_others(w_, other))
+        error = broken("body %u sleeps, although body %u beside it moves", sleeper, other);
+    };
+    check(a, b);
+    check(b, a);
+  });
+  return error;
+}
+
+Error StateValidator::run() {
+  Error error = is_on_the_way() ? Error{} : check_columns(w_);
+  const auto next = [&](Error (StateValidator::*rule)() const, bool holds = true) {
+    if (error.code == ErrorCode::none && holds) error = (this->*rule)();
+  };
+  if (error.code != ErrorCode::none) return error;
+  list_changed();
+  next(&StateValidator::lists_of_bodies);
+  next(&StateValidator::list_of_awake);
+  next(&StateValidator::blocked_bodies);
+  next(&StateValidator::places);
+  next(&StateValidator::contacts_have_pairs);
+  next(&StateValidator::fat_boxes);
+  next(&StateValidator::pairs_have_contacts);
+  next(&StateValidator::groups_of_constraints);
+  next(&StateValidator::islands);
+  next(&StateValidator::nobody_sleeps_beside_motion, is_right_after(StageName::link_islands));
+  next(&StateValidator::awake_links);
+  next(&StateValidator::everything_is_solved, is_right_after(StageName::solve));
+  return error;
+}
+
+}  // namespace
+
+Error validate_state(const WorldState& state, std::optional<StageName> after) {
+  const FloatMode mode;  // what is derived is derived again, with the same rounding
+  return StateValidator(state, after).run();
+}
+
+}  // namespace gyre
