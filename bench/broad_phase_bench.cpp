@@ -27,7 +27,7 @@ using namespace gyre;
 enum class Layout { uniform, clustered, unequal };
 constexpr const char* kLayoutNames[] = {"uniform", "clustered", "unequal"};
 
-constexpr double kMaxSeconds = 2.5;  // a step; the next larger world is then left out
+constexpr double kMaxSeconds = 2.5;   // a step; the next larger world is then left out
 constexpr int kShare = 5;             // one in so many bodies changes its box in a step
 constexpr std::int64_t kCounts[] = {100, 300, 1000, 3000, 10000, 30000, 100000, 300000, 1000000};
 

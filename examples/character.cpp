@@ -1,4 +1,4 @@
-// A character that walks up stairs, rides a lift, and starts over from a saved moment.
+// A character climbs stairs, rides a lift, and rolls back to a saved state.
 #include <gyre/gyre.h>
 #include <gyre/kit/character.h>
 #include <gyre/replay.h>
@@ -34,7 +34,7 @@ int main() {
   };
 
   play(0, 150);
-  // The state is plain data: kept beside a snapshot, both go back together.
+  // The state is plain data: a copy of it beside a snapshot allows rollback of both.
   const auto moment = save_snapshot(world);
   const kit::CharacterState then = hero;
   play(150, 400);

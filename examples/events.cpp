@@ -1,4 +1,4 @@
-// What happened in a step is a set of arrays, in an order that never depends on threads. No callbacks.
+// The events of a step are arrays. Their order never depends on threads, and there are no callbacks.
 #include <gyre/gyre.h>
 
 #include <cstdio>
@@ -8,7 +8,7 @@ using namespace gyre;
 int main() {
   World world = *World::create();
   const BodyId floor = world.add_body({.type = BodyType::fixed}, {.geometry = Plane{}});
-  // A sensor touches nothing and reports what overlaps it.
+  // A sensor pushes nothing and reports overlaps.
   world.add_body({.type = BodyType::fixed, .pose = {.position = {0, 2, 0}}},
                  {.geometry = Box{{1, 0.25f, 1}}, .sensor = true});
   const BodyId ball = world.add_body({.pose = {.position = {0, 4, 0}}, .user_data = 7},

@@ -1,4 +1,4 @@
-// A world, a floor, a box that falls on it.
+// Creates a world with a floor and lets a box fall on it.
 #include <gyre/gyre.h>
 
 #include <cstdio>

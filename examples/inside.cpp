@@ -1,4 +1,4 @@
-// Looking inside: why is this box awake, where does the time go, what is there to draw?
+// Debugging: explains why a box is awake, prints the time of each stage, and makes debug lines.
 #include <gyre/debug.h>
 #include <gyre/gyre.h>
 
@@ -21,7 +21,7 @@ int main() {
   for (const gyre::StageSeconds& stage : times.stages)
     std::printf("%-18s %4.0f %%\n", stage.name, 100.0 * stage.seconds / times.seconds);
 
-  // One call fills the arrays that a renderer uploads as they are.
+  // One call fills the arrays that a renderer uploads.
   gyre::DebugDraw drawing;
   gyre::draw_debug(*world, {.origin = world->center_of_mass(box), .color_by = gyre::ColorBy::rest_state},
                    drawing);

@@ -1,4 +1,4 @@
-// A door on a hinge with limits and a motor, a lamp on a rope, and a chain that breaks.
+// Makes a door on a hinge with limits and a motor, a lamp on a rope, and a chain that breaks.
 #include <gyre/gyre.h>
 
 #include <cstdio>
@@ -9,7 +9,7 @@ int main() {
   World world = *World::create();
   bool good = true;
 
-  // Anchors and axes are world places as the bodies stand now. A null id (none given) is the world itself.
+  // Anchors and axes are in world coordinates at the present poses. A null id stands for the world.
   const BodyId door = world.add_body({.pose = {.position = {0.5, 1, 0}}},
                                      {.geometry = Box{{0.5f, 1, 0.02f}}, .density = 600});
   const JointId hinge = world.add_joint(HingeDef{.b = door,
@@ -22,7 +22,7 @@ int main() {
   std::printf("the motor has opened the door to %.3f rad, its limit\n", double(angle));
   good = good && angle > 1.98f && angle < 2.02f;
 
-  // A rope: nothing acts until it is taut.
+  // A rope exerts no force while it is slack.
   const BodyId lamp = world.add_body({.pose = {.position = {5, 3, 0}}}, {.geometry = Sphere{0.2f}});
   const JointId rope =
       world.add_joint(DistanceDef{.b = lamp, .anchor = {5, 4, 0}, .min_length = 0.0f, .max_length = 2.0f});
@@ -33,7 +33,7 @@ int main() {
               double(pull.position), double(length(pull.force)), double(weight));
   good = good && length(pull.force) > 0.98f * weight && length(pull.force) < 1.02f * weight;
 
-  // A joint that can break reports it as an event and is gone.
+  // A joint that breaks is reported as an event and removed.
   const BodyId weak = world.add_body({.pose = {.position = {10, 3, 0}}}, {.geometry = Sphere{0.2f}});
   const JointId thread =
       world.add_joint(BallDef{.b = weak, .anchor = {10, 3.2, 0}, .break_force = 0.5f * weight});

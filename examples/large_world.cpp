@@ -1,5 +1,5 @@
-// Places are double, everything between two bodies is float relative to one of them: a hundred thousand kilometres from the
-// origin a stack stands and a ball bounces as they do at the origin.
+// Positions are double; vectors between two bodies are float. So a stack stands and a ball bounces a hundred thousand kilometres
+// from the origin as they do at the origin.
 #include <gyre/gyre.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace {
 
 struct Outcome {
   double stack = 0;  // height of the top box above its floor
-  double ball = 0;   // highest place of the ball after its first bounce
+  double ball = 0;   // greatest height of the ball after its first bounce
 };
 
 Outcome run(DVec3 at) {
@@ -34,7 +34,7 @@ Outcome run(DVec3 at) {
   }
   outcome.stack = world.pose(top).position.y - at.y;
 
-  // Renderers want floats: a pose seen from the camera keeps its digits.
+  // Renderers use floats: a pose relative to the camera keeps its precision.
   const Mat4 model = model_matrix(world.pose(top), at);
   std::printf("seen from near by, the top box is at height %.4f m\n", double(model.elements[13]));
   return outcome;

@@ -1,4 +1,4 @@
-// Friction and bounce belong to shapes; what two of them make together follows a rule, or a table entry for the pair.
+// Friction and restitution belong to shapes. A combine rule, or a table entry for the pair, gives the values of a contact.
 #include <gyre/gyre.h>
 
 #include <cmath>
@@ -12,11 +12,11 @@ namespace {
 constexpr std::uint16_t kRubber = 1;
 constexpr std::uint16_t kIce = 2;
 
-// How far a box slides in two seconds down a slope of 20 degrees.
+// The distance that a box slides in two seconds down a slope of 20 degrees.
 double slide(World& world, const Material& material, float z) {
   const float angle = 20.0f * kPi / 180.0f;
   const Quat tilt = from_axis_angle({0, 0, 1}, -angle);
-  // A slope is a fixed box; its top goes through the line x = y = 0.
+  // The slope is a static box; its top face contains the line x = y = 0.
   world.add_body({.type = BodyType::fixed,
                   .pose = {.position = DVec3{0, 0, z} + rotate(tilt, {0, -0.5f, 0}), .orientation = tilt}},
                  {.geometry = Box{{50, 0.5f, 1}},
@@ -33,9 +33,9 @@ double slide(World& world, const Material& material, float z) {
 
 int main() {
   World world = *World::create();
-  // Rubber with itself: the geometric mean of equal values is the value. tan(20 degrees) = 0.364 < 0.5, so it holds.
+  // Rubber with itself: the geometric mean of equal values is the value. tan(20 degrees) = 0.364 < 0.5, so the box stays.
   const double rubber = slide(world, {.static_friction = 0.5f, .dynamic_friction = 0.4f, .id = kRubber}, 0);
-  // Ice on rubber: as the table says.
+  // Ice on rubber: the table entry.
   world.set_material_pair(
       {.a = kIce, .b = kRubber, .static_friction = 0.1f, .dynamic_friction = 0.05f, .restitution = 0});
   const double ice = slide(world, {.static_friction = 0.02f, .dynamic_friction = 0.02f, .id = kIce}, 5);

@@ -1,4 +1,4 @@
-// A person who stands by the strength of the joints' motors, is struck, falls limp and comes to rest.
+// A person stands by the motors of the joints, is hit, goes limp, falls and comes to rest.
 #include <gyre/gyre.h>
 #include <gyre/kit/ragdoll.h>
 
@@ -18,8 +18,8 @@ int main() {
   const BodyId chest = ragdoll.bones[std::size_t(kit::find_bone(person, "chest"))].body;
   for (int i = 0; i < 600; ++i) {
     kit::BoneDrive drive;
-    if (i < 60) drive.key = {.strength = 1, .frequency = 4};  // held where the pose has it
-    if (i < 120) drive.motor.strength = 1;  // then by its muscles alone, from 2 s by nothing
+    if (i < 60) drive.key = {.strength = 1, .frequency = 4};  // keyed to the pose
+    if (i < 120) drive.motor.strength = 1;                    // then motors alone, from 2 s no drive
     if (i == 60) world.add_impulse(chest, {0, 0, -60});
     if (const Error e = kit::drive_ragdoll(world, person, ragdoll, standing, {&drive, 1}, step);
         e.code != ErrorCode::none) {

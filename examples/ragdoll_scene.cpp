@@ -1,4 +1,4 @@
-// Writes a scene file of people who fall down stairs: how what the kit makes becomes bodies and joints of a scene.
+// Writes a scene file of people who fall down stairs. It shows how ragdolls of the kit become bodies and joints of a scene.
 //
 //   ragdoll_scene [COUNT] > FILE.gyre.json
 #include <gyre/gyre.h>
@@ -85,7 +85,7 @@ void write_bones(const kit::RagdollDef& def, const kit::RagdollPose& pose, int n
   }
 }
 
-// A scene's joint has its zero where the bodies stand: the people start with every joint in the middle of its limits.
+// The zero of a joint in a scene is the initial pose, so every joint of the people starts in the middle of its limits.
 void write_joints(const kit::RagdollDef& def, const kit::RagdollPose& pose, int number, bool last) {
   for (std::size_t i = 1; i < def.bones.size(); ++i) {
     const kit::BoneDef& bone = def.bones[i];
@@ -120,7 +120,7 @@ int main(int count, char** words) {
   const kit::RagdollDef def = *kit::stabilized(kit::make_humanoid());
   std::vector<kit::RagdollPose> poses;
   for (int i = 0; i < people; ++i) {
-    // Two abreast, each pair above the last, all turned otherwise about the pelvis.
+    // Two abreast, each pair above the last, each person rotated differently about the pelvis.
     const Quat turn =
         from_axis_angle({0, 1, 0}, 2.4f * float(i)) * from_axis_angle({1, 0, 0}, 0.9f * float(i % 7) - 2.7f);
     const int row = i / 2;

@@ -1,6 +1,6 @@
-// A recording holds a snapshot, every change and a hash of every step. Played back it gives the same bits, on any machine and any
-// number of threads; so a file of some kilobytes is a whole session, and a bug report. It also holds where the bodies were, to be
-// looked at without simulating.
+// A recording has a snapshot, every command and a hash of every step. A replay gives the same bits on any machine and any number of
+// threads. So a file of some kilobytes is a whole session, and a bug report. A recording also has a pose track, which plays without
+// simulation.
 #include <gyre/gyre.h>
 #include <gyre/replay.h>
 
@@ -11,7 +11,7 @@ using namespace gyre;
 
 namespace {
 
-// Where a recording's bytes go: here, memory.
+// The sink takes the bytes of the recording; here it is memory.
 class MemorySink : public ByteSink {
  public:
   bool write(std::span<const std::byte> bytes) override {
@@ -40,7 +40,7 @@ int main() {
   }
   std::printf("recorded 120 steps in %zu bytes\n", sink.data.size());
 
-  // Threads and SIMD width are the player's own; the steps are the recording's.
+  // The replay chooses threads and SIMD width; the recording has the steps.
   Result<Replay> opened = Replay::open(sink.data, {.threads = 3, .simd_width = 1});
   if (!opened) {
     std::printf("%s\n", opened.error().message);
@@ -52,7 +52,7 @@ int main() {
   while (replay.step(&matches)) equal += matches;
   std::printf("%d of %d steps have the recorded hash\n", equal, int(replay.step_count()));
 
-  // Go anywhere in it.
+  // A replay can seek to any step.
   const Error error = replay.seek(45);
   if (error.code != ErrorCode::none) {
     std::printf("%s\n", error.message);
@@ -60,7 +60,7 @@ int main() {
   }
   std::printf("at step 45 there are %d bodies\n", replay.world().counts().bodies);
 
-  // Look at it: no world, no simulation, and any version of Gyre.
+  // The pose track needs no world and no simulation, and works in any version of Gyre.
   Result<PoseTrack> looked_at = PoseTrack::open(sink.data);
   if (!looked_at || looked_at->seek(100).code != ErrorCode::none) return 1;
   const TrackFrame frame = looked_at->frame();

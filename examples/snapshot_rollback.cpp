@@ -1,5 +1,5 @@
-// Rollback, as networked games use it: go on with a guess of the other player's input, and when the true one arrives, go back,
-// put it in, and step again. A world that was rolled back has the same bits as one that knew from the start.
+// Rollback, as in networked games: the world steps with a guess of the input of the other player. When the true input arrives, the
+// world rolls back, applies it, and steps again. It then has the same bits as a world that knew the input from the start.
 #include <gyre/gyre.h>
 #include <gyre/replay.h>
 
@@ -25,7 +25,7 @@ BodyId build(World& world) {
 }  // namespace
 
 int main() {
-  // The world of somebody who knows all input in time: the player kicks the ball in step 20.
+  // This world knows all input in time: the player kicks the ball in step 20.
   World informed = *World::create();
   const BodyId informed_ball = build(informed);
   for (int i = 0; i < 60; ++i) {
@@ -33,7 +33,7 @@ int main() {
     informed.step(kStep);
   }
 
-  // The same, but the kick becomes known only ten steps later.
+  // This world learns of the kick only ten steps later.
   World late = *World::create();
   const BodyId late_ball = build(late);
   Rollback ring(16);
@@ -46,7 +46,7 @@ int main() {
   while (late.step_count() < 60) late.step(kStep);
   std::printf("informed %016" PRIx64 "\nlate     %016" PRIx64 "\n", informed.hash(), late.hash());
 
-  // A snapshot is the same state as bytes, for a file or the network.
+  // A snapshot has the same state as bytes, for a file or the network.
   const std::vector<std::byte> bytes = save_snapshot(late);
   Result<World> loaded = load_snapshot(bytes);
   if (!loaded) {

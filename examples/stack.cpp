@@ -1,4 +1,4 @@
-// A tower of forty boxes stands for a minute, and does not sink or lean. Bodies are read in bulk, as arrays.
+// A tower of forty boxes stands for a minute and neither sinks nor leans. The program reads bodies in bulk, as arrays.
 #include <gyre/gyre.h>
 
 #include <cmath>

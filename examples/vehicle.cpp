@@ -1,4 +1,4 @@
-// A car that accelerates, brakes and turns.
+// A car accelerates, brakes and turns.
 #include <gyre/gyre.h>
 #include <gyre/kit/vehicle.h>
 
@@ -9,7 +9,7 @@ using namespace gyre;
 int main() {
   World world = *World::create({});
   world.add_body({.type = BodyType::fixed}, {.geometry = Plane{}});
-  // The centre of mass is low, as in a car: the box stands for the shell alone.
+  // The centre of mass is low, as in a car; the box is the shell alone.
   BodyDef shell{.pose = {{0, 0.6, 0}, {}}};
   shell.mass = 1400.0f;
   shell.center_of_mass = Vec3{0, -0.1f, 0.05f};

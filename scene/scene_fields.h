@@ -31,7 +31,7 @@ struct Range {
 };
 
 constexpr double kFarthest = 1.0e12;    // m: how far from the origin the engine lets anything be
-constexpr double kMaxSurface = 1.0e6;  // friction, damping and other factors
+constexpr double kMaxSurface = 1.0e6;   // friction, damping and other factors
 constexpr double kMaxDensity = 1.0e20;
 
 // A word of the format and what it stands for; no value: a word of the format that this version does not have.

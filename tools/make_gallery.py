@@ -30,32 +30,32 @@ ENTRIES = {
                  "movie", "--from 0.6 --seconds 3"),
     "pile": ("Spheres, boxes, capsules, cylinders, cones and hulls fall into a pit. The front walls are drawn as glass.",
              "movie", "--seconds 3"),
-    "dominoes": ("Each domino tips the next; the colors only show the order.", "movie", "--seconds 5 --speed 2.5"),
-    "bowling": ("A ball with side spin. Each pin is two hulls and a sphere.", "movie", "--from 0.6 --seconds 3"),
-    "billiards": ("The break, at 240 steps a second, in slow motion. Balls, cloth and cushions have their own friction and "
-                  "restitution by a table of pairs.", "movie", "--from 0.05 --seconds 4 --speed 0.5"),
-    "bridge": ("Twenty-one hinges hold twenty planks and what falls on them.", "movie", "--seconds 3"),
+    "dominoes": ("Each domino tips the next. The colours only show the order.", "movie", "--seconds 5 --speed 2.5"),
+    "bowling": ("A ball with side spin hits ten pins. Each pin is two hulls and a sphere.", "movie", "--from 0.6 --seconds 3"),
+    "billiards": ("The break in slow motion, at 240 steps a second. A table of material pairs gives the friction and restitution of "
+                  "balls, cloth and cushions.", "movie", "--from 0.05 --seconds 4 --speed 0.5"),
+    "bridge": ("Twenty-one hinges hold twenty planks and their load.", "movie", "--seconds 3"),
     "chain": ("A chain of ball joints pulls a ball 130 times as heavy as a link.", "movie", "--seconds 4"),
-    "machines": ("A driven hinge, a slider on a spring, a gate with limits, a coil spring, a rocket, and a mixer that "
-                 "nothing can stop.", "movie", "--seconds 4"),
-    "newtons_cradle": ("Ten rods, five balls, restitution 1.", "movie", "--seconds 3"),
+    "machines": ("A driven hinge, a slider on a spring, a gate with limits, a coil spring, a rocket, and a kinematic "
+                 "mixer.", "movie", "--seconds 4"),
+    "newtons_cradle": ("Five balls on ten rods, with restitution 1.", "movie", "--seconds 3"),
     "bouncing": ("Restitution from 0 on the left to 1 on the right. The last ball bounces for ever.", "movie", "--seconds 5"),
-    "incline_materials": ("Friction decides who stays on a slope of 22 degrees: above tan 22 = 0.40, nothing slides.",
+    "incline_materials": ("Friction decides which boxes stay on a slope of 22 degrees: above tan 22 = 0.40, no box slides.",
                           "movie", "--seconds 3"),
-    "belt": ("Belts at 2 m/s and 1 m/s the other way: crates slip by the law of friction until they have the belt's speed.",
+    "belt": ("Two belts run at 2 m/s and at 1 m/s the other way. Crates slip by Coulomb friction until they have the speed of the belt.",
              "picture", "--at 1.2"),
-    "one_way": ("Platforms that let pass upward and hold from above.", "picture", "--at 0.45"),
-    "half_wood_half_lead": ("Bricks with two halves of different density: the centre of mass decides which of them tip.",
+    "one_way": ("One-way platforms let bodies pass upward and hold them from above.", "picture", "--at 0.45"),
+    "half_wood_half_lead": ("Bricks have two halves of different density. The centre of mass decides which of them tip.",
                             "movie", "--seconds 2"),
     "rolling": ("A ball, a cylinder, a capsule and a hollow cylinder race down a ramp; a cone rolls around its apex, a coin spins.",
                 "movie", "--seconds 6"),
     "gyroscope": ("A heavy top precesses about its pivot.", "movie", "--seconds 5"),
-    "t_handle": ("Without weight, a body that spins about its middle axis turns over, again and again.", "movie",
+    "t_handle": ("Without gravity, a body that spins about its middle axis flips again and again.", "movie",
                  "--seconds 6"),
-    "mesh_terrain": ("A hundred and twenty pieces on a triangle mesh.", "movie", "--seconds 3"),
-    "height_field": ("Sixty pieces on a grid of heights.", "picture", "--at 3"),
-    "card_house": ("Fifteen cards, held by friction alone.", "picture", "--at 5"),
-    "stack": ("Ten boxes. They stand for as long as you like.", "picture", "--at 5"),
+    "mesh_terrain": ("A hundred and twenty pieces lie on a triangle mesh.", "movie", "--seconds 3"),
+    "height_field": ("Sixty pieces lie on a height field.", "picture", "--at 3"),
+    "card_house": ("Friction alone holds fifteen cards.", "picture", "--at 5"),
+    "stack": ("A tower of ten boxes stands for any time.", "picture", "--at 5"),
 }
 ELSE = ("", "picture", "--at 2")
 
@@ -82,8 +82,8 @@ def draw(gyre, name, out, options):
 
 def page_text():
     parts = ["# Gallery", "",
-             "Every scene in [scenes/](../scenes), drawn by `gyre render` without a graphics card. `tools/make_gallery.py` makes this page;",
-             "below each picture stands the command that draws it. To see a scene from all sides: `./run view SCENE`."]
+             "`gyre render` draws every scene in [scenes/](../scenes) without a graphics card. `tools/make_gallery.py` makes this page.",
+             "The command that draws a picture is below it. `./run view SCENE` shows a scene from all sides."]
     for name in scene_names():
         words, picture, options = picture_of(name)
         title = json.loads((SCENES / f"{name}.gyre.json").read_text(encoding="utf-8"))["name"]

@@ -18,7 +18,7 @@ int max_lanes();
 
 // Lanes with which kernels run fastest, at most max_lanes(). 16 only where they were measured to pay: on AMD's from family 1Ah on (Zen 5),
 // where registers of 512 bits are as wide within, and on Intel's from Sapphire Rapids on, which do not slow down for them and are known by
-// their arithmetic of half floats. Elsewhere what they save in instructions is lost again on the way (docs/performance.md): there eight
+// their arithmetic of half floats. Elsewhere what they save in instructions is lost again on the way (docs/performance_trials.md): there eight
 // lanes have kernels that use the 32 registers.
 int best_lanes();
 

@@ -23,7 +23,7 @@ class Wire {
   Wire(std::vector<float>& lines, int segments)
       : lines_(lines),
         segments_(segments < kMinSegments ? kMinSegments
-                                             : (segments > kMaxSegments ? kMaxSegments : segments)) {}
+                                          : (segments > kMaxSegments ? kMaxSegments : segments)) {}
 
   void line(Vec3 from, Vec3 to) {
     append(lines_, from);

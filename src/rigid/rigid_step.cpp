@@ -2,13 +2,13 @@
 
 #include "base/container/sort.h"
 #include "collision/broadphase/fat_box.h"
-#include "collision/contact/pair_update.h"
 #include "collision/contact/internal_edges.h"
+#include "collision/contact/pair_update.h"
 #include "rigid/collision_bodies.h"
 #include "rigid/sleep/island.h"
 #include "rigid/store/shape_boxes.h"
-#include "task/parallel_filter.h"
 #include "task/parallel.h"
+#include "task/parallel_filter.h"
 
 namespace gyre {
 
@@ -96,7 +96,8 @@ void ensure_fat_boxes_cover_motion(RigidWorld& w, TaskSystem& tasks, float secon
     for_blocks(tasks, int(w.bodies.awake.size()), kBodiesPerBlock, [&](int begin, int end, int) {
       for (int n = begin; n < end; ++n) {
         const std::uint32_t i = w.bodies.awake[n];
-        for (const ShapeId id : w.bodies.shapes[i]) w.refit_marks[id.index] = ensure_fat_box_covers_motion(w, id.index, seconds);
+        for (const ShapeId id : w.bodies.shapes[i])
+          w.refit_marks[id.index] = ensure_fat_box_covers_motion(w, id.index, seconds);
       }
     });
     list_marked(w, w.bodies.awake);
@@ -221,8 +222,8 @@ void collide_pairs(RigidWorld& w, Arena& arena, TaskSystem& tasks, RecycleContac
   const ArenaScope scope(arena);
   CollisionBodies bodies(w, arena, seconds);
   bodies.make(tasks, arena);
-  const CollideInput input{w.shapes.colliders, bodies.collision_bodies(),         bodies.centers(), bodies.awake(),
-                           w.shapes.proxies,   w.awake_links.contacts, recycle_contacts};
+  const CollideInput input{w.shapes.colliders, bodies.collision_bodies(), bodies.centers(), bodies.awake(),
+                           w.shapes.proxies,   w.awake_links.contacts,    recycle_contacts};
   collide(w.contacts, input, tasks, w.touches);
   remove_internal_edge_contacts(w.contacts, input, w.touches.beside_resting, arena, tasks, w.internal_edges);
 }

@@ -6,7 +6,7 @@
 namespace gyre {
 
 FilteredList filter_by_blocks(TaskSystem& tasks, Arena& arena, std::size_t count,
-                        FunctionRef<FilteredBlock(std::uint32_t, std::uint32_t)> choose_block) {
+                              FunctionRef<FilteredBlock(std::uint32_t, std::uint32_t)> choose_block) {
   constexpr int kBits = 64;
   struct Sum {
     std::uint32_t numbers = 0, size = 0;

@@ -31,7 +31,7 @@ struct FilteredBlock {
 
 // choose_block(begin, end) tells which of a block's numbers are chosen. The list is of `arena`.
 FilteredList filter_by_blocks(TaskSystem& tasks, Arena& arena, std::size_t count,
-                        FunctionRef<FilteredBlock(std::uint32_t, std::uint32_t)> choose_block);
+                              FunctionRef<FilteredBlock(std::uint32_t, std::uint32_t)> choose_block);
 
 // Those numbers below `count` whose size is not zero: size_of(number), asked of each once, may tell yes or no only. The list is of
 // `arena`.
@@ -45,7 +45,8 @@ FilteredList parallel_filter(TaskSystem& tasks, Arena& arena, std::size_t count,
 }
 // The same, of those in all of the sets; only they are asked.
 template <class SizeOf, class... More>
-FilteredList parallel_filter_among(TaskSystem& tasks, Arena& arena, SizeOf&& size_of, const Bitset& set, const More&... more) {
+FilteredList parallel_filter_among(TaskSystem& tasks, Arena& arena, SizeOf&& size_of, const Bitset& set,
+                                   const More&... more) {
   std::size_t size = set.size();
   ((size = more.size() < size ? more.size() : size), ...);
   return filter_by_blocks(tasks, arena, size, [&](std::uint32_t begin, std::uint32_t) {

@@ -1,7 +1,7 @@
 // What sleeps is not asked; and asking it all the same changes nothing.
-#include "rigid/store/active_constraints.h"
 #include "determinism/random_world.h"
 #include "determinism/scenes.h"
+#include "rigid/store/active_constraints.h"
 #include "world/validate_state.h"
 #include "world/world_state.h"
 
@@ -117,7 +117,9 @@ int compare_random_worlds(std::uint32_t first, std::uint32_t count, TimeStepping
   }
   return left_out;
 }
-TEST(ActiveConstraints, AskingAllIsTheSameInRandomWorlds) { EXPECT_GT(compare_random_worlds(1, 20, TimeStepping::fixed), 500); }
+TEST(ActiveConstraints, AskingAllIsTheSameInRandomWorlds) {
+  EXPECT_GT(compare_random_worlds(1, 20, TimeStepping::fixed), 500);
+}
 // Whose parts of a step some may be put to sleep between.
 TEST(LongAwakeLinks, AskingAllIsTheSameInAdaptiveSteps) {
   EXPECT_GT(compare_random_worlds(100, 4, TimeStepping::adaptive), 50);

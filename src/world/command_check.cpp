@@ -90,7 +90,8 @@ Error check_mass_overrides(const BodyDef& def) {
   if (def.center_of_mass) {
     Error e = check_finite("body.center_of_mass", *def.center_of_mass);
     const float farthest = largest(absolute(*def.center_of_mass));
-    if (e.code == ErrorCode::none) e = check_range("body.center_of_mass", farthest, 0.0f, float(kMaxPosition));
+    if (e.code == ErrorCode::none)
+      e = check_range("body.center_of_mass", farthest, 0.0f, float(kMaxPosition));
     if (e.code != ErrorCode::none) return e;
   }
   if (def.inertia) return check_inertia(*def.inertia);

@@ -1,10 +1,10 @@
 // One step of the world, as the list of its stages. Each is a function from arrays to arrays in the folders below.
 #include "base/check.h"
 #include "rigid/collision_bodies.h"
-#include "rigid/time/step_error.h"
-#include "rigid/sleep/island.h"
-#include "rigid/rigid_step.h"
 #include "rigid/integrate/spring_stability.h"
+#include "rigid/rigid_step.h"
+#include "rigid/sleep/island.h"
+#include "rigid/time/step_error.h"
 #include "world/stages.h"
 #include "world/validate_state.h"
 #include "world/world_state.h"

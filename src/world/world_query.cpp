@@ -18,7 +18,8 @@ constexpr int kBlock = 32;  // questions that one worker takes at a time
 // ---------------------------------------------------------------------------------------------------------------- checks
 
 Error check_vector(const char* what, const char* field, DVec3 p) {
-  if (absolute(p.x) <= kMaxPosition && absolute(p.y) <= kMaxPosition && absolute(p.z) <= kMaxPosition) return {};
+  if (absolute(p.x) <= kMaxPosition && absolute(p.y) <= kMaxPosition && absolute(p.z) <= kMaxPosition)
+    return {};
   return make_error(ErrorCode::invalid_argument,
                     "%s: %s is (%g, %g, %g); every component must be finite and within 1e12 m", what, field,
                     p.x, p.y, p.z);

@@ -4,10 +4,10 @@
 
 #include "base/arena/arena.h"
 #include "base/profile/profile.h"
-#include "rigid/time/toi_stepping.h"
 #include "rigid/rigid_step.h"
-#include "rigid/store/rigid_world.h"
 #include "rigid/solve/solve_step.h"
+#include "rigid/store/rigid_world.h"
+#include "rigid/time/toi_stepping.h"
 #include "solver/contact/contact_block.h"
 #include "task/task_system.h"
 #include "world/command.h"

@@ -26,7 +26,7 @@ BodyId add_ground(World& world) { return add_fixed(world, {}, Plane{}); }
 
 // Steps the world and the character for some seconds.
 void traversal(World& world, const CharacterDef& def, CharacterState& state, Vec3 velocity, double seconds,
-          const std::function<void()>& each = {}) {
+               const std::function<void()>& each = {}) {
   for (int i = 0; i < int(std::lround(seconds * 60)); ++i) {
     ASSERT_TRUE(world.step(kStep));
     ASSERT_EQ(move_character(world, def, state, {.velocity = velocity}, kStep).code, ErrorCode::none);
@@ -181,11 +181,12 @@ TEST(Character, WalksStairsBothWays) {
   for (int i = 0; i < 10; ++i) add_fixed(world, {1.0 + 0.3 * i + 5, 0.2 * (i + 1) - 2, 0}, Box{{5, 2, 2}});
   const CharacterDef def;
   CharacterState state = stand(world, def, {0, 0.01, 0});
-  traversal(world, def, state, {2, 0, 0}, 3.0, [&] { EXPECT_EQ(state.ground, GroundKind::firm) << state.feet.x; });
+  traversal(world, def, state, {2, 0, 0}, 3.0,
+            [&] { EXPECT_EQ(state.ground, GroundKind::firm) << state.feet.x; });
   EXPECT_NEAR(state.feet.y, 2.0, kGapAndABit);
   EXPECT_GT(state.feet.x, 5.0);
   traversal(world, def, state, {-2, 0, 0}, 3.0,
-       [&] { EXPECT_EQ(state.ground, GroundKind::firm) << state.feet.x; });
+            [&] { EXPECT_EQ(state.ground, GroundKind::firm) << state.feet.x; });
   EXPECT_NEAR(state.feet.y, 0.0, kGapAndABit);
   std::printf("[row] way lost on ten stairs of 0.3 m %.3f m of 12\n", -state.feet.x);
   EXPECT_NEAR(state.feet.x, 0.0, 0.1);

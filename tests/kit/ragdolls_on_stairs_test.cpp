@@ -47,7 +47,7 @@ double depth_in_stairs(DVec3 p) {
 struct Judged {
   std::vector<float> gaps;    // m, of every joint in every tenth step
   double inside = -1e9;       // m: how far a bone's centre was inside the stairs, at most
-  double energy_gain = 0;          // J in a step
+  double energy_gain = 0;     // J in a step
   std::vector<float> beyond;  // degrees, of every bone in every tenth step
   int awake = 0;
   double kinetic = 0;  // J, at the end

@@ -99,7 +99,8 @@ TEST(Spring, OfAnyStiffnessIsStable) {
           return e.kinetic + e.elastic + e.potential;
         };
         const double start = energy();
-        const double scale = 0.5 * stiffness * geometric_stiffness * geometric_stiffness + mass * kGravity * geometric_stiffness;
+        const double scale = 0.5 * stiffness * geometric_stiffness * geometric_stiffness +
+                             mass * kGravity * geometric_stiffness;
         double most = start;
         for (int i = 0; i < 600; ++i) {
           world.step(kStep);

@@ -314,7 +314,8 @@ TEST(SixBarLinkage, TurnsForAMinuteWithTwiceTheJointsItNeeds) {
   Assembly articulation({.sleeping = false});
   const BodyId bar = articulation.add({.pose = {.position = {1.5, 0, 0}}}, Box{{2.0f, 0.05f, 0.05f}});
   for (int k = 0; k < 4; ++k) {
-    const BodyId crank = articulation.add({.pose = {.position = {double(k), 0.5, 0}}}, Box{{0.05f, 0.5f, 0.05f}});
+    const BodyId crank =
+        articulation.add({.pose = {.position = {double(k), 0.5, 0}}}, Box{{0.05f, 0.5f, 0.05f}});
     articulation.join(JointKind::hinge, {}, crank, {double(k), 1, 0});
     articulation.join(JointKind::hinge, crank, bar, {double(k), 0, 0});
     articulation.world.set_velocity(crank, {1.5f, 0, 0}, {0, 0, 3});
@@ -367,15 +368,16 @@ TEST(FourBarLinkage, FollowsFreudenstein) {
   double worst = 0.0;
   for (int i = 0; i < 1200; ++i) {
     articulation.world.step(kStep);
-    const Quat at = articulation.world.pose(crank).orientation, end = articulation.world.pose(swing).orientation;
+    const Quat at = articulation.world.pose(crank).orientation,
+               end = articulation.world.pose(swing).orientation;
     const double expected = rocker_angle(2.0 * std::atan2(double(at.z), double(at.w)));
     double error = 2.0 * std::atan2(double(end.z), double(end.w)) - expected;
     error -= 2.0 * kPiDouble * std::round(error / (2.0 * kPiDouble));
     worst = std::max(worst, std::fabs(error));
   }
   EXPECT_TRUE(limit_row("A-43 rocker angle (rad)", worst, 1e-2, 1e-4));
-  EXPECT_TRUE(relative_row("A-43 speed of the crank", double(articulation.world.angular_velocity(crank).z), 2.0,
-                           1e-2, 1e-4));
+  EXPECT_TRUE(relative_row("A-43 speed of the crank", double(articulation.world.angular_velocity(crank).z),
+                           2.0, 1e-2, 1e-4));
 }
 
 // -------------------------------------------------------------------------------------------------- where it ends

@@ -104,8 +104,8 @@ TEST(CompoundPendulum, SmallSwings) {
 TEST(FallingRod, PassesTheHorizontalAtItsRateWithItsForces) {
   World world = make_world({.sleeping = false});
   const double direction = 0.01;
-  BodyDef def =
-      point_body(1.0, {1.0f / 12, 1e-4f, 1.0f / 12}, {0.5 * std::sin(direction), 0.5 * std::cos(direction), 0});
+  BodyDef def = point_body(1.0, {1.0f / 12, 1e-4f, 1.0f / 12},
+                           {0.5 * std::sin(direction), 0.5 * std::cos(direction), 0});
   def.pose.orientation = from_axis_angle({0, 0, 1}, float(-direction));
   const BodyId rod = world.add_body(def);
   const JointId hinge = world.add_joint(HingeDef{.b = rod, .axis = {0, 0, 1}});

@@ -58,7 +58,7 @@ TEST(Rattleback, ReversesOneWaySoonAndTheOtherWayLate) {
 // A rod that leans by `angle` from the horizontal while its lower tip slides ahead of it at 5 m/s, with no impact.
 struct Slide {
   double energy_gain = 0.0;  // in a step, over the start, while the upper end is in the air
-  double max_energy = 0.0;  // over the start
+  double max_energy = 0.0;   // over the start
   double largest_impulse = 0.0;
   std::uint64_t hash = 0;
   bool finite = true;

@@ -162,7 +162,8 @@ TEST(ThrownLinkages, KeepMomentaWhateverTheyWeigh) {
   for (std::uint32_t seed = 0; seed < 60; ++seed) throw_chain(seed, sliding, sliders);
   // None of these turns far in a sub-step, and yet some doubled what they had, at one step in a thousand.
   for (const std::uint32_t seed : {88u, 236u, 286u, 349u, 468u, 598u}) throw_chain(seed, sliding, sliders);
-  EXPECT_TRUE(limit_row("sliders between light and heavy bodies: energy gained", sliders.energy_gain, 0.3, 0.01));
+  EXPECT_TRUE(
+      limit_row("sliders between light and heavy bodies: energy gained", sliders.energy_gain, 0.3, 0.01));
   EXPECT_TRUE(limit_row("the same: angular momentum lost, over that of 1 m/s", sliders.turned, 0.02, 0.001));
   // Some of these joints are solved in lanes, some alone, and ropes are swept: all of a chain is one island.
   const Chain kinds{
@@ -172,7 +173,8 @@ TEST(ThrownLinkages, KeepMomentaWhateverTheyWeigh) {
       20.0f,
       240};
   for (std::uint32_t seed = 0; seed < 100; ++seed) throw_chain(seed, kinds, mixed);
-  EXPECT_TRUE(limit_row("joints of five kinds, ropes among them: energy gained", mixed.energy_gain, 0.5, 0.01));
+  EXPECT_TRUE(
+      limit_row("joints of five kinds, ropes among them: energy gained", mixed.energy_gain, 0.5, 0.01));
   EXPECT_TRUE(limit_row("the same: angular momentum lost, over that of 1 m/s", mixed.turned, 0.02, 0.001));
 }
 

@@ -43,7 +43,7 @@ double drop(std::size_t kind, std::uint32_t seed, float friction, float min_spin
   World world = make_world({.sleeping = false});
   add_ground(world, surface(friction));
   const float size = 0.01f * std::pow(30.0f, random.real(0, 1));                        // 1 to 30 cm
-  const float spin = min_spin * std::pow(max_spin / min_spin, random.real(0, 1));  // about each axis
+  const float spin = min_spin * std::pow(max_spin / min_spin, random.real(0, 1));       // about each axis
   const BodyDef def{.pose = {{0, 2.0 * double(size), 0}, random.turn(3.0f)},
                     .linear_velocity = random.vector(-1, 1),
                     .angular_velocity = random.vector(-spin, spin)};

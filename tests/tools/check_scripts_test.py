@@ -120,6 +120,85 @@ class Tree(unittest.TestCase):
         self.assertEqual(code, 0, output)
         self.assertIn("row.cpp:1: a function of 93 lines", output)
 
+    def write_decision(self, page, readme="| [joints](joints.md) | How soft? |\n"):
+        self.write("docs/decisions/joints.md", page)
+        self.write("docs/decisions/README.md", readme)
+
+    def test_decisions(self):
+        abstract = "".join(f"- **{label}:** it is one sentence.\n" for label in
+                           ("Problem", "Rule", "Constants", "Figure", "Limit"))
+        good = "# How soft?\n\n" + abstract + "\n## Why it matters\n"
+        self.write_decision(good)
+        code, output = self.run_check("docs")
+        self.assertEqual(code, 0, output)
+        for page, fault in ((good.replace("?", ""), "the title is no question"),
+                            (good.replace("- **Figure:** it is one sentence.\n", ""), "five lines must follow"),
+                            (good.replace("Figure", "Picture"), "line 6 must begin with '- **Figure:**'"),
+                            (good.replace("sentence.\n\n", "sentence\n\n"), "line 7 must begin with '- **Limit:**'")):
+            with self.subTest(fault=fault):
+                self.write_decision(page)
+                self.assert_fails("docs", fault)
+        self.write_decision(good, "No list.\n")
+        self.assert_fails("docs", "lists it 0 times")
+
+    def list_units(self, *options):
+        done = subprocess.run([sys.executable, str(self.root / "tools" / "list_units.py"), *options], capture_output=True,
+                              text=True, check=False)
+        return done.returncode, done.stdout + done.stderr
+
+    def write_units(self):
+        """A tree of two units in rooms, with a page that lists them."""
+        self.write("docs/architecture.md", "Before.\n<!-- units: written by tools/list_units.py -->\n"
+                                           "<!-- end of units -->\nAfter.\n")
+        self.write("src/geometry/distance/gjk.h", "// Distance of two shapes (E. Gilbert). In: two shapes.\n\n#pragma once\n")
+        self.write("src/geometry/distance/gjk.cpp", "// The source says something else.\n")
+        self.write("src/geometry/distance/gjk_test.cpp", "int main() {}\n")
+        self.write("src/solver/rows/row.cpp", "// Scalar rows.\n// They are few.\n")
+        self.write("src/world/world.cpp", "// The world.\n")
+
+    def test_units_are_listed(self):
+        self.write_units()
+        code, output = self.list_units()
+        self.assertEqual(code, 0, output)
+        page = (self.root / "docs" / "architecture.md").read_text(encoding="utf-8")
+        self.assertIn("- `gjk`: Distance of two shapes (E. Gilbert).\n", page)
+        self.assertIn("**src/solver/rows**\n\n- `row`: Scalar rows.\n", page)
+        self.assertNotIn("gjk_test", page)
+        self.assertTrue(page.startswith("Before.\n") and page.endswith("\nAfter.\n"), page)
+        code, output = self.list_units("--check")
+        self.assertEqual(code, 0, output)
+
+    def test_units_out_of_date(self):
+        self.write_units()
+        self.list_units()
+        for name, text in (("src/solver/rows/row.cpp", "// Rows of another kind.\n"),
+                           ("src/solver/rows/friction_set.h", "// The friction disc.\n")):
+            with self.subTest(name=name):
+                self.write(name, text)
+                code, output = self.list_units("--check")
+                self.assertEqual(code, 1, output)
+                self.assertIn("missing: - `", output)
+                self.list_units()
+        (self.root / "src/solver/rows/friction_set.h").unlink()
+        code, output = self.list_units("--check")
+        self.assertEqual(code, 1, output)
+        self.assertIn("out of date: - `friction_set`", output)
+
+    def test_unit_without_a_head(self):
+        self.write_units()
+        self.write("src/solver/rows/delassus.h", "#pragma once\n")
+        code, output = self.list_units()
+        self.assertEqual(code, 1, output)
+        self.assertIn("src/solver/rows/delassus.h: no comment at its head", output)
+
+    def test_page_without_markers(self):
+        self.write_units()
+        self.write("docs/architecture.md", "No list.\n")
+        for options in ((), ("--check",)):
+            code, output = self.list_units(*options)
+            self.assertEqual(code, 1, output)
+            self.assertIn("marker comments", output)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -25,7 +25,7 @@ constexpr double kUsualSeconds = 5, kUsualFrameRate = 20;
 constexpr std::uint64_t kUntilTheEnd = std::numeric_limits<std::uint64_t>::max();  // of a recording
 constexpr std::uint64_t kMaxPictures = 10'000'000;
 constexpr std::uint64_t kMaxMovieBytes = std::uint64_t(2)
-                                          << 30;  // of memory, as a GIF needs all its frames at once
+                                         << 30;  // of memory, as a GIF needs all its frames at once
 
 void say(const std::string& message) { std::fprintf(stderr, "gyre: %s\n", message.c_str()); }
 

@@ -5,8 +5,8 @@
 // between threads.
 #pragma once
 
-#include "base/check.h"
 #include "base/arena/shrink_policy.h"
+#include "base/check.h"
 #include "base/memory/memory.h"
 
 #include <cstddef>

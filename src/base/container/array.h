@@ -4,8 +4,8 @@
 #pragma once
 
 #include "base/check.h"
-#include "base/noinline.h"
 #include "base/memory/memory.h"
+#include "base/noinline.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -38,7 +38,8 @@ TEST(InternedColumn, AgreesWithAnArray) {
     ASSERT_LE(column.distinct(), 41u);
   }
   const InternedColumn<Record> copy = column;
-  for (std::size_t k = 0; k < expected.size(); ++k) ASSERT_EQ(interning_key(copy[k]), interning_key(expected[k]));
+  for (std::size_t k = 0; k < expected.size(); ++k)
+    ASSERT_EQ(interning_key(copy[k]), interning_key(expected[k]));
 }
 
 TEST(InternedColumn, EqualRecordsCostFourBytes) {

@@ -2,8 +2,8 @@
 // pool of chunks; a list is the number of its first chunk, the only one that may have free lanes.
 #pragma once
 
-#include "base/container/array.h"
 #include "base/arena/shrink_policy.h"
+#include "base/container/array.h"
 #include "collision/broadphase/box_lanes.h"
 #include "collision/broadphase/box_sweep.h"
 

@@ -13,8 +13,8 @@
 // I. Wald et al., "Getting Rid of Packets: Efficient SIMD Single-Ray Traversal using Multi-branching BVHs", 2008.
 #pragma once
 
-#include "base/container/array.h"
 #include "base/arena/shrink_policy.h"
+#include "base/container/array.h"
 #include "collision/broadphase/box_lanes.h"
 #include "collision/broadphase/box_sweep.h"
 #include "collision/broadphase/box_walk.h"

@@ -137,8 +137,8 @@ void BroadphaseBase<Index>::change(std::span<const Proxy> proxies, std::uint32_t
 }
 
 template <class Index>
-void BroadphaseBase<Index>::place_all(std::span<const Proxy> proxies,
-                                        std::span<const std::uint32_t> changed, Home home) {
+void BroadphaseBase<Index>::place_all(std::span<const Proxy> proxies, std::span<const std::uint32_t> changed,
+                                      Home home) {
   if constexpr (kRefits) {
     std::size_t count = 0;
     for (const std::uint32_t index : changed) {
@@ -192,7 +192,7 @@ void BroadphaseBase<Index>::update(std::span<const Proxy> proxies, std::span<con
 
 template <class Index>
 void BroadphaseBase<Index>::find_pairs(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved,
-                                         PairFilter filter, TaskSystem& tasks, Array<std::uint64_t>& pairs) {
+                                       PairFilter filter, TaskSystem& tasks, Array<std::uint64_t>& pairs) {
   collector_.collect(proxies, moved, filter, tasks, pairs, [&](std::uint32_t self, const auto& visit) {
     const Proxy& proxy = proxies[self];
     if (homes_[self] == kUnboundedList) {
@@ -207,7 +207,7 @@ void BroadphaseBase<Index>::find_pairs(std::span<const Proxy> proxies, std::span
 
 template <class Index>
 void BroadphaseBase<Index>::query(std::span<const Proxy> proxies, const Aabb& box,
-                                    Array<std::uint32_t>& found) const {
+                                  Array<std::uint32_t>& found) const {
   const std::size_t before = found.size();
   const auto add_found = [&](std::uint32_t index) {
     if (overlap(proxies[index].fat_box, box)) found.push_back(index);
@@ -224,7 +224,7 @@ void BroadphaseBase<Index>::query(std::span<const Proxy> proxies, const Aabb& bo
 
 template <class Index>
 float BroadphaseBase<Index>::cast(std::span<const Proxy> proxies, const BoxSweep& sweep, float reach,
-                                    CastVisit visit) const {
+                                  CastVisit visit) const {
   const SweepTest test(sweep);
   const auto look_at = [&](std::uint32_t index, float so_far) {
     return meets(sweep, so_far, proxies[index].fat_box) ? visit(index, so_far) : so_far;
@@ -267,7 +267,7 @@ std::size_t BroadphaseBase<Index>::bytes() const {
 
 template <class Index>
 const char* BroadphaseBase<Index>::find_fault(std::span<const Proxy> proxies,
-                                                std::span<const std::uint32_t> changed) const {
+                                              std::span<const std::uint32_t> changed) const {
   for (const Index& index : indices_) {
     if (const char* const fault = index.find_fault()) return fault;
   }

@@ -77,7 +77,7 @@ class HashedGrid {
 
  private:
   static constexpr std::uint32_t kNone = BoxBuckets::kNone;
-  static constexpr std::int64_t kMaxCells = 64;           // of one box
+  static constexpr std::int64_t kMaxCells = 64;             // of one box
   static constexpr std::int32_t kFarthest = (1 << 20) - 1;  // cells beyond this count as this one
 
   struct Cell {

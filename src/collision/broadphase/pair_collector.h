@@ -2,9 +2,9 @@
 // finds, and one sort at the end makes the result the same whoever found what.
 #pragma once
 
+#include "base/arena/shrink_policy.h"
 #include "base/container/array.h"
 #include "base/container/bitset.h"
-#include "base/arena/shrink_policy.h"
 #include "base/container/sort.h"
 #include "collision/broadphase/broadphase.h"
 #include "task/parallel.h"

@@ -86,7 +86,7 @@ inline float extent_of(const BodyCenter& center) { return center.reach + length(
 
 struct CollideInput {
   ColliderShapes shapes;
-  std::span<const CollisionBody> looks;      // by body
+  std::span<const CollisionBody> looks;  // by body
   std::span<const BodyCenter> centers;  // by body
   std::span<const std::uint8_t> awake;  // by body: 1 for those that are, and not fixed
   std::span<const Proxy> proxies;
@@ -103,7 +103,8 @@ struct TouchChanges {
   Bitset ended;  // the other way round
   Bitset gone;   // fat boxes no longer overlap: remove the contact (`ended` is set too if it was touching)
   Bitset beside_resting;  // looked at, has points, and only one of the two is moved by contacts (for seam.h)
-  Bitset may_stop;  // asked, not gone, and blocks_fast_bodies(): what is fast may have to stop (for continuous.h)
+  Bitset
+      may_stop;  // asked, not gone, and blocks_fast_bodies(): what is fast may have to stop (for continuous.h)
 };
 
 // Whether one of the two is not pushed, or is a sensor.

@@ -2,9 +2,9 @@
 // width: lane i computes exactly what a width of 1 would.
 #pragma once
 
-#include "collision/contact/manifold_layout.h"
-#include "collision/contact/contact_recycle.h"
 #include "collision/broadphase/fat_box.h"
+#include "collision/contact/contact_recycle.h"
+#include "collision/contact/manifold_layout.h"
 #include "geometry/manifold/box_search_lanes.h"
 #include "math/wide_double.h"
 
@@ -78,7 +78,8 @@ struct Side {
 
 template <int W>
 GYRE_INLINE Side<W> load_side(const CollisionBody* const (&looks)[W], const Records<W>& centers) {
-  static_assert(GYRE_FLOATS_BEFORE(CollisionBody, orientation) == 6 && GYRE_FLOATS_BEFORE(CollisionBody, way) == 10);
+  static_assert(GYRE_FLOATS_BEFORE(CollisionBody, orientation) == 6 &&
+                GYRE_FLOATS_BEFORE(CollisionBody, way) == 10);
   static_assert(GYRE_FLOATS_BEFORE(CollisionBody, turn) == 13 && GYRE_FLOATS_BEFORE(BodyCenter, reach) == 3);
   Records<W> record;
   GYRE_UNROLL
@@ -178,10 +179,10 @@ GYRE_INLINE void find_closing(Vec3W<W> b_from_a, Wide<W> gap, Wide<W> spin_a, Wi
   const Wide<W> zero(0.0f), one(1.0f), radius_a = a.reach + 0.5f * gap, radius_b = b.reach + 0.5f * gap;
   const Wide<W> squared = length_squared(b_from_a), apart = sqrt(squared);
   // Where the plane through the circle that both balls share lies between the centres.
-  const Wide<W> share = min(max((squared + (radius_a - radius_b) * (radius_a + radius_b)) /
-                                    (2.0f * squared + Wide<W>(kMinLength)),
-                                zero),
-                            one);
+  const Wide<W> share = min(
+      max((squared + (radius_a - radius_b) * (radius_a + radius_b)) / (2.0f * squared + Wide<W>(kMinLength)),
+          zero),
+      one);
   const Wide<W> from_a = share * apart, from_b = (one - share) * apart;
   group.lever = min(sqrt(max((radius_a - from_a) * (radius_a + from_a), zero)), min(radius_a, radius_b));
   group.closing_turn = b.turn - a.turn;

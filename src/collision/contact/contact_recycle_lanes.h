@@ -4,8 +4,8 @@
 
 #include "base/prefetch.h"
 #include "collision/contact/contact_apart_lanes.h"
-#include "collision/contact/match_manifold.h"
 #include "collision/contact/contact_lanes.h"
+#include "collision/contact/match_manifold.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
@@ -140,8 +140,9 @@ GYRE_INLINE void load_manifold(const Group<W>& group, int m, Manifold& none, Man
 
 // Returns in which lanes the anchors of this manifold are still good.
 template <int W>
-GYRE_INLINE Mask<W> find_motions(const Group<W>& group, const ManifoldMatch<W>& follow, const PointMotion<W>& motion,
-                              Wide<W> twice_sine, ManifoldLanes<W>& manifold) {
+GYRE_INLINE Mask<W> find_motions(const Group<W>& group, const ManifoldMatch<W>& follow,
+                                 const PointMotion<W>& motion, Wide<W> twice_sine,
+                                 ManifoldLanes<W>& manifold) {
   const Mask<W> curved = and_not(manifold.count < WideInt<W>(3), follow.flat | follow.round);
   const Mask<W> tilts = twice_sine > select(curved, Wide<W>(kCurvedTilt), Wide<W>(kFlatTilt));
   Mask<W> fails = tilts & (manifold.count > WideInt<W>(0));
@@ -182,8 +183,9 @@ GYRE_INLINE WorldFrame<W> find_world_frame(const Group<W>& group, const Manifold
 
 // Writes point `i` of each manifold. Returns in which lanes it carried load in the last step, or its surfaces touch.
 template <int W>
-GYRE_INLINE Mask<W> move_point(const Group<W>& group, const ManifoldMatch<W>& follow, const WorldFrame<W>& frame,
-                               const ManifoldLanes<W>& manifold, int i, const Targets<W>& to) {
+GYRE_INLINE Mask<W> move_point(const Group<W>& group, const ManifoldMatch<W>& follow,
+                               const WorldFrame<W>& frame, const ManifoldLanes<W>& manifold, int i,
+                               const Targets<W>& to) {
   const Anchor<W>& anchor = manifold.anchors[i];
   const Wide<W> share = select(follow.round, Wide<W>(1.0f), Wide<W>(0.5f));
   const Vec3W<W> own = frame.turn * (anchor.position + share * anchor.way - frame.center);
@@ -216,8 +218,9 @@ GYRE_INLINE void carry_friction(const ManifoldLanes<W>& manifold, int first, Vec
 
 // Writes the manifolds of those lanes whose bits are set. Returns in which lanes the shapes touch.
 template <int W>
-GYRE_INLINE Mask<W> move_manifold(const Group<W>& group, const ManifoldMatch<W>& follow, const WorldFrame<W>& frame,
-                                  const ManifoldLanes<W>& manifold, unsigned lanes) {
+GYRE_INLINE Mask<W> move_manifold(const Group<W>& group, const ManifoldMatch<W>& follow,
+                                  const WorldFrame<W>& frame, const ManifoldLanes<W>& manifold,
+                                  unsigned lanes) {
   alignas(16) float nowhere[kManifoldFloats];
   Targets<W> to;
   GYRE_UNROLL

@@ -11,8 +11,8 @@
 #include "base/container/paged_array.h"
 #include "base/container/slot_table.h"
 #include "collision/broadphase/proxy.h"
-#include "geometry/manifold_mesh/cached_triangles.h"
 #include "geometry/manifold/manifold.h"
+#include "geometry/manifold_mesh/cached_triangles.h"
 
 #include <cstdint>
 #include <span>
@@ -86,8 +86,8 @@ struct ContactStore {
   FreeSlots free_contacts;
   // Manifolds are handed out in chunks of kMaxMeshManifolds: a chunk is one run for a mesh contact, or singles.
   Array<std::uint8_t> chunk_used;  // bit i: manifold i of the chunk is in use
-  FreeSlots free_chunks;          // chunks of which nothing is in use
-  FreeSlots partial_chunks;       // chunks of which some singles are in use and some are free
+  FreeSlots free_chunks;           // chunks of which nothing is in use
+  FreeSlots partial_chunks;        // chunks of which some singles are in use and some are free
   // By chunk, of those that belong to mesh contacts: what their looks keep of the mesh. As long as the last of these needs.
   Array<CachedTriangles> kept_triangles;
 };

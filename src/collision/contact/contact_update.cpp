@@ -1,10 +1,10 @@
 // Full looks, and the matching of new points with old ones. See contact_update.h.
 #include "collision/contact/contact_update.h"
 
-#include "collision/contact/contact_apart_lanes.h"
-#include "collision/contact/match_manifold.h"
-#include "collision/contact/manifold_layout.h"
 #include "collision/broadphase/fat_box.h"
+#include "collision/contact/contact_apart_lanes.h"
+#include "collision/contact/manifold_layout.h"
+#include "collision/contact/match_manifold.h"
 #include "geometry/manifold/manifold_box.h"
 #include "geometry/manifold_mesh/manifold_mesh.h"
 #include "geometry/query/surface_overlap.h"
@@ -407,7 +407,7 @@ float compute_convex_manifold(const ContactPair& pair, const View& view, Found<1
 
 // A look at a mesh or height field.
 float compute_mesh_manifolds(const ContactPair& pair, const View& view, CachedTriangles* kept_triangles,
-                      Found<kMaxMeshManifolds>& found) {
+                             Found<kMaxMeshManifolds>& found) {
   if (pair.contact->manifold_count == 0) {
     const float far_reach = view.speculative + kClearSteps * view.way + kFarSlack * view.size;
     if (is_clear_of_surface(pair, view, far_reach)) return far_reach;

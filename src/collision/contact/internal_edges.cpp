@@ -293,8 +293,9 @@ static_assert(kMaxMeshManifolds <= 8);
 
 }  // namespace
 
-void remove_internal_edge_contacts(ContactStore& store, const CollideInput& input, const Bitset& beside_resting, Arena& arena,
-                TaskSystem& tasks, InternalEdgeScratch& scratch) {
+void remove_internal_edge_contacts(ContactStore& store, const CollideInput& input,
+                                   const Bitset& beside_resting, Arena& arena, TaskSystem& tasks,
+                                   InternalEdgeScratch& scratch) {
   const ArenaScope scope(arena);
   const std::size_t count = store.contacts.size();
   if (scratch.hidden.size() < count) scratch.hidden.resize(count);

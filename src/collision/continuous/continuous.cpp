@@ -193,7 +193,7 @@ struct BodyImpactTime : Stop {
 };
 
 BodyImpactTime first_stop(const ContinuousInput& input, const SweptPath& way, Array<std::uint32_t>& found,
-                    TriangleHull& triangle) {
+                          TriangleHull& triangle) {
   BodyImpactTime first;
   for_each_in_the_way(
       input, way, found,
@@ -213,8 +213,8 @@ BodyImpactTime first_stop(const ContinuousInput& input, const SweptPath& way, Ar
   return first;
 }
 
-void find_crossings(const ContinuousInput& input, const SweptPath& way, double end, Array<std::uint32_t>& found,
-                    Array<std::uint64_t>& crossings, TriangleHull& triangle) {
+void find_crossings(const ContinuousInput& input, const SweptPath& way, double end,
+                    Array<std::uint32_t>& found, Array<std::uint64_t>& crossings, TriangleHull& triangle) {
   for_each_in_the_way(
       input, way, found, is_gate,
       [&](const Mover& mover, std::uint32_t index, std::uint32_t gate, const SweptShape& other) {
@@ -310,7 +310,9 @@ class Slide {
   }
 
  private:
-  Sweep sweep_of(const BodyImpactTime& stop) const { return input_.sweep_of(input_.proxies[stop.obstacle].body); }
+  Sweep sweep_of(const BodyImpactTime& stop) const {
+    return input_.sweep_of(input_.proxies[stop.obstacle].body);
+  }
   bool may_slide(const BodyImpactTime& stop) const {
     if (!stop.hit || stop.time >= 1.0 || !(length_squared(stop.normal) > 0.5)) return false;
     return stop.by_core || !is_pushed(stop);

@@ -52,8 +52,7 @@ Error check_bounded_points(std::span<const Vec3> points) {
     if (is_finite(p) && largest(absolute(p)) <= kMaxLength) continue;
     return make_error(ErrorCode::invalid_geometry,
                       "bounds: point %zu is (%g, %g, %g); allowed are finite coordinates within -%g to %g m",
-                      i, double(p.x), double(p.y), double(p.z), double(kMaxLength),
-                      double(kMaxLength));
+                      i, double(p.x), double(p.y), double(p.z), double(kMaxLength), double(kMaxLength));
   }
   return {};
 }

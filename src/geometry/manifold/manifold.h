@@ -89,14 +89,14 @@ void collide_plane(const Shape& plane, const Shape& b, const Transform& a_from_b
 // edges never push sideways: a contact whose normal lies outside the Voronoi region of the triangle's feature is turned
 // to the face's normal or dropped. Returns how many were written. `kept`, if it is not null: what is kept of a mesh from one
 // look of this shape at it to the next, which changes nothing of what is found.
-int collide_mesh(const Shape& mesh, const Shape& b, const Transform& a_from_b, float max_separation, LocalManifold* out,
-                 CachedTriangles* kept = nullptr);
+int collide_mesh(const Shape& mesh, const Shape& b, const Transform& a_from_b, float max_separation,
+                 LocalManifold* out, CachedTriangles* kept = nullptr);
 
 // Manifolds of any two shapes of which at most one is not convex, for any order of kinds (the result is always from A to
 // B). Two non-convex shapes never touch: 0. Returns the number of manifolds written to `out` (room for kMaxMeshManifolds).
 // `kept` as in collide_mesh.
-int collide_shapes(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation, PairCache& cache,
-                   LocalManifold* out, CachedTriangles* kept = nullptr);
+int collide_shapes(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
+                   PairCache& cache, LocalManifold* out, CachedTriangles* kept = nullptr);
 
 // Keeps at most four of `count` candidate points (at most 64): the deepest, and those that span the largest area.
 int reduce_points(ManifoldPoint* points, int count, Vec3 normal);

@@ -223,8 +223,7 @@ Error check_surface_data(const TriangleSurface& surface) {
     if (is_finite(p) && largest(absolute(p)) <= kMaxLength) continue;
     return make_error(ErrorCode::invalid_geometry,
                       "mesh: vertex %zu is (%g, %g, %g); allowed are finite coordinates within -%g to %g m",
-                      i, double(p.x), double(p.y), double(p.z), double(kMaxLength),
-                      double(kMaxLength));
+                      i, double(p.x), double(p.y), double(p.z), double(kMaxLength), double(kMaxLength));
   }
   return {};
 }

@@ -5,8 +5,8 @@
 #include "io/recording/difference.h"
 
 #include "base/hash.h"
-#include "io/snapshot/state_copy.h"
 #include "io/recording/recording.h"
+#include "io/snapshot/state_copy.h"
 
 #include <cstdio>
 #include <cstring>

@@ -1,6 +1,6 @@
 // The player. Going back is restoring the nearest keyframe before, which were kept while playing, and playing on from it.
-#include "io/snapshot/state_copy.h"
 #include "io/recording/recording.h"
+#include "io/snapshot/state_copy.h"
 
 namespace gyre {
 

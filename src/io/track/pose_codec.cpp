@@ -53,9 +53,7 @@ RoundedPose round_pose(const Pose& pose, PoseSteps steps) {
   for (int i = 0; i < 3; ++i) {
     const double scaled = pose.position[i] * per_metre;
     const double limit = double(kMaxPosition);
-    rounded.position[i] = scaled >= limit    ? kMaxPosition
-                          : scaled <= -limit ? -kMaxPosition
-                                             : nearest(scaled);
+    rounded.position[i] = scaled >= limit ? kMaxPosition : scaled <= -limit ? -kMaxPosition : nearest(scaled);
   }
   const Quat q = pose.orientation == Quat{0, 0, 0, 0} ? Quat{} : pose.orientation;
   const double parts[4] = {double(q.x), double(q.y), double(q.z), double(q.w)};

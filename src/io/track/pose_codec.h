@@ -29,7 +29,7 @@ constexpr int kMinPositionBits = -20;
 constexpr int kMaxOrientationBits = 20;
 constexpr int kMinOrientationBits = 8;
 constexpr std::int64_t kMaxPosition = std::int64_t(1)
-                                       << 51;  // steps from the origin; poses farther off are put there
+                                      << 51;  // steps from the origin; poses farther off are put there
 
 struct RoundedPose {
   std::int64_t position[3] = {0, 0, 0};
@@ -64,7 +64,7 @@ template <class Bits>
 void code_difference(Bits& bits, std::int64_t& difference, std::int64_t& size) {
   constexpr int kFirstLowBits = 8;          // of the first difference after the beginning
   constexpr std::int64_t kSecondSize = 64;  // the first says nothing about those to come
-  constexpr std::uint64_t kMaxHigh = 24;   // more are written as a count of bits
+  constexpr std::uint64_t kMaxHigh = 24;    // more are written as a count of bits
   constexpr int kMaxBits = 57;
   const bool first = size < 0;
   // The fewest low bits k with 1.5 * 2^k >= size / 16.

@@ -58,7 +58,8 @@ void TrackWriter::round_again(const BodyPose& place, const BodyMass& mass, Writt
       written.settled = false;
     }
   }
-  written.slack = written.same < kSameToStay ? RoundingTolerance{} : find_rounding_tolerance(place, mass, start_.steps);
+  written.slack =
+      written.same < kSameToStay ? RoundingTolerance{} : find_rounding_tolerance(place, mass, start_.steps);
   written.seen = place;
   written.seen_mass_center = mass.center;
 }

@@ -15,7 +15,8 @@ std::size_t lanes_of(std::size_t left, const ArticulationTopology& shape, std::s
   return left < fewest ? 1 : std::min(left, width);
 }
 
-ArticulationBundle make_bundle(const ArticulationTopology& shape, const ArticulationKernels& kernels, Arena& arena) {
+ArticulationBundle make_bundle(const ArticulationTopology& shape, const ArticulationKernels& kernels,
+                               Arena& arena) {
   ArticulationBundle b;
   b.kernels = &kernels;
   b.nodes = shape.nodes.data();
@@ -76,8 +77,8 @@ bool has_extreme_mass_ratio(const RigidWorld& w, const JointRecord& joint) {
 
 }  // namespace
 
-BundleSolve lay_out_bundles(const Articulations& linkages, const ContactKernels& kernels, const LaneArrays& arrays,
-                            const LaneSettings& settings, Arena& arena) {
+BundleSolve lay_out_bundles(const Articulations& linkages, const ContactKernels& kernels,
+                            const LaneArrays& arrays, const LaneSettings& settings, Arena& arena) {
   BundleSolve result{{}, arrays, settings};
   const std::size_t count = linkages.alike.size();
   if (count == 0) return result;
@@ -87,7 +88,8 @@ BundleSolve lay_out_bundles(const Articulations& linkages, const ContactKernels&
   for (std::size_t& end : ends) end = 0;
   for (const GroupedArticulation& articulation : linkages.alike) ++ends[articulation.shape + 1];
   for (std::size_t i = 1; i < ends.size(); ++i) ends[i] += ends[i - 1];
-  for (const GroupedArticulation& articulation : linkages.alike) sorted[ends[articulation.shape]++] = &articulation;
+  for (const GroupedArticulation& articulation : linkages.alike)
+    sorted[ends[articulation.shape]++] = &articulation;
   result.bundles = arena.make<BundledArticulations>(count);
   const ArticulationKernels& wide = kernels.linkages;
   const ArticulationKernels& narrow = narrower_kernels(kernels).linkages;
@@ -115,7 +117,8 @@ void begin_bundles(const BundleSolve& bundles, int begin, int end, const RigidWo
     const BundledArticulations& bundle = bundles.bundles[std::size_t(i)];
     if (int(bundle.linkages.size()) < bundle.lanes.kernels->width) clear_lanes(bundle.lanes);
     bundle.lanes.kernels->begin(bundle.lanes);
-    for (int lane = 0; lane < bundle.lanes.kernels->width; ++lane) bundle.lanes.has_extreme_mass_ratio[lane] = 0.0f;
+    for (int lane = 0; lane < bundle.lanes.kernels->width; ++lane)
+      bundle.lanes.has_extreme_mass_ratio[lane] = 0.0f;
     // Joint by joint, because its lanes lie in the same cache lines.
     for (std::uint32_t n = 0; n < bundle.lanes.node_count; ++n) {
       const LaneNode& shape = bundle.lanes.nodes[n];
@@ -126,7 +129,7 @@ void begin_bundles(const BundleSolve& bundles, int begin, int end, const RigidWo
         set_lane_body(bundle.lanes, int(lane), shape.a, linked.body_a, linked.pressed_a);
         set_lane_body(bundle.lanes, int(lane), shape.b, linked.body_b, linked.pressed_b);
         load_lane(bundle.lanes, int(lane), n, joint, detail_of(w.joints, linked.record),
-                   joint_offset(w, joint), start);
+                  joint_offset(w, joint), start);
       }
     }
   }

@@ -21,10 +21,11 @@ struct BundleSolve {
 };
 
 // One of the kernels that work on velocities or places.
-using BundleKernel = void (*ArticulationKernels::*)(const ArticulationBundle&, const LaneArrays&, const LaneSettings&);
+using BundleKernel = void (*ArticulationKernels::*)(const ArticulationBundle&, const LaneArrays&,
+                                                    const LaneSettings&);
 
-BundleSolve lay_out_bundles(const Articulations& linkages, const ContactKernels& kernels, const LaneArrays& arrays,
-                            const LaneSettings& settings, Arena& arena);
+BundleSolve lay_out_bundles(const Articulations& linkages, const ContactKernels& kernels,
+                            const LaneArrays& arrays, const LaneSettings& settings, Arena& arena);
 // Of bundles [begin, end).
 void begin_bundles(const BundleSolve& bundles, int begin, int end, const RigidWorld& w,
                    const LaneStart& start);

@@ -107,9 +107,9 @@ Groups group_joints(std::span<const JointEdge> all, std::span<const std::uint32_
 class ArticulationBuilder {
  public:
   ArticulationBuilder(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
-               std::span<const JointEdge> joints, std::span<const std::uint8_t> pressed,
-               const LaneStart& start, const Graph& graph, std::span<const std::uint32_t> local,
-               std::size_t most, DenseGraphCache& dense, Arena& arena)
+                      std::span<const JointEdge> joints, std::span<const std::uint8_t> pressed,
+                      const LaneStart& start, const Graph& graph, std::span<const std::uint32_t> local,
+                      std::size_t most, DenseGraphCache& dense, Arena& arena)
       : w_(w),
         batch_(batch),
         places_(places),
@@ -411,9 +411,10 @@ Articulations no_articulations(std::size_t joints, Arena& arena) {
   return {{}, {}, {}, swept, {}};
 }
 
-Articulations find_articulations(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
-                       std::span<const JointEdge> joints, std::span<const std::uint8_t> pressed,
-                       const LaneStart& start, DenseGraphCache& dense, Arena& arena) {
+Articulations find_articulations(const RigidWorld& w, const SolveBatch& batch,
+                                 std::span<const std::uint32_t> places, std::span<const JointEdge> joints,
+                                 std::span<const std::uint8_t> pressed, const LaneStart& start,
+                                 DenseGraphCache& dense, Arena& arena) {
   if (joints.empty()) return {};
   const Graph graph = make_graph(joints, batch.bodies.size(), places, arena);
   const Groups groups = group_joints(joints, places, graph, arena);
@@ -424,7 +425,8 @@ Articulations find_articulations(const RigidWorld& w, const SolveBatch& batch, s
   const std::span<std::uint8_t> in_lanes = arena.make<std::uint8_t>(joints.size());
   for (std::uint8_t& flag : swept) flag = 1;
   for (std::uint8_t& flag : in_lanes) flag = 0;
-  ArticulationBuilder maker(w, batch, places, joints, pressed, start, graph, groups.local, most, dense, arena);
+  ArticulationBuilder maker(w, batch, places, joints, pressed, start, graph, groups.local, most, dense,
+                            arena);
   std::size_t alone_count = 0, alike_count = 0;
   for (std::size_t group = 0; group < most; ++group) {
     const std::uint32_t begin = group == 0 ? 0 : groups.ends[group - 1];
@@ -464,13 +466,14 @@ void attach_drives(const Articulations& linkages, std::span<JointConstraint> wor
 }
 
 std::span<std::span<double>> find_limits(const Articulations& linkages, std::span<const JointConstraint> work,
-                                        std::size_t workers, Arena& arena) {
+                                         std::size_t workers, Arena& arena) {
   std::size_t most = 0;
   for (Articulation& articulation : linkages.linkages) {
     for (const ArticulationNode& node : articulation.nodes)
       for (const AxisConstraint& axis : work[node.work].axes)
         articulation.has_limits = articulation.has_limits || has_hard_limit(axis);
-    if (articulation.has_limits) most = max(most, limits_room(articulation.plan.rows, articulation.bodies.size()));
+    if (articulation.has_limits)
+      most = max(most, limits_room(articulation.plan.rows, articulation.bodies.size()));
   }
   if (most == 0) return {};
   const std::span<std::span<double>> rooms = arena.make<std::span<double>>(workers);

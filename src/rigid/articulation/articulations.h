@@ -6,10 +6,10 @@
 #include "base/container/array.h"
 #include "base/function_ref.h"
 #include "rigid/batch/joint_constraints.h"
-#include "rigid/store/rigid_world.h"
 #include "rigid/batch/solve_batches.h"
-#include "solver/articulation/lane_transfer.h"
+#include "rigid/store/rigid_world.h"
 #include "solver/articulation/articulation.h"
+#include "solver/articulation/lane_transfer.h"
 
 namespace gyre {
 
@@ -37,7 +37,7 @@ struct GroupedArticulation {
 };
 
 struct Articulations {
-  std::span<Articulation> linkages;     // each solved by itself
+  std::span<Articulation> linkages;        // each solved by itself
   std::span<GroupedArticulation> alike;    // those that are solved side by side,
   std::span<ArticulationTopology> shapes;  // and what they are like
   // By place in the batch's list of joints: 1 if it is in no linkage; 1 if it is in one that is solved side by side.
@@ -65,9 +65,10 @@ class DenseGraphCache {
 
 // Of one batch; `places` are those of all (solve_batches.h), `joints` are the batch's. `pressed`: by place, 1 of bodies on which contacts
 // act; or empty. `start`: how lanes will be begun.
-Articulations find_articulations(const RigidWorld& w, const SolveBatch& batch, std::span<const std::uint32_t> places,
-                       std::span<const JointEdge> joints, std::span<const std::uint8_t> pressed,
-                       const LaneStart& start, DenseGraphCache& dense, Arena& arena);
+Articulations find_articulations(const RigidWorld& w, const SolveBatch& batch,
+                                 std::span<const std::uint32_t> places, std::span<const JointEdge> joints,
+                                 std::span<const std::uint8_t> pressed, const LaneStart& start,
+                                 DenseGraphCache& dense, Arena& arena);
 // Where all joints are swept.
 Articulations no_articulations(std::size_t joints, Arena& arena);
 
@@ -76,6 +77,6 @@ void attach_drives(const Articulations& linkages, std::span<JointConstraint> wor
 
 // Notes which linkages that are solved alone have stops. Returns room to solve these in, by worker.
 std::span<std::span<double>> find_limits(const Articulations& linkages, std::span<const JointConstraint> work,
-                                        std::size_t workers, Arena& arena);
+                                         std::size_t workers, Arena& arena);
 
 }  // namespace gyre

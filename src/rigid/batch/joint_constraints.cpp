@@ -24,12 +24,13 @@ void begin_joint(RigidWorld& w, const SolveBatch& batch, std::size_t i, float wa
   works.places[i] = joint_offsets(w, slot);
 }
 
-JointConstraints begin_joints(RigidWorld& w, const SolveBatch& batch, std::span<const std::uint8_t> in_articulation,
-                        float warm_scale, Arena& arena) {
+JointConstraints begin_joints(RigidWorld& w, const SolveBatch& batch,
+                              std::span<const std::uint8_t> in_articulation, float warm_scale, Arena& arena) {
   const std::size_t count = batch.joints.size();
   const JointConstraints works{arena.make<JointConstraint>(count), arena.make<JointOffsets>(count)};
   for (std::size_t i = 0; i < count; ++i) {
-    if (in_articulation.empty() || in_articulation[i] == 0) begin_joint(w, batch, i, warm_scale, works, arena);
+    if (in_articulation.empty() || in_articulation[i] == 0)
+      begin_joint(w, batch, i, warm_scale, works, arena);
   }
   return works;
 }
@@ -37,7 +38,8 @@ JointConstraints begin_joints(RigidWorld& w, const SolveBatch& batch, std::span<
 void finish_joints(RigidWorld& w, const SolveBatch& batch, std::span<const std::uint8_t> in_articulation,
                    std::span<const JointConstraint> work) {
   for (std::size_t i = 0; i < batch.joints.size(); ++i) {
-    if (in_articulation.empty() || in_articulation[i] == 0) finish_joint(w.joints.records[batch.joints[i]], work[i]);
+    if (in_articulation.empty() || in_articulation[i] == 0)
+      finish_joint(w.joints.records[batch.joints[i]], work[i]);
   }
 }
 

@@ -29,7 +29,8 @@ struct JointConstraints {
 // Where the ends of the joint stand as the step begins.
 JointOffsets joint_offsets(const RigidWorld& w, std::uint32_t slot);
 // Where a body's end of a joint hangs: its centre of mass, or a point of the world.
-inline const DVec3& joint_end_position(const BodyStore& bodies, std::int32_t body, const DVec3& world_anchor) {
+inline const DVec3& joint_end_position(const BodyStore& bodies, std::int32_t body,
+                                       const DVec3& world_anchor) {
   return body == kNoBody ? world_anchor : bodies.places[std::size_t(body)].center;
 }
 // JointOffsets::offset alone.
@@ -41,8 +42,8 @@ inline Vec3 joint_offset(const RigidWorld& w, const JointRecord& joint) {
 void begin_joint(RigidWorld& w, const SolveBatch& batch, std::size_t i, float warm_scale,
                  const JointConstraints& works, Arena& arena);
 // Of all but those that are begun elsewhere: `elsewhere` has 1 for these, or is empty.
-JointConstraints begin_joints(RigidWorld& w, const SolveBatch& batch, std::span<const std::uint8_t> in_articulation,
-                        float warm_scale, Arena& arena);
+JointConstraints begin_joints(RigidWorld& w, const SolveBatch& batch,
+                              std::span<const std::uint8_t> in_articulation, float warm_scale, Arena& arena);
 // What the work knows goes back into the joints.
 void finish_joints(RigidWorld& w, const SolveBatch& batch, std::span<const std::uint8_t> in_articulation,
                    std::span<const JointConstraint> work);

@@ -3,8 +3,8 @@
 #include "rigid/batch/solve_batches.h"
 
 #include "base/arena/bucketed_lists.h"
-#include "task/parallel_filter.h"
 #include "task/parallel.h"
+#include "task/parallel_filter.h"
 
 #include <algorithm>
 
@@ -77,7 +77,8 @@ Constraints list_constraints(const RigidWorld& w, Arena& arena, TaskSystem& task
     // As numbers without a sign, kNoBody is kNoIndex.
     return tie(w, std::uint32_t(joint.body_a), std::uint32_t(joint.body_b), 1, joint_ties[slot]);
   };
-  const FilteredList contacts = parallel_filter_among(tasks, arena, manifolds, w.contacts.with_manifolds, w.awake_links.contacts);
+  const FilteredList contacts =
+      parallel_filter_among(tasks, arena, manifolds, w.contacts.with_manifolds, w.awake_links.contacts);
   const FilteredList joints = parallel_filter_among(tasks, arena, works, w.awake_links.joints);
   return {contacts.list, joints.list, contact_ties, joint_ties, contacts.size + joints.size};
 }

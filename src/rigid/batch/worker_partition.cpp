@@ -3,7 +3,8 @@
 
 namespace gyre {
 
-WorkerPartition partition_by_worker(std::span<const ColoringPair> pairs, std::size_t bodies, int workers, Arena& arena) {
+WorkerPartition partition_by_worker(std::span<const ColoringPair> pairs, std::size_t bodies, int workers,
+                                    Arena& arena) {
   static_assert(kMaxPartitions <= 256, "domains are bytes");
   constexpr std::size_t kFewest = 256;  // with fewer contacts it is not worth while
   if (kMaxPartitions == 1 || workers == 1 || pairs.size() < kFewest) return {};
@@ -23,7 +24,7 @@ WorkerPartition partition_by_worker(std::span<const ColoringPair> pairs, std::si
 }
 
 void set_partition_bounds(std::span<const std::uint32_t> starts, std::uint32_t items, std::uint32_t width,
-                int* bounds) {
+                          int* bounds) {
   for (std::size_t i = 1; i < starts.size(); ++i) bounds[i] = int((starts[i] + width / 2) / width);
   bounds[0] = 0;
   bounds[starts.size()] = int((items + width - 1) / width);

@@ -35,10 +35,12 @@ struct WorkerPartition {
 };
 
 // Runs of bodies with about as many contacts each.
-WorkerPartition partition_by_worker(std::span<const ColoringPair> pairs, std::size_t bodies, int workers, Arena& arena);
+WorkerPartition partition_by_worker(std::span<const ColoringPair> pairs, std::size_t bodies, int workers,
+                                    Arena& arena);
 
 // The first block of each domain's share among blocks of `width` items, and then the number of blocks: Stage::bounds. `starts`: the first
 // item of each domain.
-void set_partition_bounds(std::span<const std::uint32_t> starts, std::uint32_t items, std::uint32_t width, int* bounds);
+void set_partition_bounds(std::span<const std::uint32_t> starts, std::uint32_t items, std::uint32_t width,
+                          int* bounds);
 
 }  // namespace gyre

@@ -19,10 +19,11 @@ void keep_limits_only(JointDetail& detail) {
 
 }  // namespace
 
-ProjectionJoints copy_closing_joints(const RigidWorld& w, std::span<const std::uint32_t> slots, Arena& arena) {
+ProjectionJoints copy_closing_joints(const RigidWorld& w, std::span<const std::uint32_t> slots,
+                                     Arena& arena) {
   const std::size_t count = slots.size();
   const ProjectionJoints copies{arena.make<JointRecord>(count),
-                             {arena.make<JointConstraint>(count), arena.make<JointOffsets>(count)}};
+                                {arena.make<JointConstraint>(count), arena.make<JointOffsets>(count)}};
   for (std::size_t i = 0; i < count; ++i) {
     JointRecord& joint = copies.records[i] = w.joints.records[slots[i]];
     keep_limits_only(joint);

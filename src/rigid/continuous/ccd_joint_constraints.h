@@ -1,8 +1,8 @@
 // The joints of groups that follow what was stopped, as their solvers see them: of what acts on them only equations and limits.
 #pragma once
 
-#include "rigid/continuous/ccd_projection_path.h"
 #include "rigid/batch/joint_constraints.h"
+#include "rigid/continuous/ccd_projection_path.h"
 
 namespace gyre {
 

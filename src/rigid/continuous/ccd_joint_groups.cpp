@@ -90,14 +90,14 @@ class GroupFinder {
   std::span<const HaltedBody> stopped_;
   Arena& arena_;
   std::span<std::uint32_t> group_of_joint_, group_of_body_;  // the last, from 1 on; 0: none
-  std::span<const HaltedBody*> stop_of_;                    // by body
+  std::span<const HaltedBody*> stop_of_;                     // by body
   std::uint32_t number_ = 0;
 };
 
 }  // namespace
 
 std::span<ProjectionGroup> find_projection_groups(const RigidWorld& w, std::span<const HaltedBody> stopped,
-                                            Arena& arena) {
+                                                  Arena& arena) {
   return GroupFinder(w, stopped, arena).find_all();
 }
 

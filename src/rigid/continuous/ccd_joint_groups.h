@@ -38,6 +38,6 @@ struct ProjectionGroup {
 
 // In the order of the stopped bodies; those of which all joints are in groups of others have none of their own.
 std::span<ProjectionGroup> find_projection_groups(const RigidWorld& w, std::span<const HaltedBody> stopped,
-                                            Arena& arena);
+                                                  Arena& arena);
 
 }  // namespace gyre

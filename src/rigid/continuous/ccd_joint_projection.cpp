@@ -7,8 +7,8 @@
 
 #include "collision/continuous/continuous.h"
 #include "math/rotation.h"
-#include "rigid/continuous/ccd_joint_projection_simd.h"
 #include "rigid/continuous/ccd_joint_projection_rows.h"
+#include "rigid/continuous/ccd_joint_projection_simd.h"
 
 namespace gyre {
 
@@ -49,8 +49,8 @@ bool constrains_position(const RigidWorld& w, std::uint32_t joint) {
 }
 
 void project_joints_after_ccd(RigidWorld& w, std::span<const HaltedBody> stopped, bool stop_at_impact,
-                  const ContactKernels& kernels, TaskSystem& tasks, Array<std::uint32_t>& moved,
-                  Arena& arena) {
+                              const ContactKernels& kernels, TaskSystem& tasks, Array<std::uint32_t>& moved,
+                              Arena& arena) {
   const ArenaScope scope(arena);
   const ProjectionBodies bodies = make_bodies(w, arena);
   const std::span<const ProjectionGroup> groups = find_projection_groups(w, stopped, arena);

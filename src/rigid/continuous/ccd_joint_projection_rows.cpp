@@ -15,7 +15,8 @@ constexpr std::uint64_t kMaxClosingWork = 20'000'000;
 
 class RowProjection {
  public:
-  RowProjection(const RigidWorld& w, const ProjectionGroup& group, const ProjectionBodies& bodies, Arena& arena)
+  RowProjection(const RigidWorld& w, const ProjectionGroup& group, const ProjectionBodies& bodies,
+                Arena& arena)
       : w_(w),
         group_(group),
         bodies_(bodies),
@@ -120,8 +121,8 @@ class RowProjection {
 
 }  // namespace
 
-bool follow_by_rows(const RigidWorld& w, const ProjectionGroup& group, const ProjectionBodies& bodies, bool stop_at_impact,
-                    Arena& arena) {
+bool follow_by_rows(const RigidWorld& w, const ProjectionGroup& group, const ProjectionBodies& bodies,
+                    bool stop_at_impact, Arena& arena) {
   const ArenaScope scope(arena);
   RowProjection rows(w, group, bodies, arena);
   if (!rows.make_room(arena)) return false;

@@ -1,7 +1,7 @@
 #include "rigid/continuous/ccd_joint_projection_simd.h"
 
-#include "rigid/continuous/ccd_joint_constraints.h"
 #include "rigid/articulation/articulation_bundles.h"
+#include "rigid/continuous/ccd_joint_constraints.h"
 #include "task/parallel.h"
 
 namespace gyre {
@@ -31,7 +31,8 @@ bool may_fit(const RigidWorld& w, const ProjectionGroup& group) {
 
 class LaneProjection {
  public:
-  LaneProjection(RigidWorld& w, std::span<const ProjectionGroup> groups, const ProjectionBodies& bodies, Arena& arena)
+  LaneProjection(RigidWorld& w, std::span<const ProjectionGroup> groups, const ProjectionBodies& bodies,
+                 Arena& arena)
       : w_(w),
         groups_(groups),
         bodies_(bodies),
@@ -40,16 +41,19 @@ class LaneProjection {
     for (std::uint8_t& led : is_led_) led = 0;
   }
 
-  std::span<const std::uint8_t> follow(bool stop_at_impact, const ContactKernels& kernels, TaskSystem& tasks) {
+  std::span<const std::uint8_t> follow(bool stop_at_impact, const ContactKernels& kernels,
+                                       TaskSystem& tasks) {
     list();
     if (batch_.joints.empty()) return is_led_;
     const LaneStart start{.limits_only = true};
     DenseGraphCache dense;
-    const Articulations linkages = find_articulations(w_, batch_, places_, joint_edges_, {}, start, dense, arena_);
+    const Articulations linkages =
+        find_articulations(w_, batch_, places_, joint_edges_, {}, start, dense, arena_);
     const LaneArrays arrays{bodies_.motion.data(), bodies_.inertia.data(), bodies_.orientations.data()};
-    const LaneSettings settings{
-        kProjectionStep, kClosingSettings.softness.bias_rate, kGive, add_geometric_stiffness, kMaxErrors, 0.0f,
-        kMaxTurn,    false};
+    const LaneSettings settings{kProjectionStep, kClosingSettings.softness.bias_rate,
+                                kGive,           add_geometric_stiffness,
+                                kMaxErrors,      0.0f,
+                                kMaxTurn,        false};
     bundles_ = lay_out_bundles(linkages, kernels, arrays, settings, arena_);
     ways_ = arena_.make<ProjectionPath>(groups_.size());
     for (const GroupedArticulation& articulation : linkages.alike) {
@@ -68,7 +72,8 @@ class LaneProjection {
   // The joints and bodies of all groups that may fit.
   void list() {
     std::size_t joints = 0, bodies = 0;
-    for (const ProjectionGroup& group : groups_) joints += group.joints.size(), bodies += group.members.size();
+    for (const ProjectionGroup& group : groups_)
+      joints += group.joints.size(), bodies += group.members.size();
     const std::span<std::uint32_t> joint_list = arena_.make<std::uint32_t>(joints);
     const std::span<std::uint32_t> body_list = arena_.make<std::uint32_t>(bodies);
     group_of_joint_ = arena_.make<std::uint32_t>(joints);

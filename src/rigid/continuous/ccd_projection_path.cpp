@@ -16,8 +16,8 @@ constexpr float kClosed = 1.0e-3f;      // m or rad: more, and it is no way to g
 
 }  // namespace
 
-ProjectionPath::ProjectionPath(const RigidWorld& w, const ProjectionGroup& group, const ProjectionBodies& bodies,
-                       bool stop_at_impact)
+ProjectionPath::ProjectionPath(const RigidWorld& w, const ProjectionGroup& group,
+                               const ProjectionBodies& bodies, bool stop_at_impact)
     : w_(&w), members_(group.members), bodies_(bodies), stays_(stop_at_impact) {
   find_displacements();
   parts_ = count_parts();

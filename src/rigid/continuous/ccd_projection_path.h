@@ -33,7 +33,8 @@ class ProjectionPath {
 
   ProjectionPath() = default;
   // Puts all where the first was stopped. `stays`: it goes no further.
-  ProjectionPath(const RigidWorld& w, const ProjectionGroup& group, const ProjectionBodies& bodies, bool stop_at_impact);
+  ProjectionPath(const RigidWorld& w, const ProjectionGroup& group, const ProjectionBodies& bodies,
+                 bool stop_at_impact);
 
   // `open`: m or rad, the farthest that a joint or a limit is off.
   Next next(float open);

@@ -2,12 +2,12 @@
 // collision/continuous/continuous sweep them, and takes back what motion they may not keep.
 #include "collision/continuous/continuous.h"
 #include "math/rotation.h"
+#include "rigid/batch/surface_rules.h"
 #include "rigid/continuous/ccd_joint_projection.h"
 #include "rigid/rigid_step.h"
 #include "rigid/store/shape_boxes.h"
-#include "rigid/batch/surface_rules.h"
-#include "task/parallel_filter.h"
 #include "task/parallel.h"
+#include "task/parallel_filter.h"
 
 #include <cmath>
 
@@ -176,7 +176,8 @@ void stop_together(const RigidWorld& w, const ContinuousScratch& scratch, std::s
       for (const std::uint32_t slot : joints_of(w.bodies, std::uint32_t(body))) {
         const JointRecord& joint = w.joints.records[slot];
         const std::int32_t other = joint.body_a == body ? joint.body_b : joint.body_a;
-        if (other == kNoBody || place[std::size_t(other)] == kNoIndex || !constrains_position(w, slot)) continue;
+        if (other == kNoBody || place[std::size_t(other)] == kNoIndex || !constrains_position(w, slot))
+          continue;
         const float others = kept[place[std::size_t(other)]].fraction;
         changed = changed || others < kept[k].fraction;
         kept[k].fraction = min(kept[k].fraction, others);

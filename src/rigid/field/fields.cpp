@@ -205,7 +205,7 @@ void for_bodies(void* context, int begin, int end, Fn&& fn) {
 }  // namespace
 
 Vec6 force_of_fields(const RigidWorld& w, std::uint32_t body, std::span<const std::uint32_t> fields,
-                    const BodyStance& stance, double time) {
+                     const BodyStance& stance, double time) {
   Vec6 force;
   Mat6 stiffness;
   for (const std::uint32_t slot : fields) {

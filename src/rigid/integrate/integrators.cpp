@@ -197,8 +197,10 @@ void kick(BodyStore& bodies, std::uint32_t i, const Motions& motions) {
   BodyMotion& motion = bodies.motion[i];
   const Damping linear(forces.linear_damping, motions.substep),
       angular(forces.angular_damping, motions.substep);
-  const Vec3 geometric_stiffness = forces.gravity_scale * motions.gravity + inertia.inverse_mass * forces.force;
-  const Vec3 v = motion.linear_velocity + (linear.gain * geometric_stiffness - linear.lost * motion.linear_velocity);
+  const Vec3 geometric_stiffness =
+      forces.gravity_scale * motions.gravity + inertia.inverse_mass * forces.force;
+  const Vec3 v =
+      motion.linear_velocity + (linear.gain * geometric_stiffness - linear.lost * motion.linear_velocity);
   const Vec3 w = motion.angular_velocity +
                  (angular.gain * (inertia.inverse * forces.torque) - angular.lost * motion.angular_velocity);
   // Adding zero keeps -0 out of the state, so that wide kernels may add zeros to lanes that nothing touches.
@@ -241,8 +243,8 @@ void kick_and_move(BodyStore& bodies, std::uint32_t i, const Motions& motions) {
 }
 
 // `turns`: over the whole step.
-void integrate_free_body(BodyStore& bodies, std::uint32_t i, const Motions& motions, const RotationKernels& kernels,
-              BodyTurns& turns) {
+void integrate_free_body(BodyStore& bodies, std::uint32_t i, const Motions& motions,
+                         const RotationKernels& kernels, BodyTurns& turns) {
   const BodyFlags& flags = bodies.flags[i];
   const BodyForces& forces = bodies.forces[i];
   BodyMotion& motion = bodies.motion[i];
@@ -293,21 +295,21 @@ MovedBody describe_motion(const BodyStore& bodies, std::uint32_t body, const Mot
 }
 
 void integrate_free_bodies(BodyStore& bodies, std::span<const std::uint32_t> list, const Motions& motions,
-         const RotationKernels& kernels) {
+                           const RotationKernels& kernels) {
   BodyTurns turns(bodies, kernels, float(motions.count) * motions.substep);
   for (const std::uint32_t i : list) integrate_free_body(bodies, i, motions, kernels, turns);
   turns.finish();
 }
 
 void rotate_exactly(BodyStore& bodies, std::span<const std::uint32_t> list, float substep,
-                const RotationKernels& kernels) {
+                    const RotationKernels& kernels) {
   BodyTurns turns(bodies, kernels, substep);
   for (const std::uint32_t i : list) turns.add(i);
   turns.finish();
 }
 
 void apply_rotations(BodyStore& bodies, std::span<const MovedBody> moved, std::span<const Vec3> pushes,
-                  const RotationKernels& kernels) {
+                     const RotationKernels& kernels) {
   InertiaRefresh refresh(bodies);
   SteadyTurns turns(bodies, kernels);
   const auto turn_all = [&] { turns.finish([&](std::uint32_t i) { refresh.add(i); }); };

@@ -40,15 +40,15 @@ MovedBody describe_motion(const BodyStore& bodies, std::uint32_t body, const Mot
 
 // A whole step of bodies that no constraint acts on, kinematic ones among them.
 void integrate_free_bodies(BodyStore& bodies, std::span<const std::uint32_t> list, const Motions& motions,
-         const RotationKernels& kernels);
+                           const RotationKernels& kernels);
 
 // The rotation of a sub-step of bodies that turn alone.
 void rotate_exactly(BodyStore& bodies, std::span<const std::uint32_t> list, float substep,
-                const RotationKernels& kernels);
+                    const RotationKernels& kernels);
 
 // At the end of a step: orientations and world inertia of the bodies of which constraints were made. `pushes` (rotation
 // vectors, one for each of `moved`) are the turns by which overlap was pushed apart.
 void apply_rotations(BodyStore& bodies, std::span<const MovedBody> moved, std::span<const Vec3> pushes,
-                  const RotationKernels& kernels);
+                     const RotationKernels& kernels);
 
 }  // namespace gyre

@@ -29,7 +29,7 @@ struct SmoothBody {
   std::uint32_t body = 0;
   double mass = 1.0;
   Tensor inertia, inverse_inertia;                     // body frame
-  DVec3 geometric_stiffness;                                          // m/s^2: gravity, and forces that the user gave
+  DVec3 geometric_stiffness;                           // m/s^2: gravity, and forces that the user gave
   DVec3 torque;                                        // N m, that the user gave
   double linear_damping = 0.0, angular_damping = 0.0;  // 1/s
   double reach = 0.0;                                  // m

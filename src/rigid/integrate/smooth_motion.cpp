@@ -24,7 +24,8 @@ SmoothBody describe(const RigidWorld& w, std::uint32_t i, Arena& arena) {
   body.mass = double(mass.mass);
   body.inertia = to_double(mass.inertia);
   body.inverse_inertia = inverse(body.inertia);
-  body.geometric_stiffness = double(forces.gravity_scale) * DVec3(w.settings.gravity) + DVec3(forces.force) / body.mass;
+  body.geometric_stiffness =
+      double(forces.gravity_scale) * DVec3(w.settings.gravity) + DVec3(forces.force) / body.mass;
   body.torque = DVec3(forces.torque);
   body.linear_damping = double(forces.linear_damping);
   body.angular_damping = double(forces.angular_damping);

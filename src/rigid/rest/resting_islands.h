@@ -4,8 +4,8 @@
 
 #include "base/arena/arena.h"
 #include "rigid/batch/joint_constraints.h"
-#include "rigid/store/rigid_world.h"
 #include "rigid/batch/solve_batches.h"
+#include "rigid/store/rigid_world.h"
 #include "solver/contact/contact_block.h"
 #include "task/coloring.h"
 

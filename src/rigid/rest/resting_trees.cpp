@@ -29,8 +29,8 @@ TreeNode make_node(const RigidWorld& w, std::int32_t body, std::int32_t parent, 
 }  // namespace
 
 RestingTrees find_contact_trees(const RigidWorld& w, std::span<ContactConstraint> constraints,
-                                 std::span<const ColoringPair> pairs, const SolveBatch& batch,
-                                 const RestingIslands& islands, Arena& arena) {
+                                std::span<const ColoringPair> pairs, const SolveBatch& batch,
+                                const RestingIslands& islands, Arena& arena) {
   RestingTrees forest;
   std::size_t trees = 0, nodes = 0;
   const auto is_tree = [&](std::uint32_t place) {
@@ -56,7 +56,8 @@ RestingTrees find_contact_trees(const RigidWorld& w, std::span<ContactConstraint
     const ColoringPair& ground = pairs[first];
     const bool is_b = ground.b != ColoringPair::kNone;
     const std::uint32_t begin = used;
-    forest.nodes[used++] = make_node(w, body_at(is_b ? ground.b : ground.a), -1, first, is_b, geometric_stiffness);
+    forest.nodes[used++] =
+        make_node(w, body_at(is_b ? ground.b : ground.a), -1, first, is_b, geometric_stiffness);
     // Breadth first: every other contact of a body leads to a child, as there are no loops.
     for (std::uint32_t at = begin; at < used; ++at) {
       const std::uint32_t below = forest.nodes[at].constraint;

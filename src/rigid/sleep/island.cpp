@@ -116,14 +116,16 @@ SleepTest test_sleep(const RigidWorld& w, std::uint32_t body, float geometric_st
   SleepTest rest;
   // Nothing holds a free body up: as long as it moves at all it goes on for ever.
   rest.allowed = flags.can_sleep != 0 && (flags.touched != 0 || !moves) && forces.force == Vec3{} &&
-             forces.torque == Vec3{} && (flags.touched != 0 || geometric_stiffness * absolute(forces.gravity_scale) == 0.0f);
+                 forces.torque == Vec3{} &&
+                 (flags.touched != 0 || geometric_stiffness * absolute(forces.gravity_scale) == 0.0f);
   // A body without shapes still has the extent of its inertia: turning is motion.
   const float spread = mass.inertia.xx + mass.inertia.yy + mass.inertia.zz;
   const float reach = max(mass.reach, mass.mass > 0.0f ? std::sqrt(spread / mass.mass) : 0.0f);
   rest.speed = length(motion.linear_velocity) + reach * length(motion.angular_velocity);
   // What is pushed apart in every step, and taken back by what it hangs on or is wedged in, goes nowhere.
   rest.pushed = min(motion.pushed, length(motion.moved) + reach * length(motion.turned));
-  rest.rest_speed = kRestShare * std::sqrt((geometric_stiffness > 0.0f ? geometric_stiffness : 9.81f) * reach);
+  rest.rest_speed =
+      kRestShare * std::sqrt((geometric_stiffness > 0.0f ? geometric_stiffness : 9.81f) * reach);
   if (is_on_spring(w, body)) rest.rest_speed *= kSpringRest;
   if (body < w.field_rest.size() && w.field_rest[body].acts != kNoFields) {
     // What only turns round in a field is slow for a moment: at rest its speed must stay, too. And what floats comes near

@@ -52,7 +52,8 @@ bool can_wake_others(const RigidWorld& w, std::uint32_t body);
 
 // What decides whether a dynamic body counts as still.
 struct SleepTest {
-  bool allowed = false;         // it is allowed to, no force acts on it, and something holds it up (or nothing pulls or moves it)
+  bool allowed =
+      false;  // it is allowed to, no force acts on it, and something holds it up (or nothing pulls or moves it)
   float speed = 0.0f;       // m/s, of its centre of mass and of its farthest point about that
   float pushed = 0.0f;      // m, by overlap in the last step
   float rest_speed = 0.0f;  // m/s, slower is still

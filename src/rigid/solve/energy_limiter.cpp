@@ -354,7 +354,8 @@ double energy_of_errors(const BodyStore& bodies, const JointIsland& island, floa
   for (const std::uint32_t body : island.bodies) {
     const Sym3& inertia = bodies.masses[body].inertia;
     if (carriage.angular != Vec3{}) {
-      const Vec3 geometric_stiffness = cross(carriage.angular, carriage.at(center_of(bodies, body)) - carriage.linear);
+      const Vec3 geometric_stiffness =
+          cross(carriage.angular, carriage.at(center_of(bodies, body)) - carriage.linear);
       bent += double(bodies.masses[body].mass) * double(length_squared(h * geometric_stiffness));
     }
     sum += double(bodies.masses[body].mass) * square(double(kMaxErrors.point));

@@ -124,7 +124,8 @@ GYRE_COLD void FusedStages::add_blocks(int blocks) {
   }
 }
 
-GYRE_COLD void list_pushed(const BundleSolve& bundles, const FusedRange& run, std::span<std::int32_t> bodies) {
+GYRE_COLD void list_pushed(const BundleSolve& bundles, const FusedRange& run,
+                           std::span<std::int32_t> bodies) {
   for (std::int32_t& body : bodies) body = kNoBody;
   std::size_t first = 0;
   for (int i = run.first_bundle; i < run.first_bundle + run.bundles; ++i) {

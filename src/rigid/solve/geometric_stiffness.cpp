@@ -58,7 +58,8 @@ std::span<const StiffenedBody> find_stiffened_bodies(const BatchContext& solve, 
     return square(solve.h) * pulls[place] * max(inverse.xx, max(inverse.yy, inverse.zz));
   };
   const auto is_stiffened = [&](std::uint32_t place) {
-    return unresolved(place) > kMaxGeometricStiffness && bodies.flags[solve.batch.bodies[place]].locked_angular == 0;
+    return unresolved(place) > kMaxGeometricStiffness &&
+           bodies.flags[solve.batch.bodies[place]].locked_angular == 0;
   };
   std::size_t count = 0;
   for (std::uint32_t place = 0; place < pulls.size(); ++place) count += is_stiffened(place) ? 1 : 0;

@@ -28,16 +28,18 @@ const BatchContext& solve_of(void* context) { return *static_cast<const BatchCon
 
 void integrate_free_bodies_stage(void* context, int begin, int end, int) {
   const BatchContext& s = solve_of(context);
-  integrate_free_bodies(s.w.bodies, block_of(s.free_bodies, begin, end, kBodiesPerBlock), s.motions, s.kernels.turns);
+  integrate_free_bodies(s.w.bodies, block_of(s.free_bodies, begin, end, kBodiesPerBlock), s.motions,
+                        s.kernels.turns);
 }
 void rotate_exactly_stage(void* context, int begin, int end, int) {
   const BatchContext& s = solve_of(context);
-  rotate_exactly(s.w.bodies, block_of(s.fast_spinning, begin, end, kFastSpinningPerClaim), s.h, s.kernels.turns);
+  rotate_exactly(s.w.bodies, block_of(s.fast_spinning, begin, end, kFastSpinningPerClaim), s.h,
+                 s.kernels.turns);
 }
 void apply_rotations_stage(void* context, int begin, int end, int) {
   const BatchContext& s = solve_of(context);
   apply_rotations(s.w.bodies, block_of(s.moved, begin, end, kBodiesPerBlock),
-               block_of(s.pushes, begin, end, kBodiesPerBlock), s.kernels.turns);
+                  block_of(s.pushes, begin, end, kBodiesPerBlock), s.kernels.turns);
 }
 
 }  // namespace
@@ -76,11 +78,13 @@ void advance_motion(const BatchContext& s, int begin, int end, bool noted, const
   });
 }
 bool has_fast_spinning(const BatchContext& s, int begin, int end) {
-  return !s.fast_spinning.empty() && s.fast_spinning_starts[std::size_t(begin)] != s.fast_spinning_starts[std::size_t(end)];
+  return !s.fast_spinning.empty() &&
+         s.fast_spinning_starts[std::size_t(begin)] != s.fast_spinning_starts[std::size_t(end)];
 }
 void rotate_fast_spinning(const BatchContext& s, int begin, int end) {
   if (!has_fast_spinning(s, begin, end)) return;
-  const std::uint32_t first = s.fast_spinning_starts[std::size_t(begin)], last = s.fast_spinning_starts[std::size_t(end)];
+  const std::uint32_t first = s.fast_spinning_starts[std::size_t(begin)],
+                      last = s.fast_spinning_starts[std::size_t(end)];
   rotate_exactly(s.w.bodies, s.fast_spinning.subspan(first, last - first), s.h, s.kernels.turns);
 }
 
@@ -100,7 +104,9 @@ void warm_motion_stage(void* context, int begin, int end, int) {
 void record_velocities_stage(void* context, int begin, int end, int) {
   record_velocities(solve_of(context), begin, end);
 }
-void record_velocity_change_stage(void* context, int begin, int end, int) { record_velocity_change(solve_of(context), begin, end); }
+void record_velocity_change_stage(void* context, int begin, int end, int) {
+  record_velocity_change(solve_of(context), begin, end);
+}
 void advance_stage(void* context, int begin, int end, int) {
   advance_motion(solve_of(context), begin, end, false);
 }
@@ -116,15 +122,18 @@ void end_projection_stage(void* context, int begin, int end, int) {
   s.kernels.motion.end_projection(s.motion_blocks, begin, end, s.contact_bodies.motion, s.pushes.data());
 }
 
-void add_motion(ProgramWriter& program, BatchContext& solve, void (*kernel)(void*, int, int, int), int blocks) {
+void add_motion(ProgramWriter& program, BatchContext& solve, void (*kernel)(void*, int, int, int),
+                int blocks) {
   const int all = count_blocks(int(solve.moved.size()), solve.kernels.width);
   program.add(kernel, &solve, blocks, kMotionsPerClaim, blocks == all ? solve.moved_bounds : nullptr);
 }
 void add_free_bodies(ProgramWriter& program, BatchContext& solve) {
-  program.add(integrate_free_bodies_stage, &solve, count_blocks(int(solve.free_bodies.size()), kBodiesPerBlock));
+  program.add(integrate_free_bodies_stage, &solve,
+              count_blocks(int(solve.free_bodies.size()), kBodiesPerBlock));
 }
 void add_exact_rotation(ProgramWriter& program, BatchContext& solve) {
-  program.add(rotate_exactly_stage, &solve, count_blocks(int(solve.fast_spinning.size()), kFastSpinningPerClaim));
+  program.add(rotate_exactly_stage, &solve,
+              count_blocks(int(solve.fast_spinning.size()), kFastSpinningPerClaim));
 }
 void add_apply_rotations(ProgramWriter& program, BatchContext& solve) {
   program.add(apply_rotations_stage, &solve, count_blocks(int(solve.moved.size()), kBodiesPerBlock));

@@ -32,7 +32,8 @@ void begin_projection_stage(void* context, int begin, int end, int worker);
 void end_projection_stage(void* context, int begin, int end, int worker);
 
 // A line for the first `blocks` of the bodies that are moved,
-void add_motion(ProgramWriter& program, BatchContext& solve, void (*kernel)(void*, int, int, int), int blocks);
+void add_motion(ProgramWriter& program, BatchContext& solve, void (*kernel)(void*, int, int, int),
+                int blocks);
 // for those that fly, for those that turn alone, and for the orientations of all as the step ends.
 void add_free_bodies(ProgramWriter& program, BatchContext& solve);
 void add_exact_rotation(ProgramWriter& program, BatchContext& solve);

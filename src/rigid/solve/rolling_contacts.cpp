@@ -2,8 +2,8 @@
 
 #include "geometry/shape/support.h"
 #include "rigid/batch/solve_batches.h"
-#include "task/parallel_filter.h"
 #include "task/parallel.h"
+#include "task/parallel_filter.h"
 
 namespace gyre {
 
@@ -74,8 +74,7 @@ RollingPoint describe_point(const Shape& shape, const RollingContact& rolling, Q
   const Vec3 across = from_middle - height * axis;
   const float radius = radius_at(shape, height);
   const Lowest lowest(rolling.outward, axis);
-  point.on_rim = lowest.lean > kMinLean &&
-                 dot(across, lowest.direction) >= kSameDirection * length(across) &&
+  point.on_rim = lowest.lean > kMinLean && dot(across, lowest.direction) >= kSameDirection * length(across) &&
                  absolute(length(across) - radius) <= kSameRadius * shape.radius;
   if (!point.on_rim) {
     point.core = rotate_inverse(orientation, arm);
@@ -155,8 +154,8 @@ class Bearers {
 // is not where it was.
 class FastSpinningContacts {
  public:
-  FastSpinningContacts(const RigidWorld& w, const BatchScratch& scratch, std::span<const std::uint32_t> bodies,
-         float seconds, Arena& arena)
+  FastSpinningContacts(const RigidWorld& w, const BatchScratch& scratch,
+                       std::span<const std::uint32_t> bodies, float seconds, Arena& arena)
       : fast_spinning_(arena.make<bool>(bodies.size())) {
     const auto spin = [&](std::size_t body) {
       return length_squared(w.bodies.motion[body].angular_velocity);
@@ -178,7 +177,9 @@ class FastSpinningContacts {
       look(places.b, places.a, scratch.constraints[i].body_a);
     }
   }
-  bool has(std::uint32_t place) const { return any_ && place != ColoringPair::kNone && fast_spinning_[place]; }
+  bool has(std::uint32_t place) const {
+    return any_ && place != ColoringPair::kNone && fast_spinning_[place];
+  }
   bool has(ColoringPair places) const { return has(places.a) || has(places.b); }
 
  private:
@@ -199,12 +200,13 @@ const ColliderShape& set_sides(const RigidWorld& w, const Contact& contact,
 
 // Of two that whirl the faster one, if it matters. What is round on a flat one that whirls rolls there, as on any other.
 bool choose_fast_spinning(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint,
-                     ColoringPair places, const FastSpinningContacts& is_fast_spinning, float seconds, RollingSides& rolling) {
+                          ColoringPair places, const FastSpinningContacts& is_fast_spinning, float seconds,
+                          RollingSides& rolling) {
   const auto spin = [&](std::int32_t body) {
     return length_squared(w.bodies.motion[std::size_t(body)].angular_velocity);
   };
-  const bool is_b =
-      is_fast_spinning.has(places.b) && (!is_fast_spinning.has(places.a) || spin(constraint.body_b) >= spin(constraint.body_a));
+  const bool is_b = is_fast_spinning.has(places.b) &&
+                    (!is_fast_spinning.has(places.a) || spin(constraint.body_b) >= spin(constraint.body_a));
   rolling.once = false;
   return rolls(w, set_sides(w, contact, constraint, is_b, rolling).shape, rolling, seconds);
 }
@@ -279,7 +281,8 @@ float share_of_run(Vec3 arm, Vec3 middle_arm) {
 
 }  // namespace
 
-float contact_patch_spin_friction(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint) {
+float contact_patch_spin_friction(const RigidWorld& w, const Contact& contact,
+                                  const ContactConstraint& constraint) {
   if (constraint.manifold->count != 1) return 0.0f;
   const float a = core_radius(w.shapes.colliders[contact.shape_a].shape);
   const float b = core_radius(w.shapes.colliders[contact.shape_b].shape);
@@ -309,7 +312,8 @@ RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch
   const auto may_roll = [&](std::uint32_t i) {
     return constraints[i].may_roll || is_fast_spinning.has(scratch.pairs[i]);
   };
-  const std::span<const std::uint32_t> candidates = parallel_filter(tasks, arena, constraints.size(), may_roll).list;
+  const std::span<const std::uint32_t> candidates =
+      parallel_filter(tasks, arena, constraints.size(), may_roll).list;
   const std::size_t count = candidates.size();
   if (count == 0) return all;
   const Bearers bearers(constraints, scratch.pairs, bodies.size(), arena);
@@ -320,12 +324,14 @@ RollingContacts find_rolling_contacts(RigidWorld& w, const BatchScratch& scratch
       const Contact& contact = contact_of(i);
       const ColoringPair places = scratch.pairs[i];
       const bool flat_a = constraints[i].may_roll && is_flat(w.shapes.colliders[contact.shape_a].shape);
-      const bool is_fast_spinning_here =
-          !constraints[i].may_roll ? is_fast_spinning.has(places) : is_fast_spinning.has(flat_a ? places.b : places.a);
+      const bool is_fast_spinning_here = !constraints[i].may_roll
+                                             ? is_fast_spinning.has(places)
+                                             : is_fast_spinning.has(flat_a ? places.b : places.a);
       const bool chosen =
-          is_fast_spinning_here ? choose_fast_spinning(w, contact, constraints[i], places, is_fast_spinning, seconds, sides[k])
-                      : constraints[i].may_roll &&
-                            choose_rolling(w, contact, constraints[i], places, bearers, seconds, sides[k]);
+          is_fast_spinning_here
+              ? choose_fast_spinning(w, contact, constraints[i], places, is_fast_spinning, seconds, sides[k])
+              : constraints[i].may_roll &&
+                    choose_rolling(w, contact, constraints[i], places, bearers, seconds, sides[k]);
       sides[k].constraint = chosen ? i : kNotRolling;
     }
   });

@@ -71,7 +71,8 @@ constexpr std::uint32_t kNotRolling = 0xffffffffu;
 // would spin for ever, and friction against sliding would not know that the ball spins (a tippe top would not turn over).
 // 0 where more than one point or no ball touches. After P. Contensou, "Couplage entre frottement de glissement et frottement
 // de pivotement dans la theorie de la toupie", 1963.
-float contact_patch_spin_friction(const RigidWorld& w, const Contact& contact, const ContactConstraint& constraint);
+float contact_patch_spin_friction(const RigidWorld& w, const Contact& contact,
+                                  const ContactConstraint& constraint);
 
 // Whether one of the two shapes is round and the other flat, and what holds them apart is looked at anew: of what is flat all
 // through no contact is, and nothing more is asked. `constraint` has its bodies and its manifold.

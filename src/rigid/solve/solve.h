@@ -2,16 +2,16 @@
 // solve_bodies.h, laid out by solve_layout.h.
 #pragma once
 
-#include "rigid/solve/fused_stages.h"
-#include "rigid/rest/resting_trees.h"
-#include "rigid/rest/resting_structures.h"
-#include "rigid/field/fields.h"
-#include "rigid/integrate/integrators.h"
 #include "rigid/articulation/articulations.h"
-#include "rigid/solve/rolling_contacts.h"
-#include "rigid/integrate/smooth_motion.h"
 #include "rigid/batch/solve_batches.h"
 #include "rigid/batch/worker_partition.h"
+#include "rigid/field/fields.h"
+#include "rigid/integrate/integrators.h"
+#include "rigid/integrate/smooth_motion.h"
+#include "rigid/rest/resting_structures.h"
+#include "rigid/rest/resting_trees.h"
+#include "rigid/solve/fused_stages.h"
+#include "rigid/solve/rolling_contacts.h"
 #include "rigid/solve/solve_step.h"
 
 namespace gyre {
@@ -55,7 +55,7 @@ struct BatchContext {
   SolveBatch batch{};
   std::span<const std::uint32_t> places{};  // of bodies in their batches
   WorkerPartition domains{};
-  std::span<int> group_bounds{};              // where there are several: for kMaxGroups
+  std::span<int> group_bounds{};                   // where there are several: for kMaxGroups
   void *blocks = nullptr, *cold_blocks = nullptr;  // of contacts
   float h = 0.0f;
   ContactSettings contact_settings{};
@@ -63,9 +63,9 @@ struct BatchContext {
   ImpactSettings impact_settings{};
   ContactBodies contact_bodies{};
   JointBodies joint_bodies{};
-  std::span<JointEdge> joint_edges{};      // the batch's joints
+  std::span<JointEdge> joint_edges{};    // the batch's joints
   std::span<std::uint8_t> ball_lanes{};  // 1 for those that may be solved side by side
-  bool all_iterative = false;     // all are known to be swept: those of ball_lanes are begun in their lanes
+  bool all_iterative = false;  // all are known to be swept: those of ball_lanes are begun in their lanes
   LaneStart lane_start{};  // of joints that are begun in lanes
   std::span<JointConstraint> joint_work{};
   std::span<JointOffsets> joint_offsets{};
@@ -82,12 +82,12 @@ struct BatchContext {
   std::span<MovedBody> moved{};               // the batch's bodies that constraints act on,
   void* motion_blocks = nullptr;              // the same for the kernels,
   std::span<Vec3> pushes{};                   // and how overlap turned them
-  std::span<std::uint32_t> fast_spinning{};        // those of them that turn alone
+  std::span<std::uint32_t> fast_spinning{};   // those of them that turn alone
   std::span<std::uint32_t> fast_spinning_starts{};  // by block of moved bodies: its first; one more
-  FusedStage run_lines[2] = {};                  // if bodies are moved run by run: of others, and of bundles
+  FusedStage run_lines[2] = {};               // if bodies are moved run by run: of others, and of bundles
   std::size_t moved_in_contact = 0;           // of these, the first: contacts act on them
   const int* moved_bounds = nullptr;          // of the blocks, by domain: where contacts act on nearly all
-  int recorded_blocks = 0;             // the first: of these somebody asks what contacts gave the bodies
+  int recorded_blocks = 0;                 // the first: of these somebody asks what contacts gave the bodies
   std::span<std::uint32_t> free_bodies{};  // the others
   RestingTrees forest{};
   TreeSolve tree_solve{};

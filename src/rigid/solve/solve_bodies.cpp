@@ -50,8 +50,9 @@ void part_bodies(BatchContext& solve, Arena& arena, TaskSystem& tasks) {
   // Where a body belongs: those in contact first, by domain and the way in which they turn.
   static_assert((kMaxPartitions + 1) * kRotationModes + 3 < 256, "kinds are bytes");
   const int domains = solve.domains.count();
-  const std::uint8_t apart = std::uint8_t(domains * kRotationModes), flies = std::uint8_t(apart + kRotationModes),
-                     stop_at_impact = std::uint8_t(flies + 1), in_run = std::uint8_t(stop_at_impact + 1);
+  const std::uint8_t apart = std::uint8_t(domains * kRotationModes),
+                     flies = std::uint8_t(apart + kRotationModes), stop_at_impact = std::uint8_t(flies + 1),
+                     in_run = std::uint8_t(stop_at_impact + 1);
   const std::span<std::uint8_t> kinds = arena.make<std::uint8_t>(bodies.size());
   for (std::uint8_t& kind : kinds) kind = apart;
   const auto touch = [&](std::uint32_t body) {
@@ -76,8 +77,8 @@ void part_bodies(BatchContext& solve, Arena& arena, TaskSystem& tasks) {
   if (domains > 1 && led == 0 && moved - solve.moved_in_contact <= moved / 8) {
     std::uint32_t firsts[kMaxPartitions];
     for (int i = 0; i < domains; ++i) firsts[i] = starts[i * kRotationModes];
-    set_partition_bounds(std::span(firsts).first(std::size_t(domains)), std::uint32_t(moved), std::uint32_t(width),
-               bounds.data());
+    set_partition_bounds(std::span(firsts).first(std::size_t(domains)), std::uint32_t(moved),
+                         std::uint32_t(width), bounds.data());
     solve.moved_bounds = bounds.data();
   }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -124,7 +125,8 @@ void gather_motion(BatchContext& solve, Arena& arena, TaskSystem& tasks) {
     solve.fast_spinning_starts = arena.make<std::uint32_t>(blocks + 1);
     for (std::size_t i = 0; i < moved; ++i) {
       if (i % width == 0) solve.fast_spinning_starts[i / width] = std::uint32_t(fast_spinning);
-      if (solve.moved[i].needs_exact_rotation) solve.fast_spinning[fast_spinning++] = std::uint32_t(solve.moved[i].body);
+      if (solve.moved[i].needs_exact_rotation)
+        solve.fast_spinning[fast_spinning++] = std::uint32_t(solve.moved[i].body);
     }
     solve.fast_spinning_starts[blocks] = std::uint32_t(fast_spinning);
   }

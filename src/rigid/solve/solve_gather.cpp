@@ -1,8 +1,8 @@
 #include "rigid/solve/solve_gather.h"
 
 #include "base/prefetch.h"
-#include "rigid/solve/hits.h"
 #include "rigid/batch/surface_rules.h"
+#include "rigid/solve/hits.h"
 #include "solver/articulation/ball_joint_transfer.h"
 #include "solver/rest/static_equilibrium.h"
 #include "task/parallel.h"
@@ -140,8 +140,8 @@ class ContactGatherer {
     constraint.loaded = loads.any;
     constraint.may_roll = false;
     constraint.hold = manifold.age >= kRigidContactAge ? ContactStiffness::held
-                      : manifold.age > 0.0f    ? ContactStiffness::sprung
-                                               : ContactStiffness::none;
+                      : manifold.age > 0.0f            ? ContactStiffness::sprung
+                                                       : ContactStiffness::none;
     if (loads.all) {
       constraint.fast = false;
       for (int k = 0; k < manifold.count; ++k) manifold.points[k].approach_speed = 0.0f;
@@ -151,7 +151,8 @@ class ContactGatherer {
     if (manifold.count == 0) return false;
     if (has_rules_ && !apply_surface_rules(w_, contact, manifold, constraint)) return false;
     if (contact.recycled == 0) constraint.may_roll = may_roll(w_, contact, constraint);
-    constraint.spinning_friction += manifold.count == 1 ? contact_patch_spin_friction(w_, contact, constraint) : 0.0f;
+    constraint.spinning_friction +=
+        manifold.count == 1 ? contact_patch_spin_friction(w_, contact, constraint) : 0.0f;
     return true;
   }
 
@@ -244,7 +245,7 @@ void look_at_joints(BatchContext& solve, Arena& arena, TaskSystem& tasks) {
       const JointDetail* const detail = detail_of(w.joints, slot);
       const bool is_spring = solve.is_smooth && is_explicit_spring(w, slot);
       solve.joint_edges[i] = {look(joint.body_a, is_spring), look(joint.body_b, is_spring),
-                             count_equations(joint, detail)};
+                              count_equations(joint, detail)};
       solve.ball_lanes[i] = fits_ball_lane(joint, detail) ? 1 : 0;
     }
   });

@@ -38,8 +38,8 @@ int likeness(const BatchContext& solve, std::uint32_t member) {
 }
 
 // Appends the members of a colour to the order, in whole blocks, domain by domain; `bounds` of these, if there are several.
-void order_alike(const BatchContext& solve, std::span<const std::uint32_t> members, Array<std::uint32_t>& order,
-                 int* bounds) {
+void order_alike(const BatchContext& solve, std::span<const std::uint32_t> members,
+                 Array<std::uint32_t>& order, int* bounds) {
   constexpr int kKinds = 2 * kWithA;
   const std::size_t domains = std::size_t(solve.domains.count());
   const auto kind_of = [&](std::uint32_t member) {
@@ -70,7 +70,8 @@ void order_alike(const BatchContext& solve, std::span<const std::uint32_t> membe
   const std::size_t first = order.size();
   order.resize(first + (place + width - 1) / width * width, kNoPlace);
   for (const std::uint32_t member : members) order[first + starts[kind_of(member)]++] = member;
-  if (domains > 1 && bounds != nullptr) set_partition_bounds(std::span(firsts).first(domains), place, width, bounds);
+  if (domains > 1 && bounds != nullptr)
+    set_partition_bounds(std::span(firsts).first(domains), place, width, bounds);
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 // The stages of sub-steps and their order. See solve_program.h.
 #include "rigid/solve/solve_program.h"
 
-#include "rigid/solve/energy_limiter.h"
 #include "rigid/batch/joint_constraints.h"
-#include "rigid/solve/motion_stages.h"
+#include "rigid/solve/energy_limiter.h"
 #include "rigid/solve/geometric_stiffness.h"
+#include "rigid/solve/motion_stages.h"
 #include "solver/articulation/ball_joint_transfer.h"
 #include "task/parallel.h"
 #include "task/program.h"
@@ -39,7 +39,9 @@ template <void (*kernel)(const BatchContext&, int, int)>
 void joint_islands_stage(void* context, int begin, int end, int) {
   kernel(*static_cast<BatchContext*>(context), begin, end);
 }
-void stiffen_bodies_stage(void* context, int, int, int) { stiffen_bodies(*static_cast<BatchContext*>(context)); }
+void stiffen_bodies_stage(void* context, int, int, int) {
+  stiffen_bodies(*static_cast<BatchContext*>(context));
+}
 
 void solve_trees_stage(void* context, int begin, int end, int) {
   const BatchContext& s = *static_cast<BatchContext*>(context);
@@ -343,7 +345,8 @@ struct HalfStep {
   // is none of what contacts gave in the last one.
   bool has_joints;
 
-  HalfStep(const BatchContext& solve, int part, std::span<Group> contact_groups, std::span<Group> joint_groups)
+  HalfStep(const BatchContext& solve, int part, std::span<Group> contact_groups,
+           std::span<Group> joint_groups)
       : first(part == 0),
         last(part + 1 == solve.motions.count),
         contacts(contact_groups),
@@ -431,8 +434,8 @@ void add_after_contacts(ProgramWriter& program, BatchContext& solve, const HalfS
   program.add(articulation_stage<relax_articulation>, &solve, part.linkages);
   // Where no joint is swept in between, while their rows are still in the cache.
   if (!part.joints.empty())
-    program.add(last ? bundle_stage<&ArticulationKernels::finish> : bundle_stage<&ArticulationKernels::pass>, &solve,
-                part.bundles);
+    program.add(last ? bundle_stage<&ArticulationKernels::finish> : bundle_stage<&ArticulationKernels::pass>,
+                &solve, part.bundles);
   else
     program.add(last ? bundle_stage<&ArticulationKernels::place, &ArticulationKernels::finish>
                      : bundle_stage<&ArticulationKernels::place, &ArticulationKernels::pass>,
@@ -491,8 +494,7 @@ void run_substeps(BatchContext& solve, std::span<Group> contacts, std::span<Grou
   const int bundles = in_runs ? 0 : int(solve.bundles.bundles.size());
   program.add(begin_bundles_stage, &solve, bundles);
   program.add(bundle_stage<&ArticulationKernels::place>, &solve, bundles);
-  for (int i = 0; i < parts; ++i)
-    add_half_step(program, solve, HalfStep(solve, i, contacts, joints));
+  for (int i = 0; i < parts; ++i) add_half_step(program, solve, HalfStep(solve, i, contacts, joints));
   program.add_groups(relax_contacts_stage, contacts, 1, kBlocksPerClaim);
   add_motion(program, solve, begin_projection_stage, bodies);
   program.add_groups(project_contacts_stage, contacts, 1, kBlocksPerClaim);

@@ -1,7 +1,7 @@
 #include "rigid/solve/solve_rows.h"
 
-#include "rigid/solve/hits.h"
 #include "rigid/batch/joint_constraints.h"
+#include "rigid/solve/hits.h"
 #include "rigid/solve/motion_stages.h"
 #include "rigid/solve/row_islands.h"
 #include "rigid/solve/solve_bodies.h"
@@ -94,7 +94,7 @@ double largest_alone(std::span<const Row> rows, std::span<const RowBody> bodies)
 }
 
 void iterate_island(const RowSolve& s, const IslandRows& island, NumberRoom room, double scale,
-                  RowStats& report) {
+                    RowStats& report) {
   const std::span<Row> rows = island.rows();
   const std::span<RowBody> bodies = island.bodies();
   warm_start_rows(rows, bodies);
@@ -282,8 +282,8 @@ void place_row_joints_stage(void* context, int begin, int end, int) {
   BatchContext& solve = s.solve;
   for (int i = begin; i < end; ++i) {
     for (const std::uint32_t j : s.islands.islands[std::size_t(i)].joints)
-      prepare_joint(solve.w.joints.records[solve.batch.joints[j]], solve.joint_work[j], solve.joint_offsets[j],
-                  solve.joint_bodies, solve.joint_settings);
+      prepare_joint(solve.w.joints.records[solve.batch.joints[j]], solve.joint_work[j],
+                    solve.joint_offsets[j], solve.joint_bodies, solve.joint_settings);
   }
 }
 void sum_joints_stage(void* context, int begin, int end, int) {
@@ -291,7 +291,8 @@ void sum_joints_stage(void* context, int begin, int end, int) {
   BatchContext& solve = s.solve;
   for (int i = begin; i < end; ++i) {
     for (const std::uint32_t j : s.islands.islands[std::size_t(i)].joints)
-      accumulate_joint_impulses(solve.w.joints.records[solve.batch.joints[j]], solve.joint_work[j], solve.joint_bodies);
+      accumulate_joint_impulses(solve.w.joints.records[solve.batch.joints[j]], solve.joint_work[j],
+                                solve.joint_bodies);
   }
 }
 

@@ -1,9 +1,9 @@
 #include "rigid/solve/solve_step.h"
 
-#include "rigid/solve/hits.h"
-#include "rigid/solve/energy_limiter.h"
 #include "rigid/batch/joint_constraints.h"
+#include "rigid/solve/energy_limiter.h"
 #include "rigid/solve/geometric_stiffness.h"
+#include "rigid/solve/hits.h"
 #include "rigid/solve/solve_bodies.h"
 #include "rigid/solve/solve_gather.h"
 #include "rigid/solve/solve_layout.h"
@@ -100,16 +100,18 @@ void begin_joints(BatchContext& solve, float warm_scale, Arena& arena) {
   solve.all_iterative = !solve.joint_edges.empty() && nets.holds(solve.joint_edges);
   solve.lane_start = {
       .warm_scale = warm_scale, .substep = solve.h, .softness = solve.joint_settings.softness};
-  solve.linkages = solve.all_iterative ? no_articulations(solve.joint_edges.size(), arena)
-                                : find_articulations(solve.w, solve.batch, solve.places, solve.joint_edges,
-                                                find_pressed(solve, arena), solve.lane_start, nets, arena);
-  const JointConstraints works = begin_joints(solve.w, solve.batch, prepared_in_simd(solve), warm_scale, arena);
+  solve.linkages = solve.all_iterative
+                       ? no_articulations(solve.joint_edges.size(), arena)
+                       : find_articulations(solve.w, solve.batch, solve.places, solve.joint_edges,
+                                            find_pressed(solve, arena), solve.lane_start, nets, arena);
+  const JointConstraints works =
+      begin_joints(solve.w, solve.batch, prepared_in_simd(solve), warm_scale, arena);
   solve.joint_work = works.work;
   solve.joint_offsets = works.places;
 }
 
-void color(const BatchContext& solve, std::span<const ColoringPair> pairs, std::span<const std::uint32_t> names,
-           Coloring& colors) {
+void color(const BatchContext& solve, std::span<const ColoringPair> pairs,
+           std::span<const std::uint32_t> names, Coloring& colors) {
   color_constraints(pairs, names, std::uint32_t(solve.batch.bodies.size()), {}, kColoringOptions, colors);
 }
 
@@ -150,18 +152,19 @@ void solve_batch(BatchContext& solve, Arena& arena, TaskSystem& tasks, float war
         find_smooth_motion(solve.w, solve.batch, solve.places, solve.motions.count, solve.h, arena);
   solve.fields = find_field_bodies(solve.w, solve.batch.bodies, solve.h, arena, !solve.is_smooth);
   solve.articulation_solve = {.records = solve.w.joints.records,
-                         .work = solve.joint_work,
-                         .places = solve.joint_offsets,
-                         .bodies = solve.joint_bodies,
-                         .settings = solve.joint_settings,
-                         .compliance = kArticulationCompliance};
+                              .work = solve.joint_work,
+                              .places = solve.joint_offsets,
+                              .bodies = solve.joint_bodies,
+                              .settings = solve.joint_settings,
+                              .compliance = kArticulationCompliance};
   solve.articulation_solve.settings.swept = false;
   attach_drives(solve.linkages, solve.joint_work, arena);
   solve.stop_rooms = find_limits(solve.linkages, solve.joint_work, std::size_t(tasks.worker_count()), arena);
   const JointBodies& bodies = solve.joint_bodies;
-  solve.bundles =
-      lay_out_bundles(solve.linkages, solve.kernels, {bodies.motion, bodies.inertia, bodies.orientation},
-                      {solve.h, solve.joint_settings.softness.bias_rate, kArticulationCompliance, add_geometric_stiffness}, arena);
+  solve.bundles = lay_out_bundles(
+      solve.linkages, solve.kernels, {bodies.motion, bodies.inertia, bodies.orientation},
+      {solve.h, solve.joint_settings.softness.bias_rate, kArticulationCompliance, add_geometric_stiffness},
+      arena);
   solve.pulled = find_stiffened_bodies(solve, arena);
   solve.joint_islands = find_joint_islands(solve, arena);
   gather_motion(solve, arena, tasks);
@@ -200,24 +203,26 @@ SubStepping plan_substeps(RigidWorld& w, float seconds, bool by_rows) {
 }
 
 // What is the same for all batches.
-BatchContext describe_solve(RigidWorld& w, BatchScratch& scratch, const ContactKernels& kernels, float seconds,
-                     const SubStepping& plan) {
+BatchContext describe_solve(RigidWorld& w, BatchScratch& scratch, const ContactKernels& kernels,
+                            float seconds, const SubStepping& plan) {
   const float h = plan.h;
   BatchContext solve{w, scratch, kernels};
   solve.h = h;
   solve.motions = {plan.parts, h, w.settings.gravity};
   solve.is_smooth = !w.motion_settings.empty();
   const float geometric_stiffness = length(w.settings.gravity);
-  solve.contact_settings = {.substep = h,
-                            .step = seconds,
-                            .rate = min(kContactRate, 0.8f / h),
-                            .compliance = kContactLeak * h / (1.0f + kContactLeak * h),
-                            .aging = kContactAging,
-                            .warm_scale = plan.warm_scale,
-                            .up = geometric_stiffness > 0.0f ? (-1.0f / geometric_stiffness) * w.settings.gravity : Vec3{}};
+  solve.contact_settings = {
+      .substep = h,
+      .step = seconds,
+      .rate = min(kContactRate, 0.8f / h),
+      .compliance = kContactLeak * h / (1.0f + kContactLeak * h),
+      .aging = kContactAging,
+      .warm_scale = plan.warm_scale,
+      .up = geometric_stiffness > 0.0f ? (-1.0f / geometric_stiffness) * w.settings.gravity : Vec3{}};
   // Long sub-steps take back no more than the whole error and give way by less than the whole impulse.
   const float compliance = kJointLeak * h / (1.0f + kJointLeak * h);
-  solve.joint_settings = {h, {min(kJointRate, 0.8f / h), 1.0f - compliance, compliance}, row_solver_of(w) == nullptr};
+  solve.joint_settings = {
+      h, {min(kJointRate, 0.8f / h), 1.0f - compliance, compliance}, row_solver_of(w) == nullptr};
   solve.impact_settings = {h, kBounceShare * h * geometric_stiffness};
   solve.contact_bodies = {w.bodies.motion.data(), w.bodies.inertia.data()};
   solve.joint_bodies = {w.bodies.motion.data(), w.bodies.inertia.data(), w.bodies.orientations.data()};

@@ -38,7 +38,8 @@ void find_active_constraints(RigidWorld& w) {
   const BodyStore& bodies = w.bodies;
   // Between the parts of a step some may have fallen asleep.
   refresh_awake(w.bodies);
-  if (w.awake_links.all || kAwakeForOneAsleep * bodies.sleepers < bodies.awake.size()) return activate_all_constraints(w);
+  if (w.awake_links.all || kAwakeForOneAsleep * bodies.sleepers < bodies.awake.size())
+    return activate_all_constraints(w);
   fit_all(w);
   w.awake_links.contacts.reset_all();
   w.awake_links.joints.reset_all();

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "base/arena/arena.h"
-#include "base/container/flat_map.h"
 #include "base/arena/shrink_policy.h"
+#include "base/container/flat_map.h"
 #include "collision/broadphase/broadphase.h"
 #include "collision/contact/collide.h"
 #include "collision/contact/contact_store.h"
@@ -107,7 +107,8 @@ struct RigidWorld {
   Array<std::uint8_t> refit_marks;     // by shape: got a new fat box in this step
   RigidEvents events;
   ScratchClocks clocks;
-  Array<std::uint8_t> waiting;         // by contact: it does not act (rigid/time/toi_stepping.h); adaptive steps, else empty
+  Array<std::uint8_t>
+      waiting;  // by contact: it does not act (rigid/time/toi_stepping.h); adaptive steps, else empty
   std::uint16_t world_number = 0;      // for ids in events
 };
 

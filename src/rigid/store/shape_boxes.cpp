@@ -156,8 +156,8 @@ class ShapeLanes {
                                             reach + absolute(way));
     Mask<kBoxLanes> stop_at_impact = Mask<kBoxLanes>::splat(true);
     const auto look = [&](Number at, Number away, Number goes, Number inside, Number from, Number to) {
-      stop_at_impact =
-          stop_at_impact & (at - away + min(goes, zero) - slack > from) & (at + away + max(goes, zero) + slack < to);
+      stop_at_impact = stop_at_impact & (at - away + min(goes, zero) - slack > from) &
+                       (at + away + max(goes, zero) + slack < to);
       also(inside, from, to, slack);
     };
     look(position.x, reach.x, way.x, half.x, low.x, high.x);

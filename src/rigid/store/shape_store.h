@@ -4,8 +4,8 @@
 #include "base/container/array.h"
 #include "base/container/interned_column.h"
 #include "base/container/slot_map.h"
-#include "collision/contact/collide.h"
 #include "collision/broadphase/proxy.h"
+#include "collision/contact/collide.h"
 
 #include <gyre/defs.h>
 
@@ -29,8 +29,8 @@ inline auto interning_key(const ColliderShape& c) {
 struct ShapeStore {
   IdPool ids;
   Array<std::uint32_t> bodies;      // owner of each shape
-  InternedColumn<Transform> places;          // body_from_shape
-  InternedColumn<ColliderShape> colliders;   // inner form of all that; borrows from `geometry`; derived
+  InternedColumn<Transform> places;         // body_from_shape
+  InternedColumn<ColliderShape> colliders;  // inner form of all that; borrows from `geometry`; derived
   Array<Proxy> proxies;             // fat boxes are state: they decide when pairs begin
   InternedColumn<Material> materials;
   std::vector<AnyShape> geometry;   // keeps cooked data alive

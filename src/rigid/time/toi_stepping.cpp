@@ -106,10 +106,12 @@ DVec3 off_the_chord(const RigidWorld& w, const StepCheckpoint& before, const Con
     if (!is_active(w, body)) return DVec3{};
     return DVec3(w.bodies.motion[body].linear_velocity) - DVec3(before.motion(body).linear_velocity);
   };
-  return (-0.5 * share * (1.0 - share) * seconds) * (energy_gain(contact.body_b) - energy_gain(contact.body_a));
+  return (-0.5 * share * (1.0 - share) * seconds) *
+         (energy_gain(contact.body_b) - energy_gain(contact.body_a));
 }
 
-double first_meeting(const RigidWorld& w, const StepCheckpoint& before, const Contact& contact, double seconds) {
+double first_meeting(const RigidWorld& w, const StepCheckpoint& before, const Contact& contact,
+                     double seconds) {
   const double near = double(touch_distance(contact));
   const SweptPair pair(w, contact, true);
   const Impact impact = time_of_impact(pair.a, pair.b, 0.0, 1.0, 0.5 * near);

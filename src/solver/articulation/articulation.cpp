@@ -2,9 +2,9 @@
 
 #include "math/dense.h"
 #include "math/wide_vec.h"
-#include "solver/joint/joint_equations.h"
 #include "solver/articulation/articulation_drives.h"
 #include "solver/articulation/articulation_limits.h"
+#include "solver/joint/joint_equations.h"
 
 namespace gyre {
 
@@ -35,11 +35,11 @@ JointEquation equation_at(const ArticulationRows& rows, int i) {
 void add_geometric_stiffness_term(ArticulationBody& body, Vec3 r, Vec3 f) {
   const float k = dot(r, f);
   body.geometric_stiffness = body.geometric_stiffness + Sym3{k - r.x * f.x,
-                               k - r.y * f.y,
-                               k - r.z * f.z,
-                               -0.5f * (r.x * f.y + r.y * f.x),
-                               -0.5f * (r.x * f.z + r.z * f.x),
-                               -0.5f * (r.y * f.z + r.z * f.y)};
+                                                             k - r.y * f.y,
+                                                             k - r.z * f.z,
+                                                             -0.5f * (r.x * f.y + r.y * f.x),
+                                                             -0.5f * (r.x * f.z + r.z * f.x),
+                                                             -0.5f * (r.y * f.z + r.z * f.y)};
 }
 
 // What of the symmetric matrix holds back.
@@ -65,8 +65,10 @@ void raise_inertias(const Articulation& articulation, const ArticulationSolve& s
     const JointConstraint& work = s.work[node.work];
     Vec3 force = joint.linear_impulse / h;
     if (joint.kind == JointKind::distance) force = (work.axes[0].axis.low_impulse / h) * work.axis;
-    if (node.side_a >= 0) add_geometric_stiffness_term(articulation.bodies[std::size_t(node.side_a)], work.from_a, -force);
-    if (node.side_b >= 0) add_geometric_stiffness_term(articulation.bodies[std::size_t(node.side_b)], work.from_b, force);
+    if (node.side_a >= 0)
+      add_geometric_stiffness_term(articulation.bodies[std::size_t(node.side_a)], work.from_a, -force);
+    if (node.side_b >= 0)
+      add_geometric_stiffness_term(articulation.bodies[std::size_t(node.side_b)], work.from_b, force);
   }
   for (ArticulationBody& body : articulation.bodies) {
     body.inverse = s.bodies.inertia[body.body].inverse;
@@ -96,7 +98,8 @@ Rows4 turn_rows(const Sym3& m, const RowVectors& arms, int first) {
 }
 
 // The rows' spins, and the node's own block K + give.
-void make_own_block(ArticulationNode& node, const Articulation& articulation, const ArticulationSolve& s, double* block) {
+void make_own_block(ArticulationNode& node, const Articulation& articulation, const ArticulationSolve& s,
+                    double* block) {
   constexpr ArticulationBody kImmovable{};
   const ArticulationBody& a = node.side_a < 0 ? kImmovable : articulation.bodies[std::size_t(node.side_a)];
   const ArticulationBody& b = node.side_b < 0 ? kImmovable : articulation.bodies[std::size_t(node.side_b)];
@@ -126,8 +129,8 @@ void make_own_block(ArticulationNode& node, const Articulation& articulation, co
 }
 
 // Adds what the shared body couples: signs, because a feels the opposite of what b does.
-void add_coupling(const ArticulationCoupling& coupling, const ArticulationNode& row, const ArticulationNode& column,
-                  const BodyInertia& body, double* block) {
+void add_coupling(const ArticulationCoupling& coupling, const ArticulationNode& row,
+                  const ArticulationNode& column, const BodyInertia& body, double* block) {
   const float sign = coupling.row_has_b == coupling.column_has_b ? 1.0f : -1.0f;
   const float scale = sign * body.inverse_mass;
   const RowVectors& spins = coupling.row_has_b ? row.rows.spin_b : row.rows.spin_a;
@@ -216,7 +219,8 @@ struct Course {
   }
 };
 
-Course course_of(const Articulation& articulation, const ArticulationSolve& s, std::int32_t body, std::int32_t side) {
+Course course_of(const Articulation& articulation, const ArticulationSolve& s, std::int32_t body,
+                 std::int32_t side) {
   if (body == kNoBody) return {};
   const BodyMotion& motion = s.bodies.motion[body];
   if (side >= 0)
@@ -230,7 +234,8 @@ struct SecondOrderBias {
   Vec3 point, turn;
 };
 
-Vec3 angular_second_order_bias(const JointRecord& joint, const JointConstraint& work, const Course& a, const Course& b, float h) {
+Vec3 angular_second_order_bias(const JointRecord& joint, const JointConstraint& work, const Course& a,
+                               const Course& b, float h) {
   const Vec3 seen = b.angular - a.angular;
   if (joint.kind == JointKind::hinge) {
     const Vec3 error = work.angular_error;  // axis a x axis b
@@ -243,7 +248,8 @@ Vec3 angular_second_order_bias(const JointRecord& joint, const JointConstraint& 
   return (to_rotation_vector(later) - work.angular_error) / h - seen;
 }
 
-SecondOrderBias second_order_bias_of(const JointRecord& joint, const JointConstraint& work, const Course& a, const Course& b, float h) {
+SecondOrderBias second_order_bias_of(const JointRecord& joint, const JointConstraint& work, const Course& a,
+                                     const Course& b, float h) {
   SecondOrderBias second_order_bias;
   const Vec3 along = work.along;
   const Vec3 arm_a = work.from_a - work.error - along;  // to a's own anchor
@@ -259,7 +265,8 @@ SecondOrderBias second_order_bias_of(const JointRecord& joint, const JointConstr
     }
     case JointKind::distance: {
       const Vec3 now = work.position * work.axis;
-      second_order_bias.point = ((length(now + apart) - work.position) / h - dot(seen, work.axis)) * work.axis;
+      second_order_bias.point =
+          ((length(now + apart) - work.position) / h - dot(seen, work.axis)) * work.axis;
       break;
     }
     default:
@@ -271,8 +278,9 @@ SecondOrderBias second_order_bias_of(const JointRecord& joint, const JointConstr
 }
 
 // The same for each row of a kind that is a list of rows: by what they would say at the end of the sub-step.
-void rows_second_order_bias(const JointRecord& joint, const JointConstraint& work, const ArticulationNode& node, const Course& a,
-               const Course& b, float h, float (&bends)[kJointAxisCount]) {
+void rows_second_order_bias(const JointRecord& joint, const JointConstraint& work,
+                            const ArticulationNode& node, const Course& a, const Course& b, float h,
+                            float (&bends)[kJointAxisCount]) {
   const Vec3 arm_a = work.from_a - work.error - work.along;  // to a's own anchor
   const Vec3 now = work.error + work.along;
   const Vec3 moved = h * (b.linear - a.linear);
@@ -329,9 +337,10 @@ void compute_bias(const Articulation& articulation, const ArticulationSolve& s, 
     for (int i = 0; i < node.count; ++i) {
       ArticulationRows& rows = node.rows;
       rows.target_speed[i] = back * error_of(joint, work, equation_at(rows, i), i, bounds);
-      rows.target_speed[i] -= work.rows != nullptr            ? share * bends[i]
-                        : is_turn(equation_at(rows, i)) ? dot(second_order_bias.turn, rows.arm_a.at(i))
-                                                        : dot(second_order_bias.point, rows.direction.at(i));
+      rows.target_speed[i] -= work.rows != nullptr ? share * bends[i]
+                              : is_turn(equation_at(rows, i))
+                                  ? dot(second_order_bias.turn, rows.arm_a.at(i))
+                                  : dot(second_order_bias.point, rows.direction.at(i));
     }
   }
 }
@@ -349,8 +358,8 @@ void solve_rows(const Articulation& articulation, const ArticulationSolve& s, bo
     for (int i = 0; i < node.count; ++i) {
       float missing = -speeds[i];
       if (soft)
-        missing +=
-            node.rows.target_speed[i] - node.rows.compliance[i] * kept_impulse(joint, work, equation_at(node.rows, i), i);
+        missing += node.rows.target_speed[i] -
+                   node.rows.compliance[i] * kept_impulse(joint, work, equation_at(node.rows, i), i);
       x[i] = double(missing);
     }
   }
@@ -377,7 +386,8 @@ void iterate_drives(const Articulation& articulation, const ArticulationSolve& s
 
 }  // namespace
 
-void add_geometric_stiffness(const float* geometric_stiffness, const float* inertia, float share, float* inverse_inertia) {
+void add_geometric_stiffness(const float* geometric_stiffness, const float* inertia, float share,
+                             float* inverse_inertia) {
   const auto matrix = [](const float* m) { return Sym3{m[0], m[1], m[2], m[3], m[4], m[5]}; };
   const Sym3 raised = inverse(matrix(inertia) + share * positive_part(matrix(geometric_stiffness)));
   const float out[6] = {raised.xx, raised.yy, raised.zz, raised.xy, raised.xz, raised.yz};

@@ -27,10 +27,10 @@ struct RowVectors {
 
 // A row sees push . (v_b - v_a) + arm_b . w_b - arm_a . w_a.
 struct ArticulationRows {
-  RowVectors direction;               // direction of a force; zero for a turning row
+  RowVectors direction;          // direction of a force; zero for a turning row
   RowVectors arm_a, arm_b;       // r x push, or the axis of a turn
   RowVectors spin_a, spin_b;     // inverse inertia times arm
-  float compliance[kRowLanes] = {};    // added to K: the speed by which the row gives way to an impulse of one
+  float compliance[kRowLanes] = {};  // added to K: the speed by which the row gives way to an impulse of one
   float target_speed[kRowLanes] = {};  // the speed asked for
 };
 
@@ -49,7 +49,7 @@ static_assert(kMaxBlockRows <= kRowLanes);
 struct ArticulationBody {
   std::int32_t body = kNoBody;
   bool is_pressed = false;  // contacts act on it
-  Sym3 geometric_stiffness;                // by how much tension holds its orientation: N m / rad
+  Sym3 geometric_stiffness;  // by how much tension holds its orientation: N m / rad
   Sym3 inverse;             // inertia, raised to what a sub-step can bear
   Sym3 inertia;             // as it is
   Quat turn;                // what its velocities make of a sub-step
@@ -88,12 +88,13 @@ struct ArticulationSolve {
   std::span<const JointOffsets> places;
   JointBodies bodies;
   JointSettings settings;
-  float compliance = 0.0f;         // share of K by which rows give way
+  float compliance = 0.0f;   // share of K by which rows give way
   std::span<double> room{};  // of the worker, for the stops of the largest linkage
 };
 
 // The inverse of an inertia raised by `share` of what of `pull` holds back (six floats each, as Sym3).
-void add_geometric_stiffness(const float* geometric_stiffness, const float* inertia, float share, float* inverse_inertia);
+void add_geometric_stiffness(const float* geometric_stiffness, const float* inertia, float share,
+                             float* inverse_inertia);
 
 // The rows where the bodies are now, and their matrix, factored.
 void prepare_articulation(const Articulation& articulation, const ArticulationSolve& solve);

@@ -1,7 +1,7 @@
 #include "solver/articulation/articulation_drives.h"
 
-#include "solver/articulation/linkage_response.h"
 #include "solver/articulation/articulation_limits.h"
+#include "solver/articulation/linkage_response.h"
 
 #include <cmath>
 
@@ -37,7 +37,8 @@ AxisRoom room_of(const Articulation& articulation) {
 class DriveRows {
  public:
   explicit DriveRows(const Articulation& articulation) : count_(articulation.axes.size()) {
-    for (std::size_t c = 0; c < count_; ++c) rows_[c] = {articulation.axes[c].node, &articulation.axes[c].axis->row};
+    for (std::size_t c = 0; c < count_; ++c)
+      rows_[c] = {articulation.axes[c].node, &articulation.axes[c].axis->row};
   }
   std::span<const ResponseRow> list() const { return {rows_, count_}; }
 
@@ -92,7 +93,8 @@ void note_warm_work(const Articulation& articulation, const ArticulationSolve& s
     AxisConstraint& x = *articulation.axes[c].axis;
     double energy_gain = 0.0;
     for (std::size_t d = 0; d < count; ++d) energy_gain += room.way(c, d) * room.impulses[d];
-    const double before = double(axis_speed(articulation.nodes[articulation.axes[c].node], x.row, solve.bodies));
+    const double before =
+        double(axis_speed(articulation.nodes[articulation.axes[c].node], x.row, solve.bodies));
     x.worked += room.impulses[c] * (before + 0.5 * energy_gain);
   }
 }
@@ -104,7 +106,8 @@ void solve_drives(const Articulation& articulation, const ArticulationSolve& sol
   float speeds[kMaxDrivenAxes];
   for (std::size_t c = 0; c < count; ++c) {
     room.impulses[c] = 0.0;
-    speeds[c] = axis_speed(articulation.nodes[articulation.axes[c].node], articulation.axes[c].axis->row, solve.bodies);
+    speeds[c] = axis_speed(articulation.nodes[articulation.axes[c].node], articulation.axes[c].axis->row,
+                           solve.bodies);
   }
   float before[kMaxDrivenAxes];
   for (std::size_t c = 0; c < count; ++c) before[c] = speeds[c];

@@ -57,7 +57,8 @@ __attribute__((noinline)) CarrierMotion<W> carriage_of(const WideBundle<W>& bund
 
 // J, of what can be pushed, as seen from what holds it. (In one place, as what follows: it is asked for rarely, from many.)
 template <int W>
-__attribute__((noinline)) Wide<W> kinetic_energy(const WideBundle<W>& bundle, const CarrierMotion<W>& carriage) {
+__attribute__((noinline)) Wide<W> kinetic_energy(const WideBundle<W>& bundle,
+                                                 const CarrierMotion<W>& carriage) {
   Wide<W> twice(0.0f);
   for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i) {
     const WideBody<W>& body = bundle.bodies[i];
@@ -130,8 +131,8 @@ GYRE_INLINE RigidMotion<W> rigid_motion(const WideBundle<W>& bundle, const Carri
 
 // Slows inner motion until no more than `left` (J) is there, in these lanes. `turns`: whether the rigid motion may.
 template <int W>
-GYRE_INLINE void slow_down(const WideBundle<W>& bundle, const RigidMotion<W>& rigid, bool turns, Mask<W> lanes,
-                           Wide<W> energy, Wide<W> left) {
+GYRE_INLINE void slow_down(const WideBundle<W>& bundle, const RigidMotion<W>& rigid, bool turns,
+                           Mask<W> lanes, Wide<W> energy, Wide<W> left) {
   const Wide<W> inner = energy - rigid.energy, kept = left - rigid.energy, zero(0.0f);
   const Wide<W> share = sqrt(keep((inner > zero) & (kept > zero), kept / inner));
   for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i) {
@@ -164,8 +165,8 @@ GYRE_INLINE void forget_impulses(const WideBundle<W>& bundle, Mask<W> lanes) {
 // J: with which all bodies go back to where joints would have them, if they are far off and errors are taken back at `rate` (1/s); and of
 // what turns with a holder, what its way bends by in a sub-step of `h`.
 template <int W>
-GYRE_INLINE Wide<W> energy_of_errors(const WideBundle<W>& bundle, const CarrierMotion<W>& carriage, float rate,
-                                     float h) {
+GYRE_INLINE Wide<W> energy_of_errors(const WideBundle<W>& bundle, const CarrierMotion<W>& carriage,
+                                     float rate, float h) {
   Wide<W> sum(0.0f), bent(0.0f);
   for (std::uint32_t i = 0; i < bundle.plain.moving_count; ++i) {
     const WideBody<W>& body = bundle.bodies[i];

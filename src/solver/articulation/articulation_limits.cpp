@@ -47,7 +47,8 @@ class LimitSolve {
   // By how much the stop's speed is above what is asked.
   float speed_of(const LimitRow& stop) const {
     const float second_order_bias = bounds_.turn > 0.0f ? stop.axis->second_order_bias : 0.0f;
-    const float speed = second_order_bias + axis_speed(articulation_.nodes[stop.node], stop.axis->row, solve_.bodies);
+    const float speed =
+        second_order_bias + axis_speed(articulation_.nodes[stop.node], stop.axis->row, solve_.bodies);
     return stop.sign * speed - stop.asked;
   }
 

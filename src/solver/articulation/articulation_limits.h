@@ -7,8 +7,8 @@
 // "The Linear Complementarity Problem", 1992 (projected Gauss-Seidel on its few rows).
 #pragma once
 
-#include "solver/core/error_bounds.h"
 #include "solver/articulation/articulation.h"
+#include "solver/core/error_bounds.h"
 
 namespace gyre {
 

@@ -3,8 +3,8 @@
 // once its own impulses do, so its neighbours change no bit of it.
 #pragma once
 
-#include "solver/articulation/linkage_place.h"
 #include "solver/articulation/articulation_limit_rows.h"
+#include "solver/articulation/linkage_place.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
@@ -102,7 +102,8 @@ class LimitSolver {
     }
   }
   GYRE_INLINE std::uint32_t words() const { return reach_words(b_.plain.column_count); }
-  GYRE_INLINE static void list(WideLimit<W>& stop, const LaneNode& node, WideLimitAxis<W>& axis, bool has_low) {
+  GYRE_INLINE static void list(WideLimit<W>& stop, const LaneNode& node, WideLimitAxis<W>& axis,
+                               bool has_low) {
     stop.axis = &axis, stop.node = &node;
     stop.has_low = has_low, stop.has_reach = false, stop.kept = 0;
   }

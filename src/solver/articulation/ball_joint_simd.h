@@ -17,7 +17,7 @@ struct LaneBall {
   Vec3 total;             // linear impulse, summed over the step
   Vec3 from_a, from_b;    // of this sub-step: anchors from the centres of mass, world axes
   Vec3 impulse;           // linear
-  Vec3 error, second_order_bias;       // as JointConstraint
+  Vec3 error, second_order_bias;  // as JointConstraint
 };
 
 // What a lane has still to read of its bodies' inertia: nothing; once, as it stays; or each time, as it turns with them.

@@ -187,7 +187,7 @@ void update_ball_bias(void* blocks, int begin, int end, const BallSettings& sett
     BallBlock<W>& block = static_cast<BallBlock<W>*>(blocks)[i];
     const BallMotion<W> pair(block);
     const Vec3W<W> second_order_bias = cross(pair.angular_b, cross(pair.angular_b, block.from_b)) -
-                          cross(pair.angular_a, cross(pair.angular_a, block.from_a));
+                                       cross(pair.angular_a, cross(pair.angular_a, block.from_a));
     block.second_order_bias = (0.5f * settings.substep) * second_order_bias;
   }
 }

@@ -102,8 +102,8 @@ bool fits_axis(const JointAxisRecord& axis, JointAxis index, const LaneStart& st
   return true;
 }
 
-void begin_limit(const Lane& lane, std::size_t at, const Limits& limits, float low_impulse, float high_impulse,
-                const LaneStart& start) {
+void begin_limit(const Lane& lane, std::size_t at, const Limits& limits, float low_impulse,
+                 float high_impulse, const LaneStart& start) {
   const bool is_new = start.limits_only;
   LaneWriter(lane, at) << limits.low << limits.high << (is_new ? 0.0f : start.warm_scale * low_impulse)
                        << (is_new ? 0.0f : start.warm_scale * high_impulse) << 0.0f;
@@ -125,8 +125,8 @@ void begin_drives(const Lane& lane, const LaneNode& node, const JointRecord& joi
   const auto write = [&](Vec3 drive, Vec3 friction, float max_drive, float max_friction, Vec3 target_speed,
                          Quat target, const Softness& softness) {
     LaneWriter(lane, 0) << start.warm_scale * drive << start.warm_scale * friction << 0.0f
-                        << start.substep * max_drive << start.substep * max_friction << target_speed
-                        << target << softness.bias_rate << softness.mass_scale << softness.impulse_scale;
+                        << start.substep * max_drive << start.substep * max_friction << target_speed << target
+                        << softness.bias_rate << softness.mass_scale << softness.impulse_scale;
   };
   if (node.kind == JointKind::hinge) {
     const JointAxisRecord axis = axis_of_record(joint, detail, JointAxis::angular_x);
@@ -203,7 +203,7 @@ void set_lane_body(const ArticulationBundle& bundle, int lane, std::uint32_t bod
 }
 
 void load_lane(const ArticulationBundle& bundle, int lane, std::uint32_t node, const JointRecord& joint,
-                const JointDetail* detail, Vec3 offset, const LaneStart& start) {
+               const JointDetail* detail, Vec3 offset, const LaneStart& start) {
   const Lane to(bundle, lane, node);
   const LaneNode& shape = bundle.nodes[node];
   const bool is_hinge = joint.kind == JointKind::hinge;
@@ -262,7 +262,7 @@ float find_lane_error(const ArticulationBundle& bundle, int lane) {
 }
 
 void store_lane(const ArticulationBundle& bundle, int lane, std::uint32_t node, JointRecord& joint,
-                 JointDetail* detail) {
+                JointDetail* detail) {
   const Lane from(bundle, lane, node);
   const LaneNode& shape = bundle.nodes[node];
   joint.linear_impulse = from.vector(kImpulses);

@@ -27,13 +27,13 @@ void set_lane_body(const ArticulationBundle& bundle, int lane, std::uint32_t bod
                    bool is_pressed);
 // `offset`: as in JointOffsets.
 void load_lane(const ArticulationBundle& bundle, int lane, std::uint32_t node, const JointRecord& joint,
-                const JointDetail* detail, Vec3 offset, const LaneStart& start);
+               const JointDetail* detail, Vec3 offset, const LaneStart& start);
 // As if all joints were new: none bears an impulse.
 void forget_lane_impulses(const ArticulationBundle& bundle);
 // Of joints that have just been placed: m or rad, the farthest that a joint or a stop of the lane is off.
 float find_lane_error(const ArticulationBundle& bundle, int lane);
 // Impulses, sums and positions, back into the joint.
 void store_lane(const ArticulationBundle& bundle, int lane, std::uint32_t node, JointRecord& joint,
-                 JointDetail* detail);
+                JointDetail* detail);
 
 }  // namespace gyre

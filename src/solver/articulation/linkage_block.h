@@ -115,7 +115,7 @@ GYRE_INLINE void push_joint(const WideBundle<W>& bundle, const LaneNode& node, c
 // `Fours` times four floats of records of `Stride` floats; of `none` where there is no record.
 template <int Fours, int W, int Stride>
 GYRE_INLINE void gather_vec4(const float* base, const std::int32_t* indices, const float* none, int first,
-                              Wide<W>* out) {
+                             Wide<W>* out) {
   const float* record[W];
   locate_records<W, Stride>(base, indices, none, record);
   if constexpr (W == 1) {
@@ -165,8 +165,7 @@ GYRE_INLINE void load_poses(const WideBundle<W>& bundle, const LaneArrays& array
     Wide<W> c[8];
     gather_vec4<1, W, 4>(&arrays.orientation->x, body.record, kUnturned, 0, c);
     body.orientation = {c[0], c[1], c[2], c[3]};
-    gather_vec4<1, W, kMotionFloats>(&arrays.motion->linear_velocity.x, body.record, kZeros, kMotionMoved,
-                                      c);
+    gather_vec4<1, W, kMotionFloats>(&arrays.motion->linear_velocity.x, body.record, kZeros, kMotionMoved, c);
     body.moved = {c[0], c[1], c[2]};
     const Wide<W> zero(0.0f);
     body.geometric_stiffness = {zero, zero, zero, zero, zero, zero};

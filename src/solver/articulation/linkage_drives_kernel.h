@@ -119,8 +119,7 @@ GYRE_INLINE Vec3W<W> sum_of(const LaneNode& node, const WideDrives<W>& d) {
 }
 // As a turning impulse on b.
 template <int W>
-GYRE_INLINE Vec3W<W> driven_impulse(const LaneNode& node, const WideJoint<W>& joint,
-                                    const WideDrives<W>& d) {
+GYRE_INLINE Vec3W<W> driven_impulse(const LaneNode& node, const WideJoint<W>& joint, const WideDrives<W>& d) {
   const Vec3W<W> sum = sum_of(node, d);
   return node.kind == JointKind::hinge ? sum.x * joint.axis : sum;
 }

@@ -2,9 +2,9 @@
 // one alone. A ball joint's three rows are one vector here, and an impulse goes to a body as a force at its arm.
 #pragma once
 
-#include "solver/articulation/linkage_drives_kernel.h"
 #include "solver/articulation/articulation_energy_kernel.h"
 #include "solver/articulation/articulation_limits_kernel.h"
+#include "solver/articulation/linkage_drives_kernel.h"
 
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
@@ -28,8 +28,8 @@ GYRE_INLINE Vec3W<W> swing_of(const QuatW<W>& turn, Vec3W<W> arm) {
 
 // How a hinge's error will have changed at the end of the sub-step, over its length, beyond what the rows see.
 template <int W>
-GYRE_INLINE Vec3W<W> hinge_second_order_bias(const WideJoint<W>& joint, const WideBody<W>& a, const WideBody<W>& b,
-                                float per_substep) {
+GYRE_INLINE Vec3W<W> hinge_second_order_bias(const WideJoint<W>& joint, const WideBody<W>& a,
+                                             const WideBody<W>& b, float per_substep) {
   const Vec3W<W> error = joint.angular_error;  // axis a x axis b
   const Vec3W<W> axis_b =
       cross(error, joint.axis) + sqrt(max(1.0f - length_squared(error), Wide<W>(0.0f))) * joint.axis;
@@ -61,9 +61,10 @@ GYRE_INLINE Wide<W> remove_error(Wide<W> turns, float rate, float per_substep) {
 
 template <int W>
 GYRE_INLINE void add_second_order_bias(const LaneNode& node, WideJoint<W>& joint, const WideBody<W>& a,
-                          const WideBody<W>& b, Wide<W> share, float per_substep) {
-  const Vec3W<W> second_order_bias = per_substep * (swing_of(b.turn, joint.from_b) - swing_of(a.turn, joint.from_a)) -
-                        (cross(b.angular, joint.from_b) - cross(a.angular, joint.from_a));
+                                       const WideBody<W>& b, Wide<W> share, float per_substep) {
+  const Vec3W<W> second_order_bias =
+      per_substep * (swing_of(b.turn, joint.from_b) - swing_of(a.turn, joint.from_a)) -
+      (cross(b.angular, joint.from_b) - cross(a.angular, joint.from_a));
   const Mask<W> bends = share > 0.0f;
   joint.target_speed = select(bends, joint.target_speed - share * second_order_bias, joint.target_speed);
   if (node.kind != JointKind::hinge) return;
@@ -76,7 +77,8 @@ GYRE_INLINE void add_second_order_bias(const LaneNode& node, WideJoint<W>& joint
 
 // That the end of the sub-step, not its beginning, meets the joints. (In one place, as stops are: all that solves asks.)
 template <int W>
-__attribute__((noinline)) void compute_lane_bias(const WideBundle<W>& bundle, const LaneSettings& s, ErrorBounds bounds) {
+__attribute__((noinline)) void compute_lane_bias(const WideBundle<W>& bundle, const LaneSettings& s,
+                                                 ErrorBounds bounds) {
   const float h = s.substep, per_substep = 1.0f / s.substep;
   for (std::uint32_t i = 0; i < bundle.plain.body_count; ++i) {
     WideBody<W>& body = bundle.bodies[i];
@@ -214,8 +216,8 @@ GYRE_INLINE void push_kept(const WideBundle<W>& bundle) {
 }
 
 template <int W>
-__attribute__((noinline)) void solve_limits(const WideBundle<W>& bundle, const LaneSettings& s, ErrorBounds bounds,
-                                           Mask<W> lanes = Mask<W>::splat(true)) {
+__attribute__((noinline)) void solve_limits(const WideBundle<W>& bundle, const LaneSettings& s,
+                                            ErrorBounds bounds, Mask<W> lanes = Mask<W>::splat(true)) {
   if (bundle.plain.limit_count > 0) LimitSolver<W>(bundle, s, bounds).solve(lanes);
 }
 
@@ -285,7 +287,8 @@ void solve_bundle(const ArticulationBundle& plain, const LaneArrays& arrays, con
 }
 
 template <int W>
-void solve_bundle_after_contacts(const ArticulationBundle& plain, const LaneArrays& arrays, const LaneSettings& s) {
+void solve_bundle_after_contacts(const ArticulationBundle& plain, const LaneArrays& arrays,
+                                 const LaneSettings& s) {
   const WideBundle<W> bundle(plain);
   load_velocities(bundle, arrays);
   const EnergyLimiter<W> watch(bundle);

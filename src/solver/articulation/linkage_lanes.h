@@ -41,7 +41,7 @@ struct LaneJoint {
   // Of this sub-step.
   Vec3 from_a, from_b;  // anchors from the centres of mass, world axes
   Vec3 error;           // anchor b minus anchor a
-  Vec3 compliance, target_speed;    // of the three rows of the point, as ArticulationRows
+  Vec3 compliance, target_speed;  // of the three rows of the point, as ArticulationRows
   // Hinges: a's axis and what is across it, the error, the two rows that keep the axes together.
   Vec3 axis, perpendicular_1, perpendicular_2, angular_error;
   float turn_give_1 = 0.0f, turn_give_2 = 0.0f, turn_wanted_1 = 0.0f, turn_wanted_2 = 0.0f;
@@ -52,7 +52,7 @@ struct LaneJoint {
 struct LaneDrives {
   Vec3 drive_impulse, friction_impulse;
   float total = 0.0f;                                          // hinges: of the impulses over the step
-  float max_drive = 0.0f, max_friction = 0.0f;               // N m s: impulses of a sub-step
+  float max_drive = 0.0f, max_friction = 0.0f;                 // N m s: impulses of a sub-step
   Vec3 target_speed;                                           // rad/s, in the joint's frame on a
   Quat target;                                                 // a from b; of hinges x is an angle
   float rate = 0.0f, mass_scale = 1.0f, impulse_scale = 0.0f;  // how soft the drive is: Softness
@@ -117,7 +117,7 @@ struct ArticulationBundle {
   const std::uint32_t* targets = nullptr;
   std::uint32_t column_count = 0, value_count = 0, row_count = 0;
   bool has_fill = false;          // blocks of the plan in which nothing stands before elimination
-  std::uint32_t limit_count = 0;   // axes with stops, and servos
+  std::uint32_t limit_count = 0;  // axes with stops, and servos
   std::uint32_t drive_count = 0;  // joints with drives or friction
   std::uint32_t servo_count = 0;
   bool has_drives = false;  // what does work: drives, servos
@@ -128,8 +128,9 @@ struct ArticulationBundle {
   float* values = nullptr;  // of the matrix
   float* vector = nullptr;
   float* room = nullptr;        // of the widest column
-  float* energy_gain = nullptr;  // J, by lane: what joints gave in this sub-step; then 1 in lanes that are watched
-  float* has_extreme_mass_ratio = nullptr;   // 1 in lanes with a link so light that it is always watched
+  float* energy_gain =
+      nullptr;  // J, by lane: what joints gave in this sub-step; then 1 in lanes that are watched
+  float* has_extreme_mass_ratio = nullptr;  // 1 in lanes with a link so light that it is always watched
   bool* is_factored = nullptr;  // whether `values` are factors by now
   std::byte* stops = nullptr;   // what is known of them in this step: as much as limit_room() says
 };
@@ -149,7 +150,8 @@ struct LaneSettings {
   // As ArticulationSolve::give, 1e-4 or so: far above the rounding of floats, in which the matrix is eliminated.
   float compliance = 0.0f;
   // The inverse of an inertia raised by `share` of what of `pull` holds back (six floats each, as Sym3).
-  void (*raise)(const float* geometric_stiffness, const float* inertia, float share, float* inverse) = nullptr;
+  void (*raise)(const float* geometric_stiffness, const float* inertia, float share,
+                float* inverse) = nullptr;
   // What the first of two solutions takes back.
   ErrorBounds first_errors = kErrorsBeforeContacts;
   // Of the way that free rotation swerves in a sub-step, how much is asked for; none where speeds stand for displacements.
@@ -166,11 +168,12 @@ struct ArticulationKernels {
   std::size_t body_bytes, joint_bytes, drives_bytes, servo_bytes;
   std::size_t velocities_at;  // bytes: where a body's block has them, as LaneVelocities
   std::size_t (*limit_room)(const ArticulationBundle& bundle);  // bytes
-  void (*begin)(const ArticulationBundle& bundle);             // before it is placed for the first time in a step
+  void (*begin)(const ArticulationBundle& bundle);  // before it is placed for the first time in a step
   void (*place)(const ArticulationBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
   void (*ask)(const ArticulationBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
   void (*solve)(const ArticulationBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
-  void (*solve_again)(const ArticulationBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
+  void (*solve_again)(const ArticulationBundle& bundle, const LaneArrays& arrays,
+                      const LaneSettings& settings);
   // After each move but the last: sums impulses, and asks for what the next part begins with.
   void (*pass)(const ArticulationBundle& bundle, const LaneArrays& arrays, const LaneSettings& settings);
   // After the last move: no speed is left along the rows or into stops; sums impulses.

@@ -170,8 +170,8 @@ void solve_column_down(const ArticulationBundle& bundle, const BlockColumn& colu
 
 // out = P^-1 x, of the column's rows.
 template <int W, int C>
-GYRE_INLINE void scale_column(const ArticulationBundle& bundle, const BlockColumn& column, const float* vector,
-                              float* out) {
+GYRE_INLINE void scale_column(const ArticulationBundle& bundle, const BlockColumn& column,
+                              const float* vector, float* out) {
   using V = Wide<W>;
   const float* const diagonal = bundle.values + std::size_t(column.diagonal) * W;
   const std::size_t first = std::size_t(column.row) * W;
@@ -278,7 +278,8 @@ void clear_reached(const ArticulationBundle& bundle, const ReachedColumns reache
 
 // Replaces the right side x, of the columns that are reached, by y of L y = x, and finds P^-1 y.
 template <int W>
-void solve_reached_down(const ArticulationBundle& bundle, const ReachedColumns reached, float* x, float* scaled) {
+void solve_reached_down(const ArticulationBundle& bundle, const ReachedColumns reached, float* x,
+                        float* scaled) {
   const auto own = [&](std::uint32_t i) { return reached[i]; };
   for_columns(bundle, own, [&](const BlockColumn& column) {
     if (column.size == 3) {

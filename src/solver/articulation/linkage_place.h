@@ -50,8 +50,8 @@ GYRE_INLINE Wide<W> near_twist(const LaneNode& node, const WideJoint<W>& joint) 
 // How far b's axis may still lean out of a's, and the axis about which the stop is nearest: find_swing_limit() of
 // solver/joint/joint_kinds.cpp.
 template <int W>
-GYRE_INLINE void place_swing(WideJoint<W>& joint, const Mat3W<W>& frame_a, Vec3W<W> x_b,
-                             const WideBody<W>& a, const WideBody<W>& b) {
+GYRE_INLINE void place_swing(WideJoint<W>& joint, const Mat3W<W>& frame_a, Vec3W<W> x_b, const WideBody<W>& a,
+                             const WideBody<W>& b) {
   const Vec3W<W> across_both = cross(frame_a.x, x_b);
   const Wide<W> sine = length(across_both);
   const Wide<W> angle = atan2(sine, dot(frame_a.x, x_b));
@@ -115,11 +115,11 @@ template <int W>
 GYRE_INLINE void add_geometric_stiffness_term(WideBody<W>& body, Vec3W<W> r, Vec3W<W> f) {
   const Wide<W> k = dot(r, f);
   body.geometric_stiffness = body.geometric_stiffness + Sym3W<W>{k - r.x * f.x,
-                                   k - r.y * f.y,
-                                   k - r.z * f.z,
-                                   -0.5f * (r.x * f.y + r.y * f.x),
-                                   -0.5f * (r.x * f.z + r.z * f.x),
-                                   -0.5f * (r.y * f.z + r.z * f.y)};
+                                                                 k - r.y * f.y,
+                                                                 k - r.z * f.z,
+                                                                 -0.5f * (r.x * f.y + r.y * f.x),
+                                                                 -0.5f * (r.x * f.z + r.z * f.x),
+                                                                 -0.5f * (r.y * f.z + r.z * f.y)};
 }
 
 // As raise_inertias() of solver/articulation/articulation.cpp. Hardly any body is pulled like that.
@@ -197,8 +197,9 @@ GYRE_INLINE void make_own_block(const WideBundle<W>& bundle, const LaneNode& nod
 
 // One row of what a shared body couples: by the spin that the row's impulse of one gives it.
 template <int W>
-GYRE_INLINE void put_coupled_row(const WideBundle<W>& bundle, std::uint32_t at, Vec3W<W> direction, Vec3W<W> spin,
-                                 Vec3W<W> r, const WideJoint<W>& column, bool turns, bool is_first) {
+GYRE_INLINE void put_coupled_row(const WideBundle<W>& bundle, std::uint32_t at, Vec3W<W> direction,
+                                 Vec3W<W> spin, Vec3W<W> r, const WideJoint<W>& column, bool turns,
+                                 bool is_first) {
   const auto put = [&](std::uint32_t i, Wide<W> v) {
     is_first ? bundle.set_value(i, v) : bundle.add_value(i, v);
   };

@@ -24,11 +24,13 @@ RowPush push_of(const Articulation& articulation, const ArticulationSolve& solve
   const ArticulationNode& node = articulation.nodes[row.node];
   RowPush direction{node.side_a, node.side_b, {}, {}};
   if (node.side_a >= 0)
-    direction.a = {DVec3((-row.sign * solve.bodies.inertia[node.body_a].inverse_mass) * row.row->push_a),
-              DVec3(articulation.bodies[std::size_t(node.side_a)].inverse * (-row.sign * row.row->arm_a))};
+    direction.a = {
+        DVec3((-row.sign * solve.bodies.inertia[node.body_a].inverse_mass) * row.row->push_a),
+        DVec3(articulation.bodies[std::size_t(node.side_a)].inverse * (-row.sign * row.row->arm_a))};
   if (node.side_b >= 0)
-    direction.b = {DVec3((row.sign * solve.bodies.inertia[node.body_b].inverse_mass) * row.row->push_b),
-              DVec3(articulation.bodies[std::size_t(node.side_b)].inverse * (row.sign * row.row->arm_b))};
+    direction.b = {
+        DVec3((row.sign * solve.bodies.inertia[node.body_b].inverse_mass) * row.row->push_b),
+        DVec3(articulation.bodies[std::size_t(node.side_b)].inverse * (row.sign * row.row->arm_b))};
   return direction;
 }
 
@@ -126,13 +128,15 @@ void find_response(const Articulation& articulation, const ArticulationSolve& so
   for (std::size_t n = 0; n < articulation.nodes.size(); ++n) {
     const ArticulationNode& node = articulation.nodes[n];
     if (share_body(own, node))
-      set_missing(node, direction.of(node.side_a), direction.of(node.side_b), &column.down[first_row(articulation, n)]);
+      set_missing(node, direction.of(node.side_a), direction.of(node.side_b),
+                  &column.down[first_row(articulation, n)]);
   }
   solve_blocks_down(articulation.plan, articulation.values, column.down, column.scaled);
 }
 
-void compute_delassus(const Articulation& articulation, const ArticulationSolve& solve, std::span<const ResponseRow> rows,
-               const ResponseColumns& columns, std::size_t known, double* matrix, std::size_t stride) {
+void compute_delassus(const Articulation& articulation, const ArticulationSolve& solve,
+                      std::span<const ResponseRow> rows, const ResponseColumns& columns, std::size_t known,
+                      double* matrix, std::size_t stride) {
   const std::size_t size = articulation.plan.rows;
   for (std::size_t j = known; j < rows.size(); ++j) {
     const RowPush direction = push_of(articulation, solve, rows[j]);
@@ -145,8 +149,9 @@ void compute_delassus(const Articulation& articulation, const ArticulationSolve&
   }
 }
 
-void push_rows(const Articulation& articulation, const ArticulationSolve& solve, std::span<const ResponseRow> rows,
-               std::span<const double> impulses, std::span<double> speeds) {
+void push_rows(const Articulation& articulation, const ArticulationSolve& solve,
+               std::span<const ResponseRow> rows, std::span<const double> impulses,
+               std::span<double> speeds) {
   BodySpeeds changes(speeds);
   for (double& one : speeds) one = 0.0;
   for (std::size_t c = 0; c < rows.size(); ++c) {

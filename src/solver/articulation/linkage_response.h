@@ -5,8 +5,8 @@
 // y_i . D^-1 y_j, where L y is what the impulse makes of the equations' rows. What they answer is found once for all impulses together.
 #pragma once
 
-#include "solver/joint/joint_axis.h"
 #include "solver/articulation/articulation.h"
+#include "solver/joint/joint_axis.h"
 
 namespace gyre {
 
@@ -41,13 +41,14 @@ void find_response(const Articulation& articulation, const ArticulationSolve& so
 
 // Ways among rows from, to, ...: matrix[i * stride + j] is the speed that row i has of an impulse of one along row j. Those of [0, known) among
 // each other are left as they are.
-void compute_delassus(const Articulation& articulation, const ArticulationSolve& solve, std::span<const ResponseRow> rows,
-               const ResponseColumns& columns, std::size_t known, double* matrix, std::size_t stride);
+void compute_delassus(const Articulation& articulation, const ArticulationSolve& solve,
+                      std::span<const ResponseRow> rows, const ResponseColumns& columns, std::size_t known,
+                      double* matrix, std::size_t stride);
 
 // Adds impulses along rows, and what the equations answer: to the bodies' velocities and to what joints keep. `speeds` is room for six
 // numbers a body.
-void push_rows(const Articulation& articulation, const ArticulationSolve& solve, std::span<const ResponseRow> rows,
-               std::span<const double> impulses, std::span<double> speeds);
+void push_rows(const Articulation& articulation, const ArticulationSolve& solve,
+               std::span<const ResponseRow> rows, std::span<const double> impulses, std::span<double> speeds);
 
 // What an axis sees of the bodies' velocities.
 float axis_speed(const ArticulationNode& node, const AxisRow& row, const JointBodies& bodies);

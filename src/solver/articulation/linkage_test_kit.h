@@ -5,11 +5,11 @@
 #include "base/arena/arena.h"
 #include "math/rotation.h"
 #include "math/trig.h"
-#include "solver/contact/contact_block.h"
-#include "solver/articulation/lane_transfer.h"
 #include "solver/articulation/articulation.h"
 #include "solver/articulation/articulation_drives.h"
 #include "solver/articulation/articulation_limits.h"
+#include "solver/articulation/lane_transfer.h"
+#include "solver/contact/contact_block.h"
 
 #include <gtest/gtest.h>
 
@@ -268,7 +268,8 @@ inline void solve_side_by_side(Crowd& crowd, Shape& shape, const ArticulationKer
                                const Between& between) {
   const ArticulationSolve solve = crowd.solve();
   const LaneArrays arrays{crowd.motion.data(), crowd.inertia.data(), crowd.orientation.data()};
-  const LaneSettings settings{kSubstep, kSettings.softness.bias_rate, solve.compliance, add_geometric_stiffness};
+  const LaneSettings settings{kSubstep, kSettings.softness.bias_rate, solve.compliance,
+                              add_geometric_stiffness};
   const LaneStart start{.substep = kSubstep, .softness = kSettings.softness};
   for (std::size_t i = 0; i < kJoints; ++i)
     ASSERT_TRUE(fits_lane(crowd.records[i], crowd.detail_of(i), start, shape.nodes[i]));

@@ -7,8 +7,8 @@
 
 #include "geometry/manifold/manifold.h"
 #include "solver/articulation/ball_joint_simd.h"
-#include "solver/core/body_motion.h"
 #include "solver/articulation/linkage_lanes.h"
+#include "solver/core/body_motion.h"
 #include "solver/motion/motion_block.h"
 #include "solver/motion/rotation_block.h"
 

@@ -37,8 +37,8 @@ GYRE_INLINE void warm_start_block(ContactBlock<W>& block) {
     turn_sum = turn_sum + block.impulses[k] * block.points[k].arm;
   }
   push_normal<W>(block, pair, total, turn_sum);
-  direction<W>(block, pair, block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2, block.friction_from_a,
-          block.friction_from_b, block.twist * block.normal);
+  direction<W>(block, pair, block.friction_1 * block.tangent_1 + block.friction_2 * block.tangent_2,
+               block.friction_from_a, block.friction_from_b, block.twist * block.normal);
   if (block.rolls != 0) turn<W>(block, pair, block.aside->rolling);
   store_pair<W>(block, pair);
 }
@@ -115,8 +115,8 @@ GYRE_INLINE void solve_friction(ContactBlock<W>& block, PairMotion<W, kHasA>& pa
   block.friction_1 = f1;
   block.friction_2 = f2;
   block.twist = f3;
-  direction<W>(block, pair, d1 * block.tangent_1 + d2 * block.tangent_2, block.friction_from_a, block.friction_from_b,
-          d3 * block.normal);
+  direction<W>(block, pair, d1 * block.tangent_1 + d2 * block.tangent_2, block.friction_from_a,
+               block.friction_from_b, d3 * block.normal);
 }
 
 // Rolling friction: a torque against the relative turning, at most rolling_friction times the load.
@@ -141,8 +141,8 @@ GYRE_INLINE void solve_rolling(ContactBlock<W>& block, PairMotion<W, kHasA>& pai
 // The impulses of lanes in which some points would pull, by projected sweeps: into `next`, of the others nothing.
 // From the impulses that stand, not from the block's answer with its pulls cut off: that is too strong, and piles shake.
 template <int W, int Count>
-GYRE_INLINE void iterate_manifold_points(const ContactBlockCold<W>& aside, const Wide<W>* residual, const Wide<W>* kept, Mask<W> pulls,
-                             Wide<W>* next) {
+GYRE_INLINE void iterate_manifold_points(const ContactBlockCold<W>& aside, const Wide<W>* residual,
+                                         const Wide<W>* kept, Mask<W> pulls, Wide<W>* next) {
   const Wide<W> zero(0.0f), one(1.0f);
   Wide<W> tried[Count], change[Count];
   GYRE_UNROLL
@@ -198,7 +198,8 @@ GYRE_INLINE void solve_points(ContactBlock<W>& block, PairMotion<W, kHasA>& pair
       const Wide<W> share = any(is_capped) ? select(is_capped, fastest / select(is_capped, asked, one), one) : one;
       // A point that parts ceases to give way by degrees.
       const Wide<W> near = max(block.slop - max(separation, zero), zero);
-      kept[i] = block.impulses[i] - (block.compliance * near) * share * max(block.impulses[i] - point.held, zero);
+      kept[i] =
+          block.impulses[i] - (block.compliance * near) * share * max(block.impulses[i] - point.held, zero);
       if (block.linked != 0) {
         kept[i] = select(Mask<W>::of_bits(block.linked) & (separation < lost), leak * kept[i], kept[i]);
       }

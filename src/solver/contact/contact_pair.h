@@ -123,8 +123,8 @@ GYRE_INLINE void store_pair(ContactBlock<W>& block, const PairMotion<W, kHasA>& 
 
 // Adds the impulse `p` on B at `from_b` (and -p on A at `from_a`), and the angular impulse `t` on B (and -t on A).
 template <int W, bool kHasA>
-GYRE_INLINE void direction(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair, Vec3W<W> p, Vec3W<W> from_a,
-                      Vec3W<W> from_b, Vec3W<W> t) {
+GYRE_INLINE void direction(const ContactBlock<W>& block, PairMotion<W, kHasA>& pair, Vec3W<W> p,
+                           Vec3W<W> from_a, Vec3W<W> from_b, Vec3W<W> t) {
   if constexpr (kHasA) {
     pair.linear_a = pair.linear_a - block.inverse_mass_a * p;
     pair.angular_a = pair.angular_a - block.inverse_inertia_a * (cross(from_a, p) + t);

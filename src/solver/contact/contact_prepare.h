@@ -270,7 +270,8 @@ GYRE_INLINE void prepare_softness(ContactBlock<W>& block, Mask<W> rigid, Wide<W>
   block.rate = keep(yields, youth * Wide<W>(settings.rate));
   block.slop = Wide<W>(kSpringSlop) * size;
   const auto has_slop = block.slop > zero;
-  block.compliance = keep(yields & has_slop, youth * Wide<W>(settings.compliance) / select(has_slop, block.slop, one));
+  block.compliance =
+      keep(yields & has_slop, youth * Wide<W>(settings.compliance) / select(has_slop, block.slop, one));
   const Wide<W> rise = keep(both, Wide<W>(kLowerShare) * dot(block.normal, splat<W>(settings.up)));
   block.aside->mobility_a = one - max(rise, zero);
   block.aside->mobility_b = one + min(rise, zero);

@@ -98,7 +98,8 @@ void rub(ImpactContact& contact, Bodies& bodies) {
 }
 
 // Whether the point meets within the sub-step and, if so, what speed it is to leave with.
-bool apply_point_restitution(ImpactPoint& point, const ImpactContact& contact, const Bodies& bodies, const ImpactSettings& settings) {
+bool apply_point_restitution(ImpactPoint& point, const ImpactContact& contact, const Bodies& bodies,
+                             const ImpactSettings& settings) {
   const float closing = -dot(bodies.velocity(point.from_a, point.from_b), contact.normal);
   if (!(closing > settings.threshold)) return false;
   // Below the surface (a contact that was seen too late) the way back up counts like the way down.
@@ -151,7 +152,8 @@ void record_approach(std::span<ImpactContact> contacts, ContactBodies bodies) {
   }
 }
 
-void apply_restitution(std::span<ImpactContact> contacts, ContactBodies bodies, const ImpactSettings& settings) {
+void apply_restitution(std::span<ImpactContact> contacts, ContactBodies bodies,
+                       const ImpactSettings& settings) {
   // What the forces added: closing speed now less closing speed before.
   for (ImpactContact& contact : contacts) {
     const Bodies pair(contact, bodies);
@@ -178,7 +180,8 @@ void apply_restitution(std::span<ImpactContact> contacts, ContactBodies bodies, 
   }
 }
 
-void apply_delayed_restitution(std::span<ImpactContact> contacts, ContactBodies bodies, const ImpactSettings&) {
+void apply_delayed_restitution(std::span<ImpactContact> contacts, ContactBodies bodies,
+                               const ImpactSettings&) {
   for (ImpactContact& contact : contacts) {
     bool pending = false;
     for (int k = 0; k < contact.count; ++k) {

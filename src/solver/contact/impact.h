@@ -50,8 +50,10 @@ ImpactContact make_impact(const ContactConstraint& constraint);
 // Before the forces of a sub-step: remembers how fast the points close.
 void record_approach(std::span<ImpactContact> contacts, ContactBodies bodies);
 // After the forces, before the constraints: strikes what would meet in this sub-step.
-void apply_restitution(std::span<ImpactContact> contacts, ContactBodies bodies, const ImpactSettings& settings);
+void apply_restitution(std::span<ImpactContact> contacts, ContactBodies bodies,
+                       const ImpactSettings& settings);
 // After the bodies have moved: kicks what has been set down.
-void apply_delayed_restitution(std::span<ImpactContact> contacts, ContactBodies bodies, const ImpactSettings& settings);
+void apply_delayed_restitution(std::span<ImpactContact> contacts, ContactBodies bodies,
+                               const ImpactSettings& settings);
 
 }  // namespace gyre

@@ -18,8 +18,10 @@ inline namespace GYRE_TARGET_NAMESPACE {
 
 // Where the arms lie in AdvancedArms, in floats.
 constexpr int kArmsMiddle = 0, kArmsBefore = 24, kArmsNow = 48, kArmsSeparation = 72, kArmsShares = 76;
-static_assert(offsetof(AdvancedArms, before) == 4 * kArmsBefore && offsetof(AdvancedArms, now) == 4 * kArmsNow);
-static_assert(offsetof(AdvancedArms, middle) == 0 && offsetof(AdvancedArms, separation) == 4 * kArmsSeparation);
+static_assert(offsetof(AdvancedArms, before) == 4 * kArmsBefore &&
+              offsetof(AdvancedArms, now) == 4 * kArmsNow);
+static_assert(offsetof(AdvancedArms, middle) == 0 &&
+              offsetof(AdvancedArms, separation) == 4 * kArmsSeparation);
 static_assert(offsetof(AdvancedArms, friction_shares) == 4 * kArmsShares);
 static_assert(sizeof(PointArmPairs) == 4 * kArmsBefore && offsetof(PointArmPairs, from_b) == 48);
 
@@ -97,7 +99,8 @@ struct LoadShares {
 
 // By which shares the friction that stands came to act; as the step begins it acts where the load does.
 template <int W>
-GYRE_INLINE void shares_before(const AdvancedArmsLanes<W>& lanes, const LoadShares<W>& now, Wide<W> (&before)[kMaxManifoldPoints]) {
+GYRE_INLINE void shares_before(const AdvancedArmsLanes<W>& lanes, const LoadShares<W>& now,
+                               Wide<W> (&before)[kMaxManifoldPoints]) {
   Wide<W> noted[kMaxManifoldPoints], sum(0.0f);
   gather_columns<4, W>(lanes.arms, kArmsShares, noted);
   for (int k = 0; k < lanes.point_count; ++k) sum = sum + noted[k];
@@ -123,8 +126,8 @@ struct LaneTorques {
 };
 template <int W>
 GYRE_INLINE LaneTorques<W> torques_of(const ContactBlock<W>& block, const AdvancedArmsLanes<W>& lanes,
-                                      const LoadShares<W>& load, const Wide<W> (&friction_shares)[kMaxManifoldPoints],
-                                      int set) {
+                                      const LoadShares<W>& load,
+                                      const Wide<W> (&friction_shares)[kMaxManifoldPoints], int set) {
   PointArms<W> arms[kMaxManifoldPoints];
   FrictionArms<W> friction;
   for (int k = 0; k < lanes.point_count; ++k) friction.add(friction_shares[k], arms[k] = gather_arms<W>(lanes, set, k));
@@ -157,8 +160,8 @@ GYRE_INLINE void copy_bodies(const ContactBlock<W>& from, ContactBlock<W>& to) {
 
 // Takes over what became of the lanes that are followed.
 template <int W>
-GYRE_INLINE void put_back(ContactBlock<W>& block, const ContactBlock<W>& moved, const AdvancedArmsLanes<W>& lanes,
-                          const LoadShares<W>& load) {
+GYRE_INLINE void put_back(ContactBlock<W>& block, const ContactBlock<W>& moved,
+                          const AdvancedArmsLanes<W>& lanes, const LoadShares<W>& load) {
   const auto followed = Mask<W>::of_bits(lanes.bits);
   const auto put = [](Mask<W> where, auto& to, const auto& from) { to = select(where, from, to); };
   const auto put_vector = [](Mask<W> where, Vec3W<W>& to, const Vec3W<W>& from) { to = select<W>(where, from, to); };

@@ -18,8 +18,9 @@ Quat orientation_of(std::int32_t body, const JointBodies& bodies) {
 // 1983) a swinging pendulum keeps its energy.
 Vec3 second_order_bias_of(const JointPair& pair, const JointConstraint& work, bool slides, float h) {
   Vec3 second_order_bias = cross(pair.angular_b, cross(pair.angular_b, work.from_b)) -
-              cross(pair.angular_a, cross(pair.angular_a, work.from_a));
-  if (slides) second_order_bias -= 2.0f * cross(pair.angular_a, pair.point_velocity(work.from_a, work.from_b));
+                           cross(pair.angular_a, cross(pair.angular_a, work.from_a));
+  if (slides)
+    second_order_bias -= 2.0f * cross(pair.angular_a, pair.point_velocity(work.from_a, work.from_b));
   return 0.5f * h * second_order_bias;
 }
 
@@ -38,7 +39,8 @@ void place_line_axis(JointConstraint& work, const JointPair& pair, const JointSe
   prepare_axis(*x, pair, settings);
 }
 
-void prepare_hinge(JointRecord& joint, const JointPair& pair, JointConstraint& work, const JointSettings& settings) {
+void prepare_hinge(JointRecord& joint, const JointPair& pair, JointConstraint& work,
+                   const JointSettings& settings) {
   const Mat3 axes_a = to_matrix(work.frame_a);
   const Vec3 axis_b = rotate(work.frame_b, {1, 0, 0});
   work.axis = axes_a.x;
@@ -60,7 +62,8 @@ void prepare_hinge(JointRecord& joint, const JointPair& pair, JointConstraint& w
   prepare_axis(*x, pair, settings);
 }
 
-void prepare_slider(JointRecord& joint, const JointPair& pair, JointConstraint& work, const JointSettings& settings) {
+void prepare_slider(JointRecord& joint, const JointPair& pair, JointConstraint& work,
+                    const JointSettings& settings) {
   const Mat3 axes_a = to_matrix(work.frame_a);
   work.axis = axes_a.x;
   work.perpendicular_1 = axes_a.y;
@@ -70,7 +73,8 @@ void prepare_slider(JointRecord& joint, const JointPair& pair, JointConstraint& 
   work.from_a += work.error;
   work.along = work.position * work.axis;
   work.error -= work.along;
-  work.angular_error = clamp_length(to_rotation_vector(work.frame_b * conjugate(work.frame_a)), kMaxErrors.turn);
+  work.angular_error =
+      clamp_length(to_rotation_vector(work.frame_b * conjugate(work.frame_a)), kMaxErrors.turn);
   if (settings.swept) {
     const Mat3 k = point_matrix(pair, work.from_a, work.from_b);
     work.linear_mass = inverse_in_plane(k, work.perpendicular_1, work.perpendicular_2);
@@ -80,13 +84,15 @@ void prepare_slider(JointRecord& joint, const JointPair& pair, JointConstraint& 
 }
 
 void prepare_fixed(const JointPair& pair, JointConstraint& work, bool swept) {
-  work.angular_error = clamp_length(to_rotation_vector(work.frame_b * conjugate(work.frame_a)), kMaxErrors.turn);
+  work.angular_error =
+      clamp_length(to_rotation_vector(work.frame_b * conjugate(work.frame_a)), kMaxErrors.turn);
   if (!swept) return;
   prepare_ball(pair, work);
   work.angular_mass = to_matrix(inverse(pair.inverse_inertia_a() + pair.inverse_inertia_b()));
 }
 
-void prepare_distance(JointRecord& joint, const JointPair& pair, JointConstraint& work, const JointSettings& settings) {
+void prepare_distance(JointRecord& joint, const JointPair& pair, JointConstraint& work,
+                      const JointSettings& settings) {
   work.axis = normalized(work.error, rotate(Quat{}, {0, 1, 0}));
   work.position = joint.position = length(work.error);
   place_line_axis(work, pair, settings);
@@ -104,14 +110,16 @@ void warm_axes(const JointConstraint& work, JointPair& pair, bool rods) {
 }
 bool has_axes(const JointConstraint& work) { return !work.axes.empty() || work.drive != nullptr; }
 
-void solve_turn_rows(JointRecord& joint, const JointConstraint& work, JointPair& pair, const JointSettings& settings, bool soft) {
+void solve_turn_rows(JointRecord& joint, const JointConstraint& work, JointPair& pair,
+                     const JointSettings& settings, bool soft) {
   const Vec3 change = row_change(work.angular_mass, pair.turning(), work.angular_error, joint.angular_impulse,
                                  settings.softness, soft);
   pair.turn(change);
   joint.angular_impulse += change;
 }
 
-void solve_point_rows(JointRecord& joint, const JointConstraint& work, JointPair& pair, const JointSettings& settings, bool soft) {
+void solve_point_rows(JointRecord& joint, const JointConstraint& work, JointPair& pair,
+                      const JointSettings& settings, bool soft) {
   const Vec3 speed = pair.point_velocity(work.from_a, work.from_b) + (soft ? work.second_order_bias : Vec3{});
   const Vec3 change = row_change(work.linear_mass, speed, work.error, joint.linear_impulse, settings.softness, soft);
   pair.direction(change, work.from_a, work.from_b);
@@ -184,8 +192,8 @@ void begin_axes(const JointRecord& joint, JointConstraint& work, float warm_scal
   adjust_axes(joint, work.axes);
 }
 
-void prepare_kind(JointRecord& joint, JointConstraint& work, const JointPair& pair, const JointOffsets& places,
-                const JointSettings& settings) {
+void prepare_kind(JointRecord& joint, JointConstraint& work, const JointPair& pair,
+                  const JointOffsets& places, const JointSettings& settings) {
   switch (joint.kind) {
     case JointKind::ball:
       if (settings.swept) prepare_ball(pair, work);
@@ -283,8 +291,8 @@ int count_equations(const JointRecord& joint, const JointDetail* detail) {
   return 0;
 }
 
-void begin_joint(JointRecord& joint, JointDetail* detail, std::span<const PathPoint> path, JointConstraint& work, float warm_scale,
-                 Arena& arena) {
+void begin_joint(JointRecord& joint, JointDetail* detail, std::span<const PathPoint> path,
+                 JointConstraint& work, float warm_scale, Arena& arena) {
   joint.linear_impulse *= warm_scale;
   joint.angular_impulse *= warm_scale;
   joint.total_linear = {};
@@ -308,8 +316,8 @@ void begin_joint(JointRecord& joint, JointDetail* detail, std::span<const PathPo
   *work.drive = {};
 }
 
-void prepare_joint(JointRecord& joint, JointConstraint& work, const JointOffsets& places, const JointBodies& bodies,
-                 const JointSettings& settings) {
+void prepare_joint(JointRecord& joint, JointConstraint& work, const JointOffsets& places,
+                   const JointBodies& bodies, const JointSettings& settings) {
   const JointPair pair(joint, bodies);
   const Quat orientation_a = orientation_of(joint.body_a, bodies);
   const Quat orientation_b = orientation_of(joint.body_b, bodies);
@@ -325,7 +333,7 @@ void prepare_joint(JointRecord& joint, JointConstraint& work, const JointOffsets
 }
 
 void update_joint_bias(const JointRecord& joint, JointConstraint& work, const JointBodies& bodies,
-                const JointSettings& settings) {
+                       const JointSettings& settings) {
   const JointPair pair(joint, bodies);
   const bool slides = joint.kind == JointKind::slider || has_rows(joint.kind);
   work.second_order_bias = second_order_bias_of(pair, work, slides, settings.substep);
@@ -334,8 +342,9 @@ void update_joint_bias(const JointRecord& joint, JointConstraint& work, const Jo
   const Vec3 speed = pair.point_velocity(work.from_a, work.from_b);
   const Vec3 across = speed - dot(speed, work.axis) * work.axis;
   const float distance = work.position;
-  work.axes[0].second_order_bias = dot(work.second_order_bias, work.axis) +
-                      (distance > 0.0f ? 0.5f * settings.substep * length_squared(across) / distance : 0.0f);
+  work.axes[0].second_order_bias =
+      dot(work.second_order_bias, work.axis) +
+      (distance > 0.0f ? 0.5f * settings.substep * length_squared(across) / distance : 0.0f);
 }
 
 void warm_start_joint(const JointRecord& joint, const JointConstraint& work, const JointBodies& bodies) {
@@ -350,8 +359,8 @@ void warm_start_joint(const JointRecord& joint, const JointConstraint& work, con
   pair.store();
 }
 
-void solve_joint(JointRecord& joint, const JointConstraint& work, const JointBodies& bodies, const JointSettings& settings,
-                 bool soft) {
+void solve_joint(JointRecord& joint, const JointConstraint& work, const JointBodies& bodies,
+                 const JointSettings& settings, bool soft) {
   JointPair pair(joint, bodies);
   solve_axes(work, pair, settings, soft);
   switch (joint.kind) {

@@ -28,12 +28,13 @@ struct JointBodies {
 struct JointSettings {
   float substep = 0.0f;
   Softness softness;  // of the joint's own rows
-  bool swept = true;  // false: the joint's equations and hard stops are solved elsewhere (solver/articulation/articulation.h)
+  bool swept =
+      true;  // false: the joint's equations and hard stops are solved elsewhere (solver/articulation/articulation.h)
 };
 
 // One row that holds always: it sees push . (v_b - v_a) + arm_b . w_b - arm_a . w_a.
 struct JointRow {
-  Vec3 direction;          // direction of a force; zero for a turning row
+  Vec3 direction;     // direction of a force; zero for a turning row
   Vec3 arm_a, arm_b;  // r x push, or the axis of a turn
   float error = 0.0f;
 };
@@ -58,7 +59,8 @@ struct DriveConstraint {
 struct JointConstraint {
   Vec3 from_a, from_b;       // anchors from the centres of mass, world axes
   Vec3 error;                // anchor b minus anchor a
-  Vec3 second_order_bias;                 // m/s: how far b's anchor leaves a's by turning in the sub-step, beyond what the rows see
+  Vec3
+      second_order_bias;  // m/s: how far b's anchor leaves a's by turning in the sub-step, beyond what the rows see
   Vec3 axis;                 // hinge and slider: of a; distance: unit from a to b
   Vec3 perpendicular_1, perpendicular_2;
   Vec3 angular_error;        // rotation vector that turns a's frame onto b's
@@ -75,14 +77,14 @@ struct JointConstraint {
 };
 
 // Once a step: room for the work, impulses scaled to a new sub-step length, sums cleared.
-void begin_joint(JointRecord& joint, JointDetail* detail, std::span<const PathPoint> path, JointConstraint& work, float warm_scale,
-                 Arena& arena);
+void begin_joint(JointRecord& joint, JointDetail* detail, std::span<const PathPoint> path,
+                 JointConstraint& work, float warm_scale, Arena& arena);
 // What depends on where the bodies are: once they have moved.
-void prepare_joint(JointRecord& joint, JointConstraint& work, const JointOffsets& places, const JointBodies& bodies,
-                 const JointSettings& settings);
+void prepare_joint(JointRecord& joint, JointConstraint& work, const JointOffsets& places,
+                   const JointBodies& bodies, const JointSettings& settings);
 // What depends on their velocities: before they are solved.
 void update_joint_bias(const JointRecord& joint, JointConstraint& work, const JointBodies& bodies,
-                const JointSettings& settings);
+                       const JointSettings& settings);
 void warm_start_joint(const JointRecord& joint, const JointConstraint& work, const JointBodies& bodies);
 void solve_joint(JointRecord& joint, const JointConstraint& work, const JointBodies& bodies,
                  const JointSettings& settings, bool soft);

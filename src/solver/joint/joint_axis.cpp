@@ -55,7 +55,7 @@ float spring_change(const AxisConstraint& x, float speed) {
   }
   const float without = speed - axis.spring_impulse / x.mass;
   const float target_speed = x.spring.kept * x.speed_before + x.spring.loaded * (without - x.speed_before) -
-                       x.spring.returned * displacement;
+                             x.spring.returned * displacement;
   return x.mass * (target_speed - without) - axis.spring_impulse;
 }
 
@@ -79,9 +79,10 @@ float friction_change(const AxisConstraint& x, float speed, float substep) {
 }
 
 // A stop that gives way does so once it is reached, and only where errors are taken back.
-float end_change(const AxisConstraint& x, float speed, float gap, float impulse, const JointSettings& settings,
-                 bool soft) {
-  if (x.axis.limit_frequency <= 0.0f) return limit_impulse_change(x.mass, speed, gap, impulse, settings, soft);
+float end_change(const AxisConstraint& x, float speed, float gap, float impulse,
+                 const JointSettings& settings, bool soft) {
+  if (x.axis.limit_frequency <= 0.0f)
+    return limit_impulse_change(x.mass, speed, gap, impulse, settings, soft);
   if (!soft) return 0.0f;
   if (gap > 0.0f) return -impulse;
   const float change =

@@ -33,13 +33,15 @@ struct AxisConstraint {
   JointAxisRecord axis;  // settings and impulses; goes back into the joint when the step is over
   JointAxis index = JointAxis::linear_x;
   bool has_low = false, has_high = false;
-  bool in_articulation = false;  // solved with the equations of its linkage (solver/articulation/articulation_drives.h)
+  bool in_articulation =
+      false;  // solved with the equations of its linkage (solver/articulation/articulation_drives.h)
   bool is_rod = false;  // one two-sided stop at limits.low, its impulse in low_impulse
   double worked = 0.0;  // J since the step began, if it is linked: by all but hard stops
   float slack = 0.0f;   // by how much farther than the limits both stops are
   AxisRow row;
   float mass = 0.0f;          // effective
-  float second_order_bias = 0.0f;          // m/s: how far the position changes in the sub-step beyond what the row sees
+  float second_order_bias =
+      0.0f;                   // m/s: how far the position changes in the sub-step beyond what the row sees
   float speed_before = 0.0f;  // as the part began, before forces
   SpringStep spring;
   Softness drive, stop;

@@ -141,14 +141,15 @@ inline Vec3 row_change(const Mat3& mass, Vec3 speed, Vec3 error, Vec3 impulse, c
 }
 
 // A one-sided row: distance `gap` left before the stop, closing speed -speed. Returns the change of `impulse` (>= 0).
-inline float limit_impulse_change(float mass, float speed, float gap, float impulse, const JointSettings& settings,
-                         bool is_soft) {
+inline float limit_impulse_change(float mass, float speed, float gap, float impulse,
+                                  const JointSettings& settings, bool is_soft) {
   float target_speed = 0.0f;
   if (gap > 0.0f) {
     target_speed = impulse - mass * (speed + gap / settings.substep);
   } else if (is_soft) {
     const Softness& soft = settings.softness;
-    target_speed = impulse - mass * soft.mass_scale * (speed + soft.bias_rate * gap) - soft.impulse_scale * impulse;
+    target_speed =
+        impulse - mass * soft.mass_scale * (speed + soft.bias_rate * gap) - soft.impulse_scale * impulse;
   } else {
     target_speed = impulse - mass * speed;
   }

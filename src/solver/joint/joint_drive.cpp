@@ -38,7 +38,8 @@ void place_drive(const JointConstraint& work, const JointPair& pair, const Joint
 
 void warm_drive(const JointConstraint& work, JointPair& pair) {
   const JointDetail& detail = *work.detail;
-  if (detail.drive.max_force > 0.0f) pair.direction(detail.drive_force_impulse, work.drive->from_a, work.from_b);
+  if (detail.drive.max_force > 0.0f)
+    pair.direction(detail.drive_force_impulse, work.drive->from_a, work.from_b);
   pair.turn(detail.drive_torque_impulse + detail.friction_impulse);
 }
 

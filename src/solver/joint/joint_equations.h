@@ -59,7 +59,8 @@ inline void make_equations(JointEquations& node, const JointRecord& joint, const
 inline bool is_turn(const JointEquation& row) { return row.direction == Vec3{}; }
 
 // The joint's accumulated impulses in terms of its rows, and back.
-inline float kept_impulse(const JointRecord& joint, const JointConstraint& work, const JointEquation& row, int i) {
+inline float kept_impulse(const JointRecord& joint, const JointConstraint& work, const JointEquation& row,
+                          int i) {
   if (work.rows != nullptr) return work.detail->row_impulses[i];
   if (joint.kind == JointKind::distance) return work.axes[0].axis.low_impulse;
   return is_turn(row) ? dot(joint.angular_impulse, row.arm_a) : dot(joint.linear_impulse, row.direction);

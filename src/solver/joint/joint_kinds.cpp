@@ -73,7 +73,8 @@ Vec3 locked_turn(const JointDetail& detail, const Cardan& c, const Vec3 (&axes)[
 }
 
 // Rows that hold the locked angles: across the axes that are free. An orthonormal basis that turns with the bodies.
-void add_locked_turns(const JointDetail& detail, const JointConstraint& work, const Cardan& c, JointRows& rows) {
+void add_locked_turns(const JointDetail& detail, const JointConstraint& work, const Cardan& c,
+                      JointRows& rows) {
   int free_axes[3], free_count = 0;
   for (int i = 0; i < 3; ++i) {
     if (!is_locked(detail, 3 + i)) free_axes[free_count++] = i;
@@ -240,7 +241,8 @@ void place_six_axes(JointRecord& joint, JointConstraint& work, const JointPair& 
   work.position = joint.position = detail.axes[int(main_axis(joint.kind))].position;
 }
 
-void prepare_cone(JointRecord& joint, JointConstraint& work, const JointPair& pair, const JointSettings& settings) {
+void prepare_cone(JointRecord& joint, JointConstraint& work, const JointPair& pair,
+                  const JointSettings& settings) {
   const Quat twist = conjugate(work.frame_a) * work.frame_b;
   work.position = joint.position = unwrapped(2.0f * atan2(twist.x, twist.w), near_twist(joint, work.detail));
   if (work.detail == nullptr) return;
@@ -271,7 +273,8 @@ void place_gear(JointRecord& joint, JointConstraint& work) {
   add_row(*work.rows, row);
 }
 
-void place_rack(JointRecord& joint, JointConstraint& work, const JointPair& pair, const JointOffsets& places) {
+void place_rack(JointRecord& joint, JointConstraint& work, const JointPair& pair,
+                const JointOffsets& places) {
   JointDetail& detail = *work.detail;
   const Vec3 centers = places.offset + pair.moved();
   work.from_a += work.error;  // to b's anchor
@@ -289,8 +292,8 @@ void place_rack(JointRecord& joint, JointConstraint& work, const JointPair& pair
   add_row(*work.rows, row);
 }
 
-void place_pulley(JointRecord& joint, JointConstraint& work, const JointPair& pair, const JointOffsets& places,
-                  const JointSettings& settings) {
+void place_pulley(JointRecord& joint, JointConstraint& work, const JointPair& pair,
+                  const JointOffsets& places, const JointSettings& settings) {
   const float ratio = work.detail->ratio;
   const Vec3 a = pair.moved_a() + work.from_a - places.ground_a,
              b = pair.moved_b() + work.from_b - places.ground_b;
@@ -316,12 +319,14 @@ void bend_pulley(JointConstraint& work, const JointPair& pair, float h) {
            (dot(cross(spin, cross(spin, arm)), way) + (size > 0.0f ? length_squared(across) / size : 0.0f));
   };
   for (AxisConstraint& x : work.axes) {
-    x.second_order_bias = side(work.perpendicular_1, pair.linear_a, pair.angular_a, work.from_a) +
-             work.detail->ratio * side(work.perpendicular_2, pair.linear_b, pair.angular_b, work.from_b);
+    x.second_order_bias =
+        side(work.perpendicular_1, pair.linear_a, pair.angular_a, work.from_a) +
+        work.detail->ratio * side(work.perpendicular_2, pair.linear_b, pair.angular_b, work.from_b);
   }
 }
 
-void place_path(JointRecord& joint, JointConstraint& work, const JointPair& pair, const JointSettings& settings) {
+void place_path(JointRecord& joint, JointConstraint& work, const JointPair& pair,
+                const JointSettings& settings) {
   JointDetail& detail = *work.detail;
   const Vec3 apart = work.error;
   const Vec3 local = rotate_inverse(work.frame_a, apart);
@@ -352,7 +357,8 @@ void place_path(JointRecord& joint, JointConstraint& work, const JointPair& pair
   }
   work.position = joint.position = path_length(curve, detail.path_place) - detail.start;
   detail.axes[0].position = work.position;
-  for (AxisConstraint& x : work.axes) place_axis_work(x, point_axis(work, f.axes.x), work.position, pair, settings);
+  for (AxisConstraint& x : work.axes)
+    place_axis_work(x, point_axis(work, f.axes.x), work.position, pair, settings);
 }
 
 // ---------------------------------------------------------------------------------------------------------------- rows
@@ -403,8 +409,8 @@ void prepare_rows(JointRows& rows, const JointPair& pair) {
     const Vec3 spin_a = pair.inverse_inertia_a() * row.arm_a, spin_b = pair.inverse_inertia_b() * row.arm_b;
     for (int j = 0; j <= i; ++j) {
       const JointRow& other = rows.rows[j];
-      rows.factors[i * n + j] = double(inverse_mass * dot(row.direction, other.direction) + dot(spin_a, other.arm_a) +
-                                       dot(spin_b, other.arm_b));
+      rows.factors[i * n + j] = double(inverse_mass * dot(row.direction, other.direction) +
+                                       dot(spin_a, other.arm_a) + dot(spin_b, other.arm_b));
     }
   }
   factor_ldlt(std::span<double>(rows.factors, std::size_t(n * n)), n);
@@ -418,8 +424,8 @@ void warm_rows(const JointRows& rows, const JointDetail& detail, JointPair& pair
   for (int i = 0; i < rows.count; ++i) push_row(rows.rows[i], detail.row_impulses[i], pair);
 }
 
-void iterate_rows(JointRecord& joint, const JointConstraint& work, JointPair& pair, const JointSettings& settings,
-                bool soft) {
+void iterate_rows(JointRecord& joint, const JointConstraint& work, JointPair& pair,
+                  const JointSettings& settings, bool soft) {
   const JointRows& rows = *work.rows;
   JointDetail& detail = *work.detail;
   const std::size_t n = std::size_t(rows.count);

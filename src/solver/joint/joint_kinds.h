@@ -23,12 +23,14 @@ void adjust_axes(const JointRecord& joint, std::span<AxisConstraint> axes);
 
 void place_six_axes(JointRecord& joint, JointConstraint& work, const JointPair& pair,
                     const JointSettings& settings);
-void prepare_cone(JointRecord& joint, JointConstraint& work, const JointPair& pair, const JointSettings& settings);
+void prepare_cone(JointRecord& joint, JointConstraint& work, const JointPair& pair,
+                  const JointSettings& settings);
 void place_gear(JointRecord& joint, JointConstraint& work);
 void place_rack(JointRecord& joint, JointConstraint& work, const JointPair& pair, const JointOffsets& places);
-void place_pulley(JointRecord& joint, JointConstraint& work, const JointPair& pair, const JointOffsets& places,
-                  const JointSettings& settings);
-void place_path(JointRecord& joint, JointConstraint& work, const JointPair& pair, const JointSettings& settings);
+void place_pulley(JointRecord& joint, JointConstraint& work, const JointPair& pair,
+                  const JointOffsets& places, const JointSettings& settings);
+void place_path(JointRecord& joint, JointConstraint& work, const JointPair& pair,
+                const JointSettings& settings);
 void bend_pulley(JointConstraint& work, const JointPair& pair, float substep);
 
 // The errors that the rows of the work would have with the bodies at another pose nearby.
@@ -37,8 +39,8 @@ void measure_rows(const JointRecord& joint, const JointConstraint& work, const R
 
 void prepare_rows(JointRows& rows, const JointPair& pair);
 void warm_rows(const JointRows& rows, const JointDetail& detail, JointPair& pair);
-void iterate_rows(JointRecord& joint, const JointConstraint& work, JointPair& pair, const JointSettings& settings,
-                bool soft);
+void iterate_rows(JointRecord& joint, const JointConstraint& work, JointPair& pair,
+                  const JointSettings& settings, bool soft);
 // The rows' impulses as a force's and a torque's on B.
 void gather_rows(JointRecord& joint, const JointConstraint& work);
 

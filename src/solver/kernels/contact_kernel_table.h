@@ -2,10 +2,10 @@
 #pragma once
 
 #include "solver/articulation/ball_kernel.h"
-#include "solver/contact/moving_contact_points.h"
+#include "solver/articulation/linkage_kernel.h"
 #include "solver/contact/contact_prepare.h"
 #include "solver/contact/contact_project.h"
-#include "solver/articulation/linkage_kernel.h"
+#include "solver/contact/moving_contact_points.h"
 #include "solver/motion/motion_kernel.h"
 #include "solver/motion/rotation_kernel.h"
 

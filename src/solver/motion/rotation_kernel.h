@@ -3,8 +3,8 @@
 #pragma once
 
 #include "math/wide_vec.h"
-#include "solver/motion/torque_free_rotation.h"
 #include "solver/motion/rotation_block.h"
+#include "solver/motion/torque_free_rotation.h"
 
 #include <cstddef>
 
@@ -39,8 +39,8 @@ static_assert(offsetof(Sym3, xz) == 4 * sizeof(float) && sizeof(Quat) == 4 * siz
 
 // The first of a list of `count` bodies.
 template <int W>
-__attribute__((noinline)) void gather_turns(const TorqueFreeRotation* turns, const std::uint8_t* list, int count,
-                                            TurnColumns<W>& columns) {
+__attribute__((noinline)) void gather_turns(const TorqueFreeRotation* turns, const std::uint8_t* list,
+                                            int count, TurnColumns<W>& columns) {
   columns.count = count < W ? count : W;
   const float *orientation[W], *motion[W], *inertia[W];
   for (int lane = 0; lane < W; ++lane) {

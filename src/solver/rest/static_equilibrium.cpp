@@ -20,7 +20,8 @@ constexpr std::uint64_t kMaxWork = 6'000'000;
 constexpr std::uint64_t kDear = 250'000;
 constexpr int kMaxStuckIfDear = 2;  // rounds in turn after which more than this share was left over
 constexpr double kProgressIfDear = 0.7;
-constexpr int kMaxRoundsIfFresh = 2;  // and dear: what was put as it lies holds at once, what has yet to settle does not
+constexpr int kMaxRoundsIfFresh =
+    2;  // and dear: what was put as it lies holds at once, what has yet to settle does not
 // What a point that lets go keeps of its stiffness in the second derivative, but not in what it bears.
 constexpr double kTrace = 1.0e-6;
 // The longest step, in Newton's, and after how many tries it is taken as it is.

@@ -99,7 +99,8 @@ class BodyNewton {
     // (own + speed give) dx = right - speed J dv - load dL.
     double own[2][2] = {{1.0, 0.0}, {0.0, 1.0}};
     for (std::size_t r = 0; r < count; ++r) {
-      for (std::size_t k = 0; k < count; ++k) own[r][k] = e.own[r][k] + e.speed[r][k] * p_.rows[i + k].compliance;
+      for (std::size_t k = 0; k < count; ++k)
+        own[r][k] = e.own[r][k] + e.speed[r][k] * p_.rows[i + k].compliance;
     }
     double inverse[2][2] = {{1.0 / own[0][0]}};
     if (is_cone) {

@@ -55,8 +55,8 @@ bool add_overlap_rows(const ContactConstraint& constraint, const RowFrame& frame
 
 int count_joint_rows(const JointRecord& joint, const JointDetail* detail, const JointConstraint& work);
 // Springs that are forces push the bodies of the frame at once.
-void add_joint_rows(JointRecord& joint, JointConstraint& work, const JointSettings& settings, const RowFrame& frame,
-                    RowList& list);
+void add_joint_rows(JointRecord& joint, JointConstraint& work, const JointSettings& settings,
+                    const RowFrame& frame, RowList& list);
 void keep_joint_impulses(JointRecord& joint, JointConstraint& work, std::span<const Row> rows,
                          std::span<float* const> kept);
 // The equations alone, asking for nothing: what is pushed apart stays joined.

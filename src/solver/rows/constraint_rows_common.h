@@ -20,7 +20,8 @@ inline void end_row(Row& row, std::int32_t body_a, std::int32_t body_b, const Ro
     place = body == kNoBody ? kNoRowBody : frame.place[body];
     if (place != kNoRowBody || body == kNoBody || still) return;
     const BodyMotion& motion = frame.motion[body];
-    row.target_speed -= dot(linear, DVec3(motion.linear_velocity)) + dot(angular, DVec3(motion.angular_velocity));
+    row.target_speed -=
+        dot(linear, DVec3(motion.linear_velocity)) + dot(angular, DVec3(motion.angular_velocity));
   };
   settle(body_a, row.body_a, row.linear_a, row.angular_a);
   settle(body_b, row.body_b, row.linear_b, row.angular_b);

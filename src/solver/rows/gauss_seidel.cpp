@@ -97,7 +97,7 @@ double find_row_residual(std::span<const Row> rows, std::span<const RowBody> bod
 }
 
 GaussSeidelResult solve_nncg(std::span<Row> rows, std::span<RowBody> bodies, const FrictionSet& friction,
-                       double tolerance, int max_sweeps, NumberRoom room) {
+                             double tolerance, int max_sweeps, NumberRoom room) {
   const std::span<double> direction = room.take(rows.size()), before = room.take(rows.size());
   for (double& value : direction) value = 0.0;
   double last = 0.0;

@@ -40,8 +40,8 @@ float bias_fade(const JointRecord& joint, const RowFrame& frame) {
   return fastest > square(kMaxTurn) ? float(square(kMaxTurn) / fastest) : 1.0f;
 }
 
-void add_equations(JointRecord& joint, JointConstraint& work, const RowFrame& frame, float rate, bool in_motion,
-                   RowList& list) {
+void add_equations(JointRecord& joint, JointConstraint& work, const RowFrame& frame, float rate,
+                   bool in_motion, RowList& list) {
   if (equations_of(joint, work) == 0) return;
   JointEquations node;
   make_equations(node, joint, work);
@@ -54,8 +54,11 @@ void add_equations(JointRecord& joint, JointConstraint& work, const RowFrame& fr
     row.linear_a = -DVec3(from.direction), row.angular_a = -DVec3(from.arm_a);
     row.linear_b = DVec3(from.direction), row.angular_b = DVec3(from.arm_b);
     if (in_motion) {
-      const float second_order_bias = joint.kind == JointKind::distance ? work.axes[0].second_order_bias : dot(from.direction, work.second_order_bias);
-      row.target_speed = -double(rate * error_of(joint, work, from, i)) - (bends ? double(share * second_order_bias) : 0.0);
+      const float second_order_bias = joint.kind == JointKind::distance
+                                          ? work.axes[0].second_order_bias
+                                          : dot(from.direction, work.second_order_bias);
+      row.target_speed =
+          -double(rate * error_of(joint, work, from, i)) - (bends ? double(share * second_order_bias) : 0.0);
       row.impulse = double(kept_impulse(joint, work, from, i));
     }
     end_row(row, joint.body_a, joint.body_b, frame, !in_motion);
@@ -65,8 +68,8 @@ void add_equations(JointRecord& joint, JointConstraint& work, const RowFrame& fr
 // What acts on one axis of a joint, as rows.
 class AxisRows {
  public:
-  AxisRows(const JointRecord& joint, AxisConstraint& work, const JointSettings& settings, const RowFrame& frame,
-           RowList& list)
+  AxisRows(const JointRecord& joint, AxisConstraint& work, const JointSettings& settings,
+           const RowFrame& frame, RowList& list)
       : joint_(joint), x_(work), settings_(settings), frame_(frame), list_(list) {}
 
   void add_all() {
@@ -154,10 +157,12 @@ class AxisRows {
   RowList& list_;
 };
 
-void add_drive_rows(const JointRecord& joint, const JointConstraint& work, const RowFrame& frame, RowList& list) {
+void add_drive_rows(const JointRecord& joint, const JointConstraint& work, const RowFrame& frame,
+                    RowList& list) {
   JointDetail& detail = *work.detail;
   const DriveConstraint& d = *work.drive;
-  const auto add = [&](float& kept, Vec3 axis, bool turns, float force, float target_speed, const Softness& soft) {
+  const auto add = [&](float& kept, Vec3 axis, bool turns, float force, float target_speed,
+                       const Softness& soft) {
     Row& row = begin_row(list);
     list.kept[list.count - 1] = &kept;
     AxisRow along{{}, {}, axis, axis};
@@ -191,8 +196,8 @@ int count_joint_rows(const JointRecord& joint, const JointDetail* detail, const 
   return count + (work.drive != nullptr ? 9 : 0);
 }
 
-void add_joint_rows(JointRecord& joint, JointConstraint& work, const JointSettings& settings, const RowFrame& frame,
-                    RowList& list) {
+void add_joint_rows(JointRecord& joint, JointConstraint& work, const JointSettings& settings,
+                    const RowFrame& frame, RowList& list) {
   add_equations(joint, work, frame, settings.softness.bias_rate, true, list);
   for (AxisConstraint& axis : work.axes) AxisRows(joint, axis, settings, frame, list).add_all();
   if (work.drive != nullptr) add_drive_rows(joint, work, frame, list);

@@ -4,8 +4,8 @@
 #include "math/block_lu.h"
 #include "solver/rows/complementarity.h"
 #include "solver/rows/delassus.h"
-#include "solver/rows/solve_direct.h"
 #include "solver/rows/gauss_seidel.h"
+#include "solver/rows/solve_direct.h"
 
 #include <cstdint>
 #include <vector>
