@@ -8,7 +8,7 @@ template <class T>
 void set_field(T& to, const T& from) {
   to = from;
 }
-// A spring of stiffness or damping zero is none. What is not a number is kept, to be refused.
+// Zero stiffness or damping means none. The check refuses other values out of range, NaN among them.
 void set_field(std::optional<float>& to, float from) {
   if (from != 0.0f) to = from;
 }

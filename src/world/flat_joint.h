@@ -1,5 +1,5 @@
-// The definition of a joint with the fields of all kinds side by side: how commands carry it and recordings store it. Users write one
-// definition per kind (gyre/joints.h); for_each_field is the one list that joins the two.
+// The definition of a joint with the fields of all kinds side by side, as commands carry it and recordings store it. Users write one
+// definition per kind (gyre/joints.h). for_each_field is the one list that relates the two forms.
 #pragma once
 
 #include <gyre/joints.h>
@@ -8,8 +8,8 @@
 
 namespace gyre {
 
-// What each field means in each kind: gyre/joints.h. A field that the kind does not have stays at its default. Recordings made before
-// there was one definition per kind may say more, an axis of a ball for example; what they say is kept, as it is part of the state.
+// gyre/joints.h gives the meaning of each field. Fields that a kind does not have stay at their defaults. Older recordings may have
+// further fields, an axis of a ball for example. Such fields are kept, because they are part of the state.
 struct FlatJoint {
   JointKind kind = JointKind::ball;
   BodyId a{};
@@ -46,7 +46,7 @@ struct FlatJoint {
   PathOrientation path_orientation = PathOrientation::free;
 };
 
-// Calls fn(field of the definition, field of the flat form) for every field of a definition of one kind.
+// Calls fn(field of the definition, field of the flat form) for each field of a definition.
 template <class Def, class Flat, class Fn>
 void for_each_field(Def& def, Flat& flat, Fn&& fn) {
   fn(def.a, flat.a), fn(def.b, flat.b), fn(def.anchor, flat.anchor);
