@@ -47,9 +47,7 @@ struct Stage {
     world.add_body({.type = BodyType::fixed}, {.geometry = Plane{}, .material = material});
   }
   void link(BodyId a, BodyId b, DVec3 anchor) {
-    JointDef joint;
-    joint.a = a, joint.b = b, joint.anchor = anchor;
-    world.add_joint(joint);
+    world.add_joint(BallDef{.a = a, .b = b, .anchor = anchor});
     const auto local = [&](BodyId body) {
       if (!body) return to_float(anchor);
       const Pose pose = world.pose(body);

@@ -110,32 +110,28 @@ JointDef joint_of(const BoneDef& bone, BodyId parent, BodyId body, const Pose& p
   const BoneJoint& j = bone.joint;
   const Mat3 frame = to_matrix(place.orientation * joint_frame(j));
   const auto half = [](const Limits& l) { return min(0.5f * (l.high - l.low), kPi); };
-  JointDef joint;
-  joint.a = parent;
-  joint.b = body;
-  joint.anchor = place.position;
-  joint.axis = frame.x;
-  joint.friction = j.friction;
   switch (j.kind) {
     case BoneJointKind::hinge:
-      joint.kind = JointKind::hinge;
-      joint.limits = Limits{-half(j.twist), half(j.twist)};
-      break;
+      return HingeDef{.a = parent,
+                      .b = body,
+                      .anchor = place.position,
+                      .axis = frame.x,
+                      .limits = Limits{-half(j.twist), half(j.twist)},
+                      .friction = j.friction};
     case BoneJointKind::fixed:
-      joint.kind = JointKind::fixed;
-      joint.friction = 0.0f;
-      break;
+      return FixedDef{.a = parent, .b = body, .anchor = place.position};
     case BoneJointKind::cone:
-      joint.limits = Limits{-half(j.twist), half(j.twist)};
-      joint.swing_y = half(j.swing_y);
-      joint.swing_z = half(j.swing_z);
-      [[fallthrough]];
     case BoneJointKind::ball:
-      joint.kind = JointKind::cone;
-      joint.axis_b = frame.z;
       break;
   }
-  return joint;
+  ConeDef cone{.a = parent, .b = body, .anchor = place.position, .axis = frame.x, .axis_b = frame.z};
+  cone.friction = j.friction;
+  if (j.kind == BoneJointKind::cone) {
+    cone.limits = Limits{-half(j.turn), half(j.turn)};
+    cone.swing_y = half(j.swing_y);
+    cone.swing_z = half(j.swing_z);
+  }
+  return cone;
 }
 
 // Pairs that overlap as they stand in the rest pose: asked of a world of their own.
@@ -293,9 +289,9 @@ Result<Ragdoll> add_ragdoll(World& world, const RagdollDef& def, const RagdollPo
   }
   for (const RagdollDef::Pair& p : pairs_apart(def)) {
     // A joint that does nothing but keep the two from touching.
-    const JointDef joint{.a = ragdoll.bones[std::size_t(p.a)].body,
-                         .b = ragdoll.bones[std::size_t(p.b)].body,
-                         .anchor = place(std::size_t(p.b)).position};
+    const BallDef joint{.a = ragdoll.bones[std::size_t(p.a)].body,
+                        .b = ragdoll.bones[std::size_t(p.b)].body,
+                        .anchor = place(std::size_t(p.b)).position};
     world.set_joint_enabled(world.add_joint(joint), false);
   }
   find_motor_shares(def, ragdoll);

@@ -96,8 +96,7 @@ class Driver {
   void make_key(RagdollBone& b, BodyId to) {
     const Pose pose = world_.pose(b.body);
     const Mat3 frame = to_matrix(pose.orientation);
-    JointDef joint;
-    joint.kind = JointKind::motor;
+    MotorDef joint;
     joint.a = to;
     joint.b = b.body;
     joint.anchor = world_.center_of_mass(b.body);

@@ -7,6 +7,7 @@
 #include <gyre/decomposition.h>
 #include <gyre/defs.h>
 #include <gyre/fields.h>
+#include <gyre/joints.h>
 
 #include <cstdint>
 #include <optional>

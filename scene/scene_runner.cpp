@@ -38,13 +38,15 @@ SceneResult<SceneRunner> SceneRunner::create(Scene scene, const std::string& fil
 }
 
 double SceneRunner::present_length(const SceneJoint& joint) const {
+  const auto* const def = std::get_if<DistanceDef>(&joint.def);
+  if (def == nullptr) return 0.0;
   DVec3 point_b;
-  if (joint.def.anchor_b) {
-    point_b = *joint.def.anchor_b;
+  if (def->anchor_b) {
+    point_b = *def->anchor_b;
   } else if (joint.b >= 0) {
     point_b = scene_.bodies[std::size_t(joint.b)].def.pose.position;
   }
-  return length(point_b - joint.def.anchor);
+  return length(point_b - def->anchor);
 }
 
 const SceneBody* SceneRunner::body_of(BodyId id) const {
@@ -123,41 +125,47 @@ bool SceneRunner::find_problem() {
 
 SceneJoint SceneRunner::final_joint(std::size_t index) const {
   SceneJoint joint = scene_.joints[index];
-  JointDef& def = joint.def;
-  // A place of a body at the start, carried along to where the body stands now.
+  // A place or a direction of a body at the start, carried along to where the body stands now.
   const auto carried = [&](int body, DVec3 place) {
     if (body < 0) return place;
     const Pose& start = scene_.bodies[std::size_t(body)].def.pose;
     return world_.pose(bodies_[std::size_t(body)]) * inverse_times(start, place);
   };
-  if (def.kind == JointKind::path) {
-    const DVec3 on_b = carried(joint.b, def.anchor);
-    for (Vec3& point : def.path) point = difference(carried(joint.a, def.anchor + point), on_b);
-    def.anchor = on_b;
-  } else {
-    def.anchor = carried(joint.a, def.anchor);
-  }
-  if (def.anchor_b) def.anchor_b = carried(joint.b, *def.anchor_b);
-  if (joint.a >= 0) {
-    const Quat start = scene_.bodies[std::size_t(joint.a)].def.pose.orientation;
-    const Quat now = world_.pose(bodies_[std::size_t(joint.a)]).orientation;
-    def.axis = rotate(now, rotate_inverse(start, def.axis));
-  }
-  if (joint.b >= 0 && def.axis_b) {
-    const Quat start = scene_.bodies[std::size_t(joint.b)].def.pose.orientation;
-    const Quat now = world_.pose(bodies_[std::size_t(joint.b)]).orientation;
-    def.axis_b = rotate(now, rotate_inverse(start, *def.axis_b));
-  }
+  const auto turned = [&](int body, Vec3 direction) {
+    if (body < 0) return direction;
+    const Quat start = scene_.bodies[std::size_t(body)].def.pose.orientation;
+    return rotate(world_.pose(bodies_[std::size_t(body)]).orientation, rotate_inverse(start, direction));
+  };
+  const auto carry = [&](auto& def) {
+    if constexpr (requires { def.points; }) {
+      const DVec3 on_b = carried(joint.b, def.anchor);
+      for (Vec3& point : def.points) point = difference(carried(joint.a, def.anchor + point), on_b);
+      def.anchor = on_b;
+    } else {
+      def.anchor = carried(joint.a, def.anchor);
+    }
+    if constexpr (requires { def.anchor_b; }) {
+      if (def.anchor_b) def.anchor_b = carried(joint.b, *def.anchor_b);
+    }
+    if constexpr (requires { def.axis; }) def.axis = turned(joint.a, def.axis);
+    if constexpr (requires { def.axis_b; }) {
+      if (def.axis_b) def.axis_b = turned(joint.b, *def.axis_b);
+    }
+  };
+  std::visit(carry, joint.def);
   // Zero of a hinge or slider is the pose in which it is made: the travel so far is taken off what refers to it.
   const float travelled = world_.joint_state(joints_[index]).position;
-  if (def.kind == JointKind::hinge || def.kind == JointKind::slider) {
+  const auto take_off = [&](auto& def) {
     if (def.limits) def.limits = Limits{def.limits->low - travelled, def.limits->high - travelled};
     if (def.motor.target_position) *def.motor.target_position -= travelled;
-  }
+  };
+  if (auto* const hinge = std::get_if<HingeDef>(&joint.def)) take_off(*hinge);
+  if (auto* const slider = std::get_if<SliderDef>(&joint.def)) take_off(*slider);
   // A rod keeps the length it had, and a spring its rest length.
-  if (def.kind == JointKind::distance && !def.length &&
-      (def.stiffness || (!def.min_length && !def.max_length))) {
-    def.length = float(lengths_[index]);
+  auto* const distance = std::get_if<DistanceDef>(&joint.def);
+  if (distance != nullptr && !distance->length &&
+      (distance->stiffness || (!distance->min_length && !distance->max_length))) {
+    distance->length = float(lengths_[index]);
   }
   return joint;
 }

@@ -297,20 +297,23 @@ void write_axis(JsonWriter& json, const char* key, const JointAxisDef& axis, Axi
   json.end_object();
 }
 
-void write_axes(JsonWriter& json, const JointDef& def) {
-  const bool all = def.kind == JointKind::six_dof;
-  if (!all && def.kind != JointKind::wheel && def.kind != JointKind::universal) return;
-  json.key("axes").begin_object();
-  if (all) {
-    write_axis(json, "linear_x", def.linear_x, AxisMotion::locked);
-    write_axis(json, "linear_y", def.linear_y, AxisMotion::locked);
-    write_axis(json, "linear_z", def.linear_z, AxisMotion::locked);
+template <class Def>
+void write_axes(JsonWriter& json, const Def& def) {
+  if constexpr (
+      requires { def.steering; } || requires { def.angular_z; }) {
+    json.key("axes").begin_object();
+    if constexpr (requires { def.linear_x; }) {
+      write_axis(json, "linear_x", def.linear_x, AxisMotion::locked);
+      write_axis(json, "linear_y", def.linear_y, AxisMotion::locked);
+      write_axis(json, "linear_z", def.linear_z, AxisMotion::locked);
+      write_axis(json, "angular_x", def.angular_x, AxisMotion::locked);
+      write_axis(json, "angular_y", def.angular_y, AxisMotion::locked);
+    }
+    if constexpr (requires { def.steering; }) write_axis(json, "angular_x", def.steering, AxisMotion::locked);
+    if constexpr (requires { def.angular_z; })
+      write_axis(json, "angular_z", def.angular_z, AxisMotion::locked);
+    json.end_object();
   }
-  if (def.kind != JointKind::universal) write_axis(json, "angular_x", def.angular_x, AxisMotion::locked);
-  if (all) write_axis(json, "angular_y", def.angular_y, AxisMotion::locked);
-  if (all) write_axis(json, "angular_z", def.angular_z, AxisMotion::locked);
-  if (def.kind == JointKind::universal) write_axis(json, "angular_z", def.angular_z, AxisMotion::locked);
-  json.end_object();
 }
 
 void write_drive(JsonWriter& json, const PoseDrive& drive) {
@@ -326,75 +329,91 @@ void write_drive(JsonWriter& json, const PoseDrive& drive) {
   json.end_object();
 }
 
-void write_path(JsonWriter& json, const JointDef& def) {
+void write_path(JsonWriter& json, const PathDef& def) {
   json.key("path").begin_array();
-  for (const Vec3& point : def.path) json.value(def.anchor + point);
+  for (const Vec3& point : def.points) json.value(def.anchor + point);
   json.end_array();
-  unless_default(json, "path_closed", def.path_closed, false);
+  unless_default(json, "path_closed", def.closed, false);
   const char* const words[] = {"free", "fixed", "following"};
-  json.field("path_orientation", words[int(def.path_orientation)]);
+  json.field("path_orientation", words[int(def.orientation)]);
 }
 
-void write_special(JsonWriter& json, const JointDef& def) {
-  write_axes(json, def);
-  if (def.swing_y && def.swing_z) {
-    json.key("swing").begin_array(kOneLine);
-    json.value(*def.swing_y);
-    json.value(*def.swing_z);
-    json.end_array();
+template <class Def>
+void write_frame(JsonWriter& json, const Def& def) {
+  json.field("anchor", def.anchor);
+  if constexpr (requires { def.axis; }) json.field("axis", def.axis);
+  if constexpr (requires { def.axis_b; }) if_given(json, "axis_b", def.axis_b);
+  if constexpr (requires { def.anchor_b; }) if_given(json, "anchor_b", def.anchor_b);
+}
+
+// What acts on the axis that a kind's limits are about.
+template <class Def>
+void write_forces(JsonWriter& json, const Def& def) {
+  if constexpr (requires { def.limits; }) {
+    if (def.limits) write_limits(json, *def.limits);
+    unless_default(json, "limit_frequency", def.limit_frequency, 0.0f);
+    unless_default(json, "limit_damping_ratio", def.limit_damping_ratio, 1.0f);
   }
-  unless_default(json, "ratio", def.ratio, 1.0f);
-  if (def.kind == JointKind::pulley) {
+  if constexpr (requires { def.motor; }) write_motor(json, def.motor);
+  if constexpr (requires { def.friction; }) unless_default(json, "friction", def.friction, 0.0f);
+}
+
+// What some kinds have beside that.
+template <class Def>
+void write_special(JsonWriter& json, const Def& def) {
+  write_axes(json, def);
+  if constexpr (requires { def.swing_y; }) {
+    if (def.swing_y && def.swing_z) {
+      json.key("swing").begin_array(kOneLine);
+      json.value(*def.swing_y);
+      json.value(*def.swing_z);
+      json.end_array();
+    }
+  }
+  if constexpr (requires { def.ratio; }) unless_default(json, "ratio", def.ratio, 1.0f);
+  if constexpr (requires { def.ground_a; }) {
     json.field("ground_a", def.ground_a);
     json.field("ground_b", def.ground_b);
   }
-  if (def.kind == JointKind::path) write_path(json, def);
-  if (def.kind == JointKind::cone || def.kind == JointKind::mouse || def.kind == JointKind::motor)
-    write_drive(json, def.drive);
+  if constexpr (requires { def.points; }) write_path(json, def);
+  if constexpr (requires { def.drive; }) write_drive(json, def.drive);
 }
 
-bool has_axis(JointKind kind) {
-  switch (kind) {
-    case JointKind::ball:
-    case JointKind::fixed:
-    case JointKind::distance:
-    case JointKind::pulley:
-    case JointKind::path:
-    case JointKind::mouse: return false;
-    default: return true;
+template <class Def>
+void write_lengths(JsonWriter& json, const Def& def) {
+  if constexpr (requires { def.length; }) if_given(json, "length", def.length);
+  if constexpr (requires { def.min_length; }) {
+    if_given(json, "min_length", def.min_length);
+    if_given(json, "max_length", def.max_length);
+    if_given(json, "stiffness", def.stiffness);
+    if_given(json, "damping", def.damping);
+    if_given(json, "frequency", def.frequency);
+    unless_default(json, "damping_ratio", def.damping_ratio, 0.0f);
+  } else if constexpr (requires { def.stiffness; }) {
+    unless_default(json, "stiffness", def.stiffness, 0.0f);
+    unless_default(json, "damping", def.damping, 0.0f);
   }
 }
 
 void write_joint(JsonWriter& json, const Scene& scene, const SceneJoint& joint) {
-  const JointDef& def = joint.def;
   const auto end = [&](int body) {
     return body < 0 ? std::string("world") : scene.bodies[std::size_t(body)].name;
   };
   json.begin_object();
-  json.field("type", to_string(def.kind));
+  json.field("type", to_string(kind_of(joint.def)));
   if (!joint.name.empty()) json.field("name", joint.name);
   json.field("a", end(joint.a));
   json.field("b", end(joint.b));
-  json.field("anchor", def.anchor);
-  if (has_axis(def.kind)) json.field("axis", def.axis);
-  if_given(json, "axis_b", def.axis_b);
-  if_given(json, "anchor_b", def.anchor_b);
-  if (def.limits) write_limits(json, *def.limits);
-  unless_default(json, "limit_frequency", def.limit_frequency, 0.0f);
-  unless_default(json, "limit_damping_ratio", def.limit_damping_ratio, 1.0f);
-  write_motor(json, def.motor);
-  unless_default(json, "friction", def.friction, 0.0f);
-  write_special(json, def);
-  if_given(json, "length", def.length);
-  if_given(json, "min_length", def.min_length);
-  if_given(json, "max_length", def.max_length);
-  if_given(json, "stiffness", def.stiffness);
-  if_given(json, "damping", def.damping);
-  if_given(json, "frequency", def.frequency);
-  unless_default(json, "damping_ratio", def.damping_ratio, 0.0f);
-  if_given(json, "break_force", def.break_force);
-  if_given(json, "break_torque", def.break_torque);
-  unless_default(json, "collide_connected", def.collide_connected, false);
+  const auto write_definition = [&](const auto& def) {
+    write_frame(json, def);
+    write_forces(json, def);
+    write_special(json, def);
+    write_lengths(json, def);
+    if_given(json, "break_force", def.break_force);
+    if_given(json, "break_torque", def.break_torque);
+    unless_default(json, "collide_connected", def.collide_connected, false);
+  };
+  std::visit(write_definition, joint.def);
   json.end_object();
 }
 

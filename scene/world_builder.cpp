@@ -226,8 +226,11 @@ bool WorldBuilder::add_joints() {
   for (std::size_t i = 0; i < scene_.joints.size(); ++i) {
     const SceneJoint& joint = scene_.joints[i];
     JointDef def = joint.def;
-    if (joint.a >= 0) def.a = bodies_[std::size_t(joint.a)];
-    if (joint.b >= 0) def.b = bodies_[std::size_t(joint.b)];
+    const auto set_bodies = [&](auto& d) {
+      if (joint.a >= 0) d.a = bodies_[std::size_t(joint.a)];
+      if (joint.b >= 0) d.b = bodies_[std::size_t(joint.b)];
+    };
+    std::visit(set_bodies, def);
     const JointId id = world_.add_joint(def);
     if (!id) return fail(pointer_to("joints", i), last_refusal());
     joints_.push_back(id);

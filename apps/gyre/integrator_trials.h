@@ -101,8 +101,7 @@ inline double spring_error(IntegratorKind kind, int parts, bool alternating = fa
   BodyDef def = point();
   def.pose.position = {3.0, 0.0, 0.0};
   const BodyId body = world.add_body(def);
-  JointDef spring;
-  spring.kind = JointKind::distance;
+  DistanceDef spring;
   spring.b = body;
   spring.length = 2.0f;
   spring.stiffness = float(kTurn * kTurn);

@@ -13,9 +13,20 @@ BodyType type_of(Motion motion) {
   return motion == Motion::kinematic ? BodyType::kinematic : BodyType::dynamic;
 }
 
-gyre::JointKind kind_of(JointKind kind) {
-  if (kind == JointKind::ball) return gyre::JointKind::ball;
-  return kind == JointKind::cone ? gyre::JointKind::cone : gyre::JointKind::hinge;
+JointDef definition_of(const Joint& joint, BodyId a, BodyId b) {
+  const DVec3 anchor = place(joint.anchor);
+  const Vec3 axis = narrow(joint.axis);
+  const Limits limits{float(joint.lo), float(joint.hi)};
+  switch (joint.kind) {
+    case JointKind::ball:
+      return BallDef{.a = a, .b = b, .anchor = anchor};
+    case JointKind::cone:
+      return ConeDef{
+          .a = a, .b = b, .anchor = anchor, .axis = axis, .swing_y = float(joint.cone), .limits = limits};
+    case JointKind::hinge:
+      break;
+  }
+  return HingeDef{.a = a, .b = b, .anchor = anchor, .axis = axis, .limits = limits};
 }
 
 Filter filter_of(Layer layer) {
@@ -85,15 +96,7 @@ void GyreEngine::add_bodies(const Scene& scene) {
 
 void GyreEngine::add_joints(const Scene& scene) {
   for (const Joint& joint : scene.joints) {
-    JointDef def;
-    def.kind = kind_of(joint.kind);
-    def.a = ids_[std::size_t(joint.a)];
-    def.b = ids_[std::size_t(joint.b)];
-    def.anchor = place(joint.anchor);
-    def.axis = narrow(joint.axis);
-    if (joint.kind != JointKind::ball) def.limits = Limits{float(joint.lo), float(joint.hi)};
-    if (joint.kind == JointKind::cone) def.swing_y = float(joint.cone);
-    world_->add_joint(def);
+    world_->add_joint(definition_of(joint, ids_[std::size_t(joint.a)], ids_[std::size_t(joint.b)]));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <gyre/fields.h>
 #include <gyre/geometry.h>
 #include <gyre/ids.h>
+#include <gyre/joints.h>
 #include <gyre/math.h>
 #include <gyre/memory.h>
 #include <gyre/queries.h>

@@ -13,6 +13,7 @@
 #include <gyre/events.h>
 #include <gyre/fields.h>
 #include <gyre/ids.h>
+#include <gyre/joints.h>
 #include <gyre/math.h>
 #include <gyre/queries.h>
 #include <gyre/result.h>
@@ -121,7 +122,7 @@ class World {
   bool remove_body(BodyId body);  // with its shapes and joints
   ShapeId add_shape(BodyId body, const ShapeDef& shape);  // mass is computed anew unless BodyDef overrode it
   bool remove_shape(ShapeId shape);
-  JointId add_joint(const JointDef& joint);
+  JointId add_joint(const JointDef& joint);  // any of joints.h: add_joint(HingeDef{.a = ..., .b = ..., .anchor = ..., .axis = ...})
   bool remove_joint(JointId joint);
   FieldId add_field(const FieldDef& field);  // wakes every body, as every change of fields does
   bool remove_field(FieldId field);

@@ -21,16 +21,12 @@ Scene make_scene(DVec3 at = {}) {
     const BodyId body = world.add_body({.pose = {.position = at + DVec3{1.5 * (i % 4), 0.5 + i / 4, 0}}},
                                        {.geometry = Box{}});
     if (i == 8) {
-      world.add_joint({.kind = JointKind::hinge,
-                       .b = body,
-                       .anchor = at + DVec3{0, 3.2, 0},
-                       .axis = {0, 0, 1},
-                       .limits = Limits{-1, 1}});
+      world.add_joint(
+          HingeDef{.b = body, .anchor = at + DVec3{0, 3.2, 0}, .axis = {0, 0, 1}, .limits = Limits{-1, 1}});
     }
     last = body;
   }
-  world.add_joint(
-      {.kind = JointKind::slider, .b = last, .anchor = at, .axis = {0, 1, 0}, .limits = Limits{-1, 1}});
+  world.add_joint(SliderDef{.b = last, .anchor = at, .axis = {0, 1, 0}, .limits = Limits{-1, 1}});
   scene.boxes = 13;
   run(world, 0.2);
   return scene;

@@ -92,8 +92,7 @@ TEST(Explain, ANeighbourKeepsItAwake) {
   const BodyId quiet = world.add_body({.pose = {.position = {0, 0.5, 0}}, .mass = 1e6f}, {.geometry = Box{}});
   const BodyId swing =
       world.add_body({.pose = {.position = {0.9, 2, 0}}, .mass = 0.1f}, {.geometry = Sphere{0.1f}});
-  world.add_joint(
-      {.kind = JointKind::ball, .a = quiet, .b = swing, .anchor = {0, 2, 0}, .collide_connected = true});
+  world.add_joint(BallDef{.a = quiet, .b = swing, .anchor = {0, 2, 0}, .collide_connected = true});
   run(world, 2.0);
   const Explanation e = explain(world, quiet);
   EXPECT_EQ(e.reason, AwakeReason::neighbor);

@@ -40,11 +40,10 @@ Yard make_yard(DVec3 at = {}) {
   }
   yard.boxes.push_back(
       yard.world.add_body({.pose = {.position = at + DVec3{0, 30, 0}}}, {.geometry = Sphere{}}));
-  yard.joint = yard.world.add_joint({.kind = JointKind::distance,
-                                     .a = yard.boxes[0],
-                                     .b = yard.boxes[1],
-                                     .anchor = at + DVec3{0, 0.5, 0},
-                                     .anchor_b = at + DVec3{4, 0.5, 0}});
+  yard.joint = yard.world.add_joint(DistanceDef{.a = yard.boxes[0],
+                                                .b = yard.boxes[1],
+                                                .anchor = at + DVec3{0, 0.5, 0},
+                                                .anchor_b = at + DVec3{4, 0.5, 0}});
   return yard;
 }
 
@@ -339,18 +338,12 @@ TEST(JointTable, TellsFramesLimitsAndLoads) {
   World world = make_world();
   const BodyId lamp =
       world.add_body({.pose = {.position = {2, 3, 0}}}, {.geometry = Box{{0.1f, 0.1f, 0.1f}}});
-  const JointId rope = world.add_joint({.kind = JointKind::distance,
-                                        .b = lamp,
-                                        .anchor = {2, 5, 0},
-                                        .anchor_b = DVec3{2, 3.1, 0},
-                                        .max_length = 2.0f});
+  const JointId rope = world.add_joint(
+      DistanceDef{.b = lamp, .anchor = {2, 5, 0}, .anchor_b = DVec3{2, 3.1, 0}, .max_length = 2.0f});
   const BodyId door =
       world.add_body({.pose = {.position = {0.5, 0, 7}}}, {.geometry = Box{{0.5f, 1, 0.02f}}});
-  const JointId hinge = world.add_joint({.kind = JointKind::hinge,
-                                         .b = door,
-                                         .anchor = {0, 0, 7},
-                                         .axis = {0, 1, 0},
-                                         .limits = Limits{-1.0f, 0.5f}});
+  const JointId hinge = world.add_joint(
+      HingeDef{.b = door, .anchor = {0, 0, 7}, .axis = {0, 1, 0}, .limits = Limits{-1.0f, 0.5f}});
   run(world, 3.0);
   JointTable table;
   const DVec3 origin{1, 2, 3};

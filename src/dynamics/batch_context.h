@@ -31,7 +31,7 @@ struct BatchScratch {
   // Of all batches that were solved with it in this step:
   Array<SlotHit> hits;
   SolveCounts counts;
-  StepReport report;
+  StepStats report;
   RowStats rows;  // of solvers that work on rows
 };
 

@@ -24,7 +24,7 @@ struct SolveScratch {
   std::vector<std::unique_ptr<WorkerContext>> workers;  // none where there is one worker
   Array<SlotHit> hits;
   SolveCounts counts;  // of all batches
-  StepReport report;
+  StepStats report;
   RowStats rows;
   int colors = 0;
 };

@@ -27,7 +27,7 @@ TEST(ActiveConstraints, OfWhatSleepsNoneIsAsked) {
   World world = make_stacks(16);
   const BodyId low = scenes::add_moving(world, {-8, 0.25, 0}, Box{{0.25f, 0.25f, 0.25f}});
   const BodyId high = scenes::add_moving(world, {-8, 0.75, 0}, Box{{0.25f, 0.25f, 0.25f}});
-  world.add_joint({.kind = JointKind::fixed, .a = low, .b = high, .anchor = {-8, 0.5, 0}});
+  world.add_joint(FixedDef{.a = low, .b = high, .anchor = {-8, 0.5, 0}});
   world.step(scenes::kStepSeconds);
   EXPECT_EQ(links_of(world).contacts.count(), links_of(world).contacts.size()) << "nobody sleeps";
   for (int i = 0; i < 120; ++i) world.step(scenes::kStepSeconds);
@@ -47,7 +47,7 @@ TEST(ActiveConstraints, OfWhatSleepsNoneIsAsked) {
 TEST(ActiveConstraints, AreThoseOfABodyThatBeginsToMove) {
   World world = make_stacks(16);
   const BodyId hook = scenes::add_fixed(world, {0, 5, 8}, Sphere{0.5f});
-  const JointId joint = world.add_joint({.kind = JointKind::ball, .b = hook, .anchor = {0, 6, 8}});
+  const JointId joint = world.add_joint(BallDef{.b = hook, .anchor = {0, 6, 8}});
   for (int i = 0; i < 120; ++i) world.step(scenes::kStepSeconds);
   EXPECT_FALSE(links_of(world).joints.test(joint.index)) << "nothing can move it";
   world.set_type(hook, BodyType::dynamic);
@@ -64,7 +64,7 @@ TEST(ActiveConstraints, AJointThatSleepsDoesNotBreakInAShorterStep) {
     const BodyId weight = scenes::add_moving(world, {0, 5, 8}, Sphere{0.5f});
     const float load = 9.81f * world.mass_properties(weight).mass;
     const JointId joint =
-        world.add_joint({.kind = JointKind::ball, .b = weight, .anchor = {0, 5, 8}, .break_force = 1.5f * load});
+        world.add_joint(BallDef{.b = weight, .anchor = {0, 5, 8}, .break_force = 1.5f * load});
     for (int i = 0; i < 120; ++i) world.step(scenes::kStepSeconds);
     ASSERT_FALSE(world.is_awake(weight));
     world.step(0.25f * scenes::kStepSeconds);

@@ -2,6 +2,8 @@
 // do it. A recording is a list of these, so it cannot miss one.
 #pragma once
 
+#include "world/flat_joint.h"
+
 #include <gyre/defs.h>
 #include <gyre/fields.h>
 #include <gyre/result.h>
@@ -28,7 +30,7 @@ struct RemoveShape {
   ShapeId shape;
 };
 struct AddJoint {
-  JointDef def;
+  FlatJoint def;
 };
 struct RemoveJoint {
   JointId joint;

@@ -134,7 +134,7 @@ Error check_optional(const char* field, const std::optional<float>& value, float
   return value ? check_range(field, *value, low, 1.0e30f) : ok();
 }
 
-Error check_distance(const JointDef& d) {
+Error check_distance(const FlatJoint& d) {
   Error e = check_optional("joint.length", d.length, 0.0f);
   if (e.ok()) e = check_optional("joint.min_length", d.min_length, 0.0f);
   if (e.ok()) e = check_optional("joint.max_length", d.max_length, 0.0f);
@@ -189,27 +189,27 @@ Error check_drive(const PoseDrive& d) {
                    check_range("drive.max_torque", d.max_torque, 0.0f, 1.0e30f)});
 }
 
-Error check_path(const JointDef& d) {
+Error check_path(const FlatJoint& d) {
   const std::size_t least = d.path_closed ? 3 : 2;
   if (d.path.size() < least || d.path.size() > std::size_t(kMaxPathPoints))
-    return refuse("joint.path has %d points; it must have %d to %d", int(d.path.size()), int(least),
+    return refuse("joint.points has %d points; it must have %d to %d", int(d.path.size()), int(least),
                   kMaxPathPoints);
   if (d.path_orientation > PathOrientation::following)
-    return refuse("joint.path_orientation is %d; there is no such", int(d.path_orientation));
+    return refuse("joint.orientation is %d; there is no such", int(d.path_orientation));
   for (std::size_t i = 0; i < d.path.size(); ++i) {
     const Vec3 p = d.path[i];
     if (!is_finite(p) || !(largest(absolute(p)) <= 1.0e6f))
-      return refuse("joint.path[%d] is (%g, %g, %g); it must be finite and within 1e6 m", int(i), double(p.x), double(p.y),
-                    double(p.z));
+      return refuse("joint.points[%d] is (%g, %g, %g); it must be finite and within 1e6 m", int(i),
+                    double(p.x), double(p.y), double(p.z));
     const Vec3 next = d.path[(i + 1) % d.path.size()];
     if (p == next && (i + 1 < d.path.size() || d.path_closed))
-      return refuse("joint.path[%d] and the point after it are the same", int(i));
+      return refuse("joint.points[%d] and the point after it are the same", int(i));
   }
   return ok();
 }
 
 // What only kinds beyond the first five look at.
-Error check_kind(const JointDef& d) {
+Error check_kind(const FlatJoint& d) {
   if (d.axis_b) {
     const Error e = check_direction("joint.axis_b", *d.axis_b);
     if (e) return e;
@@ -253,7 +253,7 @@ Error check_kind(const JointDef& d) {
 }
 
 Error check(const WorldState& s, const AddJoint& c) {
-  const JointDef& d = c.def;
+  const FlatJoint& d = c.def;
   Error e = ok();
   if (d.a) e = check_body(s, d.a, "add_joint");
   if (e.ok() && d.b) e = check_body(s, d.b, "add_joint");

@@ -79,7 +79,7 @@ JointEnd joint_end(const RigidWorld& w, std::int32_t body, DVec3 anchor, Quat wo
           normalized(conjugate(place.orientation) * world_from_joint), anchor};
 }
 
-DVec3 default_anchor_b(const RigidWorld& w, const JointRecord& joint, const JointDef& def) {
+DVec3 default_anchor_b(const RigidWorld& w, const JointRecord& joint, const FlatJoint& def) {
   if (def.kind != JointKind::distance && def.kind != JointKind::pulley) return def.anchor;
   if (def.anchor_b) return *def.anchor_b;
   return joint.body_b == kNoBody ? DVec3{} : origin_pose(w.bodies, std::uint32_t(joint.body_b)).position;
@@ -90,7 +90,7 @@ DVec3 default_anchor_b(const RigidWorld& w, const JointRecord& joint, const Join
 struct JointFrames {
   Quat a, b;
 };
-JointFrames make_frames(const JointDef& def) {
+JointFrames make_frames(const FlatJoint& def) {
   const Vec3 x = normalized(def.axis);
   const Vec3 other = def.axis_b                    ? normalized(*def.axis_b)
                      : def.kind == JointKind::gear ? x
@@ -143,14 +143,14 @@ double mass_along(const RigidWorld& w, const JointRecord& joint, DVec3 anchor_a,
 }
 
 // A spring that is told by its frequency, as one of stiffness and damping.
-void set_frequency(JointRecord& joint, const JointDef& def, double mass) {
+void set_frequency(JointRecord& joint, const FlatJoint& def, double mass) {
   const double omega = 2.0 * kPiDouble * double(*def.frequency);
   joint.is_spring = true;
   joint.stiffness = float(omega * omega * mass);
   joint.damping = float(2.0 * double(def.damping_ratio) * omega * mass);
 }
 
-void set_distance(JointRecord& joint, const JointDef& def, float present) {
+void set_distance(JointRecord& joint, const FlatJoint& def, float present) {
   const float length = def.length ? *def.length : present;
   joint.rest_length = length;
   joint.is_spring = def.stiffness.has_value() || def.damping.has_value();
@@ -185,7 +185,7 @@ void set_axis_of(JointAxisRecord& to, const JointAxisDef& def) {
 }
 
 // What a definition says of the axis that its limits are about.
-JointAxisDef main_axis_of(const JointDef& def) {
+JointAxisDef main_axis_of(const FlatJoint& def) {
   JointAxisDef axis{.motion = def.limits ? AxisMotion::limited : AxisMotion::free};
   if (def.limits) axis.limits = *def.limits;
   axis.limit_frequency = def.limit_frequency;
@@ -202,7 +202,7 @@ JointAxisDef freed(JointAxisDef def) {
   return def;
 }
 
-void set_axes(JointDetail& detail, const JointDef& def) {
+void set_axes(JointDetail& detail, const FlatJoint& def) {
   const JointAxisDef main = main_axis_of(def);
   const auto axis = [&](JointAxis index) -> JointAxisRecord& { return detail.axes[int(index)]; };
   switch (def.kind) {
@@ -256,7 +256,8 @@ void set_axes(JointDetail& detail, const JointDef& def) {
   set_axis_of(only, main);
 }
 
-void add_path(RigidWorld& w, JointDetail& detail, const JointDef& def, const JointEnd& a, Quat world_from_a) {
+void add_path(RigidWorld& w, JointDetail& detail, const FlatJoint& def, const JointEnd& a,
+              Quat world_from_a) {
   detail.path_first = std::uint32_t(w.joints.path_points.size());
   detail.path_count = std::uint32_t(def.path.size());
   detail.path_closed = def.path_closed;
@@ -287,7 +288,7 @@ void drop_path(JointStore& joints, const JointDetail& detail) {
   }
 }
 
-void set_pulley(JointDetail& detail, const JointDef& def, DVec3 anchor_b) {
+void set_pulley(JointDetail& detail, const FlatJoint& def, DVec3 anchor_b) {
   detail.ground_a = def.ground_a;
   detail.ground_b = def.ground_b;
   const float present =
@@ -298,7 +299,7 @@ void set_pulley(JointDetail& detail, const JointDef& def, DVec3 anchor_b) {
 }
 
 // Whether the joint says more than a record can hold.
-bool needs_detail(const JointDef& def) {
+bool needs_detail(const FlatJoint& def) {
   switch (def.kind) {
     case JointKind::fixed:
     case JointKind::distance:
@@ -320,7 +321,7 @@ JointDetail& make_detail(JointStore& joints, std::uint32_t slot) {
   return joints.details[slot];
 }
 
-void fill_detail(RigidWorld& w, const JointRecord& joint, JointDetail& detail, const JointDef& def,
+void fill_detail(RigidWorld& w, const JointRecord& joint, JointDetail& detail, const FlatJoint& def,
                  const JointEnd& a, const JointEnd& b, const JointFrames& frames) {
   set_axes(detail, def);
   detail.ratio = def.ratio;
@@ -375,7 +376,7 @@ bool has_pose_drive(JointKind kind) {
   return kind == JointKind::cone || kind == JointKind::mouse || kind == JointKind::motor;
 }
 
-JointId add_joint(RigidWorld& w, const JointDef& def) {
+JointId add_joint(RigidWorld& w, const FlatJoint& def) {
   const std::uint32_t slot = w.joints.ids.acquire().index;
   activate_joint(w, slot);
   if (slot >= w.joints.records.size()) w.joints.records.resize(slot + 1);

@@ -2,10 +2,11 @@
 #pragma once
 
 #include "rigid/store/rigid_world.h"
+#include "world/flat_joint.h"
 
 namespace gyre {
 
-JointId add_joint(RigidWorld& w, const JointDef& def);
+JointId add_joint(RigidWorld& w, const FlatJoint& def);
 void remove_joint(RigidWorld& w, std::uint32_t slot);
 void set_motor(RigidWorld& w, std::uint32_t slot, const Motor& motor);
 void set_joint_axis(RigidWorld& w, std::uint32_t slot, JointAxis axis, const JointAxisDef& def);

@@ -105,8 +105,8 @@ World make_busy_world() {
   const BodyId a = scenes::add_moving(*world, {0, 8, 8}, Sphere{0.5f});
   const BodyId b = scenes::add_moving(*world, {1, 8, 8}, Sphere{0.5f});
   // Springs, which are swept; joints whose equations are solved directly have no colours.
-  world->add_joint({.kind = JointKind::distance, .b = a, .anchor = {0, 9, 8}, .stiffness = 1.0e4f});
-  world->add_joint({.kind = JointKind::distance, .a = a, .b = b, .anchor = {0, 8, 8}, .stiffness = 1.0e4f});
+  world->add_joint(DistanceDef{.b = a, .anchor = {0, 9, 8}, .stiffness = 1.0e4f});
+  world->add_joint(DistanceDef{.a = a, .b = b, .anchor = {0, 8, 8}, .stiffness = 1.0e4f});
   for (int i = 0; i < 120; ++i) world->step(scenes::kStepSeconds);
   world->set_velocity(scenes::body_number(*world, 6), {1, 0, 0}, {});
   world->step(scenes::kStepSeconds);

@@ -27,7 +27,7 @@ BodyId World::add_body(const BodyDef& body, std::span<const ShapeDef> shapes) {
 bool World::remove_body(BodyId body) { return submit(*state_, RemoveBody{body}).done; }
 ShapeId World::add_shape(BodyId body, const ShapeDef& shape) { return submit(*state_, AddShape{body, shape}).shape; }
 bool World::remove_shape(ShapeId shape) { return submit(*state_, RemoveShape{shape}).done; }
-JointId World::add_joint(const JointDef& joint) { return submit(*state_, AddJoint{joint}).joint; }
+JointId World::add_joint(const JointDef& joint) { return submit(*state_, AddJoint{flatten(joint)}).joint; }
 bool World::remove_joint(JointId joint) { return submit(*state_, RemoveJoint{joint}).done; }
 
 bool World::set_pose(BodyId body, const Pose& pose) { return submit(*state_, SetPose{body, pose}).done; }

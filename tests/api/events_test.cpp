@@ -263,8 +263,7 @@ TEST(Sensor, SeesEveryTypeOfBody) {
 TEST(Joints, BreakAboveTheirForceAndSaySo) {
   World world = make_world();
   const BodyId weight = world.add_body({.mass = 10.0f}, {.geometry = Box{}});
-  const JointId strong =
-      world.add_joint({.kind = JointKind::ball, .b = weight, .anchor = {0, 0.5, 0}, .break_force = 150.0f});
+  const JointId strong = world.add_joint(BallDef{.b = weight, .anchor = {0, 0.5, 0}, .break_force = 150.0f});
   run(world, 2.0);
   EXPECT_TRUE(world.exists(strong)) << "98.1 N of 150";
   world.add_force(weight, {0, -100, 0});
@@ -384,7 +383,7 @@ TEST(Sleep, EndsWithGravityForceVelocityPoseAndType) {
 TEST(Sleep, EndsForBodiesHangingFromAChangedJoint) {
   World world = make_world();
   const BodyId lamp = world.add_body({}, {.geometry = Box{}});
-  const JointId cord = world.add_joint({.kind = JointKind::ball, .b = lamp, .anchor = {0, 1, 0}});
+  const JointId cord = world.add_joint(BallDef{.b = lamp, .anchor = {0, 1, 0}});
   run(world, 5.0);
   EXPECT_FALSE(world.is_awake(lamp));
   world.remove_joint(cord);
@@ -394,8 +393,7 @@ TEST(Sleep, EndsForBodiesHangingFromAChangedJoint) {
 TEST(Sleep, MotorsTurnSleepersAgain) {
   World world = make_world({.gravity = {0, 0, 0}});
   const BodyId wheel = world.add_body({}, {.geometry = Box{}});
-  const JointId axle =
-      world.add_joint({.kind = JointKind::hinge, .b = wheel, .anchor = {0, 0, 0}, .axis = {0, 1, 0}});
+  const JointId axle = world.add_joint(HingeDef{.b = wheel, .anchor = {0, 0, 0}, .axis = {0, 1, 0}});
   run(world, 3.0);
   EXPECT_FALSE(world.is_awake(wheel));
   EXPECT_TRUE(world.set_motor(axle, {.target_velocity = 3.0f, .max_force = 1e6f}));

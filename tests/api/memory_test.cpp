@@ -156,7 +156,7 @@ TEST(NoAllocation, InJointsAndThreads) {
   for (int i = 0; i < 20; ++i) {
     const BodyId link =
         world.add_body({.pose = {.position = {0.5 + i, 0, 0}}}, {.geometry = Capsule{0.1f, 0.2f}});
-    world.add_joint({.kind = JointKind::ball, .a = last, .b = link, .anchor = {double(i), 0, 0}});
+    world.add_joint(BallDef{.a = last, .b = link, .anchor = {double(i), 0, 0}});
     last = link;
   }
   expect_none(world, 2400, 120, "chain on two threads");  // it swings for long, and now and then links touch

@@ -209,7 +209,7 @@ TEST(StaleIds, NeverReachAnotherObject) {
     EXPECT_FALSE(world.set_awake(bad, false));
     EXPECT_FALSE(world.add_shape(bad, {}));
     EXPECT_FALSE(world.move_kinematic(bad, {}, kStep));
-    EXPECT_FALSE(world.add_joint({.a = next, .b = bad}) && bad)
+    EXPECT_FALSE(world.add_joint(BallDef{.a = next, .b = bad}) && bad)
         << "a null id is the world, others are refused";
     EXPECT_EQ(world.pose(bad), Pose{});
     EXPECT_EQ(world.user_data(bad), 0u);
@@ -241,7 +241,7 @@ TEST(Order, AddAndRemoveBeforeTheFirstStepAndWhileAsleep) {
   const BodyId ground = add_ground(world);
   const BodyId a = world.add_body({.pose = {.position = {0, 0.5, 0}}}, {.geometry = Box{}});
   const BodyId b = world.add_body({.pose = {.position = {0, 1.5, 0}}}, {.geometry = Box{}});
-  const JointId j = world.add_joint({.kind = JointKind::fixed, .a = a, .b = b, .anchor = {0, 1, 0}});
+  const JointId j = world.add_joint(FixedDef{.a = a, .b = b, .anchor = {0, 1, 0}});
   const ShapeId extra = world.add_shape(a, {.geometry = Sphere{}, .local = {.position = {0, 0, 1}}});
   EXPECT_TRUE(world.remove_shape(extra));
   EXPECT_TRUE(world.step(kStep));

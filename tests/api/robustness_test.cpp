@@ -49,11 +49,10 @@ TEST(Events, MayBeAnsweredByAnyChange) {
   std::vector<BodyId> all;
   for (int i = 0; i < 30; ++i) all.push_back(drop());
   for (int i = 0; i + 1 < 10; i += 2) {
-    world.add_joint({.kind = JointKind::ball,
-                     .a = all[std::size_t(i)],
-                     .b = all[std::size_t(i + 1)],
-                     .anchor = world.pose(all[std::size_t(i)]).position,
-                     .break_force = 30.0f});
+    world.add_joint(BallDef{.a = all[std::size_t(i)],
+                            .b = all[std::size_t(i + 1)],
+                            .anchor = world.pose(all[std::size_t(i)]).position,
+                            .break_force = 30.0f});
   }
   const auto change = [&](BodyId body) {
     if (!world.exists(body)) return;

@@ -32,12 +32,8 @@ World make_scene(const Stepping& stepping, int threads, int width) {
                        {.geometry = Sphere{.radius = 0.1f}});
   }
   const auto tie = [&](BodyId a, BodyId b) {
-    world.add_joint({.kind = JointKind::distance,
-                     .a = a,
-                     .b = b,
-                     .anchor = world.pose(a).position,
-                     .stiffness = 200.0f,
-                     .damping = 0.5f});
+    world.add_joint(
+        DistanceDef{.a = a, .b = b, .anchor = world.pose(a).position, .stiffness = 200.0f, .damping = 0.5f});
   };
   for (int i = 0; i < 12; ++i) {
     if (i % 4 != 3) tie(knots[i], knots[i + 1]);
@@ -45,7 +41,7 @@ World make_scene(const Stepping& stepping, int threads, int width) {
   }
   tie(boxes[0], knots[8]);
   tie(boxes[1], boxes[6]);
-  world.add_joint({.kind = JointKind::distance, .b = knots[11], .anchor = {6, 6, 0}, .stiffness = 100.0f});
+  world.add_joint(DistanceDef{.b = knots[11], .anchor = {6, 6, 0}, .stiffness = 100.0f});
   for (int i = 0; i < 5; ++i) {
     world.add_body({.pose = {.position = {20.0 + 3.0 * i, 8, 0}},
                     .angular_velocity = {float(i), 3, 0.2f},

@@ -189,7 +189,7 @@ class RandomWorld {
   }
 
   void add_joint(World& world, Random& random, BodyId a, BodyId b) {
-    JointDef joint;
+    FlatJoint joint;
     joint.kind = JointKind(pick(random, 5));
     joint.a = pick(random, 5) == 0 ? BodyId{} : a;
     joint.b = b;
@@ -205,7 +205,7 @@ class RandomWorld {
       if (coin(random)) joint.max_length = random.next(1, 3);
     }
     if (pick(random, 3) == 0) joint.break_force = random.next(2000, 60000);
-    if (const JointId added = world.add_joint(joint)) joints_.push_back(added);
+    if (const JointId added = scenes::add_flat_joint(world, joint)) joints_.push_back(added);
   }
 
   static BodyId any_body(const World& world, Random& random) {

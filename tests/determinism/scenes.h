@@ -1,11 +1,12 @@
-// Scenes of which every run must give the same bits: made with the public interface alone, by arithmetic that IEEE 754
-// fixes, so that any compiler and processor builds the same ones.
+// Scenes of which every run must give the same bits: made with the public interface, but for joints that recordings alone know
+// (add_flat_joint), and by arithmetic that IEEE 754 fixes, so that any compiler and processor builds the same ones.
 //
 // build() fills a world; drive() gives the commands of one step. Both find bodies by their number in bodies(), so they work
 // as well on a world that was loaded half-way.
 #pragma once
 
 #include "joint_scene.h"
+#include "world/command.h"
 
 #include <gyre/gyre.h>
 
@@ -131,14 +132,19 @@ inline void build_pile(World& world) {
   }
 }
 
+// A joint as recordings hold it: with an axis also where the kind has none now, which is part of the state whose hashes are stored.
+inline JointId add_flat_joint(World& world, const FlatJoint& joint) {
+  return submit(world.state(), AddJoint{joint}).joint;
+}
+
 inline JointId join(World& world, JointKind kind, BodyId a, BodyId b, DVec3 anchor, Vec3 axis = {0, 0, 1}) {
-  JointDef joint;
+  FlatJoint joint;
   joint.kind = kind;
   joint.a = a;
   joint.b = b;
   joint.anchor = anchor;
   joint.axis = axis;
-  return world.add_joint(joint);
+  return add_flat_joint(world, joint);
 }
 
 inline void add_doll(World& world, DVec3 place) {
@@ -146,12 +152,11 @@ inline void add_doll(World& world, DVec3 place) {
   const BodyId head = add_moving(world, place + DVec3{0, 0.5, 0}, Sphere{0.15625f});
   join(world, JointKind::ball, torso, head, place + DVec3{0, 0.34375, 0});
   for (const double side : {-1.0, 1.0}) {
-    JointDef limb;
+    HingeDef limb;
     limb.axis = {0, 0, 1};
     limb.limits = Limits{-1.5f, 0.75f};
     const BodyId upper =
         add_moving(world, place + DVec3{0.375 * side, 0.25, 0}, Box{{0.15625f, 0.0625f, 0.0625f}});
-    limb.kind = JointKind::hinge;
     limb.a = torso, limb.b = upper, limb.anchor = place + DVec3{0.21875 * side, 0.25, 0};
     world.add_joint(limb);
     const BodyId leg = add_moving(world, place + DVec3{0.125 * side, -0.5625, 0}, Capsule{0.0625f, 0.15625f});
@@ -171,29 +176,26 @@ inline void build_joints(World& world) {
   }
   add_doll(world, {0, 2, 1});
   add_doll(world, {0.25, 4, 1.125});
-  JointDef slider;
-  slider.kind = JointKind::slider;
+  SliderDef slider;
   slider.b = add_moving(world, {4, 1, 0}, Box{{0.25f, 0.25f, 0.5f}});
   slider.anchor = {4, 1, 0};
   slider.axis = {0, 1, 0};
   slider.limits = Limits{-0.25f, 2};
   slider.motor = {.target_velocity = 1, .max_force = 4000};
   world.add_joint(slider);
-  JointDef spring;
-  spring.kind = JointKind::distance;
+  DistanceDef spring;
   spring.b = add_moving(world, {6, 3, 0}, Sphere{0.25f});
   spring.anchor = {6, 5, 0};
   spring.stiffness = 500.0f;
   spring.damping = 2.0f;
   world.add_joint(spring);
-  JointDef rope = spring;
+  DistanceDef rope = spring;
   rope.b = add_moving(world, {8, 4, 0}, Box{{0.25f, 0.25f, 0.25f}});
   rope.anchor = {8, 5, 0};
   rope.stiffness.reset(), rope.damping.reset();
   rope.max_length = 2.0f;
   world.add_joint(rope);
-  JointDef weak;
-  weak.kind = JointKind::fixed;
+  FixedDef weak;
   weak.a = add_moving(world, {10, 3, 0}, Box{{0.5f, 0.125f, 0.125f}});
   weak.b = add_moving(world, {11, 3, 0}, Box{{0.5f, 0.125f, 0.125f}});
   weak.anchor = {10.5, 3, 0};

@@ -133,7 +133,7 @@ struct Ids {
 };
 
 void add_joint(World& world, Ids& ids, Input& in) {
-  JointDef def;
+  FlatJoint def;
   def.kind = JointKind(in.byte() % 6);
   if (flag(in)) def.a = Ids::pick(ids.bodies, in);
   def.b = Ids::pick(ids.bodies, in);
@@ -143,7 +143,7 @@ void add_joint(World& world, Ids& ids, Input& in) {
   if (flag(in)) def.stiffness = number(in);
   if (flag(in)) def.max_length = number(in);
   if (flag(in)) def.break_force = number(in);
-  ids.joints.push_back(world.add_joint(def));
+  ids.joints.push_back(scenes::add_flat_joint(world, def));
 }
 
 FieldDef field_def(Input& in) {

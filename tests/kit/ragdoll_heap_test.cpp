@@ -26,8 +26,7 @@ std::vector<float> read_bodies(const World& world) {
 }
 // A rope that is never taut. Such a joint is swept, so bodies are moved stage by stage.
 void add_slack(World& world, BodyId a, BodyId b) {
-  world.add_joint(
-      {.kind = JointKind::distance, .a = a, .b = b, .max_length = 1000.0f, .collide_connected = true});
+  world.add_joint(DistanceDef{.a = a, .b = b, .max_length = 1000.0f, .collide_connected = true});
 }
 void expect_the_same(std::vector<float> (*outcome)(bool slack, int threads, int width)) {
   const std::vector<float> expected = outcome(true, 1, 1);
@@ -58,11 +57,10 @@ std::vector<float> heap(bool slack, int threads, int width) {
     boxes.push_back(world.add_body(def, {.geometry = Box{{0.1f, 0.15f, 0.2f}}}));
     // Chains of two and a single one between a moving body and the world.
     if (i % 3 == 1) {
-      world.add_joint({.kind = JointKind::ball,
-                       .a = boxes[std::size_t(i - 1)],
-                       .b = boxes[std::size_t(i)],
-                       .anchor = def.pose.position,
-                       .collide_connected = true});
+      world.add_joint(BallDef{.a = boxes[std::size_t(i - 1)],
+                              .b = boxes[std::size_t(i)],
+                              .anchor = def.pose.position,
+                              .collide_connected = true});
     }
   }
   if (slack) add_slack(world, boxes[2], boxes[5]);
@@ -84,10 +82,8 @@ std::vector<float> on_a_swing(bool slack, int threads, int width) {
                                     {.geometry = Box{{0.2f, 0.1f, 0.2f}}}));
     world.set_velocity(swings.back(), {0.5f, 0.25f * float(i % 3), 0}, {0, 2.0f, 1.0f});
     const Ragdoll ragdoll = add(world, limp, rest_pose(limp, {place - DVec3{0, 2.5, 0}, {}}));
-    world.add_joint({.kind = JointKind::ball,
-                     .a = swings.back(),
-                     .b = ragdoll.bones[0].body,
-                     .anchor = place - DVec3{0, 0.5, 0}});
+    world.add_joint(
+        BallDef{.a = swings.back(), .b = ragdoll.bones[0].body, .anchor = place - DVec3{0, 0.5, 0}});
   }
   std::vector<BodyId> boxes;
   for (const BodyId swing : swings) {

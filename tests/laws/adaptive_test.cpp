@@ -123,7 +123,7 @@ Cradle make_cradle(int lifted) {
         def,
         {.geometry = Sphere{.radius = float(kRadius)}, .density = 7800.0f, .material = surface(0.0f, 1.0f)});
     // A rod to its middle: a pendulum of a point, as the ball does not turn.
-    c.world.add_joint({.kind = JointKind::distance, .b = c.balls[std::size_t(i)], .anchor = {x, 0, 0}});
+    c.world.add_joint(DistanceDef{.b = c.balls[std::size_t(i)], .anchor = {x, 0, 0}});
   }
   return c;
 }
@@ -287,9 +287,7 @@ BodyId add_double_pendulum(World& world, float damping = 0.0f) {
     def.pose.position = {0.5 + i, 0, 0};
     def.angular_damping = def.linear_damping = damping;
     const BodyId rod = world.add_body(def, {.geometry = Box{{0.5f, 0.05f, 0.05f}}, .density = 1000});
-    JointDef joint;
-    joint.a = last, joint.b = rod, joint.anchor = {double(i), 0, 0};
-    world.add_joint(joint);
+    world.add_joint(BallDef{.a = last, .b = rod, .anchor = {double(i), 0, 0}});
     last = rod;
   }
   return last;

@@ -10,16 +10,14 @@ void build_arm(Assembly& arm, Held held, float most_torque) {
   BodyId last{};
   for (int i = 0; i < 6; ++i) {
     const BodyId body = arm.add({.pose = {.position = {i + 0.5, 0, 0}}}, Box{{0.5f, 0.1f, 0.1f}});
-    JointDef joint{
-        .kind = JointKind::hinge, .a = last, .b = body, .anchor = {double(i), 0, 0}, .axis = {0, 0, 1}};
+    HingeDef hinge{.a = last, .b = body, .anchor = {double(i), 0, 0}, .axis = {0, 0, 1}};
     const Motor motor{.target_position = 0.0f, .max_force = most_torque};
-    if (held == Held::by_motors) joint.motor = motor;
-    if (held == Held::by_limits) joint.limits = Limits{0.0f, 1.0f};
-    if (held == Held::by_motors_alone) {
-      joint.kind = JointKind::six_dof;
-      joint.angular_x = {.motion = AxisMotion::free, .motor = motor};
-    }
-    arm.joints.push_back(arm.world.add_joint(joint));
+    if (held == Held::by_motors) hinge.motor = motor;
+    if (held == Held::by_limits) hinge.limits = Limits{0.0f, 1.0f};
+    SixDofDef axes{.a = last, .b = body, .anchor = hinge.anchor, .axis = hinge.axis};
+    axes.angular_x = {.motion = AxisMotion::free, .motor = motor};
+    arm.joints.push_back(held == Held::by_motors_alone ? arm.world.add_joint(axes)
+                                                       : arm.world.add_joint(hinge));
     last = body;
   }
 }
@@ -76,10 +74,8 @@ TEST(Arm, IsDrivenByWhatItsMotorsHaveNow) {
   for (const float most : {1.0e3f, 1.0e9f, 1.0e30f}) {
     Assembly cube({.sleeping = false});
     const BodyId body = cube.add({.pose = {.position = {0.05, 0, 0}}}, Box{{0.05f, 0.05f, 0.05f}});
-    ASSERT_TRUE(cube.world.add_joint({.kind = JointKind::hinge,
-                                      .b = body,
-                                      .axis = {0, 0, 1},
-                                      .motor = {.target_velocity = 2.0f, .max_force = most}}));
+    ASSERT_TRUE(cube.world.add_joint(
+        HingeDef{.b = body, .axis = {0, 0, 1}, .motor = {.target_velocity = 2.0f, .max_force = most}}));
     run(cube.world, 2.0);
     EXPECT_TRUE(relative_row("speed of a small driven cube (rad/s)",
                              double(cube.world.angular_velocity(body).z), 2.0, 1e-3, 1e-4));
@@ -92,11 +88,11 @@ TEST(Arm, RestsBetweenMotorsInConflict) {
     Assembly arm({.sleeping = false});
     const BodyId body = arm.add({.pose = {.position = {0.5, 0, 0}}}, Box{{0.5f, 0.1f, 0.1f}});
     for (const float place : {0.0f, 0.01f})
-      arm.joints.push_back(arm.world.add_joint({.kind = JointKind::hinge,
-                                                .b = body,
-                                                .anchor = {0, 0, place > 0.0f ? 0.1 : -0.1},
-                                                .axis = {0, 0, 1},
-                                                .motor = {.target_position = place, .max_force = most}}));
+      arm.joints.push_back(
+          arm.world.add_joint(HingeDef{.b = body,
+                                       .anchor = {0, 0, place > 0.0f ? 0.1 : -0.1},
+                                       .axis = {0, 0, 1},
+                                       .motor = {.target_position = place, .max_force = most}}));
     run(arm.world, 5.0);
     EXPECT_TRUE(row("a link between two motors (rad)",
                     double(arm.world.joint_state(arm.joints[0]).position), 0.005, 0.0055, 0.001));
@@ -115,11 +111,11 @@ TEST(Arm, MotorsInConflictGiveWayByAThousandth) {
   Assembly arm({.gravity = {0, 0, 0}, .sleeping = false});
   const BodyId body = arm.add({.pose = {.position = {0.5, 0, 0}}}, Box{{0.5f, 0.1f, 0.1f}});
   for (const float place : {0.0f, float(kApart)})
-    arm.joints.push_back(arm.world.add_joint({.kind = JointKind::hinge,
-                                              .b = body,
-                                              .anchor = {0, 0, place > 0.0f ? 0.1 : -0.1},
-                                              .axis = {0, 0, 1},
-                                              .motor = {.target_position = place, .max_force = 1.0e9f}}));
+    arm.joints.push_back(
+        arm.world.add_joint(HingeDef{.b = body,
+                                     .anchor = {0, 0, place > 0.0f ? 0.1 : -0.1},
+                                     .axis = {0, 0, 1},
+                                     .motor = {.target_position = place, .max_force = 1.0e9f}}));
   run(arm.world, 2.0);
   const double inertia = 40.0 * ((1.0 + 0.04) / 12.0 + 0.25);
   EXPECT_TRUE(relative_row("place between two motors (rad)",
@@ -137,13 +133,13 @@ TEST(Arm, IsNotPressedThroughItsLimits) {
     BodyId last{};
     for (int i = 0; i < 6; ++i) {
       const BodyId body = arm.add({.pose = {.position = {0.3 * i + 0.15, 0, 0}}}, Box{{0.15f, 0.03f, 0.03f}});
-      arm.joints.push_back(arm.world.add_joint({.kind = JointKind::hinge,
-                                                .a = last,
-                                                .b = body,
-                                                .anchor = {0.3 * i, 0, 0},
-                                                .axis = {0, 0, 1},
-                                                .limits = Limits{-0.5f, 0.5f},
-                                                .motor = {.target_position = 3.0f, .max_force = most}}));
+      arm.joints.push_back(
+          arm.world.add_joint(HingeDef{.a = last,
+                                       .b = body,
+                                       .anchor = {0.3 * i, 0, 0},
+                                       .axis = {0, 0, 1},
+                                       .limits = Limits{-0.5f, 0.5f},
+                                       .motor = {.target_position = 3.0f, .max_force = most}}));
       last = body;
     }
     double beyond = 0.0;

@@ -1,6 +1,7 @@
 // Bodies and joints whose anchors are remembered, so that tests can see them part.
 #pragma once
 
+#include "laws/any_joint.h"
 #include "laws/kit.h"
 
 namespace gyre::laws {
@@ -23,7 +24,7 @@ class Assembly {
                float friction = 0.0f) {
     anchors_.push_back({a, b, from_world(a, anchor), from_world(b, anchor)});
     joints.push_back(world.add_joint(
-        {.kind = kind, .a = a, .b = b, .anchor = anchor, .axis = axis, .friction = friction}));
+        definition_of({.kind = kind, .a = a, .b = b, .anchor = anchor, .axis = axis, .friction = friction})));
     return joints.back();
   }
   double largest_gap() const {

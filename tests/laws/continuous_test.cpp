@@ -46,7 +46,7 @@ TEST(Struck, FliesThroughNoWall) {
       const BodyId back = world.add_body({.mass = 0.1f}, {.geometry = Sphere{0.05f}});
       const BodyId front =
           world.add_body({.pose = {.position = {0.5, 0, 0}}, .mass = 0.1f}, {.geometry = Sphere{0.05f}});
-      world.add_joint({.kind = JointKind::fixed, .a = back, .b = front, .anchor = {0.25, 0, 0}});
+      world.add_joint(FixedDef{.a = back, .b = front, .anchor = {0.25, 0, 0}});
       run(world, 0.1);
       world.add_body({.pose = {.position = {-0.2, 0, 0}},
                       .linear_velocity = {speed, 0, 0},
@@ -72,7 +72,7 @@ TEST(Blade, StrikesAPostAtAnySpin) {
       const BodyId blade = world.add_body(
           {.pose = {.orientation = from_axis_angle({0, 1, 0}, angle)}, .angular_velocity = {0, rate, 0}},
           {.geometry = Box{{1.0f, 0.05f, 0.01f}}});
-      world.add_joint({.kind = JointKind::hinge, .b = blade, .anchor = {0, 0, 0}, .axis = {0, 1, 0}});
+      world.add_joint(HingeDef{.b = blade, .anchor = {0, 0, 0}, .axis = {0, 1, 0}});
       bool hit = false;
       Unwrapped turned_by;
       for (int i = 0; i < 60; ++i) {

@@ -49,8 +49,7 @@ TEST(Integrators, EnergyOfALongOscillation) {
     BodyDef def = trials::point();
     def.pose.position = {2.1, 0, 0};
     const BodyId body = world.add_body(def);
-    world.add_joint(
-        {.kind = JointKind::distance, .b = body, .length = 2.0f, .stiffness = float(square(trials::kTurn))});
+    world.add_joint(DistanceDef{.b = body, .length = 2.0f, .stiffness = float(square(trials::kTurn))});
     const Energy before = world.energy();
     for (int i = 0; i < 1200; ++i) world.step(1.0f / 120.0f);
     const Energy after = world.energy();
@@ -94,13 +93,12 @@ TEST(Integrators, MomentumOfSpringsBetweenBodiesIsKept) {
       bodies[i] = world.add_body(def);
     }
     for (int i = 0; i < 2; ++i) {
-      world.add_joint({.kind = JointKind::distance,
-                       .a = bodies[i],
-                       .b = bodies[i + 1],
-                       .anchor = {double(i), 0.1 * i * i, 0.2},
-                       .length = 0.8f,
-                       .stiffness = 300.0f,
-                       .damping = 1.0f});
+      world.add_joint(DistanceDef{.a = bodies[i],
+                                  .b = bodies[i + 1],
+                                  .anchor = {double(i), 0.1 * i * i, 0.2},
+                                  .length = 0.8f,
+                                  .stiffness = 300.0f,
+                                  .damping = 1.0f});
     }
     const Momentum before = world.momentum();
     run(world, 2.0);
@@ -126,12 +124,8 @@ TEST(Integrators, ASpringToWhatStandsOnTheFloorPullsAtBoth) {
     BodyDef has_extreme_mass_ratio = point_body(2.0, {1, 1, 1}, {2.2, 0.5, 0.0});
     has_extreme_mass_ratio.gravity_scale = 0.0f;
     const BodyId weight = world.add_body(has_extreme_mass_ratio);
-    world.add_joint({.kind = JointKind::distance,
-                     .a = sled,
-                     .b = weight,
-                     .anchor = {0, 0.5, 0},
-                     .length = 2.0f,
-                     .stiffness = 160.0f});
+    world.add_joint(
+        DistanceDef{.a = sled, .b = weight, .anchor = {0, 0.5, 0}, .length = 2.0f, .stiffness = 160.0f});
     ZeroCrossings through;
     for (int i = 0; i < 150; ++i) {
       world.step(kStep);
@@ -159,7 +153,7 @@ TEST(Stiffness, IsToldAtTheStepFromWhichASchemeExplodes) {
           def.mass = mass;
           def.pose.position = {2.001, 0, 0};
           const BodyId body = world.add_body(def);
-          world.add_joint({.kind = JointKind::distance, .b = body, .length = 2.0f, .stiffness = stiffness});
+          world.add_joint(DistanceDef{.b = body, .length = 2.0f, .stiffness = stiffness});
           *told = world.spring_stability().critical_step;
           *warned = false;
           double most = 0.0;
@@ -198,13 +192,12 @@ TEST(Stiffness, OfManySpringsTogether) {
     BodyDef def = trials::point();
     def.pose.position = {double(i) + 1.0, 0, 0};
     if (i < kCount) next = world.add_body(def);
-    world.add_joint({.kind = JointKind::distance,
-                     .a = last,
-                     .b = next,
-                     .anchor = {double(i), 0, 0},
-                     .anchor_b = DVec3{double(i) + 1.0, 0, 0},
-                     .length = 1.0f,
-                     .stiffness = 400.0f});
+    world.add_joint(DistanceDef{.a = last,
+                                .b = next,
+                                .anchor = {double(i), 0, 0},
+                                .anchor_b = DVec3{double(i) + 1.0, 0, 0},
+                                .length = 1.0f,
+                                .stiffness = 400.0f});
     last = next;
   }
   const double exact = 2.0 * 20.0 * std::sin(0.5 * kPiDouble * kCount / (kCount + 1.0));
@@ -218,15 +211,13 @@ TEST(Stiffness, ExplicitEulerIsToldToGrowAndDampersHelp) {
   BodyDef def = trials::point();
   def.pose.position = {2.5, 0, 0};
   const BodyId body = world.add_body(def);
-  const JointId spring =
-      world.add_joint({.kind = JointKind::distance, .b = body, .length = 2.0f, .stiffness = 100.0f});
+  const JointId spring = world.add_joint(DistanceDef{.b = body, .length = 2.0f, .stiffness = 100.0f});
   world.step(kStep);
   EXPECT_EQ(world.spring_stability().critical_step, 0.0);
   ASSERT_EQ(world.problems().size(), 1u);
   EXPECT_EQ(world.problems()[0].code, ErrorCode::unstable);
   world.remove_joint(spring);
-  world.add_joint(
-      {.kind = JointKind::distance, .b = body, .length = 2.0f, .stiffness = 100.0f, .damping = 2.0f});
+  world.add_joint(DistanceDef{.b = body, .length = 2.0f, .stiffness = 100.0f, .damping = 2.0f});
   // w = 10, d = 1: 2 d / w^2.
   EXPECT_TRUE(relative_row("critical step of explicit Euler", world.spring_stability().critical_step, 0.02,
                            1e-6, 1e-6));
@@ -246,8 +237,7 @@ TEST(ErrorControl, KeepsItsToleranceWhateverTheIntegrator) {
     BodyDef mass = trials::point();
     mass.pose.position = {3, 0, 0};
     const BodyId body = world.add_body(mass);
-    world.add_joint(
-        {.kind = JointKind::distance, .b = body, .length = 2.0f, .stiffness = float(square(trials::kTurn))});
+    world.add_joint(DistanceDef{.b = body, .length = 2.0f, .stiffness = float(square(trials::kTurn))});
     int parts = 0;
     for (int i = 0; i < 30; ++i) {
       world.step(1.0f / 30.0f);

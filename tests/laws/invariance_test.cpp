@@ -46,7 +46,7 @@ Record play(const Frame& f, double seconds, float step = kStep) {
   bodies.push_back(add(place(3, 0.5, -2), {-1, 0, 1}, {2, 0, 2}, {}, Sphere{size * 0.5f}, 1000));
   const BodyId bob = add(place(6, 3, 1), {}, {}, {}, Sphere{size * 0.2f}, 1000);
   bodies.push_back(bob);
-  if (f.velocity == Vec3{}) world.add_joint({.kind = JointKind::ball, .b = bob, .anchor = place(6, 4, 0)});
+  if (f.velocity == Vec3{}) world.add_joint(BallDef{.b = bob, .anchor = place(6, 4, 0)});
   const float dt = step * fast;
   Record record;
   const int steps = int(std::lround(seconds / double(step)));
@@ -131,9 +131,7 @@ std::vector<DVec3> stack_and_arms(int arms) {
       const BodyId limb =
           world.add_body({.pose = {.position = {x, 0.3 + 0.05 * i, 4}}, .linear_velocity = {0, -1, 0.5f}},
                          {.geometry = Box{{0.18f, 0.05f, 0.04f}}});
-      if (i > 0)
-        world.add_joint(
-            {.kind = JointKind::ball, .a = last, .b = limb, .anchor = {x - 0.2, 0.3 + 0.05 * i, 4}});
+      if (i > 0) world.add_joint(BallDef{.a = last, .b = limb, .anchor = {x - 0.2, 0.3 + 0.05 * i, 4}});
       if (arm == 0) watched.push_back(limb);
       last = limb;
     }
@@ -168,7 +166,7 @@ TEST(Tumbling, StaysFiniteAtEverySize) {
         world.add_body({.pose = {.position = {0, 0.5 * edge, 5 * edge}}, .linear_velocity = {speed, 0, 0}},
                        {.geometry = Sphere{0.5f * e}});
     const BodyId hung = world.add_body({.pose = {.position = {-5 * edge, 5 * edge, 0}}}, box);
-    world.add_joint({.kind = JointKind::ball, .b = hung, .anchor = {-4.5 * edge, 5.4 * edge, 0.3 * edge}});
+    world.add_joint(BallDef{.b = hung, .anchor = {-4.5 * edge, 5.4 * edge, 0.3 * edge}});
     for (int i = 0; i < 240; ++i) {
       world.step(kStep * std::min(1.0f, 10.0f * std::sqrt(e)));
       ASSERT_TRUE(world.problems().empty())

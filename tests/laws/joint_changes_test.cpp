@@ -2,6 +2,7 @@
 // back without striking out.
 #include <gyre/gyre.h>
 
+#include "laws/any_joint.h"
 #include "laws/kit.h"
 
 #include <gtest/gtest.h>
@@ -26,13 +27,13 @@ struct Bars {
     for (int i = 0; i < 2; ++i) {
       const BodyDef body{.pose = {{0, 5.0 - i, 0}, {}}};
       bar[i] = world.add_body(body, {.geometry = Box{{0.1f, 0.5f, 0.1f}}, .local = {{0, -0.5f, 0}, {}}});
-      JointDef def;
+      FlatJoint def;
       def.kind = kind;
       def.a = i == 0 ? BodyId{} : bar[0];
       def.b = bar[i];
       def.anchor = i == 0 ? kNail : kPin;
       def.axis = {0, 0, 1};
-      joint[i] = world.add_joint(def);
+      joint[i] = world.add_joint(definition_of(def));
     }
   }
   // How far the two ends of a joint are apart; the bars' own marks of where they were joined.
@@ -85,13 +86,13 @@ TEST(JointChanges, LetsGoOfWhatAMotorHeld) {
   for (int way = 0; way < 3; ++way) {
     World world = std::move(*World::create({.sleeping = false}));
     const BodyId lift = world.add_body({.pose = {{0, 5, 0}, {}}}, {.geometry = Box{{0.2f, 0.2f, 0.2f}}});
-    JointDef def{.kind = way == 2 ? JointKind::motor : JointKind::slider, .b = lift, .anchor = {0, 5, 0}};
+    FlatJoint def{.kind = way == 2 ? JointKind::motor : JointKind::slider, .b = lift, .anchor = {0, 5, 0}};
     def.axis = {0, 1, 0};
     if (way < 2) def.limits = Limits{-4.0f, 4.0f};
     if (way == 0) def.motor = {.target_velocity = 0.0f, .max_force = 1.0e4f};
     if (way == 1) def.stiffness = 1.0e5f;
     if (way == 2) def.drive = {.frequency = 5.0f, .max_force = 1.0e4f, .max_torque = 1.0e4f};
-    const JointId joint = world.add_joint(def);
+    const JointId joint = world.add_joint(definition_of(def));
     for (int i = 0; i < 30; ++i) ASSERT_TRUE(world.step(kStep));
     ASSERT_GT(world.pose(lift).position.y, 4.9);
     const JointAxisDef stops{.motion = AxisMotion::limited, .limits = {-4.0f, 4.0f}};
@@ -113,10 +114,9 @@ TEST(JointChanges, ARackStaysWhereItIs) {
   World world = std::move(*World::create(def));
   const BodyId pinion = world.add_body({.pose = {{0, 1, 0}, {}}}, {.geometry = Cylinder{0.5f, 0.1f}});
   const BodyId rack = world.add_body({.pose = {{0, 0.4, 0}, {}}}, {.geometry = Box{{1, 0.1f, 0.1f}}});
-  JointDef bearing{.kind = JointKind::hinge, .b = pinion, .anchor = {0, 1, 0}, .axis = {0, 0, 1}};
-  JointDef rail{.kind = JointKind::slider, .b = rack, .anchor = {0, 0.4, 0}, .axis = {1, 0, 0}};
-  JointDef teeth{
-      .kind = JointKind::rack_and_pinion, .a = pinion, .b = rack, .anchor = {0, 0.5, 0}, .axis = {0, 0, 1}};
+  HingeDef bearing{.b = pinion, .anchor = {0, 1, 0}, .axis = {0, 0, 1}};
+  SliderDef rail{.b = rack, .anchor = {0, 0.4, 0}, .axis = {1, 0, 0}};
+  RackAndPinionDef teeth{.a = pinion, .b = rack, .anchor = {0, 0.5, 0}, .axis = {0, 0, 1}};
   teeth.axis_b = Vec3{1, 0, 0};
   teeth.ratio = 0.5f;
   world.add_joint(bearing);
@@ -137,13 +137,13 @@ TEST(JointChanges, ComesBackFromFarWithoutStrikingOut) {
     def.gravity = {};
     World world = std::move(*World::create(def));
     const BodyId body = world.add_body({.pose = {{0, 0, 0}, {}}}, {.geometry = Sphere{0.2f}});
-    JointDef joint;
+    FlatJoint joint;
     joint.kind = kind;
     joint.b = body;
     joint.axis = {1, 0, 0};
     joint.limits = Limits{-0.3f, 0.3f};
     joint.swing_y = joint.swing_z = 0.3f;
-    world.add_joint(joint);
+    world.add_joint(definition_of(joint));
     const bool turns = kind != JointKind::ball;
     // About an axis that is held by some and limited by others. (Cardan angles know no more than a quarter turn about y.)
     const bool about_x = kind == JointKind::hinge || kind == JointKind::six_dof;
@@ -184,7 +184,8 @@ TEST(JointChanges, StaysClosedWhereASweepStopsABody) {
         body.linear_velocity = {float(3 + k * 7 % 18), 0, 0};
         bars[i] = world.add_body(body, {.geometry = Box{{0.25f, 0.02f, 0.02f}}});
       }
-      world.add_joint({.kind = kind, .a = bars[0], .b = bars[1], .axis = rotate(turn, {0, 0, 1})});
+      world.add_joint(
+          definition_of({.kind = kind, .a = bars[0], .b = bars[1], .axis = rotate(turn, {0, 0, 1})}));
       double gap = 0;
       for (int i = 0; i < 60; ++i) {
         ASSERT_TRUE(world.step(kStep));

@@ -1,4 +1,5 @@
 // Kinds of joints that are more than axes: cones, gears, racks, pulleys, curves, drags, drives to a pose. Closed forms.
+#include "laws/any_joint.h"
 #include "laws/kit.h"
 
 namespace gyre::laws {
@@ -26,8 +27,8 @@ TEST(Cone, HoldsItsSwingWithinAnEllipse) {
       World world = make_world({.gravity = {0, 0, 0}, .sleeping = false});
       const BodyId body = world.add_body(point_body(1.0, {0.1f, 0.1f, 0.1f}));
       const float ly = 0.8f, lz = round ? 0.8f : 0.4f;
-      const JointId joint = world.add_joint(
-          {.kind = JointKind::cone, .b = body, .axis_b = Vec3{0, 0, 1}, .swing_y = ly, .swing_z = lz});
+      const JointId joint =
+          world.add_joint(ConeDef{.b = body, .axis_b = Vec3{0, 0, 1}, .swing_y = ly, .swing_z = lz});
       ASSERT_TRUE(joint);
       double most = 0.0;
       for (int i = 0; i < 240; ++i) {
@@ -58,8 +59,7 @@ TEST(Cone, LetsItsTwistAloneWithinTheSwing) {
   BodyDef def = point_body(1.0, {0.1f, 0.1f, 0.1f});
   def.angular_velocity = {2, 0, 0};
   const BodyId body = world.add_body(def);
-  const JointId joint =
-      world.add_joint({.kind = JointKind::cone, .b = body, .swing_y = 0.5f, .swing_z = 0.3f});
+  const JointId joint = world.add_joint(ConeDef{.b = body, .swing_y = 0.5f, .swing_z = 0.3f});
   run(world, 10.0);
   EXPECT_NEAR(double(world.angular_velocity(body).x), 2.0, 1e-5);
   EXPECT_NEAR(double(world.joint_axis_state(joint, JointAxis::angular_x).position), 20.0, 1e-3);
@@ -70,12 +70,11 @@ TEST(Cone, GivesWayAtSoftLimits) {
   for (const bool swings : {true, false}) {
     World world = make_world({.gravity = {0, 0, 0}, .sleeping = false});
     const BodyId body = world.add_body(point_body(1.0, {1, 1, 1}));
-    ASSERT_TRUE(world.add_joint({.kind = JointKind::cone,
-                                 .b = body,
-                                 .limits = Limits{-0.2f, 0.2f},
-                                 .limit_frequency = 2.0f,
-                                 .swing_y = 0.3f,
-                                 .swing_z = 0.3f}));
+    ASSERT_TRUE(world.add_joint(ConeDef{.b = body,
+                                        .swing_y = 0.3f,
+                                        .swing_z = 0.3f,
+                                        .limits = Limits{-0.2f, 0.2f},
+                                        .limit_frequency = 2.0f}));
     for (int i = 0; i < 600; ++i) {
       world.add_torque(body, swings ? Vec3{0, 5, 0} : Vec3{5, 0, 0});
       world.step(kStep);
@@ -91,10 +90,10 @@ TEST(Cone, IsDrivenToAnOrientation) {
   const Quat turn = from_rotation_vector({0.3f, -0.4f, 0.5f});
   World world = weightless();
   const BodyId body = world.add_body(point_body(1.0, {1, 1, 1}));
-  const JointId cone = world.add_joint({.kind = JointKind::cone,
-                                        .b = body,
-                                        .axis_b = Vec3{0, 0, 1},
-                                        .drive = {.orientation = turn, .frequency = 2.0f, .max_torque = 1000.0f}});
+  const JointId cone =
+      world.add_joint(ConeDef{.b = body,
+                              .axis_b = Vec3{0, 0, 1},
+                              .drive = {.orientation = turn, .frequency = 2.0f, .max_torque = 1000.0f}});
   ASSERT_TRUE(cone);
   run(world, 3.0);
   EXPECT_LE(double(length(to_rotation_vector(world.pose(body).orientation * conjugate(turn)))), 1e-3);
@@ -110,7 +109,7 @@ TEST(Cone, AndBallAreBrakedByFriction) {
     BodyDef def = point_body(1.0, {0.5f, 0.5f, 0.5f});
     def.angular_velocity = {0.6f, 0.0f, 0.8f};
     const BodyId body = world.add_body(def);
-    ASSERT_TRUE(world.add_joint({.kind = kind, .b = body, .friction = 0.25f}));
+    ASSERT_TRUE(world.add_joint(definition_of({.kind = kind, .b = body, .friction = 0.25f})));
     run(world, 1.0);
     EXPECT_NEAR(double(length(world.angular_velocity(body))), 0.5, 1e-3);
     EXPECT_NEAR(double(world.angular_velocity(body).x), 0.3, 1e-3) << "the axis stays";
@@ -128,13 +127,9 @@ struct GearRig {
   GearRig() {
     first = world.add_body(point_body(1.0, {1, 1, 1}));
     second = world.add_body(point_body(1.0, {9, 9, 9}, {2, 0, 0}));
-    world.add_joint({.kind = JointKind::hinge, .b = first, .axis = {0, 0, 1}});
-    world.add_joint({.kind = JointKind::hinge, .b = second, .anchor = {2, 0, 0}, .axis = {0, 0, 1}});
-    gear = world.add_joint({.kind = JointKind::gear,
-                         .a = first,
-                         .b = second,
-                         .axis = {0, 0, 1},
-                         .ratio = 3.0f});
+    world.add_joint(HingeDef{.b = first, .axis = {0, 0, 1}});
+    world.add_joint(HingeDef{.b = second, .anchor = {2, 0, 0}, .axis = {0, 0, 1}});
+    gear = world.add_joint(GearDef{.a = first, .b = second, .axis = {0, 0, 1}, .ratio = 3.0f});
   }
 };
 
@@ -164,10 +159,9 @@ TEST(Gear, OfNegativeRatioTurnsTheSameWay) {
   World world = weightless();
   const BodyId a = world.add_body(point_body(1.0, {1, 1, 1}));
   const BodyId b = world.add_body(point_body(1.0, {1, 1, 1}, {1, 0, 0}));
-  world.add_joint({.kind = JointKind::hinge, .b = a, .axis = {0, 0, 1}});
-  world.add_joint({.kind = JointKind::hinge, .b = b, .anchor = {1, 0, 0}, .axis = {0, 1, 0}});  // bevel gears
-  world.add_joint(
-      {.kind = JointKind::gear, .a = a, .b = b, .axis = {0, 0, 1}, .axis_b = Vec3{0, 1, 0}, .ratio = -2.0f});
+  world.add_joint(HingeDef{.b = a, .axis = {0, 0, 1}});
+  world.add_joint(HingeDef{.b = b, .anchor = {1, 0, 0}, .axis = {0, 1, 0}});  // bevel gears
+  world.add_joint(GearDef{.a = a, .b = b, .axis = {0, 0, 1}, .axis_b = Vec3{0, 1, 0}, .ratio = -2.0f});
   for (int i = 0; i < 60; ++i) {
     world.add_torque(a, {0, 0, 1});
     world.step(kStep);
@@ -185,22 +179,18 @@ TEST(Gear, PlanetsFollowWillis) {
   };
   const BodyId sun = world.add_body(turning(1.0, 0.5f, {}));
   const BodyId carrier = world.add_body(turning(2.0, 0.8f, {}));
-  world.add_joint({.kind = JointKind::hinge, .b = sun, .axis = {0, 0, 1}});
-  world.add_joint({.kind = JointKind::hinge, .b = carrier, .axis = {0, 0, 1}});
-  ASSERT_TRUE(world.add_joint(
-      {.kind = JointKind::gear, .a = sun, .b = carrier, .axis = {0, 0, 1}, .ratio = -(1.0f + 72.0f / 24.0f)}));
+  world.add_joint(HingeDef{.b = sun, .axis = {0, 0, 1}});
+  world.add_joint(HingeDef{.b = carrier, .axis = {0, 0, 1}});
+  ASSERT_TRUE(
+      world.add_joint(GearDef{.a = sun, .b = carrier, .axis = {0, 0, 1}, .ratio = -(1.0f + 72.0f / 24.0f)}));
   std::vector<BodyId> planets;
   for (int i = 0; i < 3; ++i) {
     const double a = 2.0 * kPiDouble * i / 3.0;
     const DVec3 at{2.0 * std::cos(a), 2.0 * std::sin(a), 0};  // pitch radii of 1 m
     planets.push_back(world.add_body(turning(0.3, 0.2f, at)));
-    world.add_joint(
-        {.kind = JointKind::hinge, .a = carrier, .b = planets.back(), .anchor = at, .axis = {0, 0, 1}});
-    ASSERT_TRUE(world.add_joint({.kind = JointKind::gear,
-                                 .a = planets.back(),
-                                 .b = carrier,
-                                 .axis = {0, 0, 1},
-                                 .ratio = -(1.0f - 72.0f / 24.0f)}));
+    world.add_joint(HingeDef{.a = carrier, .b = planets.back(), .anchor = at, .axis = {0, 0, 1}});
+    ASSERT_TRUE(world.add_joint(
+        GearDef{.a = planets.back(), .b = carrier, .axis = {0, 0, 1}, .ratio = -(1.0f - 72.0f / 24.0f)}));
   }
   for (int i = 0; i < 120; ++i) {
     world.add_torque(sun, {0, 0, 2});
@@ -228,14 +218,10 @@ TEST(RackAndPinion, RollWithoutSlip) {
   World world = weightless();
   const BodyId pinion = world.add_body(point_body(1.0, {1, 1, 0.125f}));
   const BodyId rack = world.add_body(point_body(2.0, {1, 1, 1}, {0, -0.25, 0}));
-  world.add_joint({.kind = JointKind::hinge, .b = pinion, .axis = {0, 0, 1}});
-  world.add_joint({.kind = JointKind::slider, .b = rack, .axis = {1, 0, 0}});
-  const JointId joint = world.add_joint({.kind = JointKind::rack_and_pinion,
-                                         .a = pinion,
-                                         .b = rack,
-                                         .axis = {0, 0, 1},
-                                         .axis_b = Vec3{1, 0, 0},
-                                         .ratio = 0.25f});
+  world.add_joint(HingeDef{.b = pinion, .axis = {0, 0, 1}});
+  world.add_joint(SliderDef{.b = rack, .axis = {1, 0, 0}});
+  const JointId joint = world.add_joint(
+      RackAndPinionDef{.a = pinion, .b = rack, .axis = {0, 0, 1}, .axis_b = Vec3{1, 0, 0}, .ratio = 0.25f});
   ASSERT_TRUE(joint);
   for (int i = 0; i < 120; ++i) {
     world.add_torque(pinion, {0, 0, 1});
@@ -254,12 +240,8 @@ TEST(RackAndPinion, KeepMomentumBetweenThem) {
   World world = weightless();
   const BodyId pinion = world.add_body(point_body(1.0, {0.2f, 0.2f, 0.2f}));
   const BodyId rack = world.add_body(point_body(2.0, {0.4f, 0.4f, 0.4f}, {0, -0.25, 0}));
-  world.add_joint({.kind = JointKind::rack_and_pinion,
-                   .a = pinion,
-                   .b = rack,
-                   .axis = {0, 0, 1},
-                   .axis_b = Vec3{1, 0, 0},
-                   .ratio = 0.25f});
+  world.add_joint(
+      RackAndPinionDef{.a = pinion, .b = rack, .axis = {0, 0, 1}, .axis_b = Vec3{1, 0, 0}, .ratio = 0.25f});
   world.set_velocity(pinion, {}, {0, 0, 4});
   world.step(kStep);
   const Momentum m = world.momentum();
@@ -274,12 +256,8 @@ TEST(Pulley, IsAtwoodsMachine) {
   World world = make_world({.sleeping = false});
   const BodyId has_extreme_mass_ratio = world.add_body(point_body(1.0, {1e-2f, 1e-2f, 1e-2f}, {-0.5, -2, 0}));
   const BodyId heavy = world.add_body(point_body(2.0, {1e-2f, 1e-2f, 1e-2f}, {0.5, -1, 0}));
-  const JointId rope = world.add_joint({.kind = JointKind::pulley,
-                                        .a = has_extreme_mass_ratio,
-                                        .b = heavy,
-                                        .anchor = {-0.5, -2, 0},
-                                        .ground_a = {-0.5, 0, 0},
-                                        .ground_b = {0.5, 0, 0}});
+  const JointId rope = world.add_joint(PulleyDef{
+      .a = has_extreme_mass_ratio, .b = heavy, .anchor = {-0.5, -2, 0}, .ground_a = {-0.5, 0, 0}, .ground_b = {0.5, 0, 0}});
   ASSERT_TRUE(rope);
   run(world, 0.5);
   EXPECT_TRUE(relative_row("A-41 acceleration", -double(world.linear_velocity(heavy).y) / 0.5, kGravity / 3.0,
@@ -294,13 +272,12 @@ TEST(Pulley, MultipliesForceAndGoesSlack) {
   World world = make_world({.sleeping = false});
   const BodyId a = world.add_body(point_body(2.0, {1e-2f, 1e-2f, 1e-2f}, {-0.5, -2, 0}));
   const BodyId b = world.add_body(point_body(4.0, {1e-2f, 1e-2f, 1e-2f}, {0.5, -1, 0}));
-  const JointId rope = world.add_joint({.kind = JointKind::pulley,
-                                        .a = a,
-                                        .b = b,
-                                        .anchor = {-0.5, -2, 0},
-                                        .ratio = 2.0f,
-                                        .ground_a = {-0.5, 0, 0},
-                                        .ground_b = {0.5, 0, 0}});
+  const JointId rope = world.add_joint(PulleyDef{.a = a,
+                                                 .b = b,
+                                                 .anchor = {-0.5, -2, 0},
+                                                 .ground_a = {-0.5, 0, 0},
+                                                 .ground_b = {0.5, 0, 0},
+                                                 .ratio = 2.0f});
   run(world, 2.0);
   EXPECT_NEAR(double(world.linear_velocity(a).y), 0.0, 1e-4);
   EXPECT_NEAR(world.pose(b).position.y, -1.0, 1e-3);
@@ -325,8 +302,7 @@ std::vector<Vec3> circle(float radius, int count) {
 TEST(Path, BeadOnACircularWireIsAPendulum) {
   World world = make_world({.sleeping = false});
   const BodyId bead = world.add_body(point_body(1.0, {1e-3f, 1e-3f, 1e-3f}));
-  ASSERT_TRUE(
-      world.add_joint({.kind = JointKind::path, .b = bead, .path = circle(2.0f, 64), .path_closed = true}));
+  ASSERT_TRUE(world.add_joint(PathDef{.b = bead, .points = circle(2.0f, 64), .closed = true}));
   world.set_velocity(bead, {0.2f, 0, 0}, {});
   ZeroCrossings through;
   double off = 0.0;
@@ -348,11 +324,8 @@ TEST(Path, KeepsItsEnergyAround) {
        {PathOrientation::free, PathOrientation::fixed, PathOrientation::following}) {
     World world = make_world({.sleeping = false});
     const BodyId bead = world.add_body(point_body(1.0, {0.05f, 0.05f, 0.05f}));
-    ASSERT_TRUE(world.add_joint({.kind = JointKind::path,
-                                 .b = bead,
-                                 .path = circle(2.0f, 64),
-                                 .path_closed = true,
-                                 .path_orientation = orientation}));
+    ASSERT_TRUE(world.add_joint(
+        PathDef{.b = bead, .points = circle(2.0f, 64), .closed = true, .orientation = orientation}));
     const float v0 = 12.0f;
     world.set_velocity(bead, {v0, 0, 0},
                        orientation == PathOrientation::following ? Vec3{0, 0, v0 / 2} : Vec3{});
@@ -381,8 +354,8 @@ TEST(Path, KeepsItsEnergyAround) {
 TEST(Path, EndsWhereItEnds) {
   World world = weightless();
   const BodyId cart = world.add_body(point_body(1.0, {1, 1, 1}));
-  const JointId joint = world.add_joint(
-      {.kind = JointKind::path, .b = cart, .path = {{-1, 0, 0}, {0, 0, 0}, {1, 0.2f, 0}, {2, 0, 0}}});
+  const JointId joint =
+      world.add_joint(PathDef{.b = cart, .points = {{-1, 0, 0}, {0, 0, 0}, {1, 0.2f, 0}, {2, 0, 0}}});
   world.set_velocity(cart, {3, 0, 0}, {});
   run(world, 3.0);
   EXPECT_NEAR(world.pose(cart).position.x, 2.0, 2e-3);
@@ -395,8 +368,7 @@ TEST(Path, EndsWhereItEnds) {
 TEST(Mouse, DragsWithALimitedForce) {
   World world = weightless();
   const BodyId body = world.add_body(point_body(10.0, {1, 1, 1}));
-  const JointId mouse =
-      world.add_joint({.kind = JointKind::mouse, .b = body, .drive = {.frequency = 5.0f, .max_force = 5.0f}});
+  const JointId mouse = world.add_joint(MouseDef{.b = body, .drive = {.frequency = 5.0f, .max_force = 5.0f}});
   ASSERT_TRUE(mouse);
   EXPECT_TRUE(world.set_drive(mouse, {.position = {4, 0, 0}, .frequency = 5.0f, .max_force = 5.0f}));
   run(world, 1.0);
@@ -413,10 +385,8 @@ TEST(Mouse, DragsTheVeryPoint) {
   BodyDef def = point_body(1.0, {0.1f, 0.1f, 0.1f});
   def.angular_damping = 3.0f;
   const BodyId body = world.add_body(def);
-  ASSERT_TRUE(world.add_joint({.kind = JointKind::mouse,
-                               .b = body,
-                               .anchor = {0.5, 0, 0},
-                               .drive = {.frequency = 10.0f, .max_force = 200.0f}}));
+  ASSERT_TRUE(world.add_joint(
+      MouseDef{.b = body, .anchor = {0.5, 0, 0}, .drive = {.frequency = 10.0f, .max_force = 200.0f}}));
   run(world, 15.0);
   const DVec3 hung = world.pose(body).position;
   const double omega = 2.0 * kPiDouble * 10.0;
@@ -429,13 +399,12 @@ TEST(PoseMotor, BringsABodyToItsPose) {
   for (const float frequency : {0.0f, 3.0f}) {
     World world = make_world({.sleeping = false});
     const BodyId body = world.add_body(point_body(2.0, {0.2f, 0.3f, 0.4f}));
-    const JointId motor = world.add_joint({.kind = JointKind::motor,
-                                           .b = body,
-                                           .drive = {.position = {1, 2, 3},
-                                                     .orientation = turn,
-                                                     .frequency = frequency,
-                                                     .max_force = 1000.0f,
-                                                     .max_torque = 500.0f}});
+    const JointId motor = world.add_joint(MotorDef{.b = body,
+                                                   .drive = {.position = {1, 2, 3},
+                                                             .orientation = turn,
+                                                             .frequency = frequency,
+                                                             .max_force = 1000.0f,
+                                                             .max_torque = 500.0f}});
     ASSERT_TRUE(motor);
     run(world, 3.0);
     const double omega = 2.0 * kPiDouble * double(frequency);
@@ -449,9 +418,8 @@ TEST(PoseMotor, BringsABodyToItsPose) {
 TEST(PoseMotor, TurnsNoHarderThanItMay) {
   World world = weightless();
   const BodyId body = world.add_body(point_body(1.0, {1, 1, 1}));
-  world.add_joint({.kind = JointKind::motor,
-                   .b = body,
-                   .drive = {.orientation = from_axis_angle({0, 0, 1}, 2.5f), .max_torque = 0.5f}});
+  world.add_joint(
+      MotorDef{.b = body, .drive = {.orientation = from_axis_angle({0, 0, 1}, 2.5f), .max_torque = 0.5f}});
   run(world, 1.0);
   EXPECT_NEAR(double(world.angular_velocity(body).z), 0.5, 1e-3);
 }

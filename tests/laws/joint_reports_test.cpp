@@ -54,7 +54,7 @@ TEST(JointReports, WhatIsLostInEachOtherLiesStill) {
     const BodyId chest =
         world.add_body({.pose = {.position = {0, -0.22, 0}}}, {.geometry = Box{{0.1f, 0.1f, 0.1f}}});
     const BodyId head = world.add_body({.pose = {.position = {0, 0.06 + up, 0}}}, {.geometry = Sphere{0.1f}});
-    JointDef neck{.kind = JointKind::ball, .a = chest, .b = head};
+    BallDef neck{.a = chest, .b = head};
     neck.anchor = {0, -0.05, 0};
     world.add_joint(neck);
     double most = 0.0;
@@ -92,7 +92,7 @@ TEST(JointReports, ARopeNeverExceedsItsLength) {
     BodyDef def = point_body(80.0, {1, 1, 1}, {0.1, 1.9, 0});
     def.linear_velocity = {0, -speed, 0};
     const BodyId body = world.add_body(def);
-    ASSERT_TRUE(world.add_joint({.kind = JointKind::distance, .b = body, .max_length = 2.0f}));
+    ASSERT_TRUE(world.add_joint(DistanceDef{.b = body, .max_length = 2.0f}));
     double most = 0.0;
     for (int i = 0; i < 600; ++i) {
       world.step(kStep);
@@ -141,7 +141,7 @@ TEST(JointReports, ManyPendulumsHangAtTheirAnchors) {
     BodyDef def = point_body(1.0, {0.01f, 0.01f, 0.01f}, {3.0 * i, 0, 0});
     def.center_of_mass = Vec3{0.1f, -1, 0};
     bobs.push_back(world.add_body(def));
-    ASSERT_TRUE(world.add_joint({.kind = JointKind::ball, .b = bobs.back(), .anchor = {3.0 * i, 0, 0}}));
+    ASSERT_TRUE(world.add_joint(BallDef{.b = bobs.back(), .anchor = {3.0 * i, 0, 0}}));
   }
   const double arm = std::sqrt(1.01), moment = 1.01 + 0.01, swing = std::atan(0.1);
   const double period = 2.0 * kPiDouble * std::sqrt(moment / (arm * kGravity)) * (1.0 + swing * swing / 16.0);
@@ -165,8 +165,8 @@ TEST(JointReports, ManyPendulumsHangAtTheirAnchors) {
 TEST(JointReports, AMotorAgainstItsLimitStaysThere) {
   World world = weightless();
   const BodyId body = world.add_body(point_body(5.0, {2, 2, 2}));
-  const JointId hinge = world.add_joint(
-      {.kind = JointKind::hinge, .b = body, .axis = {0, 0, 1}, .limits = Limits{-1.0f, 1.0f}});
+  const JointId hinge =
+      world.add_joint(HingeDef{.b = body, .axis = {0, 0, 1}, .limits = Limits{-1.0f, 1.0f}});
   double beyond = 0.0, shakes = 0.0;
   for (int i = 0; i < 3600; ++i) {
     if (i % 600 == 0)
@@ -220,13 +220,13 @@ TEST(JointReports, ARobotAtItsLimitsStandsStill) {
   BodyId last{};
   for (int i = 0; i < 6; ++i) {
     const BodyId body = robot.add({.pose = {.position = {0, 0.5 * i + 0.25, 0}}}, Box{{0.1f, 0.25f, 0.1f}});
-    robot.joints.push_back(robot.world.add_joint({.kind = JointKind::hinge,
-                                                  .a = last,
-                                                  .b = body,
-                                                  .anchor = {0, 0.5 * i, 0},
-                                                  .axis = i % 2 == 0 ? Vec3{0, 0, 1} : Vec3{0, 1, 0},
-                                                  .limits = Limits{-0.5f, 0.5f},
-                                                  .motor = {.target_velocity = 2.0f, .max_force = 500.0f}}));
+    robot.joints.push_back(
+        robot.world.add_joint(HingeDef{.a = last,
+                                       .b = body,
+                                       .anchor = {0, 0.5 * i, 0},
+                                       .axis = i % 2 == 0 ? Vec3{0, 0, 1} : Vec3{0, 1, 0},
+                                       .limits = Limits{-0.5f, 0.5f},
+                                       .motor = {.target_velocity = 2.0f, .max_force = 500.0f}}));
     last = body;
   }
   run(robot.world, 5.0);
@@ -268,11 +268,8 @@ TEST(Rope, SlipsOverADrumAsEulerAndEytelweinSay) {
                                            .material = surface(float(mu)),
                                            .filter = {.layer = 2, .collides_with = 1}}));
       if (i > 0)
-        world.add_joint({.kind = JointKind::hinge,
-                         .a = links[std::size_t(i - 1)],
-                         .b = links.back(),
-                         .anchor = from,
-                         .axis = {0, 0, 1}});
+        world.add_joint(
+            HingeDef{.a = links[std::size_t(i - 1)], .b = links.back(), .anchor = from, .axis = {0, 0, 1}});
     }
     const auto geometric_stiffness = [&](double by) {
       world.add_force(links.front(), {0, -10, 0});

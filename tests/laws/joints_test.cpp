@@ -1,5 +1,6 @@
 // Every kind of joint: what it leaves free moves as if alone, what it holds stays, and what acts on it does what its name
 // says. Closed forms.
+#include "laws/any_joint.h"
 #include "laws/kit.h"
 
 namespace gyre::laws {
@@ -10,7 +11,7 @@ namespace {
 // What a kind leaves free of a body that stands on the world: which of six motions of its frame.
 struct Freedom {
   const char* name;
-  JointDef def;
+  FlatJoint def;
   bool free[6];  // slides along x, y, z; turns about x, y, z
 };
 
@@ -74,10 +75,10 @@ TEST(EveryKind, LeavesFreeWhatItSaysAndHoldsTheRest) {
     for (int axis = 0; axis < 6; ++axis) {
       World world = weightless();
       const BodyId body = world.add_body(point_body(2.0, {0.3f, 0.5f, 0.7f}, {1, 2, 3}));
-      JointDef def = kind.def;
+      FlatJoint def = kind.def;
       def.b = body;
       def.anchor = def.anchor + DVec3{1, 2, 3};
-      ASSERT_TRUE(world.add_joint(def)) << kind.name;
+      ASSERT_TRUE(world.add_joint(definition_of(def))) << kind.name;
       const Vec3 unit = kUnits[axis % 3];
       const double moments[3] = {0.3, 0.5, 0.7};
       double expected = 0.0;
@@ -114,7 +115,7 @@ TEST(EveryKind, CarriesAWeightAtAnArm) {
     for (int down = 0; down < 3; ++down) {
       World world = make_world({.gravity = -9.81f * kUnits[down], .sleeping = false});
       const BodyId body = world.add_body(point_body(1.0, {0.1f, 0.1f, 0.1f}));
-      JointDef def = kind.def;
+      FlatJoint def = kind.def;
       def.b = body;
       const Vec3 arm = kUnits[(down + 1) % 3];  // across gravity
       def.anchor = -1.0 * DVec3(arm);
@@ -124,7 +125,7 @@ TEST(EveryKind, CarriesAWeightAtAnArm) {
           false;  // Cardan angles turn each other's axes: only where nothing else is free they hold alone
       for (int i = 3; i < 6; ++i) couples = couples || kind.free[i];
       if (couples) continue;
-      const JointId joint = world.add_joint(def);
+      const JointId joint = world.add_joint(definition_of(def));
       ASSERT_TRUE(joint);
       run(world, 2.0);
       SCOPED_TRACE(testing::Message() << kind.name << " weight along axis " << down);
@@ -141,14 +142,14 @@ TEST(EveryKind, CarriesAWeightAtAnArm) {
 // The single axes that something may act on, as bodies of inertia 1 on the world.
 struct Axis {
   const char* name;
-  JointDef def;
+  FlatJoint def;
   JointAxis axis;
   bool turns;
   Vec3 unit;  // of the motion
 };
 std::vector<Axis> axes() {
-  const JointDef universal{.kind = JointKind::universal, .axis_b = Vec3{0, 0, 1}};
-  const JointDef wheel{.kind = JointKind::wheel, .axis_b = Vec3{0, 0, 1}, .angular_x = of(AxisMotion::free)};
+  const FlatJoint universal{.kind = JointKind::universal, .axis_b = Vec3{0, 0, 1}};
+  const FlatJoint wheel{.kind = JointKind::wheel, .axis_b = Vec3{0, 0, 1}, .angular_x = of(AxisMotion::free)};
   std::vector<Axis> all = {
       {"hinge", {.kind = JointKind::hinge}, JointAxis::angular_x, true, {1, 0, 0}},
       {"slider", {.kind = JointKind::slider}, JointAxis::linear_x, false, {1, 0, 0}},
@@ -186,9 +187,9 @@ struct Rig {
   Rig(const Axis& a, const JointAxisDef& def, Vec3 gravity = {})
       : world(make_world({.gravity = gravity, .sleeping = false})), axis(a) {
     body = world.add_body(point_body(1.0, {1, 1, 1}));
-    JointDef made = a.def;
+    FlatJoint made = a.def;
     made.b = body;
-    joint = world.add_joint(made);
+    joint = world.add_joint(definition_of(made));
     EXPECT_TRUE(world.set_joint_axis(joint, a.axis, def)) << a.name;
   }
   void direction(float by) {

@@ -34,10 +34,8 @@ double worst_stretch(const ChainCase& c, double seconds) {
     def.mass = i + 1 == c.count ? c.load : 1.0f;
     const BodyId body = chain.add(def, Capsule{0.05f, 0.15f});
     if (c.links == Links::rods) {
-      chain.world.add_joint({.kind = JointKind::distance,
-                             .a = last,
-                             .b = body,
-                             .anchor = std::max(0.0, i - 0.5) * kPitch * way});
+      chain.world.add_joint(
+          DistanceDef{.a = last, .b = body, .anchor = std::max(0.0, i - 0.5) * kPitch * way});
     } else {
       chain.join(c.links == Links::balls ? JointKind::ball : JointKind::hinge, last, body,
                  double(i) * kPitch * way);

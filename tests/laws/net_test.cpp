@@ -21,13 +21,13 @@ std::vector<BodyId> add_net(World& world, const NetCase& net) {
   const auto tie = [&](int first, int second) {
     const DVec3 a = world.pose(knots[std::size_t(first)]).position,
                 b = world.pose(knots[std::size_t(second)]).position;
-    JointDef def{.a = knots[std::size_t(first)], .b = knots[std::size_t(second)], .anchor = 0.5 * (a + b)};
+    const BodyId one = knots[std::size_t(first)], other = knots[std::size_t(second)];
     if (net.tie == Tie::rod) {
-      def.kind = JointKind::distance;
-      def.anchor = 0.7 * a + 0.3 * b;
-      def.anchor_b = 0.3 * a + 0.7 * b;
+      world.add_joint(
+          DistanceDef{.a = one, .b = other, .anchor = 0.7 * a + 0.3 * b, .anchor_b = 0.3 * a + 0.7 * b});
+    } else {
+      world.add_joint(BallDef{.a = one, .b = other, .anchor = 0.5 * (a + b)});
     }
-    world.add_joint(def);
   };
   const BodyId post = world.add_body({.type = BodyType::fixed, .pose = {.position = {0, 200, 0}}},
                                      {.geometry = Sphere{0.1f}});
@@ -39,7 +39,7 @@ std::vector<BodyId> add_net(World& world, const NetCase& net) {
     knots.push_back(
         world.add_body({.type = is_fixed ? BodyType::fixed : BodyType::dynamic, .pose = {.position = at}},
                        {.geometry = net.knot}));
-    if (hangs && !is_fixed) world.add_joint({.a = post, .b = knots.back(), .anchor = at});
+    if (hangs && !is_fixed) world.add_joint(BallDef{.a = post, .b = knots.back(), .anchor = at});
     if (column > 0) tie(i - 1, i);
     if (row > 0) tie(i - net.side, i);
   }

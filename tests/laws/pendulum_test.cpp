@@ -1,5 +1,6 @@
 // Pendula, hinges, chains and the forces in joints, against closed forms.
 // Sources: elliptic integrals by the arithmetic-geometric mean; H. Goldstein, "Classical Mechanics".
+#include "laws/any_joint.h"
 #include "laws/kit.h"
 
 namespace gyre::laws {
@@ -29,7 +30,7 @@ Swing release(double degrees, JointKind kind = JointKind::distance, float radius
   BodyDef def = point_body(1.0, radius > 0.0f ? Vec3{moment, moment, moment} : Vec3{1e-4f, 1e-4f, 1e-4f},
                            {std::sin(angle), -std::cos(angle), 0});
   s.bob = s.world.add_body(def);
-  s.rod = s.world.add_joint({.kind = kind, .b = s.bob, .anchor = {0, 0, 0}});
+  s.rod = s.world.add_joint(definition_of({.kind = kind, .b = s.bob, .anchor = {0, 0, 0}}));
   return s;
 }
 
@@ -89,7 +90,7 @@ TEST(CompoundPendulum, SmallSwings) {
     BodyDef def = point_body(1.0, {m, m, m}, {0.5 * std::sin(0.02), -0.5 * std::cos(0.02), 0});
     def.pose.orientation = from_axis_angle({0, 0, 1}, 0.02f);
     const BodyId rod = world.add_body(def);
-    world.add_joint({.kind = JointKind::hinge, .b = rod, .anchor = {0, 0, 0}, .axis = {0, 0, 1}});
+    world.add_joint(HingeDef{.b = rod, .anchor = {0, 0, 0}, .axis = {0, 0, 1}});
     ZeroCrossings through;
     for (int i = 0; i < 1200; ++i) {
       through.add(double(i) * double(kStep), world.pose(rod).position.x);
@@ -107,7 +108,7 @@ TEST(FallingRod, PassesTheHorizontalAtItsRateWithItsForces) {
                            {0.5 * std::sin(direction), 0.5 * std::cos(direction), 0});
   def.pose.orientation = from_axis_angle({0, 0, 1}, float(-direction));
   const BodyId rod = world.add_body(def);
-  const JointId hinge = world.add_joint({.kind = JointKind::hinge, .b = rod, .axis = {0, 0, 1}});
+  const JointId hinge = world.add_joint(HingeDef{.b = rod, .axis = {0, 0, 1}});
   double before = 0.0, rate_before = 0.0;
   Vec3 force_before;
   for (int i = 0; i < 600; ++i) {
@@ -139,7 +140,7 @@ TEST(ConicalPendulum, TurnsAtItsRateWithItsTension) {
   BodyDef def = point_body(1.0, {1e-3f, 1e-3f, 1e-3f}, {0.5, -std::sqrt(0.75), 0});
   def.linear_velocity = {0, 0, 0.5f * 3.36565f};
   const BodyId bob = world.add_body(def);
-  const JointId rod = world.add_joint({.kind = JointKind::distance, .b = bob, .anchor = {0, 0, 0}});
+  const JointId rod = world.add_joint(DistanceDef{.b = bob, .anchor = {0, 0, 0}});
   Unwrapped angle;
   double force = 0.0;
   for (int i = 0; i <= 600; ++i) {
@@ -165,7 +166,7 @@ TEST(FixedJoint, CarriesForceAndMomentOfACantilever) {
   World world = make_world();
   const BodyId box = world.add_body({.pose = {.position = {1, 0, 0}}, .mass = 1.0f},
                                     {.geometry = Box{.half_extents = {0.1f, 0.1f, 0.1f}}});
-  const JointId weld = world.add_joint({.kind = JointKind::fixed, .b = box, .anchor = {0, 0, 0}});
+  const JointId weld = world.add_joint(FixedDef{.b = box, .anchor = {0, 0, 0}});
   run(world, 1.0);
   const JointState r = world.joint_state(weld);
   EXPECT_TRUE(relative_row("A-39 force (N)", double(r.force.y), 9.81, 1e-2, 5e-4));

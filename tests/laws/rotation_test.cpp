@@ -173,7 +173,7 @@ TEST(HeavyTop, PrecessesAtTheSlowRootAndKeepsItsTilt) {
     def.angular_velocity = float(spins[k]) * axis + Vec3{0, float(rates[k]), 0};
     def.linear_velocity = cross(def.angular_velocity, arm * axis);
     const BodyId top = world.add_body(def);
-    ASSERT_TRUE(world.add_joint({.kind = JointKind::ball, .b = top, .anchor = {0, 0, 0}}));
+    ASSERT_TRUE(world.add_joint(BallDef{.b = top, .anchor = {0, 0, 0}}));
     Unwrapped azimuth;
     double drift = 0.0;
     for (int i = 0; i <= 300; ++i) {

@@ -230,8 +230,7 @@ TEST(Solvers, AChainWithALoadOfAThousandLinksHangsStill) {
     for (int i = 0; i < 10; ++i) {
       BodyDef def = point_body(i == 9 ? 1000.0 : 1.0, {0.1f, 0.1f, 0.1f}, {0, -0.5 - i, 0});
       links.push_back(world.add_body(def));
-      JointDef joint;
-      joint.kind = JointKind::ball;
+      BallDef joint;
       if (i > 0) joint.a = links[std::size_t(i) - 1];
       joint.b = links.back();
       joint.anchor = {0, double(-i), 0};
@@ -255,8 +254,7 @@ TEST(Solvers, APendulumKeepsItsPeriodAndItsEnergy) {
     World world = make_world_by(way);
     const DVec3 place{std::sin(a), -std::cos(a), 0};
     const BodyId bob = world.add_body(point_body(1.0, {1e-4f, 1e-4f, 1e-4f}, place));
-    JointDef joint;
-    joint.kind = JointKind::ball;
+    BallDef joint;
     joint.b = bob;
     joint.anchor = {0, 0, 0};
     world.add_joint(joint);
@@ -283,8 +281,7 @@ TEST(Solvers, MotorsAndLimitsOfHingesAct) {
     World world = make_world_by(way);
     world.set_gravity({0, 0, 0});
     const BodyId wheel = world.add_body(point_body(2.0, {1, 1, 1}));
-    JointDef joint;
-    joint.kind = JointKind::hinge;
+    HingeDef joint;
     joint.b = wheel;
     joint.axis = {0, 0, 1};
     joint.limits = Limits{-10.0f, 1.0f};

@@ -13,12 +13,11 @@ struct Oscillator {
 Oscillator pulled(double stiffness, double damping, float geometric_stiffness = 0.5f) {
   Oscillator o{make_world({.gravity = {0, 0, 0}, .sleeping = false}), {}, {}};
   o.mass = o.world.add_body(point_body(1.0, {1, 1, 1}, {2.0 + double(geometric_stiffness), 0, 0}));
-  o.spring = o.world.add_joint({.kind = JointKind::distance,
-                                .b = o.mass,
-                                .anchor = {0, 0, 0},
-                                .length = 2.0f,
-                                .stiffness = float(stiffness),
-                                .damping = float(damping)});
+  o.spring = o.world.add_joint(DistanceDef{.b = o.mass,
+                                           .anchor = {0, 0, 0},
+                                           .length = 2.0f,
+                                           .stiffness = float(stiffness),
+                                           .damping = float(damping)});
   return o;
 }
 
@@ -68,14 +67,13 @@ TEST(Spring, IsToldByItsFrequency) {
     World world = make_world({.gravity = {0, 0, 0}, .sleeping = false});
     const BodyId a = world.add_body(point_body(2.0, {0.3f, 0.3f, 0.3f}, {0, 0, 0}));
     const BodyId b = world.add_body(point_body(3.0, {0.5f, 0.5f, 0.5f}, {2.01, 0, 0}));
-    const JointId spring = world.add_joint({.kind = JointKind::distance,
-                                            .a = a,
-                                            .b = b,
-                                            .anchor = {0, 0.2, 0},
-                                            .anchor_b = DVec3{2.01, 0.2, 0},
-                                            .length = 2.0f,
-                                            .frequency = 2.0f,
-                                            .damping_ratio = float(ratio)});
+    const JointId spring = world.add_joint(DistanceDef{.a = a,
+                                                       .b = b,
+                                                       .anchor = {0, 0.2, 0},
+                                                       .anchor_b = DVec3{2.01, 0.2, 0},
+                                                       .length = 2.0f,
+                                                       .frequency = 2.0f,
+                                                       .damping_ratio = float(ratio)});
     ASSERT_TRUE(spring);
     // Small swings: the line keeps its direction, and the effective mass its value.
     const double damped = std::sqrt(1.0 - ratio * ratio);
@@ -98,9 +96,9 @@ TEST(Spring, IsToldByItsFrequency) {
 TEST(Spring, RefusesAFrequencyBesideAStiffness) {
   World world = weightless();
   const BodyId body = world.add_body(point_body(1.0, {1, 1, 1}, {2, 0, 0}));
-  EXPECT_FALSE(world.add_joint({.kind = JointKind::distance, .b = body, .stiffness = 1.0f, .frequency = 2.0f}));
-  EXPECT_FALSE(world.add_joint({.kind = JointKind::distance, .b = body, .frequency = -1.0f}));
-  EXPECT_FALSE(world.add_joint({.kind = JointKind::hinge, .b = body, .frequency = 2.0f}));
+  EXPECT_FALSE(world.add_joint(DistanceDef{.b = body, .stiffness = 1.0f, .frequency = 2.0f}));
+  EXPECT_FALSE(world.add_joint(DistanceDef{.b = body, .frequency = -1.0f}));
+  EXPECT_FALSE(world.add_joint(HingeDef{.b = body}));
   EXPECT_FALSE(world.problems().empty());
 }
 
@@ -123,12 +121,8 @@ TEST(Spring, SagsByTheWeightOverItsStiffness) {
     World world = make_world({.sleeping = sleeping});
     const float moment = 0.4f * 0.1f * 0.1f;
     const BodyId mass = world.add_body(point_body(1.0, {moment, moment, moment}, {0, -1, 0}));
-    world.add_joint({.kind = JointKind::distance,
-                     .b = mass,
-                     .anchor = {0, 0, 0},
-                     .length = 1.0f,
-                     .stiffness = 100.0f,
-                     .damping = 2.0f});
+    world.add_joint(
+        DistanceDef{.b = mass, .anchor = {0, 0, 0}, .length = 1.0f, .stiffness = 100.0f, .damping = 2.0f});
     run(world, 30.0);
     const double sag = -1.0 - world.pose(mass).position.y;
     if (sleeping) {
@@ -147,14 +141,9 @@ TEST(Spring, ModesOfTwoMasses) {
     World world = make_world({.gravity = {0, 0, 0}, .sleeping = false});
     const BodyId first = world.add_body(point_body(1.0, {1, 1, 1}, {1.1, 0, 0}));
     const BodyId second = world.add_body(point_body(1.0, {1, 1, 1}, {2.0 + 0.1 * shapes[k], 0, 0}));
-    world.add_joint(
-        {.kind = JointKind::distance, .b = first, .anchor = {0, 0, 0}, .length = 1.0f, .stiffness = 100.0f});
-    world.add_joint({.kind = JointKind::distance,
-                     .a = first,
-                     .b = second,
-                     .anchor = world.pose(first).position,
-                     .length = 1.0f,
-                     .stiffness = 100.0f});
+    world.add_joint(DistanceDef{.b = first, .anchor = {0, 0, 0}, .length = 1.0f, .stiffness = 100.0f});
+    world.add_joint(DistanceDef{
+        .a = first, .b = second, .anchor = world.pose(first).position, .length = 1.0f, .stiffness = 100.0f});
     ZeroCrossings through;
     for (int i = 0; i < 600; ++i) {
       through.add(double(i) * double(kStep), world.pose(first).position.x - 1.0);
@@ -168,7 +157,7 @@ TEST(Spring, ModesOfTwoMasses) {
 TEST(Rope, ActsOnlyWhenTaut) {
   World world = make_world({.sleeping = false});
   const BodyId bob = world.add_body(point_body(1.0, {1e-3f, 1e-3f, 1e-3f}, {0, -0.1, 0}));
-  world.add_joint({.kind = JointKind::distance, .b = bob, .anchor = {0, 0, 0}, .max_length = 1.0f});
+  world.add_joint(DistanceDef{.b = bob, .anchor = {0, 0, 0}, .max_length = 1.0f});
   run(world, 0.4);
   EXPECT_NEAR(double(world.linear_velocity(bob).y), -0.4 * kGravity, 1e-3) << "slack, it falls freely";
   double longest = 0.0;

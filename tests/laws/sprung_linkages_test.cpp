@@ -1,4 +1,5 @@
 // Linkages in which more acts than what ties them: springs, dampers, motors, gears, curves, between bodies of very unlike masses.
+#include "laws/any_joint.h"
 #include "laws/assembly.h"
 
 #include "random.h"
@@ -11,7 +12,7 @@ namespace {
 struct Tie {
   const char* name;
   double gain;  // of what there was, at most
-  void (*make)(testing_random::Random& random, double mass, JointDef& joint);
+  void (*make)(testing_random::Random& random, double mass, FlatJoint& joint);
 };
 
 // N/m (or N m/rad, of an arm of 0.15 m) and N s/m of a spring that the mass stretches by a metre to a millimetre, and that
@@ -33,20 +34,20 @@ constexpr double kSquareArm = 0.15 * 0.15;
 
 const Tie kTies[] = {
     {"sliders on springs", 0.1,
-     [](testing_random::Random& random, double mass, JointDef& joint) {
+     [](testing_random::Random& random, double mass, FlatJoint& joint) {
        joint.kind = JointKind::slider;
        joint.stiffness = draw_stiffness(random, mass);
        joint.damping = draw_damping(random, mass);
        joint.limits = Limits{-0.1f, 0.1f};
      }},
     {"hinges on springs", 0.1,
-     [](testing_random::Random& random, double mass, JointDef& joint) {
+     [](testing_random::Random& random, double mass, FlatJoint& joint) {
        joint.kind = JointKind::hinge;
        joint.stiffness = draw_stiffness(random, kSquareArm * mass);
        joint.damping = draw_damping(random, kSquareArm * mass);
      }},
     {"six axes, some on springs", 0.1,
-     [](testing_random::Random& random, double mass, JointDef& joint) {
+     [](testing_random::Random& random, double mass, FlatJoint& joint) {
        joint.kind = JointKind::six_dof;
        JointAxisDef* const axes[] = {&joint.linear_x,  &joint.linear_y,  &joint.linear_z,
                                      &joint.angular_x, &joint.angular_y, &joint.angular_z};
@@ -58,13 +59,13 @@ const Tie kTies[] = {
 // Their errors are taken back whatever bodies weigh, so these may still gain; see below.
 const Tie kGeared[] = {
     {"gears on hinges", 3.0,
-     [](testing_random::Random& random, double, JointDef& joint) {
+     [](testing_random::Random& random, double, FlatJoint& joint) {
        joint.kind = JointKind::gear;
        joint.axis_b = joint.axis;
        joint.ratio = random.real(0.3f, 3.0f);
      }},
     {"curves", 0.3,
-     [](testing_random::Random& random, double, JointDef& joint) {
+     [](testing_random::Random& random, double, FlatJoint& joint) {
        joint.kind = JointKind::path;
        joint.path = {{}, random.vector(-0.3f, 0.3f), random.vector(-0.3f, 0.3f)};
        joint.path_orientation = PathOrientation(random.next(3));
@@ -86,10 +87,10 @@ double drop(std::uint32_t seed, const Tie& tie) {
     def.mass = 1.0e-3f * std::pow(1000.0f, random.real(0, 1));
     chain.add(def, Capsule{random.real(0.01f, 0.05f), random.real(0.02f, 0.1f)});
     if (i > 0) {
-      JointDef joint{.a = chain.bodies[i - 1], .b = chain.bodies[i], .anchor = {x - 0.15, 0.25, 0}};
+      FlatJoint joint{.a = chain.bodies[i - 1], .b = chain.bodies[i], .anchor = {x - 0.15, 0.25, 0}};
       joint.axis = normalized(random.vector(-1, 1), {1, 0, 0});
       tie.make(random, std::min(before, double(*def.mass)), joint);
-      EXPECT_TRUE(chain.world.add_joint(joint));
+      EXPECT_TRUE(chain.world.add_joint(definition_of(joint)));
       if (joint.kind == JointKind::gear)
         chain.join(JointKind::hinge, joint.a, joint.b, joint.anchor, joint.axis);
     }
@@ -141,15 +142,10 @@ TEST(SprungLinkages, SwingWithAllThatHangsOnThem) {
   const BodyId left = add(0.0, 1.0f, float(kSpeed)), a = add(0.3, 0.001f, float(kSpeed)),
                b = add(0.5, 0.001f, -float(kSpeed)), right = add(0.8, 1.0f, -float(kSpeed));
   const double reduced = 0.5 * 1.001, omega = 2.0 * kPiDouble * kFrequency;
-  ASSERT_TRUE(machine.world.add_joint({.kind = JointKind::fixed, .a = left, .b = a, .anchor = {0.15, 0, 0}}));
-  ASSERT_TRUE(
-      machine.world.add_joint({.kind = JointKind::fixed, .a = b, .b = right, .anchor = {0.65, 0, 0}}));
-  const JointId spring = machine.world.add_joint({.kind = JointKind::slider,
-                                                  .a = a,
-                                                  .b = b,
-                                                  .anchor = {0.4, 0, 0},
-                                                  .axis = {1, 0, 0},
-                                                  .stiffness = float(reduced * omega * omega)});
+  ASSERT_TRUE(machine.world.add_joint(FixedDef{.a = left, .b = a, .anchor = {0.15, 0, 0}}));
+  ASSERT_TRUE(machine.world.add_joint(FixedDef{.a = b, .b = right, .anchor = {0.65, 0, 0}}));
+  const JointId spring = machine.world.add_joint(SliderDef{
+      .a = a, .b = b, .anchor = {0.4, 0, 0}, .axis = {1, 0, 0}, .stiffness = float(reduced * omega * omega)});
   ASSERT_TRUE(spring);
   ZeroCrossings through;
   double early = 0.0, late = 0.0;

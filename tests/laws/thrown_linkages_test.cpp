@@ -1,5 +1,6 @@
 // Trees of joints thrown through empty space, limbs of any shape and mass: no load acts, so what stops take is lost and what they give is
 // nothing. Drawn at random, because it is the odd pose that finds a stop whose axis goes astray.
+#include "laws/any_joint.h"
 #include "laws/assembly.h"
 
 #include "random.h"
@@ -35,13 +36,13 @@ void throw_tree(std::uint32_t seed, const Throw& how, double& most) {
         tree.add(def, Box{{random.real(0.03f, 0.1f), random.real(0.05f, 0.4f), random.real(0.03f, 0.1f)}});
     if (i == 0) continue;
     const JointKind kinds[] = {JointKind::ball, JointKind::cone, JointKind::hinge};
-    JointDef joint{.kind = kinds[random.next(3)], .a = tree.bodies[parent], .b = body, .anchor = anchor};
+    FlatJoint joint{.kind = kinds[random.next(3)], .a = tree.bodies[parent], .b = body, .anchor = anchor};
     joint.axis = normalized(random.vector(-1, 1), {1, 0, 0});
     if (joint.kind != JointKind::ball && random.next(4) != 0)
       joint.limits = Limits{-random.real(0.0f, 1.5f), random.real(0.0f, 1.5f)};
     if (joint.kind == JointKind::cone && how.swing > 0.0f)
       joint.swing_y = random.real(0.1f, how.swing), joint.swing_z = random.real(0.1f, how.swing);
-    ASSERT_TRUE(tree.world.add_joint(joint));
+    ASSERT_TRUE(tree.world.add_joint(definition_of(joint)));
   }
   if (how.alone) {
     BodyDef thumb{.pose = {places[0]}};
@@ -85,8 +86,8 @@ TEST(ThrownLinkages, KeepNothingOfWhatTookThemBack) {
     for (const float beyond : {0.003f, 0.05f, 0.2f, 0.6f}) {
       World world = make_world({.gravity = {0, 0, 0}, .sleeping = false});
       const BodyId limb = world.add_body(point_body(1.0, {0.01f, 0.02f, 0.02f}, {0.5, 0, 0}));
-      ASSERT_TRUE(
-          world.add_joint({.kind = kind, .b = limb, .axis = {0, 0, 1}, .limits = Limits{-0.3f, 0.3f}}));
+      ASSERT_TRUE(world.add_joint(
+          definition_of({.kind = kind, .b = limb, .axis = {0, 0, 1}, .limits = Limits{-0.3f, 0.3f}})));
       const Quat turn = from_axis_angle({0, 0, 1}, 0.3f + beyond);
       ASSERT_TRUE(world.set_pose(limb, {DVec3(rotate(turn, {0.5f, 0, 0})), turn}));
       run(world, 1.0);
@@ -128,11 +129,11 @@ void throw_chain(std::uint32_t seed, const Chain& how, Drift& most) {
     chain.add(def, Sphere{random.real(0.005f, 0.03f)});
     if (i == 0) continue;
     const std::uint32_t which = how.kinds.size() == 1 ? 0 : random.next(std::uint32_t(how.kinds.size()));
-    JointDef joint{.kind = how.kinds[which],
-                   .a = chain.bodies[i - 1],
-                   .b = chain.bodies[i],
-                   .anchor = {x - 0.075, 0, 0},
-                   .axis = normalized(random.vector(-1, 1), {1, 0, 0})};
+    FlatJoint joint{.kind = how.kinds[which],
+                    .a = chain.bodies[i - 1],
+                    .b = chain.bodies[i],
+                    .anchor = {x - 0.075, 0, 0},
+                    .axis = normalized(random.vector(-1, 1), {1, 0, 0})};
     if (joint.kind == JointKind::slider) joint.limits = Limits{-0.02f, 0.02f};
     if (joint.kind == JointKind::hinge) joint.limits = Limits{-0.3f, 0.3f};
     if (joint.kind == JointKind::distance) {  // a rope
@@ -140,7 +141,7 @@ void throw_chain(std::uint32_t seed, const Chain& how, Drift& most) {
       joint.anchor_b = DVec3{x - 0.01, 0, 0};
       joint.max_length = 0.13f;
     }
-    ASSERT_TRUE(chain.world.add_joint(joint));
+    ASSERT_TRUE(chain.world.add_joint(definition_of(joint)));
   }
   const DVec3 thrown = chain.world.momentum().angular;
   ASSERT_TRUE(chain.world.step(kStep));
@@ -198,13 +199,12 @@ double drop_chain(std::uint32_t seed) {
     else
       chain.add(def, Capsule{radius, random.real(0.02f, 0.2f)});
     if (i == 0) continue;
-    EXPECT_TRUE(chain.world.add_joint({.kind = JointKind::cone,
-                                       .a = chain.bodies[i - 1],
-                                       .b = chain.bodies[i],
-                                       .anchor = {x - 0.15, 0.25, 0},
-                                       .axis = normalized(random.vector(-1, 1), {1, 0, 0}),
-                                       .limits = Limits{-0.3f, 0.3f},
-                                       .swing_y = 0.6f}));
+    EXPECT_TRUE(chain.world.add_joint(ConeDef{.a = chain.bodies[i - 1],
+                                              .b = chain.bodies[i],
+                                              .anchor = {x - 0.15, 0.25, 0},
+                                              .axis = normalized(random.vector(-1, 1), {1, 0, 0}),
+                                              .swing_y = 0.6f,
+                                              .limits = Limits{-0.3f, 0.3f}}));
   }
   const double first = chain.energy();
   double last = first, most = 0.0;
@@ -244,14 +244,14 @@ double shake_chain(std::uint32_t seed, std::span<const JointKind> kinds) {
       chain.add(def, Sphere{random.real(0.01f, 0.06f)});
     else
       chain.add(def, Capsule{random.real(0.01f, 0.05f), random.real(0.02f, 0.15f)});
-    JointDef joint{.kind = kinds[random.next(std::uint32_t(kinds.size()))],
-                   .a = chain.bodies[i],
-                   .b = chain.bodies[i + 1],
-                   .anchor = before + DVec3{0.5 * part, 0, 0},
-                   .axis = normalized(random.vector(-1, 1), {1, 0, 0})};
+    FlatJoint joint{.kind = kinds[random.next(std::uint32_t(kinds.size()))],
+                    .a = chain.bodies[i],
+                    .b = chain.bodies[i + 1],
+                    .anchor = before + DVec3{0.5 * part, 0, 0},
+                    .axis = normalized(random.vector(-1, 1), {1, 0, 0})};
     if (joint.kind == JointKind::cone) joint.swing_y = 0.6f, joint.limits = Limits{-0.3f, 0.3f};
     if (joint.kind == JointKind::slider) joint.limits = Limits{-0.1f, 0.1f};
-    EXPECT_TRUE(chain.world.add_joint(joint));
+    EXPECT_TRUE(chain.world.add_joint(definition_of(joint)));
   }
   double fastest = 0.0;
   for (int i = 1; i <= 300; ++i) {

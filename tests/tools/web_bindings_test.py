@@ -43,6 +43,25 @@ class Generator(unittest.TestCase):
             self.assertIn(line, self.typescript)
         self.assertIn("static_assert(int(JointKind::distance) == 4);", self.cpp)
 
+    def test_each_kind_of_joint_has_its_own_fields(self):
+        self.assertEqual(self.run_generator().returncode, 0)
+        for line in ("  | ({ kind: typeof JointKind.hinge } & HingeDef)", "addJoint(joint: JointDef): JointId {",
+                     "    case JointKind.rackAndPinion:\n      w.number(9, 'kind');\n      return writeRackAndPinionDef(w, given);",
+                     "const keysOfBallDef = new Set(['a', 'b', 'anchor', 'friction', 'breakForce', 'breakTorque', 'collideConnected', 'kind']);",
+                     "const keysOfMotor = new Set(['targetVelocity', "):
+            self.assertIn(line, self.typescript)
+        self.assertIn("    case 1:\n      get(call, out.emplace<HingeDef>());", self.cpp)
+
+    def test_a_variant_needs_a_kind_for_each_of_its_structs(self):
+        joints = self.folder / "include" / "gyre" / "joints.h"
+        text = joints.read_text(encoding="utf-8")
+        mark = "using JointDef = std::variant<BallDef, "
+        self.assertIn(mark, text)
+        joints.write_text(text.replace(mark, mark + "Motor, "), encoding="utf-8")
+        done = self.run_generator()
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("JointDef", done.stderr)
+
     def test_a_new_function_is_bound_with_its_comment(self):
         self.add("  // Blows at the body, in N.\n  bool blow_at(BodyId body, Vec3 wind, float strength = 1.0f);")
         self.assertEqual(self.run_generator().returncode, 0)

@@ -29,8 +29,10 @@ class CppWriter:
         parts = [HEAD.replace("HEADERS", "\n".join(f"#include <gyre/{name}.h>" for name in m.files))]
         parts.append("namespace gyre::web {\n")
         parts.append(self.checks())
-        for name in self.variants():
-            parts.append(f"void get(Call& call, {name}& out);\nvoid put(Answer& answer, const {name}& value);\n")
+        for name in m.written_variants:
+            parts.append(f"void get(Call& call, {name}& out);\n")
+        for name in m.read_variants:
+            parts.append(f"void put(Answer& answer, const {name}& value);\n")
         for name in m.written_structs:
             parts.append(f"void get(Call& call, {self.qualified(name)}& out);\n")
         for name in m.column_structs:
@@ -41,7 +43,8 @@ class CppWriter:
         parts += [self.getter(name) for name in m.written_structs]
         parts += [self.rows(name) for name in m.column_structs]
         parts += [self.putter(name) for name in m.read_structs]
-        parts += [self.variant(name) for name in self.variants()]
+        parts += [self.variant_getter(name) for name in m.written_variants]
+        parts += [self.variant_putter(name) for name in m.read_variants]
         parts.append("}  // namespace gyre::web\n\n")
         parts.append('using namespace gyre;\nusing namespace gyre::web;\n\nextern "C" {\n\n')
         for index, function in enumerate(m.functions):
@@ -56,18 +59,18 @@ class CppWriter:
     def version(text):
         return zlib.crc32(text.encode()) >> 1
 
-    def variants(self):
-        return [name for name, value in self.model.api.aliases.items() if value.startswith("variant<")]
-
-    def variant(self, name):
-        kinds = self.model.inner(self.model.api.aliases[name])[1].split(",")
+    def variant_getter(self, name):
+        kinds = self.model.variant_parts(name)
         lines = [f"void get(Call& call, {name}& out) {{\n  switch (int(call.next())) {{\n"]
         for i, kind in enumerate(kinds):
             lines.append(f"    {f'case {i}' if i + 1 < len(kinds) else 'default'}:\n      get(call, out.emplace<{kind}>());\n"
                          "      break;\n")
-        lines.append(f"  }}\n}}\n\nvoid put(Answer& answer, const {name}& value) {{\n  answer.number(double(value.index()));\n"
-                     "  std::visit([&](const auto& shape) { put(answer, shape); }, value);\n}\n\n")
-        return "".join(lines)
+        return "".join(lines) + "  }\n}\n\n"
+
+    @staticmethod
+    def variant_putter(name):
+        return (f"void put(Answer& answer, const {name}& value) {{\n  answer.number(double(value.index()));\n"
+                "  std::visit([&](const auto& part) { put(answer, part); }, value);\n}\n\n")
 
     def qualified(self, name):
         return self.model.api.structs[name].cpp

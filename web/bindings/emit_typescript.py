@@ -2,6 +2,7 @@
 
 import re
 
+from headers import HeaderError
 from model import BITS, FLAT, LEFT_OUT, NUMBERS, TAKEN_BY_HAND, camel, pascal
 
 HEAD = """// Made by web/bindings/generate.py from the headers in include/gyre; not to be edited. Names are those of C++ in camelCase, and so
@@ -39,7 +40,8 @@ class TypeScriptWriter:
         parts += [self.written_type(name) for name in m.written_structs]
         parts += [self.read_type(name) for name in m.read_structs]
         parts += [self.columns_type(name) for name in m.column_structs if name != "Pose"]
-        parts += [self.variant(name) for name, value in m.api.aliases.items() if value.startswith("variant<")]
+        for name in m.written_variants:
+            parts.append(self.shape_variant(name) if "Geometry" in m.variant_parts(name) else self.kind_variant(name))
         parts += [self.writer(name) for name in m.written_structs]
         parts += [self.reader(name) for name in m.read_structs]
         parts += [self.columns_reader(name) for name in m.column_structs if name != "Pose"]
@@ -95,7 +97,7 @@ class TypeScriptWriter:
         if kind == "Geometry" or kind in m.ids or kind in m.api.enums or kind in m.api.classes:
             return kind
         if kind in m.api.aliases:
-            return kind + "Input"
+            return kind + "Input" if kind in m.read_variants else kind
         if kind == "string_view" or kind == "char*":
             return "string"
         element = m.array_of(kind)
@@ -167,9 +169,30 @@ class TypeScriptWriter:
             lines.append(comment(words, "  ") + f"  {field}: {'string[]' if array == 'text' else array};\n")
         return "".join(lines) + "}\n\n"
 
-    def variant(self, name):
+    def kind_variant(self, name):
+        """A value of several structs, of which an enum has one value each, in the same order: `kind` tells which it is."""
         m = self.model
-        parts = m.inner(m.api.aliases[name])[1].split(",")
+        parts = m.variant_parts(name)
+        enum = next((e for e in m.api.enums.values()
+                     if [pascal(value) for value, _, _ in e.values] == [re.sub("Def$", "", part) for part in parts]), None)
+        if enum is None or name in m.read_variants:
+            raise HeaderError(f"{name}: no way is known to carry this variant: an enum must have a value for each of its structs, "
+                              "and it must only be written")
+        kinds = [f"{enum.name}.{camel(value)}" for value, _, _ in enum.values]
+        lines = [comment(f"{m.api.alias_docs[name]}\n`kind` says which."), f"export type {name} =\n"]
+        lines += [f"  | ({{ kind: typeof {kind} }} & {self.input_name(part)})\n" for kind, part in zip(kinds, parts)]
+        lines[-1] = lines[-1].rstrip() + ";\n"
+        lines.append(f"\nfunction write{name}(w: Writer, value: {name}): void {{\n"
+                     f"  const given = w.object(value, '{name}');\n  switch (given.kind) {{\n")
+        for i, (kind, part) in enumerate(zip(kinds, parts)):
+            lines.append(f"    case {kind}:\n      w.number({i}, 'kind');\n      return write{part}(w, given);\n")
+        lines.append(f"    default:\n      throw w.wrong('{name}.kind', (given as {{ kind: unknown }}).kind, 'one of {enum.name}');\n"
+                     "  }\n}\n\n")
+        return "".join(lines)
+
+    def shape_variant(self, name):
+        m = self.model
+        parts = m.variant_parts(name)
         simple = [part for part in parts if part != "Geometry"]
         kind = self.kind_of
         lines = [f"/** Any shape, as it is read: what kind it is, and its measures. */\nexport type {name} =\n"]
@@ -284,7 +307,7 @@ class TypeScriptWriter:
     def writer(self, name):
         fields = self.model.fields(name)
         keys = ", ".join(f"'{camel(part.name)}'" for part in fields)
-        extra = ", 'kind'" if any(name in value for value in self.model.api.aliases.values() if value.startswith("variant<")) else ""
+        extra = ", 'kind'" if self.model.is_in_variant(name) else ""
         lines = [f"const keysOf{name} = new Set([{keys}{extra}]);\n",
                  f"{'/** @internal */ export ' if name in TAKEN_BY_HAND else ''}function write{name}"
                  f"(w: Writer, value: {self.input_name(name)}): void {{\n",

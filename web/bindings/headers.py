@@ -69,6 +69,7 @@ class Api:
     functions: list = field(default_factory=list)
     constants: dict = field(default_factory=dict)  # name -> (literal, doc)
     aliases: dict = field(default_factory=dict)
+    alias_docs: dict = field(default_factory=dict)
 
 
 class HeaderError(Exception):
@@ -330,6 +331,7 @@ def read_declaration(api, doc, body, after, code):
         api.constants[match.group(1)] = (match.group(2).strip(), " ".join(t for t in (doc, after) if t))
     elif match := re.match(r"using (\w+) = (.*);$", code, re.S):
         api.aliases[match.group(1)] = plain_type(match.group(2))
+        api.alias_docs[match.group(1)] = " ".join(t for t in (doc, after) if t)
     elif re.match(r"(template|struct \w+;|class \w+;|extern|static_assert|constexpr|inline)", code) or code.endswith("}"):
         return  # forward declarations, and what is computed in the header itself
     elif is_function(code):

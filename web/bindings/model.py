@@ -10,7 +10,7 @@ from pathlib import Path
 import headers
 
 ROOT = Path(__file__).resolve().parents[2]
-HEADERS = ["math", "ids", "result", "geometry", "queries", "stepping", "defs", "events", "fields", "world", "replay", "debug", "track"]
+HEADERS = ["math", "ids", "result", "geometry", "queries", "stepping", "defs", "joints", "events", "fields", "world", "replay", "debug", "track"]
 # Public headers that are not bound, and why.
 NOT_BOUND = {"gyre": "includes the others", "decomposition": "seconds of work on a mesh, done before a page is made; its hulls come as hulls",
              "bounds": "measures meshes before they are cooked; a page does not choose volumes",
@@ -43,6 +43,7 @@ LEFT_OUT = {
     "World::overlap_all_batch": "see World::cast_ray_batch",
     "World::closest_point_all_batch": "see World::cast_ray_batch",
     "World::penetration_all_batch": "see World::cast_ray_batch",
+    "default_joint": "{ kind: ... } is one",
     "QueryFilter.accepts": "a function pointer; the layers of the filter are carried",
     "QueryFilter.user": "see QueryFilter.accepts",
     "BodyNames": "a function pointer; bodies of a scene are named by the scene",
@@ -98,6 +99,7 @@ class Model:
             raise headers.HeaderError(f"new public headers, not bound: {', '.join(sorted(unknown))}: add them to HEADERS")
         self.ids = tuple(name for name, value in self.api.aliases.items() if value.startswith("Id<"))
         self.read_structs, self.written_structs = [], []
+        self.read_variants, self.written_variants = [], []
         self.column_structs = []
         self.functions = [f for f in self.all_functions() if not self.left_out(f)]
         for function in self.functions:
@@ -188,6 +190,15 @@ class Model:
     def is_struct(self, kind):
         return kind in self.api.structs and kind not in FLAT
 
+    def variants(self):
+        return [name for name, value in self.api.aliases.items() if value.startswith("variant<")]
+
+    def variant_parts(self, name):
+        return headers.split_commas(self.inner(self.api.aliases[name])[1])
+
+    def is_in_variant(self, struct):
+        return any(struct in self.variant_parts(name) for name in self.variants())
+
     def use(self, function):
         where = self.key(function)
         for parameter in self.parameters(function):
@@ -206,8 +217,11 @@ class Model:
         if array:
             self.walk(array.group(1), into, where)
         elif kind in self.api.aliases:
-            for part in headers.split_commas(self.inner(self.api.aliases[kind])[1]):
+            for part in self.variant_parts(kind):
                 self.walk(part, into, where)
+            seen = self.read_variants if into is self.read_structs else self.written_variants
+            if kind not in seen:
+                seen.append(kind)
         elif outer in ("span", "vector"):
             if inner == "byte" or self.is_value(inner):
                 return

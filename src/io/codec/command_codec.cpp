@@ -211,7 +211,7 @@ requires(Is<T, std::vector<ShapeDef>> || Is<T, std::vector<Vec3>>) void fields(C
 }
 // What only kinds beyond these five say: a recording of these stays as short as it was, and older ones open.
 constexpr bool says_more(JointKind kind) { return kind > JointKind::distance; }
-template <class C, Is<JointDef> T>
+template <class C, Is<FlatJoint> T>
 void fields(C& c, T& v) {
   auto& [kind, a, b, anchor, axis, anchor_b, limits, motor, length, min_length, max_length, stiffness,
          damping, frequency, damping_ratio, break_force, break_torque, collide_connected, axis_b, friction, limit_frequency, limit_damping,

@@ -40,7 +40,8 @@ std::vector<Command> all_commands() {
   body_def.locked = {{true, false, true}, {false, true, false}};
   body_def.mass = 5.0f, body_def.center_of_mass = Vec3{1, 1, 2}, body_def.inertia = Sym3{1, 2, 3, 4, 5, 6};
   body_def.user_data = 99;
-  JointDef joint_def{.kind = JointKind::distance, .a = body, .b = {}, .anchor = {1, 2, 3}, .axis = {0, 0, 1}};
+  FlatJoint joint_def{
+      .kind = JointKind::distance, .a = body, .b = {}, .anchor = {1, 2, 3}, .axis = {0, 0, 1}};
   joint_def.anchor_b = DVec3{4, 5, 6}, joint_def.limits = Limits{-1, 2};
   joint_def.motor = {
       .target_velocity = 1, .target_position = 2.0f, .max_force = 3, .frequency = 4, .damping_ratio = 5};
@@ -87,7 +88,8 @@ std::vector<Command> all_commands() {
 // What only some kinds of joints have comes back as well.
 TEST(CommandCodec, JointsOfEveryKindComeBack) {
   for (int kind = 0; kind < kJointKindCount; ++kind) {
-    JointDef def{.kind = JointKind(kind), .friction = 0.5f, .limit_frequency = 6.0f, .limit_damping_ratio = 0.7f};
+    FlatJoint def{
+        .kind = JointKind(kind), .friction = 0.5f, .limit_frequency = 6.0f, .limit_damping_ratio = 0.7f};
     if (def.kind > JointKind::distance) {
       def.axis_b = Vec3{0, 0, 1}, def.swing_y = 0.3f, def.swing_z = 0.2f, def.ratio = 4.0f;
       def.ground_a = {1, 2, 3}, def.ground_b = {4, 5, 6};
@@ -100,7 +102,7 @@ TEST(CommandCodec, JointsOfEveryKindComeBack) {
     const Command back = read_command(in, {}, kWorld);
     EXPECT_TRUE(in.finished()) << kind;
     EXPECT_EQ(bytes_of(back), bytes) << kind;
-    const JointDef& read = std::get<AddJoint>(back).def;
+    const FlatJoint& read = std::get<AddJoint>(back).def;
     EXPECT_EQ(read.friction, 0.5f);
     EXPECT_EQ(read.path.size(), def.path.size());
     EXPECT_EQ(read.linear_y.stiffness, def.linear_y.stiffness);

@@ -6,6 +6,7 @@
 
 #include <gyre/defs.h>
 #include <gyre/fields.h>
+#include <gyre/joints.h>
 
 namespace gyre {
 

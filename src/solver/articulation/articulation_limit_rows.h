@@ -42,7 +42,7 @@ struct LimitDelassus {
   std::uint32_t renewed, cleared;
 };
 
-constexpr float kUnboundedImpulse = 3.0e38f;  // how far a stop's impulse may grow
+constexpr float kMaxLimitImpulse = 3.0e38f;  // of an unbounded limit
 
 // As many slots stand in registers while they are swept.
 constexpr std::uint32_t kFewSlots = 8;

@@ -10,7 +10,7 @@
 #include "solver/core/body_motion.h"
 #include "solver/core/error_bounds.h"
 
-#include <gyre/defs.h>
+#include <gyre/joints.h>
 
 #include <cstddef>
 

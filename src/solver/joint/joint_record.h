@@ -6,7 +6,7 @@
 
 #include "solver/core/body_motion.h"
 
-#include <gyre/defs.h>
+#include <gyre/joints.h>
 
 #include <cstdint>
 

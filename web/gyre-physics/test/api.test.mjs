@@ -153,7 +153,9 @@ test('joints of every kind that hold a point hold it', () => {
     const kind = JointKind[name];
     const world = api.createWorld();
     const body = world.addBody({ pose: { position: [1, 5, 0] } }, { geometry: sphere() });
-    const joint = world.addJoint({ kind, b: body, anchor: [0, 5, 0], axis: [0, 0, 1], limits: kind === JointKind.slider ? { low: -1, high: 1 } : undefined });
+    const axis = ['hinge', 'slider', 'cone'].includes(name) ? { axis: [0, 0, 1] } : {};
+    const limits = name === 'slider' ? { limits: { low: -1, high: 1 } } : {};
+    const joint = world.addJoint({ kind, b: body, anchor: [0, 5, 0], ...axis, ...limits });
     for (let i = 0; i < 60; ++i) world.step(second);
     assert.ok(world.jointExists(joint), name);
     const [x, y] = world.pose(body).position;
@@ -161,6 +163,16 @@ test('joints of every kind that hold a point hold it', () => {
     world.removeJoint(joint);
     assert.equal(world.jointExists(joint), false);
   }
+});
+
+test('a joint has the fields of its kind alone', () => {
+  const world = api.createWorld();
+  const body = world.addBody({}, { geometry: sphere() });
+  assert.throws(() => world.addJoint({ kind: JointKind.ball, b: body, axis: [0, 0, 1] }), /BallDef.*axis/s);
+  assert.throws(() => world.addJoint({ b: body }), /JointDef\.kind/);
+  assert.throws(() => world.addJoint({ kind: JointKind.hinge, b: body, limitFrequency: -1 }), /joint\.limit_frequency is -1/);
+  const path = world.addJoint({ kind: JointKind.path, b: body, points: [-1, 0, 0, 0, 0, 0, 1, 0.2, 0] });
+  assert.ok(world.jointExists(path));
 });
 
 test('every setter changes what its reader tells', () => {

@@ -83,6 +83,8 @@ const hash: bigint = world.hash();
 const places: Float64Array = world.bodies().positions;
 // @ts-expect-error a field that is not there
 world.addBody({ colour: 1 });
+// @ts-expect-error a field of another kind of joint
+world.addJoint({ kind: JointKind.ball, b: body, limits: { low: -1, high: 1 } });
 // @ts-expect-error not one of the kinds
 world.setType(body, 9);
 console.log(velocity, into, hash, places);
