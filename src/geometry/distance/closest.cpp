@@ -89,7 +89,8 @@ bool has_plane_beyond(DVec3 p, DVec3 a, DVec3 b, DVec3 c, double squared) {
   const DVec3 ab = b - a, ac = c - a, normal = cross(ab, ac);
   const double nn = dot(normal, normal);
   const double longest = max(dot(ab, ab), max(dot(ac, ac), length_squared(c - b)));
-  return nn > kSliverTriangle * longest * longest && square(dot(a - p, normal)) > kSurelyFarther * squared * nn;
+  return nn > kSliverTriangle * longest * longest &&
+         square(dot(a - p, normal)) > kSurelyFarther * squared * nn;
 }
 
 // Faces of a tetrahedron: three corners, opposite one.
@@ -99,10 +100,10 @@ constexpr int kTetrahedronFaces[4][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {0, 2, 3, 1
 
 SegmentPoint closest_on_segment(DVec3 p, DVec3 a, DVec3 b) {
   const DVec3 ab = b - a;
-  const double along = dot(p - a, ab), whole = dot(ab, ab);
+  const double along = dot(p - a, ab), ab_squared = dot(ab, ab);
   if (!(along > 0.0)) return {a, 0.0};
-  if (along >= whole) return {b, 1.0};
-  const double t = along / whole;
+  if (along >= ab_squared) return {b, 1.0};
+  const double t = along / ab_squared;
   return {a + t * ab, t};
 }
 

@@ -42,17 +42,17 @@ DVec3 farthest_corner(const DVec3* triangle, DVec3 direction) {
 bool same(DVec3 a, DVec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
 // The simplex nearest to the origin that `near` uses, compacted.
-void keep_corners(DifferencePoint* simplex, int& count, SimplexPoint& near) {
-  int kept = 0;
+void drop_unused(DifferencePoint* simplex, int& count, SimplexPoint& near) {
+  int used = 0;
   for (int i = 0; i < count; ++i) {
     if (!(near.corners & (1u << i))) continue;
-    if (kept != i) {
-      simplex[kept] = simplex[i];
-      near.weights[kept] = near.weights[i];
+    if (used != i) {
+      simplex[used] = simplex[i];
+      near.weights[used] = near.weights[i];
     }
-    ++kept;
+    ++used;
   }
-  count = kept;
+  count = used;
 }
 
 SimplexPoint nearest_to_origin(const DifferencePoint* s, int count, bool outside) {
@@ -108,7 +108,7 @@ GYRE_INLINE DVec3 support_of(const Shape& shape, DVec3 d) {
   }
 }
 
-double largest_part(DVec3 v) { return max(absolute(v.x), max(absolute(v.y), absolute(v.z))); }
+double largest_component(DVec3 v) { return max(absolute(v.x), max(absolute(v.y), absolute(v.z))); }
 
 }  // namespace
 
@@ -120,18 +120,18 @@ CorePair::CorePair(const Shape& a, const Shape& b, const Transform& a_from_b)
 
 CorePair::CorePair(const Shape& a, const Shape& b, DVec3 position, DQuat orientation)
     : a_(&a), b_(&b), core_size_(max(core_size(a), core_size(b))) {
-  turn_b(orientation);
+  set_orientation(orientation);
   move_b(position);
 }
 
 CorePair::CorePair(const DVec3 (&triangle)[3], const Shape& b, DVec3 position, DQuat orientation)
     : triangle_(triangle), b_(&b), core_size_(core_size(b)) {
-  for (const DVec3& corner : triangle) core_size_ = max(core_size_, largest_part(corner));
-  turn_b(orientation);
+  for (const DVec3& corner : triangle) core_size_ = max(core_size_, largest_component(corner));
+  set_orientation(orientation);
   move_b(position);
 }
 
-void CorePair::turn_b(DQuat orientation) {
+void CorePair::set_orientation(DQuat orientation) {
   x_ = rotate(orientation, DVec3{1, 0, 0});
   y_ = rotate(orientation, DVec3{0, 1, 0});
   z_ = rotate(orientation, DVec3{0, 0, 1});
@@ -139,7 +139,7 @@ void CorePair::turn_b(DQuat orientation) {
 
 void CorePair::move_b(DVec3 position) {
   position_ = position;
-  size_ = max(core_size_, largest_part(position));
+  size_ = max(core_size_, largest_component(position));
 }
 
 DVec3 CorePair::to_b(DVec3 d) const { return {dot(x_, d), dot(y_, d), dot(z_, d)}; }
@@ -166,7 +166,7 @@ struct OverFace {
 
 // `farthest(direction)`: of the core. False if its middle is above no face.
 template <class Farthest>
-bool look_over_face(DVec3 half, DVec3 middle, const Farthest& farthest, OverFace& over) {
+bool project_on_face(DVec3 half, DVec3 middle, const Farthest& farthest, OverFace& over) {
   const double x = absolute(middle.x) - half.x, y = absolute(middle.y) - half.y,
                z = absolute(middle.z) - half.z;
   if (!(max(x, max(y, z)) > 0.0)) return false;
@@ -188,17 +188,17 @@ bool has_exact_support(const Shape& shape) { return shape.kind != ShapeKind::hul
 }  // namespace
 
 bool CorePair::find_over_face(double max_distance, CoreDistance& out) const {
-  const double least = kTouch * size_;
-  const auto tells = [&](const OverFace& over) {
+  const double touch_distance = kTouch * size_;
+  const auto decides = [&](const OverFace& over) {
     out.beyond = over.height > max_distance;
     out.distance = over.height;
-    return out.beyond || (over.is_within && over.height > least);
+    return out.beyond || (over.is_within && over.height > touch_distance);
   };
   if (a_ == nullptr) return false;
   OverFace over;
   if (b_->kind == ShapeKind::box && has_exact_support(*a_)) {
     const auto farthest = [&](DVec3 d) { return to_b(support_of(*a_, from_b(d)) - position_); };
-    if (look_over_face(DVec3(b_->extents), to_b(-position_), farthest, over) && tells(over)) {
+    if (project_on_face(DVec3(b_->extents), to_b(-position_), farthest, over) && decides(over)) {
       out.normal = DVec3{} - from_b(over.normal);  // no -0
       out.on_a = from_b(over.lowest) + position_;
       out.on_b = from_b(over.foot) + position_;
@@ -207,7 +207,7 @@ bool CorePair::find_over_face(double max_distance, CoreDistance& out) const {
   }
   if (a_->kind == ShapeKind::box && has_exact_support(*b_)) {
     const auto farthest = [&](DVec3 d) { return from_b(support_of(*b_, to_b(d))) + position_; };
-    if (look_over_face(DVec3(a_->extents), position_, farthest, over) && tells(over)) {
+    if (project_on_face(DVec3(a_->extents), position_, farthest, over) && decides(over)) {
       out.normal = over.normal;
       out.on_a = over.foot;
       out.on_b = over.lowest;
@@ -265,7 +265,7 @@ CoreDistance core_distance(const CorePair& pair, double max_distance, Vec3 guess
     // Rounding has the last word: what does not come nearer is as near as it gets.
     if (count > 0 && next_near.corners != 15 && next_squared >= squared) break;
     ++count;
-    keep_corners(simplex, count, next_near);
+    drop_unused(simplex, count, next_near);
     near = next_near;
     squared = next_squared;
     if (count == 4 || squared <= touch * touch) {

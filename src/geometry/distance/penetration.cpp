@@ -58,7 +58,7 @@ class ExpandingPolytope {
  private:
   int new_face(int a, int b, int c);
   bool extend(int known, DVec3& flat_normal);
-  bool take_farther(DVec3 direction, int count, double threshold);
+  bool take_extreme(DVec3 direction, int count, double threshold);
 
   const CorePair& pair_;
   // Not cleared: only the counted ones are ever read.
@@ -101,7 +101,7 @@ int ExpandingPolytope::new_face(int a, int b, int c) {
 
 // Puts the extreme point along +-direction behind the first `count` ones if it is farther than `threshold` from vertex 0
 // along it.
-bool ExpandingPolytope::take_farther(DVec3 direction, int count, double threshold) {
+bool ExpandingPolytope::take_extreme(DVec3 direction, int count, double threshold) {
   const DVec3 origin = vertices_[0].way;
   const DifferencePoint up = pair_.support(direction), down = pair_.support(-direction);
   const double far_up = dot(up.way - origin, direction), far_down = dot(origin - down.way, direction);
@@ -116,25 +116,27 @@ bool ExpandingPolytope::extend(int known, DVec3& flat_normal) {
   const DVec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   if (known < 2) {
     int i = 0;
-    while (i < 3 && !take_farther(axes[i], 1, thin)) ++i;
+    while (i < 3 && !take_extreme(axes[i], 1, thin)) ++i;
     flat_normal = {0, 1, 0};
     if (i == 3) return false;
   }
   const DVec3 along = vertices_[1].way - vertices_[0].way;
   if (known < 3) {
     const DVec3 size{absolute(along.x), absolute(along.y), absolute(along.z)};
-    const DVec3 least = size.x <= size.y && size.x <= size.z ? axes[0] : size.y <= size.z ? axes[1] : axes[2];
-    DVec3 u = cross(along, least);
+    const DVec3 crosswise = size.x <= size.y && size.x <= size.z ? axes[0]
+                            : size.y <= size.z                   ? axes[1]
+                                                                 : axes[2];
+    DVec3 u = cross(along, crosswise);
     u = u / length(u);
     DVec3 v = cross(along, u);
     v = v / length(v);
     flat_normal = u;
-    if (!take_farther(u, 2, thin) && !take_farther(v, 2, thin)) return false;
+    if (!take_extreme(u, 2, thin) && !take_extreme(v, 2, thin)) return false;
   }
   DVec3 normal = cross(along, vertices_[2].way - vertices_[0].way);
   normal = normal / length(normal);
   flat_normal = normal;
-  return take_farther(normal, 3, thin);
+  return take_extreme(normal, 3, thin);
 }
 
 bool ExpandingPolytope::start(const CoreDistance& start, DVec3& flat_normal) {
@@ -143,18 +145,18 @@ bool ExpandingPolytope::start(const CoreDistance& start, DVec3& flat_normal) {
   int known = 0;
   for (int i = 0; i < start.simplex_count; ++i) {
     const DVec3 p = start.simplex[i].way;
-    bool far = true;
-    if (known == 1) far = length(p - vertices_[0].way) > thin;
+    bool is_apart = true;
+    if (known == 1) is_apart = length(p - vertices_[0].way) > thin;
     if (known >= 2) {
       const DVec3 along = vertices_[1].way - vertices_[0].way;
       const DVec3 across = cross(along, p - vertices_[0].way);
-      far = length(across) > thin * length(along);
-      if (far && known == 3) {
+      is_apart = length(across) > thin * length(along);
+      if (is_apart && known == 3) {
         const DVec3 normal = cross(along, vertices_[2].way - vertices_[0].way);
-        far = absolute(dot(normal, p - vertices_[0].way)) > thin * length(normal);
+        is_apart = absolute(dot(normal, p - vertices_[0].way)) > thin * length(normal);
       }
     }
-    if (far) vertices_[known++] = start.simplex[i];
+    if (is_apart) vertices_[known++] = start.simplex[i];
   }
   if (known == 0) {
     vertices_[0] = pair_.support({0, 1, 0});
@@ -179,10 +181,10 @@ bool ExpandingPolytope::start(const CoreDistance& start, DVec3& flat_normal) {
 }
 
 int ExpandingPolytope::nearest() const {
-  double least = kNoDistance;
-  for (int i = 0; i < face_count_; ++i) least = min(least, distances_[i]);
+  double smallest = kNoDistance;
+  for (int i = 0; i < face_count_; ++i) smallest = min(smallest, distances_[i]);
   for (int i = 0; i < face_count_; ++i) {
-    if (distances_[i] == least && faces_[i].alive) return i;
+    if (distances_[i] == smallest && faces_[i].alive) return i;
   }
   return -1;
 }
@@ -201,52 +203,52 @@ bool ExpandingPolytope::add(const DifferencePoint& point, int first) {
   const int apex = vertex_count_;
   vertices_[vertex_count_++] = point;
   // Flood over the faces that the point lies above; what they border on is the horizon.
-  std::uint8_t seen[kMaxPolytopeFaces];
-  int seen_count = 0;
+  std::uint8_t visible_faces[kMaxPolytopeFaces];
+  int visible_count = 0;
   struct Edge {
     std::uint8_t from, to, outside;
   };
   Edge horizon[kMaxPolytopeFaces];
   int horizon_count = 0;
   faces_[first].visible = true;
-  seen[seen_count++] = std::uint8_t(first);
-  for (int k = 0; k < seen_count; ++k) {
+  visible_faces[visible_count++] = std::uint8_t(first);
+  for (int k = 0; k < visible_count; ++k) {
     for (int e = 0; e < 3; ++e) {
-      const int beyond = faces_[seen[k]].neighbor[e];
+      const int beyond = faces_[visible_faces[k]].neighbor[e];
       Face& other = faces_[beyond];
       if (other.visible) continue;
       // A face without area goes with whatever surrounds it.
       if (other.distance == kNoDistance || dot(other.normal, point.way) > other.distance) {
         other.visible = true;
-        seen[seen_count++] = std::uint8_t(beyond);
+        visible_faces[visible_count++] = std::uint8_t(beyond);
       }
     }
   }
-  for (int k = 0; k < seen_count; ++k) {
-    const Face& face = faces_[seen[k]];
+  for (int k = 0; k < visible_count; ++k) {
+    const Face& face = faces_[visible_faces[k]];
     for (int e = 0; e < 3; ++e) {
       if (faces_[face.neighbor[e]].visible) continue;
       horizon[horizon_count++] = {face.v[e], face.v[e == 2 ? 0 : e + 1], face.neighbor[e]};
     }
   }
   const auto refuse = [&] {
-    for (int k = 0; k < seen_count; ++k) faces_[seen[k]].visible = false;
+    for (int k = 0; k < visible_count; ++k) faces_[visible_faces[k]].visible = false;
     --vertex_count_;
     return false;
   };
   // Each corner of the horizon must be left once and reached once, or the surface would fold.
-  std::int16_t leaves[kMaxPolytopeVertices], reaches[kMaxPolytopeVertices];
-  for (int i = 0; i < vertex_count_; ++i) leaves[i] = reaches[i] = -1;
+  std::int16_t starting_at[kMaxPolytopeVertices], ending_at[kMaxPolytopeVertices];
+  for (int i = 0; i < vertex_count_; ++i) starting_at[i] = ending_at[i] = -1;
   for (int k = 0; k < horizon_count; ++k) {
-    if (leaves[horizon[k].from] >= 0 || reaches[horizon[k].to] >= 0) return refuse();
-    leaves[horizon[k].from] = std::int16_t(k);
-    reaches[horizon[k].to] = std::int16_t(k);
+    if (starting_at[horizon[k].from] >= 0 || ending_at[horizon[k].to] >= 0) return refuse();
+    starting_at[horizon[k].from] = std::int16_t(k);
+    ending_at[horizon[k].to] = std::int16_t(k);
   }
   if (horizon_count < 3 || face_count_ + horizon_count - free_count_ > kMaxPolytopeFaces) return refuse();
-  for (int k = 0; k < seen_count; ++k) {
-    faces_[seen[k]].alive = false;
-    distances_[seen[k]] = kNoDistance;
-    free_[free_count_++] = seen[k];
+  for (int k = 0; k < visible_count; ++k) {
+    faces_[visible_faces[k]].alive = false;
+    distances_[visible_faces[k]] = kNoDistance;
+    free_[free_count_++] = visible_faces[k];
   }
   std::uint8_t made[kMaxPolytopeFaces];
   for (int k = 0; k < horizon_count; ++k)
@@ -254,8 +256,8 @@ bool ExpandingPolytope::add(const DifferencePoint& point, int first) {
   for (int k = 0; k < horizon_count; ++k) {
     Face& face = faces_[made[k]];
     face.neighbor[0] = horizon[k].outside;
-    face.neighbor[1] = made[leaves[horizon[k].to]];
-    face.neighbor[2] = made[reaches[horizon[k].from]];
+    face.neighbor[1] = made[starting_at[horizon[k].to]];
+    face.neighbor[2] = made[ending_at[horizon[k].from]];
     Face& outside = faces_[horizon[k].outside];
     for (int e = 0; e < 3; ++e) {
       if (outside.v[e] == horizon[k].to && outside.v[e == 2 ? 0 : e + 1] == horizon[k].from)
@@ -266,7 +268,7 @@ bool ExpandingPolytope::add(const DifferencePoint& point, int first) {
 }
 
 void ExpandingPolytope::witness(DVec3 target, DVec3 outward, DVec3& on_a, DVec3& on_b) const {
-  double least = kNoDistance;
+  double squared_limit = kNoDistance;
   // A flat side of the difference is many triangles: the one under which the target lies holds the pair. A face that looks
   // the other way may be as near (the way out is as long on both sides) but holds other points; it serves only when the
   // face that gave the direction has been worked on since.
@@ -279,12 +281,12 @@ void ExpandingPolytope::witness(DVec3 target, DVec3 outward, DVec3& on_a, DVec3&
     const Face& face = faces_[i];
     if (!face.alive || face.distance == kNoDistance || dot(face.normal, outward) < side) continue;
     // No point of a face is nearer than its plane.
-    if (square(dot(face.normal, target) - face.distance) > kSurelyFarther * least) continue;
+    if (square(dot(face.normal, target) - face.distance) > kSurelyFarther * squared_limit) continue;
     const DifferencePoint &a = vertices_[face.v[0]], &b = vertices_[face.v[1]], &c = vertices_[face.v[2]];
     const SimplexPoint near = closest_on_triangle(target, a.way, b.way, c.way);
     const double squared = length_squared(near.point - target);
-    if (!(squared < least)) continue;
-    least = squared;
+    if (!(squared < squared_limit)) continue;
+    squared_limit = squared;
     on_a = near.weights[0] * a.on_a + near.weights[1] * b.on_a + near.weights[2] * c.on_a;
     on_b = near.weights[0] * a.on_b + near.weights[1] * b.on_b + near.weights[2] * c.on_b;
   }
@@ -322,13 +324,13 @@ CorePenetration core_penetration(const CorePair& pair, const CoreDistance& start
     const Face face = polytope.face(i);
     if (face.distance == kNoDistance) break;
     const DifferencePoint w = pair.support(face.normal);
-    const double reach = dot(w.way, face.normal);
-    // `reach` is the depth along this normal whatever else the polytope looks like.
-    if (reach < best.depth) {
-      best.depth = reach;
+    const double depth = dot(w.way, face.normal);
+    // `depth` is the depth along this normal whatever else the polytope looks like.
+    if (depth < best.depth) {
+      best.depth = depth;
       best.normal = -face.normal;
     }
-    if (reach - face.distance <= gap || !polytope.add(w, i)) break;
+    if (depth - face.distance <= gap || !polytope.add(w, i)) break;
   }
   polytope.witness(-best.depth * best.normal, -best.normal, best.on_a, best.on_b);
   return best;

@@ -62,7 +62,7 @@ TEST(SeparatingAxis, EqualsBruteForceOverAllAxes) {
     PolytopeAxis favoured = axis;
     separation_along(pa, pb, t, favoured);
     const PolytopeAxis again = separating_axis(pa, pb, t, 0.0f, favoured);
-    EXPECT_EQ(axis_name(again), axis_name(axis)) << i;
+    EXPECT_EQ(encode_axis(again), encode_axis(axis)) << i;
     EXPECT_NEAR(double(again.separation), double(axis.separation), 2.0e-6 * double(scale)) << i;
     ++overlapping;
     if (axis.kind == AxisKind::edges) ++by_edges;
@@ -112,14 +112,14 @@ TEST(SeparatingAxis, NamesComeBackAndStrangeOnesDoNot) {
   axis.kind = AxisKind::edges;
   axis.index_a = 11;
   axis.index_b = 3;
-  const PolytopeAxis back = axis_of_name(axis_name(axis), view, view);
+  const PolytopeAxis back = decode_axis(encode_axis(axis), view, view);
   EXPECT_EQ(back.kind, AxisKind::edges);
   EXPECT_EQ(back.index_a, 11);
   EXPECT_EQ(back.index_b, 3);
-  EXPECT_EQ(axis_of_name(0, view, view).kind, AxisKind::none);
-  EXPECT_EQ(axis_of_name(0xffffffffu, view, view).kind, AxisKind::none);
+  EXPECT_EQ(decode_axis(0, view, view).kind, AxisKind::none);
+  EXPECT_EQ(decode_axis(0xffffffffu, view, view).kind, AxisKind::none);
   axis.index_a = 12;
-  EXPECT_EQ(axis_of_name(axis_name(axis), view, view).kind, AxisKind::none);
+  EXPECT_EQ(decode_axis(encode_axis(axis), view, view).kind, AxisKind::none);
 }
 
 TEST(SeparatingAxis, TheFavouredAxisStaysWhenNearlyEqual) {

@@ -45,16 +45,16 @@ inline Boxes::Boxes(const Shape& box_a, const Shape& box_b, const Transform& a_f
   three(box_a.extents).store(a);
   three(box_b.extents).store(b);
   // to_matrix(), with what is alike side by side.
-  const Quat& turn = a_from_b.orientation;
-  const Floats q = three({turn.x, turn.y, turn.z}), twice = q + q;
-  const Floats squares = q * twice, products = q * next(twice), with_w = Floats(turn.w) * after(twice);
+  const Quat& rotation = a_from_b.orientation;
+  const Floats q = three({rotation.x, rotation.y, rotation.z}), twice = q + q;
+  const Floats squares = q * twice, products = q * next(twice), with_w = Floats(rotation.w) * after(twice);
   const Floats along = Floats(1.0f) - (next(squares) + after(squares));
-  const Floats more = products + with_w, less = products - with_w;
-  join<0, 0, 2>(along, more, less).store(s[0]);
-  join<0, 1, 1>(less, along, more).store(s[1]);
-  join<2, 1, 2>(more, less, along).store(s[2]);
-  const Floats r0 = join<0, 0, 2>(along, less, more), r1 = join<0, 1, 1>(more, along, less),
-               r2 = join<2, 1, 2>(less, more, along);
+  const Floats sum = products + with_w, difference = products - with_w;
+  join<0, 0, 2>(along, sum, difference).store(s[0]);
+  join<0, 1, 1>(difference, along, sum).store(s[1]);
+  join<2, 1, 2>(sum, difference, along).store(s[2]);
+  const Floats r0 = join<0, 0, 2>(along, difference, sum), r1 = join<0, 1, 1>(sum, along, difference),
+               r2 = join<2, 1, 2>(difference, sum, along);
   r0.store(r[0]), r1.store(r[1]), r2.store(r[2]);
   const Floats center = three(a_from_b.position);
   center.store(t);

@@ -21,7 +21,7 @@ struct ClipCorner {
   int edge;
 
   Vec3 point() const { return {x, y, z}; }
-  void place(Vec3 p) { x = p.x, y = p.y, z = p.z; }
+  void set_point(Vec3 p) { x = p.x, y = p.y, z = p.z; }
 };
 constexpr int kSide = 256;
 
@@ -85,7 +85,7 @@ ClipCorner cut(const Clipper& clipper, const ClipCorner& from, const ClipCorner&
   const ClipCorner& inner = inward ? to : from;
   const ClipCorner& outer = inward ? from : to;
   const float t = inner.distance / (inner.distance - outer.distance);
-  out.place(lerp(inner.point(), outer.point(), t));
+  out.set_point(lerp(inner.point(), outer.point(), t));
   out.distance = 0.0f;
   out.feature = clipper.crossing(from.edge, side);
   out.edge = inward ? from.edge : kSide + side;
@@ -98,7 +98,7 @@ int clip_polygon(const Clipper& clipper, ManifoldPoint* out) {
   ClipCorner* next = buffers[1];
   int count = clipper.incident.count;
   for (int i = 0; i < count; ++i) {
-    polygon[i].place(clipper.incident.vertices[i]);
+    polygon[i].set_point(clipper.incident.vertices[i]);
     polygon[i].distance = 0.0f;
     polygon[i].feature = clipper.incident_vertex(clipper.incident.ids[i]);
     polygon[i].edge = i;
@@ -111,19 +111,20 @@ int clip_polygon(const Clipper& clipper, ManifoldPoint* out) {
       any_outside = any_outside || polygon[i].distance > 0.0f;
     }
     if (!any_outside) continue;
-    int kept = 0;
+    int count_inside = 0;
     for (int i = 0; i < count; ++i) {
       const ClipCorner& from = polygon[i];
       const ClipCorner& to = polygon[i + 1 == count ? 0 : i + 1];
       const bool from_inside = from.distance <= 0.0f, to_inside = to.distance <= 0.0f;
-      if (from_inside) next[kept++] = from;
+      if (from_inside) next[count_inside++] = from;
       // A convex polygon grows by at most one corner a side; the bound guards against rounding only.
-      if (from_inside != to_inside && kept < kMaxClipPoints - 1) next[kept++] = cut(clipper, from, to, side);
+      if (from_inside != to_inside && count_inside < kMaxClipPoints - 1)
+        next[count_inside++] = cut(clipper, from, to, side);
     }
     ClipCorner* swap = polygon;
     polygon = next;
     next = swap;
-    count = kept;
+    count = count_inside;
   }
   int points = 0;
   for (int i = 0; i < count; ++i) {
@@ -173,10 +174,10 @@ int clip_segments(const FacePair& pair, ManifoldPoint* out) {
   // B's ends and the points of A's line under them, both along A's segment seen along the normal.
   const Vec3 raw = a.vertices[1] - a.vertices[0];
   const Vec3 along = raw - dot(raw, pair.normal) * pair.normal;
-  const float whole = dot(along, along);
-  if (!(whole > 0.0f)) return 0;
-  const float t0 = dot(b.vertices[0] - a.vertices[0], along) / whole;
-  const float t1 = dot(b.vertices[1] - a.vertices[0], along) / whole;
+  const float along_squared = dot(along, along);
+  if (!(along_squared > 0.0f)) return 0;
+  const float t0 = dot(b.vertices[0] - a.vertices[0], along) / along_squared;
+  const float t1 = dot(b.vertices[1] - a.vertices[0], along) / along_squared;
   if (t0 == t1) return 0;
   const float low = max(0.0f, min(t0, t1)), high = min(1.0f, max(t0, t1));
   if (!(low <= high)) return 0;
@@ -188,7 +189,7 @@ int clip_segments(const FacePair& pair, ManifoldPoint* out) {
     const Vec3 on_b = lerp(b.vertices[0], b.vertices[1], u);
     ManifoldPoint& point = out[points];
     const float gap = dot(on_b - on_a, pair.normal);
-    if (length_squared(on_b - on_a) > square(gap) + square(pair.sideways)) return 0;
+    if (length_squared(on_b - on_a) > square(gap) + square(pair.max_lateral_offset)) return 0;
     point.separation = gap - (pair.radius_a + pair.radius_b);
     if (!(point.separation <= pair.max_separation)) continue;
     point.position = 0.5f * ((on_a + pair.radius_a * pair.normal) + (on_b - pair.radius_b * pair.normal));
@@ -243,9 +244,9 @@ int reduce_points(ManifoldPoint* points, int count, Vec3 normal) {
     if (choose(2, widest, 1.0e-6f * farthest, kEqualSpan * widest)) {
       ++kept;
       const Vec3 p2 = points[chosen[2]].position;
-      const float turn = dot(beside, p2 - p0) > 0.0f ? -1.0f : 1.0f;
-      const Vec3 out01 = turn * beside, out12 = turn * cross(normal, p2 - p1),
-                 out20 = turn * cross(normal, p0 - p2);
+      const float winding = dot(beside, p2 - p0) > 0.0f ? -1.0f : 1.0f;
+      const Vec3 out01 = winding * beside, out12 = winding * cross(normal, p2 - p1),
+                 out20 = winding * cross(normal, p0 - p2);
       for (int i = 0; i < count; ++i) {
         const Vec3 p = points[i].position;
         value[i] = max(max(dot(out01, p - p0), dot(out12, p - p1)), dot(out20, p - p2));

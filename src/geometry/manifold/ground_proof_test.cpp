@@ -7,11 +7,11 @@
 //
 // Of planes all is proven. Of triangles one pair in two thousand may stay without proof: plates and needles at slivers of
 // triangles, and shapes that hang over the border of a mesh or a hole, where a manifold has one normal for all its points.
+#include "geometry/manifold/manifold.h"
+#include "geometry/query/nearest.h"
 #include "geometry/shape/cooked.h"
 #include "geometry/shape/height_field.h"
-#include "geometry/manifold/manifold.h"
 #include "geometry/shape/mesh.h"
-#include "geometry/query/nearest.h"
 #include "geometry/testing/surface_oracle.h"
 
 #include <gtest/gtest.h>

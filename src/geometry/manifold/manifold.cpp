@@ -90,7 +90,7 @@ void collide_plane(const Shape& plane, const Shape& b, const Transform& a_from_b
 }
 
 int collide_shapes(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
-                   PairCache& cache, LocalManifold* out, CachedTriangles* kept) {
+                   PairCache& cache, LocalManifold* out, CachedTriangles* triangles) {
   const bool convex_a = is_convex(a.kind), convex_b = is_convex(b.kind);
   if (convex_a && convex_b) {
     collide_convex(a, b, a_from_b, max_separation, cache, out[0]);
@@ -107,7 +107,7 @@ int collide_shapes(const Shape& a, const Shape& b, const Transform& a_from_b, fl
     collide_plane(first, second, first_from_second, max_separation, out[0]);
     count = out[0].count > 0 ? 1 : 0;
   } else {
-    count = collide_mesh(first, second, first_from_second, max_separation, out, kept);
+    count = collide_mesh(first, second, first_from_second, max_separation, out, triangles);
   }
   for (int i = 0; swapped && i < count; ++i) flip(out[i], a_from_b);
   return count;

@@ -14,12 +14,12 @@ namespace gyre {
 namespace boxes {
 namespace {
 
-// Separations along the face normals of the box with half extents `own`, in whose frame the other one's middle is `way` and
+// Separations along the face normals of the box with half extents `own`, in whose frame the other one's middle is `offset` and
 // its axes are `axes`.
-inline Floats face_separations(const float* own, const float* other, const float* way,
+inline Floats face_separations(const float* own, const float* other, const float* offset,
                                const float (*axes)[4]) {
   const Floats h = Floats::load(other);
-  return absolute(Floats::load(way)) - Floats::load(own) -
+  return absolute(Floats::load(offset)) - Floats::load(own) -
          (spread<0>(h) * absolute(Floats::load(axes[0])) + spread<1>(h) * absolute(Floats::load(axes[1])) +
           spread<2>(h) * absolute(Floats::load(axes[2])));
 }
@@ -34,9 +34,10 @@ struct FaceAxes {
   // Never what is not a number: of A's faces none is.
   float largest() const { return highest(max(of_b, of_a)); }
   // The first axis with at least this separation, which one of them has.
-  int first(Floats least) const {
+  int first(Floats threshold) const {
     constexpr std::uint32_t kLast = 1u << (kFirstEdge - 1);
-    return std::countr_zero((to_bits(of_a >= least) & kThree) | to_bits(of_b >= least) << kFirstB | kLast);
+    return std::countr_zero((to_bits(of_a >= threshold) & kThree) | to_bits(of_b >= threshold) << kFirstB |
+                            kLast);
   }
 };
 
@@ -50,9 +51,9 @@ struct EdgeRow {
     const Floats r1 = Floats::load(x.r[i1]), r2 = Floats::load(x.r[i2]), b = Floats::load(x.b);
     const Floats c = absolute(Floats::load(x.r[i]));
     const Floats apart = absolute(Floats(x.t[i2]) * r1 - Floats(x.t[i1]) * r2);
-    const Floats reach_a = Floats(x.a[i1]) * absolute(r2) + Floats(x.a[i2]) * absolute(r1);
-    const Floats reach_b = next(b) * after(c) + after(b) * next(c);
-    product = apart - reach_a - reach_b;
+    const Floats radius_a = Floats(x.a[i1]) * absolute(r2) + Floats(x.a[i2]) * absolute(r1);
+    const Floats radius_b = next(b) * after(c) + after(b) * next(c);
+    product = apart - radius_a - radius_b;
     squared = r1 * r1 + r2 * r2;
   }
 };
@@ -63,12 +64,12 @@ float shallow_edge(const Boxes& x, const Transform& a_from_b, int i, int j) {
   const DVec3 columns[3] = {rotate(q, DVec3{1, 0, 0}), rotate(q, DVec3{0, 1, 0}), rotate(q, DVec3{0, 0, 1})};
   const DVec3 edge_a{i == 0 ? 1.0 : 0.0, i == 1 ? 1.0 : 0.0, i == 2 ? 1.0 : 0.0};
   const DVec3 axis = cross(edge_a, columns[j]);
-  double reach = 0.0;
+  double radius = 0.0;
   for (int k = 0; k < 3; ++k) {
-    reach += double(x.a[k]) * absolute(axis[k]) + double(x.b[k]) * absolute(dot(columns[k], axis));
+    radius += double(x.a[k]) * absolute(axis[k]) + double(x.b[k]) * absolute(dot(columns[k], axis));
   }
   const double n = length(axis);
-  return n > 0.0 ? float((absolute(dot(DVec3(a_from_b.position), axis)) - reach) / n) : -kUnbounded;
+  return n > 0.0 ? float((absolute(dot(DVec3(a_from_b.position), axis)) - radius) / n) : -kUnbounded;
 }
 
 float edge_separation(const Boxes& x, const Transform& a_from_b, int i, int j) {
@@ -85,21 +86,22 @@ Axis search_edges(const Boxes& x, const Transform& a_from_b, float floor) {
   const Floats extents = Floats::load(x.a) + Floats::load(x.b) + absolute(Floats::load(x.t));
   const Floats rounding(kRounding * (extents[0] + extents[1] + extents[2]));
   alignas(16) float product[3][4], length[3][4];
-  std::uint32_t left = 0, steep = 0;  // four bits for each row
+  std::uint32_t remaining = 0, steep = 0;  // four bits for each row
   for (int i = 0; i < 3; ++i) {
     const EdgeRow row(x, i);
     const Floats root = sqrt(row.squared);
     const Mask<4> is_steep = row.squared >= kShallow;
     // Of steep ones what lies between 0 and the floor stays: it may be farther apart than allowed.
-    const Floats least = select(is_steep, Floats(min(floor, 0.0f)), Floats(floor)) * root;
-    const Mask<4> hopeless = (row.product + keep(~is_steep, rounding) <= least) | (row.squared <= kParallel);
-    left |= (to_bits(~hopeless) & kThree) << 4 * i;
+    const Floats threshold = select(is_steep, Floats(min(floor, 0.0f)), Floats(floor)) * root;
+    const Mask<4> hopeless =
+        (row.product + keep(~is_steep, rounding) <= threshold) | (row.squared <= kParallel);
+    remaining |= (to_bits(~hopeless) & kThree) << 4 * i;
     steep |= to_bits(is_steep) << 4 * i;
     row.product.store(product[i]), root.store(length[i]);
   }
   Axis best;
-  for (; left != 0; left &= left - 1) {
-    const int lane = std::countr_zero(left), i = lane / 4, j = lane % 4;
+  for (; remaining != 0; remaining &= remaining - 1) {
+    const int lane = std::countr_zero(remaining), i = lane / 4, j = lane % 4;
     const float separation =
         (steep >> lane & 1u) != 0 ? product[i][j] / length[i][j] : shallow_edge(x, a_from_b, i, j);
     if (separation > best.separation) best = {kFirstEdge + 3 * i + j, separation};
@@ -200,7 +202,8 @@ void collide_edges(const Boxes& x, const Transform& a_from_b, const Axis& found,
   // Not across each other: an end is nearest.
   if ((end_a != along_a || end_b != along_b) &&
       (found.separation > 0.0f ||
-       length(on_edge_b - on_edge_a) > Real((1.0f + kLost) * -found.separation + kMissed * thinnest(x))))
+       length(on_edge_b - on_edge_a) >
+           Real((1.0f + kDepthTolerance) * -found.separation + kMissTolerance * thinnest(x))))
     return;
   out.normal = Edges::to_float(normal);
   out.count = 1;
@@ -235,7 +238,7 @@ void collide_crossing(const Boxes& x, const Transform& a_from_b, const Axis& edg
   const Axis face = face_near_edges(x, normal);
   if (face.number != kNoAxis) {
     collide_face(x, face, max_separation, out);
-    if (stands_for_crossing(out, edges.separation, thinnest(x))) return;
+    if (replaces_crossing(out, edges.separation, thinnest(x))) return;
     out.count = 0;
   }
   if (EdgeRow(x, i).squared[edges.edge_b()] < kShallow) {
@@ -275,8 +278,8 @@ void collide_along(const Boxes& x, const Axis& found, const Pair& pair, PairCach
   } else {
     collide_face(x, found, pair.max_separation, out);
     // Nearest, or deepest, beside the face.
-    const float lost = deepest_of(out) - found.separation;
-    if (lost > kMissed * thinnest(x) + kLost * max(-found.separation, 0.0f)) out.count = 0;
+    const float excess = deepest_of(out) - found.separation;
+    if (excess > kMissTolerance * thinnest(x) + kDepthTolerance * max(-found.separation, 0.0f)) out.count = 0;
   }
   // Near, or even overlapping, but beside each other's faces.
   if (out.count == 0) collide_cores(pair.a, pair.b, pair.a_from_b, pair.max_separation, cache, out);
@@ -293,8 +296,8 @@ boxes::Axis find_box_axis(const Shape& a, const Shape& b, const Transform& a_fro
 }
 
 Vec3 box_axis_normal(const boxes::Axis& axis, const Transform& a_from_b) {
-  const Mat3 turn = to_matrix(a_from_b.orientation);
-  const Vec3 columns[3] = {turn.x, turn.y, turn.z};
+  const Mat3 rotation = to_matrix(a_from_b.orientation);
+  const Vec3 columns[3] = {rotation.x, rotation.y, rotation.z};
   const auto own = [](int k) {
     return Vec3{k == 0 ? 1.0f : 0.0f, k == 1 ? 1.0f : 0.0f, k == 2 ? 1.0f : 0.0f};
   };

@@ -57,7 +57,7 @@ constexpr FaceNames kFaces = [] {
 // A corner of the incident face over the reference face: its coordinates along the reference face, and in the place of the
 // third its height above it.
 struct Corner {
-  alignas(16) float place[4];
+  alignas(16) float position[4];
   std::uint32_t feature;
   std::uint32_t edge;  // the edge that leaves it: one of the incident's 12, or kSide + one of the four sides
 };
@@ -105,26 +105,27 @@ struct Sides {
 void cut(const Polygon& in, int along, float sign, float limit, std::uint32_t side, const Sides& sides,
          Corner*& made, Polygon& out) {
   const Mask<4> lane = only(along);
-  int kept = 0;
-  float distance = sign * in.corners[0]->place[along] - limit;
+  int count = 0;
+  float distance = sign * in.corners[0]->position[along] - limit;
   bool inside = distance <= 0.0f;
   for (int i = 0; i < in.count; ++i) {
     const Corner& from = *in.corners[i];
     const Corner& to = *in.corners[i + 1];
-    const float distance_to = sign * to.place[along] - limit;
+    const float distance_to = sign * to.position[along] - limit;
     const bool inside_to = distance_to <= 0.0f;
-    if (inside) out.corners[kept++] = &from;
-    if (inside != inside_to && kept < 8) {
-      const Floats start = Floats::load(from.place), t(distance / (distance - distance_to));
-      select(lane, Floats(sign * limit), start + t * (Floats::load(to.place) - start)).store(made->place);
+    if (inside) out.corners[count++] = &from;
+    if (inside != inside_to && count < 8) {
+      const Floats start = Floats::load(from.position), t(distance / (distance - distance_to));
+      select(lane, Floats(sign * limit), start + t * (Floats::load(to.position) - start))
+          .store(made->position);
       made->feature = sides.name(from.edge, side);
       made->edge = inside ? kSide + side : from.edge;
-      out.corners[kept++] = made++;
+      out.corners[count++] = made++;
     }
     distance = distance_to, inside = inside_to;
   }
-  out.count = kept;
-  out.corners[kept] = out.corners[0];
+  out.count = count;
+  out.corners[count] = out.corners[0];
 }
 
 // The incident face cut to the reference rectangle.
@@ -137,7 +138,7 @@ class FaceClip {
   int clip(int k, float max_separation, ManifoldPoint* out);
 
  private:
-  void place_corners(int k, Floats* places);
+  void compute_corners(int k, Floats* positions);
   int write(float max_separation, ManifoldPoint* out) const;
 
   const Roles& roles_;
@@ -151,23 +152,23 @@ class FaceClip {
 };
 
 // The four corners of the incident face whose normal is +-axis k, in order around it.
-void FaceClip::place_corners(int k, Floats* places) {
+void FaceClip::compute_corners(int k, Floats* positions) {
   const bool positive = !(facing_ * roles_.m[axis_][k] > 0.0f);
   // Along the normal of the reference face: upwards from that face.
   const Mask<4> normal = only(axis_);
-  const Floats turn = select(normal, Floats(facing_), Floats(1.0f)),
+  const Floats to_up = select(normal, Floats(facing_), Floats(1.0f)),
                top = keep(normal, Floats::load(roles_.reference));
   const auto half = [&](int i) { return Floats(roles_.incident[i]) * Floats::load(roles_.axes[i]); };
   const Floats out = half(k), middle = Floats::load(roles_.c);
-  const Floats center = turn * (positive ? middle + out : middle - out) - top;
-  const Floats first = turn * half(kNext[k]), second = turn * half(kAfter[k]);
-  places[0] = center + first + second;
-  places[1] = center - first + second;
-  places[2] = center - first - second;
-  places[3] = center + first - second;
+  const Floats center = to_up * (positive ? middle + out : middle - out) - top;
+  const Floats first = to_up * half(kNext[k]), second = to_up * half(kAfter[k]);
+  positions[0] = center + first + second;
+  positions[1] = center - first + second;
+  positions[2] = center - first - second;
+  positions[3] = center + first - second;
   const std::uint32_t kind = roles_.reference_is_a ? feature_vertex_b(0) : feature_vertex_a(0);
   for (int i = 0; i < 4; ++i) {
-    places[i].store(corners_[i].place);
+    positions[i].store(corners_[i].position);
     corners_[i].feature = kind | kFaces.corner[k][positive][i];
     corners_[i].edge = kFaces.edge[k][positive][i];
   }
@@ -179,10 +180,10 @@ int FaceClip::write(float max_separation, ManifoldPoint* out) const {
   int count = 0;
   for (int i = 0; i < polygon_->count && count < 8; ++i) {
     const Corner& corner = *polygon_->corners[i];
-    const float separation = corner.place[axis_];
+    const float separation = corner.position[axis_];
     if (!(separation <= max_separation)) continue;
-    const Floats place = Floats::load(corner.place);
-    out[count].position = to_vec3(select(normal, top + half * place, place));
+    const Floats position = Floats::load(corner.position);
+    out[count].position = to_vec3(select(normal, top + half * position, position));
     out[count].separation = separation;
     out[count++].feature = corner.feature;
   }
@@ -190,11 +191,11 @@ int FaceClip::write(float max_separation, ManifoldPoint* out) const {
 }
 
 int FaceClip::clip(int k, float max_separation, ManifoldPoint* out) {
-  Floats places[4];
-  place_corners(k, places);
+  Floats positions[4];
+  compute_corners(k, positions);
   const Floats h = Floats::load(roles_.reference);
-  const Floats low = min(min(places[0], places[1]), min(places[2], places[3])),
-               high = max(max(places[0], places[1]), max(places[2], places[3]));
+  const Floats low = min(min(positions[0], positions[1]), min(positions[2], positions[3])),
+               high = max(max(positions[0], positions[1]), max(positions[2], positions[3]));
   const std::uint32_t sideways = kThree & ~(1u << axis_);
   if (((to_bits(low > h) | to_bits(high < -h)) & sideways) != 0) return 0;
   polygon_ = polygons_;
@@ -249,10 +250,10 @@ void collide_face(const Boxes& x, const Axis& found, float max_separation, Local
   }
   const Floats s0 = Floats::load(x.s[0]), s1 = Floats::load(x.s[1]), s2 = Floats::load(x.s[2]),
                center = Floats::load(x.t);
-  const auto turn = [&](Floats v) { return s0 * spread<0>(v) + s1 * spread<1>(v) + s2 * spread<2>(v); };
-  out.normal = normalized(to_vec3(turn(-normal)));
+  const auto rotated = [&](Floats v) { return s0 * spread<0>(v) + s1 * spread<1>(v) + s2 * spread<2>(v); };
+  out.normal = normalized(to_vec3(rotated(-normal)));
   for (int i = 0; i < out.count; ++i)
-    out.points[i].position = to_vec3(turn(three(out.points[i].position)) + center);
+    out.points[i].position = to_vec3(rotated(three(out.points[i].position)) + center);
 }
 
 }  // namespace gyre::boxes

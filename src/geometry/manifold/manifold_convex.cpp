@@ -14,9 +14,9 @@ bool is_rounded(const Shape& shape) { return shape.kind == ShapeKind::box && sha
 
 // is_finite() for all seven numbers at once: what is finite less itself is 0.
 bool all_finite(const Transform& t) {
-  const Wide<4> place = Wide<4>::of(Wide<4>::Float{t.position.x, t.position.y, t.position.z, 0.0f});
-  const Wide<4> turn = Wide<4>::load_unaligned(&t.orientation.x);
-  return all((place - place) + (turn - turn) == 0.0f);
+  const Wide<4> position = Wide<4>::of(Wide<4>::Float{t.position.x, t.position.y, t.position.z, 0.0f});
+  const Wide<4> rotation = Wide<4>::load_unaligned(&t.orientation.x);
+  return all((position - position) + (rotation - rotation) == 0.0f);
 }
 
 constexpr ContactMethod R = ContactMethod::round, B = ContactMethod::boxes, P = ContactMethod::polyhedra,

@@ -1,9 +1,9 @@
 // Closed forms for spheres and capsules. See manifold_round.h.
 #include "geometry/manifold/manifold_round.h"
 
-#include "geometry/manifold/clip.h"
 #include "geometry/distance/closest.h"
 #include "geometry/distance/gjk.h"
+#include "geometry/manifold/clip.h"
 #include "geometry/shape/hull.h"
 
 namespace gyre {
@@ -91,7 +91,7 @@ SurfacePoint nearest_on_cone(DVec3 p, double radius, double h) {
   return {q.at(q.r - above_mantle * n_r, q.y - above_mantle * n_y), q.at(n_r, n_y), above_mantle};
 }
 
-SurfacePoint nearest_on_hull(const Shape& shape, DVec3 p, double reach) {
+SurfacePoint nearest_on_hull(const Shape& shape, DVec3 p, double max_distance) {
   const Hull& hull = *shape.hull;
   const Vec3 near_p = to_float(p);
   int face = 0;
@@ -108,7 +108,7 @@ SurfacePoint nearest_on_hull(const Shape& shape, DVec3 p, double reach) {
   const DVec3 normal(plane.normal);
   const double best = dot(normal, p) - double(plane.offset);
   const SurfacePoint over_face{p - best * normal, normal, best};
-  if (best <= 0.0 || best > reach) return over_face;
+  if (best <= 0.0 || best > max_distance) return over_face;
   // Outside: over the face's polygon its normal is exact, else an edge or vertex is nearest.
   const std::uint32_t begin = hull.face_offsets[std::size_t(face)],
                       end = hull.face_offsets[std::size_t(face) + 1];
@@ -121,13 +121,13 @@ SurfacePoint nearest_on_hull(const Shape& shape, DVec3 p, double reach) {
   if (over) return over_face;
   const Shape point{};
   const CorePair pair(shape, point, p, {});
-  const CoreDistance found = core_distance(pair, reach, plane.normal);
+  const CoreDistance found = core_distance(pair, max_distance, plane.normal);
   if (found.beyond) return {p - best * normal, normal, double(kUnbounded)};
   if (found.overlap) return over_face;
   return {found.on_a, found.normal, found.distance};
 }
 
-SurfacePoint nearest_on_core(const Shape& shape, DVec3 p, double reach) {
+SurfacePoint nearest_on_core(const Shape& shape, DVec3 p, double max_distance) {
   const auto h = double(shape.extents.y), radius = double(shape.radius);
   switch (shape.kind) {
     case ShapeKind::box:
@@ -140,7 +140,7 @@ SurfacePoint nearest_on_core(const Shape& shape, DVec3 p, double reach) {
     case ShapeKind::cone:
       return nearest_on_cone(p, radius, h);
     case ShapeKind::hull:
-      return nearest_on_hull(shape, p, reach);
+      return nearest_on_hull(shape, p, max_distance);
     default:
       return outside(p, {}, {0, 1, 0});
   }
@@ -154,10 +154,11 @@ struct BallContact {
 // `sphere_at` is the sphere's centre in the shape's frame. The result's normal points from the shape to the sphere.
 bool touch_sphere(const Shape& shape, float sphere_radius, DVec3 sphere_at, float max_separation,
                   BallContact& out) {
-  const auto radius = double(core_radius(shape)), ball = double(sphere_radius), most = double(max_separation);
-  const SurfacePoint near = nearest_on_core(shape, sphere_at, radius + ball + most);
+  const auto radius = double(core_radius(shape)), ball = double(sphere_radius),
+             max_gap = double(max_separation);
+  const SurfacePoint near = nearest_on_core(shape, sphere_at, radius + ball + max_gap);
   out.separation = near.distance - radius - ball;
-  if (!(out.separation <= most)) return false;
+  if (!(out.separation <= max_gap)) return false;
   out.position = near.point + (radius + 0.5 * out.separation) * near.normal;
   out.normal = near.normal;
   return true;
@@ -172,24 +173,24 @@ void collide_capsules(const Shape& a, const Shape& b, const Transform& a_from_b,
                                     t = a_from_b.position;
   fa.vertices[0] = -up, fa.vertices[1] = up;
   fb.vertices[0] = t - up_b, fb.vertices[1] = t + up_b;
-  const SegmentPair near =
+  const SegmentPair closest =
       closest_of_segments(DVec3(-up), DVec3(up), DVec3(fb.vertices[0]), DVec3(fb.vertices[1]));
-  const DVec3 way = near.on_b - near.on_a;
-  const double gap = length(way);
+  const DVec3 between = closest.on_b - closest.on_a;
+  const double gap = length(between);
   out.points[0].separation = float(gap - double(a.radius) - double(b.radius));
   if (!(out.points[0].separation <= max_separation)) return;
   if (gap > 1.0e-9 * double(a.extents.y + b.extents.y + a.radius)) {
-    out.normal = to_float(way / gap);
+    out.normal = to_float(between / gap);
   } else {
     // Axes that cross: across both, from A to B's centre.
-    const Vec3 sideways = any_perpendicular({0, 1, 0});
-    out.normal = normalized(cross(up, up_b), sideways);
+    const Vec3 perpendicular = any_perpendicular({0, 1, 0});
+    out.normal = normalized(cross(up, up_b), perpendicular);
     if (dot(out.normal, t) < 0.0f) out.normal = -out.normal;
   }
   const FacePair pair{
-      &fa, &fb, out.normal, a.radius, b.radius, max_separation, kSideways * min(a.radius, b.radius)};
+      &fa, &fb, out.normal, a.radius, b.radius, max_separation, kMaxLateralOffset * min(a.radius, b.radius)};
   const float sine_squared = length_squared(cross(up, up_b)), nearest = out.points[0].separation;
-  if (sine_squared <= square(kSideBySide * a.extents.y * b.extents.y)) {
+  if (sine_squared <= square(kParallelSegmentSine * a.extents.y * b.extents.y)) {
     out.count = clip_segments(pair, out.points);
     // One behind the other, end to end, they share no stretch but what rounding makes of one.
     const float slack = kMissedByEnds * min(a.radius, b.radius);
@@ -197,8 +198,8 @@ void collide_capsules(const Shape& a, const Shape& b, const Transform& a_from_b,
   }
   out.count = 1;
   out.points[0].separation = nearest;
-  out.points[0].position =
-      0.5f * ((to_float(near.on_a) + a.radius * out.normal) + (to_float(near.on_b) - b.radius * out.normal));
+  out.points[0].position = 0.5f * ((to_float(closest.on_a) + a.radius * out.normal) +
+                                   (to_float(closest.on_b) - b.radius * out.normal));
   out.points[0].feature = kFeatureNearest;
 }
 
@@ -214,10 +215,10 @@ void collide_round(const Shape& a, const Shape& b, const Transform& a_from_b, fl
     if (!touch_sphere(a, b.radius, DVec3(a_from_b.position), max_separation, contact)) return;
   } else {
     const DVec3 position(a_from_b.position);
-    const DQuat turn = normalized(to_double(a_from_b.orientation));
-    if (!touch_sphere(b, a.radius, rotate_inverse(turn, -position), max_separation, contact)) return;
-    contact.normal = -rotate(turn, contact.normal);
-    contact.position = rotate(turn, contact.position) + position;
+    const DQuat rotation = normalized(to_double(a_from_b.orientation));
+    if (!touch_sphere(b, a.radius, rotate_inverse(rotation, -position), max_separation, contact)) return;
+    contact.normal = -rotate(rotation, contact.normal);
+    contact.position = rotate(rotation, contact.position) + position;
   }
   out.count = 1;
   out.normal = to_float(contact.normal);

@@ -69,7 +69,7 @@ void walk_triangles(const Shape& surface, const LocalRay& ray, Vec3 half, double
   if (!clip_to_surface(surface, ray, half, reach, from, to)) return;
   // Moved near the surface, so that the floats of the walk are no larger than its coordinates.
   const double piece = to - from;
-  const BoxLine line(ray.origin + from * ray.way, piece * ray.way, half);
+  const BoxRay line(ray.origin + from * ray.way, piece * ray.way, half);
   const auto piece_reach = [&](double whole) {
     return piece > 0.0 ? float(clamp((whole - from) / piece, 0.0, 1.0)) * 1.000001f + 1.0e-30f : 1.0f;
   };

@@ -108,17 +108,17 @@ Split TreeBuilder::best_split(const Range& range) const {
 
 // Moves the left items to the front, both sides in their old order. Returns how many are left.
 std::uint32_t TreeBuilder::partition(const Range& range, const Split& split) {
-  std::uint32_t left = 0, right = 0;
+  std::uint32_t left_total = 0, right = 0;
   for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
     const std::uint32_t item = items[i];
     if (bin_of(middle(item)[split.axis], split.low, split.scale) <= split.bin) {
-      items[range.first + left++] = item;
+      items[range.first + left_total++] = item;
     } else {
       scratch[right++] = item;
     }
   }
-  for (std::uint32_t i = 0; i < right; ++i) items[range.first + left + i] = scratch[i];
-  return left;
+  for (std::uint32_t i = 0; i < right; ++i) items[range.first + left_total + i] = scratch[i];
+  return left_total;
 }
 
 void TreeBuilder::divide(const Range& range, bool by_halves, Range& left, Range& right) {
@@ -130,8 +130,8 @@ void TreeBuilder::divide(const Range& range, bool by_halves, Range& left, Range&
 }
 
 // Splits a node's run into at most eight, always the one with the largest surface that is still too long for a leaf.
-int split_children(TreeBuilder& builder, const Range& whole, bool by_halves, Range* children) {
-  children[0] = whole;
+int split_children(TreeBuilder& builder, const Range& range_of_node, bool by_halves, Range* children) {
+  children[0] = range_of_node;
   int count = 1;
   while (count < StaticTree::kWidth) {
     int pick = -1;

@@ -92,12 +92,12 @@ bool holds(const Manifold& manifold, Vec3 direction, Vec3 outward, Vec3 leaving,
 void forget_impulses(Manifold& manifold) {
   for (int k = 0; k < manifold.count; ++k) {
     manifold.points[k].normal_impulse = 0.0f;
-    manifold.points[k].held = 0.0f;
+    manifold.points[k].mean_impulse = 0.0f;
   }
   manifold.friction_impulse = {};
   manifold.rolling_impulse = {};
   manifold.twist_impulse = 0.0f;
-  manifold.age = 0.0f;
+  manifold.load_age = 0.0f;
   manifold.sliding = 0;
 }
 
