@@ -10,10 +10,10 @@ namespace gyre {
 namespace {
 
 constexpr int kMaxIterations = 64;
-// Relative gap of the squared distance at which the search ends: the direction is then within about 4e-5 rad on curved
-// shapes far apart, better on near ones, and exact on polyhedra.
+// Relative gap of the squared distance at which the search ends. The direction is then exact on polyhedra, within about
+// 4e-5 rad on distant curved shapes, and better on close ones.
 constexpr double kGap = 1.0e-9;
-// Cores nearer than this part of their size touch.
+// Cores closer than this fraction of their size touch.
 constexpr double kTouch = 1.0e-10;
 
 double core_size(const Shape& shape) {
@@ -41,7 +41,7 @@ DVec3 farthest_corner(const DVec3* triangle, DVec3 direction) {
 
 bool same(DVec3 a, DVec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
-// The simplex nearest to the origin that `near` uses, compacted.
+// Compacts the simplex to the corners that `near` uses.
 void drop_unused(DifferencePoint* simplex, int& count, SimplexPoint& near) {
   int used = 0;
   for (int i = 0; i < count; ++i) {
@@ -82,7 +82,7 @@ SimplexPoint nearest_to_origin(const DifferencePoint* s, int count, bool outside
   }
 }
 
-// In place of a call: it is asked twice in every round.
+// Inline, because each iteration calls it twice.
 GYRE_INLINE DVec3 support_of(const Shape& shape, DVec3 d) {
   const double h = double(shape.extents.y);
   switch (shape.kind) {
@@ -114,7 +114,7 @@ double largest_component(DVec3 v) { return max(absolute(v.x), max(absolute(v.y),
 
 DVec3 core_support(const Shape& shape, DVec3 d) { return support_of(shape, d); }
 
-// In double, from a quaternion brought to length 1: B stays the rigid body that the float quaternion means.
+// The quaternion is normalised in double, so that B stays a rigid body.
 CorePair::CorePair(const Shape& a, const Shape& b, const Transform& a_from_b)
     : CorePair(a, b, DVec3(a_from_b.position), normalized(to_double(a_from_b.orientation))) {}
 
@@ -157,14 +157,14 @@ namespace {
 
 // A core over a face of a box, in the box's frame.
 struct OverFace {
-  DVec3 normal;  // of the face above which the core's middle lies highest
-  DVec3 lowest;  // the core's lowest point above it,
-  DVec3 foot;    // and what is below that in the face's plane
+  DVec3 normal;  // of the face above which the centre of the core lies highest
+  DVec3 lowest;  // the lowest point of the core above that face
+  DVec3 foot;    // the projection of `lowest` onto the plane of the face
   double height = 0.0;
-  bool is_within = false;  // the foot is in the face
+  bool is_within = false;  // the foot lies inside the face
 };
 
-// `farthest(direction)`: of the core. False if its middle is above no face.
+// `farthest(direction)` is the support point of the core. Returns false if its centre lies above no face.
 template <class Farthest>
 bool project_on_face(DVec3 half, DVec3 middle, const Farthest& farthest, OverFace& over) {
   const double x = absolute(middle.x) - half.x, y = absolute(middle.y) - half.y,
@@ -182,7 +182,7 @@ bool project_on_face(DVec3 half, DVec3 middle, const Farthest& farthest, OverFac
   return true;
 }
 
-// Of a hull, what is farthest is found in float.
+// The support point of a hull is chosen in float.
 bool has_exact_support(const Shape& shape) { return shape.kind != ShapeKind::hull; }
 
 }  // namespace
@@ -199,7 +199,7 @@ bool CorePair::find_over_face(double max_distance, CoreDistance& out) const {
   if (b_->kind == ShapeKind::box && has_exact_support(*a_)) {
     const auto farthest = [&](DVec3 d) { return to_b(support_of(*a_, from_b(d)) - position_); };
     if (project_on_face(DVec3(b_->extents), to_b(-position_), farthest, over) && decides(over)) {
-      out.normal = DVec3{} - from_b(over.normal);  // no -0
+      out.normal = DVec3{} - from_b(over.normal);  // avoids -0
       out.on_a = from_b(over.lowest) + position_;
       out.on_b = from_b(over.foot) + position_;
       return true;
@@ -229,12 +229,12 @@ CoreDistance core_distance(const CorePair& pair, double max_distance, Vec3 guess
   double n_length = length(n);
   n = n_length > 0.0 ? n / n_length : DVec3{0, 1, 0};
 
-  // Of the directions looked at, the one along which the cores are farthest apart: their distance is not less. A sliver
-  // of a simplex may name another that does not part them at all.
+  // The tested direction with the largest separation. It is a lower bound of the distance. The simplex may end on a
+  // sliver whose direction does not separate the cores at all.
   DVec3 best = n;
   double best_bound = -1.0e300, bound = 0.0;
   DifferencePoint* simplex = out.simplex;
-  SimplexPoint near;  // of the simplex to the origin
+  SimplexPoint near;  // closest point of the simplex to the origin
   double squared = 0.0;
   int count = 0;
   const double touch = kTouch * pair.size();
@@ -257,12 +257,12 @@ CoreDistance core_distance(const CorePair& pair, double max_distance, Vec3 guess
       for (int i = 0; i < count; ++i) known = known || same(simplex[i].way, w.way);
       if (known) break;
     }
-    // Behind the simplex: what is not taken is not counted.
+    // The point is stored behind the simplex. It belongs to the simplex only once it is counted.
     simplex[count] = w;
-    // Where some direction parts them no simplex holds the origin, whatever rounding makes of it.
+    // If some direction separates the cores, no simplex contains the origin, whatever rounding says.
     SimplexPoint next_near = nearest_to_origin(simplex, count + 1, best_bound > touch);
     const double next_squared = length_squared(next_near.point);
-    // Rounding has the last word: what does not come nearer is as near as it gets.
+    // The search ends when rounding stops its progress.
     if (count > 0 && next_near.corners != 15 && next_squared >= squared) break;
     ++count;
     drop_unused(simplex, count, next_near);

@@ -10,15 +10,15 @@ namespace {
 
 constexpr int kMaxPolytopeVertices = 100;
 constexpr int kMaxPolytopeFaces = 2 * kMaxPolytopeVertices;
-// The search ends when the best face moves out by less than this part of the shapes' size: on curved shapes the normal is
-// then within about 5e-5 rad.
+// The search ends when the best face moves out by less than this fraction of the size of the shapes. On curved shapes
+// the normal is then within about 5e-5 rad.
 constexpr double kDepthGap = 1.0e-9;
-// What is thinner than this part of the size counts as flat.
+// A tetrahedron thinner than this fraction of the size counts as flat.
 constexpr double kFlat = 1.0e-9;
 
 struct Face {
   std::uint8_t v[3];         // counter-clockwise seen from outside
-  std::uint8_t neighbor[3];  // across the edge from v[i] to v[i + 1]
+  std::uint8_t neighbor[3];  // the face across the edge from v[i] to v[i + 1]
   bool alive;
   bool visible;
   DVec3 normal;     // outward, unit
@@ -26,33 +26,33 @@ struct Face {
 };
 static_assert(kMaxPolytopeFaces <= 256 && kMaxPolytopeVertices <= 256);
 
-// Cosine to the found normal of faces that may hold the witness points.
+// Cosine between the found normal and the normals of faces that may contain the witness points.
 constexpr double kSameSide = 0.999;
-// Cosine to the best normal of faces that are still worked on when memory runs short.
+// Cosine between the best normal and the normals of faces that are still expanded when memory runs short.
 constexpr double kNearBest = 0.9;
 
-// What is farther by this factor is so in spite of rounding.
+// Factor on a squared distance that no rounding error reaches.
 constexpr double kSurelyFarther = 1.001;
 
-// A face without area: it closes the surface but says nothing about the distance.
+// Distance of a face without area. Such a face closes the surface and says nothing about the distance.
 constexpr double kNoDistance = 1.0e300;
 
 class ExpandingPolytope {
  public:
   explicit ExpandingPolytope(const CorePair& pair) : pair_(pair) {}
 
-  // A tetrahedron from the points of `start` and of the shapes' extreme points. False if B - A is flat; then `flat_normal`
-  // is a direction across it.
+  // Builds a tetrahedron from the points of `start` and from extreme points of the shapes. Returns false if B - A is
+  // flat; `flat_normal` is then a direction across it.
   bool start(const CoreDistance& start, DVec3& flat_normal);
-  // The live face nearest to the origin; and of those that look along `outward` within the cosine. -1 if there is none.
+  // The live face closest to the origin, of all faces or of those within a cosine of `outward`. -1 if there is none.
   int nearest() const;
   int nearest(DVec3 outward, double cosine) const;
   int vertex_count() const { return vertex_count_; }
-  // Adds a point outside `face`. False when the surface cannot take it (memory, or rounding broke the horizon).
+  // Adds a point outside `face`. Returns false if the surface cannot take it (memory, or rounding broke the horizon).
   bool add(const DifferencePoint& point, int face);
 
   const Face& face(int i) const { return faces_[i]; }
-  // The pair of points behind the surface's point nearest to `target`, among faces that look that way.
+  // The pair of points behind the surface point closest to `target`, among faces that look along `outward`.
   void witness(DVec3 target, DVec3 outward, DVec3& on_a, DVec3& on_b) const;
 
  private:
@@ -61,14 +61,14 @@ class ExpandingPolytope {
   bool take_extreme(DVec3 direction, int count, double threshold);
 
   const CorePair& pair_;
-  // Not cleared: only the counted ones are ever read.
+  // Not cleared: only the counted elements are read.
   union {
     DifferencePoint vertices_[kMaxPolytopeVertices];
   };
   union {
     Face faces_[kMaxPolytopeFaces];
   };
-  double distances_[kMaxPolytopeFaces];  // of live faces; kNoDistance where there is none
+  double distances_[kMaxPolytopeFaces];  // of live faces; kNoDistance for all others
   int vertex_count_ = 0;
   int face_count_ = 0;
   int free_[kMaxPolytopeFaces];
@@ -86,7 +86,7 @@ int ExpandingPolytope::new_face(int a, int b, int c) {
   const double area = length(n), longest = max(dot(u, u), max(dot(v, v), length_squared(v - u)));
   if (area > 1.0e-13 * longest) {
     face.normal = n / area;
-    // From the corner nearest to the origin: the least rounding.
+    // The corner closest to the origin gives the smallest rounding error.
     DVec3 corner = p;
     if (length_squared(vertices_[b].way) < length_squared(corner)) corner = vertices_[b].way;
     if (length_squared(vertices_[c].way) < length_squared(corner)) corner = vertices_[c].way;
@@ -99,8 +99,8 @@ int ExpandingPolytope::new_face(int a, int b, int c) {
   return i;
 }
 
-// Puts the extreme point along +-direction behind the first `count` ones if it is farther than `threshold` from vertex 0
-// along it.
+// Writes the extreme point along +-direction behind the first `count` vertices, if it is farther than `threshold` from
+// vertex 0 along the direction.
 bool ExpandingPolytope::take_extreme(DVec3 direction, int count, double threshold) {
   const DVec3 origin = vertices_[0].way;
   const DifferencePoint up = pair_.support(direction), down = pair_.support(-direction);
@@ -110,7 +110,7 @@ bool ExpandingPolytope::take_extreme(DVec3 direction, int count, double threshol
   return true;
 }
 
-// From `known` points that span a point, line or plane to four that span a volume.
+// Extends `known` points that span a point, a line or a plane to four points that span a volume.
 bool ExpandingPolytope::extend(int known, DVec3& flat_normal) {
   const double thin = kFlat * pair_.size();
   const DVec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -140,7 +140,7 @@ bool ExpandingPolytope::extend(int known, DVec3& flat_normal) {
 }
 
 bool ExpandingPolytope::start(const CoreDistance& start, DVec3& flat_normal) {
-  // Take over the corners of GJK's simplex that are well apart.
+  // Take the corners of the GJK simplex that are well apart.
   const double thin = 1.0e-6 * pair_.size();
   int known = 0;
   for (int i = 0; i < start.simplex_count; ++i) {
@@ -202,7 +202,7 @@ bool ExpandingPolytope::add(const DifferencePoint& point, int first) {
   if (vertex_count_ == kMaxPolytopeVertices) return false;
   const int apex = vertex_count_;
   vertices_[vertex_count_++] = point;
-  // Flood over the faces that the point lies above; what they border on is the horizon.
+  // Flood over the faces that the point lies above. The edges at their border are the horizon.
   std::uint8_t visible_faces[kMaxPolytopeFaces];
   int visible_count = 0;
   struct Edge {
@@ -217,7 +217,7 @@ bool ExpandingPolytope::add(const DifferencePoint& point, int first) {
       const int beyond = faces_[visible_faces[k]].neighbor[e];
       Face& other = faces_[beyond];
       if (other.visible) continue;
-      // A face without area goes with whatever surrounds it.
+      // A face without area goes with the faces around it.
       if (other.distance == kNoDistance || dot(other.normal, point.way) > other.distance) {
         other.visible = true;
         visible_faces[visible_count++] = std::uint8_t(beyond);
@@ -236,7 +236,7 @@ bool ExpandingPolytope::add(const DifferencePoint& point, int first) {
     --vertex_count_;
     return false;
   };
-  // Each corner of the horizon must be left once and reached once, or the surface would fold.
+  // At each corner of the horizon exactly one edge must start and one must end, or the surface would fold.
   std::int16_t starting_at[kMaxPolytopeVertices], ending_at[kMaxPolytopeVertices];
   for (int i = 0; i < vertex_count_; ++i) starting_at[i] = ending_at[i] = -1;
   for (int k = 0; k < horizon_count; ++k) {
@@ -269,9 +269,9 @@ bool ExpandingPolytope::add(const DifferencePoint& point, int first) {
 
 void ExpandingPolytope::witness(DVec3 target, DVec3 outward, DVec3& on_a, DVec3& on_b) const {
   double squared_limit = kNoDistance;
-  // A flat side of the difference is many triangles: the one under which the target lies holds the pair. A face that looks
-  // the other way may be as near (the way out is as long on both sides) but holds other points; it serves only when the
-  // face that gave the direction has been worked on since.
+  // A flat side of the difference consists of many triangles; the one below the target has the pair. A face that looks
+  // the other way may be as close (both exits may be equally long) but has other points. It serves only if the face
+  // that gave the direction has been expanded since.
   double side = -2.0;
   for (int i = 0; i < face_count_; ++i) {
     if (faces_[i].alive && faces_[i].distance < kNoDistance) side = max(side, dot(faces_[i].normal, outward));
@@ -280,7 +280,7 @@ void ExpandingPolytope::witness(DVec3 target, DVec3 outward, DVec3& on_a, DVec3&
   for (int i = 0; i < face_count_; ++i) {
     const Face& face = faces_[i];
     if (!face.alive || face.distance == kNoDistance || dot(face.normal, outward) < side) continue;
-    // No point of a face is nearer than its plane.
+    // No point of a face is closer than its plane.
     if (square(dot(face.normal, target) - face.distance) > kSurelyFarther * squared_limit) continue;
     const DifferencePoint &a = vertices_[face.v[0]], &b = vertices_[face.v[1]], &c = vertices_[face.v[2]];
     const SimplexPoint near = closest_on_triangle(target, a.way, b.way, c.way);
@@ -292,10 +292,11 @@ void ExpandingPolytope::witness(DVec3 target, DVec3 outward, DVec3& on_a, DVec3&
   }
 }
 
-// Flat differences (two segments, a point and a square ...) overlap without depth: the way out is across.
+// Flat differences (two segments, a point and a square ...) overlap without depth. The shortest exit is perpendicular
+// to them.
 CorePenetration across(const CorePair& pair, const CoreDistance& start, DVec3 normal) {
   CorePenetration out;
-  // The side on which the two points of the support lie nearer, towards B's centre when equal.
+  // The side on which the support is closer, or the one towards B's centre if both are equal.
   if (dot(pair.center_of_b(), normal) < 0.0) normal = -normal;
   const double forward = pair.separation(normal), backward = pair.separation(-normal);
   out.normal = forward >= backward ? normal : -normal;
@@ -316,8 +317,8 @@ CorePenetration core_penetration(const CorePair& pair, const CoreDistance& start
   const double gap = kDepthGap * pair.size();
   while (true) {
     ++best.iterations;
-    // Where a whole ring of directions is equally good (a capsule inside a cone, on one axis) the search would spread over
-    // all of it. Past half of the memory it stays near the best direction found.
+    // If a whole ring of directions is equally good (a capsule inside a cone, on one axis), the search would spread
+    // over all of it. Past half of the memory it stays close to the best direction.
     const bool everywhere = polytope.vertex_count() < kMaxPolytopeVertices / 2;
     const int i = everywhere ? polytope.nearest() : polytope.nearest(-best.normal, kNearBest);
     if (i < 0) break;
@@ -325,7 +326,7 @@ CorePenetration core_penetration(const CorePair& pair, const CoreDistance& start
     if (face.distance == kNoDistance) break;
     const DifferencePoint w = pair.support(face.normal);
     const double depth = dot(w.way, face.normal);
-    // `depth` is the depth along this normal whatever else the polytope looks like.
+    // This is the depth along the normal, whatever the rest of the polytope looks like.
     if (depth < best.depth) {
       best.depth = depth;
       best.normal = -face.normal;

@@ -9,24 +9,25 @@
 namespace gyre {
 namespace {
 
-// How much better an axis must be to replace the favoured one: a part of the depth and of the thinner shape's inner radius.
+// How much better an axis must be to replace the favoured one: fractions of the depth and of the smaller inner radius.
 constexpr float kDepthBias = 0.05f, kSizeBias = 1.0e-3f;
-// Squared sine between two edges below which they have no axis of their own.
+// Squared sine below which two edges have no axis of their own.
 constexpr double kParallel = 1.0e-8;
-// Squared sine below which float rounding would show in their axis.
+// Squared sine below which rounding to float would show in the axis of two edges.
 constexpr float kShallow = 1.0e-2f;
-// Tie margin of the edges' distance test, relative to the shapes' size.
+// Margin of the height test of edges, relative to the size of the shapes.
 constexpr float kHeightMargin = 1.0e-4f;
-// How far a corner may lie beyond the edge that is outermost, of the largest coordinate.
+// How far a corner may lie beyond the outermost edge, relative to the largest coordinate.
 constexpr float kOutermost = 1.0e-5f;
-// What rounding, kOutermost and the corners of faces that lie off their plane add to a separation at most, of the sizes' sum.
+// Largest error of a separation from rounding, kOutermost and corners off the planes of their faces, relative to the
+// sum of the sizes.
 constexpr float kRounding = 3.0e-5f;
 
 constexpr int kLanes = kPolytopeLanes;
 using Floats = Wide<kLanes>;
 
-// The best face of `reference` against `other`, both in reference's frame except that other's columns stay its own. None but
-// those above `floor` count: where there are none that is what comes back.
+// The best face of `reference` against `other`, in the frame of `reference`; the columns of `other` stay in its own.
+// Only faces above `floor` count. Without such a face the separation is `floor`.
 struct FaceQuery {
   int face = 0;
   float separation = -kUnbounded;
@@ -37,7 +38,7 @@ FaceQuery best_face(const Polytope& reference, const Polytope& other, const Tran
   const Mat3 rotation = to_matrix(reference_from_other.orientation);
   const Vec3 shift = reference_from_other.position;
   const Vec3 center = rotation * other.centroid + shift;
-  // The other's inner ball bounds what a face can reach, so a good first face spares most of the rest.
+  // The inner ball of `other` bounds the separation along each face. A good first face excludes most of the others.
   float bound[kMaxHullFaces + 1];
   const int count = reference.face_count;
   Floats largest_bound(-kUnbounded);
@@ -65,7 +66,7 @@ FaceQuery best_face(const Polytope& reference, const Polytope& other, const Tran
   test_face(first);
   for (int f = 0; f < count; f += kLanes) {
     const auto better = [&] { return to_bits(Floats::load_unaligned(bound + f) > Floats(best.separation)); };
-    // Those behind the last one looked at.
+    // Only faces after the last one tested.
     for (unsigned rest = better(), later = ~0u; rest != 0; rest = better() & later) {
       if (best.separation > max_separation) return best;
       const int lane = std::countr_zero(rest);
@@ -76,7 +77,7 @@ FaceQuery best_face(const Polytope& reference, const Polytope& other, const Tran
   return best;
 }
 
-// An edge with the normals of its two faces, which end an arc on the unit sphere.
+// An edge with the normals of its two faces. The normals are the ends of an arc on the unit sphere.
 template <class Vector>
 struct Arc {
   Vector direction, left, right;
@@ -90,7 +91,7 @@ ArcsW in_every_lane(const Arc<Vec3>& arc) {
   return {splat<kLanes>(arc.direction), splat<kLanes>(arc.left), splat<kLanes>(arc.right)};
 }
 
-// Some edges of a polytope. Plain arrays: most of them is never written.
+// Some edges of a polytope. Plain arrays, because most elements are never written.
 struct EdgeList {
   static constexpr int kRoom = (kMaxHullEdges + kLanes - 1) / kLanes * kLanes;
   int count = 0;
@@ -107,7 +108,7 @@ struct EdgePair {
 GYRE_INLINE unsigned arcs_cross(const ArcsW& a, const ArcsW& b) {
   const Floats left_b = dot(b.left, a.direction), right_b = dot(b.right, a.direction);
   const Floats left_a = dot(b.direction, a.left), right_a = dot(b.direction, a.right);
-  // The ends of each arc lie on different sides of the other, and not on the far side of the sphere.
+  // The ends of each arc lie on different sides of the other, and the arcs are not on opposite sides of the sphere.
   const Floats zero(0.0f);
   return to_bits((left_b * right_b < zero) & (left_a * right_a < zero) & (left_b * right_a < zero));
 }
@@ -117,7 +118,8 @@ class EdgeSearch {
   EdgeSearch(const Polytope& a, const Polytope& b, const Transform& a_from_b)
       : a_(a), b_(b), rotation_(normalized(to_double(a_from_b.orientation))), shift_(a_from_b.position) {}
 
-  // The axis of one pair, in double: shallow crossings keep their direction. False if the edges are parallel.
+  // The axis of one pair, in double, so that shallow crossings keep their direction. Returns false if the edges are
+  // parallel.
   bool evaluate(int edge_a, int edge_b, Vec3 outward, EdgePair& out) const {
     const HullEdge &ea = a_.edges[edge_a], &eb = b_.edges[edge_b];
     const DVec3 pa(a_.vertices[ea.from]), pb = rotate(rotation_, DVec3(b_.vertices[eb.from])) + shift_;
@@ -132,8 +134,8 @@ class EdgeSearch {
     return true;
   }
 
-  // Where the lines of two edges pass each other: how far from the nearest end of either, and the sine between them. The
-  // product of the smaller of the two and the sine; negative if they pass beyond an end.
+  // How safely two edges cross: the distance of the crossing from the closest end of either edge, times the sine
+  // between the edges. Negative if their lines cross beyond an end.
   float crossing_margin(int edge_a, int edge_b) const {
     const HullEdge &ea = a_.edges[edge_a], &eb = b_.edges[edge_b];
     const DVec3 pa(a_.vertices[ea.from]), pb = rotate(rotation_, DVec3(b_.vertices[eb.from])) + shift_;
@@ -154,7 +156,7 @@ class EdgeSearch {
   DVec3 shift_;
 };
 
-// How high the vertices lie along a direction; returns the lowest of them.
+// Writes the height of each vertex along `up`. Returns the lowest height.
 float find_heights(const Polytope& p, Vec3 up, float shift, float* heights) {
   const Vec3W<kLanes> direction = splat<kLanes>(up);
   Floats lowest(kUnbounded);
@@ -166,7 +168,7 @@ float find_heights(const Polytope& p, Vec3 up, float shift, float* heights) {
   return min(min(lowest[0], lowest[1]), min(lowest[2], lowest[3]));
 }
 
-// Edges of which one end lies no higher than `limit`.
+// Edges with an end no higher than the limit.
 void find_low_edges(const Polytope& p, const float* heights, float limit, EdgeList& out) {
   std::uint64_t low_edges[(kMaxHullEdges + 63) / 64] = {};
   for (int i = 0; i < p.padded_count; i += kLanes) {
@@ -183,10 +185,10 @@ void find_low_edges(const Polytope& p, const float* heights, float limit, EdgeLi
     for_each_edge(low_edges[word], word, [&](int e) { out.index[out.count++] = std::uint16_t(e); });
 }
 
-// Of these edges the ones along whose axes a body with a ball of this radius around `center`, in the polytope's frame, can be
-// farther away than `floor`: some normal between those of the edge's two faces sees the near side of the ball that high above
-// the edge. It sees the middle as high as the one face or the other does, or, where the middle lies between the two normals,
-// as far as it is from the edge.
+// Removes the edges whose axes cannot separate the polytope by more than `floor` from a body that contains a ball of
+// this radius around `center` (in the polytope's frame). An edge stays if some normal between those of its two faces
+// sees the near side of the ball that high above the edge. The centre of the ball is as high as over one of the two
+// faces; if it lies between the two normals, it is as high as its distance from the edge.
 void cull_by_inner_ball(const Polytope& p, Vec3 center, float radius, float floor, EdgeList& list) {
   const Floats threshold(floor + radius), zero(0.0f), one(1.0f);
   int kept = 0;
@@ -219,7 +221,7 @@ struct BestFace {
   float separation;
 };
 
-// Both polytopes' edges that can still beat the best face.
+// The edges of both polytopes that can still beat the best face.
 class EdgeCandidates {
  public:
   EdgeCandidates(const Polytope& a, const Polytope& b, const Transform& a_from_b) : a_(a), b_(b) {
@@ -229,11 +231,11 @@ class EdgeCandidates {
 
   void collect(const BestFace& face, float max_separation, float floor) {
     float heights_a[kMaxHullVertices + 1], heights_b[kMaxHullVertices + 1];
-    // A's vertices upside down, so that low means near for both.
+    // A's vertices are mirrored, so that low means close for both.
     const float bottom_a = find_heights(a_, -face.normal, 0.0f, heights_a);
     const float bottom_b =
         find_heights(b_, transpose_times(rotation_, face.normal), dot(face.normal, shift_), heights_b);
-    // An edge of B must come within reach of A, so not higher than A's top by more than that; A's edges likewise.
+    // An edge of B can be no higher above A's top than the allowed gap. The same holds for A's edges.
     const float margin = kHeightMargin * (a_.inner_radius + b_.inner_radius);
     const float max_height = max(-face.separation, max_separation) + margin;
     find_low_edges(a_, heights_a, max_height - bottom_b, edges_a);
@@ -266,18 +268,18 @@ class EdgeCandidates {
       arcs.right = rotation * Vec3W<kLanes>{columns[0], columns[1], columns[2]};
       from_b_[first / kLanes] = rotation * from + splat<kLanes>(shift_);
     }
-    // No arc crosses that of an edge without length, which those behind the last are.
+    // An edge without length crosses no arc. Such edges fill the lanes after the last edge.
     for (int i = edges_b.count; i % kLanes != 0; ++i) {
       Vec3W<kLanes>& direction = arcs_b_[i / kLanes].direction;
       direction.x.set(i % kLanes, 0.0f), direction.y.set(i % kLanes, 0.0f), direction.z.set(i % kLanes, 0.0f);
     }
   }
 
-  // A bit for each of the four edges of B from `first` on whose arc crosses that of A's.
+  // A bit for each of the four edges of B from `first` on whose arc crosses that of A's edge.
   unsigned crossing(const ArcsW& arc, int first) const { return arcs_cross(arc, arcs_b_[first / kLanes]); }
 
-  // A bit for each of the four whose separation from A's edge, along the cross product of the two, can be above `floor`: in
-  // float, without the root, and undecided (set) where the edges are nearly parallel.
+  // A bit for each of the four edges of B whose separation from A's edge, along the cross product of both, may be above
+  // `floor`. Computed in float without the root. The bit is also set if the edges are too nearly parallel to decide.
   unsigned exceeding(int i, const ArcsW& arc, int first, float floor) const {
     const Vec3W<kLanes> da = arc.direction, db = arcs_b_[first / kLanes].direction, axis = cross(da, db);
     const Floats squared = dot(axis, axis);
@@ -288,8 +290,8 @@ class EdgeCandidates {
     return to_bits(undecided | (product * absolute(product) > Floats(floor * absolute(floor)) * squared));
   }
 
-  // Whether no corner of A lies beyond its edge along the axis, and none of B before its own. Beside an edge as sharp as a
-  // knife two normals all but oppose each other, so that which way is out, and whether arcs cross, is of rounding.
+  // True if no corner of A lies beyond its edge along the axis, and no corner of B before its own. At a razor-sharp
+  // edge two normals nearly oppose each other; rounding then decides the sign of the axis and whether arcs cross.
   bool is_outermost(int i, int k, Vec3 normal) const {
     const Vec3 from_a = a_.vertices[a_.edges[edges_a.index[i]].from];
     const Vec3 from_b = b_.vertices[b_.edges[edges_b.index[k]].from];
@@ -305,12 +307,12 @@ class EdgeCandidates {
   const Polytope& b_;
   Mat3 rotation_;
   Vec3 shift_;
-  // Of B's near edges, in A's frame.
+  // Of the candidate edges of B, in A's frame.
   ArcsW arcs_b_[EdgeList::kRoom / kLanes];
   Vec3W<kLanes> from_b_[EdgeList::kRoom / kLanes];
 };
 
-// The pair of edges of largest separation, if that is above `floor`; a = -1 if none is.
+// The pair of edges with the largest separation above `floor`; a = -1 if there is none.
 EdgePair best_edges(const Polytope& a, const Polytope& b, const Transform& a_from_b, const BestFace& face,
                     float max_separation, float floor) {
   EdgeCandidates candidates(a, b, a_from_b);
@@ -357,18 +359,18 @@ void face_separation(const Polytope& a, const Polytope& b, const Transform& a_fr
   }
   const HullPlane& plane = b.planes[axis.index_b];
   axis.normal = normalized(-(rotation * plane.normal));
-  // The plane dot(n, x) = offset of B holds the points x = turn^T (p - t) of A.
+  // The plane dot(n, x) = offset of B contains the points x = rotation^T (p - t) of A.
   const LowestVertex lowest = lowest_vertex(a, -axis.normal);
   axis.vertex = lowest.vertex;
   axis.separation = lowest.value - (plane.offset - dot(axis.normal, a_from_b.position));
 }
 
-// By how much an axis must be better to take the place of one of this separation.
+// By how much an axis must be better to replace one of this separation.
 float bias_of(const Polytope& a, const Polytope& b, float separation) {
   return kDepthBias * absolute(separation) + kSizeBias * min(a.inner_radius, b.inner_radius);
 }
 
-// Whether `point` lies within the sides of a face by at least `margin`.
+// True if `point` projects into a face, at least `margin` inside its sides.
 bool projects_into(const Polytope& p, int face, Vec3 point, float margin) {
   const Vec3 normal = p.planes[face].normal;
   const std::uint8_t* const first = p.face_vertices + p.face_offsets[face];
@@ -383,11 +385,11 @@ bool projects_into(const Polytope& p, int face, Vec3 point, float margin) {
   return true;
 }
 
-// Whether no axis parts the two by more than this face does, rounding aside. Let the nearest vertex lie over the face.
-// Apart, it and the point below it are as near to each other as the face says. Overlapping, let the face reach farther from
-// that point, by m, than the vertex lies deep, by d: along a direction that leans by t from the normal the vertex and the
-// rim of that circle overlap by d cos t + m sin t, not less than d; and along those that look the other way the balls in
-// the two overlap by that much, whose middles lie one before the other.
+// True if no axis can beat this face by more than rounding. The closest vertex must project into the face. If the
+// polytopes are apart, the vertex and its projection are as close as the face says. If they overlap, let the vertex lie
+// d deep, and let the face extend by m > d around the projection. Along a direction that leans by t from the normal,
+// the vertex and the rim of that circle overlap by d cos t + m sin t >= d. Along directions of the opposite half, the
+// inner balls overlap by that much, because their centres lie one before the other.
 bool is_best_face(const Polytope& a, const Polytope& b, const Transform& a_from_b, const PolytopeAxis& axis) {
   const bool is_a = axis.kind == AxisKind::face_a;
   const Mat3 rotation = to_matrix(a_from_b.orientation);
@@ -404,7 +406,7 @@ bool is_best_face(const Polytope& a, const Polytope& b, const Transform& a_from_
   return projects_into(is_a ? a : b, is_a ? axis.index_a : axis.index_b, nearest, depth);
 }
 
-// The cosine between a direction and the normal of the face that is nearest to it.
+// The cosine between a direction and the closest face normal.
 float nearest_normal(const Polytope& p, Vec3 direction) {
   Floats nearest(-1.0f);
   for (int f = 0; f < p.face_count; f += kLanes)
@@ -412,7 +414,7 @@ float nearest_normal(const Polytope& p, Vec3 direction) {
   return max(max(nearest[0], nearest[1]), max(nearest[2], nearest[3]));
 }
 
-// Whether the two ends of an edge lie lower along `up` than all other vertices by more than `gap`.
+// True if both ends of an edge are lower along `up` than all other vertices by more than `gap`.
 bool is_lowest_alone(const Polytope& p, const HullEdge& edge, Vec3 up, float gap) {
   const Floats max_height(dot(p.vertices[edge.from], up) + gap);
   const WideInt<kLanes> from(edge.from), to(edge.to), last(p.vertex_count - 1);
@@ -427,12 +429,12 @@ bool is_lowest_alone(const Polytope& p, const HullEdge& edge, Vec3 up, float gap
   return true;
 }
 
-// Whether a search would come to the favoured edges: no face parts the two by nearly as much, and no other pair of edges
-// does as well. Let the two cross amid both, and `crossing_margin` be how far the edges reach beyond the crossing, h. Along a direction
-// that leans by t from their axis, of separation s, points of the two edges are apart by s cos t - h sin t at most; along
-// those that look the other way what is_unbeaten says of the balls holds. So faces are worse by what their normals lean.
-// Other edges are worse beyond rounding from some lean on, and none that leans less is outermost where all other vertices
-// lie lower.
+// True if a full search would also choose the favoured edges: no face is nearly as good, and no other pair of edges is
+// as good. The two must cross well inside both; let h be how far the edges extend beyond the crossing, and s the
+// separation along their axis. Along a direction that leans by t from that axis, points of the two edges are apart by s
+// cos t - h sin t at most. In the opposite half the argument of is_best_face about inner balls holds. So faces are
+// worse by the lean of their normals. Other edges are worse beyond rounding from some lean on, and no pair that leans
+// less is outermost if all other vertices lie lower.
 bool is_best_edge_pair(const Polytope& a, const Polytope& b, const Transform& a_from_b,
                        const PolytopeAxis& axis, float rounding) {
   const float s = axis.edge_separation,
@@ -452,7 +454,7 @@ bool is_best_edge_pair(const Polytope& a, const Polytope& b, const Transform& a_
   if (!(s > bound_of_others + 0.5f * bias_of(a, b, bound_of_others) + 2.0f * rounding)) return false;
 
   const HullEdge &edge_a = a.edges[axis.index_a], &edge_b = b.edges[axis.index_b];
-  // The widest that a polytope can be for its size is 2 sqrt(3).
+  // The extent of a polytope is at most 2 sqrt(3) times its size.
   const float gap = kOutermost + 3.5f * lean;
   if (!is_lowest_alone(a, edge_a, -axis.normal, gap * a.size) ||
       !is_lowest_alone(b, edge_b, down, gap * b.size))
@@ -490,7 +492,7 @@ float separation_along(const Polytope& a, const Polytope& b, const Transform& a_
       face_separation(a, b, a_from_b, axis);
       break;
     case AxisKind::edges: {
-      // Whether or not the two edges still face each other, the supports along their cross product tell the truth.
+      // The edges may no longer face each other. The support points along their cross product are exact in any case.
       const HullEdge& edge = a.edges[axis.index_a];
       const Vec3 outward = a.planes[edge.left].normal + a.planes[edge.right].normal;
       EdgePair pair;
@@ -548,7 +550,7 @@ PolytopeAxis separating_axis(const Polytope& a, const Polytope& b, const Transfo
                            pair.normal,     pair.a < 0 ? -kUnbounded : pair.separation};
   if (edges.separation > max_separation) return edges;
 
-  // Among nearly equal ones: the favoured, then A's face, then B's, then edges.
+  // Among nearly equal axes: the favoured one, then A's face, then B's, then edges.
   if (favoured.kind == AxisKind::edges && pair.a == favoured.index_a && pair.b == favoured.index_b &&
       pair.separation > best + 0.5f * bias) {
     return edges;

@@ -1,6 +1,6 @@
-// The axis search of two boxes, W pairs side by side: what search() of manifold_box does for one pair, of the same bits.
+// The axis search of two boxes for W pairs side by side, with the same bits as search() of manifold_box.
 //
-// Left to that one are pairs of which nearly parallel edges must be judged, which takes doubles.
+// Pairs with nearly parallel edges need doubles; they are left to manifold_box.
 #pragma once
 
 #include "geometry/manifold/box_axes.h"
@@ -9,12 +9,12 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// Two boxes in the frame of the first; every array by axis.
+// Two boxes in the frame of the first. The index of every array is an axis.
 template <int W>
 struct BoxPairLanes {
   Wide<W> a[3], b[3];   // half extents
-  Wide<W> r[3][3];      // r[i][j]: the component along A's axis i of B's axis j
-  Wide<W> abs_r[3][3];  // its absolute value
+  Wide<W> r[3][3];      // r[i][j]: the component of B's axis j along A's axis i
+  Wide<W> abs_r[3][3];  // |r|
   Wide<W> t[3], u[3];   // B's centre in A's frame, and the same vector in B's axes
 
   GYRE_INLINE BoxPairLanes(Vec3W<W> half_a, Vec3W<W> half_b, Vec3W<W> position, QuatW<W> rotation) {
@@ -30,7 +30,7 @@ struct BoxPairLanes {
   static GYRE_INLINE void fill(Wide<W> (&to)[3], Vec3W<W> v) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
 };
 
-// The axis that decides in each lane, its separation; and in which lanes that is known.
+// The deciding axis of each lane and its separation. `known` marks the lanes in which the axis is certain.
 template <int W>
 struct AxisLanes {
   WideInt<W> number;
@@ -63,7 +63,7 @@ struct FaceLanes {
     for (int k = 0; k < 3; ++k) best[k] = max(separation[boxes::kFirstB + k], separation[k]);
     return max(max(best[0], best[1]), best[2]);
   }
-  // The first with at least this separation, which one of them has.
+  // The first axis with at least this separation; one of them must have it.
   GYRE_INLINE AxisLanes<W> first(Wide<W> threshold) const {
     constexpr int kLast = boxes::kFirstEdge - 1;
     AxisLanes<W> axis{kLast, separation[kLast], Mask<W>::splat(true)};
@@ -79,8 +79,8 @@ struct FaceLanes {
   }
 };
 
-// The best axis of two edges among those that beat `floor`, and what the favoured one parts the boxes by, if that is of two
-// edges.
+// The best axis of two edges among those above `floor`, and the separation along the favoured axis if that is one of
+// two edges.
 template <int W>
 struct EdgeLanes {
   AxisLanes<W> best{boxes::kNoAxis, -kUnbounded, Mask<W>::splat(true)};
@@ -120,7 +120,7 @@ struct EdgeLanes {
   }
 };
 
-// `favoured`: the axis that decided last time, or kNoAxis.
+// `favoured` is the axis that decided last time, or kNoAxis.
 template <int W>
 GYRE_INLINE AxisLanes<W> search_axes(const BoxPairLanes<W>& x, Wide<W> max_separation, WideInt<W> favoured) {
   using namespace boxes;
@@ -139,7 +139,7 @@ GYRE_INLINE AxisLanes<W> search_axes(const BoxPairLanes<W>& x, Wide<W> max_separ
   const Wide<W> own = select(favours_edge, edges.favoured.separation,
                              select(favours_face, faces.of(favoured), Wide<W>(-kUnbounded)));
 
-  // From what decides last to what decides first.
+  // In ascending order of precedence.
   AxisLanes<W> found = faces.first(face - Wide<W>(0.5f) * bias);
   found.replace((edge.number > WideInt<W>(kNoAxis)) & (edge.separation > face + bias), edge.number,
                 edge.separation);

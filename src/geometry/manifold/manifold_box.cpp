@@ -14,8 +14,8 @@ namespace gyre {
 namespace boxes {
 namespace {
 
-// Separations along the face normals of the box with half extents `own`, in whose frame the other one's middle is `offset` and
-// its axes are `axes`.
+// Separations along the face normals of the box with half extents `own`. In its frame the centre of the other box is
+// `offset`, and the axes of the other box are `axes`.
 inline Floats face_separations(const float* own, const float* other, const float* offset,
                                const float (*axes)[4]) {
   const Floats h = Floats::load(other);
@@ -24,16 +24,16 @@ inline Floats face_separations(const float* own, const float* other, const float
           spread<2>(h) * absolute(Floats::load(axes[2])));
 }
 
-// Of all six faces.
+// The separations along all six face normals.
 struct FaceAxes {
   Floats of_a, of_b;
 
   explicit FaceAxes(const Boxes& x)
       : of_a(face_separations(x.a, x.b, x.t, x.s)), of_b(face_separations(x.b, x.a, x.u, x.r)) {}
   float operator[](int axis) const { return axis < kFirstB ? of_a[axis] : of_b[axis - kFirstB]; }
-  // Never what is not a number: of A's faces none is.
+  // Never NaN, because A's separations are not.
   float largest() const { return highest(max(of_b, of_a)); }
-  // The first axis with at least this separation, which one of them has.
+  // The first axis with at least this separation; one of them must have it.
   int first(Floats threshold) const {
     constexpr std::uint32_t kLast = 1u << (kFirstEdge - 1);
     return std::countr_zero((to_bits(of_a >= threshold) & kThree) | to_bits(of_b >= threshold) << kFirstB |
@@ -41,8 +41,8 @@ struct FaceAxes {
   }
 };
 
-// The edges of A's axis i with all three of B's, side by side. The separation times the length of the cross product, and
-// that length squared.
+// The edges of A's axis i with all three of B's, side by side: the separation times the length of the cross product,
+// and that length squared.
 struct EdgeRow {
   Floats product, squared;
 
@@ -82,7 +82,7 @@ float edge_separation(const Boxes& x, const Transform& a_from_b, int i, int j) {
 
 // The best axis of two edges among those that beat `floor`.
 Axis search_edges(const Boxes& x, const Transform& a_from_b, float floor) {
-  // What rounding may make of a product. It decides of the nearly parallel ones alone.
+  // The rounding error of a product. It matters only for nearly parallel edges.
   const Floats extents = Floats::load(x.a) + Floats::load(x.b) + absolute(Floats::load(x.t));
   const Floats rounding(kRounding * (extents[0] + extents[1] + extents[2]));
   alignas(16) float product[3][4], length[3][4];
@@ -91,7 +91,7 @@ Axis search_edges(const Boxes& x, const Transform& a_from_b, float floor) {
     const EdgeRow row(x, i);
     const Floats root = sqrt(row.squared);
     const Mask<4> is_steep = row.squared >= kShallow;
-    // Of steep ones what lies between 0 and the floor stays: it may be farther apart than allowed.
+    // Steep edges between 0 and the floor stay, because they may be farther apart than allowed.
     const Floats threshold = select(is_steep, Floats(min(floor, 0.0f)), Floats(floor)) * root;
     const Mask<4> hopeless =
         (row.product + keep(~is_steep, rounding) <= threshold) | (row.squared <= kParallel);
@@ -109,7 +109,7 @@ Axis search_edges(const Boxes& x, const Transform& a_from_b, float floor) {
   return best;
 }
 
-// The axis that decides. Stops at the first along which the boxes are farther apart than allowed.
+// The deciding axis. Stops at the first one along which the boxes are farther apart than allowed.
 Axis search(const Boxes& x, const FaceAxes& faces, const Transform& a_from_b, float max_separation,
             const Axis& favoured) {
   Axis face;
@@ -118,12 +118,12 @@ Axis search(const Boxes& x, const FaceAxes& faces, const Transform& a_from_b, fl
   if (face.separation > max_separation) return face;
   const float bias = kDepthBias * absolute(face.separation) + kSizeBias * thinnest(x);
 
-  // Edges are worth a look only when they beat the face by more than half of the bias.
+  // Edges matter only if they beat the face by more than half of the bias.
   const float floor = face.separation + 0.5f * bias;
   const Axis edge = search_edges(x, a_from_b, floor);
   if (edge.separation > max_separation) return edge;
 
-  // Among nearly equal ones: the favoured, then the lowest face, then edges.
+  // Among nearly equal axes: the favoured one, then the face with the lowest number, then edges.
   if (favoured.number >= kFirstEdge) {
     if (favoured.separation > floor && favoured.separation >= edge.separation - bias) return favoured;
   } else if (favoured.number >= 0 && favoured.separation >= face.separation - bias &&
@@ -135,8 +135,8 @@ Axis search(const Boxes& x, const FaceAxes& faces, const Transform& a_from_b, fl
   return {first, faces[first]};
 }
 
-// In float for edges that cross at an angle, in double for those nearly parallel: where they cross is then a quotient of small
-// differences, and the normal one of nothing else.
+// Float serves for edges that cross at an angle. Nearly parallel edges need double: their crossing and their normal
+// come from small differences.
 struct FloatEdges {
   using Real = float;
   using Vector = Vec3;
@@ -162,8 +162,8 @@ struct DoubleEdges {
   static Vec3 to_float(DVec3 v) { return gyre::to_float(v); }
 };
 
-// Leaves out.count at 0 when the edges pass beside each other: of boxes apart another feature is nearer, and of those that
-// overlap the faces beside nearly parallel edges were as good.
+// Leaves out.count at 0 if the edges do not cross. Another feature of separated boxes is then closer; of overlapping
+// boxes the faces at the nearly parallel edges were as good.
 template <class Edges>
 void collide_edges(const Boxes& x, const Transform& a_from_b, const Axis& found, Vec3 along,
                    LocalManifold& out) {
@@ -191,7 +191,7 @@ void collide_edges(const Boxes& x, const Transform& a_from_b, const Axis& found,
   const Vector pa{on_a[0], on_a[1], on_a[2]};
   Vector pb = t;
   for (int k = 0; k < 3; ++k) pb += on_b_local[k] * edges.columns[k];
-  // Nearest points of the two lines: both edges are unit, and not parallel.
+  // Closest points of the two lines. Both directions are unit vectors and not parallel.
   const Vector d = pb - pa;
   const Real c = dot(edge_a, edge_b), da = dot(d, edge_a), db = dot(d, edge_b);
   const Real det = across[kNext[i]] * across[kNext[i]] + across[kAfter[i]] * across[kAfter[i]];
@@ -199,7 +199,7 @@ void collide_edges(const Boxes& x, const Transform& a_from_b, const Axis& found,
   const Real end_a = clamp(along_a, Real(-x.a[i]), Real(x.a[i])),
              end_b = clamp(along_b, Real(-x.b[j]), Real(x.b[j]));
   const Vector on_edge_a = pa + end_a * edge_a, on_edge_b = pb + end_b * edge_b;
-  // Not across each other: an end is nearest.
+  // The edges do not cross: an end is closest.
   if ((end_a != along_a || end_b != along_b) &&
       (found.separation > 0.0f ||
        length(on_edge_b - on_edge_a) >
@@ -212,7 +212,7 @@ void collide_edges(const Boxes& x, const Transform& a_from_b, const Axis& found,
   out.points[0].feature = feature_edges(edge_number(i, corner_a), edge_number(j, corner_b));
 }
 
-// The face whose normal is within kNearFace of the axis of two edges, `normal`; none if there is none.
+// The face whose normal is within kNearFace of `normal`, the axis of two edges; no axis if there is none.
 Axis face_near_edges(const Boxes& x, Vec3 normal) {
   const Floats along_a = absolute(three(normal));
   const Floats along_b = absolute(normal.x * Floats::load(x.r[0]) + normal.y * Floats::load(x.r[1]) +
@@ -248,8 +248,8 @@ void collide_crossing(const Boxes& x, const Transform& a_from_b, const Axis& edg
   }
 }
 
-// The axis that decides, or the one that decided last if it parts the boxes by more than allowed: most pairs that did not touch
-// then do not touch now.
+// The deciding axis, or the last one if it still separates the boxes by more than allowed: most pairs that did not
+// touch last time do not touch now.
 Axis find_axis(const Boxes& x, const Transform& a_from_b, float max_separation, const PairCache& cache) {
   const FaceAxes faces(x);
   Axis favoured;
@@ -270,18 +270,18 @@ struct Pair {
   float max_separation;
 };
 
-// The manifold along the axis that decides, which parts the boxes by no more than allowed. out.count is 0.
+// The manifold along the deciding axis, whose separation is within the allowed one. out.count must be 0.
 void collide_along(const Boxes& x, const Axis& found, const Pair& pair, PairCache& cache,
                    LocalManifold& out) {
   if (found.number >= kFirstEdge) {
     collide_crossing(x, pair.a_from_b, found, pair.max_separation, out);
   } else {
     collide_face(x, found, pair.max_separation, out);
-    // Nearest, or deepest, beside the face.
+    // The points miss the closest or deepest feature, which lies beside the face.
     const float excess = deepest_of(out) - found.separation;
     if (excess > kMissTolerance * thinnest(x) + kDepthTolerance * max(-found.separation, 0.0f)) out.count = 0;
   }
-  // Near, or even overlapping, but beside each other's faces.
+  // The boxes are close or overlap, but no face projects onto the other.
   if (out.count == 0) collide_cores(pair.a, pair.b, pair.a_from_b, pair.max_separation, cache, out);
 }
 
@@ -290,7 +290,7 @@ void collide_along(const Boxes& x, const Axis& found, const Pair& pair, PairCach
 
 boxes::Axis find_box_axis(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
                           const PairCache& cache) {
-  // Bodies that are about to be taken out of the world.
+  // Bodies that are about to be removed from the world.
   if (!is_finite(a_from_b.position) || !is_finite(a_from_b.orientation)) return {0, kUnbounded};
   return boxes::find_axis(boxes::Boxes(a, b, a_from_b), a_from_b, max_separation, cache);
 }

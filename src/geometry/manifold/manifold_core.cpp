@@ -9,23 +9,24 @@
 namespace gyre {
 namespace {
 
-// A face takes part if the contact normal leans less than this cosine (10 degrees) from its own: its points keep their
-// exact distance along the contact normal, so nothing jumps when a face comes in or drops out.
+// Cosine (10 degrees) between the contact normal and the normal of a face below which the face is not used. Its points
+// have their exact distance along the contact normal, so nothing jumps when a face comes in or drops out.
 constexpr float kFacing = 0.985f;
-// kMaxLateralOffset of cones, which taper.
+// The lateral offset of cones, which taper, as a fraction of the radius.
 constexpr float kMaxLateralOffsetCone = 0.01f;
-// B's face becomes the reference only if it faces the normal better than A's by this much: no flipping.
+// B's face becomes the reference only if it faces the normal better than A's face by this much. So the roles do not
+// flip.
 constexpr float kPreferA = 1.0e-3f;
 
-// Where two cores are nearest or deepest.
+// The closest or deepest points of two cores.
 struct CoreContact {
   Vec3 normal;        // unit, from A to B
-  Vec3 on_a, on_b;    // of the cores, A's frame
+  Vec3 on_a, on_b;    // of the cores, in A's frame
   float separation;   // of the cores
   float size = 0.0f;  // of the smaller shape
 };
 
-// Not cleared: only the counted ones are ever read.
+// Not cleared: only the counted elements are read.
 struct Candidates {
   union {
     ManifoldPoint points[kMaxClipPoints + 1];
@@ -44,7 +45,7 @@ bool nearly_parallel(const FacePolygon& a, const FacePolygon& b) {
          square(kParallelSegmentSine) * length_squared(da) * length_squared(db);
 }
 
-// Of a polygon only its edge that is farthest along `direction`.
+// Reduces a polygon to its edge that is farthest along `direction`.
 void reduce_to_leading_edge(FacePolygon& face, Vec3 direction) {
   int best = 0;
   float highest = -kUnbounded;
@@ -64,15 +65,15 @@ void reduce_to_leading_edge(FacePolygon& face, Vec3 direction) {
   face.ids[0] = id_from, face.ids[1] = id_to;
 }
 
-// How far two segments may lie beside each other.
+// How far apart two parallel segments may pass and still touch in two points.
 float max_lateral_offset(const Shape& a, const Shape& b) {
   const bool tapers = a.kind == ShapeKind::cone || b.kind == ShapeKind::cone;
-  // A sharp edge has no radius; the other shape's decides.
+  // A sharp edge has no radius; the other shape decides.
   const float radius = a.radius > 0.0f && b.radius > 0.0f ? min(a.radius, b.radius) : max(a.radius, b.radius);
   return (tapers ? kMaxLateralOffsetCone : kMaxLateralOffset) * radius;
 }
 
-// The candidate points of the features of both cores that face each other. At most kMaxClipPoints.
+// The candidate points of the features that face each other. At most kMaxClipPoints.
 int facing_points(const Shape& a, const Shape& b, const Transform& a_from_b, const CoreContact& contact,
                   float max_separation, ManifoldPoint* points) {
   FacePolygon fa, fb;
@@ -90,7 +91,7 @@ int facing_points(const Shape& a, const Shape& b, const Transform& a_from_b, con
     const int count = clip_faces(pair, reference_is_a, points);
     if (count > 0) return count;
   }
-  // Edge along edge, a capsule along one, or what hangs over the edge of the face.
+  // Edge along edge, a capsule along an edge, or a feature beyond the edge of the face.
   if (fa.count > 2) reduce_to_leading_edge(fa, contact.normal);
   if (fb.count > 2) reduce_to_leading_edge(fb, -contact.normal);
   if (fa.count == 2 && fb.count == 2 && nearly_parallel(fa, fb)) return clip_segments(pair, points);

@@ -37,14 +37,14 @@ struct Roles {
   bool reference_is_a;
 };
 
-// Faces that look this way by less than this cosine are sides.
+// Cosine below which a face is a side: it does not face the reference.
 constexpr float kMinFacing = 1.0e-4f;
 
 float allowed_miss(const Polytope& a, const Polytope& b) {
   return kMissTolerance * min(a.inner_radius, b.inner_radius);
 }
 
-// Candidate points of one face of the reference, against one face of the incident after the other.
+// Candidate points of one reference face against several incident faces in turn.
 class FacePoints {
  public:
   FacePoints(const Roles& roles, int face, float max_separation)
@@ -56,7 +56,7 @@ class FacePoints {
     pair_.max_separation = max_separation;
   }
 
-  // `separation` is that of the two along the face's normal.
+  // `separation` is that of the polytopes along the normal of the face.
   int find(float separation) {
     const Vec3 local = rotate_inverse(roles_.reference_from_incident.orientation, outward_);
     const int first = opposing_face(roles_.incident, lowest_vertex(roles_.incident, local).vertex, local);
@@ -69,7 +69,8 @@ class FacePoints {
   ManifoldPoint* points() { return points_; }
 
  private:
-  // They overlap, but not there, or not only: every other face that looks this way and reaches deeper is cut too.
+  // The polytopes overlap, but not there, or not only. Every other face that faces the reference and is deeper is
+  // clipped too.
   void clip_other_faces(int first, Vec3 local) {
     const Polytope& incident = roles_.incident;
     const float height = dot(outward_, reference_.vertices[0] - roles_.reference_from_incident.position);
@@ -87,7 +88,7 @@ class FacePoints {
       }
     }
   }
-  // The smallest of the values of a face's corners.
+  // The smallest of the values at the corners of a face.
   float lowest_of(int face, const float* values) const {
     const int count = face_corners(roles_.incident, face);
     float lowest = kUnbounded;
@@ -110,7 +111,7 @@ class FacePoints {
     }
     count_ += new_count;
   }
-  // Faces that share a corner or an edge meet the reference in the same points.
+  // Faces that share a corner or an edge give the same points there.
   bool is_known(const ManifoldPoint& point) const {
     for (int i = 0; i < count_; ++i) {
       if (points_[i].feature == point.feature || points_[i].position == point.position) return true;
@@ -124,14 +125,14 @@ class FacePoints {
   FacePair pair_;
   float deepest_ = kUnbounded;
   int count_ = 0;
-  // The points kept, and behind them those of one more face. Not cleared: only the counted ones are ever read.
+  // The points found so far, and behind them those of one more face. Not cleared: only the counted elements are read.
   union {
     ManifoldPoint points_[2 * kMaxClipPoints];
   };
 };
 
-// None when the edges pass beside each other: of polytopes apart another feature is nearer, and of those that overlap the faces
-// beside nearly parallel edges were as good.
+// Adds no point if the edges do not cross. Another feature of separated polytopes is then closer; of overlapping ones
+// the faces at the nearly parallel edges were as good.
 void edge_point(const Polytope& a, const Polytope& b, const Transform& a_from_b, const PolytopeAxis& axis,
                 LocalManifold& out) {
   const HullEdge &ea = a.edges[axis.index_a], &eb = b.edges[axis.index_b];
@@ -165,7 +166,7 @@ void face_manifold(const Polytope& a, const Polytope& b, const Transform& a_from
   }
 }
 
-// The face whose normal is within kNearFace of a normal from A to B; none if there is none.
+// The face whose normal is within kNearFace of a normal from A to B; no axis if there is none.
 PolytopeAxis face_near(const Polytope& a, const Polytope& b, const Transform& a_from_b, Vec3 normal) {
   PolytopeAxis best;
   float nearest = kNearFace;
@@ -191,7 +192,7 @@ bool crossing_faces(const Polytope& a, const Polytope& b, const Transform& a_fro
   return replaces_crossing(out, edges.separation, min(a.inner_radius, b.inner_radius));
 }
 
-// False when they are farther apart than allowed along some axis.
+// Returns false if the polytopes are farther apart than allowed along some axis.
 bool collide_polytopes(const Polytope& a, const Polytope& b, const Transform& a_from_b, float max_separation,
                        PairCache& cache, LocalManifold& out) {
   PolytopeAxis favoured = decode_axis(cache.words[0], a, b);
@@ -202,7 +203,7 @@ bool collide_polytopes(const Polytope& a, const Polytope& b, const Transform& a_
   if (axis.separation > max_separation) return false;
   if (axis.kind != AxisKind::edges) {
     face_manifold(a, b, a_from_b, axis, max_separation, out);
-    // Nearest, or deepest, beside the face.
+    // The points miss the closest or deepest feature, which lies beside the face.
     const float excess = deepest_of(out) - axis.separation;
     if (excess > allowed_miss(a, b) + kDepthTolerance * max(-axis.separation, 0.0f)) out.count = 0;
     return true;
@@ -229,7 +230,7 @@ void collide_polyhedra(const Shape& a, const Shape& b, const Transform& a_from_b
     const Polytope view_b = a.kind == ShapeKind::box ? make_polytope(*b.hull) : box.view();
     in_range = collide_polytopes(view_a, view_b, a_from_b, max_separation, cache, out);
   }
-  // Near, or even overlapping, but beside each other's faces.
+  // The polyhedra are close or overlap, but no face projects onto the other.
   if (in_range && out.count == 0) collide_cores(a, b, a_from_b, max_separation, cache, out);
 }
 

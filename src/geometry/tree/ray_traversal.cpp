@@ -1,4 +1,4 @@
-// Chooses how many boxes are tested side by side on this machine.
+// Chooses the kernel of the ray traversal for this machine.
 #include "geometry/tree/ray_traversal.h"
 
 #include "base/processor.h"

@@ -1,15 +1,15 @@
-// Walks over trees of boxes along a line, from near to far: what rays and moving shapes look for candidates with.
+// Traversal of box trees along a line, from near to far, for rays and for boxes that move along a line (casts).
 //
-// In: nodes, eight boxes side by side in each, and a box that moves along a line, or a ray (a box without size). Out: the
-// leaves that it meets, one at a time and roughly from near to far (of one node's children the nearest first); whoever walks may
-// shorten what is still looked at in between. It is a kernel, since a processor with eight lanes tests a node by half of the instructions.
+// In: nodes with eight boxes side by side, and a ray or a moving box. Out: the leaves that it meets, one at a time and
+// roughly from near to far; among the children of one node the nearest comes first. The caller may shorten the ray in
+// between. This is a kernel, because a processor with eight lanes tests a node with half of the instructions.
 //
-// Never misses: the moving box is enlarged by more than what rounding to float can do, so a caller who tests exactly
-// afterwards loses nothing. Where the line runs along an axis no division goes wrong: a way below 1e-30 m counts as such a
-// way, with the sign that it has.
+// It never misses a box: the moving box is enlarged by more than the rounding error of float, so an exact test
+// afterwards loses nothing. No division fails on a line along an axis: a component below 1e-30 m counts as 1e-30 m with
+// its sign.
 //
-// Source: T. Kay, J. Kajiya, "Ray Tracing Complex Scenes", 1986 (slabs); the near and far planes chosen once by the sign of
-// the direction as in A. Williams et al., "An Efficient and Robust Ray-Box Intersection Algorithm", 2005.
+// Source: T. Kay, J. Kajiya, "Ray Tracing Complex Scenes", 1986 (slabs); A. Williams et al., "An Efficient and Robust
+// Ray-Box Intersection Algorithm", 2005 (near and far planes chosen once by the sign of the direction).
 #pragma once
 
 #include "geometry/tree/static_node.h"
@@ -20,22 +20,22 @@
 
 namespace gyre {
 
-// What planes are held against on each axis: the moving box begins to touch one where (plane - near) * inverse is the fraction
-// of its way, and ends to touch one where it is (plane - far) * inverse.
+// A moving box as a ray against slabs. On each axis the box begins to touch a plane at the fraction (plane - near) *
+// inverse of its translation, and ceases at (plane - far) * inverse.
 struct BoxRay {
   float near[3], far[3], inverse[3];
-  bool negative[3];  // low planes are met last
+  bool negative[3];  // the high plane of a box is met first
 
-  static constexpr double kSlack = 4.0e-7;  // six roundings of floats
+  static constexpr double kSlack = 4.0e-7;  // six roundings of float
   static constexpr double kStill = 1.0e-30;
 
-  // A box of half size `half` around `origin` that moves by `way`. Boxes that hold coordinates much larger than all
-  // three are met late or early by no more than their own rounding.
+  // A box of half size `half` that moves from `origin` by the translation. Boxes with coordinates much larger than all
+  // three are met early or late by no more than their own rounding.
   BoxRay(DVec3 origin, DVec3 translation, Vec3 half) {
     for (int axis = 0; axis < 3; ++axis) {
       const double o = origin[axis], w = translation[axis];
       double margin = double(half[axis]) + kSlack * (absolute(o) + absolute(w) + double(half[axis]));
-      // What lies in the plane of a box without thickness, and stays there, meets it all the way.
+      // A box without thickness that moves within its plane meets it all the time.
       if (absolute(w) < kStill) margin += 10.0 * kStill;
       negative[axis] = w < 0.0;
       const double step = absolute(w) < kStill ? kStill : absolute(w);
@@ -46,16 +46,16 @@ struct BoxRay {
   }
 };
 
-// A walk on its way.
+// The state of a traversal.
 struct RayTraversal {
   static constexpr int kRoom = 256;  // 32 levels of trees, eight lanes each
 
   BoxRay line;
-  float reach;  // 0 or more: the fraction of the way up to which is looked, which whoever walks may shorten
-  std::uint32_t leaf;  // the one that was met last, without kLeafBit
+  float reach;         // 0 or more: the fraction at which the ray ends; the caller may shorten it
+  std::uint32_t leaf;  // the leaf that was met last, without kLeafBit
   int depth = 1;
-  // Nodes and leaves that wait, each below the fraction at which it is met (0 or more, whose bits order as its values do), the
-  // nearest last. Not cleared: only the counted ones are ever read.
+  // Nodes and leaves still to visit, the nearest last. The high word is the fraction at which one is met (0 or more, so
+  // its bits order like its value). Not cleared: only the counted elements are read.
   union {
     std::uint64_t waiting[kRoom];
   };
@@ -66,11 +66,11 @@ struct RayTraversal {
   }
 };
 
-// Goes on to the next leaf; false if there is none.
+// Moves to the next leaf. Returns false at the end.
 template <class Node>
 using RayTraversalKernel = bool (*)(const Node* nodes, RayTraversal& walk);
 
-// The one that this machine runs best.
+// The fastest kernel on this machine.
 RayTraversalKernel<StaticNode> select_static_ray_traversal();
 
 }  // namespace gyre

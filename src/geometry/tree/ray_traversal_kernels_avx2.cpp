@@ -1,4 +1,4 @@
-// Walks along lines for one kind of CPU, in a namespace of its own so that the linker can never mix it with others'.
+// Ray traversal for one kind of CPU, in a namespace of its own, so that the linker never mixes it with the others.
 #define GYRE_TARGET_NAMESPACE target_avx2
 #include "geometry/tree/ray_traversal_lanes.h"
 

@@ -1,4 +1,4 @@
-// The walk along a line with W lanes at once. See ray_traversal.h.
+// The ray traversal with W lanes at once. See ray_traversal.h.
 #pragma once
 
 #include "geometry/tree/ray_traversal.h"
@@ -9,7 +9,7 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// A line to be held against many nodes.
+// A ray that is tested against many nodes.
 template <int W, class Node>
 class BoxRayLanes {
  public:
@@ -24,8 +24,8 @@ class BoxRayLanes {
     }
   }
 
-  // Bit i: lane i's box is met at a fraction from 0 to `max_fraction`, and first at enter[i]. Boxes with low > high never are; none
-  // may have NaN.
+  // Bit i is set if the box in lane i is met at a fraction from 0 to `max_fraction`; enter[i] is the first one. Boxes
+  // with low > high are never met; NaN is not allowed.
   GYRE_INLINE unsigned meets(const Node& node, float max_fraction, float* enter) const {
     unsigned bits = 0;
     GYRE_UNROLL
@@ -36,7 +36,7 @@ class BoxRayLanes {
         begin = max(begin, (planes(node, near_side_[axis], axis, first) - near_[axis]) * inverse_[axis]);
         end = min(end, (planes(node, far_side_[axis], axis, first) - far_[axis]) * inverse_[axis]);
       }
-      // What waits goes by the bits of this, so -0 must not stand for 0.
+      // The stack is ordered by the bits of `enter`, so -0 must become 0.
       absolute(begin).store(enter + first);
       bits |= to_bits(begin <= end) << first;
     }
@@ -44,7 +44,7 @@ class BoxRayLanes {
   }
 
  private:
-  // Where a side's columns begin in a node.
+  // Offset of the low and of the high columns in a node.
   static constexpr std::size_t kLow = 0, kHigh = sizeof(float) * 3 * Node::kWidth;
 
   static GYRE_INLINE Wide<W> planes(const Node& node, std::size_t side, int axis, int first) {
@@ -56,7 +56,7 @@ class BoxRayLanes {
   std::size_t near_side_[3], far_side_[3];
 };
 
-// Most of a walk is spent waiting for nodes: they are asked for when they are put aside.
+// Most of the time goes into waiting for nodes, so they are prefetched when they are pushed.
 template <class Node>
 GYRE_INLINE void prefetch(const Node* node) {
   const char* const begin = reinterpret_cast<const char*>(node);
@@ -64,7 +64,7 @@ GYRE_INLINE void prefetch(const Node* node) {
   for (std::size_t line = 0; line < sizeof(Node); line += 64) __builtin_prefetch(begin + line);
 }
 
-// Puts the lanes' children on the stack so that the nearest is on top.
+// Pushes the children in `lanes`, the nearest on top.
 template <class Node>
 GYRE_INLINE std::uint64_t* push_nearest_last(const Node* nodes, const Node& node, unsigned lanes,
                                              const float* enter, std::uint32_t child_bits,
@@ -82,7 +82,7 @@ GYRE_INLINE std::uint64_t* push_nearest_last(const Node* nodes, const Node& node
   return top;
 }
 
-// What a tree marks its leaves with on its lowest level, if not in the child itself.
+// The mark that a tree adds to the children on its lowest level, if the children do not have it themselves.
 GYRE_INLINE std::uint32_t leaf_mark(const StaticNode&) { return 0; }
 
 template <int W, class Node>
