@@ -81,10 +81,10 @@ class BoxTree {
     static_assert(kMaxLevels * kWidth <= RayTraversal::kRoom);
     RayTraversal walk(sweep.line(), root_, reach);
     while (walk_line_(nodes_.data(), walk)) {
-      walk.reach = visit(walk.leaf, walk.reach);
-      if (walk.reach < 0.0f) break;
+      walk.max_fraction = visit(walk.leaf, walk.reach);
+      if (walk.max_fraction < 0.0f) break;
     }
-    return walk.reach;
+    return walk.max_fraction;
   }
 
   // The box of an item that is in the tree.

@@ -1,4 +1,4 @@
-// Cutting in rounds. See decomposition.h.
+// Cuts in rounds. See decomposition.h.
 #include "base/container/sort.h"
 #include "geometry/decomposition/decomposition.h"
 #include "geometry/decomposition/decomposition_cut.h"
@@ -7,7 +7,8 @@
 namespace gyre {
 namespace {
 
-// Which parts are cut in this round: all that lack something, or, when too many hulls would come of it, those that lack most.
+// The parts to cut in this round: all that are not convex enough or, if that would give too many hulls, those that lack
+// most.
 std::vector<std::size_t> choose_parts(const Solid3& solid, const std::vector<Part>& parts, int limit) {
   struct Lack {
     double amount;
@@ -73,9 +74,9 @@ std::vector<ConvexBody> cut_up(const Solid3& solid, TaskSystem& tasks, int limit
              [&](int i, int, int) { finish_part(solid, parts[std::size_t(i)]); });
   for (;;) {
     const std::vector<std::size_t> chosen = choose_parts(solid, parts, limit);
-    if (chosen.empty() || !progress.go_on(0.1 + 0.6 * share_done(solid, parts))) break;
+    if (chosen.empty() || !progress.report_progress(0.1 + 0.6 * share_done(solid, parts))) break;
     const std::vector<Cut> cuts = find_cuts(solid, tasks, parts, chosen);
-    if (!progress.go_on(0.1 + 0.6 * share_done(solid, parts))) break;
+    if (!progress.report_progress(0.1 + 0.6 * share_done(solid, parts))) break;
     std::vector<std::pair<Part, Part>> halves(chosen.size());
     for_blocks(tasks, int(chosen.size()), 1, [&](int i, int, int) {
       const Cut& cut = cuts[std::size_t(i)];

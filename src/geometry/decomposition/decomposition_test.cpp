@@ -1,6 +1,6 @@
 // Decomposition: what every result must keep, held against slow and plain measures, on meshes by formula and on bad ones.
-#include "geometry/distance/closest.h"
 #include "geometry/decomposition/decomposition_test_meshes.h"
+#include "geometry/distance/closest.h"
 
 #include <gtest/gtest.h>
 
@@ -206,7 +206,7 @@ TEST(Decomposition, ABeakerCanBeFilled) {
 
 TEST(Decomposition, ACavityStaysHollow) {
   TestMesh mesh = box_mesh({0, 0, 0}, {1, 1, 1}), hole = box_mesh({0, 0, 0}, {0.5f, 0.5f, 0.5f});
-  hole.turn_over();
+  hole.flip();
   mesh.add(hole);
   const Decomposition d = made(mesh.def());
   EXPECT_EQ(d.report.mesh.turned_triangles, 0u);
@@ -297,7 +297,7 @@ TEST(Decomposition, AnOpenBowlIsTakenForASheetAndSaysSo) {
 
 TEST(Decomposition, ASheetOfTwoSidesIsASheet) {
   TestMesh mesh = bowl_sheet(), inner = mesh;
-  inner.turn_over();
+  inner.flip();
   mesh.add(inner);
   const Decomposition d = made(mesh.def());
   EXPECT_TRUE(d.report.mesh.shell);
@@ -328,7 +328,7 @@ TEST(Decomposition, ASmallHoleIsClosedAndCounted) {
 
 TEST(Decomposition, TrianglesWoundWronglyAreTurnedAndCounted) {
   TestMesh inside_out = beam_mesh();
-  inside_out.turn_over();
+  inside_out.flip();
   const Decomposition a = made(inside_out.def());
   EXPECT_EQ(a.hulls.size(), 2u);
   EXPECT_EQ(a.report.mesh.turned_triangles, inside_out.indices.size() / 3);
@@ -357,7 +357,8 @@ void try_soups(int more) {
   for (int round = 0; round < 6; ++round) {
     TestMesh mesh;
     for (int i = 0; i < 60; ++i) mesh.vertices.push_back(random.vector());
-    for (int i = 0; i < 10 + more * round; ++i) mesh.add(random.index(60), random.index(60), random.index(60));
+    for (int i = 0; i < 10 + more * round; ++i)
+      mesh.add(random.index(60), random.index(60), random.index(60));
     DecompositionDef def = mesh.def();
     def.concavity = 0.1f;
     def.max_hulls = 8;

@@ -1,8 +1,8 @@
 // Distances and winding numbers against plain loops over all triangles.
 #include "geometry/decomposition/surface_field.h"
 
-#include "geometry/distance/closest.h"
 #include "geometry/decomposition/decomposition_test_meshes.h"
+#include "geometry/distance/closest.h"
 
 #include <gtest/gtest.h>
 

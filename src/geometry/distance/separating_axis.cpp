@@ -1,6 +1,7 @@
 // The axis search over faces and edges. See separating_axis.h.
 #include "geometry/distance/separating_axis.h"
 
+#include "geometry/distance/sat_tolerance.h"
 #include "math/rotation.h"
 #include "math/wide_vec.h"
 
@@ -9,12 +10,6 @@
 namespace gyre {
 namespace {
 
-// How much better an axis must be to replace the favoured one: fractions of the depth and of the smaller inner radius.
-constexpr float kDepthBias = 0.05f, kSizeBias = 1.0e-3f;
-// Squared sine below which two edges have no axis of their own.
-constexpr double kParallel = 1.0e-8;
-// Squared sine below which rounding to float would show in the axis of two edges.
-constexpr float kShallow = 1.0e-2f;
 // Margin of the height test of edges, relative to the size of the shapes.
 constexpr float kHeightMargin = 1.0e-4f;
 // How far a corner may lie beyond the outermost edge, relative to the largest coordinate.
@@ -127,7 +122,7 @@ class EdgeSearch {
     const DVec3 db = rotate(rotation_, DVec3(b_.vertices[eb.to]) - DVec3(b_.vertices[eb.from]));
     DVec3 axis = cross(da, db);
     const double squared = dot(axis, axis);
-    if (!(squared > kParallel * dot(da, da) * dot(db, db))) return false;
+    if (!(squared > kSatParallel * dot(da, da) * dot(db, db))) return false;
     axis = axis / std::sqrt(squared);
     if (dot(axis, DVec3(outward)) < 0.0) axis = -axis;
     out = {edge_a, edge_b, to_float(axis), float(dot(axis, pb - pa))};
@@ -142,7 +137,7 @@ class EdgeSearch {
     const DVec3 da(ea.direction), db = rotate(rotation_, DVec3(eb.direction)), between = pb - pa;
     const double aa = dot(da, da), bb = dot(db, db), ab = dot(da, db);
     const double determinant = aa * bb - ab * ab;
-    if (!(determinant > double(kShallow) * aa * bb)) return -1.0f;
+    if (!(determinant > double(kSatShallow) * aa * bb)) return -1.0f;
     const double s = (dot(between, da) * bb - dot(between, db) * ab) / determinant;
     const double t = (dot(between, da) * ab - dot(between, db) * aa) / determinant;
     const double sine = std::sqrt(determinant / (aa * bb));
@@ -283,7 +278,7 @@ class EdgeCandidates {
   unsigned exceeding(int i, const ArcsW& arc, int first, float floor) const {
     const Vec3W<kLanes> da = arc.direction, db = arcs_b_[first / kLanes].direction, axis = cross(da, db);
     const Floats squared = dot(axis, axis);
-    const Mask<kLanes> undecided = squared < Floats(kShallow) * dot(da, da) * dot(db, db);
+    const Mask<kLanes> undecided = squared < Floats(kSatShallow) * dot(da, da) * dot(db, db);
     const Vec3W<kLanes> from_a = splat<kLanes>(a_.vertices[a_.edges[edges_a.index[i]].from]);
     const Floats along = dot(axis, from_b_[first / kLanes] - from_a);
     const Floats product = select(dot(axis, arc.left + arc.right) < Floats(0.0f), -along, along);
@@ -367,7 +362,7 @@ void face_separation(const Polytope& a, const Polytope& b, const Transform& a_fr
 
 // By how much an axis must be better to replace one of this separation.
 float bias_of(const Polytope& a, const Polytope& b, float separation) {
-  return kDepthBias * absolute(separation) + kSizeBias * min(a.inner_radius, b.inner_radius);
+  return kSatDepthBias * absolute(separation) + kSatSizeBias * min(a.inner_radius, b.inner_radius);
 }
 
 // True if `point` projects into a face, at least `margin` inside its sides.

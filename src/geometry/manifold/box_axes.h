@@ -2,6 +2,7 @@
 // (manifold_box) and the search in lanes (box_search_lanes).
 #pragma once
 
+#include "geometry/distance/sat_tolerance.h"
 #include "geometry/shape/shape.h"
 
 namespace gyre::boxes {
@@ -10,11 +11,10 @@ namespace gyre::boxes {
 constexpr int kFirstB = 3, kFirstEdge = 6, kAxisCount = 15, kNoAxis = -1;
 constexpr int kNext[3] = {1, 2, 0}, kAfter[3] = {2, 0, 1};
 
-// How much better an axis must be to replace the favoured one: fractions of the depth and of the smallest half extent.
-constexpr float kDepthBias = 0.05f, kSizeBias = 1.0e-3f;
-// Squared sine below which two edges have no axis of their own (the axes of the faces serve), and below which rounding
-// to float would show, so that the axis is recomputed in double.
-constexpr float kParallel = 1.0e-8f, kShallow = 1.0e-2f;
+// The tolerances of all separating axis tests. The search in lanes compares floats.
+constexpr float kDepthBias = kSatDepthBias, kSizeBias = kSatSizeBias;
+constexpr float kParallel = float(kSatParallel), kShallow = kSatShallow;
+static_assert(kParallel == 1.0e-8f);
 // Error of a separation times the length of its cross product, relative to the sum of all lengths in it.
 constexpr float kRounding = 4.0e-7f;
 

@@ -1,9 +1,9 @@
 // Where surfaces have real edges: ridges, valleys, walls, steps, borders, and pieces that are laid side by side.
 #include "geometry/distance/closest.h"
-#include "geometry/shape/cooked.h"
 #include "geometry/manifold_mesh/manifold_mesh.h"
+#include "geometry/query/closest_points.h"
+#include "geometry/shape/cooked.h"
 #include "geometry/testing/mesh_contact_test.h"
-#include "geometry/query/nearest.h"
 
 #include <gtest/gtest.h>
 
@@ -38,7 +38,8 @@ bool lies_beyond_a_valley(const Mesh& mesh, Vec3 point, Vec3 normal, float reach
   const DVec3 p(point);
   for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
     const TriangleView view = view_triangle(mesh, t);
-    const DVec3 n(view.normal), foot = closest_on_triangle(p, DVec3(view.v[0]), DVec3(view.v[1]), DVec3(view.v[2])).point;
+    const DVec3 n(view.normal),
+        foot = closest_on_triangle(p, DVec3(view.v[0]), DVec3(view.v[1]), DVec3(view.v[2])).point;
     if (length(view.normal - normal) > 0.04f || absolute(dot(n, p - DVec3(view.v[0]))) > 1.0e-3 ||
         length(p - foot) > double(reach))
       continue;
@@ -51,7 +52,8 @@ bool lies_beyond_a_valley(const Mesh& mesh, Vec3 point, Vec3 normal, float reach
         shared += is_shared;
         if (!is_shared) before = dot(n, DVec3(v) - DVec3(view.v[0]));
       }
-      const DVec3 on_other = closest_on_triangle(foot, DVec3(other.v[0]), DVec3(other.v[1]), DVec3(other.v[2])).point;
+      const DVec3 on_other =
+          closest_on_triangle(foot, DVec3(other.v[0]), DVec3(other.v[1]), DVec3(other.v[2])).point;
       if (shared == 2 && before > 0.0 && length(on_other - foot) < 1.0e-5) return true;
     }
   }
@@ -395,12 +397,13 @@ TEST(CollideMeshEdges, ACornerBesideARidgeIsAsNearAsItIs) {
     if (!hull) continue;
     const Shape shape = make_shape(AnyShape(*hull));
     Transform pose{{random.between(-0.2f, 0.2f), 1.5f, random.between(-0.2f, 0.2f)}, random.rotation()};
-    gyre::Nearest near;
+    gyre::ClosestPair near;
     const double gap = double(random.between(0.001f, 0.006f));
     for (int k = 0; k < 8; ++k) {  // down, until they all but touch
-      const PlacedShape placed{&shape, DVec3(pose.position), to_double(pose.orientation)};
+      const PosedShape placed{&shape, DVec3(pose.position), to_double(pose.orientation)};
       near.distance = 1.0;
-      if (!find_nearest(make_shape(ground), placed, 10.0, near) || near.overlap || near.distance < gap) break;
+      if (!find_closest_points(make_shape(ground), placed, 10.0, near) || near.overlap || near.distance < gap)
+        break;
       pose.position.y -= float(near.distance - 0.98 * gap);
     }
     if (near.overlap || near.distance > 0.009) continue;
@@ -425,11 +428,14 @@ TEST(CollideMeshEdges, HullsBesideTheBorderOfASlopeAreNotPushed) {
     const Result<Geometry> hull = cook_hull(points);
     if (!hull) continue;
     const Shape shape = make_shape(AnyShape(*hull));
-    const Transform pose{{random.between(0.0f, 0.7f), random.between(0.0f, 0.9f), random.between(-0.2f, 0.2f)},
-                         random.rotation()};
-    gyre::Nearest near;
-    const PlacedShape placed{&shape, DVec3(pose.position), to_double(pose.orientation)};
-    if (!find_nearest(make_shape(ground), placed, 10.0, near) || near.overlap || near.distance < 1.0e-3) continue;
+    const Transform pose{
+        {random.between(0.0f, 0.7f), random.between(0.0f, 0.9f), random.between(-0.2f, 0.2f)},
+        random.rotation()};
+    gyre::ClosestPair near;
+    const PosedShape placed{&shape, DVec3(pose.position), to_double(pose.orientation)};
+    if (!find_closest_points(make_shape(ground), placed, 10.0, near) || near.overlap ||
+        near.distance < 1.0e-3)
+      continue;
     ++apart;
     const Manifolds found = collide(ground, *hull, pose, 0.01f);
     pushed += found.count > 0 && found.deepest() < 0.0f;
@@ -443,10 +449,12 @@ TEST(CollideMeshEdges, WhatIsNearHasAContact) {
   const Geometry slope = grid(0.2f, 0.1f, [](float x, float) { return 0.2f + x; }).cook();
   const Transform beside{{0.252823472f, 1.00780642f, -0.126857162f},
                          {-0.653578222f, 0.422708601f, 0.192262322f, 0.597652256f}};
-  EXPECT_NEAR(collide(slope, Capsule{0.606344521f, 0.0173586588f}, beside, 0.0124741f).deepest(), 3.746e-3f, 1e-4f);
+  EXPECT_NEAR(collide(slope, Capsule{0.606344521f, 0.0173586588f}, beside, 0.0124741f).deepest(), 3.746e-3f,
+              1e-4f);
   const Geometry patch = flat_grid(0.2f, 0.1f).cook();
   const Transform over{{0.929088831f, 0.86321491f, -0.618770003f}, {}};
-  EXPECT_NEAR(collide(patch, Cylinder{0.894715488f, 0.845970392f}, over, 0.0246267f).deepest(), 0.0172445f, 1e-4f);
+  EXPECT_NEAR(collide(patch, Cylinder{0.894715488f, 0.845970392f}, over, 0.0246267f).deepest(), 0.0172445f,
+              1e-4f);
   const Vec3 corners[] = {{0x1.433ed4p-5f, -0x1.4e468ep-7f, 0x1.2c9606p-5f},
                           {-0x1.813234p-6f, 0x1.8a81cep-9f, -0x1.54010ep-5f},
                           {0x1.9c55b6p-6f, -0x1.d81152p-8f, 0x1.366944p-6f}};
@@ -526,11 +534,11 @@ TEST(CollideMeshEdges, ThinHullsThatAreApartAreNotPushed) {
     if (!hull) continue;
     const Shape shape = make_shape(AnyShape(*hull));
     Transform pose{{random.between(-0.2f, 0.2f), 1.0f, random.between(-0.2f, 0.2f)}, random.rotation()};
-    gyre::Nearest near;
+    gyre::ClosestPair near;
     for (int k = 0; k < 8; ++k) {  // down, until they all but touch
-      const PlacedShape placed{&shape, DVec3(pose.position), to_double(pose.orientation)};
+      const PosedShape placed{&shape, DVec3(pose.position), to_double(pose.orientation)};
       near.distance = 1.0;  // beside the ground there is nothing
-      if (!find_nearest(make_shape(ground), placed, 10.0, near)) break;
+      if (!find_closest_points(make_shape(ground), placed, 10.0, near)) break;
       if (near.overlap || near.distance < 2.0e-4) break;
       pose.position.y -= float(near.distance - 1.0e-4);
     }

@@ -1,7 +1,7 @@
 // Contacts with rough ground against GJK over every triangle: none missed, none invented, and following them leads out.
-#include "geometry/shape/cooked.h"
 #include "geometry/distance/gjk.h"
 #include "geometry/manifold_mesh/manifold_mesh.h"
+#include "geometry/shape/cooked.h"
 #include "geometry/testing/mesh_contact_test.h"
 
 #include <gtest/gtest.h>

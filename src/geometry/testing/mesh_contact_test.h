@@ -2,8 +2,8 @@
 #pragma once
 
 #include "geometry/manifold/manifold.h"
-#include "geometry/testing/mesh_test_scenes.h"
 #include "geometry/shape/support.h"
+#include "geometry/testing/mesh_test_scenes.h"
 
 #include <gtest/gtest.h>
 

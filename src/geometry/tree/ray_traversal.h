@@ -51,7 +51,7 @@ struct RayTraversal {
   static constexpr int kRoom = 256;  // 32 levels of trees, eight lanes each
 
   BoxRay line;
-  float reach;         // 0 or more: the fraction at which the ray ends; the caller may shorten it
+  float max_fraction;  // 0 or more: the fraction at which the ray ends; the caller may shorten it
   std::uint32_t leaf;  // the leaf that was met last, without kLeafBit
   int depth = 1;
   // Nodes and leaves still to visit, the nearest last. The high word is the fraction at which one is met (0 or more, so
@@ -61,7 +61,7 @@ struct RayTraversal {
   };
 
   // `root`: the index of a node.
-  RayTraversal(const BoxRay& along, std::uint32_t root, float to) : line(along), reach(to) {
+  RayTraversal(const BoxRay& along, std::uint32_t root, float to) : line(along), max_fraction(to) {
     waiting[0] = root;
   }
 };

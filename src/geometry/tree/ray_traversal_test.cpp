@@ -111,7 +111,7 @@ TEST(RayTraversal, EndsWhereWhoeverWalksSays) {
       EXPECT_NE(std::find(first, first + leaf_count(walk.leaf), 0u), first + leaf_count(walk.leaf))
           << "the nearest box first";
     }
-    walk.reach = 3.5f / 101.0f;  // all but the first three
+    walk.max_fraction = 3.5f / 101.0f;  // all but the first three
   }
   EXPECT_GE(leaves, 1);
   EXPECT_LE(leaves, 3);

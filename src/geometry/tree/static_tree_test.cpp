@@ -155,7 +155,7 @@ TEST(StaticTree, RaysMeetTheNearestBox) {
     for (const Aabb& box : boxes) nearest = min(nearest, entry(box, origin, direction, reach));
     float found = reach;
     const BoxRay ray(DVec3(origin), DVec3(reach * direction), Vec3{});
-    walk_cast(tree, ray, 1.0f, [&](std::uint32_t first, std::uint32_t count, float) {
+    traverse_cast(tree, ray, 1.0f, [&](std::uint32_t first, std::uint32_t count, float) {
       for (std::uint32_t k = first; k < first + count; ++k) {
         found = min(found, entry(boxes[tree.items[k]], origin, direction, reach));
       }

@@ -1,7 +1,7 @@
 #include "rigid/batch/surface_rules.h"
 
+#include "geometry/query/closest_points.h"
 #include "geometry/shape/mesh.h"
-#include "geometry/query/nearest.h"
 
 namespace gyre {
 
@@ -33,9 +33,9 @@ std::uint32_t nearest_triangle(const RigidWorld& w, std::uint32_t shape, DVec3 p
   const DQuat orientation = normalized(to_double(pose.orientation));
   Shape point;
   point.radius = 0.0f;
-  Nearest near;
-  const PlacedShape placed{&point, rotate_inverse(orientation, place - pose.position), {}};
-  find_nearest(w.shapes.colliders[shape].shape, placed, double(kUnbounded), near);
+  ClosestPair near;
+  const PosedShape placed{&point, rotate_inverse(orientation, place - pose.position), {}};
+  find_closest_points(w.shapes.colliders[shape].shape, placed, double(kUnbounded), near);
   return near.triangle;
 }
 
