@@ -1,5 +1,5 @@
-// GJK against its own proof (the witness points are an upper bound of the distance, the normal gives a lower one; when they
-// meet, the answer is right), against closed forms and dense sampling, at every scale.
+// GJK against its own proof (the witness points give an upper bound of the distance, the normal a lower one; if they
+// are equal, the answer is right), against closed forms and against dense sampling, at every scale.
 #include "geometry/distance/gjk.h"
 
 #include "geometry/distance/closest.h"
@@ -14,7 +14,7 @@ namespace {
 
 using namespace oracle;
 
-// How far a point lies outside a core, from the definition of its kind, by the worst of many directions.
+// The distance of a point outside a core by the definition of its kind: the worst of many directions.
 double outside_core(const Shape& shape, DVec3 p, Random& random) {
   double worst = -1.0e300;
   for (int i = 0; i < 40; ++i) {
@@ -43,7 +43,7 @@ TEST(Gjk, UpperAndLowerBoundMeetForAllKinds) {
       ASSERT_LT(found.iterations, 64) << what;
       if (found.overlap) {
         ++touching;
-        // No direction parts them.
+        // No direction separates them.
         EXPECT_LE(sampled_separation(a, b, pair, random, 60), 1.0e-6 * size) << what;
         continue;
       }
@@ -116,7 +116,7 @@ TEST(Gjk, WhatStandsOverAFaceOfABoxNeedsNoSearch) {
     EXPECT_LT(length(found.on_b - low) + length(found.on_a - DVec3{low.x, 1.0, low.z}), 1.0e-12) << i;
     EXPECT_NEAR(turned.distance, found.distance, 1.0e-12) << i;
     EXPECT_LT(length(other_way.to_b(turned.normal) + found.normal), 1.0e-12) << i;
-    // Nearer than the lowest point no other comes, so that what is farther than asked for needs no face below it.
+    // No point is closer than the lowest point, so a distance above the maximum needs no face below it.
     EXPECT_TRUE(core_distance(pair, 0.9 * found.distance, {}).beyond) << i;
   }
   EXPECT_GT(beside, 10);

@@ -1,5 +1,5 @@
-// EPA against its own proof (moving by the depth parts the shapes; no other direction parts them sooner), against the axis
-// search on boxes, and on everything degenerate.
+// EPA against its own proof (moving by the depth separates the shapes; no other direction separates them sooner),
+// against the axis search on boxes, and on all kinds of degenerate input.
 #include "geometry/distance/penetration.h"
 
 #include "geometry/testing/convex_oracle.h"

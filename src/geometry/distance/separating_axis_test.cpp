@@ -45,8 +45,8 @@ TEST(SeparatingAxis, EqualsBruteForceOverAllAxes) {
     const double best = all_axes(a, b, pair);
     const Polytope pa = make_polytope(*a.hull), pb = make_polytope(*b.hull);
     const PolytopeAxis axis = separating_axis(pa, pb, t, 1.0e30f, {});
-    // Edges are pruned by distance, so on separated shapes a face may stand for them; overlapping ones are exact up to the
-    // biases towards faces and towards A's.
+    // Edges are culled by distance, so a face may replace them on separated shapes. On overlapping shapes the result is
+    // exact up to the biases towards faces and towards A's.
     const double bias = 0.085 * absolute(best) + 1.5e-3 * double(min(pa.inner_radius, pb.inner_radius)) +
                         2.0e-6 * double(scale);
     EXPECT_LE(double(axis.separation), best + 2.0e-6 * double(scale)) << i;
@@ -54,11 +54,11 @@ TEST(SeparatingAxis, EqualsBruteForceOverAllAxes) {
     EXPECT_NEAR(separation(a, b, pair, DVec3(axis.normal)), double(axis.separation), 1.0e-5 * double(scale))
         << i;
     if (best > 0.0) continue;
-    // Overlapping: the same axis when only near edges are looked at.
+    // Overlapping: the same axis if only near edges are tested.
     const PolytopeAxis pruned = separating_axis(pa, pb, t, 0.0f, {});
     EXPECT_EQ(pruned.kind, axis.kind) << i;
     EXPECT_EQ(pruned.separation, axis.separation) << i;
-    // And once more with that axis as the favoured one.
+    // Then again with that axis as the favoured one.
     PolytopeAxis favoured = axis;
     separation_along(pa, pb, t, favoured);
     const PolytopeAxis again = separating_axis(pa, pb, t, 0.0f, favoured);
@@ -91,8 +91,8 @@ TEST(SeparatingAxis, StopsOnlyAtTrueSeparation) {
   EXPECT_GT(stopped, 100);
 }
 
-// A plate as thin as a blade in the middle of a box was told to be half a metre apart from it: of the two normals beside its
-// edge each was nearly the other's opposite, and so was the way out that they made.
+// A blade-thin plate in the middle of a box was reported half a metre apart from it: the two normals beside its edge
+// were nearly opposite, and so was the direction that they gave.
 TEST(SeparatingAxis, ABladeInABoxIsNotApart) {
   Hulls hulls;
   const Shape blade = hulls.add({{-0.399887264f, -2.17296765e-05f, -0.325181812f},
@@ -150,7 +150,7 @@ TEST(Polytope, TheBoxIsAClosedConvexPolyhedron) {
       EXPECT_FLOAT_EQ(dot(face.vertices[i], face.normal), view.planes[f].offset);
       left_of[{face.ids[i], face.ids[(i + 1) % 4]}] = f;
     }
-    // The same face, corners and names as everyone else sees.
+    // The same face, corners and names as in all other code.
     FacePolygon other;
     support_face(make_box(h), face.normal, other);
     EXPECT_EQ(other.feature, face.feature);

@@ -1,4 +1,4 @@
-// What is told apart is apart to the searches too, for triangles of all sizes and thin ones.
+// Triangles that the kernel finds apart are apart for the searches too, for triangles of all sizes and thin ones.
 #include "geometry/manifold_mesh/mesh_apart_lanes.h"
 
 #include "geometry/manifold_mesh/mesh_axis.h"
@@ -63,7 +63,7 @@ TEST(MeshApart, WhatIsApartIsFoundApart) {
       }
     }
   }
-  // Only a few of those near the bound are left to the search, and pairs of edges of hulls.
+  // The search must decide only a few triangles close to the bound, and pairs of edges of hulls.
   EXPECT_GT(known, apart * 9 / 10);
 }
 

@@ -1,5 +1,5 @@
-// Culling triangles side by side: what is left out is out of reach, what is not is placed as one alone, and a lane depends neither on its
-// neighbours nor on how many there are.
+// Culling of triangles side by side: excluded triangles are too far away, all others have the form of a single
+// triangle, and no lane depends on its neighbours or on their number.
 #include "geometry/manifold_mesh/mesh_cull.h"
 
 #include "geometry/distance/gjk.h"
@@ -15,7 +15,7 @@ using namespace test;
 
 constexpr float kReach = 0.1f;
 
-// Whether the triangle is farther from the shape than it may be, or has all of it behind.
+// True if the triangle is too far from the shape, or if the shape is behind it.
 bool is_out_of_reach(const LocalTriangle& t, const LocalConvex& convex) {
   if (convex.highest(t.normal) + convex.radius() <= dot(t.normal, t.v[0]) + 1.0e-5f) return true;
   const DVec3 corners[3] = {DVec3(t.v[0]), DVec3(t.v[1]), DVec3(t.v[2])};
@@ -24,7 +24,7 @@ bool is_out_of_reach(const LocalTriangle& t, const LocalConvex& convex) {
   return !found.overlap && found.distance - double(convex.radius()) > double(kReach) - 1.0e-5;
 }
 
-// Whether both searches find what is known to be apart out of reach, and so have no say in any contact.
+// True if both searches find the triangle too far away, so that it can give no contact.
 bool is_apart_to_searches(const Surface& surface, const LocalTriangle& t, const LocalConvex& convex) {
   AxisScratch scratch;
   const float face = convex.lowest(t.normal) - convex.radius() - dot(t.normal, t.v[0]);
@@ -43,7 +43,7 @@ bool same(const LocalTriangle& a, const LocalTriangle& b) {
   return all;
 }
 
-// What must be so of one triangle of those that were placed.
+// Invariants of one triangle of a batch.
 void check_lane(const Surface& surface, std::uint32_t id, const TriangleBatch& placed, int lane,
                 Vec3 position, const LocalConvex& convex) {
   const LocalTriangle t = measured_triangle(surface, id, position, convex);
@@ -69,7 +69,7 @@ void check(const Geometry& ground, Random& random) {
     for (int round = 0; round < 40; ++round) {
       const Vec3 position = random.in_box(2.0f);
       const LocalConvex convex(other, random.rotation());
-      // Also fewer than all lanes.
+      // Also with fewer triangles than lanes.
       const int count = 1 + round % TriangleBatch::kCount;
       for (std::uint32_t first = 0; first + 8 <= 128; first += std::uint32_t(count)) {
         std::uint32_t ids[TriangleBatch::kCount];
@@ -112,7 +112,7 @@ TEST(MeshCull, LeavesOutOnlyWhatAHeightFieldHasOutOfReach) {
   check(*field, random);
 }
 
-// The same triangles are near by four lanes, by as many as the machine has, and by the scalar test.
+// Four lanes, the widest kernel of the machine and the scalar test find the same triangles.
 TEST(MeshCull, BoxesAreNearToAllKernels) {
   Random random{6};
   const Geometry ground = grid(2.0f, 0.5f, bumpy).cook();

@@ -1,4 +1,5 @@
-// A triangle that is left out beside a ball or capsule: the search for a direction finds none there that the surface allows, so it would wait.
+// A triangle that is rejected for a ball or capsule: the search finds no direction there that the surface allows, so it
+// would be deferred.
 #include "geometry/manifold_mesh/mesh_reject.h"
 
 #include "geometry/testing/mesh_contact_test.h"

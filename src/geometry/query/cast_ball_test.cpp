@@ -1,4 +1,4 @@
-// Moving balls in closed form against steps of the distance that is left, which never pass the impact.
+// Casts of balls in closed form against steps of the remaining distance, which never pass the impact.
 #include "geometry/query/cast_ball.h"
 
 #include "geometry/distance/closest.h"
@@ -16,8 +16,8 @@ DVec3 vector(Mixed& random, double most) {
   return {x, y, random.between(-most, most)};
 }
 
-// The fraction at which the distance to the core falls to the radii, looked for in steps that are as long as what is left of
-// it; `least`: how near to touching a miss came.
+// The fraction at which the distance to the core falls to the radii, by steps of the remaining distance; `least`: the
+// smallest remaining distance of a miss.
 template <class OnCore>
 bool step_to_impact(const OnCore& on_core, double radii, const LocalRay& middle, double reach,
                     double& fraction, double& least) {
@@ -54,7 +54,7 @@ void expect_right(const OnCore& on_core, double radii, const LocalRay& middle, d
   const bool hits = step_to_impact(on_core, radii, middle, reach, fraction, least);
   if (cast == BallCast::misses) {
     ++counts.misses;
-    // It may come as near as rounding, and just reach at the end.
+    // The smallest distance may be as small as rounding, and the end may just be reached.
     if (hits && fraction < reach * (1.0 - 1.0e-7)) {
       // Grazing: from there on it does not come nearer.
       const DVec3 later = middle.origin + (fraction + 1.0e-4) * middle.translation;
@@ -154,7 +154,7 @@ TEST(CastBall, LeavesOverlapsAndSliversToASearch) {
   BallImpact impact;
   EXPECT_EQ(cast_ball_at_box({1, 1, 1}, 0.5, {{1.4, 0, 0}, {1, 0, 0}}, 1.0, impact), BallCast::unknown);
   EXPECT_EQ(cast_ball_at_box({1, 1, 1}, 0.5, {{1.6, 0, 0}, {1, 0, 0}}, 1.0, impact), BallCast::misses);
-  // Within the corner of the swept box's box, but beside the corner.
+  // Inside the corner of the rounded box's bounding box, but beside the rounded corner.
   EXPECT_EQ(cast_ball_at_box({1, 1, 1}, 0.5, {{1.4, 1.4, 0}, {-1, 0, 0}}, 1.0, impact), BallCast::hits);
   const DVec3 sliver[3] = {{}, {1, 0, 0}, {2, 0, 0}};
   EXPECT_EQ(cast_ball_at_triangle(sliver, 0.5, {{0, 2, 0}, {0, -2, 0}}, 1.0, impact), BallCast::unknown);

@@ -1,4 +1,5 @@
-// Moving shapes against every kind: the impact lies where dense steps with GJK's distance find it, and the answer touches.
+// Casts of shapes against every kind: the impact is where dense steps with GJK's distance find it, and the result
+// touches.
 #include "geometry/query/cast.h"
 
 #include "geometry/query/cast_surface.h"
@@ -18,7 +19,7 @@ PosedShape placed(const MovingShape& moving, double t) {
   return {moving.shape, moving.position + t * moving.translation, moving.orientation};
 }
 
-// The distance from a plain look at everything: no trees, no search in steps.
+// The distance by a plain test of everything: no trees, no stepwise search.
 double plain_distance(const Shape& target, const PosedShape& convex) {
   ClosestPair near;
   if (is_convex(target.kind) || target.kind == ShapeKind::plane) {
@@ -48,7 +49,7 @@ void expect_right(const Shape& target, const MovingShape& moving, double size, c
   constexpr int kSteps = 60;
   const double end = hits ? hit.fraction : 1.0;
   for (int i = 0; i < kSteps; ++i) {
-    // What touches on its way by less than rounding may count as a hit or not.
+    // A contact within rounding during the cast may count as a hit or not.
     const double t = end * double(i) / kSteps;
     EXPECT_GT(plain_distance(target, placed(moving, t)), 0.0) << what << " at " << t << " of " << end;
     if (::testing::Test::HasFailure()) return;
@@ -185,7 +186,7 @@ TEST(CastShape, StartsInOverlap) {
   moving.skin = 0.09f;
   moving.translation = {3, 0, 0};
   EXPECT_TRUE(cast_shape(box, moving, 1.0, false, hit));
-  // Of a one-sided surface the way out is by its front.
+  // The exit from a one-sided surface is through its front.
   const Geometry floor = test::flat_grid(3.0f, 1.0f).cook();
   const Shape ground = make_shape(AnyShape(floor));
   ASSERT_TRUE(cast_shape(ground, {&box, {0.2, -0.3, 0.1}, {}, {0.1, -1, 0}}, 1.0, false, hit));

@@ -1,4 +1,4 @@
-// Rays against meshes and height fields: the same hits as a plain test of all triangles, and no way through shared edges.
+// Rays against meshes and height fields: the same hits as a plain test of all triangles, and no leak at shared edges.
 #include "geometry/query/cast_surface.h"
 
 #include "geometry/shape/cooked.h"
@@ -101,7 +101,7 @@ TEST(CastRayAtMesh, FindsWhatAPlainTestOfAllTrianglesFinds) {
   EXPECT_EQ(differ, 0);
 }
 
-// From inside a closed surface nothing gets out: neither in random directions nor exactly at corners and along edges.
+// No ray leaves a closed surface from inside: neither in random directions nor exactly at corners and along edges.
 TEST(CastRayAtMesh, LetsNothingThroughSharedEdgesAndCorners) {
   Random random{2};
   for (int mesh = 0; mesh < 4; ++mesh) {

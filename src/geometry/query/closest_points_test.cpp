@@ -14,7 +14,7 @@ namespace {
 
 using oracle::Random;
 
-// How far a point lies outside a shape along sampled directions: above zero only outside.
+// The distance of a point outside a shape along sampled directions: positive only outside.
 double sampled_height(const Shape& shape, DVec3 p, Random& random) {
   double highest = -1.0e300;
   for (int i = 0; i < 40; ++i) {
@@ -24,8 +24,8 @@ double sampled_height(const Shape& shape, DVec3 p, Random& random) {
   return highest;
 }
 
-// No two points can be nearer than the shapes are apart along some direction, and the distance is no more than that of two
-// points of them: with both equal it is proven.
+// No two points are closer than the separation along any direction, and the distance is no more than that of any two
+// points. If both bounds are equal, the distance is proven.
 TEST(FindNearest, IsProvenForConvexPairs) {
   Random random(1);
   int apart = 0;

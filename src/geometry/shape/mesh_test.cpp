@@ -1,4 +1,4 @@
-// Cooked meshes: what is refused, what is left out, and what is known about edges and corners.
+// Cooked meshes: refused input, dropped triangles, and the kinds of edges and corners.
 #include "geometry/shape/mesh.h"
 
 #include "geometry/shape/cooked.h"
@@ -83,7 +83,7 @@ TEST(CookMesh, TakesASingleTriangle) {
 TEST(CookMesh, LeavesOutEmptyTrianglesAndDoubles) {
   Triangles triangles = test::flat_grid(2.0f, 1.0f);
   const std::uint32_t count = std::uint32_t(triangles.indices.size() / 3);
-  // The same triangle from another corner, one without area, and one that faces the other way, which stays.
+  // The same triangle from another corner, one without area, and one that faces the other way; the last one stays.
   const std::vector<std::uint32_t> i = triangles.indices;
   triangles.triangle(i[1], i[2], i[0]);
   triangles.triangle(i[0], i[1], i[1]);

@@ -1,4 +1,4 @@
-// Asking for the contacts of a shape on a surface, for the tests of meshes and height fields.
+// The contacts of a shape on a surface, for the tests of meshes and height fields.
 #pragma once
 
 #include "geometry/manifold/manifold.h"

@@ -1,4 +1,4 @@
-// Walks along lines at every width: all leaves that a plain test in double meets, and hardly others.
+// Ray traversal at every width: all leaves that a plain test in double meets, and hardly any others.
 #include "geometry/tree/ray_traversal.h"
 
 #include "geometry/tree/ray_traversal_lanes.h"
@@ -15,7 +15,7 @@ namespace {
 
 using testing_random::Random;
 
-// Where a box of half size `half` on its way touches `box`: false if it never does up to `reach`.
+// The fraction at which a moving box of half size `half` touches `box`. False if it does not up to `reach`.
 bool touches(const Aabb& box, DVec3 from, Vec3 way, Vec3 half, double reach, double& enter) {
   enter = 0.0;
   double leave = reach;

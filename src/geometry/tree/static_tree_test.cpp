@@ -22,7 +22,8 @@ std::vector<Aabb> random_boxes(Random& random, std::size_t count, float spread, 
   return boxes;
 }
 
-// Every item once, boxes contain what is below them, and the walk's leaves are exactly those whose boxes overlap.
+// Every item occurs once, boxes contain everything below them, and the traversal visits exactly the leaves whose boxes
+// overlap.
 void expect_sound(const std::vector<Aabb>& boxes, const StaticTree& tree) {
   std::vector<std::uint32_t> sorted = tree.items;
   std::sort(sorted.begin(), sorted.end());
