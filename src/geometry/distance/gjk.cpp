@@ -60,13 +60,13 @@ SimplexPoint nearest_to_origin(const DifferencePoint* s, int count, bool outside
   switch (count) {
     case 1: {
       SimplexPoint out;
-      out.point = s[0].way;
+      out.point = s[0].difference;
       out.weights[0] = 1.0;
       out.corners = 1;
       return out;
     }
     case 2: {
-      const SegmentPoint near = closest_on_segment(origin, s[0].way, s[1].way);
+      const SegmentPoint near = closest_on_segment(origin, s[0].difference, s[1].difference);
       SimplexPoint out;
       out.point = near.point;
       out.weights[0] = 1.0 - near.t;
@@ -75,10 +75,13 @@ SimplexPoint nearest_to_origin(const DifferencePoint* s, int count, bool outside
       return out;
     }
     case 3:
-      return closest_on_triangle(origin, s[0].way, s[1].way, s[2].way);
+      return closest_on_triangle(origin, s[0].difference, s[1].difference, s[2].difference);
     default:
-      if (outside) return closest_on_tetrahedron_surface(origin, s[0].way, s[1].way, s[2].way, s[3].way);
-      return closest_on_tetrahedron(origin, s[0].way, s[1].way, s[2].way, s[3].way);
+      if (outside)
+        return closest_on_tetrahedron_surface(origin, s[0].difference, s[1].difference, s[2].difference,
+                                              s[3].difference);
+      return closest_on_tetrahedron(origin, s[0].difference, s[1].difference, s[2].difference,
+                                    s[3].difference);
   }
 }
 
@@ -149,7 +152,7 @@ DifferencePoint CorePair::support(DVec3 direction) const {
   DifferencePoint out;
   out.on_a = a_ != nullptr ? support_of(*a_, -direction) : farthest_corner(triangle_, -direction);
   out.on_b = from_b(support_of(*b_, to_b(direction))) + position_;
-  out.way = out.on_b - out.on_a;
+  out.difference = out.on_b - out.on_a;
   return out;
 }
 
@@ -219,7 +222,7 @@ bool CorePair::find_over_face(double max_distance, CoreDistance& out) const {
   return false;
 }
 
-double CorePair::separation(DVec3 direction) const { return dot(support(-direction).way, direction); }
+double CorePair::separation(DVec3 direction) const { return dot(support(-direction).difference, direction); }
 
 CoreDistance core_distance(const CorePair& pair, double max_distance, Vec3 guess) {
   CoreDistance out;
@@ -240,7 +243,7 @@ CoreDistance core_distance(const CorePair& pair, double max_distance, Vec3 guess
   const double touch = kTouch * pair.size();
   for (out.iterations = 1; out.iterations <= kMaxIterations; ++out.iterations) {
     const DifferencePoint w = pair.support(-n);
-    bound = dot(w.way, n);
+    bound = dot(w.difference, n);
     if (bound > best_bound) {
       best_bound = bound;
       best = n;
@@ -254,7 +257,7 @@ CoreDistance core_distance(const CorePair& pair, double max_distance, Vec3 guess
       const double reached = std::sqrt(squared);
       if (reached - bound <= kGap * reached) break;
       bool known = false;
-      for (int i = 0; i < count; ++i) known = known || same(simplex[i].way, w.way);
+      for (int i = 0; i < count; ++i) known = known || same(simplex[i].difference, w.difference);
       if (known) break;
     }
     // The point is stored behind the simplex. It belongs to the simplex only once it is counted.

@@ -22,7 +22,7 @@ DVec3 core_support(const Shape& shape, DVec3 direction);
 
 // A point of the Minkowski difference B - A, and the two points that it came from, all in A's frame.
 struct DifferencePoint {
-  DVec3 way;  // on_b - on_a
+  DVec3 difference;  // on_b - on_a
   DVec3 on_a, on_b;
 };
 

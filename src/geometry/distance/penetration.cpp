@@ -81,15 +81,15 @@ int ExpandingPolytope::new_face(int a, int b, int c) {
   face.v[0] = std::uint8_t(a), face.v[1] = std::uint8_t(b), face.v[2] = std::uint8_t(c);
   face.alive = true;
   face.visible = false;
-  const DVec3 p = vertices_[a].way, u = vertices_[b].way - p, v = vertices_[c].way - p;
+  const DVec3 p = vertices_[a].difference, u = vertices_[b].difference - p, v = vertices_[c].difference - p;
   const DVec3 n = cross(u, v);
   const double area = length(n), longest = max(dot(u, u), max(dot(v, v), length_squared(v - u)));
   if (area > 1.0e-13 * longest) {
     face.normal = n / area;
     // The corner closest to the origin gives the smallest rounding error.
     DVec3 corner = p;
-    if (length_squared(vertices_[b].way) < length_squared(corner)) corner = vertices_[b].way;
-    if (length_squared(vertices_[c].way) < length_squared(corner)) corner = vertices_[c].way;
+    if (length_squared(vertices_[b].difference) < length_squared(corner)) corner = vertices_[b].difference;
+    if (length_squared(vertices_[c].difference) < length_squared(corner)) corner = vertices_[c].difference;
     face.distance = dot(face.normal, corner);
   } else {
     face.normal = {};
@@ -102,9 +102,10 @@ int ExpandingPolytope::new_face(int a, int b, int c) {
 // Writes the extreme point along +-direction behind the first `count` vertices, if it is farther than `threshold` from
 // vertex 0 along the direction.
 bool ExpandingPolytope::take_extreme(DVec3 direction, int count, double threshold) {
-  const DVec3 origin = vertices_[0].way;
+  const DVec3 origin = vertices_[0].difference;
   const DifferencePoint up = pair_.support(direction), down = pair_.support(-direction);
-  const double far_up = dot(up.way - origin, direction), far_down = dot(origin - down.way, direction);
+  const double far_up = dot(up.difference - origin, direction),
+               far_down = dot(origin - down.difference, direction);
   if (!(max(far_up, far_down) > threshold)) return false;
   vertices_[count] = far_up >= far_down ? up : down;
   return true;
@@ -120,7 +121,7 @@ bool ExpandingPolytope::extend(int known, DVec3& flat_normal) {
     flat_normal = {0, 1, 0};
     if (i == 3) return false;
   }
-  const DVec3 along = vertices_[1].way - vertices_[0].way;
+  const DVec3 along = vertices_[1].difference - vertices_[0].difference;
   if (known < 3) {
     const DVec3 size{absolute(along.x), absolute(along.y), absolute(along.z)};
     const DVec3 crosswise = size.x <= size.y && size.x <= size.z ? axes[0]
@@ -133,7 +134,7 @@ bool ExpandingPolytope::extend(int known, DVec3& flat_normal) {
     flat_normal = u;
     if (!take_extreme(u, 2, thin) && !take_extreme(v, 2, thin)) return false;
   }
-  DVec3 normal = cross(along, vertices_[2].way - vertices_[0].way);
+  DVec3 normal = cross(along, vertices_[2].difference - vertices_[0].difference);
   normal = normal / length(normal);
   flat_normal = normal;
   return take_extreme(normal, 3, thin);
@@ -144,16 +145,16 @@ bool ExpandingPolytope::start(const CoreDistance& start, DVec3& flat_normal) {
   const double thin = 1.0e-6 * pair_.size();
   int known = 0;
   for (int i = 0; i < start.simplex_count; ++i) {
-    const DVec3 p = start.simplex[i].way;
+    const DVec3 p = start.simplex[i].difference;
     bool is_apart = true;
-    if (known == 1) is_apart = length(p - vertices_[0].way) > thin;
+    if (known == 1) is_apart = length(p - vertices_[0].difference) > thin;
     if (known >= 2) {
-      const DVec3 along = vertices_[1].way - vertices_[0].way;
-      const DVec3 across = cross(along, p - vertices_[0].way);
+      const DVec3 along = vertices_[1].difference - vertices_[0].difference;
+      const DVec3 across = cross(along, p - vertices_[0].difference);
       is_apart = length(across) > thin * length(along);
       if (is_apart && known == 3) {
-        const DVec3 normal = cross(along, vertices_[2].way - vertices_[0].way);
-        is_apart = absolute(dot(normal, p - vertices_[0].way)) > thin * length(normal);
+        const DVec3 normal = cross(along, vertices_[2].difference - vertices_[0].difference);
+        is_apart = absolute(dot(normal, p - vertices_[0].difference)) > thin * length(normal);
       }
     }
     if (is_apart) vertices_[known++] = start.simplex[i];
@@ -164,8 +165,9 @@ bool ExpandingPolytope::start(const CoreDistance& start, DVec3& flat_normal) {
   }
   if (known < 4 && !extend(known, flat_normal)) return false;
   vertex_count_ = 4;
-  const DVec3 o = vertices_[0].way;
-  if (dot(cross(vertices_[1].way - o, vertices_[2].way - o), vertices_[3].way - o) > 0.0) {
+  const DVec3 o = vertices_[0].difference;
+  if (dot(cross(vertices_[1].difference - o, vertices_[2].difference - o), vertices_[3].difference - o) >
+      0.0) {
     const DifferencePoint swap = vertices_[1];
     vertices_[1] = vertices_[2];
     vertices_[2] = swap;
@@ -218,7 +220,7 @@ bool ExpandingPolytope::add(const DifferencePoint& point, int first) {
       Face& other = faces_[beyond];
       if (other.visible) continue;
       // A face without area goes with the faces around it.
-      if (other.distance == kNoDistance || dot(other.normal, point.way) > other.distance) {
+      if (other.distance == kNoDistance || dot(other.normal, point.difference) > other.distance) {
         other.visible = true;
         visible_faces[visible_count++] = std::uint8_t(beyond);
       }
@@ -283,7 +285,7 @@ void ExpandingPolytope::witness(DVec3 target, DVec3 outward, DVec3& on_a, DVec3&
     // No point of a face is closer than its plane.
     if (square(dot(face.normal, target) - face.distance) > kSurelyFarther * squared_limit) continue;
     const DifferencePoint &a = vertices_[face.v[0]], &b = vertices_[face.v[1]], &c = vertices_[face.v[2]];
-    const SimplexPoint near = closest_on_triangle(target, a.way, b.way, c.way);
+    const SimplexPoint near = closest_on_triangle(target, a.difference, b.difference, c.difference);
     const double squared = length_squared(near.point - target);
     if (!(squared < squared_limit)) continue;
     squared_limit = squared;
@@ -325,7 +327,7 @@ CorePenetration core_penetration(const CorePair& pair, const CoreDistance& start
     const Face face = polytope.face(i);
     if (face.distance == kNoDistance) break;
     const DifferencePoint w = pair.support(face.normal);
-    const double depth = dot(w.way, face.normal);
+    const double depth = dot(w.difference, face.normal);
     // This is the depth along the normal, whatever the rest of the polytope looks like.
     if (depth < best.depth) {
       best.depth = depth;

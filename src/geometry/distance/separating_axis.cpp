@@ -186,7 +186,7 @@ void find_low_edges(const Polytope& p, const float* heights, float limit, EdgeLi
 // faces; if it lies between the two normals, it is as high as its distance from the edge.
 void cull_by_inner_ball(const Polytope& p, Vec3 center, float radius, float floor, EdgeList& list) {
   const Floats threshold(floor + radius), zero(0.0f), one(1.0f);
-  int kept = 0;
+  int count_left = 0;
   for (int first = 0; first < list.count; first += kLanes) {
     const float *left[kLanes], *right[kLanes];
     for (int lane = 0; lane < kLanes; ++lane) {
@@ -204,9 +204,9 @@ void cull_by_inner_ball(const Polytope& p, Vec3 center, float radius, float floo
         (threshold < zero) | (squared > threshold * threshold * (one - cosine * cosine));
     unsigned rest = to_bits((max(over_a, over_b) > threshold) | (between & high_over_edge));
     rest &= list.count - first < kLanes ? (1u << (list.count - first)) - 1u : ~0u;
-    for (; rest != 0; rest &= rest - 1) list.index[kept++] = list.index[first + std::countr_zero(rest)];
+    for (; rest != 0; rest &= rest - 1) list.index[count_left++] = list.index[first + std::countr_zero(rest)];
   }
-  list.count = kept;
+  list.count = count_left;
 }
 
 struct BestFace {

@@ -227,7 +227,7 @@ int reduce_points(ManifoldPoint* points, int count, Vec3 normal) {
   // If positions are not finite (bodies that are about to be removed from the world), the first point stays.
   if (!choose(0, -deepest, -kUnbounded, kEqualDepth * std::sqrt(width_squared))) chosen[0] = 0;
   const Vec3 p0 = points[chosen[0]].position;
-  int kept = 1;
+  int chosen_count = 1;
 
   // Second: the point farthest from the first. Third: the largest triangle with both. Fourth: the largest addition to
   // that area.
@@ -237,14 +237,14 @@ int reduce_points(ManifoldPoint* points, int count, Vec3 normal) {
     farthest = max(farthest, value[i]);
   }
   if (choose(1, farthest, 1.0e-12f * width_squared, kEqualSpan * farthest)) {
-    ++kept;
+    ++chosen_count;
     const Vec3 p1 = points[chosen[1]].position, beside = cross(normal, p1 - p0);
     for (int i = 0; i < count; ++i) {
       value[i] = absolute(dot(beside, points[i].position - p0));
       widest = max(widest, value[i]);
     }
     if (choose(2, widest, 1.0e-6f * farthest, kEqualSpan * widest)) {
-      ++kept;
+      ++chosen_count;
       const Vec3 p2 = points[chosen[2]].position;
       const float winding = dot(beside, p2 - p0) > 0.0f ? -1.0f : 1.0f;
       const Vec3 out01 = winding * beside, out12 = winding * cross(normal, p2 - p1),
@@ -254,17 +254,17 @@ int reduce_points(ManifoldPoint* points, int count, Vec3 normal) {
         value[i] = max(max(dot(out01, p - p0), dot(out12, p - p1)), dot(out20, p - p2));
         added = max(added, value[i]);
       }
-      if (choose(3, added, 1.0e-4f * widest, kEqualSpan * added)) ++kept;
+      if (choose(3, added, 1.0e-4f * widest, kEqualSpan * added)) ++chosen_count;
     }
   }
   // Restore the order of the input, so that it does not depend on the choice.
-  for (int i = 0; i < kept; ++i) {
-    for (int k = i + 1; k < kept; ++k) {
+  for (int i = 0; i < chosen_count; ++i) {
+    for (int k = i + 1; k < chosen_count; ++k) {
       if (chosen[k] < chosen[i]) std::swap(chosen[i], chosen[k]);
     }
   }
-  for (int i = 0; i < kept; ++i) points[i] = points[chosen[i]];
-  return kept;
+  for (int i = 0; i < chosen_count; ++i) points[i] = points[chosen[i]];
+  return chosen_count;
 }
 
 }  // namespace gyre

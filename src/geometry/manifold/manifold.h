@@ -27,9 +27,10 @@ struct LocalManifold {
 
 // The smallest separation; kUnbounded if there are no points.
 inline float deepest_of(const LocalManifold& manifold) {
-  float least = kUnbounded;
-  for (int i = 0; i < manifold.count; ++i) least = min(least, manifold.points[i].separation);
-  return least;
+  float smallest_separation = kUnbounded;
+  for (int i = 0; i < manifold.count; ++i)
+    smallest_separation = min(smallest_separation, manifold.points[i].separation);
+  return smallest_separation;
 }
 
 // A manifold in the contact store, persistent from step to step: in world axes, with lever arms from both centres of
@@ -92,7 +93,7 @@ void collide_plane(const Shape& plane, const Shape& b, const Transform& a_from_b
 int collide_mesh(const Shape& mesh, const Shape& b, const Transform& a_from_b, float max_separation,
                  LocalManifold* out, CachedTriangles* triangles = nullptr);
 
-// Manifolds of any two shapes of which at least one is convex, in any order of kinds; the normal is always from A to B.
+// Manifolds of any two shapes of which at smallest_separation one is convex, in any order of kinds; the normal is always from A to B.
 // Two non-convex shapes never touch: 0. Returns the number of manifolds in `out`, which has room for kMaxMeshManifolds.
 // `triangles` as in collide_mesh.
 int collide_shapes(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,

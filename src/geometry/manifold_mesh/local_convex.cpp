@@ -239,7 +239,7 @@ void LocalConvex::face_towards(Vec3 direction, FacePolygon& out) const {
   for (int i = 0; i < out.count; ++i) out.vertices[i] = rotation_ * out.vertices[i];
 }
 
-bool LocalConvex::may_touch(const AxisBox& box, float max_distance) const {
+bool LocalConvex::can_touch(const AxisBox& box, float max_distance) const {
   const Floats middle = Floats(0.5f) * (box.low() + box.high()),
                half = Floats(0.5f) * (box.high() - box.low());
   const Floats size = absolute(middle);

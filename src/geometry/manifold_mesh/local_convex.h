@@ -90,7 +90,7 @@ class LocalConvex {
                              float room) const;
 
   // False only if the surface is certainly farther than `max_distance` from everything in the box.
-  bool may_touch(const AxisBox& box, float max_distance) const;
+  bool can_touch(const AxisBox& box, float max_distance) const;
   // The distance of a point outside the shape's local box; negative inside.
   float box_distance(Vec3 point) const;
   Vec3 to_local(Vec3 v) const { return transpose_times(rotation_, v); }

@@ -84,7 +84,7 @@ class Gatherer {
       // The triangles of a leaf are tested one by one.
       if (!flat && is_leaf(child)) return true;
       const Aabb box = child_box(node, lane);
-      if (const AxisBox axes(box); !axes.overlaps(inner_) && !may_touch_any(axes)) return false;
+      if (const AxisBox axes(box); !axes.overlaps(inner_) && !can_touch_any(axes)) return false;
       if (!flat) return true;
       while (!is_leaf(child)) child = mesh.tree.nodes[child].child[0];
       const std::uint32_t first = leaf_first(child);
@@ -152,13 +152,13 @@ class Gatherer {
     return flat(column, row) && flat(column + 1, row) && flat(column, row + 1) && flat(column + 1, row + 1);
   }
 
-  bool is_near(const AxisBox& box) const { return convex_.may_touch(box - position_, max_separation_); }
+  bool is_near(const AxisBox& box) const { return convex_.can_touch(box - position_, max_separation_); }
   // The same for any box inside, however it is rounded.
-  bool may_touch_any(const AxisBox& box) const {
+  bool can_touch_any(const AxisBox& box) const {
     const AxisBox local = box - position_;
     const Wide<4> farthest = max(-local.low(), local.high());
     const float rounding = 2.0e-6f * max(farthest[0], max(farthest[1], farthest[2]));
-    return convex_.may_touch(local, max_separation_ + rounding);
+    return convex_.can_touch(local, max_separation_ + rounding);
   }
 
   // A node inside one flat patch. Returns true if the node must be entered, because a corner of the shape's face may
@@ -198,7 +198,7 @@ class Gatherer {
     return convex_.has_vertices() && above(convex_.vertex(convex_.lowest_vertex(side_.normal)));
   }
 
-  bool overlaps_patch(const Aabb& box) const { return convex_.may_touch(AxisBox(box) - position_, 0.0f); }
+  bool overlaps_patch(const Aabb& box) const { return convex_.can_touch(AxisBox(box) - position_, 0.0f); }
 
   void record_deep_patch(std::uint32_t id, Vec3 normal) {
     const float height = dot(normal, surface_.triangle(id).v[0] - position_);

@@ -135,7 +135,7 @@ TEST(MeshCull, BoxesAreNearToAllKernels) {
       for (int i = 0; i < count; ++i) {
         const AxisBox box(triangle_box(mesh, ids[i]));
         const bool counts = box.overlaps(AxisBox(boxes.outer)) &&
-                            (box.overlaps(AxisBox(boxes.inner)) || convex.may_touch(box - position, kReach));
+                            (box.overlaps(AxisBox(boxes.inner)) || convex.can_touch(box - position, kReach));
         ASSERT_EQ(counts, (bits >> i & 1u) != 0);
         ++(counts ? near : far);
       }

@@ -57,9 +57,9 @@ GYRE_INLINE void gather_corners(const TriangleColumns& triangles, const std::uin
 
 // ------------------------------------------------------------------------------------------------------------ the boxes
 
-// As LocalConvex::may_touch.
+// As LocalConvex::can_touch.
 template <int W>
-GYRE_INLINE Mask<W> may_touch(const ConvexColumns& convex, Vec3W<W> low, Vec3W<W> high, float max_distance) {
+GYRE_INLINE Mask<W> can_touch(const ConvexColumns& convex, Vec3W<W> low, Vec3W<W> high, float max_distance) {
   const Wide<W> one_half(0.5f);
   const Vec3W<W> middle = one_half * (low + high), half = one_half * (high - low), size = absolute(middle);
   if (convex.core == ConvexColumns::Core::ball) {
@@ -103,7 +103,7 @@ std::uint32_t find_near(const TriangleColumns& triangles, const std::uint32_t* i
     const Mask<W> outer = overlaps<W>(low, high, boxes.outer);
     if (none(outer)) continue;
     const Mask<W> inner = overlaps<W>(low, high, boxes.inner) |
-                          may_touch<W>(convex, low - position, high - position, boxes.max_distance);
+                          can_touch<W>(convex, low - position, high - position, boxes.max_distance);
     near |= to_bits(outer & inner) << first;
   }
   return count < 32 ? near & ((1u << count) - 1u) : near;

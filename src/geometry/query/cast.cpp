@@ -99,7 +99,7 @@ void join(Stretch& s, const Stretch& other) {
 
 // A point, segment or box rounded by a radius: rods along its edges, balls at its corners, and the box itself extended
 // along each axis.
-Stretch inside_swept_core(const LocalRay& ray, DVec3 core, double radius) {
+Stretch inside_rounded_core(const LocalRay& ray, DVec3 core, double radius) {
   if (inside_box(ray, core + DVec3{radius, radius, radius}).empty()) return Stretch::none();
   Stretch s = Stretch::none();
   const double extent[3] = {core.x, core.y, core.z};
@@ -190,7 +190,7 @@ Stretch stretch_inside(const Shape& shape, const LocalRay& ray) {
     case ShapeKind::sphere:
       return inside_ball(ray, {}, radius);
     case ShapeKind::box:
-      return radius > 0.0 ? inside_swept_core(ray, DVec3(shape.extents), radius)
+      return radius > 0.0 ? inside_rounded_core(ray, DVec3(shape.extents), radius)
                           : inside_box(ray, DVec3(shape.extents));
     case ShapeKind::capsule: {
       Stretch s = inside_rod(ray, {}, 1, radius, h);

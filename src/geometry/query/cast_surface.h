@@ -69,11 +69,12 @@ void walk_triangles(const Shape& surface, const LocalRay& ray, Vec3 half, double
   double from, to;
   if (!clip_to_surface(surface, ray, half, max_fraction, from, to)) return;
   // The traversal starts near the surface, so that its floats are no larger than the coordinates there.
-  const double length_kept = to - from;
-  const BoxRay line(ray.origin + from * ray.translation, length_kept * ray.translation, half);
+  const double clipped_length = to - from;
+  const BoxRay line(ray.origin + from * ray.translation, clipped_length * ray.translation, half);
   const auto clipped_fraction = [&](double full) {
-    return length_kept > 0.0 ? float(clamp((full - from) / length_kept, 0.0, 1.0)) * 1.000001f + 1.0e-30f
-                             : 1.0f;
+    return clipped_length > 0.0
+               ? float(clamp((full - from) / clipped_length, 0.0, 1.0)) * 1.000001f + 1.0e-30f
+               : 1.0f;
   };
   if (surface.kind == ShapeKind::mesh) {
     traverse_cast(surface.mesh->tree, line, 1.0f,
