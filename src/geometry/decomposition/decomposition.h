@@ -27,18 +27,18 @@ class DecompositionProgress {
 };
 
 // Cuts until all parts are convex within the tolerance or there are `limit` of them.
-std::vector<ConvexBody> cut_up(const Solid3& solid, TaskSystem& tasks, int limit,
+std::vector<ConvexBody> cut_up(const SampledSolid& solid, TaskSystem& tasks, int limit,
                                DecompositionProgress& progress);
 // Joins neighbours whose common hull is convex within the tolerance, the best pair first. Then, while there are more
 // than `max_hulls`, joins the pairs that lack least.
-void join_pieces(const Solid3& solid, TaskSystem& tasks, int max_hulls, std::vector<ConvexBody>& pieces,
+void join_pieces(const SampledSolid& solid, TaskSystem& tasks, int max_hulls, std::vector<ConvexBody>& pieces,
                  DecompositionProgress& progress);
 // Samples the surface evenly where it borders the solid. `openness` is the fraction of the surface at which the winding
 // number is not an integer.
 std::vector<SurfaceSample> sample_surface(const Model& model, const SurfaceField& field, TaskSystem& tasks,
                                           double spacing, double& openness);
 // Fills in all measures of the final hulls.
-void measure_pieces(const Solid3& solid, TaskSystem& tasks, std::span<const ConvexBody> bodies,
+void measure_pieces(const SampledSolid& solid, TaskSystem& tasks, std::span<const ConvexBody> bodies,
                     DecompositionReport& report);
 
 }  // namespace gyre

@@ -22,7 +22,7 @@ struct SurfaceSample {
 };
 
 // Data that all work on one mesh shares. Lengths are in the model's coordinates.
-struct Solid3 {
+struct SampledSolid {
   const Model* model = nullptr;
   const SurfaceField* field = nullptr;
   std::vector<SurfaceSample> samples;
@@ -55,15 +55,16 @@ struct Part {
 };
 
 // One part for each group, each within the whole box.
-std::vector<Part> make_parts(const Solid3& solid);
+std::vector<Part> make_parts(const SampledSolid& solid);
 // The parts below and above the plane, without hulls, which finish_part() makes.
-std::pair<Part, Part> cut_part(const Solid3& solid, const Part& part, const HalfSpace& plane);
+std::pair<Part, Part> cut_part(const SampledSolid& solid, const Part& part, const HalfSpace& plane);
 // Computes corners, hull, overhang and depth. The hull is empty if the part is flat.
-void finish_part(const Solid3& solid, Part& part);
+void finish_part(const SampledSolid& solid, Part& part);
 
 // The largest depth of the samples (given, or all) below the hull; at least 0.
-double deepest_sample(const Solid3& solid, const ConvexBody& body, std::span<const std::uint32_t> samples);
-double deepest_sample(const Solid3& solid, const ConvexBody& body);
+double deepest_sample(const SampledSolid& solid, const ConvexBody& body,
+                      std::span<const std::uint32_t> samples);
+double deepest_sample(const SampledSolid& solid, const ConvexBody& body);
 
 struct OverhangSearch {
   double ignore = 0.0;      // smaller values are not searched

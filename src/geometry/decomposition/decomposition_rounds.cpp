@@ -9,7 +9,7 @@ namespace {
 
 // The parts to cut in this round: all that are not convex enough or, if that would give too many hulls, those that lack
 // most.
-std::vector<std::size_t> choose_parts(const Solid3& solid, const std::vector<Part>& parts, int limit) {
+std::vector<std::size_t> choose_parts(const SampledSolid& solid, const std::vector<Part>& parts, int limit) {
   struct Lack {
     double amount;
     std::size_t part;
@@ -35,7 +35,7 @@ struct Trial {
 };
 
 // The best cut of each chosen part.
-std::vector<Cut> find_cuts(const Solid3& solid, TaskSystem& tasks, const std::vector<Part>& parts,
+std::vector<Cut> find_cuts(const SampledSolid& solid, TaskSystem& tasks, const std::vector<Part>& parts,
                            std::span<const std::size_t> chosen) {
   std::vector<std::vector<CutFamily>> families(chosen.size());
   for_blocks(tasks, int(chosen.size()), 1, [&](int i, int, int) {
@@ -56,7 +56,7 @@ std::vector<Cut> find_cuts(const Solid3& solid, TaskSystem& tasks, const std::ve
   return cuts;
 }
 
-double share_done(const Solid3& solid, const std::vector<Part>& parts) {
+double share_done(const SampledSolid& solid, const std::vector<Part>& parts) {
   std::size_t done = 0, all = 1;
   for (const Part& part : parts) {
     all += part.samples.size();
@@ -67,7 +67,7 @@ double share_done(const Solid3& solid, const std::vector<Part>& parts) {
 
 }  // namespace
 
-std::vector<ConvexBody> cut_up(const Solid3& solid, TaskSystem& tasks, int limit,
+std::vector<ConvexBody> cut_up(const SampledSolid& solid, TaskSystem& tasks, int limit,
                                DecompositionProgress& progress) {
   std::vector<Part> parts = make_parts(solid);
   for_blocks(tasks, int(parts.size()), 1,

@@ -8,7 +8,7 @@ namespace {
 
 // Faces of a box as in support.h: 2 * axis + (1 on the positive side). Corners are numbered by the bits of their signs.
 // Axis searches do not depend on which face of an edge is left and which is right.
-constexpr HullEdge kBoxHullEdges[12] = {
+constexpr HullEdge kBoxEdges[12] = {
     {0, 1, 4, 2}, {2, 3, 3, 4}, {4, 5, 2, 5}, {6, 7, 5, 3},  // along x
     {0, 2, 0, 4}, {1, 3, 4, 1}, {4, 6, 5, 0}, {5, 7, 1, 5},  // along y
     {0, 4, 2, 0}, {1, 5, 1, 2}, {2, 6, 0, 3}, {3, 7, 3, 1},  // along z
@@ -90,7 +90,7 @@ LocalConvex::LocalConvex(const Shape& shape, Quat orientation)
       set_vertices(x, y, z, 8);
       const float offsets[8] = {e.x, e.x, e.y, e.y, e.z, e.z, e.z, e.z};
       set_faces(kBoxNormalX, kBoxNormalY, kBoxNormalZ, offsets, 6);
-      edges_ = kBoxHullEdges;
+      edges_ = kBoxEdges;
       break;
     }
     case ShapeKind::hull:
