@@ -7,7 +7,7 @@
 #pragma once
 
 #include "collision/broadphase/box_lanes.h"
-#include "geometry/tree/line_walk.h"
+#include "geometry/tree/ray_traversal.h"
 
 #include <gyre/math.h>
 
@@ -64,7 +64,7 @@ class SweepTest {
 
   float way(int axis) const { return way_[axis]; }
   // The same for walks over trees.
-  const BoxLine& line() const { return line_; }
+  const BoxRay& line() const { return line_; }
 
   // Where the sweep's box lies from t = range.enter to range.leave, rounded outward.
   Aabb box_of(const SweepRange& range) const {
@@ -143,7 +143,7 @@ class SweepTest {
     return to_bits(inside & (from <= to * Half(1.00001f)));
   }
 
-  BoxLine line_;
+  BoxRay line_;
   float origin_[3], way_[3], inverse_[3], extent_[3];
   bool still_[3];
 };

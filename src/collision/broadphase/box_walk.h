@@ -1,12 +1,12 @@
 // The walk over a wide tree of boxes that most of a search for pairs is spent in: which items' boxes overlap a box. And that of
-// casts: which items' boxes lie on the way of one (geometry/tree/line_walk.h).
+// casts: which items' boxes lie on the way of one (geometry/tree/ray_traversal.h).
 //
 // In: nodes, eight boxes side by side in each. Out: items, by the handful: whoever walks looks at what was found and goes on. It is
 // a kernel, since a processor with eight lanes tests a node by a third of the instructions.
 #pragma once
 
 #include "collision/broadphase/box_lanes.h"
-#include "geometry/tree/line_walk.h"
+#include "geometry/tree/ray_traversal.h"
 
 #include <cstdint>
 
@@ -47,6 +47,6 @@ using WalkBoxes = void (*)(const BoxTreeNode* nodes, BoxWalk& walk);
 
 // The one that this machine runs best.
 WalkBoxes select_box_walk();
-WalkLine<BoxTreeNode> select_box_line_walk();
+RayTraversalKernel<BoxTreeNode> select_box_ray_traversal();
 
 }  // namespace gyre

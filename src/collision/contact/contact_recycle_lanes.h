@@ -113,7 +113,7 @@ struct ManifoldLanes {
   std::int32_t least, most;  // of the counts
   WideInt<W> count;
   Wide<W> side;  // of the moving body along the normal: 1 for B, -1 for A
-  Vec3W<W> seen_normal;
+  Vec3W<W> anchor_normal;
   Anchor<W> anchors[kMaxManifoldPoints];
 };
 
@@ -135,7 +135,7 @@ GYRE_INLINE void load_manifold(const Group<W>& group, int m, Manifold& none, Man
   read_four<W>(manifold.record, 0, column);
   manifold.count = bit_pattern(column[3]);
   read_four<W>(manifold.record, kSliding, column);
-  manifold.seen_normal = {column[1], column[2], column[3]};
+  manifold.anchor_normal = {column[1], column[2], column[3]};
 }
 
 // Returns in which lanes the anchors of this manifold are still good.
@@ -155,7 +155,7 @@ GYRE_INLINE Mask<W> find_motions(const Group<W>& group, const ManifoldMatch<W>& 
     anchor.position = {column[0], column[1], column[2]};
     anchor.separation = column[3];
     const Wide<W> lift = manifold.side * (0.5f * anchor.separation + follow.radius);
-    anchor.way = motion.of(anchor.position + lift * manifold.seen_normal);
+    anchor.way = motion.of(anchor.position + lift * manifold.anchor_normal);
     const Mask<W> slides = length_squared(anchor.way) > square(slide);
     fails = fails | (slides & (WideInt<W>(i) < manifold.count));
   }
@@ -192,7 +192,7 @@ GYRE_INLINE Mask<W> move_point(const Group<W>& group, const ManifoldMatch<W>& fo
   const Vec3W<W> other = own - frame.other;
   const Vec3W<W> from_a = select(follow.frame_is_b, other, own);
   const Vec3W<W> from_b = select(follow.frame_is_b, own, other);
-  const Wide<W> separation = anchor.separation + manifold.side * dot(anchor.way, manifold.seen_normal);
+  const Wide<W> separation = anchor.separation + manifold.side * dot(anchor.way, manifold.anchor_normal);
   const int first = kPoints + kPointFloats * i;
   Wide<W> impulses[4];
   read_four<W>(manifold.record, first + 8, impulses);
@@ -226,7 +226,7 @@ GYRE_INLINE Mask<W> move_manifold(const Group<W>& group, const ManifoldMatch<W>&
   GYRE_UNROLL
   for (int i = 0; i < W; ++i)
     to[i] = (lanes >> i & 1u) != 0 ? const_cast<float*>(manifold.record[i]) : nowhere;
-  const Vec3W<W> normal = frame.turn * manifold.seen_normal;
+  const Vec3W<W> normal = frame.turn * manifold.anchor_normal;
   write_four<3, W>(to, 0, {normal.x, normal.y, normal.z});
   carry_friction<W>(manifold, kAge, normal, to);
   carry_friction<W>(manifold, kTwist, normal, to);

@@ -143,11 +143,11 @@ bool is_beyond(const Found<kRoom>& found, float reach) {
 // What goes on of a manifold that was there before this look; its points side by side. Those that it had not are zero.
 struct FormerManifold {
   Vec3 normal, friction_impulse, rolling_impulse;
-  float twist_impulse, age;
+  float twist_impulse, load_age;
   std::uint32_t triangle, sliding;
   unsigned left;  // bits, by point: it has found no heir yet
   WideInt<kMaxManifoldPoints> feature;
-  float normal_impulse[kMaxManifoldPoints], held[kMaxManifoldPoints];
+  float normal_impulse[kMaxManifoldPoints], mean_impulse[kMaxManifoldPoints];
   Vec3W<kMaxManifoldPoints> anchor;
 };
 
@@ -164,7 +164,7 @@ void read_points(const Manifold& from, FormerManifold& to) {
   read_four<W>(anchors, 0, places);
   to.feature = bit_pattern(names[3]);
   impulses[0].store_unaligned(to.normal_impulse);
-  impulses[2].store_unaligned(to.held);
+  impulses[2].store_unaligned(to.mean_impulse);
   to.anchor = {places[0], places[1], places[2]};
 }
 
@@ -173,7 +173,7 @@ void read_former(const Manifold& from, FormerManifold& to) {
   to.friction_impulse = from.friction_impulse;
   to.rolling_impulse = from.rolling_impulse;
   to.twist_impulse = from.twist_impulse;
-  to.age = from.age;
+  to.load_age = from.load_age;
   to.triangle = from.triangle;
   to.sliding = from.sliding;
   to.left = (1u << from.count) - 1u;
@@ -185,7 +185,7 @@ void carry_friction(const FormerManifold& from, Manifold& to) {
   to.friction_impulse = from.friction_impulse - dot(from.friction_impulse, to.normal) * to.normal;
   to.rolling_impulse = from.rolling_impulse - dot(from.rolling_impulse, to.normal) * to.normal;
   to.twist_impulse = from.twist_impulse;
-  to.age = from.age;
+  to.load_age = from.load_age;
   to.sliding = from.sliding;
 }
 
@@ -224,7 +224,7 @@ int find_former(const Former<kRoom>& former, const Manifold& manifold) {
 void take_over(FormerManifold& former, int k, ContactPointState& point) {
   former.left &= ~(1u << k);
   point.normal_impulse = former.normal_impulse[k];
-  point.held = former.held[k];
+  point.mean_impulse = former.mean_impulse[k];
 }
 
 // By name within the former manifold; bit i of the result is set for each point that found its own.
@@ -313,14 +313,14 @@ void write_points(const LocalManifold& local, const Placing& placing, Manifold& 
 void write_manifold(const LocalManifold& local, const Placing& placing, Manifold& out) {
   out.normal = rotate(placing.view.frame_turn, local.normal);
   out.count = local.count;
-  out.age = 0.0f;
+  out.load_age = 0.0f;
   out.friction_impulse = {};
   out.twist_impulse = 0.0f;
   out.rolling_impulse = {};
   out.triangle = local.triangle;
   out.total_friction = {};
   out.sliding = 0;
-  out.seen_normal = rotate_inverse(placing.anchor_turn, out.normal);
+  out.anchor_normal = rotate_inverse(placing.anchor_turn, out.normal);
   write_points(local, placing, out);
 }
 

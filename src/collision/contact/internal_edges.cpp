@@ -63,9 +63,9 @@ bool holds(const Shape& shape, Vec3 point, float slack) {
 }
 
 // A resting shape where it lies, to be asked about points in world axes measured from a body's centre of mass.
-class PlacedShape {
+class PosedShape {
  public:
-  PlacedShape(const CollideInput& input, std::uint32_t shape, std::uint32_t body, std::uint32_t from_body)
+  PosedShape(const CollideInput& input, std::uint32_t shape, std::uint32_t body, std::uint32_t from_body)
       : shape_(input.shapes[shape]), look_(input.looks[body]) {
     const CollisionBody& from = input.looks[from_body];
     origin_ = difference(from.position, look_.position) +
@@ -153,7 +153,7 @@ class Cover {
     // The point midway, and from there half the separation back to the surface.
     const Vec3 point = state.from_a - 0.5f * state.separation * out_;
     if (rises(its_.shape(), own_.manifold.triangle, its_.point(point), up_) > 2.0f * slack_) return false;
-    const PlacedShape by(input_, neighbour_.side.other, neighbour_.side.other_body, own_.contact.body_a);
+    const PosedShape by(input_, neighbour_.side.other, neighbour_.side.other_body, own_.contact.body_a);
     return goes_beyond(by.shape(), by.point(point), by.direction(out_), slack_);
   }
   bool hides_all() const {
@@ -167,7 +167,7 @@ class Cover {
   const CollideInput& input_;
   const Patch& own_;
   const Patch& neighbour_;
-  const PlacedShape its_;
+  const PosedShape its_;
   const Vec3 out_, up_;
   const float slack_;
 };

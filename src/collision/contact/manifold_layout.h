@@ -14,17 +14,17 @@ inline namespace GYRE_TARGET_NAMESPACE {
 
 // The fours of a manifold: its normal with the count of points, and those that begin here.
 constexpr int kPoints = GYRE_FLOATS_BEFORE(Manifold, points);        // three fours each
-constexpr int kAge = GYRE_FLOATS_BEFORE(Manifold, age);              // and friction_impulse
+constexpr int kAge = GYRE_FLOATS_BEFORE(Manifold, load_age);         // and friction_impulse
 constexpr int kTwist = GYRE_FLOATS_BEFORE(Manifold, twist_impulse);  // and rolling_impulse
 constexpr int kTotalFriction = GYRE_FLOATS_BEFORE(Manifold, total_friction);
-constexpr int kSliding = GYRE_FLOATS_BEFORE(Manifold, sliding);  // and seen_normal
+constexpr int kSliding = GYRE_FLOATS_BEFORE(Manifold, sliding);  // and anchor_normal
 constexpr int kAnchors = GYRE_FLOATS_BEFORE(Manifold, anchors);  // one four each
 constexpr int kPointFloats = int(sizeof(ContactPointState) / sizeof(float));
 constexpr int kManifoldFloats = int(sizeof(Manifold) / sizeof(float));
 static_assert(GYRE_FLOATS_BEFORE(Manifold, normal) == 0 && GYRE_FLOATS_BEFORE(Manifold, count) == 3);
 static_assert(GYRE_FLOATS_BEFORE(Manifold, friction_impulse) == kAge + 1);
 static_assert(GYRE_FLOATS_BEFORE(Manifold, rolling_impulse) == kTwist + 1);
-static_assert(GYRE_FLOATS_BEFORE(Manifold, seen_normal) == kSliding + 1);
+static_assert(GYRE_FLOATS_BEFORE(Manifold, anchor_normal) == kSliding + 1);
 static_assert(GYRE_FLOATS_BEFORE(ContactPointState, separation) == 3);
 static_assert(GYRE_FLOATS_BEFORE(ContactPointState, from_b) == 4);
 static_assert(GYRE_FLOATS_BEFORE(ContactPointState, feature) == 7);

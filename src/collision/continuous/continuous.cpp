@@ -4,7 +4,7 @@
 #include "base/container/sort.h"
 #include "collision/broadphase/fat_box.h"
 #include "collision/continuous/swept_surface.h"
-#include "geometry/query/nearest.h"
+#include "geometry/query/closest_points.h"
 #include "math/rotation.h"
 #include "task/parallel.h"
 
@@ -236,11 +236,11 @@ double part_in_touch(const ContinuousInput& input, const BodyImpactTime& stop, P
     pose.position = start + part * drift;
     const Pose placed = pose * own.body_from_shape;
     const DQuat back = conjugate(normalized(to_double(frame.orientation)));
-    Nearest nearest;
-    return find_nearest(other.shape,
-                        {&own.shape, rotate(back, placed.position - frame.position),
-                         back * normalized(to_double(placed.orientation))},
-                        touching, nearest);
+    ClosestPair nearest;
+    return find_closest_points(other.shape,
+                               {&own.shape, rotate(back, placed.position - frame.position),
+                                back * normalized(to_double(placed.orientation))},
+                               touching, nearest);
   };
   if (touches(1.0)) return 1.0;
   double low = 0.0, high = 1.0;

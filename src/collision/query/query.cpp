@@ -2,9 +2,9 @@
 #include "collision/query/query.h"
 
 #include "collision/broadphase/fat_box.h"
-#include "geometry/query/cast_surface.h"
 #include "geometry/manifold/manifold.h"
-#include "geometry/query/nearest.h"
+#include "geometry/query/cast_surface.h"
+#include "geometry/query/closest_points.h"
 
 namespace gyre {
 namespace {
@@ -87,7 +87,7 @@ void cast_shape(const QueryInput& input, const WorldShape& shape, HitVisit found
                    moving.shape = &shape.shape;
                    moving.position = frame.to_local(shape.pose.position);
                    moving.orientation = conjugate(frame.orientation) * orientation;
-                   moving.way = frame.turn_to_local(DVec3(shape.way));
+                   moving.translation = frame.turn_to_local(DVec3(shape.way));
                    moving.skin = shape.skin;
                    return cast_shape(target, moving, reach, input.back_faces, hit);
                  });
@@ -117,10 +117,10 @@ void look_around(const QueryInput& input, const WorldShape& shape, const BoxSwee
     if (gap_of(place, box) * (1.0 - 1.0e-6) > reach || (seen >= 0.0 && meets(before, 1.0f, box))) return 1.0f;
     if (!input.accepts(target)) return 1.0f;
     const Frame frame(input.pose_of(target));
-    const PlacedShape convex{&shape.shape, frame.to_local(shape.pose.position),
-                             conjugate(frame.orientation) * orientation};
-    Nearest near;
-    if (!find_nearest(input.shapes[target].shape, convex, reach, near)) return 1.0f;
+    const PosedShape convex{&shape.shape, frame.to_local(shape.pose.position),
+                            conjugate(frame.orientation) * orientation};
+    ClosestPair near;
+    if (!find_closest_points(input.shapes[target].shape, convex, reach, near)) return 1.0f;
     reach = found(ShapeNear{target, near.triangle, near.distance, frame.to_world(near.on_target),
                             frame.to_world(near.on_convex), frame.turn_to_world(near.normal)});
     return reach < 0.0 ? -1.0f : 1.0f;

@@ -1,7 +1,7 @@
 // Questions to a whole world of shapes: rays, moving shapes, overlaps, closest points, penetrations.
 //
 // In: the shapes, where they are, and a broad phase that holds their boxes. Out: answers that name shapes by their index,
-// in the world's axes. Candidates come from the broad phase and each is looked at exactly (geometry/query/cast, geometry/query/nearest,
+// in the world's axes. Candidates come from the broad phase and each is looked at exactly (geometry/query/cast, geometry/query/closest_points,
 // manifolds). They come in an order that differs between broad phases: to sort the answers, with the lowest index first among
 // equals, is the caller's part, who alone knows how many are wanted. Nothing here allocates, and any number of threads may
 // ask at once.

@@ -1,16 +1,16 @@
-// Bounding boxes, along the axes and turned. See gyre/bounds.h for the sources.
-#include "base/float_mode.h"
+// Axis-aligned and oriented bounding boxes. See gyre/bounds.h for the sources.
 #include "base/container/sort.h"
+#include "base/float_mode.h"
 #include "geometry/bounds/bounds_points.h"
 
 namespace gyre {
 namespace {
 
 constexpr std::size_t kMaxEdges = 64;
-// So many of the best boxes are bettered by turning.
+// This many of the best boxes are improved by rotations.
 constexpr int kMaxStarts = 8;
-constexpr int kMaxTurns = 60;
-// A turn must make a box smaller by this share.
+constexpr int kMaxRotations = 60;
+// A rotation must shrink the cost by this fraction.
 constexpr double kMinGain = 1.0e-9;
 
 struct Point2 {
@@ -18,14 +18,15 @@ struct Point2 {
 };
 double cross(Point2 o, Point2 a, Point2 b) { return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x); }
 
-// The convex hull of points of a plane, counter-clockwise, without repeats. A. Andrew, 1979.
+// The convex hull of points in a plane, counter-clockwise, without repetitions. A. Andrew, 1979.
 void plane_hull(std::vector<Point2>& points, std::vector<Point2>& scratch, std::vector<Point2>& hull) {
   scratch.resize(points.size());
   merge_sort(std::span(points), std::span(scratch),
              [](const Point2& a, const Point2& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
   hull.clear();
-  const auto add = [&](Point2 p, std::size_t least) {
-    while (hull.size() >= least + 2 && cross(hull[hull.size() - 2], hull.back(), p) <= 0.0) hull.pop_back();
+  const auto add = [&](Point2 p, std::size_t min_size) {
+    while (hull.size() >= min_size + 2 && cross(hull[hull.size() - 2], hull.back(), p) <= 0.0)
+      hull.pop_back();
     hull.push_back(p);
   };
   for (const Point2& p : points) add(p, 0);
@@ -39,7 +40,7 @@ struct BoxCandidate {
   double cost;
 };
 
-// The volume, and a trace of the surface so that flat boxes have a best one too.
+// The volume, and a small weight on the surface, so that flat boxes have an optimum too.
 double cost_of(DVec3 extents, double size) {
   const double surface = extents.x * extents.y + extents.y * extents.z + extents.z * extents.x;
   return extents.x * extents.y * extents.z + 1.0e-12 * size * surface;
@@ -68,8 +69,8 @@ class BoxSearch {
   }
   BoxCandidate candidate(const DAxes& axes) const { return {axes, cost_of(extents_along(axes), size_)}; }
 
-  // The best box that has `axis` as one of its axes: exact. One of its sides then holds an edge of the outline seen along
-  // the axis.
+  // The best box with `axis` as one of its axes. It is exact, because one of its sides contains an edge of the outline
+  // seen along the axis.
   BoxCandidate best_about(DVec3 axis) {
     const DVec3 u = some_perpendicular(axis), v = gyre::cross(axis, u);
     flat_.clear();
@@ -105,18 +106,18 @@ class BoxSearch {
     return best;
   }
 
-  // Turned about each of its own axes in turn, as long as that makes it smaller.
+  // Rotates the box about each of its own axes in turn, as long as it shrinks.
   BoxCandidate descended(BoxCandidate start) {
-    int kept = 0;
-    for (int turn = 0; turn < kMaxTurns && kept < 3; ++turn) {
-      const DVec3 axis = turn % 3 == 0 ? start.axes.x : turn % 3 == 1 ? start.axes.y : start.axes.z;
-      const BoxCandidate turned = best_about(axis);
-      if (turned.cost < start.cost * (1.0 - kMinGain)) {
-        // Its axes in the order that the next turns take others first.
-        start = turned;
-        kept = 0;
+    int unchanged = 0;
+    for (int rotation = 0; rotation < kMaxRotations && unchanged < 3; ++rotation) {
+      const DVec3 axis = rotation % 3 == 0 ? start.axes.x : rotation % 3 == 1 ? start.axes.y : start.axes.z;
+      const BoxCandidate candidate_box = best_about(axis);
+      if (candidate_box.cost < start.cost * (1.0 - kMinGain)) {
+        // The order of its axes makes the next rotations try other axes first.
+        start = candidate_box;
+        unchanged = 0;
       } else {
-        ++kept;
+        ++unchanged;
       }
     }
     return start;
@@ -128,7 +129,7 @@ class BoxSearch {
   std::vector<Point2> flat_, scratch_, hull_;
 };
 
-// Directions of edges, each once whichever way it points, the longest first; no more than kMaxEdges.
+// Directions of edges, without repetition or reversal, the longest first; at most kMaxEdges.
 std::vector<DVec3> main_directions(const std::vector<DVec3>& edges) {
   std::vector<DVec3> sorted = edges, scratch(edges.size()), directions;
   merge_sort(std::span(sorted), std::span(scratch),
@@ -143,11 +144,11 @@ std::vector<DVec3> main_directions(const std::vector<DVec3>& edges) {
   return directions;
 }
 
-void keep_best(std::vector<BoxCandidate>& best, const BoxCandidate& candidate) {
-  std::size_t place = best.size();
-  while (place > 0 && candidate.cost < best[place - 1].cost) --place;
-  if (place >= kMaxStarts) return;
-  best.insert(best.begin() + std::ptrdiff_t(place), candidate);
+void insert_best(std::vector<BoxCandidate>& best, const BoxCandidate& candidate) {
+  std::size_t slot = best.size();
+  while (slot > 0 && candidate.cost < best[slot - 1].cost) --slot;
+  if (slot >= kMaxStarts) return;
+  best.insert(best.begin() + std::ptrdiff_t(slot), candidate);
   if (best.size() > kMaxStarts) best.pop_back();
 }
 
@@ -156,12 +157,12 @@ DAxes smallest_axes(const Outline& outline) {
   std::vector<BoxCandidate> best;
   for (const DVec3& axis :
        {DVec3(1, 0, 0), DVec3(0, 1, 0), DVec3(0, 0, 1), outline.axes.x, outline.axes.y, outline.axes.z})
-    keep_best(best, search.best_about(axis));
-  for (const DVec3& normal : outline.face_normals) keep_best(best, search.best_about(normal));
+    insert_best(best, search.best_about(axis));
+  for (const DVec3& normal : outline.face_normals) insert_best(best, search.best_about(normal));
   const std::vector<DVec3> directions = main_directions(outline.edges);
   for (std::size_t i = 0; i < directions.size(); ++i) {
     for (std::size_t k = i + 1; k < directions.size(); ++k) {
-      keep_best(best, search.best_about(unit(gyre::cross(directions[i], directions[k]))));
+      insert_best(best, search.best_about(unit(gyre::cross(directions[i], directions[k]))));
     }
   }
   BoxCandidate smallest = best[0];
@@ -172,10 +173,10 @@ DAxes smallest_axes(const Outline& outline) {
   return smallest.axes;
 }
 
-// Of all points, not only of those that an outline keeps, and rounded outward.
-OrientedBox box_around(std::span<const Vec3> points, const DAxes& wanted) {
+// The box around all points (an outline has only some of them), rounded outward.
+OrientedBox box_around(std::span<const Vec3> points, const DAxes& target_axes) {
   OrientedBox box;
-  box.orientation = to_quaternion(wanted);
+  box.orientation = to_quaternion(target_axes);
   const DAxes axes = axes_of(box.orientation);
   const DVec3 each[3] = {axes.x, axes.y, axes.z};
   const DVec3 origin(points[0]);
@@ -204,10 +205,10 @@ OrientedBox box_around(std::span<const Vec3> points, const DAxes& wanted) {
 void add_corners(const OrientedBox& box, std::vector<Vec3>& corners, std::vector<DVec3>& exact) {
   const DAxes axes = axes_of(box.orientation);
   for (int i = 0; i < 8; ++i) {
-    const auto part = [&](int axis) {
+    const auto offset = [&](int axis) {
       return ((i >> axis & 1) != 0 ? 1.0 : -1.0) * double(box.half_extents[axis]);
     };
-    exact.push_back(DVec3(box.center) + part(0) * axes.x + part(1) * axes.y + part(2) * axes.z);
+    exact.push_back(DVec3(box.center) + offset(0) * axes.x + offset(1) * axes.y + offset(2) * axes.z);
     corners.push_back(to_float(exact.back()));
   }
 }
@@ -254,7 +255,7 @@ OrientedBox merge(const OrientedBox& a, const OrientedBox& b) {
     if (search.candidate(axes).cost < search.candidate(best).cost) best = axes;
   }
   OrientedBox box = box_around(corners, best);
-  // The corners were rounded: what is missing is added.
+  // The corners were rounded, so the box grows to contain the exact ones.
   const DAxes axes = axes_of(box.orientation);
   const DVec3 each[3] = {axes.x, axes.y, axes.z};
   float half[3];
@@ -270,23 +271,23 @@ OrientedBox merge(const OrientedBox& a, const OrientedBox& b) {
 bool overlap(const OrientedBox& a, const OrientedBox& b) {
   const DAxes a_axes = axes_of(a.orientation), b_axes = axes_of(b.orientation);
   const DVec3 ax[3] = {a_axes.x, a_axes.y, a_axes.z}, bx[3] = {b_axes.x, b_axes.y, b_axes.z};
-  const DVec3 way = DVec3(b.center) - DVec3(a.center);
-  const auto parts = [&](DVec3 axis) {
-    double reach = 0.0;
+  const DVec3 offset = DVec3(b.center) - DVec3(a.center);
+  const auto separates = [&](DVec3 axis) {
+    double radius = 0.0;
     for (int i = 0; i < 3; ++i) {
-      reach += double(a.half_extents[i]) * absolute(dot(axis, ax[i])) +
-               double(b.half_extents[i]) * absolute(dot(axis, bx[i]));
+      radius += double(a.half_extents[i]) * absolute(dot(axis, ax[i])) +
+                double(b.half_extents[i]) * absolute(dot(axis, bx[i]));
     }
-    return absolute(dot(axis, way)) > reach;
+    return absolute(dot(axis, offset)) > radius;
   };
   for (int i = 0; i < 3; ++i) {
-    if (parts(ax[i]) || parts(bx[i])) return false;
+    if (separates(ax[i]) || separates(bx[i])) return false;
   }
   for (const DVec3& u : ax) {
     for (const DVec3& v : bx) {
       const DVec3 axis = gyre::cross(u, v);
-      // Parallel axes say nothing that the six above have not said.
-      if (length_squared(axis) > 1.0e-12 && parts(axis)) return false;
+      // Parallel axes add nothing to the six above.
+      if (length_squared(axis) > 1.0e-12 && separates(axis)) return false;
     }
   }
   return true;
@@ -294,10 +295,10 @@ bool overlap(const OrientedBox& a, const OrientedBox& b) {
 
 bool contains(const OrientedBox& box, Vec3 point) {
   const DAxes axes = axes_of(box.orientation);
-  const DVec3 way = DVec3(point) - DVec3(box.center);
-  return absolute(dot(axes.x, way)) <= double(box.half_extents.x) &&
-         absolute(dot(axes.y, way)) <= double(box.half_extents.y) &&
-         absolute(dot(axes.z, way)) <= double(box.half_extents.z);
+  const DVec3 offset = DVec3(point) - DVec3(box.center);
+  return absolute(dot(axes.x, offset)) <= double(box.half_extents.x) &&
+         absolute(dot(axes.y, offset)) <= double(box.half_extents.y) &&
+         absolute(dot(axes.z, offset)) <= double(box.half_extents.z);
 }
 double volume(const OrientedBox& box) { return volume(Aabb{-box.half_extents, box.half_extents}); }
 double surface_area(const OrientedBox& box) {

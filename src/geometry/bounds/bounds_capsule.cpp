@@ -11,15 +11,15 @@ struct Tube {
   double radius = 0.0;
 
   double volume() const { return kPiDouble * radius * radius * (length(b - a) + 4.0 / 3.0 * radius); }
-  // Points on one line make no volume: then the shortest is best.
+  // Points on one line have no volume; then the shortest tube is best.
   double cost(double size) const { return volume() + 1.0e-9 * size * size * (length(b - a) + radius); }
 };
 
 DVec3 nearest_on(DVec3 a, DVec3 b, DVec3 p) {
-  const DVec3 way = b - a;
-  const double squared = dot(way, way);
-  const double t = squared > 0.0 ? clamp(dot(p - a, way) / squared, 0.0, 1.0) : 0.0;
-  return a + t * way;
+  const DVec3 segment = b - a;
+  const double squared = dot(segment, segment);
+  const double t = squared > 0.0 ? clamp(dot(p - a, segment) / squared, 0.0, 1.0) : 0.0;
+  return a + t * segment;
 }
 
 // The best capsule along a direction.
@@ -36,7 +36,7 @@ Tube tube_along(std::span<const DVec3> points, DVec3 direction, std::vector<DVec
     low = min(low, along + cap);
     high = max(high, along - cap);
   }
-  // Both caps alone hold everything.
+  // Both caps overlap and contain everything.
   if (low > high) low = high = 0.5 * (low + high);
   const DVec3 foot = origin + circle.center.x * u + circle.center.y * v;
   return {foot + low * direction, foot + high * direction, circle.radius};
@@ -67,22 +67,22 @@ Tube best_tube(const Outline& outline) {
     for (int round = 0; round < 8; ++round) {
       const DVec3 u = some_perpendicular(direction), v = cross(direction, u), from = direction;
       bool better = false;
-      for (const DVec3& way : {u, v, -u, -v}) better = better || attempt(unit(from + step * way));
+      for (const DVec3& offset : {u, v, -u, -v}) better = better || attempt(unit(from + step * offset));
       if (!better) break;
     }
   }
   return best;
 }
 
-// With float ends, and a radius that holds `reach(segment)`.
-template <class Reach>
-BoundingCapsule rounded(const Tube& tube, const Reach& reach) {
+// Rounds the ends to float. The radius is `farthest(segment)` rounded up.
+template <class Farthest>
+BoundingCapsule rounded(const Tube& tube, const Farthest& farthest) {
   BoundingCapsule capsule{to_float(tube.a), to_float(tube.b), 0.0f};
-  capsule.radius = round_up_to_float(reach(DVec3(capsule.a), DVec3(capsule.b)) * (1.0 + 1.0e-14));
+  capsule.radius = round_up_to_float(farthest(DVec3(capsule.a), DVec3(capsule.b)) * (1.0 + 1.0e-14));
   return capsule;
 }
 
-bool holds(const BoundingCapsule& outer, const BoundingCapsule& inner) {
+bool encloses(const BoundingCapsule& outer, const BoundingCapsule& inner) {
   for (const Vec3& end : {inner.a, inner.b}) {
     const DVec3 nearest = nearest_on(DVec3(outer.a), DVec3(outer.b), DVec3(end));
     if (length(DVec3(end) - nearest) + double(inner.radius) > double(outer.radius)) return false;
@@ -91,7 +91,7 @@ bool holds(const BoundingCapsule& outer, const BoundingCapsule& inner) {
 }
 
 double squared_distance(DVec3 p0, DVec3 p1, DVec3 q0, DVec3 q1) {
-  // Of two segments: between their lines if that lies within both, else at an end.
+  // Two segments: the distance of their lines if its ends lie within both, else that at an end.
   double best = length_squared(nearest_on(q0, q1, p0) - p0);
   best = min(best, length_squared(nearest_on(q0, q1, p1) - p1));
   best = min(best, length_squared(nearest_on(p0, p1, q0) - q0));
@@ -111,19 +111,19 @@ Result<BoundingCapsule> fit_capsule(std::span<const Vec3> points) {
   const FloatMode mode;
   if (const Error e = check_bounded_points(points)) return e;
   return rounded(best_tube(outline_of(points)), [&](DVec3 a, DVec3 b) {
-    double reach = 0.0;
-    for (const Vec3& p : points) reach = max(reach, length(DVec3(p) - nearest_on(a, b, DVec3(p))));
-    return reach;
+    double farthest = 0.0;
+    for (const Vec3& p : points) farthest = max(farthest, length(DVec3(p) - nearest_on(a, b, DVec3(p))));
+    return farthest;
   });
 }
 
 BoundingCapsule merge(const BoundingCapsule& a, const BoundingCapsule& b) {
   const FloatMode mode;
-  if (holds(a, b)) return a;
-  if (holds(b, a)) return b;
+  if (encloses(a, b)) return a;
+  if (encloses(b, a)) return b;
   const BoundingCapsule& thick = a.radius >= b.radius ? a : b;
   const BoundingCapsule& thin = a.radius >= b.radius ? b : a;
-  const auto reach = [&](DVec3 from, DVec3 to) {
+  const auto farthest = [&](DVec3 from, DVec3 to) {
     double needed = 0.0;
     for (const BoundingCapsule* each : {&a, &b}) {
       for (const Vec3& end : {each->a, each->b}) {
@@ -132,9 +132,9 @@ BoundingCapsule merge(const BoundingCapsule& a, const BoundingCapsule& b) {
     }
     return needed;
   };
-  // Around the four ends, or the thicker one made long enough for the ends of the other.
+  // The capsule around the four ends, or the thicker one extended to the ends of the other.
   const Vec3 ends[4] = {a.a, a.b, b.a, b.b};
-  const BoundingCapsule around = rounded(best_tube(outline_of(ends)), reach);
+  const BoundingCapsule around = rounded(best_tube(outline_of(ends)), farthest);
   Tube longer{DVec3(thick.a), DVec3(thick.b), 0.0};
   const DVec3 direction = unit(longer.b - longer.a);
   for (const Vec3& end : {thin.a, thin.b}) {
@@ -142,13 +142,13 @@ BoundingCapsule merge(const BoundingCapsule& a, const BoundingCapsule& b) {
     if (along < 0.0) longer.a += along * direction;
     if (along > length(longer.b - longer.a)) longer.b = longer.a + along * direction;
   }
-  const BoundingCapsule lengthened = rounded(longer, reach);
+  const BoundingCapsule lengthened = rounded(longer, farthest);
   return volume(around) < volume(lengthened) ? around : lengthened;
 }
 
 bool overlap(const BoundingCapsule& a, const BoundingCapsule& b) {
-  const double reach = double(a.radius) + double(b.radius);
-  return squared_distance(DVec3(a.a), DVec3(a.b), DVec3(b.a), DVec3(b.b)) <= reach * reach;
+  const double radii = double(a.radius) + double(b.radius);
+  return squared_distance(DVec3(a.a), DVec3(a.b), DVec3(b.a), DVec3(b.b)) <= radii * radii;
 }
 bool contains(const BoundingCapsule& capsule, Vec3 point) {
   const DVec3 p(point);

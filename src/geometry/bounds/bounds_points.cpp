@@ -8,7 +8,7 @@
 namespace gyre {
 namespace {
 
-// Sums of a covariance: of points, or of triangles by their area.
+// Sums of a covariance of points, or of triangles by their area.
 struct Covariance {
   double weight = 0.0;
   DVec3 sum;
@@ -35,7 +35,7 @@ struct Covariance {
   }
 };
 
-// The exact integral over a triangle is that of its corners and its middle, weighted 1 : 9.
+// The exact integral over a triangle is a sum over its corners and its centre, with weights 1 : 9.
 void add_triangle(Covariance& covariance, DVec3 a, DVec3 b, DVec3 c) {
   const double area = 0.5 * length(cross(b - a, c - a));
   covariance.add((1.0 / 3.0) * (a + b + c), 0.75 * area);
@@ -91,7 +91,7 @@ Outline outline_of(std::span<const Vec3> points) {
   Outline out;
   const Result<Hull> hull =
       points.size() >= 4 ? build_hull(points) : Result<Hull>(Error{ErrorCode::invalid_geometry, {}});
-  // Sums about a point of theirs, so that far from the origin no digits are lost.
+  // Sums relative to one of the points, so that no digits are lost far from the origin.
   const DVec3 origin(points[0]);
   Covariance covariance;
   if (!hull) {

@@ -1,8 +1,8 @@
-// k-DOPs, convex hulls as bounding volumes, and what each kind of volume costs. See gyre/bounds.h.
+// k-DOPs, convex hulls as bounding volumes, and the cost of each kind of volume. See gyre/bounds.h.
 #include "base/float_mode.h"
 #include "geometry/bounds/bounds_points.h"
-#include "geometry/shape/cooked.h"
 #include "geometry/distance/gjk.h"
+#include "geometry/shape/cooked.h"
 #include "geometry/shape/shape.h"
 
 namespace gyre {
@@ -24,7 +24,7 @@ DVec3 direction_of(KDopKind kind, int index) {
   return {double(s[0]), double(s[1]), double(s[2])};
 }
 
-// Keeps the part of a polygon on the inner side of a plane: dot(normal, p) <= offset.
+// Clips a polygon to the inner side of a plane: dot(normal, p) <= offset.
 void clip(std::vector<DVec3>& polygon, DVec3 normal, double offset, std::vector<DVec3>& scratch) {
   scratch.clear();
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -45,7 +45,7 @@ DVec3 area_vector(std::span<const DVec3> polygon) {
   return 0.5 * sum;
 }
 
-// Each face is cut by all other planes by itself: slower than keeping a solid, and nothing can go wrong with it.
+// Each face is clipped by all other planes by itself. That is slower than to maintain a solid, and robust.
 BoundCost cost_of(const KDop& dop) {
   const FloatMode mode;
   const int count = k_dop_directions(dop.kind);

@@ -5,16 +5,16 @@
 namespace gyre {
 namespace {
 
-// A point counts as inside a ball up to this share of its radius.
+// A point counts as inside a ball up to this fraction of its radius.
 constexpr double kInside = 1.0e-14;
 
-bool holds(const Ball& ball, DVec3 p) {
+bool encloses(const Ball& ball, DVec3 p) {
   return ball.radius >= 0.0 &&
          length_squared(p - ball.center) <= ball.radius * ball.radius * (1.0 + 2.0 * kInside);
 }
 
-// The ball that has up to four points on its surface and its centre among them (in the point, line, plane or space that
-// they span); radius below 0 if they span less.
+// The ball with up to four points on its surface and its centre in the point, line, plane or space that they span. The
+// radius is negative if they span less.
 Ball ball_through(const DVec3* points, int count) {
   if (count == 0) return {};
   // center = p0 + sum of t_i d_i, with d_i = p_i - p0 and |center - p0| = |center - p_i|: 2 d_i . sum t_k d_k = d_i . d_i.
@@ -39,12 +39,12 @@ Ball ball_through(const DVec3* points, int count) {
       for (int k = i; k < 4; ++k) a[row][k] -= factor * a[i][k];
     }
   }
-  DVec3 way;
-  for (int i = 0; i < n; ++i) way += (a[i][3] / a[i][i]) * (points[i + 1] - points[0]);
-  return {points[0] + way, length(way)};
+  DVec3 offset;
+  for (int i = 0; i < n; ++i) offset += (a[i][3] / a[i][i]) * (points[i + 1] - points[0]);
+  return {points[0] + offset, length(offset)};
 }
 
-// Welzl's recursion with moves to the front: the smallest ball around list[0 .. end) that has `count` given points on its
+// Welzl's recursion with moves to the front: the smallest ball around list[0 .. end) with `count` given points on its
 // surface.
 struct BallSearch {
   std::span<const DVec3> points;
@@ -55,10 +55,10 @@ struct BallSearch {
     if (count == 4) return ball;
     for (std::size_t i = 0; i < end; ++i) {
       const DVec3 p = points[list[i]];
-      if (holds(ball, p)) continue;
+      if (encloses(ball, p)) continue;
       surface[count] = p;
       const Ball larger = around(i, surface, count + 1);
-      if (larger.radius < 0.0) continue;  // in line with the others: they hold it but for rounding
+      if (larger.radius < 0.0) continue;  // in line with the others: the ball contains it but for rounding
       ball = larger;
       const std::size_t moved = list[i];
       for (std::size_t k = i; k > 0; --k) list[k] = list[k - 1];
@@ -74,7 +74,7 @@ Ball smallest_ball(std::span<const DVec3> points) {
   BallSearch search{points, {}};
   Ball ball{points[0], 0.0};
   search.list.push_back(0);
-  // Each round takes in the point that lies farthest outside; the ball grows until none does.
+  // Each round adds the point farthest outside. The ball grows until no point is outside.
   for (;;) {
     double farthest = ball.radius * ball.radius * (1.0 + 2.0 * kInside);
     std::size_t pivot = points.size();
@@ -88,7 +88,7 @@ Ball smallest_ball(std::span<const DVec3> points) {
     if (pivot == points.size()) return ball;
     DVec3 surface[4] = {points[pivot]};
     const Ball larger = search.around(search.list.size(), surface, 1);
-    // Only rounding is left.
+    // Only rounding errors remain.
     if (!(larger.radius > ball.radius)) return ball;
     ball = larger;
     search.list.insert(search.list.begin(), pivot);
@@ -129,32 +129,32 @@ Result<BoundingSphere> fit_sphere_fast(std::span<const Vec3> points) {
   const DVec3 b(farthest_from(to_float(a)));
   Ball ball{0.5 * (a + b), 0.5 * length(b - a)};
   for (const Vec3& p : points) {
-    const DVec3 way = DVec3(p) - ball.center;
-    const double away = length(way);
-    if (away <= ball.radius) continue;
-    // The smallest ball around the present one and the point.
-    const double radius = 0.5 * (ball.radius + away);
-    ball = {ball.center + ((away - radius) / away) * way, radius};
+    const DVec3 offset = DVec3(p) - ball.center;
+    const double distance = length(offset);
+    if (distance <= ball.radius) continue;
+    // The smallest ball around the current one and the point.
+    const double radius = 0.5 * (ball.radius + distance);
+    ball = {ball.center + ((distance - radius) / distance) * offset, radius};
   }
   return rounded(ball, points);
 }
 
 BoundingSphere merge(const BoundingSphere& a, const BoundingSphere& b) {
-  const DVec3 way = DVec3(b.center) - DVec3(a.center);
-  const double apart = length(way), ra = double(a.radius), rb = double(b.radius);
+  const DVec3 offset = DVec3(b.center) - DVec3(a.center);
+  const double apart = length(offset), ra = double(a.radius), rb = double(b.radius);
   if (apart + rb <= ra) return a;
   if (apart + ra <= rb) return b;
   const double radius = 0.5 * (apart + ra + rb);
-  const Vec3 center = to_float(DVec3(a.center) + ((radius - ra) / apart) * way);
-  // Rounding has moved the centre: both must still fit.
+  const Vec3 center = to_float(DVec3(a.center) + ((radius - ra) / apart) * offset);
+  // Rounding moved the centre; both must still fit.
   const double needed =
       max(length(DVec3(center) - DVec3(a.center)) + ra, length(DVec3(center) - DVec3(b.center)) + rb);
   return {center, round_up_to_float(needed * (1.0 + 1.0e-15))};
 }
 
 bool overlap(const BoundingSphere& a, const BoundingSphere& b) {
-  const double reach = double(a.radius) + double(b.radius);
-  return length_squared(DVec3(b.center) - DVec3(a.center)) <= reach * reach;
+  const double radii = double(a.radius) + double(b.radius);
+  return length_squared(DVec3(b.center) - DVec3(a.center)) <= radii * radii;
 }
 bool contains(const BoundingSphere& sphere, Vec3 point) {
   return length(DVec3(point) - DVec3(sphere.center)) <= double(sphere.radius);

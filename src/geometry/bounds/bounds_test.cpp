@@ -1,5 +1,5 @@
-// Bounding volumes: every point inside whatever the cloud, the smallest ones against plain search and known solids,
-// overlaps against GJK and dense sampling, merges that hold both.
+// Bounding volumes: every point is inside for any cloud; the smallest volumes against plain search and known solids;
+// overlaps against GJK and dense sampling; merges contain both volumes.
 #include <gyre/bounds.h>
 
 #include "geometry/distance/gjk.h"
@@ -39,7 +39,7 @@ void turn(Cloud& points, Quat q) {
   for (Vec3& p : points) p = rotate(q, p);
 }
 
-// Round and long, flat and needle, near and far, tiny and huge; and the degenerate ones.
+// Round and long, flat and needle-like, near and far, tiny and huge clouds, and the degenerate ones.
 std::vector<std::pair<std::string, Cloud>> clouds() {
   Random random;
   std::vector<std::pair<std::string, Cloud>> all;
@@ -244,7 +244,7 @@ TEST(Bounds, NoSampledRotationHasASmallerBox) {
       }
     };
     for (int i = 0; i < 6000; ++i) try_rotation(any_turn(random));
-    // And around the best of them, ever nearer.
+    // Then around the best of them, in ever smaller steps.
     for (float angle = 0.2f; angle > 1.0e-4f; angle *= 0.7f) {
       for (int i = 0; i < 40; ++i)
         try_rotation(normalized(from_rotation_vector(random.vector(-angle, angle)) * best));
@@ -272,7 +272,7 @@ TEST(Bounds, TurnedBoxesOverlapAsTheirDistanceSays) {
     ASSERT_EQ(overlap(a, b), distance.overlap) << round;
     ASSERT_EQ(overlap(b, a), distance.overlap) << round;
     ++(distance.overlap ? overlapping : apart);
-    // The hulls of their corners say the same.
+    // The hulls of their corners agree.
     if (round % 10 != 0) continue;
     Cloud corners[2];
     for (int i = 0; i < 8; ++i) {
@@ -283,7 +283,7 @@ TEST(Bounds, TurnedBoxesOverlapAsTheirDistanceSays) {
     const auto hull_a = cook_hull(corners[0]), hull_b = cook_hull(corners[1]);
     ASSERT_TRUE(hull_a && hull_b);
     ASSERT_EQ(hulls_overlap(*hull_a, *hull_b), distance.overlap) << round;
-    // No k-DOP leaves out what overlaps.
+    // No k-DOP misses an overlap.
     for (const KDopKind kind : {KDopKind::k14, KDopKind::k18, KDopKind::k26}) {
       if (distance.overlap) {
         ASSERT_TRUE(overlap(*fit_k_dop(corners[0], kind), *fit_k_dop(corners[1], kind)));
@@ -308,7 +308,7 @@ TEST(Bounds, CapsulesAndSpheresOverlapAsSampled) {
                            double(distance(lerp(a.a, a.b, float(i) / 150), lerp(b.a, b.b, float(k) / 150))));
     }
     const double reach = double(a.radius) + double(b.radius);
-    // Samples lie within 1/150 of the longest way of the nearest points.
+    // Samples lie within 1/150 of the largest extent of the closest points.
     if (nearest <= reach) {
       ASSERT_TRUE(overlap(a, b)) << round;
     } else if (nearest > reach + 0.05) {
@@ -354,7 +354,7 @@ TEST(Bounds, MergesHoldBoth) {
       }
     }
     ASSERT_NEAR(hull_volume(hull) / hull_volume(*cook_hull(both)), 1.0, 1.0e-5);
-    // Not only the points: all of what was merged.
+    // The result contains the merged volumes, not only their points.
     BoundingCapsule grown = capsule;
     grown.radius *= 1.00001f;
     OrientedBox wider = box;

@@ -1,4 +1,4 @@
-// Points to the integer grid of quickhull and back. See convex_body.h.
+// Conversion of points to the integer grid of quickhull and back. See convex_body.h.
 #include "geometry/decomposition/convex_body.h"
 
 #include "geometry/distance/closest.h"
@@ -6,7 +6,7 @@
 namespace gyre {
 namespace {
 
-// The triangle's plane, moved out so far that all of its corners lie on or below it.
+// The plane of the triangle, moved outward until all of its corners are on or below it.
 HalfSpace plane_of(const ConvexBody& body, const GridTriangle& t) {
   const auto at = [&](int i) { return body.vertices[std::size_t(t.vertices[i])]; };
   const DVec3 normal = cross(at(1) - at(0), at(2) - at(0));

@@ -1,7 +1,7 @@
-// The convex hull of points in double precision, as triangles with planes and a volume: what a decomposition reckons with
-// before it cooks anything.
+// The convex hull of points in double precision, as triangles with planes and a volume: the working form of
+// decomposition, before hulls are cooked.
 //
-// In: points of any number and place. Out: a ConvexBody, which is empty if the points span no volume.
+// In: any number of points anywhere. Out: a ConvexBody, which is empty if the points span no volume.
 #pragma once
 
 #include "geometry/shape/quickhull.h"
@@ -30,16 +30,16 @@ struct ConvexBody {
 };
 
 struct BodyPrecision {
-  int vertices = 255;      // at most, the most telling first
+  int vertices = 255;      // maximum number; the most important come first
   double tolerance = 0.0;  // how far a point may stay outside
   double flat = 0.0;       // points within this of a plane span no volume
 };
 
 ConvexBody make_body(std::span<const DVec3> points, const BodyPrecision& precision);
 
-// How far `p` lies below the nearest plane: its depth inside, or less than 0 outside.
+// The depth of `p` below the closest plane; negative outside.
 double depth_below(const ConvexBody& body, DVec3 p);
-// How far `p` lies from the body; 0 inside.
+// The distance of `p` from the body; 0 inside.
 double distance_from(const ConvexBody& body, DVec3 p);
 
 DVec3 lower(DVec3 a, DVec3 b);

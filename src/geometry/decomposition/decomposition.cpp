@@ -11,9 +11,9 @@
 namespace gyre {
 namespace {
 
-// Goes into the key: counts up whenever the hulls of any mesh change.
+// Part of the key. It must be incremented whenever the hulls of any mesh change.
 constexpr std::uint64_t kMethodVersion = 1;
-// A surface is a sheet when more than this part of it lies near holes.
+// A surface is a sheet if more than this fraction of it is close to holes.
 constexpr double kMaxOpen = 0.15;
 
 Error check_settings(const DecompositionDef& def) {
@@ -47,11 +47,11 @@ Error cancelled() {
   return make_error(ErrorCode::cancelled, "decomposition: stopped by its progress callback");
 }
 
-// The model with its field and samples: as it is, or thickened to a shell.
+// The model with its field and samples: the original, or a shell around it.
 struct Prepared {
   Model model;
   std::unique_ptr<SurfaceField> field;
-  Solid3 solid;
+  SampledSolid solid;
   double openness = 0.0;
 };
 
@@ -61,9 +61,9 @@ void prepare(const DecompositionDef& def, TaskSystem& tasks, Prepared& out) {
   out.solid.model = &model;
   out.solid.field = out.field.get();
   out.solid.tolerance = double(def.concavity) * model.size;
-  constexpr double kFewest = 4000.0, kMost = 60000.0;
-  out.solid.spacing =
-      min(max(0.4 * out.solid.tolerance, std::sqrt(model.area / kMost)), std::sqrt(model.area / kFewest));
+  constexpr double kMinSamples = 4000.0, kMaxSamples = 60000.0;
+  out.solid.spacing = min(max(0.4 * out.solid.tolerance, std::sqrt(model.area / kMaxSamples)),
+                          std::sqrt(model.area / kMinSamples));
   out.solid.samples = sample_surface(model, *out.field, tasks, out.solid.spacing, out.openness);
 }
 
@@ -93,7 +93,7 @@ Error prepare_solid(const DecompositionDef& def, TaskSystem& tasks, Prepared& ou
   }
   findings.shell = true;
   thicken(out.model, half);
-  // Its sheets may touch each other anywhere: one group.
+  // The sheets of a shell may touch each other anywhere, so it is one group.
   out.model.group.assign(out.model.triangle_count(), 0);
   out.model.group_count = 1;
   double openness = 0.0;
@@ -103,15 +103,15 @@ Error prepare_solid(const DecompositionDef& def, TaskSystem& tasks, Prepared& ou
   return {};
 }
 
-Result<Geometry> cook_piece(const DecompositionDef& def, const Solid3& solid, const ConvexBody& body) {
-  const ConvexBody lean = make_body(body.vertices, {def.max_hull_vertices, 0.05 * solid.tolerance, 0.0});
+Result<Geometry> cook_piece(const DecompositionDef& def, const SampledSolid& solid, const ConvexBody& body) {
+  const ConvexBody reduced = make_body(body.vertices, {def.max_hull_vertices, 0.05 * solid.tolerance, 0.0});
   std::vector<Vec3> points;
-  for (const DVec3& p : lean.vertices) points.push_back(to_float(solid.model->to_metres(p)));
+  for (const DVec3& p : reduced.vertices) points.push_back(to_float(solid.model->to_metres(p)));
   return cook_hull(points);
 }
 
-// The hull as it is handed out, in the model's coordinates.
-ConvexBody body_of(const Solid3& solid, const Geometry& hull) {
+// The final hull in the model's coordinates.
+ConvexBody body_of(const SampledSolid& solid, const Geometry& hull) {
   std::vector<DVec3> points;
   for (const Vec3& p : view_hull(hull).vertices)
     points.push_back(solid.model->scale * (DVec3(p) - solid.model->origin));
@@ -125,10 +125,10 @@ const char* to_string(SurfaceMeaning meaning) {
   return int(meaning) < kSurfaceMeaningCount ? kNames[int(meaning)] : "unknown";
 }
 
-bool DecompositionProgress::go_on(double done) {
+bool DecompositionProgress::report_progress(double done) {
   if (stopped_ || def_.progress == nullptr) return !stopped_;
-  shown_ = max(shown_, float(done));
-  stopped_ = !def_.progress(def_.user, shown_);
+  reported_ = max(reported_, float(done));
+  stopped_ = !def_.progress(def_.user, reported_);
   return !stopped_;
 }
 
@@ -136,21 +136,21 @@ Result<Decomposition> decompose(const DecompositionDef& def) {
   const FloatMode mode;
   if (const Error error = check_settings(def)) return error;
   DecompositionProgress progress(def);
-  if (!progress.go_on(0.0)) return cancelled();
+  if (!progress.report_progress(0.0)) return cancelled();
   Result<Model> model = make_model(def);
   if (!model) return model.error();
   TaskSystem tasks(def.threads);
   Prepared prepared;
   prepared.model = std::move(*model);
   if (const Error error = prepare_solid(def, tasks, prepared)) return error;
-  const Solid3& solid = prepared.solid;
-  if (!progress.go_on(0.1)) return cancelled();
+  const SampledSolid& solid = prepared.solid;
+  if (!progress.report_progress(0.1)) return cancelled();
 
-  // More parts than hulls that may be left, so that joining has a choice.
+  // More parts than final hulls, so that joining has a choice.
   const int limit = max(4 * def.max_hulls, 64);
   std::vector<ConvexBody> pieces = cut_up(solid, tasks, limit, progress);
   join_pieces(solid, tasks, def.max_hulls, pieces, progress);
-  if (progress.stopped() || !progress.go_on(0.9)) return cancelled();
+  if (progress.stopped() || !progress.report_progress(0.9)) return cancelled();
 
   Decomposition out;
   std::vector<ConvexBody> bodies;
@@ -168,7 +168,7 @@ Result<Decomposition> decompose(const DecompositionDef& def) {
   if (prepared.model.findings.shell)
     out.stats.shell_thickness = float(2.0 * half_thickness(def, prepared.model) / prepared.model.scale);
   measure_pieces(solid, tasks, bodies, out.stats);
-  if (!progress.go_on(1.0)) return cancelled();
+  if (!progress.report_progress(1.0)) return cancelled();
   return out;
 }
 

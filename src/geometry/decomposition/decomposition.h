@@ -1,7 +1,7 @@
-// The work behind decompose() of gyre/decomposition.h: cut, join, measure.
+// The steps of decompose() of gyre/decomposition.h: cut, join, measure.
 //
-// In: a Model. Out: convex bodies in its coordinates. Rounds of cuts look at all parts at once; what one worker finds goes to a
-// slot of its own, and choices are made in order, so threads never show.
+// In: a Model. Out: convex bodies in its coordinates. A round of cuts tests all parts in parallel. Each worker writes
+// to a slot of its own, and choices are made in order, so the result does not depend on threads.
 #pragma once
 
 #include "geometry/decomposition/decomposition_part.h"
@@ -11,33 +11,34 @@
 
 namespace gyre {
 
-// Asked between pieces of work, with what is done (0 to 1); false: stop.
+// Progress callback of the user, called between pieces of work with the fraction done (0 to 1). The user may stop the
+// work.
 class DecompositionProgress {
  public:
   explicit DecompositionProgress(const DecompositionDef& def) : def_(def) {}
-  // False from the first time on that the user wanted no more.
-  bool go_on(double done);
+  // Reports progress. Returns false once the user has asked to stop.
+  bool report_progress(double done);
   bool stopped() const { return stopped_; }
 
  private:
   const DecompositionDef& def_;
-  float shown_ = 0.0f;
+  float reported_ = 0.0f;
   bool stopped_ = false;
 };
 
 // Cuts until all parts are convex within the tolerance or there are `limit` of them.
-std::vector<ConvexBody> cut_up(const Solid3& solid, TaskSystem& tasks, int limit,
+std::vector<ConvexBody> cut_up(const SampledSolid& solid, TaskSystem& tasks, int limit,
                                DecompositionProgress& progress);
-// Joins neighbours whose common hull is convex within the tolerance, the best pair first; then, while there are more than
-// `max_hulls`, those that lack least.
-void join_pieces(const Solid3& solid, TaskSystem& tasks, int max_hulls, std::vector<ConvexBody>& pieces,
+// Joins neighbours whose common hull is convex within the tolerance, the best pair first. Then, while there are more
+// than `max_hulls`, joins the pairs that lack least.
+void join_pieces(const SampledSolid& solid, TaskSystem& tasks, int max_hulls, std::vector<ConvexBody>& pieces,
                  DecompositionProgress& progress);
-// Points evenly on the surface, where it borders the solid; `openness` is the part of it near which the winding number is no
-// whole number.
+// Samples the surface evenly where it borders the solid. `openness` is the fraction of the surface at which the winding
+// number is not an integer.
 std::vector<SurfaceSample> sample_surface(const Model& model, const SurfaceField& field, TaskSystem& tasks,
                                           double spacing, double& openness);
-// Fills in all that is measured on the hulls as they are handed out.
-void measure_pieces(const Solid3& solid, TaskSystem& tasks, std::span<const ConvexBody> bodies,
+// Fills in all measures of the final hulls.
+void measure_pieces(const SampledSolid& solid, TaskSystem& tasks, std::span<const ConvexBody> bodies,
                     DecompositionStats& report);
 
 }  // namespace gyre

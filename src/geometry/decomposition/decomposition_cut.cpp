@@ -7,20 +7,20 @@
 namespace gyre {
 namespace {
 
-constexpr int kPlanesAcross = 9;      // evenly between the ends of a part, in each direction
-constexpr double kBalance = 0.03;     // cost of one hull that is all of the part's
-constexpr double kCutLength = 0.02;   // cost of a cut as long as the part's girth
-constexpr double kAlongSides = 0.15;  // gain of a cut along all that is concave
-constexpr std::size_t kSides = 8;     // flat concave sides that give planes
-constexpr double kSameWay = 0.996;    // directions within 5 degrees are one
-constexpr int kRoughVertices = 255;   // of the hulls by which cuts are judged
+constexpr int kPlanesAcross = 9;          // evenly between the ends of a part, in each direction
+constexpr double kBalance = 0.03;         // cost of one hull that is the whole part
+constexpr double kCutLength = 0.02;       // cost of a cut as long as the part's girth
+constexpr double kAlongSides = 0.15;      // gain of a cut along all concave sides
+constexpr std::size_t kSides = 8;         // flat concave sides that give planes
+constexpr double kSameDirection = 0.996;  // directions within 5 degrees are equal
+constexpr int kRoughVertices = 255;       // of the hulls that evaluate cuts
 
 // ------------------------------------------------------------------------------------------------------- directions
 
 struct FlatSide {
   HalfSpace plane;
   double weight = 0.0;
-  double share = 0.0;  // of the weight of all that is concave
+  double share = 0.0;  // fraction of the weight of all concave sides
 };
 
 struct Deep {
@@ -28,14 +28,14 @@ struct Deep {
   double weight = 0.0;
 };
 
-// To ten bits: what is the same but for rounding keeps its order when it is sorted.
+// Rounds to ten bits, so that values that differ only by rounding keep their order in a sort.
 double roughly(double value) {
   constexpr std::uint64_t kHalf = std::uint64_t(1) << 41;
   return __builtin_bit_cast(double, (__builtin_bit_cast(std::uint64_t, value) + kHalf) & ~(2 * kHalf - 1));
 }
 
-// The largest flat sides that lie below the hull, the heaviest (area times depth) first.
-std::vector<FlatSide> find_sides(const Solid3& solid, const Part& part) {
+// The largest flat sides below the hull, the largest weight (area times depth) first.
+std::vector<FlatSide> find_sides(const SampledSolid& solid, const Part& part) {
   std::vector<Deep> deep;
   for (std::size_t i = 0; i < part.indices.size(); i += 3) {
     const DVec3 a = part.vertices[part.indices[i]], b = part.vertices[part.indices[i + 1]],
@@ -52,9 +52,9 @@ std::vector<FlatSide> find_sides(const Solid3& solid, const Part& part) {
   std::vector<Deep> scratch(deep.size());
   merge_sort(std::span<Deep>(deep), std::span<Deep>(scratch),
              [](const Deep& a, const Deep& b) { return a.weight > b.weight; });
-  constexpr std::size_t kLooked = 1024, kKept = 64;
+  constexpr std::size_t kMaxTested = 1024, kMaxSides = 64;
   std::vector<FlatSide> sides;
-  for (std::size_t i = 0; i < deep.size() && i < kLooked; ++i) {
+  for (std::size_t i = 0; i < deep.size() && i < kMaxTested; ++i) {
     FlatSide* found = nullptr;
     for (FlatSide& side : sides) {
       const double same = dot(side.plane.normal, deep[i].plane.normal);
@@ -64,7 +64,7 @@ std::vector<FlatSide> find_sides(const Solid3& solid, const Part& part) {
     }
     if (found != nullptr) {
       found->weight += deep[i].weight;
-    } else if (sides.size() < kKept) {
+    } else if (sides.size() < kMaxSides) {
       sides.push_back({deep[i].plane, deep[i].weight, 0.0});
     }
   }
@@ -81,7 +81,7 @@ std::vector<FlatSide> find_sides(const Solid3& solid, const Part& part) {
   return sides;
 }
 
-// The axes along which the part's surface spreads least and most.
+// The principal axes of the part's surface.
 void principal_directions(const Part& part, DVec3 (&axes)[3]) {
   double area = 0.0;
   DVec3 first;
@@ -124,7 +124,7 @@ CutFamily spread(const Part& part, DVec3 direction) {
 
 class FamilyCosts {
  public:
-  FamilyCosts(const Solid3& solid, const Part& part, const CutFamily& family)
+  FamilyCosts(const SampledSolid& solid, const Part& part, const CutFamily& family)
       : solid_(solid), part_(part), family_(family), count_(family.offsets.size()) {}
   Cut best();
 
@@ -137,22 +137,22 @@ class FamilyCosts {
   void sort_points();
   void cross_surface();
   void cross_cell();
-  // The volumes below (or above) each plane.
-  std::vector<double> sweep(bool from_low) const;
+  // The hull volumes below (or above) each plane.
+  std::vector<double> hull_volumes(bool from_low) const;
   ConvexBody rough(std::span<const DVec3> points) const {
     return make_body(points, {kRoughVertices, 1.0e-3 * solid_.tolerance, 1.0e-6});
   }
 
-  const Solid3& solid_;
+  const SampledSolid& solid_;
   const Part& part_;
   const CutFamily& family_;
   std::size_t count_;
   std::vector<double> heights_;
   std::vector<std::vector<DVec3>> slabs_;   // points between planes
-  std::vector<std::vector<DVec3>> planes_;  // where the surface and the cell's edges cross each plane
-  // Vertices that lie in a plane: all, and those from which a triangle goes down or up.
+  std::vector<std::vector<DVec3>> planes_;  // where the surface and the edges of the cell cross each plane
+  // Vertices in a plane: all, and those from which a triangle goes down or up.
   std::vector<std::vector<DVec3>> in_plane_, going_down_, going_up_;
-  std::vector<double> lengths_;  // of the surface's cut by each plane
+  std::vector<double> lengths_;  // of the cut through the surface by each plane
 };
 
 void FamilyCosts::sort_points() {
@@ -211,7 +211,7 @@ void FamilyCosts::cross_cell() {
       const double offset = family_.offsets[k];
       if ((from <= offset) == (to <= offset)) continue;
       const DVec3 p = edge.from + (offset - from) / (to - from) * (edge.to - edge.from);
-      // Only within the part's own box; beyond it nothing of the part is.
+      // Only within the part's own box; the part has nothing beyond it.
       const DVec3 low = p - part_.body.low, high = part_.body.high - p;
       if (min(min(low.x, low.y), min(low.z, min(high.x, min(high.y, high.z)))) < -1.0e-9) continue;
       if (solid_.field->inside(p + kInward * (part_.center - p))) planes_[k].push_back(p);
@@ -219,23 +219,24 @@ void FamilyCosts::cross_cell() {
   }
 }
 
-std::vector<double> FamilyCosts::sweep(bool from_low) const {
+std::vector<double> FamilyCosts::hull_volumes(bool from_low) const {
   std::vector<double> volumes(count_, 0.0);
   std::vector<DVec3> points;
   for (std::size_t step = 0; step < count_; ++step) {
     const std::size_t k = from_low ? step : count_ - 1 - step;
     const std::vector<DVec3>& slab = slabs_[from_low ? k : k + 1];
     points.insert(points.end(), slab.begin(), slab.end());
-    const std::size_t so_far = points.size();
+    const std::size_t count_before = points.size();
     const std::vector<DVec3>& touching = from_low ? going_down_[k] : going_up_[k];
     points.insert(points.end(), planes_[k].begin(), planes_[k].end());
     points.insert(points.end(), touching.begin(), touching.end());
     ConvexBody body = rough(points);
     volumes[k] = body.volume;
     if (body.empty()) {
-      points.resize(so_far);
+      points.resize(count_before);
     } else {
-      // What the hull has is enough for all that follow; points of this plane among it do no harm, they are inside of those.
+      // The hull's vertices are enough for all following planes. Points of this plane among them do no harm, because
+      // they are inside the later hulls.
       points = std::move(body.vertices);
     }
     points.insert(points.end(), in_plane_[k].begin(), in_plane_[k].end());
@@ -247,8 +248,8 @@ Cut FamilyCosts::best() {
   sort_points();
   cross_surface();
   cross_cell();
-  const std::vector<double> below = sweep(true), above = sweep(false);
-  const double whole = max(part_.body.volume, 1.0e-300);
+  const std::vector<double> below = hull_volumes(true), above = hull_volumes(false);
+  const double full_volume = max(part_.body.volume, 1.0e-300);
   const DVec3 size = part_.body.high - part_.body.low;
   const double girth = 2.0 * (size.x + size.y + size.z);
   double low = 1.0e300, high = -1.0e300;
@@ -262,9 +263,9 @@ Cut FamilyCosts::best() {
     const double offset = family_.offsets[k];
     Cut cut;
     cut.plane = {family_.direction, offset};
-    // A plane that leaves next to nothing on one side is no cut.
+    // A plane that leaves almost nothing on one side is no cut.
     if (!(below[k] > 0.0) || !(above[k] > 0.0) || offset - low < thin || high - offset < thin) continue;
-    cut.cost = (below[k] + above[k]) / whole + kBalance * absolute(below[k] - above[k]) / whole +
+    cut.cost = (below[k] + above[k]) / full_volume + kBalance * absolute(below[k] - above[k]) / full_volume +
                kCutLength * lengths_[k] / girth - family_.gain;
     if (clearly_better(cut, best)) best = cut;
   }
@@ -273,24 +274,24 @@ Cut FamilyCosts::best() {
 
 }  // namespace
 
-std::vector<CutFamily> find_families(const Solid3& solid, const Part& part) {
+std::vector<CutFamily> find_families(const SampledSolid& solid, const Part& part) {
   std::vector<CutFamily> families;
   const auto known = [&](DVec3 direction) {
     for (const CutFamily& family : families) {
-      if (absolute(dot(family.direction, direction)) > kSameWay) return true;
+      if (absolute(dot(family.direction, direction)) > kSameDirection) return true;
     }
     return false;
   };
   const std::vector<FlatSide> sides = find_sides(solid, part);
   std::vector<CutFamily> single;
-  // First, so that they win where others are as good.
+  // These come first, so that they win among equals.
   for (const FlatSide& side : sides)
     single.push_back({side.plane.normal, {side.plane.offset}, kAlongSides * side.share});
   DVec3 principal[3];
   principal_directions(part, principal);
   const DVec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  constexpr std::size_t kTurned = 3;
-  for (std::size_t i = 0; i < sides.size() && i < kTurned; ++i) {
+  constexpr std::size_t kMaxSideFamilies = 3;
+  for (std::size_t i = 0; i < sides.size() && i < kMaxSideFamilies; ++i) {
     if (!known(sides[i].plane.normal)) families.push_back(spread(part, sides[i].plane.normal));
   }
   for (const DVec3& axis : axes) {
@@ -303,12 +304,12 @@ std::vector<CutFamily> find_families(const Solid3& solid, const Part& part) {
   return single;
 }
 
-Cut best_of_family(const Solid3& solid, const Part& part, const CutFamily& family) {
+Cut best_of_family(const SampledSolid& solid, const Part& part, const CutFamily& family) {
   return FamilyCosts(solid, part, family).best();
 }
 
 bool clearly_better(const Cut& a, const Cut& b) {
-  // Far above rounding: scaled and mirrored meshes are cut alike.
+  // Far above rounding, so that scaled and mirrored meshes are cut alike.
   constexpr double kRounding = 2.0e-3;
   return a.cost < b.cost - kRounding;
 }

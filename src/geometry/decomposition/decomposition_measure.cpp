@@ -1,4 +1,4 @@
-// What hulls are like beside the solid. See decomposition.h.
+// Measures of the hulls against the solid. See decomposition.h.
 #include "base/container/sort.h"
 #include "geometry/decomposition/decomposition.h"
 #include "task/parallel.h"
@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kLines = 100;  // along each of two axes
 
-struct Span1 {
+struct Interval {
   double from, to;
 };
 
@@ -22,7 +22,7 @@ Lengths operator+(const Lengths& a, const Lengths& b) {
 
 class LineMeasure {
  public:
-  LineMeasure(const Solid3& solid, std::span<const ConvexBody> bodies);
+  LineMeasure(const SampledSolid& solid, std::span<const ConvexBody> bodies);
   Lengths measure(int line) const;
   double cell_area() const { return width_ * height_; }
 
@@ -32,17 +32,17 @@ class LineMeasure {
     return {0.0, low_.y + (double(line % kLines) + 0.5) * width_,
             low_.z + (double(line / kLines) + 0.5) * height_};
   }
-  std::vector<Span1> solid_spans(int line) const;
-  std::vector<Span1> hull_spans(int line) const;
+  std::vector<Interval> solid_spans(int line) const;
+  std::vector<Interval> hull_spans(int line) const;
 
-  const Solid3& solid_;
+  const SampledSolid& solid_;
   std::span<const ConvexBody> bodies_;
   DVec3 low_{1e300, 1e300, 1e300}, high_{-1e300, -1e300, -1e300};
   double width_ = 0.0, height_ = 0.0;
   std::vector<std::vector<double>> crossings_;  // by line
 };
 
-LineMeasure::LineMeasure(const Solid3& solid, std::span<const ConvexBody> bodies)
+LineMeasure::LineMeasure(const SampledSolid& solid, std::span<const ConvexBody> bodies)
     : solid_(solid), bodies_(bodies) {
   const auto widen = [&](DVec3 p) {
     low_ = lower(low_, p);
@@ -60,13 +60,13 @@ LineMeasure::LineMeasure(const Solid3& solid, std::span<const ConvexBody> bodies
 
 void LineMeasure::add_triangle(std::size_t t) {
   const Model& model = *solid_.model;
-  const DVec3 p[3] = {model.place(t, 0), model.place(t, 1), model.place(t, 2)};
-  const DVec3 least = lower(p[0], lower(p[1], p[2])), most = higher(p[0], higher(p[1], p[2]));
+  const DVec3 p[3] = {model.corner(t, 0), model.corner(t, 1), model.corner(t, 2)};
+  const DVec3 low_corner = lower(p[0], lower(p[1], p[2])), high_corner = higher(p[0], higher(p[1], p[2]));
   if (!(width_ > 0.0) || !(height_ > 0.0)) return;
-  const int y0 = max(0, int((least.y - low_.y) / width_ - 1.0)),
-            y1 = min(kLines - 1, int((most.y - low_.y) / width_ + 1.0));
-  const int z0 = max(0, int((least.z - low_.z) / height_ - 1.0)),
-            z1 = min(kLines - 1, int((most.z - low_.z) / height_ + 1.0));
+  const int y0 = max(0, int((low_corner.y - low_.y) / width_ - 1.0)),
+            y1 = min(kLines - 1, int((high_corner.y - low_.y) / width_ + 1.0));
+  const int z0 = max(0, int((low_corner.z - low_.z) / height_ - 1.0)),
+            z1 = min(kLines - 1, int((high_corner.z - low_.z) / height_ + 1.0));
   for (int z = z0; z <= z1; ++z) {
     for (int y = y0; y <= y1; ++y) {
       const int line = z * kLines + y;
@@ -77,7 +77,7 @@ void LineMeasure::add_triangle(std::size_t t) {
         side[i] = (b.y - a.y) * (at.z - a.z) - (b.z - a.z) * (at.y - a.y);
         sum += side[i];
       }
-      // An edge counts for both of its triangles: what lies between crossings is looked at anyway.
+      // An edge counts for both of its triangles. The intervals between crossings are tested anyway.
       const bool in = (side[0] >= 0.0 && side[1] >= 0.0 && side[2] >= 0.0) ||
                       (side[0] <= 0.0 && side[1] <= 0.0 && side[2] <= 0.0);
       if (!in || sum == 0.0) continue;
@@ -86,29 +86,30 @@ void LineMeasure::add_triangle(std::size_t t) {
   }
 }
 
-std::vector<Span1> LineMeasure::solid_spans(int line) const {
-  std::vector<double> places = crossings_[std::size_t(line)];
-  std::vector<double> scratch(places.size());
-  merge_sort(std::span<double>(places), std::span<double>(scratch), [](double a, double b) { return a < b; });
-  std::vector<Span1> spans;
-  for (std::size_t i = 0; i + 1 < places.size(); ++i) {
-    if (places[i + 1] - places[i] < 1.0e-9) continue;
+std::vector<Interval> LineMeasure::solid_spans(int line) const {
+  std::vector<double> crossings = crossings_[std::size_t(line)];
+  std::vector<double> scratch(crossings.size());
+  merge_sort(std::span<double>(crossings), std::span<double>(scratch),
+             [](double a, double b) { return a < b; });
+  std::vector<Interval> spans;
+  for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
+    if (crossings[i + 1] - crossings[i] < 1.0e-9) continue;
     DVec3 middle = start(line);
-    middle.x = 0.5 * (places[i] + places[i + 1]);
+    middle.x = 0.5 * (crossings[i] + crossings[i + 1]);
     if (!solid_.field->inside(middle)) continue;
-    if (!spans.empty() && spans.back().to > places[i] - 1.0e-9) {
-      spans.back().to = places[i + 1];
+    if (!spans.empty() && spans.back().to > crossings[i] - 1.0e-9) {
+      spans.back().to = crossings[i + 1];
     } else {
-      spans.push_back({places[i], places[i + 1]});
+      spans.push_back({crossings[i], crossings[i + 1]});
     }
   }
   return spans;
 }
 
-// Where the line is in any hull: spans that do not overlap, ascending.
-std::vector<Span1> LineMeasure::hull_spans(int line) const {
+// The intervals of the line inside any hull, without overlap, ascending.
+std::vector<Interval> LineMeasure::hull_spans(int line) const {
   const DVec3 at = start(line);
-  std::vector<Span1> all;
+  std::vector<Interval> all;
   for (const ConvexBody& body : bodies_) {
     if (at.y < body.low.y || at.y > body.high.y || at.z < body.low.z || at.z > body.high.z) continue;
     double from = body.low.x, to = body.high.x;
@@ -124,11 +125,11 @@ std::vector<Span1> LineMeasure::hull_spans(int line) const {
     }
     if (from < to) all.push_back({from, to});
   }
-  std::vector<Span1> scratch(all.size());
-  merge_sort(std::span<Span1>(all), std::span<Span1>(scratch),
-             [](const Span1& a, const Span1& b) { return a.from < b.from; });
-  std::vector<Span1> out;
-  for (const Span1& span : all) {
+  std::vector<Interval> scratch(all.size());
+  merge_sort(std::span<Interval>(all), std::span<Interval>(scratch),
+             [](const Interval& a, const Interval& b) { return a.from < b.from; });
+  std::vector<Interval> out;
+  for (const Interval& span : all) {
     if (!out.empty() && span.from <= out.back().to) {
       out.back().to = max(out.back().to, span.to);
     } else {
@@ -139,20 +140,20 @@ std::vector<Span1> LineMeasure::hull_spans(int line) const {
 }
 
 Lengths LineMeasure::measure(int line) const {
-  const std::vector<Span1> solid = solid_spans(line), hulls = hull_spans(line);
+  const std::vector<Interval> solid = solid_spans(line), hulls = hull_spans(line);
   Lengths out;
   double both = 0.0;
-  for (const Span1& span : solid) out.solid += span.to - span.from;
-  for (const Span1& span : hulls) out.hulls += span.to - span.from;
-  for (const Span1& a : solid) {
-    for (const Span1& b : hulls) both += max(0.0, min(a.to, b.to) - max(a.from, b.from));
+  for (const Interval& span : solid) out.solid += span.to - span.from;
+  for (const Interval& span : hulls) out.hulls += span.to - span.from;
+  for (const Interval& a : solid) {
+    for (const Interval& b : hulls) both += max(0.0, min(a.to, b.to) - max(a.from, b.from));
   }
   out.excess = out.hulls - both;
   out.missing = out.solid - both;
   return out;
 }
 
-// How far the point lies from the nearest of the bodies, but for those within `known`.
+// The distance of the point from the closest body, or 0 if it is at most `known`.
 double outside_all(std::span<const ConvexBody> bodies, DVec3 p, double known) {
   double nearest = 1.0e300;
   const ConvexBody* best = nullptr;
@@ -173,7 +174,7 @@ double outside_all(std::span<const ConvexBody> bodies, DVec3 p, double known) {
 
 }  // namespace
 
-void measure_pieces(const Solid3& solid, TaskSystem& tasks, std::span<const ConvexBody> bodies,
+void measure_pieces(const SampledSolid& solid, TaskSystem& tasks, std::span<const ConvexBody> bodies,
                     DecompositionStats& report) {
   const double metres = 1.0 / solid.model->scale;
   std::vector<Overhang> overhangs(bodies.size());
@@ -194,19 +195,19 @@ void measure_pieces(const Solid3& solid, TaskSystem& tasks, std::span<const Conv
   const double uncovered = reduce_blocks(
       tasks, int(solid.samples.size()), 64, 0.0,
       [&](int begin, int end, int) {
-        double most = 0.0;
+        double largest = 0.0;
         for (int i = begin; i < end; ++i)
-          most = max(most, outside_all(bodies, solid.samples[std::size_t(i)].point, most));
-        return most;
+          largest = max(largest, outside_all(bodies, solid.samples[std::size_t(i)].point, largest));
+        return largest;
       },
       larger);
   const LineMeasure lines(solid, bodies);
   const Lengths sum = reduce_blocks(
       tasks, kLines * kLines, 16, Lengths{},
       [&](int begin, int end, int) {
-        Lengths part;
-        for (int i = begin; i < end; ++i) part = part + lines.measure(i);
-        return part;
+        Lengths sum_of_block;
+        for (int i = begin; i < end; ++i) sum_of_block = sum_of_block + lines.measure(i);
+        return sum_of_block;
       },
       [](const Lengths& a, const Lengths& b) { return a + b; });
 

@@ -2,8 +2,8 @@
 #include "geometry/decomposition/decomposition_model.h"
 
 #include "base/container/flat_map.h"
-#include "geometry/mass/closed_surface.h"
 #include "geometry/decomposition/convex_body.h"
+#include "geometry/mass/closed_surface.h"
 #include "geometry/shape/mesh_weld.h"
 
 #include <gyre/bounds.h>
@@ -35,17 +35,17 @@ FlatMap<EdgeUse> find_edges(const Model& model) {
   return edges;
 }
 
-// Sets of things that hang together.
-class Unions {
+// Disjoint sets of connected elements.
+class UnionFind {
  public:
-  explicit Unions(std::size_t count) : parent_(count) {
+  explicit UnionFind(std::size_t count) : parent_(count) {
     for (std::size_t i = 0; i < count; ++i) parent_[i] = std::uint32_t(i);
   }
   std::uint32_t find(std::uint32_t i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
-  // The lower one leads.
+  // The lower one becomes the root.
   void join(std::uint32_t a, std::uint32_t b) {
     a = find(a);
     b = find(b);
@@ -71,8 +71,8 @@ Error check_input(const DecompositionDef& def) {
   return {};
 }
 
-// Welded vertices that are used, and triangles that have an area.
-void take_triangles(const DecompositionDef& def, Model& model) {
+// Copies welded vertices that are used, and triangles with an area.
+void load_triangles(const DecompositionDef& def, Model& model) {
   const std::vector<std::uint32_t> welded = weld_vertices(def.vertices, def.indices);
   Vec3 low = def.vertices[def.indices[0]], high = low;
   for (const std::uint32_t i : def.indices) {
@@ -83,7 +83,7 @@ void take_triangles(const DecompositionDef& def, Model& model) {
   const double longest = max(extent.x, max(extent.y, extent.z));
   model.origin = DVec3(low);
   model.scale = 1.0;
-  // By powers of two, so that nothing is rounded on the way in or out.
+  // The scale is a power of two, so that conversion does not round.
   while (longest * model.scale > 1.0) model.scale *= 0.5;
   while (longest > 0.0 && longest * model.scale <= 0.5) model.scale *= 2.0;
 
@@ -122,10 +122,10 @@ void count_edges(Model& model) {
 }
 
 double signed_volume(const Model& model, std::size_t t) {
-  return dot(model.place(t, 0), cross(model.place(t, 1), model.place(t, 2))) / 6.0;
+  return dot(model.corner(t, 0), cross(model.corner(t, 1), model.corner(t, 2))) / 6.0;
 }
 
-// What hangs together by vertices.
+// Triangles that are connected through vertices.
 struct Piece {
   double volume = 0.0;
   DVec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
@@ -134,14 +134,14 @@ struct Piece {
   bool closed = true;
   bool cavity = false;
 
-  bool holds(const Piece& other) const {
+  bool contains(const Piece& other) const {
     return low.x <= other.low.x && low.y <= other.low.y && low.z <= other.low.z && other.high.x <= high.x &&
            other.high.y <= high.y && other.high.z <= high.z;
   }
 };
 
 std::vector<Piece> find_pieces(Model& model, std::vector<std::uint32_t>& piece_of) {
-  Unions unions(model.vertices.size());
+  UnionFind unions(model.vertices.size());
   for (std::size_t i = 0; i < model.indices.size(); i += 3) {
     unions.join(model.indices[i], model.indices[i + 1]);
     unions.join(model.indices[i], model.indices[i + 2]);
@@ -160,8 +160,8 @@ std::vector<Piece> find_pieces(Model& model, std::vector<std::uint32_t>& piece_o
     ++piece.triangles;
     piece.volume += signed_volume(model, t);
     for (std::size_t i = 0; i < 3; ++i) {
-      piece.low = lower(piece.low, model.place(t, i));
-      piece.high = higher(piece.high, model.place(t, i));
+      piece.low = lower(piece.low, model.corner(t, i));
+      piece.high = higher(piece.high, model.corner(t, i));
     }
   }
   const FlatMap<EdgeUse> edges = find_edges(model);
@@ -171,7 +171,7 @@ std::vector<Piece> find_pieces(Model& model, std::vector<std::uint32_t>& piece_o
   return pieces;
 }
 
-void turn(Model& model, std::size_t t) {
+void flip(Model& model, std::size_t t) {
   std::swap(model.indices[3 * t + 1], model.indices[3 * t + 2]);
   ++model.findings.flipped_triangles;
 }
@@ -181,43 +181,43 @@ void turn(Model& model, std::size_t t) {
 std::uint32_t wind_alike(Model& model) {
   const FlatMap<EdgeUse> edges = find_edges(model);
   const std::size_t count = model.triangle_count();
-  std::vector<signed char> way(count, 0);  // 1: as it is, -1: to be turned
+  std::vector<signed char> winding(count, 0);  // 1: unchanged, -1: to be flipped
   std::vector<std::uint32_t> surface;
-  std::vector<std::uint32_t> turned;
+  std::vector<std::uint32_t> flipped;
   for (std::uint32_t seed = 0; seed < count; ++seed) {
-    if (way[seed] != 0) continue;
-    way[seed] = 1;
+    if (winding[seed] != 0) continue;
+    winding[seed] = 1;
     surface.assign(1, seed);
-    double kept = 0.0, against = 0.0;
+    double same_area = 0.0, opposite_area = 0.0;
     for (std::size_t i = 0; i < surface.size(); ++i) {
       const std::uint32_t t = surface[i];
       const double area =
-          length(cross(model.place(t, 1) - model.place(t, 0), model.place(t, 2) - model.place(t, 0)));
-      (way[t] > 0 ? kept : against) += area;
+          length(cross(model.corner(t, 1) - model.corner(t, 0), model.corner(t, 2) - model.corner(t, 0)));
+      (winding[t] > 0 ? same_area : opposite_area) += area;
       for (std::size_t e = 0; e < 3; ++e) {
         const std::uint32_t from = model.indices[3 * std::size_t(t) + e];
         const std::uint32_t to = model.indices[3 * std::size_t(t) + (e + 1) % 3];
         const EdgeUse& use = *edges.find(edge_key(from, to));
         if (use.forward + use.backward != 2) continue;
         const std::uint32_t other = use.first == t ? use.last : use.first;
-        if (other == t || way[other] != 0) continue;
-        way[other] = use.forward == 1 ? way[t] : static_cast<signed char>(-way[t]);
+        if (other == t || winding[other] != 0) continue;
+        winding[other] = use.forward == 1 ? winding[t] : static_cast<signed char>(-winding[t]);
         surface.push_back(other);
       }
     }
-    const signed char wrong = kept >= against ? -1 : 1;
+    const signed char wrong = same_area >= opposite_area ? -1 : 1;
     for (const std::uint32_t t : surface) {
-      if (way[t] == wrong) turned.push_back(t);
+      if (winding[t] == wrong) flipped.push_back(t);
     }
   }
-  for (const std::uint32_t t : turned) turn(model, t);
-  return std::uint32_t(turned.size());
+  for (const std::uint32_t t : flipped) flip(model, t);
+  return std::uint32_t(flipped.size());
 }
 
 void group_solids(Model& model) {
   std::vector<std::uint32_t> piece_of;
   std::vector<Piece> pieces = find_pieces(model, piece_of);
-  // With very many pieces they are one heap, as nobody wants a hull for each.
+  // Very many pieces count as one heap, because nobody wants a hull for each.
   constexpr std::size_t kMany = 256;
   model.group.assign(model.triangle_count(), 0);
   model.group_count = 1;
@@ -226,7 +226,7 @@ void group_solids(Model& model) {
     Piece& piece = pieces[i];
     if (!piece.closed || piece.volume >= 0.0) continue;
     for (const Piece& other : pieces)
-      piece.cavity = piece.cavity || (other.volume > 0.0 && other.holds(piece));
+      piece.cavity = piece.cavity || (other.volume > 0.0 && other.contains(piece));
     inside_out[i] = piece.cavity ? 0 : 1;
   }
   if (pieces.size() > kMany) {
@@ -235,7 +235,7 @@ void group_solids(Model& model) {
     for (std::uint8_t& flag : inside_out) flag = volume < 0.0 ? 1 : 0;
   }
   for (std::size_t t = 0; t < model.triangle_count(); ++t) {
-    if (inside_out[piece_of[t]] != 0) turn(model, t);
+    if (inside_out[piece_of[t]] != 0) flip(model, t);
   }
   if (pieces.size() > kMany) return;
   model.group_count = 0;
@@ -246,7 +246,7 @@ void group_solids(Model& model) {
     if (!piece.cavity) continue;
     double best = 1.0e300;
     for (const Piece& other : pieces) {
-      if (other.cavity || !other.holds(piece) || !(absolute(other.volume) < best)) continue;
+      if (other.cavity || !other.contains(piece) || !(absolute(other.volume) < best)) continue;
       best = absolute(other.volume);
       piece.group = other.group;
     }
@@ -259,7 +259,7 @@ void thicken(Model& model, double half) {
   const std::size_t count = model.triangle_count();
   std::vector<DVec3> normals(model.vertices.size());
   for (std::size_t t = 0; t < count; ++t) {
-    const DVec3 n = cross(model.place(t, 1) - model.place(t, 0), model.place(t, 2) - model.place(t, 0));
+    const DVec3 n = cross(model.corner(t, 1) - model.corner(t, 0), model.corner(t, 2) - model.corner(t, 0));
     for (std::size_t i = 0; i < 3; ++i) normals[model.indices[3 * t + i]] += n / length(n);
   }
   const std::uint32_t below = std::uint32_t(model.vertices.size());
@@ -282,7 +282,7 @@ void thicken(Model& model, double half) {
     for (int i = 0; i < 3; ++i) {
       const std::uint32_t from = v[i], to = v[(i + 1) % 3];
       const EdgeUse& use = *edges.find(edge_key(from, to));
-      // Between two triangles that are wound alike there is no wall.
+      // Two triangles that are wound alike have no wall between them.
       if (use.forward == 1 && use.backward == 1) continue;
       add(from, below + from, below + to);
       add(from, below + to, to);
@@ -293,13 +293,13 @@ void thicken(Model& model, double half) {
   model.area = 0.0;
   for (std::size_t t = 0; t < model.triangle_count(); ++t)
     model.area +=
-        0.5 * length(cross(model.place(t, 1) - model.place(t, 0), model.place(t, 2) - model.place(t, 0)));
+        0.5 * length(cross(model.corner(t, 1) - model.corner(t, 0), model.corner(t, 2) - model.corner(t, 0)));
 }
 
 Result<Model> make_model(const DecompositionDef& def) {
   if (const Error error = check_input(def)) return error;
   Model model;
-  take_triangles(def, model);
+  load_triangles(def, model);
   if (model.indices.empty()) {
     return make_error(ErrorCode::invalid_geometry,
                       "decomposition: none of %zu triangles has an area; allowed are meshes that have one",

@@ -6,7 +6,7 @@
 namespace gyre {
 namespace {
 
-// Nearer to a plane than this is on it.
+// Points closer to a plane than this lie on it.
 constexpr double kOnPlane = kFloatNoise;
 constexpr std::uint32_t kUnset = 0xffffffffu;
 
@@ -15,17 +15,18 @@ std::vector<CellEdge> find_cell_edges(std::span<const HalfSpace> cell) {
   std::vector<CellEdge> edges;
   for (std::size_t i = 0; i < cell.size(); ++i) {
     for (std::size_t j = i + 1; j < cell.size(); ++j) {
-      const DVec3 way = cross(cell[i].normal, cell[j].normal);
-      const double square = length_squared(way);
+      const DVec3 direction = cross(cell[i].normal, cell[j].normal);
+      const double square = length_squared(direction);
       if (!(square > 1.0e-12)) continue;
-      // The point of both planes nearest to the origin.
-      const DVec3 base =
-          (cell[i].offset * cross(cell[j].normal, way) + cell[j].offset * cross(way, cell[i].normal)) /
-          square;
+      // The point of both planes that is closest to the origin.
+      const DVec3 base = (cell[i].offset * cross(cell[j].normal, direction) +
+                          cell[j].offset * cross(direction, cell[i].normal)) /
+                         square;
       double low = -1.0e300, high = 1.0e300;
       for (std::size_t k = 0; k < cell.size() && low < high; ++k) {
         if (k == i || k == j) continue;
-        const double slope = dot(cell[k].normal, way), room = cell[k].offset - dot(cell[k].normal, base);
+        const double slope = dot(cell[k].normal, direction),
+                     room = cell[k].offset - dot(cell[k].normal, base);
         if (absolute(slope) < 1.0e-12) {
           if (room < -kOnPlane) low = high;
         } else if (slope > 0.0) {
@@ -34,26 +35,27 @@ std::vector<CellEdge> find_cell_edges(std::span<const HalfSpace> cell) {
           low = max(low, room / slope);
         }
       }
-      if (low < high && high - low < 1.0e6) edges.push_back({base + low * way, base + high * way});
+      if (low < high && high - low < 1.0e6)
+        edges.push_back({base + low * direction, base + high * direction});
     }
   }
   return edges;
 }
 
-// One side of a cut while it is made.
+// One side of a cut.
 class Side {
  public:
   Side(const Part& from, std::span<const double> heights, double sign)
       : from_(from), heights_(heights), sign_(sign), number_(from.vertices.size(), kUnset) {}
 
-  // The part of the triangle on this side; `i` is where its indices begin.
+  // Clips a triangle to this side; `i` is the start of its indices.
   void clip(std::size_t i) {
     std::uint32_t polygon[4];
     std::size_t count = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t v = from_.indices[i + k], next = from_.indices[i + (k + 1) % 3];
       const double here = sign_ * heights_[v], there = sign_ * heights_[next];
-      if (here <= 0.0) polygon[count++] = keep(v);
+      if (here <= 0.0) polygon[count++] = copy_vertex(v);
       if ((here < 0.0 && there > 0.0) || (here > 0.0 && there < 0.0)) polygon[count++] = crossing(v, next);
     }
     for (std::size_t k = 2; k < count; ++k) {
@@ -68,7 +70,7 @@ class Side {
     out.vertices.push_back(p);
     return std::uint32_t(out.vertices.size() - 1);
   }
-  std::uint32_t keep(std::uint32_t v) {
+  std::uint32_t copy_vertex(std::uint32_t v) {
     if (number_[v] == kUnset) number_[v] = add(from_.vertices[v]);
     return number_[v];
   }
@@ -92,12 +94,12 @@ class Side {
 
 struct Facet {
   DVec3 a, b, c;
-  // A place near it that is known to be `known_depth` deep inside (or that far outside, below 0).
-  DVec3 place;
+  // A close point with a known depth inside (negative: distance outside).
+  DVec3 known_point;
   double known_depth = 0.0;
 };
 
-// The depth of `p`, or something below `known` if it is not above that.
+// The depth of `p`, or any value below `known` if the depth is not above that.
 double depth_beyond(const ConvexBody& body, DVec3 p, double known) {
   double here = 1.0e300;
   for (std::size_t k = 0; k < body.planes.size() && here > known; ++k)
@@ -105,27 +107,28 @@ double depth_beyond(const ConvexBody& body, DVec3 p, double known) {
   return here;
 }
 
-// How far from the solid some places within the body are: there may be a hollow that all of its surface is beside.
-double emptiest_place(const SurfaceField& field, const ConvexBody& body, double ignore) {
+// The largest distance from the solid of some points within the body: there may be a hollow that its surface does not
+// show.
+double max_inner_distance(const SurfaceField& field, const ConvexBody& body, double ignore) {
   DVec3 middle;
   for (const DVec3& v : body.vertices) middle += v / double(body.vertices.size());
-  double most = 0.0;
-  const auto look = [&](DVec3 p) {
-    const double away = field.distance(p, 4.0);
-    if (away > max(most, ignore) && !field.inside(p)) most = away;
+  double largest = 0.0;
+  const auto test = [&](DVec3 p) {
+    const double distance_to_solid = field.distance(p, 4.0);
+    if (distance_to_solid > max(largest, ignore) && !field.inside(p)) largest = distance_to_solid;
   };
-  look(middle);
+  test(middle);
   const std::size_t stride = body.vertices.size() / 24 + 1;
-  for (std::size_t i = 0; i < body.vertices.size(); i += stride) look(0.5 * (middle + body.vertices[i]));
-  return most;
+  for (std::size_t i = 0; i < body.vertices.size(); i += stride) test(0.5 * (middle + body.vertices[i]));
+  return largest;
 }
 
 }  // namespace
 
-std::vector<Part> make_parts(const Solid3& solid) {
+std::vector<Part> make_parts(const SampledSolid& solid) {
   const Model& model = *solid.model;
   std::vector<Part> parts(model.group_count);
-  // A box well outside of everything: its corners are never inside.
+  // A box far outside everything. Its corners are never inside.
   constexpr double kLow = -0.5, kHigh = 2.0;
   const HalfSpace box[6] = {{{1, 0, 0}, kHigh},  {{-1, 0, 0}, -kLow}, {{0, 1, 0}, kHigh},
                             {{0, -1, 0}, -kLow}, {{0, 0, 1}, kHigh},  {{0, 0, -1}, -kLow}};
@@ -145,7 +148,7 @@ std::vector<Part> make_parts(const Solid3& solid) {
   return parts;
 }
 
-std::pair<Part, Part> cut_part(const Solid3& solid, const Part& part, const HalfSpace& plane) {
+std::pair<Part, Part> cut_part(const SampledSolid& solid, const Part& part, const HalfSpace& plane) {
   std::vector<double> heights(part.vertices.size());
   for (std::size_t i = 0; i < heights.size(); ++i) {
     const double height = dot(plane.normal, part.vertices[i]) - plane.offset;
@@ -154,17 +157,17 @@ std::pair<Part, Part> cut_part(const Solid3& solid, const Part& part, const Half
   Side low(part, heights, 1.0), high(part, heights, -1.0);
   for (std::size_t i = 0; i < part.indices.size(); i += 3) {
     const std::uint32_t* const v = part.indices.data() + i;
-    const double least = min(heights[v[0]], min(heights[v[1]], heights[v[2]]));
-    const double most = max(heights[v[0]], max(heights[v[1]], heights[v[2]]));
-    if (least == 0.0 && most == 0.0) {
-      // In the plane: a border of what lies behind it.
+    const double low_height = min(heights[v[0]], min(heights[v[1]], heights[v[2]]));
+    const double high_height = max(heights[v[0]], max(heights[v[1]], heights[v[2]]));
+    if (low_height == 0.0 && high_height == 0.0) {
+      // A triangle in the plane is a border of the part behind it.
       const DVec3 a = part.vertices[v[0]];
       const DVec3 normal = cross(part.vertices[v[1]] - a, part.vertices[v[2]] - a);
       (dot(normal, plane.normal) > 0.0 ? low : high).clip(i);
       continue;
     }
-    if (least < 0.0) low.clip(i);
-    if (most > 0.0) high.clip(i);
+    if (low_height < 0.0) low.clip(i);
+    if (high_height > 0.0) high.clip(i);
   }
   low.out.cell = high.out.cell = part.cell;
   low.out.cell.push_back(plane);
@@ -177,7 +180,7 @@ std::pair<Part, Part> cut_part(const Solid3& solid, const Part& part, const Half
   return {std::move(low.out), std::move(high.out)};
 }
 
-void finish_part(const Solid3& solid, Part& part) {
+void finish_part(const SampledSolid& solid, Part& part) {
   part.edges = find_cell_edges(part.cell);
   std::vector<DVec3> corners;
   for (const CellEdge& edge : part.edges) {
@@ -200,17 +203,18 @@ void finish_part(const Solid3& solid, Part& part) {
   const double limit = solid.tolerance;
   if (part.depth > limit) return;  // it will be cut anyway
   part.overhang = find_overhang(*solid.field, part.body,
-                                {.ignore = 0.8 * limit, .stop = limit, .resolution = 0.25 * limit})
+                                {.ignore = 0.8 * limit, .enough = limit, .resolution = 0.25 * limit})
                       .value;
 }
 
-double deepest_sample(const Solid3& solid, const ConvexBody& body, std::span<const std::uint32_t> samples) {
+double deepest_sample(const SampledSolid& solid, const ConvexBody& body,
+                      std::span<const std::uint32_t> samples) {
   double depth = 0.0;
   for (const std::uint32_t i : samples) depth = max(depth, depth_beyond(body, solid.samples[i].point, depth));
   return depth;
 }
 
-double deepest_sample(const Solid3& solid, const ConvexBody& body) {
+double deepest_sample(const SampledSolid& solid, const ConvexBody& body) {
   double depth = 0.0;
   for (const SurfaceSample& sample : solid.samples) {
     const DVec3 p = sample.point;
@@ -232,31 +236,31 @@ Overhang find_overhang(const SurfaceField& field, const ConvexBody& body, const 
                       {},
                       0.0});
   }
-  out.value = emptiest_place(field, body, search.ignore);
-  if (out.value > search.stop) return {out.value, 1.0e300};
+  out.value = max_inner_distance(field, body, search.ignore);
+  if (out.value > search.enough) return {out.value, 1.0e300};
   for (std::size_t i = 0; i < facets.size(); ++i) {
-    const auto [a, b, c, place, known_depth] = facets[i];
+    const auto [a, b, c, known_point, known_depth] = facets[i];
     const DVec3 middle = (a + b + c) / 3.0;
-    const double reach = std::sqrt(
+    const double radius = std::sqrt(
         max(length_squared(a - middle), max(length_squared(b - middle), length_squared(c - middle))));
-    const double away = field.distance(middle, 4.0);
-    // The distance changes by no more than one goes.
+    const double distance_to_solid = field.distance(middle, 4.0);
+    // The distance to the solid changes by no more than the displacement.
     const double known = max(out.value, search.ignore);
-    if (away + reach <= known) {
-      out.bound = max(out.bound, away + reach);
+    if (distance_to_solid + radius <= known) {
+      out.bound = max(out.bound, distance_to_solid + radius);
       continue;
     }
-    // No surface lies between two places that are nearer to each other than to the surface.
-    const bool same_side = length(middle - place) < absolute(known_depth);
+    // No surface lies between two points that are closer to each other than to the surface.
+    const bool same_side = length(middle - known_point) < absolute(known_depth);
     const bool inside = same_side ? known_depth > 0.0 : field.inside(middle);
-    const double height = inside ? -away : away;
+    const double height = inside ? -distance_to_solid : distance_to_solid;
     out.value = max(out.value, height);
-    if (out.value > search.stop) return {out.value, 1.0e300};
-    if (height + reach <= known || reach <= search.resolution || i >= std::size_t(search.points)) {
-      out.bound = max(out.bound, height + reach);
+    if (out.value > search.enough) return {out.value, 1.0e300};
+    if (height + radius <= known || radius <= search.resolution || i >= std::size_t(search.points)) {
+      out.bound = max(out.bound, height + radius);
       continue;
     }
-    // In two at the middle of the longest side, so that slivers get shorter and not thinner.
+    // Halved at the middle of the longest side, so that slivers become shorter and not thinner.
     const double sides[3] = {length_squared(b - a), length_squared(c - b), length_squared(a - c)};
     const DVec3 corners[3] = {a, b, c};
     const int longest =

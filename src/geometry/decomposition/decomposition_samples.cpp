@@ -1,37 +1,38 @@
-// Points on the surface, and on which sides of it the solid is. See decomposition.h.
+// Samples of the surface, and the sides on which the solid lies. See decomposition.h.
 #include "geometry/decomposition/decomposition.h"
 #include "task/parallel.h"
 
 namespace gyre {
 namespace {
 
-// Beside the surface, in sizes of the mesh: far above rounding, far below anything that matters.
-constexpr double kBeside = 1.0e-5;
-// A winding number farther than this from a whole one is of a place near a hole; dipoles alone are off by much less.
+// Offset from the surface, in sizes of the mesh: far above rounding, far below any feature.
+constexpr double kOffset = 1.0e-5;
+// Deviation of the winding number from an integer above which a point is close to a hole. The error of dipoles is much
+// smaller.
 constexpr double kBroken = 0.1;
 
 struct SampleCandidate {
   SurfaceSample sample;
   DVec3 normal;
-  bool open = false;  // the solid is behind it and not before it
+  bool open = false;  // the solid is behind the sample and not before it
   bool broken = false;
 };
 
 double fraction(double x) { return x - double(std::int64_t(x)); }
 
-// One for each spacing * spacing of area, spread by a sequence that fills triangles evenly.
-// M. Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018 (the plastic number's powers).
+// One sample for each spacing * spacing of area, spread by a sequence that fills triangles evenly. M. Roberts, "The
+// Unreasonable Effectiveness of Quasirandom Sequences", 2018 (the plastic number's powers).
 std::vector<SampleCandidate> spread_points(const Model& model, double spacing) {
   constexpr double kStepU = 0.7548776662466927, kStepV = 0.5698402909980532;
   std::vector<SampleCandidate> out;
-  double waiting = 0.5;
+  double area_left = 0.5;
   for (std::size_t t = 0; t < model.triangle_count(); ++t) {
-    const DVec3 a = model.place(t, 0), b = model.place(t, 1), c = model.place(t, 2);
+    const DVec3 a = model.corner(t, 0), b = model.corner(t, 1), c = model.corner(t, 2);
     const DVec3 normal = cross(b - a, c - a);
     const double size = length(normal);
     if (!(size > 0.0)) continue;
-    waiting += 0.5 * size / (spacing * spacing);
-    for (; waiting >= 1.0; waiting -= 1.0) {
+    area_left += 0.5 * size / (spacing * spacing);
+    for (; area_left >= 1.0; area_left -= 1.0) {
       const auto number = double(out.size() + 1);
       double u = fraction(number * kStepU), v = fraction(number * kStepV);
       if (u + v > 1.0) {
@@ -49,12 +50,12 @@ std::vector<SampleCandidate> spread_points(const Model& model, double spacing) {
 std::vector<SurfaceSample> sample_surface(const Model& model, const SurfaceField& field, TaskSystem& tasks,
                                           double spacing, double& openness) {
   std::vector<SampleCandidate> candidates = spread_points(model, spacing);
-  const double beside = kBeside * model.size;
+  const double offset = kOffset * model.size;
   for_blocks(tasks, int(candidates.size()), 64, [&](int begin, int end, int) {
     for (int i = begin; i < end; ++i) {
       SampleCandidate& candidate = candidates[std::size_t(i)];
-      const double before = field.winding(candidate.sample.point + beside * candidate.normal);
-      const double behind = field.winding(candidate.sample.point - beside * candidate.normal);
+      const double before = field.winding(candidate.sample.point + offset * candidate.normal);
+      const double behind = field.winding(candidate.sample.point - offset * candidate.normal);
       candidate.open = before < kInsideWinding && behind > kInsideWinding;
       candidate.broken = absolute(before - double(std::int64_t(before + 64.5) - 64)) > kBroken ||
                          (before < kInsideWinding && behind <= kInsideWinding);

@@ -1,6 +1,7 @@
-// Decomposition: what every result must keep, held against slow and plain measures, on meshes by formula and on bad ones.
-#include "geometry/distance/closest.h"
+// Decomposition: the invariants of every result against slow and plain measures, on meshes by formula and on bad
+// meshes.
 #include "geometry/decomposition/decomposition_test_meshes.h"
+#include "geometry/distance/closest.h"
 
 #include <gtest/gtest.h>
 
@@ -34,7 +35,7 @@ Decomposition made(const DecompositionDef& def) {
   return result ? *std::move(result) : Decomposition{};
 }
 
-// How far above the planes of the hull the point is; below 0 inside.
+// The height of the point above the planes of the hull; negative inside.
 double above(const Geometry& hull, Vec3 p) {
   const HullView view = view_hull(hull);
   double most = -1.0e300;
@@ -73,7 +74,7 @@ double outside(const TestMesh& mesh, Vec3 at) {
   return angles > 2.0 * kPiDouble ? -nearest : nearest;
 }
 
-// What the report says is true, and what it says is within what was asked for.
+// The report is true, and its values are within the settings.
 void expect_honest(const TestMesh& mesh, const DecompositionDef& def, const Decomposition& d) {
   const DecompositionStats& report = d.stats;
   ASSERT_FALSE(d.hulls.empty());
@@ -83,7 +84,7 @@ void expect_honest(const TestMesh& mesh, const DecompositionDef& def, const Deco
   EXPECT_LE(double(report.overhang), 1.06 * tolerance);
   EXPECT_LE(double(report.depth), 1.06 * tolerance);
   EXPECT_LE(report.overhang, report.overhang_bound);
-  // Places in hulls, none of them farther from the solid than the bound.
+  // Points inside hulls: none is farther from the solid than the bound.
   Random random;
   for (const Geometry& hull : d.hulls) {
     const HullView view = view_hull(hull);
@@ -101,7 +102,7 @@ void expect_honest(const TestMesh& mesh, const DecompositionDef& def, const Deco
                 double(report.overhang_bound) + 1.0e-5 * double(report.size));
     }
   }
-  // Every triangle is covered: its middle, but for the distance between samples.
+  // Every triangle is covered at its centre, up to the distance between samples.
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
     const Vec3 middle = (1.0f / 3.0f) * (mesh.vertices[mesh.indices[i]] + mesh.vertices[mesh.indices[i + 1]] +
                                          mesh.vertices[mesh.indices[i + 2]]);
@@ -109,8 +110,8 @@ void expect_honest(const TestMesh& mesh, const DecompositionDef& def, const Deco
     for (const Geometry& hull : d.hulls) least = std::min(least, above(hull, middle));
     EXPECT_LE(least, double(report.uncovered) + double(report.sample_spacing)) << i / 3;
   }
-  // Volumes: lines against integrals (where no surfaces cross), and the excess lies within a layer over the surface. A layer of
-  // thickness h over a surface of area A holds about A h, and more by its curvature: half more at most for these.
+  // Volumes: lines against integrals (if no surfaces cross). The excess lies in a layer over the surface. A layer of
+  // thickness h over a surface of area A has about A h, and more by its curvature: at most half more for these.
   EXPECT_NEAR(report.hull_volume - report.excess_volume, report.solid_volume - report.missing_volume,
               1.0e-9 * report.hull_volume);
   EXPECT_LE(report.excess_volume, 1.5 * mesh.area() * double(report.overhang_bound));
@@ -126,7 +127,7 @@ TEST(Decomposition, ConvexMeshesAreOneHull) {
     EXPECT_LT(d.stats.overhang, 1.0e-6f * d.stats.size);
     EXPECT_LT(d.stats.depth, 1.0e-5f * d.stats.size);
     EXPECT_NEAR(double(mass_properties(d.hulls[0], 1.0f)->mass), mesh.volume(), 1.0e-3 * mesh.volume());
-    // Lines see a round thing in steps: 100 of them across.
+    // Lines resolve a round body in steps: 100 of them across.
     EXPECT_NEAR(d.stats.solid_volume, mesh.volume(), 0.01 * mesh.volume());
     expect_honest(mesh, mesh.def(), d);
   }
@@ -156,7 +157,7 @@ TEST(Decomposition, CrossingBoxesAreTwoHulls) {
   expect_honest(mesh, mesh.def(), d);
 }
 
-// A beam with an L as its section is cut along its notch, however it lies: two hulls without anything too much.
+// A beam with an L as its section is cut along its notch in any orientation: two hulls without excess.
 TEST(Decomposition, AnLIsCutAlongItsNotchHoweverItIsTurned) {
   Random random;
   for (int i = 0; i < 4; ++i) {
@@ -175,7 +176,7 @@ TEST(Decomposition, ARingKeepsItsHole) {
   const DecompositionDef def = mesh.def();
   const Decomposition d = made(def);
   expect_honest(mesh, def, d);
-  // Its hull would fill the hole of radius 0.4; what is left is free up to the overhang.
+  // One hull would fill the hole of radius 0.4. The rest is free up to the overhang.
   const float free = 0.4f - d.stats.overhang_bound;
   ASSERT_GT(free, 0.25f);
   Random random;
@@ -206,7 +207,7 @@ TEST(Decomposition, ABeakerCanBeFilled) {
 
 TEST(Decomposition, ACavityStaysHollow) {
   TestMesh mesh = box_mesh({0, 0, 0}, {1, 1, 1}), hole = box_mesh({0, 0, 0}, {0.5f, 0.5f, 0.5f});
-  hole.turn_over();
+  hole.flip();
   mesh.add(hole);
   const Decomposition d = made(mesh.def());
   EXPECT_EQ(d.stats.mesh.flipped_triangles, 0u);
@@ -276,7 +277,7 @@ TEST(Decomposition, AnOpenBowlIsTakenForASheetAndSaysSo) {
   EXPECT_EQ(d.stats.mesh.open_edges, 24u);
   EXPECT_GT(d.stats.mesh.openness, 0.5f);
   EXPECT_FLOAT_EQ(d.stats.shell_thickness, 0.5f * def.concavity * d.stats.size);
-  // A ball can lie in it: free is all but the sheet and what was asked for.
+  // A ball can lie in it: everything is free but the sheet and the allowed overhang.
   const float free = 1.0f - 0.5f * d.stats.shell_thickness - d.stats.overhang_bound;
   Random random;
   for (int i = 0; i < 300; ++i) {
@@ -297,7 +298,7 @@ TEST(Decomposition, AnOpenBowlIsTakenForASheetAndSaysSo) {
 
 TEST(Decomposition, ASheetOfTwoSidesIsASheet) {
   TestMesh mesh = bowl_sheet(), inner = mesh;
-  inner.turn_over();
+  inner.flip();
   mesh.add(inner);
   const Decomposition d = made(mesh.def());
   EXPECT_TRUE(d.stats.mesh.shell);
@@ -328,7 +329,7 @@ TEST(Decomposition, ASmallHoleIsClosedAndCounted) {
 
 TEST(Decomposition, TrianglesWoundWronglyAreTurnedAndCounted) {
   TestMesh inside_out = beam_mesh();
-  inside_out.turn_over();
+  inside_out.flip();
   const Decomposition a = made(inside_out.def());
   EXPECT_EQ(a.hulls.size(), 2u);
   EXPECT_EQ(a.stats.mesh.flipped_triangles, inside_out.indices.size() / 3);
@@ -357,7 +358,8 @@ void try_soups(int more) {
   for (int round = 0; round < 6; ++round) {
     TestMesh mesh;
     for (int i = 0; i < 60; ++i) mesh.vertices.push_back(random.vector());
-    for (int i = 0; i < 10 + more * round; ++i) mesh.add(random.index(60), random.index(60), random.index(60));
+    for (int i = 0; i < 10 + more * round; ++i)
+      mesh.add(random.index(60), random.index(60), random.index(60));
     DecompositionDef def = mesh.def();
     def.concavity = 0.1f;
     def.max_hulls = 8;
@@ -395,7 +397,7 @@ TEST(Decomposition, VerticesAreLimited) {
   const Decomposition d = made(def);
   ASSERT_EQ(d.hulls.size(), 1u);
   EXPECT_LE(view_hull(d.hulls[0]).vertices.size(), 12u);
-  // What they lose is said.
+  // The report says what they lose.
   EXPECT_GT(d.stats.uncovered, 0.05f);
   EXPECT_GT(d.stats.missing_volume, 0.2);
 }

@@ -1,4 +1,5 @@
-// Meshes by formula for the tests of decomposition: boxes, bodies of revolution, prisms over star-shaped outlines, tubes.
+// Meshes by formula for the tests of decomposition: boxes, bodies of revolution, prisms over star-shaped outlines,
+// tubes.
 #pragma once
 
 #include <gyre/decomposition.h>
@@ -33,7 +34,7 @@ struct TestMesh {
     }
     return sum;
   }
-  void turn_over() {
+  void flip() {
     for (std::size_t i = 0; i < indices.size(); i += 3) std::swap(indices[i + 1], indices[i + 2]);
   }
   void add(const TestMesh& other) {
@@ -51,7 +52,7 @@ struct TestMesh {
 };
 
 inline TestMesh outward(TestMesh mesh) {
-  if (mesh.volume() < 0.0) mesh.turn_over();
+  if (mesh.volume() < 0.0) mesh.flip();
   return mesh;
 }
 
@@ -108,7 +109,7 @@ inline TestMesh torus_mesh(float ring, float tube, int around = 32, int across =
   return revolved(outline, around);
 }
 
-// A prism along z over an outline that can be seen whole from `center`.
+// A prism along z over an outline that is visible from `center` all around.
 inline TestMesh prism_mesh(const std::vector<Point2f>& outline, Point2f center, float half_height) {
   TestMesh mesh;
   const std::uint32_t n = std::uint32_t(outline.size());
@@ -146,7 +147,7 @@ inline TestMesh beaker_mesh(int segments = 24) {
                   segments);
 }
 
-// With a handle that runs into its wall: two closed surfaces that cross.
+// A beaker with a handle that enters its wall: two closed surfaces that intersect.
 inline TestMesh mug_mesh() {
   TestMesh mesh = beaker_mesh();
   TestMesh handle;

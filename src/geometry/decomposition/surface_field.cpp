@@ -1,4 +1,4 @@
-// Distances and winding numbers over one tree. See surface_field.h.
+// Distances and winding numbers with one tree. See surface_field.h.
 #include "geometry/decomposition/surface_field.h"
 
 #include "geometry/distance/closest.h"
@@ -7,10 +7,10 @@
 namespace gyre {
 namespace {
 
-// A group of triangles is one dipole from this many of its radii on: off by a few hundredths at most there.
+// Distance in radii of a group of triangles beyond which it is one dipole. The error there is at most a few hundredths.
 constexpr double kDipoleRadii = 2.0;
 
-// A sum of angles as one complex number and whole turns, so that one arc tangent does for all of them.
+// A sum of angles as one complex number and full turns, so that one arc tangent serves all of them.
 class AngleSum {
  public:
   // Adds half the solid angle of the triangle, which is the argument of a complex number.
@@ -21,19 +21,19 @@ class AngleSum {
     const double size = absolute(x) + absolute(y);
     if (!(size > 0.0)) return;  // on an edge or a corner
     const double re = (re_ * x - im_ * y) / size, im = (re_ * y + im_ * x) / size;
-    // Two upper halves make a lower one: the sum went past half a turn.
-    if (im_ >= 0.0 && y >= 0.0 && im < 0.0) ++turns_;
-    if (im_ < 0.0 && y < 0.0 && im >= 0.0) --turns_;
-    // Products of numbers of size about one shrink slowly.
+    // Two upper halves that make a lower one mean that the sum passed half a turn.
+    if (im_ >= 0.0 && y >= 0.0 && im < 0.0) ++full_turns_;
+    if (im_ < 0.0 && y < 0.0 && im >= 0.0) --full_turns_;
+    // Products of numbers of size about one shrink slowly, so the sum is normalised.
     const double norm = absolute(re) + absolute(im);
     re_ = re / norm;
     im_ = im / norm;
   }
-  double total() const { return atan2(im_, re_) + 2.0 * kPiDouble * double(turns_); }
+  double total() const { return atan2(im_, re_) + 2.0 * kPiDouble * double(full_turns_); }
 
  private:
   double re_ = 1.0, im_ = 0.0;
-  int turns_ = 0;
+  int full_turns_ = 0;
 };
 
 DVec3 box_corner(const StaticTree::Node& node, int lane, bool high) {
@@ -55,7 +55,7 @@ double box_distance_squared(const StaticTree::Node& node, int lane, DVec3 p) {
 
 SurfaceField::SurfaceField(std::span<const DVec3> vertices, std::span<const std::uint32_t> indices)
     : vertices_(vertices), indices_(indices) {
-  // Boxes are float: a little wider, so that nothing sticks out.
+  // Boxes are float and slightly wider, so that nothing is outside.
   constexpr float kSlack = 2.0e-7f;
   std::vector<Aabb> boxes(indices.size() / 3);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -72,7 +72,7 @@ SurfaceField::SurfaceField(std::span<const DVec3> vertices, std::span<const std:
   gather(0, 0xffffffffu);
 }
 
-// Sums what lies below `child`, and keeps it in `slot` unless that is none.
+// Sums the triangles below `child`, and stores the dipole in `slot` unless that is none.
 SurfaceField::Sum SurfaceField::gather(std::uint32_t child, std::uint32_t slot) {
   Sum sum;
   if (is_leaf(child)) {
@@ -88,10 +88,10 @@ SurfaceField::Sum SurfaceField::gather(std::uint32_t child, std::uint32_t slot) 
     for (int lane = 0; lane < StaticTree::kWidth; ++lane) {
       const std::uint32_t below = tree_.nodes[child].child[lane];
       if (below == StaticTree::kNoChild) continue;
-      const Sum part = gather(below, child * StaticTree::kWidth + std::uint32_t(lane));
-      sum.normal += part.normal;
-      sum.area += part.area;
-      sum.moment += part.moment;
+      const Sum child_sum = gather(below, child * StaticTree::kWidth + std::uint32_t(lane));
+      sum.normal += child_sum.normal;
+      sum.area += child_sum.area;
+      sum.moment += child_sum.moment;
     }
   }
   if (slot == 0xffffffffu) return sum;
@@ -119,10 +119,10 @@ double SurfaceField::winding(DVec3 p) const {
       const std::uint32_t below = node.child[lane];
       if (below == StaticTree::kNoChild) continue;
       const Dipole& dipole = dipoles_[at * StaticTree::kWidth + std::uint32_t(lane)];
-      const DVec3 way = dipole.center - p;
-      const double square = dot(way, way);
+      const DVec3 offset = dipole.center - p;
+      const double square = dot(offset, offset);
       if (square > kDipoleRadii * kDipoleRadii * dipole.radius * dipole.radius) {
-        far += dot(way, dipole.normal) / (square * std::sqrt(square));
+        far += dot(offset, dipole.normal) / (square * std::sqrt(square));
       } else if (is_leaf(below)) {
         for (std::uint32_t i = leaf_first(below); i < leaf_first(below) + leaf_count(below); ++i)
           near.add_triangle(corner(i, 0) - p, corner(i, 1) - p, corner(i, 2) - p);
@@ -134,7 +134,7 @@ double SurfaceField::winding(DVec3 p) const {
   return (far + 2.0 * near.total()) / (4.0 * kPiDouble);
 }
 
-double SurfaceField::distance(DVec3 p, double reach) const {
+double SurfaceField::distance(DVec3 p, double max_distance) const {
   struct Entry {
     std::uint32_t child;
     double square;
@@ -142,7 +142,7 @@ double SurfaceField::distance(DVec3 p, double reach) const {
   Entry stack[StaticTree::kStackSize];
   int depth = 0;
   stack[depth++] = {0, 0.0};
-  double best = reach * reach;
+  double best = max_distance * max_distance;
   while (depth > 0) {
     const Entry entry = stack[--depth];
     if (!(entry.square < best)) continue;
@@ -160,10 +160,10 @@ double SurfaceField::distance(DVec3 p, double reach) const {
       if (node.child[lane] == StaticTree::kNoChild) continue;
       const double square = box_distance_squared(node, lane, p);
       if (!(square < best)) continue;
-      // Nearest on top; lanes that are equally near keep their order.
-      int place = depth++;
-      for (; place > bottom && stack[place - 1].square <= square; --place) stack[place] = stack[place - 1];
-      stack[place] = {node.child[lane], square};
+      // The nearest on top. Equally near lanes keep their order.
+      int slot = depth++;
+      for (; slot > bottom && stack[slot - 1].square <= square; --slot) stack[slot] = stack[slot - 1];
+      stack[slot] = {node.child[lane], square};
     }
   }
   return std::sqrt(best);

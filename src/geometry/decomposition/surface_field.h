@@ -1,10 +1,11 @@
-// How far a point is from a triangle surface, and whether it is inside, for any triangles at all: open, crossing, doubled.
+// Distance of a point from a triangle surface, and an inside test, for any triangles: open, intersecting, duplicated.
 //
-// Inside is where the generalized winding number is above kInsideWinding: a sum of solid angles, which is a whole number for
-// closed surfaces and falls off smoothly where there are holes; it is one half in the plane of a flat hole. Far groups of triangles count as one dipole each.
-// Sources: A. Jacobson, L. Kavan, O. Sorkine-Hornung, "Robust Inside-Outside Segmentation using Generalized Winding Numbers",
-// 2013; G. Barill et al., "Fast Winding Numbers for Soups and Clouds", 2018; A. van Oosterom, J. Strackee, "The Solid Angle of
-// a Plane Triangle", 1983.
+// Inside means a generalized winding number above kInsideWinding. The winding number is a sum of solid angles: an
+// integer for closed surfaces, with a smooth transition at holes, and one half in the plane of a flat hole. Distant
+// groups of triangles count as one dipole each.
+// Sources: A. Jacobson, L. Kavan, O. Sorkine-Hornung, "Robust Inside-Outside Segmentation using Generalized Winding
+// Numbers", 2013; G. Barill et al., "Fast Winding Numbers for Soups and Clouds", 2018; A. van Oosterom, J. Strackee,
+// "The Solid Angle of a Plane Triangle", 1983.
 #pragma once
 
 #include "geometry/tree/static_tree.h"
@@ -17,21 +18,21 @@
 
 namespace gyre {
 
-// A little below one half, so that a hull that closes a flat hole lies within.
+// Slightly below one half, so that a hull that closes a flat hole is inside.
 constexpr double kInsideWinding = 0.4;
 
 class SurfaceField {
  public:
-  // Vertices within 0 to about 1; at least one triangle. The spans must outlive the field.
+  // Vertices within 0 to about 1, and one or more triangles. The spans must outlive the field.
   SurfaceField(std::span<const DVec3> vertices, std::span<const std::uint32_t> indices);
 
   double winding(DVec3 p) const;
   bool inside(DVec3 p) const { return winding(p) > kInsideWinding; }
-  // The distance to the nearest triangle, or `reach` if that is less.
-  double distance(DVec3 p, double reach) const;
+  // The distance to the closest triangle, or `max_distance` if that is less.
+  double distance(DVec3 p, double max_distance) const;
 
  private:
-  // Triangles seen from afar.
+  // Triangles as seen from far away.
   struct Dipole {
     DVec3 normal;  // times area
     DVec3 center;

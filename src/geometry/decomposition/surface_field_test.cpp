@@ -1,8 +1,8 @@
 // Distances and winding numbers against plain loops over all triangles.
 #include "geometry/decomposition/surface_field.h"
 
-#include "geometry/distance/closest.h"
 #include "geometry/decomposition/decomposition_test_meshes.h"
+#include "geometry/distance/closest.h"
 
 #include <gtest/gtest.h>
 
@@ -53,7 +53,7 @@ void expect_equal_to_loops(const TestMesh& mesh) {
       p = plain.vertices[plain.indices[3 * t]] + 0.01 * (p - DVec3{0.5, 0.5, 0.5});
     }
     EXPECT_NEAR(field.distance(p, 10.0), plain.distance(p), 1.0e-9);
-    // Groups seen from afar are dipoles: what is left out falls with the square of radius over distance.
+    // Distant groups are dipoles: the error falls with the square of radius over distance.
     EXPECT_NEAR(field.winding(p), plain.winding(p), 0.06);
   }
   EXPECT_EQ(field.distance({0.5, 0.5, 9.0}, 0.25), 0.25);

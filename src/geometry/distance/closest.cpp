@@ -4,12 +4,13 @@
 namespace gyre {
 namespace {
 
-// Squared sine below which two segments count as parallel: double keeps the crossing of anything steeper to 1e-4 of
-// their length, and what is flatter is better served by its ends.
+// Squared sine below which two segments count as parallel. Above it, double locates their crossing to 1e-4 of their
+// length; below it, their ends give a better answer.
 constexpr double kParallelSegments = 1.0e-12;
 // Squared sine of the smallest angle of a triangle that still has a plane.
 constexpr double kFlatTriangle = 1.0e-24;
-// And of one that needs care: the cross product of its sides has lost the digits that tell where its plane leans.
+// Squared sine below which a triangle needs care: the cross product of its sides has lost the digits of its
+// orientation.
 constexpr double kSliverTriangle = 1.0e-8;
 
 SimplexPoint at_corner(DVec3 a, int corner) {
@@ -41,7 +42,7 @@ SimplexPoint best_edge(DVec3 p, DVec3 a, DVec3 b, DVec3 c) {
   return nearer(p, nearer(p, ab, bc), ca);
 }
 
-// A triangle of the tetrahedron whose corners are i, j, k there.
+// A face of the tetrahedron. Its corners have the numbers i, j and k there.
 SimplexPoint on_face(DVec3 p, const DVec3* q, int i, int j, int k) {
   const SimplexPoint local = closest_on_triangle(p, q[i], q[j], q[k]);
   const int corner[3] = {i, j, k};
@@ -54,12 +55,12 @@ SimplexPoint on_face(DVec3 p, const DVec3* q, int i, int j, int k) {
   return out;
 }
 
-// A triangle with a tiny angle, measured along its longest side and at a right angle to it: errors along the side stay as
-// small as those of coordinates, and so do errors across it.
+// A triangle with a tiny angle, measured along its longest side and perpendicular to it. Errors along and across that
+// side stay as small as those of the coordinates.
 SimplexPoint closest_on_sliver(DVec3 p, DVec3 a, DVec3 b, DVec3 c) {
   const DVec3 q[3] = {a, b, c};
   const double ab = length_squared(b - a), bc = length_squared(c - b), ca = length_squared(a - c);
-  // The longest side from `o` to `u`, and `w` off it, nearer to `o`.
+  // The longest side runs from `o` to `u`. Corner `w` is off it and closer to `o`.
   int w = ab >= bc && ab >= ca ? 2 : bc >= ca ? 0 : 1;
   int o = (w + 1) % 3, u = (w + 2) % 3;
   if (length_squared(q[w] - q[u]) < length_squared(q[w] - q[o])) {
@@ -83,26 +84,28 @@ SimplexPoint closest_on_sliver(DVec3 p, DVec3 a, DVec3 b, DVec3 c) {
   return out;
 }
 
-// Whether the triangle's plane is farther than a distance, in spite of rounding. False where it has no plane to speak of.
+// True if the plane of the triangle is certainly farther away than a distance. False if the triangle has no reliable
+// plane.
 bool has_plane_beyond(DVec3 p, DVec3 a, DVec3 b, DVec3 c, double squared) {
   constexpr double kSurelyFarther = 1.001;
   const DVec3 ab = b - a, ac = c - a, normal = cross(ab, ac);
   const double nn = dot(normal, normal);
   const double longest = max(dot(ab, ab), max(dot(ac, ac), length_squared(c - b)));
-  return nn > kSliverTriangle * longest * longest && square(dot(a - p, normal)) > kSurelyFarther * squared * nn;
+  return nn > kSliverTriangle * longest * longest &&
+         square(dot(a - p, normal)) > kSurelyFarther * squared * nn;
 }
 
-// Faces of a tetrahedron: three corners, opposite one.
+// Faces of a tetrahedron: three corners, then the opposite one.
 constexpr int kTetrahedronFaces[4][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {0, 2, 3, 1}, {1, 3, 2, 0}};
 
 }  // namespace
 
 SegmentPoint closest_on_segment(DVec3 p, DVec3 a, DVec3 b) {
   const DVec3 ab = b - a;
-  const double along = dot(p - a, ab), whole = dot(ab, ab);
+  const double along = dot(p - a, ab), ab_squared = dot(ab, ab);
   if (!(along > 0.0)) return {a, 0.0};
-  if (along >= whole) return {b, 1.0};
-  const double t = along / whole;
+  if (along >= ab_squared) return {b, 1.0};
+  const double t = along / ab_squared;
   return {a + t * ab, t};
 }
 
@@ -117,11 +120,11 @@ SegmentPair closest_of_segments(DVec3 a0, DVec3 a1, DVec3 b0, DVec3 b1) {
   if (!out.parallel) {
     s = clamp((dot(between, da) * bb - dot(between, db) * ab) / det, 0.0, 1.0);
   } else if (aa > 0.0) {
-    // The nearest stretch begins where the nearer end of b projects, or at a0.
+    // The closest stretch begins where the closer end of b projects, or at a0.
     const double first = dot(between, da) / aa, last = dot(b1 - a0, da) / aa;
     s = clamp(min(first, last), 0.0, 1.0);
   }
-  // Alternating projections: exact once one of the two is clamped, and harmless otherwise.
+  // Alternating projections are exact once one of the two points is clamped, and harmless otherwise.
   const SegmentPoint on_b = closest_on_segment(a0 + s * da, b0, b1);
   const SegmentPoint on_a = closest_on_segment(on_b.point, a0, a1);
   out.on_a = on_a.point;
@@ -137,7 +140,7 @@ SimplexPoint closest_on_triangle(DVec3 p, DVec3 a, DVec3 b, DVec3 c) {
   const double longest = max(dot(ab, ab), max(dot(ac, ac), length_squared(c - b)));
   if (!(nn > kFlatTriangle * longest * longest)) return best_edge(p, a, b, c);
   if (!(nn > kSliverTriangle * longest * longest)) return closest_on_sliver(p, a, b, c);
-  // Signed areas of the three triangles that p's projection makes with the edges.
+  // Signed areas of the three triangles that the projection of p spans with the edges.
   const DVec3 pa = a - p, pb = b - p, pc = c - p;
   const double wa = dot(cross(pb, pc), normal), wb = dot(cross(pc, pa), normal),
                wc = dot(cross(pa, pb), normal);
@@ -147,12 +150,13 @@ SimplexPoint closest_on_triangle(DVec3 p, DVec3 a, DVec3 b, DVec3 c) {
     out.weights[0] = wa / sum;
     out.weights[1] = wb / sum;
     out.weights[2] = wc / sum;
-    // The foot of the perpendicular, not the weighted sum: its error does not grow with the distance of the corners.
+    // The foot of the perpendicular is better than the weighted sum: its error does not grow with the distance of the
+    // corners.
     out.point = p + (dot(pa, normal) / nn) * normal;
     out.corners = 7;
     return out;
   }
-  // Outside at least one edge: the nearest point is on one of those edges.
+  // The point lies outside at least one edge. The closest point is on one of those edges.
   SimplexPoint best;
   bool found = false;
   const auto consider = [&](const SimplexPoint& candidate) {
@@ -179,7 +183,7 @@ SimplexPoint closest_on_tetrahedron(DVec3 p, DVec3 a, DVec3 b, DVec3 c, DVec3 d)
     const DVec3 normal = cross(u, v);
     const double opposite = dot(w, normal);
     side[f] = dot(p - origin, normal);
-    // Volume against what rounding makes of it.
+    // The volume, against its rounding error.
     if (opposite * opposite <= 1.0e-26 * dot(normal, normal) * dot(w, w)) flat = true;
     is_outside[f] = opposite > 0.0 ? side[f] <= 0.0 : side[f] >= 0.0;
     outside_count += is_outside[f] ? 1 : 0;

@@ -1,5 +1,5 @@
-// Closest features against the condition that makes a point the nearest of a convex set: no corner lies farther towards
-// the asked point than it does. Random, degenerate and far-away input.
+// Closest features against the condition for the closest point of a convex set: no corner is farther towards the query
+// point than the closest point is. Random, degenerate and far-away input.
 #include "geometry/distance/closest.h"
 
 #include "geometry/testing/convex_oracle.h"
@@ -13,7 +13,7 @@ using oracle::Random;
 
 DVec3 random_point(Random& random, double scale) { return scale * DVec3(random.in_cube()); }
 
-// How far corners stick out towards `p` beyond `nearest`, relative to the scale: 0 for the true nearest point.
+// How far corners extend towards `p` beyond `nearest`, relative to the scale: 0 for the true closest point.
 double excess(DVec3 p, DVec3 nearest, const DVec3* corners, int count) {
   double worst = 0.0, scale = 0.0;
   for (int i = 0; i < count; ++i) {
@@ -118,7 +118,7 @@ TEST(Closest, SegmentsMeetTheNearestPointConditionBothWays) {
         break;
     }
     const SegmentPair near = closest_of_segments(a[0], a[1], b[0], b[1]);
-    // What counts as parallel may lean by a microradian.
+    // Parallel segments may lean by a microradian.
     const double tolerance = near.parallel ? 1.0e-6 : 1.0e-9;
     EXPECT_LT(excess(near.on_b, near.on_a, a, 2), tolerance) << i;
     EXPECT_LT(excess(near.on_a, near.on_b, b, 2), tolerance) << i;

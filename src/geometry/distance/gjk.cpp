@@ -10,10 +10,10 @@ namespace gyre {
 namespace {
 
 constexpr int kMaxIterations = 64;
-// Relative gap of the squared distance at which the search ends: the direction is then within about 4e-5 rad on curved
-// shapes far apart, better on near ones, and exact on polyhedra.
+// Relative gap of the squared distance at which the search ends. The direction is then exact on polyhedra, within about
+// 4e-5 rad on distant curved shapes, and better on close ones.
 constexpr double kGap = 1.0e-9;
-// Cores nearer than this part of their size touch.
+// Cores closer than this fraction of their size touch.
 constexpr double kTouch = 1.0e-10;
 
 double core_size(const Shape& shape) {
@@ -41,18 +41,18 @@ DVec3 farthest_corner(const DVec3* triangle, DVec3 direction) {
 
 bool same(DVec3 a, DVec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
-// The simplex nearest to the origin that `near` uses, compacted.
-void keep_corners(DifferencePoint* simplex, int& count, SimplexPoint& near) {
-  int kept = 0;
+// Compacts the simplex to the corners that `near` uses.
+void drop_unused(DifferencePoint* simplex, int& count, SimplexPoint& near) {
+  int used = 0;
   for (int i = 0; i < count; ++i) {
     if (!(near.corners & (1u << i))) continue;
-    if (kept != i) {
-      simplex[kept] = simplex[i];
-      near.weights[kept] = near.weights[i];
+    if (used != i) {
+      simplex[used] = simplex[i];
+      near.weights[used] = near.weights[i];
     }
-    ++kept;
+    ++used;
   }
-  count = kept;
+  count = used;
 }
 
 SimplexPoint nearest_to_origin(const DifferencePoint* s, int count, bool outside) {
@@ -60,13 +60,13 @@ SimplexPoint nearest_to_origin(const DifferencePoint* s, int count, bool outside
   switch (count) {
     case 1: {
       SimplexPoint out;
-      out.point = s[0].way;
+      out.point = s[0].difference;
       out.weights[0] = 1.0;
       out.corners = 1;
       return out;
     }
     case 2: {
-      const SegmentPoint near = closest_on_segment(origin, s[0].way, s[1].way);
+      const SegmentPoint near = closest_on_segment(origin, s[0].difference, s[1].difference);
       SimplexPoint out;
       out.point = near.point;
       out.weights[0] = 1.0 - near.t;
@@ -75,14 +75,17 @@ SimplexPoint nearest_to_origin(const DifferencePoint* s, int count, bool outside
       return out;
     }
     case 3:
-      return closest_on_triangle(origin, s[0].way, s[1].way, s[2].way);
+      return closest_on_triangle(origin, s[0].difference, s[1].difference, s[2].difference);
     default:
-      if (outside) return closest_on_tetrahedron_surface(origin, s[0].way, s[1].way, s[2].way, s[3].way);
-      return closest_on_tetrahedron(origin, s[0].way, s[1].way, s[2].way, s[3].way);
+      if (outside)
+        return closest_on_tetrahedron_surface(origin, s[0].difference, s[1].difference, s[2].difference,
+                                              s[3].difference);
+      return closest_on_tetrahedron(origin, s[0].difference, s[1].difference, s[2].difference,
+                                    s[3].difference);
   }
 }
 
-// In place of a call: it is asked twice in every round.
+// Inline, because each iteration calls it twice.
 GYRE_INLINE DVec3 support_of(const Shape& shape, DVec3 d) {
   const double h = double(shape.extents.y);
   switch (shape.kind) {
@@ -108,30 +111,30 @@ GYRE_INLINE DVec3 support_of(const Shape& shape, DVec3 d) {
   }
 }
 
-double largest_part(DVec3 v) { return max(absolute(v.x), max(absolute(v.y), absolute(v.z))); }
+double largest_component(DVec3 v) { return max(absolute(v.x), max(absolute(v.y), absolute(v.z))); }
 
 }  // namespace
 
 DVec3 core_support(const Shape& shape, DVec3 d) { return support_of(shape, d); }
 
-// In double, from a quaternion brought to length 1: B stays the rigid body that the float quaternion means.
+// The quaternion is normalised in double, so that B stays a rigid body.
 CorePair::CorePair(const Shape& a, const Shape& b, const Transform& a_from_b)
     : CorePair(a, b, DVec3(a_from_b.position), normalized(to_double(a_from_b.orientation))) {}
 
 CorePair::CorePair(const Shape& a, const Shape& b, DVec3 position, DQuat orientation)
     : a_(&a), b_(&b), core_size_(max(core_size(a), core_size(b))) {
-  turn_b(orientation);
+  set_orientation(orientation);
   move_b(position);
 }
 
 CorePair::CorePair(const DVec3 (&triangle)[3], const Shape& b, DVec3 position, DQuat orientation)
     : triangle_(triangle), b_(&b), core_size_(core_size(b)) {
-  for (const DVec3& corner : triangle) core_size_ = max(core_size_, largest_part(corner));
-  turn_b(orientation);
+  for (const DVec3& corner : triangle) core_size_ = max(core_size_, largest_component(corner));
+  set_orientation(orientation);
   move_b(position);
 }
 
-void CorePair::turn_b(DQuat orientation) {
+void CorePair::set_orientation(DQuat orientation) {
   x_ = rotate(orientation, DVec3{1, 0, 0});
   y_ = rotate(orientation, DVec3{0, 1, 0});
   z_ = rotate(orientation, DVec3{0, 0, 1});
@@ -139,7 +142,7 @@ void CorePair::turn_b(DQuat orientation) {
 
 void CorePair::move_b(DVec3 position) {
   position_ = position;
-  size_ = max(core_size_, largest_part(position));
+  size_ = max(core_size_, largest_component(position));
 }
 
 DVec3 CorePair::to_b(DVec3 d) const { return {dot(x_, d), dot(y_, d), dot(z_, d)}; }
@@ -149,7 +152,7 @@ DifferencePoint CorePair::support(DVec3 direction) const {
   DifferencePoint out;
   out.on_a = a_ != nullptr ? support_of(*a_, -direction) : farthest_corner(triangle_, -direction);
   out.on_b = from_b(support_of(*b_, to_b(direction))) + position_;
-  out.way = out.on_b - out.on_a;
+  out.difference = out.on_b - out.on_a;
   return out;
 }
 
@@ -157,16 +160,16 @@ namespace {
 
 // A core over a face of a box, in the box's frame.
 struct OverFace {
-  DVec3 normal;  // of the face above which the core's middle lies highest
-  DVec3 lowest;  // the core's lowest point above it,
-  DVec3 foot;    // and what is below that in the face's plane
+  DVec3 normal;  // of the face above which the centre of the core lies highest
+  DVec3 lowest;  // the lowest point of the core above that face
+  DVec3 foot;    // the projection of `lowest` onto the plane of the face
   double height = 0.0;
-  bool is_within = false;  // the foot is in the face
+  bool is_within = false;  // the foot lies inside the face
 };
 
-// `farthest(direction)`: of the core. False if its middle is above no face.
+// `farthest(direction)` is the support point of the core. Returns false if its centre lies above no face.
 template <class Farthest>
-bool look_over_face(DVec3 half, DVec3 middle, const Farthest& farthest, OverFace& over) {
+bool project_on_face(DVec3 half, DVec3 middle, const Farthest& farthest, OverFace& over) {
   const double x = absolute(middle.x) - half.x, y = absolute(middle.y) - half.y,
                z = absolute(middle.z) - half.z;
   if (!(max(x, max(y, z)) > 0.0)) return false;
@@ -182,24 +185,24 @@ bool look_over_face(DVec3 half, DVec3 middle, const Farthest& farthest, OverFace
   return true;
 }
 
-// Of a hull, what is farthest is found in float.
+// The support point of a hull is chosen in float.
 bool has_exact_support(const Shape& shape) { return shape.kind != ShapeKind::hull; }
 
 }  // namespace
 
 bool CorePair::find_over_face(double max_distance, CoreDistance& out) const {
-  const double least = kTouch * size_;
-  const auto tells = [&](const OverFace& over) {
+  const double touch_distance = kTouch * size_;
+  const auto decides = [&](const OverFace& over) {
     out.beyond = over.height > max_distance;
     out.distance = over.height;
-    return out.beyond || (over.is_within && over.height > least);
+    return out.beyond || (over.is_within && over.height > touch_distance);
   };
   if (a_ == nullptr) return false;
   OverFace over;
   if (b_->kind == ShapeKind::box && has_exact_support(*a_)) {
     const auto farthest = [&](DVec3 d) { return to_b(support_of(*a_, from_b(d)) - position_); };
-    if (look_over_face(DVec3(b_->extents), to_b(-position_), farthest, over) && tells(over)) {
-      out.normal = DVec3{} - from_b(over.normal);  // no -0
+    if (project_on_face(DVec3(b_->extents), to_b(-position_), farthest, over) && decides(over)) {
+      out.normal = DVec3{} - from_b(over.normal);  // avoids -0
       out.on_a = from_b(over.lowest) + position_;
       out.on_b = from_b(over.foot) + position_;
       return true;
@@ -207,7 +210,7 @@ bool CorePair::find_over_face(double max_distance, CoreDistance& out) const {
   }
   if (a_->kind == ShapeKind::box && has_exact_support(*b_)) {
     const auto farthest = [&](DVec3 d) { return from_b(support_of(*b_, to_b(d))) + position_; };
-    if (look_over_face(DVec3(a_->extents), position_, farthest, over) && tells(over)) {
+    if (project_on_face(DVec3(a_->extents), position_, farthest, over) && decides(over)) {
       out.normal = over.normal;
       out.on_a = over.foot;
       out.on_b = over.lowest;
@@ -219,7 +222,7 @@ bool CorePair::find_over_face(double max_distance, CoreDistance& out) const {
   return false;
 }
 
-double CorePair::separation(DVec3 direction) const { return dot(support(-direction).way, direction); }
+double CorePair::separation(DVec3 direction) const { return dot(support(-direction).difference, direction); }
 
 CoreDistance core_distance(const CorePair& pair, double max_distance, Vec3 guess) {
   CoreDistance out;
@@ -229,18 +232,18 @@ CoreDistance core_distance(const CorePair& pair, double max_distance, Vec3 guess
   double n_length = length(n);
   n = n_length > 0.0 ? n / n_length : DVec3{0, 1, 0};
 
-  // Of the directions looked at, the one along which the cores are farthest apart: their distance is not less. A sliver
-  // of a simplex may name another that does not part them at all.
+  // The tested direction with the largest separation. It is a lower bound of the distance. The simplex may end on a
+  // sliver whose direction does not separate the cores at all.
   DVec3 best = n;
   double best_bound = -1.0e300, bound = 0.0;
   DifferencePoint* simplex = out.simplex;
-  SimplexPoint near;  // of the simplex to the origin
+  SimplexPoint near;  // closest point of the simplex to the origin
   double squared = 0.0;
   int count = 0;
   const double touch = kTouch * pair.size();
   for (out.iterations = 1; out.iterations <= kMaxIterations; ++out.iterations) {
     const DifferencePoint w = pair.support(-n);
-    bound = dot(w.way, n);
+    bound = dot(w.difference, n);
     if (bound > best_bound) {
       best_bound = bound;
       best = n;
@@ -254,18 +257,18 @@ CoreDistance core_distance(const CorePair& pair, double max_distance, Vec3 guess
       const double reached = std::sqrt(squared);
       if (reached - bound <= kGap * reached) break;
       bool known = false;
-      for (int i = 0; i < count; ++i) known = known || same(simplex[i].way, w.way);
+      for (int i = 0; i < count; ++i) known = known || same(simplex[i].difference, w.difference);
       if (known) break;
     }
-    // Behind the simplex: what is not taken is not counted.
+    // The point is stored behind the simplex. It belongs to the simplex only once it is counted.
     simplex[count] = w;
-    // Where some direction parts them no simplex holds the origin, whatever rounding makes of it.
+    // If some direction separates the cores, no simplex contains the origin, whatever rounding says.
     SimplexPoint next_near = nearest_to_origin(simplex, count + 1, best_bound > touch);
     const double next_squared = length_squared(next_near.point);
-    // Rounding has the last word: what does not come nearer is as near as it gets.
+    // The search ends when rounding stops its progress.
     if (count > 0 && next_near.corners != 15 && next_squared >= squared) break;
     ++count;
-    keep_corners(simplex, count, next_near);
+    drop_unused(simplex, count, next_near);
     near = next_near;
     squared = next_squared;
     if (count == 4 || squared <= touch * touch) {

@@ -15,7 +15,7 @@ namespace {
 
 using namespace oracle;
 
-// How far a point (in the shape's frame) lies outside a core, exactly; 0 or less inside.
+// The exact distance of a point (in the shape's frame) outside a core; 0 or negative inside.
 double outside(const Shape& shape, DVec3 p) {
   const DVec3 e(shape.extents);
   const double r = double(shape.radius), h = e.y;
@@ -54,7 +54,7 @@ testing::AssertionResult proven(const Shape& a, const Shape& b, const CorePair& 
   const double out_b = outside(b, in_b) - (b.kind == ShapeKind::hull ? 2.0e-6 : 1.0e-9) * size;
   if (found.overlap) {
     if (out_a <= 0.0 && out_b <= 0.0 && gap <= 1.0e-9 * size) return testing::AssertionSuccess();
-    // Weights of a sliver may be poor; then no direction may part the cores.
+    // The weights of a sliver may be poor. Then no direction may separate the cores.
     const double apart = sampled_separation(a, b, pair, random, 200);
     if (apart > 2.0e-10 * size) return no("overlap that is none,", apart);
     return testing::AssertionSuccess();
@@ -64,7 +64,7 @@ testing::AssertionResult proven(const Shape& a, const Shape& b, const CorePair& 
   if (absolute(length(found.normal) - 1.0) > 1.0e-9) return no("normal too long", length(found.normal) - 1.0);
   if (absolute(gap - found.distance) > 1.0e-8 * size) return no("points elsewhere", gap - found.distance);
   const double proof = separation(a, b, pair, found.normal);
-  // Of a hundred-thousandth of the size, the nearest points of a rim may be found a little beside the best.
+  // At a hundred-thousandth of the size, the closest points of a rim may be slightly beside the best.
   const double good = gap > 1.0e-5 * size ? 1.0e-6 : 5.0e-6;
   // A difference of points of this size is good to 1e-16 of it, and its direction to that over the distance.
   const double direction = gap > 0.0 ? 1.0e-15 * size / gap : 0.0;
@@ -78,7 +78,7 @@ void expect_proofs(int pairs, unsigned seed) {
   for (int begin = 0; begin < pairs && failures < 10; begin += 2000) {
     Hulls hulls;
     for (int i = begin; i < min(pairs, begin + 2000); ++i) {
-      const OddPair odd = odd_pair(random, hulls, i / kKinds % kKinds, i % kKinds);
+      const DegeneratePair odd = degenerate_pair(random, hulls, i / kKinds % kKinds, i % kKinds);
       const CorePair pair(odd.a, odd.b, odd.t);
       const Vec3 guess = random.below(3) == 0 ? random.direction() : Vec3{};
       const CoreDistance found = core_distance(pair, 1.0e30, guess);

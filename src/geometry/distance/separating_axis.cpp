@@ -1,6 +1,7 @@
 // The axis search over faces and edges. See separating_axis.h.
 #include "geometry/distance/separating_axis.h"
 
+#include "geometry/distance/sat_tolerance.h"
 #include "math/rotation.h"
 #include "math/wide_vec.h"
 
@@ -9,24 +10,19 @@
 namespace gyre {
 namespace {
 
-// How much better an axis must be to replace the favoured one: a part of the depth and of the thinner shape's inner radius.
-constexpr float kDepthBias = 0.05f, kSizeBias = 1.0e-3f;
-// Squared sine between two edges below which they have no axis of their own.
-constexpr double kParallel = 1.0e-8;
-// Squared sine below which float rounding would show in their axis.
-constexpr float kShallow = 1.0e-2f;
-// Tie margin of the edges' distance test, relative to the shapes' size.
-constexpr float kReachMargin = 1.0e-4f;
-// How far a corner may lie beyond the edge that is outermost, of the largest coordinate.
+// Margin of the height test of edges, relative to the size of the shapes.
+constexpr float kHeightMargin = 1.0e-4f;
+// How far a corner may lie beyond the outermost edge, relative to the largest coordinate.
 constexpr float kOutermost = 1.0e-5f;
-// What rounding, kOutermost and the corners of faces that lie off their plane add to a separation at most, of the sizes' sum.
+// Largest error of a separation from rounding, kOutermost and corners off the planes of their faces, relative to the
+// sum of the sizes.
 constexpr float kRounding = 3.0e-5f;
 
 constexpr int kLanes = kPolytopeLanes;
 using Floats = Wide<kLanes>;
 
-// The best face of `reference` against `other`, both in reference's frame except that other's columns stay its own. None but
-// those above `floor` count: where there are none that is what comes back.
+// The best face of `reference` against `other`, in the frame of `reference`; the columns of `other` stay in its own.
+// Only faces above `floor` count. Without such a face the separation is `floor`.
 struct FaceQuery {
   int face = 0;
   float separation = -kUnbounded;
@@ -34,10 +30,10 @@ struct FaceQuery {
 FaceQuery best_face(const Polytope& reference, const Polytope& other, const Transform& reference_from_other,
                     float max_separation, int favoured, float floor) {
   FaceQuery best{0, floor};
-  const Mat3 turn = to_matrix(reference_from_other.orientation);
+  const Mat3 rotation = to_matrix(reference_from_other.orientation);
   const Vec3 shift = reference_from_other.position;
-  const Vec3 center = turn * other.centroid + shift;
-  // The other's inner ball bounds what a face can reach, so a good first face spares most of the rest.
+  const Vec3 center = rotation * other.centroid + shift;
+  // The inner ball of `other` bounds the separation along each face. A good first face excludes most of the others.
   float bound[kMaxHullFaces + 1];
   const int count = reference.face_count;
   Floats largest_bound(-kUnbounded);
@@ -56,27 +52,27 @@ FaceQuery best_face(const Polytope& reference, const Polytope& other, const Tran
     first = 0;
     while (first + 1 < count && bound[first] != largest) ++first;
   }
-  const auto look = [&](int f) {
+  const auto test_face = [&](int f) {
     const HullPlane& plane = reference.planes[f];
-    const float separation =
-        lowest_along(other, transpose_times(turn, plane.normal)) - (plane.offset - dot(plane.normal, shift));
+    const float separation = lowest_along(other, transpose_times(rotation, plane.normal)) -
+                             (plane.offset - dot(plane.normal, shift));
     if (separation > best.separation) best = {f, separation};
   };
-  look(first);
+  test_face(first);
   for (int f = 0; f < count; f += kLanes) {
     const auto better = [&] { return to_bits(Floats::load_unaligned(bound + f) > Floats(best.separation)); };
-    // Those behind the last one looked at.
-    for (unsigned rest = better(), left = ~0u; rest != 0; rest = better() & left) {
+    // Only faces after the last one tested.
+    for (unsigned rest = better(), later = ~0u; rest != 0; rest = better() & later) {
       if (best.separation > max_separation) return best;
       const int lane = std::countr_zero(rest);
-      left = ~1u << lane;
-      look(f + lane);
+      later = ~1u << lane;
+      test_face(f + lane);
     }
   }
   return best;
 }
 
-// An edge with the normals of its two faces, which end an arc on the unit sphere.
+// An edge with the normals of its two faces. The normals are the ends of an arc on the unit sphere.
 template <class Vector>
 struct Arc {
   Vector direction, left, right;
@@ -90,7 +86,7 @@ ArcsW in_every_lane(const Arc<Vec3>& arc) {
   return {splat<kLanes>(arc.direction), splat<kLanes>(arc.left), splat<kLanes>(arc.right)};
 }
 
-// Some edges of a polytope. Plain arrays: most of them is never written.
+// Some edges of a polytope. Plain arrays, because most elements are never written.
 struct EdgeList {
   static constexpr int kRoom = (kMaxHullEdges + kLanes - 1) / kLanes * kLanes;
   int count = 0;
@@ -107,7 +103,7 @@ struct EdgePair {
 GYRE_INLINE unsigned arcs_cross(const ArcsW& a, const ArcsW& b) {
   const Floats left_b = dot(b.left, a.direction), right_b = dot(b.right, a.direction);
   const Floats left_a = dot(b.direction, a.left), right_a = dot(b.direction, a.right);
-  // The ends of each arc lie on different sides of the other, and not on the far side of the sphere.
+  // The ends of each arc lie on different sides of the other, and the arcs are not on opposite sides of the sphere.
   const Floats zero(0.0f);
   return to_bits((left_b * right_b < zero) & (left_a * right_a < zero) & (left_b * right_a < zero));
 }
@@ -115,32 +111,33 @@ GYRE_INLINE unsigned arcs_cross(const ArcsW& a, const ArcsW& b) {
 class EdgeSearch {
  public:
   EdgeSearch(const Polytope& a, const Polytope& b, const Transform& a_from_b)
-      : a_(a), b_(b), turn_(normalized(to_double(a_from_b.orientation))), shift_(a_from_b.position) {}
+      : a_(a), b_(b), rotation_(normalized(to_double(a_from_b.orientation))), shift_(a_from_b.position) {}
 
-  // The axis of one pair, in double: shallow crossings keep their direction. False if the edges are parallel.
+  // The axis of one pair, in double, so that shallow crossings keep their direction. Returns false if the edges are
+  // parallel.
   bool evaluate(int edge_a, int edge_b, Vec3 outward, EdgePair& out) const {
     const HullEdge &ea = a_.edges[edge_a], &eb = b_.edges[edge_b];
-    const DVec3 pa(a_.vertices[ea.from]), pb = rotate(turn_, DVec3(b_.vertices[eb.from])) + shift_;
+    const DVec3 pa(a_.vertices[ea.from]), pb = rotate(rotation_, DVec3(b_.vertices[eb.from])) + shift_;
     const DVec3 da = DVec3(a_.vertices[ea.to]) - pa;
-    const DVec3 db = rotate(turn_, DVec3(b_.vertices[eb.to]) - DVec3(b_.vertices[eb.from]));
+    const DVec3 db = rotate(rotation_, DVec3(b_.vertices[eb.to]) - DVec3(b_.vertices[eb.from]));
     DVec3 axis = cross(da, db);
     const double squared = dot(axis, axis);
-    if (!(squared > kParallel * dot(da, da) * dot(db, db))) return false;
+    if (!(squared > kSatParallel * dot(da, da) * dot(db, db))) return false;
     axis = axis / std::sqrt(squared);
     if (dot(axis, DVec3(outward)) < 0.0) axis = -axis;
     out = {edge_a, edge_b, to_float(axis), float(dot(axis, pb - pa))};
     return true;
   }
 
-  // Where the lines of two edges pass each other: how far from the nearest end of either, and the sine between them. The
-  // product of the smaller of the two and the sine; negative if they pass beyond an end.
-  float hold(int edge_a, int edge_b) const {
+  // How safely two edges cross: the distance of the crossing from the closest end of either edge, times the sine
+  // between the edges. Negative if their lines cross beyond an end.
+  float crossing_margin(int edge_a, int edge_b) const {
     const HullEdge &ea = a_.edges[edge_a], &eb = b_.edges[edge_b];
-    const DVec3 pa(a_.vertices[ea.from]), pb = rotate(turn_, DVec3(b_.vertices[eb.from])) + shift_;
-    const DVec3 da(ea.direction), db = rotate(turn_, DVec3(eb.direction)), between = pb - pa;
+    const DVec3 pa(a_.vertices[ea.from]), pb = rotate(rotation_, DVec3(b_.vertices[eb.from])) + shift_;
+    const DVec3 da(ea.direction), db = rotate(rotation_, DVec3(eb.direction)), between = pb - pa;
     const double aa = dot(da, da), bb = dot(db, db), ab = dot(da, db);
     const double determinant = aa * bb - ab * ab;
-    if (!(determinant > double(kShallow) * aa * bb)) return -1.0f;
+    if (!(determinant > double(kSatShallow) * aa * bb)) return -1.0f;
     const double s = (dot(between, da) * bb - dot(between, db) * ab) / determinant;
     const double t = (dot(between, da) * ab - dot(between, db) * aa) / determinant;
     const double sine = std::sqrt(determinant / (aa * bb));
@@ -150,11 +147,11 @@ class EdgeSearch {
  private:
   const Polytope& a_;
   const Polytope& b_;
-  DQuat turn_;
+  DQuat rotation_;
   DVec3 shift_;
 };
 
-// How high the vertices lie along a direction; returns the lowest of them.
+// Writes the height of each vertex along `up`. Returns the lowest height.
 float find_heights(const Polytope& p, Vec3 up, float shift, float* heights) {
   const Vec3W<kLanes> direction = splat<kLanes>(up);
   Floats lowest(kUnbounded);
@@ -166,29 +163,30 @@ float find_heights(const Polytope& p, Vec3 up, float shift, float* heights) {
   return min(min(lowest[0], lowest[1]), min(lowest[2], lowest[3]));
 }
 
-// Edges of which one end lies no higher than `limit`.
-void near_edges(const Polytope& p, const float* heights, float limit, EdgeList& out) {
-  std::uint64_t near[(kMaxHullEdges + 63) / 64] = {};
+// Edges with an end no higher than the limit.
+void find_low_edges(const Polytope& p, const float* heights, float limit, EdgeList& out) {
+  std::uint64_t low_edges[(kMaxHullEdges + 63) / 64] = {};
   for (int i = 0; i < p.padded_count; i += kLanes) {
     unsigned low = to_bits(Floats::load_unaligned(heights + i) <= Floats(limit));
     for (; low != 0; low &= low - 1) {
       // The padding repeats the last vertex.
       const int vertex = min(i + std::countr_zero(low), p.vertex_count - 1);
-      for (int word = 0; word < p.edge_words; ++word) near[word] |= p.edges_of[vertex * p.edge_words + word];
+      for (int word = 0; word < p.edge_words; ++word)
+        low_edges[word] |= p.edges_of[vertex * p.edge_words + word];
     }
   }
   out.count = 0;
   for (int word = 0; word < p.edge_words; ++word)
-    for_each_edge(near[word], word, [&](int e) { out.index[out.count++] = std::uint16_t(e); });
+    for_each_edge(low_edges[word], word, [&](int e) { out.index[out.count++] = std::uint16_t(e); });
 }
 
-// Of these edges the ones along whose axes a body with a ball of this radius around `center`, in the polytope's frame, can be
-// farther away than `floor`: some normal between those of the edge's two faces sees the near side of the ball that high above
-// the edge. It sees the middle as high as the one face or the other does, or, where the middle lies between the two normals,
-// as far as it is from the edge.
-void keep_reaching(const Polytope& p, Vec3 center, float radius, float floor, EdgeList& list) {
-  const Floats least(floor + radius), zero(0.0f), one(1.0f);
-  int kept = 0;
+// Removes the edges whose axes cannot separate the polytope by more than `floor` from a body that contains a ball of
+// this radius around `center` (in the polytope's frame). An edge stays if some normal between those of its two faces
+// sees the near side of the ball that high above the edge. The centre of the ball is as high as over one of the two
+// faces; if it lies between the two normals, it is as high as its distance from the edge.
+void cull_by_inner_ball(const Polytope& p, Vec3 center, float radius, float floor, EdgeList& list) {
+  const Floats threshold(floor + radius), zero(0.0f), one(1.0f);
+  int count_left = 0;
   for (int first = 0; first < list.count; first += kLanes) {
     const float *left[kLanes], *right[kLanes];
     for (int lane = 0; lane < kLanes; ++lane) {
@@ -202,12 +200,13 @@ void keep_reaching(const Polytope& p, Vec3 center, float radius, float floor, Ed
     const Floats cosine = dot(a.normal, b.normal);
     const Mask<kLanes> between = (over_a > over_b * cosine) & (over_b > over_a * cosine);
     const Floats squared = over_a * over_a + over_b * over_b - Floats(2.0f) * over_a * over_b * cosine;
-    const Mask<kLanes> far = (least < zero) | (squared > least * least * (one - cosine * cosine));
-    unsigned rest = to_bits((max(over_a, over_b) > least) | (between & far));
+    const Mask<kLanes> high_over_edge =
+        (threshold < zero) | (squared > threshold * threshold * (one - cosine * cosine));
+    unsigned rest = to_bits((max(over_a, over_b) > threshold) | (between & high_over_edge));
     rest &= list.count - first < kLanes ? (1u << (list.count - first)) - 1u : ~0u;
-    for (; rest != 0; rest &= rest - 1) list.index[kept++] = list.index[first + std::countr_zero(rest)];
+    for (; rest != 0; rest &= rest - 1) list.index[count_left++] = list.index[first + std::countr_zero(rest)];
   }
-  list.count = kept;
+  list.count = count_left;
 }
 
 struct BestFace {
@@ -217,35 +216,37 @@ struct BestFace {
   float separation;
 };
 
-// Both polytopes' edges that can still beat the best face.
+// The edges of both polytopes that can still beat the best face.
 class EdgeCandidates {
  public:
   EdgeCandidates(const Polytope& a, const Polytope& b, const Transform& a_from_b) : a_(a), b_(b) {
-    turn_ = to_matrix(a_from_b.orientation);
+    rotation_ = to_matrix(a_from_b.orientation);
     shift_ = a_from_b.position;
   }
 
   void collect(const BestFace& face, float max_separation, float floor) {
     float heights_a[kMaxHullVertices + 1], heights_b[kMaxHullVertices + 1];
-    // A's vertices upside down, so that low means near for both.
+    // A's vertices are mirrored, so that low means close for both.
     const float bottom_a = find_heights(a_, -face.normal, 0.0f, heights_a);
     const float bottom_b =
-        find_heights(b_, transpose_times(turn_, face.normal), dot(face.normal, shift_), heights_b);
-    // An edge of B must come within reach of A, so not higher than A's top by more than that; A's edges likewise.
-    const float margin = kReachMargin * (a_.inner_radius + b_.inner_radius);
-    const float reach = max(-face.separation, max_separation) + margin;
-    near_edges(a_, heights_a, reach - bottom_b, near_a);
-    near_edges(b_, heights_b, reach - bottom_a, near_b);
+        find_heights(b_, transpose_times(rotation_, face.normal), dot(face.normal, shift_), heights_b);
+    // An edge of B can be no higher above A's top than the allowed gap. The same holds for A's edges.
+    const float margin = kHeightMargin * (a_.inner_radius + b_.inner_radius);
+    const float max_height = max(-face.separation, max_separation) + margin;
+    find_low_edges(a_, heights_a, max_height - bottom_b, edges_a);
+    find_low_edges(b_, heights_b, max_height - bottom_a, edges_b);
     const float certain = floor - kRounding * (a_.size + b_.size);
-    keep_reaching(a_, turn_ * b_.centroid + shift_, b_.inner_radius, certain, near_a);
-    if (near_a.count == 0) return;
-    keep_reaching(b_, transpose_times(turn_, a_.centroid - shift_), a_.inner_radius, certain, near_b);
-    const Mat3W<kLanes> turn{splat<kLanes>(turn_.x), splat<kLanes>(turn_.y), splat<kLanes>(turn_.z)};
-    for (int first = 0; first < near_b.count; first += kLanes) {
+    cull_by_inner_ball(a_, rotation_ * b_.centroid + shift_, b_.inner_radius, certain, edges_a);
+    if (edges_a.count == 0) return;
+    cull_by_inner_ball(b_, transpose_times(rotation_, a_.centroid - shift_), a_.inner_radius, certain,
+                       edges_b);
+    const Mat3W<kLanes> rotation{splat<kLanes>(rotation_.x), splat<kLanes>(rotation_.y),
+                                 splat<kLanes>(rotation_.z)};
+    for (int first = 0; first < edges_b.count; first += kLanes) {
       const float *edges[kLanes], *left[kLanes], *right[kLanes];
       Vec3W<kLanes> from;
       for (int lane = 0; lane < kLanes; ++lane) {
-        const HullEdge& edge = b_.edges[near_b.index[min(first + lane, near_b.count - 1)]];
+        const HullEdge& edge = b_.edges[edges_b.index[min(first + lane, edges_b.count - 1)]];
         edges[lane] = reinterpret_cast<const float*>(&edge);
         left[lane] = &b_.planes[edge.left].normal.x;
         right[lane] = &b_.planes[edge.right].normal.x;
@@ -255,85 +256,86 @@ class EdgeCandidates {
       Floats columns[4];
       Rows<kLanes>::gather(edges, 0, columns);
       ArcsW& arcs = arcs_b_[first / kLanes];
-      arcs.direction = turn * Vec3W<kLanes>{columns[1], columns[2], columns[3]};
+      arcs.direction = rotation * Vec3W<kLanes>{columns[1], columns[2], columns[3]};
       Rows<kLanes>::gather(left, 0, columns);
-      arcs.left = turn * Vec3W<kLanes>{columns[0], columns[1], columns[2]};
+      arcs.left = rotation * Vec3W<kLanes>{columns[0], columns[1], columns[2]};
       Rows<kLanes>::gather(right, 0, columns);
-      arcs.right = turn * Vec3W<kLanes>{columns[0], columns[1], columns[2]};
-      from_b_[first / kLanes] = turn * from + splat<kLanes>(shift_);
+      arcs.right = rotation * Vec3W<kLanes>{columns[0], columns[1], columns[2]};
+      from_b_[first / kLanes] = rotation * from + splat<kLanes>(shift_);
     }
-    // No arc crosses that of an edge without length, which those behind the last are.
-    for (int i = near_b.count; i % kLanes != 0; ++i) {
+    // An edge without length crosses no arc. Such edges fill the lanes after the last edge.
+    for (int i = edges_b.count; i % kLanes != 0; ++i) {
       Vec3W<kLanes>& direction = arcs_b_[i / kLanes].direction;
       direction.x.set(i % kLanes, 0.0f), direction.y.set(i % kLanes, 0.0f), direction.z.set(i % kLanes, 0.0f);
     }
   }
 
-  // A bit for each of the four edges of B from `first` on whose arc crosses that of A's.
+  // A bit for each of the four edges of B from `first` on whose arc crosses that of A's edge.
   unsigned crossing(const ArcsW& arc, int first) const { return arcs_cross(arc, arcs_b_[first / kLanes]); }
 
-  // A bit for each of the four whose separation from A's edge, along the cross product of the two, can be above `floor`: in
-  // float, without the root, and undecided (set) where the edges are nearly parallel.
-  unsigned may_exceed(int i, const ArcsW& arc, int first, float floor) const {
+  // A bit for each of the four edges of B whose separation from A's edge, along the cross product of both, may be above
+  // `floor`. Computed in float without the root. The bit is also set if the edges are too nearly parallel to decide.
+  unsigned exceeding(int i, const ArcsW& arc, int first, float floor) const {
     const Vec3W<kLanes> da = arc.direction, db = arcs_b_[first / kLanes].direction, axis = cross(da, db);
     const Floats squared = dot(axis, axis);
-    const Mask<kLanes> undecided = squared < Floats(kShallow) * dot(da, da) * dot(db, db);
-    const Vec3W<kLanes> from_a = splat<kLanes>(a_.vertices[a_.edges[near_a.index[i]].from]);
+    const Mask<kLanes> undecided = squared < Floats(kSatShallow) * dot(da, da) * dot(db, db);
+    const Vec3W<kLanes> from_a = splat<kLanes>(a_.vertices[a_.edges[edges_a.index[i]].from]);
     const Floats along = dot(axis, from_b_[first / kLanes] - from_a);
     const Floats product = select(dot(axis, arc.left + arc.right) < Floats(0.0f), -along, along);
     return to_bits(undecided | (product * absolute(product) > Floats(floor * absolute(floor)) * squared));
   }
 
-  // Whether no corner of A lies beyond its edge along the axis, and none of B before its own. Beside an edge as sharp as a
-  // knife two normals all but oppose each other, so that which way is out, and whether arcs cross, is of rounding.
+  // True if no corner of A lies beyond its edge along the axis, and no corner of B before its own. At a razor-sharp
+  // edge two normals nearly oppose each other; rounding then decides the sign of the axis and whether arcs cross.
   bool is_outermost(int i, int k, Vec3 normal) const {
-    const Vec3 from_a = a_.vertices[a_.edges[near_a.index[i]].from];
-    const Vec3 from_b = b_.vertices[b_.edges[near_b.index[k]].from];
-    const Vec3 down = transpose_times(turn_, normal);
+    const Vec3 from_a = a_.vertices[a_.edges[edges_a.index[i]].from];
+    const Vec3 from_b = b_.vertices[b_.edges[edges_b.index[k]].from];
+    const Vec3 down = transpose_times(rotation_, normal);
     return highest_along(a_, normal) - dot(normal, from_a) <= kOutermost * a_.size &&
            dot(down, from_b) - lowest_along(b_, down) <= kOutermost * b_.size;
   }
 
-  EdgeList near_a, near_b;
+  EdgeList edges_a, edges_b;
 
  private:
   const Polytope& a_;
   const Polytope& b_;
-  Mat3 turn_;
+  Mat3 rotation_;
   Vec3 shift_;
-  // Of B's near edges, in A's frame.
+  // Of the candidate edges of B, in A's frame.
   ArcsW arcs_b_[EdgeList::kRoom / kLanes];
   Vec3W<kLanes> from_b_[EdgeList::kRoom / kLanes];
 };
 
-// The pair of edges of largest separation, if that is above `floor`; a = -1 if none is.
+// The pair of edges with the largest separation above `floor`; a = -1 if there is none.
 EdgePair best_edges(const Polytope& a, const Polytope& b, const Transform& a_from_b, const BestFace& face,
                     float max_separation, float floor) {
-  EdgeCandidates near(a, b, a_from_b);
-  near.collect(face, max_separation, floor);
+  EdgeCandidates candidates(a, b, a_from_b);
+  candidates.collect(face, max_separation, floor);
   const EdgeSearch search(a, b, a_from_b);
   EdgePair best;
   best.separation = floor;
-  for (int i = 0; i < near.near_a.count; ++i) {
-    const Arc<Vec3> arc = arc_of(a, a.edges[near.near_a.index[i]]);
+  for (int i = 0; i < candidates.edges_a.count; ++i) {
+    const Arc<Vec3> arc = arc_of(a, a.edges[candidates.edges_a.index[i]]);
     const ArcsW arcs = in_every_lane(arc);
-    for (int first = 0; first < near.near_b.count; first += kLanes) {
-      unsigned rest = near.crossing(arcs, first);
-      if (rest != 0) rest &= near.may_exceed(i, arcs, first, best.separation);
+    for (int first = 0; first < candidates.edges_b.count; first += kLanes) {
+      unsigned rest = candidates.crossing(arcs, first);
+      if (rest != 0) rest &= candidates.exceeding(i, arcs, first, best.separation);
       while (rest != 0) {
         const int k = first + std::countr_zero(rest);
         rest &= rest - 1;
         EdgePair pair;
-        if (!search.evaluate(near.near_a.index[i], near.near_b.index[k], arc.left + arc.right, pair))
+        if (!search.evaluate(candidates.edges_a.index[i], candidates.edges_b.index[k], arc.left + arc.right,
+                             pair))
           continue;
         if (!(pair.separation > best.separation)) continue;
-        if (!near.is_outermost(i, k, pair.normal)) {
+        if (!candidates.is_outermost(i, k, pair.normal)) {
           pair.normal = -pair.normal;
           pair.separation = -pair.separation;
-          if (!(pair.separation > best.separation) || !near.is_outermost(i, k, pair.normal)) continue;
+          if (!(pair.separation > best.separation) || !candidates.is_outermost(i, k, pair.normal)) continue;
         }
         best = pair;
-        if (rest != 0) rest &= near.may_exceed(i, arcs, first, best.separation);
+        if (rest != 0) rest &= candidates.exceeding(i, arcs, first, best.separation);
       }
     }
   }
@@ -341,30 +343,30 @@ EdgePair best_edges(const Polytope& a, const Polytope& b, const Transform& a_fro
 }
 
 void face_separation(const Polytope& a, const Polytope& b, const Transform& a_from_b, PolytopeAxis& axis) {
-  const Mat3 turn = to_matrix(a_from_b.orientation);
+  const Mat3 rotation = to_matrix(a_from_b.orientation);
   if (axis.kind == AxisKind::face_a) {
     const HullPlane& plane = a.planes[axis.index_a];
-    const LowestVertex lowest = lowest_vertex(b, transpose_times(turn, plane.normal));
+    const LowestVertex lowest = lowest_vertex(b, transpose_times(rotation, plane.normal));
     axis.normal = plane.normal;
     axis.vertex = lowest.vertex;
     axis.separation = lowest.value - (plane.offset - dot(plane.normal, a_from_b.position));
     return;
   }
   const HullPlane& plane = b.planes[axis.index_b];
-  axis.normal = normalized(-(turn * plane.normal));
-  // The plane dot(n, x) = offset of B holds the points x = turn^T (p - t) of A.
+  axis.normal = normalized(-(rotation * plane.normal));
+  // The plane dot(n, x) = offset of B contains the points x = rotation^T (p - t) of A.
   const LowestVertex lowest = lowest_vertex(a, -axis.normal);
   axis.vertex = lowest.vertex;
   axis.separation = lowest.value - (plane.offset - dot(axis.normal, a_from_b.position));
 }
 
-// By how much an axis must be better to take the place of one of this separation.
+// By how much an axis must be better to replace one of this separation.
 float bias_of(const Polytope& a, const Polytope& b, float separation) {
-  return kDepthBias * absolute(separation) + kSizeBias * min(a.inner_radius, b.inner_radius);
+  return kSatDepthBias * absolute(separation) + kSatSizeBias * min(a.inner_radius, b.inner_radius);
 }
 
-// Whether `point` lies within the sides of a face by at least `margin`.
-bool lies_over(const Polytope& p, int face, Vec3 point, float margin) {
+// True if `point` projects into a face, at least `margin` inside its sides.
+bool projects_into(const Polytope& p, int face, Vec3 point, float margin) {
   const Vec3 normal = p.planes[face].normal;
   const std::uint8_t* const first = p.face_vertices + p.face_offsets[face];
   const std::uint8_t* const last = p.face_vertices + p.face_offsets[face + 1] - 1;
@@ -378,28 +380,28 @@ bool lies_over(const Polytope& p, int face, Vec3 point, float margin) {
   return true;
 }
 
-// Whether no axis parts the two by more than this face does, rounding aside. Let the nearest vertex lie over the face.
-// Apart, it and the point below it are as near to each other as the face says. Overlapping, let the face reach farther from
-// that point, by m, than the vertex lies deep, by d: along a direction that leans by t from the normal the vertex and the
-// rim of that circle overlap by d cos t + m sin t, not less than d; and along those that look the other way the balls in
-// the two overlap by that much, whose middles lie one before the other.
-bool is_unbeaten(const Polytope& a, const Polytope& b, const Transform& a_from_b, const PolytopeAxis& axis) {
+// True if no axis can beat this face by more than rounding. The closest vertex must project into the face. If the
+// polytopes are apart, the vertex and its projection are as close as the face says. If they overlap, let the vertex lie
+// d deep, and let the face extend by m > d around the projection. Along a direction that leans by t from the normal,
+// the vertex and the rim of that circle overlap by d cos t + m sin t >= d. Along directions of the opposite half, the
+// inner balls overlap by that much, because their centres lie one before the other.
+bool is_best_face(const Polytope& a, const Polytope& b, const Transform& a_from_b, const PolytopeAxis& axis) {
   const bool is_a = axis.kind == AxisKind::face_a;
-  const Mat3 turn = to_matrix(a_from_b.orientation);
+  const Mat3 rotation = to_matrix(a_from_b.orientation);
   const Vec3 shift = a_from_b.position;
   const float depth = max(-axis.separation, 0.0f);
   if (depth > 0.0f) {
-    const Vec3 between = turn * b.centroid + shift - a.centroid;
+    const Vec3 between = rotation * b.centroid + shift - a.centroid;
     const float along = dot(between, axis.normal), room = a.inner_radius + b.inner_radius - depth;
     if (!(along >= 0.0f) || !(room >= 0.0f) || length_squared(between - along * axis.normal) > square(room))
       return false;
   }
-  const Vec3 nearest =
-      is_a ? turn * b.vertices[axis.vertex] + shift : transpose_times(turn, a.vertices[axis.vertex] - shift);
-  return lies_over(is_a ? a : b, is_a ? axis.index_a : axis.index_b, nearest, depth);
+  const Vec3 nearest = is_a ? rotation * b.vertices[axis.vertex] + shift
+                            : transpose_times(rotation, a.vertices[axis.vertex] - shift);
+  return projects_into(is_a ? a : b, is_a ? axis.index_a : axis.index_b, nearest, depth);
 }
 
-// The cosine between a direction and the normal of the face that is nearest to it.
+// The cosine between a direction and the closest face normal.
 float nearest_normal(const Polytope& p, Vec3 direction) {
   Floats nearest(-1.0f);
   for (int f = 0; f < p.face_count; f += kLanes)
@@ -407,71 +409,72 @@ float nearest_normal(const Polytope& p, Vec3 direction) {
   return max(max(nearest[0], nearest[1]), max(nearest[2], nearest[3]));
 }
 
-// Whether the two ends of an edge lie lower along `up` than all other vertices by more than `gap`.
+// True if both ends of an edge are lower along `up` than all other vertices by more than `gap`.
 bool is_lowest_alone(const Polytope& p, const HullEdge& edge, Vec3 up, float gap) {
-  const Floats limit(dot(p.vertices[edge.from], up) + gap);
+  const Floats max_height(dot(p.vertices[edge.from], up) + gap);
   const WideInt<kLanes> from(edge.from), to(edge.to), last(p.vertex_count - 1);
   constexpr std::int32_t kOwn[kLanes] = {0, 1, 2, 3};
   WideInt<kLanes> index = WideInt<kLanes>::load_unaligned(kOwn);
   for (int i = 0; i < p.padded_count; i += kLanes) {
     const WideInt<kLanes> vertex = min(index, last);
-    const Mask<kLanes> low = values_along(p, i, splat<kLanes>(up)) <= limit;
+    const Mask<kLanes> low = values_along(p, i, splat<kLanes>(up)) <= max_height;
     if (any(and_not(and_not(low, vertex == from), vertex == to))) return false;
     index = index + WideInt<kLanes>(kLanes);
   }
   return true;
 }
 
-// Whether a search would come to the favoured edges: no face parts the two by nearly as much, and no other pair of edges
-// does as well. Let the two cross amid both, and `hold` be how far the edges reach beyond the crossing, h. Along a direction
-// that leans by t from their axis, of separation s, points of the two edges are apart by s cos t - h sin t at most; along
-// those that look the other way what is_unbeaten says of the balls holds. So faces are worse by what their normals lean.
-// Other edges are worse beyond rounding from some lean on, and none that leans less is outermost where all other vertices
-// lie lower.
-bool is_unbeaten_pair(const Polytope& a, const Polytope& b, const Transform& a_from_b,
-                      const PolytopeAxis& axis, float rounding) {
-  const float s = axis.of_edges, h = EdgeSearch(a, b, a_from_b).hold(axis.index_a, axis.index_b);
+// True if a full search would also choose the favoured edges: no face is nearly as good, and no other pair of edges is
+// as good. The two must cross well inside both; let h be how far the edges extend beyond the crossing, and s the
+// separation along their axis. Along a direction that leans by t from that axis, points of the two edges are apart by s
+// cos t - h sin t at most. In the opposite half the argument of is_best_face about inner balls holds. So faces are
+// worse by the lean of their normals. Other edges are worse beyond rounding from some lean on, and no pair that leans
+// less is outermost if all other vertices lie lower.
+bool is_best_edge_pair(const Polytope& a, const Polytope& b, const Transform& a_from_b,
+                       const PolytopeAxis& axis, float rounding) {
+  const float s = axis.edge_separation,
+              h = EdgeSearch(a, b, a_from_b).crossing_margin(axis.index_a, axis.index_b);
   const float lean = 8.0f * rounding / h;
   if (!(h > 0.0f) || !(lean <= 0.5f) || -s > h) return false;
 
-  const Mat3 turn = to_matrix(a_from_b.orientation);
-  const Vec3 between = turn * b.centroid + a_from_b.position - a.centroid;
+  const Mat3 rotation = to_matrix(a_from_b.orientation);
+  const Vec3 between = rotation * b.centroid + a_from_b.position - a.centroid;
   const float along = dot(between, axis.normal);
   if (!(along >= 0.0f)) return false;
-  const Vec3 down = transpose_times(turn, axis.normal);
+  const Vec3 down = transpose_times(rotation, axis.normal);
   const float cosine = max(nearest_normal(a, axis.normal), nearest_normal(b, -down));
   const float sine = std::sqrt(max(1.0f - cosine * cosine - 1.0e-6f, 0.0f));
-  const float others = max(max(s * cosine - h * sine, -h),
-                           length(between - along * axis.normal) - a.inner_radius - b.inner_radius);
-  if (!(s > others + 0.5f * bias_of(a, b, others) + 2.0f * rounding)) return false;
+  const float bound_of_others = max(max(s * cosine - h * sine, -h),
+                                    length(between - along * axis.normal) - a.inner_radius - b.inner_radius);
+  if (!(s > bound_of_others + 0.5f * bias_of(a, b, bound_of_others) + 2.0f * rounding)) return false;
 
   const HullEdge &edge_a = a.edges[axis.index_a], &edge_b = b.edges[axis.index_b];
-  // The widest that a polytope can be for its size is 2 sqrt(3).
+  // The extent of a polytope is at most 2 sqrt(3) times its size.
   const float gap = kOutermost + 3.5f * lean;
   if (!is_lowest_alone(a, edge_a, -axis.normal, gap * a.size) ||
       !is_lowest_alone(b, edge_b, down, gap * b.size))
     return false;
-  const Arc<Vec3> arc_b{turn * edge_b.direction, turn * b.planes[edge_b.left].normal,
-                        turn * b.planes[edge_b.right].normal};
+  const Arc<Vec3> arc_b{rotation * edge_b.direction, rotation * b.planes[edge_b.left].normal,
+                        rotation * b.planes[edge_b.right].normal};
   return arcs_cross(in_every_lane(arc_of(a, edge_a)), in_every_lane(arc_b)) != 0;
 }
 
 }  // namespace
 
-std::uint32_t axis_name(const PolytopeAxis& axis) {
+std::uint32_t encode_axis(const PolytopeAxis& axis) {
   return (std::uint32_t(axis.kind) << 24) | (std::uint32_t(axis.index_a) << 12) | std::uint32_t(axis.index_b);
 }
 
-PolytopeAxis axis_of_name(std::uint32_t name, const Polytope& a, const Polytope& b) {
+PolytopeAxis decode_axis(std::uint32_t name, const Polytope& a, const Polytope& b) {
   PolytopeAxis axis;
   const std::uint32_t kind = name >> 24;
   const int index_a = int((name >> 12) & 0xfffu), index_b = int(name & 0xfffu);
   if (kind == 0 || kind > std::uint32_t(AxisKind::edges)) return axis;
-  const AxisKind meant = AxisKind(kind);
-  const int limit_a = meant == AxisKind::edges ? a.edge_count : a.face_count;
-  const int limit_b = meant == AxisKind::edges ? b.edge_count : b.face_count;
+  const AxisKind decoded = AxisKind(kind);
+  const int limit_a = decoded == AxisKind::edges ? a.edge_count : a.face_count;
+  const int limit_b = decoded == AxisKind::edges ? b.edge_count : b.face_count;
   if (index_a >= limit_a || index_b >= limit_b) return axis;
-  axis.kind = meant;
+  axis.kind = decoded;
   axis.index_a = index_a;
   axis.index_b = index_b;
   return axis;
@@ -484,7 +487,7 @@ float separation_along(const Polytope& a, const Polytope& b, const Transform& a_
       face_separation(a, b, a_from_b, axis);
       break;
     case AxisKind::edges: {
-      // Whether or not the two edges still face each other, the supports along their cross product tell the truth.
+      // The edges may no longer face each other. The support points along their cross product are exact in any case.
       const HullEdge& edge = a.edges[axis.index_a];
       const Vec3 outward = a.planes[edge.left].normal + a.planes[edge.right].normal;
       EdgePair pair;
@@ -493,7 +496,7 @@ float separation_along(const Polytope& a, const Polytope& b, const Transform& a_
         break;
       }
       axis.normal = pair.normal;
-      axis.of_edges = pair.separation;
+      axis.edge_separation = pair.separation;
       axis.separation = lowest_along(b, rotate_inverse(a_from_b.orientation, pair.normal)) +
                         dot(pair.normal, a_from_b.position) - highest_along(a, pair.normal);
       break;
@@ -510,12 +513,12 @@ PolytopeAxis separating_axis(const Polytope& a, const Polytope& b, const Transfo
   const bool favours_face = favoured.kind == AxisKind::face_a || favoured.kind == AxisKind::face_b;
   const float rounding = kRounding * (a.size + b.size);
   if (favours_face && 2.0f * rounding <= bias_of(a, b, favoured.separation) &&
-      favoured.separation + rounding <= max_separation && is_unbeaten(a, b, a_from_b, favoured))
+      favoured.separation + rounding <= max_separation && is_best_face(a, b, a_from_b, favoured))
     return favoured;
-  if (favoured.kind == AxisKind::edges && favoured.of_edges + rounding <= max_separation &&
-      is_unbeaten_pair(a, b, a_from_b, favoured, rounding)) {
+  if (favoured.kind == AxisKind::edges && favoured.edge_separation + rounding <= max_separation &&
+      is_best_edge_pair(a, b, a_from_b, favoured, rounding)) {
     PolytopeAxis edges = favoured;
-    edges.separation = favoured.of_edges;
+    edges.separation = favoured.edge_separation;
     return edges;
   }
   const FaceQuery qa = best_face(a, b, a_from_b, max_separation,
@@ -532,7 +535,7 @@ PolytopeAxis separating_axis(const Polytope& a, const Polytope& b, const Transfo
   const PolytopeAxis& deciding = qb.separation > qa.separation ? face_b : face_a;
   EdgePair pair;
   if (PolytopeAxis face = deciding; separation_along(a, b, a_from_b, face) == -kUnbounded ||
-                                    2.0f * rounding > bias || !is_unbeaten(a, b, a_from_b, face)) {
+                                    2.0f * rounding > bias || !is_best_face(a, b, a_from_b, face)) {
     const BestFace plane{deciding.kind, deciding.kind == AxisKind::face_a ? qa.face : qb.face,
                          deciding.normal, deciding.separation};
     pair = best_edges(a, b, a_from_b, plane, max_separation, best + 0.5f * bias);
@@ -542,7 +545,7 @@ PolytopeAxis separating_axis(const Polytope& a, const Polytope& b, const Transfo
                            pair.normal,     pair.a < 0 ? -kUnbounded : pair.separation};
   if (edges.separation > max_separation) return edges;
 
-  // Among nearly equal ones: the favoured, then A's face, then B's, then edges.
+  // Among nearly equal axes: the favoured one, then A's face, then B's, then edges.
   if (favoured.kind == AxisKind::edges && pair.a == favoured.index_a && pair.b == favoured.index_b &&
       pair.separation > best + 0.5f * bias) {
     return edges;

@@ -40,13 +40,13 @@ TEST(SeparatingAxis, EqualsBruteForceOverAllAxes) {
     Hulls hulls;
     const float scale = i % 3 == 0 ? 1.0f : i % 3 == 1 ? 1.0e-3f : 1.0e3f;
     const Shape a = hulls.add_random(random, scale), b = hulls.add_random(random, scale);
-    const Transform t{scale * random.in_cube(0.8f), random.turn()};
+    const Transform t{scale * random.in_cube(0.8f), random.rotation()};
     const CorePair pair(a, b, t);
     const double best = all_axes(a, b, pair);
     const Polytope pa = make_polytope(*a.hull), pb = make_polytope(*b.hull);
     const PolytopeAxis axis = separating_axis(pa, pb, t, 1.0e30f, {});
-    // Edges are pruned by distance, so on separated shapes a face may stand for them; overlapping ones are exact up to the
-    // biases towards faces and towards A's.
+    // Edges are culled by distance, so a face may replace them on separated shapes. On overlapping shapes the result is
+    // exact up to the biases towards faces and towards A's.
     const double bias = 0.085 * absolute(best) + 1.5e-3 * double(min(pa.inner_radius, pb.inner_radius)) +
                         2.0e-6 * double(scale);
     EXPECT_LE(double(axis.separation), best + 2.0e-6 * double(scale)) << i;
@@ -54,15 +54,15 @@ TEST(SeparatingAxis, EqualsBruteForceOverAllAxes) {
     EXPECT_NEAR(separation(a, b, pair, DVec3(axis.normal)), double(axis.separation), 1.0e-5 * double(scale))
         << i;
     if (best > 0.0) continue;
-    // Overlapping: the same axis when only near edges are looked at.
+    // Overlapping: the same axis if only near edges are tested.
     const PolytopeAxis pruned = separating_axis(pa, pb, t, 0.0f, {});
     EXPECT_EQ(pruned.kind, axis.kind) << i;
     EXPECT_EQ(pruned.separation, axis.separation) << i;
-    // And once more with that axis as the favoured one.
+    // Then again with that axis as the favoured one.
     PolytopeAxis favoured = axis;
     separation_along(pa, pb, t, favoured);
     const PolytopeAxis again = separating_axis(pa, pb, t, 0.0f, favoured);
-    EXPECT_EQ(axis_name(again), axis_name(axis)) << i;
+    EXPECT_EQ(encode_axis(again), encode_axis(axis)) << i;
     EXPECT_NEAR(double(again.separation), double(axis.separation), 2.0e-6 * double(scale)) << i;
     ++overlapping;
     if (axis.kind == AxisKind::edges) ++by_edges;
@@ -78,7 +78,7 @@ TEST(SeparatingAxis, StopsOnlyAtTrueSeparation) {
   for (int i = 0; i < 1500; ++i) {
     Hulls hulls;
     const Shape a = hulls.add_random(random, 1.0f), b = hulls.add_random(random, 1.0f);
-    const Transform t{1.5f * random.in_cube(), random.turn()};
+    const Transform t{1.5f * random.in_cube(), random.rotation()};
     const CorePair pair(a, b, t);
     const PolytopeAxis axis = separating_axis(make_polytope(*a.hull), make_polytope(*b.hull), t, 0.05f, {});
     const CoreDistance distance = core_distance(pair, 1.0e30, {});
@@ -91,8 +91,8 @@ TEST(SeparatingAxis, StopsOnlyAtTrueSeparation) {
   EXPECT_GT(stopped, 100);
 }
 
-// A plate as thin as a blade in the middle of a box was told to be half a metre apart from it: of the two normals beside its
-// edge each was nearly the other's opposite, and so was the way out that they made.
+// A blade-thin plate in the middle of a box was reported half a metre apart from it: the two normals beside its edge
+// were nearly opposite, and so was the direction that they gave.
 TEST(SeparatingAxis, ABladeInABoxIsNotApart) {
   Hulls hulls;
   const Shape blade = hulls.add({{-0.399887264f, -2.17296765e-05f, -0.325181812f},
@@ -112,14 +112,14 @@ TEST(SeparatingAxis, NamesComeBackAndStrangeOnesDoNot) {
   axis.kind = AxisKind::edges;
   axis.index_a = 11;
   axis.index_b = 3;
-  const PolytopeAxis back = axis_of_name(axis_name(axis), view, view);
+  const PolytopeAxis back = decode_axis(encode_axis(axis), view, view);
   EXPECT_EQ(back.kind, AxisKind::edges);
   EXPECT_EQ(back.index_a, 11);
   EXPECT_EQ(back.index_b, 3);
-  EXPECT_EQ(axis_of_name(0, view, view).kind, AxisKind::none);
-  EXPECT_EQ(axis_of_name(0xffffffffu, view, view).kind, AxisKind::none);
+  EXPECT_EQ(decode_axis(0, view, view).kind, AxisKind::none);
+  EXPECT_EQ(decode_axis(0xffffffffu, view, view).kind, AxisKind::none);
   axis.index_a = 12;
-  EXPECT_EQ(axis_of_name(axis_name(axis), view, view).kind, AxisKind::none);
+  EXPECT_EQ(decode_axis(encode_axis(axis), view, view).kind, AxisKind::none);
 }
 
 TEST(SeparatingAxis, TheFavouredAxisStaysWhenNearlyEqual) {
@@ -150,7 +150,7 @@ TEST(Polytope, TheBoxIsAClosedConvexPolyhedron) {
       EXPECT_FLOAT_EQ(dot(face.vertices[i], face.normal), view.planes[f].offset);
       left_of[{face.ids[i], face.ids[(i + 1) % 4]}] = f;
     }
-    // The same face, corners and names as everyone else sees.
+    // The same face, corners and names as in all other code.
     FacePolygon other;
     support_face(make_box(h), face.normal, other);
     EXPECT_EQ(other.feature, face.feature);

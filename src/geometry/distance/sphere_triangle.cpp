@@ -39,11 +39,11 @@ SphereTriangle sphere_triangle(DVec3 middle, double radius, DVec3 a, DVec3 b, DV
   out.corners = nearest.corners;
   out.feature = feature_of(nearest.corners);
   out.on_triangle = nearest.point;
-  const DVec3 way = middle - nearest.point;
-  out.distance = length(way);
+  const DVec3 offset = middle - nearest.point;
+  out.distance = length(offset);
   out.separation = out.distance - radius;
   if (out.distance > 0.0) {
-    out.normal = way / out.distance;
+    out.normal = offset / out.distance;
   } else {
     const DVec3 front = cross(b - a, c - a);
     const double area = length(front);

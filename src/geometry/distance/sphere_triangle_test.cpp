@@ -58,8 +58,8 @@ TEST(SphereTriangle, WithoutAreaAnswersWithAnEdgeOrCorner) {
   EXPECT_NEAR(sphere_triangle({0, 1, 0}, 0.25, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}).separation, 0.75, 1.0e-12);
 }
 
-// The regions' borders cut space into seven parts: each random middle lies in the one whose nearest point no other point of
-// the triangle beats.
+// The borders of the regions divide space into seven parts. Each random centre lies in the region whose closest point
+// no other point of the triangle beats.
 TEST(SphereTriangle, IsNearestOfADenseSampling) {
   oracle::Random random(301);
   int seen[7] = {};

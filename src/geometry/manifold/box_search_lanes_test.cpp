@@ -1,4 +1,4 @@
-// The search for the axis of two boxes in lanes against that of one pair, at every width.
+// The axis search of two boxes in lanes against the search of one pair, at every width.
 #include "geometry/manifold/box_search_lanes.h"
 
 #include "geometry/manifold/manifold_box.h"
@@ -39,7 +39,7 @@ bool same_manifold(const LocalManifold& a, const LocalManifold& b) {
                            std::memcmp(a.points, b.points, std::size_t(a.count) * sizeof a.points[0]) == 0));
 }
 
-// In lane `lane` the case, in the others nothing sensible. Returns whether the search knew the axis.
+// Lane `lane` has the case, all others have noise. Returns true if the search knew the axis.
 template <int W>
 bool expect_same(const BoxCase& pair, int lane) {
   const auto put = [&](float value) {

@@ -6,26 +6,26 @@
 namespace gyre {
 namespace {
 
-// Depths that differ by less than this part of the manifold's width are equally deep: which of them comes first must not
-// depend on rounding, or a resting stack would change its points in every step.
+// Depths that differ by less than this fraction of the width of the manifold are equally deep. Rounding must not decide
+// which comes first, or a resting stack would change its points in every step.
 constexpr float kEqualDepth = 5.0e-4f;
 // The same for lengths and areas.
 constexpr float kEqualSpan = 1.0e-3f;
 
-// A corner while a polygon is cut, and the edge that leaves it: an edge of the incident face (below kSide), or one that
-// runs along a side of the reference face.
+// A corner during clipping, and the edge that leaves it: an edge of the incident face (below kSide), or a stretch of a
+// side of the reference face.
 struct ClipCorner {
   float x, y, z;   // plain numbers: a Vec3 would fill both buffers with zeros in every call
-  float distance;  // outside the side being cut
+  float distance;  // how far outside the current side
   std::uint32_t feature;
   int edge;
 
   Vec3 point() const { return {x, y, z}; }
-  void place(Vec3 p) { x = p.x, y = p.y, z = p.z; }
+  void set_point(Vec3 p) { x = p.x, y = p.y, z = p.z; }
 };
 constexpr int kSide = 256;
 
-// What the two roles need: the reference face with its sides as seen along the normal.
+// The two faces by their roles: the sides of the reference face cut the incident one.
 struct Clipper {
   const FacePair& pair;
   const FacePolygon& reference;
@@ -46,7 +46,7 @@ struct Clipper {
   std::uint32_t reference_vertex(std::uint32_t id) const {
     return reference_is_a ? feature_vertex_a(id) : feature_vertex_b(id);
   }
-  // Where side `side` of the reference cuts an edge of the polygon.
+  // The name of the point where side `side` of the reference cuts an edge of the polygon.
   std::uint32_t crossing(int edge, int side) const {
     const int n = reference.count;
     if (edge >= kSide) {
@@ -59,13 +59,13 @@ struct Clipper {
     return reference_is_a ? feature_edges(reference.ids[side], incident.ids[edge])
                           : feature_edges(incident.ids[edge], reference.ids[side]);
   }
-  // Outward normal of a side, of the length of its edge.
+  // The outward normal of a side. It is as long as the edge.
   Vec3 side_normal(int side) const {
     const Vec3 from = reference.vertices[side],
                to = reference.vertices[side + 1 == reference.count ? 0 : side + 1];
     return cross(to - from, facing);
   }
-  // The contact point under (or over) a point of the incident core; false if it is too far from the reference's plane.
+  // The contact point at a point of the incident core. Returns false if it is too far from the plane of the reference.
   bool emit(Vec3 point, std::uint32_t feature, ManifoldPoint& out) const {
     const float slope = dot(facing, reference.normal);
     const float gap = dot(point - reference.vertices[0], reference.normal) / slope;
@@ -80,12 +80,12 @@ struct Clipper {
 
 ClipCorner cut(const Clipper& clipper, const ClipCorner& from, const ClipCorner& to, int side) {
   ClipCorner out;
-  // From the inner to the outer end, so that both directions of an edge are cut at the same bits.
+  // Always from the inner to the outer end, so that both directions of an edge give the same bits.
   const bool inward = from.distance > 0.0f;
   const ClipCorner& inner = inward ? to : from;
   const ClipCorner& outer = inward ? from : to;
   const float t = inner.distance / (inner.distance - outer.distance);
-  out.place(lerp(inner.point(), outer.point(), t));
+  out.set_point(lerp(inner.point(), outer.point(), t));
   out.distance = 0.0f;
   out.feature = clipper.crossing(from.edge, side);
   out.edge = inward ? from.edge : kSide + side;
@@ -98,7 +98,7 @@ int clip_polygon(const Clipper& clipper, ManifoldPoint* out) {
   ClipCorner* next = buffers[1];
   int count = clipper.incident.count;
   for (int i = 0; i < count; ++i) {
-    polygon[i].place(clipper.incident.vertices[i]);
+    polygon[i].set_point(clipper.incident.vertices[i]);
     polygon[i].distance = 0.0f;
     polygon[i].feature = clipper.incident_vertex(clipper.incident.ids[i]);
     polygon[i].edge = i;
@@ -111,23 +111,24 @@ int clip_polygon(const Clipper& clipper, ManifoldPoint* out) {
       any_outside = any_outside || polygon[i].distance > 0.0f;
     }
     if (!any_outside) continue;
-    int kept = 0;
+    int count_inside = 0;
     for (int i = 0; i < count; ++i) {
       const ClipCorner& from = polygon[i];
       const ClipCorner& to = polygon[i + 1 == count ? 0 : i + 1];
       const bool from_inside = from.distance <= 0.0f, to_inside = to.distance <= 0.0f;
-      if (from_inside) next[kept++] = from;
-      // A convex polygon grows by at most one corner a side; the bound guards against rounding only.
-      if (from_inside != to_inside && kept < kMaxClipPoints - 1) next[kept++] = cut(clipper, from, to, side);
+      if (from_inside) next[count_inside++] = from;
+      // A convex polygon grows by at most one corner a side. The bound guards against rounding.
+      if (from_inside != to_inside && count_inside < kMaxClipPoints - 1)
+        next[count_inside++] = cut(clipper, from, to, side);
     }
     ClipCorner* swap = polygon;
     polygon = next;
     next = swap;
-    count = kept;
+    count = count_inside;
   }
   int points = 0;
   for (int i = 0; i < count; ++i) {
-    // Rounding may cut a corner into two of one name.
+    // Rounding may cut a corner into two with one name.
     if (points > 0 && out[points - 1].feature == polygon[i].feature) continue;
     if (clipper.emit(polygon[i].point(), polygon[i].feature, out[points])) ++points;
   }
@@ -170,13 +171,13 @@ int clip_faces(const FacePair& pair, bool reference_is_a, ManifoldPoint* out) {
 int clip_segments(const FacePair& pair, ManifoldPoint* out) {
   const FacePolygon& a = *pair.a;
   const FacePolygon& b = *pair.b;
-  // B's ends and the points of A's line under them, both along A's segment seen along the normal.
+  // The ends of B along A's segment, seen along the normal.
   const Vec3 raw = a.vertices[1] - a.vertices[0];
   const Vec3 along = raw - dot(raw, pair.normal) * pair.normal;
-  const float whole = dot(along, along);
-  if (!(whole > 0.0f)) return 0;
-  const float t0 = dot(b.vertices[0] - a.vertices[0], along) / whole;
-  const float t1 = dot(b.vertices[1] - a.vertices[0], along) / whole;
+  const float along_squared = dot(along, along);
+  if (!(along_squared > 0.0f)) return 0;
+  const float t0 = dot(b.vertices[0] - a.vertices[0], along) / along_squared;
+  const float t1 = dot(b.vertices[1] - a.vertices[0], along) / along_squared;
   if (t0 == t1) return 0;
   const float low = max(0.0f, min(t0, t1)), high = min(1.0f, max(t0, t1));
   if (!(low <= high)) return 0;
@@ -188,7 +189,7 @@ int clip_segments(const FacePair& pair, ManifoldPoint* out) {
     const Vec3 on_b = lerp(b.vertices[0], b.vertices[1], u);
     ManifoldPoint& point = out[points];
     const float gap = dot(on_b - on_a, pair.normal);
-    if (length_squared(on_b - on_a) > square(gap) + square(pair.sideways)) return 0;
+    if (length_squared(on_b - on_a) > square(gap) + square(pair.max_lateral_offset)) return 0;
     point.separation = gap - (pair.radius_a + pair.radius_b);
     if (!(point.separation <= pair.max_separation)) continue;
     point.position = 0.5f * ((on_a + pair.radius_a * pair.normal) + (on_b - pair.radius_b * pair.normal));
@@ -205,7 +206,8 @@ int reduce_points(ManifoldPoint* points, int count, Vec3 normal) {
   if (count <= kMaxManifoldPoints) return count;
   float value[kMaxClipPoints + 1];
   int chosen[kMaxManifoldPoints] = {-1, -1, -1, -1};
-  // The candidate of the largest value, by name among nearly equal ones; left alone if none is above `floor`.
+  // Chooses the candidate with the largest value, and the one with the smallest name among nearly equal ones. Chooses
+  // none if no value is above `floor`.
   const auto choose = [&](int slot, float best, float floor, float tolerance) {
     if (!(best > floor)) return false;
     for (int i = 0; i < count; ++i) {
@@ -215,53 +217,54 @@ int reduce_points(ManifoldPoint* points, int count, Vec3 normal) {
     return chosen[slot] >= 0;
   };
 
-  // First: the deepest, by name among equally deep ones.
+  // First: the deepest point, by name among equally deep ones.
   float width_squared = 0.0f, deepest = points[0].separation;
   for (int i = 0; i < count; ++i) {
     width_squared = max(width_squared, length_squared(points[i].position - points[0].position));
     deepest = min(deepest, points[i].separation);
     value[i] = -points[i].separation;
   }
-  // Positions that are not finite (bodies that are about to be taken out of the world) leave the first as it is.
+  // If positions are not finite (bodies that are about to be removed from the world), the first point stays.
   if (!choose(0, -deepest, -kUnbounded, kEqualDepth * std::sqrt(width_squared))) chosen[0] = 0;
   const Vec3 p0 = points[chosen[0]].position;
-  int kept = 1;
+  int chosen_count = 1;
 
-  // Second: the farthest from it. Third: the largest triangle with both. Fourth: the largest addition to that.
+  // Second: the point farthest from the first. Third: the largest triangle with both. Fourth: the largest addition to
+  // that area.
   float farthest = 0.0f, widest = 0.0f, added = 0.0f;
   for (int i = 0; i < count; ++i) {
     value[i] = length_squared(points[i].position - p0);
     farthest = max(farthest, value[i]);
   }
   if (choose(1, farthest, 1.0e-12f * width_squared, kEqualSpan * farthest)) {
-    ++kept;
+    ++chosen_count;
     const Vec3 p1 = points[chosen[1]].position, beside = cross(normal, p1 - p0);
     for (int i = 0; i < count; ++i) {
       value[i] = absolute(dot(beside, points[i].position - p0));
       widest = max(widest, value[i]);
     }
     if (choose(2, widest, 1.0e-6f * farthest, kEqualSpan * widest)) {
-      ++kept;
+      ++chosen_count;
       const Vec3 p2 = points[chosen[2]].position;
-      const float turn = dot(beside, p2 - p0) > 0.0f ? -1.0f : 1.0f;
-      const Vec3 out01 = turn * beside, out12 = turn * cross(normal, p2 - p1),
-                 out20 = turn * cross(normal, p0 - p2);
+      const float winding = dot(beside, p2 - p0) > 0.0f ? -1.0f : 1.0f;
+      const Vec3 out01 = winding * beside, out12 = winding * cross(normal, p2 - p1),
+                 out20 = winding * cross(normal, p0 - p2);
       for (int i = 0; i < count; ++i) {
         const Vec3 p = points[i].position;
         value[i] = max(max(dot(out01, p - p0), dot(out12, p - p1)), dot(out20, p - p2));
         added = max(added, value[i]);
       }
-      if (choose(3, added, 1.0e-4f * widest, kEqualSpan * added)) ++kept;
+      if (choose(3, added, 1.0e-4f * widest, kEqualSpan * added)) ++chosen_count;
     }
   }
-  // In the order they came, so that the order does not depend on the choice.
-  for (int i = 0; i < kept; ++i) {
-    for (int k = i + 1; k < kept; ++k) {
+  // Restore the order of the input, so that it does not depend on the choice.
+  for (int i = 0; i < chosen_count; ++i) {
+    for (int k = i + 1; k < chosen_count; ++k) {
       if (chosen[k] < chosen[i]) std::swap(chosen[i], chosen[k]);
     }
   }
-  for (int i = 0; i < kept; ++i) points[i] = points[chosen[i]];
-  return kept;
+  for (int i = 0; i < chosen_count; ++i) points[i] = points[chosen[i]];
+  return chosen_count;
 }
 
 }  // namespace gyre

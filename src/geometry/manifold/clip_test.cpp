@@ -40,7 +40,7 @@ TEST(Clip, SquareInsideSquareKeepsItsOwnCorners) {
       EXPECT_NEAR(points[i].position.y, -0.005f, 1.0e-7f);
       names.insert(points[i].feature);
     }
-    // The same four names whichever face is cut.
+    // The same four names for either clipped face.
     EXPECT_EQ(names, (std::set<std::uint32_t>{feature_vertex_b(0), feature_vertex_b(1), feature_vertex_b(2),
                                               feature_vertex_b(3)}));
   }

@@ -1,17 +1,19 @@
-// Every convex kind against planes, single triangles, meshes and height fields, a million odd pairs of each: distances,
-// overlaps and manifolds are proven from what the shapes are (surface_oracle.h).
+// Every convex kind against planes, single triangles, meshes and height fields, a million degenerate pairs of each.
+// Distances, overlaps and manifolds are proven from the definitions of the shapes (surface_oracle.h).
 //
-// Of a distance: its points lie on the surface and in the shape and are so far apart, and from every triangle some direction
-// parts the shape by that much. Of manifolds: of shapes apart the deepest point tells the distance, no more and no less, and
-// there is none beyond reach; every point lies on both surfaces; following the deepest leads out of an overlap.
+// A distance is right if its points lie on the surface and in the shape and are that far apart, and if for every
+// triangle some direction separates the shape by that much. A manifold of separated shapes is right if its deepest
+// point has their distance and exists only within the largest separation. Every point lies on both surfaces, and
+// following the deepest point leads out of an overlap.
 //
-// Of planes all is proven. Of triangles one pair in two thousand may stay without proof: plates and needles at slivers of
-// triangles, and shapes that hang over the border of a mesh or a hole, where a manifold has one normal for all its points.
+// All pairs with planes are proven. Of triangles one pair in two thousand may stay without proof: plates and needles at
+// sliver triangles, and shapes that hang over the border of a mesh or a hole, where a manifold has one normal for all
+// its points.
+#include "geometry/manifold/manifold.h"
+#include "geometry/query/closest_points.h"
 #include "geometry/shape/cooked.h"
 #include "geometry/shape/height_field.h"
-#include "geometry/manifold/manifold.h"
 #include "geometry/shape/mesh.h"
-#include "geometry/query/nearest.h"
 #include "geometry/testing/surface_oracle.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +32,7 @@ using namespace oracle;
 
 using Corners = std::array<DVec3, 3>;
 
-// What lies still: a plane, or triangles.
+// The static shape: a plane, or triangles.
 struct Ground {
   Geometry geometry;  // none: a plane
   Shape shape;
@@ -207,7 +209,7 @@ class GroundProof {
     return best;
   }
   double distance_to_ground(DVec3 p) const { return length(nearest_of_ground(p) - p); }
-  // How far the shape reaches before all corners of a triangle along a unit direction.
+  // How far the shape extends before all corners of a triangle along a unit direction.
   double parted(const Corners& t, DVec3 n) const {
     const double top = max(dot(t[0], n), max(dot(t[1], n), dot(t[2], n)));
     return dot(DVec3(pose_.position), n) - extent(shape_, rotate_inverse(turn_, -n)) -
@@ -215,13 +217,13 @@ class GroundProof {
   }
 
   void look_nearest() {
-    if (!find_nearest(ground_.shape, {&shape_, DVec3(pose_.position), turn_}, 1.0e30, near))
+    if (!find_closest_points(ground_.shape, {&shape_, DVec3(pose_.position), turn_}, 1.0e30, near))
       return say("nothing nearest", 0);
     if (outside_shape(near.on_convex) > rounding_)
       say("nearest point outside the shape", outside_shape(near.on_convex));
     const bool plane = ground_.triangles.empty();
     if (near.overlap) {
-      // A point of the ground, next to the one that was told, lies in the shape.
+      // A point of the ground, close to the reported one, lies in the shape.
       const DVec3 shared = plane ? near.on_target : nearest_of_ground(near.on_target);
       if (plane && outside_surface(ground_.shape, shared) > rounding_) say("overlap that is none", 0);
       if (outside_shape(shared) > rounding_) say("overlap that is none", outside_shape(shared));
@@ -269,11 +271,11 @@ class GroundProof {
   void points_lie_on_both(const LocalManifold& m, const ManifoldPoint& point) {
     const DVec3 n = DVec3(m.normal) / length(DVec3(m.normal)), middle(point.position);
     const double half = 0.5 * double(point.separation);
-    // What has sunk leaves by the front of a face, pushed at its lowest point wherever that is.
+    // A sunk shape leaves through the front of a face, pushed at its lowest point, wherever that is.
     if (-2.0 * half > 0.1 * thin_ + rounding_) return;
     // Contacts whose normals differ by less than two degrees share one; segments may lie a little beside an edge.
     const double slack = 2.0 * rounding_ + 3.0e-3 * thin_ + 0.1 * max(-2.0 * half, 0.0) +
-                         // An axis search takes corners beside edges for a little nearer than they are.
+                         // An axis search reports corners beside edges slightly closer than they are.
                          1.0 * max(half, 0.0) +
                          (shape_.kind != ShapeKind::sphere ? 0.1 * double(shape_.radius) : 0.0);
     const double off = distance_to_ground(middle - half * n);
@@ -290,8 +292,8 @@ class GroundProof {
   double long_, thin_, place_, rounding_;
 };
 
-// Whether shape and nearest point are seen from the front of every triangle around it: from behind, surfaces are not
-// touched. The front of what is solid from both sides is where the shape's middle lies.
+// True if shape and closest point are on the front side of every triangle around it; surfaces have no contacts from
+// behind. The front of a double-sided surface is the side of the shape's centre.
 bool seen_from_front(const Ground& ground, const Nearest& near, DVec3 middle, double slack) {
   for (const Corners& t : ground.triangles) {
     DVec3 n = cross(t[1] - t[0], t[2] - t[0]);
@@ -306,8 +308,9 @@ bool seen_from_front(const Ground& ground, const Nearest& near, DVec3 middle, do
 bool bring_to(const Ground& ground, const Shape& shape, Transform& pose, Vec3 back, double left) {
   Nearest near;
   for (int i = 0; i < 40; ++i) {
-    if (!find_nearest(ground.shape, {&shape, DVec3(pose.position), normalized(to_double(pose.orientation))},
-                      1.0e30, near))
+    if (!find_closest_points(ground.shape,
+                             {&shape, DVec3(pose.position), normalized(to_double(pose.orientation))}, 1.0e30,
+                             near))
       return false;
     if (near.overlap) {
       pose.position += 0.3f * outer_radius(shape, {}) * back;
@@ -333,7 +336,7 @@ Shape draw_shape(Random& random, Hulls& hulls, int kind) {
   const float thin = odd == 1 ? one_of(random, {0.02f, 1e-3f}) : 1.0f;
   const float low = odd == 2 ? one_of(random, {0.02f, 1e-3f}) : 1.0f;
   const float size = odd == 3 ? one_of(random, {0.03f, 20.0f}) : 1.0f;
-  return odd_shape(random, hulls, kind, size, thin, low);
+  return degenerate_shape(random, hulls, kind, size, thin, low);
 }
 
 std::string describe(const Shape& s, const Transform& t) {
@@ -346,18 +349,18 @@ std::string describe(const Shape& s, const Transform& t) {
   return text;
 }
 
-// One pair at the place where it is, looked at, and followed out if it overlaps.
+// Tests one pair at its pose and, if it overlaps, on the path out of the overlap.
 void prove_one(const Ground& ground, const Shape& shape, Transform pose, GroundProof& proof, float reach,
                bool in_front) {
   proof.look_nearest();
   proof.collide(reach);
   if (proof.wrong != nullptr) return;
-  // Where it was brought near is not to a rounding where it is nearest now.
+  // The closest point after the move may differ by rounding from the one before.
   const DVec3 middle(pose * (shape.kind == ShapeKind::hull ? shape.hull->centroid : Vec3{}));
   in_front = in_front && (ground.triangles.empty() || proof.near.overlap ||
                           seen_from_front(ground, proof.near, middle, 1.0e-6 * ground.size));
-  // A direction must be better by a two-thousandth of the size to be preferred to the face's, and an axis search takes
-  // corners beside edges for about as much nearer than they are.
+  // A direction must be better by a two-thousandth of the size to replace that of the face, and an axis search reports
+  // corners beside edges about as much closer than they are.
   const double exact = 3.0e-3 * proof.thin() + 1.2e-3 * proof.long_way() + 2.0 * proof.rounding();
   if (!proof.near.overlap) {
     if (proof.near.distance > double(reach) + proof.rounding() && proof.count > 0)
@@ -387,13 +390,13 @@ void prove_one(const Ground& ground, const Shape& shape, Transform pose, GroundP
     out = worst->normal;
     pose.position -= deepest * out;
   }
-  // Out of it, but for what contacts leave.
+  // Out of it, except for the depth that contacts leave.
   GroundProof after(ground, shape, {pose.position + float(4.0 * exact) * out, pose.orientation});
   after.look_nearest();
   if (after.near.overlap) proof.say("following the contacts does not lead out", 0);
 }
 
-// Points of contacts that are told nearer than they are lie between the shapes: there are too many to print them all.
+// Points that are reported closer than they are lie between the shapes: there are too many to print them all.
 bool is_point(const char* reason) { return std::string(reason).starts_with("point"); }
 
 void prove(Kinds kinds, int pairs, unsigned seed) {
@@ -407,7 +410,7 @@ void prove(Kinds kinds, int pairs, unsigned seed) {
       if (i % 10 == 0) ground = make_ground(random, kinds.ground);
       const Shape shape = draw_shape(random, hulls, kinds.shape);
       Transform pose = random_pose(random, float(ground.size));
-      // Half of them as they come, from any side; half brought near from above.
+      // Half of the pairs at random from any side; half brought close from above.
       bool in_front = kinds.ground == GroundKind::plane;
       const float reach = 0.02f * float(long_side(shape));
       if (random.below(3) != 0 && kinds.ground != GroundKind::plane) {
@@ -439,7 +442,7 @@ void prove(Kinds kinds, int pairs, unsigned seed) {
   std::printf("%d of %d pairs are not proven\n", wrong, pairs);
   for (const auto& [reason, times] : reasons) std::printf("  %d: %s\n", times, reason.c_str());
   EXPECT_LE(wrong, kinds.ground == GroundKind::plane ? 0 : max(pairs / 2000, 1)) << "of " << pairs;
-  // Without proof, yes; but nothing may be missed, and nothing touched that is not there.
+  // No proof is required here, but no contact may be missed or invented.
   for (const char* fault : {"contact out of reach", "no contact within reach", "farther than it is",
                             "no contact although they overlap"})
     EXPECT_EQ(reasons.count(fault), 0u) << fault;

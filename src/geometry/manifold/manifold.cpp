@@ -1,4 +1,4 @@
-// Planes against convex shapes, and the one door for two shapes of any kind. See manifold.h.
+// Planes against convex shapes, and the dispatch for two shapes of any kind. See manifold.h.
 #include "geometry/manifold/manifold.h"
 
 #include "geometry/manifold/clip.h"
@@ -8,7 +8,7 @@
 namespace gyre {
 namespace {
 
-// Points of a shape that may touch a plane; when there are too many the highest give way.
+// Points of a shape that may touch a plane. If there are too many, the highest are replaced.
 class Lowest {
  public:
   Lowest(const Shape& plane, float radius, float max_separation)
@@ -41,13 +41,13 @@ class Lowest {
   Vec3 normal_;
   float offset_, radius_, max_separation_;
   int count_ = 0;
-  // Not cleared: only the counted ones are ever read.
+  // Not cleared: only the counted elements are read.
   union {
     ManifoldPoint points_[kMaxClipPoints];
   };
 };
 
-// From B to A instead of from A to B, in the other shape's frame.
+// Turns a manifold from A to B into one from B to A, in the frame of the other shape.
 void flip(LocalManifold& manifold, const Transform& a_from_b) {
   manifold.normal = -rotate(a_from_b.orientation, manifold.normal);
   for (int i = 0; i < manifold.count; ++i)
@@ -90,14 +90,14 @@ void collide_plane(const Shape& plane, const Shape& b, const Transform& a_from_b
 }
 
 int collide_shapes(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
-                   PairCache& cache, LocalManifold* out, CachedTriangles* kept) {
+                   PairCache& cache, LocalManifold* out, CachedTriangles* triangles) {
   const bool convex_a = is_convex(a.kind), convex_b = is_convex(b.kind);
   if (convex_a && convex_b) {
     collide_convex(a, b, a_from_b, max_separation, cache, out[0]);
     return out[0].count > 0 ? 1 : 0;
   }
   if (!convex_a && !convex_b) return 0;
-  // The one that is not convex first.
+  // The non-convex shape comes first.
   const bool swapped = convex_a;
   const Shape& first = swapped ? b : a;
   const Shape& second = swapped ? a : b;
@@ -107,7 +107,7 @@ int collide_shapes(const Shape& a, const Shape& b, const Transform& a_from_b, fl
     collide_plane(first, second, first_from_second, max_separation, out[0]);
     count = out[0].count > 0 ? 1 : 0;
   } else {
-    count = collide_mesh(first, second, first_from_second, max_separation, out, kept);
+    count = collide_mesh(first, second, first_from_second, max_separation, out, triangles);
   }
   for (int i = 0; swapped && i < count; ++i) flip(out[i], a_from_b);
   return count;

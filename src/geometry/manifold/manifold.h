@@ -1,5 +1,5 @@
-// Contact manifolds: what collision writes and solvers read. A manifold is a question about two shapes, so it lives with
-// the other questions about shapes and knows neither bodies nor solvers.
+// Contact manifolds: collision detection writes them, solvers read them. A manifold depends on two shapes alone, so it
+// stands with the other queries of shapes and knows neither bodies nor solvers.
 #pragma once
 
 #include "geometry/shape/shape.h"
@@ -12,42 +12,43 @@ constexpr int kMaxManifoldPoints = 4;
 constexpr int kMaxMeshManifolds = 8;  // of one convex against a mesh or height field
 
 struct ManifoldPoint {
-  Vec3 position;         // midway between the two surfaces, in the frame of shape A
-  float separation = 0;  // distance of the surfaces along the normal; negative when they overlap
-  std::uint32_t feature = 0;  // names the pair of features that meet, to match points from step to step
+  Vec3 position;              // midway between the two surfaces, in the frame of shape A
+  float separation = 0;       // distance of the surfaces along the normal; negative when they overlap
+  std::uint32_t feature = 0;  // the pair of features that meet; it matches points from step to step
 };
 
 // Up to four points that share a normal.
 struct LocalManifold {
   Vec3 normal;  // unit, from A to B, in the frame of shape A
   int count = 0;
-  std::uint32_t triangle = 0;  // mesh and height field: which triangle (the deepest one if several share the manifold)
+  std::uint32_t triangle = 0;  // of a mesh or height field: the triangle, or the deepest one of several
   ManifoldPoint points[kMaxManifoldPoints];
 };
 
-// The least separation; kUnbounded if there are no points.
+// The smallest separation; kUnbounded if there are no points.
 inline float deepest_of(const LocalManifold& manifold) {
-  float least = kUnbounded;
-  for (int i = 0; i < manifold.count; ++i) least = min(least, manifold.points[i].separation);
-  return least;
+  float smallest_separation = kUnbounded;
+  for (int i = 0; i < manifold.count; ++i)
+    smallest_separation = min(smallest_separation, manifold.points[i].separation);
+  return smallest_separation;
 }
 
-// A manifold as it lives in the contact store from step to step: in world axes, anchored at both bodies' centres of mass,
-// with the impulses that the solver left there. `count` 0 means that nothing is near enough to matter. The solver reads and
-// writes both records four floats at a time: what belongs together lies together.
+// A manifold in the contact store, persistent from step to step: in world axes, with lever arms from both centres of
+// mass and the impulses of the solver. `count` 0 means that no points are close enough. The solver reads and writes
+// both records four floats at a time, so fields that are used together stand together.
 struct ContactPointState {
-  Vec3 from_a;                 // m, world axes: from A's centre of mass to the point, as the step began
-  float separation = 0.0f;     // m, as the step began
+  Vec3 from_a;              // m, world axes, when the step began: from A's centre of mass to the point
+  float separation = 0.0f;  // m, when the step began
   Vec3 from_b;
   std::uint32_t feature = 0;
   float normal_impulse = 0.0f;  // N s, of the last sub-step: the warm start
   float total_impulse = 0.0f;   // N s, over the whole last step
-  float held = 0.0f;            // N s: the load that the point is used to (a slow mean of normal_impulse)
-  float approach_speed = 0.0f;  // m/s, before the step's first impulse; positive when closing
+  float mean_impulse = 0.0f;    // N s, a slow mean of normal_impulse: the load that the point is used to
+  float approach_speed = 0.0f;  // m/s, before the first impulse of the step; positive when closing
 };
 
-// A contact point as the last full look found it, in the body frame of A, or of B where only A is a core swept by a ball:
-// from it the point of a pair that hardly moved against each other is found again without asking the shapes.
+// A contact point of the last manifold update in the body frame of A, or of B if only A has a rounded core. If the pair
+// hardly moves, the point is recomputed from the anchor without the shapes.
 struct PointAnchor {
   Vec3 position;  // m, midway between the surfaces
   float separation = 0.0f;
@@ -57,48 +58,48 @@ struct Manifold {
   Vec3 normal{0, 1, 0};  // unit, world axes, from A to B
   std::int32_t count = 0;
   ContactPointState points[kMaxManifoldPoints];
-  float age = 0.0f;           // s for which it has borne load without a break
-  Vec3 friction_impulse;      // N s on B, in the tangent plane, world axes
-  float twist_impulse = 0.0f;   // N m s on B about the normal
-  Vec3 rolling_impulse;       // N m s on B, world axes
+  float load_age = 0.0f;       // s for which the contact has carried load without a break
+  Vec3 friction_impulse;       // N s on B, in the tangent plane, world axes
+  float twist_impulse = 0.0f;  // N m s on B about the normal
+  Vec3 rolling_impulse;        // N m s on B, world axes
   std::uint32_t triangle = 0;
   Vec3 total_friction;        // N s on B over the whole last step
-  std::uint32_t sliding = 0;  // 1 when friction was at its limit at the end of the last step
-  // What the solver never reads: the manifold as the last full look saw it.
-  Vec3 seen_normal{0, 1, 0};  // in the frame of the anchors
+  std::uint32_t sliding = 0;  // 1 if friction was at its limit at the end of the last step
+  // Data of the last manifold update, which the solver never reads.
+  Vec3 anchor_normal{0, 1, 0};  // the normal in the frame of the anchors
   PointAnchor anchors[kMaxManifoldPoints];
 };
 
-// What a pair remembers from its last look, so that the next one starts well: a separating axis or a simplex.
-// Part of the world's state: it may decide between features that are equally good.
+// The separating axis or simplex of the last manifold update, from which the next one starts. It is state of the world,
+// because it may decide between equally good features.
 struct PairCache {
   std::uint32_t words[4] = {};
 };
 
-// Manifold of two convex shapes. `a_from_b` places B in A's frame. Points farther apart than `max_separation` are left
-// out; count 0 when there are none. Points are in no particular order but a deterministic one.
-// Symmetric in what it accepts: any two convex kinds in any order.
-void collide_convex(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation, PairCache& cache,
-                    LocalManifold& out);
+// Manifold of two convex shapes. `a_from_b` is the pose of B in A's frame. Points farther apart than `max_separation`
+// are dropped; count is 0 if none is left. The order of the points has no meaning, but is deterministic. Any two convex
+// kinds in any order.
+void collide_convex(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
+                    PairCache& cache, LocalManifold& out);
 
 // Manifold of a plane (A) and a convex shape (B).
 void collide_plane(const Shape& plane, const Shape& b, const Transform& a_from_b, float max_separation,
                    LocalManifold& out);
 
-// Manifolds of a mesh or height field (A) and a convex shape (B), at most kMaxMeshManifolds, grouped by normal. Inner
-// edges never push sideways: a contact whose normal lies outside the Voronoi region of the triangle's feature is turned
-// to the face's normal or dropped. Returns how many were written. `kept`, if it is not null: what is kept of a mesh from one
-// look of this shape at it to the next, which changes nothing of what is found.
+// Manifolds of a mesh or height field (A) and a convex shape (B), at most kMaxMeshManifolds, grouped by normal.
+// Internal edges never push sideways: a contact whose normal lies outside the Voronoi region of its feature gets the
+// normal of the face or is dropped. Returns the number of manifolds. `triangles`, if not null, caches the triangles of
+// a mesh between updates; it never changes the result.
 int collide_mesh(const Shape& mesh, const Shape& b, const Transform& a_from_b, float max_separation,
-                 LocalManifold* out, CachedTriangles* kept = nullptr);
+                 LocalManifold* out, CachedTriangles* triangles = nullptr);
 
-// Manifolds of any two shapes of which at most one is not convex, for any order of kinds (the result is always from A to
-// B). Two non-convex shapes never touch: 0. Returns the number of manifolds written to `out` (room for kMaxMeshManifolds).
-// `kept` as in collide_mesh.
+// Manifolds of any two shapes of which at smallest_separation one is convex, in any order of kinds; the normal is always from A to B.
+// Two non-convex shapes never touch: 0. Returns the number of manifolds in `out`, which has room for kMaxMeshManifolds.
+// `triangles` as in collide_mesh.
 int collide_shapes(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
-                   PairCache& cache, LocalManifold* out, CachedTriangles* kept = nullptr);
+                   PairCache& cache, LocalManifold* out, CachedTriangles* triangles = nullptr);
 
-// Keeps at most four of `count` candidate points (at most 64): the deepest, and those that span the largest area.
+// Reduces `count` candidate points (at most 64) to four at most: the deepest, and those that span the largest area.
 int reduce_points(ManifoldPoint* points, int count, Vec3 normal);
 
 }  // namespace gyre

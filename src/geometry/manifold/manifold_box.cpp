@@ -14,34 +14,35 @@ namespace gyre {
 namespace boxes {
 namespace {
 
-// Separations along the face normals of the box with half extents `own`, in whose frame the other one's middle is `way` and
-// its axes are `axes`.
-inline Floats face_separations(const float* own, const float* other, const float* way,
+// Separations along the face normals of the box with half extents `own`. In its frame the centre of the other box is
+// `offset`, and the axes of the other box are `axes`.
+inline Floats face_separations(const float* own, const float* other, const float* offset,
                                const float (*axes)[4]) {
   const Floats h = Floats::load(other);
-  return absolute(Floats::load(way)) - Floats::load(own) -
+  return absolute(Floats::load(offset)) - Floats::load(own) -
          (spread<0>(h) * absolute(Floats::load(axes[0])) + spread<1>(h) * absolute(Floats::load(axes[1])) +
           spread<2>(h) * absolute(Floats::load(axes[2])));
 }
 
-// Of all six faces.
+// The separations along all six face normals.
 struct FaceAxes {
   Floats of_a, of_b;
 
   explicit FaceAxes(const Boxes& x)
       : of_a(face_separations(x.a, x.b, x.t, x.s)), of_b(face_separations(x.b, x.a, x.u, x.r)) {}
   float operator[](int axis) const { return axis < kFirstB ? of_a[axis] : of_b[axis - kFirstB]; }
-  // Never what is not a number: of A's faces none is.
+  // Never NaN, because A's separations are not.
   float largest() const { return highest(max(of_b, of_a)); }
-  // The first axis with at least this separation, which one of them has.
-  int first(Floats least) const {
+  // The first axis with at least this separation; one of them must have it.
+  int first(Floats threshold) const {
     constexpr std::uint32_t kLast = 1u << (kFirstEdge - 1);
-    return std::countr_zero((to_bits(of_a >= least) & kThree) | to_bits(of_b >= least) << kFirstB | kLast);
+    return std::countr_zero((to_bits(of_a >= threshold) & kThree) | to_bits(of_b >= threshold) << kFirstB |
+                            kLast);
   }
 };
 
-// The edges of A's axis i with all three of B's, side by side. The separation times the length of the cross product, and
-// that length squared.
+// The edges of A's axis i with all three of B's, side by side: the separation times the length of the cross product,
+// and that length squared.
 struct EdgeRow {
   Floats product, squared;
 
@@ -50,9 +51,9 @@ struct EdgeRow {
     const Floats r1 = Floats::load(x.r[i1]), r2 = Floats::load(x.r[i2]), b = Floats::load(x.b);
     const Floats c = absolute(Floats::load(x.r[i]));
     const Floats apart = absolute(Floats(x.t[i2]) * r1 - Floats(x.t[i1]) * r2);
-    const Floats reach_a = Floats(x.a[i1]) * absolute(r2) + Floats(x.a[i2]) * absolute(r1);
-    const Floats reach_b = next(b) * after(c) + after(b) * next(c);
-    product = apart - reach_a - reach_b;
+    const Floats radius_a = Floats(x.a[i1]) * absolute(r2) + Floats(x.a[i2]) * absolute(r1);
+    const Floats radius_b = next(b) * after(c) + after(b) * next(c);
+    product = apart - radius_a - radius_b;
     squared = r1 * r1 + r2 * r2;
   }
 };
@@ -63,12 +64,12 @@ float shallow_edge(const Boxes& x, const Transform& a_from_b, int i, int j) {
   const DVec3 columns[3] = {rotate(q, DVec3{1, 0, 0}), rotate(q, DVec3{0, 1, 0}), rotate(q, DVec3{0, 0, 1})};
   const DVec3 edge_a{i == 0 ? 1.0 : 0.0, i == 1 ? 1.0 : 0.0, i == 2 ? 1.0 : 0.0};
   const DVec3 axis = cross(edge_a, columns[j]);
-  double reach = 0.0;
+  double radius = 0.0;
   for (int k = 0; k < 3; ++k) {
-    reach += double(x.a[k]) * absolute(axis[k]) + double(x.b[k]) * absolute(dot(columns[k], axis));
+    radius += double(x.a[k]) * absolute(axis[k]) + double(x.b[k]) * absolute(dot(columns[k], axis));
   }
   const double n = length(axis);
-  return n > 0.0 ? float((absolute(dot(DVec3(a_from_b.position), axis)) - reach) / n) : -kUnbounded;
+  return n > 0.0 ? float((absolute(dot(DVec3(a_from_b.position), axis)) - radius) / n) : -kUnbounded;
 }
 
 float edge_separation(const Boxes& x, const Transform& a_from_b, int i, int j) {
@@ -81,25 +82,26 @@ float edge_separation(const Boxes& x, const Transform& a_from_b, int i, int j) {
 
 // The best axis of two edges among those that beat `floor`.
 Axis search_edges(const Boxes& x, const Transform& a_from_b, float floor) {
-  // What rounding may make of a product. It decides of the nearly parallel ones alone.
+  // The rounding error of a product. It matters only for nearly parallel edges.
   const Floats extents = Floats::load(x.a) + Floats::load(x.b) + absolute(Floats::load(x.t));
   const Floats rounding(kRounding * (extents[0] + extents[1] + extents[2]));
   alignas(16) float product[3][4], length[3][4];
-  std::uint32_t left = 0, steep = 0;  // four bits for each row
+  std::uint32_t remaining = 0, steep = 0;  // four bits for each row
   for (int i = 0; i < 3; ++i) {
     const EdgeRow row(x, i);
     const Floats root = sqrt(row.squared);
     const Mask<4> is_steep = row.squared >= kShallow;
-    // Of steep ones what lies between 0 and the floor stays: it may be farther apart than allowed.
-    const Floats least = select(is_steep, Floats(min(floor, 0.0f)), Floats(floor)) * root;
-    const Mask<4> hopeless = (row.product + keep(~is_steep, rounding) <= least) | (row.squared <= kParallel);
-    left |= (to_bits(~hopeless) & kThree) << 4 * i;
+    // Steep edges between 0 and the floor stay, because they may be farther apart than allowed.
+    const Floats threshold = select(is_steep, Floats(min(floor, 0.0f)), Floats(floor)) * root;
+    const Mask<4> hopeless =
+        (row.product + keep(~is_steep, rounding) <= threshold) | (row.squared <= kParallel);
+    remaining |= (to_bits(~hopeless) & kThree) << 4 * i;
     steep |= to_bits(is_steep) << 4 * i;
     row.product.store(product[i]), root.store(length[i]);
   }
   Axis best;
-  for (; left != 0; left &= left - 1) {
-    const int lane = std::countr_zero(left), i = lane / 4, j = lane % 4;
+  for (; remaining != 0; remaining &= remaining - 1) {
+    const int lane = std::countr_zero(remaining), i = lane / 4, j = lane % 4;
     const float separation =
         (steep >> lane & 1u) != 0 ? product[i][j] / length[i][j] : shallow_edge(x, a_from_b, i, j);
     if (separation > best.separation) best = {kFirstEdge + 3 * i + j, separation};
@@ -107,7 +109,7 @@ Axis search_edges(const Boxes& x, const Transform& a_from_b, float floor) {
   return best;
 }
 
-// The axis that decides. Stops at the first along which the boxes are farther apart than allowed.
+// The deciding axis. Stops at the first one along which the boxes are farther apart than allowed.
 Axis search(const Boxes& x, const FaceAxes& faces, const Transform& a_from_b, float max_separation,
             const Axis& favoured) {
   Axis face;
@@ -116,12 +118,12 @@ Axis search(const Boxes& x, const FaceAxes& faces, const Transform& a_from_b, fl
   if (face.separation > max_separation) return face;
   const float bias = kDepthBias * absolute(face.separation) + kSizeBias * thinnest(x);
 
-  // Edges are worth a look only when they beat the face by more than half of the bias.
+  // Edges matter only if they beat the face by more than half of the bias.
   const float floor = face.separation + 0.5f * bias;
   const Axis edge = search_edges(x, a_from_b, floor);
   if (edge.separation > max_separation) return edge;
 
-  // Among nearly equal ones: the favoured, then the lowest face, then edges.
+  // Among nearly equal axes: the favoured one, then the face with the lowest number, then edges.
   if (favoured.number >= kFirstEdge) {
     if (favoured.separation > floor && favoured.separation >= edge.separation - bias) return favoured;
   } else if (favoured.number >= 0 && favoured.separation >= face.separation - bias &&
@@ -133,8 +135,8 @@ Axis search(const Boxes& x, const FaceAxes& faces, const Transform& a_from_b, fl
   return {first, faces[first]};
 }
 
-// In float for edges that cross at an angle, in double for those nearly parallel: where they cross is then a quotient of small
-// differences, and the normal one of nothing else.
+// Float serves for edges that cross at an angle. Nearly parallel edges need double: their crossing and their normal
+// come from small differences.
 struct FloatEdges {
   using Real = float;
   using Vector = Vec3;
@@ -160,8 +162,8 @@ struct DoubleEdges {
   static Vec3 to_float(DVec3 v) { return gyre::to_float(v); }
 };
 
-// Leaves out.count at 0 when the edges pass beside each other: of boxes apart another feature is nearer, and of those that
-// overlap the faces beside nearly parallel edges were as good.
+// Leaves out.count at 0 if the edges do not cross. Another feature of separated boxes is then closer; of overlapping
+// boxes the faces at the nearly parallel edges were as good.
 template <class Edges>
 void collide_edges(const Boxes& x, const Transform& a_from_b, const Axis& found, Vec3 along,
                    LocalManifold& out) {
@@ -189,7 +191,7 @@ void collide_edges(const Boxes& x, const Transform& a_from_b, const Axis& found,
   const Vector pa{on_a[0], on_a[1], on_a[2]};
   Vector pb = t;
   for (int k = 0; k < 3; ++k) pb += on_b_local[k] * edges.columns[k];
-  // Nearest points of the two lines: both edges are unit, and not parallel.
+  // Closest points of the two lines. Both directions are unit vectors and not parallel.
   const Vector d = pb - pa;
   const Real c = dot(edge_a, edge_b), da = dot(d, edge_a), db = dot(d, edge_b);
   const Real det = across[kNext[i]] * across[kNext[i]] + across[kAfter[i]] * across[kAfter[i]];
@@ -197,10 +199,11 @@ void collide_edges(const Boxes& x, const Transform& a_from_b, const Axis& found,
   const Real end_a = clamp(along_a, Real(-x.a[i]), Real(x.a[i])),
              end_b = clamp(along_b, Real(-x.b[j]), Real(x.b[j]));
   const Vector on_edge_a = pa + end_a * edge_a, on_edge_b = pb + end_b * edge_b;
-  // Not across each other: an end is nearest.
+  // The edges do not cross: an end is closest.
   if ((end_a != along_a || end_b != along_b) &&
       (found.separation > 0.0f ||
-       length(on_edge_b - on_edge_a) > Real((1.0f + kLost) * -found.separation + kMissed * thinnest(x))))
+       length(on_edge_b - on_edge_a) >
+           Real((1.0f + kDepthTolerance) * -found.separation + kMissTolerance * thinnest(x))))
     return;
   out.normal = Edges::to_float(normal);
   out.count = 1;
@@ -209,7 +212,7 @@ void collide_edges(const Boxes& x, const Transform& a_from_b, const Axis& found,
   out.points[0].feature = feature_edges(edge_number(i, corner_a), edge_number(j, corner_b));
 }
 
-// The face whose normal is within kNearFace of the axis of two edges, `normal`; none if there is none.
+// The face whose normal is within kNearFace of `normal`, the axis of two edges; no axis if there is none.
 Axis face_near_edges(const Boxes& x, Vec3 normal) {
   const Floats along_a = absolute(three(normal));
   const Floats along_b = absolute(normal.x * Floats::load(x.r[0]) + normal.y * Floats::load(x.r[1]) +
@@ -235,7 +238,7 @@ void collide_crossing(const Boxes& x, const Transform& a_from_b, const Axis& edg
   const Axis face = face_near_edges(x, normal);
   if (face.number != kNoAxis) {
     collide_face(x, face, max_separation, out);
-    if (stands_for_crossing(out, edges.separation, thinnest(x))) return;
+    if (replaces_crossing(out, edges.separation, thinnest(x))) return;
     out.count = 0;
   }
   if (EdgeRow(x, i).squared[edges.edge_b()] < kShallow) {
@@ -245,8 +248,8 @@ void collide_crossing(const Boxes& x, const Transform& a_from_b, const Axis& edg
   }
 }
 
-// The axis that decides, or the one that decided last if it parts the boxes by more than allowed: most pairs that did not touch
-// then do not touch now.
+// The deciding axis, or the last one if it still separates the boxes by more than allowed: most pairs that did not
+// touch last time do not touch now.
 Axis find_axis(const Boxes& x, const Transform& a_from_b, float max_separation, const PairCache& cache) {
   const FaceAxes faces(x);
   Axis favoured;
@@ -267,18 +270,18 @@ struct Pair {
   float max_separation;
 };
 
-// The manifold along the axis that decides, which parts the boxes by no more than allowed. out.count is 0.
+// The manifold along the deciding axis, whose separation is within the allowed one. out.count must be 0.
 void collide_along(const Boxes& x, const Axis& found, const Pair& pair, PairCache& cache,
                    LocalManifold& out) {
   if (found.number >= kFirstEdge) {
     collide_crossing(x, pair.a_from_b, found, pair.max_separation, out);
   } else {
     collide_face(x, found, pair.max_separation, out);
-    // Nearest, or deepest, beside the face.
-    const float lost = deepest_of(out) - found.separation;
-    if (lost > kMissed * thinnest(x) + kLost * max(-found.separation, 0.0f)) out.count = 0;
+    // The points miss the closest or deepest feature, which lies beside the face.
+    const float excess = deepest_of(out) - found.separation;
+    if (excess > kMissTolerance * thinnest(x) + kDepthTolerance * max(-found.separation, 0.0f)) out.count = 0;
   }
-  // Near, or even overlapping, but beside each other's faces.
+  // The boxes are close or overlap, but no face projects onto the other.
   if (out.count == 0) collide_cores(pair.a, pair.b, pair.a_from_b, pair.max_separation, cache, out);
 }
 
@@ -287,14 +290,14 @@ void collide_along(const Boxes& x, const Axis& found, const Pair& pair, PairCach
 
 boxes::Axis find_box_axis(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
                           const PairCache& cache) {
-  // Bodies that are about to be taken out of the world.
+  // Bodies that are about to be removed from the world.
   if (!is_finite(a_from_b.position) || !is_finite(a_from_b.orientation)) return {0, kUnbounded};
   return boxes::find_axis(boxes::Boxes(a, b, a_from_b), a_from_b, max_separation, cache);
 }
 
 Vec3 box_axis_normal(const boxes::Axis& axis, const Transform& a_from_b) {
-  const Mat3 turn = to_matrix(a_from_b.orientation);
-  const Vec3 columns[3] = {turn.x, turn.y, turn.z};
+  const Mat3 rotation = to_matrix(a_from_b.orientation);
+  const Vec3 columns[3] = {rotation.x, rotation.y, rotation.z};
   const auto own = [](int k) {
     return Vec3{k == 0 ? 1.0f : 0.0f, k == 1 ? 1.0f : 0.0f, k == 2 ? 1.0f : 0.0f};
   };

@@ -9,12 +9,12 @@
 namespace gyre::boxes {
 namespace {
 
-// The reference box and the other one, the incident, in its frame.
+// The reference box, and the incident box in its frame.
 struct Roles {
   const float* reference;  // half extents
   const float* incident;
-  const float (*m)[4];     // reference_from_incident: m[i][k] component along axis i of the incident's axis k
-  const float (*axes)[4];  // the same by the incident's axes
+  const float (*m)[4];     // m[i][k]: the component of the incident's axis k along axis i
+  const float (*axes)[4];  // the transpose
   alignas(16) float c[4];  // the incident's centre
   bool reference_is_a;
 
@@ -28,12 +28,12 @@ struct Roles {
   }
 };
 
-// The lane of one axis.
+// A mask of the lane of one axis.
 alignas(16) constexpr std::int32_t kOnly[3][4] = {{-1, 0, 0, 0}, {0, -1, 0, 0}, {0, 0, -1, 0}};
 inline Mask<4> only(int axis) { return Mask<4>::of(WideInt<4>::load(kOnly[axis]).v); }
 
-// The corners of each of the six faces, in order around it, and the edges that leave them: first for the face on the
-// negative side of an axis, then for that on the positive side.
+// The corners of each of the six faces, in order around it, and the edges that leave them. The face on the negative
+// side of an axis comes first.
 struct FaceNames {
   std::uint32_t corner[3][2][4];
   std::uint32_t edge[3][2][4];
@@ -54,17 +54,18 @@ constexpr FaceNames kFaces = [] {
   return names;
 }();
 
-// A corner of the incident face over the reference face: its coordinates along the reference face, and in the place of the
-// third its height above it.
+// A corner of the incident face over the reference face: two coordinates along the reference face and, as the third,
+// the height above it.
 struct Corner {
-  alignas(16) float place[4];
+  alignas(16) float position[4];
   std::uint32_t feature;
-  std::uint32_t edge;  // the edge that leaves it: one of the incident's 12, or kSide + one of the four sides
+  // the edge that leaves the corner: one of the incident's 12, or kSide + one of the four sides
+  std::uint32_t edge;
 };
 constexpr std::uint32_t kSide = 16;
 
-// The corners of a polygon in order around it, and the first once more. Not cleared, as the corners are not: only the
-// counted ones are ever read.
+// The corners of a polygon in order around it, and the first one again. Neither array is cleared: only the counted
+// elements are read.
 struct Polygon {
   int count = 0;
   const Corner* corners[12];
@@ -84,7 +85,7 @@ struct Sides {
         bit_u(1u << kNext[axis]),
         bit_v(1u << kAfter[axis]),
         reference_is_a(is_a) {
-    // As edge_number() has it: v is the axis before this one, and u the one after it.
+    // As in edge_number(): v is the axis before `axis`, u the one after it.
     edge[1] = edge_number(kAfter[axis], corner), edge[0] = edge[1] + 2u;
     edge[3] = edge_number(kNext[axis], corner), edge[2] = edge[3] + 1u;
   }
@@ -101,43 +102,45 @@ struct Sides {
   }
 };
 
-// Cuts the polygon where its coordinate along an axis, times `sign`, is above the limit. New corners go to `made`.
+// Cuts off the part of the polygon whose coordinate along an axis, times `sign`, is above the limit. New corners go to
+// `made`.
 void cut(const Polygon& in, int along, float sign, float limit, std::uint32_t side, const Sides& sides,
          Corner*& made, Polygon& out) {
   const Mask<4> lane = only(along);
-  int kept = 0;
-  float distance = sign * in.corners[0]->place[along] - limit;
+  int count = 0;
+  float distance = sign * in.corners[0]->position[along] - limit;
   bool inside = distance <= 0.0f;
   for (int i = 0; i < in.count; ++i) {
     const Corner& from = *in.corners[i];
     const Corner& to = *in.corners[i + 1];
-    const float distance_to = sign * to.place[along] - limit;
+    const float distance_to = sign * to.position[along] - limit;
     const bool inside_to = distance_to <= 0.0f;
-    if (inside) out.corners[kept++] = &from;
-    if (inside != inside_to && kept < 8) {
-      const Floats start = Floats::load(from.place), t(distance / (distance - distance_to));
-      select(lane, Floats(sign * limit), start + t * (Floats::load(to.place) - start)).store(made->place);
+    if (inside) out.corners[count++] = &from;
+    if (inside != inside_to && count < 8) {
+      const Floats start = Floats::load(from.position), t(distance / (distance - distance_to));
+      select(lane, Floats(sign * limit), start + t * (Floats::load(to.position) - start))
+          .store(made->position);
       made->feature = sides.name(from.edge, side);
       made->edge = inside ? kSide + side : from.edge;
-      out.corners[kept++] = made++;
+      out.corners[count++] = made++;
     }
     distance = distance_to, inside = inside_to;
   }
-  out.count = kept;
-  out.corners[kept] = out.corners[0];
+  out.count = count;
+  out.corners[count] = out.corners[0];
 }
 
-// The incident face cut to the reference rectangle.
+// Clips the incident face to the reference rectangle.
 class FaceClip {
  public:
   FaceClip(const Roles& roles, int axis, float facing) : roles_(roles), axis_(axis), facing_(facing) {}
 
-  // Of the incident's face along axis k: points in the frame of the reference, midway between the surfaces, and at most four.
-  // Those above max_separation are left out. Returns how many there are.
+  // The points of the incident face along axis k: at most four, in the frame of the reference, midway between the
+  // surfaces. Points above max_separation are dropped. Returns the number of points.
   int clip(int k, float max_separation, ManifoldPoint* out);
 
  private:
-  void place_corners(int k, Floats* places);
+  void compute_corners(int k, Floats* positions);
   int write(float max_separation, ManifoldPoint* out) const;
 
   const Roles& roles_;
@@ -150,24 +153,24 @@ class FaceClip {
   };
 };
 
-// The four corners of the incident face whose normal is +-axis k, in order around it.
-void FaceClip::place_corners(int k, Floats* places) {
+// The four corners of the incident face with the normal +-axis k, in order around it.
+void FaceClip::compute_corners(int k, Floats* positions) {
   const bool positive = !(facing_ * roles_.m[axis_][k] > 0.0f);
-  // Along the normal of the reference face: upwards from that face.
+  // Along the normal of the reference face: the height above that face.
   const Mask<4> normal = only(axis_);
-  const Floats turn = select(normal, Floats(facing_), Floats(1.0f)),
+  const Floats to_up = select(normal, Floats(facing_), Floats(1.0f)),
                top = keep(normal, Floats::load(roles_.reference));
   const auto half = [&](int i) { return Floats(roles_.incident[i]) * Floats::load(roles_.axes[i]); };
   const Floats out = half(k), middle = Floats::load(roles_.c);
-  const Floats center = turn * (positive ? middle + out : middle - out) - top;
-  const Floats first = turn * half(kNext[k]), second = turn * half(kAfter[k]);
-  places[0] = center + first + second;
-  places[1] = center - first + second;
-  places[2] = center - first - second;
-  places[3] = center + first - second;
+  const Floats center = to_up * (positive ? middle + out : middle - out) - top;
+  const Floats first = to_up * half(kNext[k]), second = to_up * half(kAfter[k]);
+  positions[0] = center + first + second;
+  positions[1] = center - first + second;
+  positions[2] = center - first - second;
+  positions[3] = center + first - second;
   const std::uint32_t kind = roles_.reference_is_a ? feature_vertex_b(0) : feature_vertex_a(0);
   for (int i = 0; i < 4; ++i) {
-    places[i].store(corners_[i].place);
+    positions[i].store(corners_[i].position);
     corners_[i].feature = kind | kFaces.corner[k][positive][i];
     corners_[i].edge = kFaces.edge[k][positive][i];
   }
@@ -179,10 +182,10 @@ int FaceClip::write(float max_separation, ManifoldPoint* out) const {
   int count = 0;
   for (int i = 0; i < polygon_->count && count < 8; ++i) {
     const Corner& corner = *polygon_->corners[i];
-    const float separation = corner.place[axis_];
+    const float separation = corner.position[axis_];
     if (!(separation <= max_separation)) continue;
-    const Floats place = Floats::load(corner.place);
-    out[count].position = to_vec3(select(normal, top + half * place, place));
+    const Floats position = Floats::load(corner.position);
+    out[count].position = to_vec3(select(normal, top + half * position, position));
     out[count].separation = separation;
     out[count++].feature = corner.feature;
   }
@@ -190,11 +193,11 @@ int FaceClip::write(float max_separation, ManifoldPoint* out) const {
 }
 
 int FaceClip::clip(int k, float max_separation, ManifoldPoint* out) {
-  Floats places[4];
-  place_corners(k, places);
+  Floats positions[4];
+  compute_corners(k, positions);
   const Floats h = Floats::load(roles_.reference);
-  const Floats low = min(min(places[0], places[1]), min(places[2], places[3])),
-               high = max(max(places[0], places[1]), max(places[2], places[3]));
+  const Floats low = min(min(positions[0], positions[1]), min(positions[2], positions[3])),
+               high = max(max(positions[0], positions[1]), max(positions[2], positions[3]));
   const std::uint32_t sideways = kThree & ~(1u << axis_);
   if (((to_bits(low > h) | to_bits(high < -h)) & sideways) != 0) return 0;
   polygon_ = polygons_;
@@ -231,7 +234,7 @@ void collide_face(const Boxes& x, const Axis& found, float max_separation, Local
   const Roles roles(x, reference_is_a);
   const float facing = roles.c[axis] < 0.0f ? -1.0f : 1.0f;
   FaceClip face(roles, axis, facing);
-  // The incident face opposes the reference most; if it lies beside it, the next two are tried.
+  // The incident face is the one that opposes the reference most. If they do not overlap, the next two are tried.
   const Floats slopes = absolute(Floats::load(roles.m[axis]));
   const int steepest = std::countr_zero((to_bits(slopes >= highest(slopes)) & kThree) | 4u);
   out.count = face.clip(steepest, max_separation, out.points);
@@ -249,10 +252,10 @@ void collide_face(const Boxes& x, const Axis& found, float max_separation, Local
   }
   const Floats s0 = Floats::load(x.s[0]), s1 = Floats::load(x.s[1]), s2 = Floats::load(x.s[2]),
                center = Floats::load(x.t);
-  const auto turn = [&](Floats v) { return s0 * spread<0>(v) + s1 * spread<1>(v) + s2 * spread<2>(v); };
-  out.normal = normalized(to_vec3(turn(-normal)));
+  const auto rotated = [&](Floats v) { return s0 * spread<0>(v) + s1 * spread<1>(v) + s2 * spread<2>(v); };
+  out.normal = normalized(to_vec3(rotated(-normal)));
   for (int i = 0; i < out.count; ++i)
-    out.points[i].position = to_vec3(turn(three(out.points[i].position)) + center);
+    out.points[i].position = to_vec3(rotated(three(out.points[i].position)) + center);
 }
 
 }  // namespace gyre::boxes

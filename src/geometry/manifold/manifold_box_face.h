@@ -1,4 +1,4 @@
-// The face of one box cut to the face of another: the part of manifold_box that makes up to four points.
+// Clips the face of one box to the face of another, which gives up to four points: a part of manifold_box.
 #pragma once
 
 #include "geometry/manifold/box_pair.h"
@@ -6,7 +6,7 @@
 
 namespace gyre::boxes {
 
-// The points along a face normal, `axis`. Leaves out.count at 0 when no face of one box lies over the other's.
+// The points along a face normal, `axis`. Leaves out.count at 0 if no faces overlap.
 void collide_face(const Boxes& x, const Axis& axis, float max_separation, LocalManifold& out);
 
 }  // namespace gyre::boxes

@@ -41,7 +41,7 @@ TEST(ManifoldBox, ARestingCubeIsExactToTheMicrometre) {
       EXPECT_NEAR(absolute(local.x), 0.5f, 1.0e-6f);
       EXPECT_NEAR(absolute(local.z), 0.5f, 1.0e-6f);
     }
-    // And seen from the cube.
+    // The same from the cube's side.
     const LocalManifold swapped = collide(cube, floor, inverse(t), 0.02f);
     ASSERT_EQ(swapped.count, 4);
     EXPECT_LT(length(swapped.normal - Vec3{0, -1, 0}), 1.0e-6f);
@@ -162,7 +162,7 @@ TEST(ManifoldBox, DepthEqualsBruteForceOverFifteenAxes) {
     }
     if (best > -noise) continue;
     ASSERT_GT(m.count, 0) << i << " " << best;
-    // The normal is the best axis, or one that is within the biases of it, or that of faces near to crossing edges.
+    // The normal is the best axis, or one within the biases of it, or that of a face close to crossing edges.
     const double along = separation(a, b, pair, DVec3(m.normal));
     const double thin = double(min(smallest(ha), smallest(hb)));
     EXPECT_LE(along, best + noise) << i;
@@ -171,7 +171,7 @@ TEST(ManifoldBox, DepthEqualsBruteForceOverFifteenAxes) {
                             return it.second >= least && dot(it.first, DVec3(m.normal)) > 0.998;
                           });
     EXPECT_TRUE(along >= least || crossing) << i << " " << along << " " << best;
-    // No point is deeper than that, and of crossing edges not much deeper than they are.
+    // No point is deeper than that. At crossing edges points are not much deeper than the edges.
     for (int k = 0; k < m.count; ++k) {
       EXPECT_GE(double(m.points[k].separation), along - noise) << i;
       EXPECT_GE(double(m.points[k].separation), 2.18 * best - 0.06 * thin - noise) << i;
@@ -179,7 +179,7 @@ TEST(ManifoldBox, DepthEqualsBruteForceOverFifteenAxes) {
   }
 }
 
-// The axis of two edges beside a face's normal: the face's manifold stood for it although it was an eighth deeper.
+// The axis of two edges close to a face normal: the manifold of the face was used although it was an eighth deeper.
 TEST(ManifoldBox, DeepCrossingsLeaveAlongTheEdges) {
   const Shape a = make_box({0.225729233f, 0.588535706f, 0.978316895f}),
               b = make_box({0.520826904f, 0.202335876f, 0.939002441f});
@@ -198,9 +198,9 @@ TEST(ManifoldBox, TheNormalIsContinuousThroughTouch) {
   for (int i = 0; i < 300; ++i) {
     const Shape a = make_box({random(0.2f, 1), random(0.2f, 1), random(0.2f, 1)});
     const Shape b = make_box({random(0.2f, 1), random(0.2f, 1), random(0.2f, 1)});
-    const Quat q = random.turn();
+    const Quat q = random.rotation();
     const Vec3 d = random.direction();
-    // The place along d where they touch, then a micrometre to both sides.
+    // The position along d where they touch, then a micrometre to both sides.
     float near = 0.0f, far = 4.0f;
     for (int k = 0; k < 40; ++k) {
       const float middle = 0.5f * (near + far);

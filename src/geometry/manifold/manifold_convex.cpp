@@ -12,11 +12,11 @@ namespace {
 
 bool is_rounded(const Shape& shape) { return shape.kind == ShapeKind::box && shape.radius > 0.0f; }
 
-// is_finite() for all seven numbers at once: what is finite less itself is 0.
+// is_finite() for all seven numbers at once: a finite number less itself is 0.
 bool all_finite(const Transform& t) {
-  const Wide<4> place = Wide<4>::of(Wide<4>::Float{t.position.x, t.position.y, t.position.z, 0.0f});
-  const Wide<4> turn = Wide<4>::load_unaligned(&t.orientation.x);
-  return all((place - place) + (turn - turn) == 0.0f);
+  const Wide<4> position = Wide<4>::of(Wide<4>::Float{t.position.x, t.position.y, t.position.z, 0.0f});
+  const Wide<4> rotation = Wide<4>::load_unaligned(&t.orientation.x);
+  return all((position - position) + (rotation - rotation) == 0.0f);
 }
 
 constexpr ContactMethod R = ContactMethod::round, B = ContactMethod::boxes, P = ContactMethod::polyhedra,
@@ -56,7 +56,7 @@ ContactMethod contact_method(const Shape& a, const Shape& b) {
 void collide_convex(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
                     PairCache& cache, LocalManifold& out) {
   out.count = 0;
-  // Bodies that are about to be taken out of the world.
+  // Bodies that are about to be removed from the world.
   if (!all_finite(a_from_b)) return;
   switch (contact_method(a, b)) {
     case ContactMethod::round:

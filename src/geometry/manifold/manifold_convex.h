@@ -1,9 +1,10 @@
-// Which method makes the manifolds of which two shapes: the table behind collide_convex and collide_shapes
-// (geometry/manifold/manifold.h), which docs/collision.md shows.
+// The table of contact methods by kinds of shapes, behind collide_convex and collide_shapes
+// (geometry/manifold/manifold.h). docs/collision.md shows it.
 //
-// Sharp boxes and hulls take an axis search and clip faces; spheres and pairs of capsules have closed forms; everything
-// else that is convex finds the normal by GJK (cores apart) or EPA (cores overlapping) and clips the features that face each
-// other. On triangles a sphere has seven features, polyhedra and capsules search axes, and what is curved takes GJK and EPA.
+// Sharp boxes and hulls search axes and clip faces. Spheres and pairs of capsules have closed forms. All other convex
+// pairs find the normal by GJK (separated cores) or EPA (overlapping cores) and clip the features that face each other.
+// Against triangles a sphere tests seven features, polyhedra and capsules search axes, and curved shapes use GJK and
+// EPA.
 #pragma once
 
 #include "geometry/manifold/manifold.h"
@@ -11,7 +12,7 @@
 namespace gyre {
 
 enum class ContactMethod : std::uint8_t {
-  none,            // two shapes of which neither is convex
+  none,            // neither shape is convex
   round,           // closed form (manifold_round)
   boxes,           // two boxes (manifold_box)
   polyhedra,       // box or hull against hull (manifold_hull)
@@ -24,7 +25,7 @@ enum class ContactMethod : std::uint8_t {
 constexpr int kContactMethodCount = 9;
 const char* to_string(ContactMethod method);
 
-// What serves two shapes. Boxes with rounding take `cores` instead of `boxes` and `polyhedra`.
+// The method for two shapes. Boxes with rounding take `cores` instead of `boxes` and `polyhedra`.
 ContactMethod contact_method(const Shape& a, const Shape& b);
 
 }  // namespace gyre

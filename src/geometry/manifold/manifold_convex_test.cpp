@@ -1,5 +1,5 @@
-// Manifolds of every pair of convex kinds: sane on anything, right about who touches, the same when shapes are swapped,
-// moved together or scaled; and contacts worked out by hand.
+// Manifolds of every pair of convex kinds: valid for any input, correct about which shapes touch, equal if shapes are
+// swapped, moved together or scaled; and contacts by hand.
 #include "geometry/manifold/manifold_convex.h"
 
 #include "geometry/testing/convex_oracle.h"
@@ -21,7 +21,7 @@ LocalManifold collide(const Shape& a, const Shape& b, const Transform& t, float 
   return out;
 }
 
-// How far a point of A's frame lies outside a shape's surface.
+// The distance of a point of A's frame outside the surface of a shape.
 double outside(const Shape& shape, Vec3 p) {
   const Shape point = make_sphere(0.0f);
   const CoreDistance found = core_distance(CorePair(shape, point, {p, {}}), 1.0e30, {});
@@ -33,7 +33,7 @@ bool may_face_with_a_segment(const Shape& shape) {
   return shape.radius > 0.0f && shape.kind != ShapeKind::sphere;
 }
 
-// What holds for any manifold of any two shapes.
+// Invariants of any manifold of any two shapes.
 void expect_sane(const Shape& a, const Shape& b, const Transform& t, float reach, const LocalManifold& m,
                  const std::string& what) {
   const double size = double(size_of(a, b, t));
@@ -50,7 +50,7 @@ void expect_sane(const Shape& a, const Shape& b, const Transform& t, float reach
     ASSERT_GT(m.count, 0) << what;
   }
   if (m.count == 0) return;
-  // Segments that touch twice may lie beside each other by a part of their radii.
+  // Segments that touch in two points may pass each other by a fraction of their radii.
   const bool beside = may_face_with_a_segment(a) || may_face_with_a_segment(b);
   const double sideways = beside ? 0.06 * double(max(a.radius, b.radius)) + 1.0e-3 * size : 0.0;
   ASSERT_NEAR(length(m.normal), 1.0f, 1.0e-5f) << what;
@@ -61,8 +61,8 @@ void expect_sane(const Shape& a, const Shape& b, const Transform& t, float reach
     for (int k = 0; k < i; ++k) {
       EXPECT_NE(point.feature, m.points[k].feature) << what << " of " << m.count;
     }
-    // Half the separation to each side lie the two surfaces. Faces with more corners than a polygon holds, and caps, are
-    // cut a little inside.
+    // The two surfaces lie half the separation to each side. Caps, and faces with more corners than a polygon has room
+    // for, are clipped slightly inside.
     const Vec3 on_a = point.position - (0.5f * point.separation) * m.normal;
     const Vec3 on_b = point.position + (0.5f * point.separation) * m.normal;
     const double slack = 1.0e-4 * size + 0.1 * max(-distance, 0.0) + sideways;
@@ -117,7 +117,7 @@ TEST(ManifoldConvex, SwappingTheShapesTurnsTheNormal) {
   for (int i = 0; i < 20000; ++i) {
     const int kind_a = random.below(kKinds), kind_b = random.below(kKinds);
     const Shape a = random_shape(random, hulls, kind_a, 1.0f), b = random_shape(random, hulls, kind_b, 1.0f);
-    const Transform t{1.2f * random.in_cube(), random.turn()};
+    const Transform t{1.2f * random.in_cube(), random.rotation()};
     const LocalManifold one = collide(a, b, t, 0.02f), other = collide(b, a, inverse(t), 0.02f);
     const std::string what =
         std::string(kind_name(kind_a)) + " " + kind_name(kind_b) + " " + std::to_string(i);
@@ -125,7 +125,7 @@ TEST(ManifoldConvex, SwappingTheShapesTurnsTheNormal) {
     if (absolute(distance) < 1.0e-4 || absolute(distance - 0.02) < 1.0e-4) continue;
     ASSERT_EQ(one.count > 0, other.count > 0) << what;
     if (one.count == 0) continue;
-    // Where two directions are nearly equally good either may be taken; the depth is the same then, up to the bias.
+    // If two directions are nearly equally good, either may be taken. The depth is then equal up to the bias.
     EXPECT_NEAR(deepest_of(one), deepest_of(other), 0.09f * max(-float(distance), 0.0f) + 4.0e-3f) << what;
     const Vec3 turned = -rotate(t.orientation, other.normal);
     if (distance > -0.05 && dot(one.normal, turned) > 0.999f) ++compared;
@@ -139,7 +139,7 @@ TEST(ManifoldConvex, PowersOfTwoScaleEveryBit) {
     Hulls hulls;
     const int kind_a = random.below(kKinds), kind_b = random.below(kKinds);
     const Shape a = random_shape(random, hulls, kind_a, 1.0f), b = random_shape(random, hulls, kind_b, 1.0f);
-    const Transform t{0.9f * random.in_cube(), random.turn()};
+    const Transform t{0.9f * random.in_cube(), random.rotation()};
     const LocalManifold one = collide(a, b, t, 0.02f);
     for (float scale : {1.0f / 1024.0f, 1024.0f}) {
       const auto scaled = [&](const Shape& shape) {
@@ -172,8 +172,8 @@ TEST(ManifoldConvex, MovingBothFarAwayChangesNothingMuch) {
   for (int i = 0; i < 2000; ++i) {
     const Shape a = random_shape(random, hulls, 1 + random.below(5), 1.0f);
     const Shape b = random_shape(random, hulls, 1 + random.below(5), 1.0f);
-    const Transform t{0.9f * random.in_cube(), random.turn()};
-    const Pose world_from_a{{1.0e6, -3.0e5, 2.0e6}, random.turn()};
+    const Transform t{0.9f * random.in_cube(), random.rotation()};
+    const Pose world_from_a{{1.0e6, -3.0e5, 2.0e6}, random.rotation()};
     const Pose world_from_b = world_from_a * t;
     const LocalManifold one = collide(a, b, t, 0.02f);
     const LocalManifold other = collide(a, b, inverse_times(world_from_a, world_from_b), 0.02f);
@@ -192,7 +192,7 @@ TEST(ManifoldConvex, TheCacheChangesNoDecisionAboutTouching) {
     const int kind_a = random.below(kKinds), kind_b = random.below(kKinds);
     const Shape a = random_shape(random, hulls, kind_a, 1.0f), b = random_shape(random, hulls, kind_b, 1.0f);
     PairCache cache;
-    Transform t{random.in_cube(1.5f), random.turn()};
+    Transform t{random.in_cube(1.5f), random.rotation()};
     for (int step = 0; step < 10; ++step) {
       t.position += 0.1f * random.in_cube();
       t.orientation = normalized(t.orientation * from_rotation_vector(0.1f * random.in_cube()));
@@ -237,7 +237,7 @@ TEST(ManifoldConvex, PosesThatAreNotFiniteDoNoHarm) {
         for (int part = 0; part < 7; ++part) {
           const Shape a = random_shape(random, hulls, kind_a, 1.0f),
                       b = random_shape(random, hulls, kind_b, 1.0f);
-          Transform t{0.5f * random.in_cube(), random.turn()};
+          Transform t{0.5f * random.in_cube(), random.rotation()};
           float* parts[7] = {&t.position.x,    &t.position.y,    &t.position.z,   &t.orientation.x,
                              &t.orientation.y, &t.orientation.z, &t.orientation.w};
           *parts[part] = bad;
@@ -307,7 +307,7 @@ TEST(ManifoldConvex, ACapsuleLiesOnABoxWithTwoPoints) {
 }
 
 TEST(ManifoldConvex, ACapsuleOrCylinderAlongAnEdgeTouchesTwice) {
-  // A box on its edge; what lies over the edge rests on two points even while it leans a little.
+  // A box on its edge. It rests on two points even while it leans a little.
   const Shape box = make_box({0.5f, 0.5f, 2}), capsule = make_along_y(ShapeKind::capsule, 0.25f, 0.5f);
   const Shape cylinder = make_along_y(ShapeKind::cylinder, 0.25f, 0.5f);
   const Quat a = from_axis_angle({0, 0, 1}, 0.25f * kPi);
@@ -336,7 +336,7 @@ TEST(ManifoldConvex, ARoundedEdgeAlongAnEdgeTouchesTwiceHoweverItLeans) {
     const float angle = float(degrees) * kPi / 180.0f;
     const Vec3 normal{std::cos(angle), std::sin(angle), 0};
     for (float lean : {0.0f, 0.02f, -0.02f}) {
-      // Beside a face that the hand leans towards, a part of it lies over that face.
+      // A part of the hand lies over the face towards which it leans.
       if (lean != 0.0f && (degrees < 15 || degrees > 75)) continue;
       // Its edge at -x and -z lies along the stair's, one end lower by the lean.
       const Vec3 across{-normal.y, normal.x, 0};
@@ -403,7 +403,7 @@ TEST(ManifoldConvex, BoxesAndTheirHullsAgree) {
     const Vec3 ha{random(0.2f, 1), random(0.2f, 1), random(0.2f, 1)},
         hb{random(0.2f, 1), random(0.2f, 1), random(0.2f, 1)};
     const Shape a = make_box(ha), b = make_box(hb), hull_b = hulls.add_box(hb);
-    const Transform t{random.in_cube(), random.turn()};
+    const Transform t{random.in_cube(), random.rotation()};
     const LocalManifold boxes = collide(a, b, t, 0.02f), mixed = collide(a, hull_b, t, 0.02f);
     const double distance = signed_distance(a, b, t);
     if (absolute(distance - 0.02) < 1.0e-4) continue;

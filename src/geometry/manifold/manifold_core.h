@@ -1,19 +1,20 @@
-// Contacts of two convex cores of any kind, each swept by its ball: the normal comes from GJK while the cores are apart
-// and from EPA when they overlap, the points from the features that face each other along it.
+// Contacts of two convex cores of any kind, each rounded by its radius. The normal comes from GJK if the cores are
+// apart and from EPA if they overlap; the points come from the features that face each other along it.
 //
-// Source: the support-face construction after D. Gregorius, "Robust Contact Creation for Physics Simulations", GDC 2015.
+// Source: the support-face construction after D. Gregorius, "Robust Contact Creation for Physics Simulations", GDC
+// 2015.
 #pragma once
 
 #include "geometry/manifold/manifold.h"
 
 namespace gyre {
 
-// Clipped points stand for the nearest pair of points, or for the deepest overlap, if the deepest of them misses it by
-// no more than this part of the thinner shape's inner radius
-constexpr float kMissed = 1.0e-3f;
-// ... and, of sharp polyhedra that overlap, this part of the depth too: what is lost again and again would never come
-// free.
-constexpr float kLost = 0.1f;
+// Clipped points replace the closest points, or the deepest ones, if their smallest separation misses that of the pair
+// by no more than this fraction of the thinner inner radius.
+constexpr float kMissTolerance = 1.0e-3f;
+// For overlapping sharp polyhedra this fraction of the depth is allowed too. A pair that missed its depth every time
+// would never separate.
+constexpr float kDepthTolerance = 0.1f;
 
 // As collide_convex, for every pair of convex kinds.
 void collide_cores(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,

@@ -1,24 +1,24 @@
-// Where two edges cross and the faces beside them are all but parallel.
+// Contacts at two crossing edges with nearly parallel faces around them.
 //
-// There the edges' axis beats the faces' by little, and as two plates rock on each other now one pair of edges wins and now
-// another, each time with a single point, which holds nothing level: crossed planks trembled for ever. So the faces are taken
-// whole. Their cut polygon holds the very point where the edges cross, and its other points are as real: places of the one
-// surface within, or above, the other body.
+// There the axis of the edges beats those of the faces by little. When two plates rock on each other, different pairs
+// of edges win in turn, each with a single point, which cannot carry a plate: crossed planks trembled for ever. So the
+// manifold of the faces is used. Its clipped polygon has the crossing point of the edges among its points, and the
+// others are as real: points of one surface inside or above the other body.
 #pragma once
 
 #include "geometry/manifold/manifold.h"
 
 namespace gyre {
 
-// Cosine between the axis of the edges and a face's normal above which the face is asked (3.6 degrees).
+// Cosine (3.6 degrees) between the axis of the edges and a face normal above which the face is tried.
 constexpr float kNearFace = 0.998f;
 
-// What rests on another is sunk by no more than this part of `thin`.
+// The depth of a resting contact is at most this fraction of `thin`.
 constexpr float kResting = 0.1f;
 
-// Whether the manifold of the face says what the edges say, `separation`, and not a quite different depth. `thin` is the
-// smallest half extent of the two. Of what rests the face may be twice as deep; from deep overlaps the edges lead out sooner.
-inline bool stands_for_crossing(const LocalManifold& face, float separation, float thin) {
+// True if the manifold of the face has nearly the separation of the edges. `thin` is the smallest half extent of the
+// two. For a resting contact the face may be twice as deep; out of deep overlaps the edges give the shorter exit.
+inline bool replaces_crossing(const LocalManifold& face, float separation, float thin) {
   if (face.count < 2) return false;
   float low = face.points[0].separation;
   for (int i = 1; i < face.count; ++i) low = min(low, face.points[i].separation);

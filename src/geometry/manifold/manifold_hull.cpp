@@ -1,11 +1,11 @@
 // Polyhedron against polyhedron. See manifold_hull.h.
 #include "geometry/manifold/manifold_hull.h"
 
-#include "geometry/manifold/clip.h"
 #include "geometry/distance/closest.h"
+#include "geometry/distance/separating_axis.h"
+#include "geometry/manifold/clip.h"
 #include "geometry/manifold/manifold_core.h"
 #include "geometry/manifold/manifold_crossing.h"
-#include "geometry/distance/separating_axis.h"
 
 namespace gyre {
 namespace {
@@ -13,18 +13,18 @@ namespace {
 // The face around `vertex` that opposes `direction` most.
 int opposing_face(const Polytope& polytope, int vertex, Vec3 direction) {
   int best = 0;
-  float least = 2.0f;
-  const auto look = [&](int face) {
+  float smallest = 2.0f;
+  const auto test_face = [&](int face) {
     const float slope = dot(polytope.planes[face].normal, direction);
-    if (slope < least || (slope == least && face < best)) {
-      least = slope;
+    if (slope < smallest || (slope == smallest && face < best)) {
+      smallest = slope;
       best = face;
     }
   };
   for (int word = 0; word < polytope.edge_words; ++word) {
     for_each_edge(polytope.edges_of[vertex * polytope.edge_words + word], word, [&](int e) {
-      look(polytope.edges[e].left);
-      look(polytope.edges[e].right);
+      test_face(polytope.edges[e].left);
+      test_face(polytope.edges[e].right);
     });
   }
   return best;
@@ -37,12 +37,14 @@ struct Roles {
   bool reference_is_a;
 };
 
-// Faces that look this way by less than this cosine are sides.
-constexpr float kLooksThisWay = 1.0e-4f;
+// Cosine below which a face is a side: it does not face the reference.
+constexpr float kMinFacing = 1.0e-4f;
 
-float missed(const Polytope& a, const Polytope& b) { return kMissed * min(a.inner_radius, b.inner_radius); }
+float allowed_miss(const Polytope& a, const Polytope& b) {
+  return kMissTolerance * min(a.inner_radius, b.inner_radius);
+}
 
-// Candidate points of one face of the reference, against one face of the incident after the other.
+// Candidate points of one reference face against several incident faces in turn.
 class FacePoints {
  public:
   FacePoints(const Roles& roles, int face, float max_separation)
@@ -54,21 +56,22 @@ class FacePoints {
     pair_.max_separation = max_separation;
   }
 
-  // `separation` is that of the two along the face's normal.
+  // `separation` is that of the polytopes along the normal of the face.
   int find(float separation) {
     const Vec3 local = rotate_inverse(roles_.reference_from_incident.orientation, outward_);
     const int first = opposing_face(roles_.incident, lowest_vertex(roles_.incident, local).vertex, local);
     clip_with(first);
     if (separation > 0.0f) return count_;
-    const float enough = separation + missed(roles_.reference, roles_.incident);
-    if (deepest_ > enough) clip_with_others(first, local);
+    const float enough = separation + allowed_miss(roles_.reference, roles_.incident);
+    if (deepest_ > enough) clip_other_faces(first, local);
     return count_;
   }
   ManifoldPoint* points() { return points_; }
 
  private:
-  // They overlap, but not there, or not only: every other face that looks this way and reaches deeper is cut too.
-  void clip_with_others(int first, Vec3 local) {
+  // The polytopes overlap, but not there, or not only. Every other face that faces the reference and is deeper is
+  // clipped too.
+  void clip_other_faces(int first, Vec3 local) {
     const Polytope& incident = roles_.incident;
     const float height = dot(outward_, reference_.vertices[0] - roles_.reference_from_incident.position);
     constexpr int kMaxPaddedVertices = 256;
@@ -77,15 +80,15 @@ class FacePoints {
     for (int i = 0; i < incident.padded_count; i += kPolytopeLanes)
       (values_along(incident, i, direction) - Wide<kPolytopeLanes>(height)).store_unaligned(separations + i);
     for (int f = 0; f < incident.face_count; f += kPolytopeLanes) {
-      const Mask<kPolytopeLanes> aside =
-          dot(load_planes(incident, f).normal, direction) > Wide<kPolytopeLanes>(-kLooksThisWay);
+      const Mask<kPolytopeLanes> facing_away =
+          dot(load_planes(incident, f).normal, direction) > Wide<kPolytopeLanes>(-kMinFacing);
       const int end = min(f + kPolytopeLanes, incident.face_count);
       for (int k = f; k < end; ++k) {
-        if (k != first && !aside[k - f] && lowest_of(k, separations) < deepest_) clip_with(k);
+        if (k != first && !facing_away[k - f] && lowest_of(k, separations) < deepest_) clip_with(k);
       }
     }
   }
-  // The smallest of the values of a face's corners.
+  // The smallest of the values at the corners of a face.
   float lowest_of(int face, const float* values) const {
     const int count = face_corners(roles_.incident, face);
     float lowest = kUnbounded;
@@ -100,15 +103,15 @@ class FacePoints {
     ManifoldPoint* const found = points_ + count_;
     const int room = kMaxClipPoints - count_,
               count = min(clip_faces(pair_, roles_.reference_is_a, found), room);
-    int kept = 0;
+    int new_count = 0;
     for (int i = 0; i < count; ++i) {
       if (is_known(found[i])) continue;
       deepest_ = min(deepest_, found[i].separation);
-      found[kept++] = found[i];
+      found[new_count++] = found[i];
     }
-    count_ += kept;
+    count_ += new_count;
   }
-  // Faces that share a corner or an edge meet the reference in the same points.
+  // Faces that share a corner or an edge give the same points there.
   bool is_known(const ManifoldPoint& point) const {
     for (int i = 0; i < count_; ++i) {
       if (points_[i].feature == point.feature || points_[i].position == point.position) return true;
@@ -122,14 +125,14 @@ class FacePoints {
   FacePair pair_;
   float deepest_ = kUnbounded;
   int count_ = 0;
-  // The points kept, and behind them those of one more face. Not cleared: only the counted ones are ever read.
+  // The points found so far, and behind them those of one more face. Not cleared: only the counted elements are read.
   union {
     ManifoldPoint points_[2 * kMaxClipPoints];
   };
 };
 
-// None when the edges pass beside each other: of polytopes apart another feature is nearer, and of those that overlap the faces
-// beside nearly parallel edges were as good.
+// Adds no point if the edges do not cross. Another feature of separated polytopes is then closer; of overlapping ones
+// the faces at the nearly parallel edges were as good.
 void edge_point(const Polytope& a, const Polytope& b, const Transform& a_from_b, const PolytopeAxis& axis,
                 LocalManifold& out) {
   const HullEdge &ea = a.edges[axis.index_a], &eb = b.edges[axis.index_b];
@@ -138,7 +141,8 @@ void edge_point(const Polytope& a, const Polytope& b, const Transform& a_from_b,
                           DVec3(a_from_b * b.vertices[eb.from]), DVec3(a_from_b * b.vertices[eb.to]));
   const bool at_end = near.s <= 0.0 || near.s >= 1.0 || near.t <= 0.0 || near.t >= 1.0;
   if (at_end && (axis.separation > 0.0f ||
-                 length(near.on_b - near.on_a) > double((1.0f + kLost) * -axis.separation + missed(a, b))))
+                 length(near.on_b - near.on_a) >
+                     double((1.0f + kDepthTolerance) * -axis.separation + allowed_miss(a, b))))
     return;
   out.count = 1;
   out.points[0].position = to_float(0.5 * (near.on_a + near.on_b));
@@ -162,7 +166,7 @@ void face_manifold(const Polytope& a, const Polytope& b, const Transform& a_from
   }
 }
 
-// The face whose normal is within kNearFace of a normal from A to B; none if there is none.
+// The face whose normal is within kNearFace of a normal from A to B; no axis if there is none.
 PolytopeAxis face_near(const Polytope& a, const Polytope& b, const Transform& a_from_b, Vec3 normal) {
   PolytopeAxis best;
   float nearest = kNearFace;
@@ -185,23 +189,23 @@ bool crossing_faces(const Polytope& a, const Polytope& b, const Transform& a_fro
   const PolytopeAxis face = face_near(a, b, a_from_b, edges.normal);
   if (face.kind == AxisKind::none) return false;
   face_manifold(a, b, a_from_b, face, max_separation, out);
-  return stands_for_crossing(out, edges.separation, min(a.inner_radius, b.inner_radius));
+  return replaces_crossing(out, edges.separation, min(a.inner_radius, b.inner_radius));
 }
 
-// False when they are farther apart than allowed along some axis.
+// Returns false if the polytopes are farther apart than allowed along some axis.
 bool collide_polytopes(const Polytope& a, const Polytope& b, const Transform& a_from_b, float max_separation,
                        PairCache& cache, LocalManifold& out) {
-  PolytopeAxis favoured = axis_of_name(cache.words[0], a, b);
+  PolytopeAxis favoured = decode_axis(cache.words[0], a, b);
   if (favoured.kind != AxisKind::none && separation_along(a, b, a_from_b, favoured) > max_separation)
     return false;
   const PolytopeAxis axis = separating_axis(a, b, a_from_b, max_separation, favoured);
-  cache.words[0] = axis_name(axis);
+  cache.words[0] = encode_axis(axis);
   if (axis.separation > max_separation) return false;
   if (axis.kind != AxisKind::edges) {
     face_manifold(a, b, a_from_b, axis, max_separation, out);
-    // Nearest, or deepest, beside the face.
-    const float lost = deepest_of(out) - axis.separation;
-    if (lost > missed(a, b) + kLost * max(-axis.separation, 0.0f)) out.count = 0;
+    // The points miss the closest or deepest feature, which lies beside the face.
+    const float excess = deepest_of(out) - axis.separation;
+    if (excess > allowed_miss(a, b) + kDepthTolerance * max(-axis.separation, 0.0f)) out.count = 0;
     return true;
   }
   if (crossing_faces(a, b, a_from_b, axis, max_separation, out)) return true;
@@ -216,18 +220,18 @@ bool collide_polytopes(const Polytope& a, const Polytope& b, const Transform& a_
 void collide_polyhedra(const Shape& a, const Shape& b, const Transform& a_from_b, float max_separation,
                        PairCache& cache, LocalManifold& out) {
   out.count = 0;
-  bool near = false;
+  bool in_range = false;
   if (a.kind == ShapeKind::hull && b.kind == ShapeKind::hull) {
-    near = collide_polytopes(make_polytope(*a.hull), make_polytope(*b.hull), a_from_b, max_separation, cache,
-                             out);
+    in_range = collide_polytopes(make_polytope(*a.hull), make_polytope(*b.hull), a_from_b, max_separation,
+                                 cache, out);
   } else {
     const BoxPolytope box(a.kind == ShapeKind::box ? a.extents : b.extents);
     const Polytope view_a = a.kind == ShapeKind::box ? box.view() : make_polytope(*a.hull);
     const Polytope view_b = a.kind == ShapeKind::box ? make_polytope(*b.hull) : box.view();
-    near = collide_polytopes(view_a, view_b, a_from_b, max_separation, cache, out);
+    in_range = collide_polytopes(view_a, view_b, a_from_b, max_separation, cache, out);
   }
-  // Near, or even overlapping, but beside each other's faces.
-  if (near && out.count == 0) collide_cores(a, b, a_from_b, max_separation, cache, out);
+  // The polyhedra are close or overlap, but no face projects onto the other.
+  if (in_range && out.count == 0) collide_cores(a, b, a_from_b, max_separation, cache, out);
 }
 
 }  // namespace gyre

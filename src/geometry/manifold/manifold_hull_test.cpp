@@ -47,7 +47,7 @@ TEST(ManifoldHull, PrismsRestOnFourExactPoints) {
           low = min(low, m.points[i].position);
           high = max(high, m.points[i].position);
         }
-        // The centre lies well inside of what is left.
+        // The centre lies well inside the remaining polygon.
         EXPECT_LT(low.x, 0.7f - 0.15f);
         EXPECT_GT(high.x, 0.7f + 0.15f);
         EXPECT_LT(low.z, -1.2f - 0.15f);
@@ -112,7 +112,7 @@ TEST(ManifoldHull, TheNormalIsContinuousThroughTouch) {
   int corners = 0;
   for (int i = 0; i < 300; ++i) {
     const Shape a = hulls.add_random(random, 1.0f), b = hulls.add_random(random, 1.0f);
-    const Quat q = random.turn();
+    const Quat q = random.rotation();
     const Vec3 d = random.direction();
     const Vec3 together = a.hull->centroid - rotate(q, b.hull->centroid);
     float near = 0.0f, far = 4.0f;
@@ -124,7 +124,7 @@ TEST(ManifoldHull, TheNormalIsContinuousThroughTouch) {
     const LocalManifold out = collide(a, b, {together + (far + 1.0e-5f) * d, q}, 0.02f);
     ASSERT_GT(in.count, 0);
     ASSERT_GT(out.count, 0);
-    // Where the place of touch is a hair from a corner or an edge of the difference, two axes are equally good.
+    // If the touching point is close to a corner or an edge of the difference, two axes are equally good.
     if (dot(in.normal, out.normal) < 0.999f) ++corners;
   }
   EXPECT_LE(corners, 6);

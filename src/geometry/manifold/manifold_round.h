@@ -1,7 +1,7 @@
-// Contacts of round shapes in closed form: spheres with everything convex, capsules with each other.
+// Contacts of round shapes in closed form: spheres with every convex shape, capsules with capsules.
 //
-// In: two shapes, where B is in A's frame, and how far apart they may be. Out: one point with the exact normal (for
-// capsules lying side by side, two). Deep inside, where no direction is nearest, some fixed unit normal is taken.
+// In: two shapes, the pose of B in A's frame, and the largest separation. Out: one point with the exact normal (two for
+// parallel capsules). If no direction is closest, as deep inside, the normal is some fixed unit vector.
 //
 // Source: C. Ericson, "Real-Time Collision Detection", 2005, chapter 5.
 #pragma once
@@ -10,7 +10,7 @@
 
 namespace gyre {
 
-// Whether collide_round answers for two kinds (in either order).
+// True if collide_round serves two kinds, in either order.
 constexpr bool is_round_pair(ShapeKind a, ShapeKind b) {
   return a == ShapeKind::sphere || b == ShapeKind::sphere ||
          (a == ShapeKind::capsule && b == ShapeKind::capsule);

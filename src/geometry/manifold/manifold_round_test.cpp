@@ -1,4 +1,4 @@
-// Round shapes: closed forms against each other and against GJK, exact normals, every way in which a centre can lie inside.
+// Round shapes: closed forms against each other and against GJK, exact normals, and all positions of a centre inside.
 #include "geometry/manifold/manifold_round.h"
 
 #include "geometry/testing/convex_oracle.h"
@@ -54,7 +54,7 @@ TEST(ManifoldRound, SpheresAgainstEverythingEqualGjkOutsideAndEpaInside) {
     const CoreDistance core = core_distance(pair, 1.0e30, {});
     if (core.overlap) {
       ++inside;
-      // EPA is exact on flat sides; of a centre on a cylinder's axis it knows only some of a ring of equal ways out.
+      // EPA is exact on flat sides. For a centre on a cylinder's axis it finds only one of a ring of equal exits.
       EXPECT_NEAR(double(m.points[0].separation), distance, 2.0e-2 * pair.size())
           << kind_name(kind) << " " << i;
       EXPECT_NEAR(
@@ -64,7 +64,7 @@ TEST(ManifoldRound, SpheresAgainstEverythingEqualGjkOutsideAndEpaInside) {
       continue;
     }
     EXPECT_NEAR(double(m.points[0].separation), distance, tolerance) << kind_name(kind) << " " << i;
-    // The normal is exact: what is left over is float rounding of the distance it came from.
+    // The normal is exact; only the distance has a rounding error of float.
     EXPECT_LT(length(DVec3(m.normal) - core.normal), 1.0e-4 + tolerance / core.distance)
         << kind_name(kind) << " " << i;
     // The same with the sphere first.

@@ -1,4 +1,4 @@
-// Planes against every convex kind, and the one door for any two shapes.
+// Planes against every convex kind, and the dispatch for any two shapes.
 #include "geometry/manifold/manifold.h"
 
 #include "geometry/testing/convex_oracle.h"
@@ -71,7 +71,7 @@ TEST(CollidePlane, CountsAtRest) {
 }
 
 TEST(CollidePlane, ManyCornersKeepTheLowest) {
-  // A round hull deep in the plane has more candidates than fit.
+  // A round hull deep in the plane has too many candidates.
   Random random(82);
   Hulls hulls;
   std::vector<Vec3> points;

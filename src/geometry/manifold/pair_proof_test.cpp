@@ -1,16 +1,17 @@
-// Every two convex kinds, a million odd pairs of each: distances, overlaps and manifolds are proven from what the shapes are
-// (surface_oracle.h), never by asking the engine twice.
+// Every two convex kinds, a million degenerate pairs of each: distances, overlaps and manifolds are proven from the
+// definitions of the shapes (surface_oracle.h), never by a second call of the engine.
 //
-// Of a distance: the two points lie in the shapes and are so far apart (it is no more), and a direction parts the shapes by
-// that much (it is no less). Of an overlap: a point lies in both, or no direction parts them.
-// Of a manifold: along its normal the shapes are as far apart as its deepest point says, so that moving them by that frees
-// them and no corner is left inside; no direction found in a search of all is much better; each point lies on both
-// surfaces; and turning the second shape about the points by a little does not let a part of it sink that no point bears.
+// A distance is right if the two points lie in the shapes and are that far apart (upper bound), and if a direction
+// separates the shapes by that much (lower bound). An overlap is right if a point lies in both, or if no direction
+// separates them. A manifold is right if the shapes are as far apart along its normal as its deepest point says, so
+// that moving them by that separates them and leaves no corner inside; if no direction in a full search is much better;
+// if each point lies on both surfaces; and if a small rotation of the second shape about the points lets no unsupported
+// part sink.
 //
-// One pair in ten thousand may stay without proof. Those that do are needles and plates a thousandth as thick as long, or lie
-// in each other by half of their size: there a manifold is a first look, and the next one mends what it leaves.
+// One pair in ten thousand may stay without proof. Those pairs are needles and plates a thousandth as thick as long, or
+// they overlap by half of their size: there the first manifold is an estimate that the next one corrects.
 #include "geometry/manifold/manifold.h"
-#include "geometry/query/nearest.h"
+#include "geometry/query/closest_points.h"
 #include "geometry/testing/surface_oracle.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +37,7 @@ std::string describe(const Shape& s) {
   }
   return out;
 }
-std::string describe(const OddPair& pair) {
+std::string describe(const DegeneratePair& pair) {
   char text[300];
   const Transform& t = pair.t;
   std::snprintf(text, sizeof text, " at %.9g %.9g %.9g turn %.9g %.9g %.9g %.9g", double(t.position.x),
@@ -45,12 +46,12 @@ std::string describe(const OddPair& pair) {
   return describe(pair.a) + " | " + describe(pair.b) + text;
 }
 
-// One pair, and what is wrong with the answers about it (the first thing found, or null).
+// One pair, and the first error in its results (or null).
 class Proof {
  public:
   static constexpr double kTurn = 1.0e-3;  // rad
 
-  Proof(const OddPair& odd, Random& random)
+  Proof(const DegeneratePair& odd, Random& random)
       : odd_(odd), pair_(odd.a, odd.b, odd.t), random_(random), big_(size_of(odd.a, odd.b, odd.t)) {
     small_ = min(long_side(odd.a), long_side(odd.b));
     thin_ = min(thin_side(odd.a), thin_side(odd.b));
@@ -76,8 +77,8 @@ class Proof {
   double on_b(DVec3 p) const { return outside_surface(odd_.b, pair_.to_b(p - pair_.center_of_b())); }
 
   void distance() {
-    const PlacedShape placed{&odd_.b, DVec3(odd_.t.position), normalized(to_double(odd_.t.orientation))};
-    if (!find_nearest(odd_.a, placed, 1.0e30, near)) return say("nothing nearest", 0);
+    const PosedShape placed{&odd_.b, DVec3(odd_.t.position), normalized(to_double(odd_.t.orientation))};
+    if (!find_closest_points(odd_.a, placed, 1.0e30, near)) return say("nothing nearest", 0);
     const double out_a = outside_surface(odd_.a, near.on_target), out_b = on_b(near.on_convex);
     if (near.overlap) {
       if (max(out_a, out_b) <= rounding_) return;
@@ -87,7 +88,7 @@ class Proof {
     }
     if (max(out_a, out_b) > rounding_) say("nearest point outside", max(out_a, out_b));
     const double gap = length(near.on_convex - near.on_target);
-    // The points of a minimum are good to the root of what its value is.
+    // The position of a minimum is as precise as the root of its value.
     if (absolute(gap - near.distance) > rounding_ + 1.0e-4 * double(big_))
       say("nearest points elsewhere", gap - near.distance);
     const double proof = surface_separation(odd_.a, odd_.b, pair_, near.normal);
@@ -103,7 +104,7 @@ class Proof {
     const double apart = near.overlap ? -1.0 : near.distance;
     if (m.count == 0) {
       if (!near.overlap && apart > double(reach) - rounding_) return;
-      // Touching by less than a rounding may go either way.
+      // Contacts within rounding may count as touching or not.
       if (near.overlap && searched_separation(odd_.a, odd_.b, pair_, random_, 200) > -rounding_) return;
       return say("no manifold", apart);
     }
@@ -114,21 +115,22 @@ class Proof {
     along = surface_separation(odd_.a, odd_.b, pair_, n);
     deepest = 1.0e300;
     for (int i = 0; i < m.count; ++i) deepest = min(deepest, double(m.points[i].separation));
-    // What faces with many corners and caps lose to the polygons that stand for them, and points found before by rounding.
-    // Nor does a manifold keep the very deepest of points that are equally deep for its width (geometry/manifold/clip).
+    // The loss of caps and of faces with many corners to their polygons, and of points that were found earlier by
+    // rounding. A manifold may also drop the very deepest of points that are equally deep for its width
+    // (geometry/manifold/clip).
     double width = 0.0;
     for (int i = 1; i < m.count; ++i)
       width = max(width, length(DVec3(m.points[i].position) - DVec3(m.points[0].position)));
     const double cut = 2.0e-3 * thin_ + 6.0e-4 * width + rounding_;
     if (deepest < along - cut) say("deeper than the shapes are along the normal", along - deepest);
     if (deepest > along + cut) {
-      // Then another direction than the normal must part them once they are moved by what the deepest point says. Of what
-      // lies deep in each other it is enough that looking again leads out.
+      // Otherwise another direction must separate them after the move by the deepest point. For deep overlaps it is
+      // enough that further manifolds lead out.
       const double left = left_inside(deepest * n, cut, along < -0.1 * thin_ ? 3 : 0, reach);
       if (left > cut) say("a corner is left inside", left);
     }
     points_lie_on_both(n, cut);
-    // Faces stand for edges that are up to a twelfth better, and for edges that all but lie in them.
+    // Faces may replace edges that are up to a twelfth better, and edges that nearly lie in them.
     const double favour = 3.0e-3 * thin_ + rounding_;
     if (!near.overlap && deepest < 0.91 * near.distance - favour)
       say("shapes apart are told to be nearer", near.distance - deepest);
@@ -136,7 +138,7 @@ class Proof {
       const double best = searched_separation(odd_.a, odd_.b, pair_, random_, 60);
       if (deepest < best - 0.09 * absolute(best) - favour) say("not the shortest way out", best - deepest);
     }
-    // Of what is thinner than a corner would sink, or lies deep, nothing can be told.
+    // Nothing can be proven for bodies thinner than the depth of a corner, or for deep overlaps.
     if (pivot && wrong == nullptr && along < 0.0 && along > -0.1 * thin_ && thin_ > 4.0 * kTurn * small_)
       pivot_about_points(n);
   }
@@ -152,7 +154,7 @@ class Proof {
       if (max(a, b) > slack + sideways()) say("point outside", max(a, b));
     }
   }
-  // Segments that lie over each other may do so a little beside each other.
+  // Segments over each other may pass slightly beside each other.
   double sideways() const {
     const bool a = odd_.a.radius > 0.0f && odd_.a.kind != ShapeKind::sphere;
     const bool b = odd_.b.radius > 0.0f && odd_.b.kind != ShapeKind::sphere;
@@ -160,7 +162,7 @@ class Proof {
     return 0.1 * double(a && b ? min(odd_.a.radius, odd_.b.radius) : max(odd_.a.radius, odd_.b.radius));
   }
 
-  // How deep they still lie in each other when B was moved by -`back`, and then by up to `more` manifolds.
+  // The remaining depth after B was moved by -`back`, and then by up to `more` manifolds.
   double left_inside(DVec3 back, double cut, int more, float reach) const {
     Transform t = odd_.t;
     t.position = t.position - to_float(back);
@@ -178,8 +180,8 @@ class Proof {
     }
   }
 
-  // The largest separation found from these directions and from what GJK and EPA propose, each judged by what the shapes
-  // are.
+  // The largest separation along these directions and those of GJK and EPA, each evaluated by the definitions of the
+  // shapes.
   double best_separation(const CorePair& moved, DVec3 first, DVec3 second) const {
     DVec3 looks[4] = {first, second, first, first};
     const CoreDistance apart = core_distance(moved, 1.0e30, {});
@@ -195,8 +197,8 @@ class Proof {
     return climb_separation(odd_.a, odd_.b, moved, at, 1.0e-2, 1.0e-7);
   }
 
-  // Turns B by a little so that it stays on its points: what sinks by more than turning on a round rim explains is a corner
-  // without a point.
+  // Rotates B slightly so that it stays on its points. A part that sinks by more than the rotation on a round rim
+  // explains is a corner without a point.
   void pivot_about_points(DVec3 n) {
     const DVec3 w = kTurn * DVec3(random_.direction());
     const DVec3 c = pair_.center_of_b();
@@ -204,7 +206,7 @@ class Proof {
     for (int i = 0; i < m.count; ++i) middle += (1.0 / m.count) * DVec3(m.points[i].position);
     double lift = -1.0e300;
     for (int i = 0; i < m.count; ++i) {
-      // How far the point sinks by the turn, and how deep it is already.
+      // The depth that the rotation adds at the point, and the depth before.
       const DVec3 p(m.points[i].position);
       lift = max(lift, -dot(cross(w, p - middle), n) - double(m.points[i].separation));
     }
@@ -216,7 +218,7 @@ class Proof {
       say("a corner sinks", sunk / (kTurn * small_));
   }
 
-  const OddPair& odd_;
+  const DegeneratePair& odd_;
   CorePair pair_;
   Random& random_;
   float big_;
@@ -241,8 +243,8 @@ std::vector<Kinds> all_pairs() {
   return all;
 }
 
-// Surfaces, not cores, brought together.
-void touch(OddPair& odd, Random& random) {
+// The surfaces, not the cores, are brought together.
+void touch(DegeneratePair& odd, Random& random) {
   const CorePair pair(odd.a, odd.b, odd.t);
   const CoreDistance found = core_distance(pair, 1.0e30, {});
   if (found.overlap) return;
@@ -258,7 +260,7 @@ void prove(Kinds kinds, int pairs, unsigned seed) {
     Hulls hulls;
     for (int i = begin; i < min(pairs, begin + 1000); ++i) {
       const bool swap = random.below(2) == 0;
-      OddPair odd = odd_pair(random, hulls, swap ? kinds.b : kinds.a, swap ? kinds.a : kinds.b);
+      DegeneratePair odd = degenerate_pair(random, hulls, swap ? kinds.b : kinds.a, swap ? kinds.a : kinds.b);
       if (random.below(3) == 0) touch(odd, random);
       const float reach = 0.02f * float(min(long_side(odd.a), long_side(odd.b)));
       Proof proof(odd, random);

@@ -1,4 +1,4 @@
-// Keeping the triangles around a shape. See kept_triangles.h.
+// The cache of triangles around a shape. See cached_triangles.h.
 #include "geometry/manifold_mesh/cached_triangles.h"
 
 #include "base/prefetch.h"
@@ -6,8 +6,8 @@
 namespace gyre {
 namespace {
 
-void find_triangles(const Mesh& mesh, const Aabb& box, CachedTriangles& kept) {
-  kept.box = box;
+void find_triangles(const Mesh& mesh, const Aabb& box, CachedTriangles& cache) {
+  cache.box = box;
   int count = 0;
   bool for_tree = false;
   const auto enter = [&](std::uint32_t index, int lane) {
@@ -18,24 +18,24 @@ void find_triangles(const Mesh& mesh, const Aabb& box, CachedTriangles& kept) {
     for (std::uint32_t id = first; id < first + leaf && !for_tree; ++id) {
       if (!overlap(triangle_box(mesh, id), box)) continue;
       for_tree = count == CachedTriangles::kRoom || (mesh.flags[id] & kInsidePatch) != 0;
-      if (!for_tree) kept.ids[count++] = id;
+      if (!for_tree) cache.ids[count++] = id;
     }
   };
   walk_overlaps(mesh.tree, box, enter, visit);
-  kept.count = for_tree ? CachedTriangles::kForTree : count;
+  cache.count = for_tree ? CachedTriangles::kForTree : count;
 }
 
 }  // namespace
 
-bool cache_triangles(const Mesh& mesh, const Aabb& box, float margin, CachedTriangles& kept) {
-  if (kept.count == CachedTriangles::kUnknown || !contains(kept.box, box))
-    find_triangles(mesh, grow(box, margin), kept);
-  return kept.count >= 0;
+bool cache_triangles(const Mesh& mesh, const Aabb& box, float margin, CachedTriangles& cache) {
+  if (cache.count == CachedTriangles::kUnknown || !contains(cache.box, box))
+    find_triangles(mesh, grow(box, margin), cache);
+  return cache.count >= 0;
 }
 
-void prefetch_triangles(const Mesh& mesh, const CachedTriangles& kept) {
-  for (int i = 0; i < kept.count; ++i) {
-    const std::size_t id = kept.ids[i];
+void prefetch_triangles(const Mesh& mesh, const CachedTriangles& cache) {
+  for (int i = 0; i < cache.count; ++i) {
+    const std::size_t id = cache.ids[i];
     __builtin_prefetch(mesh.indices.data() + 3 * id);
     __builtin_prefetch(mesh.normals.data() + id);
     __builtin_prefetch(mesh.twins.data() + 3 * id);

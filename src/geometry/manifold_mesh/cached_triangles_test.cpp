@@ -1,5 +1,5 @@
-// Triangles kept around a shape that wanders over a mesh: all that is near is among them, and a look with them finds what a look
-// without them does.
+// Cached triangles around a shape that wanders over a mesh: they include all near triangles, and a manifold with the
+// cache equals one without.
 #include "geometry/manifold_mesh/cached_triangles.h"
 
 #include "geometry/manifold_mesh/mesh_candidates.h"
@@ -57,7 +57,7 @@ TEST(CachedTriangles, TooManyAndFlatPatchesAreForTheTree) {
 }
 
 TEST(CachedTriangles, TheInsideOfAPatchAmongHillsIsForTheTree) {
-  // So small that few lanes of the tree are all of one patch: the triangles themselves tell.
+  // So small that few lanes of the tree lie in one patch; the triangles themselves decide.
   const Geometry ground =
       grid(6.0f, 1.0f, [](float x, float z) {
         return std::fabs(x) <= 2.0f && std::fabs(z) <= 2.0f ? 0.0f : 0.3f + 0.2f * std::sin(x + 2.0f * z);
@@ -84,7 +84,7 @@ TEST(CachedTriangles, ChangeNothingOfALook) {
     Vec3 middle;
     for (int round = 0; round < 500; ++round) {
       middle = 0.98f * (middle + random.in_box(0.2f));
-      const PlacedConvex convex(shape, random.rotation());
+      const LocalConvex convex(shape, random.rotation());
       MeshCandidates with, without;
       find_candidates(select_mesh_kernels(), surface, convex, middle, 0.1f, &kept, with);
       find_candidates(select_mesh_kernels(), surface, convex, middle, 0.1f, nullptr, without);

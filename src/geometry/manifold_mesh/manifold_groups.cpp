@@ -1,4 +1,4 @@
-// Contacts with one normal become one manifold. See manifold_mesh.h.
+// Contacts with equal normals become one manifold. See manifold_mesh.h.
 #include "geometry/manifold_mesh/manifold_mesh.h"
 
 namespace gyre {
@@ -42,7 +42,7 @@ void ManifoldGroups::add(Vec3 normal, std::uint32_t triangle, const MeshPoints& 
   for (int i = 0; i < points.count; ++i) add_point(group, points.points[i]);
 }
 
-// Joins the two groups whose normals differ least, under the normal of the deeper.
+// Joins the two groups with the most similar normals, under the normal of the deeper.
 void ManifoldGroups::merge_nearest() {
   int into = 0, from = 1;
   float nearest = -2.0f;
@@ -56,14 +56,14 @@ void ManifoldGroups::merge_nearest() {
       }
     }
   }
-  Group& kept = groups_[into];
-  const Group& gone = groups_[from];
-  if (gone.deepest < kept.deepest) {
-    kept.normal = gone.normal;
-    kept.deepest = gone.deepest;
-    kept.triangle = gone.triangle;
+  Group& target = groups_[into];
+  const Group& source = groups_[from];
+  if (source.deepest < target.deepest) {
+    target.normal = source.normal;
+    target.deepest = source.deepest;
+    target.triangle = source.triangle;
   }
-  for (int i = 0; i < gone.count; ++i) add_point(kept, gone.points[i]);
+  for (int i = 0; i < source.count; ++i) add_point(target, source.points[i]);
   for (int i = from; i + 1 < count_; ++i) groups_[i] = groups_[i + 1];
   --count_;
 }

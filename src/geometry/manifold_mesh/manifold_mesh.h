@@ -1,15 +1,15 @@
-// The steps of collide_mesh (declared in manifold.h) that are worth testing alone: collecting contacts by normal.
+// Grouping of contacts by normal: the step of collide_mesh (declared in manifold.h) that is worth a test of its own.
 //
-// In: points of one triangle after the other, each set with its normal. Out: at most kMaxMeshManifolds manifolds of at most
-// four points. Points with the same name meet in one; contacts whose normals differ by less than two degrees share a
-// manifold, with the normal of the deepest.
+// In: the points of one triangle after the other, each set with its normal. Out: at most kMaxMeshManifolds manifolds of
+// at most four points. Points with equal names become one; contacts whose normals differ by less than two degrees share
+// a manifold, with the normal of the deepest.
 #pragma once
 
 #include "geometry/manifold_mesh/mesh_points.h"
 
 namespace gyre {
 
-// Cosine (of two degrees) between the normals of contacts that belong to one stretch of ground.
+// Cosine (of two degrees) between the normals of contacts on one level piece of ground.
 constexpr float kSameNormal = 0.9994f;
 
 class ManifoldGroups {
@@ -18,14 +18,15 @@ class ManifoldGroups {
   static constexpr int kPointRoom = 56;
 
   void add(Vec3 normal, std::uint32_t triangle, const MeshPoints& points);
-  // The least separation; infinity if there are no contacts.
+  // The smallest separation; infinity if there are no contacts.
   float deepest() const {
-    float least = __builtin_huge_valf();
-    for (int i = 0; i < count_; ++i) least = min(least, groups_[i].deepest);
-    return least;
+    float smallest = __builtin_huge_valf();
+    for (int i = 0; i < count_; ++i) smallest = min(smallest, groups_[i].deepest);
+    return smallest;
   }
   bool empty() const { return count_ == 0; }
-  // Writes the manifolds, positions moved by `position`; in the order in which their first contact came. Returns how many.
+  // Writes the manifolds with their positions moved by `position`, in the order of their first contacts. Returns their
+  // number.
   int finish(Vec3 position, LocalManifold* out);
 
  private:
@@ -34,7 +35,7 @@ class ManifoldGroups {
     float deepest;
     std::uint32_t triangle;
     int count;
-    // Not cleared: only the counted ones are ever read.
+    // Not cleared: only the counted elements are read.
     union {
       ManifoldPoint points[kPointRoom];
     };
@@ -48,8 +49,8 @@ class ManifoldGroups {
   Group groups_[kRoom];
 };
 
-// Whether a mesh or height field (one of the two) has nothing within `reach` of the other, convex shape, by a look at boxes
-// alone: false where they do not tell, or where the two are of other kinds.
-bool is_clear_of_surface(const Shape& a, const Shape& b, const Transform& a_from_b, float reach);
+// True if a mesh or height field (one of the two shapes) has no box within `max_distance` of the other, convex shape.
+// False if boxes cannot tell, or if the shapes are of other kinds.
+bool is_clear_of_surface(const Shape& a, const Shape& b, const Transform& a_from_b, float max_distance);
 
 }  // namespace gyre

@@ -1,9 +1,9 @@
-// Where surfaces have real edges: ridges, valleys, walls, steps, borders, and pieces that are laid side by side.
+// Surfaces with real edges: ridges, valleys, walls, steps, borders, and adjacent pieces.
 #include "geometry/distance/closest.h"
-#include "geometry/shape/cooked.h"
 #include "geometry/manifold_mesh/manifold_mesh.h"
+#include "geometry/query/closest_points.h"
+#include "geometry/shape/cooked.h"
 #include "geometry/testing/mesh_contact_test.h"
-#include "geometry/query/nearest.h"
 
 #include <gtest/gtest.h>
 
@@ -32,13 +32,14 @@ Nearest nearest_by_brute_force(const Mesh& mesh, Vec3 center) {
   return best;
 }
 
-// Whether some triangle of this normal has the point in its plane, not farther away than `reach`, and nearest to it is an edge that the
-// triangle shares with one that rises before its plane there: a valley, beyond which a ball may come over it.
+// True if some triangle with this normal has the point in its plane within `reach`, and the closest feature is a
+// valley: an edge shared with a triangle that rises before its plane. A ball may come over such a triangle.
 bool lies_beyond_a_valley(const Mesh& mesh, Vec3 point, Vec3 normal, float reach) {
   const DVec3 p(point);
   for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
     const TriangleView view = view_triangle(mesh, t);
-    const DVec3 n(view.normal), foot = closest_on_triangle(p, DVec3(view.v[0]), DVec3(view.v[1]), DVec3(view.v[2])).point;
+    const DVec3 n(view.normal),
+        foot = closest_on_triangle(p, DVec3(view.v[0]), DVec3(view.v[1]), DVec3(view.v[2])).point;
     if (length(view.normal - normal) > 0.04f || absolute(dot(n, p - DVec3(view.v[0]))) > 1.0e-3 ||
         length(p - foot) > double(reach))
       continue;
@@ -51,7 +52,8 @@ bool lies_beyond_a_valley(const Mesh& mesh, Vec3 point, Vec3 normal, float reach
         shared += is_shared;
         if (!is_shared) before = dot(n, DVec3(v) - DVec3(view.v[0]));
       }
-      const DVec3 on_other = closest_on_triangle(foot, DVec3(other.v[0]), DVec3(other.v[1]), DVec3(other.v[2])).point;
+      const DVec3 on_other =
+          closest_on_triangle(foot, DVec3(other.v[0]), DVec3(other.v[1]), DVec3(other.v[2])).point;
       if (shared == 2 && before > 0.0 && length(on_other - foot) < 1.0e-5) return true;
     }
   }
@@ -90,8 +92,8 @@ TEST(CollideMeshEdges, SphereEqualsBruteForceOnRoughGround) {
       EXPECT_NEAR(found.deepest(), separation, 2.0e-5f);
       const Vec3 normal = to_float((DVec3(place) - want.point) / want.distance);
       EXPECT_NE(found.along(normal, 0.03f), nullptr);
-      // Every contact touches the sphere along its normal: none pushes from where there is no surface, but those beyond valleys, which
-      // do not touch yet.
+      // Every contact touches the sphere along its normal, so none pushes from a place without surface. Only contacts
+      // beyond valleys do not touch yet.
       for (int m = 0; m < found.count; ++m) {
         const LocalManifold& manifold = found.all[m];
         const ManifoldPoint& p = manifold.points[0];
@@ -239,7 +241,7 @@ TEST(CollideMeshEdges, ABoxBeforeAStepIsStopped) {
 
 TEST(CollideMeshEdges, PlatesAndCapsulesTouchTheBorderOfASheet) {
   const Geometry sheet = flat_grid(1.0f, 0.25f).cook();
-  // Beside the border at its height: pushed straight away from it.
+  // Beside the border at its height, pushed straight away from it.
   for (const AnyShape& shape :
        {AnyShape(Box{{0.3f, 0.3f, 0.3f}}), AnyShape(Sphere{0.3f}), AnyShape(Capsule{0.3f, 0.4f}),
         AnyShape(Cylinder{0.3f, 0.3f}), AnyShape(Box{{0.3f, 0.3f, 0.3f}, 0.1f})}) {
@@ -347,14 +349,14 @@ TEST(CollideMeshEdges, BlocksSideBySideAreNoEdges) {
 }
 
 TEST(CollideMeshEdges, DoublesFromBehindAreNoEdges) {
-  // Every triangle twice, once from each side: how some tools write surfaces with two sides.
+  // Every triangle twice, once from each side, as some tools write double-sided surfaces.
   Triangles sheet = flat_grid(3.0f, 0.5f);
   const std::vector<std::uint32_t> front = sheet.indices;
   for (std::size_t i = 0; i < front.size(); i += 3) sheet.triangle(front[i], front[i + 2], front[i + 1]);
   expect_no_ghosts(sheet.cook(), -2.0f, 2.0f);
 }
 
-// A ball above a ridge of a fraction of a degree, its foot on neither side, had no contact at all.
+// A ball above a ridge of a fraction of a degree had no contact, because its foot was on neither side.
 TEST(CollideMeshEdges, ABallRestsOnARidgeThatIsAllButFlat) {
   for (const float slope : {1.0e-4f, 4.0e-4f, 9.0e-4f, 3.0e-3f}) {
     Triangles roof;
@@ -369,16 +371,17 @@ TEST(CollideMeshEdges, ABallRestsOnARidgeThatIsAllButFlat) {
   }
 }
 
-// A cone beside and below the border of a floor, its tip above the floor's plane, was thrown up by more than its height.
+// A cone beside and below the border of a floor, with its tip above the plane of the floor, was thrown up by more than
+// its height.
 TEST(CollideMeshEdges, WhatIsBelowAndBesideAFloorIsNotTouched) {
   const Geometry floor = flat_grid(1.0f, 0.5f).cook();
   const Manifolds found = collide(floor, Cone{0.7f, 0.7f}, {{-0.19f, -0.63f, -1.2f}, {}});
   EXPECT_EQ(found.count, 0);
 }
 
-// A hull whose lowest corner hangs a little beside a ridge was told to be up to three times as far away: only points over the face
-// counted, and they lie higher. No contact may be farther than the shapes are, which are known from outside; it may be nearer, by the best
-// separating axis, but not overlap.
+// A hull whose lowest corner hangs slightly beside a ridge was reported up to three times as far away, because only
+// points over the face counted, and they are higher. No contact may be farther than the independent distance of the
+// shapes. It may be closer, by the best separating axis, but not overlap.
 TEST(CollideMeshEdges, ACornerBesideARidgeIsAsNearAsItIs) {
   Random random{83};
   int apart = 0, too_far = 0, overlapping = 0;
@@ -395,12 +398,13 @@ TEST(CollideMeshEdges, ACornerBesideARidgeIsAsNearAsItIs) {
     if (!hull) continue;
     const Shape shape = make_shape(AnyShape(*hull));
     Transform pose{{random.between(-0.2f, 0.2f), 1.5f, random.between(-0.2f, 0.2f)}, random.rotation()};
-    gyre::Nearest near;
+    gyre::ClosestPair near;
     const double gap = double(random.between(0.001f, 0.006f));
     for (int k = 0; k < 8; ++k) {  // down, until they all but touch
-      const PlacedShape placed{&shape, DVec3(pose.position), to_double(pose.orientation)};
+      const PosedShape placed{&shape, DVec3(pose.position), to_double(pose.orientation)};
       near.distance = 1.0;
-      if (!find_nearest(make_shape(ground), placed, 10.0, near) || near.overlap || near.distance < gap) break;
+      if (!find_closest_points(make_shape(ground), placed, 10.0, near) || near.overlap || near.distance < gap)
+        break;
       pose.position.y -= float(near.distance - 0.98 * gap);
     }
     if (near.overlap || near.distance > 0.009) continue;
@@ -414,7 +418,8 @@ TEST(CollideMeshEdges, ACornerBesideARidgeIsAsNearAsItIs) {
   EXPECT_EQ(overlapping, 0) << "of " << apart;
 }
 
-// A hull that hangs over the border of a slope, its lowest corner behind the slope's plane but beside it, was pushed out by half a metre.
+// A hull over the border of a slope was pushed out by half a metre: its lowest corner was behind the plane of the slope
+// but beside it.
 TEST(CollideMeshEdges, HullsBesideTheBorderOfASlopeAreNotPushed) {
   Random random{84};
   const Geometry ground = grid(0.2f, 0.1f, [](float x, float) { return x; }).cook();
@@ -425,11 +430,14 @@ TEST(CollideMeshEdges, HullsBesideTheBorderOfASlopeAreNotPushed) {
     const Result<Geometry> hull = cook_hull(points);
     if (!hull) continue;
     const Shape shape = make_shape(AnyShape(*hull));
-    const Transform pose{{random.between(0.0f, 0.7f), random.between(0.0f, 0.9f), random.between(-0.2f, 0.2f)},
-                         random.rotation()};
-    gyre::Nearest near;
-    const PlacedShape placed{&shape, DVec3(pose.position), to_double(pose.orientation)};
-    if (!find_nearest(make_shape(ground), placed, 10.0, near) || near.overlap || near.distance < 1.0e-3) continue;
+    const Transform pose{
+        {random.between(0.0f, 0.7f), random.between(0.0f, 0.9f), random.between(-0.2f, 0.2f)},
+        random.rotation()};
+    gyre::ClosestPair near;
+    const PosedShape placed{&shape, DVec3(pose.position), to_double(pose.orientation)};
+    if (!find_closest_points(make_shape(ground), placed, 10.0, near) || near.overlap ||
+        near.distance < 1.0e-3)
+      continue;
     ++apart;
     const Manifolds found = collide(ground, *hull, pose, 0.01f);
     pushed += found.count > 0 && found.deepest() < 0.0f;
@@ -438,15 +446,17 @@ TEST(CollideMeshEdges, HullsBesideTheBorderOfASlopeAreNotPushed) {
   EXPECT_GT(apart, 2000);
 }
 
-// Each had no contact: a short capsule beside a border, a cap over the corner of a patch, a ball on a sliver.
+// These had no contact: a short capsule beside a border, a cap over the corner of a patch, a ball on a sliver.
 TEST(CollideMeshEdges, WhatIsNearHasAContact) {
   const Geometry slope = grid(0.2f, 0.1f, [](float x, float) { return 0.2f + x; }).cook();
   const Transform beside{{0.252823472f, 1.00780642f, -0.126857162f},
                          {-0.653578222f, 0.422708601f, 0.192262322f, 0.597652256f}};
-  EXPECT_NEAR(collide(slope, Capsule{0.606344521f, 0.0173586588f}, beside, 0.0124741f).deepest(), 3.746e-3f, 1e-4f);
+  EXPECT_NEAR(collide(slope, Capsule{0.606344521f, 0.0173586588f}, beside, 0.0124741f).deepest(), 3.746e-3f,
+              1e-4f);
   const Geometry patch = flat_grid(0.2f, 0.1f).cook();
   const Transform over{{0.929088831f, 0.86321491f, -0.618770003f}, {}};
-  EXPECT_NEAR(collide(patch, Cylinder{0.894715488f, 0.845970392f}, over, 0.0246267f).deepest(), 0.0172445f, 1e-4f);
+  EXPECT_NEAR(collide(patch, Cylinder{0.894715488f, 0.845970392f}, over, 0.0246267f).deepest(), 0.0172445f,
+              1e-4f);
   const Vec3 corners[] = {{0x1.433ed4p-5f, -0x1.4e468ep-7f, 0x1.2c9606p-5f},
                           {-0x1.813234p-6f, 0x1.8a81cep-9f, -0x1.54010ep-5f},
                           {0x1.9c55b6p-6f, -0x1.d81152p-8f, 0x1.366944p-6f}};
@@ -456,8 +466,8 @@ TEST(CollideMeshEdges, WhatIsNearHasAContact) {
   EXPECT_NEAR(collide(sliver, Sphere{1.0f}, above, 0.02f).deepest(), 6.005e-3f, 1e-4f);
 }
 
-// Seen from beside, a sliver is an edge: discs whose rim meets it had no contact, and a cylinder that it cuts was pushed along the
-// sliver's normal, four times as far, at a point beyond its end.
+// Seen edge-on, a sliver is an edge. Discs whose rim meets it had no contact, and a cylinder that it cuts was pushed
+// along the sliver's normal, four times as far, at a point beyond its end.
 TEST(CollideMeshEdges, CylindersTouchSliversAsEdges) {
   struct Case {
     Vec3 corners[3];  // both ends first
@@ -511,7 +521,7 @@ TEST(CollideMeshEdges, CylindersTouchSliversAsEdges) {
   }
 }
 
-// Needles and plates over steps and slopes were taken for overlapping, and pushed out by decimetres.
+// Needles and plates over steps and slopes counted as overlapping and were pushed out by decimetres.
 TEST(CollideMeshEdges, ThinHullsThatAreApartAreNotPushed) {
   Random random{82};
   const Geometry ground =
@@ -526,11 +536,11 @@ TEST(CollideMeshEdges, ThinHullsThatAreApartAreNotPushed) {
     if (!hull) continue;
     const Shape shape = make_shape(AnyShape(*hull));
     Transform pose{{random.between(-0.2f, 0.2f), 1.0f, random.between(-0.2f, 0.2f)}, random.rotation()};
-    gyre::Nearest near;
+    gyre::ClosestPair near;
     for (int k = 0; k < 8; ++k) {  // down, until they all but touch
-      const PlacedShape placed{&shape, DVec3(pose.position), to_double(pose.orientation)};
+      const PosedShape placed{&shape, DVec3(pose.position), to_double(pose.orientation)};
       near.distance = 1.0;  // beside the ground there is nothing
-      if (!find_nearest(make_shape(ground), placed, 10.0, near)) break;
+      if (!find_closest_points(make_shape(ground), placed, 10.0, near)) break;
       if (near.overlap || near.distance < 2.0e-4) break;
       pose.position.y -= float(near.distance - 1.0e-4);
     }

@@ -1,7 +1,7 @@
-// Height fields, dense and rough ground: the same answers from both kinds of surface, bounded work.
-#include "geometry/shape/cooked.h"
+// Height fields, dense and rough ground: equal results from both kinds of surface, and bounded work.
 #include "geometry/manifold_mesh/manifold_mesh.h"
 #include "geometry/manifold_mesh/mesh_candidates.h"
+#include "geometry/shape/cooked.h"
 #include "geometry/testing/mesh_contact_test.h"
 
 #include <gtest/gtest.h>
@@ -57,7 +57,8 @@ void expect_same(const Manifolds& a, const Manifolds& b, bool also_normals = tru
   EXPECT_NEAR(a.deepest(), b.deepest(), 2.0e-5f);
 }
 
-// What the look at boxes lets go, the look at triangles finds no contact with; and not all of it is let go only far away.
+// If the test of boxes rules a pair out, the test of triangles finds no contact; and it rules out more than distant
+// pairs.
 TEST(CollideHeightField, NothingTouchesWhatIsClearOfTheSurface) {
   const Ground hills =
       make_ground(24, 0.4f, [](float x, float z) { return std::sin(x) * std::cos(1.3f * z); });
@@ -100,7 +101,7 @@ TEST(CollideHeightField, EqualsTheSameGroundAsAMesh) {
         pose.position.y = level + random.between(0.0f, 0.1f) - lowest_point(kinds[kind], pose);
         const Manifolds a = collide(ground.field, kinds[kind], pose),
                         b = collide(ground.mesh, kinds[kind], pose);
-        // Of directions that are equally good on curved shapes the first triangle's wins, and the order differs.
+        // Among equally good directions on curved shapes that of the first triangle wins, and the order differs.
         const bool curved = kind == 5 || kind == 6;
         expect_same(a, b, !curved);
         touching += a.count > 0;
@@ -169,7 +170,7 @@ TEST(CollideHeightField, BordersAndTheLastCell) {
 int candidate_count(const Geometry& ground, const AnyShape& any, const Transform& pose) {
   const Shape mesh = make_shape(ground), shape = make_shape(any);
   const Surface surface(mesh);
-  const PlacedConvex convex(shape, pose.orientation);
+  const LocalConvex convex(shape, pose.orientation);
   MeshCandidates candidates;
   find_candidates(select_mesh_kernels(), surface, convex, pose.position, kMargin, nullptr, candidates);
   return candidates.count;
@@ -225,7 +226,7 @@ TEST(CollideDenseGround, ALargeBodyOnFinelyCutRoughGroundKeepsTheDeepest) {
 }
 
 TEST(CollideRoughGround, NothingIsPushedDownOrFarther) {
-  // Any kind, any pose, any ground: normals point out of the ground, and no contact is deeper than the body is sunk.
+  // Any kind, any pose, any ground: normals point out of the ground, and no contact is deeper than the body.
   Random random{97};
   const std::vector<AnyShape> kinds = all_kinds(random);
   for (const float roughness : {0.05f, 0.3f}) {

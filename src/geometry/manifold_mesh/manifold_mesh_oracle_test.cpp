@@ -1,7 +1,8 @@
-// Contacts with rough ground against GJK over every triangle: none missed, none invented, and following them leads out.
-#include "geometry/shape/cooked.h"
+// Contacts with rough ground against GJK over every triangle: no contact is missed or invented, and following the
+// contacts leads out.
 #include "geometry/distance/gjk.h"
 #include "geometry/manifold_mesh/manifold_mesh.h"
+#include "geometry/shape/cooked.h"
 #include "geometry/testing/mesh_contact_test.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +33,7 @@ class Oracle {
     }
   }
 
-  // Distance of the surfaces; -1 when the shape's core meets a triangle.
+  // Distance of the surfaces; -1 if the core of the shape meets a triangle.
   float distance(const Shape& shape, const Transform& pose) const {
     double best = 1.0e9;
     for (std::size_t i = 0; i < hulls_.size(); ++i) {
@@ -83,7 +84,7 @@ TEST(CollideMeshOracle, FindsTheNearestPointOfEveryKind) {
         if (want <= 0.0f || want > 0.019f) continue;
         const Manifolds found = collide(ground, kinds[kind], pose);
         ASSERT_GE(found.count, 1);
-        // An axis search of polyhedra may call corners beside edges a little nearer than they are, never by much.
+        // An axis search of polyhedra may report corners beside edges slightly closer than they are, never by much.
         EXPECT_GT(found.deepest(), want - 3.0e-3f);
         inexact += absolute(found.deepest() - want) > 1.0e-4f;
         ++total;

@@ -12,28 +12,30 @@
 namespace gyre {
 namespace {
 
-// Sines: directions this near to the face's normal are the face's; how far a direction may lie outside an arc or a cone; how
-// much an edge or corner may lie lower than another and still belong to the supporting feature.
+// Sines. kFaceAngle: directions this close to the normal of the face are equal to it. kArcSlack: how far a direction
+// may lie outside an arc or a cone; kSliverSlack: the largest such slack for slivers. kLevelSlack: how much lower than
+// another a corner may lie and still belong to the supporting feature.
 constexpr float kFaceAngle = 1.0e-3f;
 constexpr float kArcSlack = 1.0e-3f;
 constexpr float kSliverSlack = 0.1f;
 constexpr float kLevelSlack = 1.0e-3f;
-// A triangle all of whose corners are level along a direction farther than this from its normal is a sliver, seen from beside.
-constexpr float kBesideFace = 5.0e-3f;
-// A sine too.
+// If all corners of a triangle are level along a direction farther than this from its normal, the triangle is a sliver
+// seen edge-on.
+constexpr float kEdgeOnSine = 5.0e-3f;
+// Sine below which edges count as parallel.
 constexpr float kParallelEdges = 1.0e-4f;
-// Cosine between the normals at the rim of a plate; and how much farther than its edge, relative to its size, a plate may reach along an
-// axis of that edge.
+// Cosine between the normals at the rim of a plate; and how much farther than its edge, relative to its size, a plate
+// may extend along an axis of that edge.
 constexpr float kRim = -0.9f;
 constexpr float kRimSlack = 1.0e-5f;
-// A sine that no rounding reaches.
+// A sine above the rounding error.
 constexpr float kOutwardSlack = 1.0e-5f;
 
 using Floats = Wide<4>;
 
 class DirectionSearch {
  public:
-  DirectionSearch(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,
+  DirectionSearch(const Surface& surface, const LocalTriangle& triangle, const LocalConvex& convex,
                   float face_separation, float max_separation, AxisScratch& scratch)
       : surface_(surface), t_(triangle), convex_(convex), max_separation_(max_separation), scratch_(scratch) {
     found_.best = face_separation;
@@ -57,11 +59,12 @@ class DirectionSearch {
  private:
   bool apart() const { return found_.best > max_separation_; }
 
-  // Straight through the triangle from behind: never a way out.
+  // Straight through the triangle from behind: never an exit.
   bool is_backwards(Vec3 d) const { return dot(d, t_.normal) < -0.99f; }
   bool is_face(Vec3 d) const { return length_squared(d - t_.normal) < kFaceAngle * kFaceAngle; }
 
-  // Of a sliver the normal, and with it where arcs begin, is as uncertain as its corners are beside its height.
+  // The slack of arcs. The normal of a sliver, and so the start of its arcs, is as uncertain as its corners relative to
+  // its height.
   float arc_slack() const {
     const float longest = max(t_.length[0], max(t_.length[1], t_.length[2]));
     const float double_area = t_.length[0] * length(cross(t_.along[0], t_.v[2] - t_.v[0]));
@@ -72,12 +75,12 @@ class DirectionSearch {
     return t_.edge[edge] == EdgeKind::convex || t_.edge[edge] == EdgeKind::open;
   }
 
-  // What the separation along a direction across an edge must be better than.
+  // A direction across an edge matters only if its separation is better than this.
   float needed_of(int edge) const { return is_active(edge) ? min(found_.best, useful()) : found_.best; }
 
-  // What that asks of pairs of edges: of the corner where the triangle's begins, that it lies so far before the faces that
-  // meet in the other, on a mean of the two. Vertices lie off the planes of their faces by far less than the part of the size
-  // here.
+  // The same bound for pairs of edges, in two forms. `min_before` bounds the distance of the corner where the
+  // triangle's edge begins before the two faces at the other edge, as a weighted mean. Vertices lie off the planes of
+  // their faces by far less than the fraction of the size here.
   struct EdgeBar {
     float needed[3];
     float min_before[3];
@@ -97,7 +100,7 @@ class DirectionSearch {
     const float outward = dot(d, t_.outward[edge]);
     if (outward < -kArcSlack && outward < -arc_slack()) return false;
     const float front = dot(d, t_.normal);
-    // The border of a surface that is solid from both sides is the rim of a plate.
+    // The border of a double-sided surface is the rim of a plate.
     if (t_.edge[edge] == EdgeKind::open) return surface_.double_sided() || front >= -kArcSlack;
     const Vec3 other = t_.neighbor_normal[edge];
     return dot(d, cross(other, t_.along[edge])) >= -kArcSlack &&
@@ -107,7 +110,7 @@ class DirectionSearch {
   bool corner_allows(int corner, Vec3 d) const {
     if ((t_.flat_corners >> corner & 1) != 0) return false;
     if (!surface_.double_sided() && dot(d, t_.normal) < -kArcSlack) return false;
-    const int own = t_.turned && corner != 0 ? 3 - corner : corner;
+    const int own = t_.flipped && corner != 0 ? 3 - corner : corner;
     return surface_.in_normal_cone(t_.id, own, d, kArcSlack);
   }
 
@@ -130,7 +133,7 @@ class DirectionSearch {
     }
   }
 
-  // The corners that are highest along `d`: one, the two of an edge, or all three.
+  // The highest corners along `d`: one, the two of an edge, or all three.
   unsigned supporting_corners(Vec3 d) const {
     float height[3];
     for (int i = 0; i < 3; ++i) height[i] = dot(d, t_.v[i]);
@@ -145,25 +148,25 @@ class DirectionSearch {
     return corners;
   }
 
-  // Of a sliver seen from beside, which is no more than an edge: the edge that looks along `d`; of two the one nearer to
-  // `p`.
+  // Of a sliver seen edge-on, which is no more than an edge: the edge that faces along `d`, and of two such edges the
+  // one closer to `p`.
   unsigned supporting_edge(Vec3 d, Vec3 p) const {
     unsigned corners = 7;
-    float least = __builtin_huge_valf();
+    float smallest = __builtin_huge_valf();
     for (int i = 0; i < 3; ++i) {
       if (!(dot(d, t_.outward[i]) > 0.0f)) continue;
-      const Vec3 way = p - t_.v[i];
+      const Vec3 from_start = p - t_.v[i];
       const float squared =
-          length_squared(way - clamp(dot(way, t_.along[i]), 0.0f, t_.length[i]) * t_.along[i]);
-      if (squared < least) least = squared, corners = 1u << i | 1u << next_corner(i);
+          length_squared(from_start - clamp(dot(from_start, t_.along[i]), 0.0f, t_.length[i]) * t_.along[i]);
+      if (squared < smallest) smallest = squared, corners = 1u << i | 1u << next_corner(i);
     }
     return corners;
   }
 
-  // An allowed direction must be better than this to matter.
+  // The separation that an allowed direction must beat to matter.
   float useful() const { return max(found_.feature.separation, found_.best - kAxisBias * convex_.size()); }
 
-  // Returns whether the direction is the best allowed one so far.
+  // Returns true if the direction is the best allowed one so far.
   bool offer(Vec3 d, float separation, unsigned corners, AxisSource source) {
     core_best_ = max(core_best_, separation + convex_.radius());
     if (is_backwards(d)) {
@@ -172,7 +175,7 @@ class DirectionSearch {
       return false;
     }
     found_.best = max(found_.best, separation);
-    // Nearest points beside the face are exact, however little their direction leans.
+    // Closest points beside the face are exact, however little their direction leans.
     if (is_face(d) && source != AxisSource::nearest_pair) return false;
     if (!(separation > useful()) || !allows(corners, d)) return false;
     found_.feature.separation = separation;
@@ -194,22 +197,23 @@ class DirectionSearch {
   void nearest_pair();
   void nearest_of_vertices(double& best, SimplexPoint& on_triangle, DVec3& on_convex) const;
   bool nearest_by_gjk();
-  void deepest_way_out(const CorePair& pair, const CoreDistance& found);
+  void search_penetration(const CorePair& pair, const CoreDistance& found);
 
   const Surface& surface_;
-  const NearTriangle& t_;
-  const PlacedConvex& convex_;
+  const LocalTriangle& t_;
+  const LocalConvex& convex_;
   float max_separation_;
   AxisScratch& scratch_;
-  float core_best_;  // the largest separation of core and triangle along any direction, also backwards
+  float
+      core_best_;  // the largest separation of core and triangle along any direction, backward ones included
   AxisSearch found_;
 };
 
 void DirectionSearch::face_axes() {
-  for (int first = 0; first < convex_.face_count(); first += PlacedConvex::kLanes) {
+  for (int first = 0; first < convex_.face_count(); first += LocalConvex::kLanes) {
     const Floats separations =
         Floats::load_unaligned(scratch_.before_face + first) - Floats(convex_.radius());
-    // Behind the last face its copies stand: they are no better than it is.
+    // The lanes after the last face repeat it and are no better.
     for (unsigned rest = to_bits(separations > Floats(useful())); rest != 0; rest &= rest - 1) {
       const int i = first + std::countr_zero(rest);
       const float separation = scratch_.before_face[i] - convex_.radius();
@@ -221,17 +225,17 @@ void DirectionSearch::face_axes() {
   }
 }
 
-// An edge of the triangle and one of the polyhedron make a face of their Minkowski difference where their arcs on the
-// sphere of normals cross: the triangle's runs from its normal through `outward` to the other side. The direction there
-// is a sum of the two faces' normals, and what it is worth, all but for rounding, the same sum of what the normals are
-// worth, which serve all edges of their faces. So most pairs are known to be in vain by their faces' marks.
+// An edge of the triangle and an edge of the polyhedron make a face of the Minkowski difference if their arcs cross on
+// the sphere of normals; the arc of the triangle's edge runs from its normal through `outward` to the opposite normal.
+// The direction at the crossing is a weighted sum of the two face normals, and its separation is, up to rounding, the
+// same sum of the separations along them. So marks of the faces, computed once, exclude most pairs.
 void DirectionSearch::edge_axes() {
-  float outward[3][PlacedConvex::kMaxVertices];
-  std::int32_t marks[PlacedConvex::kMaxVertices];
+  float outward[3][LocalConvex::kMaxVertices];
+  std::int32_t marks[LocalConvex::kMaxVertices];
   EdgeBar bar = edge_bar();
   convex_.dot_faces(t_.along, scratch_.along);
   convex_.dot_faces(t_.outward, outward);
-  for (int f = 0; f < convex_.face_count(); f += PlacedConvex::kLanes) {
+  for (int f = 0; f < convex_.face_count(); f += LocalConvex::kLanes) {
     WideInt<4> mark(0);
     for (int i = 0; i < 3; ++i) {
       const Mask<4> backwards = Floats::load_unaligned(scratch_.along[i] + f) < Floats(0.0f);
@@ -250,41 +254,42 @@ void DirectionSearch::edge_axes() {
   }
 }
 
-// The edges of the triangle in `rest` across one of the polyhedron. Returns whether any was worth a look.
+// Tests the edges of the triangle in `rest` against one edge of the polyhedron. Returns true if any pair was tested in
+// full.
 bool DirectionSearch::axes_across(const HullEdge& edge, unsigned rest, const EdgeBar& bar) {
-  bool looked = false;
+  bool tested = false;
   for (; rest != 0; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
     const float left = scratch_.along[i][edge.left], right = scratch_.along[i][edge.right];
-    const float left_part = absolute(left), right_part = absolute(right), longest = left_part + right_part;
+    const float left_weight = absolute(left), right_weight = absolute(right),
+                longest = left_weight + right_weight;
     const float before =
-        right_part * scratch_.before[i][edge.left] + left_part * scratch_.before[i][edge.right];
+        right_weight * scratch_.before[i][edge.left] + left_weight * scratch_.before[i][edge.right];
     if (!(left * right < 0.0f) || before < bar.min_before[i] * longest) continue;
     const Vec3 crossing =
-        right_part * convex_.face_normal(edge.left) + left_part * convex_.face_normal(edge.right);
+        right_weight * convex_.face_normal(edge.left) + left_weight * convex_.face_normal(edge.right);
     if (!(dot(crossing, t_.outward[i]) < 0.0f)) continue;
-    // `crossing` is at most as long as the two parts together: most overlapping pairs are known to be no better without
-    // a root.
+    // `crossing` is no longer than the sum of both weights. That excludes most overlapping pairs without a root.
     const float scaled = dot(crossing, t_.v[i] - convex_.vertex(edge.from));
     if (scaled < 0.0f && scaled - convex_.radius() * longest < bar.needed[i] * longest) continue;
     edge_axis(edge, i);
-    looked = true;
+    tested = true;
   }
-  return looked;
+  return tested;
 }
 
 void DirectionSearch::edge_axis(const HullEdge& edge, int i) {
   const float needed = needed_of(i);
-  // Not from the faces' normals, which all but cancel each other at the rim of a plate.
+  // Computed from the edges, because the face normals nearly cancel at the rim of a plate.
   const Vec3 edge_along = convex_.vertex(edge.to) - convex_.vertex(edge.from);
   Vec3 d = cross(edge_along, t_.along[i]);
   const float size = length(d);
-  // Edges that are all but parallel: the nearest faces' axes serve.
+  // The edges are nearly parallel. The axes of the closest faces serve.
   if (!(size > kParallelEdges * length(edge_along))) return;
   d = d / (dot(d, t_.outward[i]) < 0.0f ? -size : size);
   const float separation = dot(d, convex_.vertex(edge.from) - t_.v[i]) - convex_.radius();
   if (separation <= needed) return;
-  // At the rim of a plate normals all but oppose each other, so that whether arcs cross is of rounding.
+  // At the rim of a plate the normals nearly oppose each other, so rounding decides if arcs cross.
   if (dot(convex_.face_normal(edge.left), convex_.face_normal(edge.right)) < kRim &&
       convex_.lowest(d) < dot(d, convex_.vertex(edge.from)) - kRimSlack * convex_.size())
     return;
@@ -294,7 +299,7 @@ void DirectionSearch::edge_axis(const HullEdge& edge, int i) {
   }
 }
 
-// The one edge of a capsule has normals all around it.
+// The single edge of a capsule has normals all around it.
 void DirectionSearch::segment_axes() {
   const Vec3 axis = convex_.vertex(1) - convex_.vertex(0);
   const float length_of_axis = length(axis);
@@ -326,37 +331,37 @@ void DirectionSearch::nearest_of_vertices(double& best, SimplexPoint& on_triangl
 }
 
 void DirectionSearch::nearest_of_sphere() {
-  const DVec3 middle(convex_.vertex(0));
+  const DVec3 center(convex_.vertex(0));
   const SphereTriangle found =
-      sphere_triangle(middle, double(convex_.radius()), DVec3(t_.v[0]), DVec3(t_.v[1]), DVec3(t_.v[2]));
+      sphere_triangle(center, double(convex_.radius()), DVec3(t_.v[0]), DVec3(t_.v[1]), DVec3(t_.v[2]));
   if (!(found.distance > 1.0e-6 * double(convex_.size()))) return;
   if (offer(to_float(found.normal), float(found.distance) - convex_.radius(), found.corners,
             AxisSource::nearest_pair)) {
-    found_.feature.on_core = to_float(middle);
+    found_.feature.on_core = to_float(center);
   }
 }
 
-// Whether the segment runs through the triangle. (All cross products of a sliver's edges may lie too near to each other for
-// an axis search to tell.)
+// True if the segment passes through the triangle. (All cross products of a sliver's edges may be too similar for an
+// axis search.)
 bool DirectionSearch::is_pierced() const {
   const DVec3 a(t_.v[0]), b(t_.v[1]), c(t_.v[2]), from(convex_.vertex(0)), to(convex_.vertex(1));
   const DVec3 front = cross(b - a, c - a);
   const double start = dot(front, from - a), end = dot(front, to - a);
   if ((start > 0.0 && end > 0.0) || (start < 0.0 && end < 0.0)) return false;
-  // On which side of each edge the segment's line passes, seen along it.
-  const DVec3 way = to - from;
-  const double ab = dot(cross(b - a, way), from - a), bc = dot(cross(c - b, way), from - b),
-               ca = dot(cross(a - c, way), from - c);
+  // The side of each edge on which the line of the segment passes.
+  const DVec3 segment = to - from;
+  const double ab = dot(cross(b - a, segment), from - a), bc = dot(cross(c - b, segment), from - b),
+               ca = dot(cross(a - c, segment), from - c);
   return (ab >= 0.0 && bc >= 0.0 && ca >= 0.0) || (ab <= 0.0 && bc <= 0.0 && ca <= 0.0);
 }
 
-// Whether no direction that was looked at, the one from behind the triangle among them, parts it from the core.
+// True if no tested direction, nor the one from behind the triangle, separates it from the core.
 bool DirectionSearch::is_overlap() const {
   const float behind = dot(t_.normal, t_.v[0]) - convex_.highest(t_.normal);
   return !(max(core_best_, behind) > 1.0e-6f * convex_.size());
 }
 
-// A segment that does not cross the triangle: the true direction is that between the nearest points.
+// For a segment that does not cross the triangle, the true direction is the one between the closest points.
 void DirectionSearch::nearest_pair() {
   double best = __builtin_huge_val();
   SimplexPoint on_triangle;
@@ -367,7 +372,7 @@ void DirectionSearch::nearest_pair() {
       const int k = next_corner(i);
       const SegmentPair pair = closest_of_segments(DVec3(t_.v[i]), DVec3(t_.v[k]), DVec3(from), DVec3(to));
       const double distance = length_squared(pair.on_b - pair.on_a);
-      // Ends were looked at with the vertices and win ties.
+      // Ends were tested with the vertices, and win ties.
       if (!(distance < best * (1.0 - 1.0e-9)) || pair.s <= 0.0 || pair.s >= 1.0) continue;
       best = distance;
       on_triangle.point = pair.on_a;
@@ -376,7 +381,7 @@ void DirectionSearch::nearest_pair() {
     }
   };
   try_edge(convex_.vertex(0), convex_.vertex(1));
-  // Corners of the triangle beside the segment.
+  // Corners of the triangle against the segment.
   const Vec3 inset{convex_.radius(), convex_.radius(), convex_.radius()};
   const Aabb core{convex_.local_box().low + inset, convex_.local_box().high - inset};
   for (int i = 0; i < 3; ++i) {
@@ -406,7 +411,7 @@ void DirectionSearch::polyhedron() {
     segment_axes();
   }
   if (convex_.radius() == 0.0f || apart()) return;
-  // The features of overlapping cores have distances too, but those mean nothing.
+  // The features of overlapping cores have distances too, but these mean nothing.
   if (convex_.vertex_count() == 2 ? is_pierced() : convex_.vertex_count() > 2 && is_overlap()) return;
   if (convex_.vertex_count() == 1) {
     nearest_of_sphere();
@@ -417,19 +422,19 @@ void DirectionSearch::polyhedron() {
   }
 }
 
-// Out of an overlap with a curved shape, by EPA.
-void DirectionSearch::deepest_way_out(const CorePair& pair, const CoreDistance& found) {
+// The exit from an overlap with a curved shape, by EPA.
+void DirectionSearch::search_penetration(const CorePair& pair, const CoreDistance& found) {
   const CorePenetration out = core_penetration(pair, found);
   const Vec3 d = to_float(out.normal);
   unsigned corners = supporting_corners(d);
-  if (corners == 7 && length_squared(d - t_.normal) > kBesideFace * kBesideFace)
+  if (corners == 7 && length_squared(d - t_.normal) > kEdgeOnSine * kEdgeOnSine)
     corners = supporting_edge(d, to_float(out.on_a));
   if (offer(d, float(-out.depth), corners, AxisSource::nearest_pair)) {
     found_.feature.on_core = to_float(out.on_b);
   }
 }
 
-// Whether triangle and core are apart: then GJK knows the direction.
+// Returns true if triangle and core are apart, so that GJK gives the direction.
 bool DirectionSearch::nearest_by_gjk() {
   Hull& hull = scratch_.triangle;
   hull.vertices.assign(t_.v, t_.v + 3);
@@ -453,12 +458,12 @@ bool DirectionSearch::nearest_by_gjk() {
     return true;
   }
   if (found.overlap || !(found.distance > 1.0e-6 * double(convex_.size()))) {
-    if (!convex_.has_vertices()) deepest_way_out(pair, found);
+    if (!convex_.has_vertices()) search_penetration(pair, found);
     return false;
   }
   const SimplexPoint near = closest_on_triangle(found.on_b, DVec3(t_.v[0]), DVec3(t_.v[1]), DVec3(t_.v[2]));
   const float separation = float(found.distance) - convex_.radius();
-  // Of parallel faces any points are nearest, also such over inner edges.
+  // Of parallel faces any points are closest, points over internal edges included.
   if (near.corners == 7 || is_face(to_float(found.normal))) {
     found_.over_face = true;
     found_.on_core = to_float(found.on_b);
@@ -476,28 +481,28 @@ Surface::Surface(const Shape& shape) {
   if (shape.kind == ShapeKind::height_field) field = shape.field;
 }
 
-NearTriangle place_triangle(const Surface& surface, std::uint32_t id, Vec3 position,
-                            const PlacedConvex& convex) {
-  NearTriangle t;
+LocalTriangle local_triangle(const Surface& surface, std::uint32_t id, Vec3 position,
+                             const LocalConvex& convex) {
+  LocalTriangle t;
   if (surface.mesh != nullptr) {
     view_triangle(*surface.mesh, id, t);
   } else {
     static_cast<TriangleView&>(t) = view_triangle(*surface.field, id);
   }
   if (surface.double_sided() && dot(t.normal, convex.center() + position - t.v[0]) < 0.0f) {
-    static_cast<TriangleView&>(t) = seen_from_behind(t);
-    t.turned = true;
+    static_cast<TriangleView&>(t) = back_view(t);
+    t.flipped = true;
   }
-  // The largest coordinate, from both its ends: cheaper than the size of each.
+  // The largest absolute coordinate, from both ends at once: cheaper than absolute values.
   const Vec3 low = min(min(position, t.v[0]), min(t.v[1], t.v[2])),
              high = max(max(position, t.v[0]), max(t.v[1], t.v[2]));
-  const float reach = max(largest(high), -smallest(low));
+  const float max_coordinate = max(largest(high), -smallest(low));
   for (Vec3& corner : t.v) corner = corner - position;
-  t.slack = 1.2e-7f * reach + 1.0e-6f * convex.size();
+  t.slack = 1.2e-7f * max_coordinate + 1.0e-6f * convex.size();
   return t;
 }
 
-void measure_edges(NearTriangle& t) {
+void measure_edges(LocalTriangle& t) {
   for (int i = 0; i < 3; ++i) {
     const Vec3 edge = t.v[next_corner(i)] - t.v[i];
     t.length[i] = max(length(edge), 1.0e-30f);
@@ -506,12 +511,12 @@ void measure_edges(NearTriangle& t) {
   }
 }
 
-AxisSearch search_axes(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,
+AxisSearch search_axes(const Surface& surface, const LocalTriangle& triangle, const LocalConvex& convex,
                        float face_separation, float max_separation, AxisScratch& scratch) {
   return DirectionSearch(surface, triangle, convex, face_separation, max_separation, scratch).run();
 }
 
-AxisSearch search_nearest(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,
+AxisSearch search_nearest(const Surface& surface, const LocalTriangle& triangle, const LocalConvex& convex,
                           float face_separation, float max_separation, AxisScratch& scratch) {
   return DirectionSearch(surface, triangle, convex, face_separation, max_separation, scratch).run_nearest();
 }

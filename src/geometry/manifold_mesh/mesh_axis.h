@@ -1,27 +1,31 @@
-// Along which direction a convex shape and one triangle of a surface touch, and whether the surface allows that direction.
+// The best direction between a convex shape and one triangle of a surface, and whether the surface allows it.
 //
-// A direction is allowed if it is a normal of the SURFACE, not only of the triangle: the face's own normal; at a convex or
-// open edge the arc between the two faces' normals; at a corner the cone that all edges around it leave free. A triangle
-// alone would also offer directions across its flat and concave edges: those are the ghost collisions, and whether the
-// contact then turns to the face or belongs to a neighbour is for manifold_mesh to decide, who sees all triangles.
+// A direction is allowed if it is a normal of the SURFACE and not of the triangle alone: the normal of the face; at a
+// convex or open edge, the arc between the normals of its two faces; at a corner, the cone that all its edges leave
+// free. The triangle alone would also offer directions across its flat and concave edges, which are the ghost
+// collisions. manifold_mesh, which knows all triangles, decides if such a contact gets the normal of the face or
+// belongs to a neighbour.
 //
-// Sources: C. Ericson, "Real-Time Collision Detection", 2005, chapter 5 (separating axes); D. Gregorius, "The Separating Axis
-// Test between Convex Polyhedra", GDC 2013 (edge pairs by arcs on the Gauss map).
+// In: a triangle and a convex shape in the form of local_convex.h. Out: the largest separation along any direction, and
+// the best allowed feature.
+//
+// Sources: C. Ericson, "Real-Time Collision Detection", 2005, chapter 5 (separating axes); D. Gregorius, "The
+// Separating Axis Test between Convex Polyhedra", GDC 2013 (edge pairs by arcs on the Gauss map).
 #pragma once
 
+#include "geometry/manifold_mesh/local_convex.h"
 #include "geometry/shape/height_field.h"
 #include "geometry/shape/mesh.h"
-#include "geometry/manifold_mesh/placed_convex.h"
 
 namespace gyre {
 
-// The mesh or the height field, one of the two.
+// The mesh or the height field; the other is null.
 struct Surface {
   const Mesh* mesh = nullptr;
   const HeightField* field = nullptr;
 
   explicit Surface(const Shape& shape);
-  // A box around the triangle, quick to get.
+  // A box around the triangle that is quick to compute.
   Aabb box(std::uint32_t id) const {
     if (mesh != nullptr) return triangle_box(*mesh, id);
     const std::uint32_t cell = id / 2;
@@ -40,9 +44,9 @@ struct Surface {
   }
 };
 
-// A triangle moved to the origin of the convex shape, with its edges measured.
-struct NearTriangle : TriangleView {
-  // Known once the edges are measured, and not cleared before.
+// A triangle relative to the origin of the convex shape, with the measures of its edges.
+struct LocalTriangle : TriangleView {
+  // Set by measure_edges(), and not cleared before.
   union {
     Vec3 along[3];  // unit, from v[i] to the next corner
   };
@@ -50,68 +54,69 @@ struct NearTriangle : TriangleView {
   union {
     Vec3 outward[3];  // unit, in the plane, away from the triangle
   };
-  float slack = 0.0f;   // m: what rounding can do to the places of its corners
-  bool turned = false;  // seen from behind: corners 1 and 2 have changed places against the surface's own
+  float slack = 0.0f;    // m, the rounding error of the corners
+  bool flipped = false;  // seen from behind: corners 1 and 2 are exchanged
 
-  NearTriangle() {}
+  LocalTriangle() {}
 };
 
-// The triangle without its edges' measures. `position` is that of the convex shape. A double-sided surface shows the side on
-// which the shape's middle lies.
-NearTriangle place_triangle(const Surface& surface, std::uint32_t id, Vec3 position,
-                            const PlacedConvex& convex);
-void measure_edges(NearTriangle& triangle);
-inline NearTriangle near_triangle(const Surface& surface, std::uint32_t id, Vec3 position,
-                                  const PlacedConvex& convex) {
-  NearTriangle triangle = place_triangle(surface, id, position, convex);
+// The triangle without the measures of its edges. `position` is that of the convex shape. A double-sided surface shows
+// the side on which the centre of the shape lies.
+LocalTriangle local_triangle(const Surface& surface, std::uint32_t id, Vec3 position,
+                             const LocalConvex& convex);
+void measure_edges(LocalTriangle& triangle);
+inline LocalTriangle measured_triangle(const Surface& surface, std::uint32_t id, Vec3 position,
+                                       const LocalConvex& convex) {
+  LocalTriangle triangle = local_triangle(surface, id, position, convex);
   measure_edges(triangle);
   return triangle;
 }
 
-// Relative to the size of the shape: directions whose separations differ by less are equally good. A corner or an edge that is
-// worse than the best direction by more is of no use and not reported.
+// Relative to the size of the shape: directions whose separations differ by less are equally good. A corner or an edge
+// that is worse than the best direction by more is not reported.
 constexpr float kAxisBias = 5.0e-4f;
 
 enum class AxisSource : std::uint8_t {
   shape_face,  // the normal of a face of the shape
   shape_edge,  // an edge of the shape across an edge of the triangle
-  nearest_pair,  // between the nearest points of triangle and core, or the deepest of an overlap with a curved one
+  // between the closest points of triangle and core, or the deepest points of an overlap with a curved core
+  nearest_pair,
 };
 
-// A corner or edge of the triangle where shape and surface may touch, and the direction.
+// A corner or edge of the triangle at which shape and surface may touch, and the direction.
 struct FeatureAxis {
-  float separation = -__builtin_huge_valf();  // of the surfaces; -infinity: there is none
+  float separation = -__builtin_huge_valf();  // of the surfaces; -infinity if there is no feature
   Vec3 direction;                             // unit, from the triangle to the convex shape
   unsigned corners = 0;  // bits of the triangle's corners: one for a corner, two for an edge
   AxisSource source = AxisSource::shape_face;
   int from = 0, to = 0;  // shape_edge: vertices of the shape
-  Vec3 on_core;          // nearest_pair: the core's point
+  Vec3 on_core;          // nearest_pair: the point of the core
 };
 
 struct AxisSearch {
   float best = -__builtin_huge_valf();  // the largest separation along any direction, allowed or not
-  FeatureAxis feature;                  // the best allowed direction besides the face's normal
-  bool over_face = false;  // the nearest point of the core, where it was searched for, lies over the face
+  FeatureAxis feature;                  // the best allowed direction other than the normal of the face
+  bool over_face = false;  // the closest point of the core, if it was searched, lies over the face
   Vec3 on_core;            // that point
 };
 
-// Room for the triangle in the form that GJK takes, kept between triangles so that it is made once, and for how far the
-// triangle lies before each face of a polyhedron: each of its corners, and the whole of it; and for what the faces' normals have
-// along its edges.
+// Buffers that are reused from triangle to triangle: the triangle in the form that GJK takes; the distances of each
+// corner and of the whole triangle before each face of a polyhedron; and the components of the face normals along the
+// edges of the triangle.
 struct AxisScratch {
   Hull triangle;
-  float before[3][PlacedConvex::kMaxVertices], before_face[PlacedConvex::kMaxVertices];
-  float along[3][PlacedConvex::kMaxVertices];
+  float before[3][LocalConvex::kMaxVertices], before_face[LocalConvex::kMaxVertices];
+  float along[3][LocalConvex::kMaxVertices];
 };
 
-// Looks at all directions but the face's normal, for which the caller knows the separation of the surfaces. Ends early once
-// one separation is above `max_separation`.
-AxisSearch search_axes(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,
+// Tests all directions but the normal of the face, along which the caller knows the separation of the surfaces. Ends
+// early once a separation is above `max_separation`.
+AxisSearch search_axes(const Surface& surface, const LocalTriangle& triangle, const LocalConvex& convex,
                        float face_separation, float max_separation, AxisScratch& scratch);
 
-// The same from the nearest points alone, for shapes that are apart: also the directions between a corner and an edge or a
-// corner, which an axis search over polyhedra does not know.
-AxisSearch search_nearest(const Surface& surface, const NearTriangle& triangle, const PlacedConvex& convex,
+// The same by the closest points alone, for shapes that are apart. It also finds the directions between a corner and an
+// edge or a corner, which an axis search over polyhedra does not know.
+AxisSearch search_nearest(const Surface& surface, const LocalTriangle& triangle, const LocalConvex& convex,
                           float face_separation, float max_separation, AxisScratch& scratch);
 
 }  // namespace gyre

@@ -1,4 +1,4 @@
-// Gathering triangles near a convex shape. See mesh_candidates.h.
+// Gathers the triangles near a convex shape. See mesh_candidates.h.
 #include "geometry/manifold_mesh/mesh_candidates.h"
 
 #include "base/container/sort.h"
@@ -9,19 +9,19 @@
 namespace gyre {
 namespace {
 
-// Cells each way around a body that has too many triangles near it, and the triangles that each keeps.
+// Cells along each axis around a body with too many triangles, and the number of triangles per cell.
 constexpr int kCells = 8;
-constexpr int kKept = 2;
-constexpr int kKeptSlots = kCells * kCells * kCells * kKept;
-// Of flat ground, those under corners of the shape in any case.
-constexpr int kCornerSlots = MeshCandidates::kRoom - kKeptSlots;
+constexpr int kPerCell = 2;
+constexpr int kCellSlots = kCells * kCells * kCells * kPerCell;
+// Slots for triangles of flat ground under corners of the shape.
+constexpr int kCornerSlots = MeshCandidates::kRoom - kCellSlots;
 static_assert(kCornerSlots >= 64);
-// How far around a shape triangles are kept, by its size.
-constexpr float kKeptMargin = 0.5f;
-// So many parts of one flat patch stand for all of it.
+// The margin of the triangle cache around a shape, relative to its size.
+constexpr float kCacheMargin = 0.5f;
+// The largest number of triangles that represent one flat patch.
 constexpr int kStandIns = 64;
 
-// Most triangles in a leaf are left out by nothing else.
+// The box of a triangle: the test that excludes most triangles of a leaf.
 AxisBox axis_box(const Mesh& mesh, std::uint32_t triangle) {
   const std::uint32_t* corner = mesh.indices.data() + 3 * std::size_t(triangle);
   const Wide<4> a = AxisBox::lanes(mesh.vertices[corner[0]]), b = AxisBox::lanes(mesh.vertices[corner[1]]),
@@ -29,9 +29,9 @@ AxisBox axis_box(const Mesh& mesh, std::uint32_t triangle) {
   return {min(a, min(b, c)), max(a, max(b, c))};
 }
 
-// A cube well inside of what a shape reaches, in the surface's frame: what overlaps it need not be asked for more.
-AxisBox inner_cube(const PlacedConvex& convex, Vec3 position, float max_separation) {
-  constexpr float kInBall = 0.57f;  // a cube's half side in a ball of radius 1
+// A cube well inside the range of the shape, in the surface's frame. A triangle that overlaps it needs no other test.
+AxisBox inner_cube(const LocalConvex& convex, Vec3 position, float max_separation) {
+  constexpr float kInBall = 0.57f;  // half the side of a cube inside a unit ball
   const Aabb& local = convex.local_box();
   const float half =
       kInBall * (smallest(half_size(local)) + max_separation) - 1.0e-6f * largest(absolute(position));
@@ -41,14 +41,14 @@ AxisBox inner_cube(const PlacedConvex& convex, Vec3 position, float max_separati
 
 class Gatherer {
  public:
-  Gatherer(const MeshKernels& kernels, const Surface& surface, const PlacedConvex& convex, Vec3 position,
-           float max_separation, CachedTriangles* kept, MeshCandidates& out)
+  Gatherer(const MeshKernels& kernels, const Surface& surface, const LocalConvex& convex, Vec3 position,
+           float max_separation, CachedTriangles* cached, MeshCandidates& out)
       : kernels_(kernels),
         surface_(surface),
         convex_(convex),
         position_(position),
         max_separation_(max_separation),
-        kept_(kept),
+        cached_(cached),
         out_(out),
         inner_(inner_cube(convex, position, max_separation)) {
     const float rounding = 1.2e-7f * largest(absolute(position));
@@ -62,13 +62,13 @@ class Gatherer {
       ++out_.count;
     });
     const bool too_many = out_.count > MeshCandidates::kRoom;
-    if (too_many) keep_deepest();
-    // A mesh is walked in the order of its triangles.
+    if (too_many) reduce_to_deepest();
+    // The triangles of a mesh come in ascending order.
     if (too_many || surface_.mesh == nullptr) sort();
   }
 
  private:
-  // Calls add(id) for all triangles that may touch, without those that others stand for.
+  // Calls add(id) for all triangles that may touch, without those that others represent.
   template <class Add>
   void walk(Add&& add) {
     if (surface_.mesh != nullptr) return walk_mesh(*surface_.mesh, add);
@@ -81,26 +81,26 @@ class Gatherer {
       const StaticTree::Node& node = mesh.tree.nodes[index];
       const bool flat = (mesh.flat_lanes[index] >> lane & 1) != 0;
       std::uint32_t child = node.child[lane];
-      // Of a leaf each triangle is asked for itself.
+      // The triangles of a leaf are tested one by one.
       if (!flat && is_leaf(child)) return true;
       const Aabb box = child_box(node, lane);
-      if (const AxisBox axes(box); !axes.overlaps(inner_) && !near_any(axes)) return false;
+      if (const AxisBox axes(box); !axes.overlaps(inner_) && !can_touch_any(axes)) return false;
       if (!flat) return true;
       while (!is_leaf(child)) child = mesh.tree.nodes[child].child[0];
       const std::uint32_t first = leaf_first(child);
-      return look_at_patch(mesh.normals[first], mesh.vertices[mesh.indices[3 * std::size_t(first)]], box,
-                           first, add);
+      return test_patch(mesh.normals[first], mesh.vertices[mesh.indices[3 * std::size_t(first)]], box, first,
+                        add);
     };
     const AxisBox outer(box_);
     const auto overlaps = [&](const AxisBox& box) {
-      return box.overlaps(outer) && (box.overlaps(inner_) || near(box));
+      return box.overlaps(outer) && (box.overlaps(inner_) || is_near(box));
     };
-    if (kept_ != nullptr && cache_triangles(mesh, box_, kKeptMargin * convex_.size(), *kept_)) {
+    if (cached_ != nullptr && cache_triangles(mesh, box_, kCacheMargin * convex_.size(), *cached_)) {
       const NearBoxes boxes{box_, inner_.box(), position_, max_separation_};
       static_assert(CachedTriangles::kRoom <= 32);
-      std::uint32_t near =
-          kernels_.find_near(columns_of(mesh), kept_->ids, kept_->count, convex_.columns(), boxes);
-      for (; near != 0; near &= near - 1) add(kept_->ids[std::countr_zero(near)]);
+      std::uint32_t is_near =
+          kernels_.find_near(columns_of(mesh), cached_->ids, cached_->count, convex_.columns(), boxes);
+      for (; is_near != 0; is_near &= is_near - 1) add(cached_->ids[std::countr_zero(is_near)]);
       return;
     }
     const auto visit = [&](std::uint32_t first, std::uint32_t count) {
@@ -108,8 +108,8 @@ class Gatherer {
         const AxisBox box = axis_box(mesh, id);
         if (!overlaps(box)) continue;
         if ((mesh.flags[id] & kInsidePatch) != 0 &&
-            !look_at_patch(mesh.normals[id], mesh.vertices[mesh.indices[3 * std::size_t(id)]], box.box(), id,
-                           add)) {
+            !test_patch(mesh.normals[id], mesh.vertices[mesh.indices[3 * std::size_t(id)]], box.box(), id,
+                        add)) {
           continue;
         }
         add(id);
@@ -122,20 +122,20 @@ class Gatherer {
   void walk_field(const HeightField& field, Add&& add) {
     const auto enter = [&](HeightBlock block) {
       const Aabb box = block_box(field, block);
-      if (!near(AxisBox(box))) return false;
+      if (!is_near(AxisBox(box))) return false;
       if (!is_flat(field, block)) return true;
       const std::uint32_t first = first_triangle(field, block);
       const TriangleView triangle = view_triangle(field, first);
-      return look_at_patch(triangle.normal, triangle.v[0], box, first, add);
+      return test_patch(triangle.normal, triangle.v[0], box, first, add);
     };
     const auto visit = [&](std::uint32_t column, std::uint32_t row) {
       if (!is_solid_cell(field, column, row)) return;
       const Aabb box = block_box(field, {-1, column, row});
-      if (!overlap(box, box_) || !near(AxisBox(box))) return;
+      if (!overlap(box, box_) || !is_near(AxisBox(box))) return;
       const std::uint32_t id = 2 * (row * field.cell_columns() + column);
       if (is_flat_cell(field, column, row)) {
         const TriangleView triangle = view_triangle(field, id);
-        if (!look_at_patch(triangle.normal, triangle.v[0], box, id, add)) return;
+        if (!test_patch(triangle.normal, triangle.v[0], box, id, add)) return;
       }
       add(id);
       add(id + 1);
@@ -143,7 +143,7 @@ class Gatherer {
     walk_cells(field, box_, enter, visit);
   }
 
-  // Flat corners all around: nothing of the cell but its plane can be touched.
+  // All corners around the cell are flat: only its plane can be touched.
   static bool is_flat_cell(const HeightField& field, std::uint32_t column, std::uint32_t row) {
     const auto flat = [&](std::uint32_t c, std::uint32_t r) {
       const std::size_t sample = std::size_t(r) * field.columns + c;
@@ -152,22 +152,23 @@ class Gatherer {
     return flat(column, row) && flat(column + 1, row) && flat(column, row + 1) && flat(column + 1, row + 1);
   }
 
-  bool near(const AxisBox& box) const { return convex_.may_touch(box - position_, max_separation_); }
-  // Whether that may be said of any box inside, however it is rounded there.
-  bool near_any(const AxisBox& box) const {
-    const AxisBox placed = box - position_;
-    const Wide<4> farthest = max(-placed.low(), placed.high());
+  bool is_near(const AxisBox& box) const { return convex_.can_touch(box - position_, max_separation_); }
+  // The same for any box inside, however it is rounded.
+  bool can_touch_any(const AxisBox& box) const {
+    const AxisBox local = box - position_;
+    const Wide<4> farthest = max(-local.low(), local.high());
     const float rounding = 2.0e-6f * max(farthest[0], max(farthest[1], farthest[2]));
-    return convex_.may_touch(placed, max_separation_ + rounding);
+    return convex_.can_touch(local, max_separation_ + rounding);
   }
 
-  // A part that lies inside one flat patch. True if it must be entered: a corner of the shape's face may lie above it.
+  // A node inside one flat patch. Returns true if the node must be entered, because a corner of the shape's face may
+  // lie above it.
   template <class Add>
-  bool look_at_patch(Vec3 normal, Vec3 point, const Aabb& box, std::uint32_t first, Add&& add) {
+  bool test_patch(Vec3 normal, Vec3 point, const Aabb& box, std::uint32_t first, Add&& add) {
     if (surface_.double_sided() && dot(normal, convex_.center() + position_ - point) < 0.0f) normal = -normal;
     if (!side_known_ || !(side_.normal == normal)) {
       side_.normal = normal;
-      const PlacedConvex::Extent extent = convex_.extent(normal);
+      const LocalConvex::Extent extent = convex_.extent(normal);
       side_.lowest = extent.low;
       side_.highest = extent.high;
       convex_.face_towards(-normal, side_.face);
@@ -179,12 +180,12 @@ class Gatherer {
     if (side_.highest - height + convex_.radius() < 0.0f) return false;
     if (corner_above(box, height)) return true;
     if (++stand_ins_ <= kStandIns) add(first);
-    if (side_.lowest - height - convex_.radius() < -0.9f * max_separation_ && near_patch(box))
-      note_deep(first, normal);
+    if (side_.lowest - height - convex_.radius() < -0.9f * max_separation_ && overlaps_patch(box))
+      record_deep_patch(first, normal);
     return false;
   }
 
-  // Whether a corner of the face that faces the plane in side_ has its foot on the plane inside the box.
+  // True if a corner of the face in side_ has its foot on the plane inside the box.
   bool corner_above(const Aabb& box, float height) const {
     const Aabb near_box = grow({box.low - position_, box.high - position_}, 1.0e-3f * convex_.size());
     const auto above = [&](Vec3 corner) {
@@ -197,9 +198,9 @@ class Gatherer {
     return convex_.has_vertices() && above(convex_.vertex(convex_.lowest_vertex(side_.normal)));
   }
 
-  bool near_patch(const Aabb& box) const { return convex_.may_touch(AxisBox(box) - position_, 0.0f); }
+  bool overlaps_patch(const Aabb& box) const { return convex_.can_touch(AxisBox(box) - position_, 0.0f); }
 
-  void note_deep(std::uint32_t id, Vec3 normal) {
+  void record_deep_patch(std::uint32_t id, Vec3 normal) {
     const float height = dot(normal, surface_.triangle(id).v[0] - position_);
     for (int i = 0; i < out_.deep_patch_count; ++i) {
       const TriangleView other = surface_.triangle(out_.deep_patches[i]);
@@ -209,64 +210,64 @@ class Gatherer {
     if (out_.deep_patch_count < MeshCandidates::kPatchRoom) out_.deep_patches[out_.deep_patch_count++] = id;
   }
 
-  // How far the triangle reaches out of the shape's local box (negative: into it), and in which cell its middle lies.
-  struct Place {
+  // The distance of the triangle outside the shape's local box (negative inside), and the cell of its centre.
+  struct CellDistance {
     float distance;
     int cell;
   };
-  Place place_of(std::uint32_t id) const {
+  CellDistance locate(std::uint32_t id) const {
     const TriangleView t = surface_.triangle(id);
     const Vec3 a = t.v[0] - position_, b = t.v[1] - position_, c = t.v[2] - position_;
     const Vec3 middle = (a + b + c) / 3.0f;
     float distance = convex_.box_distance(middle);
     distance =
         min(distance, min(convex_.box_distance(a), min(convex_.box_distance(b), convex_.box_distance(c))));
-    // Of a large triangle neither corners nor middle need be near.
+    // Neither the corners nor the centre of a large triangle need be near.
     const Vec3 extent = max(a, max(b, c)) - min(a, min(b, c));
     if (largest(extent) > 0.25f * convex_.size())
       distance = convex_.lowest(t.normal) - dot(t.normal, a) - convex_.radius();
     const Aabb& local = convex_.local_box();
     const Vec3 inside = convex_.to_local(middle) - local.low, size = local.high - local.low;
-    const auto cell = [](float place, float width) {
-      return int(clamp(float(kCells) * place / max(width, 1.0e-30f), 0.0f, float(kCells - 1)));
+    const auto cell = [](float coordinate, float width) {
+      return int(clamp(float(kCells) * coordinate / max(width, 1.0e-30f), 0.0f, float(kCells - 1)));
     };
     return {distance,
             (cell(inside.x, size.x) * kCells + cell(inside.y, size.y)) * kCells + cell(inside.z, size.z)};
   }
 
-  // Only of flat ground, for which the shape's face was looked at already.
+  // Only for flat ground, for which the face of the shape is known.
   bool is_under_corner(std::uint32_t id) const {
     if (!side_known_) return false;
     const TriangleView t = surface_.triangle(id);
     return t.normal == side_.normal && corner_above(bounds(t), dot(t.normal, t.v[0] - position_));
   }
 
-  void keep_deepest() {
+  void reduce_to_deepest() {
     constexpr float kEmpty = __builtin_huge_valf();
-    float distance[kKeptSlots];
+    float distance[kCellSlots];
     for (float& d : distance) d = kEmpty;
     int corners = 0;
     walk([&](std::uint32_t id) {
       if (corners < kCornerSlots && is_under_corner(id)) {
-        out_.ids[kKeptSlots + corners++] = id;
+        out_.ids[kCellSlots + corners++] = id;
         return;
       }
-      const Place place = place_of(id);
-      int slot = kKept * place.cell, end = slot + kKept;
-      while (slot < end && distance[slot] <= place.distance) ++slot;
+      const CellDistance located = locate(id);
+      int slot = kPerCell * located.cell, end = slot + kPerCell;
+      while (slot < end && distance[slot] <= located.distance) ++slot;
       if (slot == end) return;
       for (int i = end - 1; i > slot; --i) {
         distance[i] = distance[i - 1];
         out_.ids[i] = out_.ids[i - 1];
       }
-      distance[slot] = place.distance;
+      distance[slot] = located.distance;
       out_.ids[slot] = id;
     });
     out_.count = 0;
-    for (int i = 0; i < kKeptSlots; ++i) {
+    for (int i = 0; i < kCellSlots; ++i) {
       if (distance[i] < kEmpty) out_.ids[out_.count++] = out_.ids[i];
     }
-    for (int i = 0; i < corners; ++i) out_.ids[out_.count++] = out_.ids[kKeptSlots + i];
+    for (int i = 0; i < corners; ++i) out_.ids[out_.count++] = out_.ids[kCellSlots + i];
   }
 
   void sort() {
@@ -278,10 +279,10 @@ class Gatherer {
 
   const MeshKernels& kernels_;
   const Surface& surface_;
-  const PlacedConvex& convex_;
+  const LocalConvex& convex_;
   Vec3 position_;
   float max_separation_;
-  CachedTriangles* kept_;
+  CachedTriangles* cached_;
   MeshCandidates& out_;
   Aabb box_;
   AxisBox inner_;
@@ -292,11 +293,11 @@ class Gatherer {
 
 }  // namespace
 
-void find_candidates(const MeshKernels& kernels, const Surface& surface, const PlacedConvex& convex,
-                     Vec3 position, float max_separation, CachedTriangles* kept, MeshCandidates& out) {
+void find_candidates(const MeshKernels& kernels, const Surface& surface, const LocalConvex& convex,
+                     Vec3 position, float max_separation, CachedTriangles* cached, MeshCandidates& out) {
   out.count = 0;
   out.deep_patch_count = 0;
-  Gatherer(kernels, surface, convex, position, max_separation, kept, out).run();
+  Gatherer(kernels, surface, convex, position, max_separation, cached, out).run();
 }
 
 int find_triangles(const Surface& surface, const Aabb& box, std::span<std::uint32_t> out) {

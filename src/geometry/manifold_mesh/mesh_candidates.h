@@ -1,9 +1,9 @@
-// Which triangles of a surface a convex shape may touch: few enough to look at each of them.
+// The triangles of a surface that a convex shape may touch: few enough to test each of them.
 //
-// Large flat stretches are not walked triangle by triangle: of a part of the tree (or of the pyramid) that lies inside one flat
-// patch and has no corner of the shape above it, one triangle stands for all, since nothing but its plane can be touched. If
-// there are still too many, as under a large body on finely cut rough ground, space around the body is cut into cells and each
-// cell keeps its deepest.
+// Large flat areas are not traversed triangle by triangle. If a node of the tree (or of the pyramid) lies inside one
+// flat patch and no corner of the shape is above it, one triangle represents the whole node, because the shape can
+// touch nothing but its plane. If too many triangles remain, as under a large body on finely divided rough ground, the
+// space around the body is divided into cells, and each cell contributes its deepest triangles.
 #pragma once
 
 #include "geometry/manifold_mesh/cached_triangles.h"
@@ -16,22 +16,22 @@ struct MeshCandidates {
   static constexpr int kRoom = 1152;
   int count = 0;
   std::uint32_t ids[kRoom];  // ascending
-  // Flat patches through which the shape reaches deeper than the margin, one triangle for each plane.
+  // Flat patches that the shape penetrates deeper than the margin, one triangle for each plane.
   static constexpr int kPatchRoom = 16;
   int deep_patch_count = 0;
   std::uint32_t deep_patches[kPatchRoom];
 };
 
-// `position` is the place of the convex shape's origin in the surface's frame. `kept`, if it is not null: what is kept of a mesh
-// from one look of this shape at it to the next. What is found is the same with it and without it.
-void find_candidates(const MeshKernels& kernels, const Surface& surface, const PlacedConvex& convex,
-                     Vec3 position, float max_separation, CachedTriangles* kept, MeshCandidates& out);
+// `position` is the origin of the convex shape in the surface's frame. `cache`, if not null, has the triangles of a
+// mesh from the last update; it never changes the result.
+void find_candidates(const MeshKernels& kernels, const Surface& surface, const LocalConvex& convex,
+                     Vec3 position, float max_separation, CachedTriangles* cache, MeshCandidates& out);
 
-// The triangles whose boxes overlap a box in the surface's frame, ascending by their place in the tree or pyramid; those
-// that do not fit into `out` are left out. Returns how many were written.
+// The triangles whose boxes overlap a box in the surface's frame, ascending by their index in the tree or pyramid.
+// Triangles that do not fit into `out` are dropped. Returns the number written.
 int find_triangles(const Surface& surface, const Aabb& box, std::span<std::uint32_t> out);
 
-// Whether the box of any triangle overlaps a box in the surface's frame.
+// True if the box of any triangle overlaps a box in the surface's frame.
 bool has_triangle(const Surface& surface, const Aabb& box);
 
 }  // namespace gyre

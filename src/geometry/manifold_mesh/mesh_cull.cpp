@@ -1,28 +1,28 @@
-// What kernels are given of surfaces, and what is taken from them. See mesh_cull.h.
+// Input and output of the mesh kernels. See mesh_cull.h.
 #include "geometry/manifold_mesh/mesh_cull.h"
 
 namespace gyre {
 namespace {
 
-constexpr int kCount = PlacedTriangles::kCount;
+constexpr int kCount = TriangleBatch::kCount;
 
-// A curved core has no columns: it is asked by itself.
+// A curved core has no columns, so its extents are computed one by one.
 void find_extents(const TriangleColumns& triangles, const std::uint32_t* ids, int count, Vec3 position,
-                  const PlacedConvex& convex, PlacedTriangles& out) {
+                  const LocalConvex& convex, TriangleBatch& out) {
   for (int k = 0; k < kCount; ++k) {
     const std::size_t id = ids[min(k, count - 1)];
     const Vec3 normal = triangles.normals[id], corner = triangles.vertices[triangles.indices[3 * id]];
-    const bool turned = triangles.double_sided && dot(normal, convex.center() + position - corner) < 0.0f;
-    const PlacedConvex::Extent extent = convex.extent(turned ? -normal : normal);
+    const bool flipped = triangles.double_sided && dot(normal, convex.center() + position - corner) < 0.0f;
+    const LocalConvex::Extent extent = convex.extent(flipped ? -normal : normal);
     out.low[k] = extent.low;
     out.high[k] = extent.high;
   }
 }
 
-void place(const MeshKernels& kernels, const TriangleColumns& triangles, const std::uint32_t* ids, int count,
-           Vec3 position, const PlacedConvex& convex, float max_separation, PlacedTriangles& out) {
+void load(const MeshKernels& kernels, const TriangleColumns& triangles, const std::uint32_t* ids, int count,
+          Vec3 position, const LocalConvex& convex, float max_separation, TriangleBatch& out) {
   if (!convex.has_vertices()) find_extents(triangles, ids, count, position, convex, out);
-  kernels.place(triangles, ids, count, convex.columns(), position, max_separation, out);
+  kernels.load(triangles, ids, count, convex.columns(), position, max_separation, out);
 }
 
 }  // namespace
@@ -31,11 +31,11 @@ TriangleColumns columns_of(const Mesh& mesh) {
   return {mesh.vertices.data(), mesh.indices.data(), mesh.normals.data(), mesh.double_sided};
 }
 
-void place_triangles(const MeshKernels& kernels, const Surface& surface, const std::uint32_t* ids, int count,
-                     Vec3 position, const PlacedConvex& convex, float max_separation, PlacedTriangles& out) {
+void load_triangles(const MeshKernels& kernels, const Surface& surface, const std::uint32_t* ids, int count,
+                    Vec3 position, const LocalConvex& convex, float max_separation, TriangleBatch& out) {
   if (surface.mesh != nullptr)
-    return place(kernels, columns_of(*surface.mesh), ids, count, position, convex, max_separation, out);
-  // A field has no such columns: they are made.
+    return load(kernels, columns_of(*surface.mesh), ids, count, position, convex, max_separation, out);
+  // A height field has no columns, so they are made here.
   static constexpr std::uint32_t kNumbers[3 * kCount] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11,
                                                          12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23};
   Vec3 corners[3 * kCount], normals[kCount];
@@ -44,27 +44,26 @@ void place_triangles(const MeshKernels& kernels, const Surface& surface, const s
     normals[k] = t.normal;
     for (int i = 0; i < 3; ++i) corners[3 * k + i] = t.v[i];
   }
-  place(kernels, {corners, kNumbers, normals, false}, kNumbers, count, position, convex, max_separation, out);
+  load(kernels, {corners, kNumbers, normals, false}, kNumbers, count, position, convex, max_separation, out);
 }
 
-NearTriangle take_triangle(const Surface& surface, std::uint32_t id, const PlacedTriangles& placed,
-                           int lane) {
-  NearTriangle t;
-  t.turned = (placed.turned >> lane & 1u) != 0;
-  if (t.turned) {
-    static_cast<TriangleView&>(t) = seen_from_behind(surface.triangle(id));
+LocalTriangle batch_triangle(const Surface& surface, std::uint32_t id, const TriangleBatch& batch, int lane) {
+  LocalTriangle t;
+  t.flipped = (batch.flipped >> lane & 1u) != 0;
+  if (t.flipped) {
+    static_cast<TriangleView&>(t) = back_view(surface.triangle(id));
   } else if (surface.mesh != nullptr) {
     view_surroundings(*surface.mesh, id, t);
   } else {
     static_cast<TriangleView&>(t) = view_triangle(*surface.field, id);
   }
-  t.normal = placed.normal[lane];
-  t.slack = placed.slack[lane];
+  t.normal = batch.normal[lane];
+  t.slack = batch.slack[lane];
   for (int i = 0; i < 3; ++i) {
-    t.v[i] = placed.corner[i][lane];
-    t.along[i] = placed.along[i][lane];
-    t.outward[i] = placed.outward[i][lane];
-    t.length[i] = placed.length[i][lane];
+    t.v[i] = batch.corner[i][lane];
+    t.along[i] = batch.along[i][lane];
+    t.outward[i] = batch.outward[i][lane];
+    t.length[i] = batch.length[i][lane];
   }
   return t;
 }

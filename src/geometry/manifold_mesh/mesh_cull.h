@@ -1,5 +1,5 @@
-// Which triangles of a surface a convex shape may touch, several at a time: most of those whose boxes come near are left out here,
-// before any is looked at by itself; the others are placed. What is done is told in mesh_kernels.h.
+// Culling of the triangles of a surface against a convex shape, several at a time. Most triangles whose boxes are near
+// are excluded before any is tested by itself; the others become local triangles. mesh_kernels.h describes the tests.
 #pragma once
 
 #include "geometry/manifold_mesh/mesh_axis.h"
@@ -9,11 +9,12 @@ namespace gyre {
 
 TriangleColumns columns_of(const Mesh& mesh);
 
-// Of `count` triangles, 1 to PlacedTriangles::kCount. `position` is the place of the convex shape's origin in the surface's frame.
-void place_triangles(const MeshKernels& kernels, const Surface& surface, const std::uint32_t* ids, int count,
-                     Vec3 position, const PlacedConvex& convex, float max_separation, PlacedTriangles& out);
+// Loads `count` triangles, 1 to TriangleBatch::kCount. `position` is the origin of the convex shape in the surface's
+// frame.
+void load_triangles(const MeshKernels& kernels, const Surface& surface, const std::uint32_t* ids, int count,
+                    Vec3 position, const LocalConvex& convex, float max_separation, TriangleBatch& out);
 
-// One of them that may be touched, as near_triangle() tells it.
-NearTriangle take_triangle(const Surface& surface, std::uint32_t id, const PlacedTriangles& placed, int lane);
+// One triangle of a batch that may be touched, equal to the result of measured_triangle().
+LocalTriangle batch_triangle(const Surface& surface, std::uint32_t id, const TriangleBatch& batch, int lane);
 
 }  // namespace gyre

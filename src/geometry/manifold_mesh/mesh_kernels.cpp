@@ -1,4 +1,4 @@
-// Chooses how many triangles are looked at side by side on this machine.
+// Chooses the kernels for this machine.
 #include "geometry/manifold_mesh/mesh_kernels.h"
 
 #include "base/processor.h"

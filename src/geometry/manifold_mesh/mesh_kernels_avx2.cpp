@@ -1,4 +1,4 @@
-// Triangles side by side for one kind of CPU, in a namespace of its own so that the linker can never mix it with others'.
+// Mesh kernels for one kind of CPU, in a namespace of its own, so that the linker never mixes them with the others.
 #define GYRE_TARGET_NAMESPACE target_avx2
 #include "geometry/manifold_mesh/mesh_lanes.h"
 

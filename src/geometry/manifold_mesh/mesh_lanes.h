@@ -1,4 +1,4 @@
-// W triangles side by side. See mesh_kernels.h. Numbers are rounded as place_triangle and measure_edges round them.
+// W triangles side by side. See mesh_kernels.h. Rounding is the same as in local_triangle and measure_edges.
 #pragma once
 
 #include "geometry/manifold_mesh/mesh_apart_lanes.h"
@@ -7,7 +7,7 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// Four vectors, one a lane: their first two parts are loaded as one.
+// Four vectors, one in each lane. The first two components are loaded as one.
 GYRE_INLINE Vec3W<4> four_at(const Vec3* base, const std::uint32_t* at) {
   typedef std::int64_t Part __attribute__((aligned(4), may_alias));
   typedef std::int64_t Parts __attribute__((vector_size(16)));
@@ -20,7 +20,7 @@ GYRE_INLINE Vec3W<4> four_at(const Vec3* base, const std::uint32_t* at) {
           Wide<4>::of(__builtin_shufflevector(low, high, 1, 3, 5, 7)),
           Wide<4>::of(Quad{a->z, b->z, c->z, d->z})};
 }
-// The vectors at W places.
+// The vectors at W indices.
 template <int W>
 GYRE_INLINE Vec3W<W> vectors_at(const Vec3* base, const std::uint32_t (&at)[W]) {
   if constexpr (W == 4) {
@@ -30,7 +30,7 @@ GYRE_INLINE Vec3W<W> vectors_at(const Vec3* base, const std::uint32_t (&at)[W]) 
   }
 }
 
-// W triangles from `first` on; behind the last its copies stand.
+// W triangles from `first` on. Lanes after the last triangle repeat it.
 template <int W>
 GYRE_INLINE void number_lanes(const std::uint32_t* ids, int first, int count, std::uint32_t (&lanes)[W]) {
   const bool full = first + W <= count;
@@ -57,17 +57,17 @@ GYRE_INLINE void gather_corners(const TriangleColumns& triangles, const std::uin
 
 // ------------------------------------------------------------------------------------------------------------ the boxes
 
-// As PlacedConvex::may_touch.
+// As LocalConvex::can_touch.
 template <int W>
-GYRE_INLINE Mask<W> may_touch(const ConvexColumns& convex, Vec3W<W> low, Vec3W<W> high, float reach) {
-  const Wide<W> part(0.5f);
-  const Vec3W<W> middle = part * (low + high), half = part * (high - low), size = absolute(middle);
+GYRE_INLINE Mask<W> can_touch(const ConvexColumns& convex, Vec3W<W> low, Vec3W<W> high, float max_distance) {
+  const Wide<W> one_half(0.5f);
+  const Vec3W<W> middle = one_half * (low + high), half = one_half * (high - low), size = absolute(middle);
   if (convex.core == ConvexColumns::Core::ball) {
     const Vec3W<W> outside = max(size - half, Vec3W<W>{0.0f, 0.0f, 0.0f});
     const Wide<W> squared = outside.x * outside.x + outside.y * outside.y + outside.z * outside.z;
-    return squared <= Wide<W>((convex.radius + reach) * (convex.radius + reach) * 1.0001f);
+    return squared <= Wide<W>((convex.radius + max_distance) * (convex.radius + max_distance) * 1.0001f);
   }
-  const Wide<W> room = Wide<W>(reach) + Wide<W>(1.0e-6f) * largest(size);
+  const Wide<W> room = Wide<W>(max_distance) + Wide<W>(1.0e-6f) * largest(size);
   Mask<W> apart = Mask<W>::splat(false);
   const float* const lowest = &convex.local_box.low.x;
   const float* const highest = &convex.local_box.high.x;
@@ -103,7 +103,7 @@ std::uint32_t find_near(const TriangleColumns& triangles, const std::uint32_t* i
     const Mask<W> outer = overlaps<W>(low, high, boxes.outer);
     if (none(outer)) continue;
     const Mask<W> inner = overlaps<W>(low, high, boxes.inner) |
-                          may_touch<W>(convex, low - position, high - position, boxes.reach);
+                          can_touch<W>(convex, low - position, high - position, boxes.max_distance);
     near |= to_bits(outer & inner) << first;
   }
   return count < 32 ? near & ((1u << count) - 1u) : near;
@@ -112,35 +112,35 @@ std::uint32_t find_near(const TriangleColumns& triangles, const std::uint32_t* i
 // -------------------------------------------------------------------------------------------------------- the triangles
 
 template <int W>
-GYRE_INLINE void store(Vec3W<W> v, PlacedTriangles::Columns& to, int first) {
+GYRE_INLINE void store(Vec3W<W> v, TriangleBatch::Columns& to, int first) {
   v.x.store_unaligned(to.x + first);
   v.y.store_unaligned(to.y + first);
   v.z.store_unaligned(to.z + first);
 }
 
-// Returns in which lanes the triangle is seen from behind.
+// Returns a mask of the lanes whose triangle is seen from behind.
 template <int W>
-GYRE_INLINE Mask<W> place_lanes(const TriangleColumns& triangles, const std::uint32_t (&lanes)[W],
-                                const ConvexColumns& convex, Vec3 position, TriangleLanes<W>& t) {
+GYRE_INLINE Mask<W> load_lanes(const TriangleColumns& triangles, const std::uint32_t (&lanes)[W],
+                               const ConvexColumns& convex, Vec3 position, TriangleLanes<W>& t) {
   t.normal = vectors_at<W>(triangles.normals, lanes);
   gather_corners<W>(triangles, lanes, t.corner);
-  Mask<W> turned = Mask<W>::splat(false);
+  Mask<W> flipped = Mask<W>::splat(false);
   const Vec3W<W> origin = splat<W>(position);
   if (triangles.double_sided) {
     const Vec3W<W> middle = splat<W>(convex.center) + origin;
-    turned = dot(t.normal, middle - t.corner[0]) < Wide<W>(0.0f);
+    flipped = dot(t.normal, middle - t.corner[0]) < Wide<W>(0.0f);
     const Vec3W<W> second = t.corner[1];
-    t.corner[1] = select(turned, t.corner[2], second);
-    t.corner[2] = select(turned, second, t.corner[2]);
-    t.normal = select(turned, -t.normal, t.normal);
+    t.corner[1] = select(flipped, t.corner[2], second);
+    t.corner[2] = select(flipped, second, t.corner[2]);
+    t.normal = select(flipped, -t.normal, t.normal);
   }
-  t.reach = largest(absolute(origin));
+  t.max_coordinate = largest(absolute(origin));
   GYRE_UNROLL
   for (int i = 0; i < 3; ++i) {
-    t.reach = max(t.reach, largest(absolute(t.corner[i])));
+    t.max_coordinate = max(t.max_coordinate, largest(absolute(t.corner[i])));
     t.corner[i] = t.corner[i] - origin;
   }
-  return turned;
+  return flipped;
 }
 
 template <int W>
@@ -154,7 +154,7 @@ GYRE_INLINE void find_extents(const ConvexColumns& convex, Vec3W<W> normal, Wide
 }
 
 template <int W>
-GYRE_INLINE void measure_lanes(const TriangleLanes<W>& t, int first, PlacedTriangles& out) {
+GYRE_INLINE void measure_lanes(const TriangleLanes<W>& t, int first, TriangleBatch& out) {
   GYRE_UNROLL
   for (int i = 0; i < 3; ++i) {
     const Vec3W<W> edge = t.corner[i == 2 ? 0 : i + 1] - t.corner[i];
@@ -167,15 +167,15 @@ GYRE_INLINE void measure_lanes(const TriangleLanes<W>& t, int first, PlacedTrian
 }
 
 template <int W>
-void place_triangles(const TriangleColumns& triangles, const std::uint32_t* ids, int count,
-                     const ConvexColumns& convex, Vec3 position, float max_separation, PlacedTriangles& out) {
-  out.touchable = out.apart = out.turned = 0;
+void load_triangles(const TriangleColumns& triangles, const std::uint32_t* ids, int count,
+                    const ConvexColumns& convex, Vec3 position, float max_separation, TriangleBatch& out) {
+  out.touchable = out.apart = out.flipped = 0;
   for (int first = 0; first < count; first += W) {
     std::uint32_t lanes[W];
     number_lanes<W>(ids, first, count, lanes);
     const unsigned counted = (count - first < W ? (1u << (count - first)) - 1u : (1u << W) - 1u);
     TriangleLanes<W> t;
-    out.turned |= (to_bits(place_lanes<W>(triangles, lanes, convex, position, t)) & counted) << first;
+    out.flipped |= (to_bits(load_lanes<W>(triangles, lanes, convex, position, t)) & counted) << first;
     Wide<W> low, high;
     if (convex.vertex_count > 0) {
       find_extents<W>(convex, t.normal, low, high);
@@ -185,13 +185,13 @@ void place_triangles(const TriangleColumns& triangles, const std::uint32_t* ids,
       low = Wide<W>::load_unaligned(out.low + first);
       high = Wide<W>::load_unaligned(out.high + first);
     }
-    const Wide<W> height = dot(t.normal, t.corner[0]), radius(convex.radius), most(max_separation);
+    const Wide<W> height = dot(t.normal, t.corner[0]), radius(convex.radius), limit(max_separation);
     const Wide<W> before = low - height - radius;
     const Mask<W> behind = high - height + radius <= Wide<W>(0.0f);
-    unsigned touchable = to_bits(~(behind | (before > most))) & counted;
-    unsigned apart = to_bits(before > most + apart_slack<W>(t, convex)) & counted;
+    unsigned touchable = to_bits(~(behind | (before > limit))) & counted;
+    unsigned apart = to_bits(before > limit + apart_slack<W>(t, convex)) & counted;
     if (touchable != 0) {
-      // Only of lanes that are still in question, so that none depends on its neighbours.
+      // Only for lanes that are still undecided, so that no lane depends on its neighbours.
       const unsigned known = to_bits(is_apart<W>(t, convex, max_separation)) & touchable;
       apart |= known;
       touchable &= ~known;
@@ -199,7 +199,7 @@ void place_triangles(const TriangleColumns& triangles, const std::uint32_t* ids,
     out.touchable |= touchable << first;
     out.apart |= apart << first;
     if (touchable == 0) continue;
-    (Wide<W>(1.2e-7f) * t.reach + Wide<W>(1.0e-6f * convex.size)).store_unaligned(out.slack + first);
+    (Wide<W>(1.2e-7f) * t.max_coordinate + Wide<W>(1.0e-6f * convex.size)).store_unaligned(out.slack + first);
     store<W>(t.normal, out.normal, first);
     GYRE_UNROLL
     for (int i = 0; i < 3; ++i) store<W>(t.corner[i], out.corner[i], first);
@@ -209,7 +209,7 @@ void place_triangles(const TriangleColumns& triangles, const std::uint32_t* ids,
 
 template <int W>
 constexpr MeshKernels mesh_kernels() {
-  return {find_near<W>, place_triangles<W>};
+  return {find_near<W>, load_triangles<W>};
 }
 
 }  // namespace GYRE_TARGET_NAMESPACE

@@ -10,17 +10,18 @@
 namespace gyre {
 namespace {
 
-// A face of the shape leans less than this (cosine) against the contact's direction, or it does not lie on the edge.
+// Cosine between a face of the shape and the contact direction below which the face does not lie on the edge.
 constexpr float kFlushShare = 0.985f;
-// Sine between two edges that run side by side and touch in two points.
+// Sine below which two edges count as parallel and touch in two points.
 constexpr float kSideBySideEdges = 0.05f;
-// How far two edges may pass beside each other and still cross, of the longer one's length.
+// How far apart two edges may pass and still cross, relative to the longer one.
 constexpr float kCrossingSlack = 1.0e-3f;
 
 using Floats = Wide<4>;
 using Vectors = Vec3W<4>;
 
-// The kinds in the order in which a reduction prefers equally good points: corners of the shape keep a manifold steadiest.
+// The kinds, in the order in which the reduction prefers equally good points. Corners of the shape make the steadiest
+// manifold.
 enum class PointKind : std::uint32_t { shape_corner, surface_corner, edges, nearest };
 
 std::uint32_t point_name(PointKind kind, std::uint32_t on_surface, std::uint32_t on_shape) {
@@ -28,14 +29,14 @@ std::uint32_t point_name(PointKind kind, std::uint32_t on_surface, std::uint32_t
   return std::uint32_t(kind) << 30 | std::uint32_t(mixed & 0x3fffffffu);
 }
 
-// The normal to within a few degrees, counted from a corner of the cube around the sphere of normals: axis-aligned
-// surfaces, and all that lean a little against them, are far from the seams.
+// The normal to within a few degrees, on a grid that starts at a corner of the cube around the sphere of normals.
+// Axis-aligned surfaces, and those that lean slightly, are far from the borders of grid cells.
 std::uint32_t normal_name(Vec3 n) {
   const auto step = [](float x) { return std::uint32_t((x + 1.0f) * 8.0f + 0.5f); };
   return step(n.x) << 10 | step(n.y) << 5 | step(n.z);
 }
 
-// Edges of the facing feature are named by the corners they join, so that the name does not depend on the face.
+// The name of an edge of the facing feature comes from its corners, so that it does not depend on the face.
 std::uint32_t edge_name(const FacePolygon& face, int k) {
   const std::uint32_t a = face.ids[k], b = face.ids[k + 1 == face.count ? 0 : k + 1];
   return 0x10000u | min(a, b) << 8 | max(a, b);
@@ -43,12 +44,12 @@ std::uint32_t edge_name(const FacePolygon& face, int k) {
 
 struct Emitter {
   Vec3 direction;
-  Vec3 anchor;  // a point of the surface: separations are measured from it along the direction
+  Vec3 anchor;  // a point of the surface; separations are measured from it along the direction
   float radius;
   float max_separation;
   MeshPoints& out;
 
-  // A point of the core whose separation is to the plane through the anchor.
+  // A point of the core; its separation is to the plane through the anchor.
   void core_point(Vec3 p, std::uint32_t name) const { pair(p, dot(direction, p - anchor) - radius, name); }
   void pair(Vec3 on_core, float separation, std::uint32_t name) const {
     if (separation <= max_separation)
@@ -56,7 +57,8 @@ struct Emitter {
   }
 };
 
-// Bits of the corners of a face; and, from bits of some of them, of the edges that run between those and the others.
+// all_of: a bit for each corner of a face. edges_across: from bits of some corners, the edges between those and the
+// other corners.
 static_assert(kMaxFaceVertices <= 32);
 unsigned all_of(const FacePolygon& face) { return ~0u >> (32 - face.count); }
 unsigned edges_across(const FacePolygon& face, unsigned corners) {
@@ -65,7 +67,7 @@ unsigned edges_across(const FacePolygon& face, unsigned corners) {
   return (corners ^ next) & (face.count == 2 ? 1u : ~0u);
 }
 
-// Is `p` inside the polygon, seen along its normal?
+// True if `p` is inside the polygon, seen along its normal.
 bool inside_polygon(const FacePolygon& face, Vec3 p, float slack) {
   for (int k = 0; k < face.count; ++k) {
     const Vec3 a = face.vertices[k], edge = face.vertices[k + 1 == face.count ? 0 : k + 1] - a;
@@ -75,8 +77,8 @@ bool inside_polygon(const FacePolygon& face, Vec3 p, float slack) {
   return true;
 }
 
-// The vertex of a hull that is lowest may belong to a face that leans more than the facing one.
-void add_lowest_vertex(const NearTriangle& t, const PlacedConvex& convex, const PlaneSide& side,
+// The lowest vertex of a hull may belong to a face that leans more than the facing one.
+void add_lowest_vertex(const LocalTriangle& t, const LocalConvex& convex, const PlaneSide& side,
                        const Emitter& emit) {
   if (convex.shape().kind != ShapeKind::hull) return;
   const int lowest = convex.lowest_vertex(t.normal);
@@ -90,12 +92,12 @@ void add_lowest_vertex(const NearTriangle& t, const PlacedConvex& convex, const 
   emit.core_point(p, point_name(PointKind::shape_corner, normal_name(t.normal), std::uint32_t(lowest)));
 }
 
-// Which corners of the triangle lie under the polygon, seen along the triangle's normal: bits.
-unsigned find_corners_under(const NearTriangle& t, const FacePolygon& face, float facing,
+// Bits of the triangle's corners that lie under the polygon, seen along the normal of the triangle.
+unsigned find_corners_under(const LocalTriangle& t, const FacePolygon& face, float facing,
                             float (&heights)[4]) {
   unsigned under = ~unsigned(t.flat_corners) & 7u;
   const Vectors corners = side_by_side(t.v[0], t.v[1], t.v[2], t.v[2]), normal = splat<4>(face.normal);
-  // Up along the triangle's normal to the face's plane.
+  // Up along the normal of the triangle to the plane of the face.
   const Floats height = dot(normal, splat<4>(face.vertices[0]) - corners) / Floats(facing);
   height.store_unaligned(heights);
   const Vectors p = corners + height * splat<4>(t.normal);
@@ -108,7 +110,7 @@ unsigned find_corners_under(const NearTriangle& t, const FacePolygon& face, floa
   return under;
 }
 
-void corners_under_face(const NearTriangle& t, const FacePolygon& face, const Emitter& emit) {
+void corners_under_face(const LocalTriangle& t, const FacePolygon& face, const Emitter& emit) {
   const float facing = dot(face.normal, t.normal);
   if (face.count < 3 || facing > -0.1f) return;
   float heights[4];
@@ -120,18 +122,19 @@ void corners_under_face(const NearTriangle& t, const FacePolygon& face, const Em
   }
 }
 
-// How far each corner of a face lies outside of each of a triangle's sides; and, as bits, which lie so for certain.
+// The distance of each corner of a face outside each side of a triangle, and bits of the corners that are outside for
+// certain.
 struct CornersOutside {
-  float way[3][kMaxFaceVertices];
+  float distance[3][kMaxFaceVertices];
   unsigned beyond[3] = {0, 0, 0};
 
-  CornersOutside(const NearTriangle& t, const FacePolygon& face) {
+  CornersOutside(const LocalTriangle& t, const FacePolygon& face) {
     const auto vertex = [&](int k) { return face.vertices[min(k, face.count - 1)]; };
     for (int k = 0; k < face.count; k += 4) {
       const Vectors corners = side_by_side(vertex(k), vertex(k + 1), vertex(k + 2), vertex(k + 3));
       for (int side = 0; side < 3; ++side) {
         const Floats out = dot(splat<4>(t.outward[side]), corners - splat<4>(t.v[side]));
-        out.store_unaligned(way[side] + k);
+        out.store_unaligned(distance[side] + k);
         beyond[side] |= to_bits(out > Floats(t.slack)) << k;
       }
     }
@@ -141,7 +144,7 @@ struct CornersOutside {
 
 }  // namespace
 
-void face_points(const NearTriangle& t, const PlacedConvex& convex, const PlaneSide& side,
+void face_points(const LocalTriangle& t, const LocalConvex& convex, const PlaneSide& side,
                  float max_separation, MeshPoints& out) {
   const FacePolygon& face = side.face;
   const Emitter emit{t.normal, t.v[0], convex.radius(), max_separation, out};
@@ -161,7 +164,7 @@ void face_points(const NearTriangle& t, const PlacedConvex& convex, const PlaneS
     const int j = next_corner(i), l = next_corner(j);
     for (unsigned rest = edges_across(face, beyond[i]); rest != 0; rest &= rest - 1) {
       const int k = std::countr_zero(rest), next = k + 1 == face.count ? 0 : k + 1;
-      const float from = outside.way[i][k], to = outside.way[i][next];
+      const float from = outside.distance[i][k], to = outside.distance[i][next];
       const Vec3 p = lerp(face.vertices[k], face.vertices[next], clamp(from / (from - to), 0.0f, 1.0f));
       if (dot(t.outward[j], p - t.v[j]) > t.slack || dot(t.outward[l], p - t.v[l]) > t.slack) continue;
       emit.core_point(p, point_name(PointKind::edges, t.edge_id[i], edge_name(face, k)));
@@ -172,10 +175,10 @@ void face_points(const NearTriangle& t, const PlacedConvex& convex, const PlaneS
 
 namespace {
 
-// The way goes both down to the plane and along it to the triangle.
-bool comes_by_valleys(const NearTriangle& t, Vec3 p, float separation, float reach) {
-  if (separation < 0.0f || separation > reach) return false;
-  const float farthest = square(reach) - square(separation);
+// The displacement must cover both the distance to the plane and the distance along it to the triangle.
+bool has_valley_points(const LocalTriangle& t, Vec3 p, float separation, float max_distance) {
+  if (separation < 0.0f || separation > max_distance) return false;
+  const float farthest = square(max_distance) - square(separation);
   bool beside = false;
   for (int i = 0; i < 3; ++i) {
     const Vec3 from_start = p - t.v[i];
@@ -190,29 +193,28 @@ bool comes_by_valleys(const NearTriangle& t, Vec3 p, float separation, float rea
 
 }  // namespace
 
-void points_by_valleys(const NearTriangle& t, const PlacedConvex& convex, float max_separation,
-                       MeshPoints& out) {
+void valley_points(const LocalTriangle& t, const LocalConvex& convex, float max_separation, MeshPoints& out) {
   if (convex.vertex_count() > 2) return;
   const Emitter emit{t.normal, t.v[0], convex.radius(), max_separation, out};
   for (int k = 0; k < convex.vertex_count(); ++k) {
     const Vec3 p = convex.vertex(k);
     const float separation = dot(t.normal, p - t.v[0]) - convex.radius();
-    if (comes_by_valleys(t, p, separation, max_separation))
+    if (has_valley_points(t, p, separation, max_separation))
       emit.pair(p, separation, point_name(PointKind::shape_corner, normal_name(t.normal), std::uint32_t(k)));
   }
 }
 
-bool comes_by_valleys(const NearTriangle& t, const PlacedConvex& convex, float reach) {
+bool has_valley_points(const LocalTriangle& t, const LocalConvex& convex, float max_distance) {
   MeshPoints found;
-  points_by_valleys(t, convex, reach, found);
+  valley_points(t, convex, max_distance, found);
   return found.count > 0;
 }
 
 namespace {
 
-// One edge of the triangle, and what of the shape faces it.
+// One edge of the triangle, and the feature of the shape that faces it.
 struct EdgeContact {
-  const NearTriangle& t;
+  const LocalTriangle& t;
   int edge;
   const FacePolygon& face;
   Vec3 direction;
@@ -222,18 +224,18 @@ struct EdgeContact {
   Vec3 end() const { return t.v[next_corner(edge)]; }
   Vec3 at(float s) const { return lerp(start(), end(), s); }
 
-  // A point of the edge, and the core's surface above it at `height` along the direction.
+  // A point of the edge, with the surface of the core above it at `height` along the direction.
   void add(float s, float height, std::uint32_t name) const {
     const Vec3 p = at(s);
     emit.pair(p + height * direction, height - emit.radius, name);
   }
 
   void under_polygon() const;
-  void beside_segment() const;
+  void parallel_segment() const;
   void nearest() const;
 };
 
-// The stretch of the edge that lies under the polygon: its two ends.
+// The two ends of the stretch of the edge that lies under the polygon.
 void EdgeContact::under_polygon() const {
   const float facing = dot(face.normal, direction);
   float low = 0.0f, high = 1.0f;
@@ -242,7 +244,7 @@ void EdgeContact::under_polygon() const {
       point_name(PointKind::surface_corner, t.corner_id[next_corner(edge)], face.feature);
   for (int k = 0; k < face.count; ++k) {
     const Vec3 a = face.vertices[k], side = face.vertices[k + 1 == face.count ? 0 : k + 1] - a;
-    const Vec3 inward = cross(side, direction);  // the direction runs into the face: against its normal
+    const Vec3 inward = cross(side, direction);  // the direction runs into the face, against its normal
     const float from = dot(inward, start() - a), to = dot(inward, end() - a);
     const float slack = t.slack * length(side);
     if (from < -slack && to < -slack) return;
@@ -261,8 +263,8 @@ void EdgeContact::under_polygon() const {
   if (low < high) add(high, height(high), high_name);
 }
 
-// Two edges side by side: the ends of the stretch that both share.
-void EdgeContact::beside_segment() const {
+// Two parallel edges: the ends of the stretch that both share.
+void EdgeContact::parallel_segment() const {
   const Vec3 a = face.vertices[0], b = face.vertices[1], along = end() - start();
   const float scale = 1.0f / length_squared(along);
   const float s_a = dot(a - start(), along) * scale, s_b = dot(b - start(), along) * scale;
@@ -278,13 +280,13 @@ void EdgeContact::beside_segment() const {
   if (low < high) add(high, height(high), name(high, next_corner(edge)));
 }
 
-// Two edges that cross, or an edge and a point.
+// Two crossing edges, or an edge and a point.
 void EdgeContact::nearest() const {
   const Vec3 last = face.vertices[face.count - 1];
   const SegmentPair pair =
       closest_of_segments(DVec3(start()), DVec3(end()), DVec3(face.vertices[0]), DVec3(last));
   const Vec3 p = to_float(pair.on_a), q = to_float(pair.on_b);
-  // Apart, and not across each other: what is nearest is found elsewhere.
+  // The edges are apart and do not cross. Another feature is closer.
   const float along = dot(direction, q - p);
   const float beside = kCrossingSlack * max(t.length[edge], length(last - face.vertices[0])) + t.slack;
   if (along > emit.radius && length_squared(q - p) > square(along) + square(beside)) return;
@@ -292,7 +294,7 @@ void EdgeContact::nearest() const {
   emit.pair(q, along - emit.radius, point_name(PointKind::edges, t.edge_id[edge], name));
 }
 
-// The edge of a polygon that is lowest along `direction`, or its lowest corner.
+// The lowest edge of a polygon along `direction`, which starts at its lowest corner.
 void lowest_edge(const FacePolygon& face, Vec3 direction, FacePolygon& out) {
   int lowest = 0;
   for (int k = 1; k < face.count; ++k) {
@@ -315,7 +317,7 @@ void lowest_edge(const FacePolygon& face, Vec3 direction, FacePolygon& out) {
   out.ids[1] = face.ids[other];
 }
 
-void corner_points(const NearTriangle& t, int corner, const PlacedConvex& convex, const FeatureAxis& axis,
+void corner_points(const LocalTriangle& t, int corner, const LocalConvex& convex, const FeatureAxis& axis,
                    const FacePolygon& face, const Emitter& emit) {
   const Vec3 v = t.v[corner];
   const std::uint32_t on_shape = face.count == 2 ? edge_name(face, 0) : face.feature;
@@ -324,7 +326,7 @@ void corner_points(const NearTriangle& t, int corner, const PlacedConvex& convex
   if (axis.source != AxisSource::nearest_pair) {
     const float facing = dot(face.normal, emit.direction);
     const bool flush = face.count >= 3 && facing < -kFlushShare;
-    // Beside the face there is nothing above the corner at that height.
+    // Beside the face nothing lies above the corner at that height.
     if (flush && !inside_polygon(face, v, t.slack)) return;
     height = flush ? dot(face.normal, face.vertices[0] - v) / facing
                    : convex.lowest(emit.direction) - dot(emit.direction, v);
@@ -333,8 +335,8 @@ void corner_points(const NearTriangle& t, int corner, const PlacedConvex& convex
   emit.pair(q, height - emit.radius, name);
 }
 
-// What of the shape lies along an edge of the triangle when it is no face: an edge or a point.
-void narrow_feature(const PlacedConvex& convex, const FeatureAxis& axis, const FacePolygon& face,
+// The feature of the shape along an edge of the triangle if it is no face: an edge or a point.
+void narrow_feature(const LocalConvex& convex, const FeatureAxis& axis, const FacePolygon& face,
                     FacePolygon& out) {
   if (axis.source == AxisSource::shape_edge) {
     out.count = 2;
@@ -352,7 +354,7 @@ void narrow_feature(const PlacedConvex& convex, const FeatureAxis& axis, const F
 
 }  // namespace
 
-void feature_points(const NearTriangle& t, const PlacedConvex& convex, const FeatureAxis& axis,
+void feature_points(const LocalTriangle& t, const LocalConvex& convex, const FeatureAxis& axis,
                     float max_separation, MeshPoints& out) {
   const Vec3 d = axis.direction;
   FacePolygon face;
@@ -363,8 +365,8 @@ void feature_points(const NearTriangle& t, const PlacedConvex& convex, const Fea
   }
   const int edge = axis.corners == 3 ? 0 : (axis.corners == 6 ? 1 : 2);
   if (face.count >= 3 && dot(face.normal, d) < -kFlushShare) {
-    // Also where an edge of the shape is in touch: that face's other end lies over the triangle's edge, too, and a shape that had only
-    // one of the two ends would rock on it, from step to step.
+    // Also if an edge of the shape touches: the other end of that face is over the triangle's edge too, and with only
+    // one of the two points the shape would rock on it from step to step.
     EdgeContact{t, edge, face, d, emit}.under_polygon();
     const bool is_nearest =
         axis.source != AxisSource::shape_edge || out.deepest() <= axis.separation + kAxisBias * convex.size();
@@ -377,7 +379,7 @@ void feature_points(const NearTriangle& t, const PlacedConvex& convex, const Fea
   if (narrow.count == 2) {
     const Vec3 segment = narrow.vertices[1] - narrow.vertices[0];
     if (length(cross(segment, t.along[edge])) <= kSideBySideEdges * length(segment)) {
-      contact.beside_segment();
+      contact.parallel_segment();
       if (out.count > 0) return;
     }
   }

@@ -1,4 +1,5 @@
-// What rolls is told of the slope beyond a valley before it lies over it: there alone, exactly, and no more than it may reach.
+// A rolling body gets contacts of the slope beyond a valley before it lies over it: only there, exact, and only within
+// its range.
 #include "geometry/distance/closest.h"
 #include "geometry/shape/cooked.h"
 #include "geometry/shape/mesh.h"
@@ -80,8 +81,9 @@ TEST(MeshValleys, BothEndsOfACapsuleAreTold) {
   for (int k = 0; k < 2; ++k) EXPECT_NEAR(far->points[k].separation, dot(normal, place) - kBall, 1.0e-6f);
 }
 
-// Whatever way a ball goes that is no longer than the margin, its contacts foretell how deep it comes to lie, or deeper: along folds in
-// any order, by brute force. What normals of less than two degrees, which share one, make of that way is left open.
+// For any displacement of a ball within the margin, its contacts predict at least the depth that it will have: along
+// folds in any order, by brute force. Normals that differ by less than two degrees share a manifold; their effect is
+// not tested.
 TEST(MeshValleys, ContactsForetellWhatIsReached) {
   Random random{31};
   int entered = 0;

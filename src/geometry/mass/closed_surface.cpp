@@ -13,7 +13,7 @@
 namespace gyre {
 namespace {
 
-// Parts that touch or overlap by less than this part of the extent do not count as crossing.
+// Pieces that touch or overlap by less than this fraction of the extent do not count as crossing.
 constexpr double kTouching = 1.0e-6;
 
 struct Triangle {
@@ -56,7 +56,7 @@ bool share_vertex(const TriangleSurface& s, std::uint32_t a, std::uint32_t b) {
   return false;
 }
 
-// Whether the segment from p to q passes through the triangle, by more than `slack` from its ends and its edges.
+// True if the segment from p to q passes through the triangle, more than `slack` from its ends and from the edges.
 bool passes_through(DVec3 p, DVec3 q, const Triangle& t, double slack) {
   const DVec3 n = cross(t.b - t.a, t.c - t.a);
   const double size = length(n);
@@ -64,17 +64,17 @@ bool passes_through(DVec3 p, DVec3 q, const Triangle& t, double slack) {
   if (!(absolute(height_p) > slack * size && absolute(height_q) > slack * size)) return false;
   if ((height_p > 0.0) == (height_q > 0.0)) return false;
   const DVec3 along = q - p;
-  const auto beside = [&](DVec3 a, DVec3 b) {
-    // Distance of the two lines, with the side as its sign.
+  const auto side_distance = [&](DVec3 a, DVec3 b) {
+    // The distance of the two lines, with the side as its sign.
     const DVec3 m = cross(along, b - a);
     return dot(m, a - p) / max(length(m), 1.0e-300);
   };
-  const double sides[3] = {beside(t.a, t.b), beside(t.b, t.c), beside(t.c, t.a)};
+  const double sides[3] = {side_distance(t.a, t.b), side_distance(t.b, t.c), side_distance(t.c, t.a)};
   return (sides[0] > slack && sides[1] > slack && sides[2] > slack) ||
          (sides[0] < -slack && sides[1] < -slack && sides[2] < -slack);
 }
 
-bool cross_each_other(const Triangle& a, const Triangle& b, double slack) {
+bool intersect(const Triangle& a, const Triangle& b, double slack) {
   return passes_through(a.a, a.b, b, slack) || passes_through(a.b, a.c, b, slack) ||
          passes_through(a.c, a.a, b, slack) || passes_through(b.a, b.b, a, slack) ||
          passes_through(b.b, b.c, a, slack) || passes_through(b.c, b.a, a, slack);
@@ -94,7 +94,7 @@ class CoverCheck {
   std::vector<Aabb> boxes_;
   StaticTree tree_;
   double slack_ = 0.0;
-  float reach_ = 0.0f;
+  float ray_length_ = 0.0f;
 };
 
 CoverCheck::CoverCheck(const TriangleSurface& surface) : surface_(surface) {
@@ -107,8 +107,8 @@ CoverCheck::CoverCheck(const TriangleSurface& surface) : surface_(surface) {
   }
   const float extent = largest(all.high - all.low);
   slack_ = kTouching * double(extent);
-  reach_ = 4.0f * extent;
-  // Larger than what rounding of rays in float needs.
+  ray_length_ = 4.0f * extent;
+  // More than the rounding of rays in float needs.
   const float margin =
       4.0f * float(kTouching) * max(extent, max(largest(absolute(all.low)), largest(absolute(all.high))));
   for (Aabb& box : boxes_) box = grow(box, margin);
@@ -125,7 +125,7 @@ Error CoverCheck::check_crossings(std::uint32_t i) {
           const std::uint32_t j = tree_.items[k];
           if (j <= i || (other != i && j > other) || !overlap(boxes_[i], boxes_[j])) continue;
           if (share_vertex(surface_, i, j)) continue;
-          if (cross_each_other(a, triangle_at(surface_, j), slack_)) other = j;
+          if (intersect(a, triangle_at(surface_, j), slack_)) other = j;
         }
       });
   if (other == i) return {};
@@ -135,12 +135,13 @@ Error CoverCheck::check_crossings(std::uint32_t i) {
       surface_.name(i), surface_.name(other));
 }
 
-// Crossings along the ray, +1 from inside to outside; false if one is too close to an edge or the start to be certain.
+// Counts crossings along the ray, +1 from inside to outside. Returns false if one is too close to an edge or to the
+// start.
 bool CoverCheck::count_crossings(std::uint32_t self, DVec3 from, DVec3 direction, int& count) const {
   bool certain = true;
   count = 0;
-  const BoxLine ray(from, double(reach_) * direction, Vec3{});
-  walk_cast(tree_, ray, 1.0f, [&](std::uint32_t first, std::uint32_t leaf_size, float reach) {
+  const BoxRay ray(from, double(ray_length_) * direction, Vec3{});
+  traverse_cast(tree_, ray, 1.0f, [&](std::uint32_t first, std::uint32_t leaf_size, float max_fraction) {
     for (std::uint32_t k = first; k < first + leaf_size; ++k) {
       const std::uint32_t j = tree_.items[k];
       if (j == self) continue;
@@ -148,9 +149,9 @@ bool CoverCheck::count_crossings(std::uint32_t self, DVec3 from, DVec3 direction
       const DVec3 a = t.a - from, b = t.b - from, c = t.c - from;
       const double u = dot(direction, cross(b, c)), v = dot(direction, cross(c, a)),
                    w = dot(direction, cross(a, b));
-      const double whole = u + v + w;  // direction . normal
+      const double facing = u + v + w;  // dot(direction, normal)
       const DVec3 n = cross(b - a, c - a);
-      // An almost parallel triangle counts as hit by its edge.
+      // A nearly parallel triangle counts as hit at its edge.
       const double unsure = 1.0e-9 * (absolute(u) + absolute(v) + absolute(w));
       const bool in = (u > unsure && v > unsure && w > unsure) || (u < -unsure && v < -unsure && w < -unsure);
       const bool out =
@@ -162,33 +163,33 @@ bool CoverCheck::count_crossings(std::uint32_t self, DVec3 from, DVec3 direction
       }
       const double distance = dot(n, a) / dot(n, direction);
       if (absolute(distance) <= slack_) certain = false;
-      if (distance > 0.0) count += whole > 0.0 ? 1 : -1;
+      if (distance > 0.0) count += facing > 0.0 ? 1 : -1;
     }
-    return reach;
+    return max_fraction;
   });
   return certain;
 }
 
-// From the middle of the triangle on, the others must be left as often as they are entered, and once more if the ray starts
+// A ray from the centre of the triangle must leave the others as often as it enters them, and once more if it starts
 // into the solid.
 Error CoverCheck::check_sides(std::uint32_t i) {
   const Triangle t = triangle_at(surface_, i);
   const DVec3 n = cross(t.b - t.a, t.c - t.a);
   const DVec3 middle = (t.a + t.b + t.c) / 3.0;
-  // Directions that no model is likely to be aligned with; a triangle that none decides is not judged.
+  // Directions with which models are hardly ever aligned. A triangle that no direction decides passes.
   constexpr DVec3 kDirections[3] = {
       {0.5377, 0.6184, 0.5731}, {-0.7071, 0.3317, 0.6245}, {0.2913, -0.8361, 0.4648}};
   for (const DVec3& direction : kDirections) {
     if (!(absolute(dot(n, direction)) > 1.0e-3 * length(n))) continue;
     int count = 0;
     if (!count_crossings(i, middle, direction, count)) continue;
-    const int wanted = dot(n, direction) > 0.0 ? 0 : 1;
-    if (count == wanted) return {};
+    const int required = dot(n, direction) > 0.0 ? 0 : 1;
+    if (count == required) return {};
     return make_error(
         ErrorCode::invalid_geometry,
         "mesh: triangle %u has the solid %d times behind and %d times before it; allowed is once behind and "
         "not before (parts must not overlap, holes must be wound inwards)",
-        surface_.name(i), wanted == 0 ? count + 1 : count, wanted == 0 ? count : count - 1);
+        surface_.name(i), required == 0 ? count + 1 : count, required == 0 ? count : count - 1);
   }
   return {};
 }
@@ -238,7 +239,7 @@ Error check_edges(const TriangleSurface& surface) {
     halves.push_back(half);
   }
   radix_sort_pairs(keys, halves, key_scratch, half_scratch);
-  // Of all edges that are wrong, the one of the lowest triangle.
+  // Of all wrong edges, the one of the lowest triangle is reported.
   std::uint32_t worst = 0;
   bool found = false, open = false;
   for (std::size_t begin = 0, end = 0; begin < keys.size(); begin = end) {

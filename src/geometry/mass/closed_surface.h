@@ -1,7 +1,7 @@
-// Whether triangles bound a solid, so that integrals over its volume mean something: closed, wound alike, wound outwards,
-// not crossing itself, no part inside another but as a hole.
+// Checks that triangles bound a solid, so that volume integrals have a meaning: closed, wound alike, wound outwards,
+// without self-intersection, and without a piece inside another except as a hole.
 //
-// In: triangles with valid indices and finite vertices. Out: the first thing that is wrong, by triangle and vertices.
+// In: triangles with valid indices and finite vertices. Out: the first error, with its triangle and vertices.
 #pragma once
 
 #include <gyre/math.h>
@@ -15,8 +15,8 @@ namespace gyre {
 struct TriangleSurface {
   std::span<const Vec3> vertices;
   std::span<const std::uint32_t> indices;
-  std::span<const std::uint32_t> source;  // numbers by which triangles are named; if empty, their place
-  std::span<const std::uint32_t> welded;  // for each vertex, the one that stands for its place
+  std::span<const std::uint32_t> source;  // numbers that name triangles in errors; if empty, their indices
+  std::span<const std::uint32_t> welded;  // for each vertex, the representative of its position
 
   std::uint32_t triangle_count() const { return std::uint32_t(indices.size() / 3); }
   std::uint32_t name(std::uint32_t triangle) const { return source.empty() ? triangle : source[triangle]; }
@@ -25,12 +25,12 @@ struct TriangleSurface {
   }
 };
 
-// Indices in range and in threes, finite vertices; needs no `welded`.
+// Checks that indices are in range and in threes, and that vertices are finite. Does not need `welded`.
 Error check_surface_data(const TriangleSurface& surface);
-// Each edge is run through as often one way as the other.
+// Checks that each edge is used equally often in both directions.
 Error check_edges(const TriangleSurface& surface);
-// No edge passes through a triangle, and the space on the two sides of each triangle is covered once inside and not at all
-// outside.
+// Checks that no edge passes through a triangle, and that the space behind each triangle is inside exactly once and the
+// space before it not at all.
 Error check_covered_once(const TriangleSurface& surface);
 
 }  // namespace gyre

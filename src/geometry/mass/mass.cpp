@@ -1,4 +1,4 @@
-// Mass properties of shapes by closed forms, and their algebra: turn, move, join, principal axes. See mass.h.
+// Mass properties of shapes in closed form, and their algebra: rotate, move, combine, principal axes. See mass.h.
 #include "geometry/mass/mass.h"
 
 #include "base/float_mode.h"
@@ -11,7 +11,7 @@
 namespace gyre {
 namespace {
 
-// A body of the given mass that is symmetric about its centre's three planes, by its second moments.
+// A body of the given mass and second moments that is symmetric about three planes through its centre.
 Solid symmetric_solid(double mass, double xx, double yy, double zz) {
   Solid solid;
   solid.mass = mass;
@@ -24,12 +24,13 @@ Solid symmetric_solid(double mass, double xx, double yy, double zz) {
 Solid measure(const Sphere& sphere, double density) {
   const double r = double(sphere.radius);
   const double mass = density * 4.0 / 3.0 * kPiDouble * r * r * r;
-  const double part = mass * r * r / 5.0;
-  return symmetric_solid(mass, part, part, part);
+  const double moment = mass * r * r / 5.0;
+  return symmetric_solid(mass, moment, moment, moment);
 }
 
-// Along axis i of a rounded box with inner half extents e and rounding r (j and k are the other axes), the integral of i^2
-// over the inner box, 6 slabs on its faces, 12 quarter cylinders along its edges and 8 octants of a ball at its corners.
+// Along axis i of a rounded box with inner half extents e and rounding r (j and k are the other axes): the integral of
+// i^2 over the inner box, 6 slabs on its faces, 12 quarter cylinders along its edges and 8 octants of a ball at its
+// corners.
 double rounded_box_moment(double ei, double ej, double ek, double r) {
   const double r2 = r * r, r3 = r2 * r, r4 = r2 * r2, r5 = r4 * r;
   const double core = 8.0 * ei * ej * ek * ei * ei / 3.0;
@@ -57,7 +58,7 @@ Solid measure(const Capsule& capsule, double density) {
   const double tube = density * kPiDouble * r * r * 2.0 * h;
   const double ball = density * 4.0 / 3.0 * kPiDouble * r * r * r;
   const double across = tube * r * r / 4.0 + ball * r * r / 5.0;
-  // Half balls at distance h, their centres of mass 3/8 r farther out.
+  // Half balls at distance h; their centres of mass are 3/8 r farther out.
   const double along = tube * h * h / 3.0 + ball * (r * r / 5.0 + h * h + 0.75 * h * r);
   return symmetric_solid(tube + ball, across, along, across);
 }
@@ -73,8 +74,8 @@ Solid measure(const Cone& cone, double density) {
   const double mass = density * kPiDouble * r * r * height / 3.0;
   const double across = 3.0 / 20.0 * mass * r * r;
   Solid solid = symmetric_solid(mass, across, 3.0 / 80.0 * mass * height * height, across);
-  solid.center.y =
-      -0.25 * height;  // a quarter of the height above the base, which lies half of it below the origin
+  // A quarter of the height above the base; half of the height lies below the origin.
+  solid.center.y = -0.25 * height;
   return solid;
 }
 
@@ -103,7 +104,7 @@ struct Rotation {
 Rotation rotation_of(Quat orientation) {
   const double x0 = double(orientation.x), y0 = double(orientation.y), z0 = double(orientation.z);
   const double w0 = double(orientation.w);
-  // Exactly a rotation even if the quaternion's length is 1 only to a float's precision.
+  // Exactly a rotation, even if the length of the quaternion is 1 only to the precision of float.
   const double n = x0 * x0 + y0 * y0 + z0 * z0 + w0 * w0;
   const double s = n > 0.0 ? 2.0 / n : 0.0;
   const double xx = s * x0 * x0, yy = s * y0 * y0, zz = s * z0 * z0, xy = s * x0 * y0, xz = s * x0 * z0;
@@ -114,7 +115,7 @@ Rotation rotation_of(Quat orientation) {
 }
 
 // R C R^T.
-SecondMoments turned(const SecondMoments& c, const Rotation& r) {
+SecondMoments rotated(const SecondMoments& c, const Rotation& r) {
   const auto apply = [&](DVec3 v) {
     return DVec3(c.xx * v.x + c.xy * v.y + c.xz * v.z, c.xy * v.x + c.yy * v.y + c.yz * v.z,
                  c.xz * v.x + c.yz * v.y + c.zz * v.z);
@@ -157,7 +158,7 @@ Result<MassProperties> checked_mass(const Solid& solid, const char* shape) {
   const Sym3& i = out.inertia;
   const bool finite = is_finite(out.mass) && is_finite(out.center) && is_finite(i.xx + i.yy + i.zz) &&
                       is_finite(i.xy) && is_finite(i.xz) && is_finite(i.yz);
-  // A denormal number has lost its digits.
+  // A denormal number has lost digits.
   constexpr float kSmallest = 1.17549435e-38f;
   if (finite && out.mass >= kSmallest && smallest(Vec3{i.xx, i.yy, i.zz}) >= kSmallest) return out;
   return make_error(ErrorCode::invalid_argument,
@@ -172,7 +173,7 @@ void TetrahedronSum::add(DVec3 a, DVec3 b, DVec3 c) {
   const DVec3 sum = pa + pb + pc;
   volume_ += volume;
   first_ += 0.25 * volume * sum;
-  // Of the tetrahedron (0, a, b, c): V / 20 (a a' + b b' + c c' + s s') with s = a + b + c.
+  // The tetrahedron (0, a, b, c) has V / 20 (a a' + b b' + c c' + s s') with s = a + b + c.
   const double weight = volume / 20.0;
   add_product(second_, weight, pa);
   add_product(second_, weight, pb);
@@ -223,8 +224,8 @@ MassProperties hollow_sphere_mass(float radius, float density_per_area) {
   const FloatMode mode;
   const double r = double(radius);
   const double mass = double(density_per_area) * 4.0 * kPiDouble * r * r;
-  const double part = mass * r * r / 3.0;
-  return to_mass_properties(symmetric_solid(mass, part, part, part));
+  const double moment = mass * r * r / 3.0;
+  return to_mass_properties(symmetric_solid(mass, moment, moment, moment));
 }
 
 MassProperties ellipsoid_mass(Vec3 semi_axes, float density) {
@@ -255,14 +256,14 @@ MassProperties transformed(const MassProperties& mass, const Transform& t) {
   Solid solid = to_solid(mass);
   const DVec3 c = solid.center;
   solid.center = DVec3(dot(r.rows[0], c), dot(r.rows[1], c), dot(r.rows[2], c)) + t.position;
-  solid.moments = turned(solid.moments, r);
+  solid.moments = rotated(solid.moments, r);
   return to_mass_properties(solid);
 }
 
 MassProperties combined(std::span<const MassProperties> parts) {
   const FloatMode mode;
   if (parts.empty()) return {};
-  // Centres from the first part's, so that parts far from the origin keep their digits.
+  // Centres are relative to that of the first part, so that parts far from the origin stay precise.
   const DVec3 origin(parts[0].center);
   double mass = 0.0;
   DVec3 first;
@@ -307,7 +308,7 @@ Error check_inertia(const Sym3& inertia) {
   }
   double moments[3], axes[9];
   symmetric_eigen(m, moments, axes);
-  // The principal axis, and the coordinate axis it is nearest to.
+  // The principal axis, and the closest coordinate axis.
   const auto axis = [&](int i) { return DVec3(axes[3 * i], axes[3 * i + 1], axes[3 * i + 2]); };
   const auto letter = [](DVec3 a) {
     const double x = absolute(a.x), y = absolute(a.y), z = absolute(a.z);

@@ -1,4 +1,4 @@
-// Volume integrals over closed triangle meshes, with every reason why a mesh bounds no solid. See mass.h.
+// Volume integrals over closed triangle meshes, and the errors of meshes that bound no solid. See mass.h.
 #include "base/float_mode.h"
 #include "geometry/mass/closed_surface.h"
 #include "geometry/mass/mass.h"
@@ -29,7 +29,7 @@ Result<Solid> closed_mesh_solid(std::span<const Vec3> vertices, std::span<const 
   if (const Error error = check_edges(surface)) return error;
 
   TetrahedronSum sum(middle_of(surface));
-  double size = 0.0;  // what rounding is measured by
+  double size = 0.0;  // the scale of rounding errors
   for (std::uint32_t i = 0; i < surface.triangle_count(); ++i) {
     const double before = sum.volume();
     sum.add(surface.corner(i, 0), surface.corner(i, 1), surface.corner(i, 2));

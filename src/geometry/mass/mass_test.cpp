@@ -1,4 +1,4 @@
-// Mass properties against closed forms and published numbers, against each other, and against what must be refused.
+// Mass properties against closed forms and published numbers, against each other, and for input that must be refused.
 #include "geometry/mass/mass.h"
 
 #include <gtest/gtest.h>

@@ -1,11 +1,11 @@
-// An estimate of mass properties by counting voxels: needs no closed surface, and checks the exact integrals.
+// An estimate of mass properties by counting voxels. It needs no closed surface, and it checks the exact integrals.
 //
-// A voxel's centre is inside when a ray from it leaves the surface an odd number of times. Rays run along all three axes
-// and the majority decides, so that a hole in the surface spoils only the rays that pass it: a ray with an odd number of
-// crossings in all does not vote.
+// The centre of a voxel is inside if a ray from it crosses the surface an odd number of times. Rays run along all three
+// axes and the majority decides, so that a hole in the surface spoils only the rays through it. A ray with an odd
+// number of crossings in total does not vote.
 // Source: F. Nooruddin, G. Turk, "Simplification and Repair of Polygonal Models Using Volumetric Techniques", 2003.
-#include "base/float_mode.h"
 #include "base/container/sort.h"
+#include "base/float_mode.h"
 #include "geometry/mass/closed_surface.h"
 #include "geometry/mass/mass.h"
 
@@ -48,17 +48,17 @@ VoxelGrid make_grid(const TriangleSurface& surface, int resolution) {
   return grid;
 }
 
-// A point of the plane that rays cross at right angles. Rays are moved from voxel centres by about a thousandth of a voxel
-// so that they meet no edge of a model that is aligned with its axes.
+// A point of the plane perpendicular to the rays. Rays are offset from voxel centres by about a thousandth of a voxel,
+// so that they meet no edge of an axis-aligned model.
 struct PlanePoint {
   double u, v;
 };
-constexpr double kAsideU = 1.3127e-3, kAsideV = 0.9241e-3;
+constexpr double kOffsetU = 1.3127e-3, kOffsetV = 0.9241e-3;
 
 bool comes_before(PlanePoint a, PlanePoint b) { return a.u != b.u ? a.u < b.u : a.v < b.v; }
 
-// Which side of the edge the point is on: the same number, but for its sign, from both triangles of an edge, so that no ray
-// slips between them.
+// The side of the edge on which the point lies. Both triangles of an edge compute the same number with opposite signs,
+// so no ray passes between them.
 double side_of(PlanePoint a, PlanePoint b, PlanePoint p) {
   const bool swap = comes_before(b, a);
   const PlanePoint from = swap ? b : a, to = swap ? a : b;
@@ -69,7 +69,7 @@ double side_of(PlanePoint a, PlanePoint b, PlanePoint p) {
 
 struct Crossing {
   std::uint32_t column;
-  double place;  // along the axis
+  double height;  // along the axis
 };
 
 class RayVotes {
@@ -109,21 +109,21 @@ void RayVotes::cross_triangle(std::uint32_t triangle) {
   };
   for (int j = first(1, v_); j <= last(1, v_); ++j) {
     for (int i = first(0, u_); i <= last(0, u_); ++i) {
-      const PlanePoint ray{grid_.center(u_, i) + kAsideU * grid_.size,
-                           grid_.center(v_, j) + kAsideV * grid_.size};
+      const PlanePoint ray{grid_.center(u_, i) + kOffsetU * grid_.size,
+                           grid_.center(v_, j) + kOffsetV * grid_.size};
       const double c = side_of(p[0], p[1], ray), a = side_of(p[1], p[2], ray), b = side_of(p[2], p[0], ray);
       if (!((a > 0.0 && b > 0.0 && c > 0.0) || (a < 0.0 && b < 0.0 && c < 0.0))) continue;
-      const double place =
+      const double height =
           (a * corners[0][axis_] + b * corners[1][axis_] + c * corners[2][axis_]) / (a + b + c);
-      crossings_.push_back({std::uint32_t(j * grid_.count[u_] + i), place});
+      crossings_.push_back({std::uint32_t(j * grid_.count[u_] + i), height});
     }
   }
 }
 
-// The voxels of one ray, whose crossings are sorted.
+// The voxels of one ray. Its crossings are sorted.
 void RayVotes::vote(std::size_t begin, std::size_t end) {
   if ((end - begin) % 2 != 0) {
-    // No vote: take back what cast_along put in before.
+    // No vote: undo the contribution of cast_along.
     for (int k = 0; k < grid_.count[axis_]; ++k) {
       int i[3];
       i[axis_] = k;
@@ -134,8 +134,8 @@ void RayVotes::vote(std::size_t begin, std::size_t end) {
     return;
   }
   for (std::size_t pair = begin; pair < end; pair += 2) {
-    const double from = (crossings_[pair].place - grid_.low[axis_]) / grid_.size - 0.5;
-    const double to = (crossings_[pair + 1].place - grid_.low[axis_]) / grid_.size - 0.5;
+    const double from = (crossings_[pair].height - grid_.low[axis_]) / grid_.size - 0.5;
+    const double to = (crossings_[pair + 1].height - grid_.low[axis_]) / grid_.size - 0.5;
     const int first = max(0, int(std::ceil(from))),
               last = min(grid_.count[axis_] - 1, int(std::ceil(to)) - 1);
     for (int k = first; k <= last; ++k) {
@@ -148,7 +148,7 @@ void RayVotes::vote(std::size_t begin, std::size_t end) {
   }
 }
 
-// Every voxel gets -1 (outside) from this axis, +1 (inside) or 0 (no vote).
+// Each voxel gets -1 (outside), +1 (inside) or 0 (no vote) from this axis.
 void RayVotes::cast_along(int axis) {
   axis_ = axis;
   u_ = (axis + 1) % 3;
@@ -159,7 +159,7 @@ void RayVotes::cast_along(int axis) {
   std::vector<Crossing> scratch(crossings_.size());
   merge_sort(std::span<Crossing>(crossings_), std::span<Crossing>(scratch),
              [](const Crossing& a, const Crossing& b) {
-               return a.column != b.column ? a.column < b.column : a.place < b.place;
+               return a.column != b.column ? a.column < b.column : a.height < b.height;
              });
   for (std::size_t begin = 0, end = 0; begin < crossings_.size(); begin = end) {
     while (end < crossings_.size() && crossings_[end].column == crossings_[begin].column) ++end;

@@ -1,9 +1,9 @@
-// Sums that stand for integrals.
+// Nodes of quadrature rules.
 #pragma once
 
 namespace gyre {
 
-// Where on [0, 1] a rule of Gauss and Legendre looks, and how much what it sees there counts.
+// A node of a Gauss-Legendre rule on [0, 1], and its weight.
 struct QuadratureNode {
   double at, weight;
 };

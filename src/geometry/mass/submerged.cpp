@@ -1,7 +1,7 @@
 #include "geometry/mass/submerged.h"
 
-#include "geometry/shape/hull.h"
 #include "geometry/mass/submerged_round.h"
+#include "geometry/shape/hull.h"
 
 namespace gyre {
 
@@ -13,7 +13,7 @@ class PolyhedronCut {
   PolyhedronCut(DVec3 normal, double level) : normal_(normal), level_(level), apex_(level * normal) {}
 
   void begin_face() { has_first_ = has_exit_ = has_entry_ = false; }
-  // Corners in order, counter-clockwise seen from outside, and the first one once more at the end.
+  // Corners in order, counter-clockwise seen from outside, and the first one again at the end.
   void corner(DVec3 p) {
     const double height = dot(normal_, p) - level_;
     if (has_last_) edge(last_, last_height_, p, height);
@@ -23,7 +23,7 @@ class PolyhedronCut {
   }
   void end_face() {
     has_last_ = false;
-    // The cut lies on the other side of this edge, so it goes round the other way.
+    // The cut lies on the other side of this edge, so it runs in the opposite direction.
     if (has_exit_ && has_entry_) cut_edge(entry_ - apex_, exit_ - apex_);
   }
   SubmergedPart result() const {
@@ -56,7 +56,7 @@ class PolyhedronCut {
     }
     if (below_b) add_corner(b);
   }
-  // Corners of the face's part below, as a fan.
+  // Corners of the submerged part of the face, as a fan.
   void add_corner(DVec3 p) {
     const DVec3 at = p - apex_;
     if (!has_first_) {
@@ -96,7 +96,7 @@ class PolyhedronCut {
 constexpr std::uint8_t kBoxFaceCorners[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                                 {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
 
-SubmergedPart box_part(DVec3 half, DVec3 normal, double level) {
+SubmergedPart submerged_box(DVec3 half, DVec3 normal, double level) {
   PolyhedronCut cut(normal, level);
   for (const auto& face : kBoxFaceCorners) {
     cut.begin_face();
@@ -110,7 +110,7 @@ SubmergedPart box_part(DVec3 half, DVec3 normal, double level) {
   return cut.result();
 }
 
-SubmergedPart hull_part(const Hull& hull, DVec3 normal, double level) {
+SubmergedPart submerged_hull(const Hull& hull, DVec3 normal, double level) {
   PolyhedronCut cut(normal, level);
   for (int face = 0; face < hull.face_count(); ++face) {
     const std::uint32_t first = hull.face_offsets[std::size_t(face)],
@@ -128,14 +128,14 @@ DVec3 outer_half(const Shape& box) {
   return DVec3(box.extents) + r;
 }
 
-// The share of the sharp box that rounding leaves: a core, slabs on its faces, quarter rods on its edges, a ball.
+// The volume of a rounded box relative to the sharp one: a core, slabs on its faces, quarter rods on its edges, a ball.
 double rounded_share(const Shape& box) {
   const double r = double(box.radius);
   if (r == 0.0) return 1.0;
-  const DVec3 c = 2.0 * DVec3(box.extents), whole = 2.0 * outer_half(box);
+  const DVec3 c = 2.0 * DVec3(box.extents), sharp = 2.0 * outer_half(box);
   const double volume = c.x * c.y * c.z + 2.0 * r * (c.x * c.y + c.y * c.z + c.z * c.x) +
                         kPiDouble * r * r * (c.x + c.y + c.z) + 4.0 / 3.0 * kPiDouble * r * r * r;
-  return volume / (whole.x * whole.y * whole.z);
+  return volume / (sharp.x * sharp.y * sharp.z);
 }
 
 }  // namespace
@@ -145,7 +145,7 @@ SubmergedPart submerged_part(const Shape& shape, DVec3 normal, double level) {
     case ShapeKind::sphere:
       return submerged_sphere(double(shape.radius), normal, level);
     case ShapeKind::box: {
-      SubmergedPart part = box_part(outer_half(shape), normal, level);
+      SubmergedPart part = submerged_box(outer_half(shape), normal, level);
       part.volume *= rounded_share(shape);
       return part;
     }
@@ -154,7 +154,7 @@ SubmergedPart submerged_part(const Shape& shape, DVec3 normal, double level) {
     case ShapeKind::cone:
       return submerged_round(shape, normal, level);
     case ShapeKind::hull:
-      return hull_part(*shape.hull, normal, level);
+      return submerged_hull(*shape.hull, normal, level);
     default:
       return {};
   }
@@ -176,8 +176,8 @@ double volume_of(const Shape& shape) {
     case ShapeKind::cone:
       return 2.0 / 3.0 * kPiDouble * r * r * h;
     case ShapeKind::hull:
-      // All of it lies below a plane through its highest point.
-      return hull_part(*shape.hull, {0, 1, 0}, double(shape.hull->box.high.y)).volume;
+      // All of the hull lies below a plane through its highest point.
+      return submerged_hull(*shape.hull, {0, 1, 0}, double(shape.hull->box.high.y)).volume;
     default:
       return 0.0;
   }

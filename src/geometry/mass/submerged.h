@@ -1,15 +1,17 @@
-// How much of a convex shape lies below a plane, and where: what buoyancy is made of.
+// The submerged part of a convex shape below a plane, for buoyancy.
 //
-// In: a shape and a plane in the shape's frame. Out: volume and centre of the part below, and area, centre and spread of the
-// cut (the waterplane), in the same frame. All in double.
+// In: a shape and a plane in the shape's frame. Out: the volume and its centre, and the area, centre and spread of the
+// cut (the waterplane), in the same frame. Everything is in double.
 //
-// Boxes and hulls: exact, as sums of tetrahedra from a point of the plane, so that the cut itself adds nothing. Sphere: the cap
-// in closed form. Capsule, cylinder and cone: slices across the axis are discs of which a line cuts off a segment, exact again;
-// their integral along the axis is Gauss-Legendre's in pieces, each substituted so that it has no root at its ends: within 1e-8
-// of the whole volume. A rounded box counts as the sharp one of the same extents, scaled to the volume that it has.
+// Boxes and hulls are exact: sums of tetrahedra from a point of the plane, so that the cut itself adds nothing. A
+// sphere is a cap in closed form. Slices of a capsule, cylinder or cone across the axis are discs from which a line
+// cuts a segment; their integral along the axis is a Gauss-Legendre sum in pieces, each substituted so that it has no
+// root at its ends. Its error is below 1e-8 of the whole volume. A rounded box is the sharp one of the same extents,
+// scaled to its own volume.
 //
-// Sources: B. Mirtich, "Fast and Accurate Computation of Polyhedral Mass Properties", 1996 (integrals over polyhedra); E. Catto,
-// "Exact Buoyancy for Polyhedra", Game Programming Gems 6, 2006 (a point of the plane as apex); textbook segments of circles.
+// Sources: B. Mirtich, "Fast and Accurate Computation of Polyhedral Mass Properties", 1996 (integrals over polyhedra);
+// E. Catto, "Exact Buoyancy for Polyhedra", Game Programming Gems 6, 2006 (a point of the plane as apex); textbook
+// segments of circles.
 #pragma once
 
 #include "geometry/mass/mass.h"
@@ -19,13 +21,13 @@ namespace gyre {
 
 struct SubmergedPart {
   double volume = 0.0;  // m^3
-  DVec3 center;         // of the volume; of no use where that is 0
-  double area = 0.0;    // m^2, of the cut; 0 where the plane does not cut the shape
+  DVec3 center;         // of the volume; without meaning if that is 0
+  double area = 0.0;    // m^2, of the cut; 0 if the plane does not cut the shape
   DVec3 area_center;
   SecondMoments spread;  // m^4, of the cut about its centre
 };
 
-// The part of the shape for which dot(normal, p) < level. `normal` has length 1. Nothing for kinds that are not convex.
+// The part of the shape with dot(normal, p) < level. `normal` has length 1. Empty for kinds that are not convex.
 SubmergedPart submerged_part(const Shape& shape, DVec3 normal, double level);
 
 // The whole volume (m^3) of a convex kind.

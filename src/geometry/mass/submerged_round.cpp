@@ -7,7 +7,7 @@ namespace gyre {
 
 namespace {
 
-// Nodes and weights of Gauss and Legendre on [0, 1].
+// Gauss-Legendre nodes and weights on [0, 1].
 constexpr QuadratureNode kNodes[12] = {
     {0.0092196828766403748, 0.023587668193255914}, {0.047941371814762573, 0.053469662997659213},
     {0.11504866290284765, 0.080039164271673111},   {0.20634102285669129, 0.10158371336153296},
@@ -17,7 +17,7 @@ constexpr QuadratureNode kNodes[12] = {
     {0.95205862818523745, 0.053469662997659213},   {0.99078031712335968, 0.023587668193255914},
 };
 
-// A stretch of the axis on which the square of the radius is a polynomial of the way from `middle`.
+// A stretch of the axis on which the square of the radius is a polynomial of the distance from `middle`.
 struct Section {
   double low, high;
   bool ball;  // radius^2 = size^2 - (y - middle)^2, else radius = size + slope (y - middle)
@@ -29,12 +29,12 @@ struct Section {
   }
 };
 
-// Sums slices across the axis. A slice is a disc, of which s < (level - along y) / across is below, with s the way along
-// `side`, the direction across the axis in which the plane rises.
+// Sums slices across the axis. A slice is a disc; its part with s < (level - along y) / across is submerged, where s is
+// the coordinate along `side`, the direction across the axis in which the plane rises.
 class SliceSum {
  public:
   SliceSum(DVec3 normal, double level) : level_(level), along_(normal.y) {
-    // A plane that does not lean has no side; this little does not show.
+    // A level plane has no side. This lean is too small to matter.
     constexpr double kMinLean = 1.0e-8;
     const double lean = std::sqrt(normal.x * normal.x + normal.z * normal.z);
     across_ = max(lean, kMinLean);
@@ -55,7 +55,7 @@ class SliceSum {
     const double s = area_side_ / area_, y = area_up_ / area_;
     out.area = area_;
     out.area_center = s * side_ + DVec3{0.0, y, 0.0};
-    // Along the cut's chords, and in the plane of axis and side.
+    // Along the chords of the cut, and in the plane of axis and side.
     const DVec3 chord{side_.z, 0.0, -side_.x};
     add_product(out.spread, chord_square_, chord);
     const double ss = side_side_ - area_ * s * s, sy = side_up_ - area_ * s * y, yy = up_up_ - area_ * y * y;
@@ -71,7 +71,8 @@ class SliceSum {
  private:
   double line(double y) const { return (level_ - along_ * y) / across_; }
 
-  // The ends of the section, and between them, ascending, where the line touches the slice's rim.
+  // The ends of the section and, between them in ascending order, the heights at which the line touches the rim of the
+  // slice.
   int find_cuts(const Section& section, double (&cuts)[4]) const {
     int count = 0;
     cuts[count++] = section.low;
@@ -79,9 +80,9 @@ class SliceSum {
     if (section.ball) {
       const double d = level_ - along_ * section.middle;
       const double rest = section.size * section.size - d * d;
-      const double reach = rest > 0.0 ? across_ * std::sqrt(rest) : 0.0;
-      roots[0] = section.middle + d * along_ - reach;
-      roots[1] = section.middle + d * along_ + reach;
+      const double half_chord = rest > 0.0 ? across_ * std::sqrt(rest) : 0.0;
+      roots[0] = section.middle + d * along_ - half_chord;
+      roots[1] = section.middle + d * along_ + half_chord;
     } else {
       const double size = section.size - section.slope * section.middle;  // at y = 0
       for (int i = 0; i < 2; ++i) {
@@ -97,7 +98,7 @@ class SliceSum {
     return count;
   }
 
-  // A piece of which all slices are below, above, or cut.
+  // A piece whose slices are all below, all above, or all cut.
   void add_piece(const Section& section, double low, double high) {
     const double middle = 0.5 * (low + high);
     const double t = line(middle), r2 = section.radius_squared(middle);
@@ -109,7 +110,7 @@ class SliceSum {
         const double y = low + width * node.at;
         add_disc(y, section.radius_squared(y), width * node.weight);
       } else {
-        // 3 u^2 - 2 u^3: what goes like a root at an end becomes smooth.
+        // 3 u^2 - 2 u^3 makes a root at an end smooth.
         const double u = node.at;
         const double y = low + width * u * u * (3.0 - 2.0 * u);
         add_segment(y, section.radius_squared(y), 6.0 * u * (1.0 - u) * width * node.weight);

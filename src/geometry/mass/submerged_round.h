@@ -1,4 +1,4 @@
-// The part below a plane of shapes that are round about their local y. See submerged.h.
+// The submerged part of shapes that are round about their local y. See submerged.h.
 #pragma once
 
 #include "geometry/mass/submerged.h"

@@ -1,5 +1,5 @@
-// The part of a shape below a plane, against counting points, against an independent adaptive integral, and against what must
-// hold of it: the whole is known, the cut is the rate of the volume, both sides of a plane make the whole.
+// The submerged part of a shape against counted points and an independent adaptive integral, and its invariants: the
+// whole volume is known, the cut is the rate of the volume, and both sides of a plane make the whole.
 #include "geometry/mass/submerged.h"
 
 #include "geometry/shape/hull.h"
@@ -120,7 +120,7 @@ TEST(Submerged, EqualsCountedPoints) {
   }
 }
 
-// What is cut off below and what is cut off above make the whole; far planes cut nothing off or all.
+// The parts below and above a plane make the whole. Far planes cut off nothing or everything.
 TEST(Submerged, TwoSidesMakeTheWhole) {
   Dice dice;
   for (const Named& named : shapes()) {
@@ -144,8 +144,8 @@ TEST(Submerged, TwoSidesMakeTheWhole) {
   }
 }
 
-// The cut is how fast the volume grows with the level; its first and second moments are how fast volume times centre does
-// when the level rises and when the plane tips.
+// The area of the cut is the rate of the volume with the level. Its first and second moments are the rates of volume
+// times centre when the level rises and when the plane tips.
 TEST(Submerged, TheCutIsTheRateOfTheVolume) {
   Dice dice;
   constexpr double kSmall = 1.0e-4;

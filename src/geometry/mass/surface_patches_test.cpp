@@ -37,7 +37,7 @@ TEST(SurfacePatches, MakeTheWholeSurface) {
     for_each_patch(shape, {0, 1, 0}, double(kUnbounded), [&](const SurfacePatch& p) {
       area += p.area;
       sum += p.area * p.normal;
-      through += p.area * dot(p.normal, p.place) / 3;
+      through += p.area * dot(p.normal, p.position) / 3;
       EXPECT_NEAR(length(p.normal), 1.0, 1e-6);
     });
     EXPECT_NEAR(area, k.area, k.slack * k.area) << k.name;

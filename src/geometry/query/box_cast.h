@@ -1,9 +1,9 @@
-// A box that moves along a line, or a ray (a box without size), against boxes: those of a tree, those of a height field.
-// Never misses (line_walk.h).
+// Casts of a moving box or a ray (a box without size) against the boxes of a tree or of a height field. Never misses a
+// box (ray_traversal.h).
 #pragma once
 
 #include "geometry/shape/height_field.h"
-#include "geometry/tree/line_walk.h"
+#include "geometry/tree/ray_traversal.h"
 #include "geometry/tree/static_tree.h"
 
 #include <gyre/math.h>
@@ -12,9 +12,9 @@
 
 namespace gyre {
 
-// Whether the moving box meets `box` at a fraction from 0 to `reach`, and where first.
-inline bool meets(const BoxLine& line, const Aabb& box, float reach, float& enter) {
-  float begin = 0.0f, end = reach;
+// True if the moving box meets `box` at a fraction from 0 to `max_fraction`; `enter` is the first one.
+inline bool meets(const BoxRay& line, const Aabb& box, float max_fraction, float& enter) {
+  float begin = 0.0f, end = max_fraction;
   for (int axis = 0; axis < 3; ++axis) {
     const float near_plane = line.negative[axis] ? box.high[axis] : box.low[axis];
     const float far_plane = line.negative[axis] ? box.low[axis] : box.high[axis];
@@ -25,48 +25,48 @@ inline bool meets(const BoxLine& line, const Aabb& box, float reach, float& ente
   return begin <= end;
 }
 
-// What waits in a walk from near to far.
-template <class Place>
-struct WaitingPlace {
-  Place place;
+// An item that is still to be visited in a traversal from near to far.
+template <class Item>
+struct StackEntry {
+  Item item;
   float enter;
 };
 
-// Puts the places that `mask` names on a stack so that the nearest is on top; equals keep their order.
-template <class Place, class PlaceOf>
-void push_near_last(WaitingPlace<Place>* stack, int& depth, unsigned mask, const float* enter,
-                    PlaceOf&& place_of) {
+// Pushes the items that `mask` names, so that the nearest is on top. Equally near items keep their order.
+template <class Item, class ItemOf>
+void push_nearest_last(StackEntry<Item>* stack, int& depth, unsigned mask, const float* enter,
+                       ItemOf&& item_of) {
   const int bottom = depth;
   for (unsigned rest = mask; rest != 0; rest &= rest - 1) {
     const int lane = std::countr_zero(rest);
     int i = depth++;
     for (; i > bottom && stack[i - 1].enter <= enter[lane]; --i) stack[i] = stack[i - 1];
-    stack[i] = {place_of(lane), enter[lane]};
+    stack[i] = {item_of(lane), enter[lane]};
   }
 }
 
-// Calls visit(first position, count, reach) for each leaf whose box is met at a fraction from 0 to `reach`, roughly from
-// near to far. visit returns the new reach, never more than the old one.
+// Calls visit(first position, count, max_fraction) for each leaf whose box is met at a fraction from 0 to
+// `max_fraction`, roughly from near to far. visit returns the new max_fraction, never more than the old one.
 template <class Visit>
-void walk_cast(const StaticTree& tree, const BoxLine& line, float reach, Visit&& visit) {
-  static_assert(StaticTree::kStackSize <= LineWalk::kRoom);
+void traverse_cast(const StaticTree& tree, const BoxRay& line, float max_fraction, Visit&& visit) {
+  static_assert(StaticTree::kStackSize <= RayTraversal::kRoom);
   if (tree.nodes.empty()) return;
-  const WalkLine<StaticNode> walk_on = select_static_line_walk();
-  LineWalk walk(line, 0, reach);
+  const RayTraversalKernel<StaticNode> walk_on = select_static_ray_traversal();
+  RayTraversal walk(line, 0, max_fraction);
   while (walk_on(tree.nodes.data(), walk))
-    walk.reach = visit(leaf_first(walk.leaf), leaf_count(walk.leaf), walk.reach);
+    walk.max_fraction = visit(leaf_first(walk.leaf), leaf_count(walk.leaf), walk.max_fraction);
 }
 
-// The same for the solid cells of a height field: visit(column, row, reach).
+// The same for the solid cells of a height field: visit(column, row, max_fraction).
 template <class Visit>
-void walk_cast(const HeightField& field, const BoxLine& line, float reach, Visit&& visit) {
-  WaitingPlace<HeightBlock> stack[3 * 32 + 4];
+void traverse_cast(const HeightField& field, const BoxRay& line, float max_fraction, Visit&& visit) {
+  StackEntry<HeightBlock> stack[3 * 32 + 4];
   int depth = 0;
   stack[depth++] = {{int(field.levels.size()) - 1, 0, 0}, 0.0f};
   while (depth > 0) {
-    const WaitingPlace<HeightBlock> next = stack[--depth];
-    if (next.enter > reach) continue;
-    const HeightBlock block = next.place;
+    const StackEntry<HeightBlock> next = stack[--depth];
+    if (next.enter > max_fraction) continue;
+    const HeightBlock block = next.item;
     if (block.level == 0) {
       const std::uint32_t column = block.column << HeightField::kBlockShift,
                           row = block.row << HeightField::kBlockShift;
@@ -74,8 +74,8 @@ void walk_cast(const HeightField& field, const BoxLine& line, float reach, Visit
       for (std::uint32_t r = row; r < min(row + size, field.cell_rows()); ++r) {
         for (std::uint32_t c = column; c < min(column + size, field.cell_columns()); ++c) {
           float enter;
-          if (is_solid_cell(field, c, r) && meets(line, block_box(field, {-1, c, r}), reach, enter)) {
-            reach = visit(c, r, reach);
+          if (is_solid_cell(field, c, r) && meets(line, block_box(field, {-1, c, r}), max_fraction, enter)) {
+            max_fraction = visit(c, r, max_fraction);
           }
         }
       }
@@ -89,13 +89,14 @@ void walk_cast(const HeightField& field, const BoxLine& line, float reach, Visit
                          2 * block.row + std::uint32_t(k >> 1)};
     };
     for (int k = 0; k < 4; ++k) {
-      const HeightBlock part = child(k);
-      if (part.column >= finer.columns || part.row >= finer.rows) continue;
-      const HeightRange& heights = finer.blocks[std::size_t(part.row) * finer.columns + part.column];
-      if (heights.low <= heights.high && meets(line, block_box(field, part), reach, enter[k]))
+      const HeightBlock finer_block = child(k);
+      if (finer_block.column >= finer.columns || finer_block.row >= finer.rows) continue;
+      const HeightRange& heights =
+          finer.blocks[std::size_t(finer_block.row) * finer.columns + finer_block.column];
+      if (heights.low <= heights.high && meets(line, block_box(field, finer_block), max_fraction, enter[k]))
         mask |= 1u << k;
     }
-    push_near_last(stack, depth, mask, enter, child);
+    push_nearest_last(stack, depth, mask, enter, child);
   }
 }
 

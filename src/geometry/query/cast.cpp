@@ -1,4 +1,4 @@
-// Rays against convex shapes and planes, as intervals of the ray that lie inside. See cast.h.
+// Rays against convex shapes and planes: intervals of the ray that lie inside. See cast.h.
 #include "geometry/query/cast.h"
 
 #include "geometry/query/cast_surface.h"
@@ -8,22 +8,23 @@ namespace gyre {
 namespace {
 
 constexpr double kInfinite = __builtin_huge_val();
-// A ray whose stretch inside is shorter than this part of the shape's size, and lies behind it, has started on the surface
-// and leaves.
+// An interval inside shorter than this fraction of the shape's size, and behind the origin, means that the ray started
+// on the surface and leaves.
 constexpr double kOnSurface = 1.0e-9;
-// Farther away than so many sizes the ray is moved along itself to where it is nearest: squares of its distance from the
-// shape would drown the shape.
+// A ray that starts farther away than this many sizes of the shape is moved along itself to its closest point.
+// Otherwise the squares of its distance would drown the shape.
 constexpr double kFar = 8.0;
 
-// The stretch of a ray that lies inside something, as fractions of its way.
+// The interval of a ray that lies inside something, as fractions of the ray.
 struct Stretch {
   double enter = -kInfinite, leave = kInfinite;
-  DVec3 normal;  // where it enters, if flat there
+  DVec3 normal;  // at `enter`, if the surface is flat there
   bool empty() const { return !(enter <= leave); }
   static Stretch none() { return {kInfinite, -kInfinite, {}}; }
 };
 
-// Cuts off what lies outside the half-space {p : height(p) <= 0}; the height is `height` at the origin and climbs by `rate`.
+// Cuts off the part outside the half-space {p : height(p) <= 0}. The height is `height` at the origin of the ray and
+// climbs by `rate`.
 void cut(Stretch& s, double height, double rate, DVec3 normal) {
   if (rate == 0.0) {
     if (height > 0.0) s = Stretch::none();
@@ -40,17 +41,17 @@ void cut(Stretch& s, double height, double rate, DVec3 normal) {
   }
 }
 
-void cut_slab(Stretch& s, double place, double rate, double half, DVec3 axis) {
-  cut(s, place - half, rate, axis);
-  cut(s, -place - half, -rate, -axis);
+void cut_slab(Stretch& s, double center, double rate, double half, DVec3 axis) {
+  cut(s, center - half, rate, axis);
+  cut(s, -center - half, -rate, -axis);
 }
 
-// The stretch in which a t^2 + 2 b t + c <= 0, for a >= 0.
+// The interval in which a t^2 + 2 b t + c <= 0, for a >= 0.
 Stretch inside_quadric(double a, double b, double c) {
   if (a == 0.0) return c <= 0.0 ? Stretch{} : Stretch::none();
   const double discriminant = b * b - a * c;
   if (!(discriminant >= 0.0)) return Stretch::none();
-  // Without the difference of nearly equal numbers.
+  // Avoids the difference of nearly equal numbers.
   const double q = -(b + (b < 0.0 ? -std::sqrt(discriminant) : std::sqrt(discriminant)));
   const double t1 = q / a, t2 = q == 0.0 ? t1 : c / q;
   return {min(t1, t2), max(t1, t2), {}};
@@ -58,46 +59,47 @@ Stretch inside_quadric(double a, double b, double c) {
 
 Stretch inside_ball(const LocalRay& ray, DVec3 center, double radius) {
   const DVec3 o = ray.origin - center;
-  return inside_quadric(dot(ray.way, ray.way), dot(o, ray.way), dot(o, o) - radius * radius);
+  return inside_quadric(dot(ray.translation, ray.translation), dot(o, ray.translation),
+                        dot(o, o) - radius * radius);
 }
 
 // An infinite cylinder of the given radius along `axis` (0, 1 or 2), cut to a half length.
 Stretch inside_rod(const LocalRay& ray, DVec3 center, int axis, double radius, double half) {
   const DVec3 o = ray.origin - center;
   const int i = axis == 2 ? 0 : axis + 1, j = axis == 0 ? 2 : axis - 1;
-  const double a = ray.way[i] * ray.way[i] + ray.way[j] * ray.way[j];
-  const double b = o[i] * ray.way[i] + o[j] * ray.way[j];
+  const double a = ray.translation[i] * ray.translation[i] + ray.translation[j] * ray.translation[j];
+  const double b = o[i] * ray.translation[i] + o[j] * ray.translation[j];
   Stretch s = inside_quadric(a, b, o[i] * o[i] + o[j] * o[j] - radius * radius);
   const DVec3 along{axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
-  cut_slab(s, o[axis], ray.way[axis], half, along);
+  cut_slab(s, o[axis], ray.translation[axis], half, along);
   return s;
 }
 
 Stretch inside_box(const LocalRay& ray, DVec3 half) {
   Stretch s;
-  cut_slab(s, ray.origin.x, ray.way.x, half.x, {1, 0, 0});
-  cut_slab(s, ray.origin.y, ray.way.y, half.y, {0, 1, 0});
-  cut_slab(s, ray.origin.z, ray.way.z, half.z, {0, 0, 1});
+  cut_slab(s, ray.origin.x, ray.translation.x, half.x, {1, 0, 0});
+  cut_slab(s, ray.origin.y, ray.translation.y, half.y, {0, 1, 0});
+  cut_slab(s, ray.origin.z, ray.translation.z, half.z, {0, 0, 1});
   return s;
 }
 
-// What two parts of one convex shape hold together; where one enters from the other is of no interest.
-void join(Stretch& s, const Stretch& part) {
-  if (part.empty()) return;
+// The union of the intervals of two overlapping pieces of one convex shape.
+void join(Stretch& s, const Stretch& other) {
+  if (other.empty()) return;
   if (s.empty()) {
-    s = part;
+    s = other;
     return;
   }
-  if (part.enter < s.enter) {
-    s.enter = part.enter;
-    s.normal = part.normal;
+  if (other.enter < s.enter) {
+    s.enter = other.enter;
+    s.normal = other.normal;
   }
-  s.leave = max(s.leave, part.leave);
+  s.leave = max(s.leave, other.leave);
 }
 
-// A point, segment or box swept by a ball: the rods along its edges, the balls at its corners, and the box itself pushed
-// out along each axis.
-Stretch inside_swept_core(const LocalRay& ray, DVec3 core, double radius) {
+// A point, segment or box rounded by a radius: rods along its edges, balls at its corners, and the box itself extended
+// along each axis.
+Stretch inside_rounded_core(const LocalRay& ray, DVec3 core, double radius) {
   if (inside_box(ray, core + DVec3{radius, radius, radius}).empty()) return Stretch::none();
   Stretch s = Stretch::none();
   const double extent[3] = {core.x, core.y, core.z};
@@ -133,18 +135,18 @@ Stretch inside_swept_core(const LocalRay& ray, DVec3 core, double radius) {
 // All points below the apex (0, h, 0), above -h, within slope * (distance below the apex) of the axis.
 Stretch inside_cone(const LocalRay& ray, double radius, double h) {
   const double slope = radius / (2.0 * h);
-  const DVec3 d = ray.way;
-  const DVec3 o{ray.origin.x, ray.origin.y - h, ray.origin.z};  // seen from the apex
+  const DVec3 d = ray.translation;
+  const DVec3 o{ray.origin.x, ray.origin.y - h, ray.origin.z};  // relative to the apex
   const double a = d.x * d.x + d.z * d.z - slope * slope * d.y * d.y;
   const double b = o.x * d.x + o.z * d.z - slope * slope * o.y * d.y;
   const double c = o.x * o.x + o.z * o.z - slope * slope * o.y * o.y;
   Stretch s;
   if (a > 0.0) {
     s = inside_quadric(a, b, c);
-    // Both crossings are of one of the two halves of the double cone.
+    // Both crossings are on the same half of the double cone.
     if (!s.empty() && o.y + 0.5 * (s.enter + s.leave) * d.y > 0.0) return Stretch::none();
   } else if (a < 0.0) {
-    // Steeper than the mantle: one crossing on each half, and all beyond the one on this half.
+    // Steeper than the mantle: one crossing on each half. The interval is everything beyond the one on this half.
     const double root = std::sqrt(max(b * b - a * c, 0.0));
     const double q = -(b + (b < 0.0 ? -root : root));
     const double t1 = q / a, t2 = q == 0.0 ? t1 : c / q;
@@ -154,9 +156,9 @@ Stretch inside_cone(const LocalRay& ray, double radius, double h) {
       s.leave = min(t1, t2);
     }
   } else if (d.y == 0.0) {
-    if (c > 0.0 || o.y > 0.0) return Stretch::none();  // no way at all
+    if (c > 0.0 || o.y > 0.0) return Stretch::none();  // a ray without length
   } else {
-    // Along the mantle: one crossing, or none if it runs within the surface or outside.
+    // Parallel to the mantle: one crossing, or none if the ray runs within the surface or outside.
     if (b == 0.0 && c > 0.0) return Stretch::none();
     if (b != 0.0) (b < 0.0 ? s.enter : s.leave) = -c / (2.0 * b);
   }
@@ -169,7 +171,7 @@ Stretch inside_hull(const LocalRay& ray, const Hull& hull) {
   Stretch s;
   for (const HullPlane& plane : hull.planes) {
     const DVec3 n(plane.normal);
-    cut(s, dot(n, ray.origin) - double(plane.offset), dot(n, ray.way), n);
+    cut(s, dot(n, ray.origin) - double(plane.offset), dot(n, ray.translation), n);
     if (s.empty()) return s;
   }
   return s;
@@ -178,7 +180,7 @@ Stretch inside_hull(const LocalRay& ray, const Hull& hull) {
 Stretch inside_plane(const LocalRay& ray, const Shape& plane) {
   const DVec3 n(plane.extents);
   Stretch s;
-  cut(s, dot(n, ray.origin) - double(plane.offset), dot(n, ray.way), n);
+  cut(s, dot(n, ray.origin) - double(plane.offset), dot(n, ray.translation), n);
   return s;
 }
 
@@ -188,7 +190,7 @@ Stretch stretch_inside(const Shape& shape, const LocalRay& ray) {
     case ShapeKind::sphere:
       return inside_ball(ray, {}, radius);
     case ShapeKind::box:
-      return radius > 0.0 ? inside_swept_core(ray, DVec3(shape.extents), radius)
+      return radius > 0.0 ? inside_rounded_core(ray, DVec3(shape.extents), radius)
                           : inside_box(ray, DVec3(shape.extents));
     case ShapeKind::capsule: {
       Stretch s = inside_rod(ray, {}, 1, radius, h);
@@ -208,7 +210,7 @@ Stretch stretch_inside(const Shape& shape, const LocalRay& ray) {
   }
 }
 
-// The outward normal at a point of a curved part of the surface.
+// The outward normal at a point of the curved surface.
 DVec3 curved_normal(const Shape& shape, DVec3 p) {
   DVec3 n = p;
   if (shape.kind == ShapeKind::cylinder) {
@@ -224,12 +226,12 @@ DVec3 curved_normal(const Shape& shape, DVec3 p) {
   return size > 0.0 ? n / size : DVec3{0, 1, 0};  // the apex of a cone
 }
 
-DVec3 against(DVec3 way) {
-  const double size = length(way);
-  return size > 0.0 ? -(way / size) : DVec3{};
+DVec3 against(DVec3 translation) {
+  const double size = length(translation);
+  return size > 0.0 ? -(translation / size) : DVec3{};
 }
 
-// A length that is as large as the shape, and its middle; 0 for planes, which have none.
+// A length of the order of the shape, and its centre; 0 for planes, which have neither.
 double size_of(const Shape& shape, DVec3& middle) {
   if (shape.kind == ShapeKind::plane) return 0.0;
   if (shape.kind == ShapeKind::hull) {
@@ -241,30 +243,31 @@ double size_of(const Shape& shape, DVec3& middle) {
 
 }  // namespace
 
-bool cast_ray(const Shape& shape, const LocalRay& ray, double reach, bool back_faces, LocalHit& hit) {
+bool cast_ray(const Shape& shape, const LocalRay& ray, double max_fraction, bool back_faces, LocalHit& hit) {
   if (shape.kind == ShapeKind::mesh || shape.kind == ShapeKind::height_field) {
-    return cast_ray_at_surface(shape, ray, reach, back_faces, hit);
+    return cast_ray_at_surface(shape, ray, max_fraction, back_faces, hit);
   }
   DVec3 middle;
-  const double size = size_of(shape, middle), way_squared = dot(ray.way, ray.way);
-  const double before = size > 0.0 && way_squared > 0.0 && length(ray.origin - middle) > kFar * size
-                            ? dot(middle - ray.origin, ray.way) / way_squared
+  const double size = size_of(shape, middle), length_squared_of_ray = dot(ray.translation, ray.translation);
+  const double before = size > 0.0 && length_squared_of_ray > 0.0 && length(ray.origin - middle) > kFar * size
+                            ? dot(middle - ray.origin, ray.translation) / length_squared_of_ray
                             : 0.0;
-  const LocalRay near_ray{ray.origin + before * ray.way, ray.way};
+  const LocalRay near_ray{ray.origin + before * ray.translation, ray.translation};
   Stretch s = stretch_inside(shape, near_ray);
   if (s.empty()) return false;
   const double enter = s.enter + before, leave = s.leave + before;
-  if (enter > reach || leave < 0.0) return false;
+  if (enter > max_fraction || leave < 0.0) return false;
   hit = {};
   if (enter < 0.0) {
-    if (way_squared > 0.0 && leave * std::sqrt(way_squared) <= kOnSurface * size) return false;
+    if (length_squared_of_ray > 0.0 && leave * std::sqrt(length_squared_of_ray) <= kOnSurface * size)
+      return false;
     hit.inside = true;
     hit.point = ray.origin;
-    hit.normal = against(ray.way);
+    hit.normal = against(ray.translation);
     return true;
   }
   hit.fraction = enter;
-  hit.point = near_ray.origin + s.enter * ray.way;
+  hit.point = near_ray.origin + s.enter * ray.translation;
   hit.normal = s.normal == DVec3{} ? curved_normal(shape, hit.point) : s.normal;
   return true;
 }

@@ -1,21 +1,21 @@
 // Rays and moving convex shapes against one shape of any kind.
 //
-// In: a shape, and a ray or a moving shape in its frame. Out: the fraction of the way at which they first meet, where, with
-// which outward normal of the shape, and on which triangle. All in double: a ray may start a thousand kilometres away, and
-// what is asked of a large mesh is answered to the precision of its vertices.
+// In: a shape, and a ray or a moving shape in its frame. Out: the fraction of the translation at which they first meet,
+// the point, the outward normal of the shape, and the triangle. Everything is computed in double: a ray may start a
+// thousand kilometres away, and hits on a large mesh are as precise as its vertices.
 //
-// What a hit is:
-// - Convex shapes and planes are solid and closed: a ray that starts inside is met at fraction 0 (`inside`), one that
-//   starts on the surface and leaves is not, one that only touches is.
-// - Meshes and height fields are surfaces without thickness, met from the front only, or from both sides if the mesh is
-//   double-sided or the caller asks for it. A ray within a triangle's plane does not meet the triangle. Rays do not slip
-//   between triangles that share an edge or a corner.
+// Definition of a hit:
+// - Convex shapes and planes are solid and closed. A ray that starts inside hits at fraction 0 (`inside`). A ray that
+// starts on the surface and leaves does not hit. A ray that only touches hits.
+// - Meshes and height fields are surfaces without thickness. They are hit from the front only, or from both sides if
+// the mesh is double-sided or the caller asks for it. A ray within the plane of a triangle does not hit it. No ray
+// passes between triangles that share an edge or a corner.
 //
-// Sources: rays on quadrics and polyhedra as intervals: E. Haines, "Essential Ray Tracing Algorithms", in "An Introduction
-// to Ray Tracing", 1989; triangles: S. Woop, C. Benthin, I. Wald, "Watertight Ray/Triangle Intersection", 2013; moving
-// shapes: Newton's method on the distance as a function of the way, which is convex, so that it never passes the impact
-// (B. Mirtich, "Impulse-based Dynamic Simulation of Rigid Body Systems", 1996, calls it conservative advancement); balls
-// against balls, capsules, boxes and triangles: cast_ball.h.
+// Sources: rays on quadrics and polyhedra as intervals: E. Haines, "Essential Ray Tracing Algorithms", in "An
+// Introduction to Ray Tracing", 1989; triangles: S. Woop, C. Benthin, I. Wald, "Watertight Ray/Triangle Intersection",
+// 2013; moving shapes: Newton's method on the distance as a function of the translation, which is convex, so a step
+// never passes the impact (conservative advancement: B. Mirtich, "Impulse-based Dynamic Simulation of Rigid Body
+// Systems", 1996); balls: cast_ball.h.
 #pragma once
 
 #include "geometry/distance/gjk.h"
@@ -28,39 +28,42 @@ constexpr std::uint32_t kNoTriangle = 0xffffffffu;
 
 struct LocalRay {
   DVec3 origin;
-  DVec3 way;  // from the origin to the end: fractions count along it
+  DVec3 translation;  // from the origin to the end; fractions are relative to it
 };
 
 struct LocalHit {
   double fraction = 0.0;
-  DVec3 point;   // on the surface of the shape that is hit, in its frame
-  DVec3 normal;  // unit, outward; of a ray that starts inside: against its way (zero if it has no length)
-  bool inside = false;  // the two overlapped at the start
-  double depth = 0.0;   // m, of a moving shape that overlapped at the start
-  std::uint32_t triangle =
-      kNoTriangle;  // of a mesh its number in the MeshDef, of a height field as in height_field.h
+  DVec3 point;  // on the surface of the shape that is hit, in its frame
+  // unit, outward; of a ray that starts inside: opposite to the ray (zero if its length is zero)
+  DVec3 normal;
+  bool inside = false;  // the two overlap at the start
+  double depth = 0.0;   // m, penetration at the start, of a moving shape
+  // Of a mesh: the number in the MeshDef; of a height field: as in height_field.h.
+  std::uint32_t triangle = kNoTriangle;
 };
 
-// Whether `hit` at the same or a lesser fraction comes before `other`, where both are of one shape.
+// True if `hit` comes before `other`. Both are of one shape, and the fraction of `hit` is not larger.
 inline bool comes_before(const LocalHit& hit, const LocalHit& other) {
   return hit.fraction < other.fraction || (hit.fraction == other.fraction && hit.triangle < other.triangle);
 }
 
-// The first hit at a fraction of at most `reach`.
-bool cast_ray(const Shape& shape, const LocalRay& ray, double reach, bool back_faces, LocalHit& hit);
+// The first hit at a fraction of at most `max_fraction`.
+bool cast_ray(const Shape& shape, const LocalRay& ray, double max_fraction, bool back_faces, LocalHit& hit);
 
-// A convex shape that moves without turning.
+// A convex shape that moves without rotation.
 struct MovingShape {
   const Shape* shape = nullptr;
   DVec3 position;  // of its origin, in the frame of the shape it may hit
   DQuat orientation;
-  DVec3 way;
-  float skin = 0.0f;  // m: an overlap no deeper than this at the start is no hit unless the way leads deeper
+  DVec3 translation;
+  // m; an overlap at the start no deeper than this is no hit unless the translation leads deeper
+  float skin = 0.0f;
 };
 
-// The first hit at a fraction of at most `reach`; its point lies on `target`. A hit is found where the surfaces are
-// kCastTolerance of the moving shape's size apart, and then taken to where they meet.
-bool cast_shape(const Shape& target, const MovingShape& moving, double reach, bool back_faces, LocalHit& hit);
+// The first hit at a fraction of at most `max_fraction`, with a point on `target`. The search stops when the surfaces
+// are kCastTolerance of the moving shape's size apart, and then moves the hit to where they meet.
+bool cast_shape(const Shape& target, const MovingShape& moving, double max_fraction, bool back_faces,
+                LocalHit& hit);
 constexpr double kCastTolerance = 1.0e-6;
 
 }  // namespace gyre

@@ -1,18 +1,18 @@
-// A moving ball against a ball, capsule, box or triangle in closed form: its middle is a ray, and the other shape is a core (a
-// point, segment, box or triangle) swept by both radii.
+// A moving ball against a ball, capsule, box or triangle in closed form. The centre of the ball is a ray, and the other
+// shape is a core (point, segment, box or triangle) rounded by both radii.
 //
-// In: the core, the sum of the radii (above 0), the way of the ball's middle. Out: the first fraction at which it is as near as that to the
-// core, where on the core, and the direction from there to the middle.
+// In: the core, the sum of the radii (above 0) and the ray of the ball's centre. Out: the first fraction at which the
+// centre is that close to the core, the point of the core, and the direction from it to the centre.
 //
-// Source: C. Ericson, "Real-Time Collision Detection", 2005, 5.3.7 and 5.5.7, with all parts of space about a box that the
-// way passes through looked at in turn.
+// Source: C. Ericson, "Real-Time Collision Detection", 2005, 5.3.7 and 5.5.7; here the regions around a box are visited
+// in the order in which the ray passes through them.
 #pragma once
 
 #include "geometry/query/cast.h"
 
 namespace gyre {
 
-// Balls, capsules and boxes, as their cores: half extents, of which any may be 0.
+// Balls, capsules and boxes by their cores: half extents, any of which may be 0.
 inline bool has_box_core(const Shape& shape) { return shape.kind <= ShapeKind::capsule; }
 inline DVec3 box_core(const Shape& shape) {
   if (shape.kind == ShapeKind::sphere) return {};
@@ -25,11 +25,13 @@ struct BallImpact {
   DVec3 normal;  // unit, from the core to the ball
 };
 
-// What begins within the radii, and a triangle without a normal to rely on, is left to a search (geometry/distance/gjk.h).
+// unknown: the ball starts within the radii, or the triangle has no reliable normal; a search must decide
+// (geometry/distance/gjk.h).
 enum class BallCast { misses, hits, unknown };
 
-BallCast cast_ball_at_box(DVec3 core, double radii, const LocalRay& middle, double reach, BallImpact& impact);
-BallCast cast_ball_at_triangle(const DVec3 (&corners)[3], double radius, const LocalRay& middle, double reach,
-                               BallImpact& impact);
+BallCast cast_ball_at_box(DVec3 core, double radii, const LocalRay& middle, double max_fraction,
+                          BallImpact& impact);
+BallCast cast_ball_at_triangle(const DVec3 (&corners)[3], double radius, const LocalRay& middle,
+                               double max_fraction, BallImpact& impact);
 
 }  // namespace gyre

@@ -1,28 +1,31 @@
-// Moving shapes: Newton's method on the distance along the way; balls where they can in closed form (cast_ball.h). See cast.h.
+// Casts of shapes: Newton's method on the distance along the translation; balls in closed form where possible
+// (cast_ball.h). See cast.h.
 #include "geometry/query/cast.h"
 
+#include "geometry/distance/penetration.h"
 #include "geometry/query/cast_ball.h"
 #include "geometry/query/cast_surface.h"
-#include "geometry/distance/penetration.h"
 #include "geometry/shape/support.h"
 
 namespace gyre {
 namespace {
 
 constexpr int kMaxSteps = 64;
-// GJK ends within this part of the true distance: no step may be longer than the distance surely is.
+// Relative error of the distance of GJK. No step may be longer than the certain distance.
 constexpr double kDistanceError = 2.0e-9;
-// Ways that lead deeper by less than this part of their length slide: they keep a shape that starts within its skin.
+// A translation that leads deeper by less than this fraction of its length slides, so a shape that starts within its
+// skin keeps going.
 constexpr double kSliding = 1.0e-3;
 
 DVec3 surface_on_a(const CoreDistance& near, double radius_a) { return near.on_a + radius_a * near.normal; }
 
-// Whether a shape that overlaps at the start may go on, because it lies within its skin and does not go deeper.
-bool may_go_on(const MovingShape& moving, const LocalHit& hit) {
-  return hit.depth <= double(moving.skin) && dot(moving.way, hit.normal) >= -kSliding * length(moving.way);
+// True if an overlap at the start is no hit: it is within the skin, and the translation does not lead deeper.
+bool is_overlap_ignored(const MovingShape& moving, const LocalHit& hit) {
+  return hit.depth <= double(moving.skin) &&
+         dot(moving.translation, hit.normal) >= -kSliding * length(moving.translation);
 }
 
-// The way out of an overlap, as the hit tells it.
+// Fills the hit of an overlap at the start: the shortest exit.
 void fill_overlap(const CorePair& pair, const CoreDistance& near, double radius_a, double radii,
                   LocalHit& hit) {
   hit = {};
@@ -39,31 +42,33 @@ void fill_overlap(const CorePair& pair, const CoreDistance& near, double radius_
   }
 }
 
-// The first impact of B, moving, with the core of A swept by radius_a.
-bool first_impact(CorePair& pair, const MovingShape& moving, DVec3 start, double radius_a, double reach,
-                  LocalHit& hit) {
-  const double radii = radius_a + double(core_radius(*moving.shape)), way = length(moving.way);
+// The first impact of the moving shape B with the core of A rounded by radius_a.
+bool first_impact(CorePair& pair, const MovingShape& moving, DVec3 start, double radius_a,
+                  double max_fraction, LocalHit& hit) {
+  const double radii = radius_a + double(core_radius(*moving.shape)),
+               path_length = length(moving.translation);
   const double touching = kCastTolerance * double(outer_radius(*moving.shape, {}));
   double time = 0.0;
   DVec3 normal;
   for (int step = 0; step < kMaxSteps; ++step) {
-    pair.move_b(start + time * moving.way);
-    CoreDistance near = core_distance(pair, radii + touching + (reach - time) * way, to_float(normal));
+    pair.move_b(start + time * moving.translation);
+    CoreDistance near =
+        core_distance(pair, radii + touching + (max_fraction - time) * path_length, to_float(normal));
     if (near.beyond) return false;
     const double gap = near.overlap ? -radii : near.distance * (1.0 - kDistanceError) - radii;
-    const double closing = -dot(moving.way, near.normal);
+    const double closing = -dot(moving.translation, near.normal);
     if (step == 0 && (near.overlap || near.distance <= radii)) {
       fill_overlap(pair, near, radius_a, radii, hit);
-      return !may_go_on(moving, hit);
+      return !is_overlap_ignored(moving, hit);
     }
     const bool arrived = gap <= touching || step == kMaxSteps - 1;
     if (arrived && step > 0 && !(gap > 0.0 && closing > 0.0)) {
-      // So near that rounding turned the normal round, or ended within the other shape: the last step was the impact.
+      // The shapes are so close that rounding reversed the normal or made them overlap. The last step was the impact.
       near.normal = normal;
     } else {
       if (!(closing > 0.0)) return false;
       time += gap / closing;
-      if (!(time <= reach)) return false;
+      if (!(time <= max_fraction)) return false;
     }
     if (arrived) {
       hit = {};
@@ -85,36 +90,38 @@ void fill_impact(const BallImpact& impact, double radius_a, LocalHit& hit) {
 }
 
 // A moving ball against a convex shape whose core is a box, a segment or a point.
-BallCast cast_ball_at_convex(const Shape& target, const MovingShape& ball, double reach, LocalHit& hit) {
+BallCast cast_ball_at_convex(const Shape& target, const MovingShape& ball, double max_fraction,
+                             LocalHit& hit) {
   if (!has_box_core(target)) return BallCast::unknown;
   BallImpact impact;
   const BallCast cast = cast_ball_at_box(box_core(target), double(target.radius) + double(ball.shape->radius),
-                                         {ball.position, ball.way}, reach, impact);
+                                         {ball.position, ball.translation}, max_fraction, impact);
   if (cast == BallCast::hits) fill_impact(impact, double(target.radius), hit);
   return cast;
 }
 
-bool cast_at_plane(const Shape& plane, const MovingShape& moving, double reach, LocalHit& hit) {
+bool cast_at_plane(const Shape& plane, const MovingShape& moving, double max_fraction, LocalHit& hit) {
   const DVec3 normal(plane.extents);
   const DVec3 lowest =
       rotate(moving.orientation, core_support(*moving.shape, rotate_inverse(moving.orientation, -normal)));
   const DVec3 start = moving.position + lowest - double(core_radius(*moving.shape)) * normal;
-  const double height = dot(normal, start) - double(plane.offset), rate = dot(normal, moving.way);
+  const double height = dot(normal, start) - double(plane.offset), rate = dot(normal, moving.translation);
   hit = {};
   hit.normal = normal;
   if (height <= 0.0) {
     hit.inside = true;
     hit.depth = -height;
     hit.point = start - height * normal;
-    return !may_go_on(moving, hit);
+    return !is_overlap_ignored(moving, hit);
   }
-  if (!(rate < 0.0) || height > -rate * reach) return false;
+  if (!(rate < 0.0) || height > -rate * max_fraction) return false;
   hit.fraction = height / -rate;
-  hit.point = start + hit.fraction * moving.way;
+  hit.point = start + hit.fraction * moving.translation;
   return true;
 }
 
-// A one-sided triangle is left by its front: where the shortest way out leads elsewhere, the way along the face's normal counts.
+// A one-sided triangle is left through its front. If the shortest exit leads elsewhere, the exit along the normal of
+// the face counts.
 void leave_by_front(const MovingShape& moving, DVec3 normal, const DVec3 (&corners)[3], LocalHit& hit) {
   if (dot(hit.normal, normal) >= 0.0) return;
   const DVec3 lowest =
@@ -124,17 +131,18 @@ void leave_by_front(const MovingShape& moving, DVec3 normal, const DVec3 (&corne
 }
 
 bool cast_at_triangle(const Shape& surface, const SurfaceTriangle& triangle, const MovingShape& moving,
-                      bool both_sides, double reach, LocalHit& hit) {
-  // Seen from one corner, so that what GJK works on is no larger than it must be.
+                      bool both_sides, double max_fraction, LocalHit& hit) {
+  // Relative to one corner, so that the numbers of GJK are no larger than they must be.
   const DVec3 pivot(triangle.a);
   const DVec3 corners[3] = {{}, DVec3(triangle.b) - pivot, DVec3(triangle.c) - pivot};
   const DVec3 facing = cross(corners[1], corners[2]);
-  const bool still = moving.way == DVec3{};
-  if (!both_sides && !still && dot(facing, moving.way) >= 0.0) return false;
+  const bool still = moving.translation == DVec3{};
+  if (!both_sides && !still && dot(facing, moving.translation) >= 0.0) return false;
   if (moving.shape->kind == ShapeKind::sphere) {
     BallImpact impact;
-    const BallCast cast = cast_ball_at_triangle(corners, double(moving.shape->radius),
-                                                {moving.position - pivot, moving.way}, reach, impact);
+    const BallCast cast =
+        cast_ball_at_triangle(corners, double(moving.shape->radius),
+                              {moving.position - pivot, moving.translation}, max_fraction, impact);
     if (cast == BallCast::misses) return false;
     if (cast == BallCast::hits) {
       impact.on_core += pivot;
@@ -143,33 +151,34 @@ bool cast_at_triangle(const Shape& surface, const SurfaceTriangle& triangle, con
       return true;
     }
   }
-  MovingShape seen = moving;
-  seen.position = moving.position - pivot;
-  seen.skin = 0.0f;  // judged below, by the way out that counts
-  CorePair pair(corners, *moving.shape, seen.position, moving.orientation);
-  if (!first_impact(pair, seen, seen.position, 0.0, reach, hit)) return false;
+  MovingShape local = moving;
+  local.position = moving.position - pivot;
+  local.skin = 0.0f;  // tested below, with the exit that counts
+  CorePair pair(corners, *moving.shape, local.position, moving.orientation);
+  if (!first_impact(pair, local, local.position, 0.0, max_fraction, hit)) return false;
   if (hit.inside) {
-    if (!both_sides && dot(facing, facing) > 0.0) leave_by_front(seen, facing / length(facing), corners, hit);
-    if (may_go_on(moving, hit)) return false;
+    if (!both_sides && dot(facing, facing) > 0.0)
+      leave_by_front(local, facing / length(facing), corners, hit);
+    if (is_overlap_ignored(moving, hit)) return false;
   }
   hit.point += pivot;
   hit.triangle = public_triangle(surface, triangle.id);
   return true;
 }
 
-bool cast_at_surface(const Shape& surface, const MovingShape& moving, double reach, bool back_faces,
+bool cast_at_surface(const Shape& surface, const MovingShape& moving, double max_fraction, bool back_faces,
                      LocalHit& hit) {
   const bool both_sides = back_faces || is_double_sided(surface);
   const Aabb box = bounds(*moving.shape, {{}, to_float(moving.orientation)});
   const Vec3 middle = center(box), half = half_size(box);
   const float slack = kBoundsSlack * outer_radius(*moving.shape, {});
-  const LocalRay ray{moving.position + DVec3(middle), moving.way};
+  const LocalRay ray{moving.position + DVec3(middle), moving.translation};
   bool found = false;
-  walk_triangles(surface, ray, half + Vec3{slack, slack, slack}, reach,
+  walk_triangles(surface, ray, half + Vec3{slack, slack, slack}, max_fraction,
                  [&](const SurfaceTriangle& triangle, double now) {
                    LocalHit next;
                    if (!cast_at_triangle(surface, triangle, moving, both_sides, now, next)) return now;
-                   // Of several overlaps at the start the deepest tells the way out.
+                   // Of several overlaps at the start the deepest decides the exit.
                    const bool deeper = found && next.inside && hit.inside && next.depth != hit.depth;
                    if (found && (deeper ? next.depth < hit.depth : !comes_before(next, hit))) return now;
                    hit = next;
@@ -181,16 +190,16 @@ bool cast_at_surface(const Shape& surface, const MovingShape& moving, double rea
 
 }  // namespace
 
-bool cast_shape(const Shape& target, const MovingShape& moving, double reach, bool back_faces,
+bool cast_shape(const Shape& target, const MovingShape& moving, double max_fraction, bool back_faces,
                 LocalHit& hit) {
-  if (target.kind == ShapeKind::plane) return cast_at_plane(target, moving, reach, hit);
-  if (!is_convex(target.kind)) return cast_at_surface(target, moving, reach, back_faces, hit);
+  if (target.kind == ShapeKind::plane) return cast_at_plane(target, moving, max_fraction, hit);
+  if (!is_convex(target.kind)) return cast_at_surface(target, moving, max_fraction, back_faces, hit);
   if (moving.shape->kind == ShapeKind::sphere) {
-    const BallCast cast = cast_ball_at_convex(target, moving, reach, hit);
+    const BallCast cast = cast_ball_at_convex(target, moving, max_fraction, hit);
     if (cast != BallCast::unknown) return cast == BallCast::hits;
   }
   CorePair pair(target, *moving.shape, moving.position, moving.orientation);
-  return first_impact(pair, moving, moving.position, double(core_radius(target)), reach, hit);
+  return first_impact(pair, moving, moving.position, double(core_radius(target)), max_fraction, hit);
 }
 
 }  // namespace gyre

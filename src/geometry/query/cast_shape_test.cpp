@@ -1,11 +1,12 @@
-// Moving shapes against every kind: the impact lies where dense steps with GJK's distance find it, and the answer touches.
+// Casts of shapes against every kind: the impact is where dense steps with GJK's distance find it, and the result
+// touches.
 #include "geometry/query/cast.h"
 
 #include "geometry/query/cast_surface.h"
-#include "geometry/testing/convex_oracle.h"
+#include "geometry/query/closest_points.h"
 #include "geometry/shape/cooked.h"
+#include "geometry/testing/convex_oracle.h"
 #include "geometry/testing/mesh_test_scenes.h"
-#include "geometry/query/nearest.h"
 
 #include <gtest/gtest.h>
 
@@ -14,15 +15,15 @@ namespace {
 
 using oracle::Random;
 
-PlacedShape placed(const MovingShape& moving, double t) {
-  return {moving.shape, moving.position + t * moving.way, moving.orientation};
+PosedShape placed(const MovingShape& moving, double t) {
+  return {moving.shape, moving.position + t * moving.translation, moving.orientation};
 }
 
-// The distance from a plain look at everything: no trees, no search in steps.
-double plain_distance(const Shape& target, const PlacedShape& convex) {
-  Nearest near;
+// The distance by a plain test of everything: no trees, no stepwise search.
+double plain_distance(const Shape& target, const PosedShape& convex) {
+  ClosestPair near;
   if (is_convex(target.kind) || target.kind == ShapeKind::plane) {
-    find_nearest(target, convex, 1.0e30, near);
+    find_closest_points(target, convex, 1.0e30, near);
     return near.distance;
   }
   double least = 1.0e300;
@@ -48,7 +49,7 @@ void expect_right(const Shape& target, const MovingShape& moving, double size, c
   constexpr int kSteps = 60;
   const double end = hits ? hit.fraction : 1.0;
   for (int i = 0; i < kSteps; ++i) {
-    // What touches on its way by less than rounding may count as a hit or not.
+    // A contact within rounding during the cast may count as a hit or not.
     const double t = end * double(i) / kSteps;
     EXPECT_GT(plain_distance(target, placed(moving, t)), 0.0) << what << " at " << t << " of " << end;
     if (::testing::Test::HasFailure()) return;
@@ -57,26 +58,26 @@ void expect_right(const Shape& target, const MovingShape& moving, double size, c
   EXPECT_FALSE(hit.inside);
   EXPECT_LE(plain_distance(target, placed(moving, hit.fraction)), precision) << what;
   EXPECT_NEAR(length(hit.normal), 1.0, 1.0e-6) << what;
-  EXPECT_LE(dot(hit.normal, moving.way), 0.0) << what;
+  EXPECT_LE(dot(hit.normal, moving.translation), 0.0) << what;
   // The point lies on both.
   Shape point;
   point.radius = 0.0f;
-  Nearest near;
-  ASSERT_TRUE(find_nearest(target, {&point, hit.point, {}}, 1.0, near)) << what;
+  ClosestPair near;
+  ASSERT_TRUE(find_closest_points(target, {&point, hit.point, {}}, 1.0, near)) << what;
   EXPECT_LE(near.distance, 50.0 * precision) << what;
   const DVec3 in_moving =
       rotate_inverse(moving.orientation, hit.point - placed(moving, hit.fraction).position);
-  ASSERT_TRUE(find_nearest(*moving.shape, {&point, in_moving, {}}, 1.0, near)) << what;
+  ASSERT_TRUE(find_closest_points(*moving.shape, {&point, in_moving, {}}, 1.0, near)) << what;
   EXPECT_LE(near.distance, 50.0 * precision) << what;
 }
 
 MovingShape random_way(Random& random, const Shape& shape, double size) {
   MovingShape moving;
   moving.shape = &shape;
-  moving.orientation = normalized(to_double(random.turn()));
+  moving.orientation = normalized(to_double(random.rotation()));
   const double away = random.below(4) == 0 ? 200.0 : 3.0;
   moving.position = away * size * DVec3(random.direction());
-  moving.way = 1.6 * (size * DVec3(random.in_cube(0.8f)) - moving.position);
+  moving.translation = 1.6 * (size * DVec3(random.in_cube(0.8f)) - moving.position);
   return moving;
 }
 
@@ -178,14 +179,14 @@ TEST(CastShape, StartsInOverlap) {
   // Within its skin it may slide and leave, but not go deeper.
   moving.skin = 0.11f;
   EXPECT_FALSE(cast_shape(box, moving, 1.0, false, hit));
-  moving.way = {0, 3, 0};
+  moving.translation = {0, 3, 0};
   EXPECT_FALSE(cast_shape(box, moving, 1.0, false, hit));
-  moving.way = {0, -3, 0};
+  moving.translation = {0, -3, 0};
   EXPECT_TRUE(cast_shape(box, moving, 1.0, false, hit));
   moving.skin = 0.09f;
-  moving.way = {3, 0, 0};
+  moving.translation = {3, 0, 0};
   EXPECT_TRUE(cast_shape(box, moving, 1.0, false, hit));
-  // Of a one-sided surface the way out is by its front.
+  // The exit from a one-sided surface is through its front.
   const Geometry floor = test::flat_grid(3.0f, 1.0f).cook();
   const Shape ground = make_shape(AnyShape(floor));
   ASSERT_TRUE(cast_shape(ground, {&box, {0.2, -0.3, 0.1}, {}, {0.1, -1, 0}}, 1.0, false, hit));

@@ -1,22 +1,22 @@
-// Watertight crossings of a ray with triangles. See cast_surface.h.
+// Watertight intersection of a ray with triangles. See cast_surface.h.
 #include "geometry/query/cast_surface.h"
 
 namespace gyre {
 
 TriangleRay::TriangleRay(const LocalRay& ray) : origin_(ray.origin) {
-  const DVec3 size{absolute(ray.way.x), absolute(ray.way.y), absolute(ray.way.z)};
+  const DVec3 size{absolute(ray.translation.x), absolute(ray.translation.y), absolute(ray.translation.z)};
   z_ = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
   x_ = z_ == 2 ? 0 : z_ + 1;
   y_ = x_ == 2 ? 0 : x_ + 1;
-  const double along = ray.way[z_];
-  if (along < 0.0) {  // the corners keep their sense of rotation
+  const double along = ray.translation[z_];
+  if (along < 0.0) {  // the corners keep their orientation
     const int swap = x_;
     x_ = y_;
     y_ = swap;
   }
   if (along == 0.0) return;
-  shear_x_ = ray.way[x_] / along;
-  shear_y_ = ray.way[y_] / along;
+  shear_x_ = ray.translation[x_] / along;
+  shear_y_ = ray.translation[y_] / along;
   scale_ = 1.0 / along;
 }
 
@@ -28,8 +28,8 @@ DVec3 TriangleRay::sheared(Vec3 corner) const {
 
 bool TriangleRay::crosses(Vec3 a, Vec3 b, Vec3 c, double& fraction, bool& front) const {
   const DVec3 p = sheared(a), q = sheared(b), r = sheared(c);
-  // Twice the areas that the ray, now the z axis, spans with each edge. Two triangles that share an edge find exactly opposite
-  // numbers for it.
+  // Twice the areas that the ray, now the z axis, spans with each edge. Two triangles that share an edge compute
+  // exactly opposite numbers for it.
   const double u = r.x * q.y - r.y * q.x, v = p.x * r.y - p.y * r.x, w = q.x * p.y - q.y * p.x;
   if ((u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0)) return false;
   const double area = u + v + w;
@@ -44,15 +44,15 @@ Vec3 surface_normal(const Shape& surface, const SurfaceTriangle& triangle) {
   return triangle_normal(triangle.a, triangle.b, triangle.c);
 }
 
-bool clip_to_surface(const Shape& surface, const LocalRay& ray, Vec3 half, double reach, double& from,
+bool clip_to_surface(const Shape& surface, const LocalRay& ray, Vec3 half, double max_fraction, double& from,
                      double& to) {
   const Aabb& box = surface.kind == ShapeKind::mesh ? surface.mesh->tree.box : surface.field->box;
-  from = 0.0, to = reach;
+  from = 0.0, to = max_fraction;
   const double slack = 1.0e-6 * double(largest(max(absolute(box.low), absolute(box.high))));
   for (int axis = 0; axis < 3; ++axis) {
     const double low = double(box.low[axis]) - double(half[axis]) - slack;
     const double high = double(box.high[axis]) + double(half[axis]) + slack;
-    const double o = ray.origin[axis], d = ray.way[axis];
+    const double o = ray.origin[axis], d = ray.translation[axis];
     if (d == 0.0) {
       if (o < low || o > high) return false;
       continue;
@@ -64,13 +64,13 @@ bool clip_to_surface(const Shape& surface, const LocalRay& ray, Vec3 half, doubl
   return from <= to;
 }
 
-bool cast_ray_at_surface(const Shape& surface, const LocalRay& ray, double reach, bool back_faces,
+bool cast_ray_at_surface(const Shape& surface, const LocalRay& ray, double max_fraction, bool back_faces,
                          LocalHit& hit) {
   const TriangleRay crossing(ray);
   const bool both_sides = back_faces || is_double_sided(surface);
   bool found = false, from_front = true;
   SurfaceTriangle nearest{};
-  walk_triangles(surface, ray, {}, reach, [&](const SurfaceTriangle& triangle, double now) {
+  walk_triangles(surface, ray, {}, max_fraction, [&](const SurfaceTriangle& triangle, double now) {
     LocalHit next;
     bool front;
     if (!crossing.crosses(triangle.a, triangle.b, triangle.c, next.fraction, front)) return now;
@@ -86,7 +86,7 @@ bool cast_ray_at_surface(const Shape& surface, const LocalRay& ray, double reach
   if (!found) return false;
   const DVec3 normal(surface_normal(surface, nearest));
   hit.normal = from_front ? normal : -normal;
-  hit.point = ray.origin + hit.fraction * ray.way;
+  hit.point = ray.origin + hit.fraction * ray.translation;
   return true;
 }
 

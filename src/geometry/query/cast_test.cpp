@@ -1,4 +1,5 @@
-// Rays against convex shapes and planes: a hit lies on the surface, with everything before it outside, from anywhere.
+// Rays against convex shapes and planes: a hit lies on the surface and everything before it is outside, from any
+// distance.
 #include "geometry/query/cast.h"
 
 #include "geometry/testing/convex_oracle.h"
@@ -10,7 +11,8 @@ namespace {
 
 using oracle::Random;
 
-// Below zero inside, above outside, zero on the surface, of slope about one near it: from each kind's definition.
+// A function of each kind's definition: negative inside, positive outside, zero on the surface, with a slope of about
+// one there.
 double height_above(const Shape& shape, DVec3 p) {
   const double r = double(shape.radius), h = double(shape.extents.y);
   const double radial = std::sqrt(p.x * p.x + p.z * p.z);
@@ -42,13 +44,13 @@ double height_above(const Shape& shape, DVec3 p) {
 bool expect_right(const Shape& shape, const LocalRay& ray, double size, const char* what) {
   LocalHit hit;
   const bool hits = cast_ray(shape, ray, 1.0, false, hit);
-  const double precision = 1.0e-12 * (length(ray.origin) + length(ray.way)) + 2.0e-7 * size;
+  const double precision = 1.0e-12 * (length(ray.origin) + length(ray.translation)) + 2.0e-7 * size;
   constexpr int kSamples = 400;
   const double end = hits ? hit.fraction : 1.0;
   for (int i = 0; i < kSamples; ++i) {
     const double t = end * (i + 0.5) / kSamples;
     if (hits && hit.inside) break;
-    EXPECT_GT(height_above(shape, ray.origin + t * ray.way), -precision)
+    EXPECT_GT(height_above(shape, ray.origin + t * ray.translation), -precision)
         << what << " passed through at " << t;
     if (::testing::Test::HasFailure()) return hits;
   }
@@ -61,9 +63,9 @@ bool expect_right(const Shape& shape, const LocalRay& ray, double size, const ch
     return true;
   }
   EXPECT_NEAR(height_above(shape, hit.point), 0.0, precision) << what;
-  EXPECT_LE(length(hit.point - (ray.origin + hit.fraction * ray.way)), precision) << what;
+  EXPECT_LE(length(hit.point - (ray.origin + hit.fraction * ray.translation)), precision) << what;
   EXPECT_NEAR(length(hit.normal), 1.0, 1.0e-6) << what;
-  EXPECT_LE(dot(hit.normal, ray.way), 1.0e-6 * length(ray.way)) << what;
+  EXPECT_LE(dot(hit.normal, ray.translation), 1.0e-6 * length(ray.translation)) << what;
   // Out along the normal is outside; in against it is not.
   EXPECT_GT(height_above(shape, hit.point + 1.0e-3 * size * hit.normal), 0.0) << what;
   return true;
@@ -109,7 +111,7 @@ TEST(CastRay, StartsInsideAtOnce) {
     EXPECT_EQ(hit.fraction, 0.0);
     EXPECT_EQ(hit.point, middle);
     EXPECT_NEAR(dot(hit.normal, way), -length(way), 1.0e-6);
-    // Without length: inside is a hit, outside is none.
+    // A ray without length hits inside and misses outside.
     ASSERT_TRUE(cast_ray(shape, {middle, {}}, 1.0, false, hit));
     EXPECT_TRUE(hit.inside);
     EXPECT_EQ(hit.normal, DVec3{});
@@ -117,7 +119,7 @@ TEST(CastRay, StartsInsideAtOnce) {
   }
 }
 
-// A ray that goes on from where another one hit, away from the shape, must not meet it again.
+// A ray that continues away from the shape from another ray's hit must not hit again.
 TEST(CastRay, LeavesTheSurfaceThatItStartsOn) {
   Random random(4);
   for (int i = 0; i < 7000; ++i) {
@@ -149,7 +151,7 @@ TEST(CastRay, TouchesWhatItGrazes) {
   EXPECT_TRUE(cast_ray(cone, {{0, 4, 0}, {0, -6, 0}}, 1.0, false, hit));  // the apex
   EXPECT_DOUBLE_EQ(hit.fraction, 0.5);
   EXPECT_EQ(hit.normal, (DVec3{0, 1, 0}));
-  // The cone's mirror image above the apex is no part of it, and neither is what lies below the base.
+  // Neither the mirror image of the cone above the apex nor the space below the base is part of it.
   EXPECT_FALSE(cast_ray(cone, {{-3, 1.5, 0}, {6, 0, 0}}, 1.0, false, hit));
   EXPECT_FALSE(cast_ray(cone, {{-3, -1.5, 0}, {6, 0, 0}}, 1.0, false, hit));
   EXPECT_TRUE(cast_ray(cone, {{-3, -0.5, 0}, {6, 0, 0}}, 1.0, false, hit));

@@ -1,4 +1,4 @@
-// Against all pairs of triangles, tried by whether an edge of one runs through the other.
+// Overlap of surfaces against a test of all pairs of triangles: an edge of one passes through the other.
 #include "geometry/query/surface_overlap.h"
 
 #include "geometry/query/cast_surface.h"
@@ -75,7 +75,7 @@ Surface random_field(Random& random, std::uint32_t columns, std::uint32_t rows) 
   return out;
 }
 
-// Whether the segment passes through the triangle, by the signs of volumes (in general position).
+// True if the segment passes through the triangle, by the signs of volumes (in general position).
 bool runs_through(DVec3 p, DVec3 q, const std::array<DVec3, 3>& t) {
   const auto volume = [](DVec3 a, DVec3 b, DVec3 c, DVec3 d) { return dot(a - d, cross(b - d, c - d)); };
   if ((volume(t[0], t[1], t[2], p) > 0) == (volume(t[0], t[1], t[2], q) > 0)) return false;

@@ -1,4 +1,4 @@
-// Making and destroying cooked data, the one place that knows all three kinds.
+// Construction and destruction of cooked data. Only this file needs the complete types of all three kinds.
 #include "geometry/shape/cooked.h"
 
 #include "geometry/shape/height_field.h"

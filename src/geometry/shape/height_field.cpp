@@ -8,13 +8,13 @@ struct Sample {
   std::uint32_t column, row;
 };
 
-// The corners of the two triangles of a cell, as steps from its lower corner.
+// The corners of the two triangles of a cell, as offsets from its lower corner.
 constexpr std::uint32_t kCornerColumn[2][3] = {{0, 0, 1}, {1, 0, 1}};
 constexpr std::uint32_t kCornerRow[2][3] = {{0, 1, 0}, {0, 1, 1}};
-// The cell beyond each edge, as a step; the triangle there is always the other one of its cell.
+// The cell beyond each edge, as an offset. The triangle there is always the other one of its cell.
 constexpr int kBeyondColumn[2][3] = {{-1, 0, 0}, {0, 0, 1}};
 constexpr int kBeyondRow[2][3] = {{0, 0, -1}, {0, 1, 0}};
-// Edges are named by a sample and a direction: 0 along rows, 1 diagonal, 2 along columns.
+// An edge is named by a sample and a direction: 0 along rows, 1 diagonal, 2 along columns.
 constexpr std::uint32_t kEdgeColumn[2][3] = {{0, 0, 0}, {0, 0, 1}};
 constexpr std::uint32_t kEdgeRow[2][3] = {{0, 0, 0}, {0, 1, 0}};
 constexpr std::uint32_t kEdgeDirection[2][3] = {{0, 1, 2}, {1, 2, 0}};
@@ -37,7 +37,7 @@ bool is_solid_cell(const HeightField& field, std::int64_t column, std::int64_t r
     return false;
   }
   const std::uint32_t c = std::uint32_t(column), r = std::uint32_t(row);
-  // A NaN in any of the four makes the sum one; infinite heights are refused when cooking.
+  // One NaN makes the sum NaN. Infinite heights are refused when cooking.
   return is_finite(field.height(c, r) + field.height(c + 1, r) + field.height(c, r + 1) +
                    field.height(c + 1, r + 1));
 }
@@ -90,7 +90,7 @@ bool in_normal_cone(const HeightField& field, std::uint32_t triangle, int corner
   const std::uint32_t column = cell % field.cell_columns() + kCornerColumn[half][corner];
   const std::uint32_t row = cell / field.cell_columns() + kCornerRow[half][corner];
   const Vec3 apex = field.sample(column, row);
-  // The samples around, in a circle, and the cell between each and the next.
+  // The samples around, in a circle, and the cell between each sample and the next.
   constexpr int kAround[6][2] = {{1, 0}, {0, 1}, {-1, 1}, {-1, 0}, {0, -1}, {1, -1}};
   constexpr int kCell[6][2] = {{0, 0}, {-1, 0}, {-1, 0}, {-1, -1}, {0, -1}, {0, -1}};
   bool solid[6];
@@ -145,7 +145,7 @@ std::uint32_t first_triangle(const HeightField& field, HeightBlock block) {
 }
 
 CellRange cells_under(const HeightField& field, const Aabb& box) {
-  // A thousandth of a cell of slack covers the rounding of the samples' places.
+  // A thousandth of a cell of slack covers the rounding of the sample positions.
   constexpr double kSlack = 1.0e-3;
   const auto cell = [&](float value, float origin, double slack) {
     return (double(value) - double(origin)) / double(field.spacing) + slack;

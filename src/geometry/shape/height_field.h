@@ -1,9 +1,9 @@
-// A cooked grid of heights: each cell is two triangles, solid below; cells with a NaN corner are holes.
+// A cooked grid of heights. Each cell is two triangles, solid below; cells with a NaN corner are holes.
 //
-// In: a HeightFieldDef. Out: triangles with their surroundings, made on demand, and walks over those near a box with the
-// help of a pyramid of height ranges. The sample (column, row) lies at x = (column - (columns - 1) / 2) * spacing,
-// z = (row - (rows - 1) / 2) * spacing. The diagonal of a cell joins (column, row + 1) with (column + 1, row); triangle
-// 2 * cell lies on the side of (column, row), triangle 2 * cell + 1 beyond, cell = row * (columns - 1) + column.
+// In: a HeightFieldDef. Out: triangles with their neighbourhood, made on demand, and traversal of the cells near a box
+// by a pyramid of height ranges. The sample (column, row) is at x = (column - (columns - 1) / 2) * spacing, z = (row -
+// (rows - 1) / 2) * spacing. The diagonal of a cell joins (column, row + 1) and (column + 1, row). With cell = row *
+// (columns - 1) + column, triangle 2 * cell is at (column, row), and triangle 2 * cell + 1 is beyond the diagonal.
 //
 // Source of the pyramid: "maximum mipmaps" for displaced surfaces, A. Tevs, I. Ihrke, H.-P. Seidel, 2008.
 #pragma once
@@ -16,27 +16,28 @@
 namespace gyre {
 
 struct HeightRange {
-  float low, high;     // low > high where all is hole
-  std::uint32_t flat;  // not 0: every triangle of the block, and all that touch them, lie in one plane
+  float low, high;     // low > high if all cells are holes
+  std::uint32_t flat;  // not 0: all triangles of the block, and all that touch them, lie in one plane
 };
 
 struct HeightField {
-  // Blocks of the finest level span 2^kBlockShift cells each way, those of each next level twice as many.
+  // A block of the finest level spans 2^kBlockShift cells along each axis; the size doubles with each level.
   static constexpr std::uint32_t kBlockShift = 2;
   static constexpr std::uint32_t kNoTriangle = 0xffffffffu;
 
   struct Level {
     std::uint32_t columns = 0, rows = 0;
-    std::vector<HeightRange> blocks;  // row after row
+    std::vector<HeightRange> blocks;  // row by row
   };
 
-  std::vector<float> heights;  // row after row; NaN in holes
+  std::vector<float> heights;  // row by row; NaN in holes
   std::uint32_t columns = 0;   // samples
   std::uint32_t rows = 0;
   float spacing = 1.0f;
-  Vec3 origin;                             // of sample (0, 0), at height 0
-  float flat_angle = 0.0f;                 // rad: what rounding of the heights can make of one plane
-  std::vector<std::uint8_t> flat_samples;  // one bit a sample: six triangles around it, all in one plane
+  Vec3 origin;              // of sample (0, 0), at height 0
+  float flat_angle = 0.0f;  // rad, the angle that rounding of the heights can give to one plane
+  // one bit for each sample: the six triangles around it lie in one plane
+  std::vector<std::uint8_t> flat_samples;
   Aabb box;
   std::vector<Level> levels;  // from fine to coarse; the last has one block
 
@@ -50,22 +51,22 @@ struct HeightField {
   }
 };
 
-// Whether the cell exists and is no hole.
+// True if the cell exists and is no hole.
 bool is_solid_cell(const HeightField& field, std::int64_t column, std::int64_t row);
-// A triangle by itself, and with its surroundings, in the field's frame. Its cell must not be a hole.
+// A triangle by itself, and with its neighbourhood, in the field's frame. Its cell must not be a hole.
 BareTriangle bare_triangle(const HeightField& field, std::uint32_t triangle);
 TriangleView view_triangle(const HeightField& field, std::uint32_t triangle);
-// As for a mesh: whether no edge around this corner of the triangle climbs along `direction` (unit) by more than the sine
+// As for a mesh: true if no edge at this corner of the triangle climbs along `direction` (unit) by more than the sine
 // `tolerance`.
 bool in_normal_cone(const HeightField& field, std::uint32_t triangle, int corner, Vec3 direction,
                     float tolerance);
 
-// A block of cells: of level -1 it is one cell.
+// A block of cells; level -1 is a single cell.
 struct HeightBlock {
   int level;
   std::uint32_t column, row;
 };
-// The box of a block, the triangle of it with the lowest number that is no hole (kNoTriangle: none), and whether it is flat.
+// The box of a block, its first triangle that is no hole (kNoTriangle: none), and whether it is flat.
 Aabb block_box(const HeightField& field, HeightBlock block);
 std::uint32_t first_triangle(const HeightField& field, HeightBlock block);
 inline bool is_flat(const HeightField& field, HeightBlock block) {
@@ -74,9 +75,9 @@ inline bool is_flat(const HeightField& field, HeightBlock block) {
   return level.blocks[std::size_t(block.row) * level.columns + block.column].flat != 0;
 }
 
-// Calls visit(cell's column, row) for each cell whose box may overlap `box`, in an order that depends on nothing else
-// (block after block, not row after row). Before anything in a block of cells is looked at, enter(block) is asked; where it
-// says false, the whole block is left out. enter is not asked for single cells.
+// Calls visit(column, row) for each cell whose box may overlap `box`, in a fixed order (block by block, not row by
+// row). Calls enter(block) before each block, and skips the block if that returns false. enter is not called for single
+// cells.
 template <class Enter, class Visit>
 void walk_cells(const HeightField& field, const Aabb& box, Enter&& enter, Visit&& visit);
 
@@ -91,7 +92,7 @@ template <class Enter, class Visit>
 void walk_cells(const HeightField& field, const Aabb& box, Enter&& enter, Visit&& visit) {
   const CellRange range = cells_under(field, box);
   if (range.empty()) return;
-  // Four children a block and at most 32 levels: three wait on each.
+  // Four children for each block and at most 32 levels: three wait on each level.
   HeightBlock stack[3 * 32 + 4];
   int depth = 0;
   stack[depth++] = {int(field.levels.size()) - 1, 0, 0};

@@ -1,4 +1,4 @@
-// cook_height_field: from outside data to a HeightField, or the reason why not.
+// cook_height_field: makes a HeightField from a definition, or reports why it cannot.
 #include "base/float_mode.h"
 #include "base/hash.h"
 #include "geometry/shape/cooked.h"
@@ -8,7 +8,7 @@ namespace gyre {
 namespace {
 
 constexpr std::uint64_t kMaxSamples = 1u << 28;
-// What rounding leaves of a plane, relative to the largest height: some units in the last place.
+// The error of a plane after rounding, relative to the largest height: a few units in the last place.
 constexpr float kFlatTolerance = 4.0e-7f;
 
 Error check_field(const HeightFieldDef& def) {
@@ -44,7 +44,7 @@ Error check_field(const HeightFieldDef& def) {
   return {};
 }
 
-// Whether the samples of a rectangle (corners included) exist and lie in one plane, looked at every `step`.
+// True if the samples of a rectangle (corners included) exist and lie in one plane. Tests every `step`-th sample.
 bool is_plane(const HeightField& field, const CellRange& samples, std::uint32_t step, float tolerance) {
   const double h = double(field.height(samples.low_column, samples.low_row));
   const double width = double(samples.high_column - samples.low_column),
@@ -55,7 +55,7 @@ bool is_plane(const HeightField& field, const CellRange& samples, std::uint32_t 
     for (std::uint32_t c = samples.low_column; c <= samples.high_column; c += step) {
       const double plane =
           h + slope_x * double(c - samples.low_column) + slope_z * double(r - samples.low_row);
-      // Also false for NaN.
+      // NaN fails too.
       if (!(absolute(double(field.height(c, r)) - plane) <= double(tolerance))) return false;
     }
   }
@@ -77,7 +77,7 @@ HeightRange finest_range(const HeightField& field, std::uint32_t block_column, s
       range.high = max(range.high, box.high.y);
     }
   }
-  // With all triangles that touch the block: one ring of cells more, which must exist.
+  // The triangles that touch the block are in one more ring of cells, which must exist.
   if (column > 0 && row > 0 && column + size < field.cell_columns() && row + size < field.cell_rows()) {
     const CellRange samples{column - 1, column + size + 1, row - 1, row + size + 1};
     range.flat = is_plane(field, samples, 1, tolerance) ? 1 : 0;
@@ -85,7 +85,7 @@ HeightRange finest_range(const HeightField& field, std::uint32_t block_column, s
   return range;
 }
 
-// Four blocks in one. Flat if all four are, and their corners lie in one plane too.
+// Merges four blocks. The result is flat if all four are and their corners lie in one plane too.
 HeightRange merged_range(const HeightField& field, const HeightField::Level& finer, std::uint32_t column,
                          std::uint32_t row, std::uint32_t cells, float tolerance) {
   HeightRange range{__builtin_huge_valf(), -__builtin_huge_valf(), 1};
@@ -95,10 +95,10 @@ HeightRange merged_range(const HeightField& field, const HeightField::Level& fin
       range.flat = 0;
       continue;
     }
-    const HeightRange& part = finer.blocks[std::size_t(r) * finer.columns + c];
-    range.low = min(range.low, part.low);
-    range.high = max(range.high, part.high);
-    range.flat &= part.flat;
+    const HeightRange& child = finer.blocks[std::size_t(r) * finer.columns + c];
+    range.low = min(range.low, child.low);
+    range.high = max(range.high, child.high);
+    range.flat &= child.flat;
   }
   if (range.flat != 0) {
     const CellRange samples{column * cells, (column + 1) * cells, row * cells, (row + 1) * cells};
@@ -178,22 +178,22 @@ Result<Geometry> cook_height_field(const HeightFieldDef& def) {
   field->heights.reserve(def.heights.size());
   float highest = 0.0f;
   for (const float h : def.heights) {
-    // One NaN for all holes, so that equal fields have equal hashes.
+    // All holes get the same NaN, so that equal fields have equal hashes.
     field->heights.push_back(h == h ? h : __builtin_nanf(""));
     if (h == h) highest = max(highest, absolute(h));
   }
   const float tolerance = kFlatTolerance * highest;
   field->flat_angle = 1.0e-6f + tolerance / def.spacing;
   build_levels(*field, tolerance);
-  const HeightRange& whole = field->levels.back().blocks[0];
-  if (whole.low > whole.high) {
+  const HeightRange& range = field->levels.back().blocks[0];
+  if (range.low > range.high) {
     return make_error(ErrorCode::invalid_geometry, "height field: all of its %u x %u cells are holes",
                       def.columns - 1, def.rows - 1);
   }
   mark_flat_samples(*field);
-  const Vec3 far_corner{field->origin.x + float(def.columns - 1) * def.spacing, whole.high,
+  const Vec3 far_corner{field->origin.x + float(def.columns - 1) * def.spacing, range.high,
                         field->origin.z + float(def.rows - 1) * def.spacing};
-  field->box = {{field->origin.x, whole.low, field->origin.z}, far_corner};
+  field->box = {{field->origin.x, range.low, field->origin.z}, far_corner};
   auto cooked = std::make_shared<CookedGeometry>();
   cooked->kind = ShapeKind::height_field;
   cooked->content_hash = hash_field(*field);

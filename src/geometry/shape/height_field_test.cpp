@@ -1,4 +1,4 @@
-// Cooked height fields: what is refused, holes, borders, and the walk over cells against brute force.
+// Cooked height fields: refused input, holes, borders, and the traversal of cells against brute force.
 #include "geometry/shape/height_field.h"
 
 #include "geometry/shape/cooked.h"
@@ -68,7 +68,7 @@ TEST(CookHeightField, TheSmallestHasTwoTriangles) {
   EXPECT_EQ(high.edge[2], EdgeKind::open);
 }
 
-// The same ground as a mesh knows the same about its edges.
+// The same ground as a mesh has the same edges.
 TEST(HeightField, AgreesWithTheSameGroundAsAMesh) {
   Random random{9};
   const int n = 9;

@@ -1,5 +1,5 @@
-// Searches over a hull's columns. Eight lanes of plain loops that a compiler turns into wide instructions; the answer is
-// that of a search one by one: the greatest value, and the lowest index among equals.
+// Searches over the columns of a hull. Plain loops over eight lanes, which a compiler vectorises. The result is that of
+// a scalar search: the largest value, and the lowest index among equals.
 #include "geometry/shape/hull.h"
 
 namespace gyre {
@@ -51,7 +51,7 @@ int support_vertex(const Hull& hull, Vec3 direction) {
         best[lane] > best[winner] || (best[lane] == best[winner] && index[lane] < index[winner]);
     if (better) winner = lane;
   }
-  // The padding repeats the last vertex, behind it.
+  // The padding repeats the last vertex.
   return min(index[winner], hull.vertex_count() - 1);
 }
 

@@ -1,4 +1,4 @@
-// Cooking hulls: points to grid, quickhull, thinning, polygons, columns. See hull_builder.h.
+// Cooking of hulls: points to grid, quickhull, thinning, polygons, columns. See hull_builder.h.
 #include "geometry/shape/hull_builder.h"
 
 #include "base/float_mode.h"
@@ -13,7 +13,7 @@
 namespace gyre {
 namespace {
 
-// The points on the grid that spans their longest extent, and what the tolerances are there.
+// The points on a grid that spans their largest extent, and the tolerances there.
 struct Grid {
   DVec3 origin;            // m, the grid's (0, 0, 0)
   double step = 1.0;       // m
@@ -42,13 +42,13 @@ Grid make_grid(std::span<const Vec3> points) {
   }
   const DVec3 size = DVec3(high) - DVec3(low);
   const double extent = max(size.x, max(size.y, size.z));
-  const double reach = double(max(largest(absolute(low)), largest(absolute(high))));
+  const double largest_coordinate = double(max(largest(absolute(low)), largest(absolute(high))));
   Grid grid;
   grid.origin = DVec3(low);
   if (!(extent >= double(kMinLength))) return grid;
   grid.step = extent / double(kGridSize);
-  // Points that lie far from their origin are no finer than a float there (3 half steps of 2^-24).
-  grid.tolerance = max(kHullTolerance * extent, 1.8e-7 * reach) / grid.step;
+  // Points far from their origin have only the precision of a float there (3 half steps of 2^-24).
+  grid.tolerance = max(kHullTolerance * extent, 1.8e-7 * largest_coordinate) / grid.step;
   grid.points.reserve(points.size());
   const auto snap = [&](float value, double origin) {
     return std::int32_t((double(value) - origin) / grid.step + 0.5);
@@ -59,26 +59,26 @@ Grid make_grid(std::span<const Vec3> points) {
   return grid;
 }
 
-Error span_error(GridSpan span, std::size_t count, double within) {
+Error span_error(GridSpan span, std::size_t count, double tolerance) {
   const char* const shapes[] = {"span a volume", "coincide", "lie on one line", "lie in one plane"};
   return make_error(ErrorCode::invalid_geometry,
-                    "hull: all %zu points %s (within %g m); allowed are points that span a volume", count,
-                    shapes[int(span)], within);
+                    "hull: all %zu points %s (tolerance %g m); allowed are points that span a volume", count,
+                    shapes[int(span)], tolerance);
 }
 
 // ------------------------------------------------------------------------------------------------------- thinning
 
-// A hull of few points: `chosen` are their numbers in the input, the best first; all are vertices of `hull`, which counts
-// within `points`.
+// A hull of few points. `chosen` has their numbers in the input, the best first; all are vertices of `hull`, whose
+// indices are into `points`.
 struct HullCandidate {
   std::vector<int> chosen;
   std::vector<GridPoint> points;
   GridHull hull;
 };
 
-DVec3 place(const GridPoint& p) { return {double(p.x), double(p.y), double(p.z)}; }
+DVec3 to_point(const GridPoint& p) { return {double(p.x), double(p.y), double(p.z)}; }
 
-// The hull of some points of the grid; `hull.span` says if they span none.
+// The hull of some points of the grid. `hull.span` says if they span no volume.
 HullCandidate make_candidate(std::span<const GridPoint> all, std::span<const int> chosen, double flat) {
   HullCandidate out;
   std::vector<int> order;
@@ -91,16 +91,16 @@ HullCandidate make_candidate(std::span<const GridPoint> all, std::span<const int
     out.chosen.assign(chosen.begin(), chosen.end());
     return out;
   }
-  // Some lie within the others' hull. Once more without them; now all are vertices.
+  // Some points lie inside the hull of the others. Build it again without them; then all are vertices.
   std::vector<int> fewer;
   for (const int i : out.hull.vertices) fewer.push_back(chosen[std::size_t(i)]);
   return make_candidate(all, fewer, flat);
 }
 
-// A lower bound of how far each vertex sticks out of the hull of the others: along the mean normal of its faces, where
-// the next best vertex is one of its neighbours. Cheap, and nearly always enough to keep the vertex.
+// A lower bound of the distance of each vertex outside the hull of the others: along the mean normal of its faces,
+// where the next vertex is one of its neighbours. It is cheap, and nearly always enough to retain the vertex.
 std::vector<double> stick_out_bounds(const HullCandidate& body) {
-  const auto at = [&](int i) { return place(body.points[std::size_t(i)]); };
+  const auto at = [&](int i) { return to_point(body.points[std::size_t(i)]); };
   std::vector<DVec3> normals(body.points.size());
   for (const GridTriangle& t : body.hull.triangles) {
     const DVec3 a = at(t.vertices[0]);
@@ -119,8 +119,8 @@ std::vector<double> stick_out_bounds(const HullCandidate& body) {
   return bounds;
 }
 
-// How far a vertex sticks out of the hull of the others. What appears where it was is spanned by its neighbours alone, so
-// that is its distance from their triangles: of all of them, or, when they are many, of those of their hull.
+// The distance of a vertex outside the hull of the others. Only its neighbours span the surface that would replace it,
+// so this is its distance from their triangles: from all of them or, if there are many, from those of their hull.
 double stick_out(std::span<const GridPoint> all, const HullCandidate& body, int vertex, double flat) {
   std::vector<int> neighbors;
   for (const GridTriangle& t : body.hull.triangles) {
@@ -137,8 +137,8 @@ double stick_out(std::span<const GridPoint> all, const HullCandidate& body, int 
     if (rest.hull.span != GridSpan::volume) return 1.0e300;
     return distance_outside(rest.points, rest.hull.triangles, body.points[std::size_t(vertex)]);
   }
-  const auto at = [&](std::size_t i) { return place(body.points[std::size_t(neighbors[i])]); };
-  const DVec3 p = place(body.points[std::size_t(vertex)]);
+  const auto at = [&](std::size_t i) { return to_point(body.points[std::size_t(neighbors[i])]); };
+  const DVec3 p = to_point(body.points[std::size_t(vertex)]);
   double nearest = 1.0e300;
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = i + 1; j < count; ++j) {
@@ -149,8 +149,8 @@ double stick_out(std::span<const GridPoint> all, const HullCandidate& body, int 
   return nearest;
 }
 
-// Takes out vertices that stick out of the hull of the others by at most `tolerance`, youngest first, until none does.
-// Returns whether any was taken.
+// Removes vertices that are at most `tolerance` outside the hull of the others, the last first, until none is left.
+// Returns true if any was removed.
 bool thin(std::span<const GridPoint> all, HullCandidate& body, double tolerance, double flat) {
   bool any = false;
   for (bool changed = true; changed;) {
@@ -173,7 +173,7 @@ bool thin(std::span<const GridPoint> all, HullCandidate& body, double tolerance,
 
 // The thinned hull of at most `limit` vertices.
 HullCandidate thin_hull(const Grid& grid, int limit, double flat) {
-  // Half of the tolerance for points left out, half for vertices taken out.
+  // Half of the tolerance is for points outside, half for removed vertices.
   const QuickhullLimits limits{.tolerance = 0.5 * grid.tolerance, .flat = flat, .vertices = limit};
   HullCandidate body;
   for (int round = 0; round < 4; ++round) {
@@ -184,9 +184,9 @@ HullCandidate thin_hull(const Grid& grid, int limit, double flat) {
     }
     body = make_candidate(grid.points, hull.vertices, flat);
     if (body.hull.span != GridSpan::volume) return body;
-    const bool taken = thin(grid.points, body, 0.5 * grid.tolerance, flat);
-    // Vertices that turned out not to matter make room for others.
-    if (hull.complete || !taken || int(body.chosen.size()) >= limit) break;
+    const bool removed = thin(grid.points, body, 0.5 * grid.tolerance, flat);
+    // Removed vertices make room for others.
+    if (hull.complete || !removed || int(body.chosen.size()) >= limit) break;
   }
   return body;
 }
@@ -194,8 +194,10 @@ HullCandidate thin_hull(const Grid& grid, int limit, double flat) {
 // -------------------------------------------------------------------------------------------------------- the Hull
 
 struct Polygons {
-  std::vector<int> points;    // number in the input of each vertex, ascending
-  std::vector<DVec3> places;  // the vertices in grid steps
+  // The number in the input of each vertex, ascending.
+  std::vector<int> inputs;
+  // The vertices in grid steps.
+  std::vector<DVec3> points_on_grid;
   std::vector<FaceLoop> loops;
 };
 
@@ -208,25 +210,25 @@ Polygons make_polygons(const Grid& grid, const HullCandidate& body) {
     for (std::size_t j = 0; j < count; ++j) rank += body.chosen[j] < body.chosen[i] ? 1 : 0;
     vertex_of[i] = std::uint8_t(rank);
   }
-  out.points.resize(count);
-  out.places.resize(count);
+  out.inputs.resize(count);
+  out.points_on_grid.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    out.points[vertex_of[i]] = body.chosen[i];
-    out.places[vertex_of[i]] = place(body.points[i]);
+    out.inputs[vertex_of[i]] = body.chosen[i];
+    out.points_on_grid[vertex_of[i]] = to_point(body.points[i]);
   }
   std::vector<FaceLoop> triangles;
   for (const GridTriangle& t : body.hull.triangles) {
     FaceLoop& loop = triangles.emplace_back();
     for (const int v : t.vertices) loop.push_back(vertex_of[std::size_t(v)]);
   }
-  // Four tolerances thick at most: flatter than any contact notices, and thick enough for models with six digits.
-  out.loops = join_flat_faces(out.places, triangles, 2.0 * grid.tolerance);
+  // Faces are at most four tolerances thick: too flat for any contact to notice, and enough for models with six digits.
+  out.loops = join_flat_faces(out.points_on_grid, triangles, 2.0 * grid.tolerance);
   return out;
 }
 
-// The plane through the face that has every vertex on or below it.
+// The plane through the face with all vertices on or below it.
 HullPlane make_plane(const Polygons& polygons, const FaceLoop& loop, std::span<const Vec3> vertices) {
-  const DVec3 n = loop_normal(polygons.places, loop);
+  const DVec3 n = loop_normal(polygons.points_on_grid, loop);
   HullPlane plane{};
   plane.normal = normalized(to_float(n / length(n)));
   double offset = dot(DVec3(plane.normal), DVec3(vertices[0]));
@@ -254,17 +256,17 @@ void fill_edges(Hull& hull) {
   }
 }
 
-// Centre of the volume, by tetrahedra from a vertex.
+// The centre of the volume, by tetrahedra from a vertex.
 Vec3 volume_center(const Grid& grid, const HullCandidate& body) {
-  const DVec3 apex = place(body.points[0]);
-  const auto at = [&](int i) { return place(body.points[std::size_t(i)]) - apex; };
+  const DVec3 apex = to_point(body.points[0]);
+  const auto at = [&](int i) { return to_point(body.points[std::size_t(i)]) - apex; };
   double volume = 0.0;
   DVec3 moment;
   for (const GridTriangle& t : body.hull.triangles) {
     const DVec3 a = at(t.vertices[0]), b = at(t.vertices[1]), c = at(t.vertices[2]);
-    const double part = dot(a, cross(b, c));
-    volume += part;
-    moment += part * 0.25 * (a + b + c);
+    const double volume_of_one = dot(a, cross(b, c));
+    volume += volume_of_one;
+    moment += volume_of_one * 0.25 * (a + b + c);
   }
   return to_float(grid.origin + grid.step * (apex + moment / volume));
 }
@@ -272,7 +274,7 @@ Vec3 volume_center(const Grid& grid, const HullCandidate& body) {
 Hull make_hull(std::span<const Vec3> points, const Grid& grid, const HullCandidate& body,
                const Polygons& polygons) {
   Hull hull;
-  for (const int point : polygons.points) hull.vertices.push_back(points[std::size_t(point)]);
+  for (const int point : polygons.inputs) hull.vertices.push_back(points[std::size_t(point)]);
   hull.centroid = volume_center(grid, body);
   hull.face_offsets.push_back(0);
   hull.inner_radius = kUnbounded;
@@ -317,8 +319,8 @@ Result<Hull> build_hull(std::span<const Vec3> points) {
   HullCandidate body = thin_hull(grid, kMaxHullVertices, flat);
   if (body.hull.span != GridSpan::volume) return span_error(body.hull.span, points.size(), flat * grid.step);
   Polygons polygons = make_polygons(grid, body);
-  // Too many faces: fewer vertices, from the beginning of the list, which is the best of its length. At most 2 V - 4
-  // faces go with V vertices, so 129 are always few enough.
+  // Too many faces: use fewer vertices, from the start of the list, which is the best choice of its length. V vertices
+  // have at most 2 V - 4 faces, so 129 are always few enough.
   while (int(polygons.loops.size()) > kMaxHullFaces) {
     const std::size_t excess = polygons.loops.size() - std::size_t(kMaxHullFaces);
     const std::vector<int> fewer(body.chosen.begin(), body.chosen.end() - std::ptrdiff_t((excess + 1) / 2));

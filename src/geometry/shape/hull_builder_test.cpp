@@ -1,5 +1,5 @@
-// Hulls: what every hull must keep (closed, convex, all points inside), known polyhedra, and bad input (row B-10 of the
-// validation table).
+// Hulls: the invariants of every hull (closed, convex, all points inside), known polyhedra, and bad input (row B-10 of
+// the validation table).
 #include "geometry/shape/hull_builder.h"
 
 #include "geometry/shape/cooked.h"
@@ -302,7 +302,7 @@ TEST(HullBuilder, CoarseGridsAreFullOfLinesAndPlanes) {
 TEST(HullBuilder, Slivers) {
   Random random;
   for (int round = 0; round < 200; ++round) {
-    // Needles, plates and wedges, thin down to far below what is accepted.
+    // Needles, plates and wedges, down to thicknesses far below the accepted one.
     const float thin = std::pow(10.0f, random(-8.0f, -1.0f)), thick = round % 3 ? 1.0f : thin;
     Points points;
     for (int i = 0; i < 24; ++i) points.push_back(multiply_each({1.0f, thick, thin}, random.in_cube()));
@@ -314,7 +314,7 @@ TEST(HullBuilder, Slivers) {
       EXPECT_LT(thin, 1.0e-5f);
       EXPECT_EQ(hull.error().code, ErrorCode::invalid_geometry);
     }
-    // The tip of a needle is kept although it is near every plane.
+    // The tip of a needle remains although it is close to every plane.
     if (hull) {
       double farthest = 0.0, kept = 0.0;
       for (const Vec3& p : points) farthest = std::max(farthest, double(length(p - points[0])));
@@ -324,8 +324,8 @@ TEST(HullBuilder, Slivers) {
   }
 }
 
-// As exporters write them: a slab whose corners come twice, a little apart, with cut edges; and a sheet folded by less than
-// a float can tell.
+// Output of exporters: a slab whose corners come twice, slightly apart, with cut edges; and a sheet folded by less than
+// the precision of float.
 TEST(HullBuilder, NearlyEqualCornersAndFoldedSheets) {
   Random random;
   for (int round = 0; round < 200; ++round) {

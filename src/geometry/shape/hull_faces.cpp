@@ -1,4 +1,4 @@
-// Joining flat faces, the flattest pair first. See hull_faces.h.
+// Merging of flat faces, the flattest pair first. See hull_faces.h.
 #include "geometry/shape/hull_faces.h"
 
 #include "base/container/sort.h"
@@ -10,7 +10,7 @@ constexpr int kNoFace = -1;
 
 struct JoinEdge {
   int from, to;
-  double bend;  // how far the joined polygon's corners would lie from its plane
+  double bend;  // distance of the merged polygon's corners from its plane
 };
 
 class Joiner {
@@ -26,7 +26,7 @@ class Joiner {
   }
 
   void join_all();
-  std::vector<FaceLoop> take_loops();
+  std::vector<FaceLoop> release_loops();
 
  private:
   int& face_of(int from, int to) { return face_of_[std::size_t(from * 256 + to)]; }
@@ -38,9 +38,9 @@ class Joiner {
   bool try_join(int from, int to);
 
   std::span<const DVec3> vertices_;
-  std::vector<FaceLoop> loops_;  // empty when joined to another
+  std::vector<FaceLoop> loops_;  // empty once merged into another
   std::vector<int> face_of_;     // by directed edge
-  std::vector<int> faces_at_;    // how many faces meet at a vertex
+  std::vector<int> faces_at_;    // number of faces at a vertex
   double tolerance_;
 };
 
@@ -49,7 +49,7 @@ void Joiner::claim_edges(int f) {
   for (std::size_t i = 0; i < loop.size(); ++i) face_of(loop[i], loop[(i + 1) % loop.size()]) = f;
 }
 
-// The loop around both faces of the edge: around the left one from `to` to `from`, on around the right one.
+// The loop around both faces of the edge: around the left one from `to` to `from`, then around the right one.
 FaceLoop Joiner::joined(int from, int to) {
   FaceLoop out;
   const auto append = [&](const FaceLoop& loop, int first, int last) {
@@ -89,16 +89,16 @@ bool Joiner::is_convex(const FaceLoop& loop, DVec3 normal) const {
 bool Joiner::try_join(int from, int to) {
   const int left = face_of(from, to), right = face_of(to, from);
   if (left == right) return false;
-  // With fewer than three faces left a vertex would lie on an edge.
+  // With fewer than three faces a vertex would lie on an edge.
   if (faces_at_[std::size_t(from)] < 4 || faces_at_[std::size_t(to)] < 4) return false;
   const FaceLoop loop = joined(from, to);
   bool met[256] = {};
   for (const int v : loop) {
-    if (met[v]) return false;  // the two touch elsewhere too
+    if (met[v]) return false;  // the two faces touch elsewhere too
     met[v] = true;
   }
   if (bend(loop) > tolerance_) return false;
-  // Both parts look the same way (the two sides of a wedge can be flat together, too).
+  // Both faces must face the same side (the two sides of a wedge can be flat together too).
   const DVec3 n = loop_normal(vertices_, loop);
   if (!(dot(loop_normal(vertices_, loops_[std::size_t(left)]), n) > 0.0)) return false;
   if (!(dot(loop_normal(vertices_, loops_[std::size_t(right)]), n) > 0.0)) return false;
@@ -125,7 +125,7 @@ void Joiner::join_all() {
   std::vector<JoinEdge> scratch(edges.size());
   const auto flatter = [](const JoinEdge& a, const JoinEdge& b) { return a.bend < b.bend; };
   merge_sort(std::span<JoinEdge>(edges), std::span<JoinEdge>(scratch), flatter);
-  // A join that was refused can become possible by others.
+  // Other merges can make a refused one possible.
   for (bool changed = true; changed;) {
     changed = false;
     for (const JoinEdge& edge : edges) {
@@ -134,15 +134,15 @@ void Joiner::join_all() {
   }
 }
 
-std::vector<FaceLoop> Joiner::take_loops() {
+std::vector<FaceLoop> Joiner::release_loops() {
   std::vector<FaceLoop> out;
   for (const FaceLoop& loop : loops_) {
     if (loop.empty()) continue;
-    // From the lowest vertex on.
+    // The loop starts at its lowest vertex.
     std::size_t first = 0;
     for (std::size_t i = 1; i < loop.size(); ++i) first = loop[i] < loop[first] ? i : first;
-    FaceLoop& turned = out.emplace_back();
-    for (std::size_t i = 0; i < loop.size(); ++i) turned.push_back(loop[(first + i) % loop.size()]);
+    FaceLoop& rotated = out.emplace_back();
+    for (std::size_t i = 0; i < loop.size(); ++i) rotated.push_back(loop[(first + i) % loop.size()]);
   }
   return out;
 }
@@ -163,7 +163,7 @@ std::vector<FaceLoop> join_flat_faces(std::span<const DVec3> vertices, std::span
                                       double tolerance) {
   Joiner joiner(vertices, triangles, tolerance);
   joiner.join_all();
-  return joiner.take_loops();
+  return joiner.release_loops();
 }
 
 }  // namespace gyre

@@ -1,7 +1,7 @@
-// Joins the triangles of a convex hull to polygons where they are flat within a tolerance.
+// Merges the triangles of a convex hull into polygons where they are flat within a tolerance.
 //
-// In: a closed, convex, triangulated surface. Out: convex polygons of the same vertices, still closed: every join keeps
-// at least three faces at each vertex and every corner convex, or it is not made.
+// In: a closed, convex, triangulated surface. Out: convex polygons of the same vertices, still closed. A merge must
+// leave at least three faces at each vertex and every corner convex.
 #pragma once
 
 #include <gyre/math.h>
@@ -15,8 +15,8 @@ namespace gyre {
 // A loop of vertices, counter-clockwise seen from outside.
 using FaceLoop = std::vector<std::uint8_t>;
 
-// The face loops for at most 255 vertices; `triangles` holds three indices each. Corners of one face lie within
-// `tolerance` of its plane.
+// The face loops for at most 255 vertices. Each element of `triangles` has three indices. Corners of one face lie
+// within `tolerance` of its plane.
 std::vector<FaceLoop> join_flat_faces(std::span<const DVec3> vertices, std::span<const FaceLoop> triangles,
                                       double tolerance);
 

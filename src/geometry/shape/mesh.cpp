@@ -1,4 +1,4 @@
-// Reading a cooked mesh. See mesh.h.
+// Access to a cooked mesh. See mesh.h.
 #include "geometry/shape/mesh.h"
 
 namespace gyre {
@@ -36,8 +36,8 @@ bool in_normal_cone(const Mesh& mesh, std::uint32_t triangle, int corner, Vec3 d
     const Vec3 along = mesh.vertices[vertex] - apex;
     return dot(direction, along) > tolerance * length(along);
   };
-  // Half-edges that leave the apex, one triangle after the other: first against the clock, then, if the fan is open, back
-  // from the start. The cap only guards against damaged data.
+  // Visits the half-edges that leave the apex, triangle by triangle: first counter-clockwise and then, if the fan is
+  // open, clockwise from the start. The bound only guards against damaged data.
   constexpr int kMaxFan = 1 << 16;
   std::uint32_t half_edge = start;
   for (int step = 0; step < kMaxFan; ++step) {

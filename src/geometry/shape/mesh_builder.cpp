@@ -1,10 +1,10 @@
-// cook_mesh: from outside data to a Mesh, or the reason why not.
+// cook_mesh: makes a Mesh from a definition, or reports why it cannot.
 //
-// Steps: check every number, weld vertices, leave out triangles without area and doubles, order the rest by their tree, and
-// connect them. Doubles are triangles with the same three places in the same turn; one that faces the other way stays.
+// Steps: check every number, weld vertices, drop triangles without area and duplicates, sort the rest by their tree,
+// and connect them. Duplicates are triangles with the same three positions and the same winding.
+#include "base/container/sort.h"
 #include "base/float_mode.h"
 #include "base/hash.h"
-#include "base/container/sort.h"
 #include "geometry/shape/cooked.h"
 #include "geometry/shape/mesh.h"
 #include "geometry/shape/mesh_topology.h"
@@ -24,8 +24,9 @@ Error check_mesh(const MeshDef& def) {
                       StaticTree::kMaxItems);
   }
   if (!def.materials.empty() && def.materials.size() != triangles) {
-    return make_error(ErrorCode::invalid_geometry, "mesh: %zu materials for %zu triangles; needs one each, or none",
-                      def.materials.size(), triangles);
+    return make_error(ErrorCode::invalid_geometry,
+                      "mesh: %zu materials for %zu triangles; needs one each, or none", def.materials.size(),
+                      triangles);
   }
   for (std::size_t i = 0; i < def.vertices.size(); ++i) {
     const Vec3 v = def.vertices[i];
@@ -54,26 +55,26 @@ struct Triangles {
   std::vector<std::uint32_t> source;
 };
 
-Triangles keep_proper(const MeshDef& def) {
+Triangles drop_degenerate(const MeshDef& def) {
   const std::vector<std::uint32_t> weld = weld_vertices(def.vertices, def.indices);
-  Triangles kept;
+  Triangles result;
   for (std::size_t i = 0; i < def.indices.size(); i += 3) {
     const std::uint32_t a = weld[def.indices[i]], b = weld[def.indices[i + 1]], c = weld[def.indices[i + 2]];
     if (triangle_normal(def.vertices[a], def.vertices[b], def.vertices[c]) == Vec3{0, 0, 0}) continue;
-    kept.indices.insert(kept.indices.end(), {a, b, c});
-    kept.source.push_back(std::uint32_t(i / 3));
+    result.indices.insert(result.indices.end(), {a, b, c});
+    result.source.push_back(std::uint32_t(i / 3));
   }
-  return kept;
+  return result;
 }
 
-// Leaves out all but the first of triangles with the same corners in the same turn.
+// Drops all but the first of triangles with equal corners and equal winding.
 void drop_doubles(Triangles& triangles) {
   const std::size_t count = triangles.source.size();
   struct Corners {
     std::uint32_t a, b, c;
     bool operator==(const Corners&) const = default;
   };
-  // The lowest corner first, the turn kept.
+  // The lowest corner first, with the same winding.
   const auto corners_of = [&](std::size_t triangle) {
     const std::uint32_t* i = triangles.indices.data() + 3 * triangle;
     if (i[0] < i[1] && i[0] < i[2]) return Corners{i[0], i[1], i[2]};
@@ -96,16 +97,16 @@ void drop_doubles(Triangles& triangles) {
     }
     begin = end;
   }
-  Triangles kept;
+  Triangles result;
   for (std::size_t i = 0; i < count; ++i) {
     if (drop[i] != 0) continue;
-    for (std::size_t k = 0; k < 3; ++k) kept.indices.push_back(triangles.indices[3 * i + k]);
-    kept.source.push_back(triangles.source[i]);
+    for (std::size_t k = 0; k < 3; ++k) result.indices.push_back(triangles.indices[3 * i + k]);
+    result.source.push_back(triangles.source[i]);
   }
-  triangles = std::move(kept);
+  triangles = std::move(result);
 }
 
-// Builds the tree and takes the triangles over in its order, then the vertices in the order in which those use them.
+// Builds the tree and copies the triangles in its order, then the vertices in the order of their first use.
 void arrange(std::span<const Vec3> vertices, const Triangles& triangles, Mesh& mesh) {
   const std::size_t count = triangles.source.size();
   std::vector<Aabb> boxes(count);
@@ -116,18 +117,18 @@ void arrange(std::span<const Vec3> vertices, const Triangles& triangles, Mesh& m
   }
   build_static_tree(boxes, mesh.tree);
   constexpr std::uint32_t kUnused = 0xffffffffu;
-  std::vector<std::uint32_t> place(vertices.size(), kUnused);
+  std::vector<std::uint32_t> index_of(vertices.size(), kUnused);
   mesh.indices.reserve(3 * count);
   mesh.source.reserve(count);
   for (const std::uint32_t triangle : mesh.tree.items) {
     mesh.source.push_back(triangles.source[triangle]);
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t vertex = triangles.indices[3 * std::size_t(triangle) + k];
-      if (place[vertex] == kUnused) {
-        place[vertex] = std::uint32_t(mesh.vertices.size());
+      if (index_of[vertex] == kUnused) {
+        index_of[vertex] = std::uint32_t(mesh.vertices.size());
         mesh.vertices.push_back(vertices[vertex]);
       }
-      mesh.indices.push_back(place[vertex]);
+      mesh.indices.push_back(index_of[vertex]);
     }
   }
   mesh.tree.items = {};
@@ -149,7 +150,7 @@ Result<Geometry> cook_mesh(const MeshDef& def) {
   const FloatMode mode;
   if (const Error error = check_mesh(def)) return error;
   Triangles triangles;
-  if (!def.vertices.empty()) triangles = keep_proper(def);
+  if (!def.vertices.empty()) triangles = drop_degenerate(def);
   drop_doubles(triangles);
   if (triangles.source.empty()) {
     return make_error(ErrorCode::invalid_geometry, "mesh: none of its %zu triangles has an area",

@@ -1,4 +1,4 @@
-// Cooked meshes: what is refused, what is left out, and what is known about edges and corners.
+// Cooked meshes: refused input, dropped triangles, and the kinds of edges and corners.
 #include "geometry/shape/mesh.h"
 
 #include "geometry/shape/cooked.h"
@@ -83,7 +83,7 @@ TEST(CookMesh, TakesASingleTriangle) {
 TEST(CookMesh, LeavesOutEmptyTrianglesAndDoubles) {
   Triangles triangles = test::flat_grid(2.0f, 1.0f);
   const std::uint32_t count = std::uint32_t(triangles.indices.size() / 3);
-  // The same triangle from another corner, one without area, and one that faces the other way, which stays.
+  // The same triangle from another corner, one without area, and one that faces the other way; the last one stays.
   const std::vector<std::uint32_t> i = triangles.indices;
   triangles.triangle(i[1], i[2], i[0]);
   triangles.triangle(i[0], i[1], i[1]);
@@ -289,8 +289,8 @@ TEST(Triangle, SeenFromBehindTwiceIsItself) {
   const Geometry roof =
       test::grid(2.0f, 1.0f, [](float x, float z) { return -std::fabs(x) + 0.1f * z * z; }).cook();
   for (std::uint32_t t = 0; t < mesh_of(roof).triangle_count(); ++t) {
-    const TriangleView front = view_triangle(mesh_of(roof), t), back = seen_from_behind(front);
-    const TriangleView again = seen_from_behind(back);
+    const TriangleView front = view_triangle(mesh_of(roof), t), back = back_view(front);
+    const TriangleView again = back_view(back);
     EXPECT_EQ(triangle_normal(back.v[0], back.v[1], back.v[2]),
               -triangle_normal(front.v[0], front.v[1], front.v[2]));
     EXPECT_EQ(again.normal, front.normal);

@@ -1,4 +1,4 @@
-// Pairing half-edges, growing flat patches, marking edges. See mesh_topology.h.
+// Pairs half-edges, grows flat patches, marks edges. See mesh_topology.h.
 #include "geometry/shape/mesh_topology.h"
 
 #include "base/container/sort.h"
@@ -6,12 +6,12 @@
 namespace gyre {
 namespace {
 
-// A patch takes in a neighbour that leans less than this against the patch's first triangle ...
+// rad; a patch takes a neighbour whose normal deviates less than this from that of the patch,
 constexpr float kPatchAngle = 2.0e-3f;
-// ... and whose corners lie within this of its plane, relative to the largest coordinate: some units in the last place, what
-// float coordinates cannot hold anyway. The plane, not the angle, bounds how far a finely cut curve is taken for flat.
+// and whose corners are within this of its plane, relative to the largest coordinate: a few units in the last place,
+// the precision of float coordinates. The plane, not the angle, limits how far a finely divided curve counts as flat.
 constexpr double kPatchTolerance = 4.0e-7;
-// Beyond this the two sides of a fold are back to back, and each has its own border.
+// Cosine below which the two sides of a fold are back to back, and each has its own border.
 constexpr float kFolded = -0.9999f;
 constexpr std::uint32_t kNoPatch = 0xffffffffu;
 // Edges with more triangles than this stay open.
@@ -27,7 +27,7 @@ bool can_pair(const Mesh& mesh, std::uint32_t a, std::uint32_t b) {
   return edge_start(mesh, a) == edge_end(mesh, b) && dot(mesh.normals[a / 3], mesh.normals[b / 3]) > kFolded;
 }
 
-// Where more than two triangles share an edge, the flattest pairs first; what is left over stays open.
+// If more than two triangles share an edge, the flattest pairs come first. Unpaired ones stay open.
 void pair_shared(Mesh& mesh, const std::uint32_t* half_edges, std::size_t count) {
   if (count > kMaxShared) return;
   for (;;) {
@@ -71,11 +71,11 @@ void pair_half_edges(Mesh& mesh) {
   }
 }
 
-// The plane of a patch: through the middle of its triangles, at a right angle to the sum of their areas. Both are refined while
-// the patch grows, since a single small triangle knows its plane only to within the rounding of its corners.
+// The plane of a patch: through the centre of its triangles, perpendicular to the sum of their areas. Both are refined
+// while the patch grows, because the plane of one small triangle is no more precise than its rounded corners.
 struct PatchPlane {
   DVec3 area;    // sum of area vectors
-  DVec3 moment;  // sum of middles times areas
+  DVec3 moment;  // sum of centres times areas
   double weight = 0.0;
   DVec3 normal, middle;
 
@@ -95,7 +95,7 @@ struct PatchPlane {
   double distance(Vec3 point) const { return absolute(dot(normal, DVec3(point) - middle)); }
 };
 
-// The patch around one triangle: gives it all triangles that lie in one plane with it and hang together, and one normal.
+// Grows the patch around one triangle: all connected triangles in one plane with it. They get one normal.
 void grow_patch(Mesh& mesh, std::uint32_t seed, double tolerance, std::vector<std::uint32_t>& patch,
                 std::vector<std::uint32_t>& members) {
   PatchPlane plane;
@@ -114,7 +114,7 @@ void grow_patch(Mesh& mesh, std::uint32_t seed, double tolerance, std::vector<st
       if (twin == Mesh::kNoTwin || patch[twin / 3] != kNoPatch) continue;
       const std::uint32_t other = twin / 3;
       if (length_squared(mesh.normals[other] - to_float(plane.normal)) > kPatchAngle * kPatchAngle) continue;
-      // The two corners on the shared edge were looked at with the triangle on this side.
+      // The two corners on the shared edge were tested with the triangle on this side.
       const std::uint32_t apex = mesh.indices[3 * std::size_t(other) + (twin + 2) % 3];
       if (plane.distance(mesh.vertices[apex]) > tolerance) continue;
       patch[other] = seed;
@@ -127,11 +127,11 @@ void grow_patch(Mesh& mesh, std::uint32_t seed, double tolerance, std::vector<st
   for (const std::uint32_t member : members) mesh.normals[member] = to_float(plane.normal);
 }
 
-// Returns each triangle's patch, named by its first triangle.
+// Returns the patch of each triangle, named by its first triangle.
 std::vector<std::uint32_t> grow_patches(Mesh& mesh) {
   const std::uint32_t count = mesh.triangle_count();
-  const Vec3 reach = max(absolute(mesh.tree.box.low), absolute(mesh.tree.box.high));
-  const double tolerance = kPatchTolerance * double(largest(reach));
+  const Vec3 largest_coordinates = max(absolute(mesh.tree.box.low), absolute(mesh.tree.box.high));
+  const double tolerance = kPatchTolerance * double(largest(largest_coordinates));
   std::vector<std::uint32_t> patch(count, kNoPatch);
   std::vector<std::uint32_t> members;
   for (std::uint32_t seed = 0; seed < count; ++seed) {
@@ -169,7 +169,8 @@ void mark_edges(Mesh& mesh, const std::vector<std::uint32_t>& patch) {
   }
 }
 
-// Lanes of the tree whose triangles all lie inside one patch. Children have higher indices than their parents.
+// Marks the lanes of the tree whose triangles all lie inside one patch. Children have higher indices than their
+// parents.
 void mark_lanes(Mesh& mesh, const std::vector<std::uint32_t>& patch) {
   constexpr std::uint32_t kMixed = 0xffffffffu;
   const std::size_t node_count = mesh.tree.nodes.size();
@@ -177,7 +178,7 @@ void mark_lanes(Mesh& mesh, const std::vector<std::uint32_t>& patch) {
   std::vector<std::uint32_t> node_patch(node_count, kMixed);
   for (std::size_t index = node_count; index-- > 0;) {
     const StaticTree::Node& node = mesh.tree.nodes[index];
-    std::uint32_t whole = kMixed;
+    std::uint32_t common = kMixed;
     bool uniform = true;
     for (int lane = 0; lane < StaticTree::kWidth; ++lane) {
       const std::uint32_t child = node.child[lane];
@@ -193,10 +194,10 @@ void mark_lanes(Mesh& mesh, const std::vector<std::uint32_t>& patch) {
         found = node_patch[child];
       }
       if (found != kMixed) mesh.flat_lanes[index] = std::uint8_t(mesh.flat_lanes[index] | 1u << lane);
-      if (lane == 0) whole = found;
-      uniform = uniform && found == whole;
+      if (lane == 0) common = found;
+      uniform = uniform && found == common;
     }
-    node_patch[index] = uniform ? whole : kMixed;
+    node_patch[index] = uniform ? common : kMixed;
   }
 }
 

@@ -1,5 +1,4 @@
-// The surroundings of a mesh's triangles: which triangle lies beyond each edge, what is one flat patch, and which edges and
-// corners are real ones.
+// The neighbourhood of a mesh's triangles: the triangle beyond each edge, flat patches, and active edges and corners.
 //
 // Fills twins, flags, normals and flat_lanes of a Mesh whose vertices, indices and tree are set.
 #pragma once

@@ -1,9 +1,9 @@
-// Welding in two rounds: equal coordinates by sorting hashes, near ones through a grid of cells four tolerances wide. In a
-// cell only those that stand for themselves are looked at, and they are a tolerance apart: the time is linear for any input.
+// Welds in two rounds: equal coordinates by sorted hashes, close ones through a grid of cells four tolerances wide.
+// Only representatives are tested in a cell, and they are a tolerance apart, so the time is linear for any input.
 #include "geometry/shape/mesh_weld.h"
 
-#include "base/hash.h"
 #include "base/container/sort.h"
+#include "base/hash.h"
 
 #include <cstring>
 
@@ -22,7 +22,7 @@ struct SortedKeys {
     radix_sort_pairs(keys, vertices, scratch_keys, scratch);
   }
 
-  // The first place whose key is not below `key`.
+  // The first index whose key is not below `key`.
   std::size_t find(std::uint64_t key) const {
     std::size_t low = 0, high = keys.size();
     while (low < high) {
@@ -37,20 +37,20 @@ struct SortedKeys {
   }
 };
 
-std::uint64_t hash_place(Vec3 p) {
-  // Adding zero makes -0 and 0 the same.
+std::uint64_t hash_position(Vec3 p) {
+  // Adding zero makes -0 and 0 equal.
   const float coordinates[3] = {p.x + 0.0f, p.y + 0.0f, p.z + 0.0f};
   return hash_bytes(coordinates, sizeof coordinates);
 }
 
-// Equal coordinates: representative[i] is the lowest vertex at the same place.
+// Equal coordinates: representative[i] is the lowest vertex at the same position.
 std::vector<std::uint32_t> weld_equal(std::span<const Vec3> vertices) {
   const std::size_t count = vertices.size();
   SortedKeys sorted;
   sorted.keys.resize(count);
   sorted.vertices.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    sorted.keys[i] = hash_place(vertices[i]);
+    sorted.keys[i] = hash_position(vertices[i]);
     sorted.vertices[i] = std::uint32_t(i);
   }
   sorted.sort();
@@ -60,7 +60,7 @@ std::vector<std::uint32_t> weld_equal(std::span<const Vec3> vertices) {
     std::size_t end = begin;
     for (; end < count && sorted.keys[end] == sorted.keys[begin]; ++end) {
       const std::uint32_t vertex = sorted.vertices[end];
-      // Two places with one hash stay apart.
+      // Two positions with one hash stay apart.
       representative[vertex] = vertices[vertex] == vertices[leader] ? leader : vertex;
     }
     begin = end;
@@ -68,9 +68,9 @@ std::vector<std::uint32_t> weld_equal(std::span<const Vec3> vertices) {
   return representative;
 }
 
-class NearWelder {
+class CloseWelder {
  public:
-  NearWelder(std::span<const Vec3> vertices, const std::vector<std::uint32_t>& equal) : vertices_(vertices) {
+  CloseWelder(std::span<const Vec3> vertices, const std::vector<std::uint32_t>& equal) : vertices_(vertices) {
     Aabb box{vertices[0], vertices[0]};
     for (const Vec3 v : vertices) box = merge(box, {v, v});
     low_ = box.low;
@@ -87,8 +87,8 @@ class NearWelder {
     leader_count_.resize(sorted_.keys.size());
   }
 
-  // Sets `near[i]` to the lowest vertex that stands for vertex i, which must stand for itself in `equal`.
-  void weld(const std::vector<std::uint32_t>& equal, const std::vector<std::uint8_t>& keep,
+  // Sets `near[i]` to the lowest vertex that represents vertex i. Vertex i must represent itself in `equal`.
+  void weld(const std::vector<std::uint32_t>& equal, const std::vector<std::uint8_t>& pinned,
             std::vector<std::uint32_t>& near) {
     near = equal;
     if (!(tolerance_ > 0.0f)) return;
@@ -98,7 +98,7 @@ class NearWelder {
         near[i] = near[equal[i]];
         continue;
       }
-      const std::uint32_t found = keep[i] != 0 ? i : find_leader(i);
+      const std::uint32_t found = pinned[i] != 0 ? i : find_leader(i);
       near[i] = found;
       if (found != i) continue;
       const std::size_t run = sorted_.find(cell_of(vertices_[i], 0, 0, 0));
@@ -119,14 +119,14 @@ class NearWelder {
   std::uint32_t find_leader(std::uint32_t i) const {
     const Vec3 p = vertices_[i];
     std::uint32_t found = i;
-    std::uint64_t seen[8];
-    int seen_count = 0;
+    std::uint64_t tested[8];
+    int tested_count = 0;
     for (int corner = 0; corner < 8; ++corner) {
       const std::uint64_t cell = cell_of(p, corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
-      bool again = false;
-      for (int k = 0; k < seen_count; ++k) again = again || seen[k] == cell;
-      if (again) continue;
-      seen[seen_count++] = cell;
+      bool repeated = false;
+      for (int k = 0; k < tested_count; ++k) repeated = repeated || tested[k] == cell;
+      if (repeated) continue;
+      tested[tested_count++] = cell;
       const std::size_t run = sorted_.find(cell);
       if (run == sorted_.keys.size() || sorted_.keys[run] != cell) continue;
       for (std::uint32_t k = 0; k < leader_count_[run]; ++k) {
@@ -142,19 +142,19 @@ class NearWelder {
   float tolerance_ = 0.0f;
   double inverse_cell_ = 0.0;
   SortedKeys sorted_;
-  std::vector<std::uint32_t> leaders_;       // each cell's at the start of its run in `sorted_`
+  std::vector<std::uint32_t> leaders_;       // those of each cell at the start of its run in `sorted_`
   std::vector<std::uint32_t> leader_count_;  // by the start of the run
 };
 
-// Marks the corners of triangles that would lose an edge. Returns whether there are any.
+// Pins the corners of triangles that would lose an edge. Returns true if there are any.
 bool mark_collapsed(std::span<const std::uint32_t> indices, const std::vector<std::uint32_t>& equal,
-                    const std::vector<std::uint32_t>& near, std::vector<std::uint8_t>& keep) {
+                    const std::vector<std::uint32_t>& near, std::vector<std::uint8_t>& pinned) {
   bool any = false;
   for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = indices[i + k], b = indices[i + (k + 1) % 3];
       if (equal[a] == equal[b] || near[a] != near[b]) continue;
-      keep[equal[a]] = keep[equal[b]] = 1;
+      pinned[equal[a]] = pinned[equal[b]] = 1;
       any = true;
     }
   }
@@ -167,13 +167,13 @@ std::vector<std::uint32_t> weld_vertices(std::span<const Vec3> vertices,
                                          std::span<const std::uint32_t> indices) {
   if (vertices.empty()) return {};
   const std::vector<std::uint32_t> equal = weld_equal(vertices);
-  NearWelder welder(vertices, equal);
-  std::vector<std::uint8_t> keep(vertices.size(), 0);
+  CloseWelder welder(vertices, equal);
+  std::vector<std::uint8_t> pinned(vertices.size(), 0);
   std::vector<std::uint32_t> near;
-  // Vertices that keep themselves may draw others to them, so it may take a few rounds; then near ones stay apart.
+  // Pinned vertices may attract others, so several rounds may be needed. After that, close vertices stay apart.
   for (int round = 0; round < 4; ++round) {
-    welder.weld(equal, keep, near);
-    if (!mark_collapsed(indices, equal, near, keep)) return near;
+    welder.weld(equal, pinned, near);
+    if (!mark_collapsed(indices, equal, near, pinned)) return near;
   }
   return equal;
 }

@@ -1,8 +1,8 @@
-// Which vertices of a triangle list are one and the same place.
+// Welding: finds the vertices of a triangle list that have the same position.
 //
-// In: finite vertices and valid indices. Out: for each vertex the lowest one that stands for it. Vertices with equal
-// coordinates are one; so are those that differ by at most a millionth of the mesh's extent, unless that would make an edge
-// of a triangle vanish.
+// In: finite vertices and valid indices. Out: for each vertex the lowest one with its position. Equal coordinates are
+// one position. So are coordinates that differ by at most a millionth of the mesh's extent, unless that would make an
+// edge of a triangle vanish.
 #pragma once
 
 #include <gyre/math.h>

@@ -102,7 +102,7 @@ LowestVertex lowest_vertex(const Polytope& p, Vec3 d) {
   for (int k = 1; k < kPolytopeLanes; ++k) {
     if (best[k] < best[lane] || (best[k] == best[lane] && winner[k] < winner[lane])) lane = k;
   }
-  // The padding repeats the last vertex, behind it.
+  // The padding repeats the last vertex.
   return {min(winner[lane], p.vertex_count - 1), best[lane]};
 }
 

@@ -1,4 +1,4 @@
-// One view of sharp convex polyhedra for the axis search: a hull as it is cooked, or a box written out as one.
+// One view of sharp convex polyhedra for the axis search: a cooked hull, or a box in the same form.
 #pragma once
 
 #include "geometry/shape/hull.h"
@@ -26,13 +26,13 @@ struct Polytope {
   int edge_words;
   Vec3 centroid;
   float inner_radius;  // of a ball around the centroid
-  float size;          // the largest coordinate, without its sign
+  float size;          // the largest absolute coordinate
 };
 
 Polytope make_polytope(const Hull& hull);
 
-// A box of rounding 0 as a polytope; keeps the columns, so it must outlive the view. Corners are numbered by the signs of
-// their coordinates (bit 0: x positive ...), faces 2 * axis + (positive ? 1 : 0), as support_face names them.
+// A box of rounding 0 as a polytope. It owns the columns, so it must outlive the view. Corners are numbered by the
+// signs of their coordinates (bit 0: x positive ...), faces 2 * axis + (positive ? 1 : 0), as in support_face.
 class BoxPolytope {
  public:
   explicit BoxPolytope(Vec3 half_extents);
@@ -48,7 +48,8 @@ class BoxPolytope {
   float inner_radius_, size_;
 };
 
-// How many of a face's corners a polygon takes, and which: one with more than kMaxFaceVertices corners is thinned evenly.
+// The number of a face's corners in a polygon, and each corner. A face with more than kMaxFaceVertices corners is
+// thinned evenly.
 inline int face_corners(const Polytope& p, int face) {
   return min(int(p.face_offsets[face + 1] - p.face_offsets[face]), kMaxFaceVertices);
 }
@@ -56,15 +57,15 @@ inline int face_corner(const Polytope& p, int face, int i) {
   const int begin = int(p.face_offsets[face]), count = int(p.face_offsets[face + 1]) - begin;
   return p.face_vertices[count <= kMaxFaceVertices ? begin + i : begin + i * count / kMaxFaceVertices];
 }
-// Calls `look` with the edges that bits name, from the lowest on.
-template <class Look>
-void for_each_edge(std::uint64_t bits, int word, Look&& look) {
-  for (; bits != 0; bits &= bits - 1) look(64 * word + std::countr_zero(bits));
+// Calls `visit` with each edge in `bits`, in ascending order.
+template <class Visit>
+void for_each_edge(std::uint64_t bits, int word, Visit&& visit) {
+  for (; bits != 0; bits &= bits - 1) visit(64 * word + std::countr_zero(bits));
 }
 // The face as a polygon in the polytope's frame.
 void face_polygon(const Polytope& polytope, int face, FacePolygon& out);
 
-// Vertices and planes are looked at four at a time: every x86-64, 64-bit ARM and WebAssembly has registers of four.
+// Lanes of the search over vertices and planes: every x86-64, 64-bit ARM and WebAssembly has registers of four.
 constexpr int kPolytopeLanes = 4;
 static_assert(Hull::kPad % kPolytopeLanes == 0);
 
@@ -85,7 +86,7 @@ inline PlaneLanes gather_planes(const float* const (&planes)[kPolytopeLanes]) {
   Rows<kPolytopeLanes>::gather(planes, 0, columns);
   return {{columns[0], columns[1], columns[2]}, columns[3]};
 }
-// Four planes; the last one stands in for those behind it.
+// Four planes. Lanes after the last plane repeat it.
 inline PlaneLanes load_planes(const Polytope& p, int first) {
   const HullPlane* const four = p.planes + first;
   if (first + kPolytopeLanes <= p.face_count)
@@ -109,7 +110,7 @@ struct LowestVertex {
   int vertex;  // the lowest index among equals
   float value;
 };
-// The vertex of smallest dot(direction, vertex), and how much that is.
+// The vertex with the smallest dot(direction, vertex), and that value.
 LowestVertex lowest_vertex(const Polytope& polytope, Vec3 direction);
 
 }  // namespace gyre

@@ -11,25 +11,25 @@ constexpr int kNone = -1;
 struct HullFace {
   int vertex[3];
   int neighbor[3];  // across the edge from vertex[i] to the next
-  Int normal[3];    // exact: each part is below 2^53
+  Int normal[3];    // exact: each component is below 2^53
   double inverse_length;
-  int first_outside;  // list of points that see this triangle and wait for their turn
+  int first_outside;  // list of the points that see this triangle and are not inserted yet
   int farthest;
   double farthest_distance;
   bool alive;
-  bool seen;  // from the point that goes in right now
+  bool sees_point;  // from the point that is being inserted
 };
 
 DVec3 to_double(const GridPoint& p) { return {double(p.x), double(p.y), double(p.z)}; }
 
-// An order of the points in which the first and last of any set are corners of its hull.
+// An order in which the first and the last point of any set are corners of its hull.
 bool lexicographic_less(const GridPoint& a, const GridPoint& b) {
   if (a.x != b.x) return a.x < b.x;
   if (a.y != b.y) return a.y < b.y;
   return a.z < b.z;
 }
 
-// The sign of n . d for |n| parts up to 2^53 and |d| parts up to 2^27, without rounding: in two words of 28 and 64 bits.
+// The exact sign of n . d for |n| components up to 2^53 and |d| components up to 2^27, in two words of 28 and 64 bits.
 int exact_sign(const Int n[3], const Int d[3]) {
   constexpr int kBits = 28;
   constexpr Int kMask = (Int(1) << kBits) - 1;
@@ -67,8 +67,8 @@ class GridHullBuilder {
   int find_visible(int point) const;
   void insert(int point, int visible);
   void find_horizon(int point, int visible);
-  bool find_far_plane(int& point, int& visible) const;
-  bool find_far_point(int& point, int& visible);
+  bool find_farthest_from_plane(int& point, int& visible) const;
+  bool find_farthest_from_hull(int& point, int& visible);
   double descend(int point, int from) const;
   double distance_to(int point, int f) const;
 
@@ -87,7 +87,7 @@ class GridHullBuilder {
   std::vector<int> removed_, fresh_, orphans_;
 };
 
-// Which side of the triangle's plane the point is on, and how far (rounded; of no use for the sign).
+// The side of the triangle's plane on which the point lies, and its distance (rounded, so not reliable for the sign).
 int GridHullBuilder::side(const HullFace& t, int point, double& distance) const {
   const GridPoint& p = at(point);
   const GridPoint& a = at(t.vertex[0]);
@@ -128,7 +128,7 @@ int GridHullBuilder::add_face(int a, int b, int c) {
   return slot;
 }
 
-// Puts the point on the list of that of `faces` from which it is farthest; it is inside if it sees none.
+// Puts the point on the list of the face from which it is farthest. A point that sees no face is inside.
 void GridHullBuilder::assign(int point, std::span<const int> faces) {
   int best = kNone;
   double best_distance = 0.0;
@@ -144,7 +144,7 @@ void GridHullBuilder::assign(int point, std::span<const int> faces) {
   HullFace& t = face(best);
   next_[std::size_t(point)] = t.first_outside;
   t.first_outside = point;
-  // Of equally far points the last in order, which is a corner of what they span.
+  // Among equally far points the last in order, which is a corner of their hull.
   if (t.farthest == kNone || best_distance > t.farthest_distance ||
       (best_distance == t.farthest_distance && lexicographic_less(at(t.farthest), at(point)))) {
     t.farthest = point;
@@ -152,8 +152,8 @@ void GridHullBuilder::assign(int point, std::span<const int> faces) {
   }
 }
 
-// The first tetrahedron: the ends along the longest axis, the point farthest from their line, the one farthest from the
-// plane of the three.
+// The first tetrahedron: the ends along the longest axis, the point farthest from their line, and the one farthest from
+// the plane of these three.
 GridSpan GridHullBuilder::start(std::span<const int> candidates) {
   const int n = count(candidates);
   int low[3], high[3];
@@ -202,7 +202,7 @@ GridSpan GridHullBuilder::start(std::span<const int> candidates) {
   if (d == kNone || far <= limits_.flat) return GridSpan::plane;
 
   const bool d_above = dot(n_abc, to_double(at(d)) - pa) > 0.0;
-  const int v[4] = {a, d_above ? c : b, d_above ? b : c, d};  // (v0, v1, v2) looks away from v3
+  const int v[4] = {a, d_above ? c : b, d_above ? b : c, d};  // (v0, v1, v2) faces away from v3
   add_face(v[0], v[1], v[2]);
   add_face(v[0], v[3], v[1]);
   add_face(v[1], v[3], v[2]);
@@ -229,7 +229,7 @@ int GridHullBuilder::find_visible(int point) const {
   return best;
 }
 
-// Inserts the points of `first`, then hands all others to the faces they see.
+// Inserts the points of `first`, then assigns all others to the faces that they see.
 void GridHullBuilder::insert_all(std::span<const int> first) {
   for (const int p : first) {
     const int visible = find_visible(p);
@@ -243,19 +243,19 @@ void GridHullBuilder::insert_all(std::span<const int> first) {
   for (int p = 0; p < int(points_.size()); ++p) assign(p, alive);
 }
 
-// Collects the faces that see `point` (they hang together) in removed_, and the edges around them in horizon_.
-void GridHullBuilder::find_horizon(int point, int visible) {
-  removed_.assign(1, visible);
+// Collects the faces that see `point` (they are connected) in removed_, and the edges around them in horizon_.
+void GridHullBuilder::find_horizon(int point, int visible_face) {
+  removed_.assign(1, visible_face);
   horizon_.clear();
-  face(visible).seen = true;
+  face(visible_face).sees_point = true;
   for (std::size_t i = 0; i < removed_.size(); ++i) {
     const HullFace& t = face(removed_[i]);
     for (int e = 0; e < 3; ++e) {
       HullFace& other = face(t.neighbor[e]);
-      if (other.seen) continue;
+      if (other.sees_point) continue;
       double distance;
       if (side(other, point, distance) > 0) {
-        other.seen = true;
+        other.sees_point = true;
         removed_.push_back(t.neighbor[e]);
       } else {
         horizon_.push_back({t.vertex[e], t.vertex[(e + 1) % 3], t.neighbor[e]});
@@ -264,16 +264,16 @@ void GridHullBuilder::find_horizon(int point, int visible) {
   }
 }
 
-void GridHullBuilder::insert(int point, int visible) {
-  find_horizon(point, visible);
+void GridHullBuilder::insert(int point, int visible_face) {
+  find_horizon(point, visible_face);
   orphans_.clear();
   for (const int f : removed_) {
     for (int p = face(f).first_outside; p != kNone; p = next_[std::size_t(p)]) {
       if (p != point) orphans_.push_back(p);
     }
-    face(f).alive = face(f).seen = false;
+    face(f).alive = face(f).sees_point = false;
   }
-  // No point of a horizon edge's line can be `point`, as the removed face on its one side sees it: no face is flat.
+  // `point` is on no line of a horizon edge, because the removed face at the edge sees it. So no new face is flat.
   fresh_.clear();
   for (const HorizonEdge& edge : horizon_) {
     const int f = add_face(edge.from, edge.to, point);
@@ -295,8 +295,8 @@ void GridHullBuilder::insert(int point, int visible) {
   for (const int p : orphans_) assign(p, fresh_);
 }
 
-// The point that is farthest outside any plane.
-bool GridHullBuilder::find_far_plane(int& point, int& visible) const {
+// Finds the point farthest outside any plane.
+bool GridHullBuilder::find_farthest_from_plane(int& point, int& visible) const {
   double best = limits_.tolerance;
   visible = kNone;
   for (int f = 0; f < int(faces_.size()); ++f) {
@@ -315,7 +315,7 @@ double GridHullBuilder::distance_to(int point, int f) const {
                               to_double(at(t.vertex[2])));
 }
 
-// Distance of an outside point from the hull, walking from face to face as long as it falls; never too small.
+// The distance of an outside point from the hull, by steps from face to face while it falls; never too small.
 double GridHullBuilder::descend(int point, int from) const {
   double best = distance_to(point, from);
   for (int current = from, before = kNone; current != before;) {
@@ -331,37 +331,37 @@ double GridHullBuilder::descend(int point, int from) const {
   return best;
 }
 
-// Beyond a sharp edge a point can be near all planes and yet far from the hull: when no plane is exceeded, looks at the
-// true distances. Points that are near enough are dropped: the hull only grows.
-bool GridHullBuilder::find_far_point(int& point, int& visible) {
+// Beyond a sharp edge a point can be close to all planes and yet far from the hull. If no plane is exceeded, this tests
+// the true distances. Points that are close enough are dropped, because the hull only grows.
+bool GridHullBuilder::find_farthest_from_hull(int& point, int& visible) {
   double best = limits_.tolerance;
   visible = kNone;
   for (int f = 0; f < int(faces_.size()); ++f) {
     HullFace& t = face(f);
     if (!t.alive) continue;
-    int kept = kNone;
+    int remaining = kNone;
     for (int p = t.first_outside, following; p != kNone; p = following) {
       following = next_[std::size_t(p)];
       const double distance = descend(p, f);
       if (!(distance > limits_.tolerance)) continue;
-      next_[std::size_t(p)] = kept;
-      kept = p;
+      next_[std::size_t(p)] = remaining;
+      remaining = p;
       if (distance > best) {
         best = distance;
         visible = f;
         point = p;
       }
     }
-    t.first_outside = kept;
-    if (kept == kNone) t.farthest = kNone;
+    t.first_outside = remaining;
+    if (remaining == kNone) t.farthest = kNone;
   }
   return visible != kNone;
 }
 
-// Inserts farthest points until none is outside (true) or no vertex is left (false).
+// Inserts the farthest points until none is outside (true) or the vertices run out (false).
 bool GridHullBuilder::grow() {
   int point = kNone, visible = kNone;
-  while (find_far_plane(point, visible) || find_far_point(point, visible)) {
+  while (find_farthest_from_plane(point, visible) || find_farthest_from_hull(point, visible)) {
     if (int(order_.size()) >= limits_.vertices) return false;
     insert(point, visible);
   }
@@ -387,8 +387,8 @@ GridHull GridHullBuilder::result(GridSpan span, bool complete) const {
 
 }  // namespace
 
-// Distance of `p` from the triangle (a, b, c), by the region of the triangle that is nearest.
-// C. Ericson, "Real-Time Collision Detection", 2005, section 5.1.5.
+// Distance of `p` from the triangle (a, b, c), by the closest region of the triangle. C. Ericson, "Real-Time Collision
+// Detection", 2005, section 5.1.5.
 double distance_to_triangle(DVec3 p, DVec3 a, DVec3 b, DVec3 c) {
   const DVec3 ab = b - a, ac = c - a, ap = p - a;
   const double d1 = dot(ab, ap), d2 = dot(ac, ap);
@@ -410,7 +410,7 @@ double distance_to_triangle(DVec3 p, DVec3 a, DVec3 b, DVec3 c) {
   }
   const DVec3 n = cross(ab, ac);
   const double size = length(n);
-  // No area, and rounding let it through: the corners are an upper bound.
+  // A triangle without area, after rounding: the corners give an upper bound.
   if (!(size > 0.0)) return min(length(ap), min(length(bp), length(cp)));
   return absolute(dot(n, ap)) / size;
 }
@@ -429,13 +429,13 @@ double distance_outside(std::span<const GridPoint> points, std::span<const GridT
                         const GridPoint& p) {
   bool outside = false;
   double best = 0.0;
-  const DVec3 place = to_double(p);
+  const DVec3 position = to_double(p);
   for (const GridTriangle& t : triangles) {
     const DVec3 a = to_double(points[std::size_t(t.vertices[0])]);
     const DVec3 b = to_double(points[std::size_t(t.vertices[1])]);
     const DVec3 c = to_double(points[std::size_t(t.vertices[2])]);
-    const double distance = distance_to_triangle(place, a, b, c);
-    if (dot(cross(b - a, c - a), place - a) > 0.0) outside = true;
+    const double distance = distance_to_triangle(position, a, b, c);
+    if (dot(cross(b - a, c - a), position - a) > 0.0) outside = true;
     if (&t == triangles.data() || distance < best) best = distance;
   }
   return outside ? best : 0.0;

@@ -124,7 +124,7 @@ Error check(const Geometry& geometry) {
                     "geometry: is empty; allowed is what cook_hull, cook_mesh or cook_height_field returned");
 }
 
-// The box of a box: |R| h.
+// The bounding box of a rotated box: |R| h.
 Aabb rotated_box(Vec3 middle, Vec3 half, const Transform& t) {
   const Mat3 r = to_matrix(t.orientation);
   const Vec3 c = r * middle + t.position;
@@ -132,10 +132,10 @@ Aabb rotated_box(Vec3 middle, Vec3 half, const Transform& t) {
   return {c - e, c + e};
 }
 
-// Half sizes of the box of a disc of radius 1 whose axis is `axis`.
+// The half size of the bounding box of a disc of radius 1 with the given axis.
 Vec3 disc_extent(Vec3 axis) {
-  const auto part = [](float a) { return std::sqrt(max(0.0f, 1.0f - a * a)); };
-  return {part(axis.x), part(axis.y), part(axis.z)};
+  const auto half_extent = [](float a) { return std::sqrt(max(0.0f, 1.0f - a * a)); };
+  return {half_extent(axis.x), half_extent(axis.y), half_extent(axis.z)};
 }
 
 Aabb cone_bounds(const Shape& shape, const Transform& t) {
@@ -146,29 +146,30 @@ Aabb cone_bounds(const Shape& shape, const Transform& t) {
   return {min(apex, base - e), max(apex, base + e)};
 }
 
-// Four vertices side by side: every processor has registers of four.
+// Four vertices side by side, because every processor has registers of four.
 Aabb hull_bounds(const Hull& hull, const Transform& t) {
   constexpr int W = 4;
   const Mat3 r = to_matrix(t.orientation);
-  const Mat3W<W> turn{splat<W>(r.x), splat<W>(r.y), splat<W>(r.z)};
-  const auto turned = [&](std::size_t first) {
-    return turn * Vec3W<W>{Wide<W>::load_unaligned(&hull.x[first]), Wide<W>::load_unaligned(&hull.y[first]),
-                           Wide<W>::load_unaligned(&hull.z[first])};
+  const Mat3W<W> rotation{splat<W>(r.x), splat<W>(r.y), splat<W>(r.z)};
+  const auto rotated = [&](std::size_t first) {
+    return rotation * Vec3W<W>{Wide<W>::load_unaligned(&hull.x[first]),
+                               Wide<W>::load_unaligned(&hull.y[first]),
+                               Wide<W>::load_unaligned(&hull.z[first])};
   };
-  Vec3W<W> low = turned(0), high = low;
+  Vec3W<W> low = rotated(0), high = low;
   // The padding repeats the last vertex.
   for (std::size_t i = W; i < hull.x.size(); i += W) {
-    const Vec3W<W> p = turned(i);
+    const Vec3W<W> p = rotated(i);
     low = min(low, p);
     high = max(high, p);
   }
-  const auto least = [](Wide<W> v) { return min(min(v[0], v[1]), min(v[2], v[3])); };
-  const auto most = [](Wide<W> v) { return max(max(v[0], v[1]), max(v[2], v[3])); };
-  return {Vec3{least(low.x), least(low.y), least(low.z)} + t.position,
-          Vec3{most(high.x), most(high.y), most(high.z)} + t.position};
+  const auto smallest_of = [](Wide<W> v) { return min(min(v[0], v[1]), min(v[2], v[3])); };
+  const auto largest_of = [](Wide<W> v) { return max(max(v[0], v[1]), max(v[2], v[3])); };
+  return {Vec3{smallest_of(low.x), smallest_of(low.y), smallest_of(low.z)} + t.position,
+          Vec3{largest_of(high.x), largest_of(high.y), largest_of(high.z)} + t.position};
 }
 
-// Unbounded but where the surface is exactly at a right angle to an axis: the slightest tilt reaches anywhere.
+// Unbounded, except if the surface is exactly perpendicular to an axis: with the slightest tilt it extends everywhere.
 Aabb plane_bounds(const Shape& shape, const Transform& t) {
   const Vec3 n = rotate(t.orientation, shape.extents);
   const float offset = shape.offset + dot(n, t.position);
@@ -277,7 +278,7 @@ float inner_radius(const Shape& shape) {
     case ShapeKind::cylinder:
       return min(shape.radius, h);
     case ShapeKind::cone: {
-      // The mantle's plane through the apex (0, h) and the rim (r, -h) lies h r / slant from the origin, below h.
+      // The plane of the mantle through the apex (0, h) and the rim (r, -h) is h r / slant from the origin, below h.
       return h * (shape.radius / std::sqrt(shape.radius * shape.radius + 4.0f * h * h));
     }
     case ShapeKind::hull:
@@ -292,7 +293,7 @@ float inner_radius(const Shape& shape) {
 }
 
 float outer_radius(const Shape& shape, Vec3 center) {
-  const Vec3 away = absolute(center);
+  const Vec3 offset = absolute(center);
   const float h = shape.extents.y;
   const float rim =
       std::sqrt(center.x * center.x + center.z * center.z) + shape.radius;  // to the far side of a disc
@@ -301,9 +302,9 @@ float outer_radius(const Shape& shape, Vec3 center) {
       return length(center) + shape.radius;
     case ShapeKind::box:
     case ShapeKind::capsule:
-      return length(away + shape.extents) + shape.radius;
+      return length(offset + shape.extents) + shape.radius;
     case ShapeKind::cylinder:
-      return length(Vec3{rim, away.y + h, 0.0f});
+      return length(Vec3{rim, offset.y + h, 0.0f});
     case ShapeKind::cone: {
       return max(length(Vec3{center.x, center.y - h, center.z}), length(Vec3{rim, center.y + h, 0.0f}));
     }

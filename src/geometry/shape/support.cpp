@@ -6,24 +6,25 @@
 namespace gyre {
 namespace {
 
-// Corners of the polygon that stands for a round cap, without the one at its lowest point.
+// Corners of the polygon that represents a round cap, without the lowest point.
 constexpr int kRimVertices = 8;
 constexpr float kHalfSqrt2 = 0.70710678f;
 constexpr float kRimX[kRimVertices] = {1, kHalfSqrt2, 0, -kHalfSqrt2, -1, -kHalfSqrt2, 0, kHalfSqrt2};
 constexpr float kRimZ[kRimVertices] = {0, kHalfSqrt2, 1, kHalfSqrt2, 0, -kHalfSqrt2, -1, -kHalfSqrt2};
-// Below this lean (rad) the lowest point of a rim is noise, and the eight corners are at most 8 % of r * lean too high.
+// rad, the lean below which the lowest point of a rim is noise. The eight corners are then at most 8 % of r * lean too
+// high.
 constexpr float kSteadyLean = 1.0e-3f;
-// The lowest point replaces a corner when it is nearer to it than this cosine says (7 degrees): no slivers, and the
-// corner keeps its name.
+// Cosine (7 degrees) above which the lowest point replaces a corner. That avoids slivers, and the corner keeps its
+// name.
 constexpr float kSameCorner = 0.9925f;
 
 struct Radial {
-  float length;  // of the part of a direction at a right angle to y
-  float x, z;    // unit; (1, 0) if that part vanishes
+  float length;  // of the component of a direction perpendicular to y
+  float x, z;    // unit; (1, 0) if that component vanishes
 };
 
-Radial radial_part(Vec3 direction) {
-  // Scaled by the larger part first, against under- and overflow.
+Radial radial_component(Vec3 direction) {
+  // Scaled by the larger component first, against under- and overflow.
   const float scale = max(absolute(direction.x), absolute(direction.z));
   if (!(scale > 1.0e-37f)) return {0.0f, 1.0f, 0.0f};
   const float x = direction.x / scale, z = direction.z / scale;
@@ -37,12 +38,12 @@ Vec3 support_box(const Shape& shape, Vec3 d) {
 }
 
 Vec3 support_cylinder(const Shape& shape, Vec3 d) {
-  const Radial r = radial_part(d);
+  const Radial r = radial_component(d);
   return {shape.radius * r.x, d.y < 0.0f ? -shape.extents.y : shape.extents.y, shape.radius * r.z};
 }
 
 Vec3 support_cone(const Shape& shape, Vec3 d) {
-  const Radial r = radial_part(d);
+  const Radial r = radial_component(d);
   const float h = shape.extents.y;
   // Apex against rim: h * d.y against -h * d.y + radius * d_r.
   if (2.0f * h * d.y > shape.radius * r.length) return {0.0f, h, 0.0f};
@@ -65,10 +66,10 @@ void set_segment(FacePolygon& out, Vec3 a, int id_a, Vec3 b, int id_b, Vec3 norm
   out.normal = normal;
 }
 
-// A segment along y faces a direction if that leans less than 45 degrees from the plane at a right angle to it; else one
+// A segment along y faces a direction that leans less than 45 degrees from the plane perpendicular to it. Otherwise one
 // of its ends does.
 void capsule_face(const Shape& shape, Vec3 d, FacePolygon& out) {
-  const Radial r = radial_part(d);
+  const Radial r = radial_component(d);
   const float h = shape.extents.y;
   if (absolute(d.y) > r.length || h == 0.0f) {
     out.feature = 1;
@@ -78,7 +79,7 @@ void capsule_face(const Shape& shape, Vec3 d, FacePolygon& out) {
   set_segment(out, {0, -h, 0}, 0, {0, h, 0}, 1, {r.x, 0, r.z});
 }
 
-// Inner boxes may be flat in one or more axes (rounding as large as a half extent): then the face is a segment or point.
+// Inner boxes may be flat in one or more axes (rounding equal to a half extent). The face is then a segment or point.
 void box_face(const Shape& shape, Vec3 d, FacePolygon& out) {
   const Vec3 size = absolute(d);
   const int axis = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
@@ -100,7 +101,7 @@ void box_face(const Shape& shape, Vec3 d, FacePolygon& out) {
   }
   const float sign = positive ? 1.0f : -1.0f;
   out.normal = {axis == 0 ? sign : 0.0f, axis == 1 ? sign : 0.0f, axis == 2 ? sign : 0.0f};
-  // Without an area only the normals at a right angle to the segment (or any, at a point) are the feature's.
+  // A feature without area has only the normals perpendicular to its segment (or any normal, at a point).
   if (out.count == 1) {
     out.normal = normalized(d);
   } else if (out.count == 2) {
@@ -114,8 +115,9 @@ void box_face(const Shape& shape, Vec3 d, FacePolygon& out) {
 // The disc of the shape's radius at height y, seen from above (up) or below. `first_id` names its first corner; the
 // lowest point has the id after the eight.
 void disc_face(const Shape& shape, float y, bool up, Vec3 d, int first_id, FacePolygon& out) {
-  const Radial r = radial_part(d);
-  // Where the lowest point goes: -1 nowhere, else between corners `slot` and `slot + 1`, or onto one of them.
+  const Radial r = radial_component(d);
+  // The position of the lowest point: -1 none, else between the corners `slot` and `slot + 1`, or in place of one of
+  // them.
   int slot = -1, replaced = -1;
   if (r.length > kSteadyLean * absolute(d.y)) {
     float best = -2.0f;
@@ -154,31 +156,31 @@ void disc_face(const Shape& shape, float y, bool up, Vec3 d, int first_id, FaceP
 }
 
 void cylinder_face(const Shape& shape, Vec3 d, FacePolygon& out) {
-  const Radial r = radial_part(d);
+  const Radial r = radial_component(d);
   const float h = shape.extents.y;
   if (absolute(d.y) >= r.length) {
     const bool up = d.y >= 0.0f;
     out.feature = up ? 1 : 0;
     return disc_face(shape, up ? h : -h, up, d, up ? 16 : 0, out);
   }
-  // The line of the mantle, named the same at every angle: a rolling cylinder keeps its two contacts.
+  // The line of the mantle has the same name at every angle, so that a rolling cylinder keeps its two contacts.
   out.feature = 2;
   const float x = shape.radius * r.x, z = shape.radius * r.z;
   set_segment(out, {x, -h, z}, 32, {x, h, z}, 33, {r.x, 0.0f, r.z});
 }
 
 void cone_face(const Shape& shape, Vec3 d, FacePolygon& out) {
-  const Radial r = radial_part(d);
+  const Radial r = radial_component(d);
   const float h = shape.extents.y;
   const float slant = std::sqrt(shape.radius * shape.radius + 4.0f * h * h);
   const float n_r = 2.0f * h / slant,
-              n_y = shape.radius / slant;  // the mantle's normal: outward part, upward part
+              n_y = shape.radius / slant;  // the normal of the mantle: outward and upward component
   const float along_mantle = n_r * r.length + n_y * d.y;
   if (-d.y >= along_mantle) {
     out.feature = 0;
     return disc_face(shape, -h, false, d, 0, out);
   }
-  // More than 45 degrees above the mantle's normal: the apex alone.
+  // More than 45 degrees above the normal of the mantle: the apex alone.
   const float d_length = std::sqrt(r.length * r.length + d.y * d.y);
   if (d.y * n_r > r.length * n_y && along_mantle < kHalfSqrt2 * d_length) {
     out.feature = 2;
@@ -196,7 +198,7 @@ void hull_face(const Hull& hull, Vec3 d, FacePolygon& out) {
   out.feature = std::uint32_t(face);
   out.normal = hull.planes[std::size_t(face)].normal;
   out.count = int(min(count, std::uint32_t(kMaxFaceVertices)));
-  // A face with more corners than fit is thinned evenly; what is kept lies inside it.
+  // A face with too many corners is thinned evenly. The reduced polygon lies inside it.
   for (int i = 0; i < out.count; ++i) {
     const std::uint32_t pick = std::uint32_t(i) * count / std::uint32_t(out.count);
     const std::uint8_t vertex = hull.face_vertices[begin + pick];

@@ -1,5 +1,5 @@
-// Support points and facing features against plain searches over points of the surface, and what manifolds rely on: names
-// that last, corners in order, and the lowest point always among them.
+// Support points and facing features against plain searches over points of the surface, and the guarantees for
+// manifolds: persistent names, corners in order, and the lowest point always among them.
 #include "geometry/shape/support.h"
 
 #include <gtest/gtest.h>
@@ -108,7 +108,7 @@ TEST(Support, CoreRadius) {
   EXPECT_EQ(core_radius(make_shape(Cone{0.5f, 1.0f})), 0.0f);
 }
 
-// What holds for every feature of every shape and direction.
+// Invariants of every feature of every shape and direction.
 void expect_feature(const Case& test, const Shape& shape, Vec3 d) {
   SCOPED_TRACE(test.name);
   FacePolygon face;

@@ -1,9 +1,9 @@
-// Turning triangles round, their normals and their edges. See triangle.h.
+// Back views, normals and edge kinds of triangles. See triangle.h.
 #include "geometry/shape/triangle.h"
 
 namespace gyre {
 
-TriangleView seen_from_behind(const TriangleView& triangle) {
+TriangleView back_view(const TriangleView& triangle) {
   // Corners 0, 2, 1: the new edge i is the old edge 2 - i.
   constexpr int kCorner[3] = {0, 2, 1};
   TriangleView back = triangle;

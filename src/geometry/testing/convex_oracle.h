@@ -1,11 +1,11 @@
-// For tests of the narrow phase: reproducible random convex shapes, and slow plain answers to compare the clever ones with.
+// For tests of the narrow phase: reproducible random convex shapes, and slow and obvious versions of its queries.
 #pragma once
 
 #include "geometry/distance/gjk.h"
+#include "geometry/distance/penetration.h"
+#include "geometry/manifold/manifold.h"
 #include "geometry/shape/hull.h"
 #include "geometry/shape/hull_builder.h"
-#include "geometry/manifold/manifold.h"
-#include "geometry/distance/penetration.h"
 #include "geometry/shape/support.h"
 
 #include <deque>
@@ -14,7 +14,7 @@
 
 namespace gyre::oracle {
 
-// Own generator of numbers, so that the same shapes come on every platform.
+// Own number generator, so that the shapes are the same on every platform.
 struct Random {
   std::mt19937 engine;
 
@@ -33,7 +33,7 @@ struct Random {
       if (length_squared(p) > 0.01f && length_squared(p) < 1.0f) return normalized(p);
     }
   }
-  Quat turn() {
+  Quat rotation() {
     for (;;) {
       const float x = (*this)(-1, 1), y = (*this)(-1, 1), z = (*this)(-1, 1), w = (*this)(-1, 1);
       const Quat q{x, y, z, w};
@@ -70,7 +70,7 @@ inline Shape make_plane(Vec3 normal, float offset) {
   return shape;
 }
 
-// Hulls that shapes point to; a deque, so that they stay where they are.
+// Storage of hulls that shapes point to; a deque, so that they never move.
 class Hulls {
  public:
   // The shape of a cooked hull; kind sphere with radius 0 if the points make none.
@@ -149,9 +149,9 @@ inline Shape random_shape(Random& random, Hulls& hulls, int kind, float size) {
   }
 }
 
-// A relative pose for two shapes of about `size`: random, and all kinds of special.
+// A relative pose for two shapes of about `size`: random, or one of several special cases.
 inline Transform random_pose(Random& random, float size) {
-  Transform t{size * random.in_cube(1.3f), random.turn()};
+  Transform t{size * random.in_cube(1.3f), random.rotation()};
   switch (random.below(12)) {
     case 0:
       t.orientation = {};
@@ -205,31 +205,31 @@ inline double extent(const Shape& shape, DVec3 d) {
   }
 }
 
-// How far two cores are apart along a unit direction from A to B, from the definition.
+// The separation of two cores along a unit direction from A to B, by definition.
 inline double separation(const Shape& a, const Shape& b, const CorePair& pair, DVec3 n) {
   return dot(pair.center_of_b(), n) - extent(a, n) - extent(b, pair.to_b(-n));
 }
 
-// The largest separation over many directions and its neighbourhood: the signed distance of two cores, from below.
+// The largest separation over many directions and around the best: a lower bound of the signed distance of two cores.
 inline double sampled_separation(const Shape& a, const Shape& b, const CorePair& pair, Random& random,
                                  int samples) {
   double best = -1.0e300;
   DVec3 at;
-  const auto look = [&](DVec3 n) {
+  const auto test = [&](DVec3 n) {
     const double s = separation(a, b, pair, n / length(n));
     if (s > best) {
       best = s;
       at = n / length(n);
     }
   };
-  for (int i = 0; i < samples; ++i) look(DVec3(random.direction()));
+  for (int i = 0; i < samples; ++i) test(DVec3(random.direction()));
   for (double step = 0.3; step > 1.0e-5; step *= 0.6) {
-    for (int i = 0; i < 12; ++i) look(at + step * DVec3(random.direction()));
+    for (int i = 0; i < 12; ++i) test(at + step * DVec3(random.direction()));
   }
   return best;
 }
 
-// Signed distance of two shapes' surfaces by GJK and EPA (whose tests stand on their own).
+// Signed distance of the surfaces of two shapes by GJK and EPA, which have tests of their own.
 inline double signed_distance(const Shape& a, const Shape& b, const Transform& t) {
   const CorePair pair(a, b, t);
   const CoreDistance apart = core_distance(pair, 1.0e30, {});
@@ -238,7 +238,7 @@ inline double signed_distance(const Shape& a, const Shape& b, const Transform& t
   return -core_penetration(pair, apart).depth - radii;
 }
 
-// A length that is as large as both shapes.
+// A length of the order of both shapes.
 inline float size_of(const Shape& a, const Shape& b, const Transform& t) {
   return float(CorePair(a, b, t).size()) + core_radius(a) + core_radius(b);
 }

@@ -1,5 +1,5 @@
-// For tests of the narrow phase: pairs that are hard: needles, wires, plates and coins, sizes ten thousandfold apart, middles
-// that coincide, axes all but parallel, and surfaces that touch, or miss each other by a rounding.
+// For tests of the narrow phase: difficult pairs. Needles, wires, plates and coins, sizes that differ ten thousandfold,
+// coincident centres, nearly parallel axes, and surfaces that touch or miss each other by a rounding error.
 #pragma once
 
 #include "geometry/testing/convex_oracle.h"
@@ -21,8 +21,8 @@ inline Shape thin_hull(Random& random, Hulls& hulls, Vec3 half) {
   return hulls.add_box(half);
 }
 
-// A shape about as long as `size`, its radius and height made thin by these factors.
-inline Shape odd_shape(Random& random, Hulls& hulls, int kind, float size, float thin, float low) {
+// A shape about as long as `size`; its radius and its height are scaled by `thin` and `low`.
+inline Shape degenerate_shape(Random& random, Hulls& hulls, int kind, float size, float thin, float low) {
   const float radius = thin * size * random(0.2f, 1.0f);
   const float half = low * size * random(0.2f, 1.0f);
   const float depth = size * random(0.2f, 1.0f);
@@ -44,13 +44,13 @@ inline Shape odd_shape(Random& random, Hulls& hulls, int kind, float size, float
   }
 }
 
-struct OddPair {
+struct DegeneratePair {
   Shape a, b;
   Transform t;
 };
 
-// Two shapes of given kinds; what is odd about them is drawn.
-inline OddPair odd_pair(Random& random, Hulls& hulls, int kind_a, int kind_b) {
+// Two shapes of the given kinds with a random difficulty.
+inline DegeneratePair degenerate_pair(Random& random, Hulls& hulls, int kind_a, int kind_b) {
   const int odd = random.below(8);
   float thin_a = 1, thin_b = 1, low_a = 1, low_b = 1, size_b = 1;
   if (odd == 1) {  // needles and wires
@@ -63,15 +63,15 @@ inline OddPair odd_pair(Random& random, Hulls& hulls, int kind_a, int kind_b) {
   } else if (odd == 3) {
     size_b = one_of(random, {1e-4f, 1e-2f, 1e2f, 1e4f});
   }
-  OddPair pair;
-  pair.a = odd_shape(random, hulls, kind_a, 1.0f, thin_a, low_a);
-  pair.b = odd_shape(random, hulls, kind_b, size_b, thin_b, low_b);
+  DegeneratePair pair;
+  pair.a = degenerate_shape(random, hulls, kind_a, 1.0f, thin_a, low_a);
+  pair.b = degenerate_shape(random, hulls, kind_b, size_b, thin_b, low_b);
   pair.t = random_pose(random, max(1.0f, size_b));
-  if (odd == 4) {  // middles that coincide, every other time of equal shapes
+  if (odd == 4) {  // coincident centres, every other time of equal shapes
     if (random.below(2) == 0) pair.b = pair.a;
     pair.t.position = {};
     if (random.below(2) == 0) pair.t.orientation = {};
-  } else if (odd == 5) {  // all but aligned
+  } else if (odd == 5) {  // nearly aligned
     const float x = random(-1e-6f, 1e-6f);
     pair.t = {{0, pair.t.position.y, 0}, normalized(Quat{x, 0, random(-1e-6f, 1e-6f), 1})};
   } else if (odd == 6) {  // moved together until they touch, or nearly
@@ -80,8 +80,9 @@ inline OddPair odd_pair(Random& random, Hulls& hulls, int kind_a, int kind_b) {
       pair.t.position = 3.0f * random.direction();
       found = core_distance(CorePair(pair.a, pair.b, pair.t), 1.0e30, {});
     }
-    const double left = double(one_of(random, {0, 1e-3f, 1e-5f, 1e-6f, 1e-7f, 1e-8f, -1e-6f, -1e-7f}));
-    pair.t.position = pair.t.position - to_float((found.distance - left) * found.normal);
+    const double remaining_gap =
+        double(one_of(random, {0, 1e-3f, 1e-5f, 1e-6f, 1e-7f, 1e-8f, -1e-6f, -1e-7f}));
+    pair.t.position = pair.t.position - to_float((found.distance - remaining_gap) * found.normal);
   }
   return pair;
 }

@@ -1,9 +1,9 @@
-// Asking for the contacts of a shape on a surface, for the tests of meshes and height fields.
+// The contacts of a shape on a surface, for the tests of meshes and height fields.
 #pragma once
 
 #include "geometry/manifold/manifold.h"
-#include "geometry/testing/mesh_test_scenes.h"
 #include "geometry/shape/support.h"
+#include "geometry/testing/mesh_test_scenes.h"
 
 #include <gtest/gtest.h>
 

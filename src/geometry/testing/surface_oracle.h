@@ -1,12 +1,12 @@
-// For tests of the narrow phase: what two convex shapes are, from their definitions alone. A point is in a shape or not, a
-// direction parts two shapes or not; with these, answers are proven whatever way led to them.
+// For tests of the narrow phase: properties of two convex shapes by definition. A point is in a shape or not, and a
+// direction separates two shapes or not. With these, results are proven independently of the method.
 #pragma once
 
 #include "geometry/testing/degenerate_pairs.h"
 
 namespace gyre::oracle {
 
-// How far a point (in the shape's frame) lies outside the surface: exact for points inside, at most the distance outside.
+// The distance of a point (in the shape's frame) outside the surface: exact inside, at most the distance outside.
 inline double outside_surface(const Shape& shape, DVec3 p) {
   const DVec3 e(shape.extents);
   const double r = double(shape.radius), h = e.y;
@@ -37,17 +37,17 @@ inline double outside_surface(const Shape& shape, DVec3 p) {
   }
 }
 
-// How far two surfaces are apart along a unit direction from A to B. Never more than their distance; where they overlap,
+// The separation of two surfaces along a unit direction from A to B. Never more than their distance; if they overlap,
 // never more than minus their depth.
 inline double surface_separation(const Shape& a, const Shape& b, const CorePair& pair, DVec3 n) {
   return separation(a, b, pair, n) - double(core_radius(a)) - double(core_radius(b));
 }
 
-// Half of the shape's longest way through, and a lower bound of half its shortest.
+// Half of the largest diameter of the shape, and a lower bound of half its smallest width.
 inline double long_side(const Shape& shape) { return double(outer_radius(shape, {})); }
 inline double thin_side(const Shape& shape) { return double(inner_radius(shape)); }
 
-// Climbs from `n` to where the two are farthest apart along a direction: a walk over the sphere in shrinking steps.
+// Climbs from `n` to the direction of largest separation, by steps of decreasing size over the sphere.
 inline double climb_separation(const Shape& a, const Shape& b, const CorePair& pair, DVec3& n, double step,
                                double min_step) {
   double best = surface_separation(a, b, pair, n);
@@ -60,14 +60,14 @@ inline double climb_separation(const Shape& a, const Shape& b, const CorePair& p
       s = s / length(s);
       const DVec3 t = cross(n, s);
       for (int k = 0; k < 8; ++k) {
-        constexpr double kWays[8][2] = {{1, 0},     {-1, 0},     {0, 1},      {0, -1},
-                                        {0.7, 0.7}, {0.7, -0.7}, {-0.7, 0.7}, {-0.7, -0.7}};
-        DVec3 look = n + step * kWays[k][0] * s + step * kWays[k][1] * t;
-        look = look / length(look);
-        const double found = surface_separation(a, b, pair, look);
+        constexpr double kDirections[8][2] = {{1, 0},     {-1, 0},     {0, 1},      {0, -1},
+                                              {0.7, 0.7}, {0.7, -0.7}, {-0.7, 0.7}, {-0.7, -0.7}};
+        DVec3 trial = n + step * kDirections[k][0] * s + step * kDirections[k][1] * t;
+        trial = trial / length(trial);
+        const double found = surface_separation(a, b, pair, trial);
         if (found > best + 1.0e-12 * absolute(best)) {
           best = found;
-          n = look;
+          n = trial;
           better = true;
         }
       }
@@ -76,22 +76,22 @@ inline double climb_separation(const Shape& a, const Shape& b, const CorePair& p
   return best;
 }
 
-// The largest separation found in a search of all directions, fine around the best: the signed distance, from below.
+// The largest separation in a search of all directions, refined around the best: a lower bound of the signed distance.
 inline double searched_separation(const Shape& a, const Shape& b, const CorePair& pair, Random& random,
                                   int samples) {
   DVec3 at{0, 1, 0};
   double best = -1.0e300;
-  const auto look = [&](DVec3 n) {
+  const auto test = [&](DVec3 n) {
     const double found = surface_separation(a, b, pair, n);
     if (found > best) best = found, at = n;
   };
-  if (length(pair.center_of_b()) > 0.0) look(pair.center_of_b() / length(pair.center_of_b()));
+  if (length(pair.center_of_b()) > 0.0) test(pair.center_of_b() / length(pair.center_of_b()));
   const DVec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   for (const DVec3& axis : axes) {
-    look(axis), look(-axis);
-    look(pair.from_b(axis)), look(-pair.from_b(axis));
+    test(axis), test(-axis);
+    test(pair.from_b(axis)), test(-pair.from_b(axis));
   }
-  for (int i = 0; i < samples; ++i) look(DVec3(random.direction()));
+  for (int i = 0; i < samples; ++i) test(DVec3(random.direction()));
   return max(best, climb_separation(a, b, pair, at, 0.2, 1.0e-6));
 }
 

@@ -1,4 +1,5 @@
-// A node of a static tree (static_tree.h), in a header of its own since kernels read it: eight boxes side by side.
+// A node of a static tree (static_tree.h) with eight boxes side by side, in a header of its own because kernels read
+// it.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +10,8 @@ struct StaticNode {
   static constexpr int kWidth = 8;
   static constexpr std::uint32_t kMaxItems = 1u << 28;
 
-  // A child is a node's index, or a leaf: kLeafBit, then its number of items less one (3 bits), then its first position.
-  // Unused lanes have a box that nothing overlaps.
+  // A child is the index of a node, or a leaf: kLeafBit, then its number of items less one (3 bits), then its first
+  // position. The boxes of unused lanes overlap nothing.
   static constexpr std::uint32_t kLeafBit = 1u << 31;
   static constexpr std::uint32_t kNoChild = 0xffffffffu;
 

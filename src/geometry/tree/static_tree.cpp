@@ -1,5 +1,5 @@
-// Building the static tree: ranges of items are split in two by the binned surface area heuristic until a node has eight
-// children or nothing is left to split. Partitions are stable, so the result depends on nothing but the input.
+// Builds the static tree. The binned surface area heuristic splits ranges of items in two until a node has eight
+// children or nothing is left to split. Partitions are stable, so the result depends on the input alone.
 #include "geometry/tree/static_tree.h"
 
 namespace gyre {
@@ -8,7 +8,7 @@ namespace {
 constexpr int kBins = 16;
 constexpr float kInfinity = __builtin_huge_valf();
 constexpr Aabb kEmptyBox{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-// Overlaps nothing, not even a box without end.
+// Overlaps nothing, not even an infinite box.
 constexpr float kNotANumber = __builtin_nanf("");
 constexpr Aabb kNoBox{{kNotANumber, kNotANumber, kNotANumber}, {kNotANumber, kNotANumber, kNotANumber}};
 
@@ -53,7 +53,7 @@ struct Bins {
   std::uint32_t count[kBins];
 };
 
-// Tries the planes between the bins; keeps the cheapest in `best`.
+// Tries the planes between the bins. The cheapest goes to `best`.
 void try_planes(const Bins& bins, Split candidate, float& best_cost, Split& best) {
   float right_cost[kBins];
   Aabb box = kEmptyBox;
@@ -106,19 +106,19 @@ Split TreeBuilder::best_split(const Range& range) const {
   return best;
 }
 
-// Moves the left items to the front, both sides in their old order. Returns how many are left.
+// Moves the left items to the front; both sides stay in order. Returns the number of left items.
 std::uint32_t TreeBuilder::partition(const Range& range, const Split& split) {
-  std::uint32_t left = 0, right = 0;
+  std::uint32_t left_total = 0, right = 0;
   for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
     const std::uint32_t item = items[i];
     if (bin_of(middle(item)[split.axis], split.low, split.scale) <= split.bin) {
-      items[range.first + left++] = item;
+      items[range.first + left_total++] = item;
     } else {
       scratch[right++] = item;
     }
   }
-  for (std::uint32_t i = 0; i < right; ++i) items[range.first + left + i] = scratch[i];
-  return left;
+  for (std::uint32_t i = 0; i < right; ++i) items[range.first + left_total + i] = scratch[i];
+  return left_total;
 }
 
 void TreeBuilder::divide(const Range& range, bool by_halves, Range& left, Range& right) {
@@ -129,16 +129,17 @@ void TreeBuilder::divide(const Range& range, bool by_halves, Range& left, Range&
   right = {middle_position, range.count - left_count, bounds(middle_position, range.count - left_count)};
 }
 
-// Splits a node's run into at most eight, always the one with the largest surface that is still too long for a leaf.
-int split_children(TreeBuilder& builder, const Range& whole, bool by_halves, Range* children) {
-  children[0] = whole;
+// Splits the run of a node into at most eight ranges. The next range to split is the one with the largest surface among
+// those too long for a leaf.
+int split_children(TreeBuilder& builder, const Range& range_of_node, bool by_halves, Range* children) {
+  children[0] = range_of_node;
   int count = 1;
   while (count < StaticTree::kWidth) {
     int pick = -1;
     float best = -1.0f;
     for (int i = 0; i < count; ++i) {
       if (children[i].count <= StaticTree::kMaxLeaf) continue;
-      // Below the heuristic's depth the longest run, so that the depth is bounded.
+      // Below the depth of the heuristic the longest run is split, so that the depth is bounded.
       const float size = by_halves ? float(children[i].count) : half_area(children[i].box);
       if (size > best) {
         best = size;

@@ -1,8 +1,9 @@
-// An immutable 8-wide tree of boxes: for the triangles of a mesh, or anything else that never moves against its owner.
+// An immutable 8-wide tree of boxes, for the triangles of a mesh or anything else that never moves against its owner.
 //
-// In: one box per item. Out: the items in an order in which every node owns one unbroken run ("position" is an item's place
-// in that order), and walks over the boxes that overlap a box or a ray. A node holds the boxes of its eight children side by
-// side, so that one loop tests them all. Walks visit positions in ascending order and need no heap memory.
+// In: one box for each item. Out: an order of the items in which every node owns one contiguous run (the "position" is
+// the index of an item in that order), and traversals over the boxes that overlap a box or a ray. A node has the boxes
+// of its eight children side by side, so one loop tests them all. Traversals visit positions in ascending order and
+// need no heap memory.
 //
 // Sources: I. Wald, S. Boulos, P. Shirley, "Ray Tracing Deformable Scenes using Dynamic Bounding Volume Hierarchies",
 // 2007 (binned surface area heuristic); H. Dammertz, J. Hanika, A. Keller, "Shallow Bounding Volume Hierarchies", 2008.
@@ -25,7 +26,7 @@ struct StaticTree {
   static constexpr int kWidth = Node::kWidth;
   static constexpr std::uint32_t kMaxLeaf = 4;
   static constexpr std::uint32_t kMaxItems = Node::kMaxItems;
-  // Nodes above this depth split where the heuristic says, those below by halves: the depth is bounded for any input.
+  // Nodes above this depth are split by the heuristic, those below into halves. So the depth is bounded for any input.
   static constexpr int kHeuristicDepth = 20;
   static constexpr int kMaxDepth = kHeuristicDepth + 12;
   static constexpr int kStackSize = kMaxDepth * (kWidth - 1) + kWidth;
@@ -34,7 +35,7 @@ struct StaticTree {
   static constexpr std::uint32_t kNoChild = Node::kNoChild;
 
   std::vector<Node> nodes;           // the root is the first
-  std::vector<std::uint32_t> items;  // by position: the item's index in the input
+  std::vector<std::uint32_t> items;  // by position: the index of the item in the input
   Aabb box;
 };
 
@@ -43,10 +44,10 @@ constexpr Aabb child_box(const StaticTree::Node& node, int lane) {
           {node.high[0][lane], node.high[1][lane], node.high[2][lane]}};
 }
 
-// Builds the tree over at least one and at most kMaxItems boxes with finite corners. The same input gives the same tree.
+// Builds the tree over 1 to kMaxItems boxes with finite corners. Equal input gives an equal tree.
 void build_static_tree(std::span<const Aabb> boxes, StaticTree& tree);
 
-// Which children's boxes overlap `box`: bit i for lane i.
+// A bit for each child whose box overlaps `box`.
 inline unsigned overlap_mask(const StaticTree::Node& node, const Aabb& box) {
   constexpr int kHalf = 4;
   using Floats = Wide<kHalf>;
@@ -61,8 +62,8 @@ inline unsigned overlap_mask(const StaticTree::Node& node, const Aabb& box) {
   return mask;
 }
 
-// Calls visit(first position, count) for each leaf whose box overlaps `box`, in ascending order. Before anything below a
-// lane is looked at, enter(node index, lane) is asked; where it says false, all of that child is left out.
+// Calls visit(first position, count) for each leaf whose box overlaps `box`, in ascending order. Calls enter(node
+// index, lane) before each child, and skips the child if that returns false.
 template <class Enter, class Visit>
 void walk_overlaps(const StaticTree& tree, const Aabb& box, Enter&& enter, Visit&& visit) {
   if (tree.nodes.empty()) return;
@@ -85,8 +86,8 @@ void walk_overlaps(const StaticTree& tree, const Aabb& box, Enter&& enter, Visit
   }
 }
 
-// The positions of all leaves whose boxes overlap `box` (the items' own boxes may not), ascending. Writes at most
-// `out.size()` of them and returns how many there are.
+// The positions in all leaves whose boxes overlap `box`, ascending; the boxes of the items themselves may not overlap
+// it. Writes at most `out.size()` positions and returns how many there are.
 std::uint32_t find_overlaps(const StaticTree& tree, const Aabb& box, std::span<std::uint32_t> out);
 
 }  // namespace gyre

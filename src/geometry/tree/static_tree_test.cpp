@@ -22,7 +22,8 @@ std::vector<Aabb> random_boxes(Random& random, std::size_t count, float spread, 
   return boxes;
 }
 
-// Every item once, boxes contain what is below them, and the walk's leaves are exactly those whose boxes overlap.
+// Every item occurs once, boxes contain everything below them, and the traversal visits exactly the leaves whose boxes
+// overlap.
 void expect_sound(const std::vector<Aabb>& boxes, const StaticTree& tree) {
   std::vector<std::uint32_t> sorted = tree.items;
   std::sort(sorted.begin(), sorted.end());
@@ -154,8 +155,8 @@ TEST(StaticTree, RaysMeetTheNearestBox) {
     float nearest = reach;
     for (const Aabb& box : boxes) nearest = min(nearest, entry(box, origin, direction, reach));
     float found = reach;
-    const BoxLine ray(DVec3(origin), DVec3(reach * direction), Vec3{});
-    walk_cast(tree, ray, 1.0f, [&](std::uint32_t first, std::uint32_t count, float) {
+    const BoxRay ray(DVec3(origin), DVec3(reach * direction), Vec3{});
+    traverse_cast(tree, ray, 1.0f, [&](std::uint32_t first, std::uint32_t count, float) {
       for (std::uint32_t k = first; k < first + count; ++k) {
         found = min(found, entry(boxes[tree.items[k]], origin, direction, reach));
       }

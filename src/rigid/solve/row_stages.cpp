@@ -338,7 +338,7 @@ void finish_row_solve(const RowSolve& s, RowStats& report) {
   for (const ContactConstraint& constraint : s.contacts.lists.constraints) {
     float load = 0.0f;
     for (int k = 0; k < constraint.manifold->count; ++k) load += constraint.manifold->points[k].total_impulse;
-    constraint.manifold->age = load > 0.0f ? constraint.manifold->age + s.contacts.settings.step : 0.0f;
+    constraint.manifold->load_age = load > 0.0f ? constraint.manifold->load_age + s.contacts.settings.step : 0.0f;
   }
 }
 

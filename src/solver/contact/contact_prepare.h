@@ -31,13 +31,15 @@ constexpr int kManifoldNormal = 0, kManifoldPoints = 4, kManifoldFriction = 52, 
               kPointA = 0, kPointB = 4, kPointImpulse = 8, kPointFloats = 12, kInertiaMass = 4, kConstraintFriction = 0,
               kConstraintSize = 4, kConstraintVelocity = 6, kConstraintKinds = 10;
 static_assert(offsetof(Manifold, normal) == 4 * kManifoldNormal && offsetof(Manifold, points) == 4 * kManifoldPoints);
-static_assert(offsetof(Manifold, age) == 4 * kManifoldFriction && offsetof(Manifold, friction_impulse) == 4 * kManifoldFriction + 4);
+static_assert(offsetof(Manifold, load_age) == 4 * kManifoldFriction &&
+              offsetof(Manifold, friction_impulse) == 4 * kManifoldFriction + 4);
 static_assert(offsetof(Manifold, twist_impulse) == 4 * kManifoldTwist && offsetof(Manifold, rolling_impulse) == 4 * kManifoldTwist + 4);
 static_assert(offsetof(Manifold, count) == 4 * kManifoldNormal + 12);
 static_assert(offsetof(Manifold, total_friction) == 4 * kManifoldTotals && offsetof(Manifold, sliding) == 4 * kManifoldTotals + 12);
 static_assert(sizeof(ContactPointState) == 4 * kPointFloats && offsetof(ContactPointState, from_b) == 4 * kPointB);
 static_assert(offsetof(ContactPointState, normal_impulse) == 4 * kPointImpulse && offsetof(ContactPointState, separation) == 12);
-static_assert(offsetof(ContactPointState, total_impulse) == 4 * kPointImpulse + 4 && offsetof(ContactPointState, held) == 4 * kPointImpulse + 8);
+static_assert(offsetof(ContactPointState, total_impulse) == 4 * kPointImpulse + 4 &&
+              offsetof(ContactPointState, mean_impulse) == 4 * kPointImpulse + 8);
 static_assert(offsetof(BodyInertia, inverse_mass) == 4 * kInertiaMass + 8);
 static_assert(offsetof(ContactConstraint, static_friction) == 4 * kConstraintFriction);
 static_assert(offsetof(ContactConstraint, size) == 4 * kConstraintSize && offsetof(ContactConstraint, push_speed) == 4 * kConstraintSize + 4);

@@ -1,19 +1,20 @@
-// GJK against convex shapes, planes and triangles; balls beside balls, capsules and boxes in closed form. See nearest.h.
-#include "geometry/query/nearest.h"
+// GJK against convex shapes, planes and triangles; closed forms for balls against balls, capsules and boxes. See
+// closest_points.h.
+#include "geometry/query/closest_points.h"
 
+#include "geometry/distance/closest.h"
 #include "geometry/query/cast_ball.h"
 #include "geometry/query/cast_surface.h"
-#include "geometry/distance/closest.h"
 #include "geometry/shape/support.h"
 
 namespace gyre {
 namespace {
 
-// The least distance, less rounding, at which a search in growing boxes may stop.
+// Relative rounding error of the distances of boxes and cores.
 constexpr double kDistanceRounding = 1.0e-6;
 
 // From the distance of two cores to that of two surfaces.
-void fill(const CoreDistance& near, double radius_a, double radius_b, Nearest& out) {
+void fill(const CoreDistance& near, double radius_a, double radius_b, ClosestPair& out) {
   const double radii = radius_a + radius_b;
   out.normal = near.normal;
   out.overlap = near.overlap || near.distance <= radii;
@@ -27,34 +28,36 @@ void fill(const CoreDistance& near, double radius_a, double radius_b, Nearest& o
   }
 }
 
-bool finish(const CorePair& pair, double radius_a, double radius_b, double max_distance, Nearest& out) {
+bool finish(const CorePair& pair, double radius_a, double radius_b, double max_distance, ClosestPair& out) {
   const double radii = radius_a + radius_b;
-  // Looks a little farther than asked: hulls choose their support points in float.
-  const double reach = (max_distance + radii) * (1.0 + kDistanceRounding) + kDistanceRounding * pair.size();
-  const CoreDistance near = core_distance(pair, reach, {});
+  // Search slightly farther than required, because hulls choose their support points in float.
+  const double max_core_distance =
+      (max_distance + radii) * (1.0 + kDistanceRounding) + kDistanceRounding * pair.size();
+  const CoreDistance near = core_distance(pair, max_core_distance, {});
   if (near.beyond || near.distance - radii > max_distance) return false;
   fill(near, radius_a, radius_b, out);
   return true;
 }
 
-// A ball beside a shape whose core is a point, a segment or a box; false if its middle lies in that core.
-bool nearest_of_ball(const Shape& target, const PlacedShape& ball, double max_distance, Nearest& out,
-                     bool& within) {
+// A ball against a shape whose core is a point, a segment or a box. Returns false if the centre of the ball lies in
+// that core.
+bool nearest_of_ball(const Shape& target, const PosedShape& ball, double max_distance, ClosestPair& out,
+                     bool& in_range) {
   const DVec3 core = box_core(target), p = ball.position;
   CoreDistance near;
   near.on_a = {clamp(p.x, -core.x, core.x), clamp(p.y, -core.y, core.y), clamp(p.z, -core.z, core.z)};
   near.on_b = p;
-  const DVec3 way = p - near.on_a;
-  near.distance = length(way);
+  const DVec3 offset = p - near.on_a;
+  near.distance = length(offset);
   if (!(near.distance > kDistanceRounding * length(p))) return false;
   const double radius_a = double(target.radius), radius_b = double(ball.shape->radius);
-  within = near.distance - (radius_a + radius_b) <= max_distance;
-  near.normal = way / near.distance;
-  if (within) fill(near, radius_a, radius_b, out);
+  in_range = near.distance - (radius_a + radius_b) <= max_distance;
+  near.normal = offset / near.distance;
+  if (in_range) fill(near, radius_a, radius_b, out);
   return true;
 }
 
-bool nearest_of_plane(const Shape& plane, const PlacedShape& convex, double max_distance, Nearest& out) {
+bool nearest_of_plane(const Shape& plane, const PosedShape& convex, double max_distance, ClosestPair& out) {
   const DVec3 normal(plane.extents);
   const DVec3 lowest =
       rotate(convex.orientation, core_support(*convex.shape, rotate_inverse(convex.orientation, -normal)));
@@ -68,19 +71,19 @@ bool nearest_of_plane(const Shape& plane, const PlacedShape& convex, double max_
   return true;
 }
 
-bool nearest_of_triangle(const SurfaceTriangle& triangle, const PlacedShape& convex, double max_distance,
-                         Nearest& out) {
+bool nearest_of_triangle(const SurfaceTriangle& triangle, const PosedShape& convex, double max_distance,
+                         ClosestPair& out) {
   const DVec3 pivot(triangle.a);
   const DVec3 corners[3] = {{}, DVec3(triangle.b) - pivot, DVec3(triangle.c) - pivot};
   if (convex.shape->kind == ShapeKind::sphere) {
     const DVec3 middle = convex.position - pivot;
     const SimplexPoint near = closest_on_triangle(middle, corners[0], corners[1], corners[2]);
-    const DVec3 way = middle - near.point;
-    const double apart = length(way), gap = apart - double(convex.shape->radius);
+    const DVec3 offset = middle - near.point;
+    const double apart = length(offset), gap = apart - double(convex.shape->radius);
     if (gap > max_distance) return false;
-    // One that its middle lies in is a case for the search below.
+    // If the triangle contains the centre, the search below decides.
     if (gap > 0.0 && apart > kDistanceRounding * length(middle)) {
-      out.normal = way / apart;
+      out.normal = offset / apart;
       out.overlap = false;
       out.distance = gap;
       out.on_target = near.point + pivot;
@@ -111,30 +114,30 @@ Aabb outward(DVec3 low, DVec3 high) {
   return {to_float(low - all), to_float(high + all)};
 }
 
-// The nearest triangle whose box comes within `reach` of the convex shape's box.
+// Finds the closest triangle whose box is within a distance of the convex shape's box.
 class SurfaceSearch {
  public:
-  SurfaceSearch(const Shape& surface, const PlacedShape& convex, double max_distance)
-      : surface_(surface), convex_(convex), reach_(max_distance) {
+  SurfaceSearch(const Shape& surface, const PosedShape& convex, double max_distance)
+      : surface_(surface), convex_(convex), max_distance_(max_distance) {
     const Aabb box = bounds(*convex.shape, {{}, to_float(convex.orientation)});
     const float slack = kBoundsSlack * outer_radius(*convex.shape, {});
     const Aabb grown = grow(box, slack);
     box_ = outward(convex.position + DVec3(grown.low), convex.position + DVec3(grown.high));
   }
 
-  // In boxes that grow eightfold, so that a near triangle is found without looking at all.
-  bool run(Nearest& out) {
+  // Searches boxes that grow eightfold, so that a close triangle is found without a test of all others.
+  bool run(ClosestPair& out) {
     const Aabb& all = surface_.kind == ShapeKind::mesh ? surface_.mesh->tree.box : surface_.field->box;
-    const auto least = double(box_gap(all, box_));
-    if (least * (1.0 - kDistanceRounding) > reach_) return false;
-    const double most = reach_;
-    double look = least + double(largest(half_size(box_))) +
-                  1.0e-6 * double(largest(max(absolute(all.low), absolute(all.high))));
-    for (;; look *= 8.0) {
-      const bool last = look >= most;
-      walk(last ? most : look);
-      // What is found beyond the box that was looked at may not be the nearest.
-      if (last || (found_ && reach_ <= look * (1.0 - kDistanceRounding))) break;
+    const auto min_gap = double(box_gap(all, box_));
+    if (min_gap * (1.0 - kDistanceRounding) > max_distance_) return false;
+    const double max_gap = max_distance_;
+    double radius = min_gap + double(largest(half_size(box_))) +
+                    1.0e-6 * double(largest(max(absolute(all.low), absolute(all.high))));
+    for (;; radius *= 8.0) {
+      const bool last = radius >= max_gap;
+      walk(last ? max_gap : radius);
+      // A triangle found beyond the searched box may not be the closest.
+      if (last || (found_ && max_distance_ <= radius * (1.0 - kDistanceRounding))) break;
     }
     out = best_;
     return found_;
@@ -149,58 +152,59 @@ class SurfaceSearch {
       const StaticTree& tree = surface_.mesh->tree;
       walk_overlaps(
           tree, box,
-          [&](std::uint32_t node, int lane) { return may_be_nearer(child_box(tree.nodes[node], lane)); },
+          [&](std::uint32_t node, int lane) { return can_be_closer(child_box(tree.nodes[node], lane)); },
           [&](std::uint32_t first, std::uint32_t count) {
             for (std::uint32_t id = first; id < first + count; ++id) {
-              if (may_be_nearer(triangle_box(*surface_.mesh, id)))
-                look_at(surface_triangle(*surface_.mesh, id));
+              if (can_be_closer(triangle_box(*surface_.mesh, id)))
+                test_triangle(surface_triangle(*surface_.mesh, id));
             }
           });
       return;
     }
     const HeightField& field = *surface_.field;
     walk_cells(
-        field, box, [&](HeightBlock block) { return may_be_nearer(block_box(field, block)); },
+        field, box, [&](HeightBlock block) { return can_be_closer(block_box(field, block)); },
         [&](std::uint32_t column, std::uint32_t row) {
-          if (!is_solid_cell(field, column, row) || !may_be_nearer(block_box(field, {-1, column, row})))
+          if (!is_solid_cell(field, column, row) || !can_be_closer(block_box(field, {-1, column, row})))
             return;
-          for (int half = 0; half < 2; ++half) look_at(surface_triangle(field, column, row, half));
+          for (int half = 0; half < 2; ++half) test_triangle(surface_triangle(field, column, row, half));
         });
   }
 
-  bool may_be_nearer(const Aabb& box) const {
-    return double(box_gap(box, box_)) * (1.0 - kDistanceRounding) <= reach_;
+  bool can_be_closer(const Aabb& box) const {
+    return double(box_gap(box, box_)) * (1.0 - kDistanceRounding) <= max_distance_;
   }
 
-  void look_at(const SurfaceTriangle& triangle) {
-    Nearest next;
-    if (!nearest_of_triangle(triangle, convex_, reach_, next)) return;
+  void test_triangle(const SurfaceTriangle& triangle) {
+    ClosestPair next;
+    if (!nearest_of_triangle(triangle, convex_, max_distance_, next)) return;
     next.triangle = public_triangle(surface_, triangle.id);
     if (found_ && (next.distance > best_.distance ||
                    (next.distance == best_.distance && next.triangle >= best_.triangle)))
       return;
     best_ = next;
     found_ = true;
-    reach_ = next.distance;
+    max_distance_ = next.distance;
   }
 
   const Shape& surface_;
-  const PlacedShape& convex_;
+  const PosedShape& convex_;
   Aabb box_;  // of the convex shape
-  double reach_;
+  double max_distance_;
   bool found_ = false;
-  Nearest best_;
+  ClosestPair best_;
 };
 
 }  // namespace
 
-bool find_nearest(const Shape& target, const PlacedShape& convex, double max_distance, Nearest& out) {
+bool find_closest_points(const Shape& target, const PosedShape& convex, double max_distance,
+                         ClosestPair& out) {
   out = {};
   if (target.kind == ShapeKind::plane) return nearest_of_plane(target, convex, max_distance, out);
   if (!is_convex(target.kind)) return SurfaceSearch(target, convex, max_distance).run(out);
   if (convex.shape->kind == ShapeKind::sphere && has_box_core(target)) {
-    bool within;
-    if (nearest_of_ball(target, convex, max_distance, out, within)) return within;
+    bool in_range;
+    if (nearest_of_ball(target, convex, max_distance, out, in_range)) return in_range;
   }
   const CorePair pair(target, *convex.shape, convex.position, convex.orientation);
   const auto radius_a = double(core_radius(target)), radius_b = double(core_radius(*convex.shape));

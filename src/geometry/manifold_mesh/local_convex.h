@@ -1,13 +1,13 @@
-// A convex shape as a mesh sees it: turned into the mesh's axes, with the origin at the shape's own, so that all numbers
-// near the contact are small whatever the place in the mesh.
+// A convex shape in the form that mesh contacts need: rotated into the mesh's axes, with the origin at the shape's own,
+// so that all numbers near the contact are small anywhere in the mesh.
 //
-// In: a convex Shape and its orientation. Out: vertices, face planes and edges for axis searches (polyhedra, capsules and
-// spheres), support points for the rest, and what one plane after the other has to know. As in support.h everything is of
-// the core; the surface lies `radius` farther out.
+// In: a convex Shape and its orientation. Out: vertices, face planes and edges for axis searches (polyhedra, capsules
+// and spheres), support points for all other shapes, and its extent along the normal of a plane. As in support.h,
+// everything describes the core; the surface is `radius` farther out.
 #pragma once
 
-#include "geometry/shape/hull.h"
 #include "geometry/manifold_mesh/mesh_kernels.h"
+#include "geometry/shape/hull.h"
 #include "geometry/shape/support.h"
 #include "math/wide_vec.h"
 
@@ -15,7 +15,7 @@
 
 namespace gyre {
 
-// A box with an axis a lane, and one lane that is not used.
+// A box with one axis in each lane. One lane is unused.
 class AxisBox {
  public:
   AxisBox(Wide<4> low, Wide<4> high) : low_(low), high_(high) {}
@@ -23,11 +23,11 @@ class AxisBox {
   Wide<4> low() const { return low_; }
   Wide<4> high() const { return high_; }
   bool overlaps(const AxisBox& other) const { return all((low_ <= other.high_) & (other.low_ <= high_)); }
-  AxisBox operator-(Vec3 way) const { return {low_ - lanes(way), high_ - lanes(way)}; }
+  AxisBox operator-(Vec3 offset) const { return {low_ - lanes(offset), high_ - lanes(offset)}; }
   Aabb box() const { return {{low_[0], low_[1], low_[2]}, {high_[0], high_[1], high_[2]}}; }
 
   static Wide<4> lanes(Vec3 v) {
-    // Not by way of an array: GCC would build that on the stack, part by part.
+    // Not through an array: GCC would build that on the stack, element by element.
     typedef float Quad __attribute__((vector_size(16)));
     return Wide<4>::of(Quad{v.x, v.y, v.z, 0.0f});
   }
@@ -36,24 +36,24 @@ class AxisBox {
   Wide<4> low_, high_;
 };
 
-class PlacedConvex {
+class LocalConvex {
  public:
   static constexpr int kMaxVertices = 256;
-  // Columns are searched four at a time: behind the last of them its copies stand.
+  // Columns are searched four at a time. Lanes after the last element repeat it.
   static constexpr int kLanes = 4;
 
-  PlacedConvex(const Shape& shape, Quat orientation);
-  PlacedConvex(const PlacedConvex&) = delete;
-  PlacedConvex& operator=(const PlacedConvex&) = delete;
+  LocalConvex(const Shape& shape, Quat orientation);
+  LocalConvex(const LocalConvex&) = delete;
+  LocalConvex& operator=(const LocalConvex&) = delete;
 
   const Shape& shape() const { return *shape_; }
   Quat orientation() const { return orientation_; }
   float radius() const { return radius_; }
-  // Largest distance of a surface point from the origin of the shape: what tolerances are relative to.
+  // The largest distance of a surface point from the origin of the shape. Tolerances are relative to it.
   float size() const { return size_; }
-  // A point well inside.
+  // A point well inside the shape.
   Vec3 center() const { return center_; }
-  // Whether the core is a polyhedron, segment or point, with the columns below; else only support points are known.
+  // True if the core is a polyhedron, segment or point, with the columns below. Other cores have support points only.
   bool has_vertices() const { return vertex_count_ > 0; }
 
   int vertex_count() const { return vertex_count_; }
@@ -61,37 +61,37 @@ class PlacedConvex {
   int face_count() const { return face_count_; }
   Vec3 face_normal(int i) const { return {nx_[i], ny_[i], nz_[i]}; }
   float face_offset(int i) const { return offset_[i]; }  // dot(normal, p) = offset on the face
-  // What the faces' normals have along each of three directions, into padded(face_count()) floats.
+  // The components of the face normals along each of three directions, into padded(face_count()) floats.
   void dot_faces(const Vec3* directions, float (*out)[kMaxVertices]) const;
-  // How far each corner of a triangle lies before each face, and how far the lowest does.
+  // The distance of each corner of a triangle before each face, and that of the lowest corner.
   void face_separations(const Vec3* corners, float (*each)[kMaxVertices], float* lowest) const;
-  // Edges between two faces; empty for capsules, whose one edge has no faces (vertex 0 to vertex 1).
+  // Edges between two faces. Empty for capsules, whose only edge (vertex 0 to vertex 1) has no faces.
   std::span<const HullEdge> edges() const { return edges_; }
 
-  // The core's extent along `direction`: the least and the greatest dot product of it with any of its points.
+  // The extent of the core along `direction`: the smallest and the largest dot product with any of its points.
   float lowest(Vec3 direction) const { return extent(direction).low; }
   float highest(Vec3 direction) const { return extent(direction).high; }
   struct Extent {
     float low, high;
   };
   Extent extent(Vec3 direction) const;
-  // The core's box in the mesh's axes.
+  // The box of the core in the mesh's axes.
   Aabb box() const;
   Vec3 support(Vec3 direction) const;
-  // The feature that faces `direction`, in the mesh's axes. FacePolygon ids keep their meaning.
+  // The feature that faces `direction`, in the mesh's axes. The ids of FacePolygon keep their meaning.
   void face_towards(Vec3 direction, FacePolygon& out) const;
-  // The vertex of the core farthest against `direction`; only if has_vertices().
+  // The vertex of the core farthest against `direction`. Requires has_vertices().
   int lowest_vertex(Vec3 direction) const;
-  // Whether all vertices lie more than `room` outside of a plane through a point; false without vertices.
+  // True if all vertices are more than `room` outside a plane through a point. False without vertices.
   bool lies_outside(Vec3 outward, Vec3 point, float room) const;
-  // Whether any vertex not higher than `height` along `direction` lies more than `room` inside of each of three planes
-  // through points; only if has_vertices().
+  // True if any vertex no higher than `height` along `direction` is more than `room` inside each of three planes
+  // through points. Requires has_vertices().
   bool has_low_vertex_inside(Vec3 direction, float height, const Vec3* outward, const Vec3* points,
                              float room) const;
 
-  // Whether anything within `reach` of the surface may lie in the box: false only if certainly nothing does.
-  bool may_touch(const AxisBox& box, float reach) const;
-  // How far a point lies outside the shape's local box; negative inside. And the local box itself.
+  // False only if the surface is certainly farther than `max_distance` from everything in the box.
+  bool can_touch(const AxisBox& box, float max_distance) const;
+  // The distance of a point outside the shape's local box; negative inside.
   float box_distance(Vec3 point) const;
   Vec3 to_local(Vec3 v) const { return transpose_times(rotation_, v); }
   Vec3 from_local(Vec3 v) const { return rotation_ * v; }
@@ -101,10 +101,10 @@ class PlacedConvex {
   static constexpr int padded(int count) { return (count + kLanes - 1) / kLanes * kLanes; }
 
  private:
-  void place_vertices(const float* x, const float* y, const float* z, int count);
-  void place_faces(const float* x, const float* y, const float* z, const float* offsets, int count);
-  void place_hull(const Hull& hull);
-  void show_columns();
+  void set_vertices(const float* x, const float* y, const float* z, int count);
+  void set_faces(const float* x, const float* y, const float* z, const float* offsets, int count);
+  void set_hull(const Hull& hull);
+  void bind_columns();
 
   const Shape* shape_;
   Quat orientation_;
@@ -112,23 +112,23 @@ class PlacedConvex {
   float radius_ = 0.0f, size_ = 0.0f;
   Vec3 center_;
   Aabb local_box_;  // of the surface, in the shape's frame
-  // The turn's rows, of the turn itself and without signs, and the local box, one axis of the shape a lane.
+  // The rows of the rotation matrix, their absolute values, and the local box, with one axis of the shape in each lane.
   alignas(16) float row_[3][4], row_size_[3][4];
   alignas(16) float local_low_[4], local_high_[4];
   int vertex_count_ = 0, face_count_ = 0;
   std::span<const HullEdge> edges_;
   ConvexColumns columns_;
-  // Columns, not cleared: only the counted ones are ever read.
+  // Columns. Not cleared: only the counted elements are read.
   alignas(16) float x_[kMaxVertices], y_[kMaxVertices], z_[kMaxVertices];
   alignas(16) float nx_[kMaxVertices], ny_[kMaxVertices], nz_[kMaxVertices], offset_[kMaxVertices];
 };
 
-// What a shape has to say about the planes with one normal. Neighbouring triangles mostly share it, so it is asked once.
+// The extent of a shape along one normal. Neighbouring triangles mostly share the normal, so it is computed once.
 struct PlaneSide {
   Vec3 normal;
   float lowest = 0.0f, highest = 0.0f;  // of the core along the normal
   bool has_face = false;
-  FacePolygon face;  // facing against the normal
+  FacePolygon face;  // faces against the normal
 };
 
 }  // namespace gyre
