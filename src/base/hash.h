@@ -50,15 +50,15 @@ struct Lanes {
   constexpr explicit Lanes(std::uint64_t seed)
       : a(seed + kPrime1 + kPrime2), b(seed + kPrime2), c(seed), d(seed - kPrime1) {}
 
-  constexpr void eat(std::uint64_t w, std::uint64_t x, std::uint64_t y, std::uint64_t z) {
+  constexpr void update(std::uint64_t w, std::uint64_t x, std::uint64_t y, std::uint64_t z) {
     a = round(a, w);
     b = round(b, x);
     c = round(c, y);
     d = round(d, z);
   }
   template <class Byte>
-  constexpr void eat(const Byte* block) {
-    eat(read_64(block), read_64(block + 8), read_64(block + 16), read_64(block + 24));
+  constexpr void update(const Byte* block) {
+    update(read_64(block), read_64(block + 8), read_64(block + 16), read_64(block + 24));
   }
 
   constexpr std::uint64_t merge() const {
@@ -91,7 +91,7 @@ constexpr std::uint64_t hash_all(const Byte* p, std::size_t size, std::uint64_t 
   std::size_t left = size;
   if (left >= 32) {
     Lanes lanes(seed);
-    for (; left >= 32; left -= 32, p += 32) lanes.eat(p);
+    for (; left >= 32; left -= 32, p += 32) lanes.update(p);
     hash = lanes.merge();
   }
   return finish(hash + size, p, left);
@@ -136,12 +136,12 @@ class Hasher {
     if (waiting_ != 0) {
       const std::size_t missing = 32 - waiting_;
       std::memcpy(buffer_ + waiting_, p, missing);
-      lanes_.eat(buffer_);
+      lanes_.update(buffer_);
       p += missing;
       left -= missing;
     }
     hash_detail::Lanes lanes = lanes_;  // in registers: for all that compilers know, the bytes might be those of `lanes_`
-    for (; left >= 32; left -= 32, p += 32) lanes.eat(p);
+    for (; left >= 32; left -= 32, p += 32) lanes.update(p);
     lanes_ = lanes;
     if (left != 0) std::memcpy(buffer_, p, left);
     waiting_ = left;

@@ -23,10 +23,10 @@ int max_lanes();
 int best_lanes();
 
 // What somebody asked for, 0 being the best, as far as the processor has it.
-inline int lanes_for(int asked) {
-  if (asked == 0) return best_lanes();
-  const int most = max_lanes();
-  return asked < most ? asked : most;
+inline int lanes_for(int requested) {
+  if (requested == 0) return best_lanes();
+  const int max = max_lanes();
+  return requested < max ? requested : max;
 }
 
 }  // namespace gyre

@@ -27,7 +27,7 @@ struct BlockEdge {
 
 // Memory is the arena's that it was made in.
 struct BlockPlan {
-  std::span<const std::uint32_t> place_of;  // place in the order, by node
+  std::span<const std::uint32_t> index_of;  // place in the order, by node
   std::span<const std::uint32_t> node_at;   // node, by place
   std::span<const BlockColumn> columns;     // by place
   std::span<const BlockEntry> entries;
@@ -45,11 +45,11 @@ bool plan_blocks(std::span<const std::uint8_t> sizes, std::span<const BlockEdge>
                  std::uint64_t max_work, Arena& arena, BlockPlan& plan);
 
 // Where the block of two nodes lies. `first_is_row`: its rows are those of `a`, otherwise those of `b`.
-struct BlockPlace {
+struct BlockLocation {
   std::uint32_t offset = 0;
   bool first_is_row = false;
 };
-BlockPlace find_block(const BlockPlan& plan, std::uint32_t a, std::uint32_t b);
+BlockLocation find_block(const BlockPlan& plan, std::uint32_t a, std::uint32_t b);
 
 // Replaces the values of the matrix (lower triangle of blocks; diagonal blocks whole) by those of its factors. Pivots that
 // are only rounding are dropped, as in math/dense.h. `room` holds factor_room() doubles.

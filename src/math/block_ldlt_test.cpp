@@ -98,7 +98,7 @@ std::vector<double> in_order(const Graph& graph, const Matrix& m, const std::vec
                              const BlockPlan& plan) {
   std::vector<double> x(plan.rows);
   for (std::uint32_t node = 0; node < graph.sizes.size(); ++node) {
-    const BlockColumn& column = plan.columns[plan.place_of[node]];
+    const BlockColumn& column = plan.columns[plan.index_of[node]];
     for (std::uint32_t r = 0; r < graph.sizes[node]; ++r) x[column.row + r] = b[m.first[node] + r];
   }
   return x;
@@ -114,10 +114,10 @@ std::vector<double> factored(const Graph& graph, const Matrix& m, const BlockPla
     }
   };
   for (std::uint32_t node = 0; node < graph.sizes.size(); ++node)
-    copy(node, node, plan.columns[plan.place_of[node]].diagonal);
+    copy(node, node, plan.columns[plan.index_of[node]].diagonal);
   for (const BlockEdge& edge : graph.edges) {
-    const BlockPlace place = find_block(plan, edge.a, edge.b);
-    copy(place.first_is_row ? edge.a : edge.b, place.first_is_row ? edge.b : edge.a, place.offset);
+    const BlockLocation location = find_block(plan, edge.a, edge.b);
+    copy(location.first_is_row ? edge.a : edge.b, location.first_is_row ? edge.b : edge.a, location.offset);
   }
   factor_blocks(plan, values, room);
   return values;
@@ -129,7 +129,7 @@ std::vector<double> sparse_solution(const Graph& graph, const Matrix& m, const s
   solve_blocks(plan, factored(graph, m, plan), x);
   std::vector<double> result(m.rows);
   for (std::uint32_t node = 0; node < graph.sizes.size(); ++node) {
-    const BlockColumn& column = plan.columns[plan.place_of[node]];
+    const BlockColumn& column = plan.columns[plan.index_of[node]];
     for (std::uint32_t r = 0; r < graph.sizes[node]; ++r) result[m.first[node] + r] = x[column.row + r];
   }
   return result;

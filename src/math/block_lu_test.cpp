@@ -45,10 +45,10 @@ void make_grid(Sparse& sparse, std::uint32_t side, double heavy, Random& random)
     for (std::uint32_t k = 0; k < 6; ++k) sparse.lower[column.diagonal + 6 * k + (k + 1) % 6] += heavy;
   }
   for (const BlockEdge& edge : edges) {
-    const BlockPlace place = find_block(sparse.plan, edge.a, edge.b);
+    const BlockLocation location = find_block(sparse.plan, edge.a, edge.b);
     for (std::uint32_t k = 0; k < 36; ++k) {
-      sparse.lower[place.offset + k] = random.next();
-      sparse.upper[place.offset + k] = random.next();
+      sparse.lower[location.offset + k] = random.next();
+      sparse.upper[location.offset + k] = random.next();
     }
   }
 }
@@ -63,7 +63,7 @@ std::vector<double> times(const Sparse& sparse, const std::vector<double>& x) {
     add(&sparse.lower[column.diagonal], column.row, column.row);
     for (std::uint32_t i = column.begin; i < column.end; ++i) {
       const BlockEntry& entry = sparse.plan.entries[i];
-      const std::uint32_t row = sparse.plan.columns[entry.place].row;
+      const std::uint32_t row = sparse.plan.columns[entry.index].row;
       add(&sparse.lower[entry.offset], row, column.row);
       add(&sparse.upper[entry.offset], column.row, row);
     }

@@ -7,7 +7,7 @@
 namespace gyre {
 
 struct BlockEntry {
-  std::uint32_t place = 0;  // of the row's node in the order
+  std::uint32_t index = 0;  // of the row's node in the order
   std::uint32_t offset =
       0;  // of its block among the values: rows of `place` by rows of the column, row after row
 };

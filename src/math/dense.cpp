@@ -66,7 +66,7 @@ void symmetric_eigen(const double m[6], double moments[3], double axes[9]) {
                     {m[4] / scale, m[5] / scale, m[2] / scale}};
   double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   // Convergence is quadratic: four or five sweeps reach the last bit; the bound is only for safety.
-  for (int sweep = 0; sweep < 30; ++sweep) {
+  for (int iteration = 0; iteration < 30; ++iteration) {
     const double off = std::fabs(a[0][1]) + std::fabs(a[0][2]) + std::fabs(a[1][2]);
     if (off < 1.0e-40) break;
     jacobi_rotation(a, v, 0, 1);
@@ -131,9 +131,9 @@ int factor_ldlt(std::span<double> a, int size, double tolerance) {
       row[k] = scaled * a[k * n + k];
       pivot -= row[k] * scaled;
     }
-    const bool keep = pivot > tolerance * whole;
-    row[i] = keep ? 1.0 / pivot : 0.0;
-    rank += keep ? 1 : 0;
+    const bool is_kept = pivot > tolerance * whole;
+    row[i] = is_kept ? 1.0 / pivot : 0.0;
+    rank += is_kept ? 1 : 0;
   }
   return rank;
 }

@@ -46,13 +46,13 @@ inline Ldlt<N, T> factor_ldlt(const T (&a)[N][N], T tolerance = sizeof(T) == 4 ?
       f.lower[j][k] = scaled[k] * f.inverse_pivot[k];
       pivot -= f.lower[j][k] * scaled[k];
     }
-    const bool keep = pivot > tolerance * a[j][j];
-    f.inverse_pivot[j] = keep ? T(1) / pivot : T(0);
-    f.rank += keep ? 1 : 0;
+    const bool is_kept = pivot > tolerance * a[j][j];
+    f.inverse_pivot[j] = is_kept ? T(1) / pivot : T(0);
+    f.rank += is_kept ? 1 : 0;
     for (int i = j + 1; i < N; ++i) {
       T sum = a[i][j];
       for (int k = 0; k < j; ++k) sum -= f.lower[i][k] * f.lower[j][k];
-      f.lower[i][j] = keep ? sum : T(0);
+      f.lower[i][j] = is_kept ? sum : T(0);
     }
   }
   return f;

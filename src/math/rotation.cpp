@@ -11,7 +11,7 @@ namespace {
 
 double element(DVec3 v, int axis) { return v[axis]; }
 
-DQuat from_parts(const double (&v)[3], double w) { return {v[0], v[1], v[2], w}; }
+DQuat from_vector_and_scalar(const double (&v)[3], double w) { return {v[0], v[1], v[2], w}; }
 
 // Axes first, second, third of an order, and whether they are a right-handed triple (+1) or a left-handed one (-1).
 struct EulerAxes {
@@ -41,7 +41,7 @@ DQuat about_axis(int axis, float angle) {
   const SinCosD half = sin_cos(0.5 * double(angle));
   double v[3] = {0.0, 0.0, 0.0};
   v[axis] = half.sin;
-  return from_parts(v, half.cos);
+  return from_vector_and_scalar(v, half.cos);
 }
 
 // Some vector at a right angle to `a`, which is not zero.
@@ -51,7 +51,7 @@ DVec3 perpendicular(DVec3 a) {
   return y <= z ? cross(a, {0.0, 1.0, 0.0}) : cross(a, {0.0, 0.0, 1.0});
 }
 
-double within_half_turn(double angle) {
+double wrap_to_pi(double angle) {
   if (angle > kPiDouble) return angle - 2.0 * kPiDouble;
   if (angle <= -kPiDouble) return angle + 2.0 * kPiDouble;
   return angle;
@@ -99,8 +99,8 @@ Quat from_axis_angle(Vec3 axis, float angle) {
   return to_float(DQuat{s * a.x, s * a.y, s * a.z, half.cos});
 }
 
-Quat integrate_rotation(Quat orientation, Vec3 turn) {
-  return to_float(normalized(exponential_map(DVec3(turn)) * to_double(orientation)));
+Quat integrate_rotation(Quat orientation, Vec3 rotation) {
+  return to_float(normalized(exponential_map(DVec3(rotation)) * to_double(orientation)));
 }
 
 Vec3 rotation_between(Quat from, Quat to) {
@@ -195,13 +195,13 @@ EulerAngles to_euler(Quat q, EulerOrder order) {
   constexpr double kLocked = 1.0e-6;
   double first = 0.0, third = 0.0;
   if (minus <= kLocked * plus) {
-    first = within_half_turn(2.0 * atan2(plus_sin, plus_cos));
+    first = wrap_to_pi(2.0 * atan2(plus_sin, plus_cos));
   } else if (plus <= kLocked * minus) {
-    first = within_half_turn(2.0 * atan2(minus_sin, minus_cos));
+    first = wrap_to_pi(2.0 * atan2(minus_sin, minus_cos));
   } else {
     const double sum = atan2(plus_sin, plus_cos), difference = atan2(minus_sin, minus_cos);
-    first = within_half_turn(sum + difference);
-    third = within_half_turn(sum - difference);
+    first = wrap_to_pi(sum + difference);
+    third = wrap_to_pi(sum - difference);
   }
   return {.first = float(first), .second = float(second), .third = float(third), .order = order};
 }

@@ -56,7 +56,7 @@ constexpr Sym3 point_inertia(float mass, Vec3 r) {
 
 // `orientation` turned by the world rotation vector `turn` (rad): from_rotation_vector(turn) * orientation at length 1.
 // Computed in double and rounded once, so that turns far below a float's resolution still add up without bias.
-Quat integrate_rotation(Quat orientation, Vec3 turn);
+Quat integrate_rotation(Quat orientation, Vec3 rotation);
 
 // The rotation vector that leads from `from` to `to` by the shorter way, in the frame both are given in:
 // from_rotation_vector(v) * from = to.

@@ -21,8 +21,8 @@ struct Sum {
 // a + b without error (D. Knuth).
 Sum exact_sum(double a, double b) {
   const double sum = a + b;
-  const double b_part = sum - a;
-  return {sum, (a - (sum - b_part)) + (b - b_part)};
+  const double b_rounded = sum - a;
+  return {sum, (a - (sum - b_rounded)) + (b - b_rounded)};
 }
 
 // a * b without error (T. J. Dekker, with G. W. Veltkamp's split into 26 bits); for factors far from the range's ends.
@@ -134,7 +134,7 @@ Reduced reduce(double x) {
 
 // The pair of `sin` and `cos` of an angle's rest, turned into its quadrant.
 template <class Pair, class T>
-Pair turn(T sin, T cos, unsigned quadrant) {
+Pair in_quadrant(T sin, T cos, unsigned quadrant) {
   switch (quadrant) {
     case 0:
       return {sin, cos};
@@ -173,7 +173,7 @@ SinCosD sin_cos(double radians) {
   const double half = 0.5 * z;
   const double head = 1.0 - half;  // what its rounding loses is added back
   const double cos = head + (((1.0 - head) - half) + (z * z * cosine_tail - r * low));
-  return turn<SinCosD>(sin, cos, reduced.quadrant);
+  return in_quadrant<SinCosD>(sin, cos, reduced.quadrant);
 }
 
 SinCos sin_cos(float radians) {
@@ -194,7 +194,7 @@ SinCos sin_cos(float radians) {
       1.0 + z * (-0.5 + z * (1.0 / 24.0 +
                              z * (-1.0 / 720.0 +
                                   z * (1.0 / 40320.0 + z * (-1.0 / 3628800.0 + z * (1.0 / 479001600.0))))));
-  return turn<SinCos>(float(sin), float(cos), unsigned(quadrant) & 3u);
+  return in_quadrant<SinCos>(float(sin), float(cos), unsigned(quadrant) & 3u);
 }
 
 // ---------------------------------------------------------------------------------------------------- arc functions

@@ -40,8 +40,8 @@ template <int W>
 GYRE_INLINE Vec3W<W> to_rotation_vector(QuatW<W> q) {
   const Vec3W<W> v{q.x, q.y, q.z};
   const Wide<W> sine = length(v);
-  const Mask<W> turns = sine > 1.0e-18f;
-  const Wide<W> share = select(turns, 2.0f * atan2(sine, absolute(q.w)) / sine, Wide<W>(2.0f));
+  const Mask<W> rotates = sine > 1.0e-18f;
+  const Wide<W> share = select(rotates, 2.0f * atan2(sine, absolute(q.w)) / sine, Wide<W>(2.0f));
   return copy_sign(share, q.w) * v;
 }
 

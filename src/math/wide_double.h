@@ -58,22 +58,22 @@ struct WideDouble {
 
   // From and to H floats in a row, anywhere; rounded on the way to memory.
   static GYRE_INLINE WideDouble load_floats(const void* from) {
-    typename DoubleLanes<H>::HalfFloat part;
-    __builtin_memcpy(&part, from, sizeof part);
+    typename DoubleLanes<H>::HalfFloat half;
+    __builtin_memcpy(&half, from, sizeof half);
     if constexpr (H == 1) {
-      return of(double(part));
+      return of(double(half));
     } else {
-      return of(__builtin_convertvector(part, Double));
+      return of(__builtin_convertvector(half, Double));
     }
   }
   GYRE_INLINE void store_floats(void* to) const {
-    typename DoubleLanes<H>::HalfFloat part;
+    typename DoubleLanes<H>::HalfFloat half;
     if constexpr (H == 1) {
-      part = float(v);
+      half = float(v);
     } else {
-      part = __builtin_convertvector(v, typename DoubleLanes<H>::HalfFloat);
+      half = __builtin_convertvector(v, typename DoubleLanes<H>::HalfFloat);
     }
-    __builtin_memcpy(to, &part, sizeof part);
+    __builtin_memcpy(to, &half, sizeof half);
   }
   // One lane; not for what is done often.
   GYRE_INLINE double operator[](int lane) const {
@@ -172,9 +172,9 @@ GYRE_INLINE WideDouble<kHalfLanes<W>> half_of(Wide<W> a) {
   if constexpr (W == 1) {
     return Result(double(a.v));
   } else {
-    typename DoubleLanes<kHalfLanes<W>>::HalfFloat part;
-    __builtin_memcpy(&part, reinterpret_cast<const char*>(&a.v) + Half * sizeof part, sizeof part);
-    return Result::of(__builtin_convertvector(part, typename Result::Double));
+    typename DoubleLanes<kHalfLanes<W>>::HalfFloat half;
+    __builtin_memcpy(&half, reinterpret_cast<const char*>(&a.v) + Half * sizeof half, sizeof half);
+    return Result::of(__builtin_convertvector(half, typename Result::Double));
   }
 }
 template <int W>
@@ -182,8 +182,9 @@ GYRE_INLINE Wide<W> join_halves(WideDouble<kHalfLanes<W>> low, WideDouble<kHalfL
   if constexpr (W == 1) {
     return (void)high, Wide<W>(float(low.v));
   } else {
-    using Part = typename DoubleLanes<kHalfLanes<W>>::HalfFloat;
-    const Part a = __builtin_convertvector(low.v, Part), b = __builtin_convertvector(high.v, Part);
+    using HalfFloat = typename DoubleLanes<kHalfLanes<W>>::HalfFloat;
+    const HalfFloat a = __builtin_convertvector(low.v, HalfFloat),
+                    b = __builtin_convertvector(high.v, HalfFloat);
     if constexpr (W == 4) return Wide<W>::of(__builtin_shufflevector(a, b, 0, 1, 2, 3));
     if constexpr (W == 8) return Wide<W>::of(__builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7));
     if constexpr (W == 16)

@@ -34,14 +34,14 @@ struct AngleSum {
 template <int H>
 GYRE_INLINE AngleSum<H> exact_sum(WideDouble<H> a, WideDouble<H> b) {
   const WideDouble<H> sum = a + b;
-  const WideDouble<H> b_part = sum - a;
-  return {sum, (a - (sum - b_part)) + (b - b_part)};
+  const WideDouble<H> b_rounded = sum - a;
+  return {sum, (a - (sum - b_rounded)) + (b - b_rounded)};
 }
 // An angle beyond a right one (or two) as the difference from it; `whole` is that one.
 template <int H>
 GYRE_INLINE AngleSum<H> mirrored(AngleSum<1> whole, AngleSum<H> angle) {
-  const AngleSum<H> turned = exact_sum(WideDouble<H>(whole.head.v), -angle.head);
-  return {turned.head, turned.rest + (WideDouble<H>(whole.rest.v) - angle.rest)};
+  const AngleSum<H> reflected = exact_sum(WideDouble<H>(whole.head.v), -angle.head);
+  return {reflected.head, reflected.rest + (WideDouble<H>(whole.rest.v) - angle.rest)};
 }
 // The angle of (run, rise), neither negative, both away from the ends of the range.
 template <int H>
@@ -75,8 +75,8 @@ GYRE_INLINE AngleSum<H> angle_in_quadrant(WideDouble<H> rise, WideDouble<H> run)
     u = (low - c * high) / (high + c * low);  // where c is 0, t again
     GYRE_UNROLL
     for (int i = 0; i < H; ++i) {
-      const int place = int(eighth[i]);
-      base.head.set(i, kHead[place]), base.rest.set(i, kRest[place]);
+      const int index = int(eighth[i]);
+      base.head.set(i, kHead[index]), base.rest.set(i, kRest[index]);
     }
   }
   const WideDouble<H> z = u * u;

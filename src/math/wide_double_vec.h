@@ -68,8 +68,8 @@ template <int H>
 GYRE_INLINE DQuatW<H> normalized(DQuatW<H> q) {
   const WideDouble<H> zero(0.0), one(1.0);
   const WideDouble<H> square = dot(q, q), scale = one / sqrt(square);
-  const auto scaled = [&](WideDouble<H> part, WideDouble<H> none) {
-    return select_equal(square, zero, none, part * scale);
+  const auto scaled = [&](WideDouble<H> component, WideDouble<H> none) {
+    return select_equal(square, zero, none, component * scale);
   };
   return {scaled(q.x, zero), scaled(q.y, zero), scaled(q.z, zero), scaled(q.w, one)};
 }

@@ -315,8 +315,8 @@ GYRE_INLINE SinCosW<W> sin_cos(Wide<W> x) {
 // `orientation` turned by the world rotation vector `turn` (rad): the float twin of integrate_rotation in
 // math/rotation.h, for whole blocks of bodies. As exact as the rounding of the angle to float, for turns below 10^4.
 template <int W>
-GYRE_INLINE QuatW<W> integrate_rotation(QuatW<W> orientation, Vec3W<W> turn) {
-  const Wide<W> z = 0.25f * dot(turn, turn);  // the half angle squared
+GYRE_INLINE QuatW<W> integrate_rotation(QuatW<W> orientation, Vec3W<W> rotation) {
+  const Wide<W> z = 0.25f * dot(rotation, rotation);  // the half angle squared
   // sin(a)/a and cos(a) by their series in a^2; good to a = 1.
   Wide<W> s =
       0.5f + z * (-1.0f / 12.0f + z * (1.0f / 240.0f + z * (-1.0f / 10080.0f + z * (1.0f / 725760.0f))));
@@ -331,7 +331,7 @@ GYRE_INLINE QuatW<W> integrate_rotation(QuatW<W> orientation, Vec3W<W> turn) {
     s = select(fast, 0.5f * exact.sin / half, s);
     c = select(fast, exact.cos, c);
   }
-  const QuatW<W> q{s * turn.x, s * turn.y, s * turn.z, c};
+  const QuatW<W> q{s * rotation.x, s * rotation.y, s * rotation.z, c};
   return normalized(q * orientation);
 }
 
@@ -342,12 +342,12 @@ constexpr int kRecordFloats = 16;
 // Where record `index` lies, or `otherwise` for a negative index. With bit operations instead of a branch: which lanes of
 // a block have no record is hard to predict.
 template <int Stride>
-GYRE_INLINE std::uintptr_t record_place(std::uintptr_t base, std::int32_t index) {
+GYRE_INLINE std::uintptr_t record_address(std::uintptr_t base, std::int32_t index) {
   return base + std::uintptr_t(std::intptr_t(index)) * (Stride * 4u);
 }
 template <int Stride = kRecordFloats, class Number>
 GYRE_INLINE Number* record_or(Number* base, std::int32_t index, Number* otherwise) {
-  const std::uintptr_t record = record_place<Stride>(std::uintptr_t(base), index);
+  const std::uintptr_t record = record_address<Stride>(std::uintptr_t(base), index);
   const std::uintptr_t none = std::uintptr_t(std::intptr_t(index) >> (8 * sizeof(std::intptr_t) - 1));
   return reinterpret_cast<Number*>(record ^ ((record ^ std::uintptr_t(otherwise)) & none));
 }
@@ -357,7 +357,7 @@ template <int W, int Stride = kRecordFloats, class Number>
 GYRE_INLINE void locate_records(Number* base, const std::int32_t* indices, Number* (&record)[W]) {
   GYRE_UNROLL
   for (int i = 0; i < W; ++i)
-    record[i] = reinterpret_cast<Number*>(record_place<Stride>(std::uintptr_t(base), indices[i]));
+    record[i] = reinterpret_cast<Number*>(record_address<Stride>(std::uintptr_t(base), indices[i]));
 }
 template <int W, int Stride = kRecordFloats, class Number>
 GYRE_INLINE void locate_records(Number* base, const std::int32_t* indices, Number* otherwise,
@@ -402,11 +402,11 @@ struct Rows {
   // Writes the first `Count` (1 to 4) floats of row j.
   template <int Count>
   static GYRE_INLINE void store(Float row, float* const (&record)[W], int j, int first) {
-    put<Count>(record[j] + first, part<0>(row));
-    if constexpr (W >= 8) put<Count>(record[4 + j] + first, part<1>(row));
+    store_quad<Count>(record[j] + first, quad_of<0>(row));
+    if constexpr (W >= 8) store_quad<Count>(record[4 + j] + first, quad_of<1>(row));
     if constexpr (W == 16) {
-      put<Count>(record[8 + j] + first, part<2>(row));
-      put<Count>(record[12 + j] + first, part<3>(row));
+      store_quad<Count>(record[8 + j] + first, quad_of<2>(row));
+      store_quad<Count>(record[12 + j] + first, quad_of<3>(row));
     }
   }
 
@@ -449,7 +449,7 @@ struct Rows {
   }
   // 128-bit lane l of a row. Extractions are named, since what GCC makes of a shuffle does not go to memory at once.
   template <int l>
-  static GYRE_INLINE Quad part(Float row) {
+  static GYRE_INLINE Quad quad_of(Float row) {
     if constexpr (W == 4) {
       return row;
     } else {
@@ -464,11 +464,11 @@ struct Rows {
     }
   }
   template <int Count>
-  static GYRE_INLINE void put(float* to, Quad part) {
+  static GYRE_INLINE void store_quad(float* to, Quad quad_value) {
     if constexpr (Count == 4) {
-      *reinterpret_cast<LooseQuad*>(to) = part;
+      *reinterpret_cast<LooseQuad*>(to) = quad_value;
     } else {
-      __builtin_memcpy(to, &part, Count * sizeof(float));
+      __builtin_memcpy(to, &quad_value, Count * sizeof(float));
     }
   }
 

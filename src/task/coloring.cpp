@@ -45,13 +45,13 @@ void choose_color(std::span<const ColoringPair> pairs, std::span<const std::uint
 constexpr std::uint32_t kRun = 32;
 
 // The order in which constraints choose: ascending, but in half of the runs, by lot, descending.
-void turn_runs(std::span<const std::uint32_t> names, std::span<std::uint32_t> order) {
+void order_runs(std::span<const std::uint32_t> names, std::span<std::uint32_t> order) {
   for (std::size_t begin = 0; begin < names.size();) {
     const std::uint32_t run = names[begin] / kRun;
     std::size_t end = begin;
     for (; end < names.size() && names[end] / kRun == run; ++end) order[end] = static_cast<std::uint32_t>(end);
-    const std::span<std::uint32_t> chosen = order.subspan(begin, end - begin);
-    if ((mix_bits(run) & 1) != 0) std::reverse(chosen.begin(), chosen.end());
+    const std::span<std::uint32_t> members = order.subspan(begin, end - begin);
+    if ((mix_bits(run) & 1) != 0) std::reverse(members.begin(), members.end());
     begin = end;
   }
 }
@@ -82,7 +82,7 @@ void color_constraints(std::span<const ColoringPair> pairs, std::span<const std:
   if (names.empty()) {
     for (std::uint32_t i = 0; i < pairs.size(); ++i) choose_color(pairs, is_static, options, i, out);
   } else {
-    turn_runs(names, out.order);
+    order_runs(names, out.order);
     for (const std::uint32_t i : out.order) choose_color(pairs, is_static, options, i, out);
   }
   group_by_color(options.max_colors + 1, out);

@@ -44,10 +44,10 @@ void for_blocks(TaskSystem& tasks, int count, int block_size, Fn&& fn) {
 // Does pieces of work that have nothing to do with each other, and of which at most one uses what belongs to the thread that
 // starts work; with one worker one after the other.
 template <class... Pieces>
-void side_by_side(TaskSystem& tasks, Pieces&&... pieces) {
-  for_blocks(tasks, static_cast<int>(sizeof...(pieces)), 1, [&](int wanted, int, int) {
+void run_parallel(TaskSystem& tasks, Pieces&&... pieces) {
+  for_blocks(tasks, static_cast<int>(sizeof...(pieces)), 1, [&](int index, int, int) {
     int piece = 0;
-    ((piece++ == wanted ? pieces() : void()), ...);
+    ((piece++ == index ? pieces() : void()), ...);
   });
 }
 

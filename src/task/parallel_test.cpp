@@ -77,7 +77,7 @@ TEST(SideBySide, DoesEachPieceOnce) {
   for (const int workers : {1, 2, 4}) {
     TaskSystem tasks(workers);
     int done[3] = {};
-    side_by_side(
+    run_parallel(
         tasks, [&] { ++done[0]; }, [&] { ++done[1]; }, [&] { ++done[2]; });
     EXPECT_EQ(done[0], 1);
     EXPECT_EQ(done[1], 1);

@@ -91,11 +91,11 @@ class Runner {
     for (;;) {
       const std::uint64_t from = now < first ? first : now;  // nobody has begun it
       if (from >= end) return done;
-      const std::uint64_t taken = blocks_at_once(stage, end - from);
-      if (!next.compare_exchange_weak(now, from + taken, std::memory_order_relaxed)) continue;
+      const std::uint64_t claimed = blocks_at_once(stage, end - from);
+      if (!next.compare_exchange_weak(now, from + claimed, std::memory_order_relaxed)) continue;
       const int block = static_cast<int>(from & 0xffffffff);
-      stage.kernel(stage.context, block, block + static_cast<int>(taken), worker);
-      done += static_cast<int>(taken);
+      stage.kernel(stage.context, block, block + static_cast<int>(claimed), worker);
+      done += static_cast<int>(claimed);
       now = next.load(std::memory_order_relaxed);
     }
   }

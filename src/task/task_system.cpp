@@ -36,9 +36,9 @@ int machine_cores() {
 int machine_cores() { return 1; }
 #endif
 
-int clamp_workers(int wanted) {
-  if (!GYRE_HAS_THREADS || wanted < 1) return 1;
-  return wanted < TaskSystem::kMaxWorkers ? wanted : TaskSystem::kMaxWorkers;
+int clamp_workers(int count) {
+  if (!GYRE_HAS_THREADS || count < 1) return 1;
+  return count < TaskSystem::kMaxWorkers ? count : TaskSystem::kMaxWorkers;
 }
 
 int patience_of(int worker_count) { return worker_count <= machine_cores() ? kPatient : kImpatient; }
@@ -50,7 +50,7 @@ int patience_of(int worker_count) { return worker_count <= machine_cores() ? kPa
 namespace {
 
 // A core that is offered comes back at once, or later than this.
-constexpr std::chrono::microseconds kTaken{20};
+constexpr std::chrono::microseconds kCoreTaken{20};
 
 // The gate: job number, open flag, workers inside.
 constexpr std::uint64_t kJob = std::uint64_t{1} << 32;
@@ -126,7 +126,7 @@ struct TaskSystem::Pool {
       const std::uint64_t number = job_of(gate.load(std::memory_order_acquire));
       if (number != seen) return number;
       if (spin.patient()) spin.pause();
-    } while (spin.patient() || may_wait_on());
+    } while (spin.patient() || should_stay_awake());
     std::unique_lock<std::mutex> lock(mutex);
     ++sleepers;
     std::uint64_t number = job_of(gate.load(std::memory_order_acquire));
@@ -140,11 +140,11 @@ struct TaskSystem::Pool {
 
   // Whether a worker that lost its patience stays awake: within a step, and while nobody else wants its core, for who does has it for
   // a while if it is offered.
-  bool may_wait_on() const {
+  bool should_stay_awake() const {
     if (!stay_awake.load(std::memory_order_relaxed)) return false;
     const auto offered = std::chrono::steady_clock::now();
     std::this_thread::yield();
-    return std::chrono::steady_clock::now() - offered < kTaken;
+    return std::chrono::steady_clock::now() - offered < kCoreTaken;
   }
 
   // One more inside, unless the job has been closed meanwhile.

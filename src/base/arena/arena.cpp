@@ -27,7 +27,7 @@ Arena& Arena::operator=(Arena&& other) noexcept {
   current_ = std::exchange(other.current_, nullptr);
   used_ = std::exchange(other.used_, 0);
   used_before_ = std::exchange(other.used_before_, 0);
-  held_ = std::exchange(other.held_, 0);
+  capacity_ = std::exchange(other.capacity_, 0);
   peak_ = std::exchange(other.peak_, 0);
   high_water_ = std::exchange(other.high_water_, 0);
   clock_ = other.clock_;
@@ -40,8 +40,8 @@ Arena::~Arena() { free_blocks(); }
 void* Arena::take(std::size_t bytes) {
   const std::size_t rounded = round_up(bytes);
   if (current_ == nullptr || rounded > current_->capacity - used_) {
-    const std::size_t least = held_ < kFirstBlock ? kFirstBlock : held_;
-    add_block(rounded < least ? least : rounded);
+    const std::size_t min_capacity = capacity_ < kFirstBlock ? kFirstBlock : capacity_;
+    add_block(rounded < min_capacity ? min_capacity : rounded);
   }
   std::byte* const memory = reinterpret_cast<std::byte*>(current_) + kHeader + used_;
   used_ += rounded;
@@ -54,7 +54,7 @@ void Arena::add_block(std::size_t capacity) {
   used_before_ += used_;
   current_ = new (allocate(capacity + kHeader)) Block{current_, used_, capacity};
   used_ = 0;
-  held_ += capacity;
+  capacity_ += capacity;
 }
 
 void Arena::release(Mark mark) {
@@ -65,14 +65,14 @@ void Arena::release(Mark mark) {
 }
 
 void Arena::reset() {
-  const std::size_t most = peak();
+  const std::size_t needed = peak();
   high_water_ = high_water();
   peak_ = 0;
-  const bool too_small = most > held_ || (current_ != nullptr && current_->previous != nullptr);
-  const bool too_large = clock_.rests(most, held_);
+  const bool too_small = needed > capacity_ || (current_ != nullptr && current_->previous != nullptr);
+  const bool too_large = clock_.should_shrink(needed, capacity_);
   used_ = 0;
   if (!too_small && !too_large) return;
-  const std::size_t need = too_small ? most : clock_.max_needed();
+  const std::size_t need = too_small ? needed : clock_.max_needed();
   const std::size_t spare = need / (too_small && grew_ ? kShareOfGrowing : kShare);
   grew_ = too_small;
   const std::size_t room = round_up(need + spare);
@@ -82,11 +82,11 @@ void Arena::reset() {
 // The oldest block stays: most of it has been touched.
 void Arena::resize_to(std::size_t capacity) {
   while (current_ != nullptr && current_->previous != nullptr) free_newest();
-  const std::size_t held = current_ == nullptr ? 0 : current_->capacity + kHeader;
-  current_ = new (reallocate(current_, held, capacity + kHeader, 0)) Block{nullptr, 0, capacity};
+  const std::size_t old_bytes = current_ == nullptr ? 0 : current_->capacity + kHeader;
+  current_ = new (reallocate(current_, old_bytes, capacity + kHeader, 0)) Block{nullptr, 0, capacity};
   used_ = 0;
   used_before_ = 0;
-  held_ = capacity;
+  capacity_ = capacity;
 }
 
 void Arena::free_newest() {
@@ -94,7 +94,7 @@ void Arena::free_newest() {
   current_ = block->previous;
   used_ = block->used_in_previous;
   used_before_ -= used_;
-  held_ -= block->capacity;
+  capacity_ -= block->capacity;
   deallocate(block, block->capacity + kHeader);
 }
 

@@ -54,7 +54,7 @@ class Arena {
   // Bytes handed out and not taken back, with rounding to whole cache lines; the most that ever was; bytes held.
   std::size_t bytes_used() const { return used_before_ + used_; }
   std::size_t high_water() const { return high_water_ < peak() ? peak() : high_water_; }
-  std::size_t bytes_held() const { return held_; }
+  std::size_t capacity() const { return capacity_; }
 
  private:
   // Sits at the start of each block and takes one cache line of it.
@@ -73,7 +73,7 @@ class Arena {
   Block* current_ = nullptr;     // the newest; older ones hang behind it and are full
   std::size_t used_ = 0;         // of the current block
   std::size_t used_before_ = 0;  // of all older blocks
-  std::size_t held_ = 0;         // capacity of all blocks
+  std::size_t capacity_ = 0;     // capacity of all blocks
   std::size_t peak_ = 0;         // of this step, at the last release
   std::size_t high_water_ = 0;
   ShrinkPolicy clock_;

@@ -11,17 +11,17 @@ constexpr int kSteps = 63;
 TEST(ShrinkPolicy, RestsAfterManyStepsOfLittleUse) {
   ShrinkPolicy clock;
   const std::size_t held = 1 << 20;
-  for (int i = 0; i < kSteps - 1; ++i) EXPECT_FALSE(clock.rests(held / 8, held));
+  for (int i = 0; i < kSteps - 1; ++i) EXPECT_FALSE(clock.should_shrink(held / 8, held));
   // One busy step and the count begins anew.
-  EXPECT_FALSE(clock.rests(held / 2, held));
-  for (int i = 0; i < kSteps - 1; ++i) EXPECT_FALSE(clock.rests(i == 20 ? held / 4 : 100, held));
-  EXPECT_TRUE(clock.rests(100, held));
+  EXPECT_FALSE(clock.should_shrink(held / 2, held));
+  for (int i = 0; i < kSteps - 1; ++i) EXPECT_FALSE(clock.should_shrink(i == 20 ? held / 4 : 100, held));
+  EXPECT_TRUE(clock.should_shrink(100, held));
   EXPECT_EQ(clock.max_needed(), held / 4);
 }
 
 TEST(ShrinkPolicy, LeavesSmallMemoryAlone) {
   ShrinkPolicy clock;
-  for (int i = 0; i < 10 * kSteps; ++i) EXPECT_FALSE(clock.rests(0, 10000));
+  for (int i = 0; i < 10 * kSteps; ++i) EXPECT_FALSE(clock.should_shrink(0, 10000));
 }
 
 TEST(ShrinkPolicy, TrimsAnArray) {

@@ -215,11 +215,11 @@ class Array {
   // times on the way there, which is little, and no more than an eighth of its memory waits for elements to come.
   std::size_t next_capacity(std::size_t needed) const {
     constexpr std::size_t kLarge = 16 * 1024;  // bytes
-    const std::size_t least = sizeof(T) < kMemoryAlign ? kMemoryAlign / sizeof(T) : 1;
+    const std::size_t min_capacity = sizeof(T) < kMemoryAlign ? kMemoryAlign / sizeof(T) : 1;
     const std::size_t more = bytes() < kLarge ? capacity_ : capacity_ / 8;
     const std::size_t enlarged = more < SIZE_MAX - capacity_ ? capacity_ + more : SIZE_MAX;
-    const std::size_t wanted = enlarged < least ? least : enlarged;
-    return wanted < needed ? needed : wanted;
+    const std::size_t grown = enlarged < min_capacity ? min_capacity : enlarged;
+    return grown < needed ? needed : grown;
   }
 
   template <class... Args>
@@ -241,11 +241,11 @@ class Array {
   }
 
   void change_room(std::size_t room) {
-    const std::size_t wanted = bytes_of(room);
+    const std::size_t new_bytes = bytes_of(room);
     if constexpr (std::is_trivially_copyable_v<T>) {
-      data_ = static_cast<T*>(reallocate(data_, bytes(), wanted, size_ * sizeof(T)));
+      data_ = static_cast<T*>(reallocate(data_, bytes(), new_bytes, size_ * sizeof(T)));
     } else {
-      T* const storage = static_cast<T*>(allocate(wanted));
+      T* const storage = static_cast<T*>(allocate(new_bytes));
       for (std::size_t i = 0; i < size_; ++i) {
         new (storage + i) T(std::move(data_[i]));
         data_[i].~T();
@@ -264,7 +264,7 @@ class Array {
 // The index of an item that is not in use: the last of those given back in `free`, or of a new one. What it holds is the caller's to
 // set.
 template <class T>
-std::uint32_t take_place(Array<T>& items, Array<std::uint32_t>& free) {
+std::uint32_t take_slot(Array<T>& items, Array<std::uint32_t>& free) {
   if (free.empty()) {
     items.emplace_back();
     return std::uint32_t(items.size() - 1);

@@ -20,9 +20,9 @@ namespace gyre {
 template <class T>
 class InternedColumn {
  public:
-  std::size_t size() const { return places_.size(); }
+  std::size_t size() const { return indices_.size(); }
   std::size_t bytes() const {
-    return places_.bytes() + records_.bytes() + keys_.bytes() + users_.bytes() + free_.bytes() +
+    return indices_.bytes() + records_.bytes() + keys_.bytes() + users_.bytes() + free_.bytes() +
            table_.bytes();
   }
   // How many different records there are.
@@ -31,62 +31,62 @@ class InternedColumn {
   // Valid until the next set() or resize().
   template <class Index>
   const T& operator[](Index i) const {
-    return records_[places_[i]];
+    return records_[indices_[i]];
   }
   template <class Index>
   void set(Index i, const T& record) {
-    const std::uint32_t place = take(record);
-    give(places_[i]);
-    places_[i] = place;
+    const std::uint32_t index = acquire(record);
+    release(indices_[i]);
+    indices_[i] = index;
   }
   // New elements are as T().
   void resize(std::size_t count) {
-    while (places_.size() > count) {
-      give(places_.back());
-      places_.pop_back();
+    while (indices_.size() > count) {
+      release(indices_.back());
+      indices_.pop_back();
     }
-    if (places_.size() == count) return;
-    const std::uint32_t place = take(T());
-    users_[place] += static_cast<std::uint32_t>(count - places_.size()) - 1;
-    places_.resize(count, place);
+    if (indices_.size() == count) return;
+    const std::uint32_t index = acquire(T());
+    users_[index] += static_cast<std::uint32_t>(count - indices_.size()) - 1;
+    indices_.resize(count, index);
   }
 
   // For loops that must know where records are: element i is records()[places()[i]].
   const T* records() const { return records_.data(); }
-  const std::uint32_t* places() const { return places_.data(); }
+  const std::uint32_t* indices() const { return indices_.data(); }
 
  private:
   // The place of a record, which has one user more.
-  std::uint32_t take(const T& record) {
+  std::uint32_t acquire(const T& record) {
     const auto bits = interning_key(record);
     std::uint64_t key = hash_bytes(bits.data(), sizeof bits);
-    const auto key_of = [this](std::uint32_t place) { return keys_[place]; };
-    std::uint32_t place = table_.find(key, key_of);
+    const auto key_of = [this](std::uint32_t index) { return keys_[index]; };
+    std::uint32_t index = table_.find(key, key_of);
     // Another record with the same hash: the next key is as good.
-    while (place != SlotTable::kNone && interning_key(records_[place]) != bits)
-      place = table_.find(++key, key_of);
-    if (place == SlotTable::kNone) {
-      place = make_place();
-      records_[place] = record;
-      keys_[place] = key;
-      users_[place] = 0;
-      table_.insert(key, place, key_of);
+    while (index != SlotTable::kNone && interning_key(records_[index]) != bits)
+      index = table_.find(++key, key_of);
+    if (index == SlotTable::kNone) {
+      index = make_record();
+      records_[index] = record;
+      keys_[index] = key;
+      users_[index] = 0;
+      table_.insert(key, index, key_of);
     }
-    ++users_[place];
-    return place;
+    ++users_[index];
+    return index;
   }
 
-  void give(std::uint32_t place) {
-    if (--users_[place] > 0) return;
-    table_.erase(keys_[place], [this](std::uint32_t other) { return keys_[other]; });
-    free_.push_back(place);
+  void release(std::uint32_t index) {
+    if (--users_[index] > 0) return;
+    table_.erase(keys_[index], [this](std::uint32_t other) { return keys_[other]; });
+    free_.push_back(index);
   }
 
-  std::uint32_t make_place() {
+  std::uint32_t make_record() {
     if (!free_.empty()) {
-      const std::uint32_t place = free_.back();
+      const std::uint32_t index = free_.back();
       free_.pop_back();
-      return place;
+      return index;
     }
     records_.emplace_back();
     keys_.push_back(0);
@@ -94,7 +94,7 @@ class InternedColumn {
     return static_cast<std::uint32_t>(records_.size() - 1);
   }
 
-  Array<std::uint32_t> places_;  // by element
+  Array<std::uint32_t> indices_;  // by element
   Array<T> records_;
   Array<std::uint64_t> keys_;   // by record: its hash, or the next that was free
   Array<std::uint32_t> users_;  // by record

@@ -34,7 +34,7 @@ class SlotTable {
   template <class KeyOf>
   void insert(std::uint64_t key, std::uint32_t slot, const KeyOf& key_of) {
     if (size_ + 1 > cells_.size() / 4 * 3) enlarge(cells_.empty() ? kMinCells : 2 * cells_.size(), key_of);
-    place(key, slot);
+    put_slot(key, slot);
     ++size_;
   }
 
@@ -68,7 +68,7 @@ class SlotTable {
   std::size_t home(std::uint64_t key) const { return static_cast<std::size_t>(mix_bits(key) >> 32) & mask(); }
   std::size_t next(std::size_t i) const { return (i + 1) & mask(); }
 
-  void place(std::uint64_t key, std::uint32_t slot) {
+  void put_slot(std::uint64_t key, std::uint32_t slot) {
     std::size_t i = home(key);
     while (cells_[i] != kNone) i = next(i);
     cells_[i] = slot;
@@ -81,7 +81,7 @@ class SlotTable {
     cells_.reserve(count);
     cells_.resize(count, kNone);
     for (const std::uint32_t slot : old) {
-      if (slot != kNone) place(key_of(slot), slot);
+      if (slot != kNone) put_slot(key_of(slot), slot);
     }
   }
 

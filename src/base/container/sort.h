@@ -105,9 +105,9 @@ inline void radix_sort_pairs(std::span<std::uint64_t> keys, std::span<std::uint3
     if (!counts.make_starts(byte, from[0], count)) continue;
     std::uint32_t* const next = counts.count[byte];
     for (std::size_t i = 0; i < count; ++i) {
-      const std::uint32_t place = next[from[i] >> 8 * byte & 0xff]++;
-      to[place] = from[i];
-      to_values[place] = from_values[i];
+      const std::uint32_t index = next[from[i] >> 8 * byte & 0xff]++;
+      to[index] = from[i];
+      to_values[index] = from_values[i];
     }
     std::swap(from, to);
     std::swap(from_values, to_values);

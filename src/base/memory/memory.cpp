@@ -89,10 +89,10 @@ std::atomic<std::uint64_t> blocks_ever{0};
 
 }  // namespace
 
-bool set_allocator(const AllocatorHooks& wanted) {
+bool set_allocator(const AllocatorHooks& new_hooks) {
   if (total_bytes() != 0) return false;
-  const bool complete = wanted.allocate != nullptr && wanted.deallocate != nullptr;
-  hooks = complete ? wanted : kDefaultHooks;
+  const bool complete = new_hooks.allocate != nullptr && new_hooks.deallocate != nullptr;
+  hooks = complete ? new_hooks : kDefaultHooks;
   return true;
 }
 
@@ -115,14 +115,14 @@ void deallocate(void* memory, std::size_t bytes) {
   hooks.deallocate(memory, bytes, hooks.user);
 }
 
-void* reallocate(void* memory, std::size_t old_bytes, std::size_t bytes, std::size_t kept) {
-  GYRE_ASSERT(kept <= old_bytes && kept <= bytes, "what is kept is in both");
+void* reallocate(void* memory, std::size_t old_bytes, std::size_t bytes, std::size_t preserved) {
+  GYRE_ASSERT(preserved <= old_bytes && preserved <= bytes, "what is kept is in both");
   if (!kMovesPages || hooks.reallocate == nullptr || old_bytes < kLargeBlock || bytes < kLargeBlock) {
     // Never both at once where there is nothing to copy.
-    if (kept == 0) deallocate(memory, old_bytes);
+    if (preserved == 0) deallocate(memory, old_bytes);
     void* const moved = allocate(bytes);
-    if (kept == 0) return moved;
-    std::memcpy(moved, memory, kept);
+    if (preserved == 0) return moved;
+    std::memcpy(moved, memory, preserved);
     deallocate(memory, old_bytes);
     return moved;
   }

@@ -17,7 +17,7 @@ constexpr std::size_t kMemoryAlign = 64;
 void deallocate(void* memory, std::size_t bytes);
 // A block of another size that begins with the first `kept` bytes of this one (at most the lesser size), which is given back. Large
 // blocks keep the pages they have where the heap can do so: to touch new ones takes longer than what is done with them.
-[[nodiscard]] void* reallocate(void* memory, std::size_t old_bytes, std::size_t bytes, std::size_t kept);
+[[nodiscard]] void* reallocate(void* memory, std::size_t old_bytes, std::size_t bytes, std::size_t preserved);
 
 // Tells the check handler, then aborts.
 [[noreturn]] void out_of_memory(std::size_t bytes);

@@ -5,7 +5,7 @@
 #include "base/arena/shrink_policy.h"
 #include "base/container/array.h"
 #include "collision/broadphase/box_lanes.h"
-#include "collision/broadphase/box_sweep.h"
+#include "collision/broadphase/cast_box.h"
 
 #include <bit>
 #include <cstdint>
@@ -38,14 +38,14 @@ class BoxBuckets {
   }
 
   // Takes out what is at `place` of the list. Another item takes that place: it is returned, or kNone if there is none.
-  std::uint32_t remove(std::uint32_t& head, std::uint32_t place) {
+  std::uint32_t remove(std::uint32_t& head, std::uint32_t slot) {
     Chunk& first = chunks_[head];
     const std::uint32_t last = head * kWidth + first.count - 1;
     std::uint32_t moved = kNone;
-    if (place != last) {
+    if (slot != last) {
       moved = item_at(last);
-      set_box(place, box_at(last));
-      chunks_[place / kWidth].item[place % kWidth] = moved;
+      set_box(slot, box_at(last));
+      chunks_[slot / kWidth].item[slot % kWidth] = moved;
     }
     clear_lane_box(first, int(--first.count));
     if (first.count == 0) {
@@ -65,10 +65,10 @@ class BoxBuckets {
     }
   }
 
-  std::uint32_t item_at(std::uint32_t place) const { return chunks_[place / kWidth].item[place % kWidth]; }
-  Aabb box_at(std::uint32_t place) const { return lane_box(chunks_[place / kWidth], int(place % kWidth)); }
-  void set_box(std::uint32_t place, const Aabb& box) {
-    set_lane_box(chunks_[place / kWidth], int(place % kWidth), box);
+  std::uint32_t item_at(std::uint32_t slot) const { return chunks_[slot / kWidth].item[slot % kWidth]; }
+  Aabb box_at(std::uint32_t slot) const { return lane_box(chunks_[slot / kWidth], int(slot % kWidth)); }
+  void set_box(std::uint32_t slot, const Aabb& box) {
+    set_lane_box(chunks_[slot / kWidth], int(slot % kWidth), box);
   }
 
   // Calls visit(item, box, place) for each.
@@ -86,25 +86,26 @@ class BoxBuckets {
     const OverlapTest test(box);
     for (std::uint32_t i = head; i != kNone; i = chunks_[i].next) {
       const Chunk& chunk = chunks_[i];
-      for (unsigned rest = test.mask(chunk); rest != 0; rest &= rest - 1) {
-        const auto lane = std::uint32_t(std::countr_zero(rest));
+      for (unsigned left = test.mask(chunk); left != 0; left &= left - 1) {
+        const auto lane = std::uint32_t(std::countr_zero(left));
         visit(chunk.item[lane], i * kWidth + lane);
       }
     }
   }
   // Calls visit(item, reach, place), which returns the new reach, for each that the sweep may touch. Below 0 ends it.
   template <class Visit>
-  float for_each_along(std::uint32_t head, const SweepTest& sweep, float reach, Visit&& visit) const {
+  float for_each_along(std::uint32_t head, const CastTest& cast_test, float max_fraction,
+                       Visit&& visit) const {
     for (std::uint32_t i = head; i != kNone; i = chunks_[i].next) {
       const Chunk& chunk = chunks_[i];
       float enter[kWidth];
-      for (unsigned rest = sweep.mask(chunk, reach, enter); rest != 0; rest &= rest - 1) {
-        const auto lane = std::uint32_t(std::countr_zero(rest));
-        reach = visit(chunk.item[lane], reach, i * kWidth + lane);
-        if (reach < 0.0f) return reach;
+      for (unsigned left = cast_test.mask(chunk, max_fraction, enter); left != 0; left &= left - 1) {
+        const auto lane = std::uint32_t(std::countr_zero(left));
+        max_fraction = visit(chunk.item[lane], max_fraction, i * kWidth + lane);
+        if (max_fraction < 0.0f) return max_fraction;
       }
     }
-    return reach;
+    return max_fraction;
   }
 
   // Gives a whole list back.
@@ -124,7 +125,7 @@ class BoxBuckets {
   };
 
   std::uint32_t make_chunk() {
-    const std::uint32_t index = take_place(chunks_, free_);
+    const std::uint32_t index = take_slot(chunks_, free_);
     for (std::uint32_t lane = 0; lane < kWidth; ++lane) clear_lane_box(chunks_[index], int(lane));
     chunks_[index].next = kNone;
     chunks_[index].count = 0;
@@ -145,8 +146,8 @@ struct BoxEntry {
 class BucketIndex {
  public:
   std::size_t size() const { return size_; }
-  bool contains(std::uint32_t item) const { return item < places_.size() && places_[item] != kNone; }
-  Aabb box_of(std::uint32_t item) const { return buckets_.box_at(places_[item]); }
+  bool contains(std::uint32_t item) const { return item < slots_.size() && slots_[item] != kNone; }
+  Aabb box_of(std::uint32_t item) const { return buckets_.box_at(slots_[item]); }
 
   void begin_build() { entries_.clear(); }
   void add_to_build(std::uint32_t item, const Aabb& box) { entries_.push_back({box, item}); }
@@ -158,34 +159,34 @@ class BucketIndex {
  protected:
   static constexpr std::uint32_t kNone = BoxBuckets::kNone;
 
-  void make_room(std::uint32_t item) {
-    if (places_.size() <= item) {
-      places_.resize(std::size_t(item) + 1, kNone);
+  void grow_to(std::uint32_t item) {
+    if (slots_.size() <= item) {
+      slots_.resize(std::size_t(item) + 1, kNone);
       nodes_of_.resize(std::size_t(item) + 1, kNone);
     }
   }
   void clear_items() {
     buckets_.clear();
-    for (std::uint32_t& place : places_) place = kNone;
+    for (std::uint32_t& slot : slots_) slot = kNone;
     size_ = 0;
   }
   // Into the list of a node that begins at `head`, and out of it.
   void put(std::uint32_t& head, std::uint32_t node, std::uint32_t item, const Aabb& box) {
-    places_[item] = buckets_.add(head, item, box);
+    slots_[item] = buckets_.add(head, item, box);
     nodes_of_[item] = node;
   }
   void take(std::uint32_t& head, std::uint32_t item) {
-    const std::uint32_t place = places_[item];
-    const std::uint32_t moved = buckets_.remove(head, place);
-    if (moved != kNone) places_[moved] = place;
-    places_[item] = kNone;
+    const std::uint32_t slot = slots_[item];
+    const std::uint32_t moved = buckets_.remove(head, slot);
+    if (moved != kNone) slots_[moved] = slot;
+    slots_[item] = kNone;
   }
   std::size_t item_bytes() const {
-    return buckets_.bytes() + places_.bytes() + nodes_of_.bytes() + entries_.bytes();
+    return buckets_.bytes() + slots_.bytes() + nodes_of_.bytes() + entries_.bytes();
   }
 
   BoxBuckets buckets_;
-  Array<std::uint32_t> places_;    // by item, or kNone
+  Array<std::uint32_t> slots_;     // by item, or kNone
   Array<std::uint32_t> nodes_of_;  // by item
   Array<BoxEntry> entries_;        // of the present build
   ShrinkPolicy clock_;

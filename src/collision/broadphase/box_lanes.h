@@ -52,12 +52,12 @@ class OverlapLanes {
   GYRE_INLINE unsigned mask(const BoxLanes& lanes) const {
     unsigned bits = 0;
     GYRE_UNROLL
-    for (int first = 0; first < BoxLanes::kWidth; first += W) bits |= part(lanes, first) << first;
+    for (int first = 0; first < BoxLanes::kWidth; first += W) bits |= group_mask(lanes, first) << first;
     return bits;
   }
 
  private:
-  GYRE_INLINE unsigned part(const BoxLanes& lanes, int first) const {
+  GYRE_INLINE unsigned group_mask(const BoxLanes& lanes, int first) const {
     const auto load = [first](const float* from) { return Wide<W>::load(from + first); };
     const Mask<W> x = (load(lanes.low[0]) <= high_x_) & (load(lanes.high[0]) >= low_x_);
     const Mask<W> y = (load(lanes.low[1]) <= high_y_) & (load(lanes.high[1]) >= low_y_);

@@ -16,8 +16,8 @@
 #include "base/arena/shrink_policy.h"
 #include "base/container/array.h"
 #include "collision/broadphase/box_lanes.h"
-#include "collision/broadphase/box_sweep.h"
 #include "collision/broadphase/box_walk.h"
+#include "collision/broadphase/cast_box.h"
 
 #include <gyre/math.h>
 
@@ -32,7 +32,7 @@ class BoxTree {
   static constexpr std::size_t kRebuildShare = 4;  // building is cheaper when more than a quarter changes
 
   std::size_t size() const { return size_; }
-  bool contains(std::uint32_t item) const { return item < places_.size() && places_[item] != kNowhere; }
+  bool contains(std::uint32_t item) const { return item < slots_.size() && slots_[item] != kNowhere; }
 
   void clear();
   // Forgets everything and builds anew: items[i] has boxes[i].
@@ -55,8 +55,8 @@ class BoxTree {
   void move(std::uint32_t item, const Aabb& box);
   // Many boxes at once, nothing in or out: place() for each, and then refit() before anything is asked. False once the nodes have
   // grown so much against the boxes in them that the tree should be built anew.
-  void place(std::uint32_t item, const Aabb& box) {
-    set_lane_box(nodes_[places_[item] / kWidth], int(places_[item] % kWidth), box);
+  void set_box(std::uint32_t item, const Aabb& box) {
+    set_lane_box(nodes_[slots_[item] / kWidth], int(slots_[item] % kWidth), box);
   }
   bool refit();
   // Regroups the children of a few inner nodes, going round the tree from call to call: one, and more after many changes.
@@ -76,10 +76,10 @@ class BoxTree {
   // Calls visit(item, reach) for each item whose box the sweep may touch from t = 0 to `reach`, roughly from near to far; it
   // returns the new reach, below 0 to end the walk. Returns the last one.
   template <class Visit>
-  float for_each_along(const SweepTest& sweep, float reach, Visit&& visit) const {
-    if (size_ == 0) return reach;
+  float for_each_along(const CastTest& cast_test, float max_fraction, Visit&& visit) const {
+    if (size_ == 0) return max_fraction;
     static_assert(kMaxLevels * kWidth <= LineWalk::kRoom);
-    LineWalk walk(sweep.line(), root_, reach);
+    LineWalk walk(cast_test.line(), root_, max_fraction);
     while (walk_line_(nodes_.data(), walk)) {
       walk.reach = visit(walk.leaf, walk.reach);
       if (walk.reach < 0.0f) break;
@@ -89,7 +89,7 @@ class BoxTree {
 
   // The box of an item that is in the tree.
   Aabb box_of(std::uint32_t item) const {
-    return lane_box(nodes_[places_[item] / kWidth], int(places_[item] % kWidth));
+    return lane_box(nodes_[slots_[item] / kWidth], int(slots_[item] % kWidth));
   }
   // Calls visit(box, depth) for every node, from the root (depth 0) down.
   template <class Visit>
@@ -110,7 +110,7 @@ class BoxTree {
   const char* find_fault() const;
   // Sum over inner nodes of their boxes' surface over the root's: how many nodes a walk meets, roughly.
   double cost() const;
-  std::size_t bytes() const { return nodes_.bytes() + places_.bytes() + free_.bytes() + entries_.bytes(); }
+  std::size_t bytes() const { return nodes_.bytes() + slots_.bytes() + free_.bytes() + entries_.bytes(); }
 
  private:
   static constexpr std::uint32_t kNowhere = 0xffffffffu;
@@ -146,7 +146,7 @@ class BoxTree {
   WalkLine<BoxTreeNode> walk_line_ = select_box_line_walk();
   Array<Node> nodes_;
   Array<std::uint32_t> free_;
-  Array<std::uint32_t> places_;  // by item: kWidth * node + lane, or kNowhere
+  Array<std::uint32_t> slots_;   // by item: kWidth * node + lane, or kNowhere
   Array<Entry> entries_;         // of the present build
   ShrinkPolicy clock_;
   std::uint32_t root_ = kNowhere;

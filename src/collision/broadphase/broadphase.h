@@ -4,7 +4,7 @@
 
 #include "base/container/array.h"
 #include "base/function_ref.h"
-#include "collision/broadphase/box_sweep.h"
+#include "collision/broadphase/cast_box.h"
 #include "collision/broadphase/proxy.h"
 #include "task/task_system.h"
 
@@ -25,7 +25,7 @@ struct NodeBox {
 using PairFilter = FunctionRef<void(Array<std::uint64_t>& keys, std::size_t from)>;
 
 // What a cast does with a candidate: returns how far along the sweep it is still to look, at most `reach`; below 0 ends it.
-using CastVisit = FunctionRef<float(std::uint32_t index, float reach)>;
+using CastVisit = FunctionRef<float(std::uint32_t index, float max_fraction)>;
 
 class Broadphase {
  public:
@@ -57,7 +57,7 @@ class Broadphase {
   // phases, and is none that a result may depend on: what is met at `reach` itself is visited too, so that a caller who keeps
   // the nearest hit (of equal ones that of the lowest index) and returns its t gets the same from all. May be called from
   // several threads at once, and allocates nothing.
-  virtual float cast(std::span<const Proxy> proxies, const BoxSweep& sweep, float reach,
+  virtual float cast(std::span<const Proxy> proxies, const CastBox& cast_box, float max_fraction,
                      CastVisit visit) const = 0;
 
   // For the eyes of people: calls visit for the box of every inner node of every tree that the broad phase has, from the

@@ -12,9 +12,9 @@ constexpr float kCutCost = 1.5f;
 constexpr float kNoCost = 1.0e9f;
 
 void insert_sorted(float* values, std::size_t count, float value) {
-  std::size_t place = count;
-  for (; place > 0 && value < values[place - 1]; --place) values[place] = values[place - 1];
-  values[place] = value;
+  std::size_t k = count;
+  for (; k > 0 && value < values[k - 1]; --k) values[k] = values[k - 1];
+  values[k] = value;
 }
 
 struct Choice {
@@ -46,7 +46,7 @@ void choose_along(int direction, std::span<const BoxEntry> sample, Choice& best)
 
 }  // namespace
 
-bool BspSplitter::parallel_filter(std::span<BoxEntry> entries, Split& split) {
+bool BspSplitter::choose_split(std::span<BoxEntry> entries, Split& split) {
   BoxEntry sample[kPlaneSample];
   const std::size_t stride = (entries.size() + kPlaneSample - 1) / kPlaneSample;
   std::size_t count = 0;

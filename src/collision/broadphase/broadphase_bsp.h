@@ -20,7 +20,7 @@ struct BspSplitter {
     if (SplitDirections::high(box, split.direction) < split.value) return 0;
     return SplitDirections::low(box, split.direction) > split.value ? 2 : 1;
   }
-  static bool parallel_filter(std::span<BoxEntry> entries, Split& split);
+  static bool choose_split(std::span<BoxEntry> entries, Split& split);
 };
 
 using BspTree = SplitTree<BspSplitter>;

@@ -12,7 +12,7 @@ float key_of(const BoxEntry& entry, int axis) { return entry.box.low[axis] + ent
 
 }  // namespace
 
-bool KdSplitter::parallel_filter(std::span<BoxEntry> entries, Split& split) {
+bool KdSplitter::choose_split(std::span<BoxEntry> entries, Split& split) {
   Vec3 low = entries[0].box.low + entries[0].box.high, high = low;
   for (const BoxEntry& entry : entries) {
     const Vec3 middle = entry.box.low + entry.box.high;

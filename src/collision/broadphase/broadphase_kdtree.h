@@ -18,7 +18,7 @@ struct KdSplitter {
     return box.low[split.direction] + box.high[split.direction];
   }
   static int child_of(const Split& split, const Aabb& box) { return key(split, box) < split.value ? 0 : 1; }
-  static bool parallel_filter(std::span<BoxEntry> entries, Split& split);
+  static bool choose_split(std::span<BoxEntry> entries, Split& split);
 };
 
 using KdTree = SplitTree<KdSplitter>;

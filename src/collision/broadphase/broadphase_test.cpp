@@ -140,38 +140,38 @@ std::vector<BroadPhaseKind> all_kinds() {
 
 // What a caller who looks for the nearest makes of a cast: the way to each box stands for an exact test.
 struct NearestHit {
-  float reach = 1.0f;
+  float max_fraction = 1.0f;
   std::uint32_t index = 0xffffffffu;
   bool operator==(const NearestHit&) const = default;
 };
-NearestHit nearest(const Broadphase& broadphase, const std::vector<Proxy>& proxies, const BoxSweep& sweep) {
+NearestHit nearest(const Broadphase& broadphase, const std::vector<Proxy>& proxies, const CastBox& cast_box) {
   NearestHit best;
-  broadphase.cast(proxies, sweep, 1.0f, [&](std::uint32_t index, float reach) {
+  broadphase.cast(proxies, cast_box, 1.0f, [&](std::uint32_t index, float max_fraction) {
     float low = 0.0f, high = 1.0f;
-    if (!meets(sweep, 0.0f, proxies[index].fat_box)) {
+    if (!meets(cast_box, 0.0f, proxies[index].fat_box)) {
       for (int i = 0; i < 30; ++i) {
         const float middle = 0.5f * (low + high);
-        (meets(sweep, middle, proxies[index].fat_box) ? high : low) = middle;
+        (meets(cast_box, middle, proxies[index].fat_box) ? high : low) = middle;
       }
     } else {
       high = 0.0f;
     }
-    if (high < best.reach || (high == best.reach && index < best.index)) best = {high, index};
-    return std::min(reach, best.reach);
+    if (high < best.max_fraction || (high == best.max_fraction && index < best.index)) best = {high, index};
+    return std::min(max_fraction, best.max_fraction);
   });
   return best;
 }
 
-BoxSweep random_sweep(World& world) {
+CastBox random_cast(World& world) {
   Random& random = world.random;
-  BoxSweep sweep{DVec3(random.vector(-25, 25)), random.vector(-40, 40), {}};
-  if (random.next(3) == 0) sweep.half_extents = random.vector(0, 1);
-  if (random.next(3) == 0) sweep.way = {0, random.real(-30, 30), 0};
-  if (random.next(12) == 0) sweep.way = {};
-  if (world.layout == Layout::flat && random.next(2) == 0) sweep.start.y = sweep.way.y = 0.0f;
+  CastBox cast_box{DVec3(random.vector(-25, 25)), random.vector(-40, 40), {}};
+  if (random.next(3) == 0) cast_box.half_extents = random.vector(0, 1);
+  if (random.next(3) == 0) cast_box.translation = {0, random.real(-30, 30), 0};
+  if (random.next(12) == 0) cast_box.translation = {};
+  if (world.layout == Layout::flat && random.next(2) == 0) cast_box.start.y = cast_box.translation.y = 0.0f;
   if (world.layout == Layout::line)
-    sweep = {{random.real(-600, 600), 0, 0}, {random.real(-900, 900), 0, 0}, {}};
-  return sweep;
+    cast_box = {{random.real(-600, 600), 0, 0}, {random.real(-900, 900), 0, 0}, {}};
+  return cast_box;
 }
 
 void expect_same_answers(World& world, const Broadphase& broadphase, const Broadphase& brute) {
@@ -181,24 +181,24 @@ void expect_same_answers(World& world, const Broadphase& broadphase, const Broad
   broadphase.query(world.proxies, box, b);
   ASSERT_EQ(a, b);
   for (int i = 0; i < 20; ++i) {
-    const BoxSweep sweep = random_sweep(world);
+    const CastBox cast_box = random_cast(world);
     std::vector<std::uint32_t> expected, found;
     for (std::uint32_t k = 0; k < world.proxies.size(); ++k) {
-      if (world.proxies[k].motion != ProxyMotion::none && meets(sweep, 0.8f, world.proxies[k].fat_box))
+      if (world.proxies[k].motion != ProxyMotion::none && meets(cast_box, 0.8f, world.proxies[k].fat_box))
         expected.push_back(k);
     }
-    EXPECT_EQ(broadphase.cast(world.proxies, sweep, 0.8f,
-                              [&](std::uint32_t index, float reach) {
+    EXPECT_EQ(broadphase.cast(world.proxies, cast_box, 0.8f,
+                              [&](std::uint32_t index, float max_fraction) {
                                 found.push_back(index);
-                                return reach;
+                                return max_fraction;
                               }),
               0.8f);
     std::sort(found.begin(), found.end());
     ASSERT_EQ(found, expected);
-    ASSERT_EQ(nearest(broadphase, world.proxies, sweep), nearest(brute, world.proxies, sweep));
+    ASSERT_EQ(nearest(broadphase, world.proxies, cast_box), nearest(brute, world.proxies, cast_box));
     if (expected.empty()) continue;
     int visits = 0;
-    broadphase.cast(world.proxies, sweep, 0.8f, [&](std::uint32_t, float) {
+    broadphase.cast(world.proxies, cast_box, 0.8f, [&](std::uint32_t, float) {
       ++visits;
       return -1.0f;
     });
@@ -434,7 +434,7 @@ TEST(BoxTree, RefitsWhileThatIsGood) {
     for (std::uint32_t i = 0; i < items.size(); ++i) {
       const Vec3 by = frame < 20 ? Vec3{0.3f, -0.5f, 0.1f} : velocities[i];
       boxes[i] = {boxes[i].low + by, boxes[i].high + by};
-      tree.place(i, boxes[i]);
+      tree.set_box(i, boxes[i]);
     }
     if (!tree.refit()) {
       tree.build(items, boxes);

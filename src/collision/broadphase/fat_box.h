@@ -29,13 +29,13 @@ struct WorldBox {
 // Contains every point of the shape.
 WorldBox world_box(const Shape& shape, const Pose& world_from_shape);
 // The same where its bounds() at the origin, turned as it is, are known.
-WorldBox world_box(const Shape& shape, const Aabb& turned, DVec3 position);
+WorldBox world_box(const Shape& shape, const Aabb& rotated, DVec3 position);
 
 // How a shape moves: what its fat box must hold.
 struct BoxMotion {
   float size = 0.0f;  // ColliderShape::size
-  Vec3 way;           // m, how far its body goes in a step at its present velocity
-  float turn =
+  Vec3 translation;   // m, how far its body goes in a step at its present velocity
+  float arc =
       0.0f;  // m, how far its points go because the body turns (angle times distance from the centre of mass)
 };
 
@@ -46,15 +46,16 @@ inline double margin_size(const BoxMotion& motion) {
 
 // The box that the coming step needs.
 inline WorldBox needed_box(const WorldBox& tight, const BoxMotion& motion) {
-  const double margin = double(kSpeculativeShare) * margin_size(motion) + double(motion.turn);
+  const double margin = double(kSpeculativeShare) * margin_size(motion) + double(motion.arc);
   const DVec3 all{margin, margin, margin};
-  return {tight.low - all + min(motion.way, Vec3{}), tight.high + all + max(motion.way, Vec3{})};
+  return {tight.low - all + min(motion.translation, Vec3{}),
+          tight.high + all + max(motion.translation, Vec3{})};
 }
 
 // The box to be given to the broad phase: the needed one with a margin, longer in the direction of motion.
 Aabb fat_box(const WorldBox& needed, const BoxMotion& motion);
 
-inline bool holds(const Aabb& fat, const WorldBox& needed) {
+inline bool contains(const Aabb& fat, const WorldBox& needed) {
   const DVec3 low(fat.low);
   const DVec3 high(fat.high);
   for (int axis = 0; axis < 3; ++axis) {
@@ -65,7 +66,7 @@ inline bool holds(const Aabb& fat, const WorldBox& needed) {
 
 // Whether a fat box must be made anew: it no longer holds what is needed, or is much too large.
 inline bool needs_refit(const Aabb& fat, const WorldBox& needed, const BoxMotion& motion) {
-  if (!holds(fat, needed)) return true;
+  if (!contains(fat, needed)) return true;
   const DVec3 low(fat.low);
   const DVec3 high(fat.high);
   // Far from the origin, rounding alone makes a small shape's box large.

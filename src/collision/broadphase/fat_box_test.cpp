@@ -33,9 +33,9 @@ TEST(FatBox, WorldBoxContainsEveryPoint) {
         const Vec3 direction{axis == 0 ? 1.0f : 0.0f, axis == 1 ? 1.0f : 0.0f, axis == 2 ? 1.0f : 0.0f};
         for (const float sign : {-1.0f, 1.0f}) {
           const Vec3 local = support(shape, rotate_inverse(pose.orientation, sign * direction));
-          const double reach = double(sign) * (pose * local)[axis] + double(core_radius(shape));
-          EXPECT_LE(reach, double(sign) * (sign > 0 ? box.high[axis] : box.low[axis]));
-          EXPECT_GE(reach + 1.3e-3, double(sign) * (sign > 0 ? box.high[axis] : box.low[axis]));
+          const double max_fraction = double(sign) * (pose * local)[axis] + double(core_radius(shape));
+          EXPECT_LE(max_fraction, double(sign) * (sign > 0 ? box.high[axis] : box.low[axis]));
+          EXPECT_GE(max_fraction + 1.3e-3, double(sign) * (sign > 0 ? box.high[axis] : box.low[axis]));
         }
       }
       EXPECT_TRUE(contains(round_outward(box), box));

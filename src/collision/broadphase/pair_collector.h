@@ -40,7 +40,7 @@ class PairCollector {
     if (is_moved_.size() < proxies.size()) is_moved_.resize(proxies.size());
     for (const std::uint32_t index : moved) is_moved_.set(index);
     found_.resize(std::size_t(tasks.worker_count()));
-    for (Found& found : found_) found.keys.reserve(most_ + max_at_once_);
+    for (Found& found : found_) found.keys.reserve(max_pairs_ + max_per_block_);
     for_blocks(tasks, count, kBlock, [&](int begin, int end, int worker) {
       Array<std::uint64_t>& keys = found_[worker].keys;
       const std::size_t before = keys.size();
@@ -50,7 +50,7 @@ class PairCollector {
         if (overlap(a.fat_box, b.fat_box) && may_pair(a, b)) keys.push_back(pair_key(one, other));
       };
       for (int i = begin; i < end; ++i) search(i, emit);
-      found_[worker].max_at_once = max(found_[worker].max_at_once, keys.size() - before);
+      found_[worker].max_per_block = max(found_[worker].max_per_block, keys.size() - before);
       filter(keys, before);
     });
     for (const std::uint32_t index : moved) is_moved_.clear(index);
@@ -63,9 +63,9 @@ class PairCollector {
   void trim() {
     const std::size_t needed = last_ * sizeof(std::uint64_t);
     last_ = 0;
-    if (!clock_.rests(needed, scratch_.bytes())) return;
-    most_ = 2 * clock_.max_needed() / sizeof(std::uint64_t);
-    max_at_once_ = 0;
+    if (!clock_.should_shrink(needed, scratch_.bytes())) return;
+    max_pairs_ = 2 * clock_.max_needed() / sizeof(std::uint64_t);
+    max_per_block_ = 0;
     for (Found& found : found_) found = {};
     scratch_ = Array<std::uint64_t>();
   }
@@ -81,7 +81,7 @@ class PairCollector {
   // What one worker finds.
   struct Found {
     Array<std::uint64_t> keys;
-    std::size_t max_at_once = 0;  // in a block
+    std::size_t max_per_block = 0;  // in a block
   };
 
   void append_sorted(Array<std::uint64_t>& pairs) {
@@ -89,22 +89,22 @@ class PairCollector {
     for (Found& found : found_) {
       pairs.append(found.keys);
       found.keys.clear();
-      max_at_once_ = max(max_at_once_, found.max_at_once);
+      max_per_block_ = max(max_per_block_, found.max_per_block);
     }
     const std::size_t count = pairs.size() - before;
     // Which worker finds how many changes from run to run: each gets room for all, and for a block before it is filtered, so
     // that none grows once warm.
-    if (count > most_) most_ = count + count / 2;
+    if (count > max_pairs_) max_pairs_ = count + count / 2;
     last_ = last_ < count ? count : last_;
-    if (scratch_.size() < count) scratch_.resize_uninitialized(most_);
+    if (scratch_.size() < count) scratch_.resize_uninitialized(max_pairs_);
     radix_sort_u64({pairs.data() + before, count}, scratch_);
   }
 
   Bitset is_moved_;
   Array<Found> found_;  // by worker
   Array<std::uint64_t> scratch_;
-  std::size_t most_ = 0;  // pairs of a step
-  std::size_t max_at_once_ = 0;
+  std::size_t max_pairs_ = 0;  // pairs of a step
+  std::size_t max_per_block_ = 0;
   std::size_t last_ = 0;  // pairs found since the last trim()
   ShrinkPolicy clock_;
 };

@@ -91,40 +91,39 @@ class SplitTree : public BucketIndex {
   }
 
   template <class Visit>
-  float for_each_along(const SweepTest& sweep, float reach, Visit&& visit) const {
-    if (root_ == kNone) return reach;
+  float for_each_along(const CastTest& cast_test, float max_fraction, Visit&& visit) const {
+    if (root_ == kNone) return max_fraction;
     struct Waiting {
       std::uint32_t node;
-      SweepRange range;
+      CastRange range;
     };
     Waiting stack[kStackSize];
     int depth = 0;
-    stack[depth++] = {root_, {0.0f, reach}};
+    stack[depth++] = {root_, {0.0f, max_fraction}};
     while (depth > 0) {
       Waiting next = stack[--depth];
-      next.range.leave = min(next.range.leave, reach);
+      next.range.leave = min(next.range.leave, max_fraction);
       if (next.range.is_empty()) continue;
       const Node& node = nodes_[next.node];
       if (node.is_leaf()) {
-        reach = buckets_.for_each_along(
-            node.items, sweep, reach,
+        max_fraction = buckets_.for_each_along(
+            node.items, cast_test, max_fraction,
             [&](std::uint32_t item, float so_far, std::uint32_t) { return visit(item, so_far); });
-        if (reach < 0.0f) return reach;
+        if (max_fraction < 0.0f) return max_fraction;
         continue;
       }
       const int bottom = depth;
       for (int i = 0; i < kChildren; ++i) {
-        SweepRange range = next.range;
+        CastRange range = next.range;
         if (!(node.low[i] <= node.high[i])) continue;
-        clip(sweep, node, i, range);
+        clip(cast_test, node, i, range);
         if (range.is_empty()) continue;
-        int place = depth++;
-        for (; place > bottom && stack[place - 1].range.enter <= range.enter; --place)
-          stack[place] = stack[place - 1];
-        stack[place] = {node.child[i], range};
+        int k = depth++;
+        for (; k > bottom && stack[k - 1].range.enter <= range.enter; --k) stack[k] = stack[k - 1];
+        stack[k] = {node.child[i], range};
       }
     }
-    return reach;
+    return max_fraction;
   }
 
   // Boxes around what inner nodes hold.
@@ -136,10 +135,10 @@ class SplitTree : public BucketIndex {
  private:
   static constexpr int kChildren = Splitter::kChildren;
   static constexpr std::uint32_t kMaxInLeaf = 32;
-  static constexpr std::uint32_t kFewInLeaf = 16;  // when it is built
-  static constexpr std::uint32_t kFewArrivals = 64;
-  static constexpr int kMostDepth = 96;
-  static constexpr int kStackSize = (kMostDepth + 2) * kChildren;
+  static constexpr std::uint32_t kBuiltLeafSize = 16;  // when it is built
+  static constexpr std::uint32_t kMinArrivals = 64;
+  static constexpr int kMaxDepth = 96;
+  static constexpr int kStackSize = (kMaxDepth + 2) * kChildren;
 
   struct Node {
     Split split;
@@ -156,12 +155,12 @@ class SplitTree : public BucketIndex {
     bool is_leaf() const { return leaf; }
   };
 
-  static void clip(const SweepTest& sweep, const Node& node, int child, SweepRange& range) {
+  static void clip(const CastTest& cast_test, const Node& node, int child, CastRange& range) {
     const int direction = node.split.direction;
     if (direction < 3) {
-      sweep.clip(direction, node.low[child], node.high[child], range);
+      cast_test.clip(direction, node.low[child], node.high[child], range);
     } else {
-      sweep.clip_along(SplitDirections::kSigns[direction], node.low[child], node.high[child], range);
+      cast_test.clip_along(SplitDirections::kSigns[direction], node.low[child], node.high[child], range);
     }
   }
   template <class Visit>
@@ -174,8 +173,8 @@ class SplitTree : public BucketIndex {
   void fill_leaf(std::uint32_t index, std::span<const BoxEntry> entries);
   void rebuild(std::uint32_t index);
   std::uint32_t descend(const Aabb& box);
-  void arrive(std::uint32_t leaf, std::uint32_t item, const Aabb& box);
-  void leave(std::uint32_t item);
+  void add_to_leaf(std::uint32_t leaf, std::uint32_t item, const Aabb& box);
+  void remove_from_leaf(std::uint32_t item);
   void widen(Node& node, int child, const Aabb& box);
 
   Array<Node> nodes_;

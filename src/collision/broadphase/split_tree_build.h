@@ -9,7 +9,7 @@ namespace gyre {
 
 template <class Splitter>
 std::uint32_t SplitTree<Splitter>::make_node(std::uint32_t parent) {
-  const std::uint32_t index = take_place(nodes_, free_);
+  const std::uint32_t index = take_slot(nodes_, free_);
   nodes_[index] = Node();
   nodes_[index].parent = parent;
   constexpr float kEnd = std::numeric_limits<float>::infinity();
@@ -46,7 +46,7 @@ void SplitTree<Splitter>::fill(std::uint32_t index, std::span<BoxEntry> entries,
   nodes_[index].count = std::uint32_t(entries.size());
   nodes_[index].arrivals = 0;
   Split split;
-  if (entries.size() <= kFewInLeaf || depth >= kMostDepth / 2 || !Splitter::parallel_filter(entries, split)) {
+  if (entries.size() <= kBuiltLeafSize || depth >= kMaxDepth / 2 || !Splitter::choose_split(entries, split)) {
     fill_leaf(index, entries);
     return;
   }
@@ -65,11 +65,11 @@ void SplitTree<Splitter>::fill(std::uint32_t index, std::span<BoxEntry> entries,
   nodes_[index].leaf = false;
   nodes_[index].split = split;
   for (int i = 0; i < kChildren; ++i) {
-    const std::span<BoxEntry> part = entries.subspan(begins[i], begins[i + 1] - begins[i]);
+    const std::span<BoxEntry> group = entries.subspan(begins[i], begins[i + 1] - begins[i]);
     const std::uint32_t child = make_node(index);
     nodes_[index].child[i] = child;
-    for (const BoxEntry& entry : part) widen(nodes_[index], i, entry.box);
-    fill(child, part, depth + 1);
+    for (const BoxEntry& entry : group) widen(nodes_[index], i, entry.box);
+    fill(child, group, depth + 1);
   }
 }
 
@@ -141,7 +141,7 @@ std::uint32_t SplitTree<Splitter>::descend(const Aabb& box) {
 }
 
 template <class Splitter>
-void SplitTree<Splitter>::leave(std::uint32_t item) {
+void SplitTree<Splitter>::remove_from_leaf(std::uint32_t item) {
   const std::uint32_t leaf = nodes_of_[item];
   take(nodes_[leaf].items, item);
   for (std::uint32_t index = leaf; index != kNone; index = nodes_[index].parent) --nodes_[index].count;
@@ -149,35 +149,35 @@ void SplitTree<Splitter>::leave(std::uint32_t item) {
 
 // Puts an item into the leaf where it belongs, and builds anew what that wears out.
 template <class Splitter>
-void SplitTree<Splitter>::arrive(std::uint32_t leaf, std::uint32_t item, const Aabb& box) {
+void SplitTree<Splitter>::add_to_leaf(std::uint32_t leaf, std::uint32_t item, const Aabb& box) {
   put(nodes_[leaf].items, leaf, item, box);
-  std::uint32_t worn = kNone;
+  std::uint32_t to_rebuild = kNone;
   int depth = 0;
   for (std::uint32_t index = leaf; index != kNone; index = nodes_[index].parent, ++depth) {
     Node& node = nodes_[index];
     ++node.count;
-    if (++node.arrivals > max(kFewArrivals, node.count) && !node.is_leaf()) worn = index;
+    if (++node.arrivals > max(kMinArrivals, node.count) && !node.is_leaf()) to_rebuild = index;
   }
   const std::uint32_t count = nodes_[leaf].count;
   // What cannot be parted is tried again only when there is twice as much of it.
   const bool full = count == kMaxInLeaf + 1 || (count > kMaxInLeaf && (count & (count - 1)) == 0);
-  if (full && worn == kNone) worn = depth > kMostDepth / 2 ? root_ : leaf;
-  if (worn != kNone) rebuild(worn);
+  if (full && to_rebuild == kNone) to_rebuild = depth > kMaxDepth / 2 ? root_ : leaf;
+  if (to_rebuild != kNone) rebuild(to_rebuild);
 }
 
 template <class Splitter>
 void SplitTree<Splitter>::insert(std::uint32_t item, const Aabb& box) {
   make_room(item);
-  GYRE_ASSERT(places_[item] == kNone, "the item is not in the tree yet");
+  GYRE_ASSERT(slots_[item] == kNone, "the item is not in the tree yet");
   if (root_ == kNone) root_ = make_node(kNone);
   ++size_;
-  arrive(descend(box), item, box);
+  add_to_leaf(descend(box), item, box);
 }
 
 template <class Splitter>
 void SplitTree<Splitter>::remove(std::uint32_t item) {
   GYRE_ASSERT(contains(item), "the item is in the tree");
-  leave(item);
+  remove_from_leaf(item);
   if (--size_ == 0) clear();
 }
 
@@ -186,11 +186,11 @@ void SplitTree<Splitter>::move(std::uint32_t item, const Aabb& box) {
   GYRE_ASSERT(contains(item), "the item is in the tree");
   const std::uint32_t leaf = descend(box);
   if (leaf == nodes_of_[item]) {
-    buckets_.set_box(places_[item], box);
+    buckets_.set_box(slots_[item], box);
     return;
   }
-  leave(item);
-  arrive(leaf, item, box);
+  remove_from_leaf(item);
+  add_to_leaf(leaf, item, box);
 }
 
 template <class Splitter>
@@ -223,10 +223,10 @@ const char* SplitTree<Splitter>::find_fault() const {
       if (count != node.count) return "the number of a node's items is wrong";
       continue;
     }
-    std::uint32_t here = 0;
-    buckets_.for_each(node.items, [&](std::uint32_t item, const Aabb& box, std::uint32_t place) {
-      ++here;
-      if (places_[item] != place || nodes_of_[item] != index) fault = "an item's place is wrong";
+    std::uint32_t count = 0;
+    buckets_.for_each(node.items, [&](std::uint32_t item, const Aabb& box, std::uint32_t slot) {
+      ++count;
+      if (slots_[item] != slot || nodes_of_[item] != index) fault = "an item's place is wrong";
       std::uint32_t below = index;
       for (std::uint32_t above = node.parent; above != kNone; below = above, above = nodes_[above].parent) {
         int lane = 0;
@@ -237,12 +237,12 @@ const char* SplitTree<Splitter>::find_fault() const {
           fault = "an item reaches farther than a node above it knows";
       }
     });
-    if (here != node.count) return "the number of a leaf's items is wrong";
-    items += here;
+    if (count != node.count) return "the number of a leaf's items is wrong";
+    items += count;
   }
   if (fault != nullptr) return fault;
   if (used + free_.size() != nodes_.size()) return "a node is neither in use nor free";
-  if (depth() > kMostDepth) return "nodes lie too deep";
+  if (depth() > kMaxDepth) return "nodes lie too deep";
   return items == size_ ? nullptr : "the number of items is wrong";
 }
 

@@ -32,14 +32,14 @@ class ColliderShapes {
       const Shapes& shapes)  // NOLINT: either form is all that is needed
       : records_(std::span<const ColliderShape>(shapes).data()) {}
   ColliderShapes(const InternedColumn<ColliderShape>& shapes)  // NOLINT
-      : records_(shapes.records()), places_(shapes.places()) {}
+      : records_(shapes.records()), indices_(shapes.indices()) {}
   const ColliderShape& operator[](std::uint32_t shape) const {
-    return records_[places_ != nullptr ? places_[shape] : shape];
+    return records_[indices_ != nullptr ? indices_[shape] : shape];
   }
 
  private:
   const ColliderShape* records_ = nullptr;
-  const std::uint32_t* places_ = nullptr;
+  const std::uint32_t* indices_ = nullptr;
 };
 
 // One body, as its look is made from it.
@@ -48,7 +48,7 @@ struct ColliderBody {
   Vec3 center;            // centre of mass, body frame
   Vec3 linear_velocity;   // m/s, of the centre of mass
   Vec3 angular_velocity;  // rad/s
-  float reach = 0.0f;     // m, farthest point of any of its shapes from the centre of mass
+  float bounding_radius = 0.0f;  // m, farthest point of any of its shapes from the centre of mass
   bool awake = false;     // awake and not fixed
 };
 
@@ -56,43 +56,43 @@ struct ColliderBody {
 struct alignas(64) CollisionBody {
   DVec3 position;  // of the origin
   Quat orientation;
-  Vec3 way;   // m, how far the centre of mass goes in the step
-  Vec3 turn;  // rad, how far the body turns in the step
+  Vec3 translation;  // m, how far the centre of mass goes in the step
+  Vec3 rotation;     // rad, how far the body turns in the step
 };
 
 // `seconds`: length of the step, how far things may come.
 inline CollisionBody make_collision_body(const ColliderBody& body, float seconds) {
-  CollisionBody look;
-  look.position = body.pose.position;
-  look.orientation = body.pose.orientation;
-  look.way = seconds * body.linear_velocity;
-  if (body.awake) look.turn = seconds * body.angular_velocity;
-  return look;
+  CollisionBody body_out;
+  body_out.position = body.pose.position;
+  body_out.orientation = body.pose.orientation;
+  body_out.translation = seconds * body.linear_velocity;
+  if (body.awake) body_out.rotation = seconds * body.angular_velocity;
+  return body_out;
 }
 
 // How contacts are recycled: a kernel of contact_recycle.h.
 struct ContactPair;
 struct Recycled;
-using RecycleContacts = void (*)(const ContactPair* pairs, int begin, int end, bool may_recycle,
+using RecycleContacts = void (*)(const ContactPair* pairs, int begin, int end, bool allow_recycling,
                                  Recycled& recycled);
 
 // A body's centre of mass in its frame, and how far its farthest point is from there. Four floats are read at a time.
 struct alignas(16) BodyCenter {
   Vec3 position;
-  float reach = 0.0f;  // m
+  float bounding_radius = 0.0f;  // m
 };
 // A bound of the farthest point from the body's origin, m.
-inline float extent_of(const BodyCenter& center) { return center.reach + length(center.position); }
+inline float extent_of(const BodyCenter& center) { return center.bounding_radius + length(center.position); }
 
 struct CollideInput {
   ColliderShapes shapes;
-  std::span<const CollisionBody> looks;  // by body
+  std::span<const CollisionBody> bodies;  // by body
   std::span<const BodyCenter> centers;  // by body
   std::span<const std::uint8_t> awake;  // by body: 1 for those that are, and not fixed
   std::span<const Proxy> proxies;
   // Contacts, by slot: of the others both bodies sleep and the boxes are as they were, so nothing is to be done. Only bodies of these
   // need a look.
-  const Bitset& asked;
+  const Bitset& active;
   RecycleContacts recycle_contacts;
   bool recycle = true;  // false: looks at every pair anew (tests compare with that)
 };
@@ -102,9 +102,9 @@ struct TouchChanges {
   Bitset began;  // not touching before, touching now (sensors too)
   Bitset ended;  // the other way round
   Bitset gone;   // fat boxes no longer overlap: remove the contact (`ended` is set too if it was touching)
-  Bitset beside_resting;  // looked at, has points, and only one of the two is moved by contacts (for seam.h)
+  Bitset on_static;  // looked at, has points, and only one of the two is moved by contacts (for seam.h)
   Bitset
-      may_stop;  // asked, not gone, and blocks_fast_bodies(): what is fast may have to stop (for continuous.h)
+      ccd_blockers;  // asked, not gone, and blocks_fast_bodies(): what is fast may have to stop (for continuous.h)
 };
 
 // Whether one of the two is not pushed, or is a sensor.

@@ -25,7 +25,7 @@ TEST(CollideBlock, TellsOfEachContactWhetherItLiesBesideWhatRests) {
       if (contact.manifold_room == 0) continue;
       const bool has_points = contact.manifold_count != 0;
       const bool one_rests = scene.bodies[contact.body_a].awake != scene.bodies[contact.body_b].awake;
-      ASSERT_EQ(scene.changes.beside_resting.test(slot), has_points && one_rests) << step << ", " << slot;
+      ASSERT_EQ(scene.changes.on_static.test(slot), has_points && one_rests) << step << ", " << slot;
       beside += has_points && one_rests ? 1 : 0;
       among += has_points && !one_rests ? 1 : 0;
     }

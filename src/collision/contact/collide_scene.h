@@ -72,17 +72,18 @@ class CollideScene {
   }
 
   void look() {
-    std::vector<CollisionBody> looks;
+    std::vector<CollisionBody> bodies;
     std::vector<BodyCenter> centers;
     std::vector<std::uint8_t> awake;
     for (const ColliderBody& body : bodies) {
-      looks.push_back(make_collision_body(body, seconds));
+      bodies.push_back(make_collision_body(body, seconds));
       centers.push_back({body.center, body.reach});
       awake.push_back(body.awake ? 1 : 0);
     }
     all_.resize(store.contacts.size());
     all_.set_all();
-    collide(store, {shapes, looks, centers, awake, proxies, all_, select_recycling(width), recycle}, tasks_, changes);
+    collide(store, {shapes, bodies, centers, awake, proxies, all_, select_recycling(width), recycle}, tasks_,
+            changes);
   }
 
   // The contact of two shapes; null if there is none.

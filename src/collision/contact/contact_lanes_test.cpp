@@ -154,7 +154,7 @@ TEST(Closing, WhatMeetsInAStepIsSeenBefore) {
     narrow.width = 1;
     EXPECT_EQ(points_of(pair, narrow) > 0, seen);
     if (before.contact(0, 1) != nullptr) {
-      EXPECT_EQ(narrow.contact(0, 1)->looked, before.contact(0, 1)->looked);
+      EXPECT_EQ(narrow.contact(0, 1)->cached_distance, before.contact(0, 1)->cached_distance);
     }
     unseen += seen ? 0 : 1;
     points_of(moved(pair, before.seconds), after);

@@ -38,22 +38,22 @@ struct ContactPair {
   Manifold* manifolds;  // of the contact, as many as its manifold_count
   const ColliderShape* shape_a;
   const ColliderShape* shape_b;
-  const CollisionBody* look_a;
-  const CollisionBody* look_b;
+  const CollisionBody* body_a;
+  const CollisionBody* body_b;
   const BodyCenter* center_a;
   const BodyCenter* center_b;
 };
 
 // How B goes in the step, seen from A that turns along, near where the two can meet. What goes round together does not close.
 struct Closing {
-  Vec3 way;     // m, in the middle of where they can meet, in the frame of View
+  Vec3 translation;  // m, in the middle of where they can meet, in the frame of View
   float lever;  // m, how far from there they can meet
-  Vec3 turn;    // rad, in the same frame
-  float bend;   // m, the most that ways are longer than straight ones
+  Vec3 rotation;        // rad, in the same frame
+  float arc_deviation;  // m, the most that ways are longer than straight ones
 
   // How far surfaces can come towards each other along a unit normal from A to B.
   float along(Vec3 normal) const {
-    return max(-dot(way, normal), 0.0f) + lever * length(cross(turn, normal)) + bend;
+    return max(-dot(translation, normal), 0.0f) + lever * length(cross(rotation, normal)) + arc_deviation;
   }
 };
 
@@ -61,12 +61,12 @@ struct Closing {
 struct View {
   Transform a_from_b;  // body frames
   float size;
-  float way;          // m, the most that surfaces can come towards each other in the step
+  float max_approach;  // m, the most that surfaces can come towards each other in the step
   float speculative;  // m, how far contacts matter
   // The frame in which manifolds are found, that of shape A; but a plane that meets a convex shape is taken to lie with its
   // frame beside that one.
   Transform shapes_a_from_b;  // of the shapes' frames
-  Quat frame_turn;            // world_from_frame
+  Quat frame_orientation;     // world_from_frame
   // Its origin from either centre of mass, world axes. Each side by itself: one of the two may be far away (a plane's body),
   // and floats with it.
   Vec3 frame_from_a, frame_from_b;

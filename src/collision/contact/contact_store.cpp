@@ -17,7 +17,7 @@ std::uint32_t add_chunk(ContactStore& store) {
   const auto chunk = std::uint32_t(store.chunk_used.size());
   store.chunk_used.push_back(0);
   store.manifolds.resize(store.manifolds.size() + kChunk);
-  store.free_chunks.give(chunk);
+  store.free_chunks.release(chunk);
   return chunk;
 }
 
@@ -25,17 +25,17 @@ std::uint32_t acquire_manifolds(ContactStore& store, std::uint16_t room) {
   if (room == 1) {
     if (const std::uint32_t chunk = store.partial_chunks.lowest(); chunk != FreeSlots::kNone) {
       std::uint8_t& used = store.chunk_used[chunk];
-      const auto place = std::uint32_t(std::countr_one(used));
-      used = std::uint8_t(used | 1u << place);
+      const auto index = std::uint32_t(std::countr_one(used));
+      used = std::uint8_t(used | 1u << index);
       if (used == kWholeChunk) store.partial_chunks.acquire(chunk);
-      return chunk * kChunk + place;
+      return chunk * kChunk + index;
     }
   }
   std::uint32_t chunk = store.free_chunks.lowest();
   if (chunk == FreeSlots::kNone) chunk = add_chunk(store);
   store.free_chunks.acquire(chunk);
   store.chunk_used[chunk] = room == 1 ? std::uint8_t(1) : kWholeChunk;
-  if (room == 1) store.partial_chunks.give(chunk);
+  if (room == 1) store.partial_chunks.release(chunk);
   return chunk * kChunk;
 }
 
@@ -45,17 +45,17 @@ void release_manifolds(ContactStore& store, std::uint32_t first, std::uint16_t r
   used = room == 1 ? std::uint8_t(used & ~(1u << first % kChunk)) : std::uint8_t(0);
   if (used == 0) {
     store.partial_chunks.acquire(chunk);
-    store.free_chunks.give(chunk);
+    store.free_chunks.release(chunk);
   } else {
-    store.partial_chunks.give(chunk);
+    store.partial_chunks.release(chunk);
   }
 }
 
 // Of a mesh contact: nothing is kept yet.
-void clear_kept_triangles(ContactStore& store, const Contact& contact) {
+void clear_cached_triangles(ContactStore& store, const Contact& contact) {
   const std::size_t chunk = contact.first_manifold / kChunk;
-  if (store.kept_triangles.size() <= chunk) store.kept_triangles.resize(chunk + 1);
-  store.kept_triangles[chunk].count = CachedTriangles::kUnknown;
+  if (store.cached_triangles.size() <= chunk) store.cached_triangles.resize(chunk + 1);
+  store.cached_triangles[chunk].count = CachedTriangles::kUnknown;
 }
 
 void link(ContactStore& store, std::uint32_t slot) {
@@ -90,14 +90,14 @@ void unlink(ContactStore& store, std::uint32_t slot) {
 
 }  // namespace
 
-void FreeSlots::give(std::uint32_t place) {
-  if (place >= free_.size()) free_.resize(std::size_t(place) + 1);
-  free_.set(place);
-  hint_ = min(hint_, place);
+void FreeSlots::release(std::uint32_t index) {
+  if (index >= free_.size()) free_.resize(std::size_t(index) + 1);
+  free_.set(index);
+  hint_ = min(hint_, index);
 }
 
-void FreeSlots::acquire(std::uint32_t place) {
-  if (free_.test(place)) free_.clear(place);
+void FreeSlots::acquire(std::uint32_t index) {
+  if (free_.test(index)) free_.clear(index);
 }
 
 std::uint32_t FreeSlots::lowest() {
@@ -127,7 +127,7 @@ std::uint32_t add_contact(ContactStore& store, std::uint64_t key, const PairShap
   contact.sensor = shapes.sensor ? 1 : 0;
   contact.surface = shapes.surface;
   store.contacts[slot] = contact;
-  if (shapes.against_mesh) clear_kept_triangles(store, contact);
+  if (shapes.against_mesh) clear_cached_triangles(store, contact);
   store.slot_of_pair.insert(key, slot, key_reader(store));
   link(store, slot);
   ++store.live;
@@ -144,7 +144,7 @@ void remove_contact(ContactStore& store, std::uint32_t slot) {
   release_manifolds(store, contact.first_manifold, contact.manifold_room);
   store.contacts[slot] = Contact{};
   store.with_manifolds.clear(slot);
-  store.free_contacts.give(slot);
+  store.free_contacts.release(slot);
   --store.live;
 }
 
@@ -159,28 +159,28 @@ void rebuild_index(ContactStore& store) {
   store.free_contacts.clear();
   store.free_chunks.clear();
   store.partial_chunks.clear();
-  store.kept_triangles.clear();
+  store.cached_triangles.clear();
   store.chunk_used.assign(store.manifolds.size() / kChunk, 0);
   store.live = 0;
   for (std::uint32_t slot = 0; slot < count; ++slot) {
     const Contact& contact = store.contacts[slot];
     if (contact.manifold_room == 0) {
-      store.free_contacts.give(slot);
+      store.free_contacts.release(slot);
       continue;
     }
     store.slot_of_pair.insert(pair_key(contact.shape_a, contact.shape_b), slot, key_reader(store));
     link(store, slot);
     ++store.live;
     store.with_manifolds.assign(slot, contact.manifold_count != 0);
-    if (contact.manifold_room > 1) clear_kept_triangles(store, contact);
+    if (contact.manifold_room > 1) clear_cached_triangles(store, contact);
     std::uint8_t& used = store.chunk_used[contact.first_manifold / kChunk];
     used =
         contact.manifold_room == 1 ? std::uint8_t(used | 1u << contact.first_manifold % kChunk) : kWholeChunk;
   }
   for (std::uint32_t chunk = 0; chunk < store.chunk_used.size(); ++chunk) {
     const std::uint8_t used = store.chunk_used[chunk];
-    if (used == 0) store.free_chunks.give(chunk);
-    if (used != 0 && used != kWholeChunk) store.partial_chunks.give(chunk);
+    if (used == 0) store.free_chunks.release(chunk);
+    if (used != 0 && used != kWholeChunk) store.partial_chunks.release(chunk);
   }
 }
 

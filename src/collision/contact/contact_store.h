@@ -43,7 +43,7 @@ struct Contact {
   std::uint8_t ended = 0;            // fat boxes no longer overlap: to be removed
   // What the last full look saw: how far it reached (no surfaces but those of the manifold's points were nearer then; below
   // zero: never looked), the size that the pair's tolerances are relative to, and B's body frame in A's.
-  float looked = -1.0f;  // m
+  float cached_distance = -1.0f;  // m
   float size = 0.0f;     // m
   Transform seen_a_from_b;
   PairCache cache;
@@ -62,10 +62,10 @@ class FreeSlots {
  public:
   static constexpr std::uint32_t kNone = 0xffffffffu;
   void clear() { *this = FreeSlots{}; }
-  void give(std::uint32_t place);
-  void acquire(std::uint32_t place);  // takes this very place; no effect if it is not free
+  void release(std::uint32_t index);
+  void acquire(std::uint32_t index);  // takes this very place; no effect if it is not free
   std::uint32_t lowest();          // kNone if none is free
-  bool contains(std::uint32_t place) const { return free_.test(place); }
+  bool contains(std::uint32_t index) const { return free_.test(index); }
 
  private:
   Bitset free_;
@@ -89,7 +89,7 @@ struct ContactStore {
   FreeSlots free_chunks;           // chunks of which nothing is in use
   FreeSlots partial_chunks;        // chunks of which some singles are in use and some are free
   // By chunk, of those that belong to mesh contacts: what their looks keep of the mesh. As long as the last of these needs.
-  Array<CachedTriangles> kept_triangles;
+  Array<CachedTriangles> cached_triangles;
 };
 
 // What a new pair needs to know about its shapes.
@@ -116,7 +116,7 @@ void remove_contact(ContactStore& store, std::uint32_t slot);
 // Builds everything but contacts and manifolds anew (after loading a snapshot).
 void rebuild_index(ContactStore& store);
 // Makes the next look at this contact a full one: something about one of its bodies changed that its pose does not show.
-inline void invalidate_cache(Contact& contact) { contact.looked = -1.0f; }
+inline void invalidate_cache(Contact& contact) { contact.cached_distance = -1.0f; }
 
 // Calls fn(slot) for each contact of a shape, in no particular order; fn must not add or remove contacts.
 template <class Fn>
@@ -130,7 +130,7 @@ void for_each_contact_of_shape(const ContactStore& store, std::uint32_t shape, F
 
 // Null for a contact without a mesh or height field; of fields nothing is ever known.
 inline CachedTriangles* cached_triangles_of(ContactStore& store, const Contact& contact) {
-  return contact.manifold_room > 1 ? &store.kept_triangles[contact.first_manifold / kMaxMeshManifolds]
+  return contact.manifold_room > 1 ? &store.cached_triangles[contact.first_manifold / kMaxMeshManifolds]
                                    : nullptr;
 }
 

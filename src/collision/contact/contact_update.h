@@ -16,6 +16,6 @@ float smaller_size(float a, float b);
 bool test_sensor_overlap(const ContactPair& pair, const View& view);
 
 // Full look of any other contact; returns whether its shapes touch. `kept`: of a contact with a mesh, else null.
-bool compute_manifold(const ContactPair& pair, const View& view, CachedTriangles* kept);
+bool compute_manifold(const ContactPair& pair, const View& view, CachedTriangles* cached);
 
 }  // namespace gyre

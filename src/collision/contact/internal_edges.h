@@ -31,8 +31,7 @@ struct InternalEdgeScratch {
 // Takes those manifolds from every contact of a moving shape with a resting one that another resting shape, touched by it
 // too, hides. Such a contact is looked at anew in the next step.
 // `beside_resting`: see TouchChanges.
-void remove_internal_edge_contacts(ContactStore& store, const CollideInput& input,
-                                   const Bitset& beside_resting, Arena& arena, TaskSystem& tasks,
-                                   InternalEdgeScratch& scratch);
+void remove_internal_edge_contacts(ContactStore& store, const CollideInput& input, const Bitset& on_static,
+                                   Arena& arena, TaskSystem& tasks, InternalEdgeScratch& scratch);
 
 }  // namespace gyre

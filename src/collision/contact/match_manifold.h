@@ -13,7 +13,7 @@ struct Roundness {
   WideInt<W> kind;  // ShapeKind
   Wide<W> radius;
 
-  GYRE_INLINE Mask<W> is(ShapeKind one) const { return kind == WideInt<W>(std::int32_t(one)); }
+  GYRE_INLINE Mask<W> is(ShapeKind other) const { return kind == WideInt<W>(std::int32_t(other)); }
   GYRE_INLINE Mask<W> is_flat() const {
     return (kind >= WideInt<W>(std::int32_t(ShapeKind::hull))) |
            (is(ShapeKind::box) & (radius == Wide<W>(0.0f)));

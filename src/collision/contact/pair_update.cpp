@@ -17,14 +17,14 @@ void fetch_contact(const ContactStore& store, std::uint64_t key) {
 }  // namespace
 
 void drop_known_pairs(const ContactStore& store, Array<std::uint64_t>& keys, std::size_t from) {
-  std::size_t kept = from;
+  std::size_t unknown = from;
   for (std::size_t i = from; i < keys.size() && i < from + kAhead; ++i) fetch_contact(store, keys[i]);
   for (std::size_t i = from; i < keys.size(); ++i) {
     if (i + kAhead < keys.size()) fetch_contact(store, keys[i + kAhead]);
     const std::uint64_t key = keys[i];
-    if (find_contact(store, key) == SlotTable::kNone) keys[kept++] = key;
+    if (find_contact(store, key) == SlotTable::kNone) keys[unknown++] = key;
   }
-  keys.resize_uninitialized(kept);
+  keys.resize_uninitialized(unknown);
 }
 
 void add_pairs(ContactStore& store, std::span<const std::uint64_t> keys, const BlockedBodies& blocked,

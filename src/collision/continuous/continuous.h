@@ -30,7 +30,7 @@ namespace gyre {
 struct FastBody {
   std::uint32_t body = 0;
   bool continuous = false;    // also against dynamic bodies (always against fixed and kinematic ones)
-  float least = 0.0f;         // part of its way that it keeps in any case, if its core can
+  float min_fraction = 0.0f;  // part of its way that it keeps in any case, if its core can
   bool slides = true;         // goes on along what it met; not what hangs on joints, which know nothing of it
   bool only_crosses = false;  // nothing stops it: only what it crosses is told
 };
@@ -40,11 +40,11 @@ struct FastBody {
 struct SavedMotion {
   float fraction = 1.0f;
   Vec3 slide;  // m, of the centre of mass
-  Vec3 turn;   // rad, rotation vector, world: what it met turned it along
+  Vec3 rotation;  // rad, rotation vector, world: what it met turned it along
   // Where the core was in the way, although the shape was in touch already: the solver did not hold it there. Whoever moves
   // the body must take its speed into `other` at that point.
-  Vec3 blow;                // unit, from the body to the other; zero: there was none
-  DVec3 blow_at;            // world
+  Vec3 impact_normal;       // unit, from the body to the other; zero: there was none
+  DVec3 impact_point;       // world
   std::uint32_t other = 0;  // body
 };
 
@@ -55,12 +55,12 @@ inline std::uint64_t crossing_key(std::uint32_t sensor, std::uint32_t visitor) {
 
 // Whether a motion is far enough to look at: more than this share of the inner radius of the body's thinnest shape.
 constexpr float kFastShare = 0.5f;
-inline bool is_fast(Vec3 moved, Vec3 turned, float reach, float inner) {
-  return length(moved) + length(turned) * reach > kFastShare * inner;
+inline bool is_fast(Vec3 translation, Vec3 rotation, float bounding_radius, float inner) {
+  return length(translation) + length(rotation) * bounding_radius > kFastShare * inner;
 }
 
 // A box around the whole way of a shape, turning included.
-Aabb box_of_way(const ColliderShape& shape, const Sweep& sweep);
+Aabb bounds_of_sweep(const ColliderShape& shape, const Sweep& sweep);
 
 // A surface that moves by itself and a convex shape on its way, one of them a sensor: shapes. The surface is not swept itself.
 struct GatePair {
@@ -71,8 +71,8 @@ struct GatePair {
 struct KnownContacts {
   const ContactStore& store;  // of all pairs that the broad phase knows
   // Which of them are with what is not pushed, or with a sensor (TouchChanges::may_stop), and which shapes have one.
-  const Bitset& may_stop;
-  const Bitset& near_stops;
+  const Bitset& ccd_blockers;
+  const Bitset& near_blockers;
 };
 
 struct ContinuousInput {
@@ -85,7 +85,7 @@ struct ContinuousInput {
   FunctionRef<Sweep(std::uint32_t body)> sweep_of;
   FunctionRef<std::span<const std::uint32_t>(std::uint32_t body)> shapes_of;
   // Whether the shape in the way lets pass what moves so against it; null: none does.
-  const FunctionRef<bool(std::uint32_t shape, Vec3 way)>* lets_pass = nullptr;
+  const FunctionRef<bool(std::uint32_t shape, Vec3 translation)>* lets_pass = nullptr;
   std::span<const GatePair> gates{};
   const KnownContacts* contacts = nullptr;  // null: not kept
 };
@@ -94,7 +94,7 @@ class ContinuousCollision {
  public:
   // kept[i] of the motion of fast[i] is to be kept. Parallel over bodies.
   void clamp_fast_bodies(const ContinuousInput& input, std::span<const FastBody> fast, TaskSystem& tasks,
-                         std::span<SavedMotion> kept);
+                         std::span<SavedMotion> saved);
   // Of the last call: crossing_key of each sensor and visitor, in rising order, also of pairs that overlapped from the
   // start.
   std::span<const std::uint64_t> crossings() const { return crossings_; }
@@ -107,7 +107,7 @@ class ContinuousCollision {
   };
   void gather_crossings();
   void even_out_room();
-  void look_at_gates(const ContinuousInput& input);
+  void test_gates(const ContinuousInput& input);
 
   Array<Worker> workers_;
   Array<std::uint64_t> crossings_, sort_scratch_;

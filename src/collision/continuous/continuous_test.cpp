@@ -82,9 +82,9 @@ TEST(TimeOfImpact, PoseAtTurnsAboutTheCentreOfMass) {
   const DVec3 center = sweep.pose * sweep.center;
   for (const double time : {0.0, 0.25, 1.0}) {
     const Pose pose = pose_at(sweep, time);
-    EXPECT_LT(length(pose * sweep.center - (center + time * DVec3(sweep.moved))), 1.0e-6);
+    EXPECT_LT(length(pose * sweep.center - (center + time * DVec3(sweep.translation))), 1.0e-6);
     const Vec3 turned = to_rotation_vector(pose.orientation * conjugate(sweep.pose.orientation));
-    EXPECT_LT(distance(turned, float(time) * sweep.turned), 1.0e-5f);
+    EXPECT_LT(distance(turned, float(time) * sweep.rotation), 1.0e-5f);
   }
 }
 
@@ -120,7 +120,7 @@ class Scene {
 
   std::vector<float> clamp(const std::vector<FastBody>& fast) {
     for (std::size_t i = 0; i < proxies.size(); ++i) {
-      const BoxMotion motion{shapes[i].size, sweeps[i].moved, 0.0f};
+      const BoxMotion motion{shapes[i].size, sweeps[i].translation, 0.0f};
       proxies[i].fat_box = fat_box(
           needed_box(world_box(shapes[i].shape, sweeps[i].pose * shapes[i].body_from_shape), motion), motion);
     }
@@ -147,16 +147,16 @@ class Scene {
   // The same where all pairs of boxes have contacts, and it is known which may stop a shape.
   std::vector<float> clamp_by_contacts(const std::vector<FastBody>& fast) {
     ContactStore store;
-    Bitset may_stop(proxies.size() * proxies.size()), near_stops(proxies.size());
+    Bitset ccd_blockers(proxies.size() * proxies.size()), near_blockers(proxies.size());
     for (std::uint32_t a = 0; a < proxies.size(); ++a) {
       for (std::uint32_t b = a + 1; b < proxies.size(); ++b) {
         if (!overlap(proxies[a].fat_box, proxies[b].fat_box) || !may_pair(proxies[a], proxies[b])) continue;
         const std::uint32_t slot = add_contact(store, pair_key(a, b), {a, b, false, false, {}});
         if (proxies[a].pushes && proxies[b].pushes && !proxies[a].sensor && !proxies[b].sensor) continue;
-        may_stop.set(slot), near_stops.set(a), near_stops.set(b);
+        ccd_blockers.set(slot), near_blockers.set(a), near_blockers.set(b);
       }
     }
-    const KnownContacts contacts{store, may_stop, near_stops};
+    const KnownContacts contacts{store, ccd_blockers, near_blockers};
     contacts_ = &contacts;
     const std::vector<float> fractions = clamp_as_is(fast);
     contacts_ = nullptr;
@@ -431,7 +431,7 @@ TEST(Continuous, ContactsTellWhatIsInTheWay) {
       fast.push_back({body, i % 8 == 0});
     }
     scene.clamp(fast);  // fits the boxes
-    for (std::size_t k = 0; k < fast.size(); k += 2) scene.sweeps[fast[k].body].moved *= 4.0f;
+    for (std::size_t k = 0; k < fast.size(); k += 2) scene.sweeps[fast[k].body].translation *= 4.0f;
     const std::vector<float> all = scene.clamp_as_is(fast);
     const std::vector<std::uint64_t> passed(scene.crossings().begin(), scene.crossings().end());
     EXPECT_EQ(scene.clamp_by_contacts(fast), all) << round;
@@ -450,10 +450,10 @@ TEST(Continuous, WhatIsNotFiniteIsLeftAlone) {
     scene.add_fixed(Box{{0.01f, 1, 1}}, {{0, 0, 0}, {}});
     const auto body = scene.add_mover(Sphere{0.1f}, {{-5, 0, 0}, {}}, {10, 0, 0});
     scene.clamp(body);
-    scene.sweeps[body].moved.x = bad;
+    scene.sweeps[body].translation.x = bad;
     EXPECT_EQ(scene.clamp_as_is(body), 1.0f);
-    scene.sweeps[body].moved.x = 10;
-    scene.sweeps[body].turned.y = bad;
+    scene.sweeps[body].translation.x = 10;
+    scene.sweeps[body].rotation.y = bad;
     EXPECT_EQ(scene.clamp_as_is(body), 1.0f);
   }
 }

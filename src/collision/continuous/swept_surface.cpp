@@ -21,35 +21,35 @@ constexpr double kMinAdvance = 0.1;
 // A shape that slides may come nearer than it was left by this, and close in by this sine: rounding, not a stop.
 constexpr double kSlideShare = 0.5, kSlideSlack = 1.0e-6;
 
-Stop no_stop(double end) { return {end, false, false, {}, {}}; }
+TimeOfImpact no_impact(double end) { return {end, false, false, {}, {}}; }
 
 // What touches from the start is the solver's; only the core must not pass. What is deeper than that already is free.
-Stop stop_of_core(const SweptShape& core, const SweptShape& b, double start, double end,
-                  const ImpactScale& scale) {
-  if (stays_clear(core, b, start, end, 2.0 * scale.core_target)) return no_stop(end);
+TimeOfImpact core_time_of_impact(const SweptShape& core, const SweptShape& b, double start, double end,
+                                 const ImpactScale& scale) {
+  if (stays_clear(core, b, start, end, 2.0 * scale.core_target)) return no_impact(end);
   const Gap gap = find_gap(core, b, start, 2.0 * scale.core_target);
-  if (!gap.beyond && gap.distance <= kDeep * scale.core_target) return no_stop(end);
+  if (!gap.beyond && gap.distance <= kDeep * scale.core_target) return no_impact(end);
   // What is left near from the step before may come nearer, or it would be held there even as it leaves.
   const double target = gap.beyond ? scale.core_target : min(scale.core_target, 0.5 * gap.distance);
   const Impact impact = time_of_impact(core, b, start, end, target);
-  if (!impact.hit) return no_stop(end);
-  Stop stop;
-  stop.time = impact.time;
-  stop.hit = stop.by_core = true;
-  stop.normal = find_gap(core, b, impact.time, 4.0 * target).normal;
+  if (!impact.hit) return no_impact(end);
+  TimeOfImpact impact;
+  impact.time = impact.time;
+  impact.hit = impact.by_core = true;
+  impact.normal = find_gap(core, b, impact.time, 4.0 * target).normal;
   const Pose frame = pose_at(*core.sweep, impact.time) * core.body_from_shape;
-  const Vec3 towards = rotate_inverse(frame.orientation, to_float(stop.normal));
-  stop.point = frame * support(*core.shape, towards) + double(core_radius(*core.shape)) * stop.normal;
-  return stop;
+  const Vec3 towards = rotate_inverse(frame.orientation, to_float(impact.normal));
+  impact.point = frame * support(*core.shape, towards) + double(core_radius(*core.shape)) * impact.normal;
+  return impact;
 }
 
 // Stops where the shape is met, or, if that is before the part of its way that it keeps, where its core is.
-Stop stop_of_whole(const SweptShape& a, const SweptShape& core, const SweptShape& b, double start, double end,
-                   const ImpactScale& scale) {
+TimeOfImpact whole_time_of_impact(const SweptShape& a, const SweptShape& core, const SweptShape& b,
+                                  double start, double end, const ImpactScale& scale) {
   const Impact impact = time_of_impact(a, b, start, end, scale.target);
-  if (!impact.hit) return no_stop(end);
-  if (impact.time < scale.least) {
-    Stop deep = stop_of_core(core, b, impact.time, min(scale.least, end), scale);
+  if (!impact.hit) return no_impact(end);
+  if (impact.time < scale.min_fraction) {
+    TimeOfImpact deep = core_time_of_impact(core, b, impact.time, min(scale.min_fraction, end), scale);
     if (deep.hit) return deep;
     deep.hit = true;
     deep.normal = find_gap(core, b, deep.time, 1.0e3 * scale.touching).normal;
@@ -59,17 +59,18 @@ Stop stop_of_whole(const SweptShape& a, const SweptShape& core, const SweptShape
 }
 
 // Along what it touches a convex shape that does not turn may go on: the plane between the two stays between them.
-Stop stop_of_slide(const SweptShape& a, const SweptShape& b, double start, double end,
-                   const ImpactScale& scale) {
+TimeOfImpact slide_time_of_impact(const SweptShape& a, const SweptShape& b, double start, double end,
+                                  const ImpactScale& scale) {
   const double target = kSlideShare * scale.target;
   const Gap gap = find_gap(a, b, start, 2.0 * target);
   if (!gap.beyond && gap.distance <= 1.25 * target) {
-    const DVec3 way = DVec3(a.sweep->moved) - DVec3(b.sweep->moved);
-    const bool closes = dot(way, gap.normal) > kSlideSlack * length(way) || !(b.sweep->turned == Vec3{});
+    const DVec3 translation = DVec3(a.sweep->translation) - DVec3(b.sweep->translation);
+    const bool closes =
+        dot(translation gap.normal) > kSlideSlack * length(translation) || !(b.sweep->rotation == Vec3{});
     return {closes ? start : end, closes, false, gap.normal, {}};
   }
   const Impact impact = time_of_impact(a, b, start, end, target);
-  if (!impact.hit) return no_stop(end);
+  if (!impact.hit) return no_impact(end);
   return {impact.time, true, false, find_gap(a, b, impact.time, 2.0 * scale.target).normal, {}};
 }
 
@@ -84,7 +85,7 @@ class SurfaceSweep {
         surface_(*b.shape),
         scale_(scale),
         hull_(hull),
-        is_surface_still_(b.sweep->turned == Vec3{} && b.sweep->moved == Vec3{}),
+        is_surface_still_(b.sweep->rotation == Vec3{} && b.sweep->translation == Vec3{}),
         world_from_surface_(b.sweep->pose * b.body_from_shape),
         start_(surface_from_a(0.0)),
         whole_{a, inverse_times(a.body_from_shape, a.body_from_shape), {}, {}},
@@ -93,32 +94,33 @@ class SurfaceSweep {
     inner_.start = start_ * inner_.from_shape;
   }
 
-  Stop first_stop(double end) {
-    const int wanted = pieces();
-    stop_ = no_stop(end);
-    for (int piece = 0; piece < wanted && !stop_.hit; ++piece) {
-      const double from = double(piece) / double(wanted);
+  TimeOfImpact first_impact(double end) {
+    const int piece_count = pieces();
+    first_ = no_impact(end);
+    for (int piece = 0; piece < piece_count && !first_.hit; ++piece) {
+      const double from = double(piece) / double(piece_count);
       if (from >= end) break;
-      stop_.time = min(double(piece + 1) / double(wanted), end);
-      for_each_triangle(from, stop_.time, [&](std::uint32_t id) { look_at(id, from); });
+      first_.time = min(double(piece + 1) / double(piece_count), end);
+      for_each_triangle(from, first_.time, [&](std::uint32_t id) { test_triangle(id, from); });
     }
-    if (!stop_.hit) stop_.time = end;
-    return stop_;
+    if (!first_.hit) first_.time = end;
+    return first_;
   }
 
   bool crosses(double end, double clear) {
     bool met = false;
     for_each_triangle(end, end, [&](std::uint32_t id) {
-      place(surface_.bare_triangle(id));
+      set_triangle(surface_.bare_triangle(id));
       met = met || find_gap(a_, near_frame_, end, scale_.target).distance <= clear;
     });
     if (met) return false;
-    const int wanted = pieces();
-    for (int piece = 0; piece < wanted && !met; ++piece) {
-      const double from = double(piece) / double(wanted), to = min(double(piece + 1) / double(wanted), end);
+    const int piece_count = pieces();
+    for (int piece = 0; piece < piece_count && !met; ++piece) {
+      const double from = double(piece) / double(piece_count),
+                   to = min(double(piece + 1) / double(piece_count), end);
       if (from >= end) break;
       for_each_triangle(from, to, [&](std::uint32_t id) {
-        place(surface_.bare_triangle(id));
+        set_triangle(surface_.bare_triangle(id));
         met = met || meets(from, to);
       });
     }
@@ -127,7 +129,7 @@ class SurfaceSweep {
 
  private:
   // The shape or its core in the surface's frame, as far as every triangle asks for it.
-  struct Part {
+  struct LocalShape {
     const SweptShape& swept;
     Transform from_shape;  // into the frame of the whole shape
     Transform start, end;  // surface_from_shape as the step begins (of the core), and as the piece ends
@@ -144,7 +146,7 @@ class SurfaceSweep {
   Aabb piece_box(double from, double to) const {
     const Transform &at_start = piece_start_, &at_end = piece_end_;
     const float share = float(to - from);
-    const float angle_a = share * length(a_.sweep->turned), angle_b = share * length(b_.sweep->turned);
+    const float angle_a = share * length(a_.sweep->rotation), angle_b = share * length(b_.sweep->rotation);
     const float lever = max(length(at_start.position), length(at_end.position)) +
                         length(b_.body_from_shape.position - b_.sweep->center) + a_.radius;
     const float bulge = 0.125f * (a_.radius * square(angle_a) + lever * square(angle_b));
@@ -153,8 +155,9 @@ class SurfaceSweep {
   }
 
   int pieces() const {
-    const float way = length(a_.sweep->moved - b_.sweep->moved) + length(a_.sweep->turned) * a_.radius;
-    return 1 + int(min(way / (kPieceRadii * a_.radius), float(kMaxPieces - 1)));
+    const float distance =
+        length(a_.sweep->translation - b_.sweep->translation) + length(a_.sweep->rotation) * a_.radius;
+    return 1 + int(min(distance / (kPieceRadii * a_.radius), float(kMaxPieces - 1)));
   }
 
   // Calls fn(triangle) for those that the shape may come near between two times.
@@ -189,7 +192,7 @@ class SurfaceSweep {
         });
   }
 
-  void place(const BareTriangle& view) {
+  void set_triangle(const BareTriangle& view) {
     hull_.set(view.v[0] - origin_, view.v[1] - origin_, view.v[2] - origin_);
     near_frame_.shape = &hull_.shape();
     near_frame_.radius =
@@ -214,25 +217,25 @@ class SurfaceSweep {
   // Whether the shape, so high above a plane of the surface as the step begins, stays farther from it than `distance` until the
   // piece ends. Mostly where it ends tells: in between it comes nearer than at both ends by the bulge of its turn at most.
   // Else by the same advances as time_of_impact, but along the one normal, which needs no search.
-  bool stays_above(const Part& part, Vec3 normal, Vec3 corner, double height, double distance) const {
-    const SweptShape& shape = part.swept;
-    if (!(b_.sweep->turned == Vec3{})) return false;
+  bool stays_above(const LocalShape& local, Vec3 normal, Vec3 corner, double height, double distance) const {
+    const SweptShape& shape = local.swept;
+    if (!(b_.sweep->rotation == Vec3{})) return false;
     const double rounding =
         4.0e-6 * double(largest(absolute(corner)) + largest(absolute(start_.position)) + a_.radius);
-    const double bulge = 0.125 * double(shape.radius * length_squared(shape.sweep->turned));
-    const double at_end = height_of(*shape.shape, part.end, normal, corner);
+    const double bulge = 0.125 * double(shape.radius * length_squared(shape.sweep->rotation));
+    const double at_end = height_of(*shape.shape, local.end, normal, corner);
     if (min(height, at_end) - bulge > distance + rounding) return true;
     if (at_end <= distance) return false;
     const DVec3 up(rotate(b_.sweep->pose.orientation, rotate(b_.body_from_shape.orientation, normal)));
-    const double closing = -dot(DVec3(shape.sweep->moved) - DVec3(b_.sweep->moved), up) +
-                           length(cross(DVec3(shape.sweep->turned), up)) * double(shape.radius);
+    const double closing = -dot(DVec3(shape.sweep->translation) - DVec3(b_.sweep->translation), up) +
+                           length(cross(DVec3(shape.sweep->rotation), up)) * double(shape.radius);
     double time = 0.0;
     for (int i = 0; i < kMaxPlaneAdvances; ++i) {
-      const double rest = height - distance - rounding;
-      if (rest > max(closing, 0.0) * (stop_.time - time)) return true;
-      if (!(rest > kMinAdvance * distance)) return false;
-      time += rest / closing;
-      height = height_of(*shape.shape, surface_from_a(time) * part.from_shape, normal, corner);
+      const double remaining = height - distance - rounding;
+      if (remaining > max(closing, 0.0) * (first_.time - time)) return true;
+      if (!(remaining > kMinAdvance * distance)) return false;
+      time += remaining / closing;
+      height = height_of(*shape.shape, surface_from_a(time) * local.from_shape, normal, corner);
     }
     return false;
   }
@@ -246,7 +249,7 @@ class SurfaceSweep {
                        2.0 * scale_.core_target);
   }
 
-  void look_at(std::uint32_t id, double from) {
+  void test_triangle(std::uint32_t id, double from) {
     const BareTriangle view = surface_.bare_triangle(id);
     Vec3 normal = view.normal;
     // Which side of the plane the middle is on when the step begins decides; along a straight way it cannot come back.
@@ -257,16 +260,16 @@ class SurfaceSweep {
     const Vec3 lowest = start_ * support(*a_.shape, rotate_inverse(start_.orientation, -normal));
     const double height = double(dot(normal, lowest - view.v[0])) - double(core_radius(*a_.shape));
     if (stays_clear_of(view.v[0], normal, height)) return;
-    place(view);
-    Stop found;
+    set_triangle(view);
+    TimeOfImpact found;
     if (scale_.slides) {
-      found = stop_of_slide(a_, near_frame_, from, stop_.time, scale_);
+      found = slide_time_of_impact(a_, near_frame_, from, first_.time, scale_);
     } else if (height > scale_.touching) {
-      found = stop_of_whole(a_, core_, near_frame_, from, stop_.time, scale_);
+      found = whole_time_of_impact(a_, core_, near_frame_, from, first_.time, scale_);
     } else {
-      found = stop_of_core(core_, near_frame_, from, stop_.time, scale_);
+      found = core_time_of_impact(core_, near_frame_, from, first_.time, scale_);
     }
-    if (found.hit && found.time < stop_.time) stop_ = found;
+    if (found.hit && found.time < first_.time) first_ = found;
   }
 
   const SweptShape& a_;
@@ -278,12 +281,12 @@ class SurfaceSweep {
   const bool is_surface_still_;
   const Pose world_from_surface_;  // as the step begins
   const Transform start_;
-  Part whole_, inner_;
+  LocalShape whole_, inner_;
   const Vec3 middle_;
   Transform piece_start_, piece_end_;
   Vec3 origin_;
   SweptShape near_frame_;
-  Stop stop_;
+  TimeOfImpact first_;
 };
 
 }  // namespace
@@ -318,8 +321,8 @@ Vec3 box_in_hull(const Hull& hull, float margin) {
   float scale = 1.0f;
   for (const HullPlane& plane : hull.planes) {
     const float room = plane.offset - dot(plane.normal, hull.centroid) - margin;
-    const float wanted = dot(absolute(plane.normal), half);
-    if (scale * wanted > room) scale = max(room, 0.0f) / wanted;
+    const float needed = dot(absolute(plane.normal), half);
+    if (scale * needed > room) scale = max(room, 0.0f) / needed;
   }
   return scale * half;
 }
@@ -340,8 +343,8 @@ Core make_core(const Shape& shape, const Transform& body_from_shape) {
     case ShapeKind::box: {
       // The rounding goes first.
       core.shape.radius = max(shape.radius - off, 0.0f);
-      const float rest = max(off - shape.radius, 0.0f);
-      core.shape.extents = shape.extents - Vec3{rest, rest, rest};
+      const float remaining = max(off - shape.radius, 0.0f);
+      core.shape.extents = shape.extents - Vec3{remaining, remaining, remaining};
       return core;
     }
     case ShapeKind::capsule:
@@ -377,18 +380,18 @@ Core make_core(const Shape& shape, const Transform& body_from_shape) {
   }
 }
 
-Stop stop_before(const SweptShape& a, const SweptShape& core, const SweptShape& b, double start, double end,
-                 const ImpactScale& scale) {
-  if (stays_clear(a, b, start, end, max(scale.touching, 2.0 * scale.target))) return no_stop(end);
-  if (scale.slides) return stop_of_slide(a, b, start, end, scale);
+TimeOfImpact convex_time_of_impact(const SweptShape& a, const SweptShape& core, const SweptShape& b,
+                                   double start, double end, const ImpactScale& scale) {
+  if (stays_clear(a, b, start, end, max(scale.touching, 2.0 * scale.target))) return no_impact(end);
+  if (scale.slides) return slide_time_of_impact(a, b, start, end, scale);
   if (find_gap(a, b, start, scale.touching).distance <= scale.touching)
-    return stop_of_core(core, b, start, end, scale);
-  return stop_of_whole(a, core, b, start, end, scale);
+    return core_time_of_impact(core, b, start, end, scale);
+  return whole_time_of_impact(a, core, b, start, end, scale);
 }
 
-Stop stop_before_surface(const SweptShape& a, const SweptShape& core, const SweptShape& b, double end,
-                         const ImpactScale& scale, TriangleHull& triangle) {
-  return SurfaceSweep(a, core, b, scale, triangle).first_stop(end);
+TimeOfImpact surface_time_of_impact(const SweptShape& a, const SweptShape& core, const SweptShape& b,
+                                    double end, const ImpactScale& scale, TriangleHull& triangle) {
+  return SurfaceSweep(a, core, b, scale, triangle).first_impact(end);
 }
 
 bool crosses_surface(const SweptShape& a, const SweptShape& b, double end, double clear,

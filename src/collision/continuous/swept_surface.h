@@ -33,12 +33,12 @@ struct ImpactScale {
   double target;        // how far from each other two shapes are left
   double touching;      // nearer than this as the step begins: only the core is swept
   double core_target;   // the core is left this far
-  double least = 0.0;   // part of its way that the shape keeps in any case, if its core can
+  double min_fraction = 0.0;  // part of its way that the shape keeps in any case, if its core can
   bool slides = false;  // what it touches it slides along: only what closes in stops it, and it does not turn
 };
 
 // Where a shape must stop.
-struct Stop {
+struct TimeOfImpact {
   double time = 1.0;
   bool hit = false;
   bool by_core = false;  // only the core was in the way
@@ -46,12 +46,12 @@ struct Stop {
   DVec3 point;           // of the core if that was in the way: where it would have gone in, world axes
 };
 // First time before `end` at which `a` must stop in front of `b`, both convex (or b a plane).
-Stop stop_before(const SweptShape& a, const SweptShape& core, const SweptShape& b, double start, double end,
-                 const ImpactScale& scale);
+TimeOfImpact convex_time_of_impact(const SweptShape& a, const SweptShape& core, const SweptShape& b,
+                                   double start, double end, const ImpactScale& scale);
 
 // The same for the surface `b` (a mesh or height field; its radius is not used).
-Stop stop_before_surface(const SweptShape& a, const SweptShape& core, const SweptShape& b, double end,
-                         const ImpactScale& scale, TriangleHull& triangle);
+TimeOfImpact surface_time_of_impact(const SweptShape& a, const SweptShape& core, const SweptShape& b,
+                                    double end, const ImpactScale& scale, TriangleHull& triangle);
 
 // Whether `a` comes onto the surface `b` before `end`, from either side, and is farther than `clear` (m) from it at `end`.
 bool crosses_surface(const SweptShape& a, const SweptShape& b, double end, double clear,

@@ -15,7 +15,7 @@ constexpr double kTolerance = 0.25;  // of the target
 // How often the two are advanced along one normal before nearest points are searched for again.
 constexpr int kMaxNormalAdvances = 8;
 
-bool is_still(Vec3 turned) { return turned.x == 0.0f && turned.y == 0.0f && turned.z == 0.0f; }
+bool is_still(Vec3 rotation) { return rotation.x == 0.0f && rotation.y == 0.0f && rotation.z == 0.0f; }
 
 // A convex and B plane; the normal from A to B is against the plane's.
 Gap plane_gap(const Shape& a, const Pose& frame_a, const Shape& plane, const Pose& frame_plane) {
@@ -28,9 +28,9 @@ Gap plane_gap(const Shape& a, const Pose& frame_a, const Shape& plane, const Pos
   return gap;
 }
 
-double turning(const SweptShape& shape, DVec3 normal) {
-  if (is_still(shape.sweep->turned)) return 0.0;
-  return length(cross(DVec3(shape.sweep->turned), normal)) * double(shape.radius);
+double rotation_rate(const SweptShape& shape, DVec3 normal) {
+  if (is_still(shape.sweep->rotation)) return 0.0;
+  return length(cross(DVec3(shape.sweep->rotation), normal)) * double(shape.radius);
 }
 
 DVec3 middle_at(const SweptShape& shape, const Pose& pose) {
@@ -38,37 +38,39 @@ DVec3 middle_at(const SweptShape& shape, const Pose& pose) {
 }
 
 // At most how fast the two close along a direction that stays as it is.
-double closing_rate(const SweptShape& a, const SweptShape& b, DVec3 way, DVec3 normal) {
-  return dot(way, normal) + turning(a, normal) + turning(b, normal);
+double closing_rate(const SweptShape& a, const SweptShape& b, DVec3 velocity, DVec3 normal) {
+  return dot(velocity, normal) + rotation_rate(a, normal) + rotation_rate(b, normal);
 }
 
 // The same along a direction that turns with B, over a time; `from_b` is how far A's middle lies from B's. In B's frame the
 // middle of A begins with w = v_a - v_b - turn_b x from_b; that changes as A goes on and as the frame turns, which is of second
 // order in the time. About its middle A turns by what it turns more than B. Far out on something large that turns, this is
 // much less than the rate of its farthest point.
-double closing_rate_beside(const SweptShape& a, const SweptShape& b, DVec3 way, DVec3 from_b, DVec3 normal,
-                           double time) {
-  const DVec3 turn_a(a.sweep->turned), turn_b(b.sweep->turned);
+double closing_rate_seen_from_b(const SweptShape& a, const SweptShape& b, DVec3 velocity, DVec3 from_b,
+                                DVec3 normal, double time) {
+  const DVec3 rotation_a(a.sweep->rotation), rotation_b(b.sweep->rotation);
   const auto radius = double(a.radius);
-  const DVec3 begin = way - cross(turn_b, from_b), more = turn_a - turn_b;
-  const double swerve = 0.5 * time * length(turn_b);
-  const double straight = length(way) * (1.0 + 2.0 * swerve) + length(begin);
-  return dot(begin, normal) + radius * length(cross(more, normal)) +
-         swerve * (straight + radius * length(more));
+  const DVec3 begin = velocity - cross(rotation_b, from_b), relative = rotation_a - rotation_b;
+  const double half_angle = 0.5 * time * length(rotation_b);
+  const double straight = length(velocity) * (1.0 + 2.0 * half_angle) + length(begin);
+  return dot(begin, normal) + radius * length(cross(relative, normal)) +
+         half_angle * (straight + radius * length(relative));
 }
 
-double closing_rate(const SweptShape& a, const SweptShape& b, DVec3 way, DVec3 from_b, DVec3 normal,
+double closing_rate(const SweptShape& a, const SweptShape& b, DVec3 velocity, DVec3 from_b, DVec3 normal,
                     double time) {
-  const double rate = closing_rate(a, b, way, normal);
-  return is_still(b.sweep->turned) ? rate : min(rate, closing_rate_beside(a, b, way, from_b, normal, time));
+  const double rate = closing_rate(a, b, velocity, normal);
+  return is_still(b.sweep->rotation)
+             ? rate
+             : min(rate, closing_rate_seen_from_b(a, b, velocity, from_b, normal, time));
 }
 
 // How far the core reaches along a direction from its body's middle.
-double reach_along(const SweptShape& a, double time, DVec3 normal) {
-  const Quat turn = is_still(a.sweep->turned)
-                        ? a.sweep->pose.orientation
-                        : integrate_rotation(a.sweep->pose.orientation, float(time) * a.sweep->turned);
-  const Vec3 in_body = rotate_inverse(turn, to_float(normal));
+double extent_along(const SweptShape& a, double time, DVec3 normal) {
+  const Quat orientation = is_still(a.sweep->rotation) ? a.sweep->pose.orientation
+                                                       : integrate_rotation(a.sweep->pose.orientation,
+                                                                            float(time) * a.sweep->rotation);
+  const Vec3 in_body = rotate_inverse(orientation to_float(normal));
   const Vec3 in_shape = rotate_inverse(a.body_from_shape.orientation, in_body);
   return double(dot(in_shape, support(*a.shape, in_shape))) +
          double(dot(in_body, a.body_from_shape.position - a.sweep->center));
@@ -77,14 +79,16 @@ double reach_along(const SweptShape& a, double time, DVec3 normal) {
 // Along one normal the two can be followed without a search: what lies between them along it is never more than their distance.
 // True if they do not come as near as `target` before `end`; else `time` is moved on as far as that normal tells. B does not
 // turn.
-bool passes_along(const SweptShape& a, DVec3 way, const Gap& gap, double closing, double target, double end,
-                  double& time) {
-  const double start = time, reach = reach_along(a, start, gap.normal), straight = dot(way, gap.normal);
-  double rest = gap.distance - target;
-  for (int i = 0; i < kMaxNormalAdvances && rest > kTolerance * target; ++i) {
-    time += rest / closing;
-    rest = gap.distance - target - straight * (time - start) - (reach_along(a, time, gap.normal) - reach);
-    if (closing * (end - time) <= rest) return true;
+bool passes_along(const SweptShape& a, DVec3 velocity, const Gap& gap, double closing, double target,
+                  double end, double& time) {
+  const double start = time, extent_before = extent_along(a, start, gap.normal),
+               straight = dot(velocity, gap.normal);
+  double remaining = gap.distance - target;
+  for (int i = 0; i < kMaxNormalAdvances && remaining > kTolerance * target; ++i) {
+    time += remaining / closing;
+    remaining = gap.distance - target - straight * (time - start) -
+                (extent_along(a, time, gap.normal) - extent_before);
+    if (closing * (end - time) <= remaining) return true;
   }
   return false;
 }
@@ -113,13 +117,13 @@ Gap find_gap(const SweptShape& a, const SweptShape& b, const Pose& pose_a, const
 
 Pose pose_at(const Sweep& sweep, double time) {
   Pose pose = sweep.pose;
-  if (!is_still(sweep.turned)) {
-    pose.orientation = integrate_rotation(sweep.pose.orientation, float(time) * sweep.turned);
+  if (!is_still(sweep.rotation)) {
+    pose.orientation = integrate_rotation(sweep.pose.orientation, float(time) * sweep.rotation);
     const Vec3 from_center =
         rotate(sweep.pose.orientation, sweep.center) - rotate(pose.orientation, sweep.center);
     pose.position += from_center;
   }
-  pose.position += time * DVec3(sweep.moved);
+  pose.position += time * DVec3(sweep.translation);
   return pose;
 }
 
@@ -132,27 +136,27 @@ Gap find_gap(const SweptShape& a, const SweptShape& b, double time, double max_d
 }
 
 Impact time_of_impact(const SweptShape& a, const SweptShape& b, double start, double end, double target) {
-  const DVec3 way = DVec3(a.sweep->moved) - DVec3(b.sweep->moved);
+  const DVec3 velocity = DVec3(a.sweep->translation) - DVec3(b.sweep->translation);
   double time = start;
   for (int i = 0; i < kMaxSteps; ++i) {
     // Nothing can close faster than this, whatever the direction.
-    double reach = length(way);
-    if (!is_still(a.sweep->turned)) reach += double(length(a.sweep->turned)) * double(a.radius);
-    if (!is_still(b.sweep->turned)) reach += double(length(b.sweep->turned)) * double(b.radius);
+    double max_rate = length(velocity);
+    if (!is_still(a.sweep->rotation)) max_rate += double(length(a.sweep->rotation)) * double(a.radius);
+    if (!is_still(b.sweep->rotation)) max_rate += double(length(b.sweep->rotation)) * double(b.radius);
     const Pose pose_a = pose_at(*a.sweep, time), pose_b = pose_at(*b.sweep, time);
-    const Gap gap = find_gap(a, b, pose_a, pose_b, target + reach * (end - time));
+    const Gap gap = find_gap(a, b, pose_a, pose_b, target + max_rate * (end - time));
     if (gap.beyond) return {};
-    const double rest = gap.distance - target;
-    if (rest <= kTolerance * target) return {true, time};
+    const double remaining = gap.distance - target;
+    if (remaining <= kTolerance * target) return {true, time};
     const DVec3 from_b = middle_at(a, pose_a) - middle_at(b, pose_b);
-    const double closing = closing_rate(a, b, way, from_b, gap.normal, end - time);
+    const double closing = closing_rate(a, b, velocity, from_b, gap.normal, end - time);
     // Both the line and the rate of turning are constant: what does not close along one normal now never does.
-    if (closing * (end - time) <= rest) return {};
+    if (closing * (end - time) <= remaining) return {};
     const bool searched = a.shape->kind != ShapeKind::plane && b.shape->kind != ShapeKind::plane;
-    if (searched && !is_still(a.sweep->turned) && is_still(b.sweep->turned)) {
-      if (passes_along(a, way, gap, closing, target, end, time)) return {};
+    if (searched && !is_still(a.sweep->rotation) && is_still(b.sweep->rotation)) {
+      if (passes_along(a, velocity, gap, closing, target, end, time)) return {};
     } else {
-      time += rest / closing;
+      time += remaining / closing;
     }
   }
   return {true, time};
@@ -171,7 +175,7 @@ bool stays_clear(const SweptShape& a, const SweptShape& b, double start, double 
                           max(largest(absolute(box_b.low)), largest(absolute(box_b.high))));
   const double slack =
       distance + 4.0e-6 * double(scale) + (has_disc ? 6.0e-4 * double(a.shape->radius) : 0.0);
-  const DVec3 way = DVec3(a.sweep->moved) - DVec3(b.sweep->moved);
+  const DVec3 velocity = DVec3(a.sweep->translation) - DVec3(b.sweep->translation);
   const DVec3 from_b = middle_at(a, pose_a) - middle_at(b, pose_b);
   for (int axis = 0; axis < 3; ++axis) {
     const double above = double(box_a.low[axis]) - double(box_b.high[axis]);
@@ -181,7 +185,7 @@ bool stays_clear(const SweptShape& a, const SweptShape& b, double start, double 
     const float sign = above > below ? -1.0f : 1.0f;
     const Vec3 side{axis == 0 ? sign : 0.0f, axis == 1 ? sign : 0.0f, axis == 2 ? sign : 0.0f};
     const DVec3 normal(rotate(frame_b.orientation, side));  // from A to B
-    if ((end - start) * closing_rate(a, b, way, from_b, normal, end - start) < apart) return true;
+    if ((end - start) * closing_rate(a, b, velocity, from_b, normal, end - start) < apart) return true;
   }
   return false;
 }

@@ -17,8 +17,8 @@ namespace gyre {
 struct Sweep {
   Pose pose;    // of its origin, as the step begins
   Vec3 center;  // centre of mass, body frame
-  Vec3 moved;   // m, of the centre of mass over the whole step
-  Vec3 turned;  // rad, rotation vector over the whole step, world frame
+  Vec3 translation;  // m, of the centre of mass over the whole step
+  Vec3 rotation;     // rad, rotation vector over the whole step, world frame
 };
 
 // Where the body is at a time. pose_at(sweep, 1) is where the step ends, pose_at(sweep, 0) is sweep.pose to rounding.

@@ -27,14 +27,14 @@ struct QueryInput {
 
 struct WorldRay {
   DVec3 origin;
-  Vec3 way;
+  Vec3 translation;
 };
 
 // A convex shape somewhere in the world, and where it goes (nowhere for questions about one place).
 struct WorldShape {
   Shape shape;
   Pose pose;
-  Vec3 way;
+  Vec3 translation;
   float skin = 0.0f;
 };
 

@@ -123,7 +123,7 @@ std::span<Group> arrange(BatchContext& solve, float warm_scale, Arena& arena, Ta
   if (solve.domains.count() > 1)
     solve.group_bounds = arena.make<int>(kMaxGroups * std::size_t(solve.domains.count() + 1));
   std::span<Group> contacts;
-  side_by_side(
+  run_parallel(
       tasks,
       [&] {
         begin_joints(solve, warm_scale, arena);

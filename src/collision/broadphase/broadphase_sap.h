@@ -43,24 +43,24 @@ class SortedAxis {
   void for_each_overlap(const Aabb& box, Visit&& visit) const {
     const OverlapTest test(box);
     for_each_block_down(blocks_before(box.high[axis_]), box.low[axis_], [&](const Block& block) {
-      for (unsigned rest = test.mask(block); rest != 0; rest &= rest - 1)
-        visit(block.item[std::countr_zero(rest)]);
+      for (unsigned left = test.mask(block); left != 0; left &= left - 1)
+        visit(block.item[std::countr_zero(left)]);
       return true;
     });
   }
 
   template <class Visit>
-  float for_each_along(const SweepTest& sweep, float reach, Visit&& visit) const {
-    const Aabb all = sweep.box_of({0.0f, reach});
+  float for_each_along(const CastTest& cast_test, float max_fraction, Visit&& visit) const {
+    const Aabb all = cast_test.box_of({0.0f, max_fraction});
     for_each_block_down(blocks_before(all.high[axis_]), all.low[axis_], [&](const Block& block) {
       float enter[kWidth];
-      for (unsigned rest = sweep.mask(block, reach, enter); rest != 0; rest &= rest - 1) {
-        reach = visit(block.item[std::countr_zero(rest)], reach);
-        if (reach < 0.0f) return false;
+      for (unsigned left = cast_test.mask(block, max_fraction, enter); left != 0; left &= left - 1) {
+        max_fraction = visit(block.item[std::countr_zero(left)], max_fraction);
+        if (max_fraction < 0.0f) return false;
       }
       return true;
     });
-    return reach;
+    return max_fraction;
   }
 
   template <class Visit>
@@ -68,17 +68,19 @@ class SortedAxis {
 
   // For a sweep: calls visit(item) for each that stands behind `place` in the order and overlaps `box`, which is there.
   template <class Visit>
-  void for_each_behind(std::size_t place, const Aabb& box, Visit&& visit) const {
+  void for_each_behind(std::size_t position, const Aabb& box, Visit&& visit) const {
     const OverlapTest test(box);
     const float end = box.high[axis_];
-    unsigned keep = ~0u << (place % kWidth) << 1;
-    for (std::size_t i = place / kWidth; i < blocks_.size() && blocks_[i].low[axis_][0] <= end;
-         ++i, keep = ~0u) {
-      for (unsigned rest = test.mask(blocks_[i]) & keep; rest != 0; rest &= rest - 1)
-        visit(blocks_[i].item[std::countr_zero(rest)]);
+    unsigned lanes = ~0u << (position % kWidth) << 1;
+    for (std::size_t i = position / kWidth; i < blocks_.size() && blocks_[i].low[axis_][0] <= end;
+         ++i, lanes = ~0u) {
+      for (unsigned left = test.mask(blocks_[i]) & lanes; left != 0; left &= left - 1)
+        visit(blocks_[i].item[std::countr_zero(left)]);
     }
   }
-  std::uint32_t item_at(std::size_t place) const { return blocks_[place / kWidth].item[place % kWidth]; }
+  std::uint32_t item_at(std::size_t position) const {
+    return blocks_[position / kWidth].item[position % kWidth];
+  }
 
  private:
   static constexpr std::size_t kGroup = 16;  // blocks
@@ -102,27 +104,27 @@ class SortedAxis {
     return first;
   }
   // From block `count` - 1 down, those in groups that reach `least`; while `look` says true.
-  template <class Look>
-  void for_each_block_down(std::size_t count, float least, Look&& look) const {
+  template <class Visit>
+  void for_each_block_down(std::size_t count, float min_high, Visit&& visit) const {
     for (std::size_t group = (count + kGroup - 1) / kGroup; group-- > 0;) {
-      if (farthest_so_far_[group] < least) return;
-      if (farthest_[group] < least) continue;
+      if (running_high_[group] < min_high) return;
+      if (group_high_[group] < min_high) continue;
       for (std::size_t i = min(count, (group + 1) * kGroup); i-- > group * kGroup;) {
-        if (!look(blocks_[i])) return;
+        if (!visit(blocks_[i])) return;
       }
     }
   }
 
   int best_axis() const;
   void sort_all();
-  void lay_out();
+  void write_blocks();
 
   Array<Aabb> boxes_;                         // by item
   Array<std::uint8_t> present_;               // by item
   Array<Ordered> order_;                      // between changes also what is gone
   Array<Block> blocks_;                       // in that order
-  Array<float> farthest_;                     // by group: how far the highest of its boxes reaches
-  Array<float> farthest_so_far_;              // by group: the same of it and all before it
+  Array<float> group_high_;                   // by group: how far the highest of its boxes reaches
+  Array<float> running_high_;                 // by group: the same of it and all before it
   Array<std::uint64_t> keys_, keys_scratch_;  // of the present sort
   Array<std::uint32_t> values_, values_scratch_;
   ShrinkPolicy clock_;
@@ -132,7 +134,7 @@ class SortedAxis {
   int axis_ = 0;
 };
 
-class BroadphaseSweep final : public BroadphaseBase<SortedAxis> {
+class BroadphaseSap final : public BroadphaseBase<SortedAxis> {
  public:
   void find_pairs(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved, PairFilter filter,
                   TaskSystem& tasks, Array<std::uint64_t>& pairs) override;
