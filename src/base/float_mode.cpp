@@ -1,5 +1,5 @@
-// The control register of floats on x86 (MXCSR, Intel SDM 1, 10.2.3) and 64-bit ARM (FPCR, Arm ARM C5.2.8). WebAssembly
-// has only the mode that is wanted.
+// Access to the control register of floats on x86 (MXCSR, Intel SDM 1, 10.2.3) and 64-bit ARM (FPCR, Arm ARM C5.2.8).
+// WebAssembly has only the required mode.
 #include "base/float_mode.h"
 
 #if (defined(__SSE2__) || defined(_M_X64)) && !defined(__EMSCRIPTEN__)

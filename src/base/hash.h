@@ -1,6 +1,6 @@
 // 64-bit hashes for state and content, the same on every platform. The function is XXH64, written from its published
-// specification ("xxHash fast digest algorithm", section XXH64): four lanes eat 32 bytes at a time, so it runs near
-// memory speed with nothing but 64-bit multiplies, and reference values exist to test against. Not for secrets.
+// specification ("xxHash fast digest algorithm", section XXH64): four lanes take 32 bytes at a time, so it runs near
+// memory speed with 64-bit multiplies alone, and reference values exist to test against. Not for secrets.
 #pragma once
 
 #include <bit>
@@ -20,7 +20,7 @@ constexpr std::uint64_t kPrime3 = 0x165667B19E3779F9u;
 constexpr std::uint64_t kPrime4 = 0x85EBCA77C2B2AE63u;
 constexpr std::uint64_t kPrime5 = 0x27D4EB2F165667C5u;
 
-// Byte by byte, so that the byte order is fixed and it works in constant expressions; compilers make one load of it.
+// Byte by byte, so that the byte order is fixed and constant expressions can use it; compilers make one load of it.
 template <class Byte>
 constexpr std::uint64_t read_32(const Byte* p) {
   std::uint64_t word = 0;
@@ -117,8 +117,7 @@ constexpr std::uint64_t mix_bits(std::uint64_t word) {
   return word ^ word >> 31;
 }
 
-// Hashes what comes in pieces; where the cuts are does not matter. value() equals hash_bytes of everything so far, and
-// more may follow.
+// Hashes input in pieces, independent of the cuts. value() equals hash_bytes of everything so far, and more may follow.
 class Hasher {
  public:
   explicit Hasher(std::uint64_t seed = 0) : lanes_(seed), seed_(seed) {}
@@ -140,7 +139,8 @@ class Hasher {
       p += missing;
       left -= missing;
     }
-    hash_detail::Lanes lanes = lanes_;  // in registers: for all that compilers know, the bytes might be those of `lanes_`
+    // in registers: the compiler must assume that the bytes may alias `lanes_`
+    hash_detail::Lanes lanes = lanes_;
     for (; left >= 32; left -= 32, p += 32) lanes.update(p);
     lanes_ = lanes;
     if (left != 0) std::memcpy(buffer_, p, left);

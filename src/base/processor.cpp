@@ -19,7 +19,7 @@ bool is_by_amd() {
   return std::memcmp(name, "AuthenticAMD", 12) == 0;
 }
 
-// As processors number themselves: the extended family counts on from 15.
+// The family as processor makers count it: the extended family continues from 15.
 unsigned family() {
   unsigned a = 0, b = 0, c = 0, d = 0;
   if (__get_cpuid(1, &a, &b, &c, &d) == 0) return 0;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
 
-// The graph while nodes are eliminated: for each node the neighbours that are left.
+// The graph during elimination: the remaining neighbours of each node.
 class Elimination {
  public:
   Elimination(std::span<const std::uint8_t> sizes, std::span<const BlockEdge> edges, Arena& arena)
@@ -35,7 +35,7 @@ class Elimination {
     }
   }
 
-  // Takes the next node out; its neighbours stay readable until the next call. kNone if none is left.
+  // Removes and returns the next node; its neighbours stay readable until the next call. kNone if none is left.
   std::uint32_t next() {
     while (lowest_ < heads_.size() && heads_[lowest_] == kNone) ++lowest_;
     if (lowest_ == heads_.size()) return kNone;
@@ -47,7 +47,7 @@ class Elimination {
     return {lists_[node].items, lists_[node].count};
   }
 
-  // The neighbours of the node become neighbours of each other.
+  // Makes the neighbours of the node neighbours of each other.
   void eliminate(std::uint32_t node) {
     const std::span<const std::uint32_t> around = neighbours(node);
     for (const std::uint32_t other : around) marks_[other] = node;
@@ -93,7 +93,7 @@ class Elimination {
     std::copy(list.items, list.items + list.count, items);
     list.items = items;
   }
-  // Nodes by number of neighbours, in doubly linked lists.
+  // Lists nodes by number of neighbours, in doubly linked lists.
   void insert(std::uint32_t node) {
     const std::uint32_t degree = lists_[node].count;
     before_[node] = kNone;
@@ -119,7 +119,8 @@ class Elimination {
   std::uint32_t lowest_ = 0;
 };
 
-// For each pair of entries of each column the block that its elimination changes: entry i (rows) by entry j <= i.
+// Lists, for each pair of entries of each column, the block that its elimination changes: entry i (rows) by entry j <=
+// i.
 std::span<std::uint32_t> list_targets(std::span<BlockColumn> columns, std::span<const BlockEntry> entries,
                                       Arena& arena) {
   std::size_t count = 0;
@@ -157,7 +158,7 @@ void sort_by_index(std::span<BlockEntry> entries) {
   }
 }
 
-// Kernels: R, Q and C are numbers of rows known when compiling, or 0 for those of the arguments.
+// Kernels: R, Q and C are numbers of rows known at compile time, or 0 for those of the arguments.
 template <int R, int C>
 void multiply(const double* b, const double* d, double* out, int rows, int columns) {
   const int r_end = R > 0 ? R : rows, c_end = C > 0 ? C : columns;
@@ -181,7 +182,7 @@ void subtract_product(const double* w, const double* b, double* out, int rows, i
   }
 }
 
-// Calls fn with the number as a constant where it is that of a ball joint or a hinge, 0 otherwise.
+// Calls fn with the number as a constant for a ball joint or a hinge, with 0 otherwise.
 template <class Fn>
 void with_constant(std::uint32_t rows, Fn&& fn) {
   if (rows == 3) return fn(std::integral_constant<int, 3>());
@@ -267,7 +268,7 @@ bool is_zero(const double* x, std::uint32_t count) {
   return true;
 }
 
-// D^-1 times a column's part of a vector; D^-1 is what its diagonal block holds.
+// D^-1 times the rows of a vector that belong to a column. The diagonal block contains D^-1.
 template <int C>
 void scale_column(const BlockColumn& column, const double* values, const double* x, double* out) {
   const int size = C > 0 ? C : int(column.size);
@@ -294,7 +295,7 @@ void solve_up(const BlockPlan& plan, const BlockColumn& column, const double* va
   for (int r = 0; r < size; ++r) x[column.row + std::uint32_t(r)] = own[r];
 }
 
-// The columns' neighbours as they are eliminated, by node; false if that costs too much.
+// Lists the neighbours of each column at its elimination. False if the work exceeds `max_work`.
 bool eliminate_all(std::span<const std::uint8_t> sizes, std::span<const BlockEdge> edges,
                    std::uint64_t max_work, Arena& arena, std::span<std::uint32_t> index_of,
                    std::span<std::uint32_t> node_at, std::span<std::span<const std::uint32_t>> below,

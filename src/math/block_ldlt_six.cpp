@@ -1,4 +1,4 @@
-// The factorisation of math/block_ldlt.h where each block has six rows: two columns are eliminated at a time (math/block_six.h).
+// The factorisation of math/block_ldlt.h for blocks of six rows: two columns at a time (math/block_six.h).
 #include "math/block_inverse.h"
 #include "math/block_ldlt.h"
 #include "math/block_six.h"

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int N = kLuBlock;
 
-// C numbers of a row, two at a time.
+// C numbers of a row, as pairs.
 template <int C>
 struct RowPairs {
   static constexpr int kWidth = C == 1 ? 1 : 2, kCount = C / kWidth;
@@ -41,7 +41,7 @@ void exchange(double& a, double& b) {
   b = t;
 }
 
-// The block by its factors, the row exchanged with each in turn in `pivots`.
+// Factors a block in place; `pivots` holds the row exchanged with each row.
 bool factor_block(double* block, double* pivots) {
   for (int k = 0; k < N; ++k) {
     int best = k;
@@ -63,7 +63,7 @@ bool factor_block(double* block, double* pivots) {
   return true;
 }
 
-// Columns of C numbers each row: X = block^-1 X.
+// X = block^-1 X, for rows of C numbers.
 template <int C>
 void solve_block(const double* block, const double* pivots, double* x) {
   for (int k = 0; k < N; ++k) {

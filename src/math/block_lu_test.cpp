@@ -1,4 +1,4 @@
-// The sparse factorisation of unsymmetric blocks against what the matrix makes of a known vector.
+// The sparse factorisation of unsymmetric blocks: it recovers a known vector from its product with the matrix.
 #include "math/block_lu.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ struct Sparse {
   BlockLu lu() { return {&plan, lower, upper, pivots}; }
 };
 
-// Nodes in a square, each coupled to its neighbours. `heavy`: what is added to the diagonal.
+// Nodes in a square, each coupled to its neighbours. `heavy` is added to the diagonal.
 void make_grid(Sparse& sparse, std::uint32_t side, double heavy, Random& random) {
   std::vector<std::uint8_t> sizes(side * side, kLuBlock);
   std::vector<BlockEdge> edges;
@@ -71,7 +71,7 @@ std::vector<double> times(const Sparse& sparse, const std::vector<double>& x) {
   return y;
 }
 
-TEST(BlockLu, FindsWhatTheMatrixWasGiven) {
+TEST(BlockLu, RecoversAKnownVector) {
   Random random;
   for (std::uint32_t side = 1; side < 8; ++side) {
     Sparse sparse;

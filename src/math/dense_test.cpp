@@ -1,4 +1,4 @@
-// Eigenvectors rebuild their matrix; factorisations solve, also singular and badly scaled systems.
+// Eigenvectors reproduce their matrix; factorisations solve singular and badly scaled systems, too.
 #include "math/dense.h"
 
 #include "random.h"
@@ -17,7 +17,7 @@ struct Random : testing_random::Mixed {
   Random() : Mixed{0x853c49e6748fea9bu} {}
 };
 
-// The laws of an eigen decomposition: ascending, orthonormal, right-handed, and A diag A^T is the matrix.
+// The properties of an eigen decomposition: ascending, orthonormal, right-handed, and A diag A^T is the matrix.
 void expect_eigen(const double (&m)[6]) {
   double moments[3], a[9];
   symmetric_eigen(m, moments, a);

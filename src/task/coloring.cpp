@@ -41,10 +41,10 @@ void choose_color(std::span<const ColoringPair> pairs, std::span<const std::uint
   if (b_moves) out.masks[b] |= bit(color);
 }
 
-// Neighbours by name that choose one after the other.
+// Constraints with neighbouring names that choose one after the other.
 constexpr std::uint32_t kRun = 32;
 
-// The order in which constraints choose: ascending, but in half of the runs, by lot, descending.
+// The order in which constraints choose: ascending, but descending in a random half of the runs.
 void order_runs(std::span<const std::uint32_t> names, std::span<std::uint32_t> order) {
   for (std::size_t begin = 0; begin < names.size();) {
     const std::uint32_t run = names[begin] / kRun;
@@ -96,7 +96,7 @@ bool validate_coloring(std::span<const ColoringPair> pairs, std::uint32_t body_c
   if (coloring.group_count() != groups || coloring.offsets[0] != 0) return false;
   if (coloring.offsets.back() != pairs.size()) return false;
 
-  // Which group had the body last; groups count from one here.
+  // The last group with the body; groups count from one here.
   Array<std::uint32_t> seen;
   seen.resize(body_count);
   for (int g = 0; g < groups; ++g) {

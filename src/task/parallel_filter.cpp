@@ -1,4 +1,5 @@
-// Blocks are looked at by all workers, each writes a word of bits; the list is then read off them in order. See choose.h.
+// All workers filter blocks; each block writes a word of bits, from which the list is then read in order. See
+// parallel_filter.h.
 #include "task/parallel_filter.h"
 
 #include "task/parallel.h"

@@ -1,4 +1,4 @@
-// The same list for any number of workers, ascending, with the sizes of those that are in it.
+// The same list for any number of workers, ascending, with the sum of its sizes.
 #include "task/parallel_filter.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Blocks of an arena: each new one is as large as all before it together, and reset() makes the oldest as large as the step
-// needed, and a little more, and gives the others back.
+// Blocks of an arena. Each new block is as large as all earlier ones together; reset() resizes the oldest block to the
+// need of the step and a little more, and frees the others.
 #include "base/arena/arena.h"
 
 #include <cstring>
@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t kHeader = kMemoryAlign;
 constexpr std::size_t kFirstBlock = 16 * 1024;
-// What a block has to spare, as a share of what was needed. Where the last one did not do either, more will be needed soon, and
-// taking a larger one means touching all of its memory for the first time.
+// Spare room of a block as a share of the need. If the last block was too small as well, more will be needed soon, and
+// each larger block has to be touched for the first time.
 constexpr std::size_t kShare = 16, kShareOfGrowing = 2;
 
 constexpr std::size_t round_up(std::size_t bytes) { return (bytes + kMemoryAlign - 1) & ~(kMemoryAlign - 1); }
@@ -60,7 +60,7 @@ void Arena::add_block(std::size_t capacity) {
 void Arena::release(Mark mark) {
   peak_ = peak();
   while (current_ != mark.block) free_newest();
-  GYRE_ASSERT(mark.used <= used_, "marks are gone back to in the order of a stack");
+  GYRE_ASSERT(mark.used <= used_, "marks are released in the order of a stack");
   used_ = mark.used;
 }
 
@@ -79,7 +79,7 @@ void Arena::reset() {
   resize_to(room < kFirstBlock ? kFirstBlock : room);
 }
 
-// The oldest block stays: most of it has been touched.
+// The oldest block stays, since most of it has been touched.
 void Arena::resize_to(std::size_t capacity) {
   while (current_ != nullptr && current_->previous != nullptr) free_newest();
   const std::size_t old_bytes = current_ == nullptr ? 0 : current_->capacity + kHeader;

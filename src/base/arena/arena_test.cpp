@@ -44,7 +44,7 @@ TEST(Arena, WarmStepsDoNotAllocate) {
   EXPECT_EQ(allocation_count(), before);
 }
 
-TEST(Arena, CountsWhatItGave) {
+TEST(Arena, CountsBytesInUse) {
   Arena arena;
   EXPECT_EQ(arena.bytes_used(), 0u);
   EXPECT_TRUE(arena.make<int>(0).empty());
@@ -61,7 +61,7 @@ TEST(Arena, CountsWhatItGave) {
   EXPECT_EQ(arena.high_water(), used);
 }
 
-TEST(Arena, AScopeGivesItsMemoryToTheNext) {
+TEST(Arena, ScopesReuseMemory) {
   Arena arena;
   const auto step = [&arena] {
     arena.make<std::uint8_t>(1000);
@@ -90,7 +90,7 @@ TEST(Arena, AScopeGivesItsMemoryToTheNext) {
   EXPECT_EQ(allocation_count(), before);
 }
 
-TEST(Arena, GivesBackWhatWasNotNeededForLong) {
+TEST(Arena, ReleasesMemoryUnusedForLong) {
   Arena arena;
   arena.make<std::uint8_t>(1 << 20);
   for (int i = 0; i < 200; ++i) {
@@ -100,7 +100,7 @@ TEST(Arena, GivesBackWhatWasNotNeededForLong) {
   EXPECT_LT(arena.capacity(), 30000u);
 }
 
-TEST(Arena, GivesAllMemoryBack) {
+TEST(Arena, ReleasesAllMemory) {
   const std::uint64_t before = total_bytes();
   {
     Arena arena;

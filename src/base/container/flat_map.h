@@ -1,7 +1,8 @@
-// FlatMap<V>: from 64-bit keys to values. Entries lie densely in an array, and only that array can be walked, so no
-// order of a hash table can ever leak into a result. A table of (hash, entry) pairs with linear probing finds them.
+// FlatMap<V>: a map from 64-bit keys to values. Entries lie densely in an array, and only that array can be visited, so
+// the order of a hash table never leaks into a result. A table of (hash, entry) pairs with linear probing finds them.
 //
-// Order: insertion order, except that erase() moves the last entry into the gap. So it is a function of the calls alone.
+// Order: insertion order, except that erase() moves the last entry into the gap. So it is a function of the calls
+// alone.
 #pragma once
 
 #include "base/container/array.h"
@@ -36,7 +37,7 @@ class FlatMap {
   }
   bool contains(std::uint64_t key) const { return find_cell(key) != kNotFound; }
 
-  // Sets the value of a key, new or not. An old one keeps its place in the order.
+  // Sets the value of a key. An existing key keeps its position in the order.
   V& insert(std::uint64_t key, V value) {
     if (V* const old = find(key)) {
       *old = std::move(value);
@@ -45,13 +46,13 @@ class FlatMap {
     return add(key, std::move(value));
   }
 
-  // The value of a key; `fallback` is put in first if there is none.
+  // The value of a key; inserts `fallback` if there is none.
   V& find_or_insert(std::uint64_t key, V fallback = V()) {
     if (V* const old = find(key)) return *old;
     return add(key, std::move(fallback));
   }
 
-  // Removes a key; the last entry takes its place in the order. False if it was not there.
+  // Removes a key; the last entry takes its position in the order. False if it was not there.
   bool erase(std::uint64_t key) {
     const std::size_t cell = find_cell(key);
     if (cell == kNotFound) return false;
@@ -63,7 +64,7 @@ class FlatMap {
     return true;
   }
 
-  // Forgets all entries and keeps the memory.
+  // Removes all entries and keeps the memory.
   void clear() {
     entries_.clear();
     for (Cell& cell : cells_) cell = Cell{};
@@ -96,7 +97,7 @@ class FlatMap {
   static constexpr std::size_t kNotFound = SIZE_MAX;
   static constexpr std::size_t kMinCells = 16;
 
-  // Half of the hash is kept: it gives the home cell, and tells most other keys apart without looking at the entry.
+  // Half of the hash: it gives the home cell, and excludes most other keys without a read of the entry.
   struct Cell {
     std::uint32_t hash = 0;
     std::uint32_t entry = kEmpty;
@@ -144,7 +145,7 @@ class FlatMap {
     }
   }
 
-  // Empties a cell. Each later one of the run that could stand nearer its home moves into the gap, so no search ends
+  // Empties a cell. Each later cell of the run that could stand nearer its home moves into the gap, so no search ends
   // too early and no tombstones pile up (Knuth, The Art of Computer Programming 3, 6.4, algorithm R).
   void close_gap(std::size_t gap) {
     for (std::size_t i = (gap + 1) & mask(); cells_[i].entry != kEmpty; i = (i + 1) & mask()) {

@@ -1,9 +1,8 @@
-// InternedColumn<T>: a column of records of which many are the same (the masses of a thousand equal boxes): equal ones are kept
-// once, and each element costs the four bytes that tell which. It reads like an array; writing goes through set().
+// InternedColumn<T>: a column that stores equal records once, such as the masses of a thousand equal boxes; each
+// element costs the four bytes of an index. It reads like an array; set() writes.
 //
-// Equal means the same bits. What is to be kept this way tells its bits by interning_key(record): an array of words, without
-// padding, that is the same only for the same records. The order in which records are kept is a function of the calls
-// alone, and nothing can walk it.
+// Records are equal if interning_key(record) is: an array of words, without padding, that is the same only for the same
+// records. The order of stored records is a function of the calls alone, and nothing can visit it.
 #pragma once
 
 #include "base/container/array.h"
@@ -25,7 +24,7 @@ class InternedColumn {
     return indices_.bytes() + records_.bytes() + keys_.bytes() + users_.bytes() + free_.bytes() +
            table_.bytes();
   }
-  // How many different records there are.
+  // The number of different records.
   std::size_t distinct() const { return table_.size(); }
 
   // Valid until the next set() or resize().
@@ -51,18 +50,18 @@ class InternedColumn {
     indices_.resize(count, index);
   }
 
-  // For loops that must know where records are: element i is records()[places()[i]].
+  // For loops over the storage: element i is records()[indices()[i]].
   const T* records() const { return records_.data(); }
   const std::uint32_t* indices() const { return indices_.data(); }
 
  private:
-  // The place of a record, which has one user more.
+  // The index of a record, which gets one user more.
   std::uint32_t acquire(const T& record) {
     const auto bits = interning_key(record);
     std::uint64_t key = hash_bytes(bits.data(), sizeof bits);
     const auto key_of = [this](std::uint32_t index) { return keys_[index]; };
     std::uint32_t index = table_.find(key, key_of);
-    // Another record with the same hash: the next key is as good.
+    // A different record with the same hash uses the next key.
     while (index != SlotTable::kNone && interning_key(records_[index]) != bits)
       index = table_.find(++key, key_of);
     if (index == SlotTable::kNone) {
@@ -96,13 +95,13 @@ class InternedColumn {
 
   Array<std::uint32_t> indices_;  // by element
   Array<T> records_;
-  Array<std::uint64_t> keys_;   // by record: its hash, or the next that was free
+  Array<std::uint64_t> keys_;   // by record: its hash, or the next free key
   Array<std::uint32_t> users_;  // by record
   Array<std::uint32_t> free_;   // records without users
   SlotTable table_;
 };
 
-// Helper for interning_key: the words of fields that have no padding, one after the other.
+// Helper for interning_key: the words of fields without padding, one after the other.
 template <class... Fields>
 auto words_of(const Fields&... fields) {
   constexpr std::size_t kBytes = (sizeof(Fields) + ...);

@@ -1,4 +1,4 @@
-// Pages move whole only from and to places of whole pages, so each place is cut out of one that is a page larger.
+// Pages move only between blocks of whole pages, so each block is cut out of one that is a page larger.
 #include "base/memory/large_pages.h"
 
 #if defined(__linux__)
@@ -9,12 +9,12 @@ namespace gyre {
 
 namespace {
 
-// 0 where that is more than there are numbers for.
+// 0 if the result does not fit.
 std::size_t whole_pages(std::size_t bytes) {
   return bytes > SIZE_MAX - 2 * kLargePage ? 0 : (bytes + kLargePage - 1) / kLargePage * kLargePage;
 }
 
-// A place of `size` bytes, whole pages, that starts with one.
+// Maps a block of `size` bytes, in whole pages, aligned to a page.
 std::byte* map_block(std::size_t size, int access) {
   void* const found =
       mmap(nullptr, size + kLargePage, access, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);

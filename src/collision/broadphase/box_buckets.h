@@ -1,5 +1,5 @@
-// Lists of boxes, eight side by side: what a cell of a grid or a node of a tree holds. All lists of one index share one
-// pool of chunks; a list is the number of its first chunk, the only one that may have free lanes.
+// Lists of boxes, eight side by side, for the cells of grids and the nodes of trees. All lists of one index share a
+// pool of chunks. A list is the index of its first chunk, the only chunk that may have free lanes.
 #pragma once
 
 #include "base/arena/shrink_policy.h"
@@ -23,7 +23,7 @@ class BoxBuckets {
   }
   std::size_t bytes() const { return chunks_.bytes() + free_.bytes(); }
 
-  // Adds to the list that starts with chunk `head`; returns the item's place.
+  // Adds to the list that starts with chunk `head`; returns the item's slot.
   std::uint32_t add(std::uint32_t& head, std::uint32_t item, const Aabb& box) {
     if (head == kNone || chunks_[head].count == kWidth) {
       const std::uint32_t made = make_chunk();
@@ -37,7 +37,7 @@ class BoxBuckets {
     return head * kWidth + lane;
   }
 
-  // Takes out what is at `place` of the list. Another item takes that place: it is returned, or kNone if there is none.
+  // Removes the item in `slot` from the list. Returns the item that moved into this slot, or kNone.
   std::uint32_t remove(std::uint32_t& head, std::uint32_t slot) {
     Chunk& first = chunks_[head];
     const std::uint32_t last = head * kWidth + first.count - 1;
@@ -56,7 +56,7 @@ class BoxBuckets {
     return moved;
   }
 
-  // Where in the list an item is; it must be there.
+  // The slot of an item that is in the list.
   std::uint32_t find(std::uint32_t head, std::uint32_t item) const {
     for (std::uint32_t i = head;; i = chunks_[i].next) {
       for (std::uint32_t lane = 0; lane < chunks_[i].count; ++lane) {
@@ -71,7 +71,7 @@ class BoxBuckets {
     set_lane_box(chunks_[slot / kWidth], int(slot % kWidth), box);
   }
 
-  // Calls visit(item, box, place) for each.
+  // Calls visit(item, box, slot) for each item.
   template <class Visit>
   void for_each(std::uint32_t head, Visit&& visit) const {
     for (std::uint32_t i = head; i != kNone; i = chunks_[i].next) {
@@ -80,7 +80,7 @@ class BoxBuckets {
       }
     }
   }
-  // Calls visit(item, place) for each whose box overlaps `box`.
+  // Calls visit(item, slot) for each item whose box overlaps `box`.
   template <class Visit>
   void for_each_overlap(std::uint32_t head, const Aabb& box, Visit&& visit) const {
     const OverlapTest test(box);
@@ -92,7 +92,8 @@ class BoxBuckets {
       }
     }
   }
-  // Calls visit(item, reach, place), which returns the new reach, for each that the sweep may touch. Below 0 ends it.
+  // Calls visit(item, max_fraction, slot), which returns the new max_fraction, for each item that the cast may touch. A
+  // result below 0 ends it.
   template <class Visit>
   float for_each_along(std::uint32_t head, const CastTest& cast_test, float max_fraction,
                        Visit&& visit) const {
@@ -108,7 +109,7 @@ class BoxBuckets {
     return max_fraction;
   }
 
-  // Gives a whole list back.
+  // Frees a whole list.
   void free_list(std::uint32_t& head) {
     while (head != kNone) {
       free_.push_back(head);
@@ -136,13 +137,13 @@ class BoxBuckets {
   Array<std::uint32_t> free_;
 };
 
-// An item with its box, on its way into an index.
+// An item with its box, to be added to an index.
 struct BoxEntry {
   Aabb box;
   std::uint32_t item;
 };
 
-// What indices share in which each item is in one list: which one, and where.
+// Base of the indices in which each item is in one list: stores the item's list and slot.
 class BucketIndex {
  public:
   std::size_t size() const { return size_; }
@@ -170,7 +171,7 @@ class BucketIndex {
     for (std::uint32_t& slot : slots_) slot = kNone;
     size_ = 0;
   }
-  // Into the list of a node that begins at `head`, and out of it.
+  // Adds an item to the list of a node that begins at `head`; take() removes it.
   void put(std::uint32_t& head, std::uint32_t node, std::uint32_t item, const Aabb& box) {
     slots_[item] = buckets_.add(head, item, box);
     nodes_of_[item] = node;

@@ -1,4 +1,4 @@
-// Eight boxes side by side, so that one loop tests them all: what the nodes of trees and the buckets of grids hold.
+// Eight boxes side by side, tested by one loop: the nodes of trees and the buckets of grids.
 #pragma once
 
 #include "math/wide.h"
@@ -28,7 +28,7 @@ inline void set_lane_box(BoxLanes& lanes, int lane, const Aabb& box) {
   }
 }
 
-// A box that nothing overlaps, for a lane without one.
+// A box that nothing overlaps, for an unused lane.
 inline void clear_lane_box(BoxLanes& lanes, int lane) {
   constexpr float kNever = std::numeric_limits<float>::infinity();
   set_lane_box(lanes, lane, {{kNever, kNever, kNever}, {-kNever, -kNever, -kNever}});
@@ -36,7 +36,7 @@ inline void clear_lane_box(BoxLanes& lanes, int lane) {
 
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// A box to be held against many lanes, W of them at once.
+// Tests one box against many lanes, W at once.
 template <int W>
 class OverlapLanes {
  public:

@@ -1,4 +1,4 @@
-// Building, changing and keeping up the wide tree. See box_tree.h.
+// Builds, changes and maintains the wide tree. See box_tree.h.
 #include "collision/broadphase/box_tree.h"
 
 #include <limits>
@@ -6,13 +6,14 @@
 namespace gyre {
 namespace {
 
-// Children of a node when it is built: room is left for those that come later.
+// Children of a new node; the remaining lanes are for later children.
 constexpr std::size_t kFill = 6;
 
-// A tree that was refitted serves until its nodes have this many times the surface, against their items, that they were built with.
+// After refits the tree is rebuilt once the surface of its nodes, relative to that of their items, has grown by this
+// factor.
 constexpr float kMaxLooseness = 1.2f;
 
-// Items below a node of this level, when it is built.
+// Items below a node of this level when it is built.
 std::size_t room_of(int level) {
   std::size_t room = kFill;
   for (int i = 0; i < level; ++i) room *= kFill;
@@ -49,7 +50,7 @@ float cost_of_groups(std::span<const Entry> entries, std::span<const std::size_t
   return cost;
 }
 
-// Few entries are parted along the axis that leaves the smallest surfaces, many along the longest.
+// Up to this many entries are split along the axis with the smallest surfaces, more along the longest axis.
 constexpr std::size_t kFewEntries = 64;
 
 // Orders the entries so that each group is one run, all of nearly the same size. At most eight groups.
@@ -140,7 +141,7 @@ void BoxTree::remove_lane(std::uint32_t node, int lane) {
   n.child[last] = kNowhere;
 }
 
-// Makes the boxes that ancestors keep of `node` exact again, as far up as they change.
+// Makes the boxes of `node` in its ancestors exact again, as far up as they change.
 void BoxTree::refit_up(std::uint32_t node) {
   while (nodes_[node].parent != kNowhere) {
     const Aabb box = bounds_of(nodes_[node]);
@@ -175,7 +176,7 @@ void BoxTree::insert_entry(const Entry& entry) {
   std::uint32_t index = root_;
   while (nodes_[index].level > 0) {
     Node& node = nodes_[index];
-    // The child that grows least in surface; among equals the smallest.
+    // The child whose surface grows least; among equals the smallest.
     int best = 0;
     float min_growth = std::numeric_limits<float>::infinity(), min_area = min_growth;
     for (int lane = 0; lane < node.count; ++lane) {
@@ -214,7 +215,7 @@ void BoxTree::add_or_split(std::uint32_t node, Entry entry) {
   }
 }
 
-// Shares the children of a full node and one more between it and a new sibling, which is returned.
+// Divides the children of a full node and one more between the node and a new sibling, which is returned.
 std::uint32_t BoxTree::split(std::uint32_t node, const Entry& extra) {
   constexpr int kCount = kWidth + 1;
   Entry by_axis[3][kCount];
@@ -318,7 +319,8 @@ void BoxTree::finish_build() {
 
 bool BoxTree::refit() { return refit_nodes() <= kMaxLooseness * looseness_; }
 
-// Makes the boxes that nodes keep of their children exact, from the bottom up. Returns their surface over that of the items.
+// Makes the boxes of children in all nodes exact, from the bottom up. Returns their surface divided by that of the
+// items.
 float BoxTree::refit_nodes() {
   if (root_ == kNowhere) return 0.0f;
   float items = 0.0f, inner = 0.0f;
@@ -357,7 +359,7 @@ void BoxTree::improve(std::size_t changes) {
   if (root_ == kNowhere) return;
   constexpr std::size_t kChangesPerNode = 256;
   int nodes = int(1 + changes / kChangesPerNode);
-  // Most nodes lie on level 0 and have nothing to regroup: they are passed by, a bounded number of them.
+  // Most nodes are on level 0 and have nothing to regroup: a bounded number of them is skipped.
   for (int passed = 0; nodes > 0 && passed < 16 * nodes + 64; ++passed) {
     if (next_improved_ >= nodes_.size()) next_improved_ = 0;
     const std::uint32_t index = next_improved_++;
@@ -382,7 +384,7 @@ void BoxTree::regroup(std::uint32_t index) {
   std::size_t sizes[kWidth];
   split_into_groups<Entry>({entries, count}, groups, sizes);
   const float cost = cost_of_groups(std::span<const Entry>(entries, count), {sizes, std::size_t(groups)});
-  // Fewer groups are taken at any price: empty places cost walks, too.
+  // Fewer groups are always better: empty lanes cost traversal time, too.
   if (groups >= groups_before && cost >= cost_before) return;
   while (nodes_[index].count > 0) {
     const int lane = nodes_[index].count - 1;
@@ -434,7 +436,7 @@ const char* BoxTree::find_fault(std::uint32_t index, std::size_t& items) const {
     }
     if (node.level == 0) {
       ++items;
-      if (slots_[node.child[lane]] != index * kWidth + std::uint32_t(lane)) return "an item's place is wrong";
+      if (slots_[node.child[lane]] != index * kWidth + std::uint32_t(lane)) return "an item's slot is wrong";
       continue;
     }
     const Node& child = nodes_[node.child[lane]];

@@ -1,15 +1,15 @@
-// What all broad phases but brute force have in common: two indices of boxes, one of fixed and one of moving proxies, so
-// that what never moves costs nothing and is asked only by what moves. Proxies without bounds (planes) lie in a list of
-// their own: in an index they would overlap every query and swell every box above them.
+// The common base of all broad phases but brute force: two indices of boxes, one of fixed and one of moving proxies.
+// Fixed proxies cost nothing, and only moving ones query them. Proxies without bounds (planes) have a list of their
+// own; in an index they would overlap every query and swell every box above them.
 //
-// The index is what a broad phase is named after. It holds items (small numbers) with boxes, and has
+// The index names the broad phase. It contains items (small numbers) with boxes, and has
 //   insert(item, box), remove(item), move(item, box), clear(), begin_build(), add_to_build(item, box), finish_build(),
-//   kRebuildShare         when more than one in so many changes at once, building is cheaper
-//   place(item, box), refit()    if it has these: many boxes changed at once; refit() is false where building is better
-//   improve(changes)      upkeep after so many changes, before anything is asked; not called after a build
-//   for_each_overlap(box, visit), for_each_along(sweep, reach, visit), for_each_node(visit)
+//   kRebuildShare                building is cheaper if more than one in so many changes at once
+//   set_box(item, box), refit()  optional: many boxes changed at once; refit() is false if building is better
+//   improve(changes)             upkeep after so many changes, before any query; not called after a build
+//   for_each_overlap(box, visit), for_each_along(cast_test, max_fraction, visit), for_each_node(visit)
 //   contains(item), box_of(item), size(), bytes(), trim(), find_fault()
-// Walks may visit more items than overlap, but each at most once: every candidate is looked at again here.
+// An index may visit items that do not overlap, but each at most once: this class tests every candidate again.
 #pragma once
 
 #include "base/container/sort.h"
@@ -45,7 +45,7 @@ class BroadphaseBase : public Broadphase {
   PairCollector collector_;
 
  private:
-  // When this many and the index's own share of its items change at once, it is built anew instead of changed.
+  // If more than this many and the index's own share of its items change at once, it is rebuilt.
   static constexpr std::size_t kMinRebuildChanges = 64;
 
   static Home home_of(const Proxy& proxy) {
@@ -59,7 +59,7 @@ class BroadphaseBase : public Broadphase {
   void add(std::uint32_t index, const Proxy& proxy, Home home);
   void remove(std::uint32_t index);
   void change(std::span<const Proxy> proxies, std::uint32_t index, const bool* build);
-  // Many boxes of the index changed, none came or went.
+  // Sets many boxes of the index, without insertions or removals.
   static constexpr bool kRefits = requires(Index & index) { index.refit(); };
   void set_boxes(std::span<const Proxy> proxies, std::span<const std::uint32_t> changed, Home home);
 };
@@ -119,7 +119,7 @@ void BroadphaseBase<Index>::remove(std::uint32_t index) {
   homes_[index] = kNoHome;
 }
 
-// `build`: which indices are to be built anew; they are empty now.
+// `build`: the indices to be rebuilt; they are empty now.
 template <class Index>
 void BroadphaseBase<Index>::change(std::span<const Proxy> proxies, std::uint32_t index, const bool* build) {
   const Home old = homes_[index];
@@ -172,7 +172,7 @@ void BroadphaseBase<Index>::update(std::span<const Proxy> proxies, std::span<con
         changes[home] > kMinRebuildChanges && changes[home] > indices_[home].size() / Index::kRebuildShare;
     if (kRefits && build[home] && stay[home]) continue;
     stay[home] = false;
-    // An index that is to be built anew is emptied first, so that no change below touches it.
+    // An index to be rebuilt is emptied first, so that no change below touches it.
     if (build[home]) indices_[home].clear();
   }
   for (const std::uint32_t index : changed) {
@@ -236,7 +236,7 @@ float BroadphaseBase<Index>::cast(std::span<const Proxy> proxies, const CastBox&
   for (const Home home : {kMoving, kFixed}) {
     if (max_fraction < 0.0f) return max_fraction;
     if (still) {
-      // What a box meets that goes nowhere is what it overlaps.
+      // A box at rest meets what it overlaps.
       indices_[home].for_each_overlap(test.box_of({}), [&](std::uint32_t index) {
         if (max_fraction >= 0.0f) max_fraction = visit_if_met(index, max_fraction);
       });

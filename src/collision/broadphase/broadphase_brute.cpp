@@ -1,4 +1,4 @@
-// The brute-force broad phase keeps nothing: the proxies themselves are its only data.
+// The brute-force broad phase has no data of its own but the proxies.
 #include "collision/broadphase/broadphase_brute.h"
 
 namespace gyre {

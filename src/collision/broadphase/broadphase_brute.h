@@ -1,4 +1,4 @@
-// All pairs, one by one: the oracle that every other broad phase must equal.
+// Tests all pairs, one by one: the oracle for every other broad phase.
 #pragma once
 
 #include "collision/broadphase/broadphase.h"

@@ -1,4 +1,4 @@
-// Filling the hashed grid. See broadphase_grid.h.
+// Fills the hashed grid. See broadphase_grid.h.
 #include "collision/broadphase/broadphase_grid.h"
 
 #include "base/container/sort.h"
@@ -8,11 +8,11 @@
 namespace gyre {
 namespace {
 
-// Cells are this many times as large as a box that three quarters of all do not exceed: larger ones hold too many boxes,
-// smaller ones make boxes lie in too many cells.
+// Size of a cell over the size that three quarters of all boxes do not exceed. Larger cells hold too many boxes,
+// smaller ones put boxes into too many cells.
 constexpr float kCellsPerBox = 2.5f;
 constexpr std::size_t kSideSample = 512;
-// The grid is built anew when it holds this many times as much, or as little, as when it was built.
+// The grid is rebuilt when its number of items has changed by this factor since the last build.
 constexpr std::size_t kRebuildRatio = 4;
 constexpr std::size_t kSmall = 64;
 
@@ -24,7 +24,7 @@ Aabb HashedGrid::box_of_cell(const Cell& cell) const {
   for (int axis = 0; axis < 3; ++axis) {
     const int at = cell.at[axis];
     const float a = float(at) * cell_size_, b = float(at + 1) * cell_size_;
-    // Which cell a place counts to is rounded.
+    // The cell of a position is rounded.
     low[axis] = at <= -kMaxCoordinate ? -kEnd : a - 1.0e-6f * (absolute(a) + cell_size_);
     high[axis] = at >= kMaxCoordinate ? kEnd : b + 1.0e-6f * (absolute(b) + cell_size_);
   }
@@ -41,7 +41,7 @@ void HashedGrid::clear() {
   size_when_built_ = 0;
 }
 
-// From a sample of the entries.
+// Uses a sample of the entries.
 void HashedGrid::choose_cell_size() {
   float sides[kSideSample], scratch[kSideSample];
   const std::size_t stride = (entries_.size() + kSideSample - 1) / kSideSample;
@@ -50,7 +50,7 @@ void HashedGrid::choose_cell_size() {
     sides[count++] = largest(entries_[i].box.high - entries_[i].box.low);
   }
   merge_sort(std::span(sides, count), std::span(scratch, count), [](float a, float b) { return a < b; });
-  // Boxes without any size still need cells that have one.
+  // Boxes without size still need cells with one.
   cell_size_ = max(kCellsPerBox * sides[count * 3 / 4], 1.0e-6f);
   inverse_size_ = 1.0f / cell_size_;
 }
@@ -156,7 +156,7 @@ const char* HashedGrid::find_fault() const {
     if ((cells.count() > kMaxCells) != (where_[item] == kInLarge))
       return "a large box is not where large ones are";
     if (where_[item] == kInLarge) {
-      if (buckets_.item_at(slots_[item]) != item) return "an item's place is wrong";
+      if (buckets_.item_at(slots_[item]) != item) return "an item's slot is wrong";
       continue;
     }
     expected += std::size_t(cells.count());
@@ -164,7 +164,7 @@ const char* HashedGrid::find_fault() const {
   if (items != size_) return "the number of items is wrong";
   const char* fault = nullptr;
   occupied_.for_each([&](std::uint64_t key, std::uint32_t head) {
-    if (head == kNone) fault = "an empty cell is kept";
+    if (head == kNone) fault = "an empty cell exists";
     const Cell cell = cell_of_key(key);
     buckets_.for_each(head, [&](std::uint32_t item, const Aabb& box, std::uint32_t) {
       ++in_cells;

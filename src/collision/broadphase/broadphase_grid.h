@@ -1,13 +1,13 @@
-// A uniform hashed grid: space in cubes of one size, of which only those that hold something exist. A box lies in every
-// cell that it touches; two boxes are found in the one cell that holds the lower corner of what they have in common. Boxes
-// over too many cells lie in a list of their own and are looked at by all: a grid has one size, and that is its weakness.
+// A uniform hashed grid: space is divided into cubes of one size, and only occupied cubes exist. A box lies in every
+// cell that it touches; two boxes find each other in the cell of the lower corner of their intersection. Boxes over too
+// many cells lie in one list that every query tests: a grid has one size, and that is its weakness.
 //
-// The cell's size follows that of the boxes, the largest quarter left aside, when the grid is built; it is built anew by
-// itself when it holds far more or less than then.
+// The cell size follows that of the boxes, without the largest quarter, when the grid is built; the grid rebuilds
+// itself when its number of items has changed much since then.
 //
-// Sources: C. Ericson, "Real-Time Collision Detection", 2005, chapter 7.1; M. Teschner et al., "Optimized Spatial Hashing
-// for Collision Detection of Deformable Objects", 2003; J. Amanatides, A. Woo, "A Fast Voxel Traversal Algorithm for Ray
-// Tracing", 1987 (rays go from layer to layer of cells).
+// Sources: C. Ericson, "Real-Time Collision Detection", 2005, chapter 7.1; M. Teschner et al., "Optimized Spatial
+// Hashing for Collision Detection of Deformable Objects", 2003; J. Amanatides, A. Woo, "A Fast Voxel Traversal
+// Algorithm for Ray Tracing", 1987 (rays go from layer to layer of cells).
 #pragma once
 
 #include "base/container/flat_map.h"
@@ -18,7 +18,7 @@ namespace gyre {
 
 class HashedGrid {
  public:
-  // A box that stays in its cells costs next to nothing, so all must be new before building pays.
+  // A box that stays in its cells costs almost nothing, so building pays only if all are new.
   static constexpr std::size_t kRebuildShare = 1;
 
   std::size_t size() const { return size_; }
@@ -68,7 +68,7 @@ class HashedGrid {
     return visit_layers(cast_test, max_fraction, visit);
   }
 
-  // The cells that hold something.
+  // The occupied cells.
   template <class Visit>
   void for_each_node(Visit&& visit) const {
     for (std::size_t i = 0; i < occupied_.size(); ++i)
@@ -78,7 +78,7 @@ class HashedGrid {
  private:
   static constexpr std::uint32_t kNone = BoxBuckets::kNone;
   static constexpr std::int64_t kMaxCells = 64;             // of one box
-  static constexpr std::int32_t kMaxCoordinate = (1 << 20) - 1;  // cells beyond this count as this one
+  static constexpr std::int32_t kMaxCoordinate = (1 << 20) - 1;  // cells beyond are clamped to this one
 
   struct Cell {
     std::int32_t at[3];
@@ -98,7 +98,7 @@ class HashedGrid {
   };
   enum Where : std::uint8_t { kAbsent, kInCells, kInLarge };
 
-  // Never decreases as `x` grows, whatever the rounding: that is all that the walks rely on.
+  // Never decreases as `x` grows, whatever the rounding; queries rely on nothing else.
   std::int32_t coordinate(float x) const {
     const float scaled = x * inverse_size_;
     if (!(scaled > -float(kMaxCoordinate))) return -kMaxCoordinate;
@@ -108,7 +108,7 @@ class HashedGrid {
   }
   Cell cell_at(Vec3 p) const { return {{coordinate(p.x), coordinate(p.y), coordinate(p.z)}}; }
   Cells cells_of(const Aabb& box) const { return {cell_at(box.low), cell_at(box.high)}; }
-  // The first cell that two runs of cells have in common.
+  // The first cell that two ranges of cells share.
   static Cell corner(const Cells& a, const Cells& b) {
     Cell cell{};
     for (int axis = 0; axis < 3; ++axis) cell.at[axis] = max(a.low.at[axis], b.low.at[axis]);
@@ -124,7 +124,7 @@ class HashedGrid {
     };
     return {{coordinate_bits(42), coordinate_bits(21), coordinate_bits(0)}};
   }
-  // Around everything that counts as in the cell.
+  // A box around everything in the cell.
   Aabb box_of_cell(const Cell& cell) const;
   Cells clipped(Cells cells) const {
     for (int axis = 0; axis < 3; ++axis) {
@@ -142,8 +142,8 @@ class HashedGrid {
       }
     }
   }
-  // Calls fn(list, cell) for those of the cells that hold something; false, and nothing, if there are more cells than
-  // things to find.
+  // Calls fn(list, cell) for the occupied ones of the cells. False, without calls, if there are more cells than
+  // occupied ones.
   template <class Fn>
   bool for_each_if_few(const Cells& cells, Fn&& fn) const {
     if (cells.is_empty()) return true;
@@ -153,7 +153,7 @@ class HashedGrid {
     });
     return true;
   }
-  // Calls visit(item, box) once for everything that lies in cells.
+  // Calls visit(item, box) once for each item in cells.
   template <class Visit>
   void for_each_in_cells(Visit&& visit) const {
     for (const auto& entry : occupied_.entries()) {
@@ -179,14 +179,14 @@ class HashedGrid {
   Array<BoxEntry> entries_;      // of the present build
   ShrinkPolicy clock_;
   std::uint32_t large_ = kNone;
-  Cells occupied_range_{{{0, 0, 0}}, {{-1, -1, -1}}};  // all cells that were ever occupied since the build
+  Cells occupied_range_{{{0, 0, 0}}, {{-1, -1, -1}}};  // all cells occupied at any time since the build
   float cell_size_ = 1.0f, inverse_size_ = 1.0f;
   std::size_t size_ = 0;
   std::size_t size_when_built_ = 0;
 };
 
-// Goes along the sweep in layers of cells across its longest axis. Both ends of the part of a layer that the sweep
-// crosses move one way only, so an item is met in one unbroken run of layers: it is visited in the first.
+// Follows the cast in layers of cells across its longest axis. Both ends of the range that the cast covers in a layer
+// move monotonically, so each item is met in one unbroken run of layers; it is visited in the first.
 template <class Visit>
 float HashedGrid::visit_layers(const CastTest& cast_test, float max_fraction, Visit&& visit) const {
   const Aabb all{box_of_cell(occupied_range_.low).low, box_of_cell(occupied_range_.high).high};

@@ -1,4 +1,4 @@
-// Keeping the order of sweep and prune. See broadphase_sweep.h.
+// Maintains the order of sweep and prune. See broadphase_sap.h.
 #include "collision/broadphase/broadphase_sap.h"
 
 #include <limits>
@@ -6,12 +6,12 @@
 namespace gyre {
 namespace {
 
-// Insertion sort gives up after so many moves an item, for a sort from scratch.
+// After this many moves an item, insertion sort gives way to a full sort.
 constexpr std::size_t kMovesPerItem = 16;
-// The axis is chosen anew after so many times as many changes as there are items.
+// The axis is chosen again after this many changes an item.
 constexpr std::size_t kRoundsPerAxis = 16;
 
-// Ascending as unsigned numbers, as the floats are.
+// The bits of a float as an unsigned number with the same order.
 std::uint32_t bits_in_order(float x) {
   const auto bits = __builtin_bit_cast(std::uint32_t, x + 0.0f);
   return (bits >> 31) != 0 ? ~bits : bits | 0x80000000u;
@@ -59,7 +59,7 @@ void SortedAxis::finish_build() {
   improve(0);
 }
 
-// The axis along which the centres vary most.
+// The axis with the largest variance of centres.
 int SortedAxis::best_axis() const {
   DVec3 sum, squares;
   for (const Ordered& each : order_) {
@@ -74,7 +74,7 @@ int SortedAxis::best_axis() const {
   return spread.x >= spread.y && spread.x >= spread.z ? 0 : spread.y >= spread.z ? 1 : 2;
 }
 
-// An item that was removed and added again stands in the order twice: one of the two is dropped.
+// An item that was removed and added again appears twice in the order; one entry is dropped.
 void SortedAxis::improve(std::size_t changes) {
   if (gone_ > 0) {
     std::size_t kept_count = 0;
@@ -124,7 +124,7 @@ void SortedAxis::sort_all() {
   for (std::size_t i = 0; i < count; ++i) order_[i] = {boxes_[values_[i]].low[axis_], values_[i]};
 }
 
-// The boxes in their order, and how far groups reach.
+// Writes the boxes in their order, and the high ends of groups.
 void SortedAxis::write_blocks() {
   const std::size_t blocks = (order_.size() + kWidth - 1) / kWidth;
   blocks_.resize(blocks);
@@ -171,10 +171,10 @@ const char* SortedAxis::find_fault() const {
   if (present != size_) return "an item is there twice";
   for (std::size_t i = 0; i < order_.size(); ++i) {
     const std::uint32_t item = item_at(i);
-    if (item != order_[i].item || present_[item] != 1) return "the order holds what is gone";
+    if (item != order_[i].item || present_[item] != 1) return "the order contains a removed item";
     if (!(lane_box(blocks_[i / kWidth], int(i % kWidth)) == boxes_[item]))
       return "the order knows an item by another box";
-    if (i > 0 && order_[i].low < order_[i - 1].low) return "the order is none";
+    if (i > 0 && order_[i].low < order_[i - 1].low) return "the order is not sorted";
     if (group_high_[i / kWidth / kGroup] < boxes_[item].high[axis_])
       return "an item reaches farther than its group";
   }
@@ -185,7 +185,7 @@ void BroadphaseSap::find_pairs(std::span<const Proxy> proxies, std::span<const s
                                PairFilter filter, TaskSystem& tasks, Array<std::uint64_t>& pairs) {
   const SortedAxis& order = indices_[kMoving];
   const SortedAxis& fixed = indices_[kFixed];
-  // A sweep looks at all that can move, whether it did or not.
+  // The sweep visits all moving proxies, so it pays only if most have moved.
   bool uses_sweep = moved.size() > order.size() / 2;
   moved_fixed_.clear();
   for (const std::uint32_t index : moved) {

@@ -1,12 +1,13 @@
-// Sweep and prune: boxes in the order of their low ends along the axis on which they are spread farthest. What overlaps lies
-// near in that order, and from step to step the order hardly changes, so insertion sort keeps it up in little more than one
-// pass. If most has moved, one sweep finds all pairs; otherwise each moved box looks backward from where it ends.
+// Sweep and prune: boxes in the order of their low ends along the axis with the largest spread. Overlapping boxes are
+// near in that order, and the order hardly changes from step to step, so insertion sort maintains it in little more
+// than one pass. If most boxes have moved, one sweep finds all pairs; otherwise each moved box searches backward from
+// its high end.
 //
-// Boxes lie eight to a block in that order; groups of blocks know how far any of theirs reaches, so that walks pass by what
-// ends too early even where one huge box covers all.
+// Boxes lie eight to a block in that order. Groups of blocks store their highest end, so that searches skip what ends
+// too early even if one huge box covers all.
 //
-// Sources: D. Baraff, "Dynamic Simulation of Non-Penetrating Rigid Bodies", 1992; J. Cohen, M. Lin, D. Manocha,
-// M. Ponamgi, "I-COLLIDE", 1995.
+// Sources: D. Baraff, "Dynamic Simulation of Non-Penetrating Rigid Bodies", 1992; J. Cohen, M. Lin, D. Manocha, M.
+// Ponamgi, "I-COLLIDE", 1995.
 #pragma once
 
 #include "collision/broadphase/box_buckets.h"
@@ -33,7 +34,7 @@ class SortedAxis {
   void insert(std::uint32_t item, const Aabb& box);
   void remove(std::uint32_t item);
   void move(std::uint32_t item, const Aabb& box);
-  // Puts all in order again.
+  // Restores the order.
   void improve(std::size_t changes);
   void trim();
   const char* find_fault() const;
@@ -66,7 +67,7 @@ class SortedAxis {
   template <class Visit>
   void for_each_node(Visit&&) const {}
 
-  // For a sweep: calls visit(item) for each that stands behind `place` in the order and overlaps `box`, which is there.
+  // For the sweep: calls visit(item) for each item behind `position` in the order that overlaps `box`, the box there.
   template <class Visit>
   void for_each_behind(std::size_t position, const Aabb& box, Visit&& visit) const {
     const OverlapTest test(box);
@@ -94,7 +95,7 @@ class SortedAxis {
     std::uint32_t item;
   };
 
-  // How many blocks begin at or below `x`: nothing behind them does.
+  // The number of blocks that begin at or below `x`; no later block does.
   std::size_t blocks_before(float x) const {
     std::size_t first = 0, last = blocks_.size();
     while (first < last) {
@@ -103,7 +104,8 @@ class SortedAxis {
     }
     return first;
   }
-  // From block `count` - 1 down, those in groups that reach `least`; while `look` says true.
+  // Calls visit(block), while it returns true, from block `count` - 1 down, for groups whose high end is at least
+  // `min_high`.
   template <class Visit>
   void for_each_block_down(std::size_t count, float min_high, Visit&& visit) const {
     for (std::size_t group = (count + kGroup - 1) / kGroup; group-- > 0;) {
@@ -121,10 +123,10 @@ class SortedAxis {
 
   Array<Aabb> boxes_;                         // by item
   Array<std::uint8_t> present_;               // by item
-  Array<Ordered> order_;                      // between changes also what is gone
+  Array<Ordered> order_;                      // between changes includes removed items
   Array<Block> blocks_;                       // in that order
-  Array<float> group_high_;                   // by group: how far the highest of its boxes reaches
-  Array<float> running_high_;                 // by group: the same of it and all before it
+  Array<float> group_high_;                   // by group: highest end of its boxes
+  Array<float> running_high_;                 // by group: highest end up to this group
   Array<std::uint64_t> keys_, keys_scratch_;  // of the present sort
   Array<std::uint32_t> values_, values_scratch_;
   ShrinkPolicy clock_;

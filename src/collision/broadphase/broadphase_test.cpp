@@ -1,5 +1,5 @@
-// Every broad phase against plain loops: exactly the pairs that overlap, may meet and of which one moved, in random,
-// clustered and degenerate worlds that change from frame to frame, for any number of threads.
+// Every broad phase against plain loops: it finds exactly the pairs that overlap, may pair, and have a moved proxy.
+// Random, clustered and degenerate worlds change from frame to frame, for any number of threads.
 #include "collision/broadphase/broadphase.h"
 
 #include "base/memory/memory.h"
@@ -58,7 +58,7 @@ struct World {
       case Layout::far_away:
         middle = random.vector(-20, 20) + Vec3{3.0e6f, -7.0e6f, 1.0e6f};
         break;
-      case Layout::wild:  // from micrometres to the ends of the world
+      case Layout::wild:  // from micrometres to the largest floats
         middle = std::ldexp(1.0f, int(random.next(60)) - 30) * random.vector(-1, 1);
         half = std::ldexp(1.0f, int(random.next(50)) - 25) * random.vector(0, 1);
         break;
@@ -82,7 +82,7 @@ struct World {
     return proxy;
   }
 
-  // Moves, adds, removes and turns some; returns which, ascending.
+  // Moves, adds, removes and rotates some; returns their indices, ascending.
   std::vector<std::uint32_t> change(std::uint32_t share) {
     std::vector<std::uint32_t> changed;
     for (std::uint32_t i = 0; i < proxies.size(); ++i) {
@@ -138,7 +138,7 @@ std::vector<BroadPhaseKind> all_kinds() {
   return kinds;
 }
 
-// What a caller who looks for the nearest makes of a cast: the way to each box stands for an exact test.
+// A caller that keeps the nearest hit of a cast; the distance to each box replaces an exact test.
 struct NearestHit {
   float max_fraction = 1.0f;
   std::uint32_t index = 0xffffffffu;
@@ -216,7 +216,7 @@ TEST_P(BroadphaseOracle, EqualsPlainLoopsInAChangingWorld) {
   TaskSystem one(1), three(3);
   std::size_t found = 0;
   for (int frame = 0; frame < 110; ++frame) {
-    // The first frame brings all at once; some frames change nearly everything, some next to nothing.
+    // The first frame adds all at once; some frames change almost everything, some almost nothing.
     std::vector<std::uint32_t> changed = world.change(frame == 0        ? 1
                                                       : frame % 20 == 0 ? 2
                                                       : frame % 3 == 0  ? 60
@@ -262,7 +262,7 @@ TEST(Broadphase, EveryThreadCountFindsTheSame) {
   }
 }
 
-// So many that trees are deep, all of them on their way: what is kept up from step to step must not go stale.
+// So many that trees are deep, and all of them move: the upkeep from step to step must not degrade.
 TEST(Broadphase, ManyThatAllMove) {
   TaskSystem tasks(2);
   for (const Layout layout : {Layout::spread, Layout::clustered, Layout::mixed_sizes}) {
@@ -296,7 +296,7 @@ TEST(Broadphase, ManyThatAllMove) {
   }
 }
 
-TEST(Broadphase, RebuildForgetsWhatWas) {
+TEST(Broadphase, RebuildReplacesEverything) {
   World world(Layout::spread, 300);
   World other(Layout::clustered, 120);
   for (const BroadPhaseKind kind : all_kinds()) {
@@ -308,7 +308,7 @@ TEST(Broadphase, RebuildForgetsWhatWas) {
   }
 }
 
-// Everything comes, goes one by one, and comes again.
+// All proxies are added, removed one by one, and added again.
 TEST(Broadphase, EmptiesAndFillsAgain) {
   World world(Layout::clustered, 150);
   const std::vector<Proxy> all = world.proxies;
@@ -384,7 +384,7 @@ TEST(Broadphase, AllocatesNothingOnceWarm) {
   }
 }
 
-// The tree must stay good while things wander for a long time: not much worse than when built anew.
+// After a long random walk the tree is not much worse than a new one.
 TEST(BoxTree, KeepsItsQuality) {
   Random random;
   BoxTree tree;
@@ -413,7 +413,7 @@ TEST(BoxTree, KeepsItsQuality) {
   EXPECT_LT(tree.cost(), 1.6 * fresh.cost());
 }
 
-// What all moves is refitted, and built anew when that has made it much worse; either way walks find what overlaps.
+// A tree whose boxes all move is refitted, and rebuilt once it is much worse; queries find the overlaps either way.
 TEST(BoxTree, RefitsWhileThatIsGood) {
   Random random;
   BoxTree tree, fresh;
@@ -430,7 +430,7 @@ TEST(BoxTree, RefitsWhileThatIsGood) {
   tree.build(items, boxes);
   int built = 0;
   for (int frame = 0; frame < 60; ++frame) {
-    // All together at first, then each its own way.
+    // First all together, then each by itself.
     for (std::uint32_t i = 0; i < items.size(); ++i) {
       const Vec3 by = frame < 20 ? Vec3{0.3f, -0.5f, 0.1f} : velocities[i];
       boxes[i] = {boxes[i].low + by, boxes[i].high + by};

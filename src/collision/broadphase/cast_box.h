@@ -1,9 +1,10 @@
-// A box on its way along a line, or a ray: what casts look for candidates with.
+// A box that moves along a line, or a ray: casts search their candidates with it.
 //
-// meets() is the test that decides, in double. SweepTest is for what stands before that, line() for trees: the same in float, made a
-// little larger, so that it never leaves out what meets() would take.
+// meets() decides, in double. CastTest comes before it, and line() serves trees: the same test in float with slack, so
+// that it never leaves out a box that meets() would accept.
 //
-// Source: A. Williams, S. Barrus, R. Morley, P. Shirley, "An Efficient and Robust Ray-Box Intersection Algorithm", 2005.
+// Source: A. Williams, S. Barrus, R. Morley, P. Shirley, "An Efficient and Robust Ray-Box Intersection Algorithm",
+// 2005.
 #pragma once
 
 #include "collision/broadphase/box_lanes.h"
@@ -16,12 +17,12 @@
 namespace gyre {
 
 struct CastBox {
-  DVec3 start;          // m, where its centre is at t = 0
-  Vec3 translation;     // m: at t = 1 its centre is at start + way
-  Vec3 half_extents{};  // m; zero makes it a ray
+  DVec3 start;          // m, centre at t = 0
+  Vec3 translation;     // m; at t = 1 the centre is at start + translation
+  Vec3 half_extents{};  // m; zero for a ray
 };
 
-// Whether the sweep touches `box` at any t from 0 to `reach`.
+// True if the box meets `box` at any t from 0 to `max_fraction`.
 inline bool meets(const CastBox& cast_box, float max_fraction, const Aabb& box) {
   double enter = 0.0, leave = double(max_fraction);
   for (int axis = 0; axis < 3; ++axis) {
@@ -38,12 +39,12 @@ inline bool meets(const CastBox& cast_box, float max_fraction, const Aabb& box) 
   return enter <= leave;
 }
 
-// The part of a sweep that is still looked at.
+// The range of t that remains.
 struct CastRange {
   float enter = 0.0f;
   float leave = 1.0f;
 
-  // A little slack, for roundings of divisions.
+  // With slack for the rounding of divisions.
   bool is_empty() const { return !(enter <= leave * 1.00001f); }
 };
 
@@ -56,7 +57,7 @@ class CastTest {
       translation_[axis] = cast_box.translation[axis];
       still_[axis] = absolute(translation_[axis]) < 1.0e-30f;
       inverse_[axis] = still_[axis] ? 0.0f : 1.0f / translation_[axis];
-      // Rounding of the place, and of differences to it.
+      // Rounding of the position, and of differences to it.
       extent_[axis] =
           cast_box.half_extents[axis] + 4.0e-7f * (absolute(origin_[axis]) + cast_box.half_extents[axis]);
       if (still_[axis]) extent_[axis] += absolute(translation_[axis]);
@@ -64,10 +65,10 @@ class CastTest {
   }
 
   float translation(int axis) const { return translation_[axis]; }
-  // The same for walks over trees.
+  // The same for traversals of trees.
   const BoxLine& line() const { return line_; }
 
-  // Where the sweep's box lies from t = range.enter to range.leave, rounded outward.
+  // The bounds of the moving box from t = range.enter to range.leave, rounded outward.
   Aabb box_of(const CastRange& range) const {
     float low[3], high[3];
     for (int axis = 0; axis < 3; ++axis) {
@@ -80,7 +81,7 @@ class CastTest {
     return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
   }
 
-  // The part of `range` in which the sweep is between `low` and `high` on an axis.
+  // Clips `range` to the t at which the box is between `low` and `high` on an axis.
   void clip(int axis, float low, float high, CastRange& range) const {
     const float to_low = low - extent_[axis] - origin_[axis], to_high = high + extent_[axis] - origin_[axis];
     if (still_[axis]) {
@@ -91,7 +92,7 @@ class CastTest {
     range.enter = max(range.enter, (up ? to_low : to_high) * inverse_[axis]);
     range.leave = min(range.leave, (up ? to_high : to_low) * inverse_[axis]);
   }
-  // The same along a direction whose parts are 1, 0 or -1.
+  // The same along a direction whose components are 1, 0 or -1.
   void clip_along(const std::int8_t* signs, float low, float high, CastRange& range) const {
     float origin = 0.0f, along = 0.0f, room = 0.0f, size = 0.0f, sum = 0.0f;
     for (int axis = 0; axis < 3; ++axis) {
@@ -102,7 +103,7 @@ class CastTest {
       size += absolute(origin_[axis]);
       sum += absolute(translation_[axis]);
     }
-    // Rounding of the sums above, and of those that made `low` and `high` from numbers about as large.
+    // Rounding of the sums above, and of the similar sums behind `low` and `high`.
     room += 1.0e-6f * (size + sum + room);
     if (absolute(along) <= 1.0e-4f * sum || absolute(along) < 1.0e-30f) {
       room += 1.01e-4f * sum + 1.0e-30f;
@@ -112,7 +113,7 @@ class CastTest {
     const float to_low = low - room - origin, to_high = high + room - origin;
     const float early = (along > 0.0f ? to_low : to_high) / along,
                 late = (along > 0.0f ? to_high : to_low) / along;
-    // The sum of the ways has lost up to three digits.
+    // The sum of translations has lost up to three digits.
     range.enter = max(range.enter, early - 2.0e-3f * absolute(early));
     range.leave = min(range.leave, late + 2.0e-3f * absolute(late));
   }
@@ -121,7 +122,7 @@ class CastTest {
     return range;
   }
 
-  // Bit i: the sweep may touch lane i's box from t = 0 to `reach`, not before t = enter[i].
+  // Bit i: the box may touch lane i's box from t = 0 to `max_fraction`, not before t = enter[i].
   unsigned mask(const BoxLanes& lanes, float max_fraction, float* enter) const {
     return half_mask(lanes, 0, max_fraction, enter) | half_mask(lanes, 4, max_fraction, enter) << 4;
   }

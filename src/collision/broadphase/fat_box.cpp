@@ -1,4 +1,4 @@
-// Boxes of shapes in the world. See fat_box.h.
+// Bounding boxes of shapes in the world. See fat_box.h.
 #include "collision/broadphase/fat_box.h"
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 namespace gyre {
 namespace {
 
-// A fat box reaches ahead by the way of one more step, but never by more than this many sizes.
+// A fat box extends ahead by the translation of one more step, but at most by this many sizes.
 constexpr float kMaxAhead = 2.0f;
 static_assert(kTooLarge > 2.0f * kFatShare + kMaxAhead);
 constexpr float kMinNormal = 1.17549435e-38f;
@@ -17,7 +17,7 @@ float next_up(float a) {
   const auto bits = __builtin_bit_cast(std::uint32_t, a);
   return __builtin_bit_cast(float, a > 0.0f ? bits + 1 : bits - 1);
 }
-// Sides beyond the range of floats, or not numbers at all, end where floats end: trees rely on finite boxes.
+// Sides beyond the range of floats, or NaN, become the largest float: trees rely on finite boxes.
 float round_up(double a) {
   if (!(a <= double(kMaxFloat))) return kMaxFloat;
   if (a < -double(kMaxFloat)) return -kMaxFloat;
@@ -26,7 +26,7 @@ float round_up(double a) {
 }
 float round_down(double a) { return -round_up(-a); }
 
-// The largest coordinate of a box, leaving out the sides of planes that have no end.
+// The largest coordinate of a box, without the endless sides of planes.
 float largest_coordinate(const Aabb& box) {
   const auto bounded = [](Vec3 a) {
     const auto bounded_coordinate = [](float value) { return value < kUnboundedSide ? value : 0.0f; };
@@ -42,7 +42,7 @@ WorldBox world_box(const Shape& shape, const Pose& world_from_shape) {
 }
 
 WorldBox world_box(const Shape& shape, const Aabb& rotated, DVec3 position) {
-  // bounds() works in float: a few roundings of numbers no larger than the box's coordinates. A disc seen from the side
+  // bounds() works in float, with a few roundings of numbers up to the box's coordinates. A disc seen from the side
   // loses half of its digits: sqrt(1 - a^2) with a near 1.
   const bool has_disc = shape.kind == ShapeKind::cylinder || shape.kind == ShapeKind::cone;
   const double rounding =

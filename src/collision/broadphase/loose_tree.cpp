@@ -1,4 +1,4 @@
-// Cells that come and go. See loose_tree.h.
+// Creates and removes cells. See loose_tree.h.
 #include "collision/broadphase/loose_tree.h"
 
 namespace gyre {
@@ -38,7 +38,7 @@ void LooseTree<kAxes>::clear() {
   root_ = kNone;
 }
 
-// A first cell around the box, large against the last digit of its place, so that corners are exact.
+// Makes the first cell around the box, large relative to the last digit of its position, so that corners are exact.
 template <int kAxes>
 void LooseTree<kAxes>::make_root(const Aabb& box) {
   float size = 0.0f, coordinate = 0.0f;
@@ -60,7 +60,7 @@ void LooseTree<kAxes>::make_root(const Aabb& box) {
   root_ = make_node(cell, level);
 }
 
-// Whether the box has its centre in the cell, and does not reach out too far.
+// True if the cell contains the box's centre and the box does not extend too far beyond it.
 template <int kAxes>
 bool LooseTree<kAxes>::fits(const Cell& cell, const Aabb& box) {
   for (int i = 0; i < kAxes; ++i) {
@@ -107,7 +107,7 @@ void LooseTree<kAxes>::finish_build() {
 template <int kAxes>
 bool LooseTree<kAxes>::fits_child(const Node& node, const Aabb& box, int& lane) const {
   if (node.level <= kLowestLevel) return false;
-  // Where places have no more digits for smaller cells.
+  // Positions here have no digits for smaller cells.
   const float eighth = 0.125f * node.cell.side;
   for (const float low : node.cell.low) {
     if (low + eighth - low != eighth) return false;
@@ -116,7 +116,7 @@ bool LooseTree<kAxes>::fits_child(const Node& node, const Aabb& box, int& lane) 
   return gyre::contains(loose_box(cell_of_child(node.cell, lane)), box);
 }
 
-// The child in a lane, made if there is none.
+// The child in a lane, created if missing.
 template <int kAxes>
 std::uint32_t LooseTree<kAxes>::child_in(std::uint32_t index, int lane) {
   if (nodes_[index].child[lane] == kNone) {
@@ -129,7 +129,7 @@ std::uint32_t LooseTree<kAxes>::child_in(std::uint32_t index, int lane) {
   return nodes_[index].child[lane];
 }
 
-// Puts an item that the node can hold into the lowest cell below it.
+// Puts an item that fits the node into the lowest cell below it.
 template <int kAxes>
 void LooseTree<kAxes>::insert_below(std::uint32_t index, std::uint32_t item, const Aabb& box) {
   int lane = 0;
@@ -139,7 +139,7 @@ void LooseTree<kAxes>::insert_below(std::uint32_t index, std::uint32_t item, con
   while (index != kNone && nodes_[index].count > kSplitAbove && !nodes_[index].is_split) index = split(index);
 }
 
-// Gives what fits into children to them. Returns the child that holds too much itself now, if one does.
+// Moves items that fit children into them. Returns a child that has too many items now, if any.
 template <int kAxes>
 std::uint32_t LooseTree<kAxes>::split(std::uint32_t index) {
   nodes_[index].is_split = true;
@@ -220,12 +220,12 @@ const char* LooseTree<kAxes>::find_fault() const {
     if (!node.used) continue;
     ++used;
     if (index != root_ && (node.parent == kNone || nodes_[node.parent].child[node.lane] != index))
-      return "a cell hangs below none";
-    if (node.count == 0 && node.children == 0) return "an empty cell is kept";
+      return "a cell has no parent";
+    if (node.count == 0 && node.children == 0) return "an empty cell exists";
     std::uint32_t count = 0;
     buckets_.for_each(node.items, [&](std::uint32_t item, const Aabb& box, std::uint32_t at) {
       ++count;
-      if (slots_[item] != at || nodes_of_[item] != index) fault = "an item's place is wrong";
+      if (slots_[item] != at || nodes_of_[item] != index) fault = "an item's slot is wrong";
       const bool whole_range = index == root_ && node.level == kHighestLevel;
       if (!whole_range && !gyre::contains(loose_box(node.cell), box))
         fault = "an item reaches too far out of its cell";
@@ -242,7 +242,7 @@ const char* LooseTree<kAxes>::find_fault() const {
           fault = "a cell is not where it should be";
       }
     }
-    if (children != node.children) fault = "the number of a cell's cells is wrong";
+    if (children != node.children) fault = "the number of a cell's children is wrong";
   }
   if (fault != nullptr) return fault;
   if (used + free_.size() != nodes_.size()) return "a cell is neither in use nor free";

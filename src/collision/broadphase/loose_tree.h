@@ -1,13 +1,13 @@
-// A loose tree of cubes: each has cells of half its side below it, and a cell takes boxes that reach out of it by up to
-// half its side. So any box that is not larger than a cell fits into the one that holds its centre, and where it belongs is
-// found without looking at anything else. With three axes it is the loose octree; with two (x and z: those that lie flat)
-// the loose quadtree, whose cells are columns without end.
+// A loose tree of cubes: each cell has cells of half its side below it and takes boxes that extend beyond it by up to
+// half its side. So any box that is not larger than a cell fits the cell that contains its centre, which is found
+// without a search. With three axes it is the loose octree. With two (x and z, for flat worlds) it is the loose
+// quadtree, whose cells are endless columns.
 //
-// Cells come when more than a few dozen boxes would share one, and go when they are empty. The root doubles its side
-// whenever something lies outside.
+// A cell is split when it would contain more than a few dozen boxes, and removed when it is empty. The root doubles its
+// side when a box lies outside.
 //
-// Sources: R. Finkel, J. Bentley, "Quad Trees: A Data Structure for Retrieval on Composite Keys", 1974; T. Ulrich, "Loose
-// Octrees", Game Programming Gems, 2000.
+// Sources: R. Finkel, J. Bentley, "Quad Trees: A Data Structure for Retrieval on Composite Keys", 1974; T. Ulrich,
+// "Loose Octrees", Game Programming Gems, 2000.
 #pragma once
 
 #include "collision/broadphase/box_buckets.h"
@@ -81,19 +81,19 @@ class LooseTree : public BucketIndex {
     return max_fraction;
   }
 
-  // The cells, without what reaches out of them; those of a quadtree as high as all there is.
+  // The cells without their loose margin; those of a quadtree are as high as all boxes together.
   template <class Visit>
   void for_each_node(Visit&& visit) const;
 
  private:
   static constexpr int kChildren = 1 << kAxes;
   static constexpr int kAxis[3] = {0, kAxes == 3 ? 1 : 2, 2};
-  static constexpr std::uint32_t kSplitAbove = 32;  // before a cell gets cells of its own
+  static constexpr std::uint32_t kSplitAbove = 32;  // items of a cell before it is split
   static constexpr int kLowestLevel = -24;        // sides of 2^level metres
   static constexpr int kHighestLevel = 126;
   static constexpr int kStackSize = (kHighestLevel - kLowestLevel + 1) * (kChildren - 1) + 1;
 
-  // Corners are multiples of the side, and both exact.
+  // Corners are multiples of the side; both are exact.
   struct Cell {
     float low[kAxes];
     float side;
@@ -107,7 +107,7 @@ class LooseTree : public BucketIndex {
     std::uint32_t child[kChildren];
     std::uint8_t children = 0;
     std::uint8_t lane = 0;  // in the parent
-    bool is_split = false;  // what fits into a child goes there
+    bool is_split = false;  // items that fit a child go there
     bool used = true;
   };
 
@@ -128,7 +128,7 @@ class LooseTree : public BucketIndex {
       child.low[i] = (lane >> i & 1) != 0 ? cell.low[i] + child.side : cell.low[i];
     return child;
   }
-  // The child that holds the centre of `box`.
+  // The child that contains the centre of `box`.
   static int lane_for(const Cell& cell, const Aabb& box) {
     int lane = 0;
     for (int i = 0; i < kAxes; ++i) {

@@ -1,5 +1,5 @@
-// What every broad phase's find_pairs shares: blocks of moved proxies run in parallel, each worker keeps the keys that it
-// finds, and one sort at the end makes the result the same whoever found what.
+// Common code of every broad phase's find_pairs: blocks of moved proxies run in parallel, each worker stores the keys
+// that it finds, and one sort at the end makes the result independent of the workers.
 #pragma once
 
 #include "base/arena/shrink_policy.h"
@@ -16,8 +16,8 @@ namespace gyre {
 
 class PairCollector {
  public:
-  // Calls search(index of the moved proxy, visit); it must call visit(other) for at least every other proxy whose fat box
-  // overlaps, each once. Appends the keys of the pairs among them that may meet and that the filter leaves, sorted.
+  // Calls search(index of the moved proxy, visit), which must call visit(other) for at least every other proxy whose
+  // fat box overlaps, once each. Appends the keys of those pairs that may meet and that the filter keeps, sorted.
   template <class Search>
   void collect(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved, PairFilter filter,
                TaskSystem& tasks, Array<std::uint64_t>& pairs, const Search& search) {
@@ -25,15 +25,15 @@ class PairCollector {
       const std::uint32_t self = moved[std::size_t(i)];
       if (proxies[self].motion == ProxyMotion::none) return;
       search(self, [&](std::uint32_t other) {
-        // A pair of two moved proxies is found from the lower one only.
+        // Two moved proxies are paired from the lower one only.
         if (other == self || (other < self && is_moved(other))) return;
         emit(self, other);
       });
     });
   }
 
-  // The same from other places than the moved proxies: calls search(i, emit) for each i below `count`; together they must
-  // call emit(one, other) once for each pair that overlaps and of which one is_moved().
+  // The same, not by moved proxies: calls search(i, emit) for each i below `count`; together these must call emit(one,
+  // other) once for each overlapping pair of which one is_moved().
   template <class Search>
   void collect_from(std::span<const Proxy> proxies, std::span<const std::uint32_t> moved, int count,
                     PairFilter filter, TaskSystem& tasks, Array<std::uint64_t>& pairs, const Search& search) {
@@ -56,10 +56,10 @@ class PairCollector {
     for (const std::uint32_t index : moved) is_moved_.clear(index);
     append_sorted(pairs);
   }
-  // While collecting.
+  // Valid while collecting.
   bool is_moved(std::uint32_t index) const { return is_moved_.test(index); }
 
-  // To be called once a step: gives memory back that was not needed for long.
+  // To be called once a step: releases memory that was not needed for long.
   void trim() {
     const std::size_t needed = last_ * sizeof(std::uint64_t);
     last_ = 0;
@@ -78,7 +78,7 @@ class PairCollector {
  private:
   static constexpr int kBlock = 32;
 
-  // What one worker finds.
+  // The result of one worker.
   struct Found {
     Array<std::uint64_t> keys;
     std::size_t max_per_block = 0;  // in a block
@@ -92,8 +92,8 @@ class PairCollector {
       max_per_block_ = max(max_per_block_, found.max_per_block);
     }
     const std::size_t count = pairs.size() - before;
-    // Which worker finds how many changes from run to run: each gets room for all, and for a block before it is filtered, so
-    // that none grows once warm.
+    // Workers find different numbers in each run: each gets room for all pairs, and for a block before it is filtered,
+    // so that none grows once warm.
     if (count > max_pairs_) max_pairs_ = count + count / 2;
     last_ = last_ < count ? count : last_;
     if (scratch_.size() < count) scratch_.resize_uninitialized(max_pairs_);

@@ -1,12 +1,12 @@
-// A tree that parts boxes by planes: what the kd-tree and the BSP tree share. Each node parts its boxes along one direction,
-// and keeps for each of its children from where to where its boxes reach along it; a walk enters the children that it
-// overlaps there. So boxes that cross a plane need neither be cut nor be kept twice.
+// A tree that splits boxes by planes, the base of the kd-tree and the BSP tree. Each node splits its boxes along one
+// direction and stores the extent of each child along it; a query enters the children whose extents it overlaps. So a
+// box that crosses a plane is neither cut nor stored twice.
 //
-// What moves widens what the nodes on its way keep. A subtree into whose leaves as many things came as it holds is built
-// anew, so that neither depth nor overlap get out of hand.
+// Moving boxes widen the extents of their nodes. A subtree that has received as many new items as it contains is
+// rebuilt, which bounds depth and overlap.
 //
-// `Splitter` says how: kChildren; kDirections; Split {std::uint8_t direction; float value}; child_of(split, box);
-// choose(entries, split), which may reorder the entries and says false if nothing parts them.
+// `Splitter` has kChildren, kDirections, Split {std::uint8_t direction; float value}, child_of(split, box), and
+// choose_split(entries, split), which may reorder the entries and returns false if nothing splits them.
 #pragma once
 
 #include "collision/broadphase/box_buckets.h"
@@ -21,9 +21,9 @@ struct Split {
   float value = 0.0f;
 };
 
-// Directions along which boxes are parted: the axes, the diagonals of the faces of a cube, those of the cube itself. Not of
-// unit length. What a box reaches to along one is worked out from its corners by sums in one order; sums never decrease when
-// a term grows, so boxes with a point in common overlap along every direction, whatever the rounding.
+// The split directions: the axes, the face diagonals and the space diagonals of a cube, not of unit length. The extent
+// of a box along one is a sum of its corner coordinates in one order. Sums never decrease when a term grows, so boxes
+// with a common point overlap along every direction, whatever the rounding.
 struct SplitDirections {
   static constexpr int kCount = 13;
   static constexpr std::int8_t kSigns[kCount][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1}, {1, 1, 0},  {1, -1, 0},
@@ -63,7 +63,7 @@ class SplitTree : public BucketIndex {
   void improve(std::size_t) {}
   const char* find_fault() const;
   std::size_t bytes() const { return item_bytes() + nodes_.bytes() + free_.bytes(); }
-  // How many nodes lie one below the other at most.
+  // The number of levels.
   int depth() const;
 
   template <class Visit>
@@ -126,7 +126,7 @@ class SplitTree : public BucketIndex {
     return max_fraction;
   }
 
-  // Boxes around what inner nodes hold.
+  // The bounds of the items below each inner node.
   template <class Visit>
   void for_each_node(Visit&& visit) const {
     if (root_ != kNone) visit_node(root_, 0, visit);
@@ -135,7 +135,7 @@ class SplitTree : public BucketIndex {
  private:
   static constexpr int kChildren = Splitter::kChildren;
   static constexpr std::uint32_t kMaxInLeaf = 32;
-  static constexpr std::uint32_t kBuiltLeafSize = 16;  // when it is built
+  static constexpr std::uint32_t kBuiltLeafSize = 16;  // of a new leaf
   static constexpr std::uint32_t kMinArrivals = 64;
   static constexpr int kMaxDepth = 96;
   static constexpr int kStackSize = (kMaxDepth + 2) * kChildren;

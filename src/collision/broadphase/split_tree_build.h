@@ -1,4 +1,4 @@
-// Building and changing a tree of planes; for the two sources that make one. See split_tree.h.
+// Builds and changes a split tree; included by the two sources that instantiate one. See split_tree.h.
 #pragma once
 
 #include "collision/broadphase/split_tree.h"
@@ -40,7 +40,7 @@ void SplitTree<Splitter>::fill_leaf(std::uint32_t index, std::span<const BoxEntr
   for (const BoxEntry& entry : entries) put(nodes_[index].items, index, entry.item, entry.box);
 }
 
-// Makes an empty node hold the entries.
+// Fills an empty node with the entries.
 template <class Splitter>
 void SplitTree<Splitter>::fill(std::uint32_t index, std::span<BoxEntry> entries, int depth) {
   nodes_[index].count = std::uint32_t(entries.size());
@@ -50,7 +50,7 @@ void SplitTree<Splitter>::fill(std::uint32_t index, std::span<BoxEntry> entries,
     fill_leaf(index, entries);
     return;
   }
-  // Child by child to the front, each time in one pass.
+  // Moves the entries of each child to the front, in one pass each.
   std::size_t begins[kChildren + 1] = {};
   for (int i = 0; i < kChildren; ++i) {
     std::size_t end = begins[i];
@@ -83,7 +83,7 @@ void SplitTree<Splitter>::finish_build() {
   fill(root_, entries_, 0);
 }
 
-// Appends all that lies below a node to entries_.
+// Appends all items below a node to entries_.
 template <class Splitter>
 void SplitTree<Splitter>::gather(std::uint32_t index) {
   const Node& node = nodes_[index];
@@ -96,7 +96,7 @@ void SplitTree<Splitter>::gather(std::uint32_t index) {
   for (const std::uint32_t child : node.child) gather(child);
 }
 
-// Gives back what is below a node and what it holds; the node itself stays, empty.
+// Frees the subtree below a node and its items; the node itself stays, empty.
 template <class Splitter>
 void SplitTree<Splitter>::free_subtree(std::uint32_t index) {
   Node& node = nodes_[index];
@@ -127,7 +127,7 @@ void SplitTree<Splitter>::rebuild(std::uint32_t index) {
   fill(index, entries_, depth);
 }
 
-// The leaf in which a box belongs; widens what is kept on the way.
+// The leaf in which a box belongs; widens the extents above it.
 template <class Splitter>
 std::uint32_t SplitTree<Splitter>::descend(const Aabb& box) {
   std::uint32_t index = root_;
@@ -147,7 +147,7 @@ void SplitTree<Splitter>::remove_from_leaf(std::uint32_t item) {
   for (std::uint32_t index = leaf; index != kNone; index = nodes_[index].parent) --nodes_[index].count;
 }
 
-// Puts an item into the leaf where it belongs, and builds anew what that wears out.
+// Adds an item to a leaf, and rebuilds the subtree that has degenerated.
 template <class Splitter>
 void SplitTree<Splitter>::add_to_leaf(std::uint32_t leaf, std::uint32_t item, const Aabb& box) {
   put(nodes_[leaf].items, leaf, item, box);
@@ -159,7 +159,7 @@ void SplitTree<Splitter>::add_to_leaf(std::uint32_t leaf, std::uint32_t item, co
     if (++node.arrivals > max(kMinArrivals, node.count) && !node.is_leaf()) to_rebuild = index;
   }
   const std::uint32_t count = nodes_[leaf].count;
-  // What cannot be parted is tried again only when there is twice as much of it.
+  // A leaf that cannot be split is tried again only at twice its size.
   const bool full = count == kMaxInLeaf + 1 || (count > kMaxInLeaf && (count & (count - 1)) == 0);
   if (full && to_rebuild == kNone) to_rebuild = depth > kMaxDepth / 2 ? root_ : leaf;
   if (to_rebuild != kNone) rebuild(to_rebuild);
@@ -213,7 +213,7 @@ const char* SplitTree<Splitter>::find_fault() const {
     const Node& node = nodes_[index];
     if (!node.used) continue;
     ++used;
-    if (index != root_ && node.parent == kNone) return "a node hangs below none";
+    if (index != root_ && node.parent == kNone) return "a node has no parent";
     if (!node.is_leaf()) {
       std::uint32_t count = 0;
       for (const std::uint32_t child : node.child) {
@@ -226,7 +226,7 @@ const char* SplitTree<Splitter>::find_fault() const {
     std::uint32_t count = 0;
     buckets_.for_each(node.items, [&](std::uint32_t item, const Aabb& box, std::uint32_t slot) {
       ++count;
-      if (slots_[item] != slot || nodes_of_[item] != index) fault = "an item's place is wrong";
+      if (slots_[item] != slot || nodes_of_[item] != index) fault = "an item's slot is wrong";
       std::uint32_t below = index;
       for (std::uint32_t above = node.parent; above != kNone; below = above, above = nodes_[above].parent) {
         int lane = 0;

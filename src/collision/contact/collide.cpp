@@ -1,4 +1,5 @@
-// The stage: which contacts are gone, which sleep, and what the others say about touching. See collide.h.
+// The narrow-phase stage: finds which contacts have ended, skips those that sleep, and updates the others. See
+// collide.h.
 #include "collision/contact/collide.h"
 
 #include "base/prefetch.h"
@@ -18,16 +19,17 @@ void prepare_bits(Bitset& bits, std::size_t count) {
   bits.reset_all();
 }
 
-// Contacts of a block that are to be looked at. A block is one word of a bitset, so that no two write to the same one.
-// Those with manifolds have the first places and the others the last ones, so that whole groups of lanes have none to move.
+// The contacts of a block that need an update. A block is one word of a bitset, so no two workers write the same word.
+// Contacts with manifolds fill the array from its start, the others from its end; whole groups of lanes then have no
+// points to move.
 struct UpdateList {
-  // Not cleared: only places in use are ever read.
+  // Not cleared: only used entries are read.
   union {
     ContactPair pairs[kContactBlock];
   };
   std::uint32_t slots[kContactBlock];
   std::uint64_t with_manifolds = 0;  // bits, by number in the block
-  std::uint64_t on_static_bits = 0;  // bits, by place: only one of the two is moved by contacts
+  std::uint64_t on_static_bits = 0;  // bits, by index in the list: contacts move only one of the two shapes
   int first_end = 0, last_begin = kContactBlock;
   UpdateList() {}
 
@@ -35,7 +37,7 @@ struct UpdateList {
   void note_manifolds(std::uint32_t slot, const Contact& contact) {
     with_manifolds |= std::uint64_t(contact.manifold_count != 0) << slot % kContactBlock;
   }
-  // A group of lanes that is not full takes some of the others in.
+  // Fills an incomplete group of lanes with contacts from the end.
   void fill_lanes() {
     constexpr int kLanes = 8;
     for (; first_end % kLanes != 0 && last_begin < kContactBlock; ++first_end, ++last_begin) {
@@ -59,7 +61,7 @@ void set_touching(Contact& contact, std::uint32_t slot, bool touches, TouchChang
   contact.touching = touches ? 1 : 0;
 }
 
-// As overlap(); four floats at a time.
+// As overlap(), with four floats at a time.
 bool boxes_overlap(const Proxy& a, const Proxy& b) {
   static_assert(offsetof(Aabb, high) == sizeof(Vec3) && sizeof(Proxy) >= sizeof(Aabb) + sizeof(float));
   const auto load = [](const Vec3& corner) { return Wide<4>::load_unaligned(&corner.x); };
@@ -68,8 +70,8 @@ bool boxes_overlap(const Proxy& a, const Proxy& b) {
   return (to_bits(meets) & 7u) == 7u;
 }
 
-// Whether the balls around two bodies that hold them stay farther apart in the step than a full look at shapes of this size reaches.
-// However the bodies turn, their balls only go along.
+// True if the bounding balls of two bodies stay farther apart over the step than a full update searches for shapes of
+// this size. Rotation does not change the balls; they only translate.
 bool bodies_apart(const CollideInput& input, const Contact& contact) {
   const CollisionBody& a = input.bodies[contact.body_a];
   const CollisionBody& b = input.bodies[contact.body_b];
@@ -79,7 +81,7 @@ bool bodies_apart(const CollideInput& input, const Contact& contact) {
   return length_squared(difference(b.position, a.position)) > square(max_distance);
 }
 
-// How many contacts before its turn one is asked for, and the proxies of one.
+// How many contacts ahead a contact and its proxies are prefetched.
 constexpr std::uint32_t kContactsAhead = 8, kProxiesAhead = 4;
 void fetch_ahead(const ContactStore& store, std::uint32_t slot, const CollideInput& input) {
   const std::size_t count = store.contacts.size();
@@ -91,7 +93,7 @@ void fetch_ahead(const ContactStore& store, std::uint32_t slot, const CollideInp
   __builtin_prefetch(&input.proxies[contact.shape_b]);
 }
 
-// Which of the contacts that are asked (bits) are gone; of the others, which are not asleep.
+// Marks the contacts that have ended among `active` (bits) and lists those of the others that are awake.
 void list_contacts(ContactStore& store, std::uint32_t begin, std::uint64_t active, const CollideInput& input,
                    TouchChanges& changes, UpdateList& list) {
   for (; active != 0; active &= active - 1) {
@@ -115,7 +117,7 @@ void list_contacts(ContactStore& store, std::uint32_t begin, std::uint64_t activ
     }
     const ColliderShape& shape_a = input.shapes[contact.shape_a];
     const ColliderShape& shape_b = input.shapes[contact.shape_b];
-    // A sensor's contact keeps nothing of its looks: each is the first.
+    // A sensor's contact caches nothing, so each of its updates is a first one.
     if (contact.cached_distance < 0.0f && contact.sensor == 0)
       contact.size = smaller_size(shape_a.size, shape_b.size);
     if (contact.manifold_count == 0 && contact.sensor == 0 && bodies_apart(input, contact)) {
@@ -139,7 +141,7 @@ void list_contacts(ContactStore& store, std::uint32_t begin, std::uint64_t activ
   list.fill_lanes();
 }
 
-// What the full looks at mesh contacts of a list will read lies anywhere in memory, and is asked for one look ahead.
+// Prefetches what full updates of mesh contacts read, one update ahead, since it lies anywhere in memory.
 class MeshesAhead {
  public:
   MeshesAhead(ContactStore& store, const UpdateList& list, const Recycled& recycled)
@@ -155,7 +157,7 @@ class MeshesAhead {
     });
   }
 
-  // Before the look at the contact in this place of the list.
+  // To be called before the update of the contact at `index`.
   void prefetch_next(int index) {
     if ((left_ >> index & 1) == 0) return;
     left_ &= ~(std::uint64_t{1} << index);
@@ -170,7 +172,7 @@ class MeshesAhead {
  private:
   ContactStore& store_;
   const UpdateList& list_;
-  std::uint64_t left_ = 0;  // bits, by place
+  std::uint64_t left_ = 0;  // bits, by index in the list
 };
 
 void update_contact_block(ContactStore& store, int begin, const CollideInput& input, TouchChanges& changes) {
@@ -206,7 +208,7 @@ void update_contact_block(ContactStore& store, int begin, const CollideInput& in
 
 void collide(ContactStore& store, const CollideInput& input, TaskSystem& tasks, TouchChanges& changes) {
   const std::size_t count = store.contacts.size();
-  GYRE_ASSERT(input.active.size() == count, "every contact is asked or not");
+  GYRE_ASSERT(input.active.size() == count, "there is one bit for each contact");
   prepare_bits(changes.began, count);
   prepare_bits(changes.ended, count);
   prepare_bits(changes.gone, count);

@@ -1,4 +1,4 @@
-// Blocks of contacts, in which those with manifolds come first: what is told of each is its own.
+// In blocks of contacts, where those with manifolds come first, each result belongs to its contact.
 #include "collision/contact/collide_scene.h"
 #include "random.h"
 
@@ -9,8 +9,8 @@ namespace {
 
 using testing_random::Random;
 
-// Crossed sticks, of which half are fixed: nearly all are near each other, so blocks of contacts are full, and few touch.
-TEST(CollideBlock, TellsOfEachContactWhetherItLiesBesideWhatRests) {
+// Crossed sticks, half of them fixed: nearly all are near each other, so blocks of contacts are full, and few touch.
+TEST(CollideBlock, MarksContactsWithStaticShapes) {
   Random random;
   CollideScene scene;
   for (int i = 0; i < 60; ++i)

@@ -1,7 +1,7 @@
-// Boxes that lie apart, in lanes: a contact without manifolds whose two boxes are parted by more than a full look
-// (contact_update.h) would reach is seen to be so before one. Lane i says so exactly where the full look would, of the same
-// bits. With eight lanes all axes are searched, and the full look at what is left begins with the one that decides; with fewer
-// only the face that decided at the last look is tried.
+// Separation of boxes in lanes: finds contacts without manifolds whose boxes are farther apart than a full update
+// (contact_update.h) would search. Lane i finds this exactly where the full update would, with the same bits. Eight
+// lanes search all axes, and the full update of the remaining contacts starts from the axis found here. Fewer lanes
+// test only the face that decided the last update.
 #pragma once
 
 #include "collision/contact/contact_lanes.h"
@@ -19,14 +19,14 @@ GYRE_INLINE Vec3W<W> pick_component(WideInt<W> axis, const Mat3W<W>& columns) {
   return select(axis == WideInt<W>(0), columns.x, select(axis == WideInt<W>(1), columns.y, columns.z));
 }
 
-// Along the normal of face axis `axis` (0 to 2: of A, 3 to 5: of B) of boxes with half extents `a` and `b`, in the order of
-// roundings of collide_boxes.
+// Separation along the normal of face axis `axis` (0 to 2: of A, 3 to 5: of B) of boxes with half extents `a` and `b`,
+// rounded in the same order as in collide_boxes.
 template <int W>
 GYRE_INLINE Wide<W> face_separation(WideInt<W> axis, Vec3W<W> a, Vec3W<W> b, const Placement<W>& a_from_b) {
   const Mask<W> of_b = axis > WideInt<W>(2);
   const WideInt<W> own_axis = select(of_b, axis - WideInt<W>(3), axis);
   const Mat3W<W> rotation = to_matrix(a_from_b.orientation), inverse_rotation = transpose(rotation);
-  // In the other box's axes.
+  // In the axes of the other box.
   const Vec3W<W> normal =
       select(of_b, pick_component(own_axis, rotation), pick_component(own_axis, inverse_rotation));
   const Wide<W> center_offset =
@@ -51,14 +51,14 @@ GYRE_INLINE bool are_sharp_boxes(const ContactPair& pair) {
   return pair.contact->sensor == 0 && is_sharp_box(pair.shape_a->shape) && is_sharp_box(pair.shape_b->shape);
 }
 
-// Whether the full look at a contact would begin with the face of two boxes, and no manifold is there to be cleared.
+// True if the full update would begin with the face of two boxes and there is no manifold to clear.
 GYRE_INLINE bool begins_with_face(const ContactPair& pair) {
   const Contact& contact = *pair.contact;
   return contact.manifold_count == 0 && contact.cache.words[0] - 1u < std::uint32_t(boxes::kFirstEdge) &&
          are_sharp_boxes(pair);
 }
 
-// Notes in the contacts of those lanes whose bits are set what a full look would that found nothing as far as `reach`.
+// Records in the contacts of the given lanes (bits) that a full update found nothing within `max_distance`.
 template <int W>
 GYRE_INLINE void cache_empty_update(const Group<W>& group, Wide<W> max_distance, unsigned lanes) {
   alignas(16) float discarded[sizeof(Contact) / sizeof(float)];
@@ -73,7 +73,7 @@ GYRE_INLINE void cache_empty_update(const Group<W>& group, Wide<W> max_distance,
   for (int i = 0; i < W; ++i) to[i][kCachedDistance + 8] = q.w[i];
 }
 
-// In which lanes a full look reaches far (look_in_room), and how far it reaches.
+// Lanes in which a full update searches far (update_in_room), and its search distance.
 template <int W>
 GYRE_INLINE Mask<W> searches_far(const Group<W>& group) {
   return (group.max_approach < Wide<W>(kSlow) * group.size) & Mask<W>::of_bits(empty_lanes<W>(group));
@@ -83,7 +83,7 @@ GYRE_INLINE Wide<W> speculative_reach(const Group<W>& group, Mask<W> far) {
   return group.speculative + select(far, Wide<W>(kFarSlack), Wide<W>(kNearSlack)) * group.size;
 }
 
-// The number of the axis that decided at the last look, whatever the cache holds.
+// The number of the axis that decided the last update, whatever the cache contains.
 template <int W>
 GYRE_INLINE WideInt<W> last_axis(const Group<W>& group) {
   Records<W> contact;
@@ -92,8 +92,8 @@ GYRE_INLINE WideInt<W> last_axis(const Group<W>& group) {
   return bit_pattern(read_one<W>(contact, GYRE_FLOATS_BEFORE(Contact, cache))) - WideInt<W>(1);
 }
 
-// Of the contacts in those lanes of a group whose bits are set, those of boxes that the face of their last look parts by
-// more than a full look would reach. Returns their bits.
+// Returns those of the given lanes (bits) whose boxes the face of the last update separates by more than the search
+// distance.
 template <int W>
 GYRE_INLINE unsigned separate_by_last_face(const Group<W>& group, const ShapesInView<W>& shapes,
                                            unsigned lanes) {
@@ -109,9 +109,8 @@ GYRE_INLINE unsigned separate_by_last_face(const Group<W>& group, const ShapesIn
   return apart;
 }
 
-// The whole search for the axis that decides, of the contacts of boxes in those lanes of a group whose bits are set. Returns
-// the bits of those without manifolds that it parts by more than a full look would reach; of the others `axis` tells what
-// was found.
+// Searches all axes of the boxes in the given lanes (bits). Returns the lanes without manifolds whose boxes are farther
+// apart than the search distance; for the other lanes `axis` gives the result.
 template <int W>
 GYRE_INLINE unsigned search_boxes(const Group<W>& group, const ShapesInView<W>& shapes, unsigned lanes,
                                   AxisLanes<W>& axis) {
@@ -133,13 +132,14 @@ GYRE_INLINE unsigned search_boxes(const Group<W>& group, const ShapesInView<W>& 
   for (int i = 0; i < W; ++i) {
     if ((apart >> i & 1u) != 0) group.pairs[i]->contact->cache.words[0] = std::uint32_t(found.number[i] + 1);
   }
-  // What a far look finds something of is looked at once more, less far.
+  // A far search that found something is repeated with the near distance.
   axis = found;
   axis.number = select(and_not(Mask<W>::of_bits(known), far), found.number, none);
   return apart;
 }
 
-// The one or the other. The whole search gains nothing on four lanes: collide_boxes has three axes side by side itself.
+// The method for this width. On four lanes the full search gains nothing, since collide_boxes itself tests three axes
+// side by side.
 template <int W>
 GYRE_INLINE unsigned separate_boxes(const Group<W>& group, const ShapesInView<W>& shapes, unsigned lanes,
                                     AxisLanes<W>& axis) {

@@ -1,5 +1,5 @@
-// Contacts in lanes: their bodies and shapes, and how these stand and move. See contact_recycle.h. One template for every
-// width: lane i computes exactly what a width of 1 would.
+// Contacts in lanes: poses and motions of their bodies and shapes. See contact_recycle.h. One template serves every
+// width; lane i computes exactly what width 1 would.
 #pragma once
 
 #include "collision/broadphase/fat_box.h"
@@ -27,7 +27,7 @@ GYRE_INLINE Placement<W> select(Mask<W> mask, const Placement<W>& a, const Place
   return {select(mask, a.position, b.position), select(mask, a.orientation, b.orientation)};
 }
 
-// Places in the world, each coordinate in halves of the lanes.
+// World positions; each coordinate is two halves of the lanes in double.
 template <int W>
 struct WidePosition {
   static constexpr int kLast = kHalves<W> - 1;
@@ -71,7 +71,7 @@ struct Side {
   QuatW<W> orientation;
   Vec3W<W> translation, rotation;
   Vec3W<W> center;        // of mass, body frame
-  Wide<W> bounding_radius, extent;  // m, of the farthest point from there, and from the origin (a bound)
+  Wide<W> bounding_radius, extent;  // m, from the centre of mass; from the origin (a bound)
 
   GYRE_INLINE WidePosition<W> center_of_mass() const { return origin + rotate(orientation, center); }
 };
@@ -104,17 +104,17 @@ GYRE_INLINE Side<W> load_side(const CollisionBody* const (&bodies)[W], const Rec
   return side;
 }
 
-// In a contact, what its last full look saw begins here.
+// Offset in a contact of what the last full update cached, in floats.
 constexpr int kCachedDistance = GYRE_FLOATS_BEFORE(Contact, cached_distance);
 
-// The contacts of a group; lanes without one repeat the last.
+// A group of W contacts; lanes without a contact repeat the last one.
 template <int W>
 struct Group {
   const ContactPair* pairs[W];
   std::int32_t counts[W];  // of manifolds
   Side<W> a, b;
   Wide<W> size, cached_distance;
-  Placement<W> seen, now;    // B's body frame in A's: at the last full look, and now
+  Placement<W> seen, now;             // B's body frame in A's at the last full update, and now
   Wide<W> max_approach, speculative;  // as in View
   // As in Closing, in world axes.
   Vec3W<W> closing_translation, closing_rotation;
@@ -152,11 +152,11 @@ GYRE_INLINE void load_group(const ContactPair* pairs, int count, Group<W>& group
 
 // ------------------------------------------------------------------------------------------------------------- the view
 
-// m^2: below the square of any distance between bodies that is one.
+// m^2: below any squared distance of two bodies that are apart.
 constexpr float kMinLength = 1.0e-30f;
 
-// The most that surfaces of the two come towards each other in the step, by how each turns about its own centre of mass. A
-// body that is long beyond the other one turns no faster there.
+// An upper bound of the approach of the two surfaces in the step, from the rotation of each body about its own centre
+// of mass. The lever of a body is at most the distance to the far side of the other body.
 template <int W>
 GYRE_INLINE Wide<W> approach_bound(const Group<W>& group, Wide<W> spin_a, Wide<W> spin_b) {
   const Side<W>& a = group.a;
@@ -171,10 +171,10 @@ GYRE_INLINE Wide<W> approach_bound(const Group<W>& group, Wide<W> spin_a, Wide<W
   return length(b.translation - a.translation) + spin_a * lever_a + spin_b * lever_b;
 }
 
-// How the two go against each other where they can meet: in both balls around their centres of mass that hold them and what is
-// between them, by no more than `gap`. Of the points that both balls share none is farther from the middle than `lever`. Each
-// point's way is taken to be straight, of the velocity there; it is bent by no more than half the angle's square for each
-// length.
+// The relative motion of the two bodies where they can meet: in the intersection of two balls around their centres of
+// mass, each enlarged by half of `gap`. `lever` is the radius of that intersection about its middle. Each point is
+// taken to move straight with its present velocity; its arc deviates by at most half the squared angle times its
+// distance.
 template <int W>
 GYRE_INLINE void find_closing(Vec3W<W> b_from_a, Wide<W> gap, Wide<W> spin_a, Wide<W> spin_b,
                               Group<W>& group) {
@@ -183,7 +183,7 @@ GYRE_INLINE void find_closing(Vec3W<W> b_from_a, Wide<W> gap, Wide<W> spin_a, Wi
   const Wide<W> zero(0.0f), one(1.0f), radius_a = a.bounding_radius + 0.5f * gap,
                                        radius_b = b.bounding_radius + 0.5f * gap;
   const Wide<W> squared = length_squared(b_from_a), apart = sqrt(squared);
-  // Where the plane through the circle that both balls share lies between the centres.
+  // Position between the centres of the plane of the circle in which the two balls intersect, as a share.
   const Wide<W> share = min(
       max((squared + (radius_a - radius_b) * (radius_a + radius_b)) / (2.0f * squared + Wide<W>(kMinLength)),
           zero),
@@ -240,7 +240,8 @@ GYRE_INLINE WideInt<W> load_kinds(const Records<W>& shape) {
   return bit_pattern(read_one<W>(shape, 0)) & WideInt<W>(0xff);
 }
 
-// Half `Half` of places beside `other` on planes with these normals and offsets, of which `place` is a point.
+// Moves points `position` of planes with these normals and offsets, in half `Half` of the lanes, to the feet of the
+// perpendiculars from `other`.
 template <int Half, int W>
 GYRE_INLINE void center_half(Vec3W<W> normal, Wide<W> offset, const WidePosition<W>& other,
                              WidePosition<W>& position) {
@@ -252,8 +253,8 @@ GYRE_INLINE void center_half(Vec3W<W> normal, Wide<W> offset, const WidePosition
   position.z[Half] = other.z[Half] - height * z;
 }
 
-// A plane has no middle: its frame may lie where the other shape is, so that floats stay small and exact. Its offset in the
-// new frame is 0.
+// A plane has no middle, so its frame may move to the point nearest to the other shape; floats then stay small and
+// exact. Its offset in the new frame is 0.
 template <int W>
 GYRE_INLINE void center_planes(Mask<W> planes, const Records<W>& shape, const WidePosition<W>& other,
                                ShapeFrame<W>& frame) {
@@ -284,7 +285,7 @@ GYRE_INLINE unsigned empty_lanes(const Group<W>& group) {
   return empty;
 }
 
-// The shapes of a group in the frame in which manifolds are found (View).
+// The shapes of a group in the frame of their manifolds (View).
 template <int W>
 struct ShapesInView {
   Records<W> records_a, records_b;  // ColliderShape
@@ -341,7 +342,7 @@ GYRE_INLINE void write_views(const Group<W>& group, const ShapesInView<W>& shape
   write_four<4, W>(to, 24, {from_b.x, from_b.y, from_b.z, closing_translation.x});
   write_four<4, W>(to, 28, {closing_translation.y, closing_translation.z, group.lever, closing_rotation.x});
   write_four<3, W>(to, 32, {closing_rotation.y, closing_rotation.z, group.arc_deviation, Wide<W>(0.0f)});
-  // Lanes that only repeat the last contact know no axis.
+  // Lanes that repeat the last contact know no axis.
   for (int i = 0; i < count; ++i) {
     to[i][35] = __builtin_bit_cast(float, axis.number[i]);
     to[i][36] = axis.separation[i];

@@ -1,5 +1,5 @@
-// Recycling in lanes: whether contacts' anchors still hold, and their points moved. See contact_recycle.h. One template for
-// every width: lane i computes exactly what a width of 1 would.
+// Contact recycling in lanes: tests whether the anchors of contacts are still valid and moves their points. See
+// contact_recycle.h. One template serves every width; lane i computes exactly what width 1 would.
 #pragma once
 
 #include "base/prefetch.h"
@@ -10,22 +10,22 @@
 namespace gyre {
 inline namespace GYRE_TARGET_NAMESPACE {
 
-// How far points may go against each other, and how far the pair may tilt (rad), before it is looked at anew: where flat
-// features meet, or a core swept by a ball and a flat feature; and where something else is round. There the contact goes on
-// while the bodies' points do not, and what lags behind would brake what rolls.
+// The largest slide (in sizes) and tilt (rad) of a recycled contact: between flat features, or a rounded core and a
+// flat feature; and with other round shapes. With those the contact moves on while the points of the bodies do not, and
+// a point that lags behind would brake rolling.
 constexpr float kFlatSlide = 3.0e-3f, kFlatTilt = 3.0e-3f;
 constexpr float kCurvedSlide = 1.0e-4f, kCurvedTilt = 1.0e-4f;
-// Where a float's rounding of the distance between the bodies is more than this, a recycled separation would rattle.
+// If the rounding of the distance of the bodies is larger than this, in sizes, recycled separations would be noise.
 constexpr float kMaxRounding = 1.0e-4f;
 
 // ---------------------------------------------------------------------------------------------------------- the motion
 
-// The motion of B in A's body frame from `seen` to `now`, small or not.
+// The motion of B in A's body frame from `seen` to `now`, of any size.
 template <int W>
 struct Motion {
   Vec3W<W> shift;   // of B's origin
-  Vec3W<W> origin;  // B's origin as seen
-  Vec3W<W> v;       // vector part of the turn's quaternion: half the rotation vector while it is small
+  Vec3W<W> origin;  // B's origin at the last full update
+  Vec3W<W> v;       // vector part of the rotation's quaternion: half the rotation vector for small rotations
   Wide<W> w;
 
   GYRE_INLINE Motion(const Placement<W>& seen, const Placement<W>& now) {
@@ -35,18 +35,19 @@ struct Motion {
     v = {rotation.x, rotation.y, rotation.z};
     w = rotation.w;
   }
-  // Of the angle, while it is small.
+  // Approximates the angle for small rotations.
   GYRE_INLINE Wide<W> angle_bound() const { return 2.0f * length(v); }
 
-  // How far a point of B goes that was at `p`; worked out as a difference, so that small motions keep their digits.
+  // The displacement of the point of B that was at `p`, computed as a difference so that small motions keep their
+  // digits.
   GYRE_INLINE Vec3W<W> of(Vec3W<W> p) const {
     const Vec3W<W> t = 2.0f * cross(v, p - origin);
     return shift + w * t + cross(v, t);
   }
 
-  // A bound on how far surfaces of the one come towards the other: the way of one body's origin, and what its farthest
-  // point adds when it turns. Of the smaller body: its motion seen from the other is the smaller one. (A rigid motion
-  // moves A's origin as far as its inverse does.)
+  // An upper bound of the approach of the surfaces: the displacement of one body's origin, and what rotation adds at
+  // its farthest point. The smaller body is used, since its motion seen from the other gives the smaller bound. (A
+  // rigid motion moves A's origin as far as its inverse does.)
   GYRE_INLINE Wide<W> bound(const Side<W>& a, const Side<W>& b) const {
     const Vec3W<W> of_a = of({0.0f, 0.0f, 0.0f});
     return select(b.extent <= a.extent, length(shift) + angle_bound() * b.extent,
@@ -54,7 +55,7 @@ struct Motion {
   }
 };
 
-// The same as a matrix, for many points.
+// The same motion as a matrix, for many points.
 template <int W>
 class PointMotion {
  public:
@@ -65,7 +66,7 @@ class PointMotion {
   GYRE_INLINE Vec3W<W> of(Vec3W<W> p) const { return shift_ + change_ * (p - origin_); }
 
  private:
-  // Of R - 1.
+  // A column of R - 1.
   static GYRE_INLINE Vec3W<W> column(const Motion<W>& motion, Vec3W<W> axis) {
     const Vec3W<W> t = 2.0f * cross(motion.v, axis);
     return motion.w * t + cross(motion.v, t);
@@ -98,26 +99,26 @@ GYRE_INLINE ManifoldMatch<W> find_match(const Group<W>& group) {
   return ManifoldMatch<W>(load_roundness<W>(a), load_roundness<W>(b));
 }
 
-// One point of each manifold as the last full look found it, and how far the moving body's point there has gone.
+// One point of each manifold at the last full update, and the displacement of the moving body there.
 template <int W>
 struct Anchor {
   Vec3W<W> position;
   Wide<W> separation;
   Vec3W<W> displacement;
 };
-// One manifold of each contact; lanes without one have an empty one.
+// One manifold of each contact; lanes without one have an empty manifold.
 template <int W>
 struct ManifoldLanes {
   Records<W> record;
   std::int32_t counts[W];
   std::int32_t min_count, max_count;  // of the counts
   WideInt<W> count;
-  Wide<W> side;  // of the moving body along the normal: 1 for B, -1 for A
+  Wide<W> side;  // the side of the moving body along the normal: 1 for B, -1 for A
   Vec3W<W> seen_normal;
   Anchor<W> anchors[kMaxManifoldPoints];
 };
 
-// Manifold `m` of each contact; `none` where there are not so many.
+// Loads manifold `m` of each contact; `none` stands for a missing one.
 template <int W>
 GYRE_INLINE void load_manifold(const Group<W>& group, int m, Manifold& none, ManifoldLanes<W>& manifold) {
   manifold.min_count = kMaxManifoldPoints;
@@ -138,7 +139,7 @@ GYRE_INLINE void load_manifold(const Group<W>& group, int m, Manifold& none, Man
   manifold.seen_normal = {column[1], column[2], column[3]};
 }
 
-// Returns in which lanes the anchors of this manifold are still good.
+// Returns the lanes in which all anchors of this manifold are still valid.
 template <int W>
 GYRE_INLINE Mask<W> find_motions(const Group<W>& group, const ManifoldMatch<W>& match,
                                  const PointMotion<W>& motion, Wide<W> angle_bound,
@@ -164,12 +165,12 @@ GYRE_INLINE Mask<W> find_motions(const Group<W>& group, const ManifoldMatch<W>& 
 
 // ----------------------------------------------------------------------------------------------------------- the points
 
-// From the frame of the anchors into the world's axes.
+// From the frame of the anchors to world axes.
 template <int W>
 struct WorldFrame {
   Mat3W<W> rotation;
-  Vec3W<W> center;  // of mass, of the body whose frame it is
-  Vec3W<W> other;   // the other body's centre of mass seen from that one's, world axes
+  Vec3W<W> center;  // centre of mass of the body whose frame it is
+  Vec3W<W> other;   // the other body's centre of mass seen from that one, world axes
 };
 
 template <int W>
@@ -181,7 +182,7 @@ GYRE_INLINE WorldFrame<W> find_world_frame(const Group<W>& group, const Manifold
           select(match.frame_is_b, b.center, a.center), select(match.frame_is_b, -b_from_a, b_from_a)};
 }
 
-// Writes point `i` of each manifold. Returns in which lanes it carried load in the last step, or its surfaces touch.
+// Writes point `i` of each manifold. Returns the lanes in which the point carried load in the last step or touches.
 template <int W>
 GYRE_INLINE Mask<W> move_point(const Group<W>& group, const ManifoldMatch<W>& match,
                                const WorldFrame<W>& frame, const ManifoldLanes<W>& manifold, int i,
@@ -201,12 +202,12 @@ GYRE_INLINE Mask<W> move_point(const Group<W>& group, const ManifoldMatch<W>& ma
   const Wide<W> zero(0.0f);
   write_four<4, W>(to, first, {from_a.x, from_a.y, from_a.z, separation});
   write_four<3, W>(to, first + 4, {from_b.x, from_b.y, from_b.z});
-  // What is summed over a step, and the approach, begin anew.
+  // The sums over a step and the approach speed start at zero.
   write_four<4, W>(to, first + 8, {impulses[0], zero, impulses[2], zero});
   return (loaded | (separation <= Wide<W>(kTouch) * group.size)) & (WideInt<W>(i) < manifold.count);
 }
 
-// What a manifold keeps from step to step, turned into the new tangent plane.
+// Projects the impulses that a manifold carries from step to step onto the new tangent plane.
 template <int W>
 GYRE_INLINE void carry_friction_impulses(const ManifoldLanes<W>& manifold, int first, Vec3W<W> normal,
                                          const Targets<W>& to) {
@@ -217,7 +218,7 @@ GYRE_INLINE void carry_friction_impulses(const ManifoldLanes<W>& manifold, int f
   write_four<4, W>(to, first, {column[0], after.x, after.y, after.z});
 }
 
-// Writes the manifolds of those lanes whose bits are set. Returns in which lanes the shapes touch.
+// Writes the manifolds of the given lanes (bits). Returns the lanes in which the shapes touch.
 template <int W>
 GYRE_INLINE Mask<W> move_manifold(const Group<W>& group, const ManifoldMatch<W>& match,
                                   const WorldFrame<W>& frame, const ManifoldLanes<W>& manifold,
@@ -247,8 +248,8 @@ GYRE_INLINE Mask<W> move_manifold(const Group<W>& group, const ManifoldMatch<W>&
   return touching;
 }
 
-// Of the contacts in those lanes of a group whose bits are set in `near`, those whose anchors hold get their manifolds
-// written. Returns their bits, and sets the bits of those that touch.
+// Writes the manifolds of those lanes in `near` (bits) whose anchors are all valid. Returns these lanes, and adds those
+// that touch to `touching`.
 template <int W>
 unsigned move_contacts(const Group<W>& group, const Motion<W>& motion, unsigned near, Manifold& none,
                        unsigned& touching) {
@@ -275,7 +276,7 @@ unsigned move_contacts(const Group<W>& group, const Motion<W>& motion, unsigned 
   return valid;
 }
 
-// `none`: an empty manifold, which lanes without one use.
+// `none`: an empty manifold for lanes without one.
 template <int W>
 GYRE_INLINE unsigned recycle_group(const Group<W>& group, unsigned lanes, Manifold& none,
                                    unsigned& touching) {
@@ -286,13 +287,13 @@ GYRE_INLINE unsigned recycle_group(const Group<W>& group, unsigned lanes, Manifo
   const unsigned empty = empty_lanes<W>(group);
   const Wide<W> rounding = largest(absolute(group.now.position)) * Wide<W>(1.2e-7f);
   const unsigned imprecise = to_bits(rounding > Wide<W>(kMaxRounding) * group.size);
-  // More than any manifold may tilt: no need to read them.
+  // Beyond the tilt of any manifold; the manifolds need not be read.
   const unsigned tilts = to_bits(motion.angle_bound() > Wide<W>(kFlatTilt));
   const unsigned to_move = near & ~(imprecise | tilts | empty);
   return (near & empty) | (to_move != 0 ? move_contacts<W>(group, motion, to_move, none, touching) : 0u);
 }
 
-// Manifolds lie anywhere in memory: how many contacts before its turn one is asked for.
+// How many contacts ahead manifolds are prefetched, since they lie anywhere in memory.
 constexpr int kAhead = 8;
 
 GYRE_INLINE void fetch_manifolds(const ContactPair* pairs, int begin, int end) {

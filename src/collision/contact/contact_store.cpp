@@ -1,4 +1,4 @@
-// Adding and removing contacts, and the indices over them. See contact_store.h.
+// Adds and removes contacts and keeps the indices over them. See contact_store.h.
 #include "collision/contact/contact_store.h"
 
 #include "base/check.h"
@@ -51,7 +51,7 @@ void release_manifolds(ContactStore& store, std::uint32_t first, std::uint16_t r
   }
 }
 
-// Of a mesh contact: nothing is kept yet.
+// A new mesh contact has no cached triangles.
 void clear_cached_triangles(ContactStore& store, const Contact& contact) {
   const std::size_t chunk = contact.first_manifold / kChunk;
   if (store.cached_triangles.size() <= chunk) store.cached_triangles.resize(chunk + 1);
@@ -139,7 +139,7 @@ void remove_contact(ContactStore& store, std::uint32_t slot) {
   GYRE_ASSERT(contact.manifold_room != 0, "the contact exists");
   unlink(store, slot);
   store.slot_of_pair.erase(pair_key(contact.shape_a, contact.shape_b), key_reader(store));
-  // Of manifolds that are not in use nothing is left to hide from hashes and snapshots.
+  // Unused manifolds are cleared, because hashes and snapshots include them.
   for (Manifold& manifold : manifolds_of(store, contact)) manifold = Manifold{};
   release_manifolds(store, contact.first_manifold, contact.manifold_room);
   store.contacts[slot] = Contact{};
@@ -191,7 +191,7 @@ bool is_clear(const Manifold& manifold) {
   return std::memcmp(&manifold, &clear, sizeof clear) == 0;
 }
 
-// Whether the manifold is as a new one beyond its points.
+// True if the unused points of the manifold are as new.
 bool ends_with_its_points(const Manifold& manifold) {
   const Manifold clear{};
   const auto unused = std::size_t(kMaxManifoldPoints - manifold.count);
@@ -213,9 +213,9 @@ const char* find_fault(const ContactStore& store, std::uint32_t slot, Array<std:
     used[i / kChunk] = std::uint8_t(used[i / kChunk] | bit);
   }
   for (const Manifold& manifold : manifolds_of(store, contact))
-    if (!ends_with_its_points(manifold)) return "a manifold has something in a point that it does not have";
+    if (!ends_with_its_points(manifold)) return "an unused point of a manifold is not clear";
   for (std::uint32_t i = contact.first_manifold + contact.manifold_count; i < end; ++i)
-    if (!is_clear(store.manifolds[i])) return "a contact has something in a manifold that it does not use";
+    if (!is_clear(store.manifolds[i])) return "an unused manifold of a contact is not clear";
   if (find_contact(store, pair_key(contact.shape_a, contact.shape_b)) != slot)
     return "the index does not lead to the contact";
   const std::uint32_t shapes[2] = {contact.shape_a, contact.shape_b};
@@ -246,7 +246,7 @@ const char* find_fault(const ContactStore& store) {
     if (empty) continue;
     ++live;
     if (store.contacts[slot].manifold_count != 0 && !store.with_manifolds.test(slot))
-      return "a contact with manifolds is not known to have some";
+      return "the bit of a contact with manifolds is clear";
     if (const char* const fault = find_fault(store, slot, used)) return fault;
   }
   if (live != store.live || live != store.slot_of_pair.size()) return "the number of contacts is wrong";
@@ -254,8 +254,7 @@ const char* find_fault(const ContactStore& store) {
     if (used[chunk] != store.chunk_used[chunk]) return "a chunk's record differs from what contacts own";
     if (store.free_chunks.contains(chunk) != (used[chunk] == 0)) return "free chunks are not the unused ones";
     const bool partial = used[chunk] != 0 && used[chunk] != kWholeChunk;
-    if (store.partial_chunks.contains(chunk) != partial)
-      return "partial chunks are not those with some in use";
+    if (store.partial_chunks.contains(chunk) != partial) return "partial chunks are not the partly used ones";
     for (std::uint32_t i = 0; i < kChunk; ++i)
       if ((used[chunk] >> i & 1u) == 0 && !is_clear(store.manifolds[chunk * kChunk + i]))
         return "a manifold of no contact is not clear";

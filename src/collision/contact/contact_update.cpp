@@ -1,4 +1,4 @@
-// Full looks, and the matching of new points with old ones. See contact_update.h.
+// Full updates, and the matching of new points with old ones. See contact_update.h.
 #include "collision/contact/contact_update.h"
 
 #include "collision/broadphase/fat_box.h"
@@ -14,13 +14,14 @@
 namespace gyre {
 namespace {
 
-// All lengths in sizes of the pair (the smaller shape's inner radius).
-// Points farther apart than kKept beyond the speculative distance are not kept, only how near they were.
+// Lengths are in sizes of the pair (inner radius of the smaller shape). Points farther apart than the speculative
+// distance and this margin are dropped; only their separation counts.
 constexpr float kPointMargin = 0.005f;
-// Above a mesh a look at boxes alone comes first, as far as the pair goes in some steps: what falls need not look in each.
+// Above a mesh a test of boxes comes first, over the approach of this many steps; falling bodies then need no search in
+// each step.
 constexpr float kClearSteps = 4.0f;
-// A new point takes over from an old one this near, whatever its feature is called, if the cosine between their normals is
-// at least kSameSide.
+// A new point without a feature match takes the impulses of the nearest old point within kMatchDistance, if the cosine
+// between their normals is at least kSameSideCosine.
 constexpr float kMatchDistance = 0.1f, kSameSideCosine = 0.8f;
 
 bool has_rim(const Shape& shape) {
@@ -30,7 +31,7 @@ bool has_rim(const Shape& shape) {
 std::span<Manifold> manifolds_of(const ContactPair& pair) {
   return {pair.manifolds, pair.contact->manifold_count};
 }
-// Whether the anchors lie in the frame of B's body, else A's.
+// True if the anchors lie in the body frame of B, false if in A's.
 bool frame_is_b(const Shape& a, const Shape& b) {
   const Roundness<1> round_a{std::int32_t(a.kind), a.radius}, round_b{std::int32_t(b.kind), b.radius};
   return any(ManifoldMatch<1>(round_a, round_b).frame_is_b);
@@ -40,8 +41,8 @@ bool frame_is_b(const Shape& a, const Shape& b) {
 
 template <int kRoom>
 struct Found {
-  // Not cleared: only the counted ones are ever read. Who finds them says everything of them but the triangle, which only
-  // surfaces have.
+  // Not cleared: only counted ones are read. The narrow phase writes all members but `triangle`, which only surfaces
+  // have.
   union {
     LocalManifold manifolds[kRoom];
   };
@@ -52,7 +53,7 @@ struct Found {
   }
 };
 
-// A shape in the frame in which it is seen (View).
+// A shape in the frame of View.
 struct ViewedShape {
   Shape moved;
   const Shape* shape;
@@ -72,14 +73,14 @@ void collide_in_view(const ContactPair& pair, const View& view, float max_distan
                                found.manifolds, cached);
 }
 
-// How near surfaces must be for contacts along a normal to matter. What is no farther apart than `min_near` always does.
+// The distance below which contacts along a normal matter. Contacts within min_near() always do.
 float min_near(const View& view) { return (kSpeculativeShare + kPointMargin) * view.size; }
 float near_along(const View& view, Vec3 normal) {
   return min_near(view) + min(min(view.closing.along(normal), view.max_approach), kMaxApproach * view.size);
 }
 
-// As ask_shapes, of two sharp boxes; but nothing is found where they do not come near enough along the axis that parts them most.
-// Then nothing is nearer than they are along that axis, and that is what is returned.
+// As collide_in_view, for two sharp boxes. If they stay too far apart along the axis of largest separation, nothing is
+// found and the result is their separation along that axis, a lower bound of the distance.
 float collide_boxes_in_view(const ContactPair& pair, const View& view, float max_distance, Found<1>& found) {
   const Shape& a = pair.shape_a->shape;
   const Shape& b = pair.shape_b->shape;
@@ -98,7 +99,7 @@ float collide_boxes_in_view(const ContactPair& pair, const View& view, float max
   return max_distance;
 }
 
-// Leaves out what is farther apart than `reach`. Returns the smallest separation of what was left out.
+// Drops the points farther apart than `max_distance`. Returns the smallest separation of a dropped point.
 template <int kRoom>
 float remove_far_points(Found<kRoom>& found, float max_distance) {
   float left_out = kUnbounded;
@@ -129,7 +130,7 @@ float farthest_of(const LocalManifold& manifold) {
   return farthest;
 }
 
-// Whether no point is as near as `reach`.
+// True if no point is within `max_distance`.
 template <int kRoom>
 bool is_beyond(const Found<kRoom>& found, float max_distance) {
   for (int m = 0; m < found.count; ++m) {
@@ -140,12 +141,12 @@ bool is_beyond(const Found<kRoom>& found, float max_distance) {
   return true;
 }
 
-// What goes on of a manifold that was there before this look; its points side by side. Those that it had not are zero.
+// What continues of a manifold from before the update, with its points side by side. Missing points are zero.
 struct FormerManifold {
   Vec3 normal, friction_impulse, rolling_impulse;
   float twist_impulse, age;
   std::uint32_t triangle, sliding;
-  unsigned left;  // bits, by point: it has found no heir yet
+  unsigned left;  // bits, by point: not yet matched
   WideInt<kMaxManifoldPoints> feature;
   float normal_impulse[kMaxManifoldPoints], mean_impulse[kMaxManifoldPoints];
   Vec3W<kMaxManifoldPoints> anchor;
@@ -180,7 +181,7 @@ void read_former(const Manifold& from, FormerManifold& to) {
   read_points(from, to);
 }
 
-// What a manifold keeps from step to step, turned into the new tangent plane.
+// Projects the impulses that a manifold carries from step to step onto the new tangent plane.
 void carry_friction_impulses(const FormerManifold& from, Manifold& to) {
   to.friction_impulse = from.friction_impulse - dot(from.friction_impulse, to.normal) * to.normal;
   to.rolling_impulse = from.rolling_impulse - dot(from.rolling_impulse, to.normal) * to.normal;
@@ -191,7 +192,7 @@ void carry_friction_impulses(const FormerManifold& from, Manifold& to) {
 
 template <int kRoom>
 struct Former {
-  // Not cleared: only the counted ones are ever read.
+  // Not cleared: only counted ones are read.
   union {
     FormerManifold manifolds[kRoom];
   };
@@ -203,7 +204,7 @@ struct Former {
   }
 };
 
-// The former manifold that goes on in the new one; -1 if none does. A single manifold always goes on.
+// The old manifold that continues in the new one, or -1. A single manifold always continues.
 template <int kRoom>
 int find_former(const Former<kRoom>& former, const Manifold& manifold) {
   if constexpr (kRoom == 1) return former.count == 1 ? 0 : -1;
@@ -227,7 +228,7 @@ void inherit_impulses(FormerManifold& former, int k, ContactPointState& point) {
   point.held = former.mean_impulse[k];
 }
 
-// By name within the former manifold; bit i of the result is set for each point that found its own.
+// Matches points by feature within the old manifold. Returns the matched points as bits.
 unsigned match_by_feature(FormerManifold& former, Manifold& manifold) {
   unsigned matched = 0;
   for (int i = 0; i < manifold.count; ++i) {
@@ -240,8 +241,8 @@ unsigned match_by_feature(FormerManifold& former, Manifold& manifold) {
   return matched;
 }
 
-// By place, among all points that are left on the same side: features get new names when another edge comes first, but
-// the load stays where it was.
+// Matches the remaining points by position, among all points on the same side: features change their names when another
+// edge comes first, but the load stays where it was.
 template <int kRoom>
 void match_by_position(Former<kRoom>& former, Manifold& manifold, unsigned matched, float radius) {
   for (int i = 0; i < manifold.count; ++i) {
@@ -266,7 +267,7 @@ void match_by_position(Former<kRoom>& former, Manifold& manifold, unsigned match
   }
 }
 
-// Where a look's manifolds go from their frame: into world axes, and into the frame of the anchors.
+// From the frame of an update to world axes and to the frame of the anchors.
 struct OutputFrames {
   const View& view;
   bool anchors_in_b;  // B's body frame, else A's
@@ -282,7 +283,7 @@ struct OutputFrames {
 
 QuatW<4> splat(Quat q) { return {q.x, q.y, q.z, q.w}; }
 
-// The four points of a manifold side by side; those that are not in use become zero, as all impulses do.
+// Writes the four points of a manifold side by side. Unused points and all impulses become zero.
 void write_points(const LocalManifold& local, const OutputFrames& frames, Manifold& out) {
   constexpr int W = kMaxManifoldPoints;
   Records<W> from;
@@ -310,7 +311,7 @@ void write_points(const LocalManifold& local, const OutputFrames& frames, Manifo
   write_four<4, W>(anchors, 0, {anchor.x, anchor.y, anchor.z, separation});
 }
 
-// All of a manifold, as if nothing had been there before.
+// Writes a whole manifold without history.
 void write_manifold(const LocalManifold& local, const OutputFrames& frames, Manifold& out) {
   out.normal = rotate(frames.view.frame_orientation, local.normal);
   out.count = local.count;
@@ -325,8 +326,8 @@ void write_manifold(const LocalManifold& local, const OutputFrames& frames, Mani
   write_points(local, frames, out);
 }
 
-// What rolls on a rim may go farther in a step than any point goes with its load, and the lowest point of a rim changes its name
-// where it passes a corner. If one point is left over on either side, it is the same.
+// A contact that rolls on a rim may move farther in a step than any match allows, and the lowest point of a rim changes
+// its feature at a corner. If exactly one point is unmatched on each side, the two are the same point.
 template <int kRoom>
 void match_rolling(Former<kRoom>& former, Manifold& manifold, unsigned matched_before) {
   if (former.count != 1) return;
@@ -364,7 +365,7 @@ void write_manifolds(const Found<kRoom>& found, const ContactPair& pair, const V
     match_by_position(former, out[m], matched[m], kMatchDistance * view.size);
   if (found.count == 1 && (has_rim(pair.shape_a->shape) || has_rim(pair.shape_b->shape)))
     match_rolling(former, out[0], matched[0]);
-  // Nothing of the past stays behind in what is not in use.
+  // Unused manifolds keep nothing of the past.
   for (int m = found.count; m < former.count; ++m) out[m] = Manifold{};
   pair.contact->manifold_count = std::uint16_t(found.count);
 }
@@ -381,19 +382,20 @@ bool is_clear_of_surface(const ContactPair& pair, const View& view, float max_di
   return is_clear_of_surface(pair.shape_a->shape, pair.shape_b->shape, a_from_b, max_distance);
 }
 
-// How far a look reached that left out everything beyond `kept`, of which the nearest is `left_out` away. Points measure separation
-// along one normal, which is not always that of the nearest features: hence only a part.
+// The distance that an update searched, if it dropped all points beyond `point_limit` and the nearest of those is at
+// `left_out`. Separations are measured along one normal, which is not always that of the nearest features; hence the
+// factor.
 float searched_distance(float max_distance, float point_limit, float left_out) {
   return left_out < max_distance ? point_limit + 0.75f * (left_out - point_limit) : max_distance;
 }
 
-// A look at what is no mesh. Returns how far it reached.
+// Updates a contact of two convex shapes, or a plane and a convex shape. Returns the distance that it searched.
 float compute_convex_manifold(const ContactPair& pair, const View& view, Found<1>& found) {
   float point_limit = view.speculative + kPointMargin * view.size;
   if (pair.contact->manifold_count == 0 && view.max_approach < kSlow * view.size) {
     const float far_distance = view.speculative + kFarSlack * view.size;
     collide_in_view(pair, view, far_distance, nullptr, found);
-    // Far points may have taken the places of near ones in the manifold: then it is no good.
+    // Far points may have displaced near ones in the manifold, which is then useless.
     if (is_beyond(found, point_limit))
       return searched_distance(far_distance, point_limit, remove_far_points(found, point_limit));
   }
@@ -408,7 +410,7 @@ float compute_convex_manifold(const ContactPair& pair, const View& view, Found<1
   return searched_distance(max_distance, point_limit, remove_far_points(found, point_limit));
 }
 
-// A look at a mesh or height field.
+// Updates a contact with a mesh or height field. Returns the distance that it searched.
 float compute_mesh_manifolds(const ContactPair& pair, const View& view, CachedTriangles* cached_triangles,
                              Found<kMaxMeshManifolds>& found) {
   if (pair.contact->manifold_count == 0) {

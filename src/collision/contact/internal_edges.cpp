@@ -1,4 +1,4 @@
-// Which contacts are hidden by a flush neighbour. See seam.h.
+// Finds contacts that a flush neighbour hides. See internal_edges.h.
 #include "collision/contact/internal_edges.h"
 
 #include "base/container/sort.h"
@@ -12,20 +12,20 @@
 namespace gyre {
 namespace {
 
-constexpr int kContactsPerBlock = 64;  // contacts: one word of the bits
-// Normals nearer than this are of one face.
+constexpr int kContactsPerBlock = 64;  // contacts: one word of bits
+// Normals with a larger cosine belong to one face.
 constexpr float kSameFace = 0.99999f;
-// Sine of the least lean of a normal out of a triangle's.
+// Sine of the smallest angle between a normal and the triangle's.
 constexpr float kLeaning = 1.0e-3f;
 
-// A contact of a shape that is pushed with one that is not, from the latter's side.
+// A contact of a pushed shape with one that is not pushed, seen from the latter.
 struct Side {
   std::uint32_t mover, other;            // shapes
   std::uint32_t mover_body, other_body;  // their bodies
-  float out = 1.0f;                      // times the manifold's normal: out of the other, towards the mover
+  float out = 1.0f;                      // factor on the manifold's normal, so that it points to the mover
 };
 
-// False if the contact is of another sort.
+// False for any other contact.
 bool find_side(const ContactStore& store, std::uint32_t slot, const CollideInput& input, Side& side) {
   const Contact& c = store.contacts[slot];
   if (c.manifold_room == 0 || c.manifold_count == 0 || c.sensor != 0) return false;
@@ -36,7 +36,7 @@ bool find_side(const ContactStore& store, std::uint32_t slot, const CollideInput
   return true;
 }
 
-// Both stand still, or go along together without turning.
+// True if the two bodies are at rest or translate together without rotation.
 bool move_together(const CollideInput& input, std::uint32_t a, std::uint32_t b) {
   if (a == b) return true;
   const CollisionBody& body_a = input.bodies[a];
@@ -44,7 +44,7 @@ bool move_together(const CollideInput& input, std::uint32_t a, std::uint32_t b) 
   return body_a.translation == body_b.translation && body_a.rotation == Vec3{} && body_b.rotation == Vec3{};
 }
 
-// How far the shape reaches beyond a point along a unit direction, in the frame of the shape.
+// How far the shape extends beyond a point along a unit direction, in the frame of the shape.
 float extent_beyond(const Shape& shape, Vec3 point, Vec3 direction) {
   if (shape.kind == ShapeKind::plane) {
     if (dot(shape.extents, direction) < kSameFace) return kUnbounded;
@@ -62,7 +62,7 @@ bool contains_point(const Shape& shape, Vec3 point, float slack) {
   return found.overlap || (!found.beyond && found.distance <= near);
 }
 
-// A resting shape where it lies, to be asked about points in world axes measured from a body's centre of mass.
+// A static shape in the world, for queries about points in world axes measured from a body's centre of mass.
 class StaticShape {
  public:
   StaticShape(const CollideInput& input, std::uint32_t shape, std::uint32_t body, std::uint32_t from_body)
@@ -89,7 +89,7 @@ bool is_surface(const Shape& shape) {
   return shape.kind == ShapeKind::mesh || shape.kind == ShapeKind::height_field;
 }
 
-// How far a shape rises beyond a point along a direction: of a surface only the triangle that is touched.
+// How far a shape extends beyond a point along a direction; of a surface only the touched triangle counts.
 float height_above(const Shape& shape, std::uint32_t triangle, Vec3 point, Vec3 direction) {
   if (!is_surface(shape)) return extent_beyond(shape, point, direction);
   const TriangleView view = Surface(shape).triangle(triangle);
@@ -98,8 +98,8 @@ float height_above(const Shape& shape, std::uint32_t triangle, Vec3 point, Vec3 
   return highest;
 }
 
-// Whether a surface goes on, level, from a point in the way that a direction leans: a step on, there is still a triangle of
-// the plane in which the point lies.
+// True if the surface continues, level, from a point in the direction of the lean: a small step ahead, a triangle of
+// the point's plane still lies there.
 bool continues_level(const Shape& shape, Vec3 point, Vec3 direction, float slack) {
   const Surface surface(shape);
   std::uint32_t ids[32];
@@ -108,7 +108,7 @@ bool continues_level(const Shape& shape, Vec3 point, Vec3 direction, float slack
     const TriangleView view = surface.triangle(ids[i]);
     if (absolute(dot(view.normal, point - view.v[0])) > slack) continue;
     const Vec3 leaning = direction - dot(direction, view.normal) * view.normal;
-    // A triangle's own normal is no seam.
+    // The triangle's own normal makes no internal edge.
     if (length_squared(leaning) < kLeaning * kLeaning) continue;
     const Vec3 ahead = point + 2.0f * slack * normalized(leaning);
     bool inside = true;
@@ -121,13 +121,13 @@ bool continues_level(const Shape& shape, Vec3 point, Vec3 direction, float slack
   return false;
 }
 
-// Whether the neighbour goes on beyond a point of the contact along the contact's normal, and holds it.
+// True if the neighbour contains a point of the contact and continues beyond it along the contact's normal.
 bool continues_beyond(const Shape& shape, Vec3 point, Vec3 direction, float slack) {
   if (is_surface(shape)) return continues_level(shape, point, direction, slack);
   return extent_beyond(shape, point, direction) > 2.0f * slack && contains_point(shape, point, slack);
 }
 
-// A manifold of a contact between a mover and something that rests.
+// A manifold between a mover and a static shape.
 struct Patch {
   const Contact& contact;
   const Side& side;
@@ -135,8 +135,8 @@ struct Patch {
   Vec3 out() const { return side.out * manifold.normal; }
 };
 
-// Which points of a manifold are hidden by the neighbour with which the mover has one too: those that lie in it where it goes on
-// beyond them, and where the manifold's own shape does not rise out of it.
+// Decides which points of a manifold a neighbour of the same mover hides: points inside the neighbour, where it
+// continues beyond them and where the manifold's own shape does not rise above the neighbour.
 class Cover {
  public:
   Cover(const CollideInput& input, const Patch& own, const Patch& neighbour)
@@ -150,7 +150,7 @@ class Cover {
 
   bool hides(int i) const {
     const ContactPointState& state = own_.manifold.points[i];
-    // The point midway, and from there half the separation back to the surface.
+    // The point is midway between the surfaces; half the separation back lies the static surface.
     const Vec3 point = state.from_a - 0.5f * state.separation * out_;
     if (height_above(own_shape_.shape(), own_.manifold.triangle, own_shape_.point(point), up_) >
         2.0f * slack_)
@@ -174,8 +174,8 @@ class Cover {
   const float slack_;
 };
 
-// The contacts with what rests of each mover that has several. What lies on one shape alone has no seam below it: most lie so, and of
-// them only the number is kept.
+// The contacts with static shapes of each mover that has several. A mover on one shape alone has no internal edge below
+// it; for such movers, the most common ones, only the number is stored.
 class StaticContacts {
  public:
   StaticContacts(const ContactStore& store, const CollideInput& input, const Bitset& on_static, Arena& arena)
@@ -189,7 +189,7 @@ class StaticContacts {
     };
     std::size_t listed = 0;
     for_each([&](std::uint32_t, std::uint32_t mover) {
-      // With the second the first is to be listed too.
+      // The second contact makes the first one count too.
       if (counts_[mover] > 0) listed += counts_[mover] == 1 ? 2 : 1;
       if (counts_[mover] < 2) ++counts_[mover];
     });
@@ -203,7 +203,7 @@ class StaticContacts {
   }
 
   bool has_several(std::uint32_t mover) const { return counts_[mover] > 1; }
-  // Of one that has; the lower half of each is the slot.
+  // For a mover with several; the lower half of each key is the slot.
   std::span<const std::uint64_t> of(std::uint32_t mover) const {
     const auto begin = std::lower_bound(keys_.begin(), keys_.end(), std::uint64_t(mover) << 32);
     auto end = begin;
@@ -212,11 +212,11 @@ class StaticContacts {
   }
 
  private:
-  std::span<std::uint8_t> counts_;       // by shape; two stand for more
+  std::span<std::uint8_t> counts_;       // by shape; 2 stands for two or more
   std::span<const std::uint64_t> keys_;  // mover and slot, ascending
 };
 
-// What questions are asked of.
+// The context of all queries.
 struct Scene {
   const ContactStore& store;
   const CollideInput& input;
@@ -225,18 +225,18 @@ struct Scene {
 
 bool hides(const CollideInput& input, const Patch& neighbour, const Patch& own, int point) {
   if (dot(own.out(), neighbour.out()) > kSameFace) return false;
-  // Two that hide each other both stay: better a bump than a hole.
+  // If two manifolds hide each other, both stay: a bump is better than a hole.
   return Cover(input, own, neighbour).hides(point) && !Cover(input, neighbour, own).hides_all();
 }
 
-// The contact that is asked about, and those of the same mover.
+// A contact that may be hidden, and the contacts of the same mover.
 struct Candidate {
   std::uint32_t slot;
   Side side;
   std::span<const std::uint64_t> neighbours;
 };
 
-// Whether some neighbour hides a point of the patch.
+// True if a neighbour hides a point of the patch.
 bool is_point_hidden(const Scene& scene, const Candidate& candidate, const Patch& own, int point) {
   for (const std::uint64_t key : candidate.neighbours) {
     const auto slot = std::uint32_t(key);
@@ -252,7 +252,7 @@ bool is_point_hidden(const Scene& scene, const Candidate& candidate, const Patch
   return false;
 }
 
-// Whether all points are: mostly the first is not, and nothing else is asked.
+// True if all points are hidden; mostly the first is not, which ends the search.
 bool is_hidden(const Scene& scene, const Candidate& candidate, int index) {
   const Contact& contact = scene.store.contacts[candidate.slot];
   const Patch own{contact, candidate.side,
@@ -263,7 +263,7 @@ bool is_hidden(const Scene& scene, const Candidate& candidate, int index) {
   return true;
 }
 
-// Bits of the manifolds of a contact that are hidden.
+// Bits of the hidden manifolds of a contact.
 std::uint8_t hidden_manifolds(const Scene& scene, std::uint32_t slot) {
   Side side;
   if (!find_side(scene.store, slot, scene.input, side)) return 0;
@@ -276,7 +276,7 @@ std::uint8_t hidden_manifolds(const Scene& scene, std::uint32_t slot) {
   return std::uint8_t(mask);
 }
 
-// Takes the hidden manifolds out of a contact.
+// Removes hidden manifolds from a contact.
 void remove_manifolds(ContactStore& store, std::uint32_t slot, std::uint8_t mask) {
   Contact& contact = store.contacts[slot];
   Manifold* const manifolds = &store.manifolds[contact.first_manifold];
@@ -302,7 +302,7 @@ void remove_internal_edge_contacts(ContactStore& store, const CollideInput& inpu
   scratch.hidden.reset_all();
   const StaticContacts static_contacts(store, input, on_static, arena);
   const Scene scene{store, input, static_contacts};
-  // All are asked before any is changed: nobody is hidden by who is hidden earlier in the list.
+  // All contacts are tested before any changes, so a hidden contact still hides others.
   for_blocks(tasks, int(count), kContactsPerBlock, [&](int begin, int, int) {
     for (std::uint64_t left = on_static.words()[std::size_t(begin / kContactsPerBlock)]; left != 0;
          left &= left - 1) {
@@ -310,7 +310,7 @@ void remove_internal_edge_contacts(ContactStore& store, const CollideInput& inpu
       if (hidden_manifolds(scene, slot) != 0) scratch.hidden.set(slot);
     }
   });
-  // Which of their manifolds: asked again, for the few there are.
+  // The few contacts found are tested again for their manifolds.
   scratch.found.clear();
   scratch.hidden.for_each_set([&](std::size_t slot) {
     scratch.found.push_back({std::uint32_t(slot), hidden_manifolds(scene, std::uint32_t(slot))});

@@ -1,4 +1,4 @@
-// The stage that clamps fast bodies. See continuous.h.
+// The CCD stage: halts fast bodies at their times of impact. See continuous.h.
 #include "collision/continuous/continuous.h"
 
 #include "base/container/sort.h"
@@ -13,15 +13,15 @@
 namespace gyre {
 namespace {
 
-constexpr int kBodiesPerBlock = 4;  // bodies: each is work enough
-// In inner radii of the moving shape. What is left must lie within what collide() looks for, and so near that it counts as
-// touching there.
+constexpr int kBodiesPerBlock = 4;  // bodies: each is enough work
+// In inner radii of the moving shape. The remaining gap must lie within the search distance of collide(), and be so
+// small that it counts as touching there.
 constexpr double kTarget = 0.0025;
 constexpr double kTouching = 0.01;
-constexpr double kClear = 0.01;  // of the target: nearer than that, the next look at the contact decides
+constexpr double kClear = 0.01;  // of the target: nearer gaps are left to the next update of the contact
 constexpr double kCoreTarget = 0.025;
 
-// A box around the whole way of a shape, turning included: around both ends, and the bulge between.
+// A box around the whole sweep of a shape, rotation included: around both ends, and the bulge between them.
 Aabb swept_box(const SweptShape& shape) {
   const WorldBox start = world_box(*shape.shape, shape.sweep->pose * shape.body_from_shape);
   const WorldBox end = world_box(*shape.shape, pose_at(*shape.sweep, 1.0) * shape.body_from_shape);
@@ -33,7 +33,7 @@ Aabb swept_box(const SweptShape& shape) {
   return round_outward({lower(start.low, end.low) - all, upper(start.high, end.high) + all});
 }
 
-// A box around swept_box(), sooner found: bounds from the shape's start and the farthest that a point of it goes.
+// A larger box, computed faster: the bounds at the start, extended by the largest displacement of any point.
 Aabb quick_box(const SweptShape& shape) {
   const Sweep& sweep = *shape.sweep;
   const Pose start = sweep.pose * shape.body_from_shape;
@@ -41,7 +41,7 @@ Aabb quick_box(const SweptShape& shape) {
   const Vec3 position = to_float(start.position), from_center = shape.body_from_shape.position - sweep.center;
   const float angle = length(sweep.rotation);
   const float arc = shape.radius * angle * (1.0f + 0.125f * angle);
-  // What world_box() adds at both ends, and more than all that rounding comes to.
+  // The slack that world_box() adds at both ends, and more than all rounding.
   const bool has_disc = shape.shape->kind == ShapeKind::cylinder || shape.shape->kind == ShapeKind::cone;
   const float slack =
       1.0e-5f * largest(absolute(position) + max(absolute(rotated.low), absolute(rotated.high)) +
@@ -51,11 +51,11 @@ Aabb quick_box(const SweptShape& shape) {
   const Vec3 all{around, around, around};
   const Aabb box{position + rotated.low + min(sweep.translation, Vec3{}) - all,
                  position + rotated.high + max(sweep.translation, Vec3{}) + all};
-  // Trees rely on finite boxes, and that one ends where floats do.
+  // Trees rely on finite boxes; swept_box() ends at the largest float.
   return is_finite(box.low) && is_finite(box.high) ? box : swept_box(shape);
 }
 
-// Whether one of the two is a sensor that the other may visit.
+// True if exactly one of the two is a sensor and the pair may meet.
 bool is_gate(const Proxy& self, const Proxy& other) {
   return self.sensor != other.sensor && may_pair(self, other);
 }
@@ -65,7 +65,7 @@ bool is_obstacle(const Proxy& self, const Proxy& other, bool continuous) {
   return continuous || !other.pushes;
 }
 
-// The shape of a fast body on its way.
+// A shape of a fast body with its sweep.
 struct Mover {
   SweptShape whole;
   Core core;
@@ -82,7 +82,7 @@ struct Mover {
   Mover(const Mover&) = delete;
   Mover& operator=(const Mover&) = delete;
 
-  // Where before `end` the shape must stop in front of `other`, or only its core.
+  // The time of impact of the shape, or only of its core, with `other` before `end`.
   TimeOfImpact impact_with(const SweptShape& other, double end, bool core_only,
                            TriangleHull& triangle) const {
     const SweptShape& own = core_only ? core_swept : whole;
@@ -91,33 +91,33 @@ struct Mover {
     return gyre::convex_time_of_impact(own, core_swept, other, 0.0, end, scale);
   }
 
-  // Whether the shape comes into `other` before `end` and is clearly out of it at `end`. Whether it was inside as the step
-  // began is for the caller to know: the look at the contact decided that, in float.
+  // True if the shape enters `other` before `end` and is clearly outside at `end`. The caller knows whether it was
+  // inside at the start, from the update of the contact in float.
   bool crosses(const SweptShape& other, double end, TriangleHull& triangle) const {
-    if (other.shape->kind == ShapeKind::plane) return false;  // a half space is not crossed, only entered
+    if (other.shape->kind == ShapeKind::plane) return false;  // a half space is entered, not crossed
     if (!is_convex(other.shape->kind))
       return crosses_surface(whole, other, end, kClear * scale.target, scale, triangle);
     if (find_gap(whole, other, end, scale.target).distance <= kClear * scale.target) return false;
     const double before = find_gap(whole, other, 0.0, scale.target).distance;
-    // At the very surface: on its way in or out.
+    // On the surface itself: true if the shape goes in, not out.
     if (before <= 0.0) return find_gap(whole, other, 0.001 * end, scale.target).distance < before;
     return time_of_impact(whole, other, 0.0, end, min(scale.target, 0.5 * before)).hit;
   }
 };
 
-// What is not finite is for others to deal with.
+// Sweeps that are not finite are skipped.
 bool is_sound(const Sweep& sweep) {
   return is_finite(sweep.pose) && is_finite(sweep.translation) && is_finite(sweep.rotation);
 }
 
-// What is left of a motion from a time on.
+// The motion from a time to the end of the step.
 Sweep remaining_sweep(const Sweep& sweep, double from) {
   if (from == 0.0) return sweep;
   const float remaining = float(1.0 - from);
   return {pose_at(sweep, from), sweep.center, remaining * sweep.translation, remaining * sweep.rotation};
 }
 
-// A fast body on its way, or on the last part of it: what moves beside it does so from `from` on.
+// The sweep of a fast body, or what remains of it; other bodies move from time `from` on.
 struct SweptPath {
   const FastBody& fast;
   const Sweep& sweep;
@@ -126,13 +126,13 @@ struct SweptPath {
   bool core_only = false;
 };
 
-// Whether a shape can have a contact with something that is wanted.
+// True if the shape can have a contact with a blocker.
 bool is_near_blocker(const ContinuousInput& input, const FastBody& fast, std::uint32_t index) {
   return fast.continuous || input.contacts->near_blockers.test(index);
 }
 
-// What a shape may meet inside of a box, in rising order: of that which is wanted. In a box within its fat box it may meet only what
-// it has a contact with: mostly nothing, of what falls.
+// Lists the shapes in a box that pass the filter, ascending. If the box lies within the shape's fat box, only its
+// contacts can be there; a falling body mostly has none.
 template <class Filter>
 void list_in_box(const ContinuousInput& input, const FastBody& fast, std::uint32_t index, const Aabb& box,
                  const Filter& filter, Array<std::uint32_t>& found) {
@@ -148,7 +148,8 @@ void list_in_box(const ContinuousInput& input, const FastBody& fast, std::uint32
   }
   if (!is_near_blocker(input, fast, index)) return;
   for_each_contact_of_shape(input.contacts->store, index, [&](std::uint32_t slot) {
-    // Most are with what is pushed. That is known without looking at them, and they lie anywhere in memory.
+    // Most contacts are with pushed shapes. The bit shows this without a read of the contact, which lies anywhere in
+    // memory.
     if (!fast.continuous && !input.contacts->ccd_blockers.test(slot)) return;
     const Contact& contact = input.contacts->store.contacts[slot];
     const std::uint32_t other = contact.shape_a == index ? contact.shape_b : contact.shape_a;
@@ -159,8 +160,8 @@ void list_in_box(const ContinuousInput& input, const FastBody& fast, std::uint32
   });
 }
 
-// Calls visit(shape on its way, its index, the other's index, the other on its way) for all that the shapes of a fast body
-// may come near and that `wanted` says yes to. `found` is scratch.
+// Calls visit(swept shape, its index, index of the other, swept other) for each shape that the fast body may come near
+// and that passes the filter. `found` is scratch.
 template <class Filter, class Visit>
 void for_each_on_path(const ContinuousInput& input, const SweptPath& path, Array<std::uint32_t>& found,
                       const Filter& filter, const Visit& visit) {
@@ -171,7 +172,7 @@ void for_each_on_path(const ContinuousInput& input, const SweptPath& path, Array
     list_in_box(input, path.fast, index, quick_box(whole), filter, found);
     if (found.empty()) continue;
     const Aabb box = swept_box(whole);
-    std::optional<Mover> mover;  // made for the first that is in the way
+    std::optional<Mover> mover;  // made for the first candidate
     for (const std::uint32_t other : found) {
       if (!overlap(box, input.proxies[other].fat_box)) continue;
       const ColliderShape& obstacle = input.shapes[other];
@@ -187,10 +188,10 @@ void for_each_on_path(const ContinuousInput& input, const SweptPath& path, Array
   }
 }
 
-// Where a body must stop, and which of its shapes in front of which.
+// When a body must halt, and which of its shapes meets which.
 struct BodyImpactTime : TimeOfImpact {
   std::uint32_t shape = 0, obstacle = 0;
-  bool near_gate = false;  // something on its way may be crossed
+  bool near_gate = false;  // a sensor may be crossed
 };
 
 BodyImpactTime first_impact(const ContinuousInput& input, const SweptPath& path, Array<std::uint32_t>& found,
@@ -225,8 +226,9 @@ void find_crossings(const ContinuousInput& input, const SweptPath& path, double 
                    });
 }
 
-// How much of a way along an obstacle a shape can go and still touch it where both are then: the contact of the next step
-// must find it there, or nothing would ever answer for the hit. `drift` is the way against the obstacle.
+// The largest share of a displacement along an obstacle after which the shape still touches it where both are then. The
+// contact of the next step must find the obstacle there, or the impact would have no response. `drift` is the
+// displacement relative to the obstacle.
 double touching_share(const ContinuousInput& input, const BodyImpactTime& impact, Pose pose, DVec3 drift) {
   const ColliderShape& own = input.shapes[impact.shape];
   const ColliderShape& other = input.shapes[impact.obstacle];
@@ -253,7 +255,7 @@ double touching_share(const ContinuousInput& input, const BodyImpactTime& impact
   return low;
 }
 
-// How a body goes that keeps its place on something that moves and turns, from a time on.
+// The sweep of a body that stays in place on a moving and rotating carrier, from a time on.
 Sweep ride_on(const Sweep& carrier, const Pose& pose, Vec3 center, double from) {
   const double remaining = 1.0 - from;
   Sweep ride{pose, center, float(remaining) * carrier.translation, float(remaining) * carrier.rotation};
@@ -268,15 +270,15 @@ Sweep ride_on(const Sweep& carrier, const Pose& pose, Vec3 center, double from) 
 
 bool is_still(const Sweep& sweep) { return sweep.translation == Vec3{} && sweep.rotation == Vec3{}; }
 
-// A body that was stopped spends the rest of its step on what it met: on its way along it, and with it. By itself it does not
-// turn meanwhile, so that what was between the two stays between them. Of a second obstacle it follows the crease.
+// A halted body spends the rest of its step sliding along its obstacle, and moving with it. It does not rotate by
+// itself meanwhile, so the plane between the two stays between them. At a second obstacle it follows the crease.
 class Slide {
  public:
   Slide(const ContinuousInput& input, const FastBody& fast, Array<std::uint32_t>& found,
         Array<std::uint64_t>& crossings, TriangleHull& triangle)
       : input_(input), fast_(fast), found_(found), crossings_(crossings), triangle_(triangle) {}
 
-  // How far the body goes after `stop`: into kept.slide and kept.turn.
+  // Computes the motion after `impact`: saved.slide and saved.rotation.
   void run(const Sweep& sweep, const BodyImpactTime& impact, SavedMotion& saved) {
     DVec3 normals[2];
     BodyImpactTime last = impact;
@@ -291,14 +293,14 @@ class Slide {
       const DVec3 carried(ride.translation);
       normals[k] = rotate(normalized(to_double(from_rotation_vector(ride.rotation))), last.normal);
       DVec3 drift = along(remaining - carried, normals, k);
-      // Of what the core only is in the way the shape itself may be in, and need not stay in touch.
+      // If only the core was blocked, the shape itself may overlap and need not stay in touch.
       if (!impact.by_core) drift = touching_share(input_, last, pose_at(ride, 1.0), drift) * drift;
       ride.translation = to_float(drift + carried);
       const SweptPath remaining_path{fast_, ride, from, true, impact.by_core};
       const BodyImpactTime second = first_impact(input_, remaining_path, found_, triangle_);
       const double share = second.hit ? second.time : 1.0;
       if (second.near_gate) find_crossings(input_, remaining_path, share, found_, crossings_, triangle_);
-      // What moves on pushes the body before it whatever stands behind.
+      // A moving obstacle carries the body, whatever stands behind it.
       const DVec3 step = share * drift + carried;
       gone += step;
       pose.position += step;
@@ -319,9 +321,9 @@ class Slide {
     if (!impact.hit || impact.time >= 1.0 || !(length_squared(impact.normal) > 0.5)) return false;
     return impact.by_core || !is_pushed(impact);
   }
-  // Where what a sweep pushes will be, only its own sweep knows.
+  // Only the sweep of a pushed body itself knows where it will be.
   bool is_pushed(const BodyImpactTime& impact) const { return input_.proxies[impact.obstacle].pushes; }
-  // The way without what leads into the obstacles met so far (k + 1 of them).
+  // The displacement without the component into the k + 1 obstacles so far.
   static DVec3 along(DVec3 displacement, const DVec3 (&normals)[2], int k) {
     displacement = displacement - max(dot(displacement, normals[k]), 0.0) * normals[k];
     if (k == 0 || dot(displacement, normals[0]) <= 0.0) return displacement;
@@ -375,7 +377,7 @@ void ContinuousCollision::clamp_fast_bodies(const ContinuousInput& input, std::s
         out.impact_point = impact.point;
         out.other = input.proxies[impact.obstacle].body;
       }
-      // What lies on something already meets the next piece of it at an edge that is none: it is not to be lifted over that.
+      // A body in contact that meets the next piece of the same ground at an internal edge must not be lifted over it.
       const bool fresh = !(body.min_fraction > 0.0f) || impact.by_core;
       const bool slides = impact.hit && body.slides &&
                           (fresh || !is_still(input.sweep_of(input.proxies[impact.obstacle].body)));
@@ -402,7 +404,8 @@ void ContinuousCollision::test_gates(const ContinuousInput& input) {
   }
 }
 
-// In an order that neither threads nor the broad phase know of, each pair once although both may be fast.
+// Sorts the crossings, so that neither threads nor the broad phase show in their order, and removes duplicates (both
+// bodies may be fast).
 void ContinuousCollision::gather_crossings() {
   for (const Worker& worker : workers_) {
     for (const std::uint64_t key : worker.crossings) crossings_.push_back(key);
@@ -417,8 +420,7 @@ void ContinuousCollision::gather_crossings() {
   crossings_.resize(count);
 }
 
-// Which worker looks at which body changes from run to run: each gets the room that any of them needed, and for all crossings,
-// so that none grows once warm.
+// Workers get different bodies in each run, so each gets the capacity that any of them needed; none grows once warm.
 void ContinuousCollision::even_out_room() {
   std::size_t capacity = 0;
   for (const Worker& worker : workers_) capacity = max(capacity, worker.found.capacity());

@@ -1,7 +1,7 @@
 // Sweeps against triangles. See swept_surface.h.
 //
-// A long way is cut into pieces of a few sizes, looked at in order: the boxes of the pieces meet far fewer triangles than
-// the box of the whole.
+// A long sweep is divided into pieces of a few sizes, tested in order: the boxes of the pieces meet far fewer triangles
+// than the box of the whole.
 #include "collision/continuous/swept_surface.h"
 
 #include "geometry/manifold_mesh/mesh_axis.h"
@@ -11,25 +11,26 @@ namespace gyre {
 namespace {
 
 constexpr int kMaxPieces = 32;
-constexpr float kPieceRadii = 4.0f;  // a piece is about so many outer radii long
+constexpr float kPieceRadii = 4.0f;  // length of a piece in outer radii
 constexpr float kCoreShare = 0.5f;   // of the inner radius
-// A core as near as this part of where it is left is taken for deep.
+// A core nearer than this share of its target distance counts as deep.
 constexpr double kDeep = 1.0e-3;
-// How often a shape is advanced towards a triangle's plane before it is worth a search, and how far at least, in distances.
+// The largest number of advances towards a triangle's plane before a search, and the smallest advance, in distances.
 constexpr int kMaxPlaneAdvances = 12;
 constexpr double kMinAdvance = 0.1;
-// A shape that slides may come nearer than it was left by this, and close in by this sine: rounding, not a stop.
+// A sliding shape may come nearer than its target by this share, and approach at this sine; below them it is rounding.
 constexpr double kSlideShare = 0.5, kSlideSlack = 1.0e-6;
 
 TimeOfImpact no_impact(double end) { return {end, false, false, {}, {}}; }
 
-// What touches from the start is the solver's; only the core must not pass. What is deeper than that already is free.
+// The time of impact of the core with something that the shape touches from the start; the solver handles the shape
+// itself. A core that is already deeper is free.
 TimeOfImpact core_time_of_impact(const SweptShape& core, const SweptShape& b, double start, double end,
                                  const ImpactScale& scale) {
   if (stays_clear(core, b, start, end, 2.0 * scale.core_target)) return no_impact(end);
   const Gap gap = find_gap(core, b, start, 2.0 * scale.core_target);
   if (!gap.beyond && gap.distance <= kDeep * scale.core_target) return no_impact(end);
-  // What is left near from the step before may come nearer, or it would be held there even as it leaves.
+  // A core left near by the last step may come nearer, or it would be held there even while it leaves.
   const double target = gap.beyond ? scale.core_target : min(scale.core_target, 0.5 * gap.distance);
   const Impact impact = time_of_impact(core, b, start, end, target);
   if (!impact.hit) return no_impact(end);
@@ -43,7 +44,8 @@ TimeOfImpact core_time_of_impact(const SweptShape& core, const SweptShape& b, do
   return impact;
 }
 
-// Stops where the shape is met, or, if that is before the part of its way that it keeps, where its core is.
+// The time of impact of the shape. If that is before the fraction that the shape keeps in any case, the core decides
+// from there on.
 TimeOfImpact whole_time_of_impact(const SweptShape& a, const SweptShape& core, const SweptShape& b,
                                   double start, double end, const ImpactScale& scale) {
   const Impact impact = time_of_impact(a, b, start, end, scale.target);
@@ -58,7 +60,8 @@ TimeOfImpact whole_time_of_impact(const SweptShape& a, const SweptShape& core, c
   return {impact.time, true, false, find_gap(a, b, impact.time, 2.0 * scale.target).normal, {}};
 }
 
-// Along what it touches a convex shape that does not turn may go on: the plane between the two stays between them.
+// The time of impact of a convex shape that slides along what it touches without rotation: the plane between the two
+// stays between them.
 TimeOfImpact slide_time_of_impact(const SweptShape& a, const SweptShape& b, double start, double end,
                                   const ImpactScale& scale) {
   const double target = kSlideShare * scale.target;
@@ -74,7 +77,7 @@ TimeOfImpact slide_time_of_impact(const SweptShape& a, const SweptShape& b, doub
   return {impact.time, true, false, find_gap(a, b, impact.time, 2.0 * scale.target).normal, {}};
 }
 
-// The moving shape as the surface sees it.
+// The moving shape in the frame of the surface.
 class SurfaceSweep {
  public:
   SurfaceSweep(const SweptShape& a, const SweptShape& core, const SweptShape& b, const ImpactScale& scale,
@@ -128,11 +131,12 @@ class SurfaceSweep {
   }
 
  private:
-  // The shape or its core in the surface's frame, as far as every triangle asks for it.
+  // The shape or its core in the surface's frame, as the tests of triangles need it.
   struct LocalShape {
     const SweptShape& swept;
     Transform from_shape;  // into the frame of the whole shape
-    Transform start, end;  // surface_from_shape as the step begins (of the core), and as the piece ends
+    // surface_from_shape at the start of the step (of the core), and at the end of the piece
+    Transform start, end;
   };
 
   Transform surface_from_a(double time) const {
@@ -141,8 +145,8 @@ class SurfaceSweep {
         pose_at(*a_.sweep, time) * a_.body_from_shape);
   }
 
-  // Holds the shape all along the piece, in the surface's frame. A turn bulges out of the box around its two ends by
-  // at most r (1 - cos(angle / 2)) < r angle^2 / 8.
+  // A box around the shape over the piece, in the surface's frame. A rotation bulges out of the box around its two ends
+  // by at most r (1 - cos(angle / 2)) < r angle^2 / 8.
   Aabb piece_box(double from, double to) const {
     const Transform &at_start = piece_start_, &at_end = piece_end_;
     const float share = float(to - from);
@@ -160,7 +164,7 @@ class SurfaceSweep {
     return 1 + int(min(distance / (kPieceRadii * a_.radius), float(kMaxPieces - 1)));
   }
 
-  // Calls fn(triangle) for those that the shape may come near between two times.
+  // Calls fn(triangle) for the triangles that the shape may come near between two times.
   template <class Fn>
   void for_each_triangle(double from, double to, const Fn& fn) {
     piece_start_ = from == 0.0 ? start_ : surface_from_a(from);
@@ -199,24 +203,25 @@ class SurfaceSweep {
         outer_radius(hull_.shape(), inverse_times(near_frame_.body_from_shape, b_.sweep->center));
   }
 
-  // Whether the shape comes onto the triangle that was placed last, from either side. What it is on already as the step
-  // begins counts where it goes in farther.
+  // True if the shape meets the current triangle from either side. A triangle that it overlaps at the start counts if
+  // it goes in deeper.
   bool meets(double from, double to) const {
     const double before = find_gap(a_, near_frame_, from, scale_.target).distance;
     if (before > 0.0) return time_of_impact(a_, near_frame_, from, to, min(scale_.target, 0.5 * before)).hit;
     return from > 0.0 || find_gap(a_, near_frame_, 0.001 * to, scale_.target).distance < before;
   }
 
-  // How far the shape, or its core, lies above a plane of the surface.
+  // Height of the shape, or its core, above a plane of the surface.
   static double height_of(const Shape& shape, const Transform& surface_from_shape, Vec3 normal, Vec3 corner) {
     const Vec3 lowest =
         surface_from_shape * support(shape, rotate_inverse(surface_from_shape.orientation, -normal));
     return double(dot(normal, lowest - corner)) - double(core_radius(shape));
   }
 
-  // Whether the shape, so high above a plane of the surface as the step begins, stays farther from it than `distance` until the
-  // piece ends. Mostly where it ends tells: in between it comes nearer than at both ends by the bulge of its turn at most.
-  // Else by the same advances as time_of_impact, but along the one normal, which needs no search.
+  // True if the shape, at `height` above a plane of the surface at the start of the step, stays farther from it than
+  // `distance` until the end of the piece. The heights at both ends mostly decide: in between, it is nearer by at most
+  // the bulge of its rotation. Otherwise it advances as in time_of_impact, but along the one normal, which needs no
+  // search.
   bool stays_above(const LocalShape& local, Vec3 normal, Vec3 corner, double height, double distance) const {
     const SweptShape& shape = local.swept;
     if (!(b_.sweep->rotation == Vec3{})) return false;
@@ -240,8 +245,8 @@ class SurfaceSweep {
     return false;
   }
 
-  // Whether nothing can stop the shape, `height` above the triangle as the step begins, before the piece ends: most of what
-  // comes near a triangle's box flies past or lies on it already.
+  // True if the triangle cannot halt the shape before the end of the piece, from `height` above it at the start of the
+  // step. Most shapes near a triangle's box fly past it or lie on it already.
   bool stays_clear_of(Vec3 corner, Vec3 normal, double height) const {
     if (height > scale_.touching) return stays_above(whole_, normal, corner, height, 2.0 * scale_.target);
     if (scale_.slides) return false;
@@ -252,7 +257,7 @@ class SurfaceSweep {
   void test_triangle(std::uint32_t id, double from) {
     const BareTriangle view = surface_.bare_triangle(id);
     Vec3 normal = view.normal;
-    // Which side of the plane the middle is on when the step begins decides; along a straight way it cannot come back.
+    // The side of the plane on which the middle starts decides; on a straight path it cannot come back.
     if (dot(normal, middle_ - view.v[0]) < 0.0f) {
       if (!surface_.double_sided()) return;
       normal = -normal;
@@ -279,7 +284,7 @@ class SurfaceSweep {
   const ImpactScale& scale_;
   TriangleHull& hull_;
   const bool is_surface_still_;
-  const Pose world_from_surface_;  // as the step begins
+  const Pose world_from_surface_;  // at the start of the step
   const Transform start_;
   LocalShape whole_, inner_;
   const Vec3 middle_;
@@ -315,7 +320,7 @@ void TriangleHull::set(Vec3 a, Vec3 b, Vec3 c) {
 
 namespace {
 
-// The largest box in the axes of the hull's own box, and of its proportions, that keeps `margin` from every face.
+// The largest box with the axes and proportions of the hull's own box that keeps `margin` from every face.
 Vec3 box_in_hull(const Hull& hull, float margin) {
   const Vec3 half = half_size(hull.box);
   float scale = 1.0f;
@@ -341,7 +346,7 @@ Core make_core(const Shape& shape, const Transform& body_from_shape) {
   Core core{shape, body_from_shape};
   switch (shape.kind) {
     case ShapeKind::box: {
-      // The rounding goes first.
+      // The rounding is removed first.
       core.shape.radius = max(shape.radius - off, 0.0f);
       const float remaining = max(off - shape.radius, 0.0f);
       core.shape.extents = shape.extents - Vec3{remaining, remaining, remaining};
@@ -355,7 +360,7 @@ Core make_core(const Shape& shape, const Transform& body_from_shape) {
       core.shape.extents.y = shape.extents.y - off;
       return core;
     case ShapeKind::cone: {
-      // Half as large about the middle of the ball that touches base and mantle.
+      // Half as large, about the centre of the inscribed ball.
       const float r = shape.radius, h = shape.extents.y;
       const float inscribed = 2.0f * h * r / (r + std::sqrt(r * r + 4.0f * h * h));
       core.shape.radius = (1.0f - kCoreShare) * r;

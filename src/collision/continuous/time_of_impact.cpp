@@ -9,15 +9,16 @@
 namespace gyre {
 namespace {
 
-// Grazing turns converge slowly. Where this is not enough, the time reached so far counts as the impact: never late.
+// Grazing rotations converge slowly. If this is not enough, the time reached so far counts as the impact, which is
+// early but never late.
 constexpr int kMaxSteps = 1000;
 constexpr double kTolerance = 0.25;  // of the target
-// How often the two are advanced along one normal before nearest points are searched for again.
+// The largest number of advances along one normal before the next search for the closest points.
 constexpr int kMaxNormalAdvances = 8;
 
 bool is_still(Vec3 rotation) { return rotation.x == 0.0f && rotation.y == 0.0f && rotation.z == 0.0f; }
 
-// A convex and B plane; the normal from A to B is against the plane's.
+// A convex and B a plane; the normal from A to B is opposite to the plane's.
 Gap plane_gap(const Shape& a, const Pose& frame_a, const Shape& plane, const Pose& frame_plane) {
   const DVec3 normal(rotate(frame_plane.orientation, plane.extents));
   const Vec3 down = rotate_inverse(frame_a.orientation, -to_float(normal));
@@ -37,15 +38,15 @@ DVec3 middle_at(const SweptShape& shape, const Pose& pose) {
   return pose.position + DVec3(rotate(pose.orientation, shape.sweep->center));
 }
 
-// At most how fast the two close along a direction that stays as it is.
+// An upper bound of the closing speed along a fixed direction.
 double closing_rate(const SweptShape& a, const SweptShape& b, DVec3 velocity, DVec3 normal) {
   return dot(velocity, normal) + rotation_rate(a, normal) + rotation_rate(b, normal);
 }
 
-// The same along a direction that turns with B, over a time; `from_b` is how far A's middle lies from B's. In B's frame the
-// middle of A begins with w = v_a - v_b - turn_b x from_b; that changes as A goes on and as the frame turns, which is of second
-// order in the time. About its middle A turns by what it turns more than B. Far out on something large that turns, this is
-// much less than the rate of its farthest point.
+// The same along a direction that rotates with B, over a time; `from_b` is the vector from B's middle to A's. In B's
+// frame the middle of A starts with w = v_a - v_b - turn_b x from_b, which changes in second order of the time as A
+// moves on and the frame rotates. About its middle A rotates by its rotation relative to B. Far out on something large
+// that rotates, this is much less than the speed of its farthest point.
 double closing_rate_seen_from_b(const SweptShape& a, const SweptShape& b, DVec3 velocity, DVec3 from_b,
                                 DVec3 normal, double time) {
   const DVec3 rotation_a(a.sweep->rotation), rotation_b(b.sweep->rotation);
@@ -65,7 +66,7 @@ double closing_rate(const SweptShape& a, const SweptShape& b, DVec3 velocity, DV
              : min(rate, closing_rate_seen_from_b(a, b, velocity, from_b, normal, time));
 }
 
-// How far the core reaches along a direction from its body's middle.
+// How far the core extends along a direction from its body's middle.
 double extent_along(const SweptShape& a, double time, DVec3 normal) {
   const Quat orientation = is_still(a.sweep->rotation) ? a.sweep->pose.orientation
                                                        : integrate_rotation(a.sweep->pose.orientation,
@@ -76,9 +77,8 @@ double extent_along(const SweptShape& a, double time, DVec3 normal) {
          double(dot(in_body, a.body_from_shape.position - a.sweep->center));
 }
 
-// Along one normal the two can be followed without a search: what lies between them along it is never more than their distance.
-// True if they do not come as near as `target` before `end`; else `time` is moved on as far as that normal tells. B does not
-// turn.
+// Advances along one normal without a search: the gap along it is never more than the distance. True if the shapes do
+// not come within `target` before `end`; otherwise `time` advances as far as that normal allows. B does not rotate.
 bool passes_along(const SweptShape& a, DVec3 velocity, const Gap& gap, double closing, double target,
                   double end, double& time) {
   const double start = time, extent_before = extent_along(a, start, gap.normal),
@@ -139,7 +139,7 @@ Impact time_of_impact(const SweptShape& a, const SweptShape& b, double start, do
   const DVec3 velocity = DVec3(a.sweep->translation) - DVec3(b.sweep->translation);
   double time = start;
   for (int i = 0; i < kMaxSteps; ++i) {
-    // Nothing can close faster than this, whatever the direction.
+    // An upper bound of the closing speed in any direction.
     double max_rate = length(velocity);
     if (!is_still(a.sweep->rotation)) max_rate += double(length(a.sweep->rotation)) * double(a.radius);
     if (!is_still(b.sweep->rotation)) max_rate += double(length(b.sweep->rotation)) * double(b.radius);
@@ -150,7 +150,7 @@ Impact time_of_impact(const SweptShape& a, const SweptShape& b, double start, do
     if (remaining <= kTolerance * target) return {true, time};
     const DVec3 from_b = middle_at(a, pose_a) - middle_at(b, pose_b);
     const double closing = closing_rate(a, b, velocity, from_b, gap.normal, end - time);
-    // Both the line and the rate of turning are constant: what does not close along one normal now never does.
+    // Velocity and angular velocity are constant: a pair that does not close along one normal now never does.
     if (closing * (end - time) <= remaining) return {};
     const bool searched = a.shape->kind != ShapeKind::plane && b.shape->kind != ShapeKind::plane;
     if (searched && !is_still(a.sweep->rotation) && is_still(b.sweep->rotation)) {
@@ -169,7 +169,7 @@ bool stays_clear(const SweptShape& a, const SweptShape& b, double start, double 
   const Pose frame_b = pose_b * b.body_from_shape;
   const Transform b_from_a = inverse_times(frame_b, pose_a * a.body_from_shape);
   const Aabb box_a = bounds(*a.shape, b_from_a), box_b = bounds(*b.shape, {});
-  // As for world_box: bounds() loses some digits.
+  // As in world_box: bounds() loses some digits.
   const bool has_disc = a.shape->kind == ShapeKind::cylinder || a.shape->kind == ShapeKind::cone;
   const float scale = max(max(largest(absolute(box_a.low)), largest(absolute(box_a.high))),
                           max(largest(absolute(box_b.low)), largest(absolute(box_b.high))));

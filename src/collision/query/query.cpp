@@ -1,4 +1,4 @@
-// Candidates, exact looks, and keeping what is wanted. See query.h.
+// Queries: candidates from the broad phase, each tested exactly. See query.h.
 #include "collision/query/query.h"
 
 #include "collision/broadphase/fat_box.h"
@@ -9,7 +9,7 @@
 namespace gyre {
 namespace {
 
-// Where a shape stands, in double and of length 1, so that what is far away keeps its precision.
+// The frame of a shape in double with a unit quaternion, so that distant shapes keep their precision.
 struct Frame {
   DVec3 position;
   DQuat orientation;
@@ -22,15 +22,16 @@ struct Frame {
   Vec3 rotate_to_world(DVec3 direction) const { return to_float(rotate(orientation, direction)); }
 };
 
-// The nearest shape is looked for in growing boxes up to so many sizes of the one that asks, and then everywhere.
+// The search for the nearest shape grows its box up to this many sizes of the query shape, and then takes the whole
+// world.
 constexpr double kMaxGrowth = 1.0e5;
 
-// The next float that is not smaller; what is looked at must not end before what was found.
+// The fraction as a float that is not smaller: the broad phase must not stop before the hit.
 float widened(double max_fraction) {
   return max_fraction >= 1.0 ? 1.0f : float(max_fraction * (1.0 + 1.0e-6));
 }
 
-// Calls look(shape, reach, hit) for every candidate along the way, and tells of those that it finds to be met.
+// Calls test(shape, frame, max_fraction, hit) for every candidate along the cast, and `found` for each hit.
 template <class Test>
 void for_each_along(const QueryInput& input, const CastBox& cast, HitVisit found, Test&& test) {
   double max_fraction = 1.0;
@@ -52,17 +53,17 @@ void for_each_along(const QueryInput& input, const CastBox& cast, HitVisit found
   });
 }
 
-// The box of a convex shape, as a box in the world that stands still or moves.
+// The box of a convex shape, at rest or moving.
 CastBox cast_box_of(const WorldShape& shape) {
   const WorldBox box = world_box(shape.shape, shape.pose);
   const DVec3 middle = 0.5 * (box.low + box.high), half = 0.5 * (box.high - box.low);
   const Aabb outward = round_outward({-half, half});
-  // Twice: what rounding of the middle takes from one side.
+  // Twice the rounding, since rounding of the middle takes from one side.
   const float slack = 1.0e-6f * largest(outward.high);
   return {middle, shape.translation, outward.high + Vec3{slack, slack, slack}};
 }
 
-// What find_near looks at in one go.
+// The box of a query, enlarged by a distance.
 CastBox grown(const CastBox& cast, double distance) {
   CastBox out = cast;
   const float margin = distance < double(kUnbounded) ? float(distance * (1.0 + 1.0e-6)) : kUnbounded;
@@ -98,7 +99,7 @@ void cast_shape(const QueryInput& input, const WorldShape& shape, HitVisit found
 
 namespace {
 
-// How far two boxes are apart at least.
+// A lower bound of the distance of two boxes.
 double gap_of(const CastBox& around, const Aabb& box) {
   const auto gap = [&](int axis) {
     const double low = double(box.low[axis]), high = double(box.high[axis]);
@@ -108,8 +109,8 @@ double gap_of(const CastBox& around, const Aabb& box) {
   return length(DVec3{gap(0), gap(1), gap(2)});
 }
 
-// Tells of every shape within `reach` of those whose boxes come within `look`, but not within `seen`, where one has looked before
-// (below 0: nowhere); `found` returns the new reach.
+// Calls `found` for every shape within `max_distance`, among those whose boxes come within `search_radius` but not
+// within `searched`, the radius of an earlier search (negative: none). `found` returns the new max_distance.
 template <class Found>
 void find_between(const QueryInput& input, const WorldShape& shape, const CastBox& around, double searched,
                   double search_radius, double max_distance, Found&& found) {
@@ -154,10 +155,11 @@ bool find_nearest_shape(const QueryInput& input, const WorldShape& shape, double
                    if (!any || near.distance < nearest.distance || (equal && near.shape < nearest.shape))
                      nearest = near;
                    any = true;
-                   // A little farther than the best: which of two equal ones is found must not hang on their order.
+                   // A little more than the best distance, so that the choice between equal shapes does not depend on
+                   // their order.
                    return min(nearest.distance * (1.0 + 1.0e-9), max_distance);
                  });
-    // What lies beyond the boxes that were looked at may be nearer.
+    // Shapes beyond the boxes searched so far may be nearer.
     if (last || (any && nearest.distance <= search_radius * (1.0 - 1.0e-6))) return any;
   }
 }
