@@ -1,3 +1,4 @@
+// Asks the processor for its instruction sets, its maker and its family. See processor.h.
 #include "base/processor.h"
 
 #if defined(__x86_64__)

@@ -1,3 +1,4 @@
+// The minimum degree order, the plan and the kernels of the factorisation. See block_ldlt.h.
 #include "math/block_ldlt.h"
 
 #include "base/check.h"

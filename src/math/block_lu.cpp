@@ -1,3 +1,4 @@
+// The block factorisation with exchanges of rows within a block. See block_lu.h.
 #include "math/block_lu.h"
 
 #include "math/wide_double.h"

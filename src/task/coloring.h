@@ -55,7 +55,8 @@ struct Coloring {
 // after the other, and early constraints bear a little more load. In the order in which a wall was built, each brick's
 // left neighbour comes before its right one, and the whole wall would lean. So runs of neighbouring names choose
 // forward or backward at random (the first run forward), which favours no direction and still goes from the ground up.
-// Names must not change between steps: impulses are carried over, and a new order would make them do work.
+// Names must not change between steps: in a new order the impulses that are carried over would drive bodies that they
+// should hold.
 void color_constraints(std::span<const ColoringPair> pairs, std::span<const std::uint32_t> names,
                        std::uint32_t body_count, std::span<const std::uint64_t> is_static,
                        const ColoringOptions& options, Coloring& out);

@@ -342,7 +342,7 @@ TEST(CollideRecycling, NothingIsMissedThatComesSlowly) {
   }
 }
 
-// --------------------------------------------------------------------------------------------------- what goes on
+// --------------------------------------------------------------------------------------------------- from step to step
 
 TEST(Collide, SleepingPairsAreLeftAlone) {
   CollideScene scene;

@@ -37,7 +37,7 @@ bool frame_is_b(const Shape& a, const Shape& b) {
   return any(ManifoldMatch<1>(round_a, round_b).frame_is_b);
 }
 
-// ----------------------------------------------------------------------------------------------- what the shapes tell
+// ---------------------------------------------------------------------------------------------------------- the shapes
 
 template <int kRoom>
 struct Found {
