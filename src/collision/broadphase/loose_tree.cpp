@@ -163,7 +163,7 @@ std::uint32_t LooseTree<kAxes>::split(std::uint32_t index) {
 
 template <int kAxes>
 void LooseTree<kAxes>::insert(std::uint32_t item, const Aabb& box) {
-  make_room(item);
+  grow_to(item);
   GYRE_ASSERT(slots_[item] == kNone, "the item is not in the tree yet");
   if (root_ == kNone) make_root(box);
   if (!fits(nodes_[root_].cell, box)) enlarge_root(box);

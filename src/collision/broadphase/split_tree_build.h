@@ -77,7 +77,7 @@ template <class Splitter>
 void SplitTree<Splitter>::finish_build() {
   clear();
   if (entries_.empty()) return;
-  for (const BoxEntry& entry : entries_) make_room(entry.item);
+  for (const BoxEntry& entry : entries_) grow_to(entry.item);
   size_ = entries_.size();
   root_ = make_node(kNone);
   fill(root_, entries_, 0);
@@ -167,7 +167,7 @@ void SplitTree<Splitter>::add_to_leaf(std::uint32_t leaf, std::uint32_t item, co
 
 template <class Splitter>
 void SplitTree<Splitter>::insert(std::uint32_t item, const Aabb& box) {
-  make_room(item);
+  grow_to(item);
   GYRE_ASSERT(slots_[item] == kNone, "the item is not in the tree yet");
   if (root_ == kNone) root_ = make_node(kNone);
   ++size_;

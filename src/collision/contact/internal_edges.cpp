@@ -62,7 +62,8 @@ bool contains_point(const Shape& shape, Vec3 point, float slack) {
   return found.overlap || (!found.beyond && found.distance <= near);
 }
 
-// A static shape (here any shape that contacts do not push) in the world, for queries about points in world axes measured from a body's centre of mass.
+// A static shape (here any shape that contacts do not push) in the world, for queries about points in world axes
+// measured from a body's centre of mass.
 class StaticShape {
  public:
   StaticShape(const CollideInput& input, std::uint32_t shape, std::uint32_t body, std::uint32_t from_body)
