@@ -98,7 +98,7 @@ WorldShape world_shape(const AnyShape& shape, const Pose& pose) {
 WorldShape world_shape(const ShapePlace& place) { return world_shape(place.shape, place.pose); }
 WorldShape world_shape(const ShapeCast& cast) {
   WorldShape out = world_shape(cast.shape, cast.pose);
-  out.way = cast.way;
+  out.translation = cast.way;
   out.skin = cast.skin;
   return out;
 }
