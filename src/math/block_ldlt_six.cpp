@@ -38,7 +38,8 @@ void solve_six_blocks(const BlockPlan& plan, std::span<const double> values, std
     const BlockColumn& column = plan.columns[index];
     double own[kSix] = {};
     for (int r = 0; r < kSix; ++r) {
-      for (int c = 0; c < kSix; ++c) own[r] += values[column.diagonal + std::uint32_t(kSix * r + c)] * x[column.row + std::uint32_t(c)];
+      for (int c = 0; c < kSix; ++c)
+        own[r] += values[column.diagonal + std::uint32_t(kSix * r + c)] * x[column.row + std::uint32_t(c)];
     }
     for (std::uint32_t i = column.begin; i < column.end; ++i) {
       const BlockEntry& entry = plan.entries[i];

@@ -14,7 +14,8 @@ struct SixRow {
   WideDouble<2> pair[3];
 
   static GYRE_INLINE SixRow load(const double* from) {
-    return {{WideDouble<2>::load_loose(from), WideDouble<2>::load_loose(from + 2), WideDouble<2>::load_loose(from + 4)}};
+    return {{WideDouble<2>::load_loose(from), WideDouble<2>::load_loose(from + 2),
+             WideDouble<2>::load_loose(from + 4)}};
   }
   GYRE_INLINE void store(double* to) const {
     for (int i = 0; i < 3; ++i) pair[i].store_loose(to + 2 * i);

@@ -49,7 +49,8 @@ void order_runs(std::span<const std::uint32_t> names, std::span<std::uint32_t> o
   for (std::size_t begin = 0; begin < names.size();) {
     const std::uint32_t run = names[begin] / kRun;
     std::size_t end = begin;
-    for (; end < names.size() && names[end] / kRun == run; ++end) order[end] = static_cast<std::uint32_t>(end);
+    for (; end < names.size() && names[end] / kRun == run; ++end)
+      order[end] = static_cast<std::uint32_t>(end);
     const std::span<std::uint32_t> members = order.subspan(begin, end - begin);
     if ((mix_bits(run) & 1) != 0) std::reverse(members.begin(), members.end());
     begin = end;
@@ -71,8 +72,8 @@ void group_by_color(int group_count, Coloring& out) {
 }  // namespace
 
 void color_constraints(std::span<const ColoringPair> pairs, std::span<const std::uint32_t> names,
-                       std::uint32_t body_count, std::span<const std::uint64_t> is_static, const ColoringOptions& options,
-                       Coloring& out) {
+                       std::uint32_t body_count, std::span<const std::uint64_t> is_static,
+                       const ColoringOptions& options, Coloring& out) {
   GYRE_ASSERT(names.empty() || names.size() == pairs.size(), "each constraint has a name, or none has");
   GYRE_ASSERT(options.max_colors >= 1 && options.max_colors <= ColoringOptions::kMaxColors,
               "a body's used colours fit in 64 bits");

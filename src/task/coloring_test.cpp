@@ -139,7 +139,8 @@ int bricks_with_left_before_right(std::span<const std::uint32_t> names_of_one_ro
   EXPECT_TRUE(validate_coloring(pairs, (rows + 1) * (width + 1), {}, {}, coloring));
   EXPECT_LE(colors_used(coloring), 6);
   int left_first = 0;
-  for (std::size_t i = 0; i < pairs.size(); i += 2) left_first += coloring.color[i] < coloring.color[i + 1] ? 1 : 0;
+  for (std::size_t i = 0; i < pairs.size(); i += 2)
+    left_first += coloring.color[i] < coloring.color[i + 1] ? 1 : 0;
   return left_first;
 }
 

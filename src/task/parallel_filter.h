@@ -51,7 +51,8 @@ FilteredList parallel_filter_among(TaskSystem& tasks, Arena& arena, SizeOf&& siz
   ((size = more.size() < size ? more.size() : size), ...);
   return filter_by_blocks(tasks, arena, size, [&](std::uint32_t begin, std::uint32_t) {
     FilteredBlock block;
-    for (std::uint64_t left = (set.words()[begin / 64] & ... & more.words()[begin / 64]); left != 0; left &= left - 1) {
+    for (std::uint64_t left = (set.words()[begin / 64] & ... & more.words()[begin / 64]); left != 0;
+         left &= left - 1) {
       const int bit = std::countr_zero(left);
       block.add(bit, size_of(begin + std::uint32_t(bit)));
     }

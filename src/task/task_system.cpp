@@ -158,8 +158,8 @@ struct TaskSystem::Pool {
 
   // In one cache line, since a line written by another core takes longer to arrive than much of the work takes.
   alignas(64) std::atomic<std::uint64_t> gate{0};
-  WorkerFn job = no_work;   // written before the gate opens, read inside
-  bool all_needed = false;  // of the job
+  WorkerFn job = no_work;                    // written before the gate opens, read inside
+  bool all_needed = false;                   // of the job
   alignas(64) std::atomic<int> finished{0};  // helpers that have finished a job with all_needed
   alignas(64) std::atomic<bool> stay_awake{false};
   std::atomic<bool> stopping{false};
@@ -195,8 +195,7 @@ TaskSystem::~TaskSystem() = default;
 
 void TaskSystem::stay_awake(bool yes) {
 #if GYRE_HAS_THREADS
-  if (pool_ != nullptr && spin_patience_ == kPatient)
-    pool_->stay_awake.store(yes, std::memory_order_relaxed);
+  if (pool_ != nullptr && spin_patience_ == kPatient) pool_->stay_awake.store(yes, std::memory_order_relaxed);
 #else
   (void)yes;
 #endif

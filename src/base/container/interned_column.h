@@ -6,8 +6,8 @@
 #pragma once
 
 #include "base/container/array.h"
-#include "base/hash.h"
 #include "base/container/slot_table.h"
+#include "base/hash.h"
 
 #include <array>
 #include <cstddef>

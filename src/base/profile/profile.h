@@ -3,8 +3,8 @@
 // of a flag.
 #pragma once
 
-#include "base/container/array.h"
 #include "base/check.h"
+#include "base/container/array.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -146,8 +146,8 @@ class BoxTree {
   WalkLine<BoxTreeNode> walk_line_ = select_box_line_walk();
   Array<Node> nodes_;
   Array<std::uint32_t> free_;
-  Array<std::uint32_t> slots_;   // by item: kWidth * node + lane, or kNowhere
-  Array<Entry> entries_;         // of the present build
+  Array<std::uint32_t> slots_;  // by item: kWidth * node + lane, or kNowhere
+  Array<Entry> entries_;        // of the present build
   ShrinkPolicy clock_;
   std::uint32_t root_ = kNowhere;
   std::uint32_t next_improved_ = 0;

@@ -77,7 +77,7 @@ class HashedGrid {
 
  private:
   static constexpr std::uint32_t kNone = BoxBuckets::kNone;
-  static constexpr std::int64_t kMaxCells = 64;             // of one box
+  static constexpr std::int64_t kMaxCells = 64;                  // of one box
   static constexpr std::int32_t kMaxCoordinate = (1 << 20) - 1;  // cells beyond are clamped to this one
 
   struct Cell {
@@ -173,10 +173,10 @@ class HashedGrid {
 
   FlatMap<std::uint32_t> occupied_;  // by cell: its list
   BoxBuckets buckets_;
-  Array<Aabb> boxes_;            // by item
-  Array<Where> where_;           // by item
-  Array<std::uint32_t> slots_;   // by item, of those in the list of large boxes
-  Array<BoxEntry> entries_;      // of the present build
+  Array<Aabb> boxes_;           // by item
+  Array<Where> where_;          // by item
+  Array<std::uint32_t> slots_;  // by item, of those in the list of large boxes
+  Array<BoxEntry> entries_;     // of the present build
   ShrinkPolicy clock_;
   std::uint32_t large_ = kNone;
   Cells occupied_range_{{{0, 0, 0}}, {{-1, -1, -1}}};  // all cells occupied at any time since the build

@@ -1,8 +1,8 @@
 // Fat boxes contain their shape at any distance from the origin, change rarely, and do not stay too large.
 #include "collision/broadphase/fat_box.h"
 
-#include "geometry/testing/mesh_test_scenes.h"
 #include "geometry/shape/support.h"
+#include "geometry/testing/mesh_test_scenes.h"
 
 #include <gtest/gtest.h>
 

@@ -89,7 +89,7 @@ class LooseTree : public BucketIndex {
   static constexpr int kChildren = 1 << kAxes;
   static constexpr int kAxis[3] = {0, kAxes == 3 ? 1 : 2, 2};
   static constexpr std::uint32_t kSplitAbove = 32;  // items of a cell before it is split
-  static constexpr int kLowestLevel = -24;        // sides of 2^level metres
+  static constexpr int kLowestLevel = -24;          // sides of 2^level metres
   static constexpr int kHighestLevel = 126;
   static constexpr int kStackSize = (kHighestLevel - kLowestLevel + 1) * (kChildren - 1) + 1;
 

@@ -3,8 +3,8 @@
 #include "collision/contact/collide.h"
 
 #include "base/prefetch.h"
-#include "collision/contact/contact_update.h"
 #include "collision/broadphase/fat_box.h"
+#include "collision/contact/contact_update.h"
 #include "math/wide.h"
 #include "task/parallel.h"
 

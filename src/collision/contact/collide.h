@@ -44,12 +44,12 @@ class ColliderShapes {
 
 // The source of a CollisionBody.
 struct ColliderBody {
-  Pose pose;              // of the origin
-  Vec3 center;            // centre of mass, body frame
-  Vec3 linear_velocity;   // m/s, of the centre of mass
-  Vec3 angular_velocity;  // rad/s
+  Pose pose;                     // of the origin
+  Vec3 center;                   // centre of mass, body frame
+  Vec3 linear_velocity;          // m/s, of the centre of mass
+  Vec3 angular_velocity;         // rad/s
   float bounding_radius = 0.0f;  // m, distance of the farthest point of its shapes from the centre of mass
-  bool awake = false;     // awake and not fixed
+  bool awake = false;            // awake and not fixed
 };
 
 // A body as contacts see it, in one cache line, made before the stage.
@@ -87,8 +87,8 @@ inline float extent_of(const BodyCenter& center) { return center.bounding_radius
 struct CollideInput {
   ColliderShapes shapes;
   std::span<const CollisionBody> bodies;  // by body
-  std::span<const BodyCenter> centers;  // by body
-  std::span<const std::uint8_t> awake;  // by body: 1 for awake bodies that are not fixed
+  std::span<const BodyCenter> centers;    // by body
+  std::span<const std::uint8_t> awake;    // by body: 1 for awake bodies that are not fixed
   std::span<const Proxy> proxies;
   // Contacts to update, by slot. In all other contacts both bodies sleep and the boxes did not change.
   const Bitset& active;
@@ -98,9 +98,9 @@ struct CollideInput {
 
 // Changes of this step, as bits by contact slot.
 struct TouchChanges {
-  Bitset began;  // not touching before, touching now (sensors too)
-  Bitset ended;  // touching before, not touching now
-  Bitset gone;   // fat boxes no longer overlap: to be removed; `ended` is set too if it touched
+  Bitset began;         // not touching before, touching now (sensors too)
+  Bitset ended;         // touching before, not touching now
+  Bitset gone;          // fat boxes no longer overlap: to be removed; `ended` is set too if it touched
   Bitset on_static;     // updated, has points, and contacts move only one of the two (for internal_edges.h)
   Bitset ccd_blockers;  // active, not gone, and blocks_fast_bodies() (for continuous.h)
 };

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "collision/broadphase/broadphase.h"
+#include "collision/broadphase/fat_box.h"
 #include "collision/contact/collide.h"
 #include "collision/contact/contact_recycle.h"
-#include "collision/broadphase/fat_box.h"
 #include "collision/contact/pair_update.h"
 
 #include <vector>

@@ -70,7 +70,7 @@ struct Side {
   WidePosition<W> origin;
   QuatW<W> orientation;
   Vec3W<W> translation, rotation;
-  Vec3W<W> center;        // of mass, body frame
+  Vec3W<W> center;                  // of mass, body frame
   Wide<W> bounding_radius, extent;  // m, from the centre of mass; from the origin (a bound)
 
   GYRE_INLINE WidePosition<W> center_of_mass() const { return origin + rotate(orientation, center); }
@@ -115,7 +115,7 @@ struct Group {
   Side<W> a, b;
   Wide<W> size, cached_distance;
   Placement<W> seen, now;             // B's body frame in A's at the last full update, and now
-  Wide<W> max_approach, speculative;  // as in View
+  Wide<W> max_approach, speculative;  // as in PairView
   // As in Closing, in world axes.
   Vec3W<W> closing_translation, closing_rotation;
   Wide<W> lever, arc_deviation;
@@ -285,7 +285,7 @@ GYRE_INLINE unsigned empty_lanes(const Group<W>& group) {
   return empty;
 }
 
-// The shapes of a group in the frame of their manifolds (View).
+// The shapes of a group in the frame of their manifolds (PairView).
 template <int W>
 struct ShapesInView {
   Records<W> records_a, records_b;  // ColliderShape
@@ -316,12 +316,14 @@ GYRE_INLINE void find_shapes(const Group<W>& group, ShapesInView<W>& shapes) {
 
 template <int W>
 GYRE_INLINE void write_views(const Group<W>& group, const ShapesInView<W>& shapes, const AxisLanes<W>& axis,
-                             int count, View* views) {
-  static_assert(GYRE_FLOATS_BEFORE(View, size) == 7 && GYRE_FLOATS_BEFORE(View, shapes_a_from_b) == 10);
-  static_assert(GYRE_FLOATS_BEFORE(View, frame_orientation) == 17 &&
-                GYRE_FLOATS_BEFORE(View, frame_from_a) == 21);
-  static_assert(GYRE_FLOATS_BEFORE(View, frame_from_b) == 24 && GYRE_FLOATS_BEFORE(View, closing) == 27);
-  static_assert(GYRE_FLOATS_BEFORE(Closing, rotation) == 4 && GYRE_FLOATS_BEFORE(View, axis) == 35);
+                             int count, PairView* views) {
+  static_assert(GYRE_FLOATS_BEFORE(PairView, size) == 7 &&
+                GYRE_FLOATS_BEFORE(PairView, shapes_a_from_b) == 10);
+  static_assert(GYRE_FLOATS_BEFORE(PairView, frame_orientation) == 17 &&
+                GYRE_FLOATS_BEFORE(PairView, frame_from_a) == 21);
+  static_assert(GYRE_FLOATS_BEFORE(PairView, frame_from_b) == 24 &&
+                GYRE_FLOATS_BEFORE(PairView, closing) == 27);
+  static_assert(GYRE_FLOATS_BEFORE(Closing, rotation) == 4 && GYRE_FLOATS_BEFORE(PairView, axis) == 35);
   static_assert(offsetof(boxes::Axis, number) == 0 && offsetof(boxes::Axis, separation) == 4);
   Targets<W> to;
   GYRE_UNROLL

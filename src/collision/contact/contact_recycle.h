@@ -46,7 +46,7 @@ struct ContactPair {
 // The motion of B in the step relative to A, in A's rotating frame, near where the two can meet. Two bodies in rigid
 // co-rotation have zero closing speed.
 struct Closing {
-  Vec3 translation;     // m, in the middle of the region where they can meet, in the frame of View
+  Vec3 translation;     // m, in the middle of the region where they can meet, in the frame of PairView
   float lever;          // m, radius of that region
   Vec3 rotation;        // rad, relative rotation vector, in the same frame
   float arc_deviation;  // m, an upper bound of the deviation of arcs from straight lines
@@ -58,7 +58,7 @@ struct Closing {
 };
 
 // The relative pose and motion of a pair, as an update needs them.
-struct View {
+struct PairView {
   Transform a_from_b;  // body frames
   float size;
   float max_approach;  // m, an upper bound of the approach of the surfaces in the step
@@ -81,7 +81,7 @@ struct Recycled {
   std::uint64_t apart = 0;  // bits, of the others: a full update would find nothing, and the contact says so
   // Of the remaining contacts. Not cleared: only their views are read.
   union {
-    View views[kContactBlock];
+    PairView views[kContactBlock];
   };
   Recycled() {}
 };

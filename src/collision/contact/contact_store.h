@@ -44,7 +44,7 @@ struct Contact {
   // points; negative before the first update. `size` is the scale of the pair's tolerances. `seen_a_from_b` is B's body
   // frame in A's.
   float cached_distance = -1.0f;  // m
-  float size = 0.0f;     // m
+  float size = 0.0f;              // m
   Transform seen_a_from_b;
   PairCache cache;
   ContactSurface surface;
@@ -64,7 +64,7 @@ class FreeSlots {
   void clear() { *this = FreeSlots{}; }
   void release(std::uint32_t index);
   void acquire(std::uint32_t index);  // takes this slot; no effect if it is not free
-  std::uint32_t lowest();          // kNone if none is free
+  std::uint32_t lowest();             // kNone if none is free
   bool contains(std::uint32_t index) const { return free_.test(index); }
 
  private:

@@ -53,7 +53,7 @@ struct Found {
   }
 };
 
-// A shape in the frame of View.
+// A shape in the frame of PairView.
 struct ViewedShape {
   Shape moved;
   const Shape* shape;
@@ -66,22 +66,23 @@ struct ViewedShape {
 };
 
 template <int kRoom>
-void collide_in_view(const ContactPair& pair, const View& view, float max_distance, CachedTriangles* cached,
-                     Found<kRoom>& found) {
+void collide_in_view(const ContactPair& pair, const PairView& view, float max_distance,
+                     CachedTriangles* cached, Found<kRoom>& found) {
   const ViewedShape a(pair.shape_a->shape, pair.shape_b->shape), b(pair.shape_b->shape, pair.shape_a->shape);
   found.count = collide_shapes(*a.shape, *b.shape, view.shapes_a_from_b, max_distance, pair.contact->cache,
                                found.manifolds, cached);
 }
 
 // The distance below which contacts along a normal matter. Contacts within min_near() always do.
-float min_near(const View& view) { return (kSpeculativeShare + kPointMargin) * view.size; }
-float near_along(const View& view, Vec3 normal) {
+float min_near(const PairView& view) { return (kSpeculativeShare + kPointMargin) * view.size; }
+float near_along(const PairView& view, Vec3 normal) {
   return min_near(view) + min(min(view.closing.along(normal), view.max_approach), kMaxApproach * view.size);
 }
 
 // As collide_in_view, for two sharp boxes. If they stay too far apart along the axis of largest separation, nothing is
 // found and the result is their separation along that axis, a lower bound of the distance.
-float collide_boxes_in_view(const ContactPair& pair, const View& view, float max_distance, Found<1>& found) {
+float collide_boxes_in_view(const ContactPair& pair, const PairView& view, float max_distance,
+                            Found<1>& found) {
   const Shape& a = pair.shape_a->shape;
   const Shape& b = pair.shape_b->shape;
   PairCache& cache = pair.contact->cache;
@@ -269,12 +270,12 @@ void match_by_position(Former<kRoom>& former, Manifold& manifold, unsigned match
 
 // From the frame of an update to world axes and to the frame of the anchors.
 struct OutputFrames {
-  const View& view;
+  const PairView& view;
   bool anchors_in_b;  // B's body frame, else A's
   Quat anchor_orientation;
   Vec3 anchor_center;
 
-  OutputFrames(const ContactPair& pair, const View& seen) : view(seen) {
+  OutputFrames(const ContactPair& pair, const PairView& seen) : view(seen) {
     anchors_in_b = frame_is_b(pair.shape_a->shape, pair.shape_b->shape);
     anchor_orientation = (anchors_in_b ? pair.body_b : pair.body_a)->orientation;
     anchor_center = (anchors_in_b ? pair.center_b : pair.center_a)->position;
@@ -348,7 +349,7 @@ void match_rolling(Former<kRoom>& former, Manifold& manifold, unsigned matched_b
 }
 
 template <int kRoom>
-void write_manifolds(const Found<kRoom>& found, const ContactPair& pair, const View& view) {
+void write_manifolds(const Found<kRoom>& found, const ContactPair& pair, const PairView& view) {
   Manifold* const out = pair.manifolds;
   Former<kRoom> former(manifolds_of(pair));
   const OutputFrames frames(pair, view);
@@ -370,13 +371,13 @@ void write_manifolds(const Found<kRoom>& found, const ContactPair& pair, const V
   pair.contact->manifold_count = std::uint16_t(found.count);
 }
 
-void save_view(Contact& contact, const View& view, float cached_distance) {
+void save_view(Contact& contact, const PairView& view, float cached_distance) {
   contact.cached_distance = cached_distance;
   contact.size = view.size;
   contact.seen_a_from_b = view.a_from_b;
 }
 
-bool is_clear_of_surface(const ContactPair& pair, const View& view, float max_distance) {
+bool is_clear_of_surface(const ContactPair& pair, const PairView& view, float max_distance) {
   const Transform a_from_b =
       inverse(pair.shape_a->body_from_shape) * view.a_from_b * pair.shape_b->body_from_shape;
   return is_clear_of_surface(pair.shape_a->shape, pair.shape_b->shape, a_from_b, max_distance);
@@ -390,7 +391,7 @@ float searched_distance(float max_distance, float point_limit, float left_out) {
 }
 
 // Updates a contact of two convex shapes, or a plane and a convex shape. Returns the distance that it searched.
-float compute_convex_manifold(const ContactPair& pair, const View& view, Found<1>& found) {
+float compute_convex_manifold(const ContactPair& pair, const PairView& view, Found<1>& found) {
   float point_limit = view.speculative + kPointMargin * view.size;
   if (pair.contact->manifold_count == 0 && view.max_approach < kSlow * view.size) {
     const float far_distance = view.speculative + kFarSlack * view.size;
@@ -411,7 +412,7 @@ float compute_convex_manifold(const ContactPair& pair, const View& view, Found<1
 }
 
 // Updates a contact with a mesh or height field. Returns the distance that it searched.
-float compute_mesh_manifolds(const ContactPair& pair, const View& view, CachedTriangles* cached_triangles,
+float compute_mesh_manifolds(const ContactPair& pair, const PairView& view, CachedTriangles* cached_triangles,
                              Found<kMaxMeshManifolds>& found) {
   if (pair.contact->manifold_count == 0) {
     const float far_distance = view.speculative + kClearSteps * view.max_approach + kFarSlack * view.size;
@@ -425,7 +426,7 @@ float compute_mesh_manifolds(const ContactPair& pair, const View& view, CachedTr
 
 // kRoom is the contact's manifold_room.
 template <int kRoom>
-void update_in_room(const ContactPair& pair, const View& view, CachedTriangles* cached_triangles) {
+void update_in_room(const ContactPair& pair, const PairView& view, CachedTriangles* cached_triangles) {
   Found<kRoom> found;
   float cached_distance = 0.0f;
   if constexpr (kRoom == 1) {
@@ -463,7 +464,7 @@ float smaller_size(float a, float b) {
   return has_a && has_b ? min(a, b) : has_a ? a : has_b ? b : 0.0f;
 }
 
-bool test_sensor_overlap(const ContactPair& pair, const View& view) {
+bool test_sensor_overlap(const ContactPair& pair, const PairView& view) {
   const Shape& a = pair.shape_a->shape;
   const Shape& b = pair.shape_b->shape;
   if (!is_convex(a.kind) && !is_convex(b.kind)) return surfaces_overlap(a, b, view.shapes_a_from_b);
@@ -473,7 +474,7 @@ bool test_sensor_overlap(const ContactPair& pair, const View& view) {
   return found.count > 0;
 }
 
-bool compute_manifold(const ContactPair& pair, const View& view, CachedTriangles* cached) {
+bool compute_manifold(const ContactPair& pair, const PairView& view, CachedTriangles* cached) {
   const bool loaded = carried_load(manifolds_of(pair));
   if (pair.contact->manifold_room == 1) {
     update_in_room<1>(pair, view, cached);

@@ -40,7 +40,7 @@ struct FastBody {
 // obstacle and with it.
 struct SavedMotion {
   float fraction = 1.0f;
-  Vec3 slide;  // m, of the centre of mass
+  Vec3 slide;     // m, of the centre of mass
   Vec3 rotation;  // rad, rotation vector, world: rotation of the obstacle that carries the body
   // Set if the core was blocked although the shape was in touch already, so that the solver did not hold the body
   // there. The caller must transfer the body's momentum to `other` at this point.

@@ -15,8 +15,8 @@ namespace gyre {
 
 // The motion of a body over a step.
 struct Sweep {
-  Pose pose;    // of its origin, at the start of the step
-  Vec3 center;  // centre of mass, body frame
+  Pose pose;         // of its origin, at the start of the step
+  Vec3 center;       // centre of mass, body frame
   Vec3 translation;  // m, of the centre of mass over the whole step
   Vec3 rotation;     // rad, rotation vector over the whole step, world frame
 };

@@ -2,8 +2,8 @@
 #include "collision/query/query.h"
 
 #include "collision/broadphase/fat_box.h"
-#include "geometry/query/cast_surface.h"
 #include "geometry/manifold/manifold.h"
+#include "geometry/query/cast_surface.h"
 #include "geometry/query/nearest.h"
 
 namespace gyre {
