@@ -333,8 +333,8 @@ GYRE_INLINE void write_views(const Group<W>& group, const ShapesInView<W>& shape
   const QuatW<W> frame_orientation = shapes.frame.orientation;
   const Vec3W<W> from_a = difference(shapes.frame.origin, group.a.center_of_mass());
   const Vec3W<W> from_b = difference(shapes.frame.origin, group.b.center_of_mass());
-  const Vec3W<W> closing_translation = rotate_inverse(frame_orientation group.closing_translation),
-                 closing_rotation = rotate_inverse(frame_orientation group.closing_rotation);
+  const Vec3W<W> closing_translation = rotate_inverse(frame_orientation, group.closing_translation),
+                 closing_rotation = rotate_inverse(frame_orientation, group.closing_rotation);
   write_four<4, W>(to, 0, {p.x, p.y, p.z, q.x});
   write_four<4, W>(to, 4, {q.y, q.z, q.w, group.size});
   write_four<4, W>(to, 8, {group.max_approach, group.speculative, shape_p.x, shape_p.y});

@@ -34,14 +34,14 @@ TimeOfImpact core_time_of_impact(const SweptShape& core, const SweptShape& b, do
   const double target = gap.beyond ? scale.core_target : min(scale.core_target, 0.5 * gap.distance);
   const Impact impact = time_of_impact(core, b, start, end, target);
   if (!impact.hit) return no_impact(end);
-  TimeOfImpact impact;
-  impact.time = impact.time;
-  impact.hit = impact.by_core = true;
-  impact.normal = find_gap(core, b, impact.time, 4.0 * target).normal;
+  TimeOfImpact found;
+  found.time = impact.time;
+  found.hit = found.by_core = true;
+  found.normal = find_gap(core, b, impact.time, 4.0 * target).normal;
   const Pose frame = pose_at(*core.sweep, impact.time) * core.body_from_shape;
-  const Vec3 towards = rotate_inverse(frame.orientation, to_float(impact.normal));
-  impact.point = frame * support(*core.shape, towards) + double(core_radius(*core.shape)) * impact.normal;
-  return impact;
+  const Vec3 towards = rotate_inverse(frame.orientation, to_float(found.normal));
+  found.point = frame * support(*core.shape, towards) + double(core_radius(*core.shape)) * found.normal;
+  return found;
 }
 
 // The time of impact of the shape. If that is before the fraction that the shape keeps in any case, the core decides
@@ -69,7 +69,7 @@ TimeOfImpact slide_time_of_impact(const SweptShape& a, const SweptShape& b, doub
   if (!gap.beyond && gap.distance <= 1.25 * target) {
     const DVec3 translation = DVec3(a.sweep->translation) - DVec3(b.sweep->translation);
     const bool closes =
-        dot(translation gap.normal) > kSlideSlack * length(translation) || !(b.sweep->rotation == Vec3{});
+        dot(translation, gap.normal) > kSlideSlack * length(translation) || !(b.sweep->rotation == Vec3{});
     return {closes ? start : end, closes, false, gap.normal, {}};
   }
   const Impact impact = time_of_impact(a, b, start, end, target);

@@ -71,7 +71,7 @@ double extent_along(const SweptShape& a, double time, DVec3 normal) {
   const Quat orientation = is_still(a.sweep->rotation) ? a.sweep->pose.orientation
                                                        : integrate_rotation(a.sweep->pose.orientation,
                                                                             float(time) * a.sweep->rotation);
-  const Vec3 in_body = rotate_inverse(orientation to_float(normal));
+  const Vec3 in_body = rotate_inverse(orientation, to_float(normal));
   const Vec3 in_shape = rotate_inverse(a.body_from_shape.orientation, in_body);
   return double(dot(in_shape, support(*a.shape, in_shape))) +
          double(dot(in_body, a.body_from_shape.position - a.sweep->center));
